@@ -2,16 +2,16 @@
 The C kernels in your own program
 =================================
 
-Each generated kernel is a pure C function: numbers in, numbers out, no state, no allocation. ``kernels.h`` says
-shapes and units of every argument. This guide calls one from C and the same one from Python.
+Each generated kernel is a pure C function without state or allocation. ``kernels.h`` gives shape and unit of every
+argument. This guide calls one kernel from C and from Python.
 """
 
 # %%
-# What a compiler needs
-# ---------------------
+# Include path and sources
+# ------------------------
 #
-# ``python -m funicular.generated`` prints the include path and the sources; ``--include`` and ``--sources`` one of
-# both.
+# ``python -m funicular.generated`` prints the include path and the sources. ``--include`` and ``--sources`` print one
+# of them.
 
 import json
 import shutil
@@ -36,8 +36,8 @@ print(len(sources), "files, such as", *sorted(sources)[:4])
 # A program
 # ---------
 #
-# The elastic energy and force of a cable element of 2 m that is stretched by 1 %. Coordinates are r and r_x at both
-# ends; ``constants`` come from the stiffnesses E A and E I by another kernel.
+# The program computes the elastic energy and force of a cable element of 2 m, stretched by 1 %. The coordinates are r
+# and r_x at both ends. Another kernel computes ``constants`` from E A and E I.
 
 PROGRAM = r"""
 #include "kernels.h"
@@ -63,7 +63,7 @@ energy, force = map(float, subprocess.run(["./call"], check=True, capture_output
 print(f"energy {energy:.6f} J, force at the far end {force:.6f} N")
 
 # %%
-# By hand: Green's strain is (1.01² - 1) / 2. The energy is E A / 2 times its square times the length, the force is E A
+# By hand: Green's strain is (1.01² - 1) / 2; the energy is E A / 2 times its square times the length; the force is E A
 # times the strain times the stretch 1.01.
 
 strain = (1.01**2 - 1) / 2
@@ -74,7 +74,7 @@ assert abs(force - 1000 * strain * 1.01) < 1e-9
 # From Python
 # -----------
 #
-# The same function of arrays; ``rows`` calls it for many elements at once.
+# The same kernel is a function of arrays. ``rows`` evaluates it for many elements in one call.
 
 from funicular.generated import kernels
 
@@ -84,11 +84,10 @@ assert same == energy
 print(f"from Python: {same:.6f} J")
 
 # %%
-# What there is
-# -------------
+# All kernels
+# -----------
 #
-# ``manifest.json`` beside the code describes each kernel: what it computes, from which equation, its arguments with
-# shapes and units, and its operations.
+# ``manifest.json`` describes each kernel: its result, equation, arguments with shapes and units, and operation count.
 
 from funicular.generated import described
 

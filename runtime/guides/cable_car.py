@@ -2,17 +2,17 @@
 Cable car over a support
 ========================
 
-A cabin hangs from a carriage of two wheels that a haulage drives up a track rope, over the support between two spans,
-and back. How do the passengers swing, what does the drive need, and what do rope and support bear?
+A haulage drives a carriage of two wheels up a track rope, over the support between two spans, and back. A cabin hangs
+from the carriage. The guide computes its swing, the power of the drive, and the forces in rope and support.
 """
 
 # %%
 # The scene
 # ---------
 #
-# It comes with the package: a locked-coil rope of 40 mm over 200 m, anchored at both towers, a carriage on two slides,
-# a cabin of 1.5 t on a hinge 4 m below. The speed of the haulage is a table. On the support the rope slides over a
-# saddle: an eyelet, which is a slide whose rider is a point of the ground.
+# The scene is installed with the package: a locked-coil rope of 40 mm over 200 m, anchored at both towers; a carriage
+# on two slides; a cabin of 1.5 t on a hinge 4 m below. A table prescribes the speed. On the support the rope slides
+# over a saddle, modelled by an eyelet: a slide whose rider is a point of the ground.
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -30,7 +30,7 @@ print(f"rope: {rope.length:.2f} m in {rope.elements} elements of {rope.element}"
 # At rest
 # -------
 #
-# The rope is drawn straight and taut. Its sag under its own weight and the car's, and its tension then:
+# The rope is drawn straight and taut. Under its own weight and the car's it sags:
 
 rest = scene.equilibrium()
 tension = rest.section_forces("track").tension
@@ -38,8 +38,8 @@ print(f"tension {1e-3 * float(tension.min()):.0f} to {1e-3 * float(tension.max()
       f"the car hangs {scene.bodies['cabin'].position[1] - rest['cabin.position'][1]:.2f} m lower than drawn")
 
 # %%
-# Over a saddle without friction a rope has one tension, and presses on it by that times its turn. A rope that is held
-# there is another rope: with the car in the lower span it would have 242 kN below the support and 200 kN above.
+# The tension is equal on both sides of a frictionless saddle. A rope clamped to the support differs: with the car in
+# the lower span its tension would be 242 kN below the support and 200 kN above.
 
 saddle = float(rest["saddle.s"])
 below, above = 1e-3 * rest.section_forces("track", s=[saddle - 8, saddle + 8]).tension.values
@@ -51,14 +51,14 @@ assert abs(below / above - 1) < 0.01
 # Up and back
 # -----------
 #
-# ``tol`` is relative to the motion, here 180 m: 1e-5 are 2 mm.
+# ``tol`` is relative to the motion, here 180 m: 1e-5 is 2 mm.
 
 run = scene.run(duration=80.0, tol=1e-5, output_step=0.05, initial=rest)
 print(run.summary())
 
 # %%
-# The haulage slows down before the support and stops at the top. The cabin swings after each change of speed, and
-# damping is small: it is the wind's and the hinge's business, which this scene leaves out.
+# The haulage slows down before the support and stops at the top. The cabin swings after each change of speed. The scene
+# contains no damping by wind or hinge.
 
 car, cabin = run["carriage.position"], run["cabin.position"]
 hang = cabin - car
@@ -85,7 +85,7 @@ print(f"the rope slides over the saddle by {1e3 * np.ptp(run['saddle.s']):.0f} m
 # By hand
 # -------
 #
-# Going up steadily, the haulage lifts the car's weight with the speed times the slope of the track, 0.2 on average.
+# In steady motion the haulage lifts the weight of the car. The slope of the track is 0.2 on average.
 
 steady = (run.time > 6) & (run.time < 13)
 lift = (180 + 1500) * 9.81 * run["carriage.velocity"][steady, 1]
@@ -96,13 +96,12 @@ assert abs(power[steady].mean() / lift.mean() - 1) < 0.1
 # Sizing
 # ------
 #
-# The largest tension along the rope over the whole run decides on the rope. Bending over the wheels and the saddle
-# adds to its stress.
+# The largest tension of the whole run sizes the rope. Bending over wheels and saddle adds to its stress.
 
 forces = run.section_forces("track", s=np.linspace(1, 200, 60))
 worst = forces.tension.max(dim="time")
 print(f"largest tension {1e-3 * float(worst.max()):.0f} kN = {1e-6 * float(worst.max()) / 1.1e-3:.0f} MPa of the metal")
 
 # %%
-# Next: a heavier cabin is ``scene.replace("cabin", mass=2500)``. A load across the plane needs a spatial element,
-# ``cable12``.
+# Next steps: ``scene.replace("cabin", mass=2500)`` makes the cabin heavier. A load across the plane needs a spatial
+# element, ``cable12``.

@@ -2,17 +2,16 @@
 Cable robot: three carriages move a camera
 ==========================================
 
-A camera hangs from three cables of fixed length. Their upper ends are on carriages that run up and down three towers:
-where these go, the camera goes. How well does it follow a circle, how hard must the motors pull, and what does the
-stretch of the cables do?
+A camera hangs from three cables of fixed length. Their upper ends move with carriages on three towers. The guide
+computes how well the camera follows a circle, the forces of the motors, and the effect of cable stretch.
 """
 
 # %%
 # Towers and camera
 # -----------------
 #
-# Three towers on a circle of 5 m; from each a cable of 8 m goes to the camera. Three lengths fix its place; it stays
-# below the triangle of the carriages, so that its weight keeps all cables taut.
+# Three towers stand on a circle of 5 m. A cable of 8 m runs from each to the camera. The camera stays below the
+# triangle of the carriages, so that its weight keeps all cables taut.
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -24,11 +23,11 @@ TOWERS = 5.0 * np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=1)  # x, z
 CENTRE, RADIUS, PERIOD, MASS, LENGTH = np.array([0.0, 2.0, 0.0]), 1.0, 8.0, 60.0, 8.0
 
 # %%
-# Where the carriages must be
-# ---------------------------
+# Positions of the carriages
+# --------------------------
 #
-# The camera should go round a circle in a level plane. A carriage is then as far above it as the cable's length allows:
-# √(L² - d²), with d the distance of tower and camera seen from above.
+# The camera follows a circle in a level plane. The height of a carriage above it is √(L² - d²), with the horizontal
+# distance d from tower to camera.
 
 
 def wanted(time: np.ndarray) -> np.ndarray:
@@ -49,8 +48,8 @@ for tower in TOWERS:
 # The scene
 # ---------
 #
-# A carriage is a body on a prismatic joint with the ground, whose ``distance`` is a signal: it is where the motor's
-# control wants it, whatever force that takes. A cable of small mass is a spring that pulls from carriage to camera.
+# A carriage is a body on a prismatic joint with the ground. The signal ``distance`` prescribes its position, whatever
+# the force. A light cable is a spring between carriage and camera.
 
 
 def robot(stiffness: float) -> fu.Scene:
@@ -68,10 +67,10 @@ def robot(stiffness: float) -> fu.Scene:
 
 
 # %%
-# Round the circle
-# ----------------
+# Motion along the circle
+# -----------------------
 #
-# The run starts from rest, where the cables are stretched by the camera's weight already.
+# The run starts from rest, with the cables stretched by the weight of the camera.
 
 figure, (path, pull) = plt.subplots(1, 2, figsize=(9.5, 4), layout="constrained")
 for stiffness in (2e4, 5e5):
@@ -86,10 +85,10 @@ path.set(xlabel="x in m", ylabel="z in m", title="seen from above", aspect="equa
 path.legend(frameon=False, fontsize="small")
 
 # %%
-# What the motors do
-# ------------------
+# Forces of the motors
+# --------------------
 #
-# Tension of the three cables, and by hand: at rest a third of the weight each, over the cosine of their slope.
+# The tensions are compared with a third of the weight over the cosine of the slope.
 
 for k in range(3):
     pull.plot(run.time, run[f"cable_{k}.tension"], label=f"cable {k}")

@@ -2,16 +2,16 @@
 Choose a model for a tolerance
 ==============================
 
-A cable's element, law and mesh, and the integrator, decide what a run costs and how much it errs. Leave them out, say
-what error you can bear, and let them be chosen. This guide shows what is chosen, why, and how true that is.
+Element, law, mesh and integrator decide what a run costs and how accurate it is. Leave them out and give a tolerance:
+``choose`` selects them. This guide shows the selection, its reasons, and its true error.
 """
 
 # %%
 # A scene without elements
 # ------------------------
 #
-# A rubber strip is clamped at one end and let go from the horizontal. ``elements`` is left out. Such a scene can be
-# drawn, saved and checked, but it has no equations yet.
+# A rubber strip is clamped at one end and released from the horizontal. Without ``elements`` a scene can be drawn,
+# saved and checked; it has no equations yet.
 
 import time
 
@@ -31,25 +31,25 @@ def strip(**model) -> fu.Scene:
 
 
 # %%
-# What is chosen
-# --------------
+# The selection
+# -------------
 #
-# ``choose`` makes a few short runs on coarse meshes. Halving the elements shows how fast the mesh converges; the
-# energy of shear, with a run of a softer strip, shows what an element without shear leaves out; two integrators are
-# compared. All errors are over the largest motion in the scene.
+# ``choose`` makes a few short runs on coarse meshes. Halving the elements shows the convergence of the mesh. The shear
+# energy, and a run of a softer strip, show the error of elements without shear. Two integrators are compared. All
+# errors are relative to the largest motion.
 
 DURATION = 0.4
 choice = strip().choose(1e-2, duration=DURATION)
 print(choice)
 
 # %%
-# The star marks what was chosen. The other rows are what it would cost and err to do it in another way. These are
-# estimates: the run itself is the test of them.
+# The star marks the selection. The other rows estimate cost and error of the alternatives.
 #
-# How true that is
-# ----------------
+# Estimates against true errors
+# -----------------------------
 #
-# The same for four tolerances, against 48 beam elements with a hundredth of the error in time.
+# The following runs repeat this for four tolerances. The reference has 48 beam elements and a hundredth of the error in
+# time.
 
 exact_scene = strip(elements=48, element="beam24", law="structural")
 exact = exact_scene.run(duration=DURATION, tol=1e-6, output_step=DURATION / 40)["strip.position"][:, -1]
@@ -72,23 +72,23 @@ axes.set(xlabel="tol", ylabel="error over the largest motion")
 axes.legend(frameon=False)
 
 # %%
-# In one go
-# ---------
+# Selection within a run
+# ----------------------
 #
-# A run with ``model="auto"`` chooses first. So does any run of a scene whose elements were left out. ``run.scene`` is
-# the chosen scene, an ordinary one, and the report tells what was chosen.
+# ``model="auto"`` selects before the run. So does any run of a scene without ``elements``. ``run.scene`` is the
+# selected scene; the report gives the reasons.
 
 run = strip().run(duration=DURATION, tol=1e-2, model="auto")
 print(run.report["choice"]["models"], *run.report["choice"]["reasons"], sep="\n- ")
 print(run.scene.to_toml())
 
 # %%
-# What you give stays: a cable with ``elements`` keeps its mesh, one with ``element`` its element and law.
-# ``free="all"`` chooses all the same. Name ``quantities`` where not the whole motion counts:
+# Given values stay: a cable with ``elements`` keeps its mesh, one with ``element`` its element and law. ``free="all"``
+# selects them anew. ``quantities`` names the results whose error counts:
 
 kept = strip(element="cable12").choose(1e-2, duration=DURATION, quantities=["strip@0.moment"])
 print(kept)
 
 # %%
-# A moment takes a finer mesh than a motion does. On the command line the same is ``funicular choose SCENE.toml --tol
-# 1e-2 -o CHOSEN.toml``. For a rule of thumb without a run, see the guide on elements and laws.
+# A moment needs a finer mesh than the motion. The command is ``funicular choose SCENE.toml --tol 1e-2 -o CHOSEN.toml``.
+# The guide on elements and laws has rules that need no run.

@@ -2,26 +2,26 @@
 Choose an element, a law, and a mesh
 ====================================
 
-The smallest element that knows what your cable does is the fastest and often the most accurate. This guide takes one
-scene, a clamped rubber strip that bends by its own weight, through the elements, and looks at error against cost.
+The smallest element that describes the motion is the fastest, and often the most accurate. This guide compares the
+elements on a clamped rubber strip that bends under its own weight: error against cost.
 """
 
 # %%
-# What each element knows
-# -----------------------
+# What each element describes
+# ---------------------------
 #
 # ========== ======= ======================= =======================================
-# element    space   coordinates of a node   knows
+# element    space   coordinates of a node   describes
 # ========== ======= ======================= =======================================
 # cable8p    plane   r, r_x                  stretch, bending
-# cable12    space   r, r_x                  stretch, bending (the same all round)
+# cable12    space   r, r_x                  stretch, bending (equal in all directions)
 # cable18    space   r, r_x, r_xx            the same, with continuous curvature
 # beam12p    plane   r, r_x, r_y             and shear, deforming sections
 # beam24     space   r, r_x, r_y, r_z        and torsion, two bending stiffnesses
 # ========== ======= ======================= =======================================
 #
-# Beams have a law: ``"structural"`` is a beam's (stretch, shear, torsion, bending); ``"continuum"`` is a solid's, the
-# one of the paper, which locks in bending unless its elements are short.
+# Beams have a law. ``"structural"`` is the law of a beam (stretch, shear, torsion, bending). ``"continuum"`` is the law
+# of a solid, as in the paper; it locks in bending unless its elements are short.
 
 import time
 
@@ -46,7 +46,7 @@ def strip(element: str, elements: int, **law) -> fu.Scene:
 # At rest
 # -------
 #
-# The end sags by 0.47 m, nearly the length. Against 64 elements of ``beam12p`` with the structural law:
+# The end sags by 0.47 m, nearly the length. The reference is 64 elements of ``beam12p`` with the structural law.
 
 exact = strip("beam12p", 64, law="structural").equilibrium()["strip.position"][-1]
 kinds = {"cable8p": {}, "beam12p": {"law": "structural"}, "beam12p, continuum": {"law": "continuum"},
@@ -63,14 +63,14 @@ error_axes.legend(frameon=False, fontsize="small")
 assert errors[-1] < 1e-3
 
 # %%
-# Cables converge fast to a number that is off by what shear does, here 3e-4: a strip fifty times as long as it is high
-# hardly shears. The continuum locks: 32 of its elements are off by more than 4 of the structural beam.
+# Cables converge fast to a result without shear, here 3e-4 off. The continuum locks: 32 of its elements are less
+# accurate than 4 of the structural beam.
 #
 # In motion
 # ---------
 #
-# The same for half a second of falling, with the CPU time that it takes. Torsion and section vibrations that the scene
-# does not need make a beam stiff and costly.
+# The strip now falls for half a second. Torsion and section vibrations, which this scene does not need, make a beam
+# stiff and costly.
 
 
 def fall(kind: str, n: int, **law) -> tuple[np.ndarray, float]:
@@ -94,8 +94,8 @@ cost_axes.legend(frameon=False, fontsize="small")
 # Rules of thumb
 # --------------
 #
-# - In a plane, model in the plane: ``cable8p`` is ``cable12`` without the third direction, and faster.
-# - No torsion and no shear wanted: take a cable. A rope's wires slip: give its area and second moment.
+# - A planar scene needs planar elements: ``cable8p`` is ``cable12`` without the third direction, and faster.
+# - Without torsion and shear, take a cable. The wires of a rope slip: give its area and second moment.
 # - Torsion, or bending that differs across: ``beam24`` with ``law="structural"``.
-# - Accelerations of a rider that passes nodes, or of a contact wire: ``cable18``, whose curvature does not jump.
-# - Double the elements once. If the result moves by more than you can bear, double again.
+# - Accelerations of a rider that passes nodes, or of a contact wire: ``cable18``, whose curvature is continuous.
+# - Double the elements once. If the result moves too much, double again.

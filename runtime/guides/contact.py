@@ -2,17 +2,17 @@
 Contact: a sea bed, a ball, two ropes
 =====================================
 
-There are three kinds of contact. A cable touches a surface along its length. A body strikes a surface by points, which
-do not sink in. A cable crosses another one, or a bar, at one point. Each is compared here with a closed form. For many
-pairs give lists, or "all": ``scene.contact(["ball", "rope"], "all")``; those that are far apart cost next to nothing.
+Three kinds of contact exist. A cable touches a surface along its length. Points of a body strike a surface without
+penetration. A cable crosses a cable or a bar at one point. Each is compared with a closed form. Lists, or "all", make
+many pairs: ``scene.contact(["ball", "rope"], "all")``. Distant pairs cost next to nothing.
 """
 
 # %%
 # A mooring line on the sea bed
 # -----------------------------
 #
-# A line of 30 m is pulled by 150 N along the bed, and upwards by the weight of 14 m. By the catenary 14 m are lifted,
-# and 16 m lie on the bed. The line is drawn there already. What differs is its bending, which the catenary leaves out.
+# A force of 150 N along the bed and the weight of 14 m upwards pull a line of 30 m. By the catenary 14 m are lifted and
+# 16 m lie on the bed. The line is drawn in this shape; its bending is what differs.
 
 from math import pi, sqrt
 
@@ -51,12 +51,12 @@ assert abs(anchor / PULL - 1) < 1e-9
 assert abs(end[1] - RADIUS - y[-1] - WEIGHT * LIFTED**2 / 2 / (MODULUS * pi * RADIUS**2)) < 5e-4  # and its stretch
 
 # %%
-# How deep it sinks in
-# --------------------
+# Penetration
+# -----------
 #
-# The bed is a spring, and ``penetration`` the largest depth. Without a ``stiffness`` the weight sinks in by 1 % of the
-# radius, and a little more where the line bends up. With ten times that stiffness the depth is about a tenth, and steps
-# are smaller. The bed is stiff enough when results no longer change with it.
+# The bed is a spring, and ``penetration`` its largest depth. The default ``stiffness`` lets the weight sink in by 1 %
+# of the radius. Ten times that stiffness gives a tenth of the depth, and smaller steps. A stiffness is sufficient when
+# results no longer change with it.
 
 stiff = mooring(stiffness=10 * WEIGHT / (0.01 * RADIUS))
 for state in (smooth, stiff):
@@ -69,9 +69,9 @@ assert np.abs(stiff["line.position"][-1] - end).max() < 5e-4
 # With friction
 # -------------
 #
-# In statics, friction acts against the way that each point has come from where it is drawn: draw a line where it was
-# laid. This one is drawn without its stretch. It stretches away from the anchor, friction holds it back, and the
-# anchor holds less by the coefficient times the weight that lies. See also the installed scene ``rope_over_drum``.
+# In statics, friction acts against the displacement of each point from where it is drawn. This line is drawn without
+# its stretch. It stretches away from the anchor, and friction reduces the force there by the coefficient times the
+# weight on the bed. The installed scene ``rope_over_drum`` is another example.
 
 rough = mooring(friction=0.3)
 print(f"{-rough['line@0.force'][0]:.1f} N at the anchor, {-rough['lying.friction_force'][0]:.1f} N by friction")
@@ -81,9 +81,9 @@ assert abs(-rough["line@0.force"][0] - (PULL - 0.3 * WEIGHT * LYING)) < 0.3 * WE
 # A ball that bounces
 # -------------------
 #
-# ``restitution`` makes the contact of a body hard. An impact is an event; the speed after it is e times that before. So
-# each bounce is e² as high as the last, and they end after t (1 + e)/(1 - e), with the time t of the first fall. With a
-# ``stiffness`` and a ``damping`` c an impact takes time, and v - ln(1 + c v)/c is the same after as before.
+# ``restitution`` makes the contact of a body hard: an impact is an event that multiplies the normal speed by -e. Each
+# bounce is e² as high as the last, and they end at t (1 + e)/(1 - e), with the time t of the first fall. With a
+# ``stiffness`` and a ``damping`` c an impact takes time, and v - ln(1 + c v)/c is equal before and after.
 
 E, DROP, DAMPING = 0.7, 0.5, 0.2027
 scene = fu.Scene(gravity=(0, -G, 0))
@@ -107,11 +107,11 @@ kept = speeds[:-1] - np.log1p(DAMPING * speeds[:-1]) / DAMPING
 assert np.abs((-speeds[1:] - np.log1p(-DAMPING * speeds[1:]) / DAMPING) / kept - 1).max() < 2e-2
 
 # %%
-# Give damping
-# ------------
+# Damping
+# -------
 #
-# Contact of a cable always has a stiffness, which gives back what it takes. Without ``damping`` a rope that falls flat
-# on a table bounces on; one that is held down chatters. With friction it then creeps: its normal force comes and goes.
+# The contact of a cable always has a stiffness, which returns the energy. Without ``damping`` a rope that falls on a
+# table bounces; one that is held down chatters, and creeps in spite of friction.
 
 figure, (ball, table) = plt.subplots(1, 2, figsize=(9, 3.4), layout="constrained")
 for run, label in ((hard, "restitution 0.7"), (soft, "stiffness and damping")):
@@ -135,8 +135,8 @@ _ = ball.legend(frameon=False), table.legend(frameon=False)
 # Two ropes that cross
 # --------------------
 #
-# ``crossing`` acts at the closest points, which move along both lines. Two ropes of 1 m hang at right angles, and the
-# ends of the upper one are let down to 5 cm below the others. Its force by the equations of the elastica: 0.188161 N.
+# ``crossing`` acts at the closest points, which move along both lines. Two ropes of 1 m hang at right angles; the ends
+# of the upper one are lowered to 5 cm below the others. The elastica gives a force of 0.188161 N.
 
 scene = fu.Scene(gravity=(0, 0, -G))
 for name, along, z, down in (("lower", (0.4, 0), 0.0, 0.0), ("upper", (0, 0.4), 0.02, 0.07)):

@@ -2,17 +2,16 @@
 Crane with a swinging load
 ==========================
 
-A trolley runs along the girder of a crane and stops; the load below swings on its hoisting rope. How far does it swing,
-how does the way of stopping change that, and does the girder feel it?
+A trolley travels along a girder and stops. The load swings on its hoisting rope. The guide computes the swing, its
+dependence on the speed profile, and the moment in the girder.
 """
 
 # %%
 # Girder, trolley, load
 # ---------------------
 #
-# The girder is a steel box of 20 m, drawn as a beam and pinned at both ends. The trolley is a body on a slide that is
-# driven: ``velocity`` prescribes how it moves, whatever force that takes. The load hangs from a hoisting rope of 6 m,
-# a distance joint: a rope that is taut all the time and whose stretch does not matter.
+# The girder is a steel box of 20 m, pinned at both ends. The trolley is a body on a driven slide: ``velocity``
+# prescribes its motion. The load hangs from a distance joint of 6 m, a model of a taut rope without stretch.
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -38,8 +37,8 @@ scene.joint("distance", trolley, load, name="rope")
 # A profile of speed
 # ------------------
 #
-# The trolley speeds up in ``ramp`` seconds, travels, and slows down in as many. The load swings like a pendulum of 6 m:
-# its period is near 2 π √(l/g) = 4.9 s. A ramp of one period brings the swing to rest again; a short one does not.
+# The trolley accelerates for ``ramp`` seconds, travels, and decelerates for the same time. The period of the load is
+# near 2 π √(l/g) = 4.9 s. A ramp of one period leaves no swing.
 
 
 def travel(ramp: float) -> fu.TableSignal:
@@ -78,9 +77,8 @@ power.set(xlabel="time in s", ylabel="kW", title="power of the drive")
 # The girder
 # ----------
 #
-# It sags under its own weight, the trolley and the load. The bending moment at mid-span follows from the
-# forces that are in balance with the part of the girder beside it. It is a little larger than for a load at rest: a
-# swinging load pulls harder.
+# The girder carries its own weight, the trolley and the load. The bending moment at mid-span follows from the balance
+# of the girder's part beside it. The swinging load makes it larger than a load at rest.
 
 run = runs["1.5 s"]
 sag = run["trolley.position"][:, 1].min()
@@ -93,5 +91,5 @@ print(f"energy balance: off by {left:.1e} of the energy exchanged")
 assert left < 1e-3
 
 # %%
-# Next: give the rope its own elements (``scene.cable`` with a body as the load's end) to see it stretch, or hoist while
-# travelling with ``distance=`` of the joint as a signal.
+# Next steps: a rope with elements (``scene.cable``) stretches; a signal ``distance=`` of the joint hoists while
+# travelling.

@@ -1,18 +1,18 @@
 """
-Droppers: lengths that are found, parts that pull alone
-=======================================================
+Droppers: planned heights, slack and taut
+=========================================
 
-The wire over a railway hangs by droppers from a messenger. How long must each be for the wire to lie as planned? And
-what happens when the wire is lifted: a dropper pulls, but it does not push. The lengths are compared with published
-ones, the forces with those of strings.
+The contact wire of a railway hangs by droppers from a messenger. The guide finds dropper lengths for a planned height
+of the wire, then lifts the wire: a dropper pulls, but does not push. Lengths are compared with published ones, forces
+with those of strings.
 """
 
 # %%
 # A span with droppers of one length
 # ----------------------------------
 #
-# Two wires over 55 m, pulled by weights. Nine droppers of one length are a poor guess, with which some of them are
-# slack. Each is a spring with ``tension_only``: its length is that below which it has no force.
+# Two wires span 55 m under the tension of weights. Each dropper is a spring with ``tension_only``: below its length it
+# has no force. With equal lengths some of nine droppers are slack.
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -53,12 +53,12 @@ print(f"droppers of one length: {len(slack)} of 9 are slack")
 assert 0 < len(slack) < 9
 
 # %%
-# The lengths that are wanted
+# Lengths for planned heights
 # ---------------------------
 #
-# The plan: a parabola that sags by 55 mm between the outer droppers, 22 kN in the wire and 16 kN in the messenger.
-# ``adjust`` names what may be changed, within limits; ``to`` names what shall come of it. There are as many of one as
-# of the other. A slack dropper says nothing about how much shorter it must be; the search knows that.
+# The plan is a parabola that sags by 55 mm between the outer droppers, 22 kN in the wire and 16 kN in the messenger.
+# ``adjust`` names the variables with their limits, ``to`` the same number of targets. The force of a slack dropper does
+# not depend on its length; the search takes this into account.
 
 sag = 0.055 * (1 - ((X - 27.5) / 23) ** 2)
 heights = {f"contact@{x / SPAN * contact.length:.9g}.position.y": -y for x, y in zip(X, sag, strict=True)}
@@ -77,8 +77,8 @@ assert abs(forces.sum() / 742.9 - 1) < 2e-2  # strings; the bending of the wires
 assert rest.adjustment.iterations <= 6
 
 # %%
-# What cannot be reached says why
-# -------------------------------
+# An impossible target
+# --------------------
 
 try:
     rest.scene.equilibrium(adjust=["dropper_4.length"], to={"dropper_4.tension": -50.0})
@@ -87,11 +87,11 @@ except fu.EquilibriumError as error:
     assert "which pulls alone, would push" in str(error)
 
 # %%
-# The wire is lifted and let go
-# -----------------------------
+# Uplift and release
+# ------------------
 #
-# A force of 200 N lifts the middle, as the collector of a train does, and leaves within 10 ms. Steps end where a
-# dropper becomes slack or taut, or go over that where ``tol`` allows; the report tells when each has.
+# A force of 200 N lifts the middle and ends within 10 ms. Steps end where a dropper becomes slack or taut, unless
+# ``tol`` permits a deferred event; the report gives the times of both.
 
 lifted = rest.scene
 push = fu.TableSignal(time=[0, 0.2, 0.21, 1], value=[0, 1, 0, 0])
@@ -116,10 +116,10 @@ uplift = 1e3 * (middle.max() - middle[0])
 print(f"largest uplift {uplift:.0f} mm")
 
 # %%
-# With droppers that push, too
-# ----------------------------
+# Droppers as plain springs
+# -------------------------
 #
-# As plain springs they would lift the messenger with the wire, and the middle would rise less.
+# Plain springs lift the messenger with the wire, and the middle rises less.
 
 plain = lifted
 for name in DROPPERS:

@@ -2,16 +2,16 @@
 First scene
 ===========
 
-A body of 1 kg slides along a cable of 1.5 m that two pins hold: example 5.1 of the paper. This guide describes it, runs
-it, looks at it, and asks how far the numbers can be trusted. It takes a second.
+A body of 1 kg slides along a cable of 1.5 m between two pins: example 5.1 of the paper. This guide describes the scene,
+runs it, plots it, and measures its errors. It takes a second.
 """
 
 # %%
 # Describe
 # --------
 #
-# A scene holds data. All units are SI. The cable is drawn from ``start`` to ``end`` and has three equal elements;
-# ``height`` of its section is along ``up``.
+# A scene holds data in SI units. The cable is drawn from ``start`` to ``end`` with three equal elements. The ``height``
+# of its section is along ``up``.
 
 import funicular as fu
 
@@ -23,8 +23,8 @@ scene.pin(wire, s=0.0)
 scene.pin(wire, s=1.5)
 
 # %%
-# The body starts at a quarter of a metre with 1 m/s. A slide joins its origin to the centreline of the cable: ``s`` is
-# the arc-length of the undeformed cable, 0 at its start.
+# The body starts at 0.25 m with 1 m/s. A slide joins its origin to the centreline of the cable; ``s`` is the arc-length
+# of the undeformed cable.
 
 body = scene.rigid_body("A", mass=1.0, inertia=(1e-3, 1e-3, 1e-3), position=(0.25, 0, 0), velocity=(1, 0, 0))
 scene.slide(body, along=wire, s=0.25, name="trolley")
@@ -33,8 +33,8 @@ scene.slide(body, along=wire, s=0.25, name="trolley")
 # Run
 # ---
 #
-# ``tol`` is the error aimed at in positions, relative to the largest motion. The integrator and its steps follow from
-# it; the summary says which one was taken and how well the energies balance.
+# ``tol`` is the required error of positions, relative to the largest motion. It determines integrator and steps. The
+# summary reports both, and the energy balance.
 
 run = scene.run(duration=1.0, tol=1e-5, output_step=0.01)
 print(run.summary())
@@ -43,8 +43,7 @@ print(run.summary())
 # Look
 # ----
 #
-# Results are NumPy arrays by name, time first. The body slides along, past the middle, and
-# swings up and down with the cable, which gives way under it.
+# Results are NumPy arrays by name, time first. The body passes the middle, and moves up and down with the cable.
 
 import matplotlib.pyplot as plt
 
@@ -59,8 +58,8 @@ force.set(xlabel="time in s", ylabel="N", title="force on the body, upwards")
 # Trust
 # -----
 #
-# Three numbers say how good a run is. The slide keeps the body on the cable to rounding, the energies balance, and
-# a run at a smaller ``tol`` moves the result by less than ``tol`` of the motion.
+# Three numbers measure the quality of a run: the distance of the body from the cable, the energy balance, and the
+# difference to a run at a smaller ``tol``.
 
 finer = scene.run(duration=1.0, tol=1e-7, output_step=0.01)
 balance = run.energy_balance()
@@ -71,7 +70,7 @@ print(f"difference to a run at tol=1e-7: {difference:.1e} m in a motion of 1 m")
 assert difference < 1e-5
 
 # %%
-# That is the error of time. The error of the mesh is another one: run the scene with more elements, and compare.
+# These are errors in time. A run with more elements measures the error of the mesh.
 
 fine = scene.replace("wire", elements=12).run(duration=1.0, tol=1e-5, output_step=0.01)
 mesh = abs(run["A.position"] - fine["A.position"]).max()
@@ -81,7 +80,7 @@ print(f"3 elements against 12: {1e3 * mesh:.2f} mm")
 # Keep
 # ----
 #
-# ``run.save("first.nc")`` writes netCDF, which ``fu.load_run`` and xarray open. ``scene.to_toml()`` is the scene as the
-# text of a scene file, for ``funicular run first.toml`` on the command line.
+# ``run.save("first.nc")`` writes netCDF, which ``fu.load_run`` and xarray open. ``scene.to_toml()`` returns the text of
+# a scene file for ``funicular run first.toml``.
 
 print(scene.to_toml()[:160], "...")

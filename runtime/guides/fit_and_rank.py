@@ -1,17 +1,17 @@
 """
-Fit a model, and rank what matters
-==================================
+Fit a model, and rank its parameters
+====================================
 
-A trolley's way was measured. Which stiffness of the cable and which friction explain it? And which of the values that
-nobody knows exactly deserves care? SciPy and SALib answer, with a sweep as their function.
+The path of a trolley was measured. Which stiffness of the cable and which friction explain it, and which uncertain
+values matter most? SciPy and SALib answer, with a sweep as their function.
 """
 
 # %%
-# What was measured
-# -----------------
+# The measurement
+# ---------------
 #
-# Here a run takes the place of the experiment: 0.43 GPa, a friction of 0.12, and a camera that errs by 0.2 mm. What
-# follows does not know these values.
+# A run replaces the experiment: 0.43 GPa, a friction of 0.12, and a camera with an error of 0.2 mm. The fit does not
+# know these values.
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -33,8 +33,9 @@ measured = way + NOISE * np.random.default_rng(7).standard_normal(way.shape)
 # A function of many points
 # -------------------------
 #
-# What optimisers ask for at once is one sweep: ``method="list"`` takes a value of each parameter a point. It is on all
-# cores without ``workers=0``, which pays for points of seconds, or for hundreds.
+# All points that an optimiser requests together form one sweep: ``method="list"`` takes one value of each parameter per
+# point. Without ``workers=0`` the points are distributed over all cores, which is worthwhile for points of seconds, or
+# hundreds of points.
 
 
 def ways(stiffness: np.ndarray, friction: np.ndarray) -> np.ndarray:
@@ -49,7 +50,7 @@ def ways(stiffness: np.ndarray, friction: np.ndarray) -> np.ndarray:
 # The fit
 # -------
 #
-# ``least_squares`` wants what is left, in units of the camera's error, and its derivatives: four runs, of central
+# ``least_squares`` needs the residuals in units of the camera's error, and their derivatives: four runs for central
 # differences, in one sweep.
 
 SMALL = np.array([1e-3, 1e-3])
@@ -86,11 +87,11 @@ right_axis.plot(0.43, 0.12, "r*", markersize=14)
 right_axis.set(xlabel="stiffness in GPa", ylabel="friction", title="rounds of the fit, and the truth")
 
 # %%
-# What matters
-# ------------
+# Sensitivity
+# -----------
 #
-# Sobol's indices share the variance of an answer among its causes: SALib draws the points, a sweep computes them, SALib
-# analyses. The total index counts all that a value does, also together with others.
+# Sobol's indices divide the variance of a result among its causes. SALib draws the points, a sweep computes them, SALib
+# analyses them. The total index includes interactions.
 
 problem = {"num_vars": 4, "names": [STIFFNESS, FRICTION, "A.mass", "wire.material.density"],
            "bounds": [[0.38e9, 0.48e9], [0.08, 0.16], [0.8, 1.2], [4000.0, 4400.0]]}
@@ -112,6 +113,6 @@ axes.set(xticks=range(4), xticklabels=["stiffness", "friction", "mass", "density
 axes.legend(frameon=False)
 
 # %%
-# The stiffness decides how low the trolley gets, the friction how far.
+# The stiffness determines the sag of the trolley, the friction its travel.
 
 assert np.argmax(total["sag"]) == 0 and np.argmax(total["way"]) == 1

@@ -2,15 +2,15 @@
 Long runs: save, stop, resume
 =============================
 
-A run of minutes should not be lost to a power cut, and one of days should not fill the memory. Results go to a file
-while the run goes on; a run that was stopped is resumed to the same numbers, bit for bit.
+Long runs write their results to a file while they compute. A run that was stopped resumes to the same numbers, bit for
+bit.
 """
 
 # %%
-# A scene that takes a while
-# --------------------------
+# The scene
+# ---------
 #
-# A cable of thirty elements falls from level and swings. Nothing damps it. Here a minute of it will do.
+# A cable of thirty elements falls from the horizontal and swings without damping for a minute.
 
 import tempfile
 from pathlib import Path
@@ -31,8 +31,8 @@ settings = {"duration": 60.0, "output_step": 0.05, "tol": 1e-3, "integrator": "g
 # Results on disk
 # ---------------
 #
-# With ``save`` rows go to a netCDF file about every half second, and beside it a checkpoint, ``long.nc.state``. To show
-# a stop, this run is interrupted by its own progress function; Ctrl-C, a killed process or a full disk do the same.
+# With ``save``, rows go to a netCDF file about every half second, and a checkpoint ``long.nc.state`` stands beside it.
+# The progress function of this run stops it, as Ctrl-C, a killed process or a full disk would.
 
 
 class EnoughError(Exception):
@@ -57,14 +57,14 @@ print(f"{unfinished.status}: {len(unfinished.time)} rows, up to t = {unfinished.
 # Resume
 # ------
 #
-# The same scene and the same settings, with ``resume=True``. On the command line: ``funicular run long.toml -o long.nc
+# ``resume=True`` continues with the same scene and settings. The command is ``funicular run long.toml -o long.nc
 # --resume``.
 
 run = scene.run(**settings, save=folder / "long.nc", resume=True)
 print(f"{run.status}: {len(run.time)} rows")
 
 # %%
-# The numbers are those of a run that was never stopped.
+# The numbers equal those of an uninterrupted run.
 
 whole = scene.run(**settings)
 for name in ("cable.nodal_vectors", "energy.elastic"):
@@ -75,8 +75,8 @@ print("bit for bit the same")
 # Drift
 # -----
 #
-# Over many swings an integrator should neither make energy nor lose it unasked. ``"genalpha"`` damps vibrations that
-# its step does not resolve; ``"energy"`` keeps energy and momenta to rounding, at a fixed step too.
+# An integrator should not change the energy over many swings. ``"genalpha"`` damps vibrations that its step does not
+# resolve; ``"energy"`` keeps energy and momenta to rounding, at a fixed step too.
 
 kept = scene.run(duration=60.0, output_step=0.05, step=2e-3, integrator="energy")
 figure, axes = plt.subplots(figsize=(8, 3.2), layout="constrained")
@@ -89,11 +89,11 @@ axes.set(xlabel="time in s", ylabel="change of the total energy", title="relativ
 axes.legend(frameon=False)
 
 # %%
-# What a file says of itself
-# --------------------------
+# Contents of the file
+# --------------------
 #
-# The scene, the settings and the report are in the file. Every row has a checksum: a damaged file is refused, or read
-# without its damaged rows with ``salvage=True``.
+# The file contains scene, settings and report. Every row has a checksum: a damaged file is refused, or read without its
+# damaged rows with ``salvage=True``.
 
 print(unfinished.scene.to_toml().splitlines()[0])
 print({name: value for name, value in run.report["settings"].items() if name in ("tol", "integrator", "duration")})

@@ -2,16 +2,16 @@
 Natural frequencies about an equilibrium
 ========================================
 
-A taut string, a beam under axial load, a hanging chain: frequencies depend on the state that they are about. Each is
-compared with its closed form.
+Natural frequencies depend on the state about which the scene vibrates. A beam, a beam under axial load and a hanging
+chain are compared with their closed forms.
 """
 
 # %%
 # A beam on two supports
 # ----------------------
 #
-# Frequencies of a slender beam that is free to move along at one end: f_n = (n π / L)² √(E I / (ρ A)) / 2π. They
-# converge with the fourth power of the number of elements.
+# The frequencies of a slender beam, free to move along at one end, are f_n = (n π / L)² √(E I / (ρ A)) / 2π. The
+# results converge with the fourth power of the number of elements.
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -46,8 +46,8 @@ assert abs(beam(16).modes(3).frequency / exact - 1).max() < 1e-4
 # Under axial load
 # ----------------
 #
-# A pull raises the frequencies, a push lowers them: f_1 = f_1(0) √(1 + P / P_cr), with Euler's load P_cr = π² E I / L².
-# At P = -P_cr the beam buckles, and the frequency is zero. ``about`` is the equilibrium under the load.
+# Tension raises the frequencies, compression lowers them: f_1 = f_1(0) √(1 + P / P_cr), with Euler's load P_cr = π² E I
+# / L². At P = -P_cr the beam buckles. ``about`` is the equilibrium under the load.
 
 critical = np.pi**2 * STEEL.youngs_modulus * SECOND_MOMENT / LENGTH**2
 loads, found = np.linspace(-0.95, 3, 9), []
@@ -68,9 +68,8 @@ assert np.abs((found / exact[0]) ** 2 - (1 + loads)).max() < 2e-3
 # A hanging chain
 # ---------------
 #
-# A chain that hangs from one end has no stiffness of its own. Its frequencies come from its weight alone, and are those
-# of the Bessel function: f_n = j_0n / 2 √(g / L) / 2π. About the drawn shape there is no tension yet: ``about``
-# matters.
+# A hanging chain has stiffness by its weight alone: f_n = j_0n / 2 √(g / L) / 2π, with the zeros of a Bessel function.
+# The drawn chain has no tension yet, so that ``about`` matters.
 
 from scipy.special import jn_zeros
 
@@ -86,7 +85,7 @@ for number, (mine, theirs) in enumerate(zip(hanging, bessel, strict=True), start
 assert abs(hanging / bessel - 1).max() < 5e-3
 
 # %%
-# Shapes are results by name, as those of runs: one row a mode.
+# Mode shapes are results by name, one row a mode.
 
 shape = scene.modes(3, about=rest)["chain.displacement"]
 print("shapes of the nodes:", shape.shape)

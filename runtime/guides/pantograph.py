@@ -2,18 +2,17 @@
 A pantograph below a catenary
 =============================
 
-The contact wire of a railway hangs by droppers from a messenger. A pantograph presses against it from below as it goes
-along at 275 km/h. How long must the droppers be, how even is the contact force, and does the collector stay on the
-wire?
+A contact wire hangs by droppers from a messenger. A pantograph presses against it from below at 275 km/h. The guide
+computes the lengths of the droppers, the contact force, and losses of contact.
 """
 
 # %%
 # The line
 # --------
 #
-# Spans of 55 m with nine droppers each, data of a published study. The contact wire shall lie at the droppers on a
-# parabola of 55 mm, and pull with 22 kN. Droppers can only pull. The scene is planar: ``stagger=0.2``
-# would hold the contact wire to one side and the other of the track in turn.
+# The spans of 55 m with nine droppers each have data of a published study. The droppers pull only. They hold the
+# contact wire, under 22 kN, on a parabola of 55 mm. The scene is planar; ``stagger=0.2`` would hold the wire to both
+# sides of the track in turn.
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -29,13 +28,12 @@ line = catenary.Line(
                                axial_stiffness=200e3, mass=0.117, messenger_clamp=0.195, contact_clamp=0.165))
 
 # %%
-# Its form
-# --------
+# Form finding
+# ------------
 #
-# ``form`` finds the lengths of droppers and wires, by ``scene.equilibrium(adjust=, to=)`` for one span. The others
-# repeat it by symmetry. Without bending stiffness the wires were strings, and the forces of the droppers followed from
-# their heights; bending rounds the kinks off, so that the outer droppers bear a little more. The lengths are the
-# published ones.
+# ``form`` finds the lengths of droppers and wires for one span by ``scene.equilibrium(adjust=, to=)``; the other spans
+# repeat it by symmetry. Bending increases the forces of the outer droppers above those of strings. The lengths agree
+# with the published ones.
 
 form = catenary.form(line, (1.0, 2.0))
 print("lengths", np.round(form.lengths[:5], 3), "m")
@@ -48,12 +46,12 @@ assert abs(form.tensions[0] / 191.35 - 1) < 0.02
 # -----------
 #
 # The pantograph is a chain of three masses over a base that the train moves: collector, upper and lower frame. The
-# uplift force acts on the lowest mass. Waves run along the contact wire at 460 km/h. ``catenary.JointedPantograph`` has
-# arms and rods with hinges, and is put below the wire in the same way.
+# uplift force acts on the lowest mass. Waves in the contact wire travel at 460 km/h. ``catenary.JointedPantograph`` has
+# arms and rods with hinges.
 #
-# By default elements are of 1 m, and steps are such that the standard deviation of the contact force is converged in
-# time to less than 1 %. The dents that elements leave out below droppers and collector are made up for. Here elements
-# are longer, to save time.
+# The default elements have 1 m; steps converge the standard deviation of the contact force to 1 % in time. A correction
+# replaces the local deflection that coarse elements omit below droppers and collector. The elements here are longer, to
+# save time.
 
 pantograph = catenary.Pantograph(masses=[7.5, 9, 6], stiffness=[7000, 15500, 160], damping=[45, 0.1, 100], uplift=120)
 print(f"waves run at {3.6 * line.contact.wave_speed:.0f} km/h")
@@ -64,12 +62,12 @@ catenary.add_pantograph(scene, pantograph, at=20.0, speed=275 / 3.6)
 run = scene.run(progress=False)
 
 # %%
-# What the collector feels
-# ------------------------
+# Contact force
+# -------------
 #
-# Contact forces are judged below 20 Hz, by mean and standard deviation in a section of the track, here the two spans in
-# the middle. Their mean is the uplift force, less what the lowest spring takes. On a mesh as coarse as this one the
-# standard deviation is a tenth too large or so; ``tests/benchmarks/pantographs.py`` shows how it converges.
+# Contact forces are assessed below 20 Hz, by mean and standard deviation over the two middle spans. The mean is the
+# uplift force less the force of the lowest spring. On this coarse mesh the standard deviation is about a tenth too
+# large; ``tests/benchmarks/pantographs.py`` shows its convergence.
 
 found = catenary.assess(run)
 for name in ("mean", "standard_deviation", "statistical_minimum", "maximum", "minimum"):
@@ -84,10 +82,10 @@ catenary.plot_uplift(run, uplift)
 catenary.plot_droppers(run, droppers, span=2, droppers=[1, 3, 5])
 
 # %%
-# Ahead of the pantograph
-# -----------------------
+# Slack droppers
+# --------------
 #
-# A dropper becomes slack as the collector lifts the wire below it; the run tells when.
+# The collector lifts the wire, and droppers become slack. The run lists the times.
 
 slack = [event for event in run.events if event["name"] == "dropper_3_5" and event["what"] == "became slack"]
 there = 20.0 + 275 / 3.6 * slack[0]["time"]

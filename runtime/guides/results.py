@@ -2,16 +2,16 @@
 Results as arrays, datasets and tables
 ======================================
 
-A run holds named NumPy arrays. With units and dimensions they are an xarray dataset, for selecting, combining and
-plotting; from there to pandas or a spreadsheet is one step.
+A run holds named NumPy arrays. ``run.dataset`` gives them units and dimensions as an xarray dataset, for selection,
+combination and plots.
 """
 
 # %%
 # Names
 # -----
 #
-# ``run.keys()`` lists all results, ``run.variables`` says what each is, in which unit, over which dimensions. A name
-# that is not there is answered with those near it.
+# ``run.keys()`` lists all results. ``run.variables`` gives meaning, unit and dimensions of each. The error for an
+# unknown name lists similar ones.
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -33,7 +33,7 @@ except fu.UnknownResultError as error:
 # NumPy
 # -----
 #
-# Time is first, components last. The lowest place of the body, when it is there, and its speed then:
+# Time is the first dimension, components are the last. The lowest position of the body, its time, and the speed then:
 
 height = run["A.position"][:, 1]
 lowest = int(height.argmin())
@@ -44,9 +44,8 @@ print(f"{1e3 * height[lowest]:.1f} mm at t = {run.time[lowest]:.2f} s, "
 # Forces in sections
 # ------------------
 #
-# ``section_forces`` returns a dataset over time and s: force and moment, tension, shear, strain, curvature. Here along
-# the whole cable at the instant of the lowest place. They come from balance with loads and inertia, so that they are
-# good on coarse meshes, too.
+# ``section_forces`` returns a dataset over time and s: force and moment, tension, shear, strain, curvature. The balance
+# with loads and inertia makes them accurate on coarse meshes.
 
 forces = run.section_forces("wire", s=np.linspace(0.01, 1.49, 75))
 then = forces.isel(time=lowest)
@@ -61,7 +60,7 @@ moment.set(xlabel="s in m", ylabel="N m", title="bending moment")
 # xarray
 # ------
 #
-# ``run.dataset`` is everything with units and dimensions: select by name and time, average, interpolate.
+# ``run.dataset`` selects by name and time, averages and interpolates.
 
 dataset = run.dataset
 mean = float(dataset["trolley.force"].sel(time=slice(0.2, 0.8), xyz="y").mean())
@@ -72,7 +71,7 @@ print(dataset["wire.nodal_vectors"].dims, dataset["wire.nodal_vectors"].attrs["u
 # Several runs along a new dimension
 # ----------------------------------
 #
-# ``fu.combine`` makes one dataset of runs with the same results and times. The reports come along as texts.
+# ``fu.combine`` makes one dataset of runs with equal results and times. It includes the reports.
 
 masses = [0.5, 1.0, 2.0]
 study = fu.combine([scene.replace("A", mass=mass).run(duration=1.0, tol=1e-4, output_step=0.01) for mass in masses],
@@ -85,8 +84,7 @@ assert np.all(np.diff(sag) < 0)  # the heavier the body, the lower it gets
 # A table
 # -------
 #
-# pandas, where it is installed, takes a selection of a dataset as it is: ``dataset[...].to_dataframe()``. Without it,
-# NumPy writes a file that a spreadsheet reads.
+# With pandas, ``dataset[...].to_dataframe()`` makes a table. NumPy alone writes a file for a spreadsheet.
 
 columns = np.column_stack([run.time, run["trolley.s"], run["trolley.force"][:, 1]])
 np.savetxt("trolley.csv", columns, delimiter=",", header="time_s,s_m,force_y_N", comments="", fmt="%.9g")
@@ -96,8 +94,7 @@ print(open("trolley.csv").readline().strip())
 # The file
 # --------
 #
-# ``run.save("paper51.nc")`` writes netCDF: ``fu.load_run`` opens it as a run, ``xarray.open_dataset`` as a dataset, and
-# any other reader of netCDF sees the same names and units.
+# ``run.save("paper51.nc")`` writes netCDF. ``fu.load_run`` opens it as a run, ``xarray.open_dataset`` as a dataset.
 
 run.save("paper51.nc")
 again = fu.load_run("paper51.nc")

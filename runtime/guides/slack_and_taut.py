@@ -2,16 +2,16 @@
 Slack and taut cables: equilibrium and section forces
 =====================================================
 
-A rope between two towers, once longer than the span and once shorter. Its shape at rest, the tension that the anchors
-must bear, and how both follow from one number, the rope's length. The results are compared with the catenary.
+A rope hangs between two towers, once longer than the span and once shorter. The guide computes shape and tension as
+functions of the length, and compares them with the catenary.
 """
 
 # %%
 # A slack rope
 # ------------
 #
-# Fifty metres of span, 52 m of rope: it hangs. Drawn straight it would be compressed; the search for equilibrium finds
-# the way down to where it hangs, and says so in its messages.
+# The span is 50 m, the rope 52 m. Drawn straight it would be compressed; the search finds the hanging shape, and
+# reports it in its messages.
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -42,7 +42,7 @@ for message in slack.messages:
 # The catenary
 # ------------
 #
-# An inextensible rope without bending stiffness hangs as y = a cosh(x / a), with a from its length: 2 a sinh(L / 2a).
+# An inextensible rope without bending stiffness hangs as y = a cosh(x / a), with 2 a sinh(L / 2a) equal to its length.
 # Its tension at mid-span is a times its weight per metre.
 
 a = brentq(lambda a: 2 * a * np.sinh(SPAN / (2 * a)) - 52.0, 10, 200)
@@ -58,8 +58,8 @@ assert abs(float(forces.tension.min()) / (a * WEIGHT) - 1) < 1e-2
 # From slack to taut
 # ------------------
 #
-# The tension over the length of the rope. Below the span it grows as the rope's stiffness says, E A times its strain;
-# above it, as the catenary says; the equilibrium knows both.
+# Below the span, the tension is E A times the strain; above it, the catenary gives the tension. The equilibrium covers
+# both.
 
 lengths = np.concatenate([np.linspace(49.9, 50.2, 13), np.linspace(50.3, 53, 7)])
 tension, sags = [], []
@@ -81,8 +81,8 @@ drop.set(xlabel="length of the rope in m", ylabel="m", title="sag")
 # A load on the rope
 # ------------------
 #
-# Sizing asks for the largest tension and the moment where the rope leaves its clamp or bends under a load. The section
-# forces come from balance with the loads, not from the mesh's strains, so that a coarse mesh is enough.
+# The largest tension, and the moment at a clamp or below a load, size the rope. The section forces follow from balance
+# with the loads, so that a coarse mesh is sufficient.
 
 loaded = rope_of(50.2)
 loaded.force("rope", s=15.06, value=(0, -2000, 0))
@@ -97,12 +97,11 @@ print(f"the anchors carry {left[1] + right[1]:.1f} N upwards, weight and load ar
 assert abs(left[1] + right[1] - WEIGHT * 50.2 - 2000) < 1e-3
 
 # %%
-# A pulley that friction holds
-# ----------------------------
+# A pulley held by friction
+# -------------------------
 #
-# Equilibrium leaves friction out: a pulley rolls to the lowest point. `relax` lets the scene move, and damps the motion
-# until it rests. With friction the pulley stays on any slope below its coefficient; which one it comes to depends on
-# how it got there, so that this is one state of many.
+# Equilibrium leaves friction out: a pulley rolls to the lowest point. ``relax`` damps a motion until it rests. With
+# friction the pulley can rest on any slope below the coefficient; the result is one state of many.
 
 held = rope_of(51.0)
 held.rigid_body("pulley", mass=100, inertia=(1, 1, 1), position=(5, 0, 0))

@@ -1,18 +1,17 @@
 """
-Slackline: a rope that sways
-============================
+Slackline
+=========
 
-A person stands on a slackline of 25 m and sways. How much does the line sag, how fast does it swing from side to side
-and up and down, and what do the anchors feel when the person jumps off?
+A person stands on a slackline of 25 m. The guide computes the sag, the natural frequencies, and the forces on the
+anchors when the person jumps off.
 """
 
 # %%
 # The line
 # --------
 #
-# A webbing of 25 mm by 2.5 mm, pretensioned to 2 kN, in space: ``cable12`` bends and stretches and has no torsion. A
-# cable's bending stiffness is the same in all directions here, and too small to matter. The pretension is in
-# ``rest_length``, which is shorter than the distance of the anchors by the strain F / (E A).
+# The webbing of 25 mm by 2.5 mm has a pretension of 2 kN. ``cable12`` bends and stretches in space, without torsion;
+# bending hardly matters here. ``rest_length`` is shorter than the distance of the anchors by the strain F / (E A).
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -34,8 +33,8 @@ scene.pin(line, s=rest_length)
 # A person in the middle
 # ----------------------
 #
-# A body of 75 kg whose mass centre is 1 m above the line would fall over, if a joint left every turn free. The line's
-# own motion is what is asked for here: the mass centre is on the line.
+# A body of 75 kg stands for the person. Its mass centre is on the line, since a spherical joint would not keep it
+# upright above.
 
 person = scene.rigid_body("person", mass=75, inertia=(1, 1, 1), position=(SPAN / 2, 1, 0))
 scene.joint("spherical", person, (line, rest_length / 2), name="feet")
@@ -48,11 +47,11 @@ print(f"sag {sag:.3f} m, tension {tension:.0f} N; the weight and that sag ask fo
 assert abs(tension / by_hand - 1) < 0.01
 
 # %%
-# How it swings
-# -------------
+# Modes
+# -----
 #
-# Modes about the equilibrium, with the tension that the line has there. The slowest is a pendulum: the person swings
-# sideways below the anchors, with √(g / sag) / 2π. Then the person moves up and down, and along the line.
+# The modes are about the equilibrium, with its tension. The slowest is a pendulum: the person swings sideways below the
+# anchors, with √(g / sag) / 2π. Vertical and longitudinal modes follow.
 
 modes = scene.modes(8, about=rest)
 for number, frequency in enumerate(modes.frequency):
@@ -66,8 +65,7 @@ print(f"pendulum of the length of the sag: {pendulum:.3f} Hz")
 # A jump
 # ------
 #
-# The person leaves the line: the same line, loaded by the same weight at the start, which a signal takes away within
-# 20 ms. The line starts at rest and springs up.
+# The person leaves: a signal removes the weight within 20 ms from a line at rest.
 
 free = fu.Scene(gravity=(0, -9.81, 0))
 free.add(scene.cables["line"])
@@ -89,7 +87,7 @@ force.legend(frameon=False)
 print(f"highest {middle.max() - 1:.2f} m over the anchors, largest pull {1e-3 * anchor.max():.2f} kN")
 
 # %%
-# The energy that the weight had stored swings on in the line; its damping takes it slowly.
+# The stored energy vibrates in the line, and damping dissipates it.
 
 balance = run.energy_balance()
 print(f"energy balance: off by {abs(balance.relative).max():.1e}; "

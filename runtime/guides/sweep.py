@@ -1,19 +1,19 @@
 """
-Sweeps: one scene at many values
-================================
+Sweeps: one scene for many values
+=================================
 
-How far does a cable sag under a trolley, for which stiffness and which friction? A sweep runs the scene at all
-combinations, on all cores, into one labelled dataset; and samples of uncertain values tell how uncertain an answer is.
+How far does a cable sag under a trolley, for which stiffness and friction? A sweep runs a scene for all combinations of
+values into one labelled dataset. Samples of uncertain values give the scatter of a result.
 """
 
 # %%
 # A grid
 # ------
 #
-# Parameters are paths into the scene, by the names of scene files. ``keep`` names the results to keep; a function of
-# the run makes a number of it. ``workers=0`` computes here; without it, all cores share the points by Dask (``pip
-# install 'funicular[sweep]'``). On the command line: ``funicular sweep paper51 --set
-# wire.material.youngs_modulus=3e8:5e8:5 --set trolley.friction.coefficient=0,0.1,0.2 --keep A.position,trolley.force``.
+# Parameters are paths into the scene, by the names of scene files. ``keep`` names results, or functions of the run.
+# ``workers=0`` computes in this process; otherwise Dask distributes the points over all cores (``pip install
+# 'funicular[sweep]'``). The command is ``funicular sweep paper51 --set wire.material.youngs_modulus=3e8:5e8:5 --set
+# trolley.friction.coefficient=0,0.1,0.2 --keep A.position,trolley.force``.
 
 import tempfile
 from pathlib import Path
@@ -40,7 +40,7 @@ grid = fu.sweep(scene, parameters, keep={"position": "A.position", "force": "tro
 print(grid)
 
 # %%
-# Dimensions are the parameters, so that one selects by value. The numbers are those of single runs, bit for bit.
+# The parameters are dimensions, for selection by value. The numbers equal those of single runs, bit for bit.
 
 point = grid.sel({stiffness: 4e8, friction: 0.1})
 alone = scene.replace("trolley", friction=fu.Friction(coefficient=0.1)).run(duration=0.6, output_step=0.02, tol=1e-3)
@@ -57,11 +57,11 @@ assert np.all(np.diff(grid["sag"], axis=0) < 0)  # the stiffer the cable, the le
 assert np.all(np.diff(grid["position"].isel(time=-1).sel(xyz="x"), axis=1) < 0)  # friction holds the trolley back
 
 # %%
-# Stop, go on
-# -----------
+# Interruption
+# ------------
 #
-# Points are in the file as soon as they are computed. The same call goes on with a sweep that was stopped, also by a
-# power cut, and computes no point twice; a finished one is opened at once. Another sweep into the file is refused.
+# Each point is in the file as soon as it is computed. The same call continues an interrupted sweep and opens a finished
+# one. A different sweep into the same file is refused.
 
 again = fu.sweep(scene, parameters, keep={"position": "A.position", "force": "trolley.force", "sag": sag},
                  save=folder / "grid.nc", **settings)
@@ -72,10 +72,10 @@ except fu.ResultFileError as error:
     print(error)
 
 # %%
-# Points that fail
-# ----------------
+# Failed points
+# -------------
 #
-# At 6 m/s the trolley runs off the cable's end. That point has its error and NaN; the others go on.
+# At 6 m/s the trolley leaves the cable. That point has its error message and NaN; the others continue.
 
 speeds = fu.sweep(scene, {"A.velocity.x": [0.5, 1.0, 6.0]}, keep={"sag": sag}, **settings)
 for speed, status, message in zip(speeds["A.velocity.x"].values, speeds.status.values, speeds.message.values,
@@ -87,9 +87,8 @@ assert list(np.isnan(speeds["sag"])) == [False, False, True]
 # Samples
 # -------
 #
-# A Latin hypercube fills the ranges of several uncertain values evenly. Here mass and density vary by a tenth, the
-# start by 0.1 m/s; there is then one dimension, ``point``, with the parameters along it. For other kinds of scatter
-# give a frozen distribution of scipy.stats.
+# A Latin hypercube fills the ranges of several uncertain values evenly, along one dimension ``point``. Mass and density
+# vary by a tenth, the start by 0.1 m/s. Frozen distributions of scipy.stats give other kinds of scatter.
 
 uncertain = {"A.mass": fu.Uniform(0.9, 1.1), "wire.material.density": fu.Uniform(3780, 4620),
              "A.velocity.x": fu.Uniform(0.9, 1.1)}
@@ -104,7 +103,7 @@ for axis, name in zip(axes, uncertain, strict=True):
 axes[0].set(ylabel="sag in mm")
 
 # %%
-# The cable's own weight counts most, then how fast the trolley is across: at 1 kg it is a twelfth of the cable.
+# The weight of the cable matters most, then the speed of the trolley, whose mass is a twelfth of the cable's.
 
 assert np.corrcoef(samples["wire.material.density"], samples.sag)[0, 1] > 0.8
 assert np.corrcoef(samples["A.velocity.x"], samples.sag)[0, 1] < -0.3
@@ -113,7 +112,7 @@ assert np.corrcoef(samples["A.velocity.x"], samples.sag)[0, 1] < -0.3
 # Your own loop
 # -------------
 #
-# ``fu.run_many`` runs scenes that a program makes, on threads. A scene that fails is returned as its error.
+# ``fu.run_many`` runs the scenes of a list on threads. It returns the error of a scene that fails.
 
 variants = [scene.replace("A", mass=mass) for mass in (0.5, 1.0, 2.0)]
 for kept in fu.run_many(variants, keep=["A.position"], duration=0.6, tol=1e-3):

@@ -2,17 +2,16 @@
 Verify and benchmark
 ====================
 
-Two questions about any result: are the equations right, and how much accuracy does the time buy? One command answers
-each.
+Two commands check the equations, and measure the accuracy that computing time buys.
 """
 
 # %%
 # Are the equations right?
 # ------------------------
 #
-# ``funicular verify`` compiles the checked-in C and compares every derivative with what it is the derivative of, by
-# four methods that share nothing: 50-digit evaluation of the symbolic expression, the complex step, central differences
-# with step control, and invariances such as "a rigid motion stores no energy". For one element:
+# ``funicular verify`` compiles the checked-in C and compares every derivative by four independent methods: 50-digit
+# evaluation of the symbolic expression, the complex step, central differences with step control, and invariances such
+# as zero energy of a rigid motion. For one element:
 
 import csv
 import os
@@ -39,8 +38,8 @@ print(report.splitlines()[-1])
 # Does the code come from the derivation?
 # ---------------------------------------
 #
-# ``funicular derive --check`` derives in memory and compares with the files, byte by byte. One sign changed by hand is
-# found here, and by ``verify``, too.
+# ``funicular derive --check`` derives in memory and compares with the files, byte by byte. Both commands find a sign
+# changed by hand.
 
 print(funicular("derive", "--check", "cable8p").strip().splitlines()[-1])
 
@@ -48,8 +47,8 @@ print(funicular("derive", "--check", "cable8p").strip().splitlines()[-1])
 # What does accuracy cost?
 # ------------------------
 #
-# ``funicular bench SCENE`` runs a scene over integrators, tolerances and meshes, computes its own reference and that
-# one's error, and tabulates error against CPU time. The error of time and the error of the mesh are told apart.
+# ``funicular bench SCENE`` runs a scene over integrators, tolerances and meshes, computes a reference with its own
+# error, and tabulates error against CPU time, for time and mesh apart.
 
 funicular("bench", "paper51", "--integrators", "radau,genalpha,explicit", "--tols", "1e-2,1e-3,1e-4,1e-5", "--elements",
           "x1", "--duration", "0.3", "--repetitions", "1", "--out", ".")
@@ -65,18 +64,18 @@ axes.set(xlabel="CPU time in s", ylabel="error over motion", title="paper51, 3 e
 axes.legend(frameon=False)
 
 # %%
-# Below the dotted line a smaller ``tol`` buys nothing: the mesh is what is wrong then. Compare speeds at equal error
-# only: a fast run with an error ten times as large is a slow one.
+# Below the dotted line the mesh dominates the error, and a smaller ``tol`` gains nothing. Compare speeds at equal error
+# only.
 
 for row in rows:
     print(f"{row['integrator']:9} tol {row['tol']:6} error {float(row['time_error']):.1e} in "
           f"{1e3 * float(row['cpu_s']):.0f} ms, {row['steps']} steps")
 
 # %%
-# How far one run is off
-# ----------------------
+# The errors of one run
+# ---------------------
 #
-# ``estimate=True`` measures both errors of a run by two more: of smaller steps, and on a mesh of twice the elements.
+# ``estimate=True`` measures both errors by two more runs: with smaller steps, and with twice the elements.
 
 scene = fu.load_scene("paper51")
 run = scene.run(duration=0.3, output_step=0.02, tol=1e-3, estimate=True)
@@ -85,11 +84,10 @@ print(f"steps {errors['time']:.1e}, mesh {errors['mesh']:.1e}, both {errors['bot
 assert errors["time"] < 1e-3 < errors["mesh"]
 
 # %%
-# The mesh is too coarse for this ``tol``; the guide on choosing a model shows what finds the right one.
+# This mesh is too coarse for the ``tol``. The guide on choosing a model finds a sufficient one.
 #
-# Which errors count is for you to say: ``quantities`` names the results whose error chooses the steps, and
-# ``absolute_tol`` in m is allowed beside ``tol``. What rings without being named costs no steps then. Where all of a
-# motion counts, leave both out.
+# ``quantities`` names the results whose error controls the steps; ``absolute_tol`` in m is permitted beside ``tol``.
+# Vibrations of other results then cost no steps. Leave both out where the whole motion counts.
 
 named = scene.run(duration=0.3, output_step=0.02, tol=1e-3, absolute_tol=1e-4, quantities=["A.position"])
 print(*named.report["messages"], sep="\n")

@@ -2,17 +2,17 @@
 A mooring in a current
 ======================
 
-A buoy under water pulls 60 m of line up from the sea bed. How far does a current carry it away, how does it sway, and
-what does a tide do that turns within a minute? And a line in the air: which way does lift pull it?
+A buoy under water holds 60 m of line above the sea bed. The guide computes its offset in a current, its period, and its
+motion when the tide turns; then lift and galloping of a line in wind.
 """
 
 # %%
 # The mooring
 # -----------
 #
-# The line is heavier than water, the buoy much lighter. The current is a table over the height: weak at the bed, strong
-# above. ``normal`` and ``tangential`` are the coefficients of drag across and along the line, ``added_mass`` counts the
-# water that moves along with it: as much as it displaces for a round line, half of that for a sphere.
+# The line is heavier than water, the buoy lighter. The current is a table over the height. ``normal`` and
+# ``tangential`` are the drag coefficients across and along the line. ``added_mass`` is the accelerated water relative
+# to the displaced water: 1 for a round line, 0.5 for a sphere.
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -42,10 +42,10 @@ def mooring(added_mass: bool = True, **fluid) -> fu.Scene:
 
 
 # %%
-# Where it rests
-# --------------
+# Equilibrium
+# -----------
 #
-# The state of rest balances weight, buoyancy and drag.
+# At rest, weight, buoyancy and drag balance.
 
 scene = mooring(table=sea)
 rest = scene.equilibrium()
@@ -56,11 +56,11 @@ assert abs(rest["line@0.force"] + rest["drag_1.force"] + rest["drag_2.force"] - 
     [0, 1400 * 7.07e-4 * 60 + 100, 0])).max() < 1e-3
 
 # %%
-# How it sways
-# ------------
+# Modes
+# -----
 #
-# Modes leave damping out. The water that is carried along makes the first one slower: in still water the buoy of 100 kg
-# moves with half of the 512 kg that it displaces, and the line with its own mass again.
+# Modes leave damping out. Added mass lowers the first frequency: the buoy of 100 kg moves with half of the 512 kg that
+# it displaces, and the line with its own volume of water.
 
 still = [mooring(added_mass, velocity=(0, 0, 0)) for added_mass in (False, True)]
 found = [each.modes(4, about=each.equilibrium()).frequency for each in still]
@@ -70,11 +70,11 @@ pendulum = np.sqrt((100 + 1400 * 7.07e-4 * 20) / (100 + 256 + (1400 + 1025) * 7.
 assert abs(slow[1] / slow[0] - pendulum) < 0.01  # a rod that swings about its foot counts with a third of its mass
 
 # %%
-# A tide that turns
-# -----------------
+# A turning tide
+# --------------
 #
-# A signal of time multiplies the table: the current dies within a minute, and comes back from the other side. A fluid
-# that accelerates acts by that, too.
+# A signal of time multiplies the table: the current stops within a minute and returns from the other side. The
+# acceleration of the fluid acts as well.
 
 tide = fu.TableSignal(time=[0, 20, 80, 100, 200], value=[1, 1, -1, -1, -1], interpolation="linear")
 turning = mooring(table=sea, scale=tide)
@@ -99,8 +99,8 @@ right.set(xlabel="time in s", ylabel="m", title="the buoy along the current")
 # Lift
 # ----
 #
-# A line with a strand around it, or iced, has lift: a force across the flow. A taut line across the wind then leans
-# from it by the angle whose tangent is lift over drag.
+# A stranded or iced line has lift, a force across the flow. A taut line leans across the wind by the angle whose
+# tangent is lift over drag.
 
 air = fu.Scene(gravity=(0, 0, 0))
 wire = air.cable("wire", start=(0, 0, 0), end=(0, 0, 50), rest_length=49.9, elements=12, element="cable12",
@@ -115,12 +115,12 @@ print(f"the middle is blown {1e3 * middle[0]:.1f} mm along and {1e3 * middle[1]:
 assert abs(middle[1] / middle[0] - 0.4 / 1.1) < 1e-4
 
 # %%
-# An iced conductor that gallops
+# Galloping of an iced conductor
 # ------------------------------
 #
-# Ice makes the section of a conductor a foil. A ``polar`` has its drag and lift by the angle of the flow from the
-# ``chord`` of the section, which beams know. Where lift falls with the angle by more than the drag, the wind feeds
-# a vibration across it, at the rate of Den Hartog.
+# Ice gives a conductor an asymmetric section. A ``polar`` tabulates drag and lift over the angle between flow and
+# ``chord``; the section of a beam defines the chord. Where lift falls faster with the angle than drag allows,
+# vibrations across the wind grow at Den Hartog's rate.
 
 angle = np.linspace(-np.pi, np.pi, 73)
 ice = fu.Polar(angle=angle, drag=np.full(73, 1.0), lift=-1.5 * np.sin(2 * angle).round(9), interpolation="cubic")

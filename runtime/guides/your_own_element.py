@@ -1,17 +1,17 @@
 """
-Your own element, from an empty file
-====================================
+Your own element
+================
 
-A spec of a page describes an element. One command derives its equations, checks every derivative, compiles it and
-measures it; then a scene names it. Nothing in the package changes. Here it is a cable with continuous curvature.
+A spec of one page describes an element. One command derives its equations, verifies every derivative, compiles it and
+measures it; a scene then names it. The example is a cable with continuous curvature.
 """
 
 # %%
 # The spec
 # --------
 #
-# Position, slope and curvature at both ends are six conditions; they fix a polynomial of degree five. ``laws`` names
-# the elastic energy, here the cable's with Green's strain and the exact curvature.
+# Position, slope and curvature at both ends are six conditions for a polynomial of degree five. ``laws`` names the
+# elastic energy: Green's strain and the exact curvature.
 
 import subprocess
 import sys
@@ -42,9 +42,8 @@ Path("quintic_plane.py").write_text(SPEC, encoding="utf-8")
 # Derive, check, compile
 # ----------------------
 #
-# On the command line: ``funicular derive --spec quintic_plane.py --out quintic_plane``. It takes about half a minute.
-# What it prints is the result of checks: every output against 50 digits, every derivative by four methods, rigid
-# motion, symmetry and totals.
+# The command is ``funicular derive --spec quintic_plane.py --out quintic_plane``; it takes half a minute. It prints the
+# checks: every output against 50 digits, every derivative by four methods, rigid motion, symmetry and totals.
 
 command = [sys.executable, "-m", "funicular", "derive", "--spec", "quintic_plane.py", "--out", "quintic_plane"]
 report = subprocess.run(command, check=True, capture_output=True, text=True).stdout
@@ -54,7 +53,7 @@ print("\n".join(line[:96] for line in report.splitlines()[-14:]))
 # Use it
 # ------
 #
-# A scene names the element and the directory. The scene of the first guide, with both elements:
+# A scene names the element and its directory. The scene of the first guide is made with both elements.
 
 
 def first_scene(elements: int, **element) -> fu.Scene:
@@ -73,10 +72,10 @@ settings = {"duration": 0.4, "tol": 1e-6, "output_step": 0.01}
 own = {"element": "quintic_plane", "library": "quintic_plane"}
 
 # %%
-# The gain
-# --------
+# Convergence
+# -----------
 #
-# The error of the mesh falls faster: the path of the body against one on 24 quintic elements, relative to its motion.
+# The mesh error falls faster. The reference is the path of the body with 24 quintic elements.
 
 reference = first_scene(24, **own).run(**settings)["A.position"]
 motion = np.linalg.norm(reference - reference[0], axis=1).max()
@@ -91,8 +90,8 @@ axes.set(xlabel="elements", ylabel="error over motion", title="path of the body"
 axes.legend(frameon=False)
 
 # %%
-# A spec that cannot work is refused before anything is written, with the place: nodal conditions that depend on each
-# other, a basis without rigid motion, an energy that changes under rigid motion.
+# The command refuses a spec that cannot work before it writes anything: dependent nodal conditions, a basis without
+# rigid motion, an energy that changes under rigid motion.
 
 bad = SPEC.replace("x**4, x**5", "x**4, x**4*x**2").replace("quintic_plane", "bad")
 Path("bad.py").write_text(bad.replace("(1, x,", "(1, x**6,"), encoding="utf-8")

@@ -2,17 +2,17 @@
 Zip line with friction and a buffer
 ===================================
 
-A rider of 80 kg leaves the upper platform of a zip line, runs down 120 m of steel rope, and brakes into a spring buffer
-before the lower one. How fast does he get, how far does the buffer give, and what does the rope bear?
+A rider of 80 kg runs down 120 m of steel rope and brakes into a spring buffer. The guide computes the speed, the stroke
+of the buffer, and the force on the anchor.
 """
 
 # %%
 # The rope
 # --------
 #
-# Twelve millimetres of steel rope between platforms 12 m apart in height. It is made of wires: its bending stiffness is
-# far below that of a bar, so area and second moment are given instead of a shape. ``rest_length`` is 0.2 m shorter than
-# the distance of the pins: the rope is taut before anyone hangs on it.
+# The steel rope of 12 mm spans platforms 12 m apart in height. The bending stiffness of its wires is far below that of
+# a bar, so that area and second moment are given. ``rest_length`` is 0.2 m less than the distance of the pins: the rope
+# is taut without load.
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -33,7 +33,7 @@ scene.pin(rope, s=120.4)
 # Trolley and rider
 # -----------------
 #
-# The rider hangs 1.2 m below the trolley, from a swivel. Both start 3 m down the rope.
+# The rider hangs 1.2 m below the trolley from a swivel. Both start 3 m down the rope.
 
 along = (END - START) / np.linalg.norm(END - START)
 at = START + 3.0 / 120.4 * (END - START)
@@ -42,8 +42,8 @@ rider = scene.rigid_body("rider", mass=80.0, inertia=(8, 2, 8), position=at - np
 scene.joint("revolute", trolley, (rider, (0, 1.2, 0)), name="swivel")
 
 # %%
-# The wheels roll with 1 % of the force across the rope, and air drag is a force against the speed. The buffer takes the
-# last 9 m of the rope: its spring and damper act on the trolley along the rope.
+# The rolling resistance is 1 % of the force across the rope; air drag is a force against the speed. The buffer on the
+# last 9 m of the rope has a spring and a damper.
 
 wheels = scene.slide(trolley, along=rope, s=3.0, name="wheels",
                      friction=fu.Friction(rolling=0.01, viscous=2.0, velocity=0.01),
@@ -59,8 +59,8 @@ for event in run.events:
     print(f"{event['name']} {event['what']} at t = {event['time']:.2f} s, s = {event['s']:.2f} m")
 
 # %%
-# The rope is loaded at once when the rider leaves. It swings up and down every two seconds, and his speed and the
-# tension beside him swing with it. The buffer throws him back, up the rope.
+# The rope is loaded suddenly and swings with a period of two seconds, as do speed and tension. The buffer throws the
+# rider back.
 
 s, speed = run["wheels.s"], run["wheels.s_rate"]
 tension = run.section_forces(rope, s=wheels).tension
@@ -76,10 +76,10 @@ axes[2].plot(run.time, 1e-3 * tension)
 axes[2].set(xlabel="time in s", ylabel="kN", title="tension of the rope beside the rider")
 
 # %%
-# What to design for
-# ------------------
+# Design values
+# -------------
 #
-# The pins bear the pull of the rope: the largest force on the upper anchor, and the stroke of the buffer.
+# Design values are the largest force on the upper anchor and the stroke of the buffer.
 
 anchor = np.linalg.norm(run["rope@0.force"], axis=1)
 stroke = s.max() - (120.4 - 9.0)
@@ -88,7 +88,7 @@ print(f"upper anchor: {1e-3 * anchor.max():.2f} kN at t = {run.time[anchor.argma
 print(f"stroke of the buffer: {stroke:.2f} m of 9 m")
 
 # %%
-# How sure is that? Twice the elements and a tenth of the tolerance change the stroke by millimetres.
+# Twice the elements and a tenth of the tolerance change the stroke by millimetres.
 
 finer = scene.replace("rope", elements=48).run(duration=25.0, tol=1e-5, output_step=0.05)
 change = finer["wheels.s"].max() - s.max()
@@ -99,7 +99,7 @@ assert abs(change) < 0.02
 # A heavier rider
 # ---------------
 #
-# ``replace`` returns a scene with one part changed; the runs go into one dataset along a new dimension.
+# ``replace`` returns a scene with one part changed. The runs form one dataset along a new dimension.
 
 masses = [50.0, 80.0, 110.0]
 runs = [scene.replace("rider", mass=mass).run(duration=25.0, tol=1e-3, output_step=0.05) for mass in masses]
