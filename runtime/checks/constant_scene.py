@@ -36,4 +36,4 @@ def _given(part: Part) -> Iterator[tuple[str, Signal]]:
 def _is_constant(signal: Signal) -> bool:
     """Return whether a signal has one value for all times."""
     _, coefficients = signal.pieces()
-    return not signal.amplitude and not np.any(coefficients[:, 1:]) and not np.any(np.diff(coefficients[:, 0]))
+    return not signal.sine.amplitude and not np.any(coefficients[:, 1:]) and not np.any(np.diff(coefficients[:, 0]))

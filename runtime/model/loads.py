@@ -16,7 +16,7 @@ from ..parts.force_pieces import HAS_NO_FORCE, PULLS_AND_PUSHES
 from ..parts.load import DistributedForce, Force, Moment
 from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
-from ..parts.signal import Constant, Signal, value_at
+from ..parts.signal import Constant, Signal, Sine, value_at
 from ..parts.spring import Spring
 from .attachments import AttachmentBuilder, AttachmentModel
 from .coupling import CouplingModel
@@ -37,7 +37,8 @@ class SignalModel:
 
     def value(self, time: np.ndarray, derivative: int = 0) -> np.ndarray:
         """Return the signal, or a derivative of it, at the times ``time``, s."""
-        return value_at(self, self.breaks, self.coefficients, time, derivative)
+        sine = Sine(self.amplitude, self.angular_frequency, self.phase)
+        return value_at(sine, self.breaks, self.coefficients, time, derivative)
 
     def at(self, time: float) -> float:
         """Return the signal at a time in s."""
@@ -151,7 +152,7 @@ class LoadBuilder:
         """Store a signal and return its number."""
         breaks, coefficients = signal.pieces()
         self.signals.append(SignalModel(np.asarray(breaks, dtype=float), np.asarray(coefficients, dtype=float),
-                                        signal.amplitude, signal.angular_frequency, signal.phase))
+                                        *signal.sine))
         return len(self.signals) - 1
 
     def scale(self, signal: Signal) -> tuple[int, float]:

@@ -8,7 +8,7 @@ from math import comb
 
 import numpy as np
 
-from .signal import DEGREE, Constant, Signal
+from .signal import DEGREE, Constant, Signal, Sine
 
 ROUNDED = 1e-12
 """Of the largest term: what rounding may leave of a sum that is zero."""
@@ -34,25 +34,12 @@ class CombinedSignal(Signal):
         return breaks, total
 
     @property
-    def _sine(self) -> complex:
-        """Return the sum of the sines: its size is the amplitude, its angle the phase."""
-        return sum((factor * signal.amplitude * cmath.exp(1j * signal.phase)
-                    for factor, signal in zip(self.factors, self.signals, strict=True)), 0j)
-
-    @property
-    def amplitude(self) -> float:
-        """Return the amplitude of its sine, see `Signal.amplitude`."""
-        return abs(self._sine)
-
-    @property
-    def angular_frequency(self) -> float:
-        """Return the rate of its sine in rad/s, see `Signal.angular_frequency`."""
-        return next((signal.angular_frequency for signal in self.signals if signal.amplitude), 0.0)
-
-    @property
-    def phase(self) -> float:
-        """Return the phase of its sine in rad, see `Signal.phase`."""
-        return cmath.phase(self._sine)
+    def sine(self) -> Sine:
+        """Return the sum of the sines, added as complex amplitudes."""
+        sines = [(factor, signal.sine) for factor, signal in zip(self.factors, self.signals, strict=True)]
+        total = sum((factor * sine.amplitude * cmath.exp(1j * sine.phase) for factor, sine in sines), 0j)
+        return Sine(abs(total), next((sine.angular_frequency for _, sine in sines if sine.amplitude), 0.0),
+                    cmath.phase(total))
 
 
 def _shifted(coefficients: np.ndarray, by: np.ndarray) -> np.ndarray:
@@ -74,7 +61,7 @@ def combined(factors: Sequence[float], signals: Sequence[Signal]) -> Signal:
         terms = [factor * signal.constant for factor, signal in zip(factors, signals, strict=True)
                  if isinstance(signal, Constant)]
         return Constant(constant=_rounded(sum(terms), max(map(abs, terms))))
-    if len({signal.angular_frequency for signal in signals if signal.amplitude}) > 1:
+    if len({signal.sine.angular_frequency for signal in signals if signal.sine.amplitude}) > 1:
         raise ValueError("is a sum of sines of several frequencies along the axes of the plane")
     moving = [(f, s) for f, s in zip(factors, signals, strict=True) if not _is_zero(s)]
     if len(moving) == 1 and moving[0][0] == 1.0:
@@ -96,7 +83,7 @@ def _vanishes(made: CombinedSignal) -> bool:
     breaks, total = made.pieces()
     terms = [np.abs(factor * signal.value(breaks)).max() for factor, signal in zip(made.factors, made.signals,
                                                                                   strict=True)]
-    sines = [abs(factor * signal.amplitude) for factor, signal in zip(made.factors, made.signals, strict=True)]
+    sines = [abs(factor * signal.sine.amplitude) for factor, signal in zip(made.factors, made.signals, strict=True)]
     times = np.diff(breaks)[:, None] ** np.arange(DEGREE + 1)
     return bool(np.abs(total * times).max() <= ROUNDED * max(*terms, *sines)
-                and made.amplitude <= ROUNDED * max(*terms, *sines))
+                and made.sine.amplitude <= ROUNDED * max(*terms, *sines))

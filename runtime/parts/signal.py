@@ -11,7 +11,7 @@ import itertools
 from collections.abc import Iterable, Iterator
 from math import pi
 from numbers import Real
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Protocol
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -35,6 +35,14 @@ _RISE = np.array([0, 0, 0, 10, -15, 6, 0])
 """The polynomial from 0 to 1 over [0, 1] whose first and second derivatives vanish at both ends."""
 
 
+class Sine(NamedTuple):
+    """amplitude sin(angular_frequency t + phase), in rad and s."""
+
+    amplitude: float = 0.0
+    angular_frequency: float = 0.0
+    phase: float = 0.0
+
+
 class Signal(Part):
     """Base of the functions of time."""
 
@@ -49,44 +57,18 @@ class Signal(Part):
         raise NotImplementedError
 
     @property
-    def amplitude(self) -> float:
-        """Return the amplitude of the sine, 0 if there is none."""
-        return 0.0
-
-    @property
-    def angular_frequency(self) -> float:
-        """Return the angular frequency of the sine in rad/s."""
-        return 0.0
-
-    @property
-    def phase(self) -> float:
-        """Return the phase of the sine at t = 0, in rad."""
-        return 0.0
+    def sine(self) -> Sine:
+        """Return the sine that is added to the polynomials."""
+        return Sine()
 
     def value(self, time: ArrayLike, derivative: int = 0) -> np.ndarray:
-        """Return the signal, or a derivative of it, at the times ``time`` (any shape, s)."""
-        return value_at(self, *self.pieces(), time, derivative)
+        """Return the signal, or a derivative of it, at times of any shape, in s."""
+        return value_at(self.sine, *self.pieces(), time, derivative)
 
 
-class Sine(Protocol):
-    """The sine of a signal: amplitude sin(angular_frequency t + phase), rad and s."""
-
-    @property
-    def amplitude(self) -> float:
-        """Return the amplitude, 0 where there is no sine."""
-
-    @property
-    def angular_frequency(self) -> float:
-        """Return the angular frequency in rad/s."""
-
-    @property
-    def phase(self) -> float:
-        """Return the phase at t = 0 in rad."""
-
-
-def value_at(signal: Sine, breaks: np.ndarray, coefficients: np.ndarray, time: ArrayLike,
+def value_at(sine: Sine, breaks: np.ndarray, coefficients: np.ndarray, time: ArrayLike,
              derivative: int = 0) -> np.ndarray:
-    """Return a derivative, at times of any shape, of such a piecewise polynomial with the sine of ``signal``."""
+    """Return a derivative of a piecewise polynomial plus a sine at times of any shape."""
     time = np.asarray(time, dtype=float)
     result = np.zeros(time.shape)
     if len(coefficients):
@@ -95,8 +77,8 @@ def value_at(signal: Sine, breaks: np.ndarray, coefficients: np.ndarray, time: A
         for power in range(DEGREE, derivative - 1, -1):
             factor = np.prod(np.arange(power - derivative + 1, power + 1))
             result = result * since + factor * coefficients[piece, power]
-    w = signal.angular_frequency
-    return result + signal.amplitude * w**derivative * np.sin(w * time + signal.phase + derivative * pi / 2)
+    amplitude, w, phase = sine
+    return result + amplitude * w**derivative * np.sin(w * time + phase + derivative * pi / 2)
 
 
 def _steps(times: list[float], values: list[float]) -> tuple[np.ndarray, np.ndarray]:
@@ -248,29 +230,19 @@ class Harmonic(Signal):
     """
 
     form: ClassVar[str] = "harmonic"
-    sine: Value = Field(alias="amplitude")
+    amplitude: Value
     frequency: Annotated[float, positive("Hz")]
-    start_phase: Annotated[float, finite("rad")] = Field(0.0, alias="phase")
+    phase: Annotated[float, finite("rad")] = 0.0
     offset: Value = 0.0
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return its polynomials between breaks, see `Signal.pieces`."""
+        """Return the constant polynomial, see `Signal.pieces`."""
         return Constant(constant=self.offset).pieces()
 
     @property
-    def amplitude(self) -> float:
-        """Return the amplitude of its sine, see `Signal.amplitude`."""
-        return self.sine
-
-    @property
-    def angular_frequency(self) -> float:
-        """Return the rate of its sine in rad/s, see `Signal.angular_frequency`."""
-        return 2 * pi * self.frequency
-
-    @property
-    def phase(self) -> float:
-        """Return the phase of its sine in rad, see `Signal.phase`."""
-        return self.start_phase
+    def sine(self) -> Sine:
+        """Return its sine."""
+        return Sine(self.amplitude, 2 * pi * self.frequency, self.phase)
 
 
 class Integral(Signal):
@@ -296,23 +268,15 @@ class Integral(Signal):
         coefficients[1:, 0] = np.cumsum(gains)[:-1]
         first = int(np.clip(np.searchsorted(breaks, 0.0, side="right") - 1, 0, len(rates) - 1))
         at_zero = np.sum(coefficients[first] * (0.0 - breaks[first]) ** np.arange(DEGREE + 1))
-        coefficients[:, 0] += self.start - at_zero - self.amplitude * np.sin(self.phase)
+        amplitude, _, phase = self.sine
+        coefficients[:, 0] += self.start - at_zero - amplitude * np.sin(phase)
         return breaks, coefficients
 
     @property
-    def amplitude(self) -> float:
-        """Return the amplitude of its sine, see `Signal.amplitude`."""
-        return self.rate.amplitude / self.angular_frequency if self.rate.amplitude else 0.0
-
-    @property
-    def angular_frequency(self) -> float:
-        """Return the rate of its sine in rad/s, see `Signal.angular_frequency`."""
-        return self.rate.angular_frequency
-
-    @property
-    def phase(self) -> float:
-        """See `Signal.phase`: a quarter of a turn late."""
-        return self.rate.phase - pi / 2
+    def sine(self) -> Sine:
+        """Return the integral of the sine of the rate: a quarter of a period late."""
+        amplitude, w, phase = self.rate.sine
+        return Sine(amplitude / w if amplitude else 0.0, w, phase - pi / 2)
 
 
 FORMS = {signal.form: signal for signal in (TableSignal, Ramp, Harmonic, Pulse)}

@@ -23,7 +23,7 @@ SMOOTH = {"time": SAMPLES, "value": tuple(0.05 * (1 - np.cos(2 * np.pi * np.arra
 def model(*signals, driving=()):
     """As much of a model as knots are found from; driving: numbers of the signals that prescribe a motion."""
     return SimpleNamespace(
-        signals=[SignalModel(*each.pieces(), each.amplitude, each.angular_frequency, each.phase) for each in signals],
+        signals=[SignalModel(*each.pieces(), *each.sine) for each in signals],
         motions=[SimpleNamespace(signal=k) for k in driving], couplings=[], drags=[])
 
 

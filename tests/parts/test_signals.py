@@ -30,7 +30,8 @@ def test_value_is_what_pieces_and_sine_say(each):
     for t in (*TIMES[::50], *breaks):
         k = min(max(np.searchsorted(breaks, t, side="right") - 1, 0), len(coefficients) - 1)
         polynomial = sum(c * (t - breaks[k]) ** power for power, c in enumerate(coefficients[k]))
-        sine = each.amplitude * np.sin(each.angular_frequency * t + each.phase)
+        amplitude, w, phase = each.sine
+        sine = amplitude * np.sin(w * t + phase)
         assert_allclose(each.value(t), polynomial + sine, rtol=1e-13, atol=1e-13)
 
 

@@ -47,7 +47,7 @@ def signals(scene: SceneData) -> Iterator[tuple[str, Signal]]:
 
 def frequency(signal: Signal) -> float:
     """Return the frequency of the sine of a signal, Hz; 0 where it has none."""
-    return signal.angular_frequency / (2 * np.pi) if signal.amplitude else 0.0
+    return signal.sine.angular_frequency / (2 * np.pi) if signal.sine.amplitude else 0.0
 
 
 def _error_of_integral(signal: Signal, step: float, settings: RunSettings) -> float:
