@@ -7,8 +7,8 @@ from typing import Annotated, Any, ClassVar
 from pydantic import model_validator
 
 from ..errors import near
-from .part import Part, part_of_table
-from .schemas import checked, tagged
+from .part import Family, Part
+from .schemas import checked
 from .validation import not_negative, positive, within
 
 WORDS = ("error", "leave")
@@ -18,6 +18,7 @@ WORDS = ("error", "leave")
 class Stop(Part):
     """Base of what stops a rider at an end of its cable."""
 
+    tag: ClassVar[str] = "stop"
     stop: ClassVar[str]
 
 
@@ -53,21 +54,16 @@ class Buffer(Stop):
         return self
 
 
-STOPS = {stop.stop: stop for stop in (HardStop, Buffer)}
+STOPS = Family("stop", "a word or a stop such as HardStop(restitution=0.5)", (HardStop, Buffer))
 
 
 def _end(value: Any) -> str | Stop:
-    """Return one of the words, a stop, or what a table such as {stop="hard", restitution=0.5} describes. Raises
-    ValueError.
-    """
-    if isinstance(value, Stop):
-        return value
-    if isinstance(value, str):
-        if value not in WORDS:
-            raise ValueError(f'"{value}" is not known', near(value, WORDS))
-        return value
-    return part_of_table(value, "a word or a stop such as HardStop(restitution=0.5)", "stop", STOPS,
-                         "words: " + ", ".join(WORDS))
+    """Return one of the words, a stop, or the stop that a table describes. Raises ValueError."""
+    if not isinstance(value, str):
+        return STOPS.part(value, "words: " + ", ".join(WORDS))
+    if value not in WORDS:
+        raise ValueError(f'"{value}" is not known', near(value, WORDS))
+    return value
 
 
-CableEnd = Annotated[Any, checked(_end, {"anyOf": [{"enum": list(WORDS)}, tagged("stop")]})]
+CableEnd = Annotated[Any, checked(_end, {"anyOf": [{"enum": list(WORDS)}, STOPS.schema]})]

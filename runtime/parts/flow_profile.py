@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from pydantic import model_validator
 
-from .part import Part, part_of_table
-from .schemas import checked, tagged
+from .part import Family, Part
 from .signal import TableSignal
 from .validation import check_function, list_of, not_negative, one_of, positive
 
@@ -16,6 +15,7 @@ from .validation import check_function, list_of, not_negative, one_of, positive
 class Profile(Part):
     """Base of the factors of a velocity by height."""
 
+    tag: ClassVar[str] = "form"
     form: ClassVar[str]
 
     def factor(self, height: np.ndarray) -> np.ndarray:
@@ -75,14 +75,6 @@ class TableProfile(Profile):
         return self._table().value(height)
 
 
-PROFILES = {profile.form: profile for profile in (PowerProfile, TableProfile)}
-
-
-def _profile(value: Any) -> Profile | None:
-    """Return a profile from itself, None or a table such as {form="power", exponent=0.16}. Raises ValueError."""
-    if value is None or isinstance(value, Profile):
-        return value
-    return part_of_table(value, "a profile such as PowerProfile(exponent=0.16, reference_height=10)", "form", PROFILES)
-
-
-AnyProfile = Annotated[Profile | None, checked(_profile, tagged("profile"))]
+PROFILES = Family("profile", "a profile such as PowerProfile(exponent=0.16, reference_height=10)",
+                  (PowerProfile, TableProfile), Profile)
+AnyProfile = Annotated[Profile, PROFILES.checked()]

@@ -41,7 +41,7 @@ class Fluid(Part):
     surface: Annotated[float, finite("m")] | None = None
     velocity: Annotated[Vector, xyz("m/s")] = (0.0, 0.0, 0.0)
     scale: AnySignal = Constant(constant=1.0)
-    profile: AnyProfile = None
+    profile: AnyProfile | None = None
     table: VelocityTable | None = None
 
     @model_validator(mode="after")

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from itertools import chain
-from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar, get_args
+from typing import TYPE_CHECKING, Any, ClassVar, Self, get_args
 
-from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, PlainValidator, ValidationError, model_validator
 
 from ..errors import RENAMED, SceneError, check_renamed, near, shown_path
 from .quantity import Quantity
+from .schemas import TABLE_OF, checked
 from .validation import NAMES_A_PART, shown
 
 if TYPE_CHECKING:
@@ -19,8 +21,6 @@ if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
 else:
     ModelMetaclass = type(BaseModel)  # pydantic exports its metaclass in no other way
-
-P = TypeVar("P", bound="Part")
 
 
 def parameters_of(kind: type[Part]) -> list[inspect.Parameter]:
@@ -90,6 +90,9 @@ class Part(BaseModel, metaclass=_TranslatingType):
 
     group: ClassVar[str] = ""
     """The attribute of a scene that holds such parts."""
+
+    tag: ClassVar[str] = ""
+    """The entry of a table that says which kind of a `Family` it describes; also the attribute that names the kind."""
 
     positional: ClassVar[tuple[str, ...]] = ("name",)
     """Keywords that the scene's method for such parts takes without their names, too."""
@@ -234,20 +237,53 @@ def _of_complaint(place: str, complaint: ErrorDetails) -> SceneError:
     return SceneError(place, f"{path} {cause}".strip(), remedy[0] if remedy else None, entry)
 
 
-def part_of_table(table: Any, what: str, tag: str, kinds: Mapping[str, type[P]], *remedy: str) -> P:
-    """Return what a table such as {shape="circle", radius=0.01} describes; its entry `tag` names one of the kinds.
+@dataclass(frozen=True)
+class Family:
+    """Parts of which a field holds one, given as itself or as a table such as {shape="circle", radius=0.01}.
 
-    what, remedy: what a value that is no table must be, and what to do then. Raises ValueError for such a value, and
-    where that entry is missing, no name, or unknown.
+    name: of the family in the JSON Schema of scene files; example: what a value must be, in words; kinds: those that a
+    table can describe, by its entry `Part.tag`; base: of all that a field may hold.
     """
-    if not isinstance(table, dict):
-        raise ValueError(f"must be {what}, got {shown(table)}", *remedy)
-    data = dict(table)
-    kind = data.pop(tag, None)
-    if kind is None:
-        raise ValueError(f"has no {tag}", "known: " + ", ".join(kinds))
-    if not isinstance(kind, str):
-        raise ValueError(f"has the {tag} {shown(kind)}, not a name", "known: " + ", ".join(kinds))
-    if kind not in kinds:
-        raise ValueError(f'has the unknown {tag} "{kind}"', near(kind, kinds))
-    return kinds[kind].model_validate(data)
+
+    name: str
+    example: str
+    kinds: tuple[type[Part], ...]
+    base: type[Part] | None = None
+
+    def __post_init__(self) -> None:
+        FAMILIES[self.name] = self
+
+    @property
+    def by_tag(self) -> dict[str, type[Part]]:
+        """Return the kinds by what the entry of a table calls them."""
+        return {getattr(kind, kind.tag): kind for kind in self.kinds}
+
+    @property
+    def schema(self) -> dict[str, Any]:
+        """Return the JSON Schema of a table, a reference that `scene.schema` resolves."""
+        return {TABLE_OF: self.name}
+
+    def checked(self) -> PlainValidator:
+        """Return the check of a part of this family."""
+        return checked(self.part, self.schema)
+
+    def part(self, value: Any, *remedy: str) -> Any:
+        """Return the part that a value is or describes; remedy: for a value that is neither. Raises ValueError."""
+        if isinstance(value, self.base or self.kinds):
+            return value
+        if not isinstance(value, dict):
+            raise ValueError(f"must be {self.example}, got {shown(value)}", *remedy)
+        known, tag = self.by_tag, self.kinds[0].tag
+        data = dict(value)
+        kind = data.pop(tag, None)
+        if kind is None:
+            raise ValueError(f"has no {tag}", "known: " + ", ".join(known))
+        if not isinstance(kind, str):
+            raise ValueError(f"has the {tag} {shown(kind)}, not a name", "known: " + ", ".join(known))
+        if kind not in known:
+            raise ValueError(f'has the unknown {tag} "{kind}"', near(kind, known))
+        return known[kind].model_validate(data)
+
+
+FAMILIES: dict[str, Family] = {}
+"""All families by name."""

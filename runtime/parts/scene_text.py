@@ -16,27 +16,18 @@ from typing import Any, Protocol, TypeVar
 
 from ..errors import SceneError, SceneFileError, near, shown_path
 from ..kernels.libraries import check_allowed, resolved
-from .end_stops import Stop
 from .event import Event
 from .file_paths import FilePath
-from .flow_profile import Profile
 from .kinds import PARTS
 from .pairs import are_lists
 from .part import Part
 from .scene_data import SceneData
 from .scene_lines import line_of
-from .section import Section
 from .settings import EquilibriumSettings, RelaxationSettings, RunSettings
-from .signal import Signal
-from .solids import Solid
-from .surface_shapes import SurfaceShape
 
 BARE = re.compile(r"[A-Za-z0-9_-]+")
 """A key that a scene file need not quote."""
 SETTINGS = {"run": RunSettings, "equilibrium": EquilibriumSettings, "relax": RelaxationSettings}
-
-TAGS = {Section: "shape", Signal: "form", Stop: "stop", Solid: "kind", SurfaceShape: "kind", Profile: "form"}
-"""The word in a table that says which of several parts it is."""
 
 TABLES = ("gravity", *PARTS, *SETTINGS)
 
@@ -272,7 +263,7 @@ def plain_data(value: Any) -> Any:
         case Part():
             if (short := value.as_given()) is not value:
                 return plain_data(short)
-            tag = {name: getattr(value, name) for base, name in TAGS.items() if isinstance(value, base)}
+            tag = {value.tag: getattr(value, value.tag)} if value.tag else {}
             return tag | {keyword: plain_data(each) for keyword, each in value.entries().items()}
         case list() | tuple():
             return [plain_data(each) for each in value]

@@ -59,12 +59,7 @@ def some(n: int) -> dict[str, Any]:
 
 
 TABLE_OF = "table of"
-"""Stands for a reference to the tables of a base class, which pydantic would look up itself."""
-
-
-def tagged(base: str) -> dict[str, Any]:
-    """Return the JSON Schema of a table that says by an entry which of several parts it is; see `scene_schema`."""
-    return {TABLE_OF: base}
+"""Stands for a reference to the tables of a `Family`, which pydantic would look up itself."""
 
 
 def number_schema(unit: str = "", **bounds: float) -> dict[str, Any]:

@@ -1,6 +1,6 @@
 """Cross-sections. y runs along the cable's ``up`` (height), z along its width; lengths in m.
 
-A further section is one class with ``moments``, its torsion constant and shear factors, and one entry in `SHAPES`.
+A further section is one class with ``moments``, its torsion constant and shear factors, and one entry in `SECTIONS`.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from ..errors import SceneError
-from .part import Part, part_of_table
-from .schemas import checked, list_schema, tagged
+from .part import Family, Part
+from .schemas import checked, list_schema
 from .validation import positive, show, vector
 
 Length = Annotated[float, positive("m")]
@@ -40,6 +40,7 @@ class Section(Part):
     shear_factors: (ky, kz), in the place of those of the shape
     """
 
+    tag: ClassVar[str] = "shape"
     shape: ClassVar[str]
     given_torsion_constant: TorsionConstant | None = Field(None, alias="torsion_constant")
     given_shear_factors: ShearFactors | None = Field(None, alias="shear_factors")
@@ -244,13 +245,6 @@ def _disc(r: float) -> np.ndarray:
     return pi * np.array([r**2, r**4 / 4, r**4 / 4, r**6 / 8, r**6 / 24, r**6 / 8])
 
 
-SHAPES = {section.shape: section for section in (Rectangle, Circle, Tube, GeneralSection)}
-
-
-def _section(value: Any) -> Section:
-    """Return a section from itself or from a table such as {shape="circle", radius=0.01}."""
-    return value if isinstance(value, Section) else part_of_table(
-        value, "a section such as Rectangle(height=0.05, width=0.05)", "shape", SHAPES)
-
-
-AnySection = Annotated[Section, checked(_section, tagged("section"))]
+SECTIONS = Family("section", "a section such as Rectangle(height=0.05, width=0.05)",
+                  (Rectangle, Circle, Tube, GeneralSection), Section)
+AnySection = Annotated[Section, SECTIONS.checked()]

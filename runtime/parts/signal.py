@@ -2,7 +2,7 @@
 
 A signal is a piecewise polynomial plus at most one sine, so that the engine needs to know nothing else of it:
 f(t) = Σ_k coefficients[piece, k] (t - breaks[piece])^k + amplitude sin(angular_frequency t + phase).
-A further form is one class with ``pieces`` and one entry in `FORMS`.
+A further form is one class with ``pieces`` and one entry in `SIGNALS`.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple
 import numpy as np
 from pydantic import Field, model_validator
 
-from .part import Part, part_of_table
-from .schemas import checked, tagged
+from .part import Family, Part
+from .schemas import checked
 from .validation import check_function, finite, list_of, one_of, positive, show
 
 if TYPE_CHECKING:
@@ -46,6 +46,7 @@ class Sine(NamedTuple):
 class Signal(Part):
     """Base of the functions of time."""
 
+    tag: ClassVar[str] = "form"
     form: ClassVar[str]
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
@@ -279,16 +280,15 @@ class Integral(Signal):
         return Sine(amplitude / w if amplitude else 0.0, w, phase - pi / 2)
 
 
-FORMS = {signal.form: signal for signal in (TableSignal, Ramp, Harmonic, Pulse)}
+SIGNALS = Family("signal", "a number or a signal such as Ramp(start=0, end=1)", (TableSignal, Ramp, Harmonic, Pulse),
+                 Signal)
 
 
 def signal(value: Any) -> Signal:
     """Return a signal from itself, a number, or a table such as {form="ramp", start=0, end=1}; else ValueError."""
-    if isinstance(value, Signal):
-        return value
     if isinstance(value, Real) and not isinstance(value, bool):
         return Constant.model_validate({"constant": value})
-    return part_of_table(value, "a number or a signal such as Ramp(start=0, end=1)", "form", FORMS)
+    return SIGNALS.part(value)
 
 
 def signals_of(part: Part) -> Iterator[tuple[str, Signal]]:
@@ -301,4 +301,4 @@ def signals_of(part: Part) -> Iterator[tuple[str, Signal]]:
                 yield from ((f"{name}.{inner}", signal) for inner, signal in signals_of(each))
 
 
-AnySignal = Annotated[Signal, checked(signal, {"anyOf": [{"type": "number"}, tagged("signal")]})]
+AnySignal = Annotated[Signal, checked(signal, {"anyOf": [{"type": "number"}, SIGNALS.schema]})]

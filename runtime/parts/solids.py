@@ -12,9 +12,9 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from pydantic import model_validator
 
-from .part import Part, part_of_table
+from .part import Family, Part
 from .plane import aligned
-from .schemas import DIRECTION, HOLDER, LENGTHS, Turning, checked, list_schema, tagged
+from .schemas import DIRECTION, HOLDER, LENGTHS, Turning, checked, list_schema
 from .validation import Vector, check_square, direction, positive, shown, vector, xyz
 
 Length = Annotated[float, positive("m")]
@@ -44,6 +44,7 @@ class Solid(Part):
     at: middle of the shape, in body axes, m
     """
 
+    tag: ClassVar[str] = "kind"
     at: Annotated[Vector, xyz("m", DIRECTION, HOLDER)] = (0.0, 0.0, 0.0)
 
 
@@ -114,13 +115,5 @@ class MeshShape(Solid):
     scale: Annotated[float, positive()] = 1.0
 
 
-SOLIDS = {solid.kind: solid for solid in (Box, Sphere, Cylinder, MeshShape)}
-
-
-def _solid(value: Any) -> Solid:
-    """Return a shape from itself or from a table such as {kind="sphere", radius=0.1}."""
-    return value if isinstance(value, Solid) else part_of_table(
-        value, "a shape such as Box(size=(1, 2, 3))", "kind", SOLIDS)
-
-
-AnySolid = Annotated[Solid, checked(_solid, tagged("solid"))]
+SOLIDS = Family("solid", "a shape such as Box(size=(1, 2, 3))", (Box, Sphere, Cylinder, MeshShape))
+AnySolid = Annotated[Solid, SOLIDS.checked()]

@@ -15,9 +15,9 @@ import numpy as np
 from pydantic import model_validator
 
 from .height_bounds import height_bounds
-from .part import Part, part_of_table
+from .part import Family, Part
 from .plane import FLAT, across, aligned
-from .schemas import DIRECTION, HOLDER, checked, list_schema, tagged
+from .schemas import DIRECTION, HOLDER, checked, list_schema
 from .solids import Box, Cylinder, Length, Sphere
 from .validation import Vector, check_function, check_square, direction, list_of, shown, vector, xyz
 
@@ -27,6 +27,8 @@ WIDE = 1e6
 
 class SurfaceShape(Part):
     """Base of the shapes that are of surfaces alone."""
+
+    tag: ClassVar[str] = "kind"
 
 
 class Plane(SurfaceShape):
@@ -130,18 +132,9 @@ class HeightField(SurfaceShape):
             yield "across"
 
 
-SURFACE_SHAPES: dict[str, type[Part]] = {
-    shape.kind: shape for shape in (Plane, HeightField, Sphere, Cylinder, Capsule, Box)}
-
-
-def _shape(value: Any) -> Part:
-    """Return a shape from itself or from a table such as {kind="plane"}."""
-    if isinstance(value, Part) and type(value) in SURFACE_SHAPES.values():
-        return value
-    return part_of_table(value, "a shape such as Plane(point=(0, 0, 0), normal=(0, 1, 0))", "kind", SURFACE_SHAPES)
-
-
-AnySurfaceShape = Annotated[Part, checked(_shape, tagged("surface_shape"))]
+SURFACE_SHAPES = Family("surface_shape", "a shape such as Plane(point=(0, 0, 0), normal=(0, 1, 0))",
+                        (Plane, HeightField, Sphere, Cylinder, Capsule, Box))
+AnySurfaceShape = Annotated[Part, SURFACE_SHAPES.checked()]
 
 
 @dataclass

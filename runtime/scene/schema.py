@@ -2,35 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Any
 
-from ..parts.end_stops import STOPS
-from ..parts.flow_profile import PROFILES
 from ..parts.kinds import PARTS
-from ..parts.part import Part
+from ..parts.part import FAMILIES, Part
 from ..parts.scene_text import SETTINGS
 from ..parts.schemas import TABLE_OF
-from ..parts.section import SHAPES
-from ..parts.signal import FORMS
-from ..parts.solids import SOLIDS
-from ..parts.surface_shapes import SURFACE_SHAPES
 
 DIALECT = "http://json-schema.org/draft-07/schema#"
 """The newest one that editors of TOML know."""
-
-GROUPS: dict[str, tuple[str, Iterable[type[Part]]]] = {
-    "section": ("shape", SHAPES.values()), "signal": ("form", FORMS.values()), "stop": ("stop", STOPS.values()),
-    "solid": ("kind", SOLIDS.values()), "profile": ("form", PROFILES.values()),
-    "surface_shape": ("kind", SURFACE_SHAPES.values())}
-"""What tables describe that say by an entry which of several parts they are: that entry, and the parts."""
 
 
 def scene_schema() -> dict[str, Any]:
     """Return the JSON Schema of scene files, as data for `json.dump`."""
     definitions: dict[str, Any] = {}
-    for name, (tag, parts) in GROUPS.items():
-        definitions[name] = {"oneOf": [_table(part, definitions, tag) for part in parts]}
+    for name, family in FAMILIES.items():
+        definitions[name] = {"oneOf": [_table(part, definitions) for part in family.kinds]}
     tables: dict[str, Any] = {"gravity": {
         "type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3, "description": "in m/s²"}}
     for name, part in PARTS.items():
@@ -41,20 +28,20 @@ def scene_schema() -> dict[str, Any]:
             "additionalProperties": False, "$defs": definitions}
 
 
-def _table(part: type[Part], definitions: dict[str, Any], tag: str | None = None) -> dict[str, Any]:
-    """Return the schema of a table that describes a part; what it refers to is added to the definitions."""
+def _table(part: type[Part], definitions: dict[str, Any]) -> dict[str, Any]:
+    """Return the schema of a table that describes a part; the tables in it are added to the definitions."""
     schema = _linked(part.model_json_schema(mode="validation"))
     for name, found in schema.pop("$defs", {}).items():
         definitions.setdefault(name, _closed(found))
     schema = _closed(schema)
-    if tag is not None:
-        schema["properties"] = {tag: {"const": getattr(part, tag)}} | schema["properties"]
-        schema["required"] = [tag, *schema.get("required", [])]
+    if part.tag:
+        schema["properties"] = {part.tag: {"const": getattr(part, part.tag)}} | schema["properties"]
+        schema["required"] = [part.tag, *schema.get("required", [])]
     return schema
 
 
 def _linked(schema: Any) -> Any:
-    """Return a schema with references to the groups of tables."""
+    """Return a schema with references to the families of parts."""
     if isinstance(schema, list):
         return [_linked(each) for each in schema]
     if not isinstance(schema, dict):

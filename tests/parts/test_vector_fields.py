@@ -16,7 +16,7 @@ from funicular.parts.surface_shapes import SURFACE_SHAPES
 from funicular.parts.validation import Matrix, Vector, direction, xyz
 from funicular.parts.vector_fields import turnings_of
 
-WITH_FIELDS = (*KINDS, *SURFACE_SHAPES.values(), Attachment)
+WITH_FIELDS = (*KINDS, *SURFACE_SHAPES.kinds, Attachment)
 UPRIGHT = PlaneAxes(Plane.across(np.array([0.0, -1, 0]), np.zeros(3)), {"A": np.array([0.5, 0.5, 0.5, 0.5])}, 1.0)
 """x stays, z becomes y: the plane y = 0; A: a body whose axes the plane's come to by x y z -> z x y."""
 

@@ -12,13 +12,13 @@ from typing import Any
 from funicular.kernels.elements import ElementKind, built_in
 from funicular.parts.cable_laws import MEASURES, possible_laws
 from funicular.parts.kinds import KINDS
-from funicular.parts.part import Part, names_a_part, parameters_of
+from funicular.parts.part import FAMILIES, Part, names_a_part, parameters_of
 from funicular.parts.scene_text import SETTINGS
 from funicular.parts.section_stiffness import measures_of_law
 from funicular.parts.validation import LIMITS, OTHER_LIMITS
 from funicular.results.quantities import ENERGIES
 from funicular.scene.file import bundled_scenes
-from funicular.scene.schema import GROUPS, scene_schema
+from funicular.scene.schema import scene_schema
 
 from .markdown import anchor, markdown, split, table
 
@@ -57,17 +57,17 @@ def parts_page() -> str:
 def _groups(schema: dict[str, Any]) -> Iterator[tuple[str, list[type[Part]]]]:
     """Yield the titles and classes of the tables within parts, each class once."""
     seen: set[type[Part]] = set()
-    for name, (_, parts) in GROUPS.items():
-        new = [part for part in parts if part not in seen]
+    for name, title in TITLES.items():
+        new = [part for part in FAMILIES[name].kinds if part not in seen]
         seen.update(new)
-        yield TITLES[name], new
+        yield title, new
     alone = {part.__name__: part for part in _classes(Part) if part.__name__ in schema["$defs"]}
     yield "Other tables", [alone[name] for name in schema["$defs"] if name in alone]
 
 
 TITLES = {"section": "Sections", "signal": "Signals", "stop": "Ends of cables", "solid": "Shapes of bodies",
           "profile": "Profiles of a flow", "surface_shape": "Shapes of surfaces alone"}
-"""Of the groups of tables."""
+"""Of the families of tables, in this order."""
 
 
 def _classes(base: type[Part]) -> Iterator[type[Part]]:
@@ -144,10 +144,9 @@ def _entries(part: type[Part], schema: dict[str, Any]) -> tuple[dict[str, Any], 
             return schema["properties"][name], None
     if part in KINDS:
         return schema["properties"][part.kind]["items"], None
-    for name, (tag, parts) in GROUPS.items():
-        for k, each in enumerate(parts):
-            if each is part:
-                return schema["$defs"][name]["oneOf"][k], (tag, getattr(part, tag))
+    for name, family in FAMILIES.items():
+        if part in family.kinds:
+            return schema["$defs"][name]["oneOf"][family.kinds.index(part)], (part.tag, getattr(part, part.tag))
     return schema["$defs"][part.__name__], None
 
 
