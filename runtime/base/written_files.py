@@ -1,4 +1,4 @@
-"""Files that are written beside and renamed when they are whole: a full disk or Ctrl-C leaves the older file."""
+"""Files written under a temporary name and renamed when complete: a full disk or Ctrl-C leaves the older file."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from ..errors import ResultFileError, shown_path
 from .interruptions import interruptible, uninterrupted
 
 
-def write_whole(path: str | os.PathLike, write: Callable[[Path], object], what: str = "the file") -> Path:
-    """Let ``write`` make a file under another name, which takes the place of ``path`` once it is whole.
+def write_whole(path: str | os.PathLike[str], write: Callable[[Path], object], what: str = "the file") -> Path:
+    """Let ``write`` make a file under a temporary name, and rename it to ``path`` once it is complete.
 
-    A link stays and what it points to is replaced. A device or a pipe is written to directly. what: the file in
-    messages. Returns the path as it was given. Raises ResultFileError.
+    The target of a link is replaced; the link stays. A device or a pipe is written to directly. what: the file in
+    messages. Returns the path as given. Raises ResultFileError.
     """
     try:
         target = Path(os.path.realpath(path))
@@ -42,19 +42,17 @@ def write_whole(path: str | os.PathLike, write: Callable[[Path], object], what: 
     return Path(path)
 
 
-def unwritable(path: str | os.PathLike, what: str, error: OSError | ValueError) -> ResultFileError:
-    """Return what is raised where a file cannot be written; what: the file in messages."""
+def unwritable(path: str | os.PathLike[str], what: str, error: OSError | ValueError) -> ResultFileError:
+    """Return the error of a file that cannot be written; what: the file in messages."""
     reason = getattr(error, "strerror", None) or str(error) or "this is no path"
     return ResultFileError(f"{shown_path(path)}: {what} cannot be written here: {reason}")
 
 
-def write_text(path: str | os.PathLike, text: str, what: str = "the file") -> Path:
-    """Write a text in UTF-8, lines ending as they do in it; see `write_whole`. Raises ResultFileError."""
+def write_text(path: str | os.PathLike[str], text: str, what: str = "the file") -> Path:
+    """Write a text in UTF-8 with its own line ends; see `write_whole`. Raises ResultFileError."""
     return write_whole(path, lambda part: part.write_text(text, encoding="utf-8", newline=""), what)
 
 
 def _beside(path: Path) -> Path:
-    """Return a new name in the same folder that nobody can foresee, with the same ending, by which libraries choose a
-    format.
-    """
+    """Return an unpredictable name in the same folder; libraries choose the format by the ending, which stays."""
     return path.with_name(f".{path.stem[:32]}-{os.urandom(8).hex()}.part{path.suffix}")

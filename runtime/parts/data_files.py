@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..base.bounded_files import MOST_BYTES, TooLargeError, check_bytes, check_numbers
+from ..base.bounded_files import MAX_ARRAY_BYTES, TooLargeError, check_bytes, check_numbers
 from ..errors import shown_path
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ def arrays_of(path: str) -> FileArrays:
     if not os.path.isfile(file):  # False also of what no path can be
         raise ValueError(f'there is no file "{shown_path(path)}"')
     try:
-        check_bytes(file, MOST_BYTES)
+        check_bytes(file, MAX_ARRAY_BYTES)
         if file.suffix == ".npz":
             check_numbers(_sizes_in_npz(file))
             with np.load(file, allow_pickle=False) as found:  # a pickle would run code

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterable
 from pathlib import Path
 
-from ..base.bounded_files import MOST_TEXT, TooLargeError, read_bytes
+from ..base.bounded_files import MAX_SCENE_BYTES, TooLargeError, read_bytes
 from ..errors import SceneError, near, shown_path
 from ..results.run import Run
 from .scene import Scene
@@ -45,7 +45,7 @@ def load_scene(path: str | os.PathLike, libraries: Iterable[str | os.PathLike] =
     if file.suffix == ".nc":
         raise SceneError(str(file), "holds the results of a run, not a scene", "take fu.load_run, or funicular view")
     try:
-        text = read_bytes(file, MOST_TEXT, "keep long tables in an .npz or a netCDF file").decode("utf-8")
+        text = read_bytes(file, MAX_SCENE_BYTES, "keep long tables in an .npz or a netCDF file").decode("utf-8")
         text = text.replace("\r\n", "\n").replace("\r", "\n")
     except TooLargeError as error:
         raise SceneError(str(file), *error.args) from None

@@ -33,8 +33,7 @@ class _OfPoints(BackendArray):
     def __init__(self, file: File, name: str, shape: tuple[int, ...], absent: np.ndarray):
         """shape: of the points, in place of the file's rows; absent: the numbers of the points that are left out."""
         entry = file.entries[name]
-        named = os.path.exists(file.path)  # else the file has no name any more, and lives as long as it is open
-        self._source = file.path if named else open(os.dup(file.descriptor), "rb")
+        self._source = file.path if os.path.exists(file.path) else file.descriptor  # the file may have no name
         self._name, self._of_points, self._absent = name, shape, absent
         self._row, self._first = file.row_dtype, file.first_row_at
         self._is_text = entry.dtype.kind == "S"
@@ -67,7 +66,8 @@ class _OfPoints(BackendArray):
         Only the part of the file is mapped where they are: pages that were read count as memory until then.
         """
         first, last = int(numbers.min()), int(numbers.max())
-        rows = np.memmap(self._source, self._row, "r", self._first + first * self._row.itemsize, (last - first + 1,))
+        with open(self._source, "rb", closefd=isinstance(self._source, str)) as opened:
+            rows = np.memmap(opened, self._row, "r", self._first + first * self._row.itemsize, (last - first + 1,))
         field = rows[self._name]
         return _texts(field[numbers - first]) if self._is_text else field[np.ix_(numbers - first, *others)]
 

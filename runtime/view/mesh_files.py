@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..base.bounded_files import MOST_MESH, TooLargeError, check_numbers, read_bytes
+from ..base.bounded_files import MAX_MESH_BYTES, TooLargeError, check_numbers, read_bytes
 from ..errors import FunicularError, shown_path
 from .extras import extra
 
@@ -43,11 +43,11 @@ def read_mesh(path: str | os.PathLike) -> tuple[np.ndarray, np.ndarray]:
 
 def _surfaces(trimesh: Any, path: Path) -> Any:
     """Return all surfaces in a file as one mesh of trimesh. Raises TooLargeError, and what damage leads to."""
-    kind, data = path.suffix.lower().removeprefix("."), read_bytes(path, MOST_MESH, COARSER)
+    kind, data = path.suffix.lower().removeprefix("."), read_bytes(path, MAX_MESH_BYTES, COARSER)
     if kind == "stl":
         return trimesh.load_scene(io.BytesIO(data), file_type=kind).to_mesh()
     check_numbers(_sizes_in_gltf(data), "surfaces")
-    scene = trimesh.load_scene(io.BytesIO(data), file_type=kind, resolver=_Beside(path, MOST_MESH - len(data)),
+    scene = trimesh.load_scene(io.BytesIO(data), file_type=kind, resolver=_Beside(path, MAX_MESH_BYTES - len(data)),
                                skip_materials=True)
     shown = [scene.graph[node][1] for node in scene.graph.nodes_geometry]  # one may be there many times
     check_numbers(((name, 9 * len(getattr(scene.geometry[name], "faces", ()))) for name in shown), "surfaces")

@@ -87,7 +87,7 @@ def test_arrays_are_measured_before_they_are_read(add, tmp_path):
 
 def test_variables_of_netcdf_are_measured_before_they_are_read(tmp_path, monkeypatch):
     xarray.Dataset({"nodes": ("n", np.zeros(50))}).to_netcdf(tmp_path / "large.nc", engine="scipy")
-    monkeypatch.setattr(bounded_files, "MOST_NUMBERS", 49)
+    monkeypatch.setattr(bounded_files, "MAX_NUMBERS", 49)
     with pytest.raises(SceneError, match="has arrays of 50 numbers, most of them in nodes; at most 49 are read"):
         Scene().modal_body("box", data=tmp_path / "large.nc", position=(0, 0, 0))
 
@@ -109,7 +109,7 @@ def test_bytes_of_arrays_are_bounded(name, tmp_path):
 
 def test_members_of_one_name_are_all_measured(tmp_path, monkeypatch):
     """NumPy reads "nodes" and not "nodes.npy", whose size was the one that counted."""
-    monkeypatch.setattr(bounded_files, "MOST_NUMBERS", 49)
+    monkeypatch.setattr(bounded_files, "MAX_NUMBERS", 49)
     with zipfile.ZipFile(tmp_path / "two.npz", "w") as archive:
         for name, size in (("nodes", 50), ("nodes.npy", 1)):
             with archive.open(name, "w") as member:
@@ -168,6 +168,6 @@ def test_what_a_mesh_names_is_bounded(given, message, tmp_path):
 @pytest.mark.parametrize(("given", "total"), [({"parts": 100}, 909), ({"nodes": 100}, 900)])
 def test_a_surface_that_is_used_many_times_counts_as_often(given, total, tmp_path, monkeypatch):
     pytest.importorskip("trimesh")
-    monkeypatch.setattr(bounded_files, "MOST_NUMBERS", 899)
+    monkeypatch.setattr(bounded_files, "MAX_NUMBERS", 899)
     with pytest.raises(FunicularError, match=f"has surfaces of {total} numbers, .* at most 899 are read; take a coar"):
         read_mesh(gltf(tmp_path / "t.gltf", **given))
