@@ -1,6 +1,6 @@
-"""Checkpoints: files of the engine's state and of facts on its run, from which a run that was stopped goes on.
+"""Checkpoints: files from which a stopped run is resumed.
 
-In the file: a line with the sha256 of all that follows, a line of JSON, and the engine's bytes.
+A file holds a line with the sha256 of the rest, a line of JSON with facts on the run, and the state of the engine.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ import hashlib
 import json
 import os
 from pathlib import Path
-from typing import Annotated, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -19,38 +19,38 @@ Seconds = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 
 
 class DamagedCheckpointError(Exception):
-    """The file is not what was written; the text says what it is."""
+    """The file differs from what was written; the text is the predicate of a message."""
 
 
 class Facts(BaseModel):
-    """On the run: digests of scene, programs and start, which must be the same for it to go on, and how far it is.
+    """Facts on a run: digests of scene, programs and start, which must be the same on resuming, and its progress.
 
-    rows: output times so far; elapsed_s: seconds that it has taken; resumed_at_s: times at which it was resumed;
-    events: what has happened; row_notes: what notes on rows have found (solve/notes/row_notes.py).
+    rows: output times so far; elapsed_s: wall time so far in s; resumed_at_s: times of the motion at which it was
+    resumed; events: those so far; row_notes: the state of the notes on rows (solve/notes/row_notes.py).
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", defer_build=True)
 
     scene: str
-    settings: dict
+    settings: dict[str, Any]
     programs: str
     start: str
     integrator: str
     rows: Annotated[int, Field(ge=1, lt=2**31)]
     elapsed_s: Seconds
     resumed_at_s: list[Seconds]
-    events: list[dict]
-    row_notes: dict
+    events: list[dict[str, Any]]
+    row_notes: dict[str, Any]
 
 
 class Checkpoint(NamedTuple):
-    """What a file holds: facts on the run, and the engine's bytes."""
+    """Facts on a run and the state of its engine."""
 
     facts: Facts
     state: bytes
 
     def write(self, path: Path) -> None:
-        """Write the checkpoint in the place of an older file. Raises OSError."""
+        """Replace the file of an older checkpoint. Raises OSError."""
         content = json.dumps(self.facts.model_dump()).encode() + b"\n" + self.state
         part = path.with_name(f".{path.name}.part")
         try:
@@ -76,15 +76,14 @@ class Checkpoint(NamedTuple):
 
 
 def checkpoint_of(path: Path) -> Path:
-    """Return the checkpoint beside the file of a run."""
+    """Return the path of the checkpoint of a result file."""
     return path.with_name(f"{path.name}.state")
 
 
-def add_events(report: dict, path: Path) -> None:
-    """Put into the report of a run that has not come to its end what events have found up to its checkpoint."""
+def add_events(report: dict[str, Any], path: Path) -> None:
+    """Add the events up to the checkpoint to the report of an unfinished run."""
     try:
         report["events"] = Checkpoint.read(checkpoint_of(path)).facts.events
     except (OSError, DamagedCheckpointError):
         report["events"] = []
-        report["messages"].append(f"what events have found is not known: there is no whole checkpoint "
-                                  f"{checkpoint_of(path).name}")
+        report["messages"].append(f"its events are unknown: there is no valid checkpoint {checkpoint_of(path).name}")

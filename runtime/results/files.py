@@ -1,4 +1,4 @@
-"""Files of results: whether one can be written, how one is made, opened and checked."""
+"""Files of results: checks before writing, creation, opening, and checks of their content."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import warnings
 from collections.abc import Mapping
 from operator import methodcaller
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict
@@ -21,19 +22,19 @@ from .netcdf_header import last_report
 from .quantities import Variable
 
 FILE_FORMAT = 3
-"""Raised when a reader of older files could misread new ones."""
+"""Increases when a reader of older files could misread new ones."""
 WITH_CHECKSUMS = 3
-"""From this format on files have them; older ones are read all the same, with a warning."""
-MOST_ROWS_NAMED = 10
-"""Damaged rows that a message names."""
+"""The first format with checksums; older files are read with a warning."""
+MAX_ROWS_IN_MESSAGE = 10
+"""Damaged rows that a message lists."""
 
 
-def check_writable(path: str | os.PathLike) -> Path:
-    """Return the path without links. Raises ResultFileError if no file can be written there; leaves nothing behind."""
+def check_writable(path: str | os.PathLike[str]) -> Path:
+    """Return the path without links; leaves no file. Raises ResultFileError if no file can be written there."""
     try:
-        resolved = Path(path).resolve()  # a link keeps pointing to what it did
-        own = threading.get_native_id()  # several threads may look at once
-        probe = resolved.with_name(f".{resolved.name}.{own}.probe")  # longer than other names that are needed
+        resolved = Path(path).resolve()  # a link stays
+        thread = threading.get_native_id()  # several threads may check at once
+        probe = resolved.with_name(f".{resolved.name}.{thread}.probe")  # longer than the names of other files beside it
         if resolved.is_dir():
             cause, remedy = "this is a directory", "add a name"
         elif resolved.exists() and not resolved.is_file():
@@ -54,36 +55,34 @@ def check_writable(path: str | os.PathLike) -> Path:
 
 
 def check_free(path: Path) -> None:
-    """Raises ResultFileError where a run is writing the file."""
+    """Raise ResultFileError if a run is writing the file."""
     try:
         with open(path) as older:
             lock(older.fileno())
     except Taken:
         raise ResultFileError(f"{path}: a run is writing it; wait for its end, or give another name") from None
     except OSError:
-        pass  # there is none
+        pass  # no such file
 
 
 def over_time(coords: Mapping[str, Variable], variables: Mapping[str, Variable]) -> dict[str, np.ndarray]:
-    """Return the values that make rows of a file."""
+    """Return the values of the rows of a file."""
     return {"time": coords["time"].values} | {name: variable.values for name, variable in variables.items()}
 
 
-def file_text(report: dict, rows: int | None = None) -> str:
-    """Return a report as it stands in a file, in one line; rows: number of rows of a file that is whole."""
+def file_text(report: dict[str, Any], rows: int | None = None) -> str:
+    """Return a report as one line of JSON; rows: the number of rows of a complete file."""
     return json.dumps(report if rows is None else {"rows": rows, **report}, default=methodcaller("tolist"))
 
 
-def create_file(path: str | os.PathLike, coords: Mapping[str, Variable], variables: Mapping[str, Variable], scene: str,
-                report: str, spare: int = 0, descriptor: int | None = None) -> File:
-    """Return a new file of results, without rows; report: from `file_text`; see `funicular.netcdf.create`. Raises
-    OSError.
-    """
+def create_file(path: str | os.PathLike[str], coords: Mapping[str, Variable], variables: Mapping[str, Variable],
+                scene: str, report: str, spare: int = 0, descriptor: int | None = None) -> File:
+    """Return a new file of results without rows; report: from `file_text`; see `netcdf.create`. Raises OSError."""
     return create(path, coords, variables, {"funicular_format": FILE_FORMAT, "scene": scene}, report, spare, descriptor)
 
 
-def open_file(path: str | os.PathLike) -> File:
-    """Return a file of results, open to be read. Raises ResultFileError."""
+def open_file(path: str | os.PathLike[str]) -> File:
+    """Return a file of results, open for reading. Raises ResultFileError."""
     if not os.path.isfile(path):
         raise ResultFileError(f"{shown_path(path)}: there is no such file")
     try:
@@ -93,32 +92,32 @@ def open_file(path: str | os.PathLike) -> File:
 
 
 class _Report(BaseModel):
-    """What a report in a file must be, as far as there is any of it but for its status."""
+    """Schema of the report in a file; parts that a report lacks have defaults."""
 
     model_config = ConfigDict(strict=True, extra="allow", defer_build=True)
 
     status: str
     message: str
     messages: list[str]
-    settings: dict
-    events: list[dict] = []
+    settings: dict[str, Any]
+    events: list[dict[str, Any]] = []
     time_s: dict[str, float] = {}
     us_per_step: dict[str, float] = {}
     modes: dict[str, str] = {}
     rows: int | None = None
 
 
-def read_report(file: File) -> dict:
-    """Return the report in a file. Raises ValueError, KeyError where it is damaged."""
+def read_report(file: File) -> dict[str, Any]:
+    """Return the report in a file. Raises ValueError, KeyError for a damaged one."""
     report = last_report(file.attributes["report"], file.has_checksums)
     _Report.model_validate(report)
     return report
 
 
 def check_rows(file: File, rows: int | None, salvage: bool) -> None:
-    """Find damaged rows, to leave them out or to raise ResultFileError; warn where there are no checksums.
+    """Raise ResultFileError for damaged rows, or leave them out; warn about a file without checksums.
 
-    rows: number of rows that the report has, None where the run goes on.
+    rows: the number of rows by the report, None for an unfinished run.
     """
     if rows is not None and rows != file.rows:
         raise ValueError(f"its header says that it has {file.rows} times, its report {rows}")
@@ -129,7 +128,8 @@ def check_rows(file: File, rows: int | None, salvage: bool) -> None:
     damaged = file.damaged_rows()
     if not len(damaged):
         return
-    named = ", ".join(map(str, damaged[:MOST_ROWS_NAMED])) + (", ..." if len(damaged) > MOST_ROWS_NAMED else "")
+    named = ", ".join(map(str, damaged[:MAX_ROWS_IN_MESSAGE]))
+    named += ", ..." if len(damaged) > MAX_ROWS_IN_MESSAGE else ""
     found = f"{file.path}: {len(damaged)} of its {file.rows} output times are damaged, those of the rows {named}"
     if not salvage or len(damaged) == file.rows:
         raise ResultFileError(f"{found}; take a copy of it, run the scene again, or read the other times with "

@@ -1,4 +1,7 @@
-"""Who may write a file: locks that also a killed process gives back, and new files that follow no links."""
+"""Exclusive access to result files: locks that end with their process, and new files that follow no links.
+
+filelock and portalocker lock a file beside the one that is written, and neither notices that the file was renamed.
+"""
 
 from __future__ import annotations
 
@@ -14,25 +17,25 @@ _NEW = os.O_RDWR | os.O_CREAT | BYTES | NO_LINK
 _MODE = 0o666
 
 
-class Taken(Exception):  # noqa: N818  it is caught here and there, and never seen
-    """Another process, or another run of this one, has the file."""
+class Taken(Exception):  # noqa: N818  always caught within the package
+    """Another process, or another run of this one, has locked the file."""
 
 
 class NoLocks(Exception):  # noqa: N818
-    """The file is there, and its file system has no locks that could tell whether somebody is writing it."""
+    """The file exists, and its file system has no locks that would show whether another process writes it."""
 
 
-def created(path: str | os.PathLike) -> int:
-    """Return a descriptor of a new file, to read and write, which replaces an older one or a link. Raises OSError."""
+def created(path: str | os.PathLike[str]) -> int:
+    """Return a descriptor of a new file for reading and writing, which replaces an older file or link. Raises OSError.
+    """
     Path(path).unlink(missing_ok=True)
     return os.open(path, _NEW | os.O_EXCL, _MODE)
 
 
-def claimed(path: str | os.PathLike) -> int:
-    """Return a descriptor of a file, to read and write, which nobody else can claim until it is closed; new, or as it
-    is.
+def claimed(path: str | os.PathLike[str]) -> int:
+    """Return a descriptor of a new or existing file for reading and writing, locked until it is closed.
 
-    Raises Taken, NoLocks, OSError (ELOOP where it is a link).
+    Raises Taken, NoLocks, OSError (ELOOP for a link).
     """
     while True:
         try:
@@ -49,13 +52,13 @@ def claimed(path: str | os.PathLike) -> int:
         except BaseException:
             os.close(descriptor)
             raise
-        os.close(descriptor)  # renamed or removed by the one who had it until now
+        os.close(descriptor)  # the previous owner renamed or removed it meanwhile
 
 
 def claimed_for(part: Path, path: Path, writer: str) -> int:
-    """Return a descriptor of the part file of a file, which becomes it when it is whole; see `claimed`.
+    """Return a locked descriptor of the part file that is renamed to `path` once it is complete; see `claimed`.
 
-    writer: what writes such files, in messages: a run, or a sweep. Raises ResultFileError.
+    writer: "run" or "sweep", for messages. Raises ResultFileError.
     """
     try:
         return claimed(part)
@@ -72,12 +75,12 @@ def claimed_for(part: Path, path: Path, writer: str) -> int:
 
 
 def being_written(path: Path, writer: str) -> ResultFileError:
-    """Return the error where another one writes a file."""
+    """Return the error for a file that another run or sweep writes."""
     return ResultFileError(f"{path}: another {writer} is writing it; wait for its end, or give another name")
 
 
 def lock(descriptor: int) -> bool:
-    """Lock an open file; False where the file system has no locks. Raises Taken."""
+    """Lock an open file; return False if the file system has no locks. Raises Taken."""
     try:
         operating_system.lock(descriptor)
     except BlockingIOError:
@@ -87,8 +90,8 @@ def lock(descriptor: int) -> bool:
     return True
 
 
-def is_at(descriptor: int, path: str | os.PathLike) -> bool:
-    """Return whether an open file is the one of that name."""
+def is_at(descriptor: int, path: str | os.PathLike[str]) -> bool:
+    """Return whether an open file still has this name."""
     try:
         return os.path.samestat(os.fstat(descriptor), os.stat(path, follow_symlinks=False))
     except OSError:

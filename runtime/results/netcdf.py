@@ -1,10 +1,13 @@
 """Files of results: netCDF, the classic format with 64-bit offsets, written row by row.
 
-A row holds all variables at one time (of a sweep: at one point), and last its checksum. Rows are added behind those
-that count, then their number in the header is raised, so that the file is whole at every instant. The header has a
-checksum, too, which leaves out what changes while the file grows: the number of rows and the report, whose lines have
-their own. All are ordinary variables and attributes for other readers. Format: NetCDF Classic Format Specification,
+A row holds all variables at one time (of a sweep: at one point), and its checksum at the end. New rows are written
+behind the counted ones before the header's count is raised, so that the file is valid at every instant. The header has
+a checksum of its own. It excludes what changes while the file grows: the count of rows, and the report, each line of
+which has a checksum. Other readers see ordinary variables and attributes. Format: NetCDF Classic Format Specification,
 Unidata.
+
+Libraries (netCDF4, h5netcdf, scipy.io) read these files. They do not write them: an HDF5 file that is being written is
+unreadable after a crash, and none of them writes rows and checksums in this order.
 """
 
 from __future__ import annotations
@@ -23,7 +26,7 @@ from .locks import created
 from .netcdf_header import (
     COUNT_AT,
     HEADER_CHECKSUM,
-    NOT_YET,
+    NO_CHECKSUM,
     Entry,
     header_checksum,
     header_of,
@@ -33,19 +36,22 @@ from .netcdf_header import (
 )
 from .quantities import Variable
 
-_BLOCK = 1 << 22
-"""Bytes that are read at once."""
-MOST_HEADER, MOST_ROW = 1 << 28, 1 << 31
-"""Bytes that a header and a row may have."""
-
+READ_BLOCK_BYTES = 1 << 22
+MAX_HEADER_BYTES, MAX_ROW_BYTES = 1 << 28, 1 << 31
 ROW_CHECKSUM = "row_checksum"
-class File:
-    """An open file of results; rows are counted from 0, and only `write` and `truncate` change their number."""
 
-    def __init__(self, path: str | os.PathLike, writable: bool = False, descriptor: int | None = None):
+
+class File:
+    """An open file of results. Rows are counted from 0; `write`, `count_rows` and `truncate` change their number.
+
+    row_dtype: the type of a row in the file, its checksum included; first_row_at: where the rows begin, in bytes;
+    left_out: the numbers of the damaged rows that `read` skips.
+    """
+
+    def __init__(self, path: str | os.PathLike[str], writable: bool = False, descriptor: int | None = None):
         """Open a file, or take over its descriptor.
 
-        Raises OSError, ValueError where it is no such file, was cut short or has a damaged header.
+        Raises OSError; ValueError for a file of another format, one cut short, or one with a damaged header.
         """
         self.path = os.fspath(path)
         if descriptor is None:
@@ -53,62 +59,49 @@ class File:
         self.descriptor = descriptor
         self.close = weakref.finalize(self, os.close, self.descriptor)
         try:
-            self._look()
+            self._read_header()
         except BaseException:
             self.close()
             raise
 
-    def _look(self) -> None:
-        """Read the header and what follows from it. Raises OSError, ValueError."""
+    def _read_header(self) -> None:
         size = os.fstat(self.descriptor).st_size
-        self.rows, self.attributes, places, self.entries = self._head(size)
+        self.rows, self.attributes, places, self.entries = self._parsed_header(size)
         self._report_at = places.get("report", (0, 0))
         records = {name: entry for name, entry in self.entries.items() if entry.in_rows}
-        self._first = first = min((entry.begin for entry in records.values()), default=size)
+        self.first_row_at = first = min((entry.begin for entry in records.values()), default=size)
         row_bytes = max((entry.begin + size_of(entry) - first for entry in records.values()), default=0)
         ends = [entry.begin + size_of(entry) for entry in self.entries.values() if not entry.in_rows]
-        if row_bytes > MOST_ROW or max([first + self.rows * row_bytes, *ends]) > size:
+        if row_bytes > MAX_ROW_BYTES or max([first + self.rows * row_bytes, *ends]) > size:
             raise ValueError("the file ends too early")
-        self._row = np.dtype({
+        self.row_dtype = np.dtype({
             "names": list(records),
             "formats": [(entry.dtype, entry.shape) for entry in records.values()],
             "offsets": [entry.begin - first for entry in records.values()]})
         self.left_out = np.zeros(0, int)
         self.has_checksums = ROW_CHECKSUM in records and HEADER_CHECKSUM in places
         if HEADER_CHECKSUM in places:
-            head = read_at(self.descriptor, min(first, MOST_HEADER), 0)
+            head = read_at(self.descriptor, min(first, MAX_HEADER_BYTES), 0)
             if header_checksum(head, places) != self.attributes[HEADER_CHECKSUM]:
                 raise ValueError("the header is damaged: it has another checksum")
 
-    def _head(self, size: int) -> tuple[int, dict, dict[str, tuple[int, int]], dict[str, Entry]]:
-        length = _BLOCK
+    def _parsed_header(self, size: int) -> tuple[int, dict[str, Any], dict[str, tuple[int, int]], dict[str, Entry]]:
+        length = READ_BLOCK_BYTES
         while True:
             try:
                 return parsed(read_at(self.descriptor, length, 0))
             except (struct.error, IndexError, KeyError, OverflowError, UnicodeDecodeError) as error:
-                if length >= min(size, MOST_HEADER):
+                if length >= min(size, MAX_HEADER_BYTES):
                     raise ValueError("the header is damaged") from error
             length *= 2
 
     @property
     def row_bytes(self) -> int:
         """Return the size of a row."""
-        return self._row.itemsize
-
-    @property
-    def row_dtype(self) -> np.dtype:
-        """Return the type of a row as it stands in the file, its checksum with it."""
-        return self._row
-
-    @property
-    def first_row_at(self) -> int:
-        """Return where the rows begin, in bytes."""
-        return self._first
+        return self.row_dtype.itemsize
 
     def read(self, name: str) -> np.ndarray:
-        """Return all values of a variable, in this machine's order of bytes, texts as str; without rows that are left
-        out.
-        """
+        """Return all values of a variable in native byte order, texts as str, without the rows `left_out`."""
         entry = self.entries[name]
         if not entry.in_rows:
             raw = read_at(self.descriptor, size_of(entry), entry.begin)
@@ -116,38 +109,38 @@ class File:
             return _texts(values) if entry.dtype.kind == "S" else values.astype(entry.dtype.newbyteorder("="))
         values = np.empty((self.rows - len(self.left_out), *entry.shape), entry.dtype.newbyteorder("="))
         at = 0
-        for block in self._kept_blocks():
+        for block in self._valid_blocks():
             values[at : at + len(block)] = block[name]
             at += len(block)
         return values
 
     def damaged_rows(self, rows: int | None = None) -> np.ndarray:
-        """Return the numbers of the rows, of all or of so many, whose checksum is not theirs. Raises OSError."""
+        """Return the numbers of the rows with a wrong checksum, among the first `rows` or all. Raises OSError."""
         damaged = [np.zeros(0, int)]
         for start, block in self.blocks(self.rows if rows is None else rows):
             damaged.append(start + np.flatnonzero(block[ROW_CHECKSUM] != _checksums(block)))
         return np.concatenate(damaged)
 
     def blocks(self, rows: int) -> Iterator[tuple[int, np.ndarray]]:
-        """Yield the first rows, as many as are asked for, in blocks, each with the number of its first row."""
+        """Yield the first `rows` rows in blocks, each with the number of its first row."""
         if not rows:
             return
-        block = np.empty(min(rows, max(1, _BLOCK // max(1, self.row_bytes))), self._row)
+        block = np.empty(min(rows, max(1, READ_BLOCK_BYTES // max(1, self.row_bytes))), self.row_dtype)
         for start in range(0, rows, len(block)):
             part = block[: rows - start]
-            at = self._first + start * self.row_bytes
+            at = self.first_row_at + start * self.row_bytes
             if read_into(self.descriptor, memoryview(part.view("u1").data), at) != part.nbytes:
                 raise OSError(f"{self.path}: was cut short while it was read")
             yield start, part
 
-    def _kept_blocks(self) -> Iterator[np.ndarray]:
-        """Yield blocks of rows that are not left out."""
+    def _valid_blocks(self) -> Iterator[np.ndarray]:
+        """Yield the rows that are not left out, in blocks."""
         for start, block in self.blocks(self.rows):
-            gone = self.left_out[(self.left_out >= start) & (self.left_out < start + len(block))] - start
-            yield np.delete(block, gone) if len(gone) else block
+            omitted = self.left_out[(self.left_out >= start) & (self.left_out < start + len(block))] - start
+            yield np.delete(block, omitted) if len(omitted) else block
 
     def described(self, over_time: bool) -> dict[str, Variable]:
-        """Return the variables over time without their values, or the other ones."""
+        """Return the variables over time without their values, or the others with them."""
         return {name: self.variable(name, np.empty((0, *entry.shape)) if over_time else self.read(name))
                 for name, entry in self.entries.items() if entry.in_rows == over_time and name != ROW_CHECKSUM}
 
@@ -157,38 +150,38 @@ class File:
         units, long_name = (str(entry.attributes.get(label, "")) for label in ("units", "long_name"))
         return Variable(entry.dims[: values.ndim], values, units, long_name)
 
-    def rename(self, path: str | os.PathLike) -> None:
-        """Move the file, in the place of another one."""
+    def rename(self, path: str | os.PathLike[str]) -> None:
+        """Move the file; it replaces a file of that name."""
         os.replace(self.path, path)
         self.path = os.fspath(path)
 
     def write(self, first: int, values: Mapping[str, np.ndarray]) -> None:
-        """Put rows from row `first` on; those behind them go. values: all variables, first axis the rows."""
+        """Write rows from row `first` on and drop the rows behind them. values: all variables, rows along axis 0."""
         (count,) = {len(array) for array in values.values()}
         self._check_follows(first)
-        rows = np.empty(count, self._row)
+        rows = np.empty(count, self.row_dtype)
         for name, array in values.items():
             rows[name] = array
         self.put_rows(first, sealed(rows))
         self.count_rows(first + count)
 
     def put_rows(self, first: int, rows: np.ndarray) -> None:
-        """Put sealed rows (n,) of `row_dtype` at row `first`, in any order; the number of rows stays."""
-        self._put(rows.view("u1"), self._first + first * self.row_bytes)
+        """Write sealed rows (n,) of `row_dtype` at row `first`, which need not follow the last; the count stays."""
+        self._put(rows.view("u1"), self.first_row_at + first * self.row_bytes)
 
     def count_rows(self, rows: int) -> None:
-        """Let the first `rows` rows count, which other readers see."""
+        """Set the number of rows in the header, which other readers see."""
         self._put(struct.pack(">i", rows), COUNT_AT)
         self.rows = rows
 
     def reserve(self, rows: int) -> None:
-        """Make the file as long as so many rows need; those not written read as zeros, which are no sealed rows."""
-        os.ftruncate(self.descriptor, self._first + rows * self.row_bytes)
+        """Extend the file to a number of rows; unwritten rows read as zeros, whose checksum is wrong."""
+        os.ftruncate(self.descriptor, self.first_row_at + rows * self.row_bytes)
 
     def copy_rows(self, source: File) -> None:
-        """Add all rows of a file with the same variables, but for those that it leaves out."""
-        for block in source._kept_blocks():
-            self.write(self.rows, {name: block[name] for name in self._row.names or () if name != ROW_CHECKSUM})
+        """Append the rows of a file with the same variables, except those that it leaves out."""
+        for block in source._valid_blocks():
+            self.write(self.rows, {name: block[name] for name in self.row_dtype.names or () if name != ROW_CHECKSUM})
 
     def truncate(self, rows: int) -> None:
         """Drop the rows of number `rows` and above."""
@@ -196,9 +189,9 @@ class File:
         self.count_rows(rows)
 
     def add_report(self, text: str) -> bool:
-        """Put a new text, of a JSON object, into the attribute `report`; False where it does not fit.
+        """Replace the attribute `report` by a JSON object; return False if it does not fit.
 
-        The last line that has an end of line counts: the new one is whole before blanks go over the old one.
+        The last line that ends with a line feed is valid: the new line is complete before blanks replace the old one.
         """
         begin, size = self._report_at
         old = self.attributes["report"]
@@ -216,53 +209,51 @@ class File:
             raise ValueError(f"{self.path}: has {self.rows} rows, {first} cannot be the next")
 
     def _put(self, data: Any, at: int) -> None:
-        left = memoryview(data)
-        while len(left):
-            done = write_at(self.descriptor, left, at)
-            left, at = left[done:], at + done
+        remaining = memoryview(data)
+        while len(remaining):
+            done = write_at(self.descriptor, remaining, at)
+            remaining, at = remaining[done:], at + done
 
 
 class Stored(Mapping[str, Variable]):
-    """Variables of a file, read when they are asked for and kept then."""
+    """Variables of a file, each read at its first use and then kept."""
 
     def __init__(self, file: File, names: list[str]):
-        """names: of those variables."""
-        self.file, self._names = file, dict.fromkeys(names)
-        self._read: dict[str, Variable] = {}
+        self.file = file
+        self._variables: dict[str, Variable | None] = dict.fromkeys(names)
 
     def __getitem__(self, name: str) -> Variable:
         """Return a variable with its values."""
-        if name not in self._names:
-            raise KeyError(name)
-        if name not in self._read:
-            self._read[name] = self.file.variable(name, self.file.read(name))
-        return self._read[name]
+        found = self._variables[name]
+        if found is None:
+            found = self._variables[name] = self.file.variable(name, self.file.read(name))
+        return found
 
     def __contains__(self, name: object) -> bool:
-        """Return whether there is such a variable."""
-        return name in self._names
+        """Return whether there is such a variable; the values are not read."""
+        return name in self._variables
 
     def __iter__(self) -> Iterator[str]:
         """Iterate over the names of the variables."""
-        return iter(self._names)
+        return iter(self._variables)
 
     def __len__(self) -> int:
         """Return the number of variables."""
-        return len(self._names)
+        return len(self._variables)
 
 
-def create(path: str | os.PathLike, coords: Mapping[str, Variable], variables: Mapping[str, Variable],
+def create(path: str | os.PathLike[str], coords: Mapping[str, Variable], variables: Mapping[str, Variable],
            attributes: Mapping[str, str | int], report: str, spare: int = 0, descriptor: int | None = None,
            along: str = "time") -> File:
-    """Return a new file, without rows yet; of the variables over time only shapes count.
+    """Return a new file without rows; of the variables over time only the shapes are used.
 
-    attributes: but for the report, a JSON object, which can grow by `spare` bytes; descriptor: of a
-    file of that path which is open already, and becomes this one, or is closed where that fails; along: the dimension
-    of the rows.
+    attributes: all except the report, a JSON object that can grow by `spare` bytes; descriptor: of the file if it is
+    open already, closed on failure; along: the dimension of the rows.
     """
     checksum = Variable((along,), np.zeros(0), "1", "checksum of the row")
     header = header_of({**coords, **variables, ROW_CHECKSUM: checksum},
-                       {**attributes, HEADER_CHECKSUM: NOT_YET, "report": report_line(report) + b" " * spare}, along)
+                       {**attributes, HEADER_CHECKSUM: NO_CHECKSUM, "report": report_line(report) + b" " * spare},
+                       along)
     places = parsed(header)[2]
     at, size = places[HEADER_CHECKSUM]
     header = header[:at] + header_checksum(header, places).encode() + header[at + size :]
@@ -278,13 +269,13 @@ def create(path: str | os.PathLike, coords: Mapping[str, Variable], variables: M
 
 
 def sealed(rows: np.ndarray) -> np.ndarray:
-    """Return rows (n,) as they stand in a file, with their checksums filled in, in place."""
+    """Fill in the checksums of rows (n,) and return the rows."""
     rows[ROW_CHECKSUM] = _checksums(rows)
     return rows
 
 
 def _checksums(rows: np.ndarray) -> np.ndarray:
-    """Return (rows,): of whole rows as they are in the file."""
+    """Return the checksums (rows,) of whole rows as they are in the file."""
     words = rows.view("<u8").reshape(len(rows), rows.dtype.itemsize // 8)
     return row_checksums(words[:, :-1])
 

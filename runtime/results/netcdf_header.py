@@ -5,30 +5,30 @@ from __future__ import annotations
 import json
 import math
 import struct
+import zlib
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from .checksums import text_checksum
 from .quantities import Variable
 
 MAGIC = b"CDF\x02"
 COUNT_AT = len(MAGIC)
-"""Where the number of rows stands in the header, four bytes."""
+"""Position of the number of rows in the header, four bytes."""
 
 _DIMENSION, _VARIABLE, _ATTRIBUTE = 10, 11, 12
 _CHAR, _INT, _DOUBLE = 2, 4, 6
 _TYPES = {1: ">i1", _CHAR: "S1", 3: ">i2", _INT: ">i4", 5: ">f4", _DOUBLE: ">f8"}
 HEADER_CHECKSUM = "header_checksum"
-NOT_YET = "00000000"
-"""In the place of a text's checksum while that is computed."""
+NO_CHECKSUM = "00000000"
+"""Placeholder of a checksum while that is computed."""
 _REPORT_CHECKSUM = '{"checksum": "'
-"""How a line of the report begins that has one."""
+"""Start of a report line that has a checksum."""
 
 
 class Entry(NamedTuple):
-    """A variable as the header describes it; `begin` is where it starts, in bytes: in the file, or in a row."""
+    """A variable as the header describes it; begin: its position in bytes, in the file or in a row."""
 
     dims: tuple[str, ...]
     shape: tuple[int, ...]
@@ -39,23 +39,22 @@ class Entry(NamedTuple):
 
 
 def header_checksum(head: bytes, places: Mapping[str, tuple[int, int]]) -> str:
-    """Return the checksum of all before the first row, but for the number of rows, the report's text and the checksum
-    itself.
-    """
+    """Return the CRC-32 of the bytes before the first row, except the number of rows, the report and the checksum."""
     checksum, at = 0, 0
     for begin, size in sorted([(COUNT_AT, 4), places[HEADER_CHECKSUM], places.get("report", (COUNT_AT, 0))]):
-        checksum, at = text_checksum(head[at:begin], checksum), begin + size
-    return f"{text_checksum(head[at:], checksum):08x}"
+        checksum, at = zlib.crc32(head[at:begin], checksum), begin + size
+    return f"{zlib.crc32(head[at:], checksum):08x}"
 
 
-def header_of(variables: dict[str, Variable], attributes: dict, along: str = "time") -> bytes:
-    """Return the header, and behind it the variables that are not in rows; along: the dimension of the rows."""
+def header_of(variables: dict[str, Variable], attributes: Mapping[str, str | bytes | int],
+              along: str = "time") -> bytes:
+    """Return the header and the variables that are not in rows; along: the dimension of the rows."""
     sizes, entries, fixed = {along: 0}, {}, {}
     for name, variable in variables.items():
         values, dims = variable.values, variable.dims
         labels = {"units": variable.units, "long_name": variable.long_name}
         if values.dtype.kind == "U" or (values.dtype.kind == "S" and values.dtype.itemsize > 1):
-            # characters along one more dimension, as xarray writes them, too
+            # characters along one more dimension, like xarray
             texts = values if values.dtype.kind == "S" else np.char.encode(values, "utf-8")
             values = texts.view("S1").reshape(*texts.shape, texts.itemsize)
             dims = (*dims, f"string{texts.itemsize}")
@@ -108,10 +107,10 @@ def _attributes(attributes: Mapping[str, str | bytes | int]) -> bytes:
     return _list(_ATTRIBUTE, items)
 
 
-def parsed(header: bytes) -> tuple[int, dict, dict[str, tuple[int, int]], dict[str, Entry]]:
-    """Return the number of rows, attributes, their places and sizes, variables.
+def parsed(header: bytes) -> tuple[int, dict[str, Any], dict[str, tuple[int, int]], dict[str, Entry]]:
+    """Return the number of rows, the attributes, their positions and sizes, and the variables.
 
-    Raises ValueError, and what struct and dicts raise, where the header is damaged or longer than what is given.
+    Raises ValueError, or an error of struct or dict, for a header that is damaged or incomplete.
     """
     at = len(MAGIC)
     if header[:at] != MAGIC:
@@ -124,7 +123,7 @@ def parsed(header: bytes) -> tuple[int, dict, dict[str, tuple[int, int]], dict[s
         return found
 
     def integer() -> int:
-        return ints(1)[0]
+        return int(ints(1)[0])
 
     def data(size: int) -> bytes:
         nonlocal at
@@ -134,8 +133,9 @@ def parsed(header: bytes) -> tuple[int, dict, dict[str, tuple[int, int]], dict[s
         at += -(-size // 4) * 4
         return found
 
-    def attributes() -> tuple[dict, dict]:
-        found, places = {}, {}
+    def attributes() -> tuple[dict[str, Any], dict[str, tuple[int, int]]]:
+        found: dict[str, Any] = {}
+        places = {}
         for _ in range(ints(2)[1]):
             name = data(integer()).decode()
             kind, count = ints(2)
@@ -145,25 +145,25 @@ def parsed(header: bytes) -> tuple[int, dict, dict[str, tuple[int, int]], dict[s
             found[name] = value.decode() if kind == _CHAR else np.frombuffer(value, dtype)
         return found, places
 
-    def known(value: int, most: int) -> int:
-        if not 0 <= value <= most:
+    def in_range(value: int, largest: int) -> int:
+        if not 0 <= value <= largest:
             raise ValueError("the header is damaged")
         return value
 
-    rows = known(integer(), 2**31)
-    dims = [(data(integer()).decode(), known(integer(), 2**31)) for _ in range(ints(2)[1])]
+    rows = in_range(integer(), 2**31)
+    dims = [(data(integer()).decode(), in_range(integer(), 2**31)) for _ in range(ints(2)[1])]
     general, places = attributes()
     entries = {}
     for _ in range(ints(2)[1]):
         name = data(integer()).decode()
-        along = [dims[known(k, len(dims) - 1)] for k in ints(known(integer(), len(dims)))]
+        along = [dims[in_range(k, len(dims) - 1)] for k in ints(in_range(integer(), len(dims)))]
         labels, _ = attributes()
         kind, _ = ints(2)
         (begin,) = struct.unpack_from(">q", header, at)
         at += 8
         in_rows = bool(along) and along[0][1] == 0
         shape = tuple(size for _, size in along[in_rows:])
-        known(begin, 2**62)
+        in_range(begin, 2**62)
         entries[name] = Entry(tuple(dim for dim, _ in along), shape, labels, np.dtype(_TYPES[kind]), in_rows, begin)
     return rows, general, places, entries
 
@@ -174,24 +174,24 @@ def size_of(entry: Entry) -> int:
 
 
 def report_line(text: str) -> bytes:
-    """Return a JSON object as a line of the report, with its checksum as first entry."""
-    bare = f'{_REPORT_CHECKSUM}{NOT_YET}", {text[1:]}'
-    checksum = f"{text_checksum(bare.encode()):08x}"
+    """Return a JSON object as a line of the report, with its checksum as the first entry."""
+    bare = f'{_REPORT_CHECKSUM}{NO_CHECKSUM}", {text[1:]}'
+    checksum = f"{zlib.crc32(bare.encode()):08x}"
     return f'{_REPORT_CHECKSUM}{checksum}", {text[1:]}\n'.encode()
 
 
-def last_report(text: str, has_checksum: bool) -> dict:
-    """Return what the last whole line of the attribute `report` says, or all of it where it is not in lines.
+def last_report(text: str, has_checksum: bool) -> dict[str, Any]:
+    """Return the content of the last complete line of the attribute `report`, or of a report without lines.
 
-    Raises ValueError where it is damaged.
+    Raises ValueError for a damaged report.
     """
     lines = text.split("\n")
     line = (lines[:-1] or lines)[-1].strip(" ")
     if has_checksum:
         begin = len(_REPORT_CHECKSUM)
-        end = begin + len(NOT_YET)
-        bare = line[:begin] + NOT_YET + line[end:]
-        if not line.startswith(_REPORT_CHECKSUM) or line[begin:end] != f"{text_checksum(bare.encode()):08x}":
+        end = begin + len(NO_CHECKSUM)
+        bare = line[:begin] + NO_CHECKSUM + line[end:]
+        if not line.startswith(_REPORT_CHECKSUM) or line[begin:end] != f"{zlib.crc32(bare.encode()):08x}":
             raise ValueError("the report is damaged: it has another checksum")
     try:
         report = json.loads(line)

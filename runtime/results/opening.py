@@ -1,4 +1,4 @@
-"""Runs from their files."""
+"""Reading of runs from result files."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from .netcdf import ROW_CHECKSUM, File, Stored
 from .run import ReadScene, Run, SceneText
 
 
-def opened(file: File, read_scene: ReadScene, libraries: Iterable[str | os.PathLike] = (), salvage: bool = False,
+def opened(file: File, read_scene: ReadScene, libraries: Iterable[str | os.PathLike[str]] = (), salvage: bool = False,
            check: bool = True) -> Run:
-    """Return the results in an open file, see `funicular.load_run`; check: its rows, too. Raises ResultFileError."""
+    """Return the run in an open file, see `funicular.load_run`; check: verify the rows. Raises ResultFileError."""
     path = file.path
     if "funicular_format" not in file.attributes:
         raise ResultFileError(f"{path}: is a netCDF file, but not one that funicular wrote")

@@ -1,4 +1,4 @@
-"""What must be the same for a run to go on from a checkpoint: digests of its scene, programs and start."""
+"""Digests of scene, programs and initial state, which must be the same when a run is resumed from a checkpoint."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import json
 from collections.abc import Iterable
 from copy import copy
 from pathlib import Path
+from typing import Any
 
 import numpy
 import scipy
@@ -20,25 +21,22 @@ from ..parts.scene_text import dumps
 from ..parts.settings import RunSettings
 
 
-def facts_of(scene: SceneData, settings: RunSettings) -> dict:
-    """Return what is known of a run before it starts, as `Facts` of a checkpoint have it."""
-    alone = copy(scene)
-    alone.run_settings = {}
-    said = {name: value for name, value in settings.field_values().items() if name not in ("save", "estimate")}
-    return {"scene": _digest(dumps(alone).encode()), "settings": json.loads(json.dumps(said, default=str)),
+def facts_of(scene: SceneData, settings: RunSettings) -> dict[str, Any]:
+    """Return the facts of a checkpoint that are known before the run starts."""
+    bare = copy(scene)
+    bare.run_settings = {}
+    given = {name: value for name, value in settings.field_values().items() if name not in ("save", "estimate")}
+    return {"scene": _digest(dumps(bare).encode()), "settings": json.loads(json.dumps(given, default=str)),
             "programs": programs_of(scene.libraries)}
 
 
 def _digest(*parts: bytes) -> str:
-    """Return the sha256 of bytes one after the other, in hexadecimal digits."""
-    digest = hashlib.sha256()
-    for part in parts:
-        digest.update(part)
-    return digest.hexdigest()
+    """Return the sha256 of joined bytes, in hexadecimal digits."""
+    return hashlib.sha256(b"".join(parts)).hexdigest()
 
 
 def programs_of(libraries: Iterable[str]) -> str:
-    """Return the digest of the machine code that computes a run; libraries: directories of its elements."""
+    """Return the digest of the machine code of a run; libraries: directories of user elements."""
     files = [engine.__file__, kernels.__file__]
     versions = f"{numpy.__version__} {scipy.__version__}"
     return _digest(versions.encode(), *(Path(file).read_bytes() for file in files),
@@ -46,6 +44,6 @@ def programs_of(libraries: Iterable[str]) -> str:
 
 
 def start_of(model: Model) -> str:
-    """Return the digest of the state that a run starts from."""
+    """Return the digest of the initial state."""
     places = [(slide.s, slide.element, slide.director.tolist()) for slide in model.slides]
     return _digest(model.q.tobytes(), model.v.tobytes(), repr(places).encode())

@@ -21,7 +21,7 @@ from ..base.operating_system import BYTES
 from ..errors import ResultFileError
 from ..results.files import check_writable
 from ..results.locks import Taken, being_written, claimed_for, lock
-from ..results.netcdf import MOST_ROW, File, create
+from ..results.netcdf import MAX_ROW_BYTES, File, create
 from ..results.netcdf_header import last_report
 from .layout import POINT, STATUS, Layout
 from .parameters import SWEEP
@@ -133,7 +133,7 @@ def new_store(path: str | os.PathLike | None, layout: Layout, facts: Mapping[str
     scene: the text of the scene, empty of a function. Raises ResultFileError.
     """
     number = int(facts["number"])
-    if layout.row_bytes > MOST_ROW:
+    if layout.row_bytes > MAX_ROW_BYTES:
         raise ResultFileError(f"{SWEEP}: a point has {layout.row_bytes:.3g} bytes, more than a file can have; "
                               "keep less")
     descriptor = None

@@ -208,7 +208,7 @@ def test_forged_facts_of_a_checkpoint_are_refused(stopped):
         with pytest.raises(ResultFileError, match=r"its checkpoint x\.nc\.state is damaged; start the run anew"):
             resumed(stopped)
         assert load_run(stopped).events == []
-        assert load_run(stopped).report["messages"] == ["what events have found is not known: there is no whole "
+        assert load_run(stopped).report["messages"] == ["its events are unknown: there is no valid "
                                                         "checkpoint x.nc.state"] or text == json.dumps(forged[6])
     good.write(state)
     assert resumed(stopped).status == "completed"
