@@ -177,8 +177,7 @@ void fu_internal_forces(const fu_model *model, const double *q, const double *v,
 void fu_discrete_forces(const fu_model *model, const double *q, const double *q_next, double *f)
 {
     double part[FU_MAX_COORDINATES];
-    for (int c = 0; c < model->n_cables; ++c) {
-        const fu_cable *cable = &model->cables[c];
+    FU_EACH_CABLE(cable, model) {
         for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
             cable->law->discrete_force(fu_element_length(cable, k), q + at, q_next + at, fu_element_constants(cable, k),
                                        part);
@@ -190,8 +189,7 @@ void fu_discrete_forces(const fu_model *model, const double *q, const double *q_
 /* Adds damping and bodies' forces. */
 void fu_rate_forces(const fu_model *model, const double *q, const double *v, double *f)
 {
-    for (int c = 0; c < model->n_cables; ++c) {
-        const fu_cable *cable = &model->cables[c];
+    FU_EACH_CABLE(cable, model) {
         const work_on by_mass = cable->mass_damping > 0.0 ? mass_damping_forces : 0;
         const work_on first = cable->tau > 0.0 ? damping_forces : by_mass;
         const sum rates = {model, cable, q, v, {first, first == by_mass ? 0 : by_mass}, f};
@@ -301,8 +299,7 @@ static void add_matrix_of(const matrix *job)
 void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, double inertia, double rate,
                        double stiffness, fu_system *system)
 {
-    for (int c = 0; c < model->n_cables; ++c) {
-        const fu_cable *cable = &model->cables[c];
+    FU_EACH_CABLE(cable, model) {
         const matrix job = {model, cable,     q,     v, inertia + stiffness * rate * cable->mass_damping,
                             rate,  stiffness, system};
         add_matrix_of(&job);
@@ -313,8 +310,7 @@ void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, 
 double fu_constant_kinetic_energy(const fu_model *model, const double *q, const double *v)
 {
     double total = 0.0, part[FU_MAX_COORDINATES];
-    for (int c = 0; c < model->n_cables; ++c) {
-        const fu_cable *cable = &model->cables[c];
+    FU_EACH_CABLE(cable, model) {
         for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
             cable->kernel->inertia_force(fu_element_mass(cable, k), v + at, part);
             for (int i = 0; i < cable->coordinates; ++i) total += 0.5 * part[i] * v[at + i];
@@ -327,8 +323,7 @@ double fu_constant_kinetic_energy(const fu_model *model, const double *q, const 
 double fu_constant_elastic_energy(const fu_model *model, const double *q)
 {
     double total = 0.0, part;
-    for (int c = 0; c < model->n_cables; ++c) {
-        const fu_cable *cable = &model->cables[c];
+    FU_EACH_CABLE(cable, model) {
         for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
             cable->law->energy(fu_element_length(cable, k), q + at, fu_element_constants(cable, k), &part);
             total += part;
@@ -341,8 +336,7 @@ double fu_constant_elastic_energy(const fu_model *model, const double *q)
 double fu_potential_energy(const fu_model *model, const double *q)
 {
     double total = 0.0;
-    for (int c = 0; c < model->n_cables; ++c) {
-        const fu_cable *cable = &model->cables[c];
+    FU_EACH_CABLE(cable, model) {
         const int end = cable->first + (cable->n_elements + 1) * cable->per_node;
         for (int i = cable->first; i < end; ++i) total -= model->gravity[i] * q[i];
     }
@@ -364,8 +358,7 @@ static void dissipations(const fu_cable *cable, int n, const fu_elements *of, do
 double fu_internal_dissipation(const fu_model *model, const double *q, const double *v)
 {
     double total = fu_bodies_dissipation(model, q, v), part[FU_MAX_COORDINATES], power[CHUNK];
-    for (int c = 0; c < model->n_cables; ++c) {
-        const fu_cable *cable = &model->cables[c];
+    FU_EACH_CABLE(cable, model) {
         if (cable->tau <= 0.0 && cable->mass_damping <= 0.0) continue;
         for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
             if (cable->tau > 0.0 && k % CHUNK == 0) {

@@ -69,19 +69,13 @@ int fu_body_dofs(const fu_body *body)
 /* Makes f = M a, on the bodies' dofs. */
 void fu_bodies_mass_times(const fu_model *model, const double *q, const double *a, double *f)
 {
-    for (int k = 0; k < model->n_bodies; ++k) {
-        const fu_body *body = &model->bodies[k];
-        body->matter->mass_times(body, q + body->configuration, a + body->dof, f + body->dof);
-    }
+    FU_EACH_BODY(body, model) body->matter->mass_times(body, q + body->configuration, a + body->dof, f + body->dof);
 }
 
 /* Adds what stands on the left of the equations of motion at zero accelerations. */
 void fu_bodies_forces(const fu_model *model, const double *q, const double *v, double *f)
 {
-    for (int k = 0; k < model->n_bodies; ++k) {
-        const fu_body *body = &model->bodies[k];
-        body->matter->forces(body, q + body->configuration, v + body->dof, f + body->dof);
-    }
+    FU_EACH_BODY(body, model) body->matter->forces(body, q + body->configuration, v + body->dof, f + body->dof);
 }
 
 /* Adds weights.inertia M + weights.stiffness (K + weights.rate D) of a body at a state to a system; psi: what moved it
@@ -110,33 +104,28 @@ static void add_body(const fu_model *model, const fu_body *body, const fu_state 
 void fu_bodies_matrix(const fu_model *model, const fu_state *at, const double *psi, fu_weights weights,
                       fu_system *system)
 {
-    for (int k = 0; k < model->n_bodies; ++k) add_body(model, &model->bodies[k], at, psi, weights, system);
+    FU_EACH_BODY(body, model) add_body(model, body, at, psi, weights, system);
 }
 
 /* Adds M of the bodies in which it is constant, or of the others. */
 void fu_bodies_mass(const fu_model *model, const double *q, int constant, fu_system *system)
 {
     const fu_state at = {.q = (double *)q, .v = (double *)model->zero};
-    for (int k = 0; k < model->n_bodies; ++k)
-        if (model->bodies[k].matter->constant == constant)
-            add_body(model, &model->bodies[k], &at, 0, (fu_weights){1.0, 0.0, 0.0}, system);
+    FU_EACH_BODY(body, model)
+        if (body->matter->constant == constant) add_body(model, body, &at, 0, (fu_weights){1.0, 0.0, 0.0}, system);
 }
 
 double fu_bodies_kinetic_energy(const fu_model *model, const double *q, const double *v)
 {
     double total = 0.0;
-    for (int k = 0; k < model->n_bodies; ++k) {
-        const fu_body *body = &model->bodies[k];
-        total += body->matter->kinetic_energy(body, q + body->configuration, v + body->dof);
-    }
+    FU_EACH_BODY(body, model) total += body->matter->kinetic_energy(body, q + body->configuration, v + body->dof);
     return total;
 }
 
 double fu_bodies_elastic_energy(const fu_model *model, const double *q)
 {
     double total = 0.0;
-    for (int k = 0; k < model->n_bodies; ++k)
-        total += model->bodies[k].matter->elastic_energy(&model->bodies[k], q + model->bodies[k].configuration);
+    FU_EACH_BODY(body, model) total += body->matter->elastic_energy(body, q + body->configuration);
     return total;
 }
 
@@ -144,8 +133,7 @@ double fu_bodies_elastic_energy(const fu_model *model, const double *q)
 double fu_bodies_potential_energy(const fu_model *model, const double *q)
 {
     double total = 0.0;
-    for (int k = 0; k < model->n_bodies; ++k) {
-        const fu_body *body = &model->bodies[k];
+    FU_EACH_BODY(body, model) {
         const double *b = q + body->configuration;
         for (int i = 0; i < body->kernel->dim; ++i) total -= model->gravity[body->dof + i] * b[i];
         total += body->matter->potential_energy(body, b);
@@ -156,9 +144,6 @@ double fu_bodies_potential_energy(const fu_model *model, const double *q)
 double fu_bodies_dissipation(const fu_model *model, const double *q, const double *v)
 {
     double total = 0.0;
-    for (int k = 0; k < model->n_bodies; ++k) {
-        const fu_body *body = &model->bodies[k];
-        total += body->matter->dissipation(body, q + body->configuration, v + body->dof);
-    }
+    FU_EACH_BODY(body, model) total += body->matter->dissipation(body, q + body->configuration, v + body->dof);
     return total;
 }

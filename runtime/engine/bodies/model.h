@@ -58,4 +58,10 @@ struct fu_model {
     int n_shared_dofs, n_shared_unknowns;
 };
 
+/* Loops over the cables and over the bodies of a model. */
+#define FU_EACH_CABLE(cable, model)                                                                                    \
+    for (const fu_cable *cable = (model)->cables; cable - (model)->cables < (model)->n_cables; ++cable)
+#define FU_EACH_BODY(body, model)                                                                                      \
+    for (const fu_body *body = (model)->bodies; body - (model)->bodies < (model)->n_bodies; ++body)
+
 #endif

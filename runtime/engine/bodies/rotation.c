@@ -25,8 +25,7 @@ static void move_all(const fu_model *model, double *q, const double *step, int c
     const int n_flexible = model->n_bodies ? model->bodies[0].dof : model->n_dof;
     const move job = {q, step, n_flexible};
     fu_share(model->threads, n_flexible, move_part, &job);
-    for (int k = 0; k < model->n_bodies; ++k) {
-        const fu_body *body = &model->bodies[k];
+    FU_EACH_BODY(body, model) {
         const fu_body_kernels *kernel = body->kernel;
         double *b = q + body->configuration, *eta = b + kernel->configuration, moved[FU_FRAME_ENTRIES];
         const double *of_body = step + body->dof;
@@ -54,8 +53,7 @@ void fu_between(const fu_model *model, const double *q, const double *q_next, do
 {
     const int n_flexible = model->n_bodies ? model->bodies[0].configuration : model->n_q;
     for (int i = 0; i < n_flexible; ++i) between[i] = 0.5 * (q[i] + q_next[i]);
-    for (int k = 0; k < model->n_bodies; ++k) {
-        const fu_body *body = &model->bodies[k];
+    FU_EACH_BODY(body, model) {
         const int at = body->configuration, eta = at + body->kernel->configuration;
         body->kernel->halfway(q + at, q_next + at, between + at);
         for (int i = eta; i < eta + body->modes; ++i) between[i] = 0.5 * (q[i] + q_next[i]);

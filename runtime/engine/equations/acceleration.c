@@ -18,8 +18,7 @@
 static void evaluate(const fu_model *model, const fu_state *state, fu_accelerator *work)
 {
     ++work->evaluated;
-    for (int k = 0; k < model->n_always_active; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_always_active) {
         if (c->row < 0) continue;
         fu_rows *rows = &work->rows[c->row];
         rows->first = c->multiplier;
@@ -130,8 +129,7 @@ static double minus_H(const fu_rows *rows, int c, const double *x)
 static double react(const fu_model *model, const fu_state *state, fu_accelerator *work, const double *lambda)
 {
     double largest = 0.0;
-    for (int k = 0; k < model->n_always_active; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_always_active) {
         if (!c->type->reaction) continue;
         const double size = c->type->reaction->update(model, c, state, lambda, work);
         if (size == 0.0 || size <= largest) continue;
@@ -143,10 +141,8 @@ static double react(const fu_model *model, const fu_state *state, fu_accelerator
 
 static void reacted(const fu_model *model, const fu_state *state, fu_accelerator *work, const double *lambda)
 {
-    for (int k = 0; k < model->n_always_active; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_always_active)
         if (c->type->reaction) c->type->reaction->accept(model, c, state, lambda, work);
-    }
 }
 
 /* Finds accelerations and multipliers, in work->rhs, by the forces in work->work; by sweeps where friction depends on

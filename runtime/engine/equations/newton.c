@@ -71,8 +71,7 @@ static int blame(fu_run *run)
     const double *own = fu_internal_unknowns(run);
     double largest = fu_size(model, run->work);
     int coupling = -1;
-    for (int k = 0; k < model->n_always_active; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_always_active) {
         for (int i = 0; c->n_coordinates && i < c->n_coordinates + c->n_forces; ++i) {
             const double size = fabs(own[c->unknown + i]);
             if (!(size > largest)) continue;
@@ -98,11 +97,9 @@ static double largest_gap(fu_run *run)
     const fu_model *model = run->model;
     const double *own = fu_internal_unknowns(run);
     double gap = 0.0;
-    for (int k = 0; k < model->n_always_active; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_always_active)
         for (int i = 0; i < c->n_forces; ++i)
             gap = fmax(gap, fabs(own[c->unknown + c->n_coordinates + i]) / c->scale[i]);
-    }
     return gap;
 }
 

@@ -36,10 +36,9 @@ int fu_find_internal(fu_run *run)
 
 static void normalise(const fu_model *model, double *q)
 {
-    for (int b = 0; b < model->n_bodies; ++b) {
-        const fu_body_kernels *kernel = model->bodies[b].kernel;
-        double *p = q + model->bodies[b].configuration + kernel->dim, square = 0.0;
-        const int n = kernel->configuration - kernel->dim;
+    FU_EACH_BODY(body, model) {
+        double *p = q + body->configuration + body->kernel->dim, square = 0.0;
+        const int n = body->kernel->configuration - body->kernel->dim;
         for (int i = 0; i < n; ++i) square += p[i] * p[i];
         for (int i = 0; i < n; ++i) p[i] /= sqrt(square);
     }

@@ -5,24 +5,26 @@
 
 #include <math.h>
 
+/* Returns the square of the distance between two positions of n coordinates, m^2. */
+static double square_between(const double *from, const double *to, int n)
+{
+    double square = 0.0;
+    for (int d = 0; d < n; ++d) square += (to[d] - from[d]) * (to[d] - from[d]);
+    return square;
+}
+
 /* Returns the largest distance that a node or a body's centre has moved, m. */
 double fu_largest_motion(const fu_model *model, const double *from, const double *to)
 {
     double largest = 0.0;
-    for (int c = 0; c < model->n_cables; ++c) {
-        const fu_cable *cable = &model->cables[c];
+    FU_EACH_CABLE(cable, model) {
         for (int k = 0, at = cable->first; k <= cable->n_elements; ++k, at += cable->per_node) {
-            double square = 0.0;
-            for (int d = 0; d < cable->kernel->dim; ++d)
-                square += (to[at + d] - from[at + d]) * (to[at + d] - from[at + d]);
+            const double square = square_between(from + at, to + at, cable->kernel->dim);
             if (square > largest) largest = square;
         }
     }
-    for (int b = 0; b < model->n_bodies; ++b) {
-        const int at = model->bodies[b].configuration;
-        double square = 0.0;
-        for (int d = 0; d < model->bodies[b].kernel->dim; ++d)
-            square += (to[at + d] - from[at + d]) * (to[at + d] - from[at + d]);
+    FU_EACH_BODY(body, model) {
+        const double square = square_between(from + body->configuration, to + body->configuration, body->kernel->dim);
         if (square > largest) largest = square;
     }
     return sqrt(largest);
@@ -60,13 +62,10 @@ double fu_controlled_motion(const fu_run *run)
     const fu_model *model = run->model;
     const double *weight = run->controlled, *from = run->first, *to = run->now.q;
     double square = 0.0, largest = 0.0;
-    for (int c = 0; c < model->n_cables; ++c) {
-        const fu_cable *cable = &model->cables[c];
+    FU_EACH_CABLE(cable, model)
         for (int k = 0, at = cable->first; k <= cable->n_elements; ++k, at += cable->per_node)
             square = fmax(square, square_moved(weight + at, from + at, to + at, cable->kernel->dim));
-    }
-    for (int b = 0; b < model->n_bodies; ++b) {
-        const fu_body *body = &model->bodies[b];
+    FU_EACH_BODY(body, model) {
         const int at = body->configuration, mode = at + body->kernel->configuration;
         const double *of_modes = weight + body->dof + body->kernel->velocity;
         square = fmax(square, square_moved(weight + body->dof, from + at, to + at, body->kernel->dim));
@@ -82,15 +81,22 @@ double fu_controlled_motion(const fu_run *run)
 double fu_extent(const fu_model *model, const double *origin, const double *q)
 {
     double largest = fu_largest_motion(model, origin, q);
-    for (int c = 0; c < model->n_cables; ++c) {
-        const fu_cable *cable = &model->cables[c];
+    FU_EACH_CABLE(cable, model)
         for (int i = cable->kernel->dim; i < cable->per_node; ++i)
             largest = fmax(largest, model->weight[cable->first + i]);
-    }
-    for (int b = 0; b < model->n_bodies; ++b)
-        for (int i = model->bodies[b].kernel->dim; i < model->bodies[b].kernel->velocity; ++i)
-            largest = fmax(largest, model->weight[model->bodies[b].dof + i]);
+    FU_EACH_BODY(body, model)
+        for (int i = body->kernel->dim; i < body->kernel->velocity; ++i)
+            largest = fmax(largest, model->weight[body->dof + i]);
     return largest;
+}
+
+/* Widens a box to hold a position. */
+static void widen(int dim, const double *r, double low[3], double high[3])
+{
+    for (int d = 0; d < dim; ++d) {
+        low[d] = fmin(low[d], r[d]);
+        high[d] = fmax(high[d], r[d]);
+    }
 }
 
 /* Returns the largest side of the box around all nodes and bodies' centres, or what unit slopes and turns move a point
@@ -99,18 +105,10 @@ double fu_scene_size(const fu_model *model, const double *origin, const double *
 {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     double largest = fu_extent(model, origin, origin);
-    for (int c = 0; c < model->n_cables; ++c)
-        for (int k = 0, at = model->cables[c].first; k <= model->cables[c].n_elements;
-             ++k, at += model->cables[c].per_node)
-            for (int d = 0; d < model->dim; ++d) {
-                low[d] = fmin(low[d], q[at + d]);
-                high[d] = fmax(high[d], q[at + d]);
-            }
-    for (int b = 0; b < model->n_bodies; ++b)
-        for (int d = 0; d < model->dim; ++d) {
-            low[d] = fmin(low[d], q[model->bodies[b].configuration + d]);
-            high[d] = fmax(high[d], q[model->bodies[b].configuration + d]);
-        }
+    FU_EACH_CABLE(cable, model)
+        for (int k = 0, at = cable->first; k <= cable->n_elements; ++k, at += cable->per_node)
+            widen(model->dim, q + at, low, high);
+    FU_EACH_BODY(body, model) widen(model->dim, q + body->configuration, low, high);
     for (int d = 0; d < model->dim; ++d) largest = fmax(largest, high[d] - low[d]);
     return largest;
 }

@@ -51,8 +51,7 @@ double fu_outside(const fu_model *model, const fu_coupling *coupling, const fu_s
 /* Returns whether steps must end where a coupling passes a boundary, whatever the integrator. */
 int fu_stop_at_boundaries(const fu_model *model)
 {
-    for (int k = 0; k < model->n_always_active; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_always_active) {
         const fu_coupling_events *events = c->events;
         if (events && events->path && events->path->stops_at_boundaries(model, c)) return 1;
     }
@@ -65,8 +64,7 @@ void fu_choose_path_segments(fu_run *run)
 {
     const fu_model *model = run->model;
     if (run->keep_pieces) return;
-    for (int k = 0; k < model->n_always_active; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_always_active) {
         const fu_path path = fu_path_of(model, c, &run->next);
         int side, *piece = &run->next.piece[c->coordinate];
         if (!path.n || !(fu_outside(model, c, &run->next, &side) > fu_boundary_tolerance(path))) continue;
@@ -82,8 +80,7 @@ void fu_choose_path_segments(fu_run *run)
  * ends too. */
 void fu_find_path_segments(const fu_model *model, fu_state *state)
 {
-    for (int k = 0; k < model->n_always_active; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_always_active) {
         const fu_path path = fu_path_of(model, c, state);
         const double s = path.n ? coordinate_of(c, state) : 0.0;
         int *piece = &state->piece[c->coordinate];
@@ -113,8 +110,7 @@ void fu_keep_path_segments(fu_run *run)
 double fu_time_to_boundary(const fu_run *run)
 {
     double least = INFINITY;
-    for (int k = 0; k < run->model->n_always_active; ++k) {
-        const fu_coupling *c = run->model->always_active[k];
+    FU_EACH_COUPLING(c, run->model->always_active, run->model->n_always_active) {
         const fu_path path = fu_path_of(run->model, c, &run->now);
         if (!path.n) continue;
         const double rate = c->events->path->rate(run->model, c, &run->now);
@@ -143,8 +139,7 @@ static double part_to_turn(const fu_run *run, const fu_coupling *c, fu_path path
 /* Returns how long after `now` the first coupling that turns so does, s; 0 where none does. */
 double fu_time_of_turn(const fu_run *run, double h)
 {
-    for (int k = 0; k < run->model->n_always_active; ++k) {
-        const fu_coupling *c = run->model->always_active[k];
+    FU_EACH_COUPLING(c, run->model->always_active, run->model->n_always_active) {
         const fu_path path = fu_path_of(run->model, c, &run->now);
         const double part = path.n ? part_to_turn(run, c, path, h) : 0.0;
         if (part > 0.0) return part * h;
@@ -165,8 +160,7 @@ int fu_stands_on_boundary(const fu_run *run, fu_event event)
 /* Returns whether no coupling is farther from its piece than this part of a piece. */
 int fu_are_on_path_segments(const fu_model *model, const fu_state *state, double aside)
 {
-    for (int k = 0; k < model->n_always_active; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_always_active) {
         const fu_path path = fu_path_of(model, c, state);
         if (!path.n) continue;
         const double x = coordinate_of(c, state) - fu_boundary(path, piece_of(c, state));

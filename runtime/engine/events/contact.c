@@ -32,13 +32,6 @@ static double deepest(const fu_model *model, const fu_contact *contact, const fu
     return depth;
 }
 
-static int watches(const fu_coupling *coupling, fu_event_function *out)
-{
-    (void)coupling;
-    if (out) *out = (fu_event_function){.which = 0, .direction = 0};
-    return 1;
-}
-
 static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {
     (void)which;
@@ -198,7 +191,7 @@ static double dip(const fu_run *run, const fu_coupling *coupling, int which, dou
     return first;
 }
 
-const fu_coupling_events fu_contact_events = {.watches = watches,
+const fu_coupling_events fu_contact_events = {.direction = 0,
                                               .watched = watched,
                                               .depth = depth,
                                               .beyond = beyond,

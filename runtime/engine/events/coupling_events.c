@@ -7,14 +7,14 @@
 int fu_coupling_event_functions(const fu_model *model, fu_event_function *out)
 {
     int n = 0;
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    FU_EACH_COUPLING(c, model->couplings, model->n_couplings) {
         if (!c->events) continue;
         const int first = n;
-        n += c->events->watches(c, out ? out + first : 0);
+        if (c->events->watches) n += c->events->watches(c, out ? out + first : 0);
+        else if (n++, out) out[first] = (fu_event_function){.direction = c->events->direction};
         for (int i = first; i < n && out; ++i) {
             out[i].kind = FU_EVENT_OF_COUPLING;
-            out[i].index = k;
+            out[i].index = c->number;
         }
     }
     return n;
@@ -23,26 +23,23 @@ int fu_coupling_event_functions(const fu_model *model, fu_event_function *out)
 /* Returns whether any coupling can change by itself. */
 int fu_couplings_can_act(const fu_model *model)
 {
-    for (int k = 0; k < model->n_couplings; ++k)
-        if (fu_can_act(model->couplings[k])) return 1;
+    FU_EACH_COUPLING(c, model->couplings, model->n_couplings)
+        if (fu_can_act(c)) return 1;
     return 0;
 }
 
 /* Gives `now` what follows from velocities that have jumped. */
 void fu_couplings_take_velocities(fu_run *run)
 {
-    for (int k = 0; k < run->model->n_couplings; ++k) {
-        const fu_coupling *c = run->model->couplings[k];
+    FU_EACH_COUPLING(c, run->model->couplings, run->model->n_couplings)
         if (c->events && c->events->take_velocities) c->events->take_velocities(run, c);
-    }
 }
 
 /* Finds how couplings are at the start; returns a status. */
 int fu_begin_couplings(fu_run *run)
 {
     fu_couplings_take_velocities(run);
-    for (int k = 0; k < run->model->n_couplings; ++k) {
-        const fu_coupling *c = run->model->couplings[k];
+    FU_EACH_COUPLING(c, run->model->couplings, run->model->n_couplings) {
         const int status = c->events ? c->events->begin(run, c) : FU_RUNNING;
         if (status) return status;
     }

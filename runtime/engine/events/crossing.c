@@ -37,13 +37,6 @@ static double dip(const fu_run *run, const fu_coupling *coupling, int which, dou
     return within ? fu_grazing_time(from, to, -1, h, run->round_off) : 0.0;
 }
 
-static int watches(const fu_coupling *coupling, fu_event_function *out)
-{
-    (void)coupling;
-    if (out) *out = (fu_event_function){.which = 0, .direction = 1};
-    return 1;
-}
-
 /* The value is negative while contact stays as it is. In motion lines that are apart from end to end do not touch: they
  * may become parallel, or pass round each other's ends. */
 static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
@@ -110,7 +103,7 @@ static int begin(fu_run *run, const fu_coupling *coupling)
 }
 
 const fu_coupling_events fu_crossing_events = {
-    .watches = watches,
+    .direction = 1,
     .watched = watched,
     .depth = depth,
     .act = act,

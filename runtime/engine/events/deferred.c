@@ -38,10 +38,8 @@ int fu_choose_deferred(fu_run *run, int first)
     const fu_model *model = run->model;
     int changed = 0;
     if (run->keep_forces) return 0;
-    for (int k = 0; k < model->n_always_active && model->n_passing; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_passing ? model->n_always_active : 0)
         changed |= fu_can_defer(c) && c->events->deferred->follow(model, c, &run->now, &run->next);
-    }
     const int count = model->n_passing ? fu_count_deferred(run) : 0;
     if (first || count > run->most_deferred) run->most_deferred = count;
     return changed;
@@ -57,8 +55,8 @@ int fu_strayed(const fu_run *run)
 int fu_count_deferred(const fu_run *run)
 {
     int count = 0;
-    for (int k = 0; k < run->model->n_always_active && run->model->n_passing; ++k)
-        count += has_passed(run, run->model->always_active[k]);
+    FU_EACH_COUPLING(c, run->model->always_active, run->model->n_passing ? run->model->n_always_active : 0)
+        count += has_passed(run, c);
     return count;
 }
 
@@ -66,8 +64,7 @@ int fu_count_deferred(const fu_run *run)
 void fu_undo_deferred(fu_run *run)
 {
     run->keep_forces = 1;
-    for (int k = 0; k < run->model->n_always_active && run->model->n_passing; ++k) {
-        const fu_coupling *c = run->model->always_active[k];
+    FU_EACH_COUPLING(c, run->model->always_active, run->model->n_passing ? run->model->n_always_active : 0) {
         if (!has_passed(run, c)) continue;
         memcpy(run->next.flags + c->flags, run->now.flags + c->flags, sizeof(int) * (size_t)c->type->n_flags);
         run->factored = 0;
@@ -130,8 +127,7 @@ double fu_deferred_error(fu_run *run, double h)
     const fu_model *model = run->model;
     if (!run->integrator->quadrature || !fu_count_deferred(run)) return 0.0;
     memset(run->before, 0, sizeof(double) * (size_t)model->n_dof);
-    for (int k = 0; k < model->n_always_active; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_always_active) {
         const char *unused;
         if (!has_passed(run, c)) continue;
         const double x =

@@ -95,8 +95,7 @@ fu_event fu_find_event(fu_run *run, fu_event but)
     fu_event found = fu_no_event;
     const fu_event_function_list near = fu_near_event_functions(run, &run->next);
     double worst = 0.0;
-    for (int k = 0; k < run->model->n_always_active; ++k) {
-        const fu_coupling *c = run->model->always_active[k];
+    FU_EACH_COUPLING(c, run->model->always_active, run->model->n_always_active) {
         const fu_path path = fu_path_of(run->model, c, &run->next);
         int side;
         if (!path.n) continue;

@@ -36,8 +36,7 @@ static fu_course course_of(const fu_model *model, const fu_event_function *watch
         return (fu_course){state->q[watch->index] - watch->value, rate_of_q(model, state, watch->index)};
     if (watch->kind == FU_EVENT_OF_V)
         return (fu_course){state->v[watch->index] - watch->value, state->acceleration[watch->index]};
-    for (int k = 0; k < model->n_always_active && watch->kind == FU_EVENT_OF_S; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, watch->kind == FU_EVENT_OF_S ? model->n_always_active : 0) {
         if (c->n_coordinates && c->coordinate == watch->index)
             return (fu_course){state->s[watch->index] - watch->value, c->events->path->rate(model, c, state)};
     }

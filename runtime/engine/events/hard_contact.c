@@ -14,11 +14,6 @@
 
 static const char *const words[] = {"", "struck", "came into contact", "lost contact", "stuck", "broke loose"};
 
-static const fu_hard_contact *contact_of(const fu_coupling *coupling)
-{
-    return (const fu_hard_contact *)coupling;
-}
-
 /* Watches: of the distance, or where it is closed of the force that presses; of friction. */
 enum { OF_DISTANCE, OF_FRICTION };
 
@@ -41,7 +36,7 @@ static const double *multipliers(const fu_run *run, const fu_coupling *coupling,
 /* Returns by how much what holds the point exceeds what friction can take, N; or how fast it slides backwards, m/s. */
 static double friction_margin(const fu_run *run, const fu_coupling *coupling, const fu_state *state)
 {
-    const fu_hard_contact *contact = contact_of(coupling);
+    const fu_hard_contact *contact = fu_hard_contact_of(coupling);
     const int dim = run->model->dim;
     fu_hard_row row;
     fu_hard_along along;
@@ -60,9 +55,10 @@ static double watched(const fu_run *run, const fu_coupling *coupling, const fu_s
     const int mode = fu_hard_flags_of(coupling, state)->mode;
     fu_hard_row row;
     if (which == OF_FRICTION) return mode == FU_CLOSED ? friction_margin(run, coupling, state) : -1.0;
-    if (mode == FU_CLOSED) return multipliers(run, coupling, state)[0] - PULL_TOLERANCE * contact_of(coupling)->weight;
+    if (mode == FU_CLOSED)
+        return multipliers(run, coupling, state)[0] - PULL_TOLERANCE * fu_hard_contact_of(coupling)->weight;
     if (mode == FU_IMPLIED) return -1.0;
-    fu_hard_row_at(run->model, contact_of(coupling), state, &row);
+    fu_hard_row_at(run->model, fu_hard_contact_of(coupling), state, &row);
     return -row.g;
 }
 
@@ -70,12 +66,12 @@ static double dip(const fu_run *run, const fu_coupling *coupling, int which, dou
 {
     fu_hard_row from, to;
     if (which == OF_FRICTION || fu_hard_flags_of(coupling, &run->now)->mode != FU_APART) return 0.0;
-    fu_hard_row_at(run->model, contact_of(coupling), &run->now, &from);
-    fu_hard_row_at(run->model, contact_of(coupling), &run->next, &to);
+    fu_hard_row_at(run->model, fu_hard_contact_of(coupling), &run->now, &from);
+    fu_hard_row_at(run->model, fu_hard_contact_of(coupling), &run->next, &to);
     const double found =
         fu_grazing_time((fu_course){from.g, from.rate}, (fu_course){to.g, to.rate}, 1, h, run->round_off);
     if (found > 0.0 || !(from.g > run->round_off && to.g > run->round_off)) return found;
-    return fu_contact_detect_within(run, &contact_of(coupling)->contact, h);
+    return fu_contact_detect_within(run, &fu_hard_contact_of(coupling)->contact, h);
 }
 
 static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
@@ -111,8 +107,9 @@ static int begin(fu_run *run, const fu_coupling *coupling)
 
 static double beyond(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
-    return fu_hard_flags_of(coupling, state)->mode == FU_APART ? -INFINITY
-                                                               : fu_hard_beyond(model, contact_of(coupling), state);
+    return fu_hard_flags_of(coupling, state)->mode == FU_APART
+               ? -INFINITY
+               : fu_hard_beyond(model, fu_hard_contact_of(coupling), state);
 }
 
 const fu_coupling_events fu_hard_contact_events = {

@@ -5,6 +5,11 @@
 
 #include "couplings/hard_contact/hard_contact.h"
 
+static inline const fu_hard_contact *fu_hard_contact_of(const fu_coupling *coupling)
+{
+    return (const fu_hard_contact *)coupling;
+}
+
 /* The points that touch: how they were; their rows, compliance, normal velocities before and after, what these shall be
  * at least, impulses, the energy that these take, J; whether they stay together; whether any has friction. */
 typedef struct {

@@ -23,28 +23,22 @@
 
 enum { MOST = FU_MOST_HARD_CONTACTS };
 
-static const fu_hard_contact *contact_of(const fu_coupling *coupling)
-{
-    return (const fu_hard_contact *)coupling;
-}
-
 /* Finds what touches, and parts all of it, so that its rows are none of eq 38's. */
 static void collect(fu_run *run, const fu_coupling *first, fu_active_contacts *t)
 {
     const fu_model *model = run->model;
     t->n = t->friction = 0;
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    FU_EACH_COUPLING(c, model->couplings, model->n_couplings) {
         if (c->type != &fu_hard_contact_type) continue;
         fu_hard_flags *flags = fu_hard_flags_of(c, &run->now);
         fu_hard_row *row = &t->row[t->n];
-        fu_hard_row_at(model, contact_of(c), &run->now, row);
+        fu_hard_row_at(model, fu_hard_contact_of(c), &run->now, row);
         if (flags->mode == FU_APART && c != first && row->g > CONTACT_TOLERANCE * fu_largest_length(run)) continue;
         fu_keep_largest(&run->farthest[c->number],
-                        fu_hard_beyond(model, contact_of(c), &run->now)); /* it may part within the step */
+                        fu_hard_beyond(model, fu_hard_contact_of(c), &run->now)); /* it may part within the step */
         t->was[t->n] = flags->mode;
         t->stuck[t->n] = flags->sticks;
-        t->friction |= contact_of(c)->friction > 0.0;
+        t->friction |= fu_hard_contact_of(c)->friction > 0.0;
         t->before[t->n] = row->rate;
         t->of[t->n++] = c;
         flags->mode = FU_APART;
@@ -109,7 +103,7 @@ static int solve(fu_run *run, fu_active_contacts *t, double least)
 static int strike(fu_run *run, fu_active_contacts *t, double least)
 {
     for (int k = 0; k < t->n; ++k) {
-        const fu_hard_contact *contact = contact_of(t->of[k]);
+        const fu_hard_contact *contact = fu_hard_contact_of(t->of[k]);
         const double back = -contact->restitution * t->before[k];
         t->target[k] = back > contact->rest_velocity ? back : 0.0;
     }
@@ -131,14 +125,14 @@ static int press(fu_run *run, fu_active_contacts *t, double least)
     int n = 0, at[MOST], kind[MOST];
     double G[MOST * MOST], b[MOST], force[MOST], largest = 0.0;
     for (int k = 0; k < t->n; ++k) {
-        t->stays[k] = t->after[k] <= fmax(least, SEPARATION_SPEED * contact_of(t->of[k])->rest_velocity);
+        t->stays[k] = t->after[k] <= fmax(least, SEPARATION_SPEED * fu_hard_contact_of(t->of[k])->rest_velocity);
         if (t->stays[k]) at[n++] = k;
     }
     if (!n) return 0;
     if (fu_accelerations(model, &run->now, &run->accelerator, run->work, 0)) return 1;
     for (int i = 0; i < n; ++i) {
         fu_hard_row row;
-        fu_hard_row_at(model, contact_of(t->of[at[i]]), &run->now, &row); /* velocities have jumped */
+        fu_hard_row_at(model, fu_hard_contact_of(t->of[at[i]]), &run->now, &row); /* velocities have jumped */
         b[i] = fu_hard_rate(&row, row.H, run->work) + row.bias;
         largest = fmax(largest, fabs(b[i]));
         for (int j = 0; j < n; ++j) G[i * n + j] = t->G[at[i] * t->n + at[j]];
@@ -174,7 +168,7 @@ int fu_resolve_hard_contacts(fu_run *run, const fu_coupling *first, int yields)
     collect(run, first, &t);
     if (!t.n) return FU_RUNNING;
     double least = ROUNDING_OF_VELOCITY * fu_size(run->model, run->now.v);
-    for (int k = 0; k < t.n; ++k) least = fmax(least, REST_SPEED * contact_of(t.of[k])->rest_velocity);
+    for (int k = 0; k < t.n; ++k) least = fmax(least, REST_SPEED * fu_hard_contact_of(t.of[k])->rest_velocity);
     if (comply(run, &t)) return FU_SINGULAR;
     for (int k = 0; k < t.n; ++k) {
         t.after[k] = t.before[k];

@@ -30,11 +30,6 @@ typedef struct {
     fu_hard_along along[MOST];
 } friction_impulse;
 
-static const fu_hard_contact *contact_of(const fu_coupling *coupling)
-{
-    return (const fu_hard_contact *)coupling;
-}
-
 static const double *row_of(const fu_active_contacts *t, const friction_impulse *r, int dim, int k)
 {
     return k % dim ? r->along[k / dim].H[k % dim - 1] : t->row[k / dim].H;
@@ -46,7 +41,8 @@ static void prepare(fu_run *run, const fu_active_contacts *t, friction_impulse *
     const fu_model *model = run->model;
     const int dim = model->dim;
     r->n = t->n * dim;
-    for (int k = 0; k < t->n; ++k) fu_hard_along_at(model, contact_of(t->of[k]), &run->now, &t->row[k], &r->along[k]);
+    for (int k = 0; k < t->n; ++k)
+        fu_hard_along_at(model, fu_hard_contact_of(t->of[k]), &run->now, &t->row[k], &r->along[k]);
     for (int k = 0; k < r->n; ++k) {
         fu_hard_respond(run, &t->row[k / dim], row_of(t, r, dim, k));
         for (int j = 0; j < r->n; ++j)
@@ -66,7 +62,7 @@ static double velocity(const friction_impulse *r, int k)
 static double mend(const fu_active_contacts *t, friction_impulse *r, int point, int dim)
 {
     const int k = point * dim;
-    const double friction = contact_of(t->of[point])->friction;
+    const double friction = fu_hard_contact_of(t->of[point])->friction;
     double last[FU_SPACE], size = 0.0, stiff = 0.0, change = 0.0;
     memcpy(last, r->impulse + k, sizeof(double) * (size_t)dim);
     if (!(r->A[k * r->n + k] > 0.0)) return 0.0;
@@ -117,7 +113,7 @@ int fu_impact_with_friction(fu_run *run, fu_active_contacts *t)
 /* Lets a point stick that is slow enough, or slide on. */
 static void begin(fu_run *run, const fu_active_contacts *t, int k)
 {
-    const fu_hard_contact *contact = contact_of(t->of[k]);
+    const fu_hard_contact *contact = fu_hard_contact_of(t->of[k]);
     fu_hard_flags *flags = fu_hard_flags_of(t->of[k], &run->now);
     double *direction = fu_hard_numbers_of(t->of[k], &run->now)->direction;
     fu_hard_row row;
@@ -133,7 +129,7 @@ static void begin(fu_run *run, const fu_active_contacts *t, int k)
 static double excess(const fu_run *run, const fu_coupling *c)
 {
     const double *multipliers = run->now.forces + c->force;
-    const double most = fu_hard_friction_limit(contact_of(c), multipliers[0]);
+    const double most = fu_hard_friction_limit(fu_hard_contact_of(c), multipliers[0]);
     double square = 0.0;
     for (int k = 1; k < c->n_forces; ++k) square += multipliers[k] * multipliers[k];
     return sqrt(square) / most - 1.0;
@@ -147,8 +143,8 @@ static void aim(fu_run *run, const fu_coupling *c)
     fu_hard_row row;
     fu_hard_along along;
     double *direction = fu_hard_numbers_of(c, &run->now)->direction, square = 0.0;
-    fu_hard_row_at(run->model, contact_of(c), &run->now, &row);
-    fu_hard_along_at(run->model, contact_of(c), &run->now, &row, &along);
+    fu_hard_row_at(run->model, fu_hard_contact_of(c), &run->now, &row);
+    fu_hard_along_at(run->model, fu_hard_contact_of(c), &run->now, &row, &along);
     for (int d = 0; d < dim; ++d) {
         direction[d] = 0.0;
         for (int k = 1; k < dim; ++k)
@@ -187,7 +183,7 @@ static int change_one(fu_run *run, const fu_active_contacts *t, const fu_couplin
         }
         if (flags->mode == FU_CLOSED) continue; /* what others imply without friction they may not with it */
         fu_hard_row row;
-        fu_hard_row_at(model, contact_of(t->of[k]), &run->now, &row);
+        fu_hard_row_at(model, fu_hard_contact_of(t->of[k]), &run->now, &row);
         double acceleration = row.bias, size = fabs(row.bias) + largest / t->of[k]->scale[0];
         for (int i = 0; i < row.n; ++i) {
             const double part = row.H[i] * run->now.acceleration[row.at[i]];

@@ -117,8 +117,8 @@ static void list_near(fu_run *run)
     const fu_model *model = run->model;
     fu_proximity *p = model->proximity;
     p->n_near = p->n_near_watches = 0;
-    for (int k = 0; k < model->n_couplings; ++k)
-        if (!p->is_far[k] || !p->is_alone[k]) p->near[p->n_near++] = model->couplings[k];
+    FU_EACH_COUPLING(c, model->couplings, model->n_couplings)
+        if (!p->is_far[c->number] || !p->is_alone[c->number]) p->near[p->n_near++] = c;
     p->is_known = 1;
     for (int k = 0; k < run->n_watches; ++k)
         if (!fu_is_far_event_function(run, k)) p->near_watches[p->n_near_watches++] = k;

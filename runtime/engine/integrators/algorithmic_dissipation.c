@@ -54,9 +54,8 @@ static long numbers_of(const fu_cable *cable)
 long fu_algorithmic_state(const fu_run *run)
 {
     long numbers = 0;
-    for (int c = 0; c < run->model->n_cables && fu_algorithmic_of(run)->weight != 0.0; ++c)
-        numbers += numbers_of(&run->model->cables[c]) * run->model->cables[c].n_elements;
-    return numbers;
+    FU_EACH_CABLE(cable, run->model) numbers += numbers_of(cable) * cable->n_elements;
+    return fu_algorithmic_of(run)->weight != 0.0 ? numbers : 0;
 }
 
 /* Returns the numbers of a cable's k-th element in an array of those of all. */
@@ -182,8 +181,8 @@ static moving without_turn(const fu_run *run, const fu_cable *cable, const doubl
 void fu_algorithmic_start(fu_run *run, double h)
 {
     const fu_algorithmic *a = fu_algorithmic_of(run);
-    for (int c = 0; a->weight > 0.0 && c < run->model->n_cables; ++c) {
-        const fu_cable *cable = &run->model->cables[c];
+    if (!(a->weight > 0.0)) return;
+    FU_EACH_CABLE(cable, run->model) {
         const int n = cable->law->rates;
         const moving m = without_turn(run, cable, run->now.q, run->now.v, 1.0, of_none);
         for (int k = 0; k < cable->n_elements; ++k) {
@@ -201,8 +200,8 @@ void fu_algorithmic_start(fu_run *run, double h)
 void fu_algorithmic_forces(fu_run *run, const double *q, double *force)
 {
     const double weight = fu_algorithmic_of(run)->weight;
-    for (int c = 0; weight > 0.0 && c < run->model->n_cables; ++c) {
-        const fu_cable *cable = &run->model->cables[c];
+    if (!(weight > 0.0)) return;
+    FU_EACH_CABLE(cable, run->model) {
         const moving m = without_turn(run, cable, q, run->psi, weight, of_both);
         for (int k = 0; k < cable->n_elements; ++k) {
             double f[FU_MAX_COORDINATES], relaxed[FU_MAX_RATES], dE[FU_MAX_RATES];
@@ -218,8 +217,8 @@ double fu_algorithmic_account(fu_run *run, const double *q)
 {
     const fu_algorithmic *a = fu_algorithmic_of(run);
     double work = 0.0;
-    for (int c = 0; a->weight > 0.0 && c < run->model->n_cables; ++c) {
-        const fu_cable *cable = &run->model->cables[c];
+    if (!(a->weight > 0.0)) return 0.0;
+    FU_EACH_CABLE(cable, run->model) {
         const int n = cable->law->rates;
         const moving m = without_turn(run, cable, q, run->psi, a->weight, of_both);
         moving second = m;

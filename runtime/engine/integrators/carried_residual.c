@@ -78,10 +78,8 @@ void fu_carried_residual_note(const fu_carried_residual *carried, const fu_run *
     const fu_model *model = run->model;
     double *own = carried->left + model->n_band + model->n_border_dof;
     for (int i = 0; i < size(model); ++i) carried->left[i] = carried->correction[i] - run->rhs[i] / scale;
-    for (int k = 0; k < model->n_always_active; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_always_active)
         for (int i = 0; i < c->n_forces; ++i) own[c->unknown + c->n_coordinates + i] = 0.0;
-    }
 }
 
 /* Takes the step just made: what it left is to be made up for. */

@@ -123,8 +123,7 @@ static void mean_stress(fu_run *run, double stiffness)
 {
     const fu_model *model = run->model;
     double k[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
-    for (int c = 0; c < model->n_cables; ++c) {
-        const fu_cable *cable = &model->cables[c];
+    FU_EACH_CABLE(cable, model) {
         const int dim = cable->kernel->dim, n = cable->coordinates / dim;
         for (int e = 0, at = cable->first; e < cable->n_elements; ++e, at += cable->per_node) {
             cable->law->step_stiffness(fu_element_length(cable, e), run->now.q + at, run->next.q + at,
@@ -184,8 +183,7 @@ static int step(fu_run *run, double h)
 static void add_turn_errors(const fu_model *model, double h, const double *rate, const double *change, double *error)
 {
     const double factor = h * h * h / 12.0;
-    for (int k = 0; k < model->n_bodies; ++k) {
-        const fu_body *body = &model->bodies[k];
+    FU_EACH_BODY(body, model) {
         const int at = body->dof + body->kernel->dim;
         const double *w = rate + at, *c = change + at;
         double *e = error + at;
@@ -227,8 +225,7 @@ static void account(fu_run *run, double h)
     for (int i = 0; i < n_flexible; ++i) run->dissipated += m.force[i] * run->psi[i];
     run->dissipated += fu_algorithmic_account(run, m.q);
     const fu_couplings near = fu_acting_in_step(model, &at);
-    for (int k = 0; k < near.n; ++k) {
-        const fu_coupling *c = near.list[k];
+    FU_EACH_COUPLING(c, near.list, near.n) {
         if (c->type->step_dissipation) run->dissipated += c->type->step_dissipation(model, c, &at);
         if (c->type->supply) run->external += c->type->supply->step_work(model, c, &at);
     }

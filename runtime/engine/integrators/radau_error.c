@@ -34,8 +34,7 @@ static double kink(fu_run *run, fu_radau_workspace *w, double h)
     if (fu_accelerations(model, &run->now, &run->accelerator, run->work, 0)) return INFINITY;
     fu_radau_keep_multipliers(run, w, 0);
     ++run->statistics.evaluations;
-    for (int k = 0; k < model->n_always_active; ++k) {
-        const fu_coupling *coupling = model->always_active[k];
+    FU_EACH_COUPLING(coupling, model->always_active, model->n_always_active) {
         if (!coupling->type->reaction) continue;
         worst = fmax(worst, coupling->type->reaction->friction_error(model, coupling, &run->next, STAGES + 1, weight,
                                                                      w->multipliers, h * left));
@@ -88,12 +87,10 @@ static double embedded(fu_run *run, fu_radau_workspace *w, double h)
 static int turns(const fu_run *run, double h)
 {
     const fu_model *model = run->model;
-    for (int b = 0; b < model->n_bodies; ++b) {
-        const fu_body *body = &model->bodies[b];
+    FU_EACH_BODY(body, model)
         for (int i = body->dof + body->kernel->dim; i < body->dof + body->kernel->velocity; ++i)
             if (model->weight[i] * h * fmax(fabs(run->now.v[i]), fabs(run->next.v[i])) > TURN_SHARE * run->allowed)
                 return 1;
-    }
     return 0;
 }
 

@@ -16,10 +16,9 @@ static fu_complex complex_step(const fu_radau_parameters *method, double h)
 /* Returns whether forces of the cables depend on velocities. */
 static int cables_are_damped(const fu_model *model)
 {
-    int damped = 0;
-    for (int c = 0; c < model->n_cables; ++c)
-        damped |= model->cables[c].tau > 0.0 || model->cables[c].mass_damping > 0.0;
-    return damped;
+    FU_EACH_CABLE(cable, model)
+        if (cable->tau > 0.0 || cable->mass_damping > 0.0) return 1;
+    return 0;
 }
 
 /* Adds the matrix of these weights to the complex one, times a factor; whole: with the cables' part, else without. */
@@ -123,8 +122,7 @@ void fu_radau_right_side(fu_run *run, const double *r, double *unknowns)
     fu_gather(model, run->psi, run->rhs);
     for (int i = 0; i < model->n_extra; ++i) run->rhs[beyond + i] = 0.0;
     keep_rows(run, unknowns);
-    for (int k = 0; k < model->n_always_active; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_always_active) {
         const int first = c->unknown + c->n_coordinates;
         for (int i = first; i < first + c->n_forces && c->row >= 0; ++i)
             run->rhs[beyond + i] = fu_radau_space(run)->kept[model->n_border_dof + i];

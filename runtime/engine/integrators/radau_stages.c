@@ -35,14 +35,12 @@ void fu_radau_configure(fu_run *run, fu_radau_workspace *w, double h)
     const fu_state *now = &run->now;
     const int n = model->n_dof, n_flexible = model->n_bodies ? model->bodies[0].dof : n;
     integrate(run, w, h, 0, 0, n_flexible);
-    for (int b = 0; b < model->n_bodies; ++b) {
-        const fu_body *body = &model->bodies[b];
+    FU_EACH_BODY(body, model) {
         integrate(run, w, h, body->configuration + body->kernel->configuration, body->dof + body->kernel->velocity,
                   body->modes);
     }
     for (int sweep = 0; sweep < SWEEPS; ++sweep)
-        for (int b = 0; b < model->n_bodies; ++b) {
-            const fu_body *body = &model->bodies[b];
+        FU_EACH_BODY(body, model) {
             const int at = body->configuration, size = body->kernel->configuration;
             double rates[STAGES][7], velocity[6];
             for (int k = 0; k < STAGES; ++k) {

@@ -60,11 +60,11 @@ void fu_part_timing(fu_run *run, double *seconds)
     /* methods that iterate on residuals make eq 38 at outputs and at starts alone, the others in each evaluation */
     const double counts[WORKS] = {s->evaluations ? 0.0 : (double)s->newton_iterations, (double)s->factorisations,
                                   (double)run->accelerator.evaluated, (double)s->evaluations};
-    for (int k = 0; k < model->n_couplings; ++k) {
-        seconds[k] = 0.0;
+    FU_EACH_COUPLING(c, model->couplings, model->n_couplings) {
+        seconds[c->number] = 0.0;
         for (int what = 0; what < WORKS; ++what)
             if (counts[what] > 0.0 && s->steps > 0)
-                seconds[k] += counts[what] / (double)s->steps *
-                              timed(run, model->couplings[k], what, BUDGET / (double)(model->n_couplings * WORKS));
+                seconds[c->number] += counts[what] / (double)s->steps *
+                                      timed(run, c, what, BUDGET / (double)(model->n_couplings * WORKS));
     }
 }

@@ -39,6 +39,10 @@ struct fu_coupling {
 
 extern const fu_field fu_coupling_fields[]; /* of fu_coupling */
 
+/* Loops over the first n couplings of a list. */
+#define FU_EACH_COUPLING(c, list, n)                                                                                   \
+    for (const fu_coupling *const *c##_at = (list), *c = NULL; c##_at - (list) < (n) && (c = *c##_at) != NULL; ++c##_at)
+
 /* Where a Newton method makes its equations: at `next`, or, in a method that conserves energy, over the step from `now`
  * to `next` with `middle` between them. Rows of equilibrium are multiplied by weights.stiffness, rows of constraints by
  * fu_row_unit; a coupling's own forces are solved for in units of fu_row_unit/weights.stiffness. */

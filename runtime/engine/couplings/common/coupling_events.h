@@ -55,8 +55,9 @@ struct fu_coupling_events {
     const fu_deferred_operations *deferred; /* null: steps end on each of its events */
 
     /* Watches: numbers, each an event where it passes zero. Writes their `which` and `direction` to `out`, unless it is
-     * null, and returns how many they are. */
+     * null, and returns how many they are. Null: there is one, of this direction. */
     int (*watches)(const fu_coupling *coupling, fu_event_function *out);
+    int direction;
     double (*watched)(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which);
     /* When a watched number is farthest beyond zero in the step just made, of h, at both ends of which it is on one
      * side, as fu_grazing_time (events/events.h) predicts it; or where the step should end as an impact needs shorter

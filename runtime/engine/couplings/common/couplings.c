@@ -73,89 +73,69 @@ void fu_number_couplings(fu_coupling *const *couplings, int n, const fu_coupling
 void fu_coupling_residuals(const fu_model *model, const fu_equations *at, double *f, double *own)
 {
     const fu_couplings near = fu_acting(model, at->next);
-    for (int k = 0; k < near.n; ++k) {
-        const fu_coupling *c = near.list[k];
+    FU_EACH_COUPLING(c, near.list, near.n)
         if (c->type->residual) c->type->residual(model, c, at, f, own);
-    }
 }
 
 void fu_coupling_step_residuals(const fu_model *model, const fu_equations *at, double *f, double *own)
 {
     const fu_couplings near = fu_acting_in_step(model, at);
-    for (int k = 0; k < near.n; ++k) {
-        const fu_coupling *c = near.list[k];
+    FU_EACH_COUPLING(c, near.list, near.n)
         if (c->type->step_residual) c->type->step_residual(model, c, at, f, own);
-    }
 }
 
 void fu_coupling_tangents(const fu_model *model, const fu_equations *at, fu_system *system)
 {
     const fu_couplings near = fu_acting(model, at->next);
-    for (int k = 0; k < near.n; ++k) {
-        const fu_coupling *c = near.list[k];
+    FU_EACH_COUPLING(c, near.list, near.n)
         if (c->type->tangent) c->type->tangent(model, c, at, system);
-    }
 }
 
 void fu_coupling_step_tangents(const fu_model *model, const fu_equations *at, fu_system *system)
 {
     const fu_couplings near = fu_acting_in_step(model, at);
-    for (int k = 0; k < near.n; ++k) {
-        const fu_coupling *c = near.list[k];
+    FU_EACH_COUPLING(c, near.list, near.n)
         if (c->type->step_tangent) c->type->step_tangent(model, c, at, system);
-    }
 }
 
 void fu_coupling_inertia(const fu_model *model, const double *q, const double *a, double *f)
 {
-    for (int k = 0; k < model->n_always_active && model->n_inertial; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_inertial ? model->n_always_active : 0)
         if (c->has_inertia) c->type->inertia->force(model, c, q, a, f);
-    }
 }
 
 void fu_coupling_masses(const fu_model *model, const double *q, double scale, fu_system *system)
 {
-    for (int k = 0; k < model->n_always_active && model->n_inertial; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_inertial ? model->n_always_active : 0)
         if (c->has_inertia) c->type->inertia->matrix(model, c, q, scale, system);
-    }
 }
 
 double fu_coupling_kinetic_energy(const fu_model *model, double t, const double *q, const double *v, int past_fluid)
 {
     double total = 0.0;
-    for (int k = 0; k < model->n_always_active && model->n_inertial; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_inertial ? model->n_always_active : 0)
         if (c->has_inertia) total += c->type->inertia->kinetic_energy(model, c, t, q, v, past_fluid);
-    }
     return total;
 }
 
 void fu_coupling_forces(const fu_model *model, const fu_state *state, double *f)
 {
     const fu_couplings near = fu_acting(model, state);
-    for (int k = 0; k < near.n; ++k) {
-        const fu_coupling *c = near.list[k];
+    FU_EACH_COUPLING(c, near.list, near.n)
         if (c->type->force) c->type->force(model, c, state, f);
-    }
 }
 
 void fu_coupling_external_forces(const fu_model *model, double t, const double *q, double *f)
 {
-    for (int k = 0; k < model->n_always_active; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_always_active)
         if (c->type->external_force) c->type->external_force(model, c, t, q, f);
-    }
 }
 
 double fu_coupling_external_power(const fu_model *model, const fu_state *state)
 {
     double total = 0.0;
-    for (int k = 0; k < model->n_always_active; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_always_active)
         if (c->type->supply) total += c->type->supply->power(model, c, state);
-    }
     return total;
 }
 
@@ -163,10 +143,8 @@ double fu_coupling_energy(const fu_model *model, const fu_state *state)
 {
     const fu_couplings near = fu_acting(model, state);
     double total = 0.0;
-    for (int k = 0; k < near.n; ++k) {
-        const fu_coupling *c = near.list[k];
+    FU_EACH_COUPLING(c, near.list, near.n)
         if (c->type->energy) total += c->type->energy(model, c, state);
-    }
     return total;
 }
 
@@ -174,10 +152,8 @@ double fu_coupling_dissipation(const fu_model *model, const fu_state *state, con
 {
     const fu_couplings near = fu_acting(model, state);
     double total = 0.0;
-    for (int k = 0; k < near.n; ++k) {
-        const fu_coupling *c = near.list[k];
+    FU_EACH_COUPLING(c, near.list, near.n)
         if (c->type->dissipation) total += c->type->dissipation(model, c, state, work);
-    }
     return total;
 }
 
@@ -186,10 +162,8 @@ double fu_lost_in_step(const fu_model *model, const fu_state *from, const fu_sta
     const fu_equations step = {.now = from, .next = to};
     const fu_couplings near = fu_acting_in_step(model, &step);
     double total = 0.0;
-    for (int k = 0; k < near.n; ++k) {
-        const fu_coupling *c = near.list[k];
+    FU_EACH_COUPLING(c, near.list, near.n)
         if (c->type->lost_in_step) total += c->type->lost_in_step(model, c, from, to, by_ends);
-    }
     return total;
 }
 
@@ -199,29 +173,23 @@ int fu_coupling_quadrature_error(const fu_model *model, const fu_state *from, co
     const fu_equations step = {.now = from, .next = to};
     const fu_couplings near = fu_acting_in_step(model, &step);
     int found = 0;
-    for (int k = 0; k < near.n; ++k) {
-        const fu_coupling *coupling = near.list[k];
+    FU_EACH_COUPLING(coupling, near.list, near.n)
         if (coupling->type->quadrature_error)
             found |= coupling->type->quadrature_error(model, coupling, from, to, n, b, c, f);
-    }
     return found;
 }
 
 void fu_take_forces(const fu_model *model, const fu_accelerator *work, fu_state *state)
 {
-    for (int k = 0; k < model->n_always_active; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_always_active)
         if (c->type->take_forces) c->type->take_forces(model, c, work, state);
-    }
 }
 
 void fu_coupling_outputs(const fu_model *model, const fu_state *state, const double *acceleration,
                          const fu_accelerator *work, double *out)
 {
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    FU_EACH_COUPLING(c, model->couplings, model->n_couplings)
         if (c->type->outputs) c->type->outputs(model, c, state, acceleration, work, out + c->output);
-    }
 }
 
 /* Makes the row of output of a coupling that needs no accelerations for it. */
@@ -232,87 +200,67 @@ void fu_outputs_at_rest(const fu_model *model, const fu_coupling *coupling, cons
 
 void fu_gaps(const fu_model *model, const fu_state *state, double *gaps)
 {
-    for (int k = 0; k < model->n_always_active; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_always_active)
         if (c->type->gaps) c->type->gaps(model, c, state, gaps + c->force);
-    }
 }
 
 void fu_coordinate_rates(const fu_model *model, const fu_accelerator *work, double *rates)
 {
-    for (int k = 0; k < model->n_always_active; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_always_active)
         if (c->type->coordinates) c->type->coordinates->rates(model, c, work, rates + c->coordinate);
-    }
 }
 
 void fu_reset(const fu_model *model, fu_state *state)
 {
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
+    FU_EACH_COUPLING(c, model->couplings, model->n_couplings)
         if (c->type->reset) c->type->reset(c, state);
-    }
 }
 
 double fu_history_error(const fu_model *model, const fu_state *from, const fu_state *to)
 {
     double largest = 0.0;
-    for (int k = 0; k < model->n_with_history; ++k) {
-        const fu_coupling *c = model->with_history[k];
+    FU_EACH_COUPLING(c, model->with_history, model->n_with_history)
         if (c->type->history->error) largest = fmax(largest, c->type->history->error(model, c, from, to));
-    }
     return largest;
 }
 
 void fu_update_history(const fu_model *model, fu_state *state)
 {
-    for (int k = 0; k < model->n_with_history; ++k) {
-        const fu_coupling *c = model->with_history[k];
-        c->type->history->update(model, c, state);
-    }
+    FU_EACH_COUPLING(c, model->with_history, model->n_with_history) c->type->history->update(model, c, state);
 }
 
 void fu_detect_contact(const fu_model *model, fu_state *state)
 {
-    for (int k = 0; k < model->n_always_active; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_always_active)
         if (c->type->detect) c->type->detect(model, c, state);
-    }
 }
 
 /* Finds own coordinates that follow from the others; returns null, or the first coupling of which none were found. */
 const fu_coupling *fu_solve_coordinates(const fu_model *model, fu_state *state)
 {
-    for (int k = 0; k < model->n_always_active; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_always_active)
         if (c->type->coordinates && c->type->coordinates->solve(model, c, state)) return c;
-    }
     return 0;
 }
 
 int fu_may_start_open(const fu_model *model, const fu_state *state)
 {
     int open = 0;
-    for (int k = 0; k < model->n_always_active; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_always_active)
         if (c->type->may_start_open) open |= c->type->may_start_open(model, c, state);
-    }
     return open;
 }
 
 int fu_is_possible(const fu_model *model, const fu_state *state)
 {
-    for (int k = 0; k < model->n_always_active; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_always_active)
         if (c->type->is_possible && !c->type->is_possible(model, c, state)) return 0;
-    }
     return 1;
 }
 
 void fu_add_internal(const fu_model *model, fu_state *state, const double *own, double inertia, double scale)
 {
-    for (int k = 0; k < model->n_always_active; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_always_active) {
         const double *of = own + c->unknown;
         for (int i = 0; i < c->n_coordinates; ++i) state->s[c->coordinate + i] += of[i];
         for (int i = 0; i < c->n_forces; ++i)
@@ -322,9 +270,7 @@ void fu_add_internal(const fu_model *model, fu_state *state, const double *own, 
 
 const fu_coupling *fu_owner(const fu_model *model, int unknown)
 {
-    for (int k = 0; k < model->n_always_active; ++k) {
-        const fu_coupling *c = model->always_active[k];
+    FU_EACH_COUPLING(c, model->always_active, model->n_always_active)
         if (c->unknown <= unknown && unknown < c->unknown + c->n_coordinates + c->n_forces) return c;
-    }
     return 0;
 }

@@ -155,12 +155,11 @@ void fu_proximity_place(fu_model *model, int n_watches, void *memory)
 {
     fu_proximity *p = model->proximity = memory;
     place(model, n_watches, memory, p);
-    for (int k = 0; k < model->n_couplings; ++k) {
-        const fu_coupling *c = model->couplings[k];
-        p->is_alone[k] = (char)fu_acts_alone(c);
+    FU_EACH_COUPLING(c, model->couplings, model->n_couplings) {
+        p->is_alone[c->number] = (char)fu_acts_alone(c);
         if (!c->type->proximity) continue;
         fu_pair *pair = &p->pairs[p->n_pairs++];
-        pair->coupling = k;
+        pair->coupling = c->number;
         c->type->proximity->between(model, c, pair->between);
         for (int i = 0; i < 2; ++i) add_mover(model, p, pair->between[i]);
     }

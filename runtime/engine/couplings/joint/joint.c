@@ -124,9 +124,9 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
  * curvature does. */
 int fu_ties_a_frame(const fu_model *model, int which)
 {
-    for (int k = 0; k < model->n_couplings; ++k) {
-        if (model->couplings[k]->type != &fu_joint_type) continue;
-        const fu_joint *joint = (const fu_joint *)model->couplings[k];
+    FU_EACH_COUPLING(c, model->couplings, model->n_couplings) {
+        if (c->type != &fu_joint_type) continue;
+        const fu_joint *joint = (const fu_joint *)c;
         for (int e = 0; e < 2; ++e) {
             const int slide = joint->attachments[e].slide;
             if (slide >= 0 && (which < 0 || slide == which)) return 1;

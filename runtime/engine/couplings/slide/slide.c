@@ -181,9 +181,9 @@ void fu_slide_outputs(const fu_model *model, const fu_state *state, int j, const
 static double of_frame(const fu_model *model, const fu_state *state, int j)
 {
     double sum = 0.0;
-    for (int k = 0; k < model->n_couplings; ++k) {
-        if (model->couplings[k]->type != &fu_joint_type) continue;
-        const fu_joint *joint = (const fu_joint *)model->couplings[k];
+    FU_EACH_COUPLING(c, model->couplings, model->n_couplings) {
+        if (c->type != &fu_joint_type) continue;
+        const fu_joint *joint = (const fu_joint *)c;
         if (joint->attachments[0].slide != j && joint->attachments[1].slide != j) continue;
         fu_joint_rows_at at;
         fu_joint_equations(model, joint, state, &at);
