@@ -53,15 +53,15 @@ OTHERS = (Stop, ForceTable, Friction, Material, SceneData, Section, Signal, Soli
 """What signatures need beside the kinds of parts."""
 
 TYPES = {
-    "Vector": "Numbers", "Quaternion": "Numbers", "inertia": "Numbers | Points", "points": "Points", "nodes": "Numbers",
-    "AnySection": "Section", "AnySolid": "Solid", "Reference": "Named", "AnyAttachment": "Place", "AnySignal": "Scale",
-    "AnyProfile": "Profile", "AnySurfaceShape": "Part | dict[str, Any]", "CableEnd": "str | Stop",
+    "Vector": "Numbers", "Orientation": "Numbers", "inertia": "Numbers | Points", "points": "Points",
+    "nodes": "Numbers", "AnySection": "Section", "AnySolid": "Solid", "Reference": "Named", "AnyAttachment": "Place",
+    "AnySignal": "Scale", "AnyProfile": "Profile", "AnySurfaceShape": "Part | dict[str, Any]", "CableEnd": "str | Stop",
     "VelocityTable": "VelocityTable | dict[str, Any]", "Polar": "Polar | dict[str, Any]",
     "added_mass": "float | Numbers | Points",
     "ForceTable": "ForceTable | dict[str, Numbers]",
     "Displacement": "Sequence[Scale | str | None]", "Rotation": "tuple[Numbers, Scale]",
     "Listed": "Named | Sequence[Named]",
-    "Name": "str", "Count": "int", "Flag": "bool", "Place": "float", "Exponent": "float",
+    "Name": "str", "Count": "int", "Flag": "bool", "Exponent": "float",
     "Material": "Material", "AnyFriction": "Friction | float",
     "float": "float", "str": "str", "Callable": "Callable[..., Any]",
     "Any": "Callable[..., Any]",

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..checks.event_placement import AXES
 from ..errors import SceneError, near
-from ..parts.connections import connected
+from ..parts.locations import connected
 from ..parts.scene_data import SceneData
 from .model import BodyModel, CableModel, Model, SlideModel
 

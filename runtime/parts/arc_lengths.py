@@ -2,36 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any, cast
 
 from .attachment import Attachment
 from .cable import Cable
 from .hanging import hangs
-from .load import DistributedForce, Force, Moment
+from .locations import on_cables
 from .part import Part
 from .scene_data import SceneData
-from .slide import Slide
-from .support import Support, Tie
-
-
-def on_cables(part: Part) -> Iterator[tuple[str, str, float]]:
-    """Yield the arc-lengths that a part has as entries: the keyword, the name of the cable or body, and s in m."""
-    named: list[tuple[str, str | None, float | None]] = []
-    match part:
-        case Support():
-            named = [("s", part.cable, part.s)]
-        case Tie():
-            named = [("s", part.cable, part.s), ("at", part.to, part.at)]
-        case DistributedForce():
-            named = [("start", part.cable, part.start), ("stop", part.cable, part.stop)]
-        case Force() | Moment():
-            named = [("s", part.on, part.s)]
-        case Slide():
-            named = [("s", part.along, part.s), ("body_s", part.body, part.body_s)]
-    for keyword, on, s in named:
-        if on is not None and s is not None:
-            yield keyword, on, s
 
 
 def remade(part: Part, changes: Mapping[str, Any]) -> Part:

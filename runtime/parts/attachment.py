@@ -9,7 +9,7 @@ import numpy as np
 
 from .part import Part
 from .schemas import attachment_schema, checked
-from .validation import NAMES_A_PART, Vector, finite, number, show, shown, vector3, xyz
+from .validation import NAMES_A_PART, Vector, number, place_on, show, shown, vector3, xyz
 
 
 class Attachment(Part):
@@ -19,7 +19,7 @@ class Attachment(Part):
     """
 
     on: Annotated[str, NAMES_A_PART] | None = None
-    s: Annotated[float, finite("m")] | None = None
+    s: Annotated[float, place_on("on")] | None = None
     at: Annotated[Vector, xyz("m", of="on")] | None = None
 
     @property

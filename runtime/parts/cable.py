@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
@@ -286,6 +286,10 @@ class Cable(DrawnCable, Part):
     def dim(self) -> int:
         """Return 3, or 2 for planar elements."""
         return self.kind_of_element.dim
+
+    def off_plane(self) -> Iterator[str]:
+        """Yield nothing: a planar cable lies in a plane of its own."""
+        return iter(())
 
     @property
     def kernel_law(self) -> str:

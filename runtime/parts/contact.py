@@ -2,24 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar
 
 from pydantic import model_validator
 
 from .friction import AnyFriction
-from .listed import Listed
 from .part import Part
-from .penalty_law import Exponent
-from .plane import across
 from .quantity import Quantity, all_of_engine
 from .schemas import POINT, Turning, checked, list_schema
-from .validation import Name, Vector, not_negative, positive, shown, vector3, within
+from .validation import Listed, Name, Vector, not_negative, number, positive, shown, vector3, within
 
 MOST_POINTS = 16
 """Of a body: engine/couplings/contact/contact.h."""
 GAUSS_POINTS = 6
 """Of an element of a cable: enough for one that touches in part; see tests/benchmarks/contact.py."""
+
+
+EXPONENTS = (1.0, 1.5)
+"""A linear spring, and Hertz's law of round bodies."""
+
+
+def _exponent(value: Any) -> float:
+    if (given := number(value)) not in EXPONENTS:
+        raise ValueError(f"must be 1 or 1.5, got {shown(value)}")
+    return given
+
+
+Exponent = Annotated[float, checked(_exponent, {"enum": [1, 1.0, 1.5]})]
 
 
 def _points(value: Any) -> tuple[Vector, ...]:
@@ -80,7 +89,7 @@ class Contact(Part):
     rest_velocity: Annotated[float, positive("m/s")] = 1e-3
     points: Annotated[tuple[Vector, ...], checked(_points, {
         "type": "array", "items": list_schema("m"), "minItems": 1, "maxItems": MOST_POINTS},
-        Turning(POINT, "a"))] | None = None
+        Turning(POINT, "a", "m"))] | None = None
 
     @property
     def is_hard(self) -> bool:
@@ -113,8 +122,3 @@ class Contact(Part):
             raise ValueError(f"is hard by its restitution, and {given[0]} is of a contact by penalty",
                              f"leave restitution out, or {given[0]}")
         return self
-
-    def off_plane(self) -> Iterator[str]:
-        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
-        for point in self.points or ():
-            yield from across("points", point, "m")

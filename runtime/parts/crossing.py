@@ -8,14 +8,12 @@ from typing import Annotated, ClassVar
 from pydantic import model_validator
 
 from .cable import Cable
+from .contact import Exponent
 from .friction import AnyFriction
-from .listed import Listed
 from .part import Part
-from .penalty_law import Exponent
-from .plane import across
 from .quantity import Quantity, all_of_engine
 from .section import outer_radius_of
-from .validation import Name, Vector, direction, not_negative, positive, xyz
+from .validation import Listed, Name, Vector, direction, not_negative, positive, xyz
 
 
 class Crossing(Part):
@@ -88,10 +86,9 @@ class Crossing(Part):
 
     def off_plane(self) -> Iterator[str]:
         """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
-        yield from across("at", self.at, "m")
-        yield from across("side", self.side)
         if self.axis is not None:
             yield "a bar of some length"
+        yield from super().off_plane()
 
 
 def radius_of(cable: Cable) -> float:

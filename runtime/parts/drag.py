@@ -11,10 +11,9 @@ import numpy as np
 
 from .cable import Cable
 from .part import Part
-from .plane import across
 from .polar import Polar
 from .quantity import Quantity, all_of_engine
-from .schemas import TENSOR, Turning, checked, list_of_lists, list_schema, number_schema
+from .schemas import AXIS, TENSOR, Turning, checked, list_of_lists, list_schema, number_schema
 from .section import Tube, outer_radius_of
 from .validation import (
     Matrix,
@@ -105,7 +104,7 @@ class Drag(Part):
     area: Annotated[float, not_negative("m²")] = 0.0
     coefficient: Annotated[float, not_negative()] = 1.0
     polar: Polar | None = None
-    span: Annotated[Vector, direction(of="on")] | None = None
+    span: Annotated[Vector, direction("on", AXIS)] | None = None
     chord: Annotated[Vector, direction(of="on")] | None = None
     at: Annotated[Vector, xyz("m", of="on")] | None = None
     volume: Annotated[float, not_negative("m³")] = 0.0
@@ -117,12 +116,11 @@ class Drag(Part):
 
     def off_plane(self) -> Iterator[str]:
         """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
-        yield from across("at", self.at, "m")
-        yield from across("chord", self.chord)
         if self.span is not None and any(self.span[:2]):
             yield f"span {show(self.span)}, which is not square to it,"
         if isinstance(self.added_mass, tuple) and (off := [self.added_mass[k][2] for k in range(2)]) != [0.0, 0.0]:
             yield f"added_mass, whose entries xz and yz are {show((off[0], off[1]))},"
+        yield from super().off_plane()
 
     @property
     def foil_axes(self) -> tuple[np.ndarray, np.ndarray]:

@@ -9,7 +9,7 @@ from pydantic import model_validator
 
 from .part import Part
 from .schemas import ONLY_PYTHON, checked
-from .validation import Name, finite, one_of, shown
+from .validation import Name, finite, one_of, place_on, shown
 
 
 def _function(value: Any) -> Callable | None:
@@ -42,16 +42,21 @@ class Event(Part):
     group: ClassVar[str] = "events"
     name: Name | None = None
     quantity: Annotated[str | None, checked(_text, {"type": "string"})] = None
-    s: Annotated[float, finite("m")] | None = None
+    s: Annotated[float, place_on("watched")] | None = None
     value: Annotated[float, finite()] = 0.0
     function: Annotated[Any, checked(_function, ONLY_PYTHON)] = None
     direction: Annotated[str, one_of(("rising", "falling", "both"))] = "both"
     action: Annotated[str, one_of(("record", "stop"))] = "record"
 
+    @property
+    def watched(self) -> str | None:
+        """Return the name of the part whose quantity it watches, None where it has a function."""
+        return None if self.quantity is None else self.quantity.partition(".")[0]
+
     def refers_to(self) -> Iterator[str]:
         """Yield the name of the part whose quantity it watches."""
-        if self.quantity is not None:
-            yield self.quantity.partition(".")[0]
+        if self.watched is not None:
+            yield self.watched
 
     @model_validator(mode="after")
     def _watches_one_thing(self) -> Event:

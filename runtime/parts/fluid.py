@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -10,7 +10,6 @@ from pydantic import model_validator
 
 from .flow_profile import AnyProfile
 from .part import Part
-from .plane import across
 from .signal import AnySignal, Constant
 from .validation import Name, Vector, finite, positive, xyz
 from .velocity_table import VelocityTable
@@ -50,12 +49,6 @@ class Fluid(Part):
             raise ValueError(f"has a table and a {'velocity' if any(self.velocity) else 'profile'}",
                              "leave one of them out: the table is all of the velocity")
         return self
-
-    def off_plane(self) -> Iterator[str]:
-        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
-        yield from across("velocity", self.velocity, "m/s")
-        if self.table is not None:
-            yield from across("table", self.table.fastest_across, "m/s")
 
     @property
     def moves(self) -> bool:

@@ -10,10 +10,9 @@ from pydantic import Field, model_validator
 
 from .attachment import AnyAttachment
 from .part import Part
-from .plane import across, in_plane
 from .quantity import Quantity, all_of_engine
 from .signal import AnySignal, Integral, Signal
-from .validation import Name, Vector, direction, one_of, positive
+from .validation import Name, Vector, direction, one_of, positive, show
 
 POINTS, LINES = ("spherical", "revolute", "universal", "weld"), ("prismatic", "cylindrical")
 """The kinds that keep two points together, and those that keep a point on a line."""
@@ -145,15 +144,17 @@ class Joint(Part):
 
     def off_plane(self) -> Iterator[str]:
         """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
-        yield from super().off_plane()
+        for name, end in (("a", self.a), ("b", self.b)):
+            yield from (f"{name} {quantity}" for quantity in end.off_plane())
         if self.joint_kind == "universal":
             yield "a universal joint"
         elif self.joint_kind in LINES:
-            yield from across("axis", self.axis)
+            if self.axis is not None and self.axis[2]:
+                yield f"axis {show(self.axis)}"
             if self.joint_kind == "cylindrical" and self.is_driven:
                 yield "a turn about the axis"
-        elif self.axis is not None:
-            yield from in_plane("axis", self.axis, self.axis)
+        elif self.axis is not None and any(self.axis[:2]):
+            yield f"axis {show(self.axis)}"
 
 
 def _across(vector: np.ndarray, axis: np.ndarray) -> np.ndarray:

@@ -1,5 +1,7 @@
 """The kinds of parts that a scene is made of; a further kind is one file beside this one and one entry here."""
 
+from collections.abc import Iterable, Mapping
+
 from .cable import Cable
 from .contact import Contact
 from .crossing import Crossing
@@ -10,6 +12,7 @@ from .joint import Joint
 from .load import DistributedForce, Force, Moment
 from .modal_body import ModalBody
 from .part import Part
+from .quantity import DIRECTION, IN_BODY_AXES, NODAL_VECTORS, POINT, UNCHANGED, Quantity
 from .rigid_body import RigidBody
 from .slide import Slide
 from .spring import Spring
@@ -28,3 +31,22 @@ def plural_of(name: str) -> str:
 
 PARTS = {part.kind: part for part in KINDS}
 """The kinds by their names in scene files and in messages."""
+
+BESIDE_PARTS = {"nodal_vectors": NODAL_VECTORS, "nodal_velocity": DIRECTION, "nodes": POINT,
+                "modal_coordinates": UNCHANGED, "modal_velocities": UNCHANGED, "displacement": DIRECTION,
+                "rotation": IN_BODY_AXES}
+"""Quantities that no part lists among its results: nodal vectors of cables, nodes of modal bodies, shapes of modes."""
+
+
+def turning_by_name(results: Iterable[Mapping[str, Quantity]]) -> dict[str, str]:
+    """Return of each quantity how other axes change it. Raises ValueError for one name of two that turn differently."""
+    found = dict(BESIDE_PARTS)
+    for each in results:
+        for name, quantity in each.items():
+            if found.setdefault(name, quantity.turns) != quantity.turns:
+                raise ValueError(f'results "{name}" turn as "{found[name]}" and as "{quantity.turns}"; rename one')
+    return found
+
+
+TURNING = turning_by_name(kind.results for kind in KINDS)
+"""How other axes change each quantity of results, by name."""

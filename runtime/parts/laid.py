@@ -2,29 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections import ChainMap
+from collections.abc import Callable, Iterable
 from functools import singledispatch
 from typing import Any, TypeVar
 
 import numpy as np
 
-from ..base.rotations import conjugate, product, quaternion, rotate
+from ..base.rotations import conjugate, rotate
 from ..errors import SceneError
 from .cable import Cable
 from .combined_signal import combined
 from .curves import shape_through
 from .event import Event
 from .modal_body import ModalBody
-from .part import Part
+from .part import Part, about_fields
 from .paths import COMPONENTS
 from .plane import FLAT, Plane, aligned, called, flattened
 from .plane_axes import UNTURNED, PlaneAxes
-from .rigid_body import RigidBody
 from .scene_data import SceneData
-from .schemas import HOLDER, LENGTHS, POINT, TENSOR, Turning
+from .schemas import HOLDER, LENGTHS, ORIENTATION, POINT, TENSOR, Turning
 from .signal import Constant, Signal
-from .support import Motion, Rotation
-from .vector_fields import turnings_of
+from .support import Motion
 from .velocity_table import VelocityTable
 
 S = TypeVar("S", bound=SceneData)
@@ -44,7 +43,7 @@ def laid_into(scene: S, plane: Plane) -> S:
 
     Raises SceneError for what cannot be turned.
     """
-    axes = PlaneAxes(plane, _Unturned(plane, scene.bodies), _size(scene.cables.values()))
+    axes = PlaneAxes(plane, scene.bodies, _size(scene.cables.values()))
     made = scene.replaced(lambda part: turned(part, axes, scene))
     made.gravity, made.plane_axes, made.drawn = _direction(axes, scene.gravity), axes, scene
     return made
@@ -59,45 +58,8 @@ def turned_alone(scene: SceneData, plane: Plane, part: Part) -> Part:
     if isinstance(part, Cable | Event):
         return part
     planar = next(iter(scene.cables.values()))
-    axes = PlaneAxes(plane, _Unturned(plane, scene.bodies, part), _size([planar]))
+    axes = PlaneAxes(plane, ChainMap({part.given_name: part}, scene.bodies), _size([planar]))
     return turned(part, axes, scene)
-
-
-class _Unturned(Mapping[str, np.ndarray]):
-    """Of each rigid body the unit quaternion (4,) that takes the axes in which it starts unturned in a plane to its
-    own; computed when asked for, as few are needed of many bodies where one part is looked at.
-    """
-
-    def __init__(self, plane: Plane, bodies: Mapping[str, Part], other: Part | None = None):
-        """other: a part that is about to join the bodies."""
-        self._attitude, self._bodies, self._other = quaternion(plane.axes), bodies, other
-        self._found: dict[str, np.ndarray] = {}
-
-    def _body(self, name: object) -> Part | None:
-        if self._other is not None and self._other.given_name == name:
-            return self._other
-        return self._bodies.get(name) if isinstance(name, str) else None
-
-    def __contains__(self, name: object) -> bool:
-        """Return whether there is a rigid body of that name."""
-        return isinstance(self._body(name), RigidBody)
-
-    def __getitem__(self, name: str) -> np.ndarray:
-        """Return the quaternion of a rigid body. Raises KeyError."""
-        if name not in self._found:
-            body = self._body(name)
-            if not isinstance(body, RigidBody):
-                raise KeyError(name)
-            self._found[name] = product(conjugate(body.orientation), self._attitude)
-        return self._found[name]
-
-    def __iter__(self) -> Iterator[str]:
-        """Iterate over the names of the rigid bodies."""
-        return (name for name in self._bodies if name in self)
-
-    def __len__(self) -> int:
-        """Return the number of rigid bodies."""
-        return sum(1 for _ in self)
 
 
 def _size(cables: Iterable[Cable]) -> float:
@@ -115,10 +77,8 @@ def _direction(axes: PlaneAxes, direction: Any) -> tuple[float, ...]:
 
 def _of_body(axes: PlaneAxes, body: str | None, vector: Any) -> tuple[float, ...]:
     """Return a vector along a body's axes along those that it has in the plane; modal bodies keep theirs."""
-    if body is None or body not in axes.bodies:
-        return tuple(vector)
-    turned = rotate(conjugate(axes.bodies[body]), np.array(vector))
-    return tuple(aligned(turned).tolist())
+    turn = None if body is None else axes.turn_of(body)
+    return tuple(vector) if turn is None else tuple(aligned(rotate(conjugate(turn), np.array(vector))).tolist())
 
 
 def _along(axes: PlaneAxes, on: str | None, vector: Any) -> tuple[float, ...]:
@@ -137,19 +97,26 @@ def _place(axes: PlaneAxes, on: str | None, at: Any) -> Any:
 
 def _tensor(axes: PlaneAxes, body: str, tensor: Any) -> tuple[tuple[float, ...], ...]:
     """Return a symmetric tensor (3, 3) in a body's own axes in those that it has in the plane."""
-    own = rotate(axes.bodies.get(body, UNTURNED), np.eye(3)).T  # columns: the axes in the plane along the body's own
+    turn = axes.turn_of(body)
+    own = np.eye(3) if turn is None else rotate(turn, np.eye(3)).T  # columns: the axes in the plane along its own
     found = own.T @ np.array(tensor) @ own
     found[np.abs(found) <= FLAT * np.abs(found).max()] = 0.0
     return tuple(map(tuple, ((found + found.T) / 2).tolist()))
+
+
+def _orientation(axes: PlaneAxes, body: str, orientation: Any) -> tuple[float, ...]:
+    """Return the unit quaternion of a body in the plane: of a rigid body unturned, of a modal body its own turned."""
+    made = axes.into(body, "orientation", np.array(orientation)) if axes.turn_of(body) is None else UNTURNED
+    return tuple(made.tolist())
 
 
 def _vectors(axes: PlaneAxes, turning: Turning, on: str | None, value: Any) -> Any:
     """Return the vectors of a field along axes of the ground or of a body, `on`, in those of the plane."""
     if turning.turns == LENGTHS or not isinstance(value, tuple | list):
         return value
-    if turning.turns == TENSOR:
-        assert on is not None, "a tensor is along the axes of a body"
-        return _tensor(axes, on, value)
+    if turning.turns in (TENSOR, ORIENTATION):
+        assert on is not None, "tensors and orientations are of a body"
+        return _tensor(axes, on, value) if turning.turns == TENSOR else _orientation(axes, on, value)
     turn = _place if turning.turns == POINT else _along
     if len(value) and isinstance(value[0], tuple | list):
         return tuple(turn(axes, on, each) for each in value)
@@ -160,11 +127,11 @@ def turned_fields(part: Part, axes: PlaneAxes, holder: str | None = None) -> dic
     """Return the fields of a part that other axes change, in the axes of a plane, those of parts that it holds among
     them; holder: the body whose axes what holds it is in.
     """
-    turnings, changes = turnings_of(type(part)), {}
+    about, changes = about_fields(type(part)), {}
     for name, value in part:
         if value is None:
             continue
-        if (turning := turnings.get(name)) is not None:
+        if isinstance(turning := about.get(name), Turning):
             on = holder if turning.of == HOLDER else None if turning.of is None else getattr(part, turning.of)
             changes[name] = _vectors(axes, turning, on, value)
         elif isinstance(value, VelocityTable):
@@ -200,16 +167,9 @@ def _cable(part: Cable, axes: PlaneAxes, scene: SceneData) -> Cable:
 
 
 @turned.register
-def _rigid_body(part: RigidBody, axes: PlaneAxes, scene: SceneData) -> RigidBody:
-    return part.model_copy(update=turned_fields(part, axes) | {"orientation": tuple(UNTURNED.tolist())})
-
-
-@turned.register
 def _modal_body(part: ModalBody, axes: PlaneAxes, scene: SceneData) -> ModalBody:
     changes = turned_fields(part, axes)
-    if part.data is not None:
-        del changes["up"]  # of a drawn one
-        changes["orientation"] = tuple(axes.into(part.name, "orientation", np.array(part.orientation)).tolist())
+    del changes["orientation" if part.data is None else "up"]  # the other one says how it lies
     made = ModalBody(**part.entries() | changes)
     made.__dict__["shape"] = part.shape  # in body axes, which stay: the same modes, with the same signs
     return made
@@ -217,15 +177,13 @@ def _modal_body(part: ModalBody, axes: PlaneAxes, scene: SceneData) -> ModalBody
 
 @turned.register
 def _motion(part: Motion, axes: PlaneAxes, scene: SceneData) -> Motion:
-    changes: dict[str, Any] = {}
+    changes = turned_fields(part, axes)
     if part.displacement is not None:
         try:
             changes["displacement"] = tuple(_component(axes.plane, k, part.displacement) for k in range(3))
         except ValueError as error:
             raise SceneError(part.where, f"displacement {error}",
                              f"prescribe or free directions in {called(axes.plane)} and across it") from None
-    if part.rotation is not None:
-        changes["rotation"] = Rotation(axis=_direction(axes, part.rotation.axis), angle=part.rotation.angle)
     return part.model_copy(update=changes)
 
 

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Annotated, ClassVar
 
 from pydantic import model_validator
 
 from .part import Part
-from .plane import across, in_plane
 from .signal import AnySignal, Constant
-from .validation import Flag, Name, Reference, Vector, finite, show, xyz
+from .validation import Flag, Name, Reference, Vector, place_on, show, xyz
 
-Place = Annotated[float, finite("m")]
 ONE = Constant(constant=1.0)
 
 
@@ -41,7 +38,7 @@ class Force(Load):
     group: ClassVar[str] = "loads"
     positional: ClassVar[tuple[str, ...]] = ("on",)
     on: Reference
-    s: Place | None = None
+    s: Annotated[float, place_on("on")] | None = None
     at: Annotated[Vector, xyz("m", of="on")] | None = None
     value: Annotated[Vector, xyz("N", of="along")]
     follower: Flag = False
@@ -50,11 +47,6 @@ class Force(Load):
     def along(self) -> str | None:
         """Return what carries the axes that its components are along, None for the ground."""
         return self.on if self.follower else None
-
-    def off_plane(self) -> Iterator[str]:
-        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
-        yield from across("value", self.value, "N")
-        yield from across("at", self.at, "m")
 
 
 class DistributedForce(Load):
@@ -71,8 +63,8 @@ class DistributedForce(Load):
     positional: ClassVar[tuple[str, ...]] = ("cable",)
     cable: Reference
     value: Annotated[Vector, xyz("N/m", of="along")]
-    start: Place | None = None
-    stop: Place | None = None
+    start: Annotated[float, place_on("cable")] | None = None
+    stop: Annotated[float, place_on("cable")] | None = None
     follower: Flag = False
 
     @property
@@ -85,10 +77,6 @@ class DistributedForce(Load):
         if self.start is not None and self.stop is not None and not self.start < self.stop:
             raise ValueError(f"stop must be beyond start {show(self.start, 'm')}, got {show(self.stop, 'm')}")
         return self
-
-    def off_plane(self) -> Iterator[str]:
-        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
-        return across("value", self.value, "N/m")
 
 
 class Moment(Load):
@@ -103,9 +91,5 @@ class Moment(Load):
     group: ClassVar[str] = "loads"
     positional: ClassVar[tuple[str, ...]] = ("on",)
     on: Reference
-    s: Place | None = None
+    s: Annotated[float, place_on("on")] | None = None
     value: Annotated[Vector, xyz("N m")]
-
-    def off_plane(self) -> Iterator[str]:
-        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
-        return in_plane("value", self.value, self.value, "N m")

@@ -1,14 +1,20 @@
-"""Where the parts of a scene are: nodes of supports and ties, points of cables, bodies and the ground."""
+"""Where the parts of a scene are, and which act on each other."""
 
 from __future__ import annotations
+
+from collections.abc import Iterator
 
 import numpy as np
 
 from ..base.rotations import cross
 from .attachment import Attachment
-from .load import DistributedForce
+from .event import Event
+from .fluid import Fluid
+from .part import Part, about_fields
 from .scene_data import SceneData
+from .schemas import Place
 from .support import Support, Tie
+from .surface import Surface
 
 Node = tuple[str, int]
 """A node of a cable: the cable's name and the node's number."""
@@ -67,17 +73,34 @@ def velocity_of(scene: SceneData, end: Attachment) -> np.ndarray:
     return cable.velocity + cross(cable.angular_velocity, cable.point(end.arc_length) - cable.point(0.0))
 
 
+def on_cables(part: Part, moving: bool = True) -> Iterator[tuple[str, str, float]]:
+    """Yield the arc-lengths that a part has as entries: the keyword, the name of the cable or body, and s in m.
+
+    moving: those that move with the scene among them, such as that of a slide.
+    """
+    for name, place in about_fields(type(part)).items():
+        if isinstance(place, Place) and (moving or not place.moves):
+            on, s = getattr(part, place.of), getattr(part, name)
+            if on is not None and s is not None:
+                yield name, on, s
+
+
 def attached(scene: SceneData, name: str) -> list[float]:
-    """Return the arc-lengths, in m, of a cable at which something that stays there is attached to it, its ends too."""
-    places: list[float | None] = []
-    for load in scene.loads.values():
-        if isinstance(load, DistributedForce):
-            places += [load.start, load.stop] if load.cable == name else []
-        elif load.on == name:
-            places.append(load.s)
-    attachments = [*(slide.rider for slide in scene.slides.values()), *scene.attachments()]
-    places += [attachment.s for attachment in attachments if attachment.on == name]
-    places += [support.s for support in scene.supports if support.cable == name]
-    for tie in scene.ties.values():
-        places += [s for on, s in ((tie.cable, tie.s), (tie.to, tie.at)) if on == name]
-    return [float(s) for s in places if s is not None]
+    """Return the arc-lengths, in m, of a cable at which something that acts on it is attached to it, its ends too."""
+    acting = [part for part in (*scene.parts(), *scene.attachments()) if not isinstance(part, Event)]
+    return [float(s) for part in acting for _, on, s in on_cables(part, moving=False) if on == name]
+
+
+def connected(scene: SceneData, name: str) -> set[str]:
+    """Return the names of the cables and bodies that a cable or body is connected with, its own name included.
+
+    A part connects all cables and bodies that it names. The ground, its surfaces and fluids connect nothing.
+    """
+    acting = [part for part in scene.parts() if not isinstance(part, Event | Fluid)
+              and not (isinstance(part, Surface) and part.on is None)]
+    names = {part.given_name for part in acting if part.given_name is not None}
+    links = [names & {part.given_name or "", *part.refers_to()} for part in acting]
+    found = {name}
+    while more := [link for link in links if link & found and not link <= found]:
+        found.update(*more)
+    return {each for each in (*scene.cables, *scene.bodies) if each in found}

@@ -15,10 +15,9 @@ from ..errors import SceneError
 from .cable import Cable
 from .material import Material
 from .part import Part
-from .plane import across, in_plane
 from .quantity import Quantity
-from .rigid_body import Quaternion, RigidBody, unit_quaternion
-from .schemas import checked, list_schema
+from .rigid_body import Orientation, RigidBody
+from .schemas import checked
 from .section import AnySection
 from .validation import EXACT, Count, Flag, Name, Vector, not_negative, one_of, show, shown, xyz
 
@@ -82,7 +81,7 @@ class ModalBody(Part):
     data: Annotated[str | None, checked(_path, {"type": "string"})] = None
     orthogonal: Flag = True
     position: Annotated[Vector | None, xyz("m")] = None
-    orientation: Annotated[Quaternion, checked(unit_quaternion, list_schema("", 4, 4))] = (1.0, 0.0, 0.0, 0.0)
+    orientation: Orientation = (1.0, 0.0, 0.0, 0.0)
     damping_ratio: Annotated[float, not_negative()] = 0.0
     velocity: Annotated[Vector, xyz("m/s")] = (0.0, 0.0, 0.0)
     angular_velocity: Annotated[Vector, xyz("rad/s", of="name")] = (0.0, 0.0, 0.0)
@@ -213,10 +212,6 @@ class ModalBody(Part):
 
     def off_plane(self) -> Iterator[str]:
         """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
-        position, orientation = self.frame
-        yield from across("position", position, "m")
-        yield from in_plane("orientation", orientation[1:], orientation)
+        yield from super().off_plane()
         if self.shape.modes[..., 2].any():
             yield f"mode {1 + int(np.argmax(self.shape.modes[..., 2].any(axis=1)))}"
-        yield from across("velocity", self.velocity, "m/s")
-        yield from in_plane("angular_velocity", self.angular_velocity, self.angular_velocity, "rad/s")

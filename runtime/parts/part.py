@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cache, cached_property
 from itertools import chain
 from typing import TYPE_CHECKING, Any, ClassVar, Self, get_args
 
@@ -12,8 +13,8 @@ from pydantic import BaseModel, ConfigDict, PlainValidator, ValidationError, mod
 
 from ..errors import RENAMED, SceneError, check_renamed, near, shown_path
 from .quantity import Quantity
-from .schemas import TABLE_OF, checked
-from .validation import NAMES_A_PART, shown
+from .schemas import AXIS, DIRECTION, HOLDER, ORIENTATION, POINT, TABLE_OF, Check, Place, Turning, checked
+from .validation import NAMES_A_PART, show, shown
 
 if TYPE_CHECKING:
     from pydantic._internal._model_construction import ModelMetaclass
@@ -193,10 +194,19 @@ class Part(BaseModel, metaclass=_TranslatingType):
         return self.title(dict(self))
 
     def off_plane(self) -> Iterator[str]:
-        """Yield its quantities that leave the plane z = 0, in words: by default those of the parts in it."""
+        """Yield, in words, its quantities that leave the plane z = 0 of a planar scene, those of its parts among them.
+
+        Vectors of a held part, along the axes of what holds it, are left to that.
+        """
+        about = about_fields(type(self))
         for name, value in self:
+            turning = about.get(name)
             if isinstance(value, Part):
                 yield from (f"{name} {quantity}" for quantity in value.off_plane())
+            elif isinstance(turning, Turning) and isinstance(value, tuple) and turning.lies and turning.of != HOLDER:
+                across = ACROSS.get(turning.turns, slice(0))
+                vectors = value if isinstance(value[0], tuple) else (value,)
+                yield from (f"{name} {show(each, turning.unit)}" for each in vectors if any(each[across]))
 
     @model_validator(mode="before")
     @classmethod
@@ -209,10 +219,31 @@ class Part(BaseModel, metaclass=_TranslatingType):
         return data
 
 
+ACROSS = {POINT: slice(2, 3), DIRECTION: slice(2, 3), AXIS: slice(2), ORIENTATION: slice(1, 3)}
+"""The components that are zero in the plane z = 0."""
+
+
 def names_a_part(field: FieldInfo) -> bool:
     """Return whether a field holds the name of another part."""
-    of_types = (getattr(each, "__metadata__", ()) for each in get_args(field.annotation))
-    return any(mark is NAMES_A_PART for mark in chain(field.metadata, *of_types))
+    return any(mark is NAMES_A_PART for mark in _marks(field))
+
+
+@cache
+def about_fields(kind: type[Part]) -> dict[str, Turning | Place]:
+    """Return what the checks of a kind of part say of its vectors and arc-lengths, by field."""
+    return {name: mark.about for name, field in kind.model_fields.items() for mark in _marks(field)
+            if isinstance(mark, Check) and mark.about is not None}
+
+
+def _marks(field: FieldInfo) -> Iterator[Any]:
+    """Yield all that the annotation of a field is made of, checks among it."""
+
+    def inner(annotation: Any) -> Iterator[Any]:
+        for each in (*get_args(annotation), *getattr(annotation, "__metadata__", ())):
+            yield each
+            yield from inner(each)
+
+    return chain(field.metadata, inner(field.annotation))
 
 
 def _unknown(name: str, known: Iterable[str]) -> tuple[str, str]:
@@ -253,7 +284,7 @@ class Family:
     def __post_init__(self) -> None:
         FAMILIES[self.name] = self
 
-    @property
+    @cached_property
     def by_tag(self) -> dict[str, type[Part]]:
         """Return the kinds by what the entry of a table calls them."""
         return {getattr(kind, kind.tag): kind for kind in self.kinds}

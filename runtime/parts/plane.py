@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -131,16 +131,3 @@ def aligned(vector: np.ndarray) -> np.ndarray:
     made = np.array(vector, dtype=float)
     made[np.abs(made) <= FLAT * np.abs(made).max(initial=0.0)] = 0.0
     return made
-
-
-def across(name: str, value: tuple[float, ...] | np.ndarray | None, unit: str = "") -> Iterator[str]:
-    """Yield a quantity whose z component is not zero; None is none."""
-    if value is not None and value[2]:
-        yield f"{name} {show(value, unit)}"
-
-
-def in_plane(name: str, axis: tuple[float, ...] | np.ndarray, value: tuple[float, ...] | np.ndarray,
-             unit: str = "") -> Iterator[str]:
-    """Yield a quantity whose axis is not along z."""
-    if np.any(axis[:2]):
-        yield f"{name} {show(value, unit)}"

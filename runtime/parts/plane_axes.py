@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
 from ..base.rotations import conjugate, product, quaternion, rotate
+from .kinds import TURNING
+from .part import Part
 from .plane import Plane, flattened
 from .quantity import IN_BODY_AXES, NODAL_VECTORS, ORIENTATION, POINT, UNCHANGED
-from .turning import TURNING
+from .rigid_body import RigidBody
+
+UNTURNED = np.array([1.0, 0.0, 0.0, 0.0])
+
+ROUNDING_TOLERANCE = 1e-12
+"""A component below this part of the largest one is rounding of zero."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,33 +27,40 @@ class PlaneAxes:
 
     The axes of a rigid body are turned, too: in the plane's axes it starts unturned.
 
-    plane: that it lies in; bodies: of each rigid body the unit quaternion (4,) that takes its axes in the plane to its
-    own; size: of the scene, in m.
+    plane: of the scene; bodies: those of the scene as drawn; size: of the scene, in m.
     """
 
     plane: Plane
-    bodies: Mapping[str, np.ndarray]
+    bodies: Mapping[str, Part]
     size: float
+    _turns: dict[str, np.ndarray | None] = field(default_factory=dict)
 
-    @property
+    @cached_property
     def attitude(self) -> np.ndarray:
         """Return the unit quaternion (4,) that takes the plane's axes to the ground's."""
         return quaternion(self.plane.axes)
+
+    def turn_of(self, name: str) -> np.ndarray | None:
+        """Return the unit quaternion (4,) that takes the axes of a rigid body in the plane to its own, else None."""
+        if name not in self._turns:
+            body = self.bodies.get(name)
+            self._turns[name] = (product(conjugate(body.orientation), self.attitude) if isinstance(body, RigidBody)
+                                 else None)
+        return self._turns[name]
 
     def out(self, part: str, quantity: str, values: np.ndarray, moves: bool = False) -> np.ndarray:
         """Return a result of a part, (..., 3) or (..., 4), along the ground's axes; moves: it is a displacement.
 
         Nodal vectors are (..., vectors, 3), of which the first one is a point. Raises KeyError for a quantity that is
-        none of results, see `turning`.
+        no result of a part, see `kinds.TURNING`.
         """
-        turns = TURNING[quantity]
+        turns, turn = TURNING[quantity], self.turn_of(part)
         if turns == UNCHANGED:
             return values
         if turns == ORIENTATION:
-            back = conjugate(self.bodies.get(part, UNTURNED))
-            return product(product(self.attitude, values), back)
+            return product(product(self.attitude, values), UNTURNED if turn is None else conjugate(turn))
         if turns == IN_BODY_AXES:
-            return rotate(self.bodies[part], values) if part in self.bodies else values
+            return values if turn is None else rotate(turn, values)
         if turns == POINT and not moves:
             return self.plane.points_out(values)
         made = self.plane.out(values)
@@ -55,24 +70,18 @@ class PlaneAxes:
 
     def into(self, part: str, quantity: str, values: np.ndarray) -> np.ndarray:
         """Return a result of a part along the plane's axes: `out` undone, without what rounding leaves across it."""
-        turns = TURNING[quantity]
+        turns, turn = TURNING[quantity], self.turn_of(part)
         if turns == UNCHANGED:
             return values
         if turns == ORIENTATION:
-            turned = product(product(conjugate(self.attitude), values), self.bodies.get(part, UNTURNED))
-            return np.where(np.abs(turned) <= ROUNDED, 0.0, turned)
+            turned = product(product(conjugate(self.attitude), values), UNTURNED if turn is None else turn)
+            return np.where(np.abs(turned) <= ROUNDING_TOLERANCE, 0.0, turned)
         if turns == IN_BODY_AXES:
-            turned = rotate(conjugate(self.bodies[part]), values) if part in self.bodies else np.asarray(values)
-            return np.where(np.abs(turned) <= ROUNDED * np.abs(turned).max(initial=0.0), 0.0, turned)
+            turned = np.asarray(values) if turn is None else rotate(conjugate(turn), values)
+            return np.where(np.abs(turned) <= ROUNDING_TOLERANCE * np.abs(turned).max(initial=0.0), 0.0, turned)
         if turns == POINT:
             return flattened(self.plane.points_into(values), self.size)
         values = np.array(values)
         if turns == NODAL_VECTORS:
             values[..., 0, :] -= self.plane.origin
         return flattened(self.plane.into(values), self.size if turns == NODAL_VECTORS else 0.0)
-
-
-UNTURNED = np.array([1.0, 0.0, 0.0, 0.0])
-
-ROUNDED = 1e-12
-"""Of its size: what rounding may leave of a component that is zero."""

@@ -6,13 +6,11 @@ from dataclasses import dataclass
 from typing import Final
 
 from ..engine import OUTPUTS
+from .schemas import DIRECTION, ORIENTATION, POINT
 
 UNCHANGED: Final = ""
-POINT: Final = "point"
-DIRECTION: Final = "direction"
 IN_BODY_AXES: Final = "body axes"
 NODAL_VECTORS: Final = "nodal vectors"
-ORIENTATION: Final = "orientation"
 """How other axes change a quantity: the words of the engine's outputs; and nodal vectors, the first of which is a
 point, and unit quaternions from body axes.
 """

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
 from ..base.rotations import rotate
 from .part import Part
-from .plane import across, in_plane
 from .quantity import IN_BODY_AXES, ORIENTATION, POINT, Quantity, vector_of_time
 from .schemas import TENSOR, Turning, checked, list_of_lists, list_schema
 from .solids import AnySolid
@@ -45,6 +43,10 @@ def unit_quaternion(value: Any) -> Quaternion:
     if abs(norm - 1) < 1e-15:  # already rounded to a unit: dividing again would only move the last digit
         return quaternion
     return w / norm, x / norm, y / norm, z / norm
+
+
+Orientation = Annotated[Quaternion, checked(unit_quaternion, list_schema("", 4, 4), Turning(ORIENTATION, "name"))]
+"""The attitude of the body ``name``."""
 
 
 def largest_moment(inertia: np.ndarray | Matrix) -> float:
@@ -83,7 +85,7 @@ class RigidBody(Part):
     inertia: Annotated[Matrix, checked(_inertia, {"anyOf": [list_schema("kg m²"), list_of_lists("kg m²")]},
                                         Turning(TENSOR, "name"))]
     position: Annotated[Vector, xyz("m")]
-    orientation: Annotated[Quaternion, checked(unit_quaternion, list_schema("", 4, 4))] = (1.0, 0.0, 0.0, 0.0)
+    orientation: Orientation = (1.0, 0.0, 0.0, 0.0)
     centre: Annotated[Vector, xyz("m", of="name")] = (0.0, 0.0, 0.0)
     velocity: Annotated[Vector, xyz("m/s")] = (0.0, 0.0, 0.0)
     angular_velocity: Annotated[Vector, xyz("rad/s", of="name")] = (0.0, 0.0, 0.0)
@@ -107,11 +109,3 @@ class RigidBody(Part):
     def point(self, at: Vector) -> np.ndarray:
         """Return (3,): where the body's point ``at`` (m, body axes) starts, in m."""
         return np.array(self.position) + rotate(self.orientation, at)
-
-    def off_plane(self) -> Iterator[str]:
-        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
-        yield from across("position", self.position, "m")
-        yield from in_plane("orientation", self.orientation[1:], self.orientation)
-        yield from across("centre", self.centre, "m")
-        yield from across("velocity", self.velocity, "m/s")
-        yield from in_plane("angular_velocity", self.angular_velocity, self.angular_velocity, "rad/s")

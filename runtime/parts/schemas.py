@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated, Any
 
 from pydantic import PlainValidator
@@ -20,33 +20,44 @@ class GivenAs:
         return dict(self.schema)
 
 
-POINT, DIRECTION, TENSOR, LENGTHS = "point", "direction", "tensor", "lengths"
+POINT, DIRECTION, AXIS, ORIENTATION, TENSOR, LENGTHS = "point", "direction", "axis", "orientation", "tensor", "lengths"
 HOLDER = "holder"
 
 
 @dataclass(frozen=True)
 class Turning:
-    """How other axes change the vectors of a field, see `laid`: as a POINT, a DIRECTION, a symmetric TENSOR; LENGTHS
-    along axes of their own stay.
+    """How other axes change the vectors of a field, see `laid`: as a POINT, a DIRECTION, an AXIS of rotation, the unit
+    quaternion of an ORIENTATION or a symmetric TENSOR. LENGTHS along axes of their own stay.
 
     of: the attribute of the part that names the body whose axes they are along, None for the ground's; HOLDER: those of
-    the part that holds this one.
+    the part that holds this one. unit: in messages. lies: whether a planar scene must have the vector in its plane, an
+    axis across it.
     """
 
     turns: str
     of: str | None = None
+    unit: str = field(default="", compare=False)
+    lies: bool = field(default=True, compare=False)
+
+
+@dataclass(frozen=True)
+class Place:
+    """An arc-length along the cable that the attribute ``of`` names; moves: as the scene moves."""
+
+    of: str
+    moves: bool = False
 
 
 @dataclass(frozen=True)
 class Check(PlainValidator):
-    """A check of values with how other axes change them, None for numbers."""
+    """A check of values. ``about``: how other axes change them, or the cable along which they are; else None."""
 
-    turning: Turning | None = None
+    about: Turning | Place | None = None
 
 
-def checked(check: Callable[..., Any], schema: Mapping[str, Any], turning: Turning | None = None) -> PlainValidator:
+def checked(check: Callable[..., Any], schema: Mapping[str, Any], about: Turning | Place | None = None) -> Check:
     """Return a check of values; schema: what a scene file may say there, as JSON Schema (`scene_schema`)."""
-    return Check(check, json_schema_input_type=Annotated[Any, GivenAs(schema)], turning=turning)
+    return Check(check, json_schema_input_type=Annotated[Any, GivenAs(schema)], about=about)
 
 
 ONLY_PYTHON: dict[str, Any] = {"not": {}}

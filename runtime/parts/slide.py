@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, model_validator
@@ -12,11 +12,10 @@ from .attachment import Attachment
 from .end_stops import CableEnd, Stop
 from .friction import AnyFriction
 from .part import Part
-from .plane import across
 from .quantity import Quantity, of_engine, of_time
 from .schemas import GivenAs, attachment_schema
 from .signal import AnySignal, Integral, Signal
-from .validation import Name, Reference, Vector, direction, finite, one_of, xyz
+from .validation import Name, Reference, Vector, direction, one_of, place_on, xyz
 
 
 class Slide(Part):
@@ -56,14 +55,14 @@ class Slide(Part):
         "residual": of_time(OUTPUTS["slide"]["residual"].units, "distance of the rider's point to the cable"),
     }
     body: Annotated[Reference | None, GivenAs(attachment_schema("or the point [x, y, z] of the ground"))]
-    body_s: Annotated[float, finite("m")] | None = None
+    body_s: Annotated[float, place_on("body")] | None = None
     along: Reference
-    s: Annotated[float, finite("m")] | None = None
+    s: Annotated[float, place_on("along", moves=True)] | None = None
     at: Annotated[Vector, xyz("m", of="body")] = (0.0, 0.0, 0.0)
     name: Name = Field(default_factory=lambda data: f"{data['body'] or 'ground'}_on_{data['along']}")
     frame: Annotated[str, one_of(("point", "tangent", "section"))] = "point"
     roll: Annotated[str, one_of(("free", "fixed"))] = "free"
-    up: Annotated[Vector | None, direction()] = None
+    up: Annotated[Vector | None, direction(lies=False)] = None
     drive: AnySignal | None = None
     velocity: AnySignal | None = None
     friction: AnyFriction | None = None
@@ -135,7 +134,3 @@ class Slide(Part):
     def prescribed(self) -> Signal | None:
         """Return s over time in m, where it is driven."""
         return self.drive if self.velocity is None else Integral(rate=self.velocity, start=self.arc_length)
-
-    def off_plane(self) -> Iterator[str]:
-        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
-        return across("at", self.at, "m")

@@ -9,11 +9,10 @@ from typing import Annotated, Any, ClassVar
 from pydantic import model_validator
 
 from .part import Part
-from .plane import in_plane
 from .quantity import Quantity, vector_of_time
-from .schemas import checked, some
+from .schemas import AXIS, checked, some
 from .signal import Constant, Signal, signal
-from .validation import Name, Reference, Vector, finite, one_of, shown, vector
+from .validation import Name, Reference, Vector, direction, one_of, place_on, shown, vector
 
 
 def _called(cable: Any) -> str:
@@ -35,7 +34,7 @@ class Support(Part):
 
     results: ClassVar[dict[str, Quantity]] = ON_CABLE
     cable: Reference
-    s: Annotated[float, finite("m")]
+    s: Annotated[float, place_on("cable")]
 
     @classmethod
     def title(cls, data: dict) -> str:
@@ -74,7 +73,7 @@ class Clamp(Support):
 class Rotation(Part):
     """A turn about ``axis``, fixed in the ground, by the signal ``angle`` in rad."""
 
-    axis: Vector
+    axis: Annotated[Vector, direction(turns=AXIS)]
     angle: Signal
 
     def as_given(self) -> list:
@@ -174,8 +173,7 @@ class Motion(Support):
         """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
         if self.displacement is not None and self.displacement[2] not in (None, Constant(constant=0.0)):
             yield "displacement z"
-        if self.rotation is not None:
-            yield from in_plane("rotation about", self.rotation.axis, self.rotation.axis)
+        yield from super().off_plane()
 
 
 class Tie(Part):
@@ -196,9 +194,9 @@ class Tie(Part):
     results: ClassVar[dict[str, Quantity]] = ON_CABLE
     name: Name | None = None
     cable: Reference
-    s: Annotated[float, finite("m")]
+    s: Annotated[float, place_on("cable")]
     to: Reference
-    at: Annotated[float, finite("m")]
+    at: Annotated[float, place_on("to")]
     rotation: Annotated[str, one_of(("rigid", "free"))] = "rigid"
 
     @classmethod

@@ -11,7 +11,7 @@ from pydantic import model_validator
 
 from ..base.rotations import conjugate, rotate
 from .part import Part
-from .plane import FLAT, across
+from .plane import FLAT
 from .solids import Box, Cylinder, Sphere
 from .surface_shapes import AnySurfaceShape, Capsule, Geometry, geometry
 from .validation import Flag, Name, Reference, Vector, show, xyz
@@ -63,8 +63,9 @@ class Surface(Part):
             if np.abs(box.axes[:2, 2]).max() > FLAT:
                 yield f"along {show(self.shape.along)}, up {show(self.shape.up)}"
         if lies:  # what stands square to the plane, or has no end that way, reaches it from anywhere
-            yield from across("at", self.at, "m")
-            yield from across("shape.at", getattr(self.shape, "at", None), "m")
+            for name, at in (("at", self.at), ("shape.at", getattr(self.shape, "at", None))):
+                if at is not None and at[2]:
+                    yield f"{name} {show(at, 'm')}"
         yield from self.shape.off_plane()
 
     def in_axes(self, body: Any, points: np.ndarray) -> np.ndarray:

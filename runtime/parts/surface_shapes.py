@@ -16,10 +16,10 @@ from pydantic import model_validator
 
 from .height_bounds import height_bounds
 from .part import Family, Part
-from .plane import FLAT, across, aligned
+from .plane import FLAT, aligned
 from .schemas import DIRECTION, HOLDER, checked, list_schema
 from .solids import Box, Cylinder, Length, Sphere
-from .validation import Vector, check_function, check_square, direction, list_of, shown, vector, xyz
+from .validation import Vector, check_function, check_square, direction, list_of, show, shown, vector, xyz
 
 WIDE = 1e6
 """m: half the width of a height field that does not change across."""
@@ -45,7 +45,8 @@ class Plane(SurfaceShape):
 
     def off_plane(self) -> Iterator[str]:
         """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
-        yield from across("normal", self.normal)
+        if self.normal[2]:
+            yield f"normal {show(self.normal)}"
 
 
 class Capsule(SurfaceShape):
@@ -126,8 +127,9 @@ class HeightField(SurfaceShape):
 
     def off_plane(self) -> Iterator[str]:
         """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
-        yield from across("along", self.along)
-        yield from across("up", self.up)
+        for name, axis in (("along", self.along), ("up", self.up)):
+            if axis[2]:
+                yield f"{name} {show(axis)}"
         if self.across is not None:
             yield "across"
 

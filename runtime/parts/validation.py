@@ -17,10 +17,10 @@ from numbers import Integral, Real
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import BeforeValidator, PlainValidator
+from pydantic import BeforeValidator
 
 from ..errors import near
-from .schemas import DIRECTION, POINT, Turning, checked, list_schema, number_schema
+from .schemas import AXIS, DIRECTION, POINT, Check, Place, Turning, checked, list_schema, number_schema
 
 LIMITS = {"m": (1e-12, 1e9), "s": (1e-12, 1e12), "m²": (1e-24, 1e24), "m⁴": (1e-48, 1e48)}
 """By unit: the least size of a number that must be positive, and the largest of any number; else `OTHER_LIMITS`."""
@@ -130,7 +130,7 @@ def show(value: float | tuple[float, ...] | np.ndarray, unit: str = "") -> str:
     return f"({', '.join(numbers)}) {unit}".strip()
 
 
-def one_of(known: Iterable[str], optional: bool = False) -> PlainValidator:
+def one_of(known: Iterable[str], optional: bool = False) -> Check:
     """Return the check of a name among known ones, or of None if optional; a refusal suggests the nearest one."""
     known = tuple(known)
 
@@ -146,12 +146,12 @@ def one_of(known: Iterable[str], optional: bool = False) -> PlainValidator:
     return checked(check, {"enum": list(known)})
 
 
-def finite(unit: str = "") -> PlainValidator:
+def finite(unit: str = "") -> Check:
     """Return the check of a finite number."""
     return checked(lambda value: number(value, unit), number_schema(unit))
 
 
-def _bounded(unit: str, allowed: Callable[[float], bool], rule: str, **bounds: float) -> PlainValidator:
+def _bounded(unit: str, allowed: Callable[[float], bool], rule: str, **bounds: float) -> Check:
     def check(value: Any) -> float:
         result = number(value, unit)
         if not allowed(result):
@@ -161,7 +161,7 @@ def _bounded(unit: str, allowed: Callable[[float], bool], rule: str, **bounds: f
     return checked(check, number_schema(unit, **bounds))
 
 
-def positive(unit: str = "") -> PlainValidator:
+def positive(unit: str = "") -> Check:
     """Return the check of a finite number above 0 and within `LIMITS`."""
     least = LIMITS.get(unit, OTHER_LIMITS)[0]
 
@@ -176,12 +176,12 @@ def positive(unit: str = "") -> PlainValidator:
     return checked(check, number_schema(unit, exclusiveMinimum=0))
 
 
-def not_negative(unit: str = "") -> PlainValidator:
+def not_negative(unit: str = "") -> Check:
     """Return the check of a finite number, 0 or above."""
     return _bounded(unit, lambda x: x >= 0, "not be negative", minimum=0)
 
 
-def within(low: float, high: float, *, ends: bool) -> PlainValidator:
+def within(low: float, high: float, *, ends: bool) -> Check:
     """Return the check of a finite number between ``low`` and ``high``, the ends included or not."""
     if ends:
         return _bounded("", lambda x: low <= x <= high, f"lie in [{low:g}, {high:g}]", minimum=low, maximum=high)
@@ -189,23 +189,26 @@ def within(low: float, high: float, *, ends: bool) -> PlainValidator:
                     exclusiveMaximum=high)
 
 
-def above(low: float, most: float) -> PlainValidator:
+def above(low: float, most: float) -> Check:
     """Return the check of a finite number above ``low`` and at most ``most``."""
     return _bounded("", lambda x: low < x <= most, f"be above {low:g} and at most {most:g}", exclusiveMinimum=low,
                     maximum=most)
 
 
-def xyz(unit: str = "", turns: str | None = None, of: str | None = None) -> PlainValidator:
-    """Return the check of three finite numbers: a point where they are lengths, else a direction, or what turns says.
+def xyz(unit: str = "", turns: str | None = None, of: str | None = None) -> Check:
+    """Return the check of three finite numbers: a point where they are lengths, an axis where they are an angular
+    velocity or a moment, else a direction, or what turns says.
 
     of: the attribute that names the body whose axes they are along, see `Turning`.
     """
-    turning = Turning(turns or (POINT if unit == "m" else DIRECTION), of)
+    by_unit = {"m": POINT, "rad/s": AXIS, "N m": AXIS}
+    turning = Turning(turns or by_unit.get(unit, DIRECTION), of, unit)
     return checked(lambda value: vector(value, unit), list_schema(unit), turning)
 
 
-def direction(of: str | None = None) -> PlainValidator:
-    """Return the check of three finite numbers that are not all zero; their length is free. of: as of `xyz`."""
+def direction(of: str | None = None, turns: str = DIRECTION, *, lies: bool = True) -> Check:
+    """Return the check of three finite numbers that are not all zero; their length is free. Arguments as of `Turning`.
+    """
     def check(value: Any) -> tuple[float, ...]:
         result = vector(value)
         if not any(result):
@@ -214,10 +217,15 @@ def direction(of: str | None = None) -> PlainValidator:
             raise ValueError(f"must not be shorter than {show(OTHER_LIMITS[0])}, got {show(result)}")
         return result
 
-    return checked(check, list_schema(), Turning(DIRECTION, of))
+    return checked(check, list_schema(), Turning(turns, of, lies=lies))
 
 
-def list_of(unit: str = "", *, least: int) -> PlainValidator:
+def place_on(of: str, *, moves: bool = False) -> Check:
+    """Return the check of an arc-length in m along the cable that the attribute ``of`` names, see `Place`."""
+    return checked(lambda value: number(value, "m"), number_schema("m"), Place(of, moves))
+
+
+def list_of(unit: str = "", *, least: int) -> Check:
     """Return the check of a list of at least ``least`` finite numbers."""
     def check(value: Any) -> tuple[float, ...]:
         value = value.tolist() if isinstance(value, np.ndarray) else value
@@ -247,7 +255,7 @@ def check_square(name: str, one: Vector, of: str, other: Vector) -> None:
         raise ValueError(f"{name} must be square to {of}, got {one} and {other}")
 
 
-def names() -> PlainValidator:
+def names() -> Check:
     """Return the check of a list of one or more texts, each once."""
     def check(value: Any) -> tuple[str, ...]:
         if not isinstance(value, list | tuple) or not value or not all(isinstance(one, str) for one in value):
@@ -281,6 +289,13 @@ def _name(value: Any) -> str:
     return value
 
 
+def _listed(value: Any) -> str:
+    name = getattr(value, "name", value)
+    if not isinstance(name, str):
+        raise ValueError(f"must be the name of a part, got {shown(value)}")
+    return name
+
+
 Count = Annotated[int, checked(_count, {"type": "integer", "minimum": 1, "maximum": MOST})]
 Flag = Annotated[bool, checked(_flag, {"type": "boolean"})]
 Name = Annotated[str, checked(_name, {"type": "string", "maxLength": LONGEST_NAME})]
@@ -288,5 +303,8 @@ NAMES_A_PART = object()
 """Marks the type of a field that holds the name of another part."""
 Reference = Annotated[str, BeforeValidator(lambda value: getattr(value, "name", value)), NAMES_A_PART]
 """The name of a part of the scene, given as that or as the part itself."""
+Listed = Annotated[str, checked(_listed, {"anyOf": [
+    {"type": "string"}, {"type": "array", "items": {"type": "string"}, "minItems": 1}]}), NAMES_A_PART]
+"""The name of a part, given as that or as the part itself; where parts are added, a list of them or "all", too."""
 Vector = tuple[float, float, float]
 Matrix = tuple[Vector, Vector, Vector]

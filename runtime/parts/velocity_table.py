@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any
@@ -125,11 +125,12 @@ class VelocityTable(Part):
         made.__dict__["grid"] = Grid(self.grid.axes, flattened(self.grid.velocity @ axes))
         return made
 
-    @property
-    def fastest_across(self) -> tuple[float, ...]:
-        """Return the velocity (3,) on its grid, in m/s, of the largest z component."""
+    def off_plane(self) -> Iterator[str]:
+        """Yield the velocity on its grid of the largest z component, see `Part.off_plane`."""
         velocities = self.grid.velocity.reshape(-1, 3)
-        return tuple(velocities[np.argmax(np.abs(velocities[:, 2]))].tolist())
+        fastest = velocities[np.argmax(np.abs(velocities[:, 2]))]
+        if fastest[2]:
+            yield show(fastest, "m/s")
 
     def splines(self, dim: int) -> tuple[int, dict[str, np.ndarray], np.ndarray]:
         """Return degree, knots by axis, and coefficients (n_time, n_x, n_y, n_z, dim) of its splines."""

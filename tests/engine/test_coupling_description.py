@@ -9,11 +9,10 @@ from funicular.engine import OUTPUTS, Engine, outputs_by_name
 from funicular.model.build import build
 from funicular.model.kinds import COUPLINGS, in_order
 from funicular.model.model import SlideModel
-from funicular.parts.kinds import KINDS
+from funicular.parts.kinds import KINDS, TURNING, turning_by_name
 from funicular.parts.plane import Plane
 from funicular.parts.plane_axes import PlaneAxes
 from funicular.parts.quantity import TURNS, Quantity, of_engine, vector_of_time
-from funicular.parts.turning import TURNING, turning_by_name
 
 UPRIGHT = PlaneAxes(Plane.across(np.array([0.0, -1, 0]), np.zeros(3)), {}, 1.0)
 

@@ -50,7 +50,7 @@ def test_a_scene_without_planar_cables_is_spatial():
      'distributed_force "distributed_force_1": value (0, 0, 3) N/m'),
     (lambda s: s.moment("wire", s=0, value=(0, 3, 1)), 'moment "moment_1": value (0, 3, 1) N m'),
     (lambda s: s.motion("wire", s=0, displacement=(0, 0, 1)), 'motion on "wire": displacement z'),
-    (lambda s: s.motion("wire", s=0, rotation=((0, 1, 0), 1)), 'motion on "wire": rotation about (0, 1, 0)'),
+    (lambda s: s.motion("wire", s=0, rotation=((0, 1, 0), 1)), 'motion on "wire": rotation axis (0, 1, 0)'),
     (lambda s: s.spring("A", (0, 0, 1), stiffness=1), 'spring "spring_1": b (0, 0, 1) m'),
 ])
 def test_what_leaves_the_plane(add, complaint):

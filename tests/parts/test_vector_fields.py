@@ -1,24 +1,35 @@
-"""Fields of parts that are vectors say how other axes change them, and scenes in other planes turn all of them."""
+"""Fields of parts say how other axes change their vectors, and along which cable their arc-lengths are."""
 
 from types import UnionType
 from typing import Annotated, Union, get_args, get_origin
 
+import funicular as fu
 import numpy as np
 import pytest
+from funicular.base.rotations import conjugate, product, quaternion
+from funicular.parts.arc_lengths import following
 from funicular.parts.attachment import Attachment
 from funicular.parts.kinds import KINDS
 from funicular.parts.laid import turned_fields
-from funicular.parts.part import Part
+from funicular.parts.locations import on_cables
+from funicular.parts.part import Part, about_fields
 from funicular.parts.plane import Plane
 from funicular.parts.plane_axes import PlaneAxes
 from funicular.parts.schemas import DIRECTION, POINT, TENSOR, Turning
 from funicular.parts.surface_shapes import SURFACE_SHAPES
-from funicular.parts.validation import Matrix, Vector, direction, xyz
-from funicular.parts.vector_fields import turnings_of
+from funicular.parts.validation import Matrix, Vector, direction, place_on, xyz
 
 WITH_FIELDS = (*KINDS, *SURFACE_SHAPES.kinds, Attachment)
-UPRIGHT = PlaneAxes(Plane.across(np.array([0.0, -1, 0]), np.zeros(3)), {"A": np.array([0.5, 0.5, 0.5, 0.5])}, 1.0)
+TURN = np.array([0.5, 0.5, 0.5, 0.5])
+PLANE = Plane.across(np.array([0.0, -1, 0]), np.zeros(3))
+BODY = fu.RigidBody(name="A", mass=1.0, inertia=(1, 1, 1), position=(0, 0, 0),
+                    orientation=product(quaternion(PLANE.axes), conjugate(TURN)))
+UPRIGHT = PlaneAxes(PLANE, {"A": BODY}, 1.0)
 """x stays, z becomes y: the plane y = 0; A: a body whose axes the plane's come to by x y z -> z x y."""
+
+
+def turnings_of(kind):
+    return {name: about for name, about in about_fields(kind).items() if isinstance(about, Turning)}
 
 
 def vectors_in(annotation):
@@ -39,8 +50,8 @@ def test_all_vectors_say_how_they_turn(kind):
 
 
 def test_checks_know_points_from_directions():
-    assert xyz("m").turning == Turning(POINT) and xyz("N").turning == Turning(DIRECTION)
-    assert direction("on").turning == Turning(DIRECTION, "on")
+    assert xyz("m").about == Turning(POINT) and xyz("N").about == Turning(DIRECTION)
+    assert direction("on").about == Turning(DIRECTION, "on")
 
 
 class Wheel(Part):
@@ -53,16 +64,18 @@ class Wheel(Part):
     spoke: Annotated[Vector, direction(of="on")] | None = None
     rail: Annotated[tuple[Vector, ...] | None, xyz("m")] = None
     end: Attachment | None = None
+    s: Annotated[float, place_on("on")] | None = None
 
 
 def test_vectors_of_a_new_part_are_turned():
     """A vector of a new name stayed along the ground's axes without a word."""
     wheel = Wheel(on="A", hub=(1, 0, 2), axle=(0, 0, 3), spoke=(1, 2, 3), end=Attachment(at=(4, 0, 5)))
     found = turned_fields(wheel, UPRIGHT)
-    assert {**found, "end": found["end"].at} == {"hub": (1, 2, 0), "axle": (0, 3, 0), "spoke": (2, 3, 1),
-                                                 "end": (4, 5, 0)}
+    assert found.keys() == {"hub", "axle", "spoke", "end"}
+    assert (found["hub"], found["axle"], found["end"].at) == ((1, 2, 0), (0, 3, 0), (4, 5, 0))
+    assert found["spoke"] == pytest.approx((2, 3, 1))
     on_body = turned_fields(Wheel(hub=(0, 0, 0), axle=(1, 0, 0), end=Attachment(on="A", at=(1, 2, 3))), UPRIGHT)
-    assert on_body["end"].at == (2, 3, 1)
+    assert on_body["end"].at == pytest.approx((2, 3, 1))
 
 
 def test_inertia_turns_as_a_tensor():
@@ -70,3 +83,22 @@ def test_inertia_turns_as_a_tensor():
     assert turnings_of(body)["inertia"] == Turning(TENSOR, "name")
     part = body(name="A", mass=1.0, inertia=(1, 2, 2.5), position=(0, 0, 0))
     assert np.array(turned_fields(part, UPRIGHT)["inertia"]) == pytest.approx(np.diag([2, 2.5, 1]))
+
+
+def test_vectors_of_a_new_part_leave_a_plane():
+    wheel = Wheel(hub=(1, 0, 2), axle=(0, 1, 0), end=Attachment(at=(4, 0, 5)))
+    assert [*wheel.off_plane()] == ["hub (1, 0, 2) m", "end (4, 0, 5) m"]
+    contact = fu.Contact(a="A", b="bed", points=[(0, 0, 0), (0, 0, 3)])
+    assert [*contact.off_plane()] == ["points (0, 0, 3) m"]
+
+
+def test_arc_lengths_of_parts_keep_their_part_of_a_cable():
+    """The node that an event watches was left behind where its cable became longer."""
+    assert [*on_cables(Wheel(on="wire", hub=(0, 0, 0), axle=(1, 0, 0), s=2.0))] == [("s", "wire", 2.0)]
+    scene = fu.Scene()
+    scene.cable("wire", start=(0, 0, 0), end=(4, 0, 0), elements=4, element="cable12", section=fu.Circle(radius=0.01),
+                material=fu.Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1500.0))
+    scene.event("low", quantity="wire.position.y", s=1.0, value=-1.0)
+    found = following(scene, {0: {"rest_length": 4.4}})
+    parts = list(scene.parts())
+    assert scene.changed([(parts[k], entries) for k, entries in found.items()]).events["low"].s == 1.1

@@ -10,8 +10,8 @@ import pytest
 from funicular.choice.candidates import kinds_of
 from funicular.choice.planar import planar_of
 from funicular.choice.remeshing import coarsest, remade
+from funicular.parts.kinds import TURNING
 from funicular.parts.quantity import DIRECTION, NODAL_VECTORS, POINT
-from funicular.parts.turning import TURNING
 from turned_scenes import ASKEW, UPRIGHT, differences, turned_scene
 
 pytestmark = pytest.mark.slow

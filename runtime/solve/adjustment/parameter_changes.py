@@ -25,10 +25,10 @@ from ...model.kinds import COUPLINGS
 from ...model.model import Model
 from ...model.numbering import as_drawn
 from ...model.unknowns import by_unknowns
-from ...parts.arc_lengths import on_cables
 from ...parts.attachment import Attachment
 from ...parts.cable import Cable
 from ...parts.load import DistributedForce, Force, Moment
+from ...parts.locations import on_cables
 from ...parts.part import Part
 from ...parts.paths import Path, changes_of, value_at
 from ...parts.point_force import PointForce
