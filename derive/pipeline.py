@@ -74,7 +74,7 @@ def stale(record: dict) -> dict[str, Family]:
     now = provenance.hashes(every.values())
     changed = {file for file, hash_now in now.items() if record["sources"].get(file) != hash_now}
     return {name: family for name, family in every.items()
-            if record["families"].get(name) != {"doc": family.doc}
+            if record["families"].get(name, {}).get("doc") != family.doc
             or not changed.isdisjoint(provenance.deciding(family.modules))}
 
 

@@ -19,7 +19,6 @@ from multiprocessing import get_context
 from pathlib import Path
 from types import SimpleNamespace
 
-from funicular.generated import described
 from funicular.kernels.libraries import Kernel
 from rich import box
 from rich.table import Table
@@ -27,6 +26,7 @@ from rich.table import Table
 from .catalogue import named
 from .codegen import drift, manifest
 from .codegen import rendering as emit
+from .codegen.described import described
 from .codegen.family import Family
 from .codegen.program import Program
 from .verify import timing
@@ -124,7 +124,9 @@ def attempt(family: Family) -> int:
     if report.failures:
         report.show()
     verdict = f"{report.failures} failures, the first: {report.first_failure}" if report.failures else "all agree"
-    report.out.print(_table(content["kernels"], drift.record().get("kernels", {}), microseconds))
+    record = drift.record()
+    before = described(record, {family.name} & record.get("kernels", {}).keys())
+    report.out.print(_table(described(content), before, microseconds))
     report.out.print(f"{family.name}: {', '.join(taken)}; {verdict}", soft_wrap=True)
     return report.failures
 

@@ -277,551 +277,617 @@ static const fu_point_law_kernels point_laws[] = {
      planar_zero_length_spring_force, planar_zero_length_spring_tangent, planar_zero_length_spring_discrete_force},
 };
 
-/* X(name, arguments) for every kernel: from arrays of pointers, to inputs `a` and outputs `out` */
-#define FU_EVERY(X) \
-    X(beam24_mass, *a[0], *a[1], a[2], out[0]) \
-    X(beam24_gravity, *a[0], *a[1], a[2], a[3], out[0]) \
-    X(beam24_inertia_force, a[0], a[1], out[0]) \
-    X(beam24_position, *a[0], a[1], a[2], out[0], out[1]) \
-    X(beam24_on_axis, *a[0], *a[1], out[0], out[1]) \
-    X(beam24_slopes, *a[0], *a[1], out[0]) \
-    X(beam24_follower_force, *a[0], *a[1], a[2], a[3], out[0], out[1]) \
-    X(beam24_moment, *a[0], *a[1], a[2], a[3], out[0], out[1]) \
-    X(cable12_mass, *a[0], *a[1], a[2], out[0]) \
-    X(cable12_gravity, *a[0], *a[1], a[2], a[3], out[0]) \
-    X(cable12_inertia_force, a[0], a[1], out[0]) \
-    X(cable12_position, *a[0], a[1], a[2], out[0], out[1]) \
-    X(cable12_on_axis, *a[0], *a[1], out[0], out[1]) \
-    X(cable12_slopes, *a[0], *a[1], out[0]) \
-    X(cable12_follower_force, *a[0], *a[1], a[2], a[3], out[0], out[1]) \
-    X(cable12_moment, *a[0], *a[1], a[2], a[3], out[0], out[1]) \
-    X(cable18_mass, *a[0], *a[1], a[2], out[0]) \
-    X(cable18_gravity, *a[0], *a[1], a[2], a[3], out[0]) \
-    X(cable18_inertia_force, a[0], a[1], out[0]) \
-    X(cable18_position, *a[0], a[1], a[2], out[0], out[1]) \
-    X(cable18_on_axis, *a[0], *a[1], out[0], out[1]) \
-    X(cable18_slopes, *a[0], *a[1], out[0]) \
-    X(cable18_follower_force, *a[0], *a[1], a[2], a[3], out[0], out[1]) \
-    X(cable18_moment, *a[0], *a[1], a[2], a[3], out[0], out[1]) \
-    X(beam12p_mass, *a[0], *a[1], a[2], out[0]) \
-    X(beam12p_gravity, *a[0], *a[1], a[2], a[3], out[0]) \
-    X(beam12p_inertia_force, a[0], a[1], out[0]) \
-    X(beam12p_position, *a[0], a[1], a[2], out[0], out[1]) \
-    X(beam12p_on_axis, *a[0], *a[1], out[0], out[1]) \
-    X(beam12p_slopes, *a[0], *a[1], out[0]) \
-    X(beam12p_follower_force, *a[0], *a[1], a[2], a[3], out[0], out[1]) \
-    X(beam12p_moment, *a[0], *a[1], a[2], a[3], out[0], out[1]) \
-    X(cable8p_mass, *a[0], *a[1], a[2], out[0]) \
-    X(cable8p_gravity, *a[0], *a[1], a[2], a[3], out[0]) \
-    X(cable8p_inertia_force, a[0], a[1], out[0]) \
-    X(cable8p_position, *a[0], a[1], a[2], out[0], out[1]) \
-    X(cable8p_on_axis, *a[0], *a[1], out[0], out[1]) \
-    X(cable8p_slopes, *a[0], *a[1], out[0]) \
-    X(cable8p_follower_force, *a[0], *a[1], a[2], a[3], out[0], out[1]) \
-    X(cable8p_moment, *a[0], *a[1], a[2], a[3], out[0], out[1]) \
-    X(beam24_continuum_stiffness, *a[0], a[1], out[0]) \
-    X(beam24_continuum_energy, *a[0], a[1], a[2], out[0]) \
-    X(beam24_continuum_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(beam24_continuum_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(beam24_continuum_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(beam24_continuum_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
-    X(beam24_continuum_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
-    X(beam24_continuum_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
-    X(beam24_continuum_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
-    X(beam24_continuum_algorithmic_force, *a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]) \
-    X(beam24_continuum_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
-    X(beam24_continuum_curved_stiffness_at, *a[0], a[1], a[2], a[3], out[0], out[1]) \
-    X(beam24_continuum_curved_energy, *a[0], a[1], a[2], out[0]) \
-    X(beam24_continuum_curved_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(beam24_continuum_curved_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(beam24_continuum_curved_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(beam24_continuum_curved_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
-    X(beam24_continuum_curved_section_forces, *a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]) \
-    X(beam24_structural_stiffness, *a[0], a[1], a[2], out[0]) \
-    X(beam24_structural_energy, *a[0], a[1], a[2], out[0]) \
-    X(beam24_structural_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(beam24_structural_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(beam24_structural_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
-    X(beam24_structural_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
-    X(beam24_structural_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
-    X(beam24_structural_section_forces, *a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]) \
-    X(cable12_green_exact_stiffness, *a[0], a[1], out[0]) \
-    X(cable12_green_exact_energy, *a[0], a[1], a[2], out[0]) \
-    X(cable12_green_exact_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(cable12_green_exact_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(cable12_green_exact_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable12_green_exact_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable12_green_exact_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
-    X(cable12_green_exact_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
-    X(cable12_green_exact_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
-    X(cable12_green_exact_algorithmic_force, *a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]) \
-    X(cable12_green_exact_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
-    X(cable12_green_linear_stiffness, *a[0], a[1], out[0]) \
-    X(cable12_green_linear_energy, *a[0], a[1], a[2], out[0]) \
-    X(cable12_green_linear_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(cable12_green_linear_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(cable12_green_linear_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable12_green_linear_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
-    X(cable12_engineering_exact_stiffness, *a[0], a[1], out[0]) \
-    X(cable12_engineering_exact_energy, *a[0], a[1], a[2], out[0]) \
-    X(cable12_engineering_exact_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(cable12_engineering_exact_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(cable12_engineering_exact_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable12_engineering_exact_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
-    X(cable12_engineering_exact_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
-    X(cable12_engineering_exact_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
-    X(cable12_engineering_exact_algorithmic_force, *a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]) \
-    X(cable12_engineering_exact_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
-    X(cable12_engineering_linear_stiffness, *a[0], a[1], out[0]) \
-    X(cable12_engineering_linear_energy, *a[0], a[1], a[2], out[0]) \
-    X(cable12_engineering_linear_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(cable12_engineering_linear_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(cable12_engineering_linear_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable12_engineering_linear_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
-    X(cable12_green_exact_assumed_stiffness, *a[0], a[1], out[0]) \
-    X(cable12_green_exact_assumed_energy, *a[0], a[1], a[2], out[0]) \
-    X(cable12_green_exact_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(cable12_green_exact_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(cable12_green_exact_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable12_green_exact_assumed_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable12_green_exact_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
-    X(cable12_green_linear_assumed_stiffness, *a[0], a[1], out[0]) \
-    X(cable12_green_linear_assumed_energy, *a[0], a[1], a[2], out[0]) \
-    X(cable12_green_linear_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(cable12_green_linear_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(cable12_green_linear_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable12_green_linear_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
-    X(cable12_engineering_exact_assumed_stiffness, *a[0], a[1], out[0]) \
-    X(cable12_engineering_exact_assumed_energy, *a[0], a[1], a[2], out[0]) \
-    X(cable12_engineering_exact_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(cable12_engineering_exact_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(cable12_engineering_exact_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable12_engineering_exact_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
-    X(cable12_engineering_linear_assumed_stiffness, *a[0], a[1], out[0]) \
-    X(cable12_engineering_linear_assumed_energy, *a[0], a[1], a[2], out[0]) \
-    X(cable12_engineering_linear_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(cable12_engineering_linear_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(cable12_engineering_linear_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable12_engineering_linear_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
-    X(cable12_green_exact_curved_stiffness, *a[0], a[1], a[2], out[0]) \
-    X(cable12_green_exact_curved_energy, *a[0], a[1], a[2], out[0]) \
-    X(cable12_green_exact_curved_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(cable12_green_exact_curved_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(cable12_green_exact_curved_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable12_green_exact_curved_section_forces, *a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]) \
-    X(cable12_engineering_exact_curved_stiffness, *a[0], a[1], a[2], out[0]) \
-    X(cable12_engineering_exact_curved_energy, *a[0], a[1], a[2], out[0]) \
-    X(cable12_engineering_exact_curved_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(cable12_engineering_exact_curved_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(cable12_engineering_exact_curved_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable12_engineering_exact_curved_section_forces, *a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]) \
-    X(cable12_engineering_exact_tension_only_stiffness, *a[0], a[1], out[0]) \
-    X(cable12_engineering_exact_tension_only_energy, *a[0], a[1], a[2], out[0]) \
-    X(cable12_engineering_exact_tension_only_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(cable12_engineering_exact_tension_only_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(cable12_engineering_exact_tension_only_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable12_engineering_exact_tension_only_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable12_engineering_exact_tension_only_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
-    X(cable12_engineering_exact_tension_only_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
-    X(cable12_engineering_exact_tension_only_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
-    X(cable12_engineering_exact_tension_only_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
-    X(cable18_green_exact_stiffness, *a[0], a[1], out[0]) \
-    X(cable18_green_exact_energy, *a[0], a[1], a[2], out[0]) \
-    X(cable18_green_exact_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(cable18_green_exact_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(cable18_green_exact_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable18_green_exact_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable18_green_exact_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
-    X(cable18_green_exact_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
-    X(cable18_green_exact_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
-    X(cable18_green_exact_algorithmic_force, *a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]) \
-    X(cable18_green_exact_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
-    X(cable18_engineering_exact_stiffness, *a[0], a[1], out[0]) \
-    X(cable18_engineering_exact_energy, *a[0], a[1], a[2], out[0]) \
-    X(cable18_engineering_exact_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(cable18_engineering_exact_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(cable18_engineering_exact_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable18_engineering_exact_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
-    X(cable18_engineering_exact_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
-    X(cable18_engineering_exact_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
-    X(cable18_engineering_exact_algorithmic_force, *a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]) \
-    X(cable18_engineering_exact_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
-    X(cable18_green_exact_assumed_stiffness, *a[0], a[1], out[0]) \
-    X(cable18_green_exact_assumed_energy, *a[0], a[1], a[2], out[0]) \
-    X(cable18_green_exact_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(cable18_green_exact_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(cable18_green_exact_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable18_green_exact_assumed_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable18_green_exact_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
-    X(cable18_engineering_exact_assumed_stiffness, *a[0], a[1], out[0]) \
-    X(cable18_engineering_exact_assumed_energy, *a[0], a[1], a[2], out[0]) \
-    X(cable18_engineering_exact_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(cable18_engineering_exact_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(cable18_engineering_exact_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable18_engineering_exact_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
-    X(beam12p_continuum_stiffness, *a[0], a[1], out[0]) \
-    X(beam12p_continuum_energy, *a[0], a[1], a[2], out[0]) \
-    X(beam12p_continuum_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(beam12p_continuum_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(beam12p_continuum_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(beam12p_continuum_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
-    X(beam12p_continuum_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
-    X(beam12p_continuum_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
-    X(beam12p_continuum_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
-    X(beam12p_continuum_algorithmic_force, *a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]) \
-    X(beam12p_continuum_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
-    X(beam12p_continuum_curved_stiffness_at, *a[0], a[1], a[2], a[3], out[0], out[1]) \
-    X(beam12p_continuum_curved_energy, *a[0], a[1], a[2], out[0]) \
-    X(beam12p_continuum_curved_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(beam12p_continuum_curved_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(beam12p_continuum_curved_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(beam12p_continuum_curved_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
-    X(beam12p_continuum_curved_section_forces, *a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]) \
-    X(beam12p_structural_stiffness, *a[0], a[1], a[2], out[0]) \
-    X(beam12p_structural_energy, *a[0], a[1], a[2], out[0]) \
-    X(beam12p_structural_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(beam12p_structural_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(beam12p_structural_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
-    X(beam12p_structural_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
-    X(beam12p_structural_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
-    X(beam12p_structural_section_forces, *a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]) \
-    X(cable8p_green_exact_stiffness, *a[0], a[1], out[0]) \
-    X(cable8p_green_exact_energy, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_green_exact_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_green_exact_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_green_exact_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable8p_green_exact_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable8p_green_exact_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
-    X(cable8p_green_exact_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
-    X(cable8p_green_exact_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
-    X(cable8p_green_exact_algorithmic_force, *a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]) \
-    X(cable8p_green_exact_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
-    X(cable8p_green_linear_stiffness, *a[0], a[1], out[0]) \
-    X(cable8p_green_linear_energy, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_green_linear_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_green_linear_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_green_linear_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable8p_green_linear_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
-    X(cable8p_engineering_exact_stiffness, *a[0], a[1], out[0]) \
-    X(cable8p_engineering_exact_energy, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_engineering_exact_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_engineering_exact_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_engineering_exact_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable8p_engineering_exact_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
-    X(cable8p_engineering_exact_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
-    X(cable8p_engineering_exact_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
-    X(cable8p_engineering_exact_algorithmic_force, *a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]) \
-    X(cable8p_engineering_exact_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
-    X(cable8p_engineering_linear_stiffness, *a[0], a[1], out[0]) \
-    X(cable8p_engineering_linear_energy, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_engineering_linear_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_engineering_linear_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_engineering_linear_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable8p_engineering_linear_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
-    X(cable8p_green_exact_assumed_stiffness, *a[0], a[1], out[0]) \
-    X(cable8p_green_exact_assumed_energy, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_green_exact_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_green_exact_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_green_exact_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable8p_green_exact_assumed_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable8p_green_exact_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
-    X(cable8p_green_linear_assumed_stiffness, *a[0], a[1], out[0]) \
-    X(cable8p_green_linear_assumed_energy, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_green_linear_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_green_linear_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_green_linear_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable8p_green_linear_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
-    X(cable8p_engineering_exact_assumed_stiffness, *a[0], a[1], out[0]) \
-    X(cable8p_engineering_exact_assumed_energy, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_engineering_exact_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_engineering_exact_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_engineering_exact_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable8p_engineering_exact_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
-    X(cable8p_engineering_linear_assumed_stiffness, *a[0], a[1], out[0]) \
-    X(cable8p_engineering_linear_assumed_energy, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_engineering_linear_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_engineering_linear_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_engineering_linear_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable8p_engineering_linear_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
-    X(cable8p_engineering_exact_tension_only_stiffness, *a[0], a[1], out[0]) \
-    X(cable8p_engineering_exact_tension_only_energy, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_engineering_exact_tension_only_elastic_force, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_engineering_exact_tension_only_elastic_tangent, *a[0], a[1], a[2], out[0]) \
-    X(cable8p_engineering_exact_tension_only_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable8p_engineering_exact_tension_only_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable8p_engineering_exact_tension_only_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
-    X(cable8p_engineering_exact_tension_only_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
-    X(cable8p_engineering_exact_tension_only_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
-    X(cable8p_engineering_exact_tension_only_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
-    X(rigid_place, a[0], a[1], out[0], out[1]) \
-    X(rigid_point, a[0], a[1], a[2], out[0], out[1], out[2], out[3]) \
-    X(rigid_point_force, a[0], a[1], a[2], out[0], out[1], out[2]) \
-    X(rigid_frame, a[0], a[1], out[0], out[1], out[2]) \
-    X(rigid_inertia_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(rigid_inertia_tangent, *a[0], a[1], a[2], out[0], out[1]) \
-    X(rigid_kinetic_energy, *a[0], a[1], a[2], out[0]) \
-    X(rigid_discrete_point, a[0], a[1], a[2], out[0]) \
-    X(rigid_force, a[0], a[1], a[2], out[0], out[1]) \
-    X(rigid_follower_force, a[0], a[1], a[2], out[0], out[1]) \
-    X(rigid_moment, a[0], a[1], out[0], out[1]) \
-    X(rigid_move, a[0], a[1], out[0]) \
-    X(rigid_move_tangent, a[0], out[0]) \
-    X(rigid_cayley_move, a[0], a[1], out[0]) \
-    X(rigid_cayley_tangent, a[0], out[0]) \
-    X(rigid_halfway, a[0], a[1], out[0]) \
-    X(rigid_rate, a[0], a[1], out[0]) \
-    X(rigid_increment, a[0], a[1], out[0]) \
-    X(planar_rigid_place, a[0], a[1], out[0], out[1]) \
-    X(planar_rigid_point, a[0], a[1], a[2], out[0], out[1], out[2], out[3]) \
-    X(planar_rigid_point_force, a[0], a[1], a[2], out[0], out[1], out[2]) \
-    X(planar_rigid_frame, a[0], a[1], out[0], out[1], out[2]) \
-    X(planar_rigid_inertia_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(planar_rigid_inertia_tangent, *a[0], a[1], a[2], out[0], out[1]) \
-    X(planar_rigid_kinetic_energy, *a[0], a[1], a[2], out[0]) \
-    X(planar_rigid_discrete_point, a[0], a[1], a[2], out[0]) \
-    X(planar_rigid_force, a[0], a[1], a[2], out[0], out[1]) \
-    X(planar_rigid_follower_force, a[0], a[1], a[2], out[0], out[1]) \
-    X(planar_rigid_moment, a[0], a[1], out[0], out[1]) \
-    X(planar_rigid_move, a[0], a[1], out[0]) \
-    X(planar_rigid_move_tangent, a[0], out[0]) \
-    X(planar_rigid_cayley_move, a[0], a[1], out[0]) \
-    X(planar_rigid_cayley_tangent, a[0], out[0]) \
-    X(planar_rigid_halfway, a[0], a[1], out[0]) \
-    X(planar_rigid_rate, a[0], a[1], out[0]) \
-    X(planar_rigid_increment, a[0], a[1], out[0]) \
-    X(modal_inertia_force, a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0]) \
-    X(modal_mass_matrix, a[0], *a[1], a[2], a[3], out[0]) \
-    X(modal_inertia_tangent, a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1]) \
-    X(modal_mode_force, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0]) \
-    X(modal_mode_mass, a[0], a[1], a[2], out[0]) \
-    X(modal_mode_tangent, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3]) \
-    X(modal_pair_tangent, a[0], a[1], a[2], a[3], a[4], out[0], out[1]) \
-    X(modal_kinetic_energy, a[0], a[1], *a[2], a[3], a[4], a[5], a[6], *a[7], out[0]) \
-    X(modal_potential_energy, a[0], a[1], *a[2], a[3], out[0]) \
-    X(modal_attachment, a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7]) \
-    X(modal_attachment_mode, a[0], a[1], a[2], a[3], a[4], out[0], out[1]) \
-    X(modal_attachment_force, a[0], a[1], a[2], a[3], a[4], out[0]) \
-    X(modal_attachment_mode_force, a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1]) \
-    X(modal_attachment_pair_force, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], out[0]) \
-    X(modal_attachment_follower, a[0], a[1], a[2], a[3], out[0], out[1]) \
-    X(modal_attachment_mode_follower, a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
-    X(modal_attachment_pair_follower, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0]) \
-    X(planar_modal_inertia_force, a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0]) \
-    X(planar_modal_mass_matrix, a[0], *a[1], a[2], a[3], out[0]) \
-    X(planar_modal_inertia_tangent, a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1]) \
-    X(planar_modal_mode_force, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0]) \
-    X(planar_modal_mode_mass, a[0], a[1], a[2], out[0]) \
-    X(planar_modal_mode_tangent, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3]) \
-    X(planar_modal_pair_tangent, a[0], a[1], a[2], a[3], a[4], out[0], out[1]) \
-    X(planar_modal_kinetic_energy, a[0], a[1], *a[2], a[3], a[4], a[5], a[6], *a[7], out[0]) \
-    X(planar_modal_potential_energy, a[0], a[1], *a[2], a[3], out[0]) \
-    X(planar_modal_attachment, a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7]) \
-    X(planar_modal_attachment_mode, a[0], a[1], a[2], a[3], a[4], out[0], out[1]) \
-    X(planar_modal_attachment_force, a[0], a[1], a[2], a[3], a[4], out[0]) \
-    X(planar_modal_attachment_mode_force, a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1]) \
-    X(planar_modal_attachment_pair_force, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], out[0]) \
-    X(planar_modal_attachment_follower, a[0], a[1], a[2], a[3], out[0], out[1]) \
-    X(planar_modal_attachment_mode_follower, a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
-    X(planar_modal_attachment_pair_follower, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0]) \
-    X(slide_beam24_rigid_constraint, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]) \
-    X(slide_beam24_rigid_terms, *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]) \
-    X(slide_beam24_rigid_residual, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
-    X(slide_beam24_rigid_tangent, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
-    X(slide_beam24_rigid_discrete_gradient, *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]) \
-    X(slide_beam24_point_constraint, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]) \
-    X(slide_beam24_point_terms, *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]) \
-    X(slide_beam24_point_residual, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
-    X(slide_beam24_point_tangent, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
-    X(slide_beam24_point_discrete_gradient, *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]) \
-    X(slide_cable12_rigid_constraint, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]) \
-    X(slide_cable12_rigid_terms, *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]) \
-    X(slide_cable12_rigid_residual, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
-    X(slide_cable12_rigid_tangent, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
-    X(slide_cable12_rigid_discrete_gradient, *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]) \
-    X(slide_cable12_point_constraint, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]) \
-    X(slide_cable12_point_terms, *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]) \
-    X(slide_cable12_point_residual, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
-    X(slide_cable12_point_tangent, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
-    X(slide_cable12_point_discrete_gradient, *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]) \
-    X(slide_cable18_rigid_constraint, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]) \
-    X(slide_cable18_rigid_terms, *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]) \
-    X(slide_cable18_rigid_residual, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
-    X(slide_cable18_rigid_tangent, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
-    X(slide_cable18_rigid_discrete_gradient, *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]) \
-    X(slide_cable18_point_constraint, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]) \
-    X(slide_cable18_point_terms, *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]) \
-    X(slide_cable18_point_residual, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
-    X(slide_cable18_point_tangent, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
-    X(slide_cable18_point_discrete_gradient, *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]) \
-    X(slide_beam12p_planar_rigid_constraint, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]) \
-    X(slide_beam12p_planar_rigid_terms, *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]) \
-    X(slide_beam12p_planar_rigid_residual, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
-    X(slide_beam12p_planar_rigid_tangent, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
-    X(slide_beam12p_planar_rigid_discrete_gradient, *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]) \
-    X(slide_beam12p_planar_point_constraint, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]) \
-    X(slide_beam12p_planar_point_terms, *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]) \
-    X(slide_beam12p_planar_point_residual, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
-    X(slide_beam12p_planar_point_tangent, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
-    X(slide_beam12p_planar_point_discrete_gradient, *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]) \
-    X(slide_cable8p_planar_rigid_constraint, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]) \
-    X(slide_cable8p_planar_rigid_terms, *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]) \
-    X(slide_cable8p_planar_rigid_residual, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
-    X(slide_cable8p_planar_rigid_tangent, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
-    X(slide_cable8p_planar_rigid_discrete_gradient, *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]) \
-    X(slide_cable8p_planar_point_constraint, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]) \
-    X(slide_cable8p_planar_point_terms, *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]) \
-    X(slide_cable8p_planar_point_residual, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
-    X(slide_cable8p_planar_point_tangent, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
-    X(slide_cable8p_planar_point_discrete_gradient, *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]) \
-    X(frame_axes, a[0], a[1], out[0], out[1]) \
-    X(frame_motion, a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
-    X(frame_moment, a[0], a[1], a[2], out[0], out[1]) \
-    X(planar_frame_axes, a[0], a[1], out[0], out[1]) \
-    X(planar_frame_motion, a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
-    X(planar_frame_moment, a[0], a[1], a[2], out[0], out[1]) \
-    X(joint_spherical_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
-    X(joint_spherical_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
-    X(joint_revolute_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
-    X(joint_revolute_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
-    X(joint_revolute_angle_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
-    X(joint_revolute_angle_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
-    X(joint_universal_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
-    X(joint_universal_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
-    X(joint_cylindrical_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
-    X(joint_cylindrical_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
-    X(joint_cylindrical_angle_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
-    X(joint_cylindrical_angle_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
-    X(joint_cylindrical_distance_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
-    X(joint_cylindrical_distance_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
-    X(joint_prismatic_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
-    X(joint_prismatic_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
-    X(joint_prismatic_distance_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
-    X(joint_prismatic_distance_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
-    X(joint_weld_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
-    X(joint_weld_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
-    X(joint_distance_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
-    X(joint_distance_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
-    X(joint_aligned_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
-    X(joint_aligned_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
-    X(joint_locked_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
-    X(joint_locked_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
-    X(joint_planar_spherical_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
-    X(joint_planar_spherical_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
-    X(joint_planar_revolute_angle_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
-    X(joint_planar_revolute_angle_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
-    X(joint_planar_prismatic_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
-    X(joint_planar_prismatic_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
-    X(joint_planar_prismatic_distance_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
-    X(joint_planar_prismatic_distance_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
-    X(joint_planar_weld_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
-    X(joint_planar_weld_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
-    X(joint_planar_distance_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
-    X(joint_planar_distance_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
-    X(joint_planar_locked_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
-    X(joint_planar_locked_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
-    X(resistance_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]) \
-    X(planar_resistance_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]) \
-    X(drag_along_cable, a[0], a[1], a[2], out[0], out[1], out[2]) \
-    X(drag_lift_along_cable, a[0], a[1], a[2], out[0], out[1], out[2]) \
-    X(drag_on_section, a[0], a[1], a[2], a[3], a[4], out[0], out[1]) \
-    X(drag_on_point, a[0], a[1], out[0], out[1]) \
-    X(drag_on_foil, a[0], a[1], a[2], a[3], out[0], out[1]) \
-    X(drag_impulse_of_cable, a[0], a[1], a[2], out[0], out[1]) \
-    X(drag_inertia_of_cable, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8], out[9]) \
-    X(drag_inertia_step, a[0], a[1], a[2], a[3], a[4], out[0], out[1]) \
-    X(drag_impulse_of_point, a[0], a[1], a[2], out[0], out[1]) \
-    X(drag_inertia_of_point, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8], out[9]) \
-    X(drag_inertia_of_point_step, a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1], out[2], out[3]) \
-    X(drag_wet_sphere, a[0], out[0], out[1], out[2], out[3]) \
-    X(drag_wet_section, a[0], out[0], out[1], out[2], out[3]) \
-    X(drag_wet_column, a[0], a[1], out[0], out[1], out[2], out[3]) \
-    X(drag_entry_of_cable, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4], out[5]) \
-    X(drag_entry_of_point, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4], out[5]) \
-    X(planar_drag_along_cable, a[0], a[1], a[2], out[0], out[1], out[2]) \
-    X(planar_drag_on_point, a[0], a[1], out[0], out[1]) \
-    X(planar_drag_on_foil, a[0], a[1], a[2], a[3], out[0], out[1]) \
-    X(planar_drag_impulse_of_cable, a[0], a[1], a[2], out[0], out[1]) \
-    X(planar_drag_inertia_of_cable, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8], out[9]) \
-    X(planar_drag_inertia_step, a[0], a[1], a[2], a[3], a[4], out[0], out[1]) \
-    X(planar_drag_impulse_of_point, a[0], a[1], a[2], out[0], out[1]) \
-    X(planar_drag_inertia_of_point, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8], out[9]) \
-    X(planar_drag_inertia_of_point_step, a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1], out[2], out[3]) \
-    X(planar_drag_wet_sphere, a[0], out[0], out[1], out[2], out[3]) \
-    X(planar_drag_wet_section, a[0], out[0], out[1], out[2], out[3]) \
-    X(planar_drag_wet_column, a[0], a[1], out[0], out[1], out[2], out[3]) \
-    X(planar_drag_entry_of_cable, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4], out[5]) \
-    X(planar_drag_entry_of_point, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4], out[5]) \
-    X(crossing_closest, a[0], a[1], a[2], out[0]) \
-    X(crossing_contact, a[0], a[1], a[2], a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
-    X(crossing_force, a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5]) \
-    X(crossing_motion, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
-    X(crossing_stretch, a[0], a[1], a[2], a[3], a[4], a[5], a[6], *a[7], a[8], a[9], a[10], a[11], a[12], a[13], a[14], out[0], out[1], out[2]) \
-    X(crossing_sticking, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], *a[8], a[9], *a[10], a[11], a[12], a[13], a[14], a[15], a[16], a[17], out[0], out[1], out[2], out[3], out[4], out[5]) \
-    X(crossing_sliding, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], *a[8], *a[9], a[10], *a[11], a[12], a[13], a[14], a[15], a[16], a[17], a[18], *a[19], *a[20], *a[21], out[0], out[1], out[2], out[3], out[4], out[5]) \
-    X(crossing_step, a[0], a[1], a[2], a[3], *a[4], *a[5], *a[6], a[7], out[0], out[1], out[2]) \
-    X(planar_crossing_closest, a[0], a[1], a[2], out[0]) \
-    X(planar_crossing_contact, a[0], a[1], a[2], a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
-    X(planar_crossing_force, a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5]) \
-    X(planar_crossing_motion, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
-    X(planar_crossing_stretch, a[0], a[1], a[2], a[3], a[4], a[5], a[6], *a[7], a[8], a[9], a[10], a[11], a[12], a[13], a[14], out[0], out[1], out[2]) \
-    X(planar_crossing_sticking, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], *a[8], a[9], *a[10], a[11], a[12], a[13], a[14], a[15], a[16], a[17], out[0], out[1], out[2], out[3], out[4], out[5]) \
-    X(planar_crossing_sliding, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], *a[8], *a[9], a[10], *a[11], a[12], a[13], a[14], a[15], a[16], a[17], a[18], *a[19], *a[20], *a[21], out[0], out[1], out[2], out[3], out[4], out[5]) \
-    X(planar_crossing_step, a[0], a[1], a[2], a[3], *a[4], *a[5], *a[6], a[7], out[0], out[1], out[2]) \
-    X(surface_flat, a[0], a[1], out[0], out[1]) \
-    X(surface_rounded, a[0], a[1], *a[2], out[0], out[1], out[2]) \
-    X(surface_terrain, a[0], a[1], out[0], out[1], out[2]) \
-    X(surface_push, *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
-    X(surface_push_hertz, *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
-    X(surface_pressing, a[0], a[1], a[2], a[3], out[0], out[1], out[2]) \
-    X(surface_sticking, a[0], a[1], a[2], *a[3], out[0], out[1], out[2], out[3]) \
-    X(surface_sliding, a[0], a[1], a[2], a[3], a[4], *a[5], out[0], out[1], out[2], out[3]) \
-    X(surface_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], out[0], out[1]) \
-    X(surface_slip, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], *a[10], a[11], a[12], out[0], out[1]) \
-    X(planar_surface_flat, a[0], a[1], out[0], out[1]) \
-    X(planar_surface_rounded, a[0], a[1], *a[2], out[0], out[1], out[2]) \
-    X(planar_surface_terrain, a[0], a[1], out[0], out[1], out[2]) \
-    X(planar_surface_push, *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
-    X(planar_surface_push_hertz, *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]) \
-    X(planar_surface_pressing, a[0], a[1], a[2], a[3], out[0], out[1], out[2]) \
-    X(planar_surface_sticking, a[0], a[1], a[2], *a[3], out[0], out[1], out[2], out[3]) \
-    X(planar_surface_sliding, a[0], a[1], a[2], a[3], a[4], *a[5], out[0], out[1], out[2], out[3]) \
-    X(planar_surface_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], out[0], out[1]) \
-    X(planar_surface_slip, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], *a[10], a[11], a[12], out[0], out[1]) \
-    X(spring_energy, a[0], a[1], out[0]) \
-    X(spring_dissipation, a[0], a[1], a[2], out[0]) \
-    X(spring_force, a[0], a[1], a[2], out[0]) \
-    X(spring_tangent, a[0], a[1], a[2], out[0], out[1], out[2]) \
-    X(spring_discrete_force, a[0], *a[1], a[2], a[3], out[0], out[1]) \
-    X(planar_spring_energy, a[0], a[1], out[0]) \
-    X(planar_spring_dissipation, a[0], a[1], a[2], out[0]) \
-    X(planar_spring_force, a[0], a[1], a[2], out[0]) \
-    X(planar_spring_tangent, a[0], a[1], a[2], out[0], out[1], out[2]) \
-    X(planar_spring_discrete_force, a[0], *a[1], a[2], a[3], out[0], out[1]) \
-    X(spring_piece_energy, a[0], a[1], out[0]) \
-    X(spring_piece_dissipation, a[0], a[1], a[2], out[0]) \
-    X(spring_piece_force, a[0], a[1], a[2], out[0]) \
-    X(spring_piece_tangent, a[0], a[1], a[2], out[0], out[1], out[2]) \
-    X(spring_piece_discrete_force, a[0], *a[1], a[2], a[3], out[0], out[1]) \
-    X(planar_spring_piece_energy, a[0], a[1], out[0]) \
-    X(planar_spring_piece_dissipation, a[0], a[1], a[2], out[0]) \
-    X(planar_spring_piece_force, a[0], a[1], a[2], out[0]) \
-    X(planar_spring_piece_tangent, a[0], a[1], a[2], out[0], out[1], out[2]) \
-    X(planar_spring_piece_discrete_force, a[0], *a[1], a[2], a[3], out[0], out[1]) \
-    X(zero_length_spring_energy, a[0], a[1], out[0]) \
-    X(zero_length_spring_dissipation, a[0], a[1], a[2], out[0]) \
-    X(zero_length_spring_force, a[0], a[1], a[2], out[0]) \
-    X(zero_length_spring_tangent, a[0], a[1], a[2], out[0], out[1], out[2]) \
-    X(zero_length_spring_discrete_force, a[0], *a[1], a[2], a[3], out[0], out[1]) \
-    X(planar_zero_length_spring_energy, a[0], a[1], out[0]) \
-    X(planar_zero_length_spring_dissipation, a[0], a[1], a[2], out[0]) \
-    X(planar_zero_length_spring_force, a[0], a[1], a[2], out[0]) \
-    X(planar_zero_length_spring_tangent, a[0], a[1], a[2], out[0], out[1], out[2]) \
-    X(planar_zero_length_spring_discrete_force, a[0], *a[1], a[2], a[3], out[0], out[1]) \
+/* Arguments from arrays of pointers, to inputs `a` and outputs `out`: s a number, v an array, then how many outputs. */
+#define FU_ARGUMENTS_ssv_1 *a[0], *a[1], a[2], out[0]
+#define FU_ARGUMENTS_ssvv_1 *a[0], *a[1], a[2], a[3], out[0]
+#define FU_ARGUMENTS_vv_1 a[0], a[1], out[0]
+#define FU_ARGUMENTS_svv_2 *a[0], a[1], a[2], out[0], out[1]
+#define FU_ARGUMENTS_ss_2 *a[0], *a[1], out[0], out[1]
+#define FU_ARGUMENTS_ss_1 *a[0], *a[1], out[0]
+#define FU_ARGUMENTS_ssvv_2 *a[0], *a[1], a[2], a[3], out[0], out[1]
+#define FU_ARGUMENTS_sv_1 *a[0], a[1], out[0]
+#define FU_ARGUMENTS_svv_1 *a[0], a[1], a[2], out[0]
+#define FU_ARGUMENTS_svvv_1 *a[0], a[1], a[2], a[3], out[0]
+#define FU_ARGUMENTS_svvvs_1 *a[0], a[1], a[2], a[3], *a[4], out[0]
+#define FU_ARGUMENTS_svvvss_1 *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]
+#define FU_ARGUMENTS_svvvsv_2 *a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]
+#define FU_ARGUMENTS_ssvv_4 *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]
+#define FU_ARGUMENTS_svvv_2 *a[0], a[1], a[2], a[3], out[0], out[1]
+#define FU_ARGUMENTS_ssvvv_4 *a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]
+#define FU_ARGUMENTS_vv_2 a[0], a[1], out[0], out[1]
+#define FU_ARGUMENTS_vvv_4 a[0], a[1], a[2], out[0], out[1], out[2], out[3]
+#define FU_ARGUMENTS_vvv_3 a[0], a[1], a[2], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vv_3 a[0], a[1], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vvv_1 a[0], a[1], a[2], out[0]
+#define FU_ARGUMENTS_vvv_2 a[0], a[1], a[2], out[0], out[1]
+#define FU_ARGUMENTS_v_1 a[0], out[0]
+#define FU_ARGUMENTS_vvvvsvvvvvv_1 a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0]
+#define FU_ARGUMENTS_vsvv_1 a[0], *a[1], a[2], a[3], out[0]
+#define FU_ARGUMENTS_vvvvsvvvvvv_2 a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1]
+#define FU_ARGUMENTS_vvvvvvvv_1 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0]
+#define FU_ARGUMENTS_vvvvvvvv_4 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3]
+#define FU_ARGUMENTS_vvvvv_2 a[0], a[1], a[2], a[3], a[4], out[0], out[1]
+#define FU_ARGUMENTS_vvsvvvvs_1 a[0], a[1], *a[2], a[3], a[4], a[5], a[6], *a[7], out[0]
+#define FU_ARGUMENTS_vvsv_1 a[0], a[1], *a[2], a[3], out[0]
+#define FU_ARGUMENTS_vvvvvv_8 a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7]
+#define FU_ARGUMENTS_vvvvv_1 a[0], a[1], a[2], a[3], a[4], out[0]
+#define FU_ARGUMENTS_vvvvvvv_2 a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1]
+#define FU_ARGUMENTS_vvvvvvvvv_1 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], out[0]
+#define FU_ARGUMENTS_vvvv_2 a[0], a[1], a[2], a[3], out[0], out[1]
+#define FU_ARGUMENTS_vvvvvv_2 a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1]
+#define FU_ARGUMENTS_ssvvvv_4 *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]
+#define FU_ARGUMENTS_ssvvvvvv_9 *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]
+#define FU_ARGUMENTS_ssvvvv_2 *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]
+#define FU_ARGUMENTS_sssvvvv_1 *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]
+#define FU_ARGUMENTS_vvvvv_3 a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vvvvvvvv_2 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]
+#define FU_ARGUMENTS_vvvvv_5 a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]
+#define FU_ARGUMENTS_vvvvv_10 a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8], out[9]
+#define FU_ARGUMENTS_vvvvvvv_4 a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1], out[2], out[3]
+#define FU_ARGUMENTS_v_4 a[0], out[0], out[1], out[2], out[3]
+#define FU_ARGUMENTS_vv_4 a[0], a[1], out[0], out[1], out[2], out[3]
+#define FU_ARGUMENTS_vvvvv_6 a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4], out[5]
+#define FU_ARGUMENTS_vvvv_6 a[0], a[1], a[2], a[3], out[0], out[1], out[2], out[3], out[4], out[5]
+#define FU_ARGUMENTS_vvvvvv_6 a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5]
+#define FU_ARGUMENTS_vvvvvvvsvvvvvvv_3 a[0], a[1], a[2], a[3], a[4], a[5], a[6], *a[7], a[8], a[9], a[10], a[11], a[12], a[13], a[14], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vvvvvvvvsvsvvvvvvv_6 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], *a[8], a[9], *a[10], a[11], a[12], a[13], a[14], a[15], a[16], a[17], out[0], out[1], out[2], out[3], out[4], out[5]
+#define FU_ARGUMENTS_vvvvvvvvssvsvvvvvvvsss_6 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], *a[8], *a[9], a[10], *a[11], a[12], a[13], a[14], a[15], a[16], a[17], a[18], *a[19], *a[20], *a[21], out[0], out[1], out[2], out[3], out[4], out[5]
+#define FU_ARGUMENTS_vvvvsssv_3 a[0], a[1], a[2], a[3], *a[4], *a[5], *a[6], a[7], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vvs_3 a[0], a[1], *a[2], out[0], out[1], out[2]
+#define FU_ARGUMENTS_ssvs_6 *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]
+#define FU_ARGUMENTS_vvvv_3 a[0], a[1], a[2], a[3], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vvvs_4 a[0], a[1], a[2], *a[3], out[0], out[1], out[2], out[3]
+#define FU_ARGUMENTS_vvvvvs_4 a[0], a[1], a[2], a[3], a[4], *a[5], out[0], out[1], out[2], out[3]
+#define FU_ARGUMENTS_vvvvvvvvvv_2 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], out[0], out[1]
+#define FU_ARGUMENTS_vvvvvvvvvvsvv_2 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], *a[10], a[11], a[12], out[0], out[1]
+#define FU_ARGUMENTS_vsvv_2 a[0], *a[1], a[2], a[3], out[0], out[1]
 
-#define FU_CALL(name, ...) static void call_##name(const fu_real *const *a, fu_real *const *out) { name(__VA_ARGS__); }
+/* X(name, form of its arguments) for every kernel */
+#define FU_EVERY(X) \
+    X(beam24_mass, ssv_1) \
+    X(beam24_gravity, ssvv_1) \
+    X(beam24_inertia_force, vv_1) \
+    X(beam24_position, svv_2) \
+    X(beam24_on_axis, ss_2) \
+    X(beam24_slopes, ss_1) \
+    X(beam24_follower_force, ssvv_2) \
+    X(beam24_moment, ssvv_2) \
+    X(cable12_mass, ssv_1) \
+    X(cable12_gravity, ssvv_1) \
+    X(cable12_inertia_force, vv_1) \
+    X(cable12_position, svv_2) \
+    X(cable12_on_axis, ss_2) \
+    X(cable12_slopes, ss_1) \
+    X(cable12_follower_force, ssvv_2) \
+    X(cable12_moment, ssvv_2) \
+    X(cable18_mass, ssv_1) \
+    X(cable18_gravity, ssvv_1) \
+    X(cable18_inertia_force, vv_1) \
+    X(cable18_position, svv_2) \
+    X(cable18_on_axis, ss_2) \
+    X(cable18_slopes, ss_1) \
+    X(cable18_follower_force, ssvv_2) \
+    X(cable18_moment, ssvv_2) \
+    X(beam12p_mass, ssv_1) \
+    X(beam12p_gravity, ssvv_1) \
+    X(beam12p_inertia_force, vv_1) \
+    X(beam12p_position, svv_2) \
+    X(beam12p_on_axis, ss_2) \
+    X(beam12p_slopes, ss_1) \
+    X(beam12p_follower_force, ssvv_2) \
+    X(beam12p_moment, ssvv_2) \
+    X(cable8p_mass, ssv_1) \
+    X(cable8p_gravity, ssvv_1) \
+    X(cable8p_inertia_force, vv_1) \
+    X(cable8p_position, svv_2) \
+    X(cable8p_on_axis, ss_2) \
+    X(cable8p_slopes, ss_1) \
+    X(cable8p_follower_force, ssvv_2) \
+    X(cable8p_moment, ssvv_2) \
+    X(beam24_continuum_stiffness, sv_1) \
+    X(beam24_continuum_energy, svv_1) \
+    X(beam24_continuum_elastic_force, svv_1) \
+    X(beam24_continuum_elastic_tangent, svv_1) \
+    X(beam24_continuum_discrete_force, svvv_1) \
+    X(beam24_continuum_step_stiffness, svvv_1) \
+    X(beam24_continuum_damping_force, svvvs_1) \
+    X(beam24_continuum_damping_tangent, svvvss_1) \
+    X(beam24_continuum_dissipation, svvvs_1) \
+    X(beam24_continuum_algorithmic_force, svvvsv_2) \
+    X(beam24_continuum_section_forces, ssvv_4) \
+    X(beam24_continuum_curved_stiffness_at, svvv_2) \
+    X(beam24_continuum_curved_energy, svv_1) \
+    X(beam24_continuum_curved_elastic_force, svv_1) \
+    X(beam24_continuum_curved_elastic_tangent, svv_1) \
+    X(beam24_continuum_curved_discrete_force, svvv_1) \
+    X(beam24_continuum_curved_step_stiffness, svvv_1) \
+    X(beam24_continuum_curved_section_forces, ssvvv_4) \
+    X(beam24_structural_stiffness, svv_1) \
+    X(beam24_structural_energy, svv_1) \
+    X(beam24_structural_elastic_force, svv_1) \
+    X(beam24_structural_elastic_tangent, svv_1) \
+    X(beam24_structural_damping_force, svvvs_1) \
+    X(beam24_structural_damping_tangent, svvvss_1) \
+    X(beam24_structural_dissipation, svvvs_1) \
+    X(beam24_structural_section_forces, ssvvv_4) \
+    X(cable12_green_exact_stiffness, sv_1) \
+    X(cable12_green_exact_energy, svv_1) \
+    X(cable12_green_exact_elastic_force, svv_1) \
+    X(cable12_green_exact_elastic_tangent, svv_1) \
+    X(cable12_green_exact_discrete_force, svvv_1) \
+    X(cable12_green_exact_step_stiffness, svvv_1) \
+    X(cable12_green_exact_damping_force, svvvs_1) \
+    X(cable12_green_exact_damping_tangent, svvvss_1) \
+    X(cable12_green_exact_dissipation, svvvs_1) \
+    X(cable12_green_exact_algorithmic_force, svvvsv_2) \
+    X(cable12_green_exact_section_forces, ssvv_4) \
+    X(cable12_green_linear_stiffness, sv_1) \
+    X(cable12_green_linear_energy, svv_1) \
+    X(cable12_green_linear_elastic_force, svv_1) \
+    X(cable12_green_linear_elastic_tangent, svv_1) \
+    X(cable12_green_linear_discrete_force, svvv_1) \
+    X(cable12_green_linear_section_forces, ssvv_4) \
+    X(cable12_engineering_exact_stiffness, sv_1) \
+    X(cable12_engineering_exact_energy, svv_1) \
+    X(cable12_engineering_exact_elastic_force, svv_1) \
+    X(cable12_engineering_exact_elastic_tangent, svv_1) \
+    X(cable12_engineering_exact_discrete_force, svvv_1) \
+    X(cable12_engineering_exact_damping_force, svvvs_1) \
+    X(cable12_engineering_exact_damping_tangent, svvvss_1) \
+    X(cable12_engineering_exact_dissipation, svvvs_1) \
+    X(cable12_engineering_exact_algorithmic_force, svvvsv_2) \
+    X(cable12_engineering_exact_section_forces, ssvv_4) \
+    X(cable12_engineering_linear_stiffness, sv_1) \
+    X(cable12_engineering_linear_energy, svv_1) \
+    X(cable12_engineering_linear_elastic_force, svv_1) \
+    X(cable12_engineering_linear_elastic_tangent, svv_1) \
+    X(cable12_engineering_linear_discrete_force, svvv_1) \
+    X(cable12_engineering_linear_section_forces, ssvv_4) \
+    X(cable12_green_exact_assumed_stiffness, sv_1) \
+    X(cable12_green_exact_assumed_energy, svv_1) \
+    X(cable12_green_exact_assumed_elastic_force, svv_1) \
+    X(cable12_green_exact_assumed_elastic_tangent, svv_1) \
+    X(cable12_green_exact_assumed_discrete_force, svvv_1) \
+    X(cable12_green_exact_assumed_step_stiffness, svvv_1) \
+    X(cable12_green_exact_assumed_section_forces, ssvv_4) \
+    X(cable12_green_linear_assumed_stiffness, sv_1) \
+    X(cable12_green_linear_assumed_energy, svv_1) \
+    X(cable12_green_linear_assumed_elastic_force, svv_1) \
+    X(cable12_green_linear_assumed_elastic_tangent, svv_1) \
+    X(cable12_green_linear_assumed_discrete_force, svvv_1) \
+    X(cable12_green_linear_assumed_section_forces, ssvv_4) \
+    X(cable12_engineering_exact_assumed_stiffness, sv_1) \
+    X(cable12_engineering_exact_assumed_energy, svv_1) \
+    X(cable12_engineering_exact_assumed_elastic_force, svv_1) \
+    X(cable12_engineering_exact_assumed_elastic_tangent, svv_1) \
+    X(cable12_engineering_exact_assumed_discrete_force, svvv_1) \
+    X(cable12_engineering_exact_assumed_section_forces, ssvv_4) \
+    X(cable12_engineering_linear_assumed_stiffness, sv_1) \
+    X(cable12_engineering_linear_assumed_energy, svv_1) \
+    X(cable12_engineering_linear_assumed_elastic_force, svv_1) \
+    X(cable12_engineering_linear_assumed_elastic_tangent, svv_1) \
+    X(cable12_engineering_linear_assumed_discrete_force, svvv_1) \
+    X(cable12_engineering_linear_assumed_section_forces, ssvv_4) \
+    X(cable12_green_exact_curved_stiffness, svv_1) \
+    X(cable12_green_exact_curved_energy, svv_1) \
+    X(cable12_green_exact_curved_elastic_force, svv_1) \
+    X(cable12_green_exact_curved_elastic_tangent, svv_1) \
+    X(cable12_green_exact_curved_discrete_force, svvv_1) \
+    X(cable12_green_exact_curved_section_forces, ssvvv_4) \
+    X(cable12_engineering_exact_curved_stiffness, svv_1) \
+    X(cable12_engineering_exact_curved_energy, svv_1) \
+    X(cable12_engineering_exact_curved_elastic_force, svv_1) \
+    X(cable12_engineering_exact_curved_elastic_tangent, svv_1) \
+    X(cable12_engineering_exact_curved_discrete_force, svvv_1) \
+    X(cable12_engineering_exact_curved_section_forces, ssvvv_4) \
+    X(cable12_engineering_exact_tension_only_stiffness, sv_1) \
+    X(cable12_engineering_exact_tension_only_energy, svv_1) \
+    X(cable12_engineering_exact_tension_only_elastic_force, svv_1) \
+    X(cable12_engineering_exact_tension_only_elastic_tangent, svv_1) \
+    X(cable12_engineering_exact_tension_only_discrete_force, svvv_1) \
+    X(cable12_engineering_exact_tension_only_step_stiffness, svvv_1) \
+    X(cable12_engineering_exact_tension_only_damping_force, svvvs_1) \
+    X(cable12_engineering_exact_tension_only_damping_tangent, svvvss_1) \
+    X(cable12_engineering_exact_tension_only_dissipation, svvvs_1) \
+    X(cable12_engineering_exact_tension_only_section_forces, ssvv_4) \
+    X(cable18_green_exact_stiffness, sv_1) \
+    X(cable18_green_exact_energy, svv_1) \
+    X(cable18_green_exact_elastic_force, svv_1) \
+    X(cable18_green_exact_elastic_tangent, svv_1) \
+    X(cable18_green_exact_discrete_force, svvv_1) \
+    X(cable18_green_exact_step_stiffness, svvv_1) \
+    X(cable18_green_exact_damping_force, svvvs_1) \
+    X(cable18_green_exact_damping_tangent, svvvss_1) \
+    X(cable18_green_exact_dissipation, svvvs_1) \
+    X(cable18_green_exact_algorithmic_force, svvvsv_2) \
+    X(cable18_green_exact_section_forces, ssvv_4) \
+    X(cable18_engineering_exact_stiffness, sv_1) \
+    X(cable18_engineering_exact_energy, svv_1) \
+    X(cable18_engineering_exact_elastic_force, svv_1) \
+    X(cable18_engineering_exact_elastic_tangent, svv_1) \
+    X(cable18_engineering_exact_discrete_force, svvv_1) \
+    X(cable18_engineering_exact_damping_force, svvvs_1) \
+    X(cable18_engineering_exact_damping_tangent, svvvss_1) \
+    X(cable18_engineering_exact_dissipation, svvvs_1) \
+    X(cable18_engineering_exact_algorithmic_force, svvvsv_2) \
+    X(cable18_engineering_exact_section_forces, ssvv_4) \
+    X(cable18_green_exact_assumed_stiffness, sv_1) \
+    X(cable18_green_exact_assumed_energy, svv_1) \
+    X(cable18_green_exact_assumed_elastic_force, svv_1) \
+    X(cable18_green_exact_assumed_elastic_tangent, svv_1) \
+    X(cable18_green_exact_assumed_discrete_force, svvv_1) \
+    X(cable18_green_exact_assumed_step_stiffness, svvv_1) \
+    X(cable18_green_exact_assumed_section_forces, ssvv_4) \
+    X(cable18_engineering_exact_assumed_stiffness, sv_1) \
+    X(cable18_engineering_exact_assumed_energy, svv_1) \
+    X(cable18_engineering_exact_assumed_elastic_force, svv_1) \
+    X(cable18_engineering_exact_assumed_elastic_tangent, svv_1) \
+    X(cable18_engineering_exact_assumed_discrete_force, svvv_1) \
+    X(cable18_engineering_exact_assumed_section_forces, ssvv_4) \
+    X(beam12p_continuum_stiffness, sv_1) \
+    X(beam12p_continuum_energy, svv_1) \
+    X(beam12p_continuum_elastic_force, svv_1) \
+    X(beam12p_continuum_elastic_tangent, svv_1) \
+    X(beam12p_continuum_discrete_force, svvv_1) \
+    X(beam12p_continuum_step_stiffness, svvv_1) \
+    X(beam12p_continuum_damping_force, svvvs_1) \
+    X(beam12p_continuum_damping_tangent, svvvss_1) \
+    X(beam12p_continuum_dissipation, svvvs_1) \
+    X(beam12p_continuum_algorithmic_force, svvvsv_2) \
+    X(beam12p_continuum_section_forces, ssvv_4) \
+    X(beam12p_continuum_curved_stiffness_at, svvv_2) \
+    X(beam12p_continuum_curved_energy, svv_1) \
+    X(beam12p_continuum_curved_elastic_force, svv_1) \
+    X(beam12p_continuum_curved_elastic_tangent, svv_1) \
+    X(beam12p_continuum_curved_discrete_force, svvv_1) \
+    X(beam12p_continuum_curved_step_stiffness, svvv_1) \
+    X(beam12p_continuum_curved_section_forces, ssvvv_4) \
+    X(beam12p_structural_stiffness, svv_1) \
+    X(beam12p_structural_energy, svv_1) \
+    X(beam12p_structural_elastic_force, svv_1) \
+    X(beam12p_structural_elastic_tangent, svv_1) \
+    X(beam12p_structural_damping_force, svvvs_1) \
+    X(beam12p_structural_damping_tangent, svvvss_1) \
+    X(beam12p_structural_dissipation, svvvs_1) \
+    X(beam12p_structural_section_forces, ssvvv_4) \
+    X(cable8p_green_exact_stiffness, sv_1) \
+    X(cable8p_green_exact_energy, svv_1) \
+    X(cable8p_green_exact_elastic_force, svv_1) \
+    X(cable8p_green_exact_elastic_tangent, svv_1) \
+    X(cable8p_green_exact_discrete_force, svvv_1) \
+    X(cable8p_green_exact_step_stiffness, svvv_1) \
+    X(cable8p_green_exact_damping_force, svvvs_1) \
+    X(cable8p_green_exact_damping_tangent, svvvss_1) \
+    X(cable8p_green_exact_dissipation, svvvs_1) \
+    X(cable8p_green_exact_algorithmic_force, svvvsv_2) \
+    X(cable8p_green_exact_section_forces, ssvv_4) \
+    X(cable8p_green_linear_stiffness, sv_1) \
+    X(cable8p_green_linear_energy, svv_1) \
+    X(cable8p_green_linear_elastic_force, svv_1) \
+    X(cable8p_green_linear_elastic_tangent, svv_1) \
+    X(cable8p_green_linear_discrete_force, svvv_1) \
+    X(cable8p_green_linear_section_forces, ssvv_4) \
+    X(cable8p_engineering_exact_stiffness, sv_1) \
+    X(cable8p_engineering_exact_energy, svv_1) \
+    X(cable8p_engineering_exact_elastic_force, svv_1) \
+    X(cable8p_engineering_exact_elastic_tangent, svv_1) \
+    X(cable8p_engineering_exact_discrete_force, svvv_1) \
+    X(cable8p_engineering_exact_damping_force, svvvs_1) \
+    X(cable8p_engineering_exact_damping_tangent, svvvss_1) \
+    X(cable8p_engineering_exact_dissipation, svvvs_1) \
+    X(cable8p_engineering_exact_algorithmic_force, svvvsv_2) \
+    X(cable8p_engineering_exact_section_forces, ssvv_4) \
+    X(cable8p_engineering_linear_stiffness, sv_1) \
+    X(cable8p_engineering_linear_energy, svv_1) \
+    X(cable8p_engineering_linear_elastic_force, svv_1) \
+    X(cable8p_engineering_linear_elastic_tangent, svv_1) \
+    X(cable8p_engineering_linear_discrete_force, svvv_1) \
+    X(cable8p_engineering_linear_section_forces, ssvv_4) \
+    X(cable8p_green_exact_assumed_stiffness, sv_1) \
+    X(cable8p_green_exact_assumed_energy, svv_1) \
+    X(cable8p_green_exact_assumed_elastic_force, svv_1) \
+    X(cable8p_green_exact_assumed_elastic_tangent, svv_1) \
+    X(cable8p_green_exact_assumed_discrete_force, svvv_1) \
+    X(cable8p_green_exact_assumed_step_stiffness, svvv_1) \
+    X(cable8p_green_exact_assumed_section_forces, ssvv_4) \
+    X(cable8p_green_linear_assumed_stiffness, sv_1) \
+    X(cable8p_green_linear_assumed_energy, svv_1) \
+    X(cable8p_green_linear_assumed_elastic_force, svv_1) \
+    X(cable8p_green_linear_assumed_elastic_tangent, svv_1) \
+    X(cable8p_green_linear_assumed_discrete_force, svvv_1) \
+    X(cable8p_green_linear_assumed_section_forces, ssvv_4) \
+    X(cable8p_engineering_exact_assumed_stiffness, sv_1) \
+    X(cable8p_engineering_exact_assumed_energy, svv_1) \
+    X(cable8p_engineering_exact_assumed_elastic_force, svv_1) \
+    X(cable8p_engineering_exact_assumed_elastic_tangent, svv_1) \
+    X(cable8p_engineering_exact_assumed_discrete_force, svvv_1) \
+    X(cable8p_engineering_exact_assumed_section_forces, ssvv_4) \
+    X(cable8p_engineering_linear_assumed_stiffness, sv_1) \
+    X(cable8p_engineering_linear_assumed_energy, svv_1) \
+    X(cable8p_engineering_linear_assumed_elastic_force, svv_1) \
+    X(cable8p_engineering_linear_assumed_elastic_tangent, svv_1) \
+    X(cable8p_engineering_linear_assumed_discrete_force, svvv_1) \
+    X(cable8p_engineering_linear_assumed_section_forces, ssvv_4) \
+    X(cable8p_engineering_exact_tension_only_stiffness, sv_1) \
+    X(cable8p_engineering_exact_tension_only_energy, svv_1) \
+    X(cable8p_engineering_exact_tension_only_elastic_force, svv_1) \
+    X(cable8p_engineering_exact_tension_only_elastic_tangent, svv_1) \
+    X(cable8p_engineering_exact_tension_only_discrete_force, svvv_1) \
+    X(cable8p_engineering_exact_tension_only_step_stiffness, svvv_1) \
+    X(cable8p_engineering_exact_tension_only_damping_force, svvvs_1) \
+    X(cable8p_engineering_exact_tension_only_damping_tangent, svvvss_1) \
+    X(cable8p_engineering_exact_tension_only_dissipation, svvvs_1) \
+    X(cable8p_engineering_exact_tension_only_section_forces, ssvv_4) \
+    X(rigid_place, vv_2) \
+    X(rigid_point, vvv_4) \
+    X(rigid_point_force, vvv_3) \
+    X(rigid_frame, vv_3) \
+    X(rigid_inertia_force, svvv_1) \
+    X(rigid_inertia_tangent, svv_2) \
+    X(rigid_kinetic_energy, svv_1) \
+    X(rigid_discrete_point, vvv_1) \
+    X(rigid_force, vvv_2) \
+    X(rigid_follower_force, vvv_2) \
+    X(rigid_moment, vv_2) \
+    X(rigid_move, vv_1) \
+    X(rigid_move_tangent, v_1) \
+    X(rigid_cayley_move, vv_1) \
+    X(rigid_cayley_tangent, v_1) \
+    X(rigid_halfway, vv_1) \
+    X(rigid_rate, vv_1) \
+    X(rigid_increment, vv_1) \
+    X(planar_rigid_place, vv_2) \
+    X(planar_rigid_point, vvv_4) \
+    X(planar_rigid_point_force, vvv_3) \
+    X(planar_rigid_frame, vv_3) \
+    X(planar_rigid_inertia_force, svvv_1) \
+    X(planar_rigid_inertia_tangent, svv_2) \
+    X(planar_rigid_kinetic_energy, svv_1) \
+    X(planar_rigid_discrete_point, vvv_1) \
+    X(planar_rigid_force, vvv_2) \
+    X(planar_rigid_follower_force, vvv_2) \
+    X(planar_rigid_moment, vv_2) \
+    X(planar_rigid_move, vv_1) \
+    X(planar_rigid_move_tangent, v_1) \
+    X(planar_rigid_cayley_move, vv_1) \
+    X(planar_rigid_cayley_tangent, v_1) \
+    X(planar_rigid_halfway, vv_1) \
+    X(planar_rigid_rate, vv_1) \
+    X(planar_rigid_increment, vv_1) \
+    X(modal_inertia_force, vvvvsvvvvvv_1) \
+    X(modal_mass_matrix, vsvv_1) \
+    X(modal_inertia_tangent, vvvvsvvvvvv_2) \
+    X(modal_mode_force, vvvvvvvv_1) \
+    X(modal_mode_mass, vvv_1) \
+    X(modal_mode_tangent, vvvvvvvv_4) \
+    X(modal_pair_tangent, vvvvv_2) \
+    X(modal_kinetic_energy, vvsvvvvs_1) \
+    X(modal_potential_energy, vvsv_1) \
+    X(modal_attachment, vvvvvv_8) \
+    X(modal_attachment_mode, vvvvv_2) \
+    X(modal_attachment_force, vvvvv_1) \
+    X(modal_attachment_mode_force, vvvvvvv_2) \
+    X(modal_attachment_pair_force, vvvvvvvvv_1) \
+    X(modal_attachment_follower, vvvv_2) \
+    X(modal_attachment_mode_follower, vvvvvv_2) \
+    X(modal_attachment_pair_follower, vvvvvvvv_1) \
+    X(planar_modal_inertia_force, vvvvsvvvvvv_1) \
+    X(planar_modal_mass_matrix, vsvv_1) \
+    X(planar_modal_inertia_tangent, vvvvsvvvvvv_2) \
+    X(planar_modal_mode_force, vvvvvvvv_1) \
+    X(planar_modal_mode_mass, vvv_1) \
+    X(planar_modal_mode_tangent, vvvvvvvv_4) \
+    X(planar_modal_pair_tangent, vvvvv_2) \
+    X(planar_modal_kinetic_energy, vvsvvvvs_1) \
+    X(planar_modal_potential_energy, vvsv_1) \
+    X(planar_modal_attachment, vvvvvv_8) \
+    X(planar_modal_attachment_mode, vvvvv_2) \
+    X(planar_modal_attachment_force, vvvvv_1) \
+    X(planar_modal_attachment_mode_force, vvvvvvv_2) \
+    X(planar_modal_attachment_pair_force, vvvvvvvvv_1) \
+    X(planar_modal_attachment_follower, vvvv_2) \
+    X(planar_modal_attachment_mode_follower, vvvvvv_2) \
+    X(planar_modal_attachment_pair_follower, vvvvvvvv_1) \
+    X(slide_beam24_rigid_constraint, ssvvvv_4) \
+    X(slide_beam24_rigid_terms, ssvvvvvv_9) \
+    X(slide_beam24_rigid_residual, ssvvvv_2) \
+    X(slide_beam24_rigid_tangent, ssvvvv_2) \
+    X(slide_beam24_rigid_discrete_gradient, sssvvvv_1) \
+    X(slide_beam24_point_constraint, ssvvvv_4) \
+    X(slide_beam24_point_terms, ssvvvvvv_9) \
+    X(slide_beam24_point_residual, ssvvvv_2) \
+    X(slide_beam24_point_tangent, ssvvvv_2) \
+    X(slide_beam24_point_discrete_gradient, sssvvvv_1) \
+    X(slide_cable12_rigid_constraint, ssvvvv_4) \
+    X(slide_cable12_rigid_terms, ssvvvvvv_9) \
+    X(slide_cable12_rigid_residual, ssvvvv_2) \
+    X(slide_cable12_rigid_tangent, ssvvvv_2) \
+    X(slide_cable12_rigid_discrete_gradient, sssvvvv_1) \
+    X(slide_cable12_point_constraint, ssvvvv_4) \
+    X(slide_cable12_point_terms, ssvvvvvv_9) \
+    X(slide_cable12_point_residual, ssvvvv_2) \
+    X(slide_cable12_point_tangent, ssvvvv_2) \
+    X(slide_cable12_point_discrete_gradient, sssvvvv_1) \
+    X(slide_cable18_rigid_constraint, ssvvvv_4) \
+    X(slide_cable18_rigid_terms, ssvvvvvv_9) \
+    X(slide_cable18_rigid_residual, ssvvvv_2) \
+    X(slide_cable18_rigid_tangent, ssvvvv_2) \
+    X(slide_cable18_rigid_discrete_gradient, sssvvvv_1) \
+    X(slide_cable18_point_constraint, ssvvvv_4) \
+    X(slide_cable18_point_terms, ssvvvvvv_9) \
+    X(slide_cable18_point_residual, ssvvvv_2) \
+    X(slide_cable18_point_tangent, ssvvvv_2) \
+    X(slide_cable18_point_discrete_gradient, sssvvvv_1) \
+    X(slide_beam12p_planar_rigid_constraint, ssvvvv_4) \
+    X(slide_beam12p_planar_rigid_terms, ssvvvvvv_9) \
+    X(slide_beam12p_planar_rigid_residual, ssvvvv_2) \
+    X(slide_beam12p_planar_rigid_tangent, ssvvvv_2) \
+    X(slide_beam12p_planar_rigid_discrete_gradient, sssvvvv_1) \
+    X(slide_beam12p_planar_point_constraint, ssvvvv_4) \
+    X(slide_beam12p_planar_point_terms, ssvvvvvv_9) \
+    X(slide_beam12p_planar_point_residual, ssvvvv_2) \
+    X(slide_beam12p_planar_point_tangent, ssvvvv_2) \
+    X(slide_beam12p_planar_point_discrete_gradient, sssvvvv_1) \
+    X(slide_cable8p_planar_rigid_constraint, ssvvvv_4) \
+    X(slide_cable8p_planar_rigid_terms, ssvvvvvv_9) \
+    X(slide_cable8p_planar_rigid_residual, ssvvvv_2) \
+    X(slide_cable8p_planar_rigid_tangent, ssvvvv_2) \
+    X(slide_cable8p_planar_rigid_discrete_gradient, sssvvvv_1) \
+    X(slide_cable8p_planar_point_constraint, ssvvvv_4) \
+    X(slide_cable8p_planar_point_terms, ssvvvvvv_9) \
+    X(slide_cable8p_planar_point_residual, ssvvvv_2) \
+    X(slide_cable8p_planar_point_tangent, ssvvvv_2) \
+    X(slide_cable8p_planar_point_discrete_gradient, sssvvvv_1) \
+    X(frame_axes, vv_2) \
+    X(frame_motion, vvvvvv_2) \
+    X(frame_moment, vvv_2) \
+    X(planar_frame_axes, vv_2) \
+    X(planar_frame_motion, vvvvvv_2) \
+    X(planar_frame_moment, vvv_2) \
+    X(joint_spherical_force, vvvvv_3) \
+    X(joint_spherical_motion, vvvvvvvv_2) \
+    X(joint_revolute_force, vvvvv_3) \
+    X(joint_revolute_motion, vvvvvvvv_2) \
+    X(joint_revolute_angle_force, vvvvv_3) \
+    X(joint_revolute_angle_motion, vvvvvvvv_2) \
+    X(joint_universal_force, vvvvv_3) \
+    X(joint_universal_motion, vvvvvvvv_2) \
+    X(joint_cylindrical_force, vvvvv_3) \
+    X(joint_cylindrical_motion, vvvvvvvv_2) \
+    X(joint_cylindrical_angle_force, vvvvv_3) \
+    X(joint_cylindrical_angle_motion, vvvvvvvv_2) \
+    X(joint_cylindrical_distance_force, vvvvv_3) \
+    X(joint_cylindrical_distance_motion, vvvvvvvv_2) \
+    X(joint_prismatic_force, vvvvv_3) \
+    X(joint_prismatic_motion, vvvvvvvv_2) \
+    X(joint_prismatic_distance_force, vvvvv_3) \
+    X(joint_prismatic_distance_motion, vvvvvvvv_2) \
+    X(joint_weld_force, vvvvv_3) \
+    X(joint_weld_motion, vvvvvvvv_2) \
+    X(joint_distance_force, vvvvv_3) \
+    X(joint_distance_motion, vvvvvvvv_2) \
+    X(joint_aligned_force, vvvvv_3) \
+    X(joint_aligned_motion, vvvvvvvv_2) \
+    X(joint_locked_force, vvvvv_3) \
+    X(joint_locked_motion, vvvvvvvv_2) \
+    X(joint_planar_spherical_force, vvvvv_3) \
+    X(joint_planar_spherical_motion, vvvvvvvv_2) \
+    X(joint_planar_revolute_angle_force, vvvvv_3) \
+    X(joint_planar_revolute_angle_motion, vvvvvvvv_2) \
+    X(joint_planar_prismatic_force, vvvvv_3) \
+    X(joint_planar_prismatic_motion, vvvvvvvv_2) \
+    X(joint_planar_prismatic_distance_force, vvvvv_3) \
+    X(joint_planar_prismatic_distance_motion, vvvvvvvv_2) \
+    X(joint_planar_weld_force, vvvvv_3) \
+    X(joint_planar_weld_motion, vvvvvvvv_2) \
+    X(joint_planar_distance_force, vvvvv_3) \
+    X(joint_planar_distance_motion, vvvvvvvv_2) \
+    X(joint_planar_locked_force, vvvvv_3) \
+    X(joint_planar_locked_motion, vvvvvvvv_2) \
+    X(resistance_force, vvvvv_5) \
+    X(planar_resistance_force, vvvvv_5) \
+    X(drag_along_cable, vvv_3) \
+    X(drag_lift_along_cable, vvv_3) \
+    X(drag_on_section, vvvvv_2) \
+    X(drag_on_point, vv_2) \
+    X(drag_on_foil, vvvv_2) \
+    X(drag_impulse_of_cable, vvv_2) \
+    X(drag_inertia_of_cable, vvvvv_10) \
+    X(drag_inertia_step, vvvvv_2) \
+    X(drag_impulse_of_point, vvv_2) \
+    X(drag_inertia_of_point, vvvvv_10) \
+    X(drag_inertia_of_point_step, vvvvvvv_4) \
+    X(drag_wet_sphere, v_4) \
+    X(drag_wet_section, v_4) \
+    X(drag_wet_column, vv_4) \
+    X(drag_entry_of_cable, vvvvv_6) \
+    X(drag_entry_of_point, vvvvv_6) \
+    X(planar_drag_along_cable, vvv_3) \
+    X(planar_drag_on_point, vv_2) \
+    X(planar_drag_on_foil, vvvv_2) \
+    X(planar_drag_impulse_of_cable, vvv_2) \
+    X(planar_drag_inertia_of_cable, vvvvv_10) \
+    X(planar_drag_inertia_step, vvvvv_2) \
+    X(planar_drag_impulse_of_point, vvv_2) \
+    X(planar_drag_inertia_of_point, vvvvv_10) \
+    X(planar_drag_inertia_of_point_step, vvvvvvv_4) \
+    X(planar_drag_wet_sphere, v_4) \
+    X(planar_drag_wet_section, v_4) \
+    X(planar_drag_wet_column, vv_4) \
+    X(planar_drag_entry_of_cable, vvvvv_6) \
+    X(planar_drag_entry_of_point, vvvvv_6) \
+    X(crossing_closest, vvv_1) \
+    X(crossing_contact, vvvv_6) \
+    X(crossing_force, vvvvvv_6) \
+    X(crossing_motion, vvvvv_3) \
+    X(crossing_stretch, vvvvvvvsvvvvvvv_3) \
+    X(crossing_sticking, vvvvvvvvsvsvvvvvvv_6) \
+    X(crossing_sliding, vvvvvvvvssvsvvvvvvvsss_6) \
+    X(crossing_step, vvvvsssv_3) \
+    X(planar_crossing_closest, vvv_1) \
+    X(planar_crossing_contact, vvvv_6) \
+    X(planar_crossing_force, vvvvvv_6) \
+    X(planar_crossing_motion, vvvvv_3) \
+    X(planar_crossing_stretch, vvvvvvvsvvvvvvv_3) \
+    X(planar_crossing_sticking, vvvvvvvvsvsvvvvvvv_6) \
+    X(planar_crossing_sliding, vvvvvvvvssvsvvvvvvvsss_6) \
+    X(planar_crossing_step, vvvvsssv_3) \
+    X(surface_flat, vv_2) \
+    X(surface_rounded, vvs_3) \
+    X(surface_terrain, vv_3) \
+    X(surface_push, ssvs_6) \
+    X(surface_push_hertz, ssvs_6) \
+    X(surface_pressing, vvvv_3) \
+    X(surface_sticking, vvvs_4) \
+    X(surface_sliding, vvvvvs_4) \
+    X(surface_motion, vvvvvvvvvv_2) \
+    X(surface_slip, vvvvvvvvvvsvv_2) \
+    X(planar_surface_flat, vv_2) \
+    X(planar_surface_rounded, vvs_3) \
+    X(planar_surface_terrain, vv_3) \
+    X(planar_surface_push, ssvs_6) \
+    X(planar_surface_push_hertz, ssvs_6) \
+    X(planar_surface_pressing, vvvv_3) \
+    X(planar_surface_sticking, vvvs_4) \
+    X(planar_surface_sliding, vvvvvs_4) \
+    X(planar_surface_motion, vvvvvvvvvv_2) \
+    X(planar_surface_slip, vvvvvvvvvvsvv_2) \
+    X(spring_energy, vv_1) \
+    X(spring_dissipation, vvv_1) \
+    X(spring_force, vvv_1) \
+    X(spring_tangent, vvv_3) \
+    X(spring_discrete_force, vsvv_2) \
+    X(planar_spring_energy, vv_1) \
+    X(planar_spring_dissipation, vvv_1) \
+    X(planar_spring_force, vvv_1) \
+    X(planar_spring_tangent, vvv_3) \
+    X(planar_spring_discrete_force, vsvv_2) \
+    X(spring_piece_energy, vv_1) \
+    X(spring_piece_dissipation, vvv_1) \
+    X(spring_piece_force, vvv_1) \
+    X(spring_piece_tangent, vvv_3) \
+    X(spring_piece_discrete_force, vsvv_2) \
+    X(planar_spring_piece_energy, vv_1) \
+    X(planar_spring_piece_dissipation, vvv_1) \
+    X(planar_spring_piece_force, vvv_1) \
+    X(planar_spring_piece_tangent, vvv_3) \
+    X(planar_spring_piece_discrete_force, vsvv_2) \
+    X(zero_length_spring_energy, vv_1) \
+    X(zero_length_spring_dissipation, vvv_1) \
+    X(zero_length_spring_force, vvv_1) \
+    X(zero_length_spring_tangent, vvv_3) \
+    X(zero_length_spring_discrete_force, vsvv_2) \
+    X(planar_zero_length_spring_energy, vv_1) \
+    X(planar_zero_length_spring_dissipation, vvv_1) \
+    X(planar_zero_length_spring_force, vvv_1) \
+    X(planar_zero_length_spring_tangent, vvv_3) \
+    X(planar_zero_length_spring_discrete_force, vsvv_2) \
+
+#define FU_CALL(name, form) \
+    static void call_##name(const fu_real *const *a, fu_real *const *out) { name(FU_ARGUMENTS_##form); }
 FU_EVERY(FU_CALL)
 
-#define FU_NAMED(name, ...) { #name, call_##name },
+#define FU_NAMED(name, form) { #name, call_##name },
 const fu_kernel fu_kernels[] = {
     FU_EVERY(FU_NAMED)
 };

@@ -1,8 +1,8 @@
 """manifest.json: what the generated files hold, from which sources and with which tools they were made.
 
 Each source and each file of a family has one row with a hash. The files of all families have none: they are rendered
-anew each time. Kernels name their arguments by name and shape, so that a new argument leaves the rows of others as
-they are.
+anew each time. A kernel has a row below its family, and names the source where it is not the family's. It lists its
+arguments by name and shape, so that a new argument leaves the rows of others as they are.
 """
 
 from __future__ import annotations
@@ -11,9 +11,11 @@ import json
 from collections import Counter
 from collections.abc import Collection, Iterable
 from dataclasses import asdict, dataclass, replace
+from typing import Any
 
+from .described import described
 from .family import Family, PointLawFamily
-from .program import Argument
+from .program import Argument, Program
 from .provenance import hashes
 from .rendering import Derived, Recorded, digest, interface, layout, tables, tools
 
@@ -22,10 +24,12 @@ def recorded(family: Family, manifest: dict) -> Derived | None:
     """Return a family as the manifest has it, without a derivation; None where it has not."""
     if family.name not in manifest.get("families", {}):
         return None
-    every = {key: Argument(a["name"], tuple(a["shape"]), a["unit"], a["doc"])
-             for key, a in manifest["arguments"].items()}
-    kernels = [Recorded(name, k["doc"], k["source"], [every[a] for a in k["inputs"]], [every[a] for a in k["outputs"]],
-                        k["operations"]) for name, k in manifest["kernels"].items() if k["family"] == family.name]
+
+    def arguments(rows: list[dict]) -> list[Argument]:
+        return [Argument(a["name"], tuple(a["shape"]), a["unit"], a["doc"]) for a in rows]
+
+    kernels = [Recorded(name, k["doc"], k["source"], arguments(k["inputs"]), arguments(k["outputs"]), k["operations"])
+               for name, k in described(manifest, [family.name]).items()]
     return Derived(replace(family, doc=manifest["families"][family.name]["doc"]), kernels)
 
 
@@ -49,10 +53,14 @@ def text(every: list[Derived], made_from: Origin, files: dict[str, str], layout_
     files: texts of generated files, whose hashes it keeps; layout_of: as in `rendering.render`; more: further parts.
     """
     arguments = _keys(a for d in every for p in d.programs for a in (*p.inputs, *p.outputs))
-    kernels = {p.name: {"doc": p.doc, "source": p.source, "family": d.family.name,
-                        "inputs": [arguments[a] for a in p.inputs], "outputs": [arguments[a] for a in p.outputs],
-                        "operations": {kind: n for kind, n in p.operations().items() if n}}
-               for d in every for p in d.programs}
+
+    def row(program: Program | Recorded, source: str) -> dict:
+        listed = " -> ".join(", ".join(arguments[a] for a in of) for of in (program.inputs, program.outputs))
+        return {"doc": program.doc, **({} if program.source == source else {"source": program.source}),
+                "arguments": listed, "operations": {kind: n for kind, n in program.operations().items() if n}}
+
+    kernels = {d.family.name: {p.name.removeprefix(d.family.name + "_"): row(p, d.source) for p in d.programs}
+               for d in every}
     laid_out = layout(tables(every, layout_of))
     content = {"tools": made_from.tools,
                "interface": interface(laid_out),
@@ -60,11 +68,10 @@ def text(every: list[Derived], made_from: Origin, files: dict[str, str], layout_
                "elements": {d.family.name: _element(d.family, every) for d in every if d.family.role == "element"},
                "point_laws": {d.family.name: _point_law(d.family) for d in every
                               if isinstance(d.family, PointLawFamily)},
-               "families": {d.family.name: {"doc": d.family.doc} for d in every},
+               "families": {d.family.name: {"doc": d.family.doc, "source": d.source} for d in every},
                "sources": made_from.sources,
                "files": {name: digest(content) for name, content in sorted(files.items())},
-               "arguments": {key: {"name": a.name, "shape": list(a.shape), "unit": a.unit, "doc": a.doc}
-                             for a, key in arguments.items()},
+               "arguments": {key: {"unit": a.unit, "doc": a.doc} for a, key in arguments.items()},
                "kernels": kernels} | (more or {})
     return json_text(content)
 
@@ -82,16 +89,21 @@ def _keys(arguments: Iterable[Argument]) -> dict[Argument, str]:
 
 
 def json_text(content: dict) -> str:
-    """Return JSON text with a line for each entry of each part."""
-    parts = []
-    for name, part in content.items():
-        rows = part if isinstance(part, list) else [part]
-        lines = ([f"{json.dumps(key)}: {json.dumps(value)}" for key, value in part.items()] if isinstance(part, dict)
-                 else [json.dumps(row) for row in rows])
-        first, last = "{}" if isinstance(part, dict) else "[]" if isinstance(part, list) else ("", "")
-        inner = ",\n  ".join(lines)
-        parts.append(f' {json.dumps(name)}: ' + (f"{first}\n  {inner}\n {last}" if first else inner))
+    """Return JSON text with a line for each entry of each part, of the kernels for each kernel."""
+    parts = [f" {json.dumps(name)}: {_rows(part, 2 if name == 'kernels' else 1, ' ')}"
+             for name, part in content.items()]
     return "{\n" + ",\n".join(parts) + "\n}\n"
+
+
+def _rows(value: Any, depth: int, indent: str) -> str:
+    """Return JSON text with a line for each entry down to a depth."""
+    if depth == 0 or not isinstance(value, (dict, list)):
+        return json.dumps(value)
+    rows = ([f"{json.dumps(key)}: {_rows(entry, depth - 1, indent + ' ')}" for key, entry in value.items()]
+            if isinstance(value, dict) else [json.dumps(entry) for entry in value])
+    first, last = "{}" if isinstance(value, dict) else "[]"
+    inner = f",\n{indent} ".join(rows)
+    return f"{first}\n{indent} {inner}\n{indent}{last}"
 
 
 def _element(family: Family, every: list[Derived]) -> dict:

@@ -5,8 +5,10 @@ Everything a template prints is decided here or earlier; the templates only lay 
 
 from __future__ import annotations
 
+import inspect
 import json
 import textwrap
+from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from importlib import metadata
@@ -15,6 +17,7 @@ import jinja2
 import sympy as sp
 
 from .c_printer import c_expression
+from .described import described
 from .family import Family, FamilyError
 from .loops import sections
 from .program import Argument, Program
@@ -56,6 +59,11 @@ class Derived:
 
     family: Family
     programs: list[Program] | list[Recorded]
+
+    @property
+    def source(self) -> str:
+        """Return the source that most of its kernels have."""
+        return Counter(program.source for program in self.programs).most_common(1)[0][0] if self.programs else ""
 
 
 def derive(family: Family) -> Derived:
@@ -136,9 +144,12 @@ def render(every: list[Derived], wanted: Iterable[str], done: Callable[[str], No
     laws = [derived for derived in every if block_kernels(derived)]
     forms = {kernel: program for kernel in BLOCKS for derived in reversed(laws) for program in derived.programs
              if program.name in blocks and program.name == f"{derived.family.name}_{kernel}"}
-    common = {"every": every, "tables": tables(every, layout_of), "signature": signature, "call": _call,
-              "blocks": blocks, "about": _about, "entry": _entry,
-              "laws": laws, "kernels": BLOCKS, "block_forms": forms}
+    of_roles = tables(every, layout_of)
+    common = {"every": every, "tables": of_roles, "declarations": _declarations(every, of_roles),
+              "signature": signature, "form": _form, "calls": {_form(p): _call(p) for d in every for p in d.programs},
+              "blocks": blocks,
+              "entry": _entry, "laws": laws, "kernels": BLOCKS, "block_forms": forms,
+              "described": inspect.getsource(described)}
     for name in COMMON if layout_of is None else (HEADER, REGISTRY):
         files[name] = environment.get_template(f"{name}.jinja").render(**common)
     return files
@@ -167,13 +178,55 @@ def signature(program: Program | Recorded) -> str:
     return ", ".join([*inputs, *(f"fu_real *{a.name}" for a in program.outputs)])
 
 
-def _about(program: Program | Recorded) -> list[str]:
-    """Return the comment on a kernel: what it gives, shapes and units of its arguments."""
-    def shown(arguments: list[Argument]) -> str:
-        return "; ".join(f"{a.name} {'x'.join(map(str, a.shape))}[{a.unit}]" if a.shape else f"{a.name} [{a.unit}]"
-                         for a in arguments)
+def _about(program: Program | Recorded) -> str:
+    """Return what a kernel gives, with the units of its arguments."""
+    inputs, outputs = ("; ".join(f"{a.name} [{a.unit}]" for a in of) for of in (program.inputs, program.outputs))
+    return f"{program.doc}: {inputs} -> {outputs}"
 
-    text = f"{program.doc}: {shown(program.inputs)} -> {shown(program.outputs)}"
+
+def _sizes(program: Program | Recorded) -> str:
+    """Return the shapes of a kernel's arrays."""
+    return ", ".join(f"{a.name} {'x'.join(map(str, a.shape))}" for a in (*program.inputs, *program.outputs) if a.shape)
+
+
+def _declarations(every: list[Derived], of: dict[str, Table]) -> list[str]:
+    """Return the lines that declare all kernels: those of a table by type, kernels alike below one comment."""
+    lines = []
+    others = {p.name: p for d in every for p in d.programs}
+    for role, table in of.items():
+        for suffix, parameters in table.kernels.items():
+            kind = f"fu_{role}_{suffix}_kernel"
+            names = [f"{d.family.name}_{suffix}" for d in table.members]
+            lines += ["", f"typedef void {kind}({parameters});",
+                      *_commented((others.pop(name) for name in names if name in others), kind)]
+    return [*lines, "", *_commented(others.values())]
+
+
+def _commented(programs: Iterable[Program | Recorded], kind: str = "") -> list[str]:
+    """Return declarations of kernels, of a type if it has a name, below comments: what they give and units, then sizes.
+    """
+    lines = []
+    for about, of_text in _by(_about, programs).items():
+        lines += _comment(about)
+        for sizes, alike in _by(_sizes, of_text).items():
+            declared = ([f"{kind} {', '.join(p.name for p in alike)};"] if kind
+                        else [f"void {p.name}({signature(p)});" for p in alike])
+            lines += [*_comment(sizes), *(line for text in declared for line in textwrap.wrap(
+                text, WIDTH, subsequent_indent="    ", break_long_words=False))]
+    return lines
+
+
+def _by(key: Callable[[Program | Recorded], str],
+        programs: Iterable[Program | Recorded]) -> dict[str, list[Program | Recorded]]:
+    """Return programs by what a key says of them, in order of first mention."""
+    found: dict[str, list[Program | Recorded]] = {}
+    for program in programs:
+        found.setdefault(key(program), []).append(program)
+    return found
+
+
+def _comment(text: str) -> list[str]:
+    """Return the lines of a comment in C."""
     lines = textwrap.wrap(text, WIDTH - 6, break_long_words=False, break_on_hyphens=False)
     return [f"{' *' if k else '/*'} {line}{' */' if k == len(lines) - 1 else ''}" for k, line in enumerate(lines)]
 
@@ -200,7 +253,7 @@ def _number(expr: sp.Expr) -> str:
 
 
 def _operations_text(program: Program) -> str:
-    return ", ".join(f"{n} {name}" for name, n in program.operations().items() if n)
+    return ", ".join(f"{n} {name}" for name, n in program.operations().items() if n) or "no operations"
 
 
 def _shared(members: list[Derived]) -> dict[str, str]:
@@ -226,6 +279,11 @@ def _signatures(derived: Derived) -> dict[str, str]:
     """Return the C parameters by kernel, of those that belong in the table."""
     every = {p.name.removeprefix(derived.family.name + "_"): signature(p) for p in derived.programs}
     return {suffix: text for suffix, text in every.items() if suffix not in derived.family.outside_table}
+
+
+def _form(program: Program | Recorded) -> str:
+    """Return the form of a kernel's arguments: s for each number, v for each array, then how many outputs."""
+    return "".join("v" if a.shape else "s" for a in program.inputs) + f"_{len(program.outputs)}"
 
 
 def _call(program: Program | Recorded) -> str:

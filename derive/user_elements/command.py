@@ -13,6 +13,7 @@ from rich.console import Console
 from rich.table import Table
 
 from ..codegen import rendering as emit
+from ..codegen.described import described
 from ..codegen.family import Family, LawFamily
 from ..laws import law_name
 from ..laws.kernels import Kernels
@@ -89,7 +90,7 @@ def _make(spec: Path, families: dict[str, Family], work: Path, out: Path, consol
         program = timing.build(families.values(), manifest, load_library(made).kernels, units,
                                [*SHARED_FLAGS, f"-I{made}"], extra)
         times, sizes = timing.times(program, ROUNDS), timing.code_sizes(program)
-    console.print(_table(manifest["kernels"], times, sizes, report))
+    console.print(_table(described(manifest), times, sizes, report))
     library.move(made, out)
 
 

@@ -21,15 +21,13 @@ class _Shared(_Described):
 
 
 class _Argument(_Described):
-    name: str
-    shape: list[int]
+    unit: str
+    doc: str
 
 
 class _Kernel(_Described):
     doc: str
-    source: str
-    inputs: list[str]
-    outputs: list[str]
+    arguments: str
 
 
 class _Element(_Described):
@@ -46,7 +44,7 @@ class Manifest(_Described):
     library: _Shared
     elements: dict[str, _Element]
     arguments: dict[str, _Argument]
-    kernels: dict[str, _Kernel]
+    kernels: dict[str, dict[str, _Kernel]]
     tools: dict[str, str]
     families: dict[str, dict]
     sources: dict[str, str]

@@ -23,6 +23,7 @@ from funicular.derive.catalogue import families
 from funicular.derive.codegen import drift
 from funicular.derive.verify import timing
 from funicular.derive.verify.compiled import compile_units, compiler
+from funicular.generated import described
 from funicular.generated import kernels as compiled
 from table import Parser, arguments, show
 
@@ -59,9 +60,10 @@ def rows(repetitions: int) -> list[dict]:
         units = compile_units((drift.folder() / f"{name}.c" for name in manifest["families"]), flags, Path(folder))
         program = timing.build(families().values(), manifest, compiled, units, flags, Path(folder))
         times, sizes = timing.times(program, repetitions), timing.code_sizes(program)
-    none = {operation: 0 for kernel in manifest["kernels"].values() for operation in kernel["operations"]}
+    every = described(manifest)
+    none = {operation: 0 for kernel in every.values() for operation in kernel["operations"]}
     found = []
-    for name, kernel in manifest["kernels"].items():
+    for name, kernel in every.items():
         of = kernel["family"].partition("_")[0], name.removeprefix(kernel["family"] + "_")
         found.append({"kernel": name, "us": median(times[name]), "least": min(times[name]), "aim": AIMS.get(of, ""),
                       "operations": sum(kernel["operations"].values()), **none | kernel["operations"],

@@ -32,7 +32,7 @@ from time import process_time
 
 import numpy as np
 from funicular import GeneralSection, Material, Scene
-from funicular.generated import kernels
+from funicular.generated import described, kernels
 from funicular.kernels.elements import manifest
 from funicular.results.section_forces.forces import of_run
 from funicular.scene.file import loads
@@ -188,7 +188,7 @@ def main() -> None:
 
 def operations(element: str, law: str) -> dict[str, object]:
     """Arithmetic operations of a call; kernels.py has the times."""
-    every = manifest()["kernels"]
+    every = described(manifest())
     return {"element": element, "law": law} | {
         kernel: sum(every[f"{element}_{law}_{kernel}"]["operations"].values())
         for kernel in ("elastic_force", "elastic_tangent", "discrete_force")}

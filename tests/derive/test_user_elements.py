@@ -319,7 +319,7 @@ def test_a_damaged_manifest_is_refused(copied):
 
 def test_a_library_without_a_kernel_that_it_names(copied):
     def rename(content):
-        content["kernels"]["mine8p_absent"] = content["kernels"].pop("mine8p_mass")
+        content["kernels"]["mine8p"]["absent"] = content["kernels"]["mine8p"].pop("mass")
         content["library"]["digest"] = manifest_digest(content)
 
     _change(copied, rename)
