@@ -12,6 +12,7 @@ from .model.model import Model
 
 STATUS: dict[int, str]
 CAUSES: dict[int, str | None]
+COUPLING_TYPES: tuple[str, ...]
 OUTPUTS: dict[str, dict[str, Output]]
 SLACK_STRAIN: float
 

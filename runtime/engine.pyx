@@ -59,6 +59,15 @@ Output.__doc__ = """A number or vector of a coupling in a row of output (base/fi
 unit, and how other axes change it: as a "point", a "direction", a direction in "body axes", or "" not at all."""
 
 
+def _coupling_types():
+    cdef size_t k = 0
+    names = []
+    while fu_coupling_type_at(k) != NULL:
+        names.append(fu_coupling_type_at(k).name.decode())
+        k += 1
+    return tuple(names)
+
+
 def _described_outputs():
     """Return the fields of rows of output, by kind and name, as the types of couplings describe them."""
     cdef size_t k = 0
@@ -98,6 +107,8 @@ STATUS = {FU_DONE: "completed", FU_END_OF_CABLE: "end_of_cable", FU_NO_CONVERGEN
 CAUSES = {FU_NO_FAILURE: None, FU_ITERATION: "iteration", FU_MATRIX: "matrix", FU_ERROR: "error",
           FU_LOST_RIDER: "lost_rider", FU_NOT_FINITE: "not_finite", FU_SELF_LOCKING: "self_locking",
           FU_NOT_KNOWN: "not_known"}
+COUPLING_TYPES = _coupling_types()
+"""Names of the types of couplings, in the order in which the engine adds up their forces."""
 OUTPUTS = _described_outputs()
 """Of each kind of coupling that has some the fields of a row of output, by name; a state of rest has them, too."""
 SLACK_STRAIN = FU_SLACK_STRAIN

@@ -16,6 +16,7 @@ from ..parts.rigid_body import largest_moment
 from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
 from .hulls import Hull, hull_of
+from .signals import Signals
 
 UP, CARRIED = -1, -2
 """What completes the frame of a tangent, as couplings/common/attachments.h has it:
@@ -52,20 +53,25 @@ class AttachmentModel:
     modal: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
 
 
-class AttachmentBuilder:
-    """Makes the models of attachments; `cables` and `bodies` are the models, in the scene's order."""
+class ModelBuilder:
+    """Makes what couplings consist of: attachments, hulls of cables, signals.
+
+    cables, bodies: the models, in the scene's order.
+    """
 
     def __init__(self, scene: SceneData, cables: list, bodies: list):
-        self.scene, self.cables, self.bodies = scene, cables, bodies
+        self.scene: SceneData = scene
+        self.cables, self.bodies = cables, bodies
         self.cable_index = {name: k for k, name in enumerate(scene.cables)}
         self.body_index = {name: k for k, name in enumerate(scene.bodies)}
+        self.signals = Signals()
         self.hulls: dict[int, Hull] = {}
         self._made: dict[Hashable, Any] = {}
 
-    def once(self, key: Hashable, make: Callable[[], T]) -> T:
-        """Return what `make` makes, which is made once for a key: many pairs share their bodies and surfaces."""
+    def once(self, key: Hashable, make: Callable[[ModelBuilder], T]) -> T:
+        """Return make(builder), computed once for each key: many pairs share their bodies and surfaces."""
         if key not in self._made:
-            self._made[key] = make()
+            self._made[key] = make(self)
         made: T = self._made[key]
         return made
 
@@ -83,8 +89,8 @@ class AttachmentBuilder:
         element = int(model.mesh.element_at(s))
         return element, s - model.mesh.start(element)
 
-    def model(self, attachment: Attachment, axes: np.ndarray | None = None,
-              up: tuple[float, ...] | np.ndarray | None = None) -> AttachmentModel:
+    def attachment(self, attachment: Attachment, axes: np.ndarray | None = None,
+                   up: tuple[float, ...] | np.ndarray | None = None) -> AttachmentModel:
         """Return the model of a complete attachment, with axes (3, 3) in the frame of what carries it where it has
         some.
         """

@@ -6,14 +6,13 @@ import numpy as np
 
 from ..kernels.libraries import tables_of
 from ..parts.scene_data import SceneData
-from .attachments import AttachmentBuilder
+from .attachments import ModelBuilder
 from .bodies import body_gravity, body_models, body_weights, configuration_of, dofs_of, velocity_of
 from .border import ACCELERATIONS, NEWTON, elimination
 from .cables import cable_gravity, cable_model, cable_rates, cable_weights, level_tied_slopes
 from .coupling import number
 from .cutting import attached
 from .kinds import COUPLINGS
-from .loads import LoadBuilder
 from .model import CableModel, Model, MotionModel
 from .unknowns import Node, supports
 
@@ -36,15 +35,14 @@ def build(scene: SceneData) -> Model:
     level_tied_slopes(scene, nodal)
     nodes = {model.name: _nodes(model, scene.cables[model.name].where, vectors)
              for model, vectors in zip(cables, nodal, strict=True)}
-    attachments = AttachmentBuilder(scene, cables, bodies)
-    loads = LoadBuilder(scene, attachments)
-    reduction = supports(scene, nodes, loads.signal).reduce(n_flexible, _elements(nodes), attached(scene))
-    couplings = [model for kind in COUPLINGS for model in kind.models(scene, attachments, loads)]
+    builder = ModelBuilder(scene, cables, bodies)
+    reduction = supports(scene, nodes, builder.signals.add).reduce(n_flexible, _elements(nodes), attached(scene))
+    couplings = [model for kind in COUPLINGS for model in kind.models(builder)]
     n_extra, n_multipliers = number(couplings)
     n_of_bodies = sum(dofs_of(body, dim) for body in bodies)
     numbering = reduction.numbering
     model = Model(
-        dim, cables, bodies, couplings, loads.signals,
+        dim, cables, bodies, couplings, builder.signals,
         [MotionModel(dof, p.signal, p.base, p.linear, p.cosine, p.sine) for dof, p in reduction.prescribed],
         q=_joined(*(vectors.ravel() for vectors in nodal), *(configuration_of(body, dim) for body in described)),
         v=_joined(cable_rates(scene, reduction), *(velocity_of(body, dim) for body in described)),

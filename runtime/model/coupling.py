@@ -1,14 +1,14 @@
-"""What all couplings have in common in a model: a type of the engine's, and unknowns and multipliers of their own."""
+"""The common part of all couplings of a model: a type of the engine, and internal unknowns and multipliers."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
 
-from .attachments import AttachmentModel
+from .attachments import AttachmentModel, ModelBuilder
 
 
 @dataclass(kw_only=True)
@@ -93,3 +93,16 @@ def number(couplings: Iterable[CouplingModel]) -> tuple[int, int]:
         n_unknowns += coupling.n_coordinates + coupling.n_forces
         n_multipliers += coupling.n_multipliers
     return n_unknowns, n_multipliers
+
+
+@dataclass(frozen=True)
+class CouplingKind:
+    """A kind of coupling: name of the engine's type, group of its parts, and the function that makes its models.
+
+    has_state: a state of rest has unknowns of it, so that the state fits only scenes with the same parts of the group.
+    """
+
+    name: str
+    group: str
+    models: Callable[[ModelBuilder], Iterable[CouplingModel]]
+    has_state: bool = True

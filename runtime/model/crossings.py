@@ -12,9 +12,8 @@ import numpy as np
 from ..parts.attachment import Attachment
 from ..parts.crossing import Crossing
 from ..parts.crossing_start import Start, radii, sign_of, start_of
-from ..parts.scene_data import SceneData
-from .attachments import AttachmentBuilder, AttachmentModel
-from .coupling import CouplingModel
+from .attachments import AttachmentModel, ModelBuilder
+from .coupling import CouplingKind, CouplingModel
 
 LEAST_PENETRATION = 1e-30
 """m: what the size of a penetration is not below under a root."""
@@ -56,19 +55,19 @@ class CrossingModel(CouplingModel):
         return [number for number in self.cables if number >= 0]
 
 
-def crossing_model(part: Crossing, scene: SceneData, attachments: AttachmentBuilder) -> CrossingModel:
-    """Return the model of a crossing of the scene."""
-    dim, start = scene.dim, start_of(scene, part)
-    numbers = (attachments.cable_index[part.a], attachments.cable_index.get(part.b or "", -1))
-    of_lines = [attachments.cables[k] for k in numbers if k >= 0]
+def _crossing(part: Crossing, builder: ModelBuilder) -> CrossingModel:
+    scene, dim = builder.scene, builder.scene.dim
+    start = start_of(scene, part)
+    numbers = (builder.cable_index[part.a], builder.cable_index.get(part.b or "", -1))
+    of_lines = [builder.cables[k] for k in numbers if k >= 0]
     for k in numbers:
         if k >= 0:
-            attachments.hull(k)
+            builder.hull(k)
     ends: list[AttachmentModel] = []
     low, high = 0.0, 0.0
     axis = (0.0, 0.0, 0.0)
     if numbers[1] < 0:
-        ends = [attachments.model(Attachment(on=part.b, at=part.at))]
+        ends = [builder.attachment(Attachment(on=part.b, at=part.at))]
         low, high = (-math.inf, math.inf) if part.length is None else (-part.length, part.length)
         if part.axis is not None:
             axis = tuple(np.array(part.axis) / np.linalg.norm(part.axis))
@@ -97,3 +96,7 @@ def _slopes(start: Start, dim: int) -> tuple[float, ...]:
     slopes = np.zeros(6)
     slopes[: dim * (dim - 1)] = start.slopes[: dim - 1, :dim].ravel()
     return tuple(slopes)
+
+
+KINDS = (CouplingKind("crossing", Crossing.group,
+                      lambda builder: [_crossing(part, builder) for part in builder.scene.crossings.values()]),)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,9 +15,9 @@ from ..parts.fluid import NO_SURFACE, Fluid
 from ..parts.polar import Polar
 from ..parts.scene_data import SceneData
 from ..parts.velocity_table import AXES
-from .attachments import AttachmentBuilder, AttachmentModel
-from .coupling import CouplingModel
-from .loads import GAUSS, LoadBuilder
+from .attachments import AttachmentModel, ModelBuilder
+from .coupling import CouplingKind, CouplingModel
+from .loads import GAUSS
 from .quadrature import along_elements
 
 LEAST_SPEED = 1e-30
@@ -91,15 +92,15 @@ class DragModel(CouplingModel):
     polar: Polar | None
 
 
-def drag_models(part: Drag, scene: SceneData, attachments: AttachmentBuilder, loads: LoadBuilder) -> list[DragModel]:
-    """Return the models of a drag of the scene, one for each fluid that it is in."""
-    return [_in_fluid(part, fluid, scene, attachments, loads) for fluid in scene.fluids_of(part)]
+def drag_models(builder: ModelBuilder) -> Iterator[DragModel]:
+    """Yield the models of the drags of a scene, one for each fluid that acts on a part."""
+    return (_in_fluid(part, fluid, builder) for part in builder.scene.drags.values()
+            for fluid in builder.scene.fluids_of(part))
 
 
-def _in_fluid(part: Drag, fluid: Fluid, scene: SceneData, attachments: AttachmentBuilder, loads: LoadBuilder
-              ) -> DragModel:
-    dim = scene.dim
-    signal, factor = loads.scale(fluid.scale)
+def _in_fluid(part: Drag, fluid: Fluid, builder: ModelBuilder) -> DragModel:
+    scene, dim = builder.scene, builder.scene.dim
+    signal, factor = builder.signals.scale(fluid.scale)
     gravity = np.array(scene.gravity)[:dim]
     up, base = _height(scene)
     displaced, none = part.displaced(scene.cables.get(part.on)), np.zeros(0)
@@ -111,12 +112,12 @@ def _in_fluid(part: Drag, fluid: Fluid, scene: SceneData, attachments: Attachmen
         has_inertia=part.added_mass is not None, n_points=0, stride=0, weights=none, N=none, N_x=none,
         N_chord=none, attachments=[], fluid=fluid, polar=part.polar, type="drag", name=part.name or "", is_damped=True)
     if model.has_inertia:
-        added = part.added_of_cable() if part.on in attachments.cable_index else part.added_of_body(dim)
+        added = part.added_of_cable() if part.on in builder.cable_index else part.added_of_body(dim)
         model.added = tuple((model.displaced * added).ravel().tolist())
     pressure = fluid.density / 2
-    if part.on in attachments.cable_index:
-        model.cable = attachments.cable_index[part.on]
-        cable = attachments.cables[model.cable]
+    if part.on in builder.cable_index:
+        model.cable = builder.cable_index[part.on]
+        cable = builder.cables[model.cable]
         has_width = part.normal or part.tangential or part.lift or part.polar
         width = part.width(scene.cables[part.on]) if has_width else 0.0
         model.lift = (pressure * width * part.lift, LEAST_SPEED)
@@ -132,7 +133,7 @@ def _in_fluid(part: Drag, fluid: Fluid, scene: SceneData, attachments: Attachmen
     else:
         of_drag = part.coefficient if part.polar is None else 0.0
         model.coefficients = (pressure * part.area * of_drag, LEAST_SPEED)
-        model.attachments = [attachments.model(Attachment(on=part.on, at=part.at), np.eye(3))]
+        model.attachments = [builder.attachment(Attachment(on=part.on, at=part.at), np.eye(3))]
     return model
 
 
@@ -185,3 +186,6 @@ def _table(fluid: Fluid, scene: SceneData) -> dict[str, Any]:
     degree, knots, coefficients = fluid.table.splines(scene.dim)
     return common | {"degree": degree, "n_splines": coefficients.shape[:-1],
                      "knots": np.concatenate(list(knots.values())), "table": coefficients.ravel()}
+
+
+KINDS = (CouplingKind("drag", Drag.group, drag_models, has_state=False),)

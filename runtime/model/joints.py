@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from typing import ClassVar
@@ -13,10 +13,9 @@ from ..checks.frames import has_section, joint_axes, slide_axes
 from ..kernels.libraries import kernels_of
 from ..parts.joint import DRIVEN, Joint
 from ..parts.locations import point_of
-from ..parts.signal import Signal
 from ..parts.slide import Slide
-from .attachments import AttachmentBuilder, AttachmentModel
-from .coupling import CouplingModel
+from .attachments import AttachmentModel, ModelBuilder
+from .coupling import CouplingKind, CouplingModel
 
 
 @dataclass
@@ -52,13 +51,21 @@ class JointModel(CouplingModel):
         return _has_cross_stiffness(self.kernel, dim)
 
 
-def joint_model(attachments: AttachmentBuilder, joint: Joint, signal: Callable[[Signal], int]) -> JointModel:
-    """Return the model of a joint; signal(s): number of a signal."""
-    scene = attachments.scene
+def joint_models(builder: ModelBuilder) -> Iterator[JointModel]:
+    """Yield the joints: first those between a rider's axes and its cable, then those of the scene."""
+    for k, slide in enumerate(builder.scene.slides.values()):
+        if slide.frame != "point":
+            yield _frame_joint(builder, slide, k)
+    for joint in builder.scene.joints.values():
+        yield _joint(builder, joint)
+
+
+def _joint(builder: ModelBuilder, joint: Joint) -> JointModel:
+    scene = builder.scene
     at = joint_axes(scene, joint)
     needs = joint.joint_kind not in ("spherical", "distance")
-    ends = [attachments.model(attachment, axes if needs else None, None if attachment.on not in scene.cables
-                            or has_section(scene.cables[attachment.on]) else joint.up)
+    ends = [builder.attachment(attachment, axes if needs else None, None if attachment.on not in scene.cables
+                               or has_section(scene.cables[attachment.on]) else joint.up)
             for attachment, axes in zip((joint.a, joint.b), at, strict=True)]
     kind, driven, turned = joint.joint_kind, joint.is_driven, False
     if scene.dim == 2:
@@ -74,18 +81,17 @@ def joint_model(attachments: AttachmentBuilder, joint: Joint, signal: Callable[[
         base = 0.0 if driven else joint.length or 0.0
     elif driven and DRIVEN[joint.joint_kind] == "distance":
         base = float(joint.axes[:, 2] @ (point_of(scene, joint.b) - point_of(scene, joint.a)))
-    model = _model(joint.name or "", kind, scene.dim, ends,
-                   -1 if joint.prescribed is None else signal(joint.prescribed), base)
+    model = _model(joint.name or "", kind, scene.dim, ends, builder.signals.add(joint.prescribed), base)
     model.reversed = turned
     return model
 
 
-def frame_joint_model(attachments: AttachmentBuilder, slide: Slide, number: int) -> JointModel:
-    """Return what keeps a rider's axes to the frame of its cable, beside slide number `number`."""
-    dim = attachments.scene.dim
-    at = slide_axes(attachments.scene, slide)
+def _frame_joint(builder: ModelBuilder, slide: Slide, number: int) -> JointModel:
+    """Return the joint between a rider's axes and the frame of its cable, beside slide number `number`."""
+    dim = builder.scene.dim
+    at = slide_axes(builder.scene, slide)
     free = slide.frame == "tangent" and slide.roll == "free" and dim == 3
-    ends = [attachments.on_slide(slide, number, at.a), attachments.model(slide.rider, at.b)]
+    ends = [builder.on_slide(slide, number, at.a), builder.attachment(slide.rider, at.b)]
     model = _model(slide.name, "aligned" if free else "locked", dim, ends, -1, 0.0)
     model.slide = slide.name
     return model
@@ -120,3 +126,6 @@ def _has_cross_stiffness(kernel: str, dim: int) -> bool:
     K, turns = numbers.reshape(moves, moves), (moves - dim) // 2
     first, second = K[: dim + turns], [*range(dim), *range(dim + turns, moves)]
     return bool(np.any(first[:, second] != 0))
+
+
+KINDS = (CouplingKind("joint", Joint.group, joint_models),)

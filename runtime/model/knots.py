@@ -13,8 +13,8 @@ import math
 
 import numpy as np
 
-from .loads import SignalModel
 from .model import Model
+from .signals import SignalModel
 
 HIGHER, ACCELERATION, RATE = range(3)
 """What jumps: nothing that the motion follows at once, the acceleration of what a signal drives, its rate; the order of

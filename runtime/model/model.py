@@ -18,14 +18,15 @@ from ..kernels.mesh import Mesh
 from ..parts.body_shape import Shape
 from ..parts.plane_axes import PlaneAxes
 from .attachments import AttachmentModel
-from .contacts import ContactModel
+from .contacts import ContactModel, HardContactModel
 from .coupling import CouplingModel
 from .crossings import CrossingModel
 from .drags import DragModel
 from .elimination import Elimination
-from .hard_contacts import HardContactModel
 from .joints import JointModel
-from .loads import DeadLoadModel, LoadModel, PointForceModel, SignalModel
+from .loads import DeadLoadModel, LoadModel
+from .point_forces import PointForceModel
+from .signals import SignalModel
 from .unknowns import Node
 
 K = TypeVar("K", bound=CouplingModel)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -11,11 +11,10 @@ from ..parts.attachment import Attachment
 from ..parts.end_stops import Buffer, HardStop, Stop
 from ..parts.friction import Friction
 from ..parts.rigid_body import RigidBody
-from ..parts.scene_data import SceneData
-from ..parts.signal import Signal
 from ..parts.slide import Slide
-from .attachments import AttachmentBuilder
+from .attachments import ModelBuilder
 from .bodies import BODIES
+from .coupling import CouplingKind
 from .model import SlideModel
 
 RESISTANCES = {2: "planar_resistance", 3: "resistance"}
@@ -24,9 +23,8 @@ RIDERS = {2: "planar_point", 3: "point"}
 """Kernels of a slide whose rider is a point of anything else than a rigid body."""
 
 
-def slide_model(slide: Slide, scene: SceneData, attachments: AttachmentBuilder,
-                signal: Callable[[Signal], int]) -> SlideModel:
-    """Make the model of a slide; signal(s): number of a signal."""
+def _slide(slide: Slide, builder: ModelBuilder) -> SlideModel:
+    scene = builder.scene
     along, dim = scene.cables[slide.along], scene.dim
     axes = along.axes_at(slide.arc_length)
     node = along.node_at(slide.arc_length)
@@ -36,15 +34,15 @@ def slide_model(slide: Slide, scene: SceneData, attachments: AttachmentBuilder,
     if node is not None:  # on a node: the element that the rider moves into
         forward = body is None or np.dot(axes[0], body.velocity) >= 0
         element = node if forward else node - 1
-    rider = attachments.model(slide.rider)
+    rider = builder.attachment(slide.rider)
     driven, ends, friction = slide.is_driven, (slide.at_start, slide.at_end), slide.friction
     may_be_locked = (driven or (friction is not None and friction.sticks)
                      or any(isinstance(end, HardStop) for end in ends))
-    mass = rider.mass or attachments.model(Attachment(on=slide.along, s=slide.arc_length)).mass  # the ground has none
+    mass = rider.mass or builder.attachment(Attachment(on=slide.along, s=slide.arc_length)).mass  # the ground has none
     resists = friction is not None or any(isinstance(end, Buffer) for end in ends)
     return SlideModel(
         f"slide_{along.element}_{BODIES[dim][0] if rider_is_rigid else RIDERS[dim]}",
-        attachments.cable_index[slide.along],
+        builder.cable_index[slide.along],
         rider,
         rider_is_rigid,
         dim == 3 and not along.kind_of_element.director,
@@ -61,7 +59,7 @@ def slide_model(slide: Slide, scene: SceneData, attachments: AttachmentBuilder,
         n_multipliers=dim - 1 + may_be_locked,
         reacts=resists,
         is_damped=resists,
-        drive=-1 if slide.prescribed is None else signal(slide.prescribed),
+        drive=builder.signals.add(slide.prescribed),
     )
 
 
@@ -79,3 +77,7 @@ def _stops(ends: Sequence[str | Stop]) -> dict[str, Any]:
             "restitutions": [end.restitution if isinstance(end, HardStop) else 0.0 for end in ends],
             **{f"buffer_{plural}": [getattr(end, each) if isinstance(end, Buffer) else 0.0 for end in ends]
                for each, plural in (("length", "lengths"), ("stiffness", "stiffnesses"), ("damping", "dampings"))}}
+
+
+KINDS = (CouplingKind("slide", Slide.group,
+                      lambda builder: [_slide(slide, builder) for slide in builder.scene.slides.values()]),)

@@ -15,8 +15,8 @@ from ..parts.scene_data import SceneData
 from ..parts.support import Support, Tie
 from .attachments import AttachmentModel
 from .joints import JointModel
-from .loads import PointForceModel
 from .model import BodyModel, Model
+from .point_forces import PointForceModel
 from .unknowns import Node
 
 

@@ -19,6 +19,7 @@ class Load(Part):
     scale: factor over time, a signal
     """
 
+    group: ClassVar[str] = "loads"
     name: Name | None = None
     scale: AnySignal = ONE
 
@@ -35,7 +36,6 @@ class Force(Load):
     """
 
     kind: ClassVar[str] = "force"
-    group: ClassVar[str] = "loads"
     positional: ClassVar[tuple[str, ...]] = ("on",)
     on: Reference
     s: Annotated[float, place_on("on")] | None = None
@@ -59,7 +59,6 @@ class DistributedForce(Load):
     """
 
     kind: ClassVar[str] = "distributed_force"
-    group: ClassVar[str] = "loads"
     positional: ClassVar[tuple[str, ...]] = ("cable",)
     cable: Reference
     value: Annotated[Vector, xyz("N/m", of="along")]
@@ -88,7 +87,6 @@ class Moment(Load):
     """
 
     kind: ClassVar[str] = "moment"
-    group: ClassVar[str] = "loads"
     positional: ClassVar[tuple[str, ...]] = ("on",)
     on: Reference
     s: Annotated[float, place_on("on")] | None = None

@@ -26,10 +26,7 @@ LINES = {"engine/events/list.c": [
              ('#include "events/list.h"\n', '#include "events/tow.h"\n'),
              ("} types[] = {", "{&fu_tow_type, &fu_tow_events}, ")],
          "parts/kinds.py": [("from .surface import Surface\n", "from .tow import Tow\n"),
-                            ("Surface, Contact, ", "Tow, ")],
-         "model/kinds.py": [("from ..parts.slide import Slide\n", "from ..parts.tow import Tow\n"),
-                            ("from .slides import slide_model\n", "from .tows import tow_models\n"),
-                            ("COUPLINGS = (\n", '    CouplingKind("tow", Tow.group, tow_models, has_state=False),\n')]}
+                            ("Surface, Contact, ", "Tow, ")]}
 """Lists that name each kind of coupling, and what they get: after which text, and which."""
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(sys.platform == "win32", reason="calls a compiler of Unix")]
 
@@ -90,13 +87,13 @@ def uses(tmp_path_factory):
 
 
 def test_what_it_costs(capsys):
-    """Three lists name the kinds: those of the engine's types, of parts and of models. A fourth one is a step back."""
+    """Two lists name the kinds: those of the engine's types and of parts. A third one is a step back."""
     entries = {name: len([line for _, line in edits if "import" not in line and "#include" not in line])
                for name, edits in LINES.items()}
     with capsys.disabled():
         print(f"\na trial coupling: {len(FILES)} files of its own, {len(LINES)} lists with an entry each: "
               f"{', '.join(LINES)}")
-    assert entries == dict.fromkeys(LINES, 1) and len(LINES) <= 3
+    assert entries == dict.fromkeys(LINES, 1) and len(LINES) <= 2
 
 
 def test_all_integrators_run_it(uses):

@@ -7,7 +7,7 @@ import pytest
 from expectations import energy_error
 from funicular import FunicularWarning, Harmonic, Material, Pulse, Ramp, Rectangle, Scene, TableSignal
 from funicular.model.knots import ACCELERATION, HIGHER, RATE, knots
-from funicular.model.loads import SignalModel
+from funicular.model.signals import SignalModel
 from funicular.parts.signal import Constant, Integral
 from numpy.testing import assert_allclose
 from shared_scenes import cable_scene

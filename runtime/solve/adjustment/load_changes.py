@@ -7,9 +7,10 @@ from typing import cast
 
 import numpy as np
 
-from ...model.attachments import AttachmentBuilder
+from ...model.attachments import ModelBuilder
 from ...model.kinds import in_order
 from ...model.loads import DeadLoadModel, LoadBuilder, LoadModel
+from ...model.signals import Signals
 from ...model.states import attachment_points
 from ...parts.laid import turned
 from ...parts.load import DistributedForce, Force, Moment
@@ -35,15 +36,16 @@ def by_values(rest: Rest, units: Mapping[int, AnyLoad]) -> dict[int, Change]:
     if not units:
         return {}
     model = rest.model
-    builder = LoadBuilder(rest.scene, AttachmentBuilder(rest.scene, model.cables, model.bodies))
-    builder.signals = list(model.signals)
+    builder = ModelBuilder(rest.scene, model.cables, model.bodies)
+    builder.signals = Signals(model.signals)
+    loads = LoadBuilder(builder)
     owners: dict[str, list[int]] = {"dead": [], "turning": []}
     for k, unit in units.items():
-        builder.load(unit)
-        owners["dead"] += [k] * (len(builder.dead) - len(owners["dead"]))
-        owners["turning"] += [k] * (len(builder.turning) - len(owners["turning"]))
+        loads.load(unit)
+        owners["dead"] += [k] * (len(loads.dead) - len(owners["dead"]))
+        owners["turning"] += [k] * (len(loads.turning) - len(owners["turning"]))
     others = [coupling for coupling in model.couplings if not isinstance(coupling, DeadLoadModel | LoadModel)]
-    couplings = in_order([*builder.dead, *builder.turning, *others])
+    couplings = in_order([*loads.dead, *loads.turning, *others])
     loaded = altered(model, couplings=couplings, signals=builder.signals)
     engine = rest.engine(loaded)
     found = {k: np.zeros(model.n_dof) for k in units}

@@ -20,8 +20,8 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from ...errors import SceneError
-from ...model.loads import ForceLaw
 from ...model.model import Model
+from ...model.point_forces import ForceLaw
 from ...model.states import attachment_points
 from ...parts.laid import laid
 from ...parts.plane import called

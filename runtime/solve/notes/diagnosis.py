@@ -6,7 +6,7 @@ import numpy as np
 
 from ...engine import Engine
 from ...integrators import INTEGRATORS, stable_at
-from ...model.hard_contacts import HardContactModel
+from ...model.contacts import HardContactModel
 from ...model.model import CableModel, Model, SlideModel
 from ...model.redundant_constraints import redundant
 from ...parts.scene_data import SceneData

@@ -13,8 +13,9 @@ from ...model.contacts import ContactModel
 from ...model.crossings import CrossingModel
 from ...model.drags import DragModel
 from ...model.joints import JointModel
-from ...model.loads import DeadLoadModel, LoadModel, PointForceModel
+from ...model.loads import DeadLoadModel, LoadModel
 from ...model.model import Model
+from ...model.point_forces import PointForceModel
 
 STRING_VECTORS = {"r", "r_x", "r_y", "r_z", "r_xx"}
 """Nodal vectors that follow from the shape of a string."""

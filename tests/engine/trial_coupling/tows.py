@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ..parts.scene_data import SceneData
-from .attachments import AttachmentBuilder, AttachmentModel
-from .coupling import CouplingModel
-from .loads import LoadBuilder
+from ..parts.tow import Tow
+from .attachments import AttachmentModel, ModelBuilder
+from .coupling import CouplingKind, CouplingModel
 
 
 @dataclass(kw_only=True)
@@ -22,8 +21,11 @@ class TowModel(CouplingModel):
     strength: float
 
 
-def tow_models(scene: SceneData, attachments: AttachmentBuilder, loads: LoadBuilder) -> Iterator[TowModel]:
+def tow_models(builder: ModelBuilder) -> Iterator[TowModel]:
     """Yield the models of the tows of a scene."""
-    for part in scene.group("tows"):
-        yield TowModel(type="tow", name=part.name, attachments=[attachments.model(part.a)], start=part.start,
+    for part in builder.scene.group("tows"):
+        yield TowModel(type="tow", name=part.name, attachments=[builder.attachment(part.a)], start=part.start,
                        velocity=part.velocity, stiffness=part.stiffness, strength=part.strength)
+
+
+KINDS = (CouplingKind("tow", Tow.group, tow_models, has_state=False),)

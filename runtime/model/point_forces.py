@@ -1,0 +1,105 @@
+"""Forces between two points of a scene, as the engine takes them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..kernels.libraries import kernels_of
+from ..kernels.point_laws import point_law
+from ..parts.force_pieces import HAS_NO_FORCE, PULLS_AND_PUSHES
+from ..parts.point_force import PointForce
+from ..parts.spring import Spring
+from .attachments import AttachmentModel, ModelBuilder
+from .coupling import CouplingKind, CouplingModel
+
+
+@dataclass
+class ForceLaw:
+    """The law of a force between two points.
+
+    law: the name of its kernels; parameters: in the order in which the kernels take them, for one piece of it after the
+    other. bounds (n_pieces - 1), in m: distances of the points at which a piece ends and the next begins. senses
+    (n_pieces): what each piece may do. compliance: in m/N, that of the stiffest piece.
+    """
+
+    law: str
+    dim: int
+    parameters: tuple[float, ...]
+    n_pieces: int = 1
+    n_parameters: int = 0
+    bounds: tuple[float, ...] = ()
+    senses: tuple[int, ...] = (PULLS_AND_PUSHES,)
+    compliance: float = 0.0
+
+    @classmethod
+    def of(cls, part: PointForce, dim: int) -> ForceLaw:
+        """Return the law of a part, which is complete, in so many dimensions."""
+        name = ("planar_" if dim == 2 else "") + part.law
+        names = list(point_law(name).parameters)
+        if isinstance(part, Spring) and part.has_pieces:
+            return cls(name, dim, n_parameters=len(names), **_pieces(part, names))
+        return cls(name, dim, tuple(float(getattr(part, each)) for each in names), n_parameters=len(names))
+
+    def at_rest(self, gap: np.ndarray) -> np.ndarray:
+        """Return the force (dim,) on the first point, in N, from the way (dim,) to the second one, which rests."""
+        parameters = self._at(gap)
+        if parameters is None:
+            return np.zeros(self.dim)
+        return np.asarray(getattr(kernels_of(None), f"{self.law}_force")(parameters, gap, np.zeros(self.dim)))
+
+    def tangent_at_rest(self, gap: np.ndarray) -> np.ndarray:
+        """Return (dim, dim): the derivative of `at_rest` by the way (dim,), in N/m."""
+        parameters = self._at(gap)
+        if parameters is None:
+            return np.zeros((self.dim, self.dim))
+        return np.asarray(getattr(kernels_of(None), f"{self.law}_tangent")(parameters, gap, np.zeros(self.dim))[1])
+
+    def _at(self, gap: np.ndarray) -> np.ndarray | None:
+        """Return what the kernels take of the piece that a way (dim,) is in; None where it has no force."""
+        piece = int(np.searchsorted(self.bounds, np.linalg.norm(gap)))
+        if self.senses[piece] == HAS_NO_FORCE:
+            return None
+        return np.array(self.parameters[piece * self.n_parameters :][: self.n_parameters])
+
+
+@dataclass(kw_only=True)
+class PointForceModel(CouplingModel, ForceLaw):
+    """A force between two points, whose unknowns are its components."""
+
+    attachments: list[AttachmentModel]
+
+    @property
+    def kernel_families(self) -> list[str]:
+        """Return the name of the kernels of its law."""
+        return [self.law]
+
+
+def point_force_models(builder: ModelBuilder) -> Iterator[PointForceModel]:
+    """Yield the models of the forces between two points."""
+    for part in builder.scene.point_forces.values():
+        ends = [builder.attachment(part.a), builder.attachment(part.b)]
+        law = ForceLaw.of(part, builder.scene.dim)
+        damping = point_law(law.law).damping
+        yield PointForceModel(
+            type="point_force", name=part.name or "", scale=[max(end.mass for end in ends)] * law.dim,
+            is_damped=bool(damping) and getattr(part, damping) != 0, follows_law=True, attachments=ends, **vars(law))
+
+
+def _pieces(part: Spring, names: list[str]) -> dict[str, Any]:
+    """Return what a model has of the pieces of a spring: of those that a distance, which is not negative, reaches."""
+    assert part.length is not None, f"{part.where} is not complete"
+    pieces = [piece for piece in part.pieces() if part.length + piece.end > 0]
+    values = [{"stiffness": piece.stiffness, "damping": part.damping * (piece.sense != HAS_NO_FORCE),
+               "reference": part.length + piece.at, "tension": piece.tension, "energy": piece.energy}
+              for piece in pieces]
+    return {"parameters": tuple(float(of[name]) for of in values for name in names), "n_pieces": len(pieces),
+            "bounds": tuple(part.length + piece.end for piece in pieces[:-1]),
+            "senses": tuple(piece.sense for piece in pieces),
+            "compliance": 1 / max((abs(piece.stiffness) for piece in pieces), default=1.0)}
+
+
+KINDS = (CouplingKind("point_force", PointForce.group, point_force_models),)

@@ -1,0 +1,46 @@
+"""Signals of a scene, as the engine takes them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..parts.signal import Constant, Signal, Sine, value_at
+
+
+@dataclass
+class SignalModel:
+    """f(t) = polynomial piece of t - break + amplitude sin(angular_frequency t + phase)."""
+
+    breaks: np.ndarray
+    coefficients: np.ndarray
+    amplitude: float
+    angular_frequency: float
+    phase: float
+
+    def value(self, time: np.ndarray, derivative: int = 0) -> np.ndarray:
+        """Return the signal, or a derivative of it, at the times ``time``, s."""
+        sine = Sine(self.amplitude, self.angular_frequency, self.phase)
+        return value_at(sine, self.breaks, self.coefficients, time, derivative)
+
+    def at(self, time: float) -> float:
+        """Return the signal at a time in s."""
+        return float(self.value(np.asarray(time)))
+
+
+class Signals(list[SignalModel]):
+    """The signals of a model; couplings know them by their numbers."""
+
+    def add(self, signal: Signal | None) -> int:
+        """Store a signal and return its number, -1 for none."""
+        if signal is None:
+            return -1
+        breaks, coefficients = signal.pieces()
+        self.append(SignalModel(np.asarray(breaks, dtype=float), np.asarray(coefficients, dtype=float),
+                                *signal.sine))
+        return len(self) - 1
+
+    def scale(self, signal: Signal) -> tuple[int, float]:
+        """Return the number and the constant factor of the scale of a load."""
+        return (-1, float(signal.value(0.0))) if isinstance(signal, Constant) else (self.add(signal), 1.0)
