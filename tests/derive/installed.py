@@ -10,7 +10,8 @@ TEMPLATES = "derive/codegen/templates"
 
 
 def runnable_tree(directory: Path) -> Path:
-    """Copy Python files, templates and the compiled engine to where they stand once installed; returns the package."""
+    """Copy Python files, templates and the compiled engine to the places of an installed package; return the package.
+    """
     installed_tree(directory)
     package = directory / "funicular"
     shutil.copytree(TOP / TEMPLATES, package / TEMPLATES, dirs_exist_ok=True)

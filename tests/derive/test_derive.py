@@ -1,4 +1,4 @@
-"""`funicular derive`: same bytes, drift found and named, operation counts that only move on purpose."""
+"""`funicular derive` gives the same bytes, finds and names drift, and keeps operation counts below their ceilings."""
 
 import hashlib
 import json
@@ -37,13 +37,13 @@ def hashes(files: dict[str, str]) -> dict[str, str]:
 
 @pytest.fixture(scope="module")
 def derived() -> dict[str, str]:
-    """The generated files as they are checked in."""
+    """Return the generated files as checked in."""
     return {name: drift.current(name) for name in (*drift.record()["files"], *emit.COMMON, drift.MANIFEST)}
 
 
 @pytest.fixture
 def copy(tmp_path, monkeypatch, derived) -> Path:
-    """A generated folder of its own, up to date."""
+    """Return a separate, up-to-date copy of the generated folder."""
     monkeypatch.setattr(drift, "folder", lambda: tmp_path)
     drift.write(derived)
     return tmp_path
@@ -51,7 +51,7 @@ def copy(tmp_path, monkeypatch, derived) -> Path:
 
 @pytest.fixture
 def remembered(monkeypatch, derived):
-    """A whole check that takes the checked-in files for what the specs give."""
+    """Return a check that accepts the checked-in files as those of the specs."""
     monkeypatch.setattr(pipeline, "generate", lambda names=None, show=False: dict(derived))
 
 
@@ -205,7 +205,7 @@ def test_operation_counts_stay_below_their_ceilings(derived):
 
 
 def test_kernels_of_a_role_that_differ_are_refused_or_declared():
-    """One table, one signature: a kernel that does not fit used to fall out of it."""
+    """A table has one signature: a kernel with another one is refused, or declared as different."""
     def family(name, parameters, **more):
         program = Program(f"{name}_area", "area", "")
         program.output("A", [sum(program.input(p, (), "m", "side") for p in parameters)], "m", "area")
@@ -224,7 +224,7 @@ def test_kernels_of_a_role_that_differ_are_refused_or_declared():
 
 
 def test_a_scene_knows_of_a_law_what_its_spec_says(derived):
-    """The traits of the specs are those of the manifest, and the runtime reads all of them."""
+    """The manifest has the traits of the specs, and the runtime reads all of them."""
     elements = json.loads(derived["manifest.json"])["elements"]
     for family in families().values():
         if family.role == "law":
@@ -249,7 +249,7 @@ def test_hashes_stand_in_the_manifest_alone(derived):
 
 
 def edit(monkeypatch, file: str, old: str, new: str) -> None:
-    """Let a source of derive/ read as edited in one place."""
+    """Present a source of derive/ as edited in one place."""
     read = provenance._read
     assert read(file).decode().count(old) == 1
     monkeypatch.setattr(provenance, "_read",
@@ -280,7 +280,7 @@ def test_any_other_edit_of_a_spec_has_its_families_derived(monkeypatch, file, ol
 
 
 def test_a_source_that_others_wait_for_keeps_its_old_hash(copy, monkeypatch):
-    """`derive NAME` after an edit that other families depend on, too: the next `derive` still finds these."""
+    """After an edit that concerns several families, `derive NAME` leaves the others to the next `derive`."""
     recorded = drift.record()
     edit(monkeypatch, "couplings/resistance.py", "RESISTANCES = ", "import itertools\nRESISTANCES = ")
     both = ["resistance", "planar_resistance"]
@@ -301,7 +301,7 @@ def test_another_version_of_a_tool_has_all_families_derived_whatever_one_of_them
 
 @pytest.mark.slow
 def test_a_word_in_the_doc_of_an_element_changes_its_file_and_the_manifest(tmp_path):
-    """A copy of the package, whose spec and then whose printer are edited: what `funicular derive` writes."""
+    """Edits of the spec, then of the printer, in a copy of the package: the files that `funicular derive` writes."""
     package = runnable_tree(tmp_path)
     shutil.copytree(TOP / "generated", package / "generated", dirs_exist_ok=True)
 
@@ -341,7 +341,7 @@ def test_the_hashed_sources_are_all_that_decide_a_family():
 
 @pytest.mark.parametrize("numbers", [[], ["-DFU_COMPLEX"]], ids=["real", "complex"])
 def test_generated_c_has_no_warnings(copy, numbers):
-    """The families that are derived here and those of a slide; .ci/run compiles all of them so."""
+    """The families derived here and those of a slide; .ci/run compiles all families in this way."""
     names = (*FRESH, "cable8p_green_linear", "slide_cable8p_planar_rigid", "registry")
     units = [str(copy / f"{name}.c") for name in names]
     command = [*compiler(), "-std=c11", "-Wall", "-Wextra", "-Werror", "-pedantic", "-fsyntax-only", *numbers, *units]

@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 @pytest.fixture
 def program() -> Program:
-    """f = (s1 + s2)^3 b with s_i = a + i b: operations that can be counted by hand."""
+    """f = (s1 + s2)^3 b with s_i = a + i b: the operations can be counted by hand."""
     made = Program("trial", "trial", "")
     a, b = made.input("a", (), "m", ""), made.input("b", (), "m", "")
     made.stage("sums")

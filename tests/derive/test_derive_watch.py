@@ -1,4 +1,4 @@
-"""`funicular derive --watch`: a family derived, compiled, verified and timed alone at every save of a source."""
+"""`funicular derive --watch` derives, compiles, verifies and times one family at every save of a source."""
 
 from dataclasses import replace
 

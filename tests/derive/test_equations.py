@@ -1,4 +1,4 @@
-"""Every equation of the paper has one place in the sources, and README says which."""
+"""Every equation of the paper has one place in the sources, which README names."""
 
 from collections import Counter
 

@@ -1,4 +1,4 @@
-"""Scenes drawn in space that stay in the plane z = 0: the planar scene has their motion, or the reason is said."""
+"""A spatial scene that stays in the plane z = 0 has the motion of its planar form, or a message says why not."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The structural law of one element; published cases of beams of it are in test_cases.py."""
+"""The structural law of one element. tests/parts/test_cases.py has published cases of beams."""
 
 import funicular as fu
 import numpy as np
@@ -9,7 +9,7 @@ from funicular.generated import kernels
 
 
 def rectangle(E, nu, height, width, dim, torsion=None):
-    """S of a rectangle, with Cowper's shear factor."""
+    """Return S of a rectangle with Cowper's shear factor."""
     area, EIz, EIy = height * width, E * width * height**3 / 12, E * height * width**3 / 12
     G = E / (2 * (1 + nu))
     GA = G * area * 10 * (1 + nu) / (12 + 11 * nu)
@@ -28,7 +28,7 @@ def arc(radius, angle, n):
 
 @pytest.mark.parametrize("name", ["beam12p", "beam24"])
 def test_only_rigid_motions_cost_nothing(name):
-    """As many zero eigenvalues as rigid motions, straight or bent: no hourglass."""
+    """Straight or bent, the element has six zero eigenvalues, its rigid motions: no hourglass modes."""
     element = ELEMENTS[name]
     dim, random = element.dim, np.random.default_rng(5)
     rigid = dim * (dim + 1) // 2
@@ -53,7 +53,7 @@ def test_a_curved_rest_shape_turns_without_force():
 
 
 def test_twist_meets_the_torsion_constant():
-    """Turned by an angle at its end: G J angle / l, up to the fraction that stands for the arctangent."""
+    """The moment of an end turned by an angle is G J angle / l, up to the rational approximation of the arctangent."""
     S, angle = rectangle(1.0, 0.25, 0.5, 0.3, 3, torsion=0.02), 0.3
     e = reference(ELEMENTS["beam24"], 0.8)
     A = kernels.beam24_structural_stiffness(0.8, e, S)
@@ -78,7 +78,7 @@ def test_the_planar_beam_is_the_spatial_one_in_a_plane():
 @pytest.mark.parametrize("slenderness", [1, 1e1, 1e2, 1e4, 1e6])
 @pytest.mark.parametrize("name", ["beam12p", "beam24"])
 def test_a_taut_element_is_stable(name, slenderness):
-    """slenderness: T l^2/EI. Shifts, and turns about its own axis, are all that costs nothing."""
+    """slenderness: T l^2/EI. Translations and rotation about the axis alone have no stiffness."""
     element, length, strain = ELEMENTS[name], 0.7, 1e-3
     S = rectangle(1.0, 0.3, 1.0, 1.0, element.dim)
     S[slice(2, 3) if element.dim == 2 else slice(3, 6)] = bending = strain * length**2 / slenderness
@@ -114,7 +114,8 @@ def test_frequencies_of_a_taut_beam_are_those_of_a_string(name):
 
 @pytest.mark.parametrize("name", ["beam12p", "beam24"])
 def test_a_chord_does_not_turn_back(name):
-    """Turned against its ends, a slender element bends more and more; there is no rest with the chord reversed."""
+    """A slender element that is turned against its ends bends further; it has no equilibrium with the chord reversed.
+    """
     element, half = ELEMENTS[name], ELEMENTS[name].n_vectors // 2
     S = rectangle(1.0, 0.3, 1.0, 1.0, element.dim)
     S[slice(2, 3) if element.dim == 2 else slice(3, 6)] = 1e-6

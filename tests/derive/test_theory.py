@@ -1,6 +1,6 @@
-"""The theory says what the kernels do: formulas read back from the emitted text, evaluated, compared.
+"""The theory agrees with the kernels: formulas are read from the emitted text, evaluated and compared.
 
-Quick: the slide on one cable, one element's page. The whole document and the pages of all families are slow.
+The slide on one cable and the page of one element are quick. The whole document and the pages of all families are slow.
 """
 
 import itertools
@@ -322,7 +322,7 @@ def test_the_latex_compiles(name, tmp_path):
 @pytest.mark.parametrize("text", [r"\frac{1}{2} e^{2} \boldsymbol{\kappa}", r"\frac{e^{2}}{2} \boldsymbol{\kappa}",
                                   r"\frac{1}{2} \boldsymbol{\kappa} e^{2}", r"e \frac{1}{2} e \boldsymbol{\kappa}"])
 def test_powers_in_products(text, e):
-    """A power is that of the letter before it, wherever it stands, in the text and in what is printed of it."""
+    """A power belongs to the letter before it, in the text and in its printed form."""
     kappa = np.array([[2.0], [-3.0]], dtype=object)
     tree = parse(text)
     for each in (tree, parse(latex(tree)), parse(to_latex(mathml(tree)))):

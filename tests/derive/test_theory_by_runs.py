@@ -1,5 +1,5 @@
-"""Chapters about what has no kernels, hard contact and catenaries: their formulas, read from the texts and evaluated,
-against runs, states of rest and functions of the package.
+"""Chapters without kernels, hard contact and catenaries: their formulas, read from the texts, against runs, equilibria
+and functions of the package.
 """
 
 import funicular as fu
@@ -23,7 +23,7 @@ def formulas(chapter):
 
 
 def value(chapter, name, /, among=(), **values):
-    """Return the value of the right side of a formula; among: others of the chapter that define what it uses."""
+    """Return the value of the right side of a formula; `among` holds the other definitions of the chapter."""
     found, definitions = formulas(chapter), Definitions()
     for other in among:
         assert isinstance(found[other], Equation)
@@ -40,7 +40,7 @@ RADIUS, MASS, INERTIA, RESTITUTION = 0.1, 1.3, 4e-3, 0.7
 
 
 def struck(friction, spin):
-    """Return a run of a ball that falls on level ground with a speed along it and a spin, up to after its impact."""
+    """Return a run of a spinning ball with a horizontal speed that falls on level ground, up to its first impact."""
     scene = fu.Scene(gravity=(0, -9.81, 0))
     scene.surface("ground", fu.Plane())
     scene.rigid_body("ball", mass=MASS, inertia=(INERTIA,) * 3, position=(0, 0.6, 0), velocity=(2, 0, 0),

@@ -1,4 +1,4 @@
-"""Specs of the user's own elements: a bad one is refused with the property that it lacks, and nothing is written."""
+"""An invalid spec of a user's element is refused by the property that it lacks, and nothing is written."""
 
 import os
 import re
@@ -13,7 +13,7 @@ from user_element_specs import spec
 
 
 def refused(file: Path, out: Path) -> str:
-    """What the command says of a spec that it refuses; nothing may be written."""
+    """Return the message that refuses a spec; nothing may be written."""
     with pytest.raises(SpecError) as error:
         command.main(file, out)
     assert not out.exists()
@@ -86,7 +86,7 @@ ENERGY = """
 
 
 @pytest.mark.parametrize(("law", "part"), [
-    # the strain of a beginner: r_x of the first node along the global x, and not its length
+    # a beginner's strain: the component of r_x along the global x instead of its length
     (STRAIN.format(strain="program.symbols['e'][1, 0] - 1"),
      "the energy is not objective: a rigid rotation changes it from "),
     (ENERGY.format(more="A[0] * w * program.symbols['e'][2, 0]**2"),

@@ -1,4 +1,4 @@
-"""The user's own elements: a spec file outside the package becomes a library, which scenes load."""
+"""A spec file outside the package becomes a library of elements, which scenes load."""
 
 import hashlib
 import json
@@ -33,7 +33,7 @@ from user_element_specs import spec
 
 @pytest.fixture(scope="module")
 def derived(tmp_path_factory) -> tuple[Path, str]:
-    """A library of the planar cable, and what the command said of it."""
+    """Return a library of the planar cable, and the output of the command."""
     folder = tmp_path_factory.mktemp("own")
     result = CliRunner().invoke(app, ["derive", "--spec", str(spec(folder)), "--out", str(folder / "new" / "library")])
     assert result.exit_code == 0, result.output
@@ -83,7 +83,7 @@ def test_an_unchanged_spec_makes_nothing_anew(made, capsys):
 
 
 def test_a_changed_spec_replaces_the_library_also_in_a_process_that_has_it_open(made, tmp_path, monkeypatch):
-    """The fixture verifies a library; that of the changed spec is not verified again here."""
+    """The fixture verifies a library; the changed one is not verified again."""
     monkeypatch.setattr(command, "examined", lambda *_: Report())
     out = tmp_path / "library"
     shutil.copytree(made, out)
@@ -186,7 +186,7 @@ const char fu_all[64];
 
 @pytest.fixture
 def hostile(tmp_path) -> tuple[Path, Path]:
-    """A library without kernels, whole as far as its manifest tells, and the file that appears when it is loaded."""
+    """Return a library without kernels but with a valid manifest, and the file that loading it would write."""
     folder, marker = tmp_path / "hostile", tmp_path / "it-ran"
     folder.mkdir()
     (tmp_path / "hostile.c").write_text(HOSTILE % marker)
@@ -196,7 +196,7 @@ def hostile(tmp_path) -> tuple[Path, Path]:
 
 
 def described(folder: Path, shared: Path, name: str = "") -> None:
-    """A manifest of one element, its digests right."""
+    """Return a manifest of one element with correct digests."""
     here = manifest()
     content = {"interface": here["interface"], "elements": {"cable12": here["elements"]["cable12"]},
                "arguments": {}, "kernels": {},
@@ -277,7 +277,7 @@ def test_a_manifest_leads_to_no_file_elsewhere(hostile, tmp_path):
 
 
 def test_an_allowed_library_is_used(made, tmp_path):
-    """By its directory or a link to it; a run that was made with it reads its scene back."""
+    """A library is allowed by its directory or a link to it. Its runs read their scenes back."""
     scene = funicular.Scene()
     cable(scene, element="mine8p", library=made)
     scene.pin("wire", s=0.0)
@@ -294,7 +294,7 @@ def test_an_allowed_library_is_used(made, tmp_path):
 
 
 def test_a_damaged_manifest_is_refused(copied):
-    """At any place: cut short, or a byte of it changed, which digests find where the words do not."""
+    """A manifest is damaged at any place: cut short, or one byte changed, which the digests detect."""
     whole, random = (copied / "manifest.json").read_bytes(), np.random.default_rng(3)
     for at in random.integers(len(whole), size=100):
         for damaged in (whole[:at], whole[:at] + bytes([whole[at] ^ 1 << random.integers(8)]) + whole[at + 1:]):
@@ -344,7 +344,7 @@ def test_elements_are_those_that_are_generated():
 
 @pytest.mark.slow
 def test_the_example_of_the_readme_is_cable18(tmp_path, monkeypatch):
-    """Its spec, its command, its scene in Python and as a file; the run is that of cable18."""
+    """Spec, command and scene of the text, from Python and from a file; the run equals that of cable18."""
     here = page("derive/README.md")
     text, in_python = here.of("Your own element", "python")
     assert [getattr(load_spec(tmp_path, text), name) for name in ("basis", "nodal_vectors", "director", "dim")] == [

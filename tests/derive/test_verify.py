@@ -1,4 +1,4 @@
-"""`funicular verify` passes on what is checked in, and fails by name on what somebody broke."""
+"""`funicular verify` accepts the checked-in code and names a kernel that was changed."""
 
 from dataclasses import replace
 from functools import partial
@@ -18,7 +18,7 @@ from written_out import copy_written_out
 
 @pytest.fixture
 def generated(tmp_path) -> Path:
-    """A copy of the generated C, to break."""
+    """Return a copy of the generated C, for changes."""
     copy_written_out(tmp_path)
     return tmp_path
 
@@ -30,7 +30,7 @@ def broken(folder: Path, file: str, old: str, new: str) -> None:
 
 
 def body(folder: Path, file: str, kernel: str) -> str:
-    """Text of one kernel."""
+    """Return the text of one kernel."""
     text = (folder / file).read_text()
     start = text.index(f"void {kernel}(")
     return text[start : text.index("\n}\n", start)]
@@ -110,7 +110,7 @@ def test_signs_changed_inside_a_law_are_found(generated, capsys, family, definit
 
 
 def test_an_energy_that_is_wrong_in_spec_and_text_alike_is_found(generated, capsys, monkeypatch):
-    """Derivatives agree with one another then; the integral from shape functions does not."""
+    """The derivatives then agree with one another; the integral of the shape functions differs."""
     right, name = Cable.points, "cable8p_green_exact"
     monkeypatch.setattr(Cable, "points", lambda self, n: [replace(p, weight=p.weight * (1 + 1e-12))
                                                           for p in right(self, n)])
@@ -165,7 +165,7 @@ def test_an_unknown_name_gets_the_near_ones(capsys):
 
 
 def test_an_output_without_a_relation_is_missed():
-    """That every output has one is part of `funicular verify`."""
+    """`funicular verify` requires a relation for every output."""
     for name in ("rigid", "cable12", "cable8p_green_linear"):
         family = families()[name]
         programs = family.build()
@@ -175,7 +175,7 @@ def test_an_output_without_a_relation_is_missed():
 
 
 def test_each_method_finds_a_derivative_that_is_slightly_wrong(generated, tmp_path):
-    """A path whose derivative is off by three ceilings fails by that method; a right one passes by all."""
+    """Each method rejects a path whose derivative is wrong by three ceilings, and accepts the correct one."""
     import mpmath
 
     family = families()["rigid"]

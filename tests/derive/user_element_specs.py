@@ -1,4 +1,4 @@
-"""Spec files of a user's element: the planar cable, changed where a test asks for it."""
+"""Spec files of a user's element: variants of the planar cable."""
 
 from pathlib import Path
 
@@ -32,7 +32,7 @@ class Own(Cable):
 
 
 def spec(path: Path, *changes: tuple[str, str], law: str = "") -> Path:
-    """A spec file: the planar cable, changed, with a law of its own."""
+    """Return a spec file: a variant of the planar cable with its own law."""
     text = SPEC
     if law:
         text = LAW + law + text.replace('("green_linear",)', "(Own,)")

@@ -16,7 +16,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
 
 
 class Oscillator:
-    """u'' = -omega^2 u with h = 1 as algorithmic_dissipation.c takes it; state: u, v, g. Its energy with the stored
+    """u'' = -omega^2 u with h = 1 by algorithmic_dissipation.c. The state is u, v, g; the energy includes the stored
     part.
     """
 
@@ -39,7 +39,7 @@ class Oscillator:
 
 @pytest.mark.parametrize("spectral_radius", RADII)
 def test_spectral_radius_of_a_fast_oscillator_is_the_one_asked_for(spectral_radius):
-    # three eigenvalues meet there: their radius is within the third root of what is left of the limit
+    # three eigenvalues coincide there: their error is the third root of the distance from the limit
     assert abs(Oscillator(spectral_radius, 1e4).radius - spectral_radius) < 5e-3
     assert abs(Oscillator(spectral_radius, 1e6).radius - spectral_radius) < 5e-4
 
@@ -75,7 +75,7 @@ def test_momenta_are_kept_and_the_energy_balances(kind):
 
 
 class EveryRow:
-    """A stream that only looks at the engine after each row."""
+    """A stream that only evaluates the engine after each row."""
 
     def __init__(self, look):
         self.look = look
@@ -89,7 +89,7 @@ class EveryRow:
 
 @pytest.mark.parametrize("kind", ["green", "engineering", "cable8p"])
 def test_energy_with_what_is_stored_decays_in_every_step(kind):
-    """Stored: viscosity/(2 lag) D g^2 and the energy of r, D by the Gauss points of the damping."""
+    """The stored energy is viscosity/(2 lag) D g^2 plus the energy of r, with D by the Gauss points of the damping."""
     scene = free(planar=kind in PLANAR, **(CABLES | PLANAR)[kind])
     model, method = build(scene), EnergyMomentum(0.5)
     lag, viscosity, _, _ = method.parameters
@@ -127,7 +127,8 @@ def test_order_in_time_is_two(kind):
 
 
 def pendulum(element: str, stretch: float) -> Scene:
-    """A steel wire falls from level; let go 0.1 % too long it rings, at h omega of 12 and more in steps of 1 ms."""
+    """A steel wire falls from the horizontal. With 0.1 % of slack it vibrates at h omega of 12 and more for h = 1 ms.
+    """
     return cable_scene(pins=(0.0,), elements=8, element=element, rest_length=1 / (1 + stretch),
                        section=Circle(radius=1e-3),
                        material=Material(youngs_modulus=2e11, poisson_ratio=0, density=7850))
@@ -174,7 +175,7 @@ def test_crossing_nodes_keeps_the_energy_balance():
 
 
 def test_the_engine_does_what_the_oscillator_does():
-    """A wire rings along itself at h omega of 79 and more, so little that it is linear."""
+    """A wire has axial vibrations at h omega of 79 and more, with amplitudes in the linear range."""
     step, speed = 0.01, np.sqrt(2e11 / 7850)
     scene = Scene(gravity=(0, 0, 0))
     scene.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=1, element="cable8p", rest_length=1 / (1 + 1e-8),

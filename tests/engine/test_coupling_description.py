@@ -1,4 +1,4 @@
-"""One description of a coupling: fields in C say what its outputs are, and Python reads them."""
+"""Each coupling describes its outputs once, by fields in C, which Python reads."""
 
 from dataclasses import fields
 
@@ -25,7 +25,7 @@ def test_outputs_say_unit_and_turning(kind):
 
 
 def test_each_output_is_a_result_of_a_part():
-    """Add a new output of the engine to `results` of its part, with a sentence on what it is."""
+    """A new output of the engine needs an entry with a description in `results` of its part."""
     known = {name for kind in KINDS for name in kind.results}
     assert {name for fields in OUTPUTS.values() for name in fields} <= known
 
@@ -74,7 +74,7 @@ def test_every_result_of_a_part_has_a_turning():
 
 
 def test_the_model_has_one_list_of_couplings():
-    """Each kind of coupling is a type of the engine; the order of the list is that of the kinds."""
+    """Each kind of coupling is a type of the engine. The list has the order of the kinds."""
     model = build(fu.load_scene("cable_car"))
     kinds = [kind.name for kind in COUPLINGS]
     numbers = [kinds.index(coupling.type) for coupling in model.couplings]

@@ -1,4 +1,4 @@
-"""The engine knows a coupling by its table of operations: no integrator and no loop of the run knows a kind by name."""
+"""The engine calls couplings through their tables of operations; integrators and the run name no kind."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The penetration that a run tells is what the energy allows, also between its rows."""
+"""The reported penetration agrees with the energy, also between rows."""
 
 import re
 
@@ -17,13 +17,13 @@ INTEGRATORS = ["genalpha", "radau", "explicit", "energy"]
 
 
 def told_depth(run) -> float:
-    """Return the depth in m of the one note on it."""
+    """Return the depth in m of the one note on penetration."""
     (told,) = [message for message in run.report["messages"] if "keeps it up" in message]
     return float(re.search(r"up to ([0-9.e-]+) m", told)[1])
 
 
 def dropped() -> fu.Scene:
-    """Return a scene of a ball that flies at the ground; it touches from 0.2 to 0.37 s."""
+    """Return a scene of a ball that falls on the ground and touches it from 0.2 to 0.37 s."""
     scene = fu.Scene(gravity=(0, 0, 0))
     scene.surface("ground", fu.Plane())
     scene.rigid_body("ball", mass=3.0, inertia=(1, 1, 1), position=(0, 0.5, 0), velocity=(0, -2.0, 0))
@@ -34,7 +34,7 @@ def dropped() -> fu.Scene:
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 @pytest.mark.parametrize(("speed", "stiffness"), [(2.0, 1e3), (0.7, 50.0)])
 def test_the_penetration_at_rows_is_what_the_energy_allows(integrator, speed, stiffness):
-    """A linear penalty stores all the energy where the ball turns round: m v^2/2 = k d^2/2. A row is there."""
+    """A linear penalty stores all energy at the turning point, where a row is: m v^2/2 = k d^2/2."""
     mass, radius = 3.0, 0.1
     scene = fu.Scene(gravity=(0, 0, 0))
     scene.surface("ground", fu.Plane())
@@ -58,7 +58,7 @@ def test_the_penetration_between_rows_is_told(integrator):
 
 
 def test_the_penetration_before_a_checkpoint_is_told(tmp_path, monkeypatch):
-    """The ball has left the ground when the run is killed: what goes on tells how deep it was."""
+    """The ball has left the ground when the run is killed. The resumed run reports the depth."""
     monkeypatch.setattr(streaming, "CHECKPOINT_INTERVAL", 0.0)
     left = failing(monkeypatch, 1_000_000, Killed())
     with pytest.warns(fu.FunicularWarning, match="below its surface"):
@@ -76,7 +76,7 @@ def test_the_penetration_before_a_checkpoint_is_told(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 def test_lines_that_pass_through_each_other_are_told(integrator):
-    """A soft crossing lets a heavy bar past the axis of a wire between two rows; it is as deep as rows of 1 ms show."""
+    """A heavy bar passes the axis of a wire between two rows. The depth equals that of a run with rows of 1 ms."""
     scene = fu.Scene(gravity=(0, 0, 0))
     wire = scene.cable("wire", start=(-1, 0, 0), end=(1, 0, 0), elements=4, element="cable12",
                        section=fu.Circle(radius=0.02),
@@ -93,7 +93,7 @@ def test_lines_that_pass_through_each_other_are_told(integrator):
 
 @pytest.mark.parametrize(("force", "told"), [(0.0, 0), (5.0, 1)])
 def test_at_rest_lines_that_touch_are_told(force, told):
-    """Beyond an end of a line the other may be past its axis, and touches nothing."""
+    """Beyond the end of a line there is no contact, even past its axis."""
     scene = fu.Scene()
     wire = scene.cable("wire", start=(-1, 0, 0), end=(1, 0, 0), elements=4, element="cable12",
                        section=fu.Circle(radius=0.005),
@@ -112,7 +112,7 @@ def test_at_rest_lines_that_touch_are_told(force, told):
     fu.Box(size=(1, 0.4, 1)), fu.HeightField.of(lambda x: 0.24 + 0.01 * np.cos(x), np.linspace(-3, 3, 25))],
     ids=lambda shape: shape.kind)
 def test_a_centreline_lies_on_every_surface(shape):
-    """With the radius 0, and 1e-6 as those wrote it who thought that 0 is refused: one state, and no note on depths."""
+    """The radii 0 and 1e-6 give the same state, and no note on penetration."""
     def on_bed(radius):
         scene = fu.Scene(gravity=(0, -9.81, 0))
         line = scene.cable("line", start=(-2, 0.3, 0.01), end=(2, 0.3, 0.01), elements=40, element="cable12",

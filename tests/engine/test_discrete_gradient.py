@@ -1,4 +1,4 @@
-"""Discrete derivatives through stages: exact differences, derivatives where nothing moves."""
+"""Discrete derivatives by stages give exact differences, and derivatives where arguments are equal."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from funicular.derive.codegen.program import Program
 
 
 def staged():
-    """A function of two inputs through products, quotients, roots, and a value that hides a constant."""
+    """Return a function of two inputs with products, quotients, roots, and a value with a constant in it."""
     law = Program("law", "", "")
     x, y = law.input("x", (), "1", ""), law.input("y", (), "1", "")
     law.stage("function")
@@ -27,7 +27,7 @@ def evaluated(program: Program, expr, values):
 
 
 def gradient(now, then):
-    """D by both inputs, and the function's values, at 30 digits."""
+    """Return the discrete derivatives by both inputs, and the values of the function, with 30 digits."""
     law, inputs, expr = staged()
     program = Program("step", "", "")
     ends = [tuple(program.input(f"{s}{k}", (), "1", "") for k in (0, 1)) for s in inputs]

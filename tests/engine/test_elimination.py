@@ -1,4 +1,4 @@
-"""The border front by front: the dense solution, in a number of operations that grows with the bodies and no faster."""
+"""Elimination of the border by fronts: the dense solution, with operations in proportion to the number of bodies."""
 
 import bodies
 import numpy as np
@@ -22,13 +22,13 @@ ROPE = {"element": "cable12", "section": Circle(radius=0.01),
 
 @pytest.fixture
 def in_fronts(monkeypatch):
-    """Every border in as many fronts as its graph has, however small it is."""
+    """Divide every border into all fronts of its graph, at any size."""
     monkeypatch.setattr(border, "DENSE", 0)
     monkeypatch.setattr(elimination, "FRONT", 0.0)
 
 
 def ring() -> Scene:
-    """Eight bodies in a closed ring of universal joints that turn a little, one hung up."""
+    """Return eight bodies in a closed ring of universal joints with small rotations, one of them suspended."""
     scene, n = Scene(), 8
     angles = 2 * np.pi * np.arange(n) / n
     for k, angle in enumerate(angles):
@@ -46,7 +46,7 @@ def ring() -> Scene:
 
 
 def four_bar() -> Scene:
-    """A crank that turns as prescribed, a coupler, a rocker, in space: a loop without redundant equations."""
+    """Return a spatial four-bar linkage with a driven crank, a loop without redundant equations."""
     scene = Scene()
     scene.rigid_body("crank", mass=1.0, inertia=(0.1, 0.1, 0.1), position=(0.1, 0, 0))
     scene.rigid_body("coupler", mass=2.0, inertia=(0.1, 0.2, 0.3), position=(0.6, 0.2, 0))
@@ -61,7 +61,7 @@ def four_bar() -> Scene:
 
 
 def on_a_cable(kind: str) -> Scene:
-    """A chain of bodies on a cable: hung from a place of it, welded to it, or riding by a slide with a frame."""
+    """Return a chain of bodies on a cable, attached by a point, a weld, or a slide with a frame."""
     scene = cable_scene(length=2, pins=(0.0, 2.0), elements=7, **ROPE)
     along = np.array([0.0, -1.0, 0.0])
     end = np.array([0.9, 0.0, 0.0])
@@ -82,7 +82,7 @@ def on_a_cable(kind: str) -> Scene:
 
 
 def driven() -> Scene:
-    """A chain of bodies with joints of every kind, some of them driven, hung from a node that moves."""
+    """Return a chain with joints of every kind, some driven, which hangs from a moving node."""
     scene = cable_scene(length=1, elements=3, **ROPE)
     scene.motion("wire", s=0.0, displacement=("free", Harmonic(amplitude=0.1, frequency=2.0), 0.0))
     kinds = [("revolute", {"axis": (0, 0, 1)}),
@@ -101,7 +101,7 @@ def driven() -> Scene:
 
 
 def light() -> Scene:
-    """A chain in which every other body has next to no mass: on it alone no pivot stands."""
+    """Return a chain with nearly massless bodies at every second place, which alone give no pivot."""
     scene, end, along = Scene(), np.zeros(3), np.array([1.0, 0, 0])
     for k in range(16):
         mass = 1.0 if k % 2 else 1e-8
@@ -167,7 +167,7 @@ def test_few_bodies_stay_dense():
 
 
 def test_an_entry_without_a_place_is_refused(in_fronts):
-    """Were the graph of the border to lack what couples two of its unknowns, no number would come of it."""
+    """An incomplete graph of the border leads to an error and not to a number."""
     model = build(chain(3))
     lacking = BorderGraph()
     for body in range(3):
@@ -182,7 +182,7 @@ def test_an_entry_without_a_place_is_refused(in_fronts):
 
 
 def test_a_singular_border_is_refused(in_fronts):
-    """Bodies that have lost their mass: turns about the joints cost nothing, and no front has a pivot for them."""
+    """Bodies without mass rotate about joints at no cost, so that no front has a pivot for them."""
     model = build(chain(8))
     for body in model.bodies:
         body.mass, body.inertia = 0.0, 0.0 * body.inertia
@@ -193,7 +193,7 @@ def test_a_singular_border_is_refused(in_fronts):
 
 
 def doors(n: int) -> Scene:
-    """A chain of doors, each on two hinges, of which the second's equations follow from the first's."""
+    """Return a chain of doors on two hinges each; the equations of the second hinge depend on the first."""
     scene = Scene()
     for k in range(n):
         scene.rigid_body(f"door{k}", mass=1.0, inertia=(0.1, 0.1, 0.1), position=(k + 0.5, 0, 0))
@@ -213,7 +213,7 @@ def test_redundant_equations_are_left_out_as_of_few_bodies():
 
 
 def test_a_hundred_bodies_keep_their_energy():
-    """Of 127 bodies of a tree and of 100 of a chain, without numerical damping."""
+    """A tree of 127 bodies and a chain of 100, without numerical damping."""
     for made, n in ((chain, 100), (tree, 127)):
         run = made(n).run(duration=0.05, output_step=0.01, step=1e-3, integrator="genalpha", spectral_radius=1.0)
         total = run["energy.kinetic"] + run["energy.potential"]
@@ -251,12 +251,12 @@ def test_joints_in_loops():
 
 @pytest.mark.parametrize("name", CABLES)
 def test_cables_alone_have_the_border_that_they_had(name):
-    """Riders and knots of a few cables are too few for more than one front."""
+    """The riders and ties of a few cables form one front."""
     assert build(cables(name, 60)).newton.n == 1
 
 
 def test_scenes_of_one_topology_share_the_analysis():
-    """Other numbers are no other topology; another body or joint is one."""
+    """The topology does not depend on values; another body or joint changes it."""
     scene = chain(30)
     first, other, longer = build(scene), build(scene.replace(next(iter(scene.bodies)), mass=7.0)), build(chain(31))
     assert first.newton is other.newton and first.accelerations is other.accelerations

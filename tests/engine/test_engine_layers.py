@@ -1,4 +1,4 @@
-"""Layers of the C files of the engine: calls and includes run down, and no files call each other in a circle."""
+"""Calls and includes of the engine's C files run down the layers, without circles."""
 
 import re
 from pathlib import Path
@@ -90,7 +90,7 @@ def test_circles_are_found():
 
 @pytest.mark.parametrize("file", sorted(HEADERS))
 def test_no_header_gathers_others(file):
-    """A file includes what it uses: no header is there to include headers."""
+    """Each file includes the headers that it uses; no header only includes others."""
     text = HEADERS[file]
     lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
     assert lines, f"{file} declares nothing"

@@ -8,7 +8,7 @@ from scipy.sparse import csc_array, random_array
 
 
 def banded(n, negatives, rng, width=6):
-    """A banded symmetric matrix, shifted so that so many of its eigenvalues are negative."""
+    """Return a banded symmetric matrix, shifted to have the given number of negative eigenvalues."""
     A = rng.standard_normal((n, n))
     A = np.triu(np.tril(A + A.T, width), -width)
     values = np.linalg.eigvalsh(A)
@@ -42,7 +42,7 @@ def test_redundant_constraints_count_once(n):
 
 @pytest.mark.parametrize("n", [60, 600])
 def test_a_chain_that_is_free_has_zero_directions(n):
-    """Three free chains of springs, of 1 N/m, of 1e8 N/m, and pressed, with two unknowns that nothing holds."""
+    """Three free chains of springs of 1 N/m, of 1e8 N/m, and under compression, and two free unknowns."""
     chain = 2 * np.eye(n // 3) - np.eye(n // 3, k=1) - np.eye(n // 3, k=-1)
     chain[0, 0] = chain[-1, -1] = 1
     K = np.zeros((n + 2, n + 2))
@@ -54,8 +54,7 @@ def test_a_chain_that_is_free_has_zero_directions(n):
 
 @pytest.mark.parametrize("n", [30, 350])
 def test_no_negative_eigenvalue_and_the_first_one(n):
-    """Close to zero on both sides, and on it within rounding; K all of whose eigenvalues are positive is factored once.
-    """
+    """Counts just beside zero, and at zero within rounding. A positive definite K is factored once."""
     rng = np.random.default_rng(n)
     K, C = banded(n, 1, rng), constraints(n, 3, rng)
     least = eigvalsh(K)[0] * np.eye(n)
@@ -71,7 +70,7 @@ def test_rounding_in_a_free_direction_is_no_stiffness():
 
 
 def test_saddle_points_without_diagonal():
-    """A diagonal of zeros cannot be factored without exchanges: LAPACK's blocks of two are counted instead."""
+    """A zero diagonal needs exchanges: the count uses the two-by-two blocks of LAPACK."""
     n = 500
     K = np.zeros((n, n))
     for k in range(0, n, 2):
@@ -87,7 +86,8 @@ def test_refused():
 
 
 def mechanism():
-    """A rope with a tied rider, a trolley, a door on two hinges (redundant), a spring, and a compressed strut."""
+    """Return a rope with a tied rider, a trolley, a door on two hinges (redundant), a spring, and a compressed strut.
+    """
     from funicular import Scene
     from shared_scenes import SQUARE, TABLE_1
 
@@ -108,7 +108,7 @@ def mechanism():
 
 
 def test_scenes_with_slides_joints_springs_and_redundant_constraints(monkeypatch):
-    """The sparse count against all eigenvalues, of the same stiffness."""
+    """The sparse count against all eigenvalues of the same stiffness."""
     from funicular.parts.settings import EquilibriumSettings
     from funicular.solve.linear import inertia as module
     from funicular.solve.statics.static_problem import StaticProblem

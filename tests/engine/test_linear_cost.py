@@ -1,4 +1,4 @@
-"""Linear algebra of a Newton step: right, and of a size that grows with the number of elements and no faster."""
+"""Linear algebra of a Newton step: correct, with a cost in proportion to the number of elements."""
 
 import numpy as np
 import pytest
@@ -21,7 +21,8 @@ def started(scene: Scene) -> Engine:
 
 
 def rope(youngs_modulus=1e7, damping_time=0.0) -> Scene:
-    """Two slides on one element and one on the last: columns of the border that begin in different places."""
+    """Return a rope with two slides on one element and one on the last: border columns that begin in different places.
+    """
     scene = cable_scene(length=2, pins=(0.0, 2.0), elements=7, element="cable12", section=Circle(radius=0.01),
                         strain="green", material=Material(youngs_modulus=youngs_modulus, poisson_ratio=0.3,
                                                           density=1000, damping_time=damping_time))
@@ -32,7 +33,7 @@ def rope(youngs_modulus=1e7, damping_time=0.0) -> Scene:
 
 
 def solution_error(engine: Engine, h: float, size: float) -> tuple[float, str]:
-    """Of a solve against NumPy's, relative; and how the band was factored."""
+    """Return the relative error of a solve against NumPy, and the factorisation of the band."""
     rng = np.random.default_rng(3)
     _, matrix = engine.linearise(h, size * rng.standard_normal(engine.unknowns))
     right = rng.standard_normal(engine.unknowns)
@@ -48,7 +49,7 @@ def test_solves_any_newton_system(name):
 
 
 def two_ropes() -> Scene:
-    """One with damping, one without."""
+    """Return one rope with damping and one without."""
     made = rope(damping_time=1e-2)
     made.cable("other", start=(0, 1, 0), end=(2, 1, 0), elements=5, element="cable12", section=Circle(radius=0.01),
                material=Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1000))
@@ -86,7 +87,7 @@ def test_long_chains_are_solved_from_both_ends(name, elements):
 
 @pytest.mark.parametrize("half", [0.25, 0.75])
 def test_long_chains_that_are_not_definite_are_factored_with_pivots(half):
-    """The half of the chain that is crumpled may be either, or its middle alone."""
+    """Either half of the chain, or its middle, is compressed."""
     made = scene("pendulum", 180)
     engine = started(made)
     rng = np.random.default_rng(3)
@@ -103,7 +104,7 @@ def test_long_chains_that_are_not_definite_are_factored_with_pivots(half):
 
 @pytest.mark.parametrize(("name", "shared"), [("three cables", 3), ("ring", 3), ("ladder", 9)])
 def test_joins_leave_the_band_as_narrow_as_one_cable(name, shared):
-    """Only positions where more than two elements meet are in the border, and of a ring one."""
+    """The border contains the positions where more than two elements meet, and one of a ring."""
     tied, alone = build(scene(name, 120)), build(scene("pendulum", 40))
     assert tied.width == alone.width == 11
     assert tied.n_border_dof - 6 * len(tied.bodies) == shared

@@ -1,4 +1,4 @@
-"""The engine's Newton matrix: derivative of its residual, and of a conditioning that no step size spoils."""
+"""The engine's Newton matrix is the derivative of its residual; its condition does not depend on the step."""
 
 import numpy as np
 import pytest
@@ -33,7 +33,7 @@ def test_matrix_is_the_derivative_of_the_residual(engine, h):
 
 
 def test_conditioning_does_not_depend_on_the_step(engine):
-    """Small steps leave that of the mass matrix with the joints: unscaled rows would add (1/h)^2 a power of ten."""
+    """At small steps the condition is that of the mass matrix with joints; unscaled rows would add (1/h)^2."""
     n = engine.unknowns
     numbers = [np.linalg.cond(engine.linearise(h, np.zeros(n))[1]) for h in (3e-3, 1e-5, 1e-6, 1e-7)]
     assert max(numbers[1:]) < 1.5 * min(numbers[1:])  # measured: 1.1 at most
@@ -41,7 +41,7 @@ def test_conditioning_does_not_depend_on_the_step(engine):
 
 
 def welded() -> Scene:
-    """Cables joined to cables: fixed to one another, and tied to the section where one rides the other."""
+    """Return cables welded to one another, and tied to the section on which one rides."""
     scene = Scene()
     made = {"section": Rectangle(height=0.05, width=0.05), "elements": 2,
             "material": Material(youngs_modulus=0.4e9, poisson_ratio=0.3, density=4200)}
@@ -55,7 +55,7 @@ def welded() -> Scene:
 
 
 def moved(engine, forces: float) -> dict:
-    """A static state off the drawn one, with multipliers and forces of about this size."""
+    """Return a static state away from the drawn one, with multipliers and forces of the given size."""
     rng = np.random.default_rng(2)
     engine.set_state(0.3)
     engine.move(1e-3 * rng.standard_normal(engine.unknowns))
@@ -71,7 +71,7 @@ def test_static_matrix_is_the_derivative_of_the_static_residual(scene):
     kept = moved(engine, 1e3)
     engine.set_state(0.3, **kept)
     matrix = engine.matrix(0.0, 0.0, 1.0).toarray()
-    # a unit of each unknown, in residuals of very different sizes
+    # unit changes of the unknowns change the residuals by very different amounts
     worst = []
     for step in (1e-5, 1e-6, 1e-7):
         error = np.abs(at_rest(engine, 0.3, kept, step) - matrix)

@@ -1,4 +1,4 @@
-"""What slides and joints cost, as the report tells."""
+"""The report contains the cost of slides and joints."""
 
 import subprocess
 import time
@@ -51,7 +51,7 @@ def test_without_slides_and_joints_there_is_none():
 
 
 def test_timing_takes_little_and_changes_nothing():
-    """A run that is timed step by step goes on bit for bit."""
+    """A run with timed steps continues bit for bit."""
     ends, taken = [], []
 
     def look(_):
@@ -70,7 +70,7 @@ def test_timing_takes_little_and_changes_nothing():
 
 
 def test_an_interrupted_call_does_not_count(tmp_path):
-    """The machine may do something else in the first call of a coupling: 56 ms of 4 µs."""
+    """An interruption of the first call of a coupling does not count: it once gave 56 ms instead of 4 µs."""
     program, here = tmp_path / "part_timing", Path(__file__).parent
     engine = here.parents[1] / "runtime" / "engine"
     subprocess.run([*compiler(), "-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", f"-I{drift.folder()}",
@@ -81,7 +81,7 @@ def test_an_interrupted_call_does_not_count(tmp_path):
 
 
 def test_an_engine_starts_once():
-    """A second start wrote rows past the arrays of the first one."""
+    """A second start would write rows beyond the arrays of the first one."""
     engine = Engine(build(one_rider()))
     settings = {"duration": 0.02, "output_step": 0.01, "tol": 1e-4, "step": 0.0, "method": GeneralisedAlpha(0.8),
                 "first_step": 1e-4}

@@ -1,4 +1,4 @@
-"""Redundant constraints of closed chains of many bodies: as many as of few, and found in time."""
+"""Redundant constraints of closed chains are found at any number of bodies, at linear cost."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ LENGTH = 0.1
 
 
 def ring(n: int, kind: str, **axis: tuple) -> Scene:
-    """Rods in a level circle, each on a joint of this kind with the next, and the first with the ground."""
+    """Return rods in a horizontal circle, joined to one another by this kind of joint, the first one to the ground."""
     scene = Scene(gravity=(0, -9.81, 0))
     angles, radius = 2 * np.pi * np.arange(n + 1) / n, LENGTH * n / (2 * np.pi)
     corners = radius * np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
@@ -41,7 +41,7 @@ def test_a_ring_of_spherical_joints_has_none(n):
 
 
 def test_the_search_takes_a_window_of_the_rows_before(monkeypatch):
-    """All but the rows that close the loop see the joints beside them alone: the work is linear in the joints."""
+    """Each row, except those that close the loop, is coupled to neighbouring joints alone: the cost is linear."""
     from funicular.model import redundant_constraints
 
     sizes = []

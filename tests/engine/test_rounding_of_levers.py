@@ -1,4 +1,4 @@
-"""Distances of contacts and joints are rounded relative to the lengths that they are computed from."""
+"""The rounding of distances in contacts and joints is relative to the lengths from which they are computed."""
 
 from math import hypot
 
@@ -25,7 +25,7 @@ ROUND = {
 
 
 def slid(shape, integrator="radau", radius=0.0):
-    """Return the ways (time, 3) of a body on three feet that falls on a surface in y = 0, slides and tips."""
+    """Return the displacements (time, 3) of a body on three feet that falls on a surface in y = 0, slides and tips."""
     scene = fu.Scene()
     scene.rigid_body("b", mass=4.0, inertia=(7e-3, 7e-3, 8e-3), position=(.1, .1, .05), velocity=(.3, 0, .1),
                      orientation=(.98, .1, .1, .1386))
@@ -40,14 +40,14 @@ def slid(shape, integrator="radau", radius=0.0):
     *((FLAT, 0.1, name) for name in ("radau", "genalpha", "explicit")),
     *((ROUND, 10.0, name) for name in ("radau", "explicit"))], ids=lambda each: each if isinstance(each, str) else None)
 def test_a_body_slides_alike_over_all_surfaces_that_are_flat_there(shapes, share, integrator):
-    """In parts of tol: flat ones differ by rounding, round ones by the slope of 1e-4, which acts with g over 0.6 s."""
+    """Differences relative to tol: rounding between flat surfaces; the slope of 1e-4 over 0.6 s on round ones."""
     plane = slid(fu.Plane(), integrator)
     for name, shape in shapes.items():
         assert np.abs(slid(shape, integrator) - plane).max() < share * 1e-4 * np.abs(plane).max(), name
 
 
 def test_balls_about_the_points_slide_over_a_box_as_over_a_plane():
-    """Radau failed after 0.09 s, where the first points stick."""
+    """The first points stick after 0.09 s."""
     plane, box = (slid(shape, radius=0.01) for shape in (fu.Plane(), FLAT["box"]))
     assert np.abs(box - plane).max() < 1e-5 * np.abs(plane).max()
 
@@ -55,7 +55,7 @@ def test_balls_about_the_points_slide_over_a_box_as_over_a_plane():
 @pytest.mark.parametrize("integrator", ["radau", "genalpha", "explicit"])
 @pytest.mark.parametrize("arm", [10.0, 1e4])
 def test_a_pendulum_whose_mass_is_drawn_at_the_origin_swings(arm, integrator):
-    """The gap of its joint is rounded relative to the arm. Energy: m v^2/2 + J w^2/2 = m g times the fall."""
+    """The gap of the joint is rounded relative to the arm. The energy is m v^2/2 + J w^2/2 = m g times the fall."""
     scene = fu.Scene(gravity=(0, -9.81, 0))
     scene.rigid_body("b", mass=1.0, inertia=(1e-3,) * 3, position=(0, 0, 0))
     scene.joint("spherical", (-.8 * arm, .6 * arm, 0), ("b", (-.8 * arm, .6 * arm, 0)))

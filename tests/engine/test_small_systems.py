@@ -1,4 +1,4 @@
-"""The engine's own linear algebra for small scenes, from C: residuals of random systems are rounding."""
+"""Linear algebra of the engine for small scenes, called from C: the residuals of random systems are rounding."""
 
 import subprocess
 from pathlib import Path

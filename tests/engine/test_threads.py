@@ -1,4 +1,4 @@
-"""Threads are bounded by the machine, refused after a fork, and BLAS has one of them while a scene is computed."""
+"""The number of threads is bounded by the machine; a fork refuses them; BLAS uses one during a run."""
 
 import subprocess
 import sys
@@ -22,7 +22,7 @@ def scene(body: float = 0.5) -> fu.Scene:
 
 @pytest.mark.parametrize("asked", [10**4, 10**5, 10**6])
 def test_no_more_threads_than_processors(asked, monkeypatch):
-    """Before they were bounded, 10^4 hung and 10^5 ended the process."""
+    """Requests of 10^4 and 10^5 threads are bounded."""
     monkeypatch.setattr("funicular.solve.linear.threads.available", lambda: 2)
     run = scene().run(1e-3, step=5e-4, output_step=5e-4, threads=asked)
     assert run.status == "completed"
@@ -51,7 +51,7 @@ print(*after.report["messages"], flush=True)
 
 @pytest.mark.parametrize("parent", [1, 2])
 def test_threads_after_a_fork(parent, request):
-    """Threads are their run's own: a forked process starts its own ones, and does not wait for those of its parent."""
+    """Threads belong to their run: a forked process starts its own and does not wait for those of its parent."""
     done = subprocess.run([sys.executable, "-c", FORKED.format(parent=parent)], capture_output=True, text=True,
                           timeout=60, check=True, cwd=request.config.rootpath)
     assert not done.stdout.strip()
@@ -77,7 +77,7 @@ sys.exit(os.waitpid(children[0], 0)[1] != 0)
 
 
 def test_a_fork_within_a_run(request):
-    """The run goes on in both processes, in the forked one without threads."""
+    """The run continues in both processes, in the forked one without threads."""
     subprocess.run([sys.executable, "-c", WITHIN], timeout=60, check=True, cwd=request.config.rootpath)
 
 
@@ -85,7 +85,7 @@ def test_a_fork_within_a_run(request):
                                                 ("ring", 189), ("ladder", 90)])
 @pytest.mark.parametrize("integrator", ["genalpha", "radau"])
 def test_long_scenes_have_the_same_bits_with_any_number_of_threads(name, elements, integrator, monkeypatch):
-    """Also where elements share unknowns with others: at joints, at rungs, at the ends of a ring."""
+    """Elements that share unknowns are included: at joints, at rungs, at the ends of a ring."""
     monkeypatch.setattr("funicular.solve.linear.threads.available", lambda: 3)
     made = linear_cost.scene(name, elements)
     runs = [made.run(4e-4, integrator=integrator, step=1e-4, output_step=2e-4, threads=number) for number in (1, 2, 3)]
@@ -101,7 +101,7 @@ def blas_threads() -> set[int]:
 
 @pytest.fixture
 def two_blas_threads():
-    """What a user's environment may ask for."""
+    """Set the environment to two threads of BLAS."""
     import funicular.engine  # noqa: F401  with SciPy's BLAS
 
     with threadpool_limits(limits=2, user_api="blas"):

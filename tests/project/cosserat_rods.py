@@ -1,4 +1,4 @@
-"""Rods and scenarios with the attributes that cosseratbench gives them, for tests that do without that package."""
+"""Rods and scenarios with the attributes of cosseratbench, for tests without that package."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ FREE, PINNED, CLAMPED = "free", "pinned", "clamped"
 
 
 class Rod(SimpleNamespace):
-    """A round rod, see ``cosseratbench.Rod``; conditions by their values."""
+    """A round rod, as ``cosseratbench.Rod``; conditions by their values."""
 
     def __init__(self, centerline, radius=0.01, youngs_modulus=1e6, start=FREE, end=FREE, **others):
         points = np.asarray(centerline, dtype=float)
@@ -25,24 +25,24 @@ class Rod(SimpleNamespace):
         self.area, self.second_moment_of_area = np.pi * radius**2, np.pi * radius**4 / 4
 
     def directors(self, elements):
-        """Those of a straight rod, or of one across whose plane the normal is."""
+        """Return the directors of a straight rod, or of a planar rod by the normal of its plane."""
         return np.tile(np.asarray(self.normal, dtype=float), (elements, 1))
 
 
 def load(force, at="end"):
-    """A force at an end."""
+    """Return a force at an end."""
     return SimpleNamespace(force=tuple(force), at=SimpleNamespace(value=at))
 
 
 def motion(times, displacement=None, rotation=None, slides_along=None):
-    """A motion of a clamped end; nothing for what does not move."""
+    """Return a motion of a clamped end; components without motion are empty."""
     still = tuple((0.0, 0.0, 0.0) for _ in times)
     return SimpleNamespace(times=tuple(times), displacement=still if displacement is None else displacement,
                            rotation=still if rotation is None else rotation, slides_along=slides_along)
 
 
 class Scenario(SimpleNamespace):
-    """See ``cosseratbench.Scenario``."""
+    """A scenario, as ``cosseratbench.Scenario``."""
 
     def __init__(self, *rods, duration=1.0, gravity=(0.0, 0.0, 0.0), quasi_static=True, frequency=1.0, **others):
         given = {"obstacles": (), "self_contact": False} | others
@@ -51,11 +51,11 @@ class Scenario(SimpleNamespace):
 
 
 def plane(point, normal, friction=0.0):
-    """A fixed plane."""
+    """Return a fixed plane."""
     return SimpleNamespace(kind="plane", point=point, unit_normal=np.asarray(normal, dtype=float), friction=friction)
 
 
 def cylinder(center, axis, radius, length, friction=0.0):
-    """A fixed cylinder."""
+    """Return a fixed cylinder."""
     return SimpleNamespace(kind="cylinder", center=center, unit_axis=np.asarray(axis, dtype=float), radius=radius,
                            length=length, friction=friction)

@@ -1,7 +1,7 @@
-"""Covering arrays of strength two: few rows of levels, one of each factor, in which every pair of levels occurs.
+"""Covering arrays of strength two: few rows, one level of each factor per row, in which every pair of levels occurs.
 
-The array is adaptive. Rows are drawn one by one, and each is answered: it worked, or a set of its levels was refused.
-Later rows avoid that set, so that one refusal hides no other pair. The same answers give the same rows.
+The array is adaptive. Each row is answered before the next one: accepted, or refused for a set of its levels. Later
+rows avoid that set, so that one refusal hides no other pair. The same answers give the same rows.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ def pairs_of(row: Mapping[str, str]) -> Iterator[frozenset[Level]]:
 
 
 class CoveringArray:
-    """The pairs of levels of factors that are still open, and the sets of levels that were refused.
+    """The open pairs of levels, and the sets of levels that were refused.
 
-    factors: by factor its levels, the first of which is its neutral one. pairs: those to cover, all if not given.
+    factors: levels by factor; the first level of each is neutral. pairs: the pairs to cover, all by default.
     """
 
     def __init__(self, factors: Mapping[str, Sequence[str]], pairs: Sequence[frozenset[Level]] | None = None):
@@ -53,7 +53,7 @@ class CoveringArray:
         self._close(list(pairs_of(row)))
 
     def refuse(self, levels: frozenset[Level]) -> None:
-        """Leave out a set of levels from now on, and close the pairs that it makes impossible."""
+        """Exclude a set of levels, and close the pairs that this makes impossible."""
         self.refused.append(levels)
         self._close([pair for pair in self.open if levels <= pair])
 
@@ -62,7 +62,7 @@ class CoveringArray:
             self.open.pop(pair, None)
 
     def _row(self, pair: frozenset[Level]) -> Row | None:
-        """Return a row with this pair and with many others that are open; None if every one has a refused set."""
+        """Return a row with this pair and many other open ones; None if every such row has a refused set."""
         row = dict(pair)
         if not self._is_possible(row):
             return None
@@ -72,7 +72,7 @@ class CoveringArray:
         return row
 
     def _filled(self, row: Row, left: list[str]) -> Row | None:
-        """Return a row with levels for what is left, found by search with return."""
+        """Return the row completed by a search with backtracking."""
         if not left:
             return row
         factor, *others = left
@@ -83,7 +83,7 @@ class CoveringArray:
         return None
 
     def _worth(self, row: Row, level: Level) -> tuple[int, int]:
-        """Return what sorts the levels of a factor: most open pairs first, then least used."""
+        """Return the sort key of the levels of a factor: most open pairs first, then least used."""
         return -sum(frozenset((level, other)) in self.open for other in row.items()), self._used[level]
 
     def _is_possible(self, row: Row) -> bool:
@@ -98,10 +98,10 @@ def all_pairs(factors: Mapping[str, Sequence[str]]) -> list[frozenset[Level]]:
 
 
 def smallest(row: Row, neutral: Mapping[str, Sequence[str]], is_so: Callable[[Row], bool]) -> frozenset[Level]:
-    """Return levels of a row that suffice for what is so of it: without one of them it is not.
+    """Return a minimal set of levels of a row for which a statement holds: without any one of them it fails.
 
-    neutral: by factor, levels in the place of which it must be so as well if that factor has no part in it. Factors
-    with several of them come last, when few other levels can hide their part.
+    neutral: by factor, levels with which the statement must also hold if the factor is irrelevant. Factors with several
+    of them come last, when few other levels can hide their effect.
     """
     found, part = dict(row), set()
     for factor, level in sorted(row.items(), key=lambda item: len(neutral[item[0]])):

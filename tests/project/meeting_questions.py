@@ -1,4 +1,4 @@
-"""What can be asked of a scene, a run, a state of rest and modes, each as a function of a scene."""
+"""Questions to a scene, a run, an equilibrium and modes, each as a function of a scene."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ VALIDATOR = jsonschema.Draft7Validator(scene_schema())
 
 @dataclass
 class Asked:
-    """A scene, the integrator of its runs, a folder for files, and the levels that the scene is made of."""
+    """A scene, the integrator of its runs, a folder for files, and the levels of the scene."""
 
     scene: fu.Scene
     integrator: str
@@ -35,14 +35,14 @@ class Asked:
     levels: frozenset[Level]
 
     def run(self, **settings) -> fu.Run:
-        """Return a run whose numbers are all finite."""
+        """Return a run after a check that all numbers are finite."""
         run = self.scene.run(integrator=self.integrator, progress=False, **settings)
         finite(run)
         return run
 
 
     def equilibrium(self) -> Equilibrium:
-        """Return the state of rest; several questions ask for it, and the search is the same for equal scenes."""
+        """Return the equilibrium, computed once for equal scenes."""
         if self.levels not in STATES:
             try:
                 STATES[self.levels] = self.scene.equilibrium()
@@ -58,7 +58,7 @@ STATES: dict[frozenset[Level], Equilibrium | fu.FunicularError] = {}
 
 
 def finite(found) -> None:
-    """Check that all arrays of a result are numbers; arc-lengths and places are NaN where nothing touches."""
+    """Check that all arrays of a result are finite; arc-lengths and positions may be NaN without contact."""
     for name in found.keys():
         if name.rpartition(".")[2] not in ("first", "last", "s", "s_b", "gap"):
             assert np.isfinite(found[name]).all(), f"{name} is not finite"
@@ -72,7 +72,7 @@ def same(one: fu.Run, other: fu.Run) -> None:
 
 
 def data(toml: str) -> str:
-    """Return a scene file without the comment that says that the function of an event is lost."""
+    """Return a scene file without the comment on the lost function of an event."""
     return re.sub(r'# event "\w+" watches a function, .*\n\n', "", toml)
 
 
@@ -146,7 +146,7 @@ def saved(on: Asked) -> None:
 
 
 def resumed(on: Asked) -> None:
-    """Kill a run as it writes its third row or so, and go on."""
+    """Kill a run near its third row, and resume it."""
     settings = {"integrator": on.integrator, "save": on.folder / "resumed.nc", "output_step": TIME / 8}
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
@@ -168,7 +168,7 @@ def forces_in_sections(on: Asked) -> None:
 
 
 def forces_at_a_slide(on: Asked) -> None:
-    """Where there is no slide, ask for the forces along the cable: their refusals are not those of a slide."""
+    """Return section forces at a slide, or along the cable in a scene without slides."""
     run = on.run()
     for slide in on.scene.slides.values():
         run.section_forces(slide.along, slide)
@@ -203,7 +203,7 @@ def page_of_scene(on: Asked) -> None:
 
 
 def plots(on: Asked) -> None:
-    """Draw the scene, its state of rest and its modes."""
+    """Draw the scene, its equilibrium and its modes."""
     drawn(on.scene.plot())
     state = on.scene.equilibrium()
     drawn(state.plot())
@@ -282,7 +282,7 @@ def replaced(on: Asked) -> None:
 
 
 def without_a_part(on: Asked) -> None:
-    """Leave out what rides the cable, or a joint or a support where nothing does."""
+    """Remove the rider of the cable, or a joint or a support in a scene without riders."""
     part, *_ = (*on.scene.slides.values(), *on.scene.joints.values(), *on.scene.pins)
     on.scene.without(part).run(integrator=on.integrator, progress=False)
 

@@ -1,4 +1,6 @@
-"""`funicular bench`: its errors are errors, its reference is converged, what fails is reported and the rest goes on."""
+"""`funicular bench`: its errors are true, its reference is converged, and a failure is reported without ending the
+rest.
+"""
 
 import csv
 import re
@@ -16,7 +18,7 @@ DURATION = 0.2
 
 
 def swing() -> Scene:
-    """A planar pendulum with a pin between two of its elements, so that meshes of an odd number are refused."""
+    """Return a planar pendulum with a pin at an inner node, which refuses meshes of odd numbers."""
     scene = cable_scene("rope", pins=(0.5,), elements=2, element="cable8p", section=Rectangle(height=0.02, width=0.02),
                         material=Material(youngs_modulus=2e6, poisson_ratio=0.0, density=7200))
     scene.run_settings = {"duration": DURATION, "step": 0.01}
@@ -25,7 +27,7 @@ def swing() -> Scene:
 
 @pytest.fixture(scope="module")
 def benchmark(tmp_path_factory):
-    """Standard output of the command, rows of its CSV file, and its directory."""
+    """Return the standard output of the command, the rows of its CSV file, and its directory."""
     directory = tmp_path_factory.mktemp("bench")
     (directory / "swing.toml").write_text(swing().to_toml())
     result = CliRunner().invoke(app, ["bench", str(directory / "swing.toml"), "--integrators", "genalpha", "--tols",
@@ -46,7 +48,7 @@ def test_every_combination_has_a_row(benchmark):
 
 
 def test_errors_are_distances_from_the_converged_motion(benchmark):
-    """Against one that steps of equal size give."""
+    """The reference is computed with steps of equal size."""
     given = {"output_step": DURATION / 50, "integrator": "genalpha"}
     exact = swing().run(DURATION, step=2e-5, **given)["rope.nodal_vectors"][:, -1, 0]
     for row in benchmark[1][:2]:
@@ -78,7 +80,7 @@ def test_a_combination_that_fails_is_reported(benchmark):
 
 
 def test_a_run_that_stops_early_is_reported():
-    """A rider that leaves its cable: the reference has no motion to the end, either."""
+    """A rider leaves its cable, and the reference does not reach the end either."""
     scene = swing()
     scene.rigid_body("A", mass=1.0, inertia=(1e-3, 1e-3, 1e-3), position=(0.9, 0, 0), velocity=(5, 0, 0))
     scene.slide("A", along="rope", s=0.9)

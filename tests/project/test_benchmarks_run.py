@@ -1,4 +1,4 @@
-"""Every script of tests/benchmarks still runs, with --smallest: the first of its cases, seconds each."""
+"""Every script of tests/benchmarks runs with --smallest, its first case, within seconds."""
 
 import importlib.util
 import subprocess

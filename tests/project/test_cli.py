@@ -1,4 +1,4 @@
-"""The command line and `Scene.run` around the engine, for which a hand-made one stands in here."""
+"""The command line and `Scene.run` around a mock of the engine."""
 
 import re
 import sys
@@ -211,7 +211,7 @@ def test_version():
     ("run --to", ["--tol"]),
 ])
 def test_completion(words, offered):
-    """What a shell gets that asks for the end of the last word."""
+    """The completions that a shell receives for the last word."""
     asked = {"_FUNICULAR_COMPLETE": "complete_bash", "COMP_WORDS": f"funicular {words}",
              "COMP_CWORD": str(len(words.split()))}
     result = CliRunner().invoke(app, env=asked, prog_name="funicular")

@@ -1,4 +1,4 @@
-"""The command line with the real engine, as a user starts it."""
+"""The command line with the compiled engine, started as by a user."""
 
 import os
 import signal
@@ -15,7 +15,7 @@ from funicular import EndOfCableError, load_run, load_scene
 COMMAND = [sys.executable, "-m", "funicular"]
 SCRIPT = [os.path.join(sysconfig.get_path("scripts"), "funicular")]
 
-# a shell's background jobs ignore Ctrl-C, and so would their children: commands under test must not
+# background jobs of a shell ignore Ctrl-C, as would their children; the tested commands must not
 listen = partial(signal.signal, signal.SIGINT, signal.default_int_handler)
 
 
@@ -48,7 +48,7 @@ def test_algorithmic_dissipation_is_asked_for(tmp_path, from_file):
 
 
 def near_the_end():
-    """The body starts 0.1 m before the end and gets there after about 0.1 s."""
+    """Return a scene whose body starts 0.1 m before the end and arrives after about 0.1 s."""
     scene = load_scene("paper51")
     text = scene.to_toml().replace("position = [0.25,", "position = [1.4,").replace("\ns = 0.25\n", "\ns = 1.4\n")
     return text.replace("tol = 1e-05", "tol = 1e-3")
@@ -106,7 +106,7 @@ sys.meta_path.insert(0, Finder())
     ("numpy", COMMAND), ("numpy", SCRIPT), ("typer", COMMAND), ("typer", SCRIPT), ("funicular.results.files", SCRIPT),
     ("scipy", COMMAND)])
 def test_ctrl_c_while_the_command_starts(module, command, tmp_path):
-    """SIGINT comes at an import: of the package, of the command line, of the command, of its work."""
+    """SIGINT comes at an import of the package, of the command line, of the command, or of its work."""
     (tmp_path / "sitecustomize.py").write_text(AT_IMPORT.format(module))
     done = subprocess.run([*command, "run", "paper51"], cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(tmp_path)},
                           capture_output=True, text=True, preexec_fn=listen)

@@ -1,7 +1,7 @@
-"""Every bundled scene with every option of every command that takes a scene: it works, or one line says why not.
+"""Every bundled scene with every option of every command works, or one line gives the reason of a refusal.
 
-Options are read off the command line itself; an option without a value here fails the test. Scenes and options are the
-factors of a covering array for each command.
+The options are read from the command line itself; an option without a value here fails the test. Scenes and options are
+the factors of a covering array for each command.
 """
 
 import os
@@ -23,12 +23,12 @@ NEVER = {"help": "prints and ends", "open_it": "opens a browser", "library": "ne
 
 
 def interval(scene: fu.Scene) -> float:
-    """Two output steps of a bundled scene, s: as long as it is run here."""
+    """Return two output steps of a bundled scene, s: the duration of its runs here."""
     return 2 * scene.run_settings.get("output_step", scene.run_settings["duration"] / 100)
 
 
 def first(scene: fu.Scene) -> str:
-    """A quantity that every scene has: the height of its first cable."""
+    """Return a quantity of every scene: the height of its first cable."""
     return f"{next(iter(scene.cables))}.position.y"
 
 
@@ -61,7 +61,7 @@ ALWAYS = {
 
 
 def options(command: str) -> list[str]:
-    """The options of a command, as the command line has them."""
+    """Return the options of a command."""
     return [parameter.name for parameter in typer.main.get_command(app).commands[command].params
             if parameter.param_type_name == "option" and parameter.name not in NEVER]
 
@@ -73,7 +73,7 @@ def test_every_command_and_option_is_here():
 
 
 def call(command: str, row: Row, folder: Path) -> str:
-    """What a call comes to: nothing, "refused", or what it must not end in."""
+    """Return the outcome of a call: nothing, "refused", or an error that must not occur."""
     scene = fu.load_scene(row["scene"])
     length = interval(scene)
     given = [part for name, values in VALUES[command].items() if row.get(name) == "given" for part in values]
@@ -90,7 +90,7 @@ def call(command: str, row: Row, folder: Path) -> str:
 
 
 def covered(command: str, scenes: list[str], folder: Path) -> dict[frozenset, str]:
-    """Call a command with the rows of its covering array; the errors that it ends in, by what makes them."""
+    """Call a command for the rows of its covering array; return the errors with their minimal sets of options."""
     factors = {"scene": scenes} | {name: ["", "given"] for name, values in VALUES[command].items() if values}
     array, errors = CoveringArray(factors), {}
     neutral = {name: levels[:1] for name, levels in factors.items()} | {"scene": scenes[:2]}
@@ -124,7 +124,7 @@ def test_every_bundled_scene_with_every_option(command, outside):
 
 
 def test_pictures_of_forces_and_the_page_of_a_damped_catenary(outside):
-    """Its wires have damping_time and a law that has the damping of another one."""
+    """The wires have damping_time and a law without a damping kernel of its own."""
     result = CliRunner().invoke(app, ["run", "catenary", "--duration", "0.01", "--plot", "--forces", "-o", "c.nc"])
     assert result.exit_code == 0, result.output
     assert Path("c-forces-contact.png").stat().st_size > 1000

@@ -41,7 +41,7 @@ def test_rods_beside_others_are_spatial():
 
 
 def test_bent_cantilever():
-    """F L³ / (3 E I), 1 % of the length: what is left is geometry, 1e-4, and the way to rest."""
+    """F L³ / (3 E I), 1 % of the length. Geometry accounts for 1e-4, and the approach to rest for the remainder."""
     rod = Rod(STRAIGHT, start=CLAMPED, loads=(load((0, 0, -2.4e-4)),))
     stiff = rod.material.youngs_modulus * rod.second_moment_of_area
     deflection = 2.4e-4 / (3 * stiff)
@@ -56,7 +56,7 @@ def test_bent_cantilever():
 
 
 def test_twisted_rod_turns_evenly():
-    """An end that turns slowly by an angle: the sections along the rod turn by their part of it, over time as given."""
+    """An end turns slowly by an angle; the sections turn in proportion to their arc-length."""
     times = np.linspace(0, 4, 81)
     turn = 1.5 * (0.5 - 0.5 * np.cos(np.pi * times / 4))
     driven = motion(times, rotation=tuple((a, 0.0, 0.0) for a in turn), slides_along=(1.0, 0.0, 0.0))
@@ -77,7 +77,7 @@ def test_sliding_end_takes_its_load():
 
 
 def test_rod_that_starts_at_rest_stays():
-    """It hangs stretched by its weight: s + ρ g (L s - s²/2) / E below its pin, to the element's own error."""
+    """The rod hangs stretched by its weight: s + ρ g (L s - s²/2) / E below its pin, to the error of the element."""
     s = np.linspace(0, 1, 101)
     depth = s + 1000 * 9.81 * (s - s**2 / 2) / 1e6
     rod = Rod(np.stack([0 * s, 0 * s, -depth], axis=1), start=PINNED, normal=(0, 1, 0), rest_arc_length=tuple(s))
@@ -134,7 +134,8 @@ def test_what_is_not_modelled_is_refused(rod, message):
 
 
 def test_directors_turn_with_the_line_alone():
-    """In a plane what is across it stays; in space they stay square to the chords, and a rod at rest keeps them."""
+    """In a plane the transverse director stays; in space the directors are normal to the chords, and constant at rest.
+    """
     turn = np.linspace(0, 1.2, 9)
     bent = np.stack([np.cumsum(np.cos(turn)), 0 * turn, np.cumsum(np.sin(turn))], axis=1)
     frames = np.stack([np.arange(9)[:, None] * [1.0, 0, 0], bent])
@@ -152,7 +153,7 @@ def test_directors_turn_with_the_line_alone():
 
 
 def test_steps_follow_the_scale():
-    """The tolerance grows with its fourth power, which doubles the steps for about twice the scale."""
+    """The tolerance grows with the fourth power of the scale, which doubles the steps for twice the scale."""
     scenario = Scenario(Rod(STRAIGHT, start=PINNED, normal=(0, 1, 0)), gravity=DOWN, quasi_static=False)
     assert Choices(time_step_scale=2.0).tol_of(scenario) == 16 * Choices().tol_of(scenario)
     assert Choices(tol=1e-5).tol_of(scenario) == 1e-5

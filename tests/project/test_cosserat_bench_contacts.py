@@ -1,4 +1,4 @@
-"""Contact in cosseratbench's scenarios: what touches, what is refused, and what is warned of."""
+"""Contact in scenarios of cosseratbench: pairs, refusals and warnings."""
 
 import numpy as np
 import pytest
@@ -14,22 +14,22 @@ LOOP = [(0.1 * np.sin(a), 0.1 * np.cos(a), 0.002 * a) for a in np.linspace(0, 6.
 
 
 def raised(points, height):
-    """The same at a height."""
+    """Return the rod at a height."""
     return [(x, y, z + height) for x, y, z in points]
 
 
 def held(points, height=0.0, **others):
-    """A rod between pins, at a height."""
+    """Return a rod between pins, at a height."""
     return Rod(raised(points, height), start=PINNED, end=PINNED, normal=(0.6, 0.8, 0), radius=0.005, **others)
 
 
 def across(points):
-    """The same along y."""
+    """Return the rod along y."""
     return [(y, x, z) for x, y, z in points]
 
 
 def test_rod_comes_to_lie_on_a_plane():
-    """It sinks by the thousandth of its radius that its contact allows."""
+    """Its contact permits a penetration of a thousandth of the radius."""
     rod = Rod([(0, 0, 0.03), (0.4, 0, 0.03)], radius=0.01, normal=(0, 1, 0))
     scenario = Scenario(rod, duration=2.0, gravity=DOWN, frequency=5.0,
                         obstacles=(plane((0, 0, 0), (0, 0, 1), friction=0.3),))
@@ -52,7 +52,7 @@ def test_planar_rods_have_obstacles_that_keep_them_in_their_plane(obstacle, elem
 
 @pytest.mark.parametrize("height", [0.02, 0.1])
 def test_a_rod_that_falls_on_another_rests_on_it(height):
-    """Whether they start close, and move together at once, or apart, and are found to have met."""
+    """The rods start close and move together at once, or start apart and meet during the run."""
     beam = Rod(raised(across(ALONG_X), height), radius=0.005, normal=(1, 0, 0), youngs_modulus=1e8)
     scenario = Scenario(held(ALONG_X, youngs_modulus=1e8), beam, duration=1.6, gravity=DOWN, frequency=5.0)
     assert (len(near(scenario)) == 1) == (height < 0.04)

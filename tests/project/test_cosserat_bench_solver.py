@@ -1,4 +1,4 @@
-"""funicular as a solver of cosseratbench, as that package finds and scores it."""
+"""funicular as a solver of cosseratbench, found and scored by that package."""
 
 import json
 
@@ -15,7 +15,7 @@ from funicular.cosserat_bench import solver as module
 
 
 def scored(name, elements, values=None, **options):
-    """What an experiment says of a run with its metrics."""
+    """Return the score of an experiment for a run with its metrics."""
     return run(registry.load_experiment(name), registry.load_solver("funicular", **options), n_elements=elements,
                values=values)
 
@@ -48,7 +48,7 @@ def test_errors(name, elements, options, limits):
 
 @pytest.mark.parametrize(("drop", "elements", "error"), [(0.05, 20, 1e-4), (0.1, 40, 1e-5)])
 def test_crossing(drop, elements, error):
-    """With nodes at points of the reference, and one where the ropes touch, all that is left is the mesh's error."""
+    """With nodes at the points of the reference and at the contact, only the error of the mesh remains."""
     result = scored("crossing", elements, values={"drop": drop})
     assert result.outcome == COMPLETED
     assert result.metrics["shape_error"] < error
@@ -59,7 +59,7 @@ def test_crossing(drop, elements, error):
 
 @pytest.mark.parametrize(("overhang", "holds"), [(0.95, True), (1.05, False)])
 def test_capstan(overhang, holds):
-    """The closed form says where friction no longer holds the rope."""
+    """The closed form gives the load at which friction no longer holds the rope."""
     result = scored("capstan", 50, values={"overhang": overhang})
     assert result.outcome == COMPLETED
     assert (result.metrics["slide"] < 1e-3) == holds
@@ -69,14 +69,14 @@ def test_capstan(overhang, holds):
 
 @pytest.mark.slow
 def test_twist():
-    """The experiment gives the uncertainty of its own measurement as 0.5 %."""
+    """The experiment gives 0.5 % as the uncertainty of its measurement."""
     result = scored("twist", 50)
     assert result.outcome == COMPLETED
     assert result.metrics["critical_twist_error"] < 2.5e-3
 
 
 def test_steps_of_another_scale():
-    """As sweeps of the time step ask for: twice the step, another motion by less than the tolerance."""
+    """A sweep of the time step doubles the step and changes the motion by less than the tolerance."""
     scenario = registry.load_experiment("pendulum").scenario
     usual, longer = (registry.load_solver("funicular", time_step_scale=scale).run(scenario, n_elements=5, n_frames=11)
                      for scale in (1.0, 2.0))

@@ -1,4 +1,4 @@
-"""The covering array: every pair of levels occurs, refused ones are found and hide no others."""
+"""The covering array: every pair of levels occurs; refused pairs are found and hide no others."""
 
 from itertools import combinations
 
@@ -11,7 +11,7 @@ NEUTRAL = {factor: levels[:1] for factor, levels in FACTORS.items()}
 
 
 def ask(array: CoveringArray, refused=()) -> list[dict[str, str]]:
-    """The rows that work where these sets of levels are refused."""
+    """Return the accepted rows where these sets of levels are refused."""
     found = []
     for row in array.rows():
         conflict = next((levels for levels in refused if levels <= set(row.items())), None)
@@ -60,7 +60,7 @@ def test_refused_sets_are_found_and_hide_no_pair(refused):
 
 
 def test_a_pair_that_others_make_impossible_is_told():
-    """d is 0 or 1; a = 1 refuses both, one with b = 2 and one with b = 2: the pair is in no row that works."""
+    """With a = 1 and b = 2, both levels of d are refused: the pair is in no accepted row."""
     refused = [frozenset({("a", "1"), ("b", "2"), ("d", "0")}), frozenset({("a", "1"), ("b", "2"), ("d", "1")})]
     array = CoveringArray(FACTORS)
     array.refused += refused

@@ -1,4 +1,4 @@
-"""The examples in docstrings run, and print what they say."""
+"""The examples in docstrings run and print their stated output."""
 
 import doctest
 from importlib import import_module

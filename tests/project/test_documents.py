@@ -1,4 +1,4 @@
-"""The pages of guides/pages: what stands on them is there, and their number of words is bounded."""
+"""Everything that guides/pages names exists, and the number of words is bounded."""
 
 import re
 
@@ -26,7 +26,7 @@ WANTED_CONCEPTS = ("eq 16", "eq 34", "Hunt-Crossley", "spectral radius", "added 
 
 
 def rows_of(path: str) -> list[list[str]]:
-    """Cells of the rows of the table of a page, without its head."""
+    """Return the cells of the rows of a page's table, without its head."""
     return [[cell.strip() for cell in line.strip("|").split("|")]
             for line in page(path).text.splitlines() if line.startswith("|")][2:]
 
@@ -43,7 +43,7 @@ def test_each_concept_stands_on_a_page_and_in_an_equation_or_a_reference():
 
 
 def test_each_machine_names_parts_that_exist():
-    """Their keywords are tested with those of all pages (`test_names_of_the_package_exist`)."""
+    """`test_names_of_the_package_exist` tests the keywords of all pages."""
     for row in rows_of(MACHINES):
         assert len(row) == 4, row
         named = re.findall(r"\b(?:scene|fu|funicular)\.(\w+)", row[1])
@@ -85,12 +85,12 @@ def test_docstrings_say_what_each_argument_is(part):
 
 
 def words(path: str) -> int:
-    """Number of words of a page outside of its blocks of code."""
+    """Return the number of words of a page outside of its blocks of code."""
     return len(re.sub(r"^```.*?^```", "", page(path).text, flags=re.MULTILINE | re.DOTALL).split())
 
 
 def test_pages_are_short():
-    """Run with -s it prints the number of words of each page."""
+    """The option -s prints the number of words of each page."""
     found = {path: words(path) for path in HAND_WRITTEN}
     reference = {path: found[path] for path in REFERENCE}
     print("", *(f"{number:6d} {path}" for path, number in found.items()), f"{sum(found.values()):6d} in all",

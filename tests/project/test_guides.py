@@ -1,4 +1,4 @@
-"""The guides are scripts of one page that run; the site made of them has no broken link and no warning."""
+"""The guides are scripts of one page that run; their site has no broken link and no warning."""
 
 import os
 import re
@@ -47,7 +47,7 @@ def test_links_to_guides_are_told_from_links_to_scripts_of_their_names():
 
 
 def test_a_site_without_its_pages_is_refused(tmp_path, monkeypatch, capsys):
-    """An installed package lacks the pages beside the code: their part of the site was left out, with warnings."""
+    """An installed package lacks the pages beside the code; a site without them is refused."""
     from funicular.guides.site import __main__ as command
     from funicular.guides.site import build
 
@@ -62,7 +62,7 @@ def test_a_site_without_its_pages_is_refused(tmp_path, monkeypatch, capsys):
 
 @pytest.mark.parametrize("failed", [0, 1])
 def test_a_site_that_fails_leaves_the_older_one(failed, tmp_path, monkeypatch):
-    """Sphinx is stood in for: it takes minutes."""
+    """A mock replaces Sphinx, which takes minutes."""
     from funicular.guides.site import build
 
     def sphinx(command: list[str], check: bool) -> subprocess.CompletedProcess:
@@ -84,7 +84,7 @@ def test_a_site_that_fails_leaves_the_older_one(failed, tmp_path, monkeypatch):
 
 @pytest.mark.site
 def test_site(tmp_path):
-    """Sphinx runs all guides; a warning, such as a link that leads nowhere, is an error."""
+    """Sphinx runs all guides; a warning, such as a broken link, is an error."""
     from funicular.guides.site.build import build
 
     os.environ["MPLBACKEND"] = "Agg"

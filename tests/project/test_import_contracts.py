@@ -1,4 +1,4 @@
-"""Imports point one way: the contracts in pyproject.toml hold, and a violation of each is found."""
+"""The contracts on imports in pyproject.toml hold, and a violation of each is found."""
 
 import ast
 
@@ -38,7 +38,7 @@ def test_a_violation_is_found(tmp_path, name):
 
 
 def test_an_import_within_a_function_has_a_reason():
-    """Only what is heavy is imported late, and a comment beside it, or the docstring of the module, says so."""
+    """Only heavy modules are imported late, and a comment or the docstring of the module gives the reason."""
     unexplained = []
     for file in sorted((TOP / "runtime").rglob("*.py")):
         text = file.read_text(encoding="utf-8")

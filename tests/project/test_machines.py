@@ -1,4 +1,4 @@
-"""The machines among the scenes: a cable car over a support, a zip line into its buffer."""
+"""Bundled scenes of machines: a cable car over a support, a zip line with a buffer."""
 
 import numpy as np
 import pytest
@@ -28,9 +28,9 @@ def test_a_cable_car_climbs_over_the_support():
 
 
 def test_the_track_rope_slides_over_the_saddle():
-    """One tension on both sides, and a support that bears it times the turn, with the weight between.
+    """The tension is equal on both sides; the support carries the tension times the turn, and the weight in between.
 
-    A rope that is pinned there has 242 kN below the support and 200 kN above.
+    A rope pinned to the support has 242 kN below it and 200 kN above.
     """
     rest = load_scene("cable_car").equilibrium()
     forces = rest.section_forces("track")

@@ -1,4 +1,4 @@
-"""The pages Validation and Speed say what their records say, and each row of Validation has its test."""
+"""The pages Validation and Speed agree with their records, and each row of Validation has its test."""
 
 import ast
 import json
@@ -30,7 +30,7 @@ def test_a_page_is_what_its_records_say(name):
 
 @cache
 def functions(file: str) -> dict[str, ast.FunctionDef]:
-    """Tests of a file by name, those of a class with the class."""
+    """Return the tests of a file by name; methods include the name of their class."""
     found = {}
     for node in ast.parse((ROOT / file).read_text(encoding="utf-8")).body:
         inside = node.body if isinstance(node, ast.ClassDef) else [node]
@@ -49,7 +49,7 @@ def test_each_row_of_validation_names_a_test_and_each_test_has_a_row():
 
 @pytest.mark.slow
 def test_each_row_of_validation_is_a_test_that_pytest_collects():
-    """With its parameters, which a change may have renamed."""
+    """The names include parameters, which a change may rename."""
     files = sorted({row["test"].partition("::")[0] for row in ROWS})
     command = [sys.executable, "-m", "pytest", "-o", "addopts=", "--collect-only", "-q", *files]
     found = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout

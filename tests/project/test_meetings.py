@@ -1,8 +1,8 @@
-"""Every pair of what a scene can have and what can be asked of it works, or is refused before any work.
+"""Every pair of a feature of a scene and a question works, or is refused before any work.
 
 The factors are those of `meeting_scenes.py`, the integrators and the questions of `meeting_questions.py`. Each question
-meets every level; a slow test covers all pairs of levels. A pair works if a row with it does: a result of finite
-numbers, without a RuntimeWarning.
+meets every level; a slow test covers all pairs of levels. A pair works if a row with it gives finite numbers without a
+RuntimeWarning.
 """
 
 import inspect
@@ -64,7 +64,7 @@ def strict() -> Iterator[None]:
 
 
 def outcome(row: Row) -> str:
-    """What a row comes to: that it works, that it is refused, or the error that it must not end in."""
+    """Return the outcome of a row: accepted, refused, or an error that must not occur."""
     with tempfile.TemporaryDirectory() as place, strict():
         try:
             scene = build(row, Path(place))
@@ -89,13 +89,12 @@ def _begin(scene: fu.Scene, integrator: str) -> None:
 
 
 def is_picky(row: Row) -> bool:
-    """Return whether the integrator of a row does not take every scene."""
+    """Return whether the integrator of a row refuses some scenes."""
     return row["integrator"] == "energy"
 
 
 def same(one: str, other: str) -> bool:
-    """Return whether two outcomes are of one cause: errors of one kind, at one part of the scene if they are refusals.
-    """
+    """Return whether two outcomes have one cause: errors of one kind, and refusals at one part of the scene."""
     parts = 2 if one.startswith(REFUSED) else 1
     return one.split(":")[:parts] == other.split(":")[:parts]
 
@@ -105,16 +104,16 @@ CAUSES: dict[frozenset[Level], str] = {}
 
 
 def _known(row: Row, found: str) -> frozenset[Level] | None:
-    """Return a set of levels in a row that has ended in the very same refusal before."""
+    """Return a set of levels in a row that has led to the same refusal before."""
     if not found.startswith(REFUSED):
         return None
     return next((levels for levels, error in CAUSES.items() if error == found and levels <= row.items()), None)
 
 
 def answered(array: CoveringArray, neutral: dict[str, list[str]]) -> dict[frozenset[Level], str]:
-    """Ask all rows of an array; return by smallest set of levels the errors that they end in.
+    """Answer all rows of an array; return the errors by minimal set of levels.
 
-    A search for rest may say that it found none, in a few rows: the scene is too hard for it, not the combination.
+    A few rows may find no equilibrium, where the scene is too difficult and not the combination.
     """
     errors, counts = {}, Counter()
     for row in array.rows():
@@ -134,9 +133,9 @@ def answered(array: CoveringArray, neutral: dict[str, list[str]]) -> dict[frozen
 
 @cache
 def descriptions() -> tuple[CoveringArray, dict[frozenset[Level], str]]:
-    """The array of all scenes and integrators, described and checked, with the errors in which that ends.
+    """Return the array of all scenes and integrators, described and checked, with the errors that occur.
 
-    The pairs of elements and laws that the lists of the project do not have are left out from the start.
+    Pairs of element and law that the project does not offer are excluded.
     """
     array = CoveringArray(EVERY)
     for element, of in laws().items():
@@ -146,7 +145,7 @@ def descriptions() -> tuple[CoveringArray, dict[frozenset[Level], str]]:
 
 
 def asked(questions: Sequence[str], everything: bool) -> dict[frozenset[Level], str]:
-    """The errors that questions end in: of each with each level, or of all pairs of levels."""
+    """Return the errors of questions, each with each level or for all pairs of levels."""
     factors = EVERY | {"question": list(questions)}
     array = CoveringArray(factors, [pair for pair in all_pairs(factors)
                                     if everything or any(factor == "question" for factor, _ in pair)])
@@ -182,7 +181,9 @@ def test_every_pair():
 
 
 def test_every_kind_in_the_lists_of_the_project_is_here():
-    """A new kind needs a value in `meeting_scenes.py`; laws, elements, joints and integrators enter by their lists."""
+    """A new kind needs a value in `meeting_scenes.py`; laws, elements, joints and integrators enter through their
+    lists.
+    """
     for here, there in ((SECTIONS, ALL_SECTIONS), (SIGNALS, ALL_SIGNALS), (SOLIDS, ALL_SOLIDS),
                         (PROFILES, ALL_PROFILES), (STOPS, ALL_STOPS), (SURFACES, SURFACE_SHAPES)):
         assert here.keys() == there.by_tag.keys()

@@ -1,6 +1,6 @@
-"""Runs where `fcntl` and some of `os` are missing, as on Windows: the same files, and still one run a file.
+"""Without `fcntl` and parts of `os`, as on Windows: the same files, and one run per file.
 
-Their stand-ins take `flock` for the locks of Windows and count the bytes that are locked. Windows itself is not tested.
+Mocks use `flock` in place of the locks of Windows and count the locked bytes. Windows itself is not tested.
 """
 
 import subprocess
@@ -79,7 +79,7 @@ def stop(time):
 
 
 def refusal(folder: Path, before: str = "") -> str:
-    """What a run says that cannot have its file."""
+    """Return the message of a run that is denied its file."""
     return python(f"{WITHOUT}\n{before}\ntry:{textwrap.indent(run(), '    ')}\n"
                   "except fu.ResultFileError as error: print(error)", folder)
 
@@ -101,7 +101,7 @@ def test_machine_memory():
 
 
 def memory_of_this_machine() -> int:
-    """From the kernel's own list."""
+    """The value of the kernel is the reference."""
     lines = Path("/proc/meminfo")
     if not lines.exists():
         pytest.skip("this system has no /proc/meminfo to compare with")

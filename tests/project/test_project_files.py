@@ -1,4 +1,4 @@
-"""The files for those who build, cite and change the package say the same as the package, and name what exists."""
+"""The files for contributors, citation and development agree with the package and name existing things."""
 
 import ast
 import re
@@ -39,13 +39,13 @@ def test_contributing_names_files_that_exist():
 
 @pytest.mark.parametrize("page", PAGES)
 def test_pages_link_to_what_exists(page):
-    """Pictures, too; the source distribution has all that the repository has, so that they show there."""
+    """Pictures are included; the source distribution contains all files of the repository."""
     links = re.findall(r"\]\((?!https?:|#)([^)#\s]+)", text(page))
     assert [link for link in links if not (ROOT / page).parent.joinpath(link).exists()] == []
 
 
 def test_python_versions_are_those_of_the_metadata(project):
-    """CI runs the oldest and the newest that the classifiers name."""
+    """CI runs the oldest and the newest version of the classifiers."""
     oldest = project["requires-python"].removeprefix(">=")
     named = re.findall(r":: (3\.\d+)$", "\n".join(project["classifiers"]), re.MULTILINE)
     run = re.search(r"python: \[(.*)\]", text(".github/workflows/ci.yml"))[1].replace('"', "").split(", ")
@@ -61,7 +61,7 @@ def test_actions_are_pinned_by_hash():
 
 
 def test_files_for_the_community():
-    """Those that hosting services look for, and forms that have what these need."""
+    """The files that hosting services look for exist, and forms have their required entries."""
     names = ["SECURITY.md", "CODE_OF_CONDUCT.md", "CONTRIBUTING.md", ".github/pull_request_template.md",
              ".github/ISSUE_TEMPLATE/config.yml"]
     assert [name for name in names if not (ROOT / name).is_file()] == []
@@ -89,7 +89,7 @@ def test_the_changelog_is_short():
 
 
 def test_the_paper_has_what_its_journal_asks_for():
-    """Sections and length by the Journal of Open Source Software, 2026; citations and entries agree."""
+    """Sections and length follow the Journal of Open Source Software, 2026; citations and entries agree."""
     paper = text("paper.md")
     head, body = paper.removeprefix("---\n").split("\n---\n")
     keys = re.findall(r"^(\w+):", head, re.MULTILINE)
@@ -103,7 +103,7 @@ def test_the_paper_has_what_its_journal_asks_for():
 
 
 def functions():
-    """Every function of the package, with where it stands."""
+    """Yield every function of the package with its place."""
     for folder in ("runtime", "derive"):
         for file in sorted((ROOT / folder).rglob("*.py")):
             for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
@@ -121,7 +121,7 @@ def test_docstrings_are_sentences():
 
 
 def test_the_packages_are_listed():
-    """Setuptools finds no packages below mapped folders: each folder with an __init__.py stands in the list."""
+    """Setuptools does not search mapped folders: the list must name each folder with an __init__.py."""
     listed = set(tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["setuptools"]["packages"])
     folders = {".".join([package, *file.parent.relative_to(ROOT / top).parts])
                for top, package in (("runtime", "funicular"), ("derive", "funicular.derive"),

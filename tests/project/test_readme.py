@@ -1,4 +1,4 @@
-"""What the pages that hosts show say is true: their code and commands run, their links and names lead somewhere."""
+"""The statements of the READMEs and pages are true: code and commands run, links and names exist."""
 
 import argparse
 import inspect
@@ -30,7 +30,7 @@ QUICK = ("first_scene", "order", "paper52", "planar", "crossing", "taut_rope", "
 
 
 def sections(language: str) -> list:
-    """Page and section of all blocks in a language, for parametrize."""
+    """Return page and section of all blocks in a language, for parametrize."""
     found = dict.fromkeys((p.path, block.section) for p in pages for block in p.blocks if block.language == language)
     return [pytest.param(p, section, id=f"{p.path}: {section}")
             for p in pages for path, section in found if path == p.path]
@@ -195,7 +195,7 @@ AFTERWARDS = {("README.md", "First scene"): saved,
 
 @pytest.mark.parametrize(("of", "section"), sections("python"))
 def test_python_runs(of, section, tmp_path, monkeypatch):
-    """Block after block of a section, in one namespace; the user's own element stands in for by its twin here."""
+    """All blocks of a section run in one namespace; cable18 replaces the user's own element."""
     monkeypatch.chdir(tmp_path)
     space = {}
     for block in of.of(section, "python"):
@@ -247,7 +247,7 @@ def test_parts_within_parts_are_the_same_in_a_file():
 
 
 def commands(program: str) -> list:
-    """Words after the program of every command that starts with it, for parametrize."""
+    """Return the arguments of every command of a program, for parametrize."""
     found = {" ".join(words): words for p in pages for _, words in p.commands()
              if " ".join(words).startswith(f".venv/bin/{program} ")}
     return [pytest.param(words[1:], id=" ".join(words[1:])) for words in found.values()]
@@ -261,7 +261,7 @@ def test_every_command_is_one_that_is_looked_at():
 
 
 def test_exactly_two_commands():
-    """As .ci/run takes them, with the same words for the place."""
+    """.ci/run takes the commands by the same heading."""
     ci = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
     assert "sed -n '/^## Two commands/,/^## /s/^    //p' README.md" in ci
     assert [words[:3] for section, words in README.commands() if section == "Two commands"] == [
@@ -292,7 +292,7 @@ def test_commands_run(words, tmp_path, monkeypatch):
 
 
 def interrupted(scene: str) -> None:
-    """Leave a run of long.toml that Ctrl-C has ended half way."""
+    """Leave a run of long.toml that Ctrl-C has interrupted."""
     Path("long.toml").write_text(scene.replace("duration = 1.0", "duration = 0.1"), encoding="utf-8")
 
     def stop(time: float) -> None:
@@ -340,7 +340,7 @@ def test_quick_benchmarks_run(words, tmp_path):
 
 @pytest.mark.parametrize("of", pages, ids=lambda of: of.path)
 def test_links_and_pictures_are_there(of):
-    """Relative ones: so a copy of the repository, its host and the source distribution show them."""
+    """Relative links work in a copy of the repository, on its host and in the source distribution."""
     for link in of.links:
         if link.startswith("https://"):
             continue
@@ -370,13 +370,13 @@ def test_files_that_it_names_exist(of):
 
 
 def keywords_of(called) -> set[str]:
-    """Of a part its fields, as users write them; of a function its parameters."""
+    """Return the fields of a part, as users write them, or the parameters of a function."""
     fields = getattr(called, "model_fields", None)
     return {f.alias or name for name, f in fields.items()} if fields else set(inspect.signature(called).parameters)
 
 
 def takes_any(called) -> bool:
-    """Whether it takes keywords that its caller chooses; Never marks those that are there to be refused."""
+    """Return whether a function takes arbitrary keywords; Never marks those that are always refused."""
     return not getattr(called, "model_fields", None) and any(
         parameter.kind is parameter.VAR_KEYWORD and parameter.annotation != "Never"
         for parameter in inspect.signature(called).parameters.values())
@@ -398,7 +398,7 @@ def test_front_page_is_short():
 
 
 def test_layout_is_that_of_the_folders():
-    """Folders that the tables under "Layout" name, from the top and from derive/."""
+    """The tables under "Layout" name all folders of the top level and of derive/."""
     rows = [row.split("|") for row in README.section("Layout").splitlines() if row.startswith("| ")][1:]
     named = {re.search(r"\w+", row[1])[0]: re.findall(r"`(\w+)`", row[3]) for row in rows}
     assert set(named) == {"derive", "generated", "runtime", "tests"}

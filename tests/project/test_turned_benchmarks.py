@@ -1,4 +1,4 @@
-"""The scenes of the benchmarks turned upright, z up: chosen planar, with all results of the spatial scene."""
+"""The scenes of the benchmarks turned to z up: the planar choice has all results of the spatial scene."""
 
 import warnings
 
@@ -25,7 +25,7 @@ NOT_PLANAR = ("rider on a soft rope", "modal link", "steel and rubber", "free fa
 
 
 def of_spatial_elements(scene):
-    """Return a scene with the finest spatial model of each cable, on a mesh that it can have."""
+    """Return a scene with the finest spatial model of each cable, on a mesh that the model permits."""
     models = {name: kinds_of(scene, cable, 3).finest.with_elements(cable.given_elements or coarsest(scene, cable) or 1)
               for name, cable in scene.cables.items()}
     return remade(scene, models)
@@ -40,7 +40,7 @@ def run(scene, duration, steps=50):
 
 @pytest.mark.parametrize("name", ALL)
 def test_results_are_those_of_the_spatial_scene(name):
-    """1e-9 or, where planar and spatial kernels differ by more in z = 0 already, no more than there."""
+    """The bound is 1e-9, or the difference of planar and spatial kernels in z = 0 where that is larger."""
     scene, duration = ALL[name].make(), min(ALL[name].duration, 0.1)
     if not scene.cables:
         return
@@ -63,10 +63,10 @@ def test_results_are_those_of_the_spatial_scene(name):
 
 
 def compare_written_planar(scene, duration):
-    """Compare a scene of planar elements with itself, turned upright: x stays, y becomes z.
+    """Compare a scene of planar elements with its copy turned upright: x stays, y becomes z.
 
-    Axes of bodies are turned by quaternions, so that inertia and points are rounded; stiff cables on wheels make 1e-8
-    of that in accelerations and forces.
+    Quaternions turn the axes of bodies and round inertia and points; stiff cables on wheels amplify this to 1e-8 in
+    accelerations and forces.
     """
     flat, upright = run(scene, duration, 500), run(turned_scene(scene, *UPRIGHT), duration, 500)
     for name in flat:
