@@ -11,7 +11,7 @@ from ..view.projections import axis_name
 from .animation.recorded import Recorded
 from .quantities import ENERGIES
 from .section_forces.balance_limits import known_method
-from .section_forces.forces import even, jumps, of_run, with_sides
+from .section_forces.forces import DEFAULT_DIVISIONS, jumps, of_run, with_sides
 
 if TYPE_CHECKING:
     from matplotlib.cm import ScalarMappable
@@ -73,7 +73,7 @@ def section_forces(run: Recorded, figure: Figure, cable: str) -> bool:
     fixed = jumps(run.scene, cable)
     riders = [run[f"{name}.s"][shown] for name, slide in run.scene.slides.items() if slide.along == cable]
     places = np.concatenate([np.broadcast_to(fixed, (len(shown), len(fixed))), *(s[:, None] for s in riders)], axis=1)
-    s = with_sides(described, even(described), places)
+    s = with_sides(described, described.divided(DEFAULT_DIVISIONS), places)
     method = known_method(run.scene, run.model, cable, False)
     forces = of_run(run, cable, s, shown, method=method)
     figure.set_size_inches(7, 4.8)

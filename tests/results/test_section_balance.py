@@ -363,7 +363,7 @@ def test_reading_back_says_nothing_anew(tmp_path):
 def test_many_times_go_in_pieces(monkeypatch):
     run = loads("cable12").run(duration=0.2, output_step=0.02)
     whole = run.section_forces("rope"), run.section_forces("rope", "trolley")
-    monkeypatch.setattr("funicular.results.section_forces.forces.AT_ONCE", 200)
+    monkeypatch.setattr("funicular.results.section_forces.forces.MAX_BLOCK", 200)
     for before, after in zip(whole, (run.section_forces("rope"), run.section_forces("rope", "trolley")), strict=True):
         assert_allclose(after["tension"], before["tension"], rtol=1e-9)
 

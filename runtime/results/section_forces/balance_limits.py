@@ -1,4 +1,4 @@
-"""Which cables go together in a balance of forces, and what acts on them that results do not tell."""
+"""Limits of section forces by balance: the cables that a balance needs, and loads that results do not contain."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ REMEDY = 'take method="constitutive", which follows from the strains'
 
 
 def tied_cables(scene: SceneData, model: Model, cable: int) -> list[int]:
-    """Return the numbers of the cables that joins tie to one, itself included: their accelerations go together."""
+    """Return the numbers of the cables that ties connect to one, itself included: their accelerations are coupled."""
     found, new = {model.cables[cable].name}, [model.cables[cable].name]
     while new:
         name = new.pop()
@@ -24,15 +24,15 @@ def tied_cables(scene: SceneData, model: Model, cable: int) -> list[int]:
 
 
 def balanced_cables(scene: SceneData, model: Model, cable: int, is_rest: bool) -> list[int]:
-    """Return the numbers of the cables whose loads the balance of one needs: at rest there are no accelerations."""
+    """Return the numbers of the cables whose loads the balance of one needs; without accelerations, its own."""
     return [cable] if is_rest else tied_cables(scene, model, cable)
 
 
 def out_of_balance(scene: SceneData, model: Model, cable: int, is_rest: bool) -> SceneError | None:
-    """Return why the forces in sections of a cable, by its number, cannot be had by balance; None: they can.
+    """Return why the section forces of a cable, by its number, cannot be computed by balance, or None.
 
-    A contact with friction is known at rest alone, one with a surface of a body not at all. Other cables' contacts do
-    not count, unless joins tie them to this one.
+    Contact with friction is known at rest only, and contact with a surface of a body never. Contacts of other cables
+    count only if ties connect these to this one.
     """
     concerned = balanced_cables(scene, model, cable, is_rest)
     for contact in model.contacts:
@@ -42,9 +42,9 @@ def out_of_balance(scene: SceneData, model: Model, cable: int, is_rest: bool) ->
 
 
 def known_method(scene: SceneData, model: Model, name: str, is_rest: bool) -> str:
-    """Return the method for pictures of a cable: "balance" where that knows all that acts, else "constitutive".
+    """Return the method for pictures of a cable: "balance" if all loads are known, else "constitutive".
 
-    The latter also of runs of cables that a surface of a fluid may cut: their balance takes 20 ms an instant.
+    "constitutive" also for runs of cables that the surface of a fluid may cut: a balance takes 20 ms per instant.
     """
     number = list(scene.cables).index(name)
     is_slow = not is_rest and is_cut(model, balanced_cables(scene, model, number, is_rest))
@@ -57,7 +57,7 @@ def is_cut(model: Model, cables: list[int]) -> bool:
 
 
 def _unknown(contact: ContactModel, is_rest: bool) -> str:
-    """Return what is not known of a contact, empty: nothing."""
+    """Return what is unknown of a contact, empty if nothing."""
     if contact.friction and not is_rest:
         return "has friction, which results do not tell along"
     return "moves with a body along" if contact.on[0].body >= 0 else ""

@@ -1,4 +1,4 @@
-"""Components of section forces along the cable and across it, where a mesh shows how it bends and where it cannot."""
+"""Components of section forces along and across the cable, on meshes that resolve its bending and on coarser ones."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from .balance import Cuts
 from .layer import Kink, beside, line_bending
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
+    from numpy.typing import ArrayLike  # 9 ms, for type checkers alone
 
-SHOWN = 1e-4
-"""Of a kink: where the mesh draws no more of it as an arc, nothing is put in its place."""
+MIN_UNRESOLVED = 1e-4
+"""Smallest value of `unresolved` at which bending is corrected."""
 
 CABLE = {
     "tension": ("N", "force along the cable"),
@@ -47,33 +47,37 @@ def labels(cable: Cable) -> dict[str, tuple[str, str]]:
 
 def components(cable: Cable, force: np.ndarray, moment: np.ndarray, axes: np.ndarray,
                strain: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the components that `labels` names, (T, n): of force and moment (T, n, 3) along axes (T, n, 3, 3)."""
-    along = np.einsum("tsi,tsi->ts", force, axes[..., 0, :])
-    return _named(cable, along, force - along[..., None] * axes[..., 0, :], moment, axes, strain)
+    """Return the components (T, n), named by `labels`, of force and moment (T, n, 3) along axes (T, n, 3, 3)."""
+    return _named(cable, *_split(force, axes[..., 0, :]), moment, axes, strain)
+
+
+def _split(vector: np.ndarray, tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the component (T, n) of vectors (T, n, 3) along the tangent, and their transverse part (T, n, 3)."""
+    along = np.einsum("tsi,tsi->ts", vector, tangent)
+    return along, vector - along[..., None] * tangent
 
 
 def unresolved(cable: Cable, force: np.ndarray, length: ArrayLike) -> np.ndarray:
-    """Return (T, n): how much of a kink elements of a length (m) draw as an arc, from 0, nothing, to 1, all.
+    """Return the part (T, n) of a kink that elements of a length (m) smear into an arc, 0 to 1.
 
-    Under an axial force N a cable bends beside a point force over sqrt(E I / N) alone, a cubic over an element of
-    length l. N l^2 is what tension has of the stiffness against a kink, 12 E I what bending has: with their ratio x it
+    Under an axial force N a cable bends beside a point force over sqrt(E I / N), a cubic over an element of length l.
+    N l^2 and 12 E I are the shares of tension and bending in the stiffness against a kink; with their ratio x, the part
     is x^2/(1 + x^2).
     """
     yy, zz = cable.section.moments()[1:3]
     bending = 12 * cable.material.youngs_modulus * (yy if cable.dim == 2 else max(yy, zz))
     x = np.linalg.norm(force, axis=-1) * np.square(length) / bending
-    return x**2 / (1 + x**2)
+    return np.asarray(x**2 / (1 + x**2))
 
 
 def taut_bending(cable: Cable, force: np.ndarray, change: np.ndarray, axes: np.ndarray, cuts: Cuts,
                  kinks: Callable[[], list[Kink]]) -> np.ndarray:
-    """Return (T, n, 3): the moment of bending that a taut cable has along the line of its force, see
-    results/section_forces/layer.py.
+    """Return the bending moment (T, n, 3) of a taut cable along the line of its force, see layer.py.
 
-    Nil where the mesh shows all, and in compression.
+    Zero where the mesh resolves the bending, and in compression.
     """
     pulls = np.einsum("tsi,tsi->ts", force, axes[..., 0, :]) > 0
-    if not np.any(pulls & (unresolved(cable, force, cable.mesh.each_length(cuts.element)) > SHOWN)):
+    if not np.any(pulls & (unresolved(cable, force, cable.mesh.each_length(cuts.element)) > MIN_UNRESOLVED)):
         return np.zeros_like(force)
     E, (yy, zz) = cable.material.youngs_modulus, cable.section.moments()[1:3]
 
@@ -82,7 +86,7 @@ def taut_bending(cable: Cable, force: np.ndarray, change: np.ndarray, axes: np.n
             return np.full(force.shape[:2], E * yy)
         by_y, by_z = (np.einsum("tsi,tsi->ts", axes[..., k, :], np.broadcast_to(about, force.shape)) ** 2
                       for k in (1, 2))
-        return E * (zz * by_y + yy * by_z) / _not_zero(by_y + by_z)
+        return np.asarray(E * (zz * by_y + yy * by_z) / _not_zero(by_y + by_z))
 
     moment = line_bending(stiffness, force, change)
     for kink in kinks():
@@ -92,28 +96,23 @@ def taut_bending(cable: Cable, force: np.ndarray, change: np.ndarray, axes: np.n
 
 def balanced_components(cable: Cable, balance: tuple[np.ndarray, np.ndarray], law: tuple[np.ndarray, np.ndarray],
                         taut: np.ndarray, axes: np.ndarray, strain: np.ndarray, cuts: Cuts) -> dict[str, np.ndarray]:
-    """Return force, moment and components in balance; (force, moment) of the balance and of the elastic law, (T, n, 3).
+    """Return force, moment and components in balance; balance, law: (force, moment), each (T, n, 3).
 
-    Where a mesh cannot show how a taut cable bends, its tangent beside a kink is off, and so are the points of its
-    centreline. The force across that tangent is then no shear, nor is the force's moment about those points bending.
-    There, by the part that `unresolved` gives, the angle between force and tangent is the one that the elastic law has,
-    and the moment across the tangent is that of `taut_bending`. A force's size and direction, and torque, stay.
+    A mesh too coarse for the bending of a taut cable has a wrong tangent and wrong points of the centreline beside a
+    kink. The force across this tangent is then no shear, and its moment about these points no bending. There, weighted
+    by `unresolved`, the angle between force and tangent is that of the elastic law, and the transverse moment that of
+    `taut_bending`. Size and direction of the force, and torque, stay.
     """
     force, moment = balance
     w, tangent = unresolved(cable, force, cable.mesh.each_length(cuts.element)), axes[..., 0, :]
-
-    def parts(vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        along = np.einsum("tsi,tsi->ts", vector, tangent)
-        return along, vector - along[..., None] * tangent
-
-    (along, across), (_, bent) = parts(force), parts(law[0])
+    (along, across), (_, bent) = _split(force, tangent), _split(law[0], tangent)
     size, off, by_law = (np.linalg.norm(value, axis=-1) for value in (force, across, bent))
     angle = (1 - w) * np.arctan2(off, np.abs(along)) + w * np.arcsin(np.minimum(by_law, size) / _not_zero(size))
     tension = np.copysign(size * np.cos(angle), along)
     shear = (1 - w)[..., None] * across + w[..., None] * bent
     shear = shear * (size * np.sin(angle) / _not_zero(np.linalg.norm(shear, axis=-1)))[..., None]
-    bending = parts(np.where((along > 0)[..., None], taut, law[1]))[1]
-    moment = moment + w[..., None] * (bending - parts(moment)[1])
+    bending = _split(np.where((along > 0)[..., None], taut, law[1]), tangent)[1]
+    moment = moment + w[..., None] * (bending - _split(moment, tangent)[1])
     return {"force": force, "moment": moment} | _named(cable, tension, shear, moment, axes, strain)
 
 

@@ -1,4 +1,4 @@
-"""Section forces: what one part of a cable exerts on the other across a cut, in balance with all that acts on it."""
+"""Section forces: the force and moment across a cut of a cable, by balance with all loads or by the elastic law."""
 
 from __future__ import annotations
 
@@ -25,19 +25,18 @@ from .cable_loads import CableLoads, Instants
 from .components import balanced_components, components, labels, taut_bending
 from .kinks import kinks
 from .nodal_forces import element_forces
-from .spreads import lengths_of_rows, rows
 from .swings import swinging
 
 if TYPE_CHECKING:
     import xarray
-    from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
+    from numpy.typing import ArrayLike  # 9 ms, for type checkers alone
 
-PLACES = 8
-"""Places on each element, where none are asked for."""
-BESIDE = 4 * EXACT
-"""Of the cable's length: how far from a jump its two sides are looked at."""
-AT_ONCE = 100_000
-"""Cuts or elements, over all times, that are worked on together."""
+DEFAULT_DIVISIONS = 8
+"""Sections per element by default."""
+SIDE_DISTANCE = 4 * EXACT
+"""Distance of the two sides of a jump from it, over the length of the cable."""
+MAX_BLOCK = 100_000
+"""Cuts or elements, over all times, that are computed together."""
 METHODS = ("balance", "constitutive")
 SIDES = ("after", "before")
 
@@ -48,7 +47,7 @@ GLOBAL = {
 
 
 class Results(Protocol):
-    """What section forces take of a run."""
+    """The part of a run that section forces need."""
 
     @property
     def scene(self) -> SceneData:
@@ -67,7 +66,7 @@ class Results(Protocol):
 
 
 def constitutive(cable: Cable, nodal_vectors: np.ndarray, cuts: Cuts) -> tuple[np.ndarray, ...]:
-    """Return the elastic law at cuts: force, moment (T, n, 3), axes of the section (T, n, 3, 3), strains (T, n, 6).
+    """Return force and moment (T, n, 3) by the elastic law, section axes (T, n, 3, 3), and strains (T, n, 6) at cuts.
 
     nodal_vectors: (T, nodes, vectors, 3). Force and moment are along the ground's axes.
     """
@@ -80,8 +79,8 @@ def constitutive(cable: Cable, nodal_vectors: np.ndarray, cuts: Cuts) -> tuple[n
     instants = np.arange(shape[0])[:, None]
     e = np.concatenate([nodal_vectors[instants, element], nodal_vectors[instants, element + 1]], axis=2)
     e0 = [] if reference is None else [reference[element].reshape(-1, *reference.shape[1:])]
-    lengths = lengths_of_rows(cable.mesh, element, x.shape)
-    found = rows(kernel, x.size, lengths, x.ravel(), e.reshape(-1, *e.shape[2:]), S, *e0)
+    lengths = cable.mesh.mean if cable.mesh.is_even else cable.mesh.lengths[element].ravel()
+    found = kernel.rows(x.size, lengths, x.ravel(), e.reshape(-1, *e.shape[2:]), S, *e0)
     force, moment, axes, strain = (values.reshape(*shape, *values.shape[1:]) for values in found)
     return (force, moment, axes, strain) if plane is None else (plane.out(force), plane.out(moment), plane.out(axes),
                                                                 strain)
@@ -91,8 +90,8 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
                side: str = "after") -> dict[str, np.ndarray]:
     """Return the forces in sections of the cable ``name`` at instants.
 
-    s: (1 or T, n) arc-lengths in m. Returns force and moment (T, n, 3), along the ground's axes, and the components
-    of `section_components.labels` (T, n). At rest accelerations are nil. Raises SceneError, see `out_of_balance`.
+    s: (1 or T, n) arc-lengths in m. Returns force and moment (T, n, 3), along the axes of the model, and the components
+    (T, n) of `components.labels`. Raises SceneError, see `out_of_balance`.
     """
     cable, number = scene.cables[name], list(scene.cables).index(name)
     of = model.cables[number]
@@ -106,18 +105,18 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
     concerned = balanced_cables(scene, model, number, at.is_rest)
     if len(at.time) > 1 and is_cut(model, concerned):
         each = [cut_forces(scene, model, at.one(k), name, s if len(s) == 1 else s[k : k + 1], side=side)
-                for k in range(len(at.time))]  # wet parts are others at each instant
+                for k in range(len(at.time))]  # wet parts change with time
         return {key: np.concatenate([found[key] for found in each]) for key in each[0]}
     loads = CableLoads(scene, model, at, concerned)
     forces = element_forces(model, at, loads, number)
     balance_force, balance_moment, change = balanced(cable, of, forces, loads, number, cuts)
-    taut = moment if cable.is_curved else taut_bending(  # a bent wire that is drawn straight has a moment
+    taut = moment if cable.is_curved else taut_bending(  # a curved wire pulled straight has a moment
         cable, balance_force, change, axes, cuts, lambda: kinks(scene, cable, of, forces, loads, number))
     return balanced_components(cable, (balance_force, balance_moment), (force, moment), taut, axes, strain, cuts)
 
 
 def along_ground(model: Model, name: str, found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Return the forces in sections of a cable with force and moment along the ground's axes; components stay."""
+    """Return section forces with force and moment along the ground's axes; components stay."""
     return found | model.results(name, {each: found[each] for each in GLOBAL})
 
 
@@ -127,8 +126,8 @@ def of_run(run: Results, name: str, s: np.ndarray, chosen: Any = slice(None), *,
     scene, model = laid(run.scene), run.model
     time = run.time[chosen]
     numbers = np.arange(len(run.time))[chosen]
-    found: list[dict] = []
-    block = max(1, AT_ONCE // max(1, s.shape[1], sum(cable.elements for cable in run.scene.cables.values())))
+    found: list[dict[str, np.ndarray]] = []
+    block = max(1, MAX_BLOCK // max(1, s.shape[1], sum(cable.elements for cable in run.scene.cables.values())))
     for first in range(0, len(time), block):
         part = numbers[first : first + block]
         found.append(cut_forces(scene, model, _instants(run, part), name,
@@ -160,27 +159,22 @@ def of_equilibrium(state: RestState, name: str, s: np.ndarray, *, method: str = 
 
 
 def rest_instants(state: RestState) -> Instants:
-    """Return a state of rest as one instant, with as much of the loads as it has."""
+    """Return a state of rest as one instant, with its parts of the loads."""
     return Instants(np.zeros(1), state.static_state["q"][None], np.zeros((1, state.model.n_dof)),
                     lambda quantity: state.model.as_in_model(quantity, state[quantity][None]), state.load_fraction,
                     state.gravity_fraction, is_rest=True)
 
 
 def jumps(scene: SceneData, name: str) -> np.ndarray:
-    """Return the arc-lengths of the cable at which something fixed to it is attached: inside, in order."""
+    """Return the arc-lengths of attachments fixed to a cable, between its ends, in order."""
     cable = scene.cables[name]
-    beside = BESIDE * cable.length
+    beside = SIDE_DISTANCE * cable.length
     return np.array(sorted({s for s in attached(scene, name) if beside < s < cable.length - beside}))
 
 
-def even(cable: Cable) -> np.ndarray:
-    """Return the places along all of a cable, its nodes among them."""
-    return cable.divided(PLACES)
-
-
 def with_sides(cable: Cable, s: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """Return s (n,), in order, with a point on either side of each of the places (..., m): (..., n + 2 m)."""
-    beside = BESIDE * cable.length
+    """Return s (n,), sorted, with a point on either side of each of the places (..., m): (..., n + 2 m)."""
+    beside = SIDE_DISTANCE * cable.length
     sides = np.clip(np.concatenate([places - beside, places + beside], axis=-1), 0.0, cable.length)
     return np.sort(np.concatenate([np.broadcast_to(s, (*sides.shape[:-1], len(s))), sides], axis=-1), axis=-1)
 
@@ -199,13 +193,13 @@ def dataset(state: Results | RestState, cable: Cable | str, s: ArrayLike | Slide
                                  + " or ".join(f'"{each}"' for each in known) + f", got {value!r}")
     drawn, over_time = scene.cables[name], not isinstance(state, RestState)
     s, follows = _places(state, drawn, s, over_time)
-    compute: Callable = of_run if over_time else of_equilibrium
+    compute: Callable[..., dict[str, np.ndarray]] = of_run if over_time else of_equilibrium
     values = compute(state, name, s, method=method, side=side)
     if method == "constitutive" and (swing := swinging(drawn, s, lambda at: compute(
             state, name, at, method=method)["tension"])):
         warnings.warn(swing, FunicularWarning, stacklevel=3)
     label = GLOBAL | labels(drawn)
-    coords: dict = {"xyz": ["x", "y", "z"]}
+    coords: dict[str, Any] = {"xyz": ["x", "y", "z"]}
     of_s = {"units": "m", "long_name": "undeformed arc-length"}
     if not isinstance(state, RestState):
         coords["time"] = ("time", state.time, {"units": "s", "long_name": "time"})
@@ -222,7 +216,7 @@ def dataset(state: Results | RestState, cable: Cable | str, s: ArrayLike | Slide
 
 
 def _places(state: Results | RestState, cable: Cable, s: Any, over_time: bool) -> tuple[np.ndarray, bool]:
-    """Return arc-lengths (1 or T, n) from what was asked for, and whether they go with a slide."""
+    """Return arc-lengths (1 or T, n) for the argument s, and whether they follow a slide."""
     scene, name = state.scene, cable.name
     if s is None:
         places = jumps(scene, name)
@@ -231,7 +225,7 @@ def _places(state: Results | RestState, cable: Cable, s: Any, over_time: bool) -
             riders += [state[f"{crossing.name}.{s_of}"] for crossing in scene.crossings.values()
                        for of, s_of in ((crossing.a, "s"), (crossing.b, "s_b")) if of == name]
             places = np.append(places, riders)
-        return np.unique(with_sides(cable, even(cable), places))[None], False
+        return np.unique(with_sides(cable, cable.divided(DEFAULT_DIVISIONS), places))[None], False
     slide = scene.slides.get(getattr(s, "name", s)) if isinstance(getattr(s, "name", s), str) else None
     if slide is not None:
         if slide.along != name:

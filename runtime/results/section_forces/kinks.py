@@ -1,4 +1,4 @@
-"""Where the force along a cable kinks (at riders, loads, springs, joints, supports), or has a fixed direction."""
+"""Kinks of the force along a cable, at riders, loads, springs, joints and supports, and sections of fixed direction."""
 
 from __future__ import annotations
 
@@ -12,19 +12,20 @@ from ...model.states import spatial
 from ...parts.cable import Cable
 from ...parts.scene_data import SceneData
 from ...parts.support import Clamp, Motion, Support
+from ...parts.validation import EXACT
+from ..shape_functions import on_axis
 from .balance import Cuts, balanced, resultants
 from .cable_loads import CableLoads
 from .layer import Kink, fixed_direction
 from .nodal_forces import ElementForces
-from .spreads import shape_on_axis
 
 ForceAt = Callable[[np.ndarray, bool], np.ndarray]
-"""The force in sections at s (m), on the side after a jump or before it."""
+"""The section force at s (m), after or before a jump."""
 
 
 def kinks(scene: SceneData, cable: Cable, model: CableModel, forces: ElementForces, loads: CableLoads,
           number: int) -> list[Kink]:
-    """Return those of one cable at the instants of its forces."""
+    """Return the kinks of one cable at the instants of its forces."""
 
     def force_at(s: np.ndarray, after: bool) -> np.ndarray:
         return balanced(cable, model, forces, loads, number, Cuts(model, s, after))[0]
@@ -39,23 +40,23 @@ def _of_points(cable: Cable, model: CableModel, forces: ElementForces, loads: Ca
     if not points:
         return []
     s = np.stack([model.mesh.each_start(load.element) + load.x for load in points], axis=1)
-    inside = (s > 1e-9 * cable.length) & (s < (1 - 1e-9) * cable.length)
+    inside = (s > EXACT * cable.length) & (s < (1 - EXACT) * cable.length)
     before, instants, found = force_at(s, False), np.arange(len(s)), []
     for k, load in enumerate(points):
         e = forces.e[instants, load.element]
-        at = spatial(np.einsum("tk,tkd->td", shape_on_axis(model, load.element, load.x), e))
+        at = spatial(np.einsum("tk,tkd->td", on_axis(model, load.element, load.x)[0], e))
         jump, moment = resultants(load.f, e, is_r, at)
-        one_side = np.where(inside[:, k], 1.0, 2.0)[:, None]  # of an end: it has one
+        sides = np.where(inside[:, k], 2.0, 1.0)[:, None]  # that share the moment
         found.append(Kink(s[:, k], before[:, k], before[:, k] - np.where(inside[:, k, None], jump, 0.0),
-                          one_side * moment))
+                          2 * moment / sides))
     return found
 
 
 def _of_nodes(scene: SceneData, cable: Cable, model: CableModel, forces: ElementForces,
               force_at: ForceAt) -> list[Kink]:
-    """Return the kinks at supports and ties; a section that they keep from turning fixes the direction of the line."""
+    """Return the kinks at supports and ties; a section that cannot turn fixes the direction of the line."""
     found: list[Kink] = []
-    directed: dict[int, bool] = {}  # nodes, and whether their section keeps its direction
+    directed: dict[int, bool] = {}  # by node: whether its section keeps its direction
     ends = [(support.cable, support.s, _keeps_direction(support)) for support in scene.supports]
     for tie in scene.ties.values():
         ends += [(tie.cable, tie.s, tie.rotation == "rigid"), (tie.to, tie.at, tie.rotation == "rigid")]
@@ -79,13 +80,11 @@ def _of_nodes(scene: SceneData, cable: Cable, model: CableModel, forces: Element
 
 
 def _normal(model: CableModel, vectors: np.ndarray) -> np.ndarray:
-    """Return (T, 3): the direction of the section's normal at a node, of its vectors (T, vectors, 3); of a cable the
-    tangent.
-    """
+    """Return the section normal (T, 3) at a node with vectors (T, vectors, 3); of a cable the tangent."""
     named = dict(zip(model.vectors, np.moveaxis(vectors, 1, 0), strict=True))
     if "r_y" not in named:
         return named["r_x"]
-    return np.cross(named["r_y"], named.get("r_z", np.array([0.0, 0.0, 1.0])))
+    return np.asarray(np.cross(named["r_y"], named.get("r_z", np.array([0.0, 0.0, 1.0]))))
 
 
 def _keeps_direction(support: Support) -> bool:

@@ -1,10 +1,10 @@
-"""How a taut cable bends where its mesh cannot show it: along the line of its tension, and beside what kinks that.
+"""Bending of a taut cable below the resolution of its mesh: along the line of its tension, and beside kinks of it.
 
-Away from point forces the line of a taut cable is that of its force n: it turns by n x n'/n^2 a length. Beside a kink
-of n by an angle 2 theta0 it bends as an elastica with straight ends: E I theta'^2/2 = N (1 - cos theta), where theta is
-the angle between tangent and force. So M = 2 sqrt(N E I) sin(theta/2), and tan(theta/4) = tan(theta0/4)
-exp(-d/sqrt(E I/N)) at a distance d. At a section whose direction is fixed theta0 is the angle between that and the
-force. Half of a moment on a point goes to either side, and dies out likewise.
+Away from point forces a taut cable follows the line of its force n, which turns by n x n'/n^2 per length. Beside a kink
+of n by an angle 2 theta0 it bends as an elastica with straight ends: E I theta'^2/2 = N (1 - cos theta), with the angle
+theta between tangent and force. Hence M = 2 sqrt(N E I) sin(theta/2), and tan(theta/4) = tan(theta0/4)
+exp(-d/sqrt(E I/N)) at a distance d. At a section of fixed direction, theta0 is the angle between this direction and the
+force. Each side carries half of a moment on a point, which decays likewise.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-FAR = 40.0
-"""Of the bent length: farther away nothing is left."""
+MAX_DECAY_LENGTHS = 40.0
+"""Distance from a kink, in lengths sqrt(E I/N), beyond which its bending is zero."""
 
 
 class Kink(NamedTuple):
-    """At s (T,): directions of the force before and after (T, 3), and a moment (T, 3) on the point, N m.
+    """A kink at s (T,): forces before and after it (T, 3), and a moment (T, 3) on the point, N m.
 
-    side: of the cuts that it bends, -1 those before it, 1 those after it, 0 both.
+    side: the cuts that it bends, -1 before it, 1 after it, 0 both.
     """
 
     s: np.ndarray
@@ -32,7 +32,7 @@ class Kink(NamedTuple):
 
 
 def fixed_direction(s: np.ndarray, direction: np.ndarray, force: np.ndarray, side: int) -> Kink:
-    """Return a section whose direction (T, 3) is fixed, as a kink of which there is one half: that with this force."""
+    """Return a section of fixed direction (T, 3) with this force on one side, as half of a kink."""
     along = np.sum(direction * force, axis=-1) / np.sum(direction**2, axis=-1)
     mirrored = 2 * along[:, None] * direction - force
     before, after = (mirrored, force) if side > 0 else (force, mirrored)
@@ -40,20 +40,20 @@ def fixed_direction(s: np.ndarray, direction: np.ndarray, force: np.ndarray, sid
 
 
 Stiffness = Callable[[np.ndarray], np.ndarray]
-"""E I (T, n) of bending about directions (T, n or 1, 3), N m^2."""
+"""E I (T, n), N m^2, of bending about directions (T, n or 1, 3)."""
 
 
 def line_bending(stiffness: Stiffness, force: np.ndarray, change: np.ndarray) -> np.ndarray:
-    """Return (T, n, 3): moment from how the force's line turns; change (T, n, 3): derivative of the force by s."""
+    """Return the moment (T, n, 3) of a line along the force; change (T, n, 3): derivative of the force by s."""
     square = np.sum(force**2, axis=-1)[..., None]
     turn = np.cross(force, change) / np.where(square > 0, square, 1.0)
     return stiffness(turn)[..., None] * turn
 
 
 def beside(kink: Kink, s: np.ndarray, after: np.ndarray, stiffness: Stiffness, force: np.ndarray) -> np.ndarray:
-    """Return (T, n, 3): moment beside a kink at cuts s (T or 1, n) with these forces.
+    """Return the moment (T, n, 3) beside a kink at cuts s (T or 1, n) with these forces.
 
-    after (T or 1, n): of a cut at the kink, whether it is on the side of larger s.
+    after (T or 1, n): whether a cut at the kink is on the side of larger s.
     """
     place = kink.s[:, None]
     normal, theta = _turn(kink.before, kink.after)
@@ -63,7 +63,7 @@ def beside(kink: Kink, s: np.ndarray, after: np.ndarray, stiffness: Stiffness, f
     bent = np.sqrt(EI / np.where(size > 0, size, np.inf))
     distance = np.abs(s - place)
     beyond = np.where(distance <= 1e-12 * np.max(np.abs(s), initial=0.0), after, s > place)
-    near = (distance < FAR * bent) & (bent > 0) & ((kink.side == 0) | (beyond == (kink.side > 0)))
+    near = (distance < MAX_DECAY_LENGTHS * bent) & (bent > 0) & ((kink.side == 0) | (beyond == (kink.side > 0)))
     if not near.any():
         return found
     row = np.broadcast_to(np.arange(len(force))[:, None], near.shape)[near]
@@ -78,7 +78,7 @@ def beside(kink: Kink, s: np.ndarray, after: np.ndarray, stiffness: Stiffness, f
 
 
 def _turn(before: np.ndarray, after: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the axis and half of the angle by which directions (T, 3) turn."""
+    """Return the axis (T, 3) and half of the angle of the rotation between directions (T, 3)."""
     cross = np.cross(before, after)
     sine = np.linalg.norm(cross, axis=-1)
     angle = np.arctan2(sine, np.sum(before * after, axis=-1))

@@ -1,4 +1,4 @@
-"""What the nodes of cables give to each element: its elastic and damping force and inertia, less what acts on it."""
+"""Nodal forces of the elements of cables: elastic, damping and inertia forces less the loads on the element."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ import numpy as np
 from scipy.sparse import block_diag, coo_array, csc_array, csr_array, kron
 from scipy.sparse.linalg import splu
 
-from ...model.element_coordinates import element_coordinates
+from ...model.element_coordinates import element_coordinates, positions
 from ...model.model import CableModel, Model
 from ...model.unknowns import by_unknowns
 from .cable_loads import CableLoads, Instants
-from .spreads import Spread, rows
+from .spreads import Spread
 
 
 @dataclass
 class ElementForces:
-    """Of the elements of one cable at T instants.
+    """Forces on the elements of one cable at T instants, each array (T, elements, vectors, dim).
 
-    given (T, elements, vectors, dim): the generalised forces of its nodes on each element; inertia, the same shape:
-    nodal accelerations with what mass damping adds, those of gravity subtracted, so that mass times inertia is what a
-    length of cable takes; e, likewise, nodal vectors. spreads: what the mass of a fluid adds by the accelerations.
+    given: generalised forces of the nodes on each element; inertia: nodal accelerations plus mass damping less gravity,
+    so that mass times inertia is the resultant on a length of cable; e: nodal vectors. spreads: inertia of the added
+    mass of fluids.
     """
 
     given: np.ndarray
@@ -31,7 +31,7 @@ class ElementForces:
 
 
 def element_forces(model: Model, at: Instants, loads: CableLoads, cable: int) -> ElementForces:
-    """Return those of cable number `cable`, one of those that the loads are of; at rest without accelerations."""
+    """Return the forces of one of the cables of the loads, by its number; at rest without accelerations."""
     forces = {k: internal(model.cables[k], at) - _external(model, k, at, loads) for k in loads.cables}
     accelerations = np.zeros_like(at.v) if at.is_rest else _accelerations(model, at, forces, loads)
     of = model.cables[cable]
@@ -39,7 +39,7 @@ def element_forces(model: Model, at: Instants, loads: CableLoads, cable: int) ->
     given = forces[cable] + mass_times(of, a)
     spreads: list[Spread] = []
     if cable in loads.added and not at.is_rest:
-        spreads = list(loads.added[cable].spreads(of, a))
+        spreads = list(loads.added[cable].spreads(a))
     for spread in spreads:
         given[:, spread.element] -= spread.f
     inertia = a + of.mass_damping * element_coordinates(of, at.v) - _uniform(of, loads.gravity)
@@ -47,16 +47,16 @@ def element_forces(model: Model, at: Instants, loads: CableLoads, cable: int) ->
 
 
 def internal(cable: CableModel, at: Instants) -> np.ndarray:
-    """Return (T, elements, vectors, dim): elastic forces, those of Kelvin-Voigt and of mass damping."""
+    """Return the forces (T, elements, vectors, dim) of elasticity, of Kelvin-Voigt and of mass damping."""
     e, v = element_coordinates(cable, at.q), element_coordinates(cable, at.v)
     moving = cable.tau > 0 and np.any(v)
 
     def forces(length: float, e: np.ndarray, v: np.ndarray, A: np.ndarray) -> np.ndarray:
-        found = rows(cable.law_kernel("elastic_force"), len(e), length, e, A)
+        found: np.ndarray = cable.law_kernel("elastic_force").rows(len(e), length, e, A)
         if moving:
             damping = cable.law_kernel("damping_force")
-            of_damping = A[: damping.shapes["A"][0]]  # the law that it is taken from has the first constants alone
-            found = found + rows(damping, len(e), length, e, v, of_damping, cable.tau)
+            of_damping = A[: damping.shapes["A"][0]]  # its law has the first of these constants only
+            found = found + damping.rows(len(e), length, e, v, of_damping, cable.tau)
         return found
 
     if len(cable.A) == 1:
@@ -71,18 +71,18 @@ def internal(cable: CableModel, at: Instants) -> np.ndarray:
 
 def mass_times(cable: CableModel, a: np.ndarray) -> np.ndarray:
     """Return (T, elements, vectors, dim): the mass matrices of the elements times vectors of that shape."""
-    if len(cable.m) == 1:
-        return np.einsum("kl,teld->tekd", cable.m[0], a)
-    return np.einsum("ekl,teld->tekd", cable.m, a)
+    found: np.ndarray = np.einsum("ekl,teld->tekd", np.broadcast_to(cable.m, (cable.n_elements, *cable.m.shape[1:])), a)
+    return found
 
 
 def _uniform(cable: CableModel, acceleration: np.ndarray) -> np.ndarray:
-    """Return (vectors, dim): nodal accelerations of a uniform field."""
-    return np.array([name == "r" for name in cable.vectors] * 2)[:, None] * acceleration
+    """Return the nodal accelerations (vectors, dim) of a uniform field."""
+    found: np.ndarray = positions(cable)[:, None] * acceleration
+    return found
 
 
 def _external(model: Model, number: int, at: Instants, loads: CableLoads) -> np.ndarray:
-    """Return (T, elements, vectors, dim): gravity, and all that acts between nodes."""
+    """Return the forces (T, elements, vectors, dim) of gravity and of all loads between nodes."""
     cable = model.cables[number]
     f = np.zeros((len(at.time), cable.n_elements, 2 * cable.shape[1], cable.shape[2]))
     weight = np.einsum("ekl,ld->ekd", cable.m, _uniform(cable, loads.gravity))
@@ -96,14 +96,12 @@ def _external(model: Model, number: int, at: Instants, loads: CableLoads) -> np.
 
 
 def _accelerations(model: Model, at: Instants, forces: dict[int, np.ndarray], loads: CableLoads) -> np.ndarray:
-    """Return (T, n_dof): nodal accelerations of these cables; forces (T, elements, vectors, dim) are internal less
-    outer ones.
+    """Return the nodal accelerations (T, n_dof) of cables; forces (T, elements, vectors, dim): internal less external.
 
-    M a = -forces on what is free, with what supports and joins hold and motions prescribe. Eq 38 gave the same at each
-    of the instants: so a run need not keep them. A fluid's mass turns with the cable, and M with it.
+    M a = -forces on the free coordinates, subject to supports, ties and prescribed motions. Eq 38 gives the same
+    accelerations, so that a run need not record them. The added mass of a fluid turns with the cable.
     """
-    chosen = np.concatenate([np.arange(model.cables[k].coordinates.start, model.cables[k].coordinates.stop)
-                           for k in forces])
+    chosen = np.concatenate([np.arange(model.n_dof)[model.cables[k].coordinates] for k in forces])
     masses, assembled = [], np.zeros((len(at.time), model.n_dof))
     for k, f in forces.items():
         cable = model.cables[k]
@@ -135,7 +133,7 @@ def _mass(cable: CableModel) -> csr_array:
 
 
 def _fluid_mass(cable: CableModel, matrices: np.ndarray | None, instant: int) -> csr_array:
-    """Return that of a fluid at an instant, from matrices (T, elements, n, n); None: there is none."""
+    """Return the added mass of a cable at an instant, from matrices (T, elements, n, n), or None."""
     per_node = cable.shape[1] * cable.shape[2]
     if matrices is None:
         return csr_array((cable.shape[0] * per_node,) * 2)
@@ -155,13 +153,13 @@ def _assembled(cable: CableModel, matrices: np.ndarray, per_node: int) -> csr_ar
 
 
 def _reduction(model: Model, dofs: np.ndarray) -> csr_array:
-    """Return T (dofs, unknowns that they have), sparse: dofs = T unknowns + what is prescribed."""
+    """Return T (dofs, their unknowns), sparse: dofs = T unknowns + prescribed motion."""
     T = by_unknowns(model.unknown_of_dof[dofs], model.combinations, model.n_band + model.n_border_dof).tocsc()
     return T[:, np.flatnonzero(np.diff(T.indptr))].tocsr()
 
 
 def _prescribed(model: Model, time: np.ndarray) -> np.ndarray:
-    """Return (T, n_dof): accelerations that motions prescribe."""
+    """Return the prescribed accelerations (T, n_dof)."""
     found = np.zeros((len(time), model.n_dof))
     for motion in model.motions:
         f, rate, second = (model.signals[motion.signal].value(time, order) for order in range(3))
