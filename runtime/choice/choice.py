@@ -1,4 +1,4 @@
-"""The result of a choice: the scene, what was chosen and why, and what the alternatives would cost and err."""
+"""The result of a choice: the scene, the chosen models with reasons, and the errors and costs of alternatives."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .remeshing import CableModel, S
 
 
 def of_unchanged(names: list[str]) -> str:
-    """Return what is said of quantities that stay as they are."""
+    """Return the sentence on quantities that did not change."""
     told = ("the error of the shape at rest is over the scene's extent" if names == [MOTION] else
             "nothing is estimated of that")
     return f"{' and '.join(names)} did not change in the short runs: {told}"
@@ -20,7 +20,7 @@ def of_unchanged(names: list[str]) -> str:
 
 @dataclass(frozen=True)
 class Alternative:
-    """A model of a cable that was considered: its error over the largest change, and CPU seconds, both estimates."""
+    """A considered model of a cable with estimates of its error, over the largest change, and of its CPU seconds."""
 
     cable: str
     model: CableModel
@@ -29,27 +29,19 @@ class Alternative:
     chosen: bool
     why: str
 
-    def row(self) -> dict[str, Any]:
-        """Return it as a row of a table."""
-        return {"cable": self.cable, "element": self.model.element, "law": self.model.law,
-                "elements": self.model.elements, "error": self.error, "cost_s": self.cost, "chosen": self.chosen,
-                "why": self.why}
-
 
 @dataclass
 class Choice(Generic[S]):
-    """What was chosen for a tolerance.
+    """The models for a tolerance.
 
     scene: an ordinary scene with the chosen models, whose run settings have the integrator and its tolerance; tol: the
-    tolerance asked for; time_tol: that of the integrator; models: by cable; kept: whether
-    the error is within the tolerance; error: the estimate, with what it may be off itself, over the largest change of a
-    quantity; cost: the CPU
-    seconds that a run is estimated to take; reasons: why, in sentences; table: the alternatives; probes: how many short
-    runs that took, seconds: their CPU time with all else; given: cables whose element or mesh was given: what these err
-    by is not in the estimate; planar: what is said of a spatial scene that was chosen planar, else empty; mesh_error:
-    what of the error is that of the mesh; unchanged: the quantities that stay as they are, so that nothing can be
-    estimated of them; unresolved: what no mesh at hand resolves and is not in the estimate; rest: the state of
-    rest that the last of the short runs starts from, where they do, on its mesh.
+    tolerance asked for; time_tol: that of the integrator; models: by cable; error: the upper estimate, over the largest
+    change of a quantity; cost: estimated CPU seconds of a run; kept: whether the error is within the tolerance;
+    reasons: in sentences; table: the alternatives; probes: the number of short runs; seconds: CPU time of the choice;
+    given: cables whose element or mesh was given: their errors are not in the estimate; planar: the sentence on a
+    spatial scene that was chosen planar, else empty; mesh_error: the part of the error due to the mesh; unchanged:
+    quantities that did not change, whose error cannot be estimated; unresolved: sentences on short waves that no mesh
+    resolves; rest: the state of rest of the last short run, on its mesh.
     """
 
     scene: S
@@ -74,22 +66,23 @@ class Choice(Generic[S]):
     @property
     def table(self) -> list[dict[str, Any]]:
         """Return the alternatives as rows, those of a cable together, the chosen one marked."""
-        return [alternative.row() for alternative in self.alternatives]
+        return [{"cable": each.cable, "element": each.model.element, "law": each.model.law,
+                 "elements": each.model.elements, "error": each.error, "cost_s": each.cost, "chosen": each.chosen,
+                 "why": each.why} for each in self.alternatives]
 
     def settings_of(self, settings: RunSettings) -> RunSettings:
         """Return the settings of a run of the chosen scene."""
         return settings.model_copy(update={"tol": self.time_tol, "integrator": self.integrator, "model": "given"})
 
     def messages(self) -> list[str]:
-        """Return what the messages of a run say of the choice."""
+        """Return the messages of a run on the choice."""
         kept = "" if self.kept or self.unresolved else f"; no model at hand keeps it, the estimate is {self.error:.1e}"
         given = f"; what was given of {', '.join(self.given)} is kept, its error not estimated" if self.given else ""
-        still = [of_unchanged(self.unchanged)]
-        return [f"model chosen {self.heading}{kept}{given}", *([self.planar] if self.planar else []),
-                *(still if self.unchanged else []), *self.unresolved]
+        still = of_unchanged(self.unchanged) if self.unchanged else ""
+        return [f"model chosen {self.heading}{kept}{given}", *filter(None, (self.planar, still)), *self.unresolved]
 
     def facts(self) -> dict[str, Any]:
-        """Return what the report of a run says of the choice."""
+        """Return the entries of a run's report on the choice."""
         return {"tol": self.tol, "integrator": self.integrator, "error": self.error, "cost_s": self.cost,
                 "kept": self.kept, "models": {name: str(model) for name, model in self.models.items()},
                 "reasons": list(self.reasons), "alternatives": self.table, "probes": self.probes,
@@ -97,13 +90,13 @@ class Choice(Generic[S]):
 
     @property
     def heading(self) -> str:
-        """Return what was chosen, in a line."""
+        """Return the choice in a line."""
         models = "; ".join(f"{name}: {model}" for name, model in self.models.items())
         time = f"integrator {self.integrator}, its tol {self.time_tol:.2g}"
         return f"for tol = {self.tol:g}: {models or 'no cables'}; {time}"
 
     def __str__(self) -> str:
-        """Return what was chosen, why, and the table of alternatives."""
+        """Return the choice, its reasons, and the table of alternatives."""
         lines = [f"Chosen {self.heading}", *(f"- {reason}" for reason in self.reasons), ""]
         header = ("", "cable", "model", "error", "CPU s", "why")
         rows = [("*" * each.chosen, each.cable, str(each.model), f"{each.error:.1e}", f"{each.cost:.2g}", each.why)

@@ -1,24 +1,23 @@
-"""What of a scene is chosen, and what stays as it was given."""
+"""Which parts of a scene are chosen, and which stay as given."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from ..errors import SceneError
 from ..parts.cable import Cable
-from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
-from .candidates import Kind, Kinds, kinds_of
+from .candidates import Free, possible
 from .choice import Choice
 from .chooser import Chooser
-from .estimate import Free
 from .planar import Planar, planar_of
-from .probes import Runner, S
-from .remeshing import MOST_PARTS, coarsest, remade
+from .probes import Runner
+from .remeshing import MAX_COARSEST_ELEMENTS, CableModel, S, coarsest, remade
 from .unequal import with_unequal_elements
 
 FREE = ("unset", "all")
-"""What is chosen: what was not given, or all."""
+"""What is chosen: unset values alone, or all."""
 
 
 def choose(scene: S, settings: RunSettings, quantities: Sequence[str], free: str, runner: Runner[S],
@@ -47,16 +46,16 @@ def choose(scene: S, settings: RunSettings, quantities: Sequence[str], free: str
 
 
 def _planar(scene: S, free: str) -> Planar[S] | None:
-    """Return the planar form of a spatial scene, or why it has none; None where elements of cables are not free.
+    """Return the planar form of a spatial scene, or the reasons against it; None where elements of cables are given.
 
-    Cables that are free are taken as beams of the structural law: which law they get is chosen later.
+    Free cables are taken as beams of the structural law: the law is chosen later.
     """
     if scene.dim == 2 or not scene.cables or any(_keeps(cable, free) for cable in scene.cables.values()):
         return None
     models = {}
     for name, cable in scene.cables.items():
         elements = coarsest(scene, cable) or 1 if cable.is_open else cable.elements
-        models[name] = kinds_of(scene, cable, scene.dim).finest.with_elements(elements)
+        models[name] = possible(scene, cable).finest.of(elements)
     try:
         return planar_of(remade(scene, models))
     except SceneError as error:
@@ -64,19 +63,20 @@ def _planar(scene: S, free: str) -> Planar[S] | None:
 
 
 def _keeps(cable: Cable, free: str) -> bool:
-    """Return whether the element and law of a cable stay as they were given."""
+    """Return whether the element and law of a cable stay as given."""
     return cable.library is not None or (free == "unset" and "element" in cable.model_fields_set)
 
 
-def _free(scene: SceneData, name: str, asked: Cable, free: str) -> Free:
-    """Return what is to be chosen of a cable of a scene; asked: the cable as the user gave it."""
+def _free(scene: S, name: str, asked: Cable, free: str) -> Free:
+    """Return the possible models of a cable of a scene; asked: the cable as the user gave it."""
     cable = scene.cables[name]
     given = asked.elements if free == "unset" and not asked.is_open else None
     base = coarsest(scene, cable)
     if not base and given is None:
-        raise SceneError(cable.where, f"no mesh of up to {MOST_PARTS} equal elements has nodes at all its supports",
-                         "give elements, or move a support")
+        raise SceneError(cable.where, f"no mesh of up to {MAX_COARSEST_ELEMENTS} equal elements has nodes at all its "
+                         "supports", "give elements, or move a support")
     if _keeps(asked, free):
-        why = (f"{cable.element}, {cable.law} as given: what that leaves out is not estimated",)
-        return Free(cable, Kinds(None, Kind(cable.element, cable.law), why), base, given, True)
-    return Free(cable, kinds_of(scene, cable, scene.dim), base, given)
+        kept = CableModel(cable.element, cable.law)
+        why = (f"{cable.element}, {cable.law} as given: the error of this model is not estimated",)
+        return Free(cable, None, kept, why, base, given, True)
+    return replace(possible(scene, cable), base=base, fixed=given)

@@ -1,4 +1,4 @@
-"""How far a mesh is from the converged one, from the differences of meshes, each of half the element length."""
+"""The error of a mesh, from the differences of meshes, each of half the element length."""
 
 from __future__ import annotations
 
@@ -7,77 +7,76 @@ from dataclasses import dataclass
 
 import numpy as np
 
-FIRST_ORDER = 1.5
+ASSUMED_ORDER = 1.5
 """Order assumed of two meshes: between that of a kink under a rider, 1, and that of a smooth shape, 4."""
 
-ORDERS = 0.7, 4.0
-"""Bounds of the order that is observed: below, meshes do not yet converge; above, differences cancel by chance."""
+MIN_ORDER, MAX_ORDER = 0.7, 4.0
+"""Bounds of the observed order: below, meshes do not yet converge; above, differences cancel by chance."""
 
+MAX_REFINEMENT = {"assumed": 2.0, "once": 2.0, "twice": 4.0}
+"""Ratio of refinement up to which an error is extrapolated, by how often its order was observed."""
 
-NEAR, FAR = 2.0, 4.0
-"""How many times as fine a mesh may be whose error is extrapolated: by an order that is seen once, and twice."""
+ORDER_TOLERANCE = 0.7
+"""Difference below which two orders count as equal."""
 
-SAME = 0.7
-"""Two orders that differ by less are the same."""
-
-MARGINS = {"assumed": 0.8, "once": 1.0, "twice": SAME / 2}
-"""By what the order may be off that is assumed, seen once, and seen twice. Of 206 choices for random scenes
-seven erred by 1.2 to 1.6 tol where the order was taken as seen: the order was lower, by up to 1 (seen once)."""
+ORDER_MARGINS = {"assumed": 0.8, "once": 1.0, "twice": ORDER_TOLERANCE / 2}
+"""Uncertainty of the order, by how often it was observed. Of 206 choices for random scenes, seven erred by 1.2 to 1.6
+tol without it: the order was lower, by up to 1 (observed once)."""
 
 
 @dataclass(frozen=True)
 class MeshError:
     """The error of a mesh of ``level`` times the coarsest number of elements, ~ level to the power of -order.
 
-    error is the best estimate; margin: by what the order may be off; trusted: how many times as fine a mesh may be for
-    that to hold; regular: whether all meshes converged to it, each difference of neighbours being less than the one
-    before by an order above the lowest.
+    error: the best estimate; margin: the uncertainty of the order; trusted: the ratio of refinement up to which it
+    holds; regular: whether all meshes converged, each difference below the one before by an order above the lowest.
     """
 
     level: int
     error: float
     order: float
     margin: float = 0.0
-    trusted: float = NEAR
+    trusted: float = MAX_REFINEMENT["once"]
     regular: bool = True
 
     @property
     def lowest(self) -> float:
         """Return the lowest order that is likely."""
-        return max(self.order - self.margin, ORDERS[0])
+        return max(self.order - self.margin, MIN_ORDER)
 
     @property
     def highest(self) -> float:
         """Return the highest order that is likely."""
-        return min(self.order + self.margin, ORDERS[1])
+        return min(self.order + self.margin, MAX_ORDER)
 
     def growth(self, level: float) -> float:
-        """Return what a mesh of another level errs by at most, whichever order is likely, over `error`."""
+        """Return the largest likely error of a mesh of another level, over `error`."""
         at_own = (2**self.order - 1) / (2**self.lowest - 1)
-        return at_own * (self.level / level) ** (self.lowest if level >= self.level else self.highest)
+        return float(at_own * (self.level / level) ** (self.lowest if level >= self.level else self.highest))
 
     def level_for(self, error: float) -> float:
-        """Return the level whose error is bounded so."""
+        """Return the level whose error has this bound."""
         ratio = self.error * self.growth(self.level) / error
         return self.level * ratio ** (1 / (self.lowest if ratio > 1 else self.highest)) if ratio > 0 else 0.0
 
 
 def mesh_error(levels: Sequence[int], differences: Sequence[float]) -> MeshError:
-    """Return the error of the last of some levels, from the differences of neighbours, each twice the one before.
+    """Return the error of the last of some levels, each twice the one before, from the differences of neighbours.
 
-    Richardson's extrapolation: of two differences the ratio is 2 to the power of the order.
+    Richardson's extrapolation: the ratio of two differences is 2 to the power of the order.
     """
     finite = [difference for difference in differences if np.isfinite(difference)]
     if not finite:
-        return MeshError(levels[-1], np.inf, FIRST_ORDER, MARGINS["assumed"])
-    all_ratios = np.log2(np.divide(finite[:-1], np.maximum(finite[1:], 1e-300)))
-    ratios = all_ratios[-2:]
-    orders = np.clip(ratios, *ORDERS)
-    order = float(orders[-1]) if len(orders) else FIRST_ORDER
-    if len(ratios) > 1 and ratios[0] < 0:  # differences grew just before: they fall by chance in part
+        return MeshError(levels[-1], np.inf, ASSUMED_ORDER, ORDER_MARGINS["assumed"])
+    ratios = np.log2(np.divide(finite[:-1], np.maximum(finite[1:], 1e-300)))
+    regular = bool(np.all(ratios >= MIN_ORDER))
+    orders = np.clip(ratios[-2:], MIN_ORDER, MAX_ORDER)
+    order = float(orders[-1]) if len(orders) else ASSUMED_ORDER
+    if len(orders) > 1 and ratios[-2] < 0:  # differences grew just before: they fall by chance in part
         order = float(orders.mean())
-    steady = len(orders) > 1 and float(np.ptp(orders)) < SAME
-    seen, regular = "twice" if steady else "once" if len(orders) else "assumed", bool(np.all(all_ratios >= ORDERS[0]))
-    if not regular and order > FIRST_ORDER:  # it is chance: a whip was kept at 2.0 tol by it. The lower one is cautious
-        order, seen = FIRST_ORDER, "twice"
-    return MeshError(levels[-1], finite[-1] / (2**order - 1), order, MARGINS[seen], FAR if steady else NEAR, regular)
+    steady = len(orders) > 1 and float(np.ptp(orders)) < ORDER_TOLERANCE
+    seen = "twice" if steady else "once" if len(orders) else "assumed"
+    trusted = MAX_REFINEMENT[seen]
+    if not regular and order > ASSUMED_ORDER:  # by chance: with this order the error of a whip was 2.0 tol
+        order, seen = ASSUMED_ORDER, "twice"
+    return MeshError(levels[-1], finite[-1] / (2**order - 1), order, ORDER_MARGINS[seen], trusted, regular)

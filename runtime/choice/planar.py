@@ -1,8 +1,8 @@
 """Spatial scenes that stay in a plane, and the same scenes of planar elements.
 
-A scene that the reflection in a plane leaves as it is has a motion in that plane. Planar elements have that motion,
-with two thirds or fewer of the unknowns. What a small disturbance out of the plane would make of it, such as lateral
-buckling, they do not show.
+A scene that is symmetric about a plane has a motion in that plane. Planar elements have the same motion with at most
+two thirds of the unknowns. They do not show the effect of small disturbances out of the plane, such as lateral
+buckling.
 """
 
 from __future__ import annotations
@@ -27,17 +27,16 @@ from ..parts.support import Tie
 from ..parts.validation import show
 from .remeshing import S
 
-ALONG = 1e-9
+PARALLEL_SINE = 1e-9
 """Sine of the angle up to which directions count as parallel."""
 
 
 @dataclass(frozen=True)
 class Planar(Generic[S]):
-    """A scene of planar elements with the motion of a spatial one, or why there is none.
+    """A scene of planar elements with the motion of a spatial one, or the reasons against it.
 
-    scene: of planar elements, None where the spatial one has another motion or leaves the plane; reasons: what leaves
-    the plane, or differs there, a line each; elements: of each cable, the planar element in place of its own; plane:
-    that the scene stays in, None of z = 0.
+    scene: of planar elements, None where there is none; reasons: parts that leave the plane or differ there, a line
+    each; elements: the planar element of each cable; plane: the plane of the scene, None for z = 0.
     """
 
     scene: S | None
@@ -46,7 +45,7 @@ class Planar(Generic[S]):
     plane: Plane | None = None
 
     def __str__(self) -> str:
-        """Return what was found, in a line."""
+        """Return the result in a line."""
         if self.scene is None:
             return "the scene is spatial: " + "; ".join(self.reasons)
         changed = ", ".join(f"{name} of {element}" for name, element in self.elements)
@@ -55,10 +54,10 @@ class Planar(Generic[S]):
 
 
 def planar_of(scene: S) -> Planar[S]:
-    """Return the scene with planar elements in place of spatial ones, where that has the same motion.
+    """Return the scene with planar elements in place of spatial ones, where it has the same motion.
 
-    The motion of a scene in a plane is the same, but for rounding, for cable elements, for beams with the structural
-    law, and for beams of the other laws with a Poisson ratio of 0.
+    Within rounding this holds for cable elements, for beams with the structural law, and for beams of the other laws
+    with a Poisson ratio of 0.
     """
     if not scene.cables or scene.dim == 2:
         return Planar(None, ("it has no cables of spatial elements",))
@@ -74,27 +73,26 @@ def _planar_in(scene: S, plane: Plane | None) -> Planar[S]:
         flat = scene if plane is None else laid_into(scene, plane)
     except SceneError as error:
         return Planar(None, (str(error),))
-    following = {id(given): _on_planar_cable(flat, seen)
-                 for given, seen in zip(scene.parts(), flat.parts(), strict=True)
-                 if isinstance(seen, Force | DistributedForce) and _follows_cable(scene, seen)}
+    pairs = list(zip(scene.parts(), flat.parts(), strict=True))
+    following = {id(given): own for given, seen in pairs if isinstance(seen, Force | DistributedForce)
+                 and (own := _on_planar_cable(flat, seen)) is not seen}
     reasons = [f"gravity {show(scene.gravity, 'm/s²')} leaves {called(plane)}"] if flat.gravity[2] else []
-    for given, seen in zip(scene.parts(), flat.parts(), strict=True):
+    for given, seen in pairs:
         found = _reasons(flat, following.get(id(given), seen), called(plane))
         reasons += [f"{given.where}: {reason}" for reason in found]
     if reasons:
         return Planar(None, tuple(reasons))
     try:
-        made = scene.with_parts(_planar(part, seen, plane, following)
-                                for part, seen in zip(scene.parts(), flat.parts(), strict=True))
+        made = scene.with_parts(_planar(part, seen, plane, following) for part, seen in pairs)
     except SceneError as error:
         return Planar(None, (str(error),))
     return Planar(made, (), tuple((name, cable.element) for name, cable in made.cables.items()), plane)
 
 
 def likely_plane(scene: SceneData) -> Plane | None:
-    """Return the plane that a scene lies in if it lies in any; None of z = 0, and where nothing tells.
+    """Return the only plane that a scene can lie in; None for z = 0, and where it is not determined.
 
-    Its normal is such that the first cable's ``up`` is the side of the height of planar elements.
+    With its normal, the first cable's ``up`` is the side of the height of planar elements.
     """
     cables = list(scene.cables.values())
     start = np.array(cables[0].drawn_through[0])
@@ -112,27 +110,21 @@ def likely_plane(scene: SceneData) -> Plane | None:
     return None if abs(plane.normal[2]) == 1.0 and not plane.origin.any() else plane
 
 
-def _follows_cable(scene: SceneData, load: Force | DistributedForce) -> bool:
-    """Return whether a load has components along the height and the width of a cable."""
-    on = load.cable if isinstance(load, DistributedForce) else load.on
-    return load.follower and on in scene.cables and any(load.value[1:])
-
-
 def _on_planar_cable(scene: SceneData, load: Force | DistributedForce) -> Force | DistributedForce:
-    """Return a follower force on a cable with its components along the axes of the planar cable in its place.
+    """Return a follower force across a cable in the axes of the planar cable; another load as it is.
 
-    There the height is z x tangent, whatever ``up`` is. The scene is in the axes of the plane.
+    The height of a planar cable is z x tangent, whatever ``up`` is. The scene is in the axes of the plane.
     """
     on, s = (load.cable, load.start) if isinstance(load, DistributedForce) else (load.on, load.s)
+    if not (load.follower and on in scene.cables and any(load.value[1:])):
+        return load
     axes = scene.cables[on].axes_at(s or 0.0)
     planar = np.array([axes[0], np.cross((0.0, 0.0, 1.0), axes[0]), (0.0, 0.0, 1.0)])
     return load.model_copy(update={"value": tuple(aligned(planar @ axes.T @ load.value).tolist())})
 
 
 def _planar(part: Part, seen: Part, plane: Plane | None, following: Mapping[int, Part]) -> Part:
-    """Return a part of the planar scene; seen: in the axes of the plane; following: forces that turn with cables, by
-    the identity of the given ones.
-    """
+    """Return a part of the planar scene; seen: the part in the axes of the plane; following: turned loads by id."""
     if not isinstance(part, Cable) or not isinstance(seen, Cable):
         return following.get(id(part), part)
     if plane is None:
@@ -144,8 +136,7 @@ def _planar(part: Part, seen: Part, plane: Plane | None, following: Mapping[int,
 
 
 def planar_element(cable: Cable) -> str | None:
-    """Return the planar element with the nodal vectors of the cable's own one in the plane; None where there is none.
-    """
+    """Return the planar element with the same nodal vectors in the plane; None where there is none."""
     own = cable.kind_of_element
     left = tuple(vector for vector in own.nodal_vectors if vector != "r_z")
     return next((name for name, kind in of_library(cable.library).items()
@@ -160,7 +151,7 @@ def planar_cable(cable: Cable) -> Cable:
 
 
 def turned(section: Section) -> Section | None:
-    """Return the section with height and width exchanged; None where its kind does not tell."""
+    """Return the section with height and width exchanged; None where its kind does not define them."""
     if isinstance(section, Rectangle):
         entries = section.entries() | {"height": section.width, "width": section.height}
         if "shear_factors" in entries:
@@ -170,12 +161,12 @@ def turned(section: Section) -> Section | None:
 
 
 def _height_is_in_plane(cable: Cable) -> bool:
-    """Return whether the height of the section lies in the plane z = 0 all along, not across it."""
+    """Return whether the height of the section lies in the plane z = 0 all along."""
     return not np.any(cable.axes_at(cable.node_s)[:, 1, 2])
 
 
 def _reasons(scene: SceneData, part: Part, plane: str) -> Iterator[str]:
-    """Yield what of a part leaves the plane, or is another thing in planar elements; both in the axes of the plane."""
+    """Yield the features of a part, in the axes of the plane, that leave it or differ in planar elements."""
     for what in part.off_plane():
         yield f"{what} leaves {plane}" + ", in whose axes it is" * (scene.plane_axes is not None)
     if isinstance(part, Cable):
@@ -189,7 +180,7 @@ def _reasons(scene: SceneData, part: Part, plane: str) -> Iterator[str]:
 
 
 def _reasons_of_cable(cable: Cable, plane: str) -> Iterator[str]:
-    """Yield what of a cable leaves the plane, or is another thing in planar elements."""
+    """Yield the features of a cable that leave the plane or differ in planar elements."""
     if np.any(cable.nodal_vectors[:, 0, 2]) or np.any(cable.rest_nodal_vectors[:, 0, 2]):
         yield f"its line leaves {plane}"
         return
@@ -203,7 +194,7 @@ def _reasons_of_cable(cable: Cable, plane: str) -> Iterator[str]:
                f"{planar_element(cable)}, which differ with a Poisson ratio of {cable.material.poisson_ratio:g}")
     if not cable.kind_of_element.is_cable:
         axes = cable.axes_at(cable.node_s)
-        if np.any(np.abs(axes[:, 1, 2] * axes[:, 2, 2]) > ALONG):
+        if np.any(np.abs(axes[:, 1, 2] * axes[:, 2, 2]) > PARALLEL_SINE):
             yield f"up is neither in {plane} nor across it: bending leaves the plane"
         elif not _height_is_in_plane(cable) and turned(cable.section) is None:
             yield f"up lies across {plane}, where the section's width bends: draw its height in the plane"
@@ -213,4 +204,4 @@ def _is_in_line(scene: SceneData, tie: Tie) -> bool:
     """Return whether the cables of a tie have the same element, and one tangent at it."""
     one, other = scene.cables[tie.cable], scene.cables[tie.to]
     a, b = one.axes_at(tie.s)[0], other.axes_at(tie.at)[0]
-    return one.element == other.element and float(np.linalg.norm(np.cross(a, b))) <= ALONG
+    return one.element == other.element and float(np.linalg.norm(np.cross(a, b))) <= PARALLEL_SINE

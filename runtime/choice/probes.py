@@ -1,4 +1,4 @@
-"""Short, cheap runs of a scene with coarse models of its cables, and how far apart they are."""
+"""Short, cheap runs of a scene with coarse models of its cables, and the distances between them."""
 
 from __future__ import annotations
 
@@ -6,50 +6,50 @@ import time
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Generic, TypeVar, cast
+from typing import Generic, TypeAlias, cast
 
 import numpy as np
 
 from ..errors import FunicularError, FunicularWarning
-from ..parts.scene_methods import SceneMethods
 from ..parts.settings import RunSettings
 from ..results.equilibrium import Equilibrium
 from ..results.run import Run
 from ..results.trajectories import distance, largest_change
 from ..solve.notes.sensitivity import GROWTH_TEXT
 from .motion import MOTION, samples
-from .remeshing import CableModel, remade
+from .remeshing import CableModel, S, remade
 
-S = TypeVar("S", bound=SceneMethods)
+RADAU_WORK, IMPLICIT_WORK, STEP_WORK = 7.0, 2.5, 0.7
+"""Work of an iteration of radau and of the other implicit methods, and of a step of these, in evaluations of
+accelerations, measured on pendulums of 4 to 64 elements of each kind: radau has three stages and a complex system."""
+
+ROUNDING_TOLERANCE = 1e-12
+"""Part of the largest value of a quantity that rounding may change."""
+
+OUTPUT_TIMES = 24
+"""Output times of a probe, after the start."""
+
+Key: TypeAlias = tuple[object, ...]
 
 
 @dataclass(frozen=True)
 class Runner(Generic[S]):
-    """What runs a scene, from a state of rest or as drawn, and raises where the run stops early; and what finds that
-    state, from one on another mesh where that is at hand.
+    """Functions of a scene.
+
+    simulate: returns a run from a state of rest, or as drawn, and raises where it stops early; at_rest: returns the
+    state of rest, found from one on another mesh where there is one.
     """
 
     simulate: Callable[[S, RunSettings, Equilibrium | None], Run]
     at_rest: Callable[[S, Equilibrium | None], Equilibrium]
 
 
-RADAU, IMPLICIT, STEP = 7.0, 2.5, 0.7
-"""Work of an iteration of radau, and of the other implicit methods, and of a step of these, in evaluations of
-accelerations, as measured on pendulums of 4 to 64 elements of each kind: radau has three stages and a complex system.
-"""
-
-ROUNDED = 1e-12
-"""Of its largest value: what rounding may change of a quantity."""
-
-INSTANTS = 24
-"""Output times of a probe, after the start."""
-
-
 @dataclass(frozen=True)
 class Probe(Generic[S]):
-    """A run with coarse models: the scene, what is compared (time, ...) by name, CPU seconds, and steps.
+    """A run with coarse models.
 
-    run: None where the run failed, which failed tells; rest: the state that it starts from, where that is one of rest.
+    run: None where it failed, for the reason ``failed``; sampled: the compared values (time, point, components) by
+    name; seconds: of CPU; rest: the state of rest at the start, if it is one.
     """
 
     models: dict[str, CableModel]
@@ -62,61 +62,53 @@ class Probe(Generic[S]):
 
     @property
     def unchanged(self) -> list[str]:
-        """Return the names of what stays as it is, but for rounding, and a motion for what its steps may err by."""
+        """Return the names of constant quantities, within rounding; a motion within the absolute tolerance, too."""
         allowed = 0.0 if self.run is None else self.run.report["absolute_tol"] or 0.0
         return [name for name, values in self.sampled.items()
-                if not largest_change(values) > max(ROUNDED * float(np.abs(values).max(initial=0.0)),
+                if not largest_change(values) > max(ROUNDING_TOLERANCE * float(np.abs(values).max(initial=0.0)),
                                                     allowed if name == MOTION else 0.0)]
 
     @property
     def grows(self) -> bool:
-        """Return whether its run says that small differences grow in the motion."""
+        """Return whether the run reports that small differences grow in the motion."""
         return self.run is not None and any(GROWTH_TEXT in message for message in self.run.report["messages"])
 
     @property
     def scales(self) -> dict[str, float]:
-        """Return what differences are taken over, by name: the largest change; 0 of what stays as it is.
+        """Return the scales of differences by name: the largest change, 0 for a constant quantity.
 
-        Of a motion that is none it is the largest distance of a point from the first one: the shape still errs.
+        For a constant motion it is the largest distance of a point from the first one: the shape still has an error.
         """
-        still = {name: self._extent(values) if name == MOTION else 0.0 for name, values in self.sampled.items()
-                 if name in self.unchanged}
-        return {name: largest_change(values) for name, values in self.sampled.items()} | still
-
-    @staticmethod
-    def _extent(points: np.ndarray) -> float:
-        """Return the largest distance at the start of a point (time, point, 3) from the first one, m."""
-        return distance(points[0], points[:1, 0])
+        unchanged = self.unchanged
+        return {name: largest_change(values) if name not in unchanged else
+                distance(values[0], values[:1, 0]) if name == MOTION else 0.0 for name, values in self.sampled.items()}
 
     @property
     def work(self) -> float:
-        """Return the work of its integration, in evaluations of accelerations; by counts, that are the same each time.
-        """
+        """Return the work of the integration in evaluations of accelerations, from counts that repeat exactly."""
         if self.run is None:
             return np.inf
         report = self.run.report
-        iterations = report.get("newton_iterations", 0)
         if report["integrator"] == "explicit":
             return float(report["evaluations"])
-        if report["integrator"] == "radau":
-            return RADAU * iterations
-        return IMPLICIT * iterations + STEP * report["steps"]
+        iterations = report.get("newton_iterations", 0)
+        return float(RADAU_WORK * iterations if report["integrator"] == "radau" else
+                     IMPLICIT_WORK * iterations + STEP_WORK * report["steps"])
 
 
 class Prober(Generic[S]):
-    """Makes probes of a scene, each once, and compares them."""
+    """Makes each probe of a scene once, and compares probes."""
 
     def __init__(self, scene: S, settings: RunSettings, quantities: Sequence[str], runner: Runner[S]):
         """quantities: names of results; none stands for the motion."""
         self.scene, self.settings, self.quantities, self.runner = scene, settings, tuple(quantities), runner
-        self.made: dict[tuple, Probe[S]] = {}
-        self.scenes: dict[tuple, S] = {}
-        self.rests: dict[tuple, Equilibrium] = {}
-        self.seconds = 0.0
+        self.made: dict[Key, Probe[S]] = {}
+        self.scenes: dict[Key, S] = {}
+        self.rests: dict[Key, Equilibrium] = {}
 
     def probe(self, models: Mapping[str, CableModel], tol: float, integrator: str,
               change: Callable[[S], S] | None = None, label: str = "") -> Probe[S]:
-        """Return the run with these models; change: makes another scene of it, label: the name of that."""
+        """Return the run with these models; change: makes another scene of it, which the label names."""
         key = (*_key(models), tol, integrator, label)
         if key not in self.made:
             self.made[key] = self._probed(dict(models), tol, integrator, change, label)
@@ -126,30 +118,24 @@ class Prober(Generic[S]):
                 change: Callable[[S], S] | None, label: str) -> Probe[S]:
         begin = time.process_time()
         scene = self.scene_of(models, change, label)
-        settings = RunSettings(duration=self.settings.duration, tol=tol, output_step=self.settings.duration / INSTANTS,
-                               initial=self.settings.initial, integrator=integrator)
+        settings = RunSettings(duration=self.settings.duration, tol=tol, initial=self.settings.initial,
+                               output_step=self.settings.duration / OUTPUT_TIMES, integrator=integrator)
+        rest = None
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", FunicularWarning)
-                rest = self._rest(scene, models, label)
-                if rest is not None and rest.adjusted:  # the state is at rest in the scene with the values found
-                    scene = cast(S, rest.scene)
+                if settings.initial != "drawn":
+                    key = (*_key(models), label)
+                    if key not in self.rests:
+                        self.rests[key] = self.runner.at_rest(scene, self.last_rest)
+                    rest = self.rests[key]
+                    if rest.adjusted:  # the state is at rest in the scene with the values found
+                        scene = cast(S, rest.scene)
                 run = self.runner.simulate(scene, settings, rest)
         except FunicularError as error:
-            self.seconds += time.process_time() - begin
             return Probe(models, scene, None, {}, time.process_time() - begin, str(error))
         sampled = samples(scene, run, self.quantities)
-        self.seconds += time.process_time() - begin
         return Probe(models, scene, run, sampled, run.report["time_s"]["solve_cpu"], rest=rest)
-
-    def _rest(self, scene: S, models: Mapping[str, CableModel], label: str) -> Equilibrium | None:
-        """Return the state of rest that runs of a scene start from, found once, where they do not start as drawn."""
-        if self.settings.initial == "drawn":
-            return None
-        key = (*_key(models), label)
-        if key not in self.rests:
-            self.rests[key] = self.runner.at_rest(scene, self.last_rest)
-        return self.rests[key]
 
     @property
     def last_rest(self) -> Equilibrium | None:
@@ -165,9 +151,9 @@ class Prober(Generic[S]):
         return self.scenes[key]
 
     def difference(self, one: Probe[S], other: Probe[S]) -> float:
-        """Return how far two probes are apart: the largest distance of a quantity over its own largest change.
+        """Return the distance of two probes: the largest one of a quantity over its scale in the second one.
 
-        The change is that of the second one, see `Probe.scales`; infinite where one of them failed.
+        Infinite where one of them failed, or ended at another time.
         """
         if one.run is None or other.run is None:
             return np.inf
@@ -180,6 +166,6 @@ class Prober(Generic[S]):
         return worst
 
 
-def _key(models: Mapping[str, CableModel]) -> tuple:
-    """Return what tells models from others."""
+def _key(models: Mapping[str, CableModel]) -> Key:
+    """Return a key of models by cable."""
     return tuple((name, models[name]) for name in sorted(models))

@@ -1,4 +1,4 @@
-"""Scenes with other models of their cables: the same parts, another element, law or number of elements."""
+"""Scenes with other models of their cables: the same parts with another element, law or mesh."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from typing import TypeVar
 import numpy as np
 
 from ..errors import FunicularWarning
+from ..kernels.elements import built_in
 from ..parts.cable import Cable
-from ..parts.event import Event
 from ..parts.load import Force, Moment
 from ..parts.scene_data import SceneData
 from ..parts.scene_methods import SceneMethods
@@ -21,87 +21,101 @@ from ..parts.validation import EXACT
 
 S = TypeVar("S", bound=SceneMethods)
 
-MOST_PARTS = 1000
-"""Elements of the coarsest mesh with nodes at all supports; more are refused."""
+MAX_COARSEST_ELEMENTS = 1000
+"""Elements of a coarsest mesh with nodes at all supports; a scene that needs more is refused."""
 
-FEW_PARTS = 12
-"""Elements of the coarsest mesh, up to which point loads and joints on the cable stand on nodes, too."""
+MAX_ELEMENTS_FOR_LOADS = 12
+"""Elements of a coarsest mesh that also has nodes at point loads and joints."""
+
+ELEMENT_WORK = {"cable8p": 1.0, "cable12": 1.5, "cable18": 3.0, "beam12p": 1.9, "beam24": 4.8}
+"""CPU time of an element over a run, relative to cable8p, measured on pendulums of 4 to 64 elements: 1.5 times an
+iteration for cable12, 1.6 and 4 times for beams, whose runs have a fifth more iterations."""
 
 
 @dataclass(frozen=True)
 class CableModel:
-    """What is chosen of a cable: its element, its law, and the number of its elements; their nodes where unequal."""
+    """A model of a cable: element, law and number of elements; the arc-lengths of the nodes of unequal elements, m.
+
+    Without a number of elements it stands for the element and law alone.
+    """
 
     element: str
     law: str
-    elements: int
+    elements: int = 0
     nodes: tuple[float, ...] = ()
 
     def __str__(self) -> str:
-        """Return it in a few words."""
+        """Return the model in a few words."""
         return f"{self.elements} {'unequal ' if self.nodes else ''}{self.element}, {self.law}"
 
+    def of(self, elements: int) -> CableModel:
+        """Return the same element and law with a number of equal elements, 0 for none."""
+        return CableModel(self.element, self.law, elements)
+
     def halved(self, nodes: np.ndarray) -> CableModel:
-        """Return it with every element halved; nodes: of these halves, arc-lengths in m."""
+        """Return the model with every element halved; nodes: arc-lengths of the nodes then, in m."""
         return replace(self, elements=2 * self.elements, nodes=tuple(nodes.tolist()) if self.nodes else ())
+
+    @property
+    def work(self) -> float:
+        """Return the CPU time of its elements over a run, relative to one cable8p."""
+        return self.elements * ELEMENT_WORK.get(self.element, 6.0)
+
+    @property
+    def shears(self) -> bool:
+        """Return whether its element is a beam, which shears and twists."""
+        kind = built_in().get(self.element)
+        return kind is None or not kind.is_cable
 
 
 def remade(scene: S, models: Mapping[str, CableModel]) -> S:
     """Return the scene with these models of its cables, checked as any scene is. Raises SceneError."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", FunicularWarning)  # what was adjusted has been said of the scene itself
+        warnings.simplefilter("ignore", FunicularWarning)  # the scene itself reported its adjustments
         return scene.with_parts(with_model(part, models[part.name]) if isinstance(part, Cable) and part.name in models
                                 else part for part in scene.parts())
 
 
 def with_model(cable: Cable, model: CableModel) -> Cable:
-    """Return a cable with another model. Raises SceneError where its section or shape do not suit that."""
+    """Return a cable with another model. Raises SceneError where its section or shape does not suit the model."""
     given = {name: value for name, value in cable.entries().items() if name not in ("strain", "curvature", "membrane")}
     mesh = {"nodes": model.nodes, "elements": None} if model.nodes else cable.mesh_entries(model.elements)
     return Cable(**given | {"element": model.element, "law": model.law} | mesh)
 
 
 def coarsest(scene: SceneData, cable: Cable) -> int:
-    """Return the least number of elements that has nodes at all supports and ties of a cable, and, where few elements
-    do, at its point loads and joints.
+    """Return the smallest number of equal elements with nodes at all supports, ties and watched nodes of a cable.
 
-    Every multiple of it has them, too. 0 where no mesh of at most `MOST_PARTS` elements has them.
+    Nodes at point loads and joints are added where `MAX_ELEMENTS_FOR_LOADS` suffice. Every multiple has these nodes,
+    too. 0 where no mesh of up to `MAX_COARSEST_ELEMENTS` has them.
     """
-    needed = _needed(scene, cable)
-    count = _common(needed, cable.length)
-    on_nodes = _common(node_places(scene, cable), cable.length)
-    return on_nodes if 0 < on_nodes <= max(count, FEW_PARTS) else count
+    count = _common_division(_supported(scene, cable), cable.length)
+    on_nodes = _common_division(node_places(scene, cable), cable.length)
+    return on_nodes if 0 < on_nodes <= max(count, MAX_ELEMENTS_FOR_LOADS) else count
 
 
 def node_places(scene: SceneData, cable: Cable) -> list[float]:
     """Return the arc-lengths of a cable's supports, ties, watched nodes, point loads and joints, in m."""
-    wanted = [load.s for load in scene.loads.values()
-              if isinstance(load, Force | Moment) and load.on == cable.name and load.s is not None]
-    wanted += [end.arc_length for end in scene.attachments() if end.on == cable.name]
-    return [*_needed(scene, cable), *wanted]
+    loads = [load.s for load in scene.loads.values()
+             if isinstance(load, Force | Moment) and load.on == cable.name and load.s is not None]
+    return [*_supported(scene, cable), *loads, *(end.arc_length for end in scene.attachments() if end.on == cable.name)]
 
 
-def _needed(scene: SceneData, cable: Cable) -> list[float]:
-    """Return the arc-lengths at which a cable must have nodes: those of supports, ties and watched nodes, in m."""
-    needed = [support.s for support in scene.supports if support.cable == cable.name]
-    for tie in scene.ties.values():
-        needed += [s for name, s in ((tie.cable, tie.s), (tie.to, tie.at)) if name == cable.name]
-    return needed + [event.s for event in scene.events.values() if event.s is not None and _watches(event, cable)]
+def _supported(scene: SceneData, cable: Cable) -> list[float]:
+    """Return the arc-lengths of supports, ties and watched nodes, which must stand on nodes, in m."""
+    ends = [(tie.cable, tie.s) for tie in scene.ties.values()] + [(tie.to, tie.at) for tie in scene.ties.values()]
+    ends += [(support.cable, support.s) for support in scene.supports]
+    watched = [event.s for event in scene.events.values()
+               if event.s is not None and (event.quantity or "").startswith(f"{cable.name}.")]
+    return [s for name, s in ends if name == cable.name] + watched
 
 
-def _watches(event: Event, cable: Cable) -> bool:
-    return (event.quantity or "").startswith(f"{cable.name}.")
-
-
-def _common(places: list[float], length: float) -> int:
-    """Return the least number of equal parts of a length with borders at all places, 0 where that exceeds MOST_PARTS.
-    """
+def _common_division(places: list[float], length: float) -> int:
+    """Return the smallest number of equal parts of a length with borders at all places, 0 where it is too large."""
     count = 1
     for s in places:
-        fraction = Fraction(s / length).limit_denominator(MOST_PARTS)
+        fraction = Fraction(s / length).limit_denominator(MAX_COARSEST_ELEMENTS)
         if abs(float(fraction) - s / length) > EXACT / 2:
             return 0
         count = math.lcm(count, fraction.denominator)
-        if count > MOST_PARTS:
-            return 0
-    return count
+    return count if count <= MAX_COARSEST_ELEMENTS else 0

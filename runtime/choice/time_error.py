@@ -1,79 +1,82 @@
-"""The integrator of a run and that of its probes, and what their steps err by.
+"""The integrator of a run and that of its probes, and the error of their steps.
 
-Generalised-alpha is the cheapest integrator at loose tolerances, but estimates its error by positions alone. What it
-errs by is seen from its distance to the automatic choice on a coarse mesh; it depends little on the mesh, and is about
-proportional to the tolerance. Two probes of one tolerance have most of it in common, so that their meshes are told
-apart by steps much longer than those of the run.
+Generalised-alpha is the cheapest integrator at loose tolerances, but it estimates its error from positions alone. Its
+error is measured as the distance to the automatic choice on a coarse mesh. It depends little on the mesh and is about
+proportional to the tolerance. Two probes of one tolerance share most of it, so that probes can tell meshes apart with
+steps much longer than those of the run.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from ..integrators import AUTO
-from .probes import INSTANTS, Probe
-
-TIGHTER = 10.0
-"""By what the tolerance of the automatic choice is made smaller where it ends nowhere with that of the run."""
-
-SHARE = 0.5
-"""Of the tolerance, at most, for the error of generalised-alpha in time; model and mesh get what it leaves."""
-
-ASSUMED = 0.2
-"""Of the tolerance: the error in time of the automatic choice, seldom more (tests/benchmarks/model_choice.py)."""
-
-LOOSER = 4.0
-"""Times the tolerance of the run: that of its first probes. With friction it is the run's, since the error of
-generalised-alpha then jumps as steps grow."""
-
-LOOSEST = 1e-2
-"""Tolerance of a probe's time integration at most."""
-
-AT_FIRST, AT_LAST = 3.0, 1.0
-"""Times the tolerance of the run: what the steps of a probe may err by, at first, and where meshes are so close to each
-other that this is not far less than their difference."""
-
-APART = 0.25
-"""Of what the steps of two probes err by: how far apart that brings them, about; the rest they have in common."""
-
-TIGHTEST = 0.05
-"""Of the tolerance: where generalised-alpha needs a smaller one, what it errs by does not follow its tolerance."""
+from .probes import OUTPUT_TIMES, Probe
 
 DAMPING = "genalpha"
 """The integrator that is compared with the automatic choice."""
 
-FINER = 2.5
-"""By what the work of the automatic choice grows more than that of generalised-alpha from the coarse mesh to that of
-the run: each finer mesh brings faster vibrations, which radau follows and the explicit method's steps must resolve."""
+RETRY_TOL_RATIO = 10.0
+"""Ratio of the tolerance of the run to that of a last attempt, where the automatic choice fails."""
 
-OF_AUTO, OF_DAMPING = 0.22, 0.5
-"""Powers of 1 / tolerance that the work of integrators grows with: as measured on the scenes of the table
-(tests/benchmarks/model_choice.py), and of second order."""
+MAX_TIME_SHARE = 0.5
+"""Largest part of the tolerance for the error of generalised-alpha; model and mesh get the rest."""
 
-UNHURRIED, LABOURED = 3.0, 4.0
-"""Steps to an output time below which, and iterations a step above which, steps are bounded by other things than
-their error, which then falls more slowly than the tolerance."""
+ASSUMED_ERROR = 0.2
+"""Error in time of the automatic choice over its tolerance; it is seldom larger (tests/benchmarks/model_choice.py)."""
 
-AT_LEAST = 0.5
-"""Of its tolerance: what generalised-alpha is taken to err by there."""
+PROBE_TOL_RATIO = 4.0
+"""Ratio of the tolerance of the first probes to that of the run; 1 with friction, where the error of generalised-alpha
+jumps as steps grow."""
 
-SMALLER = 4.0
-"""By what its tolerance is made smaller to see what generalised-alpha errs by on the finest mesh: about as much as its
-distance to the automatic choice tells, for 1.2 to 2 times the work of the probe instead of 2 to 7 times."""
+MAX_PROBE_TOL = 1e-2
+"""Largest tolerance of a probe's time integration."""
 
-GROWN = 3.0
-"""Times what it errs by on the coarse mesh: where generalised-alpha errs by more on the finest one, it does not follow
+FIRST_PROBE_ERROR, LAST_PROBE_ERROR = 3.0, 1.0
+"""Largest error of a probe's steps over the tolerance of the run: at first, and for meshes whose difference is not far
+above it."""
+
+SEPARATE_ERROR_SHARE = 0.25
+"""Part of the error of their steps that two probes do not share, about."""
+
+MIN_TOL_RATIO = 0.05
+"""Ratio to the tolerance of the run below which the error of generalised-alpha does not follow its tolerance."""
+
+AUTO_WORK_GROWTH = 2.5
+"""Ratio by which the work of the automatic choice grows more than that of generalised-alpha from the coarse mesh to
+that of the run: a finer mesh has faster vibrations, which radau follows and the explicit method must resolve."""
+
+AUTO_WORK_POWER, DAMPING_WORK_POWER = 0.22, 0.5
+"""Powers of 1 / tolerance in the work of integrators: measured on the scenes of tests/benchmarks/model_choice.py, and
+of a method of second order."""
+
+MIN_STEPS_PER_OUTPUT, MAX_ITERATIONS_PER_STEP = 3.0, 4.0
+"""Bounds beyond which output times or Newton's method limit the steps, whose error then falls more slowly than the
+tolerance."""
+
+MIN_ERROR_RATE = 0.5
+"""Error of generalised-alpha over its tolerance that is assumed there."""
+
+FINEST_TOL_RATIO = 4.0
+"""Ratio of tolerances that measures the error of generalised-alpha on the finest mesh: about as good as the distance to
+the automatic choice, for 1.2 to 2 times the work of the probe instead of 2 to 7 times."""
+
+DISTRUST_RATIO = 3.0
+"""Ratio of the error of generalised-alpha on the finest mesh to that on the coarse one above which it does not follow
 its tolerance, as where short waves grow that only fine meshes have."""
 
 
 @dataclass(frozen=True)
 class InTime:
-    """integrator, tol: of the run; error: what it errs by in time, over the largest change; probed, probe_tol: the
-    integrator of probes and its tolerance; rate: their error over that tolerance; longer: the work of a run over that
-    of a probe with its models; tried: the tolerance of the comparison; why: in words.
+    """The integrators of a run and of its probes.
+
+    integrator, tol: of the run; error: of its steps, over the largest change; probed, probe_tol: the integrator of
+    probes and its tolerance; rate: their error over that tolerance; work_ratio: the work of a run over that of a probe
+    with its models; tried: the tolerance of the comparison; why: the reason in words.
     """
 
     integrator: str
@@ -82,80 +85,72 @@ class InTime:
     probed: str
     probe_tol: float
     rate: float
-    longer: float
+    work_ratio: float
     tried: float
     why: str
 
     @property
     def noise(self) -> float:
-        """Return how far apart two probes are by their steps alone, about."""
-        return APART * self.rate * self.probe_tol
+        """Return the distance of two probes that is due to their steps alone, about."""
+        return SEPARATE_ERROR_SHARE * self.rate * self.probe_tol
 
     def distrusts(self, apart: float) -> bool:
-        """Return whether probes by generalised-alpha err by more than is taken, so that they tell nothing.
-
-        apart: how far one on a fine mesh is from the automatic choice.
-        """
-        return bool(np.isfinite(apart)) and apart > GROWN * self.rate * self.probe_tol
+        """Return whether probes by generalised-alpha err too much to tell meshes apart; apart: on a fine mesh."""
+        return bool(np.isfinite(apart)) and apart > DISTRUST_RATIO * self.rate * self.probe_tol
 
     def automatic(self, tol: float, why: str) -> InTime:
-        """Return it with the automatic choice for the run and its probes; tol: that of the choice; why: in words."""
+        """Return the automatic choice for the run and its probes; tol: that of the choice; why: in words."""
         own = min(tol, self.tried)
-        return replace(self, integrator=AUTO, tol=own, error=ASSUMED * tol, probed=AUTO, probe_tol=self.tried,
-                       rate=ASSUMED, longer=(self.tried / own) ** OF_AUTO,
+        return replace(self, integrator=AUTO, tol=own, error=ASSUMED_ERROR * tol, probed=AUTO, probe_tol=self.tried,
+                       rate=ASSUMED_ERROR, work_ratio=(self.tried / own) ** AUTO_WORK_POWER,
                        why=f"integrator {AUTO}, by stiffness and tolerance: {why}")
 
     def tightened(self, tol: float) -> InTime | None:
         """Return it with probes of a smaller error, None where that is small already; tol: that of the choice."""
-        least = AT_LAST * tol / self.rate
+        least = LAST_PROBE_ERROR * tol / self.rate
         if self.probed != DAMPING or least >= self.probe_tol:
             return None
-        return replace(self, probe_tol=least, longer=self.longer * (least / self.probe_tol) ** OF_DAMPING)
+        return replace(self, probe_tol=least,
+                       work_ratio=self.work_ratio * (least / self.probe_tol) ** DAMPING_WORK_POWER)
 
 
-def compared(probe: Callable[[str, float], Probe], difference: Callable[[Probe, Probe], float], asked: str,
-             tol: float, rubs: bool = False) -> InTime:
-    """Return the integrators: generalised-alpha where it agrees with the automatic choice, if need be with a smaller
-    tolerance, for less work.
+def compared(probe: Callable[[str, float], Probe[Any]], difference: Callable[[Probe[Any], Probe[Any]], float],
+             asked: str, tol: float, rubs: bool = False) -> InTime:
+    """Return the integrators: generalised-alpha where it agrees with the automatic choice for less work.
 
-    probe: returns the run on a coarse mesh by an integrator and its tolerance; difference: of two of them; asked: the
-    integrator of the settings; rubs: whether the scene has friction.
+    Its tolerance is smaller than that of the run where this is needed. probe: returns the run on a coarse mesh by an
+    integrator and its tolerance; difference: of two of them; asked: the integrator of the settings; rubs: whether the
+    scene has friction.
     """
     if asked != AUTO:
-        return InTime(asked, tol, ASSUMED * tol, asked, min(tol, LOOSEST), ASSUMED, 1.0, tol,
+        return InTime(asked, tol, ASSUMED_ERROR * tol, asked, min(tol, MAX_PROBE_TOL), ASSUMED_ERROR, 1.0, tol,
                       f"integrator {asked}: as asked for")
-    tried = min((1.0 if rubs else LOOSER) * tol, LOOSEST)
+    tried = min((1.0 if rubs else PROBE_TOL_RATIO) * tol, MAX_PROBE_TOL)
     found = probe(AUTO, tried)
-    for shorter in (tol, tol / TIGHTER):  # steps that are too long may end nowhere
+    for shorter in (tol, tol / RETRY_TOL_RATIO):  # a run with too long steps may fail
         if found.run is None and shorter < tried:
             tried = shorter
             found = probe(AUTO, tried)
     own = min(tol, tried)
     other = probe(DAMPING, tried)
     apart = difference(other, found)
-    if found.run is None or not np.isfinite(apart):  # one of them fails
-        return InTime(AUTO, own, ASSUMED * tol, AUTO, tried, ASSUMED, (tried / own) ** OF_AUTO, tried,
-                      f"integrator {AUTO}, by stiffness and tolerance: on a coarse mesh {DAMPING} fails, or it does")
-    rate = max(apart / tried, AT_LEAST if _is_bounded(other) else 1e-300)
-    allowed, loose = min(SHARE * tol / rate, own), min(AT_FIRST * tol / rate, tried)
-    work, probing = (other.work * (tried / one) ** OF_DAMPING for one in (allowed, loose))
-    best = found.work * (tried / tol) ** OF_AUTO
-    probed = (DAMPING, loose, rate) if probing <= FINER * found.work else (AUTO, tried, ASSUMED)
+    if found.run is None or other.run is None or not np.isfinite(apart):
+        return InTime(AUTO, own, ASSUMED_ERROR * tol, AUTO, tried, ASSUMED_ERROR, (tried / own) ** AUTO_WORK_POWER,
+                      tried, f"integrator {AUTO}, by stiffness and tolerance: on a coarse mesh {DAMPING} fails, or it "
+                      "does")
+    steps, iterations = other.run.report["steps"], other.run.report["newton_iterations"]
+    is_bounded = steps < MIN_STEPS_PER_OUTPUT * OUTPUT_TIMES or iterations > MAX_ITERATIONS_PER_STEP * steps
+    rate = max(apart / tried, MIN_ERROR_RATE if is_bounded else 1e-300)
+    allowed, loose = min(MAX_TIME_SHARE * tol / rate, own), min(FIRST_PROBE_ERROR * tol / rate, tried)
+    work, probing = (other.work * (tried / one) ** DAMPING_WORK_POWER for one in (allowed, loose))
+    best = found.work * (tried / tol) ** AUTO_WORK_POWER
+    probed = (DAMPING, loose, rate) if probing <= AUTO_WORK_GROWTH * found.work else (AUTO, tried, ASSUMED_ERROR)
     spent = probing if probed[0] == DAMPING else found.work
-    if allowed < TIGHTEST * tol or work >= FINER * best:
-        return InTime(AUTO, own, ASSUMED * tol, *probed, best / spent, tried,
+    if allowed < MIN_TOL_RATIO * tol or work >= AUTO_WORK_GROWTH * best:
+        return InTime(AUTO, own, ASSUMED_ERROR * tol, *probed, best / spent, tried,
                       f"integrator {AUTO}, by stiffness and tolerance: {DAMPING}, whose error on a coarse mesh is "
                       f"{apart:.1e} with tol {tried:.2g}, is no cheaper")
     return InTime(DAMPING, allowed, rate * allowed, *probed, work / spent, tried,
                   f"integrator {DAMPING} with tol {allowed:.2g}: on a coarse mesh, with tol {tried:.2g}, within "
                   f"{apart:.1e} of the automatic choice ({found.run.report['integrator']}), for "
                   f"{other.work / found.work:.2g} of its work")
-
-
-def _is_bounded(probe: Probe) -> bool:
-    """Return whether the steps of a probe are bounded by output times or by Newton's method, rather than by their
-    error.
-    """
-    assert probe.run is not None, "it has been compared"
-    steps = probe.run.report["steps"]
-    return steps < UNHURRIED * INSTANTS or probe.run.report["newton_iterations"] > LABOURED * steps

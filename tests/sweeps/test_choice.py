@@ -8,13 +8,13 @@ import funicular as fu
 import numpy as np
 import pytest
 from funicular.choice import chooser
-from funicular.choice.candidates import Kind, kinds_of
+from funicular.choice.candidates import possible
+from funicular.choice.estimate import balanced
 from funicular.choice.indicators import deformation, shear_compliance, softened
 from funicular.choice.mesh_error import mesh_error
 from funicular.choice.motion import along, motion
 from funicular.choice.probes import Probe, Prober
 from funicular.choice.remeshing import CableModel, coarsest, remade
-from funicular.choice.selection import balanced
 from funicular.choice.time_error import compared
 from funicular.results.trajectories import distance, largest_change
 from model_cells import models
@@ -167,7 +167,7 @@ def test_probes_are_looser_than_the_run_whose_error_in_time_they_tell(rate):
     assert tried == [4e-4, 4e-4] and found.integrator == found.probed == "genalpha"
     assert found.tol == pytest.approx(min(1e-4, 0.5e-4 / rate)) and found.error == pytest.approx(rate * found.tol)
     assert found.probe_tol == pytest.approx(min(4e-4, 3e-4 / rate))
-    assert found.longer == pytest.approx((found.probe_tol / found.tol) ** 0.5)  # of second order
+    assert found.work_ratio == pytest.approx((found.probe_tol / found.tol) ** 0.5)  # of second order
     tight = found.tightened(1e-4)
     if rate < 0.25:  # what their steps err by is less than the tolerance
         assert tight is None
@@ -248,10 +248,10 @@ def test_motions_on_different_meshes_are_of_the_same_points():
 
 def kinds(scene: fu.Scene):
     cable = next(iter(scene.cables.values()))
-    return kinds_of(scene, cable, scene.dim)
+    return possible(scene, cable)
 
 
-CABLE, BEAM = Kind("cable12", "engineering_exact"), Kind("beam24", "structural")
+CABLE, BEAM = CableModel("cable12", "engineering_exact"), CableModel("beam24", "structural")
 
 
 def test_elements_know_what_the_scene_asks_for():
@@ -327,7 +327,7 @@ def test_the_work_of_a_choice_for_a_fine_tolerance_is_less_than_that_of_the_run(
             return found
 
     def work(models, probe) -> float:
-        return sum(model.elements * Kind(model.element, model.law).work for model in models.values()) * probe.work
+        return sum(model.work for model in models.values()) * probe.work
 
     monkeypatch.setattr(chooser, "Prober", Counted)
     choice = chosen("pendulum, E 2e6", 1e-4)
@@ -345,7 +345,7 @@ def test_a_finer_tolerance_takes_more():
 
 
 def test_where_no_model_keeps_tol_it_says_so(monkeypatch):
-    monkeypatch.setattr(chooser, "MOST_ELEMENTS", 8)
+    monkeypatch.setattr(chooser, "MAX_ELEMENTS", 8)
     choice = strip().choose(1e-4, duration=0.3)
     assert not choice.kept and choice.models["strip"].elements == 8 and choice.error > 1e-4
     assert "no model at hand keeps tol = 0.0001" in choice.reasons[-1]

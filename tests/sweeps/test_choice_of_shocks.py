@@ -3,12 +3,11 @@
 import funicular as fu
 import numpy as np
 import pytest
-from funicular.choice.indicators import softened
+from funicular.choice.indicators import elements_for_waves, softened
 from funicular.choice.mesh_error import mesh_error
 from funicular.choice.motion import motion
 from funicular.choice.probes import Probe
 from funicular.choice.remeshing import CableModel, remade
-from funicular.choice.short_waves import elements_for_waves
 from funicular.choice.time_error import compared
 from funicular.parts.section import outer_radius_of
 from funicular.results.trajectories import distance, largest_change

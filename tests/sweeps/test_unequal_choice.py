@@ -3,8 +3,8 @@
 import funicular as fu
 import numpy as np
 import pytest
-from funicular.choice.grading import density, graded, saving
 from funicular.choice.motion import motion
+from funicular.choice.unequal import density, graded, saving
 from funicular.results.trajectories import distance, largest_change
 from shared_scenes import cable_scene
 
