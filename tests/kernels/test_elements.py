@@ -1,4 +1,4 @@
-"""Properties that every element in the list must have; a new element is tested by being there."""
+"""Properties of every element in the list; a new element is tested through the list."""
 
 import numpy as np
 import pytest
@@ -26,25 +26,26 @@ def element(request) -> Element:
 
 
 def kernel(*name: str):
-    """By family and kernel: an element's, or a law's on an element."""
+    """Return a kernel by family and name: an element's, or a law's on an element."""
     return getattr(kernels, "_".join(name))
 
 
 def cable_stiffness(law: str, EA: float, EI: float) -> np.ndarray:
-    """S of a law of cables; upper modes of an assumed strain have EA, too; much of EA is left in compression."""
+    """Return S of a law of cables: upper modes of an assumed strain also have EA; a share of EA remains in compression.
+    """
     more = [EA] if law.endswith("_assumed") else [LEFT, TRANSITION] if law.endswith("_tension_only") else []
     return np.array([EA, EI, *more])
 
 
 def part_of_stiffness(law: str, strain: float) -> float:
-    """What a law has of the axial energy EA strain^2/2."""
+    """Return the share of the axial energy EA strain^2/2 that a law has."""
     if not law.endswith("_tension_only"):
         return 1.0
     return LEFT + (1 - LEFT) / 2 * (1 + strain / (np.hypot(strain, TRANSITION) + TRANSITION))
 
 
 def force_of_strain(law: str, strain: float) -> float:
-    """The axial force of a law over EA."""
+    """Return the axial force of a law over EA."""
     if not law.endswith("_tension_only"):
         return strain
     smooth = np.hypot(strain, TRANSITION)
@@ -52,7 +53,7 @@ def force_of_strain(law: str, strain: float) -> float:
 
 
 def at_rest(name: str, law: str, l: float) -> tuple:
-    """The straight reference, for a law that asks for one."""
+    """Return the straight reference, for laws with a reference."""
     return (reference(ELEMENTS[name], l),) if law == "structural" or law.endswith("_curved") else ()
 
 
@@ -82,11 +83,11 @@ class Elastic:
         return kernel(self._family, name)
 
     def at(self, name: str, e: np.ndarray) -> np.ndarray:
-        """A kernel of the elastic energy."""
+        """Return a kernel of the elastic energy."""
         return self(name)(self.l, e, self.A)
 
     def damping(self, name: str, e: np.ndarray, v: np.ndarray, tau: float) -> np.ndarray:
-        """A kernel of the damping, the law's own or the one that it shares: as many constants as that one takes."""
+        """Return a kernel of the damping, of the law itself or shared, with its number of constants."""
         full = families()[self._family].kernel(name)
         size, = next(a["shape"] for a in described(manifest())[full]["inputs"] if a["name"] == "A")
         return kernel(full)(self.l, e, v, self.A[:size], tau)
@@ -102,13 +103,13 @@ def positions(element: Element) -> np.ndarray:
 
 
 def spins(dim: int) -> list[np.ndarray]:
-    """Infinitesimal rotations in every coordinate plane."""
+    """Return infinitesimal rotations in every coordinate plane."""
     return [np.outer(np.eye(dim)[i], np.eye(dim)[j]) - np.outer(np.eye(dim)[j], np.eye(dim)[i])
             for i in range(dim) for j in range(i)]
 
 
 def degree(element: Element) -> int:
-    """Of the centreline."""
+    """Return the degree of the centreline."""
     return max(int(sp.degree(b, x)) for b in element.basis)
 
 
@@ -123,7 +124,7 @@ def test_partition_of_unity(element):
 
 
 def test_the_straight_reference_is_reproduced(element):
-    """r(x, y, z) = (x, y, z), as far as the basis has these coordinates."""
+    """r(x, y, z) = (x, y, z), for the coordinates of the basis."""
     e = reference(element, 1.3)
     at = np.array([0.4, 0.1, -0.2])
     _, r = kernel(element.name, "position")(1.3, at, e)
@@ -170,7 +171,7 @@ def test_the_centreline_is_where_y_and_z_are_zero(element):
 
 
 def test_a_follower_force_has_its_components_in_the_frame_of_the_section(element):
-    """Straight, turned: c along the turned axes."""
+    """A straight element that is rotated: c along the rotated axes."""
     e = reference(element, 1.3)
     c = loads(element, np.random.default_rng(2))["c"]
     Q = rotation(np.random.default_rng(3), element.dim)
@@ -179,7 +180,7 @@ def test_a_follower_force_has_its_components_in_the_frame_of_the_section(element
 
 
 def test_a_moment_works_on_the_rotation_of_the_section(element):
-    """f . v = M . omega where the element turns as a whole, but for a cable's turn about itself."""
+    """f . v = M . omega where the element rotates as a whole, except a cable about its own axis."""
     state = element_state(element, np.random.default_rng(7))
     l, at, e = (state[name] for name in ("l", "x", "e"))
     M = loads(element, np.random.default_rng(2))["M"]
@@ -194,7 +195,8 @@ def test_a_moment_works_on_the_rotation_of_the_section(element):
 
 @pytest.mark.parametrize("name", ["beam24", "beam12p"])
 def test_a_moment_turns_a_section_and_does_not_strain_it(name):
-    """At rest: opposite forces on opposite faces, nothing that widens the section or lengthens the axis."""
+    """At rest the moment makes opposite forces on opposite faces and does not widen the section or lengthen the axis.
+    """
     element = ELEMENTS[name]
     e = reference(element, 1.0)
     f, _ = kernel(name, "moment")(1.0, 0.0, e, [3.0] if element.dim == 2 else [1.0, 2.0, 3.0])
@@ -216,7 +218,7 @@ def test_rigid_motion_stores_no_energy_and_makes_no_force(elastic, lengths):
 
 @pytest.mark.parametrize("power", [7, 14])
 def test_force_and_tangent_keep_every_digit_far_from_the_origin(elastic, power):
-    """2^7 and 2^14 m away, on coordinates that the shift does not round."""
+    """Translations by 2^7 and 2^14 m do not round the coordinates."""
     near = np.round(elastic.e * 2**20) / 2**20
     far = near + np.outer(positions(elastic.element), np.full(elastic.element.dim, 2.0**power))
     for name in ("energy", "elastic_force", "elastic_tangent"):
@@ -245,7 +247,7 @@ def test_energy_turns_with_no_frame(elastic):
 
 @pytest.mark.parametrize("stretch", [-0.2, 1e-6, 0.3])
 def test_homogeneous_stretch_stores_what_the_law_says(elastic, stretch):
-    """F = diag(1 + stretch, 1, ...): U = 1/2 E A strain^2 l (D11 is E here), in the law's strain, and nothing else."""
+    """F = diag(1 + stretch, 1, ...): U = 1/2 E A strain^2 l (D11 is E here), by the strain of the law."""
     F = np.eye(elastic.element.dim)
     F[0, 0] += stretch
     U = elastic.at("energy", reference(elastic.element, elastic.l) @ F.T)[0]
@@ -255,10 +257,10 @@ def test_homogeneous_stretch_stores_what_the_law_says(elastic, stretch):
 
 
 def test_the_straight_element_has_its_rigid_motions_and_no_other(elastic):
-    """At rest, straight: K is positive semidefinite, null on rigid motions alone.
+    """At rest, straight: K is positive semidefinite, with the rigid motions as its null space.
 
-    The turn of a straight cable about its own axis moves no coordinate: five of them in space, for it has no torsion
-    that could resist. A beam has six, and both have three in the plane.
+    A straight cable has no torsion, so that rotation about its axis moves no coordinate: five rigid motions in space. A
+    beam has six, and both have three in the plane.
     """
     element = elastic.element
     e = reference(element, elastic.l)
@@ -287,7 +289,7 @@ def test_a_straight_element_in_rigid_motion_is_not_damped(elastic):
 
 
 def arc(element: Element, length: float, radius: float = 1.0) -> np.ndarray:
-    """Nodal vectors of an arc of a circle, of its exact length."""
+    """Return the nodal vectors of a circular arc with its exact length."""
     turn = [float(ratio) * length / radius for ratio in element.node_ratios]
     rows = {"r": lambda t: (radius * np.sin(t), radius * (1 - np.cos(t)), 0.0),
             "r_x": lambda t: (np.cos(t), np.sin(t), 0.0),
@@ -296,13 +298,13 @@ def arc(element: Element, length: float, radius: float = 1.0) -> np.ndarray:
 
 
 def bending(name: str, law: str, length: float) -> float:
-    """Bending energy of the arc of radius 1 with EI = 1."""
+    """Return the bending energy of the arc of radius 1 with EI = 1."""
     return kernel(name, law, "energy")(length, arc(ELEMENTS[name], length), cable_stiffness(law, 0.0, 1.0))[0]
 
 
 @pytest.mark.parametrize(("name", "law"), CABLES)
 def test_an_arc_holds_the_bending_energy_of_its_circle(name, law):
-    """1/2 EI/R^2 l: the first variation by the interpolation error, of order degree + 1, is all that is off."""
+    """The energy is 1/2 EI/R^2 l; the error is the first variation by the interpolation error, of order degree + 1."""
     order = degree(ELEMENTS[name]) + 1
     errors = [abs(bending(name, law, length) / (length / 2) - 1) for length in (1.0, 0.5)]
     assert errors[0] < 0.01
@@ -311,7 +313,8 @@ def test_an_arc_holds_the_bending_energy_of_its_circle(name, law):
 
 @pytest.mark.parametrize(("name", "law"), [c for c in CABLES if "linear" in c[1]])
 def test_linear_curvature_is_the_exact_one_where_the_cable_keeps_its_length(name, law):
-    """|r'| - 1 is of the third order in l/R on the interpolant of an arc, and changes sign: energies to the fourth."""
+    """|r'| - 1 on the interpolant of an arc is of third order in l/R and changes sign: energies differ in fourth order.
+    """
     exact = law.replace("linear", "exact")
     apart = [abs(bending(name, law, length) / bending(name, exact, length) - 1) for length in (1.0, 0.5)]
     assert apart[0] < 0.01

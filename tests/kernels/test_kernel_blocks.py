@@ -1,4 +1,4 @@
-"""Kernels of several elements at once give what those of one give."""
+"""Kernels of several elements at once equal those of one element."""
 
 import json
 import platform

@@ -1,4 +1,4 @@
-"""Kernels from a C program: `python -m funicular.generated` and kernels.h say what a compiler and a caller need."""
+"""Kernels in a C program: `python -m funicular.generated` and kernels.h are sufficient for compiler and caller."""
 
 import json
 import re
@@ -17,14 +17,14 @@ HEADER = (drift.folder() / "kernels.h").read_text(encoding="utf-8")
 
 
 def told(*options: str) -> list[str]:
-    """Lines that the module prints."""
+    """Return the lines that the module prints."""
     run = subprocess.run([sys.executable, "-m", "funicular.generated", *options], capture_output=True, text=True,
                          check=True)
     return run.stdout.splitlines()
 
 
 def test_a_c_program_gives_the_numbers_of_the_python_face(tmp_path):
-    """What is told suffices; only the one kernel's file is compiled here, since all of them take a minute."""
+    """Only the file of one kernel is compiled; all files take a minute."""
     include, *sources = told()
     assert include == f"-I{drift.folder()}"
     source, = (s for s in sources if Path(s).name == "cable12_green_exact.c")
@@ -47,7 +47,7 @@ def test_sources_are_all_c_files_with_kernels():
 
 
 def test_the_header_says_shapes_and_units():
-    """Two comments stand above a declaration: what the kernels give with units, then the sizes of arrays."""
+    """Two comments precede a declaration: the result with units, then the sizes of arrays."""
     manifest = json.loads((drift.folder() / "manifest.json").read_text(encoding="utf-8"))
     comments, found = ["", ""], {}
     text = HEADER.replace("\n * ", " ")

@@ -1,4 +1,4 @@
-"""What laws ask of a material and of a section, and no more: incompressible rubber, ropes on end, rotary inertia."""
+"""Requirements of laws on materials and sections: incompressible rubber, vertical ropes, rotary inertia."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ def cable(**changes) -> Scene:
     ("cable12", None), ("cable8p", None), ("beam24", "structural"), ("beam12p", "structural"), ("beam12p", "continuum"),
     ("beam12p", "poisson_split")])
 def test_a_poisson_ratio_of_a_half_suits_laws_that_need_e_and_g_alone(element, law):
-    """Of 0.5 as of a little less: all energies have a limit there."""
+    """All energies have a limit at 0.5, which lower ratios approach."""
 
     def sag(nu):
         scene = cable(element=element, law=law, material=Material(youngs_modulus=1e6, poisson_ratio=nu, density=1100))
@@ -52,7 +52,7 @@ def test_a_refused_modulus_differs_from_its_bound_as_it_is_shown():
     ("cable12", Circle(radius=0.01)), ("cable12", Rectangle(height=0.02, width=0.02)), ("beam24", Circle(radius=0.01)),
     ("beam24", Tube(outer_radius=0.01, inner_radius=0.005))])
 def test_a_round_cable_on_end_needs_no_up(element, section):
-    """Along y, where the default up lies: it sways as one along z, which has an up across it, of itself."""
+    """A cable along y, the default of `up`, vibrates as one along z, whose `up` is across it."""
     assert cable(start=(0, 0, 0), end=(0, 1, 0), element=element, law=None if element == "cable12" else "structural",
                  section=section).cables["wire"].axes.tolist() == [[0, 1, 0], [1, 0, 0], [0, 0, -1]]
 
@@ -82,7 +82,7 @@ def test_a_slide_that_keeps_its_roll_on_a_cable_on_end():
 
 
 def test_rotary_inertia_apart_from_the_stiffness():
-    """Twisting of a clamped beam: (π / 2 L) sqrt(GJ / ρI_p), its shear as that of a rod of the same G J."""
+    """Torsion of a clamped beam: (π / 2 L) sqrt(GJ / ρI_p)."""
     stiff = {"area": 1e-4, "second_moment_about_z": 1e-9, "torsion_constant": 2e-9, "shear_factors": (1, 1)}
     material = Material(youngs_modulus=2e11, shear_modulus=8e10, density=7850)
 
@@ -98,7 +98,7 @@ def test_rotary_inertia_apart_from_the_stiffness():
 
 
 def test_rotary_inertia_slows_bending():
-    """Rayleigh's correction of a pinned beam: w² = w0² / (1 + (π / L)² I_rotary / A), where shear is stiff."""
+    """Rayleigh's correction of a pinned beam with rigid shear: w² = w0² / (1 + (π / L)² I_rotary / A)."""
     material = Material(youngs_modulus=2e11, shear_modulus=8e10, density=7850)
 
     def lowest(rotary):

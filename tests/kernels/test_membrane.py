@@ -1,4 +1,4 @@
-"""How elements of cables represent their axial strain: full, assumed, reduced (derive/laws/cable/assumed.py)."""
+"""Axial strain of cable elements: full, assumed, reduced (derive/laws/cable/assumed.py)."""
 
 import numpy as np
 import pytest
@@ -28,7 +28,7 @@ def at_rest(element: str, l: float = 1.0) -> np.ndarray:
 
 
 def bent(element: str) -> np.ndarray:
-    """A slope that turns by about 30 degrees, and a stretch that varies along the element."""
+    """Return an element whose slope turns by about 30 degrees, with a stretch that varies along it."""
     e = at_rest(element)
     dim = e.shape[1]
     e[1] = 1.02 * rotation(np.random.default_rng(1), dim, angle=0.3)[:, 0]
@@ -94,7 +94,7 @@ def test_upper_modes_have_their_stiffness():
 
 @pytest.mark.parametrize(("element", "law"), LAWS)
 def test_leaving_modes_out_leaves_energy_out(element, law):
-    """A projection: never more than the full energy, and less where the slope turns."""
+    """The strain is projected: the energy is at most the full one, and less where the slope turns."""
     e = bent(element)
     full = getattr(kernels, f"{element}_{law}_energy")(1.0, e, [EA, 0.0])[0]
     assumed, reduced = (getattr(kernels, f"{element}_{law}_assumed_energy")(1.0, e, [EA, 0.0, upper])[0]
@@ -105,7 +105,7 @@ def test_leaving_modes_out_leaves_energy_out(element, law):
 @pytest.mark.parametrize(("element", "law"), LAWS)
 def test_a_straight_cable_with_engineering_strain_has_the_full_energy_and_with_green_strain_to_fourth_order(element,
                                                                                                             law):
-    """|r'| - 1 of a straight element has degree 2, as many as there are modes; the Green strain's square of it 4."""
+    """|r'| - 1 of a straight element has degree 2, the number of modes; the Green strain has degree 4."""
     left = []
     for size in (0.2, 0.1):
         e = at_rest(element)
@@ -122,8 +122,8 @@ def test_a_straight_cable_with_engineering_strain_has_the_full_energy_and_with_g
 @pytest.mark.parametrize(("upper", "zeros"), [(EA, 3), (STABILISATION * EA, 3), (0.0, 4)])
 @pytest.mark.parametrize("law", ["green_exact", "engineering_exact"])
 def test_without_stiffness_of_the_upper_mode_slopes_change_their_length_freely(law, upper, zeros):
-    """A straight element: three rigid motions in the plane, and with the mean and linear modes alone a fourth: slopes
-    of 1 + a at both ends, no node moved, strain a P_2.
+    """A straight planar element has three rigid motions. With the mean and linear modes alone there is a fourth motion
+    without energy: slopes of 1 + a at both ends, fixed nodes, strain a P_2.
     """
     e = at_rest("cable8p")
     K = getattr(kernels, f"cable8p_{law}_assumed_elastic_tangent")(1.0, e, [EA, EI, upper])
@@ -162,7 +162,7 @@ def test_a_run_that_compresses_a_reduced_cable_too_much_says_so():
 
 
 def test_catenaries_that_meet_under_a_load_are_in_equilibrium():
-    """The reference itself: nodes of a fine mesh of elements without locking lie on it."""
+    """The nodes of a fine mesh of elements without locking lie on the reference."""
     found = taut_rope.at_rest(192, "reduced", 0.0)
     assert found["position"] < 2e-3
     assert found["force"] < 2e-4
@@ -172,13 +172,13 @@ def test_catenaries_that_meet_under_a_load_are_in_equilibrium():
                                                          ("reduced", 0.0, 0.01)])
 @pytest.mark.parametrize("elements", [12, 24, 48])
 def test_tension_beside_a_rider_at_rest(elements, membrane, least, most):
-    """At 0.3 of an element: 8 % off, 6 % and 0.9 %, whatever the mesh."""
+    """At 0.3 of an element the errors are 8 %, 6 % and 0.9 %, on any mesh."""
     assert least < taut_rope.at_rest(elements, membrane, 0.3)["tension"] < most
 
 
 @pytest.mark.parametrize(("membrane", "least", "most"), [("full", 0.08, 0.09), ("reduced", 0.0, 0.005)])
 def test_tension_beside_a_rider_at_rest_on_a_quintic_cable(membrane, least, most):
-    """8 % off, 0.4 %."""
+    """The errors are 8 % and 0.4 %."""
     assert least < taut_rope.at_rest(24, membrane, 0.3, element="cable18")["tension"] < most
 
 
@@ -193,7 +193,7 @@ def test_a_quintic_cable_whose_upper_modes_have_the_axial_stiffness_has_the_full
 
 
 def test_positions_under_a_rider_are_of_the_first_order_with_any_membrane():
-    """The kink is not in a cubic's reach."""
+    """A cubic cannot represent the kink."""
     for membrane, rider in (("full", 1.21e-2), ("assumed", 1.16e-2), ("reduced", 1.10e-2)):
         coarse, fine = (taut_rope.at_rest(n, membrane, 0.3)["rider"] for n in (24, 48))
         assert coarse == pytest.approx(rider, rel=0.01)
@@ -201,7 +201,7 @@ def test_positions_under_a_rider_are_of_the_first_order_with_any_membrane():
 
 
 def test_tension_beside_a_rider_in_motion():
-    """The zip line at 24 elements, t = 8 to 10 s: the range of the tension about the rider is 0.111, 0.080, 0.016."""
+    """The zip line with 24 elements, t = 8 to 10 s: the range of the tension about the rider is 0.111, 0.080, 0.016."""
     for membrane, bound in (("full", (0.10, 0.12)), ("assumed", (0.07, 0.09)), ("reduced", (0, 0.02))):
         found = taut_rope.in_motion(24, membrane)
         assert bound[0] < found["mean range"] < bound[1]

@@ -1,4 +1,4 @@
-"""Forces between two points: a law's spec and its part are all that there is to a new one."""
+"""Forces between two points: a new law needs a spec and a part."""
 
 import math
 from dataclasses import replace
@@ -28,7 +28,7 @@ KINDS_OF_FORCE = [kind for kind in KINDS if issubclass(kind, PointForce)]
 
 
 def magnet(damped: bool = False) -> PointLaw:
-    """The law in derive/README.md, or one of the distance with a damper along the gap."""
+    """Return the law of derive/README.md, or a law of the distance with a damper along the gap."""
     space: dict = {}
     exec(page("derive/README.md").of("A force between two points", "python")[0], space)
     law = space["LAW"]
@@ -39,7 +39,7 @@ def magnet(damped: bool = False) -> PointLaw:
 
 
 def verified(family, folder, broken=("", "")):
-    """Derive a law into a folder, change its text, and return what verification finds."""
+    """Derive a law into a folder, change its text, and return the findings of the verification."""
     made = rendering.derive(replace(family, modules=("couplings.point_law",)))
     for name, text in rendering.render([made], [family.name], lambda _: None).items():
         assert name != f"{family.name}.c" or broken[0] in text
@@ -108,7 +108,7 @@ def test_springs_follow_their_formula():
 
 
 def complete(kind, **given):
-    """A part of a kind with ones for whatever it needs."""
+    """Return a part of a kind with ones for its required fields."""
     needed = {name: 1.0 for name, field in kind.model_fields.items() if field.is_required() and name not in "ab"}
     if kind is fu.parts.spring.Spring:
         needed["stiffness"] = 1.0  # or a table, so that the field by itself is not required

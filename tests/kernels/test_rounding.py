@@ -1,4 +1,4 @@
-"""`funicular verify` measures rounding against 50 digits, and finds a kernel that loses digits for nothing."""
+"""`funicular verify` measures rounding against 50 digits, and finds a kernel that loses digits unnecessarily."""
 
 import math
 import re
@@ -21,13 +21,13 @@ from written_out import copy_written_out
 
 @pytest.fixture
 def generated(tmp_path) -> Path:
-    """A copy of the generated C, to spoil."""
+    """Return a copy of the generated C, for changes."""
     copy_written_out(tmp_path)
     return tmp_path
 
 
 def compiled(name: str) -> Numbers:
-    """The kernels of a family as installed."""
+    """Return the kernels of a family as installed."""
     programs = families()[name].build()
 
     def call(kernel, given):
@@ -39,7 +39,7 @@ def compiled(name: str) -> Numbers:
 
 
 def given(name: str) -> dict[str, list[tuple[Input, dict]]]:
-    """Inputs of a family by kind, with the samples that they were made from."""
+    """Return the inputs of a family by kind, with their samples."""
     found = {kind: [] for kind in KINDS}
     for each, sample in inputs(families()[name], states(families()[name], compiled(name))):
         found[each.kind].append((each, sample))
@@ -47,7 +47,7 @@ def given(name: str) -> dict[str, list[tuple[Input, dict]]]:
 
 
 def row(out: str, kernel: str) -> str:
-    """Row of a kernel in the table of rounding."""
+    """Return the row of a kernel in the table of rounding."""
     table = out.partition("Rounding against 50 digits")[2].partition("Invariances")[0]
     return next(line for line in table.splitlines() if f" {kernel} " in line)
 
@@ -64,7 +64,7 @@ def test_the_table_has_every_kernel_and_kind(capsys):
 
 
 def test_an_expanded_form_is_found_by_the_digits_it_loses_far_away(generated, capsys):
-    """The energy's chord as a difference of products: right to the last digit but one near the origin."""
+    """The chord of the energy as a difference of products loses one digit near the origin, and many far from it."""
     file = generated / "beam12p_continuum.c"
     head, energy, tail = file.read_text().partition("void beam12p_continuum_energy(")
     assert "w*(-e[0] + e[6])" in tail
@@ -78,7 +78,7 @@ def test_an_expanded_form_is_found_by_the_digits_it_loses_far_away(generated, ca
 
 
 def test_products_that_are_zero_are_found_by_their_rounding(generated, capsys):
-    """r_x is along i, so j . r_x adds nothing to C_s but rounding: as large as the rest where the joint is closed."""
+    """r_x is along i, so that j . r_x adds rounding alone to C_s: comparable with C_s where the joint is closed."""
     file = generated / "slide_cable12_rigid.c"
     text = file.read_text()
     line = next(row for row in text.splitlines() if row.startswith("    C_s[1] = d_"))
@@ -102,7 +102,7 @@ def test_a_row_that_fails_names_its_kernel(generated, capsys):
 
 
 def test_the_unit_is_what_conditioning_allows():
-    """(1 + x)² - 1 from the sum loses what x alone need not lose; x (2 + x) loses nothing."""
+    """(1 + x)² - 1 computed from the sum loses digits that x alone need not lose; x (2 + x) loses none."""
     x = sp.Symbol("x")
 
     def multiples(form, at):

@@ -1,4 +1,4 @@
-"""Scenes of contact work alike at any size: lengths times a factor, masses times its cube, stresses times itself."""
+"""Contact is independent of scale: lengths times a factor, masses times its cube, stresses times the factor."""
 
 import funicular as fu
 import numpy as np
@@ -70,7 +70,7 @@ MOVING = {"bed": (on_a_bed, "rope"), "tube": (in_a_tube, "rope"), "bar": (over_a
 @SIZES
 @pytest.mark.parametrize("kind", MOVING)
 def test_motions_of_scaled_scenes_are_scaled(kind, size):
-    """Times go with the square root of lengths. The same steps, but for rounding."""
+    """Times scale with the square root of lengths. The steps are equal up to rounding."""
     make, part = MOVING[kind]
     integrator = "explicit" if kind == "hard" else "radau"
     runs = [make(L).run(duration=0.2 * L**0.5, output_step=0.01 * L**0.5, tol=1e-5, integrator=integrator)
@@ -92,7 +92,7 @@ def test_states_of_rest_of_scaled_scenes_are_scaled(kind, size):
 
 @SIZES
 def test_a_box_in_hard_contact_rests_alike(size):
-    """Its weight is shared by three points."""
+    """Three points share the weight of the box."""
     def forces(L):
         scene = fu.Scene(gravity=(0, -G, 0))
         scene.rigid_body("box", mass=4.0 * L**3, inertia=(7e-3 * L**5,) * 3, position=(0, 0.05 * L, 0))

@@ -1,4 +1,4 @@
-"""Sections: moments, torsion constants, shear factors, and what is refused of them."""
+"""Sections: moments, torsion constants, shear factors, and refusals."""
 
 import math
 
@@ -45,7 +45,7 @@ def test_torsion_constant_of_a_square():
 
 
 def prandtl(short, long, terms):
-    """4 ∫ φ dA of Prandtl's function, as a double series without a hyperbolic function."""
+    """Return 4 ∫ φ dA of Prandtl's function, a double series without hyperbolic functions."""
     n, m = np.meshgrid(*[np.arange(1, 2 * terms, 2.0)] * 2)
     return 256 * short * long / np.pi**6 * np.sum(1 / (n**2 * m**2 * ((n / short) ** 2 + (m / long) ** 2)))
 
@@ -69,7 +69,7 @@ def test_torsion_constant_of_discs_and_rings():
 
 
 def test_shear_factors():
-    """Cowper 1966: the rectangle 10(1+ν)/(12+11ν), the circle 6(1+ν)/(7+6ν), a thin ring 2(1+ν)/(4+3ν)."""
+    """Cowper 1966: rectangle 10(1+ν)/(12+11ν), circle 6(1+ν)/(7+6ν), thin ring 2(1+ν)/(4+3ν)."""
     assert Rectangle(height=1, width=2).shear_factors(0.3) == (13 / 15.3, 13 / 15.3)
     assert_allclose(Circle(radius=1).shear_factors(0.3), 7.8 / 8.8, rtol=1e-15)
     assert_allclose(Tube(outer_radius=1, inner_radius=1e-9).shear_factors(0.25), Circle(radius=2).shear_factors(0.25))

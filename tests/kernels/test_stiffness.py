@@ -1,4 +1,4 @@
-"""Laws that are another stiffness of the section, against published cases."""
+"""Laws with a modified stiffness of the section, against published cases."""
 
 import numpy as np
 import pytest
@@ -41,10 +41,10 @@ def test_poisson_split_stretches_with_free_sides_as_youngs_modulus_says():
 
 
 @pytest.mark.parametrize(("rate", "stiffness"), [
-    # r_y, r_z turn about the axis; r_z or r_y tilts with the rigid section: pure bending, no Poisson effect
+    # r_y, r_z rotate about the axis; r_z or r_y tilts with the rigid section: pure bending, no Poisson effect
     ("twist", 210e9 / 2.6 * TORSION), ("bend", 210e9 * 0.1**4 / 12)])
 def test_poisson_split_twists_and_bends_as_a_beam(rate, stiffness):
-    """Rate k of turning: 1/2 S k^2 l to second order, with torsion G J and bending EI on a section that stays plane."""
+    """A rate of rotation k: 1/2 S k^2 l to second order, with torsion G J, and bending EI of a plane section."""
     k, e = 1e-5, straight()
     if rate == "twist":
         e[6:8] += k * np.array([[0, 0, 1], [0, -1, 0]])
@@ -55,7 +55,7 @@ def test_poisson_split_twists_and_bends_as_a_beam(rate, stiffness):
 
 
 def test_planar_continuum_is_of_plane_stress():
-    """Sides free to move: E A a^2/2 l."""
+    """The lateral strain is free: E A a^2/2 l."""
     a, section = 1e-6, SQUARE
     for law in ("continuum", "poisson_split"):
         A = kernels.beam12p_continuum_stiffness(1.0, section_stiffness(law, section, STEEL, dim=2))
@@ -70,7 +70,7 @@ def test_cables_take_axial_and_bending_stiffness():
 
 
 def test_structural_beams_take_what_the_section_says():
-    """Bending about y is resisted by ∫z²dA, about z by ∫y²dA."""
+    """∫z²dA is the second moment of bending about y, ∫y²dA of bending about z."""
     section = GeneralSection(area=2, second_moment_about_z=3, second_moment_about_y=4, torsion_constant=5,
                              shear_factors=(0.5, 0.6))
     material = Material(youngs_modulus=26, poisson_ratio=0.3, density=1)  # G = 10

@@ -1,4 +1,4 @@
-"""Numbers below the least normal one are zero in the time loop, in all its threads, and nowhere else."""
+"""The time loop flushes subnormal numbers to zero in all its threads; other code does not."""
 
 import platform
 
@@ -43,7 +43,7 @@ def test_they_stay_in_functions_of_events_and_after_a_run():
 
 @FLUSHED
 def test_they_are_zero_in_all_threads(monkeypatch):
-    """A long rope that is pushed at its end, and in which motion decays away from there."""
+    """A long rope is pushed at its end; the motion decays along it."""
     monkeypatch.setattr("funicular.solve.linear.threads.available", lambda: 2)
     soft = fu.Material(youngs_modulus=1e9, poisson_ratio=0.3, density=1000)
     scene = cable_scene("rope", elements=1000, element="cable12", gravity=(0, 0, 0), length=100.0,

@@ -1,4 +1,4 @@
-"""Fields that may be zero are taken, in runs and at rest, or refused by a message."""
+"""Fields that may be zero are accepted, in runs and statics, or refused by a message."""
 
 import funicular as fu
 import numpy as np
@@ -69,7 +69,7 @@ def test_a_field_that_is_zero(kind, field):
 
 
 def test_a_crossing_without_a_radius_touches_where_its_lines_meet():
-    """It is the limit of small radii: the force at rest is that of 0.1 mm, to 1e-7 of it."""
+    """The radius 0 is the limit of small radii: the static force equals that of 0.1 mm to 1e-7."""
     thin, none = (rope(**CROSSING | {"radius": radius, "friction": None, "tangential_stiffness": None,
                                      "at": (4.5, -radius, 0)}) for radius in (1e-4, 0.0))
     rest = none.equilibrium()
@@ -80,6 +80,6 @@ def test_a_crossing_without_a_radius_touches_where_its_lines_meet():
 @pytest.mark.parametrize("length", [1e-5, 1e-3, 1.0, 1e4, 1e6])
 @pytest.mark.parametrize("element, degree", [("cable8p", 3), ("cable12", 3), ("cable18", 5), ("beam24", 3)])
 def test_hulls_have_the_degree_of_the_axis_at_any_length(element, degree, length):
-    """Shares of r_xx grow as length²: with a bound in m² long elements had no degree, and short ones a low one."""
+    """Shares of r_xx grow with length²: a bound in m² made the degree depend on the length of elements."""
     kernel = getattr(kernels_of(None), f"{element}_on_axis")
     assert hull_of(kernel, np.array([length])).points.shape[1] == degree + 1

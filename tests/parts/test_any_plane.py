@@ -1,4 +1,4 @@
-"""Planar scenes in any plane: recognised, run with planar elements, results along the ground's axes all the same."""
+"""Planar scenes in any plane are recognised and run with planar elements; results are along the ground's axes."""
 
 import warnings
 
@@ -29,7 +29,7 @@ SOFT = Material(youngs_modulus=2e6, poisson_ratio=0.0, density=1000, damping_tim
 
 
 def shaken():
-    """A rope hangs from a support that is shaken, a body at its lower end."""
+    """Return a rope with a body at its lower end and a vibrating support."""
     scene = Scene()
     scene.cable("rope", start=(0, 0, 0), end=(0, -1, 0), elements=4, element="cable12", section=Circle(radius=0.01),
                 material=SOFT, up=(1, 0, 0), velocity=(0.3, 0, 0), angular_velocity=(0, 0, 0.5))
@@ -44,7 +44,7 @@ def shaken():
 
 
 def turned_ends():
-    """A beam whose end is turned, with its height downward, and forces that follow it."""
+    """Return a beam with a rotated end, its height downward, and follower forces."""
     scene = beam(up=(0, -1, 0))
     list.clear(scene.clamps)
     scene.motion("wire", s=0.0, displacement=(0, 0, 0), rotation=((0, 0, 1), TableSignal(time=(0, 0.1, 0.3),
@@ -56,16 +56,16 @@ def turned_ends():
 
 
 def across_the_height():
-    """A beam that bends about its height, with a force along its width that follows it."""
+    """Return a beam that bends about its height, with a follower force along its width."""
     scene = beam(up=(0, 0, 1))
     scene.force("wire", s=1.0, value=(0, 0, 0.4), follower=True)
     return scene
 
 
 def eyelet():
-    """A rope through an eyelet, with a driven slide and a hinge beside it, and a body on a guide at its end.
+    """Return a rope through an eyelet, with a driven slide, a hinge, and a body on a guide at its end.
 
-    No joint is redundant: spatial runs share forces among such by rounding.
+    No joint is redundant, since rounding decides how redundant joints of spatial runs share forces.
     """
     scene = Scene()
     scene.cable("rope", start=(0, 0, 0), end=(2, 0, 0), elements=4, element="cable12", section=Circle(radius=0.01),
@@ -108,7 +108,7 @@ def test_all_results_are_those_of_the_spatial_scene(scene, move):
 
 @pytest.mark.parametrize("scene", [turned_ends, across_the_height, eyelet])
 def test_scenes_drawn_in_z_0(scene):
-    """Also where the height of planar elements has another direction than ``up``."""
+    """Also with a height of planar elements in another direction than ``up``."""
     spatial = scene()
     planar = planar_of(spatial)
     assert planar.scene is not None and planar.scene.plane is None, planar
@@ -117,7 +117,9 @@ def test_scenes_drawn_in_z_0(scene):
 
 
 def test_slides_and_joints():
-    """Results but second rates of s, which planar and spatial kernels round to 1e-8, in z = 0 as well."""
+    """All results except second rates of s, in which planar and spatial kernels differ by 1e-8 of rounding, also in z =
+    0.
+    """
     spatial = turned_scene(eyelet(), *ASKEW)
     planar = planar_of(spatial)
     assert planar.scene is not None, planar
@@ -162,7 +164,7 @@ def test_a_free_direction_along_the_axes_of_the_plane():
 
 
 def upright(element="cable8p"):
-    """A wire with z up, clamped, a body at its end."""
+    """Return a clamped wire with z up and a body at its end."""
     scene = Scene(gravity=(0, 0, -9.81))
     scene.cable("wire", start=(0, 0.2, 0.5), end=(1, 0.2, 0.5), up=(0, 0, 1), elements=4, element=element,
                 section=Rectangle(height=0.02, width=0.02), material=RUBBER, strain="engineering")
@@ -266,7 +268,7 @@ def test_files_and_resumed_runs(tmp_path):
 
 
 def test_a_resumed_run_is_the_same_bit_for_bit(tmp_path):
-    """Rows are turned in other blocks then."""
+    """A resumed run rotates its rows in other blocks."""
     scene = planar_of(turned_scene(upright("cable12"), *ASKEW)).scene
 
     def stop(time):
@@ -325,7 +327,7 @@ def test_planar_parts_that_do_not_fit():
 
 
 def test_modal_bodies_in_a_plane():
-    """By hand: the modes of beam12p stay in the plane. The same scene in z = 0 has the same motion."""
+    """The modes of beam12p are in the plane by definition. The same scene in z = 0 has the same motion."""
     def made(x, y, normal):
         scene = Scene(gravity=tuple(-9.81 * np.array(y)))
         x, y = np.array(x, dtype=float), np.array(y, dtype=float)

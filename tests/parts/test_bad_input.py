@@ -1,4 +1,4 @@
-"""Bad input: each refusal names the place, the cause and, where it helps, the remedy."""
+"""Each refusal of bad input names the place, the cause and, where possible, the remedy."""
 
 import math
 

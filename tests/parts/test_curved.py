@@ -1,4 +1,4 @@
-"""Laws with a curved stress-free shape: nothing where it is free, closed forms of arcs where it is loaded."""
+"""Laws with a curved stress-free shape: no force in that shape, closed forms of loaded arcs."""
 
 import warnings
 from itertools import pairwise
@@ -23,7 +23,7 @@ BEAMS, CABLES = ["beam24", "beam12p"], ["green", "engineering"]
 
 
 def quarter(u):
-    """A quarter of a circle in the plane of x and y."""
+    """Return a quarter of a circle in the plane of x and y."""
     angle = u * np.pi / 2
     return RADIUS * np.sin(angle), RADIUS * (1 - np.cos(angle)), 0
 
@@ -33,7 +33,8 @@ def helix(u):
 
 
 def cantilever(element, elements, *, slenderness=0.05, curve=quarter, **law):
-    """A scene without gravity, with the cable "arc" clamped at its start; E I; s = (height / radius)^2."""
+    """Return a scene without gravity with the cable "arc", clamped at its start, and its E I; s = (height / radius)^2.
+    """
     height = slenderness * RADIUS
     scene = fu.Scene(gravity=(0, 0, 0))
     up = {"up": (0, 0, 1)} if element == "beam24" else {}
@@ -44,9 +45,7 @@ def cantilever(element, elements, *, slenderness=0.05, curve=quarter, **law):
 
 
 def end(scene) -> np.ndarray:
-    """Where the end is at rest in the plane of the arc: a cable under compression is not stable there, since nothing
-    bends it back across that plane.
-    """
+    """Return the end at rest in the plane of the arc: a compressed cable has no stiffness against leaving the plane."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "the state is unstable", fu.FunicularWarning)
         state = scene.equilibrium(seek_stable=False)
@@ -54,7 +53,7 @@ def end(scene) -> np.ndarray:
 
 
 def under_tip_load(*args, **keywords) -> float:
-    """Displacement of the end along a small force in x, of the thin rod's pi P R^3 / (4 E I)."""
+    """Return the displacement of the end along a small force in x, over that of a thin rod, pi P R^3 / (4 E I)."""
     scene, EI = cantilever(*args, **keywords)
     load = 1e-6 * EI / RADIUS**2
     scene.force("arc", value=(load, 0, 0), s=LENGTH)
@@ -63,7 +62,7 @@ def under_tip_load(*args, **keywords) -> float:
 
 
 def opened(*args, **keywords) -> float:
-    """How far from where it should be, in radii, a moment puts the end that doubles the radius of the arc."""
+    """Return the error of the end, in radii, under a moment that doubles the radius of the arc."""
     scene, EI = cantilever(*args, **keywords)
     scene.moment("arc", value=(0, 0, -EI / RADIUS / 2), s=LENGTH)
     tip = 2 * RADIUS * np.array([np.sin(np.pi / 4), 1 - np.cos(np.pi / 4), 0])
@@ -71,7 +70,7 @@ def opened(*args, **keywords) -> float:
 
 
 def ring(name: str, n: int) -> list[np.ndarray]:
-    """Stress-free shapes of n elements that make a ring of radius 1."""
+    """Return the stress-free shapes of n elements that form a ring of radius 1."""
     angle = 2 * np.pi * np.arange(n + 1) / n
     s, c, o = np.sin(angle), np.cos(angle), 0 * angle
     rows = {"r": (s, -c, o), "r_x": (c, s, o), "r_y": (-s, c, o), "r_z": (o, o, o + 1)}
@@ -117,7 +116,7 @@ def test_with_a_straight_shape_it_is_the_straight_law(name, law):
 
 @pytest.mark.parametrize("name", BEAMS)
 def test_damping_is_stiffness_times_the_time_but_for_height_over_radius(name):
-    """Eigenvalues of the damping matrix over the stiffness, at rest, rigid motions left out."""
+    """Eigenvalues of the damping matrix relative to the stiffness, at rest, without rigid motions."""
     S = section_stiffness("continuum", fu.Rectangle(height=0.05, width=0.05), SOFT, ELEMENTS[name].dim)
     l, e0 = 2 * np.pi / 16, ring(name, 16)[1]
     A = element_constants(None, name, "continuum_curved", l, S, e0)

@@ -1,4 +1,4 @@
-"""Friction of slides, contacts and crossings is given in one way: a coefficient, a `Friction` or a table of it."""
+"""Slides, contacts and crossings take friction in one form: a coefficient, a `Friction` or its table."""
 
 import funicular as fu
 import numpy as np
@@ -15,7 +15,7 @@ FORMS = {"number": 0.2, "part": fu.Friction(coefficient=0.2), "table": {"coeffic
 
 
 def scene(friction) -> fu.Scene:
-    """A rider on a rope, a box on a plane, and a bar that is drawn along the rope."""
+    """Return a rider on a rope, a box on a plane, and a bar that is pulled along the rope."""
     made = fu.Scene(gravity=(0, -9.81, 0))
     made.cable("rope", start=(0, 0, 0), end=(2, 0, 0), elements=4, element="cable8p", section=fu.Circle(radius=0.01),
                material=fu.Material(youngs_modulus=1e8, poisson_ratio=0.3, density=1000), rest_length=1.99)

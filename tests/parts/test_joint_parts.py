@@ -1,4 +1,4 @@
-"""Joints as a scene knows them: what is completed, the frames of their ends, and what is refused."""
+"""Joints in a scene: completed fields, frames of their ends, refusals."""
 
 import warnings
 
@@ -22,7 +22,7 @@ RISE = Ramp(start=0, end=1)
 
 @pytest.fixture
 def scene():
-    """A curved beam, a cable along x at height 1, and two bodies, one of them turned."""
+    """Return a curved beam, a cable along x at height 1, and two bodies, one of them rotated."""
     made = Scene()
     made.cable("beam", points=[(0, 0, 0), (1, 0.3, 0.2), (2, 0, 0)], elements=3, **THIN)
     made.cable("rope", start=(0, 1, 0), end=(2, 1, 0), elements=2, element="cable12", **THIN)
@@ -245,7 +245,7 @@ def test_contradictory_joints_are_named(scene, one, other, complaint):
 
 
 def test_joints_that_get_along(scene):
-    """The legs of a hexapod, two joints of a body in different places, and of a cable's places."""
+    """Compatible joints: the legs of a hexapod, two joints at different points of a body or a cable."""
     for k in range(3):
         scene.joint("distance", ("A", (k, 0, 0)), (k, 5, 0), velocity=1)
     scene.joint("spherical", ("A", (0, 1, 0)), (0, 3, 0))
@@ -312,7 +312,7 @@ def test_in_a_file():
 
 
 def test_a_saved_run_does_not_repeat_what_was_adjusted(tmp_path):
-    """The warning comes as the scene is made; the report keeps it, and reading the scene back is silent."""
+    """The scene warns when it is made; the report keeps the message, and reading the scene back does not warn."""
     scene = Scene(gravity=(0, 0, 0))
     for name, y in (("A", 0.0), ("B", 1.0005)):
         scene.rigid_body(name, mass=1, inertia=(1, 1, 1), position=(0, y, 0))

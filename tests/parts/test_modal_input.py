@@ -11,7 +11,7 @@ BEAM = {"start": (0, 0, 0), "end": (0.5, 0, 0), "section": Rectangle(height=0.03
 
 
 def arrays() -> dict:
-    """Eight corners of a box that shears in two ways."""
+    """Return the arrays of a box of eight corners with two shear modes."""
     nodes = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1.0)])
     modes = np.zeros((2, 8, 3))
     modes[0, :, 0], modes[1, :, 1] = nodes[:, 1] * nodes[:, 2], nodes[:, 0] * nodes[:, 2]

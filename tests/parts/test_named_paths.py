@@ -1,4 +1,4 @@
-"""Paths that a scene file names: what it writes stays below its folder and replaces results of the same scene alone."""
+"""Paths in a scene file: output stays below the folder of the file and replaces only results of the same scene."""
 
 import os
 import pickle
@@ -15,7 +15,7 @@ GIVE = "or give it on the command line (-o) or in Python (save=)"
 
 
 def scene_file(folder, save: str, scene: fu.Scene | None = None):
-    """Write a scene file that names where its results go; return its path."""
+    """Write a scene file with a path for its results; return its own path."""
     folder.mkdir(exist_ok=True)
     path = folder / "scene.toml"
     path.write_text((scene or short()).to_toml() + RUN.format(repr(save)))
@@ -24,7 +24,7 @@ def scene_file(folder, save: str, scene: fu.Scene | None = None):
 
 @pytest.fixture
 def here(tmp_path, monkeypatch):
-    """The working directory, beside the folder of the scene file."""
+    """Change to a working directory beside the folder of the scene file."""
     (tmp_path / "here").mkdir()
     monkeypatch.chdir(tmp_path / "here")
     return tmp_path

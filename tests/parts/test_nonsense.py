@@ -1,4 +1,4 @@
-"""Every keyword of every part and setting, given nonsense: it is taken, or refused by a `SceneError`."""
+"""Every keyword of every part and setting is given invalid values: each is accepted, or refused by a `SceneError`."""
 
 import copy
 import itertools
@@ -97,7 +97,7 @@ ADDED = {
 
 
 def refused_or_taken(call, keyword: str, value) -> None:
-    """SceneError, whose message one can read, or nothing."""
+    """Accept a value, or require a SceneError with a readable message."""
     try:
         call(value)
     except FunicularError as error:
@@ -224,7 +224,7 @@ def test_files(text, complaint):
 
 @pytest.mark.parametrize("integrator", ["genalpha", "radau", "explicit"])
 def test_at_the_limits(integrator):
-    """The least and the largest numbers that are taken give a result or an error with words."""
+    """The smallest and the largest accepted numbers give a result, or an error with a message."""
     for length, radius, E, density in itertools.product(*[LIMITS["m"]] * 2, *[OTHER_LIMITS] * 2):
         made = fu.Scene()
         wire = made.cable("wire", start=(0, 0, 0), end=(length, 0, 0), elements=2, element="cable12",

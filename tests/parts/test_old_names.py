@@ -1,4 +1,4 @@
-"""Names of older versions are refused with a message that says the new one, wherever they are used."""
+"""Names of older versions are refused, in any use, with a message that gives the new name."""
 
 import re
 

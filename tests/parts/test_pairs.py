@@ -1,4 +1,4 @@
-"""Contacts of many pairs: lists of them, pairs that are far apart, and touches that are not to be missed."""
+"""Contacts of many pairs: lists, distant pairs, and complete detection."""
 
 import funicular as fu
 import numpy as np
@@ -107,7 +107,7 @@ def test_lists_that_cannot_be_are_refused_as_a_whole(a, b, message):
 
 
 def thrown(far: int) -> fu.Scene:
-    """Return bodies and a rope that come down on the ground, and surfaces far away, as many as asked for."""
+    """Return bodies and a rope that fall on the ground, and a number of distant surfaces."""
     scene = fu.Scene()
     scene.surface("ground", fu.Plane())
     scene.surface("stone", fu.Sphere(radius=0.3, at=(0.4, 0.3, 0)))
@@ -159,7 +159,7 @@ SHAPES = {
        aside=st.floats(-0.5, 0.5), integrator=st.sampled_from(INTEGRATORS), hard=st.booleans(), moves=st.booleans(),
        outputs=st.sampled_from([1, 3]))
 def test_no_touch_is_missed(shape, size, speed, aside, integrator, hard, moves, outputs):
-    """A point flies straight on: its way is known, and on many places of it whether it is within the surface."""
+    """A point flies along a straight line, at whose stations its position relative to the surface is known."""
     assume(not (integrator == "energy" and hard and moves and shape != "plane"))  # which is refused
     at, duration, radius = (5.0, aside * size, 0.0), 10 / speed, 0.02
     scene = fu.Scene(gravity=(0, 0, 0))
@@ -185,7 +185,7 @@ def test_no_touch_is_missed(shape, size, speed, aside, integrator, hard, moves, 
 
 
 def ridges(width: float, across: bool) -> fu.HeightField:
-    """Return the ground with two ridges of 2 m, the second of twice the width; without `across`, from side to side."""
+    """Return the ground with two ridges of 2 m, the second twice as wide; without `across`, along the width."""
     places = np.concatenate([at + width * size * np.linspace(-4, 4, 33) for at, size in ((-1, 1), (2, 2))])
     x = np.unique(np.concatenate([np.linspace(-5, 5, 41), places]).round(9))
 
@@ -199,7 +199,7 @@ def ridges(width: float, across: bool) -> fu.HeightField:
 @pytest.mark.parametrize("width", [0.03, 0.12])
 @pytest.mark.parametrize("speed", [5, 50, 300])
 def test_no_narrow_and_steep_ridge_is_flown_through(integrator, width, speed):
-    """Beside a ridge the vertical gap, and it over the root of 1 + slope^2 there, say little of the distance."""
+    """Beside a ridge neither the vertical gap nor its ratio to the root of 1 + slope^2 bounds the distance."""
     far = 8.0
     for k, height in enumerate(np.linspace(0.1, 1.9, 5)):
         radius = 0.0 if k % 2 else 0.02  # hard contact with heights is of points
@@ -220,7 +220,7 @@ def test_no_narrow_and_steep_ridge_is_flown_through(integrator, width, speed):
 @given(speed=st.floats(1, 30), size=st.floats(0.05, 0.3), aside=st.floats(-0.6, 0.6),
        integrator=st.sampled_from(INTEGRATORS), moves=st.booleans())
 def test_no_cable_goes_through_a_surface(speed, size, aside, integrator, moves):
-    """It flies straight on until it touches, at a time that is known, within the way between points of quadrature."""
+    """The cable flies straight and touches at a known time, between two points of quadrature."""
     scene = fu.Scene(gravity=(0, 0, 0))
     scene.cable("rope", start=(-1, aside * size, 0), end=(1, aside * size, 0), elements=8, element="cable12",
                 velocity=(0, 0, speed * (0.5 if moves else 1)), **ROPE)

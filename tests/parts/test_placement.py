@@ -1,4 +1,4 @@
-"""Supports, ties, loads and springs: what the scene completes of them, and what it refuses of them."""
+"""Supports, ties, loads and springs: fields that the scene completes, and refusals."""
 
 
 import numpy as np
@@ -16,7 +16,7 @@ UP = (0.0, 1.0, 0.0)
 
 @pytest.fixture
 def scene():
-    """A beam and a cable that meet at (2, 0, 0), and a body above."""
+    """Return a beam and a cable that meet at (2, 0, 0), and a body above."""
     made = Scene()
     common = {"elements": 2, "section": Circle(radius=0.1), "material": SOFT}
     made.cable("beam", start=(0, 0, 0), end=(2, 0, 0), element="beam24", **common)

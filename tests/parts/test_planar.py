@@ -1,4 +1,4 @@
-"""Planar kernels are the spatial ones in a plane: same numbers where both have an entry, zero in all the others."""
+"""Planar kernels equal the spatial ones in a plane, whose other entries are zero."""
 
 import inspect
 
@@ -16,27 +16,27 @@ ROUNDING = 2e-15  # of the samples' order, one: measured 6e-16
 
 
 def call(name: str, state: dict) -> tuple:
-    """Outputs of a kernel, a tuple even of one."""
+    """Return the outputs of a kernel as a tuple."""
     kernel = getattr(kernels, name)
     out = kernel(*(state[argument] for argument in inspect.signature(kernel).parameters))
     return out if isinstance(out, tuple) else (out,)
 
 
 def places(planar: str, spatial: str) -> np.ndarray:
-    """Of the planar coordinates among the spatial ones."""
+    """Return the indices of the planar coordinates among the spatial ones."""
     names = ELEMENTS[spatial].names
     return np.array([3 * names.index(name) + axis for name in ELEMENTS[planar].names for axis in range(2)])
 
 
 def lifted(flat: np.ndarray, at: np.ndarray, n: int) -> np.ndarray:
-    """A planar vector among n spatial entries, zero elsewhere."""
+    """Return a planar vector among n spatial entries, zero elsewhere."""
     whole = np.zeros(n)
     whole[at] = np.ravel(flat)
     return whole
 
 
 def spatial_element(planar: str, spatial: str, s: dict) -> dict:
-    """The same element with a z axis: r_z, where there is one, is the unit vector out of the plane."""
+    """Return the same element with a z axis: r_z, if present, is the unit normal of the plane."""
     element, at = ELEMENTS[spatial], places(planar, spatial)
     lift = {name: lifted(s[name], at, element.n_coordinates).reshape(-1, 3) for name in ("e", "v") if name in s}
     lift["e"][[name.startswith("r_z") for name in element.names], 2] = 1.0
@@ -51,8 +51,8 @@ def spatial_body(s: dict) -> dict:
 
 
 def same(planar: np.ndarray, spatial: np.ndarray, *axes: list[int] | np.ndarray) -> None:
-    """Equal at the places given for each axis, and zero where one axis alone is out of the plane: there the mirror
-    image in the plane, which is the same state, has the other sign.
+    """Compare at the places given for each axis; entries with one axis out of the plane must be zero, since the mirror
+    image in the plane is the same state and changes their sign.
     """
     limit = ROUNDING * max(1.0, np.abs(planar).max())  # the samples are of order one
     np.testing.assert_allclose(spatial[np.ix_(*axes)], planar, rtol=0, atol=limit)

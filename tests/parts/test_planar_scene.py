@@ -1,4 +1,4 @@
-"""Example 5.1 planar and spatial, and a rider across the nodes: what the benchmarks print and draw, asserted."""
+"""Example 5.1 planar and spatial, and a rider that crosses nodes: assertions on the output of the benchmarks."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ def test_equal_where_the_kinematics_are_equal(planar, spatial, law, ratio, why):
 
 
 def test_a_quintic_cable_is_crossed_without_a_jump():
-    """The cubic one's is there at any step, that of the quintic one falls with it."""
+    """The jump of the cubic cable does not depend on the step; that of the quintic one decreases with it."""
     cubic, quintic = ([jumps(across(element, step)) for step in (1e-3, 2.5e-4)] for element in ("cable12", "cable18"))
     assert len(cubic[0]) == len(quintic[0]) == 8
     assert np.median(cubic[1]) > 0.75 * np.median(cubic[0])

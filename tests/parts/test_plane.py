@@ -1,4 +1,4 @@
-"""Planar scenes: everything stays in the plane z = 0, and what does not is named."""
+"""Planar scenes stay in the plane z = 0, and parts that leave it are named."""
 
 
 import pytest

@@ -1,4 +1,4 @@
-"""Numbers that look like other units are noted in the report, and never refused."""
+"""Numbers in probably wrong units are noted in the report and accepted."""
 
 import logging
 
@@ -33,7 +33,7 @@ def test_other_units_are_noted(given, notes):
 @pytest.mark.parametrize("shape", ["drawn", "surface"])
 @pytest.mark.parametrize(("given", "noted"), [({}, True), ({"radius": 0.1}, False), ({"points": [(0, 0, 0)]}, False)])
 def test_a_body_with_a_shape_that_touches_by_its_origin_alone_is_noted(shape, given, noted):
-    """A box of 0.2 m would come to lie with its middle on the ground."""
+    """A box of 0.2 m would rest with its middle on the ground."""
     made = fu.Scene()
     made.rigid_body("box", mass=1, inertia=(0.01,) * 3, position=(0, 1, 0),
                     shape=fu.Box(size=(0.2, 0.2, 0.2)) if shape == "drawn" else None)

@@ -1,4 +1,4 @@
-"""Scenes made of others with a part changed."""
+"""Scenes made of others with one part changed."""
 
 import re
 
@@ -86,7 +86,7 @@ def test_a_cable_is_drawn_anew():
 
 
 def test_what_a_scene_has_found_is_found_anew():
-    """A length, an axis or an end that nobody gave follows from the scene, also where another part of that changes."""
+    """Omitted lengths, axes and ends follow from the scene, also after a change of another part."""
     scene = rope()
     scene.rigid_body("A", mass=1, inertia=(1, 1, 1), position=(0, 3, 0))
     scene.spring("A", (0, 0, 0), stiffness=10, name="free")
@@ -113,7 +113,7 @@ def test_another_rider_has_its_own_point():
 
 
 def everything() -> fu.Scene:
-    """A scene with a part of every kind."""
+    """Return a scene with a part of every kind."""
     scene = rope(strain="engineering")
     scene.cable("bar", **ROPE | {"start": (0, 0, 1), "end": (1, 0, 1), "element": "beam24", "law": "structural"})
     scene.cable("hook", **ROPE | {"start": (1, 0, 0), "end": (2, 0, 0)})
@@ -232,7 +232,8 @@ def test_all_fields_are_tried():
 @pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
 @pytest.mark.parametrize("kind", PARTS)
 def test_each_field_of_each_part_can_be_replaced(kind):
-    """By its own value, by none where it may be left out, and by another; what cannot be is refused with its reason."""
+    """Each field is replaced by its own value, by none if optional, and by another value; impossible ones are refused.
+    """
     scene = everything()
     part = next(part for part in scene.parts() if part.kind == kind)
     here, keywords = [*scene.parts()].index(part), type(part).keywords()

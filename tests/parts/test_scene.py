@@ -1,4 +1,4 @@
-"""What a scene computes and keeps: materials, geometry, the joints' starts."""
+"""Data that a scene computes and keeps: materials, geometry, starts of joints."""
 
 import numpy as np
 import pytest
@@ -118,7 +118,7 @@ def test_unnamed_parts_take_the_next_number(scene):
 
 
 def test_a_free_name_is_found_in_few_looks(scene, monkeypatch):
-    """2,000 unnamed forces took 71 s: each looked at the names of all parts as many times as there were forces."""
+    """The search for a free name is linear: 2,000 unnamed forces once took 71 s."""
     scene.rigid_body("A", mass=1, inertia=(1, 1, 1), position=(0, 0, 0))
     looks, look = [], Scene.part_named
     monkeypatch.setattr(Scene, "part_named", lambda *a: (looks.append(a), look(*a))[1])
@@ -141,7 +141,7 @@ def test_supports_look_only_at_what_is_on_their_cable(scene, monkeypatch):
 
 
 def test_unnamed_events_are_all_kept(scene):
-    """The second one took the place of the first."""
+    """A second unnamed event does not replace the first."""
     scene.rigid_body("A", mass=1, inertia=(1, 1, 1), position=(0, 0, 0))
     for value in (0.1, 0.2, 0.3):
         scene.event(quantity="A.position.x", value=value)

@@ -1,4 +1,4 @@
-"""Scenes as TOML: what is read, what is refused and where, and that nothing is lost on the way."""
+"""Scenes as TOML: accepted and refused text with its line, and a lossless round trip."""
 
 import re
 
@@ -44,7 +44,7 @@ def test_paper51_is_table_1():
 
 
 def same(a: Scene, b: Scene) -> bool:
-    """Return whether all is the same but for the title, which is the name of the file."""
+    """Return whether two scenes are equal except for the title, the name of the file."""
     return vars(a) | {"title": ""} == vars(b) | {"title": ""}
 
 
@@ -109,7 +109,7 @@ def test_round_trip_of_shapes_supports_loads_and_springs():
 
 @pytest.mark.parametrize("axis", [(1, 1, 0), (1, 1, 1), (0.3, -0.1, 0.2), (0, 0, 1)])
 def test_the_axis_of_a_motion_is_read_as_it_was_written(axis):
-    """Divided by its length once more it lost its last digit, and a run of the text could not be resumed."""
+    """A second division by the length rounded the axis, so that a run of the text could not resume."""
     scene = loads(CABLE, "x")
     scene.motion("wire", s=0, rotation=(axis, Ramp(start=0, end=1)))
     assert same(loads(scene.to_toml(), "copy"), scene)
@@ -297,7 +297,7 @@ position = [0, 0, 0]
 
 
 def test_all_errors_of_a_file_at_once_by_line():
-    """A pin on the cable that is refused is no error of its own; what stands in a text is no table."""
+    """A pin on a refused cable makes no further error; a table within a text is not parsed."""
     with pytest.raises(SceneError) as error:
         loads(SEVERAL, "x.toml")
     assert str(error.value) == """x.toml: 6 errors
@@ -332,7 +332,7 @@ def test_a_file_of_results_and_an_ending_too_many_are_named(tmp_path):
 
 
 def test_a_tol_that_is_given_takes_the_place_of_steps_in_a_file():
-    """A step, or an absolute_tol, of the scene's file would leave a tol of the call without effect."""
+    """A step, or an absolute_tol, of the scene file would make the tol of the call ineffective."""
     scene = load_scene("paper51")
     scene.run_settings |= {"step": 1e-3, "duration": 0.02}
     assert scene.run(integrator="radau").report["step"] == 1e-3

@@ -1,4 +1,4 @@
-"""A scene's methods for parts are made of the parts' fields; what editors know of them is what there is."""
+"""The methods of a scene follow from the fields of the parts; the stubs for editors agree with them."""
 
 import inspect
 import re

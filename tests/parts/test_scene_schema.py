@@ -1,4 +1,4 @@
-"""The JSON Schema of scene files: bundled scenes fit it, what the parts refuse by their fields alone does not."""
+"""The JSON Schema of scene files accepts bundled scenes and rejects what the fields of parts reject."""
 
 import json
 import tomllib

@@ -1,6 +1,6 @@
-"""Setting up a run: how much work it is, counted in calls, and that nothing of it is done where it is not needed.
+"""The work of setting up a run, counted in calls; unneeded work is not done.
 
-tests/benchmarks/setup.py prints the same calls beside the time that they take.
+tests/benchmarks/setup.py prints the same calls with their times.
 """
 
 import funicular as fu
@@ -21,7 +21,7 @@ ceiling moves up only on purpose.
 
 
 def count(make):
-    """Calls that it takes to make a scene and to set its run up, once what is imported late has been."""
+    """Return the calls that make a scene and set up its run, after all late imports."""
     scene = make()
     set_up(lambda: scene)
     return calls(make), calls(lambda: set_up(lambda: scene))
@@ -45,7 +45,7 @@ def test_set_up_takes_no_more_than_a_node_for_each_element():
 
 
 def ring(tail: int = 0) -> fu.Scene:
-    """Four bodies joined in a ring, and a chain of others at the first one."""
+    """Return a ring of four bodies with a chain at the first one."""
     scene = fu.Scene()
     for k, at in enumerate([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), *((-1 - k, 0, 0) for k in range(tail))]):
         scene.rigid_body(f"b{k}", mass=1, inertia=(1, 1, 1), position=at)
@@ -56,7 +56,7 @@ def ring(tail: int = 0) -> fu.Scene:
 
 
 def in_loops(scene):
-    """Multipliers of joints and slides in which redundant constraints are sought."""
+    """Return the multipliers of joints and slides among which redundant constraints are sought."""
     return _in_loops(build(scene), two_riders=False).tolist()
 
 
@@ -67,7 +67,7 @@ def test_redundant_constraints_are_sought_in_loops_alone():
 
 
 def test_links_with_a_cable_may_follow_from_others():
-    """Both ends of what is between two cables may be fixed by supports; a body that hangs from one is free."""
+    """Supports may fix both ends of a connection between two cables; a body that hangs from one cable is free."""
     scene = rope(4)
     scene.rigid_body("load", mass=1, inertia=(1, 1, 1), position=(0.4, 0, 0))
     scene.joint("spherical", ("rope", 0.4), "load")
@@ -86,7 +86,7 @@ def test_rates_by_sparse_matrices_are_those_by_arrays(name, monkeypatch):
 
 
 def test_what_is_not_damped_has_no_rate_of_decay(monkeypatch):
-    """The damping is not looked at where the model says that there is none: then it is zero."""
+    """The damping is zero, without evaluation, where the model has none."""
     model = build(load_scene("paper51"))
     assert not model.is_damped
     monkeypatch.setattr(type(model), "is_damped", True)
@@ -110,7 +110,7 @@ def test_the_report_has_a_part_for_all_that_takes_time():
 
 
 def test_no_time_is_counted_twice_where_an_integrator_is_on_trial():
-    """The steps of the trial are steps of the run, not of its start; what is thrown away is of the start."""
+    """The steps of a trial count as steps of the run; discarded steps count as its start."""
     scene = load_scene("paper51")
     run = scene.run(0.5, tol=1e-4, step=None, progress=False)
     assert "on trial" in run.report["integrator_reason"] or run.report["integrator"] == "radau"

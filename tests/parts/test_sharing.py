@@ -1,4 +1,4 @@
-"""Stages that kernels have alike stand once, and what a kernel computes is what it would be with its own copy."""
+"""Stages that kernels share stand once; the results equal those of separate copies."""
 
 import re
 from dataclasses import replace
@@ -23,7 +23,7 @@ def derived() -> list[emit.Derived]:
 
 
 def one_by_one(text: str) -> str:
-    """The text with each constant declared by itself: where a list of them ends makes no difference."""
+    """Return the text with one declaration per constant, which makes the comparison independent of line breaks."""
     lists = r"const fu_real\n((?:        .*,\n)*        .*;)"
     return re.sub(lists, lambda found: re.sub(r" {8}(.*)[,;]", r"    const fu_real \1;", found[1]).lstrip(), text)
 
@@ -55,7 +55,8 @@ def test_a_stage_stands_once_and_is_used_twice_at_least(derived):
 
 
 def trial(kernels: dict[str, str]) -> tuple[dict, str]:
-    """Sections of one stage with these assignments to a, b, c, ... by kernel, after sharing; and the macros' text."""
+    """Return the sections of a stage with these assignments to a, b, c, ... by kernel, after sharing, and the macros.
+    """
     family = Family("trial", "", list, ())
     sections = {kernel: [Section("stage", [], [Item(f"{name} = x", name) for name in names])]
                 for kernel, names in kernels.items()}

@@ -1,4 +1,4 @@
-"""Signals: their values, how smooth they are, and what is refused of them."""
+"""Signals: values, smoothness, refusals."""
 
 import itertools
 
@@ -38,7 +38,7 @@ def test_value_is_what_pieces_and_sine_say(each):
 @pytest.mark.parametrize("each", SMOOTH, ids=lambda s: s.form)
 @pytest.mark.parametrize("derivative", [0, 1])
 def test_derivatives_are_those_of_values_everywhere(each, derivative):
-    """Across all breaks, too: the second derivative has no jump."""
+    """Across all breaks the second derivative is continuous."""
     h = 1e-6
     slope = (each.value(TIMES + h, derivative) - each.value(TIMES - h, derivative)) / (2 * h)
     assert_allclose(slope, each.value(TIMES, derivative + 1), atol=3e-3)
@@ -89,7 +89,7 @@ def test_refused(make, complaint):
 
 @pytest.mark.parametrize("interpolation", ["cubic", "linear"])
 def test_a_table_ends_on_its_slope(interpolation):
-    """A motion that a run ends with does not stop with a jolt; after it the value stays."""
+    """A motion at the end of a run does not stop suddenly; afterwards the value is constant."""
     table = TableSignal(time=[0, 1, 2, 3], value=[0, 2, 4, 6], interpolation=interpolation)
     assert table.value(3.0, derivative=1) == pytest.approx(2)
     assert table.value(3.0) == pytest.approx(6)
@@ -100,7 +100,7 @@ def test_a_table_ends_on_its_slope(interpolation):
 @pytest.mark.parametrize("rate", [*EVERY, Ramp(start=-2, end=-1, after=3), TableSignal(time=[2, 3], value=[5, 7])],
                          ids=lambda s: s.form)
 def test_the_integral_of_a_signal(rate):
-    """From t = 0 on, both ways, across all breaks and beyond them."""
+    """The integral from t = 0 in both directions, across all breaks and beyond."""
     way = Integral(rate=rate, start=0.7)
     assert_allclose(way.value(0.0), 0.7, rtol=1e-14)
     for derivative in (0, 1):

@@ -1,4 +1,4 @@
-"""Frames, drives, friction and ends of slides as a scene knows them, and what is refused of them."""
+"""Frames, drives, friction and ends of slides in a scene, and refusals."""
 
 
 import numpy as np
@@ -17,7 +17,7 @@ BODY = {"mass": 1.0, "inertia": (1, 1, 1)}
 
 @pytest.fixture
 def scene():
-    """A beam and a cable along x, a beam that hangs from the first, and a turned body on both."""
+    """Return a beam and a cable along x, a beam that hangs from the first, and a rotated body on both."""
     made = Scene(gravity=(0, 0, -9.81))
     made.cable("beam", start=(0, 0, 0), end=(2, 0, 0), elements=2, **THIN)
     made.cable("rope", start=(0, 1, 0), end=(2, 1, 0), elements=2, element="cable12", **THIN)

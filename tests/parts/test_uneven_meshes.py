@@ -1,4 +1,4 @@
-"""Cables with nodes at given arc-lengths: right, as exact as they should be, and known wherever cables are."""
+"""Cables with nodes at given arc-lengths: correct, of the expected accuracy, and supported by all features."""
 
 import funicular as fu
 import numpy as np
@@ -15,7 +15,7 @@ ROUND = fu.Circle(radius=0.01)
 
 
 def graded(elements: int, power: float = 2.0, length: float = 1.0) -> np.ndarray:
-    """Return (elements + 1,): arc-lengths of nodes that are close at the start."""
+    """Return (elements + 1,) arc-lengths of nodes, dense at the start."""
     return length * (np.arange(elements + 1) / elements) ** power
 
 
@@ -24,12 +24,12 @@ def strip(element="cable12", **given) -> fu.Scene:
     return cable_scene(element=element, **{"section": ROUND, "material": SOFT} | structural(element) | mesh | given)
 
 
-# --- the same as equal elements, and as accurate as theory has it -----------------------------------------------------
+# --- equality with equal elements, and accuracy by theory --------------------------------------------------------
 
 @pytest.mark.parametrize("element", ["cable12", "cable18", "beam24", "cable8p", "beam12p"])
 @pytest.mark.parametrize("integrator", ["auto", "genalpha", "explicit"])
 def test_equal_elements_given_as_nodes_are_the_same_bits(element, integrator, monkeypatch):
-    """Nodes of equal elements make their mesh; so does each element with a length of its own, by all other code."""
+    """Equally spaced nodes give the mesh of equal elements; the code for unequal lengths gives the same bits."""
     even = strip(element, elements=8, pins=(0.0,))
     settings = {"duration": 0.05, "output_step": 0.01, "tol": 1e-3, "integrator": integrator}
     expected = even.run(**settings)
@@ -46,9 +46,9 @@ def test_equal_elements_given_as_nodes_are_the_same_bits(element, integrator, mo
 
 
 def test_a_cantilever_graded_to_its_clamp(validated):
-    """A strong force bends it at the clamp alone: 16 elements that are close there are 40 times as exact.
+    """A strong force bends the cable at its clamp: 16 elements that are dense there are 40 times as accurate.
 
-    The tip is that of 400 equal elements, from which that of 200 differs by 2.6e-9 m.
+    The reference has 400 equal elements; 200 differ from it by 2.6e-9 m.
     """
     def tip(**mesh) -> np.ndarray:
         scene = strip(gravity=(0, 0, 0), clamps=(0.0,), material=fu.Material(
@@ -69,7 +69,7 @@ def test_a_cantilever_graded_to_its_clamp(validated):
 
 @pytest.mark.parametrize("integrator", ["genalpha", "explicit", "energy"])
 def test_a_slide_crosses_elements_of_unequal_lengths(integrator):
-    """The rider's path is as exact as on equal elements of that number, and on halves of them three times as exact."""
+    """The path of the rider is as accurate as on equal elements, and three times as accurate on half the lengths."""
     nodes = np.array((0, 0.1, 0.25, 0.45, 0.6, 0.85, 1.0))
 
     def path(**mesh) -> np.ndarray:
@@ -88,7 +88,7 @@ def test_a_slide_crosses_elements_of_unequal_lengths(integrator):
 
 @pytest.mark.parametrize("element", ["cable12", "beam24", "cable8p", "beam12p"])
 def test_modes_and_mass(element):
-    """Frequencies of a cantilever, 3.516 and 22.03 times sqrt(EI/m)/l²; its mass is that of the cable."""
+    """Frequencies of a cantilever, 3.516 and 22.03 times sqrt(EI/m)/l², and its mass."""
     scene = strip(element, clamps=(0.0,), nodes=graded(12, 1.5), gravity=(0, 0, 0))
     unit = np.sqrt(1e7 * np.pi * 0.01**4 / 4 / (1000 * np.pi * 0.01**2)) / (2 * np.pi)
     found = scene.modes(4 if scene.dim == 3 else 2).frequency
@@ -99,7 +99,7 @@ def test_modes_and_mass(element):
 
 
 def test_loads_a_length_and_section_forces():
-    """A taut wire under its weight, a load on a part and a point force: cuts are in balance with what hangs on them."""
+    """A taut wire with its weight, a partial load and a point force: section forces balance the loads."""
     scene = strip(clamps=(0.0,), nodes=NODES)
     scene.distributed_force("wire", value=(0, -3.0, 0), start=0.1, stop=0.7)
     scene.force("wire", s=0.62, value=(0, -0.4, 0))
@@ -125,7 +125,7 @@ def test_section_forces_of_a_motion_are_in_balance():
 
 @pytest.mark.parametrize("integrator", ["genalpha", "energy"])
 def test_energy_and_damping(integrator):
-    """What dampers take is what is lost, over elements of any length; the energy integrator keeps the rest."""
+    """The dissipated energy equals the loss on elements of any length; the energy integrator keeps the rest."""
     damped = {"damping_time": 1e-2, "mass_damping": 0.5} if integrator == "genalpha" else {}
     material = fu.Material(youngs_modulus=1e7, poisson_ratio=0.0, density=1000, **damped)
     scene = strip(pins=(0.0,), nodes=NODES, material=material)
@@ -158,7 +158,7 @@ def test_a_curved_cable_is_free_of_stress(element):
     np.testing.assert_allclose(run["wire.nodal_vectors"][-1, :, 0], [arc(s) for s in nodes], atol=1e-8)
 
 
-# --- where cables are described, kept and drawn ----------------------------------------------------------------------
+# --- description, files and pictures -----------------------------------------------------------------------------
 
 def test_supports_attachments_and_riders_find_their_nodes(tmp_path):
     scene = strip(pins=(0.0, 0.55), nodes=NODES)
@@ -208,14 +208,14 @@ def test_the_error_of_the_mesh_is_estimated_on_elements_of_half_the_length():
 
 
 def test_pictures():
-    """Points of a straight wire that does not move are drawn where their arc-length says, the nodes among them."""
+    """The points of a straight wire at rest are drawn at their arc-lengths, nodes included."""
     run = strip(pins="ends", nodes=NODES, gravity=(0, 0, 0)).run(0.01, output_step=0.01, tol=1e-3)
     shape = run.animation().clips[0].cables[0]
     np.testing.assert_allclose(shape.position[-1], np.outer(shape.s, [1, 0, 0]), atol=1e-12)
     assert np.isin(NODES, shape.s).all()
 
 
-# --- what is refused -----------------------------------------------------------------------------------------------
+# --- refusals ----------------------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize(("nodes", "complaint"), [
     ([0, 0.5, 0.4, 1], "nodes must increase, but 0.4 m follows on 0.5 m; give each node once, from start to end"),

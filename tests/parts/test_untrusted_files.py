@@ -1,4 +1,4 @@
-"""Files are data: nothing that a scene, its arrays or its results say is run. Libraries: test_user_elements.py."""
+"""Files are data: scenes, arrays and results execute no code. Libraries: test_user_elements.py."""
 
 import io
 import json
@@ -53,7 +53,9 @@ def test_text_is_no_function_and_results_replace_no_other_file(text, message):
 @pytest.mark.parametrize("text", [
     "a" + ".a" * MANY + " = 1\n", "[cable" + ' . "a"' * MANY + "]\n", "[run]\nsave = {a" + ".'a'" * MANY + " = 1}\n"])
 def test_keys_of_very_many_parts_are_refused_at_once(text):
-    """Python's reader takes time and memory by the square of their number: a minute, and gigabytes, for 100,000."""
+    """The TOML reader needs time and memory in proportion to the square of the number of keys' parts: a minute and
+    gigabytes for 100,000.
+    """
     line = text.rstrip().count("\n") + 1
     with pytest.raises(SceneError, match=rf"^x\.toml, line {line}: has a key of more than 100 parts with dots between"):
         loads(text, "x.toml")
@@ -75,7 +77,7 @@ def test_very_long_names_are_shown_in_part():
     lambda scene, file: scene.modal_body("box", data=file, position=(0, 0, 0)),
     lambda scene, file: scene.fluid(density=1.2, velocity=VelocityTable(file=file))])
 def test_arrays_are_measured_before_they_are_read(add, tmp_path):
-    """A header of 1.5e9 numbers asked for 11 GiB."""
+    """A header that announces 1.5e9 numbers would allocate 11 GiB."""
     header = io.BytesIO()
     np.lib.format.write_array_header_1_0(header, {"descr": "<f8", "fortran_order": False, "shape": (1_500_000_000,)})
     with zipfile.ZipFile(tmp_path / "large.npz", "w", zipfile.ZIP_DEFLATED) as archive:
@@ -93,7 +95,7 @@ def test_variables_of_netcdf_are_measured_before_they_are_read(tmp_path, monkeyp
 
 
 def sparse(path, size):
-    """Make a file of zeros that takes no room; return its path."""
+    """Make a sparse file of zeros; return its path."""
     path.touch()
     os.truncate(path, size)
     return path
@@ -108,7 +110,7 @@ def test_bytes_of_arrays_are_bounded(name, tmp_path):
 
 
 def test_members_of_one_name_are_all_measured(tmp_path, monkeypatch):
-    """NumPy reads "nodes" and not "nodes.npy", whose size was the one that counted."""
+    """NumPy reads the member "nodes" in place of "nodes.npy", whose size was checked."""
     monkeypatch.setattr(bounded_files, "MAX_NUMBERS", 49)
     with zipfile.ZipFile(tmp_path / "two.npz", "w") as archive:
         for name, size in (("nodes", 50), ("nodes.npy", 1)):
@@ -131,7 +133,7 @@ def test_bytes_of_meshes_are_bounded(name, tmp_path):
 
 
 def gltf(path, buffer="corners.bin", count=3, parts=1, nodes=1):
-    """Write a glTF file of a triangle; return its path. parts: surfaces of it; nodes: how often these are shown."""
+    """Write a glTF file of a triangle; return its path. parts: its surfaces; nodes: the number of their instances."""
     (path.parent / "corners.bin").write_bytes(np.eye(3, dtype="<f4").tobytes())
     stored = {} if count > 3 else {"bufferView": 0}
     path.write_text(json.dumps({

@@ -1,4 +1,4 @@
-"""Fields of parts say how other axes change their vectors, and along which cable their arc-lengths are."""
+"""Fields of parts declare how their vectors rotate, and to which cable their arc-lengths belong."""
 
 from types import UnionType
 from typing import Annotated, Union, get_args, get_origin
@@ -33,7 +33,7 @@ def turnings_of(kind):
 
 
 def vectors_in(annotation):
-    """Return whether a field holds vectors, or may."""
+    """Return whether a field can hold vectors."""
     if annotation in (Vector, Matrix):
         return True
     inner = get_origin(annotation) in (Union, UnionType, Annotated, tuple)
@@ -55,7 +55,7 @@ def test_checks_know_points_from_directions():
 
 
 class Wheel(Part):
-    """A part of a kind that nothing knows, with vectors of new names."""
+    """A part of an unknown kind with vectors of new names."""
 
     kind = "wheel"
     on: str | None = None
@@ -68,7 +68,7 @@ class Wheel(Part):
 
 
 def test_vectors_of_a_new_part_are_turned():
-    """A vector of a new name stayed along the ground's axes without a word."""
+    """A vector of a new name rotates with the axes."""
     wheel = Wheel(on="A", hub=(1, 0, 2), axle=(0, 0, 3), spoke=(1, 2, 3), end=Attachment(at=(4, 0, 5)))
     found = turned_fields(wheel, UPRIGHT)
     assert found.keys() == {"hub", "axle", "spoke", "end"}
@@ -93,7 +93,7 @@ def test_vectors_of_a_new_part_leave_a_plane():
 
 
 def test_arc_lengths_of_parts_keep_their_part_of_a_cable():
-    """The node that an event watches was left behind where its cable became longer."""
+    """The node of an event moves with the length of its cable."""
     assert [*on_cables(Wheel(on="wire", hub=(0, 0, 0), axle=(1, 0, 0), s=2.0))] == [("s", "wire", 2.0)]
     scene = fu.Scene()
     scene.cable("wire", start=(0, 0, 0), end=(4, 0, 0), elements=4, element="cable12", section=fu.Circle(radius=0.01),

@@ -14,7 +14,7 @@ TIME, X, Y, Z = np.linspace(0, 1, 5), np.array([-1, 0, 1, 2, 4.0]), np.linspace(
 
 
 def cubic_flow(t, x, y, z):
-    """Return velocities (..., 3) that are cubic along each axis: splines have them exactly."""
+    """Return velocities (..., 3), cubic along each axis, which splines represent exactly."""
     return np.stack([0.3 * t**3 - 0.1 * t * x + 0.02 * y**3, 0.1 * x**2 * z + t**2, 0.05 * z**3 - 0.1 * x * y], axis=-1)
 
 
@@ -48,7 +48,7 @@ def test_a_turned_table_has_splines_of_its_own():
 
 
 def resting(flow):
-    """Return a cable in a flow, with its only force that of the flow, by drag."""
+    """Return a cable in a flow, whose only force is drag."""
     scene = fu.Scene(gravity=(0, 0, 0))
     scene.cable("wire", start=(0, 0, 0), end=(2, -1, 0.5), elements=3, element="cable12", **ROPE)
     scene.fluid("sea", density=WATER, table=flow, scale=fu.Harmonic(amplitude=0.2, frequency=0.4, offset=1))
@@ -58,7 +58,7 @@ def resting(flow):
 
 @pytest.mark.parametrize("interpolation", ["cubic", "linear"])
 def test_the_engine_has_its_velocities_and_their_derivatives(interpolation):
-    """The force of inertia on a body too heavy to move: rho V (DU/Dt + C (dU/dt + (grad U)' U))."""
+    """The inertial force on a very heavy body: rho V (DU/Dt + C (dU/dt + (grad U)' U))."""
     flow, place, h = cubic_flow if interpolation == "cubic" else linear_flow, np.array([0.4, -1.2, 0.7]), 1e-5
     C = np.diag([0.5, 0.8, 1.1])
     scene = fu.Scene(gravity=(0, 0, 0))
@@ -79,7 +79,7 @@ def test_the_engine_has_its_velocities_and_their_derivatives(interpolation):
 
 @cache
 def accurate():
-    """Return a run to compare with, computed once."""
+    """Return the reference run, computed once."""
     return resting(table()).run(0.8, tol=1e-9, integrator="explicit", output_step=0.1)
 
 
@@ -91,7 +91,7 @@ def test_all_integrators_run_in_it(integrator):
 
 
 def test_newtons_matrix_is_the_derivative_of_its_residual():
-    """Of drag: second derivatives of the velocity do not come in."""
+    """The matrix of drag contains no second derivatives of the velocity."""
     assert error_by_drags(resting(table()).replace("drag_1", added_mass=None)) < 1e-4
 
 
@@ -132,7 +132,7 @@ def test_planar_scenes_take_it_in_any_plane():
 
 
 def test_a_run_notes_what_leaves_it_and_when():
-    """A ball in free fall through the lower edge, y = -1; the velocity stays as it is there."""
+    """A ball in free fall leaves through the lower edge, y = -1, below which the velocity is constant."""
     scene = fu.Scene()
     scene.rigid_body("ball", mass=2.0, inertia=(1e-3,) * 3, position=(0, 0, 0))
     scene.fluid("wind", density=1.2, table=fu.VelocityTable(y=[-1, 0, 1, 2], velocity=[[1, 0, 0]] * 4))
@@ -157,7 +157,7 @@ def test_a_run_that_ends_with_the_table_is_not_beyond_it():
 
 
 def test_no_gust_is_missed():
-    """A gust of a hundredth of the run on a ball at rest, whose steps would be longer."""
+    """A gust of a hundredth of the run acts on a ball at rest, whose steps would be longer."""
     for interpolation in ("linear", "cubic"):
         scene = fu.Scene(gravity=(0, 0, 0))
         scene.rigid_body("ball", mass=2.0, inertia=(1e-3,) * 3, position=(0, 0, 0))

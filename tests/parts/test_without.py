@@ -1,4 +1,4 @@
-"""Scenes without a part and what hangs on it; the parts that a scene shows are for reading."""
+"""Scenes without a part and its dependants; the parts of a scene are read-only."""
 
 import copy
 import pickle
@@ -15,7 +15,9 @@ ROPE = {"elements": 2, "element": "cable12", "section": fu.Circle(radius=0.01),
 
 
 def everything() -> fu.Scene:
-    """Return a scene with a part of every kind, most of them on others; names are no words of scene files."""
+    """Return a scene with a part of every kind, most of them attached to others; names differ from words of scene
+    files.
+    """
     scene = fu.Scene()
     scene.cable("n-rope", start=(0, 0, 0), end=(2, 0, 0), **ROPE)
     scene.cable("n-second", start=(2, 0, 0), end=(4, 0, 0), **ROPE)
@@ -51,7 +53,7 @@ def named(parts) -> set[str]:
 
 
 def hanging(scene, gone) -> list:
-    """The parts whose text names one that is gone, and so on: a search that knows nothing of fields."""
+    """Return the parts whose text names a removed one, recursively: a search without knowledge of fields."""
     names, found = named([gone]), [gone]
     while more := [part for part in scene.parts() if all(part is not each for each in found) and any(
             word.partition(".")[0] in names for entry, value in plain_data(part).items() if entry != "name"

@@ -16,19 +16,19 @@ KEPT = ["A.position", "trolley.force.y", "wire.position"]
 
 
 def same(one: xarray.Dataset, other: xarray.Dataset) -> bool:
-    """Return whether two sweeps have the same results; times that points took differ."""
+    """Return whether two sweeps have equal results; times of points may differ."""
     return one.drop_vars("seconds").identical(other.drop_vars("seconds"))
 
 
 def scene() -> fu.Scene:
-    """The first scene, on one element, so that a point takes some ms."""
+    """Return the first scene on one element; a point takes some ms."""
     found = fu.load_scene("paper51").replace("wire", elements=2)
     found.run_settings = dict(SHORT)
     return found
 
 
 def by_hand(youngs_modulus: float, friction: float) -> fu.Run:
-    """One point of GRID without a sweep."""
+    """Return one point of GRID without a sweep."""
     base = scene()
     material = fu.Material(youngs_modulus=youngs_modulus, shear_modulus=0.2e9, density=4200.0)
     base = base.replace("wire", material=material).replace("trolley", friction=fu.Friction(coefficient=friction))
@@ -36,14 +36,14 @@ def by_hand(youngs_modulus: float, friction: float) -> fu.Run:
 
 
 def square(x: float, y: float) -> dict:
-    """Numbers, an array, and an error where x is 2."""
+    """Return numbers and an array; fail where x is 2."""
     if x == 2:
         raise ZeroDivisionError("x is two")
     return {"product": x * y, "both": [x, y]}
 
 
 def counted(x: int, folder: str) -> dict:
-    """Leave a line in a file for each time that the point is computed."""
+    """Append a line to a file for each computation of the point."""
     with open(Path(folder) / "computed", "a") as file:
         file.write(f"{x}\n")
     time.sleep(0.01)
@@ -51,7 +51,7 @@ def counted(x: int, folder: str) -> dict:
 
 
 def deadly(x: int, folder: str) -> dict:
-    """Kill the process at x = 5: once where there is no file "always" in the folder."""
+    """Kill the process at x = 5, only once unless the folder has a file "always"."""
     once, always = Path(folder) / "died", Path(folder) / "always"
     if x == 5 and (always.exists() or not once.exists()):
         once.touch()

@@ -1,4 +1,4 @@
-"""The model for a tolerance: what is chosen of cables, by what indicators, and how true the estimate is."""
+"""The model for a tolerance: selected cable models, indicators, and the accuracy of the estimate."""
 
 import warnings
 from dataclasses import replace
@@ -28,14 +28,14 @@ SQUARE = fu.Rectangle(height=0.02, width=0.02)
 
 
 def strip(**changes) -> fu.Scene:
-    """A strip of 1 m, clamped and let go from the horizontal."""
+    """Return a strip of 1 m, clamped and released from the horizontal."""
     scene = fu.Scene()
     scene.cable("strip", **{"start": (0, 0, 0), "end": (1, 0, 0), "section": SQUARE, "material": RUBBER} | changes)
     scene.clamp("strip", s=0.0)
     return scene
 
 
-# What is left out
+# Omitted fields
 
 
 def test_a_scene_that_stays_in_its_plane_is_chosen_planar():
@@ -105,7 +105,7 @@ def test_what_was_given_is_kept_unless_all_is_free():
     assert scene.choose(3e-2, duration=0.1, free="all").models["strip"].law == "engineering_exact"
 
 
-# What is refused
+# Refusals
 
 
 @pytest.mark.parametrize(("keywords", "message"), [
@@ -403,7 +403,7 @@ def _app():
 
 
 def test_a_quantity_that_does_not_change_is_named():
-    """Its error over its change would be 0, whatever the model."""
+    """Its relative error would be 0 with any model."""
     scene = fu.load_scene("paper51")
     choice = scene.choose(1e-2, duration=0.05, quantities=["energy.dissipated", "A.position"])
     said = "energy.dissipated did not change in the short runs: nothing is estimated of that"
@@ -412,7 +412,7 @@ def test_a_quantity_that_does_not_change_is_named():
 
 
 def test_states_of_rest_are_found_once_and_begin_at_the_last_mesh(monkeypatch):
-    """Runs of one mesh share their state of rest; finer meshes, and the run itself, begin at that of the last one."""
+    """Runs of one mesh share their equilibrium; finer meshes, and the run itself, start from that of the last mesh."""
     searched = []
     found = fu.Scene.equilibrium
 
@@ -436,7 +436,7 @@ def test_states_of_rest_are_found_once_and_begin_at_the_last_mesh(monkeypatch):
 
 
 def test_short_runs_from_an_adjusted_state_are_of_the_adjusted_scene():
-    """Where the equilibrium adjusts a spring, runs that start from it are at rest until a load moves them."""
+    """The equilibrium adjusts a spring; runs from it stay at rest until a load acts."""
     scene = fu.Scene()
     scene.cable("line", start=(0, 0, 0), end=(8, 0, 0), rest_length=7.99, elements=8, section=fu.Circle(radius=6e-3),
                 material=fu.Material(youngs_modulus=2e9, poisson_ratio=0.3, density=1100, damping_time=1e-3))
@@ -455,7 +455,7 @@ def test_short_runs_from_an_adjusted_state_are_of_the_adjusted_scene():
 
 
 def test_the_shape_of_a_scene_at_rest_keeps_the_tolerance():
-    """The current of the mooring is constant for 20 s: all that moves is rounding, which no mesh makes smaller."""
+    """The current of the mooring is constant for 20 s: the motion is rounding, which no mesh reduces."""
     scene, tol = fu.load_scene("mooring"), 1e-3
     choice = scene.choose(tol, duration=20.0, free="all")
     assert choice.kept and choice.unchanged == ["motion"]
@@ -470,8 +470,8 @@ def test_the_shape_of_a_scene_at_rest_keeps_the_tolerance():
 
 @pytest.mark.parametrize("seed", [98, 120, 219, 285])
 def test_what_is_kept_is_within_tol(seed):
-    """These random scenes erred by 1.4 to 1.6 tol and were said to be kept: the order of their meshes, seen once, was
-    taken for known. The reference has four times the elements and steps for a thirtieth of the tolerance.
+    """These random scenes had errors of 1.4 to 1.6 tol, since the order of their meshes was estimated from one
+    refinement. The reference has four times the elements and a thirtieth of the tolerance.
     """
     made, tol = random_motion(seed), 1e-3
     with warnings.catch_warnings():

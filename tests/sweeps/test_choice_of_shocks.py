@@ -1,4 +1,4 @@
-"""The choice of a model where coarse meshes do not show what counts: fast riders, contact."""
+"""Choice of a model where coarse meshes miss the relevant motion: fast riders, contact."""
 
 import funicular as fu
 import numpy as np
@@ -130,7 +130,7 @@ def test_meshes_that_begin_inside_of_a_surface_are_passed_over():
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["buckling", "whip"])
 def test_kept_holds_where_small_differences_grow(name):
-    """A strip that buckles was kept at 2.4 tol, by what cables say of beams, and a whip at 2.0 tol."""
+    """A buckling strip had an error of 2.4 tol, by an estimate from cables, and a whip 2.0 tol."""
     subject, tol = SCENES[name], 1e-3
     choice = subject.make().choose(tol, duration=subject.duration, initial=subject.initial, free="all")
     settings = {"output_step": subject.duration / 20, "initial": subject.initial, "progress": False}

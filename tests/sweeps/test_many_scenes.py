@@ -1,4 +1,5 @@
-"""fu.run_many: the bits of scene.run, for one shape and several, on any number of threads; failures alone."""
+"""fu.run_many has the bits of scene.run, for one shape and several, on any number of threads; failures stay separate.
+"""
 
 import threading
 import weakref
@@ -109,7 +110,7 @@ def test_kept_arrays_alone():
 
 
 def test_memory_does_not_grow_with_their_number():
-    """Scenes are taken as results are asked for, and none is kept behind them."""
+    """Scenes are taken as results are requested, and none is kept afterwards."""
     taken, alive = 0, weakref.WeakSet()
 
     def endless():
@@ -131,7 +132,7 @@ def test_memory_does_not_grow_with_their_number():
 
 
 def test_what_is_left_is_given_up_at_once():
-    """A run of days ends when nobody waits for it."""
+    """Abandoned runs end at once."""
     def pendulum(duration: float) -> fu.Scene:
         scene = cable_scene(pins=(0,), elements=1, element="cable12")
         scene.run_settings = {"duration": duration, "step": 1e-3, "output_step": duration / 10}
@@ -182,7 +183,7 @@ def test_a_file_of_one_run():
 
 
 def test_cpu_time_is_that_of_one_scene(monkeypatch):
-    """The clock of the process counts the other threads."""
+    """The clock of the process would include the other threads."""
     monkeypatch.setattr("funicular.solve.motion.run.time.process_time", lambda: pytest.fail("the clock of the process"))
     (run,) = fu.run_many([partial(one_rider, elements=2)], **SETTINGS)
     assert 0.0 < run.report["time_s"]["solve_cpu"] < run.report["time_s"]["total"]
@@ -193,7 +194,7 @@ LOST = {"duration": 0.15, "tol": 1e-4, "output_step": 0.01}
 
 
 def counted_trials(monkeypatch) -> list[str]:
-    """Return a list to which the name of a method is added whenever one is on trial."""
+    """Return a list that records the name of each method on trial."""
     tried = []
 
     def on_trial(engine, rival, method, *others, **more):

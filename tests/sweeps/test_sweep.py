@@ -1,4 +1,4 @@
-"""Sweeps in this process: results are those of a plain loop bit for bit; failures, refusals, the command."""
+"""Sweeps in this process have the bits of a plain loop; failures, refusals, the command."""
 
 import os
 import subprocess
@@ -112,7 +112,7 @@ def test_cables_of_different_lengths_have_their_own_places_of_nodes():
 
 
 def test_a_point_with_other_places_than_the_sample_is_recorded(monkeypatch, tmp_path):
-    """The sample is the two first ones here, of the same length."""
+    """The sample consists of the two first points, of equal length."""
     monkeypatch.setattr(module, "sample", lambda subject, points, missing: {
         k: subject.compute([points.point(k)])[0] for k in missing[:2]})
     given = {"wire.end.x": [1.5, 1.5, 1.8], "wire@1.5.s": [1.5, 1.5, 1.8]}
@@ -152,7 +152,7 @@ def test_a_point_that_fails_is_recorded_and_the_rest_goes_on():
 
 
 def test_a_run_that_fails_is_recorded():
-    """At 60 m/s the body runs off the cable's end."""
+    """At 60 m/s the body leaves the end of the cable."""
     found = fu.sweep(scene(), {"A.velocity.x": [1.0, 60.0]}, keep=["A.position"], duration=0.03, **ALONE)
     assert list(found.status.values) == ["completed", "failed"]
     assert 'slide "trolley": ran off the end of cable "wire"' in str(found.message.values[1])
@@ -305,7 +305,7 @@ def test_a_sweep_is_imported_when_it_is_used():
 
 
 def test_the_command_module_has_no_other_defaults():
-    """What is left out on the command line is what `funicular.sweep` takes."""
+    """Options omitted on the command line have the defaults of `funicular.sweep`."""
     options, defaults = sweep_command.SweepOptions(), module.sweep.__kwdefaults__
     given = {name: value for name, value in vars(options).items() if name != "settings"}
     assert given == {name: defaults[name] for name in given}

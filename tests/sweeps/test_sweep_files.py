@@ -1,4 +1,4 @@
-"""Files of sweeps: stopped sweeps go on, others are refused, damage is found; nothing grows but the file."""
+"""Files of sweeps: interrupted sweeps continue, others are refused, damage is detected, memory is bounded."""
 
 import functools
 import os
@@ -14,7 +14,7 @@ from sweep_subjects import ALONE, SHORT, counted, same, scene, square
 
 
 class Stopped(BaseException):
-    """Stands for what kills a process."""
+    """Simulates the death of a process."""
 
 
 def stop_after(points: int):
@@ -126,7 +126,7 @@ def test_damaged_points_are_found_and_computed_again(tmp_path):
 
 
 def test_the_file_grows_by_a_row_a_point_and_memory_by_a_byte(tmp_path):
-    """What stays in memory a point are flags and, of samples, their values: counted, since measuring it takes long."""
+    """Flags and the values of samples stay in memory per point; they are counted, since a measurement takes long."""
     def make(x: float) -> dict:
         return {"array": np.full(1000, x)}
 
@@ -165,7 +165,7 @@ class Times:
 
 
 def made(source: str):
-    """A function without a file."""
+    """Return a function without a source file."""
     return eval(source)
 
 
@@ -179,7 +179,7 @@ def by_array(factor: float):
     lambda factor: functools.partial(lambda factor, x: {"y": factor * x}, factor),
     lambda factor: lambda x, factor=factor: {"y": factor * x}, lambda factor: made(f"lambda x: {{'y': {factor} * x}}")])
 def test_a_sweep_does_not_go_on_with_a_function_of_other_values(make, tmp_path):
-    """The text is the same, and the results are not: what was computed before was given without a word."""
+    """The text of the function is the same, its results differ."""
     call = {"parameters": {"x": [1.0, 2.0]}, "save": tmp_path / "x.nc", "workers": 0, "progress": False}
     for _ in range(2):
         assert fu.sweep(make(1.0), **call)["y"].values.tolist() == [1, 2]
@@ -211,7 +211,7 @@ def test_a_sweep_does_not_go_on_with_another_watched_function(tmp_path):
 
 
 def test_what_a_function_is_does_not_depend_on_the_process():
-    """A sweep goes on in another process, in which addresses and the order of sets differ."""
+    """A sweep continues in another process, in which addresses and the order of sets differ."""
     code = ("import sys; sys.path[:0] = ['tests', 'tests/sweeps']; from test_sweep_files import *; "
             "from funicular.sweeps.identity import identity_of; "
             "print([identity_of(each) for each in (calls, multiplied(2.0), Times(1.0), by_array(1.0))])")

@@ -1,4 +1,4 @@
-"""Points of sweeps: grids, lists, samples; paths into scenes, what they are checked for, and what messages say."""
+"""Points of sweeps: grids, lists, samples; paths into scenes, their checks, and messages."""
 
 import numpy as np
 import pytest
@@ -94,7 +94,7 @@ def test_what_is_not_swept_stays():
 
 
 def test_several_values_of_one_part_are_changed_at_once():
-    """A friction whose static coefficient is below the other would be refused on the way."""
+    """A change one by one would pass through a static coefficient below the sliding one."""
     base = scene().replace("trolley", friction=Friction(coefficient=0.1, static_coefficient=0.1))
     values = {"trolley.friction.coefficient": 0.4, "trolley.friction.static_coefficient": 0.5}
     friction = changed(base, {path_of(base, path): value for path, value in values.items()}).slides["trolley"].friction

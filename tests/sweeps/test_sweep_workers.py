@@ -1,6 +1,6 @@
-"""Sweeps on Dask: a real scheduler and worker processes, of which some are killed; results are those of one process.
+"""Sweeps on Dask with a real scheduler and worker processes, some of them killed; results equal those of one process.
 
-What is waited for is waited for without a limit but that of the whole test run: the machine may be busy.
+Waiting has no limit but that of the whole test run, since the machine may be busy.
 """
 
 import os
@@ -25,7 +25,7 @@ HERE = Path(__file__).parent
 
 @pytest.fixture(scope="module")
 def cluster():
-    """A scheduler with two workers that are threads of this process, which start at once."""
+    """Return a scheduler with two workers that are threads of this process."""
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=False,
                                   dashboard_address="127.0.0.1:0", scheduler_kwargs={"dashboard": False}) as found:
         yield found.scheduler_address
@@ -33,7 +33,7 @@ def cluster():
 
 @pytest.fixture
 def subjects_found(monkeypatch):
-    """Let worker processes import what the tests sweep."""
+    """Make the sweep's functions importable in worker processes."""
     monkeypatch.setenv("PYTHONPATH", str(HERE))
 
 
@@ -75,7 +75,7 @@ def test_a_cluster_that_lost_its_workers_is_said(monkeypatch):
 
 
 def test_a_batch_whose_result_is_lost_is_computed_again(cluster, monkeypatch):
-    """A future that was lost with the last worker stays so: its batch was asked for again and again, for ever."""
+    """A future that was lost with the last worker stays lost; its batch must be submitted anew."""
     losses = []
 
     def finished_but_one(self, finished=module.DaskWorkers._finished):
@@ -140,7 +140,7 @@ def free_port() -> int:
 
 @pytest.mark.slow
 def test_a_local_cluster_is_not_on_the_network():
-    """Workers run any code that reaches them."""
+    """Workers execute any code that reaches them."""
     import psutil
 
     with module.local_cluster(1):
@@ -224,7 +224,7 @@ def is_alive(pid: int) -> bool:
 
 
 class Cluster:
-    """A scheduler and two worker processes, started as one would by hand."""
+    """A scheduler and two worker processes, started as by hand."""
 
     def __init__(self, folder: Path):
         self.port, self.folder = free_port(), folder
@@ -291,7 +291,7 @@ print(written, peak())
 
 @pytest.mark.slow
 def test_memory_does_not_grow_with_points(tmp_path):
-    """1,000 points are 16 MB of results, 12,000 are 190 MB, which mapped pages of the file may not all be."""
+    """1,000 points are 16 MB of results, 12,000 are 190 MB; the mapped pages of the file must not hold all of them."""
     peaks = []
     for points in (1000, 12_000):
         code = MEMORY.format(tests=str(HERE), points=points)

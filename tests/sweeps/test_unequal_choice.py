@@ -1,4 +1,4 @@
-"""Choices with elements of unequal lengths: taken where a cable bends in few places, and right there."""
+"""Choices with unequal elements: taken, and correct, where a cable bends in few places."""
 
 import funicular as fu
 import numpy as np
@@ -12,7 +12,7 @@ LENGTH = 1 / 1.001
 
 
 def taut() -> fu.Scene:
-    """A cable with 0.1 % of strain between clamps, swung by a force: in three places it bends over 3 % of it."""
+    """Return a clamped cable with 0.1 % of strain, excited by a force: it bends in three places, 3 % of its length."""
     scene = fu.Scene()
     scene.cable("w", start=(0, 0, 0), end=(1, 0, 0), rest_length=LENGTH, element="cable12",
                 section=fu.Circle(radius=2e-3),
@@ -29,7 +29,7 @@ def choice():
 
 
 def test_a_taut_cable_between_clamps(choice):
-    """Fewer than two thirds of the equal elements, closest at clamps and force, within tol of a fine mesh."""
+    """Fewer than two thirds of the equal elements, densest at clamps and force, within tol of a fine mesh."""
     equal = taut().choose(1e-2, duration=0.1, initial="equilibrium")
     model, cable = choice.models["w"], choice.scene.cables["w"]
     assert model.nodes == cable.nodes and model.elements <= 2 / 3 * equal.models["w"].elements
@@ -61,7 +61,7 @@ def test_equal_elements_stay_where_unequal_ones_would_save_little():
 
 
 def test_the_density_of_nodes():
-    """Nil jumps ask for equal elements; a layer at the start asks for nodes there, the more so the finer the mesh."""
+    """Zero jumps give equal elements; a layer at the start attracts nodes, increasingly so on finer meshes."""
     scene = taut().replace("w", elements=20)
     cable = scene.cables["w"]
     straight = cable.nodal_vectors[None]

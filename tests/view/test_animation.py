@@ -1,4 +1,4 @@
-"""What pictures are made of: the numbers of runs, scenes, states of rest and modes at stations, marks and bodies."""
+"""Data of pictures: the numbers of runs, scenes, equilibria and modes at stations, marks and bodies."""
 
 import struct
 
@@ -41,7 +41,7 @@ def test_nodes_are_stations(run, clip):
 
 
 def test_stations_between_nodes_are_those_of_a_cubic(run, clip):
-    """Of the first element of a cable12, by Hermite's functions."""
+    """The first element of a cable12, by Hermite's functions."""
     nodal, length = run["rope.nodal_vectors"][:, :2], run.scene.cables["rope"].length / 8
     rope = part(clip.cables, "rope")
     inside = rope.s < length
@@ -220,7 +220,7 @@ def tetrahedron(path):
 
 
 def binary(path):
-    """Write the same as a binary STL file; return its path."""
+    """Write the same tetrahedron as a binary STL file; return its path."""
     corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype="<f4")
     faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
     path.write_bytes(bytes(80) + struct.pack("<I", 4)
@@ -229,7 +229,7 @@ def binary(path):
 
 
 def gltf(path):
-    """Write the same as a glTF file, by the library that reads it; return its path."""
+    """Write the same tetrahedron as a glTF file by the library that reads it; return its path."""
     trimesh = pytest.importorskip("trimesh")
     trimesh.load_mesh(tetrahedron(path.with_suffix(".stl"))).export(path)
     return path
@@ -287,7 +287,7 @@ def test_quaternions_follow_one_another():
 
 
 def hinged() -> fu.Scene:
-    """Return a scene with a modal beam on a hinge, drawn level."""
+    """Return a scene with a horizontal modal beam on a hinge."""
     scene = fu.Scene()
     scene.modal_body("link", start=(0, 0, 0), end=(1, 0, 0), section=SQUARE, boundary="attached", modes=3,
                      material=TABLE_1)
@@ -339,7 +339,8 @@ def test_modes_swing_about_their_state_and_bodies_stay_whole():
 
 
 def test_a_body_that_turns_in_place_turns_by_no_more_than_can_be_seen():
-    """The largest displacement of such a mode is rounding: scaled to 1 m it would turn the body by thousands of rad."""
+    """The largest displacement of such a mode is rounding; scaled to 1 m it would rotate the body by thousands of rad.
+    """
     scene = fu.load_scene("zip_line")
     rest = scene.equilibrium()
     clip = scene.modes(1, about=rest).animation().clips[0]
@@ -370,7 +371,7 @@ def test_a_load_path_has_the_load_for_its_time():
 
 
 def test_a_path_through_a_limit_point_is_counted_by_its_states():
-    """A shallow arch of two struts under a load at its top, which snaps through."""
+    """A shallow arch of two struts under a load at its top snaps through."""
     scene = fu.Scene(gravity=(0, 0, 0))
     for name, start in (("left", (-1, 0, 0)), ("right", (1, 0, 0))):
         scene.cable(name, start=start, end=(0, 0.2, 0), elements=1, element="cable8p", section=SQUARE, material=TABLE_1)
@@ -404,7 +405,7 @@ def test_short_forms():
 
 
 def test_what_slides_stays_on_its_cable_when_displacements_are_enlarged():
-    """Points that meet, meet where they are drawn: a rider on its cable, and what hangs on the rider on it."""
+    """Coincident points are drawn at one place: a rider on its cable, and a load on the rider."""
     clip = fu.load_scene("zip_line").run(1.0, progress=False).animation("a run").clips[0]
 
     def drawn(position, reference):
@@ -428,7 +429,7 @@ def test_what_slides_stays_on_its_cable_when_displacements_are_enlarged():
 
 
 def test_a_cable_that_rides_has_no_reference_that_goes_along():
-    """It would have to be bent anew at each instant: its slide has none, so that the page draws true displacements."""
+    """A cable that rides another has no drawn reference at each instant, so that the page draws true displacements."""
     scene = fu.load_scene("paper52_ancf")
     clip = scene.run(0.05, progress=False).animation("a run").clips[0]
     assert part(clip.marks, "trolley").reference is None
@@ -452,7 +453,7 @@ def test_pictures_are_called_by_the_file_of_their_scene(tmp_path):
 
 
 def test_modes_as_drawn_say_that_weight_does_not_act_yet():
-    """The cabin of a cable car is a pendulum about its equilibrium alone."""
+    """The cabin of a cable car is a pendulum only about its equilibrium."""
     scene = fu.load_scene("cable_car")
     note = "what swings by its weight has 0 Hz"
     assert any(note in each for each in scene.modes(1, as_drawn=True).animation().notes)

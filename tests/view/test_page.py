@@ -1,4 +1,4 @@
-"""The 3D page, without a browser: how arrays are stored, what is left out, what stands in the file."""
+"""The 3D page without a browser: storage of arrays, omitted data, content of the file."""
 
 import json
 import re
@@ -57,7 +57,7 @@ def test_a_step_that_is_too_small_is_refused():
 
 
 def test_smooth_motion_is_small():
-    """A travelling wave at a million numbers takes less than a bit a number: differences leave next to nothing."""
+    """A travelling wave of a million numbers takes less than a bit per number: its differences are small."""
     animation = animations.wave(stations=1000, frames=1000)
     packer = Packer()
     packer.fixed(animation.clips[0].cables[0].position[..., 1], power_of_two(1e-4))
@@ -98,7 +98,7 @@ def interpolated(s, at, values):
 
 
 def test_stations_that_nobody_sees_are_left_out():
-    """The error of what is drawn is below a quarter of a pixel of 2000, in all frames."""
+    """The drawing error is below a quarter of a pixel of 2000 in all frames."""
     s, time = np.linspace(0, 10, 801), np.linspace(0, 1, 100)
     y = np.sin(np.pi * s / 10) * np.cos(2 * np.pi * time)[:, None]
     position = np.stack([np.broadcast_to(s, y.shape), y, 0 * y], axis=-1)
@@ -163,7 +163,7 @@ def test_long_curves_keep_their_extremes():
 
 @pytest.mark.parametrize(("count", "closed"), [(24, False), (25, True)])
 def test_the_period_of_a_mode(count, closed):
-    """The last frame is the first one again, or one step before it."""
+    """The last frame equals the first one, or precedes it by one step."""
     clip = animations.modes().clips[0]
     if closed:
         cable = clip.cables[0]
@@ -231,7 +231,7 @@ def luminance(colour: str) -> float:
 
 @pytest.mark.parametrize("theme", [0, 1], ids=["light", "dark"])
 def test_contrast(theme):
-    """Text has a contrast of 4.5 and more, lines that carry a meaning of 3 (WCAG 2.1, AA)."""
+    """Text has a contrast of at least 4.5, meaningful lines of at least 3 (WCAG 2.1, AA)."""
     block = re.findall(r":root.*?\}", (SOURCE / "style.css").read_text(encoding="utf-8"), re.DOTALL)[theme]
     colours = dict(re.findall(r"--([\w-]+): (#\w{6})", block))
     series = re.findall(r"#\w{6}", re.findall(r"(?:light|dark): \[(.*?)\]",

@@ -1,4 +1,4 @@
-"""The 3D page in a real browser, headless: what is drawn is what the animation has."""
+"""The 3D page in a headless browser: the picture agrees with the animation."""
 
 import base64
 import html
@@ -56,7 +56,7 @@ def files(tmp_path_factory):
 
 @pytest.fixture
 def opened(chromium, files):
-    """Open a page by its name; when the test is over nothing may have been complained about or asked for."""
+    """Open a page by its name; at the end of the test there must be no error message and no network request."""
     pages = []
 
     def open_(name: str, **settings) -> Opened:
@@ -133,7 +133,7 @@ def test_exaggeration_is_drawn_and_said(opened):
 
 
 def test_what_slides_is_not_exaggerated(opened):
-    """The body would leave its cable: its way along it would be enlarged, too."""
+    """Enlarged displacements would include the travel along the cable and take the body off it."""
     page, clip = opened("paper51"), animations.paper51().clips[0]
     page("f.set({factor: 5})")
     page("f.goToFrame(25)")
@@ -179,7 +179,7 @@ def test_pointing_says_name_place_and_value(opened):
 
 
 def test_pointing_at_a_slide_says_the_tension_on_both_sides(opened):
-    """It is that of the run, also between stations, where the cable's own tension is interpolated."""
+    """The tension is that of the run, also between stations, where the tension of the cable is interpolated."""
     page, clip = opened("paper51"), animations.paper51().clips[0]
     page("f.goToFrame(25)")
     page.drawn()
@@ -239,7 +239,7 @@ def test_a_followed_body_stays_in_its_place(opened):
 
 
 def ends_in_sight(page, cable: str) -> bool:
-    """Whether both ends of a cable are in the picture, with room for the symbols of supports."""
+    """Return whether both ends of a cable are in the picture, with room for the symbols of supports."""
     width, height = page.page.evaluate(SIZE)
     points = page("f.cable(a)", cable)
     pixels = [page("f.pixel(a)", points[end]) for end in (0, -1)]
@@ -254,7 +254,7 @@ SIZE = """() => {
 
 @pytest.mark.parametrize(("name", "cable"), [("paper51", "wire"), ("catenary", "contact"), ("twisted", "beam")])
 def test_the_start_view_fits_the_window_until_the_reader_moves_it(opened, name, cable):
-    """Both ends of a scene were cut off where the window had changed after loading."""
+    """Both ends of the scene stay visible when the window changes after loading."""
     page = opened(name, viewport={"width": 1400, "height": 420})
     for width, height in ((1280, 800), (1600, 900), (700, 900), (1400, 420), (1280, 800)):
         page.page.set_viewport_size({"width": width, "height": height})
@@ -274,7 +274,7 @@ def test_the_start_view_fits_the_window_until_the_reader_moves_it(opened, name, 
 
 
 def test_heads_of_arrows_are_part_of_them(opened):
-    """The weights of droppers, 4 N beside the 120 N of a pantograph, had heads as high as the catenary."""
+    """The heads of arrows scale with their forces: 4 N of a dropper beside 120 N of a pantograph."""
     page = opened("catenary", color_scheme="light")
     page.drawn()
     picture = image(page)
@@ -287,7 +287,7 @@ def test_heads_of_arrows_are_part_of_them(opened):
 
 
 def test_axis_views_look_along_axes(opened):
-    """x to the right and y up along z, at one scale; the plane seen along y has x to the right."""
+    """x points to the right and y up along z, at one scale; in the view along y, x points to the right."""
     page = opened("twisted")
     for view, right, up in (("z", 0, 1), ("x", 2, 1), ("y", 0, 2)):
         page("f.look(a)", view)
@@ -327,13 +327,13 @@ def test_the_menu_of_modes(opened):
 
 
 def test_modes_move_at_once(opened):
-    """Unless the reader's system asks for less motion, as in the other tests."""
+    """Unless the system of the reader requests less motion, as in the other tests."""
     assert opened("modes", reduced_motion="no-preference")("f.playing")
     assert not opened("modes")("f.playing")
 
 
 def test_a_page_in_a_notebook(chromium, files, tmp_path):
-    """Notebooks put it into a frame that has no rights but to run scripts."""
+    """Notebooks put the page into a frame that may only run scripts."""
     page = html.escape(files("paper51").read_text(encoding="utf-8"))
     path = tmp_path / "notebook.html"
     path.write_text(f'<iframe srcdoc="{page}" sandbox="allow-scripts" style="width: 900px; height: 560px"></iframe>',
@@ -447,7 +447,7 @@ def test_the_switch_of_dark_and_light(opened):
 
 
 def test_a_missing_graphics_card_is_said(chromium, files, tmp_path):
-    """No WebGL: the page says so instead of staying empty."""
+    """Without WebGL the page shows a message."""
     text = files("twisted").read_text(encoding="utf-8")
     path = tmp_path / "without.html"
     without = "<script>HTMLCanvasElement.prototype.getContext = () => null;</script>"
@@ -467,10 +467,10 @@ def beam_at_frame_30(page: Opened) -> np.ndarray:
 
 
 def test_the_picture_of_a_beam(opened):
-    """The golden image was looked at. Software drawing differs between versions of the browser by shades and edges.
+    """The reference image was inspected. Software rendering differs by shades and edges between browsers.
 
-    At most 0.5 % of the pixels may differ by more than a tenth of the range, and all by 0.18 % of it on average. What
-    is drawn one frame later differs by 0.64 and 0.22 %.
+    At most 0.5 % of the pixels may differ by more than a tenth of the range, and all by 0.18 % of it on average. The
+    picture of the next frame differs by 0.64 and 0.22 %.
     """
     drawn = beam_at_frame_30(opened("twisted", **SMALL))[..., :3]
     golden = imread(GOLDEN)[..., :3]

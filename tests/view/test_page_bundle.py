@@ -1,4 +1,4 @@
-"""The checked-in bundle of the page is what its source gives."""
+"""The checked-in bundle of the page agrees with its source."""
 
 import shutil
 import subprocess

@@ -1,4 +1,4 @@
-"""Pictures: what they draw. That they look right was judged by eye, on bundled scenes and on a spatial one."""
+"""The content of pictures. Their appearance was inspected on bundled scenes and a spatial one."""
 
 import matplotlib.pyplot as pyplot
 import numpy as np

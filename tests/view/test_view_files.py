@@ -1,4 +1,4 @@
-"""Pages, films and files for ParaView, from Python and from the command line: what is written, and what is refused."""
+"""Pages, films and files for ParaView, from Python and from the command line: output and refusals."""
 
 import sys
 import xml.etree.ElementTree as ElementTree
@@ -66,7 +66,7 @@ def test_view_opens_a_page_in_the_browser(run, monkeypatch, capsys):
 
 
 class Kernel:
-    """Stands for IPython where a notebook runs."""
+    """Simulates IPython in a notebook."""
 
     kernel = "a kernel"
 
@@ -119,7 +119,7 @@ def test_an_mp4_has_its_pictures(run, tmp_path):
 
 
 def test_modes_follow_one_another_in_a_film(tmp_path):
-    """Three periods each, 25 pictures a second."""
+    """Three periods of each mode, 25 pictures a second."""
     scene = fu.load_scene("cable_car")
     modes = scene.modes(2, about=scene.equilibrium())
     path = modes.save_video(tmp_path / "modes.gif", speed=20)
