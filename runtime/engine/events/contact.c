@@ -1,5 +1,5 @@
 /* Contact with a surface comes and goes: where the deepest point passes zero, at the ends of a step or within it. */
-#include "base/double_root.h"
+#include "base/cubic.h"
 #include "equations/run.h"
 #include "events/contact.h"
 #include "events/list.h"
@@ -84,22 +84,35 @@ static int begin(fu_run *run, const fu_coupling *coupling)
     return FU_RUNNING;
 }
 
-double fu_contact_gap(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
-                      const fu_state *state, int element, int number, double *rate, fu_surface_end *end)
+/* Returns a point at a state along the axes of its surface's shape. */
+static fu_surface_end end_of(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                             const fu_state *state, int element, int number)
 {
     fu_contact_point point;
+    fu_surface_end end;
     double w[3] = {0.0};
     fu_contact_place(model, contact, on, state, element, number, &point);
     fu_surface_distance(model->dim, &contact->surface, on, point.r, &point.distance);
     fu_surface_past(model->dim, on, point.r, point.v, w);
-    *rate = fu_dot(model->dim, point.distance.n, w);
-    if (end) {
-        memcpy(end->y, point.distance.y, sizeof end->y);
-        fu_surface_into(model->dim, on, w, end->rate);
-        fu_surface_into(model->dim, on, point.distance.n, end->n);
-        end->gap = point.distance.g - contact->radius;
-    }
-    return point.distance.g - contact->radius;
+    memcpy(end.y, point.distance.y, sizeof end.y);
+    fu_surface_into(model->dim, on, w, end.rate);
+    fu_surface_into(model->dim, on, point.distance.n, end.n);
+    end.gap = point.distance.g - contact->radius;
+    end.gap_rate = fu_dot(model->dim, point.distance.n, w);
+    return end;
+}
+
+double fu_contact_grazing(const fu_run *run, const fu_contact *contact, const fu_attachment_state on[2], int element,
+                          int number, double h)
+{
+    const fu_model *model = run->model;
+    const fu_surface_end ends[2] = {end_of(model, contact, &on[0], &run->now, element, number),
+                                    end_of(model, contact, &on[1], &run->next, element, number)};
+    const double found = fu_grazing_time((fu_course){ends[0].gap, ends[0].gap_rate},
+                                         (fu_course){ends[1].gap, ends[1].gap_rate}, 1, h, run->round_off);
+    return found > 0.0
+               ? found
+               : fu_surface_detect_within(model->dim, &contact->surface, contact->radius, ends, h, run->round_off);
 }
 
 /* Returns how far a point that is near may have moved over a step past the surface, m, by the velocities at one end of
@@ -120,19 +133,6 @@ static double reach_of(const fu_model *model, const fu_contact *contact, const f
                 2.0 * farthest * sqrt(fu_dot(model->dim == 3 ? 3 : 1, on->omega, on->omega)));
 }
 
-double fu_contact_detect_within(const fu_run *run, const fu_contact *contact, double h)
-{
-    const fu_model *model = run->model;
-    fu_attachment_state on, on_next;
-    fu_surface_end ends[2];
-    double rate;
-    fu_surface_at(model, &contact->surface, &run->now, &on);
-    fu_surface_at(model, &contact->surface, &run->next, &on_next);
-    fu_contact_gap(model, contact, &on, &run->now, 0, 0, &rate, &ends[0]);
-    fu_contact_gap(model, contact, &on_next, &run->next, 0, 0, &rate, &ends[1]);
-    return fu_surface_detect_within(model->dim, &contact->surface, contact->radius, ends, h, run->round_off);
-}
-
 #define RESOLVED 0.25 /* of an impact's time over pi: what steps in it stay below */
 
 /* Returns the step that resolves the impact of a body that begins at `now`, s, 0 where that is not needed: where its
@@ -145,11 +145,10 @@ static double step_of_impact(const fu_run *run, const fu_contact *contact, doubl
     if (contact->cable >= 0 || run->fixed_step > 0.0) return 0.0;
     fu_surface_at(model, &contact->surface, &run->now, &on);
     for (int k = 0; k < contact->n_points; ++k) {
-        double rate;
-        const double depth = -fu_contact_gap(model, contact, &on, &run->now, 0, k, &rate, 0);
-        if (depth < -h * fabs(rate)) continue;
-        fastest = fmax(fastest, fabs(rate));
-        deepest_now = fmax(deepest_now, depth);
+        const fu_surface_end end = end_of(model, contact, &on, &run->now, 0, k);
+        if (end.gap > h * fabs(end.gap_rate)) continue;
+        fastest = fmax(fastest, fabs(end.gap_rate));
+        deepest_now = fmax(deepest_now, -end.gap);
     }
     if (!(fastest * (run->duration - run->now.t) > fmax(run->absolute_tol, run->tol * run->controlled_motion)))
         return 0.0;
@@ -161,30 +160,22 @@ static double step_of_impact(const fu_run *run, const fu_contact *contact, doubl
     return h > 1.5 * longest ? longest : 0.0;
 }
 
-static double dip(const fu_run *run, const fu_coupling *coupling, int which, double h)
+static double grazing(const fu_run *run, const fu_coupling *coupling, int which, double h)
 {
     const fu_model *model = run->model;
     const fu_contact *contact = of(coupling);
     double first = 0.0;
-    fu_attachment_state on, on_next;
+    fu_attachment_state on[2];
     (void)which;
     if (run->now.flags[coupling->flags]) return step_of_impact(run, contact, h);
-    fu_surface_at(model, &contact->surface, &run->now, &on);
-    fu_surface_at(model, &contact->surface, &run->next, &on_next);
+    fu_surface_at(model, &contact->surface, &run->now, &on[0]);
+    fu_surface_at(model, &contact->surface, &run->next, &on[1]);
     const double reach =
-        fmax(reach_of(model, contact, &on, &run->now, h), reach_of(model, contact, &on_next, &run->next, h));
+        fmax(reach_of(model, contact, &on[0], &run->now, h), reach_of(model, contact, &on[1], &run->next, h));
     for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
-        if (!fu_contact_may_be_active(model, contact, &on_next, &run->next, e, reach)) continue;
+        if (!fu_contact_may_be_active(model, contact, &on[1], &run->next, e, reach)) continue;
         for (int k = 0; k < contact->n_points; ++k) {
-            double rate, rate_next;
-            fu_surface_end ends[2];
-            const double gap = fu_contact_gap(model, contact, &on, &run->now, e, k, &rate, &ends[0]);
-            const double gap_next = fu_contact_gap(model, contact, &on_next, &run->next, e, k, &rate_next, &ends[1]);
-            double found =
-                fu_grazing_time((fu_course){gap, rate}, (fu_course){gap_next, rate_next}, 1, h, run->round_off);
-            if (found == 0.0)
-                found =
-                    fu_surface_detect_within(model->dim, &contact->surface, contact->radius, ends, h, run->round_off);
+            const double found = fu_contact_grazing(run, contact, on, e, k, h);
             if (found > 0.0 && (first == 0.0 || found < first)) first = found;
         }
     }
@@ -198,4 +189,4 @@ const fu_coupling_events fu_contact_events = {.direction = 0,
                                               .sign = sign,
                                               .act = act,
                                               .begin = begin,
-                                              .grazing = dip};
+                                              .grazing = grazing};

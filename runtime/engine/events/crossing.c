@@ -1,7 +1,7 @@
 /* Lines of a crossing come into contact, and lose it: where the penetration passes zero, where damping would turn the
  * force round, and where a closest point passes the end of its line.
  */
-#include "base/double_root.h"
+#include "base/cubic.h"
 #include "couplings/crossing/crossing.h"
 #include "equations/run.h"
 #include "events/list.h"
@@ -26,7 +26,7 @@ static int gap_of(const fu_model *model, const fu_crossing *crossing, const fu_s
 }
 
 /* Lines that touch may part within a step and be together again, lines that do not may touch. */
-static double dip(const fu_run *run, const fu_coupling *coupling, int which, double h)
+static double grazing(const fu_run *run, const fu_coupling *coupling, int which, double h)
 {
     const fu_crossing *crossing = crossing_of(coupling);
     fu_course from, to;
@@ -107,6 +107,6 @@ const fu_coupling_events fu_crossing_events = {
     .watched = watched,
     .depth = depth,
     .act = act,
-    .grazing = dip,
+    .grazing = grazing,
     .begin = begin,
 };

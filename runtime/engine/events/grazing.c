@@ -1,7 +1,7 @@
 /* Dips: what is watched passes zero within a step and is back at its end, as by a grazing contact. The step then ends
  * where it is predicted to be farthest beyond zero, by the cubic through its values and rates at both ends (Hermite's).
  */
-#include "base/double_root.h"
+#include "base/cubic.h"
 #include "bodies/rotation.h"
 #include "equations/run.h"
 #include "events/events.h"
@@ -48,9 +48,9 @@ static fu_course course_of(const fu_model *model, const fu_event_function *watch
 static double return_of(fu_course from, fu_course to, double h, double least)
 {
     const int side = from.rate > 0.0 ? 1 : -1;
-    const double y[2] = {0.0, -side * to.value}, m[2] = {-fabs(h * from.rate), -side * h * to.rate};
-    const double x = fu_part_of_minimum(y, m);
-    return y[1] > least && x > 0.0 && x < 1.0 && -m[0] > least ? x * h : 0.0;
+    const fu_step_ends ends = {{0.0, -side * to.value}, {-fabs(from.rate), -side * to.rate}};
+    const double x = fu_part_of_minimum(&ends, h);
+    return ends.value[1] > least && x > 0.0 && x < 1.0 && fabs(h * from.rate) > least ? x * h : 0.0;
 }
 
 /* Returns when a watch is farthest beyond zero in the step, s after `now`. */

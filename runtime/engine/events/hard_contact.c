@@ -1,6 +1,5 @@
 /* What a hard contact does by itself (couplings/common/coupling_events.h): it comes together, and opens where it would
  * pull. */
-#include "base/double_root.h"
 #include "equations/run.h"
 #include "events/contact.h"
 #include "events/events.h"
@@ -62,16 +61,14 @@ static double watched(const fu_run *run, const fu_coupling *coupling, const fu_s
     return -row.g;
 }
 
-static double dip(const fu_run *run, const fu_coupling *coupling, int which, double h)
+static double grazing(const fu_run *run, const fu_coupling *coupling, int which, double h)
 {
-    fu_hard_row from, to;
+    const fu_contact *contact = &fu_hard_contact_of(coupling)->contact;
+    fu_attachment_state on[2];
     if (which == OF_FRICTION || fu_hard_flags_of(coupling, &run->now)->mode != FU_APART) return 0.0;
-    fu_hard_row_at(run->model, fu_hard_contact_of(coupling), &run->now, &from);
-    fu_hard_row_at(run->model, fu_hard_contact_of(coupling), &run->next, &to);
-    const double found =
-        fu_grazing_time((fu_course){from.g, from.rate}, (fu_course){to.g, to.rate}, 1, h, run->round_off);
-    if (found > 0.0 || !(from.g > run->round_off && to.g > run->round_off)) return found;
-    return fu_contact_detect_within(run, &fu_hard_contact_of(coupling)->contact, h);
+    fu_surface_at(run->model, &contact->surface, &run->now, &on[0]);
+    fu_surface_at(run->model, &contact->surface, &run->next, &on[1]);
+    return fu_contact_grazing(run, contact, on, 0, 0, h);
 }
 
 static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
@@ -113,4 +110,4 @@ static double beyond(const fu_model *model, const fu_coupling *coupling, const f
 }
 
 const fu_coupling_events fu_hard_contact_events = {
-    .beyond = beyond, .watches = watches, .watched = watched, .grazing = dip, .act = act, .begin = begin};
+    .beyond = beyond, .watches = watches, .watched = watched, .grazing = grazing, .act = act, .begin = begin};

@@ -1,7 +1,7 @@
 /* Forces between two points pass from piece to piece of their law (couplings/force/segments.c): the distance passes a
  * bound, or the force turns round.
  */
-#include "base/double_root.h"
+#include "base/cubic.h"
 #include "couplings/force/point_force.h"
 #include "equations/run.h"
 #include "events/list.h"
@@ -161,8 +161,8 @@ static end_course end_of(const fu_model *model, const fu_point_force *between, c
 static double between_ends(end_course a, end_course b, int bends, double x)
 {
     const double y = 1.0 - x;
-    if (!bends)
-        return y * y * ((1.0 + 2.0 * x) * a.value + x * a.rate) + x * x * ((1.0 + 2.0 * y) * b.value - y * b.rate);
+    const fu_step_ends ends = {{a.value, b.value}, {a.rate, b.rate}};
+    if (!bends) return fu_value_within(&ends, 1.0, x);
     return y * y * y * ((1.0 + 3.0 * x + 6.0 * x * x) * a.value + x * (1.0 + 3.0 * x) * a.rate + 0.5 * x * x * a.bend) +
            x * x * x * ((1.0 + 3.0 * y + 6.0 * y * y) * b.value - y * (1.0 + 3.0 * y) * b.rate + 0.5 * y * y * b.bend);
 }
@@ -244,7 +244,7 @@ static fu_course wrong_sense(const fu_point_force *between, int piece, const gap
 
 /* Each of the passages alone is smooth. A piece with a force is entered at its bound first, as its damper then has its
  * sense. */
-static double dip(const fu_run *run, const fu_coupling *coupling, int which, double h)
+static double grazing(const fu_run *run, const fu_coupling *coupling, int which, double h)
 {
     const fu_point_force *between = force_of(coupling);
     const int piece = fu_force_segment(between, &run->now), sense = between->senses[piece];
@@ -298,7 +298,7 @@ static const fu_deferred_operations deferred = {
 const fu_coupling_events fu_point_force_events = {
     .watches = watches,
     .watched = watched,
-    .grazing = dip,
+    .grazing = grazing,
     .act = act,
     .can_act = can_act,
     .begin = begin,

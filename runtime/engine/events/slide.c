@@ -1,7 +1,7 @@
 /* What a slide does by itself (couplings/common/coupling_events.h): it passes from element to element of its cable,
  * sticks, breaks loose, and reaches what waits at the ends. events/end_stops.c has what then happens.
  */
-#include "base/double_root.h"
+#include "base/cubic.h"
 #include "couplings/joint/joint.h"
 #include "couplings/slide/resistance.h"
 #include "equations/acceleration.h"
@@ -85,7 +85,7 @@ static double watched(const fu_run *run, const fu_coupling *coupling, const fu_s
 }
 
 /* A slide comes into a buffer at its end. */
-static double dip(const fu_run *run, const fu_coupling *coupling, int which, double h)
+static double grazing(const fu_run *run, const fu_coupling *coupling, int which, double h)
 {
     const fu_model *model = run->model;
     const int j = coupling->index;
@@ -115,7 +115,7 @@ static const fu_path_operations path = {
 const fu_coupling_events fu_slide_events = {
     .watches = watches,
     .watched = watched,
-    .grazing = dip,
+    .grazing = grazing,
     .sign = sign,
     .act = act,
     .can_act = can_act,

@@ -30,43 +30,6 @@ int fu_limit_stretch(int dim, double stiffness, double most, double *stretch)
     return 1;
 }
 
-fu_cubic fu_cubic_at(double x)
-{
-    const double rest = 1.0 - x;
-    return (fu_cubic){x * x * (3.0 - 2.0 * x),
-                      {rest * rest * x, -x * x * rest},
-                      6.0 * x * rest,
-                      {rest * (1.0 - 3.0 * x), x * (3.0 * x - 2.0)}};
-}
-
-double fu_value_within(const fu_step_ends *ends, double h, double x)
-{
-    const fu_cubic at = fu_cubic_at(x);
-    return ends->value[0] + at.change * (ends->value[1] - ends->value[0]) +
-           h * (at.rates[0] * ends->rate[0] + at.rates[1] * ends->rate[1]);
-}
-
-double fu_rate_within(const fu_step_ends *ends, double h, double x)
-{
-    const fu_cubic at = fu_cubic_at(x);
-    return at.slope * (ends->value[1] - ends->value[0]) / h + at.slope_rates[0] * ends->rate[0] +
-           at.slope_rates[1] * ends->rate[1];
-}
-
-double fu_part_to_rise(const fu_step_ends *ends, double h)
-{
-    double low = 0.0, high = 1.0, x = ends->value[0] / (ends->value[0] - ends->value[1]);
-    for (int i = 0; i < 50 && high - low > 1e-15; ++i) {
-        const double value = fu_value_within(ends, h, x), slope = h * fu_rate_within(ends, h, x);
-        if (value > 0.0) high = x;
-        else low = x;
-        const double next = x - value / slope;
-        if (fabs(next - x) <= 1e-15) break;
-        x = slope > 0.0 && next > low && next < high ? next : 0.5 * (low + high);
-    }
-    return x;
-}
-
 /* Returns where the cubic through values at equal distances on [0, 1] is least, or 1. */
 static double least_of(const double g[BOUND_SAMPLES + 1])
 {

@@ -2,26 +2,11 @@
 #ifndef FUNICULAR_COUPLINGS_COMMON_STICK_FRICTION_H
 #define FUNICULAR_COUPLINGS_COMMON_STICK_FRICTION_H
 
+#include "base/cubic.h"
+
 /* Limits the stretch of friction's spring, of this stiffness in N/m, to what friction allows, in N; returns whether
  * that slides. */
 int fu_limit_stretch(int dim, double stiffness, double most, double *stretch);
-
-/* Weights of the cubic through values and rates at both ends of a step of the length 1 (Hermite), at a part of it: of
- * the change of the value, of both rates; and the same of its slope. */
-typedef struct {
-    double change, rates[2], slope, slope_rates[2];
-} fu_cubic;
-fu_cubic fu_cubic_at(double x);
-
-/* Values at both ends of a step, and their rates. */
-typedef struct {
-    double value[2], rate[2];
-} fu_step_ends;
-/* The value after a part of a step of h, s; its rate there. */
-double fu_value_within(const fu_step_ends *ends, double h, double x);
-double fu_rate_within(const fu_step_ends *ends, double h, double x);
-/* The last part of a step after which a value is positive that is not at its beginning and is at its end. */
-double fu_part_to_rise(const fu_step_ends *ends, double h);
 
 /* What friction may be on its way through a step, N, at a depth, m, that changes at a rate, m/s. */
 typedef double fu_friction_bound(const void *of, double depth, double rate);

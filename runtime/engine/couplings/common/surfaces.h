@@ -58,17 +58,6 @@ void fu_surface_motion(int dim, const fu_attachment_state *at, const double *r, 
 void fu_surface_out(int dim, const fu_attachment_state *at, const double *own, double *out);
 void fu_surface_into(int dim, const fu_attachment_state *at, const double *given, double *own);
 
-/* A point at an end of a step, along the shape's axes: its place, m, its velocity past the surface, m/s, the gradient
- * of its distance, how far it is off the surface, m. */
-typedef struct {
-    double y[3], rate[3], n[3], gap;
-} fu_surface_end;
-/* Returns when a point that is off the surface at the first end of a step of h is below it by more than `least` and
- * comes off it again, as its way is predicted to be, s after that end; 0 where it does not:
- * couplings/common/surface_continuous_detection.c. */
-double fu_surface_detect_within(int dim, const fu_surface *surface, double radius, const fu_surface_end ends[2],
-                                double h, double least);
-
 /* Fields of a structure's member `surface` (base/fields.h), which has the words of its shapes in fu_surface_shapes. */
 extern const char *const fu_surface_shapes[], *const fu_surface_role[];
 #define FU_SURFACE_FIELD(structure, member, kind, words)                                                               \

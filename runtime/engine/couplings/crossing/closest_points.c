@@ -4,6 +4,7 @@
  * Beyond its ends a cable goes on straight, so that points have arc-lengths there, too, from which the way to the end
  * is known.
  */
+#include "base/cubic.h"
 #include "bodies/model.h"
 #include "couplings/crossing/crossing.h"
 
@@ -121,18 +122,6 @@ void fu_line_bends_at(const fu_model *model, const fu_crossing *crossing, const 
     }
 }
 
-/* Takes a quantity and its rate along the cubic through both ends of a step. */
-static void along_cubic(const fu_moment *at, const double *a, const double *a_t, const double *b, const double *b_t,
-                        double *value, double *rate)
-{
-    const double x = at->x, rest = 1.0 - x, h = at->h;
-    for (int d = 0; d < 3; ++d) {
-        const double change = b[d] - a[d];
-        value[d] = a[d] + x * x * (3.0 - 2.0 * x) * change + h * x * rest * (rest * a_t[d] - x * b_t[d]);
-        rate[d] = 6.0 * x * rest * change / h + rest * (1.0 - 3.0 * x) * a_t[d] + x * (3.0 * x - 2.0) * b_t[d];
-    }
-}
-
 /* Makes a line's point at a moment; a bar's is not on its carrier within a step. */
 static void point_at(const fu_model *model, const fu_crossing *crossing, int line, const fu_moment *at, double s,
                      fu_line_point *out)
@@ -145,9 +134,9 @@ static void point_at(const fu_model *model, const fu_crossing *crossing, int lin
     fu_line_point_of(model, crossing, line, at->next, s, &to);
     bends_of_line(model, crossing, line, at->now, s, from_k);
     bends_of_line(model, crossing, line, at->next, s, to_k);
-    along_cubic(at, from.r, from.v, to.r, to.v, out->r, out->v);
-    along_cubic(at, from.t, from.w, to.t, to.w, out->t, out->w);
-    along_cubic(at, from.k, from_k, to.k, to_k, out->k, unused);
+    fu_vector_within(3, from.r, from.v, to.r, to.v, at->h, at->x, out->r, out->v);
+    fu_vector_within(3, from.t, from.w, to.t, to.w, at->h, at->x, out->t, out->w);
+    fu_vector_within(3, from.k, from_k, to.k, to_k, at->h, at->x, out->k, unused);
 }
 
 /* Makes both points at out->s as the kernels take them. */

@@ -1,45 +1,27 @@
-/* Lines that touch within a step and not at its ends, as where they graze, or fly through each other and past an end of
- * one of them.
- *
- * Between the ends of the step all points of the lines are taken along the cubics of their places and velocities there
- * (Hermite's). The closest points of the lines so placed are followed through the step. As their distance changes by no
- * more than the ways of points of both lines, lines can go as far as they are off without touching; so they are led on
- * from one such line_place to the next (conservative advancement; Mirtich 1996). Where they are led on by more, since
- * so little is left, the cubic of the gap through both places tells whether it dips below zero between them.
+/* Continuous collision detection of two lines within one step: grazing contact, and lines that pass through each other
+ * near an end of one of them. Their closest points are followed through the step.
  */
+#include "base/cubic.h"
 #include "bodies/model.h"
+#include "couplings/common/continuous_detection.h"
 #include "couplings/crossing/crossing.h"
 
 #include <math.h>
 #include <string.h>
 
-/* of a step: lines are led on by no more, and by so much where nothing tells how far they can go */
-#define MAX_ADVANCE 0.0625
-#define MIN_ADVANCE 1e-4 /* of a step: lines are led on by no less */
-/* of the distance at which lines touch: what points go at least from line_place to line_place */
-#define ADVANCE_SHARE 0.25
-#define CAUTION 0.5 /* of the way that closest points have to the ends of their lines, at their rate */
-#define CORNER 1e-2 /* of a bracket: how far from its ends the bottom of a dip is looked for */
-/* of a dip: how far from zero its bottom may be predicted and yet be looked at */
-#define GRAZING_TOLERANCE 1e-2
+#define MAX_ADVANCE 0.0625 /* of a step: also the advance where no bound is known */
+#define MIN_ADVANCE 1e-4   /* of a step */
+#define ADVANCE_SHARE                                                                                                  \
+    0.25           /* of the distance at which lines touch: the shortest path of points from advance to advance */
+#define SAFETY 0.5 /* of the path of closest points to the ends of their lines, at their rate */
 
-enum { SECTIONS = 8 }; /* of a bracket of the bottom of a dip */
-
-/* The contact after a part x of a step: how far lines are in contact, m; the gap and its rate by x; the part for which
- * lines do not touch; whether the closest points are known. */
-typedef struct {
-    double x, margin, gap, rate, free;
-    int found;
-} line_place;
-
-/* What is followed through a step: the numbers of the closest points and the normal; the way that lines go at most, m.
- */
+/* What is followed through a step, and the longest path of points of both lines in it, m. */
 typedef struct {
     const fu_model *model;
     const fu_crossing *crossing;
-    fu_moment at;
-    double s[FU_LINES], normal[3], way, shortest;
-} approach;
+    const fu_state *now, *next;
+    double h, path, min_advance;
+} line_approach;
 
 /* Makes the rates of the arc-lengths of the closest points, m/s. */
 static void rates_of_points(const fu_crossing *crossing, const fu_closest_points *points, double rates[FU_LINES])
@@ -58,87 +40,54 @@ static void rates_of_points(const fu_crossing *crossing, const fu_closest_points
 }
 
 /* Returns the part of the step that a closest point needs at least to come within the ends of its line. */
-static double part_beyond_ends(const approach *of, const fu_closest_points *points)
+static double part_beyond_ends(const line_approach *of, const fu_closest_points *points)
 {
     const fu_crossing *crossing = of->crossing;
     double rates[FU_LINES], part = 0.0;
     rates_of_points(crossing, points, rates);
     for (int line = 0; line < FU_LINES; ++line) {
         const double beyond = fmax(crossing->low[line] - points->s[line], points->s[line] - crossing->high[line]);
-        if (beyond > 0.0) part = fmax(part, CAUTION * beyond / (of->at.h * fabs(rates[line])));
+        if (beyond > 0.0) part = fmax(part, SAFETY * beyond / (of->h * fabs(rates[line])));
     }
     return part;
 }
 
 /* Follows the closest points to the part x of the step. */
-static line_place follow(approach *of, double x)
+static fu_approach follow(const void *what, const fu_approach *near, double x)
 {
+    const line_approach *of = what;
     const fu_crossing *crossing = of->crossing;
-    line_place out = {.x = x, .margin = -INFINITY, .gap = NAN, .rate = NAN, .free = MAX_ADVANCE};
+    const fu_moment moment = {of->now, of->next, of->h, x};
+    fu_approach out = {.x = x, .gap = NAN, .rate = NAN, .depth = -INFINITY, .free = MAX_ADVANCE};
     fu_closest_points points;
     fu_crossing_contact contact;
-    of->at.x = x;
-    fu_find_closest_within(of->model, crossing, &of->at, of->s, &points);
+    memcpy(out.s, near->s, sizeof out.s);
+    memcpy(out.normal, near->normal, sizeof out.normal);
+    fu_find_closest_within(of->model, crossing, &moment, near->s, &points);
     if (!points.found) {
-        if (points.apart > 0.0) out.free = points.apart / of->way;
+        if (points.apart > 0.0) out.free = points.apart / of->path;
         return out;
     }
     fu_crossing_contact_at(crossing, &points, &contact);
-    if (fu_dot(3, of->normal, contact.normal) < 0.0) return out;
-    memcpy(of->s, points.s, sizeof of->s);
-    memcpy(of->normal, contact.normal, sizeof of->normal);
-    out.found = 1;
+    if (fu_dot(3, near->normal, contact.normal) < 0.0) return out;
+    memcpy(out.s, points.s, sizeof out.s);
+    memcpy(out.normal, contact.normal, sizeof out.normal);
+    out.known = 1;
     out.gap = -contact.depth[0];
-    out.rate = -of->at.h * contact.depth[1];
-    out.margin = fu_crossing_margin_of(crossing, &points, &contact);
-    out.free = out.margin > 0.0 ? out.margin / of->way : fmax(out.gap / of->way, part_beyond_ends(of, &points));
+    out.rate = -of->h * contact.depth[1];
+    out.depth = fu_crossing_margin_of(crossing, &points, &contact);
+    out.free = out.depth > 0.0 ? out.depth / of->path : fmax(out.gap / of->path, part_beyond_ends(of, &points));
     if (!(out.free > 0.0))
-        out.free = out.gap < 0.0 ? MAX_ADVANCE : of->shortest; /* damping would turn the force round */
+        out.free = out.gap < 0.0 ? MAX_ADVANCE : of->min_advance; /* damping would turn the force round */
     return out;
 }
 
-/* Returns the part of the step at which lines touch between two places of it, or nearly, as against the gap at its
- * ends; 0 where they do not: by the bottom of the gap, where its rate passes zero. */
-static double touch_between(const approach *of, line_place from, line_place to, double ends, double least)
-{
-    if (!from.found || !to.found || !(from.gap >= 0.0 && from.rate < 0.0 && to.rate > 0.0)) return 0.0;
-    for (int i = 0; i < SECTIONS; ++i) {
-        approach between = *of;
-        const double part = fmin(fmax(from.rate / (from.rate - to.rate), CORNER), 1.0 - CORNER);
-        const line_place bottom = follow(&between, from.x + part * (to.x - from.x));
-        if (!bottom.found) return 0.0;
-        if (bottom.margin > least) return bottom.x;
-        /* a convex gap lies above its tangent */
-        const double nearly = GRAZING_TOLERANCE * (ends - bottom.gap), below = fabs(bottom.rate) * (to.x - from.x);
-        if (bottom.gap - below > fmax(nearly, 0.0)) return 0.0;
-        if (i == SECTIONS - 1 && bottom.gap < nearly && bottom.margin >= -bottom.gap) return bottom.x;
-        *(bottom.rate < 0.0 ? &from : &to) = bottom;
-    }
-    return 0.0;
-}
-
-/* Returns the largest size of points of a line's cubic by differences, m in a step: of three numbers, the velocities at
- * its ends and that between them that its control points give. */
-static double largest_way(int dim, const double *a, const double *b, const double *v, const double *w,
-                          const double *mean, double h)
-{
-    double squares[3] = {0.0};
-    for (int d = 0; d < dim; ++d) {
-        const double first = h * (v[d] - mean[d]), last = h * (w[d] - mean[d]);
-        const double middle = 3.0 * (b[d] - a[d] - h * mean[d]) - first - last;
-        squares[0] += first * first;
-        squares[1] += middle * middle;
-        squares[2] += last * last;
-    }
-    return sqrt(fmax(squares[0], fmax(squares[1], squares[2])));
-}
-
-/* Returns how far points of a line go in the step at most, as against points that go at the mean velocity, m. */
-static double way_of_line(const approach *of, int line, const double *mean)
+/* Returns the longest path of points of a line in the step, relative to points that move at the mean velocity, m. */
+static double path_of_line(const line_approach *of, int line, const double *mean)
 {
     static const double still[3] = {0.0};
     const fu_crossing *crossing = of->crossing;
-    const fu_state *now = of->at.now, *next = of->at.next;
+    const fu_state *now = of->now, *next = of->next;
     const int dim = of->model->dim;
     double sum = 0.0;
     if (crossing->cables[line] < 0) {
@@ -147,7 +96,7 @@ static double way_of_line(const approach *of, int line, const double *mean)
             fu_line_point from, to;
             fu_line_point_of(of->model, crossing, line, now, s, &from);
             fu_line_point_of(of->model, crossing, line, next, s, &to);
-            sum = fmax(sum, largest_way(dim, from.r, to.r, from.v, to.v, mean, of->at.h));
+            sum = fmax(sum, fu_longest_path(dim, from.r, from.v, to.r, to.v, mean, of->h));
         }
         return sum;
     }
@@ -157,55 +106,38 @@ static double way_of_line(const approach *of, int line, const double *mean)
         double most = 0.0;
         for (int node = 0; node <= cable->n_elements && share != 0.0; ++node) {
             const int at = cable->first + node * cable->per_node + k * dim;
-            most = fmax(most, largest_way(dim, now->q + at, next->q + at, now->v + at, next->v + at, k ? still : mean,
-                                          of->at.h));
+            most = fmax(most, fu_longest_path(dim, now->q + at, now->v + at, next->q + at, next->v + at,
+                                              k ? still : mean, of->h));
         }
         sum += share * most;
     }
     return sum;
 }
 
-/* Returns how far points of both lines can come nearer in the step at most, m. */
-static double most_way(const approach *of)
+/* Returns the mean velocity of the nodes of the first line at the start of the step, m/s, in `mean`. */
+static void mean_velocity(const line_approach *of, double mean[3])
 {
     const fu_cable *cable = &of->model->cables[of->crossing->cables[0]];
-    double mean[3] = {0.0};
     for (int d = 0; d < of->model->dim; ++d)
         for (int node = 0; node <= cable->n_elements; ++node)
-            mean[d] += of->at.now->v[cable->first + node * cable->per_node + d] / (cable->n_elements + 1);
-    return way_of_line(of, 0, mean) + way_of_line(of, 1, mean);
-}
-
-static void begin(approach *of)
-{
-    const double *numbers = of->at.now->numbers + of->crossing->base.numbers;
-    memcpy(of->s, numbers + FU_CROSSING_S, sizeof of->s);
-    memcpy(of->normal, numbers + FU_CROSSING_NORMAL, sizeof of->normal);
-    of->way = most_way(of);
-    of->shortest = fmin(fmax(ADVANCE_SHARE * of->crossing->law[0] / of->way, MIN_ADVANCE), MAX_ADVANCE);
+            mean[d] += of->now->v[cable->first + node * cable->per_node + d] / (cable->n_elements + 1);
 }
 
 double fu_crossing_detect_within(const fu_model *model, const fu_crossing *crossing, const fu_state *now,
                                  const fu_state *next, double h, double least)
 {
-    approach of = {.model = model, .crossing = crossing, .at = {now, next, h, 0.0}};
-    double first = 0.0;
-    begin(&of);
-    line_place from = follow(&of, 0.0);
-    if (from.margin > 0.0 || (from.found && from.free > 1.0)) return 0.0;
-    approach beyond = of;
-    const line_place end = follow(&beyond, 1.0);
-    const double ends = fmin(from.gap, end.gap);
-    while (from.x < 1.0) {
-        const double x = fmin(from.x + fmin(fmax(from.free, of.shortest), MAX_ADVANCE), 1.0);
-        const line_place to = follow(&of, x);
-        if (first > 0.0 && (!(to.margin > least) || -to.gap > crossing->law[0])) return 0.5 * h * (first + x);
-        if (first == 0.0 && to.margin > least && x < 1.0) first = x;
-        if (first == 0.0) {
-            const double dip = touch_between(&of, from, to, ends, least);
-            if (dip > 0.0) return h * dip;
-        }
-        from = to;
-    }
-    return 0.0;
+    const double *numbers = now->numbers + crossing->base.numbers;
+    double mean[3] = {0.0};
+    line_approach of = {model, crossing, now, next, h, 0.0, 0.0};
+    fu_approach start = {.x = 0.0};
+    mean_velocity(&of, mean);
+    of.path = path_of_line(&of, 0, mean) + path_of_line(&of, 1, mean);
+    of.min_advance = fmin(fmax(ADVANCE_SHARE * crossing->law[0] / of.path, MIN_ADVANCE), MAX_ADVANCE);
+    memcpy(start.s, numbers + FU_CROSSING_S, sizeof start.s);
+    memcpy(start.normal, numbers + FU_CROSSING_NORMAL, sizeof start.normal);
+    start = follow(&of, &start, 0.0);
+    if (start.depth > 0.0 || (start.known && start.free > 1.0)) return 0.0;
+    const fu_approach end = follow(&of, &start, 1.0);
+    const fu_detection detection = {follow, &of, h, least, crossing->law[0], of.min_advance, MAX_ADVANCE};
+    return fu_detect_within(&detection, &start, 1.0, fmin(start.gap, end.gap));
 }
