@@ -108,11 +108,7 @@ double fu_contact_grazing(const fu_run *run, const fu_contact *contact, const fu
     const fu_model *model = run->model;
     const fu_surface_end ends[2] = {end_of(model, contact, &on[0], &run->now, element, number),
                                     end_of(model, contact, &on[1], &run->next, element, number)};
-    const double found = fu_grazing_time((fu_course){ends[0].gap, ends[0].gap_rate},
-                                         (fu_course){ends[1].gap, ends[1].gap_rate}, 1, h, run->round_off);
-    return found > 0.0
-               ? found
-               : fu_surface_detect_within(model->dim, &contact->surface, contact->radius, ends, h, run->round_off);
+    return fu_surface_detect_within(model->dim, &contact->surface, contact->radius, ends, h, run->round_off);
 }
 
 /* Returns how far a point that is near may have moved over a step past the surface, m, by the velocities at one end of

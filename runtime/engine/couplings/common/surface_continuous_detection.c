@@ -94,7 +94,7 @@ double fu_surface_detect_within(int dim, const fu_surface *surface, double radiu
 {
     static const double still[3] = {0.0};
     point_path of = {.dim = dim, .surface = surface, .ends = ends, .radius = radius, .h = h};
-    if (!(ends[0].gap >= 0.0 && ends[1].gap >= 0.0)) return 0.0;
+    if (!(ends[0].gap >= -least && ends[1].gap >= -least)) return 0.0;
     for (int d = 0; d < dim; ++d) of.own.A[d * dim + d] = 1.0;
     of.longest = fu_longest_path(dim, ends[0].y, ends[0].rate, ends[1].y, ends[1].rate, still, h);
     const double from = free_path(&of, &ends[0], 2.0 * of.longest), to = free_path(&of, &ends[1], 2.0 * of.longest);
