@@ -90,10 +90,9 @@ class Chooser(Generic[S]):
         level = self._first_level()
         second = 2 * level if self.base else level
         models = self.models(second)
-        rubbing = self.scene.slides, self.scene.contacts, self.scene.crossings
         self.time = compared(lambda integrator, tol: self.prober.probe(models, tol, integrator), self.prober.difference,
                              self.settings.integrator, self.tol,
-                             any(part.friction for parts in rubbing for part in parts.values()))
+                             any(getattr(part, "friction", None) for part in self.scene.parts()))
         if (finer := self._level_of_waves(second)) > second:
             self.least, second = finer // 2, finer
             if self.settings.integrator == AUTO:

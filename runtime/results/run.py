@@ -226,8 +226,8 @@ class Run(Viewable, NamedArrays):
         if row < 0 or abs(self.time[row] - time) > SAME_TIME * self.time[-1]:
             there = f"the nearest is {self.time[row]:.9g} s" if row >= 0 else "there is none"
             raise UnknownResultError(f"the run has no row at t = {time:.9g} s; {there}")
-        springs = [name for name, part in (*self.scene.contacts.items(), *self.scene.crossings.items())
-                   if part.has_friction_spring and np.any(self[f"{name}.friction_force"][row])]
+        sticking = [part.given_name or "" for part in self.scene.parts() if getattr(part, "has_friction_spring", False)]
+        springs = [name for name in sticking if np.any(self[f"{name}.friction_force"][row])]
         return InitialState({name: self[name][row] for name in names_of(self.scene)}, float(self.time[row]), springs)
 
     def __repr__(self) -> str:

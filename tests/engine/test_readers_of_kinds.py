@@ -1,14 +1,17 @@
-"""The places that read the couplings of one kind of a model: what a new kind should be compared with.
+"""The places that read the couplings of one kind, of a model or of a scene: the list to go through for a new kind.
 
-All else loops over `Model.couplings` or `COUPLINGS`. A place that is not in the table either asks the coupling
-(model/coupling.py), or says here what it knows of its kind that others have not.
+All other code loops over `Model.couplings`, `COUPLINGS` or `scene.parts()`. A new place asks all couplings
+(model/coupling.py) or all parts, or enters a table here with the property of its kind that it reads.
 """
 
 import re
 from pathlib import Path
 
 import funicular
+from funicular.model.coupling import CouplingModel
+from funicular.model.kinds import COUPLINGS
 from funicular.model.model import Model
+from funicular.parts.kinds import KINDS
 
 RUNTIME = Path(funicular.__file__).parent
 PLACES = {
@@ -39,16 +42,85 @@ PLACES = {
 }
 
 
+SCENE_PLACES = {
+    "friction": [
+        "choice/indicators.py", "solve/modes/modes.py", "solve/motion/integrator_choice.py",
+        "solve/notes/normal_forces.py", "solve/notes/uncontrolled_errors.py", "solve/statics/relaxation.py",
+        "solve/statics/static.py"],
+    "points that move along a cable: slides and crossings": [
+        "choice/chooser.py", "results/animation/curves.py", "results/animation/references.py",
+        "results/animation/sources.py", "results/charts.py", "results/section_forces/forces.py",
+        "results/trajectories.py", "solve/motion/event_watcher.py", "solve/motion/run.py", "solve/notes/diagnosis.py",
+        "solve/notes/supersonic_loads.py"],
+    "loads and flows at a point or along a cable": [
+        "choice/candidates.py", "choice/planar.py", "choice/remeshing.py", "results/section_forces/cable_loads.py"],
+    "connections of bodies by joints": [
+        "solve/notes/coarse_meshes.py", "solve/notes/coincident_points.py", "solve/notes/sensitivity.py",
+        "solve/statics/turns.py"],
+    "surfaces, and depths below them": [
+        "solve/notes/penetrations.py", "solve/notes/unseen_contact.py", "solve/statics/lying.py",
+        "solve/statics/string_start.py"],
+    "pictures of each kind": ["results/animation/marks.py"],
+    "parameters that are adjusted": [
+        "solve/adjustment/adjustment.py", "solve/adjustment/length_changes.py",
+        "solve/adjustment/parameter_changes.py", "solve/adjustment/parameter_search.py",
+        "solve/adjustment/parameters.py"],
+    "the plane of a scene: quantities that events watch": ["parts/laid.py"],
+}
+"""Places that read a group of couplings of a scene, by what they read; one module a kind in model/ and checks/, and
+applications, know their kinds by definition."""
+OWN_MODULES = ("model/", "checks/", "guides/", "bench/", "cosserat_bench/", "catenary/")
+FRICTION = {"slide", "crossing", "contact"}
+"""Kinds of parts with friction, which the places under "friction" know."""
+ALONG_CABLES = {"slide", "crossing", "contact"}
+"""Types of couplings that act at places of a cable that move, which the places under "points that move" know; contact
+and its hard form act along the whole cable and ask for nothing there."""
+
+
 def kinds_of_model():
     """Return the names of the properties of a model that hold the couplings of one kind, but for the loads."""
     return [name for name, value in vars(Model).items() if hasattr(value, "func") and name != "loads"]
 
 
-def test_places_that_read_one_kind_are_known():
-    pattern = re.compile(rf"\b_?model\.({'|'.join(kinds_of_model())})\b(?! import)")
-    found = {path.relative_to(RUNTIME).as_posix() for path in RUNTIME.rglob("*.py")
-             if pattern.search(re.sub(r"^from .*$", "", path.read_text(), flags=re.MULTILINE))}
-    known = {place for places in PLACES.values() for place in places}
+def readers(pattern):
+    """Return the modules, relative to the package, whose text has a pattern outside of imports."""
+    return {path.relative_to(RUNTIME).as_posix() for path in RUNTIME.rglob("*.py")
+            if re.search(pattern, re.sub(r"^from .*$", "", path.read_text(), flags=re.MULTILINE))}
+
+
+def check_readers(found, table):
+    known = {place for places in table.values() for place in places}
     new = sorted(found - known)
-    assert not new, f"{new}: let these ask the coupling, or add them to PLACES with what they know of its kind"
-    assert not known - found, f"{sorted(known - found)} read no kind any more: take them from PLACES"
+    assert not new, f"{new}: let these ask all couplings or parts, or add them to the table with what they read"
+    assert not known - found, f"{sorted(known - found)} read no kind any more: take them from the table"
+
+
+def test_places_that_read_one_kind_of_a_model_are_known():
+    check_readers(readers(rf"\b_?model\.({'|'.join(kinds_of_model())})\b(?! import)"), PLACES)
+
+
+def test_places_that_read_one_kind_of_a_scene_are_known():
+    groups = {kind.group for kind in COUPLINGS}
+    found = readers(rf"\bscene\.(as_drawn\.)?({'|'.join(groups)})\b")
+    check_readers({place for place in found if not place.startswith(OWN_MODULES)}, SCENE_PLACES)
+
+
+def test_kinds_with_friction_are_those_that_the_readers_know():
+    found = {kind.kind for kind in KINDS if "friction" in kind.model_fields}
+    assert found == FRICTION, f"{found ^ FRICTION}: check {SCENE_PLACES['friction']}"
+
+
+def test_couplings_along_cables_are_those_that_the_readers_know():
+    places = SCENE_PLACES["points that move along a cable: slides and crossings"]
+    found = {kind.name for kind in COUPLINGS if "along" in vars(models_of(kind.name))}
+    assert found == ALONG_CABLES, f"{found ^ ALONG_CABLES}: check {places}"
+
+
+def models_of(name):
+    """Return the class of the models of a kind: `slide` is `SlideModel`."""
+    wanted = name.replace("_", " ").title().replace(" ", "") + "Model"
+    return next(each for each in descendants(CouplingModel) if each.__name__ == wanted)
+
+
+def descendants(kind):
+    return {kind}.union(*(descendants(each) for each in kind.__subclasses__()))
