@@ -1,4 +1,4 @@
-"""Added mass of fluids: frequencies, falls, conserved impulses, energy balance, all integrators, refusals."""
+"""Added mass: frequencies, falls, conserved impulses, energy balance, all integrators, refusals."""
 
 from functools import cache
 from itertools import pairwise, product
@@ -32,7 +32,7 @@ def rope(scene, element="cable12", end=(2, 0, 0), elements=4, density=STEEL, you
 
 
 def taut(coefficient, element="cable12"):
-    """Return a string of 2 m under a tension that a hundred times its bending stiffness does not change."""
+    """Return a string of 2 m; its tension dominates, a hundred times its bending stiffness changes nothing."""
     scene = fu.Scene(gravity=(0, 0, 0))
     wire = rope(scene, element, elements=12, youngs_modulus=1e5, rest_length=2 / 1.5)
     scene.pin(wire, s=0.0)
@@ -45,7 +45,7 @@ def taut(coefficient, element="cable12"):
 
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_a_taut_cable_vibrates_slower_in_water(element, validated):
-    """Transverse frequencies fall by sqrt(m/(m + C rho A)), but for sections that turn, which no water does."""
+    """Transverse frequencies decrease by sqrt(m/(m + C rho A)); rotating sections carry no water."""
     dry, still, wet = (taut(coefficient, element) for coefficient in (None, 0.0, 1.3))
     found = [scene.modes(2, about=scene.equilibrium()).frequency for scene in (dry, still, wet)]
     assert found[1] == pytest.approx(found[0], rel=1e-9, abs=1e-6)
@@ -71,7 +71,7 @@ def test_a_run_vibrates_with_the_frequency_of_the_modes(integrator):
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 @pytest.mark.parametrize("element", ["cable12", "beam12p"])
 def test_a_cable_that_falls_across_carries_the_water_along(integrator, element):
-    """v = v_t tanh(g' t/v_t) with the weight in water over the mass with what is added."""
+    """v = v_t tanh(g' t/v_t), with g' the weight in water over the total mass."""
     scene = fu.Scene()
     rope(scene, element)
     scene.fluid(density=WATER)
@@ -82,7 +82,7 @@ def test_a_cable_that_falls_across_carries_the_water_along(integrator, element):
     exact = -terminal * np.tanh(run.time * weight / mass / terminal)
     assert np.abs(run["wire.nodal_velocity"][:, :, 0, 1] - exact[:, None]).max() < 1e-6
     assert unaccounted(run) < (1e-12 if integrator == "energy" else 1e-5)
-    # of the fluid: buoyancy, drag, and what the added mass takes
+    # fluid forces: buoyancy, drag, added mass
     drag = WATER / 2 * 2 * RADIUS * 1.2 * exact**2
     force = 2 * (WATER * AREA * G + drag - WATER * AREA * (drag - weight) / mass)
     assert np.abs(run["drag_1.force"][:, 1] - force).max() < 1e-4 * force.max()
@@ -102,8 +102,7 @@ def test_a_sphere_begins_to_fall_with_the_mass_of_half_the_water(integrator):
 
 @pytest.mark.parametrize("integrator", FOR_JOINTS_AND_MODES)
 def test_a_pendulum_in_water_swings_with_the_weight_and_the_inertia_that_the_water_leaves(integrator, validated):
-    """A ball on a massless rod from 60 degrees: the period of a pendulum, an elliptic integral, with its weight there.
-    """
+    """A ball on a massless rod from 60 degrees: the period is an elliptic integral, with the weight in water."""
     length, angle = 1.0, pi / 3
     scene = fu.Scene()
     scene.fluid(density=WATER)
@@ -126,7 +125,7 @@ def test_a_pendulum_in_water_swings_with_the_weight_and_the_inertia_that_the_wat
 
 
 def kirchhoff(mass, J, C, v, omega, duration):
-    """Return v, omega (body axes) after a time of a body with its fluid, by Kirchhoff's equations."""
+    """Return v, omega (body axes) of a body in a fluid at a time, by Kirchhoff's equations."""
     M, J = mass * np.eye(3) + C, np.diag(J)
 
     def rates(t, x):
@@ -188,7 +187,7 @@ def test_added_mass_of_a_body_is_of_second_order_where_energy_is_kept(at):
 
 @pytest.mark.parametrize("dim", [2, 3])
 def test_newton_contracts_by_the_square_of_the_step_where_energy_is_kept(dim):
-    """The matrix is not quite the derivative of the residual: what it leaves of an error in one iteration."""
+    """The matrix approximates the derivative of the residual; the test measures the error after one iteration."""
     left = []
     for h in (1e-3, 1e-4):
         engine = Engine(build(swimming(dim)))
@@ -202,7 +201,7 @@ def test_newton_contracts_by_the_square_of_the_step_where_energy_is_kept(dim):
 
 @pytest.mark.parametrize("dim", [2, 3])
 def test_what_moves_with_the_water_is_carried_by_its_acceleration(dim):
-    """A cable and a body of the density of water, in water that swings to and fro, stay in it: (1 + C) rho V DU/Dt."""
+    """A cable and a body of the density of water move with oscillating water: (1 + C) rho V DU/Dt."""
     scene = fu.Scene()
     wire = rope(scene, "beam24" if dim == 3 else "cable8p", (1, 0.5, 0), density=WATER)
     scene.rigid_body("ball", mass=2.0, inertia=(1e-2, 1e-2, 1e-2), position=(0, 2, 0))
@@ -217,7 +216,7 @@ def test_what_moves_with_the_water_is_carried_by_its_acceleration(dim):
 
 
 def swimming(dim=3, body=True, drag=1.0, amplitude=0.5):
-    """Return a cable, and a body on it by a spring, in a current that grows with height and changes in time."""
+    """Return a cable, and a body attached by a spring, in a current that grows with height and varies in time."""
     scene = fu.Scene()
     wire = rope(scene, "beam24" if dim == 3 else "cable8p", (1, 0.3, 0), 3, density=1500, youngs_modulus=1e6)
     scene.pin(wire, s=0.0)
@@ -237,7 +236,7 @@ def swimming(dim=3, body=True, drag=1.0, amplitude=0.5):
 
 @cache
 def accurate(dim):
-    """Return a run to compare with, computed once."""
+    """Return the reference run, computed once."""
     return swimming(dim).run(0.2, tol=1e-9, integrator="explicit", output_step=0.05)
 
 
@@ -253,13 +252,13 @@ def test_the_energy_of_the_water_is_in_the_balance(integrator, dim):
 @pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("bodies", [False, True])
 def test_newtons_matrix_is_the_derivative_of_its_residual(dim, bodies):
-    """Of a cable in a flow whose gradient is constant; of a body but for the change of its point's acceleration."""
+    """A cable in a flow of constant gradient; a body without the change of its point's acceleration."""
     allowed = 2e-2 if bodies else 1e-6
     assert error_by_drags(swimming(dim, bodies, amplitude=0.0)) < allowed
 
 
 def test_a_kink_of_the_flow_is_a_jump_of_the_force():
-    """Water that begins to accelerate at an instant, carried on: the cable follows to the tolerance of its steps."""
+    """The water begins to accelerate at an instant, without an end; the cable follows to the tolerance."""
     scene = fu.Scene(gravity=(0, 0, 0))
     rope(scene)
     scene.fluid(density=WATER, velocity=(0, 1, 0),
@@ -366,7 +365,7 @@ def test_a_stop_that_is_struck_in_water_balances(integrator):
 @pytest.mark.parametrize(("integrator", "friction"),
                          [*product(FOR_JOINTS_AND_MODES, (0.0, 0.3)), ("energy", 0.0)])
 def test_an_impact_in_a_stream_balances(integrator, friction):
-    """A stream does work on what an impact turns round: U . M (v+ - v-), beside what the ground takes."""
+    """The work of a stream at an impact is U . M (v+ - v-), beside the loss at the ground."""
     scene = fu.Scene(gravity=(0, -G, 0))
     scene.surface("ground", fu.Plane())
     scene.rigid_body("ball", mass=2.0, inertia=(8e-3,) * 3, position=(0, 1.1, 0), velocity=(0.5, 0, 0))
@@ -405,7 +404,7 @@ def test_pictures_show_the_flow_and_the_forces_of_the_law():
 
 
 def test_a_run_from_rest_in_a_sheared_current_stays_there():
-    """A sphere at rest has the lift C m dU/dy U in a current U(y), by the added mass C m: statics have it, too."""
+    """A sphere at rest in a current U(y) has the lift C m dU/dy U by its added mass C m, also in statics."""
     scene = fu.Scene()
     scene.rigid_body("buoy", mass=2.0, inertia=(0.01,) * 3, position=(0, 2, 0))
     scene.joint("distance", (0, 0, 0), "buoy", name="tether")

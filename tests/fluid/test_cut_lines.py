@@ -1,4 +1,4 @@
-"""Lines that the surface of a fluid cuts: energy of those that fall in, forces in sections, quadrature."""
+"""Lines cut by the surface of a fluid: energy of falling lines, section forces, quadrature."""
 
 from math import pi
 
@@ -13,7 +13,7 @@ G, WATER = 9.81, 1025.0
 
 
 def test_sections_of_a_line_that_stands_in_water_bear_what_is_below():
-    """T = g A (rho (4 - s) - rho_w of what of it is wet), also within the element that the surface cuts."""
+    """T = g A (rho (4 - s) - rho_w times the wet length), also within the element that the surface cuts."""
     scene = fu.Scene()
     wire = scene.cable("line", start=(0, 1.1, 0), end=(0, -2.9, 0), elements=3, element="cable12", strain="engineering",
                        section=fu.Circle(radius=0.02), material=fu.Material(youngs_modulus=1e11, poisson_ratio=0.0,
@@ -37,7 +37,7 @@ def test_sections_at_the_free_end_of_a_rope_that_falls_in_bear_nothing():
 
 
 def test_sections_on_both_sides_of_a_node_bear_the_same():
-    """Of a rope with added mass; what acts on its slope is a polynomial from points within the elements to the node."""
+    """A rope with added mass: the force on its slope is a polynomial from points within the elements to the node."""
     run = thrown(added_mass=1.0, added_mass_tangential=0.2).run(0.6, tol=1e-6, integrator="radau", output_step=0.05)
     nodes = run.scene.cables["rope"].length * np.array([0.25, 0.5, 0.75])
     before, after = (np.array(run.section_forces("rope", nodes, side=side)["force"]) for side in ("before", "after"))
@@ -46,7 +46,7 @@ def test_sections_on_both_sides_of_a_node_bear_the_same():
 
 
 def thrown(level=0.0, shift=0.0, element="cable12", **drag):
-    """Return a rope that falls aslant into water which flows."""
+    """Return a rope that falls obliquely into flowing water."""
     scene = fu.Scene()
     wire = scene.cable("rope", start=(shift, level + 0.5, 0), end=(shift + 3, level + 1.5, 0), elements=4,
                        element=element, section=fu.Circle(radius=0.02), material=fu.Material(
@@ -58,7 +58,7 @@ def thrown(level=0.0, shift=0.0, element="cable12", **drag):
 
 @pytest.mark.parametrize(("integrator", "tol"), [("explicit", 1e-4), ("radau", 1e-5), ("energy", 1e-4)])
 def test_a_rope_that_falls_in_balances_its_energy_with_the_water_that_it_moves(integrator, tol):
-    """Up to the quadrature of where the surface cuts, 1e-5 of what is exchanged."""
+    """The balance holds up to the quadrature at the surface, 1e-5 of the exchanged energy."""
     run = thrown(added_mass=1.0, added_mass_tangential=0.1).run(0.7, tol=tol, integrator=integrator, output_step=0.1)
     heights = run["rope.position"][:, :, 1]
     assert heights[3].max() > 0.02 and heights[-1].max() < -0.02
@@ -80,7 +80,9 @@ def circle_below(level, heights, radius):
 
 @pytest.mark.parametrize("element", ["cable12", "cable18", "cable8p", "beam12p"])
 def test_the_quadrature_of_cut_elements_is_that_of_forty_thousand_points(element):
-    """Elements of random shapes, which two surfaces cut several times: most to 1e-6 of what is all wet, all to 3e-4."""
+    """Elements of random shapes cut several times by two surfaces: errors relative to the wet element mostly below
+    1e-6, all below 3e-4.
+    """
     random, errors = np.random.default_rng(5), []
     for _ in range(12):
         radius, bottom, length = 10 ** random.uniform(-2.5, -0.5), -random.uniform(0.01, 0.3), random.uniform(0.5, 4)

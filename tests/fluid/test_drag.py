@@ -63,7 +63,7 @@ def test_elements_of_unequal_lengths_fall_alike():
 
 
 def test_a_planar_cable_in_another_plane_has_the_wind_of_its_height():
-    """z is up, and the plane y = 0.5 begins at a height: profiles count heights over the ground's origin."""
+    """z is up, and the plane y = 0.5 has an offset in height: profiles use heights over the ground's origin."""
     runs = []
     for element in ("cable8p", "cable12"):
         scene = fu.Scene(gravity=(0, 0, -G))
@@ -83,7 +83,7 @@ def test_a_planar_cable_in_another_plane_has_the_wind_of_its_height():
 
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_a_towed_cable_is_straight_at_the_critical_angle(element, validated):
-    """Weight across it and drag across it balance, w cos(angle) = q sin^2(angle), whatever the drag along it."""
+    """Weight and drag across the cable balance, w cos(angle) = q sin^2(angle), for any drag along it."""
     speed, radius, density = 3.0, 0.005, 5000
     scene = fu.Scene()
     wire = rope(scene, element, (0, -20, 0), section=fu.Circle(radius=radius),
@@ -106,9 +106,9 @@ def test_a_towed_cable_is_straight_at_the_critical_angle(element, validated):
 
 
 def string_in_current(length, span, stiffness, weight, flow, normal, tangential):
-    """Return a function of s (n,): r (3, n), n (3, n) of a string without bending between two points, in a current.
+    """Return a function of s (n,): r (3, n), n (3, n) of a string between two points in a current.
 
-    weight in N/m, less buoyancy; flow(y): velocity along z at the height y; normal, tangential in N s²/m³.
+    weight: in N/m, less buoyancy. flow(y): velocity along z at the height y. normal, tangential: in N s²/m³.
     """
     def rates(s, x):
         n, T = x[3:], np.linalg.norm(x[3:], axis=0)
@@ -166,7 +166,7 @@ def test_a_cable_in_a_cross_current_hangs_as_the_boundary_value_problem(validate
 
 
 def swimming(dim=3):
-    """Return a body with its centre of pressure and of buoyancy off its centre of mass, on a spring, and a cable."""
+    """Return a body with centres of pressure and buoyancy apart from its mass centre, on a spring, and a cable."""
     scene = fu.Scene()
     element = "beam24" if dim == 3 else "beam12p"
     wire = rope(scene, element, (1, 0.3, 0), 3, material=fu.Material(youngs_modulus=1e6, poisson_ratio=0, density=1500))
@@ -185,7 +185,7 @@ def swimming(dim=3):
 
 @cache
 def accurate(dim):
-    """Return a run to compare with, computed once."""
+    """Return the reference run, computed once."""
     return swimming(dim).run(0.6, tol=1e-9, integrator="explicit", output_step=0.05)
 
 
@@ -200,7 +200,9 @@ def test_what_the_flow_gives_and_drag_takes_is_in_the_energy_balance(integrator,
 
 @pytest.mark.parametrize("dim", [2, 3])
 def test_newtons_matrix_is_the_derivative_of_its_residual(dim):
-    """What drag adds to the matrix of a step is what it adds to the derivative: slopes, heights, rates, turns."""
+    """The contribution of drag to the step's matrix is the derivative of its force by slopes, heights, rates and
+    rotations.
+    """
     assert error_by_drags(swimming(dim)) < 1e-6
 
 
@@ -220,7 +222,7 @@ def test_a_sphere_falls_at_its_terminal_speed_and_floats_where_it_displaces_its_
 
 @pytest.mark.parametrize("integrator", ["genalpha", "explicit", "radau"])
 def test_a_pendulum_rests_aslant_in_the_wind(integrator, validated):
-    """tan(angle) = drag/weight, where both act at the same point."""
+    """tan(angle) = drag/weight, with both forces at one point."""
     scene = fu.Scene()
     scene.rigid_body("ball", mass=2.0, inertia=(1e-3, 1e-3, 1e-3), position=(0, -1, 0))
     scene.joint("spherical", ("ball", (0, 1, 0)), (0, 0, 0))

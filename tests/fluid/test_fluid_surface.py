@@ -1,4 +1,4 @@
-"""Fluids with a surface: what falls in, what floats, what stands half in water; closed forms, energy, derivatives."""
+"""Fluids with a surface: falling, floating and standing bodies and lines; closed forms, energy, derivatives."""
 
 import warnings
 from itertools import product
@@ -17,7 +17,7 @@ RADIUS = cbrt(3 * VOLUME / (4 * pi))
 
 
 def buoy(above, gravity=(0, -G, 0), level=0.0, velocity=(0, 0, 0), **drag):
-    """Return a buoy of 0.3 m³ and 100 kg, its centre at this height over a level of the sea."""
+    """Return a buoy of 0.3 m³ and 100 kg with its centre at a height over a sea level."""
     scene = fu.Scene(gravity=gravity)
     scene.rigid_body("buoy", mass=MASS, inertia=(1, 1, 1), position=(0, level + above, 0), velocity=velocity)
     scene.fluid("sea", density=WATER, surface=level)
@@ -26,7 +26,7 @@ def buoy(above, gravity=(0, -G, 0), level=0.0, velocity=(0, 0, 0), **drag):
 
 
 def segment(depth, radius):
-    """Return the volume of a sphere that is in the water to a depth, and the waterplane's area."""
+    """Return the wet volume of a sphere at a depth, and the area of its waterplane."""
     return pi * depth**2 * (3 * radius - depth) / 3, pi * depth * (2 * radius - depth)
 
 
@@ -65,7 +65,7 @@ def test_a_sphere_floats_where_it_displaces_its_mass_and_heaves_by_its_waterplan
 
 @pytest.mark.parametrize("dim", [2, 3])
 def test_a_box_floats_and_heaves_as_a_column(dim):
-    """Draught m/(rho A), period 2 pi sqrt(m/(rho g A)), where the surface cuts the sides."""
+    """Draught m/(rho A), period 2 pi sqrt(m/(rho g A)), for a surface that cuts the sides."""
     scene = buoy(0.1, height=0.6, area=0.0)
     if dim == 2:
         scene.cable("line", start=(3, 0, 0), end=(4, 0, 0), elements=1, element="cable8p",
@@ -84,7 +84,7 @@ def test_a_box_floats_and_heaves_as_a_column(dim):
 
 
 def test_buoyancy_gives_back_what_it_took():
-    """The work on the way into the water is rho g times the wet volume by the depth, whatever the way."""
+    """The work into the water is rho g times the wet volume integrated over the depth, on any path."""
     run = buoy(2.0, area=0.0).run(1.6, tol=1e-9, integrator="radau", output_step=0.05)
     u = -run["buoy.position"][:, 1] / RADIUS
     depth = np.where(u < -1, 0, np.where(u > 1, u, -(u**4) / 16 + 3 * u**2 / 8 + u / 2 + 3 / 16))
@@ -94,7 +94,7 @@ def test_buoyancy_gives_back_what_it_took():
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 def test_added_mass_grows_with_the_wet_part_and_gives_its_energy_back(integrator):
-    """Without weight (m + C rho V c) v² stays, through an entry and an exit."""
+    """Without weight (m + C rho V c) v² is constant through an entry and an exit."""
     scene = buoy(1.0, gravity=(0, 0, 0), velocity=(0.2, -2, 0), area=0.0, added_mass=0.5)
     run = scene.run(1.0, tol=1e-7 if integrator in ("explicit", "radau") else 1e-5, integrator=integrator,
                     output_step=0.05)
@@ -109,7 +109,9 @@ def test_added_mass_grows_with_the_wet_part_and_gives_its_energy_back(integrator
 
 
 def wetted(dim, added_mass=None, at=(-0.1, 0.05, 0), wet_wire=True):
-    """Return a body with its centre of buoyancy in the surface and off its centre of mass, and a cable through it."""
+    """Return a body with its centre of buoyancy in the surface and apart from its mass centre, and a cable cut by the
+    surface.
+    """
     scene = fu.Scene()
     wire = scene.cable("wire", start=(0, 0.3, 0), end=(1, -0.4, 0), elements=3,
                        element="beam24" if dim == 3 else "beam12p", section=fu.Circle(radius=0.03),
@@ -133,7 +135,7 @@ def test_newtons_matrix_has_the_waterplane(dim):
 
 @pytest.mark.parametrize("dim", [2, 3])
 def test_newtons_matrix_has_the_added_mass_of_the_wet_part(dim):
-    """At the mass centre, as the matrix leaves out how the acceleration of a point changes with the turn."""
+    """The point is the mass centre, since the matrix omits the change of a point's acceleration with rotation."""
     assert error_by_drags(wetted(dim, added_mass=0.6, at=(0, 0, 0), wet_wire=False)) < 1e-6
 
 
@@ -147,7 +149,7 @@ def test_what_is_half_in_water_balances_its_energy(integrator, dim):
 
 
 def spar(elements, start):
-    """Return a slender float of 4 m, upright, its top at this height."""
+    """Return a slender upright float of 4 m with its top at a height."""
     scene = fu.Scene()
     wire = scene.cable("spar", start=(0, start, 0), end=(0, start - 4, 0), elements=elements, element="cable8p",
                        section=fu.Circle(radius=0.05), strain="engineering",
@@ -159,7 +161,7 @@ def spar(elements, start):
 
 @pytest.mark.parametrize(("elements", "element"), [(1, "cable12"), (3, "cable8p"), (7, "beam12p"), (4, "cable18")])
 def test_a_line_that_hangs_into_water_bears_its_weight_less_what_it_displaces(elements, element):
-    """T(top) = g A (rho 4 - rho_w (3 + stretch)), and the stretch follows from the same."""
+    """T(top) = g A (rho 4 - rho_w (3 + stretch)), with the consistent stretch."""
     scene = fu.Scene()
     wire = scene.cable("spar", start=(0, 1, 0), end=(0, -3, 0), elements=elements, element=element,
                        section=fu.Circle(radius=0.05), material=fu.Material(youngs_modulus=1e9, poisson_ratio=0.0,
@@ -180,7 +182,7 @@ def test_a_spar_floats_upright_at_archimedes_draught_in_every_mesh():
 
 
 def test_a_floating_line_lies_in_the_water_as_its_section_does():
-    """A circle of the density rho_l sinks until its segment is rho_l/rho of it."""
+    """A circular section of the density rho_l sinks until its segment is rho_l/rho of its area."""
     scene = fu.Scene()
     wire = scene.cable("line", start=(0, 0.01, 0), end=(5, 0.01, 0), elements=4, element="cable12",
                        section=fu.Circle(radius=0.05), material=fu.Material(youngs_modulus=1e7, poisson_ratio=0.0,
@@ -197,7 +199,7 @@ def test_a_floating_line_lies_in_the_water_as_its_section_does():
 
 
 def mast(**more):
-    """Return a stiff mast of 8 m that is held upright, half of it in water that flows along z, in a wind along x."""
+    """Return a stiff upright mast of 8 m, half of it in water flowing along z, the other half in wind along x."""
     scene = fu.Scene()
     wire = scene.cable("mast", start=(0, -4, 0), end=(0, 4, 0), elements=3, element="cable12",
                        section=fu.Circle(radius=0.05), material=fu.Material(youngs_modulus=2e11, poisson_ratio=0.3,
@@ -239,7 +241,7 @@ def test_a_layer_between_two_fluids_bears_what_both_bear():
 
 @pytest.mark.parametrize("integrator", ["genalpha", "radau", "explicit"])
 def test_the_order_stays_through_the_surface(integrator):
-    """Halved steps of a body that falls into water: errors fall by the order of its smooth motion, 2 at least."""
+    """Errors of a body that falls into water decrease with the order of its smooth motion, at least 2."""
     def after(step):
         scene = buoy(0.5, added_mass=0.5)
         return scene.run(0.6, step=step, integrator=integrator, output_step=0.6)["buoy.position"][-1, 1]
@@ -251,7 +253,7 @@ def test_the_order_stays_through_the_surface(integrator):
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 def test_a_resumed_run_goes_on_within_an_entry(integrator, tmp_path):
-    """At the checkpoint the surface cuts the buoy; its sides are flags of the state."""
+    """The surface cuts the buoy at the checkpoint; flags of the state hold its sides."""
     def stop(time):
         if time > 0.26:
             raise KeyboardInterrupt
@@ -327,7 +329,7 @@ def table(low, high, slow=1.0):
 
 
 def test_a_table_of_the_water_reaches_up_to_its_surface():
-    """What is above the surface, or floats in it, does not leave the table."""
+    """A part above the surface, or floating in it, does not leave the table."""
     scene = buoy(1.0)
     scene.fluid("deep", density=1100, surface=-50.0, table=table(-100, -50))
     scene.drag("buoy", fluid="deep", area=1.0)
@@ -340,7 +342,7 @@ def test_a_table_of_the_water_reaches_up_to_its_surface():
 
 
 def test_a_barge_of_columns_heels_as_its_waterplane_and_the_middles_of_the_columns_have_it():
-    """K = rho g sum(A x²) + m g h, with the height h of the middles over the mass centre."""
+    """K = rho g sum(A x²) + m g h, with the height h of the middles of the columns over the mass centre."""
     scene = fu.Scene()
     mass, inertia, arm, height, up = 400.0, 150.0, 0.8, 1.0, 0.1
     scene.rigid_body("barge", mass=mass, inertia=(inertia, inertia, inertia), position=(0, 0.05, 0))

@@ -16,7 +16,7 @@ ROPE = {"section": fu.Circle(radius=0.01), "material": fu.Material(youngs_modulu
 
 
 def plate():
-    """Return a polar like that of a flat plate: normal force 2 sin(angle), a spline of exact symmetry."""
+    """Return the polar of a flat plate: normal force 2 sin(angle), a spline of exact symmetry."""
     angle = np.linspace(-pi, pi, 73)
     normal = 2 * np.sin(angle)
     drag, lift = normal * np.sin(angle) + 0.02, normal * np.cos(angle)
@@ -26,7 +26,7 @@ def plate():
 
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_a_cable_in_cross_flow_is_deflected_by_lift_over_drag(element):
-    """A weightless taut cable between two supports across the flow: its plane leans from that by atan(C_L/C_D)."""
+    """The plane of a weightless taut cable across the flow leans by atan(C_L/C_D)."""
     scene = fu.Scene(gravity=(0, 0, 0))
     wire = scene.cable("wire", start=(0, 0, 0), end=(0, 0, 4), elements=8, element=element, rest_length=3.9,
                        section=ROPE["section"],
@@ -83,7 +83,7 @@ def kite(dim=3):
 
 @cache
 def accurate(dim):
-    """Return a run to compare with, computed once."""
+    """Return the reference run, computed once."""
     return kite(dim).run(0.15, tol=1e-9, integrator="explicit", output_step=0.05)
 
 
@@ -103,7 +103,7 @@ def test_newtons_matrix_is_the_derivative_of_its_residual(dim):
 
 @pytest.mark.parametrize("degrees", [-140, -30, 0, 10, 75, 180])
 def test_a_plate_has_the_coefficients_of_its_angle_of_attack(degrees):
-    """The flow from below the chord, by this angle about the span; a body that has been turned in space."""
+    """The flow comes from below the chord at this angle about the span, for a body rotated in space."""
     angle, turn = radians(degrees), (cos(0.4), sin(0.4) * 0.6, 0.0, sin(0.4) * 0.8)
     scene = fu.Scene(gravity=(0, 0, 0))
     scene.rigid_body("wing", mass=1e9, inertia=(1e9,) * 3, position=(0, 0, 0), orientation=turn)

@@ -17,19 +17,19 @@ AIR = 1.2
 
 
 def periodic(values):
-    """Return values with the last as the first, to the last digit."""
+    """Return values whose last equals the first exactly."""
     return np.append(values[:-1], values[0])
 
 
 def iced():
-    """Return coefficients of no symmetry but that of half a turn."""
+    """Return coefficients whose only symmetry is that of half a turn."""
     angle = np.linspace(-pi, pi, 73)
     return fu.Polar(angle=angle, drag=periodic(1.2 - 0.8 * np.cos(2 * angle)), lift=periodic(0.9 * np.sin(2 * angle)),
                     moment=periodic(0.3 * np.sin(2 * angle - 0.4)), interpolation="cubic")
 
 
 def straight(drag=0.0, lift_slope=0.0, moment=0.0, moment_slope=0.0):
-    """Return coefficients that are straight lines within half a rad of zero, and go to nil at ±π."""
+    """Return coefficients that are linear within half a rad of zero, and zero at ±π."""
     angle = np.array([-pi, -0.5, 0.5, pi])
     within = np.array([0.0, -0.5, 0.5, 0.0])
     inside = np.array([0.0, 1.0, 1.0, 0.0])
@@ -38,7 +38,7 @@ def straight(drag=0.0, lift_slope=0.0, moment=0.0, moment_slope=0.0):
 
 
 def cantilever(material, section, *, turn=(1.0, 0, 0, 0), length=2.0, elements=4, **more):
-    """Return a scene with a beam along z, its height along y, clamped at its start; both turned."""
+    """Return a scene of a beam along z, its height along y, clamped at its start; both rotated."""
     scene = fu.Scene(gravity=(0, 0, 0))
     end, up = (rotate(np.array(turn), np.array(v)) for v in ((0, 0, length), (0, 1.0, 0)))
     beam = scene.cable("beam", start=(0, 0, 0), end=end, up=up, elements=elements, element="beam24", section=section,
@@ -50,7 +50,9 @@ def cantilever(material, section, *, turn=(1.0, 0, 0, 0), length=2.0, elements=4
 @pytest.mark.parametrize("turn", [(1.0, 0.0, 0.0, 0.0), (cos(0.7), sin(0.7) * 0.6, 0.0, sin(0.7) * 0.8)])
 @pytest.mark.parametrize("degrees", [-140, -30, 10, 75, 180])
 def test_force_and_moment_are_those_of_the_angle_of_attack(degrees, turn):
-    """The flow from below the chord by this angle about the axis, with a part along it; the chord between the axes."""
+    """The flow comes from below the chord at this angle about the axis, with an axial part; the chord lies between the
+    axes.
+    """
     chord_angle, angle, width, length, speed = radians(25), radians(degrees), 0.15, 2.0, 7.0
     scene = cantilever(STIFF, fu.Rectangle(height=0.1, width=0.08), turn=turn)
     across = speed * np.array([cos(angle + chord_angle), sin(angle + chord_angle), 0.0])
@@ -62,7 +64,7 @@ def test_force_and_moment_are_those_of_the_angle_of_attack(degrees, turn):
     drag, lift, moment = 1.2 - 0.8 * cos(2 * angle), 0.9 * sin(2 * angle), 0.3 * sin(2 * angle - 0.4)
     axis = rotate(np.array(turn), np.array([0, 0, 1.0]))
     per_length = AIR / 2 * width * speed * (drag * flow + lift * np.cross(axis, flow))
-    # positive nose up: it turns the chord towards smaller angles about the axis, so that the flow's grows
+    # positive nose up: the moment turns the chord towards smaller angles about the axis and increases that of the flow
     couple = -AIR / 2 * width**2 * speed**2 * moment * axis
     size = AIR / 2 * width * speed**2
     s = np.array([0.0, 0.3, 1.0, 1.7])
@@ -78,10 +80,10 @@ RADIUS, SHEAR, TORSION_WIDTH = 0.01, 1e9, 0.2
 
 
 def torsion_bar(part, elements=16, offset=0.02):
-    """Return a bar that feels a moment alone, at this part of the speed of divergence, and what it twists by.
+    """Return a bar under aerodynamic moment alone, at a share of the speed of divergence, and its twist.
 
     G J θ'' = -m with m = -q b² (C_M(0) - C_M' θ), clamped and free: θ = C_M(0)/C_M' (1 - cos k x - tan k L sin k x),
-    k² = q b² C_M'/(G J), which grows without limit as k L comes to π/2.
+    k² = q b² C_M'/(G J), which diverges at k L = π/2.
     """
     slope, length = 2.0, 2.0
     k = part * pi / 2 / length
@@ -97,7 +99,7 @@ def torsion_bar(part, elements=16, offset=0.02):
 
 
 def twist(state):
-    """Return the angle (nodes,) that the height of each node's section has turned by about z."""
+    """Return the rotation (nodes,) of the height of each section about z."""
     height = state["beam.nodal_vectors"][:, 2]
     return np.arctan2(-height[:, 0], height[:, 1])
 
@@ -114,11 +116,11 @@ def test_a_bar_twists_as_the_closed_form_until_it_diverges(part):
 
 @pytest.mark.parametrize("part", [0.5, 0.9, 1.1])
 def test_a_mode_of_torsion_is_slower_in_the_wind_and_grows_beyond_divergence(part):
-    """ω² = G/ρ ((π/2L)² - k²) of the first mode: at the pressure of divergence it is nil."""
+    """ω² = G/ρ ((π/2L)² - k²) of the first mode, zero at the pressure of divergence."""
     scene, _ = torsion_bar(part, offset=0.0)
     modes = scene.modes(16)  # as drawn it rests, beyond divergence without being stable
     square = SHEAR / 2000 * (pi / 4) ** 2 * (1 - part**2)
-    # those of bending, which the moment alone leaves, are far from it
+    # bending modes, which the moment does not change, are far from it
     if square > 0:
         assert np.abs(modes.frequency * 2 * pi / sqrt(square) - 1).min() < 0.01
     else:
@@ -129,7 +131,7 @@ GALLOPING = {"drag": 1.0, "width": 0.05, "speed": 10.0}
 
 
 def galloping(lift_slope):
-    """Return the rate of growth in 1/s at which a cantilever vibrates across the wind, by its tip in its first mode."""
+    """Return the growth rate in 1/s of a cantilever's first mode across the wind, measured at its tip."""
     drag, width, speed = GALLOPING.values()
     section = fu.Rectangle(height=0.01, width=0.03)  # weak across the wind, which blows along its width
     scene = cantilever(fu.Material(youngs_modulus=2e11, poisson_ratio=0.0, density=1000), section, elements=6)
@@ -149,14 +151,14 @@ def galloping(lift_slope):
 
 @pytest.mark.parametrize("lift_slope", [-3.0, -1.0, 1.0])
 def test_galloping_grows_as_den_hartog_has_it(lift_slope):
-    """-ρ U b/(4 m) (C_L' + C_D): it changes its sign at C_L' = -C_D."""
+    """-ρ U b/(4 m) (C_L' + C_D), which changes its sign at C_L' = -C_D."""
     drag, width, speed = GALLOPING.values()
     scale = AIR * speed * width / (4 * 1000 * 0.01 * 0.03)
     assert galloping(lift_slope) == pytest.approx(-scale * (lift_slope + drag), abs=0.01 * scale)
 
 
 def flag(start=(0, 0, 0)):
-    """Return a soft beam that turns and bends in a wind with a height profile, under its weight."""
+    """Return a flexible beam in torsion and bending, in a wind with a height profile, under its weight."""
     scene = fu.Scene()
     beam = scene.cable("beam", start=start, end=np.add(start, (1, 0.2, 0.1)), elements=3, element="beam24",
                        section=fu.Rectangle(height=0.05, width=0.02), material=SOFT, angular_velocity=(0.4, 0.2, 0.8))
@@ -169,7 +171,7 @@ def flag(start=(0, 0, 0)):
 
 @cache
 def accurate():
-    """Return a run to compare with, computed once."""
+    """Return the reference run, computed once."""
     return flag().run(0.05, tol=1e-8, integrator="radau", output_step=0.01)
 
 
@@ -187,7 +189,7 @@ def test_newtons_matrix_is_the_derivative_of_its_residual():
 
 @pytest.mark.parametrize("more", [{}, {"added_mass": 2.0}])
 def test_section_forces_of_a_run_vanish_at_the_free_end(more):
-    """They are summed from the clamped end on, over all that acts and over the inertia."""
+    """The forces are summed from the clamped end over all loads and inertia."""
     scene = flag()
     scene = scene.replace("drag_1", **more)
     run = scene.run(0.05, tol=1e-8, integrator="radau", output_step=0.01)
@@ -227,7 +229,7 @@ def test_scene_files_say_the_same():
 
 
 def on(element, **more):
-    """Return what adds a cable of an element, and a drag on it with a polar."""
+    """Return a function that adds a cable of an element with a polar drag."""
     entries = {"polar": iced(), "chord": (0, 1, 0), "diameter": 0.1} | more
 
     def add(scene):

@@ -1,4 +1,4 @@
-"""Section forces by balance in fluids with added mass, and beside contacts that results do not tell."""
+"""Section forces by balance in fluids with added mass, and beside contacts without force results."""
 
 from math import pi, sqrt
 
@@ -22,7 +22,7 @@ def wire(scene, name="wire", start=(0, 0, 0), end=(2, 0, 0), elements=8, element
 
 @pytest.mark.parametrize("element", ["cable12", "cable8p"])
 def test_a_string_that_vibrates_in_water(element):
-    """Across it the force is N y' of y = A sin(pi x/L) cos(omega t), with the inertia of the water in omega."""
+    """The transverse force is N y' of y = A sin(pi x/L) cos(omega t), with added mass in omega."""
     scene = fu.Scene(gravity=(0, 0, 0))
     string = wire(scene, element=element, elements=16, youngs_modulus=1e5, rest_length=2 / 1.5)
     scene.pin(string, s=0.0)
@@ -44,7 +44,7 @@ def test_a_string_that_vibrates_in_water(element):
 
 
 def test_a_rope_with_a_weight_that_falls_along_itself():
-    """Rope, weight and the water that the rope takes along fall with one acceleration: N grows evenly from the top."""
+    """Rope, weight and added mass fall with one acceleration: N grows linearly from the top."""
     scene = fu.Scene(gravity=(0, -G, 0))
     rope = wire(scene, end=(0, -2, 0), damping_time=0.02)
     scene.rigid_body("weight", mass=5, inertia=(0.01,) * 3, position=(0, -2, 0))
@@ -61,7 +61,7 @@ def test_a_rope_with_a_weight_that_falls_along_itself():
 
 
 def towed():
-    """A rope across a stream that it hangs in askew."""
+    """Return a rope that hangs obliquely in a cross stream."""
     scene = fu.Scene(gravity=(0, -G, 0))
     rope = wire(scene, end=(2, -1, 0), elements=24, youngs_modulus=1e6)
     scene.pin(rope, s=0.0)
@@ -72,7 +72,8 @@ def towed():
 
 
 def on_slope(state, end):
-    """The derivative of the fluid's kinetic energy by the slope, at an end of the rope: -m w_t (w - w_t i)/|r_x|."""
+    """Return the derivative of the fluid's kinetic energy by the slope at an end of the rope: -m w_t (w - w_t i)/|r_x|.
+    """
     slope = state["wire.nodal_vectors"][end, 1]
     size = np.linalg.norm(slope)
     i, w = slope / size, -np.array([2.0, 0.0, 0.0])
@@ -80,7 +81,7 @@ def on_slope(state, end):
 
 
 def test_at_rest_in_a_stream_the_force_is_that_of_the_law():
-    """The part of the fluid's impulse that turns with the line is in the cable, and not in what supports give."""
+    """The rotating part of the fluid's momentum acts in the cable and not in the supports."""
     state = towed().equilibrium()
     s = np.linspace(0.2, 1.4, 7)
     balance, law = (state.section_forces("wire", s, method=method) for method in ("balance", "constitutive"))
@@ -95,7 +96,7 @@ def test_at_rest_in_a_stream_the_force_is_that_of_the_law():
 
 
 def two_ropes(tied=False):
-    """One that rubs on the ground, one above it."""
+    """Return one rope with friction on the ground, and one above it."""
     scene = fu.Scene(gravity=(0, -G, 0))
     wire(scene, start=(0, 0.0101, 0), end=(2, 0.0101, 0), elements=4)
     upper = wire(scene, "upper", start=(2, 0.0101, 0) if tied else (0, 1, 0), end=(4, 1, 0), elements=4)

@@ -1,4 +1,4 @@
-"""Kelvin-Voigt damping of every law in what results compute from a run: section forces, pages, plots, loaded files."""
+"""Kelvin-Voigt damping of every law in the results of a run: section forces, pages, plots, loaded files."""
 
 import numpy as np
 import pytest
@@ -26,7 +26,7 @@ def swinging(element: str, law: str, drawn: str) -> Scene:
 
 @pytest.mark.parametrize(("element", "law", "drawn"), EVERY)
 def test_section_forces_at_a_support_are_its_reaction(element, law, drawn):
-    """The engine computes the reaction, results the force in the section by the kernels of the law."""
+    """The engine computes the reaction; the results compute the section force by the kernels of the law."""
     run = swinging(element, law, drawn).run(duration=0.02, tol=1e-3, output_step=0.01)
     forces = run.section_forces("wire", [0.0])
     reaction = run["wire@0.force"][1:]
@@ -34,7 +34,7 @@ def test_section_forces_at_a_support_are_its_reaction(element, law, drawn):
 
 
 def test_results_take_the_kernels_that_the_engine_takes():
-    """The engine's tables come from the families of `derive`, the names of results from the manifest."""
+    """The tables of the engine come from the families of `derive`, the names of results from the manifest."""
     laws = [family for family in families().values() if family.role == "law"]
     assert len(laws) == sum(len(kind.laws) for kind in built_in().values())
     for family in laws:

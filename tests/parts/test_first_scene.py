@@ -1,7 +1,7 @@
 """Example 5.1 of the paper against an independent solution (tests/reference), converged to about 1e-8.
 
-Each bound is either what the project asks for, or about twice what was measured, which a comment gives.
-tests/benchmarks/first_scene.py prints the same errors beside the time that they cost.
+Each bound is a requirement of the project, or about twice the measured value in a comment.
+tests/benchmarks/first_scene.py prints the same errors with their cost.
 """
 
 import numpy as np
@@ -18,7 +18,8 @@ def run():
 
 @pytest.fixture(scope="module")
 def resolved():
-    """Positions to 4e-8 of the largest motion, and the section's vibrations (period 0.3 ms) resolved: 1 s."""
+    """Return a run of 1 s with positions to 4e-8 of the motion, which resolves the section vibrations (period 0.3 ms).
+    """
     return simulate(step=1e-5)
 
 
@@ -34,12 +35,12 @@ def halved():
 
 @pytest.fixture(scope="module")
 def release():
-    """The first 5 ms, every step of 10 µs recorded."""
+    """Return the first 5 ms with every step of 10 µs."""
     return load_scene("paper51").run(5e-3, step=1e-5, output_step=1e-5)
 
 
 def against(validated, run, quantity: str, bound: float, variant: str) -> None:
-    """A quantity beside the reference, over its range there."""
+    """Return the error of a quantity over the range of the reference."""
     name, component, column = COLUMNS[quantity]
     ours = run[name] if component is None else run[name][:, component]
     validated("Slides", "example 5.1 of the paper, sliding mass on a cable",
@@ -67,7 +68,7 @@ def test_tol_is_kept(tol, resolved):
 
 @pytest.mark.parametrize("quantity", ["x_acceleration", "y_acceleration", "x_force", "y_force"])
 def test_acceleration_and_force_with_vibrations_resolved(fine, resolved, quantity, validated):
-    """At tol 3e-7, and with a fixed step of 10 µs."""
+    """With tol 3e-7, and with a fixed step of 10 µs."""
     assert error(fine, quantity) < 2e-2  # measured 7.4e-3 along y, 3.4e-3 along x
     against(validated, resolved, quantity, 1e-2, "genalpha, steps of 10 µs")
 
@@ -123,7 +124,7 @@ def test_energies_agree_with_the_reference(run):
 
 
 def test_the_force_is_normal_to_the_cable_and_moves_the_body(run):
-    """Eq 30: no force along the tangent; Newton's law for the body; the multipliers are that force's components."""
+    """Eq 30: no tangential force; Newton's law of the body; the multipliers are the components of the force."""
     l, nodes, s = 0.5, run["wire.nodal_vectors"], run["trolley.s"]
     element = np.minimum((s // l).astype(int), 2)
     row, x = np.arange(len(s)), (s / l - element)[:, None]
@@ -154,7 +155,7 @@ def test_reactions_are_the_rate_of_momentum(release):
 
 
 def test_rates_are_rates(release):
-    """s_rate, velocity and the accelerations of eq 38 against central differences of what they are rates of."""
+    """s_rate, velocity and the accelerations of eq 38 against central differences."""
     for value, rate in {
         "trolley.s": "trolley.s_rate",
         "trolley.s_rate": "trolley.s_acceleration",

@@ -1,4 +1,4 @@
-"""Files of results and checkpoints that were damaged, or forged with right checksums: refused, and never a crash."""
+"""Damaged result files and checkpoints, and forged ones with correct checksums, are refused without a crash."""
 
 import json
 import re
@@ -21,7 +21,7 @@ from interrupted_runs import SETTINGS, content, resumed, short, signed
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory) -> tuple[bytes, dict[str, bytes], dict, int]:
-    """A finished run's file: bytes, arrays, report, and where the rows begin."""
+    """Return the file of a finished run: bytes, arrays, report, and the start of the rows."""
     path = tmp_path_factory.mktemp("whole") / "x.nc"
     short().run(**SETTINGS, save=path)
     file = File(path)
@@ -43,7 +43,7 @@ def flipped(data: bytes, at: int, bit: int) -> bytes:
 
 
 def test_a_flipped_bit_is_found(whole, tmp_path):
-    """Of 250 in the rows and 250 in the header; what changes nothing is a blank behind the report."""
+    """250 bits in the rows and 250 in the header; only blanks after the report change nothing."""
     data, _, _, begin = whole
     random = np.random.default_rng(1)
     for least, most in ((begin, len(data)), (0, begin)):
@@ -68,7 +68,7 @@ def test_a_file_cut_short_is_found(whole, tmp_path):
 
 
 def test_overwritten_pages_are_found(whole, tmp_path):
-    """Zeros, as a disk leaves them after a power cut, and what was elsewhere in the file."""
+    """Zeros, as after a power cut, and pages from elsewhere in the file."""
     data, random = whole[0], np.random.default_rng(3)
     for at in random.integers(0, len(data) - 512, size=50):
         other = random.integers(0, len(data) - 512)
@@ -117,7 +117,7 @@ def test_other_readers_see_the_checksums_as_a_variable(whole, tmp_path):
 
 
 def test_a_file_without_checksums_is_read_with_a_warning(whole, tmp_path):
-    """As older versions wrote it, and as xarray does."""
+    """As written by older versions and by xarray."""
     (tmp_path / "x.nc").write_bytes(whole[0])
     load_run(tmp_path / "x.nc").dataset.to_netcdf(tmp_path / "y.nc", engine="scipy")
     with pytest.warns(FunicularWarning, match=r"y\.nc: has no checksums, as an older funicular or another program"):
@@ -125,7 +125,7 @@ def test_a_file_without_checksums_is_read_with_a_warning(whole, tmp_path):
 
 
 def test_each_bit_of_a_row_changes_its_checksum():
-    """Also each pair of bits of 200 random pairs, and the order of words."""
+    """Also each of 200 random pairs of bits, and the order of words."""
     random = np.random.default_rng(4)
     words = random.integers(0, 2**64, size=60, dtype=np.uint64)
     (sum_,) = row_checksums(words[None])
@@ -143,7 +143,7 @@ def test_each_bit_of_a_row_changes_its_checksum():
 
 
 def with_right_checksum(data: bytes) -> bytes:
-    """A file whose header was changed, with the checksum that is then right, where it can still be parsed."""
+    """Return a file with a changed header and a correct checksum, if it can still be parsed."""
     try:
         _, _, places, entries = netcdf_header.parsed(data)
         first = min(entry.begin for entry in entries.values() if entry.in_rows)
@@ -154,7 +154,7 @@ def with_right_checksum(data: bytes) -> bytes:
 
 
 def test_forged_headers_are_refused_or_read(whole, tmp_path):
-    """Each number of it replaced by others, each word changed."""
+    """Each number is replaced by others, each word is changed."""
     data, _, _, begin = whole
     path, random = tmp_path / "x.nc", np.random.default_rng(5)
     values = [struct.pack(">i", v) for v in (-1, 0, 1, 2, 7, 2**31 - 1, -(2**31), 1 << 24)]
@@ -170,7 +170,7 @@ def test_forged_headers_are_refused_or_read(whole, tmp_path):
 
 
 def use(path: Path) -> None:
-    """What a user does with results; errors are funicular's."""
+    """Use results as a user would; only errors of funicular may occur."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", FunicularWarning)
@@ -257,7 +257,7 @@ def forged_states(folder: Path, times: int, seed: int) -> int:
 
 
 def test_forged_states_are_refused_or_run(stopped):
-    """Indices out of range, numbers that are none: in a process of its own, which a crash would end."""
+    """Indices out of range and invalid numbers, in a separate process, which a crash would end."""
     assert forged_states(stopped.parent, 60, seed=6) > 5
 
 

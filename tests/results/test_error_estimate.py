@@ -1,4 +1,4 @@
-"""Errors that a run tells of itself with estimate=True: of its steps and of its mesh, against much finer runs."""
+"""Error estimates of a run with estimate=True, of steps and mesh, against much finer runs."""
 
 import math
 
@@ -23,7 +23,7 @@ def motion(scene, run):
 
 
 def test_the_errors_of_steps_and_mesh_are_the_true_ones():
-    """The finer run has a sixteenth of the error of the steps itself, and the finer mesh a part of that of the mesh."""
+    """The reference has a sixteenth of the error of the steps, and a fraction of that of the mesh."""
     scene, settings = pendulum(), {"output_step": 0.02}
     run = scene.run(0.4, step=4e-3, estimate=True, **settings)
     fine, finer = pendulum(3), pendulum(24)
@@ -88,7 +88,7 @@ def test_a_run_that_stops_early_is_not_estimated():
 
 
 def test_the_mesh_of_what_stays_at_rest_is_not_estimated():
-    """A tenth of a second of a buoy at rest in its current, at (100, 40) m: it moves by 7e-15 m."""
+    """A buoy rests in its current at (100, 40) m for a tenth of a second and moves by 7e-15 m."""
     run = load_scene("mooring").run(0.1, step=0.05, output_step=0.05, estimate=True)
     errors = run.report["errors"]
     assert errors["time"] == 0 and math.isnan(errors["mesh"]) and math.isnan(errors["both"])

@@ -1,4 +1,4 @@
-"""Ctrl-C at any instant leaves a run or KeyboardInterrupt, whole files, and nothing locked or half changed."""
+"""Ctrl-C at any instant gives a run or KeyboardInterrupt, whole files, and no lock or partial change."""
 
 import contextlib
 import gc
@@ -33,8 +33,8 @@ SETTINGS = {"duration": 0.1, "output_step": 0.005, "tol": 1e-3, "progress": Fals
 
 
 class Instants:
-    """Counts the instants of an action, which are lines of the package and instructions of what notes Ctrl-C; at one of
-    them SIGINT comes.
+    """Counts the instants of an action, lines of the package and instructions of the interrupt handler, and sends
+    SIGINT at one of them.
     """
 
     def __init__(self, at: int = 0):
@@ -101,7 +101,7 @@ ACTIONS = {"estimate": estimated, "save": saved, "save and estimate": partial(sa
 
 
 def check_left(folder, outcome) -> str:
-    """Check what an interruption has left; what that was, in a word."""
+    """Check the state after an interruption; return a word for it."""
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
     assert interruptions._Now.depth == 0 and not interruptions._Now.is_noted
     assert one_blas_thread._inside == 0
@@ -124,7 +124,7 @@ def check_left(folder, outcome) -> str:
 
 
 def trials(action, folder, count: int, seed: int) -> Counter:
-    """Interrupt an action at random instants; how often it left what."""
+    """Interrupt an action at random instants; return the number of each outcome."""
     for name in ("first", "whole"):  # the first time brings modules
         (folder / name).mkdir()
         with Instants() as instants:
@@ -149,7 +149,7 @@ def trials(action, folder, count: int, seed: int) -> Counter:
 
 
 def check_goes_on(action, folder, whole) -> None:
-    """Check that an interrupted run goes on to the same numbers."""
+    """Check that an interrupted run continues to the same numbers."""
     settings = {} if action is resumed else {"resume": True}
     assert action(folder, **settings).status == "completed"
     assert content(folder / "x.nc") == content(whole / "x.nc")
@@ -171,11 +171,11 @@ def test_ctrl_c_at_500_random_instants(name, tmp_path):
     assert found.total() == 72 and found["KeyboardInterrupt"] and len(found) > 1
 
 
-# ---- what is not lost
+# ---- saved data
 
 
 def interrupting(left: int):
-    """A progress that interrupts when it is called for the n-th time."""
+    """Return a progress function that interrupts at its n-th call."""
     calls = count(1)
 
     def progress(_: float) -> None:
@@ -192,7 +192,7 @@ SCENES = {"in space": spatial, "tied": tied, "spring on cable": spring_on_cable,
 @pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
 @pytest.mark.parametrize("name", SCENES)
 def test_a_saved_run_may_end_at_its_first_row(name, tmp_path):
-    """The file had the first row, and the engine none."""
+    """The file has the first row, and the engine none."""
     run = SCENES[name]().run(100.0, output_step=100.0, tol=1e-9, integrator="explicit", progress=interrupting(1),
                              save=tmp_path / "x.nc")
     assert run.status == "interrupted" and len(run.time) == 1
@@ -232,7 +232,7 @@ def test_a_finished_run_is_not_lost(monkeypatch):
 
 @pytest.mark.parametrize("at", range(1, 60, 4))
 def test_settings_as_text_pass_ctrl_c_on(at):
-    """Pydantic makes an error of its own of what is raised while it writes a model's values."""
+    """Pydantic replaces exceptions during serialisation by errors of its own."""
     settings = fu.RunSettings(duration=1.0)
     with pytest.raises(KeyboardInterrupt), Instants(at):
         for _ in range(20):

@@ -1,4 +1,4 @@
-"""Runs in processes of their own: killed at any instant, they go on to the same numbers; memory stays small."""
+"""Runs in separate processes, killed at any instant, continue to the same numbers; memory is bounded."""
 
 import random
 import signal
@@ -32,14 +32,14 @@ def times(path: Path) -> int:
 
 
 def await_file(running: subprocess.Popen, path: Path, least: int = 1) -> float:
-    """Wait for the file to have so many times; when that was, in s."""
+    """Wait until the file has a number of times; return the time of that, s."""
     while running.poll() is None and not (path.exists() and times_so_far(path) >= least):
         time.sleep(0.002)
     return time.monotonic()
 
 
 def times_so_far(path: Path) -> int:
-    """While the file grows: scipy maps it before it reads how many rows it has, and one more may come in between."""
+    """The file grows: scipy maps it before it reads the number of rows, and a row may arrive in between."""
     try:
         return times(path)
     except ValueError:
@@ -48,7 +48,7 @@ def times_so_far(path: Path) -> int:
 
 @pytest.fixture
 def whole(tmp_path) -> tuple[dict[str, bytes], float]:
-    """What a run of about half a second writes, and how long it writes, in s; its scene.toml is in the folder."""
+    """Return the output of a run of about half a second and its writing time, s; scene.toml is in the folder."""
     scene = short()
     scene.run_settings = {"duration": 0.3, "output_step": 5e-4, "step": 1e-5}
     (tmp_path / "scene.toml").write_text(scene.to_toml())

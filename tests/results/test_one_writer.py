@@ -1,4 +1,4 @@
-"""One run a file: what others find that write it at the same time, remove it, or have put links in its place."""
+"""One run per file: concurrent writers, removed files and replaced links are detected."""
 
 import fcntl
 import os
@@ -19,7 +19,7 @@ TAKEN = "another run is writing it; wait for its end, or give another name$"
 
 
 def while_it_runs(path: Path, do, monkeypatch, **settings):
-    """Run, and `do` once in the middle of it."""
+    """Run, and call `do` once in the middle."""
     monkeypatch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
     done = []
 
@@ -53,7 +53,7 @@ def test_a_run_of_its_own_goes_on_while_others_are_refused(tmp_path, monkeypatch
 
 
 def test_a_run_that_has_not_made_its_file_yet_has_it_already(tmp_path, monkeypatch):
-    """Between the check and the first row, as long as an equilibrium takes."""
+    """The interval between the check and the first row is as long as an equilibrium takes."""
     path, errors = tmp_path / "x.nc", []
     equilibrium = Scene.equilibrium
 
@@ -219,7 +219,7 @@ def without_rows(recording):
 
 
 def test_a_run_that_stops_before_its_first_row(engine, tmp_path):
-    """No file, no checkpoint, an older file as it was; the run says that it has nothing."""
+    """No file, no checkpoint, an unchanged older file; the run reports that it has no rows."""
     whole = engine.simulate
     engine.simulate = lambda *given, **named: without_rows(whole(*given, **named))
     (tmp_path / "old.nc").write_text("old")

@@ -1,4 +1,4 @@
-"""Results: names, labels, files, energy balance. The recording is made by hand; no engine is needed."""
+"""Results: names, labels, files, energy balance. The recording is made by hand, without the engine."""
 
 import re
 from types import SimpleNamespace

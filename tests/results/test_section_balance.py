@@ -1,4 +1,4 @@
-"""Section forces in balance: against free bodies cut out by hand, and reported forces."""
+"""Section forces by balance against free bodies cut by hand, and reported forces."""
 
 import warnings
 
@@ -44,7 +44,7 @@ def scene_between_pins(element, **given):
 
 
 def loads(element, **given):
-    """Every kind of load, and a rider with friction."""
+    """Return a scene with every kind of load, and a rider with friction."""
     scene = scene_between_pins(element, damping=1e-3, **given)
     across = 0 if element in ("cable12", "cable18") else -50
     scene.force("rope", s=2.3, value=(10, -50, 0), scale=Harmonic(amplitude=2, frequency=3))
@@ -58,7 +58,7 @@ def loads(element, **given):
 
 
 def tied(element, frame, **given):
-    """A rider whose frame goes with the cable's, its mass off to the side."""
+    """Return a rider whose frame follows that of the cable, with an eccentric mass."""
     scene = scene_between_pins(element)
     z = 0.0 if element.endswith("p") else 0.1
     scene.rigid_body("A", mass=5, inertia=(0.1, 0.1, 0.1), position=(1.8, -0.4, z), velocity=(1, 0, 0))
@@ -89,7 +89,9 @@ def modal_rider():
 
 
 def frame_of_beams():
-    """A corner, a hinge, springs between cables and from the ground, joints of all sorts on points of cables."""
+    """Return a frame with a corner, a hinge, springs between cables and from the ground, and joints of all kinds on
+    cables.
+    """
     scene = Scene(gravity=G)
     cable(scene, element="beam24")
     scene.clamp("rope", s=0)
@@ -120,7 +122,7 @@ def moved():
 
 
 def turned_round():
-    """A planar joint that is driven about -z: what a sees of b is what b sees of a about z."""
+    """Return a planar joint driven about -z: the reversed pair driven about z."""
     scene = Scene(gravity=G)
     cable(scene, element="beam12p", elements=3, end=(1, 0, 0))
     scene.clamp("rope", s=0)
@@ -131,7 +133,7 @@ def turned_round():
 
 
 def in_a_stream(element, **given):
-    """Joined cables in a stream that grows with height and time, with mass of water across and along them."""
+    """Return joined cables in a stream that varies with height and time, with added mass across and along them."""
     scene = scene_between_pins(element, damping=1e-3, **given)
     cable(scene, "arm", element, 3, (6, 0, 0), (7, -0.6, 0), damping=1e-3)
     scene.tie("rope", s=6.0, to="arm", at=0.0, rotation="free", name="hinge")
@@ -175,7 +177,7 @@ SCENES = {
 
 @pytest.fixture
 def engine_rows(monkeypatch):
-    """What the engine recorded, beside what a run keeps of it."""
+    """Return the recorded rows of the engine with the results of the run."""
     kept, named = {}, recording.named
 
     def spy(model, scene, engine):
@@ -189,7 +191,7 @@ def engine_rows(monkeypatch):
 @pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
 @pytest.mark.parametrize("name", SCENES)
 def test_accelerations_are_the_engines(name, engine_rows):
-    """They follow from recorded forces: any that is missing, or on the wrong place or side, shows here."""
+    """They follow from recorded forces, so that a missing or misplaced force shows here."""
     run = SCENES[name]().run(duration=0.2, output_step=0.1, tol=1e-4)
     model, at = run.model, _instants(run, np.arange(len(run.time)))
     for k, cable in enumerate(model.cables):
@@ -206,7 +208,7 @@ def loads_of(scene, model, at, k):
 
 
 def gaps_at_nodes(scene, model, at):
-    """Jumps of force and moment over inner nodes that nothing acts on, relative to the largest."""
+    """Return the jumps of force and moment at inner nodes without loads, relative to the largest value."""
     for k, (name, cable) in enumerate(scene.cables.items()):
         s = np.setdiff1d(np.round(cable.node_s, 9)[1:-1], np.round(jumps(scene, name), 9))[None]
         loads = loads_of(scene, model, at, k)
@@ -222,7 +224,7 @@ def gaps_at_nodes(scene, model, at):
 @pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
 @pytest.mark.parametrize("name", [name for name in SCENES if name != "motion"])
 def test_nothing_is_left_over_at_nodes(name):
-    """What an element passes on over its length, by integrals, is what its other node takes."""
+    """The force transmitted by an element, by integrals, equals the one received at its other node."""
     scene = SCENES[name]()
     run = scene.run(duration=0.1, output_step=0.1, tol=1e-4)
     for gap in gaps_at_nodes(run.scene, run.model, _instants(run, np.arange(2))):
@@ -236,7 +238,7 @@ RESTS = ["loads on cable12", "loads on beam24", "section of beam24", "cable tied
 @pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
 @pytest.mark.parametrize("name", RESTS)
 def test_at_rest(name):
-    """A state of rest: riders are driven or their slides would go on to the lowest point."""
+    """In equilibrium, riders are driven; otherwise their slides would move to the lowest point."""
     scene = SCENES[name]()
     rest = scene.equilibrium()
     for slide in scene.slides.values():
@@ -256,7 +258,7 @@ def _of_elements(cable, values):
 @pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
 @pytest.mark.parametrize("name", [name for name in SCENES if "stream" not in name])
 def test_forces_between_cuts(name):
-    """Jumps are the forces that results report; ends without anything are free; supports give what they report.
+    """Jumps equal the reported forces; free ends have no force; supports have their reported force.
 
     In a stream the fluid acts on ends as well, see test_section_fluid.py.
     """
@@ -287,7 +289,7 @@ def test_forces_between_cuts(name):
 
 
 def test_riders_force_is_that_of_its_motion():
-    """A moment on a frame that turns along the cable is a force along it, too."""
+    """A moment on a frame that rotates along the cable is also a force along it."""
     run = tied("cable12", "tangent").run(duration=0.4, output_step=0.1, tol=1e-4)
     assert np.abs(run["trolley.moment"]).max() > 0.5
     assert_allclose(run["trolley.force"], 5 * (run["A.acceleration"] - G), atol=1e-9)
@@ -310,7 +312,7 @@ def test_spring_on_a_modal_body_ends_on_its_node():
 
 
 class TestZipLine:
-    """84 kg on 120 m of rope: 19 kN, a kink of 4 degrees, which a cubic draws as an arc of an element's length."""
+    """84 kg on 120 m of rope: 19 kN, a kink of 4 degrees, which a cubic spreads over the length of an element."""
 
     @pytest.fixture(scope="class", params=[24, 48, 96])
     @staticmethod
@@ -320,7 +322,7 @@ class TestZipLine:
         return scene.run(duration=10.05)
 
     def test_tension_beside_the_rider_is_that_of_the_pieces(self, run):
-        """At 10 s; each piece from its support on: weight, and inertia by differences of velocities in time."""
+        """At 10 s, each part from its support: weight, and inertia by differences of velocities in time."""
         k, rope = len(run.time) - 2, run.scene.cables["rope"]
         rate = (run["rope.nodal_velocity"][k + 1] - run["rope.nodal_velocity"][k - 1])[:, 0] / 0.1
         s, rider = run.coords["rope.node"].values, run["wheels.s"][k]
@@ -349,7 +351,7 @@ def test_read_back(tmp_path):
 
 
 def test_reading_back_says_nothing_anew(tmp_path):
-    """The scene is made again from its text: what its placement had to say was said when it was drawn."""
+    """The scene is made again from its text without repeating the messages of its placement."""
     scene = scene_between_pins("cable12")
     cable(scene, "link", "beam24", 3, (2.5, -1e-4, 0), (2.7, -1, 0), up=(1, 0, 0))
     with pytest.warns(FunicularWarning, match="are brought together"):

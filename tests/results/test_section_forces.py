@@ -1,4 +1,4 @@
-"""Section forces: bars in tension, arcs in bending, and equilibrium with what is hung on the end of a cable."""
+"""Section forces: bars in tension, arcs in bending, and balance with loads at the end of a cable."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ MOMENTS = section(SIDE, SIDE)
 
 
 def stiffness(name: str, law: str) -> np.ndarray:
-    """S of a square section of a material with Young's modulus E that does not contract sideways."""
+    """Return S of a square section of a material with Young's modulus E and no lateral contraction."""
     if law == "structural":
         EA, GA, EI = E * SIDE**2, E * SIDE**2 / 2, E * SIDE**4 / 12
         return np.array([EA, GA, GA, EI, EI, EI, EA, EA, GA] if ELEMENTS[name].dim == 3 else [EA, GA, EI, EA])
@@ -31,7 +31,7 @@ def kernel(*name: str):
 @pytest.mark.parametrize(("name", "law"), LAWS)
 @pytest.mark.parametrize("stretch", [-0.1, 1e-6, 0.2])
 def test_a_bar_in_tension(name, law, stretch):
-    """N = E A strain along the bar, times its stretch where the strain is Green's; nothing else."""
+    """N = E A strain along the bar, times its stretch with Green's strain; other components are zero."""
     element = ELEMENTS[name]
     F = np.eye(element.dim)
     F[0, 0] += stretch
@@ -52,7 +52,7 @@ def test_a_bar_in_tension(name, law, stretch):
 
 @pytest.mark.parametrize(("name", "law"), CABLES)
 def test_an_arc_in_bending(name, law):
-    """M = E I kappa about the normal of the arc's plane, up to its interpolation."""
+    """M = E I kappa about the normal of the arc's plane, up to interpolation."""
     l = 0.2
     e = arc(ELEMENTS[name], l)
     _, moment, _, strain = kernel(name, law, "section_forces")(l, l / 2, e, stiffness(name, law))
@@ -61,7 +61,7 @@ def test_an_arc_in_bending(name, law):
 
 
 class Cantilever:
-    """Length 1, clamped, a dead load on the position of its end, solved by Newton on the kernels alone."""
+    """A clamped cantilever of length 1 with a dead load at its end, solved by Newton's method on the kernels alone."""
 
     def __init__(self, name: str, law: str, n: int, load: np.ndarray):
         self.element, self.law, self.family, self.l, self.n = ELEMENTS[name], law, f"{name}_{law}", 1 / n, n
@@ -74,7 +74,7 @@ class Cantilever:
         nodes = np.repeat(one[:1], n + 1, axis=0)
         nodes[:, 0, 0] = np.linspace(0, 1, n + 1)
         self.q = nodes.ravel()
-        # clamped: all but the length of r_x and what r_xx can be
+        # clamped: all but the length of r_x and the free part of r_xx
         free = [v == "r_xx" for v in self.element.nodal_vectors for _ in range(dim)]
         free[dim] = True
         self.free = np.concatenate([free, np.ones(n * self.step, dtype=bool)])
@@ -103,9 +103,9 @@ class Cantilever:
                 raise AssertionError("no equilibrium")
 
     def worst(self) -> tuple[float, float]:
-        """Errors of force and moment at the middles of the elements of the free half, against the load and its lever.
+        """Return errors of force and moment at element middles of the free half, relative to the load and its lever.
 
-        Within a depth or two of the clamp a solid section, which cannot widen there, has another stress.
+        Within a depth or two of the clamp, which prevents lateral strain, a solid section has another stress.
         """
         forces = kernel(self.family, "section_forces")
         position = kernel(self.element.name, "position")

@@ -1,4 +1,4 @@
-"""Section forces against closed forms: kinks, taut and loaded beams, a spinning one, a force that crosses."""
+"""Section forces against closed forms: kinks, taut and loaded beams, a spinning beam, a moving force."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ LOAD, LENGTH, DEPTH = 10.0, 2.0, 0.1
 
 
 def kinked_rope(elements):
-    """1000 N on a slack rope without weight, at rest."""
+    """Return a slack weightless rope under 1000 N, in equilibrium."""
     scene = Scene(gravity=(0, 0, 0))
     scene.cable("rope", points=[(0, 0, 0), (5, -3.3, 0), (10, 0, 0)], rest="straight", rest_length=12,
                 elements=elements, element="cable8p", section=GeneralSection(area=1e-4, second_moment_about_z=1e-9),
@@ -37,7 +37,7 @@ def test_a_sharp_kink(elements, validated):
 
 
 class TestTautBending:
-    """Where elements of a taut cable are far longer than it bends, against so many that the mesh shows it."""
+    """Elements of a taut cable that are much longer than its bending length, against a resolved mesh."""
 
     S = np.array([0, 0.02, 0.05, 2.0, 4.0, 4.19, 4.21, 7.03, 7.05, 7.07, 9.5])
     CONVERGED = np.array([-3.751, -1.785, -0.586, 0.0146, 0.0153, 0.666, 1.381, 0.729, -1.485, -0.700, 0])
@@ -45,7 +45,9 @@ class TestTautBending:
 
     @staticmethod
     def moments(elements, element, method="balance"):
-        """A clamp, a force, a moment, a load along some of it; E I 1 N m^2, 1.32 kN: bends over 27 mm."""
+        """Return moments with a clamp, a force, a moment and a partial load; E I 1 N m^2, 1.32 kN, a bending length of
+        27 mm.
+        """
         scene = Scene(gravity=(0, 0, 0))
         scene.cable("rope", start=(0, 0, 0), end=(10, 0, 0), rest_length=9.9, elements=elements, element=element,
                     section=GeneralSection(area=1e-4, second_moment_about_z=1e-9),
@@ -71,7 +73,7 @@ class TestTautBending:
 
     @pytest.mark.parametrize("elements", [24, 48])
     def test_moment_of_a_kink(self, elements, validated):
-        """2 sqrt(N E I) sin(theta/4) under a force that turns the rope's by theta, 69 degrees: 17.6 N m."""
+        """2 sqrt(N E I) sin(theta/4) under a force that deflects the rope by theta, 69 degrees: 17.6 N m."""
         rest = kinked_rope(elements)
         before, after = (rest.section_forces("rope", [6.21], side=side) for side in ("before", "after"))
         one, other = before["force"].values[0], after["force"].values[0]
@@ -113,7 +115,7 @@ def test_a_cantilever_with_a_load_inside_an_element(element, law, elements, vali
 
 @pytest.mark.parametrize(("element", "law"), BEAMS)
 def test_a_beam_on_two_supports(element, law):
-    """The far one a long spring: it gives along the beam. Both sides of the load are among the places."""
+    """The far support is a long spring, which is soft along the beam. Both sides of the load are evaluated."""
     scene, at = beam(element, law, 3), 1.3
     scene.pin("beam", s=0)
     scene.spring(("beam", LENGTH), (LENGTH, 100, 0), stiffness=1e9, length=100)
@@ -130,7 +132,7 @@ def test_a_beam_on_two_supports(element, law):
 
 
 def test_a_beam_that_spins(validated):
-    """N = rho A W^2 (L^2 - s^2)/2 while it is stretched by little, once damping has stopped its ringing."""
+    """N = rho A W^2 (L^2 - s^2)/2 at small stretch, after damping of its vibrations."""
     speed, L = 10.0, LENGTH
     scene = Scene(gravity=(0, 0, 0))
     scene.cable("beam", start=(0, 0, 0), end=(L, 0, 0), elements=4, element="beam24", law="structural",
@@ -145,7 +147,7 @@ def test_a_beam_that_spins(validated):
 
 
 def test_a_force_that_crosses_a_beam(validated):
-    """Case M1 at half the critical speed: moments at three sections and under the force, against Fourier's series."""
+    """Case M1 at half the critical speed: moments at three sections and under the force, against a Fourier series."""
     F, EI, line = 1.0, 1e9 * DEPTH**4 / 12, 1000 * DEPTH**2
     v = 0.5 * np.pi / LENGTH * np.sqrt(EI / line)
     scene = beam("cable8p", None, 8)
@@ -186,7 +188,7 @@ def test_states_on_the_way_carry_a_part_of_the_load(fraction):
 
 
 def test_a_bent_wire_drawn_straight():
-    """A taut cable that is stress-free as an arc has the moment of unbending, by its law alone."""
+    """A taut cable with an arc as its stress-free shape has the moment of straightening, by its law alone."""
     scene = Scene(gravity=(0, 0, 0))
     u = np.linspace(0, 1, 41)
     scene.cable("wire", points=[(10 * np.sin(a), 10 - 10 * np.cos(a), 0) for a in u], elements=12, element="cable12",

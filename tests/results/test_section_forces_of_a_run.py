@@ -1,4 +1,4 @@
-"""Section forces along a cable: the right element and place, components, labels; mostly with a stand-in kernel."""
+"""Section forces along a cable: element, position, components, labels; mostly with a mock kernel."""
 
 import re
 from types import SimpleNamespace
@@ -26,7 +26,7 @@ AXES = np.array([[0.6, 0.8, 0], [-0.8, 0.6, 0], [0, 0, 1]])
 
 @pytest.fixture
 def calls(monkeypatch):
-    """Kernels that return the place of the cut as a tension, and keep what they were called with."""
+    """Return kernels that give the position of the cut as a tension and record their calls."""
     kept = []
 
     def rows(n, l, x, e, S, *e0):
@@ -48,7 +48,7 @@ def run():
 
 
 def by_law(scene: Scene, *s: float) -> dict[str, np.ndarray]:
-    """Components by the elastic law of the only cable as it is drawn."""
+    """Return components by the elastic law of the only cable in its drawn shape."""
     (wire,) = scene.cables.values()
     cuts = Cuts(build(scene).cables[0], np.array([s]), after=True)
     force, moment, axes, strain = constitutive(wire, wire.nodal_vectors[None], cuts)
@@ -120,7 +120,7 @@ def test_curved_and_structural_laws_take_the_rest_shape(calls):
 
 @pytest.mark.parametrize("element", ["beam24", "cable12", "cable18", "beam12p", "cable8p"])
 def test_a_taut_cable_by_its_own_kernel(element):
-    """Green strain, second Piola-Kirchhoff: N = E A (stretch² - 1)/2 stretch, where the section keeps its size."""
+    """Green strain, second Piola-Kirchhoff stress: N = E A (stretch² - 1)/2 stretch, for a section of constant size."""
     steel = Material(youngs_modulus=1e6, density=1000, poisson_ratio=0)
     scene = Scene()
     wire = scene.cable("wire", start=(0, 0, 0), end=(2, 0, 0), elements=3, element=element, material=steel,
@@ -152,7 +152,7 @@ def test_pictures_when_asked_for(run, tmp_path):
     assert [p.name for p in save_plots(run, tmp_path, forces=True)][-1] == "forces-wire.png"
     tension, moment, _ = run.plot("forces-wire").axes
     assert (tension.get_ylabel(), moment.get_ylabel()) == ("tension / N", "moment / (N m)")
-    # eight places on each element and its end, and both sides of the rider
+    # eight positions on each element and its end, and both sides of the rider
     assert_allclose(tension.lines[0].get_xdata(),
                     np.sort([*np.linspace(0, 1.5, 25), 0.25 - 6e-9, 0.25 + 6e-9]), atol=1e-12)
     assert len(moment.lines) == 3

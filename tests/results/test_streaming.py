@@ -1,4 +1,5 @@
-"""Runs that write while they go on: killed at any instant, they leave a whole file, and go on to the same numbers."""
+"""Runs that write while they compute: killed at any instant, they leave a whole file and continue to the same numbers.
+"""
 
 import fcntl
 
@@ -77,7 +78,7 @@ def test_dying_in_the_middle_of_a_write(uninterrupted, tmp_path, monkeypatch, wr
                                     {"integrator": "energy", "spectral_radius": 0.5}],
                          ids=lambda method: "-".join(map(str, method.values())))
 def test_every_integrator_goes_on_exactly(tmp_path, monkeypatch, method):
-    """With a motion whose rate jumps, a spring, a follower, damping and a hinge as well; stopped twice."""
+    """With a motion of discontinuous rate, a spring, a follower force, damping and a hinge; stopped twice."""
     settings = {"duration": 0.05, "output_step": 0.001, "tol": 1e-4, **method}
     everything().run(**settings, save=tmp_path / "whole.nc")
     monkeypatch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
@@ -103,7 +104,7 @@ def everything() -> Scene:
     for name, start, end in (("wire", (0, 0, 0), (1.5, 0, 0)), ("arm", (1.5, 0, 0), (1.5, -0.5, 0))):
         scene.cable(name, start=start, end=end, elements=3, element="cable12", section=Circle(radius=0.01),
                     material=material, up=(0, 0, 1))
-    # its knots lie inside steps
+    # its breakpoints lie inside steps
     polygon = TableSignal(time=(0, 0.0105, 0.0305, 0.06), value=(0, 0, 1e-4, 0), interpolation="linear")
     scene.motion("wire", s=0.0, displacement=(0, Harmonic(amplitude=0.01, frequency=5.0), polygon))
     scene.pin("arm", s=0.5)
@@ -120,7 +121,7 @@ def everything() -> Scene:
 
 
 def test_rows_are_written_between_checkpoints(tmp_path, monkeypatch):
-    """Of a run that pauses once in ten rows, with a clock that is slower than its steps."""
+    """The run pauses once in ten rows, and its clock is slower than its steps."""
     monkeypatch.setattr(streaming, "CHECKPOINT_INTERVAL", 1e9)
     monkeypatch.setattr(streaming, "ROWS_INTERVAL", 0.0)
     path, seen = tmp_path / "x.nc", []
@@ -165,7 +166,7 @@ def test_ctrl_c_leaves_what_there_is_and_goes_on(uninterrupted, tmp_path):
 
 @pytest.mark.parametrize("method", ["add_report", "truncate"])
 def test_dying_when_it_goes_on_after_ctrl_c(uninterrupted, tmp_path, monkeypatch, method):
-    """The report tells how many times the file has: it must not be the older one when these are fewer again."""
+    """The report of the older file has more times than the resumed one; it must not be taken."""
     path = tmp_path / "x.nc"
 
     def stop(time: float) -> None:
@@ -260,7 +261,7 @@ def test_what_cannot_be_resumed(stopped, tmp_path):
 
 
 def test_auto_goes_on_with_the_same_integrator(stopped):
-    """A spectral radius that is given decides for genalpha, also where it is the default."""
+    """A given spectral radius decides for genalpha, even with its default value."""
     with file_refused(stopped, 'its run cannot go on with integrator "genalpha"' + ANEW):
         resumed(stopped, spectral_radius=0.9)
 

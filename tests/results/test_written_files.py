@@ -1,4 +1,4 @@
-"""Files that take the place of older ones: a full disk, an error or Ctrl-C leaves the older one."""
+"""Replaced files: a full disk, an error or Ctrl-C leaves the older one."""
 
 import os
 import re
@@ -22,7 +22,7 @@ SOURCES = [Path(__file__).parents[2] / folder for folder in ("runtime", "derive"
 
 @contextmanager
 def full_disk(left: int):
-    """Let files of this process, and of those that it starts, have so many bytes at most, as a full disk does."""
+    """Limit the files of this process and its children to a number of bytes, as a full disk does."""
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (left, before[1]))
     try:
@@ -124,7 +124,7 @@ def test_links_modes_and_devices_stay_what_they_are(tmp_path):
 
 
 def test_no_file_is_written_in_its_place():
-    """Whoever writes a file takes `write_whole`; what stands here makes files that no older one has the name of."""
+    """All files are written by `write_whole`; the exceptions listed here make files under new names."""
     elsewhere = {"guides", "written_files.py",  # scripts that are read, and the function itself
                  "library.py", "compiled.py", "timing.py", "command.py", "workers.py", "build.py"}  # temporary folders
     writes = re.compile(r"\.write_text\(|\.write_bytes\(|\.savefig\(|open\([^)]*\"w|np\.save")

@@ -1,7 +1,7 @@
-"""The droppers of an overhead line of 55 m, by the heights that its contact wire is to have.
+"""Droppers of an overhead line of 55 m, found by the heights of its contact wire.
 
 A span of a published line: lengths of its droppers, and their forces in the limit of strings; a parabola of 55 mm
-between the outer droppers. Beside its masts the wire is free to rise, as a steady arm leaves it.
+between the outer droppers. At its masts the wire is vertically free, as on a steady arm.
 """
 
 import adjusting
@@ -18,7 +18,7 @@ MESSENGER = {"tension": 16e3, "area": 120e-6, "modulus": 97e9, "bending": 111.0,
 
 
 def wire(scene, name, y, excess, data, bending, elements):
-    """Add a wire that is longer than the span by this excess where its tension is as given."""
+    """Add a wire that is longer than the span by an excess under its given tension."""
     area, modulus = data["area"], data["modulus"]
     section = fu.GeneralSection(area=area, second_moment_about_z=bending * data["bending"] / modulus)
     length = (SPAN + excess) / (1 + data["tension"] / (modulus * area))
@@ -28,7 +28,7 @@ def wire(scene, name, y, excess, data, bending, elements):
 
 
 def line(bending=1.0, elements=44):
-    """Return the line with droppers of one length, of which many are slack; bending: over that of the data."""
+    """Return the line with droppers of one length, many of them slack; bending: relative to that of the data."""
     scene = fu.Scene()
     contact = wire(scene, "contact", 0.0, 0.0, CONTACT, bending, elements)
     messenger = wire(scene, "messenger", 1.2, 0.03, MESSENGER, bending, elements)
@@ -46,7 +46,7 @@ def line(bending=1.0, elements=44):
 
 
 def adjusted(scene):
-    """Return the state of rest in which heights and pulls are as given."""
+    """Return the equilibrium with the given heights and tensions."""
     length = scene.cables["contact"].length
     heights = {f"contact@{x / SPAN * length:.12g}.position.y": -sag for x, sag in zip(X, SAG, strict=True)}
     pulls = {"contact@0.force.x": -22e3, "messenger@0.force.x": -16e3}
@@ -83,7 +83,7 @@ def test_forces_near_the_string_limit_as_bending_goes():
 
 
 def test_a_dropper_on_a_node_may_pass_to_the_next_element():
-    """As the wire is made longer or shorter; its chain is cut elsewhere then, and its unknowns have other numbers."""
+    """A change of the wire's length divides its chain elsewhere and renumbers its unknowns."""
     _, rest = adjusting.adjusted("droppers", 3, "z = 0")
     assert rest.adjustment.iterations <= 4
     assert rest.adjustment.misfits[-1] < 1e-9

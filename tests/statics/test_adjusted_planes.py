@@ -1,4 +1,4 @@
-"""Adjusted scenes whose cables have uneven meshes, and whose planar cables lie in planes other than z = 0."""
+"""Adjusted scenes with uneven meshes, and with planar cables in planes other than z = 0."""
 
 import re
 
@@ -16,7 +16,7 @@ TURNS = {
 
 
 def hung(turn, nodes=NODES, **given):
-    """Return a rope between two points in a plane, on which a body hangs by a spring, in the middle."""
+    """Return a rope between two points in a plane, with a body on a spring at its middle."""
     axes = TURNS[turn]
     scene = fu.Scene(gravity=axes @ [0, -9.81, 0])
     mesh = {"elements": 12} if nodes is None else {"nodes": nodes}
@@ -43,7 +43,7 @@ def test_an_adjusted_scene_is_the_same_in_every_plane(nodes, given):
     for turn, up in (("y", "z"), ("oblique", "y")):
         rest = adjusted(hung(turn, nodes, **given), up)
         assert rest.adjusted == pytest.approx(flat.adjusted, rel=1e-10)
-        # an entry is nil; values are differenced along a state moved by 1e-6 of the scene: rounding is 2e-10
+        # one entry is zero; values are differenced over 1e-6 of the scene: rounding is 2e-10
         assert rest.adjustment.jacobian == pytest.approx(flat.adjustment.jacobian, rel=1e-6, abs=1e-9)
         assert rest["A.position"] == pytest.approx(TURNS[turn] @ flat["A.position"], abs=1e-9)
 

@@ -1,4 +1,4 @@
-"""Parameters that bring a state of rest to given values: closed forms, derivatives, limits, what cannot be reached."""
+"""Parameters for given values of an equilibrium: closed forms, derivatives, limits, impossible targets."""
 
 import re
 

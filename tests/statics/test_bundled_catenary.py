@@ -1,4 +1,4 @@
-"""The bundled scene of a catenary is what its builder makes, and its figures are those that are told."""
+"""The bundled scene of a catenary equals the output of its builder and has its stated figures."""
 
 import tomllib
 
@@ -10,7 +10,7 @@ from funicular import catenary
 
 
 def compare(mine, theirs, place="scene"):
-    """Compare what two scene files say: numbers to 1e-9, the rest exactly."""
+    """Compare two scene files: numbers to 1e-9, the rest exactly."""
     if isinstance(mine, dict):
         assert mine.keys() == theirs.keys(), place
         for name, value in mine.items():
@@ -30,7 +30,7 @@ def test_the_bundled_scene_is_what_the_builder_makes():
 
 
 def test_figures_of_the_bundled_scene():
-    """On its coarse mesh, with a standard deviation a tenth larger than with elements of 1 m and of 0.5 m (36.2 N)."""
+    """On the coarse mesh the standard deviation is a tenth larger than with elements of 1 m and of 0.5 m (36.2 N)."""
     run = fu.load_scene("catenary").run(progress=False)
     found = catenary.assess(run)
     assert float(found["mean"][0]) == pytest.approx(111.5, abs=0.2)  # within 0.1 of meshes of 1 m and 0.5 m

@@ -1,4 +1,4 @@
-"""What lengths, sections and materials change of the forces of a cable, against their differences, for each law."""
+"""Derivatives of the forces of a cable by length, section and material, against differences, for each law."""
 
 import funicular as fu
 import numpy as np
@@ -26,21 +26,20 @@ def cable_of(element, law, stretch, shape=None):
 
 
 def disturbed(cable, size):
-    """Return the model of a cable, and its coordinates, each vector somewhat off."""
+    """Return the model of a cable, and its coordinates with perturbed vectors."""
     model, random = cable_model(cable, 0), np.random.default_rng(1)
     q = cable.nodal_vectors[..., : model.shape[2]]
     return model, (q + size * random.standard_normal(q.shape)).ravel()
 
 
 def differenced(of, step):
-    """Return the derivative of a function at 1, from its values to twice a step to either side."""
+    """Return the derivative of a function at 1 by fourth-order differences."""
     near, far = ((of(1 + h) - of(1 - h)) / (2 * h) for h in (step, 2 * step))
     return (4 * near - far) / 3
 
 
 def with_length(cable, model, q, ratio):
-    """Return what acts on positions, and slopes times the length, of a longer cable whose points are where they were.
-    """
+    """Return the forces on positions, and on slopes times the length, of a longer cable with unchanged positions."""
     factors = {"r_x": 1 / ratio, "r_xx": 1 / ratio**2}
     each = np.broadcast_to(np.array([[factors.get(name, 1.0)] for name in model.vectors]), model.shape).ravel()
     longer = cable_model(cable.remade({"rest_length": ratio * cable.length}), 0)
@@ -81,7 +80,7 @@ def test_so_they_do_where_a_cable_just_becomes_slack(element, strain):
 
 @pytest.mark.parametrize(("element", "law"), LAWS)
 def test_forces_are_linear_in_youngs_modulus(element, law):
-    """At a given Poisson ratio, whatever the law: no difference of a short step is needed."""
+    """At a given Poisson ratio this holds for every law, so that no short step is needed."""
     cable = cable_of(element, law, 1.01)
     model, q = disturbed(cable, 2e-3)
     own = Own(model, q, np.zeros(model.shape[2]))

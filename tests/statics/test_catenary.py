@@ -1,5 +1,5 @@
-"""Catenaries over railways: their form against strings in closed form and a published line, their repetition from span
-to span, pantographs below them, what is said of the contact force, refusals.
+"""Catenaries of railways: their form against strings in closed form and a published line, repeated spans, pantographs,
+assessment of the contact force, refusals.
 """
 
 import funicular as fu
@@ -50,7 +50,7 @@ def test_lengths_of_the_55_m_line(validated):
     validated("Catenaries", "form of the 55 m line", "lengths of droppers 1 to 5", PUBLISHED, form.lengths[:5],
               unit="m", scale=1.0, bound=1e-3, source="published study")
     assert form.lengths == pytest.approx(form.lengths[::-1], abs=1e-8)
-    # bending rounds the kinks at the outer droppers off: these bear 0.6 % more, their neighbours 2.3 % less
+    # bending rounds the kinks at the outer droppers: these bear 0.6 % more, their neighbours 2.3 % less
     strings = form.line.strings.forces
     assert form.tensions.sum() == pytest.approx(strings.sum(), rel=2e-5)
     assert form.tensions[0] == pytest.approx(1.0065 * strings[0], rel=5e-4)
@@ -66,7 +66,7 @@ def test_forces_come_to_those_of_strings_as_bending_goes():
 @pytest.mark.parametrize(("nodes", "at"), [(np.linspace(0, 40, 41), 20.0), (np.linspace(0, 40, 41), 20.4),
                                            (np.array([0, 1, 3, 7, 11, 13, 14, 18, 20.0]), 11.0)])
 def test_elements_give_way_less_than_the_wire_by_what_is_said(nodes, at):
-    """A wire under 20 kN that is pushed by 1 N gives way as a string does, less the rounding of the kink."""
+    """The compliance of a wire under 20 kN is that of a string, less the rounding of the kink."""
     span, tension, bending, stretch = float(nodes[-1]), 20e3, 195.0, 1 + 20e3 / 15e6
     scene = fu.Scene(gravity=(0, 0, 0))
     wire = catenary.Wire(mass=1.35, tension=tension, axial_stiffness=15e6, bending_stiffness=bending)
@@ -163,12 +163,12 @@ def test_a_collector_rests_under_the_wire():
     dent = mean_missing_compliance(22e3, 179, np.arange(0, 60, 0.958))
     assert 1 / stiffness == pytest.approx(1 / 50e3 + dent, rel=5e-3)
     assert float(rest["pantograph_contact.penetration"]) == pytest.approx((120 - 50 * raised) / stiffness, rel=1e-6)
-    # at a mast the wire is pushed up between two droppers, and against the arm
+    # at a mast the wire is lifted between two droppers, and against the arm
     assert 0.02 < raised < 0.06
 
 
 def test_error_that_is_allowed_by_default():
-    """Of all of a run: that of a short line is less, and what the scene has already stays."""
+    """The tolerance covers a whole run: a short line has less, and settings of the scene stay."""
     long, short, own = (catenary.scene(line55(spans), (2.0, 4.0)) for spans in (8, 2, 2))
     own.run_settings = {"absolute_tol": 1e-2}
     for scene in (long, short, own):

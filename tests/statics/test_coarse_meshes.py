@@ -18,7 +18,7 @@ THIN = fu.GeneralSection(area=A, second_moment_about_z=2e-11, second_moment_abou
 
 
 def rope(n, span=10.0, length=30.0, element="cable8p", modulus=1e11, **kw):
-    """A hanging rope between two pins at one height."""
+    """Return a hanging rope between two pins at one height."""
     scene = fu.Scene(gravity=(0, -9.81, 0))
     wire = scene.cable("wire", start=(0, 0, 0), end=(span, 0, 0), rest_length=length, elements=n, element=element,
                        material=fu.Material(youngs_modulus=modulus, poisson_ratio=0, density=DENSITY,
@@ -29,13 +29,13 @@ def rope(n, span=10.0, length=30.0, element="cable8p", modulus=1e11, **kw):
 
 
 def catenary(span, length):
-    """The force (2,) on the pin of an inextensible one: H = w a, with 2 a sinh(span / 2 a) = length; N."""
+    """Return the force (2,) on the pin of an inextensible cable: H = w a, with 2 a sinh(span / 2 a) = length; N."""
     a = brentq(lambda a: 2 * a * np.sinh(span / (2 * a)) - length, 0.02 * span, 1e3 * span)
     return WEIGHT * np.array([-a, length / 2])
 
 
 def error_of(rest, exact):
-    """Return the error of a force's worst component, over the force."""
+    """Return the largest error of a component of the force, relative to the force."""
     return np.abs(rest["wire@0.force"][:2] - exact).max() / np.linalg.norm(exact)
 
 
@@ -51,7 +51,7 @@ def advised(message):
     (10, 30, 6, "cable8p"), (10, 30, 8, "cable8p"), (10, 30, 6, "cable12"), (100, 110, 2, "cable8p"),
     (100, 140, 3, "cable8p")])
 def test_a_line_of_few_elements_is_told_and_right_with_the_number_it_is_told(span, length, n, element):
-    """The note says the error to a factor of four; what it asks for, once or twice, makes the force right to 2 %."""
+    """The note gives the error to a factor of four; with the advised mesh, once or twice, the force is right to 2 %."""
     rest = rope(n, span, length, element).equilibrium()
     note, = coarse(rest.messages)
     error, exact = error_of(rest, catenary(span, length)), catenary(span, length)
@@ -78,8 +78,8 @@ def loaded(n, length=105.0):
 
 @pytest.mark.parametrize("n", [4, 5, 10])
 def test_a_corner_below_a_load_is_told_with_its_place(n):
-    """Of 4, 5 and 10 elements, with the load within one and at nodes, forces are off by 3, 4 and 2 % of those of 200,
-    and by less than 1 % with the advice.
+    """With 4, 5 and 10 elements, the load within one and at nodes, forces differ from those of 200 by 3, 4 and 2 %, and
+    by less than 1 % with the advised mesh.
     """
     rest = loaded(n).equilibrium()
     note, = coarse(rest.messages)
@@ -89,7 +89,7 @@ def test_a_corner_below_a_load_is_told_with_its_place(n):
 
 
 def test_a_taut_stretch_of_a_slack_line_is_measured_by_the_line():
-    """Two elements of a stretch turn by 24 degrees, but what bears is the line of four: its forces are right."""
+    """Two elements of a stretch turn by 24 degrees, but the line of four bears the load: its forces are right."""
     scene = fu.Scene(gravity=(0, -9.81, 0))
     ends = np.linspace((0, 0, 0), (200, -60, 0), 5)
     stretches = [(20000, 4e8), (3000, 1.5e8), (15000, 4e8), (8000, 1e8)]
@@ -105,7 +105,7 @@ def test_a_taut_stretch_of_a_slack_line_is_measured_by_the_line():
 
 
 def test_a_run_is_told_as_well():
-    """A rope that swings slowly after a push; of twenty elements nothing is said."""
+    """A rope swings slowly after a push; a mesh of twenty elements has no note."""
     for n, told in ((6, 1), (20, 0)):
         scene = rope(n)
         run = scene.run(duration=0.5, tol=1e-3, output_step=0.01, integrator="radau", initial=scene.equilibrium())
@@ -123,7 +123,7 @@ def test_what_flies_free_of_stress_is_not_told():
 
 
 def test_rows_may_come_in_any_parts():
-    """What is found of 40 rows does not depend on how they come, as after a checkpoint."""
+    """The findings of 40 rows do not depend on their division, as after a checkpoint."""
     scene = laid(rope(6))
     scene.slide((5.0, float(scene.cables["wire"].point(15.0)[1]), 0), along="wire", s=15.0)
     model = build(scene)
@@ -143,7 +143,7 @@ def test_rows_may_come_in_any_parts():
 
 
 def over_an_eyelet(n, radius=0.3, load=1000.0, EI=10.0, angle=np.pi / 2):
-    """A weightless rope from a pin over an eyelet, pulled at its end: by balance, the pin bears the load."""
+    """Return a weightless rope from a pin over an eyelet, pulled at its end: by balance the pin bears the load."""
     straight, arc = 3.0 - radius * angle / 2, radius * angle
 
     def line(u):
@@ -191,7 +191,8 @@ def test_a_run_over_an_eyelet_is_told():
 
 
 def test_forces_by_the_elastic_law_are_told_where_they_swing():
-    """At the pin the elastic law gives -1198 N of six elements and 345 N of 120; by balance it is the pin's 344 N."""
+    """At the pin the elastic law gives -1198 N with six elements and 345 N with 120; the balance gives the pin's 344 N.
+    """
     rest, fine = rope(6).equilibrium(), rope(120).equilibrium()
     pin = np.linalg.norm(rest["wire@0.force"])
     with pytest.warns(fu.FunicularWarning, match=r'"constitutive" swings by .* N within the element from s = 0 to 5 m'):
@@ -205,7 +206,7 @@ def test_forces_by_the_elastic_law_are_told_where_they_swing():
 
 
 def test_a_corner_that_bending_makes_round_is_not_told():
-    """A rope of 20 mm over 50 m: 20 elements are 0.5 % off those of 200."""
+    """A rope of 20 mm over 50 m: 20 elements differ by 0.5 % from 200."""
     def wire(n):
         scene = rope(n, 50.0, 50.2, shape="straight", section=fu.Circle(radius=0.01))
         scene.force("wire", s=15.06, value=(0, -2000, 0))

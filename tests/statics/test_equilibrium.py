@@ -1,4 +1,4 @@
-"""Equilibrium: states of rest against closed forms, limit points, what does not exist, and runs that start there."""
+"""Equilibrium: closed forms, limit points, non-existence, and runs from equilibrium."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ RISE, STIFFNESS = 0.2, 1e6
 
 
 def truss(load: float) -> Scene:
-    """Two hinged bars, 1 m to each side and RISE high, so stout that they do not buckle; engineering strain."""
+    """Return two hinged bars, 1 m to each side and RISE high, too stout to buckle; engineering strain."""
     scene = Scene(gravity=(0, 0, 0))
     bar = {"elements": 1, "element": "cable8p", "strain": "engineering",
            "section": GeneralSection(area=1e-2, second_moment_about_z=1e-4, second_moment_about_y=1e-4),
@@ -27,7 +27,7 @@ def truss(load: float) -> Scene:
 
 
 def load_at(height):
-    """Load that holds the truss's apex at a height (m)."""
+    """Return the load that holds the apex of the truss at a height (m)."""
     long, now = np.hypot(1, RISE), np.hypot(1, height)
     return 2 * STIFFNESS * (long - now) / long * height / now
 
@@ -37,7 +37,7 @@ def apex(state) -> float:
 
 
 def test_arc_length_passes_both_limit_points():
-    """Every state on the path is on the closed curve, also where the load falls and turns its sign."""
+    """Every state on the path is on the closed curve, also where the load decreases and changes its sign."""
     state = truss(4000.0).equilibrium(method="arc_length", load_steps=10)
     heights = np.array([apex(s) for s in state.path])
     fractions = np.array([s.load_fraction for s in state.path])
@@ -62,7 +62,7 @@ def test_load_steps_snap_through_where_the_path_turns():
 
 
 def test_a_run_from_equilibrium_stays():
-    """Pre-tension, a spring, a load, a rider that rests at the lowest point: all accelerations are zero."""
+    """Pretension, a spring, a load, a rider at the lowest point: all accelerations are zero."""
     scene = Scene()
     add_cable(scene, pins=(0, 1.49), rest_length=1.49, elements=6)
     add_rider(scene, s=0.6, speed=0.0)
@@ -78,7 +78,7 @@ def test_a_run_from_equilibrium_stays():
 
 
 def test_a_state_is_read_as_a_mapping():
-    """`for name in state` asked for a quantity of the name 0."""
+    """`for name in state` iterates over names."""
     scene = Scene()
     add_cable(scene, elements=2)
     state = scene.equilibrium()
@@ -101,7 +101,7 @@ def test_supports_carry_the_weight():
 
 
 def test_a_slack_cable_hangs():
-    """20 % longer than its span, as soft as a chain: a catenary, its sag by the closed form."""
+    """A cable 20 % longer than its span, as flexible as a chain: a catenary, its sag by the closed form."""
     scene = Scene()
     u = np.linspace(0, 1, 41)[:, None]
     drawn = np.hstack([u, -1.2 * u * (1 - u), 0 * u])
@@ -117,7 +117,7 @@ def test_a_slack_cable_hangs():
 
 
 def test_none_exists():
-    """A body that falls."""
+    """A falling body."""
     scene = Scene()
     add_cable(scene, elements=1)
     scene.rigid_body("stone", mass=1.0, inertia=(1e-3, 1e-3, 1e-3), position=(0, 1, 0))
@@ -130,7 +130,7 @@ def test_none_exists():
 
 
 def test_a_rider_on_a_slope_has_none():
-    """It would slide off its end; what was reached is kept."""
+    """The rider would slide off the end; the error keeps the last state."""
     scene = Scene()
     wire = add_cable(scene, end=(1.5, -0.5, 0), pins=())
     for s in (0.0, wire.length):
@@ -152,7 +152,7 @@ def test_tolerance_is_met():
 
 
 def test_section_forces_at_rest():
-    """A weight at the end of a rope: its tension everywhere, the rope's own below."""
+    """A weight at the end of a rope: its tension everywhere, plus the weight of the rope below."""
     scene = Scene()
     rope = scene.cable("rope", start=(0, 0, 0), end=(0, -2, 0), up=(1, 0, 0), elements=4, element="cable12",
                        section=GeneralSection(area=1e-4, second_moment_about_z=1e-9, second_moment_about_y=1e-9),
@@ -182,7 +182,7 @@ def test_springs_pull_by_their_law(element, given, method):
 
 @pytest.mark.parametrize("at", [(0, 0, 0), (0.1, 0, 0)])
 def test_a_body_hangs_on_its_spring(at):
-    """Below the attachment by the stretched length, turned until the attached point is above its centre."""
+    """The body hangs below the attachment by the stretched length, with the attached point above its centre."""
     scene = Scene()
     scene.rigid_body("B", mass=1, inertia=(1e-3, 1e-3, 1e-3), position=(0, -1, 0))
     scene.spring(("B", at), (0, 0, 0), stiffness=100, length=1.0, name="tie")
@@ -221,7 +221,7 @@ def test_a_stability_that_cannot_be_counted_is_no_stability(monkeypatch):
 
 
 def hanging(element: str, elements: int, rider: bool = True) -> Scene:
-    """A rope drawn as an arc that is 10 % longer than its span, with a trolley on it that is pushed aside."""
+    """Return a rope drawn as an arc, 10 % longer than its span, with a trolley under a horizontal force."""
     u = np.linspace(0, 1, 41)[:, None]
     scene = Scene()
     rope = scene.cable("rope", points=np.hstack([4 * u, -2.0 * u * (1 - u), 0 * u]), elements=elements,

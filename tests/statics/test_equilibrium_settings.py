@@ -1,4 +1,4 @@
-"""`Scene.equilibrium`, `Scene.modes` and starts from an equilibrium, around the solvers, for which others stand in."""
+"""`Scene.equilibrium`, `Scene.modes` and starts from an equilibrium, with mocks of the solvers."""
 
 import sys
 from types import ModuleType, SimpleNamespace
@@ -13,7 +13,7 @@ from funicular.results.modes import Modes
 
 
 class State(Equilibrium):
-    """A state of rest that nothing was solved for."""
+    """A state without a solution behind it."""
 
     def __init__(self):
         pass
@@ -27,7 +27,7 @@ class State(Equilibrium):
 
 @pytest.fixture
 def solvers(monkeypatch):
-    """Stand-ins for the modules of funicular.solve, and what they were called with."""
+    """Return mocks of the modules of funicular.solve, with their recorded calls."""
     calls = SimpleNamespace(static=[], modal=[], model=[])
     static, modal, model = (ModuleType(f"funicular.solve.{name}")
                             for name in ("statics.static", "modes.modes", "motion.run"))

@@ -38,7 +38,7 @@ def test_a_pendulum_swings_as_it_should(kind, given, inertia):
 
 
 def test_a_rod_falls_to_its_rest():
-    """Drawn level, it hangs; the hinge holds its weight, and the run that starts there stays."""
+    """Drawn horizontally, the rod hangs at rest; the hinge holds its weight, and a run from there stays."""
     scene = rod()
     scene.joint("revolute", (0, 0, 0), LEFT, axis=Z, name="hinge")
     state = scene.equilibrium()
@@ -63,7 +63,7 @@ def test_a_hinged_bar_on_a_spring():
 
 
 def test_a_driven_hinge_starts_where_its_signal_does():
-    """The moment at rest, and a vibration that it leaves no room for."""
+    """The moment at rest, and one vibration less."""
     scene = rod()
     scene.joint("revolute", (0, 0, 0), LEFT, axis=Z, angle=0.3, name="hinge")
     state = scene.equilibrium()
@@ -74,7 +74,7 @@ def test_a_driven_hinge_starts_where_its_signal_does():
 
 
 def test_a_pendulum_on_a_driven_slide():
-    """Of a rider that cannot move along, two swings and a turn are left."""
+    """A rider that is fixed along the cable has two swings and a rotation."""
     scene = Scene()
     wire(scene)
     scene.rigid_body("A", mass=1e-2, inertia=(1e-3, 1e-3, 1e-3), position=(0.6, -1, 0))
@@ -100,7 +100,7 @@ def test_a_tied_trolley_swings_sideways_alone():
 
 @pytest.mark.parametrize("how", ["weld", "section"])
 def test_a_body_at_the_tip_of_a_massless_beam(how):
-    """Bending with turning of the tip, torsion, stretch; slender, so that shear counts for 0.35 % at most."""
+    """Bending with rotation of the tip, torsion, axial; slender, so that shear contributes at most 0.35 %."""
     scene = Scene(gravity=(0, 0, 0))
     scene.cable("beam", start=(0, 0, 0), end=(1, 0, 0), elements=4, section=SQUARE, law="structural",
                 material=Material(youngs_modulus=1e7, poisson_ratio=0, density=0.1))

@@ -1,4 +1,4 @@
-"""A point of the ground as the rider: an eyelet through which a cable slides."""
+"""An eyelet: a cable slides through a point of the ground."""
 
 import funicular as fu
 import numpy as np
@@ -25,8 +25,8 @@ def cable_through(eyelet, element="cable8p", frame="point", **given):
 @pytest.mark.parametrize(("element", "frame"), [("cable8p", "point"), ("cable12", "tangent"), ("beam24", "tangent"),
                                                 ("beam24", "section")])
 def test_as_a_body_welded_to_the_ground(integrator, element, frame):
-    """With tol genalpha leaves 1e-9 of the scene's size to the steps to come, which is another 1e-9 in another scene;
-    fixed steps of scenes with slides are solved to rounding.
+    """With tol genalpha leaves 1e-9 of the size of each scene to later steps; fixed steps of scenes with slides are
+    solved to rounding.
     """
     steps = {"step": 1e-3} if integrator == "genalpha" else {"tol": 1e-6}
     runs = [cable_through(eyelet, element, frame, velocity=(0.3, 0, 0)).run(
@@ -38,7 +38,7 @@ def test_as_a_body_welded_to_the_ground(integrator, element, frame):
 
 
 def test_equilibrium_over_an_eyelet():
-    """A cable from a pin through an eyelet, pulled by a force at its other end: what acts on it adds up to nothing."""
+    """A cable from a pin through an eyelet, pulled by a force at its other end: its forces balance."""
     scene = cable_through(True)
     scene.pin("wire", s=0.0)
     scene.force("wire", s=1.0, value=(20, -20, 0))
@@ -74,7 +74,7 @@ ROPE = {"element": "cable8p", "rest": "straight", "section": fu.Circle(radius=0.
 
 
 def hill(eye=(5, 1, 0), points=((0, 0, 0), (5, 1, 0), (10, 0, 0)), **slide):
-    """A rope over a hill, pinned at its ends, through an eyelet at its top."""
+    """Return a rope over a hill, pinned at its ends, through an eyelet at its top."""
     scene = fu.Scene(gravity=(0, -9.81, 0))
     rope = scene.cable("rope", points=points, elements=10, **ROPE)
     scene.pin(rope, s=0)
@@ -84,7 +84,7 @@ def hill(eye=(5, 1, 0), points=((0, 0, 0), (5, 1, 0), (10, 0, 0)), **slide):
 
 
 def test_the_nearest_place_is_taken_where_s_is_left_out():
-    """By symmetry, half of the length; an eyelet elsewhere finds its own."""
+    """By symmetry half of the length; an eyelet elsewhere has its own nearest point."""
     scene = hill()
     assert abs(scene.slides["eye"].s - scene.cables["rope"].length / 2) < 1e-9
     assert fu.Scene.from_toml(scene.to_toml()).slides["eye"].s == scene.slides["eye"].s
@@ -108,7 +108,7 @@ def test_riders_find_their_place_too():
 
 @pytest.mark.parametrize("off", [1e-6, 1e-5, 1e-3])
 def test_an_eyelet_off_its_place_along_the_cable_is_placed(off):
-    """The state at rest is that of the eyelet on its cable; the note says how far off it was."""
+    """The equilibrium is that of the eyelet on its cable; the note gives the initial distance."""
     length = hill().cables["rope"].length
     with pytest.warns(fu.FunicularWarning) as told:
         scene = hill(s=length / 2 + off)
@@ -142,7 +142,7 @@ def test_a_place_that_is_not_clear_is_refused():
 
 
 def crossing_of(rope):
-    """Return the point at which a rope with one loop crosses itself: of arcs, those that end at one point."""
+    """Return the point at which a rope with one loop crosses itself: two arc-lengths with equal positions."""
     from scipy.optimize import fsolve
 
     s = np.linspace(0, rope.length, 400)

@@ -1,4 +1,4 @@
-"""Elements that are folded onto themselves: the search for rest avoids them, and results tell of them."""
+"""Elements folded onto themselves: the search for equilibrium avoids them, and results report them."""
 
 import warnings
 
@@ -15,7 +15,7 @@ SOFT = Material(youngs_modulus=1e6, poisson_ratio=0.5, density=1000)
 
 
 def crossing_ropes(elements: int) -> Scene:
-    """Two hanging ropes that cross, the upper one with supports 70 mm below where they are drawn."""
+    """Return two hanging ropes that cross, the supports of the upper one 70 mm below their drawn places."""
     scene = Scene(gravity=(0, 0, -9.81))
     for name, (x, y), z, down in (("lower", (0.4, 0), 0.0, 0.0), ("upper", (0, 0.4), 0.02, 0.07)):
         scene.cable(name, start=(-x, -y, z), end=(x, y, z), rest_length=1.0, shape="hanging", elements=elements,
@@ -30,7 +30,7 @@ def crossing_ropes(elements: int) -> Scene:
 @pytest.mark.parametrize("seek_stable", [True, False])
 @pytest.mark.parametrize("elements", [10, 16, 20, 22, 28])
 def test_a_rope_whose_supports_are_moved_past_its_nodes_is_not_folded(elements, seek_stable):
-    """The force between the ropes converges with the elements; folded ones gave 0 or 0.077 N."""
+    """The force between the ropes converges with the mesh; folded elements gave 0 or 0.077 N."""
     rest = crossing_ropes(elements).equilibrium(seek_stable=seek_stable)
     assert rest["crossing.normal_force"] == pytest.approx(0.188161, rel=0.012)
     assert rest["crossing.s"] == pytest.approx(0.5, abs=1e-6)
@@ -38,7 +38,7 @@ def test_a_rope_whose_supports_are_moved_past_its_nodes_is_not_folded(elements, 
 
 
 def pushed_back(way) -> Scene:
-    """A wire without weight whose last element is pushed together along its axis, by its support, to nearly nothing."""
+    """Return a weightless wire whose last element is compressed along its axis to nearly zero by its support."""
     scene = cable_scene(pins=(0, 0.75), gravity=(0, 0, 0), elements=4, element="cable12", material=SOFT,
                         section=Circle(radius=0.005))
     scene.motion("wire", s=1.0, displacement=(way, 0, 0))
@@ -61,7 +61,7 @@ def test_rows_of_a_run_tell_of_the_element_that_is_folded_most_and_when():
 
 
 def with_last_node_at(scene: Scene, x: float, slope: float) -> list[str]:
-    """Return what is told of the drawn wire of four elements with its last node and all of its slopes changed."""
+    """Return the notes on the drawn wire of four elements after a change of its last node and all slopes."""
     model = build(laid(scene))
     cable = model.cables[0]
     vectors = model.q[cable.coordinates].reshape(cable.shape)
@@ -98,7 +98,7 @@ def test_a_state_of_rest_with_a_folded_element_tells_of_it():
 
 @pytest.mark.parametrize(("elements", "told"), [(4, 1), (5, 1), (6, 1), (8, 0), (20, 0)])
 def test_elements_that_turn_far_at_rest_are_told(elements, told):
-    """A rope of 30 m over a span of 10 m: the horizontal force is off by more than 7 % where that is told."""
+    """A rope of 30 m over a span of 10 m: with the note, the error of the horizontal force exceeds 7 %."""
     scene = Scene()
     rope = scene.cable("rope", start=(0, 0, 0), end=(10, 0, 0), rest_length=30, shape="hanging", elements=elements,
                        element="cable12", section=Circle(radius=0.01),
@@ -115,7 +115,7 @@ def test_elements_that_turn_far_at_rest_are_told(elements, told):
 
 
 def test_a_length_that_only_few_elements_find_is_told():
-    """A rope that hangs between two pins pulls; that it pushes with 50 N is a shape that its elements alone have."""
+    """A hanging rope pulls at its pins; a shape that pushes with 50 N exists for few elements only."""
     scene = Scene()
     rope = scene.cable("rope", start=(0, 0, 0), end=(10, 0, 0), rest_length=10.2, elements=10, element="cable12",
                        section=Circle(radius=0.01),

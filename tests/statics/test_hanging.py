@@ -1,4 +1,4 @@
-"""Cables drawn as they hang: the catenary between two points, and what has none."""
+"""Cables drawn as they hang: the catenary between two points, and points without one."""
 
 import re
 
@@ -23,7 +23,7 @@ def test_a_hanging_cable_is_the_catenary_of_its_length(given):
     r, slope = rope.nodal_vectors[:, 0], rope.nodal_vectors[:, 1]
     assert np.abs(r[[0, -1]] - [rope.start, rope.end]).max() < 1e-13
     assert rope.stretch == pytest.approx(1, abs=1e-9)
-    # the catenary's own property: its slope grows by the same with each metre, w / H
+    # the slope of a catenary grows by w / H with each metre
     along = np.array([rope.end[0], 0, rope.end[2]]) / np.hypot(rope.end[0], rope.end[2])
     tangent = slope[:, 1] / (slope @ along)
     assert np.ptp(np.diff(tangent)) < 2e-6 * np.diff(tangent).mean()

@@ -1,4 +1,4 @@
-"""Load paths: every state under p times all loads, limit and bifurcation points, stability, states to start from."""
+"""Load paths: states under p times all loads, limit and bifurcation points, stability, starts."""
 
 import warnings
 
@@ -18,7 +18,7 @@ STIFFNESS = MODULUS * np.pi / 4 * RADIUS**4
 
 
 def left_over(scene: Scene, state) -> float:
-    """The largest residual of a state in another model of the scene, over the largest force in it."""
+    """Return the largest residual of a state in another model of the scene, relative to the largest force."""
     model = build(scene)
     engine = Engine(model)
     drop_redundant_rows(model, engine)
@@ -32,7 +32,7 @@ def left_over(scene: Scene, state) -> float:
 
 
 def beam(kind: str, element: str, p: float) -> Scene:
-    """A cantilever under p times a load of this kind and gravity."""
+    """Return a cantilever under p times a load of a kind, and gravity."""
     scene = cable_scene("rope", clamps=(0,), gravity=(0, -9.81 * p, 0), elements=4, element=element, section=THIN,
                         material=SOFT, **structural(element))
     follower = kind.endswith("follower")
@@ -47,7 +47,9 @@ def beam(kind: str, element: str, p: float) -> Scene:
 
 
 def bodies(kind: str, p: float) -> Scene:
-    """A body on a cantilever's end, by a joint or a slide, with a spring to the ground, under p times a load."""
+    """Return a body at the end of a cantilever, by a joint or a slide, with a spring to the ground, under p times a
+    load.
+    """
     scene = Scene(gravity=(0, -9.81 * p, 0))
     scene.cable("rope", start=(0, 0, 0), end=(1, 0, 0), elements=3, element="beam24", law="structural", section=THIN,
                 material=SOFT)
@@ -99,7 +101,7 @@ def test_gravity_may_stay_whole():
 
 @pytest.mark.parametrize("settings", [{"load_steps": 10}, {"method": "arc_length"}])
 def test_a_moment_bends_to_an_arc_at_every_part_of_it(settings, validated):
-    """(sin a, 1 - cos a)/a with a = p M L/EI; at a tenth the tip stood 1.2 m off before loads were scaled."""
+    """The tip is at (sin a, 1 - cos a)/a with a = p M L/EI."""
     scene = Scene(gravity=(0, 0, 0))
     scene.cable("beam", start=(0, 0, 0), end=(1, 0, 0), elements=16, element="beam24", law="structural",
                 section=THIN, material=Material(youngs_modulus=1e7, poisson_ratio=0, density=1000))
