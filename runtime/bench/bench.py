@@ -21,7 +21,7 @@ from ..errors import FunicularError, FunicularWarning, SceneError, near
 from ..integrators import AUTO, INTEGRATORS
 from ..parts.cable import Cable
 from ..parts.settings import RunSettings
-from ..parts.validation import MOST
+from ..parts.validation import MAX_COUNT
 from ..results.run import Run
 from ..results.trajectories import check_output, default_outputs, distance, relative, trajectory
 from ..scene.scene import Scene
@@ -56,8 +56,8 @@ class Mesh:
         mesh = cls(float(match[2]), bool(match[1]))
         if not (mesh.factor or mesh.count % 1 == 0) or mesh.count <= 0:
             raise SceneError("bench", f'elements: "{text}" is not a number of elements', "write a whole one, 1 or more")
-        if mesh.count > MOST:
-            raise SceneError("bench", f"elements: {mesh.count:g} exceeds {MOST}")
+        if mesh.count > MAX_COUNT:
+            raise SceneError("bench", f"elements: {mesh.count:g} exceeds {MAX_COUNT}")
         return mesh
 
     def __str__(self) -> str:
@@ -113,8 +113,8 @@ def grid(scene: Scene, *, integrators: Sequence[str] | None = None, elements: Se
             raise SceneError("bench", f"tols: a tolerance must lie inside (0, 1), got {tol:g}")
     if repetitions < 1:
         raise SceneError("bench", f"repetitions must be 1 or more, got {repetitions}")
-    if repetitions > MOST:
-        raise SceneError("bench", f"repetitions must not exceed {MOST}, got {repetitions}")
+    if repetitions > MAX_COUNT:
+        raise SceneError("bench", f"repetitions must not exceed {MAX_COUNT}, got {repetitions}")
     outputs = tuple(outputs or default_outputs(scene))
     for name in outputs:
         check_output(scene, name)

@@ -2,55 +2,26 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import Annotated, Any, ClassVar
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, ClassVar
 
 import numpy as np
-from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
+from pydantic import model_validator
 
-from ..errors import SceneError, near
-from ..kernels.elements import ElementKind, LawTraits
-from ..kernels.libraries import of_library, resolved
-from ..kernels.mesh import Mesh
+from ..errors import SceneError
+from ..kernels.elements import built_in
+from ..kernels.libraries import of_library
 from . import cable_drawing, cable_laws, cable_mesh, curves
+from .cable_fields import library_directory
+from .cable_laws import others, possible_laws
 from .drawn_cable import DrawnCable
 from .hanging import catenary
-from .material import Material
-from .part import Part
-from .schemas import ONLY_PYTHON, POINT, GivenAs, Turning, checked, list_of_lists
-from .section import AnySection, outer_radius_of
-from .validation import Count, Name, Vector, one_of, positive, show, shown, xyz
+from .section import GeneralSection
+from .section_stiffness import kernel_law
+from .validation import EXACT, show, shown
 
 
-def _library(value: Any) -> str | None:
-    """Return the directory of a library, as an absolute path without links; what is there is loaded."""
-    if value is None:
-        return None
-    if not isinstance(value, str | os.PathLike):
-        raise ValueError(f"must be a directory, got {shown(value)}")
-    directory = resolved(value)
-    of_library(directory)
-    return directory
-
-
-def _element(value: Any, info: ValidationInfo) -> str:
-    """Return an element's name in the library, or in this package."""
-    library = info.data.get("library")
-    known = of_library(library)
-    if not isinstance(value, str):
-        raise ValueError(f"must be a name, got {shown(value)}", "known: " + ", ".join(known))
-    if value not in known:
-        where = f' in library "{library}"' if library else ""
-        raise ValueError(f'"{value}" is not known{where}', near(value, known))
-    return value
-
-
-def _points(value: Any) -> tuple[tuple[float, ...], ...]:
-    return curves.points(value)
-
-
-class Cable(DrawnCable, Part):
+class Cable(DrawnCable):
     """A cable of elements, drawn straight, through points or along a curve.
 
     All arc-lengths s are of the undeformed cable. Drawn is how a run starts. The tangent of a curve must be continuous,
@@ -98,40 +69,17 @@ class Cable(DrawnCable, Part):
     angular_velocity: about the first point at the start, rad/s, along the ground's axes
     """
 
-    _hanging: tuple[tuple[float, ...], ...] | None = PrivateAttr(None)
-
     kind: ClassVar[str] = "cable"
     group: ClassVar[str] = "cables"
-    name: Name
-    start: Annotated[Vector | None, xyz("m")] = None
-    end: Annotated[Vector | None, xyz("m")] = None
-    points: Annotated[tuple[tuple[float, ...], ...] | None, checked(_points, list_of_lists("m"), Turning(POINT))] = None
-    curve: Annotated[Callable | None, GivenAs(ONLY_PYTHON)] = None  # kept as points, see `_settled`
-    shape: Annotated[str | None, one_of(("straight", "hanging"), optional=True)] = None
-    given_elements: Annotated[Count | None, Field(alias="elements")] = None
-    nodes: Annotated[tuple[float, ...] | None, cable_mesh.increasing()] = None
-    library: Annotated[str | None, checked(_library, {"type": "string"})] = None
-    element: Annotated[str, checked(_element, {"type": "string"})] = "beam24"
-    law: str = None  # type: ignore[assignment]  # `_with_a_law` chooses one where none is given
-    strain: Annotated[str | None, one_of(("green", "engineering"), optional=True)] = None
-    curvature: Annotated[str | None, one_of(("exact", "linear"), optional=True)] = None
-    membrane: Annotated[str | None, one_of(cable_laws.MEMBRANES, optional=True)] = None
-    section: AnySection
-    material: Material
-    up: Annotated[Vector, xyz()] = (0.0, 1.0, 0.0)
-    rest: Annotated[str, one_of(("drawn", "straight"))] = "drawn"
-    rest_length: Annotated[float, positive("m")] | None = None
-    velocity: Annotated[Vector, xyz("m/s")] = (0.0, 0.0, 0.0)
-    angular_velocity: Annotated[Vector, xyz("rad/s")] = (0.0, 0.0, 0.0)
 
     @model_validator(mode="before")
     @classmethod
     def _settled(cls, data: Any) -> Any:
-        """Return a curve as points, and the law by its name."""
+        """Replace a curve by points, and measures of the law by its name."""
         if not isinstance(data, dict):
             return data
-        optional = ("start", "end", "points", "curve", "law", "library", "strain", "curvature", "membrane",
-                    "rest_length", "elements", "nodes", "shape")
+        optional = ("start", "end", "points", "curve", "law", "library", "rest_length", "elements", "nodes",
+                    "shape", *cable_laws.MEASURES)
         data = {name: value for name, value in data.items() if value is not None or name not in optional}
         if "curve" in data:
             if "points" in data:
@@ -143,13 +91,12 @@ class Cable(DrawnCable, Part):
         if data.get("shape") == "hanging":
             data.setdefault("rest", "straight")
         try:
-            known = of_library(_library(data.get("library")))
-        except ValueError:  # the check of the library says it
+            known = of_library(library_directory(data.get("library")))
+        except ValueError:  # the check of the field refuses the library
             return data
-        element = data.get("element", "beam24")
-        kind = known.get(element) if isinstance(element, str) else None
-        if kind is not None:
-            data["law"] = cable_laws.chosen(kind, data)
+        element = data.get("element", cable_laws.DEFAULT_ELEMENT)
+        if isinstance(element, str) and element in known:
+            data["law"] = cable_laws.chosen(known[element], data)
         return data
 
     @model_validator(mode="after")
@@ -183,12 +130,12 @@ class Cable(DrawnCable, Part):
         if self.dim == 2:
             cable_drawing.check_plane(self.element, self.drawn_through, self.velocity, self.angular_velocity, self.up)
         else:
-            cable_drawing.check_height(self.drawn_through, self.up, self._is_round)
+            cable_drawing.check_height(self.drawn_through, self.up, self.is_round)
         if not self.is_open:
             cable_drawing.check_elements(self._shape, self.node_s * self.stretch)
 
     def hanging_under(self, gravity: tuple[float, ...]) -> Cable:
-        """Return the cable drawn as it hangs under gravity (m/s²), where its shape is that. Raises SceneError."""
+        """Return a hanging cable drawn along its catenary under gravity (m/s²), another as it is. Raises SceneError."""
         if self.shape != "hanging":
             return self
         assert self.start is not None, f"{self.where} has no start"
@@ -203,40 +150,62 @@ class Cable(DrawnCable, Part):
         return made
 
     def hanging_through(self, points: Iterable[tuple[float, ...]]) -> Cable:
-        """Return the cable drawn through points in m, without checks: those of the catenary in which it hangs."""
+        """Return the cable drawn through points of its catenary, in m, without checks."""
         made = self.model_copy()
         made._hanging = tuple(points)
         return made
 
-    @property
-    def _is_round(self) -> bool:
-        """Return whether all directions across its axis are alike: a round section, or elements that have none."""
-        return outer_radius_of(self.section) is not None or not self.kind_of_element.director
-
     @model_validator(mode="after")
     def _law_suits(self) -> Cable:
-        if not self.is_open or "element" in self.model_fields_set:
-            cable_laws.check(self)
+        """Check that the law suits the shape, the section and the material. Raises ValueError(cause, remedy)."""
+        if self.is_open and "element" not in self.model_fields_set:
+            return self
+        kind = self.kind_of_element
+        if self.is_curved and kind.law_for_curved_shape(kernel_law(self.law)) is None:
+            curved = {name: [law for law in possible_laws(other) if other.law_for_curved_shape(kernel_law(law))]
+                      for name, other in built_in().items()}
+            able = [f"{name} ({', '.join(laws)})" for name, laws in curved.items() if laws]
+            raise ValueError(f'{self.element} with law "{self.law}" is stress-free only where it is straight, but '
+                             "it is drawn curved", 'take rest="straight", or one of ' + ", ".join(able))
+        if self.dim == 3 and kernel_law(self.stiffness_law) == "continuum" and self.material.is_incompressible:
+            raise ValueError(f'law "{self.law}" needs a poisson_ratio below 0.5, at which Lamé\'s λ is infinite, got '
+                             f"{self.material.poisson():.9g}", 'take law="structural", which needs E and G alone')
+        (self._check_cable_section if kind.is_cable else self._check_beam_section)()
         return self
 
-    @property
-    def is_open(self) -> bool:
-        """Return whether its elements were left out, so that they have to be chosen before it can be simulated."""
-        return self.given_elements is None and self.nodes is None
+    def _check_cable_section(self) -> None:
+        """Raise ValueError where an element without section axes is given what only beams have."""
+        section, beams = self.section, "leave it out, or take " + others(self.dim, cable=False)
+        moments = section.second_moment_about_z, section.second_moment_about_y
+        if self.dim == 3 and abs(moments[0] - moments[1]) > EXACT * max(moments):
+            raise ValueError(f"{self.element} has one bending stiffness: its section needs equal second moments, "
+                             f"got {show(moments, 'm⁴')}", 'take a square, a circle or a tube, or element="beam24"')
+        if given := section.given_beside_shape:
+            raise ValueError(f"section.{min(given)} is given, but {self.element} has neither shear nor torsion", beams)
+        if isinstance(section, GeneralSection) and section.has_rotary:
+            raise ValueError(f"section.rotary_moment is given, but {self.element} has no rotary inertia", beams)
 
-    @property
-    def elements(self) -> int:
-        """Return the number of its elements. Raises SceneError where they were left out."""
-        if self.given_elements is not None:
-            return self.given_elements
-        if self.nodes is not None:
-            return len(self.nodes) - 1
-        raise SceneError(self.where, "has no elements yet",
-                         "give elements=, or let them be chosen: scene.choose(tol).scene")
+    def _check_beam_section(self) -> None:
+        """Raise ValueError where the law of a beam needs other data of the section than those given."""
+        given, is_general = self.section.given_beside_shape, isinstance(self.section, GeneralSection)
+        if self.traits.kind == "structural":
+            missing = ({"shear_factors", "torsion_constant"} if self.dim == 3 else {"shear_factors"}) - given
+            if is_general and missing:
+                raise ValueError(f'law "structural" needs section.{min(missing)}, which a general section does not '
+                                 "tell", "give it to the section")
+        elif is_general:
+            raise ValueError(f'law "{self.law}" integrates over the shape of the section, which a general section does '
+                             "not tell", 'take law="structural", a rectangle, circle or tube, or '
+                             + others(self.dim, cable=True))
+        elif self.law == "continuum" and given:
+            raise ValueError(f'section.{min(given)} is given, but law "continuum" computes its own from the shape',
+                             'leave it out, or take law="poisson_split" or "structural"')
 
     def mesh_entries(self, elements: int) -> dict[str, Any]:
-        """Return, by keyword, what makes it one of that many elements: unequal ones are divided or joined alike where
-        the number is a multiple or a divisor of theirs; else they are equal.
+        """Return the entries of the cable with another number of elements.
+
+        Unequal elements are divided or joined evenly where the number is a multiple or a divisor of theirs. Else the
+        new elements are equal.
         """
         nodes = cable_mesh.refined(self.uneven_nodes, elements)
         return {"nodes": nodes, "elements": None} if nodes else {"elements": elements, "nodes": None}
@@ -246,24 +215,18 @@ class Cable(DrawnCable, Part):
         """Return the arc-lengths of its nodes in m where its elements are not equal, else ()."""
         return () if self.nodes is None or self.mesh.is_even else tuple(self.mesh.node_s.tolist())
 
-    @property
-    def mesh(self) -> Mesh:
-        """Return where its nodes are. Raises SceneError where its elements were left out."""
-        if self.nodes is None:
-            return Mesh.even(self.length / self.elements, self.elements)
-        return cable_mesh.mesh_of(self.nodes, self.length)
-
     def entries(self) -> dict[str, Any]:
-        """Return what it could be made with; of an open one without the element and the law that nobody gave."""
+        """Return its entries; of an open cable without the element and the law that were not given."""
         entries = super().entries()
         if self.is_open and "element" not in self.model_fields_set:
             return {name: value for name, value in entries.items() if name not in ("element", "law")}
         return entries
 
     def entries_with(self, changes: Mapping[str, Any]) -> dict[str, Any]:
-        """Return what a cable like this one is made with: drawn anew, or with another law, it keeps nothing of the old
-        one, but with another measure it keeps the other measures. Elements take the place of nodes, and nodes that of
-        elements. One that hangs is free of stress where it is straight.
+        """Return the entries of a cable with changes.
+
+        Another shape or law replaces all entries of the old one; another measure keeps the other measures. Elements
+        replace nodes, and nodes replace elements. A hanging cable is free of stress where it is straight.
         """
         other = {"elements": "nodes", "nodes": "elements"}
         left: dict[str, Any] = {other[name]: None for name in other if changes.get(name) is not None}
@@ -277,43 +240,6 @@ class Cable(DrawnCable, Part):
             left |= dict.fromkeys(cable_laws.MEASURES)
         return super().entries_with(left | {**changes})
 
-    @property
-    def kind_of_element(self) -> ElementKind:
-        """Return what its element is."""
-        return of_library(self.library)[self.element]
-
-    @property
-    def dim(self) -> int:
-        """Return 3, or 2 for planar elements."""
-        return self.kind_of_element.dim
-
     def off_plane(self) -> Iterator[str]:
         """Yield nothing: a planar cable lies in a plane of its own."""
         return iter(())
-
-    @property
-    def kernel_law(self) -> str:
-        """Return the name of the law among the element's kernels."""
-        return cable_laws.name_of_kernels(self.kind_of_element, self.law, self.is_curved)
-
-    @property
-    def traits(self) -> LawTraits:
-        """Return what the law of its kernels is."""
-        return self.kind_of_element.laws[self.kernel_law]
-
-    @property
-    def stiffness_law(self) -> str:
-        """Return the name of the law whose stiffness of the section it takes, see `section_stiffness`."""
-        laws = self.kind_of_element.laws
-        return laws[self.law].stiffness_of if self.law in laws else self.law
-
-    @property
-    def drawn_through(self) -> tuple[tuple[float, ...], ...]:
-        """Return the points that it is drawn through, in m."""
-        if self.shape == "hanging" and self._hanging is not None:
-            return self._hanging
-        if self.points is not None:
-            return self.points
-        if self.start is not None and self.end is not None:
-            return self.start, self.end
-        return tuple(end for end in (self.start, self.end) if end is not None)

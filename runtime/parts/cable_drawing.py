@@ -10,7 +10,7 @@ from ..base.rotations import cross
 from . import cable_laws
 from .curves import Line, Spline, has_height, shape_through
 from .plane import Plane, aligned, called, normal_of
-from .validation import Vector, show
+from .validation import Points, Vector, show
 
 FOLLOWS = 0.5
 """An element's slope along the curve that it stands for must be this part of the curve's everywhere."""
@@ -20,7 +20,7 @@ ALONG = 1e-9
 
 
 @lru_cache(maxsize=128)
-def plane_of(points: tuple[tuple[float, ...], ...], up: Vector) -> Plane | None:
+def plane_of(points: Points, up: Vector) -> Plane | None:
     """Return the plane of a planar cable, through its line and ``up``, its normal along tangent x up; None of z = 0.
 
     points: that the cable is drawn through. Raises ValueError(cause, remedy) where there is no such plane.
@@ -49,7 +49,7 @@ def plane_of(points: tuple[tuple[float, ...], ...], up: Vector) -> Plane | None:
     return plane
 
 
-def check_plane(element: str, points: tuple[tuple[float, ...], ...], velocity: Vector, angular_velocity: Vector,
+def check_plane(element: str, points: Points, velocity: Vector, angular_velocity: Vector,
                 up: Vector) -> None:
     """Raise ValueError(cause, remedy) where a cable of planar elements lies in no plane, or leaves it as it starts.
 
@@ -70,7 +70,7 @@ def check_plane(element: str, points: tuple[tuple[float, ...], ...], velocity: V
                          f"{'z' if plane is None else 'its normal'}, or take {cable_laws.others(3)}")
 
 
-def check_height(points: tuple[tuple[float, ...], ...], up: Vector, is_round: bool) -> None:
+def check_height(points: Points, up: Vector, is_round: bool) -> None:
     """Raise ValueError(cause, remedy) where up gives no direction of the height; a round section needs none.
 
     points: that the cable is drawn through.

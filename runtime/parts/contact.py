@@ -10,9 +10,9 @@ from .friction import AnyFriction
 from .part import Part
 from .quantity import Quantity, all_of_engine
 from .schemas import POINT, Turning, checked, list_schema
-from .validation import Listed, Name, Vector, not_negative, number, positive, shown, vector3, within
+from .validation import Listed, Name, Vector, items, not_negative, number, positive, shown, vector3, within
 
-MOST_POINTS = 16
+MAX_POINTS = 16
 """Of a body: engine/couplings/contact/contact.h."""
 GAUSS_POINTS = 6
 """Of an element of a cable: enough for one that touches in part; see tests/benchmarks/contact.py."""
@@ -33,10 +33,9 @@ Exponent = Annotated[float, checked(_exponent, {"enum": [1, 1.0, 1.5]})]
 
 def _points(value: Any) -> tuple[Vector, ...]:
     """Return a list of points, in m."""
-    value = value.tolist() if hasattr(value, "tolist") else value
-    if not isinstance(value, list | tuple) or not 1 <= len(value) <= MOST_POINTS:
-        raise ValueError(f"must be a list of 1 to {MOST_POINTS} points, got {shown(value)}")
-    return tuple(vector3(point, "m") for point in value)
+    if (given := items(value, 1, MAX_POINTS)) is None:
+        raise ValueError(f"must be a list of 1 to {MAX_POINTS} points, got {shown(value)}")
+    return tuple(vector3(point, "m") for point in given)
 
 
 class Contact(Part):
@@ -88,7 +87,7 @@ class Contact(Part):
     restitution: Annotated[float, within(0, 1, ends=True)] | None = None
     rest_velocity: Annotated[float, positive("m/s")] = 1e-3
     points: Annotated[tuple[Vector, ...], checked(_points, {
-        "type": "array", "items": list_schema("m"), "minItems": 1, "maxItems": MOST_POINTS},
+        "type": "array", "items": list_schema("m"), "minItems": 1, "maxItems": MAX_POINTS},
         Turning(POINT, "a", "m"))] | None = None
 
     @property

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base.rotations import cross
-from .validation import show, shown, vector
+from .validation import Points, items, show, shown, vector
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
@@ -182,11 +182,10 @@ class Spline:
 
 
 
-def points(value: Any) -> tuple[tuple[float, ...], ...]:
+def points(value: Any) -> Points:
     """Return two points or more, (x, y, z) in m each, neighbours different. Raises ValueError for anything else."""
-    rows = value.tolist() if isinstance(value, np.ndarray) else value
-    if not isinstance(rows, list | tuple) or len(rows) < 2:
-        raise ValueError(f"must be a list of 2 points or more, got {shown(rows)}")
+    if (rows := items(value, 2)) is None:
+        raise ValueError(f"must be a list of 2 points or more, got {shown(value)}")
     result = []
     for number, row in enumerate(rows, start=1):
         try:
@@ -306,7 +305,7 @@ def _refuse_a_kink(at: Callable, low: float, high: float, point: np.ndarray, gap
 
 
 @lru_cache(maxsize=4096)
-def shape_through(points: tuple[tuple[float, ...], ...]) -> Line | Spline:
+def shape_through(points: Points) -> Line | Spline:
     """Return the shape through checked points: a line if all of them lie on one, in order."""
     vertices = np.array(points)
     whole = vertices[-1] - vertices[0]
@@ -320,14 +319,14 @@ def shape_through(points: tuple[tuple[float, ...], ...]) -> Line | Spline:
 
 
 @lru_cache(maxsize=128)
-def has_height(points: tuple[tuple[float, ...], ...], up: tuple[float, ...]) -> bool:
+def has_height(points: Points, up: tuple[float, ...]) -> bool:
     """Return whether ``up`` gives a direction across the shape through points at its start."""
     tilt = np.linalg.norm(cross(shape_through(points).tangent(0.0), up))
     return bool(tilt > 1e-6 * np.linalg.norm(up))
 
 
 @lru_cache(maxsize=128)
-def transported(points: tuple[tuple[float, ...], ...], up: tuple[float, ...], places: tuple[float, ...]) -> np.ndarray:
+def transported(points: Points, up: tuple[float, ...], places: tuple[float, ...]) -> np.ndarray:
     """Return the axes of the section along a shape, turned about its tangent nowhere.
 
     places: increasing arc-lengths in m, the first of them 0. Returns (places, 3, 3): rows are the unit tangent, and

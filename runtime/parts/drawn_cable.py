@@ -1,4 +1,4 @@
-"""Cables as they are drawn, and free of stress: the curve, the nodes on it, their vectors, and places along it."""
+"""The drawn and the stress-free shape of a cable: curve, nodes, nodal vectors, and points along it."""
 
 from __future__ import annotations
 
@@ -9,57 +9,25 @@ import numpy as np
 
 from ..base.rotations import cross
 from ..kernels.element_line import ElementLine
-from ..kernels.elements import ElementKind, LawTraits
+from ..kernels.elements import LawTraits
 from ..kernels.mesh import Mesh
-from . import cable_drawing, curves
+from . import cable_drawing, cable_mesh, curves
+from .cable_fields import CableFields
 from .plane import Plane
+from .section_stiffness import kernel_law
 from .validation import EXACT, Vector
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
 
-OPEN = 257
-"""Places at which a cable is looked at whose elements are still to be chosen."""
-ITERATIONS = 30
-"""Of the search for the place of a cable nearest to a point: three or four reach rounding for a point near it."""
+SAMPLES_WITHOUT_MESH = 257
+"""Number of sample points along a cable whose elements are still to be chosen."""
+MAX_ITERATIONS = 30
+"""Of the search for the nearest point of a cable: three or four reach rounding for a point near it."""
 
 
-class DrawnCable:
-    """Base of a cable: where its points, axes and nodal vectors are, by what it is made with."""
-
-    if TYPE_CHECKING:  # of the cable
-        library: str | None
-        element: str
-        up: Vector
-        rest: str
-        rest_length: float | None
-        velocity: Vector
-        angular_velocity: Vector
-
-        @property
-        def where(self) -> str:
-            """Return what messages call it."""
-        @property
-        def drawn_through(self) -> tuple[tuple[float, ...], ...]:
-            """Return the points that it is drawn through, in m."""
-        @property
-        def is_open(self) -> bool:
-            """Return whether its elements are still to be chosen."""
-        @property
-        def elements(self) -> int:
-            """Return the number of its elements."""
-        @property
-        def mesh(self) -> Mesh:
-            """Return where its nodes are."""
-        @property
-        def kind_of_element(self) -> ElementKind:
-            """Return what its element is."""
-        @property
-        def dim(self) -> int:
-            """Return 3, or 2 for planar elements."""
-        @property
-        def traits(self) -> LawTraits:
-            """Return what the law of its kernels is."""
+class DrawnCable(CableFields):
+    """Base of a cable: its shape, nodes and nodal vectors."""
 
     @property
     def _shape(self) -> curves.Line | curves.Spline:
@@ -67,7 +35,7 @@ class DrawnCable:
 
     @property
     def drawn_length(self) -> float:
-        """Return the length in m of the cable as it is drawn."""
+        """Return the drawn length in m."""
         return self._shape.length
 
     @property
@@ -77,33 +45,51 @@ class DrawnCable:
 
     @property
     def stretch(self) -> float:
-        """Return the length as drawn over undeformed length."""
+        """Return the drawn length over the undeformed length."""
         return 1.0 if self.rest_length is None else self.drawn_length / self.rest_length
 
     @property
     def is_curved(self) -> bool:
-        """Return whether the undeformed shape is."""
+        """Return whether the stress-free shape is curved."""
         return self.rest == "drawn" and not self._shape.straight
 
     @property
     def plane(self) -> Plane | None:
-        """Return the plane that planar elements lie in; None of z = 0, and of spatial elements."""
+        """Return the plane of planar elements; None for z = 0 and for spatial elements."""
         return cable_drawing.plane_of(self.drawn_through, self.up) if self.dim == 2 else None
 
     @property
     def normal(self) -> np.ndarray:
-        """Return (3,): the unit normal of the plane that planar elements lie in; their height is normal x tangent."""
+        """Return (3,): the unit normal of the plane of planar elements; their height is normal x tangent."""
         plane = self.plane
         return np.array([0.0, 0.0, 1.0]) if plane is None else plane.normal
 
+    @property
+    def mesh(self) -> Mesh:
+        """Return its mesh. Raises SceneError where its elements are still to be chosen."""
+        if self.nodes is None:
+            return Mesh.even(self.length / self.elements, self.elements)
+        return cable_mesh.mesh_of(self.nodes, self.length)
+
+    @property
+    def kernel_law(self) -> str:
+        """Return the name of its law among the kernels of its element."""
+        law = kernel_law(self.law)
+        return (self.kind_of_element.law_for_curved_shape(law) or law) if self.is_curved else law
+
+    @property
+    def traits(self) -> LawTraits:
+        """Return the properties of the law of its kernels."""
+        return self.kind_of_element.laws[self.kernel_law]
+
     def in_plane(self, vectors: np.ndarray) -> np.ndarray:
-        """Return directions (..., 3) along the ground's axes as (..., dim), along those of its plane."""
+        """Return directions (..., 3) along the ground's axes as (..., dim) along those of its plane."""
         plane = self.plane
         return (vectors if plane is None else plane.into(vectors))[..., : self.dim]
 
     @property
     def height_direction(self) -> Vector:
-        """Return ``up``; where that lies along the axis of a round section, the ground's axis most nearly across it."""
+        """Return ``up``, or the ground's axis most nearly across the cable where ``up`` lies along it."""
         if curves.has_height(self.drawn_through, self.up):
             return self.up
         least = int(np.argmin(np.abs(self._shape.tangent(0.0))))
@@ -116,74 +102,62 @@ class DrawnCable:
         return self.length * np.arange(self.elements + 1) / self.elements if mesh.is_even else mesh.node_s
 
     def divided(self, parts: int) -> np.ndarray:
-        """Return (parts elements + 1,): arc-lengths of its nodes and of points that divide each element alike, in m."""
+        """Return (parts elements + 1,): arc-lengths in m of its nodes and of points that divide each element evenly."""
         mesh = self.mesh
         return np.linspace(0.0, self.length, parts * self.elements + 1) if mesh.is_even else mesh.divided(parts)
 
     def samples(self, parts: int) -> np.ndarray:
-        """Return (n,): arc-lengths at which its drawn shape is looked at, in m: `divided`, or evenly apart where its
-        elements are still to be chosen.
+        """Return (n,): arc-lengths in m of sample points: `divided`, or even where its elements are still to be chosen.
         """
-        return np.linspace(0.0, self.length, OPEN) if self.is_open else self.divided(parts)
+        return np.linspace(0.0, self.length, SAMPLES_WITHOUT_MESH) if self.is_open else self.divided(parts)
+
+    @property
+    def _has_exact_points(self) -> bool:
+        """Return whether points come from its shape: elements along a curve interpolate between points of the curve."""
+        return self._shape.straight or self.is_open
 
     def point(self, s: float) -> np.ndarray:
-        """Return (3,): the point of the centreline at arc-length ``s``, in m, as the elements draw it.
-
-        Between nodes that is not quite the curve that they are drawn along; a rider has to start on the elements.
-        """
-        if self._shape.straight or self.is_open:
+        """Return (3,): the point of the centreline at arc-length ``s``, in m, on the elements where they are chosen."""
+        if self._has_exact_points:
             return self._shape.point(s * self.stretch)
-        return self._as_drawn_point(s)
+        return self.point_between(self.nodal_vectors, s)
 
     def points_at(self, s: np.ndarray) -> np.ndarray:
         """Return (n, 3): the points of the centreline at arc-lengths ``s`` (n,), in m, see `point`."""
-        if self._shape.straight or self.is_open:
+        if self._has_exact_points:
             return self._shape.point(s * self.stretch)
-        line, plane = self._as_drawn, self.plane
+        line, plane = self._line(self.nodal_vectors), self.plane
         points = np.array([line.point(float(each)) for each in s])
         return points if plane is None else plane.points_out(points)
 
     def slope(self, s: float) -> np.ndarray:
-        """Return (3,): r_x at arc-length ``s``, as the elements draw it."""
-        if self._shape.straight or self.is_open:
+        """Return (3,): r_x at arc-length ``s``, see `point`."""
+        if self._has_exact_points:
             return self.stretch * self._shape.tangent(s * self.stretch)
-        slope, plane = self._as_drawn.slope(s), self.plane
+        slope, plane = self._line(self.nodal_vectors).slope(s), self.plane
         return slope if plane is None else plane.out(slope)
 
     def height(self, s: float) -> np.ndarray:
-        """Return (3,): along the section's height at ``s``: r_y as the elements draw it, the axis there if they have
-        none.
-        """
-        if self._shape.straight or self.is_open or not self.kind_of_element.director:
+        """Return (3,): r_y of the elements at ``s``, or the unit vector along the height where they have none."""
+        if self._has_exact_points or not self.kind_of_element.director:
             return self.axes_at(s)[1]
-        return self._as_drawn_point(s, y=1.0) - self._as_drawn_point(s)
+        return self.point_between(self.nodal_vectors, s, y=1.0) - self.point(s)
 
     def width(self, s: float) -> np.ndarray:
-        """Return (3,): along the section's width at ``s``: r_z as the elements draw it, the axis there if they have
-        none.
-        """
-        if self._shape.straight or self.is_open or "r_z" not in self.kind_of_element.nodal_vectors:
+        """Return (3,): r_z of the elements at ``s``, or the unit vector along the width where they have none."""
+        if self._has_exact_points or "r_z" not in self.kind_of_element.nodal_vectors:
             return self.axes_at(s)[2]
-        return self._as_drawn_point(s, z=1.0) - self._as_drawn_point(s)
-
-    def _as_drawn_point(self, s: float, y: float = 0.0, z: float = 0.0) -> np.ndarray:
-        """Return (3,) in m: the point at arc-length s, height y and width z of the section, as the elements draw it."""
-        return self.point_between(self.nodal_vectors, s, y, z)
+        return self.point_between(self.nodal_vectors, s, z=1.0) - self.point(s)
 
     def point_between(self, nodal_vectors: np.ndarray, s: float, y: float = 0.0, z: float = 0.0) -> np.ndarray:
-        """Return (3,) in m: the point at arc-length s, height y and width z of the section, as its elements have it
-        between nodes with these vectors (nodes, vectors, 3), along the ground's axes.
+        """Return (3,) in m: the point at arc-length s, height y and width z of the section, by interpolation between
+        nodal vectors (nodes, vectors, 3) along the ground's axes.
         """
         point, plane = self._line(nodal_vectors).point(s, y, z), self.plane
         return point if plane is None else plane.points_out(point)
 
-    @property
-    def _as_drawn(self) -> ElementLine:
-        """Return the elements at the start, which interpolate between the nodes, in the axes of its plane."""
-        return self._line(self.nodal_vectors)
-
     def _line(self, nodal_vectors: np.ndarray) -> ElementLine:
-        """Return its elements between nodes with these vectors (nodes, vectors, 3), in the axes of its plane."""
+        """Return the line of its elements between nodal vectors (nodes, vectors, 3), in the axes of its plane."""
         vectors, plane = nodal_vectors, self.plane
         if plane is not None:
             vectors = vectors.copy()
@@ -191,7 +165,7 @@ class DrawnCable:
         return ElementLine(self.library, self.element, self.mesh, self.in_plane(vectors))
 
     def axes_at(self, s: ArrayLike) -> np.ndarray:
-        """Return (..., 3, 3): unit vectors along axis, height and width, as rows, at arc-lengths ``s`` as drawn."""
+        """Return (..., 3, 3): unit vectors along axis, height and width, as rows, at arc-lengths ``s`` (...)."""
         s = np.asarray(s, dtype=float)
         if self._shape.straight:  # they are the same everywhere
             axes = self._axes_along(np.array([0.0, self.drawn_length]))[0]
@@ -200,7 +174,7 @@ class DrawnCable:
         return self._axes_along(places)[which[: s.size]].reshape(*s.shape, 3, 3)
 
     def _axes_along(self, places: np.ndarray) -> np.ndarray:
-        """Return (places, 3, 3): `axes_at` increasing arc-lengths as drawn, the first of them 0."""
+        """Return (n, 3, 3): the axes at increasing arc-lengths of the drawn shape, from 0."""
         if self.dim == 2:
             i, k = self._shape.tangent(places), self.normal
             return np.stack([i, cross(k, i), np.broadcast_to(k, i.shape)], axis=1)
@@ -213,7 +187,7 @@ class DrawnCable:
 
     @property
     def nodal_vectors(self) -> np.ndarray:
-        """Return (nodes, vectors, 3): as drawn; r in m, its gradients by the undeformed cable, r_xx in 1/m."""
+        """Return (nodes, vectors, 3) as drawn: r in m, its gradients by the undeformed cable, r_xx in 1/m."""
         drawn, stretch = self.node_s * self.stretch, self.stretch
         bent = "r_xx" in self.kind_of_element.nodal_vectors
         return self._vectors(self._shape.point(drawn), self.axes_at(self.node_s), stretch,
@@ -221,7 +195,7 @@ class DrawnCable:
 
     @property
     def nodal_rates(self) -> np.ndarray:
-        """Return (nodes, vectors, 3): rates of `nodal_vectors` at the start, of a rigid motion."""
+        """Return (nodes, vectors, 3): the rates of `nodal_vectors` at the start, those of a rigid motion."""
         names = self.kind_of_element.nodal_vectors
         if not any((*self.velocity, *self.angular_velocity)):
             return np.zeros((self.elements + 1, len(names), 3))
@@ -233,7 +207,7 @@ class DrawnCable:
 
     @property
     def reference(self) -> np.ndarray | None:
-        """Return (elements, 2 vectors, dim): stress-free nodal vectors of each element; None where the law takes none.
+        """Return (elements, 2 vectors, dim): stress-free nodal vectors of each element; None where the law needs none.
         """
         if not self.traits.takes_shape:
             return None
@@ -242,8 +216,7 @@ class DrawnCable:
 
     @property
     def rest_nodal_vectors(self) -> np.ndarray:
-        """Return (nodes, vectors, 3): those of the stress-free cable, with the drawn one's start and direction there.
-        """
+        """Return (nodes, vectors, 3): the nodal vectors of the stress-free cable, with start and direction as drawn."""
         start = self._shape.point(0.0)
         if self.rest == "straight":
             axes = np.broadcast_to(self.axes, (self.elements + 1, 3, 3))
@@ -258,17 +231,15 @@ class DrawnCable:
         return np.stack([known[name] for name in self.kind_of_element.nodal_vectors], axis=1)
 
     def nearest_s(self, point: np.ndarray) -> np.ndarray:
-        """Return the arc-lengths (n,) in m at which the centreline as the elements draw it is locally nearest to
-        ``point``, the nearest first.
-        """
+        """Return the arc-lengths (n,) in m where the distance to ``point`` (3,) is a local minimum, the least first."""
         found = [self._nearest(float(s), point) for s in self._shape.nearest(point) / self.stretch]
         return np.array([s for _, s in sorted(found)])
 
     def _nearest(self, s: float, point: np.ndarray) -> tuple[float, float]:
-        """Return the least distance to a point around s, and its arc-length, both in m, by Gauss and Newton."""
+        """Return the least distance to a point around s, and its arc-length, both in m, by the Gauss-Newton method."""
         away = point - self.point(s)
         distance, part = float(np.linalg.norm(away)), 1.0
-        for _ in range(ITERATIONS):
+        for _ in range(MAX_ITERATIONS):
             slope = self.slope(s)
             step = part * float(slope @ away / (slope @ slope))
             other = min(max(s + step, 0.0), self.length)
@@ -280,15 +251,13 @@ class DrawnCable:
         return distance, s
 
     def node(self, s: float) -> int:
-        """Return the number of the node at arc-length ``s`` in m; a check has found that there is one."""
+        """Return the number of the node at arc-length ``s`` in m, where checks have found one."""
         node = self.node_at(s)
         assert node is not None, f"{self.where} has no node at {s}"
         return node
 
     def node_at(self, s: float) -> int | None:
-        """Return the node at arc-length ``s``, None if there is none; an open cable will have one wherever one is
-        asked for.
-        """
+        """Return the number of the node at arc-length ``s`` in m, else None; a cable without mesh gets one anywhere."""
         if self.is_open:
             return round(s / (EXACT * self.length))
         mesh, node_s = self.mesh, self.node_s
@@ -297,6 +266,6 @@ class DrawnCable:
         return node if on_node else None
 
     def element_at(self, s: float) -> int:
-        """Return the number of the element that holds ``s``."""
+        """Return the number of the element at arc-length ``s`` in m."""
         mesh = self.mesh
         return math.floor(s / self.length * self.elements) if mesh.is_even else int(mesh.element_at(s))

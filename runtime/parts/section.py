@@ -73,6 +73,11 @@ class Section(Part):
         raise SceneError(type(self).__name__, "has no shear_factors", "give (ky, kz)")
 
     @property
+    def given_beside_shape(self) -> set[str]:
+        """Return which of torsion_constant and shear_factors are given."""
+        return {name for name in ("torsion_constant", "shear_factors") if getattr(self, f"given_{name}") is not None}
+
+    @property
     def area(self) -> float:
         """Return the area ∫dA in m²."""
         return float(self.moments()[0])

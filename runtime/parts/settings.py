@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from ..integrators import AUTO, INTEGRATORS, stable_at
 from .part import Part
 from .schemas import checked
-from .validation import Count, Flag, names, not_negative, number, one_of, positive, shown, within
+from .validation import Count, Flag, items, names, not_negative, number, one_of, positive, shown, within
 
 SMALLEST_STEP = 1e-12
 """Of the duration, as in engine/run/steps.c."""
@@ -130,10 +130,9 @@ def _adjust(value: Any) -> dict[str, Limits] | None:
 def _limits(name: str, value: Any) -> Limits:
     if value is None or (isinstance(value, str) and value == FREE):
         return FREE
-    value = value.tolist() if hasattr(value, "tolist") else value
-    if not isinstance(value, list | tuple) or len(value) != 2:
+    if (given := items(value, 2, 2)) is None:
         raise ValueError(f'takes two limits of "{name}", got {shown(value)}', 'give (low, high), or "free"')
-    low, high = number(value[0]), number(value[1])
+    low, high = map(number, given)
     if not low < high:
         raise ValueError(f'takes limits of "{name}" of which the second is above the first, got {low:g} and {high:g}')
     return low, high

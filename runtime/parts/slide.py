@@ -15,7 +15,7 @@ from .part import Part
 from .quantity import Quantity, of_engine, of_time
 from .schemas import GivenAs, attachment_schema
 from .signal import AnySignal, Integral, Signal
-from .validation import Name, Reference, Vector, direction, one_of, place_on, xyz
+from .validation import Name, Reference, Vector, direction, items, one_of, place_on, xyz
 
 
 class Slide(Part):
@@ -74,11 +74,10 @@ class Slide(Part):
     def _splits_what_rides(cls, data: Any) -> Any:
         if not isinstance(data, dict) or "body" not in data:
             return data
-        body: Any = data["body"]
-        body = body.tolist() if hasattr(body, "tolist") else body
-        if isinstance(body, list | tuple) and len(body) == 2:
-            return data | {"body": body[0], "body_s": body[1]}
-        if isinstance(body, list | tuple) and len(body) == 3:
+        body = data["body"]
+        if (given := items(body, 2, 2)) is not None:
+            return data | {"body": given[0], "body_s": given[1]}
+        if items(body, 3, 3) is not None:
             if any(data.get("at") or ()):
                 raise ValueError("body is a point of the ground and takes no at", "leave at out")
             return data | {"body": None, "at": body}

@@ -12,7 +12,7 @@ from .part import Part
 from .quantity import Quantity, vector_of_time
 from .schemas import AXIS, checked, some
 from .signal import Constant, Signal, signal
-from .validation import Name, Reference, Vector, direction, one_of, place_on, shown, vector
+from .validation import Name, Reference, Vector, direction, items, one_of, place_on, shown, vector
 
 
 def _called(cable: Any) -> str:
@@ -92,13 +92,11 @@ Displacement = tuple[Signal | None, Signal | None, Signal | None]
 def _displacement(value: Any) -> Displacement | None:
     if value is None:
         return None
-    if hasattr(value, "tolist"):
-        value = value.tolist()
-    if not isinstance(value, list | tuple) or len(value) != 3:
+    if (given := items(value, 3, 3)) is None:
         raise ValueError(f"must be 3 signals or numbers, got {shown(value)}",
                          'give 0 for a direction without motion, "free" for one that is not prescribed')
     x, y, z = (None if each is None or each == FREE else _component(axis, each)
-                 for axis, each in zip("xyz", value, strict=True))
+                 for axis, each in zip("xyz", given, strict=True))
     if x is y is z is None:
         raise ValueError("leaves all directions free", "leave it out, or give a signal or number for one of them")
     return x, y, z
@@ -126,11 +124,11 @@ def _rotation(value: Any) -> Rotation | None:
         return value
     if isinstance(value, dict) and set(value) == {"axis", "angle"}:
         value = value["axis"], value["angle"]
-    if not isinstance(value, list | tuple) or len(value) != 2:
+    if (given := items(value, 2, 2)) is None:
         raise ValueError(f"must be an axis and a signal, got {shown(value)}",
                          "such as ((0, 0, 1), Ramp(start=0, end=1))")
     try:
-        axis = vector(value[0])
+        axis = vector(given[0])
     except ValueError as error:
         raise _of("axis", error) from None
     norm = math.hypot(*axis)
@@ -138,7 +136,7 @@ def _rotation(value: Any) -> Rotation | None:
         raise ValueError("axis must not be zero")
     if abs(norm - 1) > 1e-15:  # already rounded to a unit: dividing again would only move the last digit
         axis = tuple(a / norm for a in axis)
-    return Rotation(axis=axis, angle=_component("angle", value[1]))
+    return Rotation(axis=axis, angle=_component("angle", given[1]))
 
 
 class Motion(Support):

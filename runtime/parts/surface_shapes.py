@@ -19,7 +19,7 @@ from .part import Family, Part
 from .plane import FLAT, aligned
 from .schemas import DIRECTION, HOLDER, checked, list_schema
 from .solids import Box, Cylinder, Length, Sphere
-from .validation import Vector, check_function, check_square, direction, list_of, show, shown, vector, xyz
+from .validation import Vector, check_function, check_square, direction, items, list_of, show, shown, vector, xyz
 
 WIDE = 1e6
 """m: half the width of a height field that does not change across."""
@@ -68,15 +68,15 @@ class Capsule(SurfaceShape):
 
 def _heights(value: Any) -> tuple[Any, ...]:
     """Return a list of heights in m, or one for each place along of lists across."""
-    value = value.tolist() if isinstance(value, np.ndarray) else value
-    if not isinstance(value, list | tuple) or len(value) < 2:
+    if (given := items(value, 2)) is None:
         raise ValueError(f"must be a list of 2 heights or more, or of lists of them, got {shown(value)}")
-    if not any(isinstance(row, list | tuple | np.ndarray) for row in value):
-        return vector(value, "m", len(value))
-    rows = [row.tolist() if isinstance(row, np.ndarray) else row for row in value]
-    if not all(isinstance(row, list | tuple) and len(row) == len(rows[0]) for row in rows):
+    rows = [items(row, 0) for row in given]
+    if not any(row is not None for row in rows):
+        return vector(given, "m", len(given))
+    sizes = {-1 if row is None else len(row) for row in rows}
+    if sizes & {-1} or len(sizes) > 1:
         raise ValueError("must have lists of equal length, one for each place along")
-    return tuple(vector(row, "m", len(row)) for row in rows)
+    return tuple(vector(row, "m", *sizes) for row in rows)
 
 
 class HeightField(SurfaceShape):

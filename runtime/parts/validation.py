@@ -27,7 +27,7 @@ LIMITS = {"m": (1e-12, 1e9), "s": (1e-12, 1e12), "m²": (1e-24, 1e24), "m⁴": (
 
 OTHER_LIMITS = (1e-30, 1e30)
 
-MOST = 1_000_000
+MAX_COUNT = 1_000_000
 """The largest count: elements of a cable, modes, iterations."""
 
 EXACT = 1e-9
@@ -49,9 +49,19 @@ class _Short(reprlib.Repr):
         """Return an integer's text; Python writes no integers of thousands of digits."""
         return repr(value) if value.bit_length() < 256 else f"an integer of {value.bit_length()} bits"
 
+    def repr_ndarray(self, value: np.ndarray, level: int) -> str:
+        """Return an array as lists."""
+        return str(self.repr1(value.tolist(), level))
+
 
 shown = _Short().repr
 """``shown(value)``: a value as messages quote it, shortened where it is long or nested deeply."""
+
+
+def items(value: Any, least: int, most: float = math.inf) -> list[Any] | None:
+    """Return the items of a list, tuple or array; None for anything else, and where their number is out of range."""
+    value = value.tolist() if isinstance(value, np.ndarray) else value
+    return [*value] if isinstance(value, list | tuple) and least <= len(value) <= most else None
 
 
 def _real(value: Any) -> float:
@@ -84,11 +94,9 @@ def number(value: Any, unit: str = "") -> float:
 
 def vector(value: Any, unit: str = "", size: int = 3) -> tuple[float, ...]:
     """Return ``value`` as ``size`` finite floats within `LIMITS`. Raises ValueError if it is anything else."""
-    if isinstance(value, np.ndarray):
-        value = value.tolist()
-    if not isinstance(value, list | tuple) or len(value) != size:
+    if (given := items(value, size, size)) is None:
         raise ValueError(f"must be {size} numbers, got {shown(value)}")
-    numbers = tuple(map(_real, value))
+    numbers = tuple(map(_real, given))
     farthest = LIMITS["m"][1]
     if unit == "m" and farthest < max(map(abs, numbers), default=0.0) < math.inf:
         raise ValueError(f"must lie within {farthest:g} m of the origin, beyond which positions are rounded to more "
@@ -108,11 +116,11 @@ def symmetric(value: Any, unit: str, check: Callable[[np.ndarray], None]) -> Mat
 
     check raises ValueError where the matrix will not do. Raises ValueError.
     """
-    rows = value.tolist() if isinstance(value, np.ndarray) else value
-    if isinstance(rows, list | tuple) and len(rows) == 3 and all(isinstance(row, list | tuple) for row in rows):
+    rows = items(value, 3, 3)
+    if rows is not None and all(isinstance(row, list | tuple) for row in rows):
         matrix = np.array([vector(row, unit) for row in rows])
     else:
-        matrix = np.diag(vector(rows, unit))
+        matrix = np.diag(vector(value, unit))
     if not np.allclose(matrix, matrix.T, rtol=0, atol=1e-12 * np.abs(matrix).max()):
         raise ValueError(f"must be symmetric, got {matrix.tolist()}")
     check(matrix)
@@ -228,11 +236,10 @@ def place_on(of: str, *, moves: bool = False) -> Check:
 def list_of(unit: str = "", *, least: int) -> Check:
     """Return the check of a list of at least ``least`` finite numbers."""
     def check(value: Any) -> tuple[float, ...]:
-        value = value.tolist() if isinstance(value, np.ndarray) else value
-        if not isinstance(value, list | tuple) or len(value) < least:
+        if (given := items(value, least)) is None:
             how_many = "numbers, one at least" if least == 1 else f"{least} numbers or more"
             raise ValueError(f"must be a list of {how_many}, got {shown(value)}")
-        return vector(value, unit, len(value))
+        return vector(given, unit, len(given))
 
     return checked(check, list_schema(unit, least, None))
 
@@ -269,8 +276,8 @@ def _count(value: Any) -> int:
     if isinstance(value, bool) or not isinstance(value, Integral) or value < 1:
         raise ValueError(f"must be a whole number, 1 or more, got {shown(value)}")
     count = int(value)
-    if count > MOST:
-        raise ValueError(f"must not exceed {MOST}, got {shown(count)}")
+    if count > MAX_COUNT:
+        raise ValueError(f"must not exceed {MAX_COUNT}, got {shown(count)}")
     return count
 
 
@@ -296,7 +303,7 @@ def _listed(value: Any) -> str:
     return name
 
 
-Count = Annotated[int, checked(_count, {"type": "integer", "minimum": 1, "maximum": MOST})]
+Count = Annotated[int, checked(_count, {"type": "integer", "minimum": 1, "maximum": MAX_COUNT})]
 Flag = Annotated[bool, checked(_flag, {"type": "boolean"})]
 Name = Annotated[str, checked(_name, {"type": "string", "maxLength": LONGEST_NAME})]
 NAMES_A_PART = object()
@@ -307,4 +314,5 @@ Listed = Annotated[str, checked(_listed, {"anyOf": [
     {"type": "string"}, {"type": "array", "items": {"type": "string"}, "minItems": 1}]}), NAMES_A_PART]
 """The name of a part, given as that or as the part itself; where parts are added, a list of them or "all", too."""
 Vector = tuple[float, float, float]
+Points = tuple[tuple[float, ...], ...]
 Matrix = tuple[Vector, Vector, Vector]

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import SceneError, near
-from ..parts.validation import MOST, shown
+from ..parts.validation import MAX_COUNT, shown
 from .distributions import Distribution
 
 SWEEP = "sweep"
@@ -116,8 +116,8 @@ def _check_lengths(points: Points) -> None:
 def _count(samples: int | None, method: str) -> int:
     if samples is None:
         raise SceneError(SWEEP, f'the method "{method}" needs a number of samples', "give samples=")
-    if isinstance(samples, bool) or not isinstance(samples, Integral) or not 1 <= samples <= 100 * MOST:
-        raise SceneError(SWEEP, f"samples must be a whole number from 1 to {100 * MOST}, got {shown(samples)}")
+    if isinstance(samples, bool) or not isinstance(samples, Integral) or not 1 <= samples <= 100 * MAX_COUNT:
+        raise SceneError(SWEEP, f"samples must be a whole number from 1 to {100 * MAX_COUNT}, got {shown(samples)}")
     return int(samples)
 
 

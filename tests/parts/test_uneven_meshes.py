@@ -34,8 +34,8 @@ def test_equal_elements_given_as_nodes_are_the_same_bits(element, integrator, mo
     settings = {"duration": 0.05, "output_step": 0.01, "tol": 1e-3, "integrator": integrator}
     expected = even.run(**settings)
     given = even.replace("wire", nodes=np.arange(9) / 8)
-    for tolerance, is_even in ((cable_mesh.EVEN, True), (-1.0, False)):
-        monkeypatch.setattr(cable_mesh, "EVEN", tolerance)
+    for tolerance, is_even in ((cable_mesh.EVEN_TOLERANCE, True), (-1.0, False)):
+        monkeypatch.setattr(cable_mesh, "EVEN_TOLERANCE", tolerance)
         assert given.cables["wire"].mesh.is_even is is_even
         found = given.run(**settings)
         for name in expected:

@@ -1,0 +1,118 @@
+"""The fields of a cable, and the properties that do not depend on its shape."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from typing import Annotated, Any
+
+from pydantic import Field, PrivateAttr, ValidationInfo
+
+from ..errors import SceneError, near
+from ..kernels.elements import ElementKind
+from ..kernels.libraries import of_library, resolved
+from . import curves
+from .cable_laws import DEFAULT_ELEMENT, MEASURES
+from .cable_mesh import Nodes
+from .material import Material
+from .part import Part
+from .schemas import ONLY_PYTHON, POINT, GivenAs, Turning, checked, list_of_lists
+from .section import AnySection, outer_radius_of
+from .validation import Count, Name, Points, Vector, one_of, positive, shown, xyz
+
+
+def library_directory(value: Any) -> str | None:
+    """Return the absolute path of a library without links, and load it. Raises ValueError."""
+    if value is None:
+        return None
+    if not isinstance(value, str | os.PathLike):
+        raise ValueError(f"must be a directory, got {shown(value)}")
+    directory = resolved(value)
+    of_library(directory)
+    return directory
+
+
+def _element(value: Any, info: ValidationInfo) -> str:
+    """Return the name of an element of the library, or of this package."""
+    library = info.data.get("library")
+    known = of_library(library)
+    if not isinstance(value, str):
+        raise ValueError(f"must be a name, got {shown(value)}", "known: " + ", ".join(known))
+    if value not in known:
+        where = f' in library "{library}"' if library else ""
+        raise ValueError(f'"{value}" is not known{where}', near(value, known))
+    return value
+
+
+class CableFields(Part):
+    """Base of a cable: its fields, which `Cable` describes."""
+
+    _hanging: Points | None = PrivateAttr(None)
+
+    name: Name
+    start: Annotated[Vector | None, xyz("m")] = None
+    end: Annotated[Vector | None, xyz("m")] = None
+    points: Annotated[Points | None, checked(curves.points, list_of_lists("m"), Turning(POINT))] = None
+    curve: Annotated[Callable | None, GivenAs(ONLY_PYTHON)] = None  # kept as points, see `Cable._settled`
+    shape: Annotated[str | None, one_of(("straight", "hanging"), optional=True)] = None
+    given_elements: Annotated[Count | None, Field(alias="elements")] = None
+    nodes: Nodes | None = None
+    library: Annotated[str | None, checked(library_directory, {"type": "string"})] = None
+    element: Annotated[str, checked(_element, {"type": "string"})] = DEFAULT_ELEMENT
+    law: str = None  # type: ignore[assignment]  # `Cable._settled` chooses one where none is given
+    strain: Annotated[str | None, one_of(MEASURES["strain"], optional=True)] = None
+    curvature: Annotated[str | None, one_of(MEASURES["curvature"], optional=True)] = None
+    membrane: Annotated[str | None, one_of(MEASURES["membrane"], optional=True)] = None
+    section: AnySection
+    material: Material
+    up: Annotated[Vector, xyz()] = (0.0, 1.0, 0.0)
+    rest: Annotated[str, one_of(("drawn", "straight"))] = "drawn"
+    rest_length: Annotated[float, positive("m")] | None = None
+    velocity: Annotated[Vector, xyz("m/s")] = (0.0, 0.0, 0.0)
+    angular_velocity: Annotated[Vector, xyz("rad/s")] = (0.0, 0.0, 0.0)
+
+    @property
+    def is_open(self) -> bool:
+        """Return whether the number of its elements is still to be chosen."""
+        return self.given_elements is None and self.nodes is None
+
+    @property
+    def elements(self) -> int:
+        """Return the number of its elements. Raises SceneError where it is still to be chosen."""
+        if self.given_elements is not None:
+            return self.given_elements
+        if self.nodes is not None:
+            return len(self.nodes) - 1
+        raise SceneError(self.where, "has no elements yet",
+                         "give elements=, or let them be chosen: scene.choose(tol).scene")
+
+    @property
+    def kind_of_element(self) -> ElementKind:
+        """Return the properties of its element."""
+        return of_library(self.library)[self.element]
+
+    @property
+    def dim(self) -> int:
+        """Return 3, or 2 for planar elements."""
+        return self.kind_of_element.dim
+
+    @property
+    def is_round(self) -> bool:
+        """Return whether all directions across its axis are equivalent: a round section, or elements without axes."""
+        return outer_radius_of(self.section) is not None or not self.kind_of_element.director
+
+    @property
+    def stiffness_law(self) -> str:
+        """Return the name of the law that gives the stiffness of its section, see `section_stiffness`."""
+        laws = self.kind_of_element.laws
+        return laws[self.law].stiffness_of if self.law in laws else self.law
+
+    @property
+    def drawn_through(self) -> Points:
+        """Return the points that it is drawn through, in m."""
+        if self.shape == "hanging" and self._hanging is not None:
+            return self._hanging
+        if self.points is not None:
+            return self.points
+        assert self.start is not None and self.end is not None, f"{self.where} has neither points nor ends"
+        return self.start, self.end
