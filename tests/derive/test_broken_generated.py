@@ -40,3 +40,18 @@ def test_derive_mends_what_is_generated(installed, broken):
     assert made.returncode == 0, made.stderr
     for name in ("__init__.py", "joint_spherical.c"):
         assert (installed / name).read_bytes() == (TOP / "generated" / name).read_bytes()
+
+
+def test_a_clone_without_a_compiled_engine_derives(tmp_path):
+    """A generated/ that does not compile leaves no engine behind, which `import funicular` needs."""
+    ignored = shutil.ignore_patterns("*.so", "__pycache__", "*.c", "page_source", "scenes")
+    for folder in ("derive", "runtime"):
+        shutil.copytree(TOP / folder, tmp_path / folder, ignore=ignored)
+    (tmp_path / "generated").mkdir()
+    for name, text in (("manifest.json", None), ("joint_spherical.c", "void joint_spherical_residual(")):
+        content = text or (TOP / "generated" / name).read_text(encoding="utf-8")
+        (tmp_path / "generated" / name).write_text(content, encoding="utf-8")
+    made = subprocess.run([sys.executable, "derive", "joint_spherical"], cwd=tmp_path, capture_output=True, text=True)
+    assert made.returncode == 0, made.stderr
+    for name in ("joint_spherical.c", "kernels.h", "registry.c"):
+        assert (tmp_path / "generated" / name).read_bytes() == (TOP / "generated" / name).read_bytes()
