@@ -73,22 +73,19 @@ def _real(value: Any) -> float:
         return math.inf
 
 
-def _in_range(numbers: tuple[float, ...], unit: str, got: str) -> None:
-    """Raise ValueError unless all numbers are finite and within the limits of their unit; got: how messages quote them.
-    """
+def _in_range(value: float | tuple[float, ...], numbers: tuple[float, ...], unit: str) -> None:
+    """Raise ValueError unless all numbers of a value are finite and within the limits of their unit."""
     if not all(map(math.isfinite, numbers)):
-        raise ValueError(f"must be finite, got {got}")
+        raise ValueError(f"must be finite, got {show(value, unit)}")
     largest = LIMITS.get(unit, OTHER_LIMITS)[1]
     if max(map(abs, numbers), default=0.0) > largest:
-        raise ValueError(f"must not exceed {show(largest, unit)} in size, got {got}")
+        raise ValueError(f"must not exceed {show(largest, unit)} in size, got {show(value, unit)}")
 
 
 def number(value: Any, unit: str = "") -> float:
-    """Return ``value`` as a finite float within `LIMITS`. Raises ValueError if it is none; text and booleans are no
-    numbers.
-    """
+    """Return ``value`` as a finite float within `LIMITS`. Raises ValueError, also for text and booleans."""
     result = _real(value)
-    _in_range((result,), unit, show(result, unit))
+    _in_range(result, (result,), unit)
     return result
 
 
@@ -101,7 +98,7 @@ def vector(value: Any, unit: str = "", size: int = 3) -> tuple[float, ...]:
     if unit == "m" and farthest < max(map(abs, numbers), default=0.0) < math.inf:
         raise ValueError(f"must lie within {farthest:g} m of the origin, beyond which positions are rounded to more "
                          f"than 1e-7 m, got {show(numbers, unit)}", "draw the scene nearer to the origin")
-    _in_range(numbers, unit, show(numbers, unit))
+    _in_range(numbers, numbers, unit)
     return numbers
 
 
