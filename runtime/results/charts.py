@@ -1,4 +1,4 @@
-"""Charts of a run over time and along its cables, by Matplotlib, which is imported only when one is made."""
+"""Charts of a run over time and along its cables, by Matplotlib, which is imported when one is made."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..view.plot import SNAPSHOTS
+from ..view.plot import colour_scale, snapshots
 from ..view.projections import axis_name
 from .animation.recorded import Recorded
 from .quantities import ENERGIES
@@ -14,27 +14,26 @@ from .section_forces.balance_limits import known_method
 from .section_forces.forces import DEFAULT_DIVISIONS, jumps, of_run, with_sides
 
 if TYPE_CHECKING:
-    from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
 
-DENSE = 200
-"""Output times: fewer are shown as points, too, as a coarse output should look like one."""
+MAX_MARKERS = 200
+"""Output times up to which a chart marks each one."""
 
 
 def upward(run: Recorded) -> tuple[np.ndarray, str]:
-    """Return the unit vector against gravity, y without any, and its name."""
+    """Return the unit vector against gravity, or y without gravity, and its name."""
     gravity = np.array(run.scene.gravity)
     up = -gravity / np.linalg.norm(gravity) if gravity.any() else np.array([0.0, 1.0, 0.0])
     return up, axis_name(up)
 
 
 def acceleration(run: Recorded, figure: Figure) -> bool:
-    """Draw the bodies' accelerations upwards over time, the paper's Fig. 5; False without a slide or a body."""
+    """Draw the vertical accelerations of bodies over time, Fig. 5 of the paper; False without a slide or a body."""
     bodies = list(run.scene.bodies)
     if not (bodies and run.scene.slides):
         return False
     up, name = upward(run)
-    marker = "." if len(run.time) <= DENSE else ""
+    marker = "." if len(run.time) <= MAX_MARKERS else ""
     figure.set_size_inches(7, 3.4)
     axes = figure.add_subplot()
     for body in bodies:
@@ -46,7 +45,7 @@ def acceleration(run: Recorded, figure: Figure) -> bool:
 
 
 def slide(run: Recorded, figure: Figure) -> bool:
-    """Draw places and speeds of the riders along their cables over time; False without a slide."""
+    """Draw positions and speeds of slides along their cables over time; False without a slide."""
     slides = run.scene.slides
     if not slides:
         return False
@@ -68,8 +67,8 @@ def slide(run: Recorded, figure: Figure) -> bool:
 
 
 def section_forces(run: Recorded, figure: Figure, cable: str) -> bool:
-    """Draw tension and size of the moment along a cable, at a few times, coloured by time; both sides of jumps."""
-    described, (shown, colour) = run.scene.cables[cable], _snapshots(run)
+    """Draw tension and moment along a cable at a few times, coloured by time, on both sides of jumps."""
+    described, shown, colour = run.scene.cables[cable], snapshots(len(run.time)), colour_scale(run.time)
     fixed = jumps(run.scene, cable)
     riders = [run[f"{name}.s"][shown] for name, slide in run.scene.slides.items() if slide.along == cable]
     places = np.concatenate([np.broadcast_to(fixed, (len(shown), len(fixed))), *(s[:, None] for s in riders)], axis=1)
@@ -83,24 +82,15 @@ def section_forces(run: Recorded, figure: Figure, cable: str) -> bool:
         moment.plot(s[k], np.linalg.norm(forces["moment"][k], axis=-1), color=colour.to_rgba(time))
     tension.set_ylabel("tension / N")
     if method != "balance":
-        tension.set_title("of the elastic law: results do not tell all that acts")
+        tension.set_title("by the elastic law: results do not contain all loads")
     moment.set_ylabel("moment / (N m)")
     moment.set_xlabel(f"arc-length s of {cable} / m")
     figure.colorbar(colour, ax=[tension, moment], label="time / s", pad=0.02, fraction=0.04)
     return True
 
 
-def _snapshots(run: Recorded) -> tuple[np.ndarray, ScalarMappable]:
-    """Return the numbers of the few times that are drawn, and the colours of times."""
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import Normalize
-
-    shown = np.unique(np.linspace(0, len(run.time) - 1, SNAPSHOTS).round().astype(int))
-    return shown, ScalarMappable(Normalize(run.time[0], max(run.time[-1], run.time[0] + 1e-9)), "viridis")
-
-
 def energy(run: Recorded, figure: Figure) -> bool:
-    """Draw the changes of the energies since the start, and how well they cancel."""
+    """Draw the changes of the energies since the start, and the relative residual of their balance."""
     figure.set_size_inches(7, 4.8)
     changes, error = figure.subplots(2, sharex=True, height_ratios=(2.2, 1))
     for name in (name for name in ENERGIES if f"energy.{name}" in run):

@@ -1,26 +1,28 @@
-"""What a picture shows, as plain data: the pages, plots and exports are made of this and of nothing else.
+"""The content of pictures as plain data, from which pages, plots, films and exports are made.
 
-Lengths in m, times in s. T is the number of frames, P the number of stations along a cable. Arrays that hold one frame
-(first dimension 1) stand still.
+Lengths in m, times in s. T is the number of frames, P the number of stations along a cable. The annotation of an array
+has its dimensions. An array with one frame (first dimension 1) stands still.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Literal
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cache
+from itertools import chain
+from typing import Annotated, Any, Literal, TypeVar, get_origin, get_type_hints
 
 import numpy as np
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number along a cable that may colour it: values (T, P) in a unit."""
+    """A number along a cable, by which it can be coloured."""
 
     key: str  # "tension"
     label: str  # "tension"
     unit: str  # "N"
-    values: np.ndarray
+    values: Annotated[np.ndarray, "T", "P"]
 
 
 @dataclass(frozen=True)
@@ -33,17 +35,17 @@ class CableShape:
     """
 
     name: str
-    s: np.ndarray  # (P,) arc-length of the undeformed cable in m
-    position: np.ndarray  # (T, P, 3)
-    section_y: np.ndarray | None  # (T, P, 3) unit vector of the section's height; None: the section has no direction
+    s: Annotated[np.ndarray, "P"]  # arc-length of the undeformed cable
+    position: Annotated[np.ndarray, "T", "P", 3]
+    section_y: Annotated[np.ndarray | None, "T", "P", 3]  # unit vector of the section's height; None: no direction
     section: Mapping[str, object]
-    reference: np.ndarray  # (P, 3) what an exaggerated displacement is measured from
+    reference: Annotated[np.ndarray, "T", "P", 3]  # (P, 3) origin of exaggerated displacements
     quantities: tuple[Quantity, ...] = ()
 
 
 @dataclass(frozen=True)
 class BodyShape:
-    """A body: its frame over time, and what is drawn in it.
+    """A body: its frame over time, and the shape in it.
 
     shape: ``{"kind": "box", "size": [x, y, z]}``, ``{"kind": "sphere", "radius": r}``, ``{"kind": "cylinder",
     "radius": r, "length": l, "axis": [x, y, z]}``, or ``{"kind": "mesh", "vertices": (V, 3) array, "triangles": (F, 3)
@@ -51,41 +53,41 @@ class BodyShape:
     """
 
     name: str
-    position: np.ndarray  # (T, 3)
-    orientation: np.ndarray  # (T, 4) unit quaternion, scalar first, from axes of the body to those of space
+    position: Annotated[np.ndarray, "T", 3]
+    orientation: Annotated[np.ndarray, "T", 4]  # unit quaternion, scalar first, from axes of the body to those of space
     shape: Mapping[str, object]
-    reference: np.ndarray  # (3,), or (T, 3) for what slides: what an exaggerated displacement is measured from
+    reference: Annotated[np.ndarray, "T", 3]  # (3,), or (T, 3) if it slides: origin of exaggerated displacements
     quantities: Mapping[str, tuple[str, np.ndarray]] = field(default_factory=dict)  # label: (unit, (T,) values)
 
 
 @dataclass(frozen=True)
 class Mark:
-    """A point that means something.
+    """A point with a meaning.
 
-    reference: what an exaggerated displacement is measured from; None: the mean of a periodic clip, else the start.
+    reference: origin of exaggerated displacements; None: the mean of a periodic clip, else the start.
     """
 
     name: str
     kind: Literal["pin", "clamp", "tie", "joint", "slide", "ground", "point"]
-    position: np.ndarray  # (T or 1, 3)
-    detail: str = ""  # said when the pointer is on it
-    reference: np.ndarray | None = None  # (3,), or (T, 3) for what slides
+    position: Annotated[np.ndarray, "T", 3]
+    detail: str = ""  # shown under the pointer
+    reference: Annotated[np.ndarray | None, "T", 3] = None  # (3,), or (T, 3) if it slides
 
 
 @dataclass(frozen=True)
 class Segment:
-    """A straight connection of two points; ``reference`` is like that of a mark, start and end."""
+    """A straight connection of two points; reference: as of a mark, of start and end."""
 
     name: str
     kind: Literal["spring", "hanger", "lever", "joint", "load"]  # hanger: a spring that only pulls
-    start: np.ndarray  # (T or 1, 3)
-    end: np.ndarray  # (T or 1, 3)
-    reference: np.ndarray | None = None  # (2, 3), or (T, 2, 3)
+    start: Annotated[np.ndarray, "T", 3]
+    end: Annotated[np.ndarray, "T", 3]
+    reference: Annotated[np.ndarray | None, "T", 2, 3] = None  # (2, 3), or (T, 2, 3) if it slides
 
 
 @dataclass(frozen=True)
 class Curve:
-    """A result over time, for the diagrams beside the picture."""
+    """A result over time, for the charts beside the picture."""
 
     key: str  # "trolley.force"
     label: str
@@ -97,7 +99,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class EventMark:
-    """Something that happened, on the line of time."""
+    """An event on the time line."""
 
     time: float
     label: str
@@ -118,13 +120,18 @@ class Clip:
     periodic: bool = False  # a mode: played in a loop, the last frame joins the first
     details: Mapping[str, str] = field(default_factory=dict)  # "frequency": "1.25 Hz"
 
+    @property
+    def parts(self) -> Iterator[Part]:
+        """Yield cables, bodies, marks and segments."""
+        return chain(self.cables, self.bodies, self.marks, self.segments)
+
 
 @dataclass(frozen=True)
 class Animation:
-    """What a page shows.
+    """The content of a page.
 
     arrangement: ``"overlay"`` draws all clips at once, each in its own shade (two runs); ``"menu"`` one at a time,
-    chosen by its label (modes).
+    selected by its label (modes).
     """
 
     title: str
@@ -134,4 +141,56 @@ class Animation:
     arrangement: Literal["overlay", "menu"] = "overlay"
     time_label: str = "time"  # "load factor" for a load path
     time_unit: str = "s"
-    notes: tuple[str, ...] = ()  # said on the page: what was decimated, warnings of the run
+    notes: tuple[str, ...] = ()  # shown on the page: decimation, warnings of the run
+
+
+Part = CableShape | BodyShape | Mark | Segment
+AnyPart = TypeVar("AnyPart", CableShape, BodyShape, Mark, Segment)
+
+
+def arrays(part: Part) -> Iterator[tuple[str, tuple[str | int, ...], np.ndarray]]:
+    """Yield the arrays of a part with their names and dimensions, those of its quantities included."""
+    for name, dims in _dimensions(type(part)).items():
+        if (value := getattr(part, name)) is not None:
+            yield name, dims, value
+    if isinstance(part, CableShape):
+        yield from ((quantity.key, ("T", "P"), quantity.values) for quantity in part.quantities)
+    elif isinstance(part, BodyShape):
+        yield from ((label, ("T",), values) for label, (_, values) in part.quantities.items())
+
+
+def taken(part: AnyPart, dim: str, numbers: np.ndarray, count: int) -> AnyPart:
+    """Return a part at some of its ``count`` frames (dim "T") or stations ("P"); arrays that stand still stay."""
+    def at(array: np.ndarray, dims: tuple[str | int, ...]) -> np.ndarray:
+        axis = dims.index(dim) - (len(dims) - array.ndim) if dim in dims else -1
+        return array.take(numbers, axis) if axis >= 0 and array.shape[axis] == count else array
+
+    changed: dict[str, Any] = {name: at(getattr(part, name), dims) for name, dims in _dimensions(type(part)).items()
+                               if getattr(part, name) is not None}
+    if isinstance(part, CableShape):
+        changed["quantities"] = tuple(replace(each, values=at(each.values, ("T", "P"))) for each in part.quantities)
+    elif isinstance(part, BodyShape):
+        changed["quantities"] = {label: (unit, at(values, ("T",)))
+                                 for label, (unit, values) in part.quantities.items()}
+    return replace(part, **changed)
+
+
+@cache
+def _dimensions(kind: type[Part]) -> dict[str, tuple[str | int, ...]]:
+    return {name: hint.__metadata__ for name, hint in get_type_hints(kind, include_extras=True).items()
+            if get_origin(hint) is Annotated}
+
+
+def at_frame(values: np.ndarray, frame: int) -> np.ndarray:
+    """Return the values at a frame, also of an array that stands still."""
+    return np.asarray(values[frame if len(values) > 1 else 0])
+
+
+def period(clip: Clip) -> float | None:
+    """Return the period of a repeated clip; its last frame is the first one again, or the one before it."""
+    if not clip.periodic or len(clip.time) < 2:
+        return None
+    moving = [part.position for part in (*clip.cables, *clip.bodies)]
+    moved = max((np.abs(cable.position - cable.position[0]).max() for cable in clip.cables), default=0.0)
+    closed = bool(moving) and all(np.abs(each[-1] - each[0]).max() <= 1e-6 * max(moved, 1e-300) for each in moving)
+    return float(clip.time[-1] - clip.time[0] + (0 if closed else clip.time[-1] - clip.time[-2]))

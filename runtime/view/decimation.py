@@ -1,4 +1,4 @@
-"""What a screen shows of an animation: at most so many frames, stations and rows, with what was left out in words."""
+"""Reduction of an animation to the resolution of a screen: frames, stations, rows of curves; with notes on the loss."""
 
 from __future__ import annotations
 
@@ -9,22 +9,23 @@ from typing import Any
 
 import numpy as np
 
-from .animation import BodyShape, CableShape, Clip, Curve, Mark, Segment
+from .animation import CableShape, Clip, Curve, taken
 
 MAX_FRAMES = 1000
 MAX_STATIONS = 3000  # of one cable
 MAX_ROWS = 2000  # of a curve
 PIXELS = 2000  # across a large screen
-CHORD_ERROR = 0.25  # pixels, where the picture shows the whole motion
-ZOOM = 5  # cables much thinner than a pixel are followed so much closer
+CHORD_ERROR = 0.25  # pixels, in a picture of the whole motion
+ZOOM = 5  # resolution of cables much thinner than a pixel, per pixel
 COLOUR_STEPS = 128
-LEAST_RANGE = 1e-3  # of colours, in parts of the largest value: main.js has the same
-SECTION_TURN = 0.02  # rad between a section's direction and the one interpolated
+MIN_COLOUR_RANGE = 1e-3  # over the largest value; main.js has the same
+SECTION_TURN = 0.02  # rad between a section's direction and the interpolated one
 SAMPLED_FRAMES = 48
+BLOCK_FRAMES = 64  # computed together, to limit memory
 
 
 def decimated(clip: Clip, size: float) -> tuple[Clip, list[str]]:
-    """Return the clip as a screen shows it, and sentences that say what was left out. ``size``: of the picture in m."""
+    """Return the clip at screen resolution, and notes on the loss. ``size``: of the picture in m."""
     clip, notes = _with_fewer_frames(clip)
     cables = []
     for cable in clip.cables:
@@ -32,11 +33,11 @@ def decimated(clip: Clip, size: float) -> tuple[Clip, list[str]]:
         cables.append(fewer)
         if excess > 1:
             notes.append(f'Cable "{cable.name}" is drawn at {len(fewer.s)} of its {len(cable.s)} stations; between '
-                         f"them the picture is up to {excess:.1f} times as far off as elsewhere.")
+                         f"them the error of the picture is up to {excess:.1f} times that of other cables.")
     drawn, given = (sum(len(cable.s) for cable in group) for group in (cables, clip.cables))
     if drawn < given:
         notes.append(f"Cables are drawn at {drawn} of {given} stations: the others lie within {CHORD_ERROR:g} pixels "
-                     f"and 1/{COLOUR_STEPS} of the colour range of what is drawn.")
+                     f"and 1/{COLOUR_STEPS} of the colour range of the drawn line.")
     curves = tuple(_with_fewer_rows(curve) for curve in clip.curves)
     if any(len(few.time) < len(all_.time) for few, all_ in zip(curves, clip.curves, strict=True)):
         notes.append(f"Long curves have at most {MAX_ROWS} rows; their extremes are kept.")
@@ -44,7 +45,7 @@ def decimated(clip: Clip, size: float) -> tuple[Clip, list[str]]:
 
 
 def even_frames(time: np.ndarray, count: int) -> np.ndarray:
-    """Return the numbers of at most ``count`` frames, evenly over time; the first and the last are among them."""
+    """Return the numbers of at most ``count`` frames, evenly over time, with the first and the last."""
     if len(time) <= count:
         return np.arange(len(time))
     wanted = np.linspace(time[0], time[-1], count)
@@ -58,33 +59,10 @@ def _with_fewer_frames(clip: Clip) -> tuple[Clip, list[str]]:
     given = len(clip.time)
     if len(frames) == given:
         return clip, []
-
-    def at(array: np.ndarray) -> np.ndarray:
-        return array[frames] if len(array) == given else array
-
-    def moving(reference: np.ndarray, dimensions: int) -> np.ndarray:
-        return at(reference) if np.ndim(reference) == dimensions else reference
-
-    def cable(c: CableShape) -> CableShape:
-        return replace(c, position=at(c.position), section_y=None if c.section_y is None else at(c.section_y),
-                       quantities=tuple(replace(q, values=at(q.values)) for q in c.quantities))
-
-    def body(b: BodyShape) -> BodyShape:
-        return replace(b, position=at(b.position), orientation=at(b.orientation), reference=moving(b.reference, 2),
-                       quantities={key: (unit, at(values)) for key, (unit, values) in b.quantities.items()})
-
-    def mark(m: Mark) -> Mark:
-        return replace(m, position=at(m.position), reference=None if m.reference is None else moving(m.reference, 2))
-
-    def segment(s: Segment) -> Segment:
-        return replace(s, start=at(s.start), end=at(s.end),
-                       reference=None if s.reference is None else moving(s.reference, 3))
-
-    fewer = replace(clip, time=clip.time[frames], cables=tuple(map(cable, clip.cables)),
-                    bodies=tuple(map(body, clip.bodies)), marks=tuple(map(mark, clip.marks)),
-                    segments=tuple(map(segment, clip.segments)))
-    return fewer, [f"The picture shows {len(frames)} of {given} frames, evenly over time; motion between them is not "
-                   "seen."]
+    fewer = replace(clip, time=clip.time[frames], **{
+        kind: tuple(taken(part, "T", frames, given) for part in getattr(clip, kind))
+        for kind in ("cables", "bodies", "marks", "segments")})
+    return fewer, [f"The picture shows {len(frames)} of {given} frames, evenly over time, and no motion between them."]
 
 
 def section_size(section: Mapping[str, Any]) -> float:
@@ -95,7 +73,7 @@ def section_size(section: Mapping[str, Any]) -> float:
 
 
 def _with_fewer_stations(cable: CableShape, size: float) -> tuple[CableShape, float]:
-    """Return the cable at the stations that a screen needs, and the largest error in units of what is allowed."""
+    """Return the cable at the stations that a screen resolves, and the largest error over the tolerance."""
     pixel = max(size, 1e-300) / PIXELS
     chord = CHORD_ERROR * min(pixel, max(section_size(cable.section), pixel / ZOOM))
     columns = [cable.position / chord]
@@ -103,32 +81,24 @@ def _with_fewer_stations(cable: CableShape, size: float) -> tuple[CableShape, fl
     for quantity in cable.quantities:
         finite = quantity.values[np.isfinite(quantity.values)]
         span = np.ptp(finite) if len(finite) else 0.0
-        if span > LEAST_RANGE * np.abs(finite).max(initial=0):
+        if span > MIN_COLOUR_RANGE * np.abs(finite).max(initial=0):
             columns.append(np.nan_to_num(quantity.values)[..., None] / (span / COLOUR_STEPS))
     kept, excess = needed_stations(cable.s, columns)
-
-    def at(array: np.ndarray) -> np.ndarray:
-        return array[:, kept]
-
-    return replace(
-        cable, s=cable.s[kept], position=at(cable.position),
-        section_y=None if cable.section_y is None else at(cable.section_y), reference=cable.reference[kept],
-        quantities=tuple(replace(q, values=at(q.values)) for q in cable.quantities)), excess
+    return taken(cable, "P", kept, len(cable.s)), excess
 
 
 def needed_stations(s: np.ndarray, columns: list[np.ndarray]) -> tuple[np.ndarray, float]:
-    """Return the stations between which everything is linear in s to within 1, and the largest error that remains.
+    """Return the stations between which all columns are linear in s to within 1, and the largest remaining error.
 
-    s: (P,). columns: arrays (T or 1, P, K), in units of what is allowed. The station that is farthest off is added
-    until none is off (Ramer, Douglas and Peucker), first at some frames, then at those where others are off. No more
-    than ``MAX_STATIONS`` are taken.
+    s: (P,). columns: arrays (T or 1, P, K) over their tolerances. The station with the largest error is added until no
+    error exceeds 1 (Ramer, Douglas and Peucker), first at some frames, then at those with larger errors. No more than
+    ``MAX_STATIONS`` are taken.
     """
-    most = max(len(column) for column in columns)
-    frames = np.unique(np.linspace(0, most - 1, min(SAMPLED_FRAMES, most)).astype(int))
+    n_frames = max(len(column) for column in columns)
+    frames = np.unique(np.linspace(0, n_frames - 1, min(SAMPLED_FRAMES, n_frames)).astype(int))
     while True:
-        sampled = [column[frames] if len(column) > 1 else column for column in columns]
-        kept = _subdivided(s, sampled)
-        errors = np.zeros(most)
+        kept = _subdivided(s, [column[frames] if len(column) > 1 else column for column in columns])
+        errors = np.zeros(n_frames)
         for column in columns:
             errors = np.maximum(errors, _errors(s, kept, column))
         worst = float(errors.max())
@@ -139,22 +109,22 @@ def needed_stations(s: np.ndarray, columns: list[np.ndarray]) -> tuple[np.ndarra
 
 
 def _errors(s: np.ndarray, kept: np.ndarray, column: np.ndarray) -> np.ndarray:
-    """Return (T,): how far a column is from its interpolation between the kept stations, at most, in each frame."""
+    """Return the largest distance (T,) of a column from its interpolation between the kept stations, by frame."""
     if len(kept) < 2:
         return np.zeros(len(column))
-    left = np.clip(np.searchsorted(kept, np.arange(len(s)), side="right") - 1, 0, len(kept) - 2)
-    weight = _weights(s, kept[left], kept[left + 1], np.arange(len(s)))[:, None]
-    worst = np.zeros(len(column))
-    for start in range(0, len(column), 64):  # blocks: all frames at once would take too much memory
-        part = column[start: start + 64]
-        line = part[:, kept[left]] * (1 - weight) + part[:, kept[left + 1]] * weight
-        worst[start: start + 64] = np.linalg.norm(part - line, axis=-1).max(axis=1)
-    return worst
+    stations = np.arange(len(s))
+    left = np.clip(np.searchsorted(kept, stations, side="right") - 1, 0, len(kept) - 2)
+    errors = [_distances(s, column[start: start + BLOCK_FRAMES], kept[left], kept[left + 1], stations).max(axis=1)
+              for start in range(0, len(column), BLOCK_FRAMES)]
+    return np.concatenate(errors)
 
 
-def _weights(s: np.ndarray, left: np.ndarray | int, right: np.ndarray | int, at: np.ndarray) -> np.ndarray:
+def _distances(s: np.ndarray, column: np.ndarray, left: np.ndarray, right: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Return the distances (T, n) of a column at stations (n,) from the lines between two others of each."""
     length = s[right] - s[left]
-    return np.where(length > 0, (s[at] - s[left]) / np.where(length > 0, length, 1), 0.0)
+    weight = np.where(length > 0, (s[at] - s[left]) / np.where(length > 0, length, 1), 0.0)[:, None]
+    line = column[:, left] * (1 - weight) + column[:, right] * weight
+    return np.linalg.norm(column[:, at] - line, axis=-1)
 
 
 def _subdivided(s: np.ndarray, columns: list[np.ndarray]) -> np.ndarray:
@@ -163,11 +133,8 @@ def _subdivided(s: np.ndarray, columns: list[np.ndarray]) -> np.ndarray:
         inner = np.arange(left + 1, right)
         if len(inner) == 0:
             return (0.0, left, right, left)
-        weight = _weights(s, left, right, inner)[:, None]
-        error = np.zeros(len(inner))
-        for column in columns:
-            line = column[:, left, None] * (1 - weight) + column[:, right, None] * weight
-            error = np.maximum(error, np.linalg.norm(column[:, inner] - line, axis=-1).max(axis=0))
+        ends = np.full(len(inner), left), np.full(len(inner), right)
+        error = np.max([_distances(s, column, *ends, inner).max(axis=0) for column in columns], axis=0)
         farthest = int(error.argmax())
         return (-float(error[farthest]), left, right, int(inner[farthest]))
 
@@ -184,15 +151,15 @@ def _subdivided(s: np.ndarray, columns: list[np.ndarray]) -> np.ndarray:
 
 
 def _with_fewer_rows(curve: Curve) -> Curve:
-    """Return the curve with its extremes in equal stretches of rows, if it has more than ``MAX_ROWS``."""
+    """Return a curve of at most ``MAX_ROWS`` rows: the extremes in equal groups of rows."""
     rows, values = len(curve.time), curve.values.reshape(len(curve.time), -1)
     if rows <= MAX_ROWS:
         return curve
-    stretches = max(1, (MAX_ROWS - 2) // (2 * values.shape[1]))
+    groups = max(1, (MAX_ROWS - 2) // (2 * values.shape[1]))
     kept = {0, rows - 1}
-    for stretch in np.array_split(np.arange(rows), stretches):
-        part = values[stretch]
-        kept.update(stretch[np.argmin(np.nan_to_num(part, nan=np.inf), axis=0)])
-        kept.update(stretch[np.argmax(np.nan_to_num(part, nan=-np.inf), axis=0)])
+    for group in np.array_split(np.arange(rows), groups):
+        part = values[group]
+        kept.update(group[np.argmin(np.nan_to_num(part, nan=np.inf), axis=0)])
+        kept.update(group[np.argmax(np.nan_to_num(part, nan=-np.inf), axis=0)])
     chosen = np.array(sorted(kept))
     return replace(curve, time=curve.time[chosen], values=curve.values[chosen])

@@ -1,30 +1,31 @@
-"""A figure that shows an animation at one time after the other, its background drawn once.
+"""The pictures of a film: a figure of which only the moving parts are drawn anew.
 
-Matplotlib is imported only when a picture is made.
+Matplotlib is imported when a picture is made.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..errors import FunicularError, near
-from .animation import Animation, BodyShape, CableShape, Clip, Mark, Segment
-from .placed import outline, placed_surface
-from .plot import CLIP_COLOURS, LOAD, MARKERS, SEGMENTS, SIZES
+from .animation import Animation, BodyShape, CableShape, Clip, Mark, Quantity, Segment, at_frame, period
+from .plot import CLIP_COLOURS, LOAD_COLOUR, MARKERS, SEGMENTS, SIZES, colour_scale
 from .projections import Directions, Projection, all_points, directions
-from .surfaces import surface
+from .surfaces import body_reach, outline, placed_surface
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
+    from matplotlib.cm import ScalarMappable
 
-SIZE, DOTS = (9.6, 5.4), 100
-"""Of a picture in inches, and dots an inch."""
-TURNED, RAISED = 0.55, 0.35
-"""From where a spatial scene is seen: aside from its main view and above it, in rad."""
+SIZE, DPI = (9.6, 5.4), 100
+"""Size of a picture in inches, and dots per inch."""
+AZIMUTH, ELEVATION = 0.55, 0.35
+"""Direction of view of a spatial scene, from its main view, rad."""
 MARGIN = 0.07
 
 Update = Callable[[int], None]
@@ -32,19 +33,21 @@ Update = Callable[[int], None]
 
 
 class Film:
-    """A figure that shows an animation at one time after the other."""
+    """A figure that shows an animation at given times."""
 
     def __init__(self, animation: Animation, clips: tuple[Clip, ...], colour: str | None, pace: float):
-        """colour: the key of a quantity along cables that colours them; pace: said in the picture."""
+        """colour: the key of a quantity along cables that colours them; pace: ratio of motion to film time."""
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
 
         self.animation, self.clips, self.pace = animation, clips, pace
-        self.canvas = FigureCanvasAgg(Figure(figsize=SIZE, dpi=DOTS))
+        self.canvas: Any = FigureCanvasAgg(Figure(figsize=SIZE, dpi=DPI))
         figure = self.canvas.figure
         seen = directions(animation)
         self.view = seen.front if seen.flat else oblique(seen)
-        self.colour, self.scale = colour, _quantity_scale(clips, colour)
+        self.colour, shown = colour, _quantities(clips, colour)
+        self.scale: ScalarMappable | None = (
+            colour_scale(np.concatenate([each.values.ravel() for each in shown])) if shown else None)
         self.axes: Axes = figure.add_axes((0.07, 0.1, 0.77 if colour else 0.9, 0.8))
         self.box = _corners(animation, seen)
         self._set_limits()
@@ -54,8 +57,9 @@ class Film:
             self.axes.set_axis_off()
             self._draw_box(seen)
         if self.scale is not None:
-            figure.colorbar(self.scale, cax=figure.add_axes((0.87, 0.15, 0.015, 0.7)), label=_label(clips, colour))
-        self.said = figure.text(0.02, 0.94, "", fontsize=11, animated=True)
+            figure.colorbar(self.scale, cax=figure.add_axes((0.87, 0.15, 0.015, 0.7)),
+                            label=f"{shown[0].label} / {shown[0].unit}")
+        self.caption = figure.text(0.02, 0.94, "", fontsize=11, animated=True)
         title = f"{animation.title}, {clips[0].label}" if animation.arrangement == "menu" else animation.title
         figure.text(0.98, 0.94, title, fontsize=11, ha="right", color="0.35")
         self.moving: list[tuple[int, Artist, Update]] = []
@@ -75,16 +79,15 @@ class Film:
             for clip, artist, update in self.moving:
                 update(frames[clip])
                 self.axes.draw_artist(artist)
-            self.said.set_text(f"{self.animation.time_label} {time:.4g} {unit}".rstrip() + pace)
-            self.canvas.figure.draw_artist(self.said)
+            self.caption.set_text(f"{self.animation.time_label} {time:.4g} {unit}".rstrip() + pace)
+            self.canvas.figure.draw_artist(self.caption)
             yield np.asarray(self.canvas.buffer_rgba())[..., :3].copy()
 
     def _set_limits(self) -> None:
-        """Take equal scales about the middle of all that is reached, bodies whole, in the shape of the axes."""
+        """Set equal scales about the middle of the extents, bodies included, in the shape of the axes."""
         places = [self.view.of(self.box)]
         for body in (body for clip in self.clips for body in clip.bodies):
-            reach = np.linalg.norm(surface(body.shape)[0], axis=1).max()
-            positions = self.view.of(body.position)
+            positions, reach = self.view.of(body.position), body_reach(body)
             places += [positions - reach, positions + reach]
         reached = np.concatenate(places)
         low, high = reached.min(axis=0), reached.max(axis=0)
@@ -96,7 +99,7 @@ class Film:
         self.axes.set_ylim(middle[1] - size * up / 2, middle[1] + size * up / 2)
 
     def _draw_box(self, seen: Directions) -> None:
-        """Draw the edges of the box that holds all places, with the lengths of three of them."""
+        """Draw the edges of the bounding box, with the lengths of three of them."""
         corners = self.box.reshape(2, 2, 2, 3)
         drawn = self.view.of(corners)
         for axis, name in enumerate(seen.names):
@@ -116,7 +119,8 @@ class Film:
         for segment in clip.segments:
             self._add_segment(number, segment)
         for mark in clip.marks:
-            self._add_mark(number, mark)
+            self._add_line(number, partial(_place, mark), marker=MARKERS[mark.kind], linestyle="", color="0.15",
+                           zorder=5, markersize=np.sqrt(SIZES[mark.kind]))
 
     def _add_line(self, number: int, points: Callable[[int], np.ndarray], **look: Any) -> None:
         """Add a line through points (n, 3) of a frame."""
@@ -150,12 +154,12 @@ class Film:
         from matplotlib.patches import FancyArrowPatch
 
         def ends(frame: int) -> np.ndarray:
-            return np.stack([at(segment.start, frame), at(segment.end, frame)])
+            return np.stack([at_frame(segment.start, frame), at_frame(segment.end, frame)])
 
         if segment.kind != "load":
             self._add_line(number, ends, color="0.3", zorder=4, **SEGMENTS[segment.kind])
             return
-        arrow = FancyArrowPatch((0, 0), (1, 1), arrowstyle="-|>", mutation_scale=9, color=LOAD, animated=True,
+        arrow = FancyArrowPatch((0, 0), (1, 1), arrowstyle="-|>", mutation_scale=9, color=LOAD_COLOUR, animated=True,
                                 shrinkA=0, shrinkB=0, zorder=4)
         self.axes.add_patch(arrow)
 
@@ -164,13 +168,6 @@ class Film:
             arrow.set_positions(tuple(start), tuple(end))
 
         self.moving.append((number, arrow, update))
-
-    def _add_mark(self, number: int, mark: Mark) -> None:
-        def place(frame: int) -> np.ndarray:
-            return at(mark.position, frame)[None]
-
-        self._add_line(number, place, marker=MARKERS[mark.kind], linestyle="", color="0.15", zorder=5,
-                       markersize=np.sqrt(SIZES[mark.kind]))
 
     def _add_cable(self, number: int, cable: CableShape, colour: str) -> None:
         from matplotlib.collections import LineCollection
@@ -189,52 +186,36 @@ class Film:
         self.moving.append((number, artist, update))
 
 
+def _place(mark: Mark, frame: int) -> np.ndarray:
+    return at_frame(mark.position, frame)[None]
+
+
 def _corners(animation: Animation, seen: Directions) -> np.ndarray:
-    """Return the corners (8, 3) of the box along the directions that holds all places."""
+    """Return the corners (8, 3) of the bounding box along the directions."""
     places = all_points(animation) @ seen.matrix
     ends = np.stack([places.min(axis=0), places.max(axis=0)])
     return np.array([[x, y, z] for x in ends[:, 0] for y in ends[:, 1] for z in ends[:, 2]]) @ seen.matrix.T
 
 
-def at(values: np.ndarray, frame: int) -> np.ndarray:
-    """Return the value at a frame of what may stand still."""
-    return values[frame if len(values) > 1 else 0]
-
-
 def frame_at(clip: Clip, time: float) -> int:
-    """Return the number of the frame of a clip nearest to a time; a periodic one begins anew."""
-    if clip.periodic:
-        return round(time / period(clip) * len(clip.time)) % len(clip.time)
-    return int(np.argmin(np.abs(clip.time - time)))
-
-
-def period(clip: Clip) -> float:
-    """Return the period of a clip whose last frame joins the first."""
-    return float(clip.time[-1] - clip.time[0]) * len(clip.time) / (len(clip.time) - 1)
+    """Return the number of the frame of a clip nearest to a time, modulo the period of a repeated clip."""
+    distance, whole = clip.time - time, period(clip)
+    if whole is not None:
+        distance = (distance + whole / 2) % whole - whole / 2
+    return int(np.argmin(np.abs(distance)))
 
 
 def oblique(seen: Directions) -> Projection:
-    """Return the view of a spatial scene from aside and above."""
-    across = np.cos(TURNED) * seen.across + np.sin(TURNED) * seen.depth
+    """Return the view of a spatial scene from the side and from above."""
+    across = np.cos(AZIMUTH) * seen.across + np.sin(AZIMUTH) * seen.depth
     into = np.cross(seen.up, across)
-    return Projection(across, np.cos(RAISED) * seen.up + np.sin(RAISED) * into, ("", ""))
+    return Projection(across, np.cos(ELEVATION) * seen.up + np.sin(ELEVATION) * into, ("", ""))
 
 
-def _quantity_scale(clips: tuple[Clip, ...], key: str | None) -> Any:
-    """Return the colours of a quantity along cables, None where none is asked for. Raises FunicularError."""
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import Normalize
-
-    if key is None:
-        return None
-    known = {q.key: None for clip in clips for cable in clip.cables for q in cable.quantities}
-    if key not in known:
-        raise FunicularError(f'cables have no quantity "{key}"; {near(key, known)}')
-    values = np.concatenate([q.values.ravel() for clip in clips for cable in clip.cables for q in cable.quantities
-                             if q.key == key])
-    return ScalarMappable(Normalize(np.nanmin(values), np.nanmax(values)), "viridis")
-
-
-def _label(clips: tuple[Clip, ...], key: str | None) -> str:
-    quantity = next(q for clip in clips for cable in clip.cables for q in cable.quantities if q.key == key)
-    return f"{quantity.label} / {quantity.unit}"
+def _quantities(clips: tuple[Clip, ...], key: str | None) -> list[Quantity]:
+    """Return the quantities of a key along all cables, none for None. Raises FunicularError."""
+    every = [quantity for clip in clips for cable in clip.cables for quantity in cable.quantities]
+    found = [quantity for quantity in every if quantity.key == key]
+    if key is not None and not found:
+        raise FunicularError(f'cables have no quantity "{key}"; {near(key, {each.key: None for each in every})}')
+    return found

@@ -1,8 +1,8 @@
-"""One HTML file that shows an animation in three dimensions, opens from disk and asks the network for nothing.
+"""One HTML file that shows an animation in three dimensions, opens from disk and needs no network.
 
 The file is ``page_source/template.html`` with the style, the viewer (``page_source/dist/viewer.min.js``, deflated), a
-header in JSON, and the arrays that the header names by number (page_arrays.py says how they are stored). Positions are
-relative to ``origin``, so that float32 keeps its digits far from the origin.
+header in JSON, and the arrays that the header names by number (format: page_arrays.py). Positions are relative to
+``origin``, so that float32 keeps its digits far from the origin.
 """
 
 from __future__ import annotations
@@ -20,17 +20,20 @@ from typing import Any
 import numpy as np
 
 from ..base.written_files import write_text
-from .animation import Animation, BodyShape, CableShape, Clip, Mark, Segment
+from .animation import Animation, BodyShape, CableShape, Clip, Mark, Segment, arrays, period
 from .decimation import decimated
 from .page_arrays import FLOAT_BITS, Packer, power_of_two
+from .surfaces import body_reach
 
 FORMAT = 1
 POSITION_STEPS = 2**19  # steps of positions across the picture
 TURN_STEPS = 2**11  # steps of components of unit vectors
 VALUE_STEPS = 2**14  # steps of a quantity up to its largest value
+KINDS = {CableShape: "cable", BodyShape: "body", Mark: "mark", Segment: "segment"}
+"""Names of the parts of a clip in messages."""
 
 
-def write_page(animation: Animation, path: str | os.PathLike) -> Path:
+def write_page(animation: Animation, path: str | os.PathLike[str]) -> Path:
     """Write the page of an animation to ``path`` and return that. Raises ResultFileError."""
     return write_text(path, page(animation), "the page")
 
@@ -40,7 +43,7 @@ def page(animation: Animation) -> str:
 
     Raises ValueError if the animation has no clip, or if an array does not fit the others.
     """
-    header, arrays = described(animation)
+    header, packed = described(animation)
     source = files(__package__) / "page_source"
     viewer = (source / "dist" / "viewer.min.js").read_bytes()
     text = (source / "template.html").read_text(encoding="utf-8")
@@ -49,7 +52,7 @@ def page(animation: Animation) -> str:
         "licence": (source / "dist" / "three-LICENSE.txt").read_text(encoding="utf-8").replace("--", "- -"),
         "style": (source / "style.css").read_text(encoding="utf-8"),
         "header": json.dumps(header, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c"),
-        "arrays": arrays,
+        "arrays": packed,
         "viewer": base64.b64encode(zlib.compress(viewer, 9)).decode("ascii"),
     }
     parts = text.split("@@")  # text, name of a field, text, ...
@@ -85,7 +88,7 @@ def described(animation: Animation) -> tuple[dict[str, Any], str]:
 
 
 def bounds(animation: Animation) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lowest and the highest coordinates (3,) of all that is drawn, in m; some room around a point."""
+    """Return the lowest and the highest coordinates (3,) of the picture in m; of a single point with room around it."""
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for points in _positions(animation):
         finite = points[np.isfinite(points).all(axis=-1)]
@@ -103,55 +106,27 @@ def _positions(animation: Animation) -> Iterator[np.ndarray]:
         for segment in clip.segments:
             yield from (segment.start, segment.end)
         for body in clip.bodies:
-            reach = body_reach(body.shape)
+            reach = body_reach(body)
             yield from (body.position - reach, body.position + reach)
 
 
-def body_reach(shape: Mapping[str, Any]) -> float:
-    """Return how far a body's shape reaches from its origin, at most, in m."""
-    kind = shape["kind"]
-    if kind == "mesh":
-        own = float(np.linalg.norm(np.asarray(shape["vertices"], dtype=float), axis=1).max())
-    elif kind == "box":
-        own = float(np.linalg.norm(shape["size"])) / 2
-    elif kind == "sphere":
-        own = float(shape["radius"])
-    elif kind == "cylinder":
-        own = float(np.hypot(shape["radius"], shape["length"] / 2))
-    else:
-        raise ValueError(f'a body has no shape "{kind}": box, sphere, cylinder and mesh are known')
-    return own + float(np.linalg.norm(shape.get("offset", (0, 0, 0))))
-
-
 def check(clip: Clip) -> None:
-    """Raise ValueError where an array of a clip does not have the shape that its other arrays ask for."""
+    """Raise ValueError if the shape of an array of a clip does not fit its other arrays."""
     frames = len(clip.time)
     if frames == 0 or not (np.diff(clip.time) >= 0).all():
         raise ValueError(f'clip "{clip.label}": its times must rise, and there must be one at least')
-    expected: list[tuple[str, np.ndarray, tuple[int, ...]]] = []
-    for cable in clip.cables:
-        where, count = f'cable "{cable.name}"', len(cable.s)
-        expected += [(f"{where}: position", cable.position, (frames, count, 3)),
-                     (f"{where}: reference", cable.reference, (1, count, 3))]
-        expected += [] if cable.section_y is None else [(f"{where}: section_y", cable.section_y, (frames, count, 3))]
-        expected += [(f"{where}: {q.key}", q.values, (frames, count)) for q in cable.quantities]
-    for body in clip.bodies:
-        where = f'body "{body.name}"'
-        expected += [(f"{where}: position", body.position, (frames, 3)),
-                     (f"{where}: orientation", body.orientation, (frames, 4)),
-                     *((f"{where}: {label}", values, (frames,)) for label, (_, values) in body.quantities.items())]
-    expected += [(f'mark "{mark.name}": position', mark.position, (frames, 3)) for mark in clip.marks]
-    for segment in clip.segments:
-        expected += [(f'segment "{segment.name}": {end}', array, (frames, 3))
-                     for end, array in (("start", segment.start), ("end", segment.end))]
-    for where, array, shape in expected:
-        given = (1, *array.shape) if array.ndim == len(shape) - 1 and where.endswith("reference") else array.shape
-        if given != shape and given != (1, *shape[1:]):
-            raise ValueError(f'clip "{clip.label}": {where} has the shape {array.shape}, {shape} is needed')
+    for part in clip.parts:
+        sizes = {"T": frames, "P": len(part.s) if isinstance(part, CableShape) else 0}
+        for name, dims, array in arrays(part):
+            shape = tuple(sizes[dim] if isinstance(dim, str) else dim for dim in dims)
+            stands_still = name == "reference" and array.ndim == len(dims) - 1
+            if ((1, *array.shape) if stands_still else array.shape) not in (shape, (1, *shape[1:])):
+                raise ValueError(f'clip "{clip.label}": {KINDS[type(part)]} "{part.name}": {name} has the shape '
+                                 f"{array.shape}, {shape} is needed")
 
 
 class _ScenePacker(Packer):
-    """Writes the parts of a scene as JSON that names arrays by number."""
+    """Writes the parts of an animation as JSON that names arrays by number."""
 
     def __init__(self, origin: np.ndarray, size: float) -> None:
         super().__init__()
@@ -175,7 +150,7 @@ class _ScenePacker(Packer):
         }
 
     def fine(self, values: np.ndarray) -> int:
-        """Add times or arc-lengths, in steps of 2^-30 of the largest: those that are close stay apart."""
+        """Add times or arc-lengths in steps of 2^-30 of the largest, which keep close values distinct."""
         return self.fixed(values, max(float(np.abs(values).max(initial=0)), 1e-300) * 2.0**-30)
 
     def points(self, points: np.ndarray) -> int:
@@ -183,7 +158,7 @@ class _ScenePacker(Packer):
         return self.fixed(np.asarray(points) - self.origin, self.step)
 
     def values(self, values: np.ndarray) -> int:
-        """Add values, in steps of a part of the largest one."""
+        """Add values in steps of a fraction of the largest."""
         finite = np.abs(values[np.isfinite(values)])
         return self.fixed(values, max(float(finite.max(initial=0)), 1e-30) / VALUE_STEPS)
 
@@ -228,21 +203,10 @@ def _start(position: np.ndarray, clip: Clip) -> np.ndarray:
     return position.mean(axis=0, keepdims=True) if clip.periodic else position[:1]
 
 
-def period(clip: Clip) -> float | None:
-    """Return the period of a clip that repeats itself; its last frame may be the first one, or the one before it."""
-    if not clip.periodic or len(clip.time) < 2:
-        return None
-    pairs = [(cable.position[0], cable.position[-1]) for cable in clip.cables]
-    pairs += [(body.position[0], body.position[-1]) for body in clip.bodies]
-    moved = max((np.abs(cable.position - cable.position[0]).max() for cable in clip.cables), default=0.0)
-    closed = all(np.abs(last - first).max() <= 1e-6 * max(moved, 1e-300) for first, last in pairs)
-    return float(clip.time[-1] - clip.time[0] + (0 if closed else clip.time[-1] - clip.time[-2]))
-
-
 def is_exaggerable(clip: Clip) -> bool:
-    """Return whether larger displacements make a picture that hangs together.
+    """Return whether a picture with exaggerated displacements is consistent.
 
-    What slides leaves its cable if its way along it is enlarged, too: it needs a reference that goes along.
+    A slide would leave its cable if its motion along it were exaggerated, too: it needs a reference that slides.
     """
     sliding = (mark for mark in clip.marks if mark.kind == "slide"
                and (len(clip.time) == 1 or np.ptp(mark.position, axis=0).any()))

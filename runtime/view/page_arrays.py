@@ -1,4 +1,4 @@
-"""Arrays of a page: float32 numbers that a screen can show, as one compressed text, and back.
+"""Arrays of a page: float32 numbers at screen resolution, as one compressed text, and back.
 
 An array is stored as 32-bit integers, in one of three ways:
 
@@ -6,16 +6,16 @@ An array is stored as 32-bit integers, in one of three ways:
 - ``"float"``: the bit patterns of float32 numbers, their mantissa rounded to ``FLOAT_BITS`` bits.
 - ``"integer"``: as they are (corners of triangles).
 
-Differences are then taken modulo 2^32 along the axes in ``differences``, in that order; what moves smoothly leaves
-small numbers. These become 0, 1, 2, 3, 4 ... for 0, -1, 1, -2, 2 ..., and their four bytes go to four planes, all
-lowest bytes first; what is small leaves planes of zeros.
+Differences are then taken modulo 2^32 along the axes in ``differences``, in that order; they are small for smooth
+motion. They become 0, 1, 2, 3, 4 ... for 0, -1, 1, -2, 2 ..., and their four bytes go to four planes, the lowest bytes
+first; small numbers leave planes of zeros.
 
-All arrays follow one another, are deflated (zlib) together, and become one base64 text. The header gives each array's
-shape, kind, step and differences; its bytes start where those of the array before it end.
+The arrays are concatenated, deflated (zlib), and encoded as one base64 text. The header gives the shape, kind, step and
+differences of each array.
 
 To read: inflate, join the planes, restore the signs, take cumulative sums modulo 2^32 along the axes in reverse order,
 and multiply by ``step`` or reinterpret. Times need double precision; float32 is enough for the rest.
-``page_source/src/data.js`` does this in the browser, ``unpack`` does it here.
+``page_source/src/data.js`` does this in the browser, `unpack` in Python.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ from typing import Any
 import numpy as np
 
 FLOAT_BITS = 16  # of 23: five digits
-SAMPLED_ROWS = 64  # that say which differences are the smallest
+SAMPLED_ROWS = 64  # for the choice of differences
 MISSING = np.int32(-(2**31))
-# The axes along which differences are tried: time is the first, stations the second.
+# Candidate axes of differences: time is the first axis, stations the second.
 DIFFERENCES = ((), (0,), (0, 0), (0, 1), (0, 0, 1), (1,), (1, 1), (0, 1, 1))
 
 
 class Packer:
-    """Collects arrays, each known by its number, and compresses them together."""
+    """Numbers arrays and compresses them together."""
 
     def __init__(self) -> None:
         self.descriptions: list[dict[str, Any]] = []
@@ -67,9 +67,9 @@ class Packer:
         return base64.b64encode(zlib.compress(b"".join(self._planes), 9)).decode("ascii")
 
     def _add(self, integers: np.ndarray, description: dict[str, Any]) -> int:
-        differences, rest = smallest_differences(np.ascontiguousarray(integers).view(np.uint32))
+        axes, rest = smallest_differences(np.ascontiguousarray(integers).view(np.uint32))
         self._planes.append(rest.reshape(-1, 1).astype("<u4").view(np.uint8).T.tobytes())
-        self.descriptions.append({**description, "shape": list(integers.shape), "differences": list(differences)})
+        self.descriptions.append({**description, "shape": list(integers.shape), "differences": list(axes)})
         return len(self.descriptions) - 1
 
 
@@ -89,7 +89,7 @@ def rounded(values: np.ndarray) -> np.ndarray:
 
 
 def smallest_differences(integers: np.ndarray) -> tuple[tuple[int, ...], np.ndarray]:
-    """Return the axes along which differences leave the fewest bits, and what they leave (uint32, the same shape)."""
+    """Return the axes of the differences with the fewest bits, and these differences (uint32, the same shape)."""
     middle = max(0, (len(integers) - SAMPLED_ROWS) // 2)
     sample = integers[middle: middle + SAMPLED_ROWS]
     possible = [axes for axes in DIFFERENCES
@@ -99,7 +99,7 @@ def smallest_differences(integers: np.ndarray) -> tuple[tuple[int, ...], np.ndar
 
 
 def differences(integers: np.ndarray, axes: Sequence[int]) -> np.ndarray:
-    """Return the differences along ``axes``, one after the other; the first ones are from 0."""
+    """Return the differences along ``axes`` in turn, the first values against 0."""
     for axis in axes:
         integers = np.diff(integers, axis=axis, prepend=np.uint32(0))
     return integers
@@ -115,7 +115,7 @@ def zigzag(integers: np.ndarray) -> np.ndarray:
 
 
 def unpack(text: str, descriptions: Sequence[dict[str, Any]]) -> list[np.ndarray]:
-    """Return the arrays of a page, as its reader decodes them."""
+    """Return the arrays of a page, decoded as in the browser."""
     content = np.frombuffer(zlib.decompress(base64.b64decode(text)), dtype=np.uint8)
     arrays, start = [], 0
     for description in descriptions:

@@ -1,4 +1,4 @@
-"""Pictures of an animation by Matplotlib, which is imported only when one is made."""
+"""Pictures of an animation by Matplotlib, which is imported when a picture is made."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .animation import Animation, BodyShape, Clip
-from .placed import outline, placed_surface
+from .animation import Animation, BodyShape, Clip, at_frame
 from .projections import Directions, Projection, all_points, directions
+from .surfaces import outline, placed_surface
 
 if TYPE_CHECKING:
     from matplotlib.cm import ScalarMappable
@@ -32,8 +32,9 @@ STYLE: dict[RcKeyType, Any] = {
     "savefig.dpi": 160,
 }
 SNAPSHOTS = 11
-MOST_NAMED = 8
-"""Bodies and slides that a legend names."""
+"""Times in a picture of a motion."""
+MAX_IN_LEGEND = 8
+"""Bodies and slides in a legend."""
 MARKERS = {"pin": "^", "clamp": "s", "tie": "P", "joint": "o", "slide": "o", "ground": "X", "point": "."}
 SIZES = {"pin": 60, "clamp": 55, "tie": 40, "joint": 16, "slide": 26, "ground": 45, "point": 12}
 SEGMENTS: dict[str, dict[str, Any]] = {
@@ -42,23 +43,25 @@ SEGMENTS: dict[str, dict[str, Any]] = {
     "lever": {"linestyle": "-", "linewidth": 1.0},
     "joint": {"linestyle": (0, (5, 1)), "linewidth": 1.2},
 }
-LOAD = "#b3261e"
-LOW = 0.45
-"""Of its width: the height that a picture can take."""
+LOAD_COLOUR = "#b3261e"
+PANEL_HEIGHT = 0.45
+"""Height of a flat picture over its width."""
+MENU_CLIPS = 6
+"""Clips of a menu in a picture."""
 PATHS = ((0, (4, 2)), (0, (1, 1.2)), (0, (6, 1.5, 1, 1.5)), (0, (3, 1, 1, 1, 1, 1)))
-"""Lines of the paths of bodies, in turn."""
+"""Line styles of the paths of bodies, in turn."""
 CLIP_COLOURS = ("#1f6f8b", "#c8553d", "#5b8e3e", "#7b5ea7", "#b08900")
-"""Of several clips in one picture, in turn."""
+"""Colours of several clips in one picture, in turn."""
 
 Points = Callable[[np.ndarray], np.ndarray]
-"""Returns points (..., 3) as an axes takes them, (..., 2 or 3)."""
+"""Projects points (..., 3) to the coordinates (..., 2 or 3) of axes."""
 
 
 def shape_figure(animation: Animation, figure: Figure | None = None, every_view: bool = False) -> Figure:
-    """Return cables and bodies of an animation at a few of its times, coloured by time; modes in a panel each.
+    """Return a figure of cables and bodies at a few times, coloured by time; modes in a panel each.
 
     A scene in one plane is drawn in that plane; another one, or any with every_view, in perspective and from the front,
-    the side and above. figure: what it is drawn in, a new one if not given.
+    the side and above. figure: a new one by default.
     """
     from matplotlib import rc_context
     from matplotlib.figure import Figure
@@ -67,8 +70,6 @@ def shape_figure(animation: Animation, figure: Figure | None = None, every_view:
     with rc_context(STYLE):
         figure = figure or Figure()
         if animation.arrangement == "menu":
-            rows = -(-min(len(animation.clips), 6) // 2)
-            figure.set_size_inches(9, 2.6 * rows + 0.4)
             _draw_menu(animation, seen, figure)
         elif seen.flat and not every_view:
             figure.set_size_inches(8, 3.9)
@@ -86,16 +87,16 @@ def shape_figure(animation: Animation, figure: Figure | None = None, every_view:
 
 
 def _stretch(animation: Animation, seen: Directions) -> float:
-    """Return the round factor by which the upright scale of a flat scene can be exaggerated, 1 for none."""
+    """Return the round factor by which the vertical scale of a flat scene can be exaggerated, 1 for none."""
     width, height = np.ptp(seen.front.of(all_points(animation)), axis=0)
     if not width > 0:
         return 1.0
-    most = LOW * width / max(1.24 * height, 1e-3 * width)
-    return max((f * 10.0**e for e in range(7) for f in (1, 2, 5) if f * 10**e <= most), default=1.0)
+    limit = PANEL_HEIGHT * width / max(1.24 * height, 1e-3 * width)
+    return max((f * 10.0**e for e in range(7) for f in (1, 2, 5) if f * 10**e <= limit), default=1.0)
 
 
 class Panel:
-    """Axes on which parts of a clip are drawn at some of its frames."""
+    """Axes for the parts of a clip at some of its frames."""
 
     def __init__(self, axes: Any, points: Points):
         self.axes, self.points = axes, points
@@ -110,14 +111,14 @@ class Panel:
 
     def arrow(self, start: np.ndarray, end: np.ndarray, label: str | None) -> None:
         """Draw an arrow from point to point (3,)."""
-        self.line(np.stack([start, end]), color=LOAD, linewidth=1.2, zorder=3, label=label)
+        self.line(np.stack([start, end]), color=LOAD_COLOUR, linewidth=1.2, zorder=3, label=label)
 
     def body(self, body: BodyShape, frame: int, colour: Any) -> None:
         """Draw the shape of a body."""
         raise NotImplementedError
 
     def finish(self) -> None:
-        """Set scales and labels, when all is drawn."""
+        """Set scales and labels after drawing."""
         raise NotImplementedError
 
 
@@ -125,15 +126,15 @@ class PlanePanel(Panel):
     """A projection on a plane."""
 
     def __init__(self, axes: Any, projection: Projection, title: str = "", stretch: float = 1.0):
-        """stretch: of the upright scale; bodies are dots then, since their shapes would be stretched, too."""
+        """stretch: of the vertical scale; bodies are dots then, since their shapes would be distorted."""
         super().__init__(axes, projection.of)
         self.projection, self.title, self.stretch = projection, title, stretch
 
     def arrow(self, start: np.ndarray, end: np.ndarray, label: str | None) -> None:
-        """Draw an arrow from point to point (3,), with a head where it is long enough in this view."""
+        """Draw an arrow with a head from point to point (3,)."""
         super().arrow(start, end, label)
         self.axes.annotate("", self.points(end), self.points(start), zorder=4,
-                           arrowprops={"arrowstyle": "-|>", "color": LOAD, "shrinkA": 0, "shrinkB": 0})
+                           arrowprops={"arrowstyle": "-|>", "color": LOAD_COLOUR, "shrinkA": 0, "shrinkB": 0})
 
     def body(self, body: BodyShape, frame: int, colour: Any) -> None:
         """Draw the outline of a body's shape, or a dot."""
@@ -145,7 +146,7 @@ class PlanePanel(Panel):
         self.axes.fill(*corners.T, facecolor=(*colour[:3], 0.25), edgecolor=colour, linewidth=0.8, zorder=3)
 
     def finish(self) -> None:
-        """Take equal scales, or an upright one exaggerated by a factor that its label states."""
+        """Set equal scales, or a vertical one exaggerated by the factor in its label."""
         axes, stretch = self.axes, self.stretch
         axes.margins(0.04, 0.12)
         axes.set_aspect(stretch, adjustable="datalim")
@@ -156,7 +157,7 @@ class PlanePanel(Panel):
 
 
 class SpacePanel(Panel):
-    """A view in perspective, upright."""
+    """A view in perspective."""
 
     def __init__(self, axes: Any, seen: Directions):
         super().__init__(axes, lambda points: points @ seen.matrix)
@@ -171,7 +172,7 @@ class SpacePanel(Panel):
                                                     edgecolors="none"))
 
     def finish(self) -> None:
-        """Take equal scales about the middle of what is drawn."""
+        """Set equal scales about the middle of the picture."""
         from matplotlib.ticker import MaxNLocator
 
         axes = self.axes
@@ -190,29 +191,29 @@ class SpacePanel(Panel):
             set_label(f"{name} / m")
 
 
-def shown_frames(clip: Clip) -> np.ndarray:
-    """Return the numbers of the few frames of a clip that a picture shows."""
-    return np.unique(np.linspace(0, len(clip.time) - 1, SNAPSHOTS).round().astype(int))
+def snapshots(frames: int) -> np.ndarray:
+    """Return the numbers of the few frames in a picture, out of so many."""
+    return np.unique(np.linspace(0, frames - 1, SNAPSHOTS).round().astype(int))
 
 
-def time_colours(animation: Animation) -> ScalarMappable:
-    """Return the colours of the times of an animation."""
+def colour_scale(values: np.ndarray) -> ScalarMappable:
+    """Return the colours of values from the smallest to the largest."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
-    times = np.concatenate([clip.time for clip in animation.clips])
-    return ScalarMappable(Normalize(times.min(), max(times.max(), times.min() + 1e-9)), "viridis")
+    low, high = np.nanmin(values), np.nanmax(values)
+    return ScalarMappable(Normalize(low, max(high, low + 1e-9)), "viridis")
 
 
 def _draw_all(animation: Animation, panels: list[Panel], figure: Figure) -> None:
-    """Draw all clips on all panels, with a legend and the colours of times."""
+    """Draw all clips on all panels, with a legend and a colour bar of the times."""
     from matplotlib.colors import to_rgba
 
     several, moves = len(animation.clips) > 1, max(len(clip.time) for clip in animation.clips) > 1
-    colour = time_colours(animation)
+    colour = colour_scale(np.concatenate([clip.time for clip in animation.clips]))
     for panel in panels:
         for number, clip in enumerate(animation.clips):
-            frames = shown_frames(clip)
+            frames = snapshots(len(clip.time))
             if several:
                 colours: list[Any] = [to_rgba(CLIP_COLOURS[number % len(CLIP_COLOURS)])] * len(frames)
             else:
@@ -230,11 +231,12 @@ def _draw_all(animation: Animation, panels: list[Panel], figure: Figure) -> None
 
 
 def _draw_menu(animation: Animation, seen: Directions, figure: Figure) -> None:
-    """Draw the clips in panels of their own, each at its first frame, half a period later, and where it is at rest."""
+    """Draw each clip in its panel: at its first frame, half a period later, and at rest."""
     from matplotlib.colors import to_rgba
 
-    clips = animation.clips[:6]
+    clips = animation.clips[:MENU_CLIPS]
     rows = -(-len(clips) // 2)
+    figure.set_size_inches(9, 2.6 * rows + 0.4)
     for number, clip in enumerate(clips, start=1):
         axes = figure.add_subplot(rows, min(2, len(clips)), number, **({} if seen.flat else {"projection": "3d"}))
         panel = PlanePanel(axes, seen.front) if seen.flat else SpacePanel(axes, seen)
@@ -248,13 +250,13 @@ def _draw_menu(animation: Animation, seen: Directions, figure: Figure) -> None:
 
 def draw_clip(panel: Panel, clip: Clip, frames: np.ndarray, colours: list[Any], label: str | None,
               named: bool = True) -> None:
-    """Draw a clip at some of its frames, each in its colour; label: of all of it; named: bodies in a legend."""
+    """Draw a clip at some of its frames, each in its colour; label: of the clip; named: with parts in the legend."""
     for cable in clip.cables:
         for frame, colour in zip(frames, colours, strict=True):
             panel.line(cable.position[frame], color=colour, label=label, zorder=2)
             label = None
     for number, body in enumerate(clip.bodies):
-        called = body.name if named and number < MOST_NAMED else None
+        called = body.name if named and number < MAX_IN_LEGEND else None
         if len(frames) > 2:
             panel.line(body.position, color="0.25", linewidth=0.9, linestyle=PATHS[number % len(PATHS)], zorder=3,
                        label=called and f"path of {called}")
@@ -262,34 +264,27 @@ def draw_clip(panel: Panel, clip: Clip, frames: np.ndarray, colours: list[Any], 
             panel.body(body, frame, colour)
     for name, segment in _named_once(clip.segments):
         label = name if named else None
-        if segment.kind == "load":  # at all times they would hide what they act on
-            panel.arrow(_at(segment.start, frames[-1]), _at(segment.end, frames[-1]), label)
+        if segment.kind == "load":  # arrows of all times would hide the picture
+            panel.arrow(at_frame(segment.start, frames[-1]), at_frame(segment.end, frames[-1]), label)
             continue
         for frame, colour in zip(frames, colours, strict=True):
-            panel.line(np.stack([_at(segment.start, frame), _at(segment.end, frame)]), color=colour, zorder=3,
-                       label=label, **SEGMENTS[segment.kind])
+            panel.line(np.stack([at_frame(segment.start, frame), at_frame(segment.end, frame)]), color=colour,
+                       zorder=3, label=label, **SEGMENTS[segment.kind])
             label = None
     for name, mark in _named_once(clip.marks):
         rides = mark.kind in ("slide", "joint", "point", "tie")
-        positions = np.concatenate([_at(mark.position, frame)[None] for frame in frames])
-        if len(mark.position) == 1:
-            positions = mark.position
+        positions = mark.position[frames] if len(mark.position) > 1 else mark.position
         panel.dots(positions, marker=MARKERS[mark.kind], s=SIZES[mark.kind], zorder=5,
                    c=colours if rides and len(positions) == len(colours) else ["0.1"] * len(positions),
                    edgecolors="0.1", linewidths=0.7, label=name if named else None)
 
 
-def _at(values: np.ndarray, frame: int) -> np.ndarray:
-    """Return the value at a frame of what may stand still."""
-    return values[frame if len(values) > 1 else 0]
-
-
-def _named_once(parts: tuple) -> Iterator[tuple[str | None, Any]]:
-    """Yield parts with what a legend calls them: slides by name, others by their kind, each once."""
+def _named_once(parts: tuple[Any, ...]) -> Iterator[tuple[str | None, Any]]:
+    """Yield parts with their labels in a legend: slides by name, others by kind, each label once."""
     known: set[str] = set()
     for part in parts:
         name = f"slide {part.name}" if part.kind == "slide" else "lever arm" if part.kind == "lever" else part.kind
         if part.kind in ("pin", "clamp") and len(part.position) > 1:
             name = f"moved {name}"
-        yield (None if name in known or len(known) > MOST_NAMED else name), part
+        yield (None if name in known or len(known) > MAX_IN_LEGEND else name), part
         known.add(name)

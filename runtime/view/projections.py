@@ -1,4 +1,4 @@
-"""From where an animation is looked at: planes on which it is drawn, and how far it reaches."""
+"""Views of an animation: the planes of projection, and the extents of its points."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import numpy as np
 
 from .animation import Animation, Clip
 
-FLAT = 0.02
-"""Of a scene's size: one that reaches no farther out of a vertical plane is drawn in that plane alone."""
+MAX_FLAT_DEPTH = 0.02
+"""Largest extent out of a vertical plane, over the size of a scene, of a scene drawn in this plane alone."""
 
 
 class Projection(NamedTuple):
-    """A plane that is looked at: unit vectors across and up (3,), and what they are called."""
+    """A plane of projection: unit vectors across and up (3,), and their names."""
 
     across: np.ndarray
     up: np.ndarray
@@ -22,11 +22,12 @@ class Projection(NamedTuple):
 
     def of(self, points: np.ndarray) -> np.ndarray:
         """Return points (..., 3) as (..., 2) in the plane."""
-        return points @ np.stack([self.across, self.up], axis=1)
+        projected: np.ndarray = points @ np.stack([self.across, self.up], axis=1)
+        return projected
 
 
 class Directions(NamedTuple):
-    """Three directions, right-handed: across the main view, into it, and up; and whether the scene is in that view."""
+    """Right-handed directions: across the main view, into it, and up; flat: whether the scene lies in this view."""
 
     across: np.ndarray
     depth: np.ndarray
@@ -40,7 +41,7 @@ class Directions(NamedTuple):
 
     @property
     def side(self) -> Projection:
-        """Return the view along the main view's horizontal."""
+        """Return the view along the horizontal of the main view."""
         return _projection(self.depth, self.up)
 
     @property
@@ -55,7 +56,7 @@ class Directions(NamedTuple):
 
     @property
     def names(self) -> tuple[str, str, str]:
-        """Return what the directions are called."""
+        """Return the names of the directions."""
         return axis_name(self.across), axis_name(self.depth), axis_name(self.up)
 
 
@@ -89,9 +90,9 @@ def all_points(animation: Animation) -> np.ndarray:
 
 
 def directions(animation: Animation) -> Directions:
-    """Return how an animation is looked at: the horizontal along which it reaches farthest goes across.
+    """Return the directions of an animation: across is the horizontal of its largest extent.
 
-    A scene in one vertical plane is seen square to it; of another one the ground's axes are taken where they are level.
+    A scene in one vertical plane is seen perpendicular to it; another one along the ground's axes if they are level.
     """
     up = np.array(animation.up)
     found = all_points(animation)
@@ -104,7 +105,7 @@ def directions(animation: Animation) -> Directions:
         across = np.eye(3)[np.argmin(np.abs(up))]
         across = across - (across @ up) * up
     across = across / np.linalg.norm(across)
-    flat = bool(np.ptp(centred @ np.cross(up, across)) <= FLAT * size)
+    flat = bool(np.ptp(centred @ np.cross(up, across)) <= MAX_FLAT_DEPTH * size)
     axes = [axis for axis in np.eye(3) if abs(axis @ up) < 1e-9]
     if not flat and len(axes) == 2:
         across = max(axes, key=lambda axis: np.ptp(found @ axis))

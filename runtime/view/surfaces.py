@@ -1,4 +1,4 @@
-"""Surfaces of the shapes of bodies, as triangles in body axes."""
+"""Surfaces of bodies as triangles, in body axes and at a frame, and their outlines in a picture."""
 
 from __future__ import annotations
 
@@ -7,11 +7,14 @@ from typing import Any
 
 import numpy as np
 
-AROUND = 24
-"""Corners of the circle that stands for one."""
+from ..base.rotations import rotate
+from .animation import BodyShape
+
+CIRCLE_POINTS = 24
+"""Corners of the polygon that approximates a circle."""
 
 Surface = tuple[np.ndarray, np.ndarray]
-"""Vertices (V, 3) in m and triangles (F, 3), numbers of vertices, which turn left seen from outside."""
+"""Vertices (V, 3) in m and triangles (F, 3), numbers of vertices, counterclockwise seen from outside."""
 
 
 def _box() -> Surface:
@@ -25,30 +28,29 @@ BOX = _box()
 
 
 def _turned_profile(radii: np.ndarray, heights: np.ndarray) -> Surface:
-    """Return the surface that a profile makes which turns about z; its ends are on the axis."""
-    angle = 2 * np.pi * np.arange(AROUND) / AROUND
-    rings = [np.stack([r * np.cos(angle), r * np.sin(angle), np.full(AROUND, z)], axis=1)
+    """Return the surface of revolution of a profile about z; the ends of the profile are on the axis."""
+    angle = 2 * np.pi * np.arange(CIRCLE_POINTS) / CIRCLE_POINTS
+    rings = [np.stack([r * np.cos(angle), r * np.sin(angle), np.full(CIRCLE_POINTS, z)], axis=1)
              for r, z in zip(radii[1:-1], heights[1:-1], strict=True)]
     vertices = np.concatenate([[[0, 0, heights[0]]], *rings, [[0, 0, heights[-1]]]])
-    here = np.arange(AROUND)
+    here = np.arange(CIRCLE_POINTS)
     on = np.roll(here, -1)
     last = len(vertices) - 1
-    triangles = [np.stack([np.zeros(AROUND, int), 1 + on, 1 + here], axis=1)]
+    triangles = [np.stack([np.zeros(CIRCLE_POINTS, int), 1 + on, 1 + here], axis=1)]
     for ring in range(len(rings) - 1):
-        low, high = 1 + ring * AROUND, 1 + (ring + 1) * AROUND
+        low, high = 1 + ring * CIRCLE_POINTS, 1 + (ring + 1) * CIRCLE_POINTS
         triangles += [np.stack([low + here, low + on, high + on], axis=1),
                       np.stack([low + here, high + on, high + here], axis=1)]
-    top = 1 + (len(rings) - 1) * AROUND
-    triangles.append(np.stack([top + here, top + on, np.full(AROUND, last)], axis=1))
+    top = 1 + (len(rings) - 1) * CIRCLE_POINTS
+    triangles.append(np.stack([top + here, top + on, np.full(CIRCLE_POINTS, last)], axis=1))
     return vertices, np.concatenate(triangles)
 
 
-def _along(axis: np.ndarray) -> np.ndarray:
-    """Return a rotation (3, 3) that takes z to a unit vector."""
-    other = np.eye(3)[np.argmin(np.abs(axis))]
-    x = np.cross(other, axis)
-    x = x / np.linalg.norm(x)
-    return np.column_stack([x, np.cross(axis, x), axis])
+def square_to(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return two unit vectors (3,) orthogonal to a unit vector and to each other."""
+    along = np.cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])
+    along /= np.linalg.norm(along)
+    return along, np.cross(along, normal)
 
 
 def surface(shape: Mapping[str, Any]) -> Surface:
@@ -57,16 +59,39 @@ def surface(shape: Mapping[str, Any]) -> Surface:
         case "box":
             vertices, triangles = BOX[0] * shape["size"], BOX[1]
         case "sphere":
-            polar = np.linspace(np.pi, 0, AROUND // 2 + 1)
+            polar = np.linspace(np.pi, 0, CIRCLE_POINTS // 2 + 1)
             vertices, triangles = _turned_profile(shape["radius"] * np.sin(polar), shape["radius"] * np.cos(polar))
         case "cylinder":
             radius, half = shape["radius"], shape["length"] / 2
             profile = np.array([0, radius, radius, 0]), np.array([-half, -half, half, half])
             vertices, triangles = _turned_profile(*profile)
             axis = np.asarray(shape["axis"], dtype=float)
-            vertices = vertices @ _along(axis / np.linalg.norm(axis)).T
+            axis = axis / np.linalg.norm(axis)
+            vertices = vertices @ np.stack([*square_to(axis)[::-1], axis])
         case "mesh":
             vertices, triangles = np.asarray(shape["vertices"], dtype=float), np.asarray(shape["triangles"])
         case unknown:
-            raise ValueError(f"a body has a shape of the unknown kind {unknown!r}")
-    return vertices + np.asarray(shape["offset"], dtype=float), triangles
+            raise ValueError(f'a body has no shape "{unknown}": box, sphere, cylinder and mesh are known')
+    return vertices + np.asarray(shape.get("offset", (0, 0, 0)), dtype=float), triangles
+
+
+def body_reach(body: BodyShape) -> float:
+    """Return the largest distance of the surface of a body from its origin, m."""
+    return float(np.linalg.norm(surface(body.shape)[0], axis=1).max())
+
+
+def placed_surface(body: BodyShape, frame: int) -> Surface:
+    """Return the surface of a body at a frame: vertices (V, 3) in m along the ground's axes, and triangles."""
+    vertices, triangles = surface(body.shape)
+    return body.position[frame] + rotate(body.orientation[frame], vertices), triangles
+
+
+def outline(points: np.ndarray) -> np.ndarray:
+    """Return the corners (n, 2) of the convex hull of points (N, 2) in order; collinear points unchanged."""
+    from scipy.spatial import ConvexHull, QhullError  # for pictures alone
+
+    try:
+        hull: np.ndarray = points[ConvexHull(points).vertices]
+    except QhullError:
+        return points
+    return hull

@@ -1,7 +1,4 @@
-"""Films of an animation: GIF by Pillow, MP4 by the ffmpeg of imageio-ffmpeg.
-
-Matplotlib is imported only when a picture is made.
-"""
+"""Films of an animation: GIF by Pillow, MP4 by imageio-ffmpeg. Matplotlib is imported when a picture is made."""
 
 from __future__ import annotations
 
@@ -15,23 +12,22 @@ import numpy as np
 
 from ..base.written_files import write_whole
 from ..errors import FunicularError, shown_path
-from .animation import Animation, Clip
-from .extras import extra
-from .files import PICTURES
-from .film import Film, period
+from .animation import Animation, Clip, period
+from .files import PICTURES, extra
+from .film import Film
 from .plot import STYLE
 
-RATE = 25
-"""Pictures a second."""
-LONG = 8.0
-"""Seconds that a film takes, where its speed is not given."""
-MOST_PICTURES = 3000
+FRAME_RATE = 25
+"""Pictures per second."""
+DEFAULT_DURATION = 8.0
+"""Seconds."""
+MAX_PICTURES = 3000
 PERIODS = 3
-"""Of a mode."""
+"""Periods of a mode in its film."""
 KINDS = (".gif", ".mp4")
 
 
-def write_video(animation: Animation, path: str | os.PathLike, speed: float | None = None,
+def write_video(animation: Animation, path: str | os.PathLike[str], speed: float | None = None,
                 colour: str | None = None) -> Path:
     """Write a film of an animation, .gif or .mp4, and return its path; see `Viewable.save_video`.
 
@@ -53,23 +49,23 @@ def write_video(animation: Animation, path: str | os.PathLike, speed: float | No
 
 
 def film_times(clips: tuple[Clip, ...], speed: float | None) -> tuple[np.ndarray, float]:
-    """Return the times of the motion that the pictures of a film show, and how many times as fast it plays.
+    """Return the times of the motion of the pictures of a film, and the ratio of motion to film time.
 
     Raises FunicularError for a speed that is not positive, for a film that would be too long, and for a single frame.
     """
     first, last = min(clip.time[0] for clip in clips), max(clip.time[-1] for clip in clips)
     if not last > first:
         raise FunicularError("there is one frame, which makes no film; take save_png, or --png")
-    if clips[0].periodic:
-        last = first + PERIODS * period(clips[0])
-    pace = (last - first) / LONG if speed is None else float(speed)
+    if (whole := period(clips[0])) is not None:
+        last = first + PERIODS * whole
+    pace = (last - first) / DEFAULT_DURATION if speed is None else float(speed)
     if not (np.isfinite(pace) and pace > 0):
         raise FunicularError(f"the speed of a film must be positive, got {speed}")
-    pictures = int(np.ceil((last - first) / pace * RATE)) + 1
-    if pictures > MOST_PICTURES:
-        raise FunicularError(f"the film would have {pictures} pictures, at most {MOST_PICTURES} are made; take a "
-                             f"speed of {(last - first) * RATE / MOST_PICTURES:.3g} or more")
-    return np.minimum(first + pace / RATE * np.arange(pictures), last), pace
+    pictures = int(np.ceil((last - first) / pace * FRAME_RATE)) + 1
+    if pictures > MAX_PICTURES:
+        raise FunicularError(f"the film would have {pictures} pictures, at most {MAX_PICTURES} are made; take a "
+                             f"speed of {(last - first) * FRAME_RATE / MAX_PICTURES:.3g} or more")
+    return np.minimum(first + pace / FRAME_RATE * np.arange(pictures), last), pace
 
 
 def _write_gif(path: Path, pictures: Iterator[np.ndarray]) -> None:
@@ -77,14 +73,14 @@ def _write_gif(path: Path, pictures: Iterator[np.ndarray]) -> None:
 
     palette = (Image.fromarray(picture).quantize(128, dither=Image.Dither.NONE) for picture in pictures)
     first = next(palette)
-    first.save(path, save_all=True, append_images=palette, duration=1000 // RATE, loop=0)
+    first.save(path, save_all=True, append_images=palette, duration=1000 // FRAME_RATE, loop=0)
 
 
 def _write_mp4(path: Path, pictures: Iterator[np.ndarray]) -> None:
-    """Write an H.264 film, in colours that every player knows. Raises FunicularError without ffmpeg."""
+    """Write an H.264 film. Raises FunicularError without imageio-ffmpeg."""
     ffmpeg = extra("imageio_ffmpeg", "video")
     first = next(pictures)
-    writer = ffmpeg.write_frames(os.fspath(path), first.shape[1::-1], fps=RATE, codec="libx264", quality=8,
+    writer = ffmpeg.write_frames(os.fspath(path), first.shape[1::-1], fps=FRAME_RATE, codec="libx264", quality=8,
                                  macro_block_size=2)
     writer.send(None)
     try:
@@ -93,22 +89,22 @@ def _write_mp4(path: Path, pictures: Iterator[np.ndarray]) -> None:
             writer.send(picture.tobytes())
     finally:
         writer.close()
-    if not _is_whole(path):  # ffmpeg tells nobody that the disk was full
+    if not _is_whole(path):  # ffmpeg does not report a full disk
         raise OSError(0, "the film was cut short; make room")
 
 
 def _is_whole(path: Path) -> bool:
-    """Return whether an MP4 has all its boxes (ISO/IEC 14496-12, 4.2): the index of the film comes last."""
-    kinds, left = set(), path.stat().st_size
+    """Return whether an MP4 has all its boxes (ISO/IEC 14496-12, 4.2); the index is the last one."""
+    kinds, remaining = set(), path.stat().st_size
     with path.open("rb") as file:
-        while left >= 8:
+        while remaining >= 8:
             size, kind = int.from_bytes(file.read(4), "big"), file.read(4)
             head = 8
             if size == 1:
                 size, head = int.from_bytes(file.read(8), "big"), 16
-            if not head <= size <= left:
+            if not head <= size <= remaining:
                 return False
             kinds.add(kind)
-            left -= size
+            remaining -= size
             file.seek(size - head, os.SEEK_CUR)
-    return left == 0 and {b"moov", b"mdat"} <= kinds
+    return remaining == 0 and {b"moov", b"mdat"} <= kinds

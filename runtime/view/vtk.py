@@ -1,4 +1,4 @@
-"""Animations as files for ParaView: a .vtu file for each frame, and a .pvd file that names them with their times."""
+"""Animations as files for ParaView: a .vtu file per frame, and a .pvd file with their times."""
 
 from __future__ import annotations
 
@@ -13,17 +13,16 @@ import numpy as np
 from ..base.written_files import write_text, write_whole
 from ..errors import FunicularError
 from .animation import Animation, Clip
-from .extras import extra
-from .files import PICTURES, folder_for_pictures
-from .placed import placed_surface
+from .files import PICTURES, extra, folder_for_pictures
+from .surfaces import placed_surface
 
 
-def write_vtk(animation: Animation, folder: str | os.PathLike) -> Path:
+def write_vtk(animation: Animation, folder: str | os.PathLike[str]) -> Path:
     """Write the frames into a folder and return the path of its .pvd file; see `Viewable.save_vtk`.
 
-    Each clip, such as a mode or one of two runs, is a part of the collection. Points have the quantities along cables,
-    NaN where there is none, the direction and the diameter of the section, and the number of the cable or body that
-    they are of, cables first. Raises ResultFileError; FunicularError.
+    Each clip, such as a mode or one of two runs, is a part of the collection. Point data are the quantities along
+    cables, NaN elsewhere, direction and diameter of the section, and the number of the cable or body, cables first.
+    Raises ResultFileError; FunicularError.
     """
     meshio = extra("meshio", "vtk")
     folder = folder_for_pictures(folder)
@@ -42,31 +41,20 @@ def write_vtk(animation: Animation, folder: str | os.PathLike) -> Path:
 
 def frame_arrays(clip: Clip, frame: int) -> tuple[np.ndarray, list[tuple[str, np.ndarray]], dict[str, np.ndarray]]:
     """Return the points (N, 3), cells by kind, and data of points of one frame."""
-    points: list[np.ndarray] = []
-    lines: list[np.ndarray] = []
-    triangles: list[np.ndarray] = []
-    part: list[np.ndarray] = []
-    first = 0
-    for number, cable in enumerate(clip.cables):
-        points.append(cable.position[frame])
-        here = first + np.arange(len(cable.s))
-        lines.append(np.stack([here[:-1], here[1:]], axis=1))
-        part.append(np.full(len(cable.s), number))
-        first += len(cable.s)
-    for number, body in enumerate(clip.bodies, start=len(clip.cables)):
-        vertices, faces = placed_surface(body, frame)
-        points.append(vertices)
-        triangles.append(first + faces)
-        part.append(np.full(len(vertices), number))
-        first += len(vertices)
-    if not points:
+    meshes = [(cable.position[frame], np.arange(len(cable.s) - 1)[:, None] + [0, 1]) for cable in clip.cables]
+    meshes += [placed_surface(body, frame) for body in clip.bodies]
+    if not meshes:
         raise FunicularError("there are no cables and no bodies to write for ParaView")
-    cells = [(kind, np.concatenate(each)) for kind, each in (("line", lines), ("triangle", triangles)) if each]
-    return np.concatenate(points), cells, {"part": np.concatenate(part), **_point_data(clip, frame, first)}
+    sizes = [len(points) for points, _ in meshes]
+    cells = [cell + first for (_, cell), first in zip(meshes, np.cumsum([0, *sizes[:-1]]), strict=True)]
+    n = len(clip.cables)
+    return (np.concatenate([points for points, _ in meshes]),
+            [(kind, np.concatenate(each)) for kind, each in (("line", cells[:n]), ("triangle", cells[n:])) if each],
+            {"part": np.repeat(np.arange(len(sizes)), sizes), **_point_data(clip, frame, sum(sizes))})
 
 
 def _point_data(clip: Clip, frame: int, count: int) -> dict[str, np.ndarray]:
-    """Return what the stations of cables have, NaN at the points of bodies and where a cable lacks a quantity."""
+    """Return the data of the stations of cables, NaN at points of bodies and where a cable lacks a quantity."""
     found: dict[str, np.ndarray] = {}
 
     def put(key: str, first: int, values: np.ndarray) -> None:
@@ -86,7 +74,7 @@ def _point_data(clip: Clip, frame: int, count: int) -> dict[str, np.ndarray]:
 
 
 def _diameter(section: Any) -> float:
-    """Return the diameter of the circle that stands for a section in tubes, in m."""
+    """Return the diameter of the circle of a section's area, in m."""
     match section["shape"]:
         case "rectangle":
             return float(np.sqrt(section["height"] * section["width"] * 4 / np.pi))
