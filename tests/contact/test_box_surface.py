@@ -1,4 +1,4 @@
-"""Boxes as surfaces: distances, a ball off an edge, a rope over an edge, planar scenes, pictures, refusals."""
+"""Boxes as surfaces: distances, a ball and a rope over an edge, planar scenes, pictures, refusals."""
 
 from math import atan2, cos, hypot, pi, sin, sqrt
 
@@ -33,7 +33,7 @@ def test_distances_are_those_of_the_nearest_of_many_points_on_its_faces(axes):
 
 
 def off_the_edge(hard, radius=0.1, speed=0.3):
-    """Return a ball without friction that slides off the edge x = 0 of a box whose top is y = 0."""
+    """Return a frictionless ball that slides off the edge x = 0 of a box with its top at y = 0."""
     scene = fu.Scene(gravity=(0, -G, 0))
     scene.surface("table", fu.Box(size=(1, 0.5, 0.8), at=(-0.5, -0.25, 0)))
     stiffness = 1e6
@@ -47,7 +47,7 @@ def off_the_edge(hard, radius=0.1, speed=0.3):
 
 @pytest.mark.parametrize("hard", [True, False])
 def test_a_ball_leaves_an_edge_where_its_weight_turns_it_no_longer(hard):
-    """About the edge it is a pendulum: v^2/r = g cos a, so that cos a = 2/3 + v0^2/(3 g r)."""
+    """About the edge the ball is a pendulum: v^2/r = g cos a, so that cos a = 2/3 + v0^2/(3 g r)."""
     radius, speed = 0.1, 0.3
     run = off_the_edge(hard, radius, speed).run(0.5, output_step=0.001, tol=1e-7, integrator="radau")
     left = next(event for event in run.report["events"] if event["what"] == "lost contact")
@@ -84,7 +84,7 @@ def over_the_edge(elements=120, stiffness=1e7, element="cable8p"):
 
 
 def edge_error(**more):
-    """Return the error of the force on the rope, over its tension: T times the change of its direction."""
+    """Return the error of the force on the rope, relative to its tension: T times the change of its direction."""
     scene, first = over_the_edge(**more)
     found = scene.equilibrium()["contact_1.force"]
     exact = TENSION * (np.array([cos(first), sin(first)]) - PULL)

@@ -19,7 +19,7 @@ G = 9.81
 ROPE = {"section": fu.Circle(radius=0.01), "material": fu.Material(youngs_modulus=1e7, poisson_ratio=0.0, density=2000)}
 
 
-# the mooring line: radius, modulus, density; its length; its weight a length; the force on its free end
+# the mooring line: radius, modulus, density; length; weight per length; force on its free end
 
 R, E, RHO, L = 0.01, 1e8, 7800.0, 30.0
 AREA = pi * R * R
@@ -28,7 +28,7 @@ H, LIFTED = 150.0, 14.0
 
 
 def mooring(elements, friction=0.0, element="cable8p", stiffness=None):
-    """Return a line on the ground whose free end is pulled by H along and by the weight of 14 m of it upwards."""
+    """Return a line on the ground whose free end carries H horizontally and the weight of 14 m upwards."""
     scene = fu.Scene()
     lying, lifted = np.linspace(0, L - LIFTED, 30)[:-1], np.linspace(0, LIFTED, 30)
     points = [(x, R, 0) for x in lying]
@@ -44,7 +44,7 @@ def mooring(elements, friction=0.0, element="cable8p", stiffness=None):
 
 
 def end_of_mooring(friction=0.0):
-    """Return where the end of the elastic catenary is, and the tension at the anchor."""
+    """Return the end of the elastic catenary, and the tension at the anchor."""
     EA, lying = E * AREA, L - LIFTED
     x = lying + (H * lying - friction * W * lying**2 / 2) / EA + H * LIFTED / EA + H / W * asinh(W * LIFTED / H)
     y = W * LIFTED**2 / 2 / EA + H / W * (sqrt(1 + (W * LIFTED / H) ** 2) - 1)
@@ -53,7 +53,7 @@ def end_of_mooring(friction=0.0):
 
 @pytest.mark.parametrize("element", ["cable8p", "cable12"])
 def test_a_mooring_line_lifts_off_the_bed_as_the_catenary(element, validated):
-    """What differs is the bending that the catenary leaves out: it moves the touch-down by about sqrt(EI/H)."""
+    """Bending, absent in the catenary, moves the touch-down by about sqrt(EI/H)."""
     state = mooring(60, element=element).equilibrium()
     end, tension = end_of_mooring()
     given = {"source": "elastic catenary on a rigid bed", "variant": element, "mesh": "60 elements"}
@@ -69,7 +69,7 @@ def test_a_mooring_line_lifts_off_the_bed_as_the_catenary(element, validated):
 
 
 def test_the_touch_down_converges_with_the_mesh():
-    """Against the finest; without jumps from one mesh to the next."""
+    """The reference is the finest mesh; there are no jumps between meshes."""
     found = [mooring(n, stiffness=2.4e5).equilibrium() for n in (30, 60, 240)]
     ends = np.array([state["line.position"][-1, :2] for state in found])
     errors = np.linalg.norm(ends[:-1] - ends[-1], axis=1)
@@ -97,7 +97,7 @@ def test_the_beds_friction_takes_mu_w_a_length_of_the_tension(validated):
 
 
 def test_an_elastic_rod_is_lifted_off_a_plane_as_the_beam(validated):
-    """A force V at its end lifts a = 2 V/w of it by w a^4/(24 EI): no moment where it begins to touch."""
+    """A force V at the end lifts the length a = 2 V/w by w a^4/(24 EI), with no moment at the touch-down."""
     radius, modulus, density, a = 0.005, 1e9, 2000.0, 0.5
     w, EI = density * pi * radius**2 * G, modulus * pi * radius**4 / 4
     errors = []
@@ -121,7 +121,7 @@ DRUM, ROPE_RADIUS, LIGHT = 0.05, 0.001, 0.15
 
 
 def heaviest(mu):
-    """Return the length of the heavy side at which a rope over a drum slides."""
+    """Return the length of the heavy side at which a rope over a drum begins to slide."""
     return exp(mu * pi) * LIGHT + (DRUM + ROPE_RADIUS) * 2 * mu / (1 + mu * mu) * (exp(mu * pi) + 1)
 
 
@@ -141,7 +141,8 @@ def capstan(heavy, mu, elements=40):
 
 @pytest.mark.parametrize(("mu", "limit"), [(0.1, 0.22929), (0.3, 0.48507)])
 def test_the_capstans_limit_is_that_of_the_ropes_equation(mu, limit):
-    """In an angle from the light side: dT/da = mu (T + w r sin a) + w r cos a, the weight against the slip."""
+    """Over the angle a from the light side: dT/da = mu (T + w r sin a) + w r cos a, with the weight against the slip.
+    """
     to = DRUM + ROPE_RADIUS
     found = solve_ivp(lambda a, T: mu * (T + to * np.sin(a)) + to * np.cos(a), (0, pi), [LIGHT], rtol=1e-10, atol=1e-12)
     assert abs(found.y[0, -1] - heaviest(mu)) < 1e-8 and abs(heaviest(mu) - limit) < 1e-5
@@ -149,7 +150,9 @@ def test_the_capstans_limit_is_that_of_the_ropes_equation(mu, limit):
 
 @pytest.mark.parametrize("mu", [0.1, 0.3])
 def test_a_rope_holds_on_a_drum_up_to_the_capstans_limit(mu):
-    """It holds 4 % below the limit, and slides 2 % above it; the rope's stretch slides, so that it is not exact."""
+    """It holds 4 % below the limit and slides 2 % above it; the stretch of the rope slides, so that the limit is not
+    sharp.
+    """
     ends = []
     for part in (0.96, 1.02):
         run = capstan(part * heaviest(mu), mu).run(0.5, output_step=0.05, tol=1e-4, integrator="genalpha")
@@ -171,7 +174,7 @@ def ball(damping=0.0, exponent=1.0, stiffness=1e4, gravity=(0, 0, 0), height=0.2
 @pytest.mark.parametrize("exponent", [1.0, 1.5])
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 def test_a_ball_bounces_with_the_restitution_that_damping_gives(integrator, exponent, validated):
-    """v - ln(1 + c v)/c is the same before and after, which no exponent changes (Hunt & Crossley 1975)."""
+    """v - ln(1 + c v)/c is equal before and after, for any exponent (Hunt & Crossley 1975)."""
     c = 0.4
     run = ball(c, exponent).run(0.4, output_step=0.01, tol=1e-7, integrator=integrator)
 
@@ -196,7 +199,7 @@ def test_what_friction_and_damping_take_is_in_the_energy_balance(integrator):
 
 
 def block(slope, friction, speed=0.0):
-    """Return a block that stands on four corners on a slope down to +x, as deep as its weight presses it."""
+    """Return a block on four corners on a slope down to +x, at the penetration of its weight."""
     scene, size, stiffness = fu.Scene(gravity=(G * sin(slope), -G * cos(slope), 0)), 0.1, 1e5
     points = [(x, -size / 4, z) for x in (-size / 2, size / 2) for z in (-size / 2, size / 2)]
     scene.rigid_body("block", mass=2.0, inertia=(2e-3,) * 3, velocity=(speed, 0, 0),
@@ -244,7 +247,7 @@ PLANAR_SHAPES = [shape for shape in SHAPES if shape != "hills"]
 @pytest.mark.parametrize(("friction", "moved"), [(0.0, 1e-3), (0.3, 1e-6), (0.01, 1e-3)])
 @pytest.mark.parametrize("on", [None, "B"])
 def test_the_static_matrix_is_the_derivative_of_the_residual(element, shape, friction, moved, on):
-    """At a state near that drawn, where friction sticks, or slides; for surfaces of the ground and of a body."""
+    """At a state near the drawn one, with sticking or sliding friction; surfaces of the ground and of a body."""
     scene = fu.Scene()
     scene.cable("wire", start=(0, 0, 0), end=(1, 0.001, 0), elements=3, element=element, **ROPE)
     if on:
@@ -261,7 +264,7 @@ def test_the_static_matrix_is_the_derivative_of_the_residual(element, shape, fri
 
 
 def test_the_reaction_acts_on_the_body_that_the_surface_is_on():
-    """A cable drops on a free capsule: momentum and angular momentum about z stay."""
+    """A cable falls on a free capsule: momentum and angular momentum about z are constant."""
     scene = fu.Scene(gravity=(0, 0, 0))
     scene.cable("wire", start=(-0.5, 0.1, 0), end=(0.5, 0.1, 0), elements=6, element="cable12", velocity=(0, -1, 0),
                 **ROPE)
@@ -287,7 +290,7 @@ def test_the_reaction_acts_on_the_body_that_the_surface_is_on():
 
 
 def cloth(element="cable12"):
-    """Return a cable thrown on hills."""
+    """Return a cable that is thrown on hills."""
     scene = fu.Scene()
     scene.cable("wire", start=(0, 0.1, 0), end=(1, 0.15, 0), elements=8, element=element, velocity=(1.0, 0, 0), **ROPE)
     scene.surface("hills", SHAPES["terrain"])
@@ -353,7 +356,7 @@ def test_bad_input_is_refused(case):
 
 
 def test_a_start_is_looked_at_on_all_elements_however_short():
-    """A dip of 30 mm, 36 mm wide, of a line of 10 m: its nodes are close there alone."""
+    """A dip of 30 mm depth and 36 mm width below a line of 10 m, whose nodes are close there alone."""
     dip = np.linspace(-0.018, 0.018, 13)
     along = np.concatenate([np.linspace(0, 3, 5), 3.02 + dip, np.linspace(3.04, 10, 7)])
     points = [(x, 0.03 - 0.015 * (1 + cos(pi * (x - 3.02) / 0.018)) * (abs(x - 3.02) < 0.018), 0) for x in along]
@@ -420,7 +423,7 @@ def test_scene_files_say_the_same(tmp_path):
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 @pytest.mark.parametrize("with_cable", [False, True])
 def test_no_contact_within_a_step_is_missed(integrator, with_cable):
-    """Something flies past a drum, which it grazes for a hundredth of its way: steps of free flight are longer."""
+    """A body flies past a drum and grazes it for a hundredth of its path; steps of free flight are longer."""
     scene = fu.Scene(gravity=(0, 0, 0))
     if with_cable:
         scene.cable("A", start=(-1, 0.1099, -0.1), end=(-1, 0.1099, 0.1), elements=2, velocity=(1, 0, 0), **ROPE)
@@ -487,7 +490,7 @@ def test_a_deep_penetration_and_a_surface_that_nothing_touches_are_noted():
 @pytest.mark.parametrize("element", ["cable12", "cable18", "beam24"])
 @pytest.mark.parametrize("shape", sorted(SHAPES))
 def test_elements_are_passed_over_only_where_nothing_touches(element, shape):
-    """Forces and stiffness at random states are bit for bit those without the cheap sphere about a node."""
+    """Forces and stiffness at random states have the bits of a computation without the bounding sphere."""
     scene = fu.Scene()
     scene.cable("wire", start=(0, 0, 0), end=(1, 0.001, 0), elements=12, element=element, **ROPE)
     scene.surface("s", SHAPES[shape])

@@ -1,4 +1,4 @@
-"""What a cable may pass through, between the points by which it touches, is told, with a mesh that sees it."""
+"""A note reports an object that a cable may pass between its contact points, with a sufficient mesh."""
 
 import re
 
@@ -13,7 +13,7 @@ SHAPES = {"sphere": fu.Sphere(radius=0.02, at=(0.545, -0.055, 0)),
 
 
 def dropped(shape, elements):
-    """A rope of 2 m whose ends are held, above a thing that is smaller than what its elements see."""
+    """Return a rope of 2 m between supports above an object smaller than the resolution of its elements."""
     scene = fu.Scene(gravity=(0, -9.81, 0))
     rope = scene.cable("rope", start=(0, 0, 0), end=(2, 0, 0), elements=elements, element="cable12",
                        section=fu.Circle(radius=5e-3),

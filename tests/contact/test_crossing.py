@@ -1,4 +1,4 @@
-"""Lines that touch at their closest points: a wire under a bar that slides along it, and cables that cross."""
+"""Lines in contact at their closest points: a wire under a moving bar, and crossing cables."""
 
 import funicular as fu
 import numpy as np
@@ -30,7 +30,7 @@ def wire(elements: int, length: float = 20.0, dim: int = 2) -> fu.Scene:
 
 def collector(elements: int = 40, speed: float = 0.0, force: float = 5.0, dim: int = 2, gap: float = 0.0,
               rise: float = 0.0, mass: float = 0.5, length: float = 0.5, start: float = 4.0, **law) -> fu.Scene:
-    """A head under the wire, on a carriage that goes along at a speed, pushed up or thrown up."""
+    """Return a head under the wire, on a carriage of constant speed, pressed or thrown upwards."""
     scene = wire(elements, dim=dim)
     y = -RADIUS - gap
     scene.rigid_body("carriage", mass=1000.0, inertia=(1, 1, 1), position=(start, y - 1, 0), velocity=(speed, 0, 0))
@@ -45,7 +45,7 @@ def collector(elements: int = 40, speed: float = 0.0, force: float = 5.0, dim: i
 
 
 def rising(time: np.ndarray, mass: float, force: float, rise: float = 0.0) -> np.ndarray:
-    """Return height of the head, its rate and height of the wire at it, (T, 3), until waves come back from the ends.
+    """Return height of the head, its rate and height of the wire above it, (T, 3), until waves return from the ends.
 
     A force N that moves along a string slower than its waves lifts the point under it by w' = N/Z, Z = 2 sqrt(T rho A),
     at any speed (d'Alembert), and the head has m y'' = F - N with N = k (y - w).
@@ -57,7 +57,7 @@ def rising(time: np.ndarray, mass: float, force: float, rise: float = 0.0) -> np
 
 
 def total(run) -> np.ndarray:
-    """Return the energy with what went to heat and came from outside, which stays, J."""
+    """Return the conserved sum of energy, dissipation and external work, J."""
     return (run["energy.kinetic"] + run["energy.elastic"] + run["energy.potential"] + run["energy.dissipated"]
             - run["energy.external"])
 
@@ -86,7 +86,7 @@ def test_a_bar_in_space_does_what_a_point_in_the_plane_does():
 
 @pytest.mark.parametrize("exponent", [1.0, 1.5])
 def test_deflection_and_force_at_rest(exponent):
-    """String under a force F at x = a: F a b/(T L); the head sinks in by the law."""
+    """A string under a force F at x = a: F a b/(T L); the penetration of the head by the law."""
     scene = wire(160)
     scene.rigid_body("head", mass=1.0, inertia=(1, 1, 1), position=(5.0, -0.01, 0))
     scene.joint("prismatic", (5.0, -0.01, 0), "head", axis=(0, 1, 0))
@@ -101,7 +101,7 @@ def test_deflection_and_force_at_rest(exponent):
     assert rest["contact.normal_force"] == pytest.approx(np.linalg.norm(rest["contact.force"]), rel=1e-12)
     assert rest["contact.penetration"] == pytest.approx(depth, rel=1e-9)
     wire_up = rest["head.position"][1] + RADIUS - depth
-    # the mesh rounds off the kink: 4.2e-3, with 40 elements 1e-2
+    # the mesh rounds the kink: 4.2e-3, with 40 elements 1e-2
     assert wire_up == pytest.approx(force * 5 * 15 / (TENSION * 20), rel=5e-3)
     run = scene.run(duration=0.1, output_step=0.05, initial="equilibrium")
     assert np.abs(run["contact.normal_force"] - rest["contact.normal_force"]).max() < 1e-6
@@ -124,7 +124,7 @@ def test_energy_and_events_of_a_head_thrown_at_the_wire(integrator, damping):
 
 @pytest.mark.parametrize("integrator", ["genalpha", "radau"])
 def test_a_touch_within_a_step_is_not_missed(integrator):
-    """A head on a spring rises a tenth of a millimetre into the wire for 14 ms: steps of 20 ms would go over it."""
+    """A head on a spring rises 0.1 mm into the wire for 14 ms, within steps of 20 ms."""
     scene = wire(10)
     scene.rigid_body("head", mass=1.0, inertia=(1, 1, 1), position=(5.0, -0.1999 - RADIUS, 0))
     scene.joint("prismatic", (5.0, -0.2 - RADIUS, 0), "head", axis=(0, 1, 0))
@@ -173,7 +173,9 @@ GRIPS = {"regularised": {"friction": fu.Friction(coefficient=0.3, velocity=2.0)}
 
 
 def touching(dim: int, other: str, exponent: float, friction: str = "regularised") -> fu.Scene:
-    """A wire of three elements that a turning body's bar, or another wire, has come into, off the nodes and moving."""
+    """Return a wire of three elements in contact with the bar of a turning body, or another wire, off the nodes and
+    moving.
+    """
     scene = wire(3, dim=dim)
     law = {"stiffness": STIFFNESS, "exponent": exponent, "damping": 0.3, "radius": 0.01} | GRIPS[friction]
     if other == "cable":
@@ -216,7 +218,7 @@ def test_friction_is_along_the_slip_and_its_work_goes_to_heat(integrator):
     run = scene.run(duration=0.1, output_step=0.002, integrator=integrator, tol=1e-6)
     touching = run["contact.normal_force"] > 1.0
     friction = run["contact.force"][touching, 0] / run["contact.normal_force"][touching]
-    # the wire is dragged along by F/(2 sqrt(EA rho A)) at most, 1.6e-5 m/s, and its slope is 3e-3
+    # the wire is dragged along by at most F/(2 sqrt(EA rho A)), 1.6e-5 m/s, and its slope is 3e-3
     assert np.abs(friction - 0.3 * 20 / np.sqrt(401)).max() < 6e-3
     assert run["energy.dissipated"][-1] > 0.2 * 5.0 * 20 * 0.1
     assert unaccounted(run) < 1e-4 * run["energy.dissipated"][-1]
@@ -300,7 +302,9 @@ def test_lines_that_become_parallel_end_the_run_with_a_message():
 
 
 def crossing_ropes(drop: float, elements: int) -> fu.Scene:
-    """Two ropes of 1 m at right angles, their ends 0.8 m apart: the upper's are let down from above the lower's."""
+    """Return two ropes of 1 m at right angles, their ends 0.8 m apart; the upper one's ends move below those of the
+    lower.
+    """
     scene = fu.Scene(gravity=(0, 0, -9.81))
     for name, axis, height in (("lower", 0, 0.0), ("upper", 1, 0.02)):
         ends = np.zeros((2, 3))
@@ -325,7 +329,7 @@ def test_ropes_that_cross(drop, force, validated):
 
 
 def test_a_planar_scene_in_another_plane():
-    """That of the wire along z, with y up."""
+    """The wire is along z, with y up."""
     plain = collector(10, 20.0, damping=0.05)
     turned = turned_scene(plain, (0, -np.pi / 2, 0), (0, 0, 0))
     along = np.array([[0, 0, -1], [0, 1, 0], [1, 0, 0]])  # x to z, z to -x

@@ -1,4 +1,4 @@
-"""Lines that touch, in runs that conserve energy: balance, order, momenta, Newton's matrix, refusals."""
+"""Lines in contact in runs that conserve energy: balance, order, momenta, Newton's matrix, refusals."""
 
 from itertools import pairwise
 
@@ -24,7 +24,7 @@ def rope(scene: fu.Scene, name: str, start, end, elements: int, element: str = "
 
 
 def thrown(dim: int, other: str, speed: float = 1.0, **law) -> fu.Scene:
-    """A rope between two pins, and a rope or a body's bar that is thrown at it, turns, and slides along it."""
+    """Return a rope between two pins, and a rope or a body's bar that is thrown at it with spin and slides along it."""
     scene = fu.Scene(gravity=(0, -9.81, 0))
     wire = rope(scene, "wire", (0, 0, 0), (2, 0, 0), 6, "cable12" if dim == 3 else "cable8p")
     scene.pin(wire, s=0.0)
@@ -57,7 +57,7 @@ def test_what_is_thrown_keeps_its_energy_to_rounding(dim, other, law):
 
 @pytest.mark.parametrize("exponent", [1.0, 1.5])
 def test_a_bar_that_slides_over_nodes_costs_no_energy(exponent):
-    """The closest points go through three elements and more while the lines touch; genalpha loses energy there."""
+    """The closest points cross three or more elements during contact, where genalpha loses energy."""
     scene = thrown(3, "bar", speed=12.0, stiffness=2e3, exponent=exponent)
     run, other = (scene.run(duration=0.1, step=4e-4, output_step=0.002, integrator=name)
                   for name in ("energy", "genalpha"))
@@ -85,7 +85,8 @@ def test_order_in_time_is_two(dim, other, law):
 
 
 def test_momentum_of_two_ropes_is_kept():
-    """Linear to rounding; angular by the base of the discrete gradient, with an error of third order in a step."""
+    """Linear momentum to rounding; angular momentum, by the discrete gradient's base point, to third order in a step.
+    """
     scene = fu.Scene(gravity=(0, 0, 0))
     rope(scene, "wire", (0, 0, 0), (2, 0, 0), 6)
     rope(scene, "other", (0.9, 0.05, -1), (1.2, 0.08, 1), 5, velocity=(1.0, -2, 0.5))
@@ -113,7 +114,7 @@ def test_momentum_of_two_ropes_is_kept():
 @pytest.mark.parametrize(("dim", "other"), [(2, "bar"), (3, "bar"), (3, "cable")])
 @pytest.mark.parametrize("exponent", [1.0, 1.5])
 def test_newton_contracts_faster_with_smaller_steps(dim, other, exponent):
-    """The matrix is not quite the derivative of the residual: what it leaves of an error in one iteration."""
+    """The matrix approximates the derivative of the residual; the test measures the error after one iteration."""
     engine = Engine(build(touching(dim, other, exponent)))
     status, _ = engine.start(duration=1.0, output_step=0.1, tol=1e-4, step=0.0, method=EnergyMomentum(),
                              first_step=1e-3)

@@ -1,4 +1,4 @@
-"""Bent cables that turn as they fly past each other: no touch is missed, however long the steps are beside it."""
+"""Curved cables turn and graze as they pass each other: no contact is missed, at any step."""
 
 from functools import cache
 
@@ -16,9 +16,9 @@ pytestmark = pytest.mark.slow
 
 
 def flight(seed: int) -> fu.Scene:
-    """Return a scene of two cables that bow away from each other, turn, and graze at some time within 1 s.
+    """Return a scene of two cables that curve away from each other, rotate, and graze at a time within 1 s.
 
-    Their middles would be on each other then, less than 2 mm deep. Contact is too soft to change how they fly.
+    Their middles then coincide to less than 2 mm. The contact is too soft to change their motion.
     """
     rng = np.random.default_rng(seed)
     scene = fu.Scene(gravity=(0, 0, 0))
@@ -46,15 +46,15 @@ def flight(seed: int) -> fu.Scene:
 
 
 def touches(run) -> list[float]:
-    """Return the times at which contact began, s."""
+    """Return the starts of contact, s."""
     return [event["time"] for event in run.report["events"] if event["what"] == "came into contact"]
 
 
 @cache
 def deepest(seed: int) -> float:
-    """Return how deep lines touch within their ends, m, in short steps; -1 where they do not, or do at the start.
+    """Return the largest penetration within the ends, m, by short steps; -1 without contact or with one at the start.
 
-    Lines that come round an end of the other are refused: such flights are left out.
+    Lines that come round an end of the other are refused; such flights are left out.
     """
     scene = flight(seed)
     try:

@@ -1,4 +1,4 @@
-"""Cables that fly through each other: no touch is missed, however long the steps are beside it."""
+"""Cables fly through each other: no contact is missed, at any step."""
 
 import funicular as fu
 import numpy as np
@@ -17,7 +17,7 @@ def direction(azimuth: float, height: float) -> np.ndarray:
 
 
 def flying(curves: tuple, velocities: tuple) -> fu.Scene:
-    """Return a scene with two cables through points, which fly; contact is too soft to change how."""
+    """Return a scene with two flying cables through points; the contact is too soft to change their motion."""
     scene = fu.Scene(gravity=(0, 0, 0))
     for name, points, velocity in zip("ab", curves, velocities, strict=True):
         up = np.eye(3)[np.argmin(np.abs(points[-1] - points[0]))]
@@ -28,10 +28,10 @@ def flying(curves: tuple, velocities: tuple) -> fu.Scene:
 
 
 def check(second, length, bows, at, azimuth, approach, log_speed, when, share, steps, integrator, off):
-    """Lines that bend away from each other touch first where they are placed to, at a part `when` of the duration.
+    """Check that lines which curve away from each other first touch where placed, at a part `when` of the duration.
 
-    Tangents there are `second` rad apart. The lines come nearer by the part `approach` of the speed, and may be past
-    the ends of each other at the end of the same step. off: of the drawn lines from their elements, m.
+    The tangents there are `second` rad apart. The lines approach by the part `approach` of the speed, and may be past
+    the ends of each other at the end of the same step. off: distance of the drawn lines from their elements, m.
     """
     normal, halves = np.array([0, 0, 1.0]), (np.array([1.0, 0, 0]), length * direction(second, 0))
     speed = 10**log_speed
@@ -64,7 +64,7 @@ def test_straight_cables_do_not_fly_through_each_other(**case):
 @settings(max_examples=40, deadline=None, derandomize=True)
 @given(approach=st.floats(0.7, 1), bows=st.tuples(st.floats(0, 0.2), st.floats(0, 0.2)), **GIVEN)
 def test_bent_cables_do_not_fly_through_each_other(**case):
-    """They come head on; test_crossing_grazes.py has those that graze."""
+    """They approach head on; test_crossing_grazes.py covers grazing."""
     check(off=3e-4, **case)
 
 
@@ -76,7 +76,7 @@ TURNING = {"axis": st.tuples(angle, st.floats(-0.8, 0.8)), "turn": st.tuples(ang
 @settings(max_examples=60, deadline=None, derandomize=True)
 @given(**TURNING)
 def test_no_touch_of_a_turning_bar_is_missed(axis, turn, way, at, steps, integrator):
-    """A bar turns by up to a radian as it flies by: it touches first where the distance of two straight lines tells."""
+    """A bar rotates by up to a radian as it passes; the distance of two straight lines gives the first contact."""
     radius, half, times = 0.01, 0.4, np.linspace(0, 1, 4001)
     start, move, spin, along = 0.2 * np.array(at), way[2] * direction(*way[:2]), direction(*turn[:2]), direction(*axis)
     apart, ends = _distances(start, move, along, spin, turn[2] * times, times, half)
@@ -104,7 +104,7 @@ def test_no_touch_of_a_turning_bar_is_missed(axis, turn, way, at, steps, integra
 
 
 def test_a_bar_that_comes_round_an_end_is_refused():
-    """It is under the wire then, and contact would pull it to the side that it has begun on."""
+    """The bar is then under the wire, and contact would pull it to the side of its start."""
     scene = fu.Scene(gravity=(0, 0, 0))
     scene.cable("wire", start=(-1, 0, 0), end=(1, 0, 0), elements=4, element="cable12",
                 section=fu.Circle(radius=RADIUS), material=MATERIAL)
@@ -116,10 +116,10 @@ def test_a_bar_that_comes_round_an_end_is_refused():
 
 
 def _distances(start, move, along, spin, angles, times, half) -> tuple[np.ndarray, np.ndarray]:
-    """Return distances (times,) of a turning bar's line from the x axis, m, negative on one side, and whether points
-    are closest within the ends of both.
+    """Return distances (times,) of a rotating bar's line from the x axis, m, signed, and whether the closest
+    points are within the ends of both.
 
-    start, move: of its middle, m and m/s; along: its direction at first; spin: the axis that it turns about by angles.
+    start, move: of its middle, m and m/s. along: its initial direction. spin: the axis of its rotation by angles.
     """
     middle = start + times[:, None] * move
     c, s = np.cos(angles)[:, None], np.sin(angles)[:, None]

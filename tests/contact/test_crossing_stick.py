@@ -1,4 +1,4 @@
-"""Friction that sticks where lines touch: ropes that hold each other, a mass on a spring that sticks and slips."""
+"""Sticking friction of lines: ropes that hold each other, a mass on a spring that sticks and slips."""
 
 import functools
 import warnings
@@ -26,7 +26,7 @@ def wire(scene: fu.Scene, name: str, start, end, elements: int, element: str, te
 
 
 def on_spring(dim: int, stretch: float = 0.0, speed: float = 0.0) -> fu.Scene:
-    """A head that presses on a wire and is drawn along it by a spring, which is stretched and whose end moves on."""
+    """Return a head pressed on a wire and pulled along it by a stretched spring with a moving end."""
     scene = fu.Scene(gravity=(0, 0, 0))
     wire(scene, "wire", (0, 0, 0), (2, 0, 0), 4, "cable8p" if dim == 2 else "cable12")
     y = -RADIUS + PRESS / STIFFNESS
@@ -45,7 +45,7 @@ def on_spring(dim: int, stretch: float = 0.0, speed: float = 0.0) -> fu.Scene:
 
 
 def total(run) -> np.ndarray:
-    """Return the energy with what went to heat and came from outside, which stays, J."""
+    """Return the conserved sum of energy, dissipation and external work, J."""
     return (run["energy.kinetic"] + run["energy.elastic"] + run["energy.potential"] + run["energy.dissipated"]
             - run["energy.external"])
 
@@ -53,7 +53,7 @@ def total(run) -> np.ndarray:
 @pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")  # the lines overlap, to press from the start
 @pytest.mark.parametrize(("dim", "integrator"), [*((2, each) for each in INTEGRATORS), (3, "radau")])
 def test_a_mass_that_is_let_go_swings_out_in_half_cycles_and_sticks(dim, integrator):
-    """Coulomb's damping: each half cycle ends by 2 mu N/k nearer, until the spring no longer overcomes friction."""
+    """Coulomb damping: each half cycle loses 2 mu N/k, until the spring no longer overcomes friction."""
     run = on_spring(dim, stretch=0.02).run(duration=0.5, output_step=np.pi / OMEGA / 20, integrator=integrator,
                                            **({"step": 2e-4} if integrator == "genalpha" else {"tol": 1e-5}))
     x, lost = run["carriage.position"][:, 0] - 1, FRICTION * PRESS / SPRING
@@ -61,7 +61,7 @@ def test_a_mass_that_is_let_go_swings_out_in_half_cycles_and_sticks(dim, integra
     swing = (0.02 - lost - 2 * lost * half) * (-1.0) ** half  # about a middle that friction moves
     expected = 0.02 - lost * (-1.0) ** half - swing * np.cos(OMEGA * run.time - np.pi * half)
     expected[run.time > 3 * np.pi / OMEGA] = 6 * lost - 0.005
-    # the spring of friction turns round within 2 mu N/k_t: a lag that falls as 1/sqrt(k_t); 1.5e-4 with k_t = 1e6
+    # the friction spring reverses within 2 mu N/k_t: a lag in proportion to 1/sqrt(k_t); 1.5e-4 with k_t = 1e6
     assert np.abs(x - expected).max() < 6e-5  # measured: 2e-5, genalpha 4.5e-5
     assert x[-1] == pytest.approx(6 * lost - 0.005, abs=2e-6)
     assert np.abs(total(run) - total(run)[0]).max() < 1e-5 * run["energy.dissipated"][-1]  # measured: 2e-8 to 6e-6
@@ -77,7 +77,7 @@ def test_a_mass_that_is_let_go_swings_out_in_half_cycles_and_sticks(dim, integra
 @pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
 @pytest.mark.parametrize("integrator", ["radau", "genalpha"])
 def test_a_mass_that_is_dragged_sticks_and_slips(integrator):
-    """It holds until the spring has mu N, and then moves by V (t - sin(omega t)/omega), at rest once a period."""
+    """It sticks until the spring has mu N, and then moves by V (t - sin(omega t)/omega), at rest once a period."""
     speed = 0.1
     run = on_spring(2, speed=speed).run(duration=0.5, output_step=0.005, integrator=integrator,
                                         **({"step": 2e-4} if integrator == "genalpha" else {"tol": 1e-5}))
@@ -92,7 +92,9 @@ def test_a_mass_that_is_dragged_sticks_and_slips(integrator):
 
 
 def ropes(side: float, friction: float | fu.Friction) -> fu.Scene:
-    """Two taut ropes at right angles, the upper one pressed down by its supports, with a load along the lower one."""
+    """Return two taut ropes at right angles, the upper one pressed down by its supports, with a load along the lower
+    one.
+    """
     scene = fu.Scene(gravity=(0, 0, 0))
     up = 2 * RADIUS - 4e-3
     wire(scene, "lower", (-1, 0, 0), (1, 0, 0), 8, "cable12", tension=1000.0)
@@ -110,8 +112,8 @@ def test_ropes_hold_each_other_below_friction_and_slide_above():
     most = 0.3 * bare["touch.normal_force"]
     for part in (0.5, 0.95):
         rest = ropes(part * most, stick).equilibrium()
-        # the string of the upper rope takes 2000 N/m of the way by which the spring of 1e5 N/m gives: 2 %, twice with
-        # that of the lower one
+        # the string of the upper rope, 2000 N/m, reduces the stretch of the spring of 1e5 N/m by 2 %, and the lower one
+        # by as much
         assert rest["touch.friction_force"][0] == pytest.approx(-part * most, rel=0.04)
         assert rest["touch.sticking"] == 1 and rest["touch.position"][0] < 2e-5
     free = ropes(most, 0.0).equilibrium()["touch.position"][0] / most  # m/N
@@ -120,7 +122,7 @@ def test_ropes_hold_each_other_below_friction_and_slide_above():
         slid = 0.3 * rest["touch.normal_force"]
         assert rest["touch.sticking"] == 0
         assert rest["touch.friction_force"][0] == pytest.approx(-slid, rel=1e-6)
-        # the string of the upper rope bears the rest; it stiffens by 3 % as it is drawn aside
+        # the string of the upper rope bears the difference; it stiffens by 3 % under the lateral displacement
         assert rest["touch.position"][0] == pytest.approx(free * (part * most - slid), rel=0.05)
 
 
@@ -138,7 +140,7 @@ def test_a_run_goes_on_from_rest_with_what_friction_holds(part):
 
 @functools.cache
 def over_a_bar(integrator: str, **settings) -> np.ndarray:
-    """Return the places of a sagging cable that falls on a bar, rolls over it and sticks, m."""
+    """Return the positions of a sagging cable that falls on a bar, rolls over it and sticks, m."""
     made = motion(40)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", fu.FunicularWarning)
@@ -148,7 +150,7 @@ def over_a_bar(integrator: str, **settings) -> np.ndarray:
 
 
 def off(integrator: str, **settings) -> float:
-    """Return the error as a part of the motion."""
+    """Return the error relative to the motion."""
     reference = over_a_bar("explicit", tol=1e-11)
     return float(np.abs(over_a_bar(integrator, **settings) - reference).max() / np.abs(reference - reference[0]).max())
 
@@ -156,13 +158,13 @@ def off(integrator: str, **settings) -> float:
 @pytest.mark.parametrize("integrator", ["radau", "explicit"])
 @pytest.mark.parametrize("tol", [1e-6, 1e-7, 1e-9])
 def test_closest_points_that_move_over_lines_which_turn_leave_runs_within_tol(integrator, tol):
-    """The slip of the particles at one end of each step was off by the square of the step: 2e-4 at every tol."""
+    """The slip of the particles at one end of each step had an error of the square of the step: 2e-4 at every tol."""
     assert off(integrator, tol=tol) < 3 * tol  # measured: 0.0 to 1.8 tol; before 49 to 2e5
 
 
 @functools.cache
 def turning(integrator: str, tol: float) -> np.ndarray:
-    """Return the places of a bar that is thrown askew on a wire: the direction in which it slides turns."""
+    """Return the positions of a bar thrown obliquely on a wire: the direction of sliding rotates."""
     scene = fu.Scene(gravity=(0, 0, 0))
     scene.cable("wire", start=(-1, 0, 0), end=(1, 0, 0), elements=4, element="cable12", rest_length=1.99,
                 section=fu.Circle(radius=0.005),
@@ -182,7 +184,8 @@ def turning(integrator: str, tol: float) -> np.ndarray:
 @pytest.mark.parametrize("integrator", ["radau", "explicit"])
 @pytest.mark.parametrize("tol", [1e-5, 1e-6, 1e-7])
 def test_a_direction_of_sliding_that_turns_on_a_wire_is_within_tol(integrator, tol):
-    """It lagged by half a step: 5, 37 and 242 tol with explicit, 2, 11 and 56 with radau, in as many steps."""
+    """A direction that lags by half a step gives errors of 5, 37 and 242 tol with explicit, of 2, 11 and 56 with radau.
+    """
     reference = turning("radau", 1e-9)
     error = np.abs(turning(integrator, tol) - reference).max() / np.abs(reference - reference[0]).max()
     assert error < 3 * tol  # measured: 0.05, 0.1 and 0.6 tol; 0.1, 0.6 and 0.2
@@ -190,7 +193,7 @@ def test_a_direction_of_sliding_that_turns_on_a_wire_is_within_tol(integrator, t
 
 @pytest.mark.parametrize(("integrator", "most"), [("radau", 6e-7), ("explicit", 6e-7), ("genalpha", 4e-4)])
 def test_fixed_steps_over_a_bar_are_of_the_integrators_order(integrator, most):
-    """By the ends of steps alone all were of the first order: 1e-4 at 2 ms, 5e-5 at 1 ms."""
+    """By the ends of steps alone, all integrators are of the first order: 1e-4 at 2 ms, 5e-5 at 1 ms."""
     errors = [off(integrator, step=step) for step in (2e-3, 1e-3, 5e-4, 2.5e-4)]
     assert errors[0] < most
     assert errors[-1] < max(errors[0] / 50, 1e-8)  # measured: genalpha 2.7e-4 to 4.2e-6; others 2e-7 to 5e-9

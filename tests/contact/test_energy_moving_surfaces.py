@@ -28,7 +28,7 @@ def tumbling(scene: fu.Scene, shape, x: float = 0.0, spin=(5, 7, 20)) -> fu.Scen
 
 
 def thrown(shape, element="cable12", height=0.1, speed=1.0, spin=(0.5, 0.7, 2.0), **law) -> fu.Scene:
-    """Return a free cable that flies against a surface on a free body that turns."""
+    """Return a free cable that flies against a surface on a free rotating body."""
     scene = fu.Scene(gravity=(0, 0, 0))
     scene.cable("wire", start=(-0.5, height, 0), end=(0.5, height, 0), elements=4, element=element,
                 velocity=(0, -speed, 0), **ROPE)
@@ -38,7 +38,7 @@ def thrown(shape, element="cable12", height=0.1, speed=1.0, spin=(0.5, 0.7, 2.0)
 
 
 def colliding(shape, height=0.2, **law) -> fu.Scene:
-    """Return a free body whose points fly against a surface on another, both of which turn."""
+    """Return a free body whose points fly against a surface on another; both rotate."""
     scene = fu.Scene(gravity=(0, 0, 0))
     scene.rigid_body("A", mass=MASS["A"], inertia=INERTIA["A"], position=(0.03, height, 0.01), velocity=(0.1, -1, 0),
                      angular_velocity=(3, 1, 5))
@@ -48,7 +48,7 @@ def colliding(shape, height=0.2, **law) -> fu.Scene:
 
 
 def angular_momentum(run: fu.Run) -> np.ndarray:
-    """Return that of the two bodies about the origin, (time, 3), kg m²/s."""
+    """Return the angular momentum of the two bodies about the origin, (time, 3), kg m²/s."""
     total = np.zeros((len(run.time), 3))
     for name, mass in MASS.items():
         turn = Rotation.from_quat(np.roll(run[f"{name}.orientation"], -1, axis=1))
@@ -58,7 +58,7 @@ def angular_momentum(run: fu.Run) -> np.ndarray:
 
 
 def exchanged(run: fu.Run) -> float:
-    """Return how much the kinetic energy goes up and down, J."""
+    """Return the sum of rises and falls of the kinetic energy, J."""
     return float(np.abs(np.diff(run["energy.kinetic"])).sum())
 
 
@@ -118,7 +118,7 @@ TOUCHING = {thrown: {"sphere": 0.066, "capsule": 0.058, "plane": 0.077, "hills":
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("make", [thrown, colliding])
 def test_the_matrix_is_the_derivative_of_the_residual(make, shape, law):
-    """What an iteration of Newton's method leaves of an error falls with the step: the matrix turns bodies half-way."""
+    """The error after an iteration decreases with the step, since the matrix rotates bodies half-way."""
     left = []
     for h in (1e-3, 1e-4):
         engine = Engine(build(make(SHAPES[shape], height=TOUCHING[make][shape], **LAWS[law])))

@@ -1,6 +1,6 @@
 """Friction of slides: a block on a straight inclined wire against closed forms, by every integrator.
 
-Tolerances without another reason are what the wire's own motion leaves (see wires.py), or rounding.
+Other tolerances have a reason beside them: the motion of the wire itself (see wires.py), or rounding.
 """
 
 import numpy as np
@@ -37,7 +37,7 @@ def test_a_block_slides_down(integrator, dim, validated):
 
 @every_integrator
 def test_a_block_sticks(integrator):
-    """Up to the static coefficient, even where that of sliding is below the slope."""
+    """Up to the static coefficient, even with a sliding coefficient below the slope."""
     run = block(0.3, friction=stick(0.2, static_coefficient=0.6)).run(1.0, integrator=integrator, tol=1e-6)
     np.testing.assert_allclose(run["trolley.s"], 0.3, atol=1e-12)
     np.testing.assert_allclose(run["trolley.traction"], -MASS * DOWN, atol=1e-9)
@@ -46,11 +46,11 @@ def test_a_block_sticks(integrator):
 
 @every_integrator
 def test_a_block_creeps_where_friction_is_regularised(integrator):
-    """mu v/sqrt(v^2 + v0^2) is the slope: to the rounding of s over an output step, measured 4e-8 at most."""
+    """mu v/sqrt(v^2 + v0^2) equals the slope, to the rounding of s over an output step, at most 4e-8."""
     run = block(0.3, friction=Friction(coefficient=0.7, velocity=0.01)).run(1.0, integrator=integrator, tol=1e-6)
     tau = np.tan(SLOPE) / 0.7
     assert run["trolley.s_rate"][-1] == pytest.approx(0.01 * tau / np.sqrt(1 - tau**2), rel=1e-6)
-    # genalpha integrates power by the trapezoidal rule, at order 2, in a motion that comes to rest within 1e-3 s
+    # genalpha integrates power by the trapezoidal rule, of order 2, for a motion that stops within 1e-3 s
     assert energy_error(run) < {"genalpha": 1e-6, "radau": 1e-7, "explicit": 1e-9}[integrator]
 
 
@@ -70,7 +70,7 @@ def test_thrown_upwards_it_stops_then_slides_back_or_sticks(integrator, mu):
 
 @every_integrator
 def test_it_breaks_loose_where_the_force_exceeds_the_grip(integrator):
-    """A force of 20 N/s against 0.5 20 N; then it slides with 0.3 20 N against it."""
+    """A force of 20 N/s against 0.5 20 N; then the block slides against 0.3 20 N."""
     scene = block(1.0, weight=20.0, slope=0.0, friction=stick(0.3, static_coefficient=0.5))
     scene.force("A", value=(1, 0, 0), scale=TableSignal(time=(0, 2), value=(0, 40), interpolation="linear"))
     run = scene.run(1.0, integrator=integrator, tol=1e-5)
@@ -92,7 +92,7 @@ def test_viscous_friction_ends_at_a_terminal_speed(integrator, validated):
 
 
 def test_rolling_resistance_stops_a_wheel():
-    """5 s and 2.5 m: long enough for the wire to tilt by 5e-10 under the weight."""
+    """5 s and 2.5 m, in which the weight tilts the wire by 5e-10."""
     run = block(0, 1.0, slope=0.0, friction=Friction(rolling=0.02, model="stick")).run(6.0, integrator="radau")
     assert slide_events(run) == ["stuck"]
     assert run.report["events"][0]["time"] == pytest.approx(1 / (0.02 * G), abs=1e-8)
@@ -112,7 +112,8 @@ def test_two_that_stop_at_one_instant(integrator):
 
 @pytest.mark.parametrize("model", ["stick", "regularised"])
 def test_integrators_agree_on_a_cable_that_gives_way(model):
-    """And their energy balances, to tol. The normal force vibrates with the cable: genalpha at 1e-5 is 3e-4 m off."""
+    """Their energy balances agree to tol. The normal force vibrates with the cable: genalpha at 1e-5 differs by 3e-4 m.
+    """
     runs = {}
     for integrator in INTEGRATORS:
         scene = Scene()
@@ -127,11 +128,12 @@ def test_integrators_agree_on_a_cable_that_gives_way(model):
         assert runs[integrator]["energy.dissipated"][-1] > 0.5
 
 
-# ---- friction that hangs on itself: a rod whose point on the wire is ahead of its centre or behind, and far from it
+# ---- reaction-dependent friction: a rod whose point on the wire is ahead of its centre or behind, and far from it
 
 
 def rod(ahead: float, mu: float) -> Scene:
-    """Radius of gyration 0.1 m. A normal force N on its own is MASS G/2, and 5 times the friction more or less."""
+    """Return a rod with a radius of gyration of 0.1 m: a normal force of MASS G/2, plus or minus 5 times the friction.
+    """
     scene = heavy_wire(2)
     scene.rigid_body("A", mass=MASS, inertia=(0.02, 0.02, 0.02), position=(2 - ahead, -1, 0), velocity=(1, 0, 0))
     scene.slide("A", along="wire", s=2.0, at=(ahead, 1, 0), name="trolley", friction=stick(mu))
@@ -153,7 +155,7 @@ def test_friction_that_has_no_solution_is_reported():
         rod(-0.1, 0.5).run(0.01)
 
 
-# ---- what it does not touch
+# ---- other parts
 
 
 def test_the_energy_integrator_refuses():
@@ -164,7 +166,7 @@ def test_the_energy_integrator_refuses():
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 def test_a_run_goes_on_exactly_from_a_checkpoint(tmp_path, monkeypatch, integrator):
-    """With a block that sticks, one in a buffer, one against a stop, one that has left."""
+    """A block that sticks, one in a buffer, one against a stop, and one that has left."""
     def scene() -> Scene:
         made = block(1.0, 0.3, slope=0.0, friction=stick(0.2), at_end=HardStop(restitution=0.5))
         block(3.5, 1.0, scene=made, name="B", slide="b", friction=stick(0.1),
@@ -188,7 +190,7 @@ def test_a_run_goes_on_exactly_from_a_checkpoint(tmp_path, monkeypatch, integrat
 
 
 def on_an_arc(**tied) -> Scene:
-    """A body that sticks on an arc which hangs, beside its middle, under a moment that grows."""
+    """Return a body that sticks beside the middle of a hanging arc, under a growing moment."""
     def arc(u: float):
         angle = 0.85 * (2 * u - 1)
         return 2 * np.sin(angle), -2 * np.cos(angle), 0
@@ -207,10 +209,10 @@ def on_an_arc(**tied) -> Scene:
 
 @pytest.mark.filterwarnings("ignore")
 def test_friction_holds_what_the_moment_on_a_tied_frame_puts_along_the_cable():
-    """On a curve a moment pushes along it; the run was refused, as the multiplier of sticking had no equation yet.
+    """On a curve a moment acts along the cable as well.
 
-    The run ends soon after the rider has broken loose at 0.7196 s: it turns round ever faster then, until rounding
-    alone tells whether its friction is self-locking.
+    The run ends soon after the rider breaks loose at 0.7196 s: it reverses ever faster then, until rounding decides
+    whether its friction is self-locking.
     """
     began = []
     for integrator in ("radau", "genalpha"):
@@ -228,8 +230,8 @@ def test_friction_holds_what_the_moment_on_a_tied_frame_puts_along_the_cable():
 
 @pytest.mark.filterwarnings("ignore")
 def test_a_tied_frame_that_is_trapped_at_a_node_makes_no_energy_and_is_noted():
-    """At each crossing the frame was off the next element's tangent, and the step after it turned the body at once:
-    7.7 J came from nowhere at 1.026 s. Where the rider stays is a matter of the mesh: cable18 lets it go.
+    """At each node the frame must take the tangent of the next element; a rotation within one step created 7.7 J at
+    1.026 s. The mesh decides where the rider stays: cable18 releases it.
     """
     run = on_an_arc(frame="tangent").run(1.03, initial="equilibrium", integrator="genalpha", tol=1e-4,
                                          output_step=2e-3, progress=False)
@@ -239,7 +241,7 @@ def test_a_tied_frame_that_is_trapped_at_a_node_makes_no_energy_and_is_noted():
 
 
 def test_a_slide_that_may_stick_stands_beside_joints():
-    """It was refused as over-constrained with any joint in the scene."""
+    """Such a scene is not over-constrained."""
     scene = on_an_arc()
     scene.rigid_body("B", mass=1.0, inertia=(1, 1, 1), position=(0, -5, 0))
     scene.joint("spherical", (0, -4, 0), ("B", (0, 1, 0)))

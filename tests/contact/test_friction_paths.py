@@ -1,4 +1,4 @@
-"""Friction by springs within long steps: its loss, and where a point turns round, follow from the way in the step."""
+"""Friction springs within long steps: dissipation and reversals follow from the path within the step."""
 
 import functools
 import warnings
@@ -10,7 +10,7 @@ import pytest
 
 @functools.cache
 def grazed(integrator: str, tol: float) -> fu.Run:
-    """Return a run of a ball that strikes another off its middle: it slides, sticks and slides again on its surface."""
+    """Return a run of a ball that strikes another off its centre: it slides, sticks and slides again on its surface."""
     scene = fu.Scene(gravity=(0, 0, 0))
     scene.rigid_body("A", mass=1, inertia=(0.01,) * 3, position=(-0.5, 0.05, 0), velocity=(1, 0, 0))
     scene.rigid_body("B", mass=2, inertia=(0.02,) * 3, position=(0, 0, 0))
@@ -24,7 +24,7 @@ def grazed(integrator: str, tol: float) -> fu.Run:
 @pytest.mark.parametrize(("integrator", "tol", "error"), [
     ("explicit", 1e-4, 3e-4), ("explicit", 1e-6, 4e-5), ("radau", 1e-6, 2e-5), ("radau", 1e-8, 1e-6)])
 def test_the_energy_that_friction_takes(integrator, tol, error):
-    """By the ends of steps alone it was off by 3e-3, 1e-3, 4e-4 and 2e-5 of what is exchanged."""
+    """By the ends of steps alone, the errors are 3e-3, 1e-3, 4e-4 and 2e-5 of the exchanged energy."""
     balance = grazed(integrator, tol).energy_balance()
     assert np.abs(balance.residual).max() < error * balance.exchanged
 
@@ -32,7 +32,7 @@ def test_the_energy_that_friction_takes(integrator, tol, error):
 @pytest.mark.parametrize(("integrator", "tol", "error"), [
     ("explicit", 1e-6, 1e-5), ("radau", 1e-6, 2e-5), ("radau", 1e-8, 1e-6)])
 def test_a_point_that_turns_round_while_it_slides(integrator, tol, error):
-    """Where the turn was not looked for, the velocity in m/s was off by 3e-4, 1.6e-4 and 2e-5."""
+    """Without the search for reversals the velocity, in m/s, has errors of 3e-4, 1.6e-4 and 2e-5."""
     exact = grazed("radau", 1e-10)["A.velocity"][-1]
     assert grazed(integrator, tol)["A.velocity"][-1] == pytest.approx(exact, abs=error)
 
@@ -57,7 +57,7 @@ def bounced(integrator: str, tol: float) -> fu.Run:
 @pytest.mark.parametrize(("integrator", "tol", "error"), [
     ("explicit", 1e-4, 5e-4), ("explicit", 1e-6, 2e-4), ("radau", 1e-4, 5e-4), ("radau", 1e-6, 1e-5)])
 def test_the_energy_that_friction_of_lines_takes(integrator, tol, error):
-    """By the ends of steps alone it was off by 9e-3, 3e-3, 1.3e-3 and 6e-5 of what is exchanged."""
+    """By the ends of steps alone, the errors are 9e-3, 3e-3, 1.3e-3 and 6e-5 of the exchanged energy."""
     balance = bounced(integrator, tol).energy_balance()
     assert np.abs(balance.residual).max() < error * balance.exchanged
 
@@ -65,7 +65,7 @@ def test_the_energy_that_friction_of_lines_takes(integrator, tol, error):
 @pytest.mark.parametrize("integrator", ["explicit", "radau"])
 @pytest.mark.parametrize("tol", [1e-4, 1e-6])
 def test_a_bar_that_slides_and_sticks_on_a_wire_is_within_tol(integrator, tol):
-    """With explicit steps it was off by 24 tol at 1e-6."""
+    """By the ends of steps alone, the error with explicit steps is 24 tol at 1e-6."""
     reference = bounced("explicit", 1e-10)["bar.position"]
     error = np.abs(bounced(integrator, tol)["bar.position"] - reference).max()
     assert error < 3 * tol * np.abs(reference - reference[0]).max()

@@ -1,4 +1,4 @@
-"""Friction by springs within steps: against equations whose changes are events, and within tol."""
+"""Friction springs within steps: against equations with events for all changes, and within tol."""
 
 import functools
 import warnings
@@ -16,7 +16,8 @@ DROPS = {"slides and sticks as it is pressed more and less": ((0.5 * REST, 0.2, 
 
 
 class Drop:
-    """A point with a spring that sticks, slides, or is off the ground; state: x, y, their rates, the stretch."""
+    """A point with a friction spring that sticks, slides, or is off the ground; state: x, y, their rates, the stretch.
+    """
 
     def __init__(self, state, damping):
         self.damping, self.mode, self.side = damping, "free" if state[0] > 0 else "sticks", 0.0
@@ -36,14 +37,14 @@ class Drop:
         return [z[2], z[3], -K * stretch, self.press(z) - G, z[2] if self.mode == "sticks" else 0.0]
 
     def events(self):
-        """Return what ends a mode as it passes zero, with the sign."""
+        """Return the functions whose zeros, with a sign, end a mode."""
         off = (lambda _, z: z[1], 1)
         return {"free": [(lambda _, z: z[1], -1)],
                 "sticks": [(lambda _, z: z[4] - self.bound(z), 1), (lambda _, z: -z[4] - self.bound(z), 1), off],
                 "slides": [(lambda _, z: self.side * z[2] - self.bound_rate(z), -1), off]}[self.mode]
 
     def change(self, which):
-        """Take what follows from an event."""
+        """Change the mode after an event."""
         z = self.state
         if self.mode == "free":
             z[1], z[4] = -1e-16, 0.0
@@ -59,7 +60,7 @@ class Drop:
 
 
 def by_events(state, damping, times):
-    """Return (times, 2): the places of the point."""
+    """Return (times, 2) positions of the point."""
     drop, t, places = Drop(state, damping), 0.0, np.full((len(times), 2), np.nan)
     while t < times[-1]:
         watched = []
@@ -86,7 +87,7 @@ def exact(name):
 
 
 def dropped(name, **settings):
-    """Return the error of a run, as a part of its motion."""
+    """Return the error of a run relative to its motion."""
     (height, along, down), damping, duration = DROPS[name]
     scene = fu.Scene(gravity=(0, -G, 0))
     scene.surface("bed", fu.Plane())
@@ -102,12 +103,12 @@ def dropped(name, **settings):
 @pytest.mark.parametrize("integrator", ["explicit", "radau"])
 @pytest.mark.parametrize("tol", [1e-4, 1e-6])
 def test_a_point_that_sticks_and_slides_is_within_tol(name, integrator, tol):
-    """By the ends of steps it was off by 25 tol at 1e-6, and by 42 tol at 1e-7; radau, which saw no kinks, by 18."""
+    """By the ends of steps alone, the errors are 25 tol at 1e-6 and 42 tol at 1e-7; with radau, 18."""
     assert dropped(name, integrator=integrator, tol=tol) < 1.5 * tol
 
 
 def test_radau_sees_where_points_touch_and_come_off():
-    """Without friction it was off by 9 tol."""
+    """Without detection of these instants the error is 9 tol, even without friction."""
     runs = []
     for integrator, tol in (("explicit", 1e-9), ("radau", 1e-6)):
         scene = bar()[0].replace("contact_1", friction=None)
@@ -116,7 +117,7 @@ def test_radau_sees_where_points_touch_and_come_off():
 
 
 def test_the_error_of_a_touch_that_sticks_falls_with_the_square_of_the_step():
-    """It was of the first order: 7e-7 with a step of 0.2 ms, which is 8e-8 now."""
+    """7e-7 with a first-order method and a step of 0.2 ms; 8e-8 with the second order."""
     coarse, fine = (dropped("sticks as it touches", integrator="explicit", step=h) for h in (2e-4, 2.5e-5))
     assert coarse < 2e-7 and fine < coarse / 20
 
@@ -133,7 +134,7 @@ def rope(elements=1, damping=2.0):
 
 
 def bar():
-    """Return a bar that falls on two points of it."""
+    """Return a bar that falls on two of its points."""
     scene = fu.Scene(gravity=(0, -G, 0))
     scene.surface("bed", fu.Plane())
     scene.rigid_body("b", mass=1.0, inertia=(0.02,) * 3, position=(0, 0.3, 0), velocity=(1, 0, 0),
@@ -153,7 +154,7 @@ def thrown(make, integrator, tol):
 
 
 def ropes():
-    """Return a rope of four elements whose contact has less damping."""
+    """Return a rope of four elements with less damping in its contact."""
     return rope(4, damping=0.2)
 
 
@@ -161,14 +162,16 @@ def ropes():
     *((make, integrator) for make in (rope, bar) for integrator in ("auto", "radau", "explicit")), (ropes, "radau")])
 @pytest.mark.parametrize("tol", [1e-3, 1e-4, 1e-5, 1e-6])
 def test_a_rope_and_a_bar_on_rough_ground_are_within_tol(make, integrator, tol):
-    """They were off by up to 450 and 66 tol, without a word; references by both integrators differed by 1e-5."""
+    """By the ends of steps alone, the errors are up to 450 and 66 tol, and references of both integrators differ by
+    1e-5.
+    """
     reference = thrown(make, "explicit", 1e-9)
     motion = np.abs(reference - reference[0]).max()
     assert np.abs(thrown(make, integrator, tol) - reference).max() < 3 * tol * motion
 
 
 def test_the_energy_integrator_is_of_the_second_order():
-    """It was of the first: off by 2.4e-3 of the motion with a step of 0.2 ms, and by 1.2e-3 with half of that."""
+    """The errors of a first-order method are 2.4e-3 of the motion with a step of 0.2 ms, and 1.2e-3 with half of it."""
     reference, errors = thrown(rope, "explicit", 1e-9), []
     for step in (2e-4, 5e-5):
         scene, key = rope()
@@ -187,7 +190,7 @@ def test_references_agree(make):
 
 @functools.cache
 def turning(integrator, **settings):
-    """Return the places of a puck that slides, and turns, as a force across its way pulls it."""
+    """Return the positions of a puck that slides along a curve under a transverse force."""
     scene = fu.Scene(gravity=(0, -G, 0))
     scene.surface("bed", fu.Plane())
     scene.rigid_body("puck", mass=1.0, inertia=(0.02,) * 3, position=(0, REST, 0), velocity=(1, 0, 0))
@@ -199,14 +202,14 @@ def turning(integrator, **settings):
 @pytest.mark.parametrize("integrator", ["radau", "explicit"])
 @pytest.mark.parametrize("tol", [1e-3, 1e-4, 1e-5, 1e-6])
 def test_a_direction_of_sliding_that_turns_is_within_tol(integrator, tol):
-    """It lagged by half a step, which no estimate saw: by 411 tol at 1e-5 with radau."""
+    """A direction that lags by half a step gives 411 tol at 1e-5 with radau, which no estimate shows."""
     reference = turning("explicit", step=2e-5)
     assert np.abs(turning(integrator, tol=tol) - reference).max() < 3 * tol * np.abs(reference).max()
 
 
 @pytest.mark.parametrize("integrator", ["explicit", "radau", "genalpha"])
 def test_a_body_that_lands_sliding_on_three_points_turns_as_at_small_steps(integrator):
-    """Its friction turns within steps: it was 9,600, 2,300 and 180 tol off, by integrator."""
+    """The friction rotates within steps; without that the errors are 9,600, 2,300 and 180 tol, by integrator."""
     def landed(**settings):
         scene = fu.Scene(gravity=(0, -G, 0))
         scene.surface("bed", fu.Plane())

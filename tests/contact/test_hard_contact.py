@@ -1,4 +1,4 @@
-"""Hard contact: bounces, rest, friction, several points at once, curved and moving surfaces, statics, refusals."""
+"""Hard contact: bounces, rest, friction, several points, curved and moving surfaces, statics, refusals."""
 
 from itertools import product
 from math import asin, cos, pi, sin, sqrt, tan
@@ -34,7 +34,7 @@ def ball(height=1.0, restitution=0.8, radius=0.1, **more):
 @SIZES
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 def test_a_ball_bounces_to_the_square_of_its_restitution_and_comes_to_rest(integrator, size):
-    """Heights fall as e^(2 n), times are 2 v/g apart; what would leave below rest_velocity stays."""
+    """Heights fall as e^(2 n), impacts are 2 v/g apart; below rest_velocity the ball stays."""
     run = ball().run(duration=5.0, output_step=0.01, integrator=integrator, **size)
     what, times = happened(run)
     speeds = [sqrt(2 * G)]
@@ -56,7 +56,7 @@ def test_a_ball_bounces_to_the_square_of_its_restitution_and_comes_to_rest(integ
 
 
 def slope(angle, friction, speed=0.0, points=None, **more):
-    """Return a scene with a box, or a ball, that goes up a slope, and the direction upwards."""
+    """Return a scene with a box, or a ball, that moves up a slope, and the upward direction."""
     up, normal = np.array([cos(angle), sin(angle), 0]), np.array([-sin(angle), cos(angle), 0])
     scene = fu.Scene(gravity=(0, -G, 0))
     scene.surface("slope", fu.Plane(normal=tuple(normal)))
@@ -100,7 +100,7 @@ def test_a_block_slides_up_a_slope_and_sticks_or_slides_back(friction, points, i
 @pytest.mark.parametrize("integrator", WITH_FRICTION)
 @pytest.mark.parametrize("friction", [0.1, 0.3])
 def test_a_ball_rolls_or_slips_down_a_slope(friction, integrator, validated):
-    """It rolls with 5/7 of g sin a where 2/7 tan a of friction holds it, else it slips."""
+    """It rolls with 5/7 of g sin a where the friction exceeds 2/7 tan a; otherwise it slips."""
     angle = 0.5
     scene, up = slope(angle, friction, radius=0.1)
     run = scene.run(duration=1.0, output_step=0.1, integrator=integrator, tol=1e-7)
@@ -117,7 +117,7 @@ def test_a_ball_rolls_or_slips_down_a_slope(friction, integrator, validated):
 @pytest.mark.parametrize("friction", [0.05, 0.25])
 @pytest.mark.parametrize("integrator", WITH_FRICTION)
 def test_an_impact_with_friction_slips_or_rolls_on(friction, integrator, validated):
-    """Impulses across the normal: friction times (1 + e) m v, or 2/7 of what stops the slip, if that is less."""
+    """Tangential impulses: friction times (1 + e) m v, or 2/7 of the impulse that stops the slip, if that is less."""
     scene = ball(0.5, 0.7, 0.1, friction=friction, velocity=(1, 0, 0), angular_velocity=(0, 0, 30.0))
     run = scene.run(duration=0.4, output_step=0.4, integrator=integrator, tol=1e-7)
     speed, slip = sqrt(2 * G * 0.5), 1.0 + 30.0 * 0.1
@@ -133,7 +133,7 @@ def test_an_impact_with_friction_slips_or_rolls_on(friction, integrator, validat
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 def test_a_ball_leaves_a_dome_where_it_no_longer_presses(integrator, validated):
-    """At two thirds of the height that it began at (frictionless)."""
+    """At two thirds of its initial height, without friction."""
     scene = fu.Scene(gravity=(0, -G, 0))
     scene.surface("dome", fu.Sphere(radius=1.0))
     scene.rigid_body("ball", mass=2.0, inertia=(0.01,) * 3, position=(1.1 * sin(0.2), 1.1 * cos(0.2), 0))
@@ -171,7 +171,7 @@ def test_a_bead_slides_in_a_bowl_as_by_quadrature(integrator, validated):
 
 @pytest.mark.parametrize("integrator", WITH_FRICTION)
 def test_a_pendulum_hits_a_wall(integrator):
-    """At its lowest point: after half the time of a swing, with the speed that its height gives, and e of it back."""
+    """At its lowest point, after half a swing: with the speed of its height before, and e times that after."""
     start, e = 0.5, 0.6
     scene = fu.Scene(gravity=(0, -G, 0))
     scene.surface("wall", fu.Plane(normal=(1, 0, 0)))
@@ -237,7 +237,7 @@ def test_a_box_that_lands_flat_comes_back_without_turning(integrator):
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 def test_balls_that_meet_keep_their_momentum(integrator):
-    """Two equal ones in line: (1 - e)/2 and (1 + e)/2 of the velocity."""
+    """Two equal balls in line: (1 - e)/2 and (1 + e)/2 of the velocity."""
     e = 0.6
     scene = fu.Scene(gravity=(0, 0, 0))
     for name, x, v in (("one", -1, 1.0), ("two", 0, 0.0)):
@@ -257,7 +257,7 @@ def test_balls_that_meet_keep_their_momentum(integrator):
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 def test_a_contact_for_a_thousandth_of_a_step_is_not_missed(integrator):
-    """A ball that flies over a sphere and touches it by little at the highest point of its way."""
+    """A ball flies over a sphere and touches it slightly at the highest point of its path."""
     peak, step = 0.5125, 0.05
     half = step * 1e-3 / 2
     scene = fu.Scene(gravity=(0, G, 0))
@@ -294,7 +294,7 @@ def test_equilibrium_finds_what_touches_and_modes_are_about_it():
 
 
 def test_a_load_that_lifts_opens_a_contact_and_closes_it_again():
-    """The force is a triangle over time: it exceeds the weight from 0.5 s on."""
+    """The force is a triangle over time and exceeds the weight from 0.5 s on."""
     scene = fu.Scene(gravity=(0, -G, 0))
     scene.surface("ground", fu.Plane())
     scene.rigid_body("block", mass=1.0, inertia=(0.01,) * 3, position=(0, 0, 0))
@@ -344,7 +344,7 @@ def test_cables_and_what_integrators_do_not_know_are_refused():
 
 @pytest.mark.parametrize("integrator", WITH_FRICTION)
 def test_a_box_in_the_plane_goes_as_in_space(integrator):
-    """Bounces, slides and comes to lie; in the plane z = 0 where a planar cable stands beside it."""
+    """The box bounces, slides and comes to rest, also in the plane z = 0 beside a planar cable."""
     ends = []
     for element in ("cable8p", "cable12"):
         scene = fu.Scene(gravity=(0, -G, 0))
@@ -365,7 +365,7 @@ def test_a_box_in_the_plane_goes_as_in_space(integrator):
 
 @pytest.mark.parametrize("integrator", WITH_FRICTION)
 def test_a_ball_that_spins_on_a_table_that_tilts_has_the_acceleration_of_its_velocity(integrator):
-    """Where it sticks, the normal turns with the table and takes the particle that touches along."""
+    """Where the ball sticks, the normal rotates with the table and moves the particle in contact."""
     scene = fu.Scene(gravity=(0, -G, 0))
     scene.rigid_body("table", mass=4.0, inertia=(1, 1, 1), position=(0, 0, 0), angular_velocity=(0.3, 0.4, -0.2))
     scene.joint("spherical", (0, 0, 0), ("table", (0, 0, 0)), name="pivot")
@@ -393,7 +393,7 @@ def test_a_scene_file_has_it_and_a_run_goes_on_from_its_state(tmp_path):
 
 
 def on_feet(n):
-    """A plate at rest on n feet."""
+    """Return a plate at rest on n feet."""
     scene = fu.Scene()
     scene.rigid_body("A", mass=1.0, inertia=(0.1,) * 3, position=(0, 0.1, 0))
     scene.surface("ground", fu.Plane())
@@ -404,9 +404,7 @@ def on_feet(n):
 
 @pytest.mark.parametrize(("was", "now"), [(3, 4), (4, 3)])
 def test_a_state_of_rest_with_other_hard_contacts(was, now):
-    """Its forces are of other points: a search for rest finds them anew; modes about it were those of wrong forces, or
-    ended in an IndexError.
-    """
+    """Its forces belong to other points: statics compute them anew, and modes about it are refused."""
     state = on_feet(was).equilibrium()
     rest = on_feet(now).equilibrium(start=state)
     assert rest["c.force"][1] == pytest.approx(9.81)

@@ -1,4 +1,4 @@
-"""Contact inside of a hollow: balls in pipes, spheres and boxes, a rope in a duct; by penalty and hard."""
+"""Contact inside a hollow: balls in pipes, spheres and boxes, a rope in a duct; by penalty and hard."""
 
 from math import cos, pi, sqrt
 
@@ -15,7 +15,7 @@ PIPES = {"pipe": fu.Cylinder(radius=R, length=4.0, axis=(0, 0, 1)), "sphere": fu
 
 
 def ball(shape, angle=0.9, velocity=(0, 0, 0), gravity=(0, -G, 0), **contact):
-    """Return a ball of 2 kg that touches a hollow about the origin at an angle from its bottom."""
+    """Return a ball of 2 kg in contact with a hollow about the origin, at an angle from its bottom."""
     scene = fu.Scene(gravity=gravity)
     scene.surface("hollow", shape, inside=True)
     scene.rigid_body("ball", mass=2.0, inertia=(0.4 * 2.0 * RADIUS**2,) * 3, velocity=velocity,
@@ -25,12 +25,12 @@ def ball(shape, angle=0.9, velocity=(0, 0, 0), gravity=(0, -G, 0), **contact):
 
 
 def swings(angle, factor=1.0):
-    """Return the period of a pendulum of the length R - r, whose inertia is larger by a factor."""
+    """Return the period of a pendulum of the length R - r with an inertia larger by a factor."""
     return 4 * sqrt(factor * ARM / G) * ellipk(np.sin(angle / 2) ** 2)
 
 
 def turning_time(run):
-    """Return the time in s of the first return to the side of the start."""
+    """Return the time in s of the first return to the starting side."""
     x, t = run["ball.position"][:, 0], run.time
     k = np.flatnonzero((x[:-1] < 0) & (x[1:] >= 0))[0]  # three quarters of a period
     return (t[k] - x[k] * (t[k + 1] - t[k]) / (x[k + 1] - x[k])) * 4 / 3
@@ -47,7 +47,7 @@ def test_a_ball_slides_in_a_pipe_as_a_pendulum(shape, integrator):
 
 
 def test_a_ball_rolls_in_a_pipe_with_the_inertia_of_its_spin():
-    """Without slip the inertia is 7/5 of that of the mass: hard contact, and a stiff one by penalty."""
+    """Rolling increases the inertia to 7/5 of the mass, in hard contact and a stiff penalty."""
     hard = ball(PIPES["pipe"], 0.5, restitution=0.0, friction=0.6)
     stiff = ball(PIPES["pipe"], 0.5, stiffness=4e6, friction=0.6)
     for scene, tol in (hard, 3e-5), (stiff, 2e-4):
@@ -58,7 +58,7 @@ def test_a_ball_rolls_in_a_pipe_with_the_inertia_of_its_spin():
 @pytest.mark.parametrize("integrator", ["explicit", "radau", "genalpha", "energy"])
 @pytest.mark.parametrize("shape", [*PIPES.values(), fu.Box(size=(1, 1, 1))])
 def test_a_ball_that_bounces_about_keeps_its_energy(shape, integrator):
-    """By penalty, through edges and corners of the box: 12 J; it ends inside."""
+    """By penalty, through edges and corners of the box: 12 J; the ball ends inside."""
     scene = ball(shape, velocity=(1.0, 0.5, 0.2), stiffness=2e4)
     run = scene.run(duration=1.0, output_step=0.01, integrator=integrator, tol=1e-6)
     total = sum(run[f"energy.{part}"] for part in ("kinetic", "elastic", "potential"))
@@ -69,7 +69,7 @@ def test_a_ball_that_bounces_about_keeps_its_energy(shape, integrator):
 
 @pytest.mark.parametrize("restitution", [0.0, 0.9])
 def test_a_ball_in_hard_contact_with_a_box_from_within(restitution):
-    """It rests on the floor and at the wall that gravity leans to, or bounces off them: one constraint a wall."""
+    """It rests on the floor and at the wall on the side of gravity, or bounces off them: one constraint per wall."""
     lean = (3.0, -9.0, 0.0)
     scene = ball(fu.Box(size=(1, 1, 1)), 0.0, gravity=lean, restitution=restitution)
     run = scene.run(duration=2.0, output_step=0.01, tol=1e-6)
@@ -88,7 +88,7 @@ def test_a_corner_by_penalty_bears_as_its_walls_do():
 
 
 def rope(shape, element="cable12", elements=12, stiffness=1e4):
-    """Return a rope of 4 m with its ends on the axis of a duct along x, and the force that its weight has a metre."""
+    """Return a rope of 4 m with its ends on the axis of a duct along x, and its weight per metre."""
     scene = fu.Scene(gravity=(0, -G, 0))
     scene.surface("duct", shape, inside=True)
     section = fu.Circle(radius=0.02)
@@ -107,7 +107,7 @@ DUCTS = {"tube": fu.Cylinder(radius=0.1, length=4.2, axis=(1, 0, 0)),
 @pytest.mark.parametrize("element", ["cable12", "cable8p"])
 @pytest.mark.parametrize("duct", DUCTS)
 def test_a_rope_rests_on_the_bottom_of_its_duct(duct, element):
-    """Drawn along the axis, where a tube has no direction. Its middle lies as deep as its weight presses it in."""
+    """It is drawn along the axis, where a tube has no normal. Its middle rests at the penetration of its weight."""
     scene, weight = rope(DUCTS[duct], element)
     rest = scene.equilibrium()
     middle = rest["rope.position"][5:8, 1]
@@ -129,8 +129,8 @@ def test_a_rope_falls_in_its_duct_with_its_energy_in_balance(integrator):
 
 
 def test_a_cart_carries_a_hollow():
-    """A ball in a pipe on a free cart without gravity across: momentum stays, and the ball oscillates with the
-    reduced mass.
+    """A ball in a pipe on a free cart: the horizontal momentum is constant, and the ball oscillates with the reduced
+    mass.
     """
     scene = fu.Scene(gravity=(0, -G, 0))
     scene.rigid_body("cart", mass=3.0, inertia=(1, 1, 1), position=(0, 0, 0))
@@ -188,7 +188,7 @@ def test_pictures_show_what_is_inside_of_a_hollow(shape):
 
 
 def catheter(elements):
-    """Return a rod of 1.003 m, clamped at both ends 1 m apart, in a tube that leaves it 4 mm."""
+    """Return a rod of 1.003 m, clamped at both ends 1 m apart, in a tube with 4 mm of clearance."""
     scene = fu.Scene(gravity=(0, -G, 0))
     scene.cable("rod", start=(0, 0, 0), end=(1, 0, 0), rest_length=1.003, elements=elements, element="cable12",
                 section=fu.Circle(radius=0.002),
@@ -202,7 +202,7 @@ def catheter(elements):
 
 @pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
 def test_a_rod_that_buckles_in_its_tube_stays_in_it():
-    """Also between the points at which it touches, with long elements, which a note tells."""
+    """Also between its contact points, with long elements, which a note reports."""
     for elements, told in (5, True), (24, False):
         rest = catheter(elements).equilibrium()
         l, u = 1.003 / elements, np.linspace(0, 1, 50)[:, None, None]

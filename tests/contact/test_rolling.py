@@ -1,4 +1,4 @@
-"""Friction of contact by penalty acts where a sphere about a point of a body touches: rolling, in closed forms."""
+"""Friction of penalty contact acts at the surface of a sphere about a point of a body: rolling, in closed forms."""
 
 import functools
 from math import cos, sin, tan
@@ -20,7 +20,7 @@ SUNK = MASS * G / 2e5
 
 
 def ball(slope=0.0, friction=0.5, law=STIFF, off=0.0, **state):
-    """Return a ball, of the radius about a point off its centre of mass or not, on a plane through the origin."""
+    """Return a ball on a plane through the origin, its sphere about the centre of mass or another point."""
     normal = np.array([-sin(slope), cos(slope), 0])
     scene = fu.Scene(gravity=(0, -G, 0))
     sunk = SUNK * cos(slope) if law is STIFF else 0.0
@@ -75,14 +75,14 @@ def test_a_ball_rolls_down_a_slope_or_slides(integrator):
         acceleration = 5 / 7 * G * sin(slope) if rolls else G * (sin(slope) - friction * cos(slope))
         turn = acceleration / RADIUS if rolls else friction * MASS * G * cos(slope) * RADIUS / INERTIA
         down = -run["ball.position"] @ [cos(slope), sin(slope), 0]
-        # until friction has stretched its spring it slides with less, and is then faster by 4e-4 m/s
+        # until friction has stretched its spring, the ball slides with less friction and is 4e-4 m/s faster
         assert down == pytest.approx(acceleration * run.time**2 / 2, abs=3e-4)
         assert run["ball.angular_velocity"][:, 2] == pytest.approx(turn * run.time, abs=3e-2)  # it vibrates
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 def test_momentum_stays_of_a_ball_that_rolls_on_a_free_plank(integrator):
-    """A spinning ball is pressed on a plank that floats: friction makes no momentum and no moment."""
+    """A spinning ball is pressed on a floating plank: friction changes neither momentum nor angular momentum."""
     scene = fu.Scene(gravity=(0, 0, 0))
     scene.rigid_body("plank", mass=3.0, inertia=(0.2, 0.3, 0.4), position=(0, -0.05, 0), velocity=(0, 0.3, 0))
     scene.rigid_body("ball", mass=MASS, inertia=(INERTIA,) * 3, position=(0.1, RADIUS, 0.02), velocity=(0.2, 0, 0.1),
@@ -104,7 +104,7 @@ def test_momentum_stays_of_a_ball_that_rolls_on_a_free_plank(integrator):
 
 @functools.cache
 def held(moment):
-    """Return a state of rest of a wheel that a spring at its axle keeps from rolling away."""
+    """Return the equilibrium of a wheel whose axle a spring holds."""
     scene = ball()
     scene.spring("ball", (-1, RADIUS - SUNK, 0), stiffness=100.0)
     scene.moment("ball", value=(0, 0, -moment))
@@ -122,7 +122,7 @@ def test_a_cylinder_is_held_by_friction_at_its_rim(moment):
 @pytest.mark.parametrize("friction", [0.5, 0.01])
 @pytest.mark.parametrize("shape", ["plane", "sphere", "cylinder", "sphere on a body"])
 def test_the_static_matrix_is_the_derivative_of_the_residual(shape, friction):
-    """At a state near that drawn, where friction sticks, or slides."""
+    """At a state near the drawn one, with sticking or sliding friction."""
     surface = {"plane": fu.Plane(normal=(0.1, 1, 0.05)), "sphere": fu.Sphere(radius=0.3, at=(0.02, -0.3, 0.03)),
                "cylinder": fu.Cylinder(radius=0.3, length=1, at=(0.02, -0.3, 0)),
                "sphere on a body": fu.Sphere(radius=0.3, at=(0.02, -0.1, 0.03))}[shape]

@@ -1,4 +1,4 @@
-"""A body that comes down on a steep flank: the surface is felt above the highest of the ground, too."""
+"""A body falls on a steep flank: contact is searched above the highest point of the ground, too."""
 
 import funicular as fu
 import numpy as np

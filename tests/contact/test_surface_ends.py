@@ -1,4 +1,4 @@
-"""Contact beyond the ends of a cylinder or the table of a height field is told of, and contact within them is not."""
+"""Contact beyond the ends of a cylinder or the table of a height field is reported; contact within is not."""
 
 import re
 
@@ -12,7 +12,7 @@ DRUM = fu.Cylinder(radius=0.1, length=0.2, axis=(0, 0, 1))
 
 
 def told(messages) -> list[float]:
-    """Return how far, in m, contact is told to be beyond an end."""
+    """Return the reported distance of contact beyond an end, m."""
     return [float(found[1]) for each in messages if (found := re.search(r"up to (\S+) m beyond the (end|table)", each))]
 
 

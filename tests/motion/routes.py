@@ -1,4 +1,4 @@
-"""Other scenes and runs that must have the motion of a given one: the same scene moved, reordered, in other units..."""
+"""Other scenes and runs with the motion of a given one: moved, reordered, in other units..."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ Triple = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Frame:
-    """Where and in which units another scene has the ground's axes and origin of the given one.
+    """Position and units of another scene relative to the axes and origin of the given one.
 
-    rotation: vector in rad; shift: in m of the given scene; length and time: units of the other scene in those of the
+    rotation: vector in rad. shift: in m of the given scene. length, time: units of the other scene in those of the
     given one.
     """
 
@@ -38,23 +38,21 @@ class Frame:
     time: float = 1.0
 
     def moved(self, scene: fu.Scene) -> fu.Scene:
-        """Return the scene, turned and shifted."""
+        """Return the scene, rotated and shifted."""
         return turned_scene(scene, self.rotation, self.shift)
 
     def back(self, points: Vectors) -> Vectors:
-        """Return points (..., 3) of the other scene as they are in the given one, in m."""
+        """Return points (..., 3) of the other scene in the given one, m."""
         return rotate(turned_by(-np.array(self.rotation)), points * self.length - np.array(self.shift))
 
     def axes(self) -> Vectors:
-        """Return (3, 3): the ground's axes of the given scene along those of the other one, as rows."""
+        """Return (3, 3): the axes of the given scene's ground along those of the other one, as rows."""
         return rotate(turned_by(np.array(self.rotation)), np.eye(3))
 
 
 @dataclass(frozen=True)
 class Route:
-    """A scene with the motion of a given one, seen in a frame; reversed: names of cables whose nodes count from the
-    other end.
-    """
+    """A scene with the motion of a given one, in a frame; reversed: names of cables with reversed node numbers."""
 
     scene: fu.Scene
     frame: Frame = Frame()
@@ -66,8 +64,8 @@ Maker = Callable[[fu.Scene], Route | None]
 
 
 def points(run: fu.Run, route: Route) -> dict[str, Vectors]:
-    """Return by name of cables and bodies (time, points, 3): nodes, and of bodies the origin and a point on each of
-    three lines, which lie along the given ground's axes as drawn, at the radius of gyration.
+    """Return by name of cables and bodies (time, points, 3): nodes, and of bodies the origin and three points along the
+    axes of the given ground as drawn, at the radius of gyration.
     """
     found = {}
     for name in route.scene.cables:
@@ -83,21 +81,21 @@ def points(run: fu.Run, route: Route) -> dict[str, Vectors]:
 
 
 def apart(one: dict[str, Vectors], other: dict[str, Vectors]) -> float:
-    """Return the largest distance of two motions over the largest motion."""
+    """Return the largest distance of two motions relative to the largest motion."""
     assert one.keys() == other.keys()
     largest = max(np.linalg.norm(each - each[:1], axis=-1).max() for each in one.values())
     return max(np.linalg.norm(each - other[name], axis=-1).max() for name, each in one.items()) / largest
 
 
 def simulate(scene: fu.Scene, duration: float, **settings) -> fu.Run:
-    """Return a run with 20 times of output; its notes stand in the report."""
+    """Return a run with 20 output times; its notes are in the report."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", fu.FunicularWarning)
         return scene.run(duration, **{"output_step": duration / 20, "progress": False} | settings)
 
 
 def in_other_order(parts: Iterable[Part]) -> list[Part]:
-    """Return parts of a scene in another order in which they can be added: each kind backwards."""
+    """Return the parts of a scene in another valid order: each kind backwards."""
     kinds: dict[str, list[Part]] = {}
     for part in parts:
         kinds.setdefault(part.group, []).insert(0, part.as_made())
@@ -111,8 +109,8 @@ def reordered(scene: fu.Scene) -> Route | None:
 
 
 def moving(rotation: Triple = (0.0, 0.0, 0.0), up: float = 0.0, aside: float = 0.0) -> Maker:
-    """Return the route of a scene turned by a vector in rad, and then moved by so many m up and across the plane of
-    x and gravity. A fluid that changes with the height is not moved up.
+    """Return the route of a scene rotated by a vector in rad and moved in m, up and across the plane of x and gravity.
+    A fluid that changes with height is not moved up.
     """
     def moved(scene: fu.Scene) -> Route | None:
         if any(fluid.profile is not None or fluid.surface is not None for fluid in scene.fluids.values()) and up:
@@ -128,7 +126,7 @@ def moving(rotation: Triple = (0.0, 0.0, 0.0), up: float = 0.0, aside: float = 0
 
 
 def in_other_units(length: float, mass: float, time: float) -> Maker:
-    """Return the route of a scene in other units: so many of them are a metre, a kilogram, a second."""
+    """Return the route of a scene in other units, given by their number per metre, kilogram and second."""
     def made(scene: fu.Scene) -> Route:
         return Route(in_units(scene, length, mass, time), Frame(length=1 / length, time=1 / time))
 
@@ -136,7 +134,9 @@ def in_other_units(length: float, mass: float, time: float) -> Maker:
 
 
 def reversed_cables(scene: fu.Scene) -> Route | None:
-    """Cables that begin where they ended. None of a scene whose parts have a sense along them: motors, polars."""
+    """Return the route with reversed cables; none for a scene with parts that have a direction along them: motors,
+    polars.
+    """
     driven = any(slide.drive is not None or slide.velocity is not None for slide in scene.slides.values())
     if not scene.cables or driven or any(drag.polar is not None for drag in scene.drags.values()):
         return None
@@ -145,7 +145,7 @@ def reversed_cables(scene: fu.Scene) -> Route | None:
 
 
 def _from_the_end(part: Part, scene: fu.Scene) -> Part:
-    """Return a part of a scene whose cables begin at their other ends."""
+    """Return a part of a scene whose cables are reversed."""
     if isinstance(part, Cable):
         return _reversed(part)
     changes: dict[str, object] = {
@@ -169,7 +169,7 @@ def _from_the_end(part: Part, scene: fu.Scene) -> Part:
 
 
 def _reversed(cable: Cable) -> Cable:
-    """Return a cable that begins at its other end."""
+    """Return the reversed cable."""
     assert not any(cable.angular_velocity), "its velocity is of its first point"
     changes = {"points": cable.points[::-1]} if cable.points else {"start": cable.end, "end": cable.start}
     if cable.nodes is not None:
@@ -178,7 +178,7 @@ def _reversed(cable: Cable) -> Cable:
 
 
 def planes_as_boxes(scene: fu.Scene) -> Route | None:
-    """The upper face of a large box in place of a plane."""
+    """Return the route with the upper face of a large box in place of a plane."""
     planes = [part for part in scene.surfaces.values() if isinstance(part.shape, fu.Plane)]
     for part in planes:
         up = np.array(part.shape.normal) / np.linalg.norm(part.shape.normal)
@@ -189,8 +189,8 @@ def planes_as_boxes(scene: fu.Scene) -> Route | None:
 
 
 def in_space_or_plane(scene: fu.Scene) -> Route | None:
-    """Spatial elements in place of planar ones, or the other way round where the scene stays in its plane. None of
-    planar cables that are tied rigidly: those without sections cannot be in space.
+    """Return the route with spatial elements in place of planar ones, or the reverse for a planar motion. None for
+    rigidly tied planar cables, whose sections have no spatial form.
     """
     if scene.dim == 3:
         planar = planar_of(scene).scene

@@ -1,11 +1,12 @@
 """The flexible slider-crank of the IVP test set (Simeon 1996) from the kernels of a planar modal body.
 
-The crank turns at a constant rate, so that the rod's frame is carried by its end; the rod's far end slides along x
-and carries the slider. Unknown are the rod's angle and four modal coordinates: two sines across, and the displacements
-along the axis in the middle and at the end of a quadratic.
+The crank rotates at a constant rate and carries the frame of the rod by its end; the far end slides along x and carries
+the slider. The unknowns are the angle of the rod and four modal coordinates: two transverse sines, and the axial
+displacements of a quadratic at the middle and at the end.
 
-The published code has 8, 1, 2 where the integrals of the latter two are 8/15, 1/15, 2/15: its axial modes are 15 times
-too heavy, and so are they here to meet its numbers. With the right mass the angle ends 7e-8 rad off, the slider 6e-8 m.
+The published code has 8, 1, 2 for integrals of the axial modes whose values are 8/15, 1/15, 2/15: these modes are 15
+times too heavy, and so are they here to meet its numbers. With the correct mass the angle differs by 7e-8 rad and the
+slider by 6e-8 m at the end.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ END = {"angle": -0.3311734987910881, "slider": 0.1697373326718410,
 
 
 class Rod:
-    """Integrals of the rod; axial_mass: factor on those of the coordinates along the axis, 15 as published."""
+    """Integrals of the rod; axial_mass: factor on those of the axial coordinates, 15 as published."""
 
     def __init__(self, axial_mass: float = 15.0):
         x, weight = np.polynomial.legendre.leggauss(24)
@@ -49,14 +50,16 @@ class Rod:
         self.stiffness[2:, 2:] = axial / 3 * np.array([[16, -8], [-8, 7]])
 
     def sums(self, q: np.ndarray, v: np.ndarray) -> dict[str, np.ndarray]:
-        """Moments of u, u' and of each mode with them."""
+        """Return moments of u, u' and of each mode with them."""
         c, c1 = np.append(1.0, q[1:]), np.append(0.0, v[1:])
         Y, Y1 = (sum(x * X for x, X in zip(of, self.X.swapaxes(0, 1), strict=True)) for of in (c, c1))
         return {"S": c @ self.S, "S1": c1 @ self.S, "Y": Y, "Y1": Y1,
                 **{name: sum(x * y for x, y in zip(c, each, strict=True)) for name, each in (("X", Y), ("X1", Y1))}}
 
     def accelerations(self, t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Of angle and modal coordinates, with the slider on the axis; angle and modes (5,) and their rates."""
+        """Return accelerations of angle and modal coordinates, with the slider on the axis; angle and modes (5,) and
+        their rates.
+        """
         turn, cosine, sine = SPEED * t, np.cos(q[0]), np.sin(q[0])
         origin = CRANK * np.array([np.cos(turn), np.sin(turn)])
         b, none = np.array([*origin, cosine, sine]), np.zeros((2, 2))
@@ -84,7 +87,9 @@ class Rod:
         return np.linalg.solve(system, -np.append(force, bias[1]))[:5]
 
     def run(self, duration: float = 0.1, tol: float = 1e-11, start=START) -> dict[str, np.ndarray]:
-        """Angle, slider and modes at the end, from the published start; velocities made to keep the constraint."""
+        """Return angle, slider and modes at the end, from the published start; velocities are projected on the
+        constraint.
+        """
         q, v = np.array(start["q"]), np.array(start["v"])
         v[0] = -CRANK * SPEED / (ROD + q[4])
         found = solve_ivp(lambda t, y: np.concatenate([y[5:], self.accelerations(t, y[:5], y[5:])]), (0, duration),
@@ -95,10 +100,10 @@ class Rod:
 
 
 def arrays(axial_mass: float = 15.0) -> dict[str, np.ndarray]:
-    """The rod as a user gives it: four points across at each of some along, its start and its end, without mass.
+    """Return the rod in a user's form: four points around each of several stations, massless start and end.
 
-    What axial modes have of mass beyond the rod's is in pairs of points at the start that these modes alone move, and
-    apart, so that nothing but their own inertia has it; the start's is the crank's matter.
+    The additional mass of the axial modes is in separate pairs of points at the start, which these modes alone move, so
+    that only their own inertia has it. The crank carries the start.
     """
     rod, (x, weight) = Rod(axial_mass), np.polynomial.legendre.leggauss(24)
     x, weight = (x + 1) / 2, weight / 2
@@ -121,7 +126,7 @@ def arrays(axial_mass: float = 15.0) -> dict[str, np.ndarray]:
 
 
 def machine(folder, axial_mass: float = 15.0) -> Scene:
-    """Crank, rod and slider in space, held so that no equation is redundant."""
+    """Return crank, rod and slider in space, held without redundant equations."""
     np.savez(folder / "rod.npz", **arrays(axial_mass))
     scene = Scene(gravity=(0, 0, 0))
     scene.rigid_body("crank", mass=0.36, inertia=(0.002727,) * 3, position=(0, 0, 0), angular_velocity=(0, 0, SPEED))

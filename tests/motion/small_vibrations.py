@@ -1,4 +1,4 @@
-"""Scenes that vibrate freely about their rest, and what they are let go from: the shape of a mode."""
+"""Free vibrations of scenes about their equilibrium, started from the shape of a mode."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ STATE = ("nodal_vectors", "position", "orientation", "modal_coordinates", "s")
 
 
 def free_to_vibrate(scene: fu.Scene) -> bool:
-    """Return whether a scene without its dampers and loads has modes that are its vibrations: nothing drives it, flows,
-    touches or rubs.
+    """Return whether the modes of a scene without dampers and loads are its vibrations: no drives, flows, contact or
+    friction.
     """
     driven = any(joint.is_driven for joint in scene.joints.values()) or any(
         slide.is_driven or slide.friction is not None for slide in scene.slides.values())
@@ -39,7 +39,7 @@ def _undamped(part: Part) -> Part:
 
 
 def lowest_modes(scene: fu.Scene, rest: Equilibrium, n: int) -> Modes:
-    """Return n modes about a state of rest, or all that there are of a scene with fewer degrees of freedom."""
+    """Return n modes about an equilibrium, or all modes of a scene with fewer degrees of freedom."""
     try:
         return scene.modes(n, about=rest)
     except fu.SceneError as error:
@@ -49,7 +49,7 @@ def lowest_modes(scene: fu.Scene, rest: Equilibrium, n: int) -> Modes:
 
 
 def displaced(scene: fu.Scene, rest: Equilibrium, modes: Modes, mode: int, size: float) -> dict[str, np.ndarray]:
-    """Return the state at rest displaced by a mode, whose largest displacement is a size in m, without velocities."""
+    """Return the state at rest displaced by a mode of a given largest displacement in m, without velocities."""
     state = {name: np.array(rest[name]) for name in rest.keys() if name.endswith(STATE)}
     for name in modes.keys():
         part, quantity = name.split(".")

@@ -1,6 +1,6 @@
-"""What waits at the ends of a cable: a hard stop, a buffer, nothing. Energy and momentum across each, in closed form.
+"""Ends of a cable: a hard stop, a buffer, nothing. Energy and momentum across each, in closed form.
 
-Tolerances without another reason are what the wire's own motion leaves (see wires.py), or rounding.
+Other tolerances have a reason beside them: the motion of the wire itself (see wires.py), or rounding.
 """
 
 import numpy as np
@@ -15,7 +15,7 @@ both_ends = pytest.mark.parametrize(("end", "way"), [("at_end", 1), ("at_start",
 
 
 def near(end: str, distance: float) -> float:
-    """s so far from an end."""
+    """Return s at a distance from an end."""
     return LENGTH - distance if end == "at_end" else distance
 
 
@@ -43,10 +43,10 @@ def test_a_rider_comes_back_from_a_hard_stop(integrator, end, way, restitution, 
 @every_integrator
 @pytest.mark.parametrize("restitution", [0, 0.4, 1])
 def test_momentum_passes_to_a_cable_that_can_move(integrator, restitution):
-    """A cable of 10 kg that nothing holds, its mass shared by nodal vectors: both momenta before and after are one.
+    """A free cable of 10 kg, its mass distributed over nodal vectors: both momenta are constant.
 
-    The impulse acts between rider and cable alone, and the rider leaves the particle at the end as fast as it came,
-    times the restitution.
+    The impulse acts between rider and cable alone; the rider leaves the particle at the end with the restitution times
+    its speed of approach.
     """
     scene = Scene(gravity=(0, 0, 0))
     scene.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=2, element="cable12",
@@ -61,13 +61,13 @@ def test_momentum_passes_to_a_cable_that_can_move(integrator, restitution):
     momentum = 10 * (np.einsum("k,tkd->td", lengths, v[:, :, 0]) + np.einsum("k,tkd->td", slopes, v[:, :, 1]))
     whole = momentum + MASS * run["A.velocity"]
     np.testing.assert_allclose(whole, np.broadcast_to([2.0, 0, 0], whole.shape), atol=1e-9)
-    # genalpha does not keep the energy of vibrations that the step barely resolves
+    # genalpha changes the energy of vibrations at the limit of its resolution
     assert energy_error(run) < (1e-3 if integrator == "genalpha" else 1e-6)
 
 
 @every_integrator
 def test_a_block_bounces_until_it_rests(integrator):
-    """Down a slope against a stop: times of flight halve, and the stop holds it where they come to nothing."""
+    """On a slope against a stop: flight times halve, and the stop finally holds the block."""
     run = block(3.0, slope=0.5, at_end=HardStop(restitution=0.5)).run(3.0, integrator=integrator, tol=1e-6)
     down = G * np.sin(0.5)
     first = np.sqrt(2 / down)
@@ -77,14 +77,14 @@ def test_a_block_bounces_until_it_rests(integrator):
     flights = first * 2 * 0.5 ** np.arange(1, 9)
     np.testing.assert_allclose(times, first + np.concatenate([[0], np.cumsum(flights)]), atol=1e-9)
     np.testing.assert_allclose(run["trolley.s"][-30:], LENGTH, atol=1e-11)
-    # a ninth flight would have come back 3e-6 of the wire, a tenth less than what counts
+    # a ninth flight would rise by 3e-6 of the wire, a tenth below the threshold
     assert run["trolley.traction"][-1] == pytest.approx(-MASS * down, abs=5e-8)  # the wire has been bent
     assert energy_error(run) < 1e-9
 
 
 @every_integrator
 def test_a_stop_pushes_and_never_pulls(integrator):
-    """The force on a rider at the stop turns round at 1 s, and takes it away: 20 N (t - 1) from there on."""
+    """The force on a rider at the stop reverses at 1 s and moves it away with 20 N (t - 1)."""
     scene = block(3.5, 1.0, weight=0, at_end=HardStop(restitution=0))
     scene.force("A", value=(1, 0, 0), scale=TableSignal(time=(0, 2), value=(20, -20), interpolation="linear"))
     run = scene.run(1.5, integrator=integrator, tol=1e-6)
@@ -96,7 +96,7 @@ def test_a_stop_pushes_and_never_pulls(integrator):
 
 
 def test_friction_helps_a_stop_to_hold():
-    """It is let go of where the force exceeds 0.5 20 N, not where it turns round."""
+    """It is released where the force exceeds 0.5 20 N, not where it reverses."""
     scene = block(3.5, 1.0, weight=20.0, slope=0.0, at_end=HardStop(restitution=0),
                   friction=Friction(coefficient=0.1, static_coefficient=0.5, model="stick"))
     scene.force("A", value=(1, 0, 0), scale=TableSignal(time=(0, 2), value=(20, -20), interpolation="linear"))
@@ -112,7 +112,7 @@ def test_friction_helps_a_stop_to_hold():
 @both_ends
 @pytest.mark.parametrize("damping", [0.0, 20.0])
 def test_a_buffer_takes_a_rider_and_gives_it_back(integrator, end, way, damping):
-    """A half-period of the spring, less where the damper is about to pull."""
+    """A half-period of the spring, less the part in which the damper would pull."""
     k, at = 800.0, near(end, 1.0)
     scene = block(at, way * 1.0, weight=0, **{end: Buffer(length=0.5, stiffness=k, damping=damping)})
     run = scene.run(1.0, integrator=integrator, tol=1e-6, output_step=2e-3)
@@ -137,9 +137,9 @@ def test_a_buffer_takes_a_rider_and_gives_it_back(integrator, end, way, damping)
     back = run["A.velocity"][-1, 0]
     assert back == pytest.approx(way * rate(contact), abs=1e-4 if integrator == "genalpha" else 1e-8)
     np.testing.assert_allclose(run["energy.elastic"][inside], 0.5 * k * deep[inside] ** 2, atol=1e-10)
-    # the damper's power is booked by each method's own quadrature: measured 1.2e-5, 3e-8, 1e-12
+    # each method integrates the damper's power by its own quadrature: measured 1.2e-5, 3e-8, 1e-12
     assert energy_error(run) < {"genalpha": 3e-5, "radau": 1e-7, "explicit": 1e-10}[integrator]
-    # what the damper and the spring that is let go of have taken
+    # dissipated by the damper and the released spring
     assert run["energy.dissipated"][-1] == pytest.approx(0.5 * MASS * (1 - rate(contact) ** 2), abs=1e-4)
 
 
@@ -154,7 +154,7 @@ def test_a_buffer_holds_a_block_on_a_slope(integrator):
 
 
 def test_equilibrium_leans_on_a_buffer():
-    """2 N against a spring of the rider's and, from s = 3.5 m on, the buffer."""
+    """2 N against a spring of the rider and, from s = 3.5 m on, the buffer."""
     scene = Scene(gravity=(1.0, -9.81, 0))
     scene.cable("wire", start=(0, 0, 0), end=(4, 0, 0), elements=4, element="cable12",
                 section=Rectangle(height=0.05, width=0.05),
@@ -184,7 +184,7 @@ def test_a_rider_that_goes_through_a_buffer_runs_off():
 @both_ends
 @pytest.mark.parametrize("dim", [2, 3])
 def test_a_rider_flies_on(integrator, end, way, dim):
-    """A parabola from where it leaves, at the speed that friction has left it; s stays, and there is no force."""
+    """A parabola from the end, at the speed after friction; s is constant, and the force zero."""
     scene = block(near(end, 0.5), way * 2.0, slope=0.0, dim=dim,
                   friction=Friction(coefficient=0.2, model="stick"), **{end: "leave"})
     run = scene.run(1.0, integrator=integrator, tol=1e-6)
@@ -206,7 +206,7 @@ def test_a_rider_flies_on(integrator, end, way, dim):
 
 @every_integrator
 def test_a_rider_whose_axes_are_tied_turns_freely_afterwards(integrator):
-    """Its moment about the wire's end is let go of with the slide."""
+    """The slide also releases its moment about the end of the wire."""
     scene = block(3.8, 1.0, slope=0.0, frame="tangent", at_end="leave")
     scene.moment("A", value=(0, 0, 0.3))
     run = scene.run(0.5, integrator=integrator, tol=1e-6)
@@ -217,7 +217,7 @@ def test_a_rider_whose_axes_are_tied_turns_freely_afterwards(integrator):
 
 
 def test_others_go_on_as_they_were():
-    """One leaves, one runs off the other end with the error that waits there."""
+    """One rider leaves, another reaches the other end, whose action is an error."""
     scene = block(3.5, 1.0, weight=0, at_end="leave")
     block(0.7, -1.0, weight=0, scene=scene, name="B", slide="other")
     with pytest.raises(EndOfCableError, match=r'slide "other": ran off the start of cable "wire" at t = 0\.7 s'):

@@ -59,7 +59,7 @@ def test_cubic_and_quintic_cable_go_to_one_limit():
 @pytest.mark.parametrize(("strain", "tip"), [("green", (-0.93776968, -0.0932186)),
                                              ("engineering", (-0.908654017, 0.000592346))])
 def test_pendulum_tip(strain, tip):
-    """D0 at t = 1; what is left is the quadrature of the exact curvature (laws/cable/cable.py), not time."""
+    """D0 at t = 1; the remaining error is the quadrature of the exact curvature (laws/cable/cable.py), not time."""
     run = pendulum(strain).run(1.0, tol=1e-6, output_step=0.1)
     np.testing.assert_allclose(run["rope.nodal_vectors"][-1, -1, 0], [*tip, 0], atol=2e-5)
     assert energy_error(run) < 1e-4

@@ -1,7 +1,7 @@
-"""Published cases of elements (E, B, D and S), found by scenes: tests/benchmarks/published has them with their sources.
+"""Published cases of elements (E, B, D and S) as scenes: tests/benchmarks/published has them with their sources.
 
-Errors are relative to the scales there. Bounds are two to three times what was measured: what is left is the mesh,
-unless a comment says otherwise.
+Errors are relative to the scales there. Bounds are two to three times the measured values: errors of the mesh, unless a
+comment gives another cause.
 """
 
 import numpy as np
@@ -52,9 +52,9 @@ SPLIT = "beam24 poisson_split", "beam12p poisson_split"
 OFF = {
     # Euler and Bernoulli's third frequency: no shear, no rotary inertia
     "E2 bending": {"cable12": 0.44, "cable18": 0.44, "cable8p": 0.44, CONTINUUM[0]: 0.155, CONTINUUM[1]: 0.072},
-    # what is held cannot narrow
+    # a fixed section cannot narrow
     "E2 axial": {CONTINUUM[0]: 8.6e-3, CONTINUUM[1]: 3.4e-3, SPLIT[0]: 8.05e-3, SPLIT[1]: 3.4e-3},
-    # the section's frame is that of r_y; and torsion of a section that stays plane, 1/sqrt(0.8436)
+    # the frame of the section follows r_y; torsion of a plane section, 1/sqrt(0.8436)
     "E2 torsion": {"structural": 5.4e-3, "continuum": 0.0905},
     "B1": {"poisson_split": 5.0e-2, "continuum": 5.0e-2},  # locking, still, with 32 elements
     "B2": {SPLIT[0]: 7.2e-4, SPLIT[1]: 6.9e-4, "continuum": 6.3e-4},  # shear
@@ -67,14 +67,14 @@ OFF = {
                  "poisson_split": 0.0435},
     "B4 once": {"poisson_split": 0.140, "continuum": 0.141},
     "B4 twice": {"poisson_split": 0.048, "continuum": 0.049},
-    # no torsion: the cable turns about its clamped tangent until it lies in the plane of the force
+    # no torsion: the cable rotates about its clamped tangent into the plane of the force
     "B5 J = 1/6": {"cable12": 0.222},
     "B5 J = 0.141": {"cable12": 0.221, "continuum": 3.06e-3},  # continuum: has J = 1/6
     "B6": {"continuum": 0.252},
     "B8": {"continuum": 0.90},
     "D1": {SPLIT[0]: 1.17e-2, SPLIT[1]: 1.03e-2, CONTINUUM[0]: 0.129, CONTINUUM[1]: 0.058},
     "D3 lag": {CONTINUUM[0]: 0.516, CONTINUUM[1]: 0.159},
-    # the length of r_x is held
+    # the length of r_x is fixed
     "D3 steady": {"cable12": 2.2e-2, "cable18": 8.2e-3, "cable8p": 2.2e-2, "engineering_exact_reduced": 1.5e-3,
                   "beam24 poisson_split": 2.9e-2, "beam12p poisson_split": 8.8e-3, CONTINUUM[0]: 2.9e-2,
                   CONTINUUM[1]: 8.8e-3},
@@ -83,7 +83,7 @@ OFF = {
 
 ORDERS = {
     "B1": {"cable12": 3.2, "cable8p": 3.2, "cable18": 4.1, "structural": 3.6},
-    # an assumed strain leaves out part of what the coarse mesh has too much: smaller errors, that fall more slowly
+    # an assumed strain removes part of the excess stiffness of coarse meshes: smaller errors of lower order
     "B2": {"cable12": 5.3, "cable8p": 5.3, "cable18": 8.3, "structural": 4.3, "engineering_exact_assumed": 5.0,
            "engineering_exact_reduced": 4.0},
     "B3 large": {"structural": 3.8},
@@ -109,7 +109,7 @@ SLOW = {
 
 
 def pairs(table: dict) -> list:
-    """Case and kind wherever a table says something, slow ones marked."""
+    """Return case and kind for each entry of the tables, slow ones marked."""
     found = []
     for case in CASES:
         for kind in case.kinds:
@@ -120,7 +120,7 @@ def pairs(table: dict) -> list:
 
 
 def said(case, kind) -> dict:
-    """What the record says of an element with a law: the quantity with the largest error."""
+    """Return the record of an element with a law: the quantity with the largest error."""
     quantity, value = case.found(kind, case.count(kind))[0]
 
     def mesh() -> str:
@@ -141,7 +141,7 @@ def test_the_published_numbers_are_found(case, kind, validated):
 
 @pytest.mark.parametrize(("case", "kind"), pairs(OFF))
 def test_what_an_element_cannot_do_is_off_as_the_table_says(case, kind, validated):
-    """Both ways: an element that gets better has to be moved to what is found."""
+    """In both directions: an improved element needs a new entry."""
     limit = {"subject": "Limits of elements", "stays": lookup(OFF[case.name], kind, None)}
     validated(**said(case, kind) | limit, bound=0.05)
 
@@ -161,7 +161,8 @@ def test_every_row_of_the_table_is_asserted():
 @pytest.mark.parametrize(("elements", "u", "w"), [(2, 0.48892631, 1.17522287), (4, 0.50742872, 1.20553370),
                                                   (8, 0.50850924, 1.20719776), (16, 0.50853658, 1.20723890)])
 def test_cubic_cables_mesh_by_mesh(elements, u, w):
-    """B2, as published mesh by mesh; what differs, by the quadrature of the curvature, falls with the fifth power."""
+    """B2 as published mesh by mesh; the difference, by the quadrature of the curvature, decreases with the fifth power.
+    """
     found = cantilevers.stretched(Kind("cable12", "engineering_exact"), elements)
     np.testing.assert_allclose(found, [u, w], atol=6e-5 * (2 / elements) ** 5 + 1e-8)
 

@@ -1,4 +1,4 @@
-"""Dissipation and the energy balance where slides stick, slip, turn, strike, enter buffers and leave."""
+"""Dissipation and the energy balance where slides stick, slip, reverse, strike, enter buffers and leave."""
 
 import warnings
 
@@ -39,7 +39,7 @@ def ride(scene: Scene, name: str, s: float, speed: float, mass=1.0, **slide) -> 
 
 
 def run_of(scene: Scene, **settings):
-    """The run, up to an end of the cable."""
+    """Return the run, up to an end of the cable."""
     try:
         return scene.run(progress=False, **settings)
     except EndOfCableError as stopped:
@@ -54,9 +54,7 @@ def check(run, most: float) -> None:
 
 @pytest.mark.parametrize("tol", [1e-4, 1e-5])
 def test_two_riders_that_stick_in_turn(tol):
-    """An event found once more where it had just happened made steps of 1e-19 s, over which genalpha lost the motion:
-    21.9 J came from nowhere, where 4.5 J are exchanged.
-    """
+    """An event must not be found again at its own instant: steps of 1e-19 s created 21.9 J, of 4.5 J exchanged."""
     scene = ride(wired(), "A", 0.25, 0.5, friction=Friction(coefficient=0.3, model="stick"))
     ride(scene, "B", 1.2, -0.5, friction=Friction(coefficient=0.3, model="stick"))
     run = run_of(scene, duration=0.4, output_step=0.002, tol=tol, integrator="genalpha")
@@ -66,7 +64,7 @@ def test_two_riders_that_stick_in_turn(tol):
 
 @pytest.mark.parametrize("integrator", ["genalpha", "radau", "explicit"])
 def test_a_slide_that_a_buffer_lets_go_loses_no_energy_twice(integrator):
-    """Its damper would hold it back: the spring's energy went to heat at once and came back when it touched again."""
+    """The damper would hold the slide back: the energy of the spring is dissipated once."""
     scene = ride(wired(8e7, height=0.02, slope=0.5), "A", 0.8, 2.0,
                  at_end=Buffer(length=0.3, stiffness=300.0, damping=60.0))
     run = run_of(scene, duration=0.5, output_step=0.002, tol=1e-5, integrator=integrator)
@@ -76,7 +74,7 @@ def test_a_slide_that_a_buffer_lets_go_loses_no_energy_twice(integrator):
 
 
 def random_scene(seed: int) -> Scene:
-    """One to three riders with some friction and some ends, on some cable."""
+    """Return a cable with one to three riders, random friction and ends."""
     rng = np.random.default_rng(seed)
     scene = wired(10 ** rng.uniform(6.3, 11.3), int(rng.integers(2, 9)), rng.choice([0.05, 0.02, 0.01]),
                   rng.choice([0, 0.2, 0.5]), rng.choice([0, 1e-4, 1e-6]))
@@ -106,11 +104,11 @@ def test_whatever_slides_do_dissipation_never_falls(seeds):
         check(run, max(30 * tol, 1e-3))
 
 
-# ---- what the balance cannot explain is reported
+# ---- an unexplained balance is reported
 
 
 class Stub:
-    """An engine that has counted this."""
+    """An engine with these counts."""
 
     integrator = "genalpha"
 
@@ -131,14 +129,14 @@ def test_a_hundredth_of_what_is_exchanged_is_reported(grown, lost, tol, says):
     (1e-3, 1e-6, 100.0, 0.0, False), (2e-2, 1e-6, 100.0, 0.0, True),  # a hundredth of a hundredth of what moves
     (2e-2, 1.0, 1.0, 1e-2, False), (2.1e-2, 1.0, 1.0, 1e-2, True)])
 def test_neither_rounding_nor_little_beside_a_steady_motion_is_reported(off, exchanged, in_motion, rounding, noted):
-    """Where bodies turn freely hardly anything is exchanged; far from the origin rounding is beyond a hundredth."""
+    """Free rotation exchanges little energy; far from the origin rounding exceeds a hundredth."""
     settings = RunSettings(duration=1.0, tol=1e-4)
     for grown, lost in ((off, 0.0), (0.0, off)):
         assert bool(unexplained(Stub(grown, lost, exchanged, in_motion, rounding), settings)) == noted
 
 
 def shaken(distance: float, amplitude: float) -> Scene:
-    """A body gives a weightless cable a push, of which little moves, at a distance from the origin."""
+    """Return a weightless cable at a distance from the origin, pushed by a body, with little motion."""
     scene = Scene(gravity=(0, 0, 0))
     add_cable(scene, start=(distance, 0, 0), end=(distance + 1.5, 0, 0))
     node = scene.rigid_body("A", mass=1.0, inertia=(1e-3,) * 3, position=(distance + 0.5, 0, 0),
@@ -150,7 +148,7 @@ def shaken(distance: float, amplitude: float) -> Scene:
 @pytest.mark.filterwarnings("ignore:initial velocities broke a joint")
 @pytest.mark.parametrize("distance", [0.0, 1e3])
 def test_neither_distance_nor_little_motion_hides_what_is_lost(distance):
-    """A vibration of 1e-4 of the cable, damped by coarse steps: it was not looked at, as it moved less than 1e-3."""
+    """A vibration of 1e-4 of the cable, damped by coarse steps."""
     with pytest.warns(FunicularWarning, match="the energy balance is off by up to"):
         run = shaken(distance, 0.03).run(0.5, step=5e-3, spectral_radius=0.0, progress=False)
     assert run.report["largest_motion_m"] < 1e-3
@@ -163,14 +161,14 @@ def test_neither_distance_nor_little_motion_hides_what_is_lost(distance):
 @pytest.mark.filterwarnings("ignore:initial velocities broke a joint")
 @pytest.mark.parametrize("distance", [0.0, 1e4])
 def test_no_distance_hides_energy_that_comes_from_nowhere(distance):
-    """An explicit step just beyond its limit ends the run before anything has moved by a thousandth of the cable."""
+    """An explicit step just beyond its limit ends the run before any motion reaches a thousandth of the cable."""
     with pytest.raises(FunicularError, match="energy grew without a source") as stopped:
         shaken(distance, 0.03).run(0.5, integrator="explicit", step=2.8e-4, output_step=2.8e-4, progress=False)
     assert stopped.value.run.report["largest_motion_m"] < 1e-3
 
 
 def test_what_is_lost_where_a_frame_passes_a_node_is_dissipated():
-    """Curvature jumps there, and with it the angular velocity of a rider that keeps to the tangent."""
+    """Curvature is discontinuous there, and so is the angular velocity of a rider tied to the tangent."""
     scene = wired(2e7)
     scene.rigid_body("A", mass=1.0, inertia=(0.02,) * 3, position=(0.3, 0, 0), velocity=(3.0, 0, 0))
     scene.slide("A", along="wire", s=0.3, frame="tangent", name="trolley")

@@ -9,7 +9,7 @@ DECK = {"element": "beam12p", "law": "structural", "section": fu.Rectangle(heigh
 
 
 def footbridge(moving=(0, 0, 0), turn=0.0, **slide):
-    """A walker on a deck of 12 m, whose feet are driven along it."""
+    """Return a walker on a deck of 12 m, whose feet are driven along it."""
     scene = fu.Scene(gravity=(0, -9.81, 0))
     deck = scene.cable("deck", start=(0, 0, 0), end=(12, 0, 0), elements=4, **DECK)
     scene.pin(deck, s=0)
@@ -27,7 +27,7 @@ def jumps(scene, **settings):
 
 @pytest.mark.parametrize("initial", ["drawn", "equilibrium"])
 def test_a_rider_drawn_at_rest_is_told_with_both_rates(initial):
-    """A run from rest starts at the velocities of the scene, too."""
+    """A run from equilibrium also starts with the velocities of the scene."""
     assert jumps(footbridge(), initial=initial) == [
         'slide "feet": moves along cable "deck" at 1.5 m/s from t = 0, but body "walker" is drawn at 0 m/s along it; '
         'this jump is a blow to rider and cable, which depends on the mesh. Start body "walker" at velocity '
@@ -46,7 +46,7 @@ def test_a_rate_that_begins_at_zero_is_not(signal):
 
 
 def test_the_remedy_holds_on_a_sloped_and_stretched_cable():
-    """With the velocity that the note asks for there is no note, and the start changes nothing along the cable."""
+    """With the advised velocity there is no note, and the start changes nothing along the cable."""
     scene = fu.Scene(gravity=(0, 0, 0))
     wire = scene.cable("wire", start=(0, 0, 0), end=(4, 3, 0), rest_length=4.9, elements=4, element="cable8p",
                        velocity=(0.2, 0.1, 0), section=fu.Circle(radius=0.01),
@@ -73,9 +73,9 @@ def test_a_start_with_velocities_of_its_own_is_not_as_drawn():
 
 @pytest.mark.parametrize("tol", [1e-2, 1e-3])
 def test_heat_of_modes_at_the_limit_of_stability(tol):
-    """Explicit steps are as long as the fastest modes allow, and keep these moving within tol; heat is that of radau.
+    """The fastest modes limit explicit steps, and vibrate within tol; the dissipation equals that of radau.
 
-    The squares of the stages' velocities count for many times the energy of such modes.
+    The squares of the stages' velocities are many times the energy of such modes.
     """
     run, reference = (footbridge().run(duration=0.1, tol=tol, output_step=0.01, integrator=integrator)
                       for integrator, tol in (("explicit", tol), ("radau", 1e-6)))
@@ -84,7 +84,7 @@ def test_heat_of_modes_at_the_limit_of_stability(tol):
 
 
 def test_a_run_that_ends_in_energy_of_the_blow_names_it():
-    """An explicit run at a tolerance far too loose: the blow is said beside the growth of energy."""
+    """An explicit run at a very loose tolerance: the note names the impulse beside the growth of energy."""
     with pytest.raises(fu.ConvergenceError, match=r"energy grew without a source .*; slide \"feet\": moves along .* "
                                                   r"Start body \"walker\" at velocity \(1\.5, 0, 0\) m/s"):
         footbridge().run(duration=0.03, tol=100.0, output_step=0.01, integrator="explicit")

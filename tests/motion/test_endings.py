@@ -1,4 +1,4 @@
-"""Notes on what results are worth, of runs that end before their duration: by an event, at the end of a cable."""
+"""Notes of runs that end before their duration, by an event or at the end of a cable."""
 
 import warnings
 
@@ -7,7 +7,9 @@ from funicular import Circle, EndOfCableError, Material, Scene
 
 
 def buckling(ending: str | None):
-    """A cable buckles in too large steps, beside a body that moves 100 m; `ending` stops the run near its end."""
+    """Return a cable that buckles in too large steps, beside a body that moves 100 m; `ending` stops the run near its
+    end.
+    """
     scene = Scene(gravity=(0, 0, 0))
     wire = scene.cable("c", start=(0, 0, 0), end=(1, 0, 0), elements=6, element="cable12", rest_length=0.98,
                        section=Circle(radius=0.01),
@@ -28,7 +30,7 @@ def buckling(ending: str | None):
 
 
 def run(ending: str | None):
-    """What a scene that ends so leaves."""
+    """Return the run of a scene that ends early."""
     progress = interrupt if ending == "interrupted" else False
     try:
         return buckling(ending).run(1.0, tol=1e-3, integrator="radau", progress=progress)
@@ -43,7 +45,7 @@ def interrupt(seconds):
 
 @pytest.mark.parametrize("ending", ["event", "end_of_cable", "interrupted"])
 def test_runs_that_end_early_have_the_notes_of_those_that_end_in_time(ending):
-    """Energy that nothing explains, compression and growth were noted of completed runs alone."""
+    """Unexplained energy, compression and growth of errors."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         whole, early = run(None), run(ending)

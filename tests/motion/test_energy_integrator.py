@@ -1,4 +1,4 @@
-"""The energy-momentum integrator: energy and momenta to rounding, order 2, and what it cannot do."""
+"""The energy-momentum integrator: energy and momenta to rounding, order 2, limits."""
 
 from itertools import pairwise
 
@@ -30,40 +30,40 @@ def wire(youngs_modulus=1e7, elements=4, gravity=(0, -9.81, 0), pins=(), **kind)
 
 
 def trolley(scene: Scene, s: float, velocity, spin):
-    """A rider whose centre is off the cable, so that it swings."""
+    """Return a rider whose centre is off the cable, so that it swings."""
     scene.rigid_body("A", mass=0.3, inertia=(1e-3, 2e-3, 3e-3), position=(s, -0.02, 0), velocity=velocity,
                      angular_velocity=spin)
     scene.slide("A", along="wire", s=s, at=(0, 0.02, 0), name="trolley")
 
 
 def free(planar=False, **kind) -> Scene:
-    """A cable and its rider fly free, the rider moves along it and turns."""
+    """Return a free cable with a rider that moves along it and rotates."""
     scene = wire(gravity=(0, 0, 0), **kind)
     trolley(scene, 0.6, (0.1, 0.3, 0 if planar else 0.2), (0, 0, 3) if planar else (1, 2, 3))
     return scene
 
 
 def crossing(**kind) -> Scene:
-    """A rider runs over two nodes of a sagging cable."""
+    """Return a rider that crosses two nodes of a sagging cable."""
     scene = wire(pins=(0.0, 1.5), **kind)
     trolley(scene, 0.4, (0.6, 0, 0), (1, 2, 3))
     return scene
 
 
 def balance(run) -> float:
-    """Return the largest error of the energy balance over the largest kinetic energy."""
+    """Return the largest error of the energy balance relative to the largest kinetic energy."""
     return unaccounted(run) / run["energy.kinetic"].max()
 
 
 def attitude(q: np.ndarray) -> np.ndarray:
-    """Rotation matrix of a unit quaternion."""
+    """Return the rotation matrix of a unit quaternion."""
     w, v = q[0], q[1:]
     skew = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
     return np.eye(3) + 2 * (w * skew + skew @ skew)
 
 
 def momenta(scene: Scene, run) -> tuple[np.ndarray, np.ndarray]:
-    """Linear and angular momentum of cable and rider (time, 3)."""
+    """Return linear and angular momentum of cable and rider, (time, 3)."""
     cable, body = build(scene).cables[0], scene.bodies["A"]
     inertia = np.array(body.inertia)
     linear, angular = [], []
@@ -161,7 +161,7 @@ def test_it_agrees_with_the_other_integrator():
 
 
 def test_newton_contracts_faster_with_smaller_steps():
-    """The matrix is not quite the derivative of the residual: what it leaves of an error in one iteration."""
+    """The matrix approximates the derivative of the residual; the test measures the error after one iteration."""
     engine = Engine(build(loaded()))
     engine.start(duration=1.0, output_step=0.1, tol=1e-4, step=0.0, method=EnergyMomentum(), first_step=1e-3)
     n = engine.unknowns
@@ -182,7 +182,7 @@ def test_a_law_without_a_discrete_gradient_is_named():
 
 @pytest.mark.parametrize("element", ["cable12", "cable8p"])
 def test_error_of_a_steady_turn_is_controlled(element):
-    """Cayley's map turns by 2 atan(Omega h / 2) in a step h: this error shows in no change of the rate of turn."""
+    """Cayley's map rotates by 2 atan(Omega h / 2) in a step h: an error without a change of the angular velocity."""
     rate, tol = 30.0, 1e-4
     scene = cable_scene(element=element, elements=1, gravity=(0, 0, 0))
     scene.rigid_body("A", mass=1.0, inertia=(0.02, 0.02, 0.03), position=(0, 1, 0), velocity=(1, 0, 0),

@@ -1,4 +1,4 @@
-"""Events: instants found and stepped to, noted or ending the run."""
+"""Events: instants that are found and stepped to, recorded or ending the run."""
 
 import funicular as fu
 import numpy as np
@@ -11,7 +11,7 @@ INTEGRATORS = ("genalpha", "explicit")
 
 
 def falling() -> fu.Scene:
-    """A body thrown up: y = 3 t - g t^2 / 2, x = 2 t."""
+    """Return a body thrown up: y = 3 t - g t^2 / 2, x = 2 t."""
     scene = fu.Scene()
     scene.rigid_body("A", mass=2.0, inertia=(0.1, 0.2, 0.3), position=(0, 0, 0), velocity=(2, 3, 0),
                      angular_velocity=(0.0, 0.0, 5.0))
@@ -19,7 +19,7 @@ def falling() -> fu.Scene:
 
 
 def riding() -> fu.Scene:
-    """A body that slides over nodes of a soft cable."""
+    """Return a body that slides over nodes of a soft cable."""
     scene = cable_scene(length=10, pins="ends", elements=6, element="cable12",
                         material=fu.Material(youngs_modulus=2e6, density=1000, poisson_ratio=0.0))
     add_rider(scene, 2.0, 4, mass=5.0, inertia=(0.1, 0.2, 0.3), position=(2, 0, 0))
@@ -27,7 +27,7 @@ def riding() -> fu.Scene:
 
 
 def roots(height: float) -> list[float]:
-    """When the thrown body passes a height."""
+    """Return the times at which the thrown body passes a height."""
     return sorted(np.roots([-G / 2, 3.0, -height]).real)
 
 
@@ -63,7 +63,7 @@ def test_one_that_stops_ends_the_run_there(integrator):
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 def test_on_a_node_and_at_one_instant(integrator):
-    """A boundary of elements, and two events together with it: none gets lost, none comes twice."""
+    """Two events at an element boundary at one instant: each is recorded once."""
     scene = riding()
     scene.event("a", quantity="trolley.s", value=5.0)
     scene.event("b", quantity="trolley.s", value=5.0, direction="rising")
@@ -123,7 +123,7 @@ def test_a_function_that_fails_is_named(function, message):
 @pytest.mark.parametrize(("quantity", "value", "direction"), [
     ("s_rate", 3.6, "falling"), ("s_rate", 3.0, "both"), ("traction", -60.0, "falling"), ("traction", -44.0, "both")])
 def test_a_slides_rate_and_traction(integrator, quantity, value, direction):
-    """A run that stops there ends with that very rate, or force along the cable: here of friction."""
+    """A run that stops there ends with that rate, or force along the cable, here of friction."""
     scene = riding()
     dict.clear(scene.slides)
     scene.slide("A", along="wire", s=2.0, name="trolley", friction=fu.Friction(coefficient=0.1, viscous=10.0))
@@ -136,7 +136,7 @@ def test_a_slides_rate_and_traction(integrator, quantity, value, direction):
 
 
 def test_the_traction_of_a_driven_slide():
-    """v = 0.5 sin(4 t) on a straight, stiff cable: the drive's force is 2 m cos(4 t), which passes 5 N three times."""
+    """v = 0.5 sin(4 t) on a straight, stiff cable: the drive's force 2 m cos(4 t) passes 5 N three times."""
     scene = fu.Scene(gravity=(0, 0, 0))
     scene.cable("wire", start=(0, 0, 0), end=(10, 0, 0), elements=6, element="cable12",
                 section=fu.Rectangle(height=0.05, width=0.05),

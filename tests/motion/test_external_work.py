@@ -1,7 +1,7 @@
-"""Work of what drives a scene: the time integral of force times rate, for every drive, frame, joint and integrator.
+"""External work: the time integral of force times rate, for every drive, frame, joint and integrator.
 
-Work is recorded as energy.external. It is compared with what the balance of all other energies asks for, with the
-integral of the reported forces times rates (Simpson's rule over a fine output), and between integrators.
+energy.external is compared with the balance of all other energies, with the integral of reported forces times rates
+(Simpson's rule over a fine output), and between integrators.
 """
 
 import warnings
@@ -31,7 +31,7 @@ def hung(element="cable12", pinned=(0.0, 3.0)) -> Scene:
 
 
 def driven_slide(frame="point", roll="free", element="cable12", friction=None, **drive) -> Scene:
-    """A body below the rope, off its centre of mass, with a moment."""
+    """Return a body below the rope, off its centre of mass, with a moment."""
     scene = hung(element)
     side = 0.0 if element.endswith("p") else 0.02
     scene.rigid_body("A", mass=2.0, inertia=(0.02, 0.03, 0.04), position=(0.6, -0.3, side))
@@ -42,7 +42,7 @@ def driven_slide(frame="point", roll="free", element="cable12", friction=None, *
 
 
 def driven_cable() -> Scene:
-    """A cable that hangs from the slide by its end."""
+    """Return a cable that hangs from the slide by its end."""
     scene = hung()
     scene.cable("link", start=(0.6, 0, 0), end=(0.6, -1, 0), elements=2, element="cable12", section=SECTION,
                 material=SOFT, up=(1, 0, 0))
@@ -102,7 +102,7 @@ QUICK = ("slide-tangent", "slide-section", "slide-tangent-sticking", "revolute-r
 
 
 def work_of_outputs(case: str, run) -> float | None:
-    """J by the reported forces and rates; None where they are no functions of time, or not all reported."""
+    """Return J by the reported forces and rates; None if they are impulsive or not all reported."""
     t = run.time
     if case.endswith("over-a-node"):  # forces jump; where a frame turns otherwise, an impulse
         return None
@@ -126,9 +126,9 @@ def work_of_outputs(case: str, run) -> float | None:
 @pytest.mark.parametrize("case", [pytest.param(name, marks=() if name in QUICK else pytest.mark.slow)
                                   for name in CASES])
 def test_external_work_is_force_times_rate_with_every_integrator(case):
-    """To 1e-5 of what is exchanged at tol = 1e-6; explicitly where no cross-section vibrates.
+    """To 1e-5 of the exchanged energy at tol = 1e-6; with explicit steps where no cross-section vibrates.
 
-    The balance of energies has the error of the motion in it as well: genalpha's velocities are of order 2.
+    The balance of energies also contains the error of the motion: genalpha's velocities are of order 2.
     """
     scene, works = CASES[case](), []
     stiff = any(cable.element.startswith("beam") for cable in scene.cables.values())
@@ -145,7 +145,7 @@ def test_external_work_is_force_times_rate_with_every_integrator(case):
 
 
 def test_a_rider_tied_to_the_tangent_feels_force_equal_to_mass_times_acceleration():
-    """The frame's moment puts a force along the cable on it, which was left out."""
+    """The moment of the frame adds a force along the cable."""
     run = CASES["slide-tangent"]().run(TIME, integrator="radau", tol=1e-6, progress=False)
     force = 2.0 * (run["A.acceleration"] + np.array([0, 9.81, 0]))
     np.testing.assert_allclose(run["drive.force"], force, atol=1e-9 * np.abs(force).max())
@@ -153,7 +153,7 @@ def test_a_rider_tied_to_the_tangent_feels_force_equal_to_mass_times_acceleratio
 
 @pytest.mark.parametrize("model", ["stick", "regularised"])
 def test_friction_of_a_driven_slide_is_its_drives_to_overcome(model):
-    """The motion is the same; the drive gives N mu more, and that goes to heat."""
+    """The motion is unchanged; the drive gives N mu more, which is dissipated."""
     drive, mu = {"drive": Ramp(start=0.02, end=TIME, before=0.6, after=0.95)}, 0.3
     bare, rubbed = (driven_slide(friction=friction, **drive).run(TIME, integrator="radau", tol=1e-7,
                                                                 output_step=TIME / OUTPUTS, progress=False)
@@ -202,7 +202,7 @@ def test_a_rotation_that_starts_with_a_jump_is_noted():
 
 
 def test_a_start_that_is_small_beside_the_motion_is_no_jump():
-    """A millionth of the largest rate in the run is none; a hundredth is noted."""
+    """A millionth of the largest rate in the run is no jump; a hundredth is noted."""
     for small, noted in ((1e-6, False), (1e-2, True)):
         signal = TableSignal(time=(0, 0.005, 0.01), value=(0, 0.005 * small, 0.005), interpolation="linear")
         assert any("starts at" in message for message in jumps(moved(displacement=(0, signal, 0)))) == noted
@@ -219,7 +219,7 @@ def test_a_motion_at_the_velocity_of_its_cable_is_no_jump():
 
 
 def test_later_jumps_of_a_motions_rate_are_noted():
-    """Straight lines from sample to sample send a shock at each: the first of them is named, with their number."""
+    """A piecewise linear motion sends a shock at each sample: the note names the first, and their number."""
     lines = TableSignal(time=(0, 0.002, 0.004, 0.008), value=(0, 0, 0.002, 0.001), interpolation="linear")
     (message,) = jumps(moved(displacement=(0, lines, 0)))
     assert message.startswith('motion on "rope" at s = 3 m: the rate of displacement y jumps by 1 m/s at t = 0.002 s, '
@@ -231,9 +231,9 @@ def test_later_jumps_of_a_motions_rate_are_noted():
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 @pytest.mark.parametrize("late", [0.0, 1e-17, 1e-10])
 def test_an_event_just_after_a_step_adds_no_work(integrator, late):
-    """A body is lifted against gravity and a spring: the work is that of both, to the error of the rule.
+    """A body is lifted against gravity and a spring: the work of both, to the error of the rule.
 
-    At the start and the end of a ramp nothing moves.
+    At the start and the end of a ramp the body is at rest.
     """
     height, reach, time = 0.01, 0.3, 0.02
     scene = Scene(gravity=(0, -9.81, 0))

@@ -1,4 +1,4 @@
-"""What is said of a failure, whatever state it left."""
+"""Messages of failures, for any state that a failure leaves."""
 
 from types import SimpleNamespace
 
@@ -12,7 +12,7 @@ from funicular.solve.notes.diagnosis import damping, stopped, unexplained
 
 
 def two_hinges() -> fu.Scene:
-    """A body between two joints."""
+    """Return a body between two joints."""
     scene = fu.Scene()
     scene.rigid_body("A", mass=1, inertia=(1, 1, 1), position=(0, 0, 0))
     scene.joint("spherical", "A", (0, 0, 0))
@@ -21,7 +21,7 @@ def two_hinges() -> fu.Scene:
 
 
 def failed(model, S, cause=None, joint=None, integrator="genalpha", dof=0):
-    """An engine after a failure: with this compliance, or none if it is None."""
+    """Return an engine after a failure, with this compliance or without one."""
     def compliance(multipliers):
         if S is None:
             raise ArithmeticError("the mass matrix is singular")
@@ -34,7 +34,7 @@ def failed(model, S, cause=None, joint=None, integrator="genalpha", dof=0):
 
 @pytest.mark.parametrize("S", [np.nan, np.inf, 0.0, None])
 def test_a_state_without_a_compliance(S):
-    """A state that had become NaN ended in a LinAlgError."""
+    """A state that contains NaN gives a message, and no LinAlgError."""
     model = build(two_hinges())
     engine = failed(model, S, "not_finite")
     assert redundant(model, engine) == ""
@@ -49,7 +49,7 @@ def test_a_start_without_a_compliance(S):
 
 
 def test_a_failure_without_a_cause():
-    """It ended in a KeyError, or named a slide that there was not."""
+    """The message needs no cause, and names no slide in a scene without one."""
     model = build(two_hinges())
     said = stopped(model, failed(model, 1.0), "no_convergence", RunSettings(duration=1))
     assert said == ("no step could be made at t = 0.5 s of 1 s: to pass an event there it would have to be shorter "
@@ -58,7 +58,7 @@ def test_a_failure_without_a_cause():
 
 
 def hung(damping_time=0.0) -> fu.Scene:
-    """A cable with a rider, a free rigid and a free modal body."""
+    """Return a cable with a rider, a free rigid and a free modal body."""
     material = fu.Material(youngs_modulus=1e7, poisson_ratio=0, density=1000, damping_time=damping_time)
     scene = fu.Scene()
     scene.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=4, element="cable12", section=fu.Circle(radius=0.01),
@@ -74,7 +74,7 @@ def dof_of(model, body: str) -> int:
 
 
 def test_damping_is_advised_by_the_name_that_the_part_has_for_it():
-    """A rigid body has no material that could be damped."""
+    """A rigid body has no material with damping."""
     for tau, larger in ((0.0, ""), (1e-3, "a larger ")):
         model = build(hung(tau))
         assert damping(model, 0) == damping(model, 0, 0) == f", or {larger}damping_time in the material"
@@ -99,7 +99,7 @@ def test_the_remedy_is_one_for_the_part_that_fails(cause, on, has, has_not):
 @pytest.mark.parametrize(("integrator", "step", "other"), [
     ("explicit", None, "radau"), ("explicit", 1e-3, "genalpha"), ("radau", None, None), ("genalpha", 1e-3, None)])
 def test_another_integrator_is_advised_where_the_explicit_one_needs_too_small_steps(integrator, step, other):
-    """By tol the other one is radau: genalpha goes by the error of positions alone."""
+    """With tol the advice is radau, since genalpha controls the error of positions alone."""
     model = build(two_hinges())
     engine = failed(model, 1.0, integrator=integrator)
     engine.balance = (5.0, 0.0, 1.0, 1.0, 0.0)
@@ -131,7 +131,7 @@ def test_a_shape_of_modes_that_there_is_not():
 
 
 def test_energy_that_grows_without_damping_is_told_to_take_some():
-    """genalpha with spectral radius 1 may blow up after 100,000 steps; a smaller step was all that was advised."""
+    """genalpha with spectral radius 1 may diverge after 100,000 steps; the advice includes damping."""
     model = build(two_hinges())
     engine = failed(model, 1.0)
     engine.balance = (2.0, 0.0, 1.0, 1.0, 0.0)
@@ -142,7 +142,7 @@ def test_energy_that_grows_without_damping_is_told_to_take_some():
 
 
 def test_an_absolute_tol_that_is_too_large_is_named():
-    """It was tol that should be smaller, which would change nothing."""
+    """A smaller tol would change nothing."""
     scene = fu.Scene()
     scene.cable("c", start=(0, 0, 0), end=(1, 0, 0), elements=4, element="cable12", section=fu.Circle(radius=0.005),
                 material=fu.Material(youngs_modulus=1e6, density=1000, poisson_ratio=0.3))

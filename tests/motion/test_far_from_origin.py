@@ -1,4 +1,4 @@
-"""Places so far away that numbers cannot tell them, and motions so wild that results are no numbers."""
+"""Positions beyond the resolution of numbers, and motions with non-finite results."""
 
 import re
 
@@ -31,9 +31,9 @@ def test_coordinates_have_a_bound(add):
 @pytest.mark.parametrize("save", [False, True])
 @pytest.mark.parametrize(("mass", "speed", "rows"), [(1e300, 1.0, 0), (1e3, 1e160, 0), (1e3, 1e100, 1)])
 def test_results_that_are_no_numbers_end_the_run(tmp_path, mass, speed, rows, save, monkeypatch):
-    """Infinite energy at the start, or at the end of the first step; what is kept is finite.
+    """Infinite energy at the start, or at the end of the first step; recorded rows are finite.
 
-    Such masses and speeds are refused; without that bound they stand for whatever else overflows.
+    Such masses and speeds are refused; without that bound they represent any overflow.
     """
     monkeypatch.setattr("funicular.parts.validation.OTHER_LIMITS", (0.0, 1e308))
     scene = Scene()

@@ -1,4 +1,4 @@
-"""Steps of generalised-alpha that start from a prediction, and whose remaining residual the next ones make up for."""
+"""Steps of generalised-alpha from a prediction, with a remaining residual that later steps correct."""
 
 from functools import partial
 
@@ -13,7 +13,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
 
 
 def cable(element: str = "cable12", damping_time: float = 0.0, **settings) -> fu.Scene:
-    """A soft cable, let go level; nothing holds it yet."""
+    """Return a soft free cable, released from the horizontal."""
     return cable_scene("one", pins=(), elements=4, element=element, section=fu.Rectangle(height=0.02, width=0.02),
                        material=fu.Material(youngs_modulus=2e6, poisson_ratio=0.0, density=1500,
                                             damping_time=damping_time), **settings)
@@ -26,14 +26,14 @@ def pinned(**settings) -> fu.Scene:
 
 
 def moved(**settings) -> fu.Scene:
-    """Its start is moved up and down."""
+    """Return a cable whose start moves up and down."""
     scene = cable(**settings)
     scene.motion("one", s=0.0, displacement=(0, fu.Harmonic(amplitude=0.03, frequency=2.0), 0))
     return scene
 
 
 def tied(**settings) -> fu.Scene:
-    """Another cable goes on from its end."""
+    """Return a cable that continues in another one, tied to its end."""
     scene = pinned(**settings)
     other = scene.cables["one"]
     scene.cable("two", start=(1, 0, 0), end=(1.6, 0, 0), elements=3, element=other.element, section=other.section,
@@ -51,7 +51,7 @@ RESOLVED = {"beam": (0.01, 400)}
 
 @pytest.mark.parametrize("name", SCENES)
 def test_positions_velocities_and_forces_are_of_order_2(name):
-    """Of steps with one iteration each, and a matrix for many of them."""
+    """Steps with one iteration each, and one matrix for many of them."""
     duration, steps = RESOLVED.get(name, (0.1, 400))
 
     def measured(**settings) -> tuple[dict[str, np.ndarray], dict]:
@@ -72,8 +72,8 @@ def test_positions_velocities_and_forces_are_of_order_2(name):
 
 @pytest.mark.parametrize("step", [1.3e-4, 2e-4])
 def test_dofs_that_newton_does_not_mend_stay_where_they_belong(step):
-    """Turned ties and prescribed dofs. Predicted by polynomials they flew off at 1.3e-4 s; at 2e-4 s the first steps,
-    which are solved to rounding, ended after one iteration, and 0.1 J were missing.
+    """Rotated ties and prescribed degrees of freedom must not drift. By polynomial prediction they diverged at 1.3e-4
+    s; at 2e-4 s the first steps, which are solved to rounding, ended after one iteration and lost 0.1 J.
     """
     run = difficult_scenes.frame().run(0.3, step=step, output_step=0.03, integrator="genalpha", progress=False)
     assert np.abs(run.energy_balance().residual).max() < 1e-3
@@ -83,8 +83,8 @@ def test_dofs_that_newton_does_not_mend_stay_where_they_belong(step):
     (7e8, 1e-3, 0.9), (7e8, 1e-4, 1.0), (7e8, 1e-4, 0.9), (2.1e11, 2e-5, 1.0), (2.1e11, 2e-5, 0.9)])
 @pytest.mark.slow
 def test_a_cable_that_vibrates_along_itself_gains_no_energy_in_20_000_steps(youngs_modulus, step, radius):
-    """Stretched by a thousandth and let go. Steps that resolve none of its vibrations may gain some where these are not
-    damped, radius = 1, however exactly they are solved.
+    """A cable is stretched by a thousandth and released. Steps that resolve none of its vibrations may gain energy with
+    radius = 1, even in exact arithmetic.
     """
     scene = fu.Scene()
     scene.cable("one", start=(0, 0, 0), end=(1.001, 0, 0), rest_length=1.0, elements=8, element="cable8p",
@@ -98,7 +98,7 @@ def test_a_cable_that_vibrates_along_itself_gains_no_energy_in_20_000_steps(youn
 
 
 def chain(rods: int) -> fu.Scene:
-    """Rods of 0.2 m, one hung on the other by spherical joints, let go level."""
+    """Return rods of 0.2 m in a chain of spherical joints, released from the horizontal."""
     scene = fu.Scene()
     for k in range(rods):
         scene.rigid_body(f"rod{k}", mass=0.1, inertia=(1e-5, 4e-4, 4e-4), position=(0.2 * k + 0.1, 0, 0))
@@ -112,7 +112,7 @@ SOLVED = {"slide": (partial(sliding_mass, 3, strain="engineering", youngs_modulu
 
 @pytest.mark.parametrize("name", SOLVED)
 def test_fixed_steps_with_couplings_take_few_iterations(name):
-    """Measured: 2.4 and 3.1; 3.0 and 4.3 where nothing is predicted and rounding does not end an iteration."""
+    """2.4 and 3.1; without prediction and the rounding criterion 3.0 and 4.3."""
     make, step, steps, most = SOLVED[name]
     report = make().run(steps * step, step=step, output_step=steps * step, integrator="genalpha", progress=False).report
     assert report["newton_iterations"] < most * report["steps"]

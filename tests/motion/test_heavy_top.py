@@ -1,7 +1,7 @@
 """A rigid body whose centre of mass is off its origin: a fast heavy top in steady precession, and other origins.
 
-The top's foot is tied to the origin by a stiff spring of no length, which stands still in steady precession: with the
-foot at -F/k the motion is a closed form all the same.
+A stiff spring of zero length ties the foot of the top to the origin. In steady precession it is at rest, with the foot
+at -F/k, so that the motion has a closed form.
 """
 
 import numpy as np
@@ -15,7 +15,7 @@ TILT, SPIN = 0.6, 1e3
 
 
 def precession() -> tuple[float, float]:
-    """Rate of precession in rad/s, and distance of the centre of mass from the vertical in m."""
+    """Return the rate of precession in rad/s, and the distance of the centre of mass from the vertical in m."""
     s, c = np.sin(TILT), np.cos(TILT)
 
     def off(x):
@@ -46,7 +46,8 @@ def top(rate: float, radius: float) -> Scene:
     ("explicit", {"tol": 1e-9}, 1e-10, 1e-13, 1e-11),
 ])
 def test_a_fast_heavy_top_precesses_steadily(integrator, settings, axis_off, energy_off, momentum_off, validated):
-    """80 turns about its axis at 1000 rad/s; errors of the axis in rad, of energy and moment of momentum as parts."""
+    """80 turns about its axis at 1000 rad/s; errors of the axis in rad, relative errors of energy and angular momentum.
+    """
     rate, radius = precession()
     run = top(rate, radius).run(duration=0.5, output_step=0.05, integrator=integrator, **settings)
     angle, orientation, omega = rate * run.time, run["top.orientation"], run["top.angular_velocity"]
@@ -67,7 +68,7 @@ def test_a_fast_heavy_top_precesses_steadily(integrator, settings, axis_off, ene
 
 
 def test_the_origin_of_a_body_is_a_choice():
-    """The same body described from its centre and from another origin: same motion of every point."""
+    """The body described from its centre and from another origin has the same motion of every point."""
     ends = []
     for origin in (np.zeros(3), np.array([0.1, -0.2, 0.3])):
         scene = Scene()

@@ -1,4 +1,4 @@
-"""Runs that start from a state: of another run, of an equilibrium, of arrays."""
+"""Runs from a given state: of another run, of an equilibrium, of arrays."""
 
 import funicular as fu
 import numpy as np
@@ -111,7 +111,7 @@ def test_cables_that_are_tied_move_together():
 
 
 def test_a_state_of_radau_fits_its_ties():
-    """The iteration of radau leaves tied slopes 1.3e-8 of the largest rate apart."""
+    """The iteration of radau leaves a difference of tied slopes of 1.3e-8 of the largest rate."""
     scene = fu.Scene(gravity=(0, -9.81, 0))
     damped = fu.Material(youngs_modulus=1e7, poisson_ratio=0.0, density=1000, damping_time=1e-4)
     given = {"section": fu.Circle(radius=0.01), "material": damped}
@@ -129,7 +129,7 @@ def test_a_state_of_radau_fits_its_ties():
 
 @pytest.mark.parametrize("integrator", ["explicit", "genalpha", "radau"])
 def test_closing_a_gap_does_not_stretch_friction(integrator):
-    """A sledge on a rough floor, which a driven rod pulls: from 5 mm off the rod's length as from there."""
+    """A driven rod pulls a sledge on a rough floor: a start 5 mm off its length gives the motion of an exact start."""
     y = 0.1 - 2 * 9.81 / 4e4  # on two springs of contact
     scene = fu.Scene(gravity=(0, -9.81, 0))
     scene.surface("floor", fu.Plane(point=(0, 0, 0), normal=(0, 1, 0)))

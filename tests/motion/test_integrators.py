@@ -12,7 +12,7 @@ from shared_scenes import cable_scene
 
 
 def soft(elements: int = 4, youngs_modulus: float = 2e6, damping_time: float = 0.0) -> fu.Scene:
-    """A pendulum of cable12, fixed at one end."""
+    """Return a pendulum of cable12, fixed at one end."""
     return cable_scene("rope", pins=(0.0,), elements=elements, element="cable12",
                        section=fu.Rectangle(height=0.02, width=0.02),
                        material=fu.Material(youngs_modulus=youngs_modulus, poisson_ratio=0.0, density=1000,
@@ -20,7 +20,9 @@ def soft(elements: int = 4, youngs_modulus: float = 2e6, damping_time: float = 0
 
 
 def rider(planar: bool = False) -> fu.Scene:
-    """A body that turns and slides over nodes, loads, a damper, a moving support: every term of the energy balance."""
+    """Return a body that rotates and slides over nodes, loads, a damper, a moving support: all terms of the energy
+    balance.
+    """
     scene = fu.Scene()
     scene.cable("rope", start=(0, 0, 0), end=(10, 0, 0), elements=6, element="cable8p" if planar else "cable12",
                 section=fu.Rectangle(height=0.05, width=0.05),
@@ -41,7 +43,7 @@ def rider(planar: bool = False) -> fu.Scene:
 @pytest.mark.parametrize(("scene", "name", "duration", "steps"), [(soft, "rope.nodal_vectors", 0.02, (4, 8)),
                                                                   (rider, "A.position", 0.6, (40, 80))])
 def test_explicit_keeps_order_8(scene, name, duration, steps):
-    """Without slides, and across the boundary of two elements, where r_xx jumps."""
+    """Without slides, across an element boundary, where r_xx is discontinuous."""
     def last(**settings) -> np.ndarray:
         return scene().run(duration, integrator="explicit", output_step=duration, **settings)[name][-1]
 
@@ -54,7 +56,7 @@ def test_explicit_keeps_order_8(scene, name, duration, steps):
 @pytest.mark.parametrize(("scene", "duration", "steps"), [(soft, 0.02, (8, 16)), (rider, 0.6, (80, 160)),
                                                           (lambda: rider(planar=True), 0.6, (80, 160))])
 def test_radau_keeps_order_5_in_everything(scene, duration, steps):
-    """Positions, forces on the rider, energy; where a slide crosses from one element into the next, too."""
+    """Positions, forces on the rider, energy; also where a slide crosses from one element into the next."""
     def last(**settings) -> dict[str, np.ndarray]:
         run = scene().run(duration, output_step=duration, **settings)
         return {name: run[name][-1] for name in ("rope.nodal_vectors", "trolley.force", "energy.kinetic",
@@ -93,8 +95,9 @@ def test_integrators_agree_on_everything(planar, integrator, tol, most):
 
 @pytest.mark.parametrize("angle", [1.0, 2.0, 3.0, 5.0, 8.0, 15.0, 50.0])
 def test_radaus_estimate_is_true_for_vibrations_that_a_step_does_not_resolve(angle):
-    """One step of so many radians of a mass on a spring, from four phases: twice the estimate for vibrations counts,
-    measured 1.1 to 4.7 errors. The embedded one, a seventh of which counted before, is 32 errors at 1 rad, 0.7 at 8."""
+    """One step of several radians of a mass on a spring, from four phases: twice the estimate for vibrations counts,
+    1.1 to 4.7 errors. The embedded estimate alone is 32 errors at 1 rad and 0.7 at 8.
+    """
     estimates, errors = [], []
     for phase in 0.1 + np.arange(4) * np.pi / 4:
         scene = fu.Scene(gravity=(0, 0, 0))
@@ -119,7 +122,7 @@ def test_radau_reaches_tol_however_stiff(youngs_modulus):
 
 
 def test_explicit_is_right_about_a_stiff_scene_too():
-    """Where stability rules the step, the error stays at tol."""
+    """Where stability limits the step, the error stays at tol."""
     stiff = soft(youngs_modulus=7e8)
     explicit, fine = (stiff.run(0.02, integrator="explicit", tol=tol, output_step=0.01) for tol in (1e-3, 1e-10))
     assert explicit.report["rejected_steps"] > 0
@@ -148,7 +151,7 @@ def test_auto_leaves_to_genalpha_what_only_it_can(settings, reason):
 
 
 def test_damping_counts_in_the_choice():
-    """A decay faster than the fastest vibration bounds the explicit step."""
+    """A decay faster than the fastest vibration limits the explicit step."""
     assert soft(4, 2e5).run(0.01, tol=1e-6, output_step=0.01).report["integrator"] == "explicit"
     report = soft(4, 2e5, damping_time=100.0).run(0.01, tol=1e-6, output_step=0.01).report
     assert report["integrator"] == "radau"
@@ -157,7 +160,7 @@ def test_damping_counts_in_the_choice():
 
 @pytest.mark.parametrize("integrator", ["genalpha", "explicit", "radau"])
 def test_threads_change_no_bit(integrator, monkeypatch):
-    """Groups of elements as with one, each with a place of its own: 37 elements end in an incomplete one."""
+    """Groups of elements at separate places: 37 elements end in an incomplete group."""
     monkeypatch.setattr("funicular.solve.linear.threads.available", lambda: 3)
     runs = [soft(37, 2e4, damping_time=1e-4).run(1e-3, integrator=integrator, output_step=5e-4, threads=threads)
             for threads in (1, 2, 3)]
@@ -169,7 +172,7 @@ def test_threads_change_no_bit(integrator, monkeypatch):
 
 @pytest.mark.parametrize("name", INTEGRATORS)
 def test_the_engine_takes_the_parameters_of_each_integrator(name):
-    """Its name and the number of its parameters are those of the engine's part."""
+    """Name and number of parameters agree with those of the engine."""
     engine = Engine(build(soft()))
     status, _ = engine.start(duration=1.0, output_step=0.1, tol=1e-4, step=0.0, method=INTEGRATORS[name].of(0.9),
                              first_step=1e-3)

@@ -1,5 +1,5 @@
-"""Pantographs of arms and joints: kinematics, static force and masses that move with the head against closed forms,
-rest, small motions against masses on springs, energy, refusals.
+"""Pantographs of arms and joints: kinematics, static force and equivalent masses against closed forms, equilibrium,
+small motions against masses on springs, energy, refusals.
 """
 
 import funicular as fu
@@ -14,9 +14,9 @@ LENGTH, ANGLE, GRAVITY = 1.5, -0.5, 9.81
 
 
 def parallelogram(**more):
-    """Return a pantograph whose thrust rod is parallel to the lower arm and as long: upper arm and head do not turn.
+    """Return a pantograph whose thrust rod is parallel to the lower arm and as long: upper arm and head do not rotate.
 
-    The head moves on a circle of the lower arm's length.
+    The head moves on a circle with the length of the lower arm as its radius.
     """
     knee = LENGTH * np.array([np.cos(ANGLE), np.sin(ANGLE)])
     off, head = np.array([0.1, -0.2]), knee + np.array([-0.8, 1.5])
@@ -80,7 +80,7 @@ def test_the_default_is_what_is_said_of_it():
 
 
 def below_a_wire(pantograph, speed=0.0, spans=1, at=27.5):
-    """Return the scene; in the middle of the span the wire is level, so that it pushes straight down."""
+    """Return the scene; the wire is horizontal at mid-span, so that it pushes vertically."""
     scene = catenary.scene(line55(spans, damping=0.06), (2.0, 4.0))
     catenary.add_pantograph(scene, pantograph, at, speed)
     return scene
@@ -99,7 +99,7 @@ def test_at_rest_it_presses_as_virtual_work_says(pantograph):
 
 
 def test_small_motions_are_those_of_the_equivalent_masses():
-    """A pulse on the collector at rest, too small for the arms to turn much: the same motion, but for its square."""
+    """A small pulse on the collector at rest: the motions differ by its square."""
     found = []
     for pantograph in (DEFAULT, DEFAULT.equivalent()):
         scene = below_a_wire(pantograph)
@@ -117,7 +117,7 @@ def test_small_motions_are_those_of_the_equivalent_masses():
 
 @pytest.fixture(scope="module")
 def passages():
-    """Passages through two spans at 250 km/h, of the jointed pantograph and of its equivalent masses."""
+    """Return passages through two spans at 250 km/h, of the jointed pantograph and of its equivalent masses."""
     return [below_a_wire(each, 250 / 3.6, spans=2, at=20.0).run(duration=0.99, progress=False)
             for each in (DEFAULT, DEFAULT.equivalent())]
 

@@ -1,6 +1,6 @@
-"""Joints in motion: what they hold, what they put on what they join, and the energy of those that drive.
+"""Joints in motion: constraints, reactions, and the work of drives.
 
-Bounds without another reason are about twice what was measured.
+Bounds without another reason are about twice the measured value.
 """
 
 import numpy as np
@@ -33,7 +33,7 @@ def add_body(scene, name, position, planar=False, **given):
 
 
 def of_bodies(kind, b=(-0.2, 0, -0.1), **given):
-    """Two bodies that turn, joined, and one of them to the ground."""
+    """Return two rotating bodies, joined to each other, one also to the ground."""
     scene = Scene()
     add_body(scene, "A", (0, 0, 0))
     add_body(scene, "B", (0.5, 0.1, 0.2))
@@ -58,7 +58,7 @@ def on_cable(kind, element="beam24", s=0.7, arm=(0, 0.1, -0.05), **given):
 
 
 def of_cables(kind, element="beam24", other=None, s=0.7, **given):
-    """One crosses the other at the point where they are joined."""
+    """Return two cables that cross at their joint."""
     scene = Scene()
     add_wire(scene, element=element)
     add_wire(scene, "other", other or element, start=(s, -0.5, 0), end=(s, 0.5, 0), pins=())
@@ -142,7 +142,7 @@ def test_integrators_agree_on_every_kind():
 
 
 def test_radau_keeps_order_5_where_bodies_turn():
-    """A pendulum that spins on a ball joint, 0.4 rad a step; errors fall by 2^5 with half of it."""
+    """A pendulum spins on a spherical joint, 0.4 rad a step; errors fall by 2^5 for half the step."""
     scene = Scene()
     scene.rigid_body("A", mass=2.0, inertia=(0.1, 0.15, 0.2), position=(0.5, 0, 0), angular_velocity=(0, 3, 1),
                      velocity=(0, 0.5, -1.5))
@@ -155,11 +155,11 @@ def test_radau_keeps_order_5_where_bodies_turn():
         assert 4.7 < np.log2(off[0] / off[1]) < 5.3
 
 
-# ---- what a joint puts on its second end, against a calculation by hand
+# ---- reactions on the second end, against a calculation by hand
 
 
 def rod(mass=2.0, length=1.0, inertia=(0.01, 0.2, 0.2), angle=0.0, rate=0.0, gravity=(0, -G, 0)):
-    """A body along x that turns about z at its left end, which is the origin."""
+    """Return a body along x that rotates about z at its left end, the origin."""
     scene = Scene(gravity=gravity)
     along = np.array([np.cos(angle), np.sin(angle), 0])
     scene.rigid_body("A", mass=mass, inertia=inertia, position=length / 2 * along,
@@ -197,7 +197,7 @@ def test_a_rotor_pulls_with_its_centripetal_force():
 
 
 def test_a_skew_rotor_turns_its_bearing():
-    """A rod at 45 degrees to its axis: the moment is w^2 (Jxx - Jyy)/2, and turns with it."""
+    """A rod at 45 degrees to its axis: the moment w^2 (Jxx - Jyy)/2 rotates with it."""
     scene = Scene(gravity=(0, 0, 0))
     scene.rigid_body("A", mass=1.0, inertia=(0.01, 0.2, 0.2), position=(0, 0, 0),
                      orientation=(np.cos(np.pi / 8), 0, 0, np.sin(np.pi / 8)),
@@ -248,7 +248,7 @@ def test_a_driven_distance_is_a_winch():
 @pytest.mark.parametrize(("element", "up"), [("beam24", None), ("cable12", (0, 1, 0)), ("beam12p", None),
                                              ("cable8p", None)])
 def test_a_body_at_the_end_of_a_cable_obeys_newton_and_euler(element, up):
-    """What the joint puts on the body is what its motion takes, whatever the cable does."""
+    """The reaction of the joint equals the rate of momentum of the body."""
     scene = Scene()
     wire = add_wire(scene, element=element, pins=())
     scene.clamp(wire, s=0.0)
@@ -265,9 +265,9 @@ def test_a_body_at_the_end_of_a_cable_obeys_newton_and_euler(element, up):
 @pytest.mark.parametrize("elements", [2, 4])
 @pytest.mark.parametrize("element", ["beam24", "beam12p"])
 def test_a_weld_carries_the_outer_half_of_a_cantilever(element, elements):
-    """Two beams welded end to end hang like one, on any mesh, and the weld holds the outer one's weight and its moment.
+    """Two beams welded end to end deflect as one, on any mesh; the weld carries weight and moment of the outer one.
 
-    Were it the tangent and not the section that is held, the tip would be 2e-2 off with 8 elements, and more with more.
+    A weld that held the tangent in place of the section would give an error of 2e-2 with 8 elements, growing with more.
     """
     whole, halves = Scene(), Scene()
     given = {"section": SQUARE, "material": SOFT, "element": element}

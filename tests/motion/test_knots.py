@@ -1,4 +1,4 @@
-"""Steps end where a signal is not smooth: which knots count, and what a step over one would get wrong."""
+"""Steps end where a signal is not smooth: relevant breakpoints, and errors of steps across others."""
 
 from types import SimpleNamespace
 
@@ -21,7 +21,7 @@ SMOOTH = {"time": SAMPLES, "value": tuple(0.05 * (1 - np.cos(2 * np.pi * np.arra
 
 
 def model(*signals, driving=()):
-    """As much of a model as knots are found from; driving: numbers of the signals that prescribe a motion."""
+    """Return the part of a model that breakpoints need; driving: numbers of the signals that prescribe a motion."""
     return SimpleNamespace(
         signals=[SignalModel(*each.pieces(), *each.sine) for each in signals],
         motions=[SimpleNamespace(signal=k) for k in driving], couplings=[], drags=[])
@@ -82,7 +82,7 @@ def test_knots_at_one_instant_are_one_and_the_most_that_jumps_counts():
 
 @pytest.mark.parametrize("integrator", ["genalpha", "radau", "explicit", "energy"])
 def test_a_pulse_much_shorter_than_the_steps_before_it_is_not_missed(integrator):
-    """A body at rest takes long steps: they went over the pulse, and the body stayed where it was."""
+    """A body at rest takes long steps, which must not pass over the pulse."""
     scene = Scene(gravity=(0, 0, 0))
     scene.rigid_body("A", mass=2.0, inertia=(1, 1, 1), position=(0, 0, 0))
     scene.force("A", value=(100, 0, 0), scale=Pulse(start=0.5031, end=0.5041))
@@ -91,12 +91,12 @@ def test_a_pulse_much_shorter_than_the_steps_before_it_is_not_missed(integrator)
 
 
 def hump(time, middle, width=1e-3):
-    """A smooth pulse, of a width in s."""
+    """Return a smooth pulse of a width in s."""
     return np.exp(-(((time - middle) / width) ** 2))
 
 
 def pushed(signal) -> Scene:
-    """A free body of 2 kg at rest."""
+    """Return a free body of 2 kg at rest."""
     scene = Scene(gravity=(0, 0, 0))
     scene.rigid_body("A", mass=2.0, inertia=(1, 1, 1), position=(1, 0, 0))
     scene.force("A", value=(100, 0, 0), scale=signal)
@@ -105,7 +105,7 @@ def pushed(signal) -> Scene:
 
 @pytest.mark.parametrize("integrator", ["genalpha", "radau", "explicit", "energy"])
 def test_a_smooth_pulse_of_a_table_of_many_samples_is_not_missed(integrator):
-    """None of its samples is a knot: all four integrators went over it, without a word."""
+    """None of its samples is a breakpoint."""
     time = np.linspace(0, 1, 20_001)
     run = pushed(TableSignal(time=time.tolist(), value=hump(time, 0.5531).tolist())).run(
         1.0, integrator=integrator, output_step=0.1, tol=1e-3, progress=False)
@@ -114,7 +114,7 @@ def test_a_smooth_pulse_of_a_table_of_many_samples_is_not_missed(integrator):
 
 @pytest.mark.parametrize("integrator", ["genalpha", "radau", "explicit", "energy"])
 def test_a_pulse_shorter_than_a_fixed_step_gives_its_whole_impulse(integrator):
-    """It gave none with three of them, and the fourth made energy from nothing."""
+    """By any integrator, without a change of the energy."""
     run = pushed(Pulse(start=0.5031, end=0.5041)).run(1.0, integrator=integrator, step=0.01, progress=False)
     assert_allclose(run["A.velocity"][-1, 0], 100 * 0.5e-3 / 2, rtol=1e-9)
 
@@ -125,7 +125,7 @@ def test_a_pulse_shorter_than_a_fixed_step_gives_its_whole_impulse(integrator):
      "the fixed step of 0.01 s is too long for its signal"),
 ])
 def test_a_signal_that_a_fixed_step_cannot_follow_is_named(signal, said):
-    """A sine whose period is the step was no load at all."""
+    """A sine whose period is the step would be no load at all."""
     with pytest.warns(FunicularWarning, match=f'force "force_1": .*{said}'):
         run = pushed(signal).run(1.0, step=0.01, progress=False)
     assert said in run.report["messages"][0]
@@ -173,7 +173,7 @@ DRIVEN = {
 
 @pytest.mark.parametrize("scene", DRIVEN.values(), ids=DRIVEN)
 def test_energy_is_explained_where_the_rate_or_the_acceleration_of_a_drive_jumps(scene):
-    """Runs ended with energy that came from nowhere, or were off by up to 3 % without a word."""
+    """Runs once ended with unexplained energy, or had errors of up to 3 %."""
     works = []
     for integrator in ("genalpha", "radau"):
         run = scene().run(TIME, integrator=integrator, tol=1e-6, output_step=1e-3, progress=False)
@@ -185,7 +185,7 @@ def test_energy_is_explained_where_the_rate_or_the_acceleration_of_a_drive_jumps
 
 @pytest.mark.parametrize("velocity", [0.0, 0.4])
 def test_a_jump_of_a_drives_rate_gives_the_impulse_and_its_work(velocity):
-    """A body turned from one angular velocity to the next: its kinetic energy, and no heat."""
+    """The body changes its angular velocity at once: its kinetic energy, without dissipation."""
     scene = Scene(gravity=(0, 0, 0))
     scene.rigid_body("A", mass=2.0, inertia=(0.02, 0.03, 0.04), position=(0, -0.3, 0),
                      velocity=(0.3 * velocity, 0, 0), angular_velocity=(0, 0, velocity))
@@ -201,7 +201,7 @@ def test_a_jump_of_a_drives_rate_gives_the_impulse_and_its_work(velocity):
 
 @pytest.mark.parametrize("interpolation", ["cubic", "linear"])
 def test_a_table_of_many_samples_costs_no_steps(interpolation):
-    """As many as the function that it has the samples of, to which the moved end follows."""
+    """The number of steps equals that of the sampled function, which the moved end follows."""
     smooth = {"cubic": TableSignal(**SMOOTH), "linear": TableSignal(**SMOOTH, interpolation="linear")}[interpolation]
     steps = []
     for signal in (Harmonic(amplitude=-0.05, frequency=1 / TIME, phase=np.pi / 2, offset=0.05), smooth):
@@ -228,7 +228,7 @@ def test_fixed_steps_end_at_knots_but_not_where_a_smooth_table_turns():
 @pytest.mark.parametrize("integrator", ["radau", "explicit", "genalpha"])
 @pytest.mark.parametrize("value", [(0, 0, 0.3, 0), (0, 0, 0.3, 0.3), (0, 0, 0.3)], ids=["turns back", "stops", "ends"])
 def test_the_last_row_of_a_run_that_ends_on_a_corner_is_of_the_instant_before(integrator, value):
-    """Rates and energies of the last row fit each other, and do not depend on what the table does after the end."""
+    """Rates and energies of the last row are consistent and do not depend on the table after the end."""
     scene = Scene(gravity=(0, 0, 0))
     scene.rigid_body("A", mass=2.0, inertia=(0.1, 0.2, 0.3), position=(0.5, 0, 0))
     scene.joint("revolute", (0, 0, 0), ("A", (-0.5, 0, 0)), axis=(0, 0, 1), name="j",

@@ -1,4 +1,4 @@
-"""Loads, springs, damping and prescribed motions in runs, against closed forms; the energy balance with all of them."""
+"""Loads, springs, damping and prescribed motions in runs, against closed forms; their energy balance."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ def ball(scene: Scene, position=(0, 0, 0), mass=2.0, **given):
 
 
 def test_spring_and_damper_on_a_body():
-    """x'' + 2 d x' + w0² x = 0 from a stretched spring; tension and length as they are."""
+    """x'' + 2 d x' + w0² x = 0 from a stretched spring, with its tension and length."""
     m, k, c, rest = 2.0, 300.0, 4.0, 0.5
     scene = Scene(gravity=(0, 0, 0))
     ball(scene, (0.7, 0, 0), m)
@@ -32,7 +32,7 @@ def test_spring_and_damper_on_a_body():
 
 
 def test_a_planar_spring_off_the_centre_of_mass():
-    """The spatial scene's numbers, from planar bodies."""
+    """Planar bodies give the numbers of the spatial scene."""
     def end(element):
         scene = Scene()
         scene.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=2, element=element, section=SQUARE,
@@ -48,7 +48,7 @@ def test_a_planar_spring_off_the_centre_of_mass():
 
 
 def test_mass_damping_slows_what_is_free():
-    """v = v0 exp(-a t) of a cable that flies off without turning."""
+    """v = v0 exp(-a t) of a cable in translation."""
     scene = Scene(gravity=(0, 0, 0))
     rubber = Material(youngs_modulus=1e6, poisson_ratio=0, density=1000, mass_damping=1.5)
     scene.cable("rope", start=(0, 0, 0), end=(1, 0, 0), elements=2, element="cable12", section=SQUARE, material=rubber)
@@ -63,7 +63,7 @@ def test_mass_damping_slows_what_is_free():
 
 
 def test_gravity_as_a_distributed_force():
-    """A weight per length that follows nothing is what gravity does."""
+    """A fixed weight per length equals gravity."""
     def end(scene, force):
         add_cable(scene, elements=4)
         if force:
@@ -90,7 +90,7 @@ def test_a_force_on_a_body_with_a_time_table():
 
 
 def test_a_moment_spins_a_body_and_a_follower_force_turns_with_it():
-    """About a principal axis: w = M t / J; the thrust turns with the angle, its impulse is Fresnel's integral."""
+    """About a principal axis: w = M t / J; the thrust rotates with the body, and its impulse is Fresnel's integral."""
     scene = Scene(gravity=(0, 0, 0))
     ball(scene)
     scene.moment("ball", value=(0, 0, 0.06))
@@ -104,7 +104,7 @@ def test_a_moment_spins_a_body_and_a_follower_force_turns_with_it():
 
 
 def test_a_follower_force_at_the_end_of_a_cable_has_no_potential():
-    """Its work round a loop is not zero, the energy balances nevertheless."""
+    """Its work round a loop is not zero; the energy balances nevertheless."""
     scene = Scene()
     add_cable(scene, pins=(0,), elements=4)
     scene.force("wire", s=1.5, value=(0, 60, 0), follower=True)
@@ -135,7 +135,7 @@ def test_the_energy_balances_with_everything_on(element):
 
 
 def test_a_node_moves_as_prescribed():
-    """Where the signal says, and the work on it is what the energy balance says."""
+    """The node follows the signal, and its work closes the energy balance."""
     scene = Scene()
     add_cable(scene, pins=(1.5,), elements=4)
     wave = Harmonic(amplitude=0.05, frequency=3.0)
@@ -149,7 +149,7 @@ def test_a_node_moves_as_prescribed():
 
 
 def test_a_prescribed_motion_is_that_of_the_frame():
-    """A rope whose pins accelerate together is one at rest under the opposite gravity."""
+    """A rope whose pins accelerate together equals one at rest under the opposite gravity."""
     def scene(gravity):
         made = Scene(gravity=gravity)
         made.cable("rope", start=(0, 0, 0), end=(1, 0, 0), elements=4, element="cable12", section=SQUARE,
@@ -170,7 +170,7 @@ def test_a_prescribed_motion_is_that_of_the_frame():
 
 
 def corner(rotation) -> dict[str, np.ndarray]:
-    """Nodal vectors (time, vector, 3) at the corner of a swinging right angle."""
+    """Return nodal vectors (time, vector, 3) at the corner of a swinging right angle."""
     scene = Scene()
     square = {"section": Rectangle(height=0.05, width=0.05), "elements": 3,
               "material": Material(youngs_modulus=2e7, poisson_ratio=0, density=4200)}

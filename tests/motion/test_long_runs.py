@@ -1,4 +1,4 @@
-"""A run that will take more than a million steps says so early, how long it will take, and why."""
+"""A run of more than a million steps reports its duration and the reason early."""
 
 import sys
 
@@ -10,7 +10,7 @@ from shared_scenes import cable_scene
 
 
 def stiff(pinned=True) -> Scene:
-    """A steel wire that vibrates along itself at up to 4e5 rad/s, let go of a force."""
+    """Return a steel wire released from a force, with axial vibrations of up to 4e5 rad/s."""
     scene = cable_scene(pins=(0.0,) if pinned else (), elements=8, element="cable8p", section=Circle(radius=1e-3),
                         material=Material(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7850))
     scene.force("wire", s=1.0, value=(10, 0, 0))
@@ -28,7 +28,7 @@ def stopped_at(time: float, scene: Scene) -> Scene:
     ({"step": 2e-6}, 0.05, r"the step is fixed at 2e-06 s"),
 ])
 def test_a_long_run_says_so_while_it_runs(settings, until, why):
-    """At the start, with what it needs in all; and in the report, with what it has taken."""
+    """A message at the start gives the expected total, the report the actual one."""
     with pytest.warns(FunicularWarning, match=rf"needs about [0-9.e+]+ steps, .* at the present rate of .*: {why}"):
         run = stopped_at(until, stiff()).run(50, **settings)
     (note,) = [note for note in run.report["messages"] if "steps to t" in note]
@@ -48,7 +48,7 @@ def test_a_run_of_few_steps_says_nothing():
 
 
 def test_knots_of_a_table_are_named_as_what_the_steps_are_for(monkeypatch):
-    """The rate of a motion that goes from sample to sample in straight lines jumps at each of them."""
+    """The rate of a piecewise linear motion is discontinuous at each sample."""
     monkeypatch.setattr(long_runs, "MANY_STEPS_LIMIT", 500)
     time = np.linspace(0, 0.1, 1001)
     scene = stiff(pinned=False)

@@ -1,4 +1,4 @@
-"""Modal bodies: free flight, vibration, against absolute nodal coordinates, points with axes."""
+"""Modal bodies: free flight, vibration, comparison with absolute nodal coordinates, points with axes."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ BAR = Rectangle(height=0.03, width=0.02)
 
 
 def points(folder, seed: int = 3) -> dict:
-    """A file of a few mass points with modes that are neither orthogonal to each other nor to rigid motions."""
+    """Write a file of a few mass points with modes orthogonal neither to each other nor to rigid motions."""
     random = np.random.default_rng(seed)
     root = random.normal(size=(3, 3))
     arrays = {"nodes": random.normal(size=(7, 3)), "modes": random.normal(size=(3, 7, 3)) / 2,
@@ -42,7 +42,7 @@ def test_a_run_says_which_modes_a_body_has():
 
 
 def momenta(run, arrays) -> tuple[np.ndarray, np.ndarray]:
-    """Linear and angular momentum (time, 3), summed over the mass points."""
+    """Return linear and angular momentum (time, 3), summed over the mass points."""
     turn, omega = run["body.orientation"][:, None], run["body.angular_velocity"][:, None]
     u = arrays["nodes"] + np.einsum("tk,kni->tni", run["body.modal_coordinates"], arrays["modes"])
     rate = np.einsum("tk,kni->tni", run["body.modal_velocities"], arrays["modes"])
@@ -118,7 +118,9 @@ def test_attachment_modes_are_those_of_the_cantilever():
 
 @pytest.mark.parametrize("boundary", ["free", "attached"])
 def test_stiffened_it_flies_like_the_mesh_in_absolute_coordinates(boundary):
-    """A bar thrown with a spin that stretches it, stiffer and stiffer: the two differ by the square of the strain."""
+    """A bar is thrown with a spin that stretches it, at increasing stiffness: the motions differ by the square of the
+    strain.
+    """
     spin, duration, distance = np.array([0, 3.0, 40.0]), 0.05, []
     for stiffer in (10, 1000):  # softer, without the stiffness that tension gives, the cantilever's modes run away
         material = Material(youngs_modulus=2e7 * stiffer, poisson_ratio=0.0, density=1100)
@@ -142,7 +144,7 @@ def test_stiffened_it_flies_like_the_mesh_in_absolute_coordinates(boundary):
 
 
 def test_attachments_are_derivatives_of_points_and_axes(tmp_path):
-    """Of modal.c: place, axes, P, T, velocities, biases, K against differences."""
+    """The functions of modal.c: position, axes, P, T, velocities, biases, K against differences."""
     arrays = points(tmp_path)
     model = build(tumbling(tmp_path))
     engine = Engine(model)

@@ -1,4 +1,4 @@
-"""Modal bodies held by joints, slides and springs, and loaded: what is held, closed forms, agreement."""
+"""Modal bodies with joints, slides, springs and loads: constraints, closed forms, agreement."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ Z = {"axis": (0, 0, 1)}
 
 
 def held(kind, **given) -> Scene:
-    """A bar on the ground, its far end on a spring and loaded by forces and a moment."""
+    """Return a bar on the ground, its far end on a spring and under forces and a moment."""
     scene = Scene()
     scene.modal_body("bar", start=(0, 0, 0), end=(0.5, 0, 0), modes=4, boundary="attached", damping_ratio=0.01, **BAR)
     scene.joint(kind, (0, 0, 0), ("bar", 0.0), name="joint", **given)
@@ -30,7 +30,7 @@ def held(kind, **given) -> Scene:
 
 
 def chain(kind, to="modal", **given) -> Scene:
-    """Two bars, or a bar and a rigid body or a cable, joined and thrown."""
+    """Return two bars, or a bar and a rigid body or a cable, joined and thrown."""
     scene = Scene()
     moving = {"velocity": (0.1, 0.2, -0.3), "angular_velocity": (3, -2, 4)}
     scene.modal_body("bar", start=(0, 0, 0), end=(0.5, 0.1, 0), modes=5, **moving, **BAR)
@@ -117,7 +117,7 @@ ROOTS = {"pinned": np.pi * np.array([1, 2]), "clamped and pinned": np.array([3.9
 
 
 def slender(modes, boundary, start, end=None, gravity=(0, 0, 0)) -> Scene:
-    """Its end, if held, on a carriage along the bar: so nothing stretches it, and no equation is redundant."""
+    """Return a bar whose supported end is on an axial carriage: no axial load, and no redundant equation."""
     scene = Scene(gravity=gravity)
     scene.modal_body("bar", start=(0, 0, 0), end=(1, 0, 0), section=Rectangle(height=SIDE, width=SIDE), material=STEEL,
                      elements=20, element="cable12", modes=modes, boundary=boundary)
@@ -131,15 +131,15 @@ def slender(modes, boundary, start, end=None, gravity=(0, 0, 0)) -> Scene:
 
 
 def off(modes, boundary, start, end, of) -> np.ndarray:
-    """Of the two lowest roots, which are double, as parts of them."""
+    """Return the relative errors of the two lowest roots, which are double."""
     found = np.sqrt(slender(modes, boundary, start, end).modes(4).angular_frequency / UNIT)
     assert_allclose(found[::2], found[1::2], rtol=1e-6)
     return found[::2] / ROOTS[of] - 1
 
 
 @pytest.mark.parametrize(("boundary", "start", "end", "of", "modes", "power", "last"), [
-    # forces of supports jump at an end: with the third power; what holds a section bends it there, which modes of a
-    # free end do not: with the first. A cantilever's own modes are exact but for the mesh
+    # support forces are discontinuous at an end: third order in the modes; a clamp bends a section, which free-end
+    # modes do not: first order. A cantilever's own modes are exact up to the mesh
     ("free", "universal", "spherical", "pinned", (8, 16, 32), 2.2, 2e-4),
     ("attached", "weld", "spherical", "clamped and pinned", (8, 32), 2.5, 2e-4),
     ("free", "weld", None, "cantilever", (8, 16, 32), 0.8, 0.03),
@@ -156,7 +156,7 @@ def test_frequencies_converge_with_the_number_of_modes(boundary, start, end, of,
 
 
 def test_a_cantilever_on_a_spring():
-    """b^3 (1 + cos b cosh b) + k (sin b cosh b - cos b sinh b) = 0, k the spring's stiffness by EI/L^3."""
+    """b^3 (1 + cos b cosh b) + k (sin b cosh b - cos b sinh b) = 0, with k the stiffness of the spring over EI/L^3."""
     from scipy.optimize import brentq
 
     k, scene = 20.0, slender(16, "attached", "weld")
@@ -168,9 +168,9 @@ def test_a_cantilever_on_a_spring():
 
 
 def test_it_sags_under_its_weight_and_a_load():
-    """w L^4/8EI and F L^3/3EI; the foot holds force and moment. As `modes` about that state knows it.
+    """w L^4/8EI and F L^3/3EI; the foot carries force and moment. `modes` about that state agrees.
 
-    With 16 modes the last one is half of a pair of equal frequency, whose axes are the library's choice.
+    With 16 modes the last one is half of a pair of equal frequency, whose axes the library chooses.
     """
     weight, load = 7800 * SIDE**2 * G, 20.0
     scene = slender(20, "attached", "weld", gravity=(0, -G, 0))
@@ -188,7 +188,7 @@ def test_it_sags_under_its_weight_and_a_load():
 
 
 def test_a_moment_bends_it_to_an_arc():
-    """M L^2/2EI, and M L/EI of its end's section, by a joint and by the load."""
+    """M L^2/2EI, and M L/EI of its end section, by a joint and by the load."""
     scene = slender(32, "attached", "weld")
     scene.moment("bar", s=1.0, value=(0, 0, 3.0))
     state = scene.equilibrium()
@@ -197,14 +197,14 @@ def test_a_moment_bends_it_to_an_arc():
 
 
 def test_a_bar_on_a_hinge_swings():
-    """m g l/2 over m l^2/3, the bar being stiff; the same by a run from 0.01 rad."""
+    """m g l/2 over m l^2/3 for a stiff bar, also by a run from 0.01 rad."""
     scene = slender(6, "free", "universal", gravity=(G, 0, 0))
     found = scene.modes(2, about=scene.equilibrium()).angular_frequency
     assert_allclose(found, np.sqrt(1.5 * G), rtol=1e-4)
 
 
 def test_modes_of_a_cable_and_what_rides_it_on_modes():
-    """A link on a taut wire at rest: stiff, it vibrates with the wire as a rigid body does."""
+    """A stiff link on a taut wire at rest vibrates with the wire as a rigid body does."""
     found = []
     for kind in ("modal", "rigid"):
         scene = Scene()
@@ -230,7 +230,7 @@ def test_modes_of_a_cable_and_what_rides_it_on_modes():
 
 
 def test_a_force_on_a_node_does_its_work():
-    """Free, the mass centre, where the frame's origin is with free-free modes, goes as Newton has it."""
+    """The mass centre, at the origin of the frame with free-free modes, obeys Newton's law."""
     scene = Scene(gravity=(0, 0, 0))
     bar = scene.modal_body("bar", start=(0, 0, 0), end=(0.5, 0, 0), modes=4, angular_velocity=(1, 2, -2), **BAR)
     scene.force("bar", at=(0.25, 0.015, 0.01), value=(1, -2, 3))
@@ -240,7 +240,7 @@ def test_a_force_on_a_node_does_its_work():
 
 
 def test_a_follower_turns_with_the_section():
-    """Stiff, it flies as a rigid body does."""
+    """A stiff one flies as a rigid body."""
     ends = []
     for stiff in (True, False):
         scene = Scene(gravity=(0, 0, 0))
@@ -257,7 +257,7 @@ def test_a_follower_turns_with_the_section():
 
 
 def test_a_moment_turns_it():
-    """At whichever section: J omega' = M about an axis of symmetry."""
+    """At any section: J omega' = M about an axis of symmetry."""
     for s in (0.0, 0.25, 0.5):
         scene = Scene(gravity=(0, 0, 0))
         scene.modal_body("bar", start=(0, 0, 0), end=(0.5, 0, 0), modes=4, **BAR | {"material": STEEL})
@@ -289,7 +289,7 @@ def test_a_scene_file_keeps_loads_and_joints():
 
 
 def test_an_end_turns_with_its_section():
-    """Welded to the tip of a bar that a moment bends, a light body has turned by M L/EI."""
+    """A light body welded to the tip of a bar bent by a moment has rotated by M L/EI."""
     scene = slender(32, "attached", "weld")
     scene.rigid_body("flag", mass=1e-3, inertia=(1e-6, 1e-6, 1e-6), position=(1, 0, 0))
     scene.joint("weld", ("bar", 1.0), "flag")

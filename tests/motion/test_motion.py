@@ -1,6 +1,6 @@
-"""Bodies and cables without slides: against closed forms, Euler's equations, and conservation.
+"""Bodies and cables without slides: closed forms, Euler's equations, conservation.
 
-Bounds without another reason are about twice what was measured, which a comment gives.
+Bounds without another reason are about twice the measured value, which a comment gives.
 """
 
 import numpy as np
@@ -16,7 +16,7 @@ SPIN = np.array([0.05, 5.0, 0.02])
 
 
 def spinning_body(step):
-    """A thrown body that turns about its middle axis, which tips over and over."""
+    """Return a thrown body that rotates about its middle axis and tumbles."""
     scene = Scene()
     scene.rigid_body("A", mass=0.7, inertia=J, position=(0, 0, 0), velocity=(1, 2, 3), angular_velocity=SPIN)
     return scene.run(4.0, step=step, output_step=0.04)
@@ -29,7 +29,7 @@ def spins():
 
 @pytest.fixture(scope="module")
 def euler():
-    """Quaternion (w, x, y, z) and body-axis angular velocity by Euler's equations, at the runs' times."""
+    """Return quaternion (w, x, y, z) and body-axis angular velocity by Euler's equations, at the times of the runs."""
 
     def rate(t, y):
         a, b, c, d, w = *y[:4], y[4:]
@@ -79,7 +79,7 @@ def test_a_free_cable_falls_without_strain():
 
 @pytest.mark.parametrize("step", [2e-3, 1e-3])
 def test_a_damped_cable_comes_to_rest_and_the_energy_balances(step):
-    """Kelvin-Voigt damping takes the energy that the fall set free; at rest the pins carry the weight."""
+    """Kelvin-Voigt damping dissipates the energy of the fall; at rest the pins carry the weight."""
     scene = Scene()
     material = Material(youngs_modulus=0.4e9, poisson_ratio=0.0, density=4200, damping_time=0.02)
     add_cable(scene, material=material)
@@ -97,9 +97,9 @@ def test_a_damped_cable_comes_to_rest_and_the_energy_balances(step):
 
 
 def test_damping_of_a_mode_has_its_closed_form():
-    """Axial vibration of a cable held at its ends: a mode of frequency w decays with w^2 tau / 2.
+    """Axial vibration of a cable between fixed ends: a mode of frequency w decays with w^2 tau / 2.
 
-    Gravity along the axis, suddenly there, sets it off; the first mode has 32/pi^3 of the static deflection.
+    Axial gravity, applied suddenly, excites it; the first mode has 32/pi^3 of the static deflection.
     """
     tau = 2e-4
     material = TABLE_1.model_copy(update={"damping_time": tau})

@@ -1,4 +1,4 @@
-"""Notes hold where they stand: of a drawing that a run does not start from, of elements that never touch."""
+"""Notes apply where they are given: no note on a drawing that is not the start, or on elements without contact."""
 
 import pytest
 from funicular import Circle, Cylinder, FunicularWarning, Material, Scene
@@ -8,7 +8,7 @@ OVERLAP = "the lines overlap by 0.005 m as drawn"
 
 
 def crossed():
-    """Return two held lines that are drawn 5 mm too near to each other."""
+    """Return two fixed lines that are drawn 5 mm too close to each other."""
     scene = Scene()
     for name, y, x, z in (("low", 0.0, 0.5, 0), ("high", 0.015, 0, 0.5)):
         scene.cable(name, start=(-x, y, -z), end=(x, y, z), elements=5, element="cable12", section=Circle(radius=0.01),

@@ -1,4 +1,4 @@
-"""Springs that pull alone, free play, tables of tension: closed forms, order of events, energy, rest, refusals."""
+"""Tension-only springs, free play, tables of tension: closed forms, order of events, energy, equilibrium, refusals."""
 
 import funicular as fu
 import numpy as np
@@ -15,7 +15,7 @@ BY_STEP = ("genalpha", "energy")
 
 
 def hanging(speed, drawn=0.0, **law):
-    """Return a mass on a spring of 1 m, extended by so much at the start, that goes down at this speed."""
+    """Return a mass on a spring of 1 m with an initial extension and a downward speed."""
     scene = fu.Scene(gravity=(0, 0, -GRAVITY))
     scene.rigid_body("m", mass=MASS, inertia=(1, 1, 1), position=(0, 0, -1.0 - drawn), velocity=(0, 0, -speed))
     scene.spring((0, 0, 0), "m", length=1.0, name="dropper", **law)
@@ -27,7 +27,7 @@ def extension(run):
 
 
 class Thrown:
-    """A mass on a spring that pulls alone: sines while it is taut, parabolas while it is slack, from nil extension."""
+    """A mass on a tension-only spring: sines while taut, parabolas while slack, from zero extension."""
 
     def __init__(self, speed, duration):
         self.omega, self.shift = np.sqrt(STIFFNESS / MASS), MASS * GRAVITY / STIFFNESS
@@ -102,7 +102,7 @@ LAWS = {
 
 @pytest.fixture(scope="module")
 def references():
-    """Return, by law, the motion by a Runge-Kutta method of short steps, at times of rows."""
+    """Return the motion by law, from a Runge-Kutta method with short steps, at the times of rows."""
     time = np.linspace(0, 1, 51)
     return {name: solve_ivp(lambda t, y, force=force: [y[1], GRAVITY - force(*y) / MASS], (0, 1), [0, 1.5],
                             rtol=1e-8, atol=1e-10, t_eval=time, max_step=2e-4).y[0]
@@ -132,7 +132,7 @@ def test_a_damped_spring_that_pulls_alone_dissipates_what_it_does_not_give_back(
 
 
 def test_droppers_unload_and_reload_between_two_wires():
-    """A wire under two droppers is lifted in its middle and let down: they lose their force and regain it."""
+    """A wire under two droppers is lifted in its middle and lowered: the droppers lose their force and regain it."""
     scene = fu.Scene(gravity=(0, 0, -9.81))
     wire = scene.cable("wire", start=(0, 0, 0), end=(10, 0, 0), elements=20, element="cable12",
                        section=fu.Circle(radius=6e-3),
@@ -160,10 +160,10 @@ def test_droppers_unload_and_reload_between_two_wires():
 
 
 def between_two_droppers(speed, preload):
-    """Return the instants of half a period, and a function of time: a mass between two droppers that pull alone.
+    """Return the instants of half a period, and a function of time: a mass between two tension-only droppers.
 
-    It begins in the middle with this speed, while both pull, each extended by the preload (m). Beyond that the one is
-    slack, and the other pulls with twice the preload and more.
+    It begins in the middle with this speed, while both pull, each extended by the preload (m). Beyond it one is slack,
+    and the other pulls with more than twice the preload.
     """
     both, one = np.sqrt(2 * STIFFNESS / MASS), np.sqrt(STIFFNESS / MASS)
     slack = np.arcsin(preload * both / speed) / both
@@ -310,7 +310,7 @@ STEP = 0.05
 
 
 def grazing(beyond, peak=0.5125, **law):
-    """Return a mass that is thrown against gravity, whose spring would be extended by `beyond` (m) at the peak."""
+    """Return a mass thrown against gravity, whose spring would be extended by `beyond` (m) at the peak."""
     scene = fu.Scene(gravity=(0, 0, GRAVITY))
     speed = GRAVITY * peak
     scene.rigid_body("m", mass=MASS, inertia=(1, 1, 1), position=(0, 0, -1 - beyond + speed * peak / 2),
@@ -323,7 +323,7 @@ def grazing(beyond, peak=0.5125, **law):
 @pytest.mark.parametrize("damping", [0.0, DAMPING])
 @pytest.mark.parametrize("part", [1e-3, 0.1])
 def test_a_spring_that_is_taut_for_a_part_of_a_step_is_not_missed(integrator, damping, part):
-    """Free until the instant from which it is taut, and taut for a quarter of a thousandth of a vibration at most."""
+    """The mass is free, then the spring is taut for at most a quarter of a thousandth of a vibration."""
     half, peak = STEP * part / 2, 0.5125
     run = grazing(GRAVITY * half**2 / 2, peak, damping=damping).run(duration=1.0, output_step=STEP, step=STEP,
                                                                    integrator=integrator)
@@ -338,7 +338,7 @@ def test_a_spring_that_is_taut_for_a_part_of_a_step_is_not_missed(integrator, da
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 @pytest.mark.parametrize("size", ["fixed", "by tol"])
 def test_a_quantity_that_passes_a_value_and_is_back_within_a_step_is_noted(integrator, size):
-    """By the closed form of its height, of one event or of both directions; a miss by 1e-3 of the way is none."""
+    """The closed form of the height decides, for one event or both directions; a miss by 1e-3 of the path is none."""
     half, peak = 1e-3, 0.5125
     beyond = GRAVITY * half**2 / 2
     scene = grazing(-1.0, peak)

@@ -1,4 +1,4 @@
-"""Example 5.2 of the paper: a link with a ball below a cable, in its three kinds."""
+"""Example 5.2 of the paper: a link with a ball below a cable, of three kinds."""
 
 import numpy as np
 import pytest

@@ -1,5 +1,4 @@
-"""Steps that go over springs that become slack or taut, by integrator: closed forms, instants, energy, what is landed
-on."""
+"""Steps across springs that become slack or taut, by integrator: closed forms, instants, energy, landings."""
 
 import funicular as fu
 import numpy as np
@@ -10,8 +9,9 @@ MASS = 2.0
 
 
 class Pair:
-    """A mass between two droppers that are drawn together, beside a spring: both pull while it is within `reach` of the
-    middle, one alone beyond. Sines of two frequencies, that begin in the middle at this speed."""
+    """A mass between two droppers beside a spring: both pull within `reach` of the middle, one alone beyond. Sines of
+    two frequencies, from the middle at this speed.
+    """
 
     reach, speed = 0.02, 0.5
 
@@ -35,7 +35,7 @@ class Pair:
         return scene
 
     def instants(self, duration):
-        """Return when droppers become slack and taut by turns: the right one, the left one, and so on."""
+        """Return the instants at which the droppers become slack and taut, right and left by turns."""
         times, t = [], self.first
         while t < duration:
             times += [t, t + self.out]
@@ -86,7 +86,7 @@ def linear(stiffness):
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 @pytest.mark.parametrize("tol", [1e-2, 1e-3, 1e-4])
 def test_steps_go_over_what_changes_little(integrator, tol):
-    """The error is hardly more than where nothing changes; instants are as exact as positions are."""
+    """The error hardly exceeds that without changes; instants are as accurate as positions."""
     exact, settings = Pair(3.0, 300.0), {"duration": 2.0, "output_step": 2.0, "integrator": integrator, "tol": tol}
     run, smooth = exact.scene().run(**settings), linear(304.5).run(**settings)
     instants = exact.instants(2.0)
@@ -103,7 +103,7 @@ def test_steps_go_over_what_changes_little(integrator, tol):
 
 
 def bouncing():
-    """Return 10 g that hang on a spring of 100 kN/m that pulls alone, and bounce on it for a millisecond at a time."""
+    """Return 10 g on a tension-only spring of 100 kN/m, on which it bounces for a millisecond at a time."""
     scene = fu.Scene()
     scene.rigid_body("m", mass=0.01, inertia=(1e-6,) * 3, position=(0, -1, 0), velocity=(0, -0.2, 0))
     scene.spring((0, 0, 0), "m", name="wire", stiffness=1e5, length=1.0, tension_only=True)
@@ -128,7 +128,7 @@ def test_fixed_steps_go_over_none_but_where_energy_has_a_mean_force(integrator):
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 def test_a_damper_is_landed_on(integrator):
-    """Its force jumps where it becomes taut, and so does what it dissipates."""
+    """Its force is discontinuous where it becomes taut, and so is its dissipation."""
     scene = fu.Scene()
     scene.rigid_body("m", mass=MASS, inertia=(1, 1, 1), position=(0, -1, 0), velocity=(0, -0.2, 0))
     scene.spring((0, 0, 0), "m", name="wire", stiffness=1e3, damping=1.0, length=1.0, tension_only=True)
@@ -139,7 +139,7 @@ def test_a_damper_is_landed_on(integrator):
 
 @pytest.mark.parametrize("dim", [2, 3])
 def test_the_mean_force_over_several_pieces_keeps_energy_at_any_step(dim):
-    """Steps over a whole table, on a spring that swings round its end."""
+    """Steps across a whole table, on a spring that swings about its end."""
     table = {"extension": [-0.2, -0.05, 0.0, 0.1, 0.3], "tension": [-90, -30, 0, 10, 60]}
     scene = fu.Scene(gravity=(0, -9.81, 0)) if dim == 2 else fu.Scene(gravity=(0, -9.81, -1.0))
     velocity = (3.0, -4.0, 0.0) if dim == 2 else (3.0, -4.0, 1.0)

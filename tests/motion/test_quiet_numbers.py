@@ -1,4 +1,4 @@
-"""What rounding, rows of zeros and absurd sizes make of numbers is said in words, and not by NumPy's RuntimeWarning."""
+"""Rounding, rows of zeros and extreme sizes give messages instead of RuntimeWarnings of NumPy."""
 
 from types import MappingProxyType
 
@@ -12,7 +12,7 @@ pytestmark = [pytest.mark.filterwarnings("error::RuntimeWarning"),
 
 
 def two_lines(elements: int, with_slide: bool) -> fu.Scene:
-    """Return two cables, each fixed at both ends; a slide leads the fixed end of one along the other, at its end."""
+    """Return two cables, each fixed at both ends; a slide joins the fixed end of one to the end of the other."""
     scene, steel = fu.Scene(gravity=(0, 0, 0)), fu.Material(youngs_modulus=1e9, poisson_ratio=0.3, density=1000)
     for name, end in (("wire", (4, 0, 0)), ("rope", (0, 3, 0))):
         scene.cable(name, start=(0, 0, 0), end=end, elements=elements, element="cable8p", material=steel,
@@ -27,7 +27,7 @@ def two_lines(elements: int, with_slide: bool) -> fu.Scene:
 
 @pytest.mark.parametrize("elements", [3, 30])
 def test_a_slide_between_two_supports_takes_no_mode_away(elements):
-    """Its rows are zeros: they counted as constraints, and took a mode away where there are many."""
+    """Its rows are zero and do not count as constraints."""
     with_it, without = (two_lines(elements, each).modes(8).angular_frequency for each in (True, False))
     assert_allclose(with_it, without, rtol=1e-6)
 

@@ -1,6 +1,6 @@
-"""What holds for every scene: a result or a `FunicularError`, finite rows, closed joints, a text that says all of it.
+"""Properties of every scene: a result or a `FunicularError`, finite rows, closed joints, a complete text.
 
-Examples are the same every time. Each scene that failed stands as a test of its own, in the file of what it was about.
+Examples are the same every time. Each scene that failed is a test of its own, in the file of its subject.
 """
 
 import time as clock
@@ -30,7 +30,7 @@ class TooLongError(Exception):
 
 
 def within(seconds: float):
-    """A progress function that ends a run after so much processor time; what it did until then is not judged."""
+    """Return a progress function that ends a run after a processor time; the rest of the run is not judged."""
     end = clock.process_time() + seconds
 
     def progress(time: float) -> None:
@@ -42,7 +42,7 @@ def within(seconds: float):
 
 def computed(time: float, scene: fu.Scene, integrator: str, steps: dict, initial: str = "drawn",
              seconds: float = 0.3) -> fu.Run | None:
-    """A run over 0.05 of the scene's time, as far as it goes; None where it is refused or takes too long."""
+    """Return a run over 0.05 of the scene's time, as far as it goes; None if it is refused or takes too long."""
     steps = {name: value * time if name == "step" else value for name, value in steps.items()}
     try:
         return scene.run(0.05 * time, output_step=0.01 * time, integrator=integrator, initial=initial, **steps,
@@ -70,7 +70,7 @@ def check_run(time: float, scene: fu.Scene, integrator: str, steps: dict, initia
 
 
 def check_energy(time: float, scene: fu.Scene, integrator: str, steps: dict) -> None:
-    """Where a tenth of the energy that was exchanged came from nowhere or went there, the run says so."""
+    """Check that a run reports an unexplained tenth of the exchanged energy."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", fu.FunicularWarning)
         run = computed(time, scene, integrator, steps)
@@ -105,7 +105,7 @@ def check_file(text: str) -> None:
 
 
 def check_statics(scene: fu.Scene) -> None:
-    """At rest with few iterations, and modes: a result of numbers, or an error."""
+    """Check statics with few iterations, and modes: finite results, or an error."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", fu.FunicularWarning)
         try:

@@ -1,4 +1,4 @@
-"""What rides, and how it is tied: tangent and section frames, driven slides, cables as riders, several slides."""
+"""Riders and their ties: tangent and section frames, driven slides, cables as riders, several slides."""
 
 import numpy as np
 import pytest
@@ -30,7 +30,7 @@ def trolley(frame="tangent", element="cable12", at=(0, 0.1, -0.05), **given) -> 
 
 
 def hung(element="cable12", s=0.0, link=None, frame="point", **given) -> Scene:
-    """A cable that hangs at its point s from a slide on another."""
+    """Return a cable that hangs at its point s from a slide on another."""
     scene = wired(element)
     below = (0.4, s, 0), (0.4, s - 1, 0)
     up = {} if element.endswith("p") else {"up": (1, 0, 0)}
@@ -74,7 +74,7 @@ def test_it_is_kept_and_the_energy_balances(case, integrator):
 
 
 def tangent(run, s) -> np.ndarray:
-    """(time, 3): of the cable12 "wire" at arc-lengths s (time,), by differences of its cubic."""
+    """Return tangents (time, 3) of the cable12 "wire" at arc-lengths s (time,), by differences of its cubic."""
     length, nodal = 0.5, run["wire.nodal_vectors"]
     found = []
     for row, at in enumerate(s):
@@ -104,7 +104,7 @@ def test_a_trolley_keeps_its_floor_along_the_cable(roll):
 
 @pytest.mark.parametrize(("elements", "s"), [(2, 0.5), (3, 2 / 3), (4, 0.75)])
 def test_a_torque_on_a_rider_twists_the_cable(elements, s):
-    """By T s/(G J) at a node; J with the torsion factor of a square, 0.8436 of the polar moment."""
+    """T s/(G J) at a node, with J by the torsion factor of a square, 0.8436 of the polar moment."""
     scene = Scene(gravity=(0, 0, 0))
     scene.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=elements, section=SQUARE, material=SOFT,
                 law="structural")
@@ -121,7 +121,7 @@ def test_a_torque_on_a_rider_twists_the_cable(elements, s):
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 def test_a_driven_slide_pulls_with_weight_and_inertia(integrator):
-    """Up an incline of 30 degrees: m a + m g sin along it, m g cos across."""
+    """On an incline of 30 degrees: m a + m g sin along it, m g cos across."""
     up = np.array([np.cos(np.pi / 6), 0.5, 0])
     scene = wired(gravity=(0, 0, 0), end=tuple(1.5 * up), material=Material(youngs_modulus=1e11, poisson_ratio=0.0,
                                                                             density=1e5))
@@ -143,7 +143,7 @@ def test_a_driven_slide_pulls_with_weight_and_inertia(integrator):
                                             ("beam24", 0.3), ("cable8p", 0.3)])
 @pytest.mark.filterwarnings("ignore:the state is unstable")
 def test_a_hanging_cable_weighs_on_its_slide(element, s):
-    """Upright, also where that is not stable: hung at its middle it would rather lie, both halves drooping."""
+    """Upright, which can be unstable: hung at its middle, both halves would fold down."""
     state = hung(element, s, drive=0.4).equilibrium(seek_stable=False)
     assert state.stable == (s < 0.5)
     assert_allclose(state["trolley.force"], [0, 1200 * 0.05**2 * G, 0], atol=1e-6)
@@ -163,7 +163,7 @@ def car(frames=("point", "point")) -> Scene:
 @pytest.mark.filterwarnings("ignore:initial velocities broke a joint")
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 def test_a_car_on_two_wheels(integrator):
-    """Newton and Euler: its wheels put on it what its motion takes; one wheel crosses a node before the other."""
+    """Newton and Euler: the forces of the wheels give the motion; one wheel crosses a node before the other."""
     run = car().run(0.5, output_step=0.01, tol=1e-4, integrator=integrator)
     assert run.report["element_crossings"] == 1 and max(run[f"{w}.residual"].max() for w in ("front", "back")) < 1e-9
     force = run["front.force"] + run["back.force"]

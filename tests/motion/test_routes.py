@@ -1,4 +1,4 @@
-"""Routes that must agree, over random scenes: whatever way leads to a motion, it is the same, or a note says so."""
+"""Routes that must agree, over random scenes: every route leads to the same motion, or a note says so."""
 
 import time
 from dataclasses import dataclass
@@ -31,7 +31,7 @@ LONGEST = 1.0
 
 
 def run(scene, duration, integrator="radau", until=np.inf, **settings):
-    """Return a run, None where the integrator refuses the scene, or takes too long; until: interrupted there."""
+    """Return a run, or None if the integrator refuses the scene or takes too long; until: time of an interruption."""
     begin = time.process_time()
 
     def give_up(reached):
@@ -47,7 +47,7 @@ def run(scene, duration, integrator="radau", until=np.inf, **settings):
 
 
 def check(subject, name, found, *runs, within=WITHIN):
-    """Check a motion by another route against that of the scene as drawn."""
+    """Check a motion by another route against that of the drawn scene."""
     assert apart(subject.points, found) < within * TOL or is_noted(subject.run, *runs)
 
 
@@ -106,7 +106,7 @@ def test_resumed_run_is_the_same(subject, tmp_path):
 
 
 def test_run_goes_on_from_a_state_of_another(subject):
-    """Of scenes without signals, which begin anew."""
+    """For scenes without signals, which start anew."""
     if "form =" in subject.scene.to_toml():
         return
     half, step = len(subject.run.time) // 2, subject.duration / 20
@@ -117,7 +117,7 @@ def test_run_goes_on_from_a_state_of_another(subject):
 
 
 def test_error_of_the_mesh_is_within_its_estimate(subject):
-    """Against elements a quarter as long, where the estimate has halves: up to twice that, of order 1."""
+    """The reference has a quarter of the element length, the estimate half: up to a factor of two at order 1."""
     if not subject.scene.cables:
         return
     tol = 1e-3
@@ -131,7 +131,7 @@ def test_error_of_the_mesh_is_within_its_estimate(subject):
 
 
 def test_stiff_springs_hold_as_joints_do(subject):
-    """By springs that are stretched by tol of the motion. Where a joint changes the velocities drawn there are none."""
+    """The springs stretch by tol of the motion. Scenes whose joints project the drawn velocities are left out."""
     joints = [joint for joint in subject.scene.joints.values() if joint.joint_kind == "spherical"]
     if not joints or any("velocities broke" in note for note in subject.run.report["messages"]):
         return
@@ -145,8 +145,8 @@ def test_stiff_springs_hold_as_joints_do(subject):
 
 
 def test_modes_are_small_free_vibrations(subject):
-    """A scene that is let go from a mode's shape is there again after a period, and half as far from the other side
-    of its rest after a quarter. Of scenes without what damps and drives, which have a state of rest.
+    """A scene started from the shape of a mode returns after a period, and is at the opposite side after half of it.
+    Scenes without dampers and drives that have an equilibrium.
     """
     if not free_to_vibrate(subject.scene) or subject.seed in NO_REST:
         return

@@ -1,4 +1,4 @@
-"""Notes on output rows take all of them, also those of a streamed run that are on disk: struts, strains, springs."""
+"""Notes on output rows include all rows, also those on disk of a streamed run: struts, strains, springs."""
 
 import json
 
@@ -26,7 +26,7 @@ EULER = np.pi**2 * MODULUS * np.pi / 4 * RADIUS**4
 
 
 def strut() -> Scene:
-    """1 m, straight, pressed along its axis beyond Euler's load for the first half of the run alone."""
+    """Return a straight strut of 1 m, compressed beyond Euler's load for the first half of the run alone."""
     scene = cable_scene("strut", pins=(0,), gravity=(0, 0, 0), elements=4, element="cable8p",
                         section=Circle(radius=RADIUS),
                         material=Material(youngs_modulus=MODULUS, poisson_ratio=0, density=1000, damping_time=1e-3))
@@ -36,7 +36,7 @@ def strut() -> Scene:
 
 
 def squeezed() -> Scene:
-    """A cable with a reduced strain, pressed together by a tenth for the first half of the run alone."""
+    """Return a cable with a reduced strain, compressed by a tenth for the first half of the run alone."""
     scene = cable_scene(pins=(0,), gravity=(0, 0, 0), elements=4, element="cable8p", membrane="reduced",
                         section=Rectangle(height=0.05, width=0.05),
                         material=Material(youngs_modulus=1e6, poisson_ratio=0, density=1000, damping_time=1e-2))
@@ -45,7 +45,7 @@ def squeezed() -> Scene:
 
 
 def met(length=0.5, stays=False) -> Scene:
-    """A body that is drawn through the other end of its spring, or that is put there."""
+    """Return a body that is drawn through the other end of its spring, or placed there."""
     scene = Scene(gravity=(0, 0, 0))
     scene.rigid_body("A", mass=1.0, inertia=(1, 1, 1), position=(-1, 0, 0))
     signal = Ramp(start=0, end=0.02) if stays else TableSignal(time=(0, 0.02, 0.04), value=(0, 1, 1.5))
@@ -65,7 +65,7 @@ def noted(run, said: str) -> list[str]:
 @pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
 @pytest.mark.parametrize("said", SCENES)
 def test_rows_on_disk_are_noted_too(said, tmp_path, monkeypatch):
-    """Of a streamed run the last rows alone were looked at, in which nothing is pressed any more."""
+    """The last rows of a streamed run have no compression any more."""
     whole = SCENES[said]().run(**SETTINGS)
     monkeypatch.setattr(pauses, "MAX_BUFFERED_BYTES", 1.0)
     streamed = SCENES[said]().run(**SETTINGS, save=tmp_path / "run.nc")
@@ -74,7 +74,7 @@ def test_rows_on_disk_are_noted_too(said, tmp_path, monkeypatch):
 
 
 class Recorded:
-    """Stands for an engine that has recorded rows, of a scene without contact."""
+    """Simulates an engine with recorded rows of a scene without contact."""
 
     def __init__(self, rows: dict[str, np.ndarray]):
         self._rows = rows
@@ -91,7 +91,7 @@ class Recorded:
 
 @pytest.mark.parametrize("said", SCENES)
 def test_a_checkpoint_holds_what_was_found(said):
-    """Rows one by one, and each time as a run that is resumed has it."""
+    """Rows one by one, each time as in a resumed run."""
     scene = SCENES[said]()
     model = build(scene)
     q = np.repeat(model.q[None], 5, axis=0)
@@ -115,7 +115,7 @@ def test_a_checkpoint_holds_what_was_found(said):
 
 @pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
 def test_a_body_that_turns_by_radians_within_a_fixed_step_is_noted():
-    """Its axes went where they liked, without a word."""
+    """Its axes have no defined error in such steps."""
     def turning(rate: float, **step):
         scene = Scene(gravity=(0, 0, 0))
         scene.rigid_body("A", mass=1.0, inertia=(1, 2, 3), position=(0, 0, 0), angular_velocity=(0, rate, 0.1))
@@ -128,7 +128,7 @@ def test_a_body_that_turns_by_radians_within_a_fixed_step_is_noted():
 @pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
 @pytest.mark.parametrize("rate", [10.0, 100.0])
 def test_the_steps_of_energy_see_how_fast_a_body_turns(rate):
-    """Its axes were 149 degrees off after 1 s at 100 rad/s, in 17 steps by how it falls."""
+    """By translation alone, 17 steps gave axes 149 degrees off after 1 s at 100 rad/s."""
     scene = Scene(gravity=(0, -9.81, 0))
     scene.rigid_body("A", mass=1.0, inertia=(2, 2, 2), position=(0, 0, 0), angular_velocity=(0, rate, 0))
     run = scene.run(1.0, tol=1e-4, output_step=0.1, integrator="energy", progress=False)
@@ -143,7 +143,7 @@ def test_a_spring_of_no_length_has_no_direction_to_lose():
 
 
 def test_a_body_that_is_put_on_the_end_of_its_spring_is_noted():
-    """The spring pushed it with 5 N in the direction of what rounding had left, without a word."""
+    """Rounding decides the direction of the 5 N of its spring."""
     said = (r'spring "coil": at t = 0.02 s both ends are at \(0, 0, 0\) m: its direction is lost; keep them apart, '
             "or take length=0 where they may meet")
     with pytest.warns(FunicularWarning, match=said):
@@ -151,7 +151,7 @@ def test_a_body_that_is_put_on_the_end_of_its_spring_is_noted():
 
 
 def test_a_spring_of_no_length_may_start_with_its_points_at_one_place():
-    """It was refused, although it has no direction; one that takes its length from there has none to take."""
+    """A zero length needs no direction; a spring whose length follows from there is refused."""
     scene = Scene(gravity=(0, -10, 0))
     scene.rigid_body("A", mass=2.0, inertia=(1, 1, 1), position=(0, 0, 0))
     with pytest.raises(SceneError, match="its direction is lost"):
@@ -165,7 +165,7 @@ def test_a_spring_of_no_length_may_start_with_its_points_at_one_place():
 @pytest.mark.parametrize("integrator", ["genalpha", "radau", "explicit"])
 @pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
 def test_a_distance_that_is_driven_to_nothing_is_named(integrator):
-    """It said that the body runs away, and to look at masses."""
+    """The message names the distance and no masses."""
     scene = Scene()
     scene.rigid_body("A", mass=1.0, inertia=(1, 1, 1), position=(0, -1, 0))
     scene.joint("distance", (0, 0, 0), "A", name="winch",

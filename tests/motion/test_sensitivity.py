@@ -1,4 +1,4 @@
-"""Motions in which small errors grow say so where the errors may become more than tol allows, and else do not."""
+"""Motions with growing small errors are noted if the errors may exceed tol, and only then."""
 
 import warnings
 
@@ -16,7 +16,7 @@ GROWS = "small differences grow"
 
 
 def stretched(stretch=0.02) -> fu.Scene:
-    """A cable of 1 m, stretched and let go at its end: it buckles as it rebounds."""
+    """Return a cable of 1 m, stretched and released at its end: it buckles as it rebounds."""
     scene = fu.Scene(gravity=(0, 0, -9.81))
     scene.cable("c", start=(0, 0, 0), end=(1 + stretch, 0, 0), rest="straight", rest_length=1.0, elements=16,
                 element="cable12", section=fu.Circle(radius=0.003),
@@ -26,7 +26,7 @@ def stretched(stretch=0.02) -> fu.Scene:
 
 
 def double_pendulum() -> fu.Scene:
-    """Two rods that are let go level."""
+    """Return two rods released from the horizontal."""
     scene = fu.Scene()
     for name, x in (("u", 0.5), ("l", 1.5)):
         scene.rigid_body(name, mass=1.0, inertia=(1 / 12, 1e-3, 1 / 12), position=(x, 0, 0))
@@ -47,7 +47,7 @@ def simulate(scene: fu.Scene, duration: float, rows: int = 20, **settings) -> fu
 
 @pytest.mark.parametrize("integrator", ["auto", "radau"])
 def test_a_cable_that_buckles_as_it_rebounds(integrator):
-    """Its error is many times tol, which no message said."""
+    """Its error is many times tol."""
     run = simulate(stretched(), 0.15, integrator=integrator, tol=1e-3)
     exact = positions(simulate(stretched(), 0.15, integrator="explicit", tol=1e-9))
     assert farthest(positions(run), exact) > 5e-3 * motion(exact)
@@ -72,7 +72,7 @@ def test_motions_within_tol_say_nothing(scene, duration):
 
 
 def test_errors_that_were_estimated_are_said_instead():
-    """What is measured takes the place of what may be."""
+    """Measured errors replace the note on possible ones."""
     run = simulate(stretched(), 0.15, tol=1e-3, estimate=True)
     assert not noted(run)
     assert run.report["errors"]["time"] > 2e-3
@@ -94,7 +94,7 @@ def test_friction_is_not_what_genalpha_sees():
     ("rider at twice the wave speed", 'the shock before slide "A_on_wire", which is faster than waves in its cable'),
     ("taut cable, rider", "")])
 def test_what_else_genalpha_does_not_see(name, said):
-    """It errs by 37 and 6 tol in the scenes that are noted, by 0.3 and 0.2 tol in the others."""
+    """The errors are 37 and 6 tol in the noted scenes, 0.3 and 0.2 tol in the others."""
     run = simulated(name, tol=1e-3, integrator="genalpha")
     error = farthest(positions(run), references()[name]) / motion(references()[name])
     assert (error > 3e-3) == bool(said)
@@ -102,7 +102,7 @@ def test_what_else_genalpha_does_not_see(name, said):
 
 
 def test_the_exponent_of_a_strut_is_that_of_its_fastest_wave():
-    """At rest under a compression of 1e-4, for a second; rows come in batches."""
+    """In equilibrium under a compression of 1e-4, for a second; rows come in batches."""
     scene = stretched(-1e-4)
     model = build(scene)
     times = np.linspace(0, 1, 21)
@@ -121,7 +121,7 @@ def test_the_exponent_of_a_strut_is_that_of_its_fastest_wave():
 
 @pytest.mark.parametrize(("spin", "falls"), [(0.0, True), (2.0, True), (40.0, False)])
 def test_a_body_on_a_joint_falls_over_unless_it_spins(spin, falls):
-    """An upright top of 1 kg, 0.5 m above its foot: it sleeps where its spin is above 2 sqrt(I m g l) / I_s."""
+    """An upright top of 1 kg, 0.5 m above its foot, is stable for a spin above 2 sqrt(I m g l) / I_s."""
     scene = fu.Scene(gravity=(0, 0, -9.81))
     scene.rigid_body("top", mass=1.0, inertia=(0.05, 0.05, 0.1), position=(0, 0, 0.5), angular_velocity=(0, 0, spin))
     scene.joint("spherical", ("top", (0, 0, -0.5)), (0, 0, 0), name="foot")
@@ -139,7 +139,7 @@ def test_a_body_on_a_joint_falls_over_unless_it_spins(spin, falls):
 
 @pytest.mark.parametrize(("seed", "says"), [(0, True), (154, True), (66, False)])
 def test_friction_under_a_normal_force_that_vibrates(seed, says):
-    """Riders with friction on a steel wire that is let go: radau errs by 12 and 21 tol, by 0.1 where it is quiet."""
+    """Riders with friction on a released steel wire: errors of radau are 12 and 21 tol, and 0.1 on a wire at rest."""
     made = random_motion(seed)
     tol = 1e-4 if seed == 154 else 1e-3
     run, by_explicit, exact = (simulate(made.scene, made.duration, 40, integrator=integrator, tol=each)

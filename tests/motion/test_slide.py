@@ -1,6 +1,6 @@
-"""The sliding joint: over nodes both ways, off the ends, several of them, with offset points, anywhere in space.
+"""The sliding joint: across nodes both ways, off the ends, several slides, with offset points, anywhere in space.
 
-Bounds without another reason are about twice what was measured, which a comment gives.
+Bounds without another reason are about twice the measured value, which a comment gives.
 """
 
 from itertools import pairwise
@@ -21,7 +21,7 @@ def first_scene():
     return one_rider().run(1.0, step=1e-3)
 
 
-# ---- straight cables: nothing pushes the rider, so that its path is known exactly
+# ---- straight cables: no force acts along them, so that the path of the rider is known exactly
 
 
 @pytest.mark.parametrize(
@@ -49,7 +49,7 @@ def test_a_rider_that_starts_off_the_end_stops_at_once(s, speed):
 
 @pytest.mark.parametrize("settings", [{"tol": 1e-5}, {"step": 1e-2}, {"step": 1e-2, "spectral_radius": 1}])
 def test_a_rider_turns_round_and_runs_back_over_the_nodes(settings):
-    """Gravity along the cable pulls it back: over s = 1 twice, over 0.5 once, off the start."""
+    """Axial gravity pulls it back: across s = 1 twice, across 0.5 once, off the start."""
     run, _ = to_the_end(one_rider(0.75, 1.5, gravity=(-2, 0, 0)), 3.0, output_step=0.01, **settings)
     t = run.time
     np.testing.assert_allclose(run["A.position"][:, 0], 0.75 + 1.5 * t - t**2, atol=1e-12)
@@ -84,7 +84,7 @@ def test_a_fast_rider_crosses_several_nodes_in_a_step():
 
 @pytest.mark.parametrize(("s", "speed"), [(0.5, -0.4), (0.5, 1.0), (0, 0.5), (0.5, 1e-9), (0.5, -1e-9), (0.3, 0.7)])
 def test_the_mirrored_start_gives_the_mirrored_motion(s, speed):
-    """Forwards over the nodes as backwards, and from a node into either neighbour."""
+    """Forwards and backwards across the nodes, and from a node into either neighbour."""
     run, mirrored = (one_rider(*start).run(0.6, step=1e-3) for start in ((s, speed), (1.5 - s, -speed)))
     np.testing.assert_allclose(mirrored["trolley.s"], 1.5 - run["trolley.s"], atol=1e-13)
     np.testing.assert_allclose(mirrored["A.position"], [1.5, 0, 0] + run["A.position"] * [-1, 1, 1], atol=1e-13)
@@ -107,7 +107,7 @@ def test_two_cables_do_not_know_of_each_other(first_scene):
     add_rider(scene, 0.25, 1.0, "other", "B", "second")
     run = scene.run(1.0, step=1e-3)
     for body, z in (("A", 0), ("B", 1)):
-        # Newton stops by the size of the scene, here 1.8 m and not 1.5 m: measured 9e-11
+        # Newton's criterion follows the size of the scene, 1.8 m instead of 1.5 m: measured 9e-11
         np.testing.assert_allclose(run[f"{body}.position"] - [0, 0, z], first_scene["A.position"], rtol=0, atol=1e-9)
 
 
@@ -118,14 +118,14 @@ def test_a_body_on_two_cables_is_two_of_half_the_mass(first_scene):
         add_cable(scene, name, start=(0, 0, z), end=(1.5, 0, z))
         scene.slide(body, along=name, s=0.25, at=(0, 0, z), name=f"on_{name}")
     run = scene.run(1.0, step=1e-3)
-    # Newton stops by the size of the scene, here 1.58 m and not 1.5 m: measured 5e-11 m and 1.5e-7 N
+    # Newton's criterion follows the size of the scene, 1.58 m instead of 1.5 m: measured 5e-11 m and 1.5e-7 N
     np.testing.assert_allclose(run["A.position"], first_scene["A.position"], rtol=0, atol=5e-10)
     np.testing.assert_allclose(run["on_left.force"], first_scene["trolley.force"], rtol=0, atol=1e-6)
     assert largest(run["A.angular_velocity"]) < 1e-11
 
 
 def turned(rotation, shift=(0, 0, 0)) -> Scene:
-    """The first scene somewhere else, seen from another side."""
+    """Return the first scene, shifted and rotated."""
     scene = Scene(gravity=rotation.apply([0, -9.81, 0]))
     place = lambda x: tuple(rotation.apply([x, 0, 0]) + shift)  # noqa: E731
     add_cable(scene, start=place(0), end=place(1.5), up=rotation.apply([0, 1, 0]))
@@ -143,7 +143,7 @@ def turned(rotation, shift=(0, 0, 0)) -> Scene:
 
 @pytest.mark.parametrize("seed", range(3))
 def test_the_turned_scene_gives_the_turned_motion(seed):
-    """To what the Newton iteration leaves, 1e-12 m a step: 3e-10 m of 0.2 m at step 1e-3, 6e-10 of 1 m at 2.5e-4."""
+    """To the error of Newton's iteration, 1e-12 m a step: 3e-10 m of 0.2 m at step 1e-3, 6e-10 of 1 m at 2.5e-4."""
     rotation = Rotation.random(rng=np.random.default_rng(seed))
     for duration, step in ((0.2, 1e-3), (1.0, 2.5e-4)):
         straight, run = (scene.run(duration, step=step) for scene in (one_rider(), turned(rotation)))
@@ -165,7 +165,7 @@ def test_the_motion_is_the_same_far_from_the_origin(distance, first_scene):
 
 
 def test_a_start_that_breaks_the_joint_is_projected_and_reported():
-    """The rider strikes the cable at rest: the least change of motion, in the norm of the masses."""
+    """The rider strikes the cable at rest: the least change of motion in the norm of the masses."""
     with pytest.warns(FunicularWarning, match="initial velocities broke a joint"):
         run = one_rider(across=(0.5, 0.2)).run(0.02, step=1e-3, output_step=1e-3)
     (message,) = run.report["messages"]
@@ -178,7 +178,7 @@ def test_a_start_that_breaks_the_joint_is_projected_and_reported():
     np.testing.assert_allclose(v, [1, *at_half[1:]], atol=1e-13)  # one velocity across the cable, its own along it
     assert v[2] / v[1] == pytest.approx(0.4, rel=1e-12)  # the cable is the same to both sides
     lost = 0.5 * (1 + 0.5**2 + 0.2**2) - run["energy.kinetic"][0]
-    # an inelastic blow: half the impulse times the velocity that was lost
+    # an inelastic impact: half the impulse times the lost velocity
     assert lost == pytest.approx(0.5 * ((0.5 - v[1]) * 0.5 + (0.2 - v[2]) * 0.2), rel=1e-9)
     assert run["A.velocity"][1, 1] != 0.5
 
@@ -207,7 +207,7 @@ def test_second_order_at_any_spectral_radius(spectral_radius):
 
 
 def test_twelve_elements_without_numerical_damping():
-    """Known as hard: eight crossings, and nothing that lets what each of them leaves decay."""
+    """A hard case: eight node passages, whose disturbances do not decay."""
     for step, bound in ((5e-4, 4e-5), (2.5e-4, 1e-5)):  # measured 1.9e-5, 4.5e-6
         run = one_rider(elements=12).run(1.0, step=step, spectral_radius=1)
         assert run.report["element_crossings"] == 8
@@ -217,7 +217,7 @@ def test_twelve_elements_without_numerical_damping():
 
 @pytest.mark.slow
 def test_the_force_at_a_crossing_converges():
-    """Recorded every 0.1 ms around a node of twelve elements: the force does not grow as the step shrinks."""
+    """Recorded every 0.1 ms around a node of twelve elements: the force does not grow as the step decreases."""
     runs = [one_rider(0.36, elements=12).run(0.03, step=h, output_step=1e-4) for h in (2e-5, 1e-5, 5e-6, 2.5e-6)]
     assert all(run.report["element_crossings"] == 1 for run in runs)
     force = [run["trolley.force"][:, 1] for run in runs]
@@ -227,11 +227,11 @@ def test_the_force_at_a_crossing_converges():
     assert changes[2] < 0.01 * np.ptp(force[-1])
 
 
-# ---- offset points and turning riders
+# ---- offset points and rotating riders
 
 
 def angular_momentum(run, cable, mass, inertia):
-    """About the origin, and linear momentum, of one cable and one body (time, 3)."""
+    """Return angular momentum about the origin, and linear momentum, of one cable and one body (time, 3)."""
     linear, v = mass * run["P.velocity"], run["P.velocity"]
     angular = np.cross(run["P.position"], mass * v)
     angular += rotate(run["P.orientation"], np.array(inertia) * run["P.angular_velocity"])
@@ -244,7 +244,7 @@ def angular_momentum(run, cable, mass, inertia):
 
 
 def test_a_free_cable_with_a_turning_rider_keeps_its_momenta():
-    """In space, without gravity or pins; the angular momentum to second order. Damping is internal, and may act."""
+    """In space, without gravity or pins; the angular momentum to second order. Internal damping is permitted."""
     mass, inertia = 2.0, (0.02, 0.03, 0.04)
     scene = Scene(gravity=(0, 0, 0))
     add_cable(scene, pins=(), material=TABLE_1.model_copy(update={"damping_time": 1e-4}))
@@ -274,7 +274,7 @@ INERTIA = 1.89 * 0.5**2 / 12 + 1.89 * (D - 0.25) ** 2 + 1.0 * (0.5 - D) ** 2
 
 
 def pendulum(step):
-    """A rod of 1.89 kg and 0.5 m with a ball of 1 kg at its end, thrown at 1 m/s, hangs from the slide."""
+    """Return a rod of 1.89 kg and 0.5 m with a ball of 1 kg at its end, thrown at 1 m/s, hanging from the slide."""
     scene = Scene()
     add_cable(scene)
     scene.rigid_body(
@@ -295,7 +295,7 @@ CONVERGED = [[0.632384610, -0.529890412], [1.041840823, -0.523796908], [1.378266
 
 
 def test_a_pendulum_from_the_slide():
-    """Our own converged run: a regression test. Three thinner elements, cable12 of another code, give 1.391, -0.498."""
+    """A regression test on a converged run. Three thinner elements, cable12 of another code, give 1.391, -0.498."""
     errors = []
     for step in (5e-4, 2.5e-4):
         run, ball = pendulum(step)
@@ -309,7 +309,7 @@ def test_a_pendulum_from_the_slide():
 
 
 def test_a_pendulum_on_a_rail():
-    """A cable as good as rigid: no force along it, so that two equations of Lagrange give the motion."""
+    """A nearly rigid cable without axial force: two equations of Lagrange give the motion."""
     m, d, inertia, x0, v0, angle = 2.0, 0.3, 0.05, 0.6, 0.2, 1.0
     scene = Scene()
     add_cable(

@@ -16,27 +16,28 @@ JOINTS = ("shaft", "crank_pin", "piston_pin", "cylinder")
 
 
 def turned(orientation) -> float:
-    """About z, in rad."""
+    """Return the rotation about z by an angle in rad."""
     w, _, _, z = orientation
     return np.arctan2(2 * w * z, w * w - z * z)
 
 
 def test_accelerations_at_the_start_are_the_published_ones():
-    """As far as the nine digits of the published velocities determine them."""
+    """To the precision of the published velocities, nine digits."""
     found = Rod().accelerations(0.0, np.array(START["q"]), np.array(START["v"]))
     np.testing.assert_allclose(found, ACCELERATIONS, rtol=1e-6, atol=5e-8)
 
 
 def test_the_end_is_carried_as_published_only_with_the_published_mass():
-    """The right mass of the axial modes is told apart at the start already: it decides their accelerations."""
+    """The mass of the axial modes determines their accelerations, so that the start shows the difference."""
     right = Rod(axial_mass=1.0).accelerations(0.0, np.array(START["q"]), np.array(START["v"]))
     assert abs(right[4] / ACCELERATIONS[4] - 1) > 0.1
 
 
 @pytest.mark.slow
 def test_the_motion_is_the_published_one():
-    """At 0.1 s, after two and a half turns. Converged: angle off by 3e-11, slider 3e-11 m; modal coordinates by 3e-7,
-    2e-7, 2e-6, 4e-6 of theirs, as the start is given to nine digits, which vibrate on."""
+    """At 0.1 s, after two and a half turns. Converged: angle to 3e-11, slider to 3e-11 m; relative errors of the modal
+    coordinates 3e-7, 2e-7, 2e-6, 4e-6, since the start has nine digits.
+    """
     found = Rod().run(tol=1e-6)
     assert abs(found["angle"] - END["angle"]) < 1e-9
     assert abs(found["slider"] - END["slider"]) < 1e-9
@@ -45,7 +46,9 @@ def test_the_motion_is_the_published_one():
 
 
 def started(folder) -> tuple:
-    """The scene's model at the published start, which has deformed a little: engine, and the rod's place in q and v."""
+    """Return the scene's model at the published start, which is slightly deformed: engine, and the position of the rod
+    in q and v.
+    """
     model = build(machine(folder))
     rod, slider = (next(body for body in model.bodies if body.name == name) for name in ("rod", "slider"))
     angle, angle_rate = START["q"][0], -CRANK * SPEED / (ROD + START["q"][4])
@@ -63,7 +66,7 @@ def started(folder) -> tuple:
 def test_the_scene_starts_with_the_published_accelerations(tmp_path):
     engine, rod, _ = started(tmp_path)
     found = engine.rows()["acceleration"][0][rod.dof + 5 : rod.dof + 10]
-    # the velocities, given to nine digits, are brought onto the joints
+    # the velocities, given to nine digits, are projected on the joints
     np.testing.assert_allclose(found, ACCELERATIONS, rtol=1e-6, atol=1e-6)
 
 
@@ -84,7 +87,7 @@ def test_the_scene_ends_where_it_was_published(tmp_path, validated):
 @pytest.mark.parametrize(("integrator", "tol", "place", "modes"), [("explicit", 1e-8, 1e-10, 5e-6),
                                                                     ("radau", 1e-6, 5e-8, 6e-3)])
 def test_the_scene_from_an_undeformed_start_runs_as_the_kernels_do(tmp_path, integrator, tol, place, modes):
-    """And as the rod is, not 15 times too heavy along its axis."""
+    """With the correct axial mass, not 15 times of it."""
     run = machine(tmp_path, axial_mass=1.0).run(0.1, output_step=0.01, tol=tol, integrator=integrator)
     assert not run.report["messages"], "nothing is redundant, nothing has to be closed"
     assert max(run[f"{joint}.residual"].max() for joint in JOINTS) < 1e-12

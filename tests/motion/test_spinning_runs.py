@@ -1,4 +1,4 @@
-"""Beams so thin that their sections spin in a run on a coarse mesh: noted, with the mesh to take."""
+"""Beams so thin that their sections spin on a coarse mesh: noted, with a sufficient mesh."""
 
 import re
 
@@ -11,7 +11,7 @@ AWAY = 1e-9
 
 
 def leaves_its_plane(elements: int) -> tuple[float, list[str]]:
-    """Return how far a rope of 12 mm with a mass at its end swings out of the plane, and the notes on it."""
+    """Return the displacement out of the plane of a rope of 12 mm with a mass at its end, and the notes on it."""
     scene = fu.Scene(gravity=(0, -9.81, 0))
     scene.cable("rope", start=(0, 0, 0), end=(1.5, -0.5, 0), elements=elements, element="beam24", law="structural",
                 section=fu.Circle(radius=0.006), material=fu.Material(youngs_modulus=6.7e6, poisson_ratio=0.3,

@@ -1,4 +1,4 @@
-"""Between the specs and the C: staged programs, derivations, the printer, exact integrals."""
+"""From specs to C: staged programs, derivatives, the printer, exact integrals."""
 
 import math
 import random
@@ -18,7 +18,7 @@ a, b, c = sp.symbols("a b c")
 
 
 def chain() -> tuple[Program, np.ndarray, list[sp.Symbol]]:
-    """A program with a root, a reciprocal and a product, three stages deep."""
+    """Return a program with a root, a reciprocal and a product, three stages deep."""
     p = Program("test", "a test", "none")
     v = p.input("v", 3, "1", "anything")
     p.stage("lengths")
@@ -31,7 +31,7 @@ def chain() -> tuple[Program, np.ndarray, list[sp.Symbol]]:
 
 
 def expanded(p: Program, expr: sp.Expr) -> sp.Expr:
-    """An expression in the inputs alone."""
+    """Return an expression in the inputs alone."""
     while True:
         below = {s: p.definition[s] for s in expr.free_symbols if s in p.definition}
         if not below:
@@ -159,7 +159,7 @@ def test_a_choice_is_between_two_cases(condition):
 
 @pytest.mark.parametrize("k", range(4))
 def test_stumpff_functions_keep_their_digits(k):
-    """In doubles, against 50 digits, on both sides of where series and quotients part."""
+    """In doubles against 50 digits, on both sides of the change from series to quotients."""
     p = Program("stumpff", "", "")
     x = p.input("x", (), "1", "")
     p.stage("all")
@@ -175,7 +175,7 @@ def test_stumpff_functions_keep_their_digits(k):
 
 
 def test_printed_c_and_exact_source_say_the_same():
-    """Random trees, each text evaluated: C's by Python's own arithmetic, the other at 50 digits."""
+    """Random trees: the C text evaluated by Python's arithmetic, the exact source at 50 digits."""
     chance = random.Random(3)
     values = {"a": 1.25, "b": -0.5, "c": 2.0}
 

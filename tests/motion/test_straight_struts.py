@@ -12,7 +12,7 @@ EULER = np.pi**2 * MODULUS * np.pi / 4 * RADIUS**4
 
 
 def strut(load, element="cable12", *, across=0.0) -> Scene:
-    """1 m between a pin and a pin that may move along; a load on that end."""
+    """Return a strut of 1 m between a pin and an axially free pin with a load."""
     scene = cable_scene("strut", pins=(0,), gravity=(0, 0, 0), elements=6, element=element,
                         section=Circle(radius=RADIUS), **structural(element),
                         material=Material(youngs_modulus=MODULUS, poisson_ratio=0, density=1000, damping_time=1e-3))
@@ -49,7 +49,7 @@ def test_a_load_that_is_gone_at_the_end_is_noted_too():
 
 
 def test_positions_of_nodes_by_name(tmp_path):
-    """The same name in a state of rest, in a run, and in what a file holds."""
+    """The same name in an equilibrium, in a run, and in a file."""
     from funicular import load_run
 
     scene = strut(0.1 * EULER)
@@ -62,7 +62,7 @@ def test_positions_of_nodes_by_name(tmp_path):
 
 
 def test_a_slack_cable_that_its_weight_bends_is_not_noted():
-    """Drawn straight it is compressed beyond its buckling load at the start, and bent from the next output on."""
+    """Drawn straight, it is compressed beyond its buckling load at the start, and bent from the next output on."""
     scene = Scene()
     scene.cable("rope", start=(0, 0, 0), end=(10, 0, 0), elements=8, element="cable12", rest_length=10.2,
                 section=Circle(radius=0.01), material=Material(youngs_modulus=1e8, poisson_ratio=0, density=7850))

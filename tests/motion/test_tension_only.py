@@ -1,4 +1,4 @@
-"""Cables that give way in compression: membrane="tension_only"."""
+"""Cables without stiffness in compression: membrane="tension_only"."""
 
 import funicular as fu
 import numpy as np
@@ -8,7 +8,7 @@ EA, LEFT, TRANSITION = 1e9 * np.pi * 1e-6, 1e-4, 1e-6
 
 
 def wire(membrane, element="cable12", elements=8, stretch=1.0):
-    """Return a wire of 1 m, pinned at both ends, that is drawn with this stretch."""
+    """Return a wire of 1 m, pinned at both ends, drawn with this stretch."""
     scene = fu.Scene(gravity=(0, -9.81, 0))
     rope = scene.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=elements, element=element, membrane=membrane,
                        strain="engineering", section=fu.Circle(radius=1e-3), rest_length=1.0 / stretch,
@@ -40,7 +40,7 @@ def test_a_taut_wire_hangs_as_with_the_full_law():
 
 
 def test_a_longer_wire_takes_fewer_steps():
-    """Drawn with a compression of 0.5 %: a full wire snaps back axially, one without resistance to it falls."""
+    """Drawn with a compression of 0.5 %: a full wire rebounds axially, a tension-only one falls."""
     steps = {membrane: wire(membrane, stretch=1 / 1.005).run(
         duration=0.1, output_step=0.01, tol=1e-3, integrator="radau").report["steps"]
         for membrane in ("full", "tension_only")}
@@ -68,7 +68,7 @@ def test_it_is_a_law_of_straight_cables_with_engineering_strain():
 
 
 def let_loose(element="cable12", action="record", elements=8):
-    """Return a taut wire whose end comes nearer for a while, smoothly."""
+    """Return a taut wire whose end approaches smoothly for a while."""
     scene = fu.Scene(gravity=(0, -9.81, 0))
     wire = scene.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=elements, element=element,
                        membrane="tension_only", section=fu.Circle(radius=1e-3), rest_length=1 / 1.001,
@@ -162,7 +162,9 @@ def test_a_slack_rope_comes_to_rest_by_a_damped_motion():
 
 def shortened(element="cable8p", speed=-1.0, damping_time=1e-3, membrane="tension_only", pull=0.0,
               radius=0.005):
-    """Return a straight rope of 1 m without gravity whose end a mass of 1 kg moves along it, drawn longer by pull."""
+    """Return a straight rope of 1 m without gravity, drawn longer by pull, with an axially moving mass of 1 kg at its
+    end.
+    """
     scene = fu.Scene(gravity=(0, 0, 0))
     scene.cable("rope", start=(0, 0, 0), end=(1 + pull, 0, 0), elements=2, element=element, strain="engineering",
                 membrane=membrane, rest_length=1.0, section=fu.Circle(radius=radius),
@@ -180,7 +182,7 @@ SLACK_EA = 1e7 * np.pi * 0.005**2
 @pytest.mark.parametrize(("element", "integrator"), [
     ("cable8p", "radau"), ("cable8p", "genalpha"), ("cable8p", "explicit"), ("cable12", "radau")])
 def test_a_slack_rope_is_damped_by_the_part_that_it_resists_with(element, integrator):
-    """At a strain of 0.3 both forces are 1e-4 of the full law's; EA tau strain' was in full."""
+    """At a strain of 0.3 both forces are 1e-4 of the full law's."""
     run = shortened(element).run(duration=0.3, tol=1e-6, output_step=0.05, integrator=integrator)
     elastic, damping = LEFT * SLACK_EA * 0.3, LEFT * SLACK_EA * 1e-3
     assert run["end.force"][-1, 0] == pytest.approx(elastic + damping + SLACK_EA * TRANSITION / 4, rel=0.01)
@@ -194,7 +196,7 @@ def test_a_slack_rope_is_damped_by_the_part_that_it_resists_with(element, integr
 
 @pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
 def test_a_taut_rope_is_damped_as_with_the_full_law():
-    """It vibrates beside a stretch of 0.1, far beyond the transition strain."""
+    """It vibrates about a stretch of 0.1, far above the transition strain."""
     lost = {membrane: shortened(speed=0.3, membrane=membrane, pull=0.1).run(
         duration=0.04, tol=1e-7, output_step=0.02, integrator="radau")["energy.dissipated"][-1]
         for membrane in ("full", "tension_only")}
@@ -204,7 +206,7 @@ def test_a_taut_rope_is_damped_as_with_the_full_law():
 
 @pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
 def test_a_straight_slack_rope_is_said_to_bear_what_is_left():
-    """The note on buckling had the force of the full law, 63 N."""
+    """The force in the note on buckling is that of the reduced law."""
     run = shortened(damping_time=0.0, radius=0.002).run(duration=0.5, tol=1e-6, output_step=0.05)
     [note] = [message for message in run.report["messages"] if "perfectly straight" in message]
     said = float(note.partition("under a compression of ")[2].partition(" N")[0])
@@ -213,7 +215,7 @@ def test_a_straight_slack_rope_is_said_to_bear_what_is_left():
 
 
 def pulled_down():
-    """Return a rope of two elements with a body at its end, which a spring pulls across."""
+    """Return a rope of two elements with a body at its end, which a spring pulls sideways."""
     scene = fu.Scene()
     scene.cable("w", start=(0, 0, 0), end=(1, 0, 0), elements=2, element="cable8p", section=fu.Circle(radius=0.005),
                 membrane="tension_only", material=fu.Material(youngs_modulus=1e7, poisson_ratio=0.0, density=1000))
@@ -229,7 +231,7 @@ def growing(run):
 
 
 def off(run, reference, name):
-    """Return the largest error of positions over the largest motion."""
+    """Return the largest error of positions relative to the largest motion."""
     exact = reference[f"{name}.position"]
     return np.abs(run[f"{name}.position"] - exact).max() / np.abs(exact - exact[0]).max()
 
@@ -239,7 +241,7 @@ def off(run, reference, name):
     (pulled_down, "A", {"duration": 1.0, "output_step": 0.01}),
     (lambda: wire("tension_only", elements=4, stretch=1 / 1.02), "wire", {"duration": 0.5, "output_step": 5e-3})])
 def test_growing_errors_of_slack_cables_are_noted(make, name, settings):
-    """Nothing is compressed by much; errors were 200 tol and more without a word."""
+    """The compression is small; the errors are 200 tol and more."""
     run, reference = (make().run(tol=tol, **settings) for tol in (1e-4, 1e-8))
     assert off(run, reference, name) > 1e-2
     [note] = growing(run)

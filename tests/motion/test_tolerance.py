@@ -1,4 +1,4 @@
-"""The error of the motion is what ``tol`` says, over the scenes of tests/benchmarks/choice_scenes.py."""
+"""The error of the motion agrees with ``tol``, over the scenes of tests/benchmarks/choice_scenes.py."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ QUICK = ("heavy top, 150 rad/s", "heavy top on a spring", "flexible link", "taut
 
 
 def errors(names, tols) -> np.ndarray:
-    """Over tol, of each cell; prints those beyond it."""
+    """Return the errors over tol of each cell; print those beyond it."""
     cells = [cell(name, tol) for name in names for tol in tols]
     for row in cells:
         if row["error/tol"] > 1:
@@ -24,7 +24,7 @@ def errors(names, tols) -> np.ndarray:
 
 @pytest.mark.parametrize("tol", [1e-3, 1e-4])
 def test_the_error_is_at_most_three_tol(tol):
-    """On scenes that missed it by up to 60 while auto took genalpha, and radau had its embedded estimate alone."""
+    """Scenes with errors of up to 60 tol by genalpha, or by radau's embedded estimate alone."""
     assert errors(QUICK, [tol]).max() < MOST
 
 

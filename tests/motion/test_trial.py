@@ -1,4 +1,4 @@
-"""The trial of an integrator at the start of a run: what it takes, what it leaves, and what a saved run keeps of it."""
+"""The trial of an integrator at the start of a run: its cost, its effects, and its record in a saved run."""
 
 from itertools import pairwise
 
@@ -20,7 +20,7 @@ from sliding import sliding_mass
 @pytest.mark.parametrize("name", ["pendulum, 8, E 7e8", "first scene", "flexible link", "steel and rubber",
                                   "two riders"])
 def test_genalpha_begins_where_tol_is_loose(name):
-    """With a part of tol: its error is within tol, with less work than radau."""
+    """With a part of tol its error is within tol, with less work than radau."""
     run, radau = (simulate(name, tol=1e-2, integrator=integrator) for integrator in ("auto", "radau"))
     exact = references()[name]
     assert run.report["integrator"] == "genalpha"
@@ -34,7 +34,7 @@ def test_genalpha_does_not_begin_where_its_estimate_misses_the_error(name):
 
 
 def test_genalpha_takes_the_place_of_radau_where_slides_cross_many_elements():
-    """Counted work says so; the run begins anew, within tol."""
+    """The counted work decides; the run begins anew, within tol."""
     settings = {"output_step": 0.02, "progress": False}
     scene = sliding_mass(48, strain="engineering", youngs_modulus=0.4e9)
     run, radau = (scene.run(0.2, tol=1e-3, integrator=name, **settings) for name in ("auto", "radau"))
@@ -46,18 +46,18 @@ def test_genalpha_takes_the_place_of_radau_where_slides_cross_many_elements():
 
 
 def times_reached(make, **settings) -> tuple[fu.Run, list[float]]:
-    """A run of a second, and the times that it has come to, in their order."""
+    """Run for a second; return the times reached, in order."""
     reached: list[float] = []
     return make().run(1.0, output_step=0.02, progress=reached.append, **settings), reached
 
 
 def long_trial() -> fu.Scene:
-    """A scene whose trial of radau is won."""
+    """Return a scene whose trial radau wins."""
     return pendulum(8, 7e8, 7200)
 
 
 def test_a_won_trial_is_saved_and_not_run_twice(tmp_path):
-    """The times never go back, and the file has the bits of a run in memory."""
+    """The times never decrease, and the file has the bits of a run in memory."""
     plain, _ = times_reached(long_trial, tol=1e-4)
     saved, reached = times_reached(long_trial, tol=1e-4, save=tmp_path / "run.nc")
     assert saved.report["integrator"] == "radau" and "explicit" in saved.report["integrator_reason"]
@@ -69,7 +69,7 @@ def test_a_won_trial_is_saved_and_not_run_twice(tmp_path):
 
 @pytest.mark.parametrize("lost", [False, True])
 def test_rows_of_a_trial_that_do_not_fit_in_memory(tmp_path, monkeypatch, lost):
-    """They go to a file without a name, which a run that begins anew writes over; an older file stays until then."""
+    """They go to an unnamed file, which a run that begins anew overwrites; an older file stays until then."""
     def run(**settings):
         if lost:
             return run_of(RINGING["twisted rod, all of its motion"], tol=1e-2, **settings)
@@ -93,7 +93,7 @@ def test_rows_of_a_trial_that_do_not_fit_in_memory(tmp_path, monkeypatch, lost):
 
 
 def test_a_run_stopped_in_its_trial_leaves_a_file_and_goes_on(tmp_path):
-    """Ctrl-C on the way to the first pause after the trial."""
+    """Ctrl-C before the first pause after the trial."""
     def stop(time: float) -> None:
         if time > 0.1:
             raise KeyboardInterrupt
@@ -121,7 +121,7 @@ def test_an_exception_in_a_trial_leaves_the_older_file(tmp_path):
 
 
 def test_work_beyond_any_count_is_no_error():
-    """The rival of an absurdly stiff scene costs more evaluations than a number of C holds."""
+    """The alternative of a very stiff scene costs more evaluations than a C integer holds."""
     class Rated:
         time, given = 0.0, []
 
