@@ -20,6 +20,12 @@ def slopes(cable: CableModel, part: float) -> np.ndarray:
     return cable.kernel("on_axis").rows(len(lengths), lengths, part * lengths)[1]
 
 
+def gauss_rule(points: int) -> Rule:
+    """Return the rule of Gauss with this number of points."""
+    at, weights = np.polynomial.legendre.leggauss(points)
+    return (0.5 * (1 + at)).tolist(), (0.5 * weights).tolist()
+
+
 def stretches(cable: CableModel, first: np.ndarray, last: np.ndarray, element: np.ndarray,
               rule: Rule) -> np.ndarray:
     """Return (..., n): lengths of the centrelines of elements (n,) over those at rest.
@@ -44,9 +50,12 @@ def middle_strain(cable: CableModel, nodal_vectors: np.ndarray) -> np.ndarray:
 
 def strain_at(cable: CableModel, nodal_vectors: np.ndarray, part: float) -> np.ndarray:
     """Return (T, elements): the same at a part of the length of each element."""
-    N, vectors = slopes(cable, part), cable.shape[1]
-    slope = (np.einsum("ek,tekd->ted", np.broadcast_to(N[:, :vectors], (cable.n_elements, vectors)),
-                       nodal_vectors[:, :-1])
-             + np.einsum("ek,tekd->ted", np.broadcast_to(N[:, vectors:], (cable.n_elements, vectors)),
-                         nodal_vectors[:, 1:]))
-    return np.linalg.norm(slope, axis=-1) - 1.0
+    return np.linalg.norm(slope_at(cable, nodal_vectors, slopes(cable, part)), axis=-1) - 1.0
+
+
+def slope_at(cable: CableModel, nodal_vectors: np.ndarray, shapes: np.ndarray) -> np.ndarray:
+    """Return (T, elements, dim): the sums of the vectors of each element's nodes, weighted as `slopes` returns."""
+    vectors = cable.shape[1]
+    N = np.broadcast_to(shapes, (cable.n_elements, 2 * vectors))
+    return (np.einsum("ek,tekd->ted", N[:, :vectors], nodal_vectors[:, :-1])
+            + np.einsum("ek,tekd->ted", N[:, vectors:], nodal_vectors[:, 1:]))

@@ -76,6 +76,14 @@ class CableModel:
         """Return the part of q, v and the dofs that is the cable's."""
         return slice(self.first, self.first + int(np.prod(self.shape)))
 
+    def nodal(self, q: np.ndarray) -> np.ndarray:
+        """Return its part of coordinates, rates or numbers of dofs (..., n) as (..., nodes, vectors, dim)."""
+        return q[..., self.coordinates].reshape(*q.shape[:-1], *self.shape)
+
+    def positions(self, q: np.ndarray) -> np.ndarray:
+        """Return the positions of its nodes, (..., nodes, dim), in coordinates (..., n)."""
+        return self.nodal(q)[..., self.vectors.index("r"), :]
+
     def kernel(self, name: str) -> Kernel:
         """Return a kernel of its element."""
         return getattr(kernels_of(self.library), f"{self.element}_{name}")

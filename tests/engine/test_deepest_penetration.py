@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from funicular.model.build import build
 from funicular.results import streaming
-from funicular.solve.notes.penetrations import penetrations
+from funicular.solve.notes.penetrations import Penetrations
 from interrupted_runs import Killed, failing
 
 SETTINGS = {"duration": 0.8, "output_step": 0.1, "tol": 1e-5, "progress": False}
@@ -101,9 +101,10 @@ def test_at_rest_lines_that_touch_are_told(force, told):
     scene.crossing(wire, None, at=(0, 0, -0.2), axis=(0, 1, 0), length=0.5, radius=0.01, stiffness=1e3)
     crossing = np.zeros((1, 14))
     crossing[0, 3:5] = force, 0.21
-    notes = penetrations(scene, build(scene), {"contact": np.zeros((0, 10)), "crossing": crossing})
-    assert len(notes) == told
-    assert all("0.21 m past where its lines touch" in note for note in notes)
+    found = Penetrations(scene, build(scene))
+    found.see_rest({"contact": np.zeros((1, 0, 10)), "crossing": crossing[None]}, engine=None)
+    assert len(found.notes()) == told
+    assert all("0.21 m past where its lines touch" in note for note in found.notes())
 
 
 @pytest.mark.parametrize("shape", [

@@ -18,7 +18,7 @@ PLACES = {
     "a slide has an arc-length, and attachments may be on it": [
         "model/border.py", "model/controlled.py", "model/initial_state.py", "results/recording.py",
         "results/resume_facts.py", "solve/motion/event_watcher.py", "solve/notes/coarse_slides.py",
-        "solve/notes/normal_forces.py", "solve/statics/relaxation.py", "solve/statics/rest_state.py",
+        "solve/notes/uncontrolled_errors.py", "solve/statics/relaxation.py", "solve/statics/rest_state.py",
         "solve/statics/static_problem.py"],
     "joints close loops, in which equations are redundant; their ends and angles are prescribed": [
         "model/loops.py", "model/redundant_constraints.py", "solve/adjustment/change.py", "solve/notes/sensitivity.py",
@@ -45,8 +45,7 @@ PLACES = {
 SCENE_PLACES = {
     "friction": [
         "choice/indicators.py", "solve/modes/modes.py", "solve/motion/integrator_choice.py",
-        "solve/notes/normal_forces.py", "solve/notes/uncontrolled_errors.py", "solve/statics/relaxation.py",
-        "solve/statics/static.py"],
+        "solve/notes/uncontrolled_errors.py", "solve/statics/relaxation.py", "solve/statics/static.py"],
     "points that move along a cable: slides and crossings": [
         "choice/chooser.py", "results/animation/curves.py", "results/animation/references.py",
         "results/animation/sources.py", "results/charts.py", "results/section_forces/forces.py",
@@ -58,8 +57,8 @@ SCENE_PLACES = {
         "solve/notes/coarse_meshes.py", "solve/notes/coincident_points.py", "solve/notes/sensitivity.py",
         "solve/statics/turns.py"],
     "surfaces, and depths below them": [
-        "solve/notes/penetrations.py", "solve/notes/unseen_contact.py", "solve/statics/lying.py",
-        "solve/statics/string_start.py"],
+        "solve/notes/penetrations.py", "solve/notes/surface_ends.py", "solve/notes/unseen_contact.py",
+        "solve/statics/lying.py", "solve/statics/string_start.py"],
     "pictures of each kind": ["results/animation/marks.py"],
     "parameters that are adjusted": [
         "solve/adjustment/adjustment.py", "solve/adjustment/length_changes.py",

@@ -7,7 +7,7 @@ import pytest
 from funicular import Circle, FunicularWarning, Material, Scene
 from funicular.model.build import build
 from funicular.parts.laid import laid
-from funicular.solve.notes.folds import Folds, folds
+from funicular.solve.notes.folds import Folds
 from scipy.optimize import brentq
 from shared_scenes import cable_scene
 
@@ -67,7 +67,9 @@ def with_last_node_at(scene: Scene, x: float, slope: float) -> list[str]:
     vectors = model.q[cable.coordinates].reshape(cable.shape)
     vectors[-1, 0, 0] = x
     vectors[-2:, 1, 0] = slope
-    return folds(laid(scene), model, model.q)
+    found = Folds(laid(scene), model)
+    found.see_rest({"q": model.q[None], "time": np.zeros(1)}, engine=None)
+    return found.notes_at_rest()
 
 
 def test_an_element_that_is_compressed_evenly_or_drawn_bent_is_not_folded():

@@ -28,11 +28,12 @@ from ...parts.scene_data import SceneData
 from ...parts.settings import RunSettings
 from ..linear.threads import share_elements
 from ..notes.diagnosis import notes, trapped
+from ..notes.fast_turns import FastTurns
 from ..notes.row_notes import RowNotes
-from ..notes.sensitivity import sensitive
+from ..notes.sensitivity import Sensitivity, sensitive
 from ..notes.signal_steps import unresolved
-from ..notes.slack_growth import grown
-from ..notes.uncontrolled_errors import uncontrolled_errors
+from ..notes.slack_growth import SlackMotion, grown
+from ..notes.uncontrolled_errors import NormalForces, uncontrolled_errors
 from .event_watcher import EventWatcher
 from .integrator_choice import choose, tol_of
 from .long_runs import LongRun
@@ -131,11 +132,12 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     run.row_notes.see(run.engine)
     messages += _controlled_alone(run.engine, settings)
     if status not in FAILED_STATUSES:
-        grows = [] if settings.estimate else [*sensitive(run.engine, settings, run.row_notes.sensitivity),
-                                              *grown(run.engine, settings, run.row_notes.slack,
-                                                     partial(_rows_again, scene, initial, method)),
-                                              *uncontrolled_errors(scene, run.engine, settings, run.row_notes)]
-        messages += _warned([*notes(run.engine, settings), *trapped(scene, run.engine), *run.row_notes.notes(), *grows])
+        seen, engine = run.row_notes, run.engine
+        unmeasured = [] if settings.estimate else [
+            *sensitive(engine, settings, seen[Sensitivity]),
+            *grown(engine, settings, seen[SlackMotion], partial(_rows_again, scene, initial, method)),
+            *uncontrolled_errors(scene, engine, settings, seen[FastTurns], seen[NormalForces])]
+        messages += _warned([*notes(engine, settings), *trapped(scene, engine), *seen.notes(), *unmeasured])
     noted = time.perf_counter() - ended
     total = time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
     LOG.info("run %s after %.3g s", status.replace("_", " "), total)

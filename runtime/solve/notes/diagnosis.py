@@ -12,6 +12,7 @@ from ...model.redundant_constraints import redundant
 from ...parts.scene_data import SceneData
 from ...parts.settings import RunSettings
 from .folds import FOLDED_CHORD
+from .note import FIXED_STEP_ERROR_LIMIT
 
 RESULTS_KEPT = "what was computed up to there is kept"
 
@@ -31,9 +32,9 @@ CONTINUOUS_CURVATURE_ELEMENT = "cable18"
 MANY_NODE_PASSAGES, NODE_PASSAGES_PER_STEP = 100, 0.02
 """Node passages of slides in a run, and per step, above which a message reports them."""
 
-FIXED_STEP_ERROR_LIMIT, ENERGY_ERROR_LIMIT, LOOSE_ENERGY_ERROR_LIMIT = 5e-3, 0.01, 0.05
-"""Limits above which a note reports errors of a fixed step, as a fraction of the largest motion, and unexplained
-energy, as a fraction of the energy exchanged; the last limit holds for loose tolerances."""
+ENERGY_ERROR_LIMIT, LOOSE_ENERGY_ERROR_LIMIT = 0.01, 0.05
+"""Unexplained energy above which a note reports it, as a fraction of the energy exchanged; the second limit holds for
+loose tolerances."""
 
 
 def stopped(model: Model, engine: Engine, status: str, settings: RunSettings) -> str:

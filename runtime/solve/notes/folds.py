@@ -10,13 +10,13 @@ with eight (73 degrees), and by 0.1 % with 20 (43 degrees).
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
-from ...model.middle_strain import slopes, stretches
-from ...model.model import CableModel, Model
-from ...parts.scene_data import SceneData
+from ...engine import Engine
+from ...model.middle_strain import gauss_rule, slope_at, slopes, stretches
+from ...model.model import CableModel
+from .note import Note, Rows
 
 FOLDED_CHORD = 0.8
 """An element is folded where its chord is shorter than this fraction of its centreline: an arc of 130 degrees."""
@@ -26,43 +26,50 @@ ACCURATE_ELEMENT_TURN = np.radians(45.0)
 """Turn of the tangent within an element, in rad, up to which the shape is accurate to about 0.1 %."""
 TANGENT_POSITIONS = (0.0, 0.25, 0.5, 0.75, 1.0)
 """Positions of the compared tangents, as fractions of the length of an element."""
-GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(8)
-GAUSS_RULE = (0.5 * (1 + GAUSS_POINTS)).tolist(), (0.5 * GAUSS_WEIGHTS).tolist()
-"""Gauss rule for the length of a centreline whose slope reverses in a folded element."""
+GAUSS_RULE = gauss_rule(8)
+"""Rule for the length of a centreline whose slope reverses in a folded element."""
 
 
-class Folds:
-    """The element of each cable that was folded most, and when.
+class Folds(Note):
+    """The element of each cable that was folded most: 1 less the ratio of its chord to its length, the time in s, and
+    the number of the element.
 
     An element that is short because it is compressed evenly is not folded, nor is one that is as bent without stress.
     Cables that give way in compression are left out: how they lie where they are slack is not known.
-
-    found: ratio of the distance of nodes to the length of the centreline, element and time in s, by the cable's name.
     """
 
-    def __init__(self, scene: SceneData, model: Model):
-        self._cables: list[tuple[CableModel, np.ndarray]] = []
-        for cable in model.cables:
-            part = scene.cables[cable.name]
-            if part.traits.membrane != "tension_only":
-                lengths = np.broadcast_to(cable.mesh.lengths, cable.n_elements)
-                self._cables.append((cable, lengths if not part.is_curved else
-                                     _distances(part.rest_nodal_vectors[:, cable.vectors.index("r")])))
-        self.found: dict[str, Any] = {}
+    assesses_rest = True
 
-    def see(self, rows: dict[str, np.ndarray]) -> None:
-        """Take further output rows."""
-        for cable, apart in self._cables:
-            vectors = rows["q"][:, cable.coordinates].reshape(-1, *cable.shape)
-            chords = _distances(vectors[:, :, cable.vectors.index("r")])
-            at, element = np.nonzero(chords <= FOLDED_CHORD * apart)
+    def prepare(self) -> None:
+        """Select the cables, with the chords in m of their elements without stress."""
+        self._turned: list[str] = []
+        self._cables: list[tuple[CableModel, np.ndarray]] = []
+        for cable in self.model.cables:
+            part = self.scene.cables[cable.name]
+            if part.traits.membrane != "tension_only":
+                self._cables.append((cable, np.broadcast_to(cable.mesh.lengths, cable.n_elements) if not part.is_curved
+                                     else _chords(part.rest_nodal_vectors[:, cable.vectors.index("r")])))
+
+    def see(self, rows: Rows) -> None:
+        """Measure further output rows."""
+        for cable, unstressed in self._cables:
+            chords = _chords(cable.positions(rows["q"]))
+            at, element = np.nonzero(chords <= FOLDED_CHORD * unstressed)
             if not len(at):
                 continue
-            length = _arc_lengths(cable, vectors[at, element], vectors[at, element + 1], element)
-            ratio = chords[at, element] / length * (cable.mesh.each_length(element) / apart[element])
+            nodal, lengths = cable.nodal(rows["q"]), cable.mesh.each_length(element)
+            stretch = stretches(cable, nodal[at, element], nodal[at, element + 1], element, GAUSS_RULE)
+            arc = np.maximum(stretch, np.finfo(float).tiny) * lengths
+            ratio = chords[at, element] / arc * (lengths / unstressed[element])
             k = int(np.argmin(ratio))
-            if ratio[k] <= self.found.get(cable.name, [FOLDED_CHORD])[0]:
-                self.found[cable.name] = [float(ratio[k]), int(element[k]), float(rows["time"][at[k]])]
+            if ratio[k] <= FOLDED_CHORD:
+                self.keep(cable.name, 1 - ratio[k], rows["time"][at[k]], element[k])
+
+    def see_rest(self, rows: Rows, engine: Engine) -> None:
+        """Measure a state of rest, with the turns of its elements that are not folded."""
+        self.see(rows)
+        self._turned = [text for cable, _ in self._cables if cable.name not in self.found
+                        for text in self._far_turns(cable, rows["q"])]
 
     def notes(self) -> list[str]:
         """Return a note for each cable with a folded element."""
@@ -70,38 +77,26 @@ class Folds:
                 f"elements there, or {'a larger' if cable.tau else 'a'} damping_time in the material"
                 for cable, where, time in self._worst()]
 
-    def of_rest(self) -> list[str]:
-        """Return the same of a state of rest."""
-        return [f"{where}: the state may be none of the cable. Draw the scene nearer to its rest, take more elements, "
-                "or begin from another state" for _, where, _ in self._worst()]
+    def notes_at_rest(self) -> list[str]:
+        """Return a note for each cable with an element that is folded, or turns far."""
+        return [*(f"{where}: the state may be none of the cable. Draw the scene nearer to its rest, take more "
+                  "elements, or begin from another state" for _, where, _ in self._worst()), *self._turned]
 
     def _worst(self) -> Iterator[tuple[CableModel, str, float]]:
         for cable, _ in self._cables:
             if cable.name in self.found:
-                ratio, element, time = self.found[cable.name]
+                fold, time, element = self.found[cable.name]
+                element = int(element)
                 start = cable.mesh.start(element)
-                yield (cable, f'cable "{cable.name}" is folded onto itself in element {element}, from s = {start:.6g} '
-                       f"m to {start + cable.mesh.length(element):.6g} m: its nodes are {ratio:.2g} of its length from "
-                       "each other", time)
+                yield (cable, f'cable "{cable.name}" is folded onto itself in element {element}, from s = '
+                       f"{start:.6g} m to {start + cable.mesh.length(element):.6g} m: its nodes are {1 - fold:.2g} of "
+                       "its length from each other", time)
 
-
-def folds(scene: SceneData, model: Model, q: np.ndarray) -> list[str]:
-    """Return the notes on a state of rest at a configuration (n,)."""
-    found = Folds(scene, model)
-    found.see({"q": q[None], "time": np.zeros(1)})
-    return [*found.of_rest(), *_turned(scene, model, q, set(found.found))]
-
-
-def _turned(scene: SceneData, model: Model, q: np.ndarray, folded: set[str]) -> Iterator[str]:
-    """Yield a note for each cable, none that is folded, with an element that turns far beyond its shape without stress.
-    """
-    for cable in model.cables:
-        part = scene.cables[cable.name]
-        if cable.name in folded or part.traits.membrane == "tension_only":
-            continue
-        turns = _turns(cable, q[cable.coordinates].reshape(cable.shape))
+    def _far_turns(self, cable: CableModel, q: np.ndarray) -> Iterator[str]:
+        """Yield a note where an element at coordinates q (1, n) turns far beyond its shape without stress."""
+        part, turns = self.scene.cables[cable.name], _turns(cable, cable.nodal(q))
         if part.is_curved:
-            turns = turns - _turns(cable, part.rest_nodal_vectors)
+            turns = turns - _turns(cable, part.rest_nodal_vectors[None])
         k = int(np.argmax(turns))
         if turns[k] > MAX_ELEMENT_TURN:
             start, length = cable.mesh.start(k), cable.mesh.length(k)
@@ -110,22 +105,15 @@ def _turned(scene: SceneData, model: Model, q: np.ndarray, folded: set[str]) -> 
                    f"Take elements of at most {length * ACCURATE_ELEMENT_TURN / turns[k]:.2g} m there")
 
 
-def _turns(cable: CableModel, vectors: np.ndarray) -> np.ndarray:
-    """Return (elements,): the largest angle in rad between tangents of each element; vectors: (nodes, vectors, dim)."""
-    e = np.concatenate([vectors[:-1], vectors[1:]], axis=1)
-    tangents = np.stack([np.einsum("ek,ekd->ed", np.broadcast_to(slopes(cable, part), e.shape[:2]), e)
-                         for part in TANGENT_POSITIONS])
+def _turns(cable: CableModel, nodal: np.ndarray) -> np.ndarray:
+    """Return (elements,): the largest angle in rad between tangents of each element; nodal: (1, nodes, vectors, dim).
+    """
+    tangents = np.concatenate([slope_at(cable, nodal, slopes(cable, part)) for part in TANGENT_POSITIONS])
     tangents /= np.maximum(np.linalg.norm(tangents, axis=-1, keepdims=True), np.finfo(float).tiny)
     cosines = np.einsum("aed,bed->eab", tangents, tangents).min(axis=(1, 2))
     return np.arccos(np.clip(cosines, -1, 1))
 
 
-def _distances(r: np.ndarray) -> np.ndarray:
-    """Return (..., elements): how far nodes (..., nodes, dim) are from the next ones, in m."""
+def _chords(r: np.ndarray) -> np.ndarray:
+    """Return (..., elements): distances in m of consecutive nodes (..., nodes, dim)."""
     return np.linalg.norm(np.diff(r, axis=-2), axis=-1)
-
-
-def _arc_lengths(cable: CableModel, first: np.ndarray, last: np.ndarray, element: np.ndarray) -> np.ndarray:
-    """Return (n,): lengths in m of the centrelines of elements (n,) with these vectors of nodes, (n, vectors, dim)."""
-    stretch = stretches(cable, first, last, element, GAUSS_RULE)
-    return np.maximum(stretch, np.finfo(float).tiny) * cable.mesh.each_length(element)

@@ -1,24 +1,21 @@
-"""How deep the penalty laws of contact let cables and bodies sink."""
+"""Penetration of penalty contacts and crossings beside the radius of the cable or body."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 
 from ...checks.contact_resolution import radius_of
 from ...engine import Engine, outputs_by_name
-from ...model.model import Model
-from ...parts.scene_data import SceneData
+from .note import Note, Rows
 
 PENETRATION_LIMIT = 0.1
-"""Penetration that a note reports, as a fraction of the radius of the cable or of the round body."""
+"""Penetration of a surface that a note reports, as a fraction of the radius of the cable or of the round body."""
 
 
-@dataclass
-class _Limit:
-    """From which depth in m a contact's is noted, beside which length in m, and how the two are told."""
+class _Limit(NamedTuple):
+    """A contact: its penalty stiffness, the depth in m that a note reports, the radius in m, and where it is deep."""
 
     name: str
     stiffness: float
@@ -26,64 +23,44 @@ class _Limit:
     radius: float
     below: str
 
-    def note(self, depth: float) -> str:
-        """Return a note on a depth in m that is large beside the radius."""
-        return (f'contact "{self.name}" is up to {depth:.3g} m {self.below}, {100 * depth / self.radius:.3g} % of the '
-                f"radius of {self.radius:.3g} m: a stiffness greater than {self.stiffness:.3g} keeps it up")
 
+class Penetrations(Note):
+    """The largest penetration in m of each contact and crossing, also between output times."""
 
-def _of_surfaces(scene: SceneData, model: Model) -> list[_Limit]:
-    """Return the limits of contacts with surfaces."""
-    limits = []
-    for contact in model.contacts:
-        own = radius_of(scene, scene.contacts[contact.name])
-        radius = min((r for r in (own, contact.round_radius) if r > 0), default=np.inf)
-        limits.append(_Limit(contact.name, contact.stiffness, PENETRATION_LIMIT * radius, radius, "below its surface"))
-    return limits
+    assesses_rest = True
 
+    def prepare(self) -> None:
+        """Select the parts to measure."""
+        self._limits: dict[str, list[_Limit]] = {"contact": [], "crossing": []}
+        for contact in self.model.contacts:
+            radii = radius_of(self.scene, self.scene.contacts[contact.name]), contact.round_radius
+            radius = min((r for r in radii if r > 0), default=np.inf)
+            self._limits["contact"].append(_Limit(contact.name, contact.stiffness, PENETRATION_LIMIT * radius, radius,
+                                                  "below its surface"))
+        for each in self.model.crossings:  # deeper, lines are past each other's axes; without a radius they touch there
+            self._limits["crossing"].append(_Limit(each.name, each.stiffness, each.law[0] or np.inf, each.law[0],
+                                                   "past where its lines touch"))
 
-def _of_crossings(model: Model) -> list[_Limit]:
-    """Return the limits of crossings: where they are as deep, their lines are beyond each other's axes; none of lines
-    without a radius, which touch there.
-    """
-    return [_Limit(each.name, each.stiffness, each.law[0] or np.inf, each.law[0], "past where its lines touch")
-            for each in model.crossings]
+    def see_steps(self, engine: Engine) -> None:
+        """Measure what the engine keeps of the ends of its steps."""
+        for kind in self._limits:
+            self._take(kind, engine.deepest(kind))
 
-
-class Penetrations:
-    """Sees how deep contacts and crossings are; notes where one is too deep."""
-
-    def __init__(self, scene: SceneData, model: Model):
-        self.found: dict[str, Any] = {}
-        self._limits = {"contact": _of_surfaces(scene, model), "crossing": _of_crossings(model)}
-
-    def see(self, engine: Engine) -> None:
-        """Take how deep the engine has found them at the ends of its steps, rows of output among them."""
+    def see_rest(self, rows: Rows, engine: Engine) -> None:
+        """Measure a state of rest."""
         for kind, limits in self._limits.items():
-            self._take(limits, engine.deepest(kind))
+            if limits:
+                of = outputs_by_name(kind, rows[kind][0])
+                is_apart = kind == "crossing" and of["normal_force"] <= 0  # lines past each other, beyond their ends
+                self._take(kind, np.where(is_apart, 0.0, of["penetration"]))
 
-    def see_rest(self, outputs: dict[str, np.ndarray]) -> None:
-        """Take a state of rest, by the engine's numbers of each kind of coupling, (couplings, numbers)."""
-        if len(outputs["contact"]):
-            self._take(self._limits["contact"], outputs_by_name("contact", outputs["contact"])["penetration"])
-        if len(outputs["crossing"]):  # beyond their ends lines may be past each other's axes and not touch
-            of = outputs_by_name("crossing", outputs["crossing"])
-            self._take(self._limits["crossing"], np.where(of["normal_force"] > 0, of["penetration"], 0.0))
-
-    def _take(self, limits: list[_Limit], depths: np.ndarray) -> None:
-        """Keep the depths, in m, that are larger than those before."""
-        for limit, depth in zip(limits, depths, strict=True):
-            if depth > self.found.get(limit.name, 0.0):
-                self.found[limit.name] = float(depth)
+    def _take(self, kind: str, depths: np.ndarray) -> None:
+        for limit, depth in zip(self._limits[kind], depths, strict=True):
+            self.keep(limit.name, depth)
 
     def notes(self) -> list[str]:
-        """Return the notes on all that was seen."""
-        return [limit.note(self.found[limit.name]) for limits in self._limits.values() for limit in limits
-                if self.found.get(limit.name, 0.0) > limit.depth]
-
-
-def penetrations(scene: SceneData, model: Model, outputs: dict[str, np.ndarray]) -> list[str]:
-    """Return the notes on a state of rest; outputs: the engine's of each kind of coupling, (couplings, numbers)."""
-    found = Penetrations(scene, model)
-    found.see_rest(outputs)
-    return found.notes()
+        """Return a note for each contact or crossing with a large penetration."""
+        return [f'contact "{limit.name}" is up to {depth:.3g} m {limit.below}, {100 * depth / limit.radius:.3g} % of '
+                f"the radius of {limit.radius:.3g} m: a stiffness greater than {limit.stiffness:.3g} keeps it up"
+                for limits in self._limits.values() for limit in limits
+                if (depth := self.found.get(limit.name, [0.0])[0]) > limit.depth]

@@ -1,8 +1,9 @@
-"""Notes on a run that take all of its output rows and steps, also those that are on disk already."""
+"""The list of notes, and their measurements of a run, whose rows come in batches, and of a state of rest."""
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from collections.abc import Mapping
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from .coarse_slides import CoarseSlides
 from .coincident_points import MeetingPoints
 from .fast_turns import FastTurns
 from .folds import Folds
-from .normal_forces import NormalForces
+from .note import Note
 from .penetrations import Penetrations
 from .reduced_strain import ReducedStrain
 from .sensitivity import Sensitivity
@@ -23,69 +24,67 @@ from .spinning_sections import SpinningSections
 from .straight_struts import StraightStruts
 from .straightened import Straightened
 from .surface_ends import SurfaceEnds
+from .uncontrolled_errors import NormalForces
 from .unseen_contact import UnseenContact
 
+NOTES: tuple[type[Note], ...] = (
+    StraightStruts, Folds, ReducedStrain, CoarseMeshes, CoarseSlides, Straightened, Sensitivity, SlackMotion,
+    MeetingPoints, FastTurns, NormalForces, SpinningSections, Penetrations, SurfaceEnds, UnseenContact)
 
-class Noted(Protocol):
-    """Keeps what has been found of a run, as JSON takes it, by the names of parts."""
-
-    found: dict[str, Any]
-
-    def notes(self) -> list[str]:
-        """Return the notes on all that was seen."""
-
-
-class Watched(Noted, Protocol):
-    """Sees output rows."""
-
-    def see(self, rows: dict[str, np.ndarray]) -> None:
-        """Take further output rows, by name, time first."""
-
-
-class SeenInSteps(Noted, Protocol):
-    """Sees what the engine keeps of the ends of its steps."""
-
-    def see(self, engine: Engine) -> None:
-        """Take what the engine has found."""
+N = TypeVar("N", bound=Note)
 
 
 class RowNotes:
-    """What is noted of output rows and of steps, which are seen as they come, a batch after the other."""
+    """The measurements of all notes on a run."""
 
     def __init__(self, scene: SceneData, model: Model, step: float = 0.0, duration: float = 1.0):
-        self.sensitivity, self.turns = Sensitivity(scene, model), FastTurns(model, step)
-        self.slack = SlackMotion(scene, model, duration)
-        self.normal_forces = NormalForces(scene, model)
-        self._seen_in_steps: dict[str, SeenInSteps] = {"penetrations": Penetrations(scene, model),
-                                                       "surface ends": SurfaceEnds(scene, model)}
-        self._watched: dict[str, Watched] = {
-            "straight struts": StraightStruts(scene, model), "reduced strain": ReducedStrain(scene, model),
-            "coarse meshes": CoarseMeshes(scene, model), "coarse slides": CoarseSlides(scene, model),
-            "straightened": Straightened(scene, model), "sensitivity": self.sensitivity, "slack motion": self.slack,
-            "meeting points": MeetingPoints(scene, model), "fast turns": self.turns,
-            "folds": Folds(scene, model), "unseen contact": UnseenContact(scene, model),
-            "normal forces": self.normal_forces, "spinning sections": SpinningSections(scene, model)}
-        self._noted: dict[str, Noted] = {**self._watched, **self._seen_in_steps}
+        """step: in s, 0 where tol chooses it; duration: of the run, in s."""
+        self._rows = 0
+        self._notes = {kind: kind(scene, model, step, duration) for kind in NOTES}
+
+    def __getitem__(self, kind: type[N]) -> N:
+        """Return the note of a class."""
+        return cast(N, self._notes[kind])
 
     def see(self, engine: Engine) -> None:
-        """Take further rows, which the engine has, and what it has found at the ends of its steps."""
+        """Measure the rows that the engine has, and the ends of its steps."""
         rows = engine.rows()
-        for each in self._seen_in_steps.values():
-            each.see(engine)
-        if len(rows["time"]):
-            for watched in self._watched.values():
-                watched.see(rows)
+        numbers = self._rows + np.arange(len(rows["time"]))
+        self._rows += len(numbers)
+        for note in self._notes.values():
+            note.see_steps(engine)
+            at = slice(None) if note.row_interval == 1 else numbers % note.row_interval == 1
+            if len(numbers[at]):
+                note.see({name: values[at] for name, values in rows.items()})
 
     def notes(self) -> list[str]:
-        """Return the notes on all that was seen."""
-        return [note for each in self._noted.values() for note in each.notes()]
+        """Return the notes on all rows and steps."""
+        return [text for note in self._notes.values() for text in note.notes()]
 
     @property
     def found(self) -> dict[str, Any]:
-        """What rows and steps have shown so far, as JSON takes it, for a checkpoint."""
-        return {name: each.found for name, each in self._noted.items()}
+        """All measurements, in types of JSON, for a checkpoint."""
+        return {"rows": self._rows, "notes": {kind.__name__: note.found for kind, note in self._notes.items()}}
 
     def go_on(self, found: dict[str, Any]) -> None:
-        """Go on from what the rows before a checkpoint had shown."""
-        for name, each in self._noted.items():
-            each.found = found.get(name, {})
+        """Go on from the measurements of a checkpoint."""
+        self._rows = found["rows"]
+        for kind, note in self._notes.items():
+            note.found = found["notes"][kind.__name__]
+
+
+def rest_notes(scene: SceneData, model: Model, engine: Engine, state: Mapping[str, np.ndarray],
+               couplings: Mapping[str, np.ndarray]) -> list[str]:
+    """Return the notes on a state of rest.
+
+    state: coordinates "q" (n_q,) and arc-lengths "s" (slides,); couplings: their outputs by kind, (couplings, numbers).
+    """
+    rows = {"time": np.zeros(1), "q": state["q"][None], "v": np.zeros((1, model.n_dof)), "s": state["s"][None],
+            **{kind: numbers[None] for kind, numbers in couplings.items()}}
+    texts = []
+    for kind in NOTES:
+        if kind.assesses_rest:
+            note = kind(scene, model)
+            note.see_rest(rows, engine)
+            texts += note.notes_at_rest()
+    return texts

@@ -10,8 +10,6 @@ bears less. Both parts are measured, over scenes that were compared with their r
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from ...base.rotations import rotate
@@ -22,10 +20,9 @@ from ...model.middle_strain import stretches
 from ...model.model import BodyModel, CableModel, Model
 from ...model.states import attachment_points, body_rates, body_state, joint_state
 from ...parts.cable import Cable
-from ...parts.joint import Joint
-from ...parts.scene_data import SceneData
 from ...parts.section_stiffness import compressive_stiffness
 from ...parts.settings import RunSettings
+from .note import LineStiffness, Note, Rows, allowed_error
 
 SIMPSON_RULE = (0.0, 0.5, 1.0), (1 / 6, 4 / 6, 1 / 6)
 """Simpson's rule on an element, as fractions of its length; the factors of the exponents below were measured with
@@ -38,8 +35,6 @@ MIN_ROWS = 10
 """Output times below which motion between them is not assessed."""
 ERROR_REPORT_RATIO = 1.15
 """Ratio of the expected error to the allowed one above which a note reports it."""
-FIXED_STEP_ERROR_LIMIT = 5e-3
-"""Error of a fixed step that a note reports, as a fraction of the largest motion."""
 MAX_REPORTED_EXPONENT = 5.0
 """Largest exponent that a note reports: errors are then as large as the motion."""
 SATURATED_EXPONENT = 500.0
@@ -50,45 +45,41 @@ TOPPLING_JOINTS = "spherical", "revolute", "universal"
 """Kinds of joints about which a body can fall over."""
 
 
-class Sensitivity:
-    """By what errors grow, in each cable and at each joint on which a body stands.
+class Sensitivity(Note):
+    """The exponents by which errors grow, in each element of a cable or at each joint on which a body stands; the time
+    in s until which they are summed, that from which on errors grow, -1 if they do not, and the number of output times.
 
-    found: by the name of a cable, or of a joint, in messages: the exponents, of each element of a cable; the time until
-    which they are summed, and that from which on errors grow, -1 if they do not, in s; how many times there were.
+    Its note depends on the errors of the steps, see `sensitive`.
     """
 
-    def __init__(self, scene: SceneData, model: Model):
-        self._scene, self._model = scene, model
-        loops = joints_in_loops(model)
-        self._joints = [(k, joint, scene.joints[joint.name]) for k, joint in enumerate(model.joints)
-                        if joint.slide is None and not loops[k] and _lets_fall(scene.joints[joint.name])]
-        self.found: dict[str, Any] = {}
+    def prepare(self) -> None:
+        """Select the joints about which a body can fall over."""
+        loops, parts = joints_in_loops(self.model), self.scene.joints
+        self._joints = [(k, joint, parts[joint.name]) for k, joint in enumerate(self.model.joints)
+                        if joint.slide is None and not loops[k] and parts[joint.name].joint_kind in TOPPLING_JOINTS
+                        and not parts[joint.name].is_driven]
 
-    def see(self, rows: dict[str, np.ndarray]) -> None:
-        """Take further output rows."""
-        for cable in self._model.cables:
-            self._add(self._scene.cables[cable.name].where, rows["time"],
+    def see(self, rows: Rows) -> None:
+        """Measure further output rows."""
+        for cable in self.model.cables:
+            self._add(self.scene.cables[cable.name].where, rows["time"],
                       CABLE_EXPONENT_FACTOR * self._of_cable(cable, rows["q"]))
         for k, joint, part in self._joints:
             self._add(part.where, rows["time"], BODY_EXPONENT_FACTOR * self._of_joint(k, joint, rows))
 
     @property
     def worst(self) -> tuple[float, str, float]:
-        """Return the largest exponent that counts, the part that it is of, and from when on errors grow there, s."""
+        """The largest exponent of all parts, its part, and the time in s from which on errors grow there."""
         return max(((max(exponents), name, since) for name, (exponents, _, since, rows) in self.found.items()
                     if rows >= MIN_ROWS), default=(0.0, "", -1.0))
 
     @property
     def cables(self) -> list[Cable]:
-        """Return the cables of the scene."""
-        return list(self._scene.cables.values())
-
-    def notes(self) -> list[str]:
-        """Return nothing: what the exponents tell depends on the errors of the steps, see `sensitive`."""
-        return []
+        """The cables of the scene."""
+        return list(self.scene.cables.values())
 
     def _add(self, name: str, time: np.ndarray, rates: np.ndarray) -> None:
-        """Add rates (times, exponents) to the exponents of a part, 1/s."""
+        """Add rates (times, exponents) in 1/s to the exponents of a part."""
         exponents, until, since, rows = self.found.get(name, ([0.0] * rates.shape[1], 0.0, -1.0, 0))
         grown = np.array(exponents) + np.cumsum(rates * np.diff(time, prepend=until)[:, None], axis=0)
         begun = np.flatnonzero(grown.max(axis=1) > MIN_GROWTH_EXPONENT)
@@ -97,29 +88,25 @@ class Sensitivity:
         self.found[name] = [grown[-1].tolist(), float(time[-1]), since, rows + len(time)]
 
     def _of_cable(self, cable: CableModel, q: np.ndarray) -> np.ndarray:
-        """Return (times, elements): the rates at which elements of a cable buckle, 1/s."""
-        part = self._scene.cables[cable.name]
-        vectors = q[:, cable.coordinates].reshape(-1, *cable.shape)
-        strain = stretches(cable, vectors[:, :-1], vectors[:, 1:], np.arange(cable.n_elements), SIMPSON_RULE) - 1
-        E, moments = part.material.youngs_modulus, part.section.moments()
-        EA = compressive_stiffness(part.traits.membrane, part.section, part.material)
-        EI = E * (moments[1] if self._model.dim == 2 else min(moments[1:3]))
-        mass = part.material.density * part.section.mass_moments()[0]
-        N = EA * np.maximum(-strain, 0.0)
+        """Return (times, elements): the rates in 1/s at which elements of a cable buckle."""
+        part, nodal = self.scene.cables[cable.name], cable.nodal(q)
+        strain = stretches(cable, nodal[:, :-1], nodal[:, 1:], np.arange(cable.n_elements), SIMPSON_RULE) - 1
+        _, EI, _, mass = LineStiffness.of(part, self.model.dim)
+        N = compressive_stiffness(part.traits.membrane, part.section, part.material) * np.maximum(-strain, 0.0)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # of a rope without stiffness
             k = np.clip(np.nan_to_num(np.sqrt(N / (2 * EI)), posinf=np.inf), np.pi / part.length,
                         np.pi / cable.mesh.lengths)
             return np.nan_to_num(np.sqrt(np.maximum(k**2 * (N - EI * k**2), 0.0) / mass))
 
     def _of_joint(self, k: int, joint: JointModel, rows: dict[str, np.ndarray]) -> np.ndarray:
-        """Return (times, 1): the larger rate at which a body at one of its ends falls over, 1/s."""
+        """Return (times, 1): the larger rate in 1/s at which a body at one of its ends falls over."""
         on_b = joint_state(joint, outputs_by_name("joint", rows["joint"][:, k]))["force"]
         found = np.zeros((len(on_b), 1))
         for end, force in zip(joint.attachments, (-on_b, on_b), strict=True):
-            body = self._model.bodies[end.body] if end.body >= 0 else None
+            body = self.model.bodies[end.body] if end.body >= 0 else None
             if body is not None and body.shape is None:
-                point = attachment_points(self._model, end, rows["q"])
-                found = np.maximum(found, _falling(self._model, body, point, force, rows)[:, None])
+                point = attachment_points(self.model, end, rows["q"])
+                found = np.maximum(found, _falling(self.model, body, point, force, rows)[:, None])
         return found
 
 
@@ -127,8 +114,7 @@ def sensitive(engine: Engine, settings: RunSettings, found: Sensitivity) -> list
     """Return a note where the errors of the steps, which grow in the motion, may become more than is allowed."""
     exponent, where, since = found.worst
     total = engine.statistics["sum_of_local_error_estimates_m"]
-    fixed, motion = settings.step is not None, engine.controlled_motion
-    allowed = FIXED_STEP_ERROR_LIMIT * motion if fixed else settings.tol * motion + max(engine.absolute_tol, 0.0)
+    fixed, motion, allowed = settings.step is not None, engine.controlled_motion, allowed_error(engine, settings)
     if not (engine.moves and exponent >= MIN_GROWTH_EXPONENT
             and total * np.exp(min(exponent, SATURATED_EXPONENT)) > ERROR_REPORT_RATIO * allowed):
         return []
@@ -141,17 +127,13 @@ def sensitive(engine: Engine, settings: RunSettings, found: Sensitivity) -> list
 
 
 def _times(ratio: float) -> str:
-    """Return how much more than what tol allows an error is, in words."""
+    """Return in words the ratio of an error to the one that tol allows."""
     return "more than tol allows" if ratio < 2 else f"{float(f'{ratio:.1g}'):.0f} times what tol allows, or more"
-
-
-def _lets_fall(joint: Joint) -> bool:
-    return joint.joint_kind in TOPPLING_JOINTS and not joint.is_driven
 
 
 def _falling(model: Model, body: BodyModel, point: np.ndarray, force: np.ndarray,
              rows: dict[str, np.ndarray]) -> np.ndarray:
-    """Return (times,): the rate at which a body falls over that a force (times, 3) on a point of it pushes, 1/s."""
+    """Return (times,): the rate in 1/s at which a body falls over under a force (times, 3) on one of its points."""
     state = body_state(model, body, rows["q"])
     turns = body_rates(model, body, state["orientation"], rows["v"])["angular_velocity"]
     arm = state["position"] + rotate(state["orientation"], body.centre) - point

@@ -8,50 +8,41 @@ which ends as elements become shorter.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
-from ...model.model import CableModel, Model
+from ...model.model import CableModel
 from ...parts.cable import Cable
-from ...parts.scene_data import SceneData
+from .note import Note, Rows
 
 STABLE_RATIO = 20.0
-"""Of N (a L)²/GJ, up to which sections rest: ropes of 0.1 to 10 mm over 100 m do so at 19 to 49, and spin at 120."""
+"""N (a L)²/GJ up to which sections rest: ropes of 0.1 to 10 mm over 100 m do so at 19 to 49, and spin at 120."""
 UNSTABLE_RATIO = 60.0
-"""Of the same, above which a run is noted."""
+"""N (a L)²/GJ above which a note reports a run."""
 LAW = "structural"
 """The law whose half-way frame the twist turns; the laws of a continuum have none."""
 
 
-class SpinningSections:
-    """The largest N (a L)²/GJ of each thin beam over a run.
+class SpinningSections(Note):
+    """The largest N (a L)²/GJ of each thin beam, and its time in s."""
 
-    found: ratio, time in s, by the cable's name.
-    """
+    def prepare(self) -> None:
+        """Select the parts to measure."""
+        self._cables = {cable.name: cable for cable in self.model.cables
+                        if has_sections(cable) and str(self.scene.cables[cable.name].law).startswith(LAW)}
 
-    def __init__(self, scene: SceneData, model: Model):
-        self._scene = scene
-        self._cables = [cable for cable in model.cables
-                        if has_sections(cable) and str(scene.cables[cable.name].law).startswith(LAW)]
-        self.found: dict[str, Any] = {}
-
-    def see(self, rows: dict[str, np.ndarray]) -> None:
-        """Take further output rows."""
-        for cable in self._cables:
-            part = self._scene.cables[cable.name]
-            ratios = torsion_ratio(cable, part, rows["q"][:, cable.coordinates].reshape(-1, *cable.shape))
+    def see(self, rows: Rows) -> None:
+        """Measure further output rows."""
+        for name, cable in self._cables.items():
+            ratios = torsion_ratio(cable, self.scene.cables[name], cable.nodal(rows["q"]))
             k = int(np.argmax(ratios))
-            if ratios[k] > self.found.get(cable.name, (0.0, 0.0))[0]:
-                self.found[cable.name] = [float(ratios[k]), float(rows["time"][k])]
+            self.keep(name, ratios[k], rows["time"][k])
 
     def notes(self) -> list[str]:
         """Return a note for each cable whose sections may spin."""
-        of_name = {cable.name: cable for cable in self._cables}
-        return [f'cable "{name}": elements of {of_name[name].mesh.lengths.max():.3g} m are too long for the torsion of '
-                f"so thin a beam: sections may spin, and errors may grow from rounding (N (a L)²/GJ reached "
+        return [f'cable "{name}": elements of {self._cables[name].mesh.lengths.max():.3g} m are too long for the '
+                "torsion of so thin a beam: sections may spin, and errors may grow from rounding (N (a L)²/GJ reached "
                 f"{ratio:.3g} at t = {time:.4g} s; up to {STABLE_RATIO:g} is stable); take elements of at most "
-                f'{stable_length(of_name[name], ratio):.2g} m, or element="cable12", which has no torsion'
+                f'{stable_length(self._cables[name], ratio):.2g} m, or element="cable12", which has no torsion'
                 for name, (ratio, time) in self.found.items() if ratio > UNSTABLE_RATIO]
 
 
@@ -61,7 +52,7 @@ def has_sections(cable: CableModel) -> bool:
 
 
 def torsion_ratio(cable: CableModel, part: Cable, nodal: np.ndarray) -> np.ndarray:
-    """Return the largest N (a L)²/GJ of the elements, (...), of nodal vectors (..., nodes, vectors, 3)."""
+    """Return (...): the largest N (a L)²/GJ of the elements at nodal vectors (..., nodes, vectors, 3)."""
     slope = nodal[..., cable.vectors.index("r_x"), :]
     stretch = np.linalg.norm(slope, axis=-1)
     tangent = slope / stretch[..., None]
@@ -73,5 +64,6 @@ def torsion_ratio(cable: CableModel, part: Cable, nodal: np.ndarray) -> np.ndarr
 
 
 def stable_length(cable: CableModel, ratio: float) -> float:
-    """Return how long elements may be, m, where those of now have this ratio: it grows as the fourth power."""
+    """Return the longest stable element in m where the present ones have this ratio, which grows as the fourth power.
+    """
     return float(cable.mesh.lengths.max()) * (STABLE_RATIO / ratio) ** 0.25 if ratio > 0.0 else np.inf

@@ -6,16 +6,14 @@ strut. Whether it would buckle is counted by the inertia of its stiffness, as in
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from ...engine import Engine
 from ...model.model import CableModel, Model
-from ...parts.scene_data import SceneData
 from ...parts.section_stiffness import compressive_stiffness
 from ..linear.condensation import condensed
 from ..linear.inertia import inertia
+from .note import LineStiffness, Note, Rows
 
 STRAIGHTNESS_TOLERANCE = 1e-9
 """Nodes lie on the line between the ends if their distance from it is below this fraction of the length."""
@@ -24,24 +22,18 @@ MIN_SQUARED_DEFLECTION = 1e-12
 """Lower bound of the squared deflection of the middle node of a bent strut, as a fraction of the squared length."""
 
 
-class StraightStruts:
-    """Each cable that was perfectly straight at two output times on end, when it was compressed most.
-
-    found: by the cable's name whether it is straight in the last row, and the largest compression in N beyond what the
-    weakest of struts bears, with the time in s, the coordinates and the slides' arc-lengths then.
+class StraightStruts(Note):
+    """Whether each cable is straight in the last row; of those that were perfectly straight at two consecutive output
+    times the largest compression in N, with its time in s, the coordinates and the slides' arc-lengths.
     """
 
-    def __init__(self, scene: SceneData, model: Model):
-        self._scene, self._model = scene, model
-        self.found: dict[str, Any] = {}
-
-    def see(self, rows: dict[str, np.ndarray]) -> None:
-        """Take further output rows."""
-        for cable in self._model.cables:
-            part = self._scene.cables[cable.name]
+    def see(self, rows: Rows) -> None:
+        """Measure further output rows."""
+        for cable in self.model.cables:
+            part = self.scene.cables[cable.name]
             if part.is_curved:
                 continue
-            r = rows["q"][:, cable.coordinates].reshape(-1, *cable.shape)[:, :, cable.vectors.index("r")]
+            r = cable.positions(rows["q"])
             before, worst = self.found.get(cable.name, (False, None))
             straight = _straight(r, before)
             at = np.flatnonzero(straight & np.append(before, straight[:-1]))  # else something bends it
@@ -50,23 +42,21 @@ class StraightStruts:
                 stiffness = compressive_stiffness(part.traits.membrane, part.section, part.material)
                 forces = stiffness * shortening.max(axis=1)
                 k, force = at[np.argmax(forces)], float(forces.max())
-                length = cable.mesh.total
-                weakest = part.material.youngs_modulus * min(part.section.moments()[1:3])
-                least = weakest / length**2  # a cantilever, the weakest of struts, buckles at 2.47 times this
-                if force >= least and (worst is None or force > worst[0]):
+                bearable = LineStiffness.of(part, 3).EI_weak / cable.mesh.total**2  # a cantilever buckles at 2.47 times
+                if force >= bearable and (worst is None or force > worst[0]):
                     worst = [force, float(rows["time"][k]), rows["q"][k].tolist(), rows["s"][k].tolist()]
             self.found[cable.name] = [bool(straight[-1]), worst]
 
     def notes(self) -> list[str]:
         """Return a note for each of them that would buckle at the time at which it is compressed most."""
         notes = []
-        for cable in self._model.cables:
+        for cable in self.model.cables:
             _, worst = self.found.get(cable.name, (False, None))
             if worst is None:
                 continue
             force, time, q, s = worst
             try:
-                buckles = _unstable(self._model, cable, time, np.array(q), np.array(s))
+                buckles = _unstable(self.model, cable, time, np.array(q), np.array(s))
             except ArithmeticError:  # no factorisation is accurate enough to count
                 continue
             if buckles:
@@ -78,16 +68,16 @@ class StraightStruts:
 
 
 def _straight(r: np.ndarray, before: bool) -> np.ndarray:
-    """Return (times,): whether nodes r (times, nodes, dim) lie on a line, one after the other, as they did at the time
-    before or do at the next one; before: whether they did before the first.
+    """Return (times,): whether nodes r (times, nodes, dim) lie in order on a line, also at the time before or after;
+    before: whether they did so before the first time.
 
-    The middle node shows of most states that they do not: only of the others all nodes are looked at.
+    The middle node excludes most states; all nodes are compared in the others only.
     """
     chord, middle = r[:, -1] - r[:, 0], r[:, r.shape[1] // 2] - r[:, 0]
     square = (chord * chord).sum(axis=1)
-    off = (middle * middle).sum(axis=1) * square - (middle * chord).sum(axis=1) ** 2  # squared, times the square
-    straight = ~(off > MIN_SQUARED_DEFLECTION * square**2)
-    beside = np.ones(len(r), dtype=bool)  # and of the last time, for the row to come
+    deflection = (middle * middle).sum(axis=1) * square - (middle * chord).sum(axis=1) ** 2  # squared, times square
+    straight = ~(deflection > MIN_SQUARED_DEFLECTION * square**2)
+    beside = np.ones(len(r), dtype=bool)  # the last time is compared with the row to come
     beside[:-1] = straight[1:]
     beside[1:] |= straight[:-1]
     beside[0] |= before
@@ -108,7 +98,7 @@ def _on_line(r: np.ndarray) -> np.ndarray:
 
 
 def _unstable(model: Model, cable: CableModel, t: float, q: np.ndarray, s: np.ndarray) -> int:
-    """Return how many directions of a cable, all else fixed, lower the energy; joints hold it, with forces left out."""
+    """Return the number of directions that lower the energy of a cable; all else is fixed, forces are left out."""
     engine = Engine(model)
     engine.set_state(t, q=q, s=s)
     K, C = condensed(engine.matrix(0.0, 0.0, 1.0), model)

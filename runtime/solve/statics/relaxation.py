@@ -24,14 +24,8 @@ from ...model.loads import DeadLoadModel, LoadModel
 from ...model.redundant_constraints import drop_redundant_rows
 from ...parts.scene_data import SceneData
 from ...parts.settings import EquilibriumSettings, RelaxationSettings
-from ..notes.coarse_meshes import coarse
-from ..notes.coarse_slides import coarse_at_slides
 from ..notes.diagnosis import describe_dof
-from ..notes.folds import folds
-from ..notes.penetrations import penetrations
-from ..notes.reduced_strain import compressed
-from ..notes.surface_ends import beyond_ends
-from ..notes.unseen_contact import unseen_contact
+from ..notes.row_notes import rest_notes
 from .rest_state import Relaxation, RestState
 from .stability import Stability, lowest_direction, stability
 from .static_problem import StaticProblem, static_model
@@ -365,13 +359,7 @@ def _told(problem: StaticProblem, motion: _Motion, found: Stability, made: type[
     """Return the problem's state with what is to be said of it; what a user must know is a warning, too."""
     state = made.of(problem, found)
     state.relaxation = motion.report
-    problem.messages += [*folds(problem.scene, problem.model, state.static_state["q"]),
-                         *compressed(problem.scene, problem.model, state.static_state["q"]),
-                         *coarse(problem.scene, problem.model, state.static_state["q"]),
-                         *coarse_at_slides(problem.scene, problem.model, state.static_state),
-                         *penetrations(problem.scene, problem.model, state.couplings),
-                         *beyond_ends(problem.scene, problem.model, problem.engine),
-                         *unseen_contact(problem.scene, problem.model, state.static_state["q"])]
+    problem.messages += rest_notes(problem.scene, problem.model, problem.engine, state.static_state, state.couplings)
     for message in problem.messages:
         warnings.warn(message, FunicularWarning, stacklevel=5)
     LOG.info("relaxation: %d steps, %d resets, %.3g N left over", motion.report.steps, motion.report.resets,

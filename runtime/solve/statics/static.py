@@ -16,13 +16,7 @@ from ...errors import EquilibriumError, FunicularWarning
 from ...model.drag_forces import outside_tables
 from ...parts.scene_data import SceneData
 from ...parts.settings import EquilibriumSettings
-from ..notes.coarse_meshes import coarse
-from ..notes.coarse_slides import coarse_at_slides
-from ..notes.folds import folds
-from ..notes.penetrations import penetrations
-from ..notes.reduced_strain import compressed
-from ..notes.surface_ends import beyond_ends
-from ..notes.unseen_contact import unseen_contact
+from ..notes.row_notes import rest_notes
 from .lying import left, lying, not_held
 from .path_following import Critical, Point, follow
 from .rest_state import CriticalPoint, RestState
@@ -82,10 +76,7 @@ def note(problem: StaticProblem, state: RestState) -> None:
     if rubbing := [name for name, slide in problem.scene.slides.items() if slide.friction is not None]:
         names = " and ".join(f'"{name}"' for name in rubbing)
         problem.messages.append(f"friction of {names} is left out: at rest slides move freely")
-    problem.messages += folds(problem.scene, problem.model, state.static_state["q"])
-    problem.messages += compressed(problem.scene, problem.model, state.static_state["q"])
-    problem.messages += coarse(problem.scene, problem.model, state.static_state["q"])
-    problem.messages += coarse_at_slides(problem.scene, problem.model, state.static_state)
+    problem.messages += rest_notes(problem.scene, problem.model, problem.engine, state.static_state, state.couplings)
     problem.messages += outside_tables(problem.model, state.static_state["q"])
     if rough := [contact.where for contact in problem.scene.contacts.values()
                  if contact.is_hard and contact.friction_coefficient]:
@@ -96,10 +87,8 @@ def note(problem: StaticProblem, state: RestState) -> None:
     LOG.info("equilibrium: load fraction %g after %d iterations, residual %.3g N", state.load_fraction,
              state.iterations, state.residual)
     places = lying(problem.scene, problem.model, problem.model.q)
-    problem.messages += [*penetrations(problem.scene, problem.model, state.couplings),
-                         *beyond_ends(problem.scene, problem.model, problem.engine),
-                         *(left(problem, places) if state.load_fraction == 1.0 else []),
-                         *unseen_contact(problem.scene, problem.model, state.static_state["q"])]
+    if state.load_fraction == 1.0:
+        problem.messages += left(problem, places)
     state.messages = problem.messages + implausible(problem.scene)
     for message in problem.messages:
         warnings.warn(message, FunicularWarning, stacklevel=4)

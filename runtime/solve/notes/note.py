@@ -1,0 +1,90 @@
+"""The general form of a note: one quantity, measured part by part in a run or at rest, and a text above its limit.
+
+`row_notes.NOTES` lists them. Quantities, limits and the measurements behind these stand in the file of each note.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...engine import Engine
+from ...model.model import Model
+from ...parts.cable import Cable
+from ...parts.scene_data import SceneData
+from ...parts.settings import RunSettings
+
+Rows = dict[str, np.ndarray]
+"""Output rows by name, time (T,) first: q (T, n_q), v (T, n_dof), s (T, slides), and outputs of couplings by kind."""
+FIXED_STEP_ERROR_LIMIT = 5e-3
+"""Error of a fixed step that a note reports, as a fraction of the largest motion."""
+
+
+class Note:
+    """One quantity, measured part by part.
+
+    found: the measurements by the name of the part, in types of JSON: a checkpoint keeps them.
+    """
+
+    assesses_rest = False
+    """Whether it assesses states of rest, too."""
+    row_interval = 1
+    """The note sees one in this number of output rows."""
+
+    def __init__(self, scene: SceneData, model: Model, step: float = 0.0, duration: float = 1.0):
+        """step: in s, 0 where tol chooses it; duration: of the run, in s."""
+        self.scene, self.model, self.step, self.duration = scene, model, step, duration
+        self.found: dict[str, Any] = {}
+        self.prepare()
+
+    def prepare(self) -> None:
+        """Select the parts to measure."""
+
+    def see(self, rows: Rows) -> None:
+        """Measure further output rows."""
+
+    def see_steps(self, engine: Engine) -> None:
+        """Measure what the engine keeps of the ends of its steps."""
+
+    def see_rest(self, rows: Rows, engine: Engine) -> None:
+        """Measure a state of rest: one row, and the engine whose static state it is."""
+        self.see(rows)
+
+    def notes(self) -> list[str]:
+        """Return the notes on a run."""
+        return []
+
+    def notes_at_rest(self) -> list[str]:
+        """Return the notes on a state of rest."""
+        return self.notes()
+
+    def keep(self, name: str, value: float, *where: float) -> None:
+        """Keep the largest value of a part, above 0, and where it was found."""
+        if value > self.found.get(name, (0.0,))[0]:
+            self.found[name] = np.array([value, *where]).tolist()
+
+
+class LineStiffness(NamedTuple):
+    """EA of a cable in N, its smaller and larger EI in N m², of a planar scene that in its plane, and its mass in kg/m.
+    """
+
+    EA: float
+    EI_weak: float
+    EI_strong: float
+    mass: float
+
+    @classmethod
+    def of(cls, part: Cable, dim: int) -> LineStiffness:
+        """Return those of a cable's section and material."""
+        E, moments = part.material.youngs_modulus, part.section.moments()
+        bending = moments[1:2] if dim == 2 else moments[1:3]
+        return cls(E * float(moments[0]), E * float(min(bending)), E * float(max(bending)),
+                   part.material.density * float(part.section.mass_moments()[0]))
+
+
+def allowed_error(engine: Engine, settings: RunSettings) -> float:
+    """Return the error in m that a run allows: by tol, or with a fixed step by the limit of notes."""
+    if settings.step is not None:
+        return FIXED_STEP_ERROR_LIMIT * engine.controlled_motion
+    return settings.tol * engine.controlled_motion + max(engine.absolute_tol, 0.0)
