@@ -15,6 +15,10 @@ CAUSES: dict[int, str | None]
 COUPLING_TYPES: tuple[str, ...]
 OUTPUTS: dict[str, dict[str, Output]]
 SLACK_STRAIN: float
+MAX_HARD_CONTACTS: int
+CROSSING_STICK: int
+FRICTION_MARK: int
+NO_TIME: float
 
 class Output(NamedTuple):
     first: int

@@ -112,7 +112,13 @@ COUPLING_TYPES = _coupling_types()
 OUTPUTS = _described_outputs()
 """Of each kind of coupling that has some the fields of a row of output, by name; a state of rest has them, too."""
 SLACK_STRAIN = FU_SLACK_STRAIN
-"""What an element is compressed by at least in its middle where it is slack."""
+"""Least compression of a slack element in its middle."""
+MAX_HARD_CONTACTS = FU_MOST_HARD_CONTACTS
+"""Largest number of points in hard contact of a scene."""
+CROSSING_STICK, FRICTION_MARK = FU_CROSSING_STICK, FU_FRICTION_MARK
+"""Numbers that a state keeps of friction: of a crossing that sticks, of a point of a contact."""
+NO_TIME = FU_NO_TIME
+"""Time of the last step in a state as drawn, s."""
 
 
 cdef const void *_found(list tables, str role, str name) except NULL:

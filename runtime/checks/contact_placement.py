@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..base.rotations import conjugate, rotate
+from ..engine import MAX_HARD_CONTACTS
 from ..errors import SceneError, near
 from ..parts.cable import Cable
 from ..parts.contact import Contact
@@ -29,8 +30,6 @@ SAMPLES = 8
 """Of an element, at which it is looked at for that."""
 OVERLAP_HARD = 1e-9
 """Of the lengths that a distance is computed from: rounding, by which a start of hard contact may be below."""
-MOST_HARD = 48
-"""Points in hard contact of a scene: FU_MOST_HARD_CONTACTS of engine/couplings/hard_contact/hard_contact.h."""
 
 
 def placed_surface(scene: SceneData, surface: Surface) -> Surface:
@@ -180,9 +179,9 @@ def _check_hard(scene: SceneData, contact: Contact, added: int) -> None:
     added: points in hard contact that are being added.
     """
     n = added + sum(_hard_points(scene, other) for other in scene.contacts.values() if other.is_hard)
-    if n > MOST_HARD:
-        raise SceneError(contact.where, f"the scene has {n} points in hard contact, and {MOST_HARD} are the most",
-                         "give some of the contacts stiffness in place of restitution")
+    if n > MAX_HARD_CONTACTS:
+        raise SceneError(contact.where, f"the scene has {n} points in hard contact, and {MAX_HARD_CONTACTS} are the "
+                         "most", "give some of the contacts stiffness in place of restitution")
     if contact.radius and isinstance(scene.surfaces[contact.b].shape, HeightField):
         raise SceneError(contact.where, "a height field tells distances where they are nil: hard contact with it is of "
                          "points without radius", "leave radius out, or give stiffness in place of restitution")

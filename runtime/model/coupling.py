@@ -4,27 +4,32 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from .attachments import AttachmentModel, ModelBuilder
 
 
+def no_numbers() -> np.ndarray:
+    """Return an array (0,)."""
+    return np.zeros(0)
+
+
 @dataclass(kw_only=True)
 class CouplingModel:
-    """Base of what acts between attachments. The engine reads its attributes by the names of the fields of its type.
+    """Base of the models of couplings. The engine reads fields of its type from attributes and entries of these names.
 
-    type: the engine's type of coupling. name: of the part that it is of. n_coordinates: of its own in a Newton system.
-    scale: what the equations of each of its own forces are multiplied by there, kg or kg m. n_multipliers: the most
-    multipliers of eq 38 that it needs. reacts, is_damped: a force of it depends on those multipliers, on velocities;
-    has_inertia: it has a mass. drive: the number of a signal that prescribes a motion of it, or -1. follows_law: its
-    own forces are given by a law, and else by constraints. redundant_rows: those of its constraints that others imply,
-    whose forces are nil (model/redundant_constraints.py). unknown, multiplier: the first of each, of unknowns beyond
-    the dofs, as `number` counts them.
+    type: the engine's type of coupling. name: of its part. n_coordinates: number of internal coordinates in a Newton
+    system. scale: factors of the equations of its internal forces there, kg or kg m. n_multipliers: the largest number
+    of multipliers of eq 38. n_numbers: of its history variables. reacts, is_damped: whether a force depends on these
+    multipliers, on velocities. has_inertia: whether it adds mass. drive: number of the signal that prescribes a motion,
+    or -1. follows_law: whether a law gives the internal forces, and not constraints. redundant_rows: constraints that
+    follow from others, without forces (redundant_constraints.py). unknown, multiplier: the first of each, of unknowns
+    beyond the dofs, as `number` counts them. entries: fields that the engine alone reads.
 
-    keeps_forces: a search for rest goes on from its own forces, which else begin at zero in each state; reports_cost:
-    the report of a run says how long it takes.
+    keeps_forces: whether a search for rest continues from the internal forces of the last state, which else start at
+    zero; reports_cost: whether the report of a run has its computing time.
     """
 
     keeps_forces: ClassVar[bool] = True
@@ -43,6 +48,7 @@ class CouplingModel:
     redundant_rows: set[int] = field(default_factory=set)
     unknown: int = -1
     multiplier: int = -1
+    entries: dict[str, Any] = field(default_factory=dict)
 
     @property
     def kernel_families(self) -> list[str]:

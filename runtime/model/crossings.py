@@ -9,17 +9,15 @@ from typing import ClassVar
 
 import numpy as np
 
+from ..engine import CROSSING_STICK
 from ..parts.attachment import Attachment
 from ..parts.crossing import Crossing
-from ..parts.crossing_start import Start, radii, sign_of, start_of
+from ..parts.crossing_start import radii, sign_of, start_of
 from .attachments import AttachmentModel, ModelBuilder
 from .coupling import CouplingKind, CouplingModel
 
-LEAST_PENETRATION = 1e-30
-"""m: what the size of a penetration is not below under a root."""
-
-GRIP_NUMBERS = 30
-"""That a state keeps of friction that sticks: FU_CROSSING_STICK of engine/couplings/crossing/crossing.h."""
+MIN_PENETRATION = 1e-30
+"""Lower bound of the size of a penetration under a root, m."""
 KERNELS = {2: "planar_crossing", 3: "crossing"}
 
 
@@ -27,24 +25,14 @@ KERNELS = {2: "planar_crossing", 3: "crossing"}
 class CrossingModel(CouplingModel):
     """Contact of a cable with another one, or with a bar at the one attachment.
 
-    cables: their numbers, -1 for a bar; axis: of the bar, in the axes of what carries it; low, high: where the lines
-    end, m; law: as the kernels take it; start, way, slopes: arc-lengths of the closest points as drawn, the way from
-    the second to the first, m, and slopes of the lines that have one, flat; friction, tangential: of friction that
-    sticks, its coefficient and its spring in N/m; stiffness in N/m: makes forces of lengths.
+    cables: their numbers, -1 for a bar; law: argument of the kernels, first the distance of the axes at contact, m;
+    stiffness in N/m: scale from lengths to forces.
     """
 
     kernel: str
     cables: tuple[int, int]
     attachments: list[AttachmentModel]
-    axis: tuple[float, ...]
-    low: tuple[float, float]
-    high: tuple[float, float]
     law: tuple[float, ...]
-    start: tuple[float, ...]
-    way: tuple[float, ...]
-    slopes: tuple[float, ...]
-    friction: float
-    tangential: float
     stiffness: float
 
     keeps_forces: ClassVar[bool] = False
@@ -59,43 +47,33 @@ def _crossing(part: Crossing, builder: ModelBuilder) -> CrossingModel:
     scene, dim = builder.scene, builder.scene.dim
     start = start_of(scene, part)
     numbers = (builder.cable_index[part.a], builder.cable_index.get(part.b or "", -1))
-    of_lines = [builder.cables[k] for k in numbers if k >= 0]
-    for k in numbers:
-        if k >= 0:
-            builder.hull(k)
-    ends: list[AttachmentModel] = []
-    low, high = 0.0, 0.0
-    axis = (0.0, 0.0, 0.0)
-    if numbers[1] < 0:
+    lines = [builder.cables[k] for k in numbers if k >= 0]
+    for k in numbers[: len(lines)]:
+        builder.hull(k)
+    if len(lines) == 1:  # a bar
         ends = [builder.attachment(Attachment(on=part.b, at=part.at))]
-        low, high = (-math.inf, math.inf) if part.length is None else (-part.length, part.length)
-        if part.axis is not None:
-            axis = tuple(np.array(part.axis) / np.linalg.norm(part.axis))
+        half = math.inf if part.length is None else part.length
+        low, high = -half, half
     else:
-        high = of_lines[1].mesh.total
-    masses = [scene.cables[line.name].material.density * scene.cables[line.name].section.area * line.mesh.mean
-              for line in of_lines]
-    radius = radii(scene, part)
-    linear = part.exponent == 1
-    law = (radius, sign_of(part, start.normal, start.d), part.stiffness * linear, part.stiffness * (not linear),
-           part.damping, LEAST_PENETRATION, *((0.0, 1.0) if part.friction is None or part.friction.sticks
-                                              else (part.friction.coefficient, part.friction.velocity)))
-    sticking = part.friction.coefficient if part.friction and part.has_friction_spring else 0.0
-    return CrossingModel(
-        kernel=KERNELS[dim], cables=numbers, attachments=ends, axis=axis, low=(0.0, low),
-        high=(of_lines[0].mesh.total, high), law=law, start=tuple(start.s),
-        way=tuple(start.d), slopes=_slopes(start, dim), friction=sticking, n_numbers=GRIP_NUMBERS if sticking else 0,
-        tangential=part.stiffness if part.tangential_stiffness is None else part.tangential_stiffness,
-        stiffness=part.stiffness * (1.0 if linear else math.sqrt(max(radius, 1e-3))), type="crossing",
-        name=part.name or "", scale=[max(*masses, *(end.mass for end in ends), 0.0)] * (2 * dim - 1),
-        is_damped=part.damping > 0 or (part.friction is not None and not part.friction.sticks), follows_law=True)
-
-
-def _slopes(start: Start, dim: int) -> tuple[float, ...]:
-    """Return the slopes of the lines that have one, in the layout of the engine."""
+        ends, low, high = [], 0.0, lines[1].mesh.total
+    axis = np.zeros(3) if part.axis is None else np.array(part.axis) / np.linalg.norm(part.axis)
     slopes = np.zeros(6)
     slopes[: dim * (dim - 1)] = start.slopes[: dim - 1, :dim].ravel()
-    return tuple(slopes)
+    radius, linear, friction = radii(scene, part), part.exponent == 1, part.friction
+    sliding = None if friction is None or friction.sticks else friction
+    law = (radius, sign_of(part, start.normal, start.d), part.stiffness * linear, part.stiffness * (not linear),
+           part.damping, MIN_PENETRATION, *((0.0, 1.0) if sliding is None else (sliding.coefficient, sliding.velocity)))
+    masses = [scene.cables[line.name].material.density * scene.cables[line.name].section.area * line.mesh.mean
+              for line in lines]
+    sticking = friction.coefficient if friction and part.has_friction_spring else 0.0
+    return CrossingModel(
+        type="crossing", name=part.name or "", kernel=KERNELS[dim], cables=numbers, attachments=ends, law=law,
+        stiffness=part.stiffness * (1.0 if linear else math.sqrt(max(radius, 1e-3))),
+        scale=[max(*masses, *(end.mass for end in ends), 0.0)] * (2 * dim - 1), follows_law=True,
+        is_damped=part.damping > 0 or sliding is not None, n_numbers=CROSSING_STICK if sticking else 0,
+        entries={"axis": axis, "low": (0.0, low), "high": (lines[0].mesh.total, high), "start": start.s, "way": start.d,
+                 "slopes": slopes, "friction": sticking,
+                 "tangential": part.stiffness if part.tangential_stiffness is None else part.tangential_stiffness})
 
 
 KINDS = (CouplingKind("crossing", Crossing.group,

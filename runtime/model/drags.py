@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from ..parts.attachment import Attachment
+from ..parts.cable import Cable
 from ..parts.drag import Drag
 from ..parts.flow_profile import PowerProfile, TableProfile
 from ..parts.fluid import NO_SURFACE, Fluid
@@ -16,30 +17,27 @@ from ..parts.polar import Polar
 from ..parts.scene_data import SceneData
 from ..parts.velocity_table import AXES
 from .attachments import AttachmentModel, ModelBuilder
-from .coupling import CouplingKind, CouplingModel
+from .coupling import CouplingKind, CouplingModel, no_numbers
 from .loads import GAUSS
 from .quadrature import along_elements
 
-LEAST_SPEED = 1e-30
-"""m/s: what sizes of velocities are not below in the kernels, lest derivatives at rest be 0/0."""
+MIN_SPEED = 1e-30
+"""Lower bound of speeds in the kernels, m/s: derivatives at rest would be 0/0 without it."""
+NONE = np.zeros(0)
 
 KERNELS = {2: "planar_drag", 3: "drag"}
 
 
 @dataclass
 class DragModel(CouplingModel):
-    """The force of a fluid on a cable, or on a point of a body; cable -1: it is on a body, at the one attachment.
+    """The force of a fluid on a cable, or on a point of a body; cable -1: on a body, at the one attachment.
 
-    velocity (dim), in m/s, times the signal of that number (-1: one) and the profile, as couplings/fluid/drag.h has it,
-    at the height base + up . r. coefficients: as the kernel takes them. buoyancy (dim): N/m of a cable, N of a body.
-    lift, foil, section: likewise, is_foil: a body with a span, or a beam with a chord; n_angles, angles, polar_drag,
-    polar_lift, polar_moment: its polar, see `Polar.pieces`.
-    wet: what a surface cuts, all: nothing; extent: half the height of that, m; surface, bottom: heights, m.
-    displaced: mass of the fluid displaced, added: that it adds, as couplings/fluid/drag.h has them, where has_inertia.
-    weights (1 or elements, n_points), in m, N, N_x and N_chord, of a beam's chord (1 or elements, n_points, vectors):
-    of the quadrature on the elements of the cable, once where they are equal; stride: points from one element's to the
-    next's. degree, n_splines (4), knots, table: of splines in time and space, degree 0 without; origin (3,), axes (9):
-    those of the model, of the ground. fluid, polar: the scene's, of which the engine takes nothing.
+    velocity (dim): m/s, multiplied by the signal of that number (-1: one) and the profile of the fluid at the height
+    base + up . r. degree: of the splines of its table, 0 without. origin (3,), axes (9,): those of the model, along
+    the ground's. coefficients, lift, section: arguments of the kernels. buoyancy (dim): N/m of a cable, N of a body.
+    wet: the section that a surface cuts, "all" for none. surface, bottom: heights, m. weights (1 or elements,
+    n_points), in m, and N, N_x and N_chord, of a beam's chord (1 or elements, n_points, vectors): quadrature on the
+    elements of the cable, once where they are equal; stride: points from one element to the next.
     """
 
     kernel: str
@@ -47,49 +45,26 @@ class DragModel(CouplingModel):
     up: np.ndarray
     base: float
     signal: int
-    profile: str
-    reference: float
-    exponent: float
-    least: float
-    n_pieces: int
-    breaks: np.ndarray
-    coefficients_of_profile: np.ndarray
     degree: int
-    n_splines: tuple[int, ...]
-    knots: np.ndarray
-    table: np.ndarray
     origin: np.ndarray
     axes: np.ndarray
-    cable: int
-    coefficients: tuple[float, ...]
-    lift: tuple[float, ...]
-    is_foil: bool
-    foil: tuple[float, float]
-    span: tuple[float, ...]
-    chord: tuple[float, ...]
-    foil_lift: float
-    section: tuple[float, ...]
-    n_angles: int
-    angles: np.ndarray
-    polar_drag: np.ndarray
-    polar_lift: np.ndarray
-    polar_moment: np.ndarray
     buoyancy: np.ndarray
     wet: str
-    extent: float
     surface: float
     bottom: float
-    displaced: float
-    added: tuple[float, ...]
-    n_points: int
-    stride: int
-    weights: np.ndarray
-    N: np.ndarray
-    N_x: np.ndarray
-    N_chord: np.ndarray
-    attachments: list[AttachmentModel]
     fluid: Fluid
     polar: Polar | None
+    cable: int = -1
+    coefficients: tuple[float, ...] = ()
+    lift: tuple[float, ...] = (0.0, MIN_SPEED)
+    section: tuple[float, ...] = (0.0, 0.0, MIN_SPEED)
+    n_points: int = 0
+    stride: int = 0
+    weights: np.ndarray = field(default_factory=no_numbers)
+    N: np.ndarray = field(default_factory=no_numbers)
+    N_x: np.ndarray = field(default_factory=no_numbers)
+    N_chord: np.ndarray = field(default_factory=no_numbers)
+    attachments: Sequence[AttachmentModel] = ()
 
 
 def drag_models(builder: ModelBuilder) -> Iterator[DragModel]:
@@ -101,59 +76,56 @@ def drag_models(builder: ModelBuilder) -> Iterator[DragModel]:
 def _in_fluid(part: Drag, fluid: Fluid, builder: ModelBuilder) -> DragModel:
     scene, dim = builder.scene, builder.scene.dim
     signal, factor = builder.signals.scale(fluid.scale)
-    gravity = np.array(scene.gravity)[:dim]
     up, base = _height(scene)
-    displaced, none = part.displaced(scene.cables.get(part.on)), np.zeros(0)
+    cable, plane = scene.cables.get(part.on), None if scene.plane_axes is None else scene.plane_axes.plane
+    origin, axes = (np.zeros(3), np.eye(3)) if plane is None else (plane.origin, plane.axes)
+    displaced, bottom = fluid.density * part.displaced(cable), fluid.bottom(scene.fluids.values())
+    cut = "section" if cable is not None else "sphere" if part.height is None else "column"
+    degree, table = _table(fluid, dim)
     model = DragModel(
+        type="drag", name=part.name or "", is_damped=True, has_inertia=part.added_mass is not None,
         kernel=KERNELS[dim], velocity=factor * np.array(fluid.velocity)[:dim], up=up[:dim], base=base, signal=signal,
-        **_profile(fluid), **_foil(part, fluid, dim, part.on in scene.bodies), **_table(fluid, scene),
-        **_wet(part, fluid, scene), cable=-1, coefficients=(),
-        buoyancy=-fluid.density * displaced * gravity, displaced=fluid.density * displaced, added=(),
-        has_inertia=part.added_mass is not None, n_points=0, stride=0, weights=none, N=none, N_x=none,
-        N_chord=none, attachments=[], fluid=fluid, polar=part.polar, type="drag", name=part.name or "", is_damped=True)
+        degree=degree, origin=origin, axes=axes.ravel(), buoyancy=-displaced * np.array(scene.gravity)[:dim],
+        wet=cut if fluid.surface is not None or bottom > -NO_SURFACE else "all", surface=fluid.top, bottom=bottom,
+        fluid=fluid, polar=part.polar,
+        entries=table | _profile(fluid) | _foil(part, fluid, dim) | {
+            "extent": part.extent(cable), "displaced": displaced, "added": (),
+            "is_foil": part.polar is not None or (cable is None and part.lift != 0)})
     if model.has_inertia:
-        added = part.added_of_cable() if part.on in builder.cable_index else part.added_of_body(dim)
-        model.added = tuple((model.displaced * added).ravel().tolist())
-    pressure = fluid.density / 2
-    if part.on in builder.cable_index:
-        model.cable = builder.cable_index[part.on]
-        cable = builder.cables[model.cable]
-        has_width = part.normal or part.tangential or part.lift or part.polar
-        width = part.width(scene.cables[part.on]) if has_width else 0.0
-        model.lift = (pressure * width * part.lift, LEAST_SPEED)
-        model.coefficients = (pressure * width * part.normal, pressure * np.pi * width * part.tangential, LEAST_SPEED)
-        model.n_points = len(GAUSS[0])
-        lengths = cable.mesh.lengths
-        model.N, model.N_x, model.weights = along_elements(cable.kernel("on_axis"), lengths, GAUSS)
-        if part.polar is not None:
-            model.is_foil, model.section = True, (pressure * width, width, LEAST_SPEED)
-            slopes = [[cable.kernel("slopes")(length, length * (1 + x) / 2) for x in GAUSS[0]] for length in lengths]
-            model.N_chord = np.einsum("c,egck->egk", part.foil_axes[1], np.array(slopes)[..., 0, :])
-        model.stride = 0 if cable.mesh.is_even else model.n_points
-    else:
-        of_drag = part.coefficient if part.polar is None else 0.0
-        model.coefficients = (pressure * part.area * of_drag, LEAST_SPEED)
+        added = part.added_of_body(dim) if cable is None else part.added_of_cable()
+        model.entries["added"] = (displaced * added).ravel()
+    if cable is None:
+        coefficient = part.coefficient if part.polar is None else 0.0
+        model.coefficients = (fluid.density / 2 * part.area * coefficient, MIN_SPEED)
         model.attachments = [builder.attachment(Attachment(on=part.on, at=part.at), np.eye(3))]
+    else:
+        _along_cable(model, part, cable, builder)
     return model
 
 
-def _foil(part: Drag, fluid: Fluid, dim: int, on_body: bool) -> dict[str, Any]:
-    """Return what a model has of lift."""
-    breaks, drag, lift, moment = (np.zeros(0),) * 4 if part.polar is None else part.polar.pieces()
+def _along_cable(model: DragModel, part: Drag, cable: Cable, builder: ModelBuilder) -> None:
+    """Add the coefficients per length of a cable, and the quadrature on it."""
+    model.cable = builder.cable_index[cable.name]
+    on, pressure = builder.cables[model.cable], model.fluid.density / 2
+    lengths, has_width = on.mesh.lengths, part.normal or part.tangential or part.lift or part.polar
+    width = part.width(cable) if has_width else 0.0
+    model.lift = (pressure * width * part.lift, MIN_SPEED)
+    model.coefficients = (pressure * width * part.normal, pressure * np.pi * width * part.tangential, MIN_SPEED)
+    model.n_points, model.stride = len(GAUSS[0]), 0 if on.mesh.is_even else len(GAUSS[0])
+    model.N, model.N_x, model.weights = along_elements(on.kernel("on_axis"), lengths, GAUSS)
+    if part.polar is not None:
+        model.section = (pressure * width, width, MIN_SPEED)
+        slopes = [[on.kernel("slopes")(length, length * (1 + x) / 2) for x in GAUSS[0]] for length in lengths]
+        model.N_chord = np.einsum("c,egck->egk", part.foil_axes[1], np.array(slopes)[..., 0, :])
+
+
+def _foil(part: Drag, fluid: Fluid, dim: int) -> dict[str, Any]:
+    """Return the fields of lift and of the polar, whose pieces are those of `Polar.pieces`."""
+    angles, drag, lift, moment = (NONE,) * 4 if part.polar is None else part.polar.pieces()
     span, chord = part.foil_axes
-    is_foil = on_body and (part.lift != 0 or part.polar is not None)
-    return {"lift": (0.0, LEAST_SPEED), "is_foil": is_foil, "foil": (fluid.density / 2 * part.area, LEAST_SPEED),
-            "span": tuple(span) if dim == 3 else (float(np.sign(span[2])),), "chord": tuple(chord[:dim]),
-            "foil_lift": part.lift, "section": (0.0, 0.0, LEAST_SPEED), "n_angles": len(drag), "angles": breaks,
-            "polar_drag": drag, "polar_lift": lift, "polar_moment": moment}
-
-
-def _wet(part: Drag, fluid: Fluid, scene: SceneData) -> dict[str, Any]:
-    """Return what a model has of the surfaces of a fluid, and of what they cut."""
-    cable, bottom = scene.cables.get(part.on), fluid.bottom(scene.fluids.values())
-    kind = "section" if cable is not None else "sphere" if part.height is None else "column"
-    is_cut = fluid.surface is not None or bottom > -NO_SURFACE
-    return {"wet": kind if is_cut else "all", "extent": part.extent(cable), "surface": fluid.top, "bottom": bottom}
+    return {"foil": (fluid.density / 2 * part.area, MIN_SPEED), "foil_lift": part.lift,
+            "span": span if dim == 3 else (np.sign(span[2]),), "chord": chord[:dim],
+            "n_angles": len(drag), "angles": angles, "polar_drag": drag, "polar_lift": lift, "polar_moment": moment}
 
 
 def _height(scene: SceneData) -> tuple[np.ndarray, float]:
@@ -165,27 +137,21 @@ def _height(scene: SceneData) -> tuple[np.ndarray, float]:
 
 
 def _profile(fluid: Fluid) -> dict[str, Any]:
-    """Return what a model has of the profile of a fluid."""
-    breaks, coefficients = np.zeros(0), np.zeros((0, 7))
+    """Return the fields of the profile of a fluid."""
+    breaks, coefficients = fluid.profile.pieces() if isinstance(fluid.profile, TableProfile) else (NONE, NONE)
     power = fluid.profile if isinstance(fluid.profile, PowerProfile) else PowerProfile(exponent=0, reference_height=1)
-    kind = "uniform" if fluid.profile is None else fluid.profile.form
-    if isinstance(fluid.profile, TableProfile):
-        breaks, coefficients = fluid.profile.pieces()
-    return {"profile": kind, "reference": power.reference_height, "exponent": power.exponent,
-            "least": power.least_height, "n_pieces": len(coefficients), "breaks": breaks,
+    return {"profile": "uniform" if fluid.profile is None else fluid.profile.form, "reference": power.reference_height,
+            "exponent": power.exponent, "least": power.least_height, "n_pieces": len(coefficients), "breaks": breaks,
             "coefficients_of_profile": coefficients}
 
 
-def _table(fluid: Fluid, scene: SceneData) -> dict[str, Any]:
-    """Return what a model has of the table of a fluid, and of the axes that it is on."""
-    plane = None if scene.plane_axes is None else scene.plane_axes.plane
-    origin, axes = (np.zeros(3), np.eye(3)) if plane is None else (plane.origin, plane.axes)
-    common = {"origin": origin, "axes": axes.ravel()}
+def _table(fluid: Fluid, dim: int) -> tuple[int, dict[str, Any]]:
+    """Return the degree of the splines of a fluid's table, 0 without one, and the fields of the table."""
     if fluid.table is None:
-        return common | {"degree": 0, "n_splines": (1,) * len(AXES), "knots": np.zeros(0), "table": np.zeros(0)}
-    degree, knots, coefficients = fluid.table.splines(scene.dim)
-    return common | {"degree": degree, "n_splines": coefficients.shape[:-1],
-                     "knots": np.concatenate(list(knots.values())), "table": coefficients.ravel()}
+        return 0, {"n_splines": (1,) * len(AXES), "knots": NONE, "table": NONE}
+    degree, knots, coefficients = fluid.table.splines(dim)
+    return degree, {"n_splines": coefficients.shape[:-1], "knots": np.concatenate(list(knots.values())),
+                    "table": coefficients}
 
 
 KINDS = (CouplingKind("drag", Drag.group, drag_models, has_state=False),)

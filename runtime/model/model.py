@@ -135,12 +135,10 @@ class BodyModel:
 
 @dataclass
 class SlideModel(CouplingModel):
-    """One slide: kernels, its cable and its rider, what drives it, and where it starts; its first unknown is s.
+    """One slide on a cable; its first unknown is s.
 
-    rider_is_rigid: the kernels take the rider's own configuration; resistance: kernels of
-    friction and buffers, or none; sticks, friction, static_friction, viscous (N s/m), velocity (m/s): of friction, as
-    `parts.friction` has them. What waits at the start and at the end of the cable: stop_kinds, as `parts.end_stops` has
-    them, restitutions of hard stops, lengths (m), stiffnesses (N/m) and dampings (N s/m) of buffers.
+    rider_is_rigid: the kernels take the configuration of the rider; resistance: kernels of friction and buffers, or
+    none; s (m), element, director: at the start.
     """
 
     reports_cost: ClassVar[bool] = True
@@ -148,21 +146,10 @@ class SlideModel(CouplingModel):
     cable: int
     rider: AttachmentModel
     rider_is_rigid: bool
-    carries_director: bool
     s: float
     element: int
     director: np.ndarray
     resistance: str
-    sticks: bool
-    friction: float
-    static_friction: float
-    viscous: float
-    velocity: float
-    stop_kinds: list[str]
-    restitutions: list[float]
-    buffer_lengths: list[float]
-    buffer_stiffnesses: list[float]
-    buffer_dampings: list[float]
 
     @property
     def kernel_families(self) -> list[str]:

@@ -20,7 +20,7 @@ from .model import SlideModel
 RESISTANCES = {2: "planar_resistance", 3: "resistance"}
 """Kernels of friction and buffers, by dimension of the scene."""
 RIDERS = {2: "planar_point", 3: "point"}
-"""Kernels of a slide whose rider is a point of anything else than a rigid body."""
+"""Kernels of a slide whose rider is no point of a rigid body."""
 
 
 def _slide(slide: Slide, builder: ModelBuilder) -> SlideModel:
@@ -41,30 +41,18 @@ def _slide(slide: Slide, builder: ModelBuilder) -> SlideModel:
     mass = rider.mass or builder.attachment(Attachment(on=slide.along, s=slide.arc_length)).mass  # the ground has none
     resists = friction is not None or any(isinstance(end, Buffer) for end in ends)
     return SlideModel(
-        f"slide_{along.element}_{BODIES[dim][0] if rider_is_rigid else RIDERS[dim]}",
-        builder.cable_index[slide.along],
-        rider,
-        rider_is_rigid,
-        dim == 3 and not along.kind_of_element.director,
-        slide.arc_length,
-        min(max(element, 0), along.elements - 1),
-        axes[1],
-        RESISTANCES[dim] * resists,
-        **_friction(friction),
-        **_stops(ends),
-        type="slide",
-        name=slide.name,
-        n_coordinates=1,
-        scale=[mass] * dim,
-        n_multipliers=dim - 1 + may_be_locked,
-        reacts=resists,
-        is_damped=resists,
+        type="slide", name=slide.name,
+        kernel=f"slide_{along.element}_{BODIES[dim][0] if rider_is_rigid else RIDERS[dim]}",
+        cable=builder.cable_index[slide.along], rider=rider, rider_is_rigid=rider_is_rigid, s=slide.arc_length,
+        element=min(max(element, 0), along.elements - 1), director=axes[1], resistance=RESISTANCES[dim] * resists,
+        n_coordinates=1, scale=[mass] * dim, n_multipliers=dim - 1 + may_be_locked, reacts=resists, is_damped=resists,
         drive=builder.signals.add(slide.prescribed),
-    )
+        entries={"carries_director": dim == 3 and not along.kind_of_element.director}
+        | _friction(friction) | _stops(ends))
 
 
 def _friction(friction: Friction | None) -> dict[str, Any]:
-    """Return the numbers of friction; the speed at which there is none is not zero, as the kernels divide by it."""
+    """Return the fields of friction; without it the velocity is not zero, as the kernels divide by it."""
     if friction is None:
         return {"sticks": False, "friction": 0.0, "static_friction": 0.0, "viscous": 0.0, "velocity": 1.0}
     return {"sticks": friction.sticks, "friction": friction.sliding, "static_friction": friction.static_friction,
@@ -72,7 +60,7 @@ def _friction(friction: Friction | None) -> dict[str, Any]:
 
 
 def _stops(ends: Sequence[str | Stop]) -> dict[str, Any]:
-    """Return what waits at the ends of the cable, a list for both of each number."""
+    """Return the fields of the stops at the start and the end of the cable."""
     return {"stop_kinds": [end if isinstance(end, str) else end.stop for end in ends],
             "restitutions": [end.restitution if isinstance(end, HardStop) else 0.0 for end in ends],
             **{f"buffer_{plural}": [getattr(end, each) if isinstance(end, Buffer) else 0.0 for end in ends]

@@ -40,7 +40,11 @@ cdef extern from "couplings/common/proximity.h":
     pass
 cdef extern from "couplings/contact/contact.h":
     pass
+cdef extern from "couplings/crossing/crossing.h":
+    pass
 cdef extern from "couplings/fluid/drag.h":
+    pass
+cdef extern from "couplings/hard_contact/hard_contact.h":
     pass
 cdef extern from "couplings/joint/joint.h":
     pass
@@ -74,7 +78,8 @@ cdef extern from "run/run.h":
     pass
 
 cdef extern from * nogil:
-    double FU_SLACK_STRAIN
+    double FU_SLACK_STRAIN, FU_NO_TIME
+    int FU_CROSSING_STICK, FU_FRICTION_MARK, FU_MOST_HARD_CONTACTS
     int FU_MAX_COORDINATES, FU_MAX_RATES, FU_ATTACHMENT_COORDINATES
     int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT, FU_UNSTABLE
     int FU_NO_FAILURE, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE, FU_SELF_LOCKING, FU_NOT_KNOWN

@@ -201,9 +201,10 @@ cdef class Translation(Arrays):
         return [i for i in range(self.model.n_couplings) if self._kind(self.couplings[i]) == kind]
 
     cdef int _fields(self, char *structure, const fu_field *field, given, list tables) except -1:
-        """Fill in the fields of a list, which ends with one without a name, from the attributes of these names."""
+        """Fill in the fields of a list, which ends with one without a name, from the entries or attributes of these names."""
         while field.name != NULL:
-            value = getattr(given, field.name.decode())
+            name = field.name.decode()
+            value = given.entries[name] if name in given.entries else getattr(given, name)
             if field.stride:
                 if len(value) > field.most:
                     raise ValueError(f"{given.type}: {len(value)} {field.name.decode()}, the engine has {field.most}")
