@@ -13,7 +13,7 @@ PATIENCE = 120_000  # ms: machines may be busy
 
 @contextmanager
 def browser() -> Iterator:
-    """A browser that draws by software, the same everywhere. Raises RuntimeError without one."""
+    """Yield a browser with software rendering. Raises RuntimeError without one."""
     from playwright.sync_api import sync_playwright
 
     path = next(filter(None, map(shutil.which, NAMES)), None)
@@ -28,10 +28,10 @@ def browser() -> Iterator:
 
 
 class Opened:
-    """A page in a browser, with what it said and asked for since."""
+    """A page in a browser, with its messages and requests."""
 
     def __init__(self, browser, path: Path, **settings) -> None:
-        """settings: of a browser context, such as viewport and color_scheme. There is no network; modes stand still."""
+        """settings: of a browser context, such as viewport and color_scheme. There is no network; modes do not move."""
         self.context = browser.new_context(**({"offline": True, "reduced_motion": "reduce"} | settings))
         self.page = self.context.new_page()
         self.page.set_default_timeout(PATIENCE)
@@ -51,7 +51,7 @@ class Opened:
         return self.page.evaluate(f"(a) => {{ const f = window.funicular; return {script}; }}", argument)
 
     def wait(self, condition: str) -> None:
-        """Wait until a condition of ``f`` holds; the page's own rules forbid playwright's way."""
+        """Wait until a condition of ``f`` holds; the content policy of the page forbids playwright's way."""
         self.page.evaluate(f"""() => new Promise((done) => {{
             const look = () => {{
                 const f = window.funicular;

@@ -1,8 +1,8 @@
-"""The bundled scene of a catenary, as its builder makes it.
+"""The bundled scene of a catenary, made by its builder.
 
     python tests/bundled_catenary.py
 
-writes runtime/scenes/catenary.toml anew; tests/statics/test_bundled_catenary.py compares it.
+writes runtime/scenes/catenary.toml; tests/statics/test_bundled_catenary.py compares it.
 """
 
 from pathlib import Path

@@ -5,9 +5,9 @@ from scipy.optimize import fsolve
 
 
 def end_forces(span: float, rise: float, length: float, weight: float, axial: float) -> tuple[float, float]:
-    """Horizontal force and the upward one that the support at the start gives, in N.
+    """Return the horizontal force, and the upward force of the support at the start, N.
 
-    span, rise: of the end above the start, m; length: unstretched, m; weight: N/m; axial: EA in N.
+    span, rise: of the end relative to the start, m. length: unstretched, m. weight: N/m. axial: EA in N.
     """
     def gaps(unknown):
         H, V = np.exp(unknown[0]), unknown[1]

@@ -13,7 +13,7 @@ __all__ = ["pytest_addoption", "validated"]
 
 
 def pytest_terminal_summary(terminalreporter, config):
-    """Say what the default run leaves out."""
+    """Print which tests the default run leaves out."""
     if "not browser" in config.option.markexpr:
         terminalreporter.write_line("Browser tests were left out. To run them: pip install -e '.[test,browser]', "
                                     "install Chromium and npm, and python -m pytest -m browser")
@@ -21,7 +21,7 @@ def pytest_terminal_summary(terminalreporter, config):
 
 @pytest.fixture
 def engine(monkeypatch, tmp_path):
-    """A stand-in for solve.motion.run, whose recordings are hand-made; runs take place in an empty directory."""
+    """Replace solve.motion.run by a mock with recordings made by hand, in an empty directory."""
     module = ModuleType("funicular.solve.motion.run")
     module.outcome = {}
     module.calls = []
@@ -40,7 +40,7 @@ def engine(monkeypatch, tmp_path):
 
 @pytest.fixture(scope="module")
 def uninterrupted(tmp_path_factory):
-    """The content of the file of a run that nothing stops."""
+    """Return the content of the file of an uninterrupted run."""
     path = tmp_path_factory.mktemp("whole") / "x.nc"
     short().run(**SETTINGS, save=path)
     return content(path)
@@ -48,7 +48,7 @@ def uninterrupted(tmp_path_factory):
 
 @pytest.fixture
 def stopped(tmp_path, monkeypatch):
-    """The file of a run that was killed half-way."""
+    """Return the file of a run that was killed half-way."""
     path = tmp_path / "x.nc"
     with monkeypatch.context() as patch:
         patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)

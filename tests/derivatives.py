@@ -1,4 +1,4 @@
-"""Derivatives of the engine's residuals by central differences, to compare its matrices with."""
+"""Derivatives of the engine's residuals by central differences, the references of its matrices."""
 
 from collections.abc import Callable
 
@@ -10,18 +10,18 @@ from funicular.model.build import build
 
 
 def differenced(residual: Callable[[np.ndarray], np.ndarray], at: np.ndarray, step: float) -> np.ndarray:
-    """Return the derivative of a residual, (residuals, unknowns), at these unknowns, by steps of this size."""
+    """Return the derivative of a residual, (residuals, unknowns), at given unknowns, by steps of a given size."""
     columns = [(residual(at + d) - residual(at - d)) / (2 * step) for d in step * np.eye(len(at))]
     return np.array(columns).T
 
 
 def of_a_step(engine: Engine, h: float, at: np.ndarray, step: float) -> np.ndarray:
-    """Return the derivative of the residual of a step of h seconds, by its unknowns."""
+    """Return the derivative of the residual of a step of h seconds by its unknowns."""
     return differenced(lambda unknowns: engine.linearise(h, unknowns)[0], at, step)
 
 
 def at_rest(engine: Engine, time: float, kept: dict, step: float) -> np.ndarray:
-    """Return the derivative of the static residual at a time in s and a state that was kept, by moves from it."""
+    """Return the derivative of the static residual at a time in s and a stored state, by displacements from it."""
     def residual(move: np.ndarray) -> np.ndarray:
         engine.set_state(time, **kept)
         engine.move(move)
@@ -31,9 +31,9 @@ def at_rest(engine: Engine, time: float, kept: dict, step: float) -> np.ndarray:
 
 
 def error_by_drags(scene: Scene, h: float = 0.02) -> float:
-    """Return the error of what the drags of a scene add to the matrix of a step, over the largest they add.
+    """Return the error of the drags' contribution to the matrix of a step, relative to its largest entry.
 
-    The difference of two matrices, with them and without, leaves out what else is in it.
+    The difference of two matrices, with and without drags, isolates the contribution.
     """
     found = []
     for each in (scene, scene.without(*scene.drags)):

@@ -1,11 +1,11 @@
-"""Scenes in which everything that a Newton matrix contains is at work: turning bodies, joints, friction, modes."""
+"""Scenes that contain all terms of a Newton matrix: rotating bodies, joints, friction, modes."""
 
 import numpy as np
 from funicular import Buffer, Friction, Harmonic, Material, Ramp, Rectangle, Scene
 
 
 def rider() -> Scene:
-    """A damped cable, a rider that turns fast, its riding point off its centre."""
+    """Return a damped cable with a fast rotating rider, whose riding point is off its centre."""
     scene = Scene()
     scene.cable("wire", start=(0, 0, 0), end=(1.5, 0, 0), elements=3, section=Rectangle(height=0.05, width=0.04),
                 material=Material(youngs_modulus=0.4e9, poisson_ratio=0.3, density=4200, damping_time=1e-4,
@@ -18,7 +18,7 @@ def rider() -> Scene:
 
 
 def loaded() -> Scene:
-    """Loads that turn, springs between points of cables, bodies and the ground, a body that turns fast."""
+    """Return follower loads, springs between points of cables, bodies and the ground, and a fast rotating body."""
     scene = rider()
     scene.force("wire", s=1.2, value=(3, -20, 5), follower=True,
                 scale=Harmonic(amplitude=1.0, frequency=3.0, offset=2.0))
@@ -34,7 +34,7 @@ def loaded() -> Scene:
 
 
 def planar() -> Scene:
-    """The same in the plane."""
+    """Return the planar form of `loaded`."""
     scene = Scene()
     scene.cable("wire", start=(0, 0, 0), end=(1.5, 0, 0), elements=3, element="beam12p",
                 section=Rectangle(height=0.05, width=0.04),
@@ -53,7 +53,7 @@ def planar() -> Scene:
 
 
 def frame() -> Scene:
-    """Two legs joined at an angle, a clamp whose tangent keeps one unknown, a cable tied on, nodes that move."""
+    """Return two legs joined at an angle, a clamp whose tangent keeps one unknown, a tied cable, and moving nodes."""
     scene = Scene()
     steel = Material(youngs_modulus=1e8, poisson_ratio=0.3, density=4200)
     square = Rectangle(height=0.05, width=0.05)
@@ -71,7 +71,7 @@ def frame() -> Scene:
 
 
 def star() -> Scene:
-    """Three damped cables that meet, two of them rigidly, in directions of their own; a rider, and a spring there."""
+    """Return three damped cables that meet in different directions, two of them rigidly, with a rider and a spring."""
     scene = Scene()
     steel = Material(youngs_modulus=1e8, poisson_ratio=0.3, density=4200, damping_time=1e-4)
     square = Rectangle(height=0.05, width=0.05)
@@ -88,7 +88,7 @@ def star() -> Scene:
 
 
 def modal() -> Scene:
-    """Two bodies that spin fast and vibrate, one damped, beside a rider."""
+    """Return two modal bodies that spin and vibrate, one damped, beside a rider."""
     scene = rider()
     rubber = Material(youngs_modulus=2e5, poisson_ratio=0.3, density=1100)
     scene.modal_body("link", start=(0, 1, 0), end=(0.3, 1.4, 0.2), section=Rectangle(height=0.1, width=0.08),
@@ -100,7 +100,7 @@ def modal() -> Scene:
 
 
 def modal_in_the_plane() -> Scene:
-    """A modal body beside planar parts."""
+    """Return a modal body beside planar parts."""
     scene = planar()
     scene.modal_body("arm", start=(1, 1, 0), end=(1.5, 1, 0), section=Rectangle(height=0.1, width=0.08), elements=4,
                      element="beam12p", material=Material(youngs_modulus=2e5, poisson_ratio=0.3, density=1100), modes=3,
@@ -109,7 +109,7 @@ def modal_in_the_plane() -> Scene:
 
 
 def jointed() -> Scene:
-    """Every kind of joint in a chain of bodies that turn, some driven; its ends on the ground and on a cable."""
+    """Return every kind of joint in a chain of rotating bodies, some driven, between the ground and a cable."""
     scene = Scene()
     scene.cable("wire", start=(0, 0, 0), end=(1.5, 0, 0), elements=3, section=Rectangle(height=0.05, width=0.04),
                 material=Material(youngs_modulus=0.4e9, poisson_ratio=0.3, density=4200))
@@ -130,7 +130,7 @@ def jointed() -> Scene:
 
 
 def jointed_plane() -> Scene:
-    """The same in the plane; the bodies hang from an end and from the middle of a cable."""
+    """Return the planar form; the bodies hang from the end and the middle of a cable."""
     scene = planar()
     scene.rigid_body("B", mass=1.0, inertia=(0.02, 0.03, 0.04), position=(1.5, -0.2, 0), angular_velocity=(0, 0, 5))
     scene.rigid_body("C", mass=1.0, inertia=(0.02, 0.03, 0.04), position=(0.9, -0.3, 0), angular_velocity=(0, 0, -5))
@@ -142,7 +142,9 @@ def jointed_plane() -> Scene:
 
 
 def tied() -> Scene:
-    """Riders tied to the tangent, its roll held, and to the section, one driven; cables that ride by end and middle."""
+    """Return riders tied to the tangent, with and without roll, and to the section, one driven; cables that ride by end
+    and middle.
+    """
     scene = Scene()
     made = {"section": Rectangle(height=0.05, width=0.05),
             "material": Material(youngs_modulus=0.4e9, poisson_ratio=0.3, density=4200)}
@@ -165,7 +167,7 @@ def tied() -> Scene:
 
 
 def resisted() -> Scene:
-    """Friction and buffers pressed, of a body off its centre and of a cable that rides, which do not stick."""
+    """Return sliding friction and compressed buffers, of a body off its centre and of a riding cable."""
     scene = loaded()
     friction = Friction(coefficient=0.4, rolling=0.1, viscous=3.0, velocity=20.0)
     scene.rigid_body("B", mass=1.0, inertia=(0.02, 0.03, 0.04), position=(0.9, -0.1, 0.05), velocity=(1, 0.2, 0.1),
@@ -181,7 +183,8 @@ def resisted() -> Scene:
 
 
 def modal_in_joints() -> Scene:
-    """Modal bodies in joints with the ground, a cable and each other, on a spring, loaded, as riders, one tied."""
+    """Return modal bodies in joints with the ground, a cable and each other, on a spring, under loads, and as riders.
+    """
     scene = Scene()
     made = {"section": Rectangle(height=0.1, width=0.08), "elements": 4,
             "material": Material(youngs_modulus=2e5, poisson_ratio=0.3, density=1100)}
@@ -206,7 +209,7 @@ def modal_in_joints() -> Scene:
 
 
 def modal_in_planar_joints() -> Scene:
-    """The same in the plane."""
+    """Return the planar form of `modal_in_joints`."""
     scene = planar()
     made = {"section": Rectangle(height=0.1, width=0.08), "elements": 4, "element": "beam12p",
             "material": Material(youngs_modulus=2e5, poisson_ratio=0.3, density=1100)}

@@ -1,4 +1,4 @@
-"""Where the equations of the paper are: the tags `(eq N)` in the sources, and the table of README made from them.
+"""Places of the equations of the paper: the tags `(eq N)` in the sources, and the table of README made from them.
 
     python tests/equations.py
 """

@@ -1,4 +1,4 @@
-"""What tests expect of runs and of messages, where more than one test file does."""
+"""Expectations on runs and messages that several test files share."""
 
 import re
 
@@ -10,7 +10,7 @@ INTEGRATORS = ("explicit", "radau", "genalpha")
 
 
 def refused(message: str, error=SceneError):
-    """Return the context that expects this error with the whole message, so that no part of it can get lost."""
+    """Return the context that expects this error with its whole message."""
     return pytest.raises(error, match="^" + re.escape(message) + "$")
 
 
@@ -29,17 +29,17 @@ def largest(difference) -> float:
 
 
 def energy_error(run: Run) -> float:
-    """Return the largest error of the energy balance, as a part of the energy exchanged."""
+    """Return the largest error of the energy balance, relative to the energy exchanged."""
     return largest(run.energy_balance().relative)
 
 
 def unaccounted(run: Run) -> float:
-    """Return the most energy that is not accounted for since the start, in J."""
+    """Return the largest unexplained energy since the start, J."""
     return largest(run.energy_balance().residual)
 
 
 def drift(run: Run) -> float:
-    """Return by how much the energy that is not accounted for changes, in J."""
+    """Return the range of the unexplained energy, J."""
     return float(np.ptp(run.energy_balance().residual))
 
 

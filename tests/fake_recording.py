@@ -1,4 +1,4 @@
-"""A hand-made stand-in for what the engine records of the bundled scene paper51, with the same shapes."""
+"""A mock of the engine's recording of the bundled scene paper51, with the same shapes."""
 
 from types import SimpleNamespace
 

@@ -1,7 +1,7 @@
-"""The contracts on imports in pyproject.toml, checked over all three folders of the package by import-linter.
+"""The contracts on imports in pyproject.toml, checked by import-linter over all three folders of the package.
 
-The folders runtime, derive and generated are one package only once they are installed: import-linter looks for packages
-below packages, so it gets a copy in which they are.
+The folders runtime, derive and generated form one package only when installed. import-linter looks for packages below
+packages, so that it gets an installed copy.
 
     python tests/import_contracts.py
 """
@@ -20,7 +20,7 @@ PACKAGES = {"runtime": "funicular", "derive": "funicular/derive", "generated": "
 
 
 def installed_tree(directory: Path) -> None:
-    """Copy the Python files of the package, and the stubs of their types, to where they stand once it is installed."""
+    """Copy the Python files and type stubs of the package to the places of an installed one."""
     for folder, package in PACKAGES.items():
         for file in (TOP / folder).rglob("*.py*"):
             if file.suffix not in (".py", ".pyi"):
@@ -33,19 +33,19 @@ def installed_tree(directory: Path) -> None:
 
 
 def complaint(directory: Path, *options: str) -> str:
-    """Run Python with these options in a directory; return what it prints if it fails, else an empty text."""
+    """Run Python with these options in a directory; return its output if it fails, else an empty text."""
     found = subprocess.run([sys.executable, *options], cwd=directory, capture_output=True, text=True, check=False)
     return "" if found.returncode == 0 else found.stdout + found.stderr
 
 
 def broken_contracts(directory: Path) -> str:
-    """Return what import-linter says of the package in a directory, empty where all contracts are kept."""
+    """Return the report of import-linter on the package in a directory, empty if all contracts hold."""
     return complaint(directory, "-c", "from importlinter.cli import lint_imports_command; lint_imports_command()",
                      "--config", str(TOP / "pyproject.toml"), "--no-cache")
 
 
 def check(errors_in: Callable[[Path], str], passed: str) -> None:
-    """Look for errors in a copy of the package; end the process with them, or print that all is well."""
+    """Search a copy of the package for errors; exit with them, or print that there are none."""
     with tempfile.TemporaryDirectory() as directory:
         installed_tree(Path(directory))
         if found := errors_in(Path(directory)):

@@ -1,4 +1,4 @@
-"""Runs that are killed while they write, and what is left of them: for tests of files, checkpoints and resuming."""
+"""Runs that are killed while they write, and their remains, for tests of files, checkpoints and resuming."""
 
 import hashlib
 import os
@@ -32,11 +32,11 @@ def content(path) -> dict[str, bytes]:
 
 
 class Killed(BaseException):
-    """Stands for kill -9: nothing that the run would still do comes after it."""
+    """Simulates kill -9: nothing of the run happens afterwards."""
 
 
 def failing(monkeypatch, writes: int, error: BaseException):
-    """Raise in place of all writes after so many, half-way through; a number in the header is written or is not."""
+    """Raise at every write after a number of them, half-way through; a number in the header is written or not."""
     left = [writes]
     pwrite, replace = os.pwrite, os.replace
 
@@ -62,16 +62,16 @@ def failing(monkeypatch, writes: int, error: BaseException):
 
 
 def resumed(path, **changes):
-    """Return the run that goes on from a file."""
+    """Return the run resumed from a file."""
     return short().run(**SETTINGS | changes, save=path, resume=True)
 
 
 def file_refused(path, message: str):
-    """Return the context that expects a file to be refused with a message that starts so (a pattern)."""
+    """Return the context that expects a file to be refused with a message that begins with a pattern."""
     return pytest.raises(ResultFileError, match=rf"^{re.escape(str(path))}: {message}")
 
 
 def signed(checkpoint: bytes) -> bytes:
-    """Return a checkpoint that was changed, with the digest that is then right."""
+    """Return a changed checkpoint with its correct digest."""
     content = checkpoint.partition(b"\n")[2]
     return hashlib.sha256(content).hexdigest().encode() + b"\n" + content

@@ -1,8 +1,9 @@
-"""Small scenes from one level of each of ten factors: a cable, its law, shape, section and support, what rides it, a
-joint, a load, a fluid, a contact, an event.
+"""Small scenes from one level of each of ten factors: a cable, its law, shape, section and support, its rider, a joint,
+a
+load, a fluid, a contact, an event.
 
-Levels come from the lists of the project. A kind in a list without an entry in a table here fails `test_meetings.py`:
-give it one, and it meets everything else.
+Levels come from the lists of the project. A kind in a list without an entry in a table here fails `test_meetings.py`;
+with an entry, it is combined with everything else.
 """
 
 from __future__ import annotations
@@ -53,7 +54,7 @@ STICK = fu.Friction(coefficient=0.3, model="stick")
 
 @dataclass
 class Site:
-    """A scene that grows: its cable, the middle of it, and a folder for files."""
+    """A growing scene: its cable, the middle of it, and a folder for files."""
 
     scene: fu.Scene
     folder: Path
@@ -61,11 +62,11 @@ class Site:
     planar: bool
 
     def at(self, part: float) -> float:
-        """Return the arc-length at a part of the cable, in m."""
+        """Return the arc-length at a share of the cable, m."""
         return part * self.cable.length
 
     def below(self, part: float, gap: float) -> np.ndarray:
-        """Return the point that far below the cable, in m."""
+        """Return the point at a distance below the cable, m."""
         return np.array(self.cable.point(self.at(part))) - (0, gap, 0)
 
     def body(self, name: str, position, **given) -> str:
@@ -74,7 +75,7 @@ class Site:
         return name
 
     def held(self, name: str, position, **given) -> str:
-        """Add a body on springs to the ground, which hold its turns, too, and return its name."""
+        """Add a body on springs to the ground that also hold its rotation, and return its name."""
         self.body(name, position, **given)
         for k, arm in enumerate([(0.1, 0, 0), (0, 0.1, 0), (0, 0, 0.1)][: 2 if self.planar else 3]):
             for sign in (1, -1):
@@ -84,7 +85,7 @@ class Site:
         return name
 
     def cross_cable(self, name: str, y: float) -> fu.Cable:
-        """Add a taut cable of the same element below the middle, across in space, along in the plane; return it."""
+        """Add a taut cable of the same element below the middle, across in space, parallel in the plane; return it."""
         x, _, _ = self.below(0.5, 0)
         ends = {"start": (x - 0.4, y, 0), "end": (x + 0.4, y, 0)} if self.planar else {
             "start": (x, y, -0.4), "end": (x, y, 0.4)}
@@ -121,7 +122,7 @@ ENDS = {"pin": lambda on: on.scene.pin("wire", s=on.cable.length), **{
     f"tie, {rotation}": partial(_tied, rotation=rotation) for rotation in ("rigid", "free")}}
 
 
-# ---- what rides the cable
+# ---- riders
 
 def _rides(on: Site, **given) -> None:
     on.scene.slide(on.held("A", on.below(0.4, 0)), along="wire", s=on.at(0.4), name="trolley", **given)
@@ -175,7 +176,7 @@ AXES = {"revolute": {"axis": (0, 0, 1)}, "universal": {"axis": (0, 0, 1), "secon
 
 
 def _joint(on: Site, kind: str, driven: bool) -> None:
-    """Hold a body below the cable to it, or, driven, to the ground."""
+    """Join a body below the cable to it, or, if driven, to the ground."""
     place, above = tuple(on.below(0.6, 0.2)), tuple(on.below(0.6, 0))
     on.held("J", place)
     signal = {DRIVEN[kind]: fu.Ramp(start=0, end=TIME, before=0.2, after=0.21) if kind == "distance" else
@@ -258,13 +259,13 @@ FLUIDS: dict[str, Callable[[Site], object]] = {
 # ---- contact and crossings
 
 def _bed(on: Site, shape: str, **given) -> None:
-    """Let the cable lie against a surface below its middle."""
+    """Place a surface in contact with the cable below its middle."""
     on.scene.surface("bed", SURFACES[shape](on.below(0.5, 0.0099)))
     on.scene.contact("wire", "bed", **{"stiffness": 2e3, "damping": 0.1, "name": "lying", "radius": 0.01} | given)
 
 
 def _foot(on: Site, shape: str, **given) -> None:
-    """Let a held body stand on a surface beside the cable."""
+    """Place a held body on a surface beside the cable."""
     top = np.array([3.0, -0.5, 0.0])
     on.scene.surface("floor", SURFACES[shape](top))
     on.held("T", (3.0, -0.4 if "restitution" in given else -0.4001, 0.0))
@@ -313,7 +314,7 @@ EVENTS: dict[str, Callable[[Site], object]] = {
 
 
 def laws() -> dict[str, list[str]]:
-    """Return the laws that each element can be given."""
+    """Return the laws of each element."""
     return {element: possible_laws(kind) for element, kind in built_in().items()}
 
 
@@ -330,7 +331,7 @@ ADDED = {"support": SUPPORTS, "end": ENDS, "rider": RIDERS, "joint": JOINED, "lo
 
 
 def build(row: dict[str, str], folder: Path) -> fu.Scene:
-    """Return the scene of a row of levels. Raises FunicularError where it is refused."""
+    """Return the scene of a row of levels. Raises FunicularError if it is refused."""
     scene = fu.Scene(gravity=(0, -9.81, 0))
     section, law = SECTIONS[row["section"]], {} if row["law"] == "default" else {"law": row["law"]}
     if row["section"] == "general" and row["element"].startswith("beam"):
@@ -349,7 +350,7 @@ def build(row: dict[str, str], folder: Path) -> fu.Scene:
 
 
 def random_row(seed: int) -> dict[str, str]:
-    """Return a row for `build`: of a random element, and of random levels of three other factors."""
+    """Return a row for `build` with a random element, and random levels of three other factors."""
     rng = np.random.default_rng(seed)
     row = {factor: levels[0] for factor, levels in FACTORS.items()}
     some = rng.choice([factor for factor in FACTORS if factor not in ("element", "law")], 3, replace=False)

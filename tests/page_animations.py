@@ -1,4 +1,4 @@
-"""Animations for the tests of the page: of bundled scenes and of made-up ones, by a few plain lines."""
+"""Animations for the tests of the page: of bundled scenes and of synthetic ones."""
 
 from functools import cache
 
@@ -52,7 +52,7 @@ def body_shape(run: Run, name: str, size: list[float], offset: list[float]) -> B
 
 
 def clip_of(run: Run, label: str, sizes: dict[str, tuple[list[float], list[float]]]) -> Clip:
-    """Return what a run of a bundled scene shows; ``sizes``: size and offset of each body's box in m."""
+    """Return the clip of a run of a bundled scene; ``sizes``: size and offset of each body's box in m."""
     cables = tuple(cable_shape(run, name) for name in run.scene.cables)
     marks = []
     for pin in run.scene.supports:
@@ -84,7 +84,7 @@ def paper51() -> Animation:
 
 
 def twisted(frames: int = 41, stations: int = 60) -> Animation:
-    """A clamped beam that is bent into a helix and twisted, with a spring, a lever arm and a load at its end."""
+    """A clamped beam bent into a helix and twisted, with a spring, a lever arm and a load at its end."""
     time, s = np.linspace(0, 2, frames), np.linspace(0, 1, stations)
     turn = np.sin(np.pi * time / 4)[:, None] * s * np.pi
     bend = 0.8 * np.sin(np.pi * time / 4)[:, None] * s
@@ -127,7 +127,7 @@ def modes(count: int = 3, frames: int = 24) -> Animation:
 
 
 def wave(stations: int = 2001, frames: int = 1000) -> Animation:
-    """A cable with travelling waves that needs all its stations: a case for the speed of the picture."""
+    """A cable with travelling waves that needs all its stations, for the speed of the picture."""
     s, time = np.linspace(0, 100, stations), np.linspace(0, 10, frames)
     phase = 2 * np.pi * (s / 1.0 - time[:, None])
     position = np.stack([np.broadcast_to(s, phase.shape), np.sin(phase), np.cos(phase)], axis=-1)

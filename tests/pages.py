@@ -1,4 +1,4 @@
-"""The pages that hosts show (README.md here and there), taken apart: headings, code blocks, links, words of code."""
+"""The READMEs and pages in parts: headings, code blocks, links, words of code."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PAGES = ("README.md", "derive/README.md", "runtime/README.md", "tests/benchmarks
 
 @dataclass
 class Block:
-    """A code block under a heading of the second level; language "" of an indented one, whose lines are commands."""
+    """A code block under a heading of the second level; language "" for an indented block of commands."""
 
     section: str
     language: str
@@ -28,7 +28,7 @@ class Block:
 
 @dataclass
 class Page:
-    """A page: its anchors as hosts make them, links and pictures, and what stands in it as code."""
+    """A page: its anchors as hosts make them, links, pictures and code."""
 
     path: str
     anchors: set[str] = field(default_factory=set)
@@ -42,22 +42,22 @@ class Page:
         return (ROOT / self.path).read_text(encoding="utf-8")
 
     def of(self, section: str, language: str) -> list[str]:
-        """Blocks of a section in one language."""
+        """Return the blocks of a section in one language."""
         return [block.text for block in self.blocks if (block.section, block.language) == (section, language)]
 
     def commands(self) -> list[tuple[str, list[str]]]:
-        """Sections and commands, as words, without comments."""
+        """Return sections and commands, as words, without comments."""
         return [(block.section, shlex.split(line, comments=True))
                 for block in self.blocks if not block.language for line in block.text.splitlines() if line.strip()]
 
     def section(self, name: str) -> str:
-        """The text under a heading of the second level."""
+        """Return the text under a heading of the second level."""
         return self.text.split(f"\n## {name}\n")[1].split("\n## ")[0]
 
 
 @cache
 def page(path: str) -> Page:
-    """A page of the repository, by its path from the top."""
+    """Return a page of the repository by its path from the top."""
     found, section, heading = Page(path), "", 0
     for token in MarkdownIt("commonmark").enable("table").parse(found.text):
         if token.type == "heading_open":

@@ -1,4 +1,4 @@
-"""Searches for values of states of rest, and their derivatives by differences of whole scenes."""
+"""Searches for values of equilibria, and their derivatives by differences of whole scenes."""
 
 import numpy as np
 from funicular.parts.laid import laid
@@ -13,7 +13,7 @@ from funicular.solve.statics.static import equilibrium
 
 
 def search_of(scene, paths, to):
-    """Return a search for these values, at the state of rest of the scene."""
+    """Return a search for these values at the equilibrium of the scene."""
     settings = EquilibriumSettings(adjust=dict.fromkeys(paths, "free"), to=dict.fromkeys(to, 0.0))
     rest = equilibrium(laid(scene), settings, None, Equilibrium)
     search = ParameterSearch(Parameters(scene, settings.adjust), settings, Equilibrium, reader(rest, to))
@@ -21,14 +21,14 @@ def search_of(scene, paths, to):
 
 
 def found_of(search, at):
-    """Return the paths of the parameters whose columns of the residual are known, in their order."""
+    """Return the paths of the parameters with known columns of the residual, in order."""
     found = Changes(at.problem, dict(enumerate(search.parameters.paths)), search.reader).found
     return [path.text for k, path in enumerate(search.parameters.paths) if k in found]
 
 
 def by_scenes(search, at, monkeypatch, step=1e-4):
-    """Return dx/dp and dg/dp of differences of scenes, to twice a step and extrapolated: of less than 1e-4, reactions
-    are but rounding.
+    """Return dx/dp and dg/dp by differences of scenes with two steps, extrapolated; steps below 1e-4 make reactions
+    rounding.
     """
     ends = []
     with monkeypatch.context() as patch:
@@ -40,14 +40,14 @@ def by_scenes(search, at, monkeypatch, step=1e-4):
 
 
 def apart(found, wanted):
-    """Return (n,): how far columns (rows, n) are apart, over the largest number of each; all have one."""
+    """Return (n,) distances of columns (rows, n), relative to the largest number of each, which must exist."""
     scales = np.max(np.abs(wanted), axis=0)
     assert (scales > 0).all(), scales
     return np.max(np.abs(found - wanted), axis=0) / scales
 
 
 class NoChanges(Changes):
-    """Changes that leaves all parameters to differences of scenes."""
+    """Changes that leave all parameters to differences of scenes."""
 
     def __init__(self, problem, paths, reader):
         super().__init__(problem, {}, reader)

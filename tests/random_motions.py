@@ -1,4 +1,4 @@
-"""Scenes that an engineer could draw, of random kinds and numbers: each seed gives one, with its duration."""
+"""Scenes of an engineer, of random kinds and numbers: each seed gives one, with its duration."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 @dataclass
 class Motion:
-    """A scene, the time in s that it runs for, and words that say what it is."""
+    """A scene, its duration in s, and a description."""
 
     scene: fu.Scene
     duration: float
@@ -19,7 +19,7 @@ class Motion:
 
 
 def motion(seed: int) -> Motion:
-    """Return the scene of a seed. The kinds in `MOTIONS` take turns."""
+    """Return the scene of a seed. The kinds in `MOTIONS` alternate."""
     rng = np.random.default_rng(seed)
     kind = list(MOTIONS)[seed % len(MOTIONS)]
     scene = fu.Scene(gravity=(0, -9.81, 0))
@@ -28,12 +28,12 @@ def motion(seed: int) -> Motion:
 
 
 def decade(rng, low: float, high: float) -> float:
-    """A number whose logarithm is evenly spread between those of two others."""
+    """Return a number whose logarithm is uniformly distributed between those of two others."""
     return float(f"{math.exp(rng.uniform(math.log(low), math.log(high))):.3g}")
 
 
 def cable(scene, rng, name: str, start, end, slack: float = 1.0, soft: bool = False, **given) -> fu.Cable:
-    """A cable of 2 to 5 elements in the plane or in space; slack: its length over the distance of its ends."""
+    """Add a cable of 2 to 5 elements in the plane or in space; slack: its length over the distance of its ends."""
     planar = scene.dim == 2 if scene.cables else rng.random() < 0.6
     element = rng.choice(["cable8p", "cable8p", "beam12p"] if planar else ["cable12", "cable12", "beam24"])
     distance = math.dist(start, end)
@@ -48,14 +48,14 @@ def cable(scene, rng, name: str, start, end, slack: float = 1.0, soft: bool = Fa
 
 
 def body(scene, rng, name: str, position, mass: float = 1.0, **given) -> fu.RigidBody:
-    """A compact body of about this mass."""
+    """Add a compact body of about this mass."""
     mass *= decade(rng, 0.3, 3.0)
     inertia = tuple(mass * 0.01 * float(x) for x in rng.uniform(0.8, 1.2, 3))
     return scene.rigid_body(name, mass=mass, inertia=inertia, position=tuple(map(float, position)), **given)
 
 
 def friction(rng) -> dict:
-    """None, or friction that is smooth or sticks."""
+    """Return no friction, or friction that is regularised or sticks."""
     kind = rng.integers(3)
     coefficient = float(rng.uniform(0.05, 0.4))
     return [{}, {"friction": coefficient},

@@ -1,4 +1,5 @@
-"""Hypothesis strategies of small scenes with all kinds of parts, over many decades of size, nonsense among them."""
+"""Hypothesis strategies of small scenes with all kinds of parts, over many decades of size, with some invalid values.
+"""
 
 import tomllib
 import warnings
@@ -31,7 +32,7 @@ nonsense = st.sampled_from([*NUMBERS, *WORDS, *DATA, *OBJECTS])
 
 
 def decades(low: float, high: float):
-    """A positive number, its logarithm evenly spread."""
+    """A positive number with a uniformly distributed logarithm."""
     return st.floats(low, high, allow_nan=False).map(lambda power: float(f"{10**power:.3g}"))
 
 
@@ -43,7 +44,7 @@ def vectors(size: float, planar: bool = False):
 
 @st.composite
 def signals(draw, size: float, time: float, from_zero: bool = False):
-    """A signal of about a size over about a time; from_zero: of a motion, which starts at 0."""
+    """A signal of about a size over about a time; from_zero: for a motion, which starts at 0."""
     value = size * draw(st.sampled_from([0.0, 1.0, -0.1]))
     kinds = [fu.Ramp(start=0, end=time, after=value), fu.Pulse(start=0, end=time, height=value),
              fu.Harmonic(amplitude=value, frequency=1 / time),
@@ -60,7 +61,7 @@ LAWS |= {name: ({}, {"strain": "engineering"}, {"curvature": "linear"}) for name
 
 @st.composite
 def parts(draw):
-    """(time in s, gravity, parts): what a scene is made of, each part as the method that adds it and its keywords."""
+    """(time in s, gravity, parts) of a scene; each part is the method that adds it with its keywords."""
     planar = draw(st.booleans())
     size, time = draw(decades(-4, 4)), draw(decades(-4, 2))
     gravity = draw(st.sampled_from([(0, 0, 0), (0, -9.81, 0), (0, -size / time**2, 0)]))
@@ -190,7 +191,7 @@ def loads(draw, numbers: dict):
 
 
 def build(gravity, made) -> fu.Scene:
-    """The scene of what can be added to it: parts that are refused are left out. Any other error comes through."""
+    """Return the scene of all accepted parts; refused ones are left out. Other errors pass."""
     scene = fu.Scene(gravity=gravity)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", fu.FunicularWarning)
@@ -204,7 +205,7 @@ def build(gravity, made) -> fu.Scene:
 
 @st.composite
 def scenes(draw, spoilt: bool = True):
-    """(time in s, scene); spoilt: with nonsense for a keyword of one of its parts, now and then."""
+    """(time in s, scene); spoilt: occasionally with an invalid keyword of one part."""
     time, gravity, made = draw(parts())
     if spoilt and draw(st.integers(0, 3)) == 0:
         k = draw(st.integers(0, len(made) - 1))
@@ -215,14 +216,14 @@ def scenes(draw, spoilt: bool = True):
 
 @st.composite
 def texts(draw):
-    """The text of a scene file, with nonsense for one of its values."""
+    """The text of a scene file with one invalid value."""
     tables = tomllib.loads(draw(scenes(spoilt=False))[1].to_toml())
     _spoil(draw, tables)
     return "\n".join(f"{name} = {as_toml(value)}" for name, value in tables.items()) + "\n"
 
 
 def _spoil(draw, into: dict | list) -> None:
-    """Replace a value somewhere inside."""
+    """Replace a nested value."""
     places = sorted(into) if isinstance(into, dict) else range(len(into))
     if not len(places):
         return

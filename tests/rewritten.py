@@ -1,4 +1,4 @@
-"""Scenes in other units, by the units that the schema of scene files says."""
+"""Scenes in other units, by the units in the schema of scene files."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def powers_of(unit: str) -> Powers:
 
 
 def in_units(scene: fu.Scene, length: float, mass: float, time: float) -> fu.Scene:
-    """Return the scene in other units: so many of them are a metre, a kilogram, a second."""
+    """Return the scene in other units, given by their number per metre, kilogram and second."""
     per = length, mass, time
     tables = tomllib.loads(scene.to_toml())
     made = {}
@@ -85,7 +85,7 @@ def _factor(powers: Powers, per: Powers) -> float:
 
 
 def _converted(value: Any, rule: Any, powers: Powers, per: Powers) -> Any:
-    """Return a value of a scene file in other units; rule: its schema; powers: its unit, where that does not say it."""
+    """Return a value of a scene file in other units; rule: its schema; powers: its unit, if the schema has none."""
     rule = _ruling(value, rule)
     if isinstance(value, dict):
         return {name: _converted(each, rule["properties"][name], powers, per) for name, each in value.items()}
@@ -99,7 +99,7 @@ def _converted(value: Any, rule: Any, powers: Powers, per: Powers) -> Any:
 
 
 def _ruling(value: Any, rule: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return the schema of a value among those that references and alternatives lead to."""
+    """Return the schema of a value after references and alternatives."""
     if isinstance(value, dict) and not rule.keys() & {"$ref", "anyOf", "oneOf", "properties"}:
         return _ruling(value, {"$ref": "#/$defs/signal"})  # within lists, of which the schema says no more
     if "$ref" in rule:
@@ -111,7 +111,7 @@ def _ruling(value: Any, rule: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def _fits(value: Any, rule: Mapping[str, Any]) -> bool:
-    """Return whether a value is of the kind that a schema describes; of tables, by the entry that says which."""
+    """Return whether a value is of the kind of a schema, for tables by their entry of the kind."""
     if isinstance(value, dict):
         rules = rule.get("properties", {})
         return value.keys() <= rules.keys() and all(rules[name].get("const", each) == each

@@ -1,4 +1,5 @@
-"""Writes parts/scene_methods.pyi, what editors and type checkers know of a scene's methods, from the parts' fields.
+"""Writes parts/scene_methods.pyi, the signatures of a scene's methods for editors and type checkers, from parts'
+fields.
 
     python tests/scene_stub.py
 """
@@ -75,7 +76,7 @@ PATHS = {"path": "str | os.PathLike[str]", "rider": "Named | tuple[Named, float]
 
 
 def given_type(kind: type[Part], keyword: str, optional: bool) -> str:
-    """The type of what may be given for a keyword, as the stub writes it."""
+    """Return the type of a keyword's values in the stub."""
     field = kind.keywords()[keyword]
     written = next(vars(base)["__annotations__"][field] for base in kind.__mro__
                    if field in vars(base).get("__annotations__", ()))
@@ -89,7 +90,7 @@ def given_type(kind: type[Part], keyword: str, optional: bool) -> str:
 
 
 def method(kind: type[Part]) -> str:
-    """The method that adds such a part."""
+    """Return the method that adds a part."""
     arguments, keyword_only = ["self"], False
     for name, parameter in list(signature(kind).parameters.items())[1:]:
         if parameter.kind is inspect.Parameter.KEYWORD_ONLY and not keyword_only:
@@ -105,7 +106,7 @@ def method(kind: type[Part]) -> str:
 
 
 def imports() -> str:
-    """The lines that import the kinds of parts and what else their signatures need."""
+    """Return the import lines of the kinds of parts and of their signatures."""
     of_module: dict[str, set[str]] = {}
     for each in (*KINDS, *OTHERS):
         of_module.setdefault(each.__module__.removeprefix("funicular.parts"), set()).add(each.__name__)
@@ -113,7 +114,7 @@ def imports() -> str:
 
 
 def stub() -> str:
-    """The text of the file."""
+    """Return the text of the file."""
     return HEAD + imports() + TYPE_ALIASES + "".join(method(kind) for kind in KINDS).rstrip() + "\n"
 
 

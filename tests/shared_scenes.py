@@ -1,4 +1,4 @@
-"""Small scenes that tests share: a straight cable and what rides it; sizes and material of Table 1 unless said."""
+"""Small scenes that tests share: a straight cable and its riders; sizes and material of Table 1 by default."""
 
 import numpy as np
 from funicular import Material, Rectangle, Scene
@@ -36,8 +36,8 @@ def add_cable(scene: Scene, name="wire", pins=(0, 1.5), **given):
 def cable_scene(name="wire", *, length=1.0, pins=(), clamps=(), gravity=(0, -9.81, 0), **given) -> Scene:
     """Return a scene with one cable of ``length`` m along x: a pendulum with pins=(0,), a cantilever with clamps=(0,).
 
-    pins: arc lengths in m, or "ends"; clamps: arc lengths; given: keywords of `Scene.cable`, with a shape of its own
-    in the place of the length.
+    pins: arc lengths in m, or "ends". clamps: arc lengths. given: keywords of `Scene.cable`, or its own shape instead
+    of the length.
     """
     scene = Scene(gravity=gravity)
     line = {} if given.keys() & {"end", "curve", "points"} else {"end": (length, 0, 0)}
@@ -70,13 +70,13 @@ def one_rider(s=0.25, speed=1.0, gravity=(0, -9.81, 0), *, across=(0, 0), **cabl
     return scene
 
 
-# ---- a wire that stays as it is, whatever rides it, for closed forms
+# ---- a wire that does not deform, for closed forms
 
 
 def heavy_wire(dim=3, elements=4, length=LENGTH) -> Scene:
-    """Return a straight wire along x that nothing supports: 1e13 kg, which forces of 20 N move by 1e-12 m in a second.
+    """Return a straight unsupported wire along x of 1e13 kg, which forces of 20 N move by 1e-12 m in a second.
 
-    Clamped instead, it would leave its axial vibrations to resolve; gravity acts on the riders alone, as a load.
+    A clamped wire would have axial vibrations to resolve. Gravity acts on the riders alone, as a load.
     """
     return cable_scene(length=length, gravity=(0, 0, 0), elements=elements, element={2: "cable8p", 3: "cable12"}[dim],
                        material=Material(youngs_modulus=1.0, poisson_ratio=0.0, density=1e15))
@@ -84,9 +84,9 @@ def heavy_wire(dim=3, elements=4, length=LENGTH) -> Scene:
 
 def block(s, speed=0.0, *, weight=MASS * G, slope=SLOPE, dim=3, scene=None, name="A", slide="trolley",
           **given) -> Scene:
-    """Return a scene with a block of MASS on a wire that falls towards its end by `slope`, in rad.
+    """Return a scene with a block of MASS on a wire with a descent of `slope`, rad.
 
-    The weight is turned, not the wire; given: other keywords of `Scene.slide`.
+    The weight is rotated, not the wire. given: other keywords of `Scene.slide`.
     """
     scene = scene or heavy_wire(dim)
     scene.rigid_body(name, mass=MASS, inertia=(1e-2, 1e-2, 1e-2), position=(s, 0, 0), velocity=(speed, 0, 0))

@@ -1,4 +1,4 @@
-"""Scenes turned as a whole, and what differs between the results of two runs of one motion."""
+"""Rotated scenes, and differences between the results of two runs of one motion."""
 
 import numpy as np
 from funicular.base.rotations import rotate, turned_by
@@ -14,7 +14,7 @@ GAUGED = (".multiplier",)
 
 
 def turned_scene(scene, rotation, shift):
-    """Return a scene moved as a rigid body: turned by a rotation vector in rad, then shifted in m."""
+    """Return a scene moved as a rigid body: rotated by a vector in rad, then shifted in m."""
     axes = rotate(turned_by(np.array(rotation)), np.eye(3))  # rows: the new ground's axes, seen from the old one
     axes = np.where(np.abs(axes) < 1e-15, 0.0, axes)
     made = laid_into(scene, Plane(axes, -axes @ shift))
@@ -24,10 +24,9 @@ def turned_scene(scene, rotation, shift):
 
 
 def differences(planar, spatial, scenes=None):
-    """Return by name the largest difference of results, over 1 or the largest size of each; scenes: those of both, if
-    they have no text.
+    """Return by name the largest difference of results, relative to 1 or the largest size of each.
 
-    Of nodal vectors those that both have, of orientations their sign apart.
+    scenes: those of both runs, if they have no text. Nodal vectors are those of both; orientations may differ in sign.
     """
     found, scenes = {}, scenes or (planar.scene, spatial.scene)
     for name in spatial:
@@ -44,7 +43,7 @@ def differences(planar, spatial, scenes=None):
 
 
 def _of_both(cables, one, other):
-    """Return nodal vectors that mean the same in both cables."""
+    """Return the nodal vectors that both cables have."""
     vectors = [list(cable.kind_of_element.nodal_vectors) for cable in cables]
     same_height = np.allclose(cables[0].axes_at(0.0)[1], cables[1].axes_at(0.0)[1])
     both = [each for each in vectors[0] if each in ("r", "r_x") or same_height]

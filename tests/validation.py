@@ -1,8 +1,8 @@
-"""The fixture `validated`: a comparison with a number from elsewhere, asserted and on record.
+"""The fixture `validated`: a recorded comparison with an external number, with an assertion.
 
-A test says case, source, quantity, reference, bound and what it found. The record, tests/benchmarks/measured/
-validation.json, keeps that beside the test's name, and the page Validation is printed from it. A test that says other
-words or numbers than the record fails, with the command that renews it:
+A test gives case, source, quantity, reference, bound and result. The record, tests/benchmarks/measured/validation.json,
+keeps them with the name of the test, and the page Validation is printed from it. A test that differs from its record
+fails, with the command that renews it:
 
     python -m pytest -n 0 -m "" --record-validation tests/motion/test_cases.py && python tests/benchmarks/print_pages.py
 """
@@ -39,9 +39,9 @@ def row(node: str, subject: str, case: str, quantity: str, reference: Numbers, o
     """Return a row of the record.
 
     bound: of the error, |ours - reference| over ``scale``, by default the reference itself. stays: an error that an
-    element keeps on any mesh, which is found to a part ``bound`` of it. worst: whether the quantity is that of several
-    with the largest error, so that machines may differ in it, as of arrays, of which the entry with the largest error
-    counts. variant: element, law or integrator; mesh: what it was found with, called for a record alone.
+    element has on any mesh, found to a part ``bound`` of it. worst: whether the quantity has the largest error of
+    several, so that machines may differ in the choice; of arrays the entry with the largest error counts. variant:
+    element, law or integrator. mesh: the mesh of the result, called for a record alone.
     """
     if np.ndim(reference) or np.ndim(ours):
         reference, ours, over = np.broadcast_arrays(reference, ours, np.abs(reference) if scale is None else scale)
@@ -56,7 +56,7 @@ def row(node: str, subject: str, case: str, quantity: str, reference: Numbers, o
 
 
 def name_of(row: dict[str, Any]) -> tuple[str, str, str]:
-    """Return by what a row of the record is found."""
+    """Return the key of a row of the record."""
     return row["test"], row["case"], "" if row["worst"] else row["quantity"]
 
 
@@ -66,7 +66,7 @@ def recorded() -> list[dict[str, Any]]:
 
 
 def keep(made: dict[str, Any], first: bool) -> None:
-    """Put a row in the record; the first of a test takes the place of all that the record has of it."""
+    """Add a row to the record; the first row of a test replaces all its earlier rows."""
     made = made | {"mesh": made["mesh"]() if callable(made["mesh"]) else made["mesh"]}
     rows, own = recorded(), [old["test"] == made["test"] for old in recorded()]
     at = own.index(True) if True in own else len(rows)
@@ -79,7 +79,7 @@ def keep(made: dict[str, Any], first: bool) -> None:
 
 @pytest.fixture
 def validated(request: pytest.FixtureRequest) -> Callable[..., None]:
-    """Return a function with the arguments of `row`, but for the first: it asserts the bound and keeps the record."""
+    """Return a function with the arguments of `row` after the first: it asserts the bound and keeps the record."""
     node, renewed = request.node.nodeid, request.config.getoption("record_validation")
     seen: set[tuple[str, str, str]] = set()
 

@@ -1,10 +1,10 @@
-"""A spatial scene with one of everything that pictures draw."""
+"""A spatial scene with one of each kind that pictures draw."""
 
 import funicular as fu
 
 
 def spatial() -> fu.Scene:
-    """Return a rope from a support that moves to the head of a boom, with a car, a load on a hook and a guy spring."""
+    """Return a rope from a moving support to the head of a boom, with a car, a load on a hook and a guy spring."""
     scene = fu.Scene(gravity=(0, 0, -9.81))
     rope = scene.cable("rope", start=(0, 0, 0), end=(10, 4, 3), elements=8, element="cable12",
                        section=fu.Circle(radius=0.02),

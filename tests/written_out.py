@@ -1,4 +1,4 @@
-"""The generated C with the stages that kernels share written out, so that a test can spoil one kernel alone."""
+"""The generated C with shared stages written out, so that a test can change one kernel alone."""
 
 import re
 import shutil
@@ -17,7 +17,7 @@ def stages(text: str) -> dict[str, str]:
 
 
 def written_out(text: str, known: dict[str, str]) -> str:
-    """Return a file's text with every stage in its place: its own, and those of a header."""
+    """Return the text of a file with every stage, of its own or of a header, in its place."""
     known, text = known | stages(text), STAGE.sub("", text)
     while (inside := re.sub(r"^    ([A-Z]\w*)$", lambda found: known[found[1]], text, flags=re.MULTILINE)) != text:
         text = inside  # a stage may name a part of it

@@ -1,4 +1,4 @@
-"""Steps follow what counts, and no vibrations beside it: errors and numbers of steps of tests/benchmarks/ringing.py."""
+"""Steps follow the named results, and no vibrations beside them: errors and steps of tests/benchmarks/ringing.py."""
 
 import warnings
 from itertools import pairwise
@@ -30,7 +30,7 @@ def test_a_looser_tolerance_costs_no_more_steps_where_vibrations_die():
 
 
 def test_radau_on_trial_gives_way_to_the_explicit_method():
-    """All of the rod's motion is a wave that rings; the costs are counted, so that any machine decides alike."""
+    """The motion of the rod is a vibrating wave; costs are counted, so that all machines decide alike."""
     subject = SCENES["twisted rod, all of its motion"]
     run, again = (run_of(subject, tol=1e-3) for _ in range(2))
     assert run.report["integrator"] == "explicit" and "on trial" in run.report["integrator_reason"]
@@ -39,7 +39,7 @@ def test_radau_on_trial_gives_way_to_the_explicit_method():
 
 
 def test_a_trial_leaves_no_trace_in_a_file(tmp_path):
-    """The same bits whether rows are written on the way or not, and after it was resumed."""
+    """The bits are equal whether rows are written during the run or not, and after a resume."""
     subject = SCENES["twisted rod, all of its motion"]
     plain = run_of(subject, tol=1e-2)
     saved = run_of(subject, tol=1e-2, save=tmp_path / "rod.nc")
@@ -49,7 +49,8 @@ def test_a_trial_leaves_no_trace_in_a_file(tmp_path):
 
 
 def mass_on_a_spring(amplitude: float) -> fu.Scene:
-    """A body on a soft spring that swings in x; beside it one on a stiff spring that turns and vibrates fast."""
+    """Return a body on a soft spring that swings in x; beside it one on a stiff spring that rotates and vibrates fast.
+    """
     scene = fu.Scene(gravity=(0, 0, -9.81))
     scene.rigid_body("A", mass=1.0, inertia=(1e-2,) * 3, position=(amplitude, 0, -1), orientation=(1, 0, 0, 0))
     scene.rigid_body("B", mass=1.0, inertia=(1e-2, 2e-2, 3e-2), position=(5, 0, 0), angular_velocity=(30, 1, 0))
@@ -59,7 +60,7 @@ def mass_on_a_spring(amplitude: float) -> fu.Scene:
 
 
 def test_only_named_quantities_are_controlled():
-    """The fast turn of B costs no steps where A alone counts, whose error is within tol of its own motion."""
+    """The fast rotation of B costs no steps where A alone counts, whose error is within tol of its own motion."""
     runs = {named: mass_on_a_spring(0.1).run(1.0, tol=1e-4, integrator="radau", quantities=named, progress=False)
             for named in (None, ("A.position",))}
     exact = mass_on_a_spring(0.1).run(1.0, tol=1e-10, integrator="explicit", progress=False)
@@ -73,8 +74,8 @@ def test_only_named_quantities_are_controlled():
 @pytest.mark.parametrize("integrator", ["radau", "genalpha"])
 @pytest.mark.parametrize("density", [100.0, 1000.0])
 def test_what_others_do_to_the_named_counts(density, integrator):
-    """A rope of 1 % and 11 % of the mass of A flaps at its end. What its errors did to A, in the ratio of the masses,
-    was up to 11 (radau) and 8 tol (genalpha).
+    """A rope of 1 % and 11 % of the mass of A swings at its end. The effect of its errors on A, in the ratio of the
+    masses, was up to 11 (radau) and 8 tol (genalpha).
     """
     def run(**settings):
         scene = fu.Scene(gravity=(0, -9.81, 0))
@@ -95,7 +96,7 @@ def test_what_others_do_to_the_named_counts(density, integrator):
 
 
 def angle(one: np.ndarray, other: np.ndarray) -> float:
-    """The largest angle between two histories of attitudes (time, 4), rad."""
+    """Return the largest angle between two histories of attitudes (time, 4), rad."""
     return 2 * np.arccos(np.clip(np.abs(np.sum(one * other, axis=1)), 0, 1)).max()
 
 
@@ -103,8 +104,8 @@ def angle(one: np.ndarray, other: np.ndarray) -> float:
 @pytest.mark.parametrize("beside", [True, False], ids=["a body beside it", "alone"])
 @pytest.mark.parametrize("spin", [(30, 1, 0), (0, 0, 30)])
 def test_vibrations_that_act_on_a_turn_are_followed(spin, beside, tol):
-    """A body turns at 30 rad/s and vibrates on its spring at 316 rad/s. What radau lost of the vibration turned
-    the body up to 74 tol too far at the end. The angle may err by tol of 2 rad, the chord of the largest turn.
+    """A body rotates at 30 rad/s and vibrates on its spring at 316 rad/s. Lost vibrations rotated the body up to 74 tol
+    too far. The permitted error of the angle is tol of 2 rad, the chord of the largest rotation.
     """
     def run(**settings):
         scene = fu.Scene(gravity=(0, 0, -9.81))
@@ -135,7 +136,7 @@ def test_an_absolute_error_is_kept_and_reported():
 
 
 def test_the_default_follows_the_size_of_the_scene_and_says_where_it_rules():
-    """1e-6 of the box around nodes and bodies, times tol: of a motion smaller than that a note says so."""
+    """1e-6 of the box around nodes and bodies, times tol: a note reports smaller motions."""
     still = fu.Scene(gravity=(0, 0, 0))
     still.rigid_body("A", mass=1.0, inertia=(1e-2,) * 3, position=(0, 0, 0), velocity=(1e-7, 0, 0))
     still.rigid_body("B", mass=1.0, inertia=(1e-2,) * 3, position=(10, 0, 0))
@@ -159,7 +160,7 @@ def test_a_fixed_step_says_that_it_controls_nothing():
 
 
 def test_slides_and_components_can_be_named():
-    """The error of s is that of what it is found from; a component of a position counts alone."""
+    """The error of s is that of the positions which determine it; a component of a position counts alone."""
     scene = fu.load_scene("paper51")
     exact = scene.run(0.3, tol=1e-9, progress=False)
     for name in ("trolley.s", "A.position.y"):
@@ -169,6 +170,6 @@ def test_slides_and_components_can_be_named():
 
 @pytest.mark.parametrize("name", ["zip line", "stick", "friction, vibrating", "follower force", "pendulum, 8, steel"])
 def test_a_looser_tolerance_costs_radau_no_more(name):
-    """Newton iterations, which are what a step costs: fewer steps may take more each, but in all at most 20 %."""
+    """The cost is that of Newton iterations: fewer steps may take more each, but at most 20 % more in all."""
     cost = [simulate(name, integrator="radau", tol=tol).report["newton_iterations"] for tol in (1e-1, 1e-2, 1e-3, 1e-4)]
     assert all(looser <= 1.2 * tighter for looser, tighter in pairwise(cost))

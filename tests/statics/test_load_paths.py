@@ -134,7 +134,7 @@ def lees_frame(load: float, follower: bool, elements: int, beam: bool = False) -
 @pytest.mark.parametrize(("follower", "load", "nominal"), [
     (False, 18532, 2e4), (False, 18532, 1e6), (True, 35447, 4e4), (True, 35447, 1e6)])
 def test_lees_frame(follower, load, nominal, validated):
-    """Lee, Manuel & Rossow, J. Eng. Mech. Div. 94 (1968) 417-442; both limit loads as others compute them."""
+    """Lee, Manuel & Rossow, J. Eng. Mech. Div. 94 (1968) 417-442; both limit loads agree with other codes."""
     with warnings.catch_warnings():
         warnings.simplefilter("error", FunicularWarning)
         warnings.filterwarnings("ignore", "cable \"beam\": elements of 12 m are too long")  # at 1e6: off by 0.7 %
@@ -155,11 +155,12 @@ def test_lees_frame(follower, load, nominal, validated):
 @pytest.mark.parametrize("elements", [10, pytest.param(40, marks=pytest.mark.slow)])
 @pytest.mark.parametrize(("follower", "load"), [(False, 18544.8), (True, 35393.0)])
 def test_lees_frame_that_shears(follower, load, elements, validated):
-    """Against Reissner's frame with the shear factor 10 (1 + nu)/(12 + 11 nu), the follower turning with the section.
+    """Against Reissner's frame with the shear factor 10 (1 + nu)/(12 + 11 nu); the follower force rotates with the
+    section.
 
-    From two-node elements with one point of integration, 40 and 80 a leg (18560.01, 18548.57; 35454.7, 35408.42),
-    extrapolated by the square of their length. 40 beams a leg came to 18464 and 34620, ever less the more they were,
-    while the corner made the section of one leg the tangent of the other.
+    The reference is from two-node elements with one point of integration, 40 and 80 per leg (18560.01, 18548.57;
+    35454.7, 35408.42), extrapolated by the square of their length. Tangents tied to sections at the corner would give
+    18464 and 34620 with 40 beams per leg, and less with more.
     """
     nominal = 4e4 if follower else 2e4
     high = lees_frame(nominal, follower, elements, beam=True).equilibrium(method="arc_length").critical_points[0]
@@ -226,7 +227,7 @@ def test_an_upright_pendulum_falls_and_says_so():
 
 
 def test_a_state_to_start_from():
-    """Of the two rests of a buckled strut the one that is asked for; and a path that goes on where another ended."""
+    """Either of the two equilibria of a buckled strut, and a path that continues from the end of another."""
     up, down = strut(1.5 * EULER), strut(1.5 * EULER)
     up.force("strut", s=LENGTH, value=(0, 0.05, 0))
     down.force("strut", s=LENGTH, value=(0, -0.05, 0))

@@ -1,4 +1,4 @@
-"""Mechanisms: published benchmarks, loops that are over-constrained, gaps at the start."""
+"""Mechanisms: published benchmarks, over-constrained loops, initial gaps."""
 
 import numpy as np
 import pytest
@@ -61,7 +61,7 @@ def squeezer() -> Scene:
 
 @pytest.mark.parametrize(("integrator", "tol", "off"), [("explicit", 1e-5, 3e-9), ("radau", 1e-6, 1e-8)])
 def test_andrews_squeezer(integrator, tol, off, validated):
-    """The crank turns 2.5 times in 30 ms."""
+    """The crank makes 2.5 turns in 30 ms."""
     run = squeezer().run(0.03, tol=tol, integrator=integrator, output_step=1e-4)
     turn = [np.unwrap(2 * np.arctan2(run[f"K{k}.orientation"][:, 3], run[f"K{k}.orientation"][:, 0]),
                       period=2 * np.pi)[-1] for k in range(1, 8)]
@@ -77,7 +77,7 @@ def test_andrews_squeezer(integrator, tol, off, validated):
 
 
 def four_bars(n: int, speed=1.0, angle=np.pi / 2) -> Scene:
-    """n parallelograms of bars of 1 m and 1 kg side by side; speed (m/s) of their upper side."""
+    """Return n parallelograms of bars of 1 m and 1 kg side by side; speed (m/s) of their upper side."""
     scene, inertia = Scene(), (1e-3, 1 / 12, 1 / 12)
     along = np.array([np.cos(angle), np.sin(angle), 0])
     velocity = speed * np.array([along[1], -along[0], 0])
@@ -96,7 +96,7 @@ def four_bars(n: int, speed=1.0, angle=np.pi / 2) -> Scene:
 
 @pytest.mark.parametrize(("integrator", "tol", "off"), [("explicit", 1e-7, 3e-7), ("radau", 1e-5, 1e-5)])
 def test_two_four_bars_pass_singular_positions(integrator, tol, off, validated):
-    """IFToMM benchmark A02; all bars are in one line several times in 10 s."""
+    """IFToMM benchmark A02; all bars are collinear several times in 10 s."""
     run = four_bars(2).run(10, tol=tol, integrator=integrator, output_step=0.1)
     validated("Bodies and mechanisms", "two four-bars through singular positions, at 10 s", "position of the coupler",
               [0.3284581115, 0.9445185382, 0], run["bar0.position"][-1] - [0.5, 0, 0], unit="m", scale=1.0, bound=off,
@@ -112,7 +112,7 @@ def test_two_four_bars_pass_singular_positions(integrator, tol, off, validated):
 
 @pytest.mark.parametrize(("integrator", "tol", "off"), [("explicit", 1e-8, 3e-9), ("radau", 1e-6, 3e-7)])
 def test_a_pendulum_after_10_s(integrator, tol, off, validated):
-    """IFToMM benchmark A01: a point mass, 1 m from its pivot, released level."""
+    """IFToMM benchmark A01: a point mass, 1 m from its pivot, released from the horizontal."""
     scene = Scene()
     scene.rigid_body("A", mass=1, inertia=(1, 1, 1), position=(-1, 0, 0))
     scene.joint("distance", "A", (0, 0, 0), name="string")
@@ -120,7 +120,7 @@ def test_a_pendulum_after_10_s(integrator, tol, off, validated):
     validated("Bodies and mechanisms", "pendulum released level, at 10 s", "position",
               [-0.2750874626, -0.9614192051, 0], run["A.position"][-1], unit="m", scale=1.0, bound=off,
               source="IFToMM benchmark A01", variant=f"{integrator}, tol {tol:g}")
-    # string: its force on the ground is 3 m g sin at a fall of sin, as energy and centripetal force have it
+    # string: its force on the ground is 3 m g sin, by energy and centripetal force
     pull = 3 * G * run["A.position"] * -run["A.position"][:, 1:2]
     assert_allclose(run["string.force"], pull, atol=1e-4)
 
@@ -160,7 +160,7 @@ def test_hinges_that_do_not_fit_together_are_refused():
 
 
 def test_a_four_bar_in_space_moves_as_one_with_ball_joints():
-    """A hinge, a ball, a universal joint and a hinge hold what is needed, and no more."""
+    """A revolute, a spherical, a universal and a revolute joint: no redundant constraint."""
     over, free = four_bars(1), Scene()
     for body in over.bodies.values():
         free.add(body)

@@ -1,4 +1,4 @@
-"""Natural frequencies and shapes: strings, beams, free bodies, riders; about states of rest; large scenes."""
+"""Natural frequencies and shapes: strings, beams, free bodies, riders; about equilibria; large scenes."""
 
 import numpy as np
 import pytest
@@ -10,14 +10,14 @@ WIRE = Material(youngs_modulus=1e9, poisson_ratio=0, density=1e4)
 
 
 def string(elements, strain=1e-3, element="cable12") -> Scene:
-    """1 m between its ends, 1 kg/m, no weight, no bending to speak of."""
+    """Return a string of 1 m between its ends, 1 kg/m, without weight, with negligible bending stiffness."""
     return cable_scene(pins="ends", gravity=(0, 0, 0), elements=elements, element=element, strain="engineering",
                        rest_length=1 / (1 + strain), section=THIN, material=WIRE)
 
 
 @pytest.mark.parametrize(("element", "of_each"), [("cable12", 2), ("cable8p", 1)])
 def test_a_taut_string(element, of_each, validated):
-    """n pi sqrt(T / m), in each direction across; mass per length as stretched."""
+    """n pi sqrt(T / m) in both transverse directions, with the mass per stretched length."""
     found = string(16, element=element).modes(4 * of_each).angular_frequency
     tension, mass = 1e5 * 1e-3, 1.0 / (1 + 1e-3)
     expected = np.repeat(np.arange(1, 5), of_each) * np.pi * np.sqrt(tension / mass)
@@ -48,8 +48,9 @@ def test_shapes_are_sines_of_one_metre():
     ("beam24", "continuum", 6), ("beam24", "structural", 6), ("beam12p", "continuum", 3), ("cable12", "", 6),
     ("cable8p", "", 3)])
 def test_what_is_free_moves_without_frequency(element, law, rigid):
-    """A cable turns about itself without moving, but has sections that slide along it: no more zeros than rigid
-    motions, one less for a cable in space."""
+    """The number of zero frequencies equals that of rigid motions, one less for a cable in space, whose rotation about
+    its axis moves nothing.
+    """
     scene = Scene(gravity=(0, 0, 0))
     scene.cable("wire", start=(0, 0, 0), end=(1.2, 0.5, 0), elements=3, element=element, section=SQUARE,
                 material=TABLE_1, **({"law": law} if law else {}))
@@ -60,8 +61,9 @@ def test_what_is_free_moves_without_frequency(element, law, rigid):
 
 
 def test_a_rider_adds_its_mass_across_and_is_free_along():
-    """A point mass M in the middle of a light taut string: w² = 4 T / (M L), 0.2 % off with 64 elements, in which a
-    kink at the mass is as sharp as cubics make it."""
+    """A point mass M in the middle of a light taut string: w² = 4 T / (M L), 0.2 % off with 64 elements, whose cubics
+    round the kink at the mass.
+    """
     scene = string(64, element="cable8p")
     half = scene.cables["wire"].length / 2
     scene.rigid_body("A", mass=300.0, inertia=(1, 1, 1), position=(0.5, 0, 0))
@@ -75,7 +77,7 @@ def test_a_rider_adds_its_mass_across_and_is_free_along():
 
 
 def test_modes_are_read_as_a_mapping():
-    """`for name in modes` asked for a shape of the name 0; the length is that of the frequencies."""
+    """`for name in modes` iterates over names; the length is that of the frequencies."""
     modes = string(4).modes(3)
     assert list(modes) == modes.keys() == ["wire.nodal_vectors", "wire.displacement"]
     assert {name: len(shapes) for name, shapes in modes.items()} == dict.fromkeys(modes, len(modes))
@@ -146,7 +148,7 @@ def test_a_scene_without_cables_is_not_told_to_take_fewer_elements():
 
 
 def test_nodes_of_a_modal_body_move_from_the_state_that_they_swing_about():
-    """A beam on a hinge is drawn level and hangs at rest: its end swings to the side."""
+    """A beam on a hinge is drawn horizontally and hangs at rest: its end swings sideways."""
     scene = Scene()
     scene.modal_body("link", start=(0, 0, 0), end=(1, 0, 0), section=SQUARE, boundary="attached", modes=2,
                      material=TABLE_1)

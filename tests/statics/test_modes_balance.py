@@ -1,4 +1,4 @@
-"""Modes of scenes as drawn: where forces balance, where they do not, and about states that are not stable."""
+"""Modes of drawn scenes with and without balance of forces, and about unstable states."""
 
 import re
 
@@ -13,7 +13,7 @@ MASS, LEVER = (1.3, 0.6), (0.8, 0.5)
 
 
 def double_pendulum(second=(0.0, -1.3)):
-    """Two bodies on hinges, hanging; second: where the lower one is."""
+    """Return two hanging bodies on hinges; second: position of the lower one."""
     scene = Scene()
     scene.rigid_body("a", mass=MASS[0], inertia=(J,) * 3, position=(0, -LEVER[0], 0))
     scene.rigid_body("b", mass=MASS[1], inertia=(J,) * 3, position=(*second, 0))
@@ -34,7 +34,8 @@ def test_joints_bear_the_weight_of_what_hangs_in_balance():
 
 @pytest.mark.parametrize("stretch", [0.0, 0.0981])
 def test_springs_pull_by_their_gap(stretch):
-    """A string of two springs with a weight: across, w² = tension times the sum of 1 / length, over the mass."""
+    """A string of two springs with a weight: transverse w² is the tension times the sum of 1 / length, over the mass.
+    """
     scene = Scene(gravity=(0, 0, 0))
     scene.rigid_body("A", mass=2.0, inertia=(1, 1, 1), position=(0, 0, 0))
     for end in (1.0, -1.0):
@@ -69,7 +70,7 @@ def test_a_weight_on_a_cable_is_not_in_balance_as_drawn():
 
 
 def test_modes_of_an_unstable_state_say_so():
-    """A pendulum upside down, and one of two that falls: as drawn, and about a state of rest."""
+    """An inverted pendulum, and one of two inverted: as drawn, and about an equilibrium."""
     scene = Scene()
     scene.rigid_body("a", mass=1.0, inertia=(J,) * 3, position=(0, 0.8, 0))
     scene.joint("revolute", (0, 0, 0), ("a", (0, -0.8, 0)), axis=(0, 0, 1))

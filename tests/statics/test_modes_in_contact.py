@@ -1,4 +1,4 @@
-"""Modes of lines that lie on something: they do not depend on which points of a mesh happen to touch."""
+"""Modes of lines in contact do not depend on the contact points of a mesh."""
 
 import numpy as np
 import pytest
@@ -40,7 +40,7 @@ def test_frequencies_of_a_line_on_a_bed_do_not_scatter_with_the_mesh():
 
 
 def test_the_bed_may_be_part_of_a_body():
-    """The same lengths touch as on the bed in the ground."""
+    """The lengths in contact equal those on the bed of the ground."""
     rest, found = mooring(100).equilibrium(), []
     for on_body in (False, True):
         scene = mooring(100, on_body)

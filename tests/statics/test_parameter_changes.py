@@ -1,4 +1,4 @@
-"""Derivatives of states of rest by loads, weights and supports, against differences of whole scenes."""
+"""Derivatives of equilibria by loads, weights and supports, against differences of whole scenes."""
 
 import funicular as fu
 import numpy as np
@@ -10,7 +10,7 @@ STEEL = fu.Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1500.0)
 
 
 def strung(element, axes, joined=False):
-    """Return a scene of a cable between motions, with loads, springs, a body on a joint and, joined, a tied cable."""
+    """Return a cable between motions, with loads, springs, a body on a joint and, optionally, a tied cable."""
     def at(x, y):
         return tuple(axes @ [x, y, 0.0])
 
@@ -64,7 +64,7 @@ def test_loads_weights_and_supports_have_the_derivatives_of_differences_of_scene
 
 
 def wire(element, place=((0, 0, 0), (4, 0.3, 0)), fix="clamp", **given):
-    """Return a scene of a cable that hangs between its supports, under gravity that is not square to it."""
+    """Return a cable between its supports, under gravity that is oblique to it."""
     scene = fu.Scene(gravity=(0.3, -9.81, 0))
     shape = {"start": place[0], "end": place[1]} if len(place) == 2 else {"points": place}
     given = {"elements": 8, "rest_length": 4.1, "section": fu.Circle(radius=0.01), "material": STEEL, **given}

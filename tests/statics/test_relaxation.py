@@ -1,4 +1,4 @@
-"""`Scene.relax`: damped motions end in states of rest that are known, and say so where they do not end."""
+"""`Scene.relax`: damped motions end in known equilibria, and report where they do not end."""
 
 import funicular as fu
 import numpy as np

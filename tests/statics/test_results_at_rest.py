@@ -1,4 +1,4 @@
-"""A state of rest tells of each part what a run tells of it: the same names, with the values that a run begins with."""
+"""An equilibrium has the results of a run for each part: the same names, with the values at the start of a run."""
 
 import numpy as np
 import pytest
@@ -10,13 +10,13 @@ THIN = Circle(radius=0.01)
 
 
 def rope(scene, name, y, element="cable12", **given):
-    """Draw a cable of 1 m along x at a height y, held at its start."""
+    """Add a cable of 1 m along x at a height y, held at its start."""
     scene.cable(name, start=(0, y, 0), end=(1, y, 0), elements=6, element=element, section=THIN, material=SOFT,
                 up=(0, 1, 0), **given)
 
 
 def of_supports() -> Scene:
-    """A clamp, a motion, a pin, a tie, a joint, a spring, a drag."""
+    """Return a scene with a clamp, a motion, a pin, a tie, a joint, a spring, a drag."""
     scene = Scene()
     rope(scene, "beam", 1.0, "beam24")
     scene.clamp("beam", s=0)
@@ -34,7 +34,7 @@ def of_supports() -> Scene:
 
 
 def of_slides() -> Scene:
-    """A driven slide, one that ties its rider's axes to a beam, and one that is free."""
+    """Return a scene with a driven slide, one tied to the axes of a beam, and a free one."""
     scene = Scene()
     rope(scene, "line", 0.0)
     rope(scene, "beam", 1.0, "beam24")
@@ -51,7 +51,7 @@ def of_slides() -> Scene:
 
 
 def of_contacts() -> Scene:
-    """Lines that cross, a line on a bed, a body on a floor, a body by modes."""
+    """Return crossing lines, a line on a bed, a body on a floor, and a modal body."""
     scene = Scene()
     for name, y, x, z in (("low", 0.0, 0.5, 0), ("high", 0.015, 0, 0.5)):
         scene.cable(name, start=(-x, y, -z), end=(x, y, z), elements=5, element="cable12", section=THIN, material=SOFT)
@@ -103,7 +103,7 @@ def test_a_path_and_a_relaxation_tell_the_same():
 
 
 def test_a_target_names_what_a_drive_pulls():
-    """A drive holds a weight on a straight slope: m g sin of its angle."""
+    """A drive holds a weight on a straight incline: m g sin of its angle."""
     scene = Scene()
     scene.cable("rail", start=(0, 0, 0), end=(4, 3, 0), elements=4, element="cable12", section=Circle(radius=0.05),
                 material=Material(youngs_modulus=2e11, poisson_ratio=0.3, density=1e-3))

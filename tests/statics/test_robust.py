@@ -1,4 +1,4 @@
-"""What once went wrong without a word: short rests of a step, scenes at rest, coarse outputs, odd inputs."""
+"""Former silent errors: short rests of a step, scenes at rest, coarse outputs, unusual inputs."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from shared_scenes import add_cable, one_rider
 
 
 def crossing_before_an_output(delta: float, **settings):
-    """The first scene, its rider on node 1 (s = 0.5) about `delta` seconds before the output time 0.25 s."""
+    """Return the first scene with its rider at node 1 (s = 0.5) about `delta` seconds before the output time 0.25 s."""
     def late(speed):
         return one_rider(speed=speed).run(0.25, output_step=0.01, **settings)["trolley.s"][-1] - 0.5
 
@@ -21,8 +21,9 @@ def crossing_before_an_output(delta: float, **settings):
 
 @pytest.mark.parametrize("settings", [{"step": 1e-3}, {"step": 1e-3, "spectral_radius": 1.0}, {"tol": 1e-4}])
 def test_crossing_a_node_just_before_an_output_time(settings):
-    """The rest of the step, 1e-8 to 1e-11 s, is all rounding in accelerations; it used to go on from there: energy 14 %
-    off, 0.06 m off, or a rider that left the cable."""
+    """In the rest of the step, 1e-8 to 1e-11 s, accelerations are rounding; continued from there, the energy was 14 %
+    off and the position 0.06 m.
+    """
     healthy = one_rider(speed=0.953).run(0.5, output_step=0.01, **settings)
     for delta in (1e-9, 5e-11, 1e-11):
         run = crossing_before_an_output(delta, **settings)
@@ -85,8 +86,7 @@ def test_devices_are_no_results_and_links_stay_links(tmp_path):
 
 @pytest.mark.filterwarnings("ignore:the energy balance is off")
 def test_radau_at_loose_tolerances_gains_no_energy():
-    """A ratio of two corrections small by chance had stopped Newton 0.4 mm off the cable: closed, that held
-    5 J. One run in eight ended with it."""
+    """A ratio of two accidentally small corrections stopped Newton's method 0.4 mm off the cable, which held 5 J."""
     scene = one_rider(elements=12, element="cable12", strain="engineering")
     fine, *loose = (scene.run(1.0, integrator="radau", tol=tol, output_step=0.02)
                     for tol in (1e-5, *np.geomspace(0.02, 0.25, 25)))

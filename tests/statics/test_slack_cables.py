@@ -1,4 +1,4 @@
-"""Slack cables drawn straight, or otherwise far from where they hang: they must come to the catenary, or elastica."""
+"""Slack cables drawn straight, or otherwise far from equilibrium, reach the catenary or the elastica."""
 
 import warnings
 from itertools import pairwise
@@ -25,7 +25,7 @@ def rope(end, length, elements=20, element="cable12", section=SLENDER, points=No
 
 
 def hangs(scene, end, length, **settings):
-    """Its state, which must be stable and a catenary."""
+    """Return the equilibrium, which must be stable and a catenary."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", FunicularWarning)
         state = scene.equilibrium(**settings)
@@ -48,13 +48,13 @@ def test_drawn_straight(end, length, element, validated):
 @pytest.mark.parametrize("membrane", ["assumed", "reduced"])
 @pytest.mark.parametrize(("end", "length"), CASES)
 def test_drawn_straight_with_another_axial_strain(end, length, membrane):
-    """Their section has three stiffnesses: the search did not soften them, and ended at straight, folded states."""
+    """Their section has three stiffnesses, all of which the search must soften."""
     hangs(rope(end, length, membrane=membrane), end, length)
 
 
 @pytest.mark.parametrize("membrane", ["full", "assumed", "reduced"])
 def test_compressed_and_straight_is_unstable(membrane):
-    """Without weight and without the search for a stable state Newton's method leaves it straight."""
+    """Without weight and without the search for a stable state, Newton's method leaves it straight."""
     scene = rope((1, 0), 1.001, section=Circle(radius=0.001), membrane=membrane)
     scene.gravity = (0, 0, 0)
     with pytest.warns(FunicularWarning, match="the state is unstable: .* its energy; a small disturbance leaves it"):
@@ -64,7 +64,7 @@ def test_compressed_and_straight_is_unstable(membrane):
 
 
 def test_two_thousand_elements():
-    """Counted by a sparse factorisation: a dense one would take 1.2 GB and minutes."""
+    """A sparse factorisation counts; a dense one would take 1.2 GB and minutes."""
     u = np.linspace(0, 1, 41)[:, None]
     points = np.hstack([10 * u, -4 * np.sqrt(3 / 8 * 10 * 0.5) * u * (1 - u), 0 * u])
     state = hangs(rope((10, 0), 10.5, 2000, points=points), (10, 0), 10.5)
@@ -95,16 +95,16 @@ def test_a_mooring_drawn_as_a_fold(elements):
 @pytest.mark.parametrize(("element", "settings"), [("cable8p", {"load_steps": 2}),
                                                    ("cable12", {"method": "arc_length"})])
 def test_in_load_steps_and_along_a_path(element, settings):
-    """Without its weight it is a bow that may point anywhere; with it, it hangs."""
+    """Without its weight it is a bow of any direction; with it, it hangs."""
     state = hangs(rope((10, 0), 10.5, 10, element), (10, 0), 10.5, **settings)
     assert any("drawn with stress" in message for message in state.messages)
 
 
 def elastica(end, length) -> tuple[float, float]:
-    """Horizontal and upward force at the start of a heavy rope that resists bending, on pins: a boundary value problem.
+    """Return horizontal and upward force at the start of a heavy rope with bending, on pins: a boundary value problem.
 
-    In a section at s the force on what is before it is (H, W), W = w s - V: theta' = kappa, EI kappa' = H sin theta -
-    W cos theta, and the line is stretched by (H cos theta + W sin theta)/EA.
+    The force on the part before s is (H, W), W = w s - V: theta' = kappa, EI kappa' = H sin theta - W cos theta, and
+    the stretch is (H cos theta + W sin theta)/EA.
     """
     def rates(s, state, force):
         theta, kappa = state[:2]
@@ -129,7 +129,7 @@ def elastica(end, length) -> tuple[float, float]:
 
 @pytest.mark.parametrize(("end", "length"), CASES[:1] + CASES[2:])
 def test_where_bending_counts(end, length, validated):
-    """The rope as it is, 20 mm thick: its own bending stiffness takes a third off the catenary's force."""
+    """The bending stiffness of the rope, 20 mm thick, takes a third off the force of the catenary."""
     H, V = elastica(end, length)
     state = rope(end, length, section=Circle(radius=0.01)).equilibrium()
     assert state.stable and not state.messages

@@ -1,6 +1,7 @@
-"""Slack lines drawn straight come to rest from no other shape: in parts, in water, on a bed, by any mesh and membrane.
+"""Slack lines drawn straight reach equilibrium from no other shape: in parts, in water, on a bed, by any mesh and
+membrane.
 
-References are those of tests/benchmarks/slack_lines.py, which prints them beside the time that they take.
+References are those of tests/benchmarks/slack_lines.py, which prints them with their cost.
 """
 
 import warnings
@@ -17,7 +18,7 @@ pytestmark = pytest.mark.filterwarnings("ignore:contact .* below its surface:fun
 
 
 def pull(rest: fu.Equilibrium, cable: str) -> float:
-    """Return the force at the start of a cable, of a state that must be stable."""
+    """Return the force at the start of a cable in a state that must be stable."""
     assert rest.stable
     return float(np.linalg.norm(rest[f"{cable}@0.force"]))
 
@@ -25,7 +26,7 @@ def pull(rest: fu.Equilibrium, cable: str) -> float:
 @pytest.mark.parametrize("mesh", [100, 200, *(pytest.param(n, marks=pytest.mark.slow) for n in (450, 600, 1000))])
 @pytest.mark.parametrize("name", LAZY_WAVES)
 def test_lazy_waves(name, mesh, validated):
-    """Another program's forces and curvatures; 450 and 600 elements had ended at unstable states."""
+    """Forces and curvatures of another program; 450 and 600 elements once ended at unstable states."""
     data = LAZY_WAVES[name]
     rest = lazy_wave(data, MESHES[mesh]).equilibrium()
     given = {"source": "another program, converged", "variant": "cable12", "mesh": f"{mesh} elements"}
@@ -37,7 +38,8 @@ def test_lazy_waves(name, mesh, validated):
 
 @pytest.mark.parametrize("fractions", [(0.4, 0.5), (0.3, 0.7)])
 def test_parts_may_be_drawn_of_any_length(fractions):
-    """Slopes at the ties kept the ratio in which parts are drawn slack: 9,326 N, 2.5 1/m, or no stable state."""
+    """The slopes at ties must not keep the ratio of slack of the drawn parts, which gave 9,326 N, 2.5 1/m, or no state.
+    """
     data = LAZY_WAVES["80 m"]
     rest = lazy_wave(data, MESHES[100], fractions).equilibrium()
     assert pull(rest, "upper") == pytest.approx(data.force, rel=1e-3)
@@ -45,7 +47,7 @@ def test_parts_may_be_drawn_of_any_length(fractions):
 
 
 def test_elements_that_are_long_for_their_bends():
-    """Of 5 m where the line's radius is 12 m: strings of several links an element; reference: 1,000 elements."""
+    """Elements of 5 m at a radius of 12 m: strings of several links per element; reference: 1,000 elements."""
     deep = LazyWave((560.0, 200.0, 560.0), 0.3, 60.85, (600.0, -800.0), 85584.78, 0.0852)
     rest = lazy_wave(deep, (120, 40, 80)).equilibrium()
     assert pull(rest, "upper") == pytest.approx(deep.force, rel=1e-4)
@@ -53,7 +55,7 @@ def test_elements_that_are_long_for_their_bends():
 
 
 def in_space(flow: float) -> fu.Scene:
-    """Return a line of three parts above and on a bed that slopes, in a stream across it, clamped at its top."""
+    """Return a line of three parts above and on a sloping bed, in a cross stream, clamped at its top."""
     scene = fu.Scene(gravity=(0, 0, -G))
     scene.fluid("sea", density=1025, velocity=(0.2 * flow, flow, 0))
     scene.surface("bed", fu.Plane(point=(60, 20, -40), normal=(0.1, -0.05, 1)))
@@ -90,7 +92,7 @@ def test_the_state_depends_on_no_added_mass():
 
 @pytest.mark.parametrize("elements", [30, pytest.param(150, marks=pytest.mark.slow)])
 def test_two_tied_ropes(elements, validated):
-    """As one rope of 140 m: Irvine's catenary, off which bending takes 1e-4 of the force; 150 had 1,373,955 N."""
+    """As one rope of 140 m: Irvine's catenary, with a change of 1e-4 of the force by bending."""
     weight = 9.81 * 5000 * np.pi * 0.05**2
     expected = np.hypot(*end_forces(100, 0, 140, weight, 1e9 * np.pi * 0.05**2))
     found = pull(tied_ropes(elements).equilibrium(), "a")
@@ -101,7 +103,8 @@ def test_two_tied_ropes(elements, validated):
 
 
 def catenary_to_bed(H: float, hanging: float, weight: float, axial: float) -> tuple[float, float]:
-    """Return how far aside and down an elastic line of this hanging length (m) comes to a bed, in m, by H in N."""
+    """Return the distances (aside, down), m, at which an elastic line of a hanging length (m) meets a bed, by H in N.
+    """
     slope = weight * hanging / H
     return (H / weight * np.arcsinh(slope) + H * hanging / axial,
             H / weight * (np.hypot(1, slope) - 1) + weight * hanging**2 / (2 * axial))
@@ -124,14 +127,14 @@ def on_bed(density: float) -> float:
                                      {"elements": 60}, {"elements": 100}, {"anchor": -79.999}, {"membrane": "full"}],
                          ids=str)
 def test_a_wire_on_a_bed(changed):
-    """Small changes had made the state unstable, its force 280 times too large. The rigid bed takes 1e-4 of it."""
+    """Small changes once made the state unstable, with 280 times the force. The rigid bed changes it by 1e-4."""
     rest = wire_on_bed(**{"elements": 45} | changed).equilibrium()
     assert pull(rest, "wire") == pytest.approx(on_bed(changed.get("density", 900.0)), rel=1e-3)
     assert not any("compressed" in message for message in rest.messages)
 
 
 def test_moorings_of_a_buoy():
-    """Jointed to a body that an upward load moves by 17 m: each line is a catenary to the bed by the force at its end.
+    """Joined to a body that an upward load moves by 17 m, each line is a catenary to the bed by the force at its end.
     """
     area, modulus, length, lift = np.pi * 0.04**2, 2e10, 225.0, 9e4
     scene = fu.Scene(gravity=(0, 0, -G))
@@ -158,7 +161,7 @@ def test_moorings_of_a_buoy():
 
 
 def drawn_with_sag(sag: float) -> fu.Scene:
-    """Return the wire of `wire_on_bed` through points on a parabola with this sag in m."""
+    """Return the wire of `wire_on_bed` through points on a parabola with a sag in m."""
     u = np.linspace(0, 1, 15)[:, None]
     scene = wire_on_bed(45)
     return scene.replace("wire", points=np.hstack([300 * u, 0 * u, -80 * u - 4 * sag * u * (1 - u)]), rest="straight")
@@ -174,7 +177,7 @@ def test_a_wire_drawn_with_another_sag(sag):
 
 @pytest.mark.parametrize("elements", [10, 20, 40])
 def test_a_rope_needs_few_iterations(elements):
-    """They were 71, 79 and 89, through states of softer ropes."""
+    """Through states of softer ropes the search took 71, 79 and 89 iterations."""
     rest = rope(elements).equilibrium()
     assert rest.iterations <= 7
     assert not rest.messages
@@ -185,7 +188,7 @@ def test_a_rope_needs_few_iterations(elements):
 @pytest.mark.parametrize(("element", "law"), [("cable8p", {}), ("beam12p", {"law": "structural"}),
                                               ("beam24", {"law": "structural"}), ("cable18", {})])
 def test_other_elements(element, law):
-    """Clamped level at one end: the same state as cable12's, which Newton's method finds from the same start."""
+    """Clamped horizontally at one end: the state of cable12, which Newton's method finds from the same start."""
     def state(element, law):
         scene = fu.Scene()
         scene.cable("rope", start=(0, 0, 0), end=(8, 0, 0), rest_length=10, elements=24, element=element, **law,
@@ -202,7 +205,7 @@ def test_other_elements(element, law):
 
 
 def bead_on_an_arch() -> fu.Scene:
-    """Return a body on top of a stiff arch, at rest there, and nowhere else: it runs off either end."""
+    """Return a body on top of a stiff arch, its only equilibrium: it would run off either end."""
     scene = fu.Scene()
     u = np.linspace(-1, 1, 21)[:, None]
     scene.cable("arch", points=np.hstack([u, 0.2 * (1 - u**2), 0 * u]), elements=8, element="beam12p",
@@ -227,7 +230,7 @@ def test_no_unstable_state_is_returned_unless_asked_for():
 
 @pytest.mark.parametrize(("waves", "force"), [(0.0, on_bed(900.0)), (0.5, 130119.0), (2.0, 135707.0)])
 def test_a_wire_on_an_uneven_bed(waves, force):
-    """A height field, even or in waves of 126 m; 45 elements against 100, or the catenary; it had been refused."""
+    """A height field, flat or with waves of 126 m; 45 elements against 100, or the catenary."""
     scene, x = wire_on_bed(45, anchor=-79.9), np.linspace(-50, 400, 91)
     heights = tuple(-80 + waves * np.sin((x - 300) / 20))
     scene = scene.replace("bed", shape=fu.HeightField(x=tuple(x), heights=heights, along=(1, 0, 0), up=(0, 0, 1)))
@@ -237,7 +240,7 @@ def test_a_wire_on_an_uneven_bed(waves, force):
 
 
 def thick_parts(elements: int) -> fu.Scene:
-    """Return a line whose middle, buoyant part is so thick that it bends little, and parts of it bear no tension."""
+    """Return a line with a thick, stiff and buoyant middle; some of its parts have no tension."""
     scene, end, lengths = fu.Scene(gravity=(0, 0, -G)), np.array([1.4, 10, -7]), (4.5, 1.8, 6.3)
     scene.fluid("sea", density=1025)
     at = np.cumsum([0, *lengths])[:, None] / sum(lengths) * end
@@ -254,9 +257,9 @@ def thick_parts(elements: int) -> fu.Scene:
 
 
 def test_a_line_that_bending_shapes():
-    """Strings without tension start the search where bending keeps their length; 90 iterations had been needed.
+    """Strings without tension start the search where bending keeps their length.
 
-    With 36 elements a part it is the same state.
+    With 36 elements a part the state is the same.
     """
     rest, finer = thick_parts(18).equilibrium(), thick_parts(36).equilibrium()
     assert rest.stable
@@ -266,14 +269,14 @@ def test_a_line_that_bending_shapes():
 
 
 def test_a_line_without_tension_on_its_bed_is_refused_with_the_cause():
-    """330 m, of which 80 m hang and 240 m reach the anchor: nothing puts the rest in tension."""
+    """330 m, of which 80 m hang and 240 m reach the anchor: no force tensions the rest."""
     scene = wire_on_bed(20).replace("wire", end=(240, 0, -80))
     with pytest.raises(fu.EquilibriumError, match=r'"wire" is so long that .* % of it would have no tension'):
         scene.equilibrium()
 
 
 def test_no_run_goes_on_from_an_unstable_state():
-    """Not even where the scene's settings ask `equilibrium` for such a state."""
+    """Even if the settings of the scene ask `equilibrium` for such a state."""
     scene = bead_on_an_arch()
     for settings in ({}, {"seek_stable": False}):
         scene.equilibrium_settings = settings

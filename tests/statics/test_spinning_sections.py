@@ -1,4 +1,4 @@
-"""Beams so thin that their sections spin in a state of rest of a coarse mesh: refused with the mesh to take."""
+"""Beams so thin that their sections spin in an equilibrium of a coarse mesh: refused, with a sufficient mesh."""
 
 import re
 
@@ -8,7 +8,7 @@ import pytest
 
 
 def rope(elements: int) -> fu.Scene:
-    """A rope of 10 mm and 120 m over 100 m, 10 N/m."""
+    """Return a rope of 10 mm and 120 m over 100 m, 10 N/m."""
     area = np.pi * 0.01**2 / 4
     scene = fu.Scene(gravity=(0, -9.81, 0))
     scene.cable("rope", start=(0, 0, 0), end=(100, 0, 0), shape="hanging", rest="straight", rest_length=120,

@@ -1,5 +1,5 @@
-"""Catenaries with staggers: heights and places at the supports, lateral forces against closed form, passages beside
-those of the plane, arms that turn about their hinges.
+"""Catenaries with staggers: heights and positions at the supports, lateral forces against closed forms, passages beside
+planar ones, arms that rotate about their hinges.
 """
 
 import funicular as fu
@@ -37,11 +37,11 @@ def test_the_wire_lies_as_given(of_messenger):
 
 @pytest.mark.parametrize("of_messenger", [SIDE, pytest.param(0.0, marks=pytest.mark.slow)])
 def test_supports_bear_the_tension_times_its_change_of_direction(of_messenger):
-    """Moments about the height of all on a span: droppers pull one wire as much as the other, wherever they lean.
+    """Moments about the mean height of a span: droppers pull both wires equally, at any inclination.
 
-    Both wires' lateral forces at an end of a span of the length L are (T 2 a + T' 2 a' + 2 M) / L. The messenger turns
-    freely; the contact wire is along the track at the masts, and bends there with M = l F, l = sqrt(EI / T), beside
-    its arm of the force 2 F.
+    The lateral forces of both wires at an end of a span of the length L are (T 2 a + T' 2 a' + 2 M) / L. The messenger
+    rotates freely; the contact wire is parallel to the track at the masts, and bends there with M = l F, l = sqrt(EI /
+    T), beside its arm with the force 2 F.
     """
     errors = []
     for longest in ((1.0, 1.0), (0.25, 0.5)):
@@ -71,7 +71,8 @@ def test_no_stagger_is_the_planar_line():
 
 @pytest.fixture(scope="module")
 def passages():
-    """Passages through two spans at 250 km/h: with staggers, and in the plane with arms of the same vertical stiffness.
+    """Return passages through two spans at 250 km/h, with staggers, and in the plane with arms of the same vertical
+    stiffness.
     """
     runs = []
     for more in ({"stagger": SIDE}, {"steady_arm": catenary.SteadyArm(stiffness=2 * 22e3 * 2 * SIDE / SPAN)}):
@@ -92,7 +93,7 @@ def test_the_wire_wanders_along_the_collector(passages):
 
 
 def test_a_passage_is_that_of_the_plane(passages):
-    """But for what the end masts do: a stagger changes heights and forces by its square."""
+    """Apart from the end masts, a stagger changes heights and forces by its square."""
     space, plane = (catenary.assess(run) for run in passages)
     assert float(space["mean"][0]) == pytest.approx(float(plane["mean"][0]), rel=3e-3)
     assert float(space.standard_deviation[0]) == pytest.approx(float(plane.standard_deviation[0]), rel=1e-2)
@@ -117,7 +118,7 @@ def test_a_jointed_pantograph_below_staggers():
 
 
 def test_stability_is_counted_where_pivots_are_almost_zero():
-    """At rest in this scene SuperLU took no pivots on the diagonal, and left stability unknown."""
+    """In this scene SuperLU takes no diagonal pivots, so that they do not count the stability."""
     scene = catenary.scene(line55(2, stagger=SIDE, steady_arm=catenary.SteadyArm()), (2.0, 4.0))
     catenary.add_pantograph(scene, TWO_MASSES, 20.0, 60.0)
     found = scene.equilibrium().stability

@@ -11,7 +11,7 @@ EI = 1e7 * np.pi * 0.01**4 / 4
 
 
 def rod(kind, angle, elements=16, damping_time=0.0):
-    """Return a round rod along x, clamped at one end, whose other end turns about the axis."""
+    """Return a round rod along x, clamped at one end; the other end rotates about the axis."""
     scene = Scene(gravity=(0, 0, 0))
     scene.cable("rod", start=(0, 0, 0), end=(1, 0, 0), elements=elements, element="beam24", law="structural",
                 section=Circle(radius=0.01), material=Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1000,
