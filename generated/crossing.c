@@ -1005,6 +1005,32 @@ void crossing_stretch(const fu_real *d, const fu_real *t, const fu_real *k, cons
     along[2] = tau_z;
 }
 
+/* direction of a stretch that slides as the step ends; 28 add, 36 mul, 3 div, 2 sqrt */
+void crossing_turned(const fu_real *x_now, const fu_real *x_old, const fu_real *slip_old, const fu_real *slip, fu_real h, fu_real r_1, fu_real least, fu_real slid, fu_real r_0, fu_real turns, fu_real *direction)
+{
+    /* direction */
+    const fu_real
+        r = least + r_1 + 0.5*slid*(r_0 - r_1),
+        change_x = x_now[0] - x_old[0],
+        change_y = x_now[1] - x_old[1],
+        change_z = x_now[2] - x_old[2],
+        size_path = FU_SQRT(change_x*change_x + change_y*change_y + change_z*change_z + least*least),
+        path = size_path*turns,
+        A = path/r,
+        speed_1 = FU_SQRT(least*least + slip[0]*slip[0] + slip[1]*slip[1] + slip[2]*slip[2]),
+        old_more = 0.5*slid*(-r_0 + r_1)/r_0,
+        weight_0 = -((1.0/12.0)*h*(A*A + A)),
+        weight_1 = 0.25*A*A + 0.5*A,
+        weight_2 = path*((1.0/24.0)*A*A*A + (1.0/12.0)*A)/speed_1,
+        turned_x = change_x*weight_1 + old_more*x_old[0] + slip[0]*weight_2 + slip_old[0]*weight_0 + x_now[0],
+        turned_y = change_y*weight_1 + old_more*x_old[1] + slip[1]*weight_2 + slip_old[1]*weight_0 + x_now[1],
+        turned_z = change_z*weight_1 + old_more*x_old[2] + slip[2]*weight_2 + slip_old[2]*weight_0 + x_now[2];
+    /* outputs */
+    direction[0] = turned_x;
+    direction[1] = turned_y;
+    direction[2] = turned_z;
+}
+
 /* friction that sticks, its derivatives with the points moving; 1409 add, 2442 mul, 95 div, 4 sqrt */
 void crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real k_t, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k)
 {

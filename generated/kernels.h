@@ -582,6 +582,14 @@ fu_body_cayley_tangent_kernel rigid_cayley_tangent;
 /* step 3, T 1x1 */
 fu_body_cayley_tangent_kernel planar_rigid_cayley_tangent;
 
+typedef void fu_body_cayley_error_kernel(const fu_real *w, const fu_real *a, fu_real *error);
+/* error of the turn by a Cayley vector over the cube of the step: w [m/s, rad/s]; a [m/s^2, rad/s^2] -> error
+ * [rad/s^3] */
+/* w 6, a 6, error 3 */
+fu_body_cayley_error_kernel rigid_cayley_error;
+/* w 3, a 3, error 1 */
+fu_body_cayley_error_kernel planar_rigid_cayley_error;
+
 typedef void fu_body_halfway_kernel(const fu_real *b, const fu_real *b_next, fu_real *b_half);
 /* configuration half-way, turned by half of the turn: b [m, 1]; b_next [m, 1] -> b_half [m, 1] */
 /* b 7, b_next 7, b_half 7 */
@@ -1108,6 +1116,14 @@ fu_crossing_stretch_kernel crossing_stretch;
  * along 2 */
 fu_crossing_stretch_kernel planar_crossing_stretch;
 
+typedef void fu_crossing_turned_kernel(const fu_real *x_now, const fu_real *x_old, const fu_real *slip_old, const fu_real *slip, fu_real h, fu_real r_1, fu_real least, fu_real slid, fu_real r_0, fu_real turns, fu_real *direction);
+/* direction of a stretch that slides as the step ends: x_now [m]; x_old [m]; slip_old [m/s]; slip [m/s]; h [s]; r_1
+ * [m]; least [m]; slid [1]; r_0 [m]; turns [1] -> direction [m] */
+/* x_now 3, x_old 3, slip_old 3, slip 3, direction 3 */
+fu_crossing_turned_kernel crossing_turned;
+/* x_now 2, x_old 2, slip_old 2, slip 2, direction 2 */
+fu_crossing_turned_kernel planar_crossing_turned;
+
 typedef void fu_crossing_sticking_kernel(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real k_t, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k);
 /* friction that sticks, its derivatives with the points moving: d [m]; t [1]; k [1/m]; w [1/s]; u [m/s]; third
  * [1/m^2]; k_rate [1/(m s)]; c [m, 1, N/m, N/m^1.5, s/m, m, 1, m/s]; k_t [N/m]; e [m]; h [s]; d_0 [m]; d_rate [m/s];
@@ -1499,6 +1515,7 @@ typedef struct {
     fu_body_move_tangent_kernel *move_tangent;
     fu_body_cayley_move_kernel *cayley_move;
     fu_body_cayley_tangent_kernel *cayley_tangent;
+    fu_body_cayley_error_kernel *cayley_error;
     fu_body_halfway_kernel *halfway;
     fu_body_rate_kernel *rate;
     fu_body_increment_kernel *increment;
@@ -1595,6 +1612,7 @@ typedef struct {
     fu_crossing_force_kernel *force;
     fu_crossing_motion_kernel *motion;
     fu_crossing_stretch_kernel *stretch;
+    fu_crossing_turned_kernel *turned;
     fu_crossing_sticking_kernel *sticking;
     fu_crossing_sliding_kernel *sliding;
     fu_crossing_step_kernel *step;

@@ -278,6 +278,14 @@ void planar_rigid_cayley_tangent(const fu_real *step, fu_real *T)
     T[0] = scale;
 }
 
+/* error of the turn by a Cayley vector over the cube of the step (Taylor series of the attitude); 3 mul */
+void planar_rigid_cayley_error(const fu_real *w, const fu_real *a, fu_real *error)
+{
+    (void)a;
+    /* outputs */
+    error[0] = -((1.0/12.0)*w[2]*w[2]*w[2]);
+}
+
 /* configuration half-way, turned by half of the turn; 5 add, 8 mul, 1 div, 1 sqrt */
 void planar_rigid_halfway(const fu_real *b, const fu_real *b_next, fu_real *b_half)
 {

@@ -154,13 +154,13 @@ static const fu_law_kernels laws[] = {
 static const fu_body_kernels bodys[] = {
     {"rigid", 3, 7, 6, rigid_place, rigid_point, rigid_point_force, rigid_frame, rigid_inertia_force,
      rigid_inertia_tangent, rigid_kinetic_energy, rigid_discrete_point, rigid_force, rigid_follower_force, rigid_moment,
-     rigid_move, rigid_move_tangent, rigid_cayley_move, rigid_cayley_tangent, rigid_halfway, rigid_rate,
-     rigid_increment},
+     rigid_move, rigid_move_tangent, rigid_cayley_move, rigid_cayley_tangent, rigid_cayley_error, rigid_halfway,
+     rigid_rate, rigid_increment},
     {"planar_rigid", 2, 4, 3, planar_rigid_place, planar_rigid_point, planar_rigid_point_force, planar_rigid_frame,
      planar_rigid_inertia_force, planar_rigid_inertia_tangent, planar_rigid_kinetic_energy, planar_rigid_discrete_point,
      planar_rigid_force, planar_rigid_follower_force, planar_rigid_moment, planar_rigid_move, planar_rigid_move_tangent,
-     planar_rigid_cayley_move, planar_rigid_cayley_tangent, planar_rigid_halfway, planar_rigid_rate,
-     planar_rigid_increment},
+     planar_rigid_cayley_move, planar_rigid_cayley_tangent, planar_rigid_cayley_error, planar_rigid_halfway,
+     planar_rigid_rate, planar_rigid_increment},
 };
 
 static const fu_modal_kernels modals[] = {
@@ -249,10 +249,10 @@ static const fu_drag_kernels drags[] = {
 
 static const fu_crossing_kernels crossings[] = {
     {"crossing", 3, crossing_closest, crossing_contact, crossing_force, crossing_motion, crossing_stretch,
-     crossing_sticking, crossing_sliding, crossing_step},
+     crossing_turned, crossing_sticking, crossing_sliding, crossing_step},
     {"planar_crossing", 2, planar_crossing_closest, planar_crossing_contact, planar_crossing_force,
-     planar_crossing_motion, planar_crossing_stretch, planar_crossing_sticking, planar_crossing_sliding,
-     planar_crossing_step},
+     planar_crossing_motion, planar_crossing_stretch, planar_crossing_turned, planar_crossing_sticking,
+     planar_crossing_sliding, planar_crossing_step},
 };
 
 static const fu_surface_kernels surfaces[] = {
@@ -330,6 +330,7 @@ static const fu_point_law_kernels point_laws[] = {
 #define FU_ARGUMENTS_vvvv_6 a[0], a[1], a[2], a[3], out[0], out[1], out[2], out[3], out[4], out[5]
 #define FU_ARGUMENTS_vvvvvv_6 a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5]
 #define FU_ARGUMENTS_vvvvvvvsvvvvvvv_3 a[0], a[1], a[2], a[3], a[4], a[5], a[6], *a[7], a[8], a[9], a[10], a[11], a[12], a[13], a[14], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vvvvssssss_1 a[0], a[1], a[2], a[3], *a[4], *a[5], *a[6], *a[7], *a[8], *a[9], out[0]
 #define FU_ARGUMENTS_vvvvvvvvsvsvvvvvvv_6 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], *a[8], a[9], *a[10], a[11], a[12], a[13], a[14], a[15], a[16], a[17], out[0], out[1], out[2], out[3], out[4], out[5]
 #define FU_ARGUMENTS_vvvvvvvvssvsvvvvvvvsss_6 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], *a[8], *a[9], a[10], *a[11], a[12], a[13], a[14], a[15], a[16], a[17], a[18], *a[19], *a[20], *a[21], out[0], out[1], out[2], out[3], out[4], out[5]
 #define FU_ARGUMENTS_vvvvsssv_3 a[0], a[1], a[2], a[3], *a[4], *a[5], *a[6], a[7], out[0], out[1], out[2]
@@ -633,6 +634,7 @@ static const fu_point_law_kernels point_laws[] = {
     X(rigid_move_tangent, v_1) \
     X(rigid_cayley_move, vv_1) \
     X(rigid_cayley_tangent, v_1) \
+    X(rigid_cayley_error, vv_1) \
     X(rigid_halfway, vv_1) \
     X(rigid_rate, vv_1) \
     X(rigid_increment, vv_1) \
@@ -651,6 +653,7 @@ static const fu_point_law_kernels point_laws[] = {
     X(planar_rigid_move_tangent, v_1) \
     X(planar_rigid_cayley_move, vv_1) \
     X(planar_rigid_cayley_tangent, v_1) \
+    X(planar_rigid_cayley_error, vv_1) \
     X(planar_rigid_halfway, vv_1) \
     X(planar_rigid_rate, vv_1) \
     X(planar_rigid_increment, vv_1) \
@@ -821,6 +824,7 @@ static const fu_point_law_kernels point_laws[] = {
     X(crossing_force, vvvvvv_6) \
     X(crossing_motion, vvvvv_3) \
     X(crossing_stretch, vvvvvvvsvvvvvvv_3) \
+    X(crossing_turned, vvvvssssss_1) \
     X(crossing_sticking, vvvvvvvvsvsvvvvvvv_6) \
     X(crossing_sliding, vvvvvvvvssvsvvvvvvvsss_6) \
     X(crossing_step, vvvvsssv_3) \
@@ -829,6 +833,7 @@ static const fu_point_law_kernels point_laws[] = {
     X(planar_crossing_force, vvvvvv_6) \
     X(planar_crossing_motion, vvvvv_3) \
     X(planar_crossing_stretch, vvvvvvvsvvvvvvv_3) \
+    X(planar_crossing_turned, vvvvssssss_1) \
     X(planar_crossing_sticking, vvvvvvvvsvsvvvvvvv_6) \
     X(planar_crossing_sliding, vvvvvvvvssvsvvvvvvvsss_6) \
     X(planar_crossing_step, vvvvsssv_3) \

@@ -607,6 +607,15 @@ void rigid_cayley_tangent(const fu_real *step, fu_real *T)
     T[8] = scale;
 }
 
+/* error of the turn by a Cayley vector over the cube of the step (Taylor series of the attitude); 12 add, 39 mul */
+void rigid_cayley_error(const fu_real *w, const fu_real *a, fu_real *error)
+{
+    /* outputs */
+    error[0] = (1.0/12.0)*a[4]*w[5] - (1.0/12.0)*a[5]*w[4] - (1.0/12.0)*w[3]*w[3]*w[3] - (1.0/12.0)*w[3]*w[4]*w[4] - (1.0/12.0)*w[3]*w[5]*w[5];
+    error[1] = -(1.0/12.0)*a[3]*w[5] + (1.0/12.0)*a[5]*w[3] - (1.0/12.0)*w[3]*w[3]*w[4] - (1.0/12.0)*w[4]*w[4]*w[4] - (1.0/12.0)*w[4]*w[5]*w[5];
+    error[2] = (1.0/12.0)*a[3]*w[4] - (1.0/12.0)*a[4]*w[3] - (1.0/12.0)*w[3]*w[3]*w[5] - (1.0/12.0)*w[4]*w[4]*w[5] - (1.0/12.0)*w[5]*w[5]*w[5];
+}
+
 /* configuration half-way, turned by half of the turn; 10 add, 14 mul, 1 div, 1 sqrt */
 void rigid_halfway(const fu_real *b, const fu_real *b_next, fu_real *b_half)
 {

@@ -17,7 +17,8 @@ from .body import Body
 
 def build(body: Body) -> list[Program]:
     """Return the kernels of a body's moves."""
-    return [make(body) for make in (move, move_tangent, cayley_move, cayley_tangent, halfway, rate, increment)]
+    return [make(body) for make in (move, move_tangent, cayley_move, cayley_tangent, cayley_error, halfway, rate,
+                                    increment)]
 
 
 def _step(p: Program, body: Body, turn: str) -> np.ndarray:
@@ -70,7 +71,7 @@ def cayley_tangent(body: Body) -> Program:
     p.stage("half of the Cayley vector")
     half = p.vector("half", theta / 2)
     turn = body.cayley(half)
-    conjugate = np.array([turn[0], *-turn[1:]])
+    conjugate = _conjugate(turn)
     p.stage("scale")
     T = np.zeros((len(theta), len(theta)), dtype=object)
     for k, symbol in enumerate(half):
@@ -81,6 +82,33 @@ def cayley_tangent(body: Body) -> Program:
             T[i, k] = above * p.define_once("scale", 1 / below) if below.free_symbols else above / below
     p.output("T", T, "1", "dtheta = T dpsi, for the turn")
     return p
+
+
+def cayley_error(body: Body) -> Program:
+    """Return the kernel of the leading error of a step by Cayley's vector: its turn less that of the motion, over h^3.
+
+    The attitude q solves q' = q (0, omega)/WINDING with a rate of turn omega that is linear in time, of which the step
+    takes the value half-way. The series of q about the middle of the step and that of Cayley's map differ from h^3 on.
+    """
+    p = Program(f"{body.NAME}_cayley_error", "error of the turn by a Cayley vector over the cube of the step",
+                "Taylor series of the attitude")
+    w = body.velocity(p)[body.DIM :]
+    a = p.input("a", body.N_VELOCITY, "m/s^2, rad/s^2", "accelerations R'', omega'")[body.DIM :]
+    h = sp.Symbol("h")
+    omega, change = np.array([0, *w]) / body.WINDING, np.array([0, *a]) / body.WINDING
+    q = [np.array([1, *(0 * w)]), omega]
+    q.append(body.product(q[1], omega) + change)
+    q.append(body.product(q[2], omega) + 2 * body.product(q[1], change))
+    begin, end = (sum(each * t**k / sp.factorial(k) for k, each in enumerate(q)) for t in (-h / 2, h / 2))
+    turn = body.product(_conjugate(begin), end)
+    off = body.product(_conjugate(turn), body.cayley(h * w / 2))[1:]
+    p.output("error", body.WINDING * np.array([sp.diff(x, h, 3).subs(h, 0).expand() / 6 for x in off]), "rad/s^3",
+             "error over h^3, about body axes")
+    return p
+
+
+def _conjugate(attitude: np.ndarray) -> np.ndarray:
+    return np.array([attitude[0], *-attitude[1:]])
 
 
 def halfway(body: Body) -> Program:

@@ -53,7 +53,8 @@ class _Lines(NamedTuple):
 
 def build(dim: int) -> list[Program]:
     """Return the kernels in space or in the plane."""
-    return [closest(dim), contact(dim), force(dim), motion(dim), stretch(dim), sticking(dim), sliding(dim), step(dim)]
+    return [closest(dim), contact(dim), force(dim), motion(dim), stretch(dim), turned(dim), sticking(dim),
+            sliding(dim), step(dim)]
 
 
 def _lines(p: Program, dim: int, with_curvature: bool = True) -> _Lines:
@@ -262,6 +263,21 @@ def stretch(dim: int) -> Program:
     p.output("now", found.now, "m", "stretch, square to the normal")
     p.output("old", found.old, "m", "that of the last step, turned with the lines")
     p.output("along", found.along, "1", "direction of the last line that has a slope")
+    return p
+
+
+def turned(dim: int) -> Program:
+    """Return the kernel of the direction of a stretch that slides as the step ends."""
+    p = Program(f"{CROSSINGS[dim]}_turned", "direction of a stretch that slides as the step ends", SOURCE)
+    now = p.input("x_now", dim, "m", "stretch without sliding")
+    old = p.input("x_old", dim, "m", "stretch of the last step, turned with the lines")
+    slip_old = p.input("slip_old", dim, "m/s", "slip of the last step, turned with the lines")
+    slip = p.input("slip", dim, "m/s", "slip")
+    h = p.input("h", (), "s", "time since the last step")
+    end = p.input("r_1", (), "m", "size of the stretch"), p.input("least", (), "m", "a negligible length")
+    p.stage("direction")
+    p.output("direction", turned_stretch(p, Stretch(now, old, old, old, slip_old, h, ()), slip, end), "m",
+             "along the stretch, of no particular size")
     return p
 
 

@@ -44,6 +44,8 @@ def moves(rider) -> list[Relation]:
         Relation("cayley_move", "b_next", "by Cayley's map, of unit size", 0,
                  lambda k, s, t, j: _normalised(k, _cayley(rider, s["b"], s["step"]), dim)),
         Relation("cayley_tangent", "T", "turn by the change of the Cayley vector", 1, stepped("cayley_tangent"), turns),
+        Relation("cayley_error", "error", "(Magnus) w x a + |w|^2 w, over -12", 0, lambda k, s, t, j: _cayley_error(
+            s["w"][dim:], s["a"][dim:])),
         Relation("halfway", "b_half", "the second half of the step is the first", 0,
                  lambda k, s, t, j: rider.step(k("halfway", s)["b_half"], s["b_next"]), of=first_half),
         Relation("rate", "b_rate", "db/dt", 1, lambda k, s, t, j: rider.moved(k, s["b"], t * s["w"])),
@@ -65,6 +67,11 @@ def _cayley(rider, b: np.ndarray, step: np.ndarray) -> np.ndarray:
         attitude = np.concatenate([[w - v.dot(half)], v + w * half
                                    + np.array([v[i - 2] * half[i - 1] - v[i - 1] * half[i - 2] for i in range(3)])])
     return np.concatenate([b[: rider.dim] + step[: rider.dim], attitude])
+
+
+def _cayley_error(w: np.ndarray, a: np.ndarray) -> np.ndarray:
+    """Return the error of Cayley's map, -|w|^2 w/12, less the second term of Magnus' series, w x a/12."""
+    return -(w.dot(w) * w + (np.cross(w, a) if len(w) == 3 else 0)) / 12
 
 
 def _normalised(k: Numbers, b: np.ndarray, dim: int) -> np.ndarray:

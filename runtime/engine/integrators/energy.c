@@ -177,24 +177,15 @@ static int step(fu_run *run, double h)
     return fu_newton_step(run, &newton, h);
 }
 
-/* Adds to the local error of turns, dofs, what the change of the rate of turn does not hold: with Omega at the middle
- * of the step Cayley's map turns by h Omega - h^3/12 |Omega|^2 Omega, and the frame by h^3/12 Omega x Omega' more than
- * the integral of Omega (Magnus' series). A steady turn has this error alone. */
+/* Adds to the local error of turns what the change of their rate does not contain: Cayley's map is off by the order of
+ * h^3 in a steady turn, too. */
 static void add_turn_errors(const fu_model *model, double h, const double *rate, const double *change, double *error)
 {
-    const double factor = h * h * h / 12.0;
     FU_EACH_BODY(body, model) {
-        const int at = body->dof + body->kernel->dim;
-        const double *w = rate + at, *c = change + at;
-        double *e = error + at;
-        if (body->kernel->dim == 2) {
-            e[0] -= factor * w[0] * w[0] * w[0];
-            continue;
-        }
-        const double square = w[0] * w[0] + w[1] * w[1] + w[2] * w[2];
-        e[0] -= factor * (square * w[0] + w[1] * c[2] - w[2] * c[1]);
-        e[1] -= factor * (square * w[1] + w[2] * c[0] - w[0] * c[2]);
-        e[2] -= factor * (square * w[2] + w[0] * c[1] - w[1] * c[0]);
+        const int first = body->dof + body->kernel->dim, end = body->dof + body->kernel->velocity;
+        double of_turn[FU_SPACE];
+        body->kernel->cayley_error(rate + body->dof, change + body->dof, of_turn);
+        for (int i = first; i < end; ++i) error[i] += h * h * h * of_turn[i - first];
     }
 }
 

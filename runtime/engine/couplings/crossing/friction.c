@@ -105,31 +105,19 @@ static int turns(int dim, const fu_crossing_stick *grip, const fu_friction_trave
            fu_dot(3, now, travel->rates[1]) > 0.0 && fu_dot(3, now, grip->old) >= 0.0;
 }
 
-/* Direction of a stretch that slides as the step ends, as turned_stretch in derive/couplings/crossing_stretch.py. */
+/* Makes the direction of a stretch that slides as the step ends. */
 static void turn_to_slip(const fu_crossing *crossing, const last_step *last, double time,
                          const fu_closest_points *points, const fu_crossing_contact *contact,
                          const fu_crossing_stick *grip, double along[3])
 {
-    const double least = crossing->law[FU_LAW_LEAST],
-                 r = crossing->friction * fmax(contact->size, 0.0) / crossing->tangential;
-    const double slid = slid_before(last), r_0 = slid_stretch(last);
-    double squares[3] = {0.0}, slip[2][3], change[3];
+    const double r = crossing->friction * fmax(contact->size, 0.0) / crossing->tangential;
+    double slip[2][3];
     in_space(3, grip->along, contact->normal, last->rate, slip[0]);
     slip_of(3, points, contact, slip[1]);
-    for (int d = 0; d < 3; ++d) {
-        change[d] = grip->without_sliding[d] - grip->old[d];
-        squares[0] += change[d] * change[d];
-        squares[1] += slip[1][d] * slip[1][d];
-    }
-    const double path = sqrt(squares[0] + least * least), speed = sqrt(squares[1] + least * least);
-    const double A = path / (r + slid * (r_0 - r) / 2.0 + least);
-    for (int d = 0; d < 3; ++d) {
-        along[d] = grip->without_sliding[d] + slid * (r - r_0) / (2.0 * r_0) * grip->old[d] +
-                   A * (0.5 + 0.25 * A) * change[d] + path * A / 12.0 * (1.0 + 0.5 * A * A) * slip[1][d] / speed -
-                   time_since(last, time) * A * (1.0 + A) / 12.0 * slip[0][d];
-        squares[2] += along[d] * along[d];
-    }
-    for (int d = 0; d < 3 && squares[2] > 0.0; ++d) along[d] /= sqrt(squares[2]);
+    crossing->kernel->turned(grip->without_sliding, grip->old, slip[0], slip[1], time_since(last, time), r,
+                             crossing->law[FU_LAW_LEAST], slid_before(last), slid_stretch(last), 1.0, along);
+    const double size = sqrt(fu_dot(3, along, along));
+    for (int d = 0; d < 3 && size > 0.0; ++d) along[d] /= size;
 }
 
 static void grip_since(const fu_crossing *crossing, const last_step *last, const fu_closest_points *points,
