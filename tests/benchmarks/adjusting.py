@@ -1,7 +1,9 @@
-"""Seconds that `equilibrium(adjust=, to=)` takes of an overhead line by its number of spans, in the plane z = 0 and in
-another one. Adjusted are lengths of droppers to the heights of the contact wire, and the wire's length to its pull;
-heights of supports to those of the messenger; loads on the contact wire to its heights. Then the form of the 55 m line
-(`funicular.catenary.form`), and ropes from post to post, whose lengths are adjusted to their sags.
+"""CPU time of `equilibrium(adjust=, to=)` of an overhead line by its number of spans, in the plane z = 0 and in another
+one.
+
+The adjusted parameters are lengths of droppers for heights of the contact wire, and the length of the wire for its
+tension; heights of supports for those of the messenger; loads on the contact wire for its heights. Then the form of the
+55 m line (`funicular.catenary.form`), and ropes between posts, with lengths for their sags.
 
     python adjusting.py [--most SPANS] [--out FILE.csv]
 """
@@ -28,7 +30,7 @@ PLANES = {"z = 0": np.eye(3), "y = 0": np.array([[1.0, 0, 0], [0, 0, -1], [0, 1,
 
 def wire(scene: fu.Scene, axes: np.ndarray, name: str, height: float, excess: float, data: dict,
          spans: int) -> fu.Cable:
-    """Add a wire that is longer than a span by this excess where its tension is as given."""
+    """Add a wire that is longer than a span by an excess under its given tension."""
     area, modulus = data["area"], data["modulus"]
     section = fu.GeneralSection(area=area, second_moment_about_z=data["bending"] / modulus)
     length = spans * (SPAN + excess) / (1 + data["tension"] / (modulus * area))
@@ -39,7 +41,7 @@ def wire(scene: fu.Scene, axes: np.ndarray, name: str, height: float, excess: fl
 
 
 def line(spans: int, axes: np.ndarray) -> fu.Scene:
-    """Return the line with droppers of one length, of which many are slack."""
+    """Return the line with droppers of one length, many of them slack."""
     scene = fu.Scene(gravity=axes @ [0, -G, 0])
     contact = wire(scene, axes, "contact", 0.0, 0.0, CONTACT, spans)
     messenger = wire(scene, axes, "messenger", 1.2, 0.03, MESSENGER, spans)
@@ -61,25 +63,25 @@ def line(spans: int, axes: np.ndarray) -> fu.Scene:
 
 
 def places(spans: int) -> dict[str, float]:
-    """Return the names of the droppers, and at which part of the wires' lengths they are."""
+    """Return the names of the droppers, and their positions as shares of the wires' lengths."""
     return {f"dropper_{span}_{k}": (span + x / SPAN) / spans for span in range(spans) for k, x in enumerate(X)}
 
 
 def droppers(scene: fu.Scene, spans: int, up: str) -> tuple[dict, dict]:
-    """Return what is adjusted and to what: droppers by heights of the contact wire, and its length by its pull."""
+    """Return parameters and targets: droppers for heights of the contact wire, and its length for its tension."""
     return ({**{f"{name}.length": (0.3, 1.5) for name in places(spans)}, "contact.rest_length": "free"},
             {**heights(scene, spans, up), "contact@0.force.x": -CONTACT["tension"]})
 
 
 def supports(scene: fu.Scene, spans: int, up: str) -> tuple[dict, dict]:
-    """Heights of the supports, by those of the messenger there."""
+    """Return heights of the supports, for those of the messenger there."""
     length = scene.cables["messenger"].length
     return ({f"support_{k}.a.{up}": "free" for k in range(1, spans)},
             {f"messenger@{k / spans * length:.12g}.position.{up}": 1.2 + 0.02 * np.sin(k) for k in range(1, spans)})
 
 
 def loads(scene: fu.Scene, spans: int, up: str) -> tuple[dict, dict]:
-    """Forces on the contact wire below the droppers, by its heights there."""
+    """Return forces on the contact wire below the droppers, for its heights there."""
     length = scene.cables["contact"].length
     down = [-float(axis == up) for axis in "xyz"]
     for name, at in places(spans).items():
@@ -99,7 +101,7 @@ def heights(scene: fu.Scene, spans: int, up: str) -> dict[str, float]:
 
 
 def adjusted(case: str, spans: int, plane: str) -> tuple[float, fu.Equilibrium]:
-    """Return the CPU seconds, and the state in which values are as given."""
+    """Return the CPU seconds, and the state with the given values."""
     scene = line(spans, PLANES[plane])
     adjust, to = CASES[case](scene, spans, "xyz"[int(np.argmax(np.abs(PLANES[plane][:, 1])))])
     begin = time.process_time()
@@ -108,7 +110,7 @@ def adjusted(case: str, spans: int, plane: str) -> tuple[float, fu.Equilibrium]:
 
 
 def row(case: str, spans: int) -> dict:
-    """Return what is measured of a line of so many spans."""
+    """Return the row of a line with a number of spans."""
     found = {plane: adjusted(case, spans, plane) for plane in PLANES}
     last = found["z = 0"][1].adjustment
     return {"adjusted": case, "spans": spans, "parameters": len(last.values),
@@ -117,7 +119,7 @@ def row(case: str, spans: int) -> dict:
 
 
 def ropes(spans: int) -> tuple[fu.Scene, list[str], dict[str, float]]:
-    """Return ropes of one length from post to post, which are stiff springs, and lengths by sags from 1 to 2 m."""
+    """Return ropes of one length between posts, which are stiff springs, with lengths for sags from 1 to 2 m."""
     scene, heights = fu.Scene(gravity=(0, -G, 0)), {}
     area, modulus = MESSENGER["area"], MESSENGER["modulus"]
     section = fu.GeneralSection(area=area, second_moment_about_z=MESSENGER["bending"] / modulus)
@@ -137,7 +139,7 @@ def ropes(spans: int) -> tuple[fu.Scene, list[str], dict[str, float]]:
 
 
 def wires(case: str, size: float) -> dict:
-    """Return what is measured of the form of a span with elements of this length in m, or of so many ropes."""
+    """Return the row of the form of a span with elements of a length in m, or of a number of ropes."""
     built, plain = [], static_problem.build
     static_problem.build = lambda scene: built.append(scene) or plain(scene)
     begin = time.process_time()

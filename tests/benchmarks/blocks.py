@@ -1,12 +1,12 @@
-"""Kernels of several elements at once (generated/blocks.c) beside those of one: nanoseconds an element.
+"""Kernels of several elements at once (generated/blocks.c) beside those of one: nanoseconds per element.
 
     python tests/benchmarks/blocks.py [--out FILE.csv] [--repetitions 7]
 
-One thread, compiled as the engine is, 16 elements in the first cache, gathering and scattering included: least of the
-repetitions. Operations as the manifest counts them, and what they are a second over the machine's peak: that of fused
-multiply-adds in AVX2 (two operations each), measured here. The kernels do not fuse: they could
-reach half of it, or three quarters where the core has adders apart from its multipliers; divisions and square roots,
-four to eight times as long as a product, keep those that have many far below.
+One thread, compiled as the engine is, 16 elements in the first-level cache, gather and scatter included: minimum of the
+repetitions. Operations are those of the manifest; their rate is relative to the machine's peak of fused multiply-adds
+in AVX2 (two operations each), measured here. Kernels without fused operations can reach half of it, or three quarters
+on cores with adders apart from their multipliers. Divisions and square roots, four to eight times as long as a product,
+reduce the rate much further.
 """
 
 from __future__ import annotations
@@ -88,12 +88,12 @@ LOOP = """    {
 
 
 def times(operations: int) -> int:
-    """How often a kernel of so many operations is called."""
+    """Return the number of calls of a kernel with a number of operations."""
     return 1 if Parser.smallest else int(2e6 / ELEMENTS * 100 / operations)
 
 
 def loops() -> tuple[str, dict[str, int]]:
-    """C text of a loop for every kernel that has a block version, and operations by kernel."""
+    """Return the C text of a loop for every kernel with a block version, and operations by kernel."""
     manifest = json.loads((drift.folder() / "manifest.json").read_text(encoding="utf-8"))
     text, operations = "", {}
     for family in families().values():
@@ -125,7 +125,7 @@ def _numbers(values) -> str:
 
 
 def rows(repetitions: int) -> list[dict]:
-    """The table; empty where no machine of this kind has blocks."""
+    """Return the table; empty on machines without blocks."""
     if platform.machine() not in ("x86_64", "AMD64"):
         return []
     text, operations = loops()

@@ -2,14 +2,14 @@
 
     python tests/benchmarks/bodies.py [--out FILE.csv] [--repetitions 3] [--steps 100] [--largest 1000]
 
-Rods of 0.1 m and 0.1 kg, let go at rest under gravity; steps of 1 ms of generalised-alpha, one thread.
-chain: spherical joints, the first on the ground, level. tree: from each rod two. ladder: two chains, bodies of equal
-number at a constant distance. net: a square one of bodies at constant distances, which hangs from its first row.
-Microseconds of CPU a step: the least of repetitions. error: the largest distance of a body from where it is after as
-many steps of a quarter of the size over the same time, over the largest motion. energy: its change over what was
-exchanged. multiplications: of a factorisation, counted, per body. set-up: seconds from the scene's data to the engine.
+Rods of 0.1 m and 0.1 kg, released at rest under gravity; steps of 1 ms of generalised-alpha, one thread.
+chain: spherical joints, the first on the ground, horizontal. tree: each rod carries two. ladder: two chains, bodies of
+equal number at a constant distance. net: a square of bodies at constant distances, suspended from its first row.
+Microseconds of CPU per step: the minimum of repetitions. error: the largest distance of a body from its position with
+steps of a quarter of the size, over the largest motion. energy: its change over the exchanged energy. multiplications:
+of a factorisation, counted, per body. set-up: seconds from the scene's data to the engine.
 
-The aim: in proportion to the bodies for chains and trees, and at 1,000 bodies less than 2 ms a step.
+The aim: cost in proportion to the bodies for chains and trees, and less than 2 ms a step with 1,000 bodies.
 """
 
 import os
@@ -34,7 +34,7 @@ INERTIA = (1e-4, 1e-4, 1e-4)
 
 
 def rod(scene: Scene, name: str, start: np.ndarray, along: np.ndarray, on: tuple | None = None) -> np.ndarray:
-    """Add a rod from a point in a direction, which a spherical joint holds there to the ground or `on`; its far end."""
+    """Add a rod in a direction on a spherical joint with the ground or `on`; return its far end."""
     half = LENGTH / 2 * along
     scene.rigid_body(name, mass=MASS, inertia=INERTIA, position=tuple(start + half))
     scene.joint("spherical", tuple(start) if on is None else on, (name, tuple(-half)))
@@ -42,7 +42,7 @@ def rod(scene: Scene, name: str, start: np.ndarray, along: np.ndarray, on: tuple
 
 
 def chain(n: int, name: str = "rod", at: float = 0.0, scene: Scene | None = None) -> Scene:
-    """Rods one behind the other."""
+    """Rods in a chain."""
     scene, end, along = scene or Scene(gravity=(0, -GRAVITY, 0)), np.array([0.0, 0.0, at]), np.array([1.0, 0, 0])
     for k in range(n):
         end = rod(scene, f"{name}{k}", end, along, (f"{name}{k - 1}", tuple(LENGTH / 2 * along)) if k else None)
@@ -50,7 +50,7 @@ def chain(n: int, name: str = "rod", at: float = 0.0, scene: Scene | None = None
 
 
 def tree(n: int) -> Scene:
-    """Rods of which each carries two."""
+    """Rods in a binary tree."""
     scene, rng = Scene(gravity=(0, -GRAVITY, 0)), np.random.default_rng(1)
     along = rng.normal(size=(n, 3))
     along /= np.linalg.norm(along, axis=1)[:, None]
@@ -72,7 +72,7 @@ def ladder(n: int) -> Scene:
 
 
 def net(n: int) -> Scene:
-    """Bodies at constant distances from their neighbours, level; those of the first row hang from the ground."""
+    """A horizontal net of bodies at constant distances, its first row suspended from the ground."""
     scene, side = Scene(gravity=(0, -GRAVITY, 0)), round(n**0.5)
     for i in range(side):
         for j in range(side):
@@ -87,13 +87,13 @@ SCENES: dict[str, Callable[[int], Scene]] = {"chain": chain, "tree": tree, "ladd
 
 
 def positions(engine: Engine, model: object) -> np.ndarray:
-    """(bodies, 3): where they are."""
+    """Return positions (bodies, 3)."""
     _, q, _, _ = engine.now()
     return np.array([q[body.configuration : body.configuration + 3] for body in model.bodies])
 
 
 def run(model: object, steps: int, step: float) -> tuple[Engine, float]:
-    """The engine after so many steps, and the seconds of CPU that they took."""
+    """Return the engine after a number of steps, and their CPU seconds."""
     engine = Engine(model)
     status, _ = engine.start(duration=steps * step, output_step=steps * step, tol=1e-4, step=step,
                              method=GeneralisedAlpha(0.8), first_step=step)
@@ -106,7 +106,7 @@ def run(model: object, steps: int, step: float) -> tuple[Engine, float]:
 
 
 def energy_change(engine: Engine) -> float:
-    """The change of the total energy over a run, over the largest kinetic energy at its end or start."""
+    """Return the change of the total energy over a run, over the larger kinetic energy at its end or start."""
     rows = engine.rows()
     total = rows["kinetic"] + rows["elastic"] + rows["potential"]
     return float(abs(total[-1] - total[0]) / rows["kinetic"].max())

@@ -2,10 +2,10 @@
 
     python tests/benchmarks/cases.py [--out FILE.csv]
 
-A row is an element with a law in a case: the quantity with the largest error, its value and reference, that error (over
-the scale that tests/benchmarks/published says), the elements used, and, where meshes are compared, the order of
-convergence p of the error ~ length^p, from half as many elements. The note says what an error is due to, or why there
-is no number.
+A row is an element with a law in a case: the quantity with the largest error, its value and reference, the error
+relative to the scale in tests/benchmarks/published, the elements used, and, where meshes are compared, the order of
+convergence p of the error ~ length^p, from half the elements. The note gives the cause of an error, or the reason for a
+missing number.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ COLUMNS = ("case", "element", "law", "elements", "quantity", "value", "reference
 
 
 def row(case: Case, kind: Kind) -> dict:
-    """What the table says of an element with a law."""
+    """Return the row of an element with a law."""
     n = case.count(kind)
     quantity, value = case.found(kind, n)[0]
     order = f"{case.observed_order(kind):.1f}" if kind in case.ordered else ""

@@ -31,7 +31,7 @@ TIMES = 20
 
 
 def simulate(name: str, **settings) -> fu.Run:
-    """A run of a scene of the table, 20 output times after the start."""
+    """Return a run of a scene of the table with 20 output times after the start."""
     scene = SCENES[name]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", fu.FunicularWarning)
@@ -41,12 +41,12 @@ def simulate(name: str, **settings) -> fu.Run:
 
 @cache
 def references() -> dict[str, np.ndarray]:
-    """By scene: positions (time, point, 3) in m; and as "scene, converged" the distance to another method's."""
+    """Return by scene positions (time, point, 3) in m, and as "scene, converged" the distance to another method's."""
     return dict(np.load(REFERENCES))
 
 
 def make_references(only: str = "") -> None:
-    """Compute and write those of scenes whose name holds `only`; the others stay."""
+    """Compute and write the references of scenes whose name contains `only`; the others stay."""
     made = references() if only else {}
     for name in (name for name in SCENES if only in name):
         exact, other = (positions(simulate(name, integrator=method, tol=tol))
@@ -57,17 +57,17 @@ def make_references(only: str = "") -> None:
 
 
 def farthest(one: np.ndarray, other: np.ndarray) -> float:
-    """Largest distance of two motions, m."""
+    """Return the largest distance of two motions, m."""
     return float(np.linalg.norm(one - other, axis=-1).max())
 
 
 def motion(exact: np.ndarray) -> float:
-    """The largest way of a point from its start, m: what ``tol`` is relative to."""
+    """Return the largest displacement of a point from its start, m, the scale of ``tol``."""
     return farthest(exact, exact[:1])
 
 
 def cell(name: str, tol: float, integrator: str = "auto") -> dict:
-    """One line of the table."""
+    """Return one row of the table."""
     exact = references()[name]
     run = simulate(name, tol=tol, integrator=integrator)
     report = run.report
@@ -80,7 +80,7 @@ def cell(name: str, tol: float, integrator: str = "auto") -> dict:
 
 
 def by_tolerance(rows: list[dict]) -> list[dict]:
-    """How many runs are within a tolerance, and the largest error."""
+    """Return the number of runs within a tolerance, and the largest error."""
     found = []
     for tol in {row["tol"]: 0 for row in rows}:
         of = [row for row in rows if row["tol"] == tol]

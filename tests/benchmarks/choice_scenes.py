@@ -1,8 +1,7 @@
-"""Scenes over which ``tol`` is kept, tests/benchmarks/choice.py prints how well: name, scene, duration in s.
+"""Scenes on which tests/benchmarks/choice.py measures ``tol``: name, scene, duration in s.
 
-They are short, and durations are such that motions close to each other stay close: where a scene is sensitive (a whip
-that cracks, a cable that snaps taut), an error grows by that factor whatever the integrator, and a longer run would
-have no converged reference.
+The durations are short, so that neighbouring motions stay close: in a sensitive scene (a whip that cracks, a cable that
+snaps taut) errors grow with any integrator, and a longer run would have no converged reference.
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ class Subject:
 
 
 def rider() -> fu.Scene:
-    """A body that turns and slides over nodes of a soft rope, damped."""
+    """A body that rotates and slides over nodes of a soft, damped rope."""
     scene = fu.Scene()
     scene.cable("rope", start=(0, 0, 0), end=(10, 0, 0), elements=6, element="cable12",
                 section=fu.Rectangle(height=0.05, width=0.05),
@@ -103,7 +102,7 @@ WAVE = np.sqrt(0.05 * 0.4e9 * 1.05 / 4200)
 
 
 def rubbing(model: str, coefficient: float = 0.2, damping_time: float = 1e-4) -> fu.Scene:
-    """Friction on a beam that gives way: the normal force vibrates with it."""
+    """Friction on a flexible beam: the normal force vibrates with it."""
     scene = fu.Scene()
     scene.cable("wire", start=(0, 0, 0), end=(1.5, 0, 0), elements=3, section=fu.Rectangle(height=0.05, width=0.05),
                 material=fu.Material(youngs_modulus=4e8, poisson_ratio=0.0, density=4200, damping_time=damping_time))
@@ -116,7 +115,7 @@ def rubbing(model: str, coefficient: float = 0.2, damping_time: float = 1e-4) ->
 
 
 def sticking() -> fu.Scene:
-    """A block on a soft cable is drawn to and fro: it sticks, breaks loose, sticks again."""
+    """A block on a soft cable is pulled to and fro: it sticks and slips."""
     scene = fu.Scene()
     scene.cable("wire", start=(0, 0, 0), end=(2, 0, 0), elements=4, element="cable12",
                 section=fu.Rectangle(height=0.03, width=0.03),
@@ -131,7 +130,7 @@ def sticking() -> fu.Scene:
 
 
 def stopping(stop) -> fu.Scene:
-    """A rider runs into what waits at the end of a soft rope."""
+    """A rider reaches the stop at the end of a soft rope."""
     scene = fu.Scene()
     scene.cable("rope", start=(0, 0, 0), end=(2, 0, 0), elements=4, element="cable12",
                 section=fu.Circle(radius=0.01), rest_length=1.98,
@@ -144,7 +143,7 @@ def stopping(stop) -> fu.Scene:
 
 
 def shaken() -> fu.Scene:
-    """A cable hangs from a support that is shaken, a body at its lower end."""
+    """A cable hangs from a vibrating support, with a body at its lower end."""
     scene = fu.Scene()
     scene.cable("rope", start=(0, 0, 0), end=(0, -1, 0), elements=6, element="cable12", section=fu.Circle(radius=5e-3),
                 material=fu.Material(youngs_modulus=5e7, poisson_ratio=0.3, density=1100), up=(1, 0, 0))
@@ -155,7 +154,7 @@ def shaken() -> fu.Scene:
 
 
 def cantilever() -> fu.Scene:
-    """A shear-deformable beam under a force that follows its end."""
+    """A shear-deformable beam under a follower force at its end."""
     scene = fu.Scene(gravity=(0, 0, 0))
     scene.cable("beam", start=(0, 0, 0), end=(1, 0, 0), elements=4, element="beam24", law="structural",
                 section=fu.Rectangle(height=0.02, width=0.03),
@@ -178,7 +177,7 @@ def spin_up() -> fu.Scene:
 
 
 def drawn_along() -> fu.Scene:
-    """A slide is driven along a soft cable, a pendulum hinged to it."""
+    """A slide is driven along a soft cable, with a pendulum on a hinge."""
     scene = fu.Scene()
     scene.cable("wire", start=(0, 0, 0), end=(3, 0, 0), elements=6, element="cable12",
                 section=fu.Circle(radius=0.02), rest_length=2.98,
@@ -194,7 +193,7 @@ def drawn_along() -> fu.Scene:
 
 
 def mooring() -> fu.Scene:
-    """A stiff chain, drawn slack as a catenary's arc, is let go with a buoy on it."""
+    """A stiff chain, drawn slack as a catenary, is released with a buoy on it."""
     scene = fu.Scene()
     scene.cable("chain", curve=lambda u: (4 * u, -1.5 * np.sin(np.pi * u), 0), rest="straight", elements=10,
                 element="cable8p", section=fu.Circle(radius=0.01),

@@ -1,17 +1,13 @@
-"""Contact of cables with surfaces: how it converges with mesh and stiffness, and what it costs.
+"""Contact of cables with surfaces: convergence with mesh and stiffness, and cost.
 
     python tests/benchmarks/contact.py [--out FILE.csv]
 
-First the mooring line of test_contact.py at rest, against the elastic catenary on the ground: where its end is
-and where it touches down, in m; the tension at the anchor in N, with and without friction; the penetration in m. What
-does not converge to zero is the line's bending, which the catenary leaves out.
-
-Then the rope over a drum: parts of the capstan's limit that it holds and at which it slides.
-
-Then a cable of 1,000 elements, of which none, ten or all touch the ground: what an evaluation of all forces takes.
-
-Then pairs that are far apart, 10,000 of 100 bodies and 100 spheres, and 100 crossings of cables: CPU time of adding and
-of setting up, of an evaluation of all forces, and of a step less that of the scene without them.
+First the mooring line of test_contact.py in equilibrium, against the elastic catenary on the ground: end and touch-down
+in m; tension at the anchor in N, with and without friction; penetration in m. The remaining difference is bending,
+absent in the catenary. Then the rope over a drum: shares of the capstan's limit at which it holds and slides. Then the
+cost of evaluating all forces of a cable of 1,000 elements, of which none, ten or all touch the ground. Then distant
+pairs, 10,000 of 100 bodies and 100 spheres, and 100 crossings of cables: CPU time of adding and of setting up, of an
+evaluation of all forces, and of a step less that of the scene without them.
 """
 
 from __future__ import annotations
@@ -48,7 +44,7 @@ def line(elements: int, friction: float, stiffness: float) -> dict[str, object]:
 
 
 def drum(mu: float) -> dict[str, object]:
-    """Return the parts of the capstan's limit between which the rope begins to slide."""
+    """Return the shares of the capstan's limit between which the rope begins to slide."""
     held = 0.0
     for part in np.arange(0.94, 1.04, 0.01):
         run = capstan(part * heaviest(mu), mu).run(0.5, output_step=0.05, tol=1e-4, integrator="genalpha")
@@ -60,7 +56,7 @@ def drum(mu: float) -> dict[str, object]:
 
 
 def cost() -> list[dict[str, object]]:
-    """Return what an evaluation of all forces takes, of 1,000 elements of which none, ten, or all touch."""
+    """Return the cost of evaluating all forces of 1,000 elements, of which none, ten, or all touch."""
     found = []
     for name, height in (("no contact", None), ("none touch", -2.0), ("ten touch", 4.9e-3), ("all touch", 2e-5)):
         scene = Scene()
@@ -79,7 +75,7 @@ def cost() -> list[dict[str, object]]:
 
 
 def many_bodies(pairs: bool) -> Scene:
-    """Return 100 bodies that fly off, with contact with each of 100 spheres that are far away."""
+    """Return 100 bodies in free flight, in contact pairs with each of 100 distant spheres."""
     scene = Scene()
     for k in range(100):
         scene.rigid_body(f"body{k}", mass=1.0, inertia=(1e-3,) * 3, position=(0.5 * k, 100 + 0.3 * (k % 7), 0.1 * k),
@@ -91,7 +87,7 @@ def many_bodies(pairs: bool) -> Scene:
 
 
 def many_cables(pairs: bool) -> Scene:
-    """Return 100 times two cables that hang 5 m apart, with a crossing of both."""
+    """Return 100 pairs of cables 5 m apart, with a crossing each."""
     scene = Scene()
     for k in range(100):
         z = 3.0 * k
@@ -106,7 +102,7 @@ def many_cables(pairs: bool) -> Scene:
 
 
 def seconds_of(scene: Scene, duration: float) -> tuple[float, float]:
-    """Return the least CPU seconds of three runs with steps of 1 ms, and those of an evaluation of all forces."""
+    """Return the minimum CPU seconds of three runs with steps of 1 ms, and of an evaluation of all forces."""
     least = [np.inf, np.inf]
     for _ in range(3):
         begin = process_time()
@@ -117,7 +113,7 @@ def seconds_of(scene: Scene, duration: float) -> tuple[float, float]:
 
 
 def far() -> list[dict[str, object]]:
-    """Return what pairs cost that are far apart."""
+    """Return the cost of distant pairs."""
     found = []
     for name, make in (("10,000 contacts", many_bodies), ("100 crossings", many_cables)):
         steps, added = [], []

@@ -1,19 +1,18 @@
-"""The experiments of cosseratbench with funicular, PyElastica and MuJoCo: the error that each experiment scores,
-and CPU time.
+"""The experiments of cosseratbench with funicular, PyElastica and MuJoCo: the error of each experiment, and CPU time.
 
     python tests/benchmarks/cosserat.py [--out FILE.csv] [--experiments crossing,capstan] [--solvers funicular]
 
-It needs cosseratbench; peers that are not installed are left out (pip install '.[bench]' brings all). All solvers get
-the number of elements that the experiment asks for. CPU time is that of the run alone: cosseratbench runs each solver
-once for a thousandth of the duration first. `error` is the experiment's first metric, `second` its next one: lengths
-are over that of the rod, other numbers over those of the reference; the slide of the capstan is in m. `depth` is how
-deep rods sink into obstacles or each other at any time, in radii.
+It needs cosseratbench; peers that are not installed are left out (pip install '.[bench]' installs all). All solvers
+have the number of elements of the experiment. CPU time is that of the run alone: cosseratbench runs each solver once
+for a thousandth of the duration first. `error` is the experiment's first metric, `second` the next one: lengths are
+relative to that of the rod, other numbers to those of the reference; the slide of the capstan is in m. `depth` is the
+largest penetration of rods into obstacles or each other, in radii.
 
-The reference of the crossing has 2001 points, and its metrics take the nearest of them: with 51 elements, as it asks
-for, the exact shape has the errors 2.5e-4 and 5.4e-3, with 50 it has none. So it is run with 50, too.
+The reference of the crossing has 2001 points, and its metrics use the nearest of them: with the required 51 elements
+the exact shape has the errors 2.5e-4 and 5.4e-3, with 50 it has none. A row with 50 elements shows this.
 
-With --meshes funicular alone runs with half, once and twice the elements: an error that stays is of the reference, of
-the experiment, or of the time that it leaves to come to rest.
+With --meshes funicular alone runs with half, once and twice the elements. An error that stays is that of the reference,
+of the experiment, or of the time that it allows for settling.
 """
 
 from __future__ import annotations
@@ -45,7 +44,7 @@ SOLVERS = ("funicular", "pyelastica", "mujoco")
 
 @dataclass
 class Timed:
-    """A solver that keeps the CPU time of its last run, in s."""
+    """A solver that records the CPU time of its last run, in s."""
 
     inner: Any
     cpu: float = float("nan")
@@ -56,7 +55,7 @@ class Timed:
         self.name, self.capabilities = self.inner.name, self.inner.capabilities
 
     def run(self, *args, **given) -> Any:
-        """Return what the solver returns."""
+        """Return the result of the solver."""
         start = process_time()
         try:
             return self.inner.run(*args, **given)
@@ -65,7 +64,7 @@ class Timed:
 
 
 def row(name: str, solver: str, elements: int | None = None, **options: Any) -> dict | None:
-    """A row of the table; None where the solver is not installed. elements: those of the experiment if not given."""
+    """Return a row of the table, None if the solver is not installed. elements: those of the experiment by default."""
     experiment = registry.load_experiment(name)
     try:
         timed = Timed(registry.load_solver(solver, **options))
@@ -81,7 +80,7 @@ def row(name: str, solver: str, elements: int | None = None, **options: Any) -> 
 
 
 def rows(names: Iterable[str], solvers: Iterable[str], meshes: bool) -> list[dict]:
-    """All rows of solvers that are installed."""
+    """Return all rows of installed solvers."""
     found = []
     for name in names:
         usual = registry.load_experiment(name).n_elements

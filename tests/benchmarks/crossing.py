@@ -2,10 +2,10 @@
 
     python tests/benchmarks/crossing.py [--out FILE.csv] [--plot FILE.png]
 
-The sliding mass on 12 elements, with E of 2 MPa and a rider of 5 kg. r'' of cubic elements jumps at their nodes, and
-with it the rider's acceleration, by s'² times the jump; r'' is a nodal vector of quintic elements. ``jump`` is the
-change of the acceleration across a node, taken from the accelerations one step before and one step after the crossing,
-less what it changes in a step elsewhere near by; it does not fall with the step where it is a jump.
+The sliding mass on 12 elements, with E of 2 MPa and a rider of 5 kg. r'' of cubic elements is discontinuous at their
+nodes, and the acceleration of the rider changes by s'² times the jump; r'' is a nodal vector of quintic elements.
+``jump`` is the change of the acceleration from one step before a node passage to one step after it, less the change per
+step nearby. A true discontinuity does not decrease with the step.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ DAMPING_TIME = 1e-2  # the sudden start's vibrations would hide what the nodes d
 
 
 def simulate(element: str, step: float) -> Run:
-    """The flexible sliding mass; outputs at every step."""
+    """Return the flexible sliding mass with outputs at every step."""
     scene = sliding_mass(ELEMENTS, element, strain="engineering", youngs_modulus=2e6, mass=5.0,
                          damping_time=DAMPING_TIME)
     return scene.run(DURATION, step=step, output_step=step)
 
 
 def jumps(run: Run) -> np.ndarray:
-    """(crossings,): of the rider's acceleration at each node, in m/s²."""
+    """Return jumps (passages,) of the rider's acceleration at each node, m/s²."""
     s, a = run["trolley.s"], run["A.acceleration"]
     element = np.floor(s / (1.5 / ELEMENTS))
     change = np.linalg.norm(np.diff(a, axis=0), axis=1)
@@ -40,7 +40,7 @@ def jumps(run: Run) -> np.ndarray:
 
 
 def draw(runs: dict[str, Run], path: Path) -> None:
-    """The rider's acceleration over its place, nodes marked."""
+    """Draw the rider's acceleration over its position, with nodes."""
     from funicular.view.plot import STYLE
     from matplotlib import pyplot, rc_context
 

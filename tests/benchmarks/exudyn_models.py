@@ -1,8 +1,8 @@
-"""The side-by-side scenes in Exudyn: its cable and its sliding joint, set up as fast as it goes.
+"""The side-by-side scenes in Exudyn: its cable and its sliding joint, in its fastest configuration.
 
-Its AVX2 build without range checks, one thread, sparse solver, modified Newton, nothing written while time is taken.
-Its Newton tolerance is 1e-6 and not the default 1e-8, which lies below its round-off on fine stiff meshes and makes it
-work for nothing there.
+Its AVX2 build without range checks, one thread, sparse solver, modified Newton, no output during the timing. Its Newton
+tolerance is 1e-6 in place of the default 1e-8, which is below its rounding on fine stiff meshes and only costs time
+there.
 """
 # ruff: noqa: E402 (its import reads sys.exudynFast)
 
@@ -38,12 +38,12 @@ HELD = [1, 1, 1, 0, 0, 0]
 
 
 class StoppedError(Exception):
-    """It did not get to the end."""
+    """The run did not reach its end."""
 
 
 @dataclass
 class System:
-    """A system ready to run, and the node whose path is compared."""
+    """A system ready to run, and the node of the compared path."""
 
     container: exu.SystemContainer
     system: exu.MainSystem
@@ -134,13 +134,13 @@ def cpu_seconds(make: Callable[[], System], duration: float, steps: int) -> floa
 
 
 def last_position(made: System, duration: float, steps: int) -> list[float]:
-    """Run a system to its end; return where the node is then, in m."""
+    """Run a system to its end; return the position of the node, m."""
     _solve(made, _settings(duration, steps))
     return made.system.GetNodeOutput(made.node, exu.OutputVariableType.Position).tolist()
 
 
 def trajectory(make: Callable[[], System], duration: float, steps: int, outputs: int) -> np.ndarray:
-    """(outputs + 1, 3): the path of the node, in m; steps must be a multiple of the outputs."""
+    """Return the path (outputs + 1, 3) of the node, m; steps must be a multiple of the outputs."""
     made = make()
     sensor = made.system.AddSensor(SensorNode(nodeNumber=made.node, storeInternal=True,
                                               outputVariableType=exu.OutputVariableType.Position))

@@ -3,22 +3,22 @@
     pip install '.[bench]' && python tests/benchmarks/exudyn_side_by_side.py [--out FILE.csv] [--plot FILE.png]
         [--cases pendulum] [--elements 8] [--repetitions 3] [--limit 20] [--resume]
 
-Scenes: the flexible pendulum (case D0) and the sliding mass (case S1), with Exudyn's cable, which is cable12 here with
-strain="engineering", but for three Gauss points where here are five for the bending. Compared is a path, the tip's or
-the mass's; its error is the largest distance from the converged path of the same mesh over 50 times, over the largest
-motion. Each code has its own converged path: here that of the explicit integration (of radau, for the stiffest scene)
-with a small tolerance, there the limit of its steps. The second table has how far these are from each other, and how
-far each is converged: ours by another tolerance, theirs by the limit that is found without its finest step.
+Scenes: the flexible pendulum (case D0) and the sliding mass (case S1), with Exudyn's cable, which is cable12 with
+strain="engineering", except that it integrates bending by three Gauss points instead of five. The compared path is that
+of the tip or the mass; its error is the largest distance from the converged path of the same mesh at 50 times, over the
+largest motion. Each code has its own converged path: for funicular the explicit integration (radau for the stiffest
+scene) with a small tolerance, for Exudyn the limit of its steps. The second table gives the distance of the two paths,
+and the convergence of each: by another tolerance, and by the limit without the finest step.
 
-Set are fixed steps there, tolerances and fixed steps here. Times are CPU seconds of the solver, set-up apart, medians
-of repetitions that take turns. Ours contains the 50 outputs, theirs none. A time to reach an error is interpolated on
-the curve; one in brackets was not reached and is extrapolated from the two finest points. "setting" and "their steps"
-are those of the first point that reaches the error. "auto/best" compares integrator="auto", with the tolerance that
-reaches the error, to the best of the others; where it takes another integrator from one tolerance to the next, nothing
-is interpolated.
+Exudyn has fixed steps, funicular tolerances and fixed steps. Times are CPU seconds of the solver without set-up,
+medians of alternating repetitions. Those of funicular include the 50 outputs, those of Exudyn none. The time to reach
+an error is interpolated on the curve; a value in brackets was not reached and is extrapolated from the two finest
+points. "setting" and "their steps" are those of the first point that reaches the error. "auto/best" compares
+integrator="auto", with the tolerance that reaches the error, to the best of the others, without interpolation between
+different integrators.
 
-Each case is printed, and added to FILE.csv and FILE.points.csv (all settings, errors and times), when it is done.
---resume leaves out those that FILE.csv has.
+Each case is printed, and added to FILE.csv and FILE.points.csv (all settings, errors and times), when it is finished.
+--resume leaves out the cases in FILE.csv.
 """
 
 import os
@@ -54,8 +54,8 @@ REFERENCE_TOLS = (1e-6, 1e-8)
 
 @dataclass
 class Case:
-    """A scene here and there; order: with which Exudyn's error falls with the step; reference: our integrator for the
-    converged path, implicit where an explicit one would take an hour.
+    """A scene in both codes; order: of Exudyn's error in the step; reference: integrator of the converged path,
+    implicit where an explicit one would take an hour.
     """
 
     name: str
@@ -66,12 +66,12 @@ class Case:
     reference: str = "explicit"
 
     def path(self, run) -> np.ndarray:
-        """(time, 3): what is compared."""
+        """Return the compared path (time, 3)."""
         return run["A.position"] if "A.position" in run else run["wire.nodal_vectors"][:, -1, 0]
 
 
 def cases() -> list[Case]:
-    """All of them."""
+    """Return all cases."""
     made = [Case(f"pendulum, E {modulus:.0e}", n, partial(pendulum, n, modulus, 7200),
                  partial(peer.pendulum, n, modulus), 2, "radau" if (modulus, n) == (7e8, 128) else "explicit")
             for modulus in (2e6, 7e8) for n in (8, 32, 128)]
@@ -87,7 +87,7 @@ class TooLongError(Exception):
 
 @dataclass
 class Point:
-    """One setting of one code: how it is run, its times and its error, and the integrator that it takes."""
+    """One setting of one code: its function, times, error and integrator."""
 
     method: str
     setting: float
@@ -99,12 +99,12 @@ class Point:
 
     @property
     def seconds(self) -> float:
-        """Median CPU seconds."""
+        """Return the median of CPU seconds."""
         return median(self.times)
 
 
 def integrate(case: Case, limit: float, **settings) -> tuple[np.ndarray, float, str]:
-    """Path, CPU seconds and integrator here. Raises TooLongError, FunicularError."""
+    """Return path, CPU seconds and integrator of funicular. Raises TooLongError, FunicularError."""
     begin = time.process_time()
 
     def watch(reached: float) -> None:
@@ -116,12 +116,12 @@ def integrate(case: Case, limit: float, **settings) -> tuple[np.ndarray, float, 
 
 
 def their_turn(case: Case, steps: int) -> tuple[None, float, str]:
-    """CPU seconds there; the path is taken apart, since sensors take time."""
+    """Return CPU seconds of Exudyn; a separate run records the path, since sensors take time."""
     return None, peer.cpu_seconds(case.theirs, DURATION, steps), "exudyn"
 
 
 def curve(settings, make: Callable[[float], Point], limit: float) -> list[Point]:
-    """Points of a method, from the coarsest setting on, until one is over the limit or fails."""
+    """Return points of a method from the coarsest setting on, until one exceeds the limit or fails."""
     points = []
     for setting in settings:
         point = make(setting)
@@ -141,7 +141,9 @@ def curve(settings, make: Callable[[float], Point], limit: float) -> list[Point]
 
 
 def our_curves(case: Case, limit: float) -> dict[str, list[Point]]:
-    """Work and precision here: each integrator and "auto" by its tolerance, generalised-alpha by its step as well."""
+    """Return work and precision of funicular: each integrator and "auto" by tolerance, generalised-alpha by step as
+    well.
+    """
     curves = {}
     for integrator in (*INTEGRATORS, AUTO):
         curves[integrator] = curve(AUTO_TOLS if integrator == AUTO else TOLS, lambda tol, name=integrator: Point(
@@ -152,7 +154,7 @@ def our_curves(case: Case, limit: float) -> dict[str, list[Point]]:
 
 
 def their_curve(case: Case, limit: float) -> list[Point]:
-    """Work and precision there."""
+    """Return work and precision of Exudyn."""
     points = curve(STEPS, lambda n: Point("exudyn", DURATION / n, partial(their_turn, case, n)), limit)
     kept = []
     for point in points:
@@ -166,7 +168,7 @@ def their_curve(case: Case, limit: float) -> list[Point]:
 
 
 def limit_of(points: list[Point], order: int) -> tuple[np.ndarray, float]:
-    """The path that steps halved again and again lead to, and how much it differs without the finest step.
+    """Return the limit of the path for halved steps, and its change without the finest step.
 
     Raises TooLongError for fewer than three steps within the limit.
     """
@@ -181,13 +183,13 @@ def limit_of(points: list[Point], order: int) -> tuple[np.ndarray, float]:
 
 
 def converged(case: Case) -> tuple[np.ndarray, float]:
-    """Our path, and how far two tolerances agree on it."""
+    """Return funicular's path, and the agreement of two tolerances."""
     loose, tight = (integrate(case, np.inf, integrator=case.reference, tol=tol)[0] for tol in REFERENCE_TOLS)
     return tight, distance(loose, tight)
 
 
 def envelope(points: list[Point]) -> list[Point]:
-    """Points that no other one beats in time and error, from the fastest on."""
+    """Return the points that no other one beats in time and error, from the fastest on."""
     best: list[Point] = []
     for point in sorted(points, key=lambda p: p.seconds):
         if not best or point.error < best[-1].error:
@@ -196,7 +198,7 @@ def envelope(points: list[Point]) -> list[Point]:
 
 
 def time_to(points: list[Point], target: float) -> tuple[float, bool]:
-    """CPU seconds to reach an error, on the lower envelope of points; whether that was reached."""
+    """Return CPU seconds to reach an error, on the lower envelope of points, and whether it was reached."""
     best = envelope(points)
     there = next((k for k, point in enumerate(best) if point.error <= target), None)
     if there == 0 or (there is not None and best[there].taken != best[there - 1].taken):
@@ -209,12 +211,12 @@ def time_to(points: list[Point], target: float) -> tuple[float, bool]:
 
 
 def setting_to(points: list[Point], target: float) -> float:
-    """The setting of the fastest point that has no larger an error, not a number where there is none."""
+    """Return the setting of the fastest point with at most this error, NaN if there is none."""
     return next((point.setting for point in envelope(points) if point.error <= target), np.nan)
 
 
 def row_of(case: Case, target: float, ours: dict[str, list[Point]], theirs: list[Point]) -> dict:
-    """Times to reach an error, of all curves."""
+    """Return times to reach an error, of all curves."""
     found = {name: time_to(points, target) for name, points in ours.items()}
     reached = {name: seconds for name, (seconds, there) in found.items() if there and name != AUTO}
     peer_seconds, there = time_to(theirs, target)
@@ -230,7 +232,7 @@ def row_of(case: Case, target: float, ours: dict[str, list[Point]], theirs: list
 
 
 def compare(case: Case, repetitions: int, limit: float) -> tuple[list[dict], dict, dict[str, list[Point]]]:
-    """Rows of times to reach errors, how converged that is, and all curves."""
+    """Return rows of times to reach errors, the convergence, and all curves."""
     ours, theirs = our_curves(case, limit), their_curve(case, limit)
     everything = [*theirs, *(point for points in ours.values() for point in points)]
     for _ in range(repetitions - 1):
@@ -287,7 +289,7 @@ def draw(curves: dict[tuple[str, int], dict[str, list[Point]]], path: Path) -> N
 
 
 def append(rows: list[dict], out: Path) -> None:
-    """Add rows of equal keys to a table, under a header where it is new."""
+    """Add rows of equal keys to a table, with a header in a new file."""
     new = not out.exists()
     with out.open("a", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, rows[0])
@@ -304,7 +306,7 @@ def points_of(case: Case, curves: dict[str, list[Point]]) -> list[dict]:
 
 
 def done(out: Path | None) -> set[tuple[str, int]]:
-    """The cases that a table has."""
+    """Return the cases in a table."""
     if out is None or not out.exists():
         return set()
     with out.open(newline="", encoding="utf-8") as file:

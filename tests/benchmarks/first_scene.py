@@ -3,8 +3,8 @@
     python tests/benchmarks/first_scene.py [--out FILE.csv] [--repetitions 9]
 
 Errors: largest deviation from tests/reference/paper51.csv over the range of that quantity; ``motion``: rider and
-cable nodes, over the largest motion, against a run with steps of 10 µs: what ``tol`` aims at. Times: CPU seconds of
-the integration, set-up and labelling apart, median of repetitions that take turns.
+cable nodes, over the largest motion, against a run with steps of 10 µs, the error of ``tol``. Times: CPU seconds of the
+integration without set-up and labels, median of alternating repetitions.
 
 The aim: 0.2 % of the range in position, about 1,000 steps, in at most 0.05 s.
 """

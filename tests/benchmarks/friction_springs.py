@@ -1,11 +1,11 @@
-"""Friction by springs: errors of runs in tol, and in fixed steps, with what they cost.
+"""Friction by springs: errors of runs in tol and in fixed steps, with their cost.
 
     python tests/benchmarks/friction_springs.py [--out FILE.csv] [--scenes 6]
 
-A bar falls on two points of rough ground, and of smooth ground; a rope of one and of four elements is thrown on it; a
-bar bounces, slides and sticks on a wire (test_friction_springs.py, test_friction_paths.py). References are
-of explicit steps at tol=1e-10; the column `references` says how far off those of radau at 1e-8 are. Errors are the
-largest of places, over the largest motion. Steps and CPU time are of the least tol. With fewer scenes there are no
+A bar falls on two points on rough ground, and on smooth ground; a rope of one and of four elements is thrown on it; a
+bar bounces, slides and sticks on a wire (test_friction_springs.py, test_friction_paths.py). References have explicit
+steps at tol=1e-10; the column `references` has the distance of those of radau at 1e-8. Errors are the largest ones of
+positions, over the largest motion. Steps and CPU time are those of the smallest tol. With fewer scenes there are no
 fixed steps.
 """
 
@@ -38,7 +38,7 @@ STEPS = (4e-4, 2e-4, 1e-4, 5e-5, 2.5e-5)
 
 
 def thrown(make: Callable[[], tuple[Scene, str]], **settings: object) -> tuple[np.ndarray, Run]:
-    """Return the places of a run, and the run."""
+    """Return the positions of a run, and the run."""
     scene, key = make()
     run = scene.run(0.6, output_step=0.012, progress=False, **settings)
     return (run[key] if run[key].ndim == 2 else run[key][:, :, 0]), run
@@ -51,7 +51,7 @@ def free() -> tuple[Scene, str]:
 
 
 def touched(**settings: object) -> tuple[np.ndarray, Run]:
-    """Return the places of the bar on a wire."""
+    """Return the positions of the bar on a wire."""
     run = bounced.__wrapped__(**settings)
     return run["bar.position"], run
 
@@ -63,12 +63,12 @@ SCENES: dict[str, Callable[..., tuple[np.ndarray, Run]]] = {
 
 
 def error(found: np.ndarray, reference: np.ndarray) -> float:
-    """Return the error as a part of the motion."""
+    """Return the error relative to the motion."""
     return float(np.abs(found - reference).max() / np.abs(reference - reference[0]).max())
 
 
 def in_tol(name: str) -> list[dict[str, object]]:
-    """Return a row an integrator: errors in tol, steps and CPU seconds at the least tol."""
+    """Return a row per integrator: errors in tol, steps and CPU seconds at the smallest tol."""
     reference, _ = SCENES[name](integrator="explicit", tol=1e-10)
     other, _ = SCENES[name](integrator="radau", tol=1e-8)
     rows = []

@@ -1,11 +1,11 @@
-"""Iterations of Newton's method that a step of generalised-alpha takes, at what error, and what they cost.
+"""Iterations of Newton's method per step of generalised-alpha, with their error and cost.
 
     python tests/benchmarks/iterations.py [--only WORDS] [--out FILE.csv]
 
 Each scene runs with prescribed steps and with tol = 1e-3 and 1e-4. ``error`` is the largest distance of a node or body
 from the reference at 20 output times, over the largest motion; references are those of choice.py, else radau's with
-tol = 1e-7. Iterations are substitutions with a factored matrix, of a step; ``factored`` is how many matrices were made,
-of a step. Neither depends on the machine; CPU seconds do. The last line has the median of the iterations.
+tol = 1e-7. Iterations are substitutions with a factored matrix, per step; ``factored`` is the number of factorisations
+per step. Neither depends on the machine; CPU seconds do. The last line has the median of the iterations.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ OF_CHOICE = ("first scene", "zip line", "cable car", "double pendulum", "heavy t
 
 
 def chain(links: int) -> fu.Scene:
-    """Rods of 0.2 m, one hung on the other by spherical joints, let go level."""
+    """Return rods of 0.2 m in a chain of spherical joints, released from the horizontal."""
     scene = fu.Scene()
     for k in range(links):
         scene.rigid_body(f"link{k}", mass=0.1, inertia=(1e-5, 4e-4, 4e-4), position=(0.2 * k + 0.1, 0, 0))
@@ -63,7 +63,7 @@ def simulate(subject: Subject, **settings) -> fu.Run:
 
 
 def cell(subject: Subject, exact: np.ndarray, settings: dict[str, float]) -> dict:
-    """What one run has to say: error first."""
+    """Return the figures of one run, its error first."""
     run = simulate(subject, integrator="genalpha", **settings)
     report = run.report
     (setting, value), = settings.items()
@@ -73,7 +73,7 @@ def cell(subject: Subject, exact: np.ndarray, settings: dict[str, float]) -> dic
 
 
 def medians(rows: list[dict]) -> list[dict]:
-    """The medians of iterations and factorisations of a step by setting, of all scenes."""
+    """Return the medians of iterations and factorisations per step by setting, over all scenes."""
     found = {setting: [row for row in rows if row["setting"] == setting] for setting in {r["setting"]: 0 for r in rows}}
     return [{"setting": setting, "scenes": len(of), "largest error": max(row["error"] for row in of),
              **{key: statistics.median(row[key] for row in of) for key in ("iterations", "factored")}}

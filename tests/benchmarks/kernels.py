@@ -1,12 +1,11 @@
-"""Speed of the generated kernels, and of making them.
+"""Speed of the generated kernels, and of their derivation and compilation.
 
     python tests/benchmarks/kernels.py [--out FILE.csv] [--repetitions 7] [--derivations 1] [--builds 1]
 
-Every kernel in a C loop on one thread, compiled as the package is, on the sample on which it is verified: microseconds
-a call (median, and least, of repetitions that take turns), operations as the manifest counts them, bytes of code; the
-aim, and what other programs need, where there is one. Then those of several elements at once (blocks.py), CPU seconds
-to derive each family, and seconds to build a clean clone without a compiler cache. --derivations 0 and --builds 0
-leave the last two out.
+Every kernel in a C loop on one thread, compiled as the package is, on its verification sample: microseconds per call
+(median, and minimum, of alternating repetitions), operations by the manifest, bytes of code; the aim, and the time of
+other programs, if known. Then the kernels of several elements at once (blocks.py), CPU seconds to derive each family,
+and seconds to build a clean clone without a compiler cache. --derivations 0 and --builds 0 leave the last two out.
 
 The aims: the table's; the whole family derived in 120 s of one core; the build in 60 s.
 """
@@ -44,7 +43,7 @@ OTHERS = {
 
 
 def options() -> list[str]:
-    """The optimisation of the package's own build."""
+    """Return the compiler options of the package's own build."""
     if Parser.smallest:
         return ["-std=c11", "-O0"]
     modules = tomllib.loads((making.ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["setuptools"]
@@ -53,7 +52,7 @@ def options() -> list[str]:
 
 
 def rows(repetitions: int) -> list[dict]:
-    """The table of kernels."""
+    """Return the table of kernels."""
     manifest = json.loads((drift.folder() / "manifest.json").read_text(encoding="utf-8"))
     with tempfile.TemporaryDirectory() as folder:
         flags = [*options(), f"-I{drift.folder()}"]

@@ -2,15 +2,15 @@
 
     python tests/benchmarks/linear_cost.py [--out FILE.csv] [--plot FILE.png] [--repetitions 3] [--steps 300]
 
-Steps of 20 µs of generalised-alpha, one thread, on cable12 with E = 2 MPa: short enough for the finest mesh's waves,
-so that every mesh takes as many iterations a step. A pendulum of 1.5 m let go level; the same held at both ends with
-one and with three riders; three cables joined at a node, with a rider; three joined to a ring; a ladder, two cables
-side by side joined at four nodes. Microseconds of CPU a step and an element: the least of repetitions that take turns.
-Memory: of the engine's arrays, without what it records.
+Steps of 20 µs of generalised-alpha, one thread, on cable12 with E = 2 MPa: short enough for the waves of the finest
+mesh, so that every mesh has the same iterations per step. A pendulum of 1.5 m released from the horizontal; the same
+held at both ends with one and with three riders; three cables joined at a node, with a rider; three joined to a ring; a
+ladder, two parallel cables joined at four nodes. Microseconds of CPU per step and element: the minimum of alternating
+repetitions. Memory: of the engine's arrays without its recording.
 
-Last, what a substitution takes in the engine and by LAPACK's dpbtrs, both on a band of the pendulum's 501 elements.
+Last, the time of a substitution in the engine and by LAPACK's dpbtrs, on a band of the pendulum's 501 elements.
 
-The aim: at 2,000 elements at most 1.3 times the time a step and an element at 100.
+The aim: with 2,000 elements at most 1.3 times the time per step and element with 100.
 """
 
 import os
@@ -50,7 +50,7 @@ def ride(made: Scene, along: str, count: int) -> None:
 
 
 def pendulum(elements: int, riders: int = 0) -> Scene:
-    """Level, held at its start, and with riders at its end too."""
+    """A horizontal cable, held at its start, and with riders at its end too."""
     made = Scene()
     cable(made, "wire", (0, 0, 0), (LENGTH, 0, 0), elements)
     made.pin("wire", s=0.0)
@@ -85,7 +85,7 @@ def ring(elements: int) -> Scene:
 
 
 def ladder(elements: int, rungs: int = 4) -> Scene:
-    """Two cables of half the elements each, held at one end, joined at so many nodes up to the other."""
+    """Two cables of half the elements each, held at one end, joined at equally spaced nodes up to the other."""
     made, each = Scene(), elements // 2
     for name in "ab":
         cable(made, name, (0, 0, 0), (LENGTH, 0, 0), each)
@@ -100,7 +100,7 @@ SCENES = {"pendulum": lambda n: pendulum(n), "one rider": lambda n: pendulum(n, 
 
 
 def scene(name: str, elements: int) -> Scene:
-    """One of SCENES with so many elements in all."""
+    """Return one of SCENES with a total number of elements."""
     return SCENES[name](elements)
 
 
@@ -140,7 +140,7 @@ def lapack_substitution(unknowns: int, width: int, repetitions: int) -> float:
 
 
 def plot(rows: list[dict], file: Path) -> None:
-    """Time a step and an element, and memory, against the number of elements."""
+    """Draw time per step and element, and memory, against the number of elements."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(8, 3.6), layout="constrained")

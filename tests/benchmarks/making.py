@@ -1,4 +1,4 @@
-"""What it takes to make the package: deriving every family, building a clean clone."""
+"""The making of the package: derivation of every family, build of a clean clone."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def derivation() -> dict[str, float]:
-    """CPU seconds by family, from the spec to the text of its file, in one process."""
+    """Return CPU seconds by family, from the spec to the text of its file, in one process."""
     taken = {}
     for name, family in families().items():
         begin = time.process_time()
@@ -26,7 +26,7 @@ def derivation() -> dict[str, float]:
 
 
 def build() -> tuple[float, float]:
-    """Wall and CPU seconds of a wheel from a clean clone, without a compiler cache; tools installed already."""
+    """Return wall and CPU seconds of a wheel from a clean clone, without a compiler cache, with installed tools."""
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run(["git", "clone", "--quiet", ROOT, Path(folder) / "clone"], check=True)
         begin, before = time.perf_counter(), os.times()

@@ -1,18 +1,19 @@
-"""Scenes a second: variants of one scene by themselves, by `fu.run_many`, `fu.sweep`, and Exudyn's ParameterVariation.
+"""Scenes per second: variants of one scene by themselves, by `fu.run_many`, `fu.sweep`, and Exudyn's
+ParameterVariation.
 
     pip install '.[bench]' && python tests/benchmarks/many_scenes.py [--out FILE.csv] [--scenes 200] [--repetitions 3]
         [--theirs 100]
 
 The scenes differ by the mass of the rider, 0.5 to 2 kg. "first scene" is that of README.md; "sliding mass" is the same
-with Exudyn's cable, cable12 here, of 3 elements. Each takes a second of motion, at tol 1e-3 here. Error: the largest
-distance of the rider from its converged path, over the largest motion, the largest of a few variants; each code has its
-own converged path (as in exudyn_side_by_side.py). Exudyn's steps are the fewest of a list that keep within `tol`, and
-the fewest that come to the error that ours have.
+with Exudyn's cable, cable12 in funicular, of 3 elements. Each takes a second of motion, at tol 1e-3 in funicular.
+Error: the largest distance of the rider from its converged path, over the largest motion, the largest of a few
+variants; each code has its own converged path (as in exudyn_side_by_side.py). Exudyn has the fewest steps of a list
+within `tol`, and the fewest with the error of funicular.
 
-All of a scene is timed: it is described, checked, built, run, and its results are labelled; there it is described,
-assembled, run, and the rider's last position read. "wall" is by the clock, "CPU" by that of the process and its
-children; methods take turns, and the median counts. Where other programs run, CPU says more. "locked" is the part of
-it with Python's lock, here, which one thread has at a time.
+The time is that of a whole scene: description, checks, model, run, labelled results; in Exudyn description, assembly,
+run, and the rider's last position. "wall" is by the clock, "CPU" by that of the process and its children; methods
+alternate, and the median counts. CPU is the better figure on a busy machine. "locked" is the part of it in funicular
+with Python's lock, which one thread has at a time.
 """
 
 import os
@@ -47,7 +48,7 @@ SETTINGS = {"duration": DURATION, "tol": TOL, "output_step": DURATION / OUTPUTS}
 
 
 def first_scene(mass: float) -> fu.Scene:
-    """The scene of README.md with another mass."""
+    """Return the scene of README.md with another mass."""
     scene = fu.Scene(gravity=(0, -9.81, 0))
     wire = scene.cable("wire", start=(0, 0, 0), end=(1.5, 0, 0), elements=ELEMENTS,
                        section=fu.Rectangle(height=0.05, width=0.05), up=(0, 1, 0),
@@ -60,7 +61,7 @@ def first_scene(mass: float) -> fu.Scene:
 
 
 def their_function(point: dict) -> list[float]:
-    """What ParameterVariation calls: the rider's last position, m."""
+    """Return the function for ParameterVariation: the rider's last position, m."""
     made = peer.sliding_mass(ELEMENTS, MODULUS, point["mass"])
     return peer.last_position(made, DURATION, point["functionData"]["steps"])
 
@@ -71,9 +72,9 @@ OURS = {"first scene": first_scene,
 
 @dataclass
 class Method:
-    """A way to run n scenes and its error; how long that took: wall and CPU seconds, a pair a repetition.
+    """A method to run n scenes, its error, and wall and CPU seconds, a pair per repetition.
 
-    locked: seconds of a scene with Python's lock, which one thread has at a time.
+    locked: seconds per scene with Python's lock, which one thread has at a time.
     """
 
     scene: str
@@ -92,13 +93,13 @@ class Method:
 
 
 def _cpu() -> float:
-    """CPU seconds of this process and of its children that have ended."""
+    """Return the CPU seconds of this process and its finished children."""
     times = os.times()
     return times.user + times.system + times.children_user + times.children_system
 
 
 def masses(n: int) -> list[float]:
-    """Masses of n variants, kg."""
+    """Return the masses of n variants, kg."""
     return np.linspace(0.5, 2.0, n).tolist()
 
 
@@ -108,7 +109,7 @@ def variants(make: Callable[[float], fu.Scene], n: int) -> Iterator[fu.Scene]:
 
 
 def our_error(make: Callable[[float], fu.Scene], integrator: str) -> float:
-    """Largest error of the sample here."""
+    """Return the largest error of the sample in funicular."""
     def of(mass: float) -> float:
         exact = make(mass).run(**SETTINGS | {"tol": EXACT})["A.position"]
         return distance(make(mass).run(**SETTINGS, integrator=integrator)["A.position"], exact) / largest_change(exact)
@@ -117,7 +118,7 @@ def our_error(make: Callable[[float], fu.Scene], integrator: str) -> float:
 
 
 def their_errors() -> dict[int, float]:
-    """Largest error of the sample there, by the number of steps."""
+    """Return the largest error of the sample in Exudyn, by the number of steps."""
     errors = dict.fromkeys(STEPS, 0.0)
     for mass in SAMPLE:
         make = partial(peer.sliding_mass, ELEMENTS, MODULUS, mass)
@@ -130,7 +131,7 @@ def their_errors() -> dict[int, float]:
 
 
 def locked_seconds(make: Callable[[float], fu.Scene], settings: dict) -> float:
-    """CPU seconds of a scene with Python's lock: all but those of the integration. The least of the sample."""
+    """Return CPU seconds of a scene with Python's lock, all but the integration, the minimum of the sample."""
     found = []
     for mass in SAMPLE:
         begin = time.thread_time()
@@ -140,7 +141,7 @@ def locked_seconds(make: Callable[[float], fu.Scene], settings: dict) -> float:
 
 
 def our_methods(n: int) -> list[Method]:
-    """Ways to run the scenes here, by the integrator."""
+    """Return the methods of funicular, by integrator."""
     methods = []
     for (name, make), integrator in product(OURS.items(), ("auto", "genalpha")):
         error, settings = our_error(make, integrator), SETTINGS | {"integrator": integrator}
@@ -156,19 +157,19 @@ def our_methods(n: int) -> list[Method]:
 
 
 def run_all(make: Callable[[float], fu.Scene], n: int, threads: int, settings: dict) -> None:
-    """Run n scenes by run_many, and keep of each the path of the rider."""
+    """Run n scenes by run_many; keep the path of the rider of each."""
     for kept in fu.run_many(variants(make, n), threads=threads, keep=["A.position"], **settings):
         assert isinstance(kept, dict), kept
 
 
 def sweep(make: Callable[[float], fu.Scene], n: int, settings: dict) -> None:
-    """Run n scenes as the points of a sweep of one of them, in this process, and keep of each the path of the rider."""
+    """Run n scenes as the points of a sweep in this process; keep the path of the rider of each."""
     found = fu.sweep(make(1.0), {"A.mass": masses(n)}, keep=["A.position"], workers=0, progress=False, **settings)
     assert (found["status"] == "completed").all()
 
 
 def their_methods(n: int, ours: float) -> list[Method]:
-    """Ways to run them there: to the same tolerance, and to the error that ours have."""
+    """Return the methods of Exudyn: for the same tolerance, and for the error of funicular."""
     errors, methods = their_errors(), []
     for allowed in (TOL, ours):
         steps = next((steps for steps in STEPS if errors[steps] <= allowed), STEPS[-1])

@@ -1,6 +1,6 @@
 """Runs of tests/benchmarks/model_choice.py, each made once: references, and every model by brute force, in a cache.
 
-The cache is a folder outside of the repository (--cache, by default under the user's cache folder): for each scene the
+The cache is a folder outside of the repository (--cache, by default in the user's cache folder): for each scene the
 converged motion of its finest model as .npz, and one line of JSON for each run by brute force.
 """
 
@@ -50,7 +50,7 @@ MOST_SECONDS = 1.0
 
 @dataclass(frozen=True)
 class Cell:
-    """One run by brute force: its model, its time tolerance, its error over the motion and its cost in s of CPU."""
+    """One run by brute force: its model, time tolerance, error over the motion and CPU cost in s."""
 
     element: str
     law: str
@@ -65,7 +65,7 @@ class Cell:
 
 @lru_cache
 def drawn(name: str, dim: int) -> fu.Scene | None:
-    """A scene with cables of a dimension: a spatial one that stays in its plane may have planar ones, else None."""
+    """Return a scene with cables of a dimension: a planar motion of a spatial scene may have planar ones, else None."""
     scene = SCENES[name].make()
     if scene.dim == dim:
         return scene
@@ -75,12 +75,12 @@ def drawn(name: str, dim: int) -> fu.Scene | None:
 
 
 def models(scene: fu.Scene, element: str, law: str, mesh: int) -> dict[str, CableModel]:
-    """One model for all cables of a scene."""
+    """Return one model for all cables of a scene."""
     return {name: CableModel(element, law, mesh * coarsest(scene, cable)) for name, cable in scene.cables.items()}
 
 
 def simulate(name: str, chosen: dict[str, CableModel] | None, **settings) -> fu.Run:
-    """A run of a scene with these models of its cables."""
+    """Return a run of a scene with these models of its cables."""
     subject = SCENES[name]
     dim = 3 if chosen is None else max(built_in()[model.element].dim for model in chosen.values())
     scene = subject.make() if chosen is None else drawn(name, dim)
@@ -92,7 +92,7 @@ def simulate(name: str, chosen: dict[str, CableModel] | None, **settings) -> fu.
 
 
 def able(scene: fu.Scene, wanted: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
-    """Those elements and laws that the cables of a scene can have."""
+    """Return the elements and laws that the cables of a scene permit."""
     found = []
     for element, law in wanted:
         try:
@@ -104,13 +104,13 @@ def able(scene: fu.Scene, wanted: Iterable[tuple[str, str]]) -> list[tuple[str, 
 
 
 def kinds(name: str) -> list[tuple[str, str]]:
-    """Those elements and laws that a scene is run with by brute force, planar ones too where it stays in its plane."""
+    """Return the elements and laws of the runs by brute force, with planar ones for a planar motion."""
     scenes = {dim: scene for dim in (3, 2) if (scene := drawn(name, dim)) is not None}
     return [kind for dim, scene in scenes.items() for kind in able(scene, KINDS[dim])]
 
 
 def reference(name: str, cache: Path = CACHE) -> tuple[np.ndarray, float, str]:
-    """The converged motion of the finest model, how far it is converged, and what model that is."""
+    """Return the converged motion of the finest model, its convergence, and the model."""
     path = cache / f"{name}.npz"
     if not path.exists():
         exact, converged, label = _reference(name)
@@ -137,7 +137,7 @@ def _reference(name: str) -> tuple[np.ndarray, float, str]:
 
 
 def known_cells(name: str, cache: Path = CACHE) -> dict[tuple, Cell]:
-    """The runs by brute force that the cache has, by their model, integrator and tolerance."""
+    """Return the runs by brute force in the cache, by model, integrator and tolerance."""
     path = cache / f"{name}.jsonl"
     lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
     cells = [Cell(**json.loads(line)) for line in lines]
@@ -145,8 +145,8 @@ def known_cells(name: str, cache: Path = CACHE) -> dict[tuple, Cell]:
 
 
 def brute_force(name: str, cache: Path = CACHE) -> Iterator[Cell]:
-    """Models at every tolerance, from the cache or computed: meshes from coarse to fine, until one keeps the tolerance
-    or costs more than the cheapest that does.
+    """Yield models at every tolerance, cached or computed: meshes from coarse to fine, until one meets the tolerance or
+    costs more than the cheapest that does.
     """
     exact = reference(name, cache)[0]
     path = cache / f"{name}.jsonl"
@@ -182,7 +182,7 @@ class Stopwatch:
 
 
 def measured(name: str, exact: np.ndarray, element: str, law: str, mesh: int, integrator: str, tol: float) -> Cell:
-    """One run by brute force; a short one is repeated, and the shortest time counts."""
+    """Return one run by brute force; a short one is repeated, and the shortest time counts."""
     cost = set_up = np.inf
     try:
         for _ in range(3):

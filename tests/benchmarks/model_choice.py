@@ -4,12 +4,11 @@
         [--out FILE.csv]
 
 ``error/tol`` is the largest error of a motion, of stations along cables and of bodies at 20 output times, against the
-converged motion of the finest model at hand, over the largest motion and over tol; ``estimate`` is what the choice
-says of it. ``resolved`` is how far the reference itself is converged, over tol: beyond 1 the error says nothing.
-``ms`` is the CPU time of the integration, ``cheapest`` that of the cheapest model that keeps tol, found by brute force
-over elements, laws, meshes and integrators, both measured in turns. ``choice`` is the CPU time of the choice over that
-of the run, set-up included. References and brute force are computed once and kept in the cache; the choice is made
-anew.
+converged motion of the finest model available, over the largest motion and over tol; ``estimate`` is the estimate of
+the choice. ``resolved`` is the convergence of the reference itself, over tol: beyond 1 the error has no meaning. ``ms``
+is the CPU time of the integration, ``cheapest`` that of the cheapest model within tol, found by brute force over
+elements, laws, meshes and integrators, both measured alternately. ``choice`` is the CPU time of the choice over that of
+the run, set-up included. References and brute force are computed once and cached; the choice is made anew.
 
 ``--full-length`` runs the bundled scenes over the durations of their files. Their errors are against a run on twice as
 fine a mesh with a tenth of the time tolerance.
@@ -43,7 +42,7 @@ LONG = 0.2
 
 
 def chosen(name: str, tol: float) -> fu.Choice:
-    """The choice for a scene, free in all."""
+    """Return the choice for a scene with all models free."""
     subject = SCENES[name]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", fu.FunicularWarning)
@@ -51,7 +50,7 @@ def chosen(name: str, tol: float) -> fu.Choice:
 
 
 def simulate(name: str, choice: fu.Choice) -> tuple[fu.Run, float, float]:
-    """A run of the chosen scene, with medians of the CPU time of its integration, and of all of it."""
+    """Return a run of the chosen scene, with medians of the CPU times of its integration and of the whole."""
     subject, solve, total = SCENES[name], [], []
     for _ in range(REPETITIONS):
         begin = time.process_time()
@@ -66,7 +65,7 @@ def simulate(name: str, choice: fu.Choice) -> tuple[fu.Run, float, float]:
 
 
 def in_turns(name: str, choice: fu.Choice, best: Cell) -> tuple[float, float]:
-    """The least CPU time of the integration of the chosen model, and of a cell's, run in turns."""
+    """Return the minimum CPU times of the integrations of the chosen model and of a cell, run alternately."""
     subject, times = SCENES[name], ([], [])
     cell = models(drawn(name, built_in()[best.element].dim), best.element, best.law, best.mesh)
     for _ in range(TURNS):
@@ -82,13 +81,13 @@ def in_turns(name: str, choice: fu.Choice, best: Cell) -> tuple[float, float]:
 
 
 def true_error(name: str, run: fu.Run, cache: Path = CACHE) -> float:
-    """The largest error of a run over the largest motion."""
+    """Return the largest error of a run over the largest motion."""
     exact = reference(name, cache)[0]
     return distance(motion(run.scene, run), exact) / largest_change(exact)
 
 
 def row(name: str, tol: float, cache: Path, brute: str) -> dict:
-    """One line of the table; brute: "none", "cached" or "all" runs by brute force."""
+    """Return one row of the table; brute: "none", "cached" or "all" runs by brute force."""
     choice = chosen(name, tol)
     run, solve, total = simulate(name, choice)
     found = {"none": lambda: (), "cached": lambda: known_cells(name, cache).values(),
@@ -105,7 +104,7 @@ def row(name: str, tol: float, cache: Path, brute: str) -> dict:
 
 
 def full_length(name: str, tol: float) -> dict:
-    """One line of the table of bundled scenes at full length."""
+    """Return one row of the table of bundled scenes at full length."""
     scene = fu.load_scene(name)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", fu.FunicularWarning)
@@ -124,7 +123,7 @@ def full_length(name: str, tol: float) -> dict:
 
 
 def summary(rows: list[dict]) -> list[str]:
-    """How many cells meet each goal."""
+    """Return how many cells meet each goal."""
     true = [one for one in rows if one["resolved"] <= 1]
     within = sum(one["error/tol"] <= 3 or (not one["kept"] and one["best"] == "none") for one in true)
     priced = [one for one in true if one["best"] != "none"]

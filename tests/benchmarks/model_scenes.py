@@ -1,6 +1,6 @@
-"""Scenes over which the choice of a model is measured, by tests/benchmarks/model_choice.py: name, scene, duration in s.
+"""Scenes for measuring the choice of a model by tests/benchmarks/model_choice.py: name, scene, duration in s.
 
-What their cables are drawn with (element, law, number of elements) is a start alone: the choice is free in all of it.
+The drawn models of their cables (element, law, number of elements) are a start; the choice is free in all of them.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from pendulum import pendulum
 
 
 def crane() -> fu.Scene:
-    """A trolley speeds up along the girder of a crane, a load swings below it (guide crane.py)."""
+    """A trolley accelerates along the girder of a crane, a load swings below it (guide crane.py)."""
     scene = fu.Scene()
     scene.cable("girder", start=(0, 0, 0), end=(20, 0, 0), elements=8, element="cable8p",
                 section=fu.GeneralSection(area=0.05, second_moment_about_z=5e-3),
@@ -67,7 +67,7 @@ def rubber_pendulum() -> fu.Scene:
 
 
 def shaken() -> fu.Scene:
-    """A cable hangs from a support that is moved aside and back, a body at its lower end."""
+    """A cable hangs from a support that moves aside and back, with a body at its lower end."""
     scene = fu.Scene()
     scene.cable("rope", start=(0, 0, 0), end=(0, -1, 0), elements=6, element="cable12", section=fu.Circle(radius=5e-3),
                 material=fu.Material(youngs_modulus=5e7, poisson_ratio=0.3, density=1100, damping_time=1e-3),

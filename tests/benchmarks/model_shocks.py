@@ -30,7 +30,7 @@ TIMES = 20
 
 
 def rider(mach: float) -> Subject:
-    """A rider at so many times the wave speed of a taut rope, pushed down."""
+    """A rider at a multiple of the wave speed of a taut rope, pushed down."""
     def make() -> fu.Scene:
         scene = crossings.pinned_rope(gravity=(0, 0, 0), elements=12, rest_length=1.5 / 1.05,
                                       section=fu.Circle(radius=5e-3))
@@ -41,7 +41,7 @@ def rider(mach: float) -> Subject:
 
 
 def thrown() -> fu.Scene:
-    """A soft cable thrown on the ground, aslant."""
+    """A soft cable thrown obliquely on the ground."""
     scene = fu.Scene()
     line = scene.cable("line", start=(0, 0.15, 0), end=(1.5, 0.5, 0), elements=20, element="cable8p",
                        section=fu.Circle(radius=0.01), velocity=(1.0, -2.0, 0),
@@ -52,7 +52,7 @@ def thrown() -> fu.Scene:
 
 
 def pushed_wire(speed: float = 55.0) -> fu.Scene:
-    """A head on a carriage goes along under a taut wire, whose waves have 94 m/s, and is pressed against it."""
+    """A head on a carriage moves along under a taut wire with a wave speed of 94 m/s, and is pressed against it."""
     scene = fu.Scene(gravity=(0, 0, 0))
     scene.cable("wire", start=(0, 0, 0), end=(20, 0, 0), elements=40, element="cable8p",
                 rest_length=20 / (1 + 1000 / (4e9 * np.pi * 8e-3**2)), section=fu.Circle(radius=8e-3),
@@ -70,7 +70,7 @@ def pushed_wire(speed: float = 55.0) -> fu.Scene:
 
 
 def snatched() -> fu.Scene:
-    """A body falls until a rope that pulls alone stops it, at the middle of a taut cable."""
+    """A body falls until a tension-only rope stops it, at the middle of a taut cable."""
     scene = fu.Scene()
     scene.cable("rope", start=(0, 0, 0), end=(8, 0, 0), rest_length=7.95, elements=16, element="cable8p",
                 section=fu.Circle(radius=6e-3),
@@ -83,7 +83,7 @@ def snatched() -> fu.Scene:
 
 
 def struck() -> fu.Scene:
-    """A ball is shot at a bed from which a cable holds it: hard contact, and a cable that snaps taut."""
+    """A ball flies at a bed, and a cable holds it back: hard contact, and a cable that snaps taut."""
     scene = fu.Scene()
     scene.cable("leash", curve=lambda u: (u, 0.2 + 0.1 * u + 0.3 * np.sin(np.pi * u), 0), rest="straight",
                 elements=12, element="cable8p", section=fu.Circle(radius=4e-3),
@@ -109,7 +109,7 @@ def towed() -> fu.Scene:
 
 
 def bundled(name: str, duration: float) -> Subject:
-    """A bundled scene over a part of its duration, from the start that its file gives."""
+    """A bundled scene over a part of its duration, from the start of its file."""
     initial = fu.load_scene(name).run_settings.get("initial", "drawn")
     return Subject(lambda: fu.load_scene(name), duration, initial)
 
@@ -140,12 +140,12 @@ class Stopwatch:
 
 
 def _factor(elements: int, finer: int) -> int:
-    """By what a mesh is refined for a reference: 64 elements at least, and less where there are many."""
+    """Return the refinement of a mesh for a reference: to 64 elements at least, and less for large meshes."""
     return max(finer if elements <= 100 else 2, -(-64 // elements))
 
 
 def row(name: str, tol: float, finer: int, seconds: float = 60.0) -> dict:
-    """One line of the table."""
+    """Return one row of the table."""
     subject = SCENES[name]
     found: dict = {"scene": name, "tol": tol, "error/tol": float("nan"), "estimate": float("nan"), "kept": False,
                    "probes": 0, "choice": float("nan"), "chosen": ""}

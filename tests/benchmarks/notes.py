@@ -37,7 +37,7 @@ WARNS = re.compile(r"errors may|energy balance|perfectly straight|beyond the end
 
 
 def run(made: Motion, tol: float, integrator: str) -> fu.Run | None:
-    """A run of a scene; None where it has no end, or takes too long."""
+    """Return a run of a scene; None if it does not end or takes too long."""
     begin = time.process_time()
 
     def give_up(reached: float) -> None:
@@ -55,12 +55,12 @@ def run(made: Motion, tol: float, integrator: str) -> fu.Run | None:
 
 
 def farthest(one: np.ndarray, other: np.ndarray) -> float:
-    """Largest distance of two motions, m."""
+    """Return the largest distance of two motions, m."""
     return float(np.linalg.norm(one - other, axis=-1).max())
 
 
 def cells(seed: int) -> list[dict]:
-    """The lines of the table for a scene; one without an error where there is no reference."""
+    """Return the rows of a scene; one without an error if there is no reference."""
     made = motion(seed)
     explicit, radau = (run(made, 1e-9, integrator) for integrator in ("explicit", "radau"))
     if explicit is None or radau is None:
@@ -93,7 +93,7 @@ def summary(rows: list[dict]) -> list[dict]:
 
 
 def silent_part(rows: list[dict]) -> float:
-    """The part of the runs with a reference that err by more than `SILENT` tol without a note."""
+    """Return the share of the runs with a reference whose error exceeds `SILENT` tol without a note."""
     known = [row for row in rows if np.isfinite(row["error/tol"])]
     return sum(row["error/tol"] > SILENT and not row["noted"] for row in known) / max(len(known), 1)
 

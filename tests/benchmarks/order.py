@@ -4,13 +4,13 @@
 
 s of the slide and y of the body against tests/reference/paper51.csv, root mean square over the output times; ``ratio``
 is the error of the step before over this one's: 4 for the second order, 2 for the first. Below steps of 0.25 ms the
-vibrations of the cable's section (period 0.3 ms, some 1e-7 m) hold the errors up until 20 µs resolve them.
+vibrations of the cable's section (period 0.3 ms, some 1e-7 m) limit the errors until 20 µs resolve them.
 
-``from rest`` starts the scheme from zero accelerations: one order is lost, for good, since what the first step gets
-wrong stays in the velocities. Another way to lose it: to treat s as a multiplier. With constraints r(s) - p = 0 and
-f . r'(s) = 0, and C_q' times all algebraic unknowns as the force, the increment of s in the step multiplies f . r'_q,
-which acts like f applied at s one step ahead; the energy then grows or falls with the first power of the step as well.
-Here the force on the cable is that of f alone.
+``from rest`` starts the scheme from zero accelerations and loses one order, since the velocities keep the error of the
+first step. An order is also lost if s is treated as a multiplier. With constraints r(s) - p = 0 and f . r'(s) = 0, and
+C_q' times all algebraic unknowns as the force, the increment of s in the step multiplies f . r'_q, which acts like f
+applied at s one step ahead; the energy then changes with the first power of the step as well. Here the force on the
+cable is that of f alone.
 """
 
 import numpy as np

@@ -1,4 +1,4 @@
-"""Frames per second of the 3D page, drawn by software in a headless browser; its size and the time to write it.
+"""Frames per second of the 3D page with software rendering in a headless browser; its size and the time to write it.
 
     python tests/benchmarks/page.py [--out FILE.csv]
 

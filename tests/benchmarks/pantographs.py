@@ -1,28 +1,28 @@
-"""Pantographs below catenaries: contact force and uplift, how they converge, and what they cost.
+"""Pantographs below catenaries: contact force and uplift, their convergence and cost.
 
     python tests/benchmarks/pantographs.py [--out FILE.csv] [--what reference|data|line55|kinds|cost]
 
 reference: the reference model of EN 50318:2002, which is withdrawn, at 250 and 300 km/h: 10 spans of 60 m, a pantograph
-of two masses, of which spans 5 and 6 are judged by the contact force below 20 Hz. The first rows are the ranges that
-the standard accepted and the figures of a published code; those that follow are computed. It gives neither the lengths
-of the droppers nor the uplift force, nor how damping depends on frequency. Taken are, for both speeds, a sag of 5 mm,
-120 N on the frame, so that the mean is set and not validated, and the damping ratio of 0.005 at 20 Hz, in proportion to
-mass, which is more at lower frequencies: sag and damping are chosen so that the ranges are met, and are not validated,
-either. Axial stiffnesses are assumed (150 mm² and 120 mm² of copper alloys). No conformity to any standard is claimed,
-and the edition of 2018 has another model.
+of two masses, assessed in spans 5 and 6 by the contact force below 20 Hz. The first rows are the ranges of the standard
+and the figures of a published code; the others are computed. The standard gives neither the lengths of the droppers,
+nor the uplift force, nor the frequency dependence of the damping. Assumed are, for both speeds, a sag of 5 mm, 120 N on
+the frame, which sets the mean without validating it, and the damping ratio of 0.005 at 20 Hz, in proportion to mass,
+which is more at lower frequencies. Sag and damping are chosen to meet the ranges, and are not validated either. Axial
+stiffnesses are assumed (150 mm² and 120 mm² of copper alloys). No conformity to any standard is claimed, and the
+edition of 2018 has another model.
 
-data: what each of the unknown data changes, from a level wire with the damping ratio at 10 Hz on.
+data: the influence of each unknown, from a level wire with the damping ratio at 10 Hz on.
 
-line55: the 55 m line with a pantograph of three masses at 275 and 320 km/h, one, and two at 200 m from each other.
+line55: the 55 m line with a pantograph of three masses at 275 and 320 km/h, one, and two at a distance of 200 m.
 
-kinds: the reference model at 300 km/h with a pantograph of arms and hinges, with the masses that have the same small
-motions, and with staggers of 0.2 m.
+kinds: the reference model at 300 km/h with a pantograph of arms and hinges, with its equivalent masses, and with
+staggers of 0.2 m.
 
-cost: CPU seconds a simulated second, and the error of the standard deviation against a tolerance of 1 mm; numbers of
+cost: CPU seconds per simulated second, and the error of the standard deviation against a tolerance of 1 mm; numbers of
 spans.
 
 Columns: mean, sigma, mean ± 3 sigma, largest and least force in N, the largest uplift at the masts of the section in
-mm, the time without contact in %, steps and CPU seconds a simulated second.
+mm, the time without contact in %, steps and CPU seconds per simulated second.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ def passage(line: catenary.Line, pantographs: dict[str, tuple[catenary.Pantograp
 
 
 def figures(run, sections, name: str = "pantograph", **filtering) -> tuple[float, ...]:
-    """Return what the columns show, of the first of these sections."""
+    """Return the figures of the columns for the first of these sections."""
     found = catenary.assess(run, sections, name, **filtering)
     start, end = sections[0]
     masts = found.uplift.sel(mast=slice(start + 1, end + 1))
@@ -151,7 +151,7 @@ def reference_rows(speeds=(250, 300), variants=CONVERGENCE) -> list[dict]:
 
 
 def data_rows() -> list[dict]:
-    """Return what unknown data change."""
+    """Return the influence of unknown data."""
     return reference_rows(variants={what: {"tol": 4 * TOL, **LEVEL, **change} for what, change in DATA.items()})
 
 
@@ -173,7 +173,7 @@ def line55_rows() -> list[dict]:
 def kinds_rows() -> list[dict]:
     """Return the table of a pantograph with joints, its equivalent masses, and staggers."""
     jointed, level = catenary.JointedPantograph(uplift=120), reference()
-    # an arm so long adds nothing to the vertical stiffness of the model
+    # an arm of this length adds nothing to the vertical stiffness of the model
     staggered = level.completed({"stagger": 0.2, "steady_arm": catenary.SteadyArm(stiffness=300, length=1e3)})
     rows = []
     for what, line, pantograph in (("arms and hinges", level, jointed), ("its masses", level, jointed.equivalent()),
@@ -194,7 +194,7 @@ COSTS = ((0.2, {"output_step": 2e-3}), (0.2, {"output_step": 1e-3}), (0.05, {"ou
 
 
 def cost_rows() -> list[dict]:
-    """Return errors and costs at 300 km/h, and the growth with the spans."""
+    """Return errors and costs at 300 km/h, and their growth with the spans."""
     finest = judge(300, tol=1e-3)[1]
     rows = []
     for tol, settings in COSTS:

@@ -1,4 +1,4 @@
-"""The first scene against its reference: what the benchmarks print and tests/parts/test_first_scene.py asserts."""
+"""The first scene against its reference: figures of the benchmarks and of tests/parts/test_first_scene.py."""
 
 from __future__ import annotations
 
@@ -23,38 +23,38 @@ COLUMNS = {
 
 
 def simulate(**settings) -> Run:
-    """The scene at the reference's times; settings of `Scene.run`."""
+    """Return the scene at the reference's times, with settings of `Scene.run`."""
     return load_scene("paper51").run(1.0, output_step=0.01, **settings)
 
 
 def deviation(run: Run, quantity: str) -> np.ndarray:
-    """(time,): a quantity of COLUMNS minus the reference, in its unit."""
+    """Return (time,) a quantity of COLUMNS minus the reference, in its unit."""
     name, component, column = COLUMNS[quantity]
     values = run[name] if component is None else run[name][:, component]
     return values - REFERENCE[column]
 
 
 def error(run: Run, quantity: str) -> float:
-    """Largest deviation from the reference over its range."""
+    """Return the largest deviation from the reference over its range."""
     return float(np.abs(deviation(run, quantity)).max() / np.ptp(REFERENCE[COLUMNS[quantity][2]]))
 
 
 def points(run: Run) -> np.ndarray:
-    """(time, points, 3): the rider and the cable's nodes, in m."""
+    """Return (time, points, 3) of the rider and the cable's nodes, m."""
     return np.concatenate([run["A.position"][:, None], run["wire.nodal_vectors"][:, :, 0]], axis=1)
 
 
 def motion_error(run: Run, precise: Run) -> float:
-    """What tol aims at: the largest distance of rider and nodes from a precise run, over the largest motion."""
+    """Return the error of tol: the largest distance of rider and nodes from a precise run, over the largest motion."""
     exact = points(precise)
     largest = np.linalg.norm(exact - exact[0], axis=-1).max()
     return float(np.linalg.norm(points(run) - exact, axis=-1).max() / largest)
 
 
 def integrate(*, step=0.0, tol=1e-4, from_rest=False):
-    """The integration alone, set-up and labelling apart: the engine after it, and the CPU seconds it took.
+    """Return the engine after the integration without set-up and labels, and its CPU seconds.
 
-    from_rest: start the scheme from zero accelerations, which no user can ask for.
+    from_rest: start the scheme from zero accelerations, which users cannot request.
     """
     from funicular.engine import Engine
     from funicular.integrators import GeneralisedAlpha

@@ -3,10 +3,10 @@
     python tests/benchmarks/paper52.py [--out FILE.csv] [--plots FOLDER] [--tol 1e-4]
 
 Fig. 7: the ball's y-acceleration with a rigid link, by the spatial and by the planar joint. Fig. 8: with a rigid link,
-one of modes, one of absolute nodal coordinates; and again with links 100 times as stiff, where all three are one: what
-parts them is their flexibility. The rigid link here has the rotary inertia of the others, which the thin rod of the
-scene file has not. Fig. 9: the ball's path with 1 m/s along x and z. The table: distance of the ball from that with the
-rigid link, error against a run of tighter tol, CPU seconds of the integration.
+a modal one, and one of absolute nodal coordinates; and again with links 100 times as stiff, with which all three agree:
+their differences are those of flexibility. The rigid link here has the rotary inertia of the others, unlike the thin
+rod of the scene file. Fig. 9: the ball's path with 1 m/s along x and z. The table: distance of the ball from that with
+the rigid link, error against a run of smaller tol, CPU seconds of the integration.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Motion:
 
 
 def scene(kind: str, planar: bool = False, stiffer: float = 1.0, aside: float = 0.0) -> Scene:
-    """The scene of the file, with this kind of link; aside: of the ball's velocity along z, in m/s."""
+    """Return the scene of the file with this kind of link; aside: of the ball's velocity along z, m/s."""
     of_file = load_scene("paper52_rigid")
     made = Scene(gravity=of_file.gravity)
     wire = of_file.cables["wire"]
@@ -69,7 +69,7 @@ def scene(kind: str, planar: bool = False, stiffer: float = 1.0, aside: float = 
 
 
 def moved(of: Scene, tol: float, duration: float = 1.5) -> Motion:
-    """The motion, and how far it is off one of a hundredth of its tol, over the ball's largest motion."""
+    """Return the motion, and its distance from one with a hundredth of its tol, over the ball's largest motion."""
     run, precise = (of.run(duration=duration, tol=t, output_step=0.005) for t in (tol, tol / 100))
     away = np.linalg.norm(precise["ball.position"] - precise["ball.position"][0], axis=1).max()
     error = np.linalg.norm(run["ball.position"] - precise["ball.position"], axis=1).max() / away
@@ -77,7 +77,7 @@ def moved(of: Scene, tol: float, duration: float = 1.5) -> Motion:
 
 
 def apart(one: Run, other: Run, until: float) -> float:
-    """Largest distance of the balls up to a time, in m."""
+    """Return the largest distance of the balls up to a time, m."""
     shown = one.time <= until + 1e-9
     return float(np.linalg.norm(one["ball.position"][shown] - other["ball.position"][shown], axis=1).max())
 
@@ -130,7 +130,7 @@ def draw(folder: Path, flat: Motion, links: dict[str, Motion], stiff: dict[str, 
 
 
 def main() -> None:
-    """Run all, print the table, write it and the figures where asked."""
+    """Run all, print the table, and write it and the figures if requested."""
     options = parser(__doc__)
     options.add_argument("--plots", type=Path, metavar="FOLDER", help="draw the figures")
     options.add_argument("--tol", type=float, default=1e-4)

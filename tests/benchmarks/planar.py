@@ -2,13 +2,13 @@
 
     python tests/benchmarks/planar.py [--out FILE.csv] [--plot FILE.png]
 
-Steps of 1 ms, generalised-α. Where the kinematics are equal, so are all steps of the Newton iteration, and what is left
-is rounding. They are equal for a cable in its plane, for a beam with ν = 0, and with any ν by the structural law. They
-are not for the continuum law with ν of 0.3, whose sections cannot take the shape that bending gives them (Poisson
-locking): beam12p, of plane stress, bends with E I / (1 - ν²), 1.10 E I, and beam24, of three-dimensional stress, with
-E I (1 - ν) / (1 + ν) / (1 - 2 ν), 1.35 E I. Nor are they between a cable and the beam of the continuum law, which with
-3 elements is too stiff: r_y is linear along an element, the slope is not, and the difference is shear (50 N on the wire
-at rest: it sags 5.4 % less than the cable with 3 elements, 0.41 % with 12, 0.15 % with 48).
+Steps of 1 ms, generalised-α. With equal kinematics all steps of the Newton iteration are equal up to rounding. The
+kinematics are equal for a cable in its plane, for a beam with ν = 0, and with any ν by the structural law. They differ
+for the continuum law with ν of 0.3, whose sections cannot deform as bending requires (Poisson locking): beam12p, in
+plane stress, bends with E I / (1 - ν²), 1.10 E I, and beam24, in three-dimensional stress, with E I (1 - ν) / (1 + ν) /
+(1 - 2 ν), 1.35 E I. They also differ between a cable and the beam of the continuum law, which is too stiff with 3
+elements: r_y is linear along an element, the slope is not, and the difference is shear (under 50 N the wire sags 5.4 %
+less than the cable with 3 elements, 0.41 % with 12, 0.15 % with 48).
 """
 
 from __future__ import annotations
@@ -32,19 +32,19 @@ QUANTITIES = {"x, y / m": "A.position", "s / m": "trolley.s", "force / N": "trol
 
 
 def simulate(element: str, law: str = "continuum", poisson_ratio: float = 0.0, duration: float = 1.0) -> Run:
-    """Table 1 with another element."""
+    """Return a run of Table 1 with another element."""
     laws = {"law": law} if "beam" in element else {}
     scene = sliding_mass(3, element, poisson_ratio=poisson_ratio, **laws)
     return scene.run(duration, step=1e-3, output_step=2e-3)
 
 
 def differences(planar: Run, spatial: Run) -> dict[str, float]:
-    """Largest difference of each quantity."""
+    """Return the largest difference of each quantity."""
     return {label: float(np.abs(planar[name] - spatial[name]).max()) for label, name in QUANTITIES.items()}
 
 
 def draw(runs: dict[tuple[str, str, float], Run], path: Path) -> None:
-    """The rider's height by the four elements, and how far planar and spatial ones are apart."""
+    """Draw the rider's height by the four elements, and the differences of planar and spatial ones."""
     from funicular.view.plot import STYLE
     from matplotlib import pyplot, rc_context
 

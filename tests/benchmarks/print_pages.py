@@ -2,7 +2,7 @@
 
     python tests/benchmarks/print_pages.py [--check]
 
---check writes nothing, and fails where a page is not what its records say.
+--check writes nothing, and fails if a page differs from its records.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def validation() -> str:
 
 
 def compared(rows: list[Row]) -> list[list[str]]:
-    """Return a line for each case, quantity and bound: the largest error, of all elements, laws and integrators."""
+    """Return a line for each case, quantity and bound: the largest error of all elements, laws and integrators."""
     groups: dict[tuple[str, ...], list[Row]] = {}
     for row in rows:
         test = row["test"].partition("[")[0]
@@ -79,7 +79,7 @@ def speed() -> str:
 
 
 def readme() -> str:
-    """Return README.md with the list of scripts as their docstrings say."""
+    """Return README.md with the list of scripts from their docstrings."""
     text = (FOLDER / "README.md").read_text(encoding="utf-8")
     before, _, rest = text.partition(BEGIN)
     after = rest.partition(END)[2]

@@ -1,4 +1,4 @@
-"""Tables of Markdown from rows of records: what stands in a cell, and rows laid out by one of their columns."""
+"""Tables of Markdown from rows of records: cells, and rows arranged by one of their columns."""
 
 from __future__ import annotations
 
@@ -22,9 +22,8 @@ names no processor was transcribed from an earlier table, and its date is that o
 class Table:
     """A table of a page, from a table of a script's record.
 
-    columns: headings by the keys that are shown. by: a key whose values become columns of their own, with what stands
-    in their cells, as a text with keys in braces; the rows are then told apart by ``columns``. rows: which rows, and
-    how they are changed before. options: of the command that records it.
+    columns: headings by key. by: a key whose values become columns, with the text of their cells, with keys in braces;
+    ``columns`` then identify the rows. rows: which rows, and their changes before. options: of the recording command.
     """
 
     script: str
@@ -64,7 +63,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Section:
-    """A section of a page: its text, its tables, and the test that asserts what it says, if there is one."""
+    """A section of a page: its text, its tables, and the test that asserts its figures, if there is one."""
 
     title: str
     text: str
@@ -79,7 +78,7 @@ class Section:
 
 
 def paragraphs(text: str) -> str:
-    """Return a text in lines of 120 characters, but for its commands and pictures."""
+    """Return a text in lines of 120 characters, except commands and pictures."""
     return "\n\n".join(part if part.startswith(("    ", "![")) else
                        textwrap.fill(part, 120, break_long_words=False, break_on_hyphens=False)
                        for part in text.split("\n\n"))
@@ -96,7 +95,7 @@ def markdown(head: list[str], rows: list[list[str]]) -> list[str]:
 
 
 def cell(value: Any) -> str:
-    """Return a value as it stands in a table: numbers with three digits, small and large ones with two."""
+    """Return a value for a table: numbers with three digits, small and large ones with two."""
     if value is None:
         return ""
     if isinstance(value, bool):
@@ -111,7 +110,7 @@ def cell(value: Any) -> str:
 
 
 def scripts() -> dict[str, str]:
-    """Return the benchmarks by name, with the first sentence of what each measures."""
+    """Return the benchmarks by name, with the first sentence of each docstring."""
     found = {}
     for file in sorted(FOLDER.glob("*.py")):
         text = file.read_text(encoding="utf-8")

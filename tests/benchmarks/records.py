@@ -1,4 +1,4 @@
-"""Records of what benchmarks and tests measured: files of JSON, one a script, with a table by name.
+"""Records of measurements of benchmarks and tests: files of JSON, one per script, with a table by name.
 
     {"TABLE": {"measured": "2026-11-24", "conditions": "...", "rows": [{...}, ...]}, ...}
 
@@ -24,12 +24,12 @@ FOLDER = Path(__file__).with_name("measured")
 
 @cache
 def load(file: Path) -> dict[str, dict[str, Any]]:
-    """Return the tables of a record, none of a file that is not there."""
+    """Return the tables of a record, none for a missing file."""
     return json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
 
 
 def save(file: Path, tables: dict[str, dict[str, Any]]) -> None:
-    """Write the tables of a record, a row on a line."""
+    """Write the tables of a record, one row on each line."""
     parts = []
     for name, table in tables.items():
         head = "".join(f"  {json.dumps(key)}: {json.dumps(value, ensure_ascii=False)},\n"
@@ -41,7 +41,7 @@ def save(file: Path, tables: dict[str, dict[str, Any]]) -> None:
 
 
 def record(file: Path, table: str, rows: list[dict[str, Any]], add: bool = False) -> None:
-    """Put the rows of a table into a record, in place of those that it has or, with ``add``, behind them."""
+    """Put the rows of a table into a record, replacing its rows or, with ``add``, after them."""
     tables = dict(load(file))
     before = tables[table]["rows"] if add else []
     tables[table] = {"measured": date.today().isoformat(), "conditions": conditions(),
@@ -50,7 +50,7 @@ def record(file: Path, table: str, rows: list[dict[str, Any]], add: bool = False
 
 
 def plain(value: Any) -> Any:
-    """Return a value as JSON has it: numbers with four digits, none where there is no number."""
+    """Return a value in JSON: numbers with four digits, null for NaN."""
     if isinstance(value, bool | str) or value is None:
         return value
     if hasattr(value, "item"):
@@ -61,7 +61,7 @@ def plain(value: Any) -> Any:
 
 
 def conditions() -> str:
-    """Return machine, load and versions, and the options of the script that runs."""
+    """Return machine, load and versions, and the options of the running script."""
     given = " ".join(sys.argv[1:])
     given = re.sub(r" ?--(json|out|plots?|cache)( [^-]\S*)?", "", given).strip()
     load_of = f", load {os.getloadavg()[0]:.1f}" if hasattr(os, "getloadavg") else ""
@@ -71,7 +71,7 @@ def conditions() -> str:
 
 
 def processor() -> str:
-    """Return the name of the processor, where the system tells it."""
+    """Return the name of the processor, if the system has it."""
     info = Path("/proc/cpuinfo")
     names = [line.partition(":")[2].strip() for line in info.read_text(encoding="utf-8").splitlines()
              if line.startswith("model name")] if info.exists() else []

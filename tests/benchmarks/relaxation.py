@@ -1,9 +1,9 @@
-"""Cost of coming to rest by a damped motion: steps, resets of velocities, CPU; beside it what `equilibrium` takes.
+"""Cost of relaxation by a damped motion: steps, resets of velocities, CPU; beside it the cost of `equilibrium`.
 
     python tests/benchmarks/relaxation.py [--out FILE.csv] [--repetitions 3]
 
-Last column: kinetic energy, over the energy that the scene has lost, that a run with the same integrator but without
-resets has left after as many steps, its steps chosen by tol = 1e-2. CPU is the least of the repetitions.
+Last column: the kinetic energy of a run without resets after as many steps, relative to the energy lost by the scene,
+with the same integrator and tol = 1e-2. CPU is the minimum of the repetitions.
 """
 
 import os
@@ -25,7 +25,7 @@ THICK, THIN = fu.Circle(radius=0.005), fu.Circle(radius=0.001)
 
 def rope(length: float = 1.3, span: float = 1.0, elements: int = 20, density: float = 1000.0,
          section: fu.Circle = THICK, youngs_modulus: float = 1e8) -> fu.Scene:
-    """A slack cable, drawn straight, that is: pressed together."""
+    """A slack cable drawn straight, in compression."""
     made = fu.Scene()
     made.cable("rope", start=(0, 0, 0), end=(span, 0, 0), rest_length=length, elements=elements, element="cable12",
                section=section,
@@ -36,7 +36,7 @@ def rope(length: float = 1.3, span: float = 1.0, elements: int = 20, density: fl
 
 
 def thin_rope() -> fu.Scene:
-    """One that bends easily: a catenary."""
+    """A very flexible cable: a catenary."""
     return rope(elements=40, density=7800, section=THIN, youngs_modulus=1e7)
 
 
@@ -49,7 +49,7 @@ def with_rider(s: float = 0.3, friction: fu.Friction | None = None, **cable: flo
 
 
 def strut(factor: float) -> fu.Scene:
-    """A rod clamped at one end, under so many times Euler's load."""
+    """A rod clamped at one end, under a multiple of Euler's load."""
     made = fu.Scene(gravity=(0, 0, 0))
     made.cable("rod", start=(0, 0, 0), end=(1, 0, 0), elements=10, element="cable8p",
                section=fu.Rectangle(height=0.01, width=0.01),
@@ -60,7 +60,7 @@ def strut(factor: float) -> fu.Scene:
 
 
 def links(number: int = 5) -> fu.Scene:
-    """A chain of bodies that is let go level."""
+    """A chain of bodies released from the horizontal."""
     made = fu.Scene()
     for k in range(number):
         made.rigid_body(f"b{k}", mass=1, inertia=(1e-2, 1e-2, 1e-2), position=(0.2 * k + 0.1, 0, 0))
@@ -77,7 +77,7 @@ SCENES: dict[str, Callable[[], fu.Scene]] = {
 
 
 def least(found: Callable[[], fu.Equilibrium], repetitions: int) -> tuple[float, fu.Equilibrium]:
-    """Return the least CPU seconds of calls, and what the last one returned."""
+    """Return the minimum CPU seconds of calls, and the result of the last one."""
     taken = []
     for _ in range(repetitions):
         begin = time.process_time()
@@ -87,7 +87,7 @@ def least(found: Callable[[], fu.Equilibrium], repetitions: int) -> tuple[float,
 
 
 def left_without_resets(scene: fu.Scene, steps: int, lost: float) -> float:
-    """Return the kinetic energy that a run of about so many steps ends with, over the energy lost at rest."""
+    """Return the final kinetic energy of a run with about this number of steps, over the energy lost at rest."""
     duration, run = 0.01, None
     while run is None or run.report["steps"] < steps:
         run = scene.run(duration, integrator="genalpha", spectral_radius=0.0, tol=1e-2)

@@ -1,11 +1,11 @@
-"""Cost of steps where a scene rings: error, steps and CPU time, beside the best fixed step.
+"""Cost of steps in scenes with free vibrations: error, steps and CPU time, beside the best fixed step.
 
     python tests/benchmarks/ringing.py [--only WORDS] [--out FILE.csv] [--repetitions N]
 
-Errors are of the nodes of a cable at 50 output times, of the axes that count, over their largest motion; the reference
-is the explicit method at a thousandth of the scene's smallest tolerance (1e-7 errs by 5e-9 of the motion). Beside each
-tolerance stands the cheapest of the fixed steps of radau and genalpha with no larger an error, or "none" where the
-finest of them errs more. "limit" is tol and what absolute_tol adds to it.
+Errors are those of the nodes of a cable at 50 output times, of the relevant axes, over their largest motion; the
+reference is the explicit method at a thousandth of the scene's smallest tolerance (1e-7 has an error of 5e-9 of the
+motion). Beside each tolerance is the cheapest of the fixed steps of radau and genalpha with at most this error, or
+"none" if the finest of them has a larger one. "limit" is tol plus the share of absolute_tol.
 """
 
 from __future__ import annotations
@@ -24,39 +24,39 @@ FIXED = ("radau", "genalpha")
 
 
 def run_of(subject: Ringing, **settings) -> fu.Run:
-    """A run of a scene that rings."""
+    """Return a run of a scene with free vibrations."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", fu.FunicularWarning)
         return subject.make().run(subject.duration, output_step=subject.duration / OUTPUTS, progress=False, **settings)
 
 
 def path_of(subject: Ringing, run: fu.Run) -> np.ndarray:
-    """Positions (time, node, axis) in m of what counts."""
+    """Return relevant positions (time, node, axis), m."""
     return run[f"{subject.cable}.position"][..., list(subject.axes)]
 
 
 @cache
 def reference(name: str) -> np.ndarray:
-    """The converged motion (time, node, axis) in m of what counts."""
+    """Return the converged relevant motion (time, node, axis), m."""
     return path_of(SCENES[name], run_of(SCENES[name], integrator="explicit", tol=1e-3 * min(SCENES[name].tols)))
 
 
 def error_of(name: str, run: fu.Run) -> float:
-    """The largest error of what counts, over its largest motion."""
+    """Return the largest error of the relevant positions, over their largest motion."""
     exact = reference(name)
     motion = np.linalg.norm(exact - exact[:1], axis=-1).max()
     return float(np.linalg.norm(path_of(SCENES[name], run) - exact, axis=-1).max() / motion)
 
 
 def limit_of(name: str, tol: float) -> float:
-    """The error that the settings of a scene allow at a tolerance, over the largest motion of what counts."""
+    """Return the permitted error of a scene's settings at a tolerance, over the largest relevant motion."""
     exact = reference(name)
     motion = np.linalg.norm(exact - exact[:1], axis=-1).max()
     return float(tol + SCENES[name].settings.get("absolute_tol", 0.0) / motion)
 
 
 def cells(name: str, repetitions: int) -> list[dict]:
-    """The lines of the table for a scene."""
+    """Return the rows of a scene."""
     subject = SCENES[name]
     fixed = [timed(name, repetitions, step=step, integrator=method) for method in FIXED for step in subject.steps]
     rows = []
@@ -74,7 +74,7 @@ def cells(name: str, repetitions: int) -> list[dict]:
 
 
 def timed(name: str, repetitions: int, **settings) -> tuple[float, fu.Run, float]:
-    """Error, run, and the median of its CPU seconds."""
+    """Return error, run, and the median of its CPU seconds."""
     runs = [run_of(SCENES[name], **settings) for _ in range(repetitions)]
     return (error_of(name, runs[0]), runs[0],
             statistics.median(run.report["time_s"]["solve_cpu"] for run in runs))

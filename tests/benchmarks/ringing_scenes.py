@@ -1,8 +1,8 @@
-"""Scenes that ring: vibrations that nobody asked for, which steps need not follow (tests/benchmarks/ringing.py).
+"""Scenes with irrelevant free vibrations, which steps need not follow (tests/benchmarks/ringing.py).
 
 The twisted rods are those of the critical-twist experiment of cosseratbench 0.3.0 (MIT licence), whose parameters are
-repeated here: under tension, the far end turned slowly until beyond the critical twist. The pendulum is of its
-hanging-cable experiment, released in its first mode with a uniform stretch instead of that of rest.
+repeated here: under tension, the far end rotated slowly beyond the critical twist. The pendulum is that of its
+hanging-cable experiment, released in its first mode with a uniform stretch instead of that at rest.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ LEVELS = (0.96, 0.98, 1.00, 1.02, 1.04, 1.06)
 
 
 def twisted_rods(levels: tuple[float, ...], elements: int = 25) -> fu.Scene:
-    """Rods of 1 m, clamped, turned by a motion over 6 s, pulled at the end that turns; bent by 0.1 mm as drawn."""
+    """Rods of 1 m, clamped, with an end under tension that a motion rotates over 6 s; bent by 0.1 mm as drawn."""
     scene = fu.Scene(gravity=(0, 0, 0))
     radius, E = 0.01, 1e6
     bending, x, t = E * np.pi * radius**4 / 4, np.linspace(0, 1, 201), np.linspace(0, 6, 121)
@@ -39,7 +39,8 @@ def twisted_rods(levels: tuple[float, ...], elements: int = 25) -> fu.Scene:
 
 
 def hanging_cable(elements: int, youngs_modulus: float = 1e7) -> fu.Scene:
-    """A cable of 1 m, stretched and let go 2 cm beside its rest: its first mode swings, what is left rings along it."""
+    """A cable of 1 m, stretched and released 2 cm beside its equilibrium: its first mode swings with axial vibrations.
+    """
     scene = fu.Scene(gravity=(0, 0, -9.81))
     z = np.linspace(0, 1, 41)  # from the pin down, m; the first mode of a hanging chain is Bessel's J0
     u = 2.404826 * np.sqrt(1 - z)
@@ -55,7 +56,7 @@ def hanging_cable(elements: int, youngs_modulus: float = 1e7) -> fu.Scene:
 
 @dataclass(frozen=True)
 class Ringing:
-    """A scene, its duration in s, the cable whose nodes count with their axes, its settings, and fixed steps, s."""
+    """A scene, its duration in s, the cable of the relevant nodes with their axes, its settings, and fixed steps, s."""
 
     make: Callable[[], fu.Scene]
     duration: float

@@ -2,11 +2,11 @@
 
     python tests/benchmarks/setup.py [--out FILE.csv] [--repetitions 15]
 
-CPU ms on one core, the least of repetitions in which the scenes take turns: what else the machine does only adds to it.
-Python calls are those of Python and C functions as the profiler counts them, once all is imported; they do not depend
-on the machine. `scene`: to make the scene, which is no part of a run; `set-up`: the sum from the checks to the start;
-`another`: that of another scene of the same topology; `results`: from the last step to the `Run`, for 101 output times.
-`unaccounted`: of a run of 1 s at tol 1e-4, what report["time_s"] has no part for.
+CPU ms on one core, the minimum of alternating repetitions, since other load only adds to it. Python calls are those of
+Python and C functions by the profiler, after all imports; they do not depend on the machine. `scene`: to make the
+scene, no part of a run; `set-up`: the sum from the checks to the start; `another`: of another scene of the same
+topology; `results`: from the last step to the `Run`, for 101 output times. `unaccounted`: the share of a run of 1 s at
+tol 1e-4 outside the parts of report["time_s"].
 
 The aim: set-up of the first scene within 1.5 ms, unaccounted at most 10 %.
 """
@@ -81,20 +81,20 @@ class Clock:
         self._last = time.process_time()
 
     def lap(self, part: str) -> None:
-        """Count the time since the last lap as that of a part."""
+        """Add the time since the last lap to that of a part."""
         now = time.process_time()
         self.taken[part] = now - self._last
         self._last = now
 
 
 def forget() -> None:
-    """Let the next scene be the first of its topology: what is analysed once for each is analysed anew."""
+    """Forget the analysis of topologies, so that the next scene is the first of its kind."""
     eliminated.cache_clear()
     ordered.cache_clear()
 
 
 def set_up(make: Callable[[], Scene], clock: Clock | None = None) -> Engine:
-    """Return an engine at its first step, set up as `Scene.run` and `solve.run.simulate` do it."""
+    """Return an engine at its first step, set up as by `Scene.run` and `solve.run.simulate`."""
     clock = clock or Clock()
     scene = make()
     clock.lap("scene")
@@ -118,7 +118,7 @@ def set_up(make: Callable[[], Scene], clock: Clock | None = None) -> Engine:
 
 
 def calls(function: Callable[[], object]) -> int:
-    """Return how many calls of Python and C functions one takes."""
+    """Return the number of calls of Python and C functions within a call."""
     profile = cProfile.Profile()
     profile.enable()
     function()
@@ -127,18 +127,18 @@ def calls(function: Callable[[], object]) -> int:
 
 
 def calls_of(scene: Scene) -> int:
-    """Return how many calls it takes to set up a run of a scene."""
+    """Return the number of calls that set up a run of a scene."""
     return calls(lambda: set_up(lambda: scene))
 
 
 def run(make: Callable[[], Scene]) -> tuple[Run, float]:
-    """Return a run of the scene, and the ms that its results took after the last step."""
+    """Return a run of the scene, and the ms of its results after the last step."""
     made = make().run(RUN, output_step=OUTPUT, tol=1e-4, progress=False)
     return made, 1e3 * made.report["time_s"]["results"]
 
 
 def unaccounted(made: Run) -> float:
-    """Return the part of a run's wall time that its report has no part for."""
+    """Return the share of a run's wall time outside the parts of its report."""
     parts = {name: seconds for name, seconds in made.report["time_s"].items() if name != "solve_cpu"}
     total = parts.pop("total")
     return 1.0 - sum(parts.values()) / total

@@ -1,10 +1,10 @@
 """Steps, events and errors of scenes with springs that become slack and taut, by integrator and tolerance or step.
 
-overhead_span: the bundled scene from its rest, a wire under nine droppers. thrown: a mass on a spring that pulls alone.
+overhead_span: the bundled scene from equilibrium, a wire under nine droppers. thrown: a mass on a tension-only spring.
 table: a mass on a spring with a table of tension. pair: a wire under two droppers is lifted. ropes: a body on six
-ropes, thrown. catenary: 1, 3 and 10 spans, 0.3 s of a pantograph at 300 km/h, of which tolerance and error are in m.
-Errors against radau with a tolerance of 1e-9, over the largest motion. Passed: events that steps went over, and did not
-end on; instants: the median of how far their instants, and those of others, are from those of the reference, s.
+ropes, thrown. catenary: 1, 3 and 10 spans, 0.3 s of a pantograph at 300 km/h, with tolerance and error in m. Errors
+against radau with a tolerance of 1e-9, over the largest motion. Passed: deferred events within steps; instants: the
+median distance of the instants of all events from those of the reference, s.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from table import few, parser, show
 
 
 def hanging(speed: float, **law) -> fu.Scene:
-    """Return 2 kg on a spring of 1 m, that go down at this speed."""
+    """Return 2 kg on a spring of 1 m with a downward speed."""
     scene = fu.Scene(gravity=(0, 0, -9.81))
     scene.rigid_body("m", mass=2.0, inertia=(1, 1, 1), position=(0, 0, -1.0), velocity=(0, 0, -speed))
     scene.spring((0, 0, 0), "m", length=1.0, name="dropper", **law)
@@ -33,12 +33,12 @@ def hanging(speed: float, **law) -> fu.Scene:
 
 
 def overhead_span() -> fu.Scene:
-    """Return the bundled scene, at rest."""
+    """Return the bundled scene in equilibrium."""
     return fu.load_scene("overhead_span").equilibrium().scene
 
 
 def pair() -> fu.Scene:
-    """Return a wire under two droppers, which is lifted in its middle and let down."""
+    """Return a wire under two droppers, which is lifted in its middle and lowered."""
     scene = fu.Scene(gravity=(0, 0, -9.81))
     wire = scene.cable("wire", start=(0, 0, 0), end=(10, 0, 0), elements=20, element="cable12",
                        section=fu.Circle(radius=6e-3), rest_length=10 / (1 + 7e-4),
@@ -54,7 +54,7 @@ def pair() -> fu.Scene:
 
 
 def ropes() -> fu.Scene:
-    """Return a body that is thrown and turns, on six ropes."""
+    """Return a thrown, rotating body on six ropes."""
     scene = fu.Scene(gravity=(0, 0, -9.81))
     scene.rigid_body("b", mass=5.0, inertia=(0.1, 0.15, 0.2), position=(0, 0, 0), velocity=(0.8, 0.3, 1.5),
                      angular_velocity=(1.0, 2.0, 0.5))
@@ -65,7 +65,7 @@ def ropes() -> fu.Scene:
 
 
 def line(spans: int) -> fu.Scene:
-    """Return so many spans of the reference model with its pantograph."""
+    """Return spans of the reference model with its pantograph."""
     scene = catenary.scene(lines.reference(spans), lines.COARSE)
     catenary.add_pantograph(scene, lines.TWO_MASSES, 5.0 if spans == 1 else 20.0, 300 / 3.6, "pantograph")
     return scene
@@ -80,7 +80,7 @@ SCENES = {
 
 
 def instants(run: fu.Run) -> dict[str, list]:
-    """Return the events of each coupling: instant, words, whether a step went over it."""
+    """Return the events of each coupling: instant, words, whether it was deferred."""
     found: dict[str, list] = {}
     for event in run.events:
         if "what" in event:
@@ -89,7 +89,7 @@ def instants(run: fu.Run) -> dict[str, list]:
 
 
 def off(run: fu.Run, reference: fu.Run, passed: bool) -> float:
-    """Return the median distance of instants, of couplings with the same events, from those of the reference, s."""
+    """Return the median distance of instants from those of the reference, of couplings with the same events, s."""
     mine, theirs = instants(run), instants(reference)
     same = [pair for name in theirs if [e[1] for e in mine.get(name, [])] == [e[1] for e in theirs[name]]
             for pair in zip(mine[name], theirs[name], strict=True)]
@@ -108,7 +108,7 @@ def simulate(name: str, **settings) -> tuple[fu.Run, float]:
 
 
 def row(name: str, reference: fu.Run, settings: dict) -> dict:
-    """Return what is measured of a run with these settings."""
+    """Return the row of a run with these settings."""
     run, taken = simulate(name, **settings)
     names = [key for key in (*run.scene.cables, *run.scene.bodies) if not key.startswith("pantograph")]
     moved = [np.linalg.norm(reference[f"{k}.position"] - reference[f"{k}.position"][0], axis=-1).max() for k in names]
@@ -136,7 +136,7 @@ def thrown_body(seed: int) -> fu.Scene:
 
 
 def random_rows(scenes: int, integrators: list[str], tols: list[float]) -> list[dict]:
-    """Return errors over the tolerance, and the cost, of so many bodies on ropes for 0.3 s."""
+    """Return errors over the tolerance, and the cost, of a number of bodies on ropes for 0.3 s."""
     shown = {"duration": 0.3, "output_step": 0.03, "progress": False}
     made = [(scene, scene.run(integrator="explicit", tol=1e-12, **shown)["b.position"])
             for scene in map(thrown_body, range(scenes))]

@@ -1,10 +1,10 @@
-"""Slack lines drawn straight, brought to rest by `equilibrium` from no other shape: forces, curvatures and CPU by mesh.
+"""Slack lines drawn straight, brought to equilibrium from no other shape: forces, curvatures and CPU by mesh.
 
     python tests/benchmarks/slack_lines.py [--out FILE.csv] [--most 1000]
 
 Rows: lazy-wave cables (bare, buoyant, bare, in water, on a bed), two tied ropes, a wire on a bed, ropes on two pins.
-References: of the lazy-wave cables another program, converged; of the ropes and the wire the elastic catenary, which
-leaves bending out. Not stable: EquilibriumError. CPU in ms, of one call; of ropes the least of five.
+References: for the lazy-wave cables another program, converged; for the ropes and the wire the elastic catenary,
+without bending. Not stable: EquilibriumError. CPU in ms, of one call; for ropes the minimum of five.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from table import arguments, show
 class LazyWave:
     """Lengths (m) of bare, buoyant and bare part; the buoyant one's diameter (m) and mass (kg/m); anchor (x, z) in m.
 
-    force, curvature: of the hang-off in N, and the largest one in 1/m, of another program.
+    force, curvature: of the hang-off in N, and the largest one in 1/m, by another program.
     """
 
     lengths: tuple[float, float, float]
@@ -50,7 +50,7 @@ def lazy_wave(data: LazyWave, elements: tuple[int, ...], fractions: tuple[float,
               added_mass: float | None = 1.0, membrane: str = "full") -> fu.Scene:
     """Return the cable, drawn straight from the hang-off to the anchor.
 
-    fractions: of the way where its parts are drawn to meet; by default those of their lengths.
+    fractions: of the distance at which its parts are drawn to meet; by default those of their lengths.
     """
     scene = fu.Scene(gravity=(0, 0, -G))
     start, end = np.array([5.0, 0, -14]), np.array([data.anchor[0], 0, data.anchor[1]])
@@ -77,7 +77,7 @@ def lazy_wave(data: LazyWave, elements: tuple[int, ...], fractions: tuple[float,
 
 
 def largest_curvature(rest: fu.Equilibrium) -> float:
-    """Return the largest curvature of all cables, 1/m, at four places an element."""
+    """Return the largest curvature of all cables, 1/m, at four places per element."""
     return max(float(np.abs(rest.section_forces(cable, s=cable.divided(4))["curvature"]).max())
                for cable in rest.scene.cables.values())
 
@@ -123,7 +123,7 @@ def rope(elements: int, length: float = 60.0) -> fu.Scene:
 
 
 def solved(scene: fu.Scene, repetitions: int = 1) -> tuple[fu.Equilibrium | None, float]:
-    """Return the state of rest, None where there is none, and the least CPU time in ms of some calls."""
+    """Return the equilibrium, None without one, and the minimum CPU time in ms of some calls."""
     least, rest = np.inf, None
     for _ in range(repetitions):
         begin = time.process_time()

@@ -1,4 +1,5 @@
-"""The sliding mass: a body on a pinned cable of the sizes of Table 1, let go with 1 m/s (case S1 and its variants)."""
+"""The sliding mass: a body on a pinned cable of the sizes of Table 1, released with 1 m/s (case S1 and its variants).
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sections of the page Speed: other codes first, then what funicular costs by itself."""
+"""Sections of the page Speed: other codes first, then the cost of funicular by itself."""
 
 from __future__ import annotations
 

@@ -1,14 +1,14 @@
-"""Sweeps: points a second by the length of batches, what a task and a point cost the scheduler and the writer.
+"""Sweeps: points per second by the length of batches, and the cost of a task and a point for scheduler and writer.
 
     python tests/benchmarks/sweep.py [--out FILE.csv] [--tasks 200] [--points 4000] [--workers 2]
 
-Points that take no time, whose results are those of the first scene kept over 101 output times (position and force: 606
-numbers), computed by worker processes of one thread. Scheduler, writer and file are in this process, as in a sweep on
-one machine: its CPU time, apart from start and end, is what they take together. The fit a + b times the batch's length
-gives what a task costs (a) and what a point costs (b). Then the same with points of the first scene at tol 1e-3.
+Points without work, with the results of the first scene at 101 output times (position and force: 606 numbers), in
+worker processes of one thread. Scheduler, writer and file are in this process, as in a sweep on one machine: its CPU
+time, apart from start and end, is their cost. The fit a + b times the batch's length gives the cost of a task (a) and
+of a point (b). Then the same with points of the first scene at tol 1e-3.
 
-Last, from these, how many cores one scheduler can keep busy, by batch and by what a point takes, and what 10^6 points
-need. These are extrapolated, from one machine.
+Last, by extrapolation from one machine, the number of cores that one scheduler can keep busy, by batch and cost of a
+point, and the requirements of 10^6 points.
 """
 
 import os
@@ -31,18 +31,18 @@ MILLION = 1_000_000
 
 
 def nothing(x: float) -> dict:
-    """Return results as large as those of a run, at once."""
+    """Return results of the size of a run's at once."""
     return {"position": np.full((101, 3), x), "force": np.full((101, 3), x)}
 
 
 class Stopwatch:
-    """A progress function that notes when points came: wall time, CPU time of this process, points done."""
+    """A progress function that records the arrival of points: wall time, CPU time of this process, points done."""
 
     def __init__(self) -> None:
         self.seen: list[tuple[float, float, int]] = []
 
     def __call__(self, done: int, failed: int) -> None:
-        """Take note of the points done."""
+        """Record the points done."""
         self.seen.append((time.perf_counter(), time.process_time(), done))
 
     def between(self) -> tuple[float, float, int, int]:
@@ -52,7 +52,7 @@ class Stopwatch:
 
 
 def measured(cluster: str, workers: int, batch: int, tasks: int, most: int, path: Path) -> dict:
-    """One row: points that take no time, in batches of one length."""
+    """Return one row: points without work, in batches of one length."""
     points = min(tasks * batch, max(most, 20 * batch))
     watch = Stopwatch()
     fu.sweep(nothing, {"x": fu.Uniform(0, 1)}, method="random", samples=points, cluster=cluster, batch=batch, save=path,
@@ -63,7 +63,8 @@ def measured(cluster: str, workers: int, batch: int, tasks: int, most: int, path
 
 
 def of_scene(cluster: str, batch: int, points: int, path: Path) -> dict:
-    """Points of the first scene at tol 1e-3 on the cluster: points a second, and how much of the workers' time is runs.
+    """Return points per second of the first scene at tol 1e-3 on the cluster, and the share of runs in the workers'
+    time.
     """
     watch = Stopwatch()
     found = fu.sweep(fu.load_scene("paper51"), {"A.mass": fu.Uniform(0.5, 1.5)}, method="random", samples=points,

@@ -1,8 +1,8 @@
-"""What benchmarks share: their command lines, and tables that are printed, and written as CSV and JSON.
+"""Command lines of benchmarks, and their tables: printed, and written as CSV and JSON.
 
 Every script takes --smallest: it runs with numbers of 1 and the first of its cases alone, in seconds, to show that it
-still runs; what it then prints is no measurement. A list of cases goes through `few` for that. With --json every table
-goes to tests/benchmarks/measured (records.py), from which the pages are printed (print_pages.py).
+still runs; its output is then no measurement. `few` shortens a list of cases for that. With --json every table goes to
+tests/benchmarks/measured (records.py), from which the pages are printed (print_pages.py).
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ T = TypeVar("T")
 
 
 class Parser(argparse.ArgumentParser):
-    """A command line with --smallest, which makes its numbers least."""
+    """A command line with --smallest, which sets its numbers to their minimum."""
 
     smallest = False
     """Whether the script that runs is to run at its smallest size."""
@@ -33,7 +33,7 @@ class Parser(argparse.ArgumentParser):
     least: dict[str, int]
 
     def parse_args(self, args: Sequence[str] | None = None, namespace=None) -> argparse.Namespace:
-        """Return what was given; with --smallest the numbers of `parser` are least."""
+        """Return the given options; with --smallest the numbers of `parser` are minimal."""
         found = super().parse_args(args, namespace)
         Parser.smallest = found.smallest
         Parser.json = records.FOLDER / f"{Path(sys.argv[0]).stem}.json" if found.json == HERE else found.json
@@ -55,8 +55,8 @@ def few(cases: Iterable[T]) -> list[T]:
 
 
 def parser(description: str, **numbers: tuple[int, str] | tuple[int, str, int]) -> Parser:
-    """A command line: --out FILE.csv, --json FILE, --smallest, and integers by name with default, help and least
-    value, 1 if not given.
+    """Return a command line: --out FILE.csv, --json FILE, --smallest, and integers by name with default, help and
+    minimum, 1 by default.
     """
     made = Parser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     made.least = {name: least[0] if least else 1 for name, (_, _, *least) in numbers.items()}
@@ -70,7 +70,7 @@ def parser(description: str, **numbers: tuple[int, str] | tuple[int, str, int]) 
 
 
 def arguments(description: str, **numbers: tuple[int, str] | tuple[int, str, int]) -> argparse.Namespace:
-    """What was given on the command line of `parser`."""
+    """Return the options on the command line of `parser`."""
     return parser(description, **numbers).parse_args()
 
 

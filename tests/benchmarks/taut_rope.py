@@ -1,20 +1,20 @@
-"""A taut rope with a rider, by how elements represent the axial strain (`membrane`): tension beside the rider,
-positions, order in the mesh, and what a force and a tangent cost.
+"""A taut rope with a rider, by the representation of the axial strain (`membrane`): tension beside the rider,
+positions, order in the mesh, and the cost of force and tangent.
 
     python tests/benchmarks/taut_rope.py [--out FILE.csv] [--elements 96]
 
 First the rope of the zip line, nearly without bending stiffness, with 84 kg at rest on a node, at 0.3 of an element or
 in the middle of one. The reference is a closed form: two elastic catenaries that meet under the load. `tension` is the
 largest deviation of the tension, by the elastic law, on the rider's element and its two neighbours; `at nodes` the same
-at nodes alone; both over the tension of the reference at the place. `position` is the largest deviation of a point of
-the rope in m, `rider` that of the rider; orders are from half as many elements. `force` is that of the pin.
-Neither cubic nor quintic elements can have the kink under a point force: positions are of the first order with any law.
+at nodes alone; both relative to the local tension of the reference. `position` is the largest deviation of a point of
+the rope in m, `rider` that of the rider; orders are from half the elements. `force` is that of the pin. Neither cubic
+nor quintic elements can represent the kink under a point force: positions are of the first order with any law.
 
 Then the zip line itself, with its rider in motion: lowest and highest tension in kN on the three elements about the
 rider at t = 10 s, the mean and the largest range over the last 2 s, relative to the tension; steps and CPU time.
 
-Then the motions of a straight element, beside the rigid ones, that take no energy of the membrane, by the modes that
-have a stiffness. The reduced strain has 1 % of it on mode 2.
+Then the motions of a straight element without membrane energy, beside the rigid ones, by the modes with stiffness. The
+reduced strain has 1 % of it on mode 2.
 """
 
 from __future__ import annotations
@@ -50,7 +50,8 @@ LAWS = [law + kind for law in ("green_exact", "green_linear", "engineering_exact
 
 @dataclass(frozen=True)
 class Catenaries:
-    """The rope without bending stiffness: force (H, V) on it at its start, along x and up, and the load's place."""
+    """The rope without bending stiffness: the force (H, V) on its start, along x and up, and the position of the load.
+    """
 
     H: float
     V: float
@@ -69,15 +70,15 @@ class Catenaries:
         return cls(*force, at)
 
     def internal(self, s: float, after: bool = True) -> tuple[float, float]:
-        """Force on the part before s, along x and up."""
+        """Return the force on the part before s, along x and up."""
         return -self.H, -self.V + WEIGHT * s + LOAD * (s > self.at or (after and s == self.at))
 
     def tension(self, s: float, after: bool) -> float:
-        """At s, at the load on the side after or before it."""
+        """Return the tension at s, at the load on the side after or before it."""
         return hypot(*self.internal(s, after))
 
     def position(self, s: float) -> np.ndarray:
-        """x and y at s from the start: of each part x' = (1/EA + 1/T) H, y' = (1/EA + 1/T) V(s)."""
+        """Return x and y at s from the start: of each part x' = (1/EA + 1/T) H, y' = (1/EA + 1/T) V(s)."""
         x, y = 0.0, 0.0
         for begin, end in ((0.0, min(s, self.at)), (self.at, s)):
             if end <= begin:
@@ -102,7 +103,7 @@ def rope(elements: int, membrane: str, element: str = "cable8p") -> Scene:
 
 
 def at_rest(elements: int, membrane: str, part: float, element: str = "cable8p") -> dict[str, float]:
-    """Errors with the rider at a part of an element."""
+    """Return the errors with the rider at a share of an element."""
     length, first = LENGTH / elements, round(PLACE * elements)
     at = (first + part) * length
     scene, true = rope(elements, membrane, element), Catenaries.under(at)
@@ -124,7 +125,7 @@ def at_rest(elements: int, membrane: str, part: float, element: str = "cable8p")
 
 
 def point(rest, s: float) -> np.ndarray:
-    """x and y of the rope at s."""
+    """Return x and y of the rope at s."""
     cable, vectors = rest.scene.cables["rope"], rest["rope.nodal_vectors"]
     length = cable.length / cable.elements
     first = min(int(s / length * (1 + 1e-12)), cable.elements - 1)
@@ -149,7 +150,9 @@ def in_motion(elements: int, membrane: str, duration: float = 10.0) -> dict[str,
 
 
 def motions_without_energy(stiffness: list[float]) -> int:
-    """Of a straight element along itself, but for its translation, with these stiffnesses of its modes."""
+    """Return the number of axial motions of a straight element without energy, except its translation, by stiffnesses
+    of its modes.
+    """
     places, weights = np.polynomial.legendre.leggauss(4)
     K = np.zeros((4, 4))
     for m, share in enumerate(stiffness):
@@ -187,7 +190,7 @@ def main() -> None:
 
 
 def operations(element: str, law: str) -> dict[str, object]:
-    """Arithmetic operations of a call; kernels.py has the times."""
+    """Return arithmetic operations per call; kernels.py has the times."""
     every = described(manifest())
     return {"element": element, "law": law} | {
         kernel: sum(every[f"{element}_{law}_{kernel}"]["operations"].values())

@@ -2,12 +2,12 @@
 
     python tests/benchmarks/threads.py [--out FILE.csv] [--repetitions 20] [--elements 100 300 1000 2000]
 
-Scenes of linear_cost.py, by generalised-alpha: with steps of 20 µs, which take one matrix for all steps; and with steps
-for tol = 1e-3, which take new matrices. Milliseconds of the least of repetitions, which take turns. Both runs must
-have the same results, bit for bit, or this fails: the error is that of one thread.
+Scenes of linear_cost.py, by generalised-alpha: with steps of 20 µs, which use one matrix, and with steps for tol =
+1e-3, which use new matrices. Milliseconds are the minimum of alternating repetitions. Both runs must have the same
+bits, or this fails: the error is that of one thread.
 
-Two processors must be free: on a busy machine a second thread waits for one. On Linux, as root, `chrt -f 1 python ...`
-takes them.
+Two processors must be free: on a busy machine a second thread waits. On Linux, as root, `chrt -f 1 python ...` reserves
+them.
 """
 
 import os
@@ -30,7 +30,7 @@ CASES = {"20 µs": {"duration": STEPS * STEP, "step": STEP}, "tol 1e-3": {"durat
 
 
 def measure(model: object, case: dict, threads: int) -> tuple[float, dict, np.ndarray]:
-    """Seconds of a run, its counts, and how it ends."""
+    """Return seconds of a run, its counts, and its last state."""
     engine = Engine(model)
     engine.use_threads(threads)
     engine.start(duration=case["duration"], output_step=case["duration"], tol=TOL, step=case["step"],

@@ -2,9 +2,9 @@
 
     python tests/benchmarks/unequal.py
 
-The first scenes are taut cables between clamps, bent over sqrt(EI/N) beside clamps and force alone; the others have no
-such places. Errors are distances from the mesh chosen for the tightest tolerance with every element halved, over the
-largest motion: of equal elements several thousand would be needed for that.
+The first scenes are taut cables between clamps, which bend over sqrt(EI/N) beside clamps and force alone; the others
+have no such places. Errors are distances from the mesh chosen for the smallest tolerance with every element halved,
+over the largest motion; equal elements would need several thousand for that.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Introduction and studies of the page Validation; its first part are the rows of tests/validation.py."""
+"""Introduction and studies of the page Validation, whose first part are the rows of tests/validation.py."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def under_a_rider(rows: list[Row]) -> list[Row]:
 FORCES = {"mean": "mean, N", "sigma": "σ, N", "max": "max, N", "min": "min, N", "uplift": "uplift, mm"}
 
 def closest(rows: list[Row]) -> list[Row]:
-    """Return of each case and integrator the figure that is closest to its upper bound."""
+    """Return for each case and integrator the figure closest to its upper bound."""
     found: dict[tuple[str, str], Row] = {}
     for row in rows:
         if isinstance(row["bound"], int | float) and row["bound"] > 0 and row["value"] is not None:

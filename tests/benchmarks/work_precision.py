@@ -3,7 +3,7 @@
     python tests/benchmarks/work_precision.py [--out FILE.csv] [--plot FILE.png] [--repetitions 3]
 
 Two scenes: example 5.1 of the paper, a stiff cable, and the sliding mass on a flexible one (E of 2 MPa, a rider of
-5 kg), whose motion is slow beside its vibrations no more. Each on the mesh of the paper and on one twice as fine.
+5 kg), whose motion is not slow compared with its vibrations. Each on the mesh of the paper and on one twice as fine.
 """
 
 import os

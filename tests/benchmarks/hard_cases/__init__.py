@@ -1,4 +1,4 @@
-"""Hard cases (scenes on which integrators drift, stall or blow up), by subject, with the bounds of their figures."""
+"""Hard cases (scenes on which integrators drift, stall or diverge), by subject, with the bounds of their figures."""
 
 from . import (
     cables,

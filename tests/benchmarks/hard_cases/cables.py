@@ -1,4 +1,4 @@
-"""Cables alone: steel beside rubber, slack that goes taut, compression that buckles, free fall, whips."""
+"""Cables alone: steel beside rubber, slack that becomes taut, buckling under compression, free fall, whips."""
 
 
 import numpy as np
@@ -15,8 +15,10 @@ KIND = {"element": "cable12", "strain": "engineering"}
 
 
 def steel_and_rubber() -> Scene:
-    """A wire of 1 mm over 100 m, stretched by 0.1 %, a rubber cord of 2 m hinged to its middle and let go level; 1 kg
-    slides down the wire. EA/L differ by a factor of 20, bending stiffnesses by 2, wave speeds by 120."""
+    """A wire of 1 mm over 100 m, stretched by 0.1 %, with a rubber cord of 2 m hinged to its middle and released from
+    the horizontal; 1 kg slides down the wire. EA/L differ by a factor of 20, bending stiffnesses by 2, wave speeds by
+    120.
+    """
     scene = Scene()
     wire = scene.cable("wire", start=(0, 0, 0), end=(100, -5, 0), rest_length=100.0, elements=20, section=THIN,
                        material=STEEL, **KIND)
@@ -31,7 +33,8 @@ def steel_and_rubber() -> Scene:
 
 
 def slack() -> Scene:
-    """1 m of steel rope over a span of 0.9 m, let go as an arch above its supports: it falls through, snaps taut."""
+    """1 m of steel rope over a span of 0.9 m, released as an arch above its supports: it falls through and snaps taut.
+    """
     scene = Scene()
     scene.cable("rope", curve=lambda u: (0.9 * u, 0.19 * np.sin(np.pi * u), 0), rest="straight", elements=8,
                 section=Circle(radius=2e-3), material=Material(youngs_modulus=2e8, poisson_ratio=0.3, density=7850,
@@ -42,8 +45,8 @@ def slack() -> Scene:
 
 
 def buckling() -> Scene:
-    """A strip pushed together by 2 % of its length in 0.2 s, ten times what Euler's column bears; a tenth of its weight
-    chooses the side."""
+    """A strip compressed by 2 % of its length in 0.2 s, ten times Euler's load; a tenth of its weight selects the side.
+    """
     scene = Scene(gravity=(0, -1, 0))
     scene.cable("strip", start=(0, 0, 0), end=(1, 0, 0), elements=8, section=Circle(radius=0.02),
                 material=Material(youngs_modulus=1e8, poisson_ratio=0.3, density=1000), **KIND)
@@ -53,7 +56,7 @@ def buckling() -> Scene:
 
 
 def falling() -> Scene:
-    """Nothing holds a bent cord that wants to be straight."""
+    """A free bent cord with a straight stress-free shape."""
     scene = Scene()
     scene.cable("cord", curve=lambda u: (np.cos(3 * u), np.sin(3 * u), 0.5 * u**2), rest="straight", elements=8,
                 up=(0, 0, 1), section=CORD, material=RUBBER, **KIND)
@@ -61,8 +64,9 @@ def falling() -> Scene:
 
 
 def whip() -> Scene:
-    """A cord hangs as a narrow loop from two points at one height; one end is let go (its tip outruns free fall, turns
-    over and cracks)."""
+    """A cord hangs as a narrow loop from two points at one height; one end is released (its tip outruns free fall,
+    turns over and cracks).
+    """
     scene = Scene()
     loop = [(0.0, 0.0, 0), (0.0, -0.3, 0), (0.01, -0.42, 0), (0.06, -0.47, 0), (0.11, -0.42, 0), (0.12, -0.3, 0),
             (0.12, 0.0, 0)]

@@ -1,4 +1,4 @@
-"""A hard case: what is measured on a scene that integrators fail on, and the bounds of it."""
+"""A hard case: figures of a scene on which integrators fail, and their bounds."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ Bounds = dict[str, float | tuple[float, float]]
 
 @dataclass(frozen=True)
 class Case:
-    """measure(integrator): figures by name; bounds: what they must stay below, or between; slow: some integrators.
+    """measure(integrator): figures by name. bounds: upper bounds, or pairs. slow: some integrators.
 
     A bound by integrator, as ``{"error": {"genalpha": 1e-4, "explicit": 1e-6}}``, holds for that one alone.
     """
@@ -42,7 +42,7 @@ class Case:
     slow: tuple[str, ...] = ()
 
     def limits(self, integrator: str) -> Bounds:
-        """The bounds for one integrator."""
+        """Return the bounds for one integrator."""
         given = {figure: b.get(integrator) if isinstance(b, dict) else b for figure, b in self.bounds.items()}
         return {figure: bound for figure, bound in given.items() if bound is not None}
 
@@ -54,7 +54,7 @@ class Subject:
     cases: list[Case] = field(default_factory=list)
 
     def case(self, name: str, *, integrators=INTEGRATORS, slow=(), **bounds):
-        """Declare the function below as a case."""
+        """Declare the decorated function as a case."""
         def declare(measure):
             self.cases.append(Case(name, measure, bounds, tuple(integrators), tuple(slow)))
             return measure
@@ -63,13 +63,13 @@ class Subject:
 
 
 def broken(value: float, bound: float | tuple[float, float]) -> bool:
-    """Whether a figure is not within its bound; nan is not."""
+    """Return whether a figure is not within its bound; NaN is not."""
     low, high = bound if isinstance(bound, tuple) else (-np.inf, bound)
     return not low <= value <= high
 
 
 def simulate(scene: Scene, duration: float, **settings) -> Run:
-    """A run without a progress bar; its notes stand in the report."""
+    """Return a run without a progress bar; its notes are in the report."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", FunicularWarning)
         return scene.run(duration, progress=False, **settings)
@@ -91,20 +91,20 @@ def compared(make: Callable[[], Scene], duration: float, integrator: str, **sett
 
 
 def positions(run: Run) -> np.ndarray:
-    """(time, points, 3): bodies and nodes."""
+    """Return (time, points, 3) positions of bodies and nodes."""
     nodes = [run[key][:, :, 0] for key in run.keys() if key.endswith(".nodal_vectors")]
     bodies = [run[key][:, None] for key in run.keys() if key.endswith(".position")]
     return np.concatenate(nodes + bodies, axis=1)
 
 
 def largest_motion(run: Run) -> float:
-    """How far a body or node is from its start at most, m: what ``tol`` is relative to."""
+    """Return the largest displacement of a body or node from its start, m, the scale of ``tol``."""
     at = positions(run)
     return float(np.linalg.norm(at - at[0], axis=-1).max())
 
 
 def error(run: Run, reference: Run) -> float:
-    """Largest deviation of a position at any output time, over the largest motion. The reference may have
+    """Return the largest deviation of a position at any output time, over the largest motion. The reference may have
     more times.
     """
     every = (len(reference.time) - 1) // (len(run.time) - 1)
@@ -113,19 +113,19 @@ def error(run: Run, reference: Run) -> float:
 
 
 def balance(run: Run) -> float:
-    """Largest residual of the energy's books, over the energy exchanged, or the kinetic one where that is more."""
+    """Return the largest residual of the energy balance, over the energy exchanged, or the kinetic energy if larger."""
     books = run.energy_balance()
     return float(np.abs(books.residual).max() / max(books.exchanged, run["energy.kinetic"].max()))
 
 
 def residual(run: Run) -> float:
-    """Largest distance of a rider to its cable, as the engine sees it, m."""
+    """Return the largest distance of a rider to its cable by the engine, m."""
     return max(float(run[f"{name}.residual"].max()) for name in run.scene.slides)
 
 
 def gap(run: Run) -> float:
-    """The same without the engine: r at s by the element that s lies in, and the rider's point. A lagging index of the
-    element would show here.
+    """Return the same distance without the engine: r at s by its element, and the rider's point, which shows a wrong
+    element index.
     """
     worst = 0.0
     for name, slide in run.scene.slides.items():
@@ -143,7 +143,7 @@ def gap(run: Run) -> float:
 
 
 def figures(run: Run, reference: Run | None = None) -> dict[str, float]:
-    """What is measured on every scene."""
+    """Return the figures of every scene."""
     found = {"balance": balance(run), "steps": run.report["steps"], "rejected": run.report["rejected_steps"]}
     if run.scene.slides:
         found |= {"residual": residual(run), "gap": gap(run), "crossings": run.report["element_crossings"]}

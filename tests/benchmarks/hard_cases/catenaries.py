@@ -1,4 +1,4 @@
-"""Catenaries over railways where what is one-sided lets go: a collector that chatters, droppers that are all slack."""
+"""Catenaries of railways with one-sided contact: a collector that chatters, droppers that are all slack."""
 
 import numpy as np
 from funicular import Pulse, Scene, catenary
@@ -21,7 +21,8 @@ def span() -> Scene:
 @HERE.case("a light collector chatters on a stiff wire", integrators=IMPLICIT, slow=["radau"],
            losses=(5, 1000), balance=1e-5, penetration=5e-3, pull=0.0, impulse=2e-3)
 def chatter(integrator):
-    """A collector of 0.5 kg under 40 N, which begins 2 mm below the wire and 20 times as stiff as usual, at 60 m/s."""
+    """A collector of 0.5 kg under 40 N, which starts 2 mm below the wire with 20 times the usual stiffness, at 60 m/s.
+    """
     scene = span()
     light = catenary.Pantograph(masses=[0.5], stiffness=[50], damping=[1], uplift=40, contact_stiffness=1e6)
     catenary.add_pantograph(scene, light, 2.0, 60.0)
@@ -48,7 +49,7 @@ SETTINGS = {"genalpha": {"tol": 1e-4, "spectral_radius": 0.5}, "energy": {"step"
            **{"slack at once": (3, 3), "taut again": (700, 850), "push": 0.0,
               "balance": {"genalpha": 2e-5, "energy": 1e-11, "radau": 1e-4}})
 def lifted(integrator):
-    """The contact wire is pushed up by 1.5 times its weight for 0.4 s, and falls into its droppers."""
+    """The contact wire is lifted by 1.5 times its weight for 0.4 s, and falls into its droppers."""
     scene = span()
     push = Pulse(start=0.05, end=0.45, rise=0.05)
     scene.distributed_force("contact", value=(0, 1.5 * 1.35 * 9.81, 0), scale=push)

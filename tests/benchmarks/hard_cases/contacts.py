@@ -14,7 +14,7 @@ ROPE = {"section": Circle(radius=0.01), "material": Material(youngs_modulus=1e7,
 
 
 def thrown() -> Scene:
-    """A cable that turns as it falls on hills, and slides on them."""
+    """A cable that rotates as it falls on hills, and slides on them."""
     scene = Scene()
     scene.cable("wire", start=(0, 0.2, 0), end=(1, 0.3, 0), elements=8, element="cable8p", velocity=(2, -1, 0),
                 angular_velocity=(0, 0, -3), **ROPE)
@@ -30,7 +30,7 @@ def on_the_ground(integrator):
 
 
 def grazing(depth: float) -> Scene:
-    """A ball that flies past a capsule, below whose surface it comes by a thousandth of a millimetre."""
+    """A ball that flies past a capsule and grazes it to a depth of a thousandth of a millimetre."""
     scene = Scene(gravity=(0, 0, 0))
     scene.rigid_body("A", mass=1, inertia=(1e-3,) * 3, position=(-1, 0.11 - depth, 0), velocity=(1, 0, 0))
     scene.surface("bump", Capsule(radius=0.1, length=0.02, axis=(1, 0, 0)))
@@ -51,7 +51,7 @@ def bounced():
 
 
 def bouncing() -> Scene:
-    """A ball that bounces ten times and more, until it chatters."""
+    """A ball that bounces more than ten times, until it chatters."""
     scene = Scene()
     scene.rigid_body("ball", mass=0.1, inertia=(1e-4,) * 3, position=(0, 0.25, 0))
     scene.surface("ground", Plane())

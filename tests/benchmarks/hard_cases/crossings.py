@@ -14,7 +14,7 @@ ROPE = {"element": "cable12", "strain": "engineering", "section": Circle(radius=
 
 
 def pinned_rope(gravity=(0, -9.81, 0), *, elements=6, **changed) -> Scene:
-    """1.5 m of it, level, held at both ends."""
+    """1.5 m of horizontal rope, held at both ends."""
     scene = Scene(gravity=gravity)
     scene.cable("wire", **{"start": (0, 0, 0), "end": (1.5, 0, 0), "elements": elements} | ROPE | changed)
     scene.pin("wire", s=0.0)
@@ -59,14 +59,14 @@ def fast(integrator):
 
 @HERE.case("crossing three nodes in a step", crossings=(5, 5), error=1e-5, balance=1e-4, residual=HELD, gap=HELD)
 def several_in_a_step(integrator):
-    """Steps of 7 ms are cut at every node: the way of the rider is right, the cable's is coarse."""
+    """Steps of 7 ms are divided at every node: the travel of the rider is accurate, the motion of the cable coarse."""
     step = 0.0135 / 2 if integrator != "explicit" else 1e-4
     found = simulate(rider(0.1, 100.0), 0.0135, integrator=integrator, step=step, output_step=0.0135 / 2)
     return figures(found) | {"error": abs(found["A.position"][-1, 0] - 1.45) / 1.35}
 
 
 def pulled(s: float, speed: float) -> Scene:
-    """No weight: a force of 2 N draws the rider back along a straight cable, x = s + v t - t²."""
+    """No weight: a force of 2 N pulls the rider back along a straight cable, x = s + v t - t²."""
     scene = rider(s, speed, gravity=(0, 0, 0), elements=3)
     scene.force("A", value=(-2, 0, 0))
     return scene
@@ -98,8 +98,9 @@ def thrown_up(speed: float) -> Scene:
 @HERE.case("a rider that turns round on a node of a sagging cable", apart=2.0, balance=BALANCE, residual=HELD, gap=HELD,
            slow=["energy", "explicit", "radau"])
 def turning_on_a_sagging_cable(integrator):
-    """`apart`: two riders, one that just enters the next element and one that just does not, over the way their speeds
-    of 1 µm/s apart would make."""
+    """`apart`: distance of two riders, one that just enters the next element and one that just does not, over the
+    product of time and their difference of speed, 1 µm/s.
+    """
     settings = {"integrator": integrator, "step": 1e-3 if integrator != "explicit" else 2e-4}
     run = lambda speed: simulate(thrown_up(speed), 0.5, output_step=0.02, **settings)  # noqa: E731
     slow, quick = 1.5, 2.5
@@ -113,14 +114,15 @@ def turning_on_a_sagging_cable(integrator):
 
 @HERE.case("at rest on a node", error=1e-12, balance=BALANCE, residual=HELD, gap=HELD, rejected=50, steps=20_000)
 def resting(integrator):
-    """On the middle node of a cable that swings under it: by symmetry it stays there."""
+    """On the middle node of a swinging cable, where it stays by symmetry."""
     run = simulate(rider(0.75, 0.0, elements=2), 0.5, integrator=integrator)
     return figures(run) | {"error": float(np.abs(run["A_on_wire.s"] - 0.75).max())}
 
 
 @HERE.case("a start on a node", error=8e-5, balance=BALANCE, residual=HELD, gap=HELD, apart=3e-9)
 def starting(integrator):
-    """`apart`: from starts 1 nm before and behind the node, over the motion; nothing may jump there."""
+    """`apart`: difference of starts 1 nm before and behind the node, over the motion, which must be continuous there.
+    """
     runs = [simulate(rider(s, 1.0), 0.5, integrator=integrator, step=5e-4 if integrator == "genalpha" else None)
             for s in (0.5, 0.5 - 1e-9, 0.5 + 1e-9)]
     apart = max(float(np.abs(run["A.position"] - runs[0]["A.position"]).max()) for run in runs[1:])
@@ -142,7 +144,7 @@ def two_exact(first, second, duration: float):
 
 @HERE.case("two slides on one element", error=1e-4, balance=BALANCE, residual=HELD, gap=HELD)
 def on_one_element(integrator):
-    """From 3 mm apart they stay within an element of 375 mm, but where they cross its end."""
+    """From 3 mm apart they stay within an element of 375 mm, except at its ends."""
     start = (0.27, 1.0), (0.273, 1.0)
     return figures(simulate(two(*start), 0.4, integrator=integrator), two_exact(*start, 0.4))
 

@@ -1,4 +1,4 @@
-"""Wind and water: light lines in a storm, a gust that comes at once, a fall stopped at once, mass that is all water."""
+"""Wind and water: light lines in a storm, a sudden gust, a fall that drag stops at once, inertia dominated by water."""
 
 
 from funicular import Circle, Harmonic, Material, Scene, TableSignal
@@ -10,8 +10,9 @@ LINE = {"element": "cable12", "strain": "engineering"}
 
 
 def storm() -> Scene:
-    """10 m of a nylon line of 2 mm and 3.6 g/m between two points, let go level in a wind of 40 m/s: drag is 40 times
-    its weight, and damps faster than anything moves, until the line snaps taut."""
+    """10 m of a nylon line of 2 mm and 3.6 g/m between two points, released from the horizontal in a wind of 40 m/s:
+    drag is 40 times its weight and overdamps the motion, until the line snaps taut.
+    """
     scene = Scene()
     line = scene.cable("line", start=(0, 0, 0), end=(10, 0, 0), rest_length=10.2, elements=10,
                        section=Circle(radius=1e-3),
@@ -24,7 +25,7 @@ def storm() -> Scene:
 
 
 def gust() -> Scene:
-    """A heavier line at rest in still air, on which a wind of 30 m/s comes within a microsecond, and goes."""
+    """A heavier line at rest in still air, on which a wind of 30 m/s starts within a microsecond, and ends."""
     scene = Scene()
     line = scene.cable("line", start=(0, 0, 0), end=(0, -5, 0), elements=6, section=Circle(radius=5e-3),
                        material=Material(youngs_modulus=1e9, poisson_ratio=0.0, density=1500), **LINE)
@@ -36,7 +37,7 @@ def gust() -> Scene:
 
 
 def parachute() -> Scene:
-    """A body that falls from rest and has its terminal speed, 1 mm/s, after a ten-thousandth of a second."""
+    """A body that falls from rest and reaches its terminal speed, 1 mm/s, after a ten-thousandth of a second."""
     scene = Scene()
     scene.rigid_body("A", mass=1.0, inertia=(1e-3,) * 3, position=(0, 0, 0))
     scene.fluid("syrup", density=1000)
@@ -45,7 +46,7 @@ def parachute() -> Scene:
 
 
 def feather() -> Scene:
-    """A line of a hundredth of the density of water, in water that swings: nearly all inertia is the water's."""
+    """A line of a hundredth of the density of water, in oscillating water, which has nearly all the inertia."""
     scene = Scene(gravity=(0, 0, 0))
     line = scene.cable("line", start=(0, 0, 0), end=(1, 0.2, 0), elements=6, section=Circle(radius=0.01),
                        material=Material(youngs_modulus=1e6, poisson_ratio=0.0, density=10), **LINE)

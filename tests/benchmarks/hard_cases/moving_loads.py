@@ -1,5 +1,5 @@
-"""Loads that move (M1, M2, M4, M5). A slide that is driven at constant speed is for later; here the rider keeps
-its speed by itself: deflections are so small that no force acts along the beam, and a rider is pushed across it alone.
+"""Moving loads (M1, M2, M4, M5). The rider keeps its speed by itself: deflections are so small that no force acts along
+the beam, and the rider is pushed transversely alone.
 """
 
 import numpy as np
@@ -37,7 +37,7 @@ def crossing(alpha: float, mu: float, elements: int):
 def measured(alpha: float, mu: float, at: str, exact: float):
     def measure(integrator):
         scene, duration = crossing(alpha, mu, 8)
-        # tol is relative to the way of the rider
+        # tol is relative to the travel of the rider
         settings = {"tol": 1e-3 * SMALL} if integrator == "explicit" else {"step": duration / 2000}
         run = simulate(scene, 0.999 * duration, output_step=0.999 * duration / 1000, integrator=integrator, **settings)
         middle = -run["beam.nodal_vectors"][:, 4, 0, 1] / (SMALL * L)
@@ -63,7 +63,9 @@ for (alpha, mu), exact in M2.items():
 
 def arc(degrees: float, period: float):
     def measure(integrator):
-        """M4: a bead on a quarter and more of a circle that is held at every node; its radius of 1 m is met to h^4."""
+        """M4: a bead on more than a quarter of a circle that is fixed at every node; the error of its radius of 1 m is
+        of order h^4.
+        """
         scene, elements, reach = Scene(), 24, 1.7
         turn = lambda u: (np.sin(reach * (2 * u - 1)), -np.cos(reach * (2 * u - 1)), 0)  # noqa: E731
         wire = scene.cable("arc", curve=turn, elements=elements, element="cable12", section=Circle(radius=RADIUS),
@@ -88,8 +90,8 @@ for degrees, period in ((60, 2.152874667), (90, 2.367841948)):
 
 
 def on_a_string(kappa: float, exact: float):
-    """M5: a mass m at v on a taut string of next to no mass, κ = T L / m v²; y over m g L/T near the far end, where it
-    meets the support at an angle, beside that of a string without mass, which is `exact` at the end itself.
+    """M5: a mass m at v on a taut string of nearly no mass, κ = T L / m v²; y over m g L/T near the far end, which it
+    reaches at an angle, beside that of a massless string, which is `exact` at the end itself.
     """
     def rate(t, y):  # t = v t/L, y over m g L/T
         return y[1], kappa * (1 - y[0] / max(t * (1 - t), 1e-12))
@@ -112,7 +114,7 @@ def on_a_string(kappa: float, exact: float):
         way = solve_ivp(rate, (1e-9, 1 - 1e-9), (0, 0), rtol=1e-10, atol=1e-12, dense_output=True).sol
         tau = run.time * speed / length
         y = -run["A.position"][:, 1] / (load * length / tension)
-        # a cubic element does not kink under the rider: most of the error
+        # a cubic element has no kink under the rider: most of the error
         return {"error": float(np.abs(y - way(tau)[0])[tau > 0.05].max()), "at the end": float(way(1 - 1e-9)[0]),
                 "published": exact, "largest": float(y.max())}
 

@@ -1,4 +1,4 @@
-"""Springs that pull or push alone, and a cable that gives way in compression: slack at once, chatter, free play."""
+"""One-sided springs, and a cable without stiffness in compression: sudden slack, chatter, free play."""
 
 
 import numpy as np
@@ -10,8 +10,9 @@ HERE = Subject()
 
 
 def droppers() -> Scene:
-    """A wire under nine droppers that pull alone is lifted as a whole, and let fall: all are slack at once, and taut
-    again."""
+    """A wire under nine tension-only droppers is lifted as a whole and released: all become slack at once, and taut
+    again.
+    """
     scene = Scene()
     wire = scene.cable("wire", start=(0, 0, 0), end=(20, 0, 0), elements=20, element="cable12", strain="engineering",
                        section=Circle(radius=6e-3), rest_length=20 / (1 + 7e-4),
@@ -28,8 +29,7 @@ def droppers() -> Scene:
 
 
 def chatter() -> Scene:
-    """10 g hang on a spring of 100 kN/m that pulls alone, and bounce on it: flights of 40 ms at first, and ever shorter
-    ones."""
+    """10 g bounce on a tension-only spring of 100 kN/m: flights of 40 ms at first, and ever shorter ones."""
     scene = Scene()
     scene.rigid_body("m", mass=0.01, inertia=(1e-6,) * 3, position=(0, -1, 0), velocity=(0, -0.2, 0))
     scene.spring((0, 0, 0), "m", name="wire", stiffness=1e5, damping=3.0, length=1.0, tension_only=True)
@@ -37,8 +37,7 @@ def chatter() -> Scene:
 
 
 def free_play() -> Scene:
-    """1 g rattles between a body of 10 kg, that swings on a spring, and one of 20 kg, with a free play of 2 mm to each.
-    """
+    """1 g rattles between a body of 10 kg on a spring, and one of 20 kg, with a free play of 2 mm to each."""
     scene = Scene(gravity=(0, 0, 0))
     scene.rigid_body("A", mass=10.0, inertia=(1,) * 3, position=(0, 0, 0))
     scene.rigid_body("m", mass=1e-3, inertia=(1e-7,) * 3, position=(0.1, 0, 0), velocity=(0.5, 0, 0))
@@ -50,8 +49,9 @@ def free_play() -> Scene:
 
 
 def thrown() -> Scene:
-    """A rope of 1 m that hardly bears compression, taut between supports, is thrown up, and one support comes nearer:
-    it flies slack, and snaps taut."""
+    """A rope of 1 m with nearly no stiffness in compression, taut between supports, is thrown up, and one support
+    approaches: it flies slack, and snaps taut.
+    """
     scene = Scene()
     rope = scene.cable("rope", start=(0, 0, 0), end=(1, 0, 0), elements=8, element="cable12", membrane="tension_only",
                        section=Circle(radius=6e-3), rest_length=1 / 1.001,
@@ -76,7 +76,7 @@ def with_events(name: str, integrator: str) -> tuple:
 
 @HERE.case("all droppers slack at once, and taut again", error=5e-4, balance=BALANCE, all_slack=(1, 1), taut=(9, 9))
 def slack_at_once(integrator):
-    """`all_slack`: whether all are slack at some time; `taut`: the most that pull at one time afterwards."""
+    """`all_slack`: whether all are slack at some time; `taut`: the largest number that pull at one time afterwards."""
     run, found = with_events("droppers", integrator)
     tension = np.array([run[f"dropper_{k}.tension"] for k in range(1, 10)])
     slack = (tension == 0.0).all(axis=0)
@@ -100,6 +100,6 @@ def rattling(integrator):
 @HERE.case("a rope that bears no compression is thrown slack", error=1e-3, balance=BALANCE, slack=(8, 8),
            events=(2, 20))
 def thrown_slack(integrator):
-    """`slack`: the most elements that are, of 8."""
+    """`slack`: the largest number of slack elements, of 8."""
     run, found = with_events("thrown", integrator)
     return found | {"slack": float(run.slack_elements("rope").sum("element").max())}

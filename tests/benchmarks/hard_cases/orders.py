@@ -1,9 +1,9 @@
 """Orders of convergence, in time and in mesh, measured.
 
-In time an order is that between two steps. In mesh, cubic elements: 4 where the motion is smooth (the
-error of positions of Hermite cubics in bending, h^4 in L2 and at nodes); 3 with a rider: its point force makes r_xxx
-jump inside an element, the bending energy's error falls with h^1.5 and that of the position under the force with its
-square, h^3 (Strang & Fix 1973, 1.6 and 3.4; the theory's, the mean over places where the rider stands).
+In time an order is that between two steps. In mesh, cubic elements: 4 for a smooth motion (the error of positions of
+Hermite cubics in bending, h^4 in L2 and at nodes); 3 with a rider, whose point force makes r_xxx discontinuous inside
+an element: the error of the bending energy is of order h^1.5, and that of the position under the force its square, h^3
+(Strang & Fix 1973, 1.6 and 3.4; the theoretical order is that of the mean over positions of the rider).
 """
 
 from functools import cache
@@ -35,7 +35,7 @@ def exact():
                                       "radau": (4.7, 5.3)}
                                for name in ("positions", "velocities", "multipliers")})
 def in_time(integrator):
-    """Of what an output has; a node is crossed on the way."""
+    """Return orders of the quantities of an output; a node is crossed on the way."""
     errors = []
     for step in IN_TIME[integrator]:
         run = simulate(rider(0.25, 1.0, elements=3), 0.5, integrator=integrator, output_step=0.02, step=step)
@@ -45,7 +45,7 @@ def in_time(integrator):
 
 
 def loaded(elements: int, on_rider: bool) -> Scene:
-    """A strip with a load that comes smoothly: all along it, or on a rider of 1 m/s."""
+    """Return a strip with a load that starts smoothly: distributed, or on a rider of 1 m/s."""
     scene = Scene(gravity=(0, 0, 0))
     scene.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=elements, element="cable12", strain="engineering",
                 section=Circle(radius=0.02), material=Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1000))
@@ -63,8 +63,9 @@ def loaded(elements: int, on_rider: bool) -> Scene:
 
 def in_mesh(on_rider: bool):
     def measure(_):
-        """Of the middle node, or the rider, root mean square over the time, against the mesh twice as fine as the
-        finest."""
+        """Return orders of the middle node, or the rider, root mean square over time, against a mesh twice as fine as
+        the finest.
+        """
         runs = [simulate(loaded(n, on_rider), 0.3, integrator="explicit", tol=1e-9, output_step=0.003)
                 for n in (2, 4, 8, 16, 32)]
         paths = [run["A.position"] if on_rider else run["wire.nodal_vectors"][:, n // 2, 0]

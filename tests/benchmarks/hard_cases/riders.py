@@ -1,4 +1,4 @@
-"""Riders: nearly massless and very heavy, faster than waves of the cable, far from the origin; the paper's."""
+"""Riders: nearly massless and very heavy, faster than waves of the cable, far from the origin; those of the paper."""
 
 from functools import cache
 
@@ -15,7 +15,7 @@ DENSITY = 4200 * np.pi * 0.0282**2
 
 @cache
 def reference(ratio: float):
-    """The converged motion of a rider of so many times the cable's mass."""
+    """Return the converged motion of a rider with a multiple of the cable's mass."""
     return simulate(weighing(ratio), 0.6, **CONVERGED)
 
 
@@ -39,7 +39,8 @@ for ratio in (1e-9, 1e-6, 1e2, 1e4):
            error={"genalpha": 1.5e-3, "energy": 3e-4, "explicit": 1e-8, "radau": 1e-6}, balance=BALANCE,
            residual=HELD, gap=HELD, mach=(2, 2.1))
 def faster_than_waves(integrator):
-    """A taut rope, c = sqrt(T / ρA); `mach`: least speed of the rider over c. It alone bends the rope, pushed down."""
+    """A taut rope, c = sqrt(T / ρA); `mach`: least speed of the rider over c. The rider, pushed down, is the only load.
+    """
     area = np.pi * 5e-3**2
     c = np.sqrt(0.05 * 0.4e9 * area / (4200 * area / 1.05))
 
@@ -61,7 +62,7 @@ def at_the_origin(integrator: str):
 
 def far(distance: float):
     def measure(integrator):
-        """`apart`: from the motion at the origin, m."""
+        """`apart`: distance from the motion at the origin, m."""
         scene = rider(0.25, 1.0, elements=3, start=(distance, -distance, distance),
                       end=(distance + 1.5, -distance, distance))
         run = simulate(scene, 0.6, integrator=integrator)

@@ -17,8 +17,8 @@ COARSE = {"a rider": (lambda: rider(0.25, 1.0, elements=3), 1.0), **SCENES}
 
 def too_large(name: str):
     def measure(integrator):
-        """The step is a tenth of the duration, 30 to 1000 times what tol would take. `error / told`: over the summed
-        estimates that the report has; `told`: notes on it; explicit methods must stop instead.
+        """The step is a tenth of the duration, 30 to 1000 times that of tol. `error / told`: relative to the summed
+        estimates of the report; `told`: number of notes on it; explicit methods must stop instead.
         """
         scene, duration = COARSE[name]
         exact = reference(*COARSE[name])
@@ -60,9 +60,9 @@ def soft() -> Scene:
 
 def long(spectral_radius: float):
     def measure(integrator):
-        """100,000 steps of 1 ms, some 80 crossings, 100 periods. `growth`, `loss`: of energy, over that exchanged;
-        `drift`: of the joint between the first and the last tenth, m. genalpha's velocities are projected on the joint
-        at each crossing, which gives or takes 1e-5 of the energy, of either sign.
+        """100,000 steps of 1 ms, some 80 node passages, 100 periods. `growth`, `loss`: of energy, over that exchanged;
+        `drift`: of the joint between the first and the last tenth, m. The projection of genalpha's velocities at each
+        passage changes the energy by 1e-5, of either sign.
         """
         run = simulate(soft(), 100.0, step=1e-3, output_step=0.1, spectral_radius=spectral_radius,
                        integrator=integrator)
@@ -111,8 +111,8 @@ def finest(element: str):
 
 def paper(elements: int, tol: float):
     def measure(integrator):
-        """`from the reference`: of the independent solution with 3 elements, over its largest motion; `from 30
-        elements`: of the rider's place.
+        """`from the reference`: difference to the independent solution with 3 elements, over its largest motion; `from
+        30 elements`: of the rider's position.
         """
         run = simulate(sliding_mass(elements, "beam24"), 1.0, tol=tol, output_step=0.01, integrator=integrator)
         found = figures(run)
@@ -137,8 +137,8 @@ HERE.case("the paper's scene, 300 elements", integrators=["genalpha"], slow=["ge
 @HERE.case("a steel wire, 300 elements", integrators=["genalpha"], residual=HELD, gap=HELD, balance=1e-2, rejected=200,
            steps=300)
 def steel(integrator):
-    """Vibrations of 1e6 Hz, which no step resolves: short steps to output times shall not wake them. Where they did,
-    the energy grew by its own amount within the run, or the run ended.
+    """Vibrations of 1e6 Hz, which no step resolves and short steps to output times must not excite. If they do, the
+    energy grows by its own amount within the run, or the run ends.
     """
     return figures(simulate(sliding_mass(300, "beam24", youngs_modulus=2e11), 0.25, tol=1e-3, output_step=0.01,
                             integrator=integrator))

@@ -1,4 +1,4 @@
-"""Lines that touch: a light collector that chatters under a wire, a rope thrown on a rope."""
+"""Lines in contact: a light collector that chatters under a wire, a rope thrown on a rope."""
 
 
 import numpy as np
@@ -13,8 +13,9 @@ INTEGRATORS = "genalpha", "explicit", "radau"
 
 
 def chatter() -> Scene:
-    """A head of 20 g goes along a wire of 5 kN at 40 m/s, 2 cm below it and pushed up by 30 N: it comes off the wire
-    again and again."""
+    """A head of 20 g moves along a wire of 5 kN at 40 m/s, from 2 cm below it, under 30 N: it loses contact again and
+    again.
+    """
     scene = Scene(gravity=(0, 0, 0))
     scene.cable("wire", start=(0, 0, 0), end=(20, 0, 0), elements=20, element="cable8p", section=Circle(radius=5e-3),
                 material=WIRE, rest_length=20 / (1 + 5e3 / (1e11 * np.pi * 25e-6)))
@@ -30,7 +31,7 @@ def chatter() -> Scene:
 
 
 def thrown() -> Scene:
-    """A free rope falls across a slack one, turning, and slides off it."""
+    """A free rope falls across a slack one, with rotation, and slides off it."""
     scene = Scene()
     scene.cable("lower", start=(-0.5, 0, 0), end=(0.5, 0, 0), rest_length=1.05, shape="hanging", rest="straight",
                 elements=8, element="cable12", section=Circle(radius=0.01), material=ROPE)
@@ -46,7 +47,7 @@ SCENES = {"chatter": (chatter, 0.1), "thrown": (thrown, 0.2)}
 
 
 def touched(name: str, integrator: str):
-    """A run with a small tolerance, as contacts are decided by little, and its figures."""
+    """Return a run with a small tolerance, since small differences decide contacts, and its figures."""
     scene, duration = SCENES[name]
     run = simulate(scene(), duration, integrator=integrator, tol=1e-5)
     found = {"error": error(run, reference(*SCENES[name])), "balance": balance(run), "steps": run.report["steps"]}

@@ -1,4 +1,4 @@
-"""Published cases of elements, as scenes: benchmarks/cases.py prints the table, motion/test_cases.py asserts it.
+"""Published cases of elements as scenes: benchmarks/cases.py prints the table, motion/test_cases.py asserts it.
 
 Cases: S1 sliding mass; E1, E2 elements; B1 to B6, B8, B11 statics; D0, D1, D3 motions.
 """

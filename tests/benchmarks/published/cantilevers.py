@@ -14,7 +14,7 @@ from .case import CABLES, KINDS, MEMBRANES, STRUCTURAL, Case, Kind, Quantity
 
 def cantilever(kind: Kind, elements: int, length: float, section: Section, youngs_modulus: float, poisson_ratio=0.0,
                curve=None) -> Scene:
-    """Clamped at the origin and along x there, without gravity."""
+    """Return a cantilever along x, clamped at the origin, without gravity."""
     scene = Scene(gravity=(0, 0, 0))
     drawn = {"start": (0, 0, 0), "end": (length, 0, 0)} if curve is None else {"curve": curve}
     scene.cable("beam", elements=elements, element=kind.element, law=kind.law, section=section, **drawn,
@@ -24,9 +24,9 @@ def cantilever(kind: Kind, elements: int, length: float, section: Section, young
 
 
 def tip(scene: Scene, *, force=None, moment=None) -> tuple[np.ndarray, np.ndarray]:
-    """Position of the free end, and slope there, under loads on it.
+    """Return position and slope of the free end under loads on it.
 
-    Solutions stay in the plane: there a deep section would tip over sideways (B3), and a cable leave it (B4).
+    The solutions are planar: in space a deep section would tip over sideways (B3), and a cable leave the plane (B4).
     """
     length = scene.cables["beam"].length
     if force is not None:
@@ -79,7 +79,7 @@ RIGID_IN_SHEAR = 1e4
 
 
 def stretched_quantities(kind: Kind, elements: int) -> list[Quantity]:
-    """Each to the limit of its own formulation; beams stretch by Reissner's strain, that is the engineering one."""
+    """Each relative to the limit of its own formulation; beams have Reissner's strain, the engineering strain."""
     u, w = STRETCHED["green" if kind.is_green else "engineering"]
     return [Quantity("u", "m", u, 2.0), Quantity("w", "m", w, 2.0)]
 
@@ -127,10 +127,10 @@ ROLLED = Rectangle(height=0.01, width=0.01)  # of a beam of 1 m
 
 
 def rolled_quantities(turns: int):
-    """The end comes back to the start.
+    """The end returns to the start.
 
-    Green strain goes with a curvature by length as deformed, and a moment then stretches: with W = EA (λ² - 1)²/8 +
-    EI (θ'/λ)²/2 the minimum over λ is at λ² = 1 + 2 M²/(EA EI), with θ' = M λ²/EI.
+    Green strain is combined with a curvature per deformed length, and a moment then stretches: with W = EA (λ² - 1)²/8
+    + EI (θ'/λ)²/2 the minimum over λ is at λ² = 1 + 2 M²/(EA EI), with θ' = M λ²/EI.
     """
     def quantities(kind: Kind, elements: int) -> list[Quantity]:
         x = y = 0.0

@@ -1,4 +1,4 @@
-"""What a published case is: numbers with their source, and the scene that finds them with an element and a law."""
+"""A published case: numbers with their source, and the scene that computes them with an element and a law."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Value = TypeVar("Value")
 
 @dataclass(frozen=True)
 class Kind:
-    """An element and its elastic law, by the names that a scene takes."""
+    """An element and its elastic law, by the names of scenes."""
 
     element: str
     law: str
@@ -24,17 +24,17 @@ class Kind:
 
     @property
     def is_cable(self) -> bool:
-        """Whether axial and bending stiffness are all that it has."""
+        """Return whether it has axial and bending stiffness alone."""
         return self.element.startswith("cable")
 
     @property
     def is_planar(self) -> bool:
-        """Whether it moves in the plane z = 0 only."""
+        """Return whether it moves in the plane z = 0 only."""
         return self.element.endswith("p")
 
     @property
     def is_green(self) -> bool:
-        """Whether it is a cable with green strain, whose curvature is by length as deformed."""
+        """Return whether it is a cable with green strain, whose curvature is per deformed length."""
         return self.law.startswith("green")
 
 
@@ -51,7 +51,7 @@ KINDS = CABLES + MEMBRANES + BEAMS
 
 @dataclass(frozen=True)
 class Quantity:
-    """A published number, and what errors are relative to: its own size if no scale is given."""
+    """A published number with the scale of its errors, its own size by default."""
 
     name: str
     unit: str
@@ -59,12 +59,12 @@ class Quantity:
     scale: float | None = None
 
     def error(self, value: float) -> float:
-        """Deviation of a value over the scale."""
+        """Return the deviation of a value over the scale."""
         return abs(value - self.reference) / (abs(self.reference) if self.scale is None else self.scale)
 
 
 def lookup(table: dict[str, Value], kind: Kind, default: Value) -> Value:
-    """What a table says of an element with its law, else of its law, else of the element."""
+    """Return the entry of a table for an element with its law, else for the law, else for the element."""
     return table.get(str(kind), table.get(kind.law, table.get(kind.element, default)))
 
 
@@ -72,10 +72,10 @@ def lookup(table: dict[str, Value], kind: Kind, default: Value) -> Value:
 class Case:
     """A published case.
 
-    quantities and values: of a kind and a number of elements, the numbers to find and those that a scene finds;
-    elements: how many the table takes, own_elements where a kind takes others; ordered: whose order of convergence the
-    table has, from half as many elements. notes: what an error is due to; cannot: why there is no number. Both,
-    and own_elements, by kind, law or element, see `lookup`.
+    quantities, values: functions of a kind and a number of elements: published numbers, and those of a scene. elements:
+    their number in the table, own_elements for kinds with another one. ordered: kinds whose order of convergence the
+    table has, from half the elements. notes: causes of errors. cannot: reasons for missing numbers. Notes, cannot and
+    own_elements are by kind, law or element, see `lookup`.
     """
 
     name: str
@@ -96,7 +96,7 @@ class Case:
 
     @cache  # noqa: B019 - cases live as long as the program
     def found(self, kind: Kind, elements: int) -> list[tuple[Quantity, float]]:
-        """The quantities and what the scene finds, the worst first."""
+        """Return the quantities and the values of the scene, the worst first."""
         values = map(float, self.values(kind, elements))
         pairs = zip(self.quantities(kind, elements), values, strict=True)
         return sorted(pairs, key=lambda pair: -pair[0].error(pair[1]))

@@ -1,4 +1,4 @@
-"""Ropes that hang: B11."""
+"""Hanging ropes: B11."""
 
 from __future__ import annotations
 
@@ -16,9 +16,10 @@ GRAVITY = 9.81
 
 
 def catenary(kind: Kind, elements: int, weight: float, axial: float, length: float, span: float, drop: float):
-    """Horizontal force, and sag in the middle of the rope, of the elastic catenary.
+    """Return the horizontal force, and the sag at mid-span, of the elastic catenary.
 
-    weight in N/m, axial stiffness in N, undeformed length, span and drop in m. Drawn as a parabola of that length.
+    weight in N/m, axial stiffness in N, undeformed length, span and drop in m. It is drawn as a parabola of that
+    length.
     """
     area = pi * DIAMETER**2 / 4
     scene = Scene(gravity=(0, -GRAVITY, 0))

@@ -20,7 +20,7 @@ RIDER = {3: (1.32524954, -0.00608859), 6: (1.32457683, -0.00619614), 12: (1.3248
 
 
 def rider_quantities(kind: Kind, elements: int) -> list[Quantity]:
-    """Relative to the way along the cable, and to how far the body sinks."""
+    """Relative to the travel along the cable, and to the sag under the body."""
     x, y = RIDER[elements if kind in CUBIC else 12]
     return [Quantity("x of the body", "m", x, 1.075), Quantity("y of the body", "m", y, 0.0223)]
 
@@ -62,12 +62,12 @@ def swing_quantities(kind: Kind, elements: int) -> list[Quantity]:
 
 @cache
 def half_swing(kind: Kind, elements: int) -> np.ndarray:
-    """The first half second, before errors of the mesh grow of themselves."""
+    """The first half second, before the growth of mesh errors."""
     return rope_end(kind, elements, 0.5, 1e-5, 50)
 
 
 def mesh_error(kind: Kind, elements: int) -> tuple[float]:
-    """Root mean square of the end's distance to a fine mesh."""
+    """Return the root mean square of the end's distance to a fine mesh."""
     apart = half_swing(kind, elements) - half_swing(kind, FINE.get(kind.element, 64))
     return (np.sqrt(np.mean(np.sum(apart**2, axis=1))),)
 
@@ -107,20 +107,24 @@ SETTLING = 0.1
 
 
 def angle(time: np.ndarray) -> np.ndarray:
-    """Of the held end in rad."""
+    """Return the angle of the clamped end in rad."""
     rising = SPEED / RISE * (time**2 / 2 + (RISE / 2 / pi) ** 2 * (np.cos(2 * pi * time / RISE) - 1))
     return np.where(time < RISE, rising, SPEED * time - SPEED * RISE / 2)
 
 
 def turning(time_step=0.05, end=31.0) -> TableSignal:
-    """The angle as a cubic spline, to 2e-8; past the end of a run, since a table stands still after its last value."""
+    """Return the angle as a cubic spline, to 2e-8, past the end of a run, since a table is constant after its last
+    value.
+    """
     time = np.arange(0, end + time_step / 2, time_step)
     return TableSignal(time=time, value=angle(time))
 
 
 def spin_up(kind: Kind, elements: int, duration: float, step: float,
             damping_time: float) -> tuple[np.ndarray, np.ndarray]:
-    """Times, and the end of the blade (time, 2) in axes that turn with the held one, less its place at rest."""
+    """Return times, and the end of the blade (time, 2) in axes that rotate with the clamped one, less its place at
+    rest.
+    """
     length, area, gyration = 10.0, 0.01, sqrt(5e-4)  # of the section: EI/EA and ρI/ρA agree on it
     height = gyration * sqrt(12)
     section = Rectangle(height=height, width=area / height)
@@ -140,14 +144,14 @@ def spin_up(kind: Kind, elements: int, duration: float, step: float,
 
 
 def lag(kind: Kind, elements: int) -> tuple[float, float]:
-    """The largest lag behind the held end, and its time."""
+    """Return the largest lag behind the clamped end, and its time."""
     time, end = spin_up(kind, elements, 10.0, 5e-3, 0.0)
     k = int(np.argmin(end[:, 1]))
     return end[k, 1], time[k]
 
 
 def extension(kind: Kind, elements: int) -> tuple[float]:
-    """At constant speed, settled."""
+    """Return the steady extension at constant speed."""
     _, end = spin_up(kind, elements, 30.0, 2.5e-3, SETTLING)
     return (end[-1, 0],)
 

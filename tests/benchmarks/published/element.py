@@ -9,7 +9,7 @@ from funicular.parts.section_stiffness import section_stiffness
 
 from .case import CABLES, KINDS, MEMBRANES, Case, Kind, Quantity
 
-# --- E1: kernels, since a scene tells neither mass nor force of an element --------------------------------------------
+# --- E1: kernels, since a scene reports neither mass nor force of an element --------------------------------------
 
 STEEL = Material(youngs_modulus=210e9, poisson_ratio=0.3, density=7850)
 SQUARE = Rectangle(height=0.1, width=0.1)
@@ -31,7 +31,7 @@ def mass(kind: Kind, elements: int) -> list[float]:
 
 
 def force(kind: Kind, elements: int) -> tuple[float, float]:
-    """Forces on node 1 as the cable exerts them."""
+    """Return forces of the cable on node 1."""
     e = np.zeros((2, 4, 3))
     e[:, 1:] = np.eye(3)
     e[1, 0] = 1.0, 0.0, 0.001
@@ -77,7 +77,7 @@ def vibrations(motion: str):
 
 
 def motion_of(shape: np.ndarray, kind: Kind) -> str:
-    """What moves most in a mode's shape (nodes, vectors, 3)."""
+    """Return the dominant component of a mode's shape (nodes, vectors, 3)."""
     twist = shape[:, 2, 2] - shape[:, 3, 1] if not (kind.is_cable or kind.is_planar) else 0.0
     sizes = {"axial": shape[:, 0, 0], "bending": shape[:, 0, 1:], "torsion": SIDE / 4 * twist}
     return max(sizes, key=lambda motion: np.linalg.norm(sizes[motion]))

@@ -26,7 +26,7 @@ BENDS = {
 
 
 def arc(u: float) -> tuple[float, float, float]:
-    """Along x at the origin, bending towards y."""
+    """Return an arc along x at the origin, curved towards y."""
     return RADIUS * sin(u * BEND), RADIUS * (1 - cos(u * BEND)), 0.0
 
 
@@ -82,7 +82,7 @@ NEAR = 0.03
 
 
 def frame(kind: Kind, elements: int, force: float) -> Scene:
-    """Two blades, stiff in their plane; the force on the end is along the clamped one, away from the clamp."""
+    """Return two blades, stiff in their plane; the force on the end is along the clamped one, away from the clamp."""
     leg = 0.24
     scene = Scene(gravity=(0, 0, 0))
     same = {"elements": elements // 2, "element": kind.element, "law": kind.law,
@@ -97,13 +97,13 @@ def frame(kind: Kind, elements: int, force: float) -> Scene:
 
 
 def lowest_square(scene: Scene) -> float:
-    """Of the natural angular frequency about equilibrium; negative where it is not stable."""
+    """Return the lowest squared angular frequency about equilibrium, negative if unstable."""
     modes = scene.modes(1, about=scene.equilibrium(seek_stable=False))  # on the branch that stays in its plane
     return float(modes.angular_frequency[0] ** 2 - modes.growth_rate[0] ** 2)
 
 
 def buckling(kind: Kind, elements: int) -> tuple[float]:
-    """The load at which the lowest square of a frequency passes through zero."""
+    """Return the load at which the lowest squared frequency passes through zero."""
     def square(force: float) -> float:
         return lowest_square(frame(kind, elements, force))
 
