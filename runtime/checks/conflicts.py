@@ -12,7 +12,7 @@ from ..parts.joint import DRIVEN, LINES, POINTS, Joint
 from ..parts.locations import Node, joined, point_of, support_of
 from ..parts.scene_data import SceneData
 from ..parts.support import Motion, Support
-from ..parts.validation import EXACT, show
+from ..parts.validation import LENGTH_TOLERANCE, show
 from .placement import SUPPORTED
 
 
@@ -83,7 +83,8 @@ def move_as_one(scene: SceneData, one: Attachment, other: Attachment) -> bool:
     """Return whether two ends are on one body, both on the ground, or at one place of a cable."""
     if one.on not in scene.cables:
         return one.on == other.on
-    return one.on == other.on and abs(one.arc_length - other.arc_length) <= EXACT * scene.cables[one.on].length
+    tolerance = LENGTH_TOLERANCE * scene.cables[one.on].length
+    return one.on == other.on and abs(one.arc_length - other.arc_length) <= tolerance
 
 
 def called(end: Attachment) -> str:

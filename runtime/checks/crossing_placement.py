@@ -12,7 +12,7 @@ from ..parts.crossing import Crossing
 from ..parts.crossing_start import Start, radii, sign_of, start_of
 from ..parts.modal_body import ModalBody
 from ..parts.scene_data import OfDrawing, SceneData
-from ..parts.validation import EXACT, show
+from ..parts.validation import LENGTH_TOLERANCE, show
 from .placement import placed_attachment
 
 LEAST_SINE = 1e-3
@@ -72,17 +72,17 @@ def _check_start(scene: SceneData, part: Crossing, start: Start, radius: float) 
                          "draw them at an angle: a crossing has one point of contact")
     size = scene.cables[part.a].length
     gap = float(np.dot(start.d, start.normal))
-    if part.side is None and abs(gap) <= EXACT * size:
+    if part.side is None and abs(gap) <= LENGTH_TOLERANCE * size:
         raise SceneError(part.where, f"the lines meet as drawn, at {show(_place(scene, part, start), 'm')}",
                          "give side, the direction in which a is of b, or draw them apart")
     if part.side is not None and abs(np.dot(part.side, start.normal)) < LEAST_SINE * np.linalg.norm(part.side):
         raise SceneError(part.where, f"side {show(part.side)} is not across both lines",
                          f"give a direction such as {show(start.normal)} or its opposite")
     overlap = radius - gap * sign_of(part, start.normal, start.d)
-    if overlap > 2 * radius + EXACT * size:
+    if overlap > 2 * radius + LENGTH_TOLERANCE * size:
         raise SceneError(part.where, f"the lines are on the other side of each other as drawn, {abs(gap):.6g} m apart",
                          "draw them on their side, or give the opposite side")
-    if overlap > EXACT * size and np.linalg.norm(start.d) < radius:  # else one is beyond an end of the other
+    if overlap > LENGTH_TOLERANCE * size and np.linalg.norm(start.d) < radius:  # else one is beyond an end of the other
         message = (f"{part.where}: the lines overlap by {overlap:.6g} m as drawn, where the contact force is "
                    f"{part.stiffness * overlap**part.exponent:.4g} N; draw them apart, or start with "
                    'initial="equilibrium"')

@@ -12,7 +12,7 @@ from ..parts.cable import Cable
 from ..parts.drag import OF_BODY, OF_CABLE, Drag
 from ..parts.fluid import NO_SURFACE, Fluid
 from ..parts.scene_data import SceneData
-from ..parts.validation import EXACT, show
+from ..parts.validation import LENGTH_TOLERANCE, show
 from ..parts.velocity_table import VelocityTable
 from .frames import draws_section
 from .placement import placed_attachment
@@ -51,7 +51,7 @@ def _check_table(scene: SceneData, drag: Drag, places_of: Callable[[], np.ndarra
 
 def _check_in_table(drag: Drag, fluid: Fluid, table: VelocityTable, places: np.ndarray) -> None:
     margin, axis = table.margin(np.zeros(len(places)), places)
-    if margin < -EXACT:
+    if margin < -LENGTH_TOLERANCE:
         values = table.grid.axes[axis]
         at = 0.0 if axis == "time" else float(max(places[:, "xyz".index(axis)], key=lambda x: abs(x - values.mean())))
         unit = "s" if axis == "time" else "m"

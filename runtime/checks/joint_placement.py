@@ -12,7 +12,7 @@ from ..kernels.elements import built_in
 from ..parts.joint import DRIVEN, LINES, POINTS, UNITS, Joint
 from ..parts.locations import point_of
 from ..parts.scene_data import SceneData
-from ..parts.validation import EXACT, show
+from ..parts.validation import LENGTH_TOLERANCE, show
 from .conflicts import called, check_other_joints, check_supports, move_as_one
 from .frames import cable_frame, has_section
 from .placement import placed_between
@@ -31,9 +31,9 @@ def placed_joint(scene: SceneData, joint: Joint) -> Joint:
         raise SceneError(joint.where, f"joins {called(joint.a)} to itself", "give it two ends")
     joint = joint.completed(_completed(scene, joint))
     _check_frames(scene, joint)
-    check_other_joints(scene, joint, lambda: EXACT * scene_size(scene, joint))
+    check_other_joints(scene, joint, lambda: LENGTH_TOLERANCE * scene_size(scene, joint))
     check_joint(scene, joint)
-    if _is_beyond(scene, joint, gap := _gap(scene, joint), EXACT):
+    if _is_beyond(scene, joint, gap := _gap(scene, joint), LENGTH_TOLERANCE):
         message = f"{joint.where}: {_apart(scene, joint, gap)}; they are brought together"
         scene.messages.append(message)
         warnings.warn(message, FunicularWarning, stacklevel=4)
@@ -60,7 +60,7 @@ def check_drive(scene: SceneData, joint: Joint) -> None:
         a, b = point_of(scene, joint.a), point_of(scene, joint.b)
         start = float(np.linalg.norm(b - a))
     value = float(joint.prescribed.value(0.0))
-    if abs(value - start) > (EXACT if joint.joint_kind != "distance" else MOVABLE) * size:
+    if abs(value - start) > (LENGTH_TOLERANCE if joint.joint_kind != "distance" else MOVABLE) * size:
         raise SceneError(joint.where, f"{name} is {show(value, UNITS[name])} at t = 0, but the joint starts at "
                          f"{show(start, UNITS[name])}", 'let it start there, or start with initial="equilibrium"')
 

@@ -18,7 +18,7 @@ from ..parts.part import Part
 from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.support import Support, Tie
-from ..parts.validation import EXACT, show
+from ..parts.validation import LENGTH_TOLERANCE, show
 
 P = TypeVar("P", bound=Part)
 
@@ -30,7 +30,7 @@ def cable_at(scene: SceneData, name: str, place: str, s: float, keyword: str = "
     if name not in scene.cables:
         raise SceneError(place, f'there is no cable "{name}"', near(name, scene.cables))
     cable = scene.cables[name]
-    if not -EXACT * cable.length <= s <= (1 + EXACT) * cable.length:
+    if not -LENGTH_TOLERANCE * cable.length <= s <= (1 + LENGTH_TOLERANCE) * cable.length:
         raise SceneError(place, f"{keyword} must lie on the cable, in [0, {cable.length:.9g}] m, got {s:.9g} m")
     return cable
 
@@ -70,7 +70,7 @@ def placed_tie(scene: SceneData, tie: Tie) -> Tie:
         raise SceneError(tie.where, f"the nodes are {'one and the same' if one == other else 'already joined'}")
     a, b = scene.cables[tie.cable], scene.cables[tie.to]
     gap = float(np.linalg.norm(a.point(tie.s) - b.point(tie.at)))
-    if gap > EXACT * max(a.length, b.length):
+    if gap > LENGTH_TOLERANCE * max(a.length, b.length):
         raise SceneError(tie.where, f"the nodes are {gap:.6g} m apart, at {show(a.point(tie.s))} and "
                          f"{show(b.point(tie.at), 'm')}", "draw both cables through the same point")
     first, second = support_of(scene, one), support_of(scene, other)
@@ -96,7 +96,7 @@ def _shears_the_end(a: Cable, s: float, b: Cable, at: float) -> bool:
         return False
     directors = [bool(cable.kind_of_element.director) for cable in (a, b)]
     return any(directors) and (not all(directors) or
-                               float(np.linalg.norm(np.cross(a.axes_at(s)[0], b.axes_at(at)[0]))) > EXACT)
+                               float(np.linalg.norm(np.cross(a.axes_at(s)[0], b.axes_at(at)[0]))) > LENGTH_TOLERANCE)
 
 
 def placed_load(scene: SceneData, load: Force | DistributedForce | Moment) -> Part:
@@ -130,7 +130,7 @@ def _check_without_section(load: Force | DistributedForce | Moment, cable: Cable
         assert load.s is not None, f"{load.where} is not complete"
         value, tangent = np.array(load.value), cable.axes_at(load.s)[0]
         twist = float(np.dot(value, tangent))
-        if abs(twist) > EXACT * np.linalg.norm(value):
+        if abs(twist) > LENGTH_TOLERANCE * np.linalg.norm(value):
             raise SceneError(
                 load.where, f'twists cable "{cable.name}" by {twist:.6g} N m about its tangent {show(tangent)}, but '
                 f"{cable.element} has no torsion", f"give a moment across the tangent, or take {with_axes}")

@@ -13,7 +13,7 @@ from ..parts.locations import point_of
 from ..parts.rigid_body import RigidBody
 from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
-from ..parts.validation import EXACT, show
+from ..parts.validation import LENGTH_TOLERANCE, show
 from .frames import cable_frame, has_section
 from .joint_placement import check_up, elements_with_sections
 from .placement import cable_at, placed_attachment
@@ -40,7 +40,7 @@ def placed_slide(scene: SceneData, slide: Slide) -> Slide:
     _check_drive(slide, cable)
     for name in ("at_start", "at_end"):
         stop = getattr(slide, name)
-        if isinstance(stop, Buffer) and stop.length > cable.length * (1 + EXACT):
+        if isinstance(stop, Buffer) and stop.length > cable.length * (1 + LENGTH_TOLERANCE):
             raise SceneError(slide.where, f"{name}: the buffer's length must not exceed that of cable "
                              f'"{cable.name}", {show(cable.length, "m")}, got {show(stop.length, "m")}')
     return _seated(scene, slide, cable)
@@ -49,7 +49,7 @@ def placed_slide(scene: SceneData, slide: Slide) -> Slide:
 def check_on_cable(scene: SceneData, slide: Slide) -> None:
     """Raise SceneError where a body is not on its cable any more, since others moved it."""
     gap, moved = _gap(scene, slide), isinstance(scene.bodies.get(slide.body or ""), RigidBody)
-    if gap > (EXACT if moved else MOVABLE) * scene.cables[slide.along].length:
+    if gap > (LENGTH_TOLERANCE if moved else MOVABLE) * scene.cables[slide.along].length:
         raise SceneError(slide.where, _away(scene, slide, gap),
                          f"{_carrier(slide)} is on more than one slide: it cannot be moved for each")
 
@@ -65,7 +65,7 @@ def _start(scene: SceneData, slide: Slide, cable: Cable) -> float:
     if gaps[0] > MOVABLE * cable.length:
         raise SceneError(slide.where, _away(scene, slide.completed({"s": places[0]}), gaps[0]) + ", the nearest place",
                          "draw one through the other")
-    if len(near := places[gaps <= max(UNLIKE * gaps[0], EXACT * cable.length)]) > 1:
+    if len(near := places[gaps <= max(UNLIKE * gaps[0], LENGTH_TOLERANCE * cable.length)]) > 1:
         raise SceneError(slide.where, f'cable "{cable.name}" passes the point of {_carrier(slide)} at '
                          f"{show(point, 'm')} at s = {' and '.join(f'{s:.6g}' for s in np.sort(near))} m", "give s")
     return float(places[0])
@@ -121,10 +121,10 @@ def _check_drive(slide: Slide, cable: Cable) -> None:
     if slide.drive is None:
         return
     start = float(slide.drive.value(0.0))
-    if not -EXACT * cable.length <= start <= (1 + EXACT) * cable.length:
+    if not -LENGTH_TOLERANCE * cable.length <= start <= (1 + LENGTH_TOLERANCE) * cable.length:
         raise SceneError(slide.where, f"drive is {show(start, 'm')} at t = 0, off the cable, [0, {cable.length:.9g}] m",
                          f"let it start at s = {show(slide.arc_length, 'm')}")
-    if abs(start - slide.arc_length) > EXACT * cable.length:
+    if abs(start - slide.arc_length) > LENGTH_TOLERANCE * cable.length:
         raise SceneError(slide.where, f"drive is {show(start, 'm')} at t = 0, but the slide starts at s = "
                          f"{show(slide.arc_length, 'm')}", "let both start at one place")
 
@@ -143,7 +143,7 @@ def _away(scene: SceneData, slide: Slide, gap: float) -> str:
 def _seated(scene: SceneData, slide: Slide, cable: Cable) -> Slide:
     """Return the slide with its rider's point on the cable, brought there by a small move; refuse a large one."""
     gap = _gap(scene, slide)
-    if gap <= EXACT * cable.length:
+    if gap <= LENGTH_TOLERANCE * cable.length:
         return slide
     where = _away(scene, slide, gap)
     point = point_of(scene, slide.rider)
@@ -174,9 +174,9 @@ def _nearest(scene: SceneData, slide: Slide, cable: Cable, gap: float) -> tuple[
         return slide, together
     places = cable.nearest_s(point_of(scene, slide.rider))
     s = float(places[np.argmin(np.abs(places - slide.arc_length))])
-    if not EXACT * cable.length < abs(s - slide.arc_length) <= UNLIKE * gap:
+    if not LENGTH_TOLERANCE * cable.length < abs(s - slide.arc_length) <= UNLIKE * gap:
         return slide, together
     slide = slide.completed({"s": min(max(s, 0.0), cable.length)})
     left = _gap(scene, slide)
     near = f"; it starts from the nearest place, s = {slide.arc_length:.9g} m"
-    return slide, near if left <= EXACT * cable.length else f"{near}, {left:.6g} m away{together}"
+    return slide, near if left <= LENGTH_TOLERANCE * cable.length else f"{near}, {left:.6g} m away{together}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..errors import SceneError
 from ..parts.modal_body import ModalBody
 from ..parts.scene_data import SceneData
-from ..parts.validation import EXACT, show
+from ..parts.validation import LENGTH_TOLERANCE, show
 from .joint_placement import check_drive, check_joint
 from .planarity import check_plane
 from .slide_placement import check_on_cable
@@ -35,7 +35,7 @@ def check_start_as_drawn(scene: SceneData) -> None:
                   if signal is not None]
         starts += [("rotation", motion.rotation.angle, 1.0, "rad")] if motion.rotation else []
         for name, signal, size, unit in starts:
-            if abs(value := float(signal.value(0.0))) > EXACT * size:
+            if abs(value := float(signal.value(0.0))) > LENGTH_TOLERANCE * size:
                 raise SceneError(motion.where, f"{name} is {show(value, unit)} at t = 0, but counts from the place "
                                  "drawn", 'let it start from 0, or start with initial="equilibrium"')
     for joint in scene.joints.values():

@@ -17,7 +17,7 @@ from ..parts.cable import Cable
 from ..parts.load import Force, Moment
 from ..parts.scene_data import SceneData
 from ..parts.scene_methods import SceneMethods
-from ..parts.validation import EXACT
+from ..parts.validation import LENGTH_TOLERANCE
 
 S = TypeVar("S", bound=SceneMethods)
 
@@ -115,7 +115,7 @@ def _common_division(places: list[float], length: float) -> int:
     count = 1
     for s in places:
         fraction = Fraction(s / length).limit_denominator(MAX_COARSEST_ELEMENTS)
-        if abs(float(fraction) - s / length) > EXACT / 2:
+        if abs(float(fraction) - s / length) > LENGTH_TOLERANCE / 2:
             return 0
         count = math.lcm(count, fraction.denominator)
     return count if count <= MAX_COARSEST_ELEMENTS else 0

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..kernels.libraries import kernels_of
 from ..parts.polar import Polar
-from ..parts.validation import EXACT
+from ..parts.validation import LENGTH_TOLERANCE
 from .drags import DragModel
 from .element_coordinates import element_coordinates, positions
 from .model import CableModel, Model
@@ -98,7 +98,7 @@ def outside_tables(model: Model, q: np.ndarray) -> list[str]:
         height = drag.base + r @ drag.up
         r = r + (np.clip(height, drag.bottom, drag.surface) - height)[:, None] * drag.up  # the nearest of the fluid
         margin, axis = drag.fluid.table.margin(np.zeros(len(r)), _place(drag, r))
-        if margin < -EXACT:
+        if margin < -LENGTH_TOLERANCE:
             found.append(f'drag "{drag.name}" is on what lies beyond the table of its fluid along {axis}, by '
                          f"{-margin:.3g} of it: there the velocity is as at its edge; take a larger table")
     return found

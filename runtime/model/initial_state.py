@@ -14,7 +14,7 @@ from ..parts.modal_body import ModalBody
 from ..parts.plane import called
 from ..parts.rigid_body import RigidBody
 from ..parts.scene_data import SceneData
-from ..parts.validation import EXACT, show, shown
+from ..parts.validation import LENGTH_TOLERANCE, show, shown
 from .bodies import configuration_of, velocity_of
 from .model import BodyModel, CableModel, Model
 from .unknowns import as_supports_leave
@@ -203,7 +203,8 @@ def _check_supports(model: Model, change: np.ndarray, does: str, unit: str) -> N
     change = change[cables]
     expected = as_supports_leave(change, model.unknown_of_dof[cables], model.combinations)
     wrong, largest = (np.abs(each) * model.weight[cables] for each in (change - expected, change))
-    if np.any(wrong > max(EXACT * max(cable.mesh.total for cable in model.cables), ITERATED * largest.max())):
+    longest = max(cable.mesh.total for cable in model.cables)
+    if np.any(wrong > max(LENGTH_TOLERANCE * longest, ITERATED * largest.max())):
         dof = int(np.argmax(wrong))
         where, k = next((node.where, k) for nodes in model.nodes.values() for k, node in enumerate(nodes)
                         if node.first <= dof < node.first + node.vectors.size)

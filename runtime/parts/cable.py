@@ -18,7 +18,7 @@ from .drawn_cable import DrawnCable
 from .hanging import catenary
 from .section import GeneralSection
 from .section_stiffness import kernel_law
-from .validation import EXACT, show, shown
+from .validation import LENGTH_TOLERANCE, show, shown
 
 
 class Cable(DrawnCable):
@@ -177,7 +177,7 @@ class Cable(DrawnCable):
         """Raise ValueError where an element without section axes is given what only beams have."""
         section, beams = self.section, "leave it out, or take " + others(self.dim, cable=False)
         moments = section.second_moment_about_z, section.second_moment_about_y
-        if self.dim == 3 and abs(moments[0] - moments[1]) > EXACT * max(moments):
+        if self.dim == 3 and abs(moments[0] - moments[1]) > LENGTH_TOLERANCE * max(moments):
             raise ValueError(f"{self.element} has one bending stiffness: its section needs equal second moments, "
                              f"got {show(moments, 'm⁴')}", 'take a square, a circle or a tube, or element="beam24"')
         if given := section.given_beside_shape:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..kernels.mesh import Mesh
 from .schemas import checked, list_schema
-from .validation import EXACT, MAX_COUNT, items, show, shown, vector
+from .validation import LENGTH_TOLERANCE, MAX_COUNT, items, show, shown, vector
 
 MAX_LENGTH_RATIO = 1e6
 """Of the longest element of a cable over the shortest: above it rounding of stiff elements hides soft ones."""
@@ -44,7 +44,7 @@ Nodes = Annotated[tuple[float, ...], checked(_nodes, list_schema("m", 2, None))]
 
 def check_ends(nodes: tuple[float, ...], length: float) -> None:
     """Raise ValueError(cause, remedy) unless the last node is at the end of a cable of this undeformed length, m."""
-    if abs(nodes[-1] - length) > EXACT * length:
+    if abs(nodes[-1] - length) > LENGTH_TOLERANCE * length:
         raise ValueError(f"nodes must end at the cable's undeformed length, {length!r} m, got {nodes[-1]!r} m",
                          "give arc-lengths of the undeformed cable, from 0 to its length")
 

@@ -15,7 +15,7 @@ from . import cable_drawing, cable_mesh, curves
 from .cable_fields import CableFields
 from .plane import Plane
 from .section_stiffness import kernel_law
-from .validation import EXACT, Vector
+from .validation import LENGTH_TOLERANCE, Vector
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
@@ -259,10 +259,10 @@ class DrawnCable(CableFields):
     def node_at(self, s: float) -> int | None:
         """Return the number of the node at arc-length ``s`` in m, else None; a cable without mesh gets one anywhere."""
         if self.is_open:
-            return round(s / (EXACT * self.length))
+            return round(s / (LENGTH_TOLERANCE * self.length))
         mesh, node_s = self.mesh, self.node_s
         node = round(s / self.length * self.elements) if mesh.is_even else int(mesh.nearest_node(s))
-        on_node = 0 <= node <= self.elements and abs(node_s[node] - s) <= EXACT * self.length
+        on_node = 0 <= node <= self.elements and abs(node_s[node] - s) <= LENGTH_TOLERANCE * self.length
         return node if on_node else None
 
     def element_at(self, s: float) -> int:

@@ -1,4 +1,4 @@
-"""The kinds of parts that a scene is made of; a further kind is one file beside this one and one entry here."""
+"""The kinds of parts of a scene. A further kind is one file beside this one and one entry here."""
 
 from collections.abc import Iterable, Mapping
 
@@ -21,7 +21,7 @@ from .surface import Surface
 
 KINDS: tuple[type[Part], ...] = (Cable, Pin, Clamp, Motion, Tie, RigidBody, ModalBody, Joint, Slide, Force,
                                  DistributedForce, Moment, Spring, Fluid, Drag, Crossing, Surface, Contact, Event)
-"""In the order in which they can be added: a slide needs its cable and its body."""
+"""In an order in which they can be added: a slide needs its cable and its body."""
 
 
 def plural_of(name: str) -> str:
@@ -30,16 +30,16 @@ def plural_of(name: str) -> str:
 
 
 PARTS = {part.kind: part for part in KINDS}
-"""The kinds by their names in scene files and in messages."""
+"""The kinds by name in scene files and messages."""
 
 BESIDE_PARTS = {"nodal_vectors": NODAL_VECTORS, "nodal_velocity": DIRECTION, "nodes": POINT,
                 "modal_coordinates": UNCHANGED, "modal_velocities": UNCHANGED, "displacement": DIRECTION,
                 "rotation": IN_BODY_AXES}
-"""Quantities that no part lists among its results: nodal vectors of cables, nodes of modal bodies, shapes of modes."""
+"""Quantities beside the results of parts: nodal vectors of cables, nodes of modal bodies, shapes of modes."""
 
 
 def turning_by_name(results: Iterable[Mapping[str, Quantity]]) -> dict[str, str]:
-    """Return of each quantity how other axes change it. Raises ValueError for one name of two that turn differently."""
+    """Return how each quantity turns, by name. Raises ValueError where two of one name turn differently."""
     found = dict(BESIDE_PARTS)
     for each in results:
         for name, quantity in each.items():

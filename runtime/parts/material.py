@@ -9,13 +9,14 @@ import numpy as np
 from pydantic import model_validator
 
 from .part import Part
-from .validation import above, not_negative, positive
+from .validation import bounded, not_negative, positive
 
 INCOMPRESSIBLE = 0.5
 """The largest Poisson ratio: no change of volume."""
-
-ROUNDED = 1e-5
-"""Moduli that are E / 3 but for so much of it are those of a Poisson ratio of 0.5, written with a few digits."""
+MODULUS_TOLERANCE = 1e-5
+"""Relative difference of G and E / 3, written with a few digits, that means a Poisson ratio of 0.5."""
+PoissonRatio = Annotated[float, bounded("", lambda ratio: -1 < ratio <= INCOMPRESSIBLE, "be above -1 and at most 0.5",
+                                        exclusiveMinimum=-1, maximum=INCOMPRESSIBLE)]
 
 
 class Material(Part):
@@ -32,7 +33,7 @@ class Material(Part):
 
     youngs_modulus: Annotated[float, positive("Pa")]
     density: Annotated[float, positive("kg/m³")]
-    poisson_ratio: Annotated[float, above(-1.0, INCOMPRESSIBLE)] | None = None
+    poisson_ratio: PoissonRatio | None = None
     shear_modulus: Annotated[float, positive("Pa")] | None = None
     damping_time: Annotated[float, not_negative("s")] = 0.0
     mass_damping: Annotated[float, not_negative("1/s")] = 0.0
@@ -42,17 +43,13 @@ class Material(Part):
         E, nu, G = self.youngs_modulus, self.poisson_ratio, self.shear_modulus
         if nu is None and G is None:
             raise ValueError("poisson_ratio or shear_modulus is missing", "give one of the two")
-        if nu is None and G is not None and G < E / 3 * (1 - ROUNDED):
-            raise ValueError(
-                f"shear_modulus must be at least youngs_modulus / 3 = {E / 3:.9g} Pa, got {G:.9g} Pa",
-                f"the Poisson ratio would be {E / (2 * G) - 1:.9g}, which must be above -1 and at most 0.5",
-            )
+        if nu is None and G is not None and G < E / 3 * (1 - MODULUS_TOLERANCE):
+            raise ValueError(f"shear_modulus must be at least youngs_modulus / 3 = {E / 3:.9g} Pa, got {G:.9g} Pa",
+                             f"the Poisson ratio E / (2 G) - 1 = {E / (2 * G) - 1:.9g} must be above -1 and "
+                             "at most 0.5")
         if nu is not None and G is not None and not isclose(G, E / (2 * (1 + nu)), rel_tol=1e-6):
-            raise ValueError(
-                f"shear_modulus {G:.9g} Pa and poisson_ratio {nu:.9g} disagree: "
-                f"E / (2 (1 + ν)) = {E / (2 * (1 + nu)):.9g} Pa",
-                "give one of the two",
-            )
+            raise ValueError(f"shear_modulus {G:.9g} Pa and poisson_ratio {nu:.9g} disagree: "
+                             f"E / (2 (1 + ν)) = {E / (2 * (1 + nu)):.9g} Pa", "give one of the two")
         return self
 
     def poisson(self) -> float:
@@ -69,20 +66,17 @@ class Material(Part):
 
     @property
     def is_incompressible(self) -> bool:
-        """Return whether its Poisson ratio is 0.5, as far as E and G tell."""
-        return self.poisson() >= INCOMPRESSIBLE - (ROUNDED if self.poisson_ratio is None else 0.0)
+        """Return whether its Poisson ratio is 0.5, within the digits of E and G."""
+        return self.poisson() >= INCOMPRESSIBLE - (MODULUS_TOLERANCE if self.poisson_ratio is None else 0.0)
 
     def lame(self) -> tuple[float, float]:
-        """Return Lamé's constants (λ, μ) in Pa; λ is infinite where the volume cannot change."""
+        """Return Lamé's constants (λ, μ) in Pa; λ is infinite for an incompressible material."""
         E, nu = self.youngs_modulus, self.poisson()
         if self.is_incompressible:
             return inf, E / (2 * (1 + nu))
         return E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
 
     def elasticity(self) -> np.ndarray:
-        """Return the orthotropic constants of the stiffness.
-
-        Returns (9,): [D11, D22, D33, D12, D13, D23, G12, G13, G23] in Pa.
-        """
+        """Return (9,): the orthotropic constants [D11, D22, D33, D12, D13, D23, G12, G13, G23] in Pa."""
         lam, mu = self.lame()
         return np.array([lam + 2 * mu] * 3 + [lam] * 3 + [mu] * 3)

@@ -19,7 +19,7 @@ from .quantity import Quantity
 from .rigid_body import Orientation, RigidBody
 from .schemas import checked
 from .section import AnySection
-from .validation import EXACT, Count, Flag, Name, Vector, not_negative, one_of, show, shown, xyz
+from .validation import LENGTH_TOLERANCE, Count, Flag, Name, Vector, not_negative, one_of, show, shown, xyz
 
 if TYPE_CHECKING:
     from .body_shape import Shape
@@ -172,7 +172,7 @@ class ModalBody(Part):
         node, size = int(np.argmin(distance)), max(float(np.ptp(shape.nodes, axis=0).max()), 1.0)
         arm = point - shape.nodes[node]
         along = abs(arm[0]) if self.data is None else 0.0 if shape.rotations.any() else distance[node]
-        if along > EXACT * size:
+        if along > LENGTH_TOLERANCE * size:
             raise ValueError(f"{show(point, 'm')} is no node of the body",
                              f"the nearest is at {show(shape.nodes[node], 'm')}")
         return point, shape.modes[:, node] + np.cross(shape.rotations[:, node], arm), shape.rotations[:, node]

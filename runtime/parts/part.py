@@ -1,4 +1,4 @@
-"""The base of the parts that a scene is described with, and what a part says of entries that it refuses."""
+"""The base of the parts of a scene, and its messages on entries that it refuses."""
 
 from __future__ import annotations
 
@@ -25,20 +25,19 @@ else:
 
 
 def parameters_of(kind: type[Part]) -> list[inspect.Parameter]:
-    """Return what a part is made with, as parameters: the positional ones of its kind first, then what is required.
+    """Return the entries of a part as parameters: positional ones of its kind, required ones, others, its name.
 
-    A name comes last. None stands for what has no fixed default.
+    None stands for a default that is not fixed.
     """
-    keywords = kind.keywords()
-    others = [name for name in keywords if name not in kind.positional]
-    others.sort(key=lambda name: (not kind.model_fields[keywords[name]].is_required(), name == "name"))
-    order = [*kind.positional, *others]
-    return [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=_default(kind.model_fields[keywords[name]]))
-            for name in order if name in keywords]
+    fields = {keyword: kind.model_fields[name] for keyword, name in kind.keywords().items()}
+    others = [name for name in fields if name not in kind.positional]
+    others.sort(key=lambda name: (not fields[name].is_required(), name == "name"))
+    return [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=_default(fields[name]))
+            for name in (*kind.positional, *others) if name in fields]
 
 
 def _default(field: FieldInfo) -> Any:
-    """Return the default of a field as a signature shows it."""
+    """Return the default of a field in a signature."""
     if field.is_required():
         return inspect.Parameter.empty
     default = None if field.default_factory is not None else field.default
@@ -48,18 +47,17 @@ def _default(field: FieldInfo) -> Any:
 class _TranslatingType(ModelMetaclass):
     """Makes a constructor call raise `SceneError`.
 
-    In the metaclass and not in ``__init__``, so that a model inside another one still reports to pydantic,
-    which knows the path to it.
+    A model inside another one does not pass here and reports to pydantic, which knows the path to it.
     """
 
     @property
     def __signature__(cls) -> inspect.Signature:  # noqa: N805  it is a metaclass
-        """What the part is made with, for `help`, notebooks and editors: pydantic would show ``**data``."""
+        """The entries of the part, for `help`, notebooks and editors; pydantic shows ``**data``."""
         return inspect.Signature(parameters_of(cls))  # type: ignore[arg-type]  # its one user is Part
 
     @__signature__.setter
     def __signature__(cls, made: Any) -> None:  # noqa: N805
-        """Leave out what pydantic makes when it builds a model: annotations with all their validators."""
+        """Ignore the signature that pydantic makes, of annotations with all their validators."""
 
     def __call__(cls, /, *given: Any, **data: Any) -> Any:  # noqa: N805  it is a metaclass
         positional = [name for name in cls.positional if name in cls.keywords()]  # type: ignore[attr-defined]
@@ -82,12 +80,12 @@ class _TranslatingType(ModelMetaclass):
 
 
 class Part(BaseModel, metaclass=_TranslatingType):
-    """Base of what a scene is described with: frozen, and strict about names."""
+    """Base of the parts of a scene: frozen, and strict about names."""
 
     model_config = ConfigDict(frozen=True, defer_build=True)  # built when first used: the import stays quick
 
     kind: ClassVar[str] = ""
-    """What messages call it; the class name when empty."""
+    """Its name in messages and scene files; the class name where this is empty."""
 
     group: ClassVar[str] = ""
     """The attribute of a scene that holds such parts."""
@@ -96,16 +94,16 @@ class Part(BaseModel, metaclass=_TranslatingType):
     """The entry of a table that says which kind of a `Family` it describes; also the attribute that names the kind."""
 
     positional: ClassVar[tuple[str, ...]] = ("name",)
-    """Keywords that the scene's method for such parts takes without their names, too."""
+    """Keywords that are also positional arguments."""
 
     takes_lists: ClassVar[bool] = False
-    """Whether it is of two, the positional ones, of which lists may be given where it is added (see `pairs`)."""
+    """Whether the two positional entries may be lists where parts are added, see `pairs`."""
 
     results: ClassVar[dict[str, Quantity]] = {}
-    """What results tell of such parts, beside the nodal vectors of cables and the modes of bodies."""
+    """Its results, beside the nodal vectors of cables and the modes of bodies."""
 
     def __setattr__(self, name: str, value: Any) -> None:
-        """Refuse the change of a part, which the scene would not check."""
+        """Refuse changes, which the scene would not check."""
         if name in type(self).model_fields or name in self.keywords():
             example = f'scene.replace("{self.given_name}", {name}=...)' if self.given_name else f"{name}=..."
             raise SceneError(self.where, f"{name} cannot be changed once the part is made",
@@ -113,69 +111,68 @@ class Part(BaseModel, metaclass=_TranslatingType):
         super().__setattr__(name, value)
 
     def as_given(self) -> Any:
-        """Return what a user may write for it in short, in a scene file too: by default the part itself."""
+        """Return its short form in Python and scene files, by default itself."""
         return self
 
     def __getattr__(self, name: str) -> Any:
-        """Refuse an attribute that there is not; of an older version's, say what it is called now."""
+        """Refuse an unknown attribute; the message on one of an older version names the new one."""
         if name in RENAMED:
             check_renamed(f"{type(self).__name__!r} object", name, [*type(self).model_fields, *dir(type(self))])
         return super().__getattr__(name)  # type: ignore[misc]  # which pydantic hides from type checkers
 
     @classmethod
     def title(cls, data: dict) -> str:
-        """Return how messages name the part made of ``data``."""
+        """Return the name in messages of a part with these entries."""
         kind = cls.kind or cls.__name__
         return f'{kind} "{data["name"]}"' if isinstance(data.get("name"), str) else kind
 
     @classmethod
     def keywords(cls) -> dict[str, str]:
-        """Return what a part is made with: the keywords, and the names of the fields that hold them."""
+        """Return the fields of a part by keyword."""
         return {field.alias or name: name for name, field in cls.model_fields.items()}
 
     @classmethod
     def is_named(cls) -> bool:
-        """Return whether such parts have names, by which a scene and its results know them."""
+        """Return whether such parts have names."""
         return "name" in cls.model_fields
 
     def entries(self) -> dict[str, Any]:
-        """Return what it could be made with, by keyword: all that is set, defaults too."""
+        """Return its entries by keyword, defaults included, None left out."""
         given = {keyword: getattr(self, field) for keyword, field in self.keywords().items()}
         return {keyword: value for keyword, value in given.items() if value is not None}
 
     def field_values(self, given: bool = False) -> dict[str, Any]:
-        """Return its values by field; given: those that were given alone.
+        """Return its values by field; given: only those that were given.
 
-        As pydantic's model_dump does of a part without parts in it, which turns Ctrl-C within it into an error of its
-        own (PydanticSerializationError).
+        pydantic's model_dump turns Ctrl-C into an error of its own.
         """
         return {name: getattr(self, name) for name in type(self).model_fields
                 if not given or name in self.model_fields_set}
 
     def remade(self, changes: Mapping[str, Any]) -> Self:
-        """Return a part like this one but for some changes, by keyword; None leaves an entry out."""
+        """Return a part with changes of its entries, by keyword; None leaves an entry out."""
         return type(self)(**self.entries_with(changes))
 
     def entries_with(self, changes: Mapping[str, Any]) -> dict[str, Any]:
-        """Return what a part like this one but for some changes is made with, by keyword; None leaves an entry out."""
+        """Return the entries with changes, by keyword; None leaves an entry out."""
         return {keyword: value for keyword, value in {**self.as_made().entries(), **changes}.items()
                 if value is not None}
 
     def completed(self, found: Mapping[str, Any]) -> Self:
-        """Return this part with what a scene has found for it, by field; what was left out still counts as that."""
+        """Return this part with values, by field, that its scene found; they count as not given."""
         made = self.model_copy(update=dict(found))
         made.model_fields_set.intersection_update(self.model_fields_set)
         return made
 
     def as_made(self) -> Self:
-        """Return this part without what a scene has found for it, but with its name: another scene finds it anew."""
+        """Return this part without the values that its scene found, except its name."""
         found = [name for name, field in type(self).model_fields.items()
                  if name != "name" and name not in self.model_fields_set and field.default_factory is None
                  and field.default is None and getattr(self, name) is not None]
         return self.completed(dict.fromkeys(found)) if found else self
 
     def refers_to(self) -> Iterator[str]:
-        """Yield the names of the parts that it hangs on, without which it cannot be in a scene."""
+        """Yield the names of the parts that it needs in a scene."""
         for name, field in type(self).model_fields.items():
             value = getattr(self, name)
             if isinstance(value, Part):
@@ -185,18 +182,18 @@ class Part(BaseModel, metaclass=_TranslatingType):
 
     @property
     def given_name(self) -> str | None:
-        """Return its name, None where it has none, or none yet."""
+        """Return its name, None where it has none yet."""
         return getattr(self, "name", None)
 
     @property
     def where(self) -> str:
-        """Return how messages name this part."""
+        """Return its name in messages."""
         return self.title(dict(self))
 
     def off_plane(self) -> Iterator[str]:
-        """Yield, in words, its quantities that leave the plane z = 0 of a planar scene, those of its parts among them.
+        """Yield, in words, its quantities and those of its parts that leave the plane z = 0 of a planar scene.
 
-        Vectors of a held part, along the axes of what holds it, are left to that.
+        A part with the axes of its holder leaves its vectors to that.
         """
         about = about_fields(type(self))
         for name, value in self:
@@ -213,14 +210,13 @@ class Part(BaseModel, metaclass=_TranslatingType):
     def _knows_all_names(cls, data: Any) -> Any:
         if isinstance(data, dict):
             known = cls.keywords()
-            for key in data:
-                if key not in known:
-                    raise ValueError(*_unknown(key, known))
+            if unknown := next((key for key in data if key not in known), None):
+                raise ValueError(*_unknown(unknown, known))
         return data
 
 
 ACROSS = {POINT: slice(2, 3), DIRECTION: slice(2, 3), AXIS: slice(2), ORIENTATION: slice(1, 3)}
-"""The components that are zero in the plane z = 0."""
+"""Components that are zero in the plane z = 0."""
 
 
 def names_a_part(field: FieldInfo) -> bool:
@@ -230,13 +226,13 @@ def names_a_part(field: FieldInfo) -> bool:
 
 @cache
 def about_fields(kind: type[Part]) -> dict[str, Turning | Place]:
-    """Return what the checks of a kind of part say of its vectors and arc-lengths, by field."""
+    """Return how vectors turn and along which cables arc-lengths are, by field of a kind of part."""
     return {name: mark.about for name, field in kind.model_fields.items() for mark in _marks(field)
             if isinstance(mark, Check) and mark.about is not None}
 
 
 def _marks(field: FieldInfo) -> Iterator[Any]:
-    """Yield all that the annotation of a field is made of, checks among it."""
+    """Yield types, marks and checks in the annotation of a field."""
 
     def inner(annotation: Any) -> Iterator[Any]:
         for each in (*get_args(annotation), *getattr(annotation, "__metadata__", ())):
@@ -247,33 +243,33 @@ def _marks(field: FieldInfo) -> Iterator[Any]:
 
 
 def _unknown(name: str, known: Iterable[str]) -> tuple[str, str]:
-    """Return cause and remedy for a name that is not known."""
+    """Return cause and remedy for an unknown name."""
     return f'"{shown_path(name)}" is not known here', near(name, known)
 
 
 def _of_complaint(place: str, complaint: ErrorDetails) -> SceneError:
-    path = ".".join(map(str, complaint["loc"]))
+    """Return the error of a part at a place from a complaint of pydantic."""
+    path, remedy = ".".join(map(str, complaint["loc"])), None
     match complaint["type"]:
         case "value_error":
-            cause, *remedy = complaint["ctx"]["error"].args
+            cause, remedy = (*complaint["ctx"]["error"].args, None)[:2]
         case "missing":
-            cause, remedy = "is missing", []
+            cause = "is missing"
         case "model_type":
             name = complaint["ctx"]["class_name"]
-            cause, remedy = f"must be a {name} or a table of its values, got {shown(complaint['input'])}", []
+            cause = f"must be a {name} or a table of its values, got {shown(complaint['input'])}"
         case _:
             message = complaint["msg"]
-            cause, remedy = f"{message[:1].lower() + message[1:]}, got {shown(complaint['input'])}", []
-    entry = str(complaint["loc"][0]) if complaint["loc"] else None
-    return SceneError(place, f"{path} {cause}".strip(), remedy[0] if remedy else None, entry)
+            cause = f"{message[:1].lower() + message[1:]}, got {shown(complaint['input'])}"
+    return SceneError(place, f"{path} {cause}".strip(), remedy, str(complaint["loc"][0]) if complaint["loc"] else None)
 
 
 @dataclass(frozen=True)
 class Family:
-    """Parts of which a field holds one, given as itself or as a table such as {shape="circle", radius=0.01}.
+    """Alternative kinds of one field, given as a part or as a table such as {shape="circle", radius=0.01}.
 
-    name: of the family in the JSON Schema of scene files; example: what a value must be, in words; kinds: those that a
-    table can describe, by its entry `Part.tag`; base: of all that a field may hold.
+    name: in the JSON Schema of scene files; example: of a value, in messages; kinds: that the entry `Part.tag` of a
+    table names; base: class of all values of the field, by default the kinds.
     """
 
     name: str
@@ -286,12 +282,12 @@ class Family:
 
     @cached_property
     def by_tag(self) -> dict[str, type[Part]]:
-        """Return the kinds by what the entry of a table calls them."""
+        """Return the kinds by their names in tables."""
         return {getattr(kind, kind.tag): kind for kind in self.kinds}
 
     @property
     def schema(self) -> dict[str, Any]:
-        """Return the JSON Schema of a table, a reference that `scene.schema` resolves."""
+        """Return the JSON Schema of a table, a reference for `scene.schema`."""
         return {TABLE_OF: self.name}
 
     def checked(self) -> PlainValidator:

@@ -10,7 +10,7 @@ from pydantic import model_validator
 
 from .part import Part
 from .signal import TableSignal
-from .validation import EXACT, check_function, list_of, one_of, show
+from .validation import LENGTH_TOLERANCE, check_function, list_of, one_of, show
 
 TURN = 1e-6
 """rad: how well the angles of a polar make a full turn."""
@@ -48,7 +48,7 @@ class Polar(Part):
             if values is None:
                 continue
             check_function(self.angle, "angle", "rad", values, name)
-            if abs(values[0] - values[-1]) > EXACT * max(map(abs, values)):
+            if abs(values[0] - values[-1]) > LENGTH_TOLERANCE * max(map(abs, values)):
                 raise ValueError(f"{name} must be the same at both ends, -π and π, got {show(values[0])} and "
                                  f"{show(values[-1])}")
             self.__dict__[name] = (*values[:-1], values[0])  # π is the same angle as -π, without rounding too

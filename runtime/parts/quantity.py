@@ -1,4 +1,4 @@
-"""Results of parts: dimensions, unit and meaning of each quantity, and how other axes change it."""
+"""Results of parts: dimensions, unit, meaning and turning of each quantity."""
 
 from __future__ import annotations
 
@@ -11,18 +11,19 @@ from .schemas import DIRECTION, ORIENTATION, POINT
 UNCHANGED: Final = ""
 IN_BODY_AXES: Final = "body axes"
 NODAL_VECTORS: Final = "nodal vectors"
-"""How other axes change a quantity: the words of the engine's outputs; and nodal vectors, the first of which is a
-point, and unit quaternions from body axes.
+"""How other axes change a quantity: the words of the engine's outputs, nodal vectors with a point first, and unit
+quaternions from body axes.
 """
 TURNS = (UNCHANGED, POINT, DIRECTION, IN_BODY_AXES, NODAL_VECTORS, ORIENTATION)
 VECTORS = {"xyz", "wxyz"}
-"""Dimensions of what other axes change."""
+"""Dimensions of quantities that other axes change."""
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """A quantity of a part over the time of a run: the names of its dimensions, its unit, its meaning; `turns` says how
-    other axes change it, one of `TURNS`. Raises ValueError for a vector that does not say that.
+    """A quantity of a part in a run: dimensions, unit, meaning; turns: how other axes change it, of `TURNS`.
+
+    Raises ValueError for a vector without turns.
     """
 
     dims: tuple[str, ...]
@@ -47,14 +48,11 @@ def vector_of_time(units: str, long_name: str, turns: str = DIRECTION) -> Quanti
 
 
 def of_engine(kind: str, name: str, long_name: str, along: str = "xyz") -> Quantity:
-    """Return the output of this name of the engine's couplings of a kind: unit, size and turning are the engine's.
-
-    along: the dimension of one of several components.
-    """
+    """Return an output of a kind of couplings of the engine; along: the dimension of several components."""
     output = OUTPUTS[kind][name]
     return Quantity(("time",) if output.size == 1 else ("time", along), output.units, long_name, output.turns)
 
 
 def all_of_engine(kind: str, **long_names: str) -> dict[str, Quantity]:
-    """Return outputs of the engine's couplings of a kind by their names, in this order."""
+    """Return outputs of a kind of couplings of the engine by name."""
     return {name: of_engine(kind, name, long_name) for name, long_name in long_names.items()}

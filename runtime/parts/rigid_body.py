@@ -12,7 +12,7 @@ from .part import Part
 from .quantity import IN_BODY_AXES, ORIENTATION, POINT, Quantity, vector_of_time
 from .schemas import TENSOR, Turning, checked, list_of_lists, list_schema
 from .solids import AnySolid
-from .validation import EXACT, Matrix, Name, Vector, positive, show, symmetric, vector, xyz
+from .validation import LENGTH_TOLERANCE, Matrix, Name, Vector, positive, show, symmetric, vector, xyz
 
 Quaternion = tuple[float, float, float, float]
 
@@ -27,7 +27,7 @@ def _check_inertia(matrix: np.ndarray) -> None:
     shown = show((small, middle, large), "kg m²")
     if not small > 0:
         raise ValueError(f"must be positive, got the principal moments {shown}")
-    if large > (small + middle) * (1 + EXACT):
+    if large > (small + middle) * (1 + LENGTH_TOLERANCE):
         raise ValueError(f"is not that of a body: no principal moment exceeds the sum of the others, got {shown}")
 
 

@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from ..integrators import AUTO, INTEGRATORS, stable_at
 from .part import Part
 from .schemas import checked
-from .validation import Count, Flag, items, names, not_negative, number, one_of, positive, shown, within
+from .validation import Count, Flag, Names, items, not_negative, number, one_of, positive, shown, within
 
 SMALLEST_STEP = 1e-12
 """Of the duration, as in engine/run/steps.c."""
@@ -79,7 +79,7 @@ class RunSettings(Part):
     duration: Duration
     tol: Annotated[float, positive()] = 1e-4
     absolute_tol: Annotated[float, not_negative("m")] | None = None
-    quantities: Annotated[tuple[str, ...], names()] | None = None
+    quantities: Names | None = None
     step: Duration | None = None
     output_step: Duration = Field(default_factory=lambda data: data["duration"] / 100)
     integrator: Annotated[str, one_of((AUTO, *INTEGRATORS))] = AUTO

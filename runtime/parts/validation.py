@@ -1,10 +1,10 @@
-"""Checks of the values that parts are made with.
+"""Checks of the values of parts.
 
-A quantity is ``Annotated[float, positive("m")]``; its checks raise ``ValueError(cause)`` or
-``ValueError(cause, remedy)``, and `Part` (part.py) turns the first of them into a `SceneError` that names its place.
+A quantity is ``Annotated[float, positive("m")]``. Its check raises ``ValueError(cause)`` or
+``ValueError(cause, remedy)``, which `Part` turns into a `SceneError` that names the place.
 
-Numbers are bounded (`LIMITS`), so that no power or product that the equations take of them leaves the range of double
-precision: the sixth power of a radius, for instance, is a moment of its section.
+Bounds (`LIMITS`) keep all powers and products in the equations within the range of double precision: a moment of a
+section, for instance, is the sixth power of a radius.
 """
 
 from __future__ import annotations
@@ -23,22 +23,22 @@ from ..errors import near
 from .schemas import AXIS, DIRECTION, POINT, Check, Place, Turning, checked, list_schema, number_schema
 
 LIMITS = {"m": (1e-12, 1e9), "s": (1e-12, 1e12), "m²": (1e-24, 1e24), "m⁴": (1e-48, 1e48)}
-"""By unit: the least size of a number that must be positive, and the largest of any number; else `OTHER_LIMITS`."""
+"""Smallest positive and largest absolute value by unit; `OTHER_LIMITS` for other units."""
 
 OTHER_LIMITS = (1e-30, 1e30)
 
 MAX_COUNT = 1_000_000
-"""The largest count: elements of a cable, modes, iterations."""
+"""Of elements of a cable, modes, iterations."""
 
-EXACT = 1e-9
-"""Lengths that differ by this part of a cable's length, or of a body's size, are taken as equal."""
+LENGTH_TOLERANCE = 1e-9
+"""Difference of equal lengths over the length of a cable or the size of a body."""
 
-LONGEST_NAME = 100
-"""Characters; with the name of a quantity behind it, it has to be a name in a netCDF file, too."""
+MAX_NAME_LENGTH = 100
+"""Characters: a name and the name of a quantity together are a name in a netCDF file."""
 
 
 class _Short(reprlib.Repr):
-    """Values in messages, whatever their size and depth."""
+    """Text of values in messages, of bounded length."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -46,7 +46,7 @@ class _Short(reprlib.Repr):
         self.maxlist = self.maxtuple = self.maxdict = 12
 
     def repr_int(self, value: int, level: int) -> str:
-        """Return an integer's text; Python writes no integers of thousands of digits."""
+        """Return the text of an integer; Python refuses to write thousands of digits."""
         return repr(value) if value.bit_length() < 256 else f"an integer of {value.bit_length()} bits"
 
     def repr_ndarray(self, value: np.ndarray, level: int) -> str:
@@ -55,7 +55,7 @@ class _Short(reprlib.Repr):
 
 
 shown = _Short().repr
-"""``shown(value)``: a value as messages quote it, shortened where it is long or nested deeply."""
+"""Return a value as messages quote it, shortened where it is long or deeply nested."""
 
 
 def items(value: Any, least: int, most: float = math.inf) -> list[Any] | None:
@@ -90,28 +90,28 @@ def number(value: Any, unit: str = "") -> float:
 
 
 def vector(value: Any, unit: str = "", size: int = 3) -> tuple[float, ...]:
-    """Return ``value`` as ``size`` finite floats within `LIMITS`. Raises ValueError if it is anything else."""
+    """Return ``value`` as ``size`` finite floats within `LIMITS`. Raises ValueError."""
     if (given := items(value, size, size)) is None:
         raise ValueError(f"must be {size} numbers, got {shown(value)}")
     numbers = tuple(map(_real, given))
-    farthest = LIMITS["m"][1]
-    if unit == "m" and farthest < max(map(abs, numbers), default=0.0) < math.inf:
-        raise ValueError(f"must lie within {farthest:g} m of the origin, beyond which positions are rounded to more "
+    largest = LIMITS["m"][1]
+    if unit == "m" and largest < max(map(abs, numbers), default=0.0) < math.inf:
+        raise ValueError(f"must lie within {largest:g} m of the origin, beyond which positions are rounded to more "
                          f"than 1e-7 m, got {show(numbers, unit)}", "draw the scene nearer to the origin")
     _in_range(numbers, numbers, unit)
     return numbers
 
 
 def vector3(value: Any, unit: str = "") -> Vector:
-    """Return ``value`` as three finite floats within `LIMITS`; ValueError if it is anything else."""
+    """Return ``value`` as three finite floats within `LIMITS`. Raises ValueError."""
     x, y, z = vector(value, unit)
     return x, y, z
 
 
 def symmetric(value: Any, unit: str, check: Callable[[np.ndarray], None]) -> Matrix:
-    """Return the rows of a symmetric matrix (3, 3) of finite floats, given as that or as the three of its diagonal.
+    """Return the rows of a symmetric matrix (3, 3) of finite floats from its rows or its diagonal. Raises ValueError.
 
-    check raises ValueError where the matrix will not do. Raises ValueError.
+    check: raises ValueError for a matrix with other faults.
     """
     rows = items(value, 3, 3)
     if rows is not None and all(isinstance(row, list | tuple) for row in rows):
@@ -121,12 +121,12 @@ def symmetric(value: Any, unit: str, check: Callable[[np.ndarray], None]) -> Mat
     if not np.allclose(matrix, matrix.T, rtol=0, atol=1e-12 * np.abs(matrix).max()):
         raise ValueError(f"must be symmetric, got {matrix.tolist()}")
     check(matrix)
-    first, second, third = (vector3(row) for row in matrix)
+    first, second, third = map(vector3, matrix)
     return first, second, third
 
 
 def show(value: float | tuple[float, ...] | np.ndarray, unit: str = "") -> str:
-    """Return a number or vector for a message, with its unit."""
+    """Return the text of a number or vector in messages, with its unit."""
     if isinstance(value, float):
         return f"{value:.9g} {unit}".strip()
     numbers = [f"{v:.9g}" for v in value]
@@ -136,7 +136,7 @@ def show(value: float | tuple[float, ...] | np.ndarray, unit: str = "") -> str:
 
 
 def one_of(known: Iterable[str], optional: bool = False) -> Check:
-    """Return the check of a name among known ones, or of None if optional; a refusal suggests the nearest one."""
+    """Return the check of a known name, or None if optional; its message suggests the nearest name."""
     known = tuple(known)
 
     def check(value: Any) -> str | None:
@@ -151,12 +151,8 @@ def one_of(known: Iterable[str], optional: bool = False) -> Check:
     return checked(check, {"enum": list(known)})
 
 
-def finite(unit: str = "") -> Check:
-    """Return the check of a finite number."""
-    return checked(lambda value: number(value, unit), number_schema(unit))
-
-
-def _bounded(unit: str, allowed: Callable[[float], bool], rule: str, **bounds: float) -> Check:
+def bounded(unit: str, allowed: Callable[[float], bool], rule: str, **bounds: float) -> Check:
+    """Return the check of a finite number that is allowed; rule: what it must do; bounds: keywords of JSON Schema."""
     def check(value: Any) -> float:
         result = number(value, unit)
         if not allowed(result):
@@ -166,16 +162,20 @@ def _bounded(unit: str, allowed: Callable[[float], bool], rule: str, **bounds: f
     return checked(check, number_schema(unit, **bounds))
 
 
+def finite(unit: str = "") -> Check:
+    """Return the check of a finite number."""
+    return checked(lambda value: number(value, unit), number_schema(unit))
+
+
 def positive(unit: str = "") -> Check:
     """Return the check of a finite number above 0 and within `LIMITS`."""
     least = LIMITS.get(unit, OTHER_LIMITS)[0]
 
     def check(value: Any) -> float:
         result = number(value, unit)
-        if not result > 0:
-            raise ValueError(f"must be positive, got {show(result, unit)}")
         if result < least:
-            raise ValueError(f"must not be below {show(least, unit)}, got {show(result, unit)}")
+            rule = "be positive" if result <= 0 else f"not be below {show(least, unit)}"
+            raise ValueError(f"must {rule}, got {show(result, unit)}")
         return result
 
     return checked(check, number_schema(unit, exclusiveMinimum=0))
@@ -183,28 +183,21 @@ def positive(unit: str = "") -> Check:
 
 def not_negative(unit: str = "") -> Check:
     """Return the check of a finite number, 0 or above."""
-    return _bounded(unit, lambda x: x >= 0, "not be negative", minimum=0)
+    return bounded(unit, lambda x: x >= 0, "not be negative", minimum=0)
 
 
 def within(low: float, high: float, *, ends: bool) -> Check:
-    """Return the check of a finite number between ``low`` and ``high``, the ends included or not."""
+    """Return the check of a finite number between ``low`` and ``high``; ends: whether these are allowed."""
     if ends:
-        return _bounded("", lambda x: low <= x <= high, f"lie in [{low:g}, {high:g}]", minimum=low, maximum=high)
-    return _bounded("", lambda x: low < x < high, f"lie inside ({low:g}, {high:g})", exclusiveMinimum=low,
-                    exclusiveMaximum=high)
-
-
-def above(low: float, most: float) -> Check:
-    """Return the check of a finite number above ``low`` and at most ``most``."""
-    return _bounded("", lambda x: low < x <= most, f"be above {low:g} and at most {most:g}", exclusiveMinimum=low,
-                    maximum=most)
+        return bounded("", lambda x: low <= x <= high, f"lie in [{low:g}, {high:g}]", minimum=low, maximum=high)
+    return bounded("", lambda x: low < x < high, f"lie inside ({low:g}, {high:g})", exclusiveMinimum=low,
+                   exclusiveMaximum=high)
 
 
 def xyz(unit: str = "", turns: str | None = None, of: str | None = None) -> Check:
-    """Return the check of three finite numbers: a point where they are lengths, an axis where they are an angular
-    velocity or a moment, else a direction, or what turns says.
+    """Return the check of three finite numbers: by their unit a point, an axis of rotation or a direction.
 
-    of: the attribute that names the body whose axes they are along, see `Turning`.
+    turns: what they are instead; of: the attribute that names the body whose axes they are along, see `Turning`.
     """
     by_unit = {"m": POINT, "rad/s": AXIS, "N m": AXIS}
     turning = Turning(turns or by_unit.get(unit, DIRECTION), of, unit)
@@ -212,8 +205,7 @@ def xyz(unit: str = "", turns: str | None = None, of: str | None = None) -> Chec
 
 
 def direction(of: str | None = None, turns: str = DIRECTION, *, lies: bool = True) -> Check:
-    """Return the check of three finite numbers that are not all zero; their length is free. Arguments as of `Turning`.
-    """
+    """Return the check of three finite numbers, not all zero, of any length; arguments as in `Turning`."""
     def check(value: Any) -> tuple[float, ...]:
         result = vector(value)
         if not any(result):
@@ -234,17 +226,16 @@ def list_of(unit: str = "", *, least: int) -> Check:
     """Return the check of a list of at least ``least`` finite numbers."""
     def check(value: Any) -> tuple[float, ...]:
         if (given := items(value, least)) is None:
-            how_many = "numbers, one at least" if least == 1 else f"{least} numbers or more"
-            raise ValueError(f"must be a list of {how_many}, got {shown(value)}")
+            raise ValueError(f"must be a list of {least} numbers or more, got {shown(value)}")
         return vector(given, unit, len(given))
 
     return checked(check, list_schema(unit, least, None))
 
 
 def check_function(arguments: tuple[float, ...], of: str, unit: str, values: tuple[float, ...], name: str) -> None:
-    """Raise ValueError unless a table has a value for each argument, and the arguments increase.
+    """Raise ValueError unless the arguments of a table increase and each has a value.
 
-    of, name: what messages call arguments and values; unit: of the arguments.
+    of, name: of arguments and values in messages; unit: of the arguments.
     """
     if len(arguments) != len(values):
         raise ValueError(f"{of} and {name} must be of equal length, got {len(arguments)} and {len(values)}")
@@ -254,19 +245,15 @@ def check_function(arguments: tuple[float, ...], of: str, unit: str, values: tup
 
 
 def check_square(name: str, one: Vector, of: str, other: Vector) -> None:
-    """Raise ValueError unless two directions are square to each other, but for rounding."""
+    """Raise ValueError unless two directions are perpendicular to rounding."""
     if abs(float(np.dot(one, other))) > 1e-9 * np.linalg.norm(one) * np.linalg.norm(other):
         raise ValueError(f"{name} must be square to {of}, got {one} and {other}")
 
 
-def names() -> Check:
-    """Return the check of a list of one or more texts, each once."""
-    def check(value: Any) -> tuple[str, ...]:
-        if not isinstance(value, list | tuple) or not value or not all(isinstance(one, str) for one in value):
-            raise ValueError(f"must be a list of names, got {shown(value)}")
-        return tuple(dict.fromkeys(value))
-
-    return checked(check, {"type": "array", "items": {"type": "string"}, "minItems": 1})
+def _names(value: Any) -> tuple[str, ...]:
+    if not (given := items(value, 1)) or not all(isinstance(one, str) for one in given):
+        raise ValueError(f"must be a list of names, got {shown(value)}")
+    return tuple(dict.fromkeys(given))
 
 
 def _count(value: Any) -> int:
@@ -285,11 +272,11 @@ def _flag(value: Any) -> bool:
 
 
 def _name(value: Any) -> str:
-    # Results are addressed as "name.quantity" and "cable@s": a name must leave these signs alone.
+    # Results are addressed as "name.quantity" and "cable@s", so that names contain neither sign.
     if not isinstance(value, str) or not value.replace("-", "_").isidentifier():
         raise ValueError(f"must be made of letters, digits, _ and -, and begin with no digit, got {shown(value)}")
-    if len(value) > LONGEST_NAME:
-        raise ValueError(f"must not be longer than {LONGEST_NAME} characters, got {len(value)}")
+    if len(value) > MAX_NAME_LENGTH:
+        raise ValueError(f"must not be longer than {MAX_NAME_LENGTH} characters, got {len(value)}")
     return value
 
 
@@ -301,15 +288,17 @@ def _listed(value: Any) -> str:
 
 
 Count = Annotated[int, checked(_count, {"type": "integer", "minimum": 1, "maximum": MAX_COUNT})]
+Names = Annotated[tuple[str, ...], checked(_names, {"type": "array", "items": {"type": "string"}, "minItems": 1})]
+"""One or more texts, each once."""
 Flag = Annotated[bool, checked(_flag, {"type": "boolean"})]
-Name = Annotated[str, checked(_name, {"type": "string", "maxLength": LONGEST_NAME})]
+Name = Annotated[str, checked(_name, {"type": "string", "maxLength": MAX_NAME_LENGTH})]
 NAMES_A_PART = object()
 """Marks the type of a field that holds the name of another part."""
 Reference = Annotated[str, BeforeValidator(lambda value: getattr(value, "name", value)), NAMES_A_PART]
-"""The name of a part of the scene, given as that or as the part itself."""
+"""The name of a part of the scene, or the part itself."""
 Listed = Annotated[str, checked(_listed, {"anyOf": [
     {"type": "string"}, {"type": "array", "items": {"type": "string"}, "minItems": 1}]}), NAMES_A_PART]
-"""The name of a part, given as that or as the part itself; where parts are added, a list of them or "all", too."""
+"""The name of a part, or the part itself; on adding also a list of them, or "all"."""
 Vector = tuple[float, float, float]
 Points = tuple[tuple[float, ...], ...]
 Matrix = tuple[Vector, Vector, Vector]

@@ -16,7 +16,7 @@ from ..errors import SceneError, near
 from ..model.part_states import part_states
 from ..model.states import spatial
 from ..parts.paths import COMPONENTS
-from ..parts.validation import EXACT
+from ..parts.validation import LENGTH_TOLERANCE
 from ..solve.adjustment.snapshots import Reader, Snapshots
 from ..solve.statics.static_problem import StaticState
 from .equilibrium import Equilibrium
@@ -139,7 +139,7 @@ def target_of(state: Equilibrium, name: str) -> Target:
     except ValueError:
         raise SceneError(where, f"{place['s']} is no arc-length", f'write such as "{cable.name}@2.5.position.y"'
                          ) from None
-    if not -EXACT * cable.length <= s <= (1 + EXACT) * cable.length:
+    if not -LENGTH_TOLERANCE * cable.length <= s <= (1 + LENGTH_TOLERANCE) * cable.length:
         raise SceneError(where, f"s must lie on the cable, in [0, {cable.length:.9g}] m, got {s:.9g} m")
     units = {"position": "m"} | {key: unit for key, (unit, _) in (GLOBAL | labels(cable)).items()}
     if quantity not in units:

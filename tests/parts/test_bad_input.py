@@ -84,7 +84,7 @@ def test_a_tube_needs_a_wall():
         (
             {"poisson_ratio": None, "shear_modulus": 0.6e11},
             "shear_modulus must be at least youngs_modulus / 3 = 6.66666667e+10 Pa, got 6e+10 Pa; "
-            "the Poisson ratio would be 0.666666667, which must be above -1 and at most 0.5",
+            "the Poisson ratio E / (2 G) - 1 = 0.666666667 must be above -1 and at most 0.5",
         ),
         (
             {"shear_modulus": 1e11},

@@ -19,7 +19,7 @@ from ...model.element_coordinates import positions
 from ...model.model import CableModel
 from ...model.states import spatial
 from ...parts.cable import Cable
-from ...parts.validation import EXACT
+from ...parts.validation import LENGTH_TOLERANCE
 from ..shape_functions import of_slopes, on_axis
 from .cable_loads import CableLoads
 from .nodal_forces import ElementForces
@@ -35,7 +35,7 @@ class Cuts:
     def __init__(self, cable: CableModel, s: np.ndarray, after: bool):
         mesh = cable.mesh
         total = mesh.total
-        self.near = EXACT * total
+        self.near = LENGTH_TOLERANCE * total
         self.s = np.clip(s, 0.0, total)
         self.after = np.where(self.s <= self.near, True, np.where(self.s >= total - self.near, False, after))
         node, within = mesh.nearest_node(self.s), mesh.element_at(self.s)

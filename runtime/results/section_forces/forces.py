@@ -17,7 +17,7 @@ from ...parts.locations import attached
 from ...parts.scene_data import SceneData
 from ...parts.section_stiffness import section_stiffness
 from ...parts.slide import Slide
-from ...parts.validation import EXACT, show
+from ...parts.validation import LENGTH_TOLERANCE, show
 from ...solve.statics.rest_state import RestState
 from .balance import Cuts, balanced
 from .balance_limits import balanced_cables, is_cut, out_of_balance
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 DEFAULT_DIVISIONS = 8
 """Sections per element by default."""
-SIDE_DISTANCE = 4 * EXACT
+SIDE_DISTANCE = 4 * LENGTH_TOLERANCE
 """Distance of the two sides of a jump from it, over the length of the cable."""
 MAX_BLOCK = 100_000
 """Cuts or elements, over all times, that are computed together."""
@@ -236,7 +236,7 @@ def _places(state: Results | RestState, cable: Cable, s: Any, over_time: bool) -
     except (TypeError, ValueError):
         raise FunicularError(f'section forces of "{name}": s must be arc-lengths in m, or a slide on it, '
                              f"got {s!r}") from None
-    off = (s < -EXACT * cable.length) | (s > (1 + EXACT) * cable.length) | ~np.isfinite(s)
+    off = (s < -LENGTH_TOLERANCE * cable.length) | (s > (1 + LENGTH_TOLERANCE) * cable.length) | ~np.isfinite(s)
     if s.ndim != 1 or off.any():
         wrong = show(float(s[off][0]), "m") if s.ndim == 1 else f"an array of shape {s.shape}"
         raise FunicularError(f'section forces of "{name}": s must lie on the cable, in [0, {cable.length:.9g}] m, '

@@ -12,7 +12,7 @@ from ...model.states import spatial
 from ...parts.cable import Cable
 from ...parts.scene_data import SceneData
 from ...parts.support import Clamp, Motion, Support
-from ...parts.validation import EXACT
+from ...parts.validation import LENGTH_TOLERANCE
 from ..shape_functions import on_axis
 from .balance import Cuts, balanced, resultants
 from .cable_loads import CableLoads
@@ -40,7 +40,7 @@ def _of_points(cable: Cable, model: CableModel, forces: ElementForces, loads: Ca
     if not points:
         return []
     s = np.stack([model.mesh.each_start(load.element) + load.x for load in points], axis=1)
-    inside = (s > EXACT * cable.length) & (s < (1 - EXACT) * cable.length)
+    inside = (s > LENGTH_TOLERANCE * cable.length) & (s < (1 - LENGTH_TOLERANCE) * cable.length)
     before, instants, found = force_at(s, False), np.arange(len(s)), []
     for k, load in enumerate(points):
         e = forces.e[instants, load.element]

@@ -12,7 +12,7 @@ from ...model.drag_forces import Turning
 from ...model.drags import DragModel
 from ...model.model import CableModel
 from ...model.states import spatial
-from ...parts.validation import EXACT
+from ...parts.validation import LENGTH_TOLERANCE
 from ..shape_functions import on_axis
 
 
@@ -37,7 +37,7 @@ class Spread:
 
     def holds(self, x: np.ndarray, length: float) -> np.ndarray:
         """Return whether places x lie on it; the ends of the element, of this length, if it reaches them."""
-        near = EXACT * length
+        near = LENGTH_TOLERANCE * length
         return ((x >= self.start) | (self.start < near)) & ((x < self.stop) | (self.stop > length - near))
 
 
