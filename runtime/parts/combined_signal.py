@@ -1,4 +1,4 @@
-"""Sums of signals, each times a number: components of a prescribed motion along turned axes."""
+"""Linear combinations of signals: components of a prescribed motion along turned axes."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ import numpy as np
 
 from .signal import DEGREE, Constant, Signal, Sine
 
-ROUNDED = 1e-12
-"""Of the largest term: what rounding may leave of a sum that is zero."""
+CANCELLATION_TOLERANCE = 1e-12
+"""Of the largest term: rounding of a sum that is zero."""
 
 
 class CombinedSignal(Signal):
-    """The sum of ``factors`` times ``signals``, in code only; all sines among them have one frequency."""
+    """The sum of ``factors`` times ``signals``, whose sines have one frequency; only in code."""
 
     form = "combined"
     signals: tuple[Signal, ...]
@@ -43,7 +43,7 @@ class CombinedSignal(Signal):
 
 
 def _shifted(coefficients: np.ndarray, by: np.ndarray) -> np.ndarray:
-    """Return the coefficients (n, 7) of polynomials of t as those of t - by; by: (n,)."""
+    """Return the coefficients (n, 7) of polynomials of t as polynomials of t - by, by (n,)."""
     made = np.zeros(coefficients.shape)
     for power in range(DEGREE + 1):
         for lower in range(power + 1):
@@ -52,38 +52,28 @@ def _shifted(coefficients: np.ndarray, by: np.ndarray) -> np.ndarray:
 
 
 def combined(factors: Sequence[float], signals: Sequence[Signal]) -> Signal:
-    """Return the sum of factors times signals, as simple as it is: 0 where all cancel but for rounding.
+    """Return the sum of factors times signals in its simplest form: 0 where all terms cancel to rounding.
 
-    Raises ValueError(cause) for sines of several frequencies, which no signal has.
+    Raises ValueError(cause) for sines of several frequencies.
     """
-    factors, signals = zip(*[(f, s) for f, s in zip(factors, signals, strict=True) if f], strict=True)
-    if all(isinstance(signal, Constant) for signal in signals):
-        terms = [factor * signal.constant for factor, signal in zip(factors, signals, strict=True)
-                 if isinstance(signal, Constant)]
-        return Constant(constant=_rounded(sum(terms), max(map(abs, terms))))
     if len({signal.sine.angular_frequency for signal in signals if signal.sine.amplitude}) > 1:
         raise ValueError("is a sum of sines of several frequencies along the axes of the plane")
-    moving = [(f, s) for f, s in zip(factors, signals, strict=True) if not _is_zero(s)]
-    if len(moving) == 1 and moving[0][0] == 1.0:
-        return moving[0][1]
-    made = CombinedSignal(signals=tuple(s for _, s in moving), factors=tuple(f for f, _ in moving))
+    terms = [(f, s) for f, s in zip(factors, signals, strict=True) if f and s != Constant(constant=0.0)]
+    constants = [factor * signal.constant for factor, signal in terms if isinstance(signal, Constant)]
+    if len(constants) == len(terms):
+        total = sum(constants)
+        is_zero = abs(total) <= CANCELLATION_TOLERANCE * max(map(abs, constants), default=0.0)
+        return Constant(constant=0.0 if is_zero else total)
+    if len(terms) == 1 and terms[0][0] == 1.0:
+        return terms[0][1]
+    made = CombinedSignal(signals=tuple(s for _, s in terms), factors=tuple(f for f, _ in terms))
     return Constant(constant=0.0) if _vanishes(made) else made
 
 
-def _rounded(value: float, largest: float) -> float:
-    return 0.0 if abs(value) <= ROUNDED * largest else value
-
-
-def _is_zero(signal: Signal) -> bool:
-    return isinstance(signal, Constant) and signal.constant == 0.0
-
-
 def _vanishes(made: CombinedSignal) -> bool:
-    """Return whether the terms of a sum cancel each other at all times, but for rounding."""
+    """Return whether the terms of a sum cancel at all times to rounding."""
     breaks, total = made.pieces()
-    terms = [np.abs(factor * signal.value(breaks)).max() for factor, signal in zip(made.factors, made.signals,
-                                                                                  strict=True)]
-    sines = [abs(factor * signal.sine.amplitude) for factor, signal in zip(made.factors, made.signals, strict=True)]
+    terms = [abs(factor) * max(np.abs(signal.value(breaks)).max(), abs(signal.sine.amplitude))
+             for factor, signal in zip(made.factors, made.signals, strict=True)]
     times = np.diff(breaks)[:, None] ** np.arange(DEGREE + 1)
-    return bool(np.abs(total * times).max() <= ROUNDED * max(*terms, *sines)
-                and made.sine.amplitude <= ROUNDED * max(*terms, *sines))
+    return bool(max(np.abs(total * times).max(), made.sine.amplitude) <= CANCELLATION_TOLERANCE * max(terms))

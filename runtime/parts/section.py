@@ -17,8 +17,8 @@ from .schemas import checked, list_schema
 from .validation import positive, show, vector
 
 Length = Annotated[float, positive("m")]
-THINNEST = 1e-12
-"""Of its radius: the wall of a tube, whose moments are differences."""
+MIN_WALL = 1e-12
+"""Of the radius of a tube, whose moments are differences."""
 ZETA_5 = 1.03692775514336992633  # Σ 1/n⁵
 
 
@@ -27,10 +27,6 @@ def _factors(value: Any) -> tuple[float, float]:
     if not min(factors) > 0:
         raise ValueError(f"must be positive, got {show(factors)}", "give (ky, kz), 1 for no correction")
     return factors[0], factors[1]
-
-
-TorsionConstant = Annotated[float, positive("m⁴")]
-ShearFactors = Annotated[tuple[float, float], checked(_factors, list_schema("", 2, 2))]
 
 
 class Section(Part):
@@ -42,18 +38,16 @@ class Section(Part):
 
     tag: ClassVar[str] = "shape"
     shape: ClassVar[str]
-    given_torsion_constant: TorsionConstant | None = Field(None, alias="torsion_constant")
-    given_shear_factors: ShearFactors | None = Field(None, alias="shear_factors")
+    given_torsion_constant: Annotated[float, positive("m⁴")] | None = Field(None, alias="torsion_constant")
+    given_shear_factors: Annotated[tuple[float, float], checked(_factors, list_schema("", 2, 2))] | None = Field(
+        None, alias="shear_factors")
 
     def moments(self) -> np.ndarray:
-        """Return the even moments up to order 4.
-
-        Returns (6,): [∫dA, ∫y²dA, ∫z²dA, ∫y⁴dA, ∫y²z²dA, ∫z⁴dA] in m², m⁴, m⁴, m⁶, m⁶, m⁶.
-        """
+        """Return (6,): [∫dA, ∫y²dA, ∫z²dA, ∫y⁴dA, ∫y²z²dA, ∫z⁴dA] in m², m⁴, m⁴, m⁶, m⁶, m⁶."""
         raise NotImplementedError
 
     def mass_moments(self) -> np.ndarray:
-        """Return `moments` as the inertia takes them: density times these is mass and rotary inertia per length."""
+        """Return the `moments` of the inertia: times the density, mass and rotary inertia per length."""
         return self.moments()
 
     @property
@@ -127,7 +121,26 @@ class Rectangle(Section):
         return factor, factor
 
 
-class Circle(Section):
+class _Round(Section):
+    """Base of round sections: discs and rings."""
+
+    @property
+    def _inner_ratio(self) -> float:
+        """Return the ratio of the inner and the outer radius."""
+        return 0.0
+
+    def _shape_torsion_constant(self) -> float:
+        return self.second_moment_about_z + self.second_moment_about_y
+
+    def _shape_shear_factors(self, poisson_ratio: float) -> tuple[float, float]:
+        """Return the shear factors of a ring (Cowper, J. Appl. Mech. 33 (1966) 335-340)."""
+        nu, inner = poisson_ratio, self._inner_ratio
+        square = (1 + inner**2) ** 2
+        factor = 6 * (1 + nu) * square / ((7 + 6 * nu) * square + (20 + 12 * nu) * inner**2)
+        return factor, factor
+
+
+class Circle(_Round):
     """A solid circle.
 
     radius: m
@@ -140,14 +153,8 @@ class Circle(Section):
         """Return the even moments of the section, see `Section.moments`."""
         return _disc(self.radius)
 
-    def _shape_torsion_constant(self) -> float:
-        return self.second_moment_about_z + self.second_moment_about_y
 
-    def _shape_shear_factors(self, poisson_ratio: float) -> tuple[float, float]:
-        return _ring_shear_factors(poisson_ratio, 0.0)
-
-
-class Tube(Section):
+class Tube(_Round):
     """A ring.
 
     outer_radius: m
@@ -160,28 +167,26 @@ class Tube(Section):
 
     @model_validator(mode="after")
     def _has_a_wall(self) -> Tube:
-        if not self.inner_radius < self.outer_radius:
-            raise ValueError(
-                f"inner_radius must be smaller than outer_radius ({self.outer_radius:g} m), got {self.inner_radius:g} m"
-            )
-        if not self.outer_radius - self.inner_radius >= THINNEST * self.outer_radius:
-            raise ValueError(f"the wall must be thicker than {THINNEST:g} of outer_radius ({self.outer_radius:g} m), "
-                             f"got {self.outer_radius - self.inner_radius:g} m", "its moments are lost in rounding")
+        outer, wall = self.outer_radius, self.outer_radius - self.inner_radius
+        if wall <= 0:
+            raise ValueError(f"inner_radius must be smaller than outer_radius ({outer:g} m), got "
+                             f"{self.inner_radius:g} m")
+        if wall < MIN_WALL * outer:
+            raise ValueError(f"the wall must be thicker than {MIN_WALL:g} of outer_radius ({outer:g} m), got "
+                             f"{wall:g} m", "its moments are lost in rounding")
         return self
 
     def moments(self) -> np.ndarray:
         """Return the even moments of the section, see `Section.moments`."""
         return _disc(self.outer_radius) - _disc(self.inner_radius)
 
-    def _shape_torsion_constant(self) -> float:
-        return self.second_moment_about_z + self.second_moment_about_y
-
-    def _shape_shear_factors(self, poisson_ratio: float) -> tuple[float, float]:
-        return _ring_shear_factors(poisson_ratio, self.inner_radius / self.outer_radius)
+    @property
+    def _inner_ratio(self) -> float:
+        return self.inner_radius / self.outer_radius
 
 
 def outer_radius_of(section: Section) -> float | None:
-    """Return the radius of a round section, in m; None of others."""
+    """Return the radius of a round section in m, else None."""
     if isinstance(section, Circle):
         return section.radius
     return section.outer_radius if isinstance(section, Tube) else None
@@ -210,7 +215,7 @@ class GeneralSection(Section):
 
     @model_validator(mode="after")
     def _twists_less_than_a_disc(self) -> GeneralSection:
-        """Check that J is not above the polar moment: warping only ever lowers it. Raises ValueError."""
+        """Check that J does not exceed the polar moment, which warping reduces. Raises ValueError."""
         constant, polar = self.given_torsion_constant, self.about_z + self.about_y
         if constant is not None and constant > polar * (1 + 1e-9):
             raise ValueError("torsion_constant must not exceed second_moment_about_z + second_moment_about_y = "
@@ -218,32 +223,27 @@ class GeneralSection(Section):
         return self
 
     def moments(self) -> np.ndarray:
-        """See `Section.moments`; not known, hence NaN, are those of order 4."""
+        """Return the moments, see `Section.moments`; those of order 4 are unknown, NaN."""
         return np.array([self.area_, self.about_z, self.about_y, nan, nan, nan])
 
     def entries(self) -> dict[str, Any]:
-        """Return what it could be made with; the second moment that follows from the other one is left out."""
-        left = set() if "about_y" in self.model_fields_set else {"second_moment_about_y"}
-        return {name: value for name, value in super().entries().items() if name not in left}
+        """Return its entries without a second moment that follows from the other one."""
+        entries = super().entries()
+        if "about_y" not in self.model_fields_set:
+            del entries["second_moment_about_y"]
+        return entries
 
     @property
     def has_rotary(self) -> bool:
-        """Return whether its rotary inertia is given apart from its stiffness."""
+        """Return whether its rotary moments are given."""
         return self.rotary_about_z is not None or self.rotary_about_y is not None
 
     def mass_moments(self) -> np.ndarray:
-        """Return what the mass is proportional to, see `Section.mass_moments`."""
+        """Return its moments with rotary moments where they are given, see `Section.mass_moments`."""
         if not self.has_rotary:
             return self.moments()
         about_z, about_y = self.rotary_about_z or self.rotary_about_y, self.rotary_about_y or self.rotary_about_z
         return np.array([self.area_, about_z, about_y, nan, nan, nan])
-
-
-def _ring_shear_factors(poisson_ratio: float, inner: float) -> tuple[float, float]:
-    """Return the shear factors of a ring (Cowper, J. Appl. Mech. 33 (1966) 335-340); inner: the ratio of the radii."""
-    nu, square = poisson_ratio, (1 + inner**2) ** 2
-    factor = 6 * (1 + nu) * square / ((7 + 6 * nu) * square + (20 + 12 * nu) * inner**2)
-    return factor, factor
 
 
 def _disc(r: float) -> np.ndarray:

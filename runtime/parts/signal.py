@@ -1,6 +1,6 @@
 """Functions of time as data: scales of loads and prescribed motions.
 
-A signal is a piecewise polynomial plus at most one sine, so that the engine needs to know nothing else of it:
+The engine takes a signal as a piecewise polynomial plus at most one sine:
 f(t) = Σ_k coefficients[piece, k] (t - breaks[piece])^k + amplitude sin(angular_frequency t + phase).
 A further form is one class with ``pieces`` and one entry in `SIGNALS`.
 """
@@ -11,7 +11,7 @@ import itertools
 from collections.abc import Iterable, Iterator
 from math import pi
 from numbers import Real
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -28,8 +28,8 @@ DEGREE = 6
 Time = Annotated[float, finite("s")]
 Value = Annotated[float, finite()]
 
-SHORTEST = 1e-12, 1e-14
-"""Two times of a signal must be apart by so many seconds, and by this part of their size: rounding keeps them apart."""
+MIN_INTERVAL = 1e-12, 1e-14
+"""Between two times of a signal: in s, and relative to the times."""
 
 _RISE = np.array([0, 0, 0, 10, -15, 6, 0])
 """The polynomial from 0 to 1 over [0, 1] whose first and second derivatives vanish at both ends."""
@@ -50,10 +50,9 @@ class Signal(Part):
     form: ClassVar[str]
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the polynomial part.
+        """Return the polynomials: increasing breaks (n+1,) in s, and coefficients (n, 7) of powers of t - breaks[k].
 
-        Returns breaks (n+1,) in s, increasing, and coefficients (n, 7) of ascending powers of t - breaks[k]. The first
-        piece holds before all breaks, too, and the last one after them.
+        The first piece also holds before all breaks, and the last one after them.
         """
         raise NotImplementedError
 
@@ -82,35 +81,23 @@ def value_at(sine: Sine, breaks: np.ndarray, coefficients: np.ndarray, time: Arr
     return result + amplitude * w**derivative * np.sin(w * time + phase + derivative * pi / 2)
 
 
-def _steps(times: list[float], values: list[float]) -> tuple[np.ndarray, np.ndarray]:
-    """Return breaks and polynomials: constant before the first time and after the last, smooth rises from value to
-    value between.
-    """
-    breaks = np.array([times[0] - 1, *times, times[-1] + 1])
-    coefficients = np.zeros((len(breaks) - 1, DEGREE + 1))
-    coefficients[:, 0] = [values[0], *values]
-    for k, (duration, change) in enumerate(zip(np.diff(times), np.diff(values), strict=True), start=1):
-        coefficients[k] += change * _RISE / duration ** np.arange(DEGREE + 1)
-    return breaks, coefficients
-
-
 def _check_apart(times: Iterable[float]) -> None:
-    """Raise ValueError where two times (s) that follow on each other are as good as one."""
+    """Raise ValueError where rounding does not separate two successive times (s)."""
     for one, other in itertools.pairwise(times):
-        least = max(SHORTEST[0], SHORTEST[1] * max(abs(one), abs(other)))
+        least = max(MIN_INTERVAL[0], MIN_INTERVAL[1] * max(abs(one), abs(other)))
         if not other - one >= least:
             raise ValueError(f"times must be {show(least, 's')} apart or more, got {other - one:.3g} s between "
                              f"{one!r} s and {other!r} s")
 
 
 class Constant(Signal):
-    """The same ``constant`` at all times; in a scene a plain number."""
+    """A ``constant`` value, in a scene a plain number."""
 
     form: ClassVar[str] = "constant"
     constant: Value
 
     def as_given(self) -> float:
-        """Return the number that it is at all times."""
+        """Return the constant."""
         return self.constant
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
@@ -154,7 +141,40 @@ class TableSignal(Signal):
         return breaks, coefficients
 
 
-class Ramp(Signal):
+class _Steps(Signal):
+    """Base of signals that rise and fall between constant values."""
+
+    start: Time
+    end: Time
+
+    @model_validator(mode="after")
+    def _takes_time(self) -> Self:
+        if not self.start < self.end:
+            raise ValueError(f"end must be after start {show(self.start, 's')}, got {show(self.end, 's')}")
+        self._check_duration()
+        _check_apart(self._steps[0])
+        return self
+
+    def _check_duration(self) -> None:
+        """Raise ValueError where other times do not fit between start and end."""
+
+    @property
+    def _steps(self) -> tuple[list[float], list[float]]:
+        """Return times in s, and the values at them."""
+        raise NotImplementedError
+
+    def pieces(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return smooth rises from value to value, constant before and after, see `Signal.pieces`."""
+        times, values = self._steps
+        breaks = np.array([times[0] - 1, *times, times[-1] + 1])
+        coefficients = np.zeros((len(breaks) - 1, DEGREE + 1))
+        coefficients[:, 0] = [values[0], *values]
+        for k, (duration, change) in enumerate(zip(np.diff(times), np.diff(values), strict=True), start=1):
+            coefficients[k] += change * _RISE / duration ** np.arange(DEGREE + 1)
+        return breaks, coefficients
+
+
+class Ramp(_Steps):
     """A rise between two times, without a jump of the second derivative.
 
     start, end: times, s
@@ -167,58 +187,38 @@ class Ramp(Signal):
     """
 
     form: ClassVar[str] = "ramp"
-    start: Time
-    end: Time
     before: Value = 0.0
     after: Value = 1.0
 
-    @model_validator(mode="after")
-    def _takes_time(self) -> Ramp:
-        if not self.start < self.end:
-            raise ValueError(f"end must be after start {show(self.start, 's')}, got {show(self.end, 's')}")
-        _check_apart((self.start, self.end))
-        return self
-
-    def pieces(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return its polynomials between breaks, see `Signal.pieces`."""
-        return _steps([self.start, self.end], [self.before, self.after])
+    @property
+    def _steps(self) -> tuple[list[float], list[float]]:
+        return [self.start, self.end], [self.before, self.after]
 
 
-class Pulse(Signal):
+class Pulse(_Steps):
     """A rise from 0 and a fall to 0.
 
     start, end: times, s
-    rise: time in which it rises from start on and falls before end, as a `Ramp`, s; by default half of the pulse
+    rise: duration of the rise from start and of the fall to end, each as a `Ramp`, s; by default half of the pulse
     height: value between
     """
 
     form: ClassVar[str] = "pulse"
-    start: Time
-    end: Time
     rise: Annotated[float, positive("s")] | None = None
     height: Value = 1.0
 
-    @model_validator(mode="after")
-    def _takes_time(self) -> Pulse:
-        if not self.start < self.end:
-            raise ValueError(f"end must be after start {show(self.start, 's')}, got {show(self.end, 's')}")
-        if self.rise is not None and self.rise > (self.end - self.start) / 2 * (1 + 1e-12):
-            raise ValueError(f"rise must not exceed half of the pulse, {show((self.end - self.start) / 2, 's')}, "
-                             f"got {show(self.rise, 's')}")
-        _check_apart(self._times)
-        return self
+    def _check_duration(self) -> None:
+        half = (self.end - self.start) / 2
+        if self.rise is not None and self.rise > half * (1 + 1e-12):
+            raise ValueError(f"rise must not exceed half of the pulse, {show(half, 's')}, got {show(self.rise, 's')}")
 
     @property
-    def _times(self) -> list[float]:
-        """Return where it begins to rise, is up, begins to fall, where that is later, and is down."""
+    def _steps(self) -> tuple[list[float], list[float]]:
         half = (self.end - self.start) / 2
         if self.rise is None or self.rise >= half * (1 - 1e-12):
-            return [self.start, self.start + half, self.end]
-        return [self.start, self.start + self.rise, self.end - self.rise, self.end]
-
-    def pieces(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return its polynomials between breaks, see `Signal.pieces`."""
-        return _steps(self._times, [0.0, *[self.height] * (len(self._times) - 2), 0.0])
+            return [self.start, self.start + half, self.end], [0.0, self.height, 0.0]
+        return ([self.start, self.start + self.rise, self.end - self.rise, self.end],
+                [0.0, self.height, self.height, 0.0])
 
 
 class Harmonic(Signal):
@@ -247,7 +247,7 @@ class Harmonic(Signal):
 
 
 class Integral(Signal):
-    """``start`` at t = 0, from there on the integral of ``rate`` over time, exact piece by piece; in code only."""
+    """The integral of ``rate`` over time, ``start`` at t = 0, exact in each piece; only in code."""
 
     form: ClassVar[str] = "integral"
     rate: Signal
@@ -256,7 +256,7 @@ class Integral(Signal):
     @model_validator(mode="after")
     def _fits(self) -> Integral:
         if isinstance(self.rate, Integral):
-            raise ValueError("rate is an integral already, and its own would be of too high a degree")
+            raise ValueError("rate is an integral, whose own integral has too high a degree")
         return self
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
@@ -285,14 +285,14 @@ SIGNALS = Family("signal", "a number or a signal such as Ramp(start=0, end=1)", 
 
 
 def signal(value: Any) -> Signal:
-    """Return a signal from itself, a number, or a table such as {form="ramp", start=0, end=1}; else ValueError."""
+    """Return the signal that a signal, a number or a table describes. Raises ValueError."""
     if isinstance(value, Real) and not isinstance(value, bool):
         return Constant.model_validate({"constant": value})
     return SIGNALS.part(value)
 
 
 def signals_of(part: Part) -> Iterator[tuple[str, Signal]]:
-    """Yield all signals that a part is made with, those of parts in it too, each with its name."""
+    """Yield the names and signals of a part and of the parts in it."""
     for name, value in part:
         for each in value if isinstance(value, tuple | list) else (value,):
             if isinstance(each, Signal):
