@@ -112,7 +112,7 @@ __all__ = [
 
 
 LAZY = {"Choice": "choice.choice", "Equilibrium": "results.equilibrium", "InitialState": "model.initial_state",
-        "LogUniform": "sweeps.distributions", "Modes": "solve.modes.modes", "Uniform": "sweeps.distributions",
+        "LogUniform": "sweeps.parameters", "Modes": "solve.modes.modes", "Uniform": "sweeps.parameters",
         "load_sweep": "sweeps.dataset", "sweep": "sweeps.sweep", "sweep_cost": "sweeps.sweep"}
 """What brings SciPy or xarray along, which take as long as all the rest: imported when it is asked for."""
 

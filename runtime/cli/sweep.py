@@ -1,4 +1,4 @@
-"""`funicular sweep`: what its options say, and what it prints."""
+"""`funicular sweep`: its options and its output."""
 
 from __future__ import annotations
 
@@ -12,9 +12,8 @@ import numpy as np
 
 from ..errors import FunicularError, SceneError
 from ..scene.file import load_scene
-from ..sweeps.cost import SweepCost, in_words
-from ..sweeps.distributions import Distribution, LogUniform, Uniform
-from ..sweeps.parameters import DRAWN, SWEEP
+from ..sweeps.cost import in_words
+from ..sweeps.parameters import DRAWN, SWEEP, LogUniform, Uniform
 from ..sweeps.sweep import sweep, sweep_cost
 
 SPACINGS = ("lin", "log")
@@ -22,7 +21,7 @@ SPACINGS = ("lin", "log")
 
 @dataclass
 class SweepOptions:
-    """The options of the command, as `funicular.sweep` has them; settings: of the runs, those that are given."""
+    """The options of the command, as in `funicular.sweep`; settings: of the runs, given ones alone."""
 
     method: str = "grid"
     samples: int | None = None
@@ -36,7 +35,7 @@ class SweepOptions:
 
 
 def parameter_of(text: str, method: str) -> tuple[str, Any]:
-    """Return the name and the values that PATH=VALUES says. Raises SceneError.
+    """Return the name and the values of PATH=VALUES. Raises SceneError.
 
     VALUES: 1,2,3 or first:last:number, with :log for equal ratios; to draw samples low:high or low:high:log.
     """
@@ -55,27 +54,23 @@ def parameter_of(text: str, method: str) -> tuple[str, Any]:
         raise SceneError(f'--set "{text}"', f'must be {form} for the method "{method}"',
                          f"write such as {name}=1e8:1e9{'' if drawn else ':20'}, with :log behind it for equal ratios")
     try:
-        return name, _distribution(numbers, spacing) if drawn else _range(text, numbers, spacing)
+        return name, (LogUniform if spacing == "log" else Uniform)(*numbers) if drawn else _range(numbers, spacing)
     except SceneError as error:
         raise error.inside(f'--set "{text}"') from None
 
 
-def _distribution(numbers: list[Any], spacing: str) -> Distribution:
-    return LogUniform(*numbers) if spacing == "log" else Uniform(*numbers)
-
-
-def _range(text: str, numbers: list[Any], spacing: str) -> list[Any]:
-    """Return values at equal distances or ratios; whole numbers where the ends are, and all between come out so."""
+def _range(numbers: list[Any], spacing: str) -> list[Any]:
+    """Return values at equal distances or ratios; whole numbers where all of them are."""
     first, last, count = numbers
     if not isinstance(count, int) or count < 1:
         raise SceneError(SWEEP, f"the number of values must be a whole number, 1 or more, got {count}")
     if spacing == "log":
         if min(first, last) <= 0:
             raise SceneError(SWEEP, "values of equal ratios must be positive")
-        return np.geomspace(first, last, count).tolist()
+        return [*np.geomspace(first, last, count).tolist()]
     values = np.linspace(first, last, count)
     whole = isinstance(first, int) and isinstance(last, int) and bool(np.all(values == np.round(values)))
-    return values.astype(int).tolist() if whole else values.tolist()
+    return [*(values.astype(int) if whole else values).tolist()]
 
 
 def _value(word: str) -> Any:
@@ -91,7 +86,7 @@ def _value(word: str) -> Any:
 
 
 def parameters_of(texts: list[str], method: str) -> dict[str, Any]:
-    """Return the parameters that --set options say. Raises SceneError."""
+    """Return the parameters of --set options. Raises SceneError."""
     found: dict[str, Any] = {}
     for text in texts:
         name, values = parameter_of(text, method)
@@ -103,7 +98,7 @@ def parameters_of(texts: list[str], method: str) -> dict[str, Any]:
 
 def run_sweep(scene: str, texts: list[str], keep: list[str], output: Path, options: SweepOptions, libraries: list[Path],
               estimate: bool) -> bool:
-    """Do what the command says, and print it; returns whether all points are in the file. Raises FunicularError."""
+    """Run the command and print its result; return whether all points are in the file. Raises FunicularError."""
     described = load_scene(scene, libraries)
     parameters = parameters_of(texts, options.method)
     given: dict[str, Any] = {"keep": keep, "method": options.method, "samples": options.samples, "seed": options.seed,
@@ -113,7 +108,8 @@ def run_sweep(scene: str, texts: list[str], keep: list[str], output: Path, optio
         return True
     begin = time.monotonic()
     dataset = sweep(described, parameters, **given, save=output, cluster=options.cluster, batch=options.batch,
-                    retry_failed=options.retry_failed, on_cost=_tell)
+                    retry_failed=options.retry_failed,
+                    on_cost=lambda cost: print(cost, file=sys.stderr) if cost.points else None)
     message, status = dataset["message"], dataset["status"].values.ravel()
     failed = np.flatnonzero(status == "failed")
     print(f"{dataset.attrs['finished']} of {len(status)} points, {len(failed)} failed, in "
@@ -123,10 +119,4 @@ def run_sweep(scene: str, texts: list[str], keep: list[str], output: Path, optio
         print(f"note: the first that failed, number {failed[0]}: {why}", file=sys.stderr)
     if len(failed) == len(status):
         raise FunicularError(f"{SWEEP}: all {len(failed)} points failed")
-    return dataset.attrs["finished"] == len(status)
-
-
-def _tell(cost: SweepCost) -> None:
-    """Say what is left to do, before it is done."""
-    if cost.points:
-        print(cost, file=sys.stderr)
+    return bool(dataset.attrs["finished"] == len(status))

@@ -106,7 +106,7 @@ class File:
         if not entry.in_rows:
             raw = read_at(self.descriptor, size_of(entry), entry.begin)
             values = np.frombuffer(raw, entry.dtype).reshape(entry.shape)
-            return _texts(values) if entry.dtype.kind == "S" else values.astype(entry.dtype.newbyteorder("="))
+            return texts(values) if entry.dtype.kind == "S" else values.astype(entry.dtype.newbyteorder("="))
         values = np.empty((self.rows - len(self.left_out), *entry.shape), entry.dtype.newbyteorder("="))
         at = 0
         for block in self._valid_blocks():
@@ -280,7 +280,7 @@ def _checksums(rows: np.ndarray) -> np.ndarray:
     return row_checksums(words[:, :-1])
 
 
-def _texts(characters: np.ndarray) -> np.ndarray:
+def texts(characters: np.ndarray) -> np.ndarray:
     """Return characters (..., n) as texts (...)."""
     joined = np.ascontiguousarray(characters).view(f"S{characters.shape[-1]}")[..., 0]
     return np.char.decode(joined, "utf-8")

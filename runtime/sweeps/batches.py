@@ -1,4 +1,4 @@
-"""Points in batches: long enough that handing one out costs little, short enough that all workers stay busy."""
+"""Batches of points: long enough that the overhead of a task is small, short enough that all workers stay busy."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import version
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,11 +16,11 @@ from .parameters import Points
 from .subject import Subject
 
 BATCH_SECONDS = 0.5
-"""What a batch should take: a task of Dask's costs some ms of the scheduler, the worker and this process together."""
-MOST_BYTES = 1 << 22
-"""Of the rows of a batch."""
-LEAST_BATCHES = 4
-"""That each worker should get of a sweep, so that all end at about the same time."""
+"""Time of a batch: a task of Dask costs some ms in the scheduler, the worker and this process together."""
+MAX_BATCH_BYTES = 1 << 22
+"""Bytes of the rows of a batch."""
+MIN_BATCHES_PER_WORKER = 4
+"""Batches that each worker gets at least, so that all end at about the same time."""
 
 
 class Batch(NamedTuple):
@@ -31,7 +31,7 @@ class Batch(NamedTuple):
 
 
 class Done(NamedTuple):
-    """What a batch came to: sealed rows, wall seconds of all, how many points failed."""
+    """The result of a batch: sealed rows, wall seconds of all, the number of failed points."""
 
     rows: np.ndarray
     seconds: float
@@ -40,7 +40,7 @@ class Done(NamedTuple):
 
 @dataclass(frozen=True)
 class Task:
-    """What a worker does with a batch; it is sent there with each, and knows the programs that it was made with."""
+    """The work of a worker on a batch, sent with each; programs: versions that the worker must have."""
 
     subject: Subject
     layout: Layout
@@ -52,37 +52,34 @@ class Task:
         if (here := versions()) != self.programs:
             raise FunicularError(f"sweep: a worker has {here}, and the sweep was started with {self.programs}; install "
                                  "the same everywhere")
-        outcomes = self.subject.compute(listed(batch.values))
+        columns = {name: column.tolist() for name, column in batch.values.items()}
+        points = [dict(zip(columns, each, strict=True)) for each in zip(*columns.values(), strict=True)]
+        outcomes = self.subject.compute(points)
         rows = self.layout.pack(self.dtype, batch.values, outcomes)
         return Done(rows, sum(outcome.seconds for outcome in outcomes), self.layout.failures(rows))
 
 
 @cache
 def versions() -> str:
-    """Return the versions of what computes a point, in words."""
+    """Return the versions of the programs that compute a point, in words."""
     return ", ".join(f"{name} {version(name)}" for name in ("funicular", "numpy", "scipy"))
 
 
-def listed(values: Mapping[str, np.ndarray]) -> list[dict[str, Any]]:
-    """Return the points of values (n,) by parameter, as plain int, float, bool or str."""
-    columns = {name: column.tolist() for name, column in values.items()}
-    return [dict(zip(columns, each, strict=True)) for each in zip(*columns.values(), strict=True)]
-
-
 class Batches:
-    """Hands out the points that are left, in batches of a length that follows what they take."""
+    """Hands out the remaining points in batches, whose length follows the time of a point."""
 
     def __init__(self, points: Points, numbers: np.ndarray, row_bytes: int, workers: int, seconds: float,
                  length: int | None = None):
-        """numbers: of the points that are left; seconds: what a point takes, of a sample; length: fixed, or None."""
+        """numbers: of the remaining points; seconds: of a point, from a sample; length: of a batch, None to adapt."""
         self._points, self._left, self._at = points, numbers, 0
         self._length = length
-        self._most = max(1, min(MOST_BYTES // row_bytes, -(-len(numbers) // (LEAST_BATCHES * max(workers, 1)))))
+        share = -(-len(numbers) // (MIN_BATCHES_PER_WORKER * max(workers, 1)))
+        self._most = max(1, min(MAX_BATCH_BYTES // row_bytes, share))
         self._seconds, self._counted = seconds, 1.0
         self._again: list[Batch] = []
 
     def __iter__(self) -> Iterator[Batch]:
-        """Yield batches until none are left, those given back first."""
+        """Yield batches until none are left, returned ones first."""
         while (batch := self.take()) is not None:
             yield batch
 
@@ -104,7 +101,7 @@ class Batches:
         self._again += batches
 
     def learn(self, count: int, seconds: float) -> None:
-        """Take note of what points took: the mean forgets what is older than some hundred batches."""
+        """Update the mean time of a point, over about the last thousand points."""
         weight = min(self._counted, 1e3)
         self._seconds = (self._seconds * weight + seconds) / (weight + count)
         self._counted = weight + count

@@ -1,4 +1,9 @@
-"""What a sweep will cost, told from a sample of its points, which are computed first."""
+"""The cost of a sweep, estimated from a sample of its points, which are computed first.
+
+Why it stays: the sample is needed in any case, since the layout of the file follows from the results of some points,
+and the length of batches from their time. The estimate is a mean over it. It tells a user before hours of work how long
+the sweep takes and how large its file is; without it, the first sign of a sweep of days is its progress bar.
+"""
 
 from __future__ import annotations
 
@@ -8,18 +13,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from .parameters import Points
-from .points import Outcome
-from .subject import Subject
+from .subject import Outcome, Subject
 
-SAMPLE_SECONDS, MOST_SAMPLED = 1.0, 8
-"""A sample ends after so much time, or so many points."""
+SAMPLE_SECONDS = 1.0
+"""Time after which a sample ends."""
+SAMPLE_PLACES = (0.0, 1.0, 0.5, 0.25, 0.75, 0.375, 0.625, 0.125)
+"""Places of the sampled points among all, in their order."""
 
 
 @dataclass(frozen=True)
 class SweepCost:
-    """What a sweep costs. points: that are left to compute; point_seconds: least, mean and largest wall time of one.
+    """The estimated cost of a sweep.
 
-    sampled: points that were computed to know it; workers: processes that compute; point_bytes: in the file.
+    points: still to compute; sampled: points that were computed for the estimate; point_seconds: least, mean and
+    largest wall time of a point; workers: processes that compute; point_bytes: in the file.
     """
 
     points: int
@@ -30,12 +37,12 @@ class SweepCost:
 
     @property
     def seconds(self) -> float:
-        """Return the wall time that is left, in s."""
+        """Return the remaining wall time, in s."""
         return self.points * self.point_seconds[1] / max(self.workers, 1)
 
     @property
     def bytes(self) -> int:
-        """Return the size of the results that are left."""
+        """Return the size of the remaining results."""
         return self.points * self.point_bytes
 
     def __str__(self) -> str:
@@ -57,26 +64,20 @@ def in_words(seconds: float) -> str:
 def sample(subject: Subject, points: Points, missing: np.ndarray) -> dict[int, Outcome]:
     """Return the outcomes of some of the points of these numbers, spread over them, in the order of their numbers.
 
-    The least are two, but of very long ones: the first one brings modules that others need not bring.
+    At least two are computed, except of very long ones: the first one also imports modules.
     """
-    begin, found = time.monotonic(), {}
-    for number in dict.fromkeys(missing[_spread(len(missing))].tolist()):
+    begin, found = time.monotonic(), dict[int, Outcome]()
+    places = [round(place * (len(missing) - 1)) for place in SAMPLE_PLACES] if len(missing) else []
+    for number in dict.fromkeys(missing[places].tolist()):
         (found[number],) = subject.compute([points.point(number)])
-        took = time.monotonic() - begin
-        if any(outcome.kept for outcome in found.values()) and took > SAMPLE_SECONDS * (1 if len(found) > 1 else 3):
+        allowed = SAMPLE_SECONDS * (1 if len(found) > 1 else 3)
+        if any(outcome.kept for outcome in found.values()) and time.monotonic() - begin > allowed:
             break
     return dict(sorted(found.items()))
 
 
-def _spread(number: int) -> list[int]:
-    """Return places of a sample among so many points: first, last, middle, and between them."""
-    parts = (0.0, 1.0, 0.5, 0.25, 0.75, 0.375, 0.625, 0.125)[:MOST_SAMPLED]
-    return [round(part * (number - 1)) for part in parts] if number else []
-
-
 def seconds_of(outcomes: dict[int, Outcome]) -> tuple[float, float, float]:
-    """Return the least, mean and largest wall time of a sample; of several the longest one is left out where it is the
-    first, which brought modules.
+    """Return the least, mean and largest wall time of a sample, without a longest first point, which imported modules.
     """
     seconds = [outcome.seconds for outcome in outcomes.values()]
     if len(seconds) > 1 and seconds[0] == max(seconds):

@@ -1,4 +1,4 @@
-"""The results of a sweep as one xarray dataset, whose arrays are read from the file when they are asked for."""
+"""The results of a sweep as one xarray dataset, whose arrays are read from the file on demand."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from xarray.core import indexing
 
 from ..errors import FunicularWarning, ResultFileError
 from ..results.files import open_file
-from ..results.netcdf import ROW_CHECKSUM, File
-from .layout import MESSAGE, POINT, SECONDS, STATUS
-from .store import FORMAT, facts_in, whole_rows
+from ..results.netcdf import ROW_CHECKSUM, File, texts
+from .layout import OF_STATUS, POINT, STATUS
+from .store import FORMAT, complete_rows, facts_in
 
 KINDS = {"int": int, "float": float, "bool": bool, "str": str}
-"""Of the values of parameters."""
-LONG_TEXT = 64
-"""Characters: texts that may have more, most of which are empty, are Python's and not of a fixed length."""
-BLOCK = 1 << 24
+"""Types of the values of parameters."""
+MAX_FIXED_TEXT = 64
+"""Characters of a text of fixed length; longer ones, most of which are empty, are Python's."""
+READ_BYTES = 1 << 24
 """Bytes of rows that are read at once."""
 NOT_RUN = "not run"
-"""The status of a point that a sweep has not come to."""
+"""The status of a point that a sweep has not reached."""
 
 
 class _OfPoints(BackendArray):
-    """One variable over the points, which are read when they are asked for; NaN where a point was not run."""
+    """One variable over the points, read on demand; NaN where a point was not run."""
 
     def __init__(self, file: File, name: str, shape: tuple[int, ...], absent: np.ndarray):
         """shape: of the points, in place of the file's rows; absent: the numbers of the points that are left out."""
@@ -38,11 +38,11 @@ class _OfPoints(BackendArray):
         self._row, self._first = file.row_dtype, file.first_row_at
         self._is_text = entry.dtype.kind == "S"
         self.shape = shape if self._is_text else (*shape, *entry.shape)
-        text = np.dtype(object if entry.shape[0] > LONG_TEXT else f"U{entry.shape[0]}") if self._is_text else None
+        text = np.dtype(object if entry.shape[0] > MAX_FIXED_TEXT else f"U{entry.shape[0]}") if self._is_text else None
         self.dtype = text or np.dtype(float)
 
     def __getitem__(self, key: Any) -> Any:
-        """Return what an index of xarray's asks for."""
+        """Return the values at an index of xarray's."""
         return indexing.explicit_indexing_adapter(key, self.shape, indexing.IndexingSupport.OUTER, self._read)
 
     def _read(self, key: tuple[Any, ...]) -> np.ndarray:
@@ -52,7 +52,7 @@ class _OfPoints(BackendArray):
         dims = len(self._of_points)
         numbers = np.ravel_multi_index(np.ix_(*many[:dims]), self._of_points).ravel()
         found = np.empty((len(numbers), *map(len, many[dims:])), self.dtype)
-        step = max(1, BLOCK // self._row.itemsize)
+        step = max(1, READ_BYTES // self._row.itemsize)
         for at in range(0, len(numbers), step):
             some = slice(at, at + step)
             found[some] = self._rows(numbers[some], many[dims:])
@@ -63,23 +63,17 @@ class _OfPoints(BackendArray):
     def _rows(self, numbers: np.ndarray, others: list[np.ndarray]) -> np.ndarray:
         """Return the values of points of these numbers, at places along the other dimensions.
 
-        Only the part of the file is mapped where they are: pages that were read count as memory until then.
+        Only the part of the file between them is mapped: pages that were read count as memory until it is unmapped.
         """
         first, last = int(numbers.min()), int(numbers.max())
         with open(self._source, "rb", closefd=isinstance(self._source, str)) as opened:
             rows = np.memmap(opened, self._row, "r", self._first + first * self._row.itemsize, (last - first + 1,))
         field = rows[self._name]
-        return _texts(field[numbers - first]) if self._is_text else field[np.ix_(numbers - first, *others)]
-
-
-def _texts(characters: np.ndarray) -> np.ndarray:
-    """Return characters (n, size) as texts (n,)."""
-    joined = np.ascontiguousarray(characters).view(f"S{characters.shape[-1]}")[:, 0]
-    return np.char.decode(joined, "utf-8")
+        return texts(field[numbers - first]) if self._is_text else field[np.ix_(numbers - first, *others)]
 
 
 def dataset_of(file: File, facts: dict[str, Any], finished: np.ndarray) -> xarray.Dataset:
-    """Return the dataset of a sweep's file; finished: (points,), whether the row of each is whole."""
+    """Return the dataset of a sweep's file; finished: (points,), whether the row of each is complete."""
     parameters = facts["parameters"]
     is_grid = facts["method"] == "grid"
     shape = tuple(len(each["values"]) for each in parameters) if is_grid else (len(finished),)
@@ -88,53 +82,42 @@ def dataset_of(file: File, facts: dict[str, Any], finished: np.ndarray) -> xarra
 
     def lazy(name: str) -> xarray.Variable:
         entry = file.entries[name]
-        array = _OfPoints(file, name, shape, absent)
         labels = {label: str(entry.attributes.get(label, "")) for label in ("units", "long_name")}
         return xarray.Variable(dims + (() if entry.dtype.kind == "S" else entry.dims[1:]),
-                               indexing.LazilyIndexedArray(array), labels)
+                               indexing.LazilyIndexedArray(_OfPoints(file, name, shape, absent)), labels)
 
-    coords = _fixed(file)
+    coords = {}
+    for name, entry in file.entries.items():
+        if not entry.in_rows:  # a coordinate of results, the same for all points
+            fixed = file.variable(name, file.read(name))
+            coords[name] = xarray.Variable(fixed.dims, fixed.values, {"units": fixed.units,
+                                                                      "long_name": fixed.long_name})
     for each in parameters:
         name, labels = each["name"], {"units": each["units"] or "1", "long_name": "parameter"}
-        if is_grid:
-            coords[name] = xarray.Variable((name,), np.array(each["values"], KINDS[each["kind"]]), labels)
-        else:
-            values = lazy(name).values
-            whole = finished.all() or each["kind"] in ("float", "str")
-            coords[name] = xarray.Variable((POINT,), values.astype(KINDS[each["kind"]]) if whole else values, labels)
-    given = {each["name"] for each in parameters}
-    given.add(ROW_CHECKSUM)
-    variables = {name: lazy(name) for name, entry in file.entries.items() if entry.in_rows and name not in given}
-    own = [name for name in (STATUS, MESSAGE, SECONDS) if name in variables]
-    ordered = [name for name in variables if name not in own] + own
+        values = np.array(each["values"]) if is_grid else lazy(name).values
+        if is_grid or finished.all() or each["kind"] in ("float", "str"):
+            values = values.astype(KINDS[each["kind"]])
+        coords[name] = xarray.Variable((name if is_grid else POINT,), values, labels)
+    left_out = {ROW_CHECKSUM, *(each["name"] for each in parameters)}
+    names = [name for name, entry in file.entries.items() if entry.in_rows and name not in left_out]
+    names.sort(key=lambda name: name in OF_STATUS)
     attributes = {"scene": str(file.attributes["scene"]), "method": facts["method"], "seed": facts["seed"],
                   "finished": int(finished.sum()), "funicular_sweep": int(np.asarray(file.attributes[FORMAT]).item())}
-    return xarray.Dataset({name: variables[name] for name in ordered}, coords, attributes)
+    return xarray.Dataset({name: lazy(name) for name in names}, coords, attributes)
 
 
-def _fixed(file: File) -> dict[str, xarray.Variable]:
-    """Return what a sweep's file has once, for all points: the coordinates of results."""
-    found = {}
-    for name, entry in file.entries.items():
-        if not entry.in_rows:
-            fixed = file.variable(name, file.read(name))
-            found[name] = xarray.Variable(fixed.dims, fixed.values, {"units": fixed.units,
-                                                                     "long_name": fixed.long_name})
-    return found
-
-
-def load_sweep(path: str | os.PathLike, salvage: bool = False) -> xarray.Dataset:
-    """Open the results of a sweep, also of one that goes on or was killed, as an xarray.Dataset.
+def load_sweep(path: str | os.PathLike[str], salvage: bool = False) -> xarray.Dataset:
+    """Open the results of a sweep as an xarray.Dataset, also of one that is running or was killed.
 
     Its dimensions are the parameters of a grid, or ``point`` with the parameters along it. Arrays are read from the
-    file when they are asked for. ``status`` is "failed" for a point that ``message`` tells why, and "not run" for
-    one that the sweep has not come to; both are NaN. All rows are checked. salvage: take points whose rows are
-    damaged for not run, with a `FunicularWarning`, where the file would be refused otherwise. Raises ResultFileError.
+    file on demand. ``status`` is "failed" for a point whose error ``message`` gives, and "not run" for one that the
+    sweep has not reached; both are NaN. All rows are checked. salvage: take damaged rows for points that were not run,
+    with a `FunicularWarning`, where the file would be refused otherwise. Raises ResultFileError.
     """
     file = open_file(path)
     facts = facts_in(file)
     try:
-        finished = whole_rows(file, facts["number"])
+        finished = complete_rows(file, facts["number"])
     except OSError as error:
         raise ResultFileError(f"{file.path}: is damaged: {error}") from error
     if damaged := int(np.sum(~finished[: file.rows])):

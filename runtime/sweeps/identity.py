@@ -1,8 +1,8 @@
-"""What a function is, as far as a sweep that goes on can tell: its text, and the values that it takes from around it.
+"""The identity of a function, for a resumed sweep: its source and the values that it uses.
 
-Results of another function must not be taken for those of this one. Looked at are defaults, variables of the functions
-around it, global names that it uses, and the functions among them in the same way. What is in files, in other modules'
-variables and in objects that cannot be pickled is not seen.
+A file must not mix results of two functions. The identity covers defaults, variables of enclosing functions, global
+names that the function uses, and the functions among these in the same way. It does not cover files, variables of other
+modules, and objects that cannot be pickled. A hash of the source alone would miss a changed constant or helper.
 """
 
 from __future__ import annotations
@@ -19,8 +19,6 @@ from ..parts.event import Event
 from ..parts.scene_data import SceneData
 from ..parts.scene_text import dumps
 
-_OWN = __name__.partition(".")[0]
-
 
 def identity_of(function: Callable[..., Any]) -> str:
     """Return a text that differs for functions that differ, and is the same in each process."""
@@ -28,14 +26,14 @@ def identity_of(function: Callable[..., Any]) -> str:
 
 
 def identity_of_scene(scene: SceneData) -> str:
-    """Return a text that differs for scenes that differ: the scene's file, and the functions that events watch."""
+    """Return a text that differs for scenes that differ: the scene's file, and the functions of its events."""
     watched = [_described(event.function, set()) for event in scene.events.values()
                if isinstance(event, Event) and event.function is not None]
     return "\n".join([dumps(scene), *watched])
 
 
 def _described(value: Any, seen: set[int]) -> str:
-    """Return the text of a value; seen: ids of the functions around it, which may call each other."""
+    """Return the text of a value; seen: ids of the enclosing functions, which may call each other."""
     match value:
         case FunctionType():
             return _of_function(value, seen)
@@ -77,12 +75,12 @@ def _of_function(function: FunctionType, seen: set[int]) -> str:
 
 
 def _is_library(what: Any) -> bool:
-    """Return whether a function or class is of this package: then its version tells what it is."""
-    return (getattr(what, "__module__", None) or "").partition(".")[0] in (_OWN, "builtins", "numpy", "scipy")
+    """Return whether a function or class is of a library whose version a sweep records."""
+    return (getattr(what, "__module__", None) or "").partition(".")[0] in ("funicular", "builtins", "numpy", "scipy")
 
 
 def _text(what: Any) -> str:
-    """Return the source of a function or class; of one made on the fly what it does, of others their name."""
+    """Return the source of a function or class, else its code, else its name."""
     try:
         return inspect.getsource(what)
     except (OSError, TypeError, SyntaxError):

@@ -1,35 +1,31 @@
-"""How the points of a sweep lie in its file: one row a point, with its parameters, what is kept of it, and how it went.
-"""
+"""The layout of a sweep's file: one row a point, with its parameters, the kept results, and its status."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ..errors import SceneError
 from ..results.netcdf import ROW_CHECKSUM, File, sealed
-from ..results.netcdf_header import Entry
 from ..results.quantities import Variable
 from .parameters import SWEEP, Points
-from .points import FAILED, Outcome
-from .stored_points import TIME, Kept
+from .stored_points import OF_POINT, TIME, Kept
+from .subject import FAILED, Outcome
 
 POINT, ROW = "point", "row"
 """Dimensions: of the points; of output times where each point has its own."""
 STATUS, MESSAGE, SECONDS = "status", "message", "seconds"
-OF_POINT = ".of_point"
-"""Behind the name of a coordinate that each point has as a variable."""
 STATUS_BYTES, MESSAGE_BYTES = 16, 240
-WORD = 8
-"""Rows are checked in words of so many bytes."""
+WORD_BYTES = 8
+"""Rows are checked in words."""
 
 
 class Slot(NamedTuple):
-    """What one variable of a point takes of a row: numbers, or a text of so many bytes."""
+    """The place of a variable of a point in a row: numbers, or a text of at most so many bytes."""
 
     dims: tuple[str, ...]
     shape: tuple[int, ...]
@@ -37,10 +33,22 @@ class Slot(NamedTuple):
     long_name: str
     text_bytes: int = 0
 
+    @property
+    def in_file(self) -> Variable:
+        """Return the variable of the file, over points, without values."""
+        values = np.empty((0, *self.shape), f"S{self.text_bytes}" if self.text_bytes else float)
+        return Variable((POINT, *self.dims), values, self.units or "1", self.long_name)
+
+
+OF_STATUS = {STATUS: Slot((), (), "1", "how the point's run ended, or failed", STATUS_BYTES),
+             MESSAGE: Slot((), (), "1", "why the point failed, else what its run noted", MESSAGE_BYTES),
+             SECONDS: Slot((), (), "s", "wall time of the point")}
+"""Variables of every sweep."""
+
 
 @dataclass(frozen=True)
 class Layout:
-    """What a row holds. parameters, variables: by name; coords: those of the variables' dimensions.
+    """The contents of a row. parameters, variables: by name; coords: those of the variables' dimensions.
 
     times: the output times (time,) in s that all points share, or None.
     """
@@ -52,80 +60,96 @@ class Layout:
 
     @classmethod
     def of(cls, points: Points, units: Mapping[str, str], sampled: Sequence[Kept], own_times: int | None) -> Layout:
-        """Return the layout of a sweep from what is kept of some of its points.
+        """Return the layout of a sweep from the kept results of some points.
 
         units: of the parameters; own_times: the largest number of output times where points have their own, else None.
         A coordinate that differs among the points, such as the arc-length of a cable's nodes where its length is swept,
-        becomes a variable of each. Raises SceneError where names meet.
+        becomes a variable of each. Raises SceneError for a name that is taken.
         """
-        kept = _with_own_coords(sampled[0], _differing(sampled))
+        kept = sampled[0].with_own_coords(_differing(sampled))
         parameters = {name: _parameter(values, units.get(name, "")) for name, values in points.columns.items()}
-        _check_names(parameters, kept, own_times)
-        variables = {name: Slot(_dims(each.dims, own_times), _shape(each, own_times), each.units, each.long_name)
-                     for name, each in kept.variables.items()}
+        variables = {}
         if kept.time is not None and own_times is not None:
-            variables = {TIME: Slot((ROW,), (own_times,), "s", "output time"), **variables}
+            variables[TIME] = Slot((ROW,), (own_times,), "s", "output time")
+        for name, each in kept.variables.items():
+            dims, shape = each.dims, each.values.shape
+            if own_times is not None and dims[:1] == (TIME,):
+                dims, shape = (ROW, *dims[1:]), (own_times, *shape[1:])
+            variables[name] = Slot(dims, shape, each.units, each.long_name)
+        taken = {POINT, TIME, *OF_STATUS, *((ROW,) if own_times is not None else ()), *kept.coords}
+        for name in (*parameters, *kept.variables):
+            if name in taken:
+                raise SceneError(SWEEP, f'the name "{name}" is taken by the dataset of a sweep', "give another one")
+            if name in parameters and name in kept.variables:
+                raise SceneError(SWEEP, f'"{name}" is a parameter, and kept as a result, too',
+                                 f'keep it by another name: keep={{"kept": "{name}", ...}}')
         shared = None if own_times is not None else kept.time
-        coords = dict(kept.coords)
-        if shared is not None:
-            coords[TIME] = Variable((TIME,), shared, "s", "time")
+        coords = kept.coords if shared is None else kept.coords | {TIME: Variable((TIME,), shared, "s", "time")}
         return cls(parameters, variables, coords, shared)
+
+    @classmethod
+    def in_file(cls, file: File, parameters: Sequence[str]) -> Layout:
+        """Return the layout of a sweep's file."""
+        slots = {}
+        for name, entry in file.entries.items():
+            if entry.in_rows:
+                units, long_name = (str(entry.attributes.get(label, "")) for label in ("units", "long_name"))
+                text = entry.dtype.kind == "S"
+                slots[name] = Slot(() if text else entry.dims[1:], () if text else entry.shape, units, long_name,
+                                   entry.shape[0] if text else 0)
+        coords = {name: file.variable(name, file.read(name)) for name in file.entries if name not in slots}
+        times = coords[TIME].values if TIME in coords else None
+        own = (*OF_STATUS, ROW_CHECKSUM, *parameters)
+        variables = {name: slot for name, slot in slots.items() if name not in own}
+        return cls({name: slots[name] for name in parameters}, variables, coords, times)
 
     @property
     def row_bytes(self) -> int:
-        """Return the bytes of a point, but for what the file aligns."""
+        """Return the bytes of a point, without those that align it in the file."""
         slots = [*self.parameters.values(), *self.variables.values()]
         return sum(each.text_bytes or 8 * math.prod(each.shape) for each in slots) + 16 + STATUS_BYTES + MESSAGE_BYTES
 
     def for_file(self) -> dict[str, Variable]:
         """Return the variables of the file, over points, without values."""
-        own = {STATUS: Slot((), (), "1", "how the point's run ended, or failed", STATUS_BYTES),
-               MESSAGE: Slot((), (), "1", "why the point failed, else what its run noted", MESSAGE_BYTES),
-               SECONDS: Slot((), (), "s", "wall time of the point")}
-        return {name: _over_points(each) for name, each in {**self.parameters, **self.variables, **own}.items()}
+        return {name: each.in_file for name, each in {**self.parameters, **self.variables, **OF_STATUS}.items()}
 
     def pack(self, dtype: np.dtype, values: Mapping[str, np.ndarray], outcomes: Sequence[Outcome]) -> np.ndarray:
         """Return sealed rows (n,) of the file's type; values: (n,) of each parameter."""
         rows = np.zeros(len(outcomes), dtype)
         for name, column in values.items():
-            rows[name] = _characters(column, dtype[name].shape) if column.dtype.kind == "U" else column
+            if column.dtype.kind == "U":
+                size = dtype[name].shape[0]
+                column = np.char.encode(column, "utf-8").astype(f"S{size}").view("S1").reshape(len(column), size)
+            rows[name] = column
+        own_coords = [name.removesuffix(OF_POINT) for name in self.variables if name.endswith(OF_POINT)]
         for k, outcome in enumerate(outcomes):
             status, message = outcome.status, outcome.message
-            kept = None if outcome.kept is None else _with_own_coords(outcome.kept, self._own_coords)
+            kept = None if outcome.kept is None else outcome.kept.with_own_coords(own_coords)
             complaint = None if kept is None else self._complaint(kept)
             if complaint is not None:
                 status, message, kept = FAILED, complaint, None
             for name, each in self.variables.items():
-                rows[name][k] = np.nan if kept is None else self._fitted(name, each, kept)
+                found = np.nan if kept is None else kept.time if name == TIME else kept.variables[name].values
+                if each.dims[:1] == (ROW,):
+                    rows[name][k] = np.nan  # behind the last output time of the point
+                    if kept is not None:
+                        rows[name][k][: len(np.asarray(found))] = found
+                else:
+                    rows[name][k] = found
             rows[STATUS][k], rows[MESSAGE][k] = _text(status, STATUS_BYTES), _text(message, MESSAGE_BYTES)
             rows[SECONDS][k] = outcome.seconds
         return sealed(rows)
 
     @staticmethod
     def failures(rows: np.ndarray) -> int:
-        """Return how many of these rows (n,) are of points that failed."""
+        """Return the number of these rows (n,) whose points failed."""
         return int(np.sum(np.all(rows[STATUS] == _text(FAILED, STATUS_BYTES), axis=1)))
-
-    @classmethod
-    def in_file(cls, file: File, parameters: Sequence[str]) -> Layout:
-        """Return the layout of a sweep's file."""
-        slots = {name: _slot(entry) for name, entry in file.entries.items() if entry.in_rows}
-        coords = {name: file.variable(name, file.read(name)) for name in file.entries if name not in slots}
-        times = coords[TIME].values if TIME in coords else None
-        own = (STATUS, MESSAGE, SECONDS, ROW_CHECKSUM, *parameters)
-        variables = {name: slot for name, slot in slots.items() if name not in own}
-        return cls({name: slots[name] for name in parameters}, variables, coords, times)
-
-    @property
-    def _own_coords(self) -> list[str]:
-        """Return the dimensions whose coordinates each point has as a variable."""
-        return [name.removesuffix(OF_POINT) for name in self.variables if name.endswith(OF_POINT)]
 
     def _complaint(self, kept: Kept) -> str | None:
         """Return why a point does not fit in a row, None where it does."""
         for name, each in self.variables.items():
-            if name != TIME and (complaint := self._complaint_of(name, each, kept)) is not None:
-                return complaint
+            if name != TIME and (complaint := _misfit(name, each, kept)) is not None:
+                return f"{SWEEP}: {complaint}"
         for name in kept.variables:
             if name not in self.variables:
                 return f'{SWEEP}: the point has "{name}", which the first points had not'
@@ -137,102 +161,43 @@ class Layout:
             return f"{SWEEP}: the point has other output times than the first ones; give all the same"
         return None
 
-    @staticmethod
-    def _complaint_of(name: str, each: Slot, kept: Kept) -> str | None:
-        """Return why a variable of a point does not fit in its place, None where it does."""
-        if name not in kept.variables:
-            return f'{SWEEP}: the point has no "{name}", which the first points had'
-        shape, room = kept.variables[name].values.shape, each.shape
-        over_rows = each.dims[:1] == (ROW,)
-        if kept.variables[name].dims != tuple(TIME if dim == ROW else dim for dim in each.dims):
-            return (f'{SWEEP}: "{name}" is over {", ".join(kept.variables[name].dims) or "nothing"} here, and over '
-                    f'{", ".join(each.dims) or "nothing"} at the first points')
-        if shape[over_rows:] != room[over_rows:] or len(shape) != len(room):
-            return (f'{SWEEP}: "{name}" has the shape {shape} here, and {room} at the first points; keep what has one '
-                    "shape, or sweep in parts")
-        if over_rows and shape[0] > room[0]:
-            return f"{SWEEP}: the point has {shape[0]} output times, and the first ones had at most {room[0]}"
-        return None
 
-    def _fitted(self, name: str, each: Slot, kept: Kept) -> np.ndarray:
-        """Return the values of a point, with NaN behind its last output time where points have their own."""
-        found = kept.time if name == TIME else kept.variables[name].values
-        assert found is not None, "the points have output times"
-        if each.dims[:1] != (ROW,):
-            return found
-        values = np.full(each.shape, np.nan)
-        values[: len(found)] = found
-        return values
+def _misfit(name: str, each: Slot, kept: Kept) -> str | None:
+    """Return why a variable of a point does not fit in its place, None where it does."""
+    if name not in kept.variables:
+        return f'the point has no "{name}", which the first points had'
+    dims, shape, room = kept.variables[name].dims, kept.variables[name].values.shape, each.shape
+    over_rows = each.dims[:1] == (ROW,)
+    if dims != tuple(TIME if dim == ROW else dim for dim in each.dims):
+        return (f'"{name}" is over {", ".join(dims) or "nothing"} here, and over {", ".join(each.dims) or "nothing"} '
+                "at the first points")
+    if shape[over_rows:] != room[over_rows:] or len(shape) != len(room):
+        return f'"{name}" has the shape {shape} here, and {room} at the first points; keep what has one shape, or ' \
+               "sweep in parts"
+    if over_rows and shape[0] > room[0]:
+        return f"the point has {shape[0]} output times, and the first ones had at most {room[0]}"
+    return None
 
 
 def _differing(sampled: Sequence[Kept]) -> list[str]:
-    """Return the dimensions whose coordinates are numbers, as many at all points, but not the same."""
+    """Return the dimensions whose coordinates are equally many numbers at all points, but not the same."""
     first = sampled[0].coords
     return [name for name, variable in first.items() if variable.values.dtype.kind == "f" and any(
         name in each.coords and each.coords[name].values.shape == variable.values.shape
         and not np.array_equal(each.coords[name].values, variable.values) for each in sampled)]
 
 
-def _with_own_coords(kept: Kept, names: Sequence[str]) -> Kept:
-    """Return what is kept of a point with coordinates of these dimensions as variables."""
-    if not names:
-        return kept
-    own = {f"{name}{OF_POINT}": kept.coords[name] for name in names if name in kept.coords}
-    others = {name: each for name, each in kept.coords.items() if name not in names}
-    return Kept({**kept.variables, **own}, others, kept.time)
-
-
 def _parameter(values: np.ndarray, unit: str) -> Slot:
-    """Return a parameter of one point: a number, or as many bytes as its longest text has, in whole words."""
-    longest = max(len(text.encode()) for text in values.tolist()) if values.dtype.kind == "U" else 0
-    text_bytes = max(WORD, -(-longest // WORD) * WORD) if values.dtype.kind == "U" else 0
-    return Slot((), (), unit, "parameter", text_bytes)
-
-
-def _dims(dims: tuple[str, ...], own_times: int | None) -> tuple[str, ...]:
-    return dims if own_times is None else tuple(ROW if dim == TIME else dim for dim in dims)
-
-
-def _shape(variable: Variable, own_times: int | None) -> tuple[int, ...]:
-    """Return the shape that a variable of a point has in a row."""
-    shape = variable.values.shape
-    return (own_times, *shape[1:]) if own_times is not None and variable.dims[:1] == (TIME,) else shape
-
-
-def _over_points(slot: Slot) -> Variable:
-    """Return a variable of the file for one of a point, without values."""
-    values = np.empty((0, *slot.shape), f"S{slot.text_bytes}" if slot.text_bytes else float)
-    return Variable((POINT, *slot.dims), values, slot.units or "1", slot.long_name)
-
-
-def _check_names(parameters: Mapping[str, Any], kept: Kept, own_times: int | None) -> None:
-    """Refuse names that the dataset would have twice. Raises SceneError."""
-    own = {POINT, STATUS, MESSAGE, SECONDS, TIME, *((ROW,) if own_times is not None else ())}
-    for name in (*parameters, *kept.variables):
-        if name in own or name in kept.coords:
-            raise SceneError(SWEEP, f'the name "{name}" is taken by the dataset of a sweep', "give another one")
-    for name in parameters:
-        if name in kept.variables:
-            raise SceneError(SWEEP, f'"{name}" is a parameter, and kept as a result, too',
-                             f'keep it by another name: keep={{"kept": "{name}", ...}}')
-
-
-def _slot(entry: Entry) -> Slot:
-    """Return the slot that a variable of a file is."""
-    units, long_name = (str(entry.attributes.get(label, "")) for label in ("units", "long_name"))
-    if entry.dtype.kind == "S":
-        return Slot((), (), units, long_name, entry.shape[0])
-    return Slot(entry.dims[1:], entry.shape, units, long_name)
+    """Return a parameter of one point: a number, or the bytes of its longest text, in whole words."""
+    if values.dtype.kind != "U":
+        return Slot((), (), unit, "parameter")
+    longest = max(len(text.encode()) for text in values.tolist())
+    return Slot((), (), unit, "parameter", max(WORD_BYTES, -(-longest // WORD_BYTES) * WORD_BYTES))
 
 
 def _text(text: str, size: int) -> np.ndarray:
-    """Return a text as characters (size,); the end of a longer one is left out, and dots say so."""
+    """Return a text as characters (size,); a longer one ends with dots."""
     data = text.replace("\0", " ").encode()
     if len(data) > size:
         data = data[: size - 3].decode(errors="ignore").encode() + b"..."
     return np.frombuffer(data.ljust(size, b"\0"), "S1")
-
-
-def _characters(texts: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
-    """Return texts (n,) as characters (n, size)."""
-    return np.char.encode(texts, "utf-8").astype(f"S{shape[0]}").view("S1").reshape(len(texts), shape[0])

@@ -1,4 +1,4 @@
-"""Many scenes, one after the other on each of several threads: the C engine runs without Python's lock."""
+"""Many scenes on several threads: the C engine runs without Python's lock."""
 
 from __future__ import annotations
 
@@ -23,33 +23,32 @@ if TYPE_CHECKING:
 
 Result: TypeAlias = Run | dict[str, np.ndarray] | FunicularError
 
-AHEAD = 4
-"""Scenes for each thread that are taken from the iterable before the first of them is handed out: a thread that ends a
-scene early finds another one while the caller waits for a long one."""
+SCENES_PER_THREAD = 4
+"""Scenes of each thread that are taken in advance, so that a thread finds another one while the caller waits."""
 
-OF_ONE_RUN = ("save", "resume", "progress")
+SINGLE_RUN_SETTINGS = ("save", "resume", "progress")
 """Arguments of `Scene.run` that name a file or a display, which many scenes would share."""
 
 
 class _Abandoned(BaseException):
-    """Ends a run whose results nobody takes any more."""
+    """Ends a run whose results are no longer needed."""
 
 
 def run_many(scenes: Iterable[Scene | Callable[[], Scene]], *, threads: int | None = None,
              keep: Iterable[str] | None = None, **settings: Any) -> Iterator[Result]:
     """Run scenes on several threads at once; yields the result of each in the order of the scenes.
 
-    scenes: scenes, or functions without arguments that return one, which are called on the threads. They are taken as
-    results are asked for, about ``4 * threads`` in advance, so that memory does not grow with their number. threads:
-    scenes that run at once, by default as many as there are processors. keep: names of results such as
-    ``["A.position"]``. settings: as for `Scene.run`, but for save, resume and progress.
+    scenes: scenes, or functions without arguments that return one, which are called on the threads. About
+    ``4 * threads`` of them are taken in advance, so that memory does not grow with their number. threads: scenes that
+    run at once, by default one for each processor. keep: names of results such as ``["A.position"]``. settings: as for
+    `Scene.run`, without save, resume and progress.
 
-    Yields, for each scene, its `Run`, bit for bit what ``scene.run(**settings)`` returns where the integrator is the
-    same; with ``keep`` a dict of its arrays by these names, with ``"time"`` in it. The first scene is run before the
-    others: an integrator that loses its trial there is not tried again with scenes of its shape, see
-    `solve.motion.trial_cache`. A scene that fails yields its `FunicularError`, without a traceback, and the others go
-    on. What is left of the scenes is given up where the iteration ends early, after Ctrl-C too. Raises SceneError for
-    settings that no scene can take, and whatever else a function of ``scenes`` raises.
+    Yields, for each scene, its `Run`, bit for bit that of ``scene.run(**settings)`` with the same integrator; with
+    ``keep`` a dict of its arrays by these names, and ``"time"``. The first scene is run before the others: an
+    integrator that loses its trial there is not tried again with scenes of its shape, see `solve.motion.trial_cache`. A
+    scene that fails yields its `FunicularError`, without a traceback, and the others go on. Where the iteration ends
+    early, also after Ctrl-C, the remaining scenes are not run. Raises SceneError for settings that no scene can take,
+    and any other error of a function in ``scenes``.
 
     >>> import funicular as fu
     >>> scene = fu.load_scene("paper51")
@@ -59,7 +58,7 @@ def run_many(scenes: Iterable[Scene | Callable[[], Scene]], *, threads: int | No
     (51, 3)
     (51, 3)
     """
-    for name in OF_ONE_RUN:
+    for name in SINGLE_RUN_SETTINGS:
         if name in settings:
             raise SceneError("run_many", f'"{name}" is of one run', "take what the results yield, as they come")
     if isinstance(scenes, Scene):
@@ -68,18 +67,13 @@ def run_many(scenes: Iterable[Scene | Callable[[], Scene]], *, threads: int | No
     threads = available() if threads is None else threads
     if isinstance(threads, bool) or not isinstance(threads, int) or threads < 1:
         raise SceneError("run_many", f"threads must be a whole number from 1 on, got {shown(threads)}")
-    names = None if keep is None else _names(keep)
-    return _results(iter(scenes), threads, names, settings)
-
-
-def _names(keep: Iterable[str]) -> list[str]:
     if isinstance(keep, str):
         raise SceneError("run_many", f"keep must be names of results, got {shown(keep)}", f"give [{keep!r}]")
-    return list(keep)
+    return _results(iter(scenes), threads, None if keep is None else list(keep), settings)
 
 
 def _bare(error: FunicularError) -> FunicularError:
-    """Return an error without the tracebacks, its own and of what led to it, which keep the engine in memory."""
+    """Return an error without its tracebacks and those of its causes, which keep the engine in memory."""
     link: BaseException | None = error
     while link is not None:
         link.__traceback__ = None
@@ -89,7 +83,7 @@ def _bare(error: FunicularError) -> FunicularError:
 
 def _results(scenes: Iterator[Scene | Callable[[], Scene]], threads: int, keep: list[str] | None,
              settings: dict[str, Any]) -> Iterator[Result]:
-    """Yield the results in order; nothing has begun before the first is asked for."""
+    """Yield the results in order; nothing starts before the first is asked for."""
     abandoned = Event()
 
     def watch(reached: float) -> None:
@@ -118,10 +112,10 @@ def _results(scenes: Iterator[Scene | Callable[[], Scene]], threads: int, keep: 
         try:
             for scene in scenes:
                 waiting.append(pool.submit(result, scene))
-                if trials.is_open:  # the others go by what the first scene finds, however many threads there are
+                if trials.is_open:  # the others use the trial of the first scene, for any number of threads
                     wait(waiting)
                     trials.is_open = False
-                if len(waiting) >= AHEAD * threads:
+                if len(waiting) >= SCENES_PER_THREAD * threads:
                     yield waiting.popleft().result()
             while waiting:
                 yield waiting.popleft().result()

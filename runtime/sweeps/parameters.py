@@ -1,4 +1,4 @@
-"""The points of a sweep: the values of its parameters on a grid, in a list, or drawn from distributions."""
+"""The points of a sweep: values of its parameters on a grid, in a list, or drawn from distributions."""
 
 from __future__ import annotations
 
@@ -7,27 +7,69 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from numbers import Integral, Real
-from typing import Any
+from typing import Annotated, Any, ClassVar, Protocol, runtime_checkable
 
 import numpy as np
+from pydantic import model_validator
 
 from ..errors import SceneError, near
-from ..parts.validation import MAX_COUNT, shown
-from .distributions import Distribution
+from ..parts.part import Part
+from ..parts.validation import MAX_COUNT, finite, positive, show, shown
 
 SWEEP = "sweep"
 METHODS = ("grid", "list", "random", "latin")
 DRAWN = ("random", "latin")
 """Methods that draw their points from distributions."""
-MOST_POINTS = 2**31 - 1
-"""What the number of rows of a file can be."""
+MAX_POINTS = 2**31 - 1
+"""Rows of a file."""
+
+
+@runtime_checkable
+class Distribution(Protocol):
+    """A distribution to draw values from: `Uniform`, `LogUniform`, or a frozen distribution of scipy.stats."""
+
+    def ppf(self, q: np.ndarray) -> np.ndarray:
+        """Return the quantiles (n,) of cumulative probabilities q (n,)."""
+
+
+class _Bounded(Part):
+    """A distribution between two bounds."""
+
+    positional: ClassVar[tuple[str, ...]] = ("low", "high")
+    low: Annotated[float, finite()]
+    high: Annotated[float, finite()]
+
+    @model_validator(mode="after")
+    def _rises(self) -> _Bounded:
+        if not self.low < self.high:
+            raise ValueError(f"high must be above low = {show(self.low)}, got {show(self.high)}")
+        return self
+
+
+class Uniform(_Bounded):
+    """All values between ``low`` and ``high`` are equally likely."""
+
+    def ppf(self, q: np.ndarray) -> np.ndarray:
+        """Return the quantiles (n,) of cumulative probabilities q (n,)."""
+        return self.low + (self.high - self.low) * q
+
+
+class LogUniform(_Bounded):
+    """The logarithms of all values between those of ``low`` and ``high`` are equally likely; both positive."""
+
+    low: Annotated[float, positive()]
+    high: Annotated[float, positive()]
+
+    def ppf(self, q: np.ndarray) -> np.ndarray:
+        """Return the quantiles (n,) of cumulative probabilities q (n,)."""
+        return self.low * (self.high / self.low) ** q
 
 
 @dataclass(frozen=True)
 class Points:
-    """All points, which are numbered from 0; of a grid the last parameter varies fastest.
+    """All points, numbered from 0; in a grid the last parameter varies fastest.
 
-    columns: the values by parameter, (n,) each, or of a grid those along its axis; arrays of int, float, bool or str.
+    columns: values by parameter, of each point (n,) or along each axis of a grid; arrays of int, float, bool or str.
     """
 
     method: str
@@ -40,13 +82,13 @@ class Points:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Return the number of values along each dimension: of all parameters of a grid, or of the points."""
+        """Return the number of values along each dimension: the parameters of a grid, or the points."""
         sizes = tuple(len(values) for values in self.columns.values())
         return sizes if self.is_grid else sizes[:1]
 
     @property
     def number(self) -> int:
-        """Return how many points there are."""
+        """Return the number of points."""
         return math.prod(self.shape)
 
     def at(self, numbers: np.ndarray | Iterable[int]) -> dict[str, np.ndarray]:
@@ -86,7 +128,7 @@ def points_of(parameters: Mapping[str, Any], method: str = "grid", samples: int 
         if not isinstance(name, str) or not name:
             raise SceneError(SWEEP, f"the name of a parameter must be a text, got {shown(name)}")
     if method in DRAWN:
-        columns = _drawn(parameters, method, _count(samples, method), seed)
+        columns = _drawn(parameters, method, samples, seed)
     else:
         if samples is not None:
             raise SceneError(SWEEP, f'the method "{method}" takes no number of samples', 'add method="latin", or '
@@ -103,28 +145,29 @@ def _check_lengths(points: Points) -> None:
             kinds, counts = np.unique(values, return_counts=True)
             if np.any(counts > 1):
                 raise SceneError(SWEEP, f"{name} has the value {kinds[counts > 1][0]} twice", "give each value once")
-    elif len(lengths := {name: len(values) for name, values in points.columns.items()}) and \
-            len(set(lengths.values())) > 1:
-        counted = ", ".join(f"{name} {length}" for name, length in lengths.items())
+    elif len({len(values) for values in points.columns.values()}) > 1:
+        counted = ", ".join(f"{name} {len(values)}" for name, values in points.columns.items())
         raise SceneError(SWEEP, f"the lists have different numbers of values: {counted}",
                          'give each parameter one value a point, or method="grid"')
-    if points.number > MOST_POINTS:
-        raise SceneError(SWEEP, f"{points.number} points are more than a file can have, {MOST_POINTS}",
+    if points.number > MAX_POINTS:
+        raise SceneError(SWEEP, f"{points.number} points are more than a file can have, {MAX_POINTS}",
                          "sweep in parts")
 
 
-def _count(samples: int | None, method: str) -> int:
+def check_whole(name: str, value: Any, least: int, most: int | None = None) -> None:
+    """Raise SceneError where a value is not a whole number within bounds."""
+    if isinstance(value, bool) or not isinstance(value, Integral) or not least <= int(value) <= (most or int(value)):
+        bounds = f"{least} or more" if most is None else f"from {least} to {most}"
+        raise SceneError(SWEEP, f"{name} must be a whole number, {bounds}, got {shown(value)}")
+
+
+def _drawn(parameters: Mapping[str, Any], method: str, samples: int | None, seed: int) -> dict[str, np.ndarray]:
+    """Return samples (samples,) by parameter, from uniform ones by the inverse of each distribution."""
     if samples is None:
         raise SceneError(SWEEP, f'the method "{method}" needs a number of samples', "give samples=")
-    if isinstance(samples, bool) or not isinstance(samples, Integral) or not 1 <= samples <= 100 * MAX_COUNT:
-        raise SceneError(SWEEP, f"samples must be a whole number from 1 to {100 * MAX_COUNT}, got {shown(samples)}")
-    return int(samples)
-
-
-def _drawn(parameters: Mapping[str, Any], method: str, samples: int, seed: int) -> dict[str, np.ndarray]:
-    """Return samples (samples,) by parameter, from uniform ones by the inverse of each distribution."""
-    if isinstance(seed, bool) or not isinstance(seed, Integral) or seed < 0:
-        raise SceneError(SWEEP, f"seed must be a whole number, 0 or above, got {shown(seed)}")
+    check_whole("samples", samples, 1, 100 * MAX_COUNT)
+    check_whole("seed", seed, 0)
+    samples = int(samples)
     for name, given in parameters.items():
         if not isinstance(given, Distribution):
             raise SceneError(SWEEP, f'{name} must be a distribution for the method "{method}", got {shown(given)}',

@@ -1,8 +1,8 @@
-"""The file of a sweep: netCDF with a row for each point, written while the sweep goes on.
+"""The file of a sweep: netCDF with a row for each point, written while the sweep runs.
 
-Each row stands at the place of its point and has a checksum, so that a row which was not written, or not wholly, is
-known, and a sweep that was killed goes on with those. Other readers see the rows up to the first that is missing: the
-number of rows in the header is raised once all before it are whole.
+Each row stands at the place of its point and has a checksum. So a resumed sweep finds the rows that are missing or
+incomplete. Other readers see the rows before the first missing one: the number of rows in the header grows when all
+rows before it are complete.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import os
 import shutil
 import tempfile
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -25,32 +26,26 @@ from ..results.netcdf import MAX_ROW_BYTES, File, create
 from ..results.netcdf_header import last_report
 from .layout import POINT, STATUS, Layout
 from .parameters import SWEEP
-from .points import FAILED
+from .subject import FAILED
 
 SWEEP_FORMAT = 1
-"""Raised when a reader of older files could misread new ones."""
+"""Version of the format; it increases when a reader of older files could misread new ones."""
 FORMAT = "funicular_sweep"
 DIFFERENCES = {"subject": "another scene or function, or other settings", "points": "other parameters or values",
                "keep": "other results to keep", "programs": "another version of funicular, NumPy or SciPy"}
-"""What the facts of a sweep are that must be the same for it to go on, in words."""
+"""Facts that must be equal in a resumed sweep, and the cause in words where they differ."""
 
 
+@dataclass
 class Store:
-    """The file of a sweep that is open to be written, by this process alone."""
+    """The file of a sweep, open for writing by this process alone.
 
-    def __init__(self, file: File, facts: Mapping[str, Any], finished: np.ndarray):
-        """finished: (points,), whether the row of each point is whole."""
-        self._file, self.facts, self.finished = file, facts, finished
+    finished: (points,), whether the row of each point is complete.
+    """
 
-    @property
-    def dtype(self) -> np.dtype:
-        """Return the type of a row."""
-        return self._file.row_dtype
-
-    @property
-    def file(self) -> File:
-        """Return the open file."""
-        return self._file
+    file: File
+    facts: Mapping[str, Any]
+    finished: np.ndarray
 
     @property
     def missing(self) -> np.ndarray:
@@ -62,33 +57,29 @@ class Store:
         starts = np.flatnonzero(np.diff(numbers, prepend=-2) != 1)
         try:
             for begin, end in zip(starts, [*starts[1:], len(numbers)], strict=True):
-                self._file.put_rows(int(numbers[begin]), rows[begin:end])
+                self.file.put_rows(int(numbers[begin]), rows[begin:end])
             self.finished[numbers] = True
-            at = self._file.rows
+            at = self.file.rows
             if at < len(self.finished) and self.finished[at]:
                 gap = int(np.argmin(self.finished[at:]))
-                self._file.count_rows(len(self.finished) if self.finished[at + gap] else at + gap)
+                self.file.count_rows(len(self.finished) if self.finished[at + gap] else at + gap)
         except OSError as error:
-            raise ResultFileError(f"{self._file.path}: the results could not be written: {error.strerror}; make room, "
+            raise ResultFileError(f"{self.file.path}: the results could not be written: {error.strerror}; make room, "
                                   "and repeat the sweep: what is written is not computed again") from error
 
     def failed(self) -> np.ndarray:
         """Return the numbers of the points that were recorded as failed."""
         found = [np.zeros(0, int)]
-        for start, block in self._file.blocks(len(self.finished)):
+        for start, block in self.file.blocks(len(self.finished)):
             status = np.ascontiguousarray(block[STATUS]).view(f"S{block[STATUS].shape[1]}")[:, 0]
             found.append(start + np.flatnonzero((status == FAILED.encode()) & self.finished[start:start + len(block)]))
         return np.concatenate(found)
 
-    def close(self) -> None:
-        """Let others have the file."""
-        self._file.close()
 
+def stored(path: str | os.PathLike[str], facts: Mapping[str, Any]) -> Store | None:
+    """Return the file of a resumed sweep with these facts, None where there is none yet.
 
-def stored(path: str | os.PathLike, facts: Mapping[str, Any]) -> Store | None:
-    """Return the file of a sweep that goes on, None where there is none yet; facts: of the sweep that shall go on.
-
-    Raises ResultFileError where the file is something else, or of another sweep.
+    Raises ResultFileError where the file is no sweep, or holds another one.
     """
     resolved = check_writable(path)
     try:
@@ -108,26 +99,20 @@ def stored(path: str | os.PathLike, facts: Mapping[str, Any]) -> Store | None:
         raise ResultFileError(f"{resolved}: there is a file that is no sweep of funicular, or a damaged one: {error}; "
                               "delete it, or give another name") from None
     try:
-        return _going_on(file, facts)
+        old = facts_in(file)
+        for name, what in DIFFERENCES.items():
+            if old[name] != facts[name]:
+                raise ResultFileError(f"{file.path}: holds a sweep of {what}; delete it, or give another name")
+        return Store(file, old, complete_rows(file, int(old["number"])))
+    except OSError as error:
+        file.close()
+        raise ResultFileError(f"{file.path}: cannot be read: {error}; delete it, or give another name") from None
     except BaseException:
         file.close()  # which gives its lock back
         raise
 
 
-def _going_on(file: File, facts: Mapping[str, Any]) -> Store:
-    """Return the sweep in an open file. Raises ResultFileError where it is another one."""
-    old = facts_in(file)
-    for name, what in DIFFERENCES.items():
-        if old[name] != facts[name]:
-            raise ResultFileError(f"{file.path}: holds a sweep of {what}; delete it, or give another name")
-    try:
-        finished = whole_rows(file, int(old["number"]))
-    except OSError as error:
-        raise ResultFileError(f"{file.path}: cannot be read: {error}; delete it, or give another name") from None
-    return Store(file, old, finished)
-
-
-def new_store(path: str | os.PathLike | None, layout: Layout, facts: Mapping[str, Any], scene: str) -> Store:
+def new_store(path: str | os.PathLike[str] | None, layout: Layout, facts: Mapping[str, Any], scene: str) -> Store:
     """Return the file of a new sweep, without rows; path: None for one without a name, which ends with the process.
 
     scene: the text of the scene, empty of a function. Raises ResultFileError.
@@ -136,15 +121,14 @@ def new_store(path: str | os.PathLike | None, layout: Layout, facts: Mapping[str
     if layout.row_bytes > MAX_ROW_BYTES:
         raise ResultFileError(f"{SWEEP}: a point has {layout.row_bytes:.3g} bytes, more than a file can have; "
                               "keep less")
-    descriptor = None
     if path is None:
-        handle, part = tempfile.mkstemp(prefix="funicular-", suffix=".nc")
-        descriptor, resolved = handle, Path(part)
+        descriptor, part = tempfile.mkstemp(prefix="funicular-", suffix=".nc")
+        resolved = Path(part)
     else:
         resolved = check_writable(path)
         part = os.fspath(resolved.with_name(f".{resolved.name}.part"))
         descriptor = claimed_for(Path(part), resolved, SWEEP)
-        if resolved.exists():  # of another sweep, which made it just now
+        if resolved.exists():  # another sweep made it just now
             os.close(descriptor)
             os.unlink(part)
             raise being_written(resolved, SWEEP)
@@ -188,8 +172,8 @@ def facts_in(file: File) -> dict[str, Any]:
     return facts
 
 
-def whole_rows(file: File, number: int) -> np.ndarray:
-    """Return (number,): whether each row of a sweep's file is whole. Raises OSError where the file is shorter."""
+def complete_rows(file: File, number: int) -> np.ndarray:
+    """Return (number,): whether each row of a sweep's file is complete. Raises OSError where the file is shorter."""
     finished = np.ones(number, bool)
     finished[file.damaged_rows(number)] = False
     return finished

@@ -1,9 +1,9 @@
-"""What is kept of each point of a sweep: results of its run by name, numbers that functions make of it, or a dict."""
+"""The kept results of each point of a sweep: results of its run by name, numbers from functions of it, or a dict."""
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from numbers import Real
 from typing import Any
@@ -20,29 +20,37 @@ from .identity import identity_of
 from .parameters import SWEEP
 
 TIME = "time"
+OF_POINT = ".of_point"
+"""Suffix of a coordinate that each point has as a variable."""
 
 
 @dataclass(frozen=True)
 class Kept:
-    """What is kept of one point: variables, the coordinates of their dimensions, and its output times (time,) in s.
+    """The kept results of one point: variables, coordinates of their dimensions, and output times (time,) in s.
 
-    time: None where nothing is over time.
+    time: None where no variable is over time.
     """
 
     variables: dict[str, Variable]
     coords: dict[str, Variable] = field(default_factory=dict)
     time: np.ndarray | None = None
 
+    def with_own_coords(self, names: Sequence[str]) -> Kept:
+        """Return it with the coordinates of these dimensions as variables."""
+        own = {f"{name}{OF_POINT}": self.coords[name] for name in names if name in self.coords}
+        others = {name: each for name, each in self.coords.items() if name not in names}
+        return Kept(self.variables | own, others, self.time)
+
 
 @dataclass(frozen=True)
 class Keep:
-    """Names of results, or functions of the run, by the names that the sweep's dataset gives them."""
+    """Names of results, or functions of the run, by their names in the sweep's dataset."""
 
     wanted: Mapping[str, str | Callable[[Run], Any]]
 
     @classmethod
     def of(cls, given: Any) -> Keep:
-        """Return what a user has said: names in a list, or a dict from new names to names or functions.
+        """Return the results that a user names in a list, or in a dict from new names to names or functions.
 
         Raises SceneError.
         """
@@ -62,12 +70,12 @@ class Keep:
 
     @property
     def digest(self) -> str:
-        """Return the digest of the names, and of what functions do."""
+        """Return the digest of the names and functions."""
         texts = [f"{name} {what if isinstance(what, str) else identity_of(what)}" for name, what in self.wanted.items()]
         return hashlib.sha256("\n".join(texts).encode()).hexdigest()
 
     def check(self, scene: SceneData) -> None:
-        """Raise SceneError where there are no names, or one that runs of this scene have no result of."""
+        """Raise SceneError where there are no names, or one that is no result of this scene."""
         if not self.wanted:
             raise SceneError(SWEEP, "names no results to keep", 'give keep=["A.position", ...]; known: '
                              + ", ".join(known_results(scene)))
@@ -77,7 +85,7 @@ class Keep:
                 raise SceneError(SWEEP, f'runs of this scene have no result "{what}"', near(what, known))
 
     def take(self, run: Run) -> Kept:
-        """Return what is kept of a run. Raises UnknownResultError, SceneError and what functions raise."""
+        """Return the kept results of a run. Raises UnknownResultError, SceneError and any error of the functions."""
         variables = {}
         for name, what in self.wanted.items():
             variables[name] = _result(run, what) if isinstance(what, str) else as_variable(name, what(run))
@@ -87,7 +95,7 @@ class Keep:
 
 
 def known_results(scene: SceneData) -> list[str]:
-    """Return the names of the results that runs of a scene can have, components of vectors apart."""
+    """Return the names of the results of runs of a scene, without components of vectors."""
     found = [f"{name}.{what}" for name in scene.cables for what in ("position", "nodal_vectors", "nodal_velocity")]
     for part in scene.parts():
         found += [f"{label_of(part)}.{quantity}" for quantity in QUANTITIES.get(part.group, {})]
@@ -108,12 +116,12 @@ def _result(run: Run, name: str) -> Variable:
             return Variable(variable.dims[:-1], variable.values[..., COMPONENTS[component]], variable.units,
                             f"{variable.long_name}, {component}")
         raise UnknownResultError(f'the result "{whole}" has no components, but {", ".join(variable.dims)}')
-    values = run[name]  # or says which names are near
+    values = run[name]  # the error names similar results
     return Variable((TIME, f"{whole}.node", "xyz"), values, "m", "positions of the nodes")
 
 
 def as_variable(name: str, value: Any) -> Variable:
-    """Return a number or an array (any shape), with dimensions named by their place. Raises SceneError."""
+    """Return a number or an array of any shape, with numbered dimensions. Raises SceneError."""
     values = np.asarray(value)
     if values.dtype.kind not in "fiub" or not (isinstance(value, Real | np.ndarray | np.generic | list | tuple)):
         raise SceneError(SWEEP, f'what is kept as "{name}" must be a number or an array of numbers, got '
@@ -122,7 +130,7 @@ def as_variable(name: str, value: Any) -> Variable:
 
 
 def of_dict(data: Mapping[str, Any], keep: Keep) -> Kept:
-    """Return what is kept of numbers and arrays by name: all, or those that are named. Raises SceneError."""
+    """Return the kept ones of numbers and arrays by name: all, or those that are named. Raises SceneError."""
     names: Iterable[Any] = [what for what in keep.wanted.values() if isinstance(what, str)] or data
     variables = {}
     for name in names:

@@ -1,4 +1,4 @@
-"""What is swept: a scene, whose parts and settings get other values, or a function of the parameters."""
+"""The subject of a sweep: a scene, whose parts and settings get other values, or a function of the parameters."""
 
 from __future__ import annotations
 
@@ -9,26 +9,49 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
-from ..errors import FunicularWarning, SceneError, near
-from ..parts.paths import Path, changed, check_each_once, path_of, unit_of
+import numpy as np
+
+from ..base.interruptions import interruptible, uninterrupted
+from ..errors import FunicularError, FunicularWarning, SceneError, near
+from ..parts.paths import Path, changed, check_each_once, path_of
 from ..parts.settings import RunSettings, overridden
 from ..parts.validation import shown
 from ..results.run import Run
 from ..scene.scene import Scene
+from ..solve.linear.threads import one_blas_thread
 from .identity import identity_of, identity_of_scene
-from .parameters import SWEEP
-from .points import RETURNED, Outcome, failure, outcome_of, run_points
-from .stored_points import Keep, of_dict
+from .parameters import SWEEP, Points
+from .stored_points import Keep, Kept, of_dict
+
+FAILED = "failed"
+RETURNED = "returned"
+"""The status of a point whose function returned numbers."""
+
+MAX_CHECKED = 1000
+"""Points that are checked before the work, 1 ms each; and values of each parameter of a grid."""
+
+
+class Outcome(NamedTuple):
+    """The outcome of a point.
+
+    kept: None where it failed; status: that of its run, "returned" where a function gave numbers, or "failed"; message:
+    the reason of the failure, else the notes of the run; seconds: wall time.
+    """
+
+    kept: Kept | None
+    status: str
+    message: str
+    seconds: float
 
 
 class Subject(Protocol):
-    """Makes the outcomes of points; it is sent to the processes that compute."""
+    """Computes the outcomes of points; it is sent to the processes that compute."""
 
     @property
     def digest(self) -> str:
-        """Return the digest of what a sweep that goes on must have been started with."""
+        """Return the digest of scene or function and settings, which must be the same in a resumed sweep."""
 
     def compute(self, points: Sequence[Mapping[str, Any]]) -> list[Outcome]:
         """Return the outcomes of points, each a value by parameter. Raises KeyboardInterrupt alone."""
@@ -36,7 +59,7 @@ class Subject(Protocol):
 
 @dataclass(frozen=True)
 class SceneSubject:
-    """A scene, with paths into it as parameters."""
+    """A scene with run_settings, whose parameters are paths into it."""
 
     scene: Scene
     paths: Mapping[str, Path]
@@ -44,7 +67,7 @@ class SceneSubject:
 
     @classmethod
     def of(cls, scene: Scene, parameters: Sequence[str], keep: Keep) -> SceneSubject:
-        """Return the subject of a scene with run_settings. Raises SceneError for wrong paths and results."""
+        """Return the subject of a scene. Raises SceneError for wrong paths and results."""
         keep.check(scene)
         paths = {name: path_of(scene, name) for name in parameters}
         check_each_once(paths.values())
@@ -52,7 +75,7 @@ class SceneSubject:
 
     @property
     def digest(self) -> str:
-        """Return the digest of the scene's text, and of the functions that it watches."""
+        """Return the digest of the scene's text, and of the functions of its events."""
         return hashlib.sha256(identity_of_scene(self.scene).encode()).hexdigest()
 
     def scene_at(self, point: Mapping[str, Any]) -> Scene:
@@ -61,35 +84,43 @@ class SceneSubject:
             warnings.simplefilter("ignore", FunicularWarning)  # they stand in the scene's messages
             return changed(self.scene, {self.paths[name]: value for name, value in point.items()})
 
-    def settings_at(self, point: Mapping[str, Any]) -> RunSettings:
-        """Return the settings of the run at a point. Raises SceneError."""
-        of_run = {path.entries[0]: point[name] for name, path in self.paths.items() if path.head == "run"}
-        return RunSettings(**overridden(self.scene.run_settings, of_run))
+    def check(self, points: Points) -> None:
+        """Refuse a sweep with a scene that cannot be simulated. Raises SceneError that names the point.
 
-    def check(self, point: Mapping[str, Any]) -> Scene:
-        """Return the scene at a point, checked as far as that is possible without running it. Raises SceneError."""
-        scene = self.scene_at(point)
-        RunSettings(**scene.run_settings)
-        scene.check()
-        return scene
+        Few points are all checked. Of many: each value of a grid's parameters with the first ones of the others, the
+        smallest and the largest value of all parameters of samples, and points spread over all of them.
+        """
+        for number in _to_check(points):
+            point = points.point(number)
+            try:
+                scene = self.scene_at(point)
+                RunSettings(**scene.run_settings)
+                scene.check()
+            except SceneError as error:
+                values = ", ".join(f"{name} = {value:.9g}" if isinstance(value, float) else f"{name} = {value}"
+                                   for name, value in point.items())
+                raise error.inside(f"{SWEEP} at {values}") from None
 
-    def unit(self, name: str, point: Mapping[str, Any]) -> str:
-        """Return the unit of a parameter, looked up in the scene of a point."""
-        return unit_of(self.scene_at(point), self.paths[name])
+    def own_times(self, points: Points) -> int | None:
+        """Return the largest number of output times of a point, None where all points have the same times."""
+        swept = {path.entries[0]: points.columns[name] for name, path in self.paths.items() if path.head == "run"}
+        of_run = {name: column[0].item() for name, column in swept.items()}
+        settings = RunSettings(**overridden(self.scene.run_settings, of_run))
+        duration = swept.get("duration", np.array([settings.duration]))
+        given = np.array([settings.output_step]) if "output_step" in settings.model_fields_set else None
+        output = swept.get("output_step", given)
+        stops = any(event.action == "stop" for event in self.scene.events.values())
+        if len(duration) == 1 and (output is None or len(output) == 1) and not stops:
+            return None
+        if output is None:  # a part of the duration, as `RunSettings` has it
+            return round(settings.duration / settings.output_step) + 2
+        if points.is_grid or 1 in (len(duration), len(output)):
+            return int(np.ceil(duration.max() / output.min())) + 2
+        return int(np.ceil((duration / output).max())) + 2
 
     def compute(self, points: Sequence[Mapping[str, Any]]) -> list[Outcome]:
         """Return the outcomes of points, each a value by path."""
-        outcomes: list[Outcome | None] = []
-        scenes = []
-        for point in points:
-            begin = time.perf_counter()
-            try:
-                scenes.append(self.scene_at(point))
-                outcomes.append(None)
-            except SceneError as error:
-                outcomes.append(failure(error, begin))
-        ran = iter(run_points(scenes, self.keep))
-        return [next(ran) if outcome is None else outcome for outcome in outcomes]
+        return _outcomes(self.scene_at, points, self.keep)
 
 
 @dataclass(frozen=True)
@@ -123,59 +154,98 @@ class FunctionSubject:
 
     @property
     def digest(self) -> str:
-        """Return the digest of the function, of the values that it takes from around it, and of the settings."""
+        """Return the digest of the function, of the values that it uses, and of the settings."""
         text = identity_of(self.function)
         return hashlib.sha256(f"{text}\n{sorted(self.settings.items())!r}".encode()).hexdigest()
 
     def compute(self, points: Sequence[Mapping[str, Any]]) -> list[Outcome]:
         """Return the outcomes of points, each a value by keyword."""
-        scenes: list[Scene] = []
-        outcomes = [self._called(point, scenes) for point in points]
-        ran = iter(run_points(scenes, self.keep))
-        return [next(ran) if outcome is None else outcome for outcome in outcomes]
+        return _outcomes(self._made, points, self.keep)
 
-    def _called(self, point: Mapping[str, Any], scenes: list[Scene]) -> Outcome | None:
-        """Return the outcome at a point; None where the function made a scene, which is added to those to run."""
-        begin = time.perf_counter()
-        try:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore", FunicularWarning)
-                made = self.function(**point)
-            if isinstance(made, Scene):
-                scenes.append(self._with_settings(made))
-                return None
-            if isinstance(made, Run):
-                if not self.keep.wanted:
-                    raise SceneError(SWEEP, "names no results to keep", 'give keep=["A.position", ...]')
-                return outcome_of(made, self.keep, begin)
-            if isinstance(made, Mapping):
-                return Outcome(of_dict(made, self.keep), RETURNED, "", time.perf_counter() - begin)
-            raise SceneError(SWEEP, "the function must return a Scene, a Run, or a dict of numbers and arrays, got "
-                             + shown(made))
-        except Exception as error:  # whatever it is, the other points go on
-            return failure(error, begin)
-
-    def _with_settings(self, scene: Scene) -> Scene:
-        """Return a scene that the function made with the settings of the sweep; its own ones stay as they are."""
+    def _made(self, point: Mapping[str, Any]) -> Any:
+        """Return the result of the function at a point; a scene with the settings of the sweep."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", FunicularWarning)
+            made = self.function(**point)
+        if not isinstance(made, Scene):
+            return made
         if not self.keep.wanted:
-            self.keep.check(scene)
-        made = copy(scene)
-        made.run_settings = _unsaved(scene, self.settings)
-        return made
-
-
-def _unsaved(scene: Scene, settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the settings of a scene's runs with those of a sweep, without the file that the scene names."""
-    return {name: value for name, value in overridden(scene.run_settings, settings).items() if name != "save"}
+            self.keep.check(made)
+        return _with_settings(made, self.settings)
 
 
 def subject_of(subject: Any, parameters: Sequence[str], keep: Keep, settings: Mapping[str, Any]) -> Subject:
     """Return the subject of a sweep; settings: of its runs, instead of the scene's own. Raises SceneError."""
     if isinstance(subject, Scene):
-        given = copy(subject)
-        given.run_settings = _unsaved(subject, settings)
-        return SceneSubject.of(given, parameters, keep)
+        return SceneSubject.of(_with_settings(subject, settings), parameters, keep)
     if callable(subject):
         return FunctionSubject.of(subject, parameters, keep, settings)
     raise SceneError(SWEEP, f"the subject must be a scene or a function, got {shown(subject)}",
                      'of a scene file give fu.load_scene("FILE.toml")')
+
+
+def _with_settings(scene: Scene, settings: Mapping[str, Any]) -> Scene:
+    """Return a copy of a scene with the settings of a sweep, and without the file that the scene names."""
+    made = copy(scene)
+    made.run_settings = {name: value for name, value in overridden(scene.run_settings, settings).items()
+                         if name != "save"}
+    return made
+
+
+def _outcomes(make: Callable[[Mapping[str, Any]], Any], points: Sequence[Mapping[str, Any]],
+              keep: Keep) -> list[Outcome]:
+    """Return the outcomes of points; make: returns a scene to run, a run, or results by name.
+
+    An error of one point does not stop the others; Ctrl-C does, as KeyboardInterrupt.
+    """
+    made = [_attempt(make, point, keep) for point in points]
+    with uninterrupted(), one_blas_thread, interruptible():  # for all runs at once: each would set and reset it
+        ran = [_attempt(_run, each, keep) if isinstance(each, Scene) else each for each in made]
+    return [each for each in ran if isinstance(each, Outcome)]
+
+
+def _run(scene: Scene) -> Run:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # they stand in the report
+        return scene.run(progress=False)
+
+
+def _attempt(act: Callable[[Any], Any], given: Any, keep: Keep) -> Outcome | Scene:
+    """Return the outcome of a point by what a function makes of it; a scene, which is to be run, as it is."""
+    begin = time.perf_counter()
+    try:
+        made = act(given)
+        if isinstance(made, Scene):
+            return made
+        if isinstance(made, Run):
+            if made.status == "interrupted":
+                raise KeyboardInterrupt
+            if not keep.wanted:
+                raise SceneError(SWEEP, "names no results to keep", 'give keep=["A.position", ...]')
+            kept, status, message = keep.take(made), made.status, "; ".join(made.report["messages"])
+        elif isinstance(made, Mapping):
+            kept, status, message = of_dict(made, keep), RETURNED, ""
+        else:
+            raise SceneError(SWEEP, "the function must return a Scene, a Run, or a dict of numbers and arrays, got "
+                             + shown(made))
+    except Exception as error:  # of any kind: the other points go on
+        message = str(error) if isinstance(error, FunicularError) else f"{type(error).__name__}: {error}"
+        return Outcome(None, FAILED, message.removesuffix(": "), time.perf_counter() - begin)
+    return Outcome(kept, status, message, time.perf_counter() - begin)
+
+
+def _to_check(points: Points) -> list[int]:
+    """Return the numbers of the points to check before the work, each once."""
+    if points.number <= MAX_CHECKED:
+        return list(range(points.number))
+    found: dict[int, None] = {}
+    if points.is_grid:
+        for axis, size in enumerate(points.shape):
+            stride = int(np.prod(points.shape[axis + 1:], dtype=int))
+            found |= dict.fromkeys(stride * k for k in range(min(size, MAX_CHECKED)))
+    else:
+        for values in points.columns.values():
+            if values.dtype.kind in "if":
+                found |= {int(values.argmin()): None, int(values.argmax()): None}
+    spread = np.linspace(0, points.number - 1, MAX_CHECKED).astype(int)
+    return [*(found | dict.fromkeys(spread.tolist()))]

@@ -10,28 +10,27 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..base.interruptions import interruptible, uninterrupted
+from ..base.notebook import in_notebook
 from ..errors import FunicularError, FunicularWarning, ResultFileError, SceneError, near
+from ..parts.paths import unit_of
 from ..parts.scene_text import dumps
 from ..parts.settings import RunSettings
 from ..parts.validation import shown
 from ..results.resume_facts import programs_of
 from ..solve.linear.threads import available
+from ..solve.motion.progress import is_watched
 from .batches import Batch, Batches, Done, Task, versions
-from .checks import check_points, own_times
 from .cost import SweepCost, sample, seconds_of
 from .layout import Layout
-from .parameters import SWEEP, Points, points_of
-from .points import FAILED, Outcome
-from .progress import OnPoints, point_bar
+from .parameters import SWEEP, Points, check_whole, points_of
 from .store import Store, new_store, stored
 from .stored_points import Keep
-from .subject import SceneSubject, Subject, subject_of
+from .subject import FAILED, Outcome, SceneSubject, Subject, subject_of
 from .workers import MISSING, Workers, workers_of
 
 if TYPE_CHECKING:
@@ -41,21 +40,24 @@ if TYPE_CHECKING:
 
 LOG = logging.getLogger(__name__)
 
-MOST_IN_MEMORY = 4e9
-"""Bytes of results that a sweep without a file may have."""
-NOT_WORTH_WORKERS = 2.0
-"""Seconds of work that this process does itself, since workers take as long to start."""
+MAX_BYTES_IN_MEMORY = 4e9
+"""Bytes of results of a sweep without a file."""
+MIN_SECONDS_FOR_WORKERS = 2.0
+"""Seconds of work below which this process computes alone, since workers take as long to start."""
+
+OnPoints = Callable[[int, int], None]
+"""Takes the number of finished points, and of those that failed."""
 
 
 @dataclass(frozen=True)
 class Plan:
-    """A checked sweep that has not begun."""
+    """A checked sweep that has not begun; own_times: the most output times of a point, None where all share theirs."""
 
     subject: Subject
     points: Points
     keep: Keep
     units: Mapping[str, str]
-    most_times: int | None
+    own_times: int | None
     seed: int
     programs: str
 
@@ -66,7 +68,8 @@ class Plan:
         known = [name for name in RunSettings.keywords() if name != "save"]
         for name in settings:
             if name not in known:
-                raise SceneError(SWEEP, f'"{name}" is not known here', near(name, [*known, *OPTIONS]))
+                known += sweep.__kwdefaults__ or ()
+                raise SceneError(SWEEP, f'"{name}" is not known here', near(name, known))
         points, kept = points_of(parameters, method, samples, seed), Keep.of(keep)
         made = subject_of(subject, [*points.columns], kept, settings)
         units: dict[str, str] = {}
@@ -74,14 +77,15 @@ class Plan:
         libraries: tuple[str, ...] = ()
         if isinstance(made, SceneSubject):
             if not record_invalid:
-                check_points(made, points)
-            units = {name: made.unit(name, points.point(0)) for name in points.columns}
-            times, libraries = own_times(made, points), made.scene.libraries
+                made.check(points)
+            first = made.scene_at(points.point(0))
+            units = {name: unit_of(first, made.paths[name]) for name in points.columns}
+            times, libraries = made.own_times(points), made.scene.libraries
         return cls(made, points, kept, units, times, int(seed), programs_of(libraries))
 
     @property
     def facts(self) -> dict[str, Any]:
-        """Return what the file says of the sweep, and what must be the same for it to go on."""
+        """Return the facts of the sweep in its file, some of which must be equal in a resumed sweep."""
         described = [{"name": name, "units": self.units.get(name, ""), "kind": type(column[0].item()).__name__,
                       "values": column.tolist() if self.points.is_grid else None}
                      for name, column in self.points.columns.items()]
@@ -95,26 +99,22 @@ class Plan:
         return dumps(self.subject.scene) if isinstance(self.subject, SceneSubject) else ""
 
     def layout(self, sampled: Mapping[int, Outcome]) -> Layout:
-        """Return the layout that a sample shows. Raises FunicularError where all of it failed."""
+        """Return the layout from a sample. Raises FunicularError where all of it failed."""
         kept = [outcome.kept for outcome in sampled.values() if outcome.kept is not None]
         if not kept:
             first = next(iter(sampled.values()))
             raise FunicularError(f"{SWEEP}: all {len(sampled)} points that were tried first failed; one of them: "
                                  f"{first.message}")
         times = [each.time for each in kept if each.time is not None]
-        own = self.most_times
+        own = self.own_times
         if own is None and any(not np.array_equal(each, times[0]) for each in times):
             own = max(map(len, times))
         return Layout.of(self.points, self.units, kept, own if times else None)
 
 
-OPTIONS = ("keep", "method", "samples", "seed", "save", "workers", "cluster", "batch", "progress", "record_invalid",
-           "retry_failed", "on_cost")
-
-
 def sweep(subject: Scene | Callable[..., Any], parameters: Mapping[str, Any], *,
           keep: Sequence[str] | Mapping[str, Any] | None = None, method: str = "grid", samples: int | None = None,
-          seed: int = 0, save: str | os.PathLike | None = None, workers: int | None = None,
+          seed: int = 0, save: str | os.PathLike[str] | None = None, workers: int | None = None,
           cluster: str | None = None, batch: int | None = None, progress: bool | OnPoints | None = None,
           record_invalid: bool = False, retry_failed: bool = False,
           on_cost: Callable[[SweepCost], None] | None = None, **settings: Any) -> xarray.Dataset:
@@ -128,17 +128,17 @@ def sweep(subject: Scene | Callable[..., Any], parameters: Mapping[str, Any], *,
     a component; or a dict from names to such names, or to functions of the run that return a number or an array.
     settings: of the runs, as `Scene.run` takes them.
 
-    save: the netCDF file, written while the sweep goes on; a sweep that was stopped goes on with the same call, and a
-    finished point is not computed again. Without it results are in memory. workers: processes, one for each processor
-    if None, 0 for this process alone; cluster: the address of a Dask scheduler, whose workers are taken instead.
-    batch: points that a worker gets at once, chosen by what they cost if None. progress: as in `Scene.run`; a function
-    is given the points done and those that failed. on_cost: is given the `SweepCost` before the work.
+    save: the netCDF file, written while the sweep runs; the same call resumes a stopped sweep without computing
+    finished points again. Without it results are in memory. workers: processes, one for each processor if None, 0 for
+    this process alone; cluster: the address of a Dask scheduler, whose workers are taken instead. batch: points that a
+    worker gets at once, chosen by their time if None. progress: as in `Scene.run`; a function takes the numbers of
+    finished and of failed points. on_cost: takes the `SweepCost` before the work.
 
     A row of the file has at most 2 GiB, the file 2^31 - 1 points.
 
     Dimensions of the dataset are the parameters of a grid, else ``point`` with the parameters along it. A point that
-    fails has NaN, the ``status`` "failed" and its error in ``message``. record_invalid: do so for scenes that cannot be
-    simulated as well, which else are refused before the work; retry_failed: compute those that failed before again.
+    fails has NaN, the ``status`` "failed" and its error in ``message``. record_invalid: record scenes that cannot be
+    simulated in this way instead of refusing them before the work; retry_failed: compute failed points again.
 
     Raises SceneError, ResultFileError, FunicularError. Ctrl-C returns what was computed, with a `FunicularWarning`.
     """
@@ -147,7 +147,7 @@ def sweep(subject: Scene | Callable[..., Any], parameters: Mapping[str, Any], *,
     with uninterrupted(), _begun(plan, save, retry_failed) as (store, layout, missing, sampled):
         cost = _cost(plan, layout, len(missing), sampled, workers)
         tell = on_cost or (lambda cost: None)
-        alone = cluster is None and workers is None and cost.points * cost.point_seconds[1] < NOT_WORTH_WORKERS
+        alone = cluster is None and workers is None and cost.points * cost.point_seconds[1] < MIN_SECONDS_FOR_WORKERS
         try:
             if len(missing):
                 with workers_of(0 if alone else workers, cluster) as computing:
@@ -179,10 +179,10 @@ def sweep_cost(subject: Scene | Callable[..., Any], parameters: Mapping[str, Any
 
 
 def _check_workers(workers: int | None, cluster: str | None, batch: int | None) -> None:
-    """Refuse numbers that are none, and a sweep that lacks Dask. Raises FunicularError."""
+    """Refuse wrong numbers, and a sweep that lacks Dask. Raises FunicularError."""
     for name, value, least in (("workers", workers, 0), ("batch", batch, 1)):
-        if value is not None and (isinstance(value, bool) or not isinstance(value, Integral) or value < least):
-            raise SceneError(SWEEP, f"{name} must be a whole number, {least} or more, got {shown(value)}")
+        if value is not None:
+            check_whole(name, value, least)
     if cluster is not None and workers is not None:
         raise SceneError(SWEEP, "a cluster has its own workers", "leave out workers")
     if cluster is not None and not isinstance(cluster, str):
@@ -195,11 +195,9 @@ def _check_workers(workers: int | None, cluster: str | None, batch: int | None) 
 
 
 @contextmanager
-def _begun(plan: Plan, save: str | os.PathLike | None,
+def _begun(plan: Plan, save: str | os.PathLike[str] | None,
            retry_failed: bool) -> Iterator[tuple[Store, Layout, np.ndarray, dict[int, Outcome]]]:
-    """Yield the file, new or of the sweep that goes on, its layout, the points that are left, and a sample that is in
-    the file already.
-    """
+    """Yield the file, new or of a resumed sweep, its layout, the remaining points, and a sample, which it contains."""
     facts = plan.facts
     store = None if save is None else stored(save, facts)
     if store is None:
@@ -207,9 +205,9 @@ def _begun(plan: Plan, save: str | os.PathLike | None,
         with interruptible():
             sampled = sample(plan.subject, plan.points, missing)
             layout = plan.layout(sampled)
-        if save is None and layout.row_bytes * plan.points.number > MOST_IN_MEMORY:
+        if save is None and layout.row_bytes * plan.points.number > MAX_BYTES_IN_MEMORY:
             raise ResultFileError(f"sweep: {plan.points.number} points of {layout.row_bytes} bytes are more than the "
-                                  f"{MOST_IN_MEMORY:.3g} that a sweep may keep in memory; name a file with save")
+                                  f"{MAX_BYTES_IN_MEMORY:.3g} that a sweep may keep in memory; name a file with save")
         store = new_store(save, layout, facts, plan.scene_text)
     else:
         layout = Layout.in_file(store.file, [*plan.points.columns])
@@ -218,15 +216,15 @@ def _begun(plan: Plan, save: str | os.PathLike | None,
             with interruptible():
                 sampled = sample(plan.subject, plan.points, missing)
         except BaseException:
-            store.close()
+            store.file.close()
             raise
     try:
         numbers = np.array([*sampled], int)
         if len(numbers):
-            store.put(numbers, layout.pack(store.dtype, plan.points.at(numbers), [*sampled.values()]))
+            store.put(numbers, layout.pack(store.file.row_dtype, plan.points.at(numbers), [*sampled.values()]))
         yield store, layout, np.delete(missing, np.searchsorted(missing, numbers)), sampled
     finally:
-        store.close()
+        store.file.close()
 
 
 def _cost(plan: Plan, layout: Layout, left: int, sampled: dict[int, Outcome], workers: int | None) -> SweepCost:
@@ -236,22 +234,51 @@ def _cost(plan: Plan, layout: Layout, left: int, sampled: dict[int, Outcome], wo
 
 def _compute(plan: Plan, store: Store, layout: Layout, missing: np.ndarray, cost: SweepCost, computing: Workers,
              batch: int | None, progress: bool | OnPoints | None) -> None:
-    """Compute the points that are left, and write them as they come."""
-    task = Task(plan.subject, layout, store.dtype, versions())
+    """Compute the remaining points, and write each batch when it is done."""
+    task = Task(plan.subject, layout, store.file.row_dtype, versions())
     total, failed = plan.points.number, 0
 
     def lost(dead: Batch, message: str) -> Done:
         outcome = Outcome(None, FAILED, message, 0.0)
-        return Done(layout.pack(store.dtype, dead.values, [outcome] * len(dead.numbers)), 0.0, len(dead.numbers))
+        rows = layout.pack(store.file.row_dtype, dead.values, [outcome] * len(dead.numbers))
+        return Done(rows, 0.0, len(rows))
 
     begin = time.monotonic()
     with point_bar(total, total - len(missing), progress) as show:
         batches = Batches(plan.points, missing, layout.row_bytes, computing.number, cost.point_seconds[1], batch)
         done = total - len(missing)
-        for each, came in computing.compute(task, batches, lost):
+        for each, result in computing.compute(task, batches, lost):
             with uninterrupted():
-                store.put(each.numbers, came.rows)
-            batches.learn(len(each.numbers), came.seconds)
-            done, failed = done + len(each.numbers), failed + came.failed
+                store.put(each.numbers, result.rows)
+            batches.learn(len(each.numbers), result.seconds)
+            done, failed = done + len(each.numbers), failed + result.failed
             show(done, failed)
     LOG.info("sweep: %d points in %.3g s", len(missing), time.monotonic() - begin)
+
+
+@contextmanager
+def point_bar(total: int, before: int, progress: bool | OnPoints | None) -> Iterator[OnPoints]:
+    """Yield the function to call with the numbers of finished and failed points.
+
+    before: points that were finished before; progress: a bar (True), none (False), a bar if a terminal watches (None),
+    or a function.
+    """
+    if callable(progress):
+        yield progress
+        return
+    if not (progress is True or (progress is None and is_watched())):
+        yield lambda done, failed: None
+        return
+    from rich.console import Console  # for sweeps that a person watches
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = MofNCompleteColumn(), BarColumn(), TimeRemainingColumn(), TextColumn("{task.description}")
+    begin = time.monotonic()
+    with Progress(*columns, console=Console(stderr=not in_notebook()), transient=True) as bar:
+        task = bar.add_task("", total=total, completed=before)
+
+        def show(done: int, failed: int) -> None:
+            rate = (done - before) / max(time.monotonic() - begin, 1e-3)
+            bar.update(task, completed=done, description=f"{rate:.3g} points/s" + f", {failed} failed" * bool(failed))
+
+        yield show

@@ -1,9 +1,10 @@
-"""The workers of a sweep: this process, or processes of a Dask cluster, which may die, and whose scheduler may, too.
+"""The workers of a sweep: this process, or processes of a Dask cluster. Workers and scheduler may die.
 
-Dask gives the batch of a worker that died to another one. A batch whose workers die again and again is divided, down to
-single points. Dask blames all that a worker had when it died; so such points are computed last, one alone at a time,
-and those whose workers die even then are recorded as failed. Where the scheduler is lost, this process connects anew,
-and hands out again what had not come back.
+Dask gives the batch of a dead worker to another one. A batch that kills its workers repeatedly is divided, down to
+single points. Dask blames all batches of a dead worker; so such points are computed last, one at a time, and a point
+that kills its worker even then is recorded as failed. When the scheduler is lost, this process connects anew and hands
+out the missing batches again. A simpler form, in which a dead worker ends the sweep, would lose hours of work on a
+cluster to one bad point.
 """
 
 from __future__ import annotations
@@ -18,9 +19,9 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext, suppress
 from functools import partial
-from typing import Any, Protocol
+from typing import Any, TextIO
 
 import numpy as np
 
@@ -32,41 +33,33 @@ from .batches import Batch, Batches, Done
 LOG = logging.getLogger(__name__)
 
 PATIENCE = 60.0
-"""Seconds that the scheduler, and workers, may take to come, or to come back."""
-IN_FLIGHT = 3
-"""Batches a worker that are handed out at once: one to compute, and others so that it need not wait."""
+"""Seconds to wait for the scheduler and its workers, at the start and after a loss."""
+BATCHES_PER_WORKER = 3
+"""Batches that a worker has at once: one to compute, and others so that it need not wait."""
 POLL = 1.0
-"""Seconds between two looks whether the scheduler is there, and how many workers it has."""
+"""Seconds between two checks of the scheduler and the number of its workers."""
 MISSING = ("sweep: needs Dask to compute on more than one core, and the package {name} is missing; pip install "
            "'funicular[sweep]', or compute in this process alone (workers=0, --serial)")
 
 
-class Workers(Protocol):
-    """Compute batches."""
+class Workers:
+    """This process as the only worker."""
 
     @property
     def number(self) -> int:
-        """Return how many batches are computed at once."""
+        """Return the number of batches that are computed at once."""
+        return 1
 
     def compute(self, task: Callable[[Batch], Done], batches: Batches,
                 lost: Callable[[Batch, str], Done]) -> Iterator[tuple[Batch, Done]]:
-        """Yield batches with what they came to, in any order; lost: what a point came to that ends its process."""
-
-
-class ThisProcess:
-    """Computes in this process."""
-
-    number = 1
-
-    def compute(self, task: Callable[[Batch], Done], batches: Batches,
-                lost: Callable[[Batch, str], Done]) -> Iterator[tuple[Batch, Done]]:
-        """Yield batches with what they came to."""
+        """Yield batches with their results, in any order; lost: returns the result of a point that kills its process.
+        """
         for batch in batches:
             yield batch, task(batch)
 
 
 def dask_module(name: str) -> Any:
-    """Return a module of Dask's. Raises FunicularError where it is not installed."""
+    """Return a module of Dask. Raises FunicularError where it is not installed."""
     try:
         return importlib.import_module(name)
     except ModuleNotFoundError as error:
@@ -75,40 +68,31 @@ def dask_module(name: str) -> Any:
 
 @contextmanager
 def workers_of(number: int | None, cluster: str | None) -> Iterator[Workers]:
-    """Yield the workers that are asked for.
+    """Yield the workers.
 
     number: 0 for this process alone, None for all processors of this machine; cluster: the address of a Dask scheduler,
     whose workers are taken. Raises FunicularError.
     """
     if cluster is None and number == 0:
-        yield ThisProcess()
+        yield Workers()
         return
     dask_module("dask")
-    dask_module("distributed")
-    if cluster is not None:
-        with _closing(DaskWorkers(cluster)) as workers:
+    with local_cluster(number or available()) if cluster is None else nullcontext(cluster) as address:
+        workers = DaskWorkers(address)
+        try:
+            with interruptible():
+                workers.connect()
             yield workers
-        return
-    with local_cluster(number or available()) as address, _closing(DaskWorkers(address)) as workers:
-        yield workers
-
-
-@contextmanager
-def _closing(workers: DaskWorkers) -> Iterator[DaskWorkers]:
-    try:
-        with interruptible():
-            workers.connect()
-        yield workers
-    finally:
-        workers.close()
+        finally:
+            workers.close()
 
 
 @contextmanager
 def local_cluster(number: int) -> Iterator[str]:
-    """Yield the address of a scheduler in this process, which has so many worker processes of one thread each.
+    """Yield the address of a scheduler in this process with a number of worker processes of one thread each.
 
-    They are started by the command `dask worker`, so that a script needs no ``if __name__ == "__main__"``, and end with
-    this process, also where it is killed. Raises FunicularError.
+    The command `dask worker` starts them, so that a script needs no ``if __name__ == "__main__"``. They end with this
+    process, also where it is killed. Raises FunicularError.
     """
     distributed = dask_module("distributed")
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
@@ -127,12 +111,12 @@ def local_cluster(number: int) -> Iterator[str]:
                 yield cluster.scheduler_address
             finally:
                 with suppress(ProcessLookupError):
-                    os.killpg(running.pid, signal.SIGKILL)  # the workers, too: they have nothing left to do
+                    os.killpg(running.pid, signal.SIGKILL)  # the workers, too
                 running.wait()
 
 
-def _await_workers(cluster: Any, running: subprocess.Popen, number: int, log: Any) -> None:
-    """Wait for the workers of a local cluster. Raises FunicularError where they do not come."""
+def _await_workers(cluster: Any, running: subprocess.Popen[bytes], number: int, log: TextIO) -> None:
+    """Wait for the workers of a local cluster. Raises FunicularError where they do not start."""
     begin = time.monotonic()
     while len(cluster.scheduler.workers) < number:
         if running.poll() is not None or time.monotonic() - begin > PATIENCE:
@@ -143,7 +127,7 @@ def _await_workers(cluster: Any, running: subprocess.Popen, number: int, log: An
         time.sleep(0.02)
 
 
-class DaskWorkers:
+class DaskWorkers(Workers):
     """The workers of a Dask scheduler."""
 
     def __init__(self, address: str):
@@ -156,13 +140,13 @@ class DaskWorkers:
 
     @property
     def number(self) -> int:
-        """Return how many threads the workers have together; asked for now and then, since they come and go."""
+        """Return the number of threads of all workers, updated from time to time, since it changes."""
         if time.monotonic() - self._counted_at > POLL:
             self._threads, self._counted_at = max(1, sum(self._client.nthreads().values())), time.monotonic()
         return self._threads
 
     def connect(self) -> None:
-        """Connect to the scheduler, and wait for its workers. Raises FunicularError where that takes too long."""
+        """Connect to the scheduler, and wait for its workers. Raises FunicularError after `PATIENCE`."""
         begin, cause = time.monotonic(), "it does not answer"
         while (left := PATIENCE - (time.monotonic() - begin)) > 0:
             try:
@@ -188,10 +172,11 @@ class DaskWorkers:
 
     def compute(self, task: Callable[[Batch], Done], batches: Batches,
                 lost: Callable[[Batch, str], Done]) -> Iterator[tuple[Batch, Done]]:
-        """Yield batches with what they came to, as they come. Raises FunicularError where the scheduler is lost."""
+        """Yield batches with their results in order of completion. Raises FunicularError where the scheduler is lost.
+        """
         pending: dict[Any, Batch] = {}
         while True:
-            came: list[tuple[Batch, Done]] = []
+            done: list[tuple[Batch, Done]] = []
             try:
                 self._hand_out(task, batches, pending)
                 if not pending:
@@ -200,17 +185,17 @@ class DaskWorkers:
                 results = self._results(ended)
                 for future in ended:
                     status = "fetched" if future in results else future.status
-                    if status in ("pending", "finished"):  # its worker died with it: is computed anew, or was
+                    if status in ("pending", "finished"):  # its worker died: it is computed again, or was
                         future.add_done_callback(self._ended.put)
                         continue
                     batch = pending[future]
                     if status == "fetched":
-                        came.append((batch, results[future]))
+                        done.append((batch, results[future]))
                     elif status == "error":
-                        came += self._dead(future, batch, batches, lost)
+                        done += self._dead(future, batch, batches, lost)
                     else:  # lost or cancelled, and stays so where no worker is left
                         batches.give_back([batch])
-                    del pending[future]  # and not before: what is raised here gives back what is pending
+                    del pending[future]  # last, since the handler of an error gives back all pending batches
             except (OSError, TimeoutError, RuntimeError, self._distributed.comm.CommClosedError,
                     self._distributed.CancelledError) as error:
                 LOG.warning("sweep: lost the scheduler, and connect anew: %s", error or type(error).__name__)
@@ -218,11 +203,11 @@ class DaskWorkers:
                 pending.clear()
                 self.close()
                 self.connect()
-            yield from came
+            yield from done
 
     def _hand_out(self, task: Callable[[Batch], Done], batches: Batches, pending: dict[Any, Batch]) -> None:
-        """Hand out batches until all workers have enough; when all are done, a suspect alone."""
-        room = IN_FLIGHT * self.number
+        """Hand out batches until all workers have enough; when all are done, one suspect."""
+        room = BATCHES_PER_WORKER * self.number
         while len(pending) < room and (batch := batches.take()) is not None:
             self._submit(task, batch, pending)
         self._alone = not pending and bool(self._suspects)
@@ -235,9 +220,7 @@ class DaskWorkers:
         future.add_done_callback(self._ended.put)
 
     def _finished(self) -> list[Any]:
-        """Return the futures that have come to an end, once there is one. Raises CancelledError where the scheduler is
-        lost.
-        """
+        """Return the futures that ended, at least one. Raises CancelledError where the scheduler is lost."""
         seen = time.monotonic()
         while self._client.status == "running":
             try:
@@ -254,34 +237,34 @@ class DaskWorkers:
         raise self._distributed.CancelledError("it is gone")
 
     def _results(self, futures: list[Any]) -> dict[Any, Done]:
-        """Return the results of those that have one, all fetched at once."""
-        whole = [future for future in futures if future.status == "finished"]
+        """Return the results of finished futures, all fetched at once."""
+        finished = [future for future in futures if future.status == "finished"]
         try:
-            return dict(zip(whole, self._gathered(whole), strict=True))
+            return dict(zip(finished, self._gathered(finished), strict=True))
         except self._distributed.scheduler.KilledWorker:  # some were lost with their worker, and killed others
-            return {future: future.result() for future in whole if future.status == "finished"}
+            return {future: future.result() for future in finished if future.status == "finished"}
 
     def _gathered(self, futures: list[Any]) -> list[Done]:
-        """Return the results of futures. Raises FunicularError where those that have them are gone, and no others come.
-        """
+        """Return the results of futures. Raises FunicularError where all workers are gone."""
         fetch = partial(self._client.gather, futures, asynchronous=True)
         while True:
             try:
-                return self._client.sync(fetch, callback_timeout=PATIENCE)
+                found: list[Done] = self._client.sync(fetch, callback_timeout=PATIENCE)
+                return found
             except TimeoutError:
                 if not self._client.nthreads():
                     raise self._without_workers() from None
 
     def _without_workers(self) -> FunicularError:
-        """Return the error of a scheduler that has lost its workers."""
+        """Return the error of a scheduler without workers."""
         return FunicularError(f"sweep: the scheduler at {self._address} has no workers any more; start some, and "
                               "repeat the sweep: points that are written are not computed again")
 
     def _dead(self, future: Any, batch: Batch, batches: Batches,
               lost: Callable[[Batch, str], Done]) -> list[tuple[Batch, Done]]:
-        """Divide a batch whose workers died, put its only point aside, or return what that came to alone.
+        """Divide a batch whose workers died; set a single point aside, or return its result if it was alone.
 
-        Raises FunicularError where a worker could not do it at all, and CancelledError where the scheduler is lost.
+        Raises FunicularError where a worker could not compute it, and CancelledError where the scheduler is lost.
         """
         error = future.exception()
         if not isinstance(error, self._distributed.scheduler.KilledWorker):

@@ -125,8 +125,8 @@ def test_memory_does_not_grow_with_their_number():
     assert taken == 0
     for k, kept in zip(range(40), results, strict=False):
         assert kept["wire.position"].shape == (3, 2, 3)
-        assert taken <= k + 1 + 2 * many_scenes.AHEAD
-        assert len(alive) <= 2 * many_scenes.AHEAD + 4
+        assert taken <= k + 1 + 2 * many_scenes.SCENES_PER_THREAD
+        assert len(alive) <= 2 * many_scenes.SCENES_PER_THREAD + 4
     results.close()
     assert not [t for t in threading.enumerate() if t.name.startswith("funicular")]
 

@@ -18,7 +18,7 @@ from funicular.solve.motion.event_watcher import State
 from funicular.solve.statics.rest_state import Adjustment, Relaxation, RestState
 from funicular.solve.statics.stability import Stability
 from funicular.sweeps.cost import SweepCost
-from funicular.sweeps.distributions import LogUniform, Uniform
+from funicular.sweeps.parameters import LogUniform, Uniform
 
 from .markdown import anchor, prose, table
 
