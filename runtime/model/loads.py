@@ -107,14 +107,14 @@ class LoadBuilder:
                                    tuple(weight * c), type="load") for element, x, weight in points]
 
 
-def _loads(builder: ModelBuilder) -> LoadBuilder:
-    """Return the loads of a scene, translated once."""
-    made = LoadBuilder(builder)
+def _loads(builder: ModelBuilder) -> tuple[list[DeadLoadModel], list[LoadModel]]:
+    """Return the loads of a scene, translated once: dead ones, and those that turn."""
+    made = LoadBuilder(builder)  # not kept: it refers to the builder, which would then keep its scene in memory
     for load in builder.scene.loads.values():
         made.load(load)
-    return made
+    return made.dead, made.turning
 
 
 KINDS = (
-    CouplingKind("dead load", Load.group, lambda builder: builder.once("loads", _loads).dead, has_state=False),
-    CouplingKind("load", Load.group, lambda builder: builder.once("loads", _loads).turning, has_state=False))
+    CouplingKind("dead load", Load.group, lambda builder: builder.once("loads", _loads)[0], has_state=False),
+    CouplingKind("load", Load.group, lambda builder: builder.once("loads", _loads)[1], has_state=False))
