@@ -14,18 +14,30 @@ from .coupling import CouplingKind, CouplingModel
 class TowModel(CouplingModel):
     """fu_tow of the engine."""
 
+    law: str
     attachments: list[AttachmentModel]
     start: tuple[float, ...]
     velocity: tuple[float, ...]
-    stiffness: float
+    centre: tuple[float, ...]
+    spring: tuple[float, float]
+    rail: tuple[float, float]
     strength: float
+
+    @property
+    def kernel_families(self) -> list[str]:
+        """Return the name of its law."""
+        return [self.law]
 
 
 def tow_models(builder: ModelBuilder) -> Iterator[TowModel]:
     """Yield the models of the tows of a scene."""
     for part in builder.scene.group("tows"):
-        yield TowModel(type="tow", name=part.name, attachments=[builder.attachment(part.a)], start=part.start,
-                       velocity=part.velocity, stiffness=part.stiffness, strength=part.strength)
+        wheel = builder.attachment(part.a)
+        yield TowModel(type="tow", name=part.name, law="planar_tow" if builder.scene.dim == 2 else "tow",
+                       attachments=[wheel], start=part.start, velocity=part.velocity, centre=part.centre,
+                       spring=(part.stiffness, 0.0), rail=(1 / part.radius, part.radius), strength=part.strength,
+                       scale=[wheel.mass], n_multipliers=1)
 
 
-KINDS = (CouplingKind("tow", Tow.group, tow_models, has_state=False),)
+KINDS = (CouplingKind("tow", Tow.group, tow_models),)
+"""Where the trial coupling's models are made."""

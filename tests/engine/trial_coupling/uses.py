@@ -7,7 +7,7 @@ from pathlib import Path
 
 import funicular as fu
 import numpy as np
-from funicular.derive.catalogue import families
+from funicular.derive.theory.command import build
 from funicular.scene.schema import scene_schema
 from scene_stub import stub
 
@@ -16,6 +16,8 @@ FOLDER = Path(sys.argv[1])
 RUBBER = fu.Material(youngs_modulus=1e6, poisson_ratio=0.0, density=1000)
 UP = {"y": np.eye(3), "z": np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])}
 """Axes of scenes, by the direction in which the tow pulls."""
+CENTRE, RADIUS = (0.8, 0.0, 0.0), 0.3
+"""Of the rail."""
 
 
 def scene(velocity=1.0, offset=0.0, strength=3.0, element="cable12", up="y"):
@@ -25,8 +27,8 @@ def scene(velocity=1.0, offset=0.0, strength=3.0, element="cable12", up="y"):
                material=RUBBER, up=turned @ (0, 1, 0))
     made.pin("wire", s=0.0)
     made.pin("wire", s=1.0)
-    made.tow(("wire", 0.5), start=turned @ (0.5, offset, 0), velocity=turned @ (0, velocity, 0), stiffness=50.0,
-             strength=strength, name="T")
+    made.tow(("wire", 0.5), start=turned @ (0.5, offset, 0), velocity=turned @ (0, velocity, 0),
+             centre=turned @ CENTRE, radius=RADIUS, stiffness=50.0, strength=strength, name="T")
     return made
 
 
@@ -45,16 +47,19 @@ found = {"integrators": {}, "page": {}}
 for name in ("radau", "genalpha", "explicit", "energy"):
     made = run(scene(), name)
     events = made.report["events"]
+    wheel = made["wire.nodal_vectors"][:, 2, 0] - CENTRE
     found["integrators"][name] = {"balance": balance(made), "status": made.status, "force": made["T.force"].tolist(),
+                                  "reaction": made["T.reaction"].tolist(),
+                                  "off_rail": float(np.abs(np.linalg.norm(wheel, axis=1) - RADIUS).max()),
                                   "events": [[each["name"], each["what"], each["time"]] for each in events]}
 rest = scene(velocity=0.0, offset=0.05, strength=1e3).equilibrium()
 before, after = (rest.section_forces("wire", 0.5, side=side)["force"].values[0] for side in ("before", "after"))
-found["rest"] = {"force": rest["T.force"].tolist(), "stretch": float(rest["T.stretch"]),
-                 "jump": (before - after).tolist()}
+found["rest"] = {"force": rest["T.force"].tolist(), "reaction": rest["T.reaction"].tolist(),
+                 "stretch": float(rest["T.stretch"]), "jump": (before - after).tolist()}
 turned = run(scene(element="cable8p", up="z"))
 flat = run(scene(element="cable8p"))
 found["plane"] = {name: float(np.abs(turned[f"T.{name}"] - flat[f"T.{name}"] @ UP["z"].T).max())
-                  for name in ("force", "position")}
+                  for name in ("force", "reaction", "position")}
 
 
 def stop(time):
@@ -75,5 +80,6 @@ found["schema"] = "tow" in scene_schema()["properties"]
 found["stub"] = "def tow(" in stub()
 found["page"] = [mark.name for mark in made.animation().clips[0].marks]
 found["vectors"] = sorted(name for name in made.dataset.data_vars if name.startswith("T."))
-found["spec"] = [name for name in families() if "trial_law" in name]
+pages, faults = build("tow", FOLDER)
+found["theory"] = {"faults": faults, "formulas": pages[0].read_text(encoding="utf-8").count("<math id=")}
 print(json.dumps(found))
