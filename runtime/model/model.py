@@ -231,6 +231,11 @@ class Model:
         """Return the loads among the couplings."""
         return self.of(DeadLoadModel, LoadModel)
 
+    def place_slides(self, s: np.ndarray) -> None:
+        """Put the slides at arc-lengths (slides,) in m."""
+        for slide, at in zip(self.slides, s, strict=True):
+            slide.place_at(float(at), self.cables[slide.cable])
+
     @cached_property
     def slides(self) -> list[SlideModel]:
         """Return the slides among the couplings."""

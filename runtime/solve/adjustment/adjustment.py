@@ -20,8 +20,9 @@ from ...parts.settings import EquilibriumSettings
 from ...parts.spring import Spring
 from ..statics.rest_state import Adjustment, RestState
 from ..statics.stable_search import find_rest
+from ..statics.starts import fitted
 from ..statics.static import equilibrium, note
-from ..statics.static_problem import StaticProblem, fitted
+from ..statics.static_problem import StaticProblem
 from .parameter_search import AtRest, ParameterSearch
 from .parameters import Parameters
 from .snapshots import Reader

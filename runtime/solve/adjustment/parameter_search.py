@@ -30,7 +30,8 @@ from ...parts.settings import EquilibriumSettings
 from ...parts.spring import Spring
 from ..statics.rest_state import RestState
 from ..statics.stability import Stability
-from ..statics.static_problem import StaticProblem, StaticState, fitted
+from ..statics.starts import fitted
+from ..statics.static_problem import StaticProblem, StaticState
 from ..statics.turned_rest import turned_rest
 from .change import Change
 from .parameter_changes import Changes

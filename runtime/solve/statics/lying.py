@@ -1,6 +1,6 @@
-"""Cables that lie on something round as drawn: how far a step of the search may carry them, and whether they left it.
+"""Cables that lie on a round surface as drawn: the step of the search that keeps them there, and whether they left it.
 
-A step longer than a cable is thick takes it through a drum, or off it: friction holds only what is pressed.
+A step longer than the diameter of a cable takes it through a drum, or off it; friction holds it only under pressure.
 """
 
 from __future__ import annotations
@@ -26,7 +26,9 @@ MAX_RMS_STEP = 0.02
 
 
 class Lying(NamedTuple):
-    """A contact by penalty, by its number, where a cable lies as drawn; from s to s, m; the longest step in m."""
+    """The number of a penalty contact on which a cable lies as drawn, first and last arc-length in m, the longest step
+    in m.
+    """
 
     contact: int
     first: float
@@ -35,7 +37,7 @@ class Lying(NamedTuple):
 
 
 def lying(scene: SceneData, model: Model, q: np.ndarray) -> list[Lying]:
-    """Return where cables lie at a configuration (n,)."""
+    """Return the contacts on which cables lie at a configuration (n,)."""
     found = []
     for k, contact in enumerate(model.contacts):
         part = scene.contacts[contact.name]
@@ -51,7 +53,7 @@ def lying(scene: SceneData, model: Model, q: np.ndarray) -> list[Lying]:
 
 
 def left(problem: StaticProblem, places: list[Lying]) -> list[str]:
-    """Return a message for each of these places that the cable has left in the static state."""
+    """Return a message for each of these contacts that the cable has left in the static state."""
     if not places:
         return []
     touching = outputs_by_name("contact", problem.engine.static_outputs("contact"))["touching"]
@@ -61,12 +63,12 @@ def left(problem: StaticProblem, places: list[Lying]) -> list[str]:
 
 
 def not_held(problem: StaticProblem, places: list[Lying]) -> str:
-    """Return why a search may have failed for cables that lie on something; empty for others."""
+    """Return why a search may have failed for cables that lie on a surface; empty for others."""
     return "; ".join(f"{_lies(problem, place)}, and may slide off it: more friction holds it" for place in places)
 
 
 def _lies(problem: StaticProblem, place: Lying) -> str:
-    """Return where a cable lies as drawn, in words."""
+    """Return the place where a cable lies as drawn, in words."""
     part = problem.scene.contacts[problem.model.contacts[place.contact].name]
     return (f'{part.where}: "{part.a}" lies on "{part.b}" as drawn, from s = {place.first:.4g} m to '
             f"{place.last:.4g} m")

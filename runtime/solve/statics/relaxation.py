@@ -1,10 +1,10 @@
 """Dynamic relaxation: a scene moves, and is damped, until it rests.
 
 The damping is kinetic (Cundall 1976; Barnes 1999): whenever the kinetic energy has passed a maximum, all velocities are
-set to zero, which needs no number that depends on the scene. Between two resets the scene moves by generalised-alpha of
+set to zero. No parameter of it depends on the scene. Between two resets the scene moves by generalised-alpha of
 spectral radius 0, whose steps remove the vibrations that they do not resolve. Steps grow while a motion takes many of
-them; where the energy of a scene has risen from one reset to the next, steps were too long: the state before is taken
-back, and they become shorter. Near rest Newton's method finds the state to rounding, and its stability is checked.
+them. If the energy rises from one reset to the next, steps were too long: the search returns to the state before, with
+shorter steps. Near rest Newton's method finds the state to rounding, and its stability is checked.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from ...parts.settings import EquilibriumSettings, RelaxationSettings
 from ..notes.diagnosis import describe_dof
 from ..notes.row_notes import rest_notes
 from .rest_state import Relaxation, RestState
-from .stability import Stability, lowest_direction, stability
+from .stability import PUSH_SIZE, Stability, push_off, stability
 from .static_problem import StaticProblem, static_model
 from .turned_rest import turned_rest
 
@@ -62,8 +62,6 @@ MIN_DISTANCE_AFTER_PUSH = 10.0
 """Distance from an unstable state, as a multiple of the push, below which Newton's method would lead back to it."""
 MAX_NEWTON_MOVE = 0.1
 """Largest move of Newton's method to the same state of rest, as a fraction of the scene's size."""
-PUSH_SIZE = 1e-3
-"""Size of the push off an unstable branch, as a fraction of the scene's size."""
 MAX_PUSHES = 5
 DEFAULT_GRAVITY = 9.81
 """Gravity in m/s² of scenes without gravity, for the time above."""
@@ -75,37 +73,46 @@ class _PassedError(Exception):
 
 @dataclass
 class _NoEvents:
-    """Watches for no events but those of couplings, which act by themselves."""
+    """Watches no events but those of couplings, which the engine handles."""
 
     watches: list = field(default_factory=list)
 
     def acts(self, which: int, what: str, time: float, passed: bool, s: float | None) -> None:
-        """Do nothing: what sticks and strikes does so in the engine."""
+        """Ignore an event of a coupling."""
 
     def gives_way(self, cable: int, what: str, time: float, element: int) -> None:
-        """Do nothing: cables become slack and taut as the motion goes on."""
+        """Ignore that a cable becomes slack or taut."""
 
 
 @dataclass
 class _Place:
-    """Where a scene was when all velocities were zero: configuration, arc-lengths, energy in J."""
+    """A state with zero velocities: configuration, arc-lengths, energy in J."""
 
     q: np.ndarray
     s: np.ndarray
     energy: float
 
 
+@dataclass
+class _Leg:
+    """A part of the motion: how it ended, its number of steps, its first state, whether that was at rest."""
+
+    status: str
+    steps: int
+    begin: _Place
+    from_rest: bool
+    engine: Engine
+
+
 class _Motion:
-    """The damped motion of a scene: `model.q`, `model.v` and slides are where it is; `leg` goes on."""
+    """The damped motion of a scene; `model.q`, `model.v` and the slides of the model hold its state."""
 
     def __init__(self, scene: SceneData, problem: StaticProblem):
         self.problem, self.model = problem, static_model(scene)
         self.model.v[:] = 0.0
-        unknown = self.model.unknown_of_dof
-        self.free = unknown >= 0
-        self.unknown = unknown[self.free]
+        self.free = self.model.unknown_of_dof >= 0
         self.units = np.where(problem.weight > 0, problem.weight, np.inf)
-        self.largest_load = float(np.max(np.abs(problem.load_vector() / self.units), initial=0.0))
+        self.largest_load = float(np.max(np.abs(problem.load_vector() / self.units), initial=0.0)) or 1.0
         self.has_energy = not (any(isinstance(load, LoadModel) for load in self.model.loads) or self.model.drags
                                or any(contact.friction for contact in self.model.contacts))
         self.time = float(np.sqrt(problem.size / (np.linalg.norm(scene.gravity) or DEFAULT_GRAVITY)))
@@ -115,7 +122,7 @@ class _Motion:
     def over_unknowns(self, dofs: np.ndarray) -> np.ndarray:
         """Return dofs (n_dof,) as unknowns (n,); those that supports combine are left out."""
         found = np.zeros(self.problem.mass.shape[0])
-        found[self.unknown] = dofs[self.free]
+        found[self.model.unknown_of_dof[self.free]] = dofs[self.free]
         return found
 
     def kinetic_energy(self, v: np.ndarray) -> float:
@@ -124,11 +131,11 @@ class _Motion:
         return 0.5 * float(x @ (self.problem.mass @ x))
 
     def force(self, acceleration: np.ndarray) -> np.ndarray:
-        """Return the forces (n,) on the unknowns, in N, that accelerations (n_dof,) from rest show."""
+        """Return the forces (n,) on the unknowns in N at accelerations (n_dof,) from rest."""
         return np.abs(self.problem.mass @ self.over_unknowns(acceleration)) / self.units
 
     def energy(self, rows: dict[str, np.ndarray], q: np.ndarray) -> float:
-        """Return the energy of a first row, in J: elastic, of weight, and of loads of constant direction."""
+        """Return the energy of a first row in J: elastic, of weight, and of loads of constant direction."""
         energy = float(rows["elastic"][0] + rows["potential"][0])
         for load in self.model.loads:
             if isinstance(load, DeadLoadModel):
@@ -139,8 +146,7 @@ class _Motion:
     def put(self, q: np.ndarray, s: np.ndarray, v: np.ndarray | None = None) -> None:
         """Go to a configuration, at rest or with velocities."""
         self.model.q[:], self.model.v[:] = q, 0.0 if v is None else v
-        for slide, place in zip(self.model.slides, s, strict=True):
-            slide.place_at(float(place), self.model.cables[slide.cable])
+        self.model.place_slides(s)
 
     def leg(self) -> _Leg:
         """Move until the kinetic energy has passed a maximum, or for `STEP_REVIEW_INTERVAL` steps."""
@@ -170,30 +176,42 @@ class _Motion:
         self.report.steps += engine.statistics["steps"]
         return _Leg(status, steps, _Place(start[0], s, np.nan), not np.any(start[1]), engine)
 
-
-@dataclass
-class _Leg:
-    """A part of the motion: how it ended, after how many steps, where it began, whether at rest."""
-
-    status: str
-    steps: int
-    begin: _Place
-    from_rest: bool
-    engine: Engine
+    def go_on(self, leg: _Leg, last: _Place | None) -> None:
+        """Choose the next step, and return to a state at rest where this one failed; set velocities to zero at a
+        maximum.
+        """
+        _, q, v, s = leg.engine.now()
+        match leg.status:
+            case "passed":
+                self.put(q, s)
+                self.report.resets += 1
+                self.step *= (STEP_GROWTH if leg.steps > MANY_STEPS
+                              else SLOW_STEP_GROWTH if leg.steps >= SOME_STEPS else 1.0)
+            case "completed":
+                self.put(q, s, v)
+                self.step *= DOUBLE_STEP_GROWTH
+            case _:
+                begin = last or leg.begin
+                self.put(begin.q, begin.s)
+                self.step *= FAILED_STEP_RATIO
+        self.step = min(self.step, MAX_TIME_STEP * self.time)
 
 
 def relax(scene: SceneData, settings: RelaxationSettings, made: type[S]) -> S:
-    """Return the scene at rest under gravity, its constant loads and its springs, come to by a damped motion as drawn.
+    """Return the scene at rest under gravity, its constant loads and its springs, reached by a damped motion as drawn.
 
-    made: what the state is. Raises EquilibriumError, which keeps the state reached.
+    made: the class of the state. Raises EquilibriumError, which keeps the state reached.
     """
-    state = _Search(scene, settings, made).found()
+    search = _Search(scene, settings, made)
+    state = search.found()
+    for message in search.problem.messages:
+        warnings.warn(message, FunicularWarning, stacklevel=3)
     state.check_stable()
     return state
 
 
 class _Search(Generic[S]):
-    """A damped motion that is taken to rest, and looked at wherever its velocities have been set to zero."""
+    """A damped motion to rest; each state with zero velocities is assessed."""
 
     def __init__(self, scene: SceneData, settings: RelaxationSettings, made: type[S]):
         self.settings, self.made = settings, made
@@ -201,13 +219,13 @@ class _Search(Generic[S]):
         self.motion = _Motion(scene, self.problem)
         if self.problem.turns.fraction < 1.0:
             self._turn()
-        self.sticking = [n for n, slide in scene.slides.items() if slide.friction is not None]
+        self.sticking = [f'"{name}"' for name, slide in scene.slides.items() if slide.friction is not None]
         self.last: _Place | None = None
         self.near, self.pushes, self.force = NEWTON_RESIDUAL, 0, np.zeros(0)
         self.branch: dict | None = None
 
     def _turn(self) -> None:
-        """Begin where prescribed angles have been followed, without loads."""
+        """Follow prescribed angles without loads, before the motion begins."""
         problem = self.problem
         problem.load(0.0)
         found = turned_rest(problem)
@@ -239,149 +257,104 @@ class _Search(Generic[S]):
                     return found
                 if self.last is None:  # pushed off a state that is unstable
                     continue
-            _go_on(motion, leg, self.last)
-        raise _not_at_rest(self.problem, motion, self.force, self.last, self.settings, self.made)
+            motion.go_on(leg, self.last)
+        raise self._not_at_rest()
 
     def _rest_at(self, here: _Place) -> S | None:
-        """Return the state at rest that a place is, or is near to; None where the motion has to go on."""
-        motion, load = self.motion, self.motion.largest_load or 1.0
-        left = float(np.max(self.force, initial=0.0)) / load
-        motion.report.note(here.energy, left * load)
-        if self.sticking:
-            return _held(self.problem, motion, here, self.sticking, self.made) if left <= self.settings.tol else None
-        if not (left <= self.near
-                and (left <= NEWTON_RESIDUAL_AFTER_PUSH or _is_away(self.problem, here, self.branch))):
+        """Return the state at rest at or near a place; None where the motion has to go on."""
+        problem, left = self.problem, float(np.max(self.force, initial=0.0)) / self.motion.largest_load
+        self.motion.report.note(here.energy, left * self.motion.largest_load)
+        if self.sticking:  # Newton's method leaves friction out, and would move the state
+            return self._as_it_is(here) if left <= self.settings.tol else None
+        if not (left <= self.near and (left <= NEWTON_RESIDUAL_AFTER_PUSH or self._is_away(here))):
             return None
-        found = _polished(self.problem, here)
-        if found is None:
-            if left <= self.settings.tol:
-                return _unpolished(self.problem, motion, here, self.made)
+        self._go_to(here)
+        kept = problem.keep()
+        if not (problem.newton() and problem.distance(kept) <= MAX_NEWTON_MOVE * problem.size):
             self.near /= 3.0
+            return self._as_it_is(here) if left <= self.settings.tol else None
+        found = stability(problem)
+        if found.unstable and self.pushes < MAX_PUSHES:
+            self._push()
             return None
-        if not (found.unstable and self.pushes < MAX_PUSHES):
-            return _finished(self.problem, motion, found, self.pushes, self.made)
-        self._push()
-        return None
+        if self.pushes:
+            problem.messages.append("the scene came to rest on an unstable branch and was pushed off it; nothing says "
+                                    "to which side, so that there may be more such states")
+        if found.unstable or not found.known:
+            problem.messages.append(f"the state is {found}")
+        return self._reported(found)
 
     def _push(self) -> None:
-        """Move the scene off an unstable state, along its lowest direction, and forget the last place."""
+        """Move the scene off an unstable state along its lowest direction, and forget the last place."""
         problem = self.problem
         self.pushes, self.branch = self.pushes + 1, problem.keep()
-        problem.move(PUSH_SIZE * problem.size * lowest_direction(problem))
+        push_off(problem)
         pushed = problem.keep()
         self.motion.put(pushed["q"], pushed["s"])
         self.last = None
 
+    def _is_away(self, here: _Place) -> bool:
+        """Return whether a place is far from the unstable state that the scene was pushed off, if any."""
+        self.problem.engine.set_state(0.0, q=here.q, s=here.s)
+        return (self.branch is None
+                or self.problem.distance(self.branch) > MIN_DISTANCE_AFTER_PUSH * PUSH_SIZE * self.problem.size)
 
-def _go_on(motion: _Motion, leg: _Leg, last: _Place | None) -> None:
-    """Choose the next step, and begin anew where this one could not be made; set velocities to zero at a maximum."""
-    _, q, v, s = leg.engine.now()
-    match leg.status:
-        case "passed":
-            motion.put(q, s)
-            motion.report.resets += 1
-            motion.step *= (STEP_GROWTH if leg.steps > MANY_STEPS
-                            else SLOW_STEP_GROWTH if leg.steps >= SOME_STEPS else 1.0)
-        case "completed":
-            motion.put(q, s, v)
-            motion.step *= DOUBLE_STEP_GROWTH
-        case _:
-            motion.put(*((last.q, last.s) if last else (leg.begin.q, leg.begin.s)))
-            motion.step *= FAILED_STEP_RATIO
-    motion.step = min(motion.step, MAX_TIME_STEP * motion.time)
+    def _go_to(self, here: _Place) -> None:
+        """Put the static problem into a place, with the forces of slides, joints and springs that leave the least
+        residual on nodes and bodies, in the least squares. Slides may bear forces along their cables, by friction.
+        """
+        problem = self.problem
+        problem.engine.set_state(0.0, q=here.q, s=here.s)
+        tangent, residual = problem.tangent().tocsr(), problem.residual()
+        forces = np.setdiff1d(np.arange(tangent.shape[0]), problem.coordinates)
+        rows = problem.coordinates[problem.coordinates < problem.model.n_band + problem.model.n_border_dof]
+        if len(forces):
+            change = np.zeros(tangent.shape[0])
+            change[forces] = np.linalg.lstsq(tangent[rows][:, forces].toarray(), -residual[rows], rcond=None)[0]
+            problem.engine.move(change)
 
+    def _as_it_is(self, here: _Place) -> S:
+        """Return a state of rest to the tolerance: with friction, or one that Newton's method does not find."""
+        self._go_to(here)
+        found = stability(self.problem)
+        if self.sticking:
+            message = (f"friction of {' and '.join(self.sticking)} has part in this state, which is one of many: where "
+                       "it stops depends on how the motion is damped")
+            found = Stability(0, 0, known=False) if found.unstable else found
+        else:
+            doubt = f"; it is {found}" if found.unstable or not found.known else ""
+            message = f"Newton's method does not find this state to rounding: forces are left over{doubt}"
+        self.problem.messages.append(message)
+        state = self._reported(found)
+        state.residual = self.motion.report.residuals[-1]
+        return state
 
-def _is_away(problem: StaticProblem, here: _Place, branch: dict | None) -> bool:
-    """Return whether a place is far from the unstable state that the scene was pushed off, if any."""
-    problem.engine.set_state(0.0, q=here.q, s=here.s)
-    return branch is None or problem.distance(branch) > MIN_DISTANCE_AFTER_PUSH * PUSH_SIZE * problem.size
+    def _reported(self, found: Stability) -> S:
+        """Return the problem's state with its messages."""
+        problem, report = self.problem, self.motion.report
+        state = self.made.of(problem, found)
+        state.relaxation = report
+        problem.messages += rest_notes(problem.scene, problem.model, problem.engine, state.static_state,
+                                       state.couplings)
+        LOG.info("relaxation: %d steps, %d resets, %.3g N left over", report.steps, report.resets, state.residual)
+        state.messages = [str(report), *problem.messages, *implausible(problem.scene)]
+        return state
 
-
-def _polished(problem: StaticProblem, here: _Place) -> Stability | None:
-    """Bring a state near rest to rest by Newton's method; None where that fails, or leads away."""
-    problem.engine.set_state(0.0, q=here.q, s=here.s)
-    _share_forces(problem)
-    kept = problem.keep()
-    if problem.newton() and problem.distance(kept) <= MAX_NEWTON_MOVE * problem.size:
-        return stability(problem)
-    return None
-
-
-def _finished(problem: StaticProblem, motion: _Motion, found: Stability, pushes: int, made: type[S]) -> S:
-    """Return the state of rest that Newton's method has found."""
-    if pushes:
-        problem.messages.append("the scene came to rest on an unstable branch and was pushed off it; nothing says to "
-                                "which side, so that there may be more such states")
-    if found.unstable or not found.known:
-        problem.messages.append(f"the state is {found}")
-    return _told(problem, motion, found, made)
-
-
-def _unpolished(problem: StaticProblem, motion: _Motion, here: _Place, made: type[S]) -> S:
-    """Return a state of rest to the tolerance, which Newton's method does not find."""
-    problem.engine.set_state(0.0, q=here.q, s=here.s)
-    _share_forces(problem)
-    found = stability(problem)
-    doubt = f"; it is {found}" if found.unstable or not found.known else ""
-    problem.messages.append(f"Newton's method does not find this state to rounding: forces are left over{doubt}")
-    state = _told(problem, motion, found, made)
-    state.residual = motion.report.residuals[-1]
-    return state
-
-
-def _held(problem: StaticProblem, motion: _Motion, here: _Place, sticking: list[str], made: type[S]) -> S:
-    """Return a state of rest that friction has part in: Newton's method, which leaves friction out, would move it."""
-    problem.engine.set_state(0.0, q=here.q, s=here.s)
-    _share_forces(problem)
-    free = stability(problem)
-    names = " and ".join(f'"{name}"' for name in sticking)
-    problem.messages.append(f"friction of {names} has part in this state, which is one of many: where it stops depends "
-                            "on how the motion is damped")
-    state = _told(problem, motion, Stability(0, 0, known=False) if free.unstable else free, made)
-    state.residual = motion.report.residuals[-1]
-    return state
-
-
-def _share_forces(problem: StaticProblem) -> None:
-    """Give slides, joints and springs the forces that leave the least on nodes and bodies, in the least squares; that
-    slides bear nothing along their cables is not asked for: friction does.
-    """
-    tangent, residual = problem.tangent().tocsr(), problem.residual()
-    forces = np.setdiff1d(np.arange(tangent.shape[0]), problem.coordinates)
-    rows = problem.coordinates[problem.coordinates < problem.model.n_band + problem.model.n_border_dof]
-    change = np.zeros(tangent.shape[0])
-    if len(forces):
-        change[forces] = np.linalg.lstsq(tangent[rows][:, forces].toarray(), -residual[rows], rcond=None)[0]
-        problem.engine.move(change)
-
-
-def _told(problem: StaticProblem, motion: _Motion, found: Stability, made: type[S]) -> S:
-    """Return the problem's state with what is to be said of it; what a user must know is a warning, too."""
-    state = made.of(problem, found)
-    state.relaxation = motion.report
-    problem.messages += rest_notes(problem.scene, problem.model, problem.engine, state.static_state, state.couplings)
-    for message in problem.messages:
-        warnings.warn(message, FunicularWarning, stacklevel=5)
-    LOG.info("relaxation: %d steps, %d resets, %.3g N left over", motion.report.steps, motion.report.resets,
-             state.residual)
-    state.messages = [str(motion.report), *problem.messages, *implausible(problem.scene)]
-    return state
-
-
-def _not_at_rest(problem: StaticProblem, motion: _Motion, force: np.ndarray, last: _Place | None,
-                 settings: RelaxationSettings, made: type[S]) -> EquilibriumError:
-    """Return the error of a scene that has not come to rest, which says what is farthest from it."""
-    if last:
-        problem.engine.set_state(0.0, q=last.q, s=last.s)
-    state = made.of(problem, stability(problem))
-    state.relaxation = motion.report
-    where = ""
-    if np.any(force):
-        most = int(np.argmax(force))
-        dof = int(np.flatnonzero(motion.model.unknown_of_dof == most)[0])
-        where = f"; {describe_dof(motion.model, dof)} is farthest from rest, {force[most]:.3g} N are left over there"
-    why = (f"after {motion.report.steps} steps" if motion.report.steps >= settings.max_steps else
-           "where steps that are shorter do not help either")
-    return EquilibriumError(f"the scene did not come to rest, {why}{where}: something may be free to move away or to "
-                            "run off its cable; take more max_steps, or a larger tol; the state is kept in .state",
-                            state, 1.0)
+    def _not_at_rest(self) -> EquilibriumError:
+        """Return the error of a scene that has not come to rest, with the place that is farthest from it."""
+        problem, model, report = self.problem, self.motion.model, self.motion.report
+        if self.last:
+            problem.engine.set_state(0.0, q=self.last.q, s=self.last.s)
+        state = self.made.of(problem, stability(problem))
+        state.relaxation = report
+        where = ""
+        if np.any(self.force):
+            most = int(np.argmax(self.force))
+            dof = int(np.flatnonzero(model.unknown_of_dof == most)[0])
+            where = (f"; {describe_dof(model, dof)} is farthest from rest, {self.force[most]:.3g} N are left over "
+                     "there")
+        why = (f"after {report.steps} steps" if report.steps >= self.settings.max_steps else
+               "where steps that are shorter do not help either")
+        return EquilibriumError(f"the scene did not come to rest, {why}{where}: something may be free to move away or "
+                                "to run off its cable; take more max_steps, or a larger tol; the state is kept in "
+                                ".state", state, 1.0)

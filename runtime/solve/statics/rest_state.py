@@ -285,8 +285,7 @@ class RestState(NamedArrays):
         """Put a freshly built model of the scene into this state. Raises SceneError where supports are elsewhere."""
         self.check_supports(model, scene)
         model.q = self.static_state["q"].copy()
-        for slide, s in zip(model.slides, self.static_state["s"], strict=True):
-            slide.place_at(float(s), model.cables[slide.cable])
+        model.place_slides(self.static_state["s"])
 
     def _quantities(self) -> dict[str, np.ndarray]:
         kept = self.static_state

@@ -1,4 +1,4 @@
-"""Stability of a state of rest: how many independent directions lower its energy, and one of them."""
+"""Stability of a state of rest: the number of independent directions that lower its energy, and the lowest of them."""
 
 from __future__ import annotations
 
@@ -18,6 +18,8 @@ MAX_UNSYMMETRIC_UNKNOWNS = 1500
 """Unknowns up to which all eigenvalues of an unsymmetric stiffness are computed."""
 MAX_DENSE_UNKNOWNS = 600
 """Unknowns up to which LAPACK finds the lowest direction."""
+PUSH_SIZE = 1e-3
+"""Size of the push off an unstable branch, as a fraction of the scene's size."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +53,7 @@ class Stability:
 
 
 def stability(problem: StaticProblem) -> Stability:
-    """Count at the static state, under the load that is on."""
+    """Return the stability of the static state under the present load."""
     K, C, units = problem.stiffness()
     if not K.shape[0]:
         return Stability(0, 0)
@@ -59,7 +61,8 @@ def stability(problem: StaticProblem) -> Stability:
 
 
 def count(K: csc_array, C: csr_array, units: np.ndarray) -> Stability:
-    """Count for a stiffness K on constraints C; units: how far a unit of each coordinate moves a point, m."""
+    """Return the stability for a stiffness K on constraints C; units: displacement in m by a unit of each coordinate.
+    """
     try:
         return _counted(K, C, units)
     except ArithmeticError:
@@ -81,8 +84,8 @@ def _counted(K: csc_array, C: csr_array, units: np.ndarray) -> Stability:
 
 
 def lowest_direction(problem: StaticProblem) -> np.ndarray:
-    """Return (unknowns,): the direction of the least curvature of the scaled stiffness' symmetric part, towards the
-    loads if it has a part along them, the largest entry positive if not; its length in m is one.
+    """Return (unknowns,): the direction of the least curvature of the symmetric part of the scaled stiffness, 1 m long.
+    It points along the loads, or has a positive largest entry where it is orthogonal to them.
     """
     K, C, units = problem.stiffness()
     n = K.shape[0]
@@ -102,6 +105,11 @@ def lowest_direction(problem: StaticProblem) -> np.ndarray:
     largest = direction[np.argmax(np.abs(problem.weight * direction))]
     return direction * (np.sign(along) if abs(along) > 1e-9 * np.linalg.norm(direction) * np.linalg.norm(
         problem.load_vector()) else np.sign(largest)) / problem.length(direction)
+
+
+def push_off(problem: StaticProblem) -> None:
+    """Move the static state off an unstable branch, along its lowest direction."""
+    problem.move(PUSH_SIZE * problem.size * lowest_direction(problem))
 
 
 def _free(C: csr_array, n: int) -> np.ndarray:

@@ -1,18 +1,20 @@
-"""The search for a stable state of rest under the load that is on, from wherever the state is.
+"""The search for a stable state of rest under the present load, from the present state.
 
 Newton's method ends at any state of rest, on unstable branches too: a slack cable drawn straight stays straight, under
 compression. Such cables are therefore first put into the shape of strings (`string_start`). Where Newton's method ends
 at an unstable state, or at none, the search starts again: from the shape of strings for all cables, and by two methods
-that descend from the first state, `stiffen`, for scenes with cables, and `relax`.
+that descend from the first state, `stiffen`, for scenes with cables, and `relax`. All of these are needed: without
+`stiffen` slack cables in load steps and along paths end at compressed states (tests/statics/test_slack_cables.py).
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from ...model.constants import constants
+from ...parts.section_stiffness import section_stiffness
 from .lying import left, lying
-from .softening import Softening
-from .stability import Stability, lowest_direction, stability
+from .stability import Stability, push_off, stability
 from .static_problem import StaticProblem
 from .string_start import hang
 
@@ -25,8 +27,8 @@ MAX_DISTANCE = 10.0
 """Distance, as a multiple of the scene's size, beyond which a scene does not come to rest."""
 MIN_MASS_RATIO = 1e-12
 """Mass of the pseudo-dynamics over that of the fastest vibration, below which steps are those of Newton."""
-PUSH_SIZE = 1e-3
-"""Size of the push off an unstable branch, as a fraction of the scene's size."""
+MIN_AXIAL_STIFFNESS_RATIO = 12.0
+"""Lower bound of EA l²/EI of the shortest element: an element softer along its axis than in bending folds up."""
 STIFFENING_FACTOR = 100.0
 """Ratio of the stiffnesses of two consecutive stages of `stiffen`."""
 
@@ -35,18 +37,17 @@ BRANCH_CHOICE_REMEDY = ("; the branch that the search leaves on is not determine
 
 
 def find_rest(problem: StaticProblem) -> Stability | None:
-    """Bring the static state to rest, stable if that can be found; None where there is none, or none was found.
+    """Bring the static state to rest, stable if that can be found; None where no state of rest was found.
 
-    What was passed on the way, and what is doubtful, is added to problem.messages.
+    Adds the unstable states passed and what is doubtful to problem.messages.
     """
     places = lying(problem.scene, problem.model, problem.keep()["q"])
-    begin, told = problem.keep(), list(problem.messages)
+    begin, messages = problem.keep(), list(problem.messages)
     found = _search(problem)
     if problem.settings.seek_stable and places and not problem.held and (found is None or left(problem, places)):
-        problem.held = True  # it is long, and a second time no better
-        away, messages = problem.keep(), problem.messages
+        problem.held = True  # slow, and of no more use a second time
+        away, messages, problem.messages = problem.keep(), problem.messages, messages
         problem.restore(begin)
-        problem.messages = told
         if (held := relax(problem, min(place.step for place in places), MAX_SHORT_STEPS)) is not None:
             return held
         problem.restore(away)
@@ -55,37 +56,36 @@ def find_rest(problem: StaticProblem) -> Stability | None:
 
 
 def _search(problem: StaticProblem) -> Stability | None:
-    """Do the same without regard to what cables lie on."""
+    """Do the same regardless of surfaces that cables lie on."""
     begin, passed = problem.keep(), None
     passed_at, problem.pushed = begin, False
     if problem.settings.seek_stable and (stable := from_strings(problem, every=False)) is not None:
         return stable
     problem.restore(begin)
     if problem.newton():
-        found = stability(problem)
-        if not found.unstable or not problem.settings.seek_stable:
-            return found
-        passed, passed_at = found, problem.keep()
+        passed, passed_at = stability(problem), problem.keep()
+        if not passed.unstable or not problem.settings.seek_stable:
+            return passed
     for descend in (from_strings, stiffen, relax) if problem.settings.seek_stable else (relax,):
         problem.restore(begin)
         if (stable := descend(problem)) is not None:
             if passed is not None:
-                _tell(problem, passed)
+                _report(problem, passed)
             return stable
     if passed is not None:
         problem.restore(passed_at)
     return passed
 
 
-def _tell(problem: StaticProblem, passed: Stability) -> None:
-    """Add the message of an unstable state that was passed."""
+def _report(problem: StaticProblem, passed: Stability) -> None:
+    """Add the message of an unstable state that the search has passed."""
     problem.messages.append(f"Newton's method found a state of rest that is {passed}; the search went on to a stable "
                             f"one{BRANCH_CHOICE_REMEDY * problem.pushed}")
 
 
 def from_strings(problem: StaticProblem, every: bool = True) -> Stability | None:
-    """Find a stable state from where cables are that hang as strings do, see `hang`: by Newton's method, from the
-    unstable state that this finds, pushed off it, by `relax`, or by that alone; else None.
+    """Find a stable state from cables in the shape of strings, see `hang`, by Newton's method, and by `relax` where
+    that finds none, or from a push off the unstable state that it finds; else None.
     """
     if not hang(problem, every):
         return None
@@ -96,11 +96,11 @@ def from_strings(problem: StaticProblem, every: bool = True) -> Stability | None
     found = stability(problem)
     if not found.unstable:
         return found
-    problem.move(PUSH_SIZE * problem.size * lowest_direction(problem))
+    push_off(problem)
     stable = relax(problem)
     if stable is not None:
         problem.pushed = True
-        _tell(problem, found)
+        _report(problem, found)
     return stable
 
 
@@ -108,10 +108,10 @@ def relax(problem: StaticProblem, longest: float = np.inf, most: int = MAX_RELAX
     """Relax by pseudo-transient continuation (Kelley & Keyes 1998): implicit Euler without regard to accuracy, its step
     growing as the motion fades; to a stable state, or None.
 
-    A step never goes along a direction of negative curvature: it is made shorter until mass outweighs that, so that it
+    A step never follows a direction of negative curvature: it is shortened until mass outweighs that, so that it
     descends (the test of curvature is that of Chiang & Zavala 2016). A state that its symmetry keeps at rest on an
-    unstable branch is pushed off along the direction of the least curvature. Where any state of rest will do
-    (seek_stable), neither is done. longest: of the steps, m; most: so many.
+    unstable branch is pushed off along its lowest direction. Where any state of rest is wanted (seek_stable is False),
+    neither is done. longest: step, in m; most: number of steps.
     """
     longest = min(longest, MAX_STEP_MOVE * problem.size)
     mass, near, kept, begin = 1e-3 * problem.fastest, 1e-5, problem.keep(), problem.keep()
@@ -137,7 +137,7 @@ def relax(problem: StaticProblem, longest: float = np.inf, most: int = MAX_RELAX
             continue
         if descends and stability(problem).unstable:
             if size < 1e-6 * problem.size and mass <= least:
-                problem.move(PUSH_SIZE * problem.size * lowest_direction(problem))
+                push_off(problem)
                 kept = problem.keep()
                 problem.pushed = True
             continue
@@ -153,10 +153,10 @@ def relax(problem: StaticProblem, longest: float = np.inf, most: int = MAX_RELAX
 
 def _correction(problem: StaticProblem, mass: float, descends: bool,
                 longest: float) -> tuple[np.ndarray | None, float, float]:
-    """Return a correction with so much mass, its size in m, and, where there is none, what the mass must grow by.
+    """Return the correction with this mass, its size in m, and the factor of the mass with which to try again.
 
-    There is none where the matrix is singular, the correction is too large or, if it is to descend, goes along a
-    direction of negative curvature.
+    The correction is None where the matrix is singular, where it is too large or, if it must descend, where it follows
+    a direction of negative curvature.
     """
     try:
         change = problem.solver(mass)(-problem.residual())
@@ -169,19 +169,25 @@ def _correction(problem: StaticProblem, mass: float, descends: bool,
 
 
 def stiffen(problem: StaticProblem) -> Stability | None:
-    """Make cables first so soft along their axis that their loads put all of them in tension, then stiffer in stages,
-    each starting from the one before; the last is the true scene. None where there is no cable to soften.
+    """Soften cables along their axis until their loads put all of them in tension, then stiffen them in stages; each
+    stage starts from the one before, and the last is the true scene. None where there is no cable to soften.
 
-    A slack cable that is as stiff as it is would fold up in short waves while it falls into its shape.
+    A slack cable of its full axial stiffness would fold up in short waves while it falls into its shape.
     """
-    softening = Softening(problem)
-    if softening.factor is None:
+    softest = _softest(problem)
+    if not softest:
         return None
-    found, factor = None, softening.factor
+
+    def apply(factor: float) -> None:
+        for k, least in softest.items():
+            problem.engine.stiffen(k, constants(cables[k], max(factor, least)))
+
+    cables = list(problem.scene.cables.values())
+    found, factor = None, min(softest.values())
     try:
         while True:
-            softening.apply(factor)
-            if factor < softening.factor * STIFFENING_FACTOR and found is None:
+            apply(factor)
+            if found is None:
                 found = relax(problem)
             else:
                 kept = problem.keep()
@@ -193,4 +199,21 @@ def stiffen(problem: StaticProblem) -> Stability | None:
                 return found
             factor = min(1.0, factor * STIFFENING_FACTOR)
     finally:
-        softening.apply(1.0)
+        apply(1.0)
+
+
+def _softest(problem: StaticProblem) -> dict[int, float]:
+    """Return, by the number of a cable, the factor of EA at which its own loads stretch it by about its length.
+
+    Cables are softened whose law takes EA and EI, that of all cable elements; sections of beams resist.
+    """
+    found = {}
+    load = float(np.abs(problem.load_vector()[problem.weight == 1.0]).sum())
+    for k, (model, cable) in enumerate(zip(problem.model.cables, problem.scene.cables.values(), strict=True)):
+        S = section_stiffness(cable.stiffness_law, cable.section, cable.material, cable.dim)
+        if S.shape not in ((2,), (3,)):  # EA, EI, and EA of the upper modes of an assumed strain
+            continue
+        least = max(load, MIN_AXIAL_STIFFNESS_RATIO * S[1] / float(model.mesh.lengths.min()) ** 2) / S[0]
+        if least < 1.0:
+            found[k] = least
+    return found

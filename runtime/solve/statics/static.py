@@ -1,7 +1,6 @@
-"""RestState: a scene's rest under its loads, found at once, in load steps, or along the path of equilibria.
+"""The state of rest of a scene under its loads, found at once, in load steps, or along the path of equilibria.
 
-A state at the load fraction p is at rest under p times all loads (static_problem.py): a scene drawn with stress
-first
+A state at the load fraction p is at rest under p times all loads (static_problem.py); a scene drawn with stress first
 comes to rest without them.
 """
 
@@ -22,9 +21,9 @@ from .path_following import Critical, Point, follow
 from .rest_state import CriticalPoint, RestState
 from .spinning_sections import spinning
 from .stability import stability
-from .static_problem import StaticProblem, fitted
+from .starts import fitted, on_mesh
+from .static_problem import StaticProblem
 from .turned_rest import turned_rest
-from .warm_start import carried
 
 LOG = logging.getLogger(__name__)
 
@@ -39,16 +38,14 @@ POSITION_ROUNDING = 1e-9
 
 
 def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestState | None, made: type[S]) -> S:
-    """Return the scene at rest under gravity, its loads at t = 0 and its springs; start: a state to begin from, also of
-    another mesh, else as drawn.
+    """Return the scene at rest under gravity, its loads at t = 0 and its springs.
 
-    made: what the states are, of which it returns one.
-
-    Raises SceneError, EquilibriumError.
+    start: a state to begin from, also of another mesh, else as drawn; made: the class of the states. Raises SceneError,
+    EquilibriumError.
     """
     problem = StaticProblem(scene, settings, {} if start is None else start.turned)
     if start is not None:
-        problem.restore(fitted(carried(start.static_state, start.model, problem.model, problem.keep()), problem.model))
+        problem.restore(fitted(on_mesh(start.static_state, start.model, problem.model, problem.keep()), problem.model))
     search = _Search(problem, made)
     reached = search.along_path(start) if settings.method == "arc_length" else search.in_steps()
     state = search.found
@@ -73,22 +70,21 @@ def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestStat
 
 def note(problem: StaticProblem, state: RestState) -> None:
     """Complete a state's messages; what a user must know is a warning, too."""
-    if rubbing := [name for name, slide in problem.scene.slides.items() if slide.friction is not None]:
-        names = " and ".join(f'"{name}"' for name in rubbing)
-        problem.messages.append(f"friction of {names} is left out: at rest slides move freely")
+    scene = problem.scene
+    for parts, what in (([f'"{name}"' for name, slide in scene.slides.items() if slide.friction is not None], "slides"),
+                        ([contact.where for contact in scene.contacts.values()
+                          if contact.is_hard and contact.friction_coefficient], "contacts")):
+        if parts:
+            problem.messages.append(f"friction of {' and '.join(parts)} is left out: at rest {what} move freely")
     problem.messages += rest_notes(problem.scene, problem.model, problem.engine, state.static_state, state.couplings)
     problem.messages += outside_tables(problem.model, state.static_state["q"])
-    if rough := [contact.where for contact in problem.scene.contacts.values()
-                 if contact.is_hard and contact.friction_coefficient]:
-        problem.messages.append(f"friction of {' and '.join(rough)} is left out: at rest what touches moves freely")
     if not state.stable:
         leaves = "; a small disturbance leaves it" * state.stability.known
         problem.messages.append(f"the state is {state.stability}{leaves}")
     LOG.info("equilibrium: load fraction %g after %d iterations, residual %.3g N", state.load_fraction,
              state.iterations, state.residual)
-    places = lying(problem.scene, problem.model, problem.model.q)
     if state.load_fraction == 1.0:
-        problem.messages += left(problem, places)
+        problem.messages += left(problem, lying(problem.scene, problem.model, problem.model.q))
     state.messages = problem.messages + implausible(problem.scene)
     for message in problem.messages:
         warnings.warn(message, FunicularWarning, stacklevel=4)
@@ -105,7 +101,7 @@ class _Search(Generic[S]):
 
     @property
     def found(self) -> S:
-        """Return the last state, of a search that has begun."""
+        """The last state."""
         assert self.state is not None, "no state was sought yet"
         return self.state
 
@@ -116,9 +112,9 @@ class _Search(Generic[S]):
         state.path, state.critical_points = list(self.path), list(self.critical)
 
     def in_steps(self) -> float:
-        """Load steps, halved where no state of rest is found; returns the fraction of the load reached.
+        """Take load steps, halved where no state of rest is found; return the fraction of the load reached.
 
-        One step needs no path: the state at rest is sought under all loads at once.
+        A single step seeks the state of rest under all loads at once.
         """
         problem, steps = self.problem, self.problem.settings.load_steps
         begin, reached, step = problem.keep(), 0.0, 1.0 / steps
@@ -151,7 +147,7 @@ class _Search(Generic[S]):
         return reached
 
     def without_loads(self) -> bool:
-        """Bring the static state to rest without loads; returns whether that was found."""
+        """Bring the static state to rest without loads; return whether that was found."""
         problem = self.problem
         drawn = problem.keep()
         problem.load(0.0)
@@ -168,9 +164,7 @@ class _Search(Generic[S]):
         return found is not None
 
     def lightly_loaded(self) -> float:
-        """Begin the path with a few small loads: where something is free to move without loads, the loads say where it
-        rests.
-        """
+        """Begin the path at a small load, which positions parts that are free without loads; return its fraction."""
         problem = self.problem
         free = problem.keep()
         problem.load(POSITIONING_LOAD)
@@ -184,7 +178,7 @@ class _Search(Generic[S]):
         return POSITIONING_LOAD
 
     def along_path(self, start: RestState | None) -> float:
-        """Follow the path from rest without loads, or from a state of rest on it; returns the fraction of the load
+        """Follow the path from rest without loads, or from a state of rest on it; return the fraction of the load
         reached.
         """
         problem = self.problem
@@ -197,11 +191,10 @@ class _Search(Generic[S]):
         else:
             reached, heading = start.load_fraction, start.heading
             problem.load(reached)
-            is_turned = problem.turns.fraction == 1.0
-            if not (problem.newton() if is_turned else turned_rest(problem) is not None):
-                self.state = self.made.of(problem, stability(problem))
-                return reached
+            found = problem.newton() if problem.turns.fraction == 1.0 else turned_rest(problem) is not None
             self.state = self.made.of(problem, stability(problem))
+            if not found:
+                return reached
         for point in follow(problem, reached, heading):
             if isinstance(point, Critical):
                 self.critical.append(CriticalPoint(point.point.fraction, point.kind, point.directions,

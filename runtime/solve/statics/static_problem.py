@@ -17,17 +17,14 @@ from ...model.build import build
 from ...model.model import Model
 from ...model.redundant_constraints import drop_redundant_rows
 from ...model.states import attachment_points
-from ...model.unknowns import as_supports_leave
 from ...parts.scene_data import SceneData
 from ...parts.settings import EquilibriumSettings
 from ..linear.condensation import condensed, fastest
-from .guess_from_supports import with_moved_supports
+from .starts import with_moved_supports
 from .turns import Turns
 
 MAX_CORRECTION_GROWTH = 1e3
 """Ratio of a correction to the smallest one before above which Newton's method diverges."""
-COORDINATE_ROUNDING = 1e-13
-"""Relative difference, due to rounding, of a coordinate from the value that a support prescribes."""
 ZERO_STIFFNESS_RATIO = 1e-14
 """Stiffnesses below this fraction of the fastest vibration's square count as zero."""
 
@@ -222,20 +219,6 @@ def units_of(weight: np.ndarray, model: Model) -> np.ndarray:
     """Return (coordinates,): how far a unit of each moves a point, in m; weight: of all unknowns, see `StaticState`."""
     of_coordinates = weight[coordinates_of(model)]
     return np.where(of_coordinates > 0, of_coordinates, 1.0)
-
-
-def fitted(kept: dict, model: Model) -> dict:
-    """Return a static state as the supports of a model have it, which may be drawn elsewhere than where it was found:
-    what they fix is as drawn, what they tie follows, and what is free stays to the bit.
-    """
-    if not model.cables:
-        return kept
-    own = slice(0, model.cables[-1].coordinates.stop)
-    q, drawn = kept["q"].copy(), model.q[own]
-    change = q[own] - drawn
-    left = as_supports_leave(change, model.unknown_of_dof[own], model.combinations)
-    q[own] = np.where(np.abs(left - change) > COORDINATE_ROUNDING * (1 + np.abs(q[own])), drawn + left, q[own])
-    return kept | {"q": q}
 
 
 def _point_entries(model: Model) -> np.ndarray:

@@ -1,0 +1,82 @@
+"""States from which the search for rest begins, where supports have moved, and on another mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ...model.model import CableModel, Model
+from ...model.unknowns import as_supports_leave
+
+COORDINATE_ROUNDING = 1e-13
+"""Relative difference, due to rounding, of a coordinate from the value that a support prescribes."""
+
+
+def with_moved_supports(model: Model, begin: dict) -> dict:
+    """Return the state as drawn with each cable's free nodes moved, too: linearly along the cable between those that
+    motions prescribe.
+
+    A prescribed node that passes its free neighbour would turn the element between them back on itself, where Newton's
+    method may leave it.
+    """
+    if not model.motions:
+        return begin
+    q = begin["q"].copy()
+    free = model.unknown_of_dof[: model.cables[-1].coordinates.stop] != -1
+    for cable in model.cables:
+        s, r = cable.mesh.node_s, cable.positions(q)
+        fixed, moved = ~cable.positions(free), r - cable.positions(model.q)
+        for axis in range(cable.shape[2]):
+            at = fixed[:, axis]
+            if at.any():
+                r[~at, axis] += np.interp(s, s[at], moved[at, axis])[~at]
+    return begin | {"q": q}
+
+
+def fitted(kept: dict, model: Model) -> dict:
+    """Return a static state with the supports of a model, which may be drawn elsewhere: fixed coordinates are as drawn,
+    tied ones follow, and free ones stay to the bit.
+    """
+    if not model.cables:
+        return kept
+    own = slice(0, model.cables[-1].coordinates.stop)
+    q, drawn = kept["q"].copy(), model.q[own]
+    change = q[own] - drawn
+    left = as_supports_leave(change, model.unknown_of_dof[own], model.combinations)
+    q[own] = np.where(np.abs(left - change) > COORDINATE_ROUNDING * (1 + np.abs(q[own])), drawn + left, q[own])
+    return kept | {"q": q}
+
+
+def on_mesh(kept: Mapping[str, np.ndarray], was: Model, model: Model, drawn: Mapping[str, np.ndarray]) -> dict:
+    """Return a static state on the meshes of another model of the same parts; itself on the same meshes.
+
+    kept: of `was`; drawn: the state of the other model, which keeps the numbers of its elements, and the forces of
+    contacts where their number differs.
+    """
+    fitting = {name: values for name, values in kept.items() if values.shape == np.shape(drawn[name])}
+    pairs = list(zip(was.cables, model.cables, strict=True))
+    if all(np.array_equal(one.mesh.node_s, other.mesh.node_s) for one, other in pairs):
+        return dict(drawn) | fitting
+    q = drawn["q"].copy()
+    for one, other in pairs:
+        q[other.coordinates] = _nodal_vectors(one.nodal(kept["q"]), one, other).ravel()
+    bodies = [each.cables[-1].coordinates.stop for each in (was, model)]
+    q[bodies[1]:] = kept["q"][bodies[0]:]
+    return dict(drawn) | fitting | {"q": q}
+
+
+def _nodal_vectors(vectors: np.ndarray, was: CableModel, cable: CableModel) -> np.ndarray:
+    """Return (nodes, vectors, dim): nodal vectors on another mesh, position and slope by the shape functions, others
+    linear between nodes.
+    """
+    kernel, s = was.kernel("on_axis"), cable.mesh.node_s
+    found = np.stack([[np.interp(s, was.mesh.node_s, vectors[:, k, i]) for i in range(vectors.shape[2])]
+                      for k in range(vectors.shape[1])]).transpose(2, 0, 1)
+    for node, (element, x) in enumerate(zip(*was.mesh.place(s), strict=True)):
+        shapes = kernel(was.mesh.length(element), min(x, was.mesh.length(element)))
+        of_element = np.concatenate([vectors[element], vectors[element + 1]])
+        for k, name in enumerate(was.vectors):
+            if name in ("r", "r_x"):
+                found[node, k] = shapes[("r", "r_x").index(name)] @ of_element
+    return found
