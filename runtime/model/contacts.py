@@ -16,7 +16,7 @@ from ..parts.contact import GAUSS_POINTS, Contact
 from ..parts.modal_body import ModalBody
 from ..parts.scene_data import SceneData
 from ..parts.surface import Surface
-from ..parts.surface_shapes import WIDE, Geometry
+from ..parts.surface_shapes import HALF_WIDTH, Geometry
 from ..parts.validation import Vector
 from .attachments import AttachmentModel, ModelBuilder
 from .coupling import CouplingKind, CouplingModel, no_numbers
@@ -89,7 +89,7 @@ def _of_surface(surface: Surface, builder: ModelBuilder, wall: Geometry | None =
     on.axes = shape.axes[:dim, :dim].copy()
     first, second, cells = (NONE if each is None else each for each in (shape.first, shape.second, shape.cells))
     if shape.word == "terrain" and dim == 3 and shape.second is None:  # the same heights from side to side
-        second = np.array([-WIDE, WIDE])
+        second = np.array([-HALF_WIDTH, HALF_WIDTH])
         cells = np.zeros((len(first) - 1, 1, 4, 4))
         cells[:, 0, :, 0] = shape.cells
     return {"kernel": KERNELS[dim], "shape": shape.word, "direction": shape.direction[:dim],

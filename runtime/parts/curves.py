@@ -1,7 +1,7 @@
-"""Shapes that cables are drawn with: a line, or a smooth curve through points, over their arc-length in m.
+"""Drawn shapes of cables: a line, or a smooth curve through points, over their arc-length in m.
 
 A shape has ``length`` and, at arc-lengths (...,), ``point``, ``tangent`` (unit) and ``curvature`` (dt/ds, 1/m), each
-(..., 3). Errors are ``ValueError(cause, remedy)``, to which the part adds its place.
+(..., 3). Functions raise ``ValueError(cause, remedy)``.
 """
 
 from __future__ import annotations
@@ -20,33 +20,27 @@ from .validation import Points, items, show, shown, vector
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
 
-FINE = 33
-"""Places at which an interval between two points is looked at for folds."""
-
-LOOSE, LITTLE = 1.2, 1e-3
-"""A curve swings that turns off a chord by more than this part of the chords' angle, and so much more in rad. Along a
-circle it is a half with even points, and never more than one."""
+FOLD_SAMPLES = 33
+"""Points of an interval at which folds are sought."""
+SWING_FACTOR, SWING_ANGLE = 1.2, 1e-3
+"""A curve swings if its angle from a chord exceeds the factor times the angle between chords, plus the angle in rad. On
+a circle the ratio of the angles is a half with even points, and at most one.
+"""
 
 GAUSS, WEIGHTS = np.polynomial.legendre.leggauss(8)
-
-PARTS = 8
-"""Intervals of the quadrature between two points: with eight Gauss points in each, exact but for rounding."""
-
-MOST_SAMPLES = 4096
-CLOSE = 1e-9
-"""A function is sampled until its spline keeps this near to it, in parts of its extent."""
-
-SHARP, SHARPEST = 1e-5, 1e-9
-"""In parts of its extent: where it is sampled more closely than this, it is looked at for a kink; and the closest."""
-
-ONWARD = 0.9
-"""Cosine of the angle from one chord to the next, beyond which there is more to see between."""
-
-KINK = 0.7
-"""An angle of which more than this part is left within a third of the way is a kink, and no bend."""
-
-FRAMES = 32
-"""Steps of the transport of the section's axes between places asked for; its error falls with their 4th power."""
+QUADRATURE_INTERVALS = 8
+"""Between two points: with eight Gauss points in each, exact to rounding."""
+MAX_SAMPLES = 4096
+SPLINE_TOLERANCE = 1e-9
+"""Distance of a sampled function from its spline, over its extent."""
+KINK_SEARCH_CHORD, MIN_CHORD = 1e-5, 1e-9
+"""Chord over the extent below which a kink is sought, and the shortest chord."""
+MIN_CHORD_COSINE = 0.9
+"""Of the angle between two chords; a larger angle needs more samples."""
+KINK_RATIO = 0.7
+"""A kink keeps more than this part of its angle over a third of the way; a bend does not."""
+TRANSPORT_STEPS = 32
+"""Of the section's axes between two places; the error falls with their 4th power."""
 
 
 class Line:
@@ -55,13 +49,13 @@ class Line:
     straight = True
 
     def __init__(self, start: Iterable[float], end: Iterable[float]):
-        """start, end: (3,) in m, different points."""
+        """start, end: (3,) in m, different."""
         self.start, self.end = np.array(start, dtype=float), np.array(end, dtype=float)
         self.length = float(np.linalg.norm(self.end - self.start))
 
     def point(self, s: ArrayLike) -> np.ndarray:
         """Return the points at arc-lengths s."""
-        ratio = np.asarray(s)[..., None] / self.length  # weighting both ends makes both of them exact
+        ratio = np.asarray(s)[..., None] / self.length  # the weights make both ends exact
         return (1 - ratio) * self.start + ratio * self.end
 
     def tangent(self, s: ArrayLike) -> np.ndarray:
@@ -80,16 +74,16 @@ class Line:
 class Spline:
     """The cubic spline through points, twice continuously differentiable; three points give a parabola.
 
-    Beside long straight pieces that one swings out, though: where it turns away from a chord by more than the chords
-    turn there, it is Akima's, with a continuous tangent, whose pieces follow from the nearest points (modified weights,
-    see scipy's `Akima1DInterpolator`). The parameter is the sum of the chords, which keeps uneven points from making
-    loops; arc-length is the integral of the speed, by Gauss quadrature between the points. The ends are not-a-knot.
+    A cubic spline swings out beside long straight parts. Where it turns away from a chord by more than the chords turn,
+    Akima's spline with modified weights replaces it, with a continuous tangent. The parameter is the sum of the chords,
+    which avoids loops between uneven points. Gauss quadrature of the speed gives the arc-length. The ends are
+    not-a-knot.
     """
 
     straight = False
 
     def __init__(self, points: np.ndarray):
-        """points: (n, 3) in m, n of 3 or more, neighbours different."""
+        """points: (n, 3) in m, 3 or more, neighbours different."""
         # SciPy would double the time of `import funicular`; straight cables do without.
         from scipy.interpolate import Akima1DInterpolator, CubicSpline
 
@@ -99,8 +93,8 @@ class Spline:
         if self._swings():
             self._take(Akima1DInterpolator(self.t, self.points, method="makima"))
         self._refuse_folds()
-        parts = np.diff(self.t)[:, None] * np.arange(PARTS) / PARTS
-        self.t = np.append((self.t[:-1, None] + parts).ravel(), self.t[-1])  # the quadrature's intervals from here on
+        parts = np.diff(self.t)[:, None] * np.arange(QUADRATURE_INTERVALS) / QUADRATURE_INTERVALS
+        self.t = np.append((self.t[:-1, None] + parts).ravel(), self.t[-1])  # now of the quadrature
         self.s = np.concatenate([[0.0], np.cumsum(self._arc(self.t[:-1], self.t[1:]))])
         self.length = float(self.s[-1])
 
@@ -108,8 +102,8 @@ class Spline:
         self._r, self._r_t, self._r_tt = r, r.derivative(), r.derivative(2)
 
     def _off_the_chords(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return parameters (intervals, FINE), and there the cosine of the angle between the curve and its chord."""
-        inside = self.t[:-1, None] + np.diff(self.t)[:, None] * np.linspace(0, 1, FINE)
+        """Return parameters (intervals, samples), and the cosine of the angle between curve and chord there."""
+        inside = self.t[:-1, None] + np.diff(self.t)[:, None] * np.linspace(0, 1, FOLD_SAMPLES)
         slope = self._r_t(inside)
         chord = np.diff(self.points, axis=0) / np.diff(self.t)[:, None]
         onward = np.einsum("kfi,ki->kf", slope, chord)
@@ -117,14 +111,14 @@ class Spline:
         return inside, onward / np.maximum(speed, 1e-300)
 
     def _swings(self) -> bool:
-        """Return whether the curve turns away from a chord by more than the chords turn at its ends."""
+        """Return whether the curve turns away from a chord by more than the chords turn."""
         off = np.arccos(np.clip(self._off_the_chords()[1].min(axis=1), -1, 1))
         chord = np.diff(self.points, axis=0) / np.diff(self.t)[:, None]
         turns = np.arccos(np.clip(np.sum(chord[1:] * chord[:-1], axis=1), -1, 1))
-        return bool(np.any(off > LOOSE * np.maximum(np.append(turns, 0), np.append(0, turns)) + LITTLE))
+        return bool(np.any(off > SWING_FACTOR * np.maximum(np.append(turns, 0), np.append(0, turns)) + SWING_ANGLE))
 
     def _refuse_folds(self) -> None:
-        """Raise ValueError where the curve, between two points, does not go on in the direction of the next one."""
+        """Raise ValueError where the curve turns back between two points."""
         inside, turn = self._off_the_chords()
         interval, where = np.unravel_index(np.argmin(turn), turn.shape)
         if turn[interval, where] > 0:
@@ -137,13 +131,13 @@ class Spline:
             "give more points there, or look at their order")
 
     def _arc(self, start: np.ndarray, end: np.ndarray) -> np.ndarray:
-        """Return the lengths (n,) from parameters (n,) to parameters in the same intervals."""
+        """Return the lengths (n,) between two parameters (n,) in each interval."""
         half = 0.5 * (end - start)
         at = 0.5 * (start + end)[:, None] + half[:, None] * GAUSS
         return half * (np.linalg.norm(self._r_t(at), axis=-1) @ WEIGHTS)
 
     def _parameter(self, s: ArrayLike) -> np.ndarray:
-        """Return the parameters of arc-lengths, by Newton's method, whose derivative is the speed."""
+        """Return the parameters of arc-lengths, by Newton's method with the speed as derivative."""
         clipped = np.clip(np.asarray(s, dtype=float), 0, self.length)
         flat = clipped.ravel()
         k = np.clip(np.searchsorted(self.s, flat, side="right") - 1, 0, len(self.t) - 2)
@@ -173,17 +167,14 @@ class Spline:
         return (second - slope * np.sum(slope * second, axis=-1, keepdims=True) / square) / square
 
     def nearest(self, point: Iterable[float]) -> np.ndarray:
-        """Return the arc-lengths (n,) of the points whose distance to ``point`` is a local minimum, each to a
-        ten-thousandth of the length.
-        """
+        """Return the arc-lengths (n,) where the distance to ``point`` is a local minimum, to 1e-4 of the length."""
         s = np.linspace(0, self.length, 10001)
         distance = np.concatenate([[np.inf], np.linalg.norm(self.point(s) - np.asarray(point), axis=-1), [np.inf]])
         return s[(distance[1:-1] < distance[:-2]) & (distance[1:-1] <= distance[2:])]
 
 
-
 def points(value: Any) -> Points:
-    """Return two points or more, (x, y, z) in m each, neighbours different. Raises ValueError for anything else."""
+    """Return two points (x, y, z) or more in m, neighbours different. Raises ValueError."""
     if (rows := items(value, 2)) is None:
         raise ValueError(f"must be a list of 2 points or more, got {shown(value)}")
     result = []
@@ -200,10 +191,9 @@ def points(value: Any) -> Points:
 
 
 def sample(curve: Callable[[float], Iterable[float]], least: int) -> np.ndarray:
-    """Return points (n, 3) of a function of u from 0 to 1, so many that their spline is the curve to 1e-9 of its
-    extent.
+    """Return points (n, 3) of a function of u from 0 to 1, whose spline is the curve to 1e-9 of its extent.
 
-    Evenly spaced where it is smooth; else closer where its curvature or its speed jumps. ValueError where it has no
+    They are even on a smooth curve, and denser where curvature or speed jump. Raises ValueError for a curve without a
     tangent.
     """
     from scipy.interpolate import CubicSpline  # as above
@@ -225,35 +215,35 @@ def sample(curve: Callable[[float], Iterable[float]], least: int) -> np.ndarray:
         worst, extent = int(np.argmax(gap)), np.ptp(known, axis=0).max()
         u = np.insert(u, np.arange(1, len(u)), between)
         known = np.insert(known, np.arange(1, len(known)), new, axis=0)
-        if gap[worst] <= CLOSE * extent:
+        if gap[worst] <= SPLINE_TOLERANCE * extent:
             return known
-        if len(u) > MOST_SAMPLES:
+        if len(u) > MAX_SAMPLES:
             return _closer(at, np.linspace(0, 1, count + 1))
 
 
 def _closer(at: Callable[[float], tuple[float, ...]], u: np.ndarray) -> np.ndarray:
-    """Return points of a function, closer to each other where their spline over the chords is not yet near to it."""
+    """Return points of a function, denser where the spline over the chords differs from it."""
     from scipy.interpolate import CubicSpline  # as above
 
     known = np.array([at(v) for v in u])
     extent = np.ptp(known, axis=0).max()
     while True:
         chords = np.linalg.norm(np.diff(known, axis=0), axis=1)
-        moves = np.append(True, chords > 1e-12 * extent)  # it may stand still for a while
+        moves = np.append(True, chords > 1e-12 * extent)  # its speed may be zero on an interval
         u, known, chords = u[moves], known[moves], chords[moves[1:]]
         t = np.append(0.0, np.cumsum(chords))
         between = 0.5 * (u[1:] + u[:-1])
         new = np.array([at(v) for v in between])
         gap = _distances(CubicSpline(t, known), t[:-1], t[1:], new)
         along = np.diff(known, axis=0) / chords[:, None]
-        turns = np.append(np.append(False, np.sum(along[1:] * along[:-1], axis=1) < ONWARD), False)
-        far = (gap > CLOSE * extent) | turns[1:] | turns[:-1]
+        turns = np.append(np.append(False, np.sum(along[1:] * along[:-1], axis=1) < MIN_CHORD_COSINE), False)
+        far = (gap > SPLINE_TOLERANCE * extent) | turns[1:] | turns[:-1]
         if not far.any():
             return known
-        for k in np.flatnonzero(far & (chords < SHARP * extent)).tolist():
-            _refuse_a_jump(at, u[max(k - 1, 0)], u[min(k + 2, len(u) - 1)], SHARP * extent)
+        for k in np.flatnonzero(far & (chords < KINK_SEARCH_CHORD * extent)).tolist():
+            _refuse_a_jump(at, u[max(k - 1, 0)], u[min(k + 2, len(u) - 1)], KINK_SEARCH_CHORD * extent)
             _refuse_a_kink(at, u[k], u[k + 1], new[k], gap[k], chords[k] / extent)
-        if len(u) > 4 * MOST_SAMPLES:
+        if len(u) > 4 * MAX_SAMPLES:
             worst = int(np.argmax(gap))
             raise ValueError(f"curve winds too much to be followed near u = {between[worst]:.6g}, at "
                              f"{show(new[worst], 'm')}: {len(u)} points are still {gap[worst]:.3g} m away from it",
@@ -263,7 +253,7 @@ def _closer(at: Callable[[float], tuple[float, ...]], u: np.ndarray) -> np.ndarr
 
 
 def _distances(spline: Any, low: np.ndarray, high: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Return (n,): of each point to the spline, whose nearest place is sought between two parameters."""
+    """Return (n,): the distances of points to the spline between two parameters each."""
     t = 0.5 * (low + high)
     for _ in range(6):
         slope = spline(t, 1)
@@ -273,7 +263,7 @@ def _distances(spline: Any, low: np.ndarray, high: np.ndarray, points: np.ndarra
 
 
 def _refuse_a_jump(at: Callable, low: float, high: float, far: float) -> None:
-    """Raise ValueError where a curve jumps: a gap that does not shrink with the interval of u is a jump."""
+    """Raise ValueError for a jump of a curve, a gap that does not shrink with the interval of u."""
     for _ in range(50):
         middle = 0.5 * (low + high)
         start, point, end = (np.array(at(v)) for v in (low, middle, high))
@@ -284,9 +274,7 @@ def _refuse_a_jump(at: Callable, low: float, high: float, far: float) -> None:
 
 
 def _refuse_a_kink(at: Callable, low: float, high: float, point: np.ndarray, gap: float, chord: float) -> None:
-    """Raise ValueError where a curve has a kink: a bend's angle shrinks with the piece that is looked at, a kink's does
-    not.
-    """
+    """Raise ValueError for a kink of a curve, whose angle does not shrink with the interval, as that of a bend does."""
 
     def angle(step: float) -> float:
         ends = [np.array(at(v)) for v in (max(low - step, 0.0), low, high, min(high + step, 1.0))]
@@ -296,17 +284,17 @@ def _refuse_a_kink(at: Callable, low: float, high: float, point: np.ndarray, gap
 
     place = f"near u = {0.5 * (low + high):.6g}, at {show(point, 'm')}"
     wide, narrow = angle(4 * (high - low)), angle(high - low)
-    if narrow > KINK * wide:
+    if narrow > KINK_RATIO * wide:
         raise ValueError(f"curve has a kink {place}: it turns by {degrees(narrow):.3g} degrees there",
                          "round it off, or join two cables there")
-    if chord < SHARPEST:
+    if chord < MIN_CHORD:
         raise ValueError(f"curve bends too sharply {place}: the spline through its neighbours is {gap:.3g} m away",
                          "draw it as two cables that are joined there")
 
 
 @lru_cache(maxsize=4096)
 def shape_through(points: Points) -> Line | Spline:
-    """Return the shape through checked points: a line if all of them lie on one, in order."""
+    """Return the shape through points: a line if they lie on one, in order."""
     vertices = np.array(points)
     whole = vertices[-1] - vertices[0]
     length = np.linalg.norm(whole)
@@ -320,21 +308,22 @@ def shape_through(points: Points) -> Line | Spline:
 
 @lru_cache(maxsize=128)
 def has_height(points: Points, up: tuple[float, ...]) -> bool:
-    """Return whether ``up`` gives a direction across the shape through points at its start."""
+    """Return whether ``up`` has a component across the shape through points at its start."""
     tilt = np.linalg.norm(cross(shape_through(points).tangent(0.0), up))
     return bool(tilt > 1e-6 * np.linalg.norm(up))
 
 
 @lru_cache(maxsize=128)
 def transported(points: Points, up: tuple[float, ...], places: tuple[float, ...]) -> np.ndarray:
-    """Return the axes of the section along a shape, turned about its tangent nowhere.
+    """Return the axes of the section along a shape, without rotation about its tangent.
 
-    places: increasing arc-lengths in m, the first of them 0. Returns (places, 3, 3): rows are the unit tangent, and
-    the height and width axes, which start from the part of ``up`` across the tangent. By double reflection (Wang,
-    Jüttler, Zheng & Liu, ACM Trans. Graphics 27 (2008) 2), of order 4 in the step.
+    places: increasing arc-lengths in m from 0. Returns (places, 3, 3): rows are the unit tangent, the height and the
+    width axis. At the start the height is the part of ``up`` across the tangent. By double reflection, of order 4 in
+    the step (Wang, Jüttler, Zheng & Liu, ACM Trans. Graphics 27 (2008) 2).
     """
     shape = shape_through(points)
-    fine = np.interp(np.arange((len(places) - 1) * FRAMES + 1) / FRAMES, np.arange(len(places)), places)
+    steps = np.arange((len(places) - 1) * TRANSPORT_STEPS + 1) / TRANSPORT_STEPS
+    fine = np.interp(steps, np.arange(len(places)), places)
     tangent = shape.tangent(fine)
     height = np.array(up) - np.dot(up, tangent[0]) * tangent[0]
     heights = [height]
@@ -343,16 +332,15 @@ def transported(points: Points, up: tuple[float, ...], places: tuple[float, ...]
         for k in range(len(fine) - 1):
             height = _reflected(height, tangent[k], point[k + 1] - point[k], tangent[k + 1])
             heights.append(height)
-    j = np.broadcast_to(heights, tangent.shape)[::FRAMES]
-    i = tangent[::FRAMES]
+    j = np.broadcast_to(heights, tangent.shape)[::TRANSPORT_STEPS]
+    i = tangent[::TRANSPORT_STEPS]
     j = j - np.sum(i * j, axis=1, keepdims=True) * i
     j = j / np.linalg.norm(j, axis=1, keepdims=True)
     return np.stack([i, j, cross(i, j)], axis=1)
 
 
 def _reflected(height: np.ndarray, tangent: np.ndarray, step: np.ndarray, onward: np.ndarray) -> np.ndarray:
-    """Return the height axis after a step: mirrored in the plane between the points, then in that between the tangents.
-    """
+    """Return the height axis after a step: reflected in the plane between the points, then between the tangents."""
     if not step.any():
         return height
     mirror = 2 / np.dot(step, step) * step

@@ -1,4 +1,4 @@
-"""The catenary: the curve in which a cable hangs that cannot stretch and does not resist bending."""
+"""The catenary: the shape of a hanging cable without stretch and bending stiffness."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ import numpy as np
 
 from .validation import show
 
-STEEPEST = 1e-3
-"""Of the chord: a span that is less wide across gravity is as good as vertical."""
-TAUT = 1e-9
-"""Of the chord: a cable that is longer by less does not hang."""
+MIN_WIDTH = 1e-3
+"""Of the span across gravity, over the chord."""
+MIN_SLACK = 1e-9
+"""Of a hanging cable: its length beyond the chord, over the chord."""
 
 
 def hangs(span: float, length: float) -> bool:
-    """Return whether a cable of this length hangs between points at this distance, both in m."""
-    return length > (1 + TAUT) * span
+    """Return whether a cable of a length hangs over a span, both in m."""
+    return length > (1 + MIN_SLACK) * span
 
 
 def catenary(start: Sequence[float], end: Sequence[float], length: float,
              gravity: Sequence[float]) -> Callable[[float], np.ndarray]:
-    """Return the curve (3,) in m of u, from 0 to 1 along the length (m), between two points under gravity (m/s²).
+    """Return the curve (3,) in m over u from 0 to 1, between two points (m), of a length (m), under gravity (m/s²).
 
     y = a cosh(x / a) above the lowest point, with sinh(h) / h = sqrt(length² - rise²) / width, h = width / (2 a), and
     the lowest point at width / 2 - a artanh(rise / length) from the start.
 
-    Raises ValueError(cause, remedy) without gravity, for points above each other, and for a length below the span.
+    Raises ValueError(cause, remedy) without gravity, for a vertical span, and for a length below the span.
     """
     chord, g = np.subtract(end, start), np.array(gravity, dtype=float)
     span, pull = float(np.linalg.norm(chord)), float(np.linalg.norm(g))
@@ -39,7 +39,7 @@ def catenary(start: Sequence[float], end: Sequence[float], length: float,
     rise = float(chord @ up)
     across = chord - rise * up
     width = float(np.linalg.norm(across))
-    if not width > STEEPEST * span:
+    if not width > MIN_WIDTH * span:
         raise ValueError(f"cannot hang as a catenary: its end is above or below its start, {show(width, 'm')} beside "
                          "it", "move an end aside, or draw it through points")
     along = across / width
@@ -48,7 +48,7 @@ def catenary(start: Sequence[float], end: Sequence[float], length: float,
     begin = np.sinh(-lowest / a)
 
     def point(u: float) -> np.ndarray:
-        """Return the point (3,) at the part u of the length; its ends are exact."""
+        """Return the point (3,) at u; the ends are exact."""
         if u in (0.0, 1.0):
             return np.array(end if u else start, dtype=float)
         slope = begin + u * length / a
@@ -60,7 +60,7 @@ def catenary(start: Sequence[float], end: Sequence[float], length: float,
 
 
 def _parameter(ratio: float) -> float:
-    """Return the x > 0 with sinh(x) / x = ratio > 1, by Newton's method on log(sinh(x) / x), which is convex."""
+    """Return x > 0 of sinh(x) / x = ratio > 1, by Newton's method on the convex log(sinh(x) / x)."""
     x = float(np.sqrt(6 * (ratio - 1))) if ratio < 3 else float(np.log(2 * ratio) + np.log(np.log(2 * ratio)))
     for _ in range(100):
         if x < 1e-2:

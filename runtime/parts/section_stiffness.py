@@ -1,6 +1,6 @@
-"""Stiffness of a section, S of the kernels `stiffness`: what an elastic law takes of section and material.
+"""Stiffness of a section in an elastic law, S of the kernels `stiffness`.
 
-A further law is one function and one entry in `_BY_KIND`, or in `VARIANTS` if it runs on the kernels of another one.
+A further law is one function and one entry in `_BY_KIND`, or in `variants` if it runs on the kernels of another one.
 """
 
 from __future__ import annotations
@@ -18,14 +18,12 @@ from .section import Section
 
 
 def section_stiffness(law: str, section: Section, material: Material, dim: int = 3) -> np.ndarray:
-    """Return S of an elastic law, see the module docstring.
+    """Return S of an elastic law, in N times even powers of m.
 
-    law: of this package, or one of `variants`; dim: 2 for a planar element, else 3.
-    Returns, in N times even powers of m: (2,) [EA, EI] for cables, (3,) with an assumed axial strain, see `_assumed`,
-    (4,) where it gives way in compression, see `_tension_only`;
-    for a continuum (9, 6) or, planar, (4, 6): the
-    integrals over the section of D11, D22, D33, D12, D13, D23, G12, G13, G23 (planar: D11, D22, D12, G12) times
-    1, y², z², y⁴, y²z², z⁴; for structural (9,) or, planar, (4,), see `_structural`.
+    law: of this package, or one of `variants`; dim: 2 for a planar element, else 3. Cables: (2,) [EA, EI], (3,) with an
+    assumed axial strain, see `_assumed`, (4,) without stiffness in compression, see `_tension_only`. Continuum: (9, 6),
+    planar (4, 6), the integrals over the section of D11, D22, D33, D12, D13, D23, G12, G13, G23 (planar: D11, D22, D12,
+    G12) times 1, y², z², y⁴, y²z², z⁴. Structural: (9,), planar (4,), see `_structural`.
     """
     if law in variants():
         return variants()[law].stiffness(section, material, dim)
@@ -34,8 +32,8 @@ def section_stiffness(law: str, section: Section, material: Material, dim: int =
 
 
 def lengths_in_stiffness(law: str, section: Section, material: Material, dim: int = 3) -> np.ndarray:
-    """Return, of the shape of S, the power of a length that each of its numbers is times an elastic constant: 2 of an
-    area, 4 of a second moment; 0 of numbers without a unit, and of zeros.
+    """Return, in the shape of S, the power of length of each number: 2 for an area, 4 for a second moment, 0 for zeros
+    and numbers without a unit.
     """
     S = section_stiffness(law, section, material, dim)
     doubled = section_stiffness(law, cast(Section, _Doubled(section)), material, dim)
@@ -49,24 +47,24 @@ class _Doubled:
     section: Section
 
     def moments(self) -> np.ndarray:
-        """Return the integrals over the section, of the second, fourth and sixth order."""
+        """Return its moments."""
         return self.section.moments() * 2.0 ** np.array([2, 4, 4, 6, 6, 6])
 
     def shear_factors(self, poisson_ratio: float) -> tuple[float, float]:
-        """Return what its shape makes of its shear stiffness."""
+        """Return its shear factors."""
         return self.section.shear_factors(poisson_ratio)
 
     @property
     def torsion_constant(self) -> float:
-        """Return that, in m^4."""
+        """Return its torsion constant in m⁴."""
         return 16.0 * self.section.torsion_constant
 
 
 @dataclass(frozen=True)
 class Variant:
-    """A law that runs on the kernels of another one: it differs by the stiffness of the section alone.
+    """A law that differs from another one only by the stiffness of the section.
 
-    kernel_law: the law whose kernels it takes; membrane: how a cable represents its axial strain.
+    kernel_law: the other law, whose kernels it uses; membrane: representation of the axial strain of a cable.
     """
 
     kernel_law: str
@@ -88,13 +86,13 @@ def law_of_measures(strain: str, curvature: str, membrane: str) -> str:
 
 
 def measures_of_law(law: str) -> dict[str, str]:
-    """Return the measures of a cable's law by keyword, those of `law_of_measures`; empty for another law."""
+    """Return the measures in the name of a cable's law by keyword; empty for another law."""
     measures = dict(zip(("strain", "curvature", "membrane"), (*law.split("_", 2), "full"), strict=False))
     return measures if len(measures) == 3 and law_of_measures(**measures) == law else {}
 
 
 STABILISATION = 0.01
-"""Part of the axial stiffness that the upper modes of a reduced axial strain have."""
+"""Stiffness of the upper modes of a reduced axial strain over the axial stiffness."""
 
 
 def kernel_law(law: str) -> str:
@@ -112,42 +110,42 @@ def _cable(section: Section, material: Material, dim: int) -> np.ndarray:
 
 
 def _assumed(section: Section, material: Material, dim: int) -> np.ndarray:
-    """Return EA, EI, and EA of the modes of the axial strain that the lengths of the slopes alone govern."""
+    """Return EA, EI, and EA of the modes of axial strain that depend only on the lengths of the slopes."""
     EA, EI = _cable(section, material, dim)
     return np.array([EA, EI, EA])
 
 
 RESIDUAL_STIFFNESS, TRANSITION_STRAIN = 1e-4, 1e-6
-"""Of a cable that gives way in compression: the part of EA that is left there; the strain over which EA is lost."""
+"""Without stiffness in compression: part of EA that remains there, and the strain of the transition."""
 
 
 def _tension_only(section: Section, material: Material, dim: int) -> np.ndarray:
-    """Return EA, EI, the part of EA that is left in compression, and the strain over which the rest is lost."""
+    """Return EA, EI, the part of EA that remains in compression, and the strain of the transition."""
     return np.array([*_cable(section, material, dim), RESIDUAL_STIFFNESS, TRANSITION_STRAIN])
 
 
 def compressive_stiffness(membrane: str, section: Section, material: Material) -> float:
-    """Return the axial stiffness of a cable in compression, in N: EA, or the part of it that is left."""
-    left = RESIDUAL_STIFFNESS if membrane == "tension_only" else 1.0
-    return left * float(_cable(section, material, 3)[0])
+    """Return the axial stiffness of a cable in compression, in N."""
+    part = RESIDUAL_STIFFNESS if membrane == "tension_only" else 1.0
+    return part * float(_cable(section, material, 3)[0])
 
 
 def _reduced(section: Section, material: Material, dim: int) -> np.ndarray:
-    """Return the same with what keeps the lengths of the slopes stable."""
+    """Return EA, EI, and the stiffness that stabilises the lengths of the slopes."""
     EA, EI = _cable(section, material, dim)
     return np.array([EA, EI, STABILISATION * EA])
 
 
 def _continuum(section: Section, material: Material, dim: int) -> np.ndarray:
-    """Return S of the St. Venant-Kirchhoff law, the same all over the section."""
+    """Return S of the St. Venant-Kirchhoff law of a homogeneous section."""
     return np.outer(_elasticity(material, dim), section.moments())
 
 
 def _poisson_split(section: Section, material: Material, dim: int) -> np.ndarray:
-    """Return the Poisson effect on the axis alone: an element whose section cannot warp locks under that of bending.
+    """Return S with the Poisson effect only on the axis: that of bending locks an element whose section cannot warp.
 
-    The section's mean shear takes its shear factors, its twist its torsion constant. Gerstmayr, Matikainen & Mikkola,
-    Multibody Syst. Dyn. 20 (2008) 359-384.
+    Mean shear has shear factors, torsion the torsion constant (Gerstmayr, Matikainen & Mikkola, Multibody Syst. Dyn. 20
+    (2008) 359-384).
     """
     full, moments = _elasticity(material, dim), section.moments()
     _, mu = material.lame()
@@ -165,11 +163,10 @@ def _poisson_split(section: Section, material: Material, dim: int) -> np.ndarray
 
 
 def _structural(section: Section, material: Material, dim: int) -> np.ndarray:
-    """Return EA, GA_y, GA_z, GJ, EI about y and about z, and of the section's own strains those of its height, width,
-    angle.
+    """Return EA, GA_y, GA_z, GJ, EI about y and about z, and the stiffness of the strains of height, width and angle.
 
-    Shears with the shear factors. The section's own strains have no part in the bending of beams; their stiffness is
-    that of the material under one stress alone. Planar: EA, GA_y, EI about z, and that of the height.
+    GA includes the shear factors. The strains of the section do not contribute to bending; their stiffness is that of
+    the material under uniaxial stress. Planar: EA, GA_y, EI about z, and the stiffness of the height.
     """
     E, (_, G) = material.youngs_modulus, material.lame()
     area, yy, zz = section.moments()[:3]
@@ -181,7 +178,7 @@ def _structural(section: Section, material: Material, dim: int) -> np.ndarray:
 
 
 def _elasticity(material: Material, dim: int) -> np.ndarray:
-    """Return D11, D22, ... of the material; planar: of plane stress, for the width of a beam is free to change."""
+    """Return D11, D22, ... of the material; planar: of plane stress, as the width of a beam is free."""
     if dim == 3:
         return material.elasticity()
     lam, mu = material.lame()

@@ -1,4 +1,4 @@
-"""Shapes that pictures draw for rigid bodies; a motion depends on those alone that surfaces have, too.
+"""Shapes of rigid bodies in pictures; some are also shapes of surfaces.
 
 A further shape is one class and one entry in `SOLIDS`.
 """
@@ -30,7 +30,7 @@ def _lengths(value: Any) -> Vector:
 
 
 def _mesh_file(value: Any) -> str:
-    """Return the path of a mesh; what is in it is read when it is drawn."""
+    """Return the path of a mesh file, which is read when it is drawn."""
     if not isinstance(value, str | os.PathLike):
         raise ValueError(f"must be a file, got {shown(value)}")
     if PurePath(value).suffix.lower() not in MESH_FILES:

@@ -1,4 +1,4 @@
-"""Surfaces that cables and bodies touch, on the ground or on a body."""
+"""Surfaces of the ground or of a body for contact with cables and bodies."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Surface(Part):
 
     @property
     def geometry(self) -> Geometry:
-        """Return its geometry in the axes of the ground, or of its body."""
+        """Return its geometry in the axes of its body or of the ground."""
         return replace(geometry(self.shape).moved(self.at), inside=self.inside)
 
     def off_plane(self) -> Iterator[str]:
@@ -62,14 +62,14 @@ class Surface(Part):
             lies = abs(box.origin[2]) > box.half_size[2]
             if np.abs(box.axes[:2, 2]).max() > FLAT:
                 yield f"along {show(self.shape.along)}, up {show(self.shape.up)}"
-        if lies:  # what stands square to the plane, or has no end that way, reaches it from anywhere
+        if lies:  # a shape across the plane, or without end that way, reaches the plane from anywhere
             for name, at in (("at", self.at), ("shape.at", getattr(self.shape, "at", None))):
                 if at is not None and at[2]:
                     yield f"{name} {show(at, 'm')}"
         yield from self.shape.off_plane()
 
     def in_axes(self, body: Any, points: np.ndarray) -> np.ndarray:
-        """Return points (..., 3) of the ground along the axes of the body that it is on, as drawn; None: the ground."""
+        """Return points (..., 3) of the ground in the axes of its body as drawn; None: on the ground."""
         if body is None:
             return points
         position, orientation = body.frame
@@ -78,7 +78,7 @@ class Surface(Part):
     def distance(self, body: Any, points: np.ndarray, normal: np.ndarray | None = None) -> np.ndarray:
         """Return the distances (...) of points (..., 3) of the ground from it as drawn, negative inside, in m.
 
-        normal: a unit vector (3,) across the plane of a planar scene, to whose side no distance goes.
+        normal: a unit vector (3,) across the plane of a planar scene, along which distances do not count.
         """
         shape = self.geometry
         if normal is not None:

@@ -1,7 +1,7 @@
-"""Shapes of surfaces that cables and bodies touch, and how far points are from them.
+"""Shapes of surfaces for contact, and the distances of points from them.
 
-`Box`, `Sphere` and `Cylinder` are those that pictures draw bodies with, too. A further shape is one class, its entry in
-`SURFACE_SHAPES`, and what `geometry` makes of it.
+`Box`, `Sphere` and `Cylinder` are also shapes of bodies in pictures. A further shape is one class, its entry in
+`SURFACE_SHAPES`, and its case in `geometry`.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from .schemas import DIRECTION, HOLDER, checked, list_schema
 from .solids import Box, Cylinder, Length, Sphere
 from .validation import Vector, check_function, check_square, direction, items, list_of, show, shown, vector, xyz
 
-WIDE = 1e6
-"""m: half the width of a height field that does not change across."""
+HALF_WIDTH = 1e6
+"""Of a height field without a table across, m."""
 
 
 class SurfaceShape(Part):
-    """Base of the shapes that are of surfaces alone."""
+    """Base of the shapes of surfaces that are no shapes of bodies."""
 
     tag: ClassVar[str] = "kind"
 
@@ -102,7 +102,7 @@ class HeightField(SurfaceShape):
 
     @classmethod
     def of(cls, function: Callable[..., Any], x: Any, across: Any = None, **directions: Any) -> HeightField:
-        """Return the height field of function(x) or function(x, across), in m, asked at these places."""
+        """Return the height field of the values of function(x) or function(x, across), in m, at places in m."""
         table = [float(function(a)) if across is None else [float(function(a, b)) for b in across] for a in x]
         given = {} if across is None else {"across": [float(b) for b in across]}
         return cls(x=[float(a) for a in x], heights=table, **given, **directions)
@@ -141,13 +141,12 @@ AnySurfaceShape = Annotated[Part, SURFACE_SHAPES.checked()]
 
 @dataclass
 class Geometry:
-    """A surface as the engine takes it (couplings/common/surfaces.h), from an origin (3,) along axes (3, 3) by columns.
+    """A surface of the engine (couplings/common/surfaces.h), from an origin (3,) along axes (3, 3) by columns.
 
     word: the kind of shape; direction (3,): a normal or an axis; radius, half_length in m; half_size (3,): of a box
-    along its axes, in m; first, second: knots of a height field, and cells (first, second, 4, 4) of its coefficients,
-    or (first, 4) where there is no second; highest, steepest, bend: bounds of its height in m, of its slope, and of
-    what that changes by along it, in 1/m.
-    inside: it is a hollow, and what touches it is within.
+    along its axes, in m; first, second: breakpoints of a height field; cells (first, second, 4, 4): its coefficients,
+    (first, 4) without second; highest, steepest, bend: bounds of its height in m, its slope, and its second derivatives
+    in 1/m; inside: whether it is a hollow.
     """
 
     word: str
@@ -166,48 +165,46 @@ class Geometry:
     inside: bool = False
 
     def moved(self, by: Any) -> Geometry:
-        """Return it with its origin farther by (3,), in m."""
+        """Return it translated by (3,), in m."""
         return replace(self, origin=self.origin + np.array(by))
 
     def in_plane(self, normal: np.ndarray) -> Geometry:
-        """Return what is of it in planes across a unit vector (3,): a box has no end that way."""
+        """Return it for planes across a unit vector (3,), along which a box has no end."""
         return replace(self, half_size=np.where(np.abs(normal @ self.axes) > 1 - FLAT, np.inf, self.half_size))
 
     def into(self, points: np.ndarray) -> np.ndarray:
-        """Return points (..., 3), in m, from its origin along its axes."""
+        """Return points (..., 3), in m, in its axes."""
         return (points - self.origin) @ self.axes
 
     @property
     def inner_radius(self) -> float:
-        """Return the radius in m of the largest sphere in it; infinite where it has no inside."""
+        """Return the radius in m of the largest sphere inside; infinite for shapes without an inside."""
         if self.word == "box":
             return float(self.half_size.min())
         return self.radius if self.word in ("round", "capsule") else np.inf
 
     @property
     def largest_length(self) -> float:
-        """Return the largest length in m that distances from it are computed from."""
+        """Return the largest length in m in the formulas of its distance."""
         lengths = [*self.origin, self.radius, self.half_length, *self.half_size, self.highest]
         return float(max(abs(length) for length in lengths if np.isfinite(length)))
 
     def walls(self, dim: int) -> list[Geometry]:
-        """Return the planes of a hollow box that its inside is bounded by, in a scene of dim dimensions; itself of
-        others.
-        """
+        """Return the inner planes of a hollow box in a scene of dim dimensions, or itself for other surfaces."""
         if not (self.inside and self.word == "box"):
             return [self]
         sides = [sign * axis for axis in np.eye(3)[:dim] for sign in (1.0, -1.0)]  # the last axis is across a plane
         return [Geometry("flat", self.origin + self.axes @ (side * self.half_size), self.axes, -side) for side in sides]
 
     def distance(self, points: np.ndarray) -> np.ndarray:
-        """Return the distances (...) of points (..., 3) outside of it, negative inside, in m; of a hollow the opposite.
-        """
-        y = self.into(points)
-        return -self._outside(y) if self.inside else self._outside(y)
+        """Return the distances (...) of points (..., 3), in m: positive outside, of a hollow positive inside."""
+        distance = self._outside(self.into(points))
+        return -distance if self.inside else distance
 
     def _outside(self, y: np.ndarray) -> np.ndarray:
         if self.word == "terrain":
-            return self._above(y)
+            height, slope, slope_across = self.heights(y[..., 0], y[..., 2])
+            return (y[..., 1] - height) / np.sqrt(1 + slope**2 + slope_across**2)
         if self.word == "box":
             beyond = np.abs(y) - self.half_size
             return np.linalg.norm(np.maximum(beyond, 0.0), axis=-1) + np.minimum(beyond.max(axis=-1), 0.0)
@@ -219,7 +216,7 @@ class Geometry:
         return np.linalg.norm(y - along[..., None] * self.direction, axis=-1) - self.radius
 
     def heights(self, x: np.ndarray, across: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Return the heights (...) of a height field at places (...), in m, and the slopes along and across."""
+        """Return the heights (...) of a height field at places (...), in m, and its slopes along and across."""
         assert self.first is not None and self.cells is not None, "only of height fields"
         x, across = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(across, dtype=float))
         i, a, da = _powers(self.first, x)
@@ -230,13 +227,9 @@ class Geometry:
         c = self.cells[i, j]
         return tuple(np.einsum("...mk,...m,...k->...", c, m, k) for m, k in ((a, b), (da, b), (a, db)))
 
-    def _above(self, y: np.ndarray) -> np.ndarray:
-        height, slope, slope_across = self.heights(y[..., 0], y[..., 2])
-        return (y[..., 1] - height) / np.sqrt(1 + slope**2 + slope_across**2)
-
 
 def _powers(knots: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the cells that places are in, and powers of what they are from the first knots of these, with slopes."""
+    """Return the cells of places, and powers of their distances from the breakpoints below, with derivatives."""
     inside = np.clip(x, knots[0], knots[-1])
     cell = np.clip(np.searchsorted(knots, inside, "right") - 1, 0, len(knots) - 2)
     u = (inside - knots[cell])[..., None]
@@ -248,11 +241,13 @@ def _powers(knots: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, n
 def geometry(shape: Part) -> Geometry:
     """Return the geometry of a shape, in the axes that its vectors are given in."""
     if isinstance(shape, HeightField):
-        return _terrain(shape)
+        return replace(_fitted(shape.x, shape.heights, shape.across), axes=shape.axes)
     if isinstance(shape, Plane):
         return Geometry("flat", np.array(shape.point), np.eye(3), _unit(shape.normal))
     if isinstance(shape, Box):
-        return _box(shape)
+        order = np.roll(np.arange(3), 2 - int(np.argmax(np.abs(shape.axes[2]))))  # the axis nearest to z is the last
+        return Geometry("box", np.array(shape.at), shape.axes[:, order], np.zeros(3),
+                        half_size=np.array(shape.size)[order] / 2)
     assert isinstance(shape, Sphere | Cylinder | Capsule), f"{shape!r} is no shape of a surface"
     axis = np.zeros(3) if isinstance(shape, Sphere) else _unit(shape.axis)
     half = 0.0 if isinstance(shape, Sphere) else shape.length / 2
@@ -264,22 +259,11 @@ def _unit(v: Vector) -> np.ndarray:
     return aligned(np.array(v) / np.linalg.norm(v))
 
 
-def _box(shape: Box) -> Geometry:
-    """Return the geometry of a box. Of its axes the one most nearly along z is the last."""
-    axes = shape.axes
-    order = np.roll(np.arange(3), 2 - int(np.argmax(np.abs(axes[2]))))
-    return Geometry("box", np.array(shape.at), axes[:, order], np.zeros(3), half_size=np.array(shape.size)[order] / 2)
-
-
-def _terrain(shape: HeightField) -> Geometry:
-    """Return the geometry of a height field."""
-    return replace(_fitted(shape.x, shape.heights, shape.across), axes=shape.axes)
-
-
-@lru_cache(maxsize=8)  # it is asked for by each contact, and by checks and pictures
+@lru_cache(maxsize=8)  # contacts, checks and pictures need it
 def _fitted(x: tuple[float, ...], heights: tuple[Any, ...], across: tuple[float, ...] | None) -> Geometry:
-    """Return the geometry of the table of a height field, along the ground's axes: the coefficients of cubic splines,
-    by powers from each cell's knots. Its arrays are shared, and cannot be written to.
+    """Return the geometry of the cubic splines through a table of heights, along the ground's axes.
+
+    Its arrays are shared and read-only.
     """
     from scipy.interpolate import CubicSpline  # 30 ms, for those alone
 
