@@ -8,8 +8,9 @@ import numpy as np
 
 from ..view.plot import colour_scale, snapshots
 from ..view.projections import axis_name
-from .animation.recorded import Recorded
+from .animation.clips import upward
 from .quantities import ENERGIES
+from .recorded import Recorded
 from .section_forces.balance_limits import known_method
 from .section_forces.forces import DEFAULT_DIVISIONS, jumps, of_run, with_sides
 
@@ -20,26 +21,19 @@ MAX_MARKERS = 200
 """Output times up to which a chart marks each one."""
 
 
-def upward(run: Recorded) -> tuple[np.ndarray, str]:
-    """Return the unit vector against gravity, or y without gravity, and its name."""
-    gravity = np.array(run.scene.gravity)
-    up = -gravity / np.linalg.norm(gravity) if gravity.any() else np.array([0.0, 1.0, 0.0])
-    return up, axis_name(up)
-
-
 def acceleration(run: Recorded, figure: Figure) -> bool:
     """Draw the vertical accelerations of bodies over time, Fig. 5 of the paper; False without a slide or a body."""
     bodies = list(run.scene.bodies)
     if not (bodies and run.scene.slides):
         return False
-    up, name = upward(run)
+    up = upward(run.scene)
     marker = "." if len(run.time) <= MAX_MARKERS else ""
     figure.set_size_inches(7, 3.4)
     axes = figure.add_subplot()
     for body in bodies:
         axes.plot(run.time, run[f"{body}.acceleration"] @ up, marker=marker, markersize=4, label=f"body {body}")
     axes.set_xlabel("time / s")
-    axes.set_ylabel(f"{name}-acceleration / (m/s²)")
+    axes.set_ylabel(f"{axis_name(up)}-acceleration / (m/s²)")
     axes.legend(loc="best")
     return True
 

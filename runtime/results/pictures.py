@@ -1,7 +1,4 @@
-"""Pictures of a run: what `Run.plot` draws, and the files that `funicular run --plot` writes.
-
-Matplotlib is imported only when a picture is made.
-"""
+"""Pictures of a run, of `Run.plot` and `funicular run --plot`. Matplotlib is imported when a picture is made."""
 
 from __future__ import annotations
 
@@ -16,7 +13,7 @@ from ..view.files import folder_for_pictures, save_figure
 from ..view.plot import STYLE, shape_figure
 from . import charts
 from .animation.clips import of_run
-from .animation.recorded import Recorded
+from .recorded import Recorded
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -25,7 +22,7 @@ Drawer = Callable[[Recorded, "Figure"], bool]
 
 
 def drawers(run: Recorded, forces: bool) -> dict[str, Drawer]:
-    """Return what draws each picture of a run by its name; forces: those in each cable, too."""
+    """Return the functions that draw pictures of a run, by name; forces: with those in each cable."""
     found: dict[str, Drawer] = {"shape": shape, "acceleration": charts.acceleration, "slide": charts.slide,
                                 "energy": charts.energy}
     if forces:
@@ -54,11 +51,11 @@ def plot(run: Recorded, what: str, figure: Figure) -> Figure:
     return figure
 
 
-def save_plots(run: Recorded, directory: str | os.PathLike, prefix: str = "", forces: bool = False) -> list[Path]:
-    """Draw what the run holds: shape, acceleration, slide, energy; if asked for, the forces in each cable.
+def save_plots(run: Recorded, directory: str | os.PathLike[str], prefix: str = "", forces: bool = False) -> list[Path]:
+    """Write the pictures of a run: shape, acceleration, slide, energy; with ``forces`` also those in each cable.
 
-    The files are ``directory/<prefix><picture>.png``; pictures without anything to show are left out.
-    Returns their paths. Raises ResultFileError.
+    The files are ``directory/<prefix><picture>.png``; empty pictures are omitted. Returns their paths. Raises
+    ResultFileError.
     """
     from matplotlib import rc_context
     from matplotlib.figure import Figure

@@ -19,6 +19,18 @@ class Variable(NamedTuple):
     long_name: str
 
 
+class EnergyBalance(NamedTuple):
+    """residual (time,): kinetic + elastic + potential + dissipated - external, minus the same at the start, in J.
+
+    exchanged: the largest energy that had changed its kind at any time, half the sum of these changes, in J;
+    relative (time,): residual / exchanged, the residual itself if nothing was exchanged.
+    """
+
+    residual: np.ndarray
+    exchanged: float
+    relative: np.ndarray
+
+
 QUANTITIES: dict[str, dict[str, Quantity]] = {}
 """What results tell of the parts of each group, by name."""
 for _kind in KINDS:

@@ -1,4 +1,7 @@
-"""Results of a run: labelled arrays with units, energy balance, forces in sections."""
+"""Results of a run: labelled arrays with units, energy balance, forces in sections.
+
+SciPy, Matplotlib, xarray and the file format are imported by the methods that need them, not by `import funicular`.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,7 @@ import warnings
 from collections.abc import Iterable, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -20,41 +23,40 @@ from ..parts.scene_data import OfDrawing, SceneData
 from ..parts.scene_text import dumps
 from ..parts.settings import RunSettings
 from ..parts.slide import Slide
-from .quantities import ENERGIES, Variable, labelled
+from .quantities import ENERGIES, EnergyBalance, Variable, labelled
 from .viewable import Viewable
 
 if TYPE_CHECKING:
-    # These bring SciPy or xarray along: `import funicular` does without.
     import xarray
     from matplotlib.figure import Figure
-    from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
+    from numpy.typing import ArrayLike  # 9 ms, for type checkers alone
 
     from ..model.initial_state import InitialState
     from ..model.model import Model
     from ..view.animation import Animation
     from .recording import Recording
 
-SAME_TIME = 1e-9
-"""Times that differ by this part of the run's last one are taken as equal."""
-
-_BLOCK = 1 << 22
-"""Bytes that are written at once."""
+TIME_TOLERANCE = 1e-9
+"""Difference of equal times, over the last time of a run."""
+WRITE_BLOCK_BYTES = 1 << 22
+MAX_COSTS = 6
+"""Slides and joints that a summary names with their times."""
+COUNTS = {"steps": "taken", "rejected_steps": "rejected", "newton_iterations": "Newton iterations",
+          "factorisations": "factorisations"}
+"""Counts of a report in a summary."""
 
 
 class ReadScene(Protocol):
-    """Makes a scene of the text of its file; results are handed one, since scenes stand above them."""
+    """Makes a scene from the text of its file; an argument, since scenes stand above results."""
 
-    def __call__(self, text: str, origin: str, *, libraries: Iterable[str | os.PathLike] = ()) -> SceneData:
-        """Return the scene; origin: what error messages call the text. Raises SceneError."""
+    def __call__(self, text: str, origin: str, *, libraries: Iterable[str | os.PathLike[str]] = ()) -> SceneData:
+        """Return the scene; origin: the name of the text in error messages. Raises SceneError."""
 
 
 class SceneText:
-    """A scene as text, what reads it, and directories of elements that it may load then.
+    """A scene as text, written at its first use, with its reader and directories of elements that it may load."""
 
-    Most runs are never asked for the text: of a scene it is written when it is read first.
-    """
-
-    def __init__(self, scene: SceneData | str, read: ReadScene, libraries: Iterable[str | os.PathLike] = ()):
+    def __init__(self, scene: SceneData | str, read: ReadScene, libraries: Iterable[str | os.PathLike[str]] = ()):
         """scene: its text, or the scene itself, which must not change any more."""
         self._scene, self.read, self.libraries = scene, read, libraries
 
@@ -65,29 +67,17 @@ class SceneText:
             self._scene = dumps(self._scene)
         return self._scene
 
-    def __getstate__(self) -> dict:
-        """Return what is pickled: the text, since a scene may have functions."""
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the state for pickling: the text, since a scene may hold functions."""
         return vars(self) | {"_scene": self.toml}
-
-
-class EnergyBalance(NamedTuple):
-    """residual (time,): kinetic + elastic + potential + dissipated - external, minus the same at the start, in J.
-
-    exchanged: the most energy that had changed its kind at any time, half the sum of these changes, in J;
-    relative (time,): residual / exchanged, the residual itself if nothing was exchanged.
-    """
-
-    residual: np.ndarray
-    exchanged: float
-    relative: np.ndarray
 
 
 class Run(Viewable, NamedArrays):
     """Results by name: ``run["A.position"]`` is a NumPy array (time, 3); `keys` lists the names.
 
-    A run is a mapping: `keys`, `items` and a loop go through all results. variables: each with its unit, dimensions and
-    meaning. report: steps, evaluations, error estimates, kernels, ``messages``, ``events``, ``integrator`` and
-    ``integrator_reason``, ``choice`` and ``errors`` where they were asked for, and ``time_s``, the wall time by part:
+    A run is a mapping of all results. variables: each with its unit, dimensions and meaning. report: steps,
+    evaluations, error estimates, kernels, ``messages``, ``events``, ``integrator`` and ``integrator_reason``,
+    ``choice`` and ``errors`` on request, and ``time_s``, the wall time by part:
 
     | part | work |
     |---|---|
@@ -102,18 +92,18 @@ class Run(Viewable, NamedArrays):
     | solve_cpu | CPU time of the start and of all steps |
     """
 
-    def __init__(self, variables: Mapping[str, Variable], coords: dict[str, Variable], report: dict,
+    def __init__(self, variables: Mapping[str, Variable], coords: dict[str, Variable], report: dict[str, Any],
                  scene_text: SceneText):
-        """report: how the run went, status, message and messages among it; scene_text: the scene that was run.
+        """report: with status, message and messages; scene_text: the scene of the run.
 
-        report["us_per_step"] is what each slide and joint takes of a step in µs, without solving for its forces.
+        report["us_per_step"]: time per step of each slide and joint in µs, without solving for its forces.
         """
         self.variables, self.coords, self.report, self._scene_text = variables, coords, report, scene_text
 
     @classmethod
     def from_recording(cls, recording: Recording, scene: SceneData, settings: RunSettings,
                        read_scene: ReadScene) -> Run:
-        """Label what was recorded of a run; read_scene: makes the scene of its text again."""
+        """Return the run of a recording; read_scene: makes the scene from its text."""
         variables, coords = labelled(recording)
         report = {
             **recording.report,
@@ -128,39 +118,40 @@ class Run(Viewable, NamedArrays):
 
     @property
     def time(self) -> np.ndarray:
-        """Return (time,): the times of the results, in s."""
+        """Return the times (time,) of the results in s."""
         return self.coords["time"].values
 
     @property
     def status(self) -> str:
         """Return ``completed``, ``event`` (stopped by one), ``interrupted``, ``end_of_cable`` or ``no_convergence``.
 
-        ``unfinished`` of a run that goes on, or was killed.
+        ``unfinished`` of an active or killed run.
         """
-        return self.report["status"]
+        return str(self.report["status"])
 
     @property
-    def events(self) -> list[dict]:
-        """Return what has happened. Of the scene's events: name, time (s), and the state of bodies and slides there.
+    def events(self) -> list[dict[str, Any]]:
+        """Return the events. Of the scene's events: name, time (s), and the state of bodies and slides.
 
         Of slides: name, time (s), s (m), and what: "stuck", "broke loose", "turned round" (friction); "struck the end",
         "came to rest at the end", "left the end" (hard stops); "entered the buffer", "left the buffer"; "left".
         """
-        return self.report["events"]
+        events: list[dict[str, Any]] = self.report["events"]
+        return events
 
     @property
     def scene_toml(self) -> str:
-        """Return the scene that was run, as the text of a scene file."""
+        """Return the scene of the run as the text of a scene file."""
         return self._scene_text.toml
 
     @property
-    def libraries(self) -> Iterable[str | os.PathLike]:
-        """Return the directories of elements that the scene may load when it is read back from its text."""
+    def libraries(self) -> Iterable[str | os.PathLike[str]]:
+        """Return the directories of elements that the scene may load."""
         return self._scene_text.libraries
 
     @cached_property
     def scene(self) -> SceneData:
-        """Return the `funicular.Scene` that was run, read back from its text; what was adjusted then is in the report.
+        """Return the `funicular.Scene` of the run, read from its text; the report lists its adjustments.
 
         Raises SceneError for a library that is not allowed.
         """
@@ -169,7 +160,7 @@ class Run(Viewable, NamedArrays):
             return self._scene_text.read(self.scene_toml, "the scene of the run", libraries=self.libraries)
 
     def keys(self) -> list[str]:
-        """Return the names of all results; a cable's ``wire.position`` is a part of its ``wire.nodal_vectors``."""
+        """Return the names of all results; ``wire.position`` of a cable is a part of ``wire.nodal_vectors``."""
         return list(self.variables)
 
     def __len__(self) -> int:
@@ -177,19 +168,19 @@ class Run(Viewable, NamedArrays):
         return len(self.variables)
 
     def __bool__(self) -> bool:
-        """Return True: a run that ended before its first output time is one, too."""
+        """Return True, also for a run without output times."""
         return True
 
     def __contains__(self, name: object) -> bool:
-        """Return whether there is a result of that name."""
+        """Return whether there is a result of this name."""
         return name in self.variables or name in self._positions or name == "time"
 
     def _ipython_key_completions_(self) -> list[str]:
-        """Return what IPython offers after ``run["``."""
+        """Return the completions after ``run["``."""
         return ["time", *self.variables, *self._positions]
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """Return the array called ``name``, time first; units and dimensions stand in ``variables[name]``."""
+        """Return the array of a name, time first; ``variables[name]`` has its unit and dimensions."""
         if name == "time":
             return self.time
         if name in self._positions:
@@ -201,15 +192,14 @@ class Run(Viewable, NamedArrays):
 
     @cached_property
     def _positions(self) -> dict[str, str]:
-        """Return cables' positions of nodes, (time, node, 3) in m, by name; each is the first of these nodal vectors.
-        """
+        """Return the names of the positions of nodes, (time, node, 3) in m, with those of their nodal vectors."""
         suffix = ".nodal_vectors"
         return {name.removesuffix(suffix) + ".position": name for name in self.variables if name.endswith(suffix)}
 
     def at(self, time: float) -> InitialState:
-        """Return the state at an output time (s), for ``scene.run(initial=...)`` of this scene or one like it.
+        """Return the state at an output time (s), for ``scene.run(initial=...)`` of this scene or a similar one.
 
-        Raises UnknownResultError where no row has that time: states are not interpolated.
+        Raises UnknownResultError if no row has this time: states are not interpolated.
 
         >>> import funicular as fu
         >>> scene = fu.load_scene("paper51")
@@ -220,10 +210,10 @@ class Run(Viewable, NamedArrays):
         >>> bool(later["A.position"][0, 0] == run["A.position"][1, 0])
         True
         """
-        from ..model.initial_state import InitialState, names_of  # brings SciPy, which results do without
+        from ..model.initial_state import InitialState, names_of
 
         row = int(np.argmin(np.abs(self.time - time))) if len(self.time) else -1
-        if row < 0 or abs(self.time[row] - time) > SAME_TIME * self.time[-1]:
+        if row < 0 or abs(self.time[row] - time) > TIME_TOLERANCE * self.time[-1]:
             there = f"the nearest is {self.time[row]:.9g} s" if row >= 0 else "there is none"
             raise UnknownResultError(f"the run has no row at t = {time:.9g} s; {there}")
         sticking = [part.given_name or "" for part in self.scene.parts() if getattr(part, "has_friction_spring", False)]
@@ -237,12 +227,12 @@ class Run(Viewable, NamedArrays):
 
     @property
     def dataset(self) -> xarray.Dataset:
-        """Return all of it as an xarray.Dataset, with units, long names, the report and the scene as attributes."""
-        import xarray  # 0.5 s, for those who ask for it
+        """Return all results as an xarray.Dataset with units and long names; attributes: the report and the scene."""
+        import xarray
 
         from .files import WITH_CHECKSUMS, file_text
 
-        def arrays(variables: Mapping[str, Variable]) -> dict:
+        def arrays(variables: Mapping[str, Variable]) -> dict[str, Any]:
             return {
                 name: (v.dims, v.values, {"units": v.units, "long_name": v.long_name}) for name, v in variables.items()
             }
@@ -251,12 +241,11 @@ class Run(Viewable, NamedArrays):
                       "report": file_text(self.report)}
         return xarray.Dataset(arrays(self.variables), arrays(self.coords), attributes)
 
-    def save(self, path: str | os.PathLike) -> None:
-        """Write a netCDF file that xarray opens; an older file stays until the new one is whole.
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write a netCDF file that xarray opens; an older file stays until the new one is complete.
 
         Raises ResultFileError.
         """
-        # The file format, for those who save: `import funicular` does without.
         from .files import check_free, check_writable, create_file, file_text, over_time
         from .netcdf import Stored
 
@@ -272,14 +261,14 @@ class Run(Viewable, NamedArrays):
                 return
             file = create_file(part, self.coords, self.variables, self.scene_toml, report)
             rows = over_time(self.coords, self.variables)
-            block = max(1, _BLOCK // file.row_bytes)
+            block = max(1, WRITE_BLOCK_BYTES // file.row_bytes)
             for first in range(0, len(self.time), block):
                 file.write(first, {name: values[first : first + block] for name, values in rows.items()})
 
         write_whole(path, write, "the results")
 
     def energy_balance(self) -> EnergyBalance:
-        """Return how well the energy balance closes; see `EnergyBalance`."""
+        """Return the residual of the energy balance; see `EnergyBalance`."""
         energies = {name: self[f"energy.{name}"] for name in ENERGIES if f"energy.{name}" in self}
         changes = np.array([(e - e[:1]) * (-1 if name == "external" else 1) for name, e in energies.items()])
         residual = changes.sum(axis=0)
@@ -288,21 +277,21 @@ class Run(Viewable, NamedArrays):
 
     @cached_property
     def model(self) -> Model:
-        """Return the model of the scene, as it was drawn: numbers of its coordinates, what holds and joins them.
+        """Return the model of the scene as drawn: its coordinates, supports and couplings.
 
-        That of planar cables is in the axes of their plane.
+        A planar scene has a model in the axes of its plane.
         """
-        from ..model.build import build  # brings SciPy, which results alone do not need
+        from ..model.build import build
 
         return build(laid(self.scene))
 
     def slack_elements(self, cable: Cable | str) -> xarray.DataArray:
         """Return which elements of ``cable`` are slack, (time, element): shorter in the middle than at rest.
 
-        In cables with ``membrane="tension_only"`` these have hardly any stiffness along their axis. The report's events
-        tell when the first of them became slack and when all were taut again, between the rows, too.
+        With ``membrane="tension_only"`` they have almost no axial stiffness. The events of the report give the times,
+        also between rows, at which the first element became slack and at which all were taut again.
         """
-        from .slack import slack_elements  # brings SciPy, as below
+        from .slack import slack_elements
 
         return slack_elements(self, cable)
 
@@ -310,36 +299,35 @@ class Run(Viewable, NamedArrays):
                        side: str = "after") -> xarray.Dataset:
         """Return the forces and moments in sections of ``cable``.
 
-        s: arc-lengths (n,) in m; or the name of a slide on it, for the section where that is at each time. None given:
-        along all of the cable, with both sides of supports, ties and loads.
-        method: "balance", from what is in balance with the nodes' forces, loads, inertia and riders; "constitutive",
-        from the elastic law and the strains of the mesh, without what Kelvin-Voigt damping adds. They go to the same as
-        the mesh is refined, the second slowly: beside a point force, and wherever a cable turns within an element, it
-        swings about the first by a tenth and more, which a `FunicularWarning` says. Vibrations of the mesh are in both.
-        side: "after" or "before", of a force or moment on one point the side of larger or of smaller s. At the ends of
-        the cable it is always the one inside.
+        s: arc-lengths (n,) in m; or the name of a slide, for its section at each time. By default along the whole
+        cable, on both sides of supports, ties and loads.
+        method: "balance", in balance with nodal forces, loads, inertia and riders; "constitutive", by the elastic law
+        from the strains of the mesh, without Kelvin-Voigt damping. Both converge to the same values, the second one
+        slowly: beside a point force, and wherever a cable turns within an element, it oscillates about the first by a
+        tenth and more, which a `FunicularWarning` reports. Both contain vibrations of the mesh.
+        side: "after" or "before", at a force or moment on a point the side of larger or smaller s. At the ends of the
+        cable it is always the inner side.
 
-        Returns a Dataset over (time, s): force and moment, on the part before the cut along the ground's axes (xyz), in
+        Returns a Dataset over (time, s): force and moment on the part before the cut along the ground's axes (xyz), in
         N and N m; tension, shear and strain; curvature of cables; components along the section's axes of beams. Strains
-        are those of the mesh. A taut cable bends beside a point force over sqrt(E I / N) alone. Where its elements are
-        longer, tension is the size of the force, shear leaves out what is within that length of the point, and moment
-        is that of an elastica along the line of the force, not of the mesh.
-        Raises UnknownResultError; FunicularError where s is off the cable.
+        are those of the mesh. A taut cable bends beside a point force within sqrt(E I / N) only. For longer elements,
+        tension is the size of the force, shear excludes this length, and moment is that of an elastica along the line
+        of the force, not of the mesh. Raises UnknownResultError; FunicularError for s off the cable.
         """
-        from .section_forces.forces import dataset  # brings SciPy, as above
+        from .section_forces.forces import dataset
 
         return dataset(self, cable, s, method=method, side=side)
 
     def animation(self, title: str | None = None) -> Animation:
-        """Return the motion as pictures show it; see `Viewable.animation`. Raises FunicularError without results."""
-        from .animation.clips import of_run  # brings SciPy, as above
+        """Return the animation of the motion; see `Viewable.animation`. Raises FunicularError without results."""
+        from .animation.clips import of_run
 
         file = getattr(self.variables, "file", None)
         return of_run(self, title or ("run" if file is None else Path(file.path).stem))
 
     def sketch(self) -> Animation:
         """Return the motion without quantities and curves; see `Viewable.sketch`. Raises FunicularError."""
-        from .animation.clips import of_run  # likewise
+        from .animation.clips import of_run
 
         return of_run(self, "run", with_results=False)
 
@@ -348,33 +336,33 @@ class Run(Viewable, NamedArrays):
 
         A notebook shows it, `matplotlib.pyplot.show` in a script. Raises FunicularError.
         """
-        from ..view.files import new_figure  # brings Matplotlib
+        from ..view.files import new_figure
         from .pictures import plot
 
         return plot(self, what, new_figure())
 
-    def save_plots(self, directory: str | os.PathLike, prefix: str = "", forces: bool = False) -> list[Path]:
-        """Write the pictures that `funicular run --plot` writes, as PNG files with this prefix, and return their paths.
+    def save_plots(self, directory: str | os.PathLike[str], prefix: str = "", forces: bool = False) -> list[Path]:
+        """Write the pictures of `funicular run --plot` as PNG files with this prefix, and return their paths.
 
-        forces: tension and moment along each cable, too. Raises ResultFileError.
+        forces: also tension and moment along each cable. Raises ResultFileError.
         """
-        from .pictures import save_plots  # likewise
+        from .pictures import save_plots
 
         return save_plots(self, directory, prefix, forces)
 
     def overview(self) -> list[tuple[str, str]]:
-        """Return how the run went, for a notebook; see `Viewable.overview`."""
+        """Return the summary for a notebook; see `Viewable.overview`."""
         return self.summary_rows()
 
     def summary_rows(self) -> list[tuple[str, str]]:
-        """Return what to tell about the run in short: pairs of a heading and a text."""
+        """Return the summary of the run as pairs of a heading and a text."""
         report = self.report
         if not len(self.time):
             return [("status", f"{self.status} before the first output time: there are no results"),
                     *(("note", message) for message in report["messages"])]
         balance = self.energy_balance()
         rows = [("status", f"{self.status} at t = {self.time[-1]:.6g} s, {len(self.time)} times")]
-        counts = [f"{report[key]} {text}" for key, text in _COUNTS.items() if key in report]
+        counts = [f"{report[key]} {text}" for key, text in COUNTS.items() if key in report]
         if counts:
             rows.append(("steps", ", ".join(counts)))
         if "time_s" in report:
@@ -384,18 +372,13 @@ class Run(Viewable, NamedArrays):
             if total > 0:
                 rows.append(("real-time factor", f"{self.time[-1] / total:.3g} s of motion in 1 s of wall time"))
         if costs := report.get("us_per_step"):
-            rows.append(("slides and joints", _dearest(costs)))
+            rows.append(("slides and joints", _largest_costs(costs)))
         rows += [(f"modes of {name}", text) for name, text in report.get("modes", {}).items()]
-        rows.append(
-            (
-                "energy balance",
-                f"off by {np.abs(balance.residual).max():.2g} J at most, "
-                f"{np.abs(balance.relative).max():.2g} of the energy exchanged",
-            )
-        )
+        rows.append(("energy balance", f"off by {np.abs(balance.residual).max():.2g} J at most, "
+                     f"{np.abs(balance.relative).max():.2g} of the energy exchanged"))
         if errors := report.get("errors"):
-            rows.append(("estimated error", f"{_share(errors['both'])} of the largest motion: "
-                         f"{_share(errors['time'])} of the steps, {_share(errors['mesh'])} of the mesh"))
+            rows.append(("estimated error", f"{_relative(errors['both'])} of the largest motion: "
+                         f"{_relative(errors['time'])} of the steps, {_relative(errors['mesh'])} of the mesh"))
         residuals = [np.max(self[key]) for key in self.keys() if key.endswith(".residual")]
         if residuals:
             rows.append(("joint residual", f"{max(residuals):.2g} m at most"))
@@ -406,25 +389,13 @@ class Run(Viewable, NamedArrays):
         return "\n".join(f"{heading}: {text}" for heading, text in self.summary_rows())
 
 
-def _dearest(costs: dict[str, float]) -> str:
-    """Return what slides and joints take of a step, the dearest by name."""
+def _largest_costs(costs: dict[str, float]) -> str:
+    """Return the time per step of slides and joints, the largest ones by name."""
     order = sorted(costs, key=costs.__getitem__, reverse=True)
-    named = ", ".join(f"{name} {costs[name]:.3g}" for name in order[:_MOST_COSTS])
-    rest = f" and {len(order) - _MOST_COSTS} more" if len(order) > _MOST_COSTS else ""
+    named = ", ".join(f"{name} {costs[name]:.3g}" for name in order[:MAX_COSTS])
+    rest = f" and {len(order) - MAX_COSTS} more" if len(order) > MAX_COSTS else ""
     return f"{sum(costs.values()):.3g} µs of a step: {named}{rest}"
 
 
-_MOST_COSTS = 6
-
-
-def _share(error: float) -> str:
-    """Return an error over the largest motion in words."""
+def _relative(error: float) -> str:
     return "unknown" if np.isnan(error) else f"{error:.1e}"
-
-
-_COUNTS = {
-    "steps": "taken",
-    "rejected_steps": "rejected",
-    "newton_iterations": "Newton iterations",
-    "factorisations": "factorisations",
-}

@@ -1,22 +1,22 @@
-"""Which elements of a cable are slack, and when."""
+"""Slack elements of cables, over time."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..engine import SLACK_STRAIN
 from ..errors import UnknownResultError, near
 from ..model.middle_strain import middle_strain
 from ..parts.cable import Cable
 from ..solve.statics.rest_state import RestState
-from .section_forces.forces import Results
+from .recorded import Recorded
 
 if TYPE_CHECKING:
     import xarray
 
 
-def slack_elements(state: Results | RestState, cable: Cable | str) -> xarray.DataArray:
-    """See `Run.slack_elements`; of an equilibrium without the time. Raises UnknownResultError."""
+def slack_elements(state: Recorded | RestState, cable: Cable | str) -> xarray.DataArray:
+    """Return the slack elements, see `Run.slack_elements`; without time at rest. Raises UnknownResultError."""
     import xarray  # 0.5 s, for those who ask for it
 
     name, over_time = cable.name if isinstance(cable, Cable) else cable, not isinstance(state, RestState)
@@ -26,7 +26,8 @@ def slack_elements(state: Results | RestState, cable: Cable | str) -> xarray.Dat
     vectors = state[f"{name}.nodal_vectors"]
     slack = middle_strain(of, vectors if over_time else vectors[None]) < -SLACK_STRAIN
     s = of.mesh.node_s
-    coords: dict = {"s": ("element", (s[:-1] + s[1:]) / 2, {"units": "m", "long_name": "middle of the element"})}
+    middle = {"units": "m", "long_name": "middle of the element"}
+    coords: dict[str, Any] = {"s": ("element", (s[:-1] + s[1:]) / 2, middle)}
     if not isinstance(state, RestState):
         coords["time"] = ("time", state.time, {"units": "s", "long_name": "time"})
     return xarray.DataArray(slack if over_time else slack[0],

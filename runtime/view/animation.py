@@ -176,7 +176,7 @@ def taken(part: AnyPart, dim: str, numbers: np.ndarray, count: int) -> AnyPart:
 
 
 @cache
-def _dimensions(kind: type[Part]) -> dict[str, tuple[str | int, ...]]:
+def _dimensions(kind: type[Any]) -> dict[str, tuple[str | int, ...]]:
     return {name: hint.__metadata__ for name, hint in get_type_hints(kind, include_extras=True).items()
             if get_origin(hint) is Annotated}
 
@@ -190,7 +190,7 @@ def period(clip: Clip) -> float | None:
     """Return the period of a repeated clip; its last frame is the first one again, or the one before it."""
     if not clip.periodic or len(clip.time) < 2:
         return None
-    moving = [part.position for part in (*clip.cables, *clip.bodies)]
+    moving = [*(cable.position for cable in clip.cables), *(body.position for body in clip.bodies)]
     moved = max((np.abs(cable.position - cable.position[0]).max() for cable in clip.cables), default=0.0)
     closed = bool(moving) and all(np.abs(each[-1] - each[0]).max() <= 1e-6 * max(moved, 1e-300) for each in moving)
     return float(clip.time[-1] - clip.time[0] + (0 if closed else clip.time[-1] - clip.time[-2]))

@@ -59,9 +59,9 @@ def _with_fewer_frames(clip: Clip) -> tuple[Clip, list[str]]:
     given = len(clip.time)
     if len(frames) == given:
         return clip, []
-    fewer = replace(clip, time=clip.time[frames], **{
-        kind: tuple(taken(part, "T", frames, given) for part in getattr(clip, kind))
-        for kind in ("cables", "bodies", "marks", "segments")})
+    parts: dict[str, Any] = {kind: tuple(taken(part, "T", frames, given) for part in getattr(clip, kind))
+                             for kind in ("cables", "bodies", "marks", "segments")}
+    fewer = replace(clip, time=clip.time[frames], **parts)
     return fewer, [f"The picture shows {len(frames)} of {given} frames, evenly over time, and no motion between them."]
 
 
@@ -124,7 +124,7 @@ def _distances(s: np.ndarray, column: np.ndarray, left: np.ndarray, right: np.nd
     length = s[right] - s[left]
     weight = np.where(length > 0, (s[at] - s[left]) / np.where(length > 0, length, 1), 0.0)[:, None]
     line = column[:, left] * (1 - weight) + column[:, right] * weight
-    return np.linalg.norm(column[:, at] - line, axis=-1)
+    return np.asarray(np.linalg.norm(column[:, at] - line, axis=-1))
 
 
 def _subdivided(s: np.ndarray, columns: list[np.ndarray]) -> np.ndarray:

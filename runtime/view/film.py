@@ -181,7 +181,7 @@ class Film:
             artist.set_segments(list(np.stack([points[:-1], points[1:]], axis=1)))
             if quantity is not None and self.scale is not None:
                 values = quantity.values[frame]
-                artist.set_color(self.scale.to_rgba((values[:-1] + values[1:]) / 2))
+                artist.set_color(list(map(tuple, self.scale.to_rgba((values[:-1] + values[1:]) / 2))))
 
         self.moving.append((number, artist, update))
 
@@ -194,7 +194,8 @@ def _corners(animation: Animation, seen: Directions) -> np.ndarray:
     """Return the corners (8, 3) of the bounding box along the directions."""
     places = all_points(animation) @ seen.matrix
     ends = np.stack([places.min(axis=0), places.max(axis=0)])
-    return np.array([[x, y, z] for x in ends[:, 0] for y in ends[:, 1] for z in ends[:, 2]]) @ seen.matrix.T
+    corners = np.array([[x, y, z] for x in ends[:, 0] for y in ends[:, 1] for z in ends[:, 2]])
+    return np.asarray(corners @ seen.matrix.T)
 
 
 def frame_at(clip: Clip, time: float) -> int:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -51,6 +51,21 @@ def square_to(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     along = np.cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])
     along /= np.linalg.norm(along)
     return along, np.cross(along, normal)
+
+
+def grid_mesh(points: np.ndarray) -> Surface:
+    """Return the vertices and triangles of a grid of points (n, m, 3), visible from both sides."""
+    n, m = points.shape[:2]
+    k = (np.arange(n - 1)[:, None] * m + np.arange(m - 1)).ravel()
+    one = np.concatenate([np.stack([k, k + 1, k + m], axis=1), np.stack([k + 1, k + m + 1, k + m], axis=1)])
+    return points.reshape(-1, 3), np.concatenate([one, one[:, ::-1]])
+
+
+def joined(meshes: Sequence[Surface]) -> Surface:
+    """Return several meshes as one."""
+    first = np.cumsum([0, *(len(vertices) for vertices, _ in meshes)])
+    return (np.concatenate([vertices for vertices, _ in meshes]),
+            np.concatenate([triangles + k for (_, triangles), k in zip(meshes, first, strict=False)]))
 
 
 def surface(shape: Mapping[str, Any]) -> Surface:

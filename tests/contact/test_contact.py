@@ -449,7 +449,7 @@ def test_section_forces_hold_what_the_bed_presses():
 
 def test_section_forces_of_a_run_with_friction_are_refused():
     run = cloth().run(0.02, output_step=0.01, tol=1e-3)
-    with pytest.raises(fu.SceneError, match='"contact_1": has friction, which results do not tell along "wire"'):
+    with pytest.raises(fu.SceneError, match='"contact_1": has friction, which results do not record along "wire"'):
         run.section_forces("wire", 0.5)
 
 

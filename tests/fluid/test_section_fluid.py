@@ -113,18 +113,18 @@ def two_ropes(tied=False):
 def test_a_contact_with_friction_keeps_its_own_cable_alone_from_the_balance():
     run = two_ropes().run(0.02, output_step=0.01, tol=1e-3)
     assert np.isfinite(run.section_forces("upper")["force"].values).all()
-    with pytest.raises(fu.SceneError, match='"contact_1": has friction, which results do not tell along "wire"'):
+    with pytest.raises(fu.SceneError, match='"contact_1": has friction, which results do not record along "wire"'):
         run.section_forces("wire")
     methods = {name: known_method(run.scene, run.model, name, False) for name in run.scene.cables}
     assert methods == {"wire": "constitutive", "upper": "balance"}
     assert run.plot("forces-upper") is not None and run.plot("forces-wire") is not None
     notes = run.animation("ropes").notes
     assert [note for note in notes if "elastic law" in note] == [
-        'tension of "wire" is that of the elastic law, not in balance with what acts: contact "contact_1" has '
-        'friction, which results do not tell along "wire"']
+        'tension of "wire" is that of the elastic law, not in balance with the loads: contact "contact_1" has '
+        'friction, which results do not record along "wire"']
 
 
 def test_a_cable_tied_to_one_with_friction_is_refused_as_well():
     run = two_ropes(tied=True).run(0.01, output_step=0.01, tol=1e-3)
-    with pytest.raises(fu.SceneError, match="has friction, which results do not tell along"):
+    with pytest.raises(fu.SceneError, match="has friction, which results do not record along"):
         run.section_forces("upper")

@@ -1,4 +1,4 @@
-"""Cables in a picture: the centre line at stations, the direction of the section, what may colour it."""
+"""Cables in a picture: the centre line at stations, the direction of the section, quantities for colours."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from ...parts.section import Circle, Rectangle, Section, Tube
 from ...view.animation import CableShape, Quantity
 from .frames import Frames, along
 
-LEAST, FEWEST, MOST = 120, 2, 16
-"""Stations that a cable has at least if its elements take so many each, and the fewest and most of an element."""
+CABLE_STATIONS = 120
+MIN_DIVISIONS, MAX_DIVISIONS = 2, 16
+"""Bounds of the stations per element, which give about `CABLE_STATIONS` on a cable."""
 SLENDERNESS = 200.0
-"""Length over diameter of a line whose section is not known."""
-LINE = 0.1
-"""Of their length: how far the nodes of a modal body may be off a line for them to be drawn as one."""
+"""Length over diameter of a line of unknown section."""
+MAX_DEVIATION = 0.1
+"""Largest distance of the nodes of a modal body from a line, over its length, for them to be drawn as a line."""
 
 
 def stations(cable: Cable) -> np.ndarray:
     """Return the arc-lengths (P,) in m at which a cable is drawn, its nodes among them."""
-    of_each = int(np.clip(np.ceil(LEAST / cable.elements), FEWEST, MOST))
-    return cable.divided(of_each)
+    return cable.divided(int(np.clip(np.ceil(CABLE_STATIONS / cable.elements), MIN_DIVISIONS, MAX_DIVISIONS)))
 
 
 def cable_shape(frames: Frames, name: str, notes: list[str]) -> CableShape:
-    """Return a cable of the scene; what could not be had is said in notes."""
+    """Return a cable of the scene; notes: receives failures."""
     cable, s = frames.scene.cables[name], stations(frames.scene.cables[name])
     nodal = frames.value(f"{name}.nodal_vectors")
     return CableShape(name, s, along(cable, s, nodal), section_direction(cable, s, nodal),
@@ -36,9 +36,9 @@ def cable_shape(frames: Frames, name: str, notes: list[str]) -> CableShape:
 
 
 def section_direction(cable: Cable, s: np.ndarray, nodal: np.ndarray) -> np.ndarray | None:
-    """Return the unit vectors (T, P, 3) of the section's height; None of a cable whose sections have no direction.
+    """Return the unit vectors (T, P, 3) of the section's height; None for a cable without a director.
 
-    Planar cables have one of their own: their height lies in the plane, square to the tangent.
+    The height of planar cables lies in the plane, normal to the tangent.
     """
     if "r_y" in cable.kind_of_element.nodal_vectors:
         height = along(cable, s, nodal, slope=1)
@@ -49,11 +49,11 @@ def section_direction(cable: Cable, s: np.ndarray, nodal: np.ndarray) -> np.ndar
     else:
         return None
     size = np.linalg.norm(height, axis=-1, keepdims=True)
-    return height / np.where(size > 0, size, 1.0)
+    return np.asarray(height / np.where(size > 0, size, 1.0))
 
 
 def section_data(section: Section) -> dict[str, object]:
-    """Return a section as pictures take it; of one known by its constants the circle of its area."""
+    """Return a section for pictures; of one given by its constants the circle of its area."""
     match section:
         case Rectangle():
             return {"shape": "rectangle", "height": section.height, "width": section.width}
@@ -69,7 +69,7 @@ def _quantities(frames: Frames, name: str, s: np.ndarray, notes: list[str]) -> l
     cable, found = frames.scene.cables[name], []
     try:
         forces = frames.section_forces(name, s)
-    except (FunicularError, RuntimeError) as error:  # a factorisation that fails is a RuntimeError
+    except (FunicularError, RuntimeError) as error:  # RuntimeError: singular factorisation
         forces = {}
         notes.append(f'tension and strain of "{name}" could not be computed: {error}')
     if forces:
@@ -87,7 +87,7 @@ def _quantities(frames: Frames, name: str, s: np.ndarray, notes: list[str]) -> l
 
 
 def modal_line(frames: Frames, name: str) -> CableShape | None:
-    """Return a modal body as the line through its nodes, deformed; None where its nodes are on no line."""
+    """Return a modal body as the deformed line through its nodes; None if its nodes are on no line."""
     body = frames.scene.bodies[name]
     assert isinstance(body, ModalBody)
     order = line_order(body.shape.nodes)
@@ -105,14 +105,14 @@ def modal_line(frames: Frames, name: str) -> CableShape | None:
 
 
 def line_order(nodes: np.ndarray) -> np.ndarray | None:
-    """Return the order in which nodes (N, 3) follow each other along a line; None where they are on no line."""
+    """Return the order of nodes (N, 3) along a line; None if they are on no line."""
     if len(nodes) < 2:
         return None
     centred = nodes - nodes.mean(axis=0)
     along_line = np.linalg.svd(centred, full_matrices=False)[2][0]
     reach = centred @ along_line
     off = np.linalg.norm(centred - np.multiply.outer(reach, along_line), axis=1)
-    if off.max() > LINE * np.ptp(reach):
+    if off.max() > MAX_DEVIATION * np.ptp(reach):
         return None
     order = np.argsort(reach, kind="stable")
     return order if reach[0] <= reach[-1] else order[::-1]

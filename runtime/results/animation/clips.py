@@ -14,6 +14,7 @@ from ...parts.scene_data import SceneData
 from ...solve.modes.modes import Modes
 from ...solve.statics.rest_state import RestState, in_loads
 from ...view.animation import Animation, BodyShape, CableShape, Clip, Curve, EventMark, Mark
+from ..recorded import Recorded
 from ..section_forces.balance_limits import out_of_balance
 from . import sources
 from .bodies import body_shape
@@ -21,35 +22,35 @@ from .cables import cable_shape, modal_line, stations
 from .curves import curves, events, thinned
 from .frames import Frames, no_forces
 from .marks import arrow_length, marks, segments
-from .recorded import Recorded
 from .references import references
 from .surfaces import level_shapes, surface_shape
 
-FRAMES = 600
-"""Of a run, at most."""
-MOST_POINTS = 2_000_000
-"""Of all cables over all frames: with more, there are fewer frames."""
-PERIOD = 48
+MAX_FRAMES = 600
+"""Largest number of frames of a run."""
+MAX_POINTS = 2_000_000
+"""Largest number of points of all cables over all frames; with more points there are fewer frames."""
+PERIOD_FRAMES = 48
 """Frames of one period of a mode."""
-SWING = 0.08
-"""Of the scene's size: the largest displacement of a mode in its picture."""
-TURN = 0.6
-"""In rad: what a body turns by at most in the picture of a mode, also where it hardly moves otherwise."""
-ROUNDING = 1e-6
-MOST_NODES = 200
-"""Of a modal body whose nodes are on no line: with more, some of them are drawn."""
+MODE_DISPLACEMENT = 0.08
+"""Largest displacement of a mode in its picture, over the size of the scene."""
+MODE_ROTATION = 0.6
+"""Largest rotation of a body in the picture of a mode, rad."""
+MIN_AMPLITUDE = 1e-6
+"""Smallest displacement over `MODE_DISPLACEMENT`, and rotation in rad, that is reported."""
+MAX_NODES = 200
+"""Largest number of drawn nodes of a modal body whose nodes are on no line."""
 
 
-def of_run(run: Recorded, title: str, frames: int = FRAMES, with_results: bool = True) -> Animation:
-    """Return the animation of a run, of at most so many of its output times. Raises FunicularError without any.
+def of_run(run: Recorded, title: str, frames: int = MAX_FRAMES, with_results: bool = True) -> Animation:
+    """Return the animation of a run, of at most ``frames`` output times. Raises FunicularError without any.
 
-    with_results: with quantities along cables and curves, or places alone, which is quicker.
+    with_results: with quantities along cables and curves, or positions alone, which is faster.
     """
     if not len(run.time):
         raise FunicularError("the run has no output times: there is nothing to see")
     notes = list(run.report["messages"])
     points = sum(len(stations(cable)) for cable in run.scene.cables.values())
-    chosen = thinned(len(run.time), max(2, min(frames, MOST_POINTS // max(1, points))))
+    chosen = thinned(len(run.time), max(2, min(frames, MAX_POINTS // max(1, points))))
     if len(chosen) < len(run.time):
         notes.append(f"{len(chosen)} of the run's {len(run.time)} output times are drawn")
     if not with_results:
@@ -64,12 +65,12 @@ def of_run(run: Recorded, title: str, frames: int = FRAMES, with_results: bool =
 
 
 def _by_law(cable: str, why: str) -> str:
-    """Return the note of a cable whose forces are not those in balance."""
-    return f'tension of "{cable}" is that of the elastic law, not in balance with what acts: {why}'
+    """Return the note of a cable whose forces are not computed by balance."""
+    return f'tension of "{cable}" is that of the elastic law, not in balance with the loads: {why}'
 
 
 def _out_of_balance(scene: SceneData, model: Model, is_rest: bool) -> list[str]:
-    """Return a note of each cable on which something acts that results do not tell."""
+    """Return a note for each cable with loads that results do not contain."""
     found = ((name, out_of_balance(scene, model, number, is_rest)) for number, name in enumerate(scene.cables))
     return [_by_law(name, f"{error.place} {error.cause}") for name, error in found if error is not None]
 
@@ -88,13 +89,13 @@ def of_equilibrium(state: RestState, title: str) -> Animation:
 
 
 def details(state: RestState) -> dict[str, str]:
-    """Return what a state of rest is, in words."""
+    """Return the properties of a state of rest in words."""
     return {"stability": "stable" if state.stable else f"{state.unstable_directions} unstable directions",
             "load": in_loads(state.load_fraction), "residual": f"{state.residual:.2g} N"}
 
 
 def of_path(state: RestState, title: str) -> Animation:
-    """Return the animation of the states of rest on the way to one: its time is the load factor, if that only rises."""
+    """Return the animation of the states on the load path of one; its time is the load factor if that increases."""
     notes, states = [*state.messages, *_out_of_balance(state.scene, state.model, is_rest=True)], state.path
     if len(states) < 2:
         raise FunicularError("the equilibrium has one state on its path; find it with load_steps or "
@@ -120,16 +121,16 @@ def of_path(state: RestState, title: str) -> Animation:
 
 
 def of_modes(modes: Modes, scene: SceneData, about: Mapping[str, np.ndarray], title: str) -> Animation:
-    """Return one clip a mode, about a state by name; the first frame has the largest displacement."""
+    """Return one clip per mode, about a state given by name; the first frame has the largest displacement."""
     notes = [*modes.messages]
-    swing = SWING * scene_size(sources.of_scene(scene))
-    phase = 2 * np.pi * np.arange(PERIOD) / PERIOD
+    swing = MODE_DISPLACEMENT * scene_size(sources.of_scene(scene))
+    phase = 2 * np.pi * np.arange(PERIOD_FRAMES) / PERIOD_FRAMES
     clips = []
     for k in range(len(modes)):
         frequency, growth = float(modes.frequency[k]), float(modes.growth_rate[k])
         what = f"{frequency:.4g} Hz" if frequency > 0 or growth == 0 else f"grows by {growth:.4g} 1/s"
         turns = [float(np.linalg.norm(modes[f"{name}.rotation"][k])) for name in scene.bodies]
-        largest = min(swing, TURN / max([*turns, 1e-300]))
+        largest = min(swing, MODE_ROTATION / max([*turns, 1e-300]))
         clip = _clip(sources.of_mode(modes, k, scene, about, largest, phase), f"mode {k + 1}: {what}",
                      [] if k else notes)
         drawn = _amplitude(largest, largest * max([*turns, 0.0]))
@@ -137,18 +138,19 @@ def of_modes(modes: Modes, scene: SceneData, about: Mapping[str, np.ndarray], ti
                              segments=tuple(each for each in clip.segments if each.kind != "load"), periodic=True,
                              details={"frequency": what, "drawn with": drawn}))
     notes.append(f"modes have no size of their own: they are drawn with displacements of at most {swing:.3g} m "
-                 f"and turns of at most {TURN:g} rad")
+                 f"and turns of at most {MODE_ROTATION:g} rad")
     return replace(_animation(scene, title, clips, notes), arrangement="menu")
 
 
 def _amplitude(moved: float, turned: float) -> str:
-    """Return the largest displacement and turn of a mode in its picture in words, but for what rounding leaves."""
-    words = [f"{moved:.3g} m"] * (moved > ROUNDING * SWING) + [f"a turn of {turned:.3g} rad"] * (turned > ROUNDING)
+    """Return the largest displacement and rotation of a mode in its picture in words, without rounding errors."""
+    words = [f"{moved:.3g} m"] * (moved > MIN_AMPLITUDE * MODE_DISPLACEMENT)
+    words += [f"a turn of {turned:.3g} rad"] * (turned > MIN_AMPLITUDE)
     return " and ".join(words) + " at most"
 
 
 def overlaid(animations: Sequence[Animation]) -> Animation:
-    """Return one animation with the clips of several, drawn at once; the first one's title and axes."""
+    """Return one animation with the clips of several, drawn together, with the axes of the first."""
     first, *others = animations
     if not others:
         return first
@@ -163,14 +165,18 @@ def overlaid(animations: Sequence[Animation]) -> Animation:
 
 
 def _animation(scene: SceneData, title: str, clips: list[Clip], notes: list[str]) -> Animation:
+    x, y, z = upward(scene).tolist()
+    return Animation(title, tuple(clips), (x, y, z), _is_planar(clips), notes=tuple(dict.fromkeys(notes)))
+
+
+def upward(scene: SceneData) -> np.ndarray:
+    """Return the unit vector (3,) against gravity, or y without gravity."""
     gravity = np.array(scene.gravity)
-    x, y, z = -gravity / np.linalg.norm(gravity) if gravity.any() else (0.0, 1.0, 0.0)
-    return Animation(title, tuple(clips), (float(x), float(y), float(z)), _is_planar(clips),
-                     notes=tuple(dict.fromkeys(notes)))
+    return -gravity / np.linalg.norm(gravity) if gravity.any() else np.array([0.0, 1.0, 0.0])
 
 
 def _is_planar(clips: list[Clip]) -> bool:
-    """Return whether all centre lines and bodies stay in a plane z = const., to a thousandth of their size."""
+    """Return whether all centre lines and bodies stay in a plane z = const. to a thousandth of their size."""
     points = [cable.position.reshape(-1, 3) for clip in clips for cable in clip.cables]
     points += [body.position for clip in clips for body in clip.bodies]
     if not points:
@@ -180,30 +186,33 @@ def _is_planar(clips: list[Clip]) -> bool:
 
 
 def scene_size(frames: Frames) -> float:
-    """Return the diagonal in m of the box about cables and bodies over all frames; 1 m of a single point."""
+    """Return the diagonal in m of the bounding box of cables and bodies over all frames; 1 m of a single point."""
     return float(np.linalg.norm(_extents(frames))) or 1.0
 
 
 def _extents(frames: Frames) -> np.ndarray:
-    """Return the extents (3,) in m of the box about cables and bodies over all frames."""
-    points = [frames.value(f"{name}.nodal_vectors")[:, :, cable.kind_of_element.nodal_vectors.index("r")].reshape(-1, 3)
-              for name, cable in frames.scene.cables.items()]
-    points += [frames.value(f"{name}.position") for name in frames.scene.bodies]
-    points += [frames.value(f"{name}.nodes").reshape(-1, 3) for name, body in frames.scene.bodies.items()
+    """Return the extents (3,) in m of the bounding box of cables and bodies over all frames."""
+    points = _positions(frames)
+    points += [frames.value(f"{name}.nodes") for name, body in frames.scene.bodies.items()
                if isinstance(body, ModalBody)]
-    return np.ptp(np.concatenate(points), axis=0) if points else np.zeros(3)
+    return np.ptp(np.concatenate([each.reshape(-1, 3) for each in points]), axis=0) if points else np.zeros(3)
+
+
+def _positions(frames: Frames) -> list[np.ndarray]:
+    """Return the positions (T, nodes, 3) of the nodes of each cable and (T, 3) of each body, in m."""
+    return [frames.value(f"{name}.nodal_vectors")[:, :, cable.kind_of_element.nodal_vectors.index("r")]
+            for name, cable in frames.scene.cables.items()
+            ] + [frames.value(f"{name}.position") for name in frames.scene.bodies]
 
 
 def _centre(frames: Frames) -> np.ndarray:
-    """Return (3,): the mean place in m of cables and bodies in the first frame."""
-    points = [frames.value(f"{name}.nodal_vectors")[0, :, cable.kind_of_element.nodal_vectors.index("r")]
-              for name, cable in frames.scene.cables.items()]
-    points += [frames.value(f"{name}.position")[:1] for name in frames.scene.bodies]
-    return np.concatenate(points).mean(axis=0) if points else np.zeros(3)
+    """Return the mean position (3,) in m of cables and bodies in the first frame."""
+    points = [each[0].reshape(-1, 3) for each in _positions(frames)]
+    return np.asarray(np.concatenate(points).mean(axis=0)) if points else np.zeros(3)
 
 
 def _clip(frames: Frames, label: str, notes: list[str]) -> Clip:
-    """Return what the frames show; what could not be had is said in notes."""
+    """Return the clip of frames; notes: receives failures."""
     size, refs = scene_size(frames), references(frames)
     cables: list[CableShape] = [cable_shape(frames, name, notes) for name in frames.scene.cables]
     bodies: list[BodyShape] = []
@@ -223,6 +232,6 @@ def _clip(frames: Frames, label: str, notes: list[str]) -> Clip:
 
 
 def _cloud(frames: Frames, name: str) -> list[Mark]:
-    """Return the nodes of a modal body that are on no line."""
+    """Return the nodes of a modal body as points."""
     nodes = frames.value(f"{name}.nodes")
-    return [Mark(name, "point", nodes[:, k], f'node {k} of "{name}"') for k in thinned(nodes.shape[1], MOST_NODES)]
+    return [Mark(name, "point", nodes[:, k], f'node {k} of "{name}"') for k in thinned(nodes.shape[1], MAX_NODES)]

@@ -1,30 +1,31 @@
-"""Results over time beside a picture, and what happened, on its line of time."""
+"""Results over time beside a picture, and events on its time line."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 
 from ...errors import FunicularError
 from ...view.animation import Curve, EventMark
 from ..quantities import ENERGIES, Variable
+from ..recorded import Recorded
 from ..section_forces.balance_limits import known_method
 from ..section_forces.forces import of_run as forces_of_run
-from .recorded import Recorded
 
-MOST_ROWS, FEWEST_ROWS = 2000, 200
-"""Rows of a curve, at most and, where there are many curves, at least."""
-MOST_NUMBERS = 150_000
-"""Of all curves together, so that a page stays small."""
+MAX_ROWS, MIN_ROWS = 2000, 200
+"""Bounds of the rows of a curve."""
+MAX_NUMBERS = 150_000
+"""Numbers of all curves together, unless `MIN_ROWS` need more, for a small page."""
 UNITS = {"m/s2": "m/s²", "rad/s2": "rad/s²"}
-AT = 1000
-"""Times at which the tension at a slide is computed, at most."""
+MAX_TENSIONS = 1000
+"""Largest number of times at which the tension at a slide is computed."""
 
 
-def thinned(count: int, most: int) -> np.ndarray:
-    """Return the numbers of at most ``most`` of so many rows: every k-th and the last."""
-    step = max(1, -(-(count - 1) // max(1, most - 1)))
+def thinned(count: int, limit: int) -> np.ndarray:
+    """Return the numbers of at most ``limit`` of ``count`` rows: every k-th and the last."""
+    step = max(1, -(-(count - 1) // max(1, limit - 1)))
     return np.unique(np.append(np.arange(0, count, step), count - 1))
 
 
@@ -32,7 +33,7 @@ def curves(run: Recorded, notes: list[str]) -> Iterator[Curve]:
     """Yield the results of a run over time: scalars, vectors, the energy balance, the tension at slides."""
     shown = {name: variable for name, variable in run.variables.items() if _is_curve(variable)}
     columns = sum(int(np.prod(variable.values.shape[1:])) for variable in shown.values())
-    rows = int(np.clip(MOST_NUMBERS // max(1, columns), FEWEST_ROWS, MOST_ROWS))
+    rows = int(np.clip(MAX_NUMBERS // max(1, columns), MIN_ROWS, MAX_ROWS))
     chosen = thinned(len(run.time), rows)
     if len(chosen) < len(run.time):
         notes.append(f"curves have {len(chosen)} of the run's {len(run.time)} output times")
@@ -47,7 +48,7 @@ def curves(run: Recorded, notes: list[str]) -> Iterator[Curve]:
 
 
 def _is_curve(variable: Variable) -> bool:
-    """Return whether a variable has one number, or a few, at each time."""
+    """Return whether a variable is a scalar or a vector over time."""
     return variable.dims[0] == "time" and (len(variable.dims) == 1 or variable.dims[1:] in (("xyz",), ("normal",)))
 
 
@@ -64,7 +65,7 @@ def _columns(run: Recorded, variable: Variable) -> tuple[str, ...]:
 
 
 def _energies(run: Recorded, chosen: np.ndarray) -> Iterator[Curve]:
-    """Yield the energies in one diagram, and how well they balance in another."""
+    """Yield the energies in one chart, and the residual of their balance in another."""
     known = [name for name in ENERGIES if f"energy.{name}" in run]
     if not known:
         return
@@ -72,13 +73,13 @@ def _energies(run: Recorded, chosen: np.ndarray) -> Iterator[Curve]:
     energies = np.stack([run[f"energy.{name}"][chosen] for name in known], axis=1)
     yield Curve("energy", "energy", "J", tuple(known), time, energies)
     balance = run.energy_balance()
-    yield Curve("energy.balance", "energy balance: what is missing", "J", (), time, balance.residual[chosen])
+    yield Curve("energy.balance", "energy balance: residual", "J", (), time, balance.residual[chosen])
 
 
 def _tension_at(run: Recorded, slide: str, notes: list[str]) -> Iterator[Curve]:
-    """Yield the tension of the cable where a slide is, on both sides of it."""
+    """Yield the tension of the cable on both sides of a slide."""
     name = run.scene.slides[slide].along
-    chosen = thinned(len(run.time), AT)
+    chosen = thinned(len(run.time), MAX_TENSIONS)
     s = np.clip(run[f"{slide}.s"][chosen], 0.0, run.scene.cables[name].length)[:, None]
     try:
         method = known_method(run.scene, run.model, name, False)
@@ -92,12 +93,12 @@ def _tension_at(run: Recorded, slide: str, notes: list[str]) -> Iterator[Curve]:
 
 
 def events(run: Recorded) -> Iterator[EventMark]:
-    """Yield what has happened, with its name and what it was."""
+    """Yield the events with their descriptions."""
     for event in run.report.get("events", []):  # older files have none
         yield EventMark(float(event["time"]), _in_words(event))
 
 
-def _in_words(event: Mapping) -> str:
+def _in_words(event: Mapping[str, Any]) -> str:
     what = event.get("what")
     place = f" at s = {event['s']:.4g} m" if isinstance(event.get("s"), float) else ""
     return f"{event['name']}{f': {what}' if what else ''}{place}"

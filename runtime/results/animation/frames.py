@@ -1,4 +1,4 @@
-"""A scene at T instants, as its pictures need it, whatever it is taken from: where points of cables and bodies are."""
+"""A scene at T instants for its pictures, from any source, and the positions of points of cables and bodies."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ from typing import Protocol
 import numpy as np
 
 from ...base.rotations import rotate
-from ...kernels.libraries import kernels_of
 from ...parts.attachment import Attachment
 from ...parts.cable import Cable
 from ...parts.modal_body import ModalBody
 from ...parts.scene_data import SceneData
+from ..shape_functions import of_slopes, on_axis
 
 
 class SectionForces(Protocol):
-    """Returns what a cable bears in its sections."""
+    """Returns the forces in sections of a cable."""
 
     def __call__(self, cable: str, s: np.ndarray) -> dict[str, np.ndarray]:
         """Return force, moment (T, n, 3) and components (T, n) at arc-lengths s (n,) in m."""
 
 
 def no_forces(cable: str, s: np.ndarray) -> dict[str, np.ndarray]:
-    """Return nothing: what cables bear in these frames is not known."""
+    """Return no forces."""
     return {}
 
 
@@ -32,9 +32,9 @@ def no_forces(cable: str, s: np.ndarray) -> dict[str, np.ndarray]:
 class Frames:
     """A scene at T instants.
 
-    time (T,) in s, or what stands in its place; value: results by the names that a run has for them, (T, ...);
-    reference: the same of one instant, without the time, that displacements are measured from; load (T,): how much of
-    the loads is on; has: whether there is a result of a name; moves: whether loads follow their signals over the time.
+    time (T,) in s, or another parameter; value: results (T, ...) by their names in a run; has: whether there is a
+    result of a name; reference: results at one instant, without the time, the origin of displacements; load (T,): the
+    applied part of the loads; moves: whether loads follow their signals over time.
     """
 
     scene: SceneData
@@ -52,57 +52,55 @@ class Frames:
 
 
 def weights(cable: Cable, s: np.ndarray, slope: int | None = None) -> tuple[np.ndarray, np.ndarray]:
-    """Return the elements (n,) that arc-lengths s (n,) are in, and shape functions (n, vectors of two nodes) there.
+    """Return the elements (n,) of arc-lengths s (n,), and shape functions (n, vectors of two nodes) there.
 
-    slope: 0, 1, 2 for those of r_x, r_y, r_z instead of the point's.
+    slope: 0, 1, 2 for those of r_x, r_y, r_z instead of positions.
     """
     element, x = cable.mesh.place(s)
-    length = cable.mesh.each_length(element)
-    x = np.clip(x, 0.0, length)
-    kernels = kernels_of(cable.library)
-    if slope is None:
-        return element, getattr(kernels, f"{cable.element}_on_axis").rows(len(s), length, x)[0]
-    return element, getattr(kernels, f"{cable.element}_slopes").rows(len(s), length, x)[:, slope, 0]
+    x = np.clip(x, 0.0, cable.mesh.each_length(element))
+    return element, on_axis(cable, element, x)[0] if slope is None else of_slopes(cable, element, x)[:, slope]
 
 
 def along(cable: Cable, s: np.ndarray, nodal_vectors: np.ndarray, slope: int | None = None) -> np.ndarray:
-    """Return the points (..., n, 3) of a cable at arc-lengths s (n,) in m, as its elements draw them, or a slope there.
+    """Return the points (..., n, 3) of a cable at arc-lengths s (n,) in m, or a slope there.
 
     nodal_vectors: (..., nodes, vectors, 3); slope: as of `weights`.
     """
     element, N = weights(cable, s, slope)
     pairs = np.concatenate([nodal_vectors[..., element, :, :], nodal_vectors[..., element + 1, :, :]], axis=-2)
-    return np.einsum("nk,...nkd->...nd", N, pairs, optimize=True)
+    return np.asarray(np.einsum("nk,...nkd->...nd", N, pairs, optimize=True))
 
 
 def moving(cable: Cable, s: np.ndarray, nodal_vectors: np.ndarray) -> np.ndarray:
     """Return the points (T, 3) of a cable at one arc-length s (T,) of each instant.
 
-    nodal_vectors: (T, nodes, ...), or (1, nodes, ...) of a cable that stands still.
+    nodal_vectors: (T, nodes, ...), or (1, nodes, ...) of a cable at rest.
     """
     element, N = weights(cable, s)
     instants = np.arange(len(s)) if len(nodal_vectors) > 1 else np.zeros(len(s), dtype=int)
     pairs = np.concatenate([nodal_vectors[instants, element], nodal_vectors[instants, element + 1]], axis=1)
-    return np.einsum("tk,tkd->td", N, pairs)
+    return np.asarray(np.einsum("tk,tkd->td", N, pairs))
 
 
 def place(frames: Frames, attachment: Attachment) -> np.ndarray:
-    """Return where an attachment is, (T, 3) in m; (1, 3) of the ground."""
+    """Return the positions (T, 3) of an attachment in m; (1, 3) of the ground."""
     if attachment.on is None:
         return np.array([attachment.point])
     if attachment.on in frames.scene.cables:
         s = np.array([attachment.arc_length])
         return along(frames.scene.cables[attachment.on], s, frames.value(f"{attachment.on}.nodal_vectors"))[:, 0]
     body = frames.scene.bodies[attachment.on]
-    orientation = frames.value(f"{attachment.on}.orientation")
-    if isinstance(body, ModalBody):  # its point goes with the section at its node
+    orientation, position = (frames.value(f"{attachment.on}.{what}") for what in ("orientation", "position"))
+    if isinstance(body, ModalBody):  # the point is fixed to the section at the nearest node
         node = int(np.argmin(np.linalg.norm(body.shape.nodes - attachment.point, axis=1)))
         arm = np.array(attachment.point) - body.shape.nodes[node]
         turn = frames.value(f"{attachment.on}.modal_coordinates") @ body.shape.rotations[:, node]
-        return frames.value(f"{attachment.on}.nodes")[:, node] + rotate(orientation, arm + np.cross(turn, arm))
-    return frames.value(f"{attachment.on}.position") + rotate(orientation, attachment.point)
+        position, arm = frames.value(f"{attachment.on}.nodes")[:, node], arm + np.cross(turn, arm)
+    else:
+        arm = np.array(attachment.point)
+    return position + rotate(orientation, arm)
 
 
 def one_or_all(position: np.ndarray) -> np.ndarray:
-    """Return places (T, 3) as they are, and (1, 3) of what stands still as (3,)."""
+    """Return positions (T, 3) unchanged, and (1, 3) as (3,)."""
     return position[0] if len(position) == 1 else position

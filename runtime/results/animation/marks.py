@@ -23,22 +23,20 @@ from ...view.animation import Mark, Segment
 from .frames import Frames, along, moving, one_or_all, place
 from .references import slide_reference
 
-ROUNDING = 1e-13
-APART = 1e-6
-"""Of the scene's size: points that are farther apart are drawn as two."""
-ARROWS = 9
-"""Of a distributed force."""
-ARROW = 0.15
-"""Of the scene's size: the length of the arrow of the largest force."""
-SLENDER_ARROW = 0.03
-"""The same at the least, in scenes that are less high or wide than long: there it is no longer than they are high."""
-STRAIGHT = 1e-3
-"""Of its size: a scene of less height is a straight line, and has none to compare arrows with."""
+ROUNDING_OF_POSITION = 1e-13
+MIN_GAP = 1e-6
+"""Distance over the size of the scene from which two ends are drawn apart."""
+DISTRIBUTED_ARROWS = 9
+"""Arrows of a distributed force."""
+MAX_ARROW, MIN_ARROW = 0.15, 0.03
+"""Bounds of the length of the largest arrow over the size of the scene; between them, the height of the scene."""
+MIN_HEIGHT = 1e-3
+"""Height over the size of a scene below which it is a straight line, whose arrows have the largest length."""
 
 
 def still(position: np.ndarray) -> np.ndarray:
-    """Return positions (T, 3), or the first of them as (1, 3) where all are the same but for rounding."""
-    moves = np.abs(position - position[:1]).max() > ROUNDING * np.abs(position).max()
+    """Return positions (T, 3), or the first as (1, 3) if all are equal up to rounding."""
+    moves = np.abs(position - position[:1]).max() > ROUNDING_OF_POSITION * np.abs(position).max()
     return position if moves else position[:1]
 
 
@@ -48,7 +46,7 @@ def _node(frames: Frames, cable: str, node: int) -> np.ndarray:
 
 
 def marks(frames: Frames, refs: Frames, size: float) -> Iterator[Mark]:
-    """Yield the points that mean something; refs: see `references`; size: of the scene, in m."""
+    """Yield the marked points; refs: see `references`; size: of the scene, in m."""
     scene = frames.scene
     for support in scene.supports:
         kind, what = _support(support)
@@ -85,13 +83,13 @@ def marks(frames: Frames, refs: Frames, size: float) -> Iterator[Mark]:
 
 
 def coupling_parts(scene: SceneData) -> Iterator[Part]:
-    """Yield the parts that act between others, in the order of the kinds of couplings."""
+    """Yield the parts of couplings, in the order of their kinds."""
     for group in dict.fromkeys(kind.group for kind in COUPLINGS):
         yield from scene.group(group)
 
 
 def _touching(part: Part) -> str:
-    """Return what acts at a point, in words."""
+    """Return the description of a part that acts at a point."""
     if not isinstance(part, Crossing):
         return part.where
     other = "a bar" if part.at is not None else f'"{part.b}"'
@@ -99,7 +97,7 @@ def _touching(part: Part) -> str:
 
 
 def _support(support: Support) -> tuple[Literal["pin", "clamp"], str]:
-    """Return the kind of the mark of a support, and what it is in words."""
+    """Return the kind and the description of the mark of a support."""
     if isinstance(support, Motion):
         return ("pin" if support.rotation is None else "clamp"), "prescribed motion"
     return ("clamp", "clamp") if isinstance(support, Clamp) else ("pin", "pin")
@@ -110,11 +108,11 @@ def _on(end: Attachment) -> str:
 
 
 def _apart(a: np.ndarray, b: np.ndarray, size: float) -> bool:
-    return bool(np.linalg.norm(a - b, axis=-1).max() > APART * size)
+    return bool(np.linalg.norm(a - b, axis=-1).max() > MIN_GAP * size)
 
 
 def slide_place(frames: Frames, name: str) -> np.ndarray:
-    """Return where a slide is, (T, 3) in m: the point of its cable at s; where s is not known, that of its rider."""
+    """Return the positions (T, 3) of a slide in m: of its cable at s, or of its rider if s is unknown."""
     slide = frames.scene.slides[name]
     if not frames.has(f"{name}.s"):
         return place(frames, slide.rider)
@@ -125,11 +123,11 @@ def slide_place(frames: Frames, name: str) -> np.ndarray:
 def arrow_length(extents: np.ndarray, size: float) -> float:
     """Return the length in m of the largest arrow in a scene of this size, whose box has the extents (3,), in m."""
     height = np.sort(extents)[1] / size
-    return size * (ARROW if height < STRAIGHT else float(np.clip(height, SLENDER_ARROW, ARROW)))
+    return size * (MAX_ARROW if height < MIN_HEIGHT else float(np.clip(height, MIN_ARROW, MAX_ARROW)))
 
 
 def segments(frames: Frames, refs: Frames, size: float, arrow: float) -> Iterator[Segment]:
-    """Yield springs, lever arms, joints of points that are apart, and loads as arrows.
+    """Yield springs, lever arms, joints whose ends are apart, and loads and flows as arrows.
 
     refs: see `references`; size: of the scene, arrow: the length of the largest arrow, in m.
     """
@@ -149,12 +147,12 @@ def segments(frames: Frames, refs: Frames, size: float, arrow: float) -> Iterato
 
 
 def _bars(frames: Frames, refs: Frames) -> Iterator[Segment]:
-    """Yield the bars that cables cross; in the plane a bar is a point."""
+    """Yield the bars that cables cross; a planar bar is a point."""
     for name, crossing in frames.scene.crossings.items():
         if crossing.axis is None or crossing.length is None or crossing.at is None:
             continue
-        way = crossing.length * np.array(crossing.axis) / np.linalg.norm(crossing.axis)
-        ends = (Attachment(on=crossing.b, at=vector3(np.array(crossing.at) + sign * way)) for sign in (-1, 1))
+        half = crossing.length * np.array(crossing.axis) / np.linalg.norm(crossing.axis)
+        ends = (Attachment(on=crossing.b, at=vector3(np.array(crossing.at) + sign * half)) for sign in (-1, 1))
         yield _between(frames, refs, name, "lever", *ends)
 
 
@@ -165,12 +163,12 @@ def _between(frames: Frames, refs: Frames, name: str, kind: Literal["spring", "h
 
 
 def _both(start: np.ndarray, end: np.ndarray) -> np.ndarray:
-    """Return the reference (2, 3) or (T, 2, 3) of a segment from those of its ends, (1 or T, 3)."""
+    """Return the reference (2, 3) or (T, 2, 3) of a segment from the references (1 or T, 3) of its ends."""
     return one_or_all(np.stack(np.broadcast_arrays(start, end), axis=1))
 
 
 def levers(frames: Frames, refs: Frames, size: float) -> Iterator[Segment]:
-    """Yield the lever arms of rigid bodies: from the mass centre to each point that something is attached to."""
+    """Yield the lever arms of rigid bodies, from the mass centre to each attachment."""
     scene = frames.scene
     riders = [(name, slide.rider) for name, slide in scene.slides.items()]
     ends = riders + [(part.given_name or part.kind, value) for part in scene.parts() for _, value in part
@@ -184,34 +182,38 @@ def levers(frames: Frames, refs: Frames, size: float) -> Iterator[Segment]:
             yield _between(frames, refs, f"{end.on}, {name}", "lever", centre, end)
 
 
+def _arrows(frames: Frames, refs: Frames, longest: float, found: list[tuple[str, Attachment, np.ndarray]]
+            ) -> Iterator[Segment]:
+    """Yield vectors (T or 1, 3) by name as arrows with their heads at attachments, scaled to the longest."""
+    largest = max((float(np.linalg.norm(value, axis=-1).max()) for _, _, value in found), default=0.0)
+    for name, end, value in found if largest > 0 else ():
+        at, of, arrow = place(frames, end), place(refs, end), longest / largest * value
+        yield Segment(name, "load", at - arrow, at, _both(of - arrow, of))
+
+
 def _loads(frames: Frames, refs: Frames, longest: float) -> Iterator[Segment]:
-    """Yield forces as arrows that end where they act, in proportion to each other among loads of one unit."""
-    found: dict[str, list[tuple[str, Attachment, np.ndarray]]] = {"N": [], "N/m": []}
+    """Yield forces as arrows, and distributed forces in a scale of their own."""
+    forces: list[tuple[str, Attachment, np.ndarray]] = []
+    distributed: list[tuple[str, Attachment, np.ndarray]] = []
     for name, load in frames.scene.loads.items():
         scale = _scale(frames, load)
         if isinstance(load, Force):
             end = _loaded(frames, load)
-            found["N"].append((name, end, scale * _components(frames, end, load.value, load.follower)))
+            forces.append((name, end, scale * _components(frames, end, load.value, load.follower)))
         elif isinstance(load, DistributedForce):
             cable = frames.scene.cables[load.cable]
-            for s in np.linspace(load.start or 0.0, cable.length if load.stop is None else load.stop, ARROWS):
+            for s in np.linspace(load.start or 0.0, cable.length if load.stop is None else load.stop,
+                                 DISTRIBUTED_ARROWS):
                 end = Attachment(on=load.cable, s=float(s))
-                found["N/m"].append((name, end, scale * _components(frames, end, load.value, load.follower)))
-    for arrows in found.values():
-        largest = max((np.linalg.norm(value, axis=-1).max() for _, _, value in arrows), default=0.0)
-        for name, end, value in arrows:
-            if largest > 0:
-                at, of, arrow = place(frames, end), place(refs, end), longest / largest * value
-                yield Segment(name, "load", at - arrow, at, _both(of - arrow, of))
+                distributed.append((name, end, scale * _components(frames, end, load.value, load.follower)))
+    yield from _arrows(frames, refs, longest, forces)
+    yield from _arrows(frames, refs, longest, distributed)
 
 
 def _flows(frames: Frames, refs: Frames, longest: float) -> Iterator[Segment]:
-    """Yield velocities of fluids as arrows that end at the middle of cables and at the points of bodies that feel them,
-    in proportion to each other.
-    """
+    """Yield velocities of fluids as arrows at the middle of cables and at the points of bodies with drag."""
     scene, found = frames.scene, []
-    up = scene.up
-    time = frames.time if frames.moves else np.zeros(len(frames))
+    up, time = scene.up, _load_time(frames)
     for name, drag in scene.drags.items():
         fluids = [fluid for fluid in scene.fluids_of(drag) if fluid.moves]
         if not fluids:
@@ -222,21 +224,21 @@ def _flows(frames: Frames, refs: Frames, longest: float) -> Iterator[Segment]:
         for fluid in fluids:
             is_there = (at @ up > fluid.bottom(scene.fluids.values())) & (at @ up <= fluid.top)
             found.append((f"{fluid.given_name}, {name}", end, is_there[:, None] * fluid.velocity_at(time, at @ up, at)))
-    largest = max((np.linalg.norm(value, axis=-1).max() for _, _, value in found), default=0.0)
-    for label, end, value in found:
-        if largest > 0:
-            at, of, arrow = place(frames, end), place(refs, end), longest / largest * value
-            yield Segment(label, "load", at - arrow, at, _both(of - arrow, of))
+    yield from _arrows(frames, refs, longest, found)
+
+
+def _load_time(frames: Frames) -> np.ndarray:
+    """Return the times (T,) of the signals of loads: zero in states of rest."""
+    return frames.time if frames.moves else np.zeros(len(frames))
 
 
 def _scale(frames: Frames, load: Load) -> np.ndarray:
-    """Return the factors (T, 1) of a load: states of rest are under a part of those at the start."""
-    time = frames.time if frames.moves else np.zeros(len(frames))
-    return (frames.load * load.scale.value(time))[:, None]
+    """Return the factors (T, 1) of a load."""
+    return np.asarray(frames.load * load.scale.value(_load_time(frames)))[:, None]
 
 
 def _loaded(frames: Frames, load: Force | Moment) -> Attachment:
-    """Return the place of a load as an attachment."""
+    """Return the point of a load as an attachment."""
     on = frames.scene.bodies.get(load.on)
     if on is None:
         return Attachment(on=load.on, s=load.s or 0.0)
@@ -247,7 +249,7 @@ def _loaded(frames: Frames, load: Force | Moment) -> Attachment:
 
 
 def _components(frames: Frames, end: Attachment, value: Vector, follower: bool) -> np.ndarray:
-    """Return the components (T or 1, 3) of a force along the ground's axes, of a follower from its local ones."""
+    """Return the components (T or 1, 3) along the ground's axes of a force, given along local axes for a follower."""
     if not follower:
         return np.array([value])
     assert end.on is not None
@@ -270,4 +272,4 @@ def _components(frames: Frames, end: Attachment, value: Vector, follower: bool) 
 
 
 def _unit(vector: np.ndarray) -> np.ndarray:
-    return vector / np.linalg.norm(vector, axis=-1, keepdims=True)
+    return np.asarray(vector / np.linalg.norm(vector, axis=-1, keepdims=True))

@@ -1,4 +1,4 @@
-"""What exaggerated displacements are measured from: the scene as drawn, and for what slides a place that goes along."""
+"""Origins of exaggerated displacements: the scene as drawn, and for slides and riders a point that slides."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from .frames import Frames, moving
 
 
 def references(frames: Frames) -> Frames:
-    """Return the frames that displacements of these frames are measured from, places of one instant or of all T.
+    """Return the frames from which displacements are measured, with positions of one instant or of all T.
 
-    Cables stand still in them. A slide goes along the cable that stands still, and the bodies that ride on it go with
-    it and turn as they do: enlarged displacements then leave a rider on its cable.
+    Cables are at rest in them. A slide moves along the cable at rest, and its riding bodies move with it and keep their
+    orientation: exaggerated displacements then leave a rider on its cable.
     """
     carried = _carried(frames)
 
@@ -33,7 +33,7 @@ def references(frames: Frames) -> Frames:
 
 
 def slide_reference(frames: Frames, name: str) -> np.ndarray | None:
-    """Return the point (T, 3) of the undisplaced cable where a slide is; None where its rider cannot go along."""
+    """Return the point (T, 3) of the undisplaced cable at a slide; None if its rider cannot follow."""
     slide = frames.scene.slides[name]
     if not frames.has(f"{name}.s"):
         return None
@@ -44,7 +44,7 @@ def slide_reference(frames: Frames, name: str) -> np.ndarray | None:
 
 
 def _riders(scene: SceneData) -> set[str]:
-    """Return the rigid bodies that joints lead from to nothing but rigid bodies: they can go along with a slide."""
+    """Return the rigid bodies that joints connect to other rigid bodies only: they can follow a slide."""
     bodies = {name for name, body in scene.bodies.items() if isinstance(body, RigidBody)}
     found = set(bodies)
     joints = [{joint.a.on, joint.b.on} for joint in scene.joints.values()]
@@ -56,9 +56,9 @@ def _riders(scene: SceneData) -> set[str]:
 
 
 def _carried(frames: Frames) -> dict[str, np.ndarray]:
-    """Return the places (T, 3) in m that displacements of riding bodies are measured from, by name.
+    """Return the origins (T, 3) of the displacements of riding bodies, m, by name.
 
-    A body on several slides takes the mean of the places that these ask for; bodies joined to it follow.
+    A body on several slides takes the mean of their origins; bodies joined to it follow.
     """
     asked: dict[str, list[np.ndarray]] = {}
     for name, slide in frames.scene.slides.items():
@@ -76,5 +76,5 @@ def _carried(frames: Frames) -> dict[str, np.ndarray]:
 
 
 def _arm(frames: Frames, end: Attachment) -> np.ndarray:
-    """Return the vectors (T, 3) in m from a body's origin to a point of it, as it is turned."""
+    """Return the vectors (T, 3) in m from the origin of a body to an attachment, along the ground's axes."""
     return rotate(frames.value(f"{end.on}.orientation"), end.point)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
@@ -14,25 +15,25 @@ from ...parts.rigid_body import RigidBody
 from ...parts.scene_data import SceneData
 from ...solve.modes.modes import Modes
 from ...solve.statics.rest_state import RestState
+from ..recorded import Recorded
 from ..section_forces.balance import Cuts
 from ..section_forces.balance_limits import known_method
 from ..section_forces.components import components
 from ..section_forces.forces import constitutive, of_equilibrium
 from ..section_forces.forces import of_run as forces_of_run
 from .frames import Frames, SectionForces
-from .recorded import Recorded
 
-MOST_BALANCED = 400_000
-"""Sections, over all instants, up to which forces are those in balance; beyond, those of the elastic law."""
+MAX_BALANCED = 400_000
+"""Sections over all instants; with more, forces are those of the elastic law."""
 
 
 def is_balanced(instants: int, sections: int) -> bool:
-    """Return whether so many forces are computed in balance with what acts on the cable."""
-    return instants * sections <= MOST_BALANCED
+    """Return whether the forces in a number of sections are computed by balance."""
+    return instants * sections <= MAX_BALANCED
 
 
 def drawn(scene: SceneData) -> dict[str, np.ndarray]:
-    """Return nodal vectors of cables and places of bodies and slides by name, as the scene is drawn."""
+    """Return nodal vectors of cables and positions of bodies and slides by name, as the scene is drawn."""
     found: dict[str, np.ndarray] = {f"{name}.nodal_vectors": cable.nodal_vectors
                                     for name, cable in scene.cables.items()}
     for name, body in scene.bodies.items():
@@ -50,11 +51,11 @@ def _frames(scene: SceneData, time: np.ndarray, found: Mapping[str, np.ndarray],
     return Frames(scene, time, found.__getitem__, found.__contains__, drawn(scene).__getitem__, load, forces)
 
 
-def _law(scene: SceneData, found: Mapping[str, np.ndarray]) -> SectionForces:
-    """Return the section forces that the elastic law has for nodal vectors by name."""
+def _law(scene: SceneData, value: Callable[[str], np.ndarray]) -> SectionForces:
+    """Return the section forces by the elastic law; value: nodal vectors by name."""
     def forces(cable: str, s: np.ndarray) -> dict[str, np.ndarray]:
         part = scene.cables[cable]
-        force, moment, axes, strain = constitutive(part, found[f"{cable}.nodal_vectors"],
+        force, moment, axes, strain = constitutive(part, value(f"{cable}.nodal_vectors"),
                                                    Cuts(cable_model(part, 0), s[None], True))
         return {"force": force, "moment": moment} | components(part, force, moment, axes, strain)
 
@@ -64,50 +65,26 @@ def _law(scene: SceneData, found: Mapping[str, np.ndarray]) -> SectionForces:
 def of_scene(scene: SceneData) -> Frames:
     """Return the one frame of a scene as it is drawn, with its loads at the start."""
     found = {name: value[None] for name, value in drawn(scene).items()}
-    return _frames(scene, np.zeros(1), found, np.ones(1), _law(scene, found))
-
-
-class _Chosen(Mapping):
-    """Results of a run at some of its times, read when they are asked for."""
-
-    def __init__(self, run: Recorded, numbers: np.ndarray):
-        self.run, self.numbers = run, numbers
-        self._kept: dict[str, np.ndarray] = {}
-
-    def __getitem__(self, name: str) -> np.ndarray:
-        """Return a result at these times."""
-        if name not in self._kept:
-            self._kept[name] = self.run[name][self.numbers]
-        return self._kept[name]
-
-    def __contains__(self, name: object) -> bool:
-        """Return whether the run has a result of that name."""
-        return isinstance(name, str) and name in self.run
-
-    def __iter__(self) -> Iterator[str]:
-        """Iterate over the names of the run's results."""
-        return iter(self.run.keys())
-
-    def __len__(self) -> int:
-        """Return the number of the run's results."""
-        return len(self.run.keys())
+    return _frames(scene, np.zeros(1), found, np.ones(1), _law(scene, found.__getitem__))
 
 
 def of_run(run: Recorded, numbers: np.ndarray) -> Frames:
     """Return the frames of a run at the output times with these numbers."""
-    found = _Chosen(run, numbers)
-    by_law = _law(run.scene, found)
+    @cache
+    def value(name: str) -> np.ndarray:
+        return run[name][numbers]
 
     def forces(cable: str, s: np.ndarray) -> dict[str, np.ndarray]:
         if not is_balanced(len(numbers), len(s)) or known_method(run.scene, run.model, cable, False) != "balance":
-            return by_law(cable, s)
+            return _law(run.scene, value)(cable, s)
         return forces_of_run(run, cable, s[None], numbers)
 
-    return replace(_frames(run.scene, run.time[numbers], found, np.ones(len(numbers)), forces), moves=True)
+    return Frames(run.scene, run.time[numbers], value, run.__contains__, drawn(run.scene).__getitem__,
+                  np.ones(len(numbers)), forces, moves=True)
 
 
 def of_states(states: Sequence[RestState]) -> Frames:
-    """Return a frame of each state of rest; the time is its number in the row."""
+    """Return a frame of each state of rest; the time is its number in the sequence."""
     scene, load = states[0].scene, np.array([state.load_fraction for state in states])
 
     def forces(cable: str, s: np.ndarray) -> dict[str, np.ndarray]:
@@ -123,34 +100,35 @@ def of_mode(modes: Modes, number: int, scene: SceneData, about: Mapping[str, np.
             phase: np.ndarray) -> Frames:
     """Return the frames of a mode at phases (T,) in rad, its largest displacement ``amplitude`` in m.
 
-    about: the state that it swings about, by name. Rigid bodies turn by finite angles in proportion, so that they stay
-    whole; nodes of cables and modal bodies move along straight lines.
+    about: the state of equilibrium, by name. Rigid bodies rotate by finite angles, which keeps their shape; nodes of
+    cables and modal bodies move along straight lines.
     """
-    share = amplitude * np.cos(phase)
+    factor = amplitude * np.cos(phase)
     found: dict[str, np.ndarray] = {}
     for name in scene.cables:
         key = f"{name}.nodal_vectors"
-        found[key] = about[key] + np.multiply.outer(share, modes[key][number])
+        found[key] = about[key] + np.multiply.outer(factor, modes[key][number])
     for name, body in scene.bodies.items():
         found |= {f"{name}.{key}": value
-                  for key, value in _swinging(modes, number, name, body, about, share).items()}
-    return Frames(scene, phase, found.__getitem__, found.__contains__, about.__getitem__, np.zeros(len(phase)))
+                  for key, value in _vibrating(modes, number, name, body, about, factor).items()}
+    frames = _frames(scene, phase, found, np.zeros(len(phase)), lambda cable, s: {})
+    return replace(frames, reference=about.__getitem__)
 
 
-def _swinging(modes: Modes, number: int, name: str, body: RigidBody | ModalBody, about: Mapping[str, np.ndarray],
-              share: np.ndarray) -> dict[str, np.ndarray]:
-    """Return position, orientation, and of a modal body nodes and modal coordinates, at parts (T,) of a mode."""
+def _vibrating(modes: Modes, number: int, name: str, body: RigidBody | ModalBody, about: Mapping[str, np.ndarray],
+               factor: np.ndarray) -> dict[str, np.ndarray]:
+    """Return position, orientation, and of a modal body nodes and modal coordinates, at multiples (T,) of a mode."""
     position, orientation = about[f"{name}.position"], about[f"{name}.orientation"]
     moved, turn = modes[f"{name}.displacement"][number], modes[f"{name}.rotation"][number]
-    turned = product(orientation, turned_by(np.multiply.outer(share, turn)))
+    turned = product(orientation, turned_by(np.multiply.outer(factor, turn)))
     if isinstance(body, RigidBody):  # the mode is that of the mass centre
-        centre = position + rotate(orientation, body.centre) + np.multiply.outer(share, moved)
+        centre = position + rotate(orientation, body.centre) + np.multiply.outer(factor, moved)
         return {"position": centre - rotate(turned, body.centre), "orientation": turned}
-    fields, position = body.shape, position + np.multiply.outer(share, moved)
+    fields, position = body.shape, position + np.multiply.outer(factor, moved)
     back = orientation * np.array([1.0, -1.0, -1.0, -1.0])
     bent = fields.nodes + np.einsum("m,mnd->nd", about[f"{name}.modal_coordinates"], fields.modes)
     strained = rotate(back, modes[f"{name}.nodes"][number] - moved) - np.cross(turn, bent)
     eta = np.linalg.lstsq(fields.modes.reshape(fields.n, -1).T, strained.ravel(), rcond=None)[0]
-    coordinates = about[f"{name}.modal_coordinates"] + np.multiply.outer(share, eta)
-    nodes = about[f"{name}.nodes"] + np.multiply.outer(share, modes[f"{name}.nodes"][number])
+    coordinates = about[f"{name}.modal_coordinates"] + np.multiply.outer(factor, eta)
+    nodes = about[f"{name}.nodes"] + np.multiply.outer(factor, modes[f"{name}.nodes"][number])
     return {"position": position, "orientation": turned, "modal_coordinates": coordinates, "nodes": nodes}

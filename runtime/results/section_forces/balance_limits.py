@@ -59,5 +59,5 @@ def is_cut(model: Model, cables: list[int]) -> bool:
 def _unknown(contact: ContactModel, is_rest: bool) -> str:
     """Return what is unknown of a contact, empty if nothing."""
     if contact.friction and not is_rest:
-        return "has friction, which results do not tell along"
+        return "has friction, which results do not record along"
     return "moves with a body along" if contact.on[0].body >= 0 else ""

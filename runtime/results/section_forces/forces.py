@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from ...parts.section_stiffness import section_stiffness
 from ...parts.slide import Slide
 from ...parts.validation import LENGTH_TOLERANCE, show
 from ...solve.statics.rest_state import RestState
+from ..recorded import Recorded
 from .balance import Cuts, balanced
 from .balance_limits import balanced_cables, is_cut, out_of_balance
 from .cable_loads import CableLoads, Instants
@@ -44,25 +45,6 @@ GLOBAL = {
     "force": ("N", "force on the part before the cut"),
     "moment": ("N m", "moment on the part before the cut"),
 }
-
-
-class Results(Protocol):
-    """The part of a run that section forces need."""
-
-    @property
-    def scene(self) -> SceneData:
-        """Return the scene that was run."""
-
-    @property
-    def model(self) -> Model:
-        """Return the model of the scene."""
-
-    @property
-    def time(self) -> np.ndarray:
-        """Return the times (time,) in s."""
-
-    def __getitem__(self, name: str) -> np.ndarray:
-        """Return the result of a name, time first."""
 
 
 def constitutive(cable: Cable, nodal_vectors: np.ndarray, cuts: Cuts) -> tuple[np.ndarray, ...]:
@@ -120,7 +102,7 @@ def along_ground(model: Model, name: str, found: dict[str, np.ndarray]) -> dict[
     return found | model.results(name, {each: found[each] for each in GLOBAL})
 
 
-def of_run(run: Results, name: str, s: np.ndarray, chosen: Any = slice(None), *, method: str = "balance",
+def of_run(run: Recorded, name: str, s: np.ndarray, chosen: Any = slice(None), *, method: str = "balance",
            side: str = "after") -> dict[str, np.ndarray]:
     """Return `cut_forces` of a run at the chosen times; s: (1 or T, n)."""
     scene, model = laid(run.scene), run.model
@@ -135,7 +117,7 @@ def of_run(run: Results, name: str, s: np.ndarray, chosen: Any = slice(None), *,
     return along_ground(model, name, {key: np.concatenate([each[key] for each in found]) for key in found[0]})
 
 
-def _instants(run: Results, numbers: np.ndarray) -> Instants:
+def _instants(run: Recorded, numbers: np.ndarray) -> Instants:
     model, kept = run.model, {}
     chosen = slice(numbers[0], numbers[-1] + 1) if numbers[-1] - numbers[0] + 1 == len(numbers) else numbers
 
@@ -179,7 +161,7 @@ def with_sides(cable: Cable, s: np.ndarray, places: np.ndarray) -> np.ndarray:
     return np.sort(np.concatenate([np.broadcast_to(s, (*sides.shape[:-1], len(s))), sides], axis=-1), axis=-1)
 
 
-def dataset(state: Results | RestState, cable: Cable | str, s: ArrayLike | Slide | None = None, *,
+def dataset(state: Recorded | RestState, cable: Cable | str, s: ArrayLike | Slide | None = None, *,
             method: str = "balance", side: str = "after") -> xarray.Dataset:
     """See `Run.section_forces`; of an equilibrium without the time."""
     import xarray  # 0.5 s, for those who ask for it
@@ -215,7 +197,7 @@ def dataset(state: Results | RestState, cable: Cable | str, s: ArrayLike | Slide
         coords, {"cable": name, "element": drawn.element, "law": drawn.law, "method": method, "side": side})
 
 
-def _places(state: Results | RestState, cable: Cable, s: Any, over_time: bool) -> tuple[np.ndarray, bool]:
+def _places(state: Recorded | RestState, cable: Cable, s: Any, over_time: bool) -> tuple[np.ndarray, bool]:
     """Return arc-lengths (1 or T, n) for the argument s, and whether they follow a slide."""
     scene, name = state.scene, cable.name
     if s is None:
