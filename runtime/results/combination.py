@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 def combine(runs: Sequence[Run], **values: ArrayLike) -> xarray.Dataset:
     """Return the results of runs as one xarray.Dataset along a new dimension.
 
-    values: the name of the dimension and a coordinate for each run: ``combine(runs, mass=[1.0, 2.0])``. The results,
-    their times and their nodes must be the same. ``report`` and ``scene`` are texts along the new dimension. Raises
+    values: the name of the dimension and a coordinate for each run: ``combine(runs, mass=[1.0, 2.0])``. Results, times
+    and nodes of the runs must be the same. ``report`` and ``scene`` are texts along the new dimension. Raises
     FunicularError.
     """
-    import xarray  # 0.5 s, for those who ask for it
+    import xarray  # 0.5 s
 
     if len(values) != 1:
         raise FunicularError(f"combine: give one dimension, such as mass=[1.0, 2.0], got {len(values)}")

@@ -1,4 +1,4 @@
-"""What `scene.equilibrium()` returns: a state of rest with the forces in sections of its cables."""
+"""The result of `scene.equilibrium()`: a state of rest with the section forces of its cables."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ __all__ = ["CriticalPoint", "Equilibrium"]
 
 
 class Equilibrium(Viewable, RestState):
-    """A state of rest of a scene, see `RestState`, and the forces in sections of its cables."""
+    """A state of rest of a scene, see `RestState`, with the section forces of its cables."""
 
     def section_forces(self, cable: Cable | str, s: ArrayLike | Slide | None = None, *, method: str = "balance",
                        side: str = "after") -> xarray.Dataset:
-        """Return the forces and moments in sections of ``cable`` as `Run.section_forces` has them, over s alone.
+        """Return the forces and moments in sections of ``cable`` like `Run.section_forces`, over s alone.
 
-        Where no s is given, both sides of riders are among the places.
+        The default places include both sides of riders.
         """
         return dataset(self, cable, s, method=method, side=side)
 
@@ -36,42 +36,42 @@ class Equilibrium(Viewable, RestState):
         return slack_elements(self, cable)
 
     def animation(self, title: str | None = None) -> Animation:
-        """Return the state as pictures show it; see `Viewable.animation`."""
+        """Return the animation of the state; see `Viewable.animation`."""
         from .animation.clips import of_equilibrium  # for pictures alone
 
         return of_equilibrium(self, title or titled(self.scene, "at rest") or "equilibrium")
 
     @property
     def load_path(self) -> LoadPath:
-        """Return the states of rest on the way to this one as something to see: ``rest.load_path.view()``."""
+        """Return the load path to this state, for pictures: ``rest.load_path.view()``."""
         return LoadPath(self)
 
     def overview(self) -> list[tuple[str, str]]:
-        """Return what the state is, for a notebook; see `Viewable.overview`."""
-        from .animation.clips import details  # likewise
+        """Return the properties of the state for a notebook; see `Viewable.overview`."""
+        from .animation.clips import details  # for pictures alone
 
         return [*details(self).items(), ("iterations", str(self.iterations)),
                 *(("note", message) for message in self.messages)]
 
 
 class LoadPath(Viewable):
-    """The states of rest on the way to one, `RestState.path`, as something to see."""
+    """The states of the load path of one, `RestState.path`, for pictures."""
 
     def __init__(self, last: Equilibrium):
-        """last: the state that the path ends in."""
+        """last: the final state of the path."""
         self.last = last
 
     def __repr__(self) -> str:
-        """Return the number of states and their loads, in a line."""
+        """Return the number of states and their loads."""
         loads = [state.load_fraction for state in self.last.path]
         return f"<funicular.LoadPath: {len(loads)} states, {min(loads):.4g} to {max(loads):.4g} times the loads>"
 
     def animation(self, title: str | None = None) -> Animation:
-        """Return the path as pictures show it; see `Viewable.animation`. Raises FunicularError for a single state."""
+        """Return the animation of the path; see `Viewable.animation`. Raises FunicularError for a single state."""
         from .animation.clips import of_path  # for pictures alone
 
         return of_path(self.last, title or titled(self.last.scene, "load path") or "load path")
 
     def overview(self) -> list[tuple[str, str]]:
-        """Return what the last state is, for a notebook; see `Viewable.overview`."""
+        """Return the properties of the last state for a notebook; see `Viewable.overview`."""
         return [("states", str(len(self.last.path))), *self.last.overview()]

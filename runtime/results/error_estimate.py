@@ -1,8 +1,8 @@
-"""How far a run is off: the error of its steps and that of its mesh, apart, from two more runs.
+"""Separate estimates of the errors of the steps and of the mesh of a run, by two more runs.
 
-The first one has smaller steps: its distance from the run is the error of the steps. The second has these steps and
-elements half as long: its distance from the first is the error of the mesh, but for the error that the finer mesh has
-itself, which is the smaller the higher the order: half of the error where the order is 1, a sixteenth where it is 4.
+The first one has smaller steps: its distance from the run is the error of the steps. The second one has these steps and
+elements of half the length: its distance from the first is the error of the mesh, less the error of the finer mesh,
+which is a half of it at order 1 and a sixteenth at order 4.
 """
 
 from __future__ import annotations
@@ -23,20 +23,19 @@ from .trajectories import default_outputs, relative, trajectory
 
 S = TypeVar("S", bound=SceneData)
 
-TIGHTER = 0.1
-"""Tolerance of the runs that are compared with, over that of the run."""
-
-SHORTER = 0.25
-"""Fixed step of the runs that are compared with, over that of the run."""
+TOLERANCE_RATIO = 0.1
+"""Tolerance of the reference runs over that of the run."""
+STEP_RATIO = 0.25
+"""Fixed step of the reference runs over that of the run."""
 
 
 @dataclass
 class ErrorEstimate:
-    """Errors of a run over the largest motion, at its output times, as `funicular bench` has them.
+    """Errors of a run over the largest motion, at its output times, as by `funicular bench`.
 
-    time: of its steps, on its mesh; mesh: of its mesh, against elements half as long; both: of the run against smaller
-    steps on the finer mesh; nan where one could not be told, which `messages` explain; outputs: what is compared;
-    cpu_s: CPU seconds that the two runs took.
+    time: of the steps, on the same mesh; mesh: of the mesh, against elements of half the length; both: of the run
+    against smaller steps on the finer mesh; nan if unknown, which `messages` explain; outputs: the compared outputs;
+    cpu_s: CPU time of the two runs in s.
     """
 
     time: float = np.nan
@@ -47,7 +46,7 @@ class ErrorEstimate:
     messages: list[str] = field(default_factory=list)
 
     def as_report(self) -> dict[str, Any]:
-        """Return the errors as a report holds them."""
+        """Return the errors for the report."""
         return {"time": self.time, "mesh": self.mesh, "both": self.both, "outputs": list(self.outputs),
                 "cpu_s": self.cpu_s}
 
@@ -56,12 +55,12 @@ def error_estimate(scene: S, run: Run, settings: RunSettings, from_a_state: bool
                    again: Callable[[S, dict[str, Any]], Run]) -> ErrorEstimate:
     """Return the errors of a completed run of a scene, by two more runs.
 
-    settings: those of the run; from_a_state: whether it started from a state that was given to it; again: runs a scene
-    with other settings, by name, and the others as they were.
+    settings: of the run; from_a_state: whether it started from a given state; again: runs a scene with some settings
+    changed.
     """
     found = ErrorEstimate(outputs=tuple(default_outputs(scene)))
     begin = time.process_time()
-    steps = {"tol": TIGHTER * settings.tol} if settings.step is None else {"step": SHORTER * settings.step}
+    steps = {"tol": TOLERANCE_RATIO * settings.tol} if settings.step is None else {"step": STEP_RATIO * settings.step}
     motion = _motion(scene, run, found.outputs)
     tight = _try(found, "steps", lambda: scene, lambda other: again(other, steps))
     if tight is not None:
@@ -87,7 +86,7 @@ def error_estimate(scene: S, run: Run, settings: RunSettings, from_a_state: bool
 
 
 def _beyond(error: float, settings: RunSettings) -> list[str]:
-    """Return a note where the error of the steps is more than tol allows of the motion."""
+    """Return a note if the error of the steps exceeds tol times the motion."""
     if settings.step is not None or settings.quantities or settings.absolute_tol or not error > settings.tol:
         return []
     return [f"the error of the steps is {error:.2g} of the largest motion, more than tol = {settings.tol:g}: take a "
@@ -96,10 +95,10 @@ def _beyond(error: float, settings: RunSettings) -> list[str]:
 
 def _try(found: ErrorEstimate, what: str, make: Callable[[], S],
          again: Callable[[S], Run]) -> dict[str, np.ndarray] | None:
-    """Return the motion of a run of the scene that `make` returns; None where either fails, with a message."""
+    """Return the motion of a run of the scene that `make` returns; None after a failure, with a message."""
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", FunicularWarning)  # the run itself gives these notes
+            warnings.simplefilter("ignore", FunicularWarning)  # notes of the run itself
             scene = make()
             run = again(scene)
     except FunicularError as error:

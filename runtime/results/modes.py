@@ -1,4 +1,4 @@
-"""What `scene.modes()` returns: natural vibrations that can be seen."""
+"""The result of `scene.modes()`: natural vibrations with pictures."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ __all__ = ["Modes"]
 
 @dataclass(repr=False)
 class Modes(Viewable, solved.Modes):
-    """Natural vibrations of a scene; `funicular.solve.modes.modes.Modes` says what they hold.
+    """Natural vibrations of a scene, see `funicular.solve.modes.modes.Modes`.
 
-    scene: that vibrates; about: the state that it vibrates about, None as it is drawn.
+    scene: the scene; about: the state of equilibrium of the vibrations, None for the scene as drawn.
     """
 
     scene: SceneData | None = None
@@ -30,18 +30,18 @@ class Modes(Viewable, solved.Modes):
 
     @classmethod
     def of(cls, found: solved.Modes, scene: SceneData, about: RestState | None) -> Modes:
-        """Return the modes with the scene that they are of."""
+        """Return the modes with their scene."""
         return cls(**{field.name: getattr(found, field.name) for field in fields(found)}, scene=scene, about=about)
 
     def __repr__(self) -> str:
-        """Return their number and their frequencies, in a line."""
+        """Return their number and the range of their frequencies."""
         if not len(self):
             return "<funicular.Modes: none>"
         return (f"<funicular.Modes: {len(self)}, {np.min(self.frequency):.4g} to {np.max(self.frequency):.4g} Hz, "
                 f"{len(self.shapes)} shapes>")
 
     def animation(self, title: str | None = None) -> Animation:
-        """Return the modes as pictures show them, one clip each; see `Viewable.animation`."""
+        """Return the animation of the modes, one clip each; see `Viewable.animation`."""
         from .animation.clips import of_modes  # for pictures alone
         from .animation.sources import drawn
 
@@ -52,7 +52,6 @@ class Modes(Viewable, solved.Modes):
 
     def overview(self) -> list[tuple[str, str]]:
         """Return the frequencies for a notebook; see `Viewable.overview`."""
-        rows = []
-        for k, (frequency, growth) in enumerate(zip(self.frequency, self.growth_rate, strict=True), start=1):
-            rows.append((f"mode {k}", f"{frequency:.6g} Hz" + (f", grows by {growth:.4g} 1/s" if growth else "")))
-        return rows + [("note", message) for message in self.messages]
+        return [*((f"mode {k}", f"{frequency:.6g} Hz" + (f", grows by {growth:.4g} 1/s" if growth else ""))
+                  for k, (frequency, growth) in enumerate(zip(self.frequency, self.growth_rate, strict=True), start=1)),
+                *(("note", message) for message in self.messages)]

@@ -1,4 +1,4 @@
-"""The quantities of results, their units and what they are; rows of a run with these labels."""
+"""The quantities of results with their units and meanings, and the labelled rows of a run."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..parts.quantity import Quantity
 
 
 class Variable(NamedTuple):
-    """An array with the names of its dimensions, its unit and what it is."""
+    """An array with the names of its dimensions, its unit and its meaning."""
 
     dims: tuple[str, ...]
     values: np.ndarray
@@ -32,7 +32,7 @@ class EnergyBalance(NamedTuple):
 
 
 QUANTITIES: dict[str, dict[str, Quantity]] = {}
-"""What results tell of the parts of each group, by name."""
+"""The results of the parts of each group, by name."""
 for _kind in KINDS:
     QUANTITIES.setdefault(_kind.group, {}).update(_kind.results)
 
@@ -46,7 +46,7 @@ ENERGIES = {
 
 
 def labelled(rows: Any) -> tuple[dict[str, Variable], dict[str, Variable]]:
-    """Return results of the rows that `funicular.recording` names, with their labels; coordinates."""
+    """Return the labelled results and coordinates of `recording.Rows`."""
     variables = {}
     coords = {
         "time": Variable(("time",), rows.time, "s", "time"),
@@ -57,12 +57,10 @@ def labelled(rows: Any) -> tuple[dict[str, Variable], dict[str, Variable]]:
         dims = ("time", node, vector, "xyz")
         coords[node] = Variable((node,), cable["node_s"], "m", "undeformed arc-length of the node")
         coords[vector] = Variable((vector,), np.array(cable["vector_names"]), "1", "nodal vector")
-        variables[f"{name}.nodal_vectors"] = Variable(
-            dims, cable["nodal_vectors"], "m (r), 1 (its gradients)", "nodal vectors"
-        )
-        variables[f"{name}.nodal_velocity"] = Variable(
-            dims, cable["nodal_velocity"], "m/s (r), 1/s (its gradients)", "rates of the nodal vectors"
-        )
+        variables[f"{name}.nodal_vectors"] = Variable(dims, cable["nodal_vectors"], "m (r), 1 (its gradients)",
+                                                      "nodal vectors")
+        variables[f"{name}.nodal_velocity"] = Variable(dims, cable["nodal_velocity"], "m/s (r), 1/s (its gradients)",
+                                                       "rates of the nodal vectors")
     for name, body in rows.modal.items():
         mode, node = f"{name}.mode", f"{name}.node"
         eta, places = body["modal_coordinates"], body["nodes"]

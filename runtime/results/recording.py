@@ -1,9 +1,10 @@
-"""What a run left: the engine's rows as named arrays, in three dimensions whatever the scene's."""
+"""Recording of a run: the rows of the engine as named arrays in three dimensions, and the report."""
 
 from __future__ import annotations
 
 import time
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -21,26 +22,26 @@ from ..solve.notes.diagnosis import stopped
 
 @dataclass
 class Rows:
-    """Output rows as plain arrays by name, time first. Units SI, vectors with three components.
+    """Output rows as plain arrays by name, time first, in SI units, vectors with three components.
 
-    parts: what each part tells of itself, as the ``results`` of its class say, by group and label; cables: their
-    nodal vectors; modal: the coordinates of modal bodies.
+    parts: the ``results`` of the classes of parts, by group and label; cables: nodal vectors; modal: coordinates of
+    modal bodies.
     """
 
     time: np.ndarray
-    cables: dict[str, dict]
-    modal: dict[str, dict]
+    cables: dict[str, dict[str, Any]]
+    modal: dict[str, dict[str, np.ndarray]]
     parts: dict[str, dict[str, dict[str, np.ndarray]]]
     energy: dict[str, np.ndarray]
 
 
 @dataclass
 class Recording(Rows):
-    """What a run left: the rows that are still in memory, and how it went."""
+    """The rows of a run that are still in memory, its status and report."""
 
     status: str
     message: str
-    report: dict
+    report: dict[str, Any]
 
 
 def named(model: Model, scene: SceneData, engine: Engine) -> Rows:
@@ -54,7 +55,7 @@ def named(model: Model, scene: SceneData, engine: Engine) -> Rows:
 
 
 def recorded(simulation: Simulation, scene: SceneData, settings: RunSettings) -> Recording:
-    """Return the engine's rows by name, and the report on the run."""
+    """Return the rows of the engine by name, and the report on the run."""
     begin = time.perf_counter()
     model, engine, watcher, status = simulation.model, simulation.engine, simulation.watcher, simulation.status
     statistics = engine.statistics
@@ -89,8 +90,7 @@ def recorded(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
 
 
 def _costs(model: Model, engine: Engine) -> dict[str, float]:
-    """Return the µs of a step that each slide and joint takes; a slide that ties its rider's axes has both its parts.
-    """
+    """Return the time per step of each slide and joint in µs, summed for a slide that ties its rider's axes."""
     found: dict[str, float] = {}
     if any(coupling.reports_cost for coupling in model.couplings):
         for coupling, seconds in zip(model.couplings, engine.costs(), strict=True):
@@ -106,12 +106,9 @@ def _message(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
         case "end_of_cable":
             slide = model.slides[engine.stopped_slide]
             cable = model.cables[slide.cable]
-            middle = 0.5 * cable.mesh.total
-            end = "end" if engine.stopped_s > middle else "start"
-            return (
-                f'slide "{slide.name}": ran off the {end} of cable "{cable.name}" at {when}; '
-                "what was computed up to there is kept"
-            )
+            end = "end" if engine.stopped_s > 0.5 * cable.mesh.total else "start"
+            return (f'slide "{slide.name}": ran off the {end} of cable "{cable.name}" at {when}; '
+                    "what was computed up to there is kept")
         case _ if status in FAILED_STATUSES:
             now, q, *_ = engine.now()
             points = MeetingPoints(scene, model)

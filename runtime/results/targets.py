@@ -1,7 +1,7 @@
-"""Values of a state of rest by name, such as ``A.position.y`` or ``wire@12.5.tension``: what a scene is adjusted for.
+"""Values of a state of rest by name, such as ``A.position.y`` or ``wire@12.5.tension``: the targets of an adjustment.
 
-A name is that of a result and, of a vector, a component; or ``cable@s``, s in m, then ``position`` and a component,
-or a section force of the cable there. Places on a cable keep their part of its length where that changes.
+A name is that of a result, with a component of a vector; or ``cable@s``, s in m, followed by ``position`` and a
+component, or by a section force. A place on a cable keeps its part of the length when the length changes.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import SceneError, near
+from ..model.element_coordinates import element_coordinates
 from ..model.part_states import part_states
 from ..model.states import spatial
 from ..parts.paths import COMPONENTS
@@ -24,6 +25,7 @@ from .quantities import QUANTITIES
 from .section_forces.cable_loads import Instants
 from .section_forces.components import labels
 from .section_forces.forces import GLOBAL, along_ground, cut_forces
+from .shape_functions import on_axis
 
 PLACE = re.compile(r"(?P<cable>[^@.]+)@(?P<s>[-+0-9.eE]+?)\.(?P<rest>[A-Za-z_].*)")
 """The name of a value at a place of a cable."""
@@ -31,10 +33,10 @@ PLACE = re.compile(r"(?P<cable>[^@.]+)@(?P<s>[-+0-9.eE]+?)\.(?P<rest>[A-Za-z_].*
 
 @dataclass(frozen=True)
 class Target:
-    """A value of a state: of the result or section force ``quantity``, a component of it, or all of it (None).
+    """A value of a state: a component of the result or section force ``quantity``, or all of it (None).
 
-    part: the name of what has the result; support: the number of the support that has it, else None; cable: at the
-    part ``along`` of whose length the value is; unit as a text.
+    part: the name of the part with the result; support: its number if it is a support; cable, along: the cable of a
+    place, and the place over the length of the cable.
     """
 
     name: str
@@ -48,12 +50,12 @@ class Target:
 
     @property
     def is_place(self) -> bool:
-        """Return whether it is where a point of a cable is."""
+        """Return whether it is the position of a point of a cable."""
         return self.cable is not None and self.quantity == "position"
 
 
 class _Values:
-    """Values of targets in states of a scene, each result computed once, for all states together."""
+    """Values of targets in states of a scene, each result computed once for all states."""
 
     def __init__(self, problem: StaticState, at: Snapshots):
         self.problem, self.at, self.model, self.scene = problem, at, problem.model, problem.scene.as_drawn
@@ -78,16 +80,14 @@ class _Values:
         return value if target.component is None else value[:, target.component]
 
     def _place(self, target: Target) -> np.ndarray:
-        """Return (T, 3): where a point of a cable is, in m."""
-        assert target.cable is not None, "only a point of a cable has such a place"
+        """Return the positions (T, 3) of a point of a cable in m."""
+        assert target.cable is not None, "a place is on a cable"
         cable = next(cable for cable in self.model.cables if cable.name == target.cable)
         s = target.along * self.scene.cables[target.cable].length
-        element = int(cable.mesh.element_at(s))
-        N = cable.kernel("on_axis")(cable.mesh.length(element), s - cable.mesh.start(element))[0]
-        _, vectors, dim = cable.shape
-        first = cable.first + element * vectors * dim
-        e = self.at.q[:, first : first + len(N) * dim].reshape(len(self.at), len(N), dim)
-        return self.model.results(target.cable, {"position": spatial(np.einsum("k,tkd->td", N, e))})["position"]
+        element, x = cable.mesh.place(s)
+        e = element_coordinates(cable, self.at.q)[:, element]
+        position = spatial(np.einsum("k,tkd->td", on_axis(cable, element, x)[0], e))
+        return self.model.results(target.cable, {"position": position})["position"]
 
     def _result(self, name: str) -> np.ndarray:
         """Return (T, ...): a result by its name, along the ground's axes."""
@@ -97,7 +97,7 @@ class _Values:
         return self.found[part][quantity]
 
     def _cut(self, name: str, along: Sequence[float]) -> None:
-        """Compute the forces in sections of a cable at parts of its length."""
+        """Compute the section forces of a cable at places over its length."""
         problem, model, places = self.problem, self.model, sorted(set(along))
         s = np.array(places)[None] * self.scene.cables[name].length
         weight = problem.fraction if problem.settings.scale_gravity else 1.0
@@ -110,7 +110,7 @@ class _Values:
 
 
 def reader(state: Equilibrium, names: Sequence[str]) -> Reader:
-    """Return the reader of these values of states like this one. Raises SceneError where a name is that of no value."""
+    """Return the reader of these values of similar states. Raises SceneError for an unknown name."""
     targets = [target_of(state, name) for name in names]
     of_supports = any(target.support is not None or target.part in state.scene.ties for target in targets)
     return Reader(lambda problem, at: _Values(problem, at).of(targets),
@@ -120,7 +120,7 @@ def reader(state: Equilibrium, names: Sequence[str]) -> Reader:
 
 
 def target_of(state: Equilibrium, name: str) -> Target:
-    """Return what a name asks for. Raises SceneError where that is no value of the state."""
+    """Return the target of a name. Raises SceneError if the state has no such value."""
     where = f'target "{name}"'
     whole, _, last = name.rpartition(".")
     component = COMPONENTS.get(last)
@@ -150,7 +150,7 @@ def target_of(state: Equilibrium, name: str) -> Target:
 
 
 def _of_result(state: Equilibrium, name: str, result: str, component: int | None) -> Target:
-    """Return a value of a result of a state, with its unit where results have one."""
+    """Return the target of a result, with its unit if results have one of this quantity."""
     part, _, quantity = result.rpartition(".")
     units = {each[quantity].units for each in QUANTITIES.values() if quantity in each}
     unit = "m" if quantity in ("position", "length", "s") else units.pop() if len(units) == 1 else ""
@@ -159,7 +159,7 @@ def _of_result(state: Equilibrium, name: str, result: str, component: int | None
 
 
 def _check_component(where: str, vector: bool, number: bool, component: int | None) -> None:
-    """Raise SceneError unless the name is that of one number."""
+    """Raise SceneError unless the name refers to one number."""
     if vector and component is None:
         raise SceneError(where, "has three components", "add .x, .y or .z")
     if number and component is not None:

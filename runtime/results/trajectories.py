@@ -1,4 +1,4 @@
-"""Outputs of a run by name, as trajectories that do not depend on the mesh, and how far two runs are apart in them."""
+"""Outputs of a run by name, as trajectories independent of the mesh, and the distance of two runs in them."""
 
 from __future__ import annotations
 
@@ -7,18 +7,20 @@ from collections.abc import Iterable
 import numpy as np
 
 from ..errors import SceneError, near
-from ..kernels.libraries import kernels_of
 from ..parts.locations import node_of
 from ..parts.scene_data import SceneData
 from .quantities import QUANTITIES
 from .run import Run
+from .shape_functions import on_axis
 
 ENERGIES = ("energy.kinetic", "energy.elastic", "energy.potential")
 PLACES = ("tip", "middle")
+ROUNDING_OF_POSITION = 1e-14
+"""Rounding error of a trajectory over its largest coordinate."""
 
 
 def default_outputs(scene: SceneData) -> list[str]:
-    """Return where bodies and slides are, and of each cable the end, or its middle where the end is supported."""
+    """Return the positions of bodies, slides and cable ends; of a supported end the middle of the cable."""
     supported = {node_of(scene, support) for support in scene.supports}
     places = [f"{name}.{'middle' if (name, cable.elements) in supported else 'tip'}"
               for name, cable in scene.cables.items()]
@@ -26,7 +28,7 @@ def default_outputs(scene: SceneData) -> list[str]:
 
 
 def check_output(scene: SceneData, name: str) -> None:
-    """Raises SceneError where the scene gives no such output."""
+    """Raise SceneError if the scene has no such output."""
     known = known_outputs(scene)
     if name not in known and _place(scene, name) is None:
         raise SceneError("bench", f'there is no output "{name}"', near(name, known)
@@ -34,7 +36,7 @@ def check_output(scene: SceneData, name: str) -> None:
 
 
 def known_outputs(scene: SceneData) -> list[str]:
-    """Return the names of outputs, but for places of cables given by their arc-length."""
+    """Return the names of outputs, without places of cables given by their arc-length."""
     parts: dict[str, Iterable[str]] = {"bodies": scene.bodies, "slides": scene.slides,
                                        "point_forces": scene.point_forces}
     results = [f"{name}.{quantity}" for group, named in parts.items() for name in named
@@ -43,7 +45,7 @@ def known_outputs(scene: SceneData) -> list[str]:
 
 
 def _place(scene: SceneData, name: str) -> tuple[str, float] | None:
-    """Return the cable and arc-length of a place such as wire.tip or wire@0.5; None where it is none."""
+    """Return the cable and arc-length of a place such as wire.tip or wire@0.5; None for other names."""
     cable, _, place = name.rpartition(".") if name.endswith(PLACES) else name.rpartition("@")
     if cable not in scene.cables:
         return None
@@ -57,10 +59,6 @@ def _place(scene: SceneData, name: str) -> tuple[str, float] | None:
     return (cable, s) if 0 <= s <= length else None
 
 
-ROUNDED = 1e-14
-"""What rounding moves at rest, over the largest coordinate."""
-
-
 def unit(scene: SceneData, name: str) -> str:
     """Return the unit of an output."""
     if name in ENERGIES:
@@ -72,35 +70,33 @@ def unit(scene: SceneData, name: str) -> str:
 
 
 def trajectory(scene: SceneData, run: Run, name: str) -> np.ndarray:
-    """Return (time, components): an output of a run of ``scene``."""
+    """Return an output (time, components) of a run of ``scene``."""
     if name in run:
         return run[name].reshape(len(run.time), -1)
     if (place := _place(scene, name)) is None:
         raise KeyError(name)
     cable, s = place
-    described = scene.cables[cable]
-    mesh = described.mesh
+    mesh = scene.cables[cable].mesh
     element = int(mesh.element_at(s * (1 + 1e-12)))
-    N = getattr(kernels_of(described.library), f"{described.element}_on_axis")(mesh.length(element),
-                                                                              s - mesh.start(element))[0]
+    N = on_axis(scene.cables[cable], element, s - mesh.start(element))[0]
     vectors = run[f"{cable}.nodal_vectors"][:, element : element + 2]
-    return np.einsum("k,tkd->td", N, vectors.reshape(len(vectors), len(N), 3))
+    return np.asarray(np.einsum("k,tkd->td", N, vectors.reshape(len(vectors), len(N), 3)))
 
 
 def distance(found: np.ndarray, exact: np.ndarray) -> float:
-    """Return the largest distance of two trajectories (..., components), over the output times, and points if any."""
+    """Return the largest distance of two trajectories (..., components) over times and points."""
     return float(np.linalg.norm(found - exact, axis=-1).max())
 
 
 def largest_change(exact: np.ndarray) -> float:
-    """Return what errors are relative to: the largest distance of a trajectory (time, ...) from its start."""
+    """Return the largest distance of a trajectory (time, ...) from its start, the scale of its errors."""
     return distance(exact, exact[:1])
 
 
 def relative(scene: SceneData, found: dict[str, np.ndarray], exact: dict[str, np.ndarray]) -> float:
-    """Return the largest of the outputs' errors, over the largest motion that an output of the same unit makes.
+    """Return the largest error of the outputs, relative to the largest motion of the outputs of the same unit.
 
-    Errors within rounding of the outputs are none. Others are infinite where the motion is rounding alone.
+    Errors within rounding are zero. Others are infinite if the motion is within rounding.
     """
     largest: dict[str, float] = {}
     for name, motion in exact.items():
@@ -113,5 +109,5 @@ def relative(scene: SceneData, found: dict[str, np.ndarray], exact: dict[str, np
 
 
 def _rounding(motion: np.ndarray) -> float:
-    """Return how much of a trajectory is rounding."""
-    return ROUNDED * float(np.abs(motion).max(initial=0.0))
+    """Return the rounding error of a trajectory."""
+    return ROUNDING_OF_POSITION * float(np.abs(motion).max(initial=0.0))

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cache
 from itertools import chain
 from typing import Annotated, Any, Literal, TypeVar, get_origin, get_type_hints
 
@@ -146,11 +145,15 @@ class Animation:
 
 Part = CableShape | BodyShape | Mark | Segment
 AnyPart = TypeVar("AnyPart", CableShape, BodyShape, Mark, Segment)
+DIMENSIONS: dict[type[Any], dict[str, tuple[str | int, ...]]] = {
+    kind: {name: hint.__metadata__ for name, hint in get_type_hints(kind, include_extras=True).items()
+           if get_origin(hint) is Annotated} for kind in (CableShape, BodyShape, Mark, Segment)}
+"""Dimensions of the arrays of each kind of part, from their annotations."""
 
 
 def arrays(part: Part) -> Iterator[tuple[str, tuple[str | int, ...], np.ndarray]]:
     """Yield the arrays of a part with their names and dimensions, those of its quantities included."""
-    for name, dims in _dimensions(type(part)).items():
+    for name, dims in DIMENSIONS[type(part)].items():
         if (value := getattr(part, name)) is not None:
             yield name, dims, value
     if isinstance(part, CableShape):
@@ -165,7 +168,7 @@ def taken(part: AnyPart, dim: str, numbers: np.ndarray, count: int) -> AnyPart:
         axis = dims.index(dim) - (len(dims) - array.ndim) if dim in dims else -1
         return array.take(numbers, axis) if axis >= 0 and array.shape[axis] == count else array
 
-    changed: dict[str, Any] = {name: at(getattr(part, name), dims) for name, dims in _dimensions(type(part)).items()
+    changed: dict[str, Any] = {name: at(getattr(part, name), dims) for name, dims in DIMENSIONS[type(part)].items()
                                if getattr(part, name) is not None}
     if isinstance(part, CableShape):
         changed["quantities"] = tuple(replace(each, values=at(each.values, ("T", "P"))) for each in part.quantities)
@@ -173,12 +176,6 @@ def taken(part: AnyPart, dim: str, numbers: np.ndarray, count: int) -> AnyPart:
         changed["quantities"] = {label: (unit, at(values, ("T",)))
                                  for label, (unit, values) in part.quantities.items()}
     return replace(part, **changed)
-
-
-@cache
-def _dimensions(kind: type[Any]) -> dict[str, tuple[str | int, ...]]:
-    return {name: hint.__metadata__ for name, hint in get_type_hints(kind, include_extras=True).items()
-            if get_origin(hint) is Annotated}
 
 
 def at_frame(values: np.ndarray, frame: int) -> np.ndarray:

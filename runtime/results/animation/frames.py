@@ -98,7 +98,7 @@ def place(frames: Frames, attachment: Attachment) -> np.ndarray:
         position, arm = frames.value(f"{attachment.on}.nodes")[:, node], arm + np.cross(turn, arm)
     else:
         arm = np.array(attachment.point)
-    return position + rotate(orientation, arm)
+    return np.asarray(position + rotate(orientation, arm))
 
 
 def one_or_all(position: np.ndarray) -> np.ndarray:

@@ -72,7 +72,7 @@ def of_run(run: Recorded, numbers: np.ndarray) -> Frames:
     """Return the frames of a run at the output times with these numbers."""
     @cache
     def value(name: str) -> np.ndarray:
-        return run[name][numbers]
+        return np.asarray(run[name][numbers])
 
     def forces(cable: str, s: np.ndarray) -> dict[str, np.ndarray]:
         if not is_balanced(len(numbers), len(s)) or known_method(run.scene, run.model, cable, False) != "balance":

@@ -259,8 +259,8 @@ class CableLoads:
         arm = body.centre + end.u
         if end.modal is not None:
             arm = spatial(end.modal[0] + self.at.value(f"{body.name}.modal_coordinates") @ end.modal[1])
-        position: np.ndarray = self.at.value(f"{body.name}.position")
-        return position + rotate(self.at.value(f"{body.name}.orientation"), arm)
+        arm = rotate(self.at.value(f"{body.name}.orientation"), arm)
+        return np.asarray(self.at.value(f"{body.name}.position") + arm)
 
     def _between_ends(self, kind: str) -> None:
         """Add the force of each coupling of a kind on its first end, and the opposite on a second one.

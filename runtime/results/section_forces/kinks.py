@@ -81,7 +81,7 @@ def _of_nodes(scene: SceneData, cable: Cable, model: CableModel, forces: Element
 
 def _normal(model: CableModel, vectors: np.ndarray) -> np.ndarray:
     """Return the section normal (T, 3) at a node with vectors (T, vectors, 3); of a cable the tangent."""
-    named = dict(zip(model.vectors, np.moveaxis(vectors, 1, 0), strict=True))
+    named: dict[str, np.ndarray] = dict(zip(model.vectors, np.moveaxis(vectors, 1, 0), strict=True))
     if "r_y" not in named:
         return named["r_x"]
     return np.asarray(np.cross(named["r_y"], named.get("r_z", np.array([0.0, 0.0, 1.0]))))
