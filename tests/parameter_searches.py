@@ -34,7 +34,7 @@ def by_scenes(search, at, monkeypatch, step=1e-4):
     with monkeypatch.context() as patch:
         patch.setattr(parameter_search, "Changes", NoChanges)
         for h in (step, 2 * step):
-            patch.setattr(parameter_search, "STEP", h)
+            patch.setattr(parameter_search, "DIFFERENCE_STEP", h)
             ends.append(search.linear(at))
     return [(4 * near - far) / 3 for near, far in zip(*ends, strict=True)]
 

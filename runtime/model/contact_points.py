@@ -18,7 +18,7 @@ def distances(model: Model, scene: SceneData, contact: ContactModel, q: np.ndarr
     """
     cable, surface = model.cables[contact.cable], scene.surfaces[scene.contacts[contact.name].b]
     elements = np.arange(cable.n_elements) if elements is None else elements
-    vectors = q[:, cable.coordinates].reshape(len(q), *cable.shape)
+    vectors = cable.nodal(q)
     both = np.concatenate([vectors[:, elements], vectors[:, elements + 1]], axis=2)
     N = np.broadcast_to(contact.N, (cable.n_elements, *contact.N.shape[1:]))[elements]
     points = spatial(np.einsum("egk,tekd->tegd", N, both))

@@ -92,7 +92,7 @@ def outside_tables(model: Model, q: np.ndarray) -> list[str]:
             continue
         if drag.cable >= 0:
             cable = model.cables[drag.cable]
-            r = q[cable.coordinates].reshape(cable.shape)[:, 0]
+            r = cable.nodal(q)[:, 0]
         else:
             r = attachment_points(model, drag.attachments[0], q[None])[:, : model.dim]
         height = drag.base + r @ drag.up

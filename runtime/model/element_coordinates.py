@@ -11,7 +11,7 @@ def element_coordinates(cable: CableModel, values: np.ndarray, element: np.ndarr
     """Return (T, elements, vectors, dim) of a cable from (T, n), or with element (T,) those of one each: (T, vectors,
     dim).
     """
-    nodal = values[:, cable.coordinates].reshape(len(values), *cable.shape)
+    nodal = cable.nodal(values)
     if element is not None:
         rows = np.arange(len(values))
         return np.concatenate([nodal[rows, element], nodal[rows, element + 1]], axis=1)

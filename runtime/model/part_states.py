@@ -98,7 +98,7 @@ def part_states(model: Model, scene: SceneData, at: States, alone: str | None = 
     cables = {}
     for cable in model.cables:
         if asked(cable.name):
-            vectors, rates = (spatial(x[:, cable.coordinates].reshape(len(x), *cable.shape)) for x in (at.q, at.v))
+            vectors, rates = (spatial(cable.nodal(x)) for x in (at.q, at.v))
             cables[cable.name] = model.results(cable.name, {"nodal_vectors": vectors, "nodal_velocity": rates})
     bodies, modal = {}, {}
     for body in model.bodies:

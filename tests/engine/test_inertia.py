@@ -117,9 +117,9 @@ def test_scenes_with_slides_joints_springs_and_redundant_constraints(monkeypatch
     change = np.random.default_rng(2).standard_normal(len(problem.weight)) * np.where(problem.weight == 1, 1e-3, 0)
     problem.move(change)
     K, C, units = problem.stiffness()
-    assert K.shape[0] > module.DENSE
+    assert K.shape[0] > module.MAX_DENSE_UNKNOWNS
     counted = inertia((K + K.T) / 2, C, units)
-    monkeypatch.setattr(module, "DENSE", 10**6)
+    monkeypatch.setattr(module, "MAX_DENSE_UNKNOWNS", 10**6)
     assert counted == inertia((K + K.T) / 2, C, units)
     assert counted.negative > 0
     assert sum(counted) == K.shape[0] - np.linalg.matrix_rank(C.toarray())

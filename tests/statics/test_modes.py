@@ -30,8 +30,8 @@ def test_sparse_and_dense_solvers_agree(monkeypatch):
     from funicular.solve.modes import modes as modal
 
     dense = string(12).modes(6).angular_frequency
-    monkeypatch.setattr(modal, "DENSE", 0)
-    monkeypatch.setattr(spectrum, "DENSE", 0)
+    monkeypatch.setattr(modal, "MAX_DENSE_UNKNOWNS", 0)
+    monkeypatch.setattr(spectrum, "MAX_DENSE_DEGREES", 0)
     np.testing.assert_allclose(string(12).modes(6).angular_frequency, dense, rtol=1e-8)
 
 

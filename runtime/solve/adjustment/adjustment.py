@@ -28,11 +28,11 @@ from .parameters import Parameters
 from .snapshots import Reader
 from .unreachable import Linear, cause_of, why_unreachable
 
-SHORTEST = 2.0**-12
+MIN_STEP_FRACTION = 2.0**-12
 """Of Newton's step: no nearer to the targets with less, and the search ends."""
-ENOUGH = 1e-4
+SUFFICIENT_DECREASE = 1e-4
 """Of the decrease that a linear model expects: what a step must bring."""
-NEARLY = 100.0
+ROUNDING_MARGIN = 100.0
 """Times the tolerance: misfits below that are rounding where no step brings them down."""
 
 S = TypeVar("S", bound=RestState)
@@ -67,7 +67,7 @@ def adjusted(scene: SceneData, settings: EquilibriumSettings, start: RestState |
     state = made.of(at.problem, found or search.state(at.problem).stability)
     g = read.values(at.problem)
     left = float(np.max(np.abs(targets - g) / scales, initial=0.0))
-    if found is None or left > NEARLY * settings.tolerance:
+    if found is None or left > ROUNDING_MARGIN * settings.tolerance:
         raise EquilibriumError("the targets are met by an unstable state of rest alone, which the search for a stable "
                                "one leaves; take seek_stable=False to have it, or other targets", state, 1.0)
     _, jacobian = search.linear(AtRest(at.problem, at.p, g))
@@ -156,7 +156,7 @@ def _pushing(state: RestState, springs: Sequence[Spring], tolerance: float) -> s
     empty where none does.
     """
     tensions = {spring.name: float(state[f"{spring.name}.tension"]) for spring in springs}
-    least = -NEARLY * tolerance * max(abs(tension) for tension in tensions.values())
+    least = -ROUNDING_MARGIN * tolerance * max(abs(tension) for tension in tensions.values())
     pushes = {name: tension for name, tension in tensions.items() if tension < least}
     if not pushes:
         return ""
@@ -179,7 +179,7 @@ def _approach(search: ParameterSearch[S], at: AtRest, to: Mapping[str, float], s
         linear = Linear.of(parameters, at.p, G, scales, misfit, parameters.sizes(at.problem.size))
         nearer, why = _step(search, at, linear, rates, targets, scales)
         if nearer is None:
-            if sizes[-1] <= NEARLY * settings.tolerance:
+            if sizes[-1] <= ROUNDING_MARGIN * settings.tolerance:
                 return _Approach(at, sizes)
             reason = why
             break
@@ -195,11 +195,11 @@ def _step(search: ParameterSearch[S], at: AtRest, linear: Linear, rates: np.ndar
     before, part = float(np.linalg.norm(linear.misfit)), 1.0
     if not linear.gains > 0:
         return None, reason
-    while part >= SHORTEST:
+    while part >= MIN_STEP_FRACTION:
         found = search.moved(at, part * linear.step, rates)
         if isinstance(found, str):
             reason = found
-        elif np.linalg.norm((targets - found.g) / scales) <= before - ENOUGH * part * linear.gains:
+        elif np.linalg.norm((targets - found.g) / scales) <= before - SUFFICIENT_DECREASE * part * linear.gains:
             return found, ""
         part *= 0.5
     return None, reason

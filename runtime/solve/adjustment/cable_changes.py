@@ -25,9 +25,9 @@ from ...parts.cable import Cable
 from ...parts.section_stiffness import lengths_in_stiffness, section_stiffness
 
 DIRECTORS = "r_y", "r_z"
-SLOPES = {"r_x": 1, "r_xx": 2}
+DERIVATIVE_ORDERS = {"r_x": 1, "r_xx": 2}
 """Vectors of nodes by how often they are derived by the arc-length."""
-STEP = 1e-6
+DIFFERENCE_STEP = 1e-6
 """Of a length, to either side: where forces of elements are differenced."""
 
 
@@ -50,8 +50,8 @@ def by_length(model: CableModel, cable: Cable, q: np.ndarray) -> np.ndarray:
     see above; differenced where the law takes a stress-free shape or is of another library.
     """
     if cable.reference is not None or cable.library is not None:
-        below, above = (_of_length(model, cable, q, 1 + change) for change in (-STEP, STEP))
-        return (above - below) / (2 * STEP)
+        below, above = (_of_length(model, cable, q, 1 + change) for change in (-DIFFERENCE_STEP, DIFFERENCE_STEP))
+        return (above - below) / (2 * DIFFERENCE_STEP)
     law = cable.stiffness_law, cable.section, cable.material, cable.dim
     S, orders = section_stiffness(*law), lengths_in_stiffness(*law)
     here = elastic_force(model, model.A, q)
@@ -63,7 +63,7 @@ def by_length(model: CableModel, cable: Cable, q: np.ndarray) -> np.ndarray:
 
 def same_points(model: CableModel, q: np.ndarray) -> np.ndarray:
     """Return (coordinates,): derivative of the coordinates of the same points, q (n_q,), by the ratio of lengths."""
-    return -(_slopes(model) * q[model.coordinates].reshape(model.shape)).ravel()
+    return -(_slopes(model) * model.nodal(q)).ravel()
 
 
 @dataclass(frozen=True)
@@ -87,14 +87,14 @@ def _of_length(model: CableModel, cable: Cable, q: np.ndarray, ratio: float) -> 
     longer = cable.remade({"rest_length": ratio * cable.length} | nodes)
     factors = ratio ** -_slopes(model)
     there = q.copy()
-    there[model.coordinates] = (factors * q[model.coordinates].reshape(model.shape)).ravel()
+    there[model.coordinates] = (factors * model.nodal(q)).ravel()
     return elastic_force(replace(model, mesh=longer.mesh), constants(longer), there) * np.broadcast_to(
         factors, model.shape).ravel()
 
 
 def _slopes(model: CableModel) -> np.ndarray:
     """Return (vectors, 1): how often each vector of a node is derived by the arc-length."""
-    return np.array([[float(SLOPES.get(name, 0))] for name in model.vectors])
+    return np.array([[float(DERIVATIVE_ORDERS.get(name, 0))] for name in model.vectors])
 
 
 def _stiffness_times(model: CableModel, q: np.ndarray, chosen: np.ndarray) -> np.ndarray:

@@ -15,9 +15,9 @@ from .cable_changes import same_points
 from .change import Change, Rest, altered, named
 from .load_changes import by_values
 
-KEEP_PLACE = "loads", "joints", "point_forces", "contacts"
+KEEPING_PLACE = "loads", "joints", "point_forces", "contacts"
 """Groups of couplings whose places on a cable are parts of its length."""
-SLIDING = tuple({kind.group for kind in COUPLINGS} - {*KEEP_PLACE})
+SLIDING = tuple({kind.group for kind in COUPLINGS} - {*KEEPING_PLACE})
 """Others have places on a cable that are no part of its length, or forces of its length and size."""
 
 
@@ -38,7 +38,7 @@ def lengthens_plainly(rest: Rest, cable: Cable) -> bool:
 def hangs_plainly(rest: Rest, cable: Cable) -> bool:
     """Return whether nothing on a cable depends on how it hangs as it is drawn."""
     scene, model, name = rest.scene, rest.model_of(cable.name), cable.name
-    held = rest.model.unknown_of_dof[model.coordinates].reshape(model.shape) < 0
+    held = model.nodal(rest.model.unknown_of_dof) < 0
     held[[0, -1], model.vectors.index("r")] = False
     rough = any(contact.a == name and contact.friction is not None for contact in scene.contacts.values())
     as_drawn = any(name in named(force) and force.as_made() is not force for force in scene.point_forces.values())

@@ -44,7 +44,7 @@ from .snapshots import Reader
 APART_FROM_SECTIONS = "loads", "slides", "joints", "point_forces"
 OF_SECTIONS = tuple({kind.group for kind in COUPLINGS} - {*APART_FROM_SECTIONS})
 """Groups of parts that may depend on the size and the weight of a cable's section: all but those that do not."""
-STEP = 1e-6
+DIFFERENCE_STEP = 1e-6
 """Of a number of a section, to either side: where the forces of its cable are differenced."""
 
 
@@ -185,7 +185,7 @@ class Changes:
         value = value_at(drawn, path)
         linear = (path.entries == ("material", "youngs_modulus") and cable.material.poisson_ratio is not None
                   and cable.library is None)
-        h = abs(value) if linear else STEP * abs(value) or STEP
+        h = abs(value) if linear else DIFFERENCE_STEP * abs(value) or DIFFERENCE_STEP
         ends = (value, value + h) if linear else (value - h, value + h)
         assert path.part is not None, f"{path.text} is of a cable"
         if path.entries[0] == "section" and self.scene.drags:

@@ -38,9 +38,9 @@ from .parameter_changes import Changes
 from .parameters import Parameters
 from .snapshots import Reader, Snapshots
 
-STEP = 1e-6
+DIFFERENCE_STEP = 1e-6
 """Of a parameter, to either side: where the residual is differenced; of the scene's size: where values are."""
-AT_ONCE = 1_000_000
+MAX_NUMBERS_AT_ONCE = 1_000_000
 """Numbers of the snapshots that are read together."""
 
 S = TypeVar("S", bound=RestState)
@@ -69,7 +69,7 @@ class Way:
     def of(cls, problem: StaticProblem, rates: np.ndarray, change: Change) -> Way:
         """Return the way of a parameter: as far as the state moves by a part of the scene's size."""
         moves = np.hypot(problem.length(rates), 0.0 if change.c is None else np.linalg.norm(change.c))
-        return cls(STEP * problem.size / moves if moves > 0 else 1.0, rates, change)
+        return cls(DIFFERENCE_STEP * problem.size / moves if moves > 0 else 1.0, rates, change)
 
     def begin(self, kept: dict, step: float) -> dict:
         """Return a state with what is prescribed moved by a step of the parameter."""
@@ -129,7 +129,7 @@ class ParameterSearch(Generic[S]):
     def linear(self, at: AtRest) -> tuple[np.ndarray, np.ndarray]:
         """Return dx/dp (unknowns, n) and dg/dp (targets, n) at a state of rest."""
         problem, p = at.problem, at.p
-        steps = STEP * np.maximum(np.abs(p), 1e-3 * self.parameters.sizes(problem.size))
+        steps = DIFFERENCE_STEP * np.maximum(np.abs(p), 1e-3 * self.parameters.sizes(problem.size))
         kept, changes = problem.keep(), Changes(problem, dict(enumerate(self.parameters.paths)), self.reader)
         here = {**changes.columns(), **self.by_laws(at, kept["q"], steps)}
         ends = {k: [self.beside(at, k, change, kept) for change in (-steps[k], steps[k])]
@@ -185,7 +185,7 @@ class ParameterSearch(Generic[S]):
                     yield problem
 
         found = []
-        together = max(1, AT_ONCE // max(1, problem.model.n_q))
+        together = max(1, MAX_NUMBERS_AT_ONCE // max(1, problem.model.n_q))
         for first in range(0, len(ways), together):
             some = ways[first : first + together]
             snapshots = Snapshots.of(ends(some), self.reader.reactions)

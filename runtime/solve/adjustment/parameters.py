@@ -20,7 +20,7 @@ from ...parts.validation import shown
 ADJUST = "adjust"
 ENDS = "a", "b"
 """Of forces between two points."""
-LEAST = 1e-6
+MIN_VALUE_RATIO = 1e-6
 """Of its first value: the least value of a parameter that has to be positive."""
 
 S = TypeVar("S", bound=SceneData)
@@ -50,7 +50,7 @@ class Parameters(Generic[S]):
                                  f"and {high:.9g}", "begin within them, or give others")
         positive = np.array([self._must_be_positive(path, value)
                              for path, value in zip(self.paths, self.values, strict=True)])
-        least = LEAST * self.values
+        least = MIN_VALUE_RATIO * self.values
         self.natural = positive & (self.low < least)
         self.low = np.where(self.natural, least, self.low)
 
@@ -74,7 +74,7 @@ class Parameters(Generic[S]):
             return False
         part = self.parts[path.part]
         try:
-            remade(part, changes_of(self.scene, {path: -LEAST * value})[path.part])
+            remade(part, changes_of(self.scene, {path: -MIN_VALUE_RATIO * value})[path.part])
         except SceneError:
             return True
         return False

@@ -9,9 +9,9 @@ import numpy as np
 
 from .parameters import Parameters
 
-RANK = 1e-8
+RANK_TOLERANCE = 1e-8
 """Of the largest singular value of the scaled derivatives: what is below is none, as they are differences."""
-SHARE = 0.1
+MIN_PARTICIPATION = 0.1
 """Of a combination of targets: what takes part in it less is not named."""
 
 
@@ -40,7 +40,7 @@ class Linear:
         low, high = (parameters.low - p) / sizes, (parameters.high - p) / sizes
         free, y = np.ones(len(p), dtype=bool), np.zeros(len(p))
         while free.any():
-            y[free] = np.linalg.pinv(A[:, free], rcond=RANK) @ (misfit - A[:, ~free] @ y[~free])
+            y[free] = np.linalg.pinv(A[:, free], rcond=RANK_TOLERANCE) @ (misfit - A[:, ~free] @ y[~free])
             beyond = free & ((y < low) | (y > high))
             if not beyond.any():
                 break
@@ -48,7 +48,7 @@ class Linear:
             free &= ~beyond
         left = float(np.linalg.norm(misfit - A @ y))
         gains = float(np.linalg.norm(misfit)) - left
-        return cls(A, misfit, sizes * y, free, gains if gains > RANK * np.linalg.norm(misfit) else 0.0)
+        return cls(A, misfit, sizes * y, free, gains if gains > RANK_TOLERANCE * np.linalg.norm(misfit) else 0.0)
 
     def out_of_reach(self, columns: np.ndarray) -> np.ndarray:
         """Return (targets, k): an orthonormal basis of the combinations of targets that these parameters do not change.
@@ -56,21 +56,21 @@ class Linear:
         if not columns.any():
             return np.eye(len(self.misfit))
         U, values, _ = np.linalg.svd(self.A[:, columns])
-        return U[:, int(np.sum(values > RANK * values[0])):] if values[0] > 0 else U
+        return U[:, int(np.sum(values > RANK_TOLERANCE * values[0])):] if values[0] > 0 else U
 
 
 def why_unreachable(linear: Linear, g: np.ndarray, to: Mapping[str, float], cause: str) -> str:
     """Return which targets are not reached, how far from them the search ended, and why, as a message; g: values there.
     """
     names = list(to)
-    missed = np.abs(linear.misfit) > SHARE * np.max(np.abs(linear.misfit))
+    missed = np.abs(linear.misfit) > MIN_PARTICIPATION * np.max(np.abs(linear.misfit))
     values = " and ".join(f'"{names[k]}" is {g[k]:.9g}, not {to[names[k]]:.9g}' for k in np.flatnonzero(missed))
     return f"the targets are not reached: {values}; {cause}; the state there is kept in .state"
 
 
 def cause_of(parameters: Parameters, linear: Linear, names: list[str], reason: str) -> str:
     """Return why the search ended where it did, in words; names: of the targets; reason: why no step was taken."""
-    silent = ~np.any(np.abs(linear.A) > RANK * max(np.max(np.abs(linear.A)), 1e-300), axis=1)
+    silent = ~np.any(np.abs(linear.A) > RANK_TOLERANCE * max(np.max(np.abs(linear.A)), 1e-300), axis=1)
     if silent.any():
         which = _quoted([names[k] for k in np.flatnonzero(silent)])
         return f"no parameter changes {which} there: adjust something that does, or begin where it does (a part that " \
@@ -88,10 +88,10 @@ def _in_conflict(linear: Linear, columns: np.ndarray, names: list[str]) -> str |
     """Return the targets that cannot be changed one without the other, quoted, where they have misfits; else None."""
     basis = linear.out_of_reach(columns)
     left = basis.T @ linear.misfit
-    if not np.any(np.abs(left) > SHARE * np.linalg.norm(linear.misfit)):
+    if not np.any(np.abs(left) > MIN_PARTICIPATION * np.linalg.norm(linear.misfit)):
         return None
     share = np.linalg.norm(basis * (np.abs(left) > 0), axis=1)
-    return _quoted([names[k] for k in np.flatnonzero(share > SHARE)])
+    return _quoted([names[k] for k in np.flatnonzero(share > MIN_PARTICIPATION)])
 
 
 def _at_limit(parameters: Parameters, linear: Linear, k: int) -> str:

@@ -1,4 +1,4 @@
-"""The matrices of a state over the coordinates that are left when forces between points are eliminated."""
+"""Stiffness, constraints and frequencies of a state over its coordinates, with forces between points eliminated."""
 
 from __future__ import annotations
 
@@ -10,19 +10,20 @@ from scipy.sparse import csc_array, csr_array
 
 from ...model.model import Model
 
-DEPENDENT = 1e-9
-"""Of the largest: what is left of a contact's row that those of others imply."""
+DEPENDENCE_TOLERANCE = 1e-9
+"""Part of a contact's row that is independent of the others, as a fraction of the largest, below which they imply
+it."""
 
 
 def fastest(K: csc_array, M: csc_array, unknowns: np.ndarray | slice = slice(None)) -> float:
-    """Return about the square of the highest frequency of some unknowns, rad²/s²; M may have more after those of K."""
+    """Return about the square of the highest frequency of some unknowns in rad²/s²; M may have more unknowns than K."""
     inertia, stiffness = M.diagonal()[: K.shape[0]][unknowns], K.diagonal()[unknowns]
     heavy = inertia > 0
     return float(np.max(np.abs(stiffness[heavy]) / inertia[heavy], initial=0.0))
 
 
 def condensed(full: csc_array, model: Model) -> tuple[csc_array, csc_array]:
-    """Return the stiffness over all coordinates, forces that a law gives eliminated; and the constraints on them."""
+    """Return the stiffness over all coordinates, with forces by laws eliminated, and the constraints on them."""
     n = model.n_band + model.n_border_dof
     own = [n + k for coupling in model.couplings for k in coupling.free_coordinates]
     forces = [n + k for coupling in model.couplings if not coupling.follows_law for k in coupling.force_unknowns]
@@ -35,8 +36,8 @@ def condensed(full: csc_array, model: Model) -> tuple[csc_array, csc_array]:
 
 
 def _independent(rows: csr_array, of_contacts: list[int]) -> csr_array:
-    """Return the constraints without those that hold nothing, such as of a slide between two supported nodes, and those
-    of contacts that others imply.
+    """Return the constraints without empty ones, such as of a slide between two supported nodes, and without those of
+    contacts that others imply.
     """
     sizes = abs(rows).max(axis=1).toarray().ravel() if rows.shape[0] else np.zeros(0)
     if not sizes.all():
@@ -47,13 +48,13 @@ def _independent(rows: csr_array, of_contacts: list[int]) -> csr_array:
     own = rows[of_contacts].toarray()
     _, factor, order = qr(own.T, mode="economic", pivoting=True)
     sizes = np.abs(np.diagonal(factor))
-    rank = int(np.count_nonzero(sizes > DEPENDENT * max(sizes.max(initial=0.0), np.finfo(float).tiny)))
+    rank = int(np.count_nonzero(sizes > DEPENDENCE_TOLERANCE * max(sizes.max(initial=0.0), np.finfo(float).tiny)))
     others = set(range(rows.shape[0])) - set(of_contacts)
     return rows[sorted(others | {of_contacts[k] for k in order[:rank]})]
 
 
 def without_forces(full: Any, kept: np.ndarray | slice, model: Model) -> Any:
-    """Return a matrix, sparse or an array, over the unknowns that are kept, forces between points eliminated."""
+    """Return a matrix, sparse or an array, over the unknowns kept, with forces between points eliminated."""
     n = model.n_band + model.n_border_dof
     between = [n + k for coupling in model.couplings if coupling.follows_law for k in coupling.force_unknowns]
     own = full[kept][:, kept]

@@ -1,8 +1,8 @@
 """Inertia of a symmetric stiffness on the null space of constraints: how many eigenvalues lie below, at and above zero.
 
 Signs are counted from a factorisation (Sylvester's law of inertia), not from a few computed eigenvalues: the count is
-complete, however many eigenvalues there are and however often they repeat. `inertia` is for states of rest, where what
-is zero counts apart and constraints may be redundant; `negatives` is for the spectrum, at a shift.
+complete for any number and multiplicity of eigenvalues. `inertia` is for states of rest, where zeros count separately
+and constraints may be redundant; `negatives` is for the spectrum, at a shift.
 """
 
 from __future__ import annotations
@@ -14,34 +14,34 @@ from scipy.linalg import cholesky_banded, eigvalsh, ldl, null_space, qr
 from scipy.sparse import block_array, csc_array, csr_array, diags_array, eye_array, triu
 from scipy.sparse.linalg import splu
 
-DENSE = 200
+MAX_DENSE_UNKNOWNS = 200
 """Unknowns up to which the eigenvalues themselves are computed, by LAPACK."""
-ZERO = 1e-13
-"""Of the scaled stiffness, whose diagonal is one: an eigenvalue this small cannot be distinguished from zero."""
-FLOOR = 1e-6
-"""Of the largest stiffness: an unknown less stiff than this is scaled as if it had so much, so that the rounding of a
-direction that is free is not scaled up to a stiffness."""
-DEPENDENT = 1e-10
-"""Of a constraint of unit length: what is left of one that follows from others."""
-WIDEST = 100
-"""Diagonals on a side of the band in which Cholesky's factorisation is tried first."""
-SMALL = 300
+ZERO_EIGENVALUE = 1e-13
+"""Eigenvalues of the scaled stiffness, whose diagonal is one, below which they cannot be distinguished from zero."""
+MIN_STIFFNESS_RATIO = 1e-6
+"""Lower bound of the stiffness by which unknowns are scaled, as a fraction of the largest: else the rounding of a free
+direction would be scaled up to a stiffness."""
+DEPENDENCE_TOLERANCE = 1e-10
+"""Independent part of a constraint of unit length below which it follows from others."""
+MAX_BANDWIDTH = 100
+"""Diagonals on a side of the band up to which Cholesky's factorisation is tried first."""
+MAX_DENSE_ROWS = 300
 """Rows up to which the factorisation is dense, by Bunch and Kaufman."""
-GROWTH = 16.0
-"""What an elimination may add to entries that are at most one. Its rounding is 1e-16 of that: well below `ZERO`."""
-MORE_GROWTH = 10.0
-"""Times as much growth is admitted by each further factorisation: amid the spectrum there is no end of it."""
-MOST_GROWTH = 1e7
-"""The rounding is 1e-9 then; with more growth signs do not count."""
-AT_ONCE = 60
-"""Unknowns, of the most growth, that are put late for the next factorisation."""
-WITHOUT = 1e-12
-"""Of the largest entry in its row: with a smaller diagonal an unknown is no pivot before others are eliminated."""
-NUDGES = 0.0, WITHOUT, 10 * WITHOUT, 100 * WITHOUT
-"""Of the diagonal, which is about one: added where there are no pivots on it, to find which are too small."""
-MOST_FACTORISATIONS = 30
-MOST_LATE = 3000
-"""Unknowns that may be left for the dense end of the factorisation: 72 MB."""
+GROWTH_LIMIT = 16.0
+"""Growth by an elimination of entries of at most one. Its rounding is 1e-16 of it: well below `ZERO_EIGENVALUE`."""
+GROWTH_LIMIT_RATIO = 10.0
+"""Ratio of the growth limits of consecutive factorisations: in the middle of the spectrum growth does not end."""
+MAX_GROWTH_LIMIT = 1e7
+"""Growth limit up to which signs count: the rounding is 1e-9 then."""
+MAX_DEFERRED_AT_ONCE = 60
+"""Unknowns of the largest growth that are deferred for the next factorisation."""
+MIN_PIVOT = 1e-12
+"""Diagonal of an unknown over the largest entry in its row below which it is deferred."""
+DIAGONAL_SHIFTS = 0.0, MIN_PIVOT, 10 * MIN_PIVOT, 100 * MIN_PIVOT
+"""Shifts of the diagonal, which is about one, in turn, where it has no pivots, to find the small ones."""
+MAX_FACTORISATIONS = 30
+MAX_DEFERRED_UNKNOWNS = 3000
+"""Unknowns that the dense end of the factorisation takes: 72 MB."""
 
 
 class Inertia(NamedTuple):
@@ -52,13 +52,13 @@ class Inertia(NamedTuple):
     positive: int
 
 
-def inertia(K: Any, C: Any = None, units: np.ndarray | None = None, zero: float = ZERO) -> Inertia:
+def inertia(K: Any, C: Any = None, units: np.ndarray | None = None, zero: float = ZERO_EIGENVALUE) -> Inertia:
     """Return the inertia of K (n, n), symmetric, on the null space of C (m, n); both sparse or dense.
 
     Rows of C may depend on each other. ``inertia(K - shift * M, C)`` counts the eigenvalues of (K, M) below a shift.
-    units (n,): how far a unit of each unknown moves a point, which makes all entries of K comparable (N/m); None: they
-    are. K is scaled to a diagonal of about one, which changes no sign; zero: eigenvalues of the scaled K that are
-    smaller count as zero.
+    units (n,): displacement of a point by a unit of each unknown, which makes all entries of K comparable (N/m); None:
+    they are. K is scaled to a diagonal of about one, which changes no sign; zero: smaller eigenvalues of the scaled K
+    count as zero.
     Raises ValueError where K is not finite or not symmetric to 1e-8 of its largest entry; ArithmeticError, see
     `negatives`.
     """
@@ -68,7 +68,7 @@ def inertia(K: Any, C: Any = None, units: np.ndarray | None = None, zero: float 
     if _is_definite(K, np.ones(n) if units is None else np.asarray(units, dtype=float), zero):
         return Inertia(0, 0, n - (0 if C is None else _independent(csr_array(C, dtype=float)).shape[0]))
     K, C, _ = scaled((K + K.T) / 2, C, units)
-    if n <= DENSE:
+    if n <= MAX_DENSE_UNKNOWNS:
         return _by_eigenvalues(K.toarray(), C.toarray(), zero)
     shift = zero * eye_array(n, format="csc")
     below = negatives(K + shift, C)
@@ -77,18 +77,17 @@ def inertia(K: Any, C: Any = None, units: np.ndarray | None = None, zero: float 
 
 
 def _is_definite(K: csc_array, units: np.ndarray, zero: float) -> bool:
-    """Return whether a factorisation shows that all eigenvalues of K, scaled as by `scaled`, are above this size.
-
-    False, too, where its band is too wide for that to be quick. It is then so on the null space of any constraints.
+    """Return whether a factorisation shows that all eigenvalues of K, scaled as by `scaled`, exceed ``zero``; they do
+    so on the null space of any constraints, too. False also where the band is too wide for a quick factorisation.
     """
     n = K.shape[0]
     column = np.repeat(np.arange(n), np.diff(K.indptr))
     row, width = K.indices, int(np.abs(K.indices - column).max(initial=0))
-    if not n or width > WIDEST or not np.diff(K.indptr).all():
+    if not n or width > MAX_BANDWIDTH or not np.diff(K.indptr).all():
         return False
     units = np.where(units > 0, units, 1.0)
     stiffness = np.maximum.reduceat(np.abs(K.data) / units[row], K.indptr[:-1]) / units
-    scale = 1.0 / (units * np.sqrt(np.maximum(stiffness, FLOOR * stiffness.max())))
+    scale = 1.0 / (units * np.sqrt(np.maximum(stiffness, MIN_STIFFNESS_RATIO * stiffness.max())))
     above, values = np.abs(row - column), K.data * scale[row] * scale[column]
     at = (width - above) * n + np.maximum(row, column)
     band = np.bincount(at, np.where(above == 0, values - zero, values / 2), minlength=(width + 1) * n)
@@ -117,16 +116,16 @@ def _check(K: csc_array) -> None:
 
 
 def _scale(K: csc_array, units: np.ndarray) -> np.ndarray:
-    """Return (n,): what unknowns are multiplied by, so that no row of K has an entry much above one."""
+    """Return (n,): factors of the unknowns with which no row of K has an entry much above one."""
     units = np.where(units > 0, units, 1.0)
     per_unit = diags_array(1.0 / units)
     stiffness = abs(per_unit @ K @ per_unit).max(axis=1).toarray().ravel()
     largest = stiffness.max(initial=0.0) or 1.0
-    return 1.0 / (units * np.sqrt(np.maximum(stiffness, FLOOR * largest)))
+    return 1.0 / (units * np.sqrt(np.maximum(stiffness, MIN_STIFFNESS_RATIO * largest)))
 
 
 def _independent(C: csr_array) -> csr_array:
-    """Return the rows of unit length that span what C does."""
+    """Return rows of unit length with the span of C."""
     length = np.sqrt(np.asarray(C.multiply(C).sum(axis=1)).ravel())
     C = (diags_array(1.0 / np.where(length > 0, length, 1.0)) @ C).tocsr()[length > 0]
     if not C.shape[0]:
@@ -134,12 +133,12 @@ def _independent(C: csr_array) -> csr_array:
     touched = np.unique(C.indices)
     r, order = qr(C[:, touched].toarray().T, mode="r", pivoting=True)
     diagonal = np.abs(np.diag(r))
-    return C[np.sort(order[: np.count_nonzero(diagonal > DEPENDENT)])]
+    return C[np.sort(order[: np.count_nonzero(diagonal > DEPENDENCE_TOLERANCE)])]
 
 
 def _by_eigenvalues(K: np.ndarray, C: np.ndarray, zero: float) -> Inertia:
     if C.shape[0]:
-        free = null_space(C, rcond=DEPENDENT)
+        free = null_space(C, rcond=DEPENDENCE_TOLERANCE)
         K = free.T @ K @ free
     values = eigvalsh(K) if K.shape[0] else np.zeros(0)
     below, above = int(np.count_nonzero(values < -zero)), int(np.count_nonzero(values > zero))
@@ -147,27 +146,27 @@ def _by_eigenvalues(K: np.ndarray, C: np.ndarray, zero: float) -> Inertia:
 
 
 def negatives(K: csc_array, C: csc_array | csr_array) -> int:
-    """Return how many eigenvalues of K (n, n), sparse and symmetric, are negative on C x = 0; C (m, n), sparse, of rank
-    m.
+    """Return the number of negative eigenvalues of K (n, n), sparse and symmetric, on C x = 0; C (m, n), sparse, of
+    rank m.
 
     The eigenvalues of [[K, C'], [C, 0]] are counted: m of them are negative, and m positive, of the constraints
-    (Gould, Math. Program. 32 (1985) 90-99). Unknowns whose elimination would let entries grow are eliminated last, all
-    together, by Bunch and Kaufman: the negative ones are those of the pivots before, and of what is left then
-    (Haynsworth, Linear Algebra Appl. 1 (1968) 73-81). The count is that of a matrix which differs from K by rounding,
-    seldom more than 1e-15 of it, at the worst 1e-9: amid the spectrum, not near its lower end.
-    Raises ArithmeticError where so many would come last that memory and time do not allow it, or growth does not end.
+    (Gould, Math. Program. 32 (1985) 90-99). Unknowns whose elimination would let entries grow are deferred, and
+    eliminated together by Bunch and Kaufman: negative eigenvalues are those of the pivots before, and of the Schur
+    complement (Haynsworth, Linear Algebra Appl. 1 (1968) 73-81). The count is that of a matrix which differs from K by
+    rounding, seldom by more than 1e-15 of it, and by 1e-9 at most, in the middle of the spectrum.
+    Raises ArithmeticError where too many unknowns are deferred for memory and time, or where growth does not end.
     """
     n, m = K.shape[0], C.shape[0]
     whole = block_array([[K, C.T], [C, None]], format="csc") if m else K.tocsc()
     by = diags_array(equilibrating(whole))
     whole = (by @ whole @ by).tocsc()
-    if n + m <= SMALL:
+    if n + m <= MAX_DENSE_ROWS:
         return _negatives_of_blocks(whole.toarray()) - m
-    is_late = np.abs(whole.diagonal()) < WITHOUT
-    growth = GROWTH
-    for _ in range(MOST_FACTORISATIONS):
+    is_late = np.abs(whole.diagonal()) < MIN_PIVOT
+    growth = GROWTH_LIMIT
+    for _ in range(MAX_FACTORISATIONS):
         late, early = np.flatnonzero(is_late), np.flatnonzero(~is_late)
-        if len(late) > MOST_LATE:
+        if len(late) > MAX_DEFERRED_UNKNOWNS:
             break
         if not len(early):
             return _negatives_of_blocks(whole.toarray()) - m
@@ -177,12 +176,12 @@ def negatives(K: csc_array, C: csc_array | csr_array) -> int:
             left = whole[late][:, late].toarray() - border.T @ rest
             return int(np.count_nonzero(pivots < 0)) + _negatives_of_blocks(left) - m
         is_late[early[growing]] = True
-        growth = min(growth * MORE_GROWTH, MOST_GROWTH)
+        growth = min(growth * GROWTH_LIMIT_RATIO, MAX_GROWTH_LIMIT)
     raise ArithmeticError("the pivots of the stiffness are too small for their signs to be known")
 
 
 def equilibrating(K: csc_array) -> np.ndarray:
-    """Return (n,): d such that the largest entry of each row of d_i K_ij d_j is about 1; K symmetric (Ruiz,
+    """Return d (n,) such that the largest entry of each row of d_i K_ij d_j is about 1; K symmetric (Ruiz,
     RAL-TR-2001-034).
     """
     size, scale = abs(K).tocsc(), np.ones(K.shape[0])
@@ -200,16 +199,16 @@ def equilibrating(K: csc_array) -> np.ndarray:
 
 
 def _eliminated(K: csc_array, border: np.ndarray, growth: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return pivots of K on its diagonal, K^-1 border (n, late), and unknowns that make entries grow more, the worst of
-    them.
+    """Return pivots of K on its diagonal, K^-1 border (n, late), and the unknowns with the largest growth beyond the
+    limit.
 
     K and border have entries of one at most. SuperLU factors without exchange of rows: K = L U with U = D L'. Pivot k
-    adds U_kj² / |D_k| to the diagonal entry j of what is left. The pivots are sound where none grows.
+    adds U_kj² / |D_k| to the remaining diagonal entry j. The pivots are sound where none exceeds the limit.
     """
     n = K.shape[0]
-    for nudge in NUDGES:  # where SuperLU takes no pivot that is zero or nearly so: a little above, it is seen to grow
+    for shift in DIAGONAL_SHIFTS:  # SuperLU takes no zero pivot; with a small one the growth is seen
         try:
-            factor = splu(K + nudge * eye_array(n, format="csc") if nudge else K, permc_spec="MMD_AT_PLUS_A",
+            factor = splu(K + shift * eye_array(n, format="csc") if shift else K, permc_spec="MMD_AT_PLUS_A",
                           diag_pivot_thresh=0.0, options={"SymmetricMode": True})
         except RuntimeError:
             continue
@@ -226,13 +225,13 @@ def _eliminated(K: csc_array, border: np.ndarray, growth: float) -> tuple[np.nda
     size = np.abs(pivots)
     added = beside**2 / np.maximum(size, np.finfo(float).tiny)
     growing = added > growth
-    first = growing & (beside > growth * size)  # pivots that are small, not those that had grown before their turn
+    first = growing & (beside > growth * size)  # small pivots, not those that grew before their turn
     found = np.flatnonzero(first if first.any() else growing)
-    return pivots, rest, order[found[np.argsort(-added[found])[:AT_ONCE]]]
+    return pivots, rest, order[found[np.argsort(-added[found])[:MAX_DEFERRED_AT_ONCE]]]
 
 
 def _negatives_of_blocks(K: np.ndarray) -> int:
-    """Return the negative eigenvalues of a dense matrix, by the pivots of Bunch and Kaufman of one and two rows."""
+    """Return the number of negative eigenvalues of a dense matrix, by the pivots of Bunch and Kaufman."""
     if not len(K):
         return 0
     scale = 1 / np.sqrt(np.maximum(np.abs(K).max(axis=1), 1e-300))

@@ -1,4 +1,4 @@
-"""The lowest eigenpairs of K x = λ M x on C x = 0, all of them: counted by the signs of a factorisation's pivots."""
+"""The lowest eigenpairs of K x = λ M x on C x = 0, complete: counted by the signs of a factorisation's pivots."""
 
 from __future__ import annotations
 
@@ -11,48 +11,48 @@ from scipy.sparse.linalg import splu
 
 from .inertia import equilibrating, negatives
 
-MORE = 4
-"""Pairs computed beyond those asked for: a gap is needed to count at."""
+EXTRA_PAIRS = 4
+"""Pairs computed beyond those asked for: the count needs a gap between eigenvalues."""
 
-DENSE = 40
+MAX_DENSE_DEGREES = 40
 """Degrees of freedom up to which all eigenvalues are computed."""
 
-CONVERGED = 1e-8
-"""Residual of a pair of the inverse, relative to it; the error of the eigenvalue is of the order of its square."""
+RESIDUAL_TOLERANCE = 1e-8
+"""Relative residual of a pair of the inverse; the error of the eigenvalue is of the order of its square."""
 
-STALLED = 6
-"""Extensions of the subspace without a smaller residual, after which rounding rules it."""
+MAX_STALLED_EXTENSIONS = 6
+"""Extensions of the subspace without a smaller residual, after which rounding determines it."""
 
-MOST_EXTENSIONS = 200
-MOST_STARTS = 4
-LARGEST_SPACE = 12
-"""Blocks of the subspace, beyond which it is restarted with what it has found."""
+MAX_EXTENSIONS = 200
+MAX_STARTS = 4
+MAX_SUBSPACE_BLOCKS = 12
+"""Blocks of the subspace beyond which it is restarted with the pairs found."""
 
-FACTOR = 16.0
+SHIFT_RATIO = 16.0
 """Ratio of the shifts between which a search for an eigenvalue's size ends."""
 
-DEEPEST = 1e-30
-"""Of the largest eigenvalue: below this nothing is looked for. It is the square of what rounding leaves of a shape."""
+MIN_EIGENVALUE_RATIO = 1e-30
+"""Smallest eigenvalue that is sought, as a fraction of the largest: the square of the rounding of a shape."""
 
-CLUSTER = 1e-4
-"""Of the shift: smaller eigenvalues are not well separated by its inverse."""
+CLUSTER_RATIO = 1e-4
+"""Eigenvalues below this fraction of the shift are not well separated by its inverse."""
 
-LEVEL = 1e6
-"""Ratio of eigenvalues that rounding makes of zeros to those that are none, at least."""
+ZERO_SEPARATION = 1e6
+"""Lower bound of the ratio of non-zero eigenvalues to those that rounding makes of zeros."""
 
-MOST_AT_ONE_PLACE = 2000
-"""Eigenvalues too close to each other to be separated, of which all are computed."""
+MAX_CLUSTER_SIZE = 2000
+"""Eigenvalues too close to be separated, of which all are computed, up to this number."""
 
-RELATIVE = 1e-14
-"""Of the largest eigenvalue computed together with others: the rounding of these."""
+EIGENVALUE_ROUNDING = 1e-14
+"""Rounding error of eigenvalues, as a fraction of the largest that is computed with them."""
 
-NEGLIGIBLE = 1e-6
-"""Of the eigenvalue that follows: a cluster is not looked at more closely than this."""
+NEGLIGIBLE_RATIO = 1e-6
+"""Resolution of a cluster, as a fraction of the eigenvalue that follows."""
 
-APART = 1e-6
-"""Relative distance of neighbours between which a count is sure."""
+GAP_TOLERANCE = 1e-6
+"""Relative distance of adjacent eigenvalues between which a count is certain."""
 
-ROUNDING = 4 * np.finfo(float).eps
+STIFFNESS_ROUNDING = 4 * np.finfo(float).eps
 """Relative error of the entries of K and of their sums."""
 
 
@@ -68,7 +68,7 @@ class Pencil:
     """
 
     def __init__(self, K: csc_array, M: csc_array, C: csc_array):
-        self.unit = float(abs(K).max()) if K.nnz else 0.0  # of stiffness; eigenvalues are in parts of it
+        self.unit = float(abs(K).max()) if K.nnz else 0.0  # of stiffness and eigenvalues
         self.unit = self.unit or 1.0
         K = K / self.unit
         inertia = M.diagonal()
@@ -92,11 +92,11 @@ class Pencil:
         self.C = C
         self.degrees = K.shape[0] - C.shape[0]
         self.largest = float(np.max(np.asarray(abs(self.K).sum(axis=1)).ravel()[heavy], initial=0.0)) or 1.0
-        self.floor = DEEPEST * self.largest
+        self.floor = MIN_EIGENVALUE_RATIO * self.largest
         self.random = np.random.default_rng(0)
 
     def below(self, shift: float) -> int:
-        """Return how many eigenvalues are smaller than a shift. Raises ArithmeticError where that is not known."""
+        """Return the number of eigenvalues below a shift. Raises ArithmeticError where it cannot be counted."""
         for nudge in (0.0, 1e-7, -1e-7, 1e-5):  # beside a shift at which a part of the matrix is singular
             try:
                 return negatives((self.K - shift * (1 + nudge) * self.M).tocsc(), self.C)
@@ -121,48 +121,46 @@ class Pencil:
         return solve
 
     def lowest(self, n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
-        """Return the n smallest eigenvalues or some more, their vectors, and what rounding leaves undecided of
-        eigenvalues.
+        """Return at least the n smallest eigenvalues (n,), their vectors (coordinates, n) with x'Mx = 1, the rounding
+        errors of the eigenvalues (n,), and the next eigenvalue, infinite if there is none.
 
-        Returns (n,), (coordinates, n) with x'Mx = 1, (n,), and the eigenvalue that follows, infinite if there is none.
         Raises IncompleteError, ArithmeticError, RuntimeError.
         """
-        all_at_once = n + MORE >= self.degrees or self.degrees <= DENSE
+        all_at_once = n + EXTRA_PAIRS >= self.degrees or self.degrees <= MAX_DENSE_DEGREES
         values, x, after, top = self._by_lapack() if all_at_once else self._by_inverse(n)
         values, x, error = self._taken_apart(values, x, after, top)
         return self.unit * values, self.scale[:, None] * x, self.unit * error, self.unit * after
 
     def _by_lapack(self) -> tuple[np.ndarray, np.ndarray, float, float]:
-        """Return all pairs of the scaled matrices, infinity, which follows, and the size of the largest."""
+        """Return all pairs of the scaled matrices, infinity for the next eigenvalue, and the size of the largest."""
         free = basis(self.C)
         k, m = free.T @ (self.K @ free), free.T @ (self.M @ free)
         values, x = eigh((k + k.T) / 2, (m + m.T) / 2)
         return values, free @ x, np.inf, np.abs(values).max(initial=0.0)
 
     def _by_inverse(self, n: int) -> tuple[np.ndarray, np.ndarray, float, float]:
-        """Return the lowest pairs, n or some more, the eigenvalue that follows, and the scale at which they were found.
-        """
-        while n + MORE < self.degrees:
-            top = self.reaching(n + MORE)
+        """Return at least the n lowest pairs, the next eigenvalue, and the scale at which they were found."""
+        while n + EXTRA_PAIRS < self.degrees:
+            top = self.reaching(n + EXTRA_PAIRS)
             try:
                 return *self._from_below(n, top), top
-            except IncompleteError:  # n of many at one place, zero most often: all of these, and some above them
-                n = max(2 * n, self.below(LEVEL * top))
-                if n > MOST_AT_ONE_PLACE:
+            except IncompleteError:  # n of a large cluster, most often at zero: take all of it, and some above
+                n = max(2 * n, self.below(ZERO_SEPARATION * top))
+                if n > MAX_CLUSTER_SIZE:
                     raise
         return self._by_lapack()
 
     def _from_below(self, n: int, top: float) -> tuple[np.ndarray, np.ndarray, float]:
-        """Return the lowest pairs and what follows by the inverse at a shift below them; at two where some are
-        negative.
+        """Return the lowest pairs and the next eigenvalue by the inverse at a shift below them, at two shifts where
+        some are negative.
         """
-        middle = -top / FACTOR
+        middle = -top / SHIFT_RATIO
         negative = self.below(middle)
         values, x, after = np.zeros(0), np.zeros((self.K.shape[0], 0)), 0.0
         if negative:
             bottom = middle
             while self.below(bottom) and -bottom < 1e3 * self.largest:
-                bottom *= FACTOR
+                bottom *= SHIFT_RATIO
             values, x, after = self._above(bottom, min(n, negative), values, x)
         if len(values) < n:
             values, x, after = self._above(middle, n, values, x)
@@ -170,46 +168,45 @@ class Pencil:
 
     def _taken_apart(self, values: np.ndarray, x: np.ndarray, after: float, top: float
                      ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return pairs found at the scale of ``top``, to which much smaller ones are one cluster, these at their own
-        scale.
-
-        after: the eigenvalue that follows. Returns the pairs, and what is undecided of the eigenvalues.
+        """Return pairs found at the scale of ``top``, with much smaller ones, a cluster at that scale, resolved at
+        their own scale, and the rounding errors of the eigenvalues; after: the next eigenvalue.
         """
-        error = np.maximum(self.uncertainty(x), max(RELATIVE * top, self.floor))
-        small = int(np.count_nonzero(values < CLUSTER * top))
-        if not small or values[0] < -CLUSTER * top or small == self.degrees:
+        error = np.maximum(self.uncertainty(x), max(EIGENVALUE_ROUNDING * top, self.floor))
+        small = int(np.count_nonzero(values < CLUSTER_RATIO * top))
+        if not small or values[0] < -CLUSTER_RATIO * top or small == self.degrees:
             return values, x, error
         after = values[small] if small < len(values) else after
-        scale = max(self.reaching(small), NEGLIGIBLE * after)
-        if not scale < CLUSTER * top or self.below(np.sqrt(NEGLIGIBLE) * after) != small:
+        scale = max(self.reaching(small), NEGLIGIBLE_RATIO * after)
+        if not scale < CLUSTER_RATIO * top or self.below(np.sqrt(NEGLIGIBLE_RATIO) * after) != small:
             return values, x, error
-        own = self._nearest(self.inverse(-scale / FACTOR), x[:, :small], x[:, :0], small)
+        own = self._nearest(self.inverse(-scale / SHIFT_RATIO), x[:, :small], x[:, :0], small)
         found, own = self._sorted(own)
         values[:small], x[:, :small], error[:small] = self._taken_apart(found, own, after, scale)
         return values, x, error
 
     def uncertainty(self, x: np.ndarray) -> np.ndarray:
-        """Return what rounding of K's entries makes of x'Kx / x'Mx, for each column of x."""
-        return ROUNDING * np.sum(np.abs(x) * (abs(self.K) @ np.abs(x)), axis=0) / np.sum(x * (self.M @ x), axis=0)
+        """Return the error of x'Kx / x'Mx by the rounding of K's entries, for each column of x."""
+        change = STIFFNESS_ROUNDING * np.sum(np.abs(x) * (abs(self.K) @ np.abs(x)), axis=0)
+        return change / np.sum(x * (self.M @ x), axis=0)
 
     def reaching(self, n: int) -> float:
-        """Return a positive shift with n eigenvalues or more below it, not much larger than it need be."""
+        """Return a positive shift, about the smallest, with at least n eigenvalues below it."""
         low, high = self.floor, self.largest
         while self.below(high) < n:
-            high *= FACTOR
-            if high > LEVEL * self.largest:
+            high *= SHIFT_RATIO
+            if high > ZERO_SEPARATION * self.largest:
                 raise IncompleteError("there are fewer eigenvalues than degrees of freedom")
-        while high / low > FACTOR:
+        while high / low > SHIFT_RATIO:
             shift = np.sqrt(low * high)
             low, high = (low, shift) if self.below(shift) >= n else (shift, high)
         return high
 
     def _above(self, shift: float, n: int, values: np.ndarray, x: np.ndarray
                ) -> tuple[np.ndarray, np.ndarray, float]:
-        """Return the lowest pairs, n or some more, and the eigenvalue after them; known are those below the shift."""
-        known, more, solve = len(values), MORE, self.inverse(shift)
+        """Return at least the n lowest pairs, and the next eigenvalue; those below the shift are known."""
+        known, more, solve = len(values), EXTRA_PAIRS, self.inverse(shift)
         start = np.zeros((self.K.shape[0], 0))
-        for _ in range(MOST_STARTS):
+        for _ in range(MAX_STARTS):
             wanted = min(n - known + more, self.degrees - known)
             random = solve(self.random.standard_normal((self.K.shape[0], wanted)))
             found, start = self._sorted(self._nearest(solve, np.hstack([start, random]), x, wanted))
@@ -222,36 +219,33 @@ class Pencil:
         raise IncompleteError("not all that are counted were found")
 
     def _gap(self, values: np.ndarray, x: np.ndarray, n: int, known: int) -> int | None:
-        """Return the first of the pairs, behind n of them, that is apart from the one before; all, if there are no
-        more.
-        """
+        """Return the first pair, after n of them, with a gap before it; the number of pairs if these are all."""
         rounding = self.uncertainty(x)
         for at in range(n, len(values)):
             size = max(abs(values[at]), abs(values[at - 1]))
-            if values[at] - values[at - 1] > APART * size + rounding[at] + rounding[at - 1]:
+            if values[at] - values[at - 1] > GAP_TOLERANCE * size + rounding[at] + rounding[at - 1]:
                 return at
         return len(values) if len(values) == self.degrees - known else None
 
     def _sorted(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return Rayleigh's quotients of the columns of x, which have x'Mx = 1 then, rising; and the columns."""
+        """Return Rayleigh's quotients of the columns of x, in rising order, and the columns with x'Mx = 1."""
         x = x / np.sqrt(np.sum(x * (self.M @ x), axis=0))
         values = np.sum(x * (self.K @ x), axis=0)
         order = np.argsort(values)
         return values[order], x[:, order]
 
     def _nearest(self, solve: Callable, start: np.ndarray, known: np.ndarray, wanted: int) -> np.ndarray:
-        """Return (n, wanted): vectors of the next eigenvalues above the shift of ``solve``, but for those of known
-        vectors.
+        """Return (n, wanted): vectors of the next eigenvalues above the shift of ``solve``, without the known ones.
 
         A block method: the subspace grows from many vectors at once by the residuals of the inverse (Davidson, J.
-        Comput. Phys. 17 (1975) 87-94, there with one vector), so that repeated eigenvalues are found as others are.
+        Comput. Phys. 17 (1975) 87-94, there with one vector), so that repeated eigenvalues are found, too.
         """
         known = self._orthonormal(known)
         V = self._orthonormal(start, known)
         MV, W = self.M @ V, solve(V)
         T = MV.T @ W
         least, stalled = np.inf, 0
-        for _ in range(MOST_EXTENSIONS):
+        for _ in range(MAX_EXTENSIONS):
             theta, Y = np.linalg.eigh((T + T.T) / 2)
             theta, Y = theta[::-1], Y[:, ::-1]
             y, of = Y[:, :wanted], theta[:wanted]
@@ -259,22 +253,22 @@ class Pencil:
             error = np.sqrt(np.abs(np.sum(R * (self.M @ R), axis=0))) / np.abs(of)
             stalled = 0 if error.max() < 0.5 * least else stalled + 1
             least = min(least, error.max())
-            if least <= CONVERGED or stalled > STALLED:
+            if least <= RESIDUAL_TOLERANCE or stalled > MAX_STALLED_EXTENSIONS:
                 break
-            if V.shape[1] > LARGEST_SPACE * wanted:
+            if V.shape[1] > MAX_SUBSPACE_BLOCKS * wanted:
                 kept = Y[:, : 2 * wanted]
                 V, MV, W, T = V @ kept, MV @ kept, W @ kept, np.diag(theta[: 2 * wanted])
-            new = self._orthonormal(R[:, error > CONVERGED], known, V)
+            new = self._orthonormal(R[:, error > RESIDUAL_TOLERANCE], known, V)
             if not new.shape[1]:
                 break
             image = solve(new)
             across = MV.T @ image
             T = np.block([[T, across], [across.T, new.T @ (self.M @ image)]])
             V, MV, W = np.hstack([V, new]), np.hstack([MV, self.M @ new]), np.hstack([W, image])
-        return W @ y / of  # once more by the inverse: what rounding left of the highest eigenvalues is gone
+        return W @ y / of  # the inverse once more removes the rounding of the highest eigenvalues
 
     def _orthonormal(self, x: np.ndarray, *against: np.ndarray) -> np.ndarray:
-        """Return a basis of the columns of x, x'Mx = 1, orthogonal to others; columns that follow are left out."""
+        """Return a basis of the columns of x, x'Mx = 1, orthogonal to others; dependent columns are left out."""
         for _ in range(2):
             for others in against:
                 x = x - others @ (others.T @ (self.M @ x))

@@ -1,4 +1,4 @@
-"""Threads: how many share the work of a run, and that linear algebra on small matrices has one."""
+"""Threads of a run, and the single thread of linear algebra on small matrices."""
 
 from __future__ import annotations
 
@@ -12,14 +12,15 @@ if TYPE_CHECKING:
 
     from ...engine import Engine
 
+
 def available() -> int:
     """Return the processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def share_elements(engine: Engine, asked: int) -> list[str]:
-    """Let as many threads as are asked for share the work of a run, never more than there are processors; says where
-    fewer do.
+    """Let threads share the work of a run, at most one per processor; return a message where there are fewer than
+    asked.
     """
     threads, why = asked, ""
     if asked > available():
@@ -31,10 +32,10 @@ def share_elements(engine: Engine, asked: int) -> list[str]:
 
 
 class _OneBlasThread:
-    """Holds the BLAS of NumPy and SciPy at one thread in the whole process, while anything is inside.
+    """Context that holds the BLAS of NumPy and SciPy at one thread in the whole process.
 
-    OpenBLAS starts its threads from blocks of a few dozen rows on, where handing out the work takes longer than the
-    work. What the process had before comes back when the last one leaves.
+    OpenBLAS starts its threads from blocks of a few dozen rows on, where distributing the work takes longer than the
+    work. The limits of before return when the last context ends.
     """
 
     def __init__(self) -> None:
@@ -67,8 +68,7 @@ one_blas_thread = _OneBlasThread()
 
 
 def _let_this_thread_set_limits() -> None:
-    """Let this thread set OpenBLAS's limits: from 3.8 on threadpoolctl lets only one do so, and leaves others without a
-    word.
+    """Let this thread set OpenBLAS's limits: from 3.8 on threadpoolctl ignores all threads but one without a message.
     """
     import threadpoolctl  # for runs alone, not for `import funicular`
 

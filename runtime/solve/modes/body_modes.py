@@ -15,7 +15,7 @@ from ...parts.modal_body import ModalBody
 from ...parts.scene_data import SceneData
 from ...parts.support import Clamp
 from ..linear.threads import one_blas_thread
-from .modes import KNOWN, modes
+from .modes import FREQUENCY_TOLERANCE, modes
 
 
 def of_mesh(body: ModalBody) -> Shape:
@@ -31,10 +31,10 @@ def of_mesh(body: ModalBody) -> Shape:
     else:
         still = 3 if cable.dim == 2 else 6 if cable.kind_of_element.director else 5
     with warnings.catch_warnings(), uninterrupted(), one_blas_thread, enough_memory(), interruptible():
-        warnings.simplefilter("ignore", FunicularWarning)  # that rounding may hide the rigid motions, which are known
+        warnings.simplefilter("ignore", FunicularWarning)  # on rounding that hides the rigid motions, which are known
         found = modes(scene, body.modes + still)
     elastic, error = found.angular_frequency[still:], found.uncertainty[still:]
-    if np.any(error > KNOWN * elastic):
+    if np.any(error > FREQUENCY_TOLERANCE * elastic):
         worst = np.max(error / np.maximum(elastic, np.finfo(float).tiny))
         warnings.warn(f"{body.where}: rounding of the stiffness may change the frequencies of its modes by up to "
                       f"{100 * min(worst, 1.0):.2g} %; take fewer elements", FunicularWarning, stacklevel=2)
@@ -47,7 +47,7 @@ def of_mesh(body: ModalBody) -> Shape:
     S, X = _integrals(model, fields)
     rotary = cable.material.density * cable.length * cable.section.mass_moments()[1:3]
     for axis, value in zip("yz", rotary, strict=True):
-        if f"r_{axis}" not in model.vectors:  # inertia that the element leaves out: of the frame's turns alone
+        if f"r_{axis}" not in model.vectors:  # the element lacks this inertia, but in turns of the frame
             X[0, 0, "xyz".index(axis), "xyz".index(axis)] += value
     stiffness = mass * np.diag(found.angular_frequency[still:] ** 2)
     at = model.vectors.index("r")
@@ -68,7 +68,7 @@ def _integrals(model: CableModel, fields: np.ndarray) -> tuple[np.ndarray, np.nd
 
 
 def _section_turns(names: tuple[str, ...], vectors: np.ndarray) -> np.ndarray:
-    """Return (n, N, 3): small turns of the sections; of cables those of the tangent, about which they say nothing."""
+    """Return (n, N, 3): small turns of the sections; for cables those of the tangent, without twist."""
     by = {name: vectors[:, :, k] for k, name in enumerate(names)}
     turns = np.zeros((*vectors.shape[:2], 3))
     if "r_y" in by:

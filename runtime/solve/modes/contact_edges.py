@@ -1,8 +1,8 @@
 """The ends of contact along a cable, between the points of its quadrature.
 
-The stiffness of a contact by penalty is that of the points that touch. Where the cable leaves the surface, a whole
-point comes or goes as the mesh changes: frequencies of a line on a bed scattered by 0.3 %. For a linearisation the
-point at the end of the contact gets the length up to where the depth passes zero.
+The stiffness of a penalty contact is that of the points that touch. Where the cable leaves the surface, a whole point
+enters or leaves contact as the mesh changes: frequencies of a line on a bed scattered by 0.3 %. For a linearisation the
+point at the end of the contact has the length up to the zero of the depth.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from ...parts.scene_data import SceneData
 def resolve_contact_edges(model: Model, scene: SceneData, q: np.ndarray) -> None:
     """Give points at the ends of contact, in a model of a scene at a configuration, the length of cable that touches.
 
-    Laws of exponent 1.5 stay as they are: their stiffness begins with zero.
+    Laws of exponent 1.5 do not change: their stiffness begins at zero.
     """
     for contact in model.contacts:
         if contact.cable >= 0 and not contact.hertz:
@@ -28,8 +28,8 @@ def resolve_contact_edges(model: Model, scene: SceneData, q: np.ndarray) -> None
 
 
 def _weigh(contact: ContactModel, elements: int, depth: np.ndarray) -> None:
-    """Change the weights of the points beside which the depth (points,) passes zero."""
-    for name in ("weights", "N", "hull", "spread"):  # of one element for all, on an even mesh
+    """Change the weights of the points next to a zero of the depth (points,)."""
+    for name in ("weights", "N", "hull", "spread"):  # stored for one element on an even mesh
         of_one = getattr(contact, name)
         setattr(contact, name, np.broadcast_to(of_one, (elements, *of_one.shape[1:])).copy())
     contact.stride, weights = contact.n_points, contact.weights.ravel()

@@ -19,39 +19,41 @@ from ...model.states import body_state, modal_state, spatial
 from ...parts.scene_data import SceneData
 from ...parts.settings import EquilibriumSettings
 from ..linear.condensation import condensed, fastest
-from ..linear.spectrum import RELATIVE, ROUNDING, IncompleteError, Pencil, basis
+from ..linear.spectrum import EIGENVALUE_ROUNDING, STIFFNESS_ROUNDING, IncompleteError, Pencil, basis
 from ..statics.balance import balance
 from ..statics.rest_state import RestState
 from ..statics.stability import count
 from ..statics.static_problem import StaticState, units_of
 from .contact_edges import resolve_contact_edges
 
-ASYMMETRY, LEAST_ASYMMETRY = 1e-9, 1e-13
-"""Of the stiffness of two coordinates, and of the largest: what rounding leaves; more comes from loads that turn."""
+ASYMMETRY_ROUNDING, MIN_ASYMMETRY = 1e-9, 1e-13
+"""Asymmetry due to rounding, as a fraction of the stiffness of two coordinates, and of the largest; loads that turn
+cause more."""
 
-DENSE, LOST = 600, 1e-9
-"""Unknowns up to which LAPACK computes all modes, and of the largest eigenvalue: smaller ones count as zero."""
+MAX_DENSE_UNKNOWNS, LOST_EIGENVALUE_RATIO = 600, 1e-9
+"""Unknowns up to which LAPACK computes all modes, and the fraction of the largest eigenvalue below which it loses
+them."""
 
-MOST_UNSYMMETRIC = 3000
-"""Degrees of freedom up to which modes with an unsymmetric stiffness are computed: all of them at once."""
+MAX_UNSYMMETRIC_DEGREES = 3000
+"""Degrees of freedom up to which modes with an unsymmetric stiffness are computed, all at once."""
 
-STRAIN = 1e-6
-"""Of the cables, by which the part of the stiffness that comes of their stress is found."""
+STRAIN_STEP = 1e-6
+"""Strain of the cables by which the geometric part of the stiffness is differenced."""
 
-KNOWN, HIDDEN = 1e-3, 5e-2
-"""A frequency is uncertain where rounding changes it by more than this part of itself; one of zero, of the lowest."""
+FREQUENCY_TOLERANCE, HIDDEN_FREQUENCY_RATIO = 1e-3, 5e-2
+"""Relative change by rounding above which a frequency is uncertain; for zero, as a fraction of the lowest frequency."""
 
 
 @dataclass
 class Modes(NamedArrays):
-    """Natural vibrations, by rising frequency; n modes: the lowest ones, none left out.
+    """The n lowest natural vibrations, complete, by rising frequency.
 
-    angular_frequency (n,) in rad/s, 0 where the state is not stable; frequency (n,) in Hz; growth_rate (n,) in 1/s, of
-    what grows instead, 0 where it is stable. uncertainty (n,) in rad/s: what rounding of the stiffness may change in an
-    angular frequency; one that is not larger is given as 0. Shapes by name, largest displacement 1 m:
-    ``modes["wire.nodal_vectors"]`` (n, node, vector, 3), ``modes["A.displacement"]``, ``modes["A.rotation"]`` (n, 3),
-    about body axes; of a modal body these are the frame's, and ``modes["link.nodes"]`` (n, node, 3) what its nodes move
-    by. messages: what was left out, and what is uncertain.
+    angular_frequency (n,) in rad/s, 0 for a mode that grows; frequency (n,) in Hz; growth_rate (n,) in 1/s, 0 for a
+    mode that vibrates. uncertainty (n,) in rad/s: the change of an angular frequency by rounding of the stiffness; one
+    that is not larger is given as 0. Shapes by name, largest displacement 1 m: ``modes["wire.nodal_vectors"]`` (n,
+    node, vector, 3), ``modes["A.displacement"]``, ``modes["A.rotation"]`` (n, 3), about body axes; of a modal body
+    these are the frame's, and ``modes["link.nodes"]`` (n, node, 3) the displacements of its nodes. messages: what was
+    left out, and what is uncertain.
     """
 
     angular_frequency: np.ndarray
@@ -83,8 +85,8 @@ class Modes(NamedArrays):
 def modes(scene: SceneData, n: int, about: RestState | None = None, as_drawn: bool = False) -> Modes:
     """Return the n lowest modes about a state, as drawn if none is given; damping and friction are left out.
 
-    as_drawn: also where forces do not balance as drawn, which else is refused. What is left out or uncertain is
-    reported in ``messages``, and by a FunicularWarning. Raises SceneError.
+    as_drawn: also where forces do not balance as drawn, which is refused otherwise. ``messages`` and a FunicularWarning
+    report what is left out or uncertain. Raises SceneError.
     """
     model = build(scene)
     if about is not None:
@@ -116,7 +118,7 @@ def modes(scene: SceneData, n: int, about: RestState | None = None, as_drawn: bo
 
 
 def _begin(static: StaticState, about: RestState | None, as_drawn: bool) -> list[str]:
-    """Go to the state that modes are about; return what is to be said of it. Raises SceneError, see `modes`."""
+    """Go to the state of the modes; return the messages on it. Raises SceneError, see `modes`."""
     if about is not None:
         about.check_supports(static.model, static.scene)
         own = static.keep()
@@ -153,7 +155,7 @@ def _unstable(modes: Modes, about: RestState | None, K: csc_array, constraints: 
 
 
 def _fewer(model: Model) -> str:
-    """Return the advice to take fewer elements, before another one; none for a scene without cables."""
+    """Return the advice to take fewer elements, to precede another one; empty for a scene without cables."""
     return "take fewer elements, or " if model.cables else ""
 
 
@@ -163,31 +165,31 @@ def _without_friction(scene: SceneData) -> list[str]:
 
 
 def _rounded_shape(engine: Engine, model: Model, K: csc_array) -> csc_array:
-    """Return what of the stiffness comes of rounded coordinates, which strain the cables by `ROUNDING`.
+    """Return the change of the stiffness by rounded coordinates, which strain the cables by `STIFFNESS_ROUNDING`.
 
-    A tension of so much of EA is nothing beside EA, but not beside the bending of a long thin cable.
+    The tension of this strain is negligible beside EA, but not beside the bending stiffness of a long thin cable.
     """
     undeformed = engine.state()
     stretched = undeformed["q"].copy()
     for cable in model.cables:
-        stretched[cable.coordinates] *= 1 + STRAIN
+        stretched[cable.coordinates] *= 1 + STRAIN_STEP
     engine.set_state(0.0, **undeformed | {"q": stretched}, prescribe=True)
     change = condensed(engine.matrix(0.0, 0.0, 1.0), model)[0] - K
     engine.set_state(0.0, **undeformed, prescribe=True)
-    return ROUNDING / STRAIN * change
+    return STIFFNESS_ROUNDING / STRAIN_STEP * change
 
 
 def _uncertain(modes: Modes, lowest: float, fewer: str) -> list[str]:
-    """Return what rounding of the stiffness leaves unknown; lowest: the angular frequency of the lowest that is not
-    zero.
+    """Return messages on frequencies that rounding of the stiffness hides or changes; lowest: the lowest angular
+    frequency above zero.
     """
     notes, w, error = [], np.maximum(modes.angular_frequency, modes.growth_rate), modes.uncertainty
-    zero = (w == 0) & (error > HIDDEN * lowest)
+    zero = (w == 0) & (error > HIDDEN_FREQUENCY_RATIO * lowest)
     if zero.any():
         notes.append(f"rounding of the stiffness hides frequencies below {error[zero].max() / (2 * np.pi):.3g} Hz: "
                     f"{np.count_nonzero(zero)} of those given as 0 may be higher; {fewer}look for a "
                     "part that is far stiffer or far lighter than the others")
-    vague = (w > 0) & (error > KNOWN * w)
+    vague = (w > 0) & (error > FREQUENCY_TOLERANCE * w)
     if vague.any():
         numbers = ", ".join(str(k + 1) for k in np.flatnonzero(vague)[:5]) + ", ..." * bool(np.count_nonzero(vague) > 5)
         notes.append(f"rounding of the stiffness may change the frequencies of modes {numbers} by up to "
@@ -197,7 +199,7 @@ def _uncertain(modes: Modes, lowest: float, fewer: str) -> list[str]:
 
 
 def _refuse_what_is_out_of_range(scene: SceneData, model: Model, K: csc_array, M: csc_array) -> None:
-    """Raise SceneError unless inertia and stiffness are finite, and the inertia positive, but for the arc-lengths of
+    """Raise SceneError unless inertia and stiffness are finite, and the inertia positive, except for arc-lengths of
     slides.
     """
     n = model.n_band + model.n_border_dof
@@ -213,7 +215,7 @@ def _refuse_what_is_out_of_range(scene: SceneData, model: Model, K: csc_array, M
 
 
 def _owner(scene: SceneData, model: Model, unknown: int) -> str:
-    """Return the part whose coordinate an unknown is."""
+    """Return the part to which an unknown belongs."""
     dof = int(np.argmax(model.unknown_of_dof == unknown))
     for name, nodes in model.nodes.items():
         if dof < model.cables[list(model.nodes).index(name)].coordinates.stop and nodes:
@@ -223,22 +225,21 @@ def _owner(scene: SceneData, model: Model, unknown: int) -> str:
 
 def _solve(K: csc_array, M: csc_array, constraints: csc_array, n: int, fewer: str
            ) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
-    """Return the n smallest squares of frequencies of K x = w² M x on constraints x = 0, or some more.
+    """Return at least the n smallest squares of frequencies of K x = w² M x on constraints x = 0 (n,), their vectors
+    (coordinates, n), the rounding errors of the squares (n,), and the next square, infinite if that is not known.
 
     fewer: an advice for messages, see `_fewer`.
-    Returns (n,), their vectors (coordinates, n), what rounding may change in the squares (n,), and the square that
-    follows, infinite if that is not known.
     """
     symmetric = _is_symmetric(K)
     pencil = Pencil(K, M, constraints)
-    if not symmetric and pencil.degrees > MOST_UNSYMMETRIC:
+    if not symmetric and pencil.degrees > MAX_UNSYMMETRIC_DEGREES:
         raise SceneError("modes", "the stiffness is not symmetric, because loads turn with what they act on, and the "
                          f"scene has {pencil.degrees} degrees of freedom: such modes are computed for up to "
-                         f"{MOST_UNSYMMETRIC}", f"{fewer}take loads of fixed direction")
+                         f"{MAX_UNSYMMETRIC_DEGREES}", f"{fewer}take loads of fixed direction")
     try:
         if not symmetric:
             return *_unsymmetric(K, M, constraints, n, pencil), np.inf
-        return _small(K, M, constraints, n, pencil) if K.shape[0] <= DENSE else pencil.lowest(n)
+        return _small(K, M, constraints, n, pencil) if K.shape[0] <= MAX_DENSE_UNKNOWNS else pencil.lowest(n)
     except (IncompleteError, ArithmeticError, RuntimeError, ValueError, np.linalg.LinAlgError):
         raise SceneError("modes", f"rounding of the stiffness hides the {n} lowest modes: stiffness and inertia of the "
                          "scene are too different", f"{fewer}look for a part that is far stiffer, far "
@@ -247,7 +248,7 @@ def _solve(K: csc_array, M: csc_array, constraints: csc_array, n: int, fewer: st
 
 def _small(K: csc_array, M: csc_array, constraints: csc_array, n: int, pencil: Pencil
            ) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
-    """Return the same by LAPACK, but for what is lost in the rounding of the largest eigenvalue, zeros among it."""
+    """Return the same by LAPACK, except for eigenvalues lost in the rounding of the largest one, such as zeros."""
     free = null_space(constraints.toarray()) if constraints.shape[0] else np.eye(K.shape[0])
     k, m = free.T @ (K @ free), free.T @ (M @ free)
     try:
@@ -255,8 +256,8 @@ def _small(K: csc_array, M: csc_array, constraints: csc_array, n: int, pencil: P
     except (ValueError, np.linalg.LinAlgError):
         return pencil.lowest(n)
     largest, vectors, after = fastest(K, M), free @ x, np.inf
-    error = np.maximum(pencil.unit * pencil.uncertainty(vectors / pencil.scale[:, None]), RELATIVE * largest)
-    lost = np.abs(squares) <= LOST * largest
+    error = np.maximum(pencil.unit * pencil.uncertainty(vectors / pencil.scale[:, None]), EIGENVALUE_ROUNDING * largest)
+    lost = np.abs(squares) <= LOST_EIGENVALUE_RATIO * largest
     if lost.any():
         found, shapes, errors, after = pencil.lowest(n)
         squares[lost], vectors[:, lost], error[lost] = found[:n][lost], shapes[:, :n][:, lost], errors[:n][lost]
@@ -268,24 +269,24 @@ def _is_symmetric(K: csc_array) -> bool:
     largest = np.sqrt(np.asarray(abs(K).max(axis=1).todense()).ravel()) if K.shape[0] else np.zeros(0)
     over = 1 / np.where(largest > 0, largest, 1.0)
     apart = abs(K - K.T).tocoo()
-    least = LEAST_ASYMMETRY * np.max(largest, initial=0.0) ** 2
-    return not np.any(apart.data > ASYMMETRY / (over[apart.row] * over[apart.col]) + least)
+    least = MIN_ASYMMETRY * np.max(largest, initial=0.0) ** 2
+    return not np.any(apart.data > ASYMMETRY_ROUNDING / (over[apart.row] * over[apart.col]) + least)
 
 
 def _unsymmetric(K: csc_array, M: csc_array, constraints: csc_array, n: int, pencil: Pencil
                  ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the same where loads turn with what they act on; squares may be complex: what grows while it vibrates."""
+    """Return the same for loads that turn; squares may be complex, for modes that grow while they vibrate."""
     by = diags_array(pencil.scale)
     free = basis(pencil.C)
     squares, x = eig(free.T @ (by @ (K / pencil.unit) @ by @ free), free.T @ (pencil.M @ free))
     order = np.argsort(squares.real)[:n]
     x = free @ x[:, order].real
-    error = np.maximum(pencil.uncertainty(x), RELATIVE * np.abs(squares).max())
+    error = np.maximum(pencil.uncertainty(x), EIGENVALUE_ROUNDING * np.abs(squares).max())
     return pencil.unit * squares[order], pencil.scale[:, None] * x, pencil.unit * error
 
 
 def _named(model: Model, q: np.ndarray, squares: np.ndarray, dofs: np.ndarray, error: np.ndarray) -> Modes:
-    """Return the modes of dofs (n, n_dof) about the configuration q, as their shapes."""
+    """Return the modes with shapes by part, of dofs (n, n_dof) about the configuration q."""
     roots = np.sqrt(squares.astype(complex))
     size = np.abs(roots)  # sqrt(square + error) - sqrt(square)
     uncertainty = error / (size + np.sqrt(size**2 + error))
@@ -297,7 +298,7 @@ def _named(model: Model, q: np.ndarray, squares: np.ndarray, dofs: np.ndarray, e
                       + [np.abs(_nodes(model, body, q, mode[None])).max() for body in modal])
         dofs[k] = mode / (largest or np.abs(mode).max() or 1.0)
     for cable in model.cables:
-        vectors = spatial(dofs[:, cable.coordinates].reshape(len(dofs), *cable.shape))
+        vectors = spatial(cable.nodal(dofs))
         shapes[f"{cable.name}.nodal_vectors"] = vectors
         shapes[f"{cable.name}.displacement"] = vectors[:, :, cable.vectors.index("r")]
     for body in model.bodies:
@@ -314,7 +315,7 @@ def _named(model: Model, q: np.ndarray, squares: np.ndarray, dofs: np.ndarray, e
 
 
 def _nodes(model: Model, body: BodyModel, q: np.ndarray, dofs: np.ndarray) -> np.ndarray:
-    """Return (n, node, 3): what the nodes of a modal body are moved by from the configuration q."""
+    """Return (n, node, 3): displacements of the nodes of a modal body from the configuration q."""
     assert body.shape is not None, "a rigid body has no modes"
     at = body.dof + model.dim
     turn = dofs[:, at : at + 3] if model.dim == 3 else np.pad(dofs[:, at : at + 1], ((0, 0), (2, 0)))

@@ -93,8 +93,8 @@ class State:
                 return {name: values[0] for name, values in state.items()}
         for cable in model.cables:
             if cable.name == name:
-                return {"nodal_vectors": spatial(self._q[cable.coordinates].reshape(cable.shape)),
-                        "nodal_velocity": spatial(self._v[cable.coordinates].reshape(cable.shape))}
+                return {"nodal_vectors": spatial(cable.nodal(self._q)),
+                        "nodal_velocity": spatial(cable.nodal(self._v))}
         slides = [slide.name for slide in model.slides]
         return {"s": float(self._s[slides.index(name)])} if name in slides else {}
 

@@ -147,7 +147,7 @@ def condition(model: Model, dof: int, q: np.ndarray, v: np.ndarray) -> tuple[str
     if (found := _node(model, dof)) is None:
         return speed, False
     cable, node = found
-    r = q[cable.coordinates].reshape(cable.shape)[:, 0]
+    r = cable.nodal(q)[:, 0]
     stretch = (np.linalg.norm(np.diff(r, axis=0), axis=1) / cable.mesh.lengths)[max(node - 1, 0) : node + 1]
     worst = stretch[np.argmax(np.abs(np.log(np.maximum(stretch, 1e-300))))]
     fair = FOLDED_CHORD < worst < MAX_PLAUSIBLE_STRETCH

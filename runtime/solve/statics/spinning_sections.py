@@ -22,7 +22,7 @@ def spinning(problem: StaticProblem) -> str:
     for cable in filter(has_sections, model.cables):
         dofs = by_unknowns(model.unknown_of_dof[cable.coordinates], model.combinations, len(direction))
         axis, turned = _turns(cable, (dofs @ direction).reshape(cable.shape))
-        part, nodal = problem.scene.cables[cable.name], q[cable.coordinates].reshape(cable.shape)
+        part, nodal = problem.scene.cables[cable.name], cable.nodal(q)
         longest = stable_length(cable, float(torsion_ratio(cable, part, nodal)))
         if turned > 0.0 and axis <= MAX_AXIS_TURN_RATIO * turned and longest < cable.mesh.lengths.max():
             return (f'; sections of cable "{cable.name}" spin in it while its axis rests: elements of '

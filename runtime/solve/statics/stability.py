@@ -9,7 +9,7 @@ from scipy.linalg import eigh, null_space
 from scipy.sparse import csc_array, csr_array
 from scipy.sparse.linalg import ArpackNoConvergence, eigsh
 
-from ..linear.inertia import ZERO, inertia, scaled
+from ..linear.inertia import ZERO_EIGENVALUE, inertia, scaled
 from .static_problem import StaticProblem
 
 ASYMMETRY_ROUNDING = 1e-9
@@ -79,8 +79,9 @@ def _counted(K: csc_array, C: csr_array, units: np.ndarray) -> Stability:
     K, C, _ = scaled(K, C, units)
     free = _free(C, K.shape[0])
     values = np.linalg.eigvals(free.T @ (K @ free))
-    real = values.real[np.abs(values.imag) <= ZERO]
-    return Stability(int(np.count_nonzero(real < -ZERO)), int(np.count_nonzero(np.abs(values) <= ZERO)), follower=True)
+    real = values.real[np.abs(values.imag) <= ZERO_EIGENVALUE]
+    zero = np.abs(values) <= ZERO_EIGENVALUE
+    return Stability(int(np.count_nonzero(real < -ZERO_EIGENVALUE)), int(np.count_nonzero(zero)), follower=True)
 
 
 def lowest_direction(problem: StaticProblem) -> np.ndarray:

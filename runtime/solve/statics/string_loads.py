@@ -39,6 +39,6 @@ def _add_drag(model: Model, drag: DragModel, q: np.ndarray, p: float, force: np.
     f = densities(model, drag, np.zeros(1), q[None], np.zeros((1, model.n_dof)))[0][0, ..., : model.dim]
     f = p * f * np.broadcast_to(drag.weights, f.shape[:2])[:, :, None]
     share, at = (1 + GAUSS[0]) / 2, cable.vectors.index("r")
-    own = force[cable.coordinates].reshape(cable.shape)
+    own = cable.nodal(force)
     own[:-1, at] += np.einsum("egd,g->ed", f, 1 - share)
     own[1:, at] += np.einsum("egd,g->ed", f, share)

@@ -113,7 +113,7 @@ class StringNodes:
     def _held_direction(self, node: int, q: np.ndarray) -> np.ndarray | None:
         cable = self.model.cables[self.cable[node]]
         k = node - self.first[self.cable[node]]
-        unknown, values = (dict(zip(cable.vectors, of[cable.coordinates].reshape(cable.shape)[k], strict=True))
+        unknown, values = (dict(zip(cable.vectors, cable.nodal(of)[k], strict=True))
                            for of in (self.model.unknown_of_dof, q))
         if "r_y" in values:
             if (unknown["r_y"] != -1).any():

@@ -258,7 +258,7 @@ class _Line:
         for c, along, length in zip(self.group, self.along, self.lengths, strict=True):
             cable, first, last = self.model.cables[c], int(self.nodes.first[c]), int(self.nodes.first[c + 1]) - 1
             slope = slopes(r[along], length, (known.get(first), known.get(last)))[:: self.parts]
-            was = q[cable.coordinates].reshape(cable.shape)
+            was = cable.nodal(q)
             found[cable.coordinates] = laid_vectors(cable.vectors, was, r[along[:: self.parts]], slope,
                                                     cable.mesh.node_s, last in self.clamped).ravel()
         own = slice(0, self.model.cables[-1].coordinates.stop)

@@ -87,7 +87,7 @@ class Turns:
 
 def directions(cable: CableModel, q: np.ndarray) -> np.ndarray:
     """Return (nodes, vectors, dim): the unit vectors along a cable's slopes at a configuration."""
-    vectors = q[cable.coordinates].reshape(cable.shape)[:, [name in ("r_x", "r_y", "r_z") for name in cable.vectors]]
+    vectors = cable.nodal(q)[:, [name in ("r_x", "r_y", "r_z") for name in cable.vectors]]
     return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), np.finfo(float).tiny)
 
 
