@@ -1,4 +1,4 @@
-"""Paths of results that a scene file names, which may come from a stranger: they stay below the file's folder."""
+"""Paths of results in a scene file: they stay below the folder of the file, which may come from a stranger."""
 
 from __future__ import annotations
 
@@ -10,35 +10,35 @@ from typing import Any, Self
 from ..errors import SceneError
 
 GIVE = "give it on the command line (-o) or in Python (save=)"
-"""What to do where a path of a scene file is not taken."""
+"""The remedy for a refused path."""
 
 
 class FilePath(str):
-    """A path to write to, as a scene file has it; ``folder`` is that of the file."""
+    """An output path of a scene file; ``folder``: of the file."""
 
     folder: str
 
     def __new__(cls, text: str, folder: str | os.PathLike = "") -> Self:
-        """Return the path in a file of that folder, by default the working directory."""
+        """Return the path; folder: of the file, by default the working directory."""
         made = super().__new__(cls, text)
         made.folder = os.fspath(folder)
         return made
 
     def __getnewargs__(self) -> tuple[str, str]:  # type: ignore[override]  # str's own has one
-        """Return what it is made of, for copies and other processes."""
+        """Return text and folder, for copies and other processes."""
         return str(self), self.folder
 
     def check(self) -> None:
-        """Raise ValueError(cause, remedy) where its words lead out of the folder, or to another kind of file."""
-        if not self.endswith(".nc"):  # lest a scene file replace any file of its reader's
+        """Raise ValueError(cause, remedy) where the path leaves the folder or names another kind of file."""
+        if not self.endswith(".nc"):  # a scene file must not replace other files
             raise ValueError(f'save = "{self}" in a scene file must end in .nc', f"choose another name, or {GIVE}")
-        words = PureWindowsPath(self)  # which knows drives and both kinds of slashes
+        words = PureWindowsPath(self)  # with drives and both slashes
         if words.drive or words.root or ".." in words.parts:
             raise ValueError(f'save = "{self}" in a scene file must stay below the folder of the file',
                              f"choose a name without folders above, or {GIVE}")
 
     def placed(self) -> Path:
-        """Return the path below the folder, no part of it a link. Raises SceneError."""
+        """Return the path below the folder, without links. Raises SceneError."""
         try:
             self.check()
         except ValueError as error:
@@ -53,6 +53,6 @@ class FilePath(str):
 
 
 def save_path(settings: Mapping[str, Any]) -> Path | None:
-    """Return where the settings of a run save its results, None where they do not. Raises SceneError."""
+    """Return the path to which a run saves its results, None without one. Raises SceneError."""
     save = settings.get("save")
     return save.placed() if isinstance(save, FilePath) else None if save is None else Path(save)

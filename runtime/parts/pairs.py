@@ -1,4 +1,4 @@
-"""Parts of two, such as contacts, that are added for many pairs at once: by lists, and by the word "all"."""
+"""Parts between two others, such as contacts, added for many pairs at once by lists or by "all"."""
 
 from __future__ import annotations
 
@@ -13,27 +13,24 @@ from .scene_data import SceneData
 from .validation import shown
 
 ALL = "all"
-"""Stands for all parts that there are in the scene, unless one has that name."""
+"""All parts of the scene, unless one has this name."""
 
 
 def _is_list(scene: SceneData, value: Any) -> bool:
-    return isinstance(value, list | tuple) or (value == ALL and all(ALL not in names for names in _named(scene)))
-
-
-def _named(scene: SceneData) -> tuple[Mapping[str, Any], ...]:
-    return scene.cables, scene.bodies, scene.surfaces
+    named = scene.cables, scene.bodies, scene.surfaces
+    return isinstance(value, list | tuple) or (value == ALL and all(ALL not in names for names in named))
 
 
 def are_lists(scene: SceneData, kind: type[Part], entries: Mapping[str, Any]) -> bool:
-    """Return whether the entries of a part are of several pairs."""
+    """Return whether the entries of a part describe several pairs."""
     return kind.takes_lists and any(_is_list(scene, entries.get(end)) for end in kind.positional)
 
 
 def pairs_of(scene: SceneData, kind: type[Part], entries: Mapping[str, Any]) -> list[tuple[str | None, str | None]]:
-    """Return the pairs of names that lists in the entries stand for: each of the first with each of the second.
+    """Return the pairs of names in the entries: each first name with each second one.
 
-    What "all" stands for leaves out what cannot be: a body and a surface that it carries, pairs that there are already,
-    and of two cables the second pair. Raises SceneError where there is no pair.
+    "all" leaves out a body with a surface that it carries, pairs of the scene, and a pair in the other order. Raises
+    SceneError where there is no pair.
     """
     where = kind.title(dict(entries))
     first, second = (_names(scene, where, kind.kind, end, entries.get(end)) for end in kind.positional)
@@ -69,7 +66,7 @@ def _names(scene: SceneData, where: str, kind: str, end: str, value: Any) -> lis
 
 
 def _all_of(scene: SceneData, kind: str, end: str) -> list[str]:
-    """Return what "all" is at an end: of a contact cables and rigid bodies, then surfaces; of a crossing cables."""
+    """Return the names of "all": for a contact cables and rigid bodies, or surfaces; for a crossing cables."""
     if kind == "contact" and end == "b":
         return list(scene.surfaces)
     bodies = [name for name, body in scene.bodies.items() if not isinstance(body, ModalBody)]

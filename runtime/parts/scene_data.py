@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from copy import copy
 from functools import cache
 from itertools import count, islice
-from typing import Any, Self
+from typing import Any, Never, Self
 
 import numpy as np
 
@@ -18,7 +18,6 @@ from .crossing import Crossing
 from .drag import Drag
 from .event import Event
 from .fluid import Fluid
-from .groups import PartsByName, PartsInOrder
 from .joint import Joint
 from .kinds import KINDS, plural_of
 from .load import DistributedForce, Force, Moment
@@ -34,21 +33,63 @@ from .surface import Surface
 from .validation import vector
 
 RESERVED = ("energy", "time")
-"""Names that results have of themselves."""
+"""Names of results that belong to no part."""
 
 
 class OfDrawing(str):
-    """A message on what is drawn, which does not hold in runs from another state."""
+    """A message on the drawn state, which does not hold for runs from another state."""
+
+
+def _refuse(*given: Any, **named: Any) -> Never:
+    """Raise SceneError."""
+    raise SceneError("scene", "its parts are for reading", "add one with the scene's method for its kind, or take "
+                     'another scene: scene.replace("wire", ...), scene.without("wire")')
+
+
+class PartsByName(dict[str, Any]):
+    """Parts by name, for reading: only the scene adds parts."""
+
+    __setitem__ = __delitem__ = __ior__ = clear = pop = popitem = setdefault = update = _refuse
+
+    def put(self, name: str, part: Any) -> None:
+        """Store a part under a name; for the scene."""
+        super().__setitem__(name, part)
+
+    def copy(self) -> Self:
+        """Return a copy."""
+        return type(self)(self)
+
+    def __reduce__(self) -> tuple[type[Self], tuple[dict[str, Any]]]:
+        """Return class and content, for copies and other processes."""
+        return type(self), (dict(self),)
+
+
+class PartsInOrder(list[Any]):
+    """Parts without names, for reading."""
+
+    __setitem__ = __delitem__ = __iadd__ = __imul__ = append = extend = insert = _refuse
+    remove = pop = clear = sort = reverse = _refuse
+
+    def put(self, part: Any) -> None:
+        """Add a part; for the scene."""
+        super().append(part)
+
+    def copy(self) -> Self:
+        """Return a copy."""
+        return type(self)(self)
+
+    def __reduce__(self) -> tuple[type[Self], tuple[list[Any]]]:
+        """Return class and content, for copies and other processes."""
+        return type(self), (list(self),)
 
 
 class SceneData:
-    """What a scene is, as checks, model, solvers and results take it; `funicular.Scene` adds what can be done with it.
+    """The data of a scene for checks, model, solvers and results; `funicular.Scene` adds methods.
 
-    ``gravity`` in m/s². Each kind of part has a group, ``group`` of its class: a dict by name where parts have names,
-    else a list; both are for reading. Kinds that share a group have their own, too: ``springs``, ``rigid_bodies``,
-    ``forces``. ``messages`` lists what was adjusted; ``run_settings``, ``equilibrium_settings``
-    and ``relax_settings`` hold the settings that a scene file gives; ``title`` is what pictures are called, the name of
-    its file without the ending.
+    ``gravity`` in m/s². Each kind of part has a group for reading, ``group`` of its class: a dict by name, or a list
+    where parts have no names. Kinds that share a group also have their own: ``springs``, ``rigid_bodies``, ``forces``.
+    ``messages`` lists adjustments; ``run_settings``, ``equilibrium_settings`` and ``relax_settings`` are the settings
+    of its file; ``title`` is the title of pictures, the name of its file without the ending.
     """
 
     cables: dict[str, Cable]
@@ -68,9 +109,9 @@ class SceneData:
     contacts: dict[str, Contact]
     events: dict[str, Event]
     plane_axes: PlaneAxes | None = None
-    """Of a scene that `laid.laid` made in the axes of a plane: what turns its results into the ground's axes."""
+    """The axes of a scene that `laid.laid` made, which turn its results into the ground's axes."""
     drawn: SceneData | None = None
-    """Of such a scene: the one that it was made of."""
+    """The original of a scene that `laid.laid` made."""
 
     def __init__(self, gravity: Any = (0, -9.81, 0)):
         """Make an empty scene; gravity: 3 numbers in m/s². Raises SceneError."""
@@ -88,9 +129,9 @@ class SceneData:
         self.relax_settings: dict[str, Any] = {}
 
     def __getattr__(self, name: str) -> Any:
-        """Return the parts of one kind, where its group has other kinds, too: ``scene.springs`` of ``point_forces``.
+        """Return the parts of one kind in a group of several: ``scene.springs`` of ``point_forces``.
 
-        Refuse an attribute that there is not; of an older version's, say what it is called now.
+        The message on an attribute of an older version names the new one.
         """
         if (kind := _views().get(name)) is not None:
             return PartsByName((label, part) for label, part in getattr(self, kind.group).items()
@@ -99,18 +140,18 @@ class SceneData:
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
     def __dir__(self) -> list[str]:
-        """Return the names of its attributes, those of kinds that share a group included."""
+        """Return the names of its attributes, kinds that share a group included."""
         return [*super().__dir__(), *_views()]
 
     def __setattr__(self, name: str, value: Any) -> None:
-        """Refuse other parts in the place of a group. Raises SceneError."""
+        """Raise SceneError for an assignment to a group."""
         if name in _views() or (name in _groups() and not isinstance(value, PartsByName | PartsInOrder)):
             raise SceneError("scene", f"{name} cannot be set", "add parts with the scene's methods for their kinds")
         super().__setattr__(name, value)
 
     @property
     def touching(self) -> Mapping[tuple[str, str], str]:
-        """Return the names of contacts by what touches, those added since it was asked for the last time included."""
+        """Return the names of contacts by the names of both sides; added contacts are entered on the next access."""
         known = self._touching
         added = [*islice(reversed(self.contacts.values()), len(self.contacts) - len(known))]
         known.update(((part.a, part.b), part.given_name or "") for part in reversed(added))
@@ -123,17 +164,17 @@ class SceneData:
 
     @property
     def plane(self) -> Plane | None:
-        """Return the plane in which its planar cables lie; None of z = 0, and of spatial scenes."""
+        """Return the plane of its planar cables; None for z = 0 and for spatial scenes."""
         return next((cable.plane for cable in self.cables.values() if cable.dim == 2), None)
 
     @property
     def as_drawn(self) -> SceneData:
-        """Return the scene as the user drew it: this one, unless it was made of that in the axes of its plane."""
+        """Return the scene as drawn by the user, the original of one in the axes of its plane."""
         return self.drawn or self
 
     @property
     def libraries(self) -> tuple[str, ...]:
-        """Return the directories of the libraries that its cables' elements are from."""
+        """Return the directories of the libraries of its elements."""
         return tuple(sorted({cable.library for cable in self.cables.values() if cable.library is not None}))
 
     @property
@@ -143,12 +184,12 @@ class SceneData:
 
     @property
     def up(self) -> np.ndarray:
-        """Return (3,): the direction in which heights are counted, against gravity, along y without gravity."""
+        """Return (3,): the upward direction, against gravity, along y without gravity."""
         size = float(np.linalg.norm(self.gravity))
         return -np.array(self.gravity) / size if size else np.array([0.0, 1.0, 0.0])
 
     def fluids_of(self, drag: Drag) -> list[Fluid]:
-        """Return the fluids that a drag is in: the one that it names, else all."""
+        """Return the fluids of a drag: the one that it names, else all."""
         return list(self.fluids.values()) if drag.fluid is None else [self.fluids[drag.fluid]]
 
     def parts(self) -> Iterator[Part]:
@@ -157,7 +198,7 @@ class SceneData:
             yield from self.group(group)
 
     def attachments(self) -> Iterator[Attachment]:
-        """Yield the attachments that parts have as fields: of springs, of joints, of what else acts between two."""
+        """Yield the attachments that are fields of parts, such as those of springs and joints."""
         for part in self.parts():
             yield from (value for _, value in part if isinstance(value, Attachment))
 
@@ -167,7 +208,7 @@ class SceneData:
         return parts.values() if isinstance(parts, dict) else parts
 
     def put(self, part: Part) -> None:
-        """Store a part in its group, as it is."""
+        """Store a part in its group without checks."""
         group = getattr(self, part.group)
         if isinstance(group, PartsByName):
             group.put(part.given_name or "", part)
@@ -175,30 +216,29 @@ class SceneData:
             group.put(part)
 
     def part_named(self, name: str, group: str) -> Part | None:
-        """Return the part whose name that is, None if it is free for a part of a group.
+        """Return the part of a name, None if the name is free for a part of a group.
 
-        Results are addressed by name, so that all but events share one space of names.
+        All parts but events share one space of names, by which results are addressed.
         """
         return next((parts[name] for parts in self._names_beside(group) if name in parts), None)
 
     def _names_beside(self, group: str) -> list[dict[str, Part]]:
-        """Return the groups that share one space of names with this one."""
+        """Return the groups that share the space of names of a group."""
         groups = ("events",) if group == "events" else [each for each in _groups() if each != "events"]
         return [parts for each in groups if isinstance(parts := getattr(self, each), dict) and parts]
 
     def add(self, part: Part) -> Part:
-        """Add a part; `funicular.Scene` says how."""
+        """Add a part, see `funicular.Scene`."""
         raise NotImplementedError
 
     def add_pairs(self, kind: type[Part], entries: Mapping[str, Any]) -> list[Part]:
-        """Add the parts of many pairs, see `pairs`; `funicular.Scene` says how."""
+        """Add the parts of many pairs, see `pairs` and `funicular.Scene`."""
         raise NotImplementedError
 
     def with_parts(self, parts: Iterable[Part], gravity: Any = None) -> Self:
-        """Return a scene of these parts, checked as any scene is, with the settings and the title of this one.
+        """Return a checked scene of other parts, with the settings and the title of this one.
 
-        parts: in an order in which they can be added, as `parts` yields them; gravity: in m/s², None to keep this
-        one's. Raises SceneError.
+        parts: in the order of `parts`; gravity: in m/s², by default unchanged. Raises SceneError.
         """
         scene = type(self)(gravity=self.gravity if gravity is None else gravity)
         scene.title = self.title
@@ -209,25 +249,22 @@ class SceneData:
         return scene
 
     def changed(self, changes: Iterable[tuple[Part, Mapping[str, Any]]], gravity: Any = None) -> Self:
-        """Return a scene like this one with other values of several of its parts at once, checked as any scene is.
+        """Return a checked scene with other values of several parts at once.
 
-        changes: parts of this scene, each once, with values by keyword; gravity: in m/s², None to keep this one's.
-        Raises SceneError.
+        changes: parts of this scene, each once, with values by keyword; gravity: in m/s², by default unchanged. Raises
+        SceneError.
         """
         values = {id(part): each for part, each in changes}
         return self.with_parts((each.remade(values[id(each)]) if id(each) in values else each
                                 for each in self.parts()), gravity)
 
     def remeshed(self, elements: Callable[[Cable], int]) -> Self:
-        """Return the scene with other numbers of elements of its cables, checked as any scene is. Raises SceneError.
-
-        See `Cable.mesh_entries` for those with unequal ones.
-        """
+        """Return a checked scene with other numbers of elements, see `Cable.mesh_entries`. Raises SceneError."""
         return self.with_parts(part.remade(part.mesh_entries(elements(part))) if isinstance(part, Cable) else part
                                for part in self.parts())
 
     def copied(self) -> Self:
-        """Return a scene of the same parts, to which parts can be added while this one stays as it is."""
+        """Return a scene of the same parts, to which parts can be added independently."""
         made = copy(self)
         for name, value in vars(self).items():
             if isinstance(value, dict | list):
@@ -235,7 +272,7 @@ class SceneData:
         return made
 
     def replaced(self, made: Callable[[Part], Part]) -> Self:
-        """Return a scene with other parts of the same kinds and names, made of each of its own, without checks."""
+        """Return a scene with each part replaced by one of the same kind and name, without checks."""
         scene = self.copied()
         for name in _groups():
             group = getattr(scene, name)
@@ -255,14 +292,14 @@ class SceneData:
             raise SceneError(part.where, "that name is taken by the results", "give another one")
 
     def free_name(self, part: type[Part]) -> str:
-        """Return the least free name with a number, where those below it are taken one after the other.
-
-        Found by doubling and bisection, so that a thousand unnamed parts do not cost a million look-ups.
-        """
+        """Return the least free name with a number, where all below it are taken."""
         return self.free_names(part, part.kind, 1)[0]
 
     def free_names(self, part: type[Part], stem: str, n: int) -> list[str]:
-        """Return n free names for parts, the stem with numbers from the least such one on."""
+        """Return n free names of a stem with numbers.
+
+        Doubling and bisection find the first one with few look-ups among many unnamed parts.
+        """
         groups = self._names_beside(part.group)
 
         def is_taken(number: int) -> bool:
@@ -284,12 +321,12 @@ class SceneData:
 
 @cache
 def _views() -> dict[str, type[Part]]:
-    """Return the kinds of parts by the plural of their names, where that is no group."""
+    """Return the kinds of parts without a group of their own, by the plurals of their names."""
     named = {plural_of(kind.kind): kind for kind in KINDS}
     return {name: kind for name, kind in named.items() if name not in _groups()}
 
 
 @cache
 def _groups() -> tuple[str, ...]:
-    """Return the groups, each once, in an order in which their parts can be added."""
+    """Return the groups in an order in which their parts can be added."""
     return tuple(dict.fromkeys(kind.group for kind in KINDS))

@@ -1,4 +1,4 @@
-"""Where a scene file says something: the line of a table, and of an entry in it."""
+"""The line numbers of tables and entries in a scene file."""
 
 from __future__ import annotations
 
@@ -6,23 +6,24 @@ import re
 import tomllib
 from collections.abc import Callable
 
-LONGEST = 1000
-"""Characters of a name that is looked for: a pattern of a million takes seconds."""
+MAX_NAME_LENGTH = 1000
+"""Characters of a name that is sought: a pattern of a million takes seconds."""
 
 
 def line_of(text: str, table: str, index: int | None = None, entry: str | None = None) -> int | None:
-    """Return the number of a line of a scene file, from 1: of an entry of a table, else of the head of the table.
+    """Return the line number, from 1, of an entry of a table in a scene file, else of the head of the table.
 
-    table: its name; index: of an array of tables, which one, from 0; entry: its name. None where it is not found, such
-    as an entry that is missing from a table written in one line.
+    table: its name; index: in an array of tables, from 0; entry: its name. None where the line is not found, such as
+    that of a missing entry of a table in one line.
     """
-    if max(len(table), len(entry or "")) > LONGEST:
+    if max(len(table), len(entry or "")) > MAX_NAME_LENGTH:
         return None
     lines = text.splitlines(keepends=True)
     head = _first(lines, rf"\s*\[{{{1 if index is None else 2}}}\s*[\"']?{re.escape(table)}[\"']?\s*\]",
                   lambda before: index is None or len(before.get(table, [])) == index, skip=index or 0)
     if head is None:
-        return None if entry is not None else _number(_first(lines, _entry(table)))
+        found = None if entry is not None else _first(lines, _entry(table))
+        return None if found is None else found + 1
     if entry is None:
         return head + 1
     end = _first(lines, rf"\s*\[+\s*(?!{re.escape(table)}\s*\.)", after=head)
@@ -35,16 +36,12 @@ def _entry(name: str) -> str:
     return rf"\s*[\"']?{re.escape(name)}[\"']?\s*[=.]"
 
 
-def _number(index: int | None) -> int | None:
-    return None if index is None else index + 1
-
-
 def _first(lines: list[str], pattern: str, fits: Callable[[dict], bool] = lambda before: True,
            after: int = -1, skip: int = 0) -> int | None:
-    """Return the index of the first line after one that matches, where the lines before it are TOML that fits.
+    """Return the index of the first matching line whose preceding lines are TOML that fits.
 
-    A line inside a text or a list of several lines has before it what is no TOML of itself. skip: how many matches
-    come before at least, which are not looked at: each look reads all lines before.
+    Lines before one inside a multi-line text or list are no TOML. after: a line that precedes it; skip: number of
+    matches that cannot be it, as each test parses all lines before.
     """
     matches = [k for k in range(after + 1, len(lines)) if re.match(pattern, lines[k])]
     return next((k for k in matches[skip:] if (before := _parsed(lines[:k])) is not None and fits(before)), None)

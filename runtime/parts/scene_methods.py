@@ -1,7 +1,7 @@
-"""The methods of a scene that add parts, one for each kind: what they take is what the fields of the kind are.
+"""The methods of a scene that add parts, one for each kind, from the fields of the kind.
 
-Signatures and docstrings are made here, for `help` and notebooks. Editors and type checkers read scene_methods.pyi,
-which `python tests/scene_stub.py` writes and a test compares.
+Signatures and docstrings are for `help` and notebooks. Editors and type checkers read scene_methods.pyi, which
+`python tests/scene_stub.py` writes and a test compares.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ class SceneMethods(SceneData):
 
 
 def signature(kind: type[Part]) -> inspect.Signature:
-    """Return the signature of the method that adds such parts; None stands for what is not given."""
+    """Return the signature of the method that adds such parts; None stands for an omitted entry."""
     parameters = [inspect.Parameter("self", inspect.Parameter.POSITIONAL_OR_KEYWORD)]
     for parameter in parameters_of(kind):
         positional = parameter.name in kind.positional

@@ -1,7 +1,7 @@
-"""Scenes as text, and back: TOML tables with the names of the Python API.
+"""Reading and writing of scenes as TOML, with the names of the Python API.
 
-``gravity``, one array of tables for each kind of part (``[[cable]]``, ``[[pin]]``, ...), ``[equilibrium]``,
-``[relax]`` and ``[run]``. All checks are those of the parts, the settings and `funicular.Scene`.
+``gravity``, an array of tables for each kind of part (``[[cable]]``, ``[[pin]]``, ...), ``[equilibrium]``, ``[relax]``
+and ``[run]``. The checks are those of parts, settings and `funicular.Scene`.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from .scene_lines import line_of
 from .settings import EquilibriumSettings, RelaxationSettings, RunSettings
 
 BARE = re.compile(r"[A-Za-z0-9_-]+")
-"""A key that a scene file need not quote."""
+"""A key without quotes."""
 SETTINGS = {"run": RunSettings, "equilibrium": EquilibriumSettings, "relax": RelaxationSettings}
 
 TABLES = ("gravity", *PARTS, *SETTINGS)
@@ -34,11 +34,10 @@ TABLES = ("gravity", *PARTS, *SETTINGS)
 
 DOTTED = re.compile(r"""\.[ \t]*+(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+(?=\.)""")
 """A part in the middle of a key with dots."""
-MOST_DEPTH = 100
-"""Parts of a key; those of scene files have three."""
-
-MOST_ERRORS = 20
-"""That are looked for in a file; each is sought in its text, and nobody reads more."""
+MAX_KEY_PARTS = 100
+"""Keys of scene files have three."""
+MAX_ERRORS = 20
+"""Of a file in a message; each one is located in the text."""
 
 
 class Addable(Protocol):
@@ -56,10 +55,10 @@ S = TypeVar("S", bound=Addable)
 
 def read(text: str, origin: str, new: Callable[..., S], directory: str | os.PathLike = "",
          libraries: Iterable[str | os.PathLike] = ()) -> S:
-    """Return a scene from the text of a scene file; ``origin`` is what error messages call it.
+    """Return a scene from the text of a scene file; origin: its name in messages.
 
-    new: makes an empty scene, of the keyword gravity; directory: where paths in the text start from, by default the
-    working directory; libraries: directories of elements that the text may load. Raises SceneError.
+    new: makes an empty scene from the keyword gravity; directory: of relative paths in the text, by default the working
+    directory; libraries: directories of elements that the text may load. Raises SceneError.
     """
     _check_depth(text, origin)
     try:
@@ -82,39 +81,40 @@ def read(text: str, origin: str, new: Callable[..., S], directory: str | os.Path
         scene = new()
     reader.read_all(scene)
     if reader.found:
-        raise SceneFileError(origin, reader.found, more=len(reader.found) == MOST_ERRORS)
+        raise SceneFileError(origin, reader.found, more=len(reader.found) == MAX_ERRORS)
     return scene
 
 
 def _check_depth(text: str, origin: str) -> None:
-    """Refuse keys of very many parts, which take tomllib time and memory by their square. Raises SceneError."""
+    """Raise SceneError for very long keys: time and memory of tomllib grow with the square of their parts."""
     depth = end = 0
     for found in DOTTED.finditer(text):
         depth = depth + 1 if found.start() == end else 1
         end = found.end()
-        if depth > MOST_DEPTH:
+        if depth > MAX_KEY_PARTS:
             line = text.count("\n", 0, end) + 1
-            raise SceneError(f"{origin}, line {line}", f"has a key of more than {MOST_DEPTH} parts with dots between")
+            raise SceneError(f"{origin}, line {line}",
+                             f"has a key of more than {MAX_KEY_PARTS} parts with dots between")
 
 
 class _Reader:
-    """Adds the parts of a file to a scene, and goes on where one is wrong, so that all errors are found at once."""
+    """Adds the parts of a file to a scene, and continues after errors to find all of them."""
 
-    def __init__(self, text: str, tables: dict, directory: str | os.PathLike):
+    def __init__(self, text: str, tables: dict[str, Any], directory: str | os.PathLike):
         self.text, self.tables, self.directory = text, tables, directory
         self.found: list[tuple[int | None, SceneError]] = []
         self.refused: set[str] = set()
-        """Names of parts that are not in the scene: what refers to them is checked no further."""
+        """Names of refused parts; parts that refer to them are not added."""
 
     def note(self, error: SceneError, table: str, index: int | None = None) -> None:
-        """Keep what is wrong with a table of the file."""
-        for each in error.errors[: MOST_ERRORS - len(self.found)]:
+        """Store the errors of a table of the file."""
+        for each in error.errors[: MAX_ERRORS - len(self.found)]:
             self.found.append((line_of(self.text, table, index, each.entry), each))
 
     def read_all(self, scene: Addable) -> None:
         """Add all parts and settings to an empty scene."""
         for name in self.tables:
-            if len(self.found) == MOST_ERRORS:
+            if len(self.found) == MAX_ERRORS:
                 return
             if name not in TABLES:
                 self.note(SceneError("scene", f'"{shown_path(name)}" is not known here', near(name, TABLES)), name,
@@ -126,7 +126,7 @@ class _Reader:
                 self.note(error, kind)
                 continue
             for index, table in enumerate(array):
-                if len(self.found) == MOST_ERRORS:
+                if len(self.found) == MAX_ERRORS:
                     return
                 self._add(scene, kind, index, table)
         for name in SETTINGS:
@@ -136,7 +136,7 @@ class _Reader:
                 except SceneError as error:
                     self.note(error, name)
 
-    def _add(self, scene: Addable, kind: str, index: int, table: dict) -> None:
+    def _add(self, scene: Addable, kind: str, index: int, table: dict[str, Any]) -> None:
         try:
             self._add_parts(scene, PARTS[kind], _placed(table, self.directory), index + 1)
         except SceneError as error:
@@ -144,9 +144,8 @@ class _Reader:
             if isinstance(table.get("name"), str):
                 self.refused.add(table["name"])
 
-
-    def _add_parts(self, scene: Any, kind: type[Part], table: dict, number: int) -> None:
-        """Add what a table describes, unless it refers to what is not in the scene."""
+    def _add_parts(self, scene: Any, kind: type[Part], table: dict[str, Any], number: int) -> None:
+        """Add the parts of a table, unless it refers to refused ones."""
         refers = not self.refused & set(_words(table))
         if not are_lists(scene, kind, table):
             part = _part(kind, table, number)
@@ -162,7 +161,7 @@ class _Reader:
 
 
 def _words(value: Any) -> Iterator[str]:
-    """Yield all texts in a table, at any depth."""
+    """Yield all texts in a table."""
     match value:
         case str():
             yield value
@@ -178,15 +177,15 @@ def _is_array(value: Any) -> bool:
     return isinstance(value, list) and all(isinstance(table, dict) for table in value)
 
 
-def _array(tables: dict, kind: str) -> list:
+def _array(tables: dict[str, Any], kind: str) -> list[dict[str, Any]]:
     array = tables.get(kind, [])
     if not _is_array(array):
         raise SceneError(f"[{kind}]", "must be an array of tables", f"write [[{kind}]], in two brackets")
     return array
 
 
-def _check_libraries(tables: dict, directory: str | os.PathLike, allowed: list[str | os.PathLike]) -> None:
-    """Refuse libraries that the caller does not allow, before any of them is loaded. Raises SceneError."""
+def _check_libraries(tables: dict[str, Any], directory: str | os.PathLike, allowed: list[str | os.PathLike]) -> None:
+    """Raise SceneError for libraries that the caller does not allow, before any is loaded."""
     for kind, part in PARTS.items():
         for index, table in enumerate(_array(tables, kind), start=1):
             if isinstance(library := table.get("library"), str):
@@ -198,15 +197,15 @@ def _check_libraries(tables: dict, directory: str | os.PathLike, allowed: list[s
                 check_allowed(asked, allowed, place)
 
 
-def _placed(table: dict, directory: str | os.PathLike) -> dict:
-    """Return a table with its library, data and mesh seen from the working directory, and not from the scene file's."""
+def _placed(table: dict[str, Any], directory: str | os.PathLike) -> dict[str, Any]:
+    """Return a table with its paths of library, data and mesh relative to the working directory."""
     here = {name: os.path.join(directory, table[name]) for name in ("library", "data", "file")
             if isinstance(table.get(name), str)}
     return table | here | {name: _placed(table[name], directory) for name in ("shape", "table")
                            if isinstance(table.get(name), dict)}
 
 
-def _part(part: type[Part], table: dict, index: int) -> Part:
+def _part(part: type[Part], table: dict[str, Any], index: int) -> Part:
     try:
         return part(**table)
     except SceneError as error:
@@ -216,14 +215,14 @@ def _part(part: type[Part], table: dict, index: int) -> Part:
 
 
 def _numbered(error: SceneError, part: type[Part], index: int) -> SceneError:
-    """Return an error of a table of parts without a name, with the number of the table."""
+    """Return an error with the number of its table in place of a name."""
     unnamed = [SceneError(f"[[{part.kind}]] {index}", each.cause, each.remedy, each.entry) for each in error.errors]
     unnamed[0].errors = tuple(unnamed)
     return unnamed[0]
 
 
-def _settings(name: str, table: Any, directory: str | os.PathLike) -> dict:
-    """Return what a table of settings sets, checked; directory: of the file."""
+def _settings(name: str, table: Any, directory: str | os.PathLike) -> dict[str, Any]:
+    """Return the checked settings of a table; directory: of the file."""
     if not isinstance(table, dict):
         raise SceneError(f"[{name}]", "must be a table")
     settings = SETTINGS[name](**table).field_values(given=True)
@@ -237,7 +236,7 @@ def _settings(name: str, table: Any, directory: str | os.PathLike) -> dict:
 
 
 def dumps(scene: SceneData) -> str:
-    """Return the text of a scene file, such that `loads` makes the same scene of it."""
+    """Return the text of a scene file that `read` turns into the same scene."""
     lines, parts = [f"gravity = {as_toml(scene.gravity)}"], list(scene.parts())
     for kind in PARTS:
         for part in parts:
@@ -252,13 +251,13 @@ def dumps(scene: SceneData) -> str:
 
 
 def parts_text(text: str) -> str:
-    """Return the text of a scene that `dumps` made without its settings, which come last."""
+    """Return a text of `dumps` without its settings, which come last."""
     heads = {f"[{name}]" for name in SETTINGS}
     return "\n".join(takewhile(lambda line: line not in heads, text.split("\n"))).rstrip()
 
 
 def plain_data(value: Any) -> Any:
-    """Return a value as plain data: of a part all that is set, defaults too, which a later version may change."""
+    """Return a value as plain data, a part with its defaults, which a later version may change."""
     match value:
         case Part():
             if (short := value.as_given()) is not value:
@@ -270,7 +269,7 @@ def plain_data(value: Any) -> Any:
     return value
 
 
-def _lines(table: dict) -> list[str]:
+def _lines(table: dict[str, Any]) -> list[str]:
     return [f"{name if BARE.fullmatch(name) else as_toml(name)} = {as_toml(value)}" for name, value in table.items()]
 
 
