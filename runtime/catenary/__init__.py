@@ -1,13 +1,11 @@
 """The catenary over a railway and the pantographs below it: built, formed, run, and judged by the contact force."""
 
-from .assessment import assess, losses, low_pass, uplift
-from .form import Form, form
+from .assessment import assess, losses, low_pass, plot_droppers, plot_force, plot_uplift, uplift
+from .form import Form, form, scene
 from .jointed import JointedPantograph, Limb
 from .line import Line
 from .pantograph import Pantograph
 from .passing import add_pantograph
-from .pictures import plot_droppers, plot_force, plot_uplift
-from .scenes import scene
 from .wires import Droppers, SteadyArm, Wire, mass_damping
 
 __all__ = ["Droppers", "Form", "JointedPantograph", "Limb", "Line", "Pantograph", "SteadyArm", "Wire", "add_pantograph",

@@ -1,4 +1,4 @@
-"""What a run says of the contact of a pantograph with the wire: filtered force and its statistics, uplift, losses."""
+"""Assessment of the contact of a pantograph with the wire: filtered force, statistics, uplift, losses, pictures."""
 
 from __future__ import annotations
 
@@ -11,38 +11,39 @@ from ..errors import SceneError, near
 
 if TYPE_CHECKING:
     import xarray as xr  # brings pandas
+    from matplotlib.axes import Axes
 
     from ..results.run import Run
 
 CUTOFF = 20.0
-"""Hz: of the low-pass filter of the contact force."""
+"""Hz: cut-off of the low-pass filter of the contact force."""
 
 ORDER = 4
-"""Of the filter in each of its two directions."""
+"""Order of the filter in each of its two directions."""
 
-LEAST_SAMPLES = 5.0
-"""Output times in a period of the cut-off frequency: fewer tell another force."""
+MIN_SAMPLES = 5.0
+"""Output times in a period of the cut-off frequency: with fewer the filtered force differs."""
 
 
 def low_pass(force: np.ndarray, step: float, cutoff: float = CUTOFF, order: int = ORDER) -> np.ndarray:
-    """Return a force (time,) that is sampled at equal steps (s), without what is above a frequency (Hz).
+    """Return a force (time,), sampled at equal steps (s), without its parts above a frequency (Hz).
 
-    A Butterworth filter, run forwards and backwards, so that it shifts no phase, and adjusted so that the amplitude at
-    the cut-off is 1/sqrt(2) after both. Raises SceneError.
+    A Butterworth filter, run forwards and backwards for zero phase, and adjusted so that the amplitude at the cut-off
+    is 1/sqrt(2) after both. Raises SceneError.
     """
-    from scipy.signal import butter, sosfiltfilt  # 0.6 s, for that alone
+    from scipy.signal import butter, sosfiltfilt  # 0.6 s
 
-    if not step * cutoff * LEAST_SAMPLES <= 1 + 1e-9:
+    if not step * cutoff * MIN_SAMPLES <= 1 + 1e-9:
         raise SceneError("contact force", f"is known at steps of {step:.6g} s, too coarse to filter at {cutoff:g} Hz",
-                         f"run with output_step={1 / (LEAST_SAMPLES * cutoff):.6g} s or less")
+                         f"run with output_step={1 / (MIN_SAMPLES * cutoff):.6g} s or less")
     corner = cutoff / (np.sqrt(2.0) - 1.0) ** (1 / (2 * order))
-    # the filter is made of the tangent of the angle in the step: 20 Hz stay 20 Hz
+    # prewarped: the filter depends on the tangent of the angle in a step
     warped = np.arctan(np.tan(np.pi * cutoff * step) * corner / cutoff) / (np.pi * step)
-    return sosfiltfilt(butter(order, warped, fs=1 / step, output="sos"), force)
+    return np.asarray(sosfiltfilt(butter(order, warped, fs=1 / step, output="sos"), force))
 
 
 def masts(run: Run) -> np.ndarray:
-    """Return where the masts of a run's catenary stand, in m along the track."""
+    """Return the places of the masts of a run's catenary, in m along the track."""
     ends = [cable.drawn_through for name, cable in run.scene.cables.items() if name.startswith("messenger_")]
     if not ends or "contact" not in run.scene.cables:
         raise SceneError("run", "is of no catenary: there are no cables \"contact\" and \"messenger_1\"",
@@ -51,7 +52,7 @@ def masts(run: Run) -> np.ndarray:
 
 
 def uplift(run: Run) -> np.ndarray:
-    """Return (time, mast): how far the contact wire is above its height at rest at each mast, in m."""
+    """Return (time, mast): the rise of the contact wire over its height at rest at each mast, in m."""
     places = masts(run)
     wire, positions = run.scene.cables["contact"], run["contact.position"]
     at = [int(np.argmin(np.abs(positions[0, :, 0] - x))) for x in places]
@@ -59,7 +60,7 @@ def uplift(run: Run) -> np.ndarray:
 
 
 def losses(run: Run, pantograph: str = "pantograph") -> list[tuple[float, float]]:
-    """Return the times from and to which (s) the collector was off the wire."""
+    """Return the intervals (s) in which the collector was off the wire."""
     contact, found, since = f"{pantograph}_contact", [], None
     if run[f"{contact}.normal_force"][0] <= 0:
         since = float(run.time[0])
@@ -78,11 +79,11 @@ def assess(run: Run, sections: Sequence[tuple[float, float]] | None = None, pant
            cutoff: float = CUTOFF, order: int = ORDER) -> xr.Dataset:
     """Return the statistics of a run's contact force in sections of the track, as an xarray dataset.
 
-    sections: from and to, in m along the track; the two spans in the middle if not given, of fewer than four spans all
-    that the pantograph has passed. By section, of the force filtered at the cut-off (Hz): its mean, standard_deviation,
-    statistical_maximum and statistical_minimum (mean ± 3 standard deviations), maximum and minimum, in N; of the force
-    itself the loss_time in s, loss_share of the time in the section, and losses, how many. By mast the largest uplift
-    in m; over time the force, filtered and not, and the place of the collector. Raises SceneError.
+    sections: their ends, in m along the track; by default the two spans in the middle, or the whole passage of a line
+    of fewer than four spans. By section, of the force filtered at the cut-off (Hz): its mean, standard_deviation,
+    statistical_maximum and statistical_minimum (mean ± 3 standard deviations), maximum and minimum, in N; of the
+    unfiltered force the loss_time in s, loss_share of the time in the section, and the number of losses. By mast the
+    largest uplift in m; over time the force, filtered and not, and the place of the collector. Raises SceneError.
     """
     import xarray as xr  # brings pandas
 
@@ -134,3 +135,44 @@ def _section(time: np.ndarray, force: np.ndarray, filtered: np.ndarray, place: n
             "statistical_maximum": mean + 3 * deviation, "statistical_minimum": mean - 3 * deviation,
             "maximum": float(filtered[inside].max()), "minimum": float(filtered[inside].min()),
             "loss_time": float(sum(parts)), "loss_share": float(sum(parts) / (stop - begin)), "losses": len(parts)}
+
+
+def plot_force(run: Run, axes: Axes, pantograph: str = "pantograph",
+               sections: Sequence[tuple[float, float]] | None = None) -> None:
+    """Draw the contact force over the track, filtered and not, with mean ± 3 standard deviations by section."""
+    found = assess(run, sections, pantograph)
+    for x in masts(run):
+        axes.axvline(x, color="0.85", linewidth=0.8, zorder=0)
+    axes.plot(found.place, found.force, color="0.75", linewidth=0.6, label="contact force")
+    axes.plot(found.place, found.filtered_force, color="C0", linewidth=1.2, label=f"below {found.cutoff_Hz:g} Hz")
+    for k in range(found.sizes["section"]):
+        here = found.isel(section=k)
+        ends = [float(here.start), float(here.end)]
+        axes.plot(ends, [float(here["mean"])] * 2, color="C3", linewidth=1.5, label="mean" if not k else None)
+        axes.fill_between(ends, float(here.statistical_minimum),
+                          float(here.statistical_maximum), color="C3", alpha=0.1, linewidth=0,
+                          label="mean ± 3 standard deviations" if not k else None)
+    axes.set(xlabel="collector along the track in m", ylabel="force in N")
+    axes.set_xlim(float(found.place[0]), float(found.place[-1]))
+    axes.legend(loc="upper right", fontsize="small", ncols=2)
+
+
+def plot_uplift(run: Run, axes: Axes, at: Sequence[int] | None = None) -> None:
+    """Draw the uplift of the contact wire at masts over time; at: their numbers from 0, by default the middle three."""
+    values, x = uplift(run), masts(run)
+    middle = len(x) // 2
+    for k in range(max(middle - 1, 0), min(middle + 2, len(x))) if at is None else at:
+        axes.plot(run.time, 1e3 * values[:, k], label=f"mast {k}, {x[k]:g} m")
+    axes.set(xlabel="time in s", ylabel="uplift in mm")
+    axes.legend(loc="upper right", fontsize="small")
+
+
+def plot_droppers(run: Run, axes: Axes, span: int, droppers: Sequence[int] | None = None) -> None:
+    """Draw the forces of a span's droppers over time; span and droppers are numbered from 1, by default all."""
+    every = [name for name in run.scene.point_forces if name.startswith(f"dropper_{span}_")]
+    names = every if droppers is None else [f"dropper_{span}_{k}" for k in droppers]
+    for name in names:
+        axes.plot(run.time, run[f"{name}.tension"], linewidth=1, label=f"dropper {name.rpartition('_')[2]}")
+    axes.set(xlabel="time in s", ylabel="force in N", title=f"droppers of span {span}")
+    axes.set_ylim(bottom=min(0.0, float(np.min([run[f'{name}.tension'].min() for name in names]))))
+    axes.legend(loc="upper right", fontsize="small", ncols=3)

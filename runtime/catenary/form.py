@@ -1,4 +1,4 @@
-"""The form of a catenary: the lengths of its droppers and wires, by the heights and tensions that are asked for."""
+"""The form of a catenary, lengths of droppers and wires for given heights and tensions, and scenes of whole ones."""
 
 from __future__ import annotations
 
@@ -18,21 +18,24 @@ from .wires import MODULUS, Wire
 if TYPE_CHECKING:
     from ..results.equilibrium import Equilibrium
 
-PIECES = 16
-"""Of a span with staggers, as it is drawn."""
+DRAWN_PIECES = 16
+"""Straight pieces of a span with staggers, as drawn."""
 
 LONGEST = 1.0, 1.0
-"""Of an element of the contact wire and of the messenger, in m, where nothing else is said."""
+"""Default length of the longest element of the contact wire and of the messenger, in m."""
+
+LEVER = 1.0
+"""m: distance of supports and steady arms from their fixed points."""
 
 
 @dataclass(frozen=True)
 class Form:
-    """A span at rest, on meshes with elements of `longest` or shorter: of the contact wire, of the messenger, in m.
+    """A span at rest; longest: the longest element of the contact wire and of the messenger, in m.
 
-    lengths: of the droppers, free of force, in m; tensions: their forces in N; stiffnesses: theirs, and that of the
-    dents in both wires that elements leave out, in series, in N/m; contact_length, messenger_length: of the wires,
+    lengths: of the droppers, free of force, in m; tensions: their forces in N; stiffnesses: theirs in series with that
+    of the dents in both wires that elements leave out, in N/m; contact_length, messenger_length: of the wires,
     undeformed, in m; height: of the contact wire at the masts over that at the outer droppers, in m; mast_force: the
-    weight that an inner mast bears, in N; rest: the state of rest of the span.
+    weight on an inner mast, in N; rest: the state of rest of the span.
     """
 
     line: Line
@@ -57,27 +60,27 @@ def mesh(line: Line, longest: float) -> np.ndarray:
 
 def add_wire(scene: Scene, name: str, wire: Wire, start: float, end: float, height: float, nodes: np.ndarray,
              sides: tuple[float, ...] | None = None) -> None:
-    """Add a wire along x at a height (m), whose nodes have these arc-lengths, undeformed.
+    """Add a wire along x at a height (m); nodes: their arc-lengths, undeformed.
 
-    sides: where it is across the track (z), in m, at equal distances from start to end: a wire in space, along the
-    track there as drawn; without them it is planar.
+    sides: offsets across the track (z), in m, at equal distances from start to end, where the wire is drawn along the
+    track; without them it is planar.
     """
     section = {"area": wire.axial_stiffness / MODULUS, "second_moment_about_z": wire.bending_stiffness / MODULUS}
     density = wire.mass * (1 + wire.tension / wire.axial_stiffness) * MODULUS / wire.axial_stiffness
     drawn: dict[str, Any] = {"start": (start, height, 0), "end": (end, height, 0), "element": "cable8p"}
     if sides is not None:
         section["second_moment_about_y"] = section["second_moment_about_z"]
-        drawn = {"points": _snake(start, end, height, sides), "rest": "straight", "element": "cable12"}
+        drawn = {"points": _staggered(start, end, height, sides), "rest": "straight", "element": "cable12"}
     scene.cable(name, nodes=nodes, rest_length=float(nodes[-1]), strain="engineering", curvature="linear",
                 membrane="reduced", section=GeneralSection(**section),
                 material=Material(youngs_modulus=MODULUS, poisson_ratio=0.3, density=density,
                                   mass_damping=wire.mass_damping, damping_time=wire.damping_time), **drawn)
 
 
-def _snake(start: float, end: float, height: float, sides: tuple[float, ...]) -> list[tuple[float, float, float]]:
+def _staggered(start: float, end: float, height: float, sides: tuple[float, ...]) -> list[tuple[float, float, float]]:
     """Return points from side to side across the track, at equal distances from start to end, in m."""
     spans = len(sides) - 1
-    u = np.linspace(0, spans, PIECES * spans + 1)
+    u = np.linspace(0, spans, DRAWN_PIECES * spans + 1)
     before = np.minimum(u.astype(int), spans - 1)
     swing = (1 - np.cos(np.pi * (u - before))) / 2
     z = np.array(sides)[before] * (1 - swing) + np.array(sides)[before + 1] * swing
@@ -85,24 +88,24 @@ def _snake(start: float, end: float, height: float, sides: tuple[float, ...]) ->
 
 
 def missing_at_droppers(line: Line, longest: tuple[float, float]) -> np.ndarray:
-    """Return by how much less elements of both wires give way to each dropper than the wires do, in m/N."""
+    """Return the compliance of both wires at each dropper that their elements lack, in m/N."""
     at = np.array(line.droppers.at)
-    missing = [missing_compliance(wire.tension, wire.bending_stiffness, mesh(line, each) * line.span, at)
-               for wire, each in zip((line.contact, line.messenger), longest, strict=True)]
-    return missing[0] + missing[1]
+    contact, messenger = (missing_compliance(wire.tension, wire.bending_stiffness, mesh(line, each) * line.span, at)
+                          for wire, each in zip((line.contact, line.messenger), longest, strict=True))
+    return np.asarray(contact + messenger)
 
 
 def hold_ends(scene: Scene) -> None:
-    """Hold the ends of the contact wire, which is free to rise, and is level and along the track there."""
+    """Hold the ends of the contact wire level and along the track, free to rise."""
     for s in (0.0, scene.cables["contact"].length):
         scene.motion("contact", s=s, displacement=(0, "free", 0), rotation=((0, 0, 1), 0))
 
 
 def add_dropper(scene: Scene, name: str, messenger: str, places: tuple[float, float], masses: tuple[float, float], *,
                 stiffness: float, length: float) -> None:
-    """Add a dropper, free of force at a length (m), and what hangs at its ends.
+    """Add a dropper, free of force at a length (m), and the masses at its ends.
 
-    places, masses: of its ends on the messenger and on the contact wire, the arc-lengths in m, and the masses in kg.
+    places, masses: of its ends on the messenger and on the contact wire, in m and kg.
     """
     upper, lower = places
     scene.spring((messenger, upper), ("contact", lower), name=name, stiffness=stiffness, length=length,
@@ -113,11 +116,11 @@ def add_dropper(scene: Scene, name: str, messenger: str, places: tuple[float, fl
 
 
 def form(line: Line, longest: tuple[float, float] = LONGEST) -> Form:
-    """Return the form of a line's spans, found for one of them: the others repeat it.
+    """Return the form of one span of a line: all spans are equal.
 
-    The contact wire lies at the droppers as the line's sags say, is level at the masts and pulls there with its
-    tension, as the messenger does, which turns freely on its supports. longest: of an element of the contact wire, and
-    of the messenger, in m. Raises SceneError; EquilibriumError, where that is not to be had.
+    The contact wire has the line's sags at the droppers and is level at the masts, where both wires have their
+    tensions; the messenger turns freely on its supports. longest: length of the longest element of the contact wire,
+    and of the messenger, in m. Raises SceneError; EquilibriumError, where there is no such form.
     """
     droppers, strings = line.droppers, line.strings
     scene = Scene(gravity=(0, -line.gravity, 0))
@@ -157,3 +160,61 @@ def _read(line: Line, longest: tuple[float, float], rest: Equilibrium) -> Form:
     mast = 2 * float(rest["messenger@0.force"][1])
     return Form(line, longest, lengths, forces, 1 / (1 / own + missing), rest.adjusted["contact.rest_length"],
                 rest.adjusted["messenger.rest_length"], float(rest["contact.position"][0, 1]), mast, rest)
+
+
+def scene(line: Line | Form, longest: tuple[float, float] = LONGEST) -> Scene:
+    """Return the scene of a formed catenary, x along the track, y up from the contact wire at the outer droppers.
+
+    line: or its form, where it is known; longest: as in `form`. The contact wire is "contact", the messenger
+    "messenger_1" from the first mast to the second, the droppers "dropper_1_1" and so on, supports and steady arms
+    "support_1" and "arm_0" by their masts. Raises SceneError, EquilibriumError.
+    """
+    formed = form(line, longest) if isinstance(line, Line) else line
+    line, droppers = formed.line, formed.line.droppers
+    made = Scene(gravity=(0, -line.gravity, 0))
+    place, of_messenger = (mesh(line, each) for each in formed.longest)
+    nodes = np.concatenate([place[:-1] + k for k in range(line.spans)] + [[line.spans]]) * formed.contact_length
+    of_contact, of_upper = (None if line.planar else _sides(line, side) for side in line.staggers)
+    add_wire(made, "contact", line.contact, 0.0, line.length, formed.height, nodes, of_contact)
+    hold_ends(made)
+    for k in range(line.spans):
+        add_wire(made, f"messenger_{k + 1}", line.messenger, k * line.span, (k + 1) * line.span, line.height,
+                 of_messenger * formed.messenger_length, None if of_upper is None else of_upper[k:k + 2])
+    for span in range(line.spans):
+        messenger = f"messenger_{span + 1}"
+        for k, x in enumerate(droppers.at):
+            places = x / line.span * formed.messenger_length, (span + x / line.span) * formed.contact_length
+            add_dropper(made, f"dropper_{span + 1}_{k + 1}", messenger, places,
+                        (line.hanging[k], droppers.contact_clamp), stiffness=float(formed.stiffnesses[k]),
+                        length=float(formed.lengths[k]))
+    _add_masts(made, formed)
+    return made
+
+
+def _add_masts(made: Scene, formed: Form) -> None:
+    line, arm = formed.line, formed.line.steady_arm
+    of_contact, of_messenger = (_sides(line, side) for side in line.staggers)
+    made.pin("messenger_1", s=0.0)
+    made.pin(f"messenger_{line.spans}", s=made.cables[f"messenger_{line.spans}"].length)
+    for mast in range(1, line.spans):
+        x, z = mast * line.span, of_messenger[mast]
+        before = made.cables[f"messenger_{mast}"]
+        made.tie(before, s=before.length, to=f"messenger_{mast + 1}", at=0.0, rotation="free")
+        made.spring((x, line.height + LEVER, z), (before, before.length), name=f"support_{mast}",
+                    stiffness=line.support, length=LEVER - formed.mast_force / line.support)
+        if not line.planar:
+            made.motion(before, s=before.length, displacement=("free", "free", 0))
+            side = of_contact[mast]  # a rod holds the contact wire on this side of the track, and pulls it there
+            hinge = x, formed.height, side + float(np.copysign(arm.length, side))
+            made.joint("distance", hinge, ("contact", mast * formed.contact_length), length=arm.length,
+                       name=f"steady_arm_{mast}")
+    for mast in range(line.spans + 1):
+        if arm.stiffness:
+            s = mast * formed.contact_length
+            made.spring((mast * line.span, formed.height + LEVER, of_contact[mast]), ("contact", s), name=f"arm_{mast}",
+                        stiffness=arm.stiffness, length=LEVER)
+
+
+def _sides(line: Line, first: float) -> tuple[float, ...]:
+    """Return the offsets of a wire across the track at the masts, in m."""
+    return tuple((-1) ** mast * first for mast in range(line.spans + 1))

@@ -1,7 +1,14 @@
-"""A pantograph of arms and rods with joints, over a base that the train moves."""
+"""A pantograph of arms and rods with joints, over a base that the train moves, and its kinematics.
+
+In the plane, x along the track and y up, from the pivot of the lower arm on the base. The lower arm carries the knee
+and the lower end of the guide; the upper arm turns about the knee, and a rod from the base holds a point of it; the
+head turns about the end of the upper arm, and the guide holds a point of it. One coordinate, the turn of the lower arm,
+determines all places and turns, by two intersections of circles; their rates follow from two linear equations.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated, Any
 
@@ -12,24 +19,21 @@ from ..errors import SceneError
 from ..parts.part import Part
 from ..parts.schemas import checked, list_schema, some
 from ..parts.validation import not_negative, positive, show, shown, vector
-from .linkage import POINTS, Posture, across, moved
 from .pantograph import Pantograph
 
-DEAD = 1e-3
-"""Sine of the angle of two members below which they count as in line: no force is passed on there."""
+POINTS = "knee", "rod_base", "rod_top", "head", "guide_low", "guide_top"
 
-ITERATIONS, LONGEST, EXACT = 100, 0.05, 1e-13
-"""Of Newton's method for the turn of the lower arm at a height; its longest step, and the last one, in rad."""
+DEAD_CENTRE_SINE = 1e-3
+"""Sine of the angle of two members below which they count as in line: they transmit no force there."""
 
-Point = tuple[float, float]
+MAX_ITERATIONS, MAX_STEP, LAST_STEP = 100, 0.05, 1e-13
+"""Newton's method for the turn of the lower arm at a height; steps in rad."""
 
-
-def _point(value: Any) -> Point:
-    x, y = vector(value, "m", 2)
-    return x, y
+def _point(value: Any) -> tuple[float, ...]:
+    return vector(value, "m", 2)
 
 
-def _two_points(value: Any) -> tuple[Point, Point]:
+def _two_points(value: Any) -> tuple[tuple[float, ...], ...]:
     if not isinstance(value, list | tuple | np.ndarray) or len(value) != 2:
         raise ValueError(f"must be two points (x, y), got {shown(value)}")
     return _point(value[0]), _point(value[1])
@@ -42,7 +46,7 @@ TwoPoints = Annotated[tuple[tuple[float, float], tuple[float, float]],
 
 class Limb(Part):
     """An arm, a rod or a head: mass in kg; inertia in kg m², about its centre of mass and the axis across the track;
-    centre: where that is as drawn, (x, y) in m, in the middle between its joints, of a head at its joint, if not given.
+    centre: of mass as drawn, (x, y) in m; by default in the middle between its joints, of a head at its joint.
     """
 
     mass: Annotated[float, positive("kg")]
@@ -96,10 +100,10 @@ class JointedPantograph(Part):
         for what, first, second in (("rod and the upper arm's lever", top - base, top - knee),
                                     ("guide and the carrier's lever", high - low, high - head)):
             size = float(np.linalg.norm(first) * np.linalg.norm(second))
-            if not abs(across(first) @ second) > DEAD * size:
+            if not abs(across(first) @ second) > DEAD_CENTRE_SINE * size:
                 raise ValueError(f"the {what} are in line, or one of them has no length: what moves then is not led",
                                  "move an end of one of them")
-        if not abs(self.rates()[1]) > DEAD * float(np.linalg.norm(knee)):
+        if not abs(self.rates()[1]) > DEAD_CENTRE_SINE * float(np.linalg.norm(knee)):
             raise ValueError("the head does not rise as the lower arm turns: no moment makes a force there",
                              "draw it at another height")
         return self
@@ -129,8 +133,9 @@ class JointedPantograph(Part):
         return found
 
     def places(self, turn: float = 0.0) -> dict[str, tuple[np.ndarray, np.ndarray, float]]:
-        """Return of each body the centre of mass (2,) in m, its velocity (2,) and the rate of its turn for 1 rad/s of
-        the lower arm; the collector does not move on the carrier.
+        """Return centre of mass (2,) in m, velocity (2,) and turn rate of each body for 1 rad/s of the lower arm.
+
+        The collector does not move on the carrier.
         """
         posture = self.posture(turn)
         speeds, rates = posture.rates()
@@ -142,8 +147,7 @@ class JointedPantograph(Part):
         for body, (drawn, now, speed) in hinges.items():
             turns_with = "carrier" if body == "collector" else body
             angle, rate = posture.turns[turns_with], rates[turns_with]
-            arm = self.centres[body] - drawn
-            arm = np.cos(angle) * arm + np.sin(angle) * across(arm)
+            arm = turned(self.centres[body] - drawn, angle)
             found[body] = now + arm, speed + rate * across(arm), rate
         return found
 
@@ -164,9 +168,9 @@ class JointedPantograph(Part):
         return self.uplift * float(self.rates()[1]) - self.weight_moment(0.0, gravity)
 
     def static_force(self, raised: float = 0.0, gravity: float = 9.81) -> float:
-        """Return the force (N) on a wire at rest, with the carrier raised by some m from where it is drawn.
+        """Return the force (N) on a wire at rest, with the carrier raised by some m from its drawn height.
 
-        By virtual work; gravity in m/s². Raises SceneError, where arms and rods do not reach there.
+        By virtual work; gravity in m/s². Raises SceneError where arms and rods do not reach.
         """
         return self._force(self._turn(raised), gravity)
 
@@ -176,22 +180,22 @@ class JointedPantograph(Part):
     def _turn(self, raised: float) -> float:
         """Return the angle (rad) of the lower arm with the carrier raised by some m."""
         turn, height = 0.0, self.centres["collector"][1] + raised
-        for _ in range(ITERATIONS):
+        for _ in range(MAX_ITERATIONS):
             if moved(self.joints, turn) is None:
                 break
             place, speed, _ = self.places(turn)["collector"]
             step = float((height - place[1]) / speed[1])
-            if abs(step) < EXACT:
+            if abs(step) < LAST_STEP:
                 return turn
-            turn += float(np.clip(step, -LONGEST, LONGEST))
+            turn += float(np.clip(step, -MAX_STEP, MAX_STEP))
         raise SceneError("jointed pantograph", f"does not reach {show(raised, 'm')} from where it is drawn",
                          "take a height that its arms reach")
 
     def equivalent(self, gravity: float = 9.81) -> Pantograph:
-        """Return the pantograph of two masses that moves as this one does in small motions about where it is drawn.
+        """Return the pantograph of two masses with the same small motions about the drawn posture.
 
-        Its uplift is such that it presses as much at rest on a wire at the height drawn, its suspension compressed.
-        The lower mass is what moves with the carrier, by kinetic energy over the square of its vertical speed, with the
+        Its uplift gives the same static force on a wire at the drawn height, with its suspension compressed. The lower
+        mass is the kinetic energy of all that moves with the carrier over the square of its vertical speed, with the
         collector's motion along the track; its spring is the decrease of the static force with the height, its damper
         has the same power. Raises SceneError where the static force grows with the height.
         """
@@ -213,3 +217,73 @@ class JointedPantograph(Part):
                           damping=[self.suspension_damping, self.damper * ratio**2],
                           uplift=pressed, aerodynamic=self.aerodynamic,
                           contact_stiffness=self.contact_stiffness)
+
+
+@dataclass(frozen=True)
+class Posture:
+    """Places of the joints, (2,) each in m by name, and turns of the bodies from the drawn posture, in rad by name:
+    "lower", "upper", "rod", "carrier".
+    """
+
+    points: dict[str, np.ndarray]
+    turns: dict[str, float]
+
+    def rates(self) -> tuple[dict[str, np.ndarray], dict[str, float]]:
+        """Return the velocities (2,) of the joints, in m, and the rates of the turns, for 1 rad/s of the lower arm."""
+        knee, base, top, head, low, high = (self.points[name] for name in POINTS)
+        turn = {"lower": 1.0}
+        v_knee, v_low = across(knee), across(low)
+        to_top, to_high = across(top - knee), across(high - head)
+        turn["upper"] = -float(v_knee @ (top - base)) / float(to_top @ (top - base))
+        v_top, v_head = v_knee + turn["upper"] * to_top, v_knee + turn["upper"] * across(head - knee)
+        turn["rod"] = float(v_top @ across(top - base)) / float((top - base) @ (top - base))
+        turn["carrier"] = float((v_low - v_head) @ (high - low)) / float(to_high @ (high - low))
+        velocities = v_knee, np.zeros(2), v_top, v_head, v_low, v_head + turn["carrier"] * to_high
+        return dict(zip(POINTS, velocities, strict=True)), turn
+
+
+def across(r: np.ndarray) -> np.ndarray:
+    """Return the velocity (2,) of a point at r (2,) from the centre of a turn, for 1 rad/s."""
+    return np.array([-r[1], r[0]])
+
+
+def turned(r: np.ndarray, angle: float) -> np.ndarray:
+    """Return r (2,), turned by an angle (rad)."""
+    return np.asarray(np.cos(angle) * r + np.sin(angle) * across(r))
+
+
+def moved(drawn: dict[str, np.ndarray], turn: float) -> Posture | None:
+    """Return the posture with the lower arm turned by an angle (rad); None where the rods do not reach.
+
+    drawn: the joints as drawn, (2,) each in m. Joints stay on their drawn side of the line through their neighbours.
+    """
+    was = [drawn[name] for name in POINTS]
+    knee, low = turned(was[0], turn), turned(was[4], turn)
+    top = _third(was[1], knee, was[1], was[0], was[2])
+    if top is None:
+        return None
+    upper = _angle(was[2] - was[0], top - knee)
+    head = knee + turned(was[3] - was[0], upper)
+    high = _third(low, head, was[4], was[3], was[5])
+    if high is None:
+        return None
+    turns = {"lower": turn, "upper": upper, "rod": _angle(was[2] - was[1], top - was[1]),
+             "carrier": _angle(was[5] - was[3], high - head)}
+    return Posture(dict(zip(POINTS, (knee, was[1], top, head, low, high), strict=True)), turns)
+
+
+def _third(a: np.ndarray, b: np.ndarray, was_a: np.ndarray, was_b: np.ndarray, was_c: np.ndarray) -> np.ndarray | None:
+    """Return the third corner (2,) over a and b at its drawn distances and side; None where it does not exist."""
+    from_a, from_b = (float(np.linalg.norm(was_c - each)) for each in (was_a, was_b))
+    base = float(np.linalg.norm(b - a))
+    along = (from_a**2 - from_b**2 + base**2) / (2 * base)
+    square = from_a**2 - along**2
+    if square < 0:
+        return None
+    side = float(np.sign(across(was_b - was_a) @ (was_c - was_a)))
+    return np.asarray(a + (along * (b - a) + side * np.sqrt(square) * across(b - a)) / base)
+
+
+def _angle(before: np.ndarray, after: np.ndarray) -> float:
+    """Return the angle (rad) from one direction (2,) to another, between -π and π."""
+    return float(np.arctan2(across(before) @ after, before @ after))

@@ -1,10 +1,10 @@
-"""What elements leave of the dent that a point force makes in a wire: a compliance in series with what presses there.
+"""The compliance of a wire at a point force that its elements lack: a spring in series with the force.
 
 A point force F bends a wire under the tension T by an angle F/T over a length of l = sqrt(EI/T), a tenth of a metre.
-Cubic elements of some h >> l bend over as much as their own length, and give way less: by about 0.03 h/T. Beside a
-dropper of 1e5 N/m or a collector of 5e4 N/m that counts. What is missing is the difference of two functions of Green,
-that of the wire, in closed form, and that of its elements. It decays within some elements, so that it is static below
-the frequencies that the elements resolve, and the force on the wire alone decides it: a spring in series.
+Cubic elements of length h >> l bend over their own length and are stiffer: they lack a compliance of about 0.03 h/T,
+which is not small beside a dropper of 1e5 N/m or a collector of 5e4 N/m. The missing compliance is the difference of
+two Green's functions, that of the wire, in closed form, and that of its elements. It decays within some elements. So it
+is static below the frequencies that the elements resolve and depends on the force alone.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ from numpy.polynomial.legendre import leggauss
 from ..kernels.libraries import kernels_of
 
 SAMPLES = 8
-"""Of an element, over which the mean is taken."""
+"""Samples of an element for the mean."""
 
 CUBIC = "cable8p"
-"""The element whose shape functions are taken: position and slope at two nodes."""
+"""The element with the shape functions: position and slope at two nodes."""
 
 
 def missing_compliance(tension: float, bending: float, nodes: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Return (at,): by how much less than a wire its elements give way to a point force where it acts, in m/N.
+    """Return (at,): the compliance of a wire at a point force that its elements lack, in m/N.
 
     tension T in N; bending EI in N m²; nodes: places of the nodes of the wire, which is held at its ends and turns
     freely there, in m; at: places of the forces, in m. The elements are cubic, in position and slope.
@@ -35,11 +35,12 @@ def missing_compliance(tension: float, bending: float, nodes: np.ndarray, at: np
     dents = -np.expm1(-2 * x / length) * np.expm1(-2 * (span - x) / length) / np.expm1(-2 * span / length)
     exact = (x * (span - x) / span - length / 2 * dents) / tension
     forces = _shapes(nodes, at)
-    return exact - np.einsum("ij,ji->i", forces, np.linalg.solve(_stiffness(tension, bending, nodes), forces.T))
+    return np.asarray(exact - np.einsum("ij,ji->i", forces,
+                                        np.linalg.solve(_stiffness(tension, bending, nodes), forces.T)))
 
 
 def mean_missing_compliance(tension: float, bending: float, nodes: np.ndarray) -> float:
-    """Return the mean of `missing_compliance` for a force that goes along the middle half of the wire, in m/N."""
+    """Return the mean of `missing_compliance` for a force that moves along the middle half of the wire, in m/N."""
     places = np.concatenate([a + (b - a) * (np.arange(SAMPLES) + 0.5) / SAMPLES for a, b in pairwise(nodes)])
     weights = np.repeat(np.diff(nodes), SAMPLES)
     middle = np.abs(places - (nodes[0] + nodes[-1]) / 2) < (nodes[-1] - nodes[0]) / 4
@@ -47,7 +48,7 @@ def mean_missing_compliance(tension: float, bending: float, nodes: np.ndarray) -
 
 
 def _stiffness(tension: float, bending: float, nodes: np.ndarray) -> np.ndarray:
-    """Return the stiffness matrix of position and slope at all nodes; both ends do not move."""
+    """Return the stiffness matrix of position and slope at all nodes; both ends are fixed."""
     size = 2 * len(nodes)
     total = np.zeros((size, size))
     places, weights = leggauss(3)  # exact for products of slopes, of the fourth degree

@@ -1,4 +1,4 @@
-"""What a catenary is made of: wires, droppers, steady arms."""
+"""Wires, droppers and steady arms of a catenary."""
 
 from __future__ import annotations
 
@@ -13,8 +13,7 @@ from ..parts.schemas import checked
 from ..parts.validation import list_of, not_negative, positive, shown, vector
 
 MODULUS = 1e11
-"""Pa, of the materials that wires are written with: their area follows from it, so that
-EA, EI and mass are as given."""
+"""Pa: Young's modulus of wires in scenes; their area follows from it, so that EA, EI and mass are as given."""
 
 
 class Wire(Part):
@@ -39,8 +38,8 @@ class Wire(Part):
     def damping_ratio(self, frequency: float | np.ndarray) -> float | np.ndarray:
         """Return the damping ratio of transverse waves of a frequency f, in Hz.
 
-        mass_damping α gives α / (4 π f). damping_time τ damps what strains the material: of waves of the wavenumber k
-        that is bending, EI k² beside the tension N, and the ratio is π f τ EI k² / (N + EI k²), little where EI k² is.
+        mass_damping α gives α / (4 π f). damping_time τ damps strains of the material: in waves of the wavenumber k
+        that is bending, EI k² beside the tension N, and the ratio is π f τ EI k² / (N + EI k²).
         """
         omega = 2 * np.pi * np.asarray(frequency, dtype=float)
         # m ω² = N k² + EI k⁴
@@ -59,12 +58,12 @@ def _sag(value: Any) -> float | tuple[float, ...]:
 
 
 class Droppers(Part):
-    """The droppers of a span: springs that pull alone.
+    """The droppers of a span: springs in tension alone.
 
-    at: m from the mast, increasing. stiffness in N/m, of each; or axial_stiffness EA in N, so that it is EA over the
-    length. sag: how far below its height at the outer droppers the contact wire lies at the droppers, in m each; one
-    number: the depth of a parabola between the outer ones. mass in kg/m; messenger_clamp and contact_clamp in kg. A
-    dropper's own mass is on the messenger, on which a slack one hangs.
+    at: m from the mast, increasing. stiffness in N/m, of each; or axial_stiffness EA in N, for a stiffness of EA over
+    the length. sag: depth of the contact wire at each dropper below that at the outer ones, in m; one number: that of a
+    parabola between the outer ones. mass in kg/m; messenger_clamp and contact_clamp in kg. A dropper's own mass is on
+    the messenger, on which a slack one hangs.
     """
 
     at: Annotated[tuple[float, ...], list_of("m", least=1)]
@@ -108,10 +107,10 @@ class Droppers(Part):
 
 
 class SteadyArm(Part):
-    """What keeps the contact wire in its place at a mast: in the plane a vertical spring without force at rest.
+    """The support of the contact wire at a mast: in a planar line a vertical spring without force at rest.
 
-    stiffness in N/m, vertical. Of a line with staggers it is also a rod without mass that pulls the wire to its side,
-    level at rest, of this length in m to the hinge on which it turns: as the wire rises, its pull has a part downwards.
+    stiffness in N/m, vertical. In a line with staggers there is also a rod without mass that pulls the wire to its
+    side, level at rest, of this length in m to its hinge: as the wire rises, its pull has a part downwards.
     """
 
     stiffness: Annotated[float, not_negative("N/m")] = 0.0
@@ -119,7 +118,7 @@ class SteadyArm(Part):
 
 
 def mass_damping(ratio: float, frequency: float) -> float:
-    """Return the mass damping in 1/s with which a mode of that frequency (Hz) has that damping ratio.
+    """Return the mass damping in 1/s that gives a mode of a frequency (Hz) a damping ratio.
 
     Other modes have ratios in inverse proportion to their frequencies. Raises SceneError.
     """

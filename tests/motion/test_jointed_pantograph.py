@@ -6,7 +6,7 @@ import funicular as fu
 import numpy as np
 import pytest
 from funicular import catenary
-from funicular.catenary.linkage import moved
+from funicular.catenary.jointed import moved
 from test_catenary import line55
 
 DEFAULT = catenary.JointedPantograph(uplift=120)
