@@ -1,4 +1,4 @@
-/* The time of a clock that goes on, s. */
+/* Monotonic time, s. */
 #define _POSIX_C_SOURCE 199309L
 #include "base/clock.h"
 

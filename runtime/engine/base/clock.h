@@ -1,4 +1,4 @@
-/* A clock that goes on: base/clock.c. */
+/* A monotonic clock: base/clock.c. */
 #ifndef FUNICULAR_BASE_CLOCK_H
 #define FUNICULAR_BASE_CLOCK_H
 

@@ -1,4 +1,4 @@
-/* What all headers of the engine share: kernels, limits, and names of structures that are described elsewhere. */
+/* Declarations shared by all headers of the engine: kernels, limits, and names of structures described elsewhere. */
 #ifndef FUNICULAR_BASE_COMMON_H
 #define FUNICULAR_BASE_COMMON_H
 
@@ -8,19 +8,19 @@
 #include <stddef.h>
 
 #define FU_MAX_COORDINATES 32        /* of one element, or of the kernels of a slide on it; model/build.py checks */
-#define FU_ATTACHMENT_COORDINATES 40 /* of what an end is on, s among them; model/build.py checks */
+#define FU_ATTACHMENT_COORDINATES 40 /* of the carrier of an attachment, s included; model/build.py checks */
 #define FU_SLIDE_COORDINATES (FU_MAX_COORDINATES + FU_ATTACHMENT_COORDINATES)
 #define FU_ROW_COORDINATES (2 * (FU_ATTACHMENT_COORDINATES + FU_SLIDE_COORDINATES))
 #define FU_MAX_RATES 128  /* of strain, of one element; engine.pyx checks */
-#define FU_SIGNAL_TERMS 7 /* coefficients of a piece of a signal */
+#define FU_SIGNAL_TERMS 7 /* coefficients of a segment of a signal */
 
-#define FU_SPACE 3          /* components of a vector, in the plane too, and turns of a frame in space */
+#define FU_SPACE 3          /* components of a vector, in the plane too, and rotations of a frame in space */
 #define FU_MATRIX_ENTRIES 9 /* of a matrix in space, or of a change of axes */
-#define FU_FRAME_DOFS 6     /* of a body's frame in space: three translations, three turns */
+#define FU_FRAME_DOFS 6     /* of a body's frame in space: three translations, three rotations */
 #define FU_FRAME_ENTRIES 7  /* of its configuration: position, and a unit quaternion */
 
-/* An array of a state or of a row of output: its name, how many items it has of which size, whether they are real
- * numbers (else whole ones), and how many axes it has in output, rows being the first. */
+/* An array of a state or of a row of output: its name, the number and size of its items, whether they are real (else
+ * integers), and its number of axes in output, rows being the first. */
 typedef struct {
     const char *name;
     void *data;
@@ -51,8 +51,7 @@ static inline double fu_dot(int n, const double *a, const double *b)
     return sum;
 }
 
-/* Returns the last of increasing knots, from `low` on and before `high`, that x has reached; `low` where it has reached
- * none. */
+/* Returns the last of the increasing breakpoints from `low` on and before `high` that x has reached; `low` if none. */
 static inline int fu_last_reached(const double *knots, int low, int high, double x)
 {
     while (high - low > 1) {
@@ -63,7 +62,7 @@ static inline int fu_last_reached(const double *knots, int low, int high, double
     return low;
 }
 
-/* Makes the vector product of two vectors in space. */
+/* Computes the vector product of two vectors in space. */
 static inline void fu_cross(const double *a, const double *b, double *out)
 {
     for (int d = 0; d < 3; ++d) out[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];

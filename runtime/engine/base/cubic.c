@@ -1,10 +1,10 @@
-/* Numbers along a step, by the cubic through their values and rates at both ends (Hermite). */
+/* Values along a step by the cubic through values and rates at both ends (Hermite). */
 #include "base/cubic.h"
 
 #include <math.h>
 
 #define GRAZING_TOLERANCE 1e-2   /* of the depth of a minimum: a predicted distance from zero that is examined */
-#define ROUNDING_OF_VALUES 1e-14 /* of values and changes of a number: smaller depths are rounding */
+#define ROUNDING_OF_VALUES 1e-14 /* of values and changes: smaller depths are rounding */
 #define ROUNDING_OF_PART 1e-15   /* of a step */
 #define MAX_ITERATIONS 50        /* of Newton's method with bisection */
 

@@ -1,5 +1,5 @@
-/* Several numbers at a time, with AVX2 where compiler and machine have it: the same operations on each as one by one,
- * so that without contraction the bits are the same. */
+/* Operations on several numbers at a time, with AVX2 if compiler and machine have it. The operations on each number are
+ * those of scalar code, so that without contraction the bits are the same. */
 #ifndef FUNICULAR_BASE_SIMD_H
 #define FUNICULAR_BASE_SIMD_H
 

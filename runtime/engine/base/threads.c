@@ -1,20 +1,18 @@
-/* Threads that share the work of a run, for pieces of work of some microseconds: OpenMP's wait for each other either
- * for milliseconds at full load or by way of the system, and both takes longer than such a piece on a machine that does
- * other things, too.
- *
- * A piece of work has as many parts as there are threads. Each thread takes its own part, which it knows in its cache
- * from the last time, then those that nobody has taken. The thread that shares its work thus waits for a part that
- * another is at, never for one that has not begun: a thread that sleeps costs nothing. A thread without work looks for
- * some for about 0.1 ms, yields its processor to others in the meantime, and then sleeps. */
+/* Threads that share the work of a run, for jobs of some microseconds. OpenMP's threads wait for each other either for
+ * milliseconds at full load or through the system; both take longer than such a job on a busy machine. A job has one
+ * part per thread. Each thread takes its own part, whose data are in its cache from the last time, then parts that
+ * nobody has taken. The thread that shares its work thus waits for a part in progress, never for one that has not
+ * begun: a sleeping thread costs nothing. A thread without work looks for some for about 0.1 ms, yields its processor
+ * to others in the meantime, and then sleeps. */
 #if !defined(_WIN32)
 #define _POSIX_C_SOURCE 200809L
 #endif
 #include "base/threads.h"
 #include "base/underflow.h"
 
-#define MIN_SHARED_DOFS 1500 /* dofs: work on fewer takes as long to share as to do */
+#define MIN_SHARED_DOFS 1500 /* dofs: sharing fewer takes as long as doing the work */
 
-/* Does what fu_part_of does, for several parts. */
+/* fu_part_of for several parts. */
 fu_range fu_one_of_parts(int n, int unit, int part, int parts)
 {
     const long units = ((long)n + unit - 1) / unit;
@@ -61,12 +59,12 @@ int fu_share_among(fu_threads *threads, int dofs, fu_work work, const void *what
 #include <stdatomic.h>
 
 enum {
-    LOOKS = 500,       /* for work or its end, before a processor is yielded: some 20 microseconds */
-    YIELDS = 200,      /* of the processor, before a thread without work sleeps */
-    CACHE_LINES = 128, /* bytes: threads that write so far from each other do not disturb each other */
+    LOOKS = 500,       /* polls for work or its end before a processor is yielded: some 20 microseconds */
+    YIELDS = 200,      /* yields of the processor before a thread without work sleeps */
+    CACHE_LINES = 128, /* bytes: threads that write at this distance do not share a line of the cache */
 };
 
-/* One thread's: the last work of which its part was taken, and the last of which it was done. */
+/* State of a thread: the last job whose part was taken, and the last whose part was done. */
 typedef struct {
     atomic_uint taken, done;
     int number;
@@ -77,19 +75,20 @@ typedef struct {
 
 struct fu_threads {
     int n;
-    unsigned forks;   /* when they were started */
-    atomic_uint work; /* the number of the last one; with what it is beside it, on one line of the cache */
+    unsigned forks;   /* count of forks at the start */
+    atomic_uint work; /* number of the last job; on one line of the cache with the next members */
     atomic_int sleeping, ending;
     fu_work function;
     const void *what;
-    unsigned underflow; /* as the thread has it that shares: the bits of a result do not depend on who makes it */
+    /* mode of the sharing thread, so that the bits of a result do not depend on the thread that computes it */
+    unsigned underflow;
     char apart[CACHE_LINES];
     pthread_mutex_t mutex;
     pthread_cond_t wake;
     member members[];
 };
 
-static atomic_uint forks; /* of this process from its parents: a forked process has one thread alone */
+static atomic_uint forks; /* forks of this process and its parents: a forked process has one thread alone */
 static pthread_once_t once = PTHREAD_ONCE_INIT;
 
 static void count_fork(void)
@@ -102,7 +101,7 @@ static void count_forks(void)
     pthread_atfork(0, 0, count_fork);
 }
 
-/* Lets the processor know that this one waits. */
+/* Tells the processor that this thread waits. */
 static void relax(void)
 {
 #if defined(__x86_64__) || defined(__i386__)
@@ -112,24 +111,24 @@ static void relax(void)
 #endif
 }
 
-/* Does the part of a work that belongs to a member, unless it is taken. */
+/* Does a member's part of a job, unless it is taken. */
 static void take(fu_threads *all, member *owner, unsigned work)
 {
     unsigned before = work - 1;
     if (atomic_load(&owner->taken) != before || !atomic_compare_exchange_strong(&owner->taken, &before, work)) return;
     fu_set_underflow(all->underflow);
-    all->function(all->what, owner->number, all->n); /* until this is done there is no other work */
+    all->function(all->what, owner->number, all->n); /* no other job starts until this one is done */
     atomic_store(&owner->done, work);
 }
 
-/* Does the part of a member, and then those that nobody has taken. The first part is that of the thread that shares. */
+/* Does the part of a member, then parts that nobody has taken. The first part is that of the sharing thread. */
 static void take_parts(fu_threads *all, int own, unsigned work)
 {
     for (int k = own; k < all->n; ++k) take(all, &all->members[k], work);
     for (int k = 1; k < own; ++k) take(all, &all->members[k], work);
 }
 
-/* Returns the number of a work other than the last one, or the same where the threads shall end. */
+/* Returns the number of a new job, or the last number if the threads shall end. */
 static unsigned wait_for_work(fu_threads *all, unsigned last)
 {
     for (int k = 0; k < LOOKS + YIELDS; ++k) {
@@ -174,8 +173,8 @@ long fu_threads_size(int n)
     return (long)(sizeof(fu_threads) + (size_t)n * sizeof(member));
 }
 
-/* Starts n - 1 threads beside the calling one, in memory that is zero; returns how many there are with it. Signals
- * remain the calling thread's. */
+/* Starts n - 1 threads beside the calling one, in memory that is zero; returns their number with it. Signals remain
+ * with the calling thread. */
 int fu_threads_start(fu_threads *all, int n)
 {
     sigset_t every, before;
@@ -185,7 +184,7 @@ int fu_threads_start(fu_threads *all, int n)
     all->forks = forks;
     sigfillset(&every);
     pthread_sigmask(SIG_BLOCK, &every, &before);
-    for (int k = 0; k < n; ++k) { /* none of them does anything before there is work, when n is known */
+    for (int k = 0; k < n; ++k) { /* they do nothing before there is work, when n is known */
         member *m = &all->members[k];
         m->all = all;
         m->number = k;
@@ -196,7 +195,7 @@ int fu_threads_start(fu_threads *all, int n)
     return all->n;
 }
 
-/* Ends them, and waits for that. In a forked process there are none. */
+/* Ends the threads and waits for that. A forked process has none. */
 void fu_threads_end(fu_threads *all)
 {
     if (!all || all->forks != forks) return;
@@ -209,7 +208,7 @@ void fu_threads_end(fu_threads *all)
     pthread_mutex_destroy(&all->mutex);
 }
 
-/* Does what fu_share does, where there are threads. */
+/* fu_share with threads. */
 int fu_share_among(fu_threads *all, int dofs, fu_work function, const void *what)
 {
     if (all->n == 1 || dofs < MIN_SHARED_DOFS || all->forks != forks) {

@@ -1,6 +1,5 @@
-/* Numbers below the least normal one, 2e-308. Motion that decays along many bodies or elements ends in them, and some
- * processors take a hundred times as long with each: in the time loop they are zero. Elsewhere, in what callers
- * compute, they stay. */
+/* Subnormal numbers, below 2e-308. Motion that decays along many bodies or elements leads to them, and some processors
+ * need a hundred times as long for each: the time loop flushes them to zero. Callers keep them. */
 #ifndef FUNICULAR_BASE_UNDERFLOW_H
 #define FUNICULAR_BASE_UNDERFLOW_H
 
@@ -8,7 +7,7 @@
 #include <xmmintrin.h>
 #define FU_TINY_IS_ZERO 0x8040u /* results and operands: FTZ and DAZ of the register MXCSR */
 
-/* Returns how this thread takes such numbers, and all else that its register says. */
+/* Returns this thread's mode for subnormal numbers, with the rest of its register. */
 static inline unsigned fu_underflow(void)
 {
     return _mm_getcsr();
@@ -19,7 +18,7 @@ static inline void fu_set_underflow(unsigned mode)
     _mm_setcsr(mode);
 }
 
-#else /* processors that take them as fast as others, or of which nothing is known */
+#else /* processors without a penalty, or unknown ones */
 #define FU_TINY_IS_ZERO 0u
 
 static inline unsigned fu_underflow(void)

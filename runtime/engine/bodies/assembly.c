@@ -1,13 +1,13 @@
-/* Sums over elements, and over bodies by way of bodies.c: forces, energies, and the band of a Newton matrix. */
+/* Sums over elements, and over bodies through bodies.c: forces, energies, and the band of a Newton matrix. */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
 
 #include <string.h>
 
-/* elements whose forces are made before they are added: few enough to stay in the first cache */
+/* elements whose forces are computed before they are added: few enough for the first-level cache */
 #define CHUNK 16
 
-/* Returns the elements of a cable from the k-th on, as block kernels take them. */
+/* Returns the elements of a cable from the k-th on, in the form of block kernels. */
 static fu_elements elements_from(const fu_cable *cable, const double *q, const double *v, int k)
 {
     const long at = cable->first + (long)k * cable->per_node;
@@ -21,19 +21,19 @@ static fu_elements elements_from(const fu_cable *cable, const double *q, const d
                          cable->l_stride};
 }
 
-/* Returns how many of n elements a block kernel takes; the others go one by one. */
+/* Returns the number of n elements that a block kernel takes; the others are evaluated one by one. */
 static int in_blocks(fu_block kernel, int n)
 {
     return kernel ? n - n % FU_BLOCK_ELEMENTS : 0;
 }
 
-/* Returns how many elements come next, from the k-th on. */
+/* Returns the number of elements of the next chunk, from the k-th on. */
 static int chunk(const fu_cable *cable, int k)
 {
     return cable->n_elements - k < CHUNK ? cable->n_elements - k : CHUNK;
 }
 
-/* Makes what n elements of a cable give, from the first on, one behind the other. */
+/* Computes the contributions of n elements of a cable, from the first on, one after the other. */
 typedef void (*work_on)(const fu_cable *cable, int first, int n, const fu_elements *of, double *out);
 
 static void elastic_forces(const fu_cable *cable, int first, int n, const fu_elements *of, double *f)
@@ -58,7 +58,7 @@ static void damping_forces(const fu_cable *cable, int first, int n, const fu_ele
                                   of->A + (long)k * of->A_stride, of->tau, f + k * cable->coordinates);
 }
 
-/* Makes M v. */
+/* Computes M v. */
 static void inertia_forces(const fu_cable *cable, int first, int n, const fu_elements *of, double *f)
 {
     for (int k = 0; k < n; ++k)
@@ -91,7 +91,7 @@ typedef struct {
     double *f;
 } sum;
 
-/* Adds what a part's elements give, n from the k-th on. */
+/* Adds the contributions of n elements of a part from the k-th on. */
 static void add_group(const sum *job, int k, int n, const double *from, double *first)
 {
     const fu_cable *cable = job->cable;
@@ -106,14 +106,14 @@ static void add_group(const sum *job, int k, int n, const double *from, double *
     }
 }
 
-/* Returns what one of the forces is on the first node of a part. */
+/* Returns the contribution of one of the forces to the first node of a part. */
 static double *on_first_node(const sum *job, int part, int which)
 {
     return job->model->thread_work + (2 * part + which) * job->cable->per_node;
 }
 
-/* Adds a part of the elements, in the groups of one thread. What is on the first node of all parts but the first is for
- * `add_sum` to add, since another thread adds to that node. */
+/* Adds a part of the elements, in the groups of one thread. `add_sum` adds the contributions to the first node of all
+ * parts but the first, since another thread adds to that node. */
 static void add_part(const void *what, int part, int parts)
 {
     const sum *job = what;
@@ -129,8 +129,8 @@ static void add_part(const void *what, int part, int parts)
     }
 }
 
-/* Adds the forces to those on the dofs: on each node those of the element before it, then those of the element behind
- * it, whatever the number of threads. */
+/* Adds the forces to those on the dofs: on each node those of the element before it, then those of the element after
+ * it, for any number of threads. */
 static void add_sum(const sum *job)
 {
     const fu_cable *cable = job->cable;
@@ -150,7 +150,7 @@ static void clear_part(const void *what, int part, int parts)
     for (int i = range.first; i < range.end; ++i) job->f[i] = 0.0;
 }
 
-/* Makes f = M a of cables and bodies. */
+/* Computes f = M a of cables and bodies. */
 void fu_constant_mass_times(const fu_model *model, const double *q, const double *a, double *f)
 {
     const sum job = {.model = model, .f = f};
@@ -162,7 +162,7 @@ void fu_constant_mass_times(const fu_model *model, const double *q, const double
     fu_bodies_mass_times(model, q, a, f);
 }
 
-/* Adds elastic, damping and bodies' forces, as they stand on the left of the equations of motion; not those of
+/* Adds elastic, damping and body forces, with the signs of the left side of the equations of motion, without
  * couplings. */
 void fu_internal_forces(const fu_model *model, const double *q, const double *v, double *f)
 {
@@ -237,7 +237,7 @@ static int is_shared(const fu_model *model, const fu_cable *cable, int k)
     return 0;
 }
 
-/* Makes the matrix of an element, from K with the elastic tangent in it where there is one. */
+/* Completes the matrix of an element, from K with the elastic tangent if there is one. */
 static void complete(const matrix *job, int k, double *K)
 {
     double Q[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
@@ -256,9 +256,9 @@ static void complete(const matrix *job, int k, double *K)
     add_mass(cable, k, job->mass, K);
 }
 
-/* Adds a part of the elements. Where threads share the work, the first of each part, which another thread's has a node
- * with, and those with shared unknowns are for `add_matrix_of` to add: afterwards, in their order. An entry of two
- * neighbours alone is the same in either order. */
+/* Adds a part of the elements. If threads share the work, `add_matrix_of` afterwards adds, in order, the first element
+ * of each part, which shares a node with another thread, and those with shared unknowns. An entry of two neighbours
+ * alone is the same in either order. */
 static void add_matrix_part(const void *what, int part, int parts)
 {
     const matrix *job = what;
@@ -343,7 +343,7 @@ double fu_potential_energy(const fu_model *model, const double *q)
     return total + fu_bodies_potential_energy(model, q);
 }
 
-/* Makes the power that n elements of a cable turn to heat, one number each. */
+/* Computes the dissipated power of n elements of a cable, one number each. */
 static void dissipations(const fu_cable *cable, int n, const fu_elements *of, double *power)
 {
     const fu_block block = cable->blocks ? cable->blocks->dissipation : 0;
@@ -354,7 +354,7 @@ static void dissipations(const fu_cable *cable, int n, const fu_elements *of, do
                                 of->A + (long)k * of->A_stride, of->tau, power + k);
 }
 
-/* Returns the power that damping of cables and bodies takes out, W. */
+/* Returns the power dissipated by the damping of cables and bodies, W. */
 double fu_internal_dissipation(const fu_model *model, const double *q, const double *v)
 {
     double total = fu_bodies_dissipation(model, q, v), part[FU_MAX_COORDINATES], power[CHUNK];

@@ -1,4 +1,4 @@
-/* Bodies with a frame, whatever they are made of: sums over them, and what a rigid one is. */
+/* Bodies with a frame of any kind: sums over them, and the functions of rigid ones. */
 #include "bodies/model.h"
 #include "bodies/rotation.h"
 #include "bodies/state.h"
@@ -60,26 +60,26 @@ const fu_matter fu_rigid_matter = {
     1,       of_rigid_mass_times, of_rigid_forces, of_rigid_mass, of_rigid_tangent, of_rigid_kinetic_energy, none_at,
     none_at, none_along};
 
-/* Returns the number of a body's dofs: its frame's, and its modes'. */
+/* Returns the number of a body's dofs, of its frame and its modes. */
 int fu_body_dofs(const fu_body *body)
 {
     return body->kernel->velocity + body->modes;
 }
 
-/* Makes f = M a, on the bodies' dofs. */
+/* Computes f = M a, on the bodies' dofs. */
 void fu_bodies_mass_times(const fu_model *model, const double *q, const double *a, double *f)
 {
     FU_EACH_BODY(body, model) body->matter->mass_times(body, q + body->configuration, a + body->dof, f + body->dof);
 }
 
-/* Adds what stands on the left of the equations of motion at zero accelerations. */
+/* Adds the left side of the equations of motion at zero accelerations. */
 void fu_bodies_forces(const fu_model *model, const double *q, const double *v, double *f)
 {
     FU_EACH_BODY(body, model) body->matter->forces(body, q + body->configuration, v + body->dof, f + body->dof);
 }
 
-/* Adds weights.inertia M + weights.stiffness (K + weights.rate D) of a body at a state to a system; psi: what moved it
- * there, or null. Without acceleration K is that of rest. */
+/* Adds weights.inertia M + weights.stiffness (K + weights.rate D) of a body at a state to a system; psi: its
+ * displacement to there, or null. Without acceleration K is that at rest. */
 static void add_body(const fu_model *model, const fu_body *body, const fu_state *at, const double *psi,
                      fu_weights weights, fu_system *system)
 {
@@ -107,7 +107,7 @@ void fu_bodies_matrix(const fu_model *model, const fu_state *at, const double *p
     FU_EACH_BODY(body, model) add_body(model, body, at, psi, weights, system);
 }
 
-/* Adds M of the bodies in which it is constant, or of the others. */
+/* Adds M of the bodies with a constant one, or of the others. */
 void fu_bodies_mass(const fu_model *model, const double *q, int constant, fu_system *system)
 {
     const fu_state at = {.q = (double *)q, .v = (double *)model->zero};
@@ -129,7 +129,7 @@ double fu_bodies_elastic_energy(const fu_model *model, const double *q)
     return total;
 }
 
-/* Returns the energy of gravity, J: what model->gravity says, and what depends on the attitude. */
+/* Returns the energy of gravity, J: that of model->gravity, and the part that depends on the attitude. */
 double fu_bodies_potential_energy(const fu_model *model, const double *q)
 {
     double total = 0.0;

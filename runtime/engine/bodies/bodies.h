@@ -4,37 +4,38 @@
 
 #include "linear/linear.h"
 
-/* A body as seen at an instant: its part of q, of v, of the accelerations. */
+/* State of a body at an instant: its part of q, of v, of the accelerations. */
 typedef struct {
     const double *b, *w, *a;
 } fu_instant;
 
-/* What bodies are made of: bodies.c, modal.c. b, w, a and f begin with the body's own entries. */
+/* Functions of a kind of body: bodies.c, modal.c. b, w, a and f begin with the body's own entries. */
 typedef struct fu_body fu_body;
 typedef struct {
-    int constant; /* its M is, in body axes, and it has no K */
+    int constant; /* its M is constant in body axes, and it has no K */
     void (*mass_times)(const fu_body *body, const double *b, const double *a, double *f); /* f = M a */
-    void (*forces)(const fu_body *body, const double *b, const double *w, double *f); /* f += what is left without a */
+    /* f += force at zero accelerations */
+    void (*forces)(const fu_body *body, const double *b, const double *w, double *f);
     void (*mass)(const fu_body *body, const double *b, double *M);
     void (*tangent)(const fu_body *body, const fu_instant *at, double *D, double *K);
     double (*kinetic_energy)(const fu_body *body, const double *b, const double *w);
     double (*elastic_energy)(const fu_body *body, const double *b);
-    double (*potential_energy)(const fu_body *body, const double *b); /* less what model->gravity gives */
+    double (*potential_energy)(const fu_body *body, const double *b); /* without that of model->gravity */
     double (*dissipation)(const fu_body *body, const double *b, const double *w);
 } fu_matter;
 extern const fu_matter fu_rigid_matter, fu_modal_matter;
 
-/* Modes of a body; index 0 of S and X is the undeformed place (derive/bodies/modal.py). */
+/* Modes of a body; index 0 of S and X is the undeformed position (derive/bodies/modal.py). */
 typedef struct {
     const fu_modal_kernels *kernel;
     const double *S, *X;                      /* (n + 1) x dim; (n + 1) x (n + 1) x dim x dim */
     const double *mass, *stiffness, *damping; /* n x n */
-    const double *zero;                       /* as many as it has dofs */
+    const double *zero;                       /* a zero for each dof */
     double *sums, *matrices;                  /* work space: 3 (n + 1) dim^2; 3 dofs^2 (mass_times takes the first) */
     double g[3];
 } fu_shape;
 
-/* A body with a frame: rigid, or modal with so many modes. */
+/* A body with a frame: rigid, or modal with a number of modes. */
 struct fu_body {
     const fu_body_kernels *kernel; /* of its frame */
     const fu_matter *matter;
@@ -46,7 +47,7 @@ struct fu_body {
     const fu_shape *shape; /* of the modes; null without */
 };
 
-/* A point of a modal body: where it is undeformed, and the modes' displacements and turns there. */
+/* A point of a modal body: its undeformed position, and displacements and rotations of the modes there. */
 typedef struct {
     const double *x, *phi, *psi; /* dim; modes x dim; modes x turns */
 } fu_modal_attachment;

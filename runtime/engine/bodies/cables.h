@@ -7,7 +7,7 @@
 typedef struct {
     const fu_element_kernels *kernel;
     const fu_law_kernels *law;
-    const fu_law_blocks *blocks; /* null where there are none */
+    const fu_law_blocks *blocks; /* null if there are none */
     int n_elements;
     int first;             /* first dof and first entry in q */
     int coordinates;       /* of an element */
@@ -18,13 +18,13 @@ typedef struct {
     double tau;            /* Kelvin-Voigt retardation time, s */
     double mass_damping;   /* 1/s */
     const double *m;       /* mass matrix of the first element over nodal vectors */
-    int l_stride;          /* from one element's length to the next's: zero where they are equal */
-    int m_stride;          /* from one element's mass matrix to the next's: zero where they are equal */
+    int l_stride;          /* from one element's length to the next's: zero for equal elements */
+    int m_stride;          /* from one element's mass matrix to the next's: zero for equal elements */
     const double *A;       /* constants of the law, of the first element */
-    int A_stride;          /* from one element's to the next's: zero where they are equal */
-    const double *share;   /* of each vector of a node: what it moves points of its elements by at most; null where that
-                              is not known */
-    int gives_way;         /* not zero where its law gives way in compression */
+    int A_stride;          /* from one element's constants to the next's: zero for equal elements */
+    /* of each vector of a node: largest displacement of points of its elements by a unit of it; null if unknown */
+    const double *share;
+    int gives_way;         /* nonzero for a law with reduced stiffness in compression */
     int dissipation_state; /* first number in a state's of algorithmic dissipation: law->rates + 1 an element */
 } fu_cable;
 

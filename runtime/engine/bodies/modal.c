@@ -56,7 +56,7 @@ static void add_elasticity(const fu_body *body, const double *eta, const double 
             f[k] += body->shape->stiffness[k * n + l] * eta[l] + body->shape->damping[k * n + l] * rate[l];
 }
 
-/* Adds the forces of inertia without accelerations, less the weight. */
+/* Adds the inertial forces at zero accelerations, less the weight. */
 static void add_inertia(const fu_body *body, const double *b, const double *w, double *f)
 {
     const fu_modal_kernels *kernel = body->shape->kernel;
@@ -73,7 +73,7 @@ static void add_inertia(const fu_body *body, const double *b, const double *w, d
     }
 }
 
-/* Makes M of eq 12. */
+/* Computes M of eq 12. */
 static void mass(const fu_body *body, const double *b, double *M)
 {
     const fu_shape *shape = body->shape;
@@ -188,7 +188,7 @@ static double dissipation(const fu_body *body, const double *b, const double *w)
 const fu_matter fu_modal_matter = {
     0, mass_times, forces, mass, tangent, kinetic_energy, elastic_energy, potential_energy, dissipation};
 
-/* Makes displacement and turn of a point from its modes, or their rates. */
+/* Computes displacement and rotation of a point from its modes, or their rates. */
 static void point_of(const fu_body *body, const fu_modal_attachment *attachment, const double *c, int is_rate,
                      double u[FU_SPACE], double theta[FU_SPACE])
 {
@@ -201,7 +201,8 @@ static void point_of(const fu_body *body, const fu_modal_attachment *attachment,
     }
 }
 
-/* Computes the state of a point of a modal body with its axes: P (dim x n) and T (turns x n) are over all its dofs. */
+/* Computes the state of a point of a modal body with its axes: P (dim x n) and T (rotations x n) are over all its
+ * dofs. */
 void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *attachment, const double *b,
                                const double *w, fu_modal_point *out, double *P, double *T)
 {
@@ -248,8 +249,8 @@ void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *a
     }
 }
 
-/* Computes the generalised force g of a force c along the axes of the section at a point, with which it turns, and K (n
- * x n), the derivative of g by the body's dofs. The frame's motion does not change the row of a mode. */
+/* Computes the generalised force g of a force c along the axes of the section at a point, with which it rotates, and K
+ * (n x n), the derivative of g by the body's dofs. The frame's motion does not change the row of a mode. */
 void fu_modal_attachment_follower(const fu_body *body, const fu_modal_attachment *attachment, const double *b,
                                   const double *c, double *g, double *K)
 {

@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-/* Returns f(t), and its two derivatives where they are asked for. */
+/* Returns f(t), and its two derivatives if requested. */
 double fu_signal_at(const fu_signal *signal, double t, double *rate, double *second)
 {
     double f = 0.0, f1 = 0.0, f2 = 0.0;
@@ -29,7 +29,7 @@ double fu_signal_at(const fu_signal *signal, double t, double *rate, double *sec
     return f;
 }
 
-/* Returns whether a motion moves its dof, so that what the support gives has a power. */
+/* Returns whether a motion moves its dof, so that the support's force has a power. */
 int fu_supports_move(const fu_model *model, const fu_state *state)
 {
     for (int k = 0; k < model->n_motions; ++k)

@@ -4,8 +4,8 @@
 
 #include "base/common.h"
 
-/* f(t) = a polynomial of t - breaks[i] in each interval (the first and the last go on beyond the breaks)
- *        + amplitude sin(angular_frequency t + phase) */
+/* f(t) = a polynomial of t - breaks[i] in each interval (the first and the last extend beyond the breaks) + amplitude
+ * sin(angular_frequency t + phase) */
 typedef struct {
     int n;
     const double *breaks;       /* n + 1 */
@@ -13,8 +13,8 @@ typedef struct {
     double amplitude, angular_frequency, phase;
 } fu_signal;
 
-/* An instant at which a signal is not smooth, s, and what jumps there of what it drives: nothing, the acceleration, the
- * rate (model/knots.py). */
+/* An instant at which a signal is not smooth, s, and the lowest discontinuous derivative of the driven motion: none of
+ * these, the acceleration, the rate (model/knots.py). */
 enum { FU_HIGHER_JUMPS, FU_ACCELERATION_JUMPS, FU_RATE_JUMPS };
 typedef struct {
     double t;
@@ -23,7 +23,7 @@ typedef struct {
 
 /* A dof that follows signals: q = base + linear f + cosine cos f + sine sin f */
 typedef struct {
-    int dof, signal, first; /* first: of those of its dof, whose work is counted once */
+    int dof, signal, first; /* first: of the signals of its dof, with which its work is counted */
     double base, linear, cosine, sine;
 } fu_motion;
 

@@ -1,10 +1,10 @@
-/* Rows of output, one an output time: their arrays, described once. */
+/* Rows of output, one per output time: their arrays, described once. */
 #ifndef FUNICULAR_BODIES_RECORD_H
 #define FUNICULAR_BODIES_RECORD_H
 
 #include "base/common.h"
 
-/* ARRAY(name, axes: 1 for a number a row, items of a row) */
+/* ARRAY(name, axes: 1 for a number per row, items of a row) */
 #define FU_RECORD_ARRAYS(ARRAY)                                                                                        \
     ARRAY(time, 1, 1)                                                                                                  \
     ARRAY(kinetic, 1, 1)                                                                                               \
@@ -21,8 +21,8 @@
 
 typedef struct {
     int n;     /* rows recorded since the start */
-    int first; /* the row that stands first in the arrays: those before it were taken away */
-    int pause; /* at so many rows fu_advance returns, for the caller to call fu_pause */
+    int first; /* the first row in the arrays: earlier ones have been removed */
+    int pause; /* the number of rows at which fu_advance returns, for the caller to call fu_pause */
 #define FU_MEMBER(name, axes, items) double *name;
     FU_RECORD_ARRAYS(FU_MEMBER)
 #undef FU_MEMBER

@@ -1,5 +1,5 @@
-/* Finite rotations of bodies: configurations moved by steps, and derivatives made derivatives by steps. What a body's
- * frame does is in the kernels of derive/bodies/moves.py. */
+/* Finite rotations of bodies: configurations moved by steps, and derivatives converted to derivatives by steps. The
+ * kernels of derive/bodies/moves.py have the motion of a body's frame. */
 #include "bodies/model.h"
 #include "bodies/rotation.h"
 
@@ -48,7 +48,7 @@ void fu_cayley_move(const fu_model *model, double *q, const double *psi)
     move_all(model, q, psi, 1);
 }
 
-/* Makes the configuration half-way between two; bodies have turned half of the way. */
+/* Computes the configuration half-way between two; bodies have rotated by half of the rotation. */
 void fu_between(const fu_model *model, const double *q, const double *q_next, double *between)
 {
     const int n_flexible = model->n_bodies ? model->bodies[0].configuration : model->n_q;
@@ -60,13 +60,13 @@ void fu_between(const fu_model *model, const double *q, const double *q_next, do
     }
 }
 
-/* Makes the rates of the entries of b from the velocity w: translation, and rotation about body axes. */
+/* Computes the rates of the entries of b from the velocity w: translation, and rotation about body axes. */
 void fu_body_rate(const fu_body_kernels *kernel, const double *b, const double *w, double *rate)
 {
     kernel->rate(b, w, rate);
 }
 
-/* Makes a small change of the entries of b an increment of its dofs: the inverse of `fu_body_rate`. */
+/* Converts a small change of the entries of b to an increment of its dofs: the inverse of `fu_body_rate`. */
 void fu_body_increment(const fu_body_kernels *kernel, const double *b, const double *change, double *increment)
 {
     kernel->increment(b, change, increment);
@@ -90,8 +90,8 @@ static inline void turn_columns(const fu_body_kernels *kernel, double *rows, int
     }
 }
 
-/* Makes derivatives by a body's dofs, the first of them in column `first`, those by psi of `fu_move`. In the plane they
- * are. */
+/* Converts derivatives by a body's dofs, the first of them in column `first`, to those by psi of `fu_move`. In the
+ * plane they are equal. */
 void fu_turn_columns(const fu_body_kernels *kernel, double *rows, int n_rows, int n_columns, int first,
                      const double *psi)
 {
@@ -101,7 +101,7 @@ void fu_turn_columns(const fu_body_kernels *kernel, double *rows, int n_rows, in
     turn_columns(kernel, rows, n_rows, n_columns, first, T);
 }
 
-/* Does the same for psi of `fu_cayley_move`. */
+/* The same for psi of `fu_cayley_move`. */
 void fu_cayley_columns(const fu_body_kernels *kernel, double *rows, int n_rows, int n_columns, int first,
                        const double *psi)
 {

@@ -1,4 +1,4 @@
-/* The arrays of states and of rows of output as lists, for what treats all of them alike. */
+/* The arrays of states and of rows of output as lists, for code that treats all of them alike. */
 #include "bodies/model.h"
 #include "bodies/record.h"
 #include "bodies/state.h"
@@ -37,7 +37,7 @@ void fu_state_attach(fu_state *state, int k, void *data)
 #undef ATTACH
 }
 
-/* Copies the couplings' part of a state but for their coordinates. */
+/* Copies the couplings' part of a state except their coordinates. */
 void fu_state_take_couplings(const fu_model *model, fu_state *to, const fu_state *from)
 {
 #define TAKE(type, name, items) memcpy(to->name, from->name, sizeof(type) * (size_t)(items));

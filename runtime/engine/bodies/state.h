@@ -4,12 +4,12 @@
 
 #include "base/common.h"
 
-/* The couplings' part of a state, which the first guess of a step takes over: ARRAY(type, name, items of a model). */
+/* The couplings' part of a state, which the first guess of a step copies: ARRAY(type, name, items of a model). */
 #define FU_STATE_OF_COUPLINGS(ARRAY)                                                                                   \
-    /* couplings' own forces: on the rider of a slide, multipliers of a joint, on a spring's first end */              \
+    /* internal forces of couplings: on the rider of a slide, multipliers of a joint, on a spring's first end */       \
     ARRAY(double, forces, model->n_forces)                                                                             \
-    ARRAY(int, piece, model->n_coordinates) /* per own coordinate: the piece of its path (coupling_events.h) */        \
-    /* what a coupling's type alone knows the meaning of, n_numbers and n_flags of it */                               \
+    ARRAY(int, piece, model->n_coordinates) /* per own coordinate: its path segment (coupling_events.h) */             \
+    /* private data of a coupling's type, n_numbers and n_flags of it */                                               \
     ARRAY(double, numbers, model->n_numbers)                                                                           \
     ARRAY(int, flags, model->n_flags)
 

@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-enum { MAXIMA = 4 }; /* of dofs, found side by side: a processor does not wait for one before it begins the next */
+enum { MAXIMA = 4 }; /* of dofs, computed side by side, which are independent for the processor */
 
 /* A row of T: the places of n unknowns, and their values. */
 typedef struct {
@@ -23,7 +23,7 @@ static row row_of(const fu_model *model, const int *unknown)
     return (row){start[1] - start[0], model->combination_unknown + start[0], model->combination_value + start[0]};
 }
 
-/* Numbers of dofs, or of unknowns, made from others by threads. */
+/* Numbers of dofs, or of unknowns, converted from the others by threads. */
 typedef struct {
     const fu_model *model;
     const double *from;
@@ -41,7 +41,7 @@ static void gather(const transfer *job, int dof)
     }
 }
 
-/* Makes the unknowns of a part of the dofs, but those of several dofs. */
+/* Computes the unknowns of a part of the dofs, except those of several dofs. */
 static void gather_part(const void *what, int part, int parts)
 {
     const transfer *job = what;
@@ -51,7 +51,7 @@ static void gather_part(const void *what, int part, int parts)
         if (unknown[i] >= 0 && !is_shared[i]) job->to[unknown[i]] = 0.0 + job->from[i];
 }
 
-/* Makes x = T' force, over the band and the border's dofs. */
+/* Computes x = T' force, over the band and the border's dofs. */
 void fu_gather(const fu_model *model, const double *force, double *x)
 {
     const transfer job = {model, force, x};
@@ -82,20 +82,20 @@ static void spread_part(const void *what, int part, int parts)
     }
 }
 
-/* Makes dofs = T x. */
+/* Computes dofs = T x. */
 void fu_spread(const fu_model *model, const double *x, double *dofs)
 {
     const transfer job = {model, x, dofs};
     fu_share(model->threads, model->n_dof, spread_part, &job);
 }
 
-/* Returns the number under which `fu_add` knows the k-th unknown beyond the dofs. */
+/* Returns the number of the k-th unknown beyond the dofs for `fu_add`. */
 int fu_extra(const fu_model *model, int k)
 {
     return model->n_dof + k;
 }
 
-/* Lets a span take in a row. */
+/* Extends a span to a row. */
 static void touch(fu_span *span, int row)
 {
     if (row < span->first) span->first = row;
@@ -110,9 +110,10 @@ static void add(fu_system *s, int row, int column, double value)
     if (row < n && column < n)
         s->K[(long)column * FU_BAND_ROWS(s->width) + FU_BAND_DIAGONAL(s->width) + row - column] += value;
     else if (row >= n && column >= n) {
-        if (value == 0.0) return; /* most of what a joint has */
+        if (value == 0.0) return; /* most entries of a joint */
         const int at = fu_fronts_at(s->fronts, row - n, column - n);
-        s->D[at] += at < s->fronts->size ? value : fabs(value); /* what has no place is not to cancel: it is refused */
+        /* entries without a place must not cancel: they are refused */
+        s->D[at] += at < s->fronts->size ? value : fabs(value);
     } else {
         const int in_band = row < n ? row : column, half = s->half[in_band];
         const int strip = fu_strip_of(s, (row < n ? column : row) - n, half / FU_HALVES);
@@ -125,8 +126,8 @@ static void add(fu_system *s, int row, int column, double value)
     }
 }
 
-/* Adds T' value T to a system at dofs (or unknowns beyond them, fu_extra) i, j, and notes which rows of the border that
- * touches; to no system (null) nothing. */
+/* Adds T' value T to a system at dofs (or unknowns beyond them, fu_extra) i, j, and extends the row spans of the
+ * border; without a system (null) does nothing. */
 void fu_add(const fu_model *model, fu_system *system, int i, int j, double value)
 {
     if (!system) return;
@@ -142,8 +143,7 @@ void fu_add(const fu_model *model, fu_system *system, int i, int j, double value
         for (int m = 0; m < b.n; ++m) add(system, a.unknown[k], b.unknown[m], value * a.value[k] * b.value[m]);
 }
 
-/* Adds T' K T of an n x n matrix, row by row, over the dofs from `first` on to a system; to no system (null) nothing.
- */
+/* Adds T' K T of an n x n matrix, by rows, over the dofs from `first` on to a system, if there is one. */
 void fu_add_element_matrix(const fu_model *model, int first, int n, const double *K, fu_system *system)
 {
     if (!system) return;
@@ -164,8 +164,7 @@ void fu_add_element_matrix(const fu_model *model, int first, int n, const double
     }
 }
 
-/* Adds T' values T of a block over the border's unknowns from these on, which stand together in a front, rows and
- * columns both. */
+/* Adds T' values T of a block over contiguous unknowns of the border in one front, rows and columns both. */
 static void add_together(fu_system *s, int row, int rows, int column, int columns, double factor,
                          const double *restrict values, int by_row, int by_column)
 {
@@ -179,7 +178,7 @@ static void add_together(fu_system *s, int row, int rows, int column, int column
     }
 }
 
-/* Adds T' values T to a system: of row i and column j the factor times values[i by_row + j by_column]. */
+/* Adds T' values T to a system: at row i and column j the factor times values[i by_row + j by_column]. */
 void fu_add_block(const fu_model *model, fu_system *system, fu_side rows, fu_side columns, double factor,
                   const double *values, int by_row, int by_column)
 {
@@ -199,15 +198,15 @@ void fu_add_block(const fu_model *model, fu_system *system, fu_side rows, fu_sid
         }
 }
 
-/* Adds an n x n matrix, row by row, over the dofs of a body from `dof` on. */
+/* Adds an n x n matrix, by rows, over the dofs of a body from `dof` on. */
 void fu_add_body(const fu_model *model, fu_system *s, int dof, int n, const double *values)
 {
     const int first = model->unknown_of_dof[dof] - s->n;
     add_together(s, first, n, first, n, 1.0, values, n, 1);
 }
 
-/* Adds a row of the border and the column that is its transpose: a factor times n values over the dofs `at`. row: as
- * fu_extra numbers it. To no system (null) nothing. */
+/* Adds a row of the border and its transpose as a column: a factor times n values over the dofs `at`. row: numbered by
+ * fu_extra. Without a system (null) does nothing. */
 void fu_add_row_and_column(const fu_model *model, fu_system *system, int row, int n, const int *at, const double *value,
                            double factor)
 {
@@ -226,20 +225,20 @@ void fu_add_row_and_column(const fu_model *model, fu_system *system, int row, in
     }
 }
 
-/* The size of dofs: the largest of n, times their weights, of each part that threads have. */
+/* The size of dofs: the largest of n weighted dofs, of each part of threads. */
 typedef struct {
     int n;
     const double *weight, *dofs;
     double *largest;
 } measure;
 
-/* Makes the size of a part of the dofs. */
+/* Computes the size of a part of the dofs. */
 static void size_part(const void *what, int part, int parts)
 {
     const measure *job = what;
     const double *weight = job->weight, *dofs = job->dofs;
     const fu_range range = fu_part_of(job->n, FU_DOFS_APART, part, parts);
-    double largest[MAXIMA] = {0.0}, check = 0.0; /* a maximum does not see a NaN */
+    double largest[MAXIMA] = {0.0}, check = 0.0; /* a maximum does not detect a NaN */
     int i = range.first;
     for (; i + MAXIMA <= range.end; i += MAXIMA)
         for (int k = 0; k < MAXIMA; ++k) {
@@ -255,8 +254,7 @@ static void size_part(const void *what, int part, int parts)
     job->largest[part] = check + fmax(fmax(largest[0], largest[1]), fmax(largest[2], largest[3]));
 }
 
-/* Returns the largest of what the dofs, times their weights, move points by, as a length, m; not a number where one is
- * none. */
+/* Returns the largest displacement of points by the weighted dofs, as a length, m; NaN if any is. */
 double fu_weighted_size(const fu_model *model, const double *weight, const double *dofs)
 {
     double alone;
@@ -268,7 +266,7 @@ double fu_weighted_size(const fu_model *model, const double *weight, const doubl
     return size;
 }
 
-/* Returns the largest of what the dofs move points by, as a length, m; not a number where one is none. */
+/* Returns the largest displacement of points by the dofs, as a length, m; NaN if any is. */
 double fu_size(const fu_model *model, const double *dofs)
 {
     return fu_weighted_size(model, model->weight, dofs);

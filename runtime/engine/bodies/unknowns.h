@@ -4,12 +4,12 @@
 
 #include "linear/linear.h"
 
-/* Entries of model->unknown_of_dof: the place of the unknown that a dof is; that it is fixed; from FU_COMBINED on
- * downwards, the number of the combination of unknowns that it is. */
+/* Entries of model->unknown_of_dof: the unknown of a dof; FU_FIXED; or, from FU_COMBINED downwards, the number of its
+ * combination of unknowns. */
 enum { FU_FIXED = -1, FU_COMBINED = -2 };
 
-/* Rows or columns of a block of a system: dofs or unknowns beyond them, as fu_add numbers them; `together`: all dofs of
- * a body, or all own unknowns of a coupling, one behind the other. */
+/* Rows or columns of a block of a system: dofs or unknowns beyond them, numbered as by fu_add; `together`: all dofs of
+ * a body, or all internal unknowns of a coupling, in sequence. */
 typedef struct {
     int n;
     const int *at;

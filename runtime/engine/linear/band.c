@@ -1,12 +1,10 @@
-/* Symmetric positive definite band matrices: Cholesky by LAPACK, substitution here. LAPACK's calls a BLAS kernel for
- * each column, which for the short columns of cables takes three times as long as their arithmetic
- * (tests/benchmarks/linear_cost.py).
- *
- * Storage: columns of the lower triangle from the diagonal down, width + 1 each, and columns of a unit matrix to a
- * whole number of groups: the columns of a group are eliminated at once. */
+/* Symmetric positive definite band matrices: Cholesky factorisation by LAPACK, substitution here. LAPACK calls a BLAS
+ * kernel for each column, which takes three times as long as the arithmetic of the short columns of cables
+ * (tests/benchmarks/linear_cost.py). Storage: columns of the lower triangle from the diagonal down, width + 1 each, and
+ * columns of a unit matrix up to a whole number of groups, whose columns are eliminated at once. */
 #include "linear/linear.h"
 
-/* Makes Cholesky's columns those of L D L': L below the diagonal, 1/D on it. */
+/* Converts Cholesky's columns to those of L D L': L below the diagonal, 1/D on it. */
 void fu_band_scale(int n, int width, double *A)
 {
     for (int j = 0; j < n; ++j) {
@@ -17,7 +15,7 @@ void fu_band_scale(int n, int width, double *A)
     }
 }
 
-/* Factors A = L D L': L below the diagonal, 1/D on it; returns not zero where A is not positive definite. */
+/* Factors A = L D L': L below the diagonal, 1/D on it; returns nonzero if A is not positive definite. */
 int fu_band_factor(const fu_lapack *lapack, int n, int width, double *A)
 {
     int stride = width + 1, info = 0;
@@ -27,7 +25,7 @@ int fu_band_factor(const fu_lapack *lapack, int n, int width, double *A)
     return info;
 }
 
-/* Makes x = L^-1 x, where x is zero before `first`: the groups of columns that begin before n. */
+/* Computes x = L^-1 x, with x zero before `first`, for the groups of columns that begin before n. */
 void fu_band_forward(int n, int width, const double *A, int first, double *x)
 {
     const int stride = width + 1;
@@ -47,7 +45,7 @@ void fu_band_forward(int n, int width, const double *A, int first, double *x)
     }
 }
 
-/* Makes x = L'^-1 D^-1 x: of the same groups. */
+/* Computes x = L'^-1 D^-1 x for the same groups. */
 void fu_band_backward(int n, int width, const double *A, double *x)
 {
     const int stride = width + 1;
@@ -72,8 +70,8 @@ void fu_band_backward(int n, int width, const double *A, double *x)
     }
 }
 
-/* Makes x = A^-1 x, where x is zero before `first`. Entries of x beyond n are read and left as they are: there must be
- * FU_BAND_BEYOND(width) of them, all finite. */
+/* Computes x = A^-1 x, with x zero before `first`. FU_BAND_BEYOND(width) entries of x beyond n are read and kept; they
+ * must be finite. */
 void fu_band_solve(int n, int width, const double *A, int first, double *x)
 {
     fu_band_forward(n, width, A, first, x);

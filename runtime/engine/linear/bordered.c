@@ -1,11 +1,11 @@
 /* Bordered band systems: the chain of a cable's nodes is banded; riders, joints, and nodes where more than two cables
- * meet, are the border. A column of it has a solution in the chains that it touches and nowhere else. */
+ * meet, are the border. The solution for a column of the border is nonzero in the chains that it touches only. */
 #include "base/simd.h"
 #include "linear/linear.h"
 
 #include <math.h>
 
-#define NEGLIGIBLE_ENTRY 1e-32 /* of a column's largest entry: smaller ones add nothing to a solution */
+#define NEGLIGIBLE_ENTRY 1e-32 /* of a column's largest entry: smaller ones do not change a solution */
 
 void fu_system_clear(fu_system *s)
 {
@@ -38,7 +38,7 @@ static int size_of(const fu_system *s, int chain)
     return s->chains[chain + 1] - s->chains[chain];
 }
 
-/* Returns whether a chain is symmetric and positive definite; then it is factored in L. */
+/* Factors a chain in L if it is symmetric and positive definite; returns whether it is. */
 static int factor_symmetric(fu_system *s, const fu_lapack *lapack, int chain)
 {
     if (fu_is_twisted(s, chain)) return !fu_twisted_factor(s, lapack, chain);
@@ -47,14 +47,14 @@ static int factor_symmetric(fu_system *s, const fu_lapack *lapack, int chain)
            !fu_band_factor(lapack, size_of(s, chain), s->width, L);
 }
 
-/* Returns whether a chain is nearly so; then it is factored in L and U. */
+/* Factors a chain in L and U if it is nearly symmetric and positive definite; returns whether it is. */
 static int factor_unpivoted(fu_system *s, int chain)
 {
     double *L = s->L + fu_factor_at(s, chain), *U = s->U + fu_factor_at(s, chain);
     return fu_unsymmetric_pack(s, chain, L, U) && !fu_unsymmetric_factor(size_of(s, chain), s->width, L, U);
 }
 
-/* Factors each chain by the quickest way that it has; returns 0, or 1 + the row at which the band is singular. */
+/* Factors each chain by the fastest applicable method; returns 0, or 1 + the row at which the band is singular. */
 int fu_system_factor_band(fu_system *s, const fu_lapack *lapack)
 {
     int width = s->width, rows = FU_BAND_ROWS(width), info = 0;
@@ -70,7 +70,7 @@ int fu_system_factor_band(fu_system *s, const fu_lapack *lapack)
     return 0;
 }
 
-/* Inverts the band, which is factored and definite and stays as it is, where it is small enough to have an inverse. */
+/* Inverts a factored, definite and constant band if it is small enough. */
 void fu_system_invert_band(fu_system *s)
 {
     s->inverted = s->inverse != 0 && s->definite;
@@ -82,7 +82,7 @@ void fu_system_invert_band(fu_system *s)
     }
 }
 
-/* Makes x = K^-1 x in a chain by the inverse of the band, where x is zero but in these rows of it. */
+/* Computes x = K^-1 x in a chain by the inverse of the band, with x zero outside of these rows. */
 static void multiply_chain(const fu_system *s, int chain, fu_span of, double *x)
 {
     const int n = size_of(s, chain);
@@ -94,7 +94,7 @@ static void multiply_chain(const fu_system *s, int chain, fu_span of, double *x)
     for (int i = 0; i < n; ++i) x[i] = solution[i];
 }
 
-/* Makes x = K^-1 x in a chain, where x is zero but in these rows. */
+/* Computes x = K^-1 x in a chain, with x zero outside of these rows. */
 static void solve_chain(const fu_system *s, const fu_lapack *lapack, int chain, fu_span of, double *x)
 {
     int n = size_of(s, chain), start = s->chains[chain], width = s->width, rows = FU_BAND_ROWS(width), one = 1, info;
@@ -110,7 +110,7 @@ static void solve_chain(const fu_system *s, const fu_lapack *lapack, int chain, 
                        x + start, &n, &info);
 }
 
-/* Returns the strip of an unknown of the border in a chain, -1 where there is none. */
+/* Returns the strip of an unknown of the border in a chain, -1 if there is none. */
 int fu_strip_of(const fu_system *s, int k, int chain)
 {
     for (int i = s->first_strip[k]; i < s->first_strip[k + 1]; ++i)
@@ -118,7 +118,7 @@ int fu_strip_of(const fu_system *s, int k, int chain)
     return -1;
 }
 
-/* Returns a piece of a row of C times the rows `of` a column. */
+/* Returns the product of a block of a row of C with the rows `of` a column. */
 static double times(const fu_system *s, const fu_matrix_block *p, fu_span of, const double *x)
 {
     const double *row = s->C + s->strips[p->strip].at;
@@ -128,8 +128,8 @@ static double times(const fu_system *s, const fu_matrix_block *p, fu_span of, co
     return sum;
 }
 
-/* Finds the rows that count of a column of X in a chain, by halves; returns how many pieces they are. The column decays
- * away from what it touches, in the end to numbers so small that the processor is slow with them. */
+/* Finds the significant rows of a column of X in a chain, by halves; returns the number of blocks. The column decays
+ * away from the rows that it touches, finally to subnormal numbers, which slow down the processor. */
 int fu_matrix_blocks(const fu_system *s, int strip, const double *x, fu_matrix_block *pieces)
 {
     const int chain = s->strips[strip].chain;
@@ -147,7 +147,7 @@ int fu_matrix_blocks(const fu_system *s, int strip, const double *x, fu_matrix_b
     return n;
 }
 
-/* Makes a column of X = K^-1 B in a chain; returns how many pieces it has. */
+/* Computes a column of X = K^-1 B in a chain; returns the number of its blocks. */
 static int solve_column(fu_system *s, const fu_lapack *lapack, int strip, fu_matrix_block *pieces)
 {
     const int chain = s->strips[strip].chain, begin = s->chains[chain], end = s->chains[chain + 1];
@@ -161,7 +161,7 @@ static int solve_column(fu_system *s, const fu_lapack *lapack, int strip, fu_mat
     return fu_matrix_blocks(s, strip, x, pieces);
 }
 
-/* Makes the columns of X and the pieces of C, but those that stay. */
+/* Computes the columns of X and the blocks of C that are not constant. */
 static void couple(fu_system *s, const fu_lapack *lapack)
 {
     for (int c = 0; c < s->n_chains; ++c) {
@@ -180,7 +180,7 @@ static void couple(fu_system *s, const fu_lapack *lapack)
     }
 }
 
-/* Lets the first `columns` columns and rows of the border stay as they are, beside the band, which is factored. */
+/* Keeps the first `columns` columns and rows of the border constant, beside a factored band. */
 void fu_system_keep_border(fu_system *s, const fu_lapack *lapack, int columns)
 {
     couple(s, lapack);
@@ -194,15 +194,15 @@ void fu_system_keep_border(fu_system *s, const fu_lapack *lapack, int columns)
     }
 }
 
-/* Lets none of the border stay. */
+/* Keeps nothing of the border constant. */
 void fu_system_release_border(fu_system *s)
 {
     s->constant = 0;
     for (int c = 0; c < s->n_chains; ++c) s->constant_columns[c] = s->constant_rows[c] = 0;
 }
 
-/* Makes and factors the Schur complement of the factored band, D - C K^-1 B, in place of D or beside it; returns 0, or
- * 1 + the unknown of the border at which it is singular. */
+/* Computes and factors the Schur complement of the factored band, D - C K^-1 B, in place of D or beside it; returns 0,
+ * or 1 + the unknown of the border at which it is singular. */
 int fu_system_factor_border(fu_system *s, const fu_lapack *lapack)
 {
     int m = s->m, info = 0;
@@ -214,10 +214,10 @@ int fu_system_factor_border(fu_system *s, const fu_lapack *lapack)
         for (const fu_matrix_block *p = columns; p < columns + s->n_columns[c]; ++p)
             for (const fu_matrix_block *r = rows; r < rows + s->n_rows[c]; ++r)
                 if (r->rows.first < p->rows.end &&
-                    p->rows.first < r->rows.end) /* else to find the place takes longer */
+                    p->rows.first < r->rows.end) /* otherwise the search for the place takes longer */
                     s->D[fu_fronts_at(s->fronts, r->k, p->k)] -= times(s, r, p->rows, s->X + s->strips[p->strip].x);
     }
-    if (s->D[s->fronts->size] != 0.0) return 1; /* the order of elimination has no place for it */
+    if (s->D[s->fronts->size] != 0.0) return 1; /* the order of elimination has no place for an entry */
     if (s->fronts->n > 1) return fu_fronts_factor(s->fronts, s->D, &s->factors, lapack);
     if (m <= FU_SMALL_MOST) return fu_small_factor(m, s->D, s->pivot_border);
     lapack->dgetrf(&m, &m, s->D, &m, s->pivot_border, &info);
@@ -247,18 +247,18 @@ FU_INLINE void take(const fu_system *s, const double *y, double *x)
     }
 }
 
-/* Takes from x, of the band, what the border's solution y adds to the right side there, K^-1 B y. */
+/* Subtracts from x, of the band, the contribution K^-1 B y of the border's solution y. */
 static void take_columns(const fu_system *s, const double *y, double *x);
 FU_IN_LANES(take_columns, take, (const fu_system *s, const double *y, double *x), (s, y, x))
 
-/* Makes zero what goes on beyond the unknowns: a step that has overflowed leaves no numbers there, and no later step
- * would have any. */
+/* Sets the entries beyond the unknowns to zero: a step that overflows leaves NaN there, which later steps would
+ * keep. */
 static void clear_beyond(const fu_system *s, double *y)
 {
     for (int i = s->m; i < s->m + FU_BAND_BEYOND(s->width); ++i) y[i] = 0.0;
 }
 
-/* Solves in place: x is the right side, then the solution, and goes on FU_BAND_BEYOND beyond the unknowns. */
+/* Solves in place: x is the right side, then the solution, with FU_BAND_BEYOND entries beyond the unknowns. */
 void fu_system_solve(const fu_system *s, const fu_lapack *lapack, double *x)
 {
     double *y = x + s->n;
@@ -273,7 +273,7 @@ void fu_system_solve(const fu_system *s, const fu_lapack *lapack, double *x)
     take_columns(s, y, x);
 }
 
-/* Does the same where the right side is zero in the band. */
+/* Solves for a right side that is zero in the band. */
 void fu_system_solve_border(const fu_system *s, const fu_lapack *lapack, double *x)
 {
     double *y = x + s->n;

@@ -1,7 +1,7 @@
-/* Chains of a bordered band system: where their factors stand, and what of the matrix is packed into them. */
+/* Chains of a bordered band system: places of their factors, and packing of the matrix into them. */
 #include "linear/linear.h"
 
-/* of the diagonals: more than rounding leaves between the two halves of a symmetric matrix */
+/* of the diagonals: above the rounding difference between the halves of a symmetric matrix */
 #define SYMMETRY_TOLERANCE 1e-10
 
 /* Returns where a chain's columns of L and U begin. */
@@ -16,8 +16,8 @@ double *fu_factor_of(const fu_system *s, int chain)
     return s->L + fu_factor_at(s, chain);
 }
 
-/* Makes, of K between these rows, the lower half in L as band.c wants it, backwards with the last row first; returns
- * zero where K is not symmetric or its diagonal not positive. */
+/* Packs the lower half of K between these rows into L in the form of band.c, backwards with the last row first; returns
+ * zero if K is not symmetric or its diagonal not positive. */
 int fu_pack(const fu_system *s, fu_span of, int backwards, double *L)
 {
     const int n = of.end - of.first, width = s->width, rows = FU_BAND_ROWS(width), stride = width + 1;
@@ -28,7 +28,7 @@ int fu_pack(const fu_system *s, fu_span of, int backwards, double *L)
         double *column = L + (long)j * stride;
         column[0] = diagonal;
         for (int i = 1; i <= most; ++i) {
-            const double *other = at + (long)next * i * rows; /* the diagonal of the column i further on */
+            const double *other = at + (long)next * i * rows; /* the diagonal of the column i columns further */
             const double below = backwards ? other[i] : at[i], above = backwards ? at[-i] : other[-i],
                          gap = below - above;
             if (!(gap * gap <= SYMMETRY_TOLERANCE * SYMMETRY_TOLERANCE * diagonal * other[0])) return 0;

@@ -4,12 +4,12 @@
 
 #include <math.h>
 
-#define DEPENDENT 1e-10 /* of its diagonal: what is left of a row that the basic ones imply */
+#define DEPENDENT 1e-10 /* of its diagonal: the remainder of a row that depends on the basic ones */
 #define MOST_PIVOTS 1000
 
 enum { MOST = FU_MOST_COMPLEMENTARY };
 
-/* Solves the basic part of G y = column i by Cholesky's method; returns what of G's diagonal i the basic rows leave. */
+/* Solves the basic part of G y = column i by Cholesky's method; returns the Schur complement of G's diagonal i. */
 static double complement_of(int n, const double *G, int n_basic, const int *basic, int i, double *y)
 {
     double L[MOST * MOST], left = G[i * n + i];
@@ -31,8 +31,7 @@ static double complement_of(int n, const double *G, int n_basic, const int *basi
     return left;
 }
 
-/* Finds, of the rows that are not basic, those with w = 0: such that others imply, and such that join the basic ones.
- */
+/* Classifies the rows outside the basis with w = 0: those that depend on others, and those that join the basis. */
 static void sort_the_rest(int n, const double *G, const double *b, double least, const double *x, int *kind,
                           int n_basic, int *basic)
 {
@@ -46,9 +45,9 @@ static void sort_the_rest(int n, const double *G, const double *b, double least,
     }
 }
 
-/* Finds x >= 0 with w = G x + b >= 0 and x w = 0, for a symmetric G (n x n) without negative eigenvalues, by the dual
- * method of Goldfarb and Idnani (1983): basic are rows that do not depend on each other, with w = 0; dependent rows
- * have w = 0 with them. w within `least` is zero. Returns not zero where there is no solution. */
+/* Finds x >= 0 with w = G x + b >= 0 and x w = 0, for a symmetric positive semidefinite G (n x n), by the dual method
+ * of Goldfarb and Idnani (1983). Basic rows are independent and have w = 0; dependent rows have w = 0 with them. w
+ * within `least` is zero. Returns nonzero without a solution. */
 int fu_complement(int n, const double *G, const double *b, double least, double *x, int *kind)
 {
     int basic[MOST], n_basic = 0, entering = -1;

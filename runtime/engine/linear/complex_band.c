@@ -1,17 +1,15 @@
-/* Complex band matrices that are symmetric, or but for a little, factored without pivots: A = L D L', or A = L D U'.
- *
- * The stages of Radau IIA have A = M + z D + z^2 K with z = h/L and an argument of -49 degrees. Times conj(z)/|z|, the
- * real part of A is cos 49 (M + |z|^2 K) + |z| D, and positive definite where the real system's M + s D + s^2 K is, as
- * |z| < s = h/gamma and D takes energy. The values x* A x then lie in a sector of less than a half plane. So do those
- * of the inverse, of its diagonal blocks, and of their inverses, the Schur complements: no pivot is small beside its
- * column. What is not symmetric must be small, as in unsymmetric_band.c.
- *
- * Storage: columns of the lower triangle from the diagonal down, FU_COMPLEX_STRIDE numbers each with zeros beyond the
- * band, real and imaginary parts apart; those of the upper one, transposed, likewise. */
+/* Complex band matrices that are symmetric, or nearly so, factored without pivots: A = L D L', or A = L D U'. The
+ * stages of Radau IIA have A = M + z D + z^2 K with z = h/L and an argument of -49 degrees. Times conj(z)/|z|, the real
+ * part of A is cos 49 (M + |z|^2 K) + |z| D. It is positive definite if the real system's M + s D + s^2 K is, since |z|
+ * < s = h/gamma and D is dissipative. The values x* A x then lie in a sector of less than a half plane. So do those of
+ * the inverse, of its diagonal blocks, and of their inverses, the Schur complements: no pivot is small beside its
+ * column. The unsymmetric part must be small, as in unsymmetric_band.c. Storage: columns of the lower triangle from the
+ * diagonal down, FU_COMPLEX_STRIDE numbers each with zeros beyond the band, real and imaginary parts apart; those of
+ * the upper one, transposed, likewise. */
 #include "base/simd.h"
 #include "linear/complex_system.h"
 
-/* of the diagonal: what elimination must leave of it where the matrix is not symmetric */
+/* of the diagonal: least pivot of a matrix that is not symmetric */
 #define MIN_PIVOT 1e-8
 
 /* Returns 1 / d. */
@@ -20,7 +18,7 @@ static fu_complex inverse_of(double re, double im)
     return fu_complex_quotient((fu_complex){1.0, 0.0}, (fu_complex){re, im});
 }
 
-/* Makes y -= a f over whole lanes, for n numbers. */
+/* Computes y -= a f over whole SIMD blocks, for n numbers. */
 FU_INLINE void subtract(int n, const double *a_re, const double *a_im, fu_complex f, double *y_re, double *y_im)
 {
     for (int i = 0; i < n; i += FU_LANES) {
@@ -30,7 +28,7 @@ FU_INLINE void subtract(int n, const double *a_re, const double *a_im, fu_comple
     }
 }
 
-/* Makes a column that below the diagonal has `below` entries one of L or of U. */
+/* Scales a column with `below` entries below the diagonal to one of L or U. */
 FU_INLINE void scale_column(int below, fu_complex scale, double *re, double *im)
 {
     for (int k = 1; k <= below; ++k) {
@@ -133,7 +131,7 @@ static void unsymmetric_in_lanes(int n, int width, double *const L[2], double *c
 FU_IN_LANES(unsymmetric_in_lanes, factor_unsymmetric,
             (int n, int width, double *const L[2], double *const U[2], int *failed), (n, width, L, U, failed))
 
-/* Factors in place: L and U' below the diagonal, 1/D on both; returns not zero where a pivot is too small. */
+/* Factors in place: L and U' below the diagonal, 1/D on both; returns nonzero if a pivot is too small. */
 int fu_complex_unsymmetric_factor(int n, int width, double *const L[2], double *const U[2])
 {
     int failed;
@@ -141,8 +139,8 @@ int fu_complex_unsymmetric_factor(int n, int width, double *const L[2], double *
     return failed;
 }
 
-/* Makes x + i y = A^-1 (x + i y), which is zero before `first`, of a symmetric A with L as U; both go on
- * FU_COMPLEX_BEYOND numbers beyond n, which are finite and stay. */
+/* Computes x + i y = A^-1 (x + i y), zero before `first`, for a symmetric A with L as U. FU_COMPLEX_BEYOND numbers of
+ * both beyond n are finite and kept. */
 FU_IN_LANES(fu_complex_band_solve, solve,
             (int n, int width, double *const L[2], double *const U[2], int first, double *x, double *y),
             (n, width, L, U, first, x, y))

@@ -1,4 +1,4 @@
-/* The border of a complex system, front by front. */
+/* Elimination of the border of a complex system by fronts. */
 #include "base/simd.h"
 #include "linear/complex_system.h"
 
@@ -15,14 +15,14 @@
 #define BACK substituted
 #define FACTOR zgetrf
 
-/* Makes a column of n what the pivots from `from` to `to` leave of it. */
+/* Eliminates the pivots `from` to `to` from a column of n. */
 static void eliminated(const fu_complex *F, int n, int from, int to, fu_complex *column)
 {
     for (int k = from; k < to; ++k)
         for (int i = k + 1; i < n; ++i) fu_complex_subtract_product(&column[i], F[k * n + i], column[k]);
 }
 
-/* Makes the first `done` of n unknowns from their right side and the others. */
+/* Computes the first `done` of n unknowns from their right side and the others. */
 static void substituted(const fu_complex *F, int n, int done, fu_complex *x)
 {
     for (int k = n - 1; k >= 0; --k) {

@@ -1,6 +1,5 @@
-/* Complex numbers, laid out as LAPACK's. Not every compiler has C's own (MSVC does not), and their products look after
- * infinities, which no solution has.
- */
+/* Complex numbers in LAPACK's layout. Some compilers (MSVC) lack C's own, whose products also handle infinities, which
+ * no solution has. */
 #ifndef FUNICULAR_LINEAR_COMPLEX_NUMBER_H
 #define FUNICULAR_LINEAR_COMPLEX_NUMBER_H
 

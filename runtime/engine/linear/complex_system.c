@@ -1,4 +1,4 @@
-/* Bordered band systems of complex numbers, solved as linear/bordered.c solves real ones. */
+/* Bordered band systems of complex numbers, solved as by linear/bordered.c. */
 #include "base/workspace.h"
 #include "linear/complex_system.h"
 
@@ -16,7 +16,7 @@ static fu_complex *take(double *scratch, long *taken, long n)
     return (fu_complex *)fu_take(scratch, taken, FU_DOUBLES(n, fu_complex));
 }
 
-/* Takes the arrays of a system as large as the real one from a work space (fu_take). */
+/* Takes the arrays of a system of the size of the real one from a work space (fu_take). */
 void fu_complex_system_take(fu_complex_system *c, const fu_system *s, double *scratch, long *taken)
 {
     const long n = s->n, m = s->m, beside = s->n_strip_rows, pieces = FU_HALVES * (long)s->n_strips;
@@ -48,7 +48,7 @@ void fu_complex_system_take(fu_complex_system *c, const fu_system *s, double *sc
     }
 }
 
-/* Makes the matrix zero. */
+/* Sets the matrix to zero. */
 void fu_complex_system_clear(fu_complex_system *c, const fu_system *s)
 {
     const size_t n = (size_t)s->n, beside = (size_t)s->n_strip_rows;
@@ -61,7 +61,7 @@ void fu_complex_system_clear(fu_complex_system *c, const fu_system *s)
     memset(c->D, 0, sizeof(fu_complex) * (size_t)s->fronts->size);
 }
 
-/* Adds the real matrix times a factor. */
+/* Adds a factor times the real matrix. */
 void fu_complex_system_accumulate(fu_complex_system *c, const fu_system *s, fu_complex factor)
 {
     const long rows = storage_rows(s), corner = s->fronts->size;
@@ -79,7 +79,7 @@ void fu_complex_system_accumulate(fu_complex_system *c, const fu_system *s, fu_c
     for (long i = 0; i < corner; ++i) fu_complex_add(&c->D[i], factor, s->D[i]);
 }
 
-/* Makes the lower half of a chain, or the upper one, transposed, as complex_band.c wants it. next: from an entry of a
+/* Packs the lower half of a chain, or the upper one transposed, in the form of complex_band.c. next: from an entry of a
  * column, or of a row, to the next one. */
 static void pack(const fu_complex_system *c, const fu_system *s, int chain, long next, double *const half[2])
 {
@@ -96,7 +96,7 @@ static void pack(const fu_complex_system *c, const fu_system *s, int chain, long
     }
 }
 
-/* Factors a chain without pivots in L, or in L and U; returns not zero where a pivot is too small. */
+/* Factors a chain without pivots in L, or in L and U; returns nonzero if a pivot is too small. */
 static int factor_unpivoted(fu_complex_system *c, const fu_system *s, int chain)
 {
     const int first = s->chains[chain], n = s->chains[chain + 1] - first;
@@ -111,8 +111,8 @@ static int factor_unpivoted(fu_complex_system *c, const fu_system *s, int chain)
     return fu_complex_unsymmetric_factor(n, s->width, L, U);
 }
 
-/* Factors the band: a chain without pivots where the real one was so, as the complex one has none that are small then;
- * but for symmetric ones all of it must be there. Returns 0, or not 0 where it is singular. */
+/* Factors the band: a chain without pivots if the real one was factored so, since the complex one then has no small
+ * pivots; symmetric ones excepted, all of it must be present. Returns 0, or nonzero if it is singular. */
 static int factor_band(fu_complex_system *c, const fu_system *s, const fu_lapack *lapack)
 {
     int width = s->width, rows = FU_BAND_ROWS(width), info = 0;
@@ -127,7 +127,7 @@ static int factor_band(fu_complex_system *c, const fu_system *s, const fu_lapack
     return 0;
 }
 
-/* Makes x = K^-1 x in a chain, where x is zero before the row `from`. */
+/* Computes x = K^-1 x in a chain, with x zero before the row `from`. */
 static void solve_chain(const fu_complex_system *c, const fu_system *s, const fu_lapack *lapack, int chain, int from,
                         fu_complex *x)
 {
@@ -150,8 +150,8 @@ static void solve_chain(const fu_complex_system *c, const fu_system *s, const fu
     for (int i = 0; i < n; ++i) x[first + i] = (fu_complex){re[i], im[i]};
 }
 
-/* Makes a column of X in a chain and finds the rows of it that count, unless B has none; returns how many pieces they
- * are. size: work space of the band's size. */
+/* Computes a column of X in a chain and finds its significant rows, unless B is empty there; returns the number of
+ * blocks. size: work space of the band's size. */
 static int solve_column(fu_complex_system *c, const fu_system *s, const fu_lapack *lapack, int strip, double *size,
                         fu_matrix_block *pieces)
 {
@@ -165,7 +165,7 @@ static int solve_column(fu_complex_system *c, const fu_system *s, const fu_lapac
     return fu_matrix_blocks(s, strip, size, pieces);
 }
 
-/* Makes the Schur complement of a chain in D. */
+/* Subtracts the contribution of a chain from D, to form the Schur complement. */
 static void subtract(fu_complex_system *c, const fu_system *s, int chain)
 {
     const int start = FU_HALVES * s->chain_start[chain];
@@ -179,8 +179,8 @@ static void subtract(fu_complex_system *c, const fu_system *s, int chain)
         }
 }
 
-/* Factors the matrix, whose rows in the border have the pieces of the factored real one; size: work space of as many
- * doubles as the band has columns. Returns 0, or not 0 where it is singular. */
+/* Factors the matrix, whose rows in the border have the blocks of the factored real one; size: work space of as many
+ * doubles as the band has columns. Returns 0, or nonzero if it is singular. */
 int fu_complex_system_factor(fu_complex_system *c, const fu_system *s, const fu_lapack *lapack, double *size)
 {
     int m = s->m, info = factor_band(c, s, lapack);
@@ -197,7 +197,7 @@ int fu_complex_system_factor(fu_complex_system *c, const fu_system *s, const fu_
     return info;
 }
 
-/* Solves for the right side in x, in place. */
+/* Solves in place for the right side in x. */
 void fu_complex_system_solve(const fu_complex_system *c, const fu_system *s, const fu_lapack *lapack)
 {
     int m = s->m, one = 1, info;

@@ -1,12 +1,11 @@
-/* Complex matrices laid out as an fu_system: linear/complex_system.c, linear/complex_band.c. */
+/* Complex matrices in the layout of an fu_system: linear/complex_system.c, linear/complex_band.c. */
 #ifndef FUNICULAR_LINEAR_COMPLEX_SYSTEM_H
 #define FUNICULAR_LINEAR_COMPLEX_SYSTEM_H
 
 #include "linear/complex_number.h"
 #include "linear/linear.h"
 
-/* complex_band.c: numbers of a column of the factor's storage, and those that are touched behind a column of unknowns.
- */
+/* complex_band.c: numbers of a column of the factor's storage, and those accessed behind a column of unknowns. */
 #define FU_COMPLEX_STRIDE(width) ((width) + 4)
 #define FU_COMPLEX_BEYOND(width) ((width) + 4)
 
@@ -15,7 +14,7 @@ void fu_complex_band_add(int n, int width, const double *K, fu_complex factor, d
 int fu_complex_unsymmetric_factor(int n, int width, double *const L[2], double *const U[2]);
 void fu_complex_band_solve(int n, int width, double *const L[2], double *const U[2], int first, double *x, double *y);
 
-/* [K B; C D] as an fu_system has it; real systems of several weights are combined to it. */
+/* [K B; C D] in the form of an fu_system, combined from real systems with several weights. */
 typedef struct {
     fu_complex *K, *B, *C, *D, *X;
     fu_complex *x;      /* right side, then solution */
@@ -23,9 +22,9 @@ typedef struct {
     int *n_columns;
     fu_matrix_block *columns; /* of X, by chain; those of C are the real system's */
     int *pivot_band, *pivot_border;
-    int is_lower;        /* the band is made in L, its lower half, else in K, all of it */
+    int is_lower;        /* the band is in L, its lower half, else in K, all of it */
     double *L[2], *U[2]; /* FU_COMPLEX_STRIDE x n, real and imaginary parts (complex_band.c) */
-    int *way;            /* n_chains: how each is factored, an fu_factorisation: in L, in L and U, in K (zgbtrf) */
+    int *way;            /* n_chains: factorisation of each: in L, in L and U, in K (zgbtrf) */
     double *right[2];    /* n + FU_COMPLEX_BEYOND: a right side of the band, likewise */
 } fu_complex_system;
 

@@ -1,4 +1,4 @@
-/* The border of a real system, front by front. */
+/* Elimination of the border of a real system by fronts. */
 #include "base/simd.h"
 #include "linear/linear.h"
 
@@ -15,7 +15,7 @@
 #define BACK backward
 #define FACTOR dgetrf
 
-/* Subtracts from n numbers the sum of four columns times a number each. */
+/* Subtracts from n numbers the sum of four columns times a factor each. */
 FU_INLINE void subtract_four(int n, const double *const column[4], const double factor[4], double *restrict to)
 {
     const double *a = column[0], *b = column[1], *c = column[2], *d = column[3];
@@ -27,7 +27,7 @@ FU_INLINE void subtract_four(int n, const double *const column[4], const double 
     for (; i < n; ++i) to[i] -= a[i] * w + b[i] * x + c[i] * y + d[i] * z;
 }
 
-/* Subtracts from n numbers a column times a number. */
+/* Subtracts from n numbers a column times a factor. */
 FU_INLINE void subtract_one(int n, const double *column, double factor, double *restrict to)
 {
     int i = 0;
@@ -35,7 +35,7 @@ FU_INLINE void subtract_one(int n, const double *column, double factor, double *
     for (; i < n; ++i) to[i] -= column[i] * factor;
 }
 
-/* Makes a column of n what four pivots from k on leave of it. */
+/* Eliminates four pivots from k on from a column of n. */
 FU_INLINE void eliminate_four(const double *F, int n, int k, double *restrict column)
 {
     const double *a = F + k * n, *b = a + n, *c = b + n, *d = c + n;
@@ -53,7 +53,7 @@ FU_INLINE void eliminate_one(const double *F, int n, int k, double *restrict col
     subtract_one(n - k - 1, F + k * n + k + 1, column[k], column + k + 1);
 }
 
-/* Makes a column of n what the pivots from `from` to `to` leave of it; four at once, which need it from memory once. */
+/* Eliminates the pivots `from` to `to` from a column of n, four at once, which then pass through memory once. */
 FU_INLINE void eliminated(const double *F, int n, int from, int to, double *restrict column)
 {
     int k = from;
@@ -61,8 +61,8 @@ FU_INLINE void eliminated(const double *F, int n, int from, int to, double *rest
     for (; k < to; ++k) eliminate_one(F, n, k, column);
 }
 
-/* Makes the four pivots before k from their right side, and takes what they have in the right side of those before
- * them. */
+/* Computes the four pivots before k from their right side, and subtracts their contribution from the right side of
+ * those before them. */
 FU_INLINE void substitute_four(const double *F, int n, int k, double *restrict x)
 {
     const double *d = F + (k - 1) * n, *c = d - n, *b = c - n, *a = b - n;
@@ -83,7 +83,7 @@ FU_INLINE void substitute_one(const double *F, int n, int k, double *restrict x)
     subtract_one(k - 1, d, x[k - 1], x);
 }
 
-/* Makes the first `done` of n unknowns from their right side and the others; four columns at once, as above. */
+/* Computes the first `done` of n unknowns from their right side and the others, four columns at once. */
 FU_INLINE void substituted(const double *F, int n, int done, double *restrict x)
 {
     int k = n;
@@ -97,8 +97,8 @@ FU_INLINE void substituted(const double *F, int n, int done, double *restrict x)
     for (; k > 0; --k) substitute_one(F, n, k, x);
 }
 
-/* A link of a chain: a body's unknowns and those of its spherical joint go, those of the next joint stay. Sizes that
- * the compiler knows take half the instructions. */
+/* A link of a chain: the unknowns of a body and its spherical joint are eliminated, those of the next joint are not.
+ * Sizes known to the compiler take half the instructions. */
 enum { LINK_PIVOTS = FU_FRAME_DOFS + 3, LINK = LINK_PIVOTS + 3 };
 _Static_assert(LINK_PIVOTS == 4 + 4 + 1, "as forward and backward do them");
 
@@ -147,7 +147,7 @@ int fu_fronts_factor(const fu_fronts *t, const double *matrix, fu_factors *facto
 
 FU_IN_LANES(fu_fronts_solve, real_solve, (const fu_fronts *t, const fu_factors *factors, double *y), (t, factors, y))
 
-/* Returns the place of an unknown among the neighbours of a front, -1 where it is none of them. */
+/* Returns the place of an unknown among the neighbours of a front, -1 if it is none of them. */
 static int neighbour(const fu_fronts *t, int k, int unknown)
 {
     const int *all = t->unknown + t->first[k] + t->pivots[k];
@@ -161,8 +161,8 @@ static int neighbour(const fu_fronts *t, int k, int unknown)
     return -1;
 }
 
-/* Returns where the storage has an entry of the matrix; behind its end, which is `stray`, what has no place there.
- * stride: from it to that of the next column, where both are in the same front. */
+/* Returns the place of an entry of the matrix in the storage; its end, `stray`, for an entry without a place. stride:
+ * to the place in the next column, if both are in the same front. */
 int fu_fronts_block(const fu_fronts *t, int row, int column, int *stride)
 {
     *stride = t->m;
@@ -180,7 +180,7 @@ int fu_fronts_block(const fu_fronts *t, int row, int column, int *stride)
     return beside < 0 ? t->size : t->start[k] + p * (p + s) + beside * p + t->place[row];
 }
 
-/* Returns where the storage has an entry of the matrix, as above. */
+/* Returns the place of an entry of the matrix in the storage, as above. */
 int fu_fronts_at(const fu_fronts *t, int row, int column)
 {
     int unused;

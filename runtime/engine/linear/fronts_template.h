@@ -1,13 +1,11 @@
 /* Gaussian elimination by fronts (Duff & Reid 1983) with threshold pivoting, for real and for complex numbers:
  * linear/fronts.c, linear/complex_fronts.c. A file that includes this has defined NUMBER, PREFIX(name), SIZE(x),
- * DIVIDE(x, by), TIMES(a, b), ADD(to, x), ZERO, ONE, FACTOR (LAPACK's getrf), APPLY, which makes a column what pivots
- * leave of it, FORWARD, which does that to a right side with all pivots of a front, and BACK, which makes the first
- * unknowns of a front from the others.
- *
- * A pivot is taken from the rows and columns that have all their entries, if it is not much smaller than what its
- * column has elsewhere. What finds none is left to the parent front. The last front has no other rows: LAPACK factors
- * it. Pivots are kept as their inverses. */
-/* of a column's largest entry: less is no pivot. Rounding grows by no more than its inverse. */
+ * DIVIDE(x, by), TIMES(a, b), ADD(to, x), ZERO, ONE, FACTOR (LAPACK's getrf), APPLY, which eliminates pivots from a
+ * column, FORWARD, which does so for a right side with all pivots of a front, and BACK, which computes the first
+ * unknowns of a front from the others. A pivot is taken from the fully summed rows and columns, if it is not much
+ * smaller than the largest entry of its column. Columns without a pivot are delayed to the parent front. The last front
+ * has no other rows: LAPACK factors it. Pivots are stored as their inverses. */
+/* of a column's largest entry: least pivot. Rounding grows by at most its inverse. */
 #define THRESHOLD 1e-5
 
 FU_INLINE NUMBER *PREFIX(front)(const fu_factors *f, int k)
@@ -15,7 +13,7 @@ FU_INLINE NUMBER *PREFIX(front)(const fu_factors *f, int k)
     return (NUMBER *)f->numbers + f->start[k];
 }
 
-/* Copies what the matrix has of a front of n unknowns, of which `delayed` ones stand between its own p and their s
+/* Copies the entries of the matrix of a front of n unknowns, with `delayed` ones between its own p and their s
  * neighbours. */
 FU_INLINE void PREFIX(copy)(const NUMBER *from, int p, int s, int delayed, NUMBER *F)
 {
@@ -32,7 +30,7 @@ FU_INLINE void PREFIX(copy)(const NUMBER *from, int p, int s, int delayed, NUMBE
     }
 }
 
-/* Adds to front k what its child c has left; next: where its pivots that were put off go. p: own pivots of k. */
+/* Adds the Schur complement of the child c to front k; next: place of its delayed pivots. p: own pivots of k. */
 FU_INLINE void PREFIX(add_child)(const fu_fronts *t, fu_factors *f, int k, int c, int p, int next)
 {
     const int n = f->size[k], delayed = f->pivots[k] - p;
@@ -53,7 +51,8 @@ FU_INLINE void PREFIX(add_child)(const fu_fronts *t, fu_factors *f, int k, int c
     }
 }
 
-/* Makes a front of the matrix and of what its children have left; returns 0, or 1 where there is no memory for it. */
+/* Assembles a front from the matrix and the Schur complements of its children; returns 0, or 1 without memory for
+ * it. */
 FU_INLINE int PREFIX(assemble)(const fu_fronts *t, const NUMBER *matrix, fu_factors *f, int k)
 {
     const int p = t->pivots[k], s = t->neighbours[k];
@@ -91,8 +90,7 @@ FU_INLINE void PREFIX(swap_unknowns)(int *unknowns, int a, int b)
     unknowns[b] = kept;
 }
 
-/* Returns the row of the largest entry of a column among those from k to q, -1 where that is no pivot; n: its length.
- */
+/* Returns the row of the largest entry of a column among those from k to q, -1 if that is no pivot; n: its length. */
 FU_INLINE int PREFIX(pivot)(const NUMBER *column, int k, int q, int n)
 {
     double largest = 0.0, elsewhere = 0.0;
@@ -106,8 +104,8 @@ FU_INLINE int PREFIX(pivot)(const NUMBER *column, int k, int q, int n)
     return largest >= THRESHOLD * elsewhere ? row : -1;
 }
 
-/* Eliminates as many of the first q unknowns of a front as find a pivot; returns how many. updated: work space of n,
- * how many pivots each column has been changed by. */
+/* Eliminates those of the first q unknowns of a front that have a pivot; returns their number. updated: work space of
+ * n, the number of pivots eliminated from each column. */
 FU_INLINE int PREFIX(eliminate)(NUMBER *F, int n, int q, int *rows, int *columns, int *updated)
 {
     int k = 0;
@@ -117,7 +115,7 @@ FU_INLINE int PREFIX(eliminate)(NUMBER *F, int n, int q, int *rows, int *columns
         APPLY(F, n, updated[k], k, column);
         updated[k] = k;
         const int row = PREFIX(pivot)(column, k, q, n);
-        if (row < 0) { /* later, when there are fewer left, or not here */
+        if (row < 0) { /* later, when fewer remain, or in the parent */
             --last;
             PREFIX(swap)(column, F + last * n, n, 1);
             PREFIX(swap_unknowns)(columns, k, last);
@@ -131,7 +129,7 @@ FU_INLINE int PREFIX(eliminate)(NUMBER *F, int n, int q, int *rows, int *columns
             for (int i = k + 1; i < n; ++i) column[i] = TIMES(column[i], column[k]);
             ++k;
         }
-        if (k == last && k > before) { /* those that were put off, as long as that finds any */
+        if (k == last && k > before) { /* retry postponed columns as long as that finds pivots */
             last = q;
             before = k;
         }
@@ -140,7 +138,7 @@ FU_INLINE int PREFIX(eliminate)(NUMBER *F, int n, int q, int *rows, int *columns
     return k;
 }
 
-/* Factors the matrix; returns 0, or 1 + the unknown at which it is singular or needs more memory than there is. */
+/* Factors the matrix; returns 0, or 1 + the unknown at which it is singular or exceeds the memory. */
 FU_INLINE int PREFIX(factor)(const fu_fronts *t, const NUMBER *matrix, fu_factors *f, const fu_lapack *lapack)
 {
     for (int k = 0; k < t->n; ++k) {

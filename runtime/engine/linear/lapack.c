@@ -1,9 +1,9 @@
-/* The functions of LAPACK by number, so that their one list, in linear.h, is what fills the structure. */
+/* The functions of LAPACK by number, so that their one list in linear.h fills the structure. */
 #include "linear/linear.h"
 
 #include <string.h>
 
-/* Returns the name of the k-th function, null behind the last one. */
+/* Returns the name of the k-th function, null after the last one. */
 const char *fu_lapack_name(int k)
 {
     static const char *const names[] = {

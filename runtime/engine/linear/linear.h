@@ -27,13 +27,13 @@ typedef struct {
 const char *fu_lapack_name(int k);
 void fu_lapack_attach(fu_lapack *lapack, int k, const void *function);
 
-/* band.c eliminates so many columns at once (a band is one less wide at least), and touches so many numbers beyond the
- * end of a column of n. */
+/* band.c: number of columns eliminated at once (the width of a band is at least this less one), and of numbers accessed
+ * beyond the end of a column of n. */
 #define FU_BAND_GROUP 4
 #define FU_BAND_BEYOND(width) ((width) + FU_BAND_GROUP)
 #define FU_BAND_LENGTH(n, width) ((long)(n) + FU_BAND_BEYOND(width))
 
-/* inverse.c: of how many unknowns at most a band is inverted, and the rows that a column of the inverse has. */
+/* inverse.c: largest number of unknowns of an inverted band, and rows of a column of the inverse. */
 #define FU_INVERSE_MOST 96
 #define FU_INVERSE_GROUP 16
 #define FU_INVERSE_ROWS(n) (((n) + FU_INVERSE_GROUP - 1) / FU_INVERSE_GROUP * FU_INVERSE_GROUP)
@@ -41,69 +41,69 @@ void fu_lapack_attach(fu_lapack *lapack, int k, const void *function);
 /* small.c: the largest matrix that is factored there. */
 #define FU_SMALL_MOST 24
 
-/* Chains of so many unknowns and more are eliminated from both ends towards their middle (twisted.c), by two threads
- * where there are: shorter ones take too little time to share. The columns of a factored chain beyond its unknowns:
+/* Chains of this number of unknowns and more are eliminated from both ends towards their middle (twisted.c), by two
+ * threads if there are: shorter ones are too fast to share. Then the columns of a factored chain beyond its unknowns:
  * groups, and the middle's. */
 #define FU_TWISTED_FROM 1024
 #define FU_BAND_MORE(width) ((width) + 3 * FU_BAND_GROUP)
 
-/* LAPACK's band storage for a factorisation with pivots: rows of it, and the row of the diagonal. Above the 2 width + 1
- * rows of the band there are width more, which pivots fill. */
+/* LAPACK's band storage for a factorisation with pivots: its rows, and the row of the diagonal. Above the 2 width + 1
+ * rows of the band there are width more for the fill of pivots. */
 #define FU_BAND_ROWS(width) (3 * (width) + 1)
 #define FU_BAND_DIAGONAL(width) (2 * (width))
 
-/* Parts of a chain whose rows are counted apart: what closes a loop touches both ends, and not what is between them. */
+/* Parts of a chain with separate row ranges: the closure of a loop touches both ends, and not the rows between them. */
 enum { FU_HALVES = 2 };
 
-/* Rows [first, end) of a column; end is 0 where there are none. */
+/* Rows [first, end) of a column; end is 0 if there are none. */
 typedef struct {
     int first, end;
 } fu_span;
 
-/* What unknown k of the border has in a chain: columns of B and X, a row of C. Its entry in a row of the band is at
+/* Strip of unknown k of the border in a chain: columns of B and X, a row of C. Its entry in a row of the band is at
  * `at` + row of B and C, at `x` + row of X. */
 typedef struct {
     int k, chain, at, x;
 } fu_strip;
 
-/* What a column of X, or a row of C, has in half a chain. */
+/* Block of a column of X, or a row of C, in half a chain. */
 typedef struct {
     int k, strip;
     fu_span rows;
 } fu_matrix_block;
 
-/* How a chain is factored: in L (band.c), in L and U (unsymmetric_band.c), in K (dgbtrf). */
+/* Factorisation of a chain: in L (band.c), in L and U (unsymmetric_band.c), in K (dgbtrf). */
 typedef enum { FU_SYMMETRIC, FU_UNPIVOTED, FU_PIVOTED } fu_factorisation;
 
-/* A banded matrix with a border: [K B; C D]. Only K is large. It consists of chains, which the border alone connects.
- */
+/* A banded matrix with a border: [K B; C D]. Only K is large. It consists of chains, which the border alone
+ * connects. */
 typedef struct {
     int n, width; /* band part: size, half bandwidth */
     int m;        /* border */
     int n_chains;
-    int constant;                      /* of the border, from the first on, that stay */
+    int constant;                      /* number of first unknowns of the border that are constant */
     int definite;                      /* all chains are factored as FU_SYMMETRIC */
-    int *way;                          /* n_chains: how each is factored, an fu_factorisation */
+    int *way;                          /* n_chains: factorisation of each */
     int n_strips, n_strip_rows;        /* n_strip_rows: the numbers of B, or of C */
     const fu_strip *strips;            /* by unknown of the border, then by chain */
     const int *first_strip;            /* m + 1: of each unknown of the border, and n_strips */
-    const int *chain_start, *on_chain; /* n_chains + 1: where in on_chain the strips of each chain begin */
+    const int *chain_start, *on_chain; /* n_chains + 1: first place in on_chain of the strips of each chain */
     const int *chains;                 /* n_chains + 1: the first row of each, and n */
-    const int *half;                   /* of each row of the band: 2 chain, and 1 more from the middle on */
-    double *K;                         /* LAPACK's band storage, FU_BAND_ROWS x n; of all systems of a run the same */
+    const int *half;                   /* of each row of the band: 2 chain, plus 1 from the middle on */
+    double *K;                         /* LAPACK's band storage, FU_BAND_ROWS x n; shared by all systems of a run */
     double *L, *U;                     /* (width + 1) x n, and FU_BAND_MORE for each chain */
     double *mirror;                    /* n: right sides from the ends of chains backwards */
     double *B;                         /* strip by strip */
     double *C;                         /* the border's rows, likewise */
-    double *D;                         /* as `fronts` stores it, and one number more, which stays zero */
+    double *D;                         /* stored as by `fronts`, with one more number, which must stay zero */
     const fu_fronts *fronts;
     fu_factors factors;              /* of D, unless there is only one front: then D has them */
     double *X;                       /* K^-1 B, FU_BAND_BEYOND more a strip */
-    fu_span *span_B, *span_C;        /* FU_HALVES a strip: rows of each half that are not zero; end 0 where none is */
+    fu_span *span_B, *span_C;        /* FU_HALVES a strip: nonzero rows of each half; end 0 if none */
     fu_matrix_block *columns, *rows; /* of X and C: those of a chain from FU_HALVES chain_start on */
-    int *n_columns, *n_rows, *constant_columns, *constant_rows; /* n_chains: how many pieces there are, and stay */
+    int *n_columns, *n_rows, *constant_columns, *constant_rows; /* n_chains: numbers of blocks, and of constant ones */
     int *pivot_band, *pivot_border;
-    double *inverse; /* null, or that of the band, FU_INVERSE_ROWS a column, where `inverted` */
+    double *inverse; /* null, or the inverse of the band, FU_INVERSE_ROWS a column, if `inverted` */
     int inverted;
     fu_threads *threads; /* null for one */
 } fu_system;

@@ -1,5 +1,5 @@
-/* Small full matrices, column by column: the border of a scene of few bodies, where LAPACK's calls take longer than
- * their arithmetic. */
+/* Small full matrices by columns: the border of a scene of few bodies, where LAPACK's calls take longer than their
+ * arithmetic. */
 #include "linear/linear.h"
 
 #include <math.h>
@@ -13,8 +13,8 @@ static int pivot_of(int n, const double *column, int diagonal)
     return largest;
 }
 
-/* Factors A = P L U in place, with pivots from rows; on the diagonal is 1 over that of U. Returns 0, or the number from
- * 1 on of the first pivot that is zero. */
+/* Factors A = P L U in place, with row pivots; the diagonal has 1 over that of U. Returns 0, or 1 + the index of the
+ * first zero pivot. */
 int fu_small_factor(int n, double *A, int *pivot)
 {
     int info = 0;
@@ -43,7 +43,7 @@ int fu_small_factor(int n, double *A, int *pivot)
     return info;
 }
 
-/* Makes x = A^-1 x with what fu_small_factor has left. */
+/* Computes x = A^-1 x with the factors of fu_small_factor. */
 void fu_small_solve(int n, const double *A, const int *pivot, double *x)
 {
     for (int j = 0; j < n; ++j) {

@@ -1,13 +1,11 @@
-/* Long chains: eliminated from both ends towards their middle, which is a twisted factorisation (van der Vorst 1987,
- * "Analysis of a parallel solution method for tridiagonal linear systems"; for bands Lang 1992). There is no fill
- * beyond the middle, operations are as many as from one end, and both halves are independent of each other: in the
- * factorisation, and in either half of a substitution. The order is the same for any number of threads, and so are the
- * bits.
- *
- * A chain of n unknowns has n = count + middle + count. Each half is a banded matrix of count + middle columns, the
- * second one backwards, from the chain's end on. Cholesky's factors of both, L1 and L2, have in their last columns what
- * is left of the middle block A once one half is eliminated: A - U1 = L1 L1' and A - U2 = L2 L2'. Without both halves
- * that is A - U1 - U2 = L1 L1' + L2 L2' - A. */
+/* Long chains, eliminated from both ends towards their middle: a twisted factorisation (van der Vorst 1987, "Analysis
+ * of a parallel solution method for tridiagonal linear systems"; for bands Lang 1992). There is no fill beyond the
+ * middle, the number of operations equals that from one end, and both halves are independent: in the factorisation, and
+ * in either half of a substitution. The order, and so the bits, do not depend on the number of threads. A chain of n
+ * unknowns has n = count + middle + count. Each half is a banded matrix of count + middle columns, the second one
+ * backwards from the chain's end. The last columns of Cholesky's factors of both, L1 and L2, hold the Schur complement
+ * of the middle block A after one half: A - U1 = L1 L1' and A - U2 = L2 L2'. After both halves it is A - U1 - U2 = L1
+ * L1' + L2 L2' - A. */
 #include "linear/linear.h"
 
 /* A chain in halves. L: columns of either half, those of the first one with the middle's. */
@@ -16,12 +14,12 @@ typedef struct {
     double *L[2];
 } chain_in_halves;
 
-/* What a thread does a half of. */
+/* A job shared by two threads, half each. */
 typedef struct {
     const fu_system *system;
     const fu_lapack *lapack;
     chain_in_halves chain;
-    fu_span rows; /* of x that are not zero */
+    fu_span rows; /* nonzero rows of x */
     double *x;
 } job;
 
@@ -39,7 +37,7 @@ static chain_in_halves in_halves(const fu_system *s, int chain)
     return (chain_in_halves){start, n, count, middle, {L, L + (long)(count + middle + FU_BAND_GROUP) * (s->width + 1)}};
 }
 
-/* Makes A = L L' in place of L, a banded Cholesky factor. */
+/* Replaces a banded Cholesky factor L by A = L L'. */
 static void multiply(int n, int width, double *L)
 {
     const int stride = width + 1;
@@ -52,8 +50,8 @@ static void multiply(int n, int width, double *L)
         }
 }
 
-/* Eliminates half a chain; what is left of the middle is in the last columns. The half's entry of pivot_band, which
- * only factorisations with pivots have use for, becomes not zero where the half is not symmetric or not positive
+/* Eliminates half a chain; the Schur complement of the middle is in the last columns. The half's entry of pivot_band,
+ * otherwise used by factorisations with pivots alone, becomes nonzero if the half is not symmetric or not positive
  * definite. */
 static void eliminate(const job *job, int half)
 {
@@ -76,7 +74,7 @@ static void eliminate_part(const void *what, int part, int parts)
     for (int half = part; half < 2; half += parts) eliminate(what, half);
 }
 
-/* Factors a chain of K; returns not zero where it is not symmetric or not positive definite. */
+/* Factors a chain of K; returns nonzero if it is not symmetric or not positive definite. */
 int fu_twisted_factor(fu_system *s, const fu_lapack *lapack, int chain)
 {
     const job job = {s, lapack, in_halves(s, chain), {0, 0}, 0};
@@ -94,7 +92,7 @@ int fu_twisted_factor(fu_system *s, const fu_lapack *lapack, int chain)
     return fu_band_factor(lapack, c->middle, width, first);
 }
 
-/* Makes x = L^-1 x in half a chain; of the second one in the mirror, with what that changes in the middle. */
+/* Computes x = L^-1 x in half a chain, of the second one in the mirror, with its change of the middle. */
 static void forward(const job *job, int half)
 {
     const fu_system *s = job->system;
@@ -111,7 +109,7 @@ static void forward(const job *job, int half)
     fu_band_forward(c->count, s->width, c->L[1], job->rows.end < end ? end - job->rows.end : 0, mirror);
 }
 
-/* Makes x = L'^-1 D^-1 x in half a chain, where the middle is solved. */
+/* Computes x = L'^-1 D^-1 x in half a chain, after the solution of the middle. */
 static void backward(const job *job, int half)
 {
     const fu_system *s = job->system;
@@ -137,7 +135,7 @@ static void backward_part(const void *what, int part, int parts)
     for (int half = part; half < 2; half += parts) backward(what, half);
 }
 
-/* Makes x = K^-1 x in a chain, where x is zero but in these rows. */
+/* Computes x = K^-1 x in a chain, with x zero outside of these rows. */
 void fu_twisted_solve(const fu_system *s, int chain, fu_span rows, double *x)
 {
     const job job = {s, 0, in_halves(s, chain), rows, x};

@@ -1,16 +1,15 @@
-/* Band matrices that are symmetric but for a little, as with damping whose direction turns with the configuration: A =
- * L D U' without pivots. That is stable where the symmetric part is positive definite and the rest is small beside it
- * (Golub & Van Loan 1979, "Unsymmetric positive definite linear systems"). LAPACK's factorisation with pivots calls a
- * BLAS kernel for each column, which takes several times as long, in each solution, too.
- *
- * Storage: L and U each as band.c has L, with 1/D on both diagonals, so that its substitutions serve. */
+/* Nearly symmetric band matrices, as with damping whose direction rotates with the configuration: A = L D U' without
+ * pivots. That is stable if the symmetric part is positive definite and dominates the rest (Golub & Van Loan 1979,
+ * "Unsymmetric positive definite linear systems"). LAPACK's factorisation with pivots calls a BLAS kernel for each
+ * column, which takes several times as long, in each solution, too. Storage: L and U each in the form of band.c, with
+ * 1/D on both diagonals, so that its substitutions apply. */
 #include "linear/linear.h"
 
-#define SYMMETRY_TOLERANCE 1e-2 /* of the diagonals: the most by which both halves may differ */
-#define MIN_PIVOT 1e-8          /* of the diagonal: what elimination must leave of it */
+#define SYMMETRY_TOLERANCE 1e-2 /* of the diagonals: largest difference of both halves */
+#define MIN_PIVOT 1e-8          /* of the diagonal: least pivot */
 
-/* Makes, of K in a chain, the lower half in L, and the upper one, transposed, in U; returns zero where they differ by
- * much, or the diagonal is not positive. */
+/* Packs the lower half of K in a chain into L, and the upper one, transposed, into U; returns zero if they differ by
+ * more than the tolerance, or the diagonal is not positive. */
 int fu_unsymmetric_pack(const fu_system *s, int chain, double *L, double *U)
 {
     const int first = s->chains[chain], n = s->chains[chain + 1] - first;
@@ -22,7 +21,7 @@ int fu_unsymmetric_pack(const fu_system *s, int chain, double *L, double *U)
         if (!(at[0] > 0.0)) return 0;
         lower[0] = upper[0] = at[0];
         for (int i = 1; i <= most; ++i) {
-            const double *other = at + (long)i * rows; /* the diagonal of the column i further on */
+            const double *other = at + (long)i * rows; /* the diagonal of the column i columns further */
             const double gap = at[i] - other[-i];
             if (!(gap * gap <= SYMMETRY_TOLERANCE * SYMMETRY_TOLERANCE * at[0] * other[0])) return 0;
             lower[i] = at[i];
@@ -33,7 +32,7 @@ int fu_unsymmetric_pack(const fu_system *s, int chain, double *L, double *U)
     return 1;
 }
 
-/* Factors in place; returns not zero where a pivot is too small. The diagonal of U keeps that of A until its column is
+/* Factors in place; returns nonzero if a pivot is too small. The diagonal of U keeps that of A until its column is
  * reached. */
 int fu_unsymmetric_factor(int n, int width, double *restrict L, double *restrict U)
 {

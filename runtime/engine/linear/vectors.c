@@ -1,8 +1,8 @@
-/* Sums of vectors that threads share. These are small against what is made of the vectors, but done by one thread they
- * would take half of each vector from the cache of the other. */
+/* Sums of vectors that threads share. They cost little, but one thread alone would move half of each vector out of the
+ * cache of the other. */
 #include "linear/linear.h"
 
-/* x = factor (y - z), or y alone where z is null; `adds`: to what x is. */
+/* x = factor (y - z), or factor y if z is null; `adds`: adds to x. */
 typedef struct {
     int n, adds;
     double factor;
@@ -24,7 +24,7 @@ static void sum_part(const void *what, int part, int parts)
         for (int i = of.first; i < of.end; ++i) x[i] = factor * y[i];
 }
 
-/* Makes x = factor y. */
+/* Computes x = factor y. */
 void fu_set_times(fu_threads *threads, int n, double factor, const double *y, double *x)
 {
     const sum job = {n, 0, factor, y, 0, x};
@@ -38,7 +38,7 @@ void fu_add_times(fu_threads *threads, int n, double factor, const double *y, do
     fu_share(threads, n, sum_part, &job);
 }
 
-/* Makes x = factor (y - z). */
+/* Computes x = factor (y - z). */
 void fu_set_difference(fu_threads *threads, int n, double factor, const double *y, const double *z, double *x)
 {
     const sum job = {n, 0, factor, y, z, x};

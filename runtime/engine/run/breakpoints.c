@@ -1,4 +1,4 @@
-/* Knots: instants at which signals are not smooth, and steps end. */
+/* Breakpoints: instants at which signals are not smooth, and steps end. */
 #include "equations/acceleration.h"
 #include "equations/energies.h"
 #include "events/events.h"
@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-/* Returns the first knot after `now` at which steps end, until `latest`; null where there is none. */
+/* Returns the first breakpoint after `now` at which steps end, until `latest`; null if there is none. */
 const fu_breakpoint *fu_next_breakpoint(const fu_run *run, double latest)
 {
     const double close = FU_AT_ONCE * run->duration;
@@ -19,15 +19,16 @@ const fu_breakpoint *fu_next_breakpoint(const fu_run *run, double latest)
     return low < run->n_knots && run->knots[low].t <= latest + close ? &run->knots[low] : 0;
 }
 
-/* Goes on from a knot that `now` has reached; returns a status. What jumps there starts the scheme anew; so does any
- * knot between steps of a fixed length, whose neighbours can be of any ratio. Where a rate jumps, all that joints tie
- * to it jumps, too, and what drives it does the work of that; a drive that turned within an instant would lose none. */
+/* Continues from a breakpoint that `now` has reached; returns a status. A discontinuity restarts the scheme; so does
+ * any breakpoint between steps of fixed length, whose neighbours can have any ratio. Where a rate is discontinuous, so
+ * are all rates that joints tie to it, and the drive does the work of that; a drive that changed within an instant
+ * would not. */
 int fu_pass_breakpoint(fu_run *run, const fu_breakpoint *knot, int event)
 {
     const fu_model *model = run->model;
     fu_state *now = &run->now;
     now->t = knot->t;
-    run->drive_step = fmin(run->drive_step, 0.0); /* powers before do not tell how it changes from here */
+    run->drive_step = fmin(run->drive_step, 0.0); /* earlier powers do not predict the power from here */
     if (knot->jumps == FU_HIGHER_JUMPS && run->fixed_step <= 0.0) return FU_RUNNING;
     if (knot->jumps == FU_RATE_JUMPS) {
         const double before = fu_kinetic_energy(model, now->t, now->q, now->v);

@@ -1,4 +1,4 @@
-/* Checkpoints: what the steps to come depend on, so that a run that is taken up again goes on bit for bit. */
+/* Checkpoints: all data on which later steps depend, so that a resumed run continues bit for bit. */
 #include "couplings/common/couplings.h"
 #include "couplings/common/proximity.h"
 #include "equations/run.h"
@@ -11,23 +11,23 @@
 #include <stddef.h>
 #include <string.h>
 
-/* What a state that a run has paused in keeps to, by far: other bytes are damaged or forged. */
-/* of a piece: how far from it a coupling may stand, where events leave it within 1e-6 */
+/* Wide bounds of a state in which a run has paused: bytes beyond them are damaged or forged. */
+/* of a path segment: largest distance of a coupling from it; events leave it within 1e-6 */
 #define ASIDE 1e-3
-#define MIN_STEP 1e-13    /* of the duration: a step, or what steps stay below; a run gives up at 1e-12 */
-#define MAX_STEP 2.0      /* of the duration: a step, or what steps stay below */
-#define MOST_COUNT 100000 /* rejected steps, and turns on a boundary; a run gives up at 10000 */
+#define MIN_STEP 1e-13    /* of the duration: a step, or a bound of steps; a run ends at 1e-12 */
+#define MAX_STEP 2.0      /* of the duration: a step, or a bound of steps */
+#define MOST_COUNT 100000 /* rejected steps, and reversals on a boundary; a run ends at 10000 */
 
 enum { MEASURE, SAVE, RESTORE };
 
-/* The place in the bytes, how many there are until there, and what is done with them. */
+/* The position in the bytes, their number so far, and the direction of the copy. */
 typedef struct {
     char *at;
     long size;
     int what;
 } copier;
 
-/* Copies so many bytes, to the checkpoint or from it, or counts them. */
+/* Copies bytes to the checkpoint or from it, or counts them. */
 static void copy(copier *c, void *data, size_t size)
 {
     if (c->what == SAVE) memcpy(c->at, data, size);
@@ -46,8 +46,8 @@ static void copy_state(copier *c, const fu_model *model, fu_state *state)
     }
 }
 
-/* Copies all that the steps to come depend on. Factored matrices are not in it: fu_pause drops the Newton matrix, and
- * fu_start makes that of eq 38. */
+/* Copies all data on which later steps depend. Factored matrices are left out: fu_pause drops the Newton matrix, and
+ * fu_start computes that of eq 38. */
 static void copy_all(copier *c, fu_run *run)
 {
     const fu_model *model = run->model;
@@ -66,8 +66,8 @@ static void copy_all(copier *c, fu_run *run)
     copy(c, (char *)run + numbers, sizeof *run - numbers);
 }
 
-/* Drops what a checkpoint does not hold, and takes the values of all watches, as it does not hold which are passed
- * over. Done at each pause whether a checkpoint is taken or not, so that results do not depend on it. */
+/* Drops the data that a checkpoint does not hold, and evaluates all event functions, since a checkpoint does not record
+ * which are inactive. Done at each pause, so that results do not depend on checkpoints. */
 void fu_pause(fu_run *run)
 {
     run->factored = 0;
@@ -76,7 +76,7 @@ void fu_pause(fu_run *run)
     fu_evaluate_far_event_functions(run);
 }
 
-/* Copies what the steps to come depend on to `bytes`, unless it is null; returns the number of bytes. */
+/* Copies the data on which later steps depend to `bytes`, unless it is null; returns their number of bytes. */
 long fu_save(const fu_run *run, char *bytes)
 {
     copier c = {bytes, 0, bytes ? SAVE : MEASURE};
@@ -84,13 +84,13 @@ long fu_save(const fu_run *run, char *bytes)
     return c.size;
 }
 
-/* Returns whether a value is one of a range. */
+/* Returns whether a value is in a range. */
 static int in_range(int value, int least, int most)
 {
     return value >= least && value <= most;
 }
 
-/* Returns the last index of n, or 0, which an index is where there is none and nothing has happened. */
+/* Returns the last index of n, or 0, the value of an unused index. */
 static int last_of(int n)
 {
     return n > 0 ? n - 1 : 0;
@@ -106,14 +106,14 @@ static int finite_state(const fu_model *model, const fu_state *state)
     return fu_all_finite(&state->t, 1);
 }
 
-/* Returns whether a run stands where fu_pause leaves one: at the time of its last row, without a factored matrix */
+/* Returns whether a run is in a state of fu_pause: at the time of its last row, without a factored matrix */
 static int is_paused(const fu_run *run, int rows)
 {
     return run->record.n == rows && run->now.t == (rows - 1) * run->output_step && run->now.t < run->duration &&
            run->recorded == run->now.t && !run->factored && run->h_factored == 0.0;
 }
 
-/* Returns whether counts are possible: of steps, of what happened on the way. */
+/* Returns whether the counts of steps and events are possible. */
 static int possible_counts(const fu_run *run)
 {
     const fu_statistics *s = &run->statistics;
@@ -127,7 +127,7 @@ static int possible_counts(const fu_run *run)
            in_range(run->net_rejections, -MOST_COUNT, MOST_COUNT);
 }
 
-/* Returns whether flags, and numbers of couplings and dofs, are possible: some lead to places in memory. */
+/* Returns whether flags, and indices of couplings and dofs, are possible: some address memory. */
 static int possible_indices(const fu_run *run)
 {
     const int last = last_of(run->model->n_couplings);
@@ -137,7 +137,7 @@ static int possible_indices(const fu_run *run)
            in_range(run->failure.dof, 0, last_of(run->model->n_dof)) && in_range(run->failure.coupling, -1, last);
 }
 
-/* Returns whether the numbers that the steps to come depend on, and those that messages tell, are possible. */
+/* Returns whether the numbers on which later steps and messages depend are possible. */
 static int possible_numbers(const fu_run *run)
 {
     const double steps[] = {run->h, run->ceiling};
@@ -162,8 +162,8 @@ static int possible_numbers(const fu_run *run)
            fu_all_finite(run->first, run->model->n_q) && fu_all_finite(run->s_slope, run->model->n_coordinates);
 }
 
-/* Takes up a run again, after fu_start of the same model and settings; the rows before, so many, are not in the arrays.
- * Returns not zero where the bytes are of no run that could have paused there: it must not go on then. */
+/* Resumes a run after fu_start of the same model and settings; the `rows` earlier rows are not in the arrays. Returns
+ * nonzero if no run could have paused with these bytes: the run must not continue. */
 int fu_restore(fu_run *run, const char *bytes, int rows)
 {
     copier c = {(char *)bytes, 0, RESTORE};

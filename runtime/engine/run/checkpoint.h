@@ -1,4 +1,4 @@
-/* All that later steps depend on: run/checkpoint.c. */
+/* All data on which later steps depend: run/checkpoint.c. */
 #ifndef FUNICULAR_RUN_CHECKPOINT_H
 #define FUNICULAR_RUN_CHECKPOINT_H
 

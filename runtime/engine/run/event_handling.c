@@ -1,15 +1,15 @@
-/* What follows from events that a run stands on. */
+/* Actions of events at the instant `now`. */
 #include "couplings/common/coupling_events.h"
 #include "events/events.h"
 #include "run/run.h"
 
 #include <math.h>
 
-#define MOST_SINCE 1e-6 /* of the duration: how far from its end a step may have passed what it ends on */
+#define MOST_SINCE 1e-6 /* of the duration: largest time between an event and the end of its step */
 #define MOST_ACTS 100   /* changes of couplings at one instant: more is no motion */
 
-/* Starts the scheme anew after a coupling has changed, as `what` says, so long ago, s; returns FU_EVENT, for the caller
- * to learn of it, or the status of a run that cannot go on. */
+/* Restarts the scheme after a coupling has changed, as `what` says, a time ago, s; returns FU_EVENT to inform the
+ * caller, or the status of a run that cannot continue. */
 static int acted(fu_run *run, const fu_coupling *coupling, const char *what, double since)
 {
     const int status = fu_start_scheme(run, 1);
@@ -25,10 +25,10 @@ static int acted(fu_run *run, const fu_coupling *coupling, const char *what, dou
     return status ? status : FU_EVENT;
 }
 
-/* Puts a coupling that stands on a boundary on the next piece, or lets it reach the end of its path; returns a status.
- * Accelerations and force jump with r_xx there: the scheme starts anew. Were they carried over, the short steps around
- * a boundary would raise what the constraints left in them by the ratio of the steps, crossing by crossing, and a
- * spectral radius of 1 never lets it decay. */
+/* Moves a coupling on a boundary to the next path segment, or to the end of its path; returns a status. Accelerations
+ * and force are discontinuous with r_xx there: the scheme restarts. If they were carried over, the short steps around a
+ * boundary would amplify the constraint errors in them by the ratio of the steps at every node passage, and a spectral
+ * radius of 1 does not damp them. */
 static int cross(fu_run *run, const fu_coupling *coupling, int side)
 {
     const fu_coupling_events *events = coupling->events;
@@ -47,8 +47,7 @@ static int cross(fu_run *run, const fu_coupling *coupling, int side)
     return fu_start_scheme(run, !run->integrator->keeps_energy);
 }
 
-/* Lets happen what follows from an event that `now` stands on; returns a status, FU_EVENT where the caller is to learn
- * of it. */
+/* Executes the action of an event at `now`; returns a status, FU_EVENT to inform the caller. */
 int fu_handle_event(fu_run *run, fu_event event)
 {
     if (event.kind == FU_PATH_BOUNDARY) return cross(run, run->model->couplings[event.which], event.side);

@@ -1,7 +1,5 @@
-/* What each coupling costs by itself: its terms of residual, Newton matrix and eq 38 are timed where the run has
- * stopped, which changes nothing but scratch, and multiplied by how often the run made them. Solving for its unknowns
- * is not in it.
- */
+/* Cost of each coupling: its terms of residual, Newton matrix and eq 38 are timed at the end of the run, which changes
+ * only scratch memory, and multiplied by the number of evaluations. The solution for its unknowns is not included. */
 #include "base/clock.h"
 #include "equations/equations.h"
 #include "equations/run.h"
@@ -9,15 +7,15 @@
 
 #include <math.h>
 
-#define BUDGET 1e-4      /* s, for all that is timed */
-#define BATCHES 4        /* of calls, of which the fastest counts: the machine may be busy */
+#define BUDGET 1e-4      /* s, for all timings */
+#define BATCHES 4        /* of calls, of which the fastest counts, since the machine may be busy */
 #define MAX_CALLS 100    /* calls in a batch */
-#define MIN_CALLS 3      /* calls at least, each timed alone: the machine may interrupt one */
-#define MIN_SECONDS 1e-8 /* s: of a call, that a clock that stands still may not show */
+#define MIN_CALLS 3      /* minimum of calls, each timed alone, since the machine may interrupt one */
+#define MIN_SECONDS 1e-8 /* s: of a call, below the resolution of some clocks */
 
 enum { RESIDUAL, TANGENT, ROWS, OWN_COORDINATES, WORKS };
 
-/* Does an operation of a coupling at `now`, with what it leaves in its work space. */
+/* Executes an operation of a coupling at `now`, with the contents of its work space. */
 static void work_of(fu_run *run, const fu_coupling *c, int what)
 {
     const fu_model *model = run->model;
@@ -33,7 +31,7 @@ static void work_of(fu_run *run, const fu_coupling *c, int what)
     }
 }
 
-/* Returns the seconds of one call. Where many parts share the budget, few single calls are timed. */
+/* Returns the seconds of one call. If many parts share the budget, few single calls are timed. */
 static double timed(fu_run *run, const fu_coupling *c, int what, double budget)
 {
     double begin, fastest = INFINITY;
@@ -52,12 +50,12 @@ static double timed(fu_run *run, const fu_coupling *c, int what, double budget)
     return fastest;
 }
 
-/* Makes the seconds a step of each coupling. */
+/* Computes the seconds per step of each coupling. */
 void fu_part_timing(fu_run *run, double *seconds)
 {
     const fu_model *model = run->model;
     const fu_statistics *s = &run->statistics;
-    /* methods that iterate on residuals make eq 38 at outputs and at starts alone, the others in each evaluation */
+    /* methods with residuals evaluate eq 38 at outputs and starts alone, the others in each evaluation */
     const double counts[WORKS] = {s->evaluations ? 0.0 : (double)s->newton_iterations, (double)s->factorisations,
                                   (double)run->accelerator.evaluated, (double)s->evaluations};
     FU_EACH_COUPLING(c, model->couplings, model->n_couplings) {

@@ -1,4 +1,4 @@
-/* Time that each coupling takes: run/part_timing.c. */
+/* Time of each coupling: run/part_timing.c. */
 #ifndef FUNICULAR_RUN_PART_TIMING_H
 #define FUNICULAR_RUN_PART_TIMING_H
 

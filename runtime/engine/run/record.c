@@ -41,8 +41,7 @@ int fu_record_row(fu_run *run)
     return info ? FU_SINGULAR : fu_check_energy_balance(run, energies, row == 0) ? FU_UNSTABLE : FU_RUNNING;
 }
 
-/* Records where the run has stopped, if that is not done already; returns FU_EVENT, or the status of a row that cannot
- * be recorded. */
+/* Records the final row unless that is done; returns FU_EVENT, or the status of a row that cannot be recorded. */
 int fu_stop(fu_run *run)
 {
     const int recorded = run->now.t > run->recorded ? fu_record_row(run) : FU_RUNNING;

@@ -1,18 +1,19 @@
-/* The time loop: from knot to knot, from output time to output time. */
+/* The time loop: from breakpoint to breakpoint, from output time to output time. */
 #include "base/clock.h"
 #include "base/underflow.h"
 #include "events/deferred.h"
 #include "run/run.h"
 
-#define BEFORE 1e-15 /* of a knot: a step ends so much before it, where the signal is still that of the step */
+/* of a breakpoint: distance of the end of a step before it, at which the signal is still that of the step */
+#define BEFORE 1e-15
 
-/* Returns whether the run ends on a knot: its last row is of the instant before. */
+/* Returns whether the run ends on a breakpoint: its last row is of the instant before. */
 static int ends_on(const fu_run *run, const fu_breakpoint *knot)
 {
     return knot->t >= run->duration * (1.0 - FU_AT_ONCE);
 }
 
-/* Steps once towards an output time, or towards the first knot on the way there; returns a status. */
+/* Makes one step towards an output time, or the first breakpoint before it; returns a status. */
 static int approach(fu_run *run, double target)
 {
     const fu_breakpoint *knot = run->n_knots ? fu_next_breakpoint(run, target) : 0;
@@ -24,8 +25,8 @@ static int approach(fu_run *run, double target)
     return passed ? passed : status;
 }
 
-/* Returns whether the run has taken the evaluations after which it is asked whether it shall go on; iterations count
- * where an integrator has no evaluations. */
+/* Returns whether the run has reached the number of evaluations at which its continuation is decided; iterations count
+ * for integrators without evaluations. */
 int fu_has_worked(const fu_run *run)
 {
     const fu_statistics *done = &run->statistics;
@@ -33,7 +34,7 @@ int fu_has_worked(const fu_run *run)
            (done->evaluations ? done->evaluations : done->newton_iterations) >= run->most_evaluations;
 }
 
-/* Records the row of an output time, at which signals are those of the step that ended there; returns a status. */
+/* Records the row of an output time, with the signals of the step that ended there; returns a status. */
 static int record(fu_run *run, double target)
 {
     fu_record *r = &run->record;
@@ -71,7 +72,7 @@ static int advance(fu_run *run, double seconds)
     }
 }
 
-/* Goes on for about so many seconds, or to the pause; returns a status, FU_RUNNING where there is more to do. */
+/* Continues for a number of seconds, or to the pause; returns a status, FU_RUNNING before the end. */
 int fu_advance(fu_run *run, double seconds)
 {
     const unsigned before = fu_underflow();

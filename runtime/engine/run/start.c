@@ -1,4 +1,4 @@
-/* The start of a run, and of its scheme wherever something has jumped. */
+/* The start of a run, and of its scheme after any discontinuity. */
 #include "couplings/common/couplings.h"
 #include "equations/acceleration.h"
 #include "equations/projection.h"
@@ -12,14 +12,14 @@
 #include <math.h>
 #include <string.h>
 
-#define REST_MOTION 1e-9 /* of the extent: a scene that moves less may be at rest */
-/* of the scene's size: a motion that errors may be relative to where the scene moves less */
+#define REST_MOTION 1e-9 /* of the extent: largest motion of a scene at rest */
+/* of the scene's size: least motion to which errors are relative */
 #define LEAST_MOTION 1e-6
-#define FIRST_MOTION 1e-3 /* of the duration: until then the motion is judged by the velocities at the start */
+#define FIRST_MOTION 1e-3 /* of the duration: until then the velocities at the start define the scale of motion */
 
-/* Starts the scheme at `now` with consistent velocities, which are projected on the joints where that is asked for, and
- * with accelerations and forces from eq 38; returns a status. Starting it from zero accelerations instead makes every
- * error fall with the first power of the step (tests/benchmarks/order.py). */
+/* Starts the scheme at `now` with consistent velocities, projected on the joints if requested, and with accelerations
+ * and forces from eq 38; returns a status. A start from zero accelerations makes every error first order in the step
+ * (tests/benchmarks/order.py). */
 int fu_start_scheme(fu_run *run, int project)
 {
     const fu_model *model = run->model;
@@ -36,7 +36,7 @@ int fu_start_scheme(fu_run *run, int project)
     return run->integrator->start(run);
 }
 
-/* Makes what the first evaluation needs: a state on its cables, the mass matrix; returns a status. */
+/* Prepares the first evaluation: a state on its cables, the mass matrix; returns a status. */
 int fu_prepare(fu_run *run)
 {
     const fu_model *model = run->model;
@@ -52,9 +52,9 @@ int fu_prepare(fu_run *run)
     return FU_RUNNING;
 }
 
-/* Makes the first state: on its cables, small gaps closed, velocities as constraints ask for; returns a status. What
- * friction carries is as from where its springs are anchored to where gaps are closed, with the velocities there: no
- * part of closing a gap is a motion. */
+/* Computes the first state: on its cables, small gaps closed, velocities consistent with constraints; returns a status.
+ * The history of friction starts after the gaps are closed, with the velocities there: the closing of a gap is no
+ * motion. */
 static int begin_state(fu_run *run)
 {
     const fu_model *model = run->model;
@@ -73,8 +73,8 @@ static int begin_state(fu_run *run)
     return FU_RUNNING;
 }
 
-/* Starts a run: makes the first state, records the first row; returns a status. run->before has then the
- * change of velocities that constraints asked for. */
+/* Starts a run: computes the first state, records the first row; returns a status. run->before then has the change of
+ * velocities by constraints. */
 int fu_start(fu_run *run)
 {
     const fu_model *model = run->model;
@@ -84,7 +84,7 @@ int fu_start(fu_run *run)
     if (begin_state(run)) return FU_SINGULAR;
     if (fu_couplings_can_act(model)) {
         memcpy(run->psi, run->before,
-               sizeof(double) * (size_t)model->n_dof); /* what the start asked for, for the caller */
+               sizeof(double) * (size_t)model->n_dof); /* velocity change of the start, for the caller */
         if (fu_begin_couplings(run) || fu_start_scheme(run, 0)) return FU_SINGULAR;
         memcpy(run->before, run->psi, sizeof(double) * (size_t)model->n_dof);
     }
@@ -95,8 +95,8 @@ int fu_start(fu_run *run)
         memset(now->acceleration, 0, sizeof(double) * (size_t)model->n_dof);
         memset(now->a, 0, sizeof(double) * (size_t)model->n_dof);
     }
-    /* tolerances are relative to the largest motion: until there is one, that of a thousandth of the duration; and
-     * never to less than what a scene at rest cannot help */
+    /* tolerances are relative to the largest motion: at first, that of a thousandth of the duration, and never less
+     * than the unavoidable motion of a scene at rest */
     if (run->absolute_tol < 0.0) run->absolute_tol = LEAST_MOTION * run->tol * run->size;
     run->least_motion = REST_MOTION * run->extent;
     for (int i = 0; i < model->n_dof; ++i) {

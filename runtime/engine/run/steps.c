@@ -14,25 +14,25 @@
 
 #include <math.h>
 
-#define SMALLEST_STEP 1e-12 /* of the duration: a run that needs a shorter step ends */
-/* of a step: how far it may go on after a coupling should have reached its boundary */
+#define SMALLEST_STEP 1e-12 /* of the duration: shortest step of a run */
+/* of a step: largest part beyond the boundary of a coupling */
 #define BEYOND 0.1
-#define MOST_REJECTIONS 10000 /* steps rejected beyond those taken, before a run ends */
-#define ACCEPTED 2.0          /* of what is allowed: a step with a larger error is rejected */
-/* rejections of a fixed step that each step taken makes up for: so often it may be divided */
+#define MOST_REJECTIONS 10000 /* largest number of rejected steps beyond the accepted ones */
+#define ACCEPTED 2.0          /* of the permitted error: a step with a larger error is rejected */
+/* rejections of a fixed step that each accepted step compensates: largest number of divisions */
 #define DIVISIONS 8
-/* of a coupling on one boundary before a step is taken all the same: it rests there */
+/* of a coupling on one boundary before a step is accepted nevertheless: it rests there */
 #define MOST_TURNS 2
-/* of a step before what is watched dips beyond zero in it: then it is taken all the same */
+/* of a step at a grazing event within it, after which it is accepted nevertheless */
 #define MAX_CUTS 4
-/* of the error that is allowed over the run: what one step may err by of what friction holds */
+/* of the error permitted over the run: largest error of the history of friction in one step */
 #define CARRIED 0.15
-/* of the step that was wanted: what is wanted after one whose event was not found */
+/* of the intended step: next step after one whose event was not found */
 #define PASSED_BY 0.5
 
-/* Starts the scheme anew after a very short step, unless the scheme went over it as one that leaves what it goes on
- * with; returns a status. What is left between an event and an output time can be so short that rounding, over h^2, is
- * all there is in accelerations that are made of it. */
+/* Restarts the scheme after a very short step, unless the step has left data to continue with; returns a status. The
+ * interval between an event and an output time can be so short that accelerations computed over it are rounding,
+ * divided by h^2. */
 static int refresh(fu_run *run, double h)
 {
     const int coasted = run->integrator->coasts && fu_is_short(run, h);
@@ -43,7 +43,7 @@ static int refresh(fu_run *run, double h)
     return FU_RUNNING;
 }
 
-/* Returns whether the error chooses the size of steps. */
+/* Returns whether the error controls the size of steps. */
 static int is_adaptive(const fu_run *run)
 {
     return run->fixed_step <= 0.0;
@@ -55,30 +55,29 @@ static double shortest(const fu_run *run)
     return SMALLEST_STEP * run->duration;
 }
 
-/* Returns whether couplings must keep their pieces in a step, which ends where one of them leaves its piece. */
+/* Returns whether couplings must keep their path segments in a step, which ends where one leaves its segment. */
 static int must_keep_pieces(const fu_run *run)
 {
     return !is_adaptive(run) || !run->integrator->crosses_boundaries || fu_stop_at_boundaries(run->model);
 }
 
-/* Returns whether couplings must pass nothing in a step, which ends where one of them would. */
+/* Returns whether couplings must have no deferred event in a step, which ends at one. */
 static int must_keep_forces(const fu_run *run)
 {
     if (run->integrator->keeps_energy) return 0;
     return !is_adaptive(run) || !run->goes_over || !run->integrator->quadrature;
 }
 
-/* A step that is tried: the size that is wanted and the one that is taken, s; where it is cut, as something watched is
- * farthest beyond zero there, s, else 0, and how often; its error, m, and that over what is allowed; how many
- * boundaries couplings have passed in it, and how many passages it goes over; whether it has been found to go over
- * none; the event that it ends on. */
+/* A trial step: its intended and its actual size, s; the place of a cut at a grazing event, s, else 0, and the number
+ * of cuts; its error, m, and the ratio to the permitted error; the numbers of boundaries and of deferred events in it;
+ * whether it has been found to have none; the event at its end. */
 typedef struct {
     double want, h, cut, error, ratio;
     int cuts, changes, passages, refused;
     fu_event event;
 } trial;
 
-/* Chooses the size of the step; returns 0 where there is none that is large enough. */
+/* Chooses the size of the step; returns 0 if no size is large enough. */
 static int choose_size(fu_run *run, trial *t, double remaining)
 {
     t->h = t->cut > 0.0 ? fmin(t->cut, remaining) : fu_fit_step(remaining, t->want);
@@ -88,7 +87,7 @@ static int choose_size(fu_run *run, trial *t, double remaining)
     return 1;
 }
 
-/* Returns the clock less the seconds that are counted already: what this grows by has not been. */
+/* Returns the clock less the seconds counted already: its growth has not been counted. */
 static double uncounted(const fu_run *run)
 {
     const fu_statistics *s = &run->statistics;
@@ -96,7 +95,7 @@ static double uncounted(const fu_run *run)
            (s->time_factor + s->time_solve + s->time_residual + s->time_output + s->time_step + s->time_error);
 }
 
-/* Makes a step; returns 0 where that was possible. */
+/* Makes a step; returns 0 if that was possible. */
 static int make(fu_run *run, double h)
 {
     const double begin = uncounted(run);
@@ -112,12 +111,12 @@ static double error_of(fu_run *run, double h)
                                                       fu_friction_error(run, h));
     const double carried = fu_history_error(run->model, &run->now, &run->next) / (CARRIED * fu_allowed_error(run));
     run->statistics.time_error += uncounted(run) - begin;
-    return fmax(error,
-                run->allowed *
-                    pow(carried, 0.5 * run->order)); /* what is carried errs by the square of the step at least */
+    return fmax(error, run->allowed *
+                           /* the error of the history is at least of second order in the step */
+                           pow(carried, 0.5 * run->order));
 }
 
-/* Lets couplings be as in `now` for the rest of the step. */
+/* Resets couplings to their state in `now` for the rest of the step. */
 static void refuse(fu_run *run, trial *t)
 {
     fu_undo_deferred(run);
@@ -125,7 +124,7 @@ static void refuse(fu_run *run, trial *t)
     run->goes_over = 0;
 }
 
-/* Makes the step and estimates its error; returns 0 where it is rejected, and a shorter one is wanted. */
+/* Makes the step and estimates its error; returns 0 if it is rejected for a shorter one. */
 static int attempt(fu_run *run, trial *t)
 {
     const double allowed = fu_allow(run, t->h);
@@ -133,7 +132,7 @@ static int attempt(fu_run *run, trial *t)
     run->usual = t->want;
     run->most_deferred = 0;
     if (make(run, t->h)) {
-        if (run->model->n_passing && !run->keep_forces) { /* its iteration may go to and fro over one */
+        if (run->model->n_passing && !run->keep_forces) { /* its iteration may alternate across an event */
             refuse(run, t);
             return 0;
         }
@@ -156,9 +155,8 @@ static int attempt(fu_run *run, trial *t)
     return 1;
 }
 
-/* Returns whether the step, which was made as if there were no passage, is to be made anew and go over those that it
- * leads to. This comes first where the last passage was not gone over: iterations and stages beyond one cost more than
- * without. */
+/* Returns whether the step, made without deferred events, is to be repeated with those that it leads to. Steps without
+ * them are tried first if the last one had none, since iterations and stages across an event cost more. */
 static int shall_go_over(fu_run *run, trial *t)
 {
     if (!is_adaptive(run) || !run->integrator->quadrature || !run->keep_forces || t->refused || !run->model->n_passing)
@@ -170,8 +168,8 @@ static int shall_go_over(fu_run *run, trial *t)
     return 0;
 }
 
-/* Finds the event that the step leads to. Where accelerations jump by too much within it, it shall end at the boundary.
- */
+/* Finds the event that the step leads to. If the discontinuity of accelerations within it is too large, it shall end at
+ * the boundary. */
 static void find_event(fu_run *run, trial *t)
 {
     if (t->passages && is_adaptive(run) && !(t->ratio <= 1.0)) refuse(run, t);
@@ -182,7 +180,7 @@ static void find_event(fu_run *run, trial *t)
     }
 }
 
-/* Shortens the step until it ends on the first of its events; returns 0 where that is not found. */
+/* Shortens the step until it ends on the first of its events; returns 0 if that is not found. */
 static int end_on_event(fu_run *run, trial *t)
 {
     for (int i = 0; i <= run->model->n_coordinates + run->n_watches; ++i) {
@@ -198,7 +196,7 @@ static int end_on_event(fu_run *run, trial *t)
     return 1;
 }
 
-/* Returns whether a step that was cut at a jump is accurate: its error without the jump was not known before. */
+/* Returns whether a step that was cut at a discontinuity is accurate: its error without that was unknown before. */
 static int is_accurate_without_jump(fu_run *run, trial *t)
 {
     const double ratio = fu_strayed(run) ? INFINITY : error_of(run, t->h) / fu_allow(run, t->h);
@@ -207,7 +205,7 @@ static int is_accurate_without_jump(fu_run *run, trial *t)
     return 0;
 }
 
-/* Returns whether something watched passes zero within the step and is back: the step is then cut there. */
+/* Returns whether an event function passes zero within the step and returns: the step is then cut there. */
 static int is_cut_at_dip(fu_run *run, trial *t)
 {
     const double dip = t->cuts < MAX_CUTS ? fu_time_of_grazing(run, t->h) : 0.0;
@@ -217,7 +215,7 @@ static int is_cut_at_dip(fu_run *run, trial *t)
     return 1;
 }
 
-/* Takes the step just made: `next` becomes `now`. */
+/* Accepts the step just made: `next` becomes `now`. */
 static void accept(fu_run *run, const trial *t)
 {
     const fu_model *model = run->model;
@@ -247,7 +245,7 @@ static void accept(fu_run *run, const trial *t)
     if (h > s->h_max) s->h_max = h;
 }
 
-/* Takes a step that ends on no event; returns a status. */
+/* Accepts a step that ends on no event; returns a status. */
 static int take_step(fu_run *run, const trial *t)
 {
     if (t->passages) run->goes_over = 1;
@@ -260,8 +258,7 @@ static int take_step(fu_run *run, const trial *t)
     return refresh(run, t->h);
 }
 
-/* Makes and takes one step towards `target`, or lets happen what follows from an event that `now` stands on; returns a
- * status. */
+/* Makes and accepts one step towards `target`, or executes the action of an event at `now`; returns a status. */
 int fu_step_towards(fu_run *run, double target)
 {
     const fu_event late = fu_late_event(run);
