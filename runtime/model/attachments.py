@@ -1,10 +1,10 @@
-"""Attachments as the engine takes them: what springs, joints, loads and riders are attached to."""
+"""Attachments as the engine takes them, and the builder that couplings are made with."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Hashable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
 import numpy as np
@@ -19,42 +19,43 @@ from .hulls import Hull, hull_of
 from .signals import Signals
 
 UP, CARRIED = -1, -2
-"""What completes the frame of a tangent, as couplings/common/attachments.h has it:
-a direction of the ground, or the slide's director."""
+"""Second vector of the frame of a tangent, as in couplings/common/attachments.h: a direction of the ground, or the
+director that a slide carries."""
 
 T = TypeVar("T")
+Modes = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 FRAMES = {2: "planar_frame", 3: "frame"}
 
 SECTIONS = {2: np.array([[0.0, 1.0], [-1.0, 0.0]]), 3: np.eye(3)[:, [2, 0, 1]]}
-"""`frames.section_frame` in the frame of r_y and r_z."""
+"""Axes of `frames.section_frame` in the frame of r_y and r_z."""
 
 
 @dataclass
 class AttachmentModel:
-    """fu_attachment of the engine: -1 for what it is not on; mass and length are scales of it, kg and m.
+    """fu_attachment of the engine; cable, body, slide: -1 where it is on none; mass and length: its scales, kg and m.
 
-    modal: of a modal body's node, where it is undeformed, and its displacements and turns by modes.
+    modal: of a node of a modal body, its undeformed place, and its displacements and rotations by modes.
     """
 
-    cable: int
-    body: int
-    element: int
-    slide: int
-    u: tuple[float, ...]
-    N: np.ndarray
-    S: np.ndarray
-    mass: float
-    length: float
+    cable: int = -1
+    body: int = -1
+    element: int = 0
+    slide: int = -1
+    u: tuple[float, ...] = (0.0,) * 3
+    N: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    S: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    mass: float = 0.0
+    length: float = 0.0
     frame: str = ""
     slopes: tuple[int, int] = (0, UP)
-    up: tuple[float, ...] = (0.0, 0.0, 0.0)
+    up: tuple[float, ...] = (0.0,) * 3
     axes: np.ndarray | None = None
-    modal: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
+    modal: Modes | None = None
 
 
 class ModelBuilder:
-    """Makes what couplings consist of: attachments, hulls of cables, signals.
+    """Makes attachments, hulls of cables and signals for the couplings of a model.
 
     cables, bodies: the models, in the scene's order.
     """
@@ -76,7 +77,7 @@ class ModelBuilder:
         return made
 
     def hull(self, index: int) -> Hull:
-        """Return the hull of a cable's elements by the cable's number; the cable knows then how far its points move."""
+        """Return the hull of the elements of a cable by its number, and set the cable's `share`."""
         if index not in self.hulls:
             cable = self.cables[index]
             self.hulls[index] = hull_of(cable.kernel("on_axis"), cable.mesh.lengths)
@@ -84,29 +85,27 @@ class ModelBuilder:
         return self.hulls[index]
 
     def element(self, cable: str, s: float) -> tuple[int, float]:
-        """Return the element that s is in, and x in it."""
+        """Return the element that contains s, and x in it."""
         model = self.cables[self.cable_index[cable]]
         element = int(model.mesh.element_at(s))
         return element, s - model.mesh.start(element)
 
     def attachment(self, attachment: Attachment, axes: np.ndarray | None = None,
                    up: tuple[float, ...] | np.ndarray | None = None) -> AttachmentModel:
-        """Return the model of a complete attachment, with axes (3, 3) in the frame of what carries it where it has
-        some.
-        """
-        none = np.zeros(0)
+        """Return the model of a complete attachment; axes: (3, 3) in the frame of its body or cable, if it has any."""
         axes = self._axes(axes)
         if attachment.on is None:
-            return AttachmentModel(-1, -1, 0, -1, attachment.point, none, none, 0.0, 0.0, axes=axes)
+            return AttachmentModel(u=attachment.point, axes=axes)
         if attachment.on in self.body_index:
-            body = self.bodies[self.body_index[attachment.on]]
-            part = self.scene.bodies[attachment.on]
+            index, part = self.body_index[attachment.on], self.scene.bodies[attachment.on]
+            body = self.bodies[index]
             length = math.sqrt(largest_moment(body.inertia) / body.mass)
+            found = AttachmentModel(body=index, mass=body.mass, length=length, axes=axes)
             if isinstance(part, ModalBody):
-                return AttachmentModel(-1, self.body_index[attachment.on], 0, -1, (0.0,) * 3, none, none, body.mass,
-                                       length, axes=axes, modal=self._modal(part.attachment_modes(attachment.point)))
-            return AttachmentModel(-1, self.body_index[attachment.on], 0, -1, part.arm(attachment.point), none, none,
-                                   body.mass, length, axes=axes)
+                found.modal = self._modal(part.attachment_modes(attachment.point))
+            else:
+                found.u = part.arm(attachment.point)
+            return found
         found = self._on_cable(attachment.on, attachment.arc_length, axes, up,
                                draws_section(self.scene.cables[attachment.on]))
         found.element, x = self.element(attachment.on, attachment.arc_length)
@@ -119,7 +118,7 @@ class ModelBuilder:
         return found
 
     def on_slide(self, slide: Slide, number: int, axes: np.ndarray) -> AttachmentModel:
-        """Return the cable's frame where a slide is."""
+        """Return an attachment to the frame of the cable at a slide of that number."""
         section = slide.frame == "section" and draws_section(self.scene.cables[slide.along])
         found = self._on_cable(slide.along, slide.arc_length, self._axes(axes), slide.up, section)
         found.slide = number
@@ -129,28 +128,26 @@ class ModelBuilder:
 
     def _on_cable(self, name: str, s: float, axes: np.ndarray | None, up: tuple[float, ...] | np.ndarray | None,
                   section: bool) -> AttachmentModel:
-        """Return an attachment with the frame of the section, or of the tangent with the director or up."""
+        """Return an attachment with the frame of the section, or that of the tangent and the director or up."""
         cable, index = self.scene.cables[name], self.cable_index[name]
         length = self.cables[index].mesh.mean
         mass = cable.material.density * cable.section.area * length
         director = cable.kind_of_element.director
-        if up is None and not director:  # any direction does where the tangent is all that is held
+        if up is None and not director:  # any direction: only the tangent is held
             up = cable.height(s)
         slopes = (0, "xyz".index(director[-1]) if director and up is None and cable.dim == 3 else UP)
         if section:
             slopes, axes = (1, 2 if cable.dim == 3 else UP), None if axes is None else SECTIONS[cable.dim] @ axes
-        return AttachmentModel(index, -1, 0, -1, (0.0,) * 3, np.zeros(0), np.zeros(0), mass, length,
-                               FRAMES[self.scene.dim], slopes, (0.0,) * 3 if up is None else tuple(map(float, up)),
-                               axes)
+        return AttachmentModel(cable=index, mass=mass, length=length, frame=FRAMES[self.scene.dim], slopes=slopes,
+                               up=(0.0,) * 3 if up is None else tuple(map(float, up)), axes=axes)
 
-    def _modal(self, attachment_modes: tuple[np.ndarray, np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray,
-               np.ndarray]:
-        dim, (at, displacements, turns) = self.scene.dim, attachment_modes
+    def _modal(self, modes: Modes) -> Modes:
+        dim, (at, displacements, turns) = self.scene.dim, modes
         return at[:dim], displacements[:, :dim], turns[:, 2:] if dim == 2 else turns
 
     def _axes(self, axes: np.ndarray | None) -> np.ndarray | None:
-        """Return the axes for the scene's dimension: in the plane x is the joint's axis if that lies in it, y square to
-        it. See derive/couplings/joint.py.
+        """Return axes in the dimension of the scene: in the plane, x is the axis of the joint if it lies there, y is
+        perpendicular (derive/couplings/joint.py).
         """
         if axes is None or self.scene.dim == 3:
             return axes

@@ -15,15 +15,13 @@ BODIES = {2: ("planar_rigid", 4, 3), 3: ("rigid", 7, 6)}
 
 
 def body_models(scene: SceneData, at: int) -> list[BodyModel]:
-    """Return the bodies in the scene's order, their coordinates from `at` on."""
+    """Return the bodies in the scene's order, with coordinates from `at` on."""
     dim, made, dof = scene.dim, [], at
     kernel, n_configuration, n_velocity = BODIES[dim]
     for body in scene.bodies.values():
-        shape, centre = None, np.zeros(3)
-        if isinstance(body, ModalBody):
-            shape = _shape(body, np.array(scene.gravity)[:dim])
-        else:
-            centre = np.array(body.centre)
+        is_modal = isinstance(body, ModalBody)
+        shape = _shape(body, np.array(scene.gravity)[:dim]) if is_modal else None
+        centre = np.zeros(3) if is_modal else np.array(body.centre)
         made.append(BodyModel(body.name, kernel, body.mass, np.array(body.inertia), centre, at, dof, shape))
         at += n_configuration + made[-1].modes
         dof += n_velocity + made[-1].modes
@@ -42,7 +40,7 @@ def dofs_of(body: BodyModel, dim: int) -> int:
 
 
 def configuration_of(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
-    """Return its configuration at the start: position in m, attitude, and modal coordinates, which are zero."""
+    """Return its configuration at the start: position in m, orientation, and modal coordinates, which are zero."""
     if isinstance(body, ModalBody):
         (position, orientation), modes = body.frame, np.zeros(body.shape.n)
     else:
@@ -54,7 +52,7 @@ def configuration_of(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
 
 
 def velocity_of(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
-    """Return the rates of its configuration at the start, those of its modes zero."""
+    """Return its velocities at the start, those of modes zero."""
     turning = np.array(body.angular_velocity)
     velocity, modes = np.array(body.velocity), np.zeros(0)
     if isinstance(body, ModalBody):
@@ -65,8 +63,8 @@ def velocity_of(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
 
 
 def body_weights(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
-    """Return (dofs,): 1 for the origin, the largest radius of gyration for turns, the root mean square of displacement
-    for modes.
+    """Return the weights (dofs,): 1 for the origin, the largest radius of gyration for rotations, the root mean square
+    displacement for modes.
     """
     largest = body.inertia[2][2] if dim == 2 else largest_moment(body.inertia)
     modes = np.sqrt(np.diag(body.shape.modal_mass) / body.mass) if isinstance(body, ModalBody) else np.zeros(0)
@@ -74,8 +72,8 @@ def body_weights(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
 
 
 def body_gravity(body: BodyModel, gravity: np.ndarray) -> np.ndarray:
-    """Return the weight (dofs,) of a body in N; of a modal body nothing, since its weight turns and deforms with it and
-    is among its forces.
+    """Return the gravity (dofs,) of a rigid body in N; zeros for a modal one, whose forces include it as they depend on
+    rotation and deformation.
     """
     weight = np.zeros(dofs_of(body, len(gravity)))
     if not body.modes:

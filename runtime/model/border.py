@@ -1,4 +1,4 @@
-"""What of the border touches what: groups of its unknowns, made of a model's bodies, couplings and cables."""
+"""The graph of the border: groups of its unknowns, from the bodies, couplings and cables of a model."""
 
 from __future__ import annotations
 
@@ -9,24 +9,24 @@ import numpy as np
 
 from .attachments import AttachmentModel
 from .coupling import CouplingModel
-from .elimination import DENSE, BorderGraph, Elimination, dense
+from .elimination import MAX_DENSE_BORDER, BorderGraph, Elimination, dense
 from .model import Model, SlideModel
 
 NEWTON, ACCELERATIONS = "newton", "accelerations"
-"""Systems that have a border: of Newton's method, with the couplings' own unknowns; of eq 38, with multipliers."""
+"""Systems with a border: of Newton's method, with internal unknowns of couplings; of eq 38, with multipliers."""
 
 
 def elimination(model: Model, system: str) -> Elimination:
-    """Return the order in which the border of a system is eliminated; small ones are dense."""
+    """Return the elimination of the border of a system; a small border is dense."""
     m = model.n_border_dof + (model.n_extra if system == NEWTON else model.n_multipliers)
-    if m > DENSE:
+    if m > MAX_DENSE_BORDER:
         return _Border(model, system).graph.eliminate()
     chains = len(model.chains) - 1
     return dense(m, np.array(np.divmod(np.arange(m * chains), max(chains, 1))).T)
 
 
 class _Place:
-    """What a part of the scene has of the border, and which chains of the band it is on."""
+    """Groups of the border and chains of the band that belong to a part of the scene."""
 
     def __init__(self, groups: Iterable[int] = (), chains: Iterable[int] = ()):
         self.groups, self.chains = set(groups), set(chains)
@@ -36,7 +36,7 @@ class _Place:
 
 
 class _Border:
-    """The graph of a border; `bodies` and `of_coupling` are the numbers of groups."""
+    """The graph of a border; `bodies`, `slides`: numbers of groups; `cables`: their places."""
 
     def __init__(self, model: Model, system: str):
         self.model, self.system, self.graph = model, system, BorderGraph()
@@ -52,7 +52,7 @@ class _Border:
             self._coupling(coupling)
 
     def _nodes(self) -> None:
-        """Add what cables have in the border: a group of the unknowns that the same elements share."""
+        """Add the unknowns of cables in the border: those that the same elements share are a group."""
         model = self.model
         shared: dict[int, list[int]] = {}
         elements: list[np.ndarray] = []
@@ -77,7 +77,7 @@ class _Border:
         return bool(np.any(self._unknowns(dofs) >= self.model.n_band))
 
     def _unknowns(self, dofs: slice) -> np.ndarray:
-        """Return the unknowns that these dofs are made of."""
+        """Return the unknowns on which these dofs depend."""
         model = self.model
         unknown = model.unknown_of_dof[dofs]
         if (combined := -2 - unknown[unknown < -1]).size:
@@ -99,7 +99,7 @@ class _Border:
             self.graph.touch(group, place.chains)
 
     def _coupling(self, coupling: CouplingModel) -> None:
-        """Add the unknowns of a coupling, and what it connects."""
+        """Add the unknowns of a coupling and its connections."""
         newton = self.system == NEWTON
         first, count = ((coupling.unknown, coupling.n_coordinates + coupling.n_forces) if newton
                         else (coupling.multiplier, coupling.n_multipliers))
@@ -114,7 +114,7 @@ class _Border:
                 self._touch(one.groups, other)
 
     def _own(self, coupling: CouplingModel, unknowns: range, places: list[_Place]) -> None:
-        """Add the own unknowns of a coupling, which touch all that it acts on."""
+        """Add the internal unknowns of a coupling, which touch all its places."""
         bodies = {body for end in coupling.ends for body in self._bodies_of(end)}
         own = self.graph.group(unknowns, None if coupling.follows_law else bodies)
         if isinstance(coupling, SlideModel):
@@ -123,12 +123,12 @@ class _Border:
             self._touch({own}, place)
 
     def _bodies_of(self, end: AttachmentModel) -> set[int]:
-        """Return the groups of the bodies that an attachment is on, a slide's rider among them."""
+        """Return the groups of the body of an attachment, on a slide those of the rider."""
         body = self.model.slides[end.slide].rider.body if end.slide >= 0 else end.body
         return {self.bodies[body]} if body >= 0 else set()
 
     def _end(self, end: AttachmentModel) -> _Place:
-        """Return what an attachment's equations have entries for."""
+        """Return the place for which the equations of an attachment have entries."""
         if end.slide >= 0:
             slide = self.model.slides[end.slide]
             along = self.cables[end.cable]

@@ -1,4 +1,4 @@
-"""The model of a scene: its parts in the scene's order, their coordinates numbered, their constants evaluated."""
+"""The model of a scene: parts in the scene's order, numbered coordinates, constants of elements."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def build(scene: SceneData) -> Model:
 
 
 def _elements(nodes: dict[str, list[Node]]) -> np.ndarray:
-    """Return (elements, 2): the first dof of each element of these nodes, by cable, and how many dofs it has."""
+    """Return (elements, 2): the first dof and the number of dofs of each element of these nodes, by cable."""
     return np.array([(node.first, 2 * node.vectors.size) for each in nodes.values() for node in each[:-1]],
                     dtype=int).reshape(-1, 2)
 

@@ -12,12 +12,12 @@ from .constants import constants
 from .model import CableModel
 from .unknowns import Reduction, as_supports_leave
 
-MOST_STRAIN = 0.01
-"""Of slopes that a rigid tie makes one: by a larger difference as drawn one of them is drawn slack."""
+MAX_SLOPE_DIFFERENCE = 0.01
+"""Relative difference of slopes that a rigid tie unites, above which one of the cables is drawn slack."""
 
 
 def cable_model(cable: Cable, first: int) -> CableModel:
-    """Make the model of a cable whose coordinates begin at ``first``."""
+    """Return the model of a cable whose coordinates begin at ``first``."""
     element, law, mesh = cable.element, cable.kernel_law, cable.mesh
     kernels, vectors = kernels_of(cable.library), cable.kind_of_element.nodal_vectors
     mass, moments = getattr(kernels, f"{element}_mass"), cable.section.mass_moments()
@@ -29,7 +29,7 @@ def cable_model(cable: Cable, first: int) -> CableModel:
 
 
 def cable_gravity(model: CableModel, cable: Cable, gravity: np.ndarray) -> np.ndarray:
-    """Return (coordinates,): generalised weight of a cable; two elements meet at an inner node."""
+    """Return (coordinates,): generalised gravity of a cable."""
     kernel, moments = model.kernel("gravity"), cable.section.mass_moments()
     each = np.array([kernel(length, cable.material.density, moments, gravity).reshape(2, *model.shape[1:])
                      for length in model.mesh.lengths])
@@ -40,10 +40,10 @@ def cable_gravity(model: CableModel, cable: Cable, gravity: np.ndarray) -> np.nd
 
 
 def level_tied_slopes(scene: SceneData, nodal: list[np.ndarray]) -> None:
-    """Give slopes that a rigid tie makes one the lesser of their lengths, where these differ by more than strains do.
+    """Give slopes that a rigid tie unites the lesser of their lengths where these differ by more than a strain.
 
-    nodal: (nodes, vectors, dim) of each cable as drawn, changed in place. Cables drawn slack, each by another share of
-    its length, would keep the ratio of their slopes at the tie, and one of them a strain of that size.
+    nodal: (nodes, vectors, dim) of each cable as drawn, changed in place. Cables drawn slack by different fractions
+    would keep the ratio of their slopes at the tie, and one of them a strain of that size.
     """
     numbers = {name: k for k, name in enumerate(scene.cables)}
     for tie in scene.ties.values():
@@ -52,20 +52,20 @@ def level_tied_slopes(scene: SceneData, nodal: list[np.ndarray]) -> None:
         slopes = [nodal[numbers[cable.name]][cable.node(s), cable.kind_of_element.nodal_vectors.index("r_x")]
                   for cable, s in ((scene.cables[tie.cable], tie.s), (scene.cables[tie.to], tie.at))]
         lengths = [float(np.linalg.norm(slope)) for slope in slopes]
-        if abs(lengths[0] - lengths[1]) > MOST_STRAIN * max(lengths):
+        if abs(lengths[0] - lengths[1]) > MAX_SLOPE_DIFFERENCE * max(lengths):
             for slope, length in zip(slopes, lengths, strict=True):
                 slope *= min(lengths) / length  # a longer one would turn a short element back on itself
 
 
 def cable_rates(scene: SceneData, reduction: Reduction) -> np.ndarray:
-    """Return the rates of the cables' nodal vectors at the start, but for what supports hold."""
+    """Return the rates of the cables' nodal vectors at the start, as the supports admit them."""
     asked = np.concatenate([*(cable.nodal_rates[..., : scene.dim].ravel() for cable in scene.cables.values()), []])
     return as_supports_leave(asked, reduction.unknown_of_dof, reduction.combinations)
 
 
 def cable_weights(cable: Cable) -> np.ndarray:
-    """Return how far a unit of each nodal vector moves a point: 1 for positions, and lengths for the slopes, of the
-    longer one of the elements at the node.
+    """Return the displacement of a point by a unit of each nodal vector: 1 for positions, lengths for slopes, those of
+    the longer element at the node.
     """
     area, iyy, izz = cable.section.moments()[:3]
     across, lengths = np.sqrt([iyy / area, izz / area]), cable.mesh.lengths

@@ -12,16 +12,15 @@ from ..parts.cable import Cable
 from ..parts.section_stiffness import section_stiffness
 
 POINTS = 5
-"""Gauss points along an element: exact where the stress-free shape is straight, of the eighth degree."""
-
-
+"""Gauss points along an element: exact for a straight stress-free shape, of the eighth degree."""
 PLANAR = 4
-"""Elastic constants of a planar continuum; of a spatial one there are nine."""
+"""Elastic constants of a planar continuum; a spatial one has nine."""
 
 
 def constants(cable: Cable, axial: float = 1.0, S: np.ndarray | None = None) -> np.ndarray:
-    """Return (1, n), or (elements, n) where they differ because the stress-free shape is curved or the elements are not
-    equal; axial: a factor of EA, of a cable's law alone; S: stiffness of the section, the cable's own if not given.
+    """Return (elements, n), or (1, n) for equal elements with a straight stress-free shape.
+
+    axial: a factor of EA, of a cable's law alone; S: stiffness of the section, by default that of the cable.
     """
     lengths = cable.mesh.lengths
     if S is None:
@@ -37,8 +36,9 @@ def constants(cable: Cable, axial: float = 1.0, S: np.ndarray | None = None) -> 
 
 def element_constants(library: str | None, element: str, law: str, length: float, S: np.ndarray,
                       e0: np.ndarray | None = None) -> np.ndarray:
-    """Return (n,): A of one element of a library, or of this package; e0 (nodal vectors, dim) is its stress-free shape,
-    for laws that take it.
+    """Return (n,): A of one element of a library, or of this package.
+
+    e0 (nodal vectors, dim): its stress-free shape, for laws that depend on it.
     """
     kernels, traits = kernels_of(library), of_library(library)[element].laws[law]
     if traits.kind == "continuum" and traits.straight:
@@ -50,7 +50,7 @@ def element_constants(library: str | None, element: str, law: str, length: float
 
 def integral_over_volume(stiffness_at: Callable, length: float, e0: np.ndarray | None,
                          S: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the kernel `stiffness_at` summed over an element: the form over its Gram products, and those of e0."""
+    """Return the integral of the kernel `stiffness_at`: the form over Gram products, and the Gram products of e0."""
     places, weights = np.polynomial.legendre.leggauss(POINTS)
     shares = []
     for x, weight in zip(length / 2 * (1 + places), length / 2 * weights, strict=True):
@@ -59,11 +59,10 @@ def integral_over_volume(stiffness_at: Callable, length: float, e0: np.ndarray |
 
 
 def section_points(S: np.ndarray) -> Iterator[tuple[float, float, np.ndarray]]:
-    """Return the nine points of a section (three of a planar one) that have its table S, as the kernels of its stress
-    have them.
+    """Yield the nine points of a section, three of a planar one, that reproduce its table S, as in kernels of stress.
 
-    S: (9, 6) or, planar, (4, 6), see `section_stiffness`. Yields y, z in m and the elastic constants there, times the
-    part of the section that it stands for, in N.
+    S: (9, 6) or, planar, (4, 6), see `section_stiffness`. Yields y, z in m and the elastic constants times the area of
+    the point, in N.
     """
     full, by_y, by_z, _, by_both, _ = S.T
     y2, z2 = S[0, 3] / S[0, 1], S[0, 5] / S[0, 2]

@@ -1,4 +1,4 @@
-"""Where the points are by which cables touch surfaces, and how far from these."""
+"""Distances of the contact points of cables from surfaces."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from .states import body_state, spatial
 
 def distances(model: Model, scene: SceneData, contact: ContactModel, q: np.ndarray,
               elements: np.ndarray | None = None) -> np.ndarray:
-    """Return (T, elements, points): distances of a cable's points from the surface that it touches, in m, in
-    configurations q (T, n_q), of some elements or of all.
+    """Return (T, elements, points): distances in m of the points of a contact from its surface, in configurations q (T,
+    n_q), of some elements or of all.
     """
     cable, surface = model.cables[contact.cable], scene.surfaces[scene.contacts[contact.name].b]
     elements = np.arange(cable.n_elements) if elements is None else elements

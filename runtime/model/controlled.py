@@ -1,4 +1,4 @@
-"""What the steps of a run are chosen by: the degrees of freedom that its quantities move."""
+"""Weights of degrees of freedom in the error that steps are chosen by, for given quantities."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ In a plane that is turned against the ground's axes, all components of a positio
 
 
 def controlled_weights(quantities: Sequence[str], scene: SceneData, model: Model) -> np.ndarray:
-    """Return the weight (n_dof,) of each degree of freedom in the error that steps are chosen by, m: the model's where
-    a quantity depends on it, 0 elsewhere.
+    """Return the weights (n_dof,) of degrees of freedom in the error that steps are chosen by, m: those of the model
+    where a quantity depends on the dof, 0 elsewhere.
 
-    What a slide's s is found from are the positions of its rider and of its cable. Raises SceneError for a quantity
-    whose error is not estimated.
+    The s of a slide depends on the positions of its rider and its cable. Raises SceneError for a quantity without an
+    error estimate.
     """
     weights = np.zeros(model.n_dof)
     for quantity in quantities:
@@ -39,12 +39,11 @@ def controlled_weights(quantities: Sequence[str], scene: SceneData, model: Model
 
 
 def counted_weights(quantities: Sequence[str], controlled: np.ndarray, scene: SceneData, model: Model) -> np.ndarray:
-    """Return the weight (n_dof,) of each degree of freedom in the error that counts, m: `controlled_weights` of what is
-    named, less elsewhere.
+    """Return the weights (n_dof,) of degrees of freedom in the error that counts, m: `controlled_weights` of named
+    parts, less elsewhere.
 
-    An error of a part of mass m that is connected with a named one of mass M counts m/M times, and at most once: by so
-    much it displaces the named part as their momentum is kept. Parts that nothing connects with a named one count
-    nothing.
+    The weight of a part of mass m connected with a named one of mass M is multiplied by m/M, at most 1: by conservation
+    of momentum its error displaces the named part by that fraction. Unconnected parts have no weight.
     """
     weights, masses = controlled.copy(), _masses(scene)
     named = {part for quantity in quantities for part in _parts_of(_parsed(quantity, scene)[0], scene)}
@@ -57,7 +56,7 @@ def counted_weights(quantities: Sequence[str], controlled: np.ndarray, scene: Sc
 
 
 def _parts_of(name: str, scene: SceneData) -> list[str]:
-    """Return the cables and bodies that a named part is, or that a slide is between."""
+    """Return the cable or body of that name, or those of the slide of that name."""
     if name not in scene.slides:
         return [name]
     slide = scene.slides[name]
@@ -80,13 +79,13 @@ def _dofs(model: Model, name: str) -> slice:
 
 
 def nameable(scene: SceneData) -> list[str]:
-    """Return the quantities of a scene by which steps can be chosen, without their components."""
+    """Return the quantities by which steps can be chosen, without components."""
     parts = {**scene.bodies, **scene.cables, **scene.slides}
     return [f"{name}.{what}" for name, part in parts.items() for what in COUNTED[part.kind]]
 
 
 def _parsed(quantity: str, scene: SceneData) -> tuple[str, str, str]:
-    """Return the part's name, what of it, and the axis or ""; raises SceneError."""
+    """Return the name of the part, the quantity, and the axis or "". Raises SceneError."""
     known = nameable(scene)
     name, _, rest = quantity.partition(".")
     what, _, axis = rest.partition(".")
@@ -100,7 +99,7 @@ def _parsed(quantity: str, scene: SceneData) -> tuple[str, str, str]:
 
 
 def _in_plane(model: Model, axis: str, where: str) -> str:
-    """Return the axis of the model along an axis of the ground; all of them, "", where it lies along none.
+    """Return the axis of the model along an axis of the ground, "" for all where none is.
 
     Raises SceneError for one across the plane of the model.
     """
@@ -118,7 +117,7 @@ def _components(start: int, dim: int, axis: str) -> Iterable[int]:
 
 
 def _count_cable(model: Model, cable: CableModel, what: str, axis: str, weights: np.ndarray) -> None:
-    """Let the positions of a cable's nodes count, or one component of them, or all nodal vectors."""
+    """Weigh the positions of a cable's nodes, or one component, or all nodal vectors."""
     for node in model.nodes[cable.name]:
         for vector in node.names if what == "nodal_vectors" else ("r",):
             for i in _components(node.dofs(vector)[0], model.dim, axis):
@@ -126,7 +125,7 @@ def _count_cable(model: Model, cable: CableModel, what: str, axis: str, weights:
 
 
 def _count_body(model: Model, body: BodyModel, what: str, axis: str, weights: np.ndarray) -> None:
-    """Let a body's position, orientation or modes count; turns move its origin about its mass centre."""
+    """Weigh a body's position, orientation or modes; rotations move its origin about the mass centre."""
     turns = slice(body.dof + model.dim, body.dof + (6 if model.dim == 3 else 3))
     modes = slice(turns.stop, turns.stop + body.modes)
     if what == "position":
@@ -140,7 +139,7 @@ def _count_body(model: Model, body: BodyModel, what: str, axis: str, weights: np
 
 
 def _count_slide(model: Model, slide: SlideModel, weights: np.ndarray) -> None:
-    """Let the positions count that a slide's s is found from: of its rider and of its cable."""
+    """Weigh the positions of the rider and the cable of a slide."""
     _count_cable(model, model.cables[slide.cable], "position", "", weights)
     rider = slide.rider
     if rider.cable >= 0:

@@ -52,21 +52,21 @@ class CouplingModel:
 
     @property
     def kernel_families(self) -> list[str]:
-        """Return the names of the generated kernels that it takes."""
+        """Return the names of the kernel families that it uses."""
         return [self.kernel] if hasattr(self, "kernel") else []
 
     @property
     def ends(self) -> Sequence[AttachmentModel]:
-        """Return the attachments that it acts on, `attachments` where it has these."""
+        """Return the attachments that it acts on."""
         return getattr(self, "attachments", ())
 
     @property
     def along(self) -> Sequence[int]:
-        """Return the numbers of cables that it acts on at places that move."""
+        """Return the numbers of the cables on which its places move."""
         return ()
 
     def ties_ends(self, dim: int) -> bool:
-        """Return whether the tangent of its forces has entries between what it acts on, beside its own unknowns."""
+        """Return whether its tangent has entries between the attachments, beside those of its internal unknowns."""
         return not self.n_forces
 
     @property
@@ -76,23 +76,23 @@ class CouplingModel:
 
     @property
     def free_coordinates(self) -> list[int]:
-        """Return the unknowns that are its own coordinates, as far as equilibrium determines them."""
+        """Return the unknowns that are internal coordinates and that equilibrium determines."""
         return [] if self.is_driven else [self.unknown + k for k in range(self.n_coordinates)]
 
     @property
     def force_unknowns(self) -> list[int]:
-        """Return the unknowns that are its own forces, but for redundant rows."""
+        """Return the unknowns that are internal forces, without redundant rows."""
         first = self.unknown + self.n_coordinates
         return [first + k for k in range(self.n_forces) if k not in self.redundant_rows]
 
     @property
     def n_forces(self) -> int:
-        """Return the number of its own forces in a Newton system."""
+        """Return the number of its internal forces in a Newton system."""
         return len(self.scale)
 
 
 def number(couplings: Iterable[CouplingModel]) -> tuple[int, int]:
-    """Number the unknowns and the multipliers of couplings in their order; return how many of each there are."""
+    """Number the unknowns and the multipliers of couplings in their order; return the numbers of both."""
     n_unknowns = n_multipliers = 0
     for coupling in couplings:
         coupling.unknown, coupling.multiplier = n_unknowns, n_multipliers

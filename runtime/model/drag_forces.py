@@ -1,4 +1,4 @@
-"""Forces of fluids along cables at given instants, from results; and what lies beyond their tables."""
+"""Forces of fluids along cables at given instants, from results, and places outside of their tables."""
 
 from __future__ import annotations
 
@@ -17,9 +17,10 @@ from .states import attachment_points, spatial
 
 @dataclass
 class Turning:
-    """What a fluid turns the sections of a beam by, at T instants at the points of quadrature (T, elements, points, 3).
+    """Moments of a fluid on the sections of a beam, at T instants and points of quadrature (T, elements, points, 3).
 
-    on_slope, on_chord: generalised forces on r_x and on the director along the chord, N; couple: their moment, N.
+    on_slope, on_chord: generalised forces on r_x and on the director along the chord, N; couple: their moment per
+    length, N.
     """
 
     on_slope: np.ndarray
@@ -29,8 +30,8 @@ class Turning:
 
 def densities(model: Model, drag: DragModel, time: np.ndarray, q: np.ndarray, v: np.ndarray
               ) -> tuple[np.ndarray, Turning | None]:
-    """Return (T, elements, points, 3): drag and buoyancy on a cable at its points of quadrature, N/m undeformed; and
-    what it turns sections by, where it does.
+    """Return (T, elements, points, 3), drag and buoyancy on a cable at its points of quadrature, N/m undeformed, and
+    the moments on sections of a beam with a polar.
 
     time (T,) in s, q (T, n_q), v (T, n_dof).
     """
@@ -68,24 +69,24 @@ def _on_sections(drag: DragModel, polar: Polar, t: np.ndarray, d: np.ndarray, w:
     i = t / np.linalg.norm(t, axis=1, keepdims=True)
     normal = np.cross(i, d)
     angle = np.arctan2(np.sum(normal * w, axis=1), np.sum(np.cross(normal, i) * w, axis=1))
-    values = np.zeros((len(t), 6))  # derivatives by the angle are of no interest
+    values = np.zeros((len(t), 6))  # derivatives by the angle are not needed
     values[:, ::2] = polar.coefficients(angle).T
     kernel = getattr(kernels_of(None), f"{drag.kernel}_on_section")
     return kernel.rows(len(t), t, d, w, np.array(drag.section), values)[0].reshape(-1, 3, 3)
 
 
 def _velocity(drag: DragModel, time: np.ndarray, r: np.ndarray) -> np.ndarray:
-    """Return the velocity of the fluid (..., dim) at times (s) and places r (..., dim) in m."""
+    """Return the velocity of the fluid (..., dim) at times (s) and positions r (..., dim) in m."""
     return drag.fluid.velocity_at(time, drag.base + r @ drag.up, _place(drag, r))[..., : r.shape[-1]]
 
 
 def _place(drag: DragModel, r: np.ndarray) -> np.ndarray:
-    """Return places (..., 3) on the ground's axes of places r (..., dim) in the model's."""
+    """Return positions (..., 3) along the ground's axes from r (..., dim) along the model's."""
     return drag.origin + r @ drag.axes.reshape(3, 3)[:, : r.shape[-1]].T
 
 
 def outside_tables(model: Model, q: np.ndarray) -> list[str]:
-    """Return a message for each drag on what is beyond the table of its fluid at t = 0; q (n_q,)."""
+    """Return a message for each drag that acts outside of the table of its fluid at t = 0; q (n_q,)."""
     found = []
     for drag in model.drags:
         if drag.fluid.table is None:
@@ -96,9 +97,9 @@ def outside_tables(model: Model, q: np.ndarray) -> list[str]:
         else:
             r = attachment_points(model, drag.attachments[0], q[None])[:, : model.dim]
         height = drag.base + r @ drag.up
-        r = r + (np.clip(height, drag.bottom, drag.surface) - height)[:, None] * drag.up  # the nearest of the fluid
+        r = r + (np.clip(height, drag.bottom, drag.surface) - height)[:, None] * drag.up  # nearest point of the fluid
         margin, axis = drag.fluid.table.margin(np.zeros(len(r)), _place(drag, r))
         if margin < -LENGTH_TOLERANCE:
-            found.append(f'drag "{drag.name}" is on what lies beyond the table of its fluid along {axis}, by '
-                         f"{-margin:.3g} of it: there the velocity is as at its edge; take a larger table")
+            found.append(f'drag "{drag.name}" acts outside of the table of its fluid along {axis}, by {-margin:.3g} '
+                         "of its length: the velocity there is that at the edge; take a larger table")
     return found

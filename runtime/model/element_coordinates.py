@@ -8,8 +8,8 @@ from .model import CableModel
 
 
 def element_coordinates(cable: CableModel, values: np.ndarray, element: np.ndarray | None = None) -> np.ndarray:
-    """Return (T, elements, vectors, dim) of a cable from (T, n), or with element (T,) those of one each: (T, vectors,
-    dim).
+    """Return (T, elements, vectors, dim) of a cable from (T, n); with element (T,) those of one element each, (T,
+    vectors, dim).
     """
     nodal = cable.nodal(values)
     if element is not None:

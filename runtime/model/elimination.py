@@ -1,9 +1,8 @@
-"""The order in which the border is eliminated: symbolic analysis of its graph, once for a scene.
+"""Symbolic analysis of the border: the order of its elimination, found once for a scene.
 
-The graph's nodes are groups of unknowns: of a body, of a coupling's own, of nodes of cables that are border.
-Eliminating a group connects its neighbours with each other. Minimum degree keeps them few: chains and trees of bodies
-take a number of operations that is linear in the bodies. Groups that are eliminated together are a front
-(engine/linear/fronts.h).
+The nodes of the graph are groups of unknowns: of a body, of a coupling, of nodes of cables in the border. Eliminating a
+group connects its neighbours. Minimum degree keeps them few: the operations for chains and trees of bodies are linear
+in the number of bodies. Groups that are eliminated together are a front (engine/linear/fronts.h).
 """
 
 from __future__ import annotations
@@ -16,17 +15,17 @@ from typing import Any
 
 import numpy as np
 
-DENSE = 60
-"""Unknowns of a border up to which one front takes no longer than several."""
-FRONT = 500.0
-"""Operations that take as long as what a front takes beside its arithmetic."""
+MAX_DENSE_BORDER = 60
+"""Unknowns of a border up to which one front is as fast as several."""
+FRONT_OVERHEAD = 500.0
+"""Work of a front beside its arithmetic, in operations."""
 SOLVES = 5
-"""That a factored border serves, about."""
+"""Approximate number of solves per factorisation."""
 
 
 @dataclass
 class Elimination:
-    """Fronts as engine/linear/fronts.h has them; strips (n, 2): an unknown and a chain that it touches, increasing."""
+    """Fronts as in engine/linear/fronts.h; strips (n, 2): an unknown and a chain that it touches, increasing."""
 
     m: int
     start: np.ndarray
@@ -49,12 +48,12 @@ class Elimination:
 
     @property
     def sizes(self) -> np.ndarray:
-        """Return (fronts,): how many unknowns each has, its neighbours among them."""
+        """Return (fronts,): the number of unknowns of each, neighbours included."""
         return self.pivots + self.neighbours
 
     @property
     def size(self) -> int:
-        """Return how many numbers the matrix takes."""
+        """Return the number of entries of the matrix."""
         return int((self.pivots * (self.pivots + 2 * self.neighbours)).sum())
 
     @property
@@ -65,11 +64,11 @@ class Elimination:
 
     @property
     def cost(self) -> float:
-        """Return the operations of a factorisation and its solutions, the work beside them counted as operations."""
+        """Return the operations of a factorisation and its solves, with the overhead of fronts."""
         return float(_cost(self.pivots.astype(float), self.neighbours.astype(float)).sum())
 
     def entries(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return (size,) each: the rows and columns of what the storage holds, in its order."""
+        """Return (size,) each: the rows and columns of the entries in storage order."""
         rows, columns = [], []
         for first, p, s in zip(self.first, self.pivots, self.neighbours, strict=True):
             own, all_of_it = self.unknown[first : first + p], self.unknown[first : first + p + s]
@@ -80,15 +79,15 @@ class Elimination:
 
 
 def dense(m: int, strips: np.ndarray) -> Elimination:
-    """Return the elimination of m unknowns in one front; strips: as in `Elimination`."""
+    """Return the elimination of m unknowns in one front; strips: see `Elimination`."""
     none, zero, every = np.array([-1]), np.array([0]), np.arange(m)
     return Elimination(m, zero, zero, np.array([m]), zero, every, 0 * every, none, none, none, 0 * every, every, strips)
 
 
 class BorderGraph:
-    """Groups of the border's unknowns, which of them touch each other, and which touch a chain of the band.
+    """Groups of the border's unknowns, their adjacency, and the chains of the band that they touch.
 
-    A constraint waits for the bodies that it is on: before them its rows have nothing to divide by.
+    A constraint waits for its bodies: before their elimination its rows have no pivots.
     """
 
     def __init__(self) -> None:
@@ -106,21 +105,21 @@ class BorderGraph:
         return len(self.beside) - 1
 
     def join(self, groups: Iterable[int]) -> None:
-        """Let these groups touch each other."""
+        """Make these groups neighbours of each other."""
         groups = set(groups)
         for group in groups:
             self.beside[group] |= groups
             self.beside[group].discard(group)
 
     def touch(self, group: int, chains: Iterable[int]) -> None:
-        """Let a group touch chains, whose elimination connects it with all that touches them."""
+        """Let a group touch chains, whose elimination connects all their groups."""
         for chain in chains:
             self.on_chain.setdefault(chain, set()).add(group)
 
     def eliminate(self) -> Elimination:
-        """Return the order of elimination: one front, or those of minimum degree where they take fewer operations.
+        """Return the elimination: one front, or those of minimum degree where these save operations.
 
-        It is analysed once for all scenes whose graphs are equal, as those of one topology are; the arrays are shared.
+        Scenes with equal graphs, such as those of one topology, share the analysis and the arrays.
         """
         return eliminated(tuple(tuple(own.tolist()) for own in self.unknowns), tuple(map(frozenset, self.beside)),
                           _frozen(self.on_chain), _frozen(self.waits))
@@ -143,11 +142,11 @@ class BorderGraph:
             together, around = graph.eliminate(pivot)
             fronts.append(together)
             neighbours.append(around)
-        assert all(graph.gone), "every constraint is on bodies that are eliminated"
+        assert all(graph.gone), "a constraint waits for no body"
         return fronts, neighbours
 
     def _merged(self, fronts: list[list[int]], neighbours: list[set[int]]) -> tuple[list[list[int]], list[set[int]]]:
-        """Return the fronts with those taken together that take no longer so."""
+        """Return the fronts, merged where this saves operations."""
         p, s = ([sum(len(self.unknowns[group]) for group in part) for part in parts] for parts in (fronts, neighbours))
         children: list[list[int]] = [[] for _ in fronts]
         kept = [True] * len(fronts)
@@ -168,7 +167,7 @@ class BorderGraph:
                 [front for front, keep in zip(neighbours, kept, strict=True) if keep])
 
     def _laid_out(self, fronts: list[list[int]], beside: list[set[int]], strips: np.ndarray) -> Elimination:
-        """Return the arrays of fronts, of which the groups and the neighbours are given."""
+        """Return the arrays of fronts, given by their groups and neighbours."""
         def sorted_unknowns(groups: Iterable[int]) -> np.ndarray:
             return np.sort(np.concatenate([np.zeros(0, dtype=int), *(self.unknowns[group] for group in groups)]))
 
@@ -198,7 +197,7 @@ class BorderGraph:
 
 
 class _Remaining:
-    """What is left of a graph while its groups are eliminated, those first that connect the fewest unknowns."""
+    """A graph during elimination by minimum degree."""
 
     def __init__(self, size: list[int], beside: list[set[int]], waits: dict[int, set[int]]):
         self.size = size
@@ -207,12 +206,12 @@ class _Remaining:
         self.gone = [False] * len(size)
         self.eliminations = 0
         self.degree = [self._degree(group) for group in range(len(size))]
-        # of equals the one that was touched last: chains are eliminated from their ends
+        # among equal degrees the group that changed last: chains are eliminated from their ends
         self.waiting = [(of, 0, group) for group, of in enumerate(self.degree) if not self.waits.get(group)]
         heapify(self.waiting)
 
     def next_pivot(self) -> int | None:
-        """Return a group of the least degree that waits for none; None where all are gone."""
+        """Return a group of the least degree that waits for no other; None at the end."""
         while self.waiting:
             of, _, group = heappop(self.waiting)
             if not self.gone[group] and of == self.degree[group]:
@@ -220,10 +219,10 @@ class _Remaining:
         return None
 
     def eliminate(self, pivot: int) -> tuple[list[int], set[int]]:
-        """Return the groups that go with a pivot, itself among them, and those that this connects."""
+        """Return the groups eliminated with a pivot, itself included, and the groups that become connected."""
         around = self.beside[pivot]
         constraints = [group for group in around if group in self.waits]
-        if len(constraints) == 1:  # all that lies behind it is attached by it alone, and gone
+        if len(constraints) == 1:  # the last connection of eliminated groups
             self.waits[constraints[0]] = set()
         for group in around:
             self.beside[group] |= around
@@ -238,11 +237,11 @@ class _Remaining:
         return together, around
 
     def _costs_nothing(self, group: int, pivot: int, around: int) -> bool:
-        """Return whether a neighbour of a pivot has no others than the pivot has, and waits for no other."""
+        """Return whether a neighbour of a pivot has only neighbours of the pivot, and waits for no other."""
         return len(self.beside[group]) == around - 1 and not self.waits.get(group, set()) - {pivot}
 
     def _update(self, group: int, gone: list[int]) -> None:
-        """Take what is gone from a group's neighbours, and let it wait for its turn unless it waits for others."""
+        """Remove eliminated groups from the neighbours of a group, and queue it unless it waits for others."""
         self.beside[group].difference_update(gone)
         self.degree[group] = self._degree(group)
         if group in self.waits:
@@ -251,7 +250,7 @@ class _Remaining:
             heappush(self.waiting, (self.degree[group], -self.eliminations, group))
 
     def _degree(self, group: int) -> int:
-        """Return how many unknowns a group's neighbours have."""
+        """Return the number of unknowns of the neighbours of a group."""
         return sum(self.size[other] for other in self.beside[group])
 
 
@@ -263,7 +262,7 @@ def _frozen(sets: dict[int, set[int]]) -> tuple[tuple[int, frozenset[int]], ...]
 def eliminated(unknowns: tuple[tuple[int, ...], ...], beside: tuple[frozenset[int], ...],
                on_chain: tuple[tuple[int, frozenset[int]], ...],
                waits: tuple[tuple[int, frozenset[int]], ...]) -> Elimination:
-    """Return the order of elimination of a `BorderGraph`, given by its attributes; it stays for equal ones."""
+    """Return the elimination of a `BorderGraph`, given by its attributes, cached."""
     graph = BorderGraph()
     graph.unknowns, graph.beside = [np.array(own, dtype=int) for own in unknowns], [set(groups) for groups in beside]
     graph.on_chain = {chain: set(groups) for chain, groups in on_chain}
@@ -272,11 +271,11 @@ def eliminated(unknowns: tuple[tuple[int, ...], ...], beside: tuple[frozenset[in
 
 
 def _parents(fronts: list[list[int]], neighbours: list[set[int]]) -> list[int]:
-    """Return the front that eliminates the first of each one's neighbours, -1 where it has none."""
+    """Return for each front the one that eliminates its first neighbour, -1 without neighbours."""
     of = {group: k for k, front in enumerate(fronts) for group in front}
     return [min((of[group] for group in around), default=-1) for around in neighbours]
 
 
 def _cost(p: Any, s: Any) -> Any:
-    """Return operations of a front with p pivots and s neighbours, the solutions' among them."""
-    return p**3 / 3 + p**2 * s + p * s**2 + SOLVES * (p**2 + 2 * p * s) + FRONT
+    """Return the operations of a front with p pivots and s neighbours, solves included."""
+    return p**3 / 3 + p**2 * s + p * s**2 + SOLVES * (p**2 + 2 * p * s) + FRONT_OVERHEAD

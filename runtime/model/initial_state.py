@@ -1,4 +1,4 @@
-"""A state that a run starts from, given as arrays with the names that results have."""
+"""Initial states of runs, given as arrays by the names of results."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from .unknowns import as_supports_leave
 
 CABLE = ("nodal_vectors", "nodal_velocity")
 POINTS = ("position", "velocity")
-"""Of a cable's nodes alone: what may be given in place of its nodal vectors and their rates."""
+"""Positions and velocities of the nodes of a cable, an alternative to its nodal vectors and their rates."""
 BODY = ("position", "orientation", "velocity", "angular_velocity")
 MODAL = (*BODY, "modal_coordinates", "modal_velocities")
 SLIDE = ("s",)
-ITERATED = 1e-7
-"""Of the largest change: how exactly a state fits its ties, where the iteration of `radau` left it."""
+TIE_TOLERANCE = 1e-7
+"""Error of ties in a state of `radau`, whose iteration stops there, as a fraction of the largest change."""
 
 
 class InitialState(Mapping[str, np.ndarray]):
@@ -35,12 +35,14 @@ class InitialState(Mapping[str, np.ndarray]):
     ``state["wire.nodal_vectors"]`` (node, vector, 3), ``state["wire.nodal_velocity"]``, or of cables without directors
     ``state["wire.position"]`` and ``state["wire.velocity"]`` (node, 3): slopes are then those of the cubic spline
     through the nodes over the undeformed arc-length. Of bodies position, orientation, velocity, angular_velocity,
-    modal_coordinates, modal_velocities; of slides s. Units are those of the results. What is not given is as drawn.
+    modal_coordinates, modal_velocities; of slides s. Units are those of the results. Other quantities are as drawn.
     """
 
     def __init__(self, arrays: Mapping[str, Any], time: float | None = None, unstretched: Sequence[str] = ()):
-        """Keep the arrays; time: of the run that they are from, in s; unstretched: names of contacts and crossings
-        whose friction springs were stretched there. Raises SceneError for what is no number.
+        """Check and store the arrays. Raises SceneError for values that are no numbers.
+
+        time: of the run that they are from, in s; unstretched: names of contacts and crossings whose friction springs
+        were stretched in that run.
         """
         self.time, self._unstretched = time, unstretched
         self._arrays = {}
@@ -66,13 +68,13 @@ class InitialState(Mapping[str, np.ndarray]):
         return len(self._arrays)
 
     def __repr__(self) -> str:
-        """Return the names, and the time that the state is from."""
+        """Return the names and the time of the state."""
         of = "" if self.time is None else f" of t = {self.time:g} s"
         return f"<funicular.InitialState{of}: {', '.join(self)}>"
 
     @property
     def messages(self) -> list[str]:
-        """Return what the report of a run says of its start."""
+        """Return messages about the state for the report of a run."""
         found = []
         if self.time is not None:
             found = [f"starts from a state of another run, at its t = {self.time:.6g} s: signals begin anew at t = 0"]
@@ -83,14 +85,14 @@ class InitialState(Mapping[str, np.ndarray]):
         return found
 
     def check_fits(self, scene: SceneData) -> None:
-        """Raise SceneError for a name that is of nothing in the scene."""
+        """Raise SceneError for a name of nothing in the scene."""
         known = [*names_of(scene), *(f"{cable}.{quantity}" for cable in scene.cables for quantity in POINTS)]
         for name in self:
             if name not in known:
                 raise SceneError("initial", f'"{name}" is no part of a state of this scene', near(name, known))
 
     def start(self, model: Model, scene: SceneData) -> None:
-        """Put a freshly built model of the scene into this state. Raises SceneError."""
+        """Set a freshly built model of the scene to this state. Raises SceneError."""
         if model.plane_axes is not None:
             InitialState({name: model.as_in_model(name, values) for name, values in self.items()},
                          self.time)._start(model, scene)
@@ -98,7 +100,7 @@ class InitialState(Mapping[str, np.ndarray]):
             self._start(model, scene)
 
     def _start(self, model: Model, scene: SceneData) -> None:
-        """Put a model into this state, which is along its axes. Raises SceneError."""
+        """Set a model to this state, given along its axes. Raises SceneError."""
         drawn, moving = model.q.copy(), model.v.copy()
         for cable in model.cables:
             self._place_cable(model, cable, scene.cables[cable.name])
@@ -138,7 +140,7 @@ class InitialState(Mapping[str, np.ndarray]):
 
 
 def names_of(scene: SceneData) -> Iterator[str]:
-    """Yield the names of all arrays of a scene's states, as results have them."""
+    """Yield the names of all arrays of the states of a scene."""
     yield from (f"{cable}.{quantity}" for cable in scene.cables for quantity in CABLE)
     for name, body in scene.bodies.items():
         yield from (f"{name}.{quantity}" for quantity in (MODAL if isinstance(body, ModalBody) else BODY))
@@ -147,7 +149,7 @@ def names_of(scene: SceneData) -> Iterator[str]:
 
 def _frame(body: BodyModel, drawn: RigidBody | ModalBody, given: dict[str, np.ndarray],
            model: Model) -> tuple[np.ndarray, np.ndarray]:
-    """Return configuration and rates of a body that starts elsewhere than drawn."""
+    """Return configuration and velocities of a body that does not start as drawn."""
     position, orientation = drawn.frame
     at = {"position": position, "orientation": orientation, "velocity": np.array(drawn.velocity),
           "angular_velocity": np.array(drawn.angular_velocity)}
@@ -164,10 +166,10 @@ def _frame(body: BodyModel, drawn: RigidBody | ModalBody, given: dict[str, np.nd
 
 
 def _along_spline(points: np.ndarray, cable: CableModel, drawn: Cable, name: str) -> np.ndarray:
-    """Return (node, vector, 3): points of nodes, and the derivatives of the spline through them over arc-length."""
+    """Return (node, vector, 3): points of nodes, and derivatives of the spline through them by arc-length."""
     orders = {"r": 0, "r_x": 1, "r_xx": 2}
     if not set(cable.vectors) <= set(orders):
-        raise SceneError("initial", f'"{name}" does not say how the sections of {drawn.where} are turned',
+        raise SceneError("initial", f'"{name}" does not determine the rotations of the sections of {drawn.where}',
                          f'give "{cable.name}.nodal_vectors" or "{cable.name}.nodal_velocity"')
     s = cable.mesh.node_s
     ends = "not-a-knot" if len(s) > 2 else "natural"
@@ -188,14 +190,14 @@ def _check_plane(vectors: np.ndarray, model: Model, name: str) -> None:
 
 
 def _plane(model: Model) -> str:
-    """Return how messages name the plane of a planar model."""
+    """Return the name of the plane of a planar model in messages."""
     return called(None if model.plane_axes is None else model.plane_axes.plane)
 
 
 def _check_supports(model: Model, change: np.ndarray, does: str, unit: str) -> None:
-    """Raise SceneError where a state does not fit pins, clamps, motions and ties; change (n_dof,) of the cables' part.
+    """Raise SceneError where a state violates pins, clamps, motions or ties; change (n_dof,): from the state as drawn.
 
-    Every dof of a cable is linear in the unknowns: what the supports fix must not change, what they tie must follow.
+    Every dof of a cable is linear in the unknowns: fixed dofs must not change, tied ones must follow their unknowns.
     """
     if not model.cables:
         return
@@ -204,7 +206,7 @@ def _check_supports(model: Model, change: np.ndarray, does: str, unit: str) -> N
     expected = as_supports_leave(change, model.unknown_of_dof[cables], model.combinations)
     wrong, largest = (np.abs(each) * model.weight[cables] for each in (change - expected, change))
     longest = max(cable.mesh.total for cable in model.cables)
-    if np.any(wrong > max(LENGTH_TOLERANCE * longest, ITERATED * largest.max())):
+    if np.any(wrong > max(LENGTH_TOLERANCE * longest, TIE_TOLERANCE * largest.max())):
         dof = int(np.argmax(wrong))
         where, k = next((node.where, k) for nodes in model.nodes.values() for k, node in enumerate(nodes)
                         if node.first <= dof < node.first + node.vectors.size)

@@ -1,4 +1,4 @@
-"""Joints between two attachments as the engine takes them, and what keeps a rider's axes to its cable."""
+"""Joints between two attachments as the engine takes them, those between a rider's axes and its cable included."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from .coupling import CouplingKind, CouplingModel
 class JointModel(CouplingModel):
     """A joint between two ends; base: its distance or angle without the signal that drives it, m or rad.
 
-    of_points: its equations are of the two points alone, and do not see turns.
-    slide: the one beside which it ties a rider's axes to the cable; reversed: the first end is the joint's b.
+    of_points: its equations depend on the two points alone, not on rotations. slide: the slide whose rider's axes it
+    holds to the cable; reversed: its first end is b of the part.
     """
 
     reports_cost: ClassVar[bool] = True
@@ -40,14 +40,14 @@ class JointModel(CouplingModel):
         return len(self.scale)
 
     def ties_ends(self, dim: int) -> bool:
-        """Return whether its forces change with the turns of both ends, or with a gap: its stiffness is between them.
+        """Return whether its stiffness couples both ends: its forces depend on rotations of both, or on the gap.
 
-        Of a spherical joint they do not: what it adds to the stiffness is of each end alone.
+        The stiffness of a spherical joint has no such entries.
         """
         if any(end.slide >= 0 for end in self.attachments):
             return True
         if all(end.cable >= 0 for end in self.attachments):
-            return False  # engine/couplings/joint/joint.c leaves that out
+            return False  # omitted by engine/couplings/joint/joint.c
         return _has_cross_stiffness(self.kernel, dim)
 
 
@@ -72,7 +72,7 @@ def _joint(builder: ModelBuilder, joint: Joint) -> JointModel:
         kind = {"revolute": "revolute" if driven else "spherical", "cylindrical": "prismatic"}.get(kind, kind)
     if driven and joint.joint_kind != "distance":
         kind += f"_{DRIVEN[joint.joint_kind]}"
-        if scene.dim == 2 and joint.axes[2, 2] < -0.5:  # about -z: what a sees of b is what b sees of a about z
+        if scene.dim == 2 and joint.axes[2, 2] < -0.5:  # about -z: the angle of b in a is that of a in b about z
             ends.reverse()
             turned = True
     base = 0.0
@@ -101,7 +101,7 @@ def _model(name: str, kind: str, dim: int, ends: list[AttachmentModel], drive: i
     kernel = f"joint_{'planar_' * (dim == 2)}{kind}"
     J = _derivatives(kernel, dim)
     mass, length = max(end.mass for end in ends), max(end.length for end in ends)
-    # kg, and kg m where a row is about turns alone: no displacement of the points changes it
+    # kg, and kg m for rows of rotations alone, which no displacement of the points changes
     scale = np.where(np.any(J[:, :dim] != 0, axis=1), mass, mass * length)
     return JointModel(kernel, (ends[0], ends[1]), base, not np.any(J[:, dim:]), type="joint", name=name, scale=scale,
                       n_multipliers=len(scale), drive=drive)
@@ -109,7 +109,7 @@ def _model(name: str, kind: str, dim: int, ends: list[AttachmentModel], drive: i
 
 @cache
 def _derivatives(kernel: str, dim: int) -> np.ndarray:
-    """Return the derivatives (rows, dim + turns) of a joint's equations by the gap and the turns, somewhere."""
+    """Return the derivatives (rows, dim + turns) of a joint's equations by gap and rotations, in a generic state."""
     eye, ones = np.eye(dim), np.ones(dim)
     force = getattr(kernels_of(None), f"{kernel}_force")
     return force(ones, eye, eye, np.array([0.5, np.cos(0.5), np.sin(0.5)]), np.zeros(force.shapes["f"]))[1]
@@ -117,9 +117,9 @@ def _derivatives(kernel: str, dim: int) -> np.ndarray:
 
 @cache
 def _has_cross_stiffness(kernel: str, dim: int) -> bool:
-    """Return whether the kernel's second derivatives couple what moves its first end to what moves its second."""
+    """Return whether the second derivatives of the kernel couple its two ends."""
     force = getattr(kernels_of(None), f"{kernel}_force")
-    rng = np.random.default_rng(0)  # of numbers without any relation no two cancel each other
+    rng = np.random.default_rng(0)  # unrelated numbers do not cancel
     given = [rng.uniform(0.5, 1.0, force.shapes[name]) for name in list(force.shapes)[:5]]
     numbers = np.asarray(force(*given)[2]).ravel()
     moves = int(np.sqrt(numbers.size))

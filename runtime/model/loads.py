@@ -33,10 +33,9 @@ class DeadLoadModel(CouplingModel):
 
 @dataclass
 class LoadModel(CouplingModel):
-    """A load that turns with what it acts on, or whose lever does.
+    """A load that depends on rotations of its cable or body.
 
-    kind: cable_follower, cable_moment, body_force, body_follower or body_moment; modal: of a modal body, as of an
-    `AttachmentModel`.
+    kind: cable_follower, cable_moment, body_force, body_follower or body_moment; modal: see `AttachmentModel`.
     """
 
     kind: str
@@ -50,7 +49,7 @@ class LoadModel(CouplingModel):
 
 
 class LoadBuilder:
-    """Translates loads: those of constant direction, and those that turn."""
+    """Translates loads: into dead ones, of constant direction in the dofs, and others."""
 
     def __init__(self, builder: ModelBuilder):
         self.builder, self.scene, self.cables = builder, builder.scene, builder.cables

@@ -1,4 +1,4 @@
-"""Which joints close loops: those without which what they connect would still be connected."""
+"""Joints that close kinematic loops: without one of them, its ends would still be connected."""
 
 from __future__ import annotations
 
@@ -8,10 +8,9 @@ from .model import Model
 
 
 def joints_in_loops(model: Model) -> list[bool]:
-    """Return, of each joint, whether it is part of a loop; the ground and all cables count as one thing.
+    """Return for each joint whether it is part of a loop; the ground and all cables count as one node.
 
-    Equations of a joint that is in no loop follow from no others: what lies behind it takes whatever force the joint
-    gives, and nothing but the joint gives one.
+    Equations of a joint in no loop are independent of all others.
     """
     edges = [(joint.attachments[0].body + 1, joint.attachments[1].body + 1) for joint in model.joints]
     riders = [(0, slide.rider.body + 1) for slide in model.slides]
@@ -20,7 +19,7 @@ def joints_in_loops(model: Model) -> list[bool]:
 
 
 def bridges(n: int, edges: Sequence[tuple[int, int]]) -> list[bool]:
-    """Return, of each edge of a graph of n nodes, whether its ends are not connected otherwise (Tarjan 1974)."""
+    """Return for each edge of a graph of n nodes whether it is the only connection of its ends (Tarjan 1974)."""
     beside: list[list[tuple[int, int]]] = [[] for _ in range(n)]
     for edge, (a, b) in enumerate(edges):
         beside[a].append((b, edge))

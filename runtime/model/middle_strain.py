@@ -1,4 +1,4 @@
-"""Slopes of centrelines, how long they make elements, and the axial strain in the middle, by which they are slack."""
+"""Slopes and stretches of centrelines, and the axial strain in the middle of elements, which shows slackness."""
 
 from __future__ import annotations
 
@@ -13,9 +13,7 @@ Rule = tuple[Sequence[float], Sequence[float]]
 
 
 def slopes(cable: CableModel, part: float) -> np.ndarray:
-    """Return (1 or elements, vectors): what the vectors of each element's nodes have in its slope at a part of its
-    length, one row where elements are equal.
-    """
+    """Return (1 or elements, vectors): shape functions of the slope at a fraction of the element's length."""
     lengths = cable.mesh.lengths
     return cable.kernel("on_axis").rows(len(lengths), lengths, part * lengths)[1]
 
@@ -28,7 +26,7 @@ def gauss_rule(points: int) -> Rule:
 
 def stretches(cable: CableModel, first: np.ndarray, last: np.ndarray, element: np.ndarray,
               rule: Rule) -> np.ndarray:
-    """Return (..., n): lengths of the centrelines of elements (n,) over those at rest.
+    """Return (..., n): lengths of the centrelines of elements (n,) over their undeformed lengths.
 
     first, last: the vectors of their nodes, (..., n, vectors, dim); rule: of quadrature.
     """
@@ -41,7 +39,7 @@ def stretches(cable: CableModel, first: np.ndarray, last: np.ndarray, element: n
 
 
 def middle_strain(cable: CableModel, nodal_vectors: np.ndarray) -> np.ndarray:
-    """Return (T, elements): by how much more than its length at rest each element is long in its middle, over that.
+    """Return (T, elements): the axial strain in the middle of each element.
 
     nodal_vectors: (T, nodes, vectors, 2 or 3).
     """
@@ -49,7 +47,7 @@ def middle_strain(cable: CableModel, nodal_vectors: np.ndarray) -> np.ndarray:
 
 
 def strain_at(cable: CableModel, nodal_vectors: np.ndarray, part: float) -> np.ndarray:
-    """Return (T, elements): the same at a part of the length of each element."""
+    """Return (T, elements): the axial strain at a fraction of the length of each element."""
     return np.linalg.norm(slope_at(cable, nodal_vectors, slopes(cable, part)), axis=-1) - 1.0
 
 

@@ -1,4 +1,4 @@
-"""What the engine integrates, as data: cables, bodies, slides, joints, springs, loads, and arrays over all of them.
+"""The model that the engine integrates: cables, bodies, couplings, and arrays over all of them.
 
 Coordinates, unknowns and their order are those of engine/bodies/model.h.
 """
@@ -38,18 +38,18 @@ class Kernel(Protocol):
     shapes: dict[str, tuple[int, ...]]
 
     def __call__(self, *arguments: Any) -> Any:
-        """Return what it computes of one set of arguments."""
+        """Return the outputs for one set of arguments."""
 
     def rows(self, n: int, *arguments: Any) -> Any:
-        """Return what it computes of n sets of arguments: of each, n along the first axis, or one for all."""
+        """Return the outputs for n sets of arguments: of each, n along the first axis, or one for all."""
 
 
 @dataclass
 class CableModel:
-    """One cable: constants of its elements and where its coordinates are.
+    """One cable: constants of its elements and the position of its coordinates.
 
-    m: (1 or elements, nodal vectors, nodal vectors) of an element; A: (1 or elements, constants). share: (vectors,) of
-    each vector of a node, by how much of it points of the cable move at most; None where nothing asks for it.
+    m: (1 or elements, nodal vectors, nodal vectors) of an element; A: (1 or elements, constants). share: (vectors,)
+    `Hull.share`, None where no coupling needs it.
     """
 
     name: str
@@ -73,7 +73,7 @@ class CableModel:
 
     @property
     def coordinates(self) -> slice:
-        """Return the part of q, v and the dofs that is the cable's."""
+        """Return the range of its coordinates in q, v and the dofs."""
         return slice(self.first, self.first + int(np.prod(self.shape)))
 
     def nodal(self, q: np.ndarray) -> np.ndarray:
@@ -89,14 +89,14 @@ class CableModel:
         return getattr(kernels_of(self.library), f"{self.element}_{name}")
 
     def law_kernel(self, name: str) -> Kernel:
-        """Return a kernel of its law, the one that the engine takes."""
+        """Return a kernel of its law, the one that the engine uses."""
         kind = of_library(self.library)[self.element]
         return getattr(kernels_of(self.library), kind.law_kernel(self.element, self.law, name))
 
 
 @dataclass
 class ShapeModel:
-    """Modes of a body as the engine takes them: S (n + 1, dim), X (n + 1, n + 1, dim, dim), gravity (dim,)."""
+    """Modes of a body: S (n + 1, dim), X (n + 1, n + 1, dim, dim), gravity (dim,)."""
 
     S: np.ndarray
     X: np.ndarray
@@ -108,9 +108,9 @@ class ShapeModel:
 
 @dataclass
 class BodyModel:
-    """One body: kernels of its frame, inertia, where its coordinates are; `shape` is that of a modal one.
+    """One body: kernels of its frame, inertia, position of its coordinates; `shape`: of a modal one.
 
-    The engine's frame is at the mass centre of a rigid body, `centre` in its axes from the origin that the user sees.
+    The engine's frame of a rigid body is at the mass centre, at `centre` in the axes and from the origin of the user.
     """
 
     name: str
@@ -153,12 +153,12 @@ class SlideModel(CouplingModel):
 
     @property
     def kernel_families(self) -> list[str]:
-        """Return the names of its kernels, and of those of its resistance."""
+        """Return the names of its kernels and of those of its resistance."""
         return [self.kernel, self.resistance] if self.resistance else [self.kernel]
 
     @property
     def ends(self) -> Sequence[AttachmentModel]:
-        """Return its one end, the rider."""
+        """Return the rider, its one end."""
         return (self.rider,)
 
     @property
@@ -167,7 +167,7 @@ class SlideModel(CouplingModel):
         return (self.cable,)
 
     def place_at(self, s: float, cable: CableModel) -> None:
-        """Put the slide at arc-length s (m) of its cable, on the element there; at a node the one that it is on."""
+        """Move the slide to arc-length s (m) of its cable; at a node it stays on its element."""
         mesh, self.s = cable.mesh, s
         if mesh.is_even:
             at = s / mesh.mean
@@ -191,11 +191,11 @@ class MotionModel:
 
 @dataclass
 class Model:
-    """Arrays that the engine reads; engine/bodies/model.h says what they mean. tables: addresses of further kernels.
+    """Arrays that the engine reads, explained in engine/bodies/model.h.
 
-    couplings: in the order in which the engine adds up what they give, that of `kinds.COUPLINGS`.
-    newton, accelerations: how the borders of Newton's systems and of those of eq 38 are eliminated; plane_axes: what
-    turns results into the ground's axes, None where the model is in these.
+    couplings: in the order of the engine's sums, that of `kinds.COUPLINGS`. tables: addresses of kernels of libraries.
+    newton, accelerations: eliminations of the borders of Newton's systems and of those of eq 38. plane_axes: the
+    rotation of results into the ground's axes, None for a model in these axes.
     """
 
     dim: int
@@ -243,7 +243,7 @@ class Model:
 
     @cached_property
     def joints(self) -> list[JointModel]:
-        """Return the joints, first those that keep a rider's axes to its cable."""
+        """Return the joints, first those between a rider's axes and its cable."""
         return self.of(JointModel)
 
     @cached_property
@@ -272,7 +272,7 @@ class Model:
         return self.of(HardContactModel)
 
     def prescribed_at(self, t: float) -> dict[int, float]:
-        """Return what motions make of their dofs at the time t in s, by dof."""
+        """Return the prescribed values at the time t in s, by dof."""
         found: dict[int, float] = {}
         for m in self.motions:
             f = self.signals[m.signal].at(t)
@@ -281,19 +281,19 @@ class Model:
         return found
 
     def results(self, part: str, found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """Return results of a part by quantity, in three dimensions, along the ground's axes."""
+        """Return results of a part, by quantity, along the ground's axes."""
         axes = self.plane_axes
         return found if axes is None else {name: axes.out(part, name, values) for name, values in found.items()}
 
     def as_in_model(self, name: str, values: np.ndarray) -> np.ndarray:
-        """Return a result by its name along the axes of the model: what `results` has done undone."""
+        """Return a result by its name along the axes of the model, the inverse of `results`."""
         axes = self.plane_axes
         part, _, quantity = name.rpartition(".")
         return values if axes is None else axes.into(part, quantity, values)
 
     @property
     def is_damped(self) -> bool:
-        """Return whether any force on what is at rest depends on velocities."""
+        """Return whether any force depends on velocities at rest."""
         return (any(cable.tau or cable.mass_damping for cable in self.cables) or any(body.modes for body in self.bodies)
                 or any(coupling.is_damped for coupling in self.couplings))
 
@@ -309,7 +309,7 @@ class Model:
 
     @property
     def kernels(self) -> list[str]:
-        """Return the names of the kernel families that the scene touches."""
+        """Return the names of the kernel families that the scene uses."""
         return sorted({c.element for c in self.cables} | {f"{c.element}_{c.law}" for c in self.cables}
                       | {name for coupling in self.couplings for name in coupling.kernel_families}
                       | {body.kernel for body in self.bodies}

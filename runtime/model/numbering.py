@@ -1,4 +1,4 @@
-"""The order of the unknowns: a band, in chains of elements, and a border of what ties chains to each other."""
+"""The order of the unknowns: a band, in chains of elements, and a border that couples the chains."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from scipy.sparse import coo_array, csr_array, triu
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 SOLVES = 30
-"""That a factored matrix serves: about ten, times three since their numbers come from memory and not from the cache."""
+"""Weight of solves per factorisation: about ten, three times as slow per operation, as they read from memory."""
 
 
 @dataclass
 class Numbering:
     """number[unknown]: first the band, in which unknowns of one element are at most `width` apart, then the border.
 
-    chains: where rows of the band begin that nothing but the border ties to the rows before; and the end.
+    chains: first rows of the parts of the band that only the border couples; and the end.
     """
 
     number: np.ndarray
@@ -28,9 +28,7 @@ class Numbering:
 
 @dataclass
 class Touches:
-    """Which elements have a share of which unknowns: entry by entry an element and an unknown; and how many elements
-    there are.
-    """
+    """Incidence of elements and unknowns: an element and an unknown per entry."""
 
     element: np.ndarray
     unknown: np.ndarray
@@ -38,10 +36,9 @@ class Touches:
 
 
 def as_drawn(elements: np.ndarray, unknown_of_dof: np.ndarray) -> Numbering:
-    """Return the numbering of unknowns in the order of the dofs that they are.
+    """Return the numbering of unknowns in the order of their dofs.
 
-    elements (n, 2): first dof and number of dofs of each; unknown_of_dof: the number of an unknown, which increases, or
-    -1.
+    elements (n, 2): first dof and number of dofs of each; unknown_of_dof: increasing numbers of unknowns, or -1.
     """
     before = np.append(0, np.cumsum(unknown_of_dof >= 0))  # unknowns before a dof
     n = int(before[-1])
@@ -49,18 +46,17 @@ def as_drawn(elements: np.ndarray, unknown_of_dof: np.ndarray) -> Numbering:
 
 
 def cheapest(elements: np.ndarray, made_of: np.ndarray, shape: tuple[int, int]) -> Numbering:
-    """Return the numbering of the unknowns, as drawn or in another order, that takes the fewest operations.
+    """Return the numbering of the unknowns with the fewest operations: as drawn, or in another order.
 
     elements (n, 2): first dof and number of dofs of each; made_of (k, 2): a dof, an unknown of it; shape: the numbers
-    of dofs and of unknowns. It is sought once for all scenes that ask alike, as those of one topology do; the arrays
-    are shared.
+    of dofs and of unknowns. Scenes of one topology share the search and the arrays.
     """
     return ordered(elements.tobytes(), made_of.tobytes(), shape)
 
 
 @lru_cache(maxsize=32)
 def ordered(of_elements: bytes, of_dofs: bytes, shape: tuple[int, int]) -> Numbering:
-    """Return `cheapest` of arrays given by their bytes; it stays for equal ones."""
+    """Return `cheapest` of arrays given by their bytes, cached."""
     elements, made_of = (np.frombuffer(given, dtype=int).reshape(-1, 2) for given in (of_elements, of_dofs))
     touches = _touches(elements, made_of, shape)
     entry = touches.tocoo()
@@ -77,9 +73,7 @@ def _dofs(elements: np.ndarray) -> np.ndarray:
 
 
 def _touches(elements: np.ndarray, made_of: np.ndarray, shape: tuple[int, int]) -> csr_array:
-    """Return (elements, unknowns): 1 where an element has a share of an unknown; made_of (k, 2): a dof, an unknown of
-    it.
-    """
+    """Return (elements, unknowns): 1 where an element has an unknown; made_of (k, 2): a dof, an unknown of it."""
     dofs = _dofs(elements)
     has = csr_array((np.ones(len(dofs)), dofs, np.append(0, np.cumsum(elements[:, 1]))),
                     shape=(len(elements), shape[0]))
@@ -89,16 +83,16 @@ def _touches(elements: np.ndarray, made_of: np.ndarray, shape: tuple[int, int]) 
 
 
 def _near(touches: csr_array) -> tuple[np.ndarray, int]:
-    """Return the number of each unknown and size of the band: all in the band, by reverse Cuthill and McKee."""
+    """Return the numbers of the unknowns and the size of the band: all in the band, by reverse Cuthill and McKee."""
     order = reverse_cuthill_mckee((touches.T @ touches).tocsr(), symmetric_mode=True)
     return np.argsort(order), len(order)
 
 
 def _strung(touches: csr_array) -> tuple[np.ndarray, int]:
-    """Return the number of each unknown and size of the band: elements in chains, the first share the most unknowns.
+    """Return the numbers of the unknowns and the size of the band: elements in chains, most shared unknowns first.
 
-    Unknowns that are shared by others than two that follow each other in a chain are the border: nodes where more than
-    two ends meet, and one of each ring.
+    Unknowns that other elements share than two consecutive ones of a chain are the border: nodes of more than two ends,
+    and one node of each ring.
     """
     n_elements, n = touches.shape
     shared = triu(touches @ touches.T, 1).tocoo()
@@ -134,18 +128,18 @@ def _strung(touches: csr_array) -> tuple[np.ndarray, int]:
 
 
 def touched(elements: np.ndarray, made_of: np.ndarray, shape: tuple[int, int]) -> Touches:
-    """Return which elements have a share of which unknowns; the arguments are those of `cheapest`."""
+    """Return the incidence of elements and unknowns, by the arguments of `cheapest`."""
     entry = _touches(elements, made_of, shape).tocoo()
     return Touches(entry.row, entry.col, len(elements))
 
 
 def numbered(touches: Touches, number: np.ndarray, n_band: int) -> Numbering:
-    """Return the numbering with these numbers of the unknowns, of which the first n_band are the band."""
+    """Return the numbering with these numbers of the unknowns; the first n_band are the band."""
     return _numbering(*extents(touches, number, n_band), number, n_band)
 
 
 def extents(touches: Touches, number: np.ndarray, n_band: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the first and the last row of the band that each element touches; n_band and -1 of none."""
+    """Return the first and the last row of the band of each element; n_band and -1 without any."""
     at = number[touches.unknown]
     inside = at < n_band
     low, high = np.full(touches.n_elements, n_band), np.full(touches.n_elements, -1)
@@ -155,11 +149,12 @@ def extents(touches: Touches, number: np.ndarray, n_band: int) -> tuple[np.ndarr
 
 
 def _numbering(low: np.ndarray, high: np.ndarray, number: np.ndarray, n_band: int) -> Numbering:
-    """Return a numbering with its band; low, high: `_extents` of the elements, low beyond high where there is none."""
+    """Return a numbering with its band; low, high: `extents` of the elements."""
     banded = low <= high
     low, high = low[banded], high[banded]
     ties = np.bincount(low + 1, minlength=n_band + 1) - np.bincount(high + 1, minlength=n_band + 1)
-    chains = np.append(np.flatnonzero(np.cumsum(ties[:n_band]) == 0), n_band)  # no element ties a row to the one before
+    # the first row of a chain: no element couples it to the row before
+    chains = np.append(np.flatnonzero(np.cumsum(ties[:n_band]) == 0), n_band)
     return Numbering(number, n_band, int(np.max(high - low, initial=0)), chains)
 
 

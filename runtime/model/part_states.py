@@ -1,6 +1,6 @@
-"""What parts tell of a model's states, those of a run or of rest, by group, label and quantity.
+"""Results of parts in states of a model, of a run or of rest, by group, label and quantity.
 
-The quantities are those that the ``results`` of parts list. All are along the ground's axes, with the time first.
+The quantities are those in ``results`` of the parts. All are along the ground's axes, with the time first.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ from .states import (
 
 @dataclass(frozen=True)
 class States:
-    """States of a model as the engine has them, T of them.
+    """T states of a model.
 
     q (T, n_q), v and a (T, n_dof): configurations, velocities, accelerations; s (T, slides) in m; reaction (T, n_dof):
-    what supports give; numbers: of couplings by kind of OUTPUTS, (T, couplings, numbers of one).
+    of supports; numbers: outputs of couplings by kind of OUTPUTS, (T, couplings, numbers of one).
     """
 
     q: np.ndarray
@@ -45,7 +45,7 @@ class States:
 
     @classmethod
     def of_rows(cls, rows: Mapping[str, np.ndarray]) -> States:
-        """Return the states of an engine's rows of output."""
+        """Return the states in rows of output of the engine."""
         return cls(rows["q"], rows["v"], rows["acceleration"], rows["s"], rows["reaction"],
                    {kind: rows[kind] for kind in OUTPUTS})
 
@@ -55,34 +55,32 @@ class States:
 
     @classmethod
     def at_rest(cls, q: np.ndarray, s: np.ndarray, reaction: np.ndarray, numbers: dict[str, np.ndarray]) -> States:
-        """Return states of rest: without velocities and accelerations."""
+        """Return states of rest, whose velocities and accelerations are zero."""
         still = np.zeros_like(reaction)
         return cls(q, still, still, s, reaction, numbers)
 
 
 def numbers_at_rest(engine: Engine) -> dict[str, np.ndarray]:
-    """Return the numbers of couplings in an engine's static state, by kind, (couplings, numbers of one)."""
+    """Return the outputs of couplings in the static state of an engine, by kind, (couplings, numbers of one)."""
     return {kind: engine.static_outputs(kind) for kind in OUTPUTS}
 
 
 Values = dict[str, dict[str, np.ndarray]]
 """Arrays by label and quantity."""
 Asked = Callable[[str], bool]
-"""Whether results of a label are asked for."""
+"""Whether results of a label are requested."""
 
 
 @dataclass
 class PartStates:
-    """What parts tell: of cables their nodal vectors, of modal bodies their coordinates, of all the results of their
-    class, by group.
-    """
+    """Results of parts: nodal vectors of cables, coordinates of modal bodies, and by group the results of classes."""
 
     cables: Values
     modal: Values
     parts: dict[str, Values] = field(default_factory=dict)
 
     def by_label(self) -> Values:
-        """Return all of it by label and quantity."""
+        """Return all results by label and quantity."""
         found: Values = {}
         for values in (self.cables, self.modal, *self.parts.values()):
             for label, each in values.items():
@@ -91,7 +89,7 @@ class PartStates:
 
 
 def part_states(model: Model, scene: SceneData, at: States, alone: str | None = None) -> PartStates:
-    """Return what parts tell of states; alone: those of this label, None: all."""
+    """Return the results of parts in states; alone: only those of this label."""
     def asked(label: str) -> bool:
         return alone is None or label == alone
 
@@ -114,7 +112,7 @@ def part_states(model: Model, scene: SceneData, at: States, alone: str | None = 
 
 
 def _connections(model: Model, scene: SceneData, at: States, asked: Asked) -> dict[str, Values]:
-    """Return what supports, ties and couplings tell, along the axes of the model."""
+    """Return the results of supports, ties and couplings, along the axes of the model."""
     def reactions(supports: Iterable[Support]) -> Values:
         return {support.label: support_reaction(model, scene, support, at.reaction, at.q) for support in supports
                 if asked(support.label)}
@@ -134,13 +132,13 @@ def _connections(model: Model, scene: SceneData, at: States, asked: Asked) -> di
 
 
 def _outputs(model: Model, at: States, kind: str, asked: Asked) -> Values:
-    """Return the outputs of all couplings of a kind as the results of their parts."""
+    """Return the outputs of all couplings of a kind by name."""
     named = [coupling.name for coupling in model.couplings if coupling.type == kind]
     return {name: at.outputs(kind, k) for k, name in enumerate(named) if asked(name)}
 
 
 def _slides(model: Model, at: States, kind: str, asked: Asked) -> Values:
-    """Return arc-length and outputs of slides, with the size of the residual, and the moment of those that tie axes."""
+    """Return arc-length and outputs of slides, the norm of the residual, and the moment of those that hold axes."""
     found: Values = {}
     for k, slide in enumerate(model.slides):
         outputs = at.outputs(kind, k)
@@ -152,7 +150,7 @@ def _slides(model: Model, at: States, kind: str, asked: Asked) -> Values:
 
 
 def _joints(model: Model, at: States, kind: str, asked: Asked) -> Values:
-    """Return the results of the scene's joints, without those that tie the axes of slides."""
+    """Return the results of the scene's joints, without those that hold the axes of slides."""
     return {joint.name: joint_state(joint, at.outputs(kind, k)) for k, joint in enumerate(model.joints)
             if joint.slide is None}
 
@@ -164,7 +162,7 @@ def _point_forces(model: Model, at: States, kind: str, asked: Asked) -> Values:
 
 
 def _contacts(model: Model, at: States, kind: str, asked: Asked) -> Values:
-    """Return the outputs of contacts, without arc-lengths where nothing touches."""
+    """Return the outputs of contacts; arc-lengths are NaN where nothing touches."""
     found: Values = {}
     for k, contact in enumerate(model.contacts):
         outputs = at.outputs(kind, k)
@@ -200,4 +198,4 @@ def _drags(model: Model, at: States, kind: str, asked: Asked) -> Values:
 
 RESULTS = {"slide": _slides, "joint": _joints, "point_force": _point_forces, "drag": _drags, "contact": _contacts,
            "hard_contact": _hard_contacts}
-"""What makes the results of parts from outputs, by kind of coupling, where they are not the outputs themselves."""
+"""Functions from outputs to results, of the kinds of couplings whose results are not the outputs themselves."""

@@ -21,9 +21,9 @@ from .coupling import CouplingKind, CouplingModel
 class ForceLaw:
     """The law of a force between two points.
 
-    law: the name of its kernels; parameters: in the order in which the kernels take them, for one piece of it after the
-    other. bounds (n_pieces - 1), in m: distances of the points at which a piece ends and the next begins. senses
-    (n_pieces): what each piece may do. compliance: in m/N, that of the stiffest piece.
+    law: the name of its kernels; parameters: in the order of the kernels' arguments, for one linear segment after the
+    other. bounds (n_pieces - 1), in m: distances of the points between segments. senses (n_pieces): whether a segment
+    pulls, pushes, or has no force. compliance: of the stiffest segment, m/N.
     """
 
     law: str
@@ -37,7 +37,7 @@ class ForceLaw:
 
     @classmethod
     def of(cls, part: PointForce, dim: int) -> ForceLaw:
-        """Return the law of a part, which is complete, in so many dimensions."""
+        """Return the law of a complete part in `dim` dimensions."""
         name = ("planar_" if dim == 2 else "") + part.law
         names = list(point_law(name).parameters)
         if isinstance(part, Spring) and part.has_pieces:
@@ -45,21 +45,21 @@ class ForceLaw:
         return cls(name, dim, tuple(float(getattr(part, each)) for each in names), n_parameters=len(names))
 
     def at_rest(self, gap: np.ndarray) -> np.ndarray:
-        """Return the force (dim,) on the first point, in N, from the way (dim,) to the second one, which rests."""
+        """Return the force (dim,) on the first point at rest, in N; gap (dim,): to the second point, m."""
         parameters = self._at(gap)
         if parameters is None:
             return np.zeros(self.dim)
         return np.asarray(getattr(kernels_of(None), f"{self.law}_force")(parameters, gap, np.zeros(self.dim)))
 
     def tangent_at_rest(self, gap: np.ndarray) -> np.ndarray:
-        """Return (dim, dim): the derivative of `at_rest` by the way (dim,), in N/m."""
+        """Return (dim, dim): the derivative of `at_rest` by the gap, N/m."""
         parameters = self._at(gap)
         if parameters is None:
             return np.zeros((self.dim, self.dim))
         return np.asarray(getattr(kernels_of(None), f"{self.law}_tangent")(parameters, gap, np.zeros(self.dim))[1])
 
     def _at(self, gap: np.ndarray) -> np.ndarray | None:
-        """Return what the kernels take of the piece that a way (dim,) is in; None where it has no force."""
+        """Return the parameters of the segment at a gap (dim,), None where it has no force."""
         piece = int(np.searchsorted(self.bounds, np.linalg.norm(gap)))
         if self.senses[piece] == HAS_NO_FORCE:
             return None
@@ -90,7 +90,7 @@ def point_force_models(builder: ModelBuilder) -> Iterator[PointForceModel]:
 
 
 def _pieces(part: Spring, names: list[str]) -> dict[str, Any]:
-    """Return what a model has of the pieces of a spring: of those that a distance, which is not negative, reaches."""
+    """Return the fields of the linear segments of a spring that positive distances reach."""
     assert part.length is not None, f"{part.where} is not complete"
     pieces = [piece for piece in part.pieces() if part.length + piece.end > 0]
     values = [{"stiffness": piece.stiffness, "damping": part.damping * (piece.sense != HAS_NO_FORCE),

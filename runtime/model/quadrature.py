@@ -1,4 +1,4 @@
-"""Rules of quadrature along the elements of a cable, for what acts between its nodes."""
+"""Quadrature along the elements of a cable."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ import numpy as np
 
 def along_elements(on_axis: Any, lengths: np.ndarray,
                    rule: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return (elements, points, vectors), twice: shape functions of the axis and their slopes, by the kernel on_axis;
+    """Return the shape functions of the axis and their slopes, (elements, points, vectors) each, by the kernel on_axis,
     and the weights (elements, points) in m.
 
-    lengths (elements,) in m; rule: places and weights between -1 and 1, as `numpy.polynomial.legendre.leggauss` has.
+    lengths (elements,) in m; rule: points and weights between -1 and 1, as of `numpy.polynomial.legendre.leggauss`.
     """
     places, weights = rule
     shapes = [[on_axis(length, length * (1 + x) / 2) for x in places] for length in lengths]

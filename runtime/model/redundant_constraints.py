@@ -11,38 +11,33 @@ from .joints import JointModel
 from .loops import joints_in_loops
 from .model import Model
 
-SAME, NEARLY = 1e-12, 1e-8
-"""Of the compliance of an equation: what is left of it where others constrain the same motion; or nearly, if a run
-failed."""
-
-FEW, SUSPECT = 100, 1e-6
-"""Equations up to which a dense factorisation is quicker; what is left of a compliance where its rounding may count."""
-
+REDUNDANT, NEARLY_REDUNDANT = 1e-12, 1e-8
+"""Pivots of the scaled compliance up to which an equation is redundant, or nearly so after a failed run."""
+MAX_DENSE_EQUATIONS, SUSPECT_PIVOT = 100, 1e-6
+"""Equations up to which a dense factorisation is faster; pivot below which rounding may matter."""
 EPSILON = float(np.finfo(float).eps)
-"""Rounding of S. Of what is left of an equation it is as much, times the square of the sum of the shares of others."""
-
-SHARE = 1e-6
-"""Of another equation in one that follows: less is none."""
-
-PROBE, RETURN = 1e-3, 1e-8
-"""How far a mechanism is moved, as a part of its size, to see whether an equation follows there, too; and how well."""
+"""Rounding error of S; that of a pivot is this times the square of the sum of the coefficients."""
+MIN_COEFFICIENT = 1e-6
+"""Coefficient of an equation in another one, below which it is zero."""
+PROBE_SIZE, PROBE_TOLERANCE = 1e-3, 1e-8
+"""Displacement of a mechanism beside its start, and error of redundant equations there, as fractions of its size."""
 
 
 def drop_redundant_rows(model: Model, engine: Engine) -> list[str]:
-    """Leave out equations of joints that follow from those of others; for an engine not yet started.
+    """Remove redundant equations of joints, for an engine not yet started; return messages about them.
 
-    Redundancy is sought where the scene is drawn and at a small displacement from there, since a mechanism may pass a
-    position in which it is free to move in two directions. The joint that was added last loses the equations; its force
-    and moment are then those of a scene without them. Returns messages about them.
+    Redundancy is checked in the drawn position and at a small displacement, since in a singular position a mechanism
+    may move in two directions. The joint added last loses the equations; its force and moment are then those of a
+    scene without them.
 
-    Raises SceneError where slides, or what drives joints, constrain the same, and for a start in a singular position.
+    Raises SceneError where slides or driven joints constrain the same motion, and for a start in a singular position.
     """
     rows = _in_loops(model, two_riders=False)
     if not len(rows) or not engine.prepare():
-        return []  # where there are rows start says why
+        return []  # start reports a failure
     S, owner = _compliance(engine, rows), _owners(model)
     if S is None:
-        return []  # here, too
+        return []  # likewise
     spare = _spare(model)
     if locked := [owner[k] for k, own in zip(rows, np.diag(S), strict=True) if own == 0 and k not in spare]:
         raise SceneError("scene", f"is over-constrained: {_listed(locked)} between points that supports fix already",
@@ -60,7 +55,7 @@ def drop_redundant_rows(model: Model, engine: Engine) -> list[str]:
 
 
 def _message(joint: JointModel, follows: dict[int, list[int]], owner: list[str]) -> str:
-    """Return the message about a joint that has lost equations; follows: rows that others imply, and these."""
+    """Return the message about a joint without some equations; follows: redundant rows, and those that imply them."""
     own = range(joint.multiplier, joint.multiplier + joint.rows)
     names = _listed([owner[other] for row in own for other in follows.get(row, ()) if other not in own])
     return (f"over-constrained: {len(joint.redundant_rows)} of the {joint.rows} equations of {owner[own[0]]} follow "
@@ -68,7 +63,7 @@ def _message(joint: JointModel, follows: dict[int, list[int]], owner: list[str])
 
 
 def _left_out(model: Model, row: int, others: list[int], owner: list[str]) -> tuple[int, int]:
-    """Return the joint and the row of it that others imply; raises SceneError where it has to stay."""
+    """Return the joint and its row that others imply. Raises SceneError for a row that cannot be removed."""
     names = _listed([owner[k] for k in (*others, row)])
     if _driven(model) & {row, *others}:
         raise SceneError("scene", f"is over-constrained: {names} drive or constrain the same motion",
@@ -81,24 +76,24 @@ def _left_out(model: Model, row: int, others: list[int], owner: list[str]) -> tu
 
 
 def _check_that_they_follow(model: Model, engine: Engine, dropped: list[tuple[int, int]], names: str) -> None:
-    """Raise SceneError unless dropped rows are met where the others are, at the start and beside it."""
+    """Raise SceneError unless the other rows imply the dropped ones, at the start and beside it."""
     size = engine.extent
     unit = np.where(model.weight == 1, size, np.minimum(size / model.weight, 1.0))
-    probe = PROBE * unit * np.random.default_rng(0).uniform(-1, 1, model.n_dof)
+    probe = PROBE_SIZE * unit * np.random.default_rng(0).uniform(-1, 1, model.n_dof)
     at_start, beside = (engine.probe_mechanism(along) for along in (np.zeros(model.n_dof), probe))
     gap, error = (np.inf if left is None else max(abs(left[at]) for at in dropped) for left in (at_start, beside))
-    if gap > RETURN * min(size, 1.0):
+    if gap > PROBE_TOLERANCE * min(size, 1.0):
         raise SceneError("scene", f"is over-constrained: {names} constrain the same motion, but do not fit together: "
                          f"{gap:.3g} (m or rad) are left between them",
                          "leave one of them out, or draw them without gaps")
-    if error > RETURN * min(size, 1.0):
+    if error > PROBE_TOLERANCE * min(size, 1.0):
         raise SceneError("scene", f"starts in a singular position: {names} constrain the same motion there, but not "
                          "beside it",
                          "draw the scene a little away from it")
 
 
-def redundant(model: Model, engine: Engine, ratio: float = NEARLY) -> str:
-    """Return names of slides and joints that constrain nearly the same motion at the time reached; "" without any."""
+def redundant(model: Model, engine: Engine, ratio: float = NEARLY_REDUNDANT) -> str:
+    """Return the names of slides and joints that nearly constrain the same motion at the time reached, "" for none."""
     rows = _in_loops(model, two_riders=True)
     if not len(rows):
         return ""
@@ -115,10 +110,10 @@ def redundant(model: Model, engine: Engine, ratio: float = NEARLY) -> str:
 
 
 def _in_loops(model: Model, *, two_riders: bool) -> np.ndarray:
-    """Return the multipliers whose constraints may follow from others: of joints in loops, and of slides with them.
+    """Return the multipliers of constraints that may be redundant: of joints in loops, and of slides with them.
 
-    Slides of different bodies alone never do, as each acts on its own body, whose mass is not zero; they may nearly,
-    and count with two_riders.
+    Slides of different bodies alone are independent, as each acts on its own body, whose mass is not zero; they may be
+    nearly dependent, and count with two_riders.
     """
     joints = [joint for joint, loops in zip(model.joints, joints_in_loops(model), strict=True) if loops]
     riders = [(slide.rider.body, slide.rider.cable) for slide in model.slides]
@@ -129,7 +124,7 @@ def _in_loops(model: Model, *, two_riders: bool) -> np.ndarray:
 
 
 def _compliance(engine: Engine, rows: np.ndarray) -> np.ndarray | None:
-    """Return H M^-1 H' of these multipliers; None where the state is not finite, or the mass matrix singular."""
+    """Return H M^-1 H' of these multipliers; None for a singular mass matrix or a state that is not finite."""
     try:
         S = engine.compliance(rows)
     except ArithmeticError:
@@ -138,18 +133,19 @@ def _compliance(engine: Engine, rows: np.ndarray) -> np.ndarray | None:
 
 
 def _following(S: np.ndarray) -> dict[int, list[int]]:
-    """Return rows that are combinations of rows before them, and of which: by Cholesky's factors of S, row by row.
+    """Return rows that are combinations of preceding rows, with these, by a row-wise Cholesky factorisation of S.
 
-    A row of L begins where that of S does, so that the rows of chains and of what hangs from them cost no more the more
-    there are; those that close loops take all rows of the loop.
+    A row of L begins where that of S does, so that the cost of rows of chains is constant; rows that close a loop
+    involve all rows of the loop.
     """
     used = np.flatnonzero(np.diag(S) > 0)
     scale = 1 / np.sqrt(np.diag(S)[used])
     S = scale[:, None] * S[np.ix_(used, used)] * scale
-    if len(S) <= FEW and _is_definite(S):
+    if len(S) <= MAX_DENSE_EQUATIONS and _is_definite(S):
         return {}
     L = np.zeros_like(S)
-    kept, before = np.zeros(len(S), dtype=int), np.zeros(len(S) + 1, dtype=int)  # before: each row, how many are kept
+    kept = np.zeros(len(S), dtype=int)
+    before = np.zeros(len(S) + 1, dtype=int)  # number of rows kept before each
     begins = (S != 0).argmax(axis=1)
     found: dict[int, list[int]] = {}
     n = 0
@@ -159,10 +155,10 @@ def _following(S: np.ndarray) -> dict[int, list[int]]:
         window, near = L[first:n, first:n], S[kept[first:n], row]
         factor = solve_triangular(window, near, lower=True, check_finite=False) if n > first else np.zeros(0)
         left = 1 - factor @ factor
-        if left < SUSPECT:  # rows before the window have shares, too: through those in it
+        if left < SUSPECT_PIVOT:  # rows before the window contribute through those in it
             share = np.abs(solve_triangular(L[:n, :n].T, np.pad(factor, (first, 0)), check_finite=False))
-            if left <= max(SAME, EPSILON * (1 + share.sum()) ** 2):
-                found[int(used[row])] = [int(used[k]) for k, part in zip(kept[:n], share, strict=True) if part > SHARE]
+            if left <= max(REDUNDANT, EPSILON * (1 + share.sum()) ** 2):
+                found[int(used[row])] = used[kept[:n][share > MIN_COEFFICIENT]].tolist()
                 continue
         L[n, first:n], L[n, n], kept[n] = factor, np.sqrt(left), row
         n += 1
@@ -170,15 +166,15 @@ def _following(S: np.ndarray) -> dict[int, list[int]]:
 
 
 def _is_definite(S: np.ndarray) -> bool:
-    """Return whether no row of a matrix with a unit diagonal is a combination of others."""
+    """Return whether the rows of a matrix with a unit diagonal are independent."""
     try:
-        return bool(np.min(np.diag(np.linalg.cholesky(S)), initial=1.0) ** 2 > SUSPECT)
+        return bool(np.min(np.diag(np.linalg.cholesky(S)), initial=1.0) ** 2 > SUSPECT_PIVOT)
     except np.linalg.LinAlgError:
         return False
 
 
 def _owners(model: Model) -> list[str]:
-    """Return what each multiplier is of, as messages call it."""
+    """Return the part of each multiplier, as messages name it."""
     names = [""] * model.n_multipliers
     for slide in model.slides:
         count = slide.n_multipliers
@@ -190,19 +186,19 @@ def _owners(model: Model) -> list[str]:
 
 
 def _spare(model: Model) -> set[int]:
-    """Return the multipliers that slides have for when they stick or rest at an end: nothing stands there yet."""
+    """Return the multipliers of slides for sticking and for resting at an end, unused at the start."""
     return {k for slide in model.slides if slide.drive < 0
             for k in range(slide.multiplier + model.dim - 1, slide.multiplier + slide.n_multipliers)}
 
 
 def _driven(model: Model) -> set[int]:
-    """Return the multipliers of what signals drive: the last of each joint's."""
+    """Return the multipliers of driven slides and joints: the last of each."""
     return ({slide.multiplier + slide.n_multipliers - 1 for slide in model.slides if slide.drive >= 0}
             | {joint.multiplier + joint.rows - 1 for joint in model.joints if joint.is_driven})
 
 
 def _listed(names: list[str]) -> str:
-    """Return the names in words, slides first, each once: slides "a" and "b", or joint "c", or both."""
+    """Return the names as text, slides first, each once: slides "a" and "b" and joint "c"."""
     parts = []
     for kind in ("slide", "joint"):
         own = [name.split(" ", 1)[1] for name in dict.fromkeys(names) if name.startswith(kind)]

@@ -1,6 +1,6 @@
-"""The state of a model, read, in three dimensions whatever the scene's: bodies, joints, point forces, reactions.
+"""Spatial quantities of the states of a model: bodies, joints, point forces, reactions.
 
-All is along the axes of the model, in which the plane of a planar one is z = 0.
+All are along the axes of the model, where a planar one lies in z = 0.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ def spatial(vectors: np.ndarray) -> np.ndarray:
 
 
 def force_and_moment(nodes: Iterable[Node], reaction: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the force and moment that supports or joins give to nodes at one place.
+    """Return the force and moment of supports or ties on nodes at one place.
 
     reaction, q: (time, dofs) generalised forces and configuration. Returns force, moment (time, 3) in N, N m: the
-    moment is what the forces on the slopes turn the section by, sum of r_k x f_k.
+    moment is the sum of r_k x f_k over the slopes.
     """
     force, moment = np.zeros((len(q), 3)), np.zeros((len(q), 3))
     for node in nodes:
@@ -42,15 +42,15 @@ def force_and_moment(nodes: Iterable[Node], reaction: np.ndarray, q: np.ndarray)
 
 def support_reaction(model: Model, scene: SceneData, part: Support, reaction: np.ndarray,
                      q: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the force and moment of a pin, clamp or motion on its node and those joined to it."""
+    """Return the force and moment of a pin, clamp or motion on its node and the nodes joined to it."""
     nodes = joined(scene, node_of(scene, part))
     return force_and_moment([model.nodes[cable][k] for cable, k in nodes], reaction, q)
 
 
 def tie_force(model: Model, scene: SceneData, tie: Tie, reaction: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the force and moment of a tie on the node of its `cable`: what the nodes on that side of it are given.
+    """Return the force and moment of a tie on the node of its `cable`: the sum over the nodes on that side.
 
-    A support on that side gives a part that is not the tie's: then it is minus what the other side is given.
+    A support on that side contributes to this sum; then the tie's is minus the sum over the other side.
     """
     supported = {node_of(scene, support) for support in scene.supports}
     one, other = ends_of(scene, tie)
@@ -62,7 +62,7 @@ def tie_force(model: Model, scene: SceneData, tie: Tie, reaction: np.ndarray, q:
 
 
 def body_state(model: Model, body: BodyModel, q: np.ndarray) -> dict[str, np.ndarray]:
-    """Return position, orientation of a body from configurations (time, n_q)."""
+    """Return position and orientation of a body in configurations (time, n_q)."""
     b = body.configuration
     if model.dim == 3:
         centre, orientation = q[:, b : b + 3], q[:, b + 3 : b + 7]
@@ -76,7 +76,7 @@ def body_state(model: Model, body: BodyModel, q: np.ndarray) -> dict[str, np.nda
 
 def body_rates(model: Model, body: BodyModel, orientation: np.ndarray, v: np.ndarray,
                a: np.ndarray | None = None) -> dict:
-    """Return velocity of a body's origin, angular_velocity, and with accelerations theirs, from rates (time, n_dof)."""
+    """Return the velocity of a body's origin and angular_velocity from v (time, n_dof), and accelerations from a."""
     at = slice(body.dof, body.dof + model.dim)
     turn = slice(at.stop, at.stop + (3 if model.dim == 3 else 1))
     velocity, omega = spatial(v[:, at]), _turning(v[:, turn])
@@ -93,9 +93,9 @@ def body_rates(model: Model, body: BodyModel, orientation: np.ndarray, v: np.nda
 
 def modal_state(model: Model, body: BodyModel, state: dict[str, np.ndarray], q: np.ndarray,
                 v: np.ndarray | None = None) -> dict:
-    """Return modal_coordinates (time, mode) and nodes (time, node, 3) of a modal body whose frame's `state` is known.
+    """Return modal_coordinates (time, mode) and nodes (time, node, 3) of a modal body from the `state` of its frame.
 
-    With v (time, n_dof) modal_velocities, too.
+    With v (time, n_dof), modal_velocities, too.
     """
     assert body.shape is not None, "a rigid body has no modes"
     start = body.configuration + (7 if model.dim == 3 else 4)
@@ -109,20 +109,18 @@ def modal_state(model: Model, body: BodyModel, state: dict[str, np.ndarray], q: 
 
 def joint_state(joint: JointModel, outputs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Return the outputs of a joint with the force and moment (..., 3) on the end b."""
-    sign = -1.0 if joint.reversed else 1.0  # that has its ends at one point
+    sign = -1.0 if joint.reversed else 1.0  # a reversed joint has both ends at one point
     return outputs | {name: sign * outputs[name] for name in ("force", "moment")}
 
 
 def _turning(rates: np.ndarray) -> np.ndarray:
-    """Return the spatial vector (time, 3) of turns about three axes, or about z alone."""
+    """Return angular rates (time, 1 or 3) as vectors (time, 3)."""
     return rates if rates.shape[1] == 3 else np.concatenate([np.zeros((len(rates), 2)), rates], axis=1)
 
 
 def point_force_state(model: Model, between: PointForceModel, force: np.ndarray,
                       q: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the force on the first end, (time, 3) in N; length between the ends, in m; tension, in N, negative in
-    compression.
-    """
+    """Return the force on the first end, (time, 3) in N, the length in m, and the tension in N."""
     a, b = (attachment_points(model, each, q) for each in between.attachments)
     gap, force = b - a, spatial(force)
     length = np.linalg.norm(gap, axis=1)
@@ -131,7 +129,7 @@ def point_force_state(model: Model, between: PointForceModel, force: np.ndarray,
 
 
 def attachment_points(model: Model, attachment: AttachmentModel, q: np.ndarray) -> np.ndarray:
-    """Return (time, 3): where an attachment is."""
+    """Return (time, 3): positions of an attachment, m."""
     if attachment.cable >= 0:
         cable = model.cables[attachment.cable]
         start = cable.first + attachment.element * cable.shape[1] * model.dim

@@ -1,10 +1,10 @@
-"""From supports and joins to unknowns: every dof of the cables is linear in unknowns and in what motions prescribe.
+"""Unknowns of supports and ties: every dof of the cables is linear in the unknowns and in prescribed motions.
 
-Pins and clamps fix dofs; a cable clamped at a node keeps the direction of its slope and one unknown, its length;
-joined nodes share the position. Of rigidly joined ones in line, or in space, slopes of one are constant combinations of
-those of the other: they share the gradient of the deformation (Shabana, Computational Continuum Mechanics, ch. 6:
-structural discontinuities). At an angle in the plane they share the turn of the section alone: the gradient would make
-the section of one beam the tangent of the other, where a moment shears its last element, the more the shorter that is.
+Pins and clamps fix dofs. A clamped cable keeps the direction of its slope; its length is one unknown. Joined nodes
+share the position. Slopes of nodes joined rigidly in line, or in space, are constant combinations of each other: the
+nodes share the deformation gradient (Shabana, Computational Continuum Mechanics, ch. 6: structural discontinuities).
+Nodes joined at an angle in the plane share only the rotation of the section: with the gradient, the section of one beam
+would be the tangent of the other, and a moment would shear its last element, the more the shorter it is.
 """
 
 from __future__ import annotations
@@ -19,11 +19,12 @@ from scipy.sparse import csr_array
 from ..errors import SceneError
 from ..parts.scene_data import SceneData
 from ..parts.signal import Signal
-from .cutting import MOST, cut
+from .cutting import MAX_ATTACHMENTS, cut
 from .numbering import Numbering, as_drawn, cheapest, touched
 
-PARALLEL = 1e-9
-"""Tangents whose cross product is smaller than this are parallel."""
+PARALLEL_SINE = 1e-9
+"""Sine of the angle below which tangents are parallel."""
+
 
 @dataclass
 class Prescribed:
@@ -42,7 +43,7 @@ class Prescribed:
 
 @dataclass
 class Row:
-    """What a dof is made of: coefficients over dofs that are unknowns, and prescribed parts."""
+    """A dof as a combination: coefficients of dofs that are unknowns, and prescribed parts."""
 
     free: dict[int, float] = field(default_factory=dict)
     prescribed: list[Prescribed] = field(default_factory=list)
@@ -50,8 +51,10 @@ class Row:
 
 @dataclass
 class Reduction:
-    """How dofs are made of unknowns: `unknown_of_dof` has the number of its unknown, -1 where the dof is fixed, and
-    -2 - k where it is the k-th row of `combinations`; `prescribed` lists the parts that signals add to a dof.
+    """Dofs as functions of the unknowns.
+
+    unknown_of_dof: number of its unknown, -1 for a fixed dof, -2 - k for row k of `combinations`. prescribed: parts of
+    dofs given by signals.
     """
 
     unknown_of_dof: np.ndarray
@@ -62,9 +65,9 @@ class Reduction:
 
 
 def as_supports_leave(asked: np.ndarray, unknown_of_dof: np.ndarray, combinations: csr_array) -> np.ndarray:
-    """Return changes of dofs (n,) as far as supports and ties leave them: what is fixed does not change.
+    """Return changes of dofs (n,) that supports and ties admit: those of fixed dofs are zero.
 
-    asked: the changes wanted (n,), of which those of the unknowns are taken; the last of dofs that share one.
+    asked: the requested changes (n,), of which those of the unknowns count; the last one of dofs that share an unknown.
     unknown_of_dof, combinations: as in `Reduction`.
     """
     unknowns, free, tied = np.zeros(combinations.shape[1]), unknown_of_dof >= 0, unknown_of_dof < -1
@@ -77,9 +80,9 @@ def as_supports_leave(asked: np.ndarray, unknown_of_dof: np.ndarray, combination
 
 
 def by_unknowns(unknown_of_dof: np.ndarray, combinations: csr_array, n: int) -> csr_array:
-    """Return T (dofs, n unknowns), sparse: dofs = T unknowns + what motions prescribe.
+    """Return T (dofs, n unknowns), sparse: dofs = T unknowns + prescribed parts.
 
-    unknown_of_dof (dofs,): of all or of some; combinations: as in `Reduction`.
+    unknown_of_dof (dofs,): of all dofs or of some; combinations: as in `Reduction`.
     """
     free, tied = np.flatnonzero(unknown_of_dof >= 0), np.flatnonzero(unknown_of_dof < -1)
     part = combinations[-2 - unknown_of_dof[tied]].tocoo()
@@ -91,7 +94,7 @@ def by_unknowns(unknown_of_dof: np.ndarray, combinations: csr_array, n: int) -> 
 
 @dataclass
 class Node:
-    """A cable's node: its dofs by nodal vector and the vectors as drawn, in the dimension of the element."""
+    """A node of a cable: its dofs by nodal vector and the vectors as drawn, in the dimension of the element."""
 
     where: str
     names: tuple[str, ...]
@@ -109,7 +112,7 @@ class Node:
         return [name for name in ("r_y", "r_z") if name in self.names]
 
     def vector(self, name: str) -> np.ndarray:
-        """Return a nodal vector (dim,) as it is drawn."""
+        """Return a nodal vector (dim,) as drawn."""
         return self.vectors[self.names.index(name)]
 
     def dofs(self, name: str) -> range:
@@ -119,19 +122,19 @@ class Node:
 
 
 class Supports:
-    """Rows of T, made support by support; dofs that are not in `rows` are unknowns of their own."""
+    """Rows of T, added support by support; dofs without a row are unknowns."""
 
     def __init__(self) -> None:
         self.rows: dict[int, Row] = {}
 
     def fix(self, node: Node, names: Iterable[str]) -> None:
-        """Fix the nodal vectors of these names as they are drawn."""
+        """Fix the nodal vectors of these names as drawn."""
         for name in names:
             for dof in node.dofs(name):
                 self.rows[dof] = Row()
 
     def clamp(self, node: Node, everything: bool) -> None:
-        """Fix position and section: the directors, or the direction of the slope where there are none."""
+        """Fix position and section: the directors, or without these the direction of the slope."""
         if everything:
             self.fix(node, node.names)
             return
@@ -145,14 +148,14 @@ class Supports:
                     self.rows[dof] = Row({node.dofs("r_x")[unknown]: ratio} if ratio else {})
 
     def displace(self, node: Node, signals: Iterable[int | None]) -> None:
-        """Prescribe the position as drawn plus a signal an axis; None leaves it free."""
+        """Prescribe the position as drawn plus one signal per axis, None for a free axis."""
         for dof, start, signal in zip(node.dofs("r"), node.vector("r"), signals, strict=False):
             if signal is None:
                 continue
             self.rows[dof] = Row(prescribed=[Prescribed(signal, base=float(start), linear=1.0)])
 
     def rotate(self, node: Node, axis: np.ndarray, signal: int) -> None:
-        """Prescribe a turn of the section, or of the slope where there is none, about an axis."""
+        """Prescribe a rotation of the section, or of the slope of a node without directors, about an axis."""
         for name in node.directors or ["r_x"]:
             drawn = np.zeros(3)
             drawn[: node.dim] = node.vector(name)
@@ -163,9 +166,7 @@ class Supports:
                                                             float(turned[d]))])
 
     def join(self, master: Node, slave: Node, rigid: bool) -> None:
-        """Join the positions of two nodes; rigid: also the slopes, or what turns with the section, as they stand at the
-        start.
-        """
+        """Join the positions of two nodes; rigid: also the slopes, or the rotations of the sections, as drawn."""
         for dof, of in zip(slave.dofs("r"), master.dofs("r"), strict=True):
             self.rows[dof] = self._combined({of: 1.0})
         if rigid:
@@ -174,11 +175,11 @@ class Supports:
                     self.rows[dof] = self._combined(combination)
 
     def tie_nodes(self, ties: list[tuple[Node, Node, bool]], supported: list[Node]) -> None:
-        """Join the nodes of ties (node, node, rigid), from the supported ones on and then from others."""
+        """Join the nodes of ties (node, node, rigid), starting from the supported nodes."""
         if not ties:
             return
         done = {node.first for node in supported}
-        # a node with directors can give the slopes of one without, not the other way round
+        # a node with directors determines the slopes of one without, not vice versa
         starts = sorted((node for tie in ties for node in tie[:2] if node.first not in done),
                         key=lambda node: -len(node.directors))
         for root in [*supported, *starts]:
@@ -203,10 +204,10 @@ class Supports:
         return row
 
     def reduce(self, n_dof: int, elements: np.ndarray, attached: np.ndarray) -> Reduction:
-        """Number the unknowns; return how dofs are made of them. elements (n, 2): first dof and number of dofs of each;
-        attached: elements that springs and joints are attached to, once for each.
+        """Number the unknowns, and return the dofs as functions of them. Raises SceneError.
 
-        Where joins tie distant nodes, in the order that takes the fewest operations.
+        elements (n, 2): first dof and number of dofs of each; attached: elements at the ends of springs and joints.
+        Where ties join distant nodes, the order is that of the fewest operations.
         """
         unknown = np.ones(n_dof, dtype=bool)
         unknown[list(self.rows)] = False
@@ -236,8 +237,8 @@ class Supports:
 
     def _numbering(self, drawn: np.ndarray, combined: dict[int, Row], elements: np.ndarray,
                    attached: np.ndarray) -> Numbering:
-        """Return the numbering of unknowns that are numbered `drawn`, which combined dofs are made of besides."""
-        if not combined and len(attached) <= MOST:
+        """Return the numbering of the unknowns; drawn: their numbers as drawn; combined: rows of dependent dofs."""
+        if not combined and len(attached) <= MAX_ATTACHMENTS:
             return as_drawn(elements, drawn)
         free = np.flatnonzero(drawn >= 0)
         shape = len(drawn), len(free)
@@ -246,17 +247,19 @@ class Supports:
             of_rows = [(dof, drawn[of]) for dof, row in combined.items() for of in row.free]
             made_of = np.concatenate([made_of, of_rows])
         numbering = cheapest(elements, made_of, shape) if combined else as_drawn(elements, drawn)
-        return numbering if len(attached) <= MOST else cut(numbering, touched(elements, made_of, shape), attached)
+        if len(attached) <= MAX_ATTACHMENTS:
+            return numbering
+        return cut(numbering, touched(elements, made_of, shape), attached)
 
 
 @lru_cache(maxsize=64)
 def _none(columns: int) -> csr_array:
-    """Return the combinations of a scene without any: (0, columns), made once, since SciPy takes long for it."""
+    """Return an empty matrix (0, columns), made once, as SciPy takes long for it."""
     return csr_array((0, columns))
 
 
 def _shared(master: Node, slave: Node) -> dict[str, list[dict[int, float]]]:
-    """Return, for rigidly joined nodes, rows over the master's slopes, by the slave's nodal vector and component."""
+    """Return, for rigidly joined nodes, rows over the master's slopes by nodal vector and component of the slave."""
     names = [name for name in slave.names if name in ("r_x", "r_y", "r_z")]
     if master.dim == 3 or (master.directors and slave.directors and _in_line(master, slave)):
         return {name: _slope(master, slave, name) for name in names}
@@ -266,11 +269,12 @@ def _shared(master: Node, slave: Node) -> dict[str, list[dict[int, float]]]:
 
 def _in_line(master: Node, slave: Node) -> bool:
     a, b = master.vector("r_x"), slave.vector("r_x")
-    return bool(abs(a[0] * b[1] - a[1] * b[0]) <= PARALLEL * np.linalg.norm(a) * np.linalg.norm(b))
+    return bool(abs(a[0] * b[1] - a[1] * b[0]) <= PARALLEL_SINE * np.linalg.norm(a) * np.linalg.norm(b))
 
 
 def _turned(vector: np.ndarray, at: range, drawn: np.ndarray) -> list[dict[int, float]]:
-    """Return rows over a vector in the plane of one that turns and stretches with it: a product of complex numbers."""
+    """Return rows over a vector in the plane for one that rotates and stretches with it: a product of complex numbers.
+    """
     square = float(vector @ vector)
     a = float(vector @ drawn) / square
     b = float(vector[0] * drawn[1] - vector[1] * drawn[0]) / square
@@ -278,8 +282,7 @@ def _turned(vector: np.ndarray, at: range, drawn: np.ndarray) -> list[dict[int, 
 
 
 def _slope(master: Node, slave: Node, name: str) -> list[dict[int, float]]:
-    """Return rows over the master's slopes of the slave's nodal vector `name`: the gradient of the deformation is one.
-    """
+    """Return rows over the master's slopes for the slave's nodal vector `name`: both share the deformation gradient."""
     drawn = slave.vector(name)
     slopes = [n for n in ("r_x", "r_y", "r_z") if n in master.names]
     if len(slopes) == master.dim:
@@ -289,14 +292,14 @@ def _slope(master: Node, slave: Node, name: str) -> list[dict[int, float]]:
     tangent, at = master.vector("r_x"), master.dofs("r_x")
     square = float(tangent @ tangent)
     ratio = float(tangent @ drawn) / square
-    if name != "r_x" or np.linalg.norm(np.cross(tangent, drawn)) > PARALLEL * square:
+    if name != "r_x" or np.linalg.norm(np.cross(tangent, drawn)) > PARALLEL_SINE * square:
         raise SceneError(slave.where, "cables without a section of their own cannot be joined rigidly at an angle: "
                          "nothing fixes their rotation about the tangent", 'take element="beam24", or rotation="free"')
     return [{at[d]: ratio} for d in range(3)]
 
 
 def supports(scene: SceneData, nodes: dict[str, list[Node]], signal: Callable[[Signal], int]) -> Supports:
-    """Return the scene's supports and ties; nodes: of each cable; signal(s): number of a signal."""
+    """Return the supports and ties of a scene; nodes: of each cable; signal(s): number of a signal."""
     made = Supports()
 
     def at(cable: str, s: float) -> Node:
@@ -310,7 +313,7 @@ def supports(scene: SceneData, nodes: dict[str, list[Node]], signal: Callable[[S
 
 def _support_nodes(made: Supports, scene: SceneData, at: Callable[[str, float], Node],
                    signal: Callable[[Signal], int]) -> list[Node]:
-    """Add pins, clamps and motions; at(cable, s): a node. Return the nodes that they support."""
+    """Add pins, clamps and motions; at(cable, s): a node. Return the supported nodes."""
     rooted = []
     for pin in scene.pins:
         rooted.append(at(pin.cable, pin.s))

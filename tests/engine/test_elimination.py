@@ -23,8 +23,8 @@ ROPE = {"element": "cable12", "section": Circle(radius=0.01),
 @pytest.fixture
 def in_fronts(monkeypatch):
     """Divide every border into all fronts of its graph, at any size."""
-    monkeypatch.setattr(border, "DENSE", 0)
-    monkeypatch.setattr(elimination, "FRONT", 0.0)
+    monkeypatch.setattr(border, "MAX_DENSE_BORDER", 0)
+    monkeypatch.setattr(elimination, "FRONT_OVERHEAD", 0.0)
 
 
 def ring() -> Scene:
@@ -144,10 +144,10 @@ def test_motion_is_that_of_the_dense_border(name, integrator, monkeypatch):
         run = SCENES[name]().run(duration=8 * step, output_step=8 * step, step=step, integrator=integrator)
         return np.concatenate([run[f"{body}.position"][-1] for body in run.scene.bodies])
 
-    monkeypatch.setattr(border, "DENSE", 10**9)
+    monkeypatch.setattr(border, "MAX_DENSE_BORDER", 10**9)
     dense = motion()
-    monkeypatch.setattr(border, "DENSE", 0)
-    monkeypatch.setattr(elimination, "FRONT", 0.0)
+    monkeypatch.setattr(border, "MAX_DENSE_BORDER", 0)
+    monkeypatch.setattr(elimination, "FRONT_OVERHEAD", 0.0)
     np.testing.assert_allclose(motion(), dense, rtol=0, atol=1e-12)
 
 

@@ -86,7 +86,7 @@ def test_what_does_not_fit_is_refused(arrays, message):
 
 
 def test_sections_need_nodal_vectors():
-    with pytest.raises(fu.SceneError, match=r'does not say how the sections.*give "wire.nodal_vectors"'):
+    with pytest.raises(fu.SceneError, match=r'does not determine the rotations.*give "wire.nodal_vectors"'):
         pendulum("beam12p").run(duration=0.1, initial={"wire.position": np.zeros((5, 3))})
 
 

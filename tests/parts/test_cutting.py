@@ -13,7 +13,7 @@ def scene(spans=3):
 
 
 def uncut(monkeypatch):
-    monkeypatch.setattr(cutting, "MOST", 10**6)
+    monkeypatch.setattr(cutting, "MAX_ATTACHMENTS", 10**6)
 
 
 def work(made):

@@ -252,7 +252,7 @@ def test_an_equilibrium_beyond_it_says_so():
     scene.pin(wire, s=0.0)
     scene.fluid(density=WATER, table=fu.VelocityTable(y=[-0.5, 0, 1, 2], velocity=[[1, 0, 0]] * 4))
     scene.drag(wire, normal=1.0)
-    with pytest.warns(fu.FunicularWarning, match="lies beyond the table of its fluid along y"):
+    with pytest.warns(fu.FunicularWarning, match="outside of the table of its fluid along y"):
         scene.equilibrium()
 
 
