@@ -9,7 +9,7 @@ import numpy as np
 from ..view.plot import colour_scale, snapshots
 from ..view.projections import axis_name
 from .animation.clips import upward
-from .quantities import ENERGIES
+from .quantities import ENERGIES, STORED_ENERGIES
 from .recorded import Recorded
 from .section_forces.balance_limits import known_method
 from .section_forces.forces import DEFAULT_DIVISIONS, jumps, of_run, with_sides
@@ -89,7 +89,7 @@ def energy(run: Recorded, figure: Figure) -> bool:
     changes, error = figure.subplots(2, sharex=True, height_ratios=(2.2, 1))
     for name in (name for name in ENERGIES if f"energy.{name}" in run):
         found = run[f"energy.{name}"]
-        if name in ("kinetic", "elastic", "potential") or found.any():
+        if name in STORED_ENERGIES or found.any():
             changes.plot(run.time, found - found[0], label=name)
     changes.axhline(0, color="0.4", linewidth=0.7)
     changes.set_ylabel("change of energy / J")

@@ -36,6 +36,7 @@ QUANTITIES: dict[str, dict[str, Quantity]] = {}
 for _kind in KINDS:
     QUANTITIES.setdefault(_kind.group, {}).update(_kind.results)
 
+STORED_ENERGIES = ("kinetic", "elastic", "potential")
 ENERGIES = {
     "kinetic": "kinetic energy",
     "elastic": "elastic energy",

@@ -18,6 +18,7 @@ from ..parts.settings import RunSettings
 from ..solve.motion.run import FAILED_STATUSES, Simulation
 from ..solve.notes.coincident_points import MeetingPoints
 from ..solve.notes.diagnosis import stopped
+from .quantities import ENERGIES
 
 
 @dataclass
@@ -50,7 +51,7 @@ def named(model: Model, scene: SceneData, engine: Engine) -> Rows:
     found = part_states(model, scene, States.of_rows(rows))
     cables = {cable.name: found.cables[cable.name] | {"node_s": cable.mesh.node_s, "vector_names": cable.vectors}
               for cable in model.cables}
-    energy = {name: rows[name] for name in ("kinetic", "elastic", "potential", "dissipated", "external")}
+    energy = {name: rows[name] for name in ENERGIES}
     return Rows(rows["time"], cables, found.modal, found.parts, energy)
 
 

@@ -9,11 +9,11 @@ import numpy as np
 from ..errors import SceneError, near
 from ..parts.locations import node_of
 from ..parts.scene_data import SceneData
-from .quantities import QUANTITIES
+from .quantities import QUANTITIES, STORED_ENERGIES
 from .run import Run
 from .shape_functions import on_axis
 
-ENERGIES = ("energy.kinetic", "energy.elastic", "energy.potential")
+ENERGIES = tuple(f"energy.{name}" for name in STORED_ENERGIES)
 PLACES = ("tip", "middle")
 ROUNDING_OF_POSITION = 1e-14
 """Rounding error of a trajectory over its largest coordinate."""

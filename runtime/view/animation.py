@@ -178,6 +178,14 @@ def taken(part: AnyPart, dim: str, numbers: np.ndarray, count: int) -> AnyPart:
     return replace(part, **changed)
 
 
+def section_sides(section: Mapping[str, Any]) -> tuple[float, float]:
+    """Return height and width of a section, or its diameter twice, in m."""
+    if section["shape"] == "rectangle":
+        return float(section["height"]), float(section["width"])
+    diameter = float(section["size" if section["shape"] == "unknown" else "diameter"])
+    return diameter, diameter
+
+
 def at_frame(values: np.ndarray, frame: int) -> np.ndarray:
     """Return the values at a frame, also of an array that stands still."""
     return np.asarray(values[frame if len(values) > 1 else 0])

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import heapq
-from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from .animation import CableShape, Clip, Curve, taken
+from .animation import CableShape, Clip, Curve, section_sides, taken
 
 MAX_FRAMES = 1000
 MAX_STATIONS = 3000  # of one cable
@@ -65,17 +64,10 @@ def _with_fewer_frames(clip: Clip) -> tuple[Clip, list[str]]:
     return fewer, [f"The picture shows {len(frames)} of {given} frames, evenly over time, and no motion between them."]
 
 
-def section_size(section: Mapping[str, Any]) -> float:
-    """Return the smaller side or the diameter of a cable's section in m."""
-    if section["shape"] == "rectangle":
-        return float(min(section["height"], section["width"]))
-    return float(section["diameter"] if "diameter" in section else section["size"])
-
-
 def _with_fewer_stations(cable: CableShape, size: float) -> tuple[CableShape, float]:
     """Return the cable at the stations that a screen resolves, and the largest error over the tolerance."""
     pixel = max(size, 1e-300) / PIXELS
-    chord = CHORD_ERROR * min(pixel, max(section_size(cable.section), pixel / ZOOM))
+    chord = CHORD_ERROR * min(pixel, max(min(section_sides(cable.section)), pixel / ZOOM))
     columns = [cable.position / chord]
     columns += [] if cable.section_y is None else [cable.section_y / SECTION_TURN]
     for quantity in cable.quantities:

@@ -5,14 +5,13 @@ from __future__ import annotations
 import os
 from functools import partial
 from pathlib import Path
-from typing import Any
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
 from ..base.written_files import write_text, write_whole
 from ..errors import FunicularError
-from .animation import Animation, Clip
+from .animation import Animation, Clip, section_sides
 from .files import PICTURES, extra, folder_for_pictures
 from .surfaces import placed_surface
 
@@ -64,20 +63,12 @@ def _point_data(clip: Clip, frame: int, count: int) -> dict[str, np.ndarray]:
     first = 0
     for cable in clip.cables:
         put("s", first, cable.s)
-        put("diameter", first, np.full(len(cable.s), _diameter(cable.section)))
+        height, width = section_sides(cable.section)
+        of_area = np.sqrt(height * width * 4 / np.pi)
+        put("diameter", first, np.full(len(cable.s), of_area if cable.section["shape"] == "rectangle" else height))
         if cable.section_y is not None:
             put("section_y", first, cable.section_y[frame])
         for quantity in cable.quantities:
             put(quantity.key, first, quantity.values[frame])
         first += len(cable.s)
     return found
-
-
-def _diameter(section: Any) -> float:
-    """Return the diameter of the circle of a section's area, in m."""
-    match section["shape"]:
-        case "rectangle":
-            return float(np.sqrt(section["height"] * section["width"] * 4 / np.pi))
-        case "unknown":
-            return float(section["size"])
-    return float(section["diameter"])

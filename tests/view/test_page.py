@@ -2,22 +2,36 @@
 
 import json
 import re
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
+from typing import get_args, get_type_hints
 
 import numpy as np
 import page_animations as animations
 import pytest
 from funicular import ResultFileError
-from funicular.view.animation import Animation, BodyShape, CableShape, Clip, Curve, Mark, Quantity, Segment
-from funicular.view.decimation import MAX_FRAMES, MAX_ROWS, decimated, even_frames
+from funicular.view.animation import (
+    DIMENSIONS,
+    Animation,
+    BodyShape,
+    CableShape,
+    Clip,
+    Curve,
+    Mark,
+    Quantity,
+    Segment,
+)
+from funicular.view.decimation import MAX_FRAMES, MAX_ROWS, MIN_COLOUR_RANGE, decimated, even_frames
 from funicular.view.page import described, is_exaggerable, page, period, write_page
 from funicular.view.page_arrays import FLOAT_BITS, Packer, power_of_two, unpack
+from funicular.view.plot import MARKERS, SEGMENTS, SIZES
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 SOURCE = Path(__file__).parents[2] / "runtime" / "view" / "page_source"
+MAPPINGS = {BodyShape: {"quantities"}}
+"""Fields with arrays by name."""
 SHAPES = hnp.array_shapes(min_dims=1, max_dims=3, max_side=7)
 
 
@@ -214,6 +228,25 @@ def test_what_does_not_fit_is_refused():
     odd = replace(clip, bodies=(replace(clip.bodies[0], shape={"kind": "cone"}),))
     with pytest.raises(ValueError, match='no shape "cone"'):
         page(replace(animation, clips=(odd,)))
+
+
+def test_every_kind_of_mark_and_segment_is_drawn_everywhere():
+    """The kinds are those of Mark and Segment; plots draw by MARKERS, SIZES, SEGMENTS, the page by DRAW and WIDTHS."""
+    marks, segments = (set(get_args(get_type_hints(part)["kind"])) for part in (Mark, Segment))
+    drawn = set(re.findall(r"^  (\w+)\(c\) \{", (SOURCE / "src/symbols.js").read_text(encoding="utf-8"), re.MULTILINE))
+    widths = re.search(r"WIDTHS = \{(.*?)\}", (SOURCE / "src/lines.js").read_text(encoding="utf-8"))[1]
+    assert marks == set(MARKERS) == set(SIZES) == drawn
+    assert segments == {*SEGMENTS, "load"} == set(re.findall(r"(\w+):", widths))
+
+
+def test_python_and_the_page_have_the_same_smallest_range_of_colours():
+    text = (SOURCE / "src/main.js").read_text(encoding="utf-8")
+    assert float(re.search(r"MIN_COLOUR_RANGE = ([\d.e-]+);", text)[1]) == MIN_COLOUR_RANGE
+
+
+def test_every_array_of_a_part_has_its_dimensions():
+    for kind, dims in DIMENSIONS.items():
+        assert {field.name for field in fields(kind) if "ndarray" in field.type} == {*dims, *MAPPINGS.get(kind, ())}
 
 
 def test_a_page_that_cannot_be_written(tmp_path):

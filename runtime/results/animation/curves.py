@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -18,6 +17,8 @@ MAX_ROWS, MIN_ROWS = 2000, 200
 """Bounds of the rows of a curve."""
 MAX_NUMBERS = 150_000
 """Numbers of all curves together, unless `MIN_ROWS` need more, for a small page."""
+CURVES = (("time",), ("time", "xyz"), ("time", "normal"))
+"""Dimensions of results with a curve."""
 UNITS = {"m/s2": "m/s²", "rad/s2": "rad/s²"}
 MAX_TENSIONS = 1000
 """Largest number of times at which the tension at a slide is computed."""
@@ -31,7 +32,8 @@ def thinned(count: int, limit: int) -> np.ndarray:
 
 def curves(run: Recorded, notes: list[str]) -> Iterator[Curve]:
     """Yield the results of a run over time: scalars, vectors, the energy balance, the tension at slides."""
-    shown = {name: variable for name, variable in run.variables.items() if _is_curve(variable)}
+    shown = {name: variable for name, variable in run.variables.items()
+             if variable.dims in CURVES}
     columns = sum(int(np.prod(variable.values.shape[1:])) for variable in shown.values())
     rows = int(np.clip(MAX_NUMBERS // max(1, columns), MIN_ROWS, MAX_ROWS))
     chosen = thinned(len(run.time), rows)
@@ -43,17 +45,9 @@ def curves(run: Recorded, notes: list[str]) -> Iterator[Curve]:
         yield from _tension_at(run, name, notes)
     for name, variable in shown.items():
         if not name.startswith("energy."):
-            yield Curve(name, _label(name, variable), UNITS.get(variable.units, variable.units),
+            label = f"{name.rpartition('.')[0]}: {variable.long_name}"
+            yield Curve(name, label, UNITS.get(variable.units, variable.units),
                         _columns(run, variable), time, variable.values[chosen])
-
-
-def _is_curve(variable: Variable) -> bool:
-    """Return whether a variable is a scalar or a vector over time."""
-    return variable.dims[0] == "time" and (len(variable.dims) == 1 or variable.dims[1:] in (("xyz",), ("normal",)))
-
-
-def _label(name: str, variable: Variable) -> str:
-    return f"{name.rpartition('.')[0]}: {variable.long_name}"
 
 
 def _columns(run: Recorded, variable: Variable) -> tuple[str, ...]:
@@ -95,10 +89,6 @@ def _tension_at(run: Recorded, slide: str, notes: list[str]) -> Iterator[Curve]:
 def events(run: Recorded) -> Iterator[EventMark]:
     """Yield the events with their descriptions."""
     for event in run.report.get("events", []):  # older files have none
-        yield EventMark(float(event["time"]), _in_words(event))
-
-
-def _in_words(event: Mapping[str, Any]) -> str:
-    what = event.get("what")
-    place = f" at s = {event['s']:.4g} m" if isinstance(event.get("s"), float) else ""
-    return f"{event['name']}{f': {what}' if what else ''}{place}"
+        what = f": {event['what']}" if event.get("what") else ""
+        place = f" at s = {event['s']:.4g} m" if isinstance(event.get("s"), float) else ""
+        yield EventMark(float(event["time"]), f"{event['name']}{what}{place}")

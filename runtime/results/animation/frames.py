@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
@@ -15,12 +14,8 @@ from ...parts.modal_body import ModalBody
 from ...parts.scene_data import SceneData
 from ..shape_functions import of_slopes, on_axis
 
-
-class SectionForces(Protocol):
-    """Returns the forces in sections of a cable."""
-
-    def __call__(self, cable: str, s: np.ndarray) -> dict[str, np.ndarray]:
-        """Return force, moment (T, n, 3) and components (T, n) at arc-lengths s (n,) in m."""
+SectionForces = Callable[[str, np.ndarray], dict[str, np.ndarray]]
+"""Returns force, moment (T, n, 3) and components (T, n) of a cable at arc-lengths (n,) in m."""
 
 
 def no_forces(cable: str, s: np.ndarray) -> dict[str, np.ndarray]:

@@ -21,7 +21,7 @@ from ..section_forces.balance_limits import known_method
 from ..section_forces.components import components
 from ..section_forces.forces import constitutive, of_equilibrium
 from ..section_forces.forces import of_run as forces_of_run
-from .frames import Frames, SectionForces
+from .frames import Frames, SectionForces, no_forces
 
 MAX_BALANCED = 400_000
 """Sections over all instants; with more, forces are those of the elastic law."""
@@ -111,7 +111,7 @@ def of_mode(modes: Modes, number: int, scene: SceneData, about: Mapping[str, np.
     for name, body in scene.bodies.items():
         found |= {f"{name}.{key}": value
                   for key, value in _vibrating(modes, number, name, body, about, factor).items()}
-    frames = _frames(scene, phase, found, np.zeros(len(phase)), lambda cable, s: {})
+    frames = _frames(scene, phase, found, np.zeros(len(phase)), no_forces)
     return replace(frames, reference=about.__getitem__)
 
 

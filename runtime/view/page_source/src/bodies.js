@@ -1,4 +1,4 @@
-// Bodies: a shape with dark edges in a frame that moves.
+// Bodies: a shape with dark edges in a moving frame.
 
 import {
   BoxGeometry,
@@ -20,7 +20,7 @@ import {
 import { pointAt, valueAt } from "./sampling.js";
 import { SHADE } from "./shading.js";
 
-const LEAST_PIXELS = 9; // bodies that look smaller are drawn this large
+const MIN_PIXELS = 9; // smallest size of a body on the screen
 
 const VERTEX = `
   varying vec3 vNormal;
@@ -37,7 +37,7 @@ const FRAGMENT = `
 `;
 
 export class BodyView {
-  /** A body of a clip: `group` is its frame; its shape hangs in it. */
+  /** A body of a clip: `group` is its frame with its shape. */
   constructor(body) {
     this.body = body;
     this.group = new Group();
@@ -78,9 +78,9 @@ export class BodyView {
     this.edgeMaterial.color.set(edge);
   }
 
-  /** Enlarge the shape about the body's origin where it would be too small to be seen. */
+  /** Enlarge the shape about the body's origin to the smallest visible size. */
   enlarge(pixel) {
-    const least = (LEAST_PIXELS / 2) * pixel;
+    const least = (MIN_PIXELS / 2) * pixel;
     this.shape.scale.setScalar(this.radius > 0 ? Math.max(1, least / this.radius) : 1);
   }
 
@@ -91,7 +91,7 @@ export class BodyView {
   }
 }
 
-/** A component of the orientation; quaternions of opposite sign are the same, so that the nearer one is taken. */
+/** A component of the orientation. Quaternions of opposite sign are equal: the nearer one is interpolated. */
 function shortest(array, sample, k) {
   if (sample.w === 0 || array.shape[0] === 1) return valueAt(array, sample, k);
   const { values } = array;

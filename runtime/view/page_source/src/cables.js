@@ -1,5 +1,5 @@
-// Cables with their sections. The vertices stand still; the shader sweeps them along the stations, whose positions,
-// axes and values are in a texture of 3 texels a station: one small upload a frame.
+// Cables with their sections. The vertices are constant; the shader sweeps them along the stations, whose positions,
+// axes and values are in a texture of 3 texels per station: one small upload per frame.
 
 import {
   BufferAttribute,
@@ -22,8 +22,8 @@ import { outline, sweptVertices } from "./sections.js";
 import { SHADE } from "./shading.js";
 
 const TEXELS = 1024; // in a row of the texture
-const LEAST_PIXELS = 3; // what is thinner is drawn this wide
-const COARSE = { corners: 6, pixels: 8 }; // of a circle that looks no larger than so many pixels
+const MIN_PIXELS = 3; // smallest width on the screen
+const COARSE = { corners: 6, pixels: 8 }; // corners of a circle up to this size on the screen
 const FINE = 20;
 const NO_VALUE = -1e30;
 
@@ -52,7 +52,7 @@ const VERTEX = `
     vec3 z = cross(tangent, y);
     float depth = projectionMatrix[3][3] == 1.0 ? 1.0 : -(modelViewMatrix * vec4(centre.xyz, 1.0)).z;
     float pixel = 2.0 * depth / (projectionMatrix[1][1] * height);
-    float grow = max(1.0, ${LEAST_PIXELS.toFixed(1)} * pixel / size);
+    float grow = max(1.0, ${MIN_PIXELS.toFixed(1)} * pixel / size);
     vec3 normal = cap == 0.0 ? y * side.x + z * side.y : tangent * cap;
     vNormal = normalMatrix * normal;
     vValue = centre.w;
@@ -86,7 +86,7 @@ const FRAGMENT = `
 `;
 
 export class CableView {
-  /** A cable of a clip: `mesh` is drawn; `centres` are the points of its stations as they are drawn. */
+  /** A cable of a clip: its `mesh`, and `centres`, the drawn points of its stations. */
   constructor(cable) {
     this.cable = cable;
     this.count = cable.s.values.length;
@@ -125,7 +125,7 @@ export class CableView {
     this.axes = new Float32Array(3 * this.count);
     this.values = new Float32Array(this.count);
     this.quantity = null;
-    // a round section shows no twist by itself
+    // a round section does not show its twist
     const striped = cable.section_y !== null && cable.section.shape !== "rectangle";
     this.mesh = new Mesh(this.fine, this.material(striped));
     this.mesh.frustumCulled = false; // the shader moves it
@@ -194,12 +194,12 @@ export class CableView {
     this.texture.needsUpdate = true;
   }
 
-  /** Say how many pixels high the picture is: thin cables are drawn some pixels wide. */
+  /** Set the height of the picture in pixels, for the smallest width of cables. */
   resize(height) {
     this.mesh.material.uniforms.height.value = height;
   }
 
-  /** Draw fewer corners where nobody sees them; `pixelAt(point)`: how many metres a pixel is there. */
+  /** Draw fewer corners of small sections; `pixelAt(point)`: size of a pixel in m there. */
   simplify(pixelAt) {
     const point = new Vector3();
     let least = Infinity;
@@ -229,7 +229,7 @@ function geometry(shape, count) {
   return made;
 }
 
-/** Write the unit tangent at a station: from the station before to the one after, points that coincide left out. */
+/** Write the unit tangent at a station, from the previous to the next station, without coincident points. */
 function direction(centres, p, count, out) {
   let before = Math.max(0, p - 1);
   let after = Math.min(count - 1, p + 1);
@@ -252,7 +252,7 @@ function direction(centres, p, count, out) {
   out[1] = out[2] = 0;
 }
 
-/** Turn y until it is a unit vector across the tangent. */
+/** Make y a unit vector normal to the tangent. */
 function across(y, tangent) {
   const along = y[0] * tangent[0] + y[1] * tangent[1] + y[2] * tangent[2];
   let length = Math.hypot(y[0] - along * tangent[0], y[1] - along * tangent[1], y[2] - along * tangent[2]);

@@ -1,20 +1,20 @@
-// Where the picture is looked at from: perspective, along an axis, after a body.
+// Views of the picture: perspective, along an axis, following a body.
 
 import { OrthographicCamera, PerspectiveCamera, Vector3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
-const ANGLE = 35; // degrees, of the perspective
+const FIELD_OF_VIEW = 35; // field of view of the perspective, degrees
 const MARGIN = 1.14;
-const LABELS = 90; // pixels across that the labels of grids need
+const LABEL_WIDTH = 90; // width of the labels of grids, pixels
 
 export class Cameras {
   /** Cameras for the box [low, high] with its grids; `up` is against gravity.
-   *  `changed` is called when the view has moved. */
+   *  `changed` is called after a change of the view. */
   constructor(canvas, { low, high, up }, changed) {
     this.box = { low: new Vector3(...low), high: new Vector3(...high) };
     this.up = new Vector3(...up).normalize();
     this.size = Math.max(this.box.high.distanceTo(this.box.low), 1e-9);
-    this.perspective = new PerspectiveCamera(ANGLE, 1, this.size * 1e-4, this.size * 50);
+    this.perspective = new PerspectiveCamera(FIELD_OF_VIEW, 1, this.size * 1e-4, this.size * 50);
     this.flat = new OrthographicCamera(-1, 1, 1, -1, -this.size * 20, this.size * 40);
     this.camera = this.perspective;
     this.aspect = 1;
@@ -22,15 +22,15 @@ export class Cameras {
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.zoomToCursor = true;
     this.controls.addEventListener("change", changed);
-    this.controls.addEventListener("start", () => (this.fits = false)); // the reader moves it
+    this.controls.addEventListener("start", () => (this.fits = false)); // moved by the reader
     this.preset = "3d";
-    this.fits = false; // whether all is in the picture, as it stays until the camera is moved
+    this.fits = false; // whether the view shows everything: until the reader moves the camera
   }
 
   resize(width, height) {
     const aspect = width / height;
     this.aspect = aspect;
-    this.usable = Math.max(0.5, 1 - LABELS / width) * aspect * MARGIN; // of the width that a height of 1 goes with
+    this.usable = Math.max(0.5, 1 - LABEL_WIDTH / width) * aspect * MARGIN; // usable width at height 1
     this.perspective.aspect = aspect;
     this.perspective.updateProjectionMatrix();
     this.flat.left = -this.flat.top * aspect;
@@ -39,7 +39,7 @@ export class Cameras {
     if (this.fits) this.look(this.preset);
   }
 
-  /** Look as "3d", "x", "y" or "z" says; all that moves is in the picture. */
+  /** Set the view "3d", "x", "y" or "z", with all moving parts in the picture. */
   look(preset) {
     this.preset = preset;
     const flat = preset !== "3d";
@@ -64,7 +64,7 @@ export class Cameras {
       this.flat.right = half * this.aspect;
       this.camera.position.copy(centre).addScaledVector(forward, -this.size * 2);
     } else {
-      const tangent = Math.tan((ANGLE / 2) * (Math.PI / 180)) / MARGIN;
+      const tangent = Math.tan((FIELD_OF_VIEW / 2) * (Math.PI / 180)) / MARGIN;
       const needed = corners.map(([x, y, near]) => near + Math.max(Math.abs(y), Math.abs(x) / this.usable) / tangent);
       this.camera.position.copy(centre).addScaledVector(forward, -Math.max(...needed, this.size * 0.05));
     }
@@ -73,7 +73,7 @@ export class Cameras {
     this.fits = true;
   }
 
-  /** Two horizontal directions (positive axes where these are horizontal) and up. */
+  /** Two horizontal directions (positive axes if these are horizontal) and up. */
   horizontal() {
     const axes = [new Vector3(1, 0, 0), new Vector3(0, 1, 0), new Vector3(0, 0, 1)];
     const level = axes
@@ -84,19 +84,19 @@ export class Cameras {
 
   oblique() {
     const right = this.horizontal();
-    const back = right.clone().cross(this.up); // away from the observer is -back
+    const back = right.clone().cross(this.up); // the observer looks along -back
     const from = back.multiplyScalar(0.82).addScaledVector(right, 0.42).addScaledVector(this.up, 0.4);
     return { forward: from.normalize().negate(), up: this.up };
   }
 
-  /** Look along an axis so that the other horizontal axis points to the right; from above with the first one so. */
+  /** Look along an axis with the other horizontal axis to the right, from above with the first one. */
   alongAxis(axis) {
     const direction = new Vector3().setComponent(axis, 1);
     const vertical = direction.dot(this.up);
     if (Math.abs(vertical) > 0.9) {
       const right = this.horizontal();
       const forward = this.up.clone().negate();
-      // not exactly from above: the controls then know which way is up
+      // not exactly from above: the controls need an upward direction
       const up = right.clone().cross(forward).normalize();
       return { forward: forward.addScaledVector(up, 1e-4).normalize(), up: this.up };
     }
@@ -106,7 +106,7 @@ export class Cameras {
     return { forward: largest < 0 ? forward.negate() : forward, up: this.up };
   }
 
-  /** Corners of the box that must be in the picture, from its middle. */
+  /** Corners of the box of the picture, from its middle. */
   corners(centre) {
     const { low, high } = this.box;
     return Array.from({ length: 8 }, (_, k) =>
@@ -114,20 +114,20 @@ export class Cameras {
     );
   }
 
-  /** Move the view as something moved that it follows. */
+  /** Move the view with the followed body. */
   shift(by) {
     this.camera.position.add(by);
     this.controls.target.add(by);
     this.controls.update();
   }
 
-  /** Look at a point from `distance`, in the direction of now. */
+  /** Look at a point from `distance`, in the current direction. */
   approach(point, distance) {
     this.fits = false;
     const forward = this.camera.getWorldDirection(new Vector3());
     this.controls.target.copy(point);
     if (this.camera === this.flat) {
-      this.flat.zoom = this.flat.top / (distance * Math.tan((ANGLE / 2) * (Math.PI / 180)));
+      this.flat.zoom = this.flat.top / (distance * Math.tan((FIELD_OF_VIEW / 2) * (Math.PI / 180)));
       this.flat.updateProjectionMatrix();
       distance = this.size * 2;
     }
@@ -135,7 +135,7 @@ export class Cameras {
     this.controls.update();
   }
 
-  /** Return the axis (0, 1, 2) that is looked along, or null. */
+  /** Return the axis (0, 1, 2) of the view, or null. */
   axisInSight() {
     if (this.camera !== this.flat) return null;
     const forward = this.camera.getWorldDirection(new Vector3()).toArray();
@@ -143,10 +143,10 @@ export class Cameras {
     return axis < 0 ? null : axis;
   }
 
-  /** Return how many metres a pixel is at a point; `height` is that of the picture in pixels. */
+  /** Return the size of a pixel in m at a point; `height`: of the picture in pixels. */
   pixelAt(point, height) {
     if (this.camera === this.flat) return (2 * this.flat.top) / this.flat.zoom / height;
     const depth = point.clone().applyMatrix4(this.camera.matrixWorldInverse).z;
-    return (2 * Math.abs(depth) * Math.tan((ANGLE / 2) * (Math.PI / 180))) / height;
+    return (2 * Math.abs(depth) * Math.tan((FIELD_OF_VIEW / 2) * (Math.PI / 180))) / height;
   }
 }

@@ -1,4 +1,4 @@
-// Curves beside the picture: any result over time, a cursor at the time of now, a click to go there.
+// Curves beside the picture: any result over time, a cursor at the current time, a click to go to a time.
 
 import { SERIES } from "./colours.js";
 import { choice, fill, make, svg } from "./dom.js";
@@ -9,7 +9,7 @@ const HEIGHT = 150;
 const FRAME = { left: 46, right: 10, top: 8, bottom: 20 };
 const DASHES = ["", "6 3", "2 2", "8 3 2 3"];
 
-/** Return what can be drawn of a clip: its curves and the values of its bodies. */
+/** Return the results of a clip: its curves and the quantities of its bodies. */
 export function curvesOf(clip) {
   const single = clip.curves.map((curve) => ({
     key: curve.key,
@@ -40,7 +40,7 @@ function columnsOf(array, names, time) {
 }
 
 export class Charts {
-  /** `element` takes the charts; `player` is where clicks go; `data` the header. */
+  /** `element`: for the charts; `player`: receives clicks; `data`: the header. */
   constructor(element, player, data) {
     this.element = element;
     this.player = player;
@@ -52,7 +52,7 @@ export class Charts {
     new ResizeObserver(() => this.draw()).observe(this.list);
   }
 
-  /** Take the clips (numbers) that are shown; `dark`: the colours to take. */
+  /** Set the shown clips (numbers); `dark`: whether to use the colours of dark pages. */
   show(clips, dark) {
     this.clips = clips;
     this.series = SERIES[dark ? "dark" : "light"];
@@ -64,7 +64,7 @@ export class Charts {
     this.draw();
   }
 
-  /** Two results and the energies, to begin with. */
+  /** The initial choice: two results and the energies. */
   initial() {
     const keys = [...this.keys.keys()];
     const energy = keys.filter((key) => key === "energy");
@@ -173,7 +173,7 @@ class Chart {
     const [low, high] = extremes(this.drawn);
     const { scale, unit } = scaled(this.drawn[0]?.unit ?? "", Math.max(Math.abs(low), Math.abs(high)));
     this.scale = scale;
-    this.finest = ((high - low) / scale) * 1e-4; // a digit below what the curve shows says nothing
+    this.finest = ((high - low) / scale) * 1e-4; // smaller digits are below the resolution of the curve
     this.unit.textContent = unit;
     const width = this.width - FRAME.left - FRAME.right;
     const height = HEIGHT - FRAME.top - FRAME.bottom;
@@ -281,7 +281,7 @@ class Chart {
   }
 }
 
-/** Return the range of an axis: that of the values and a little more, never empty. */
+/** Return the range of an axis: that of the values with a margin, never empty. */
 function extremes(lines) {
   let low = Infinity;
   let high = -Infinity;

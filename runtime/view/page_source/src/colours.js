@@ -1,6 +1,6 @@
 // Colour maps (perceptually uniform) and the colours of clips, bodies and curves.
 
-// Every 16th colour of matplotlib's maps, and the last; between them is interpolated.
+// Every 16th colour of matplotlib's maps, and the last, for linear interpolation.
 const MAPS = {
   viridis: "44015448186a472d7b4240863b528b33638d2c728e26828e21918c1fa08828ae803fbc735ec96284d44baddc30d8e219fde725",
   cividis: "00224e002e6a1a386f32436d434e6c535a6d61656f6f70737d7c788c88789b9476aba072bcae6ccdbb63dec958f0d846fee838",
@@ -35,7 +35,7 @@ function channels(hex) {
   return [0, 2, 4].map((i) => parseInt(hex.slice(i, i + 2), 16));
 }
 
-// Distinguishable with every kind of colour vision (Okabe and Ito 2008), in tones that stand on light and on dark.
+// Distinguishable with every kind of colour vision (Okabe and Ito 2008), in tones for light and dark pages.
 export const SERIES = {
   light: ["#0069a8", "#c44e00", "#00795c", "#a8407f", "#7a6300", "#4b4fb5"],
   dark: ["#56b4e9", "#f28e3c", "#2fc79a", "#e391c0", "#e0cb3c", "#a3a6ff"],

@@ -1,8 +1,8 @@
-// The content of the page: header and arrays. How arrays are stored stands in runtime/view/page_arrays.py.
+// The content of the page: header and arrays, in the format of runtime/view/page_arrays.py.
 
 const MISSING = -(2 ** 31); // a missing number
 
-/** Return the header of the page, the numbers of arrays in it replaced by the arrays ({shape, step, values}). */
+/** Return the header of the page with arrays ({shape, step, values}) in place of their numbers. */
 export async function read(document) {
   const header = JSON.parse(document.getElementById("header").textContent);
   const packed = Uint8Array.from(atob(document.getElementById("arrays").textContent), (c) => c.charCodeAt(0));
@@ -35,7 +35,7 @@ function decode(bytes, descriptions) {
   });
 }
 
-/** Cumulative sums along an axis; an Int32Array wraps around by itself. */
+/** Cumulative sums along an axis; an Int32Array overflows modulo 2^32. */
 function sum(integers, shape, axis) {
   const stride = shape.slice(axis + 1).reduce((product, length) => product * length, 1);
   const block = stride * shape[axis];

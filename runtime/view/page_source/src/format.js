@@ -1,4 +1,4 @@
-// Numbers as an engineer reads them.
+// Numbers in engineering notation.
 
 const PREFIXES = [
   [1e9, "G"],
@@ -10,9 +10,9 @@ const PREFIXES = [
   [1e-9, "n"],
 ];
 const PREFIXED = new Set(["N", "J", "W", "Pa", "N m", "N\u00b7m", "Hz", "V"]);
-const SMALL_ONLY = new Set(["m", "s", "m/s", "rad"]); // nobody says kilosecond
+const SMALL_ONLY = new Set(["m", "s", "m/s", "rad"]); // no kiloseconds
 
-/** Return {scale, unit}: what numbers up to `largest` are divided by, and the unit they have then. */
+/** Return {scale, unit}: the divisor of numbers up to `largest`, and their unit then. */
 export function scaled(given, largest) {
   const unit = given === "1" ? "" : given;
   const size = Math.abs(largest);
@@ -49,7 +49,7 @@ export function number(value, digits = 4, step = 0) {
   return text.replace(/-/g, "\u2212");
 }
 
-/** Return a value with its unit: "201.3 kN". `step`: what the page has rounded it to. */
+/** Return a value with its unit: "201.3 kN". `step`: of the rounding of the page. */
 export function withUnit(value, unit, step = 0) {
   if (!Number.isFinite(value)) return "no value";
   const { scale, unit: shown } = scaled(unit, value);

@@ -1,4 +1,4 @@
-// Grids with their scale in metres: on the ground, and behind the picture when it is looked at along an axis.
+// Grids with a scale in metres: on the ground, and behind the picture in views along an axis.
 
 import {
   BufferAttribute,
@@ -14,7 +14,7 @@ import {
 import { niceStep, scaled, tick } from "./format.js";
 
 const LABEL_PIXELS = 13;
-const LINES = 10; // about so many along the longer side
+const LINES = 10; // approximate number along the longer side
 
 /** A grid in the plane across axis `normal` (0, 1, 2), over the box [low, high]; labels count from the true origin. */
 export class GridView {
@@ -97,7 +97,7 @@ export class GridView {
     this.labels.forEach((label) => label.draw(text));
   }
 
-  /** Give the labels their size on the screen and a small distance from the grid. */
+  /** Set the size of the labels on the screen and their distance from the grid. */
   enlarge(pixelAt) {
     for (const label of this.labels) {
       const pixel = pixelAt(label.base);

@@ -1,4 +1,4 @@
-// window.funicular: the picture for programs, for tests and for those who script it. README.md describes it.
+// window.funicular: the picture for programs and tests; described in README.md.
 
 import { Quaternion, Vector3 } from "three";
 import { pick } from "./picking.js";
@@ -44,32 +44,32 @@ export function hook(app) {
       Object.assign(app.state, state);
       app.redraw();
     },
-    /** Where a body is drawn: {position in m, orientation (scalar first)}, from the scene graph. */
+    /** The drawn frame of a body: {position in m, orientation (scalar first)}, from the scene graph. */
     body(name, clip) {
       const { object } = view("body", name, clip);
       object.updateWorldMatrix(true, false);
       const { x, y, z, w } = object.getWorldQuaternion(new Quaternion());
       return { position: absolute(object.getWorldPosition(new Vector3())), orientation: [w, x, y, z] };
     },
-    /** Where the stations of a cable are drawn, in m. */
+    /** The drawn stations of a cable, in m. */
     cable(name, clip) {
       const { centres } = view("cable", name, clip).item;
       return Array.from({ length: centres.length / 3 }, (_, p) => absolute(new Vector3().fromArray(centres, 3 * p)));
     },
     mark: (name, clip) => absolute(view("mark", name, clip).object.position),
-    /** The pixel of the picture where a point (in m) is drawn. */
+    /** The pixel of a point (in m). */
     pixel(point) {
       const at = new Vector3(...point.map((x, k) => x - data.origin[k])).project(stage.cameras.camera);
       return [((at.x + 1) / 2) * stage.canvas.clientWidth, ((1 - at.y) / 2) * stage.canvas.clientHeight];
     },
-    /** What is at a pixel: {kind, name, lines, s, values}, or null. */
+    /** The object at a pixel: {kind, name, lines, s, values}, or null. */
     pick(x, y) {
       const found = pick(stage, x, y);
       return found && { kind: found.kind, name: found.name, lines: found.lines, s: found.s, values: found.values };
     },
     /** The picture as a PNG in a data URL. */
     image: () => stage.image(),
-    /** Draw `count` frames one after the other and return the seconds that each took, the graphics included. */
+    /** Draw `count` frames in turn and return the time of each in s, graphics included. */
     measure(count) {
       const gl = stage.renderer.getContext();
       const pixel = new Uint8Array(4);

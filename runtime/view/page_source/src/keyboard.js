@@ -1,4 +1,4 @@
-// Keys. Where a control has its own use of a key, it keeps it.
+// Keys. A focused control keeps its own keys.
 
 export const KEYS = [
   ["space", "play, pause"],
@@ -16,7 +16,7 @@ export const KEYS = [
 
 /** Listen for keys; `actions` has a function for each name used here. */
 export function listen(document, actions) {
-  // What was clicked loses the focus at once: the space bar plays, and does not press it again.
+  // A clicked button loses the focus, so that the space bar plays and does not press it again.
   const release = ({ detail, target }) => detail > 0 && target.closest?.("button, summary")?.blur();
   document.addEventListener("click", release, true);
   document.addEventListener("keydown", (event) => {

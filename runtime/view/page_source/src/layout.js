@@ -1,4 +1,4 @@
-// The parts of the page: the picture with what lies over it, the line of time, the curves, the notes.
+// The parts of the page: the picture with its overlays, the time line, the curves, the notes.
 
 import { make } from "./dom.js";
 

@@ -1,4 +1,4 @@
-// Lines of a width in pixels: springs, lever arms, loads, trails, shapes of reference.
+// Lines with a width in pixels: springs, lever arms, loads, trails, reference shapes.
 
 import { ConeGeometry, Group, Matrix4, Mesh, MeshBasicMaterial, Vector3 } from "three";
 import { Line2 } from "three/addons/lines/Line2.js";
@@ -9,7 +9,7 @@ import { frameAt, pointAt } from "./sampling.js";
 const COILS = 9;
 const WIDTHS = { spring: 2, hanger: 1.5, lever: 4, joint: 2.5, load: 2.5 };
 const ARROW_PIXELS = 14;
-const HEAD = 0.4; // of its arrow, at most
+const MAX_HEAD = 0.4; // largest length of an arrow head over the arrow
 
 /** Return a line through points (flat list of coordinates), `width` pixels wide. */
 export function line(points, width) {
@@ -71,7 +71,9 @@ export class SegmentView {
   }
 
   enlarge(pixel) {
-    this.head?.scale.setScalar(Math.max(Math.min(ARROW_PIXELS * pixel, HEAD * this.start.distanceTo(this.end)), 1e-9));
+    this.head?.scale.setScalar(
+      Math.max(Math.min(ARROW_PIXELS * pixel, MAX_HEAD * this.start.distanceTo(this.end)), 1e-9),
+    );
   }
 
   colour(colour) {
@@ -99,7 +101,7 @@ function coil() {
   return points;
 }
 
-/** The path of a body up to now. */
+/** The path of a body up to the current time. */
 export class TrailView {
   constructor(body, frames) {
     this.body = body;
@@ -120,7 +122,7 @@ export class TrailView {
     let last = [0, 0, 0];
     for (let i = 0; i < this.frames; i++) {
       pointAt(this.body.position, this.body.reference, { i, j: i, w: 0 }, factor, point);
-      if (!point.some(Number.isNaN)) last = [...point]; // where nothing is known the trail waits
+      if (!point.some(Number.isNaN)) last = [...point]; // the trail stops at missing values
       points.push(...last);
     }
     this.line.geometry.dispose();

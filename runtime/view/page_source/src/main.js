@@ -1,4 +1,4 @@
-// The page: reads its content, makes its parts and lets them know of each other.
+// The page: reads its content, makes its parts and connects them.
 
 import { Charts } from "./charts.js";
 import { SERIES } from "./colours.js";
@@ -16,9 +16,9 @@ import { Stage } from "./stage.js";
 import { Theme } from "./theme.js";
 import { Timeline } from "./timeline.js";
 
-const MOST_TIMES = 2000; // of clips drawn together
-const RIM = { dark: 0.35, light: -0.1 }; // of the range of brightness
-const LEAST_RANGE = 1e-3; // of colours, in parts of the largest value
+const MAX_TIMES = 2000; // largest number of times of clips drawn together
+const RIM = { dark: 0.35, light: -0.1 }; // over the range of brightness
+const MIN_COLOUR_RANGE = 1e-3; // of colours, over the largest value; MIN_COLOUR_RANGE of decimation.py
 
 class App {
   constructor(data) {
@@ -64,7 +64,7 @@ class App {
     this.theme.apply();
   }
 
-  /** Planar motion takes place across z. */
+  /** Planar motion is in a plane normal to z. */
   planarView() {
     return "z";
   }
@@ -91,7 +91,7 @@ class App {
     return [...new Map(all.map(({ key, label }) => [key, label]))];
   }
 
-  /** The range of a quantity over all that is shown, at all times. */
+  /** The range of a quantity over all shown clips and times. */
   range(key) {
     let low = Infinity;
     let high = -Infinity;
@@ -108,12 +108,12 @@ class App {
       }
     }
     if (!(low <= high)) return { quantity: found, range: [0, 1] };
-    const least = LEAST_RANGE * Math.max(Math.abs(low), Math.abs(high)); // rounding is no change of colour
+    const least = MIN_COLOUR_RANGE * Math.max(Math.abs(low), Math.abs(high)); // rounding does not change colours
     const more = Math.max(0, (least - (high - low)) / 2);
     return { quantity: found, range: [low - more, high + more], uniform: more > 0 };
   }
 
-  /** Colour all that is drawn, cables by the quantity over its range; return the shades of the clips. */
+  /** Colour the picture, cables by the quantity over its range; return the shades of the clips. */
   colourViews(range) {
     const { state, stage, theme, clips } = this;
     const several = clips.length > 1;
@@ -148,7 +148,7 @@ class App {
     return shades;
   }
 
-  /** Draw everything anew after a choice of the reader. */
+  /** Redraw after a change of settings. */
   redraw() {
     const { state, stage, theme, data, clips } = this;
     const keys = this.quantities();
@@ -258,7 +258,7 @@ class App {
     parts.clip.append(this.clipSelect);
   }
 
-  /** Save the picture, as large as it is on the screen. */
+  /** Save the picture in its size on the screen. */
   savePicture() {
     make("a", { href: this.stage.image(), download: `${this.data.title}.png` }).click();
   }
@@ -290,13 +290,13 @@ class App {
   }
 }
 
-/** Return the times of several clips in one sorted list; of the longest clip alone where that would be too many. */
+/** Return the times of several clips in one sorted list; of the longest clip alone if they are too many. */
 function together(times) {
   if (times.length === 1) return times[0];
   const sorted = times.flatMap((one) => [...one]).sort((a, b) => a - b);
-  const apart = 1e-6 * (sorted.at(-1) - sorted[0]); // what is closer is the same
+  const apart = 1e-6 * (sorted.at(-1) - sorted[0]); // closer times are equal
   const all = sorted.filter((time, k) => k === 0 || time - sorted[k - 1] > apart);
-  if (all.length <= MOST_TIMES) return all;
+  if (all.length <= MAX_TIMES) return all;
   const longest = times.reduce((best, one) => (one.at(-1) - one[0] > best.at(-1) - best[0] ? one : best));
   return longest;
 }

@@ -1,4 +1,4 @@
-// What is said about the picture in words: notes of the run, details of the clips, what was left out; the keys.
+// Text about the picture: notes of the run, details of the clips, notes on decimation; the keys.
 
 import { make } from "./dom.js";
 import { KEYS } from "./keyboard.js";
@@ -36,7 +36,7 @@ export class Notes {
   }
 }
 
-/** Fill the dialog that says the keys; `button` opens it. */
+/** Fill the dialog of the keys; `button` opens it. */
 export function help(dialog, button) {
   const keys = KEYS.flatMap(([key, text]) => [make("dt", {}, key), make("dd", {}, text)]);
   const close = make("button", { type: "button", onclick: () => dialog.close() }, "Close");

@@ -1,4 +1,4 @@
-// What the reader chooses about the picture: colours, exaggeration, what is drawn.
+// Settings of the picture: colours, exaggeration, shown parts.
 
 import { MAP_NAMES } from "./colours.js";
 import { choice, fill, make } from "./dom.js";
@@ -6,7 +6,7 @@ import { choice, fill, make } from "./dom.js";
 const FACTORS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 10000];
 
 export class Panel {
-  /** `state` has quantity, map, factor, trails, reference, marks, grid; `changed()` is called when one is another. */
+  /** `state` has quantity, map, factor, trails, reference, marks, grid; `changed()` is called after a change. */
   constructor(element, state, changed, savePicture) {
     this.state = state;
     const set = (key, value) => {
@@ -52,8 +52,8 @@ export class Panel {
     return { input, label: make("label", {}, input, ` ${text}`) };
   }
 
-  /** Draw the state; `quantities`: [key, label] to choose from; `has`: which boxes make sense.
-   *  `exaggerable`: whether displacements can be drawn larger. */
+  /** Draw the state; `quantities`: [key, label] to select; `has`: the available boxes.
+   *  `exaggerable`: whether displacements can be exaggerated. */
   show(quantities, plain, has, exaggerable) {
     fill(this.quantity, [...quantities.map(([key, label]) => [key, label]), ["", plain]], this.state.quantity);
     this.quantity.hidden = quantities.length === 0;

@@ -1,12 +1,12 @@
-// What is under the pointer: its name, the arc-length on a cable, and the values there.
+// The object under the pointer: its name, the arc-length on a cable, and the values there.
 
 import { Raycaster, Vector2, Vector3 } from "three";
 import { withUnit } from "./format.js";
 import { frameAt, sampleAt, valueAt } from "./sampling.js";
 
-const REACH = 12; // pixels
+const PICK_PIXELS = 12; // pixels
 
-/** Return what is at a pixel of the picture: {kind, name, clip, lines, point, s, values}, or null. */
+/** Return the object at a pixel of the picture: {kind, name, clip, lines, point, s, values}, or null. */
 export function pick(stage, x, y) {
   return nearestMark(stage, x, y) ?? bodyAt(stage, x, y) ?? nearestOnCable(stage, x, y);
 }
@@ -24,7 +24,7 @@ function nearestMark(stage, x, y) {
   for (const { clip, item, object } of stage.of("mark")) {
     const [u, v] = screen(stage, object.position);
     const distance = Math.hypot(u - x, v - y);
-    if (distance < REACH && distance < (best?.distance ?? Infinity)) best = { distance, clip, item, object };
+    if (distance < PICK_PIXELS && distance < (best?.distance ?? Infinity)) best = { distance, clip, item, object };
   }
   if (!best) return null;
   const { mark } = best.item;
@@ -42,7 +42,7 @@ function nearestMark(stage, x, y) {
   };
 }
 
-/** Return the values of now of a mark's curves, such as "rope.tension@trolley": exact where a cable's values jump. */
+/** Return the current values of a mark's curves, such as "rope.tension@trolley", exact at jumps of a cable's values. */
 function ownCurves(stage, name, clip) {
   const found = { keys: new Set(), lines: [], values: {} };
   for (const curve of stage.data.clips[clip].curves.filter(({ key }) => key.endsWith(`@${name}`))) {
@@ -61,7 +61,7 @@ function ownCurves(stage, name, clip) {
   return found;
 }
 
-/** The values of a cable of the clip at a point that lies on it, without those of the quantities `but`. */
+/** The values of a cable of the clip at a point on it, without the quantities `but`. */
 function onCable(stage, point, clip, but) {
   let best = null;
   for (const view of stage.of("cable").filter((one) => one.clip === clip)) {
@@ -104,7 +104,8 @@ function nearestOnCable(stage, x, y) {
   let best = null;
   for (const view of stage.of("cable")) {
     const reach =
-      REACH + view.item.size / 2 / stage.cameras.pixelAt(new Vector3(...view.item.centres.slice(0, 3)), stage.height);
+      PICK_PIXELS +
+      view.item.size / 2 / stage.cameras.pixelAt(new Vector3(...view.item.centres.slice(0, 3)), stage.height);
     const near = nearestStation(view.item, (a, b) => {
       const [ax, ay] = screen(stage, a);
       const [bx, by] = screen(stage, b);
@@ -123,7 +124,7 @@ function nearestOnCable(stage, x, y) {
   };
 }
 
-/** Return the nearest piece of a cable: {p, w, distance}; `distance(a, b)` gives that of a piece, and where on it. */
+/** Return the nearest segment of a cable: {p, w, distance}; `distance(a, b)`: distance of a segment, and the place. */
 function nearestStation({ centres, count }, distance) {
   let best = { p: 0, w: 0, distance: Infinity };
   let a = new Vector3().fromArray(centres, 0);

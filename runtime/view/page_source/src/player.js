@@ -1,9 +1,9 @@
-// Time: where it is, how fast it runs, and who is to know.
+// The current time, its rate, and the listeners.
 
 const NICE = [1, 2, 5];
 
 export class Player {
-  /** `changed(time)` is called whenever the time is another one; `state()` when playing starts or stops. */
+  /** `changed(time)` is called after a change of time, `state()` when playing starts or stops. */
   constructor(changed, state) {
     this.changed = changed;
     this.state = state;
@@ -13,7 +13,7 @@ export class Player {
     this.load([0], null);
   }
 
-  /** Take the times (sorted) of what is shown, and its period if it repeats itself. */
+  /** Set the times (sorted) of the shown clips, and the period of a repeated clip. */
   load(times, period) {
     this.times = times;
     this.first = times[0];
@@ -26,7 +26,7 @@ export class Player {
     return this.period ?? this.last - this.first;
   }
 
-  /** Return the rates to choose from: 1, 2, 5 times powers of ten around the one that suits. */
+  /** Return the selectable rates: 1, 2, 5 times powers of ten around the default. */
   rates(suits) {
     const exponent = Math.floor(Math.log10(suits));
     const all = [];
@@ -34,7 +34,7 @@ export class Player {
     return all.filter((rate) => rate >= suits / 25 && rate <= suits * 25).map((rate) => Number(rate.toPrecision(3)));
   }
 
-  /** Return the rate at which all takes a few seconds; real time if that does. */
+  /** Return the default rate: real time if it lasts a few seconds, else a rate that does. */
   suitableRate() {
     const wanted = this.period ? 2 : 8;
     if (!(this.duration > 0)) return 1;
@@ -47,7 +47,7 @@ export class Player {
     return Number((nice * power).toPrecision(3));
   }
 
-  /** Return the number of the frame that is nearest to the time of now. */
+  /** Return the number of the frame nearest to the current time. */
   get frame() {
     const { times, time } = this;
     let low = 0;
@@ -92,7 +92,7 @@ export class Player {
   pause() {
     if (!this.playing) return;
     this.playing = false;
-    this.goFrame(this.frame); // what rests is a frame, whose numbers are the run's
+    this.goFrame(this.frame); // a paused picture is a frame with the values of the run
     this.state();
   }
 

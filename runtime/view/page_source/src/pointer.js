@@ -1,10 +1,10 @@
-// The pointer on the picture: it says what is below it, and a double click goes there.
+// The pointer on the picture: a tip names the object, and a double click approaches it.
 
 import { make } from "./dom.js";
 import { pick } from "./picking.js";
 import { isOutside } from "./sampling.js";
 
-const NEAR = 0.08; // of the picture's size: how far from what is double-clicked
+const APPROACH_DISTANCE = 0.08; // distance after a double click over the size of the picture
 
 export class Pointer {
   /** `tip` is filled and placed within `picture`; `several()` says whether clips must be named. */
@@ -22,11 +22,11 @@ export class Pointer {
     canvas.addEventListener("click", (event) => this.tell(...at(event)));
     canvas.addEventListener("dblclick", (event) => {
       const found = pick(stage, ...at(event));
-      if (found) stage.cameras.approach(found.point, stage.size * NEAR);
+      if (found) stage.cameras.approach(found.point, stage.size * APPROACH_DISTANCE);
     });
   }
 
-  /** Say what is at a pixel now. */
+  /** Show the tip of a pixel. */
   tell(x, y) {
     this.at = [x, y];
     const found = pick(this.stage, x, y);
@@ -46,7 +46,7 @@ export class Pointer {
     tip.style.top = `${Math.max(4, below ? y + 16 : y - tip.offsetHeight - 12)}px`;
   }
 
-  /** What is pointed at changes with time. */
+  /** Update the tip with time. */
   update() {
     if (!this.tip.hidden) this.tell(...this.at);
   }

@@ -1,11 +1,11 @@
-// What says how large the picture is and where its axes point: a scale, a triad, the legend of colours.
+// Scale, triad of axes, and the legend of colours.
 
 import { Vector3 } from "three";
 import { gradient } from "./colours.js";
 import { make, svg } from "./dom.js";
 import { niceStep, number, scaled, tick } from "./format.js";
 
-const SCALE_PIXELS = 60; // at least
+const SCALE_PIXELS = 60; // smallest length
 const ARM = 24;
 
 export class Rulers {
@@ -21,7 +21,7 @@ export class Rulers {
     element.append(this.triad, make("div", { class: "scale", "aria-hidden": "true" }, this.bar, this.length));
   }
 
-  /** Draw them for a picture of the stage. */
+  /** Draw scale and triad for a picture of the stage. */
   update({ cameras, height }) {
     const { camera, controls } = cameras;
     const nearFirst = this.arms
@@ -46,7 +46,7 @@ export class Rulers {
 }
 
 export class Legend {
-  /** `select` chooses the quantity; it stands above its colours. */
+  /** `select`: the choice of the quantity, above its colours. */
   constructor(element, select) {
     this.select = select;
     this.content = make("div");

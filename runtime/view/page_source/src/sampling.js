@@ -1,7 +1,7 @@
 // Values of arrays over time: exact at frames, linear between them.
 
 /** Return {i, j, w}: the frames around a time and the weight of the second.
- *  Before the first and after the last it rests. */
+ *  Constant before the first and after the last. */
 export function sampleAt(times, time, period = null) {
   const last = times.length - 1;
   if (last === 0) return { i: 0, j: 0, w: 0 };
@@ -22,13 +22,13 @@ export function sampleAt(times, time, period = null) {
   return { i: low, j: high, w: (t - times[low]) / (times[high] - times[low]) };
 }
 
-/** Return whether a time lies outside of what is known. */
+/** Return whether a time lies outside of the frames. */
 export function isOutside(times, time, period = null) {
   const margin = 1e-6 * (times.at(-1) - times[0]);
   return !period && times.length > 1 && (time < times[0] - margin || time > times.at(-1) + margin);
 }
 
-/** Return the value at offset `k` of a frame of an array; what has one frame stands still. */
+/** Return the value at offset `k` of a frame of an array; an array of one frame is constant. */
 export function valueAt(array, sample, k) {
   const stride = array.values.length / array.shape[0];
   if (array.shape[0] === 1) return array.values[k];

@@ -1,5 +1,5 @@
-// Light from the observer's upper left, in shader text that cables and bodies share. Colours go to the screen as they
-// are, without a change of colour space, so that a cable has the colours of the legend.
+// Light from the observer's upper left, in the shader of cables and bodies. Colours are not converted to another colour
+// space, so that a cable has the colours of the legend.
 
 export const SHADE = `
   uniform float rim; // brighter (dark pages) or darker (light ones) towards the outline, so that it stands out

@@ -1,4 +1,4 @@
-// The picture: renderer, scene graph, and what is drawn of each clip.
+// The picture: renderer, scene graph, and the objects of each clip.
 
 import { Color, ColorManagement, LinearSRGBColorSpace, Scene, Vector3, WebGLRenderer } from "three";
 import { BodyView } from "./bodies.js";
@@ -9,7 +9,7 @@ import { line, SegmentView, TrailView } from "./lines.js";
 import { sampleAt } from "./sampling.js";
 import { MarkView } from "./symbols.js";
 
-ColorManagement.enabled = false; // colours go to the screen as they are
+ColorManagement.enabled = false; // no conversion of colours
 
 export class Stage {
   /** `data`: the header; `canvas`: where to draw; `drawn`: called after each picture. */
@@ -45,7 +45,7 @@ export class Stage {
     return grids;
   }
 
-  /** All that moves, and the grid below it. */
+  /** The objects of the clips, and the grid below them. */
   box() {
     const { low, high, up } = this.data;
     const box = { low: [...low], high: [...high], up };
@@ -56,7 +56,7 @@ export class Stage {
     return box;
   }
 
-  /** Draw these clips (numbers) from now on. */
+  /** Show these clips (numbers). */
   show(clips) {
     for (const view of this.views) {
       this.scene.remove(view.object);
@@ -179,11 +179,11 @@ export class Stage {
 
   /** Return the picture as a PNG in a data URL. */
   image() {
-    this.render(); // what is drawn lasts until the browser shows it
+    this.render(); // the drawing buffer lasts until the browser shows it
     return this.canvas.toDataURL("image/png");
   }
 
-  /** A grid that is looked at squarely stands behind everything. */
+  /** Put a grid that faces the view behind everything. */
   placeBackGrid(facing) {
     const grid = this.grids[facing];
     const flat = this.cameras.axisInSight() !== null;

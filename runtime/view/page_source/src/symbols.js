@@ -1,4 +1,4 @@
-// Points that mean something, as the symbols that engineers draw, always of the same size on the screen.
+// Marks as the symbols of engineering drawings, of constant size on the screen.
 
 import { CanvasTexture, Sprite, SpriteMaterial } from "three";
 import { pointAt } from "./sampling.js";
@@ -6,7 +6,7 @@ import { pointAt } from "./sampling.js";
 const PIXELS = 24;
 const CANVAS = 88;
 
-/** Draw a symbol; the point that it stands for is the middle of a square from -1 to 1, y down. */
+/** Draw a symbol; its point is the middle of a square from -1 to 1, y down. */
 const DRAW = {
   pin(c) {
     path(
@@ -116,7 +116,7 @@ export class MarkView {
     c.setTransform(CANVAS / 2, 0, 0, CANVAS / 2, CANVAS / 2, CANVAS / 2);
     Object.assign(c, { fillStyle: fill, lineCap: "round", lineJoin: "round" });
     const draw = DRAW[this.mark.kind] ?? DRAW.point;
-    Object.assign(c, { lineWidth: 0.3, strokeStyle: fill }); // a halo, so that it stands on any colour
+    Object.assign(c, { lineWidth: 0.3, strokeStyle: fill }); // a halo for contrast on any colour
     draw(c);
     Object.assign(c, { lineWidth: 0.13, strokeStyle: stroke, fillStyle: fill });
     draw(c);

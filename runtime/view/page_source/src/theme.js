@@ -1,4 +1,4 @@
-// Dark or light: as the system says, until the reader says otherwise.
+// Dark or light: the setting of the system, or the choice of the reader.
 
 const SYSTEM = matchMedia("(prefers-color-scheme: dark)");
 

@@ -1,9 +1,9 @@
-// The line of time below the picture: play, a slider with the events on it, rate, loop.
+// The time line below the picture: play, a slider with events, rate, loop.
 
 import { choice, fill, make } from "./dom.js";
 import { number, scaled } from "./format.js";
 
-const MOST_BUTTONS = 40; // of events that take the keyboard's focus
+const MAX_BUTTONS = 40; // largest number of events with keyboard focus
 
 const plain = (value) => String(Number(value.toPrecision(3)));
 
@@ -60,7 +60,7 @@ export class Timeline {
     this.loop.setAttribute("aria-pressed", this.player.loop);
   }
 
-  /** Take the clips (numbers) that are shown. A single frame has no time. */
+  /** Set the shown clips (numbers). A single frame has no time. */
   show(clips) {
     const { player, data } = this;
     this.element.hidden = player.times.length < 2;
@@ -97,7 +97,7 @@ export class Timeline {
       style: left,
       title: text,
       "aria-label": text,
-      tabindex: count > MOST_BUTTONS ? -1 : 0,
+      tabindex: count > MAX_BUTTONS ? -1 : 0,
       onclick: () => {
         player.pause();
         player.go(time);
@@ -116,7 +116,7 @@ export class Timeline {
     return `${(time / scale).toFixed(decimals).replace("-", "\u2212")} ${unit}`;
   }
 
-  /** Draw whether it plays. */
+  /** Show whether it plays. */
   playing() {
     const { playing } = this.player;
     this.play.classList.toggle("playing", playing);
