@@ -1,8 +1,9 @@
-"""Where the lines of a crossing are closest as drawn, and which side of the other each is on."""
+"""Closest points of the lines of a crossing as drawn, and the side of each line."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,17 +16,18 @@ from .locations import point_of
 from .scene_data import SceneData
 
 SAMPLES = 4
-"""Of an element, between which the closest points are looked for."""
-
-ITERATIONS = 50
-"""Of Gauss and Newton's method to the closest points."""
+"""Of an element, from which the search for the closest points starts."""
+BAR_SAMPLES = 9
+MAX_ITERATIONS = 50
+"""Of the Gauss-Newton method for the closest points."""
 
 
 @dataclass
 class Start:
-    """Closest points as drawn: arc-lengths s (2,) in m, the way d (3,) from b to a in m, slopes (2, 3) of both lines,
-    the unit normal (3,) across both lines, of no particular sign, and the sine of the angle between the lines, 1 in
-    the plane. In the plane the second slope is the normal of the plane.
+    """Closest points as drawn: arc-lengths s (2,) in m, vector d (3,) from b to a in m, slopes (2, 3) of both lines,
+    unit normal (3,) across both lines, of either sign, and sine of the angle between them.
+
+    In a plane the second slope is the normal of the plane, and the sine is 1.
     """
 
     s: np.ndarray
@@ -35,55 +37,39 @@ class Start:
     sine: float
 
 
-class _Bar:
-    """A bar through a point of a body or the ground; square to the plane where it has no axis."""
-
-    def __init__(self, scene: SceneData, part: Crossing):
-        self.middle = point_of(scene, Attachment(on=part.b, at=part.at))
-        axis = np.zeros(3)
-        if part.axis is not None:
-            axis = np.array(part.axis) / np.linalg.norm(part.axis)
-            axis = axis if part.b is None else rotate(scene.bodies[part.b].orientation, axis)
-        self.axis, self.length = axis, 2 * (part.length or 0.0)
-
-    def samples(self) -> np.ndarray:
-        """Return arc-lengths from the middle, m."""
-        return np.linspace(-self.length / 2, self.length / 2, 9 if self.length else 1)
-
-    def point(self, s: float) -> np.ndarray:
-        """Return (3,): a point, m."""
-        return self.middle + s * self.axis
-
-    def points_at(self, s: np.ndarray) -> np.ndarray:
-        """Return (n, 3): points, m."""
-        return self.middle + s[:, None] * self.axis
-
-    def slope(self, s: float) -> np.ndarray:
-        """Return (3,): the direction, zero in the plane."""
-        return self.axis
-
-
+@dataclass
 class _Line:
-    """A cable as drawn."""
+    """A cable or bar: arc-lengths of samples in m, its point (3,), points (n, 3) and slope (3,) by arc-length."""
 
-    def __init__(self, cable: Cable):
-        self.cable, self.length = cable, cable.length
-        self.point, self.points_at, self.slope = cable.point, cable.points_at, cable.slope
+    samples: np.ndarray
+    length: float
+    point: Callable[[float], np.ndarray]
+    points_at: Callable[[np.ndarray], np.ndarray]
+    slope: Callable[[float], np.ndarray]
 
-    def samples(self) -> np.ndarray:
-        """Return arc-lengths of nodes and points between them, m; evenly apart where it has no elements yet."""
-        return self.cable.samples(SAMPLES)
+
+def _cable(cable: Cable) -> _Line:
+    """Return the line of a cable as drawn."""
+    return _Line(cable.samples(SAMPLES), cable.length, cable.point, cable.points_at, cable.slope)
+
+
+def _bar(scene: SceneData, part: Crossing) -> _Line:
+    """Return the line of a bar on a body or the ground, by arc-length from its middle; a point where it has no axis."""
+    middle, axis, half = point_of(scene, Attachment(on=part.b, at=part.at)), np.zeros(3), part.length or 0.0
+    if part.axis is not None:
+        axis = np.array(part.axis) / np.linalg.norm(part.axis)
+        axis = axis if part.b is None else rotate(scene.bodies[part.b].orientation, axis)
+    return _Line(np.linspace(-half, half, BAR_SAMPLES if half else 1), 2 * half, lambda s: middle + s * axis,
+                 lambda s: middle + s[:, None] * axis, lambda s: axis)
 
 
 def start_of(scene: SceneData, part: Crossing) -> Start:
-    """Return the closest points of a crossing that is complete. Both may be beyond ends, on straight continuations."""
+    """Return the closest points of a complete crossing, also beyond ends, on straight continuations."""
     cable = scene.cables[part.a]
-    a = _Line(cable)
-    b = _Line(scene.cables[part.b]) if part.b in scene.cables else _Bar(scene, part)
-    samples = a.samples(), b.samples()
-    ends = [np.array([each[end] for each in samples]) for end in (0, -1)]
-    s = _nearest(a, b, *samples)
-    for _ in range(ITERATIONS):
+    a, b = _cable(cable), _cable(scene.cables[part.b]) if part.b in scene.cables else _bar(scene, part)
+    ends = [np.array([line.samples[end] for line in (a, b)]) for end in (0, -1)]
+    s = _nearest(a, b)
+    for _ in range(MAX_ITERATIONS):
         d = a.point(s[0]) - b.point(s[1])
         slopes = np.array([a.slope(s[0]), -b.slope(s[1])])
         step = np.linalg.lstsq(slopes.T, -d, rcond=1e-12)[0]
@@ -100,21 +86,21 @@ def start_of(scene: SceneData, part: Crossing) -> Start:
     return Start(s, d, np.array([t, other]), normal / sizes / sine if sine else normal, sine)
 
 
-def _nearest(a: _Line, b: _Line | _Bar, of_a: np.ndarray, of_b: np.ndarray) -> np.ndarray:
-    """Return (2,): those of the arc-lengths of samples, m, whose points are the two closest."""
-    first, second = a.points_at(of_a), b.points_at(of_b)
+def _nearest(a: _Line, b: _Line) -> np.ndarray:
+    """Return (2,): the arc-lengths of the two closest samples, m."""
+    first, second = a.points_at(a.samples), b.points_at(b.samples)
     apart = [float(np.min(np.sum((second - point) ** 2, axis=1))) for point in first]
     k = int(np.argmin(apart))
-    return np.array([of_a[k], of_b[int(np.argmin(np.sum((second - first[k]) ** 2, axis=1)))]])
+    return np.array([a.samples[k], b.samples[int(np.argmin(np.sum((second - first[k]) ** 2, axis=1)))]])
 
 
 def radii(scene: SceneData, part: Crossing) -> float:
-    """Return the distance of the axes of both lines at which they touch, m. Raises ValueError."""
+    """Return the distance of the axes of touching lines, m. Raises ValueError."""
     if part.radius is not None:
         return part.radius
     return sum(radius_of(scene.cables[name]) for name in (part.a, part.b) if name in scene.cables)
 
 
 def sign_of(part: Crossing, normal: np.ndarray, d: np.ndarray) -> float:
-    """Return the sign with which a normal leads from b to a: by the side that is given, or by the way d as drawn."""
+    """Return the sign of a normal from b to a, by the given side or by the vector d (3,) as drawn."""
     return math.copysign(1.0, float(np.dot(d if part.side is None else part.side, normal)))

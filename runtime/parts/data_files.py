@@ -17,15 +17,15 @@ if TYPE_CHECKING:
     import xarray
 
 NETCDF = {b"CDF\1": "scipy", b"CDF\2": "scipy", b"CDF\5": None, b"\x89HDF": None}
-"""How files of data begin, and what reads them: None leaves it to xarray."""
+"""Engines of xarray by the first bytes of a file, None for its choice."""
 
-MOST = 50_000_000
-"""Numbers of an array: 400 MB."""
+MAX_NUMBERS = 50_000_000
+"""Of an array: 400 MB."""
 
 
 @dataclass
 class FileArrays:
-    """Arrays of a file by name; dims: the names of the axes of each, and units, where the file tells them."""
+    """Arrays of a file by name; dims, units: names of the axes and unit of each array, where the file has them."""
 
     arrays: dict[str, np.ndarray]
     dims: dict[str, tuple[str, ...]] = field(default_factory=dict)
@@ -41,15 +41,15 @@ class FileArrays:
 def arrays_of(path: str) -> FileArrays:
     """Return the arrays in a file, coordinates included. Raises ValueError(cause, remedy)."""
     file = Path(path)
-    if not os.path.isfile(file):  # False also of what no path can be
+    if not os.path.isfile(file):  # False also for what cannot be a path
         raise ValueError(f'there is no file "{shown_path(path)}"')
     try:
         check_bytes(file, MAX_ARRAY_BYTES)
         if file.suffix == ".npz":
             check_numbers(_sizes_in_npz(file))
-            with np.load(file, allow_pickle=False) as found:  # a pickle would run code
+            with np.load(file, allow_pickle=False) as found:  # a pickle runs code
                 return FileArrays({name: found[name] for name in found.files})
-        import xarray  # 0.5 s, for files of netCDF alone
+        import xarray  # 0.5 s
 
         with open(file, "rb") as opened:
             head = opened.read(4)
@@ -68,16 +68,16 @@ def arrays_of(path: str) -> FileArrays:
 
 
 def _numbers(shape: tuple[int, ...], dtype: np.dtype) -> int:
-    """Return how many numbers of 8 bytes an array takes at least."""
+    """Return the least number of 8-byte numbers that hold an array."""
     return math.prod(shape) * max(1, -(-dtype.itemsize // 8))
 
 
 def _sizes_in_npz(file: Path) -> list[tuple[str, int]]:
-    """Return the numbers in each array of an .npz, by the arrays' own headers. Raises what damage leads to.
+    """Return the size of each array of an .npz from the headers of the arrays. Raises errors of damaged files.
 
-    An archive may have two members of one name, with and without the ending .npy, of which NumPy reads one.
+    An archive may have two members of one name, with and without the ending .npy.
     """
-    import zipfile  # which few scenes need
+    import zipfile  # for few scenes
 
     sizes = []
     with zipfile.ZipFile(file) as archive:

@@ -1,4 +1,4 @@
-"""How the velocity of a fluid changes with height: a power of it, or a table."""
+"""The velocity of a fluid over height: a power of it, or a table."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .validation import check_function, list_of, not_negative, one_of, positive
 
 
 class Profile(Part):
-    """Base of the factors of a velocity by height."""
+    """Base of factors of a velocity over height."""
 
     tag: ClassVar[str] = "form"
     form: ClassVar[str]

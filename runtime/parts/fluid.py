@@ -15,7 +15,7 @@ from .validation import Name, Vector, finite, positive, xyz
 from .velocity_table import VelocityTable
 
 NO_SURFACE = 1e300
-"""m: beyond all heights."""
+"""m, above all heights."""
 
 
 class Fluid(Part):
@@ -57,23 +57,20 @@ class Fluid(Part):
 
     @property
     def top(self) -> float:
-        """Return the height up to which it is, in m; `NO_SURFACE` without a surface."""
+        """Return the upper height of the fluid in m, `NO_SURFACE` without a surface."""
         return NO_SURFACE if self.surface is None else self.surface
 
     def bottom(self, fluids: Iterable[Fluid]) -> float:
-        """Return the height above which it is, in m, among the fluids of its scene; minus `NO_SURFACE`: everywhere."""
+        """Return the lower height of the fluid in m among the fluids of its scene, else -`NO_SURFACE`."""
         return max((other.top for other in fluids if other.top < self.top), default=-NO_SURFACE)
 
     def nearest(self, places: np.ndarray, up: np.ndarray, fluids: Iterable[Fluid]) -> np.ndarray:
-        """Return the places (..., 3) of the fluid that are nearest to these along the vertical, in m."""
+        """Return the places (..., 3) in the fluid vertically nearest to other places, in m."""
         height = places @ up
         return places + (np.clip(height, self.bottom(fluids), self.top) - height)[..., None] * up
 
     def velocity_at(self, time: np.ndarray, height: np.ndarray, place: np.ndarray | None = None) -> np.ndarray:
-        """Return the velocity (..., 3) in m/s at times (s) and heights (m), which are broadcast.
-
-        place (..., 3) in m: on the ground's axes, which a table needs.
-        """
+        """Return the velocity (..., 3) in m/s at times (s), heights (m) and, for a table, places (..., 3) in m."""
         if self.table is not None:
             assert place is not None, f"{self.where} has a table, which depends on the place"
             return self.scale.value(time)[..., None] * self.table.value(time, place)

@@ -45,17 +45,17 @@ class Friction(Part):
 
     @property
     def sticks(self) -> bool:
-        """Return whether it keeps at rest what is slow: where it says so."""
+        """Return whether it sticks by its model."""
         return self.model == "stick"
 
     @property
     def sliding(self) -> float:
-        """Return what the normal force is multiplied by: sliding and rolling."""
+        """Return the sum of the coefficients of sliding and rolling."""
         return self.coefficient + self.rolling
 
     @property
     def static_friction(self) -> float:
-        """Return what the normal force is multiplied by at rest; 0 where it does not stick."""
+        """Return the sum of the coefficients of sticking and rolling; 0 where it does not stick."""
         return self.static + self.rolling if self.sticks else 0.0
 
     @property
@@ -64,7 +64,7 @@ class Friction(Part):
         return self.coefficient if self.static_coefficient is None else self.static_coefficient
 
     def check_coulomb(self) -> None:
-        """Raise ValueError unless it is Coulomb's alone, as contacts and crossings take it."""
+        """Raise ValueError unless it is Coulomb friction, the friction of contacts and crossings."""
         for name in ("viscous", "rolling"):
             if getattr(self, name):
                 raise ValueError(f"takes no {name} friction, which is of slides", f"leave {name} out")
@@ -74,7 +74,7 @@ class Friction(Part):
 
 
 def _friction(value: Any) -> Any:
-    """Return what a number, the coefficient, stands for as a table; else what is given."""
+    """Return a number as a table with that coefficient, other values as they are."""
     if isinstance(value, Real) and not isinstance(value, bool):
         return {"coefficient": value}
     if not isinstance(value, Friction | dict):

@@ -1,4 +1,4 @@
-"""Paths into a scene, such as ``wire.material.youngs_modulus`` or ``run.tol``: what a scene with other values there is.
+"""Paths into a scene, such as ``wire.material.youngs_modulus`` or ``run.tol``, and scenes with other values there.
 
 A path begins with the name of a part (of a pin, clamp or motion its name in results, ``wire@0``), or with ``gravity``,
 ``run`` or ``equilibrium``; then come entries as a scene file names them. ``x``, ``y``, ``z`` are components of vectors,
@@ -25,9 +25,9 @@ GRAVITY = "gravity"
 
 @dataclass(frozen=True)
 class Path:
-    """A path, split: what it begins with, the entries behind it, and the number of the part in the scene's order.
+    """A path: its head, the entries after it, and the number of its part in the order of the scene.
 
-    part: None of gravity and settings; use: what takes the path, such as "sweep", as messages call it.
+    part: None for gravity and settings; use: purpose of the path in messages, such as "sweep".
     """
 
     text: str
@@ -38,17 +38,17 @@ class Path:
 
     @property
     def where(self) -> str:
-        """Return how messages name the path."""
+        """Return the name of the path in messages."""
         return f'{self.use} of "{self.text}"'
 
 
 def label_of(part: Part) -> str | None:
-    """Return what a path calls a part: its name, or the name of a support in results."""
+    """Return the name of a part in paths: its own, or that of a support in results."""
     return part.given_name or getattr(part, "label", None)
 
 
 def path_of(scene: SceneData, text: str, use: str = "sweep") -> Path:
-    """Return the path that a text is in this scene; use: as in `Path`. Raises SceneError where it leads nowhere."""
+    """Return the path of a text in a scene; use: see `Path`. Raises SceneError for an unknown path."""
     where = f'{use} of "{text}"'
     heads: dict[str, int | None] = {GRAVITY: None, **dict.fromkeys(SETTINGS)}
     labels = {label: k for k, part in enumerate(scene.parts()) if (label := label_of(part)) is not None}
@@ -68,13 +68,13 @@ def path_of(scene: SceneData, text: str, use: str = "sweep") -> Path:
 
 
 def _check_entry(scene: SceneData, path: Path) -> None:
-    """Refuse a path whose first entry is none of its part. Raises SceneError."""
+    """Raise SceneError for a path whose part has no such entry."""
     if path.head == GRAVITY:
         known: Iterable[str] = COMPONENTS
     elif path.part is None:
         known = [name for name in SETTINGS[path.head].keywords() if name != "save"]
     else:
-        known = [name for name in _parts(scene)[path.part].keywords() if name != "name"]
+        known = [name for name in [*scene.parts()][path.part].keywords() if name != "name"]
     if not path.entries:
         example = f"{path.head}.{next(iter(known))}"
         raise SceneError(path.where, "names no entry", f'write such as "{example}" (known: '
@@ -85,13 +85,13 @@ def _check_entry(scene: SceneData, path: Path) -> None:
 
 
 def _nearest(name: str, known: Iterable[str]) -> str:
-    """Return the remedy for an unknown name: the nearest known one, and the list of them, once."""
+    """Return the remedy for an unknown name: the nearest known name and all names."""
     nearest, listed = near(name, known), f"known: {', '.join(known)}"
     return nearest if nearest == listed else f"{nearest} ({listed})"
 
 
 def check_each_once(paths: Iterable[Path]) -> None:
-    """Raise SceneError where two of several paths lead to the same number, as a.y and a.1 do."""
+    """Raise SceneError for two paths to the same number, such as a.y and a.1."""
     first: dict[tuple[str, ...], str] = {}
     for path in paths:
         entries = tuple(str(COMPONENTS.get(entry, entry)) for entry in path.entries)
@@ -99,16 +99,12 @@ def check_each_once(paths: Iterable[Path]) -> None:
             raise SceneError(path.where, f'is the same number as "{other}"', "name each number once")
 
 
-def _parts(scene: SceneData) -> list[Part]:
-    return list(scene.parts())
-
-
 S = TypeVar("S", bound=SceneData)
 
 
 def changed(scene: S, values: Mapping[Path, Any]) -> S:
-    """Return a scene like this one with these values, all changed at once. Raises SceneError."""
-    parts = _parts(scene)
+    """Return a scene with other values, changed at once. Raises SceneError."""
+    parts = [*scene.parts()]
     settings: dict[str, dict[str, Any]] = {name: {} for name in SETTINGS}
     for path, value in values.items():
         if path.part is None and path.head != GRAVITY:
@@ -123,7 +119,7 @@ def changed(scene: S, values: Mapping[Path, Any]) -> S:
 
 
 def gravity_of(scene: SceneData, values: Mapping[Path, Any]) -> list[Any]:
-    """Return gravity with these values. Raises SceneError."""
+    """Return gravity with other values. Raises SceneError."""
     gravity: list[Any] = list(scene.gravity)
     for path, value in values.items():
         if path.head == GRAVITY and path.part is None:
@@ -133,17 +129,20 @@ def gravity_of(scene: SceneData, values: Mapping[Path, Any]) -> list[Any]:
 
 
 def changes_of(scene: SceneData, values: Mapping[Path, Any]) -> dict[int, dict[str, Any]]:
-    """Return what these values change of parts: by the number of a part, values by keyword. Raises SceneError."""
-    parts = _parts(scene)
+    """Return the changes of parts, values by keyword by the number of a part. Raises SceneError."""
+    parts = [*scene.parts()]
     changes: dict[int, dict[str, Any]] = {}
     for path, value in values.items():
         if path.part is not None:
-            _put(path, changes.setdefault(path.part, {}), parts[path.part].as_made().entries(), value)
+            entries, first = changes.setdefault(path.part, {}), path.entries[0]
+            before = (entries[first] if first in entries
+                      else plain_data(parts[path.part].as_made().entries().get(first)))
+            entries[first] = _with(path, before, 1, value)
     return changes
 
 
 def value_at(scene: SceneData, path: Path) -> Any:
-    """Return what a path leads to in a scene, as plain data; None where the part has no such entry.
+    """Return the value at a path in a scene as plain data, None where the part has no such entry.
 
     Raises SceneError for entries of a component of gravity.
     """
@@ -152,35 +151,33 @@ def value_at(scene: SceneData, path: Path) -> Any:
     if path.part is None:
         _check_end(path, 1)
         return scene.gravity[COMPONENTS[path.entries[0]]]
-    data: Any = plain_data(_parts(scene)[path.part].entries().get(path.entries[0]))
+    data: Any = plain_data([*scene.parts()][path.part].entries().get(path.entries[0]))
     for entry in path.entries[1:]:
         if isinstance(data, list):
-            index = COMPONENTS.get(entry, int(entry) if entry.isdecimal() else len(data))
+            index = _index(entry, len(data))
             data = data[index] if index < len(data) else None
         else:
             data = data.get(entry) if isinstance(data, dict) else None
     return data
 
 
-def _put(path: Path, entries: dict[str, Any], old: Mapping[str, Any], value: Any) -> None:
-    """Put a value into the changes of a part, by keyword; entries: those before it; old: what the part has."""
-    first = path.entries[0]
-    before = entries[first] if first in entries else plain_data(old.get(first))
-    entries[first] = _with(path, before, 1, value)
+def _index(entry: str, size: int) -> int:
+    """Return the index that an entry of a path names in a list, its size for an unknown one."""
+    return COMPONENTS.get(entry, int(entry) if entry.isdecimal() else size)
 
 
 def _with(path: Path, data: Any, at: int, value: Any) -> Any:
-    """Return plain data with the value at the entries of a path from number `at` on."""
+    """Return plain data with a value at the entries of a path from number `at` on."""
     if at == len(path.entries):
         return value
     entry = path.entries[at]
     match data:
-        case None:  # such as the friction of a slide without one: a table with this entry alone
+        case None:  # such as the friction of a slide without friction: a table of this entry
             return {entry: _with(path, None, at + 1, value)}
         case dict():
             return data | {entry: _with(path, data.get(entry), at + 1, value)}
         case list() | tuple():
-            index = COMPONENTS.get(entry, int(entry) if entry.isdecimal() else len(data))
+            index = _index(entry, len(data))
             if index >= len(data):
                 raise SceneError(path.where, f"{shown(data)} has no entry \"{entry}\"",
                                  f"write x, y, z, or a number below {len(data)}")
@@ -190,7 +187,7 @@ def _with(path: Path, data: Any, at: int, value: Any) -> Any:
 
 
 def _check_end(path: Path, at: int, data: Any = None) -> None:
-    """Refuse entries of a number or a name. Raises SceneError."""
+    """Raise SceneError for entries of a number or a name."""
     if len(path.entries) > at:
         what = ".".join([path.head, *path.entries[:at]])
         is_now = "" if data is None else f", {show(data) if isinstance(data, float) else shown(data)},"
@@ -198,16 +195,16 @@ def _check_end(path: Path, at: int, data: Any = None) -> None:
 
 
 def unit_of(scene: SceneData, path: Path) -> str:
-    """Return the unit of what a path leads to in a scene that has a value there; empty where it has none."""
+    """Return the unit of the value at a path in a scene, empty for a number without unit."""
     if path.head == GRAVITY:
         return "m/s²"
     kind, entries = SETTINGS.get(path.head), list(path.entries)
     if path.part is not None:
-        part = _parts(scene)[path.part]
+        part = [*scene.parts()][path.part]
         while len(entries) > 1 and isinstance(part.entries().get(entries[0]), Part):
             part = part.entries()[entries.pop(0)]
         kind = type(part)
-    assert kind is not None, "gravity, settings and parts are all there is"
+    assert kind is not None, "a path begins with gravity, settings or a part"
     return _unit_of_entry(kind, entries[0])
 
 
@@ -218,7 +215,7 @@ def _unit_of_entry(kind: type[Part], entry: str) -> str:
 
 
 def _unit(schema: Any) -> str:
-    """Return the unit that the schema of an entry tells, also of one that may be left out."""
+    """Return the unit in the schema of an entry."""
     if isinstance(schema, list):
         return next((unit for each in schema if (unit := _unit(each))), "")
     if not isinstance(schema, dict):

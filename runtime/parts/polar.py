@@ -12,8 +12,8 @@ from .part import Part
 from .signal import TableSignal
 from .validation import LENGTH_TOLERANCE, check_function, list_of, one_of, show
 
-TURN = 1e-6
-"""rad: how well the angles of a polar make a full turn."""
+ANGLE_TOLERANCE = 1e-6
+"""Of the ends of a full turn, rad."""
 
 
 class Polar(Part):
@@ -51,8 +51,8 @@ class Polar(Part):
             if abs(values[0] - values[-1]) > LENGTH_TOLERANCE * max(map(abs, values)):
                 raise ValueError(f"{name} must be the same at both ends, -π and π, got {show(values[0])} and "
                                  f"{show(values[-1])}")
-            self.__dict__[name] = (*values[:-1], values[0])  # π is the same angle as -π, without rounding too
-        if abs(self.angle[0] + pi) > TURN or abs(self.angle[-1] - pi) > TURN:
+            self.__dict__[name] = (*values[:-1], values[0])  # exactly equal
+        if abs(self.angle[0] + pi) > ANGLE_TOLERANCE or abs(self.angle[-1] - pi) > ANGLE_TOLERANCE:
             raise ValueError(f"angle must go from -π to π, got {show(self.angle[0], 'rad')} to "
                              f"{show(self.angle[-1], 'rad')}",
                              "give the coefficients for flow from all sides: past the stall those of a flat plate")
@@ -65,9 +65,7 @@ class Polar(Part):
         return TableSignal(time=self.angle, value=values, interpolation=self.interpolation)
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Return breaks (n + 1,) in rad, and polynomials (n, 7) of drag, of lift and of the moment, see
-        `Signal.pieces`.
-        """
+        """Return breaks (n + 1,) in rad, and polynomials (n, 7) of drag, lift and moment, see `Signal.pieces`."""
         drag, lift, moment = (self._table(values).pieces() for values in self._columns)
         return drag[0], drag[1], lift[1], moment[1]
 

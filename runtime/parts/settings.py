@@ -15,34 +15,30 @@ from .schemas import checked
 from .validation import Count, Flag, Names, items, not_negative, number, one_of, positive, shown, within
 
 SMALLEST_STEP = 1e-12
-"""Of the duration, as in engine/run/steps.c."""
+"""Of a run over its duration, as in engine/run/steps.c."""
 
-ROUNDED = 1e-9
-"""Of a number of steps: what it is above a whole number is rounding."""
+COUNT_TOLERANCE = 1e-9
+"""Relative rounding of a number of steps above a whole number."""
 
 Duration = Annotated[float, positive("s")]
 
 
 def default_spectral_radius(integrator: str) -> float:
-    """Return the spectral radius where none is given: the integrator's own, else that of the one for fixed steps."""
+    """Return the default spectral radius of an integrator, else of the one for fixed steps."""
     own = INTEGRATORS[integrator].default_spectral_radius if integrator in INTEGRATORS else None
     own = stable_at(fixed_step=True).default_spectral_radius if own is None else own
     assert own is not None, "the integrator for fixed steps has one"
     return own
 
 
-def _text_of_path(value: Any) -> Any:
-    return os.fspath(value) if isinstance(value, os.PathLike) else value
-
-
 STEPS_OF_TOL = {"step", "absolute_tol"}
-"""What decides on steps in place of tol, or beside it."""
+"""Settings of the steps that replace tol or act beside it."""
 
 
 def overridden(settings: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the settings of a run: those given take the place of others, as of a scene file.
+    """Return the settings of a run, such as those of a scene file, with others given.
 
-    A tol that is given takes the place of a step and of an absolute_tol, too, beside which it would have no effect.
+    A given tol also replaces a step and an absolute_tol, beside which it has no effect.
     """
     replaced = STEPS_OF_TOL if "tol" in given else set()
     return {name: value for name, value in settings.items() if name not in replaced} | dict(given)
@@ -87,7 +83,8 @@ class RunSettings(Part):
         default_factory=lambda data: default_spectral_radius(data.get("integrator", AUTO)))
     model: Annotated[str, one_of(("given", "auto"))] = "given"
     initial: Annotated[str, one_of(("drawn", "equilibrium", "relaxed", "state"))] = "drawn"
-    save: Annotated[str | None, BeforeValidator(_text_of_path)] = None
+    save: Annotated[str | None, BeforeValidator(
+        lambda value: os.fspath(value) if isinstance(value, os.PathLike) else value)] = None
     threads: Count = 1
     estimate: Flag = False
 
@@ -104,20 +101,20 @@ class RunSettings(Part):
 
     @property
     def step_taken(self) -> float | None:
-        """Return the fixed step in s, divided so that steps end on output times; None where tol chooses the steps."""
+        """Return the fixed step in s, divided so that steps end on output times; None without a fixed step."""
         if self.step is None:
             return None
-        return self.output_step / math.ceil(self.output_step / self.step * (1 - ROUNDED))
+        return self.output_step / math.ceil(self.output_step / self.step * (1 - COUNT_TOLERANCE))
 
 
 FREE = "free"
-"""What a parameter without limits is given."""
+"""The limits of a parameter without limits."""
 Limits = tuple[float, float] | str
 """The least and the greatest value of a parameter, or "free"."""
 
 
 def _adjust(value: Any) -> dict[str, Limits] | None:
-    """Return limits by path, of a list of paths or of a table. Raises ValueError."""
+    """Return limits by path from a list of paths or a table. Raises ValueError."""
     if value is None:
         return None
     if isinstance(value, list | tuple):
@@ -214,7 +211,7 @@ class RelaxationSettings(Part):
 
 
 class ModeSettings(Part):
-    """How many modes are sought."""
+    """The number of modes."""
 
     kind: ClassVar[str] = "modes"
     n: Count

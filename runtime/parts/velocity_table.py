@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import model_validator
 
 from ..errors import near
-from .data_files import MOST, FileArrays, arrays_of
+from .data_files import MAX_NUMBERS, FileArrays, arrays_of
 from .part import Part
 from .plane import flattened
 from .schemas import checked
@@ -24,8 +24,8 @@ AXES = ("time", "x", "y", "z")
 COMPONENTS = ("u", "v", "w")
 UNITS = {"time": "s", "x": "m", "y": "m", "z": "m"}
 DEGREES = {"linear": 1, "cubic": 3}
-OVERSHOOT = 0.5
-"""Of the range of the values: splines half-way between them may go so far beyond it."""
+MAX_OVERSHOOT = 0.5
+"""Of splines half-way between the values, over the range of the values."""
 
 Times = Annotated[tuple[float, ...] | None, list_of("s", least=2)]
 Lengths = Annotated[tuple[float, ...] | None, list_of("m", least=2)]
@@ -46,8 +46,8 @@ def _velocities(value: Any) -> Any:
 
 
 def _check_numbers(array: np.ndarray) -> None:
-    if array.size > MOST:
-        raise ValueError(f"must not have more than {MOST} numbers, got {array.size}", "take a coarser grid")
+    if array.size > MAX_NUMBERS:
+        raise ValueError(f"must not have more than {MAX_NUMBERS} numbers, got {array.size}", "take a coarser grid")
     wrong = np.argwhere(~np.isfinite(array))
     if len(wrong):
         raise ValueError(f"must be finite, got {array[tuple(wrong[0])]} at the indices {wrong[0].tolist()}, one of "
@@ -56,9 +56,9 @@ def _check_numbers(array: np.ndarray) -> None:
         raise ValueError(f"must not exceed {show(OTHER_LIMITS[1], 'm/s')} in size")
 
 
-@dataclass(eq=False)  # a table is the same by what it is made of
+@dataclass(eq=False)  # tables are compared by their entries
 class Grid:
-    """Velocities (time, x, y, z, 3) in m/s, of one place along axes that they do not depend on; axes by name."""
+    """Velocities (time, x, y, z, 3) in m/s, of size 1 along other axes than those by name."""
 
     axes: dict[str, np.ndarray]
     velocity: np.ndarray
@@ -67,8 +67,8 @@ class Grid:
 class VelocityTable(Part):
     """The velocity of a fluid on a grid of time and place, between which it is interpolated.
 
-    At the edges of the grid the velocity stays as it is there; what begins beyond them is refused, and a run notes when
-    something leaves it.
+    Beyond the edges of the grid the velocity is that at the edge. A start beyond them is refused, and a run notes when
+    a cable or body leaves the grid.
 
     file: a netCDF file with these names (components along an axis ``xyz``, or in three variables ``u``, ``v``, ``w``),
         or an .npz of them
@@ -112,7 +112,7 @@ class VelocityTable(Part):
 
     @cached_property
     def grid(self) -> Grid:
-        """Return its velocities and the places that they are of. Raises ValueError(cause, remedy)."""
+        """Return its axes and velocities. Raises ValueError(cause, remedy)."""
         if self.file is not None:
             return _grid(arrays_of(self.file), f'"{self.file}"')
         given = {name: getattr(self, name) for name in (*AXES, "velocity")}
@@ -121,7 +121,7 @@ class VelocityTable(Part):
     def turned(self, axes: np.ndarray) -> VelocityTable:
         """Return the table with velocities along other axes, the columns of ``axes`` (3, 3); the grid stays."""
         made = self.model_copy()
-        made.__dict__.pop("_splines", None)  # a copy has what its original keeps
+        made.__dict__.pop("_splines", None)  # the copy has the splines of its original
         made.__dict__["grid"] = Grid(self.grid.axes, flattened(self.grid.velocity @ axes))
         return made
 
@@ -133,14 +133,14 @@ class VelocityTable(Part):
             yield show(fastest, "m/s")
 
     def splines(self, dim: int) -> tuple[int, dict[str, np.ndarray], np.ndarray]:
-        """Return degree, knots by axis, and coefficients (n_time, n_x, n_y, n_z, dim) of its splines."""
+        """Return degree, breakpoints by axis, and coefficients (n_time, n_x, n_y, n_z, dim) of its splines."""
         knots, coefficients = self._splines
         return DEGREES[self.interpolation], knots, np.ascontiguousarray(coefficients[..., :dim])
 
     @cached_property
     def _splines(self) -> tuple[dict[str, np.ndarray], np.ndarray]:
-        """Return knots by axis and the coefficients of all three components, which cannot be written to."""
-        from scipy.interpolate import make_interp_spline  # would double the time of `import funicular`
+        """Return breakpoints by axis and read-only coefficients of all three components."""
+        from scipy.interpolate import make_interp_spline  # slow to import
 
         knots, coefficients = {}, self.grid.velocity
         for name, values in self.grid.axes.items():
@@ -151,8 +151,8 @@ class VelocityTable(Part):
         return knots, coefficients
 
     def value(self, time: np.ndarray, place: np.ndarray) -> np.ndarray:
-        """Return the velocity (..., 3) in m/s at times (s) and places (..., 3) in m; beyond the edges that there."""
-        from scipy.interpolate import NdBSpline  # likewise
+        """Return the velocity (..., 3) in m/s at times (s) and places (..., 3) in m."""
+        from scipy.interpolate import NdBSpline  # slow to import
 
         degree, knots, coefficients = self.splines(3)
         shape = np.broadcast_shapes(np.shape(time), place.shape[:-1])
@@ -163,8 +163,7 @@ class VelocityTable(Part):
         return NdBSpline(tuple(knots.values()), needed, degree)(np.stack(inside, axis=-1)).reshape(*shape, 3)
 
     def margin(self, time: np.ndarray, place: np.ndarray) -> tuple[float, str]:
-        """Return how far within the grid times and places are, as a part of its axes, the least; and along which axis.
-        """
+        """Return the least distance of times and places from the edges over the length of an axis, and the axis."""
         least, worst = np.inf, ""
         for name, values in self.grid.axes.items():
             at = np.asarray(time) if name == "time" else place[..., AXES.index(name) - 1]
@@ -197,11 +196,11 @@ def _grid(data: FileArrays, what: str) -> Grid:
 
 
 def _check_overshoot(grid: Grid) -> None:
-    """Raise ValueError where splines go far beyond the values that they go through, as between places far apart."""
-    from scipy.interpolate import make_interp_spline  # would double the time of `import funicular`
+    """Raise ValueError where splines overshoot their values, as between distant places."""
+    from scipy.interpolate import make_interp_spline  # slow to import
 
     low, high = (extreme(grid.velocity.reshape(-1, 3), axis=0) for extreme in (np.min, np.max))
-    allowed = OVERSHOOT * (high - low) + 1e-9 * np.abs(grid.velocity).max()
+    allowed = MAX_OVERSHOOT * (high - low) + 1e-9 * np.abs(grid.velocity).max()
     for name, values in grid.axes.items():
         middle = (values[1:] + values[:-1]) / 2
         found = np.moveaxis(make_interp_spline(values, grid.velocity, 3, axis=AXES.index(name))(middle),
@@ -217,7 +216,7 @@ def _check_overshoot(grid: Grid) -> None:
 
 
 def _axis(name: str, values: np.ndarray, unit: str) -> np.ndarray:
-    """Return the places of an axis, checked."""
+    """Return the checked places of an axis."""
     known = {"time": ("s", "second", "seconds"), "x": ("m", "metre", "meter", "metres", "meters")}
     if unit and unit not in known.get(name, known["x"]):
         raise ValueError(f'{name} is in "{unit}"', f"give it in {UNITS[name]}")
@@ -235,7 +234,7 @@ def _axis(name: str, values: np.ndarray, unit: str) -> np.ndarray:
 
 def _ordered(arrays: Mapping[str, np.ndarray], dims: Mapping[str, tuple[str, ...]], name: str,
              order: tuple[str, ...]) -> np.ndarray:
-    """Return an array with its axes in this order, where its file names them."""
+    """Return an array with its axes in an order, where its file names them."""
     array = np.asarray(arrays[name], dtype=float)
     if name not in dims:
         return array
