@@ -1,6 +1,6 @@
-"""The search for values of parameters with which the state of rest of a scene has given values.
+"""The search for parameters with which the state of rest of a scene has given values.
 
-Newton's steps on the parameters are damped; each begins from the state that the derivatives foresee, and ends in a
+Newton's steps on the parameters are damped; each begins from the state that the derivatives predict, and ends in a
 state of rest (solve/adjustment/parameter_search.py).
 """
 
@@ -29,21 +29,21 @@ from .snapshots import Reader
 from .unreachable import Linear, cause_of, why_unreachable
 
 MIN_STEP_FRACTION = 2.0**-12
-"""Of Newton's step: no nearer to the targets with less, and the search ends."""
+"""Smallest fraction of Newton's step; the search ends where it does not reduce the misfits."""
 SUFFICIENT_DECREASE = 1e-4
-"""Of the decrease that a linear model expects: what a step must bring."""
+"""Decrease of the misfits that a step must reach, as a fraction of that of the linear model."""
 ROUNDING_MARGIN = 100.0
-"""Times the tolerance: misfits below that are rounding where no step brings them down."""
+"""Misfits below this multiple of the tolerance are rounding where no step reduces them."""
 
 S = TypeVar("S", bound=RestState)
 
 
 def adjusted(scene: SceneData, settings: EquilibriumSettings, start: RestState | None, made: type[S],
              reader: Callable[[S, Sequence[str]], Reader]) -> S:
-    """Return the state of rest that has the values ``settings.to``, of the scene with ``settings.adjust`` adjusted.
+    """Return the state of rest with the values ``settings.to``, of the scene with ``settings.adjust`` adjusted.
 
-    reader: returns, of a state and of names of values, what reads these of any such state. Raises SceneError;
-    EquilibriumError, which says what is not reached and why.
+    reader: makes the `Reader` of the named values of a state. Raises SceneError; EquilibriumError with the targets that
+    are not reached and the cause.
     """
     adjust, to = settings.adjust, settings.to
     assert adjust is not None, "without parameters there is nothing to adjust"
@@ -53,7 +53,7 @@ def adjusted(scene: SceneData, settings: EquilibriumSettings, start: RestState |
         raise SceneError("equilibrium", f"{len(to)} targets cannot be reached with {len(adjust)} parameters: "
                          + ", ".join(to), "adjust as many parameters as there are targets, or more")
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", FunicularWarning)  # that of the state returned counts
+        warnings.simplefilter("ignore", FunicularWarning)  # of the state returned alone
         rest = equilibrium(laid(scene), settings, start, made)
     read = reader(rest, list(to))
     search = ParameterSearch(parameters, settings, made, read)
@@ -81,10 +81,10 @@ def adjusted(scene: SceneData, settings: EquilibriumSettings, start: RestState |
 
 @dataclass
 class _Approach:
-    """Where the steps have led, and the largest misfits on the way.
+    """The last state of the steps, and the largest misfits on the way.
 
-    cause: why the targets are not reached there, empty where they are; linear: the last model, None where the first
-    state has the values already.
+    cause: why the targets are not reached, empty where they are; linear: the last model, None where the first state has
+    the values already.
     """
 
     at: AtRest
@@ -94,11 +94,10 @@ class _Approach:
 
 
 def _found(search: ParameterSearch[S], at: AtRest, to: Mapping[str, float], scales: np.ndarray) -> _Approach:
-    """Return the state of rest with the values that are asked for. Raises EquilibriumError.
+    """Return the state of rest with the target values. Raises EquilibriumError.
 
-    Where so many of the parameters are of slack springs that the others cannot do it, what all taut springs would do is
-    looked at first, and else last: a slack spring changes nothing, so that no derivative says by how much it must be
-    shorter.
+    A slack spring changes nothing, so that no derivative gives its length. The scene with all springs taut is therefore
+    tried, too: first where the parameters of other parts are fewer than the targets, else last.
     """
     met = np.max(np.abs(np.array(list(to.values())) - at.g) / scales) <= search.settings.tolerance
     few = not met and len(search.parameters.names) - search.without_effect(at) < len(to)
@@ -110,7 +109,7 @@ def _found(search: ParameterSearch[S], at: AtRest, to: Mapping[str, float], scal
         taut = taut if few else _with_all_taut(search, to, scales)
     if isinstance(taut, _Approach):
         found = _approach(search, taut.at, to, scales)
-        found.sizes[:0] = taut.sizes[:-1]  # of the same values
+        found.sizes[:0] = taut.sizes[:-1]  # towards the same values
     if found.cause:
         assert found.linear is not None, "there was one step at least"
         also = f"{found.cause}; with all springs taut, {taut}" if isinstance(taut, str) else found.cause
@@ -119,9 +118,8 @@ def _found(search: ParameterSearch[S], at: AtRest, to: Mapping[str, float], scal
 
 
 def _with_all_taut(search: ParameterSearch[S], to: Mapping[str, float], scales: np.ndarray) -> _Approach | str | None:
-    """Return a state of rest of the scene with the values that a scene finds whose springs push, too, where they pull
-    alone; why there is none, in words; None where there is no such spring. Where all are taut in the end, both scenes
-    are at rest in the same state.
+    """Return the state of rest found with tension-only springs that push, too; why there is none, in words; None
+    without such springs. Where all are taut in the end, the state is one of the scene itself.
     """
     scene, settings = search.parameters.scene, search.settings
     pulling = [part for part in scene.point_forces.values() if isinstance(part, Spring) and part.tension_only
@@ -152,8 +150,8 @@ def _with_all_taut(search: ParameterSearch[S], to: Mapping[str, float], scales: 
 
 
 def _pushing(state: RestState, springs: Sequence[Spring], tolerance: float) -> str:
-    """Return which of some springs push in a state, in words, by more than this part of the largest of their forces;
-    empty where none does.
+    """Return in words which springs push in a state by more than this fraction of the largest of their forces; empty
+    where none does.
     """
     tensions = {spring.name: float(state[f"{spring.name}.tension"]) for spring in springs}
     least = -ROUNDING_MARGIN * tolerance * max(abs(tension) for tension in tensions.values())
@@ -166,7 +164,7 @@ def _pushing(state: RestState, springs: Sequence[Spring], tolerance: float) -> s
 
 
 def _approach(search: ParameterSearch[S], at: AtRest, to: Mapping[str, float], scales: np.ndarray) -> _Approach:
-    """Take steps until the targets are met, or no step comes nearer."""
+    """Take steps until the targets are met, or no step reduces the misfits."""
     targets, settings, parameters = np.array(list(to.values())), search.settings, search.parameters
     sizes: list[float] = []
     linear, reason = None, f"{settings.max_iterations} steps were not enough; take more max_iterations"
@@ -190,7 +188,7 @@ def _approach(search: ParameterSearch[S], at: AtRest, to: Mapping[str, float], s
 
 def _step(search: ParameterSearch[S], at: AtRest, linear: Linear, rates: np.ndarray, targets: np.ndarray,
           scales: np.ndarray) -> tuple[AtRest | None, str]:
-    """Return a state nearer to the targets, by a part of Newton's step; None where there is none, and why, in words."""
+    """Return a state nearer to the targets, by a fraction of Newton's step; None where there is none, and the cause."""
     reason = "no step comes nearer"
     before, part = float(np.linalg.norm(linear.misfit)), 1.0
     if not linear.gains > 0:

@@ -1,10 +1,10 @@
-"""What lengths, sections and materials of cables change of the residual at a state of rest.
+"""Derivatives of the residual by lengths, sections and materials of cables at a state of rest.
 
-A longer cable keeps its points where they are: with the parts of its length at which they are, and its slopes times its
-length, as coordinates, only what acts on each length of it changes. By the ratio of the lengths that is, of weight and
-of loads along the cable, the force itself. The elastic energy of an element scales as all lengths do, U(k l, k r,
-slopes, S_i k^n_i) = k^3 U, S_i the stiffnesses of the section, an integral of the order n_i over it, and is linear in
-S_i. So with f = dU/de the forces on positions and slopes, times the length, change by
+With the relative arc-lengths of its points, and its slopes times its length, as coordinates, the points of a longer
+cable stay, and only forces per unit length change. The derivative of weight and of loads along the cable by the ratio
+of the lengths is the force itself. The elastic energy of an element scales as all lengths do, U(k l, k r, slopes, S_i
+k^n_i) = k^3 U, with the stiffnesses S_i of the section, integrals of the order n_i over it, and is linear in S_i. With
+f = dU/de, the forces on positions and slopes, times the length, therefore change by
 
     df = sum (2 - n_i) S_i df/dS_i - K e,
 
@@ -26,9 +26,9 @@ from ...parts.section_stiffness import lengths_in_stiffness, section_stiffness
 
 DIRECTORS = "r_y", "r_z"
 DERIVATIVE_ORDERS = {"r_x": 1, "r_xx": 2}
-"""Vectors of nodes by how often they are derived by the arc-length."""
+"""Order of the derivative by the arc-length of nodal vectors."""
 DIFFERENCE_STEP = 1e-6
-"""Of a length, to either side: where forces of elements are differenced."""
+"""Relative step of a length, to either side, of differences of element forces."""
 
 
 def elastic_force(model: CableModel, A: np.ndarray, q: np.ndarray) -> np.ndarray:
@@ -38,7 +38,7 @@ def elastic_force(model: CableModel, A: np.ndarray, q: np.ndarray) -> np.ndarray
 
 
 def assembled(model: CableModel, each: np.ndarray) -> np.ndarray:
-    """Return (coordinates,): forces (elements, vectors, dim) on the nodes of each element; two meet at an inner one."""
+    """Return (coordinates,): the sums at the nodes of forces (elements, vectors, dim) on the nodes of each element."""
     found = np.zeros(model.shape)
     found[:-1] += each[:, : model.shape[1]]
     found[1:] += each[:, model.shape[1] :]
@@ -46,8 +46,8 @@ def assembled(model: CableModel, each: np.ndarray) -> np.ndarray:
 
 
 def by_length(model: CableModel, cable: Cable, q: np.ndarray) -> np.ndarray:
-    """Return (coordinates,): derivative of the elastic forces by the ratio of the cable's length to that at q (n_q,),
-    see above; differenced where the law takes a stress-free shape or is of another library.
+    """Return (coordinates,): derivative of the elastic forces at q (n_q,) by the ratio of the cable's lengths, see
+    above; a difference where the law takes a stress-free shape or is of another library.
     """
     if cable.reference is not None or cable.library is not None:
         below, above = (_of_length(model, cable, q, 1 + change) for change in (-DIFFERENCE_STEP, DIFFERENCE_STEP))
@@ -68,20 +68,20 @@ def same_points(model: CableModel, q: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Own:
-    """What a cable gives to the residual by itself, its elastic forces less its weight, at a configuration q (n_q,)."""
+    """The elastic forces of a cable less its weight, at a configuration q (n_q,)."""
 
     model: CableModel
     q: np.ndarray
     gravity: np.ndarray
 
     def of(self, cable: Cable) -> np.ndarray:
-        """Return (coordinates,): that of the cable with another section or material."""
+        """Return (coordinates,): those of the cable with another section or material."""
         return elastic_force(self.model, constants(cable), self.q) - cable_gravity(self.model, cable, self.gravity)
 
 
 def _of_length(model: CableModel, cable: Cable, q: np.ndarray, ratio: float) -> np.ndarray:
     """Return (coordinates,): elastic forces on positions, and slopes times the length, of a cable that is longer by
-    this ratio and has its points where it has them at q (n_q,).
+    this ratio and has its points at those of q (n_q,).
     """
     nodes = {} if cable.nodes is None else {"nodes": [ratio * s for s in cable.nodes]}
     longer = cable.remade({"rest_length": ratio * cable.length} | nodes)
@@ -93,7 +93,7 @@ def _of_length(model: CableModel, cable: Cable, q: np.ndarray, ratio: float) -> 
 
 
 def _slopes(model: CableModel) -> np.ndarray:
-    """Return (vectors, 1): how often each vector of a node is derived by the arc-length."""
+    """Return (vectors, 1): the order of the derivative by the arc-length of each nodal vector."""
     return np.array([[float(DERIVATIVE_ORDERS.get(name, 0))] for name in model.vectors])
 
 
@@ -106,7 +106,7 @@ def _stiffness_times(model: CableModel, q: np.ndarray, chosen: np.ndarray) -> np
 
 
 def _given(model: CableModel, A: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return what kernels of a law take of each element: lengths, nodal vectors, constants."""
+    """Return the arguments of a law's kernels by element: lengths, nodal vectors, constants."""
     n, e = model.n_elements, element_coordinates(model, q[None])[0]
     return (np.ascontiguousarray(np.broadcast_to(model.mesh.lengths, n)), np.ascontiguousarray(e),
             np.ascontiguousarray(np.broadcast_to(A, (n, A.shape[1]))))

@@ -1,4 +1,4 @@
-"""A change of a parameter at a state of rest, and what of that state columns of the residual are made of."""
+"""The change of equations by a parameter at a state of rest, and the state that it is computed from."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from .snapshots import Reader
 
 @dataclass
 class Change:
-    """What a unit of a parameter adds to the forces on the dofs, f (n_dof,), and to the equations of couplings, g
-    (n_extra,); by how much it moves what is prescribed, c (n_dof,), and by how much the unknowns of a state change
-    whose points stay, same (unknowns,); None: nothing.
+    """The change by a unit of a parameter of the forces on the dofs f (n_dof,), of the equations of couplings g
+    (n_extra,), of prescribed dofs c (n_dof,), and of the unknowns at fixed points of cables, same (unknowns,); None:
+    zero.
     """
 
     f: np.ndarray | None = None
@@ -31,13 +31,13 @@ class Change:
     same: np.ndarray | None = None
 
     def less(self, factor: float, other: Change) -> Change:
-        """Return this without so many times the forces and equations that another parameter changes."""
+        """Return this less the forces and equations of another parameter times a factor."""
         return replace(self, f=_less(self.f, factor, other.f), g=_less(self.g, factor, other.g))
 
 
 class Rest:
-    """A state of rest; reader: of the values asked for, which depend on some parameters themselves: forces in sections
-    of cables on loads.
+    """A state of rest; reader: of the target values, of which some depend on parameters directly: forces in sections of
+    cables on loads.
     """
 
     def __init__(self, problem: StaticProblem, reader: Reader):
@@ -46,7 +46,7 @@ class Rest:
         self.model = problem.model
 
     def along(self, component: str) -> np.ndarray | None:
-        """Return an axis of the ground along the axes of the model, (dim,); None where it leaves the plane."""
+        """Return an axis of the ground in the axes of the model, (dim,); None where it leaves the plane."""
         direction = np.array(axis_of(component))
         if self.scene.plane_axes is not None:
             direction = aligned(self.scene.plane_axes.plane.into(direction))
@@ -78,22 +78,22 @@ class Rest:
 
 
 def named(part: Part) -> set[str]:
-    """Return the names that a part has of others that it is on."""
+    """Return the names of other parts that a part is on."""
     return {name for _, value in part for name in (value, getattr(value, "on", None)) if isinstance(name, str)}
 
 
 def axis_of(component: str) -> tuple[float, ...]:
-    """Return the unit vector (3,) along an axis, x or 0 and so on; zeros where it is none."""
+    """Return the unit vector (3,) along an axis, such as x or 0; zeros for another component."""
     return tuple(float(component in (name, str(k))) for name, k in COMPONENTS.items())
 
 
 def altered(model: Model, **changes: Any) -> Model:
-    """Return a model with some arrays or couplings of other values, and the border as it is."""
+    """Return a model with other values of some arrays or couplings, and the same border."""
     made = replace(model, **changes)
     made.newton, made.accelerations = model.newton, model.accelerations
     return made
 
 
 def _less(a: np.ndarray | None, factor: float, b: np.ndarray | None) -> np.ndarray | None:
-    """Return a - factor b, of which None is nothing."""
+    """Return a - factor b, with None for zero."""
     return a if b is None else -factor * b + (0.0 if a is None else a)

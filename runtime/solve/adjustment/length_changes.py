@@ -1,4 +1,4 @@
-"""What the length of a cable changes of the residual at a state of rest: all that acts on each length of it."""
+"""The change of the residual by the length of a cable at a state of rest: by all forces per unit length."""
 
 from __future__ import annotations
 
@@ -16,16 +16,17 @@ from .change import Change, Rest, altered, named
 from .load_changes import by_values
 
 KEEPING_PLACE = "loads", "joints", "point_forces", "contacts"
-"""Groups of couplings whose places on a cable are parts of its length."""
+"""Groups of couplings whose positions on a cable are fractions of its length."""
 SLIDING = tuple({kind.group for kind in COUPLINGS} - {*KEEPING_PLACE})
-"""Others have places on a cable that are no part of its length, or forces of its length and size."""
+"""The other groups: their positions on a cable are no fractions of its length, or their forces depend on its length and
+size."""
 
 
 def lengthens_plainly(rest: Rest, cable: Cable) -> bool:
-    """Return whether all that is on a cable keeps its part of the length, and nothing else depends on that.
+    """Return whether all parts on a cable keep their relative arc-length, and nothing else depends on its length.
 
-    What slides on it has its arc-length as a coordinate. What is tied rigidly to it shares its slopes. One that
-    hangs is drawn otherwise where it is longer.
+    Exceptions: a slide has its arc-length as a coordinate, a rigid tie shares the slopes of the cable, and a longer
+    hanging cable is drawn in another shape.
     """
     scene, name = rest.scene, cable.name
     rigid = any(tie.rotation == "rigid" and name in (tie.cable, tie.to) for tie in scene.ties.values())
@@ -36,7 +37,7 @@ def lengthens_plainly(rest: Rest, cable: Cable) -> bool:
 
 
 def hangs_plainly(rest: Rest, cable: Cable) -> bool:
-    """Return whether nothing on a cable depends on how it hangs as it is drawn."""
+    """Return whether nothing on a cable depends on its hanging shape as drawn."""
     scene, model, name = rest.scene, rest.model_of(cable.name), cable.name
     held = model.nodal(rest.model.unknown_of_dof) < 0
     held[[0, -1], model.vectors.index("r")] = False
@@ -47,7 +48,7 @@ def hangs_plainly(rest: Rest, cable: Cable) -> bool:
 
 
 def by_length(rest: Rest, cable: Cable) -> Change:
-    """Return what the length of a cable changes: all that acts on each length of it."""
+    """Return the change by the length of a cable: of all forces per unit length."""
     model, q = rest.model_of(cable.name), rest.problem.keep()["q"]
     at, f = model.coordinates, np.zeros(rest.model.n_dof)
     f[at] = of_elements(model, cable, q) - rest.model.gravity[at]
@@ -65,7 +66,7 @@ def by_length(rest: Rest, cable: Cable) -> Change:
 
 
 def _touching(rest: Rest, cable: int) -> np.ndarray:
-    """Return (n_dof,): what surfaces that a cable touches give to the residual."""
+    """Return (n_dof,): the part of the residual by surfaces that a cable touches."""
     model = rest.model
     if not any(contact.cable == cable for contact in model.contacts):
         return np.zeros(model.n_dof)

@@ -1,4 +1,4 @@
-"""What values and places of loads, and ends of forces between two points, change of the residual at a state of rest."""
+"""The change of the residual by values and positions of loads, and by ends of forces between two points, at rest."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ AnyLoad = Force | DistributedForce | Moment
 
 
 def unit_of(rest: Rest, part: AnyLoad, entries: tuple[str, ...]) -> AnyLoad | None:
-    """Return a load whose value is a unit along one axis, None where the entry is of something else."""
+    """Return the load with a unit value along one axis, None for another entry."""
     if len(entries) != 2 or entries[0] != "value" or rest.reader.sections:
         return None
     unit = part.model_copy(update={"value": axis_of(entries[1])})
@@ -32,7 +32,7 @@ def unit_of(rest: Rest, part: AnyLoad, entries: tuple[str, ...]) -> AnyLoad | No
 
 
 def by_values(rest: Rest, units: Mapping[int, AnyLoad]) -> dict[int, Change]:
-    """Return what loads of unit values change, by the numbers of their parameters."""
+    """Return the changes by loads of unit values, by the numbers of their parameters."""
     if not units:
         return {}
     model = rest.model
@@ -55,8 +55,8 @@ def by_values(rest: Rest, units: Mapping[int, AnyLoad]) -> dict[int, Change]:
 
 
 def by_end(rest: Rest, part: PointForce, path: Path) -> Change | None:
-    """Return what changes where an end on the ground or its place along a cable does: the gap of its law, and where
-    its force acts; None where the law itself is that of a gap as drawn.
+    """Return the change by an end on the ground, or by its position along a cable: of the gap of the law, and of the
+    point of action; None where the law itself depends on the gap as drawn.
     """
     model, ends = rest.model, {"a": part.a, "b": part.b}
     place = ends.get(path.entries[0])
@@ -82,7 +82,7 @@ def by_end(rest: Rest, part: PointForce, path: Path) -> Change | None:
 
 
 def by_place(rest: Rest, part: Force | DistributedForce, path: Path) -> Change | None:
-    """Return what the place of a load along a cable changes: of a distributed one, where it begins or ends."""
+    """Return the change by the position of a load along a cable, or by the start or stop of a distributed one."""
     load = next(mine for mine, drawn in zip(rest.scene.parts(), rest.scene.as_drawn.parts(), strict=True)
                 if drawn is part)
     s = getattr(load, path.entries[0]) if path.entries[0] in ("s", "start", "stop") else None

@@ -1,14 +1,14 @@
-"""States of rest beside each other along changes of parameters, and the derivatives of their values.
+"""Neighbouring states of rest under changes of parameters, and the derivatives of their values.
 
-At rest R(x, p) = 0 with the state x and the parameters p. The values asked for are functions g(x, p), so that
+At rest R(x, p) = 0 with the state x and the parameters p. The target values are functions g(x, p), so that
 
     dx/dp = -K^-1 dR/dp,    dg/dp = dg/dx dx/dp + dg/dp,
 
 with the factorised tangent K = dR/dx of the state at rest; dg/dp is the central difference of g along (dx/dp, 1). No
-other equilibria are sought. dR/dp of loads, weights, motions, places along cables, lengths, sections and materials is
-that of their columns (parameter_changes.py). What a law of a force between two points changes is the equation of
-that force alone, which is differenced by itself: the forces are unknowns. dR/dp of what else a scene has is the central
-difference of the residual at a fixed state.
+other equilibria are sought. dR/dp by loads, weights, motions, positions along cables, lengths, sections and materials
+comes from parameter_changes.py. The law of a force between two points changes the equation of that force alone, as
+forces are unknowns: this equation is differenced. Any other dR/dp is the central difference of the residual at a fixed
+state.
 """
 
 from __future__ import annotations
@@ -39,16 +39,16 @@ from .parameters import Parameters
 from .snapshots import Reader, Snapshots
 
 DIFFERENCE_STEP = 1e-6
-"""Of a parameter, to either side: where the residual is differenced; of the scene's size: where values are."""
+"""Step of differences to either side: of the residual, as a fraction of a parameter; of values, of the scene's size."""
 MAX_NUMBERS_AT_ONCE = 1_000_000
-"""Numbers of the snapshots that are read together."""
+"""Numbers of the snapshots that are read at once."""
 
 S = TypeVar("S", bound=RestState)
 
 
 @dataclass
 class AtRest:
-    """A state of rest with these values p of the parameters (n,), and its values g (targets,)."""
+    """A state of rest with parameters p (n,), and its values g (targets,)."""
 
     problem: StaticProblem
     p: np.ndarray
@@ -57,8 +57,8 @@ class AtRest:
 
 @dataclass(frozen=True)
 class Way:
-    """A way along which values are differenced: by this step of a parameter to either side, dx/dp (unknowns,), and what
-    else the parameter changes.
+    """The direction of a difference of values: the step of a parameter to either side, dx/dp (unknowns,), and the
+    direct change by the parameter.
     """
 
     step: float
@@ -67,12 +67,12 @@ class Way:
 
     @classmethod
     def of(cls, problem: StaticProblem, rates: np.ndarray, change: Change) -> Way:
-        """Return the way of a parameter: as far as the state moves by a part of the scene's size."""
+        """Return the direction of a parameter, with the step that moves the state by a fraction of the scene's size."""
         moves = np.hypot(problem.length(rates), 0.0 if change.c is None else np.linalg.norm(change.c))
         return cls(DIFFERENCE_STEP * problem.size / moves if moves > 0 else 1.0, rates, change)
 
     def begin(self, kept: dict, step: float) -> dict:
-        """Return a state with what is prescribed moved by a step of the parameter."""
+        """Return a state with prescribed dofs moved by a step of the parameter."""
         if self.change.c is None:
             return kept
         q = kept["q"].copy()
@@ -82,7 +82,7 @@ class Way:
 
 @dataclass
 class Beside:
-    """A state with a parameter changed; order (unknowns,): which unknown there is each of the first state's."""
+    """A state with a changed parameter; order (unknowns,): the number there of each unknown of the first state."""
 
     state: StaticState
     order: np.ndarray
@@ -105,9 +105,9 @@ class ParameterSearch(Generic[S]):
         self.parameters, self.settings, self.made, self.reader = parameters, settings, made, reader
 
     def laid(self, scene: SceneData) -> SceneData:
-        """Return a scene of the search in the axes of its plane, which are those of the scene that it began with.
+        """Return a scene of the search in the axes of its plane.
 
-        Raises SceneError where they are others: the coordinates of a state would mean another place.
+        Raises SceneError where these are not the axes of the first scene: coordinates would mean other positions.
         """
         first, plane = self.parameters.scene.plane, scene.plane
         if (first is None) != (plane is None) or (first is not None and plane is not None
@@ -117,11 +117,11 @@ class ParameterSearch(Generic[S]):
         return laid(scene)
 
     def state(self, problem: StaticState) -> S:
-        """Return the state of a problem, whose stability is not looked at."""
+        """Return the state of a problem, without its stability."""
         return self.made.of(problem, Stability(0, 0, known=False))
 
     def begin(self, rest: RestState) -> AtRest:
-        """Return the state of rest from which the parameters are adjusted."""
+        """Return the first state of the search."""
         problem = StaticProblem(self.laid(rest.scene), self.settings)
         problem.restore(rest.static_state)
         return AtRest(problem, self.parameters.values, self.reader.values(problem))
@@ -150,15 +150,15 @@ class ParameterSearch(Generic[S]):
         return rates, G
 
     def without_effect(self, at: AtRest) -> int:
-        """Return how many parameters are of the law of a spring that pulls alone and is slack."""
+        """Return the number of parameters of the laws of tension-only springs that are slack."""
         slack = {part.name for part, force in zip(at.problem.scene.point_forces.values(),
                                                   at.problem.keep()["point_force"], strict=True)
                  if isinstance(part, Spring) and part.tension_only and not force.any()}
         return sum(self.parameters.law_of(k) in slack for k in range(len(at.p)))
 
     def by_laws(self, at: AtRest, q: np.ndarray, steps: np.ndarray) -> dict[int, np.ndarray]:
-        """Return dR/dp (unknowns,) by those parameters that are of laws of forces between two points, at a
-        configuration q (n_q,); steps (n,): how far to either side their laws are looked at.
+        """Return dR/dp (unknowns,) by the parameters of laws of forces between two points, at a configuration q (n_q,);
+        steps (n,): of the differences to either side.
         """
         model, found = at.problem.model, {}
         forces = {force.name: force for force in model.point_forces}
@@ -174,9 +174,7 @@ class ParameterSearch(Generic[S]):
         return found
 
     def along(self, problem: StaticState, kept: dict, ways: Sequence[Way]) -> np.ndarray:
-        """Return (targets, n): derivatives of the values along n ways from a state `kept`, which the state is in again
-        afterwards.
-        """
+        """Return (targets, n): derivatives of the values in n directions from a state `kept`, which is restored."""
         def ends(some: Sequence[Way]) -> Iterator[StaticState]:
             for way in some:
                 for step in (-way.step, way.step):
@@ -198,7 +196,7 @@ class ParameterSearch(Generic[S]):
         return np.concatenate(found).T if found else np.zeros((len(self.reader.in_metres), 0))
 
     def beside(self, at: AtRest, k: int, change: float, kept: dict) -> Beside:
-        """Return the fixed state `kept` with parameter k changed."""
+        """Return the state `kept` with parameter k changed."""
         p = at.p.copy()
         p[k] += change
         other = StaticState(self.laid(self.parameters.scene_at(p)), self.settings)
@@ -207,10 +205,9 @@ class ParameterSearch(Generic[S]):
         return Beside(other, order)
 
     def order(self, model: Model, other: Model, k: int) -> np.ndarray:
-        """Return (unknowns,): which unknown of the other model is each of the model's, where parameter k is changed.
+        """Return (unknowns,): the number of each unknown of a model in the model with parameter k changed.
 
-        The same dofs are free; but a spring whose end passes from one element to the next cuts its cable elsewhere.
-        Raises SceneError where other dofs are free.
+        A spring whose end moves to the next element changes the numbering. Raises SceneError where other dofs are free.
         """
         here, there = model.unknown_of_dof, other.unknown_of_dof
         free = here >= 0
@@ -222,7 +219,7 @@ class ParameterSearch(Generic[S]):
         return found
 
     def moved(self, at: AtRest, step: np.ndarray, rates: np.ndarray) -> AtRest | str:
-        """Return the state of rest beside another one, or why there is none, in words."""
+        """Return the state of rest after a step of the parameters, or why there is none, in words."""
         p = at.p + step
         try:
             problem = StaticProblem(self.laid(self.parameters.scene_at(p)), self.settings, at.problem.turns.reached)

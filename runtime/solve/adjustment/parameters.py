@@ -1,4 +1,4 @@
-"""Parameters of a scene that a search adjusts: their values, limits, and the scene with other values."""
+"""Parameters that a search adjusts: their values, limits, and the scene with other values."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ ADJUST = "adjust"
 ENDS = "a", "b"
 """Of forces between two points."""
 MIN_VALUE_RATIO = 1e-6
-"""Of its first value: the least value of a parameter that has to be positive."""
+"""Smallest value of a positive parameter, as a fraction of its first value."""
 
 S = TypeVar("S", bound=SceneData)
 
@@ -29,13 +29,12 @@ S = TypeVar("S", bound=SceneData)
 class Parameters(Generic[S]):
     """Numbers in a scene, by their paths.
 
-    names: their paths; values (n,): those of the scene; low, high (n,): limits; units (n,) as texts; natural: whether a
-    lower limit is that of the part itself, which refuses values from zero down.
+    names: their paths; values (n,): those of the scene; low, high (n,): limits; units (n,) as texts; natural (n,):
+    whether the lower limit is that of the part itself, which refuses values of zero or less.
     """
 
     def __init__(self, scene: S, adjust: Mapping[str, Limits]):
-        """adjust: limits by path. Raises SceneError for paths that lead to no number, and values beyond their limits.
-        """
+        """adjust: limits by path. Raises SceneError for paths that lead to no number, and for values beyond limits."""
         self.scene, self.names = scene, list(adjust)
         self.paths = [path_of(scene, name, ADJUST) for name in adjust]
         check_each_once(self.paths)
@@ -55,7 +54,7 @@ class Parameters(Generic[S]):
         self.low = np.where(self.natural, least, self.low)
 
     def _value(self, path: Path) -> float:
-        """Return the number that a path leads to. Raises SceneError where it is none."""
+        """Return the number at a path. Raises SceneError where there is none."""
         if path.part is None and path.head != "gravity":
             raise SceneError(path.where, "settings cannot be adjusted", "give a path into a part, or gravity")
         value = value_at(self.scene, path)
@@ -69,7 +68,7 @@ class Parameters(Generic[S]):
         return value
 
     def _must_be_positive(self, path: Path, value: float) -> bool:
-        """Return whether a positive value can be made small, but not negative."""
+        """Return whether a value is positive, and its part refuses negative ones."""
         if path.part is None or not value > 0:
             return False
         part = self.parts[path.part]
@@ -80,12 +79,13 @@ class Parameters(Generic[S]):
         return False
 
     def scene_at(self, values: np.ndarray) -> S:
-        """Return the scene with these values (n,); places on cables keep their part of the length. Raises SceneError.
+        """Return the scene with these values (n,); positions on cables keep their relative arc-length. Raises
+        SceneError.
         """
         given = dict(zip(self.paths, values.tolist(), strict=True))
         changes = following(self.scene, changes_of(self.scene, given))
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", FunicularWarning)  # they stand in the scene's messages
+            warnings.simplefilter("ignore", FunicularWarning)  # the scene's messages have them
             made = self.scene.changed([(self.parts[k], entries) for k, entries in changes.items()],
                                       gravity_of(self.scene, given))
         made.equilibrium_settings = {name: value for name, value in made.equilibrium_settings.items()
@@ -93,14 +93,14 @@ class Parameters(Generic[S]):
         return made
 
     def law_of(self, k: int) -> str | None:
-        """Return the name of the force between two points whose law parameter k is of, None where it is of none."""
+        """Return the name of the force between two points whose law has parameter k, None where there is none."""
         path = self.paths[k]
         part = None if path.part is None else self.parts[path.part]
         return part.name if isinstance(part, PointForce) and path.entries[0] not in ENDS else None
 
     def force_with(self, scene: S, k: int, value: float) -> PointForce:
-        """Return the force between two points, in a scene of these parameters, with another value of parameter k, of
-        those that `law_of` names: nothing else of the scene depends on it. Raises SceneError.
+        """Return the force between two points with another value of parameter k of its law, see `law_of`. Raises
+        SceneError.
         """
         path, name = self.paths[k], self.law_of(k)
         assert name is not None, f"{path.text} is of no force between two points"
@@ -109,8 +109,8 @@ class Parameters(Generic[S]):
         return type(part)(**{**part.entries(), **changes_of(scene, {path: value})[path.part]})
 
     def sizes(self, length: float) -> np.ndarray:
-        """Return (n,): what a change of each is compared with: its value; where that is zero, a thousandth of this
-        length of what is in m, and else 1.
+        """Return (n,): reference of changes: the value; for a value of zero a thousandth of this length in m, or 1 in
+        another unit.
         """
         natural = np.array([1e-3 * length if unit == "m" else 1.0 for unit in self.units])
         return np.where(self.values != 0, np.abs(self.values), natural)

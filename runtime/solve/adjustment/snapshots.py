@@ -1,4 +1,4 @@
-"""Static states of one scene, one after the other, as arrays: what values of many states are read from at once."""
+"""Static states of one scene as arrays, from which the values of many states are read at once."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from ..statics.static_problem import StaticState
 
 @dataclass
 class Snapshots:
-    """T static states of a scene: configurations q (T, n_q), arc-lengths s (T, slides), what supports give (T, n_dof),
-    and the numbers of couplings by their kind, (T, couplings, numbers).
+    """T static states of a scene: configurations q (T, n_q), arc-lengths s (T, slides), reactions (T, n_dof), and
+    outputs of couplings by kind, (T, couplings, numbers).
     """
 
     q: np.ndarray
@@ -29,9 +29,9 @@ class Snapshots:
 
     @classmethod
     def of(cls, states: Iterable[StaticState], reactions: bool = True) -> Self:
-        """Take the states that these are in when it is their turn: one that moves on counts as several.
+        """Take the present states; one that moves between two iterations counts as several.
 
-        reactions: False where no force is asked for that residuals are needed to know, which saves them.
+        reactions: False where no value needs residuals, which saves these.
         """
         rows: list[tuple[np.ndarray, ...]] = []
         couplings: list[dict[str, np.ndarray]] = []
@@ -45,17 +45,17 @@ class Snapshots:
         return cls(q, s, reaction, {kind: np.array([each[kind] for each in couplings]) for kind in couplings[0]})
 
     def states(self) -> States:
-        """Return them as what parts tell is read from."""
+        """Return them in the form from which results of parts are read."""
         return States.at_rest(self.q, self.s, self.reaction, self.couplings)
 
 
 @dataclass(frozen=True)
 class Reader:
-    """What reads values of states.
+    """Reads values of states.
 
     read: returns values (T, targets) of snapshots of a scene's states; in_metres (targets,): which are in m; reactions:
-    whether snapshots must have what supports give; parts: names of the parts whose results are read; sections: whether
-    forces in sections of cables are.
+    whether snapshots need reactions; parts: names of the parts whose results are read; sections: whether forces in
+    sections of cables are read.
     """
 
     read: Callable[[StaticState, Snapshots], np.ndarray]

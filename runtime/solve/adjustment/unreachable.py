@@ -1,4 +1,4 @@
-"""A step of parameters towards targets, by a linear model within limits, and why targets cannot be reached."""
+"""A step of parameters towards targets by a linear model within limits, and the cause of targets out of reach."""
 
 from __future__ import annotations
 
@@ -10,18 +10,19 @@ import numpy as np
 from .parameters import Parameters
 
 RANK_TOLERANCE = 1e-8
-"""Of the largest singular value of the scaled derivatives: what is below is none, as they are differences."""
+"""Singular values of the scaled derivatives, which are differences, below this fraction of the largest count as
+zero."""
 MIN_PARTICIPATION = 0.1
-"""Of a combination of targets: what takes part in it less is not named."""
+"""Messages name the targets with at least this part in a combination."""
 
 
 @dataclass
 class Linear:
-    """The linear model of the misfits, and the step that it advises.
+    """The linear model of the misfits, and its step.
 
     A (targets, n): derivatives of the values over their scales, by the parameters over their sizes; misfit (targets,)
-    over the scales; step (n,): of the parameters, the least over their sizes that leaves the least misfit; free (n,):
-    which of them are not at a limit after it; gains: by how much the norm of the misfits falls.
+    over the scales; step (n,): of the parameters, the smallest over their sizes with the smallest misfit; free (n,):
+    which of them are within their limits after it; gains: decrease of the norm of the misfits.
     """
 
     A: np.ndarray
@@ -33,8 +34,8 @@ class Linear:
     @classmethod
     def of(cls, parameters: Parameters, p: np.ndarray, G: np.ndarray, scales: np.ndarray, misfit: np.ndarray,
            sizes: np.ndarray) -> Linear:
-        """Return the model at the values p (n,); G (targets, n): derivatives. Where the step leads beyond a limit, the
-        parameter stops there, and the others do what they can.
+        """Return the model at the values p (n,); G (targets, n): derivatives. A parameter stops at its limit, and the
+        others reduce the remaining misfit.
         """
         A = G * sizes / scales[:, None]
         low, high = (parameters.low - p) / sizes, (parameters.high - p) / sizes
@@ -51,8 +52,7 @@ class Linear:
         return cls(A, misfit, sizes * y, free, gains if gains > RANK_TOLERANCE * np.linalg.norm(misfit) else 0.0)
 
     def out_of_reach(self, columns: np.ndarray) -> np.ndarray:
-        """Return (targets, k): an orthonormal basis of the combinations of targets that these parameters do not change.
-        """
+        """Return (targets, k): an orthonormal basis of the combinations of targets that parameters do not change."""
         if not columns.any():
             return np.eye(len(self.misfit))
         U, values, _ = np.linalg.svd(self.A[:, columns])
@@ -60,8 +60,7 @@ class Linear:
 
 
 def why_unreachable(linear: Linear, g: np.ndarray, to: Mapping[str, float], cause: str) -> str:
-    """Return which targets are not reached, how far from them the search ended, and why, as a message; g: values there.
-    """
+    """Return a message with the targets that are not reached, the values g there, and the cause."""
     names = list(to)
     missed = np.abs(linear.misfit) > MIN_PARTICIPATION * np.max(np.abs(linear.misfit))
     values = " and ".join(f'"{names[k]}" is {g[k]:.9g}, not {to[names[k]]:.9g}' for k in np.flatnonzero(missed))
@@ -69,7 +68,7 @@ def why_unreachable(linear: Linear, g: np.ndarray, to: Mapping[str, float], caus
 
 
 def cause_of(parameters: Parameters, linear: Linear, names: list[str], reason: str) -> str:
-    """Return why the search ended where it did, in words; names: of the targets; reason: why no step was taken."""
+    """Return the cause of the end of a search, in words; names: of the targets; reason: why no step was taken."""
     silent = ~np.any(np.abs(linear.A) > RANK_TOLERANCE * max(np.max(np.abs(linear.A)), 1e-300), axis=1)
     if silent.any():
         which = _quoted([names[k] for k in np.flatnonzero(silent)])
@@ -85,7 +84,7 @@ def cause_of(parameters: Parameters, linear: Linear, names: list[str], reason: s
 
 
 def _in_conflict(linear: Linear, columns: np.ndarray, names: list[str]) -> str | None:
-    """Return the targets that cannot be changed one without the other, quoted, where they have misfits; else None."""
+    """Return the targets with misfits that change only together, quoted; None where there are none."""
     basis = linear.out_of_reach(columns)
     left = basis.T @ linear.misfit
     if not np.any(np.abs(left) > MIN_PARTICIPATION * np.linalg.norm(linear.misfit)):
@@ -95,7 +94,7 @@ def _in_conflict(linear: Linear, columns: np.ndarray, names: list[str]) -> str |
 
 
 def _at_limit(parameters: Parameters, linear: Linear, k: int) -> str:
-    """Return that a parameter is at its limit, in words."""
+    """Return a text on the limit of a parameter."""
     down = linear.step[k] < 0 or not np.isfinite(parameters.high[k])
     name = f'"{parameters.names[k]}"'
     if down and parameters.natural[k]:

@@ -101,7 +101,7 @@ class _Search(Generic[S]):
 
     @property
     def found(self) -> S:
-        """The last state."""
+        """Return the last state of the search."""
         assert self.state is not None, "no state was sought yet"
         return self.state
 
