@@ -1,4 +1,4 @@
-/* Eq 38: accelerations and multipliers of a state, from M, H, W; and what else needs M and H. */
+/* Eq 38: accelerations and multipliers of a state from M, H, W; and other solutions with M and H. */
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
 #include "couplings/force/loads.h"
@@ -8,13 +8,13 @@
 #include <math.h>
 #include <string.h>
 
-#define MAX_SWEEPS 100          /* over the couplings whose forces depend on multipliers, before there is no solution */
+#define MAX_SWEEPS 100          /* largest number of sweeps over the couplings whose forces depend on multipliers */
 #define ROUNDING_OF_FORCE 1e-15 /* change of R by a sweep, over the force: one that is rounding */
-/* the same, where it is enough if a sweep changes R no less than the one before */
+/* the same, sufficient if a sweep changes R no less than the one before */
 #define FORCE_TOLERANCE 1e-7
-#define DIVERGED 1e30 /* the same, of a sweep that runs away */
+#define DIVERGED 1e30 /* the same, of a sweep that diverges */
 
-/* Makes the constraint rows of all couplings. */
+/* Computes the constraint rows of all couplings. */
 static void evaluate(const fu_model *model, const fu_state *state, fu_accelerator *work)
 {
     ++work->evaluated;
@@ -34,14 +34,14 @@ static void evaluate(const fu_model *model, const fu_state *state, fu_accelerato
     }
 }
 
-/* Factors the band of M once, and solves for the columns of its border that are constant: those of the cables, and of
- * rigid bodies, by body axes. Returns 0, or not 0 where the band is not positive definite. */
+/* Factors the band of M once, and solves for the constant columns of its border: those of the cables, and of rigid
+ * bodies in body axes. Returns 0, or nonzero if the band is not positive definite. */
 int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
     fu_system_release_border(s);
     s->inverted = 0;
-    if (model->n_inertial) return 0; /* nothing of it stays */
+    if (model->n_inertial) return 0; /* no part of it is constant */
     fu_system_clear(s);
     fu_dynamic_matrix(model, model->zero, model->zero, 1.0, 0.0, 0.0, s);
     fu_bodies_mass(model, model->zero, 1, s);
@@ -49,10 +49,10 @@ int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
     if (fu_system_factor_band(s, model->lapack)) return 1;
     fu_system_invert_band(s);
     fu_system_keep_border(s, model->lapack, model->n_border_dof);
-    return !s->definite; /* else it would be in K, which the Newton matrix takes */
+    return !s->definite; /* otherwise it would be in K, which the Newton matrix overwrites */
 }
 
-/* Makes all of M at a state where couplings have inertia, and factors its band; returns 0, or not 0 where that is not
+/* Computes all of M at a state with inertia of couplings, and factors its band; returns 0, or nonzero if it is not
  * positive definite. */
 static int whole(const fu_model *model, const double *q, fu_accelerator *work)
 {
@@ -64,7 +64,7 @@ static int whole(const fu_model *model, const double *q, fu_accelerator *work)
     return fu_system_factor_band(s, model->lapack) || !s->definite;
 }
 
-/* Makes the border of M, and where it depends on the configuration the band; returns 0, or not 0 where that is not
+/* Computes the border of M, and the band if it depends on the configuration; returns 0, or nonzero if that is not
  * definite. */
 static int border(const fu_model *model, const double *q, fu_accelerator *work)
 {
@@ -76,7 +76,7 @@ static int border(const fu_model *model, const double *q, fu_accelerator *work)
     return 0;
 }
 
-/* Makes and factors the border of [M H'; H 0] (eq 11) at a state whose terms are evaluated. */
+/* Computes and factors the border of [M H'; H 0] (eq 11) at a state with evaluated terms. */
 static int factor_border(const fu_model *model, const fu_state *state, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
@@ -86,13 +86,13 @@ static int factor_border(const fu_model *model, const fu_state *state, fu_accele
         for (int c = 0; c < rows->max_multipliers; ++c) {
             const int row = fu_extra(model, rows->first + c);
             if (c >= rows->rows || rows->redundant_rows >> c & 1)
-                fu_add(model, s, row, row, rows->scale[c]); /* not in use: its multiplier is nil */
+                fu_add(model, s, row, row, rows->scale[c]); /* inactive: its multiplier is zero */
             else if (rows->is_pushed && !c)
                 for (int k = 0; k < rows->n; ++k) {
                     fu_add(model, s, row, rows->at[k], rows->scale[c] * rows->H[k]);
                     fu_add(model, s, rows->at[k], row, rows->scale[c] * rows->column[k]);
                 }
-            else /* rows in kg, so that the border is of one scale */
+            else /* rows in kg give the border one scale */
                 fu_add_row_and_column(model, s, row, rows->n, rows->at, rows->H + c * rows->n, rows->scale[c]);
             if (c < rows->rows && rows->soft[c] != 0.0)
                 fu_add(model, s, row, row, -rows->soft[c] * rows->scale[c] * rows->scale[c]);
@@ -116,7 +116,7 @@ static void solve(const fu_model *model, fu_accelerator *work, const double *for
             lambda[work->rows[r].first + c] *= work->rows[r].scale[c];
 }
 
-/* Returns -sum_k H_ck x_k, what the right sides lose to known accelerations or velocities. */
+/* Returns -sum_k H_ck x_k, the contribution of known accelerations or velocities to the right sides. */
 static double minus_H(const fu_rows *rows, int c, const double *x)
 {
     double sum = 0.0;
@@ -125,7 +125,7 @@ static double minus_H(const fu_rows *rows, int c, const double *x)
 }
 
 /* Adds the forces that depend on these multipliers to work->work; null: on those of the state. Returns the largest
- * change over the force, of the coupling that work->self_locking tells. */
+ * change relative to the force, of the coupling work->self_locking. */
 static double react(const fu_model *model, const fu_state *state, fu_accelerator *work, const double *lambda)
 {
     double largest = 0.0;
@@ -145,9 +145,9 @@ static void reacted(const fu_model *model, const fu_state *state, fu_accelerator
         if (c->type->reaction) c->type->reaction->accept(model, c, state, lambda, work);
 }
 
-/* Finds accelerations and multipliers, in work->rhs, by the forces in work->work; by sweeps where friction depends on
- * the multipliers. Returns not zero where these do not converge: where friction presses the rider on the cable by more
- * than what it comes from, there is no solution (Painleve's). */
+/* Solves for accelerations and multipliers, in work->rhs, with the forces in work->work; by sweeps if friction depends
+ * on the multipliers. Returns nonzero if these do not converge: if friction increases the normal force on the rider by
+ * more than its own cause, there is no solution (Painleve's paradox). */
 static int solve_friction(const fu_model *model, const fu_state *state, fu_accelerator *work, double *acceleration)
 {
     double *lambda = work->rhs + model->n_band + model->n_border_dof, last = INFINITY;
@@ -168,8 +168,8 @@ static int solve_friction(const fu_model *model, const fu_state *state, fu_accel
     return 0;
 }
 
-/* Makes S = H M^-1 H' (n x n) at a state, of n multipliers: singular where joints hold the same. at: of each multiplier
- * its row of S, -1 where it has none. */
+/* Computes S = H M^-1 H' (n x n) at a state, of n multipliers: singular for redundant joints. at: row of S of each
+ * multiplier, -1 for none. */
 int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, const int *at, int n, double *S)
 {
     fu_system *s = &work->mass;
@@ -177,7 +177,7 @@ int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *
     evaluate(model, state, work);
     if (border(model, state->q, work)) return 1;
     for (int k = 0; k < all; ++k)
-        fu_add(model, s, fu_extra(model, k), fu_extra(model, k), 1.0); /* M alone, and no multipliers */
+        fu_add(model, s, fu_extra(model, k), fu_extra(model, k), 1.0); /* M alone, without multipliers */
     const int info = fu_system_factor_border(s, model->lapack);
     for (int r = 0; r < model->n_rows && !info; ++r) {
         const fu_rows *rows = &work->rows[r];
@@ -200,7 +200,7 @@ int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *
     return info;
 }
 
-/* Makes what supports give to each dof, zero to rounding where it is free. */
+/* Computes the force of the supports on each dof, zero to rounding on free ones. */
 static void reactions(const fu_model *model, const fu_state *state, fu_accelerator *work, const double *acceleration,
                       const double *lambda, double *reaction)
 {
@@ -216,8 +216,8 @@ static void reactions(const fu_model *model, const fu_state *state, fu_accelerat
     }
 }
 
-/* Finds accelerations and multipliers by eq 38, and the reactions of supports, unless `reaction` is null; returns 0
- * where there is one solution. */
+/* Solves eq 38 for accelerations and multipliers, and computes the reactions of supports, unless `reaction` is null;
+ * returns 0 if there is one solution. */
 int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerator *work, double *acceleration,
                      double *reaction)
 {
@@ -247,15 +247,15 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
     return 0;
 }
 
-/* Makes ready for fu_response at a state; returns 0 where there is one solution. */
+/* Prepares fu_response at a state; returns 0 if there is one solution. */
 int fu_prepare_response(const fu_model *model, const fu_state *state, fu_accelerator *work)
 {
     evaluate(model, state, work);
     return factor_border(model, state, work);
 }
 
-/* Makes `change`, the jump of velocities (or the accelerations) by impulses (or forces) on the dofs where constraints
- * stay as they are. */
+/* Computes `change`, the jump of velocities (or the accelerations) by impulses (or forces) on the dofs at unchanged
+ * constraints. */
 void fu_response(const fu_model *model, fu_accelerator *work, const double *force, double *change)
 {
     double *lambda = work->rhs + model->n_band + model->n_border_dof;
@@ -263,14 +263,14 @@ void fu_response(const fu_model *model, fu_accelerator *work, const double *forc
     solve(model, work, force, change);
 }
 
-/* A constraint that has been struck, and the rate at which it opens again. */
+/* A constraint under impact, and its rate of separation. */
 typedef struct {
     int row, constraint;
     double rate;
 } strike;
 
-/* Makes `change` the smallest (in the mass norm) change of the dofs with H change = -C_m, or, of velocities, -H v; of
- * these the constraint that has been `struck`, which may be null, gets its rate */
+/* Computes `change`, the smallest change of the dofs in the mass norm with H change = -C_m, or, for velocities, -H v;
+ * the constraint under impact, `struck`, which may be null, gets its rate */
 static int project(const fu_model *model, const fu_state *state, fu_accelerator *work, int of_velocities,
                    const strike *struck, double *change)
 {
@@ -290,20 +290,20 @@ static int project(const fu_model *model, const fu_state *state, fu_accelerator 
     return 0;
 }
 
-/* Makes `change` an increment of the dofs that makes constraints zero, to first order */
+/* Computes `change`, an increment of the dofs that makes constraints zero to first order */
 int fu_project_positions(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change)
 {
     return project(model, state, work, 0, 0, change);
 }
 
-/* Makes `change` a change of v that makes H v = 0, or minus what drives them */
+/* Computes `change`, a change of v with H v = 0, or minus the rate of their drives */
 int fu_project_velocities(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change)
 {
     return project(model, state, work, 1, 0, change);
 }
 
-/* Makes `change` that of v where a constraint is struck: M change + H' L = 0, so that momentum changes by what the
- * constraints give alone; minus `rate` is what that constraint changes by afterwards */
+/* Computes `change` of v by an impact of a constraint: M change + H' L = 0, so that the impulses of constraints alone
+ * change the momentum; minus `rate` is the rate of that constraint afterwards */
 int fu_strike(const fu_model *model, const fu_state *state, fu_accelerator *work, int row, int constraint, double rate,
               double *change)
 {

@@ -1,15 +1,15 @@
-/* Inertia and energies of all of a scene: of cables and bodies, and of couplings. */
+/* Inertia and energies of a whole scene: of cables and bodies, and of couplings. */
 #include "couplings/common/couplings.h"
 #include "equations/energies.h"
 
-/* Makes f = M a. */
+/* Computes f = M a. */
 void fu_mass_times(const fu_model *model, const double *q, const double *a, double *f)
 {
     fu_constant_mass_times(model, q, a, f);
     fu_coupling_inertia(model, q, a, f);
 }
 
-/* Returns the kinetic energy at the velocities v, J, that of a fluid past which they are included. */
+/* Returns the kinetic energy at the velocities v, J, with that of added mass. */
 double fu_kinetic_energy(const fu_model *model, double t, const double *q, const double *v)
 {
     return fu_constant_kinetic_energy(model, q, v) + fu_coupling_kinetic_energy(model, t, q, v, 1);
@@ -21,7 +21,7 @@ double fu_kinetic_energy_of_change(const fu_model *model, const double *q, const
     return fu_constant_kinetic_energy(model, q, v) + fu_coupling_kinetic_energy(model, 0.0, q, v, 0);
 }
 
-/* Returns the power that damping and friction take out, W; work: see `dissipation` in coupling.h. */
+/* Returns the power dissipated by damping and friction, W; work: see `dissipation` in coupling.h. */
 double fu_dissipation(const fu_model *model, const fu_state *state, const fu_accelerator *work)
 {
     return fu_internal_dissipation(model, state->q, state->v) + fu_coupling_dissipation(model, state, work);

@@ -1,4 +1,4 @@
-/* What goes in and out of a scene's energy from outside and to heat. */
+/* External work and dissipation of a scene. */
 #include "couplings/common/couplings.h"
 #include "equations/acceleration.h"
 #include "equations/energies.h"
@@ -7,12 +7,12 @@
 
 #include <math.h>
 
-#define MOST_GROWTH 0.5          /* of the energy exchanged, or of motion: beyond it the result is none */
-#define BEGUN 1e-4               /* of the size of the scene: with less motion it has not begun */
-#define LEAST_MOTION 1e-10       /* of the largest coordinate: less is what step control and rounding leave of rest */
-#define ROUNDING_OF_ENERGY 1e-14 /* of the energies: what a sum over many elements may be off by */
+#define MOST_GROWTH 0.5          /* of the energy exchanged, or of motion: a larger growth ends the run */
+#define BEGUN 1e-4               /* of the size of the scene: a smaller motion has not begun */
+#define LEAST_MOTION 1e-10       /* of the largest coordinate: motion of a scene at rest by step control and rounding */
+#define ROUNDING_OF_ENERGY 1e-14 /* of the energies: rounding of a sum over many elements */
 
-/* Returns the power of what drives constraints, by the multipliers that eq 38 left, W. */
+/* Returns the power of driven constraints, by the multipliers of eq 38, W. */
 static double driving_power(const fu_run *run)
 {
     const fu_accelerator *work = &run->accelerator;
@@ -24,15 +24,15 @@ static double driving_power(const fu_run *run)
     return power;
 }
 
-/* Returns the power that goes to heat at a state, W: in friction by the forces that a Newton method solves for, else by
+/* Returns the dissipated power at a state, W: friction by the forces of a Newton method if it solves for them, else by
  * those of eq 38. */
 double fu_dissipated_power(const fu_run *run, const fu_state *state)
 {
     return fu_dissipation(run->model, state, run->integrator->newton ? 0 : &run->accelerator);
 }
 
-/* Returns the power of the loads; of what drives constraints, by the last call of fu_accelerations; and of the motions,
- * with the forces that the supports give, which are not looked at where no support moves, W. */
+/* Returns the power of the loads; of driven constraints, by the last call of fu_accelerations; and of motions, with the
+ * forces of the supports, which are not read unless a support moves, W. */
 double fu_external_power(fu_run *run, const fu_state *state, const double *reaction)
 {
     const fu_model *model = run->model;
@@ -49,10 +49,10 @@ double fu_external_power(fu_run *run, const fu_state *state, const double *react
     return power;
 }
 
-/* Returns what drives give in the step just made beyond the trapezoidal rule, J. Their power is by the force of eq 38,
- * as it is reported, since the multipliers that Newton's method finds are off by h^2 of it. The error of the rule is
- * -h^3/12 of the second derivative of the power, which three instants tell. A very short step, as to an event, joins
- * the interval before it: over so short a time Newton's remainder would rule the rate of the power. */
+/* Returns the work of drives in the last step beyond the trapezoidal rule, J. Their power is by the force of eq 38, as
+ * reported, since the multipliers of Newton's method have a relative error of h^2. The error of the rule is -h^3/12 of
+ * the second derivative of the power, which three instants determine. A very short step, as to an event, joins the
+ * interval before it: over so short a time Newton's residual would dominate the rate of the power. */
 static double beyond_trapezoid(fu_run *run, double h)
 {
     const double power = driving_power(run);
@@ -73,8 +73,8 @@ static double beyond_trapezoid(fu_run *run, double h)
     return beyond;
 }
 
-/* Adds the step just made to the balance by the trapezoidal rule, as good as a method of order 2; what drives give,
- * better. */
+/* Adds the last step to the balance by the trapezoidal rule, sufficient for a method of order 2; the work of drives has
+ * a higher order. */
 void fu_account_trapezoid(fu_run *run, double h)
 {
     const int driven = run->model->n_driven > 0;
@@ -88,8 +88,8 @@ void fu_account_trapezoid(fu_run *run, double h)
     run->external_power = external;
 }
 
-/* Changes the velocities of `now` by a jump M change = H' L, of which impacts take the energy `lost`, J. The impulses
- * of what drives the scene, and of a fluid that moves, have done the rest. */
+/* Changes the velocities of `now` by a jump M change = H' L, in which impacts dissipate the energy `lost`, J. The rest
+ * of the energy change is work of the drives' impulses and of a moving fluid. */
 void fu_take_jump(fu_run *run, const double *change, double lost)
 {
     const fu_model *model = run->model;
@@ -101,22 +101,22 @@ void fu_take_jump(fu_run *run, const double *change, double lost)
         run->external += fu_kinetic_energy(model, now->t, now->q, now->v) - before + lost;
 }
 
-/* Changes the velocities of `now` by an impact, so that constraints hold that they broke. What is lost is (1 - e)/(1 +
- * e) of the kinetic energy of the change (Carnot), with the restitution e of the constraint that was broken. */
+/* Changes the velocities of `now` by an impact, so that the violated constraints hold. The loss is (1 - e)/(1 + e) of
+ * the kinetic energy of the change (Carnot), with the restitution e of the violated constraint. */
 void fu_impact(fu_run *run, const double *change, double restitution)
 {
     const double of_change = fu_kinetic_energy_of_change(run->model, run->now.q, change);
     fu_take_jump(run, change, (1.0 - restitution) / (1.0 + restitution) * of_change);
 }
 
-/* Returns whether anything moves beyond what step control and rounding leave of a scene at rest. */
+/* Returns whether the motion exceeds that of a scene at rest by step control and rounding. */
 int fu_moves(const fu_run *run)
 {
     return run->motion > LEAST_MOTION * run->extent;
 }
 
-/* Returns what rounding may make of the sum of the energies, J, that of coordinates far from the origin under gravity
- * included. */
+/* Returns the rounding of the sum of the energies, J, including that of coordinates far from the origin under
+ * gravity. */
 static double rounding(const fu_run *run, const double energies[FU_ENERGIES])
 {
     double sum = 0.0, weight = 0.0;
@@ -126,8 +126,7 @@ static double rounding(const fu_run *run, const double energies[FU_ENERGIES])
 }
 
 /* Compares the energies at an output with the first: kinetic, elastic, potential, dissipated, and minus external
- * energy. Returns not zero where energy has come from nowhere, as where an explicit method's step is beyond its limit.
- */
+ * energy. Returns nonzero for unexplained growth, as of an explicit method beyond its stability limit. */
 int fu_check_energy_balance(fu_run *run, const double energies[FU_ENERGIES], int first)
 {
     fu_energy_balance *balance = &run->balance;

@@ -4,8 +4,8 @@
 
 #include "base/common.h"
 
-/* The energy balance since the start, J: energies then, the most exchanged between them and in motion, the most that
- * came from nowhere and that went there, and what rounding may make of it. */
+/* The energy balance since the start, J: energies then, the most exchanged between them and in motion, the largest
+ * unexplained growth and loss, and their rounding. */
 #define FU_ENERGIES 5
 typedef struct {
     double first[FU_ENERGIES], exchanged, in_motion, grown, lost, rounding;

@@ -1,4 +1,4 @@
-/* Equations of motion with their constraints at an instant, for implicit integrators and for statics; and statics. */
+/* Equations of motion with their constraints at an instant, for implicit integrators, and statics. */
 #include "base/clock.h"
 #include "bodies/rotation.h"
 #include "bodies/unknowns.h"
@@ -8,7 +8,7 @@
 #include "equations/equations.h"
 #include "equations/run.h"
 
-/* Makes run->rhs of the dofs: minus the scaled sum in run->force. */
+/* Computes run->rhs of the dofs: minus the scaled sum in run->force. */
 void fu_scale_residual(fu_run *run, double scale)
 {
     const fu_model *model = run->model;
@@ -16,7 +16,7 @@ void fu_scale_residual(fu_run *run, double scale)
     fu_set_times(model->threads, model->n_band + model->n_border_dof, -scale, run->rhs, run->rhs);
 }
 
-/* Makes run->rhs, minus the scaled residual over the unknowns; run->force keeps the unscaled sum over the dofs. */
+/* Computes run->rhs, minus the scaled residual over the unknowns; run->force keeps the unscaled sum over the dofs. */
 void fu_residual(fu_run *run, const fu_equations *at)
 {
     const double begin = fu_clock();
@@ -46,14 +46,14 @@ static void add_matrix_of_others(fu_run *run, const fu_equations *at)
     if (at->weights.stiffness != 0.0) fu_coupling_tangents(run->model, at, &run->newton);
 }
 
-/* Makes run->newton, the derivative at `next` of the scaled residual by the unknowns. */
+/* Computes run->newton, the derivative at `next` of the scaled residual by the unknowns. */
 void fu_matrix(fu_run *run, const fu_equations *at)
 {
     matrix_of_cables(run, at);
     add_matrix_of_others(run, at);
 }
 
-/* Makes the same of these weights, unfactored; unknowns move bodies from `next`. */
+/* Computes the same for these weights, unfactored; unknowns move bodies from `next`. */
 void fu_matrix_of_weights(fu_run *run, fu_weights weights)
 {
     const fu_equations at = {.now = &run->now, .next = &run->next, .weights = weights};
@@ -61,7 +61,7 @@ void fu_matrix_of_weights(fu_run *run, fu_weights weights)
     run->factored = 0;
 }
 
-/* Makes the part of it that is the cables'. */
+/* Computes the cables' part of it. */
 void fu_matrix_of_cables(fu_run *run, fu_weights weights)
 {
     const fu_equations at = {.now = &run->now, .next = &run->next, .weights = weights};
@@ -69,14 +69,14 @@ void fu_matrix_of_cables(fu_run *run, fu_weights weights)
     run->factored = 0;
 }
 
-/* Adds the part of it that is of bodies and couplings. */
+/* Adds the part of bodies and couplings. */
 void fu_add_matrix_of_others(fu_run *run, fu_weights weights)
 {
     const fu_equations at = {.now = &run->now, .next = &run->next, .weights = weights};
     add_matrix_of_others(run, &at);
 }
 
-/* Moves `next` by unknowns, from where it is, in statics. */
+/* Moves `next` by unknowns from its position, in statics. */
 void fu_static_move(fu_run *run, const double *change)
 {
     const fu_model *model = run->model;
@@ -87,7 +87,7 @@ void fu_static_move(fu_run *run, const double *change)
     fu_detect_contact(model, &run->next);
 }
 
-/* Makes run->rhs of statics: minus the sum of forces, and the residuals of constraints. */
+/* Computes run->rhs of statics: minus the sum of forces, and the residuals of constraints. */
 void fu_static_residual(fu_run *run)
 {
     const fu_equations at = {.now = &run->now, .next = &run->next, .weights = {0.0, 0.0, 1.0}};

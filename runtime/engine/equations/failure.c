@@ -1,11 +1,11 @@
-/* Why a step failed, and where: what a message can name. */
+/* Cause and place of a failed step, for messages. */
 #include "couplings/common/couplings.h"
 #include "equations/run.h"
 
 #include <math.h>
 
-/* Notes why a step failed: the cause, the dof that moves farthest (or is not a number), and the number of the coupling
- * or -1. Returns 1. */
+/* Records the failure of a step: the cause, the dof that moves farthest (or is not finite), and the number of the
+ * coupling or -1. Returns 1. */
 int fu_fail(fu_run *run, int cause, const double *dofs, int coupling)
 {
     const fu_model *model = run->model;
@@ -21,7 +21,7 @@ int fu_fail(fu_run *run, int cause, const double *dofs, int coupling)
     return 1;
 }
 
-/* Does the same by the unknown at which a matrix is singular. */
+/* The same by the unknown at which a matrix is singular. */
 int fu_fail_at(fu_run *run, int cause, int unknown)
 {
     const fu_model *model = run->model;
@@ -34,7 +34,7 @@ int fu_fail_at(fu_run *run, int cause, int unknown)
     return 1;
 }
 
-/* Does the same where eq 38 has no solution: by friction that is self-locking, or by its matrix. */
+/* The same if eq 38 has no solution: by self-locking friction, or by its matrix. */
 int fu_fail_eq38(fu_run *run)
 {
     const int self_locking = run->accelerator.self_locking;

@@ -1,10 +1,10 @@
-/* Why a step failed: equations/failure.c. */
+/* Failures of steps: equations/failure.c. */
 #ifndef FUNICULAR_EQUATIONS_FAILURE_H
 #define FUNICULAR_EQUATIONS_FAILURE_H
 
 #include "base/common.h"
 
-/* Why a step failed, and where that shows most: a dof, and the number of a coupling or -1. */
+/* Cause of a failed step, and its place: a dof, and the number of a coupling or -1. */
 enum {
     FU_NO_FAILURE = 0,
     FU_ITERATION,

@@ -1,4 +1,4 @@
-/* Newton's method of an implicit step: residual and matrix are the integrator's, what they have in common is here. */
+/* Newton's method of an implicit step: residual and matrix belong to the integrator, the iteration is here. */
 #include "base/clock.h"
 #include "bodies/unknowns.h"
 #include "equations/energies.h"
@@ -8,19 +8,19 @@
 
 #include <math.h>
 
-/* increments that shrink less than to this, at the size of rounding, are rounding */
+/* increments of the size of rounding whose ratio exceeds this are rounding */
 #define STAGNANT 0.3
-/* assumed before there are two increments: too large to stop after one iteration */
+/* assumed before the second increment: too large to stop after one iteration */
 #define FIRST_CONTRACTION 0.5
-#define MAX_CONTRACTION 0.9 /* largest contraction by which the rest of the error is estimated */
-/* least contraction by which it is: first iterations mend what is linear, the next are slower */
+#define MAX_CONTRACTION 0.9 /* largest contraction for the estimate of the remaining error */
+/* least contraction for it: first iterations reduce linear errors, later ones are slower */
 #define MIN_CONTRACTION 0.03
 #define ROUNDING_FACTOR 100.0 /* times the rounding of positions: an increment that is not rounding */
-/* of a matrix, in iterations: less than it takes, as an old one costs accuracy, too */
+/* of a matrix, in iterations: below its true cost, since an old one costs accuracy, too */
 #define MATRIX_COST 2.0
-/* how many times less an increment may shrink than its residual, which counts stiffness more */
+/* largest ratio of the contraction of the residual, which weights stiffness more, to that of increments */
 #define UNDERESTIMATE 10.0
-/* a step of more than a fourth of the most iterations has its matrix made anew for the next */
+/* a step with more than a fourth of the permitted iterations requests a new matrix for the next */
 #define MANY 4
 
 static int factor(fu_run *run, const fu_newton *method, double h)
@@ -43,7 +43,7 @@ static int factor(fu_run *run, const fu_newton *method, double h)
     return info;
 }
 
-/* Returns the largest of the unknowns in run->rhs, as a length; the dofs' part of them is left in run->work. */
+/* Returns the largest of the unknowns in run->rhs, as a length; run->work keeps the dofs' part. */
 double fu_spread_size(fu_run *run)
 {
     const fu_model *model = run->model;
@@ -55,7 +55,7 @@ double fu_spread_size(fu_run *run)
     return largest;
 }
 
-/* Predicts what an integrator does not predict otherwise: time, and the couplings' part of `next`. */
+/* Predicts time, and the couplings' part of `next`, for integrators without a prediction of their own. */
 void fu_predict_internal(fu_run *run, double h)
 {
     const fu_model *model = run->model;
@@ -64,7 +64,8 @@ void fu_predict_internal(fu_run *run, double h)
     for (int i = 0; i < model->n_coordinates; ++i) run->next.s[i] = run->now.s[i] + h * run->s_slope[i];
 }
 
-/* Notes that the iteration has failed where its last correction, in run->rhs and run->work, is largest; returns 1. */
+/* Records the failure of the iteration at the largest component of its last correction, in run->rhs and run->work;
+ * returns 1. */
 static int blame(fu_run *run)
 {
     const fu_model *model = run->model;
@@ -82,8 +83,8 @@ static int blame(fu_run *run)
     return fu_fail(run, FU_ITERATION, run->work, coupling);
 }
 
-/* Counts the step just made for the matrix, which is made anew where going on with it costs more than steps did on the
- * average, the matrix included. */
+/* Counts the last step for the matrix, which is renewed if its further use costs more than the average step, the matrix
+ * included. */
 static void count_for_matrix(fu_run *run, int iterations, int most)
 {
     run->matrix_cost += iterations;
@@ -103,10 +104,9 @@ static double largest_gap(fu_run *run)
     return gap;
 }
 
-/* Closes the gaps that an iteration has left, with the factored matrix, as if the dofs' own equations were linear: gaps
- * come of directions that have turned since it was made, and are the most of what the next iteration would mend. This
- * takes no forces of cables and no substitution in their chains; without chains it would take as much as an iteration.
- */
+/* Closes the gaps after an iteration with the factored matrix, as if the dofs' own equations were linear. Gaps result
+ * from directions that have rotated since the factorisation, and dominate the next iteration. This needs no forces of
+ * cables and no substitution in their chains; without chains it would cost as much as an iteration. */
 static void close_gaps(fu_run *run, const fu_newton *method, double h)
 {
     const fu_model *model = run->model;
@@ -118,8 +118,8 @@ static void close_gaps(fu_run *run, const fu_newton *method, double h)
     method->kinematics(run, h);
 }
 
-/* Returns whether an iteration may end after an increment of this size, which is `ratio` of the last. Increments that
- * shrink no more are rounding, of which long chains of joints make more than one position has. */
+/* Returns whether an iteration may end after an increment of this size, with its ratio to the last one. Increments that
+ * shrink no more are rounding, which long chains of joints amplify beyond that of one position. */
 static int leaves_nothing(const fu_run *run, const fu_newton *method, double size, double ratio)
 {
     if (size * run->contraction / (1.0 - run->contraction) <= run->newton_tolerance) return 1;
@@ -127,7 +127,7 @@ static int leaves_nothing(const fu_run *run, const fu_newton *method, double siz
     return size <= run->round_off || (ratio >= 1.0 && size <= ROUNDING_FACTOR * run->round_off);
 }
 
-/* Iterates from the prediction with the matrix at hand; returns 0 where that converged. */
+/* Iterates from the prediction with the current matrix; returns 0 on convergence. */
 static int iterate(fu_run *run, const fu_newton *method, double h)
 {
     double last = 0.0, ratio = 0.0;
@@ -151,7 +151,7 @@ static int iterate(fu_run *run, const fu_newton *method, double h)
         if (leaves_nothing(run, method, size, ratio)) {
             method->kinematics(run, h);
             if (method->note_rest) count_for_matrix(run, i + 1, method->most_iterations / MANY);
-            else if (MANY * (i + 1) > method->most_iterations) run->factored = 0; /* made anew for the next step */
+            else if (MANY * (i + 1) > method->most_iterations) run->factored = 0; /* renewed for the next step */
             return 0;
         }
         last = size;
@@ -159,11 +159,11 @@ static int iterate(fu_run *run, const fu_newton *method, double h)
         close_gaps(run, method, h);
     }
     if (last > ROUNDING_FACTOR * run->round_off) return blame(run);
-    run->factored = 0; /* rounding: long chains of joints make more of it than one position has */
+    run->factored = 0; /* rounding, which long chains of joints amplify beyond that of one position */
     return 0;
 }
 
-/* Largest residuals in run->rhs: root of the sum of squares over the equations of motion; of the couplings' own
+/* Largest residuals in run->rhs: root of the sum of squares over the equations of motion; of the couplings' internal
  * equations; and gaps of constraints, m. */
 typedef struct {
     double motion, own, gap;
@@ -181,7 +181,7 @@ static residual_size size_of_residual(fu_run *run)
     return size;
 }
 
-/* Returns what the next increment is of the last, at most, by what the residual has become of the one before. */
+/* Returns an upper bound of the next increment relative to the last, from the contraction of the residual. */
 static double contraction_of_residual(residual_size before, residual_size after)
 {
     const double motion = before.motion > 0.0 ? after.motion / before.motion : 0.0;
@@ -189,16 +189,14 @@ static double contraction_of_residual(residual_size before, residual_size after)
     return fmin(1.0, UNDERESTIMATE * fmax(motion, own));
 }
 
-/* Returns whether an iteration may end after an increment of this size, which the next will be `contraction` of, at
- * these gaps. */
+/* Returns whether an iteration may end after an increment of this size, at this contraction and these gaps. */
 static int leaves_little(const fu_run *run, double size, double contraction, double gap)
 {
     const double enough = fmax(run->newton_tolerance, run->round_off);
     return size <= run->round_off || (size * contraction <= enough && gap <= enough);
 }
 
-/* Does the same where the steps to come make up for what is left: its residual is evaluated, and tells how much that
- * is. */
+/* Iterates likewise if later steps compensate the remaining residual, which is evaluated and bounds the error. */
 static int iterate_and_note(fu_run *run, const fu_newton *method, double h)
 {
     double last = INFINITY;
@@ -228,12 +226,12 @@ static int iterate_and_note(fu_run *run, const fu_newton *method, double h)
         before = after;
     }
     if (last > ROUNDING_FACTOR * run->round_off) return blame(run);
-    method->note_rest(run, h); /* rounding: long chains of joints make more of it than one position has */
+    method->note_rest(run, h); /* rounding, which long chains of joints amplify beyond that of one position */
     run->factored = 0;
     return 0;
 }
 
-/* Makes one step of size h from `now` to `next`; returns 0 where the Newton iteration converged. */
+/* Makes one step of size h from `now` to `next`; returns 0 if the Newton iteration converged. */
 int fu_newton_step(fu_run *run, const fu_newton *method, double h)
 {
     if (fabs(h - run->h_factored) > FU_SAME_STEP * h) run->factored = 0;
@@ -241,7 +239,7 @@ int fu_newton_step(fu_run *run, const fu_newton *method, double h)
     int (*const solve)(fu_run *, const fu_newton *, double) = fu_carries_rest(run) ? iterate_and_note : iterate;
     method->predict(run, h);
     if (!solve(run, method, h)) return 0;
-    if (stale) { /* the matrix was of an earlier step: make it here before giving up */
+    if (stale) { /* the matrix belonged to an earlier step: renew it before giving up */
         run->factored = 0;
         method->predict(run, h);
         if (!solve(run, method, h)) return 0;
@@ -251,8 +249,8 @@ int fu_newton_step(fu_run *run, const fu_newton *method, double h)
     return 1;
 }
 
-/* Returns the size of an error of positions in run->work, passed through (M + sigma K)^-1 M on the constraints' tangent
- * space so that vibrations that the step does not resolve count by their amplitude and not by their acceleration. */
+/* Returns the size of an error of positions in run->work, filtered by (M + sigma K)^-1 M on the constraints' tangent
+ * space, so that unresolved vibrations count by their amplitude and not by their acceleration. */
 double fu_filtered_size(fu_run *run)
 {
     const fu_model *model = run->model;
@@ -266,8 +264,8 @@ double fu_filtered_size(fu_run *run)
     return fu_error_size(run, run->work, fu_allowed_elsewhere(run));
 }
 
-/* Makes, for tests of the matrix, the residual after moving the predicted step by `change` (unknowns), in run->rhs with
- * its sign turned, and the unfactored matrix there in run->newton. */
+/* Computes, for tests of the matrix, minus the residual after a displacement of the predicted step by `change`
+ * (unknowns), in run->rhs, and the unfactored matrix there in run->newton. */
 void fu_linearise(fu_run *run, double h, const double *change)
 {
     const fu_newton *method = run->integrator->newton;

@@ -4,12 +4,12 @@
 
 #include "base/common.h"
 
-#define FU_RUNS_AWAY 1e30 /* an increment in m, or a velocity, of a solution that is lost */
+#define FU_RUNS_AWAY 1e30 /* m, or m/s: an increment or a velocity of a diverged solution */
 #define FU_SAME_STEP 1e-6 /* of a step: one that differs by less has the same matrix */
 
-/* What implicit integrators have in common. `predict` makes a first `next`; `kinematics` completes it from the
- * unknowns; `residual` leaves minus the scaled residual in run->rhs, `matrix` its derivative in run->newton; `apply`
- * adds the solution in run->rhs and returns its size as a length. */
+/* Functions of an implicit integrator. `predict` makes a first `next`; `kinematics` completes it from the unknowns;
+ * `residual` computes minus the scaled residual in run->rhs, `matrix` its derivative in run->newton; `apply` adds the
+ * solution in run->rhs and returns its size as a length. */
 
 typedef struct {
     void (*predict)(fu_run *run, double h);
@@ -18,11 +18,11 @@ typedef struct {
     void (*matrix)(fu_run *run, double h);
     double (*apply)(fu_run *run, double h);
     int most_iterations,
-        to_rounding; /* the latter: go on below the rounding of positions, until increments shrink no more */
-    /* Notes what Newton leaves, in run->rhs, which the steps to come make up for; null: they do not, and what Newton
-     * leaves acts on the motion like a force. */
+        to_rounding; /* the latter: continue below the rounding of positions, until increments shrink no more */
+    /* Records the remaining residual in run->rhs, which later steps compensate; null: they do not, and it acts on the
+     * motion like a force. */
     void (*note_rest)(fu_run *run, double h);
-    /* Leaves minus the scaled residual of the couplings' own equations in run->rhs, and zero for the dofs. */
+    /* Computes minus the scaled residual of the couplings' internal equations in run->rhs, and zero for the dofs. */
     void (*own_residual)(fu_run *run, double h);
 } fu_newton;
 

@@ -1,5 +1,5 @@
-/* What the integrators on eq 38 share: slides where C_l = 0, projection of what the constraints lost in a step, and
- * what follows from positions and velocities. */
+/* Functions of the integrators on eq 38: slides with C_l = 0, projection of constraint errors of a step, and quantities
+ * that follow from positions and velocities. */
 #include "bodies/rotation.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
@@ -10,21 +10,21 @@
 #include <math.h>
 #include <string.h>
 
-/* of positions, each of second order, before a state has no way back onto its joints */
+/* largest number of projections of positions, each of second order */
 #define MOST_PROJECTIONS 10
-#define SHORT_STEP 1e-3 /* of the usual step: in a shorter one rounding over h^2 would rule accelerations */
-#define CLOSED 1e-13    /* of the largest length: smaller gaps at the start are rounding */
-/* of the largest length: gaps with which a probed mechanism is back on its joints */
+#define SHORT_STEP 1e-3 /* of the usual step: in a shorter one rounding over h^2 would dominate accelerations */
+#define CLOSED 1e-13    /* of the largest length: smaller initial gaps are rounding */
+/* of the largest length: gaps of a probed mechanism that is back on its joints */
 #define PROBE_TOLERANCE 1e-12
 
-/* Notes that a coupling's own coordinates do not follow from the others; returns 1. */
+/* Records that a coupling's coordinates do not follow from the others; returns 1. */
 static int lost(fu_run *run, const double *v, const fu_coupling *coupling)
 {
     return fu_fail(run, FU_LOST_RIDER, v, coupling->number);
 }
 
-/* Finds the own coordinates of `next` that follow from the others, from what the last step's slope predicts; returns 0
- * where they were found. */
+/* Solves for the coordinates of `next` that follow from the others, predicted by the last step's slope; returns 0 on
+ * convergence. */
 int fu_find_internal(fu_run *run)
 {
     fu_state *next = &run->next;
@@ -44,8 +44,8 @@ static void normalise(const fu_model *model, double *q)
     }
 }
 
-/* Brings the positions of a state back onto its joints, and s with them, until a correction is small enough; returns 0
- * where that converged. */
+/* Projects the positions of a state, and s, on its joints until a correction is small enough; returns 0 on
+ * convergence. */
 static int close_gaps(fu_run *run, fu_state *state, double enough)
 {
     const fu_model *model = run->model;
@@ -61,8 +61,8 @@ static int close_gaps(fu_run *run, fu_state *state, double enough)
     }
 }
 
-/* Brings a start with small gaps onto its joints, if it is not there; run->closed is how large they are. Returns 0
- * where that converged. */
+/* Projects a start with small gaps on its joints if necessary; run->closed is the size of the gaps. Returns 0 on
+ * convergence. */
 int fu_close(fu_run *run)
 {
     const double rounding = CLOSED * fu_largest_length(run);
@@ -71,8 +71,8 @@ int fu_close(fu_run *run)
     return run->closed > rounding && close_gaps(run, &run->now, rounding);
 }
 
-/* Brings a state back onto its joints, after attitudes are normalised: positions, s, velocities; returns 0 where that
- * converged. */
+/* Projects a state on its joints after the normalisation of attitudes: positions, s, velocities; returns 0 on
+ * convergence. */
 int fu_return_to_joints(fu_run *run, fu_state *state)
 {
     const fu_model *model = run->model;
@@ -84,9 +84,9 @@ int fu_return_to_joints(fu_run *run, fu_state *state)
     return 0;
 }
 
-/* Goes from `now` along these dofs, made ones that joints allow and no longer than given, and back onto the joints.
- * `left` is what is left of the couplings' equations then, redundant ones too, in the places of their forces. Returns
- * not zero where there is no way back. */
+/* Moves from `now` along these dofs, projected on the joints and no longer than given, and back onto the joints. `left`
+ * is then the residual of the couplings' equations, redundant ones included, at the places of their forces. Returns
+ * nonzero without convergence. */
 int fu_probe_mechanism(fu_run *run, const double *along, double *left)
 {
     const fu_model *model = run->model;
@@ -105,8 +105,8 @@ int fu_probe_mechanism(fu_run *run, const double *along, double *left)
     return 0;
 }
 
-/* Finds the accelerations of a state by eq 38, and with them the couplings' forces; run->force is what supports give,
- * where something moves them. Returns 0 where that was found. */
+/* Solves eq 38 for the accelerations of a state and the couplings' forces; run->force is the force of supports, if they
+ * move. Returns 0 on success. */
 int fu_complete(fu_run *run, fu_state *state)
 {
     const fu_model *model = run->model;
@@ -117,14 +117,14 @@ int fu_complete(fu_run *run, fu_state *state)
 }
 
 /* Returns whether a step is so much shorter than usual, as one to an event or an output time can be, that the rounding
- * of positions would rule a velocity or an acceleration that is made of them. */
+ * of positions would dominate velocities or accelerations computed from them. */
 int fu_is_short(const fu_run *run, double h)
 {
     return h < SHORT_STEP * run->usual;
 }
 
-/* Makes such a step, of any length: `next` from `now` by its accelerations, and back onto the joints, but for what the
- * scheme has beside them; returns 0 where that converged. */
+/* Makes such a step of any length: `next` from `now` by its accelerations, projected on the joints, without further
+ * quantities of the scheme; returns 0 on convergence. */
 int fu_coast(fu_run *run, double h)
 {
     const fu_model *model = run->model;

@@ -1,4 +1,4 @@
-/* States brought back to their constraints: equations/projection.c. */
+/* Projection of states on their constraints: equations/projection.c. */
 #ifndef FUNICULAR_EQUATIONS_PROJECTION_H
 #define FUNICULAR_EQUATIONS_PROJECTION_H
 

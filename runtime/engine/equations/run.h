@@ -16,8 +16,8 @@
 typedef struct {
     long steps, rejected, newton_iterations, factorisations, crossings, newton_failures, evaluations;
     double h_min, h_max, error_sum;
-    /* s, each without what the others count: of output; of steps, where residuals, matrices and solutions are counted
-     * by themselves; of estimates of the error */
+    /* s, each without the others: of output; of steps, apart from residuals, matrices and solutions; of error
+     * estimates */
     double time_factor, time_solve, time_residual, time_output, time_step, time_error;
 } fu_statistics;
 
@@ -31,36 +31,36 @@ enum {
     FU_UNSTABLE = 6
 };
 
-#define FU_AT_ONCE 1e-12 /* of the duration: instants that are no farther apart are one (model/knots.py) */
+#define FU_AT_ONCE 1e-12 /* of the duration: largest distance of simultaneous instants (model/knots.py) */
 
-/* A run, in sections: what each is about, and which files write it. */
+/* A run, in sections by subject, with the files that write them. */
 struct fu_run {
     /* Problem: written by the caller before fu_prepare; absolute_tol, lever and first by run/start.c. */
     const fu_model *model;
     const fu_integrator *integrator;
     const double *parameters;  /* of the integrator */
-    double *scratch;           /* of the integrator, which alone writes it */
-    int order;                 /* of the error in positions as controlled */
-    double retry_factor;       /* upper bound of the steps after a failed one, over it; 0 where failures are cheap */
+    double *scratch;           /* of the integrator, its only writer */
+    int order;                 /* of the controlled error of positions */
+    double retry_factor;       /* upper bound of the steps after a failed one, relative to it; 0 for cheap failures */
     double error_overestimate; /* estimate of the local error over that error */
     double duration, output_step, fixed_step, tol;
-    double absolute_tol; /* m: error allowed beside tol times the motion; negative until the start: a part of the
-                            scene's size */
-    double lever; /* m: the longest length from which constraints compute positions; distances are rounded relative to
-                     it */
-    const double *controlled; /* n_dof: model->weight of what tol is the error of, 0 of the rest */
-    const double *counted;    /* n_dof: the weight of each in the error, that of what acts on it included */
+    /* m: error permitted beside tol times the motion; negative until the start: a part of the scene's size */
+    double absolute_tol;
+    /* m: the longest length from which constraints compute positions, the scale of rounding of distances */
+    double lever;
+    const double *controlled; /* n_dof: model->weight of dofs in the error of tol, 0 of the others */
+    const double *counted;    /* n_dof: the weight of each in the error, with that of parts that act on named ones */
     double *first;            /* n_q: the configuration at the start */
     int n_knots;
     const fu_breakpoint *knots; /* increasing; steps end there */
-    long most_evaluations;      /* after which fu_advance returns; 0: after any number */
+    long most_evaluations;      /* number at which fu_advance returns; 0: unlimited */
 
     /* Step: written by the integrators and equations/. */
     fu_state now, next;
     fu_system newton;
     fu_accelerator accelerator;
     double *rhs;                         /* unknowns, and FU_BAND_BEYOND */
-    double *psi, *force, *work, *before; /* n_dof; force is what supports and motions give, once Newton is done */
+    double *psi, *force, *work, *before; /* n_dof; force is that of supports and motions after Newton's iteration */
     double *s_slope;                     /* per slide: predicts ds/dt; by run/steps.c */
 
     /* Events: written by events/. */
@@ -68,75 +68,77 @@ struct fu_run {
     const fu_event_function *watches; /* the caller's, then those of couplings */
     double (*call)(void *context, int watch, const fu_state *state);
     void *context;
-    double *watched;   /* per watch: its value at `now`, 0 where it has just passed */
-    int *late;         /* per watch: the side to which it passed together with another event */
-    double *passed_at; /* per watch: when a step has gone over it, s, for the caller to learn of it; negative where none
-                          has */
-    const char **passed;     /* per watch: what has happened then, in words */
+    double *watched;         /* per event function: its value at `now`, 0 just after a passage */
+    int *late;               /* per event function: the side to which it passed together with another event */
+    double *passed_at;       /* per event function: time of a deferred event for the caller, s; negative for none */
+    const char **passed;     /* per event function: that event in words */
     fu_slackness *slackness; /* per cable */
     double *deepest;         /* per coupling: the deepest penetration since the start, or a checkpoint, m */
     double *farthest;        /* per coupling: the farthest contact beyond the ends of its surface since then, m */
-    double *watch_work;      /* n_dof + n_outputs: accelerations and a row of output that a watched number is of */
-    int watch_solution;      /* what is known of these accelerations: FU_SOLVE_ANEW and the like */
-    fu_event event;          /* that the run has stopped at; by run/ */
-    double event_time;       /* s: when it has happened, of couplings */
+    double *watch_work;      /* n_dof + n_outputs: accelerations and a row of output for an event function */
+    int watch_solution;      /* state of these accelerations: FU_SOLVE_ANEW and the like */
+    fu_event event;          /* at which the run has stopped; by run/ */
+    double event_time;       /* s: its instant, of couplings */
 
     /* Counters and rows: written by run/; statistics by all. */
     fu_record record;
     fu_statistics statistics;
 
-    /* From here to the end numbers alone, which a checkpoint copies as they are. */
+    /* From here to the end numbers alone, which a checkpoint copies unchanged. */
 
     /* Step: h, usual and ceiling by equations/step_control.c and run/steps.c, the matrix by equations/newton.c and the
      * integrators. */
     double h, h_factored, contraction;
-    double since;       /* s: how long before `now` the acceleration there belongs; by integrators/energy.c */
-    double usual;       /* s: the step that is wanted, were it not for an event or an output time */
-    double ceiling;     /* s: that steps stay below, after one that failed */
-    double matrix_cost; /* of the factored matrix and of the steps made with it, in iterations */
-    int matrix_steps;   /* how many these are */
+    double since;       /* s: time between the instant of the acceleration and `now`; by integrators/energy.c */
+    double usual;       /* s: the intended step without events and output times */
+    double ceiling;     /* s: upper bound of steps after a failed one */
+    double matrix_cost; /* of the factored matrix and of its steps, in iterations */
+    int matrix_steps;   /* number of these steps */
     int factored;
-    int is_remainder; /* the step taken is shorter for an output time or a boundary of a piece alone: no force changes
-                         faster in it */
+    /* the step taken is shorter for an output time or a boundary of a path segment alone: no force changes faster in
+     * it */
+    int is_remainder;
     int turned;
-    int net_rejections; /* steps rejected of late, less those taken */
+    int net_rejections; /* recently rejected steps less accepted ones */
 
     /* Error: written by equations/step_control.c, run/start.c and run/steps.c. */
     double last_error, allowed;          /* m: of the step */
-    double newton_tolerance, round_off;  /* of increments, m: where Newton may stop, and where it cannot go on */
-    double motion, least_motion, extent; /* m: largest so far, assumed at least, largest coordinate of a position */
-    double controlled_motion;            /* m: largest so far of what tol is the error of */
-    double size;                         /* m: of the scene as it is at the start, wherever it lies */
+    double newton_tolerance, round_off;  /* of increments, m: where Newton may stop, and the limit by rounding */
+    double motion, least_motion, extent; /* m: largest so far, least assumed, largest coordinate of a position */
+    double controlled_motion;            /* m: largest so far of the dofs in the error of tol */
+    double size;                         /* m: of the scene at the start, at any position */
     double closed;                       /* m: gaps at the start; by equations/projection.c */
     fu_failure failure;                  /* of the last step that failed; by equations/failure.c */
 
     /* Energy: written by equations/energy_balance.c and the integrators. */
     double dissipated, dissipated_power, external, external_power; /* J, W */
     double
-        heat_owed; /* J: what steps beyond their stability limit gave back, which later heat pays first (explicit.c) */
-    double drive_power, drive_power_before, drive_step; /* W, W, s: of drives; a step before; how long that
-                                                         * was, 0 where only the first is known, -1 none */
+        /* J: energy returned by steps beyond their stability limit, which later dissipation compensates first
+         * (explicit.c) */
+        heat_owed;
+    /* W, W, s: of drives; a step before; the length of that step, 0 if only the first is known, -1 if none */
+    double drive_power, drive_power_before, drive_step;
     fu_energy_balance balance;
 
     /* Events: written by run/event_handling.c, run/steps.c and events/. */
-    double acted; /* s: when a coupling has last changed by itself */
+    double acted; /* s: last change of state of a coupling */
     int acts, stopped_slide;
-    int goes_over;     /* the last deferred event that a step led to was gone over */
-    int most_deferred; /* of any stage of a step, of those of other integrators of its end */
-    int keep_forces;   /* couplings pass nothing in a step, which ends where one of them would */
-    int keep_pieces;   /* couplings keep their pieces in a step, which ends where one of them leaves its piece */
+    int goes_over;     /* the last event to which a step led was deferred */
+    int most_deferred; /* of any stage of a step, or of its end for other integrators */
+    int keep_forces;   /* couplings have no deferred event in a step, which ends at one */
+    int keep_pieces;   /* couplings keep their path segments in a step, which ends where one leaves its segment */
 
     double recorded; /* s: time of the last row; by run/record.c */
     int rest_start;  /* for order.py only: start the scheme from zero accelerations */
 };
 
-/* Returns the largest length that distances in the scene are rounded relative to, m. */
+/* Returns the largest length, the scale of rounding of distances in the scene, m. */
 static inline double fu_largest_length(const fu_run *run)
 {
     return fmax(run->lever, fmax(run->extent, run->motion));
 }
 
-/* Returns the coupling whose own a watch is; null where it is another one. */
+/* Returns the coupling of an event function; null for one of another kind. */
 static inline const fu_coupling *fu_event_coupling(const fu_run *run, int watch)
 {
     return run->watches[watch].kind == FU_EVENT_OF_COUPLING ? run->model->couplings[run->watches[watch].index] : 0;

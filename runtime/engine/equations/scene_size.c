@@ -1,4 +1,4 @@
-/* Lengths of a scene that errors and rounding are measured by. */
+/* Lengths of a scene that scale errors and rounding. */
 #include "couplings/common/attachments.h"
 #include "equations/run.h"
 #include "equations/scene_size.h"
@@ -13,7 +13,7 @@ static double square_between(const double *from, const double *to, int n)
     return square;
 }
 
-/* Returns the largest distance that a node or a body's centre has moved, m. */
+/* Returns the largest displacement of a node or a body's centre, m. */
 double fu_largest_motion(const fu_model *model, const double *from, const double *to)
 {
     double largest = 0.0;
@@ -30,7 +30,7 @@ double fu_largest_motion(const fu_model *model, const double *from, const double
     return sqrt(largest);
 }
 
-/* Returns the square of the distance that the dofs of a position have moved, those of no weight left out, m^2. */
+/* Returns the squared displacement by the dofs of a position, without those of no weight, m^2. */
 static double square_moved(const double *weight, const double *from, const double *to, int n)
 {
     double square = 0.0;
@@ -39,9 +39,9 @@ static double square_moved(const double *weight, const double *from, const doubl
     return square;
 }
 
-/* Returns how far a body has turned, as a length, m: the chord 2 sin(angle/2) of unit vectors times the weight of the
- * turns. A quaternion turns by half the angle, so that the product of its distances from the other and from the other's
- * opposite, which is the same attitude, is this chord. */
+/* Returns the rotation of a body as a length, m: the chord 2 sin(angle/2) of unit vectors times the weight of the
+ * rotations. A quaternion turns by half the angle, so that the product of its distances from the other and from the
+ * other's opposite, which is the same attitude, is this chord. */
 static double turned(const fu_body *body, const double *weight, const double *from, const double *to)
 {
     const fu_body_kernels *kernel = body->kernel;
@@ -55,8 +55,8 @@ static double turned(const fu_body *body, const double *weight, const double *fr
     return largest * (kernel->dim == 3 ? sqrt(there * opposite) : sqrt(there));
 }
 
-/* Returns the largest distance that what tol is the error of has moved since the start, m: nodes, bodies' centres, and
- * where they count turns and modes. */
+/* Returns the largest displacement since the start in the error of tol, m: nodes, bodies' centres, and rotations and
+ * modes if they count. */
 double fu_controlled_motion(const fu_run *run)
 {
     const fu_model *model = run->model;
@@ -76,8 +76,8 @@ double fu_controlled_motion(const fu_run *run)
     return fmax(largest, sqrt(square));
 }
 
-/* Returns the size of what coordinates are rounded to, m: the farthest position, or what unit slopes and turns move a
- * point by. */
+/* Returns the scale of rounding of coordinates, m: the farthest position, or the displacement of a point by unit slopes
+ * and rotations. */
 double fu_extent(const fu_model *model, const double *origin, const double *q)
 {
     double largest = fu_largest_motion(model, origin, q);
@@ -90,7 +90,7 @@ double fu_extent(const fu_model *model, const double *origin, const double *q)
     return largest;
 }
 
-/* Widens a box to hold a position. */
+/* Extends a box to a position. */
 static void widen(int dim, const double *r, double low[3], double high[3])
 {
     for (int d = 0; d < dim; ++d) {
@@ -99,8 +99,8 @@ static void widen(int dim, const double *r, double low[3], double high[3])
     }
 }
 
-/* Returns the largest side of the box around all nodes and bodies' centres, or what unit slopes and turns move a point
- * by, m. */
+/* Returns the largest side of the box around all nodes and bodies' centres, or the displacement of a point by unit
+ * slopes and rotations, m. */
 double fu_scene_size(const fu_model *model, const double *origin, const double *q)
 {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
@@ -113,7 +113,7 @@ double fu_scene_size(const fu_model *model, const double *origin, const double *
     return largest;
 }
 
-/* Returns the length of one item of a field, m: itself, or how far a point is from the origin of its axes. */
+/* Returns the length of one item of a field, m: itself, or the distance of a point from the origin of its axes. */
 static double length_of(int dim, const fu_field *field, const char *item)
 {
     if (field->kind == FU_LENGTH) return fabs(*(const double *)item);
@@ -123,8 +123,8 @@ static double length_of(int dim, const fu_field *field, const char *item)
 }
 
 /* Returns the longest length from which constraints compute positions, m: points in the axes of bodies and of the
- * ground, sizes of shapes. A distance between two of them is rounded relative to it, however close to the origin the
- * scene is. */
+ * ground, sizes of shapes. The rounding of a distance between two of them is relative to it, at any distance from the
+ * origin. */
 double fu_longest_lever(const fu_model *model)
 {
     double longest = 0.0;

@@ -1,4 +1,4 @@
-/* Lengths that errors and rounding of a scene are measured by: equations/scene_size.c. */
+/* Lengths that scale errors and rounding of a scene: equations/scene_size.c. */
 #ifndef FUNICULAR_EQUATIONS_SCENE_SIZE_H
 #define FUNICULAR_EQUATIONS_SCENE_SIZE_H
 

@@ -1,4 +1,4 @@
-/* Sizes of steps: equations/step_control.c. */
+/* Step sizes: equations/step_control.c. */
 #ifndef FUNICULAR_EQUATIONS_STEP_CONTROL_H
 #define FUNICULAR_EQUATIONS_STEP_CONTROL_H
 

@@ -1,4 +1,5 @@
-/* Boundaries between the pieces of couplings' paths: where couplings are off their pieces, and when they will be. */
+/* Boundaries between the segments of couplings' paths: couplings outside of their segments, and the times of
+ * passages. */
 #include "equations/run.h"
 #include "events/boundaries.h"
 
@@ -6,22 +7,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* of a piece: a coordinate is not beyond a boundary that it has passed by less, which is rounding */
+/* of a segment: smaller distances beyond a boundary are rounding */
 #define TOLERANCE 1e-11
 
-/* Returns how far a coordinate may be beyond its piece without being outside, m. */
+/* Returns the permitted distance of a coordinate beyond its segment, m. */
 double fu_boundary_tolerance(fu_path path)
 {
     return TOLERANCE * path.length;
 }
 
-/* Returns where the k-th piece of a path begins and the one before it ends, m. */
+/* Returns the start of the k-th segment of a path, the end of the one before, m. */
 double fu_boundary(fu_path path, int k)
 {
     return path.boundaries ? path.boundaries[k] : k * path.length;
 }
 
-/* Returns the length of the k-th piece of a path, m. */
+/* Returns the length of the k-th segment of a path, m. */
 double fu_path_segment_length(fu_path path, int k)
 {
     return path.boundaries ? path.boundaries[k + 1] - path.boundaries[k] : path.length;
@@ -37,8 +38,7 @@ static int piece_of(const fu_coupling *coupling, const fu_state *state)
     return state->piece[coupling->coordinate];
 }
 
-/* Returns how far the coordinate of a coupling lies outside its piece, m, negative inside, and the side that is nearer.
- */
+/* Returns the distance of a coupling's coordinate outside its segment, m, negative inside, and the nearer side. */
 double fu_outside(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int *side)
 {
     const fu_path path = fu_path_of(model, coupling, state);
@@ -48,7 +48,7 @@ double fu_outside(const fu_model *model, const fu_coupling *coupling, const fu_s
     return *side > 0 ? x - length : -x;
 }
 
-/* Returns whether steps must end where a coupling passes a boundary, whatever the integrator. */
+/* Returns whether steps must end where a coupling passes a boundary, with any integrator. */
 int fu_stop_at_boundaries(const fu_model *model)
 {
     FU_EACH_COUPLING(c, model->always_active, model->n_always_active) {
@@ -58,8 +58,8 @@ int fu_stop_at_boundaries(const fu_model *model)
     return 0;
 }
 
-/* Puts the couplings of `next` on the pieces that hold their coordinates, unless they are to keep those of `now`. The
- * matrix is of the pieces that it was made with. */
+/* Assigns the couplings of `next` to the segments of their coordinates, unless they must keep those of `now`. The
+ * matrix belongs to the segments with which it was computed. */
 void fu_choose_path_segments(fu_run *run)
 {
     const fu_model *model = run->model;
@@ -76,8 +76,8 @@ void fu_choose_path_segments(fu_run *run)
     }
 }
 
-/* Puts the couplings of a state on the pieces that hold their coordinates, but those that are on one of these, at its
- * ends too. */
+/* Assigns the couplings of a state to the segments of their coordinates, except those that are on one already, its ends
+ * included. */
 void fu_find_path_segments(const fu_model *model, fu_state *state)
 {
     FU_EACH_COUPLING(c, model->always_active, model->n_always_active) {
@@ -92,7 +92,7 @@ void fu_find_path_segments(const fu_model *model, fu_state *state)
     }
 }
 
-/* Returns across how many boundaries the couplings are at `next`. */
+/* Returns the number of boundaries that the couplings have passed at `next`. */
 int fu_count_changes(const fu_run *run)
 {
     int count = 0;
@@ -100,13 +100,13 @@ int fu_count_changes(const fu_run *run)
     return count;
 }
 
-/* Puts the couplings of `next` on the pieces of `now`, which they have left. */
+/* Returns the couplings of `next` to the segments of `now`, which they have left. */
 void fu_keep_path_segments(fu_run *run)
 {
     memcpy(run->next.piece, run->now.piece, sizeof(int) * (size_t)run->model->n_coordinates);
 }
 
-/* Returns the time until the first of the couplings reaches a boundary of its piece at the rate that it has, s. */
+/* Returns the time until the first coupling reaches a boundary of its segment at its present rate, s. */
 double fu_time_to_boundary(const fu_run *run)
 {
     double least = INFINITY;
@@ -121,8 +121,8 @@ double fu_time_to_boundary(const fu_run *run)
     return least;
 }
 
-/* Returns after which part of a step a coupling turns, by the parabola through both ends of the step, that is back at
- * `next` from beyond a boundary, or beyond one that it stood on and has left inwards; 0 where it does neither. */
+/* Returns the part of a step, by the parabola through both ends of the step, after which a coupling reverses that is
+ * back at `next` from beyond a boundary, or beyond one that it stood on and has left inwards; 0 if it does neither. */
 static double part_to_turn(const fu_run *run, const fu_coupling *c, fu_path path, double h)
 {
     const double rise = h * c->events->path->rate(run->model, c, &run->now), tolerance = fu_boundary_tolerance(path);
@@ -136,7 +136,7 @@ static double part_to_turn(const fu_run *run, const fu_coupling *c, fu_path path
     return part > 0.0 && part < 1.0 && (returns || leaves) ? part : 0.0;
 }
 
-/* Returns how long after `now` the first coupling that turns so does, s; 0 where none does. */
+/* Returns the time after `now` of the first such reversal, s; 0 for none. */
 double fu_time_of_turn(const fu_run *run, double h)
 {
     FU_EACH_COUPLING(c, run->model->always_active, run->model->n_always_active) {
@@ -147,7 +147,7 @@ double fu_time_of_turn(const fu_run *run, double h)
     return 0.0;
 }
 
-/* Returns whether a coupling stands on the boundary already: then its piece changes and not the time. */
+/* Returns whether a coupling is on the boundary already: then its segment changes and not the time. */
 int fu_stands_on_boundary(const fu_run *run, fu_event event)
 {
     if (event.kind != FU_PATH_BOUNDARY) return 0;
@@ -157,7 +157,7 @@ int fu_stands_on_boundary(const fu_run *run, fu_event event)
     return fu_outside(run->model, c, &run->now, &side) >= -tolerance && side == event.side;
 }
 
-/* Returns whether no coupling is farther from its piece than this part of a piece. */
+/* Returns whether all couplings are within this part of a segment of their segments. */
 int fu_are_on_path_segments(const fu_model *model, const fu_state *state, double aside)
 {
     FU_EACH_COUPLING(c, model->always_active, model->n_always_active) {

@@ -1,4 +1,4 @@
-/* Boundaries between the pieces of couplings' paths, as between the elements of a cable: events/boundaries.c. */
+/* Boundaries between the segments of couplings' paths, as between the elements of a cable: events/boundaries.c. */
 #ifndef FUNICULAR_EVENTS_BOUNDARIES_H
 #define FUNICULAR_EVENTS_BOUNDARIES_H
 

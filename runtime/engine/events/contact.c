@@ -1,4 +1,4 @@
-/* Contact with a surface comes and goes: where the deepest point passes zero, at the ends of a step or within it. */
+/* Start and end of contact with a surface: the largest penetration passes zero, at the ends of a step or within it. */
 #include "base/cubic.h"
 #include "equations/run.h"
 #include "events/contact.h"
@@ -12,8 +12,7 @@ static const fu_contact *of(const fu_coupling *coupling)
     return (const fu_contact *)coupling;
 }
 
-/* Returns how deep the deepest point is, m; negative off the surface, where elements that are farther than others do
- * not count. */
+/* Returns the largest penetration, m, negative off the surface, for elements nearer than others. */
 static double deepest(const fu_model *model, const fu_contact *contact, const fu_state *state)
 {
     double depth = -INFINITY;
@@ -44,7 +43,7 @@ static double depth(const fu_model *model, const fu_coupling *coupling, const fu
     return watched_value;
 }
 
-/* Returns how far beyond the ends of its surface a point touches, m. */
+/* Returns the distance of contact beyond the ends of the surface, m. */
 static double beyond(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     const fu_contact *contact = of(coupling);
@@ -111,7 +110,7 @@ double fu_contact_grazing(const fu_run *run, const fu_contact *contact, const fu
     return fu_surface_detect_within(model->dim, &contact->surface, contact->radius, ends, h, run->round_off);
 }
 
-/* Returns how far a point that is near may have moved over a step past the surface, m, by the velocities at one end of
+/* Returns a bound of the displacement of a near point past the surface over a step, m, by the velocities at one end of
  * it. */
 static double reach_of(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                        const fu_state *state, double h)
@@ -129,10 +128,10 @@ static double reach_of(const fu_model *model, const fu_contact *contact, const f
                 2.0 * farthest * sqrt(fu_dot(model->dim == 3 ? 3 : 1, on->omega, on->omega)));
 }
 
-#define RESOLVED 0.25 /* of an impact's time over pi: what steps in it stay below */
+#define RESOLVED 0.25 /* of an impact's time over pi: upper bound of steps in it */
 
-/* Returns the step that resolves the impact of a body that begins at `now`, s, 0 where that is not needed: where its
- * speed, which the impact turns round, would not move it by more than tol allows in the time that is left. */
+/* Returns the step that resolves an impact of a body that begins at `now`, s; 0 if unnecessary, since its reversed
+ * speed moves it by less than tol in the remaining time. */
 static double step_of_impact(const fu_run *run, const fu_contact *contact, double h)
 {
     const fu_model *model = run->model;
@@ -150,7 +149,7 @@ static double step_of_impact(const fu_run *run, const fu_contact *contact, doubl
         return 0.0;
     const double mass = model->bodies[contact->attachments[0].body].mass;
     double stiffness = contact->n_points * contact->law.stiffness;
-    if (contact->law.hertz) /* at the depth that the speed leads to: 2/5 k d^(5/2) = m v^2/2 */
+    if (contact->law.hertz) /* at the penetration for this speed: 2/5 k d^(5/2) = m v^2/2 */
         stiffness *= 1.5 * sqrt(fmax(deepest_now, pow(1.25 * mass * fastest * fastest / stiffness, 0.4)));
     const double longest = RESOLVED * sqrt(mass / stiffness);
     return h > 1.5 * longest ? longest : 0.0;

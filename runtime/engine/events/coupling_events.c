@@ -1,9 +1,9 @@
-/* Loops over what couplings do by themselves (couplings/common/coupling_events.h). */
+/* Loops over the events of couplings (couplings/common/coupling_events.h). */
 #include "couplings/common/coupling_events.h"
 #include "equations/run.h"
 #include "events/events.h"
 
-/* Writes the watches of all couplings to `out`, unless it is null; returns how many they are. */
+/* Writes the event functions of all couplings to `out`, unless it is null; returns their number. */
 int fu_coupling_event_functions(const fu_model *model, fu_event_function *out)
 {
     int n = 0;
@@ -20,7 +20,7 @@ int fu_coupling_event_functions(const fu_model *model, fu_event_function *out)
     return n;
 }
 
-/* Returns whether any coupling can change by itself. */
+/* Returns whether any coupling can change its state. */
 int fu_couplings_can_act(const fu_model *model)
 {
     FU_EACH_COUPLING(c, model->couplings, model->n_couplings)
@@ -28,14 +28,14 @@ int fu_couplings_can_act(const fu_model *model)
     return 0;
 }
 
-/* Gives `now` what follows from velocities that have jumped. */
+/* Updates `now` after a jump of velocities. */
 void fu_couplings_take_velocities(fu_run *run)
 {
     FU_EACH_COUPLING(c, run->model->couplings, run->model->n_couplings)
         if (c->events && c->events->take_velocities) c->events->take_velocities(run, c);
 }
 
-/* Finds how couplings are at the start; returns a status. */
+/* Determines the state of couplings at the start; returns a status. */
 int fu_begin_couplings(fu_run *run)
 {
     fu_couplings_take_velocities(run);

@@ -1,20 +1,18 @@
-/* Lines of a crossing come into contact, and lose it: where the penetration passes zero, where damping would turn the
- * force round, and where a closest point passes the end of its line.
- */
+/* Start and end of contact of lines in a crossing: the penetration passes zero, damping would reverse the force, or a
+ * closest point passes the end of its line. */
 #include "base/cubic.h"
 #include "couplings/crossing/crossing.h"
 #include "equations/run.h"
 #include "events/list.h"
 
-#define PARTED 1e-6 /* of the energy that contact has: lines that had less when it ended had come apart */
+#define PARTED 1e-6 /* of the energy of contact: lines with less at its end had separated */
 
 static const fu_crossing *crossing_of(const fu_coupling *coupling)
 {
     return (const fu_crossing *)coupling;
 }
 
-/* Makes the gap of lines that touch less or more than nil, m, and its rate; returns whether they are closest within
- * their ends. */
+/* Computes the gap of the lines, m, and its rate; returns whether their closest points are within their ends. */
 static int gap_of(const fu_model *model, const fu_crossing *crossing, const fu_state *state, fu_course *gap)
 {
     fu_closest_points points;
@@ -25,7 +23,7 @@ static int gap_of(const fu_model *model, const fu_crossing *crossing, const fu_s
     return points.found && fu_crossing_distance_to_ends(crossing, &points) >= 0.0;
 }
 
-/* Lines that touch may part within a step and be together again, lines that do not may touch. */
+/* Lines in contact may separate within a step and meet again, others may touch. */
 static double grazing(const fu_run *run, const fu_coupling *coupling, int which, double h)
 {
     const fu_crossing *crossing = crossing_of(coupling);
@@ -37,8 +35,8 @@ static double grazing(const fu_run *run, const fu_coupling *coupling, int which,
     return within ? fu_grazing_time(from, to, -1, h, run->round_off) : 0.0;
 }
 
-/* The value is negative while contact stays as it is. In motion lines that are apart from end to end do not touch: they
- * may become parallel, or pass round each other's ends. */
+/* The value is negative while the state of contact is unchanged. In motion, lines that are apart over their whole
+ * length do not touch: they may become parallel, or pass round each other's ends. */
 static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {
     const double margin = fu_crossing_margin(run->model, crossing_of(coupling), state);
@@ -58,9 +56,9 @@ static double depth(const fu_model *model, const fu_coupling *coupling, const fu
     return -gap.value;
 }
 
-/* Returns whether lines that are about to touch, as the closest points come within an end, are past each other's axes:
- * they have come round that end, and are on the other side than contact keeps them on. Lines that have gone past an end
- * while they touched have not. */
+/* Returns whether lines that are about to touch, since the closest points come within an end, are past each other's
+ * axes: they have passed round that end, to the other side than that of contact. Lines that passed an end during
+ * contact have not. */
 static int has_come_round(const fu_run *run, const fu_crossing *crossing)
 {
     const double left_behind = run->now.numbers[crossing->base.numbers + FU_CROSSING_LEFT_BEHIND];
@@ -89,7 +87,7 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
         fu_find_closest(run->model, crossing_of(coupling), &run->now, &points);
         fu_crossing_begin_stick(crossing_of(coupling), &points, &run->now);
     }
-    /* a bar that comes in from beyond an end may overlap already: what that stores comes from outside */
+    /* a bar from beyond an end may overlap already: the stored energy is external work */
     if (*touches) run->external += coupling->type->energy(run->model, coupling, &run->now);
     *what = *touches ? "came into contact" : "lost contact";
     return FU_RUNNING;

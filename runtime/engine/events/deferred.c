@@ -1,14 +1,11 @@
-/* Passages: changes of couplings that a step goes over, as the jump that they make in its forces is within what is
- * allowed. The forces at the step's end, and at all stages within it, are of what couplings are there.
- *
- * A passage at a part x of the step makes the force grow as (t - x h) F/(h - x h), to F at the end. What a rule of
- * weights b at c makes of that is wrong by a part of F h, which is a change of momentum:
- * |(1 - x)/2 - sum over c > x of b (c - x)/(1 - x)|. That is the error of velocities, and times h it counts as a local
- * error of positions, as errors of velocities go on for the rest of the run and what is allowed is h/t of the whole.
- * Estimates of integrators do not replace it: they rest on smooth forces, and by chance are nil.
- *
- * A discrete gradient of the energy is the mean force over the way, that over passages too: it keeps the energy, errs
- * by hardly more than where there is no passage, and goes over all of them, at steps of any kind. */
+/* Deferred events: changes of couplings within a step whose discontinuity of forces is within the permitted error. The
+ * forces at the step's end, and at all stages within it, are those of the couplings' state there. An event at a part x
+ * of the step makes the force grow as (t - x h) F/(h - x h), to F at the end. A quadrature with weights b at c has an
+ * error of a part of F h in the momentum: |(1 - x)/2 - sum over c > x of b (c - x)/(1 - x)|. That is the error of
+ * velocities. Times h it counts as a local error of positions, since errors of velocities persist and the permitted
+ * error is h/t of the whole. Estimates of integrators do not replace it: they assume smooth forces, and may vanish by
+ * chance. A discrete gradient of the energy is the mean force over the path, also across events: it conserves the
+ * energy, has hardly a larger error than without events, and defers all of them, at steps of any kind. */
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
 #include "equations/acceleration.h"
@@ -20,10 +17,10 @@
 #include <math.h>
 #include <string.h>
 
-#define DOUBLE 2.0 /* the error that is counted over the bound, lest energy come of many */
-/* of a step: how far from where it seems to be a passage may be, for the bound of its error */
+#define DOUBLE 2.0 /* the counted error over the bound, since the errors of many events add up */
+/* of a step: uncertainty of the instant of an event, for the bound of its error */
 #define AROUND 0.1
-#define SCANNED_INSTANTS 8 /* so many instants are looked at on either side */
+#define SCANNED_INSTANTS 8 /* number of instants evaluated on either side */
 
 static int has_passed(const fu_run *run, const fu_coupling *c)
 {
@@ -31,8 +28,8 @@ static int has_passed(const fu_run *run, const fu_coupling *c)
     return fu_can_defer(c) && memcmp(run->now.flags + c->flags, run->next.flags + c->flags, size) != 0;
 }
 
-/* Gives the couplings of `next` the flags that follow from where it is, unless they are to keep those of `now`; returns
- * whether that changes them. First: it is the first stage of the step, or the only one. */
+/* Updates the flags of the couplings of `next`, unless they must keep those of `now`; returns whether that changes
+ * them. First: it is the first stage of the step, or the only one. */
 int fu_choose_deferred(fu_run *run, int first)
 {
     const fu_model *model = run->model;
@@ -45,13 +42,13 @@ int fu_choose_deferred(fu_run *run, int first)
     return changed;
 }
 
-/* Returns whether a stage of the step just made passed what its end did not: then nothing bounds its error. */
+/* Returns whether a stage of the last step had an event that its end has not: then its error has no bound. */
 int fu_strayed(const fu_run *run)
 {
     return !run->keep_forces && run->model->n_passing && run->most_deferred > fu_count_deferred(run);
 }
 
-/* Returns how many couplings have passed something in the step. */
+/* Returns the number of couplings with an event in the step. */
 int fu_count_deferred(const fu_run *run)
 {
     int count = 0;
@@ -60,7 +57,7 @@ int fu_count_deferred(const fu_run *run)
     return count;
 }
 
-/* Lets the couplings of `next` be as in `now`, for the rest of the step to be made so. */
+/* Resets the couplings of `next` to their state in `now`, for a repetition of the rest of the step. */
 void fu_undo_deferred(fu_run *run)
 {
     run->keep_forces = 1;
@@ -71,7 +68,7 @@ void fu_undo_deferred(fu_run *run)
     }
 }
 
-/* Notes what couplings pass in the step that is about to be accepted, for the caller to learn of it. */
+/* Records the events of couplings in the step that is about to be accepted, for the caller. */
 void fu_note_deferred(fu_run *run, double h)
 {
     for (int k = 0; k < run->n_watches && run->model->n_passing; ++k) {
@@ -83,7 +80,7 @@ void fu_note_deferred(fu_run *run, double h)
     }
 }
 
-/* Returns by what part of F h the rule errs in the momentum of a force that grows to F from a part x of the step on. */
+/* Returns the quadrature error of the momentum, over F h, of a force that grows to F from a part x of the step on. */
 static double defect(fu_quadrature rule, double x)
 {
     double sum = 0.5 * (1.0 - x);
@@ -92,7 +89,7 @@ static double defect(fu_quadrature rule, double x)
     return fabs(sum);
 }
 
-/* Returns the largest for instants near x, which is not known better. */
+/* Returns the largest error for instants near x, within its uncertainty. */
 static double largest_defect(fu_quadrature rule, double x)
 {
     double worst = 0.0;
@@ -103,8 +100,8 @@ static double largest_defect(fu_quadrature rule, double x)
     return worst;
 }
 
-/* Returns the size of what a force makes in a time of which this is the square, s^2; by the matrix of the step, where
- * there is one, for vibrations that it does not resolve to count by their amplitude and not by their acceleration. */
+/* Returns the size of the response to a force in a time with this square, s^2; by the matrix of the step, if there is
+ * one, so that unresolved vibrations count by their amplitude and not by their acceleration. */
 static double size_of_response(fu_run *run, const double *force, double square)
 {
     const fu_model *model = run->model;
@@ -121,7 +118,7 @@ static double size_of_response(fu_run *run, const double *force, double square)
     return fu_error_size(run, run->work, fu_allowed_elsewhere(run));
 }
 
-/* Returns the local error of positions by the passages of the step just made, m. */
+/* Returns the local error of positions by deferred events of the last step, m. */
 double fu_deferred_error(fu_run *run, double h)
 {
     const fu_model *model = run->model;
@@ -138,8 +135,8 @@ double fu_deferred_error(fu_run *run, double h)
     return size_of_response(run, run->before, DOUBLE * h * h);
 }
 
-/* Returns the local error of positions by kinks of forces within the step just made that its estimate may not see, m:
- * one of momentum, which goes on for the rest of the run. */
+/* Returns the local error of positions by kinks of forces within the last step that its estimate may miss, m: an error
+ * of momentum, which persists for the rest of the run. */
 double fu_friction_error(fu_run *run, double h)
 {
     const fu_model *model = run->model;
@@ -151,8 +148,7 @@ double fu_friction_error(fu_run *run, double h)
     return size_of_response(run, run->before, h * h);
 }
 
-/* Makes the earliest of passages and slack cables that the caller does not know of the run's event; returns 0 where
- * there is none. */
+/* Makes the earliest unreported deferred event or slack cable the event of the run; returns 0 if there is none. */
 int fu_take_deferred(fu_run *run)
 {
     int first = -1;

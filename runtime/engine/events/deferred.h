@@ -1,4 +1,4 @@
-/* Passages: changes of couplings that a step goes over: events/deferred.c. */
+/* Deferred events, changes of couplings within a step: events/deferred.c. */
 #ifndef FUNICULAR_EVENTS_DEFERRED_H
 #define FUNICULAR_EVENTS_DEFERRED_H
 

@@ -1,9 +1,6 @@
-/* Slides that stick, break loose, or come to what waits at an end of their cable: events that change what locks s.
- *
- * mode is FU_SLIDES, FU_LOCKED (where it is: by friction that sticks, or against a hard stop, contact then tells which)
- * or FU_LEFT. slip_direction is that of sliding where friction sticks at rest: known then, as a change of it is an
- * event.
- */
+/* Slides that stick, break loose, or reach the end of their cable: events that change the constraint on s. mode is
+ * FU_SLIDES, FU_LOCKED (by sticking friction, or against a hard stop; contact says which) or FU_LEFT. slip_direction is
+ * the direction of sliding. For friction that sticks at rest it is known, since its change is an event. */
 #include "couplings/joint/joint.h"
 #include "couplings/slide/resistance.h"
 #include "equations/acceleration.h"
@@ -15,17 +12,17 @@
 #include <math.h>
 #include <string.h>
 
-#define REST_SPEED 1e-12 /* of the cable over the duration: speeds below are none */
-#define MIN_REBOUND 1e-6 /* of the cable: what would come no farther back stays at the stop */
+#define REST_SPEED 1e-12 /* of the cable over the duration: smaller speeds are zero */
+#define MIN_REBOUND 1e-6 /* of the cable: a rider with a smaller rebound stays at the stop */
 
 static int is_hard(const fu_model *model, int j, int side)
 {
     return side && model->slides[j].stops[side > 0].kind == FU_END_IS_HARD;
 }
 
-/* Finds the force on the rider of a slide that is locked, by eq 38, as a Newton method's has the rounding of positions
- * over h^2. Returns whether it is by eq 38: then `traction` is what of it is along the cable, without what moments put
- * there. */
+/* Computes the force on the rider of a locked slide by eq 38, since that of Newton's method has the rounding of
+ * positions over h^2. Returns whether it is by eq 38: then `traction` is its component along the cable without the
+ * effect of moments. */
 static int locked_force(const fu_run *run, const fu_state *state, int j, double *f, double *traction)
 {
     const fu_model *model = run->model;
@@ -40,8 +37,7 @@ static int locked_force(const fu_run *run, const fu_state *state, int j, double 
     return 1;
 }
 
-/* Finds the force along the cable on a locked slide, N; returns how much of it neither friction nor a hard stop can
- * take, N. */
+/* Computes the force along the cable on a locked slide, N; returns its excess over friction and hard stop, N. */
 static double excess(const fu_run *run, const fu_state *state, int j, double *pull)
 {
     const fu_model *model = run->model;
@@ -58,16 +54,16 @@ static double excess(const fu_run *run, const fu_state *state, int j, double *pu
         const double across = f[d] - along * G[d] / sqrt(square);
         normal += across * across;
     }
-    /* friction does not take what moments put along the cable */
+    /* friction does not carry the effect of moments along the cable */
     if (by_eq38 && fu_ties_a_frame(model, j)) along = traction;
     const double most = slide->static_friction * sqrt(normal);
-    if (side && !is_hard(model, j, side)) /* the buffer's part */
+    if (side && !is_hard(model, j, side)) /* the force of the buffer */
         along += side * slide->stops[side > 0].stiffness * fu_compression(model, state, j, side) * sqrt(square);
     *pull = along;
     return (is_hard(model, j, side) ? side * along : fabs(along)) - most;
 }
 
-/* Returns a number that is negative as long as a slide stays locked, or slides on in its direction. */
+/* Returns a number that is negative while a slide stays locked, or slides in its direction. */
 double fu_stick_margin(const fu_run *run, const fu_state *state, int j)
 {
     const fu_slide *slide = &run->model->slides[j];
@@ -78,7 +74,7 @@ double fu_stick_margin(const fu_run *run, const fu_state *state, int j)
     return slide->sticks ? -flags->slip_direction * fu_slide_rate(run->model, state, j) : -1.0;
 }
 
-/* Returns a number that is positive where a slide is in a buffer that pushes. */
+/* Returns a number that is positive while a slide compresses a buffer. */
 double fu_buffer_margin(const fu_run *run, const fu_state *state, int j, int side)
 {
     const fu_end_stop *stop = &run->model->slides[j].stops[side > 0];
@@ -88,7 +84,7 @@ double fu_buffer_margin(const fu_run *run, const fu_state *state, int j, int sid
     return fmin(x, force);
 }
 
-/* Unlocks a slide, on which there was the force `pull` along the cable. */
+/* Unlocks a slide with the force `pull` along the cable. */
 static void release(fu_run *run, int j, double pull)
 {
     fu_slide_flags *flags = fu_slide_flags_of(run->model, &run->now, j);
@@ -98,8 +94,7 @@ static void release(fu_run *run, int j, double pull)
     if (hard) flags->contact = 0;
 }
 
-/* Locks a slide that is at rest, if friction or its stop can take the force on it, else lets it slide on; returns a
- * status. */
+/* Locks a slide at rest if friction or its stop can carry the force on it, else lets it slide; returns a status. */
 static int try_to_stick(fu_run *run, int j)
 {
     fu_state *now = &run->now;
@@ -119,7 +114,7 @@ static int is_at_rest(const fu_run *run, int j)
     return fabs(fu_slide_rate(run->model, &run->now, j)) * run->duration <= REST_SPEED * fu_length(run->model, j);
 }
 
-/* Gives a slide whose friction needs it its direction of sliding. */
+/* Sets the direction of sliding of a slide whose friction needs it. */
 void fu_find_slip_direction(fu_run *run, const fu_coupling *coupling)
 {
     const int j = coupling->index;
@@ -129,7 +124,7 @@ void fu_find_slip_direction(fu_run *run, const fu_coupling *coupling)
         flags->slip_direction = rate > 0.0 ? 1 : -1;
 }
 
-/* Finds in which buffer a slide is at the start, and whether it sticks; returns a status. */
+/* Determines the buffer of a slide at the start, and whether it sticks; returns a status. */
 int fu_begin_stops(fu_run *run, const fu_coupling *coupling)
 {
     const fu_model *model = run->model;
@@ -142,7 +137,7 @@ int fu_begin_stops(fu_run *run, const fu_coupling *coupling)
     return model->slides[j].sticks && is_at_rest(run, j) ? try_to_stick(run, j) : FU_RUNNING;
 }
 
-/* Lets a slide strike its hard stop, where it stays if it would come back by too little to count; returns a status. */
+/* Executes the impact of a slide on its hard stop, where it stays after a negligible rebound; returns a status. */
 static int strike(fu_run *run, int j, int side)
 {
     const fu_model *model = run->model;
@@ -173,7 +168,7 @@ static int strike(fu_run *run, int j, int side)
     return FU_RUNNING;
 }
 
-/* Lets happen what follows where a slide that stands at an end of its cable goes on outwards; returns a status. */
+/* Executes the action of the cable's end on a slide that moves outwards there; returns a status. */
 int fu_reach_end(fu_run *run, const fu_coupling *coupling, int side, const char **what)
 {
     const fu_slide *slide = (const fu_slide *)coupling;
@@ -201,8 +196,8 @@ void fu_pass_buffer(fu_run *run, const fu_coupling *coupling, int end, int enter
     *what = enters ? "entered the buffer" : "left the buffer";
 }
 
-/* Lets a slide go that is locked by more than friction or its stop can take, or stick where it has come to rest;
- * returns a status. */
+/* Releases a locked slide whose force exceeds friction or stop, or locks one that has come to rest; returns a
+ * status. */
 int fu_release_or_stick(fu_run *run, const fu_coupling *coupling, const char **what)
 {
     const int j = coupling->index;

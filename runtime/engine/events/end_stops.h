@@ -1,4 +1,4 @@
-/* Slides that stick, break loose, and reach what is at the ends of their cables: events/end_stops.c. */
+/* Slides that stick, break loose, and reach the ends of their cables: events/end_stops.c. */
 #ifndef FUNICULAR_EVENTS_END_STOPS_H
 #define FUNICULAR_EVENTS_END_STOPS_H
 

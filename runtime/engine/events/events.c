@@ -1,5 +1,5 @@
-/* Events: a coupling passes a boundary of its path or changes by itself, a quantity passes a threshold, a function of
- * the user's changes sign. */
+/* Events: a coupling passes a boundary of its path or changes its state, a quantity passes a threshold, a function of
+ * the user changes sign. */
 #include "base/underflow.h"
 #include "equations/acceleration.h"
 #include "equations/run.h"
@@ -9,25 +9,25 @@
 
 #include <math.h>
 
-#define MOST_TRIALS 80 /* steps that are tried to end on an event */
-/* after so many trials every second one halves the interval: rounding may rule the value */
+#define MOST_TRIALS 80 /* trial steps for the end on an event */
+/* number of trials after which every second one halves the interval, since rounding may dominate the value */
 #define FEW_TRIALS 10
 #define LEAST_STEP 1e-13 /* of the duration: shorter intervals are not divided */
-/* of Newton's tolerance, which is used near an event, lest its noise rule where the event is */
+/* of Newton's tolerance near an event, so that its error does not decide the instant */
 #define FINER 1e-2
-/* of a piece, or of what a watched quantity changes by in the step: how close to an event it ends */
+/* of a segment, or of the change of an event function in the step: distance of the step's end from an event */
 #define EVENT_TOLERANCE 1e-13
-#define LITTLE 1e-2 /* of the allowed error: what a passage beside a boundary may make */
-/* of what a distance changes by in the step: how close to a passage an adaptive step ends */
+#define LITTLE 1e-2 /* of the permitted error: that of an event beside a boundary */
+/* of the change of a distance in the step: distance of an adaptive step's end from a deferrable event */
 #define DEFERRED_TOLERANCE 1e-6
-#define LARGEST_MISS 1e-6  /* of a piece: how close to a boundary a step ends at least */
-#define SIGNED_ZERO 1e-300 /* a value that has a sign and is nearly zero */
+#define LARGEST_MISS 1e-6  /* of a segment: largest distance of a step's end from a boundary */
+#define SIGNED_ZERO 1e-300 /* a value with a sign that is nearly zero */
 
 const fu_event fu_no_event = {FU_NO_EVENT, 0, 0, 0};
 
 const double *fu_event_accelerations(const fu_run *run, const fu_state *state)
 {
-    fu_run *scratch = (fu_run *)run; /* a run is never a constant */
+    fu_run *scratch = (fu_run *)run; /* a run is never a constant object */
     int known = run->watch_solution;
     if (known == FU_SOLVE_ANEW || known == FU_SOLVE_ONCE) {
         const int failed = fu_accelerations(run->model, state, &scratch->accelerator, run->watch_work, 0);
@@ -37,7 +37,7 @@ const double *fu_event_accelerations(const fu_run *run, const fu_state *state)
     return known == FU_IS_SOLVED ? run->watch_work : 0;
 }
 
-/* Returns a number of a coupling's row of output; not a number where eq 38 has no solution. */
+/* Returns a component of a coupling's row of output; NaN if eq 38 has no solution. */
 static double output_of(const fu_run *run, const fu_state *state, const fu_coupling *c, int which)
 {
     const double *acceleration = fu_event_accelerations(run, state);
@@ -47,7 +47,7 @@ static double output_of(const fu_run *run, const fu_state *state, const fu_coupl
     return out[which];
 }
 
-/* Returns what the caller's function makes of a state: in it numbers are as they are outside of the time loop. */
+/* Returns the value of the caller's function, which runs with the floating-point mode outside of the time loop. */
 static double called(const fu_run *run, const fu_state *state, int k)
 {
     const unsigned before = fu_underflow();
@@ -57,7 +57,7 @@ static double called(const fu_run *run, const fu_state *state, int k)
     return value;
 }
 
-/* Returns what is watched, for an event of the user's or of a coupling's. */
+/* Returns the value of an event function of the user or of a coupling. */
 static double watched(const fu_run *run, const fu_state *state, int k)
 {
     const fu_event_function *watch = &run->watches[k];
@@ -71,7 +71,7 @@ static double watched(const fu_run *run, const fu_state *state, int k)
     return c->events->watched(run, c, state, watch->which);
 }
 
-/* Returns an event's value at a state: the event happens where this reaches zero from below. */
+/* Returns the value of an event at a state: the event happens where it reaches zero from below. */
 static double value(const fu_run *run, const fu_state *state, fu_event event)
 {
     if (event.kind == FU_EVENT_FUNCTION) return event.side * watched(run, state, event.which);
@@ -80,7 +80,7 @@ static double value(const fu_run *run, const fu_state *state, fu_event event)
     return event.side * (state->s[c->coordinate] - fu_boundary(fu_path_of(run->model, c, &run->now), boundary));
 }
 
-/* Returns the event of a watch that passes zero between the value kept and this one, else none. */
+/* Returns the event of an event function that passes zero between the stored value and this one, else none. */
 static fu_event passes(const fu_run *run, int k, double after)
 {
     const double before = run->watched[k];
@@ -88,8 +88,8 @@ static fu_event passes(const fu_run *run, int k, double after)
     return side && run->watches[k].direction * side >= 0 ? (fu_event){FU_EVENT_FUNCTION, k, side, 0} : fu_no_event;
 }
 
-/* Returns the crossing of the coupling of `next` that is farthest outside its piece, else the first of the watches that
- * pass zero between `now` and `next`; but for one event. */
+/* Returns the boundary passage of the coupling of `next` that is farthest outside its segment, else the first event
+ * function that passes zero between `now` and `next`; without the event `but`. */
 fu_event fu_find_event(fu_run *run, fu_event but)
 {
     fu_event found = fu_no_event;
@@ -111,44 +111,43 @@ fu_event fu_find_event(fu_run *run, fu_event but)
         if (but.kind == FU_EVENT_FUNCTION && but.which == k) continue;
         found = passes(run, k, watched(run, &run->next, k));
         if (found.kind && fu_is_far_event_function(run, k))
-            run->watched[k] = watched(run, &run->now, k); /* which was passed over */
+            run->watched[k] = watched(run, &run->now, k); /* which was not evaluated before */
     }
     run->watch_solution = FU_SOLVE_ANEW;
     return found;
 }
 
-/* Returns the part of a step at which g = g_low + rate x + ... reaches zero on its way to g_high: that of the parabola.
- */
+/* Returns the part of a step at which g = g_low + rate x + ... reaches zero on its way to g_high, by the parabola. */
 static double root_of_parabola(double g_low, double g_high, double rate)
 {
     const double bend = g_high - g_low - rate, square = rate * rate - 4.0 * bend * g_low;
     return square > 0.0 ? -2.0 * g_low / (rate + sqrt(square)) : -g_low / (g_high - g_low);
 }
 
-/* Returns the coupling whose own an event is, and which tells when it happens; null where there is none. */
+/* Returns the coupling of an event that gives its instant itself; null for none. */
 static const fu_coupling *passing(const fu_run *run, fu_event event)
 {
     const fu_coupling *c = event.kind == FU_EVENT_FUNCTION ? fu_event_coupling(run, event.which) : 0;
     return c && c->events->deferred ? c : 0;
 }
 
-/* Returns whether a step may end a little off an event: the slope of a force jumps there, which over so short a way
- * makes nothing, and the instant follows from the rate (run/event_handling.c). */
+/* Returns whether a step may end slightly off an event: the slope of a force is discontinuous there, which is
+ * negligible over so short a distance, and the instant follows from the rate (run/event_handling.c). */
 static int may_miss(const fu_run *run, fu_event event)
 {
     const fu_coupling *c = passing(run, event);
     return c && fu_can_defer(c) && run->fixed_step <= 0.0;
 }
 
-/* Where a step that ends on an event ends: the event's value is `aim` there, within `close`. */
+/* End of a step at an event: the event's value is `aim` there, within `close`. */
 typedef struct {
     double aim, close;
 } landing_place;
 
-/* Returns how close to an event a step must end: beyond a passage, lest it happen again. A coupling that goes on in the
- * next piece, a way d from the boundary, has gone that way on the wrong curve, whose direction is wrong by d times the
- * jump of r_xx: its velocity by less than rate d/length for pieces that bend by less than a radian. Over the step that
- * shall be little of what is allowed. */
+/* Returns the required distance of a step's end from an event: beyond a deferrable one, so that it does not recur. A
+ * coupling that continues in the next segment, at a distance d from the boundary, has moved along the wrong curve,
+ * whose direction is wrong by d times the jump of r_xx: its velocity by less than rate d/length for segments that bend
+ * by less than a radian. Over the step that must be small beside the permitted error. */
 static landing_place landing(const fu_run *run, fu_event event, double range)
 {
     if (event.kind == FU_EVENT_FUNCTION)
@@ -164,16 +163,17 @@ static landing_place landing(const fu_run *run, fu_event event, double range)
         0.0, fmax(EVENT_TOLERANCE * path.length, fmin(LARGEST_MISS, LITTLE * run->allowed / range) * shorter)};
 }
 
-/* Returns whether an event is of a watch of a coupling's own, whose value leaves its zero anew after each event. */
+/* Returns whether an event belongs to an event function of a coupling, whose value leaves its zero anew after each
+ * event. */
 static int is_of_a_coupling(const fu_run *run, fu_event event)
 {
     return event.kind == FU_EVENT_FUNCTION && fu_event_coupling(run, event.which);
 }
 
-/* An interval of steps in which g, the event's value, passes zero: g_low < 0 <= g_high. */
+/* An interval of steps in which the event's value g passes zero: g_low < 0 <= g_high. */
 typedef struct {
     double low, high, g_low, g_high;
-    int last; /* the side that has moved last: 1 high, -1 low */
+    int last; /* the side that moved last: 1 high, -1 low */
 } bracket;
 
 static double secant(const bracket *b)
@@ -181,7 +181,7 @@ static double secant(const bracket *b)
     return b->low + (b->high - b->low) * b->g_low / (b->g_low - b->g_high);
 }
 
-/* Narrows the bracket by g at `middle`; the value of an end that stays twice is halved (Illinois). */
+/* Narrows the bracket by g at `middle`; the value of an end that stays twice is halved (Illinois method). */
 static void narrow(bracket *b, double middle, double g)
 {
     const int side = g >= 0.0 ? 1 : -1;
@@ -197,8 +197,8 @@ static void narrow(bracket *b, double middle, double g)
     b->last = side;
 }
 
-/* Moves, for an event that has just happened, and whose value leaves its zero anew, the low end to where it is off that
- * zero again. Returns 1 where it is found, 0 where there is none, -1 where a step fails. */
+/* Moves the low end, for an event that has just happened and whose value leaves its zero anew, to where it is off that
+ * zero again. Returns 1 if found, 0 if there is none, -1 if a step fails. */
 static int leave_zero(fu_run *run, fu_event event, bracket *b, double least, double close)
 {
     for (b->low = 0.5 * b->high; b->low > least; b->low *= 0.5) {
@@ -211,13 +211,13 @@ static int leave_zero(fu_run *run, fu_event event, bracket *b, double least, dou
     return 0;
 }
 
-/* Shortens the step until it ends where the event happens; returns the step, 0 on failure. `next` is there then. */
+/* Shortens the step until it ends at the event; returns the step, 0 on failure. `next` is there then. */
 static double search(fu_run *run, fu_event event, bracket b, double middle, double least, landing_place at)
 {
     b.g_low -= at.aim;
     b.g_high -= at.aim;
     for (int i = 0; i < MOST_TRIALS; ++i) {
-        /* rounding may rule g */
+        /* rounding may dominate g */
         if (!(middle > b.low && middle < b.high) || (i > FEW_TRIALS && i % 2)) middle = 0.5 * (b.low + b.high);
         if (run->integrator->step(run, middle)) return 0.0;
         const double g = value(run, &run->next, event) - at.aim;
@@ -229,7 +229,7 @@ static double search(fu_run *run, fu_event event, bracket b, double middle, doub
     return 0.0;
 }
 
-/* Does the same from the step h, which leads beyond the event. */
+/* The same from the step h, which leads beyond the event. */
 static double locate(fu_run *run, fu_event event, double h)
 {
     bracket b = {0.0, h, 0.0, value(run, &run->next, event), 0};
@@ -258,8 +258,8 @@ static double locate(fu_run *run, fu_event event, double h)
     return search(run, event, b, middle, least, at);
 }
 
-/* Shortens the step h, which leads beyond an event, until it ends there, with couplings that keep their pieces until
- * one of them leaves its piece. Returns the step, 0 on failure; `next` is there then. */
+/* Shortens the step h, which leads beyond an event, until it ends there, with couplings that keep their segments until
+ * one leaves its segment. Returns the step, 0 on failure; `next` is there then. */
 double fu_locate(fu_run *run, fu_event event, double h)
 {
     const int kept = run->keep_pieces;
@@ -270,8 +270,8 @@ double fu_locate(fu_run *run, fu_event event, double h)
     return found;
 }
 
-/* Takes the values of what is watched at `now`, after a step of h, but not of those that have just passed, or rounding
- * would let them pass again. `late` tells which did together with the one that the step was for. */
+/* Evaluates event functions at `now`, after a step of h, except those that have just passed, which rounding could let
+ * pass again. `late` records those that passed together with the event of the step. */
 void fu_evaluate_event_functions(fu_run *run, fu_event event, double h)
 {
     const int moved = h > FU_AT_ONCE * run->duration;
@@ -289,14 +289,15 @@ void fu_evaluate_event_functions(fu_run *run, fu_event event, double h)
     run->watch_solution = FU_SOLVE_ANEW;
 }
 
-/* Takes the values at `now` of what is far (couplings/common/proximity.c), which are not kept up. */
+/* Evaluates at `now` the event functions of far pairs (couplings/common/proximity.c), which are not updated
+ * otherwise. */
 void fu_evaluate_far_event_functions(fu_run *run)
 {
     for (int k = 0; k < run->n_watches; ++k)
         if (fu_is_far_event_function(run, k)) run->watched[k] = watched(run, &run->now, k);
 }
 
-/* Returns whether a coupling's watch is not a number: then it can go on no more, and the cause is noted. */
+/* Returns whether an event function of a coupling is not finite: then it cannot continue, and the cause is recorded. */
 int fu_has_lost_an_event(fu_run *run)
 {
     const fu_event_function_list near = fu_near_event_functions(run, &run->now);
@@ -308,8 +309,8 @@ int fu_has_lost_an_event(fu_run *run)
     return 0;
 }
 
-/* Gives couplings' watches the sign that they have now that a coupling (its number, or -1) has changed, and has just
- * had the value of one of them zero. */
+/* Sets the signs of the couplings' event functions after a change of a coupling (its number, or -1), one of whose
+ * values has just been zero. */
 void fu_restart_event_functions(fu_run *run, int coupling)
 {
     const fu_event_function_list near = fu_near_event_functions(run, &run->now);
@@ -327,7 +328,7 @@ void fu_restart_event_functions(fu_run *run, int coupling)
     run->watch_solution = FU_SOLVE_ANEW;
 }
 
-/* Returns an event that passed together with another one, and is still to happen; none where there is none. */
+/* Returns an event that passed together with another one, and is still to happen; none if there is none. */
 fu_event fu_late_event(fu_run *run)
 {
     for (int k = 0; k < run->n_watches; ++k)

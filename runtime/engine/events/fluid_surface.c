@@ -1,14 +1,13 @@
-/* Events of drag in a fluid with a surface: a surface begins to cut what the fluid acts on, or all of it is on one
- * side. Forces are continuous there, with their first derivatives but for that of added mass. Steps end there all the
- * same: a body that falls freely takes long ones, and would go deep into the fluid, or through a thin layer, in one
- * whose error estimate has not seen it.
- */
+/* Events of drag in a fluid with a surface: the surface begins to cut a part, or the part is entirely on one side.
+ * Forces and their first derivatives are continuous there, except those of added mass. Steps end there all the same: a
+ * body in free fall has long ones, and would move deep into the fluid, or through a thin layer, without an effect on
+ * the error estimate. */
 #include "bodies/model.h"
 #include "events/fluid_surface.h"
 
 #include <math.h>
 
-#define OF_SURFACE 2 /* watches of each: the first touch, and the last */
+#define OF_SURFACE 2 /* event functions of each: first contact, and last */
 
 static double level_of(const fu_drag *drag, int which)
 {
@@ -31,7 +30,7 @@ int fu_surface_event_functions(const fu_drag *drag, int first, fu_event_function
     return n;
 }
 
-/* Makes the lowest and the highest place, m: of a cable among its nodes. */
+/* Computes the lowest and the highest position, m: of a cable among its nodes. */
 static void heights_of(const fu_model *model, const fu_drag *drag, const fu_state *state, double *low, double *high)
 {
     if (drag->cable < 0) {

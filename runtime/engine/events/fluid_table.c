@@ -1,4 +1,4 @@
-/* Events of drag in a fluid with a table: what it acts on leaves the table, or all of it is back; with those of
+/* Events of drag in a fluid with a table: a part leaves the table, or is entirely within it again; with those of
  * surfaces (events/fluid_surface.c). */
 #include "equations/run.h"
 #include "events/fluid_surface.h"
@@ -6,11 +6,11 @@
 
 #include <math.h>
 
-#define OF_TABLE 1 /* watches of the table, before those of surfaces */
-/* of an axis of a table: what is beyond its edge by less is at it, as a run that ends with a table */
+#define OF_TABLE 1 /* event functions of the table, before those of surfaces */
+/* of an axis of a table: smaller distances beyond an edge are at it, as of a run that ends with a table */
 #define AT_EDGE 1e-9
 
-/* Returns how far within the table a place is, of what has a surface the nearest place of the fluid above or below. */
+/* Returns the distance of a position within the table, with a surface that of the nearest position in the fluid. */
 static double margin_at(const fu_model *model, const fu_drag *drag, double t, const double *r)
 {
     const double height = fu_drag_height(model, drag, r), to = fmin(fmax(height, drag->bottom), drag->surface);
@@ -19,8 +19,8 @@ static double margin_at(const fu_model *model, const fu_drag *drag, double t, co
     return fu_flow_margin(model, &drag->flow, t, at);
 }
 
-/* Returns how far within its table all of what a fluid acts on is, as a part of the table's axes; negative beyond its
- * edges. */
+/* Returns the least distance within the table over all of a part in the fluid, relative to the axes of the table;
+ * negative beyond its edges. */
 static double margin(const fu_model *model, const fu_drag *drag, const fu_state *state)
 {
     double least = 1.0;
@@ -41,7 +41,7 @@ static int has_edges(const fu_drag *drag)
     return drag->flow.degree > 0;
 }
 
-/* Returns flags by the number of the watch: not zero where what it watches is negative. */
+/* Returns flags by the number of the event function: nonzero for a negative value. */
 static int *is_outside(const fu_coupling *coupling, const fu_state *state)
 {
     return state->flags + coupling->flags;
@@ -68,8 +68,8 @@ static int sign(const fu_model *model, const fu_coupling *coupling, const fu_sta
     return is_outside(coupling, state)[which] ? -1 : 1;
 }
 
-/* Notes on which side of a surface something is. Of a table, that something leaves the table, or that all is in it
- * again. The velocity does not jump there, but its derivatives do. */
+/* Records the side of a surface. Of a table, records that a part leaves the table, or is entirely within it again. The
+ * velocity is continuous there, its derivatives are not. */
 static int pass_edge(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
 {
     is_outside(coupling, &run->now)[which] = side < 0;

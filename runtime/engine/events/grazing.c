@@ -1,6 +1,6 @@
-/* Dips: what is watched passes zero within a step and is back at its end, as by a grazing contact. The step then ends
- * where it is predicted to be farthest beyond zero, by the cubic through its values and rates at both ends (Hermite's).
- */
+/* Grazing events: an event function passes zero within a step and returns by its end, as in a grazing contact. The step
+ * then ends at the predicted largest excursion beyond zero, by the cubic through values and rates at both ends
+ * (Hermite). */
 #include "base/cubic.h"
 #include "bodies/rotation.h"
 #include "equations/run.h"
@@ -10,7 +10,8 @@
 
 #include <math.h>
 
-#define ROUNDING_OF_VALUES 1e-14 /* of what a watch is of, and of its values: dips less deep are rounding */
+/* of the values of an event function and its arguments: smaller excursions are rounding */
+#define ROUNDING_OF_VALUES 1e-14
 
 /* Returns the rate of an entry of the configuration, 1/s or m/s. */
 static double rate_of_q(const fu_model *model, const fu_state *state, int index)
@@ -29,7 +30,7 @@ static double rate_of_q(const fu_model *model, const fu_state *state, int index)
     return NAN;
 }
 
-/* Makes value and rate of a watch that is of the state itself; the rate of others is not a number. */
+/* Computes value and rate of an event function of the state itself; the rate of others is NaN. */
 static fu_course course_of(const fu_model *model, const fu_event_function *watch, const fu_state *state)
 {
     if (watch->kind == FU_EVENT_OF_Q)
@@ -43,8 +44,8 @@ static fu_course course_of(const fu_model *model, const fu_event_function *watch
     return (fu_course){0.0, NAN};
 }
 
-/* Returns after what part of a step a watch that has just passed to this side is farthest there, and is back at the
- * end; 0 where it is not. Without a value of its own it would not be seen to pass back. */
+/* Returns the part of a step after which an event function that has just passed to this side is farthest there, and is
+ * back at the end; 0 if it is not. Without a value of its own its passage back would be missed. */
 static double return_of(fu_course from, fu_course to, double h, double least)
 {
     const int side = from.rate > 0.0 ? 1 : -1;
@@ -53,7 +54,7 @@ static double return_of(fu_course from, fu_course to, double h, double least)
     return ends.value[1] > least && x > 0.0 && x < 1.0 && fabs(h * from.rate) > least ? x * h : 0.0;
 }
 
-/* Returns when a watch is farthest beyond zero in the step, s after `now`. */
+/* Returns the time of the largest excursion of an event function beyond zero in the step, s after `now`. */
 static double dip_of(const fu_run *run, int k, double h)
 {
     const fu_event_function *watch = &run->watches[k];
@@ -67,8 +68,8 @@ static double dip_of(const fu_run *run, int k, double h)
     return fu_grazing_time(from, to, run->watched[k] > 0.0 ? 1 : -1, h, least);
 }
 
-/* Returns when the first of the watches that pass zero and are back within the step is farthest beyond, s after `now`;
- * 0 where none is predicted to. */
+/* Returns the time of the largest excursion of the first event function that passes zero and returns within the step, s
+ * after `now`; 0 if none is predicted. */
 double fu_time_of_grazing(const fu_run *run, double h)
 {
     double first = 0.0;

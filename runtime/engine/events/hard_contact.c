@@ -1,5 +1,4 @@
-/* What a hard contact does by itself (couplings/common/coupling_events.h): it comes together, and opens where it would
- * pull. */
+/* Events of a hard contact (couplings/common/coupling_events.h): it closes, and opens under tension. */
 #include "equations/run.h"
 #include "events/contact.h"
 #include "events/events.h"
@@ -8,12 +7,12 @@
 
 #include <math.h>
 
-/* of the weight: what is pulled by less stays closed, as three of four points that bear have none to spare */
+/* of the weight: a smaller tension does not open a contact, since one of four points may bear nothing */
 #define PULL_TOLERANCE 3e-10
 
 static const char *const words[] = {"", "struck", "came into contact", "lost contact", "stuck", "broke loose"};
 
-/* Watches: of the distance, or where it is closed of the force that presses; of friction. */
+/* Event functions: the distance, or of a closed contact the normal force; friction. */
 enum { OF_DISTANCE, OF_FRICTION };
 
 static int watches(const fu_coupling *coupling, fu_event_function *out)
@@ -23,8 +22,8 @@ static int watches(const fu_coupling *coupling, fu_event_function *out)
     return n;
 }
 
-/* Returns the multipliers of a contact that is closed, N: by eq 38, as a Newton method's have the rounding of positions
- * over h^2. */
+/* Returns the multipliers of a closed contact, N: by eq 38, since those of Newton's method have the rounding of
+ * positions over h^2. */
 static const double *multipliers(const fu_run *run, const fu_coupling *coupling, const fu_state *state)
 {
     static const double none[FU_SPACE] = {NAN, NAN, NAN};
@@ -32,7 +31,7 @@ static const double *multipliers(const fu_run *run, const fu_coupling *coupling,
     return fu_event_accelerations(run, state) ? run->accelerator.multipliers + coupling->multiplier : none;
 }
 
-/* Returns by how much what holds the point exceeds what friction can take, N; or how fast it slides backwards, m/s. */
+/* Returns the excess of the tangential force over friction, N; or the speed of reversed sliding, m/s. */
 static double friction_margin(const fu_run *run, const fu_coupling *coupling, const fu_state *state)
 {
     const fu_hard_contact *contact = fu_hard_contact_of(coupling);
@@ -48,7 +47,7 @@ static double friction_margin(const fu_run *run, const fu_coupling *coupling, co
     return -fu_dot(dim, fu_hard_numbers_of(coupling, state)->direction, along.past);
 }
 
-/* How deep it is below the surface, m; where it is closed by how much it pulls, N. */
+/* Penetration, m; of a closed contact the tension, N. */
 static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {
     const int mode = fu_hard_flags_of(coupling, state)->mode;
@@ -79,7 +78,7 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
     *what = words[FU_NO_NEWS];
     if (which == OF_FRICTION && flags->mode != FU_CLOSED) return FU_RUNNING;
     if (flags->news &&
-        run->now.t - *time <= FU_AT_ONCE * run->duration) { /* of what another one has brought; older news is none */
+        run->now.t - *time <= FU_AT_ONCE * run->duration) { /* caused by another point; earlier changes are old */
         *what = words[flags->news];
         flags->news = FU_NO_NEWS;
         return FU_RUNNING;
@@ -93,7 +92,7 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
     return status;
 }
 
-/* The first of them finds how all are. */
+/* The first contact determines the state of all. */
 static int begin(fu_run *run, const fu_coupling *coupling)
 {
     fu_hard_flags *flags = fu_hard_flags_of(coupling, &run->now);

@@ -1,7 +1,6 @@
-/* How hard contacts go on where one of them comes together or would pull: impacts by Newton's law of restitution, all
- * that touch at once; then which of them press, by the accelerations that follow. Both are problems of complementarity
- * over the compliance H M^-1 H' of the points that touch, with all other constraints as they are.
- */
+/* Continuation of hard contacts after one of them closes or would pull: impacts by Newton's law of restitution, at all
+ * active points at once; then normal forces, by the accelerations that follow. Both are complementarity problems over
+ * the compliance H M^-1 H' of the active points, with all other constraints unchanged. */
 #include "bodies/unknowns.h"
 #include "equations/acceleration.h"
 #include "equations/energies.h"
@@ -13,17 +12,17 @@
 #include <math.h>
 #include <string.h>
 
-#define CONTACT_TOLERANCE 1e-12    /* of the largest length: distances at which points touch */
-#define ROUNDING_OF_VELOCITY 1e-11 /* of velocities, or of accelerations: less is none */
-/* of the velocity below which a point comes to rest: what parts more slowly stays, if it is pressed */
+#define CONTACT_TOLERANCE 1e-12    /* of the largest length: distances of active points */
+#define ROUNDING_OF_VELOCITY 1e-11 /* of velocities, or of accelerations: smaller ones are zero */
+/* of the velocity below which a point comes to rest: a slower separation is none under a normal force */
 #define SEPARATION_SPEED 1e-3
 #define REST_SPEED 1e-6 /* of the velocity below which a point comes to rest: the same */
-/* of the kinetic energy of the jump: more than that an impact must not bring */
+/* of the kinetic energy of the jump: largest gain in an impact */
 #define ENERGY_TOLERANCE 1e-9
 
 enum { MOST = FU_MOST_HARD_CONTACTS };
 
-/* Finds what touches, and parts all of it, so that its rows are none of eq 38's. */
+/* Collects the active points and opens all of them, so that their rows are not in eq 38. */
 static void collect(fu_run *run, const fu_coupling *first, fu_active_contacts *t)
 {
     const fu_model *model = run->model;
@@ -35,7 +34,7 @@ static void collect(fu_run *run, const fu_coupling *first, fu_active_contacts *t
         fu_hard_row_at(model, fu_hard_contact_of(c), &run->now, row);
         if (flags->mode == FU_APART && c != first && row->g > CONTACT_TOLERANCE * fu_largest_length(run)) continue;
         fu_keep_largest(&run->farthest[c->number],
-                        fu_hard_beyond(model, fu_hard_contact_of(c), &run->now)); /* it may part within the step */
+                        fu_hard_beyond(model, fu_hard_contact_of(c), &run->now)); /* it may separate within the step */
         t->was[t->n] = flags->mode;
         t->stuck[t->n] = flags->sticks;
         t->friction |= fu_hard_contact_of(c)->friction > 0.0;
@@ -45,7 +44,7 @@ static void collect(fu_run *run, const fu_coupling *first, fu_active_contacts *t
     }
 }
 
-/* Makes the compliance of what touches; returns not zero where other constraints have no solution. */
+/* Computes the compliance of the active points; returns nonzero if other constraints have no solution. */
 static int comply(fu_run *run, fu_active_contacts *t)
 {
     if (fu_prepare_response(run->model, &run->now, &run->accelerator)) return 1;
@@ -59,7 +58,7 @@ static int comply(fu_run *run, fu_active_contacts *t)
     return 0;
 }
 
-/* Makes the jump of velocities by the impulses, in run->work. */
+/* Computes the jump of velocities by the impulses, in run->work. */
 static void jump(fu_run *run, const fu_active_contacts *t)
 {
     memset(run->before, 0, sizeof(double) * (size_t)run->model->n_dof);
@@ -67,8 +66,8 @@ static void jump(fu_run *run, const fu_active_contacts *t)
     fu_response(run->model, &run->accelerator, run->before, run->work);
 }
 
-/* Finds the impulses by which nothing leaves more slowly than by its restitution; returns not zero where there are
- * none. */
+/* Solves for the impulses with which no point separates more slowly than by its restitution; returns nonzero if there
+ * are none. */
 static int solve_impulses(fu_active_contacts *t, double least)
 {
     double b[MOST];
@@ -79,7 +78,7 @@ static int solve_impulses(fu_active_contacts *t, double least)
     return 0;
 }
 
-/* Returns the energy that the impulses take, J: minus their work at the mean of the velocities before and after. */
+/* Returns the energy loss of the impulses, J: minus their work at the mean of the velocities before and after. */
 static double lost(const fu_active_contacts *t)
 {
     double sum = 0.0;
@@ -87,8 +86,7 @@ static double lost(const fu_active_contacts *t)
     return sum;
 }
 
-/* Makes the jump of velocities, in run->work, by the impulses that the law asks for; returns not zero where there are
- * none. */
+/* Computes the jump of velocities, in run->work, by the impulses of the law; returns nonzero if there are none. */
 static int solve(fu_run *run, fu_active_contacts *t, double least)
 {
     if (t->friction) return fu_impact_with_friction(run, t);
@@ -98,8 +96,8 @@ static int solve(fu_run *run, fu_active_contacts *t, double least)
     return 0;
 }
 
-/* Lets what comes together part by its restitution, or stay where it would part too slowly. Restitution that differs
- * from point to point may bring energy: then there is none. Returns not zero where no impulses part it. */
+/* Separates closing points by their restitution, or keeps those that would separate too slowly. Restitutions that
+ * differ from point to point may add energy: then there is none. Returns nonzero if no impulses separate them. */
 static int strike(fu_run *run, fu_active_contacts *t, double least)
 {
     for (int k = 0; k < t->n; ++k) {
@@ -117,8 +115,8 @@ static int strike(fu_run *run, fu_active_contacts *t, double least)
     return 0;
 }
 
-/* Finds which of the points that do not part press, by the accelerations without them; returns not zero where that has
- * no solution. */
+/* Solves for the normal forces of points that do not separate, by the accelerations without them; returns nonzero
+ * without a solution. */
 static int press(fu_run *run, fu_active_contacts *t, double least)
 {
     const fu_model *model = run->model;
@@ -145,7 +143,7 @@ static int press(fu_run *run, fu_active_contacts *t, double least)
     return 0;
 }
 
-/* Returns what has happened to a point that touches. */
+/* Returns the change of an active point. */
 static int news_of(const fu_active_contacts *t, int k, const fu_hard_flags *flags)
 {
     if (t->was[k] == FU_APART)
@@ -154,7 +152,7 @@ static int news_of(const fu_active_contacts *t, int k, const fu_hard_flags *flag
     return flags->sticks == t->stuck[k] ? FU_NO_NEWS : flags->sticks ? FU_STUCK : FU_BROKE_LOOSE;
 }
 
-/* Lets a coupling's watch happen at once, too. */
+/* Triggers an event function of a coupling at once, too. */
 static void let_happen(fu_run *run, const fu_coupling *coupling)
 {
     for (int k = 0; k < run->n_watches; ++k)

@@ -1,8 +1,7 @@
-/* Friction of hard contacts where something jumps. An impact: impulses across the normal against the velocity past the
- * surface, at most friction times the normal impulse, and as large where the point still slides afterwards (Coulomb's
- * law for impulses, with Newton's restitution). After it, or where sliding stops: which points press, stick and slide,
- * by the accelerations that follow.
- */
+/* Friction of hard contacts at a discontinuity. Impact: tangential impulses against the sliding velocity, at most
+ * friction times the normal impulse, and equal to it if the point still slides afterwards (Coulomb's law for impulses,
+ * with Newton's restitution). After it, or where sliding stops: normal force, sticking and sliding of the points, by
+ * the accelerations that follow. */
 #include "equations/acceleration.h"
 #include "equations/energies.h"
 #include "equations/projection.h"
@@ -12,14 +11,14 @@
 #include <math.h>
 #include <string.h>
 
-#define MAX_SWEEPS 20000 /* over the points of an impact, before there is no solution */
+#define MAX_SWEEPS 20000 /* largest number of sweeps over the points of an impact */
 #define CONVERGED 1e-14  /* change of an impulse in a sweep, over the largest */
-/* of the velocity below which a point comes to rest: what is slower sticks, if it can */
+/* of the velocity below which a point comes to rest: slower points stick, if possible */
 #define STICKING_SPEED 0.1
-#define EXCESS 1e-9          /* of what friction can take: so much more breaks it loose */
-#define PULL_TOLERANCE 1e-10 /* of the largest force: more opens a point, less is rounding */
-#define APPROACH 1e-6        /* of the accelerations: more than what sticking gives way by */
-#define MOST_CHANGES 200     /* of how points go on, before there is no motion */
+#define EXCESS 1e-9          /* of the friction limit: excess that breaks a point loose */
+#define PULL_TOLERANCE 1e-10 /* of the largest force: a larger tension opens a point, a smaller one is rounding */
+#define APPROACH 1e-6        /* of the accelerations: above the compliance of sticking */
+#define MOST_CHANGES 200     /* largest number of changes of states of points */
 
 enum { MOST = FU_MOST_HARD_CONTACTS, ROWS = FU_SPACE * FU_MOST_HARD_CONTACTS };
 
@@ -35,7 +34,7 @@ static const double *row_of(const fu_active_contacts *t, const friction_impulse 
     return k % dim ? r->along[k / dim].H[k % dim - 1] : t->row[k / dim].H;
 }
 
-/* Makes the rows, their compliance and the velocities before. */
+/* Computes the rows, their compliance and the velocities before. */
 static void prepare(fu_run *run, const fu_active_contacts *t, friction_impulse *r)
 {
     const fu_model *model = run->model;
@@ -58,7 +57,7 @@ static double velocity(const friction_impulse *r, int k)
     return r->before[k] + fu_dot(r->n, r->A + k * r->n, r->impulse);
 }
 
-/* Mends the impulses of one point, the others' as they are; returns the largest change. */
+/* Corrects the impulses of one point at fixed others; returns the largest change. */
 static double mend(const fu_active_contacts *t, friction_impulse *r, int point, int dim)
 {
     const int k = point * dim;
@@ -110,7 +109,7 @@ int fu_impact_with_friction(fu_run *run, fu_active_contacts *t)
     return 0;
 }
 
-/* Lets a point stick that is slow enough, or slide on. */
+/* Sets a slow enough point to stick, or another one to slide. */
 static void begin(fu_run *run, const fu_active_contacts *t, int k)
 {
     const fu_hard_contact *contact = fu_hard_contact_of(t->of[k]);
@@ -125,7 +124,7 @@ static void begin(fu_run *run, const fu_active_contacts *t, int k)
     for (int d = 0; d < run->model->dim && !flags->sticks; ++d) direction[d] = along.past[d] / speed;
 }
 
-/* Returns by how much what holds a point exceeds what friction can take, over that. */
+/* Returns the relative excess of the tangential force over the friction limit. */
 static double excess(const fu_run *run, const fu_coupling *c)
 {
     const double *multipliers = run->now.forces + c->force;
@@ -135,7 +134,7 @@ static double excess(const fu_run *run, const fu_coupling *c)
     return sqrt(square) / most - 1.0;
 }
 
-/* Makes the direction in which a point that sticks would slide: against what holds it. */
+/* Computes the direction in which a sticking point would slide: against its tangential force. */
 static void aim(fu_run *run, const fu_coupling *c)
 {
     const int dim = run->model->dim;
@@ -154,8 +153,8 @@ static void aim(fu_run *run, const fu_coupling *c)
     for (int d = 0; d < dim && square > 0.0; ++d) direction[d] /= sqrt(square);
 }
 
-/* Aims the points that stick, but those that have been aimed: of points that break loose one after the other at one
- * instant, the last would else be twisted by what those before no longer hold. */
+/* Computes these directions for sticking points without one: of points that break loose one after the other at one
+ * instant, the forces released before would otherwise change the direction of the last. */
 static void aim_all(fu_run *run, const fu_active_contacts *t, int *aimed)
 {
     for (int k = 0; k < t->n; ++k) {
@@ -166,7 +165,7 @@ static void aim_all(fu_run *run, const fu_active_contacts *t, int *aimed)
     }
 }
 
-/* Changes how one point goes on that cannot go on so; returns 0 where all can. */
+/* Changes the state of one point that cannot continue; returns 0 if all can. */
 static int change_one(fu_run *run, const fu_active_contacts *t, const fu_coupling *loose, int *closed)
 {
     const fu_model *model = run->model;
@@ -181,7 +180,7 @@ static int change_one(fu_run *run, const fu_active_contacts *t, const fu_couplin
             flags->mode = FU_APART;
             return 1;
         }
-        if (flags->mode == FU_CLOSED) continue; /* what others imply without friction they may not with it */
+        if (flags->mode == FU_CLOSED) continue; /* redundant points without friction may not be redundant with it */
         fu_hard_row row;
         fu_hard_row_at(model, fu_hard_contact_of(t->of[k]), &run->now, &row);
         double acceleration = row.bias, size = fabs(row.bias) + largest / t->of[k]->scale[0];
@@ -208,7 +207,7 @@ static int change_one(fu_run *run, const fu_active_contacts *t, const fu_couplin
     return breaks != 0;
 }
 
-/* Takes from points that stick what velocity they have left. */
+/* Removes the remaining velocity of sticking points. */
 static int stop(fu_run *run)
 {
     const fu_model *model = run->model;
@@ -226,7 +225,7 @@ int fu_settle_friction(fu_run *run, fu_active_contacts *t, const fu_coupling *lo
     for (int k = 0; k < t->n; ++k)
         if (fu_hard_flags_of(t->of[k], &run->now)->mode == FU_CLOSED && t->of[k]->n_forces > 1) begin(run, t, k);
     if (stop(run)) return 1;
-    fu_complete(run, &run->now); /* points that stick share by normal forces, which the next one takes from here */
+    fu_complete(run, &run->now); /* sticking points share forces by normal forces, which the next one takes from here */
     for (; changes < MOST_CHANGES; ++changes) {
         if (fu_complete(run, &run->now)) {
             if (closed < 0) return 1;

@@ -1,4 +1,4 @@
-/* Impulses along the rows of hard contacts, and what velocities jump by for them. */
+/* Impulses along the rows of hard contacts, and their jumps of velocities. */
 #include "equations/acceleration.h"
 #include "equations/run.h"
 #include "events/hard_contact.h"

@@ -1,4 +1,4 @@
-/* The types of couplings: a new one has its line here. */
+/* The types of couplings. A new one has its line here. */
 #include "couplings/crossing/crossing.h"
 #include "couplings/fluid/drag.h"
 #include "couplings/force/loads.h"

@@ -11,7 +11,7 @@ extern const fu_coupling_events fu_hard_contact_events;
 extern const fu_coupling_events fu_point_force_events;
 extern const fu_coupling_events fu_slide_events;
 
-/* The type of this name, null where there is none; gives a coupling the events of its type. */
+/* The type of this name, null if there is none; assigns the events of its type to a coupling. */
 const fu_coupling_type *fu_coupling_type_of(const char *name);
 const fu_coupling_type *fu_coupling_type_at(size_t k); /* type number k, null beyond the last */
 void fu_bind_events(fu_coupling *coupling);

@@ -1,5 +1,5 @@
-/* How deep couplings have let parts sink below what they touch, and how far beyond its ends these touch, at the ends of
- * steps: rows of output may miss it. */
+/* Largest penetration of couplings, and their contact beyond the ends of surfaces, at the ends of steps, which rows of
+ * output may miss. */
 #include "couplings/common/coupling_events.h"
 #include "equations/run.h"
 #include "events/penetration.h"
@@ -18,7 +18,7 @@ double fu_beyond(const fu_model *model, const fu_coupling *coupling, const fu_st
     return events && events->beyond ? events->beyond(model, coupling, state) : -INFINITY;
 }
 
-/* Takes the depths at `now`, whose watched values are known. What is too far to be watched touches nothing. */
+/* Records the penetrations at `now`, with known event functions. Distant pairs do not touch. */
 void fu_note_depths(fu_run *run)
 {
     const fu_event_function_list near = fu_near_event_functions(run, &run->now);

@@ -1,6 +1,5 @@
-/* Forces between two points pass from piece to piece of their law (couplings/force/segments.c): the distance passes a
- * bound, or the force turns round.
- */
+/* Transitions of forces between two points from segment to segment of their law (couplings/force/segments.c): the
+ * distance passes a bound, or the force reverses. */
 #include "base/cubic.h"
 #include "couplings/force/point_force.h"
 #include "equations/run.h"
@@ -8,7 +7,7 @@
 
 #include <math.h>
 
-#define BISECTIONS 40 /* of a step: where the distance passes a bound, to rounding */
+#define BISECTIONS 40 /* of a step: for the instant at a bound, to rounding */
 
 static const fu_point_force *force_of(const fu_coupling *coupling)
 {
@@ -20,7 +19,7 @@ static double norm(int dim, const double *gap)
     return sqrt(fu_dot(dim, gap, gap));
 }
 
-/* Returns how far the force of a piece is on the right side of nil, m; infinity where it may pull and push. */
+/* Returns the margin of the force of a segment on its permitted side of zero, m; infinity if it may pull and push. */
 static double margin_of_sense(const fu_point_force *between, int piece, const double *gap, const double *rate,
                               double distance)
 {
@@ -31,7 +30,7 @@ static double margin_of_sense(const fu_point_force *between, int piece, const do
     return sense * between->compliance * fu_dot(between->dim, force, gap) / distance;
 }
 
-/* How the force may pass from its piece to another: `margin` is negative while it stays, m. */
+/* A transition of the force from its segment to another: `margin` is negative before it, m. */
 typedef struct {
     double margin;
     int piece;
@@ -42,7 +41,7 @@ static transition farther(transition a, transition b)
     return b.margin > a.margin ? b : a;
 }
 
-/* Returns the nearest piece without force towards the distances at which a piece's own force is nil. */
+/* Returns the nearest segment without force, towards the distances at which a segment's own force is zero. */
 static int free_beside(const fu_point_force *between, int piece)
 {
     const int step = -between->senses[piece];
@@ -50,8 +49,8 @@ static int free_beside(const fu_point_force *between, int piece)
     return piece;
 }
 
-/* Returns the transition of the force to a piece with a force on one side of a piece without: where the points are on
- * it, and its force has its sense. */
+/* Returns the transition to a segment with a force on one side of a segment without: the distance is in it, and its
+ * force has the permitted sense. */
 static transition entering(const fu_point_force *between, int piece, int side, const double *gap, const double *rate,
                            double distance)
 {
@@ -61,7 +60,7 @@ static transition entering(const fu_point_force *between, int piece, int side, c
     return (transition){fmin(beyond, margin_of_sense(between, entered, gap, rate, distance)), entered};
 }
 
-/* Returns the transition from a piece that is nearest, or has happened. */
+/* Returns the nearest transition from a segment, or one that has happened. */
 static transition passage_from(const fu_model *model, const fu_point_force *between, const fu_state *state, int piece)
 {
     transition found = {-INFINITY, piece};
@@ -85,7 +84,7 @@ static transition next_passage(const fu_model *model, const fu_point_force *betw
     return passage_from(model, between, state, fu_force_segment(between, state));
 }
 
-/* Passages follow from where the points are; each leads from piece to piece. */
+/* Transitions follow from the positions of the points; each leads from segment to segment. */
 static int follow(const fu_model *model, const fu_coupling *coupling, const fu_state *from, fu_state *to)
 {
     const fu_point_force *between = force_of(coupling);
@@ -100,7 +99,7 @@ static int follow(const fu_model *model, const fu_coupling *coupling, const fu_s
     return *piece != before;
 }
 
-/* What has happened where the force has passed from piece to piece, in words; nothing at a corner of a table. */
+/* The event of a transition from segment to segment in words; null at a corner of a table. */
 static const char *words(const fu_point_force *between, int before, int after)
 {
     const int was_free = between->senses[before] == FU_HAS_NO_FORCE,
@@ -108,7 +107,7 @@ static const char *words(const fu_point_force *between, int before, int after)
     return is_free ? "became slack" : !was_free ? "" : after > before ? "became taut" : "came into contact";
 }
 
-/* The distance of the points at a state, and what tells of the force: the gap, its rate, its acceleration. */
+/* The distance of the points at a state, and quantities of the force: the gap, its rate, its acceleration. */
 typedef struct {
     double distance, gap[3], rate[3], acceleration[3];
 } gap_motion;
@@ -131,7 +130,7 @@ static gap_motion look_at(const fu_model *model, const fu_point_force *between, 
     return l;
 }
 
-/* Returns the distance of the points, less that at which a piece ends, m, and its rate. */
+/* Returns the distance of the points less the bound of a segment, m, and its rate. */
 static fu_course from_bound(const fu_model *model, const fu_point_force *between, const fu_state *state, int bound)
 {
     double gap[3], gap_rate[3];
@@ -140,8 +139,8 @@ static fu_course from_bound(const fu_model *model, const fu_point_force *between
     return (fu_course){distance - between->bounds[bound], fu_dot(between->dim, gap, gap_rate) / distance};
 }
 
-/* The distance of the points at an end of a step, less that at which a piece ends, and its derivatives by the part of
- * the step, m. */
+/* The distance of the points at an end of a step less the bound of a segment, and its derivatives by the part of the
+ * step, m. */
 typedef struct {
     double value, rate, bend;
 } end_course;
@@ -156,8 +155,8 @@ static end_course end_of(const fu_model *model, const fu_point_force *between, c
     return (end_course){l.distance - between->bounds[bound], h * rate, h * h * bend};
 }
 
-/* Returns where the polynomial is at a part of the step: of degree 3 where the bends at its ends are not known, else of
- * degree 5. */
+/* Returns the polynomial at a part of the step: of degree 3 without second derivatives at its ends, else of degree
+ * 5. */
 static double between_ends(end_course a, end_course b, int bends, double x)
 {
     const double y = 1.0 - x;
@@ -167,8 +166,8 @@ static double between_ends(end_course a, end_course b, int bends, double x)
            x * x * x * ((1.0 + 3.0 * y + 6.0 * y * y) * b.value - y * (1.0 + 3.0 * y) * b.rate + 0.5 * y * y * b.bend);
 }
 
-/* By the polynomial of the distance through both ends of the step (Hermite's); where a damper turns the force round, by
- * the line of its margins. */
+/* By the polynomial of the distance through both ends of the step (Hermite); where a damper reverses the force, by the
+ * line of its margins. */
 static double part_of_step(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
                            double h, int bends, const char **what)
 {
@@ -220,14 +219,14 @@ static double watched(const fu_run *run, const fu_coupling *coupling, const fu_s
     return next_passage(run->model, force_of(coupling), state).margin;
 }
 
-/* Returns by how much the distance is beyond that of a bound to a side, m, and its rate. */
+/* Returns the distance beyond a bound to a side, m, and its rate. */
 static fu_course beyond(const fu_point_force *between, int bound, int side, const gap_motion *l)
 {
     const double rate = fu_dot(between->dim, l->gap, l->rate) / l->distance;
     return (fu_course){side * (l->distance - between->bounds[bound]), side * rate};
 }
 
-/* Returns how far the force of a piece is on the wrong side of nil, m, and its rate. */
+/* Returns the distance of a segment's force on the wrong side of zero, m, and its rate. */
 static fu_course wrong_sense(const fu_point_force *between, int piece, const gap_motion *l)
 {
     const int dim = between->dim;
@@ -242,8 +241,8 @@ static fu_course wrong_sense(const fu_point_force *between, int piece, const gap
     return (fu_course){unit * along, unit * slope};
 }
 
-/* Each of the passages alone is smooth. A piece with a force is entered at its bound first, as its damper then has its
- * sense. */
+/* Each transition alone is smooth. A segment with a force is entered at its bound first, where its damper has the
+ * permitted sense. */
 static double grazing(const fu_run *run, const fu_coupling *coupling, int which, double h)
 {
     const fu_point_force *between = force_of(coupling);
@@ -280,7 +279,7 @@ static int can_act(const fu_coupling *coupling)
     return force_of(coupling)->n_pieces > 1;
 }
 
-/* A force that the damper would turn round at the start is none. */
+/* A force that the damper would reverse at the start is zero. */
 static int begin(fu_run *run, const fu_coupling *coupling)
 {
     const fu_point_force *between = force_of(coupling);

@@ -1,18 +1,16 @@
-/* Looks for what may be near: clearances of couplings measured anew, and the watches that may pass zero.
- *
- * couplings/common/proximity.c has what a look is for, and what lies between two of them.
- */
+/* Search for near pairs: clearances of couplings measured anew, and event functions that may pass zero.
+ * couplings/common/proximity.c explains the search and the interval between two searches. */
 #include "equations/run.h"
 #include "events/proximity.h"
 
 #include <math.h>
 #include <string.h>
 
-#define STEPS_A_LOOK 16            /* for which a look shall do */
-#define MAX_STEPS_A_LOOK 256       /* steps after which there is another look, as motions may have become slower */
-#define ROUNDING_OF_CLEARANCE 1e-9 /* of clearances, ways and places */
+#define STEPS_A_LOOK 16            /* for which a search should suffice */
+#define MAX_STEPS_A_LOOK 256       /* steps after which the search is repeated, since motions may have become slower */
+#define ROUNDING_OF_CLEARANCE 1e-9 /* of clearances, path lengths and positions */
 
-/* Makes the speeds of a mover, m/s and rad/s. */
+/* Computes the speeds of a moving part, m/s and rad/s. */
 static void speeds_of(const fu_model *model, int mover, const double *v, double *speed, double *spin)
 {
     const fu_body *body = fu_body_of_mover(model, mover);
@@ -42,7 +40,7 @@ fu_event_function_list fu_near_event_functions(const fu_run *run, const fu_state
     return run->model->n_pairs && fu_movers_are_near(run->model, state->q) ? near_watches(run) : every_watch(run);
 }
 
-/* A cubic goes no farther from its ends than a third of the step at their rates. */
+/* A cubic moves no farther from its ends than a third of the step at their rates. */
 fu_event_function_list fu_near_event_functions_within(const fu_run *run, double h)
 {
     const fu_model *model = run->model;
@@ -67,7 +65,7 @@ int fu_is_far_event_function(const fu_run *run, int watch)
     return c && run->model->n_pairs && run->model->proximity->is_known && run->model->proximity->is_far[c->number];
 }
 
-/* Returns what a pair's movers have gone at all, or may go until the next look. */
+/* Returns the path length of a pair's parts so far, or its limit until the next search. */
 static double used_by(const fu_proximity *p, const fu_pair *pair, int ahead)
 {
     double sum = 0.0;
@@ -92,7 +90,7 @@ static void measure(const fu_model *model, fu_pair *pair, const fu_state *state)
         p->movers[pair->between[0]].radius = fmax(p->movers[pair->between[0]].radius, found.radius);
 }
 
-/* Returns whether a pair stays far while its movers go no farther than they may until the next look. */
+/* Returns whether a pair stays far while its parts move within their limit until the next search. */
 static int stays_far(const fu_run *run, const fu_pair *pair)
 {
     const fu_proximity *p = run->model->proximity;
@@ -100,7 +98,7 @@ static int stays_far(const fu_run *run, const fu_pair *pair)
     return pair->limit - used_by(p, pair, 0) > ahead + ROUNDING_OF_CLEARANCE * (ahead + run->extent);
 }
 
-/* Measures pairs at a state that may be near before the next look, or all of them, and notes which are far. */
+/* Measures pairs at a state that may be near before the next search, or all of them, and records the far ones. */
 static void sort_pairs(fu_run *run, const fu_state *state, int all)
 {
     fu_proximity *p = run->model->proximity;
@@ -111,7 +109,7 @@ static void sort_pairs(fu_run *run, const fu_state *state, int all)
     }
 }
 
-/* Lists what is not far. */
+/* Lists the near pairs. */
 static void list_near(fu_run *run)
 {
     const fu_model *model = run->model;
@@ -124,7 +122,7 @@ static void list_near(fu_run *run)
         if (!fu_is_far_event_function(run, k)) p->near_watches[p->n_near_watches++] = k;
 }
 
-/* Counts what movers have gone since the last look; returns whether one of them has gone half of what it may. */
+/* Adds the path lengths of parts since the last search; returns whether one has used half of its limit. */
 static int count_ways(const fu_model *model, const fu_state *state, double *ways, double *turns)
 {
     const fu_proximity *p = model->proximity;
@@ -138,7 +136,7 @@ static int count_ways(const fu_model *model, const fu_state *state, double *ways
     return is_late;
 }
 
-/* Lets movers go as far until the next look as they have gone of late, or go now, in some steps of h. */
+/* Sets the limits of parts until the next search to their recent or present motion over several steps of h. */
 static void expect(const fu_model *model, const fu_state *state, double h, int steps, const double *ways,
                    const double *turns)
 {

@@ -1,12 +1,13 @@
-/* Which couplings may act, and which watches may pass zero: events/proximity.c. */
+/* Couplings that may act, and event functions that may pass zero: events/proximity.c. */
 #ifndef FUNICULAR_EVENTS_PROXIMITY_H
 #define FUNICULAR_EVENTS_PROXIMITY_H
 
 #include "couplings/common/proximity.h"
 
-/* The watches that may pass zero up to a state (null: in no way), or within a step of h that leads to `next`. */
+/* The event functions that may pass zero up to a state (null: in any way), or within a step of h that leads to
+ * `next`. */
 typedef struct {
-    const int *list; /* null: all, in their order */
+    const int *list; /* null: all, in order */
     int n;
 } fu_event_function_list;
 fu_event_function_list fu_near_event_functions(const fu_run *run, const fu_state *state);
@@ -15,10 +16,10 @@ static inline int fu_event_function_of(fu_event_function_list list, int i)
 {
     return list.list ? list.list[i] : i;
 }
-/* Whether a watch was passed over when values at `now` were taken. */
+/* Whether an event function was left out at the last evaluation at `now`. */
 int fu_is_far_event_function(const fu_run *run, int watch);
 
-/* Looks anew at what may be near, after a step of h, where that may be needed, or in any case. */
+/* Repeats the search for near pairs after a step of h, if necessary or in any case. */
 void fu_look_around(fu_run *run, double h, int anew);
 
 #endif

@@ -1,12 +1,12 @@
-/* Cables that give way in compression: when the first of a cable's elements becomes slack, and when all are taut again,
- * by the axial strain in the middle of each. Nothing jumps there, as the law is smooth: steps go over it, and the
- * instant is that of the line through the least strains at both ends of a step. */
+/* Tension-only cables: the first of a cable's elements becomes slack, and all are taut again, by the axial strain in
+ * the middle of each. The law is smooth: steps do not end there, and the instant is interpolated linearly between the
+ * least strains at both ends of a step. */
 #include "equations/run.h"
 #include "events/slack_cables.h"
 
 #include <math.h>
 
-/* Returns the axial strain in the middle of an element: how much longer than 1 the slope is. */
+/* Returns the axial strain in the middle of an element, the length of the slope less 1. */
 static double strain(const fu_cable *cable, const double *q, int element)
 {
     const double l = fu_element_length(cable, element), *e = q + cable->first + (long)element * cable->per_node;
@@ -18,7 +18,7 @@ static double strain(const fu_cable *cable, const double *q, int element)
     return sqrt(fu_dot(dim, slope, slope)) - 1.0;
 }
 
-/* Returns the least strain of a cable's elements, and in which it is. */
+/* Returns the least strain of a cable's elements, and its element. */
 static double least_strain(const fu_cable *cable, const double *q, int *element)
 {
     double least = INFINITY;
@@ -32,7 +32,7 @@ static double least_strain(const fu_cable *cable, const double *q, int *element)
     return least;
 }
 
-/* Takes how cables are at the start of a run. */
+/* Records the state of cables at the start of a run. */
 void fu_begin_slackness(fu_run *run)
 {
     for (int c = 0; c < run->model->n_cables; ++c) {
@@ -44,7 +44,7 @@ void fu_begin_slackness(fu_run *run)
     }
 }
 
-/* Notes what becomes slack or taut in the step that is about to be accepted. */
+/* Records changes between slack and taut in the step that is about to be accepted. */
 void fu_note_slackness(fu_run *run, double h)
 {
     for (int c = 0; c < run->model->n_cables; ++c) {
@@ -62,8 +62,8 @@ void fu_note_slackness(fu_run *run, double h)
     }
 }
 
-/* Makes the earliest of what the caller does not know of, if it is before an instant, the run's event; returns 0 where
- * there is none. */
+/* Makes the earliest unreported change, if it is before an instant, the event of the run; returns 0 if there is
+ * none. */
 int fu_take_slackness(fu_run *run, double before)
 {
     fu_slackness *first = 0;
@@ -79,7 +79,7 @@ int fu_take_slackness(fu_run *run, double before)
     return 1;
 }
 
-/* Returns whether what was read from a file is possible. */
+/* Returns whether data from a file are possible. */
 int fu_possible_slackness(const fu_run *run)
 {
     for (int c = 0; c < run->model->n_cables; ++c) {

@@ -1,14 +1,13 @@
-/* Cables that give way in compression, where they become slack and taut: events/slack_cables.c. */
+/* Tension-only cables that become slack and taut: events/slack_cables.c. */
 #ifndef FUNICULAR_EVENTS_SLACK_CABLES_H
 #define FUNICULAR_EVENTS_SLACK_CABLES_H
 
 #include "base/common.h"
 
-#define FU_SLACK_STRAIN 1e-9 /* what is compressed by less is not slack, lest rounding say so */
+#define FU_SLACK_STRAIN 1e-9 /* smaller compressions are not slack, since they may be rounding */
 
-/* Of a cable: the least axial strain in the middle of its elements at `now`; whether any is slack; the one that was
- * first, or last, slack; what the caller is to learn: 1 that some are slack, -1 that none is any more, 0 nothing; and
- * when that was, s. */
+/* Of a cable: the least axial strain in the middle of its elements at `now`; whether any is slack; the first, or last,
+ * slack one; the unreported change: 1 some are slack, -1 none is any more, 0 none; and its time, s. */
 struct fu_slackness {
     double least, at;
     int is_slack, element, pending;

@@ -1,6 +1,5 @@
-/* What a slide does by itself (couplings/common/coupling_events.h): it passes from element to element of its cable,
- * sticks, breaks loose, and reaches what waits at the ends. events/end_stops.c has what then happens.
- */
+/* Events of a slide (couplings/common/coupling_events.h): it passes from element to element of its cable, sticks,
+ * breaks loose, and reaches the ends. events/end_stops.c has the actions. */
 #include "base/cubic.h"
 #include "couplings/joint/joint.h"
 #include "couplings/slide/resistance.h"
@@ -10,8 +9,8 @@
 #include "events/end_stops.h"
 #include "events/list.h"
 
-/* Watches of a slide: whether it stays locked, or slides on in its direction; or, as the side of that end, its buffer.
- */
+/* Event functions of a slide: whether it stays locked, or slides in its direction; or, as the side of that end, its
+ * buffer. */
 enum { BUFFER_AT_START = -1, STICKING = 0, BUFFER_AT_END = 1 };
 
 static const fu_slide *slide_of(const fu_coupling *coupling)
@@ -38,17 +37,17 @@ static int can_act(const fu_coupling *coupling)
     return slide->resistance || slide->stops[0].kind || slide->stops[1].kind;
 }
 
-/* A slide that can act passes no boundary unseen; axes that a slide ties to the cable turn by a jump where curvature
- * jumps. */
+/* A slide with events stops at each boundary; axes that a slide ties to the cable rotate suddenly where curvature is
+ * discontinuous. */
 static int stops_at_boundaries(const fu_model *model, const fu_coupling *coupling)
 {
     return can_act(coupling) || fu_ties_a_frame(model, coupling->index);
 }
 
-/* Where the rider's axes are tied to the cable they get a new angular velocity. What the step has left of the
- * constraints is projected away before, lest it be taken for a loss. The tangent of the neighbour differs by the jump
- * of the curvature times how far the slide is beyond the boundary: were the axes not turned along at once, the first
- * short step would turn them, at a speed that none of the energies has. */
+/* If the rider's axes are tied to the cable they get a new angular velocity. The constraint error of the step is
+ * projected away before, so that it does not count as a loss. The tangent of the neighbour differs by the jump of the
+ * curvature times the distance beyond the boundary: if the axes were not rotated at once, the first short step would
+ * rotate them, at a speed without a counterpart in the energies. */
 static int enter(fu_run *run, const fu_coupling *coupling, int piece)
 {
     const fu_model *model = run->model;
@@ -84,7 +83,7 @@ static double watched(const fu_run *run, const fu_coupling *coupling, const fu_s
                              : fu_buffer_margin(run, state, coupling->index, which);
 }
 
-/* A slide comes into a buffer at its end. */
+/* A slide enters a buffer at its end. */
 static double grazing(const fu_run *run, const fu_coupling *coupling, int which, double h)
 {
     const fu_model *model = run->model;
