@@ -15,6 +15,7 @@ of a spec do not count.
 from __future__ import annotations
 
 from collections.abc import Collection
+from typing import Any
 
 from funicular.errors import ResultFileError
 from rich.console import Console
@@ -56,7 +57,7 @@ def generate(names: list[str] | None = None, show: bool = False) -> dict[str, st
     return files
 
 
-def _origin(record: dict, wanted: Collection[str] | None) -> manifest.Origin:
+def _origin(record: dict[str, Any], wanted: Collection[str] | None) -> manifest.Origin:
     """Return what the files of all families are made from once those of the wanted ones (None: of all) are.
 
     While another family is stale, its record must stay that of the sources that it was made from.
@@ -66,7 +67,7 @@ def _origin(record: dict, wanted: Collection[str] | None) -> manifest.Origin:
     return manifest.origin(families().values())
 
 
-def stale(record: dict) -> dict[str, Family]:
+def stale(record: dict[str, Any]) -> dict[str, Family]:
     """Return the families by name whose specs or tools are not those that a manifest records."""
     every = families()
     if record.get("tools") != emit.tools():

@@ -18,6 +18,7 @@ from collections.abc import Iterator
 from multiprocessing import get_context
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 from funicular.kernels.libraries import Kernel
 from rich import box
@@ -131,7 +132,7 @@ def attempt(family: Family) -> int:
     return report.failures
 
 
-def _times(family: Family, content: dict, work: Path) -> dict[str, float]:
+def _times(family: Family, content: dict[str, Any], work: Path) -> dict[str, float]:
     """Return the microseconds a call by kernel, from the C in a folder."""
     flags = [*SHARED_FLAGS, f"-I{work}"]
     units = compile_units([work / f"{family.name}.c"], flags, work)
@@ -150,7 +151,7 @@ def _verified(family: Family, programs: list[Program], work: Path) -> Report:
     return report
 
 
-def _table(kernels: dict, before: dict, microseconds: dict[str, float]) -> Table:
+def _table(kernels: dict[str, Any], before: dict[str, Any], microseconds: dict[str, float]) -> Table:
     """Return operations as they are and as generated/ has them, and times of one thread, by kernel."""
     table = Table(box=box.SIMPLE_HEAD)
     for name in ("kernel", "operations", "in generated/", "µs a call"):

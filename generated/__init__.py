@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 
-def described(manifest: dict, families: Iterable[str] | None = None) -> dict[str, dict]:
+def described(manifest: dict[str, Any], families: Iterable[str] | None = None) -> dict[str, dict[str, Any]]:
     """Return the kernels of a manifest by name: doc, source, family, inputs, outputs, operations.
 
     Each input and output has name, shape, unit and doc. families: those wanted, all by default. Raises KeyError for an
     argument or a family that the manifest lacks.
     """
-    def argument(key: str) -> dict:
+    def argument(key: str) -> dict[str, Any]:
         name, _, shape = key.partition(" ")[0].rstrip("]").partition("[")
         sizes = [int(n) for n in shape.split("x")] if shape else []
         return {"name": name, "shape": sizes, **manifest["arguments"][key]}

@@ -12,8 +12,9 @@ G0 belongs to the straight reference of length l, whose strain vectors are unit 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -59,11 +60,12 @@ class Gram:
         return self.element.nodal_conditions(functions).inv().applyfunc(sp.cancel)[1:, :]
 
     @cached_property
-    def gradient(self) -> list[list]:
+    def gradient(self) -> list[list[Any]]:
         """Return gradient with F = sum_m c_m (x) gradient[m]: derivatives of psi_m by x, y, z in the ring of
         polynomials.
         """
-        by = [integrals.d_dx, lambda p: p.diff(integrals.Y), lambda p: p.diff(integrals.Z)]
+        by: list[Callable[[PolyElement], PolyElement]] = [integrals.d_dx, lambda p: p.diff(integrals.Y),
+                                                          lambda p: p.diff(integrals.Z)]
         return [[by[i](p) for i in range(self.element.dim)] for p in self.psi]
 
     @cached_property
@@ -95,7 +97,7 @@ class Gram:
         """Return dG_p/dc_m, a vector, or None where it is zero."""
         a, b = self.pairs[p]
         if a == b == m:
-            return 2 * c[m]
+            return np.asarray(2 * c[m])
         return c[b] if a == m else c[a] if b == m else None
 
     def vector_forces(self, program: Program, c: np.ndarray, u: Sequence[sp.Expr]) -> np.ndarray:
@@ -106,7 +108,7 @@ class Gram:
 
     def nodal_forces(self, program: Program, f: np.ndarray, w: sp.Expr) -> np.ndarray:
         """Return the forces on nodal vectors (n, dim) from forces f on strain vectors, f_d = T' f_c, in N and N m."""
-        nodal: list = []
+        nodal: list[Any] = []
         for k, position in enumerate(self.element.is_position):
             column = sum(self.scaled[m][k] * f[m] for m in range(len(f)) if self.scaled[m][k] != 0)
             nodal.append(program.vector(f"f_{self.element.names[k]}", column * w if position else column))

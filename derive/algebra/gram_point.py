@@ -14,7 +14,7 @@ from .gram import Gram
 Expansion = dict[tuple[int, int], np.ndarray]
 
 
-def expansion(polynomials: Sequence, c: np.ndarray, X: sp.Expr, w: sp.Expr) -> Expansion:
+def expansion(polynomials: Sequence[Any], c: np.ndarray, X: sp.Expr, w: sp.Expr) -> Expansion:
     """Return the sum of ring polynomials times strain vectors as a polynomial in y and z: {(power of y, power of z):
     vector}.
     """

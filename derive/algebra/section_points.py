@@ -7,6 +7,7 @@ distance y the second and the fourth moments of all of them are right: y^2 is th
 from __future__ import annotations
 
 from fractions import Fraction
+from typing import Any
 
 HALF, QUARTER = Fraction(1, 2), Fraction(1, 4)
 
@@ -20,6 +21,6 @@ KINDS: tuple[tuple[int, int, tuple[Fraction | int, ...]], ...] = (
 constants, as coefficients of their integrals of 1, of y^2, of z^2 and of y^2 z^2, each over those squared distances."""
 
 
-def table() -> list[list]:
+def table() -> list[list[Any]]:
     """Return the kinds for the manifest, in numbers that a file has exactly."""
     return [[i, k, [float(share) for share in shares]] for i, k, shares in KINDS]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -21,11 +22,11 @@ def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     degrees.
     """
     if len(b) == 2:
-        return a[0] * np.array([-b[1], b[0]])
+        return np.asarray(a[0] * np.array([-b[1], b[0]]))
     return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
-def spatial(vector: np.ndarray | Sequence) -> np.ndarray:
+def spatial(vector: np.ndarray | Sequence[Any]) -> np.ndarray:
     """Return a vector of the plane or of space with three components."""
     return np.concatenate([vector, np.full(3 - len(vector), sp.S.Zero)])
 

@@ -30,7 +30,7 @@ class _Load:
         """Define A in a stage of its own and return it."""
         self.program.stage("axes")
         self.A = self.body.axes(self.program, self.b)
-        return self.A
+        return np.asarray(self.A)
 
     def outputs(self, force: np.ndarray, moment: np.ndarray) -> Program:
         """Declare the outputs g and K of a force in global axes and a moment about body axes."""

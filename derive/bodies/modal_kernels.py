@@ -170,11 +170,11 @@ class Point:
     def section_in_body(self) -> np.ndarray:
         """Return C, by columns the axes of the section in body axes."""
         tilde = skew(self.theta)
-        return np.eye(len(tilde), dtype=int) + self.scale * (tilde + tilde.dot(tilde) / 2)
+        return np.asarray(np.eye(len(tilde), dtype=int) + self.scale * (tilde + tilde.dot(tilde) / 2))
 
     def section(self) -> np.ndarray:
         """Return A C, by columns the axes of the section."""
-        return self.A.dot(self.section_in_body())
+        return np.asarray(self.A.dot(self.section_in_body()))
 
     def follower(self) -> np.ndarray:
         """Declare the input c, a force along the axes of the section, and return it in body axes."""
@@ -184,7 +184,7 @@ class Point:
 
     def relative(self, rate: np.ndarray) -> np.ndarray:
         """Turn of the section in body axes by this rate of theta."""
-        return self.scale * (rate + (vector_product(self.theta, rate) / 2 if self.turns == 3 else 0))
+        return np.asarray(self.scale * (rate + (vector_product(self.theta, rate) / 2 if self.turns == 3 else 0)))
 
     def turned(self, vector: np.ndarray) -> np.ndarray:
         """Return the components along global axes of a turn given in body axes."""

@@ -38,7 +38,7 @@ def rotation(q: np.ndarray) -> np.ndarray:
     """Return A(q) (3, 3), from body to global axes."""
     w, v = q[0], q[1:]
     across = skew(v)
-    return np.eye(3, dtype=int) + 2 * (w * across + across.dot(across))
+    return np.asarray(np.eye(3, dtype=int) + 2 * (w * across + across.dot(across)))
 
 
 def skew(v: np.ndarray) -> np.ndarray:
@@ -69,7 +69,7 @@ def exponential_tangent(program: Program, psi: np.ndarray) -> np.ndarray:
     root = program.define("angle", sp.sqrt(square))
     c2, c3 = (stumpff(program, f"c{k}", k, square, root) for k in (2, 3))
     across = skew(psi)
-    return np.eye(3, dtype=int) - c2 * across + c3 * across.dot(across)
+    return np.asarray(np.eye(3, dtype=int) - c2 * across + c3 * across.dot(across))
 
 
 def cayley(half: np.ndarray) -> np.ndarray:

@@ -24,7 +24,7 @@ class KernelPrinter(C99CodePrinter):
     """C99 with products for powers; raises on anything but plain arithmetic, sine, cosine, a choice of two."""
 
     def _print_Symbol(self, expr: sp.Symbol) -> str:
-        return expr.name
+        return str(expr.name)
 
     def _print_Integer(self, expr: sp.Integer) -> str:
         return f"{int(expr)}.0"
@@ -90,7 +90,7 @@ class KernelPrinter(C99CodePrinter):
         # SymPy's printer knows many functions and constants; the kernels must not
         if not isinstance(expr, _PRINTED):
             raise ValueError(f"{type(expr).__name__} has no kernel form: {expr}")
-        return super()._print(expr, **kwargs)
+        return str(super()._print(expr, **kwargs))
 
 
 def _is_short(expr: sp.Expr) -> bool:
@@ -103,4 +103,4 @@ _PRINTER = KernelPrinter({"order": "lex"})
 
 def c_expression(expr: sp.Expr) -> str:
     """Return the C text of an expression."""
-    return _PRINTER.doprint(expr)
+    return str(_PRINTER.doprint(expr))

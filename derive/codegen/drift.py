@@ -7,6 +7,7 @@ import json
 import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 from funicular.base.written_files import write_text
 
@@ -35,7 +36,7 @@ def current(name: str) -> str | None:
     return path.read_bytes().decode("utf-8", errors="replace") if path.is_file() else None
 
 
-def record() -> dict:
+def record() -> dict[str, Any]:
     """Return the manifest, empty where it is missing or broken."""
     try:
         found = json.loads(current(MANIFEST) or "{}")

@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import groupby, product
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -70,7 +71,7 @@ class Block:
 
     array: Array
     start: Index
-    index: Callable[[Sequence], list]
+    index: Callable[[Sequence[Any]], list[Any]]
     exprs: dict[Index, sp.Expr]
     match: Match | None
 
@@ -160,8 +161,8 @@ class _Writer:
         """Yield blocks over the `moving` axes; those that are not alike are split again, over fewer axes."""
         dim = self.layout.dim
         for start in product(*(span[::dim] if axis in moving else span for axis, span in enumerate(within))):
-            def index(turn: Sequence, start: tuple[int, ...] = start) -> list:
-                at: list = list(start)
+            def index(turn: Sequence[Any], start: tuple[int, ...] = start) -> list[Any]:
+                at: list[Any] = list(start)
                 for axis, k in zip(moving, turn, strict=True):
                     at[axis] = k + start[axis] if isinstance(k, int) else (k, start[axis])
                 return at
@@ -322,7 +323,7 @@ class _Writer:
         return textwrap.wrap(text, WIDTH - 4, subsequent_indent="    ", break_long_words=False) if found else []
 
 
-def _fixed(at: Index, turn: Sequence) -> list:
+def _fixed(at: Index, turn: Sequence[Any]) -> list[Any]:
     """Return the index `at` for any turn."""
     return list(at)
 

@@ -20,12 +20,12 @@ from .provenance import hashes
 from .rendering import Derived, Recorded, digest, interface, layout, tables, tools
 
 
-def recorded(family: Family, manifest: dict) -> Derived | None:
+def recorded(family: Family, manifest: dict[str, Any]) -> Derived | None:
     """Return a family as the manifest has it, without a derivation; None where it has not."""
     if family.name not in manifest.get("families", {}):
         return None
 
-    def arguments(rows: list[dict]) -> list[Argument]:
+    def arguments(rows: list[dict[str, Any]]) -> list[Argument]:
         return [Argument(a["name"], tuple(a["shape"]), a["unit"], a["doc"]) for a in rows]
 
     kernels = [Recorded(name, k["doc"], k["source"], arguments(k["inputs"]), arguments(k["outputs"]), k["operations"])
@@ -46,15 +46,15 @@ def origin(families: Collection[Family]) -> Origin:
     return Origin(tools(), hashes(families))
 
 
-def text(every: list[Derived], made_from: Origin, files: dict[str, str], layout_of: dict | None = None,
-         more: dict | None = None) -> str:
+def text(every: list[Derived], made_from: Origin, files: dict[str, str], layout_of: dict[str, Any] | None = None,
+         more: dict[str, Any] | None = None) -> str:
     """Return the text of the manifest of these families.
 
     files: texts of generated files, whose hashes it keeps; layout_of: as in `rendering.render`; more: further parts.
     """
     arguments = _keys(a for d in every for p in d.programs for a in (*p.inputs, *p.outputs))
 
-    def row(program: Program | Recorded, source: str) -> dict:
+    def row(program: Program | Recorded, source: str) -> dict[str, Any]:
         listed = " -> ".join(", ".join(arguments[a] for a in of) for of in (program.inputs, program.outputs))
         return {"doc": program.doc, **({} if program.source == source else {"source": program.source}),
                 "arguments": listed, "operations": {kind: n for kind, n in program.operations().items() if n}}
@@ -88,7 +88,7 @@ def _keys(arguments: Iterable[Argument]) -> dict[Argument, str]:
     return keys
 
 
-def json_text(content: dict) -> str:
+def json_text(content: dict[str, Any]) -> str:
     """Return JSON text with a line for each entry of each part, of the kernels for each kernel."""
     parts = [f" {json.dumps(name)}: {_rows(part, 2 if name == 'kernels' else 1, ' ')}"
              for name, part in content.items()]
@@ -106,7 +106,7 @@ def _rows(value: Any, depth: int, indent: str) -> str:
     return f"{first}\n{indent} {inner}\n{indent}{last}"
 
 
-def _element(family: Family, every: list[Derived]) -> dict:
+def _element(family: Family, every: list[Derived]) -> dict[str, Any]:
     """Return what a scene needs to know of an element; `laws`: each with what it is, see `LawTraits`."""
     element = family.element
     assert element is not None
@@ -115,7 +115,7 @@ def _element(family: Family, every: list[Derived]) -> dict:
             "laws": laws}
 
 
-def _law(family: Family) -> dict:
+def _law(family: Family) -> dict[str, Any]:
     """Return what a scene needs to know of a law: its traits, and whose section stiffness and kernels it takes."""
     assert family.traits is not None
     traits = {name: value for name, value in asdict(family.traits).items()
@@ -124,7 +124,7 @@ def _law(family: Family) -> dict:
             "discrete_gradient": "discrete_force" not in family.missing}
 
 
-def _point_law(family: PointLawFamily) -> dict:
+def _point_law(family: PointLawFamily) -> dict[str, Any]:
     """Return what a scene needs to know of the law of a force between two points; `parameters`: units by name."""
     law = family.point_law
     return {"parameters": {name: unit for name, (unit, _) in law.parameters.items()}, "damping": law.damping}

@@ -232,7 +232,7 @@ class DirectionalDerivative:
 
     def array(self, values: np.ndarray) -> np.ndarray:
         """Apply to every entry."""
-        return np.vectorize(self, otypes=[object])(values)
+        return np.asarray(np.vectorize(self, otypes=[object])(values))
 
 
 def jacobian(program: Program, values: np.ndarray, wrt: Sequence[sp.Symbol] | np.ndarray,
@@ -248,4 +248,4 @@ def jacobian(program: Program, values: np.ndarray, wrt: Sequence[sp.Symbol] | np
 
 
 def _plain(symbol: sp.Symbol) -> str:
-    return symbol.name.replace("[", "").replace("]", "")
+    return str(symbol.name.replace("[", "").replace("]", ""))

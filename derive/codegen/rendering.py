@@ -12,6 +12,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from importlib import metadata
+from typing import Any
 
 import jinja2
 import sympy as sp
@@ -85,7 +86,7 @@ class Table:
     kernels: dict[str, str]
 
 
-def tables(every: list[Derived], layout: dict | None = None) -> dict[str, Table]:
+def tables(every: list[Derived], layout: dict[str, Any] | None = None) -> dict[str, Table]:
     """Return the engine's tables by role: laid out as these families allow, or as a manifest's "tables" has them.
 
     Raises FamilyError for a family without a kernel that the layout asks for.
@@ -106,18 +107,18 @@ def tables(every: list[Derived], layout: dict | None = None) -> dict[str, Table]
     return {role: Table(of, **layout[role]) for role, of in roles.items()}
 
 
-def layout(of: dict[str, Table]) -> dict[str, dict]:
+def layout(of: dict[str, Table]) -> dict[str, dict[str, Any]]:
     """Return what a manifest keeps of tables, so that a library of the user's has the same layout."""
     return {role: {"facts": table.facts, "kernels": table.kernels} for role, table in of.items()}
 
 
-def interface(of: dict[str, dict]) -> str:
+def interface(of: dict[str, dict[str, Any]]) -> str:
     """Return the hash of a layout: engine and library fit each other where it is the same."""
     return digest(json.dumps(of))
 
 
 def render(every: list[Derived], wanted: Iterable[str], done: Callable[[str], None],
-           layout_of: dict | None = None) -> dict[str, str]:
+           layout_of: dict[str, Any] | None = None) -> dict[str, str]:
     """Return the text of the wanted families' files, of the headers of their groups and of the common files, by name.
 
     Calls done(name) for each family. Of a group all families are wanted, or none.

@@ -12,6 +12,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 NAME = re.compile(r"(?<![\w.])[A-Za-z_]\w*")
 PLACE = re.compile(r"(?<![\w.])[A-Za-z_]\w*|(?<=\[)\d+(?=\])")
@@ -37,7 +38,7 @@ class Item:
     macro: bool = False
 
     @cached_property
-    def shape(self) -> tuple:
+    def shape(self) -> tuple[Any, ...]:
         """What items of repeated blocks have in common."""
         return bool(self.constant), self.times, PLACE.sub("#", self.text)
 
@@ -121,7 +122,7 @@ class Arrays:
 
     def placed(self, text: str) -> str:
         """A text with the entries of arrays."""
-        def entry(found: re.Match) -> str:
+        def entry(found: re.Match[str]) -> str:
             name, place = self.of.get(found[0], (found[0], None))
             return name if place is None else f"{name}[{place}]"
 
@@ -161,7 +162,7 @@ def fold(stages: Sequence[list[Item]], sizes: Mapping[str, str], taken: set[str]
     makes no array: what is only written there may be in registers, and compilers write it two at a time.
     """
     arrays = Arrays(sizes, set(taken))
-    numbers: dict[tuple, int] = {}
+    numbers: dict[tuple[Any, ...], int] = {}
     for times in range(MOST, 1, -1):
         for items in stages:
             shapes = [numbers.setdefault(item.shape, len(numbers)) for item in items]
@@ -220,7 +221,7 @@ def _block(blocks: Sequence[Sequence[Item]], arrays: Arrays, variable: str, may_
     return found
 
 
-def _folded(items: Sequence[Item], arrays: Arrays, variable: str, new: dict) -> Item | None:
+def _folded(items: Sequence[Item], arrays: Arrays, variable: str, new: dict[tuple[str, ...], str]) -> Item | None:
     """One item for these, None where their names are no entries of arrays."""
     found = []
     for names in zip(*(item.places for item in items), strict=True):

@@ -13,6 +13,7 @@ import re
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 from .family import Family
 from .loops import Section, lines_of
@@ -98,7 +99,7 @@ class _Group:
         return [*self._parts(), *whole]
 
     def _stages(self) -> list[tuple[str, SharedStage]]:
-        alike: dict[tuple, list[_Use]] = {}
+        alike: dict[tuple[Any, ...], list[_Use]] = {}
         for use in self.uses:
             if sum(map(len, use.section.lines)) >= LEAST:
                 alike.setdefault((use.title, tuple(use.section.lines)), []).append(use)

@@ -6,6 +6,8 @@ section's normal. Vectors and not an element's coordinates come in: their shape 
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ..algebra.tangent_frame import cross, tangent_frame, turning
@@ -36,7 +38,7 @@ class _Frame:
         still = [np.zeros(TURNS[dim], dtype=int)] * (2 * dim - len(T))
         self.T = np.stack([*T, *still], axis=1)
 
-    def entries(self) -> list:
+    def entries(self) -> list[Any]:
         """Return the entries of a, then those of b."""
         return [*self.a, *self.b]
 

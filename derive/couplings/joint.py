@@ -8,6 +8,7 @@ coordinates is that of what carries the frames. Haug, Computer Aided Kinematics 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -27,7 +28,7 @@ class TwoFrames:
         self.c = program.input("c", 3, "m or rad, 1, 1", "what drives the joint (else unused), its cosine and sine")
 
     def along(self, tag: str, gap: np.ndarray, turn_1: np.ndarray, turn_2: np.ndarray,
-              more: dict | None = None) -> DirectionalDerivative:
+              more: dict[str, Any] | None = None) -> DirectionalDerivative:
         """Return the derivative along a motion that moves the gap and turns both frames."""
         on = dict(zip(self.gap, gap, strict=True)) | (more or {})
         for A, turn in ((self.A1, turn_1), (self.A2, turn_2)):
@@ -48,17 +49,17 @@ def _meet(p: TwoFrames) -> list[sp.Expr]:
     return [*p.gap]
 
 
-def _offset(axes: str) -> Callable:
+def _offset(axes: str) -> Callable[..., Any]:
     """Return the equations that keep the second point at zero along these axes of the first frame."""
     return lambda p: [p.gap.dot(p.A1[:, "xyz".index(a)]) for a in axes]
 
 
-def _across(*pairs: str) -> Callable:
+def _across(*pairs: str) -> Callable[..., Any]:
     """Return the equations that keep axes of both frames normal: "xz" is x of the first and z of the second."""
     return lambda p: [p.A1[:, "xyz".index(a)].dot(p.A2[:, "xyz".index(b)]) for a, b in map(tuple, pairs)]
 
 
-def _moved(axis: str) -> Callable:
+def _moved(axis: str) -> Callable[..., Any]:
     """Return the equation that keeps the second point at c along this axis of the first frame."""
     return lambda p: [p.gap.dot(p.A1[:, "xyz".index(axis)]) - p.c[0]]
 

@@ -8,6 +8,7 @@ Cable and rider are both planar, with C = (C_l, C_m), or both spatial.
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -43,7 +44,7 @@ class Slide:
         gap = program.vector("gap", self.e[0] - rider.origin(self.b))
         self.r_p = program.vector("r_p", gap + (self.r - arm))
 
-    def _director(self) -> tuple[np.ndarray, list]:
+    def _director(self) -> tuple[np.ndarray, list[Any]]:
         """Return what gives a spatial frame its normal, and its entries that move with e.
 
         A slope of the element, or a direction from outside, held fixed: only the direction of the two normals hangs
@@ -82,11 +83,11 @@ class Slide:
         dim = len(self.r_p)
         C_s = self.C_cut[:, dim:].dot(self.by_s.array(np.array(self.cut[dim:], dtype=object)))
         C_s[0] += self.A_t[:, 0].dot(self.t)
-        return C_s
+        return np.asarray(C_s)
 
     def through_cut(self, derivation: DirectionalDerivative) -> np.ndarray:
         """Return the variation of C along a motion (eq 22), by the chain rule through the cut: (dim,)."""
-        return self.C_cut.dot(derivation.array(np.array(self.cut, dtype=object)))
+        return np.asarray(self.C_cut.dot(derivation.array(np.array(self.cut, dtype=object))))
 
 
 def build(element: Element, rider: Rider) -> list[Program]:

@@ -11,6 +11,8 @@ a tangential spring from an anchor on the surface (`stretch`).
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import sympy as sp
 
@@ -133,7 +135,7 @@ def push(dim: int, hertz: bool) -> Program:
 
 
 def _moving(p: Program, dim: int, press: sp.Symbol, n: np.ndarray, H: np.ndarray, w: np.ndarray, by_d: sp.Symbol,
-            by_rate: sp.Symbol, x: np.ndarray | None = None) -> tuple[list, list]:
+            by_rate: sp.Symbol, x: np.ndarray | None = None) -> tuple[list[Any], list[Any]]:
     """Return what differentiates by the place y and by the velocity w: n by H, what presses by depth and its rate."""
     turned = p.vector("Hw", H @ w)
     of_place, of_rate = [], []
@@ -154,7 +156,7 @@ def _inputs(p: Program, dim: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, n
     return n, H, w, press
 
 
-def _outputs(p: Program, f: np.ndarray, by: tuple[list, list]) -> Program:
+def _outputs(p: Program, f: np.ndarray, by: tuple[list[Any], list[Any]]) -> Program:
     p.stage("derivatives")
     f_y, f_w = (np.stack([d.array(f) for d in each], axis=-1) for each in by)
     p.output("f", f, "N (a length)", "force on the point")

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 from ..spec import ASSUMED_LAWS, CABLE_LAWS, TENSION_ONLY_LAWS, LawTraits
 from .cable import assumed, cable, tension_only
@@ -19,13 +20,13 @@ def _measures(law: str) -> dict[str, str]:
     return {"strain": strain, "curvature": curvature}
 
 
-_CABLES: list[tuple[tuple[str, ...], Callable, Callable]] = [
+_CABLES: list[tuple[tuple[str, ...], Callable[..., Any], Callable[..., Any]]] = [
     (CABLE_LAWS, cable.Cable, cable.traits), (ASSUMED_LAWS, assumed.AssumedCable, assumed.traits),
     (CURVED_CABLE_LAWS, curved_cable.CurvedCable, curved_cable.traits),
     (TENSION_ONLY_LAWS, tension_only.TensionOnlyCable, tension_only.traits)]
 
-LAWS: dict[str, Callable] = {continuum.NAME: continuum.Continuum,
-                             curved_continuum.NAME: curved_continuum.CurvedContinuum}
+LAWS: dict[str, Callable[..., Any]] = {continuum.NAME: continuum.Continuum,
+                                       curved_continuum.NAME: curved_continuum.CurvedContinuum}
 """What makes a law from the Gram products of an element."""
 
 TRAITS: dict[str, LawTraits] = {continuum.NAME: continuum.TRAITS, curved_continuum.NAME: curved_continuum.TRAITS,
@@ -52,6 +53,6 @@ def law_traits(law: str | type) -> LawTraits:
     return TRAITS[stiffness_of(law)]
 
 
-def law_class(law: str | type) -> Callable:
+def law_class(law: str | type) -> Callable[..., Any]:
     """Return what makes the law of an entry of an element's `laws` from Gram products."""
     return LAWS[law] if isinstance(law, str) else law

@@ -85,7 +85,7 @@ class Kernels:
                      doc: str = "nodal vectors e, eq 1") -> np.ndarray:
         return program.input(name, (self.element.n_vectors, self.element.dim), unit, doc)
 
-    def _strain(self, program: Program) -> tuple:
+    def _strain(self, program: Program) -> tuple[Any, ...]:
         """Declare the inputs l, e, A, open the stage of the strain vectors, and return what they make."""
         length = program.input("l", (), "m", "length of the element")
         e, A = self._coordinates(program), self.law.constants(program)
@@ -93,7 +93,7 @@ class Kernels:
         w = program.define("w", 1 / length)
         return w, A, self.gram.differences(program, e, w)
 
-    def _ends(self, program: Program) -> tuple:
+    def _ends(self, program: Program) -> tuple[Any, ...]:
         """Declare the inputs l, e, e_next, A, open the stage of the strain vectors at both ends of a step, and return
         what they make.
         """
@@ -107,7 +107,7 @@ class Kernels:
              for vectors, state in zip((e, e_next), STATES, strict=True)]
         return w, A, *c
 
-    def _rates(self, program: Program, *factors: tuple[str, tuple, str, str]) -> tuple:
+    def _rates(self, program: Program, *factors: tuple[str, tuple[Any, ...], str, str]) -> tuple[Any, ...]:
         """Declare the inputs l, e, v, A, factors, open the stages up to the rates of the strain vectors, and return
         what they make.
         """

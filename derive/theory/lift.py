@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import count
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -140,7 +141,8 @@ class Lift:
                     self.vectors.add(name, symbols)
             yield stage.title, equations
 
-    def _grouped(self, definitions: Sequence[tuple[sp.Symbol, sp.Expr]]) -> Iterator[tuple[tuple, tuple, Name]]:
+    def _grouped(self, definitions: Sequence[tuple[sp.Symbol, sp.Expr]],
+                 ) -> Iterator[tuple[tuple[Any, ...], tuple[Any, ...], Name]]:
         """Yield definitions, those of name_x, name_y, name_z together."""
         at, dim = 0, self.vectors.dim
         while at < len(definitions):

@@ -6,6 +6,7 @@ import tempfile
 import time
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from funicular.kernels.libraries import load as load_library
 from rich import box
@@ -110,7 +111,7 @@ def _derived(spec: Path, family: Family) -> emit.Derived:
         return made
 
 
-def _table(kernels: dict, times: dict[str, list[float]], sizes: dict[str, int], report: Report) -> Table:
+def _table(kernels: dict[str, Any], times: dict[str, list[float]], sizes: dict[str, int], report: Report) -> Table:
     """Return the kernels with operations, bytes of code, errors and time."""
     table = Table(title="Errors are relative to the output's largest entry; times are of one thread",
                   title_justify="left", box=box.SIMPLE_HEAD)

@@ -57,7 +57,7 @@ class _Trial:
         self.states = self._samples()
         self.scale = self._scale()
 
-    def _samples(self) -> list[dict]:
+    def _samples(self) -> list[dict[str, Any]]:
         try:
             found = states(self.family, self.k)
         except ZeroDivisionError:
@@ -141,7 +141,7 @@ class _Trial:
                                    f"{float(before):.6g} on one side and {float(after):.6g} on the other",
                                    "make it of squares, or round the corner off")
 
-    def _one_sided(self, sample: str, s: Any, j: int, name: str) -> list[tuple]:
+    def _one_sided(self, sample: str, s: Any, j: int, name: str) -> list[tuple[Any, ...]]:
         """Return the first and second differences of the energy by coordinate j, before and after the sample."""
         direction = np.zeros(s["e"].size, dtype=int)
         direction[j] = 1

@@ -6,6 +6,7 @@ import hashlib
 import json
 import os
 from pathlib import Path
+from typing import Any
 
 from funicular.kernels.elements import manifest
 from funicular.kernels.libraries import LibraryError, manifest_digest, read_manifest
@@ -32,7 +33,7 @@ def check_destination(out: Path) -> None:
                         "give a new or an empty directory to --out")
 
 
-def recorded(out: Path) -> dict | None:
+def recorded(out: Path) -> dict[str, Any] | None:
     """Return the manifest of the library in a directory, None where there is none."""
     try:
         return read_manifest(out)[1]
@@ -57,12 +58,13 @@ def render(every: list[Derived]) -> dict[str, str]:
     return emit.render(every, [d.family.name for d in every], lambda _: None, layout_of=manifest()["tables"])
 
 
-def write_manifest(every: list[Derived], files: dict[str, str], spec: Path, shared: Path) -> dict:
+def write_manifest(every: list[Derived], files: dict[str, str], spec: Path, shared: Path) -> dict[str, Any]:
     """Write the manifest next to the shared library; returns it."""
     more = {"library": {"spec": str(spec), "file": shared.name, "sha256": _digest(shared),
                         "compiler": " ".join([*compiler(), *SHARED_FLAGS])}}
     made_from = origin([d.family for d in every])
-    content = json.loads(manifest_text(every, made_from, files, layout_of=manifest()["tables"], more=more))
+    content: dict[str, Any] = json.loads(manifest_text(every, made_from, files, layout_of=manifest()["tables"],
+                                                       more=more))
     content["library"]["digest"] = manifest_digest(content)
     (shared.parent / MANIFEST).write_text(json_text(content), encoding="utf-8", newline="\n")
     return content

@@ -45,7 +45,7 @@ def compile_units(sources: Iterable[Path], flags: Iterable[str], work: Path) -> 
     """Return the object files in a folder from C files, compiled side by side. Raises CompilerError with the first
     messages.
     """
-    def start(source: Path) -> subprocess.CompletedProcess:
+    def start(source: Path) -> subprocess.CompletedProcess[str]:
         command = [*compiler(), *flags, "-c", str(source), "-o", str(work / f"{source.stem}.o")]
         return subprocess.run(command, stderr=subprocess.PIPE, text=True)
 

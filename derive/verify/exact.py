@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -16,7 +17,7 @@ DIGITS = 50
 def source(expr: sp.Expr) -> str:
     """Return the Python text of plain arithmetic; every rational is a quotient q(p, q) of the number type."""
     if expr.is_Symbol:
-        return expr.name
+        return str(expr.name)
     if expr.is_Integer:
         return str(int(expr)) if expr >= 0 else f"({int(expr)})"
     if expr.is_Rational:
@@ -43,9 +44,9 @@ class ExactProgram:
 
     def __init__(self, program: Program):
         self.program = program
-        self._function: Callable | None = None
+        self._function: Callable[..., Any] | None = None
 
-    def _compile(self) -> Callable:
+    def _compile(self) -> Callable[..., Any]:
         lines = [f"def kernel({', '.join(a.name for a in self.program.inputs)}):"]
         lines += [f"    {symbol.name} = {source(expr)}"
                   for stage in self.program.stages for symbol, expr in stage.definitions]
@@ -55,7 +56,8 @@ class ExactProgram:
         space = {"sqrt": mpmath.mp.sqrt, "sin": mpmath.mp.sin, "cos": mpmath.mp.cos,
                  "q": lambda p, q: mpmath.mpf(p) / q, "number": mpmath.mpf}
         exec(compile("\n".join(lines), f"<{self.program.name} at {DIGITS} digits>", "exec"), space)
-        return space["kernel"]
+        kernel: Callable[..., Any] = space["kernel"]
+        return kernel
 
     def __call__(self, inputs: Iterable[np.ndarray]) -> dict[str, np.ndarray]:
         """Return the outputs by name, as arrays of mpmath numbers."""

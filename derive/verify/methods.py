@@ -134,8 +134,8 @@ def _exact(relation: Relation, exact: Numbers, s: State) -> np.ndarray:
     h = mpmath.mpf(10) ** (-16 if relation.order == 1 else -12)
     after, before = relation.along(exact, s, h), relation.along(exact, s, -h)
     if relation.order == 1:
-        return ((after - before) / (2 * h)).ravel().astype(float)
-    return ((after - 2 * relation.along(exact, s, mpmath.mpf(0)) + before) / h**2).ravel().astype(float)
+        return np.asarray(((after - before) / (2 * h)).ravel().astype(float))
+    return np.asarray(((after - 2 * relation.along(exact, s, mpmath.mpf(0)) + before) / h**2).ravel().astype(float))
 
 
 def _complex(relation: Relation, numbers: Numbers, values: State) -> np.ndarray:
@@ -145,7 +145,7 @@ def _complex(relation: Relation, numbers: Numbers, values: State) -> np.ndarray:
     turns = [np.exp(2j * math.pi * k / _ON_CIRCLE) for k in range(_ON_CIRCLE)]
     tried = [2 * sum(relation.along(numbers, s, radius * turn) / turn**2 for turn in turns).real.ravel()
              / _ON_CIRCLE / radius**2 for radius in _RADII]
-    return tried[_least_change(tried)]
+    return np.asarray(tried[_least_change(tried)])
 
 
 def _central(relation: Relation, numbers: Numbers, values: State) -> tuple[np.ndarray, float]:

@@ -76,7 +76,7 @@ class Motions(Protocol):
     def turn(self, b: np.ndarray, motion: np.ndarray) -> np.ndarray:
         """Return the rotation vector of a motion in global axes."""
 
-    def frame(self, random: np.random.Generator) -> tuple:
+    def frame(self, random: np.random.Generator) -> tuple[Any, ...]:
         """Return a turn of the global frame: its matrix, and what it makes of a configuration."""
 
     def bracket(self, g: np.ndarray) -> np.ndarray:
@@ -107,7 +107,7 @@ class Rigid:
     @staticmethod
     def point(b: np.ndarray, u: np.ndarray) -> np.ndarray:
         """Return the rider's point in global axes."""
-        return b[:3] + turned(b[3:], u)
+        return np.asarray(b[:3] + turned(b[3:], u))
 
     @staticmethod
     def moved(numbers: Any, b: np.ndarray, motion: np.ndarray) -> np.ndarray:
@@ -126,7 +126,7 @@ class Rigid:
         return turned(b[3:], motion[3:])
 
     @staticmethod
-    def frame(random: np.random.Generator) -> tuple:
+    def frame(random: np.random.Generator) -> tuple[Any, ...]:
         """Return a turn of the global frame: its matrix, and what it makes of a configuration."""
         p = exponential(np, random.normal(size=3))
         Q = np.stack([turned(p, column) for column in np.eye(3)], axis=1)
@@ -164,7 +164,7 @@ class PlanarRigid:
     @staticmethod
     def point(b: np.ndarray, u: np.ndarray) -> np.ndarray:
         """Return the rider's point in global axes."""
-        return b[:2] + complex_product(b[2:], u)
+        return np.asarray(b[:2] + complex_product(b[2:], u))
 
     @staticmethod
     def moved(numbers: Any, b: np.ndarray, motion: np.ndarray) -> np.ndarray:
@@ -184,7 +184,7 @@ class PlanarRigid:
         return spin(motion, 2)
 
     @staticmethod
-    def frame(random: np.random.Generator) -> tuple:
+    def frame(random: np.random.Generator) -> tuple[Any, ...]:
         """Return a turn of the global frame: its matrix, and what it makes of a configuration."""
         angle = random.uniform(-np.pi, np.pi)
         p = np.array([np.cos(angle), np.sin(angle)])
@@ -216,21 +216,21 @@ class Point:
 
     def point(self, b: np.ndarray, u: np.ndarray) -> np.ndarray:
         """Return the rider's point in global axes."""
-        return b + u
+        return np.asarray(b + u)
 
     def moved(self, numbers: Any, b: np.ndarray, motion: np.ndarray) -> np.ndarray:
         """Return the origin after a translation."""
-        return b + motion
+        return np.asarray(b + motion)
 
     def step(self, b: np.ndarray, b_next: np.ndarray) -> np.ndarray:
         """Return the translation from one configuration to another."""
-        return b_next - b
+        return np.asarray(b_next - b)
 
     def turn(self, b: np.ndarray, motion: np.ndarray) -> np.ndarray:
         """Return zero: a point does not turn."""
         return np.concatenate([0 * b, 0 * b])[:3]
 
-    def frame(self, random: np.random.Generator) -> tuple:
+    def frame(self, random: np.random.Generator) -> tuple[Any, ...]:
         """Return a turn of the global frame: its matrix, and what it makes of a configuration."""
         Q, _ = (Rigid if self.dim == 3 else PlanarRigid).frame(random)
         return Q, lambda b: Q @ b
@@ -263,7 +263,7 @@ def frame(numbers: Any, tangent: np.ndarray, director: np.ndarray | None) -> np.
     if len(tangent) == 2:
         return np.stack([i, np.array([-i[1], i[0]])], axis=1)
     if director is None:
-        return i[:, None]
+        return np.asarray(i[:, None])
     j = director - i.dot(director) * i
     j = j / numbers.sqrt(j.dot(j))
     return np.stack([i, j, cross(i, j)], axis=1)

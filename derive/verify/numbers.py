@@ -25,8 +25,8 @@ State = dict[str, Any]
 class Numbers:
     """Kernels of one family in one kind of number; kernels go by their name without the family's."""
 
-    def __init__(self, family: str, programs: Sequence[Any], call: Callable, functions: Any, convert: Callable,
-                 eps: float = EPS):
+    def __init__(self, family: str, programs: Sequence[Any], call: Callable[..., Any], functions: Any,
+                 convert: Callable[..., Any], eps: float = EPS):
         self.programs = {p.name.removeprefix(f"{family}_"): p for p in programs}
         self._call, self._convert = call, convert
         self.eps = eps
@@ -38,12 +38,14 @@ class Numbers:
 
     def array(self, values: np.ndarray) -> np.ndarray:
         """Return an array of floats in this kind of number, exactly."""
-        return self._convert(np.asarray(values))
+        return np.asarray(self._convert(np.asarray(values)))
 
     def __call__(self, kernel: str, state: State, **changes: Any) -> dict[str, np.ndarray]:
         """Return the outputs of a kernel at a state, some of its values changed."""
         program = self.programs[kernel]
-        return self._call(program.name, [changes.get(a.name, state.get(a.name)) for a in program.inputs])
+        found: dict[str, np.ndarray] = self._call(program.name,
+                                                  [changes.get(a.name, state.get(a.name)) for a in program.inputs])
+        return found
 
 
 def real(family: str, programs: Sequence[Any], library: Any) -> Numbers:

@@ -49,8 +49,8 @@ LOOP = """static void loop_@NAME@(void)
 OPERATIONS = 2e7  # of one loop: some milliseconds
 
 
-def build(families: Iterable[Family], manifest: dict, kernels: Any, units: Iterable[Path], flags: Iterable[str],
-          work: Path) -> Path:
+def build(families: Iterable[Family], manifest: dict[str, Any], kernels: Any, units: Iterable[Path],
+          flags: Iterable[str], work: Path) -> Path:
     """Return a program with a loop for every kernel of the families.
 
     manifest: what it says of them; kernels: their Python face; units: the object files that hold them; flags: of the
@@ -89,7 +89,7 @@ def code_sizes(program: Path) -> dict[str, int]:
     return {line[3]: int(line[1], 16) for line in lines if len(line) == 4}
 
 
-def _output(command: Iterable) -> list[str]:
+def _output(command: Iterable[Any]) -> list[str]:
     return subprocess.run(list(command), capture_output=True, text=True, check=True).stdout.splitlines()
 
 

@@ -24,6 +24,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from functools import reduce
 from operator import add
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -122,7 +123,7 @@ class AssumedCable(Cable):
         program.stage("normal force at the quadrature points")
         N = [program.define(f"N_m{m}", EA * eps)
              for m, (EA, eps) in enumerate(zip(self._stiffnesses(program, A, w), modes, strict=True))]
-        found: list = [None] * len(points)
+        found: list[Any] = [None] * len(points)
         for here in range((len(points) + 1) // 2):
             there, point = len(points) - 1 - here, points[here]
             even, odd = (program.define(f"{kind}_N_{here}", sum(
@@ -208,7 +209,7 @@ class AssumedCable(Cable):
 
     # --- sections ---------------------------------------------------------------------------------------------
 
-    def membrane(self, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, strain: sp.Expr) -> tuple:
+    def membrane(self, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, strain: sp.Expr) -> tuple[Any, ...]:
         """Return energy per length whose derivative is the membrane's force, what is constant in it, and the strain:
         the modes' normal force and strain at X.
         """

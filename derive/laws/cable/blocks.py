@@ -7,6 +7,7 @@ summed, or subtracted, before it is spread over the strain vectors, which halves
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -18,7 +19,7 @@ PointBlocks = Mapping[tuple[int, int], np.ndarray]
 """Derivatives of the forces on a point's vectors i by its vectors k; (i, k) stands for its transpose (k, i) too."""
 
 
-def by_vectors(program: Program, tag: str, names: str, vectors: Sequence[np.ndarray], D: Sequence,
+def by_vectors(program: Program, tag: str, names: str, vectors: Sequence[np.ndarray], D: Sequence[Any],
                H: np.ndarray) -> PointBlocks:
     """Return, from derivatives of twice the energy by invariants, D and H, those of the energy by the vectors that they
     are products of.
@@ -50,7 +51,7 @@ def by_vectors(program: Program, tag: str, names: str, vectors: Sequence[np.ndar
             (1, 1): named_block(program, f"K22_{tag}", K22, symmetric=True)}
 
 
-def spread(program: Program, tag: str, points: Sequence[Sequence], blocks: Sequence[PointBlocks],
+def spread(program: Program, tag: str, points: Sequence[Sequence[Any]], blocks: Sequence[PointBlocks],
            symmetric: bool) -> np.ndarray:
     """Return the sum over the points of their blocks, spread over the strain vectors -> (n, n, dim, dim).
 

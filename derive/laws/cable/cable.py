@@ -93,7 +93,7 @@ class Cable(Damping):
         return [m for m, name in enumerate(self.gram.names) if name.startswith("t")]
 
     @cached_property
-    def _axis(self) -> list:
+    def _axis(self) -> list[Any]:
         """Return the polynomials in X of the strain vectors along the axis."""
         return [self.gram.gradient[m][0] for m in self.axis_indices]
 
@@ -138,11 +138,11 @@ class Cable(Damping):
         program.output("A", self.section_stiffness(program), self.stiffness_units, self.stiffness_doc)
 
     def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, w: sp.Expr,
-                       c0: np.ndarray | None = None) -> tuple:
+                       c0: np.ndarray | None = None) -> tuple[Any, ...]:
         """Return force and moment in space, and strain, at X; c0 of a curved stress-free shape."""
         return resultants(self, program, S, c, X, w, c0)
 
-    def membrane(self, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, strain: sp.Expr) -> tuple:
+    def membrane(self, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, strain: sp.Expr) -> tuple[Any, ...]:
         """Return the energy per length whose derivative is the membrane's force at X, what is constant in it, and the
         strain.
         """
@@ -163,7 +163,8 @@ class Cable(Damping):
         program.define_once(f"inv_len{tag}", 1 / length)
         return program.define(f"eps{tag}", a1 / (1 + length), derivative_of=length)  # |r'| - 1
 
-    def _at_points(self, program: Program, rule: str, names: str, points: list[Point], c: np.ndarray) -> list[tuple]:
+    def _at_points(self, program: Program, rule: str, names: str, points: list[Point],
+                   c: np.ndarray) -> list[tuple[Any, ...]]:
         """Return invariants, vectors and series at each point: a - 1, b, c of r' and (l/2) r'', as far as named."""
         kinds = {"a": ["value"], "c": ["slope"], "abc": ["value", "slope"]}[names]
         series = [[getattr(point, kind) for point in points] for kind in kinds]
@@ -206,7 +207,8 @@ class Cable(Damping):
         first = min(g, len(points) - 1 - g)
         return program.define_once(f"{name}{len(points)}_{first}", points[first].weight * stiffness)
 
-    def measures(self, program: Program, tag: str, invariants: Sequence[sp.Expr], factor: sp.Expr = sp.S.One) -> tuple:
+    def measures(self, program: Program, tag: str, invariants: Sequence[sp.Expr],
+                 factor: sp.Expr = sp.S.One) -> tuple[Any, ...]:
         """Return axial strain, factor times the squared curvature, and what leads to that from |r' x r''|^2; None where
         it is |r''|^2.
         """
@@ -237,7 +239,7 @@ class Cable(Damping):
             f[self.axis_indices] += self._gathered(program, names, terms, forces)
         return self._named(program, f)
 
-    def _gathered(self, program: Program, names: str, terms: list[Term], forces: list) -> np.ndarray:
+    def _gathered(self, program: Program, names: str, terms: list[Term], forces: list[Any]) -> np.ndarray:
         """Return the forces on the strain vectors along the axis from those on the vectors of each point."""
         return np.asarray(sum(
             gathered(program, f"{names}{k + 1}", [term.series[k] for term in terms], [f[k] for f in forces])

@@ -107,7 +107,7 @@ class CurvedCable(Cable):
             yield Term("abc", 2 * points[g].weight * density, invariants, *vectors)
 
     def curved_density(self, program: Program, tag: str, EA: sp.Expr, EI: sp.Expr, invariants: Any,
-                       at: Reference) -> tuple:
+                       at: Reference) -> tuple[Any, ...]:
         """Return energy per x, axial strain, and what leads from |r' x r''|^2 to the squared curvature."""
         a1, b, c = invariants
         relative = program.define(f"a1r{tag}", a1 * at.inverse + (at.inverse - 1))  # r'.r' / r0'.r0' - 1

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -30,7 +31,7 @@ Series = Sequence[Sequence[sp.Expr]]
 
 def values(program: Program, name: str, series: Series, c: Sequence[np.ndarray]) -> list[np.ndarray]:
     """Return the vectors at the points: sums of strain vectors c."""
-    found: list = [None] * len(series)
+    found: list[Any] = [None] * len(series)
     for here, there in _pairs(series):
         alike = _sum(f * v for f, v, same in zip(series[here], c, _alike(series, here, there), strict=True) if same)
         if here != there:

@@ -19,7 +19,7 @@ from ...codegen.program import DirectionalDerivative, Program, jacobian
 
 
 def resultants(law: Any, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, w: sp.Expr,
-               c0: np.ndarray | None = None) -> tuple:
+               c0: np.ndarray | None = None) -> tuple[Any, ...]:
     """Return force and moment in space, and strain; c0 of the stress-free shape where it is curved."""
     program.stage("derivatives of the axis by x")
     r = [program.vector(f"r{order}", axis(law.gram, c, X, w, order)) for order in (1, 2, 3)]

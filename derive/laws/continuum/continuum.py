@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -33,14 +34,14 @@ class Form:
         self.gram = gram
 
     @cached_property
-    def strain(self) -> dict[tuple[int, int], list]:
+    def strain(self) -> dict[tuple[int, int], list[Any]]:
         """Return the Green strain (eq 6) over Gram pairs: E_ij = 1/2 sum_p strain[ij][p] (G - G0)_p, in the ring."""
         g, d = self.gram.gradient, range(self.gram.element.dim)
         return {(i, j): [g[a][i] * g[b][j] + (g[b][i] * g[a][j] if a != b else 0) for a, b in self.gram.pairs]
                 for i in d for j in d if i <= j}
 
     @cached_property
-    def elasticity(self) -> dict[tuple, int]:
+    def elasticity(self) -> dict[tuple[Any, ...], int]:
         """Return the row of the section stiffness S of the law D E, by (ij, kl); orthotropic, axes x, y, z."""
         normal = [(i, i) for i in range(self.gram.element.dim)]
         shear = [ij for ij in self.strain if ij[0] != ij[1]]
@@ -52,16 +53,16 @@ class Form:
         return law
 
     @cached_property
-    def form(self) -> dict[tuple[int, int], dict]:
+    def form(self) -> dict[tuple[int, int], dict[tuple[Any, ...], Any]]:
         """Return A over pairs (p, q): {(elastic constant, section moment, power of l): rational}, zeros left out.
 
         Shear enters as gamma = 2 E, so W = 1/2 sum D E_ii E_jj + 1/2 sum G gamma^2.
         """
-        products: dict = {}
+        products: dict[Any, Any] = {}
         form = {}
         for p in range(len(self.gram.pairs)):
             for q in range(p, len(self.gram.pairs)):
-                entry: dict = {}
+                entry: dict[tuple[Any, ...], Any] = {}
                 for (ij, kl), k in self.elasticity.items():
                     if not (self.strain[ij][p] and self.strain[kl][q]):
                         continue
@@ -77,7 +78,7 @@ class Form:
         return form
 
     @cached_property
-    def constants(self) -> list[tuple]:
+    def constants(self) -> list[tuple[Any, ...]]:
         """Return the different entries of A, in order of first use: the argument A of the kernels."""
         return list(dict.fromkeys(tuple(e.items()) for e in self.form.values()))
 
@@ -125,7 +126,7 @@ class Continuum:
                        "different non-zero entries of A")
 
     def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, w: sp.Expr,
-                       c0: np.ndarray | None = None) -> tuple:
+                       c0: np.ndarray | None = None) -> tuple[Any, ...]:
         """Return force and moment in space, and strain, at X."""
         section = Resultants(self.form, program, S, c, X, w)
         return section.force(), section.moment(), section.strain()
@@ -182,15 +183,15 @@ class Continuum:
         program.stage("u = A (G - G0)")
         return self._times(program, self._moduli(A), G)
 
-    def _viscous_moduli(self, A: np.ndarray) -> dict:
+    def _viscous_moduli(self, A: np.ndarray) -> dict[tuple[int, int], Any]:
         return self._moduli(A)
 
-    def _moduli(self, A: np.ndarray) -> dict:
+    def _moduli(self, A: np.ndarray) -> dict[tuple[int, int], Any]:
         return {pq: A[k] for pq, k in self.form.index.items()}
 
     # --- Kelvin-Voigt: stress follows G - G0 + tau dG/dt; what follows is the tau part ----------------------
 
-    def _viscous(self, program: Program, A: np.ndarray, tau: sp.Expr, c: np.ndarray, dc: np.ndarray) -> tuple:
+    def _viscous(self, program: Program, A: np.ndarray, tau: sp.Expr, c: np.ndarray, dc: np.ndarray) -> tuple[Any, ...]:
         program.stage("rates of the Gram products")
         dG = self.gram.gram_rate(program, c, dc)
         program.stage("u = tau A dG/dt")
@@ -239,7 +240,7 @@ class Continuum:
         u, dG = self._viscous(program, A, tau, c, dc)
         return sum(a * b for a, b in zip(u, dG, strict=True))
 
-    def _times(self, program: Program, moduli: dict, strain: Sequence[sp.Expr],
+    def _times(self, program: Program, moduli: dict[tuple[int, int], Any], strain: Sequence[sp.Expr],
                scale: sp.Expr = sp.S.One) -> list[sp.Expr]:
         u = []
         for p in range(len(self.gram.pairs)):

@@ -9,6 +9,8 @@ of section over radius.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import sympy as sp
 
@@ -90,8 +92,8 @@ class CurvedContinuum(Continuum):
 
     def _rows(self, program: Program, X: sp.Expr, y: sp.Expr, z: sp.Expr, w: sp.Expr) -> list[list[sp.Expr]]:
         """Return the coefficients over the pairs of (F'F)_ii/2 and (F'F)_ij, in Voigt's order."""
-        rows: list = []
-        known: dict = {}
+        rows: list[list[sp.Expr]] = []
+        known: dict[sp.Expr, sp.Expr] = {}
         for i, j in voigt(self.gram.element.dim):
             row = []
             for polynomial in self.form.strain[i, j]:
@@ -110,11 +112,11 @@ class CurvedContinuum(Continuum):
         program.stage("Gram products less those of e0")
         return [program.define(f"g_{self.gram.pair(p)}", value - A[self.form.stop + p]) for p, value in enumerate(G)]
 
-    def _viscous_moduli(self, A: np.ndarray) -> dict:
+    def _viscous_moduli(self, A: np.ndarray) -> dict[tuple[int, int], Any]:
         return {pq: A[k] for pq, k in self.straight.index.items()}
 
     def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, w: sp.Expr,
-                       c0: np.ndarray | None = None) -> tuple:
+                       c0: np.ndarray | None = None) -> tuple[Any, ...]:
         """Return force and moment in space, and strain, at X."""
         assert c0 is not None  # the kernel has the stress-free shape
         return resultants(self.gram, self.form.elasticity, program, S, c, c0, X, w)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -67,7 +68,7 @@ class Metric:
             T.append([self.program.define(f"T{a}{b}_{i}{j}", v) for v, (i, j) in zip(row, order, strict=True)])
         return T
 
-    def pulled(self, D: np.ndarray, elasticity: Mapping) -> list[list[sp.Expr]]:
+    def pulled(self, D: np.ndarray, elasticity: Mapping[Any, Any]) -> list[list[sp.Expr]]:
         """Return T' D T det J0, symmetric."""
         T, order, n = self.transform(), voigt(self.dim), range(len(voigt(self.dim)))
         right = [[self.program.define(f"DT{i}_{k}", self.det * sum(

@@ -7,6 +7,7 @@ constants all have the ratios of the fourth moments to the second of D11, or non
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -19,8 +20,8 @@ from ...codegen.program import Program
 from .curved_point import Metric, at_point, columns, frame, voigt
 
 
-def resultants(gram: Gram, elasticity: Mapping, program: Program, S: np.ndarray, c: np.ndarray, c0: np.ndarray,
-               X: sp.Expr, w: sp.Expr) -> tuple:
+def resultants(gram: Gram, elasticity: Mapping[Any, Any], program: Program, S: np.ndarray, c: np.ndarray,
+               c0: np.ndarray, X: sp.Expr, w: sp.Expr) -> tuple[Any, ...]:
     """Return force and moment in space, and strain."""
     dim = gram.element.dim
     program.stage("columns of F and J0, and the arm, as polynomials in y and z")
@@ -51,12 +52,12 @@ def _named(program: Program, name: str, parts: list[Expansion]) -> list[Expansio
             for i, column in enumerate(parts)]
 
 
-def _points(program: Program, S: np.ndarray, dim: int) -> list[tuple]:
+def _points(program: Program, S: np.ndarray, dim: int) -> list[tuple[Any, ...]]:
     """Return y, z and the elastic constants times the share of the section, for each point."""
     program.stage("points of the section")
     (y, per_y), (z, per_z) = (_place(program, name, S[0, second], S[0, fourth])
                               for name, second, fourth in (("y", 1, 3), ("z", 2, 5)))
-    integrals: list[tuple] = []
+    integrals: list[tuple[Any, ...]] = []
     for k, row in enumerate(S):
         of_y, of_z, both = program.define(f"D{k}_y", row[1] * per_y), sp.S.Zero, sp.S.Zero
         if dim == 3:

@@ -30,7 +30,7 @@ class Resultants:
         self.arm = self._named("arm", {power: v for power, v in expansion(gram.psi, c, X, w).items() if any(power)})
         program.stage("Green strain as polynomials in y and z")
         self.E = {(i, j): self._strain(i, j) for i in range(self.dim) for j in range(i, self.dim)}
-        self._moments: dict[tuple, sp.Expr] = {}
+        self._moments: dict[tuple[Any, ...], sp.Expr] = {}
 
     def _named(self, name: str, parts: Expansion) -> Expansion:
         return {power: self.program.vector(name + _suffix(power), v) for power, v in sorted(parts.items())}

@@ -9,6 +9,7 @@ along x, y, z, and the two frames, turned about their own axes.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -40,7 +41,7 @@ class Kernels:
     def _program(self, kernel: str, doc: str) -> Program:
         return Program(f"{self.element.name}_{self.law.name}_{kernel}", doc, self.law.source)
 
-    def _inputs(self, program: Program, *names: str) -> tuple:
+    def _inputs(self, program: Program, *names: str) -> tuple[Any, ...]:
         """Declare the inputs l, e, A, or l, e, v, A, tau, and return what they make."""
         shape = (self.element.n_vectors, self.element.dim)
         about = {"e": ("m, 1", "nodal vectors e, eq 1"), "v": ("m/s, 1/s", "rates of the nodal vectors")}

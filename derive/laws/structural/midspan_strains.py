@@ -54,7 +54,7 @@ class MidspanStrains:
     def _symmetric(self, name: str, values: np.ndarray) -> np.ndarray:
         """Return the upper half, named, on both sides."""
         upper = self._named(name, np.triu(values))
-        return upper + np.triu(upper, 1).T
+        return np.asarray(upper + np.triu(upper, 1).T)
 
 
 def _columns(derivations: Sequence[DirectionalDerivative], values: Sequence[sp.Expr] | np.ndarray) -> np.ndarray:

@@ -6,6 +6,8 @@ in the plane drops out of the expressions by itself.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import sympy as sp
 
@@ -20,7 +22,7 @@ def turned(k: int, values: np.ndarray) -> np.ndarray:
     rate = np.zeros_like(values) + sp.S.Zero
     i, j = (k + 1) % 3, (k + 2) % 3
     rate[i], rate[j] = values[j], -values[i]
-    return rate
+    return np.asarray(rate)
 
 
 class SectionFrame:
@@ -52,7 +54,7 @@ class SectionFrame:
         along3 = program.define(f"y3_{tag}", self.inverse_a * moment[0])
         return along1 * t1 + along3 * t3, program.define(f"z1_{tag}", self.inverse_c * moment[1]) * t1
 
-    def rates(self, spin: np.ndarray | list, dy: np.ndarray, dz: np.ndarray) -> dict[sp.Symbol, sp.Expr]:
+    def rates(self, spin: np.ndarray | list[Any], dy: np.ndarray, dz: np.ndarray) -> dict[sp.Symbol, sp.Expr]:
         """Return the rates of everything named here, when the directors move."""
         _, t2, t3 = self.t
         db, dc = dz.dot(t2) + self.c * spin[0], dz.dot(t3) - self.b * spin[0]

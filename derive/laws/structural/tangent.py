@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -199,7 +200,7 @@ class Tangent(Forces):
                           for i, row in enumerate(block)])
         return np.triu(found) + np.triu(found, 1).T if symmetric else found
 
-    def _over_nodes(self, K: dict, symmetric: bool) -> np.ndarray:
+    def _over_nodes(self, K: dict[Any, np.ndarray], symmetric: bool) -> np.ndarray:
         element, program = self.law.element, self.program
         program.stage("over the nodal vectors")
         n, dim = element.n_vectors, element.dim

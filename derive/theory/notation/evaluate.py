@@ -320,7 +320,7 @@ def _inverse(m: np.ndarray) -> np.ndarray:
     else:
         a, b, c = (m[:, k:k + 1] for k in range(3))
         adjugate = np.concatenate([_cross(b, c), _cross(c, a), _cross(a, b)], axis=1).T
-    return adjugate * (1.0 / _dot(adjugate[0], m[:, 0]))
+    return np.asarray(adjugate * (1.0 / _dot(adjugate[0], m[:, 0])))
 
 
 _OF_ONE: dict[type[Node], Callable[[Value], Value]] = {Transpose: _transpose, Root: jet.sqrt, Size: _size, Skew: skew}

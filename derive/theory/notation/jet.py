@@ -39,10 +39,12 @@ class Jet:
         return Jet(self.level, -self.value, -self.slope)
 
     def __sub__(self, other: Scalar) -> Jet:
-        return self + (-other)  # of an array: NotImplemented by __add__
+        difference: Jet = self + (-other)
+        return difference
 
     def __rsub__(self, other: Scalar) -> Jet:
-        return -self + other
+        difference: Jet = -self + other
+        return difference
 
     def __mul__(self, other: Scalar) -> Jet:
         if isinstance(other, np.ndarray):
@@ -64,9 +66,10 @@ class Jet:
         return self * (other.inverse() if isinstance(other, Jet) else 1 / other)
 
     def __rtruediv__(self, other: Scalar) -> Jet:
-        return self.inverse() * other
+        quotient: Jet = self.inverse() * other
+        return quotient
 
-    def __pow__(self, n: int) -> Jet:
+    def __pow__(self, n: int) -> Scalar:
         if n < 0:
             return self.inverse() ** -n
         result: Any = 1.0
@@ -87,13 +90,13 @@ def _joined(left: np.ndarray | None, right: np.ndarray | None) -> np.ndarray:
         slope = right if left is None else left
         assert slope is not None
         return slope
-    return left + right
+    return np.asarray(left + right)
 
 
 def _scaled(slope: np.ndarray, factor: Scalar) -> np.ndarray:
     if isinstance(factor, Jet):
         return np.array([s * factor for s in slope], dtype=object)
-    return slope * factor
+    return np.asarray(slope * factor)
 
 
 def plain(value: Scalar) -> float:
@@ -132,7 +135,7 @@ def seeded(level: int, column: np.ndarray) -> np.ndarray:
     return np.array(jets, dtype=object).reshape(column.shape)
 
 
-def slope_of(value: Scalar, level: int, directions: int) -> list:
+def slope_of(value: Scalar, level: int, directions: int) -> list[Any]:
     """Return the derivatives of a number by the directions of a level."""
     if isinstance(value, Jet) and value.level == level:
         return list(value.slope)

@@ -58,7 +58,7 @@ def _moment(e: np.ndarray, f: np.ndarray, positions: np.ndarray) -> np.ndarray:
     """Return the moment of generalised forces about the first node: skew part of sum d (x) f."""
     d = e - np.outer(positions, e[0])
     product = d.T @ f
-    return product - product.T
+    return np.asarray(product - product.T)
 
 
 def _deformed(family: LawFamily, k: Numbers, s: State) -> Iterator[Invariance]:

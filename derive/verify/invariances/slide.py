@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -53,7 +54,7 @@ def _kept(family: SlideFamily, k: Numbers, s: State, n_e: int) -> Iterator[Invar
         yield "H'H is the same for any director", relative(H.T @ H - out["H"].T @ out["H"], H.T @ H), 64 * EPS
 
 
-def _frame(family: SlideFamily, k: Numbers, s: State, out: dict, n_e: int) -> Iterator[Invariance]:
+def _frame(family: SlideFamily, k: Numbers, s: State, out: dict[str, Any], n_e: int) -> Iterator[Invariance]:
     """Yield what a turn of the whole scene changes in the tangent frame, and what a move far away changes."""
     element, rider = family.element, RIDERS[family.rider]
     positions = np.array(element.is_position, dtype=float)

@@ -75,7 +75,7 @@ def axial_strain(strain: str, r_x: np.ndarray) -> Any:
     return (square - 1) / 2 if strain == "green" else mp.sqrt(square) - 1
 
 
-def strain_modes(element: Element, law: str, s: Any) -> list[tuple]:
+def strain_modes(element: Element, law: str, s: Any) -> list[tuple[Any, ...]]:
     """Return the Legendre modes of the axial strain that an assumed one has, and the axial stiffness of each.
 
     One mode a power of the slope; those beyond what a node has along the cable take the third stiffness.
@@ -129,7 +129,7 @@ def turning(element: Element, law: str, s: Any) -> Any:
     return total
 
 
-def _along(element: Element, s, n: int) -> Iterator[tuple]:
+def _along(element: Element, s, n: int) -> Iterator[tuple[Any, ...]]:
     """Yield, at n Gauss points of the axis, weight, r', r'' and their rates, all in three dimensions."""
     shape, half = Shape(element, s["l"].item()), s["l"].item() / 2
     for t, weight in gauss(n):

@@ -33,7 +33,7 @@ def dissipation(element: Element, law: str, s: Any) -> Any:
     return s["tau"].item() * total
 
 
-def _material_points(element: Element, s) -> Iterator[tuple]:
+def _material_points(element: Element, s) -> Iterator[tuple[Any, ...]]:
     """Yield gradient of the shape functions, weight and elastic constants: D over the volume, D_axis on the axis alone.
     """
     shape = Shape(element, s["l"].item())

@@ -13,7 +13,7 @@ from .element import Shape, gauss, spatial
 mp = mpmath.mp
 
 
-def measures(strain: str, r: Any, r0: Any) -> tuple:
+def measures(strain: str, r: Any, r0: Any) -> tuple[Any, ...]:
     """Return the strain, and what the curvature has more than the stress-free one, both by the stress-free arc-length.
     """
     stretch = mp.sqrt(r[0].dot(r[0]) / r0[0].dot(r0[0]))

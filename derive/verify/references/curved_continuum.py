@@ -55,7 +55,7 @@ def _inverse(matrix: np.ndarray) -> np.ndarray:
     return np.array(mp.inverse(mp.matrix(matrix)).tolist(), dtype=object)
 
 
-def weighted_points(element: Element, s: Any) -> Iterator[tuple]:
+def weighted_points(element: Element, s: Any) -> Iterator[tuple[Any, ...]]:
     """Yield the points of the volume and the elastic constants times what each stands for."""
     half = mp.mpf(s["l"].item()) / 2
     for t, p in gauss(ALONG):

@@ -23,7 +23,7 @@ mp = mpmath.mp
 
 
 @lru_cache
-def gauss(n: int) -> tuple[tuple, ...]:
+def gauss(n: int) -> tuple[tuple[Any, ...], ...]:
     """Return the points and weights on [-1, 1], Newton from the double values."""
     rule = []
     with mpmath.workdps(DIGITS + 10):
@@ -48,7 +48,7 @@ class Shape:
                                 for node, by in self._functionals()])
         self._coefficients = mp.inverse(conditions)
 
-    def _functionals(self) -> Iterator[tuple]:
+    def _functionals(self) -> Iterator[tuple[Any, ...]]:
         for ratio in self.element.node_ratios:
             for vector in self.element.nodal_vectors:
                 by = tuple(vector.partition("_")[2].count(c) for c in "xyz")
@@ -63,7 +63,7 @@ class Shape:
         """Return dN_k/dx_i, (vectors, dim)."""
         return np.stack([self(at, by) for by in np.eye(3, dtype=int)[: self.element.dim].tolist()], axis=1)
 
-    def points(self, height: Any, width: Any) -> list[tuple[tuple, object]]:
+    def points(self, height: Any, width: Any) -> list[tuple[tuple[Any, ...], object]]:
         """Return the points and weights of a rectangle times the length, exact for the energy and for the kinetic
         energy.
         """
@@ -125,7 +125,7 @@ def stress(D: np.ndarray, E: np.ndarray) -> np.ndarray:
     return found
 
 
-def section_points(s: Any) -> Iterator[tuple]:
+def section_points(s: Any) -> Iterator[tuple[Any, ...]]:
     """Yield y, z, area and elastic constants of the sample's section: D all over it, D_axis on the axis alone."""
     height, width = (mp.mpf(v) for v in s["rectangle"])
     for (a, p), (b, q) in product(gauss(3), gauss(3)):

@@ -13,9 +13,9 @@ from . import cable, cable_section, continuum, curved_continuum, structural
 class Roots(NamedTuple):
     """Functions of (element, law, state): elastic energy in J, dissipated power in W, outputs of `section_forces`."""
 
-    energy: Callable
-    dissipation: Callable
-    section: Callable
+    energy: Callable[..., Any]
+    dissipation: Callable[..., Any]
+    section: Callable[..., Any]
 
 
 OF_KIND = {

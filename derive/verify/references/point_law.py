@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import sympy as sp
 
@@ -19,7 +20,7 @@ class _Closed(Program):
         return sp.sympify(expr)
 
 
-def _function(family: PointLawFamily, of: Callable) -> Callable:
+def _function(family: PointLawFamily, of: Callable[..., Any]) -> Callable[..., Any]:
     """Return of(law, program, gap, rate, parameters by name) as a function of arrays: parameters, gap, rate."""
     p, law = _Closed(family.name, "", ""), family.point_law
     p.input("parameters", len(law.parameters), "", "")
@@ -29,19 +30,19 @@ def _function(family: PointLawFamily, of: Callable) -> Callable:
     return lambda parameters, gap, rate: program((parameters, gap, rate))["value"]
 
 
-def energy(family: PointLawFamily) -> Callable:
+def energy(family: PointLawFamily) -> Callable[..., Any]:
     """Return U(parameters, gap)."""
     U = _function(family, lambda law, p, gap, rate, c: law.energy(p, law.measured(p, gap, c), c))
     return lambda parameters, gap: U(parameters, gap, gap)[0]
 
 
-def measures(family: PointLawFamily) -> Callable:
+def measures(family: PointLawFamily) -> Callable[..., Any]:
     """Return e(parameters, gap)."""
     e = _function(family, lambda law, p, gap, rate, c: law.measured(p, gap, c))
     return lambda parameters, gap: e(parameters, gap, gap)
 
 
-def rates(family: PointLawFamily) -> Callable:
+def rates(family: PointLawFamily) -> Callable[..., Any]:
     """Return e'(parameters, gap, gap_rate)."""
     def rate_of(law, p, gap, rate, c):
         return [sum(sp.diff(e, x) * v for x, v in zip(gap, rate, strict=True)) for e in law.measured(p, gap, c)]

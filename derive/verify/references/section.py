@@ -19,7 +19,7 @@ TEXTS = {"force": "∫ P e_x dA; of a cable W_r' - (W_r'')'", "moment": "∫ arm
          "axes": "Gram-Schmidt on tangent and director", "strain": "from its definition"}
 
 
-def resultant(output: str) -> Callable:
+def resultant(output: str) -> Callable[..., Any]:
     """Return the function of (element, law, state) that an output of the kernel is."""
     def value(element: Element, law: str, s):
         if output == "axes" and TRAITS[law].kind != "structural":

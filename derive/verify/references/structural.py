@@ -116,26 +116,26 @@ def _form(S: np.ndarray, l, strains: dict[str, np.ndarray]):
     return l * total
 
 
-def _with_bubble(gamma: Callable, kappa, shear, bending, sign: int, l) -> Callable:
+def _with_bubble(gamma: Callable[..., Any], kappa, shear, bending, sign: int, l) -> Callable[..., Any]:
     """Return shear (gamma - sign theta)^2 + bending (kappa + theta')^2 with theta = beta (1 - t^2), a parabola in beta.
     """
     return lambda beta: (shear * _square(lambda t: gamma(t) - sign * beta * (1 - t * t))
                          + bending * _square(lambda t: kappa - beta * 2 * t * 2 / l))
 
 
-def _least(parabola: Callable):
+def _least(parabola: Callable[..., Any]):
     """Return where a parabola is least; 0 where it is flat."""
     below, here, above = (parabola(mp.mpf(beta)) for beta in (-1, 0, 1))
     curvature = above - 2 * here + below
     return mp.mpf(0) if curvature == 0 else (below - above) / (2 * curvature)
 
 
-def _interpolated(at: np.ndarray) -> Callable:
+def _interpolated(at: np.ndarray) -> Callable[..., Any]:
     """Return the parabola through values at -1, 0, 1."""
     return lambda t: at[0] * t * (t - 1) / 2 + at[1] * (1 - t * t) + at[2] * t * (t + 1) / 2
 
 
-def _square(f: Callable):
+def _square(f: Callable[..., Any]):
     """Return the mean of f^2 over [-1, 1]."""
     return sum(weight * f(t) ** 2 for t, weight in gauss(5)) / 2
 

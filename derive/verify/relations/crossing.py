@@ -76,16 +76,16 @@ def crossing(family: CouplingFamily) -> list[Relation]:
         """Return a state of straight lines off their closest points."""
         return {**s, "d": s["d"] + s["t"][0] / 3, "k": 0 * s["k"], "third": 0 * s["third"]}
 
-    def force_by(name: str, kernel: str = "force") -> Callable:
+    def force_by(name: str, kernel: str = "force") -> Callable[..., Any]:
         return lambda k, s, t, j: k(kernel, lines.closest(moved(s, name, t, j)))["F"]
 
-    def force_by_both(name: str, kernel: str) -> Callable:
+    def force_by_both(name: str, kernel: str) -> Callable[..., Any]:
         return lambda k, s, t, j: force_by("d" if j < dim else name, kernel)(k, s, t, j if j < dim else j - dim)
 
-    def side_by_side(name: str, kernel: str) -> Callable:
+    def side_by_side(name: str, kernel: str) -> Callable[..., Any]:
         return lambda k, s: np.concatenate([k(kernel, s)[each] for each in ("F_d", f"F_{name}")], axis=1)
 
-    def points_by(name: str) -> Callable:
+    def points_by(name: str) -> Callable[..., Any]:
         return lambda k, s, t, j: np.array(lines.points(moved(s, name, t, j)))
 
     def energy(k: Numbers, s: State, t: Any, j: int) -> Any:
@@ -143,7 +143,7 @@ def _motion(lines: Lines) -> list[Relation]:
     def later(s: State, t: Any) -> State:
         return {**s, "d": s["d"] + t * s["u"], "t": s["t"] + t * s["w"], "e": 0 * s["e"]}
 
-    def at(name: str) -> Callable:
+    def at(name: str) -> Callable[..., Any]:
         return lambda k, s, t, j: lines.closest(later(s, t))[name]
 
     return [Relation("motion", output, f"{text} as the points move", 1, at(name)) for output, name, text in (
@@ -283,7 +283,7 @@ def _step() -> list[Relation]:
         factor = law(k, s)[1] * makes_up(s)
         return np.array([factor * size * size * turn for turn, size in zip(s["turn"], s["size"], strict=True)])
 
-    def equal(of: Callable) -> Callable:
+    def equal(of: Callable[..., Any]) -> Callable[..., Any]:
         return lambda k, s, t, j: of(k, s)
 
     return [Relation("step", name, text, 0, equal(of)) for name, text, of in (

@@ -70,11 +70,11 @@ class Paths:
 
     # --- kernels moved --------------------------------------------------------------------------------------------
 
-    def frame_moved(self, kernel: str, output: str) -> Callable:
+    def frame_moved(self, kernel: str, output: str) -> Callable[..., Any]:
         """Return the path of an output along translations and rotations of the frame."""
         return lambda k, s, t, j: k(kernel, s, b=self.rider.moved(k, s["b"], t * unit(self.n, j)))[output]
 
-    def point(self, which: int, by: str) -> Callable:
+    def point(self, which: int, by: str) -> Callable[..., Any]:
         """Return the path of the attachment's position (which 0) or axes (1), by "frame", "mode" or "time"."""
         def path(k, s, t, j):
             motion, eta = {"frame": (t * unit(self.n, j), np.zeros(MODES, dtype=int)),
@@ -82,7 +82,7 @@ class Paths:
             return self.attached(k, s, motion, eta)[which]
         return path
 
-    def by_frame(self, pull: Callable) -> Callable:
+    def by_frame(self, pull: Callable[..., Any]) -> Callable[..., Any]:
         """Return the path of a force along translations and rotations of the frame."""
         return lambda k, s, t, j: pull(k, s, b=self.rider.moved(k, s["b"], t * unit(self.n, j)))
 
@@ -106,17 +106,17 @@ class Paths:
         return -sum(m * s["g"].dot(self.rider.point(s["b"], u)) for m, u in zip(s["masses"], at, strict=True))
 
 
-def along(kernel: str, name: str) -> Callable:
+def along(kernel: str, name: str) -> Callable[..., Any]:
     """Return the path of a kernel's force along the entries of an input."""
     return lambda k, s, t, j: k(kernel, s, **{name: s[name] + t * unit(len(s[name]), j)})["f"]
 
 
-def mode_moved(kernel: str, name: str, mode: int = 0) -> Callable:
+def mode_moved(kernel: str, name: str, mode: int = 0) -> Callable[..., Any]:
     """Return the path of a kernel's force along eta, eta' or eta'' of a mode."""
     return lambda k, s, t, j: k(kernel, s, **integrals(s, **{name: s[name] + t * unit(MODES, mode)}))["f"]
 
 
-def by_mode(pull: Callable, mode: int) -> Callable:
+def by_mode(pull: Callable[..., Any], mode: int) -> Callable[..., Any]:
     """Return the path of a force along eta of a mode."""
     def path(k, s, t, j):
         moved = integrals(s, eta=s["eta"] + t * unit(MODES, mode))
@@ -132,7 +132,7 @@ def power(k: Numbers, s: State) -> Any:
             + k("mode_force", {**still, **other})["f"][0] * s["eta1"][1])
 
 
-def turning(kernel: str, output: str, columns: bool = True) -> Callable:
+def turning(kernel: str, output: str, columns: bool = True) -> Callable[..., Any]:
     """Return what turns the axes by each column, or by the one vector, of an output."""
     def of(k, s):
         axes, T = k("attachment", s)["axes"], k(kernel, s)[output]
@@ -164,7 +164,7 @@ def followed(k: Numbers, s: State) -> np.ndarray:
     return k("attachment", s)["axes"].dot(s["c"])
 
 
-def follower(kernel: str) -> Callable:
+def follower(kernel: str) -> Callable[..., Any]:
     """Return the force g of a kernel as a function of the state, changed."""
     return lambda k, s, **changes: k(kernel, s, **changes)["g"]
 

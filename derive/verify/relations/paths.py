@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -14,23 +15,23 @@ def unit(like: np.ndarray, j: int) -> np.ndarray:
     return zeros.reshape(like.shape)
 
 
-def from_kernel(kernel: str, output: str, **directions: Callable) -> Callable:
+def from_kernel(kernel: str, output: str, **directions: Callable[..., Any]) -> Callable[..., Any]:
     """Return a path: the output of a kernel with some inputs moved by t times directions[name](state, j)."""
     def path(k, s, t, j):
         return k(kernel, s, **{name: s[name] + t * d(s, j) for name, d in directions.items()})[output]
     return path
 
 
-def entry(name: str) -> Callable:
+def entry(name: str) -> Callable[..., Any]:
     """Return the direction of entry j of an input."""
     return lambda s, j: unit(s[name], j)
 
 
-def root(function: Callable, *about) -> Callable:
+def root(function: Callable[..., Any], *about) -> Callable[..., Any]:
     """Return a path of order 0: function(*about, state), which shares nothing with the derivation."""
     return lambda k, s, t, j: function(*about, s)
 
 
-def half(path: Callable) -> Callable:
+def half(path: Callable[..., Any]) -> Callable[..., Any]:
     """Return the path of half the value."""
     return lambda k, s, t, j: path(k, s, t, j) / 2

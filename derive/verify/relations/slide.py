@@ -67,7 +67,7 @@ class Paths:
         """Return C_m along s(q)."""
         return constraint(k, s, self.closed(k, s, q), **q)[1:]
 
-    def lagrangian(self, get: Callable) -> Callable:
+    def lagrangian(self, get: Callable[..., Any]) -> Callable[..., Any]:
         """Return the path of a function of the state along (e, rider, s)."""
         def path(k, s, t, j):
             return get(k, s, **(self.by_coordinate(k, s, t, j) if j < self.n else {"x": s["x"] + t}))

@@ -22,7 +22,7 @@ def _distances(dim: int) -> list[Relation]:
     """Return those of distances. Of a terrain the heights are those of their Taylor series at the place."""
     horizontal = {1: 0} if dim == 2 else {1: 0, 2: 2}
 
-    def height(s: Any, move: Any) -> list:
+    def height(s: Any, move: Any) -> list[Any]:
         """Return the heights and derivatives of the series of third order, this far from the place."""
         value = dict(zip(HEIGHTS[dim], s["h"], strict=True))
 

@@ -37,4 +37,4 @@ def _section(random: np.random.Generator) -> State:
 
 
 def _unit(vector: np.ndarray) -> np.ndarray:
-    return vector / np.linalg.norm(vector)
+    return np.asarray(vector / np.linalg.norm(vector))

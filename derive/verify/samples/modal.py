@@ -50,7 +50,7 @@ def integrals(s: State, **moved: np.ndarray) -> State:
     mode, other = s["modes"]
 
     def second(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-        return (rho[:, None] * a).T.dot(b)
+        return np.asarray((rho[:, None] * a).T.dot(b))
 
     made = {"mass": rho.sum(), "s": rho.dot(mode), "X_kl": second(mode, other),
             "X11": second(fields[1], fields[1]).trace()}

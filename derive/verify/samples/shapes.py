@@ -36,7 +36,7 @@ def rotation(random: np.random.Generator, dim: int, angle: float | None = None) 
     vector *= 1.0 if angle is None else angle / np.linalg.norm(vector)
     q = exponential(np, vector)
     v = np.array([[0, -q[3], q[2]], [q[3], 0, -q[1]], [-q[2], q[1], 0]])
-    return np.eye(3) + 2 * (q[0] * v + v @ v)
+    return np.asarray(np.eye(3) + 2 * (q[0] * v + v @ v))
 
 
 def section(height: float = HEIGHT, width: float = WIDTH) -> np.ndarray:
@@ -47,7 +47,7 @@ def section(height: float = HEIGHT, width: float = WIDTH) -> np.ndarray:
 
 def on_axis(element: Element, state: State, order: int = 0) -> np.ndarray:
     """Return the point of the centreline at the state's x, or a derivative there."""
-    return Shape(element, state["l"])((state["x"], 0, 0), (order, 0, 0)).astype(float) @ state["e"]
+    return np.asarray(Shape(element, state["l"])((state["x"], 0, 0), (order, 0, 0)).astype(float) @ state["e"])
 
 
 def director(element: Element, state: State, random: np.random.Generator) -> np.ndarray:
