@@ -157,12 +157,14 @@ CEILINGS = {
     "rigid": {
         "place": 93, "point": 207, "point_force": 183, "inertia_force": 45, "inertia_tangent": 48, "kinetic_energy": 31,
         "discrete_point": 230, "frame": 78, "force": 117, "follower_force": 99, "moment": 93, "move": 93,
-        "move_tangent": 82, "cayley_move": 43, "cayley_tangent": 16, "halfway": 26, "rate": 23, "increment": 24
+        "move_tangent": 82, "cayley_move": 43, "cayley_tangent": 16, "halfway": 26, "rate": 23, "increment": 24,
+        "cayley_error": 51
     },
     "planar_rigid": {
         "place": 14, "point": 40, "point_force": 23, "inertia_force": 3, "inertia_tangent": 0, "kinetic_energy": 9,
         "discrete_point": 18, "frame": 0, "force": 18, "follower_force": 15, "moment": 0, "move": 17,
-        "move_tangent": 0, "cayley_move": 22, "cayley_tangent": 4, "halfway": 15, "rate": 2, "increment": 3
+        "move_tangent": 0, "cayley_move": 22, "cayley_tangent": 4, "halfway": 15, "rate": 2, "increment": 3,
+        "cayley_error": 3
     },
     "modal": {
         "inertia_force": 312, "mass_matrix": 105, "inertia_tangent": 675, "mode_force": 137, "mode_mass": 66,
@@ -245,9 +247,9 @@ CEILINGS = {
                     "inertia_of_point_step": 221, "wet_sphere": 15, "wet_section": 19, "wet_column": 16,
                     "entry_of_cable": 147, "entry_of_point": 135},
     "crossing": {"closest": 54, "contact": 84, "force": 1034, "motion": 112, "stretch": 356, "sticking": 3950,
-                 "sliding": 7752, "step": 129},
+                 "sliding": 7752, "step": 129, "turned": 69},
     "planar_crossing": {"closest": 12, "contact": 59, "force": 309, "motion": 24, "stretch": 97, "sticking": 523,
-                        "sliding": 324, "step": 101},
+                        "sliding": 324, "step": 101, "turned": 56},
     "surface": {"flat": 5, "rounded": 61, "terrain": 116, "push": 12, "push_hertz": 29, "pressing": 90, "sticking": 185,
                 "sliding": 468, "motion": 91, "slip": 123},
     "planar_surface": {"flat": 3, "rounded": 33, "terrain": 35, "push": 12, "push_hertz": 29, "pressing": 40,
