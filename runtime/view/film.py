@@ -5,20 +5,19 @@ Matplotlib is imported when a picture is made.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from functools import partial
+from collections.abc import Iterator
+from operator import methodcaller
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..errors import FunicularError, near
-from .animation import Animation, BodyShape, CableShape, Clip, Mark, Quantity, Segment, at_frame, period
-from .plot import CLIP_COLOURS, LOAD_COLOUR, MARKERS, SEGMENTS, SIZES, colour_scale
+from .animation import Animation, Clip, Quantity, at_frame, period
+from .plot import CLIP_COLOURS, MARKERS, SEGMENTS, SIZES, PlanePanel, colour_scale
 from .projections import Directions, Projection, all_points, directions
-from .surfaces import body_reach, outline, placed_surface
+from .surfaces import body_reach
 
 if TYPE_CHECKING:
-    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.cm import ScalarMappable
 
@@ -27,10 +26,6 @@ SIZE, DPI = (9.6, 5.4), 100
 AZIMUTH, ELEVATION = 0.55, 0.35
 """Direction of view of a spatial scene, from its main view, rad."""
 MARGIN = 0.07
-
-Update = Callable[[int], None]
-"""Moves an artist to a frame of its clip."""
-
 
 class Film:
     """A figure that shows an animation at given times."""
@@ -51,6 +46,7 @@ class Film:
         self.axes: Axes = figure.add_axes((0.07, 0.1, 0.77 if colour else 0.9, 0.8))
         self.box = _corners(animation, seen)
         self._set_limits()
+        self.panel = PlanePanel(self.axes, self.view)
         if seen.flat:
             self.axes.set(xlabel=f"{self.view.names[0]} / m", ylabel=f"{self.view.names[1]} / m")
         else:
@@ -62,23 +58,22 @@ class Film:
         self.caption = figure.text(0.02, 0.94, "", fontsize=11, animated=True)
         title = f"{animation.title}, {clips[0].label}" if animation.arrangement == "menu" else animation.title
         figure.text(0.98, 0.94, title, fontsize=11, ha="right", color="0.35")
-        self.moving: list[tuple[int, Artist, Update]] = []
-        for number, clip in enumerate(clips):
-            self._add(number, clip, CLIP_COLOURS[number % len(CLIP_COLOURS)])
-        self.moving.sort(key=lambda each: each[1].get_zorder())
 
     def pictures(self, times: np.ndarray) -> Iterator[np.ndarray]:
         """Yield the pictures (height, width, 3) in bytes of the motion at these times."""
         self.canvas.draw()
+        fixed = {*self.axes.get_children()}
         background = self.canvas.copy_from_bbox(self.canvas.figure.bbox)
         unit = self.animation.time_unit
         pace = f"   (played at {self.pace:.3g} times its speed)" * (unit == "s")
         for time in times:
             self.canvas.restore_region(background)
-            frames = [frame_at(clip, float(time)) for clip in self.clips]
-            for clip, artist, update in self.moving:
-                update(frames[clip])
+            for number, clip in enumerate(self.clips):
+                self._draw(clip, frame_at(clip, float(time)), CLIP_COLOURS[number % len(CLIP_COLOURS)])
+            moving = [artist for artist in self.axes.get_children() if artist not in fixed]
+            for artist in sorted(moving, key=methodcaller("get_zorder")):
                 self.axes.draw_artist(artist)
+                artist.remove()
             self.caption.set_text(f"{self.animation.time_label} {time:.4g} {unit}".rstrip() + pace)
             self.canvas.figure.draw_artist(self.caption)
             yield np.asarray(self.canvas.buffer_rgba())[..., :3].copy()
@@ -110,84 +105,32 @@ class Film:
             self.axes.annotate(f"{name}: {length:.3g} m", first.mean(axis=0), fontsize=8, color="0.45", ha="center",
                                va="top")
 
-    def _add(self, number: int, clip: Clip, colour: str) -> None:
-        """Add the artists of a clip."""
-        for cable in clip.cables:
-            self._add_cable(number, cable, colour)
-        for body in clip.bodies:
-            self._add_body(number, body, colour)
-        for segment in clip.segments:
-            self._add_segment(number, segment)
-        for mark in clip.marks:
-            self._add_line(number, partial(_place, mark), marker=MARKERS[mark.kind], linestyle="", color="0.15",
-                           zorder=5, markersize=np.sqrt(SIZES[mark.kind]))
-
-    def _add_line(self, number: int, points: Callable[[int], np.ndarray], **look: Any) -> None:
-        """Add a line through points (n, 3) of a frame."""
-        from matplotlib.lines import Line2D
-
-        artist = Line2D([], [], animated=True, **look)
-        self.axes.add_line(artist)
-
-        def update(frame: int) -> None:
-            artist.set_data(*self.view.of(points(frame)).T)
-
-        self.moving.append((number, artist, update))
-
-    def _add_body(self, number: int, body: BodyShape, colour: str) -> None:
-        from matplotlib.colors import to_rgb
-        from matplotlib.patches import Polygon
-
-        patch = Polygon(np.zeros((3, 2)), facecolor=(*to_rgb(colour), 0.35), edgecolor=colour, animated=True, zorder=3)
-        self.axes.add_patch(patch)
-
-        def path(frame: int) -> np.ndarray:
-            return body.position[: frame + 1]
-
-        def update(frame: int) -> None:
-            patch.set_xy(outline(self.view.of(placed_surface(body, frame)[0])))
-
-        self._add_line(number, path, color="0.6", linewidth=0.7, zorder=1)
-        self.moving.append((number, patch, update))
-
-    def _add_segment(self, number: int, segment: Segment) -> None:
-        from matplotlib.patches import FancyArrowPatch
-
-        def ends(frame: int) -> np.ndarray:
-            return np.stack([at_frame(segment.start, frame), at_frame(segment.end, frame)])
-
-        if segment.kind != "load":
-            self._add_line(number, ends, color="0.3", zorder=4, **SEGMENTS[segment.kind])
-            return
-        arrow = FancyArrowPatch((0, 0), (1, 1), arrowstyle="-|>", mutation_scale=9, color=LOAD_COLOUR, animated=True,
-                                shrinkA=0, shrinkB=0, zorder=4)
-        self.axes.add_patch(arrow)
-
-        def update(frame: int) -> None:
-            start, end = self.view.of(ends(frame)).tolist()
-            arrow.set_positions(tuple(start), tuple(end))
-
-        self.moving.append((number, arrow, update))
-
-    def _add_cable(self, number: int, cable: CableShape, colour: str) -> None:
+    def _draw(self, clip: Clip, frame: int, colour: str) -> None:
+        """Draw a clip at a frame."""
         from matplotlib.collections import LineCollection
+        from matplotlib.colors import to_rgba
 
-        quantity = next((q for q in cable.quantities if q.key == self.colour), None)
-        artist = LineCollection([], linewidths=3, colors=colour, animated=True, zorder=2, capstyle="round")
-        self.axes.add_collection(artist, autolim=False)
-
-        def update(frame: int) -> None:
+        for body in clip.bodies:
+            self.panel.line(body.position[: frame + 1], color="0.6", linewidth=0.7, zorder=1)
+            self.panel.body(body, frame, to_rgba(colour))
+        for cable in clip.cables:
             points = self.view.of(cable.position[frame])
-            artist.set_segments(list(np.stack([points[:-1], points[1:]], axis=1)))
-            if quantity is not None and self.scale is not None:
-                values = quantity.values[frame]
-                artist.set_color(list(map(tuple, self.scale.to_rgba((values[:-1] + values[1:]) / 2))))
-
-        self.moving.append((number, artist, update))
-
-
-def _place(mark: Mark, frame: int) -> np.ndarray:
-    return at_frame(mark.position, frame)[None]
+            lines = LineCollection(list(np.stack([points[:-1], points[1:]], axis=1)), linewidths=3, colors=colour,
+                                   zorder=2, capstyle="round")
+            for quantity in cable.quantities:
+                if quantity.key == self.colour and self.scale is not None:
+                    values = quantity.values[frame]
+                    lines.set_color(list(map(tuple, self.scale.to_rgba((values[:-1] + values[1:]) / 2))))
+            self.axes.add_collection(lines, autolim=False)
+        for segment in clip.segments:
+            start, end = at_frame(segment.start, frame), at_frame(segment.end, frame)
+            if segment.kind == "load":
+                self.panel.arrow(start, end, None)
+            else:
+                self.panel.line(np.stack([start, end]), color="0.3", zorder=4, **SEGMENTS[segment.kind])
+        for mark in clip.marks:
+            self.panel.line(at_frame(mark.position, frame)[None], marker=MARKERS[mark.kind], linestyle="",
+                            color="0.15", zorder=5, markersize=np.sqrt(SIZES[mark.kind]))
 
 
 def _corners(animation: Animation, seen: Directions) -> np.ndarray:

@@ -71,10 +71,9 @@ def marks(frames: Frames, refs: Frames, size: float) -> Iterator[Mark]:
         name = part.given_name or part.kind
         if "position" in part.results and frames.has(f"{name}.position"):
             yield Mark(name, "point", still(frames.value(f"{name}.position")), _touching(part))
-    for part in scene.parts():
-        for end in (value for _, value in part if isinstance(value, Attachment)):
-            if end.on is None:
-                yield Mark(part.given_name or part.kind, "ground", place(frames, end), f"ground end of {part.where}")
+    for part, end in _attachments(scene):
+        if end.on is None:
+            yield Mark(part.given_name or part.kind, "ground", place(frames, end), f"ground end of {part.where}")
     for name, load in scene.loads.items():
         if isinstance(load, Moment):
             end = _loaded(frames, load)
@@ -86,6 +85,11 @@ def coupling_parts(scene: SceneData) -> Iterator[Part]:
     """Yield the parts of couplings, in the order of their kinds."""
     for group in dict.fromkeys(kind.group for kind in COUPLINGS):
         yield from scene.group(group)
+
+
+def _attachments(scene: SceneData) -> Iterator[tuple[Part, Attachment]]:
+    """Yield the attachments that are fields of parts, with their parts."""
+    return ((part, value) for part in scene.parts() for _, value in part if isinstance(value, Attachment))
 
 
 def _touching(part: Part) -> str:
@@ -170,9 +174,8 @@ def _both(start: np.ndarray, end: np.ndarray) -> np.ndarray:
 def levers(frames: Frames, refs: Frames, size: float) -> Iterator[Segment]:
     """Yield the lever arms of rigid bodies, from the mass centre to each attachment."""
     scene = frames.scene
-    riders = [(name, slide.rider) for name, slide in scene.slides.items()]
-    ends = riders + [(part.given_name or part.kind, value) for part in scene.parts() for _, value in part
-                     if isinstance(value, Attachment)]
+    ends = [(name, slide.rider) for name, slide in scene.slides.items()]
+    ends += [(part.given_name or part.kind, end) for part, end in _attachments(scene)]
     for name, end in ends:
         body = None if end.on is None else scene.bodies.get(end.on)
         if body is None or isinstance(body, ModalBody):
