@@ -9,19 +9,11 @@ cdef extern from "kernels.h" nogil:
         int dim, configuration, velocity
     ctypedef struct fu_modal_kernels:
         const char *name
-    ctypedef struct fu_slide_kernels:
-        const char *name
-        int coordinates, dim
     ctypedef struct fu_law_kernels:
         const char *name
         int rates
         void *algorithmic_force
     ctypedef struct fu_frame_kernels:
-        const char *name
-    ctypedef struct fu_joint_kernels:
-        const char *name
-        int rows
-    ctypedef struct fu_resistance_kernels:
         const char *name
     ctypedef struct fu_tables:
         pass
@@ -32,52 +24,31 @@ cdef extern from "blocks.h" nogil:
         pass
     const fu_law_blocks *fu_blocks_of(const char *law)
 
-cdef extern from "bodies/unknowns.h":
-    pass
-cdef extern from "couplings/common/couplings.h":
-    pass
-cdef extern from "couplings/common/proximity.h":
-    pass
-cdef extern from "couplings/contact/contact.h":
-    pass
-cdef extern from "couplings/crossing/crossing.h":
-    pass
-cdef extern from "couplings/fluid/drag.h":
-    pass
-cdef extern from "couplings/hard_contact/hard_contact.h":
-    pass
-cdef extern from "couplings/joint/joint.h":
-    pass
-cdef extern from "equations/acceleration.h":
-    pass
-cdef extern from "equations/energies.h":
-    pass
-cdef extern from "equations/equations.h":
-    pass
-cdef extern from "equations/projection.h":
-    pass
-cdef extern from "events/boundaries.h":
-    pass
-cdef extern from "events/deferred.h":
-    pass
-cdef extern from "events/events.h":
-    pass
-cdef extern from "events/list.h":
-    pass
-cdef extern from "events/penetration.h":
-    pass
-cdef extern from "events/slack_cables.h":
-    pass
-cdef extern from "integrators/list.h":
-    pass
-cdef extern from "run/checkpoint.h":
-    pass
-cdef extern from "run/part_timing.h":
-    pass
-cdef extern from "run/run.h":
-    pass
-
 cdef extern from * nogil:
+    """
+    #include "bodies/unknowns.h"
+    #include "couplings/common/couplings.h"
+    #include "couplings/common/proximity.h"
+    #include "couplings/contact/contact.h"
+    #include "couplings/crossing/crossing.h"
+    #include "couplings/fluid/drag.h"
+    #include "couplings/hard_contact/hard_contact.h"
+    #include "couplings/joint/joint.h"
+    #include "equations/acceleration.h"
+    #include "equations/energies.h"
+    #include "equations/equations.h"
+    #include "equations/projection.h"
+    #include "events/boundaries.h"
+    #include "events/deferred.h"
+    #include "events/events.h"
+    #include "events/list.h"
+    #include "events/penetration.h"
+    #include "events/slack_cables.h"
+    #include "integrators/list.h"
+    #include "run/checkpoint.h"
+    #include "run/part_timing.h"
+    #include "run/run.h"
+    """
     double FU_SLACK_STRAIN, FU_NO_TIME
     int FU_CROSSING_STICK, FU_FRICTION_MARK, FU_MOST_HARD_CONTACTS
     int FU_MAX_COORDINATES, FU_MAX_RATES, FU_ATTACHMENT_COORDINATES
@@ -88,7 +59,6 @@ cdef extern from * nogil:
     int FU_SIGNAL_TERMS, FU_BAND_GROUP
     int FU_BAND_MORE(int width)
     long FU_BAND_BEYOND(int width)
-    long FU_BAND_LENGTH(int n, int width)
     ctypedef struct fu_cable:
         const fu_element_kernels *kernel
         const fu_law_kernels *law
@@ -96,23 +66,14 @@ cdef extern from * nogil:
         int n_elements, first, coordinates, per_node, l_stride, m_stride, A_stride, dissipation_state, gives_way
         const double *share
         double length, tau, mass_damping
-        const double *lengths
-        const double *nodes
-        const double *m
-        const double *A
+        const double *lengths, *nodes, *m, *A
     ctypedef struct fu_matter:
         pass
     const fu_matter fu_rigid_matter, fu_modal_matter
     ctypedef struct fu_shape:
         const fu_modal_kernels *kernel
-        const double *S
-        const double *X
-        const double *mass
-        const double *stiffness
-        const double *damping
-        const double *zero
-        double *sums
-        double *matrices
+        const double *S, *X, *mass, *stiffness, *damping, *zero
+        double *sums, *matrices
         double g[3]
     ctypedef struct fu_body:
         const fu_body_kernels *kernel
@@ -122,9 +83,7 @@ cdef extern from * nogil:
         double J[9]
         const fu_shape *shape
     ctypedef struct fu_modal_attachment:
-        const double *x
-        const double *phi
-        const double *psi
+        const double *x, *phi, *psi
     ctypedef struct fu_attachment:
         int cable, body, element, slide
         double u[3]
@@ -155,8 +114,7 @@ cdef extern from * nogil:
     ctypedef struct fu_output:
         const char *name
         int first, size
-        const char *unit
-        const char *turns
+        const char *unit, *turns
     const fu_field *fu_coupling_fields
     ctypedef struct fu_coupling_type:
         const char *name
@@ -182,12 +140,10 @@ cdef extern from * nogil:
     void fu_bind_events(fu_coupling *coupling)
     ctypedef struct fu_joint:
         fu_coupling base
-        fu_attachment attachments[2]
         int redundant_rows
     ctypedef struct fu_signal:
         int n
-        const double *breaks
-        const double *coefficients
+        const double *breaks, *coefficients
         double amplitude, angular_frequency, phase
     ctypedef struct fu_breakpoint:
         double t
@@ -214,58 +170,24 @@ cdef extern from * nogil:
         fu_span rows
     ctypedef struct fu_fronts:
         int m, n, size
-        const int *start
-        const int *first
-        const int *pivots
-        const int *neighbours
-        const int *unknown
-        const int *in_parent
-        const int *parent
-        const int *child
-        const int *sibling
-        const int *front
-        const int *place
+        const int *start, *first, *pivots, *neighbours, *unknown, *in_parent, *parent, *child, *sibling
+        const int *front, *place
     ctypedef struct fu_factors:
-        double *numbers
-        int *unknowns
-        int *map
-        double *x
-        int *start
-        int *first
-        int *size
-        int *pivots
-        int *done
+        double *numbers, *x
+        int *unknowns, *map, *start, *first, *size, *pivots, *done
         int most_numbers, most_unknowns
     ctypedef struct fu_system:
         int n, width, m, n_chains, n_strips, n_strip_rows
         const fu_strip *strips
-        const int *first_strip
-        const int *chain_start
-        const int *on_chain
-        int *way
-        int *n_columns
-        int *n_rows
-        int *constant_columns
-        int *constant_rows
+        const int *first_strip, *chain_start, *on_chain
+        int *way, *n_columns, *n_rows, *constant_columns, *constant_rows
         const fu_fronts *fronts
         fu_factors factors
-        const int *chains
-        const int *half
-        double *K
-        double *L
-        double *U
-        double *B
-        double *C
-        double *D
-        double *X
-        fu_span *span_B
-        fu_span *span_C
-        fu_matrix_block *columns
-        fu_matrix_block *rows
-        int *pivot_band
-        int *pivot_border
-        double *inverse
-        double *mirror
+        const int *chains, *half
+        double *K, *L, *U, *B, *C, *D, *X, *inverse, *mirror
+        fu_span *span_B, *span_C
+        fu_matrix_block *columns, *rows
+        int *pivot_band, *pivot_border
         fu_threads *threads
     int FU_INVERSE_MOST
     long FU_INVERSE_ROWS(long n)
@@ -278,20 +200,13 @@ cdef extern from * nogil:
         const fu_signal *signals
         int n_q, n_dof, n_band, n_border_dof, n_dissipation_state, n_extra, n_multipliers
         int n_coordinates, n_forces, n_rows, n_outputs, n_scratch, n_inertial
-        const int *unknown_of_dof
-        const int *combination_start
-        const int *combination_unknown
-        const double *combination_value
-        const double *weight
-        const double *gravity
-        const double *zero
+        const int *unknown_of_dof, *combination_start, *combination_unknown
+        const double *combination_value, *weight, *gravity, *zero
         double load_fraction
         const fu_lapack *lapack
         fu_threads *threads
         double *thread_work
-        const int *is_shared
-        const int *shared_dofs
-        const int *shared_unknowns
+        const int *is_shared, *shared_dofs, *shared_unknowns
         int n_shared_dofs, n_shared_unknowns
     ctypedef struct fu_array:
         const char *name
@@ -309,18 +224,9 @@ cdef extern from * nogil:
         int rows
     ctypedef struct fu_accelerator:
         fu_system mass
-        double *corner
-        double *rhs
+        double *corner, *rhs, *scratch, *force, *work, *prescribed, *multipliers
         fu_rows *rows
-        double *scratch
-        double *force
-        double *work
-        double *prescribed
-        double *multipliers
         int self_locking
-        long evaluated
-    ctypedef struct fu_joint_output:
-        double residual
     ctypedef struct fu_event_function:
         int kind, index, which, direction
         double value
@@ -352,13 +258,9 @@ cdef extern from * nogil:
         double *scratch
         int n_watches
         const fu_event_function *watches
-        double *watched
-        double *watch_work
+        double *watched, *watch_work, *deepest, *farthest, *passed_at
         int *late
         fu_slackness *slackness
-        double *deepest
-        double *farthest
-        double *passed_at
         const char **passed
         double (*call)(void *context, int watch, const fu_state *state) noexcept nogil
         void *context
@@ -368,22 +270,15 @@ cdef extern from * nogil:
         const fu_breakpoint *knots
         long most_evaluations
         double duration, output_step, fixed_step, tol, absolute_tol
-        const double *controlled
-        const double *counted
+        const double *controlled, *counted
         fu_state now, next
         fu_system newton
         fu_accelerator accelerator
         fu_record record
         fu_statistics statistics
-        double *rhs
-        double *psi
-        double *force
-        double *work
-        double *before
-        double *first
-        double *s_slope
-        double h, h_factored, contraction, motion, extent, controlled_motion, closed
-        int factored, stopped_slide, rest_start
+        double *rhs, *psi, *force, *work, *before, *first, *s_slope
+        double h, motion, extent, controlled_motion, closed
+        int stopped_slide, rest_start
         fu_failure failure
         fu_energy_balance balance
     ctypedef struct fu_integrator:
@@ -415,8 +310,6 @@ cdef extern from * nogil:
     int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, const int *at, int n, double *S)
     int fu_prepare(fu_run *run)
     int fu_probe_mechanism(fu_run *run, const double *along, double *left)
-    void fu_joint_outputs(const fu_model *model, const fu_joint *joint, const fu_state *state, const double *multipliers,
-                          fu_joint_output *out)
     int fu_joint_moves(const fu_model *model, const fu_joint *joint, const fu_state *state, int at)
     int fu_between_cables(const fu_joint *joint)
     ctypedef struct fu_joint_derivatives:
@@ -424,7 +317,6 @@ cdef extern from * nogil:
         int **at
         double *K[2][2]
     void fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, fu_joint_derivatives *out)
-    int fu_attachment_coordinates(const fu_model *model, const fu_attachment *end, const fu_state *state, int *at)
     int fu_start(fu_run *run)
     int fu_advance(fu_run *run, double seconds)
     void fu_pause(fu_run *run)
