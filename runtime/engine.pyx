@@ -1,8 +1,8 @@
 # cython: language_level=3
-"""The compiled engine's face: arrays of a model in, recorded rows out. The work is in engine/*.c.
+"""The Cython interface of the engine: arrays of a model in, recorded rows out. The algorithms are in engine/*.c.
 
-The engine is C and not Cython because `cimport` does not work across the mapped packages; what passes between
-generated kernels and the engine is a C header.
+The engine is C and not Cython, as `cimport` does not work across the mapped packages; the interface between generated
+kernels and the engine is a C header.
 """
 
 from collections import namedtuple
@@ -29,7 +29,7 @@ cdef bint has_lapack = False
 cdef size_t _own_tables() except 0:
     """Return the address of the tables of this package's kernels.
 
-    It is asked for by a run, not by `import funicular`: `funicular derive` starts where generated/ is broken.
+    Runs call this, not `import funicular`: `funicular derive` must start where generated/ is broken.
     """
     from funicular.generated import kernels
 
@@ -37,9 +37,9 @@ cdef size_t _own_tables() except 0:
 
 
 cdef _take_lapack():
-    """Fill in the functions of LAPACK that the engine names, as scipy has them.
+    """Attach the functions of LAPACK that the engine names, those of SciPy.
 
-    A run asks for them, not `import funicular`: SciPy takes as long as all the rest of that import.
+    Runs call this, not `import funicular`: SciPy would double the time of that import.
     """
     global has_lapack
     cdef int k = 0
@@ -55,8 +55,8 @@ cdef _take_lapack():
 
 
 Output = namedtuple("Output", "first size units turns")
-Output.__doc__ = """A number or vector of a coupling in a row of output (base/fields.h): the first of its numbers, how many they are, their
-unit, and how other axes change it: as a "point", a "direction", a direction in "body axes", or "" not at all."""
+Output.__doc__ = """A number or vector of a coupling in a row of output (base/fields.h): position of its first number, their count, unit,
+and transformation to other axes: as a "point", a "direction", a direction in "body axes", or "" for none."""
 
 
 def _coupling_types():
@@ -69,7 +69,7 @@ def _coupling_types():
 
 
 def _described_outputs():
-    """Return the fields of rows of output, by kind and name, as the types of couplings describe them."""
+    """Return the fields of rows of output by kind and name, from the types of couplings."""
     cdef size_t k = 0
     cdef const fu_coupling_type *type = fu_coupling_type_at(0)
     cdef const fu_output *field
@@ -78,7 +78,8 @@ def _described_outputs():
         fields, field = {}, type.output_fields
         while field != NULL and field.name != NULL:
             if field.first != sum([each.size for each in fields.values()]):
-                raise ValueError(f"{type.name.decode()}: outputs before {field.name.decode()} are not in the order of their structure")
+                raise ValueError(f"{type.name.decode()}: outputs before {field.name.decode()} are not in the order of the "
+                                 "structure")
             fields[field.name.decode()] = Output(field.first, field.size, field.unit.decode(),
                                                  "" if field.turns == NULL else field.turns.decode())
             field += 1
@@ -92,11 +93,12 @@ def _described_outputs():
 
 
 def outputs_by_name(str kind, numbers):
-    """Return what rows of output say of couplings of a kind, by name: of numbers (..., numbers of one) the views (...) of
-    numbers, (..., size) of vectors.
+    """Return the outputs of couplings of a kind by name, from rows (..., numbers of one): views, (...) of numbers,
+    (..., size) of vectors.
     """
-    if numbers.shape[-1] != sum([each.size for each in OUTPUTS[kind].values()]):
-        raise ValueError(f"a {kind} has {sum([each.size for each in OUTPUTS[kind].values()])} numbers, not {numbers.shape[-1]}")
+    size = sum([each.size for each in OUTPUTS[kind].values()])
+    if numbers.shape[-1] != size:
+        raise ValueError(f"a {kind} has {size} numbers, not {numbers.shape[-1]}")
     return {name: numbers[..., each.first] if each.size == 1 else numbers[..., each.first:each.first + each.size]
             for name, each in OUTPUTS[kind].items()}
 
@@ -110,7 +112,7 @@ CAUSES = {FU_NO_FAILURE: None, FU_ITERATION: "iteration", FU_MATRIX: "matrix", F
 COUPLING_TYPES = _coupling_types()
 """Names of the types of couplings, in the order in which the engine adds up their forces."""
 OUTPUTS = _described_outputs()
-"""Of each kind of coupling that has some the fields of a row of output, by name; a state of rest has them, too."""
+"""Fields of a row of output by name, of each kind of coupling with outputs; a state of rest has them, too."""
 SLACK_STRAIN = FU_SLACK_STRAIN
 """Least compression of a slack element in its middle."""
 MAX_HARD_CONTACTS = FU_MOST_HARD_CONTACTS
@@ -122,7 +124,7 @@ NO_TIME = FU_NO_TIME
 
 
 cdef const void *_found(list tables, str role, str name) except NULL:
-    """Kernels of a role by name, from the first of the tables (addresses) that has them."""
+    """Return the kernels of a role by name, from the first of the tables (addresses) with them."""
     cdef const void *entry
     for address in tables:
         entry = fu_find(<const fu_tables *><size_t>address, role.encode(), name.encode())
@@ -132,7 +134,7 @@ cdef const void *_found(list tables, str role, str name) except NULL:
 
 
 cdef double _call(void *context, int which, const fu_state *state) noexcept with gil:
-    """The function of an event of the user's; what it raises waits in the engine."""
+    """Call the function of a user's event; the engine keeps an exception until it returns."""
     engine = <Engine>context
     if engine.error is not None:
         return 0.0
@@ -150,22 +152,22 @@ include "engine/cython/report.pxi"
 
 
 cdef class Engine(Report):
-    """One run of a model (see model/build.py for the fields that it reads).
+    """One run of a model (model/model.py).
 
-    blocks: take kernels of several elements at once where there are.
+    blocks: use kernels of several elements at once where they exist.
     """
 
     cdef object watcher, error
     cdef bint has_started
 
     cdef int _check_started(self) except -1:
-        """Refuse what has arrays to work on after `start` alone."""
+        """Raise RuntimeError before `start`, which makes the arrays."""
         if not self.has_started:
             raise RuntimeError("the engine has not started; call start first")
         return 0
 
     def _take_integrator(self, method):
-        """Let the run take an integrator (package integrators): its parameters, its work space, what it keeps."""
+        """Set the integrator of the run (package integrators): parameters, work space, state."""
         cdef int k
         run = &self.run
         run.integrator = fu_integrator_of(method.name.encode())
@@ -186,7 +188,7 @@ cdef class Engine(Report):
         run.scratch = self._zeros(run.integrator.n_scratch(run))
 
     def use_threads(self, int threads):
-        """Let so many threads share the work; how many there are, one where the system has none to give. Call it once."""
+        """Start this number of threads; return the number started, one where the system has no more. Call it once."""
         cdef int i
         m = &self.model
         if m.threads:
@@ -203,7 +205,7 @@ cdef class Engine(Report):
         return fu_threads_start(m.threads, threads)
 
     def _shared_dofs(self):
-        """Note which dofs have their unknown with others, in a combination, or in the border: one thread adds to these."""
+        """List the dofs whose unknown is shared, combined, or in the border: one thread adds to these."""
         m = &self.model
         unknown = np.asarray(<int[:m.n_dof]><int *>m.unknown_of_dof) if m.n_dof else np.zeros(0, dtype=np.intc)
         times = np.bincount(unknown[unknown >= 0], minlength=m.n_band + m.n_border_dof)
@@ -216,13 +218,13 @@ cdef class Engine(Report):
         m.n_shared_dofs, m.n_shared_unknowns = len(dofs), len(unknowns)
 
     def watch(self, watcher):
-        """Watch for the events of a `Watcher`; call it before `start`."""
+        """Set the `Watcher` of events; call it before `start`."""
         self.watcher, self.error = watcher, None
         self._watch(watcher.watches)
         self.run.call, self.run.context = &_call, <void *>self
 
     def _watch(self, watches):
-        """Watch for these, and after them for what couplings do by themselves."""
+        """Set the event functions: these, and after them those of couplings."""
         kinds = {"q": FU_EVENT_OF_Q, "v": FU_EVENT_OF_V, "s": FU_EVENT_OF_S, "s_rate": FU_EVENT_OF_RATE,
                  "traction": FU_EVENT_OF_OUTPUT, "function": FU_EVENT_OF_CALL}
         cdef int i, n = len(watches), own = fu_coupling_event_functions(&self.model, NULL)
@@ -247,7 +249,7 @@ cdef class Engine(Report):
         fu_proximity_place(&self.model, run.n_watches, self._memory(fu_proximity_size(&self.model, run.n_watches)))
 
     def _knots(self, times, jumps):
-        """Let steps end at these instants."""
+        """Set the instants at which steps end."""
         PyMem_Free(self.knots)
         self.knots = <fu_breakpoint *>PyMem_Calloc(len(times) + 1, sizeof(fu_breakpoint))
         if not self.knots:
@@ -260,11 +262,11 @@ cdef class Engine(Report):
               rest_start=False, absolute_tol=0.0, controlled=None):
         """Allocate output rows, `capacity` of them or all, and compute the consistent start; method: one of integrators/.
 
-        knots: times at which steps end, increasing, and what jumps there; see model/knots.py. absolute_tol in m, negative:
-        by the scene's size; controlled: two arrays of weights (n_dof,), of what tol is the error of, and of each error
-        that counts; the model's where all do.
-        Returns a status where that failed, else None, and the change of velocities that the joints asked for. Raises
-        RuntimeError in a second call: state, rows and history are those of one run.
+        knots: times at which steps end, increasing, and what jumps there (model/knots.py). absolute_tol in m, negative: by
+        the scene's size. controlled: two arrays of weights (n_dof,), for the error that tol bounds and for all errors that
+        count; by default the model's weights.
+        Returns a status for a failed start, else None, and the change of velocities by the joints. Raises RuntimeError in
+        a second call.
         """
         cdef int k
         cdef fu_array array
@@ -295,7 +297,7 @@ cdef class Engine(Report):
         return None, np.array([run.before[i] for i in range(m.n_dof)])
 
     def _outputs(self, str kind, output):
-        """The part of rows of output that couplings of a kind have: a view, (rows, couplings, numbers of one)."""
+        """Return the outputs of couplings of a kind in rows of output: a view, (rows, couplings, numbers of one)."""
         numbers = self._of(kind)
         cdef int width = fu_n_outputs(fu_coupling_type_of(kind.encode()))
         if not numbers:
@@ -304,10 +306,10 @@ cdef class Engine(Report):
         return output[:, c.output:c.output + len(numbers) * width].reshape(len(output), len(numbers), width)
 
     def advance(self, on_progress, int every=0, stream=None, double interval=0.05, long most_evaluations=0):
-        """Run to the end; returns the status, "interrupted" after Ctrl-C, "running" after so many evaluations of eq 38.
+        """Run to the end; return the status, "interrupted" after Ctrl-C, "running" after most_evaluations of eq 38.
 
-        every: at each so many output rows the run pauses, which leaves it in a state that `checkpoint` holds in full, and
-        calls stream.pause(); otherwise stream.between() now and then, which may take rows.
+        every: number of output rows after which the run pauses in a state that `checkpoint` can store, and calls
+        stream.pause(). stream.between() is called at intervals (s) and may take rows.
         """
         cdef int status = FU_RUNNING
         self._check_started()
@@ -348,7 +350,7 @@ cdef class Engine(Report):
         return STATUS[status]
 
     cdef _tell(self):
-        """Let the watcher know of what a part has done by itself."""
+        """Report the event of a part to the watcher."""
         event = self.run.event
         if self.watcher is None:
             return
@@ -360,24 +362,25 @@ cdef class Engine(Report):
         self.watcher.acts(c.number, event.what.decode(), self.run.event_time, event.kind == FU_DEFERRED, s)
 
     def rows(self):
-        """Recorded arrays by name, cut to the rows that are in them."""
+        """Return recorded arrays by name, cut to the rows filled."""
         return {name: array[:self.run.record.n - self.run.record.first] for name, array in self.arrays.items()}
 
     def take_rows(self):
-        """Make room: the rows that are in the arrays count as taken, and the next ones are written over them."""
+        """Release the rows in the arrays: the next ones overwrite them."""
         self.run.record.first = self.run.record.n
 
     def checkpoint(self):
-        """Bytes from which `restore` goes on exactly; at a pause only."""
+        """Return the bytes from which `restore` continues exactly; at a pause only."""
         self._check_started()
         cdef bytearray taken = bytearray(fu_save(&self.run, NULL))
         fu_save(&self.run, taken)
         return bytes(taken)
 
     def restore(self, bytes checkpoint, int rows):
-        """Go on from a checkpoint that was taken after so many rows; after `start` with the same arguments.
+        """Continue from a checkpoint that was taken after `rows` rows; call it after `start` with the same arguments.
 
-        Raises ValueError for one of another model, or of a run that could not have paused there; it must not go on then.
+        Raises ValueError for a checkpoint of another model, or of a state in which a run cannot pause; the engine is
+        unusable then.
         """
         self._check_started()
         if len(checkpoint) != fu_save(&self.run, NULL):
@@ -386,7 +389,7 @@ cdef class Engine(Report):
             raise ValueError("the checkpoint is of no state that a run can pause in")
 
     def compliance(self, multipliers):
-        """(n, n): H M^-1 H' of n multipliers at the time reached, singular where joints hold the same."""
+        """Return (n, n): H M^-1 H' of n multipliers at the time reached, singular for redundant constraints."""
         cdef int n = len(multipliers)
         cdef int[::1] at = np.full(self.model.n_multipliers + 1, -1, dtype=np.intc)
         np.asarray(at)[multipliers] = np.arange(n)
@@ -396,18 +399,18 @@ cdef class Engine(Report):
         return np.asarray(S)[:n, :n]
 
     def prepare(self):
-        """What `compliance` needs before `start`; whether there are consistent slides and a mass matrix."""
+        """Prepare `compliance` before `start`; return whether slides are consistent and the mass matrix is regular."""
         return fu_prepare(&self.run) == FU_RUNNING
 
     def redundant_rows(self, rows):
-        """Let no multiplier stand for these rows of joints, (link, row) each, which others imply."""
+        """Remove the multipliers of redundant rows of joints, (joint, row) each."""
         numbers = self._of("joint")
         for joint, row in rows:
             (<fu_joint *>self.couplings[<int>numbers[joint]]).redundant_rows |= 1 << row
 
     def probe_mechanism(self, along):
-        """What is left of the joints' equations, (links, 6), after a small way `along` (n_dof,) the freedom that they
-        leave; None where no way leads back onto them. See fu_probe_mechanism.
+        """Return the residuals of the joints, (joints, 6), after a small displacement `along` (n_dof,) that they admit;
+        None where the projection onto the joints fails. See fu_probe_mechanism.
         """
         cdef double[::1] path = np.ascontiguousarray(along, dtype=float)
         cdef double[::1] left = np.zeros(self.model.n_forces + 1)
@@ -416,7 +419,7 @@ cdef class Engine(Report):
         return self._own("joint", left, 6)
 
     def contact_densities(self, int contact, int points, double t, q, v):
-        """(points, 3): what a surface presses on the points of a contact with, N/m or N, at a state; friction as in statics."""
+        """Return (points, 3): forces of a surface on the points of a contact in a state, N/m or N; friction as in statics."""
         cdef double[:, ::1] out = np.zeros((points, 3))
         self.set_state(t, q=q)
         self._view(&self.run.next, "v")[:] = v
@@ -424,9 +427,8 @@ cdef class Engine(Report):
         return np.asarray(out)
 
     def drag_densities(self, int drag, int elements, double t, q, v):
-        """Drag and buoyancy along a cable at a state, at the points of quadrature of its wet part: rows of the number of
-        the element, that of the part between cuts by surfaces, the place in the element and the weight, both in m, and
-        the force (3), N/m.
+        """Return drag and buoyancy on the wet part of a cable in a state, a row per point of quadrature: number of the
+        element, number of the part between cuts by surfaces, x in the element and weight, in m, and force (3), N/m.
         """
         found = np.zeros((elements * FU_DRAG_POINTS, FU_DRAG_DENSITIES))
         cdef double[:, ::1] out = found
@@ -436,9 +438,8 @@ cdef class Engine(Report):
         return found[:n]
 
     def fluid_inertia_densities(self, int drag, int points, double t, q, v):
-        """Inertia of the fluid along a cable at a state without accelerations, at the points of quadrature of its drag.
-
-        Returned: the force on it (points, 3), that on its slope (points, 3), and the mass added (points, dim, dim).
+        """Return the inertia forces of added mass on a cable (points, 3) and on its slope (points, 3), in a state without
+        accelerations, and the added mass (points, dim, dim), at the points of quadrature of its drag.
         """
         found = np.zeros((points, FU_ADDED_MASS_DENSITIES))
         cdef double[:, ::1] out = found
@@ -449,7 +450,7 @@ cdef class Engine(Report):
         return found[:, :3], found[:, 3:6], found[:, 6:6 + dim * dim].reshape(points, dim, dim)
 
     def static_outputs(self, str kind):
-        """(couplings, numbers of one): of all couplings of a kind in the static state, as in rows of output."""
+        """Return (couplings, numbers of one): outputs of all couplings of a kind in the static state."""
         numbers = self._of(kind)
         out = np.zeros((len(numbers), fu_n_outputs(fu_coupling_type_of(kind.encode()))))
         cdef double[:, ::1] view = out
@@ -460,5 +461,5 @@ cdef class Engine(Report):
         return out
 
     def static_farthest(self, str kind):
-        """(couplings,): how far beyond the ends of its surface anything touches each of a kind in the static state, in m."""
+        """Return (couplings,): largest distance of contact beyond the ends of the surface in the static state, m."""
         return np.array([fu_beyond(&self.model, self.couplings[<int>number], &self.run.next) for number in self._of(kind)])

@@ -1,16 +1,16 @@
 # Arrays that the engine's structures point to.
 
-INDICES = 2**31 - 1  # of C's int
+MAX_INT = 2**31 - 1  # of C
 MACHINE_MEMORY = machine_memory()
 
-cdef size_t CHUNK = 1 << 16  # bytes from which small arrays are taken, one behind the other
-cdef size_t ALIGNED = 64  # bytes of a cache line, at which each begins
+cdef size_t CHUNK = 1 << 16  # bytes of a block of small arrays
+cdef size_t ALIGNED = 64  # alignment of arrays, a cache line
 
 
 cdef class Arrays:
-    """Keeps them as long as it lives; `arrays` are those with names.
+    """Owns arrays; `arrays` holds those with names.
 
-    They never take more than the machine has: a system that lends more than that ends the process when it is used.
+    Their total size is limited to the memory of the machine: a system that overcommits would end the process later.
     """
 
     cdef list named
@@ -30,14 +30,14 @@ cdef class Arrays:
         free(self.chunks)
 
     cdef int _count(self, double size) except -1:
-        """Count so many bytes as kept."""
+        """Add to the bytes owned. Raises MemoryError."""
         self.bytes_kept += size
         if self.bytes_kept > MACHINE_MEMORY:
             raise MemoryError
         return 0
 
     cdef char *_chunk(self, size_t size) except NULL:
-        """Return new memory, zeros: pages that nothing is written to are not taken from the machine."""
+        """Return new memory, zeros; the system provides pages when they are written."""
         cdef void **more = <void **>realloc(self.chunks, (self.n_chunks + 1) * sizeof(void *))
         if not more:
             raise MemoryError
@@ -50,7 +50,7 @@ cdef class Arrays:
         return begin + ALIGNED - <size_t>begin % ALIGNED
 
     cdef void *_memory(self, double size) except NULL:
-        """Return memory for an array of so many bytes, of zeros."""
+        """Return memory of this size in bytes, zeros."""
         self._count(size)
         cdef size_t bytes = (<size_t>size // ALIGNED + 1) * ALIGNED
         if bytes > CHUNK // 4:
@@ -70,7 +70,7 @@ cdef class Arrays:
         return array
 
     cdef double *_zeros(self, double size) except NULL:
-        if size > INDICES:
+        if size > MAX_INT:
             raise MemoryError
         return <double *>self._memory(size * sizeof(double))
 
@@ -83,12 +83,12 @@ cdef class Arrays:
         return array
 
     cdef int *_int_zeros(self, double size) except NULL:
-        if size > INDICES:
+        if size > MAX_INT:
             raise MemoryError
         return <int *>self._memory(size * sizeof(int))
 
     cdef double *_named(self, name, shape) except NULL:
-        """Make an array with a name, which lives as long as whoever reads it."""
+        """Make an array with a name; Python code may keep it."""
         size = prod(shape)
         self._count(8.0 * size)
         array = np.zeros(max(1, size))

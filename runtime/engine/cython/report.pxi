@@ -1,4 +1,4 @@
-# What a run tells of itself: counts, sizes, where it stands, why it failed.
+# Reports of a run: counts, sizes, progress, causes of failure.
 
 cdef class Report(Statics):
     """Numbers of a run, read only."""
@@ -7,23 +7,23 @@ cdef class Report(Statics):
         """Return, for each cable, (elements, rates + 1): g and the energy of r of algorithmic dissipation, as in
         engine/integrators/algorithmic_dissipation.c.
         """
-        numbers, ends = self._view(&self.run.now, "dissipation_state").copy(), np.cumsum([self.cables[i].n_elements * (self.cables[i].law.rates + 1)
-                                                     for i in range(self.model.n_cables)])
+        numbers = self._view(&self.run.now, "dissipation_state").copy()
+        ends = np.cumsum([self.cables[i].n_elements * (self.cables[i].law.rates + 1) for i in range(self.model.n_cables)])
         return [part.reshape(self.cables[i].n_elements, -1)
                 for i, part in enumerate(np.split(numbers, ends[:-1]))]
 
     def without_algorithmic_force(self):
-        """Numbers of the cables whose law has no kernel for algorithmic dissipation."""
+        """Return the numbers of the cables whose law has no kernel for algorithmic dissipation."""
         return [i for i in range(self.model.n_cables) if self.cables[i].law.algorithmic_force == NULL]
 
     def without_step_equations(self):
-        """Numbers of the couplings that have equations at an instant, and none over a step that conserves energy."""
+        """Return the numbers of the couplings with equations at an instant, but not over a step that conserves energy."""
         return [i for i in range(self.model.n_couplings)
                 if self.couplings[i].type.residual != NULL and self.couplings[i].type.step_residual == NULL]
 
     @property
     def knots_passed(self):
-        """Return at how many knots of signals steps have ended."""
+        """Return the number of knots of signals passed."""
         cdef int k, passed = 0
         for k in range(self.run.n_knots):
             passed += self.run.knots[k].t <= self.run.now.t
@@ -50,7 +50,7 @@ cdef class Report(Statics):
 
     @property
     def statistics(self):
-        """Counts, step sizes, error estimate and seconds by part."""
+        """Counts, step sizes, error estimates and seconds by part."""
         s = self.run.statistics
         return {"steps": s.steps, "rejected_steps": s.rejected, "newton_iterations": s.newton_iterations,
                 "factorisations": s.factorisations, "newton_failures": s.newton_failures, "evaluations": s.evaluations,
@@ -60,17 +60,17 @@ cdef class Report(Statics):
                            "step": s.time_step, "error": s.time_error, "output": s.time_output}}
 
     def costs(self):
-        """(couplings,): what each takes of a step, in seconds, timed by itself in about 0.1 ms; see run/part_timing.c."""
+        """Return (couplings,): seconds of each per step, measured in about 0.1 ms (run/part_timing.c)."""
         cdef double[::1] seconds = np.zeros(self.model.n_couplings + 1)
         fu_part_timing(&self.run, &seconds[0])
         return np.asarray(seconds)[:self.model.n_couplings]
 
     def deepest(self, str kind):
-        """(couplings,): how deep each of a kind has let parts sink since the start, or a checkpoint, in m."""
+        """Return (couplings,): largest penetration of each of a kind since the start or a checkpoint, m."""
         return np.array([self.run.deepest[<int>number] for number in self._of(kind)])
 
     def farthest(self, str kind):
-        """(couplings,): how far beyond the ends of its surface anything has touched each of a kind since then, in m."""
+        """Return (couplings,): largest distance of contact beyond the ends of the surface since then, m."""
         return np.array([self.run.farthest[<int>number] for number in self._of(kind)])
 
     @property
@@ -105,32 +105,32 @@ cdef class Report(Statics):
 
     @property
     def failure(self):
-        """Of the last step that failed: why (see CAUSES), and the dof and coupling (or None) where that shows most.
+        """Cause (CAUSES) of the last failed step, with the dof and the coupling (or None) of the largest residual.
 
-        Why is None where energy grew, and where no step was tried that failed.
+        The cause is None where energy grew, and where no step failed.
         """
         f = self.run.failure
         return CAUSES[f.cause], f.dof, f.coupling if f.cause != FU_NO_FAILURE and f.coupling >= 0 else None
 
     @property
     def self_locking(self):
-        """Number of the coupling whose friction has no solution, -1."""
+        """Number of the coupling whose friction has no solution, or -1."""
         return self.run.accelerator.self_locking
 
     @property
     def balance(self):
-        """Energy that has come from nowhere, that went there, was exchanged, in motion, and what rounding makes, J."""
+        """Energy gained and lost by errors, exchanged, kinetic, and of rounding, J."""
         b = self.run.balance
         return b.grown, b.lost, b.exchanged, b.in_motion, b.rounding
 
     @property
     def absolute_tol(self):
-        """Error that is allowed beside tol times the motion, m."""
+        """Error allowed in addition to tol times the motion, m."""
         return self.run.absolute_tol
 
     @property
     def controlled_motion(self):
-        """Largest motion so far of what tol is the error of, m."""
+        """Largest motion so far of the controlled quantities, m."""
         return self.run.controlled_motion
 
     @property
@@ -140,12 +140,12 @@ cdef class Report(Statics):
 
     @property
     def extent(self):
-        """Largest size of what coordinates are, m."""
+        """Largest extent of the scene, m."""
         return self.run.extent
 
     @property
     def closed(self):
-        """How far, in m, things moved at the start to close the gaps of joints."""
+        """Displacement at the start that closed the gaps of joints, m."""
         return self.run.closed
 
     def now(self):

@@ -1,4 +1,4 @@
-# Statics, and the matrices that tests look at: `next` is the state, moved by unknowns.
+# Statics, and matrices for tests: `next` is the state, changed by increments of the unknowns.
 
 cdef class Statics(Translation):
     """Residual and matrix of a state."""
@@ -9,7 +9,7 @@ cdef class Statics(Translation):
     cdef dict held  # of signals that are held: pieces, amplitude, angular frequency and phase as the model has them
 
     cdef _entries(self):
-        """Rows, columns and values of the entries of the unfactored Newton matrix that are not zero, each once."""
+        """Return rows, columns and values of the non-zero entries of the unfactored Newton matrix."""
         cdef fu_system *system = &self.run.newton
         cdef int n = system.n, width = system.width, m = system.m
         band = np.asarray(<double[:n * (3 * width + 1)]>system.K).reshape(n, 3 * width + 1) if n else np.zeros((0, 1))
@@ -42,7 +42,7 @@ cdef class Statics(Translation):
         return coo_array((value, (row, column)), shape=(total, total)).tocsc()
 
     def linearise(self, double h, change):
-        """Residual and Newton matrix of a step h after moving its prediction by `change`; for tests.
+        """Return residual and Newton matrix of a step h, its prediction changed by `change`; for tests.
 
         change (unknowns,): psi of the free dofs, then s and the scaled force of each slide.
         Returns (unknowns,) and (unknowns, unknowns), d residual/d change.
@@ -55,8 +55,8 @@ cdef class Statics(Translation):
         return -np.array([self.run.rhs[i] for i in range(total)]), self._matrix().toarray()
 
     def solve(self, right):
-        """Solve with the matrix that `linearise` has left, once: (unknowns,) to (unknowns,); and how its chains were factored:
-        "symmetric", "unpivoted", "pivoted", or several of them. For tests.
+        """Solve once with the matrix of `linearise`, (unknowns,) to (unknowns,); return the method of factorisation, too:
+        "symmetric", "unpivoted", "pivoted", or several. For tests.
 
         Raises ArithmeticError where the matrix is singular.
         """
@@ -74,10 +74,10 @@ cdef class Statics(Translation):
         return np.array([self.run.rhs[i] for i in range(total)]), how
 
     def set_state(self, double t=0.0, q=None, s=None, prescribe=True, **given):
-        """Set the static state: time, configuration (n_q,), arc-lengths, None: as built; by the name of a kind the own forces of
-        its couplings, (n, most that one has), zero of kinds that are not given.
+        """Set the static state: time, configuration (n_q,), arc-lengths, by default as built; by the name of a kind the
+        internal forces of its couplings, (n, largest number of one), by default zero.
 
-        prescribe: whether prescribed dofs take their values at t, and else those of q.
+        prescribe: whether prescribed dofs take their values at t instead of those in q.
         """
         cdef fu_state *state = &self.run.next
         cdef int i
@@ -102,14 +102,14 @@ cdef class Statics(Translation):
         self._view(state, "acceleration")[:] = 0.0
 
     def state(self):
-        """The static state as the arguments of `set_state` (but t)."""
+        """Return the static state as the arguments of `set_state`, without t."""
         cdef fu_state *state = &self.run.next
         forces = self._view(state, "forces")
         own = {kind: self._own(kind, forces, width) for kind, width in self.kept_forces.items()}
         return {"q": self._view(state, "q").copy(), "s": self._view(state, "s").copy()} | own
 
     cdef _own(self, str kind, forces, int width):
-        """(couplings of a kind, width): entries of `forces`, zeros after those that one has."""
+        """Return (couplings of a kind, width): entries of `forces`, padded with zeros."""
         cdef int i, k
         found = []
         for i in self._of(kind):
@@ -118,9 +118,9 @@ cdef class Statics(Translation):
         return np.array(found).reshape(len(found), width)
 
     def load(self, double fraction, gravity=True):
-        """Apply this fraction of all loads at states that `set_state` set; gravity: of the weight, too, which else stays whole.
+        """Scale the loads by a fraction in static states; gravity: whether it is scaled, too.
 
-        Loads are forces and moments on cables and bodies. Prescribed motions, springs and stresses at rest are none.
+        Loads are forces and moments on cables and bodies, without prescribed motions, springs and stresses at rest.
         """
         cdef fu_model *m = &self.model
         cdef double weight = fraction if gravity else 1.0
@@ -137,14 +137,14 @@ cdef class Statics(Translation):
                 self.shapes[i].g[k] = weight * self.weight["shapes"][i][k]
 
     def hold(self, int signal, value):
-        """Give a signal one value at all times; None: what the model says."""
+        """Fix the value of a signal; None restores that of the model."""
         cdef fu_signal *g = &self.signals[signal]
         self.held = self.held or {}
         own = self.held.setdefault(signal, (g.n, g.amplitude, g.angular_frequency, g.phase))
         g.n, g.amplitude, g.angular_frequency, g.phase = own if value is None else (0, value, 0.0, M_PI_2)  # sine is 1
 
     def stiffen(self, int cable, A):
-        """Give a cable other constants of its law: A (1 or elements, constants), as in the model."""
+        """Set other constants of a cable's law: A (1 or elements, constants), as in the model."""
         cdef fu_cable *c = &self.cables[cable]
         cdef double[::1] given = np.ascontiguousarray(A, dtype=float).ravel()
         cdef double *own = <double *>c.A
@@ -161,13 +161,13 @@ cdef class Statics(Translation):
             fu_static_move(&self.run, &moved[0])
 
     def static_residual(self):
-        """(n,): left side of equilibrium over the unknowns: internal minus external forces; constraints."""
+        """Return (n,): residual of equilibrium over the unknowns: internal minus external forces; constraints."""
         cdef int total = self.run.newton.n + self.run.newton.m
         fu_static_residual(&self.run)
         return -np.asarray(<double[:total]>self.run.rhs) if total else np.zeros(0)
 
     def external_forces(self, int first, int stop):
-        """(stop - first, n_dof): what loads first..stop add at the static state to the left side of equilibrium."""
+        """Return (stop - first, n_dof): contributions of loads first..stop to the residual in the static state."""
         out = np.zeros((stop - first, self.model.n_dof))
         cdef double[:, ::1] view = out
         cdef double[::1] q = self._view(&self.run.next, "q")
@@ -179,17 +179,17 @@ cdef class Statics(Translation):
         return out
 
     def reaction(self):
-        """(n_dof,): after `static_residual`, what supports give to each dof, the residual where it is free."""
+        """Return (n_dof,): after `static_residual`, reactions of supports, the residual at free dofs."""
         return np.asarray(<double[:self.model.n_dof]>self.run.force).copy() if self.model.n_dof else np.zeros(0)
 
     def matrix(self, double inertia, double rate, double stiffness):
-        """inertia M + stiffness (K + rate D) at the static state, (n, n) sparse; constraints where stiffness is not 0."""
+        """Return inertia M + stiffness (K + rate D) in the static state, (n, n) sparse; constraints if stiffness is not 0."""
         self._weigh(inertia, rate, stiffness)
         between = self._between_cables() if stiffness else None
         return self._matrix() if between is None else self._matrix() + stiffness * between
 
     def dense_matrix(self, double inertia, double rate, double stiffness):
-        """The same as an array (n, n), which is quicker where there are few unknowns."""
+        """Return the same as an array (n, n), which is faster for few unknowns."""
         cdef int total = self.run.newton.n + self.run.newton.m
         self._weigh(inertia, rate, stiffness)
         full = np.zeros((total, total))
@@ -225,7 +225,7 @@ cdef class Statics(Translation):
         fu_matrix_of_weights(&self.run, weights)
 
     def _between_cables(self):
-        """(n, n) sparse: what joints between two cables add to the stiffness and Newton in time does without; else None."""
+        """Return (n, n) sparse: stiffness of joints between two cables, which Newton's method in time omits; else None."""
         joints = [k for k in self._of("joint") if fu_between_cables(<fu_joint *>self.couplings[<int>k])]
         if not joints:
             return None
@@ -242,7 +242,7 @@ cdef class Statics(Translation):
             places = [np.array([by.at[e][i] for i in range(by.n[e])]) for e in range(2)]
             for e in range(2):
                 block = np.array([by.K[1 - e][e][i] for i in range(by.n[0] * by.n[1])]).reshape(by.n[1 - e], by.n[e])
-                # an s that is held has no equilibrium of its own
+                # a fixed s has no equilibrium equation
                 moves = [[fu_joint_moves(&self.model, joint, &self.run.next, at) for at in side] for side in places]
                 block = block * np.outer(moves[1 - e], moves[e])
                 rows, columns = np.repeat(places[1 - e], by.n[e]), np.tile(places[e], by.n[1 - e])
@@ -261,7 +261,7 @@ cdef class Statics(Translation):
         return fu_elastic_energy(&self.model, &self.run.next)
 
     def spread(self, unknowns):
-        """(n_dof,): what unknowns move the dofs by."""
+        """Return (n_dof,): changes of the dofs by changes of the unknowns."""
         cdef double[::1] x = np.ascontiguousarray(unknowns, dtype=float)
         cdef double[::1] dofs = np.zeros(max(1, self.model.n_dof))
         fu_spread(&self.model, &x[0], &dofs[0])

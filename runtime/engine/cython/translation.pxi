@@ -1,7 +1,7 @@
-# A model as the engine's C structures.
+# From a model to the C structures of the engine.
 
-SPARE = 4  # times the fronts' memory as it is foreseen: what pivots may take that are left to later fronts
-cdef int INVERTED = 4  # times as many unknowns as a band is wide: longer ones are solved faster than multiplied
+FRONT_MEMORY_FACTOR = 4  # memory of fronts over its estimate, for pivots delayed to later fronts
+cdef int INVERSE_SIZE_FACTOR = 4  # unknowns over width of a band: longer bands are solved faster than multiplied by an inverse
 
 cdef const fu_coupling_type *_type_of(coupling) except NULL:
     """Return the engine's type of a coupling of a model."""
@@ -20,14 +20,14 @@ cdef class Translation(Arrays):
     cdef fu_motion *motions
     cdef fu_signal *signals
     cdef fu_breakpoint *knots
-    cdef fu_coupling **couplings  # in the order in which the engine adds up what they give
+    cdef fu_coupling **couplings  # in the order of the engine's sums
     cdef char *coupling_memory  # their structures, one behind the other
     cdef fu_event_function *watches
     cdef fu_model model
     cdef fu_run run
     cdef fu_fronts newton_fronts, mass_fronts
     cdef object newton_elimination
-    cdef dict kept_forces  # by kind of coupling: the most own forces that one has, of which a static state goes on
+    cdef dict kept_forces  # by kind of coupling: largest number of internal forces in static states
 
     def __cinit__(self, model, blocks=True):
         self.cables = <fu_cable *>PyMem_Calloc(len(model.cables) + 1, sizeof(fu_cable))
@@ -120,10 +120,10 @@ cdef class Translation(Arrays):
         return 0
 
     def modal_attachment(self, int index, x, phi, psi, b, w, f, m):
-        """A point of modal body `index` with its axes, as engine/bodies/modal.c has it; for tests.
+        """Evaluate a point of modal body `index` with its axes (engine/bodies/modal.c); for tests.
 
-        x (dim,), phi (modes, dim), psi (modes, turns); b, w: the body's entries of q and v. Returns what `fu_modal_point`
-        holds, P, T, and K for a force f and a moment m on the point.
+        x (dim,), phi (modes, dim), psi (modes, turns); b, w: the body's entries of q and v. Returns the members of
+        `fu_modal_point`, P, T, and K for a force f and a moment m on the point.
         """
         cdef fu_body *r = &self.bodies[index]
         cdef fu_modal_attachment modal
@@ -169,7 +169,7 @@ cdef class Translation(Arrays):
         return 0
 
     def _couplings(self, model, list tables):
-        """Fill in the structures of all couplings by the fields that their types describe, and number them."""
+        """Fill in the structures of all couplings by the fields of their types, and number them."""
         cdef size_t at = 0
         cdef fu_coupling *coupling
         cdef int n = len(model.couplings)
@@ -262,7 +262,7 @@ cdef class Translation(Arrays):
         m.n_motions, m.motions, m.signals, m.load_fraction = len(model.motions), self.motions, self.signals, 1.0
 
     cdef _fronts(self, fu_fronts *fronts, elimination):
-        """Fill in the order in which a border is eliminated."""
+        """Fill in the elimination of a border."""
         fronts.m, fronts.n, fronts.size = elimination.m, elimination.n, elimination.size
         fronts.start, fronts.first = self._ints(elimination.start), self._ints(elimination.first)
         fronts.pivots, fronts.neighbours = self._ints(elimination.pivots), self._ints(elimination.neighbours)
@@ -272,20 +272,20 @@ cdef class Translation(Arrays):
         fronts.front, fronts.place = self._ints(elimination.front), self._ints(elimination.place)
 
     cdef _factors(self, fu_factors *factors, elimination):
-        """Make the memory of a border's factors: none where they replace the matrix."""
+        """Allocate the factors of a border, unless they replace the matrix."""
         cdef int n = elimination.n, m = elimination.m
         if n == 1:
             return
         sizes = elimination.sizes.astype(float)
-        factors.most_numbers = min(SPARE * (sizes ** 2).sum(), INDICES)
-        factors.most_unknowns = min(2 * SPARE * sizes.sum(), INDICES)
+        factors.most_numbers = min(FRONT_MEMORY_FACTOR * (sizes ** 2).sum(), MAX_INT)
+        factors.most_unknowns = min(2 * FRONT_MEMORY_FACTOR * sizes.sum(), MAX_INT)
         factors.numbers, factors.x = self._zeros(factors.most_numbers), self._zeros(2.0 * m)
         factors.unknowns, factors.map = self._int_zeros(factors.most_unknowns), self._int_zeros(m)
         factors.start, factors.first = self._int_zeros(n), self._int_zeros(n)
         factors.size, factors.pivots, factors.done = self._int_zeros(n), self._int_zeros(n), self._int_zeros(n)
 
     cdef _strips(self, fu_system *system, model, strips):
-        """Fill in what of the border touches which chains, with the memory for it."""
+        """Fill in the coupling of the border with chains, and allocate its memory."""
         cdef int n = len(strips), chains = len(model.chains) - 1
         k, chain = strips.T
         lengths, beyond = np.diff(model.chains)[chain], FU_BAND_BEYOND(system.width)
@@ -306,8 +306,8 @@ cdef class Translation(Arrays):
         system.constant_columns, system.constant_rows = self._int_zeros(chains), self._int_zeros(chains)
 
     cdef int _counted(self, double n) except -1:
-        """Return a number of numbers as C's int. Raises MemoryError where it is none."""
-        if n > INDICES:
+        """Return a count as C's int. Raises MemoryError on overflow."""
+        if n > MAX_INT:
             raise MemoryError
         return <int>n
 
@@ -326,7 +326,7 @@ cdef class Translation(Arrays):
         system.pivot_band, system.pivot_border = self._int_zeros(n), self._int_zeros(m)
 
     cdef _state(self, fu_state *state, model):
-        """Give a state its arrays (state.h), and in them the model as it is drawn."""
+        """Allocate the arrays of a state (state.h), with the model as drawn."""
         cdef int k
         for k in range(FU_N_STATE_ARRAYS):
             self._attach(state, k)
@@ -334,7 +334,7 @@ cdef class Translation(Arrays):
         fu_reset(&self.model, state)
 
     cdef int _attach(self, fu_state *state, int k) except -1:
-        """Give a state its k-th array, of zeros."""
+        """Allocate the k-th array of a state, zeros."""
         cdef fu_array array = fu_state_array(&self.model, state, k)
         if array.is_real:
             fu_state_attach(state, k, self._zeros(array.items))
@@ -343,7 +343,7 @@ cdef class Translation(Arrays):
         return 0
 
     cdef _view(self, const fu_state *state, str name):
-        """Return an array of a state by its name in state.h; what is written to it is written to the state."""
+        """Return an array of a state by its name in state.h, a view."""
         cdef int k
         cdef fu_array array
         for k in range(FU_N_STATE_ARRAYS):
@@ -369,11 +369,11 @@ cdef class Translation(Arrays):
         a = &run.accelerator
         self._system(&a.mass, &self.mass_fronts, model, accelerations, width)
         sizes = np.diff(model.chains).tolist()
-        if max(sizes, default=0) <= min(FU_INVERSE_MOST, INVERTED * (width + 1)):
+        if max(sizes, default=0) <= min(FU_INVERSE_MOST, INVERSE_SIZE_FACTOR * (width + 1)):
             a.mass.inverse = self._zeros(sum(n * FU_INVERSE_ROWS(n) for n in sizes))
-        # that of the mass is factored elsewhere, before the first of Newton is made
+        # shared: the mass matrix is factored elsewhere before the first Newton matrix is made
         run.newton.K = a.mass.K = self._zeros((3.0 * width + 1) * model.n_band)
-        if self.model.n_inertial:  # the mass is factored again and again
+        if self.model.n_inertial:  # the mass matrix is factored repeatedly
             a.mass.K = self._zeros((3.0 * width + 1) * model.n_band)
         a.corner = self._zeros(accelerations.size)
         a.rhs = self._zeros(unknowns + model.n_multipliers + FU_BAND_BEYOND(width))
