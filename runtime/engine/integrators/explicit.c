@@ -49,11 +49,12 @@ static long n_parameters(const double *given)
 }
 
 /* Returns the size of the work space: the rates of q and v of each stage, of the end of the step, and of an error
- * estimate; then the powers of each stage and of the end. */
+ * estimate; the powers of each stage and of the end; the time of `now` whose internal power is that of the first stage.
+ */
 static long n_scratch(const fu_run *run)
 {
     const long n = tableau_of(run).stages;
-    return (n + 2) * ((long)run->model->n_q + run->model->n_dof) + POWERS * (n + 1);
+    return (n + 2) * ((long)run->model->n_q + run->model->n_dof) + POWERS * (n + 1) + 1;
 }
 
 static double *stage(const fu_run *run, int k)
@@ -64,6 +65,11 @@ static double *stage(const fu_run *run, int k)
 static double *powers(const fu_run *run, int k)
 {
     return stage(run, tableau_of(run).stages + 2) + POWERS * k;
+}
+
+static double *known_at(const fu_run *run)
+{
+    return powers(run, tableau_of(run).stages + 1);
 }
 
 /* Makes the rates of the configuration and of the velocities of a state whose accelerations are known. */
@@ -118,7 +124,7 @@ static int move_to(fu_run *run, const double *row, int n, double t, double h)
 
 static int start(fu_run *run)
 {
-    (void)run;
+    *known_at(run) = NAN;
     return FU_RUNNING;
 }
 
@@ -148,7 +154,8 @@ static int step(fu_run *run, double h)
     fu_state *next = &run->next;
     fu_predict_internal(run, h);
     rates(model, &run->now, stage(run, 0));
-    powers(run, 0)[INTERNAL] = fu_internal_dissipation(model, run->now.q, run->now.v);
+    if (*known_at(run) != run->now.t) powers(run, 0)[INTERNAL] = fu_internal_dissipation(model, run->now.q, run->now.v);
+    *known_at(run) = run->now.t;
     powers(run, 0)[OTHER] = run->dissipated_power - powers(run, 0)[INTERNAL];
     powers(run, 0)[EXTERNAL] = run->external_power;
     if (evaluate(run, h)) return 1;
@@ -261,6 +268,8 @@ static void account(fu_run *run, double h)
     }
     run->dissipated_power = powers(run, n)[INTERNAL] + powers(run, n)[OTHER];
     run->external_power = powers(run, n)[EXTERNAL];
+    powers(run, 0)[INTERNAL] = powers(run, n)[INTERNAL];
+    *known_at(run) = run->next.t;
 }
 
 const fu_integrator fu_explicit = {.name = "explicit",
