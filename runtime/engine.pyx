@@ -241,12 +241,12 @@ cdef class Engine(Report):
                 w.index = self.couplings[watch.index].coordinate
         fu_coupling_event_functions(&self.model, self.watches + n)
         run = &self.run
-        run.n_watches, run.watches = n + own, self.watches
-        run.watched, run.late = self._zeros(run.n_watches), self._int_zeros(run.n_watches)
-        run.passed_at = self._zeros(run.n_watches)
-        run.passed = <const char **>self._memory(<double>run.n_watches * sizeof(char *))
-        run.watch_work = self._zeros(self.model.n_dof + self.model.n_outputs)
-        fu_proximity_place(&self.model, run.n_watches, self._memory(fu_proximity_size(&self.model, run.n_watches)))
+        run.n_event_functions, run.event_functions = n + own, self.watches
+        run.event_values, run.late = self._zeros(run.n_event_functions), self._int_zeros(run.n_event_functions)
+        run.deferred_at = self._zeros(run.n_event_functions)
+        run.deferred = <const char **>self._memory(<double>run.n_event_functions * sizeof(char *))
+        run.event_work = self._zeros(self.model.n_dof + self.model.n_outputs)
+        fu_proximity_place(&self.model, run.n_event_functions, self._memory(fu_proximity_size(&self.model, run.n_event_functions)))
 
     def _knots(self, times, jumps):
         """Set the instants at which steps end."""
@@ -256,7 +256,7 @@ cdef class Engine(Report):
             raise MemoryError
         for i, (time, jump) in enumerate(zip(times, jumps, strict=True)):
             self.knots[i].t, self.knots[i].jumps = time, jump
-        self.run.n_knots, self.run.knots = len(times), self.knots
+        self.run.n_breakpoints, self.run.breakpoints = len(times), self.knots
 
     def start(self, *, duration, output_step, tol, step, method, first_step, knots=((), ()), capacity=None,
               rest_start=False, absolute_tol=0.0, controlled=None):

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { CASES = 400, MOST = FU_INVERSE_MOST, WIDEST = 32 };
+enum { CASES = 400, MOST = FU_MAX_INVERTED, WIDEST = 32 };
 
 static double A[MOST * MOST], x[4 * MOST], y[4 * MOST], bx[MOST], by[MOST];
 
@@ -93,8 +93,8 @@ static double inverse(int n, int width)
 /* A small full matrix: what is left of its equations, over the size of the solution. */
 static double small_matrix(int n)
 {
-    static double LU[FU_SMALL_MOST * FU_SMALL_MOST];
-    int pivot[FU_SMALL_MOST];
+    static double LU[FU_MAX_SMALL * FU_MAX_SMALL];
+    int pivot[FU_MAX_SMALL];
     double worst = 0.0, size = 1.0;
     for (int i = 0; i < n * n; ++i) LU[i] = A[i] = number();
     for (int i = 0; i < n; ++i) bx[i] = x[i] = number();
@@ -119,7 +119,7 @@ int main(void)
         band = larger(band, complex_band(n, width, 1));
         unsymmetric = larger(unsymmetric, complex_band(n, width, 0));
         inverted = larger(inverted, inverse(n, width));
-        small = larger(small, small_matrix(1 + rand() % FU_SMALL_MOST));
+        small = larger(small, small_matrix(1 + rand() % FU_MAX_SMALL));
     }
     printf("%g %g %g %g %d\n", band / DBL_EPSILON, unsymmetric / DBL_EPSILON, inverted / DBL_EPSILON,
            small / DBL_EPSILON, fu_small_factor(2, singular, pivot));

@@ -52,11 +52,11 @@ static inline double fu_dot(int n, const double *a, const double *b)
 }
 
 /* Returns the last of the increasing breakpoints from `low` on and before `high` that x has reached; `low` if none. */
-static inline int fu_last_reached(const double *knots, int low, int high, double x)
+static inline int fu_last_reached(const double *increasing, int low, int high, double x)
 {
     while (high - low > 1) {
         const int middle = (low + high) / 2;
-        if (knots[middle] <= x) low = middle;
+        if (increasing[middle] <= x) low = middle;
         else high = middle;
     }
     return low;

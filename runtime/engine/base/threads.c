@@ -59,7 +59,7 @@ int fu_share_among(fu_threads *threads, int dofs, fu_work work, const void *what
 #include <stdatomic.h>
 
 enum {
-    LOOKS = 500,       /* polls for work or its end before a processor is yielded: some 20 microseconds */
+    SPINS = 500,       /* polls for work or its end before a processor is yielded: some 20 microseconds */
     YIELDS = 200,      /* yields of the processor before a thread without work sleeps */
     CACHE_LINES = 128, /* bytes: threads that write at this distance do not share a line of the cache */
 };
@@ -131,10 +131,10 @@ static void take_parts(fu_threads *all, int own, unsigned work)
 /* Returns the number of a new job, or the last number if the threads shall end. */
 static unsigned wait_for_work(fu_threads *all, unsigned last)
 {
-    for (int k = 0; k < LOOKS + YIELDS; ++k) {
+    for (int k = 0; k < SPINS + YIELDS; ++k) {
         const unsigned work = atomic_load(&all->work);
         if (work != last || atomic_load(&all->ending)) return work;
-        if (k < LOOKS) relax();
+        if (k < SPINS) relax();
         else sched_yield();
     }
     pthread_mutex_lock(&all->mutex);
@@ -225,7 +225,7 @@ int fu_share_among(fu_threads *all, int dofs, fu_work function, const void *what
     take_parts(all, 1, work);
     for (int k = 1, looked = 0; k < all->n; ++k)
         while (atomic_load(&all->members[k].done) != work) {
-            if (++looked < LOOKS) relax();
+            if (++looked < SPINS) relax();
             else sched_yield();
         }
     return all->n;

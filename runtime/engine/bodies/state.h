@@ -8,7 +8,7 @@
 #define FU_STATE_OF_COUPLINGS(ARRAY)                                                                                   \
     /* internal forces of couplings: on the rider of a slide, multipliers of a joint, on a spring's first end */       \
     ARRAY(double, forces, model->n_forces)                                                                             \
-    ARRAY(int, piece, model->n_coordinates) /* per own coordinate: its path segment (coupling_events.h) */             \
+    ARRAY(int, segment, model->n_coordinates) /* per own coordinate: its path segment (coupling_events.h) */           \
     /* private data of a coupling's type, n_numbers and n_flags of it */                                               \
     ARRAY(double, numbers, model->n_numbers)                                                                           \
     ARRAY(int, flags, model->n_flags)

@@ -257,18 +257,18 @@ cdef extern from * nogil:
         const double *parameters
         double retry_factor, error_overestimate
         double *scratch
-        int n_watches
-        const fu_event_function *watches
+        int n_event_functions
+        const fu_event_function *event_functions
         double *watched, *watch_work, *deepest, *farthest, *passed_at
         int *late
         fu_slackness *slackness
-        const char **passed
+        const char **deferred
         double (*call)(void *context, int watch, const fu_state *state) noexcept nogil
         void *context
         fu_event event
         double event_time
-        int n_knots
-        const fu_breakpoint *knots
+        int n_breakpoints
+        const fu_breakpoint *breakpoints
         long most_evaluations
         double duration, output_step, fixed_step, tol, absolute_tol
         const double *controlled, *counted
@@ -298,8 +298,8 @@ cdef extern from * nogil:
     void fu_spread(const fu_model *model, const double *x, double *dofs)
     void fu_prescribe(const fu_model *model, fu_state *state)
     void fu_number_couplings(fu_coupling *const *couplings, int n, const fu_coupling **lists, fu_model *model)
-    size_t fu_proximity_size(const fu_model *model, int n_watches)
-    void fu_proximity_place(fu_model *model, int n_watches, void *memory)
+    size_t fu_proximity_size(const fu_model *model, int n_event_functions)
+    void fu_proximity_place(fu_model *model, int n_event_functions, void *memory)
     int fu_coupling_event_functions(const fu_model *model, fu_event_function *out)
     double fu_elastic_energy(const fu_model *model, const fu_state *state)
     void fu_reset(const fu_model *model, fu_state *state)

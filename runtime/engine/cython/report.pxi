@@ -25,8 +25,8 @@ cdef class Report(Statics):
     def knots_passed(self):
         """Return the number of knots of signals passed."""
         cdef int k, passed = 0
-        for k in range(self.run.n_knots):
-            passed += self.run.knots[k].t <= self.run.now.t
+        for k in range(self.run.n_breakpoints):
+            passed += self.run.breakpoints[k].t <= self.run.now.t
         return passed
 
     @property

@@ -28,7 +28,7 @@ void fu_note_depths(fu_run *run)
         if (!c) continue;
         const fu_coupling_events *events = c->events;
         if (events->depth)
-            fu_keep_largest(&run->deepest[c->number], events->depth(run->model, c, &run->now, run->watched[k]));
+            fu_keep_largest(&run->deepest[c->number], events->depth(run->model, c, &run->now, run->event_values[k]));
         fu_keep_largest(&run->farthest[c->number], fu_beyond(run->model, c, &run->now));
     }
 }

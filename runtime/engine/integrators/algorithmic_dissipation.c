@@ -89,7 +89,7 @@ static void turn(const moving *m, int k, const double omega[3], double *turned)
     }
 }
 
-/* Makes f of D (weight dE - relaxed), and dE; returns the work of the one with the other. */
+/* Computes f of D (weight dE - relaxed), and dE; returns the work of the one with the other. */
 static double element_force(const moving *m, int k, const double *relaxed, double *f, double *dE)
 {
     const fu_cable *cable = m->cable;
@@ -177,7 +177,7 @@ static moving without_turn(const fu_run *run, const fu_cable *cable, const doubl
     return m;
 }
 
-/* Makes r_0 of a step of h from `now`. */
+/* Computes r_0 of a step of h from `now`. */
 void fu_algorithmic_start(fu_run *run, double h)
 {
     const fu_algorithmic *a = fu_algorithmic_of(run);

@@ -51,7 +51,7 @@ static double span(const fu_carried_residual *carried, double h)
     return fmax(h, *carried->span - h);
 }
 
-/* Makes the force by which a step of size h makes up for the steps before: its residual, unless Newton leaves
+/* Computes the force by which a step of size h makes up for the steps before: its residual, unless Newton leaves
  * something. */
 void fu_carried_residual_correct(const fu_carried_residual *carried, const fu_model *model, double h)
 {

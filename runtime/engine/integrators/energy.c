@@ -27,7 +27,7 @@
 
 #include <string.h>
 
-#define LEFT_BY_NEWTON 1e-17 /* of the way of a step: what Newton may leave, which is as little as it can */
+#define NEWTON_TOLERANCE 1e-17 /* of the way of a step: what Newton may leave, which is as little as it can */
 
 /* Part of the work space, behind what algorithmic dissipation keeps there: the middle of the step, and forces. */
 typedef struct {
@@ -70,7 +70,7 @@ static void predict(fu_run *run, double h)
     fu_predict_internal(run, h);
 }
 
-/* Makes q, v and the mean acceleration of `next` from psi, and the middle of the step. */
+/* Computes q, v and the mean acceleration of `next` from psi, and the middle of the step. */
 static void kinematics(fu_run *run, double h)
 {
     const fu_model *model = run->model;
@@ -172,7 +172,7 @@ static int start(fu_run *run)
 static int step(fu_run *run, double h)
 {
     /* what Newton leaves does work on the step: it is measured by psi and not by positions */
-    run->newton_tolerance = LEFT_BY_NEWTON * h * fu_size(run->model, run->now.v);
+    run->newton_tolerance = NEWTON_TOLERANCE * h * fu_size(run->model, run->now.v);
     fu_algorithmic_start(run, h);
     return fu_newton_step(run, &newton, h);
 }

@@ -72,7 +72,7 @@ static double *known_at(const fu_run *run)
     return powers(run, tableau_of(run).stages + 1);
 }
 
-/* Makes the rates of the configuration and of the velocities of a state whose accelerations are known. */
+/* Computes the rates of the configuration and of the velocities of a state whose accelerations are known. */
 static void rates(const fu_model *model, const fu_state *state, double *rate)
 {
     const int n_flexible = model->n_bodies ? model->bodies[0].dof : model->n_dof;
@@ -106,7 +106,7 @@ static void keep(fu_run *run, int k, const fu_state *state)
     powers(run, k)[EXTERNAL] = fu_external_power(run, state, run->force);
 }
 
-/* Makes `next` from `now` and the row's combination, at t, with each slide where C_l = 0; returns 0 where that was
+/* Computes `next` from `now` and the row's combination, at t, with each slide where C_l = 0; returns 0 where that was
  * found. */
 static int move_to(fu_run *run, const double *row, int n, double t, double h)
 {
@@ -128,7 +128,7 @@ static int start(fu_run *run)
     return FU_RUNNING;
 }
 
-/* Makes the rates of all stages but the first, which is at hand; returns 0 where they were found. */
+/* Computes the rates of all stages but the first, which is at hand; returns 0 where they were found. */
 static int evaluate(fu_run *run, double h)
 {
     const double begin = fu_clock();
@@ -169,7 +169,7 @@ static int step(fu_run *run, double h)
     return 0;
 }
 
-/* Makes the increments of dofs of those of the configuration. */
+/* Computes the increments of dofs of those of the configuration. */
 static void increments(const fu_run *run, const double *q, double *out)
 {
     const fu_model *model = run->model;

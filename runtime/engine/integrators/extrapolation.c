@@ -16,7 +16,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { BY_VELOCITIES = -1, MOST_DEGREE = 2 };
+enum { BY_VELOCITIES = -1, MAX_DEGREE = 2 };
 
 /* Places the arrays in a work space; only counts them where it is null. */
 void fu_extrapolation_take(fu_extrapolation *past, const fu_model *model, double *scratch, long *taken)
@@ -57,7 +57,8 @@ static double predicted(const fu_extrapolation *past, factors f, const double *a
     return f.now * a[i] + f.before * past->before[i] + f.earlier * past->earlier[i];
 }
 
-/* Makes the accelerations of a first `next`: `rest` times those at `now`, and what unknowns change by beyond that. */
+/* Computes the accelerations of a first `next`: `rest` times those at `now`, and what unknowns change by beyond that.
+ */
 static void predict_accelerations(const fu_extrapolation *past, fu_run *run, factors f, double rest)
 {
     const fu_model *model = run->model;
@@ -71,7 +72,7 @@ static void predict_accelerations(const fu_extrapolation *past, fu_run *run, fac
     for (int i = 0; i < model->n_dof; ++i) run->next.a[i] = rest * a[i] + run->work[i];
 }
 
-/* Makes the forces of a first `next`, which go with accelerations. Those that have not changed stay as they are, as
+/* Computes the forces of a first `next`, which go with accelerations. Those that have not changed stay as they are, as
  * those of redundant rows do. Steps that the error chooses gain nothing by it: they are as large as Newton's method
  * takes them. */
 static void predict_forces(const fu_extrapolation *past, fu_run *run, factors f)
@@ -83,7 +84,7 @@ static void predict_forces(const fu_extrapolation *past, fu_run *run, factors f)
                 f.now * now[i] + f.before * past->force_before[i] + f.earlier * past->force_earlier[i];
 }
 
-/* Makes a first `next`: its accelerations, and the couplings' own coordinates, which are those of a parabola, and
+/* Computes a first `next`: its accelerations, and the couplings' own coordinates, which are those of a parabola, and
  * forces. */
 void fu_extrapolate(const fu_extrapolation *past, fu_run *run, double rest, double h)
 {
@@ -120,7 +121,7 @@ void fu_extrapolation_accept(const fu_extrapolation *past, const fu_run *run, do
     fu_last_steps *last = past->last;
     int best = BY_VELOCITIES;
     double least = INFINITY;
-    for (int degree = BY_VELOCITIES; degree <= MOST_DEGREE && degree <= last->steps; ++degree) {
+    for (int degree = BY_VELOCITIES; degree <= MAX_DEGREE && degree <= last->steps; ++degree) {
         const double sum = miss(past, run, factors_of(last, degree, rest, h));
         if (!(sum < least)) continue;
         least = sum;

@@ -13,7 +13,7 @@
  * Of vibrations that steps do not resolve, h a_n is as large as velocities are, however long h is. Where a step is much
  * shorter than the next one, as what is left between an event and an output time can be, its a_n+1 would push the next
  * one by that times the ratio of both, and vibrations would grow from event to event, the more so the stiffer a cable
- * is. After such a step the a_n that it began with goes on, nor is the scheme started anew with a_n = q''_n, which
+ * is. After such a step the a_n that it began with goes on, nor is the scheme started again with a_n = q''_n, which
  * holds their acceleration in full.
  */
 #include "base/workspace.h"
@@ -32,8 +32,8 @@
 #include <string.h>
 
 /* of the usual step: a shorter one leaves a_n as it was, which is off by less than the usual step's error */
-#define BRIEF 0.1
-#define JUMP 0.25 /* of a step: from its middle to the instant of a jump, on average */
+#define SHORT_STEP_SHARE 0.1
+#define MEAN_JUMP_DISTANCE 0.25 /* of a step: from its middle to the instant of a jump, on average */
 
 typedef struct {
     double alpha_m, alpha_f, beta, gamma;
@@ -90,7 +90,7 @@ typedef struct {
     double h;
 } share;
 
-/* Makes psi, v and q'' of a part of the dofs, and q before it is moved. */
+/* Computes psi, v and q'' of a part of the dofs, and q before it is moved. */
 static void kinematics_part(const void *what, int part, int parts)
 {
     const share *job = what;
@@ -115,7 +115,7 @@ static void kinematics_part(const void *what, int part, int parts)
     memcpy(next->q + range.first, now->q + range.first, sizeof(double) * (size_t)(end - range.first));
 }
 
-/* Makes q, v and q'' of `next` from its a. */
+/* Computes q, v and q'' of `next` from its a. */
 static void kinematics(fu_run *run, double h)
 {
     const fu_model *model = run->model;
@@ -172,7 +172,7 @@ static void residual(fu_run *run, double h)
     fu_carried_residual_add(&w.carried, run, at.weights.stiffness);
 }
 
-/* Makes minus the residual of the couplings' own equations, beside zero for the dofs. */
+/* Computes minus the residual of the couplings' own equations, beside zero for the dofs. */
 static void own_residual(fu_run *run, double h)
 {
     const fu_equations at = equations(run, h);
@@ -205,13 +205,13 @@ static double error(fu_run *run, double h)
 {
     const parameters *g = scheme_of(run);
     const double smooth = fabs(g->beta + 0.5 * (g->alpha_m - g->alpha_f) - 1.0 / 6.0);
-    const double factor = h * h * (fu_count_changes(run) ? JUMP : smooth);
+    const double factor = h * h * (fu_count_changes(run) ? MEAN_JUMP_DISTANCE : smooth);
     fu_set_difference(run->model->threads, run->model->n_dof, factor, run->next.acceleration, run->now.acceleration,
                       run->work);
     return fu_is_short(run, h) ? fu_error_size(run, run->work, fu_allowed_elsewhere(run)) : fu_filtered_size(run);
 }
 
-/* What the spectral radius changes of the rule of trapezoids, passages do not need. */
+/* What the spectral radius changes of the rule of trapezoids, deferred events do not need. */
 static fu_quadrature quadrature(const fu_run *run)
 {
     static const double b[] = {0.5, 0.5}, c[] = {0.0, 1.0};
@@ -223,7 +223,7 @@ static void account(fu_run *run, double h)
 {
     const workspace w = space(run);
     fu_carried_residual_accept(&w.carried, run->model, h);
-    if (run->is_remainder && h < BRIEF * run->usual)
+    if (run->is_remainder && h < SHORT_STEP_SHARE * run->usual)
         memcpy(run->next.a, run->now.a, sizeof(double) * (size_t)run->model->n_dof);
     else if (fu_goes_on(run)) fu_extrapolation_accept(&w.past, run, of_velocities(run), h);
     else fu_extrapolation_start(&w.past);

@@ -18,7 +18,7 @@
 
 #define MAX_ITERATIONS 10     /* of Newton's in a step, before it fails */
 #define FIRST_CONTRACTION 0.5 /* of an increment to the one before: what is assumed before there are two */
-/* contraction above which the matrix is made anew for the next step */
+/* contraction above which the matrix is made again for the next step */
 #define SLOW_CONTRACTION 0.3
 /* least contraction by which the rest of the error is estimated: a smaller one may be chance */
 #define MIN_CONTRACTION 1e-3
@@ -102,7 +102,7 @@ static int start(fu_run *run)
     return FU_RUNNING;
 }
 
-/* Makes `next` as `now`, for what is linearised there and for what a step does not change. */
+/* Computes `next` as `now`, for what is linearised there and for what a step does not change. */
 static void begin_step(fu_run *run)
 {
     const fu_model *model = run->model;

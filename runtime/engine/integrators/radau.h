@@ -41,7 +41,7 @@ fu_radau_workspace *fu_radau_space(const fu_run *run);
 void fu_radau_predict(fu_run *run, fu_radau_workspace *w, double h);
 /* Moves the dofs of all stages by the quadrature of velocities. */
 void fu_radau_configure(fu_run *run, fu_radau_workspace *w, double h);
-/* Makes `next` stage k, without accelerations; returns 0 where its slides were found. */
+/* Computes `next` stage k, without accelerations; returns 0 where its slides were found. */
 int fu_radau_place_stage(fu_run *run, fu_radau_workspace *w, int k, double h);
 /* Finds the accelerations of all stages, and the powers of their couplings and loads; returns 0 where they were found.
  */
@@ -54,12 +54,12 @@ void fu_radau_keep_multipliers(fu_run *run, fu_radau_workspace *w, int k);
 /* Adds the powers of the stages to the energy balance, and keeps the stages for the next prediction. */
 void fu_radau_account(fu_run *run, double h);
 
-/* radau_newton.c. Makes and factors the real and the complex matrix at `now`; returns 0, or not 0 where one is
+/* radau_newton.c. Computes and factors the real and the complex matrix at `now`; returns 0, or not 0 where one is
  * singular. */
 int fu_radau_factor(fu_run *run, double h);
-/* Makes run->rhs = [M r; H r] of dofs r that keep to the supports; unknowns: work space. */
+/* Computes run->rhs = [M r; H r] of dofs r that keep to the supports; unknowns: work space. */
 void fu_radau_right_side(fu_run *run, const double *r, double *unknowns);
-/* Makes one Newton correction of the stages; returns its size as a length. */
+/* Computes one Newton correction of the stages; returns its size as a length. */
 double fu_radau_correct(fu_run *run, fu_radau_workspace *w, double h);
 
 /* radau_error.c. Returns the local error of positions of the step just made, m. */

@@ -7,20 +7,20 @@
 #include <math.h>
 
 /* times the estimate for vibrations is what counts: errors of one are not of one sign */
-#define VIBRATION 0.5
-#define EMBEDDED 0.08 /* times the embedded estimate is what counts, as its order is too low */
+#define VIBRATION_FACTOR 0.5
+#define EMBEDDED_FACTOR 0.08 /* times the embedded estimate is what counts, as its order is too low */
 /* the same where motions, drives or friction feed vibrations: there errors grow with them */
-#define FED_VIBRATION 4.0
-#define FED_EMBEDDED 0.1
+#define FED_VIBRATION_FACTOR 4.0
+#define FED_EMBEDDED_FACTOR 0.1
 /* the same where bodies turn: there what vibrations lose changes the turns for good */
-#define TURNING_VIBRATION 2.0
-#define TURNING_EMBEDDED 0.1 /* as the matrix has nothing of turns */
+#define TURNING_VIBRATION_FACTOR 2.0
+#define TURNING_EMBEDDED_FACTOR 0.1 /* as the matrix has nothing of turns */
 /* of what is allowed: by how much a body, as a length, turns within a step where it turns */
-#define TURN_SHARE 0.01
-#define REPORTED 2.0 /* times the estimate for vibrations is what is told of a fixed step */
+#define MIN_TURN_SHARE 0.01
+#define REPORTED_FACTOR 2.0 /* times the estimate for vibrations is what is told of a fixed step */
 /* of all that is allowed: the error of vibrations that a step does not resolve */
 #define VIBRATION_SHARE 0.1
-#define KINK 0.15 /* of tol: the error that one kink of friction may make */
+#define KINK_ERROR_SHARE 0.15 /* of tol: the error that one kink of friction may make */
 
 /* Returns the largest error that a kink of a force within the step may make, as a part of what is allowed, m. Kinks are
  * single events, so that one may cost a part of tol, however short its step. */
@@ -39,10 +39,10 @@ static double kink(fu_run *run, fu_radau_workspace *w, double h)
         worst = fmax(worst, coupling->type->reaction->friction_error(model, coupling, &run->next, STAGES + 1, weight,
                                                                      w->multipliers, h * left));
     }
-    return worst * run->allowed / (KINK * fu_allowed_error(run));
+    return worst * run->allowed / (KINK_ERROR_SHARE * fu_allowed_error(run));
 }
 
-/* Makes run->work = (M + (h/L) D + (h/L)^2 K)^-1 M r on the joints, for the real L; returns its size as a length. */
+/* Computes run->work = (M + (h/L) D + (h/L)^2 K)^-1 M r on the joints, for the real L; returns its size as a length. */
 static double filtered(fu_run *run, fu_radau_workspace *w, const double *r)
 {
     const fu_model *model = run->model;
@@ -53,7 +53,7 @@ static double filtered(fu_run *run, fu_radau_workspace *w, const double *r)
     return fu_error_size(run, run->work, fu_allowed_elsewhere(run));
 }
 
-/* Makes run->work what the filter takes from what is in run->work, which it was made by; returns the size of what it
+/* Computes run->work what the filter takes from what is in run->work, which it was made by; returns the size of what it
  * leaves. */
 static double take_filtered(fu_run *run, fu_radau_workspace *w)
 {
@@ -64,7 +64,7 @@ static double take_filtered(fu_run *run, fu_radau_workspace *w)
     return left;
 }
 
-/* Makes run->work the embedded estimate E of the error; returns its size as a length. */
+/* Computes run->work the embedded estimate E of the error; returns its size as a length. */
 static double embedded(fu_run *run, fu_radau_workspace *w, double h)
 {
     const fu_radau_parameters *method = fu_radau_method(run);
@@ -89,7 +89,7 @@ static int turns(const fu_run *run, double h)
     const fu_model *model = run->model;
     FU_EACH_BODY(body, model)
         for (int i = body->dof + body->kernel->dim; i < body->dof + body->kernel->velocity; ++i)
-            if (model->weight[i] * h * fmax(fabs(run->now.v[i]), fabs(run->next.v[i])) > TURN_SHARE * run->allowed)
+            if (model->weight[i] * h * fmax(fabs(run->now.v[i]), fabs(run->next.v[i])) > MIN_TURN_SHARE * run->allowed)
                 return 1;
     return 0;
 }
@@ -112,13 +112,14 @@ double fu_radau_error(fu_run *run, double h)
     const int fed = model->n_motions || model->n_driven || model->n_reacting;
     const double all = embedded(run, w, h), slow = take_filtered(run, w);
     const double vibration = fu_error_size(run, run->work, fu_allowed_elsewhere(run));
-    if (run->fixed_step > 0.0) return fmax(REPORTED * vibration, FED_EMBEDDED * all);
-    if (model->n_reacting) return fmax(fmax(FED_VIBRATION * vibration, FED_EMBEDDED * all), kink(run, w, h));
+    if (run->fixed_step > 0.0) return fmax(REPORTED_FACTOR * vibration, FED_EMBEDDED_FACTOR * all);
+    if (model->n_reacting)
+        return fmax(fmax(FED_VIBRATION_FACTOR * vibration, FED_EMBEDDED_FACTOR * all), kink(run, w, h));
     if ((fed && model->n_bodies) || turns(run, h))
-        return fmax((fed ? FED_VIBRATION : TURNING_VIBRATION) * vibration, TURNING_EMBEDDED * all);
+        return fmax((fed ? FED_VIBRATION_FACTOR : TURNING_VIBRATION_FACTOR) * vibration, TURNING_EMBEDDED_FACTOR * all);
     for (int i = 0; i < model->n_dof; ++i) w->w[i] = run->work[i];
-    const double adding_up = (fed ? FED_VIBRATION : VIBRATION) * filtered(run, w, w->w);
-    const double by_embedded = fed ? FED_EMBEDDED : EMBEDDED;
+    const double adding_up = (fed ? FED_VIBRATION_FACTOR : VIBRATION_FACTOR) * filtered(run, w, w->w);
+    const double by_embedded = fed ? FED_EMBEDDED_FACTOR : EMBEDDED_FACTOR;
     const double once = vibration * run->allowed / (VIBRATION_SHARE * fu_allowed_error(run));
     return fmax(fmax(adding_up, by_embedded * slow), once);
 }

@@ -32,7 +32,7 @@ static void add_weights(fu_run *run, fu_weights weights, int whole, fu_complex f
     fu_complex_system_accumulate(&fu_radau_space(run)->newton, &run->newton, factor);
 }
 
-/* Makes both matrices at `now`. They are made of M + J, K and D, which systems of other weights differ by. Cables
+/* Computes both matrices at `now`. They are made of M + J, K and D, which systems of other weights differ by. Cables
  * without damping have M, and M + K; their K, which takes longest, is made once. */
 static void make_matrices(fu_run *run, double h)
 {
@@ -66,7 +66,8 @@ static void make_matrices(fu_run *run, double h)
     fu_complex_system_accumulate(c, &run->newton, last);
 }
 
-/* Makes both and factors the real band. Where that is not definite, the complex one needs more than its lower half. */
+/* Computes both and factors the real band. Where that is not definite, the complex one needs more than its lower half.
+ */
 static int make_and_factor_band(fu_run *run, double h)
 {
     fu_system *s = &run->newton;
@@ -80,7 +81,7 @@ static int make_and_factor_band(fu_run *run, double h)
     }
 }
 
-/* Makes and factors the real and the complex matrix at `now`; returns 0, or not 0 where one is singular. */
+/* Computes and factors the real and the complex matrix at `now`; returns 0, or not 0 where one is singular. */
 int fu_radau_factor(fu_run *run, double h)
 {
     const double begin = fu_clock();
@@ -95,7 +96,7 @@ int fu_radau_factor(fu_run *run, double h)
     return info;
 }
 
-/* Makes the border's rows times dofs, which for constraint rows are H r. */
+/* Computes the border's rows times dofs, which for constraint rows are H r. */
 static void keep_rows(fu_run *run, const double *unknowns)
 {
     const fu_system *s = &run->newton;

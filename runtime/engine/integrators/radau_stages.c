@@ -57,7 +57,7 @@ void fu_radau_configure(fu_run *run, fu_radau_workspace *w, double h)
         }
 }
 
-/* Makes the time and the dofs of `next` those of stage k. */
+/* Computes the time and the dofs of `next` those of stage k. */
 static void move_to_stage(fu_run *run, const fu_radau_workspace *w, int k, double h)
 {
     const fu_model *model = run->model;

@@ -87,7 +87,7 @@ static void multiply_chain(const fu_system *s, int chain, fu_span of, double *x)
 {
     const int n = size_of(s, chain);
     const double *inverse = s->inverse;
-    double solution[FU_INVERSE_ROWS(FU_INVERSE_MOST)];
+    double solution[FU_INVERSE_ROWS(FU_MAX_INVERTED)];
     for (int c = 0; c < chain; ++c) inverse += (long)size_of(s, c) * FU_INVERSE_ROWS(size_of(s, c));
     while (of.end > of.first && x[of.end - 1] == 0.0) --of.end;
     fu_inverse_times(FU_INVERSE_ROWS(n), inverse, of.first, of.end, x, solution);
@@ -130,7 +130,7 @@ static double times(const fu_system *s, const fu_matrix_block *p, fu_span of, co
 
 /* Finds the significant rows of a column of X in a chain, by halves; returns the number of blocks. The column decays
  * away from the rows that it touches, finally to subnormal numbers, which slow down the processor. */
-int fu_matrix_blocks(const fu_system *s, int strip, const double *x, fu_matrix_block *pieces)
+int fu_matrix_blocks(const fu_system *s, int strip, const double *x, fu_matrix_block *blocks)
 {
     const int chain = s->strips[strip].chain;
     const int begin = s->chains[chain], end = s->chains[chain + 1], middle = (begin + end) / 2;
@@ -142,13 +142,13 @@ int fu_matrix_blocks(const fu_system *s, int strip, const double *x, fu_matrix_b
         fu_span rows = halves[half];
         while (rows.first < rows.end && fabs(x[rows.first]) <= NEGLIGIBLE_ENTRY * largest) ++rows.first;
         while (rows.first < rows.end && fabs(x[rows.end - 1]) <= NEGLIGIBLE_ENTRY * largest) --rows.end;
-        if (rows.first < rows.end) pieces[n++] = (fu_matrix_block){s->strips[strip].k, strip, rows};
+        if (rows.first < rows.end) blocks[n++] = (fu_matrix_block){s->strips[strip].k, strip, rows};
     }
     return n;
 }
 
 /* Computes a column of X = K^-1 B in a chain; returns the number of its blocks. */
-static int solve_column(fu_system *s, const fu_lapack *lapack, int strip, fu_matrix_block *pieces)
+static int solve_column(fu_system *s, const fu_lapack *lapack, int strip, fu_matrix_block *blocks)
 {
     const int chain = s->strips[strip].chain, begin = s->chains[chain], end = s->chains[chain + 1];
     const fu_span *of = s->span_B + FU_HALVES * strip;
@@ -158,7 +158,7 @@ static int solve_column(fu_system *s, const fu_lapack *lapack, int strip, fu_mat
     for (int half = 0; half < FU_HALVES; ++half)
         for (int i = of[half].first; i < of[half].end; ++i) x[i] = B[i];
     solve_chain(s, lapack, chain, (fu_span){of[of[0].end == 0].first, of[of[1].end != 0].end}, x);
-    return fu_matrix_blocks(s, strip, x, pieces);
+    return fu_matrix_blocks(s, strip, x, blocks);
 }
 
 /* Computes the columns of X and the blocks of C that are not constant. */
@@ -219,7 +219,7 @@ int fu_system_factor_border(fu_system *s, const fu_lapack *lapack)
     }
     if (s->D[s->fronts->size] != 0.0) return 1; /* the order of elimination has no place for an entry */
     if (s->fronts->n > 1) return fu_fronts_factor(s->fronts, s->D, &s->factors, lapack);
-    if (m <= FU_SMALL_MOST) return fu_small_factor(m, s->D, s->pivot_border);
+    if (m <= FU_MAX_SMALL) return fu_small_factor(m, s->D, s->pivot_border);
     lapack->dgetrf(&m, &m, s->D, &m, s->pivot_border, &info);
     return info;
 }
@@ -229,7 +229,7 @@ static void solve_border(const fu_system *s, const fu_lapack *lapack, double *y)
 {
     int m = s->m, one = 1, info;
     if (s->fronts->n > 1) fu_fronts_solve(s->fronts, &s->factors, y);
-    else if (m <= FU_SMALL_MOST) fu_small_solve(m, s->D, s->pivot_border, y);
+    else if (m <= FU_MAX_SMALL) fu_small_solve(m, s->D, s->pivot_border, y);
     else lapack->dgetrs("N", &m, &one, s->D, &m, s->pivot_border, y, &m, &info);
 }
 

@@ -4,29 +4,29 @@
 
 #include <math.h>
 
-#define DEPENDENT 1e-10 /* of its diagonal: the remainder of a row that depends on the basic ones */
-#define MOST_PIVOTS 1000
+#define DEPENDENCE_TOLERANCE 1e-10 /* of its diagonal: the remainder of a row that depends on the basic ones */
+#define MAX_PIVOTS 1000
 
-enum { MOST = FU_MOST_COMPLEMENTARY };
+enum { MAX_UNKNOWNS = FU_MAX_COMPLEMENTARY };
 
 /* Solves the basic part of G y = column i by Cholesky's method; returns the Schur complement of G's diagonal i. */
 static double complement_of(int n, const double *G, int n_basic, const int *basic, int i, double *y)
 {
-    double L[MOST * MOST], left = G[i * n + i];
+    double L[MAX_UNKNOWNS * MAX_UNKNOWNS], left = G[i * n + i];
     for (int r = 0; r < n_basic; ++r) {
         for (int c = 0; c <= r; ++c) {
             double sum = G[basic[r] * n + basic[c]];
-            for (int k = 0; k < c; ++k) sum -= L[r * MOST + k] * L[c * MOST + k];
-            L[r * MOST + c] = r == c ? sqrt(fmax(sum, 0.0)) : sum / L[c * MOST + c];
+            for (int k = 0; k < c; ++k) sum -= L[r * MAX_UNKNOWNS + k] * L[c * MAX_UNKNOWNS + k];
+            L[r * MAX_UNKNOWNS + c] = r == c ? sqrt(fmax(sum, 0.0)) : sum / L[c * MAX_UNKNOWNS + c];
         }
         double sum = G[basic[r] * n + i];
-        for (int k = 0; k < r; ++k) sum -= L[r * MOST + k] * y[k];
-        y[r] = sum / L[r * MOST + r];
+        for (int k = 0; k < r; ++k) sum -= L[r * MAX_UNKNOWNS + k] * y[k];
+        y[r] = sum / L[r * MAX_UNKNOWNS + r];
         left -= y[r] * y[r];
     }
     for (int r = n_basic - 1; r >= 0; --r) {
-        for (int k = r + 1; k < n_basic; ++k) y[r] -= L[k * MOST + r] * y[k];
-        y[r] /= L[r * MOST + r];
+        for (int k = r + 1; k < n_basic; ++k) y[r] -= L[k * MAX_UNKNOWNS + r] * y[k];
+        y[r] /= L[r * MAX_UNKNOWNS + r];
     }
     return left;
 }
@@ -35,11 +35,11 @@ static double complement_of(int n, const double *G, int n_basic, const int *basi
 static void sort_the_rest(int n, const double *G, const double *b, double least, const double *x, int *kind,
                           int n_basic, int *basic)
 {
-    double y[MOST];
+    double y[MAX_UNKNOWNS];
     for (int i = 0; i < n; ++i) {
         if (kind[i] || fu_dot(n, G + i * n, x) + b[i] > least) continue;
         kind[i] = FU_IS_DEPENDENT;
-        if (!(complement_of(n, G, n_basic, basic, i, y) > DEPENDENT * G[i * n + i])) continue;
+        if (!(complement_of(n, G, n_basic, basic, i, y) > DEPENDENCE_TOLERANCE * G[i * n + i])) continue;
         kind[i] = FU_IS_BASIC;
         basic[n_basic++] = i;
     }
@@ -50,13 +50,13 @@ static void sort_the_rest(int n, const double *G, const double *b, double least,
  * within `least` is zero. Returns nonzero without a solution. */
 int fu_complement(int n, const double *G, const double *b, double least, double *x, int *kind)
 {
-    int basic[MOST], n_basic = 0, entering = -1;
-    double y[MOST];
+    int basic[MAX_UNKNOWNS], n_basic = 0, entering = -1;
+    double y[MAX_UNKNOWNS];
     for (int i = 0; i < n; ++i) {
         x[i] = 0.0;
         kind[i] = FU_IS_POSITIVE;
     }
-    for (int pivot = 0; pivot < MOST_PIVOTS; ++pivot) {
+    for (int pivot = 0; pivot < MAX_PIVOTS; ++pivot) {
         double worst = -least;
         for (int i = 0, waits = entering < 0; i < n && waits; ++i) {
             const double w = kind[i] ? 0.0 : fu_dot(n, G + i * n, x) + b[i];
@@ -68,7 +68,7 @@ int fu_complement(int n, const double *G, const double *b, double least, double 
         }
         const double w = fu_dot(n, G + entering * n, x) + b[entering];
         const double left = complement_of(n, G, n_basic, basic, entering, y);
-        const double full = left > DEPENDENT * G[entering * n + entering] ? -w / left : INFINITY;
+        const double full = left > DEPENDENCE_TOLERANCE * G[entering * n + entering] ? -w / left : INFINITY;
         double step = full;
         int leaving = -1;
         for (int r = 0; r < n_basic; ++r)

@@ -19,7 +19,7 @@ static fu_complex *take(double *scratch, long *taken, long n)
 /* Takes the arrays of a system of the size of the real one from a work space (fu_take). */
 void fu_complex_system_take(fu_complex_system *c, const fu_system *s, double *scratch, long *taken)
 {
-    const long n = s->n, m = s->m, beside = s->n_strip_rows, pieces = FU_HALVES * (long)s->n_strips;
+    const long n = s->n, m = s->m, beside = s->n_strip_rows, blocks = FU_HALVES * (long)s->n_strips;
     const fu_factors *real = &s->factors;
     c->K = take(scratch, taken, storage_rows(s) * n);
     c->B = take(scratch, taken, beside);
@@ -27,7 +27,7 @@ void fu_complex_system_take(fu_complex_system *c, const fu_system *s, double *sc
     c->D = take(scratch, taken, s->fronts->size);
     c->X = take(scratch, taken, beside);
     c->x = take(scratch, taken, n + m);
-    c->columns = (fu_matrix_block *)fu_take(scratch, taken, FU_DOUBLES(pieces, fu_matrix_block));
+    c->columns = (fu_matrix_block *)fu_take(scratch, taken, FU_DOUBLES(blocks, fu_matrix_block));
     c->n_columns = (int *)fu_take(scratch, taken, FU_DOUBLES((long)s->n_chains, int));
     c->way = (int *)fu_take(scratch, taken, FU_DOUBLES((long)s->n_chains, int));
     c->pivot_band = (int *)fu_take(scratch, taken, FU_DOUBLES(n, int));
@@ -153,7 +153,7 @@ static void solve_chain(const fu_complex_system *c, const fu_system *s, const fu
 /* Computes a column of X in a chain and finds its significant rows, unless B is empty there; returns the number of
  * blocks. size: work space of the band's size. */
 static int solve_column(fu_complex_system *c, const fu_system *s, const fu_lapack *lapack, int strip, double *size,
-                        fu_matrix_block *pieces)
+                        fu_matrix_block *blocks)
 {
     const fu_span *of = s->span_B + FU_HALVES * strip;
     const int chain = s->strips[strip].chain, first = s->chains[chain], end = s->chains[chain + 1];
@@ -162,7 +162,7 @@ static int solve_column(fu_complex_system *c, const fu_system *s, const fu_lapac
     memcpy(x + first, B + first, sizeof(fu_complex) * (size_t)(end - first));
     solve_chain(c, s, lapack, chain, of[of[0].end == 0].first, x);
     for (int i = first; i < end; ++i) size[i] = fabs(x[i].re) + fabs(x[i].im);
-    return fu_matrix_blocks(s, strip, size, pieces);
+    return fu_matrix_blocks(s, strip, size, blocks);
 }
 
 /* Subtracts the contribution of a chain from D, to form the Schur complement. */

@@ -6,7 +6,7 @@
  * smaller than the largest entry of its column. Columns without a pivot are delayed to the parent front. The last front
  * has no other rows: LAPACK factors it. Pivots are stored as their inverses. */
 /* of a column's largest entry: least pivot. Rounding grows by at most its inverse. */
-#define THRESHOLD 1e-5
+#define PIVOT_THRESHOLD 1e-5
 
 FU_INLINE NUMBER *PREFIX(front)(const fu_factors *f, int k)
 {
@@ -101,7 +101,7 @@ FU_INLINE int PREFIX(pivot)(const NUMBER *column, int k, int q, int n)
             row = i;
         }
     for (int i = q; i < n; ++i) elsewhere = SIZE(column[i]) > elsewhere ? SIZE(column[i]) : elsewhere;
-    return largest >= THRESHOLD * elsewhere ? row : -1;
+    return largest >= PIVOT_THRESHOLD * elsewhere ? row : -1;
 }
 
 /* Eliminates those of the first q unknowns of a front that have a pivot; returns their number. updated: work space of

@@ -8,7 +8,7 @@
 void fu_inverse_make(int n, int width, const double *L, double *inverse)
 {
     const int rows = FU_INVERSE_ROWS(n);
-    double x[FU_BAND_LENGTH(FU_INVERSE_MOST, FU_INVERSE_MOST)];
+    double x[FU_BAND_LENGTH(FU_MAX_INVERTED, FU_MAX_INVERTED)];
     for (int j = 0; j < n; ++j) {
         for (int i = 0; i < FU_BAND_LENGTH(n, width); ++i) x[i] = i == j;
         fu_band_solve(n, width, L, j, x);

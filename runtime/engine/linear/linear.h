@@ -34,12 +34,12 @@ void fu_lapack_attach(fu_lapack *lapack, int k, const void *function);
 #define FU_BAND_LENGTH(n, width) ((long)(n) + FU_BAND_BEYOND(width))
 
 /* inverse.c: largest number of unknowns of an inverted band, and rows of a column of the inverse. */
-#define FU_INVERSE_MOST 96
+#define FU_MAX_INVERTED 96
 #define FU_INVERSE_GROUP 16
 #define FU_INVERSE_ROWS(n) (((n) + FU_INVERSE_GROUP - 1) / FU_INVERSE_GROUP * FU_INVERSE_GROUP)
 
 /* small.c: the largest matrix that is factored there. */
-#define FU_SMALL_MOST 24
+#define FU_MAX_SMALL 24
 
 /* Chains of this number of unknowns and more are eliminated from both ends towards their middle (twisted.c), by two
  * threads if there are: shorter ones are too fast to share. Then the columns of a factored chain beyond its unknowns:
@@ -144,7 +144,7 @@ int fu_pack(const fu_system *system, fu_span rows, int backwards, double *L);
 void fu_system_clear_border(fu_system *system);
 fu_span fu_common(fu_span one, fu_span other);
 int fu_strip_of(const fu_system *system, int k, int chain);
-int fu_matrix_blocks(const fu_system *system, int strip, const double *x, fu_matrix_block *pieces);
+int fu_matrix_blocks(const fu_system *system, int strip, const double *x, fu_matrix_block *blocks);
 void fu_system_release_border(fu_system *system);
 int fu_system_factor_band(fu_system *system, const fu_lapack *lapack);
 void fu_system_invert_band(fu_system *system);

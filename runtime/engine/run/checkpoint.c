@@ -13,10 +13,10 @@
 
 /* Wide bounds of a state in which a run has paused: bytes beyond them are damaged or forged. */
 /* of a path segment: largest distance of a coupling from it; events leave it within 1e-6 */
-#define ASIDE 1e-3
-#define MIN_STEP 1e-13    /* of the duration: a step, or a bound of steps; a run ends at 1e-12 */
-#define MAX_STEP 2.0      /* of the duration: a step, or a bound of steps */
-#define MOST_COUNT 100000 /* rejected steps, and reversals on a boundary; a run ends at 10000 */
+#define MAX_SEGMENT_DISTANCE 1e-3
+#define MIN_STEP 1e-13   /* of the duration: a step, or a bound of steps; a run ends at 1e-12 */
+#define MAX_STEP 2.0     /* of the duration: a step, or a bound of steps */
+#define MAX_COUNT 100000 /* rejected steps, and reversals on a boundary; a run ends at 10000 */
 
 enum { MEASURE, SAVE, RESTORE };
 
@@ -56,9 +56,9 @@ static void copy_all(copier *c, fu_run *run)
     copy_state(c, model, &run->next);
     copy(c, run->first, sizeof(double) * (size_t)model->n_q);
     copy(c, run->s_slope, sizeof(double) * (size_t)model->n_coordinates);
-    copy(c, run->watched, sizeof(double) * (size_t)run->n_watches);
+    copy(c, run->event_values, sizeof(double) * (size_t)run->n_event_functions);
     if (run->integrator->keeps_scratch) copy(c, run->scratch, sizeof(double) * (size_t)run->integrator->n_scratch(run));
-    copy(c, run->late, sizeof(int) * (size_t)run->n_watches);
+    copy(c, run->late, sizeof(int) * (size_t)run->n_event_functions);
     copy(c, run->slackness, sizeof *run->slackness * (size_t)model->n_cables);
     copy(c, &run->record.n, sizeof run->record.n);
     copy(c, &run->statistics, sizeof run->statistics);
@@ -121,17 +121,17 @@ static int possible_counts(const fu_run *run)
                            s->crossings, s->newton_failures, s->evaluations,       run->accelerator.evaluated};
     for (size_t i = 0; i < sizeof counts / sizeof *counts; ++i)
         if (counts[i] < 0) return 0;
-    for (int k = 0; k < run->n_watches; ++k)
+    for (int k = 0; k < run->n_event_functions; ++k)
         if (!in_range(run->late[k], -1, 1)) return 0;
-    return fu_possible_slackness(run) && in_range(run->turned, 0, MOST_COUNT) &&
-           in_range(run->net_rejections, -MOST_COUNT, MOST_COUNT);
+    return fu_possible_slackness(run) && in_range(run->turned, 0, MAX_COUNT) &&
+           in_range(run->net_rejections, -MAX_COUNT, MAX_COUNT);
 }
 
 /* Returns whether flags, and indices of couplings and dofs, are possible: some address memory. */
 static int possible_indices(const fu_run *run)
 {
     const int last = last_of(run->model->n_couplings);
-    return in_range(run->stopped_slide, 0, last) && in_range(run->keep_pieces, 0, 1) &&
+    return in_range(run->stopped_slide, 0, last) && in_range(run->keep_segments, 0, 1) &&
            in_range(run->keep_forces, 0, 1) && in_range(run->goes_over, 0, 1) && in_range(run->rest_start, 0, 1) &&
            in_range(run->failure.cause, FU_NO_FAILURE, FU_SELF_LOCKING) &&
            in_range(run->failure.dof, 0, last_of(run->model->n_dof)) && in_range(run->failure.coupling, -1, last);
@@ -171,6 +171,7 @@ int fu_restore(fu_run *run, const char *bytes, int rows)
     run->record.first = run->record.n;
     if (run->model->proximity) run->model->proximity->is_known = 0;
     return !(is_paused(run, rows) && fu_is_possible(run->model, &run->now) && fu_is_possible(run->model, &run->next) &&
-             finite_state(run->model, &run->now) && fu_are_on_path_segments(run->model, &run->now, ASIDE) &&
-             possible_counts(run) && possible_indices(run) && possible_numbers(run));
+             finite_state(run->model, &run->now) &&
+             fu_are_on_path_segments(run->model, &run->now, MAX_SEGMENT_DISTANCE) && possible_counts(run) &&
+             possible_indices(run) && possible_numbers(run));
 }

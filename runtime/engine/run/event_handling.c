@@ -5,8 +5,8 @@
 
 #include <math.h>
 
-#define MOST_SINCE 1e-6 /* of the duration: largest time between an event and the end of its step */
-#define MOST_ACTS 100   /* changes of couplings at one instant: more is no motion */
+#define MAX_DELAY 1e-6 /* of the duration: largest time between an event and the end of its step */
+#define MAX_ACTS 100   /* changes of couplings at one instant: more is no motion */
 
 /* Restarts the scheme after a coupling has changed, as `what` says, a time ago, s; returns FU_EVENT to inform the
  * caller, or the status of a run that cannot continue. */
@@ -15,7 +15,7 @@ static int acted(fu_run *run, const fu_coupling *coupling, const char *what, dou
     const int status = fu_start_scheme(run, 1);
     run->acts = run->now.t - run->acted <= FU_AT_ONCE * run->duration ? run->acts + 1 : 0;
     run->acted = run->now.t;
-    if (run->acts > MOST_ACTS) {
+    if (run->acts > MAX_ACTS) {
         fu_fail(run, FU_SELF_LOCKING, run->now.v, coupling->number);
         return FU_NO_CONVERGENCE;
     }
@@ -27,21 +27,21 @@ static int acted(fu_run *run, const fu_coupling *coupling, const char *what, dou
 
 /* Moves a coupling on a boundary to the next path segment, or to the end of its path; returns a status. Accelerations
  * and force are discontinuous with r_xx there: the scheme restarts. If they were carried over, the short steps around a
- * boundary would amplify the constraint errors in them by the ratio of the steps at every node passage, and a spectral
- * radius of 1 does not damp them. */
+ * boundary would amplify the constraint errors in them by the ratio of the steps at every node deferred event, and a
+ * spectral radius of 1 does not damp them. */
 static int cross(fu_run *run, const fu_coupling *coupling, int side)
 {
     const fu_coupling_events *events = coupling->events;
     fu_state *now = &run->now;
-    const int piece = now->piece[coupling->coordinate] + side;
-    if (piece < 0 || piece >= fu_path_of(run->model, coupling, now).n) {
+    const int segment = now->segment[coupling->coordinate] + side;
+    if (segment < 0 || segment >= fu_path_of(run->model, coupling, now).n) {
         const char *what = 0;
         const int status = events->path->reach_end(run, coupling, side, &what);
         return status ? status : acted(run, coupling, what, 0.0);
     }
-    const int status = events->path->enter ? events->path->enter(run, coupling, piece) : FU_RUNNING;
+    const int status = events->path->enter ? events->path->enter(run, coupling, segment) : FU_RUNNING;
     if (status) return status;
-    now->piece[coupling->coordinate] = piece;
+    now->segment[coupling->coordinate] = segment;
     ++run->statistics.crossings;
     fu_evaluate_event_functions(run, fu_no_event, 0.0);
     return fu_start_scheme(run, !run->integrator->keeps_energy);
@@ -56,9 +56,10 @@ int fu_handle_event(fu_run *run, fu_event event)
         const char *what = 0;
         const double since =
             coupling->events->deferred ? coupling->events->deferred->since(run->model, coupling, &run->now) : 0.0;
-        const int status = coupling->events->act(run, coupling, run->watches[event.which].which, event.side, &what);
+        const int status =
+            coupling->events->act(run, coupling, run->event_functions[event.which].which, event.side, &what);
         return status || !what ? status
-                               : acted(run, coupling, what, fabs(since) < MOST_SINCE * run->duration ? since : 0.0);
+                               : acted(run, coupling, what, fabs(since) < MAX_DELAY * run->duration ? since : 0.0);
     }
     run->event = event;
     return FU_EVENT;

@@ -5,23 +5,23 @@
 #include "run/run.h"
 
 /* of a breakpoint: distance of the end of a step before it, at which the signal is still that of the step */
-#define BEFORE 1e-15
+#define BREAKPOINT_MARGIN 1e-15
 
 /* Returns whether the run ends on a breakpoint: its last row is of the instant before. */
-static int ends_on(const fu_run *run, const fu_breakpoint *knot)
+static int ends_on(const fu_run *run, const fu_breakpoint *breakpoint)
 {
-    return knot->t >= run->duration * (1.0 - FU_AT_ONCE);
+    return breakpoint->t >= run->duration * (1.0 - FU_AT_ONCE);
 }
 
-/* Makes one step towards an output time, or the first breakpoint before it; returns a status. */
+/* Computes one step towards an output time, or the first breakpoint before it; returns a status. */
 static int approach(fu_run *run, double target)
 {
-    const fu_breakpoint *knot = run->n_knots ? fu_next_breakpoint(run, target) : 0;
-    if (!knot) return fu_step_towards(run, target);
-    const int status = fu_step_towards(run, knot->t * (1.0 - BEFORE));
-    if ((status && status != FU_EVENT) || run->now.t < knot->t - FU_AT_ONCE * run->duration) return status;
-    if (ends_on(run, knot)) return status;
-    const int passed = fu_pass_breakpoint(run, knot, status == FU_EVENT);
+    const fu_breakpoint *breakpoint = run->n_breakpoints ? fu_next_breakpoint(run, target) : 0;
+    if (!breakpoint) return fu_step_towards(run, target);
+    const int status = fu_step_towards(run, breakpoint->t * (1.0 - BREAKPOINT_MARGIN));
+    if ((status && status != FU_EVENT) || run->now.t < breakpoint->t - FU_AT_ONCE * run->duration) return status;
+    if (ends_on(run, breakpoint)) return status;
+    const int passed = fu_pass_breakpoint(run, breakpoint, status == FU_EVENT);
     return passed ? passed : status;
 }
 
@@ -38,8 +38,8 @@ int fu_has_worked(const fu_run *run)
 static int record(fu_run *run, double target)
 {
     fu_record *r = &run->record;
-    if (run->n_knots && target == run->duration && ends_on(run, &run->knots[run->n_knots - 1])) {
-        run->now.t = target * (1.0 - BEFORE);
+    if (run->n_breakpoints && target == run->duration && ends_on(run, &run->breakpoints[run->n_breakpoints - 1])) {
+        run->now.t = target * (1.0 - BREAKPOINT_MARGIN);
         const int recorded = fu_record_row(run);
         if (!recorded) run->now.t = run->recorded = r->time[r->n - 1 - r->first] = target;
         return recorded;

@@ -18,7 +18,7 @@ int fu_handle_event(fu_run *run, fu_event event);
 
 /* run/breakpoints.c */
 const fu_breakpoint *fu_next_breakpoint(const fu_run *run, double latest);
-int fu_pass_breakpoint(fu_run *run, const fu_breakpoint *knot, int event);
+int fu_pass_breakpoint(fu_run *run, const fu_breakpoint *breakpoint, int event);
 
 /* run/steps.c */
 int fu_step_towards(fu_run *run, double target);

@@ -14,8 +14,8 @@
 
 #define REST_MOTION 1e-9 /* of the extent: largest motion of a scene at rest */
 /* of the scene's size: least motion to which errors are relative */
-#define LEAST_MOTION 1e-6
-#define FIRST_MOTION 1e-3 /* of the duration: until then the velocities at the start define the scale of motion */
+#define MIN_MOTION 1e-6
+#define FIRST_PERIOD 1e-3 /* of the duration: until then the velocities at the start define the scale of motion */
 
 /* Starts the scheme at `now` with consistent velocities, projected on the joints if requested, and with accelerations
  * and forces from eq 38; returns a status. A start from zero accelerations makes every error first order in the step
@@ -97,10 +97,10 @@ int fu_start(fu_run *run)
     }
     /* tolerances are relative to the largest motion: at first, that of a thousandth of the duration, and never less
      * than the unavoidable motion of a scene at rest */
-    if (run->absolute_tol < 0.0) run->absolute_tol = LEAST_MOTION * run->tol * run->size;
+    if (run->absolute_tol < 0.0) run->absolute_tol = MIN_MOTION * run->tol * run->size;
     run->least_motion = REST_MOTION * run->extent;
     for (int i = 0; i < model->n_dof; ++i) {
-        const double t = fmin(run->output_step, FIRST_MOTION * run->duration);
+        const double t = fmin(run->output_step, FIRST_PERIOD * run->duration);
         const double d = run->controlled[i] * (fabs(now->v[i]) * t + 0.5 * fabs(now->acceleration[i]) * t * t);
         if (d > run->least_motion) run->least_motion = d;
     }

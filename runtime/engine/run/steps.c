@@ -14,21 +14,21 @@
 
 #include <math.h>
 
-#define SMALLEST_STEP 1e-12 /* of the duration: shortest step of a run */
+#define MIN_STEP 1e-12 /* of the duration: shortest step of a run */
 /* of a step: largest part beyond the boundary of a coupling */
-#define BEYOND 0.1
-#define MOST_REJECTIONS 10000 /* largest number of rejected steps beyond the accepted ones */
-#define ACCEPTED 2.0          /* of the permitted error: a step with a larger error is rejected */
+#define BOUNDARY_OVERSHOOT 0.1
+#define MAX_REJECTIONS 10000 /* largest number of rejected steps beyond the accepted ones */
+#define MAX_ERROR_RATIO 2.0  /* of the permitted error: a step with a larger error is rejected */
 /* rejections of a fixed step that each accepted step compensates: largest number of divisions */
-#define DIVISIONS 8
+#define REJECTIONS_PER_STEP 8
 /* of a coupling on one boundary before a step is accepted nevertheless: it rests there */
-#define MOST_TURNS 2
+#define MAX_TURNS 2
 /* of a step at a grazing event within it, after which it is accepted nevertheless */
 #define MAX_CUTS 4
 /* of the error permitted over the run: largest error of the history of friction in one step */
-#define CARRIED 0.15
+#define HISTORY_ERROR_SHARE 0.15
 /* of the intended step: next step after one whose event was not found */
-#define PASSED_BY 0.5
+#define MISSED_EVENT_FACTOR 0.5
 
 /* Restarts the scheme after a very short step, unless the step has left data to continue with; returns a status. The
  * interval between an event and an output time can be so short that accelerations computed over it are rounding,
@@ -52,11 +52,11 @@ static int is_adaptive(const fu_run *run)
 /* Returns the shortest step, s. */
 static double shortest(const fu_run *run)
 {
-    return SMALLEST_STEP * run->duration;
+    return MIN_STEP * run->duration;
 }
 
 /* Returns whether couplings must keep their path segments in a step, which ends where one leaves its segment. */
-static int must_keep_pieces(const fu_run *run)
+static int must_keep_segments(const fu_run *run)
 {
     return !is_adaptive(run) || !run->integrator->crosses_boundaries || fu_stop_at_boundaries(run->model);
 }
@@ -73,7 +73,7 @@ static int must_keep_forces(const fu_run *run)
  * whether it has been found to have none; the event at its end. */
 typedef struct {
     double want, h, cut, error, ratio;
-    int cuts, changes, passages, refused;
+    int cuts, changes, deferred, refused;
     fu_event event;
 } trial;
 
@@ -81,8 +81,8 @@ typedef struct {
 static int choose_size(fu_run *run, trial *t, double remaining)
 {
     t->h = t->cut > 0.0 ? fmin(t->cut, remaining) : fu_fit_step(remaining, t->want);
-    if ((t->h < shortest(run) && remaining > shortest(run)) || run->net_rejections > MOST_REJECTIONS) return 0;
-    if (run->keep_pieces) t->h = fmin(t->h, fu_time_to_boundary(run) + BEYOND * t->h);
+    if ((t->h < shortest(run) && remaining > shortest(run)) || run->net_rejections > MAX_REJECTIONS) return 0;
+    if (run->keep_segments) t->h = fmin(t->h, fu_time_to_boundary(run) + BOUNDARY_OVERSHOOT * t->h);
     t->cut = 0.0;
     return 1;
 }
@@ -95,7 +95,7 @@ static double uncounted(const fu_run *run)
            (s->time_factor + s->time_solve + s->time_residual + s->time_output + s->time_step + s->time_error);
 }
 
-/* Makes a step; returns 0 if that was possible. */
+/* Computes a step; returns 0 if that was possible. */
 static int make(fu_run *run, double h)
 {
     const double begin = uncounted(run);
@@ -109,7 +109,8 @@ static double error_of(fu_run *run, double h)
 {
     const double begin = uncounted(run), error = fmax(fmax(run->integrator->error(run, h), fu_deferred_error(run, h)),
                                                       fu_friction_error(run, h));
-    const double carried = fu_history_error(run->model, &run->now, &run->next) / (CARRIED * fu_allowed_error(run));
+    const double carried =
+        fu_history_error(run->model, &run->now, &run->next) / (HISTORY_ERROR_SHARE * fu_allowed_error(run));
     run->statistics.time_error += uncounted(run) - begin;
     return fmax(error, run->allowed *
                            /* the error of the history is at least of second order in the step */
@@ -124,7 +125,7 @@ static void refuse(fu_run *run, trial *t)
     run->goes_over = 0;
 }
 
-/* Makes the step and estimates its error; returns 0 if it is rejected for a shorter one. */
+/* Computes the step and estimates its error; returns 0 if it is rejected for a shorter one. */
 static int attempt(fu_run *run, trial *t)
 {
     const double allowed = fu_allow(run, t->h);
@@ -132,7 +133,7 @@ static int attempt(fu_run *run, trial *t)
     run->usual = t->want;
     run->most_deferred = 0;
     if (make(run, t->h)) {
-        if (run->model->n_passing && !run->keep_forces) { /* its iteration may alternate across an event */
+        if (run->model->n_deferring && !run->keep_forces) { /* its iteration may alternate across an event */
             refuse(run, t);
             return 0;
         }
@@ -147,8 +148,8 @@ static int attempt(fu_run *run, trial *t)
     t->error = error_of(run, t->h);
     t->ratio = t->error / allowed;
     t->changes = fu_count_changes(run);
-    t->passages = run->integrator->quadrature ? fu_count_deferred(run) : 0;
-    if (is_adaptive(run) && !t->changes && !t->passages && !(t->ratio <= ACCEPTED)) {
+    t->deferred = run->integrator->quadrature ? fu_count_deferred(run) : 0;
+    if (is_adaptive(run) && !t->changes && !t->deferred && !(t->ratio <= MAX_ERROR_RATIO)) {
         t->want = fu_shrink_step(run, t->h, t->ratio);
         return 0;
     }
@@ -159,7 +160,8 @@ static int attempt(fu_run *run, trial *t)
  * them are tried first if the last one had none, since iterations and stages across an event cost more. */
 static int shall_go_over(fu_run *run, trial *t)
 {
-    if (!is_adaptive(run) || !run->integrator->quadrature || !run->keep_forces || t->refused || !run->model->n_passing)
+    if (!is_adaptive(run) || !run->integrator->quadrature || !run->keep_forces || t->refused ||
+        !run->model->n_deferring)
         return 0;
     run->keep_forces = 0;
     fu_choose_deferred(run, 1);
@@ -172,7 +174,7 @@ static int shall_go_over(fu_run *run, trial *t)
  * the boundary. */
 static void find_event(fu_run *run, trial *t)
 {
-    if (t->passages && is_adaptive(run) && !(t->ratio <= 1.0)) refuse(run, t);
+    if (t->deferred && is_adaptive(run) && !(t->ratio <= 1.0)) refuse(run, t);
     t->event = fu_find_event(run, fu_no_event);
     if (t->changes && (t->event.kind == FU_PATH_BOUNDARY || !(t->ratio <= 1.0))) {
         fu_keep_path_segments(run);
@@ -183,13 +185,13 @@ static void find_event(fu_run *run, trial *t)
 /* Shortens the step until it ends on the first of its events; returns 0 if that is not found. */
 static int end_on_event(fu_run *run, trial *t)
 {
-    for (int i = 0; i <= run->model->n_coordinates + run->n_watches; ++i) {
+    for (int i = 0; i <= run->model->n_coordinates + run->n_event_functions; ++i) {
         const fu_event earlier = i ? fu_find_event(run, t->event) : t->event;
         if (!earlier.kind) break;
         t->event = earlier;
         t->h = fu_locate(run, t->event, t->h);
         if (t->h == 0.0) {
-            t->want *= PASSED_BY;
+            t->want *= MISSED_EVENT_FACTOR;
             return 0;
         }
     }
@@ -200,18 +202,18 @@ static int end_on_event(fu_run *run, trial *t)
 static int is_accurate_without_jump(fu_run *run, trial *t)
 {
     const double ratio = fu_strayed(run) ? INFINITY : error_of(run, t->h) / fu_allow(run, t->h);
-    if (ratio <= ACCEPTED) return 1;
+    if (ratio <= MAX_ERROR_RATIO) return 1;
     t->want = fu_shrink_step(run, t->h, ratio);
     return 0;
 }
 
 /* Returns whether an event function passes zero within the step and returns: the step is then cut there. */
-static int is_cut_at_dip(fu_run *run, trial *t)
+static int is_cut_at_grazing(fu_run *run, trial *t)
 {
-    const double dip = t->cuts < MAX_CUTS ? fu_time_of_grazing(run, t->h) : 0.0;
-    if (!(dip > shortest(run))) return 0;
+    const double grazing = t->cuts < MAX_CUTS ? fu_time_of_grazing(run, t->h) : 0.0;
+    if (!(grazing > shortest(run))) return 0;
     ++t->cuts;
-    t->cut = dip;
+    t->cut = grazing;
     return 1;
 }
 
@@ -238,7 +240,7 @@ static void accept(fu_run *run, const trial *t)
         run->controlled == model->weight ? run->motion : fmax(run->controlled_motion, fu_controlled_motion(run));
     fu_evaluate_event_functions(run, t->event, h);
     fu_note_depths(run);
-    run->net_rejections -= run->net_rejections > 0 ? run->fixed_step > 0.0 ? DIVISIONS : 1 : 0;
+    run->net_rejections -= run->net_rejections > 0 ? run->fixed_step > 0.0 ? REJECTIONS_PER_STEP : 1 : 0;
     fu_statistics *s = &run->statistics;
     ++s->steps;
     if (s->steps == 1 || h < s->h_min) s->h_min = h;
@@ -248,7 +250,7 @@ static void accept(fu_run *run, const trial *t)
 /* Accepts a step that ends on no event; returns a status. */
 static int take_step(fu_run *run, const trial *t)
 {
-    if (t->passages) run->goes_over = 1;
+    if (t->deferred) run->goes_over = 1;
     accept(run, t);
     if (fu_has_lost_an_event(run)) return FU_NO_CONVERGENCE;
     run->turned = 0;
@@ -258,26 +260,26 @@ static int take_step(fu_run *run, const trial *t)
     return refresh(run, t->h);
 }
 
-/* Makes and accepts one step towards `target`, or executes the action of an event at `now`; returns a status. */
+/* Computes and accepts one step towards `target`, or executes the action of an event at `now`; returns a status. */
 int fu_step_towards(fu_run *run, double target)
 {
     const fu_event late = fu_late_event(run);
     trial t = {.want = is_adaptive(run) ? run->h : run->fixed_step};
     if (fu_has_lost_an_event(run)) return FU_NO_CONVERGENCE;
     if (late.kind) return fu_handle_event(run, late);
-    run->keep_pieces = must_keep_pieces(run);
+    run->keep_segments = must_keep_segments(run);
     run->keep_forces = must_keep_forces(run);
     for (;;) {
         if (!choose_size(run, &t, target - run->now.t)) return FU_NO_CONVERGENCE;
         if (!attempt(run, &t) || shall_go_over(run, &t)) continue;
         find_event(run, &t);
-        const double turn = run->keep_pieces ? fu_time_of_turn(run, t.h) : 0.0;
-        if (turn > shortest(run) && run->turned < MOST_TURNS) {
+        const double turn = run->keep_segments ? fu_time_of_turn(run, t.h) : 0.0;
+        if (turn > shortest(run) && run->turned < MAX_TURNS) {
             t.want = turn;
             continue;
         }
-        if (run->n_watches && is_cut_at_dip(run, &t)) continue;
-        if (t.event.kind == FU_PATH_BOUNDARY && run->turned >= MOST_TURNS) t.event = fu_no_event;
+        if (run->n_event_functions && is_cut_at_grazing(run, &t)) continue;
+        if (t.event.kind == FU_PATH_BOUNDARY && run->turned >= MAX_TURNS) t.event = fu_no_event;
         if (fu_stands_on_boundary(run, t.event)) {
             ++run->turned;
             return fu_handle_event(run, t.event);
@@ -287,8 +289,8 @@ int fu_step_towards(fu_run *run, double target)
             if (t.want < shortest(run)) return FU_NO_CONVERGENCE;
             continue;
         }
-        if ((t.changes || t.passages) && !is_accurate_without_jump(run, &t)) continue;
-        if (run->n_watches && is_cut_at_dip(run, &t)) continue;
+        if ((t.changes || t.deferred) && !is_accurate_without_jump(run, &t)) continue;
+        if (run->n_event_functions && is_cut_at_grazing(run, &t)) continue;
         accept(run, &t);
         const int status = t.event.kind == FU_PATH_BOUNDARY ? FU_RUNNING : refresh(run, t.h);
         return status ? status : fu_handle_event(run, t.event);

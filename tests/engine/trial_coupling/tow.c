@@ -129,8 +129,7 @@ static void add_tangent(const fu_model *model, const fu_coupling *coupling, cons
     forces_at(model, coupling, at->next, &on, pull, guide);
     tow->law->tangent(tow->spring, no_rate, no_rate, unused, K, D);
     tow->law->tangent(tow->rail, no_rate, no_rate, unused, K_rail, D);
-    for (int k = 0; k < dim * dim; ++k)
-        K[k] = (broken ? 0.0 : K[k]) + at->next->forces[coupling->force] * K_rail[k];
+    for (int k = 0; k < dim * dim; ++k) K[k] = (broken ? 0.0 : K[k]) + at->next->forces[coupling->force] * K_rail[k];
     for (int i = 0; i < on.n; ++i) {
         double row = 0.0, column = 0.0;
         for (int d = 0; d < dim; ++d) {
@@ -246,21 +245,21 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     }
 }
 
-static int watches(const fu_coupling *coupling, fu_event_function *out)
+static int functions(const fu_coupling *coupling, fu_event_function *out)
 {
     (void)coupling;
     if (out) *out = (fu_event_function){.which = 0, .direction = 1};
     return 1;
 }
 
-static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
+static double value_of(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {
     fu_attachment_state at;
     double gap[3], spoke[3];
     (void)which;
     if (is_broken(coupling, &run->now)) return -1.0;
-    return tow_of(coupling)->spring[0] * gaps_at(run->model, coupling, state, &at, gap, spoke)
-           - tow_of(coupling)->strength;
+    return tow_of(coupling)->spring[0] * gaps_at(run->model, coupling, state, &at, gap, spoke) -
+           tow_of(coupling)->strength;
 }
 
 static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
@@ -319,4 +318,4 @@ const fu_coupling_type fu_tow_type = {.name = "tow",
                                       .energy = energy,
                                       .supply = &supply};
 
-const fu_coupling_events fu_tow_events = {.watches = watches, .watched = watched, .act = act, .begin = begin};
+const fu_coupling_events fu_tow_events = {.functions = functions, .value = value_of, .act = act, .begin = begin};

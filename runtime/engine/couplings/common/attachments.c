@@ -35,7 +35,7 @@ static void vectors_of(const fu_model *model, const fu_attachment *on, const fu_
     const int on_slide = on->slide >= 0;
     const fu_cable *cable = &model->cables[on->cable];
     const int dim = cable->kernel->dim, n = cable->coordinates / dim;
-    const int element = on_slide ? state->piece[on->slide] : on->element;
+    const int element = on_slide ? state->segment[on->slide] : on->element;
     const double *e = state->q + cable->first + element * cable->per_node;
     const double *v = state->v + cable->first + element * cable->per_node;
     double every[9 * FU_MAX_COORDINATES];
@@ -91,7 +91,7 @@ int fu_attachment_coordinates(const fu_model *model, const fu_attachment *on, co
     }
     if (on->cable < 0) return 0;
     const fu_cable *cable = &model->cables[on->cable];
-    const int element = on->slide >= 0 ? state->piece[on->slide] : on->element, n = cable->coordinates;
+    const int element = on->slide >= 0 ? state->segment[on->slide] : on->element, n = cable->coordinates;
     for (int i = 0; i < n; ++i) at[i] = cable->first + element * cable->per_node + i;
     if (on->slide < 0) return n;
     at[n] = fu_extra(model, model->slides[on->slide].base.unknown);
@@ -222,7 +222,7 @@ static void add_stiffness_of_s(const fu_model *model, const fu_attachment *on, c
 {
     const fu_cable *cable = &model->cables[on->cable];
     const int dim = model->dim, vectors = cable->coordinates / dim, s = n - 1;
-    const double *e = state->q + cable->first + state->piece[on->slide] * cable->per_node;
+    const double *e = state->q + cable->first + state->segment[on->slide] * cable->per_node;
     for (int k = 0; k < 2; ++k)
         for (int d = 0; d < dim; ++d) {
             const double pull = g[k * dim + d], *S_x = w->S[k] + vectors, *S_xx = w->S[k] + 2 * vectors;

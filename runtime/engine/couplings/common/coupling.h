@@ -30,10 +30,10 @@ struct fu_coupling {
     int numbers, flags;               /* its own part of a state: the first of them in state->numbers, state->flags */
     int scratch;                      /* its own part of fu_accelerator.scratch: the first of it */
     int n_numbers;                    /* of its own in a state beyond those that its type has */
-    int reacts;                       /* not zero where it has a force that depends on the multipliers of eq 38 */
-    int is_damped;                    /* not zero where it has a force that depends on velocities */
-    int is_driven;                    /* not zero where a signal does work on it */
-    int has_inertia;                  /* not zero where it has a mass of its own */
+    int reacts;                       /* nonzero where it has a force that depends on the multipliers of eq 38 */
+    int is_damped;                    /* nonzero where it has a force that depends on velocities */
+    int is_driven;                    /* nonzero where a signal does work on it */
+    int has_inertia;                  /* nonzero where it has a mass of its own */
     double scale[FU_MAX_FORCES];      /* kg or kg m: rows of constraints times it have the scale of the mass matrix */
 };
 
@@ -79,7 +79,8 @@ typedef struct {
     /* Returns the clearance at a state: motions of both sides, and turns of the second by the lever, shrink its gap at
      * most. */
     fu_clearance (*clearance)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
-    /* Makes what the coupling acts between: the number of a cable, n_cables and that of a body, -1 for the ground. */
+    /* Computes what the coupling acts between: the number of a cable, n_cables and that of a body, -1 for the ground.
+     */
     void (*between)(const fu_model *model, const fu_coupling *coupling, int between[2]);
 } fu_proximity_operations;
 
@@ -109,9 +110,9 @@ typedef struct {
 
 /* Own coordinates that follow from the others. */
 typedef struct {
-    /* Makes their rates, after eq 38. */
+    /* Computes their rates, after eq 38. */
     void (*rates)(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, double *rates);
-    /* Finds them at a state; returns not zero where there are none. */
+    /* Finds them at a state; returns nonzero where there are none. */
     int (*solve)(const fu_model *model, const fu_coupling *coupling, fu_state *state);
 } fu_coordinate_operations;
 
@@ -160,7 +161,7 @@ struct fu_coupling_type {
     void (*step_tangent)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system);
     double (*step_dissipation)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
 
-    /* Makes the constraint rows of accelerations (eq 38), H and W among them, in work->rows[coupling->row]. */
+    /* Computes the constraint rows of accelerations (eq 38), H and W among them, in work->rows[coupling->row]. */
     void (*rows)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work);
     /* Adds the coupling's own force to f; adds a force from outside, whose work the energy balance counts as external.
      */
@@ -172,7 +173,7 @@ struct fu_coupling_type {
     void (*outputs)(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                     const double *acceleration, const fu_accelerator *work, double *out);
 
-    /* Makes what is left of the constraints, redundant ones among them: one number an own force. */
+    /* Computes what is left of the constraints, redundant ones among them: one number an own force. */
     void (*gaps)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *gaps);
 
     /* Return the stored energy, J; the power that goes to heat, W, by the state's own forces, or where work is not null
@@ -193,7 +194,8 @@ struct fu_coupling_type {
 
     /* Returns whether a start may be off the constraints by a small gap. */
     int (*may_start_open)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
-    /* Sets own coordinates, pieces, numbers and flags of the state as it is drawn; those that it does not set are zero.
+    /* Sets own coordinates, segments, numbers and flags of the state in the initial configuration; those that it does
+     * not set are zero.
      */
     void (*reset)(const fu_coupling *coupling, fu_state *state);
     /* Finds contact that follows from the positions, in statics. */

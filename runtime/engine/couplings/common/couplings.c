@@ -40,7 +40,7 @@ void fu_number_couplings(fu_coupling *const *couplings, int n, const fu_coupling
     model->slides = 0;
     model->n_coordinates = model->n_forces = model->n_rows = model->n_outputs = 0;
     model->n_numbers = model->n_flags = model->n_scratch = 0;
-    model->n_reacting = model->n_external = model->n_driven = model->n_damped = model->n_passing = model->n_inertial =
+    model->n_reacting = model->n_external = model->n_driven = model->n_damped = model->n_deferring = model->n_inertial =
         0;
     for (int k = 0; k < n; ++k) {
         fu_coupling *c = couplings[k];
@@ -64,7 +64,7 @@ void fu_number_couplings(fu_coupling *const *couplings, int n, const fu_coupling
         model->n_external += c->type->external_force != 0;
         model->n_driven += c->is_driven;
         model->n_damped += c->is_damped;
-        model->n_passing += fu_can_defer(c);
+        model->n_deferring += fu_can_defer(c);
         model->n_inertial += c->has_inertia;
         list_coupling(model, c);
     }
@@ -192,7 +192,7 @@ void fu_coupling_outputs(const fu_model *model, const fu_state *state, const dou
         if (c->type->outputs) c->type->outputs(model, c, state, acceleration, work, out + c->output);
 }
 
-/* Makes the row of output of a coupling that needs no accelerations for it. */
+/* Computes the row of output of a coupling that needs no accelerations for it. */
 void fu_outputs_at_rest(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
 {
     coupling->type->outputs(model, coupling, state, 0, 0, out);

@@ -51,7 +51,8 @@ double fu_most_of_cable(const fu_cable *cable, const double *to, const double *f
     return sum;
 }
 
-/* Makes how far a mover is from where it was at the last look: its way, m, and the norm of the change of its axes. */
+/* Computes how far a mover is from where it was at the last look: its way, m, and the norm of the change of its axes.
+ */
 void fu_mover_gone_by(const fu_model *model, int mover, const double *q, double *way, double *turn)
 {
     const fu_body *body = fu_body_of_mover(model, mover);
@@ -128,7 +129,7 @@ static void *take(char *memory, size_t *taken, size_t n)
 }
 
 /* Places the arrays in a block of memory; returns how many bytes they take. */
-static size_t place(const fu_model *model, int n_watches, char *memory, fu_proximity *p)
+static size_t place(const fu_model *model, int n_event_functions, char *memory, fu_proximity *p)
 {
     const size_t couplings = (size_t)model->n_couplings;
     size_t taken = (sizeof *p + 15) / 16 * 16;
@@ -140,21 +141,21 @@ static size_t place(const fu_model *model, int n_watches, char *memory, fu_proxi
     p->is_far = take(memory, &taken, couplings);
     p->is_alone = take(memory, &taken, couplings);
     p->near = take(memory, &taken, sizeof(fu_coupling *) * couplings);
-    p->near_watches = take(memory, &taken, sizeof(int) * (size_t)n_watches);
+    p->near_functions = take(memory, &taken, sizeof(int) * (size_t)n_event_functions);
     return taken;
 }
 
-size_t fu_proximity_size(const fu_model *model, int n_watches)
+size_t fu_proximity_size(const fu_model *model, int n_event_functions)
 {
     fu_proximity unused;
-    return place(model, n_watches, 0, &unused);
+    return place(model, n_event_functions, 0, &unused);
 }
 
 /* The memory is of zeros. */
-void fu_proximity_place(fu_model *model, int n_watches, void *memory)
+void fu_proximity_place(fu_model *model, int n_event_functions, void *memory)
 {
     fu_proximity *p = model->proximity = memory;
-    place(model, n_watches, memory, p);
+    place(model, n_event_functions, memory, p);
     FU_EACH_COUPLING(c, model->couplings, model->n_couplings) {
         p->is_alone[c->number] = (char)fu_acts_alone(c);
         if (!c->type->proximity) continue;

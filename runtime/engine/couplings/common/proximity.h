@@ -12,7 +12,7 @@ typedef struct {
     int pairs; /* that it is in */
 } fu_mover;
 
-/* A coupling that has a clearance: what its movers have to have gone at all before it is to be looked at anew. */
+/* A coupling that has a clearance: what its movers have to have gone at all before it is to be looked at again. */
 typedef struct {
     double limit, lever;
     int between[2], coupling;
@@ -20,7 +20,7 @@ typedef struct {
 
 /* What is known of them all. */
 struct fu_proximity {
-    int n_movers, n_pairs, n_near, n_near_watches;
+    int n_movers, n_pairs, n_near, n_near_functions;
     int is_known, age; /* the lists are of some configuration; steps since then */
     double *at;        /* that configuration */
     fu_mover *movers;
@@ -28,12 +28,12 @@ struct fu_proximity {
     double *ways;             /* work space: 2 x n_movers */
     char *is_far, *is_alone;  /* of each coupling; is_alone: fu_acts_alone */
     const fu_coupling **near; /* those that may act while no mover has gone farther than its way, in their order */
-    int *near_watches;        /* likewise, those of the user's among them */
+    int *near_functions;      /* likewise, those of the user among them */
 };
 
-/* Bytes that it takes in one block with n watches; makes it in such a block of zeros. */
-size_t fu_proximity_size(const fu_model *model, int n_watches);
-void fu_proximity_place(fu_model *model, int n_watches, void *memory);
+/* Bytes that it takes in one block with n event_functions; computes it in such a block of zeros. */
+size_t fu_proximity_size(const fu_model *model, int n_event_functions);
+void fu_proximity_place(fu_model *model, int n_event_functions, void *memory);
 
 /* Whether couplings of a type do nothing but act, by themselves, while what they are between is near: nothing else asks
  * for them. */

@@ -5,8 +5,8 @@
 
 const fu_clearance fu_no_clearance = {.gap = -INFINITY};
 
-/* Makes the middle of a sphere about an element; returns its radius, m. Between the element's nodes its points are off
- * the middle by half of the way between these at most, with the share of places, and by what the other vectors move
+/* Computes the middle of a sphere about an element; returns its radius, m. Between the element's nodes its points are
+ * off the middle by half of the way between these at most, with the share of places, and by what the other vectors move
  * them. */
 double fu_sphere_about(const fu_cable *cable, const double *q, int element, double middle[3])
 {

@@ -47,7 +47,7 @@ double fu_bound_within(const fu_friction_path *way, double x)
     return depth > 0.0 ? way->bound(way->of, depth, fu_rate_within(&way->depth, way->h, x)) : 0.0;
 }
 
-/* Returns the bound at a part of the step, m, and makes the stretch as if nothing slid. */
+/* Returns the bound at a part of the step, m, and computes the stretch as if nothing slid. */
 static double bound_at(const fu_friction_path *way, double x, double *stretch)
 {
     *stretch = fu_value_within(&way->stretch, way->h, x);

@@ -39,13 +39,13 @@ double fu_friction_within(const fu_friction_path *way, double x);
 typedef struct {
     double stretch[3], change[3], rates[2][3];
 } fu_friction_travel;
-/* Makes the direction of the stretch at the end as if nothing slid, and the way along it; returns its size, m. */
+/* Computes the direction of the stretch at the end as if nothing slid, and the way along it; returns its size, m. */
 double fu_path_length(int dim, const fu_friction_travel *travel, double along[3], fu_friction_path *way);
 /* Returns the work that friction takes over the stiffness, m^2, where the stretch at the end is as given: by parts of
  * the step, and by half as many (Richardson), or by the ends alone. */
 double fu_taken_by_friction(int dim, const fu_friction_travel *travel, const fu_friction_path *way, const double *end,
                             int by_ends);
 
-#define FU_NO_TIME 1e300 /* s: of numbers as drawn, from where no step begins */
+#define FU_NO_TIME 1e300 /* s: of numbers in the initial configuration, from where no step begins */
 
 #endif

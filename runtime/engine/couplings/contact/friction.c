@@ -30,7 +30,7 @@ fu_friction_path fu_contact_normal_path(const fu_contact *contact, const fu_cont
     return way;
 }
 
-/* Makes the part of a step after which the point touches, and how far it has gone until then. */
+/* Computes the part of a step after which the point touches, and how far it has gone until then. */
 static void begin_at_touch(int dim, const fu_contact_point *point, friction_course *of, double gone[3])
 {
     const fu_friction_mark *mark = point->mark;
@@ -66,7 +66,7 @@ void fu_contact_change(int dim, const fu_contact *contact, const fu_contact_poin
     }
 }
 
-/* Makes a stretch along the surface at the mark that along it at the end: turned as the normal has, by the shortest
+/* Computes a stretch along the surface at the mark that along it at the end: turned as the normal has, by the shortest
  * way. */
 static void turn_along(int dim, const fu_friction_mark *mark, const double *normal, double stretch[3])
 {
@@ -104,8 +104,8 @@ static void path_of(const fu_model *model, const fu_contact *contact, const fu_a
     out->way.stretch.rate[1] = fu_dot(dim, out->along, point->slip);
 }
 
-/* Makes the stretch, m, of a spring that slides along the way, in so many equal parts of it: in each it is stretched at
- * the velocity at the part's end, and slides back to the bound. */
+/* Computes the stretch, m, of a spring that slides along the way, in so many equal parts of it: in each it is stretched
+ * at the velocity at the part's end, and slides back to the bound. */
 static void slide(int dim, const fu_contact_point *point, const friction_course *of, int parts, double out[3])
 {
     const double whole = 1.0 - of->from, normal = fu_dot(dim, of->normal, of->normal);
@@ -218,7 +218,7 @@ static void add_touching(int dim, const fu_attachment_state *on, const friction_
         }
 }
 
-/* Makes the derivatives of friction that has slid within the step and then sticks, or slides to its end. */
+/* Computes the derivatives of friction that has slid within the step and then sticks, or slides to its end. */
 static void add_sliding(int dim, const fu_contact *contact, const fu_attachment_state *on, const friction_course *of,
                         const double *x, fu_contact_point *point)
 {

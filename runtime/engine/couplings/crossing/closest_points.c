@@ -16,8 +16,8 @@
 #define ROUNDING_OF_LENGTH 1e-15
 /* of the size: a correction as good as rounding where rounding keeps it from shrinking */
 #define LENGTH_TOLERANCE 1e-11
-#define FARTHEST 2.0         /* elements that a correction goes at most */
-#define SAMPLES_AN_ELEMENT 4 /* of an element, where the search begins anew */
+#define MAX_CORRECTION 2.0    /* elements that a correction goes at most */
+#define SAMPLES_PER_ELEMENT 4 /* of an element, where the search begins again */
 
 /* Returns the element of a cable that holds s. */
 static int element_at(const fu_cable *cable, double s)
@@ -51,7 +51,7 @@ static void point_of_cable(const fu_cable *cable, const double *q, const double 
         }
 }
 
-/* Makes the attachment of a bar at a point of it. */
+/* Computes the attachment of a bar at a point of it. */
 static fu_attachment on_bar(const fu_crossing *crossing, double s)
 {
     fu_attachment on = crossing->attachments[0];
@@ -87,7 +87,7 @@ void fu_line_point_of(const fu_model *model, const fu_crossing *crossing, int li
     else point_of_bar(model, crossing, state, s, out);
 }
 
-/* Makes how fast the second derivatives by arc-length change: those of a cable are linear in its coordinates. */
+/* Computes how fast the second derivatives by arc-length change: those of a cable are linear in its coordinates. */
 static void bends_of_line(const fu_model *model, const fu_crossing *crossing, int line, const fu_state *state, double s,
                           double *out)
 {
@@ -122,7 +122,7 @@ void fu_line_bends_at(const fu_model *model, const fu_crossing *crossing, const 
     }
 }
 
-/* Makes a line's point at a moment; a bar's is not on its carrier within a step. */
+/* Computes a line's point at a moment; a bar's is not on its carrier within a step. */
 static void point_at(const fu_model *model, const fu_crossing *crossing, int line, const fu_moment *at, double s,
                      fu_line_point *out)
 {
@@ -139,7 +139,7 @@ static void point_at(const fu_model *model, const fu_crossing *crossing, int lin
     fu_vector_within(3, from.k, from_k, to.k, to_k, at->h, at->x, out->k, unused);
 }
 
-/* Makes both points at out->s as the kernels take them. */
+/* Computes both points at out->s as the kernels take them. */
 static void put_together(const fu_model *model, const fu_crossing *crossing, const fu_moment *moment,
                          fu_closest_points *out)
 {
@@ -174,7 +174,7 @@ static int converge(const fu_model *model, const fu_crossing *crossing, const fu
         double part = 1.0, left = 0.0;
         put_together(model, crossing, moment, out);
         crossing->kernel->closest(out->d, out->t, out->k, step);
-        for (int line = 0; line < lines; ++line) part = fmin(part, FARTHEST * size[line] / fabs(step[line]));
+        for (int line = 0; line < lines; ++line) part = fmin(part, MAX_CORRECTION * size[line] / fabs(step[line]));
         for (int line = 0; line < lines; ++line) {
             if (!(fabs(step[line]) < INFINITY)) return 0;
             left = fmax(left, fabs(step[line]) / (size[line] + fabs(out->s[line])));
@@ -191,7 +191,7 @@ static double distance_from_second(const fu_model *model, const fu_crossing *cro
                                    const double *r, double *s)
 {
     const int dim = model->dim, cable = crossing->cables[1],
-              n = cable >= 0 ? SAMPLES_AN_ELEMENT * model->cables[cable].n_elements : 0;
+              n = cable >= 0 ? SAMPLES_PER_ELEMENT * model->cables[cable].n_elements : 0;
     double least = INFINITY;
     fu_line_point point;
     for (int i = 0; i <= n; ++i) {
@@ -214,11 +214,11 @@ static double distance_from_second(const fu_model *model, const fu_crossing *cro
     return least;
 }
 
-/* Begins the search anew: where samples of both lines are closest. Returns their distance, m. */
+/* Begins the search again: where samples of both lines are closest. Returns their distance, m. */
 static double search(const fu_model *model, const fu_crossing *crossing, const fu_moment *moment, double s[FU_LINES])
 {
     const fu_cable *cable = &model->cables[crossing->cables[0]];
-    const int n = SAMPLES_AN_ELEMENT * cable->n_elements;
+    const int n = SAMPLES_PER_ELEMENT * cable->n_elements;
     double least = INFINITY, other = 0.0;
     fu_line_point point;
     for (int i = 0; i <= n; ++i) {
@@ -240,7 +240,7 @@ void fu_find_closest_within(const fu_model *model, const fu_crossing *crossing, 
     out->found = converge(model, crossing, moment, out);
     if (out->found) return;
     const double apart = search(model, crossing, moment, out->s),
-                 reach = fu_line_size(model, crossing, 0) / SAMPLES_AN_ELEMENT;
+                 reach = fu_line_size(model, crossing, 0) / SAMPLES_PER_ELEMENT;
     out->found = converge(model, crossing, moment, out);
     out->apart = fmax(apart - reach - crossing->law[0], 0.0);
 }

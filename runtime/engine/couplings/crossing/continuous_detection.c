@@ -23,7 +23,7 @@ typedef struct {
     double h, path, min_advance;
 } line_approach;
 
-/* Makes the rates of the arc-lengths of the closest points, m/s. */
+/* Computes the rates of the arc-lengths of the closest points, m/s. */
 static void rates_of_points(const fu_crossing *crossing, const fu_closest_points *points, double rates[FU_LINES])
 {
     const int dim = crossing->kernel->dim, lines = dim - 1;

@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* State of the last step: the closest points, the way between them and the slopes there, with their rates; along and
- * across the last line the stretch and the velocity of particles past each other; not zero where it has slid, as then
+ * across the last line the stretch and the velocity of particles past each other; nonzero where it has slid, as then
  * the stretch is just what friction allows; the penetration and its rate; the time. */
 typedef struct {
     double s[FU_LINES], s_rate[FU_LINES], way[3], way_rate[3], slopes[6], slope_rates[6];
@@ -60,13 +60,13 @@ static void in_space(int dim, const double *along, const double *normal, const d
     for (int d = 0; d < dim; ++d) out[d] = parts[0] * along[d] + parts[1] * across[d];
 }
 
-/* Makes how fast particles of both lines go past each other. */
+/* Computes how fast particles of both lines go past each other. */
 static void slip_of(int dim, const fu_closest_points *points, const fu_crossing_contact *contact, double slip[3])
 {
     for (int d = 0; d < dim; ++d) slip[d] = points->u[d] + contact->depth[1] * contact->normal[d];
 }
 
-/* Makes how friction's spring goes from the last step to points; the grip has the stretches by the kernel. */
+/* Computes how friction's spring goes from the last step to points; the grip has the stretches by the kernel. */
 static void travel_since(const fu_crossing *crossing, const last_step *last, const fu_closest_points *points,
                          const fu_crossing_contact *contact, double time, const fu_crossing_stick *grip,
                          fu_friction_travel *travel, fu_friction_path *way)
@@ -105,7 +105,7 @@ static int turns(int dim, const fu_crossing_stick *grip, const fu_friction_trave
            fu_dot(3, now, travel->rates[1]) > 0.0 && fu_dot(3, now, grip->old) >= 0.0;
 }
 
-/* Makes the direction of a stretch that slides as the step ends. */
+/* Computes the direction of a stretch that slides as the step ends. */
 static void turn_to_slip(const fu_crossing *crossing, const last_step *last, double time,
                          const fu_closest_points *points, const fu_crossing_contact *contact,
                          const fu_crossing_stick *grip, double along[3])
@@ -154,8 +154,8 @@ void fu_crossing_stick_at(const fu_crossing *crossing, const fu_state *state, co
     grip_since(crossing, before_of(crossing, state), points, contact, state->t, out);
 }
 
-/* Makes the derivatives of what has slid within the step and then sticks: parts of those that stick, as a velocity at
- * the end also moves where it slid last, and of those that slide. */
+/* Computes the derivatives of what has slid within the step and then sticks: parts of those that stick, as a velocity
+ * at the end also moves where it slid last, and of those that slide. */
 static void mix_derivatives(const fu_crossing *crossing, const fu_crossing_stick *grip, double h,
                             const fu_crossing_stick_changes *stuck, fu_crossing_stick_changes *by)
 {
@@ -251,7 +251,8 @@ void fu_crossing_update_stick(const fu_crossing *crossing, const fu_closest_poin
     take_along(crossing, points, contact, state->t, &grip, grip.along, before_of(crossing, state));
 }
 
-/* Makes the grip at the end of a step, and the way to it; returns whether lines that touch have closest points there.
+/* Computes the grip at the end of a step, and the way to it; returns whether lines that touch have closest points
+ * there.
  */
 static int grip_over_step(const fu_model *model, const fu_crossing *crossing, const fu_state *from, const fu_state *to,
                           fu_crossing_stick *grip, fu_friction_travel *travel, fu_friction_path *way)

@@ -11,7 +11,9 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOVES = 9 }; /* gap, turn of the first attachment, turn of the second: as many in space, fewer in the plane */
+enum {
+    MAX_MOVES = 9
+}; /* gap, turn of the first attachment, turn of the second: as many in space, fewer in the plane */
 
 /* A joint at a state. */
 typedef struct {
@@ -23,7 +25,8 @@ typedef struct {
 
 static const double nil[9] = {0.0};
 
-/* Makes what a joint sees of a state; s_rate: of the slides that its ends are on, null where no velocities are wanted.
+/* Computes what a joint sees of a state; s_rate: of the slides that its ends are on, null where no velocities are
+ * wanted.
  */
 static void look(const fu_model *model, const fu_joint *joint, const fu_state *state, const double s_rate[2],
                  joint_view *view)
@@ -66,7 +69,7 @@ FU_INLINE void over_n(int n, int dim, const joint_view *view, int e, int rows, c
     }
 }
 
-/* Makes J (rows x n) over an attachment's n coordinates from that over gap and turns. */
+/* Computes J (rows x n) over an attachment's n coordinates from that over gap and turns. */
 static void over_coordinates(int dim, const joint_view *view, int e, int rows, const double *by_moves, double *J)
 {
     const int n = view->at[e].n;
@@ -90,10 +93,10 @@ int fu_joint_is_inactive(const fu_model *model, const fu_joint *joint, const fu_
     return 0;
 }
 
-/* Makes a joint's equations at a state. */
+/* Computes a joint's equations at a state. */
 void fu_joint_equations(const fu_model *model, const fu_joint *joint, const fu_state *state, fu_joint_rows_at *out)
 {
-    double by_moves[6 * MOVES], K[MOVES * MOVES];
+    double by_moves[6 * MAX_MOVES], K[MAX_MOVES * MAX_MOVES];
     joint_view view;
     look(model, joint, state, 0, &view);
     joint->kernel->force(view.gap, view.A[0], view.A[1], view.c, state->forces + joint->base.force, out->phi, by_moves,
@@ -110,7 +113,7 @@ int fu_between_cables(const fu_joint *joint)
     return joint->attachments[0].cable >= 0 && joint->attachments[1].cable >= 0;
 }
 
-/* Returns whether any of n numbers is not zero. */
+/* Returns whether any of n numbers is nonzero. */
 static int any(int n, const double *numbers)
 {
     for (int i = 0; i < n; ++i)
@@ -131,12 +134,12 @@ static void add_elastic(int dim, const joint_view *view, int f, int n_e, const d
     }
 }
 
-/* Makes a joint's derivatives at a state. */
+/* Computes a joint's derivatives at a state. */
 void fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, fu_joint_derivatives *out)
 {
     const int rows = joint->kernel->rows, dim = model->dim;
-    double phi[6], by_moves[6 * MOVES], of_moves[MOVES * MOVES], g[MOVES] = {0.0},
-                                                                 half[MOVES * FU_ATTACHMENT_COORDINATES];
+    double phi[6], by_moves[6 * MAX_MOVES], of_moves[MAX_MOVES * MAX_MOVES],
+        g[MAX_MOVES] = {0.0}, half[MAX_MOVES * FU_ATTACHMENT_COORDINATES];
     const double *multipliers = state->forces + joint->base.force;
     joint_view view;
     look(model, joint, state, 0, &view);
@@ -172,7 +175,7 @@ static const fu_rows *rows_of_slide(const fu_model *model, const fu_joint *joint
     return &work->rows[model->slides[joint->attachments[e].slide].base.row];
 }
 
-/* Makes H and W over the joint's coordinates those over the dofs: s of an attachment on a slide follows (eq 24, 31,
+/* Computes H and W over the joint's coordinates those over the dofs: s of an attachment on a slide follows (eq 24, 31,
  * 37). */
 static void replace_s(const fu_model *model, const fu_joint *joint, const joint_view *view,
                       double J[2][6 * FU_ATTACHMENT_COORDINATES], const fu_accelerator *work, fu_rows *rows)
@@ -206,14 +209,15 @@ static void replace_s(const fu_model *model, const fu_joint *joint, const joint_
     }
 }
 
-/* Makes H q'' = W, what is left of phi, and its rate at rest; s of an attachment on a slide follows (eq 24, 31, 37):
+/* Computes H q'' = W, what is left of phi, and its rate at rest; s of an attachment on a slide follows (eq 24, 31, 37):
  * H = C_q + C_s G, W = -Q_d - C_s (s'' - G q''). The rows of that slide are there. */
 void fu_joint_rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work)
 {
     const fu_joint *joint = (const fu_joint *)coupling;
     fu_rows *rows = &work->rows[coupling->row];
     const int m = joint->kernel->rows, dim = model->dim;
-    double by_moves[6 * MOVES], K[MOVES * MOVES], J[2][6 * FU_ATTACHMENT_COORDINATES], s_rate[2], gap_rate[3];
+    double by_moves[6 * MAX_MOVES], K[MAX_MOVES * MAX_MOVES], J[2][6 * FU_ATTACHMENT_COORDINATES], s_rate[2],
+        gap_rate[3];
     joint_view view;
     if (fu_joint_is_inactive(model, joint, state)) {
         rows->n = rows->rows = 0;
@@ -234,7 +238,7 @@ void fu_joint_rows(const fu_model *model, const fu_coupling *coupling, const fu_
     double Q_d[6];
     joint->kernel->motion(view.gap, view.A[0], view.A[1], view.c, gap_rate, turning[0], turning[1], driving, rows->rate,
                           Q_d);
-    double bias[MOVES] = {0.0};
+    double bias[MAX_MOVES] = {0.0};
     for (int d = 0; d < dim; ++d) bias[d] = two->bias[d] - one->bias[d];
     for (int d = 0; d < view.turns; ++d) {
         bias[dim + d] = one->alpha[d];
@@ -265,12 +269,12 @@ int fu_joint_moves(const fu_model *model, const fu_joint *joint, const fu_state 
     return 1;
 }
 
-/* Makes the force and moment of the joint on its second attachment by these multipliers. */
+/* Computes the force and moment of the joint on its second attachment by these multipliers. */
 void fu_joint_outputs(const fu_model *model, const fu_joint *joint, const fu_state *state, const double *multipliers,
                       fu_joint_output *out)
 {
     const int dim = model->dim, turns = dim == 3 ? 3 : 1;
-    double phi[6], by_moves[6 * MOVES], K[MOVES * MOVES];
+    double phi[6], by_moves[6 * MAX_MOVES], K[MAX_MOVES * MAX_MOVES];
     joint_view view;
     *out = (fu_joint_output){0};
     if (fu_joint_is_inactive(model, joint, state)) return;

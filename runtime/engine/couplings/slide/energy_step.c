@@ -12,15 +12,15 @@ static const double *rider_at(const fu_model *model, const fu_state *state, cons
     return state->q + model->bodies[slide->rider.body].configuration;
 }
 
-/* Makes the discrete gradient G over the slide's coordinates and s; first: the first dof of its element. */
+/* Computes the discrete gradient G over the slide's coordinates and s; first: the first dof of its element. */
 static void discrete_gradient(const fu_model *model, const fu_coupling *coupling, const fu_equations *step, int first,
                               double *G)
 {
     const fu_slide *slide = (const fu_slide *)coupling;
     const fu_state *now = step->now, *next = step->next;
     const int j = coupling->index;
-    const double start = fu_element_start(model, j, now->piece[j]);
-    const double length = fu_element_length(&model->cables[slide->cable], now->piece[j]);
+    const double start = fu_element_start(model, j, now->segment[j]);
+    const double length = fu_element_length(&model->cables[slide->cable], now->segment[j]);
     slide->kernel->discrete_gradient(length, now->s[j] - start, next->s[j] - start, now->q + first, next->q + first,
                                      rider_at(model, now, slide), rider_at(model, next, slide), G);
 }
@@ -32,12 +32,12 @@ void fu_slide_over_step(const fu_model *model, const fu_coupling *coupling, cons
     const fu_slide *slide = (const fu_slide *)coupling;
     const fu_state *next = step->next;
     const int j = coupling->index, s = slide->kernel->coordinates, n = s + 1;
-    const double start = fu_element_start(model, j, step->now->piece[j]), *force = next->forces + coupling->force;
+    const double start = fu_element_start(model, j, step->now->segment[j]), *force = next->forces + coupling->force;
     double G[3 * FU_MAX_COORDINATES], phi[3], unused[FU_MAX_COORDINATES], along = 0.0;
     int at[FU_SLIDE_COORDINATES + 1];
     fu_slide_coordinates(model, next, j, at);
     discrete_gradient(model, coupling, step, at[0], G);
-    slide->kernel->residual(fu_element_length(&model->cables[slide->cable], step->now->piece[j]), next->s[j] - start,
+    slide->kernel->residual(fu_element_length(&model->cables[slide->cable], step->now->segment[j]), next->s[j] - start,
                             next->q + at[0], rider_at(model, next, slide), slide->rider.u, force, phi, unused);
     own += coupling->unknown;
     for (int d = 0; d < slide->kernel->dim; ++d) {
@@ -59,12 +59,12 @@ void fu_slide_over_step_tangent(const fu_model *model, const fu_coupling *coupli
     const int j = coupling->index, s = slide->kernel->coordinates, n = s + 1, dim = slide->kernel->dim;
     const fu_cable *cable = &model->cables[slide->cable];
     const int turns = cable->coordinates;
-    const double start = fu_element_start(model, j, step->now->piece[j]);
+    const double start = fu_element_start(model, j, step->now->segment[j]);
     double G[3 * FU_MAX_COORDINATES], J[3 * FU_MAX_COORDINATES], K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
     int at[FU_SLIDE_COORDINATES + 1];
     fu_slide_coordinates(model, next, j, at);
     discrete_gradient(model, coupling, step, at[0], G);
-    slide->kernel->tangent(fu_element_length(cable, step->now->piece[j]), next->s[j] - start, next->q + at[0],
+    slide->kernel->tangent(fu_element_length(cable, step->now->segment[j]), next->s[j] - start, next->q + at[0],
                            rider_at(model, next, slide), slide->rider.u, next->forces + coupling->force, J, K);
     fu_cayley_columns(rider->kernel, J, dim, n, turns, step->psi + rider->dof);
     fu_cayley_columns(rider->kernel, K, n, n, turns, step->psi + rider->dof);

@@ -23,9 +23,9 @@ static void look(const fu_model *model, const fu_state *state, int j, slide_view
 {
     const fu_slide *slide = &model->slides[j];
     const fu_cable *cable = &model->cables[slide->cable];
-    const int at = cable->first + state->piece[j] * cable->per_node;
-    view->length = fu_element_length(cable, state->piece[j]);
-    view->x = state->s[j] - fu_element_start(model, j, state->piece[j]);
+    const int at = cable->first + state->segment[j] * cable->per_node;
+    view->length = fu_element_length(cable, state->segment[j]);
+    view->x = state->s[j] - fu_element_start(model, j, state->segment[j]);
     view->e = state->q + at;
     view->v = state->v + at;
     if (slide->rider_is_rigid) {
@@ -41,7 +41,7 @@ static void look(const fu_model *model, const fu_state *state, int j, slide_view
     view->u = no_arm;
 }
 
-/* Makes rows over (element, point, `more`) rows over (element, rider, `more`). */
+/* Computes rows over (element, point, `more`) rows over (element, rider, `more`). */
 static void expand(const fu_slide *slide, const slide_view *view, int n_rows, int n_element, int more,
                    const double *given, double *rows)
 {
@@ -67,13 +67,13 @@ int fu_slide_coordinates(const fu_model *model, const fu_state *state, int j, in
     const fu_slide *slide = &model->slides[j];
     const fu_cable *cable = &model->cables[slide->cable];
     const int n = cable->coordinates;
-    for (int i = 0; i < n; ++i) at[i] = cable->first + state->piece[j] * cable->per_node + i;
+    for (int i = 0; i < n; ++i) at[i] = cable->first + state->segment[j] * cable->per_node + i;
     const int all = n + fu_attachment_coordinates(model, &slide->rider, state, at + n);
     at[all] = fu_extra(model, slide->base.unknown);
     return all;
 }
 
-/* Makes phi and the gradient of f . phi over the slide's coordinates and s. */
+/* Computes phi and the gradient of f . phi over the slide's coordinates and s. */
 void fu_slide_residual(const fu_model *model, const fu_state *state, int j, double *phi, double *g)
 {
     const fu_slide *slide = &model->slides[j];
@@ -85,7 +85,7 @@ void fu_slide_residual(const fu_model *model, const fu_state *state, int j, doub
     if (!slide->rider_is_rigid) expand(slide, &v, 1, model->cables[slide->cable].coordinates, 1, of_point, g);
 }
 
-/* Makes the derivatives of both over the same, at a force f. */
+/* Computes the derivatives of both over the same, at a force f. */
 void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const double *f, double *J, double *K)
 {
     const fu_slide *slide = &model->slides[j];
@@ -115,7 +115,7 @@ void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const
         for (int k = 0; k < n_rider; ++k) K[(n_element + i) * n + n_element + k] = part[i * n_rider + k];
 }
 
-/* Makes eq 20-37 over the slide's coordinates: H and W of the constraints that stay, and how s follows. */
+/* Computes eq 20-37 over the slide's coordinates: H and W of the constraints that stay, and how s follows. */
 void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows *rows, fu_slide_state *slide_state)
 {
     const fu_slide *slide = &model->slides[j];
@@ -170,8 +170,8 @@ double fu_slide_locked_s(const fu_model *model, const fu_state *state, int j, do
     return fu_signal_at(&model->signals[model->slides[j].drive], state->t, rate, second);
 }
 
-/* Makes the derivatives of the constraints by s at this s, m, and the tangent frame there; returns the Newton step for
- * s. */
+/* Computes the derivatives of the constraints by s at this s, m, and the tangent frame there; returns the Newton step
+ * for s. */
 static double constraints_at(const fu_model *model, const fu_state *state, int j, double s, double C_s[3],
                              double A_t[9])
 {
@@ -179,19 +179,20 @@ static double constraints_at(const fu_model *model, const fu_state *state, int j
     double C[3], step;
     slide_view v;
     look(model, state, j, &v);
-    slide->kernel->constraint(v.length, s - fu_element_start(model, j, state->piece[j]), v.e, v.b, v.u,
+    slide->kernel->constraint(v.length, s - fu_element_start(model, j, state->segment[j]), v.e, v.b, v.u,
                               fu_slide_numbers_of(model, state, j)->director, C, C_s, &step, A_t);
     return step;
 }
 
-/* Returns the Newton step for s from this s, m, and makes the tangent frame there. */
+/* Returns the Newton step for s from this s, m, and computes the tangent frame there. */
 double fu_slide_step(const fu_model *model, const fu_state *state, int j, double s, double A_t[9])
 {
     double C_s[3];
     return constraints_at(model, state, j, s, C_s, A_t);
 }
 
-/* Makes the tangent frame where a slide is, and returns the length of the centreline there over that without stress. */
+/* Computes the tangent frame where a slide is, and returns the length of the centreline there over that without stress.
+ */
 double fu_slide_frame(const fu_model *model, const fu_state *state, int j, double A_t[9])
 {
     double C_s[3];

@@ -11,7 +11,7 @@
 /* of an element: a correction that is as good as rounding where rounding keeps it from shrinking */
 #define LENGTH_TOLERANCE 1e-12
 /* cosine of the angle between tangent and director from which on another axis takes over: 8 degrees */
-#define ALONG 0.99
+#define MAX_ALIGNMENT 0.99
 
 /* Returns the Newton step for s of a slide, m, and the unit tangent there. */
 static double evaluate_constraint(const fu_model *model, const fu_state *state, int j, double s, double i[3])
@@ -46,7 +46,7 @@ void fu_update_director(const fu_model *model, const fu_coupling *coupling, fu_s
     if (!model->slides[j].carries_director) return;
     evaluate_constraint(model, state, j, state->s[j], i);
     double along = i[0] * d[0] + i[1] * d[1] + i[2] * d[2], square = 0.0;
-    if (!(fabs(along) < ALONG)) {
+    if (!(fabs(along) < MAX_ALIGNMENT)) {
         const double x = fabs(i[0]), y = fabs(i[1]), z = fabs(i[2]);
         const int least = x <= y && x <= z ? 0 : y <= z ? 1 : 2;
         for (int k = 0; k < 3; ++k) d[k] = k == least;

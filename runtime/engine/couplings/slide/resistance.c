@@ -14,10 +14,10 @@
 #include <string.h>
 
 /* of the change that the law asks for: the first step of R, lest it turn the normal force round */
-#define FIRST_SHARE 0.1
+#define FIRST_STEP_SHARE 0.1
 /* slope of the secant below which R takes the change that its law asks for */
 #define MIN_SECANT_SLOPE 0.1
-#define LEAST_NORMAL 1e-30 /* N: of a normal force of zero there is no direction */
+#define MIN_NORMAL_FORCE 1e-30 /* N: of a normal force of zero there is no direction */
 
 /* Returns whether R acts on a slide as it is. */
 static int has_resistance(const fu_model *model, const fu_state *state, int j)
@@ -59,7 +59,7 @@ void fu_resistance_at(const fu_model *model, const fu_state *state, int j, const
     const fu_end_stop *stop = pressed(model, state, j);
     const int side = fu_slide_flags_of(model, state, j)->contact;
     const double friction[5] = {slide->friction, slide->viscous, slide->velocity, direction_of(model, state, j),
-                                LEAST_NORMAL};
+                                MIN_NORMAL_FORCE};
     const double buffer[4] = {stop ? stop->stiffness : 0.0, stop ? stop->damping : 0.0,
                               stop ? fu_compression(model, state, j, side) : 0.0, side};
     double by_x;
@@ -125,7 +125,7 @@ void fu_detect_buffers(const fu_model *model, const fu_coupling *coupling, fu_st
             flags->contact = side;
 }
 
-/* Makes t and u from the derivatives of phi = r - p by the slide's coordinates and s. */
+/* Computes t and u from the derivatives of phi = r - p by the slide's coordinates and s. */
 void fu_slide_motion(const fu_model *model, const fu_state *state, int j, const double *J, double *t, double *u)
 {
     int at[FU_SLIDE_COORDINATES + 1];
@@ -137,8 +137,8 @@ void fu_slide_motion(const fu_model *model, const fu_state *state, int j, const 
     }
 }
 
-/* Makes the derivatives of R by the slide's coordinates and s, and by the rates of the former, at a fixed force: those
- * of t and u are second derivatives of phi, of which fu_slide_tangent has those along a vector. */
+/* Computes the derivatives of R by the slide's coordinates and s, and by the rates of the former, at a fixed force:
+ * those of t and u are second derivatives of phi, of which fu_slide_tangent has those along a vector. */
 void fu_resistance_rows(const fu_model *model, const fu_state *state, int j, const double *J,
                         const fu_resistance *resistance, double *by_place, double *by_rate)
 {
@@ -157,7 +157,7 @@ void fu_resistance_rows(const fu_model *model, const fu_state *state, int j, con
     by_rate[s] = 0.0;
 }
 
-/* Makes t = r_x, and u, the velocity along it, of a slide in eq 38. */
+/* Computes t = r_x, and u, the velocity along it, of a slide in eq 38. */
 static void along(const fu_model *model, const fu_slide_state *slide_state, double *t, double *u)
 {
     const int dim = model->dim;
@@ -175,7 +175,7 @@ static void along(const fu_model *model, const fu_slide_state *slide_state, doub
 static double secant_step(fu_slide_state *last, double change)
 {
     const double slope = last->step != 0.0 ? (last->change - change) / last->step : 0.0;
-    last->step = last->step == 0.0 ? FIRST_SHARE * change : slope > MIN_SECANT_SLOPE ? change / slope : change;
+    last->step = last->step == 0.0 ? FIRST_STEP_SHARE * change : slope > MIN_SECANT_SLOPE ? change / slope : change;
     last->change = change;
     return last->step;
 }
@@ -239,7 +239,7 @@ double fu_resistance_dissipation(const fu_model *model, const fu_coupling *coupl
     return power_of(model, state, j, t, u, f);
 }
 
-/* Where the normal force turns round within a step, friction has a kink, and no quadrature over the step is right: the
+/* Where the normal force reverses within a step, friction has a kink, and no quadrature over the step is right: the
  * friction of the mean normal force differs from the mean friction, by at least the error made. The rider's speed stays
  * wrong, and its position is off by that times the time that is left. */
 double fu_resistance_friction_error(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int n,

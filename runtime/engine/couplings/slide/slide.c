@@ -11,8 +11,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Makes t = r_x and u, as couplings/slide/resistance.c has them, from the derivatives J of phi by the coordinates and
- * s, and R by the own force. */
+/* Computes t = r_x and u, as couplings/slide/resistance.c has them, from the derivatives J of phi by the coordinates
+ * and s, and R by the own force. */
 static void resistance_of(const fu_model *model, const fu_state *state, int j, const double *J,
                           fu_resistance *resistance)
 {
@@ -195,7 +195,7 @@ static double of_frame(const fu_model *model, const fu_state *state, int j)
     return sum;
 }
 
-/* Makes the numbers of a slide in a state of rest, where its force is along all axes of the ground. */
+/* Computes the numbers of a slide in a state of rest, where its force is along all axes of the ground. */
 static void outputs_at_rest(const fu_model *model, const fu_state *state, int j, fu_slide_output *out)
 {
     const fu_slide *slide = &model->slides[j];
@@ -247,7 +247,7 @@ static void reset(const fu_coupling *coupling, fu_state *state)
     *numbers = (fu_slide_numbers){0};
     memcpy(numbers->director, slide->director, sizeof numbers->director);
     state->s[coupling->coordinate] = slide->start_s;
-    state->piece[coupling->coordinate] = slide->start_piece;
+    state->segment[coupling->coordinate] = slide->start_segment;
 }
 
 static int in_range(int value, int least, int most)
@@ -270,7 +270,7 @@ static int is_possible(const fu_model *model, const fu_coupling *coupling, const
     const fu_slide *slide = (const fu_slide *)coupling;
     const int j = coupling->index;
     const fu_slide_flags *flags = fu_slide_flags_of(model, state, j);
-    return in_range(state->piece[j], 0, model->cables[slide->cable].n_elements - 1) &&
+    return in_range(state->segment[j], 0, model->cables[slide->cable].n_elements - 1) &&
            is_possible_mode(slide, flags->mode) && in_range(flags->slip_direction, -1, 1) &&
            in_range(flags->contact, -1, 1);
 }
@@ -305,7 +305,7 @@ static const fu_field fields[] = {
     OF_STOPS("buffer_dampings", damping, FU_REAL, 0),
     FU_FIELD_AS("s", fu_slide, start_s, FU_REAL),
     FU_FIELD_ARRAY(fu_slide, director, FU_REAL),
-    FU_FIELD_AS("element", fu_slide, start_piece, FU_INTEGER),
+    FU_FIELD_AS("element", fu_slide, start_segment, FU_INTEGER),
     {0},
 };
 

@@ -35,8 +35,8 @@ struct fu_slide {
     int sticks;                              /* friction holds it at rest, else it rises with the speed */
     double friction, static_friction, viscous, velocity; /* coefficients sliding and at rest; N s/m; m/s */
     fu_end_stop stops[2];                                /* at the start and at the end */
-    double start_s, director[FU_SPACE];                  /* of the state as it is drawn, as is the next */
-    int start_piece;
+    double start_s, director[FU_SPACE];                  /* of the state in the initial configuration, as is the next */
+    int start_segment;
 };
 extern const fu_coupling_type fu_slide_type;
 
@@ -74,7 +74,7 @@ void fu_slide_over_step(const fu_model *model, const fu_coupling *coupling, cons
 void fu_slide_over_step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *step,
                                 fu_system *system);
 
-/* couplings/slide/position.c: s where C_l = 0, eq 21, not zero where there is none; and the director that goes with it.
+/* couplings/slide/position.c: s where C_l = 0, eq 21, nonzero where there is none; and the director that goes with it.
  */
 int fu_find_arc_length(const fu_model *model, const fu_state *state, int slide, double *s);
 void fu_update_director(const fu_model *model, const fu_coupling *coupling, fu_state *state);
