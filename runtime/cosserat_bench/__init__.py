@@ -1,1 +1,1 @@
-"""The package as a solver of cosseratbench, a benchmark of rods by others (PyPI): `solver` is its entry point."""
+"""The solver of cosseratbench, a benchmark of rods (PyPI); the extra of that name installs it by an entry point."""

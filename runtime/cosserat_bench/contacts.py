@@ -1,7 +1,7 @@
-"""Contact in cosseratbench's scenarios: of rods with fixed obstacles and with each other, and what of it is left out.
+"""Contact in cosseratbench's scenarios: of rods with fixed obstacles and with each other, and contact left out.
 
-Contact has a stiffness of the package's own: rods sink by a thousandth of their radius where they lie under their own
-weight. Where a state of rest is the result, what hits does not bounce.
+The stiffness of contact lets rods under their own weight sink by a thousandth of their radius. Where a state of rest is
+the result, damping prevents bouncing.
 """
 
 from __future__ import annotations
@@ -17,52 +17,58 @@ from ..parts.cable import Cable
 from ..parts.solids import Cylinder
 from ..parts.surface_shapes import Plane
 from ..scene.scene import Scene
-from .directors import tangents_of
 
 if TYPE_CHECKING:
     from cosseratbench.scenario import Rod, Scenario
 
-SINKS = 1e-3
-"""How deep a rod sinks into what it lies on, in its radii."""
+PENETRATION = 1e-3
+"""Penetration of a rod under its own weight, over its radius."""
 
-SOFT = 10.0
+REST_DAMPING = 10.0
 """Damping of contact times the speed of a fall from a radius' height, where a state of rest is the result."""
 
-EARTH = 9.81
-"""m/s²: what stands for gravity where there is none."""
+EARTH_GRAVITY = 9.81
+"""m/s²: assumed where a scenario has no gravity."""
 
-NEAR = 0.1
-"""Rods that start closer than this, in lengths of the shorter one, are expected to touch."""
+CLOSE_START = 0.1
+"""Distance below which rods are expected to touch, over the length of the shorter one."""
 
-DEEP = 0.25
-"""Of the distance of two axes that touch: rods closer by more have passed into each other."""
+DEEP_PENETRATION = 0.25
+"""Part of the distance of two touching axes above which a penetration means that rods passed into each other."""
 
-PARALLEL = 0.1
-"""Sine of the angle of two rods that cross, at the least."""
+MIN_CROSSING_SINE = 0.1
+"""Smallest sine of the angle of two rods that cross."""
 
-FINE = 0.5
-"""Distance of the points at which rods are looked at for that, in radii."""
+POINT_SPACING = 0.5
+"""Distance of the points on rods between which distances are computed, in radii."""
 
-TURNED = 0.9 * np.pi
-"""rad: the least that a rod turns along itself before it can touch itself."""
+MIN_SELF_CONTACT_TURN = 0.9 * np.pi
+"""rad: smallest turn along a rod with which it can touch itself."""
 
 
-def obstacles_of(scenario: Scenario) -> list[tuple[bool, Any]]:
-    """Return whether it is a plane, else a cylinder, of each obstacle, and the obstacle."""
-    return [(obstacle.kind == "plane", obstacle) for obstacle in scenario.obstacles]
+def tangents_of(positions: np.ndarray) -> np.ndarray:
+    """Return (..., elements, 3): unit vectors along the chords between nodes (..., nodes, 3)."""
+    chords = np.diff(positions, axis=-2)
+    return np.asarray(chords / np.linalg.norm(chords, axis=-1, keepdims=True))
+
+
+def is_plane(obstacle: Any) -> bool:
+    """Return whether an obstacle is a plane; others are cylinders."""
+    return bool(obstacle.kind == "plane")
 
 
 def stand(scene: Scene, scenario: Scenario, rods: list[Rod], cables: list[Cable]) -> None:
-    """Add the obstacles of a scenario to a scene, and what touches them: every rod."""
-    for k, (flat, obstacle) in enumerate(obstacles_of(scenario)):
+    """Add the obstacles of a scenario to a scene, and their contact with every rod."""
+    obstacle: Any
+    for k, obstacle in enumerate(scenario.obstacles):
         name = f"obstacle{k}"
-        if flat:
+        if is_plane(obstacle):
             scene.surface(name, Plane(point=obstacle.point, normal=tuple(obstacle.unit_normal.tolist())))
         else:
             scene.surface(name, Cylinder(radius=obstacle.radius, length=obstacle.length,
                                          axis=tuple(obstacle.unit_axis.tolist())), at=obstacle.center)
         for rod, cable in zip(rods, cables, strict=True):
-            scene.contact(cable, name, stiffness=_weight(rod, scenario) / (SINKS * rod.radius),
+            scene.contact(cable, name, stiffness=_weight(rod, scenario) / (PENETRATION * rod.radius),
                           damping=_damping(rod, scenario), friction=max(obstacle.friction, rod.friction))
 
 
@@ -70,7 +76,7 @@ def cross(scene: Scene, scenario: Scenario, first: tuple[Rod, Cable], second: tu
     """Let two rods touch at the points where they are closest, without friction."""
     lighter = min(first[0], second[0], key=lambda rod: _weight(rod, scenario) * rod.length)
     scene.crossing(first[1], second[1], damping=_damping(lighter, scenario),
-                   stiffness=_weight(lighter, scenario) * lighter.length / (SINKS * lighter.radius))
+                   stiffness=_weight(lighter, scenario) * lighter.length / (PENETRATION * lighter.radius))
 
 
 def near(scenario: Scenario) -> set[tuple[int, int]]:
@@ -78,7 +84,7 @@ def near(scenario: Scenario) -> set[tuple[int, int]]:
     rods = scenario.rods
     return {(i, j) for i, j in combinations(range(len(rods)), 2)
             if _gaps(rods[i], rods[j], *_starts(rods[i], rods[j])).min()
-            < NEAR * min(rods[i].length, rods[j].length)}
+            < CLOSE_START * min(rods[i].length, rods[j].length)}
 
 
 def side_by_side(first: Rod, second: Rod) -> bool:
@@ -86,17 +92,17 @@ def side_by_side(first: Rod, second: Rod) -> bool:
     points = [_points(nodes[0], rod)[0] for nodes, rod in zip(_starts(first, second), (first, second), strict=True)]
     tangents = [np.gradient(line, axis=0)[k] for line, k in zip(points, _closest(*points), strict=True)]
     sine = np.linalg.norm(cross_product(*tangents)) / np.prod(np.linalg.norm(tangents, axis=1))
-    return bool(sine < PARALLEL)
+    return bool(sine < MIN_CROSSING_SINE)
 
 
 def line_of(vectors: np.ndarray, names: tuple[str, ...], rod: Rod) -> np.ndarray:
-    """Return points (frames, points, 3) in m on the axis of a rod, as its elements draw it between their nodes.
+    """Return points (frames, points, 3) in m on the axis of a rod, by the shape functions of its elements.
 
-    vectors: (frames, nodes, vectors, 3), with these names; the points are about `FINE` radii apart.
+    vectors: (frames, nodes, vectors, 3), with these names; the points are about `POINT_SPACING` radii apart.
     """
     at, slope = vectors[:, :, names.index("r")], vectors[:, :, names.index("r_x")]
     length = rod.length / (at.shape[1] - 1)
-    pieces = 1 + int(length / (FINE * rod.radius))
+    pieces = 1 + int(length / (POINT_SPACING * rod.radius))
     x = (np.arange(pieces) / pieces)[:, None]
     inside = ((1 - 3 * x**2 + 2 * x**3) * at[:, :-1, None] + (3 * x**2 - 2 * x**3) * at[:, 1:, None]
               + length * ((x - 2 * x**2 + x**3) * slope[:, :-1, None] + (x**3 - x**2) * slope[:, 1:, None]))
@@ -104,7 +110,7 @@ def line_of(vectors: np.ndarray, names: tuple[str, ...], rod: Rod) -> np.ndarray
 
 
 def may_meet(scenario: Scenario, lines: list[np.ndarray]) -> set[tuple[int, int]]:
-    """Return the pairs of rods that may touch in a frame or between two: by their lines (frames, points, 3), in m."""
+    """Return the pairs of rods that may touch in a frame or between two; lines: (frames, points, 3) of each, in m."""
     rods = scenario.rods
     travels = [_travel(line) for line in lines]
     return {(i, j) for i, j in combinations(range(len(rods)), 2)
@@ -112,16 +118,17 @@ def may_meet(scenario: Scenario, lines: list[np.ndarray]) -> set[tuple[int, int]
 
 
 def overlapping(scenario: Scenario, lines: list[np.ndarray]) -> dict[tuple[int, int], int]:
-    """Return the pairs of rods that pass into or through each other, with the first frame in which they have; lines
-    (frames, points, 3) of each, in m.
+    """Return the pairs of rods that pass into or through each other, with the first frame of that.
+
+    lines: (frames, points, 3) of each, in m.
     """
     rods, found = scenario.rods, {}
     for i, j in combinations(range(len(rods)), 2):
         gaps = _gaps(rods[i], rods[j], lines[i], lines[j])
-        inside = gaps < -DEEP * (rods[i].radius + rods[j].radius)
+        inside = gaps < -DEEP_PENETRATION * (rods[i].radius + rods[j].radius)
         for k in np.flatnonzero(_within_reach(gaps, _travel(lines[i]) + _travel(lines[j]))).tolist():
             before, after = (_between(rods[i], rods[j], lines[i][each], lines[j][each]) for each in (k, k + 1))
-            inside[k + 1] |= before @ after < 0  # they have changed sides
+            inside[k + 1] |= before @ after < 0  # they changed sides
         if inside.any():
             found[i, j] = int(np.argmax(inside))
     return found
@@ -131,18 +138,19 @@ def passes_into_itself(rod: Rod, line: np.ndarray) -> int | None:
     """Return the first frame in which a rod along a line (frames, points, 3) passes into itself, or None."""
     tangents = tangents_of(line)
     turns = np.arccos(np.clip(np.sum(tangents[:, :-1] * tangents[:, 1:], axis=-1), -1, 1)).sum(axis=1)
-    for frame in np.flatnonzero(turns > TURNED).tolist():
+    for frame in np.flatnonzero(turns > MIN_SELF_CONTACT_TURN).tolist():
         points, along = _points(line[frame], rod)
-        pairs = cKDTree(points).query_pairs(2 * (1 - DEEP) * rod.radius, output_type="ndarray")
+        pairs = cKDTree(points).query_pairs(2 * (1 - DEEP_PENETRATION) * rod.radius, output_type="ndarray")
         if np.any(along[pairs[:, 1]] - along[pairs[:, 0]] > np.pi * rod.radius):
             return frame
     return None
 
 
 def beyond_a_cylinder(scenario: Scenario, positions: list[np.ndarray]) -> bool:
-    """Return whether a rod touches where a cylinder has already ended: those of scenes have no ends."""
-    for flat, obstacle in obstacles_of(scenario):
-        if flat:
+    """Return whether a rod touches the extension of a cylinder: those of scenes are endless."""
+    obstacle: Any
+    for obstacle in scenario.obstacles:
+        if is_plane(obstacle):
             continue
         for rod, nodes in zip(scenario.rods, positions, strict=True):
             offset = nodes - np.asarray(obstacle.center)
@@ -155,17 +163,17 @@ def beyond_a_cylinder(scenario: Scenario, positions: list[np.ndarray]) -> bool:
 
 def _weight(rod: Rod, scenario: Scenario) -> float:
     """Return the weight of a rod in N/m."""
-    return rod.material.density * rod.area * _gravity(scenario)
+    return float(rod.material.density * rod.area * _gravity(scenario))
 
 
 def _damping(rod: Rod, scenario: Scenario) -> float:
     """Return the damping of contact in s/m."""
-    return SOFT / np.sqrt(_gravity(scenario) * rod.radius) if scenario.quasi_static else 0.0
+    return float(REST_DAMPING / np.sqrt(_gravity(scenario) * rod.radius)) if scenario.quasi_static else 0.0
 
 
 def _gravity(scenario: Scenario) -> float:
-    """Return the size of gravity that contact is made for, in m/s²."""
-    return float(np.linalg.norm(scenario.gravity)) or EARTH
+    """Return the size of gravity for the stiffness of contact, in m/s²."""
+    return float(np.linalg.norm(scenario.gravity)) or EARTH_GRAVITY
 
 
 def _starts(first: Rod, second: Rod) -> tuple[np.ndarray, np.ndarray]:
@@ -176,31 +184,31 @@ def _starts(first: Rod, second: Rod) -> tuple[np.ndarray, np.ndarray]:
 def _gaps(first: Rod, second: Rod, one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Return the distances (frames,) in m of the surfaces of two rods along lines (frames, points, 3).
 
-    They are negative where rods pass into each other; in frames in which boxes about them are apart, of the boxes.
+    Rods that pass into each other have negative distances. Rods with separate bounding boxes have those of the boxes.
     """
     between = np.maximum(one.min(axis=1) - other.max(axis=1), other.min(axis=1) - one.max(axis=1))
     gaps = np.linalg.norm(np.maximum(0, between), axis=-1) - first.radius - second.radius
     for k in np.flatnonzero(gaps < 0).tolist():
         tree = cKDTree(_points(one[k], first)[0])
         gaps[k] = tree.query(_points(other[k], second)[0])[0].min() - first.radius - second.radius
-    return gaps
+    return np.asarray(gaps)
 
 
 def _travel(line: np.ndarray) -> np.ndarray:
-    """Return how far a line (frames, points, 3) moves at most from each frame to the next, (frames - 1,) in m."""
-    return np.linalg.norm(np.diff(line, axis=0), axis=-1).max(axis=1)
+    """Return the largest displacement of a line (frames, points, 3) from frame to frame, (frames - 1,) in m."""
+    return np.asarray(np.linalg.norm(np.diff(line, axis=0), axis=-1).max(axis=1))
 
 
 def _within_reach(gaps: np.ndarray, travels: np.ndarray) -> np.ndarray:
-    """Return whether a gap in a frame or the next one is less than what both rods move between them, (frames - 1,)."""
-    return np.minimum(gaps[:-1], gaps[1:]) < travels
+    """Return whether a gap in a frame or the next one is below the displacement of both rods, (frames - 1,)."""
+    return np.asarray(np.minimum(gaps[:-1], gaps[1:]) < travels)
 
 
 def _between(first: Rod, second: Rod, one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Return the vector (3,) between the points of two lines (points, 3) that are closest, in m."""
     points, others = _points(one, first)[0], _points(other, second)[0]
     at, there = _closest(points, others)
-    return points[at] - others[there]
+    return np.asarray(points[at] - others[there])
 
 
 def _closest(points: np.ndarray, others: np.ndarray) -> tuple[int, int]:
@@ -211,7 +219,7 @@ def _closest(points: np.ndarray, others: np.ndarray) -> tuple[int, int]:
 
 
 def _points(line: np.ndarray, rod: Rod) -> tuple[np.ndarray, np.ndarray]:
-    """Return points on a line (points, 3), a part of the rod's radius apart, and the way to each along it, in m."""
+    """Return points on a line (points, 3), `POINT_SPACING` radii apart, and their arc-lengths, in m."""
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
-    at = np.linspace(0, along[-1], 1 + int(np.ceil(along[-1] / (FINE * rod.radius))))
+    at = np.linspace(0, along[-1], 1 + int(np.ceil(along[-1] / (POINT_SPACING * rod.radius))))
     return np.stack([np.interp(at, along, line[:, d]) for d in range(3)], axis=1), at

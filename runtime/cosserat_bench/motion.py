@@ -4,18 +4,29 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
+from ..base.rotations import cross as cross_product
 from ..errors import FunicularWarning
 from ..parts.cable import Cable
 from ..results.run import Run
-from .contacts import beyond_a_cylinder, cross, line_of, may_meet, near, overlapping, passes_into_itself, side_by_side
-from .directors import of_sections, untwisted
-from .rods import CLAMPED, RodOptions, RodScene, ends_of, scene_of
+from .contacts import (
+    beyond_a_cylinder,
+    cross,
+    line_of,
+    may_meet,
+    near,
+    overlapping,
+    passes_into_itself,
+    side_by_side,
+    tangents_of,
+)
+from .rods import CLAMPED, RodOptions, ends_of, scene_of
 
 if TYPE_CHECKING:
     from cosseratbench.scenario import Rod, Scenario
@@ -23,21 +34,21 @@ if TYPE_CHECKING:
 INTEGRATOR = "radau"
 """Rods are stiff, and radau damps the vibrations that its steps do not follow."""
 
-TO_REST, IN_MOTION = 1e-3, 1e-4
-"""Tolerances of runs: where a state of rest is the result, and where the motion is."""
+REST_TOL, MOTION_TOL = 1e-3, 1e-4
+"""Tolerances of runs whose result is a state of rest, and a motion."""
 
-LEAST_ERROR = 1e-7
-"""Error allowed beside the tolerance, in lengths of the shortest rod."""
+ABSOLUTE_TOL = 1e-7
+"""Absolute tolerance, over the length of the shortest rod."""
 
 DAMPING_RATIO = 0.95
-"""Of the slowest vibration on the way to rest: it comes to within 1e-4 of rest, and stays there, sooner than with
-critical damping."""
+"""Damping ratio of the slowest vibration on the way to rest: it remains within 1e-4 of rest sooner than with critical
+damping."""
 
 
 @dataclass(frozen=True)
 class Choices:
-    """Numerical choices: the tolerance (None: `TO_REST` or `IN_MOTION`), a factor of the steps that follow from it, and
-    whether rods resist bending.
+    """Numerical choices: the tolerance (None: `REST_TOL` or `MOTION_TOL`), a factor of its steps, and whether rods
+    resist bending.
     """
 
     tol: float | None = None
@@ -46,22 +57,22 @@ class Choices:
 
     def tol_of(self, scenario: Scenario) -> float:
         """Return the tolerance of a run. The error that radau estimates grows with the fourth power of the step."""
-        usual = TO_REST if scenario.quasi_static else IN_MOTION
+        usual = REST_TOL if scenario.quasi_static else MOTION_TOL
         return (usual if self.tol is None else self.tol) * self.time_step_scale**4
 
     def rods_of(self, scenario: Scenario) -> RodOptions:
-        """Return what is chosen of the rods. On the way to rest they are damped in proportion to mass."""
+        """Return the options of the rods. On the way to rest they are damped in proportion to mass."""
         rate = 2 * DAMPING_RATIO * scenario.slowest_frequency() if scenario.quasi_static else 0.0
         return RodOptions(damping_rate=rate, bending=self.bending)
 
 
 def moved(scenario: Scenario, elements: int, frames: int,
           choices: Choices) -> tuple[list[np.ndarray], list[np.ndarray]]:
-    """Return of each rod positions (frames, nodes, 3) in m and directors (frames, elements, 3).
+    """Return positions (frames, nodes, 3) in m and directors (frames, elements, 3) of each rod.
 
-    Rods that touch move together, the others each by itself: first those that start close to each other, then again
-    with those that may have met. What is left out of that is warned of. Raises NotImplementedError for
-    what cannot be modelled, ConvergenceError where a run ends early.
+    Rods that touch are in one scene, the others each in its own: first those that start close to each other, then again
+    with those that may have met. A warning reports contact that is left out. Raises NotImplementedError for features
+    that cannot be modelled, ConvergenceError where a run ends early.
     """
     if scenario.self_contact and scenario.obstacles:
         raise NotImplementedError("contact of a rod with itself")
@@ -79,7 +90,14 @@ def moved(scenario: Scenario, elements: int, frames: int,
         raise NotImplementedError("contact of two rods at more than one point")
     if beyond_a_cylinder(scenario, lines):
         raise NotImplementedError("contact at the end of a cylinder")
-    _warn_of_what_is_left_out(scenario, lines, found)
+    passing = [(f"rods {i} and {j} pass into each other", frame) for (i, j), frame in found.items()]
+    passing += [(f"rod {k} passes into itself", frame)
+                for k, (rod, line) in enumerate(zip(scenario.rods, lines, strict=True))
+                if (frame := passes_into_itself(rod, line)) is not None]
+    for what, frame in passing:
+        time = scenario.duration * frame / (frames - 1)
+        warnings.warn(f"{what} from t = {time:.4g} s on: this contact is not modelled, and from there on the motion is "
+                      "not that of the scenario", FunicularWarning, stacklevel=3)
     return [each.positions for each in motions], [each.directors for each in motions]
 
 
@@ -105,7 +123,7 @@ def _motions(scenario: Scenario, pairs: set[tuple[int, int]], elements: int, fra
     for pair in pairs:
         touching[pair] = 1
     groups, group_of = connected_components(csr_array(touching), directed=False)
-    motions: list = [None] * count
+    motions: dict[int, _RodMotion] = {}
     for group in range(groups):
         members = np.flatnonzero(group_of == group).tolist()
         rods = [scenario.rods[k] for k in members]
@@ -114,17 +132,13 @@ def _motions(scenario: Scenario, pairs: set[tuple[int, int]], elements: int, fra
         for i, j in sorted(pairs):
             if i in of:
                 cross(made.scene, scenario, of[i], of[j])
-        run = _run(made, scenario, frames, choices)
+        run = made.scene.run(duration=scenario.duration, output_step=scenario.duration / (frames - 1),
+                             tol=choices.tol_of(scenario), integrator=INTEGRATOR,
+                             absolute_tol=ABSOLUTE_TOL * min(rod.length for rod in scenario.rods),
+                             initial=made.start or None)
         for k, (rod, cable) in of.items():
             motions[k] = _motion_of(rod, cable, run, elements)
-    return motions
-
-
-def _run(made: RodScene, scenario: Scenario, frames: int, choices: Choices) -> Run:
-    return made.scene.run(duration=scenario.duration, output_step=scenario.duration / (frames - 1),
-                          tol=choices.tol_of(scenario), integrator=INTEGRATOR,
-                          absolute_tol=LEAST_ERROR * min(rod.length for rod in scenario.rods),
-                          initial=made.start or None)
+    return [motions[k] for k in range(count)]
 
 
 def _motion_of(rod: Rod, cable: Cable, run: Run, elements: int) -> _RodMotion:
@@ -139,14 +153,39 @@ def _motion_of(rod: Rod, cable: Cable, run: Run, elements: int) -> _RodMotion:
     return _RodMotion(positions, directors, vectors, names)
 
 
-def _warn_of_what_is_left_out(scenario: Scenario, lines: list[np.ndarray],
-                              found: dict[tuple[int, int], int]) -> None:
-    """Say which rods pass into themselves or, of those that started apart, into each other, and from when on."""
-    passing = [(f"rods {i} and {j} pass into each other", frame) for (i, j), frame in found.items()]
-    passing += [(f"rod {k} passes into itself", frame)
-                for k, (rod, line) in enumerate(zip(scenario.rods, lines, strict=True))
-                if (frame := passes_into_itself(rod, line)) is not None]
-    for what, frame in passing:
-        time = scenario.duration * frame / (len(lines[0]) - 1)
-        warnings.warn(f"{what} from t = {time:.4g} s on: this contact is not modelled, and from there on the motion is "
-                      "not that of the scenario", FunicularWarning, stacklevel=4)
+def transported(directors: np.ndarray, before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    """Return directions (..., 3) turned by the smallest rotation from unit tangents to others, none opposite."""
+    axis = cross_product(before, after)
+    cosine = np.sum(before * after, axis=-1, keepdims=True)
+    along = np.sum(axis * directors, axis=-1, keepdims=True)
+    return np.asarray(directors * cosine + cross_product(axis, directors) + axis * along / (1 + cosine))
+
+
+def of_sections(heights: np.ndarray, positions: np.ndarray) -> np.ndarray:
+    """Return (frames, elements, 3): directors of beams, from their sections' heights (frames, nodes, 3)."""
+    tangents = tangents_of(positions)
+    middle = heights[:, :-1] + heights[:, 1:]
+    across = middle - np.sum(middle * tangents, axis=-1, keepdims=True) * tangents
+    return np.asarray(across / np.linalg.norm(across, axis=-1, keepdims=True))
+
+
+def untwisted(first: np.ndarray, positions: np.ndarray, clamped: int | None) -> np.ndarray:
+    """Return (frames, elements, 3): directors of a rod without twist, in frames with nodes at positions.
+
+    Cables have no sections: their directors turn with the line and not about it (Bishop's frame), since a round rod
+    without torsion does not twist. first: initial directors (elements, 3); clamped: the element at a clamp, 0 or -1,
+    None without. An element at a clamp turns with its tangent since the start. Without a clamp the director of the
+    first one turns with its tangent from frame to frame. The other elements follow along the rod.
+    """
+    tangents, turned = tangents_of(positions), np.empty((len(positions), *first.shape))
+    order = range(len(first))[::-1 if clamped == -1 else 1]
+    at = order[0]
+    turned[0] = first
+    if clamped is None:
+        for frame in range(1, len(positions)):
+            turned[frame, at] = transported(turned[frame - 1, at], tangents[frame - 1, at], tangents[frame, at])
+    else:
+        turned[1:, at] = transported(first[at], tangents[0, at], tangents[1:, at])
+    for here, there in pairwise(order):
+        turned[1:, there] = transported(turned[1:, here], tangents[1:, here], tangents[1:, there])
+    return turned

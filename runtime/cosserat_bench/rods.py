@@ -1,13 +1,12 @@
-"""Scenes of cosseratbench's rods: which element a rod takes, how its ends are supported, where it starts.
+"""Scenes of cosseratbench's rods: their elements, supports and initial states.
 
-What is read of a scenario and its rods are the attributes of ``cosseratbench.Scenario`` and ``cosseratbench.Rod``. That
-package itself is not needed here.
+Only attributes of ``cosseratbench.Scenario`` and ``cosseratbench.Rod`` are read: the package itself is not needed here.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -18,7 +17,7 @@ from ..parts.material import Material
 from ..parts.section import Circle, GeneralSection
 from ..parts.signal import TableSignal
 from ..scene.scene import Scene
-from .contacts import obstacles_of, stand
+from .contacts import is_plane, stand
 
 if TYPE_CHECKING:
     from cosseratbench.scenario import Motion, Rod, Scenario
@@ -29,22 +28,22 @@ FREE, CLAMPED = "free", "clamped"
 SPATIAL, PLANAR, TORSION = "cable12", "cable8p", "beam24"
 """Elements of rods: without torsion in space and in a plane, and with torsion and shear."""
 
-FLAT = 1e-9
-"""What leaves a plane by less, in parts of its size, lies in it."""
+PLANE_TOLERANCE = 1e-9
+"""Distance from a plane, over the size, up to which a vector lies in it."""
 
-SMOOTH = 1e-3
-"""A table of a motion stands for a smooth one where the spline through it is this close, in parts of its range."""
+SPLINE_TOLERANCE = 1e-3
+"""Distance of a table from the spline through it, over its range, up to which it stands for a smooth motion."""
 
-MIRRORED = 16
-"""Values before a motion that starts from rest, by which the spline's rate there is zero to rounding."""
+MIRRORED_VALUES = 16
+"""Values before a motion that starts from rest, for a rate of the spline of zero within rounding."""
 
-LIMP = 1e-8
-"""Of the bending stiffness: what is left of it where it is left out, for which the equations need some."""
+LIMP_RATIO = 1e-8
+"""Part of the bending stiffness that a rod without bending keeps, for solvable equations."""
 
 
 @dataclass(frozen=True)
 class RodOptions:
-    """What of rods is chosen: the rate of damping proportional to mass in 1/s, and whether rods resist bending."""
+    """Options of rods: the rate of damping proportional to mass in 1/s, and whether rods resist bending."""
 
     damping_rate: float = 0.0
     bending: bool = True
@@ -52,7 +51,7 @@ class RodOptions:
 
 @dataclass
 class RodScene:
-    """A scene of rods, with the cable of each and the state that it starts from, as `Scene.run` takes it."""
+    """A scene of rods with the cable of each, and its initial state as `Scene.run` takes it."""
 
     scene: Scene
     cables: list[Cable]
@@ -65,17 +64,22 @@ def ends_of(rod: Rod) -> list[tuple[float, str, Motion | None]]:
 
 
 def plane_normal(scenario: Scenario, rod: Rod) -> np.ndarray | None:
-    """Return the unit normal (3,) of the plane that a rod lies and stays in, by its points, loads and obstacles; None
-    if there is none, or where an end is driven. Of a straight rod along its loads it is the rod's own normal.
+    """Return the unit normal (3,) of the plane of a rod's motion, by its points, loads and obstacles.
+
+    None if there is none, or where an end is driven. For a straight rod along its loads it is the rod's own normal.
     """
     if rod.start_motion is not None or rod.end_motion is not None:
         return None
     normal = _normal(scenario.gravity, rod)
     if normal is None:
         return None
-    parts = [(flat, abs(float((obstacle.unit_normal if flat else obstacle.unit_axis) @ normal)))
-             for flat, obstacle in obstacles_of(scenario)]
-    return normal if all(part <= FLAT if flat else part >= 1 - FLAT for flat, part in parts) else None
+    obstacle: Any
+    for obstacle in scenario.obstacles:
+        flat = is_plane(obstacle)
+        part = abs(float((obstacle.unit_normal if flat else obstacle.unit_axis) @ normal))
+        if not (part <= PLANE_TOLERANCE if flat else part >= 1 - PLANE_TOLERANCE):
+            return None
+    return normal
 
 
 def _normal(gravity: tuple[float, ...], rod: Rod) -> np.ndarray | None:
@@ -84,23 +88,23 @@ def _normal(gravity: tuple[float, ...], rod: Rod) -> np.ndarray | None:
     acting = [_unit(gravity), *(_unit(load.force) for load in rod.loads)]
     given = np.vstack([points - points[0], acting])
     _, sizes, directions = np.linalg.svd(given, full_matrices=False)
-    if sizes[2] > FLAT * sizes[0]:
+    if sizes[2] > PLANE_TOLERANCE * sizes[0]:
         return None
     normal = directions[2]
-    if sizes[1] <= FLAT * sizes[0]:
+    if sizes[1] <= PLANE_TOLERANCE * sizes[0]:
         along = directions[0]
         normal = np.asarray(rod.normal, dtype=float) - np.dot(rod.normal, along) * along
     nearest = int(np.argmax(np.abs(normal)))
-    rounded = np.where(np.abs(normal) < FLAT, 0.0, normal) * np.sign(normal[nearest])
-    return rounded / np.linalg.norm(rounded)
+    rounded = np.where(np.abs(normal) < PLANE_TOLERANCE, 0.0, normal) * np.sign(normal[nearest])
+    return np.asarray(rounded / np.linalg.norm(rounded))
 
 
 def element_of(scenario: Scenario, rod: Rod, alone: bool) -> str:
     """Return the cheapest element for a rod.
 
-    A round rod without stress where it is straight carries torsion only if both its ends are clamped, or one of them is
-    driven: those are beams. Others are cables, planar ones if they lie and stay in a plane and nothing but ``alone``
-    is in their scene. Cables neither twist nor shear.
+    A round rod that is straight without stress carries torsion only if both its ends are clamped, or one is driven: it
+    is a beam. Others are cables, planar ones if they move in a plane and are alone in their scene. Cables neither twist
+    nor shear.
     """
     ends = ends_of(rod)
     if all(condition == CLAMPED for _, condition, _ in ends) or any(motion is not None for *_, motion in ends):
@@ -109,7 +113,7 @@ def element_of(scenario: Scenario, rod: Rod, alone: bool) -> str:
 
 
 def scene_of(scenario: Scenario, rods: list[Rod], elements: int, options: RodOptions) -> RodScene:
-    """Return a scene of these rods of a scenario, ``rod0`` and so on, each of so many equal elements."""
+    """Return a scene of rods of a scenario, ``rod0`` and so on, each with a number of equal elements."""
     made = RodScene(Scene(gravity=scenario.gravity), [])
     for number, rod in enumerate(rods):
         kind = element_of(scenario, rod, alone=len(rods) == 1)
@@ -132,8 +136,8 @@ def _unit(vector: tuple[float, ...]) -> np.ndarray:
     return np.asarray(vector, dtype=float) / (size if size else 1.0)
 
 
-def _drawing(scenario: Scenario, rod: Rod, kind: str) -> dict:
-    """Return how the cable is drawn: through the rod's points, free of stress where it is straight."""
+def _drawing(scenario: Scenario, rod: Rod, kind: str) -> dict[str, Any]:
+    """Return the arguments of the cable's shape: through the rod's points, straight without stress."""
     points = np.asarray(rod.centerline, dtype=float)
     up = np.asarray(rod.normal, dtype=float)
     if kind == PLANAR:
@@ -141,22 +145,22 @@ def _drawing(scenario: Scenario, rod: Rod, kind: str) -> dict:
         assert normal is not None, "planar elements are taken where there is a plane"
         up = cross(normal, points[1] - points[0])
     drawn = {"rest_length": rod.length, "up": tuple(up.tolist()), "element": kind}
-    if np.linalg.svd(points - points[0], compute_uv=False)[1] <= FLAT * rod.length:
+    if np.linalg.svd(points - points[0], compute_uv=False)[1] <= PLANE_TOLERANCE * rod.length:
         return {"start": tuple(points[0].tolist()), "end": tuple(points[-1].tolist()), **drawn}
     return {"points": [tuple(point) for point in points.tolist()], "rest": "straight", **drawn}
 
 
-def _stiffness(rod: Rod, kind: str, options: RodOptions) -> dict:
+def _stiffness(rod: Rod, kind: str, options: RodOptions) -> dict[str, Any]:
     """Return section, material and law of a rod's cable. Raises NotImplementedError."""
     given = rod.material
     moduli = {"shear_modulus": given.shear_modulus} if kind == TORSION else {"poisson_ratio": 0.0}
-    if kind == TORSION and given.shear_modulus < given.youngs_modulus / 3 * (1 - FLAT):
+    if kind == TORSION and given.shear_modulus < given.youngs_modulus / 3 * (1 - PLANE_TOLERANCE):
         raise NotImplementedError("torsion of a shear modulus below a third of Young's modulus")
     material = Material(youngs_modulus=given.youngs_modulus, density=given.density, mass_damping=options.damping_rate,
                         **moduli)
     if kind == TORSION:
         return {"section": Circle(radius=rod.radius), "material": material, "law": "structural"}
-    stiff = rod.second_moment_of_area * LIMP
+    stiff = rod.second_moment_of_area * LIMP_RATIO
     section = Circle(radius=rod.radius) if options.bending else GeneralSection(
         area=rod.area, second_moment_about_y=stiff, second_moment_about_z=stiff)
     return {"section": section, "material": material, "strain": "engineering"}
@@ -173,40 +177,41 @@ def _support(scene: Scene, cable: Cable, s: float, condition: str, motion: Motio
 
 
 def _drive(scene: Scene, cable: Cable, s: float, motion: Motion) -> None:
-    """Move and turn a clamped end as given. Raises NotImplementedError."""
-    displacement: list = [_signal(motion.times, each) for each in np.transpose(motion.displacement)]
+    """Move and turn a clamped end. Raises NotImplementedError."""
+    displacement: list[Any] = [_signal(motion.times, each) for each in np.transpose(motion.displacement)]
     if motion.slides_along is not None:
         along = _unit(motion.slides_along)
         free = int(np.argmax(np.abs(along)))
-        if abs(along[free]) < 1 - FLAT:
+        if abs(along[free]) < 1 - PLANE_TOLERANCE:
             raise NotImplementedError(f"an end that slides along {motion.slides_along}, which is no axis of the ground")
         displacement[free] = "free"
     turns = np.asarray(motion.rotation, dtype=float)
     largest = turns[np.argmax(np.linalg.norm(turns, axis=1))]
     axis = _unit(largest) if np.any(largest) else np.array([0.0, 0.0, 1.0])
-    if np.abs(cross(axis, turns)).max() > FLAT * np.linalg.norm(largest):
+    if np.abs(cross(axis, turns)).max() > PLANE_TOLERANCE * np.linalg.norm(largest):
         raise NotImplementedError("an end that turns about more than one axis")
     scene.motion(cable, s=s, displacement=displacement,
                  rotation=(tuple(axis.tolist()), _signal(motion.times, turns @ axis)))
 
 
 def _signal(times: tuple[float, ...], values: np.ndarray) -> TableSignal | float:
-    """Return values over times as a signal: a spline where they stand for a smooth motion, else straight lines."""
+    """Return values over times as a signal: a spline through smooth ones, else straight lines."""
     if not np.any(values):
         return 0.0
     t, spline = np.asarray(times), CubicSpline(times, values)
     inside = (t[:-1, None] + np.diff(t)[:, None] * np.linspace(0, 1, 9)[1:-1]).ravel()
-    if np.abs(spline(inside) - np.interp(inside, t, values)).max() > SMOOTH * np.ptp(values):
+    if np.abs(spline(inside) - np.interp(inside, t, values)).max() > SPLINE_TOLERANCE * np.ptp(values):
         return TableSignal(time=times, value=values.tolist(), interpolation="linear")
-    if abs(spline(0.0, 1)) <= SMOOTH * np.abs(spline(t, 1)).max():  # it starts from rest: mirrored, it does so exactly
-        before = slice(min(MIRRORED, len(t) - 1), 0, -1)
+    if abs(spline(0.0, 1)) <= SPLINE_TOLERANCE * np.abs(spline(t, 1)).max():  # from rest: mirrored, exactly so
+        before = slice(min(MIRRORED_VALUES, len(t) - 1), 0, -1)
         t, values = np.concatenate([-t[before], t]), np.concatenate([values[before], values])
     return TableSignal(time=t.tolist(), value=values.tolist())
 
 
 def _stretched(rod: Rod, cable: Cable) -> np.ndarray:
-    """Return the nodal vectors (node, vector, 3) of a rod that starts stretched: the spline through its points over the
-    arc-length without stress. Clamped ends keep the direction that they are drawn with.
+    """Return the nodal vectors (node, vector, 3) of a rod that starts stretched.
+
+    They follow the spline through its points over the arc-length without stress. Clamped ends keep their direction.
     """
     line = CubicSpline(rod.rest_arc_length, np.asarray(rod.centerline, dtype=float))
     names = cable.kind_of_element.nodal_vectors

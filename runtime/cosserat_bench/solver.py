@@ -1,8 +1,9 @@
-"""The solver that cosseratbench finds through its entry point: this module alone needs that package."""
+"""The solver that cosseratbench finds through its entry point; this module alone needs that package."""
 
 from __future__ import annotations
 
 from importlib.metadata import version
+from typing import Any
 
 import numpy as np
 from cosseratbench.scenario import Scenario
@@ -18,9 +19,9 @@ from .rods import element_of
 class FunicularSolver:
     """Rods as cables, or as beams where torsion acts: of absolute nodal coordinates, with implicit steps by tolerance.
 
-    tol: of the run, 1e-3 where a state of rest is the result and else 1e-4 if not given; time_step_scale: a factor of
-    the steps that follow from it; bending: False leaves bending out of rods without torsion, as references of
-    perfectly flexible cables do.
+    tol: of the run, by default 1e-3 where a state of rest is the result and else 1e-4; time_step_scale: a factor of its
+    steps; bending: False for rods without torsion that do not resist bending, as in references of perfectly flexible
+    cables.
     """
 
     name = "funicular"
@@ -31,8 +32,8 @@ class FunicularSolver:
     def __init__(self, time_step_scale: float = 1.0, tol: float | None = None, bending: bool = True) -> None:
         self.choices = Choices(tol=tol, time_step_scale=time_step_scale, bending=bending)
 
-    def settings(self, scenario: Scenario, *, n_elements: int, n_frames: int) -> dict:
-        """Return the numerical choices for a scenario, as JSON has them."""
+    def settings(self, scenario: Scenario, *, n_elements: int, n_frames: int) -> dict[str, Any]:
+        """Return the numerical choices for a scenario, as values of JSON."""
         alone = not near(scenario)
         return {
             "integrator": INTEGRATOR,
@@ -42,7 +43,7 @@ class FunicularSolver:
         }
 
     def run(self, scenario: Scenario, *, n_elements: int, n_frames: int) -> Trajectory:
-        """Return the motion of all rods. Raises NotImplementedError for what is not modelled, Diverged."""
+        """Return the motion of all rods. Raises NotImplementedError for features that are not modelled, Diverged."""
         try:
             positions, directors = moved(scenario, n_elements, n_frames, self.choices)
         except ConvergenceError as error:

@@ -7,8 +7,8 @@ from importlib.metadata import distribution
 import numpy as np
 import pytest
 from cosserat_rods import CLAMPED, FREE, PINNED, Rod, Scenario, load, motion
-from funicular.cosserat_bench.directors import tangents_of, untwisted
-from funicular.cosserat_bench.motion import Choices, moved
+from funicular.cosserat_bench.contacts import tangents_of
+from funicular.cosserat_bench.motion import Choices, moved, untwisted
 from funicular.cosserat_bench.rods import RodOptions, element_of, scene_of
 
 DOWN = (0.0, 0.0, -9.81)
