@@ -1,10 +1,9 @@
 """Error against time: a scene over a grid of integrators, meshes and tolerances.
 
 Errors are norms of trajectories: the largest distance from a reference over the output times, relative to the largest
-motion of the outputs (of those with the same unit), which is what ``tol`` is relative to.
-``time error``: from the converged motion of the same mesh, a run with a tolerance below all of the grid, which a second
-one with another tolerance confirms. ``mesh error``: of that converged motion from the one on a mesh in which every
-element of the finest one is halved. Times: CPU seconds of the integration, set-up apart.
+motion of the outputs of the same unit, as ``tol`` is. ``time error``: from the converged motion of the same mesh, a run
+with a tolerance below all of the grid, confirmed by a second tolerance. ``mesh error``: of this converged motion from
+the one on a mesh with every element of the finest one halved. Times are CPU seconds of the integration without set-up.
 """
 
 from __future__ import annotations
@@ -28,14 +27,14 @@ from ..scene.scene import Scene
 
 TOLS = (1e-2, 1e-3, 1e-4, 1e-5)
 MESHES = ("x1", "x2")
-TIGHTER = (1 / 20, 1 / 80)
-"""Tolerances of the two runs that make a mesh's reference, over the smallest of the grid; the last one is it."""
+REFERENCE_TOL_RATIOS = (1 / 20, 1 / 80)
+"""Tolerances of the two reference runs of a mesh, over the smallest of the grid; the last one is the reference."""
 
-GRID_SETS = ("duration", "tol", "step", "output_step", "integrator", "save")
-"""Settings of a scene file that the grid takes the place of."""
+GRID_SETTINGS = ("duration", "tol", "step", "output_step", "integrator", "save")
+"""Settings of a scene file that the grid replaces."""
 
-LONG = 1.0
-"""CPU seconds from which on a run is not repeated: what disturbs a short one disappears in it."""
+MAX_REPEATED_SECONDS = 1.0
+"""CPU seconds above which a run is not repeated: disturbances are small beside it."""
 
 COUNTS = ("steps", "rejected_steps", "newton_iterations", "factorisations")
 
@@ -49,7 +48,7 @@ class Mesh:
 
     @classmethod
     def parse(cls, text: str) -> Mesh:
-        """Return the mesh that x2 (a factor) or 24 (a number of elements) stands for. Raises SceneError."""
+        """Return the mesh of a text such as x2 (a factor) or 24 (a number of elements). Raises SceneError."""
         if (match := re.fullmatch(r"(x?)(\d+(?:\.\d*)?|\.\d+)", text.strip())) is None:
             raise SceneError("bench", f'elements: "{text}" is neither a factor nor a number of elements',
                              "write x2 for twice the scene's elements, or 24 for 24 in each cable")
@@ -79,13 +78,13 @@ class Mesh:
     def scene(self, scene: Scene) -> Scene:
         """Return the scene on this mesh. Raises SceneError, also where a support then stands on no node."""
         made = scene.remeshed(self.elements)
-        made.run_settings = {name: value for name, value in scene.run_settings.items() if name not in GRID_SETS}
+        made.run_settings = {name: value for name, value in scene.run_settings.items() if name not in GRID_SETTINGS}
         return made
 
 
 @dataclass(frozen=True)
 class Grid:
-    """What is tried; outputs as `trajectories.check_output` takes them, duration and output_step in s."""
+    """Combinations to run; outputs as in `trajectories.check_output`, duration and output_step in s."""
 
     integrators: tuple[str, ...]
     meshes: tuple[Mesh, ...]
@@ -99,8 +98,7 @@ class Grid:
 def grid(scene: Scene, *, integrators: Sequence[str] | None = None, elements: Sequence[str] | None = None,
          tols: Sequence[float] = TOLS, outputs: Sequence[str] | None = None, duration: float | None = None,
          output_step: float | None = None, repetitions: int = 5) -> Grid:
-    """Return a checked grid; without integrators all but "auto", which takes one of them, without elements
-    `MESHES`. Raises SceneError."""
+    """Return a checked grid, by default with all integrators but "auto" and with `MESHES`. Raises SceneError."""
     for name, values in (("integrators", integrators), ("elements", elements), ("tols", tols), ("outputs", outputs)):
         if values is not None and not len(values):
             raise SceneError("bench", f"{name}: the list is empty", "name one, or leave it out")
@@ -139,7 +137,7 @@ class Reference:
 
 @dataclass
 class Row:
-    """One combination: relative errors, and by output those in its unit; failed: why there is nothing, or None."""
+    """One combination: relative errors, and errors by output in its unit; failed: the error message, or None."""
 
     integrator: str
     mesh: Mesh
@@ -160,7 +158,7 @@ class Row:
 
     @property
     def set_up_s(self) -> float:
-        """Return the median seconds of making the model."""
+        """Return the median seconds of the set-up."""
         return median(self.set_up) if self.set_up else np.nan
 
 
@@ -175,14 +173,14 @@ class Bench:
     finest: Reference | None
 
     def is_resolved(self, row: Row) -> bool:
-        """Return whether the reference is ten times as exact as the row's time error needs."""
+        """Return whether the error of the reference is at most a tenth of the row's time error."""
         return row.failed is None and self.references[row.mesh].agreement <= 0.1 * row.time_error
 
 
 def bench(scene: Scene, grid: Grid, tell: Callable[[str], None] = lambda text: None) -> Bench:
-    """Run the grid; tell: a function that is given a line on what is being done.
+    """Run the grid; tell: a function that takes a line on the present run.
 
-    What fails is kept as a row that says how.
+    A combination that fails has a row with its message.
     """
     result = Bench(scene, grid, [], {}, None)
     scenes: dict[Mesh, Scene] = {}
@@ -200,7 +198,7 @@ def bench(scene: Scene, grid: Grid, tell: Callable[[str], None] = lambda text: N
             result.rows += [Row(integrator, mesh, tol, failed=failures.get(mesh)) for tol in grid.tols]
     for turn in range(grid.repetitions):
         for row in result.rows:
-            if row.failed is None and (turn == 0 or row.cpu[0] < LONG):
+            if row.failed is None and (turn == 0 or row.cpu[0] < MAX_REPEATED_SECONDS):
                 tell(f"turn {turn + 1} of {grid.repetitions}: {row.integrator}, {row.mesh} elements, tol {row.tol:g}")
                 _measure(result, row, scenes[row.mesh])
     return result
@@ -208,9 +206,7 @@ def bench(scene: Scene, grid: Grid, tell: Callable[[str], None] = lambda text: N
 
 def _run(scene: Scene, grid: Grid, integrator: str, tol: float,
          finer: int = 1) -> tuple[Run, dict[str, np.ndarray]]:
-    """Return a run and its outputs; finer: how many times the output times are taken, of which those of the grid are
-    given.
-    """
+    """Return a run and its outputs at the times of the grid; finer: factor of the number of output times in the run."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", FunicularWarning)  # the same notes for every run of the grid
         run = scene.run(grid.duration, tol=tol, output_step=grid.output_step / finer, integrator=integrator,
@@ -221,7 +217,7 @@ def _run(scene: Scene, grid: Grid, integrator: str, tol: float,
 
 
 def _reference(scene: Scene, mesh: Mesh, grid: Grid) -> Reference:
-    tols = tuple(min(grid.tols) * factor for factor in TIGHTER)
+    tols = tuple(min(grid.tols) * factor for factor in REFERENCE_TOL_RATIOS)
     check = _run(scene, grid, "auto", tols[0])[1]
     motion = _run(scene, grid, "auto", tols[1], finer=2)[1]  # other steps even where the output times set them
     return Reference(mesh, motion, tols, relative(scene, check, motion))
@@ -231,20 +227,16 @@ def _compare_meshes(result: Bench, tell: Callable[[str], None]) -> None:
     """Add the errors of the meshes, from a mesh with every element of the finest one halved."""
     if not result.references or not result.scene.cables:
         return
-    mesh = max(result.references, key=lambda mesh: _total(mesh, result.scene)).twice()
+    mesh = max(result.references, key=lambda mesh: sum(map(mesh.elements, result.scene.cables.values()))).twice()
     tell(f"reference of all meshes, {mesh} elements")
     try:
-        tol = min(result.grid.tols) * TIGHTER[0]
+        tol = min(result.grid.tols) * REFERENCE_TOL_RATIOS[0]
         motion = _run(mesh.scene(result.scene), result.grid, "auto", tol)[1]
     except FunicularError:
         return  # without a mesh error: the table shows that there is none
     result.finest = Reference(mesh, motion, (tol,), np.nan, 0.0)
     for reference in result.references.values():
         reference.mesh_error = relative(result.scene, reference.motion, motion)
-
-
-def _total(mesh: Mesh, scene: Scene) -> int:
-    return sum(mesh.elements(cable) for cable in scene.cables.values())
 
 
 def _measure(result: Bench, row: Row, scene: Scene) -> None:

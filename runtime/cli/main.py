@@ -1,6 +1,4 @@
-"""The command line. What one command needs beside `import funicular` is imported when it is called, so that all of them
-start at once.
-"""
+"""The command line. A command imports its own modules when it is called, so that all commands start quickly."""
 
 from __future__ import annotations
 
@@ -8,8 +6,6 @@ import json
 import os
 import sys
 import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TextIO
 
@@ -24,39 +20,32 @@ if TYPE_CHECKING:
     from ..results.run import Run
 
 
-@contextmanager
-def _reported_without_traceback() -> Iterator[None]:
-    """Print errors and warnings of funicular as a line on stderr each; an error ends the command with 1."""
-    def tell(message: Warning | str, category: type[Warning], filename: str, lineno: int,
-             file: TextIO | None = None, line: str | None = None) -> None:
-        if not issubclass(category, FunicularWarning):
-            return show(message, category, filename, lineno, file, line)
-        print(f"note: {message}", file=sys.stderr)
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("always", FunicularWarning)
-        show, warnings.showwarning = warnings.showwarning, tell
-        try:
-            raise_at_ctrl_c()
-            yield
-        except FunicularError as error:
-            print(f"error: {error}", file=sys.stderr)
-            raise typer.Exit(1) from None
-        except MemoryError:
-            print("error: that takes more memory than this machine has", file=sys.stderr)
-            raise typer.Exit(1) from None
-        except KeyboardInterrupt:
-            print(INTERRUPTED, file=sys.stderr)
-            raise typer.Exit(EXIT_INTERRUPTED) from None
-
-
 class _Commands(typer.core.TyperGroup):
-    """All commands, within one report of errors, warnings and Ctrl-C."""
+    """All commands; errors and warnings of funicular are a line on stderr each, and an error ends a command with 1."""
 
     def invoke(self, ctx: Any) -> Any:
-        """Run the command that the context names."""
-        with _reported_without_traceback():
-            return super().invoke(ctx)
+        """Run the command of the context."""
+        def tell(message: Warning | str, category: type[Warning], filename: str, lineno: int,
+                 file: TextIO | None = None, line: str | None = None) -> None:
+            if not issubclass(category, FunicularWarning):
+                return show(message, category, filename, lineno, file, line)
+            print(f"note: {message}", file=sys.stderr)
+
+        code = 1
+        with warnings.catch_warnings():
+            warnings.simplefilter("always", FunicularWarning)
+            show, warnings.showwarning = warnings.showwarning, tell
+            try:
+                raise_at_ctrl_c()
+                return super().invoke(ctx)
+            except FunicularError as error:
+                text = f"error: {error}"
+            except MemoryError:
+                text = "error: that takes more memory than this machine has"
+            except KeyboardInterrupt:
+                text, code = INTERRUPTED, EXIT_INTERRUPTED
+        print(text, file=sys.stderr)
+        raise typer.Exit(code)
 
 
 app = typer.Typer(cls=_Commands, no_args_is_help=True, pretty_exceptions_enable=False)
@@ -66,12 +55,15 @@ Libraries = Annotated[list[Path] | None, typer.Option(
 
 
 def _bundled(incomplete: str) -> list[str]:
-    """Return names of bundled scenes that begin so, for completion; where there is none, the shell completes paths."""
+    """Return names of bundled scenes with this beginning, for completion; without any, the shell completes paths."""
     return [name for name in bundled_scenes() if name.startswith(incomplete)]
 
 
 SceneName = Annotated[str, typer.Argument(metavar="SCENE", help="a scene file, or the name of a bundled scene",
                                           autocompletion=_bundled)]
+Duration = Annotated[float | None, typer.Option(help="s, instead of the scene's")]
+Tolerance = Annotated[float | None, typer.Option(help="error aimed at, instead of the scene's")]
+Integrator = Annotated[str | None, typer.Option(help="instead of the scene's")]
 Names = Annotated[list[str] | None, typer.Argument(metavar="[NAME]...", help="only these; all if none is given")]
 
 
@@ -95,33 +87,29 @@ def _options(
 @app.command()
 def run(
     scene: SceneName,
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="netCDF file to write (default: SCENE.nc, here)")
-    ] = None,
+    output: Annotated[Path | None, typer.Option("-o", "--output", help="netCDF file to write (default: SCENE.nc, here)")
+                      ] = None,
     plot: Annotated[bool, typer.Option("--plot", help="draw pictures next to the netCDF file")] = False,
     plot_dir: Annotated[Path | None, typer.Option(help="draw pictures in this directory")] = None,
     forces: Annotated[bool, typer.Option("--forces", help="draw tension and moment along the cables, too")] = False,
-    duration: Annotated[float | None, typer.Option(help="s, instead of the scene's")] = None,
-    tol: Annotated[float | None, typer.Option(help="error aimed at, instead of the scene's")] = None,
+    duration: Duration = None,
+    tol: Tolerance = None,
     absolute_tol: Annotated[float | None, typer.Option(help="error allowed beside it, m")] = None,
-    quantities: Annotated[
-        str | None, typer.Option(help="results that alone count in the error, such as A.position,trolley.s")
-    ] = None,
+    quantities: Annotated[str | None, typer.Option(help="results that alone count in the error, such as "
+                                                   "A.position,trolley.s")] = None,
     step: Annotated[float | None, typer.Option(help="fixed step in s, instead of the scene's")] = None,
-    integrator: Annotated[str | None, typer.Option(help="instead of the scene's")] = None,
-    spectral_radius: Annotated[
-        float | None, typer.Option(help="of genalpha and energy, instead of the scene's: 1 keeps all vibrations")
-    ] = None,
+    integrator: Integrator = None,
+    spectral_radius: Annotated[float | None, typer.Option(help="of genalpha and energy, instead of the scene's: 1 "
+                                                          "keeps all vibrations")] = None,
     model: Annotated[str | None, typer.Option(help="auto: choose elements that the scene leaves out, for tol")] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="go on with a run that was killed or interrupted")] = False,
-    estimate: Annotated[
-        bool, typer.Option("--estimate", help="tell the errors of steps and mesh, by two more runs")
-    ] = False,
+    resume: Annotated[bool, typer.Option("--resume", help="continue a run that was killed or interrupted")] = False,
+    estimate: Annotated[bool, typer.Option("--estimate", help="estimate the errors of steps and mesh, by two more runs")
+                        ] = False,
     library: Libraries = None,
 ) -> None:
-    """Simulate a scene and write its results, as the run goes.
+    """Simulate a scene and write its results during the run.
 
-    What was computed is in the file also when the run stops early, and --resume goes on from there. Exit code: 1 for an
+    When the run stops early, the file has the results so far, and --resume continues from there. Exit code: 1 for an
     error, 130 after Ctrl-C.
     """
     from ..parts.file_paths import save_path
@@ -151,7 +139,7 @@ def run(
 def choose(
     scene: SceneName,
     tol: Annotated[float | None, typer.Option(help="error of model, mesh and time, instead of the scene's")] = None,
-    duration: Annotated[float | None, typer.Option(help="s, instead of the scene's")] = None,
+    duration: Duration = None,
     quantities: Annotated[str | None, typer.Option(help="results that count, such as A.position,trolley.force "
                                                    "(default: the motion)")] = None,
     free: Annotated[str, typer.Option(help="unset: choose what the scene leaves out; all: choose all")] = "unset",
@@ -162,8 +150,7 @@ def choose(
 ) -> None:
     """Choose element, law and mesh of each cable, and the integrator, for a tolerance, and say why."""
     described = load_scene(scene, library or ())
-    chosen = described.choose(tol, duration=duration, quantities=quantities.split(",") if quantities else (),
-                              free=free, unequal=unequal)
+    chosen = described.choose(tol, duration=duration, quantities=_listed(quantities) or (), free=free, unequal=unequal)
     print(chosen)
     if output is not None:
         write_text(output, chosen.scene.to_toml())
@@ -171,7 +158,7 @@ def choose(
 
 
 def _existing(directory: Path) -> Path:
-    """Return the nearest directory above, itself included, that exists: the rest is made when it is needed."""
+    """Return the nearest existing directory of a path; the others are created when they are needed."""
     return next((d for d in (directory, *directory.parents) if os.path.exists(d)), directory)
 
 
@@ -217,7 +204,7 @@ def view(
     colour: Annotated[str | None, typer.Option(help="of films: a quantity along cables, such as tension")] = None,
     library: Libraries = None,
 ) -> None:
-    """Show runs, or a scene as drawn, at rest or in its modes: a page that opens from disk, or other pictures."""
+    """Show runs, or a scene as drawn, at rest or in its modes, as a page for a browser or as other pictures."""
     from .view import Outputs, Wanted
     from .view import view as write
 
@@ -236,9 +223,8 @@ def sweep(
                       "repeatable")],
     keep: Annotated[list[str], typer.Option(help="results with commas between, such as A.position,trolley.force.y; "
                                             "repeatable")],
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="netCDF file to write (default: SCENE-sweep.nc, here)")
-    ] = None,
+    output: Annotated[Path | None, typer.Option("-o", "--output", help="netCDF file to write (default: SCENE-sweep.nc, "
+                                                "here)")] = None,
     method: Annotated[str, typer.Option(help="grid: all combinations; list: the first values of all, the second ones, "
                                         "...; random, latin: samples")] = "grid",
     samples: Annotated[int | None, typer.Option(help="how many are drawn")] = None,
@@ -247,22 +233,20 @@ def sweep(
     serial: Annotated[bool, typer.Option("--serial", help="compute in this process alone, without Dask")] = False,
     cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="of a Dask scheduler, such as "
                                                 "tcp://127.0.0.1:8786, whose workers are taken")] = None,
-    batch: Annotated[int | None, typer.Option(help="points that a worker gets at once (default: by what they cost)")
-                     ] = None,
-    estimate: Annotated[bool, typer.Option("--estimate", help="only tell what it would cost, from a sample")] = False,
+    batch: Annotated[int | None, typer.Option(help="points that a worker gets at once (default: by time)")] = None,
+    estimate: Annotated[bool, typer.Option("--estimate", help="only estimate the cost, from a sample")] = False,
     record_invalid: Annotated[bool, typer.Option("--record-invalid", help="record scenes that cannot be simulated as "
                                                  "failed, and do not refuse the sweep")] = False,
-    retry_failed: Annotated[bool, typer.Option("--retry-failed", help="compute points anew that failed before")
-                            ] = False,
-    duration: Annotated[float | None, typer.Option(help="s, instead of the scene's")] = None,
-    tol: Annotated[float | None, typer.Option(help="error aimed at, instead of the scene's")] = None,
+    retry_failed: Annotated[bool, typer.Option("--retry-failed", help="compute failed points again")] = False,
+    duration: Duration = None,
+    tol: Tolerance = None,
     output_step: Annotated[float | None, typer.Option(help="s, instead of the scene's")] = None,
-    integrator: Annotated[str | None, typer.Option(help="instead of the scene's")] = None,
+    integrator: Integrator = None,
     library: Libraries = None,
 ) -> None:
     """Run a scene at many values of its parameters, into one file.
 
-    The same command goes on with a sweep that was stopped. Exit code: 1 for an error, 130 after Ctrl-C.
+    The same command resumes a stopped sweep. Exit code: 1 for an error, 130 after Ctrl-C.
     """
     from .sweep import SweepOptions, run_sweep
 
@@ -281,18 +265,17 @@ def bench(
     integrators: Annotated[str | None, typer.Option(help="names with commas between (default: all)")] = None,
     tols: Annotated[str, typer.Option(help="tolerances")] = "1e-2,1e-3,1e-4,1e-5",
     elements: Annotated[str, typer.Option(help="meshes: x2 is twice the scene's elements, 24 is 24 a cable")] = "x1,x2",
-    outputs: Annotated[str | None, typer.Option(help="what is compared, such as A.position,trolley.s,wire.tip,"
+    outputs: Annotated[str | None, typer.Option(help="compared results, such as A.position,trolley.s,wire.tip,"
                                                 "wire@0.5 (default: bodies, slides, a point of each cable)")] = None,
-    duration: Annotated[float | None, typer.Option(help="s, instead of the scene's")] = None,
+    duration: Duration = None,
     output_step: Annotated[float | None, typer.Option(help="s (default: a fiftieth of the duration)")] = None,
-    repetitions: Annotated[int, typer.Option(help="of each run that takes less than 1 s, taking turns; times are "
-                                              "medians")] = 5,
+    repetitions: Annotated[int, typer.Option(help="of each run below 1 s, in turns; times are medians")] = 5,
     out: Annotated[Path, typer.Option(metavar="DIR", help="where SCENE-bench.csv and .png are written")] = Path(),
     library: Libraries = None,
 ) -> None:
     """Measure error against time over integrators, tolerances and meshes.
 
-    The reference is computed, too, and its own error is reported. Combinations that fail are reported, too.
+    The reference is computed, too, and its own error is reported, as are combinations that fail.
     """
     from rich.console import Console
 
@@ -301,7 +284,10 @@ def bench(
     from ..results.files import check_writable
 
     described, name = load_scene(scene, library or ()), f"{Path(scene).stem}-bench"
-    numbers = _numbers(tols)
+    try:
+        numbers = [float(word) for word in _listed(tols) or ()]
+    except ValueError as error:
+        raise typer.BadParameter(f"--tols: {error}") from None
     tried = grid(described, integrators=_listed(integrators), tols=numbers, elements=_listed(elements),
                  outputs=_listed(outputs), duration=duration, output_step=output_step, repetitions=repetitions)
     check_writable(_existing(out) / f"{name}.csv")
@@ -316,13 +302,6 @@ def _listed(text: str | None) -> list[str] | None:
     return None if text is None else [word.strip() for word in text.split(",") if word.strip()]
 
 
-def _numbers(text: str) -> list[float]:
-    try:
-        return [float(word) for word in _listed(text) or ()]
-    except ValueError as error:
-        raise typer.BadParameter(f"--tols: {error}") from None
-
-
 @app.command()
 def scenes() -> None:
     """List the bundled scenes."""
@@ -334,9 +313,9 @@ def scenes() -> None:
 def schema(
     output: Annotated[Path | None, typer.Option("-o", "--output", help="file to write (default: print it)")] = None,
 ) -> None:
-    """Write the JSON Schema of scene files, by which editors complete and check them.
+    """Write the JSON Schema of scene files, with which editors complete and check them.
 
-    In the first line of a scene file, editors that know Taplo look for: #:schema ./funicular.schema.json
+    Editors with Taplo look for it in the first line of a scene file: #:schema ./funicular.schema.json
     """
     from ..scene.schema import scene_schema
 
@@ -358,7 +337,7 @@ def derive(
     explain: Annotated[bool, typer.Option("--explain", help="print how the named families or kernels were derived: "
                                           "stages, operations, shared subexpressions, reasons")] = False,
 ) -> None:
-    """Derive the equations and write generated/, or compare it with them; or make a library of your own elements."""
+    """Derive the equations and write or check generated/, or make a library of your own elements."""
     if (spec is None) != (out is None) or (spec is not None and (names or check or watch or explain)):
         raise typer.BadParameter("--spec FILE and --out DIR go together, and with nothing else")
     if check + watch + explain > 1:
@@ -396,7 +375,7 @@ def theory(
                                                "(default: the theory and all elements)")] = None,
     output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="where the files are written")] = Path(),
 ) -> None:
-    """Write the equations as HTML and LaTeX, from the specs that make the kernels, and check them against these."""
+    """Write the equations as HTML and LaTeX, from the specs of the kernels, and check them against the kernels."""
     from funicular.derive.theory.command import main
 
     raise typer.Exit(main(name, output))

@@ -1,7 +1,7 @@
-"""Ctrl-C (SIGINT) while the command line starts: the message and exit code of a later one, and no traceback.
+"""Ctrl-C (SIGINT) while the command line starts: the same message and exit code as later, and no traceback.
 
-The package imports this first, and it acts in a process of the command line alone. There is nothing to put back as yet,
-so that the process ends at once: KeyboardInterrupt within an import may come out as another error.
+The package imports this first; it acts in a process of the command line alone. The process ends at once, since nothing
+needs to be restored yet, and KeyboardInterrupt within an import may appear as another error.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from types import FrameType
 
 EXIT_INTERRUPTED = 130
 INTERRUPTED = "interrupted"
-"""What a command says at Ctrl-C, unless it has more to say."""
+"""The message of a command at Ctrl-C."""
 
 
 def is_command() -> bool:
     """Return whether this process was started as ``funicular`` or ``python -m funicular``."""
-    program = sys.argv[0] if getattr(sys, "argv", None) else ""  # neither of which a program around Python need have
+    program = sys.argv[0] if getattr(sys, "argv", None) else ""  # an embedded Python may have no arguments
     if program == "-m":  # until the module is found
         return ("-m", "funicular") in pairwise(sys.orig_argv)
     return os.path.basename(program).removesuffix(".exe").removesuffix("-script.py") == "funicular"
@@ -33,7 +33,7 @@ def end_at_ctrl_c() -> None:
 
 
 def raise_at_ctrl_c() -> None:
-    """Let Ctrl-C raise KeyboardInterrupt again, once there is somebody to catch it."""
+    """Let Ctrl-C raise KeyboardInterrupt again, once the command catches it."""
     import signal  # see base/interruptions.py
 
     if signal.getsignal(signal.SIGINT) is _end:

@@ -1,4 +1,4 @@
-"""What `funicular view` does: runs and scenes from their files as pages, pictures and films."""
+"""`funicular view`: runs and scenes from their files as pages, pictures and films."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from ..view.video import write_video
 from ..view.vtk import write_vtk
 
 LOAD_STEPS = 10
-"""Of a load path, where the scene does not say how it is followed."""
+"""Default steps of a load path."""
 
 
 @dataclass(frozen=True)
 class Wanted:
-    """What is shown of a scene: as drawn, its state of rest or the one that it relaxes to, the load path, or modes.
+    """The wanted states of a scene: as drawn, at rest, relaxed, along its load path, or modes.
 
-    as_drawn: modes also of what is not in balance.
+    as_drawn: modes also about a drawn state without balance of forces.
     """
 
     equilibrium: bool = False
@@ -35,15 +35,10 @@ class Wanted:
     modes: int | None = None
     as_drawn: bool = False
 
-    @property
-    def of_scenes(self) -> bool:
-        """Return whether it is something that results of a run have not."""
-        return self.equilibrium or self.relaxed or self.path or self.modes is not None
-
 
 @dataclass(frozen=True)
 class Outputs:
-    """Where a page, a picture, films and files for ParaView go, and how films play."""
+    """Paths of a page, a picture, films and files for ParaView, and the settings of films."""
 
     page: Path | None = None
     png: Path | None = None
@@ -53,10 +48,10 @@ class Outputs:
     colour: str | None = None
 
 
-def seen(file: str, wanted: Wanted, libraries: Iterable[str | os.PathLike]) -> Viewable:
-    """Return what a file of results, or a scene, shows. Raises FunicularError."""
+def seen(file: str, wanted: Wanted, libraries: Iterable[str | os.PathLike[str]]) -> Viewable:
+    """Return the wanted states of a file of results or of a scene. Raises FunicularError."""
     if Path(file).suffix == ".nc":
-        if wanted.of_scenes:
+        if wanted != Wanted(as_drawn=wanted.as_drawn):
             raise FunicularError(f"{file}: --equilibrium, --relaxed, --path and --modes are for scenes, not for "
                                  "results of runs")
         return load_run(file, libraries)
@@ -71,8 +66,8 @@ def seen(file: str, wanted: Wanted, libraries: Iterable[str | os.PathLike]) -> V
 
 
 def view(files: Sequence[str], wanted: Wanted, outputs: Outputs, open_it: bool,
-         libraries: Iterable[str | os.PathLike]) -> list[Path]:
-    """Write what is asked for, the page FILE.html if nothing is, and return the paths. Raises FunicularError."""
+         libraries: Iterable[str | os.PathLike[str]]) -> list[Path]:
+    """Write the outputs, by default the page FILE.html, and return their paths. Raises FunicularError."""
     shown = overlaid([seen(file, wanted, libraries).animation() for file in files])
     written = [write_video(shown, film, outputs.speed, outputs.colour) for film in outputs.films]
     if outputs.png:
