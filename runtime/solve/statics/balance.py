@@ -1,4 +1,4 @@
-"""Whether a scene is at rest as it is drawn: forces of joints, slides and springs that balance it, and what is left."""
+"""Balance of a scene as drawn: forces of joints, slides and springs that balance it, and the residual."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ FORCE_ROUNDING = 1e-15
 
 @dataclass(frozen=True)
 class Balance:
-    """The forces left over on a scene as drawn: the largest in N, its place, and whether it is next to none."""
+    """The residual forces on a scene as drawn: the largest in N, its place, and whether the scene is at rest."""
 
     left: float
     where: str
@@ -30,10 +30,10 @@ class Balance:
 
 
 def balance(static: StaticState) -> Balance:
-    """Give the forces of a static state, as drawn, the values that balance it best, and return what is left.
+    """Set the internal forces of a static state as drawn to those that balance it best; return the residual.
 
-    Springs and other laws have the force of their gap. Joints and slides share the rest in the least squares. Without
-    balance the forces stay as they were, which is nil.
+    Springs and other laws have the force of their gap. Joints and slides balance the rest in the least squares. Without
+    balance the forces return to their former values, zero.
     """
     model, drawn = static.model, static.keep()
     n, rows, units = model.n_band + model.n_border_dof, coordinates_of(model), units_of(static.weight, model)
@@ -58,7 +58,7 @@ def balance(static: StaticState) -> Balance:
 
 
 def _shared(columns: csr_array, residual: np.ndarray, units: np.ndarray) -> np.ndarray:
-    """Return the forces that leave the least of a residual, in the least squares of N."""
+    """Return the forces with the smallest residual, in the least squares of N."""
     touched = np.flatnonzero(np.diff(columns.indptr))
     if not len(touched):
         return np.zeros(columns.shape[1])
@@ -67,8 +67,7 @@ def _shared(columns: csr_array, residual: np.ndarray, units: np.ndarray) -> np.n
 
 
 def _size_of_sums(static: StaticState, stiffness: csr_array) -> np.ndarray:
-    """Return (rows,): what the terms of each row's force add up to at most, coordinates of points at the scene's size.
-    """
+    """Return (rows,): an upper bound of the sum of the terms of each row's force, for points at the scene's size."""
     largest = np.ones(stiffness.shape[0])
     free = static.model.unknown_of_dof >= 0
     points = static.model.unknown_of_dof[free & (static.model.weight == 1.0)]
@@ -77,7 +76,7 @@ def _size_of_sums(static: StaticState, stiffness: csr_array) -> np.ndarray:
 
 
 def _place(static: StaticState, rows: np.ndarray, most: int) -> str:
-    """Return what the row is of that has the largest force left over."""
+    """Return the place of the row with the largest residual force."""
     model = static.model
     n = model.n_band + model.n_border_dof
     if not len(rows):

@@ -1,8 +1,8 @@
 """The path of equilibria x(p) by arc-length continuation (Riks 1979; Crisfield 1981), and the critical points on it.
 
-The load fraction p is one unknown more, so that limit points are passed. Unstable states are passed on purpose; each
-is labelled. Between two states the number of unstable directions or the sense of the load may change: the point at
-which it does is found by bisection along the path.
+The load fraction p is an additional unknown, so that the path passes limit points, and unstable states, which are
+labelled. Where the number of unstable directions or the sense of the load changes between two states, bisection along
+the path finds the critical point.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ CRITICAL_POINT_TOLERANCE = 1e-6
 
 @dataclass
 class Point:
-    """A state on the path: its load fraction, and where the path leads. along (unknowns,) and rate are dx and dp for a
-    unit of arc-length, which is measured over displacements relative to the scene's size, and p; heading
-    (unknowns + 1,) is the unit vector of these; advance: the arc-length from the point that it was found from.
+    """A state on the path: its load fraction, and the direction of the path. along (unknowns,) and rate are dx and dp
+    for a unit of arc-length, over displacements relative to the scene's size, and p; heading (unknowns + 1,) is the
+    unit vector of these; advance: the arc-length from the previous point.
     """
 
     kept: dict
@@ -45,7 +45,7 @@ class Point:
 
     @property
     def kind(self) -> tuple[int, bool]:
-        """Return what changes at a critical point: unstable directions, and whether the load rises along the path."""
+        """Return the number of unstable directions, and whether the load rises along the path."""
         return self.stability.unstable, self.rate > 0
 
 
@@ -53,7 +53,7 @@ class Point:
 class Critical:
     """A point of the path at which the load turns ("limit"), or another path crosses it ("bifurcation").
 
-    directions: how many more directions are unstable beyond it.
+    directions: the change of the number of unstable directions beyond it.
     """
 
     point: Point
@@ -62,10 +62,10 @@ class Critical:
 
 
 def follow(problem: StaticProblem, fraction: float, heading: np.ndarray | None) -> Iterator[Point | Critical]:
-    """Yield points and critical points from the static state, at rest at this load fraction, until p = 1 or the path
-    ends.
+    """Yield points and critical points from the static state, at rest at this load fraction, to p = 1 or to the end of
+    the path.
 
-    heading: as of a `Point`, the sense in which to go on; None: to higher loads.
+    heading: of a `Point`, the sense of the path; None: to higher loads.
     """
     largest = problem.settings.largest_step
     problem.load(fraction)
@@ -112,9 +112,8 @@ def _point(problem: StaticProblem, before: np.ndarray | None, advance: float = 0
 
 
 def _bordered(problem: StaticProblem, heading: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
-    """Return the solver of the tangent with the load as a further unknown, and the advance along the heading as a row.
-
-    It is not singular where the load turns. Raises RuntimeError where it is.
+    """Return the solver of the tangent with the load as a further unknown, and the advance along the heading as a row,
+    which is regular at limit points. Raises RuntimeError where it is singular.
     """
     row = heading * np.append(problem.weight / problem.size, 1.0)
     return solver(block_array([[problem.regular_tangent(), -problem.load_vector()[:, None]],
@@ -122,7 +121,7 @@ def _bordered(problem: StaticProblem, heading: np.ndarray) -> Callable[[np.ndarr
 
 
 def _advance(problem: StaticProblem, point: Point, advance: float) -> Point | None:
-    """Predict along the heading, then Newton in the plane normal to it; None where that does not converge."""
+    """Return the point after a predictor along the heading and Newton's method in the plane normal to it, or None."""
     problem.restore(point.kept)
     problem.move(advance * point.along)
     problem.load(point.fraction + advance * point.rate)
@@ -156,7 +155,7 @@ def _at_full_load(problem: StaticProblem, point: Point, beyond: Point) -> Point 
 
 
 def _critical(problem: StaticProblem, point: Point, following: Point) -> list[Critical]:
-    """Return the critical points between a point and one that was found from it, by bisection."""
+    """Return the critical points between a point and the next one, by bisection."""
     found: list[Critical] = []
     intervals = [(point, following)]
     while intervals:
@@ -176,8 +175,8 @@ def _critical(problem: StaticProblem, point: Point, following: Point) -> list[Cr
 
 
 def _sharp(near: Point, far: Point, start: float) -> bool:
-    """Return whether two points are so near that what lies between them is one critical point: the load cannot differ
-    by more than the arc-length between them times its rate at either end.
+    """Return whether two points are close enough to enclose a single critical point: the load differs by at most the
+    arc-length between them times its rate at either end.
     """
     width, rate = far.advance - start, max(abs(near.rate), abs(far.rate))
     accuracy = CRITICAL_POINT_TOLERANCE * max(abs(far.fraction), CRITICAL_POINT_TOLERANCE)

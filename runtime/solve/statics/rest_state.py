@@ -1,4 +1,4 @@
-"""A state of rest: what a search for equilibrium finds, and a run or modes start from."""
+"""A state of rest: the result of a search for equilibrium, and the start of a run or of modes."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ SIGNAL_START_REMEDY = "let its signal start at the value of the state, or take t
 
 
 def in_loads(fraction: float) -> str:
-    """Return how much of the loads is on, in words."""
+    """Return the load fraction in words."""
     return "all loads" if fraction == 1 else f"{fraction:.6g} times the loads"
 
 
 def layout(scene: SceneData) -> dict[str, list]:
-    """Return what must be the same in two scenes for a state of one to be a state of the other."""
+    """Return the properties that two scenes share if a state of one is a state of the other."""
     found: dict[str, list] = {
         "cables": [(c.name, c.element, c.elements, c.length, *c.uneven_nodes) for c in scene.cables.values()],
         "plane": [called(scene.plane)], "bodies": list(scene.bodies)}
@@ -48,7 +48,7 @@ def layout(scene: SceneData) -> dict[str, list]:
 
 
 def _without_ends(part: Part) -> str | tuple[str, str]:
-    """Return the name of a part, of a joint with its kind, which says how many unknowns it has."""
+    """Return the name of a part, of a joint with its kind, which determines the number of its unknowns."""
     name = part.given_name or part.kind
     return (name, part.joint_kind) if isinstance(part, Joint) else name
 
@@ -64,7 +64,8 @@ class CriticalPoint:
     """A point of a load path at which stability changes or the load turns.
 
     load_fraction: of the loads; kind: "limit", where the load stops rising or falling, or "bifurcation", where another
-    path of equilibria crosses this one; directions: how many more directions are unstable beyond it; state: there.
+    path of equilibria crosses this one; directions: the change of the number of unstable directions beyond it; state:
+    of rest at this point.
     """
 
     load_fraction: float
@@ -75,11 +76,11 @@ class CriticalPoint:
 
 @dataclass
 class Relaxation:
-    """How a scene came to rest by a damped motion.
+    """The course of a damped motion to rest.
 
-    steps: of the motion; resets: how often all velocities were set to zero; energies: elastic, of weight and of loads,
-    at the resets, J, which never rise but where the scene was pushed off an unstable branch, or where loads turn with
-    what they act on; residuals: the largest forces left over there, N.
+    steps: of the motion; resets: how often all velocities were set to zero; energies: in J at the resets, elastic, of
+    weight and of loads, which rise only where the scene was pushed off an unstable branch, or with follower loads;
+    residuals: the largest residual forces at the resets in N.
     """
 
     steps: int = 0
@@ -100,12 +101,12 @@ class Relaxation:
 
 @dataclass
 class Adjustment:
-    """What was changed in a scene so that its state of rest has given values.
+    """The parameters of a scene whose state of rest has given values.
 
-    values: the parameters found, by path; targets: the values of the state asked for, by name; found: those reached;
+    values: the parameters found, by path; targets: the given values of the state, by name; found: those reached;
     jacobian (targets, parameters): derivatives of the state's values by the parameters, at the state; iterations: of
-    Newton's method on the parameters; misfits: at its states, the largest distance from a target over the scale of that
-    (the scene's size of a position, the larger of target and first value of what else there is).
+    Newton's method on the parameters; misfits: the largest distance from a target at each iteration, over its scale
+    (the scene's size for a position, else the larger of target and first value).
     """
 
     values: dict[str, float]
@@ -122,14 +123,13 @@ class RestState(NamedArrays):
 
     All quantities of a `Run` by name, without the time: ``state["wire.nodal_vectors"]`` (node, vector, 3),
     ``state["A.position"]``, ``state["drive.traction"]``, ``state["wire@0.force"]`` ... Rates are zero. load_fraction:
-    how much of the load is on, 1 but in the `EquilibriumError` that says how far it got, and along a path; iterations
-    of Newton; residual: the largest force left over, in N; stability: see `Stability`; path: the states of rest on the
-    way, each under its load_fraction of all loads, in their order, this one last: what a curve of load and displacement
-    is drawn from; critical_points of that path; gravity_fraction: how much of gravity is on, all of it where
-    scale_gravity is off; messages: what the search passed, adjusted or left out; relaxation: how `Scene.relax` came to
-    the state, else None; turned: the angles of motions and driven joints that it has, whole turns counted, in rad by
-    label; adjustment: what the search changed in the scene for given values of the state, else None; ``scene`` is the
-    one with the values found, then.
+    applied fraction of all loads, 1 except along a path and in an `EquilibriumError`; iterations of Newton's method;
+    residual: the largest residual force in N; stability: see `Stability`; path: the states of rest up to this one in
+    their order, each under its load_fraction, from which a curve of load and displacement is drawn; critical_points of
+    that path; gravity_fraction: applied fraction of gravity, 1 where scale_gravity is off; messages: what the search
+    passed, adjusted or left out; relaxation: the motion by which `Scene.relax` found the state, else None; turned: the
+    angles of motions and driven joints in rad by label, with whole turns; adjustment: the parameters found for given
+    values of the state, else None; ``scene`` then has these values.
     """
 
     scene: SceneData
@@ -154,7 +154,7 @@ class RestState(NamedArrays):
 
     @classmethod
     def of(cls, problem: StaticState, stability: Stability, heading: np.ndarray | None = None) -> Self:
-        """Read the static state of a problem, under the load that is on; heading: of the path there."""
+        """Read the static state of a problem under the present load; heading: of the path there."""
         left = problem.residual()
         units = np.where(problem.weight > 0, problem.weight, np.inf)
         engine = problem.engine
@@ -168,7 +168,7 @@ class RestState(NamedArrays):
         return state
 
     def __repr__(self) -> str:
-        """Return how the state is and how many results it has, in a line."""
+        """Return stability, load and number of results in a line."""
         stable = "stable" if self.stable else f"{self.unstable_directions} unstable directions"
         return (f"<funicular.Equilibrium: {stable}, under {in_loads(self.load_fraction)}, "
                 f"{len(self.quantities)} results>")
@@ -180,22 +180,21 @@ class RestState(NamedArrays):
 
     @property
     def unstable_directions(self) -> int:
-        """Return how many independent directions lower the energy; of loads that turn: in how many the state diverges.
-        """
+        """Return the number of independent directions that lower the energy, with follower loads of divergence."""
         return self.stability.unstable
 
     @property
     def neutral_directions(self) -> int:
-        """Return how many independent directions leave the energy as it is: what is free to move."""
+        """Return the number of independent directions that keep the energy: free motions."""
         return self.stability.neutral
 
     @property
     def stable(self) -> bool:
-        """Return whether no direction lowers the energy; False also where that could not be counted."""
+        """Return whether no direction lowers the energy; False also where the count failed."""
         return self.stability.known and self.stability.unstable == 0
 
     def check_stable(self, cause: str = "") -> None:
-        """Raise EquilibriumError where the state is known to be unstable; cause: as the message goes on."""
+        """Raise EquilibriumError where the state is known to be unstable; cause: continues the message."""
         if self.stability.unstable and not self.stability.bound:
             other = ("equilibrium() searches in another way" if self.relaxation is not None else
                      "take relax(), a damped motion, or seek_stable=False, which returns this state")
@@ -243,8 +242,8 @@ class RestState(NamedArrays):
                                  f"was adjusted, here it is {here}", "take the state's own scene: rest.scene")
 
     def check_supports(self, model: Model, scene: SceneData) -> None:
-        """Raise SceneError where supports or ends of joints are elsewhere in a freshly built model of a scene than they
-        are in this state, drawn there or prescribed to be there at t = 0.
+        """Raise SceneError where supports or ends of joints, as drawn or prescribed at t = 0, are at other positions in
+        a freshly built model of a scene than in this state.
         """
         q, size = self.static_state["q"][None], max(float(np.abs(model.q).max(initial=0.0)), 1.0)
         for was, joint in zip(self.model.joints, model.joints, strict=True):

@@ -1,4 +1,4 @@
-"""Whether sections of a thin beam spin in the direction of the least stiffness; see `notes.spinning_sections`."""
+"""Sections of a thin beam that spin in the direction of the least stiffness; see `notes.spinning_sections`."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ MAX_AXIS_TURN_RATIO = 0.1
 
 
 def spinning(problem: StaticProblem) -> str:
-    """Return, as messages end, of which cable sections spin in the direction of the least stiffness, and the elements
-    to take; empty where it is another direction.
+    """Return the end of a message: the cable whose sections spin in the direction of the least stiffness, and the
+    elements to take; empty for another direction.
     """
     model, direction, q = problem.model, lowest_direction(problem), problem.engine.state()["q"]
     for cable in filter(has_sections, model.cables):
@@ -32,7 +32,7 @@ def spinning(problem: StaticProblem) -> str:
 
 
 def _turns(cable: CableModel, moved: np.ndarray) -> tuple[float, float]:
-    """Return how far the axis and the sections of a cable turn at most in a change of its nodal vectors."""
+    """Return the largest turns of the axis and of the sections of a cable in a change of its nodal vectors."""
     def largest(name: str) -> float:
         return float(np.abs(moved[:, cable.vectors.index(name)]).max())
 

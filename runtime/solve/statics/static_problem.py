@@ -1,7 +1,7 @@
-"""The static problem R(x, p) = 0: what forces and constraints leave over at a state x under p times all loads.
+"""The static problem R(x, p) = 0: residual forces and constraints at a state x under p times all loads.
 
 x are the coordinates, arc-lengths and forces of slides, joints and springs; p is the load fraction. R is linear in p,
-also for loads that turn with what they act on: a load's components are multiplied by p, and nothing else is.
+also for follower loads: p multiplies the components of a load alone.
 """
 
 from __future__ import annotations
@@ -30,12 +30,11 @@ ZERO_STIFFNESS_RATIO = 1e-14
 
 
 class StaticState:
-    """The engine's static state and its residual; `load` says how much load is on."""
+    """The engine's static state and its residual; `load` sets the load fraction."""
 
     def __init__(self, scene: SceneData, settings: EquilibriumSettings, model: Model | None = None,
                  turned: Mapping[str, float] | None = None):
-        """model: of the scene, where it is at hand; turned: prescribed angles that the state begins with, see `Turns`.
-        """
+        """model: of the scene, made if None; turned: prescribed angles of the first state, see `Turns`."""
         self.scene, self.settings = scene, settings
         self.model = static_model(scene) if model is None else model
         self.engine = Engine(self.model)
@@ -50,24 +49,24 @@ class StaticState:
         self.iterations = 0
 
     def load(self, fraction: float) -> None:
-        """Put this fraction of all loads on; of gravity, too, unless the settings say that it stays whole."""
+        """Apply this fraction of all loads, and of gravity unless the settings keep it whole."""
         self.fraction = fraction
         self.engine.load(fraction, self.settings.scale_gravity)
 
     def residual(self) -> np.ndarray:
-        """Return R at the static state, under the load that is on: internal less external forces, and constraints."""
+        """Return R at the static state under the present load: internal less external forces, and constraints."""
         return self.engine.static_residual()
 
     def keep(self) -> dict:
-        """Return the static state, as `restore` takes it."""
+        """Return the static state, the argument of `restore`."""
         return self.engine.state()
 
     def restore(self, kept: dict, prescribe: bool = True) -> None:
-        """Go back to a state that `keep` returned; prescribe: with what motions prescribe, else as it is."""
+        """Go back to a state that `keep` returned; prescribe: with the prescribed coordinates of motions."""
         self.engine.set_state(0.0, **kept, prescribe=prescribe)
 
     def move(self, change: np.ndarray) -> None:
-        """Move the state; slides that leave their element enter the next."""
+        """Move the state by a change of the unknowns; slides that leave their element enter the next."""
         self.engine.move(change)
         if self.model.slides:
             self.engine.set_state(0.0, **self.engine.state(), prescribe=False)
@@ -93,25 +92,24 @@ class StaticProblem(StaticState):
     def __init__(self, scene: SceneData, settings: EquilibriumSettings, turned: Mapping[str, float] | None = None):
         super().__init__(scene, settings, turned=turned)
         self.restore(with_moved_supports(self.model, self.keep()))
-        self.as_drawn = self.begin = self.keep()["q"]  # begin: that, or what it comes to without loads
+        self.as_drawn = self.begin = self.keep()["q"]  # begin: the same, or the state without loads
         drawn = self.residual()
         self.size = self._extent()
         self.mass = self.engine.matrix(1.0, 0.0, 0.0)
-        # rad²/s²: what is left free (a rider that may turn about its rope) has no stiffness. Of points, not of
-        # directors: a thin beam's section vibrates so fast that its share of mass would stop the beam
+        # rad²/s²; free motions (a rider that may turn about its rope) have no stiffness. Of points, not of directors:
+        # the section of a thin beam vibrates so fast that its fraction of mass would stop the beam
         points = np.flatnonzero(self.weight == 1.0)
         stiffness, _ = condensed(self.engine.matrix(0.0, 0.0, 1.0), self.model)
         self.fastest = max(fastest(stiffness, self.mass, points), self._falls(drawn, points))
         self.coordinates = coordinates_of(self.model)
         self.point_entries = _point_entries(self.model)
-        self.slack: dict[str, float] = {}  # parts of cables that would have no tension as strings
-        self.held = False  # on what cables lie on, by short steps
-        self.pushed = False  # off an unstable branch, in a direction that nothing prefers
+        self.slack: dict[str, float] = {}  # slack fractions of cables as strings
+        self.held = False  # whether short steps have held cables on surfaces
+        self.pushed = False  # whether a push off an unstable branch had no preferred direction
         self.messages: list[str] = []
 
     def _falls(self, drawn: np.ndarray, points: np.ndarray) -> float:
-        """Return the square of a pendulum's frequency, rad²/s²: where nothing is elastic, weight is all that restores.
-        """
+        """Return the square of a pendulum's frequency in rad²/s²: without elasticity only weight restores."""
         inertia = self.mass.diagonal()[points]
         return float(np.max(np.abs(drawn[points]) / inertia, initial=0.0, where=inertia > 0)) / self.size
 
@@ -125,31 +123,31 @@ class StaticProblem(StaticState):
         return max([*lengths, *(float(np.linalg.norm(gap)) for gap in gaps)], default=0.0) or 1.0
 
     def stiffness(self) -> tuple[csc_array, csc_array, np.ndarray]:
-        """Return K over the coordinates, constraints C on them, and how far a unit of each moves a point
+        """Return K over the coordinates, constraints C on them, and the displacement in m by a unit of each
         (coordinates,).
         """
         K, C = condensed(self.tangent(), self.model)
         return K, C, units_of(self.weight, self.model)
 
     def curvature(self, change: np.ndarray, mass: float) -> float:
-        """Return the curvature of the energy along a change, with this much mass, less a tenth of what the mass has in
-        it.
+        """Return the curvature of the energy along a change, with this factor of the mass, less a tenth of the mass's
+        part.
         """
         along = change[self.coordinates]
         K, _ = condensed(self.tangent(), self.model)
         return float(along @ (K @ along)) + 0.9 * mass * float(change @ (self.mass @ change))
 
     def distance(self, kept: dict) -> float:
-        """Return how far the farthest coordinate of a position has moved from a state, in m."""
+        """Return the largest change in m of a coordinate of a position from a state."""
         moved = np.abs(self.engine.state()["q"] - kept["q"])[self.point_entries]
         return float(np.max(moved, initial=0.0))
 
     def solver(self, inertia: float = 0.0) -> Callable[[np.ndarray], np.ndarray]:
-        """Return the solver of the tangent, with some mass added. Raises RuntimeError where it is exactly singular."""
+        """Return the solver of the tangent plus inertia times the mass. Raises RuntimeError where it is singular."""
         return solver(self.regular_tangent() if inertia == 0.0 else self.tangent() + inertia * self.mass)
 
     def regular_tangent(self) -> csc_array:
-        """Return dR/dx, with as much mass as keeps what is free to move from being singular."""
+        """Return dR/dx, with a mass that regularises free motions."""
         return self.tangent() + ZERO_STIFFNESS_RATIO * self.fastest * self.mass
 
     def length(self, change: np.ndarray) -> float:
@@ -158,10 +156,10 @@ class StaticProblem(StaticState):
         return size if np.isfinite(size) else np.inf
 
     def newton(self) -> bool:
-        """Run Newton's method under the load that is on, with full steps; returns whether it converged.
+        """Run Newton's method under the present load, with full steps; return whether it converged.
 
-        Corrections may grow for a while: the second order of a turn stretches what is stiff along its axis, and the
-        next correction takes that back. A line search makes hundreds of small steps of it; `relax` does better.
+        Corrections may grow for a while: the second-order term of a rotation stretches axially stiff parts, and the
+        next correction removes the stretch. A line search would take hundreds of small steps; `relax` is better.
         """
         least = np.inf
         for _ in range(self.settings.max_iterations):
@@ -180,7 +178,7 @@ class StaticProblem(StaticState):
         return False
 
     def cause(self) -> str:
-        """Return why no stable state may be found, as messages end; empty where nothing says so."""
+        """Return why no stable state may be found, as the end of a message; empty where the cause is unknown."""
         if not self.slack:
             return ""
         name, part = max(self.slack.items(), key=lambda item: item[1])
@@ -189,7 +187,7 @@ class StaticProblem(StaticState):
                 "in tension")
 
     def on_cables(self) -> bool:
-        """Return whether no slide is past an end of its cable, where the last element would go on for ever."""
+        """Return whether no slide is past an end of its cable, where the last element would continue without end."""
         ends = np.array([self.model.cables[j.cable].mesh.total for j in self.model.slides])
         s = self.engine.state()["s"]
         past = np.maximum(-s, s - ends)
@@ -197,10 +195,10 @@ class StaticProblem(StaticState):
 
 
 def static_model(scene: SceneData) -> Model:
-    """Return the model of a scene for statics: without the mass that still fluids add, on which no rest depends.
+    """Return the model of a scene for statics: without the added mass of still fluids, which does not act at rest.
 
-    The inertia of a fluid that flows acts on what is at rest, too: by its acceleration, and where its velocity changes
-    over the height, by a lift.
+    The inertia of a flowing fluid acts at rest, too: by its acceleration, and by a lift where its velocity depends on
+    the height.
     """
     model = build(scene)
     for drag in model.drags:
@@ -209,14 +207,14 @@ def static_model(scene: SceneData) -> Model:
 
 
 def coordinates_of(model: Model) -> np.ndarray:
-    """Return the unknowns that are coordinates, those of couplings last."""
+    """Return the numbers of the unknowns that are coordinates, those of couplings last."""
     n = model.n_band + model.n_border_dof
     own = [n + k for coupling in model.couplings for k in coupling.free_coordinates]
     return np.append(np.arange(n), np.array(own, dtype=int))
 
 
 def units_of(weight: np.ndarray, model: Model) -> np.ndarray:
-    """Return (coordinates,): how far a unit of each moves a point, in m; weight: of all unknowns, see `StaticState`."""
+    """Return (coordinates,): displacement in m by a unit of each; weight: of all unknowns, see `StaticState`."""
     of_coordinates = weight[coordinates_of(model)]
     return np.where(of_coordinates > 0, of_coordinates, 1.0)
 

@@ -12,7 +12,7 @@ from .static_problem import StaticProblem
 
 
 def string_loads(problem: StaticProblem, q: np.ndarray) -> np.ndarray:
-    """Return (n_dof,): what acts on the dofs of cables at a configuration under the load that is on, in N."""
+    """Return (n_dof,): forces on the dofs of cables at a configuration under the present load, in N."""
     model, engine, p = problem.model, problem.engine, problem.fraction
     force = model.gravity * (p if problem.settings.scale_gravity else 1.0)
     for k, load in enumerate(model.loads):
@@ -28,13 +28,12 @@ def string_loads(problem: StaticProblem, q: np.ndarray) -> np.ndarray:
 
 
 def depend_on_shape(model: Model) -> bool:
-    """Return whether loads on cables change with their shape: those of fluids that flow."""
+    """Return whether loads on cables depend on their shape: those of flowing fluids."""
     return any(drag.cable >= 0 and (drag.velocity.any() or drag.degree) for drag in model.drags)
 
 
 def _add_drag(model: Model, drag: DragModel, q: np.ndarray, p: float, force: np.ndarray) -> None:
-    """Add p times the forces of a fluid on a cable at rest, shared by the nodes of each element as by those of a beam.
-    """
+    """Add p times the forces of a fluid on a cable at rest, distributed linearly to the nodes of each element."""
     cable = model.cables[drag.cable]
     f = densities(model, drag, np.zeros(1), q[None], np.zeros((1, model.n_dof)))[0][0, ..., : model.dim]
     f = p * f * np.broadcast_to(drag.weights, f.shape[:2])[:, :, None]

@@ -1,4 +1,4 @@
-"""Nodes of cables as nodes of strings: which are one by a tie, where lines go on smoothly, where they are clamped."""
+"""Nodes of cables as nodes of strings: nodes shared by ties, smooth continuations, clamps."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from ...model.model import Model
 from ...model.point_forces import PointForceModel
 
 STRING_VECTORS = {"r", "r_x", "r_y", "r_z", "r_xx"}
-"""Nodal vectors that follow from the shape of a string."""
+"""Nodal vectors that the shape of a string determines."""
 
 
 @dataclass
 class SmoothTie:
     """Two ends of cables that a tie makes one node, with one direction.
 
-    first, second: nodes of the tie; sense: 1 where the second cable runs on as the first one does, else -1.
+    first, second: nodes of the tie; sense: 1 where the second cable continues in the sense of the first one, else -1.
     """
 
     first: int
@@ -36,10 +36,11 @@ class SmoothTie:
 class StringNodes:
     """The nodes of all cables of a model, numbered cable by cable.
 
-    first: of each cable the number of its first node, and the end. r, slope (nodes, dim): dofs of position and of r_x.
-    held (nodes,): those that joints and springs hold to the ground or to bodies, which stay as drawn. others: cables
-    that more acts on than supports, ties, loads, fluids, planes that stand still, and joints to ground and bodies;
-    joined: cables that other cables act on, but by ties; touched: those that touch what strings would pass through.
+    first: the number of the first node of each cable, and their end. r, slope (nodes, dim): dofs of position and of
+    r_x. held (nodes,): those that joints and springs hold to the ground or to bodies, which stay as drawn. others:
+    cables under other actions than supports, ties, loads, fluids, fixed planes, and joints to ground and bodies;
+    joined: cables on which other cables act, except by ties; touched: cables in contact with what strings would pass
+    through.
     """
 
     def __init__(self, model: Model):
@@ -57,12 +58,12 @@ class StringNodes:
 
     @property
     def fixed(self) -> np.ndarray:
-        """Return (nodes, dim): which coordinates of positions stay as they are."""
+        """Return (nodes, dim): which coordinates of positions are fixed."""
         return (self.unknown == -1) | self.held[:, None]
 
     @cached_property
     def string_node(self) -> np.ndarray:
-        """Return (nodes,): for each node the first one that a tie makes the same."""
+        """Return (nodes,): the first node that ties make the same as each node."""
         stands_for = np.arange(len(self.unknown))
         free = np.flatnonzero((self.unknown >= 0).any(axis=1))
         _, first, same = np.unique(self.unknown[free], axis=0, return_index=True, return_inverse=True)
@@ -70,7 +71,7 @@ class StringNodes:
         return stands_for
 
     def groups(self) -> list[np.ndarray]:
-        """Return the numbers of the cables that ties hold together, of each group."""
+        """Return the numbers of the cables of each group that ties connect."""
         n, tied = len(self.model.cables), np.flatnonzero(self.string_node != np.arange(len(self.string_node)))
         pairs = self.cable[tied], self.cable[self.string_node[tied]]
         labels = connected_components(coo_array((np.ones(len(tied)), pairs), shape=(n, n)), directed=False)[1]
@@ -81,8 +82,8 @@ class StringNodes:
         return np.concatenate([np.arange(*self.first[c : c + 2]) for c in group])
 
     def can_hang(self, group: np.ndarray) -> bool:
-        """Return whether cables of a group are held anywhere, act on no others, touch nothing but planes, and have no
-        unknown nodal vectors.
+        """Return whether a group is held somewhere, acts on no other cables, touches only planes, and has no unknown
+        nodal vectors.
         """
         own = self.of(group)
         return bool(self.fixed[own].any() and (self.unknown[own] >= -1).all()
@@ -90,7 +91,7 @@ class StringNodes:
                     and all(STRING_VECTORS.issuperset(self.model.cables[c].vectors) for c in group))
 
     def smooth_ties(self, group: np.ndarray) -> list[SmoothTie]:
-        """Return the ties of a group that join two ends of cables, and nothing else, with one direction."""
+        """Return the ties of a group that join only two ends of cables, with one direction."""
         own = self.of(group)
         inward = {int(node): sense for c in group for node, sense in ((self.first[c], 1), (self.first[c + 1] - 1, -1))}
         at_node: dict[int, list[int]] = {}
@@ -105,7 +106,7 @@ class StringNodes:
         return bool(np.array_equal(of_a, of_b) or (of_a < -1).any() or (of_b < -1).any())
 
     def clamped(self, group: np.ndarray, q: np.ndarray) -> dict[int, np.ndarray]:
-        """Return the unit vector (dim,) along the line of each node that is held with its direction."""
+        """Return the unit vector (dim,) along the cable at each node with a fixed direction."""
         own = self.of(group)
         fixed = own[(self.unknown[own] == -1).all(axis=1)]
         return {node: along for node in fixed.tolist() if (along := self._held_direction(node, q)) is not None}
@@ -127,7 +128,7 @@ class StringNodes:
         return along / np.linalg.norm(along)
 
     def _hold(self) -> None:
-        """Find what couplings do to cables beside loads, fluids and planes that stand still."""
+        """Find the actions of couplings on cables except loads, fluids and fixed planes."""
         self.held = np.zeros(len(self.cable), dtype=bool)
         self.others, self.joined, self.touched = set[int](), set[int](), set[int]()
         for coupling in self.model.couplings:
@@ -145,7 +146,7 @@ class StringNodes:
                 self.touched |= cables
 
     def _node_of(self, coupling: object) -> int | None:
-        """Return the node that a joint, or a force on an end of a cable, holds to what is no cable; else None."""
+        """Return the node that a joint, or a force on an end of a cable, holds to ground or bodies; else None."""
         if not isinstance(coupling, JointModel | PointForceModel):
             return None
         at = next(end for end in coupling.attachments if end.cable >= 0)
@@ -160,13 +161,13 @@ class StringNodes:
 
 
 def rests(coupling: object) -> bool:
-    """Return whether a coupling is a cable's contact with a plane, or a height field, that stands still."""
+    """Return whether a coupling is a cable's contact with a fixed plane or height field."""
     return (isinstance(coupling, ContactModel) and coupling.cable >= 0 and coupling.shape in ("flat", "terrain")
             and all(on.cable == on.body == on.slide == -1 for on in coupling.on))
 
 
 def _cables_of(coupling: object) -> set[int]:
-    """Return the numbers of cables that a coupling acts on."""
+    """Return the numbers of the cables of a coupling."""
     found = {getattr(coupling, "cable", -1), *getattr(coupling, "cables", ())}
     found |= {end.cable for end in (*getattr(coupling, "attachments", ()), *getattr(coupling, "on", ()))}
     if (rider := getattr(coupling, "rider", None)) is not None:

@@ -1,4 +1,4 @@
-"""Nodal vectors of a cable that is laid along a string: slopes, and sections that turn with it and do not twist."""
+"""Nodal vectors of a cable along a string: slopes, and sections without twist."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 def slopes(r: np.ndarray, length: np.ndarray, ends: tuple[np.ndarray | None, np.ndarray | None]) -> np.ndarray:
     """Return (n, dim): r_x at nodes r (n, dim) of links of these lengths (n - 1,), by parabolas through neighbours.
 
-    ends: unit vectors at the ends where these are known.
+    ends: unit vectors at the ends, None where these are unknown.
     """
     stretch = np.linalg.norm(np.diff(r, axis=0), axis=1) / length
     along = np.diff(r, axis=0) / (length * stretch)[:, None]
@@ -25,9 +25,9 @@ def slopes(r: np.ndarray, length: np.ndarray, ends: tuple[np.ndarray | None, np.
 
 def laid_vectors(names: tuple[str, ...], was: np.ndarray, r: np.ndarray, slope: np.ndarray, s: np.ndarray,
                  end_is_held: bool) -> np.ndarray:
-    """Return (n, vectors, dim): nodal vectors of a cable along r (n, dim) with slopes (n, dim); was: those before.
+    """Return (n, vectors, dim): nodal vectors of a cable along r (n, dim) with slopes (n, dim); was: the previous ones.
 
-    s (n,): arc-lengths, m. end_is_held: whether the section at the end keeps its attitude: twist is spread evenly then.
+    s (n,): arc-lengths in m. end_is_held: whether the section at the end is fixed: the twist is then uniform.
     """
     found, given = was.copy(), {name: was[:, k] for k, name in enumerate(names)}
     laid = {"r": r, "r_x": slope}
@@ -51,7 +51,7 @@ def _of_length(directions: np.ndarray, like: np.ndarray) -> np.ndarray:
 
 def _sections(given: dict[str, np.ndarray], slope: np.ndarray, s: np.ndarray,
               end_is_held: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Return r_y and r_z (n, 3) square to the slopes, carried from node to node without a turn about these."""
+    """Return r_y and r_z (n, 3) orthogonal to the slopes, transported from node to node without twist."""
     along = slope / np.linalg.norm(slope, axis=1, keepdims=True)
     before = given["r_x"][0] / np.linalg.norm(given["r_x"][0])
     height, heights = given["r_y"][0], np.empty_like(slope)
@@ -68,7 +68,7 @@ def _sections(given: dict[str, np.ndarray], slope: np.ndarray, s: np.ndarray,
 
 
 def _turned(vector: np.ndarray, before: np.ndarray, after: np.ndarray) -> np.ndarray:
-    """Return a vector turned as the least turn does that takes one unit vector to another."""
+    """Return a vector after the smallest rotation of one unit vector to another."""
     axis, cosine = np.cross(before, after), float(before @ after)
     if cosine < -1 + 1e-12:
         return vector

@@ -1,17 +1,16 @@
-"""The shape at rest of strings: links that bear tension alone, bend elastically, and lie on planes.
+"""The shape at rest of strings: links that bear only tension, bend elastically, and lie on planes.
 
 Its potential energy is convex. A link of length l has the Green strain energy EA l/2 max(0, (d²/l² - 1)/2)² of the
 distance d of its nodes; bending has EI/2 |r''|², without the division by |r'|, and loads are constant. There is one
-minimum, whatever shape the search begins from, and where all links are in tension it is a stable state of rest of lines
-that resist compression, too. The multipliers of the links are their tensions, so that stiff links cost no more than
-soft ones.
+minimum for any first shape, and where all links are in tension it is a stable state of rest of lines that resist
+compression, too. The multipliers of the links are their tensions, so that stiff links cost no more than soft ones.
 
 The method is a primal-dual one of interior points (Wright, Primal-Dual Interior-Point Methods, SIAM 1997, ch. 1; for
 convex constraints Boyd & Vandenberghe, Convex Optimization, ch. 11.7). A link is the constraint
 
     c = (1 - d²/l²)/2 + x/(EA l) >= 0, whose multiplier x >= 0 is tension times length,
 
-and a node over a plane the constraint that its height, with what the plane gives way by, is not negative.
+and a node over a plane the constraint that its height plus the deflection of the plane is not negative.
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ FORCE_TOLERANCE = 1e-8
 """Residual forces, and tensions of links that are not taut, as a fraction of the sum of all loads."""
 MAX_ITERATIONS = 60
 MAX_BOUNDARY_FRACTION = 0.95
-"""A step covers at most this fraction of the distance to where a constraint or a multiplier becomes zero."""
+"""Upper bound of a step, as a fraction of the distance to a zero of a constraint or multiplier."""
 SLACK_TOLERANCE = 1e-4
 """Links are taut if their slack is below this fraction of half the squared length."""
 DIVISION_GUARD = 1e-300
@@ -33,13 +32,13 @@ DIVISION_GUARD = 1e-300
 
 @dataclass
 class Strings:
-    """Nodes, what holds them together, and what acts on them.
+    """Nodes, links, bending and planes, and loads.
 
-    r (n, dim): where nodes are, in m, from which fixed coordinates (n, dim) are taken; load (n, dim) in N. links
-    (m, 2): their nodes; length (m,) of them unstretched, in m; axial (m,): EA in N. bends (b, 3): nodes; their
-    positions times the factors (b, 3) in 1/m², less natural (b, dim) in 1/m, are a curvature; bending (b,): EI times
-    the length that has it, N m³. resting (k,): nodes over planes of unit normals (k, dim) at heights (k,) along them in
-    m; the planes give way by compliances (k,) in m/N.
+    r (n, dim): positions of nodes in m; fixed (n, dim): which of these coordinates are fixed; load (n, dim) in N. links
+    (m, 2): their nodes; length (m,): unstretched, in m; axial (m,): EA in N. bends (b, 3): nodes, whose positions times
+    the factors (b, 3) in 1/m², less natural (b, dim) in 1/m, are a curvature; bending (b,): EI times its length in N
+    m³. resting (k,): nodes over planes with unit normals (k, dim), heights (k,) along these in m, and compliances (k,)
+    in m/N.
     """
 
     r: np.ndarray
@@ -59,18 +58,18 @@ class Strings:
 
     @property
     def width(self) -> int:
-        """Return how far the numbers of nodes are apart that a link or a bend has in common."""
+        """Return the largest difference of the numbers of nodes of a link or a bend."""
         return max(int(np.ptp(nodes, axis=1).max(initial=0)) for nodes in (self.links, self.bends))
 
     def renumbered(self, order: np.ndarray) -> Strings:
-        """Return the same with node order[k] as its k-th."""
+        """Return the same strings with node order[k] as the k-th node."""
         number = np.empty_like(order)
         number[order] = np.arange(len(order))
         return replace(self, r=self.r[order], fixed=self.fixed[order], load=self.load[order], links=number[self.links],
                        bends=number[self.bends], resting=number[self.resting])
 
     def stretched_evenly(self) -> np.ndarray:
-        """Return (n, dim): where nodes are if links are alike springs, all else left out: chains become straight."""
+        """Return (n, dim): positions of nodes with links as springs of one stiffness per length, without loads."""
         system = _Banded(self)
         stiffness = np.broadcast_to((1 / self.length)[:, None, None], (len(self.links), 1, 1)) * np.eye(self.r.shape[1])
         start = np.where(self.fixed, self.r, 0.0)
@@ -83,8 +82,8 @@ class Strings:
 
 @dataclass
 class Rest:
-    """Where nodes rest (n, dim), in m; whether links are taut (m,), to about the tolerance; of the links the least
-    distance of their nodes over the length; after how many iterations.
+    """Positions of nodes at rest (n, dim) in m; whether links are taut (m,), to about the tolerance; the smallest
+    distance of the nodes of a link over its length; the number of iterations.
     """
 
     r: np.ndarray
@@ -166,7 +165,7 @@ class _Banded:
 
 @dataclass
 class _Step:
-    """Changes of places, tensions and pressures, and by which constraints change: linearly, and by a square less."""
+    """Changes of positions, tensions and pressures, and of the constraints: linear, and a square that is subtracted."""
 
     x: np.ndarray
     more: np.ndarray
@@ -177,9 +176,9 @@ class _Step:
 
 
 class _Search:
-    """The state of the iteration: places, and of each constraint its value and its multiplier.
+    """The state of the iteration: positions, and the value and multiplier of each constraint.
 
-    Constraints have no unit, multipliers that of energy: heights are over the mean length of links.
+    Constraints are dimensionless, with heights over the mean length of links; multipliers have the unit of energy.
     """
 
     def __init__(self, strings: Strings):
@@ -193,7 +192,7 @@ class _Search:
         self.tension = np.full(len(strings.links), self.scale * strings.length)
         self.pressure = np.full(len(strings.resting), 0.1 * self.scale * self.unit)
         self._look()
-        short = self.slack <= 0  # links that are too short at first bear what stretches them by more
+        short = self.slack <= 0  # the first tension of short links stretches them
         self.tension[short] += 1.5 * (1e-12 - self.slack[short]) / self.gives[short]
         below = self.height <= 0
         self.pressure[below] += 1.5 * (1e-3 - self.height[below]) / np.maximum(self.yields[below], DIVISION_GUARD)
@@ -208,7 +207,7 @@ class _Search:
         self.height = above / self.unit + self.yields * self.pressure
 
     def out_of_balance(self) -> np.ndarray:
-        """Return (n, dim): loads less what holds them, in N; zero where a coordinate is fixed."""
+        """Return (n, dim): the residual forces in N; zero where a coordinate is fixed."""
         strings = self.strings
         force = strings.load.copy()
         curvature = np.einsum("bk,bkd->bd", strings.factors, self.r[strings.bends]) - strings.natural
@@ -218,14 +217,14 @@ class _Search:
         return force
 
     def _add(self, force: np.ndarray, tension: np.ndarray, pressure: np.ndarray) -> None:
-        """Add forces of multipliers: links pull, planes push where theirs are negative."""
+        """Add the forces of multipliers: links pull, planes push with negative ones."""
         strings, pull = self.strings, tension[:, None] * self.along
         np.add.at(force, strings.links[:, 0], pull)
         np.add.at(force, strings.links[:, 1], -pull)
         np.add.at(force, strings.resting, -pressure[:, None] * strings.normals / self.unit)
 
     def step(self) -> None:
-        """Make a step of Mehrotra's: where Newton's step to rest would lead says how far to stay off constraints."""
+        """Take a step of Mehrotra's method: the predicted step determines the distance from the constraints."""
         strings, system = self.strings, self.system
         of_links, of_planes = self.slack + self.gives * self.tension, self.height + self.yields * self.pressure
         stiff, hard = self.tension / of_links, self.pressure / of_planes
@@ -261,7 +260,7 @@ class _Search:
         self._look()
 
     def _length(self, step: _Step) -> float:
-        """Return how much of a step leaves constraints and multipliers positive; those of links fall by a square, too.
+        """Return the fraction of a step that leaves constraints and multipliers positive; links have the square, too.
         """
         far = MAX_BOUNDARY_FRACTION * self.slack
         parts = [2 * far / np.maximum(np.sqrt(step.closing**2 + 4 * step.square * far) - step.closing, DIVISION_GUARD)]
@@ -275,7 +274,7 @@ class _Search:
         return float(self.tension @ self.slack + self.pressure @ self.height) / (len(self.tension) + len(self.pressure))
 
     def shortest(self) -> float:
-        """Return the least distance of a link's nodes over its length."""
+        """Return the smallest distance of a link's nodes over its length."""
         return float(np.sqrt((self.d * self.along).sum(axis=1).min()))
 
     def is_at_rest(self) -> bool:
@@ -288,7 +287,7 @@ def rest_of(strings: Strings) -> Rest | None:
     """Return strings at rest; None where nothing loads them, nothing holds them, or rest was not found."""
     if not np.abs(strings.load).sum() > 0:
         return None
-    with np.errstate(all="ignore"):  # of what nothing holds in a direction, which is found at the end of a step
+    with np.errstate(all="ignore"):  # nodes that are free in a direction diverge, which the end of a step detects
         try:
             search = _Search(strings)
             for iteration in range(MAX_ITERATIONS):
@@ -297,6 +296,6 @@ def rest_of(strings: Strings) -> Rest | None:
                 search.step()
                 if not np.isfinite(search.mean()):
                     return None
-        except (LinAlgError, OverflowError):  # of numbers without NumPy
+        except (LinAlgError, OverflowError):  # Python floats overflow
             pass
     return None

@@ -1,4 +1,4 @@
-"""The search for rest by steps of angle, where motions and driven joints prescribe angles far from the state's."""
+"""The search for rest by steps of prescribed angles that are far from those of the state."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from .turns import ANGLE_STEP, MAX_DIRECTION_TURN, MIN_STEP_FRACTION, largest_tu
 
 
 def turned_rest(problem: StaticProblem) -> Stability | None:
-    """Do what `find_rest` does, and follow the prescribed angles from those of the state; None also where they cannot
-    be followed: the state is then as it was.
+    """Search as `find_rest` does, and follow the prescribed angles from those of the state. None also where they cannot
+    be followed: the state is restored.
     """
     turns = problem.turns
     if turns.fraction == 1.0:

@@ -1,7 +1,7 @@
-"""Angles that motions and driven joints prescribe, followed by statics from where a state has them.
+"""Angles that motions and driven joints prescribe, followed by statics from those of a state.
 
-A whole turn of a section leaves its axes as they were, but not the moment of a rod that it twists. A search for rest
-that meets an angle of more than `ANGLE_STEP` goes there in steps, each from the state of rest of the step before.
+A whole turn of a section restores its axes, but not the moment of a rod that it twists. A search for rest follows a
+change of angle larger than `ANGLE_STEP` in steps, each from the state of rest of the previous one.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from ...parts.scene_data import SceneData
 from ...parts.validation import show
 
 ANGLE_STEP = np.pi / 3
-"""Step of an angle in rad: Newton's method finds the nearest of the states that differ by whole turns."""
+"""Step of an angle in rad, with which Newton's method finds the nearest of the states that differ by whole turns."""
 MIN_STEP_FRACTION = 1 / 32
 """The search ends if steps of this fraction of `ANGLE_STEP` do not converge."""
 MAX_DIRECTION_TURN = np.pi / 2
@@ -52,7 +52,7 @@ class Turns:
     """The prescribed angles at t = 0 and those that a static state has reached, in rad by label."""
 
     def __init__(self, scene: SceneData, model: Model, engine: Engine, begin: Mapping[str, float] | None):
-        """begin: angles that the state has, 0 of those left out; None: those prescribed."""
+        """begin: angles of the state, 0 if left out; None: those prescribed."""
         self._engine, self._signals = engine, dict(turning(scene, model))
         self.prescribed = prescribed_angles(scene, model)
         self._begin = {label: (begin or {}).get(label, 0.0) for label in self.prescribed}
@@ -70,7 +70,7 @@ class Turns:
         return {label: self._at(label, self.fraction) for label in self.prescribed}
 
     def go(self, fraction: float) -> None:
-        """Prescribe angles on the way from those at the begin, 0, to those of the scene, 1."""
+        """Prescribe angles at a fraction between those of the first state, 0, and those of the scene, 1."""
         self.fraction = fraction
         for label, signal in self._signals.items():
             self._engine.hold(signal, None if fraction == 1.0 else self._at(label, fraction))
@@ -79,7 +79,7 @@ class Turns:
         return self._begin[label] * (1 - fraction) + self.prescribed[label] * fraction
 
     def __str__(self) -> str:
-        """Return how far the angle that turns furthest was followed, in words."""
+        """Return in words the value up to which the largest change of angle was followed."""
         label = max(self.prescribed, key=lambda name: abs(self.prescribed[name] - self._begin[name]))
         reached, whole = (show(self._at(label, fraction), "rad") for fraction in (self.furthest, 1.0))
         return f'the angle of "{label}" was followed to {reached} of {whole}'
@@ -103,9 +103,9 @@ def largest_turn(model: Model, before: np.ndarray, after: np.ndarray) -> float:
 
 
 def too_long(model: Model, q: np.ndarray, begin: np.ndarray) -> str:
-    """Return what element turns so far between its nodes that the next steps would lose a turn; empty where none does.
+    """Return the element that turns so far between its nodes that the next steps would lose a turn; empty without one.
 
-    begin: the configuration before the first step, in which an element may have turned as far already.
+    begin: the configuration before the first step, at which an element may turn as far already.
     """
     for cable in model.cables:
         turned, before = (angles(at[:-1], at[1:]) for at in (directions(cable, q), directions(cable, begin)))
