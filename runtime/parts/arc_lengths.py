@@ -1,4 +1,4 @@
-"""Arc-lengths of cables that parts name: where they are when a cable becomes longer or shorter."""
+"""Arc-lengths of parts on a cable whose length changes."""
 
 from __future__ import annotations
 
@@ -14,21 +14,19 @@ from .scene_data import SceneData
 
 
 def remade(part: Part, changes: Mapping[str, Any]) -> Part:
-    """Return a part with other values, by keyword, as it is before the nodes of a cable follow its length. Raises
-    SceneError.
-    """
+    """Return a part with other values, by keyword; a cable without its given nodes. Raises SceneError."""
     if isinstance(part, Cable) and part.nodes is not None and "nodes" not in changes:
         changes = {**changes, "nodes": None}
     return part.remade(changes)
 
 
 def following(scene: SceneData, changes: Mapping[int, Mapping[str, Any]]) -> dict[int, dict[str, Any]]:
-    """Return changes of a scene's parts, with arc-lengths on cables that change in length: they keep their part of it,
-    and so do the cable's own nodes.
+    """Return changes of the parts of a scene with those of arc-lengths and nodes on cables that change in length.
 
-    changes: values by keyword, by the number of the part. What a scene has found itself it finds anew. Values that are
-    changed already stay so. A cable that hangs as it is drawn, and becomes shorter than its span, is drawn straight.
-    Raises SceneError.
+    An arc-length keeps its ratio to the length of the cable, unless it is among the changes.
+
+    changes: values by keyword, by the number of the part. A hanging cable that becomes shorter than its span is drawn
+    straight. Raises SceneError.
     """
     parts = list(scene.parts())
     stretch = {}

@@ -1,4 +1,4 @@
-"""Scenes in the axes of a plane, in which that is z = 0: every part is turned, none is left out."""
+"""Scenes in the axes of their plane, in which it is z = 0."""
 
 from __future__ import annotations
 
@@ -30,30 +30,29 @@ S = TypeVar("S", bound=SceneData)
 
 
 def laid(scene: S) -> S:
-    """Return the scene in the axes of the plane that its planar cables lie in; itself where that is z = 0, or spatial.
+    """Return the scene in the axes of the plane of its planar cables; itself for z = 0 and for spatial scenes.
 
-    Raises SceneError for what cannot be turned.
+    Raises SceneError for parts that cannot be turned.
     """
     plane = scene.plane
     return scene if plane is None else laid_into(scene, plane)
 
 
 def laid_into(scene: S, plane: Plane) -> S:
-    """Return a scene, planar or spatial, in the axes of a plane; it is not checked again.
+    """Return a scene, planar or spatial, in the axes of a plane, without new checks.
 
-    Raises SceneError for what cannot be turned.
+    Raises SceneError for parts that cannot be turned.
     """
     axes = PlaneAxes(plane, scene.bodies, _size(scene.cables.values()))
     made = scene.replaced(lambda part: turned(part, axes, scene))
-    made.gravity, made.plane_axes, made.drawn = _direction(axes, scene.gravity), axes, scene
+    made.gravity, made.plane_axes, made.drawn = _vector(axes, None, scene.gravity), axes, scene
     return made
 
 
 def turned_alone(scene: SceneData, plane: Plane, part: Part) -> Part:
-    """Return a part, of the scene or about to join it, in the axes of a plane, to look for what leaves that.
+    """Return a part, of the scene or about to join it, in the axes of a plane, for checks of the plane.
 
-    Cables and events are returned as they are: cables lie in planes of their own, events act on nothing. Raises
-    SceneError.
+    Cables, which lie in planes of their own, and events, which do not act, are returned as they are. Raises SceneError.
     """
     if isinstance(part, Cable | Event):
         return part
@@ -63,69 +62,56 @@ def turned_alone(scene: SceneData, plane: Plane, part: Part) -> Part:
 
 
 def _size(cables: Iterable[Cable]) -> float:
-    """Return the largest coordinate in m of points that cables are drawn through."""
+    """Return the largest coordinate in m of the points of cables."""
     return max((abs(x) for cable in cables for point in cable.drawn_through for x in point), default=0.0)
 
 
-def _point(axes: PlaneAxes, point: Any) -> tuple[float, ...]:
-    return tuple(flattened(axes.plane.points_into(np.array(point)), axes.size).tolist())
+def _vector(axes: PlaneAxes, on: str | None, vector: Any, is_point: bool = False) -> tuple[float, ...]:
+    """Return a point or a direction, in the axes of the ground or of a body, in those that it has in the plane.
 
-
-def _direction(axes: PlaneAxes, direction: Any) -> tuple[float, ...]:
-    return tuple(aligned(axes.plane.into(np.array(direction))).tolist())
-
-
-def _of_body(axes: PlaneAxes, body: str | None, vector: Any) -> tuple[float, ...]:
-    """Return a vector along a body's axes along those that it has in the plane; modal bodies keep theirs."""
-    turn = None if body is None else axes.turn_of(body)
-    return tuple(vector) if turn is None else tuple(aligned(rotate(conjugate(turn), np.array(vector))).tolist())
-
-
-def _along(axes: PlaneAxes, on: str | None, vector: Any) -> tuple[float, ...]:
-    """Return a vector along the axes of the ground or of a body along those that it has in the plane."""
-    return _direction(axes, vector) if on is None else _of_body(axes, on, vector)
-
-
-def _place(axes: PlaneAxes, on: str | None, at: Any) -> Any:
-    """Return a point of the ground or of a body, in its axes in the plane."""
-    if at is None:
-        return None
+    Modal bodies keep their axes.
+    """
+    made = np.array(vector)
     if on is None:
-        return _point(axes, at)
-    return tuple(flattened(np.array(_of_body(axes, on, at)), FLAT * axes.size).tolist())
+        made = flattened(axes.plane.points_into(made), axes.size) if is_point else aligned(axes.plane.into(made))
+        return tuple(made.tolist())
+    if (turn := axes.turn_of(on)) is not None:
+        made = aligned(rotate(conjugate(turn), made))
+    return tuple((flattened(made, FLAT * axes.size) if is_point else made).tolist())
 
 
 def _tensor(axes: PlaneAxes, body: str, tensor: Any) -> tuple[tuple[float, ...], ...]:
-    """Return a symmetric tensor (3, 3) in a body's own axes in those that it has in the plane."""
+    """Return a symmetric tensor (3, 3) in the axes of a body in those that it has in the plane."""
     turn = axes.turn_of(body)
-    own = np.eye(3) if turn is None else rotate(turn, np.eye(3)).T  # columns: the axes in the plane along its own
+    own = np.eye(3) if turn is None else rotate(turn, np.eye(3)).T  # columns: the axes in the plane
     found = own.T @ np.array(tensor) @ own
     found[np.abs(found) <= FLAT * np.abs(found).max()] = 0.0
     return tuple(map(tuple, ((found + found.T) / 2).tolist()))
 
 
 def _orientation(axes: PlaneAxes, body: str, orientation: Any) -> tuple[float, ...]:
-    """Return the unit quaternion of a body in the plane: of a rigid body unturned, of a modal body its own turned."""
+    """Return the unit quaternion of a body in the plane; rigid bodies start unturned."""
     made = axes.into(body, "orientation", np.array(orientation)) if axes.turn_of(body) is None else UNTURNED
     return tuple(made.tolist())
 
 
 def _vectors(axes: PlaneAxes, turning: Turning, on: str | None, value: Any) -> Any:
-    """Return the vectors of a field along axes of the ground or of a body, `on`, in those of the plane."""
+    """Return the vectors of a field, in the axes of the ground or of the body `on`, in those of the plane."""
     if turning.turns == LENGTHS or not isinstance(value, tuple | list):
         return value
     if turning.turns in (TENSOR, ORIENTATION):
         assert on is not None, "tensors and orientations are of a body"
         return _tensor(axes, on, value) if turning.turns == TENSOR else _orientation(axes, on, value)
-    turn = _place if turning.turns == POINT else _along
+    is_point = turning.turns == POINT
     if len(value) and isinstance(value[0], tuple | list):
-        return tuple(turn(axes, on, each) for each in value)
-    return turn(axes, on, value)
+        return tuple(_vector(axes, on, each, is_point) for each in value)
+    return _vector(axes, on, value, is_point)
 
 
 def turned_fields(part: Part, axes: PlaneAxes, holder: str | None = None) -> dict[str, Any]:
-    """Return the fields of a part that other axes change, in the axes of a plane, those of parts that it holds among
-    them; holder: the body whose axes what holds it is in.
+    """Return the fields of a part and of the parts in it that other axes change, in the axes of a plane.
+
+    holder: the body in whose axes the holder of the part is.
     """
     about, changes = about_fields(type(part)), {}
     for name, value in part:
@@ -143,7 +129,7 @@ def turned_fields(part: Part, axes: PlaneAxes, holder: str | None = None) -> dic
 
 @singledispatch
 def turned(part: Part, axes: PlaneAxes, scene: SceneData) -> Part:
-    """Return a part of a scene in the axes of a plane, by default with its vectors there. Raises SceneError."""
+    """Return a part of a scene in the axes of a plane. Raises SceneError."""
     changes = turned_fields(part, axes)
     return part.model_copy(update=changes) if changes else part
 
@@ -155,9 +141,9 @@ def _cable(part: Cable, axes: PlaneAxes, scene: SceneData) -> Cable:
         changes["up"] = (0.0, 1.0, 0.0)
     made = Cable(**part.entries() | changes)
     if part.shape == "hanging":
-        made = made.hanging_through(_point(axes, point) for point in part.drawn_through)
+        made = made.hanging_through(_vector(axes, None, point, is_point=True) for point in part.drawn_through)
     drawn, laid_down = shape_through(part.drawn_through), shape_through(made.drawn_through)
-    if not drawn.straight:  # Akima's pieces, unlike cubic splines, depend on the axes
+    if not drawn.straight:  # Akima splines, unlike cubic ones, depend on the axes
         along = np.linspace(0, 1, 8 * len(part.drawn_through))
         apart = axes.plane.points_into(drawn.point(along * drawn.length)) - laid_down.point(along * laid_down.length)
         if np.abs(apart).max() > FLAT * max(axes.size, drawn.length):
@@ -171,7 +157,7 @@ def _modal_body(part: ModalBody, axes: PlaneAxes, scene: SceneData) -> ModalBody
     changes = turned_fields(part, axes)
     del changes["orientation" if part.data is None else "up"]  # the other one says how it lies
     made = ModalBody(**part.entries() | changes)
-    made.__dict__["shape"] = part.shape  # in body axes, which stay: the same modes, with the same signs
+    made.__dict__["shape"] = part.shape  # in body axes, which stay, so that modes keep their signs
     return made
 
 
@@ -188,9 +174,9 @@ def _motion(part: Motion, axes: PlaneAxes, scene: SceneData) -> Motion:
 
 
 def _component(plane: Plane, k: int, displacement: tuple[Signal | None, ...]) -> Signal | None:
-    """Return the component of a displacement along an axis of the plane; 0 for what is free across the plane.
+    """Return the component of a displacement along an axis of the plane; 0 for a free direction across the plane.
 
-    Raises ValueError where that is free in part.
+    Raises ValueError for a component that is partly free.
     """
     along = aligned(plane.axes[:, k])
     given = [(float(factor), signal) for factor, signal in zip(along, displacement, strict=True) if factor]
@@ -205,14 +191,14 @@ def _component(plane: Plane, k: int, displacement: tuple[Signal | None, ...]) ->
 
 @turned.register
 def _event(part: Event, axes: PlaneAxes, scene: SceneData) -> Event:
-    """A threshold on a component along the ground's axes is a function of a state, which has results in those."""
+    """Return an event with its threshold as a function of a state, whose results are along the ground's axes."""
     if part.quantity is None or part.quantity.partition(".")[0] in scene.slides or part.quantity.count(".") == 1:
         return part
     return part.model_copy(update={"quantity": None, "s": None, "value": 0.0, "function": _passing(part, scene)})
 
 
 def _passing(event: Event, scene: SceneData) -> Callable[[float, Any], float]:
-    """Return the function of time and state that passes zero where the quantity of an event passes its value."""
+    """Return the function of time and state whose zeros are those of the quantity of an event minus its value."""
     assert event.quantity is not None, f"{event.where} has a function"
     name, what, axis = event.quantity.split(".")
     k, value = COMPONENTS[axis], event.value

@@ -1,4 +1,4 @@
-"""Where the parts of a scene are, and which act on each other."""
+"""The locations of the parts of a scene, and their connections."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ def node_of(scene: SceneData, support: Support) -> Node:
 
 
 def ends_of(scene: SceneData, tie: Tie) -> tuple[Node, Node]:
-    """Return the nodes that a tie of the scene joins: that of its cable, and the other one."""
+    """Return the nodes of a tie of the scene: that of its cable, then the other one."""
     return ((tie.cable, scene.cables[tie.cable].node(tie.s)), (tie.to, scene.cables[tie.to].node(tie.at)))
 
 
 def joined(scene: SceneData, node: Node, without: Tie | None = None) -> set[Node]:
-    """Return all nodes that ties, but for ``without``, join to ``node``, itself included."""
+    """Return the nodes that ties other than ``without`` join to ``node``, itself included."""
     found, new = {node}, [node]
     while new:
         at = new.pop()
@@ -46,14 +46,14 @@ def joined(scene: SceneData, node: Node, without: Tie | None = None) -> set[Node
 
 
 def support_of(scene: SceneData, node: Node) -> Support | None:
-    """Return the support of ``node`` or one that is joined to it."""
+    """Return a support of ``node`` or of a node joined to it."""
     nodes = joined(scene, node)
     cables = {cable for cable, _ in nodes}
     return next((s for s in scene.supports if s.cable in cables and node_of(scene, s) in nodes), None)
 
 
 def point_of(scene: SceneData, end: Attachment) -> np.ndarray:
-    """Return (3,): where a complete end starts, in m."""
+    """Return (3,): the initial position of a complete attachment, in m."""
     if end.on is None:
         return np.array(end.at)
     if end.on in scene.bodies:
@@ -62,7 +62,7 @@ def point_of(scene: SceneData, end: Attachment) -> np.ndarray:
 
 
 def velocity_of(scene: SceneData, end: Attachment) -> np.ndarray:
-    """Return (3,): the velocity, in m/s, with which a complete end is drawn."""
+    """Return (3,): the initial velocity of a complete attachment as drawn, in m/s."""
     if end.on is None:
         return np.zeros(3)
     if end.on in scene.bodies:
@@ -74,9 +74,9 @@ def velocity_of(scene: SceneData, end: Attachment) -> np.ndarray:
 
 
 def on_cables(part: Part, moving: bool = True) -> Iterator[tuple[str, str, float]]:
-    """Yield the arc-lengths that a part has as entries: the keyword, the name of the cable or body, and s in m.
+    """Yield the arc-lengths among the entries of a part: keyword, name of the cable or body, and s in m.
 
-    moving: those that move with the scene among them, such as that of a slide.
+    moving: whether to include arc-lengths that change in a run, such as that of a slide.
     """
     for name, place in about_fields(type(part)).items():
         if isinstance(place, Place) and (moving or not place.moves):
@@ -86,13 +86,13 @@ def on_cables(part: Part, moving: bool = True) -> Iterator[tuple[str, str, float
 
 
 def attached(scene: SceneData, name: str) -> list[float]:
-    """Return the arc-lengths, in m, of a cable at which something that acts on it is attached to it, its ends too."""
+    """Return the arc-lengths, in m, of a cable at which supports, loads and other parts are attached."""
     acting = [part for part in (*scene.parts(), *scene.attachments()) if not isinstance(part, Event)]
     return [float(s) for part in acting for _, on, s in on_cables(part, moving=False) if on == name]
 
 
 def connected(scene: SceneData, name: str) -> set[str]:
-    """Return the names of the cables and bodies that a cable or body is connected with, its own name included.
+    """Return the names of the cables and bodies connected with a cable or body, its own name included.
 
     A part connects all cables and bodies that it names. The ground, its surfaces and fluids connect nothing.
     """

@@ -1,4 +1,4 @@
-"""Planes in space with axes of their own, and what leaves the plane z = 0, in words, for scenes of planar elements."""
+"""Planes in space with axes of their own, for scenes of planar elements."""
 
 from __future__ import annotations
 
@@ -11,15 +11,14 @@ from ..base.rotations import cross
 from .validation import show
 
 FLAT = 1e-12
-"""Of their size: as far as points and directions may be off a plane, by rounding."""
-
-SKEW = 1e-6
-"""Sine of the angle from which on two directions tell the plane that they lie in."""
+"""Rounding of points and directions off a plane, relative to their size."""
+MIN_SINE = 1e-6
+"""Of the angle between two directions that define a plane."""
 
 
 @dataclass(frozen=True, eq=False)
 class Plane:
-    """A plane in space other than z = 0, with axes of its own: x and y in it, z along its normal.
+    """A plane in space with axes of its own: x and y in it, z along its normal.
 
     axes (3, 3): unit vectors along the ground's axes, as columns; origin (3,): its point nearest to the ground's
     origin, in m.
@@ -62,16 +61,16 @@ class Plane:
         return self.out(points) + self.origin
 
     def contains(self, points: np.ndarray) -> bool:
-        """Return whether points (n, 3), in m, lie in it, but for rounding."""
+        """Return whether points (n, 3), in m, lie in it to rounding."""
         off = np.abs(self.points_into(points)[:, 2])
         return bool(np.all(off <= FLAT * np.abs(points).max(initial=0.0)))
 
     def is_same(self, other: Plane) -> bool:
-        """Return whether another plane has the same normal, but for rounding; where both lie is not compared."""
+        """Return whether another plane, also a parallel one, has the same normal to rounding."""
         return float(np.linalg.norm(self.normal - other.normal)) <= 1e-9
 
     def has_same_axes(self, other: Plane) -> bool:
-        """Return whether another plane has the same axes and origin, but for rounding."""
+        """Return whether another plane has the same axes and origin to rounding."""
         off = np.linalg.norm(self.origin - other.origin)
         return bool(np.abs(self.axes - other.axes).max() <= 1e-9 and off <= 1e-9 * np.linalg.norm(other.origin))
 
@@ -79,8 +78,8 @@ class Plane:
 def _combined(factors: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     """Return (..., 3): the sums of factors (..., 2 or 3) times vectors (3, 3), as rows.
 
-    Not a product of matrices, whose rounding depends on the number of rows: files of results are the same bit for bit
-    however many rows are written at once.
+    The rounding of a matrix product depends on the number of rows; that of sums does not, so that files of results have
+    the same bits in blocks of any size.
     """
     made = factors[..., :1] * vectors[0]
     for k in range(1, factors.shape[-1]):
@@ -89,9 +88,9 @@ def _combined(factors: np.ndarray, vectors: np.ndarray) -> np.ndarray:
 
 
 def normal_of(groups: Iterable[np.ndarray]) -> np.ndarray | None:
-    """Return the unit vector (3,) across the first two directions that groups of vectors (n, 3) give; None of fewer.
+    """Return the unit vector (3,) across the first two directions of groups of vectors (n, 3), None of fewer.
 
-    Of a group the longest vector counts, and across that the one that makes the largest angle with it.
+    The first direction is the longest vector of a group, the second one has the largest angle with it.
     """
     first = None
     for vectors in groups:
@@ -103,13 +102,13 @@ def normal_of(groups: Iterable[np.ndarray]) -> np.ndarray | None:
             first = vectors[np.argmax(sizes)] / sizes.max()
         across = np.cross(first, directions)
         sines = np.linalg.norm(across, axis=1)
-        if sines.max() > SKEW:
+        if sines.max() > MIN_SINE:
             return across[np.argmax(sines)] / sines.max()
     return None
 
 
 def called(plane: Plane | None) -> str:
-    """Return how messages name a plane; None is z = 0."""
+    """Return the name of a plane in messages; None is z = 0."""
     if plane is None:
         return "the plane z = 0"
     axis = int(np.argmax(np.abs(plane.normal)))
@@ -119,7 +118,7 @@ def called(plane: Plane | None) -> str:
 
 
 def flattened(vectors: np.ndarray, size: float = 0.0) -> np.ndarray:
-    """Return vectors (..., 3) whose z is zero where it is but rounding of the largest, or of a larger size."""
+    """Return vectors (..., 3) without z components that are rounding of the largest one or of a size."""
     made = np.array(vectors, dtype=float)
     least = FLAT * max(size, float(np.abs(made).max(initial=0.0)))
     made[..., 2] = np.where(np.abs(made[..., 2]) <= least, 0.0, made[..., 2])
@@ -127,7 +126,7 @@ def flattened(vectors: np.ndarray, size: float = 0.0) -> np.ndarray:
 
 
 def aligned(vector: np.ndarray) -> np.ndarray:
-    """Return a vector (3,) whose components are zero where they are but rounding of its size."""
+    """Return a vector (3,) without components that are rounding of its size."""
     made = np.array(vector, dtype=float)
     made[np.abs(made) <= FLAT * np.abs(made).max(initial=0.0)] = 0.0
     return made

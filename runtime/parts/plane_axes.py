@@ -1,4 +1,4 @@
-"""How results lie in the axes of a scene's plane, and in the ground's: what turns them there and back."""
+"""Transformation of results between the axes of the plane of a scene and those of the ground."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from .rigid_body import RigidBody
 UNTURNED = np.array([1.0, 0.0, 0.0, 0.0])
 
 ROUNDING_TOLERANCE = 1e-12
-"""A component below this part of the largest one is rounding of zero."""
+"""Rounding of a zero component over the largest one."""
 
 
 @dataclass(frozen=True, eq=False)
 class PlaneAxes:
-    """A scene of planar elements in the axes of its plane, where that is z = 0: what the engine takes.
+    """The axes of the plane of a scene, in which the engine computes.
 
-    The axes of a rigid body are turned, too: in the plane's axes it starts unturned.
+    A rigid body has other axes there: it starts unturned.
 
     plane: of the scene; bodies: those of the scene as drawn; size: of the scene, in m.
     """
@@ -37,11 +37,11 @@ class PlaneAxes:
 
     @cached_property
     def attitude(self) -> np.ndarray:
-        """Return the unit quaternion (4,) that takes the plane's axes to the ground's."""
+        """Return the unit quaternion (4,) from the axes of the plane to those of the ground."""
         return quaternion(self.plane.axes)
 
     def turn_of(self, name: str) -> np.ndarray | None:
-        """Return the unit quaternion (4,) that takes the axes of a rigid body in the plane to its own, else None."""
+        """Return the unit quaternion (4,) from the axes of a rigid body in the plane to its own, else None."""
         if name not in self._turns:
             body = self.bodies.get(name)
             self._turns[name] = (product(conjugate(body.orientation), self.attitude) if isinstance(body, RigidBody)
@@ -69,7 +69,7 @@ class PlaneAxes:
         return made
 
     def into(self, part: str, quantity: str, values: np.ndarray) -> np.ndarray:
-        """Return a result of a part along the plane's axes: `out` undone, without what rounding leaves across it."""
+        """Return a result of a part along the axes of the plane, the inverse of `out`, without rounding across it."""
         turns, turn = TURNING[quantity], self.turn_of(part)
         if turns == UNCHANGED:
             return values
