@@ -18,7 +18,7 @@ import numpy as np
 from funicular.kernels.elements import built_in
 from funicular.parts.cable_laws import possible_laws
 from funicular.parts.joint import DRIVEN
-from funicular.parts.joint import KINDS as JOINTS
+from funicular.parts.joint import JOINT_KINDS as JOINTS
 
 TIME = 0.02
 """Duration of a run, s."""

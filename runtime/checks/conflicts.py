@@ -8,7 +8,7 @@ import numpy as np
 
 from ..errors import SceneError
 from ..parts.attachment import Attachment
-from ..parts.joint import DRIVEN, LINES, POINTS, Joint
+from ..parts.joint import DRIVEN, LINE_KINDS, POINT_KINDS, Joint
 from ..parts.locations import Node, joined, point_of, support_of
 from ..parts.scene_data import SceneData
 from ..parts.support import Motion, Support
@@ -74,7 +74,7 @@ def _clash(scene: SceneData, joint: Joint, other: Joint, ends: tuple[Attachment,
     if joint.is_driven and other.is_driven and DRIVEN[joint.joint_kind] == DRIVEN[other.joint_kind]:
         if (same_points and kinds == {"distance"}) or (parallel and "distance" not in kinds):
             return f'drives the {DRIVEN[joint.joint_kind]} of {between}, as joint "{other.name}" does'
-    if same_points and (kinds <= set(POINTS) or kinds == {"distance"} or (kinds <= set(LINES) and parallel)):
+    if same_points and (kinds <= set(POINT_KINDS) or kinds == {"distance"} or (kinds <= set(LINE_KINDS) and parallel)):
         return f'constrains the same motion of {between} as joint "{other.name}"'
     return None
 

@@ -9,7 +9,7 @@ import numpy as np
 from ..base.rotations import cross
 from ..errors import FunicularWarning, SceneError
 from ..kernels.elements import built_in
-from ..parts.joint import DRIVEN, LINES, POINTS, UNITS, Joint
+from ..parts.joint import DRIVE_UNITS, DRIVEN, LINE_KINDS, POINT_KINDS, Joint
 from ..parts.locations import point_of
 from ..parts.scene_data import SceneData
 from ..parts.validation import LENGTH_TOLERANCE, show
@@ -61,8 +61,8 @@ def check_drive(scene: SceneData, joint: Joint) -> None:
         start = float(np.linalg.norm(b - a))
     value = float(joint.prescribed.value(0.0))
     if abs(value - start) > (LENGTH_TOLERANCE if joint.joint_kind != "distance" else MOVABLE) * size:
-        raise SceneError(joint.where, f"{name} is {show(value, UNITS[name])} at t = 0, but the joint starts at "
-                         f"{show(start, UNITS[name])}", 'let it start there, or start with initial="equilibrium"')
+        raise SceneError(joint.where, f"{name} is {show(value, DRIVE_UNITS[name])} at t = 0, but the joint starts at "
+                         f"{show(start, DRIVE_UNITS[name])}", 'let it start there, or start with initial="equilibrium"')
 
 
 def _completed(scene: SceneData, joint: Joint) -> dict:
@@ -107,10 +107,10 @@ def _extent(points: list[np.ndarray]) -> float:
 def _gap(scene: SceneData, joint: Joint) -> float:
     """Return how far in m the ends are from where the joint holds them."""
     apart = point_of(scene, joint.b) - point_of(scene, joint.a)
-    if joint.joint_kind in LINES:
+    if joint.joint_kind in LINE_KINDS:
         return float(np.linalg.norm(cross(joint.axes[:, 2], apart)))
     distance = float(np.linalg.norm(apart))
-    if joint.joint_kind in POINTS:
+    if joint.joint_kind in POINT_KINDS:
         return distance
     return 0.0 if joint.length is None else abs(distance - joint.length)
 
@@ -119,9 +119,9 @@ def _apart(scene: SceneData, joint: Joint, gap: float) -> str:
     """Return a sentence on a gap."""
     a, b = point_of(scene, joint.a), point_of(scene, joint.b)
     at = f"a at {show(a)} and b at {show(b, 'm')}"
-    if joint.joint_kind in POINTS:
+    if joint.joint_kind in POINT_KINDS:
         return f"its ends are {gap:.6g} m apart at the start, {at}"
-    if joint.joint_kind in LINES:
+    if joint.joint_kind in LINE_KINDS:
         return f"its ends are {gap:.6g} m apart across the axis at the start, {at}"
     return f"its ends are {np.linalg.norm(b - a):.6g} m apart at the start, and not {joint.length:.6g} m, {at}"
 

@@ -1,4 +1,4 @@
-"""Attachments: what springs, joints and flexible riders are attached to."""
+"""Attachments: points of cables, bodies and the ground."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ import numpy as np
 
 from .part import Part
 from .schemas import attachment_schema, checked
-from .validation import NAMES_A_PART, Vector, number, place_on, show, shown, vector3, xyz
+from .validation import NAMES_A_PART, Vector, items, number, place_on, show, shown, vector3, xyz
 
 
 class Attachment(Part):
-    """A place: ``s`` (m) of the cable ``on``, or the point ``at`` (m) of the body ``on``, or of the ground (on None).
+    """A point: ``s`` (m) of the cable ``on``, or ``at`` (m) of the body ``on`` or of the ground (on None).
 
-    What it is on is found out when its part is added to a scene; until then a name alone has neither s nor at.
+    Before its part is added to a scene, the name of a cable or body alone has neither s nor at.
     """
 
     on: Annotated[str, NAMES_A_PART] | None = None
@@ -24,18 +24,18 @@ class Attachment(Part):
 
     @property
     def arc_length(self) -> float:
-        """Return s in m, of a complete attachment to a cable."""
+        """Return s in m of a complete attachment to a cable."""
         assert self.s is not None, f"{self!r} is not complete"
         return self.s
 
     @property
     def point(self) -> Vector:
-        """Return the point in m, of a complete attachment to a body or to the ground."""
+        """Return the point in m of a complete attachment to a body or to the ground."""
         assert self.at is not None, f"{self!r} is not complete"
         return self.at
 
     def as_given(self) -> Any:
-        """Return it as a scene file has it: [x, y, z], "A", ["A", [x, y, z]] or ["wire", s]."""
+        """Return its form in a scene file: [x, y, z], "A", ["A", [x, y, z]] or ["wire", s]."""
         place = self.s if self.s is not None else self.at
         return place if self.on is None else self.on if place is None else [self.on, place]
 
@@ -46,24 +46,21 @@ class Attachment(Part):
 
 
 def _attachment(value: Any) -> Attachment:
+    """Return the attachment that a value describes. Raises ValueError."""
     if isinstance(value, Attachment):
         return value
-    value = value.tolist() if hasattr(value, "tolist") else value
-    on = getattr(value, "name", value)
-    if isinstance(on, str):
+    if isinstance(on := getattr(value, "name", value), str):
         return Attachment(on=on)
-    remedy = 'give a point (x, y, z), a body, ("body", (x, y, z)) or ("cable", s)'
-    if not isinstance(value, list | tuple) or len(value) not in (2, 3):
-        raise ValueError(f"must be an end, got {shown(value)}", remedy)
-    if len(value) == 3:
-        return Attachment(at=vector3(value, "m"))
-    on, place = getattr(value[0], "name", value[0]), value[1]
-    if not isinstance(on, str):
-        raise ValueError(f"must be an end, got {shown(value)}", remedy)
+    if (given := items(value, 3, 3)) is not None:
+        return Attachment(at=vector3(given, "m"))
+    on, place = items(value, 2, 2) or (None, None)
+    if not isinstance(on := getattr(on, "name", on), str):
+        raise ValueError(f"must be an end, got {shown(value)}",
+                         'give a point (x, y, z), a body, ("body", (x, y, z)) or ("cable", s)')
     if isinstance(place, list | tuple) or (isinstance(place, np.ndarray) and place.ndim):
         return Attachment(on=on, at=vector3(place, "m"))
     return Attachment(on=on, s=number(place, "m"))
 
 
 AnyAttachment = Annotated[Attachment, checked(_attachment, attachment_schema('["A", [x, y, z]] or [x, y, z]'))]
-"""An attachment, or what `Attachment.as_given` gives, with a part of the scene for its name where that is at hand."""
+"""An attachment, or its form of `Attachment.as_given`, with parts in place of their names."""

@@ -1,5 +1,4 @@
-"""Modes of a body and its inertia integrals, from the user's arrays or file; body_modes.py makes them of a mesh.
-"""
+"""Modes of a body and its inertia integrals, from arrays or a file; body_modes.py computes them of a mesh."""
 
 from __future__ import annotations
 
@@ -16,11 +15,11 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
 
 ARRAYS = ("nodes", "modes", "masses", "stiffness")
-SYMMETRIC, ORTHOGONAL, DEFINITE = 1e-9, 1e-6, 1e-10
-"""Parts of the largest entry, or cosines, up to which a matrix is what it should be."""
+SYMMETRY_TOLERANCE, ORTHOGONALITY_TOLERANCE, DEFINITENESS_TOLERANCE = 1e-9, 1e-6, 1e-10
+"""Tolerances of a symmetric, an orthogonal and a positive definite matrix, relative or as a cosine."""
 
 
-@dataclass(eq=False)  # a body is the same by what describes it
+@dataclass(eq=False)  # bodies are compared by their entries
 class Shape:
     """n modes of a body in its own axes, on N nodes.
 
@@ -49,15 +48,13 @@ class Shape:
 
     @cached_property
     def vibrations(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the squares of angular frequencies with the frame held (n,), in rad²/s², and their shapes by columns
-        (n, n).
-        """
-        from scipy.linalg import eigh  # SciPy would double the time of `import funicular`
+        """Return squares of angular frequencies (n,) with the frame held, in rad²/s², and shapes by columns (n, n)."""
+        from scipy.linalg import eigh  # slow to import
 
         return eigh(self.stiffness, self.modal_mass)
 
     def damping(self, ratio: float) -> np.ndarray:
-        """Return (n, n) in N s/m: this part of critical damping in each vibration with the frame held."""
+        """Return (n, n) in N s/m: a ratio of critical damping of each vibration with the frame held."""
         squares, V = self.vibrations
         MV = self.modal_mass @ V
         return MV @ np.diag(2 * ratio * np.sqrt(np.maximum(squares, 0))) @ MV.T
@@ -74,16 +71,16 @@ class Shape:
         return np.block([[rigid, coupling], [coupling.T, np.einsum("klii->kl", X)[1:, 1:]]])
 
     def indefinite(self, dim: int) -> str:
-        """Return what has no mass of its own; empty where the mass matrix is positive definite."""
+        """Return the motions without mass, in words; empty where the mass matrix is positive definite."""
         M = self.mass_matrix(dim)
         names = [*"xyz"[:dim], *(f"the turn about {axis}" for axis in ("z" if dim == 2 else "xyz")),
                  *(f"mode {k + 1}" for k in range(self.n))]
         scale = np.diag(M)
         for name, value in zip(names, scale, strict=True):
-            if not value > DEFINITE**2 * scale.max():
+            if not value > DEFINITENESS_TOLERANCE**2 * scale.max():
                 return f"{name} moves no mass"
         values, vectors = np.linalg.eigh(M / np.sqrt(np.outer(scale, scale)))
-        if values[0] > DEFINITE:
+        if values[0] > DEFINITENESS_TOLERANCE:
             return ""
         mixed = [name for name, part in zip(names, np.abs(vectors[:, 0]), strict=True) if part > 1e-3]
         return f"{', '.join(mixed)} together move no mass: one follows from the others"
@@ -97,8 +94,8 @@ def _turn(i: int, j: int, dim: int) -> np.ndarray:
 
 def of_points(nodes: ArrayLike, modes: ArrayLike, masses: ArrayLike, stiffness: ArrayLike,
               rotations: ArrayLike | None = None, orthogonal: bool = True) -> Shape:
-    """Return the shape made of mass points: nodes (N, 3), modes (n, N, 3), masses (N,), stiffness (n, n), rotations (n,
-    N, 3) or none.
+    """Return the shape of mass points: nodes (N, 3), modes (n, N, 3), masses (N,), stiffness (n, n), and rotations
+    (n, N, 3) or None.
 
     Raises ValueError(cause, remedy).
     """
@@ -115,12 +112,12 @@ def of_points(nodes: ArrayLike, modes: ArrayLike, masses: ArrayLike, stiffness: 
     if not (len(masses) and masses.min() >= 0 and masses.sum() > 0):
         raise ValueError("array masses must not be negative, and not all zero, got "
                          f"{masses.min(initial=0):.6g} kg at least")
-    if np.abs(stiffness - stiffness.T).max(initial=0) > SYMMETRIC * np.abs(stiffness).max(initial=0):
+    if np.abs(stiffness - stiffness.T).max(initial=0) > SYMMETRY_TOLERANCE * np.abs(stiffness).max(initial=0):
         i, j = np.unravel_index(np.argmax(np.abs(stiffness - stiffness.T)), stiffness.shape)
         raise ValueError(f"array stiffness must be symmetric, got {stiffness[i, j]:.9g} and {stiffness[j, i]:.9g} N/m "
                          f"for modes {i + 1} and {j + 1}")
     lowest = np.linalg.eigvalsh(stiffness).min(initial=0)
-    if lowest < -SYMMETRIC * np.abs(stiffness).max(initial=0):
+    if lowest < -SYMMETRY_TOLERANCE * np.abs(stiffness).max(initial=0):
         raise ValueError(f"array stiffness must not be negative, got the eigenvalue {lowest:.6g} N/m")
     fields = np.concatenate([nodes[None], modes])
     shape = Shape(nodes, modes, rotations, (stiffness + stiffness.T) / 2, float(masses.sum()),
@@ -139,7 +136,7 @@ def _has_shape(name: str, array: np.ndarray, expected: tuple, cause: str = "") -
 def _is_orthogonal(M: np.ndarray) -> None:
     scale = np.sqrt(np.maximum(np.diag(M), np.finfo(float).tiny))
     cosine = np.abs(M / np.outer(scale, scale)) - np.eye(len(M))
-    if len(M) > 1 and cosine.max() > ORTHOGONAL:
+    if len(M) > 1 and cosine.max() > ORTHOGONALITY_TOLERANCE:
         i, j = np.unravel_index(np.argmax(cosine), cosine.shape)
         raise ValueError(f"modes {i + 1} and {j + 1} are not orthogonal in the mass: the cosine between them is "
                          f"{cosine[i, j]:.3g}", "mend them, or take orthogonal=False: their full mass matrix is used")

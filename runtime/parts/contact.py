@@ -13,9 +13,9 @@ from .schemas import POINT, Turning, checked, list_schema
 from .validation import Listed, Name, Vector, items, not_negative, number, positive, shown, vector3, within
 
 MAX_POINTS = 16
-"""Of a body: engine/couplings/contact/contact.h."""
+"""Of a body, as in engine/couplings/contact/contact.h."""
 GAUSS_POINTS = 6
-"""Of an element of a cable: enough for one that touches in part; see tests/benchmarks/contact.py."""
+"""Of an element of a cable, also in partial contact; see tests/benchmarks/contact.py."""
 
 
 EXPONENTS = (1.0, 1.5)
@@ -39,13 +39,13 @@ def _points(value: Any) -> tuple[Vector, ...]:
 
 
 class Contact(Part):
-    """Contact of a cable along its length, or of points of a body, with a `Surface`: it presses and never pulls.
+    """Unilateral contact of a cable along its length, or of points of a body, with a `Surface`.
 
     It acts by penalty, with ``stiffness``, or is hard, with ``restitution``: points of a body then do not penetrate.
-    The force of a penalty is ``stiffness d^exponent (1 + damping d')`` at the depth d, a length of a cable or on each
-    point of a body. With the damping c, a ball that strikes with the speed v comes back with e v, where v - ln(1 + c
-    v)/c is the same for v and for -e v. In statics friction acts against the displacement from the drawn position. On
-    spheres about a body's points it acts where they touch, with its moment; along cables it acts on the axis.
+    The penalty force is ``stiffness d^exponent (1 + damping d')`` at the depth d, a length of a cable or on each
+    point of a body. With the damping c, a ball rebounds from the speed v with e v, where v - ln(1 + c v)/c is equal for
+    v and -e v. In statics friction acts against the displacement from the drawn position. On spheres about a body's
+    points it acts at the point of contact, with its moment; along cables it acts on the axis.
 
     a: the cable or the body; a list, or "all" of the scene: a contact is added for each pair, and a name given gets a
         number
@@ -54,11 +54,11 @@ class Contact(Part):
     exponent: 1, or 1.5 (Hertz)
     damping: s/m (Hunt and Crossley)
     friction: Coulomb's coefficient, or a `Friction` with the model "stick"
-    tangential_stiffness: of the spring that holds what sticks, N/m; by default that of the normal force. Along a cable
-        that sticks, tension falls over the length √(EA/tangential_stiffness)
+    tangential_stiffness: of the spring of sticking friction, N/m; by default that of the normal force. Along a sticking
+        cable, tension decays over the length √(EA/tangential_stiffness)
     radius: of the cable, m, by default that of its section, 0 for its centreline; of spheres about a body's points
-    restitution: part of the normal velocity with which points come back, 0 to 1 (Newton)
-    rest_velocity: what would come back by less stays, m/s
+    restitution: normal velocity after an impact over that before it, 0 to 1 (Newton)
+    rest_velocity: normal velocity below which points stay in contact after an impact, m/s
     points: of a body, in its axes, m; by default its origin
     """
 
@@ -69,11 +69,11 @@ class Contact(Part):
     results: ClassVar[dict[str, Quantity]] = all_of_engine(
         "contact",
         force="force of the surface on the cable or body",
-        friction_force="the part of it that is friction",
+        friction_force="friction component of the force",
         penetration="largest depth below the surface",
-        touching="length of the cable that touches, m, or number of points that do",
-        first="arc-length of the cable where it begins to touch, NaN where it does not",
-        last="arc-length of the cable where it touches last, NaN where it does not",
+        touching="length of the cable in contact, m, or number of points in contact",
+        first="first arc-length of the cable in contact, NaN without contact",
+        last="last arc-length of the cable in contact, NaN without contact",
     ) | all_of_engine("hard_contact", gap="of a hard contact: least distance of its points from the surface, else NaN")
     name: Name | None = None
     a: Listed
@@ -92,7 +92,7 @@ class Contact(Part):
 
     @property
     def is_hard(self) -> bool:
-        """Return whether it has a constraint in place of a stiffness."""
+        """Return whether it is a constraint in place of a stiffness."""
         return self.restitution is not None
 
     @property
@@ -102,7 +102,7 @@ class Contact(Part):
 
     @property
     def has_friction_spring(self) -> bool:
-        """Return whether a spring holds what sticks."""
+        """Return whether sticking friction has a spring."""
         return not self.is_hard and self.friction_coefficient > 0
 
     @model_validator(mode="after")
@@ -110,7 +110,7 @@ class Contact(Part):
         if self.friction is not None:
             self.friction.check_coulomb()
             if self.friction.model == "regularised":
-                raise ValueError("has friction that sticks, and no other", 'leave model="regularised" out')
+                raise ValueError("has no regularised friction", 'leave model="regularised" out')
         return self
 
     @model_validator(mode="after")

@@ -1,4 +1,4 @@
-"""Two lines that touch at their closest points: a cable and a bar, a cable and another cable."""
+"""Contact of two lines at their closest points: of a cable with a bar or with another cable."""
 
 from __future__ import annotations
 
@@ -17,24 +17,24 @@ from .validation import Listed, Name, Vector, direction, not_negative, positive,
 
 
 class Crossing(Part):
-    """Contact of a cable with a line that crosses it, at the points where both are closest.
+    """Contact of a cable with a line that crosses it, at the closest points of both.
 
     The line is another cable or a straight bar; both are round. The lines cannot pass through each other. Beyond the
-    ends of cables and bars there is no contact; a bar that comes in over its end and overlaps brings the energy of that
-    from outside. A crossing has one point of contact; of several possible ones the one that is closest at the start.
+    ends of cables and bars there is no contact; a bar that enters over its end with penetration adds its energy. A
+    crossing has one point of contact, of several possible ones the closest at the start.
 
     a: the cable; a list, or "all" of the scene: a crossing is added for each pair, and a name given gets a number
     b: the other cable, or the body or (None) the ground that carries a bar; or a list, or "all"
     at: middle of a bar in the body's axes, m
     axis: direction of a bar in the body's axes; a bar in a planar scene is square to the plane
     length: reach of a bar to each side, m
-    radius: distance of both axes at which they touch, m; by default the sum of the radii of the cables' sections, 0 of
+    radius: distance of the axes in contact, m; by default the sum of the radii of the cables' sections, 0 of
         a bar
     stiffness: k of the force ``k p^e (1 + damping p')`` at the penetration p, N/m or N/m^1.5
     exponent: e, 1, or 1.5 (Hertz)
     damping: s/m (Hunt and Crossley)
     friction: a coefficient, or a `Friction`, along both lines: smooth in the speed of slip, or with the model "stick"
-    tangential_stiffness: of the spring that holds what sticks, N/m; by default ``stiffness``. In statics friction acts
+    tangential_stiffness: of the spring of sticking friction, N/m; by default ``stiffness``. In statics friction acts
         against the displacement from the drawn position
     side: direction from b to a, along the ground's axes; by default as at the start
     """
@@ -46,10 +46,10 @@ class Crossing(Part):
     results: ClassVar[dict[str, Quantity]] = all_of_engine(
         "crossing",
         force="contact force on the cable a",
-        friction_force="the part of it that is friction",
-        sticking="1 where the lines touch and friction holds them, else 0",
+        friction_force="friction component of the force",
+        sticking="1 while the lines are in contact and stick, else 0",
         normal_force="size of the contact force along the normal",
-        penetration="penetration of both lines, negative where they are apart",
+        penetration="penetration of both lines, negative for a gap",
         s="arc-length of the closest point on the cable a",
         s_b="arc-length of the closest point on b, of a bar from its middle",
         position="closest point on the axis of the cable a",
@@ -70,7 +70,7 @@ class Crossing(Part):
 
     @property
     def has_friction_spring(self) -> bool:
-        """Return whether a spring holds what sticks."""
+        """Return whether sticking friction has a spring."""
         return self.friction is not None and self.friction.sticks
 
     @model_validator(mode="after")

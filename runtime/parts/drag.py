@@ -1,4 +1,4 @@
-"""What a fluid does to a cable or a body: drag and buoyancy."""
+"""Forces of a fluid on a cable or a body: drag, lift, buoyancy and added mass."""
 
 from __future__ import annotations
 
@@ -140,7 +140,7 @@ class Drag(Part):
         return np.array(C)[:dim, :dim]
 
     def width(self, cable: Cable) -> float:
-        """Return the diameter that drag counts with, m. Raises ValueError where the section has none."""
+        """Return the diameter of drag, m. Raises ValueError where the section has none."""
         if self.diameter is not None:
             return self.diameter
         radius = outer_radius_of(cable.section)
@@ -149,7 +149,7 @@ class Drag(Part):
         return 2 * radius
 
     def extent(self, cable: Cable | None) -> float:
-        """Return half of the height of what a surface cuts, in m: of a cable's section, or of a body. 0: of a point."""
+        """Return half of the height of a cable's section or of a body at a surface, in m; 0 for a point."""
         if cable is None:
             if self.height is not None:
                 return self.height / 2
@@ -160,7 +160,7 @@ class Drag(Part):
             return math.sqrt(self.displaced(cable) / math.pi)
 
     def displaced(self, cable: Cable | None) -> float:
-        """Return the displaced volume: of a cable that of a length, m²; of a body all of it, m³."""
+        """Return the displaced volume, of a cable by length, m², of a body in all, m³."""
         if cable is None:
             return self.volume
         if self.displaced_area is not None:

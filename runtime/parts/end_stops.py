@@ -1,4 +1,4 @@
-"""What waits for a slide at an end of its cable."""
+"""The ends of cables for slides: stops, and what else happens there."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from .schemas import checked
 from .validation import not_negative, positive, within
 
 WORDS = ("error", "leave")
-"""The run ends with an `EndOfCableError`; the rider leaves the cable and flies on."""
+"""The run ends with an `EndOfCableError`; the rider leaves the cable."""
 
 
 class Stop(Part):
-    """Base of what stops a rider at an end of its cable."""
+    """Base of the stops at an end of a cable."""
 
     tag: ClassVar[str] = "stop"
     stop: ClassVar[str]
@@ -25,7 +25,7 @@ class Stop(Part):
 class HardStop(Stop):
     """A stop at the end of a cable.
 
-    restitution: part of the speed with which a rider comes back, 0 to 1
+    restitution: speed of the rider after the impact over that before it, 0 to 1
     """
 
     stop: ClassVar[str] = "hard"
@@ -33,9 +33,9 @@ class HardStop(Stop):
 
 
 class Buffer(Stop):
-    """A spring with a damper before the end of a cable: it pushes back and never pulls.
+    """A spring with a damper before the end of a cable, without tension.
 
-    A rider that crosses it whole reaches the end, with an `EndOfCableError`.
+    A rider that compresses it completely reaches the end, with an `EndOfCableError`.
 
     length: of the buffer, before the end, m
     stiffness: N/m
@@ -58,7 +58,7 @@ STOPS = Family("stop", "a word or a stop such as HardStop(restitution=0.5)", (Ha
 
 
 def _end(value: Any) -> str | Stop:
-    """Return one of the words, a stop, or the stop that a table describes. Raises ValueError."""
+    """Return a word, or the stop that a value describes. Raises ValueError."""
     if not isinstance(value, str):
         return STOPS.part(value, "words: " + ", ".join(WORDS))
     if value not in WORDS:

@@ -1,4 +1,4 @@
-"""Events: the instant at which a quantity passes a value, or a function of the user's changes sign."""
+"""Events: instants at which a quantity passes a value, or a function changes sign."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def _text(value: Any) -> str | None:
 
 
 class Event(Part):
-    """An instant at which a quantity passes a value; steps end on it.
+    """The instants at which a quantity passes a value; steps end there.
 
     quantity: "A.position.y" or "A.velocity.x" of a body, "wire.position.z" or "wire.velocity.z" of the node of a cable
         at ``s``, "wire.least_strain", the least axial strain in the middles of a cable's elements, "trolley.s",
@@ -50,11 +50,11 @@ class Event(Part):
 
     @property
     def watched(self) -> str | None:
-        """Return the name of the part whose quantity it watches, None where it has a function."""
+        """Return the name of the part of its quantity, None for a function."""
         return None if self.quantity is None else self.quantity.partition(".")[0]
 
     def refers_to(self) -> Iterator[str]:
-        """Yield the name of the part whose quantity it watches."""
+        """Yield the name of the part of its quantity."""
         if self.watched is not None:
             yield self.watched
 

@@ -1,4 +1,4 @@
-"""Springs whose tension is piecewise linear in their extension: those that pull alone, free play, tables."""
+"""Springs with piecewise linear tension: tension only, free play, tables."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .part import Part
 from .validation import check_function, list_of, show
 
 PUSHES_ALONE, PULLS_AND_PUSHES, PULLS_ALONE, HAS_NO_FORCE = -1, 0, 1, 2
-"""What a piece of a law may do, as in runtime/engine/couplings/force/point_force.h."""
+"""Signs of the force of a linear segment, as in runtime/engine/couplings/force/point_force.h."""
 
 
 class ForceTable(Part):
@@ -43,9 +43,9 @@ class ForceTable(Part):
 
 @dataclass(frozen=True)
 class Piece:
-    """The tension of a spring up to the extension ``end`` (m): ``tension`` (N) at ``at`` (m), of slope ``stiffness``.
+    """A linear segment up to the extension ``end`` (m): ``tension`` (N) at ``at`` (m), of slope ``stiffness`` (N/m).
 
-    sense: what the piece may do. energy: at ``at``, in J.
+    sense: signs of its force; energy: at ``at``, in J.
     """
 
     end: float
@@ -57,20 +57,20 @@ class Piece:
 
 
 def pulling(start: float, stiffness: float) -> list[Piece]:
-    """Return the pieces of a spring that has no force up to an extension, and pulls beyond it."""
+    """Return the segments of a spring without force up to an extension, and with tension beyond it."""
     return [Piece(start, start, 0.0, 0.0, HAS_NO_FORCE), Piece(np.inf, start, 0.0, stiffness, PULLS_ALONE)]
 
 
 def with_play(play: float, stiffness: float) -> list[Piece]:
-    """Return the pieces of a spring that pushes, has no force over the length ``play`` (m) about nil, and pulls."""
+    """Return the segments of a spring without force over the length ``play`` (m) about zero extension."""
     half = play / 2
     return [Piece(-half, -half, 0.0, stiffness, PUSHES_ALONE), *pulling(half, stiffness)]
 
 
 def tabulated(table: ForceTable, pulls_alone: bool) -> list[Piece]:
-    """Return the pieces of a table; pulls_alone: where its tension is not above nil there is none.
+    """Return the segments of a table; pulls_alone: without its compression.
 
-    Raises ValueError where a table that pulls alone has tension at no extension, or loses it again.
+    Raises ValueError for a table without compression that has no tension, or loses it with extension.
     """
     x, T = np.array(table.extension), np.array(table.tension)
     slopes = np.diff(T) / np.diff(x)
@@ -88,7 +88,7 @@ def tabulated(table: ForceTable, pulls_alone: bool) -> list[Piece]:
 
 
 def _loses_force(x: np.ndarray, T: np.ndarray, slopes: np.ndarray) -> float:
-    """Return the extension below which a table has no tension, and above which it has."""
+    """Return the extension at which the tension of a table begins."""
     if T[0] > 0:
         if slopes[0] <= 0:
             raise ValueError("with tension_only, a table must have no tension at small extensions",
@@ -102,7 +102,7 @@ def _loses_force(x: np.ndarray, T: np.ndarray, slopes: np.ndarray) -> float:
 
 
 def _with_energies(pieces: Sequence[Piece]) -> list[Piece]:
-    """Return the pieces with their energies, of which those of a table are nil at the extension nil, if it may be."""
+    """Return the segments with their energies; that of a table is zero at zero extension."""
     at = [p.at for p in pieces]
     rises = [p.tension * (b - p.at) + p.stiffness * (b - p.at) ** 2 / 2
              for p, b in zip(pieces[:-1], at[1:], strict=True)]

@@ -1,4 +1,4 @@
-"""Joints between bodies, places of cables and the ground."""
+"""Joints between bodies, points of cables and the ground."""
 
 from __future__ import annotations
 
@@ -14,21 +14,19 @@ from .quantity import Quantity, all_of_engine
 from .signal import AnySignal, Integral, Signal
 from .validation import Name, Vector, direction, one_of, positive, show
 
-POINTS, LINES = ("spherical", "revolute", "universal", "weld"), ("prismatic", "cylindrical")
-"""The kinds that keep two points together, and those that keep a point on a line."""
-
-KINDS = (*POINTS, *LINES, "distance")
+POINT_KINDS, LINE_KINDS = ("spherical", "revolute", "universal", "weld"), ("prismatic", "cylindrical")
+"""Kinds that hold two points together, and kinds that hold a point on a line."""
+JOINT_KINDS = (*POINT_KINDS, *LINE_KINDS, "distance")
 
 DRIVEN = {"revolute": "angle", "cylindrical": "angle", "prismatic": "distance", "distance": "distance"}
-"""The quantity that a joint can be driven by, itself or its rate."""
-
-UNITS = {"angle": "rad", "distance": "m"}
+"""The quantity that drives a joint, itself or by its rate."""
+DRIVE_UNITS = {"angle": "rad", "distance": "m"}
 
 
 class Joint(Part):
     """A joint between two attachments.
 
-    Equations that follow from those of joints before are left out, and the report names them (a door on two hinges).
+    Redundant equations, as of a door on two hinges, are left out, and the report names them.
 
     | kind | constrains | leaves free |
     |---|---|---|
@@ -65,7 +63,7 @@ class Joint(Part):
         moment="moment on what carries the end b, about that end",
         residual="largest of its equations, in m or of cosines",
     )
-    joint_kind: Annotated[str, one_of(KINDS)] = Field(alias="kind")
+    joint_kind: Annotated[str, one_of(JOINT_KINDS)] = Field(alias="kind")
     name: Name | None = None
     a: AnyAttachment
     b: AnyAttachment
@@ -81,7 +79,7 @@ class Joint(Part):
     def _has_what_it_needs(self) -> Joint:
         if self.a.on is None and self.b.on is None:
             raise ValueError("has both ends on the ground", "put one of them on a cable or a body")
-        with_axis = {"axis": (*LINES, "revolute", "universal"), "second_axis": ("universal",)}
+        with_axis = {"axis": (*LINE_KINDS, "revolute", "universal"), "second_axis": ("universal",)}
         for name, kinds in with_axis.items():
             given, has_one = getattr(self, name) is not None, self.joint_kind in kinds
             if given and not has_one:
@@ -116,22 +114,22 @@ class Joint(Part):
 
     @property
     def is_driven(self) -> bool:
-        """Return whether a signal moves it."""
+        """Return whether a signal drives it."""
         return any(signal is not None for signal in (self.angle, self.distance, self.velocity))
 
     @property
     def prescribed(self) -> Signal | None:
-        """Return its angle (rad) or distance (m) over time, see `DRIVEN`, where it is driven."""
+        """Return its driven angle (rad) or distance (m) over time, see `DRIVEN`, else None."""
         if self.velocity is not None:
             return Integral(rate=self.velocity, start=self.length or 0.0)
         return self.distance if self.angle is None else self.angle
 
     @property
     def axes(self) -> np.ndarray:
-        """Return (3, 3): its axes at the start, as columns, along the ground's: z is ``axis``.
+        """Return (3, 3): its axes at the start, as columns, along the ground's; z is ``axis``.
 
-        x is ``second_axis`` where there is one; else y is the ground's axis farthest from z, made square to it: of
-        equals the last, so that in a plane z = 0 a line's y is the plane's normal. Without axis: the ground's own.
+        x is ``second_axis`` where it is given. Else y is the ground's axis most nearly across z, the last of equals,
+        in a plane z = 0 its normal. Without axis they are the ground's axes.
         """
         if self.axis is None:
             return np.eye(3)
@@ -148,7 +146,7 @@ class Joint(Part):
             yield from (f"{name} {quantity}" for quantity in end.off_plane())
         if self.joint_kind == "universal":
             yield "a universal joint"
-        elif self.joint_kind in LINES:
+        elif self.joint_kind in LINE_KINDS:
             if self.axis is not None and self.axis[2]:
                 yield f"axis {show(self.axis)}"
             if self.joint_kind == "cylindrical" and self.is_driven:

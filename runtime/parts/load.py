@@ -45,7 +45,7 @@ class Force(Load):
 
     @property
     def along(self) -> str | None:
-        """Return what carries the axes that its components are along, None for the ground."""
+        """Return the part in whose axes its components are, None for the ground."""
         return self.on if self.follower else None
 
 
@@ -68,7 +68,7 @@ class DistributedForce(Load):
 
     @property
     def along(self) -> str | None:
-        """Return what carries the axes that its components are along, None for the ground."""
+        """Return the cable in whose axes its components are, None for the ground."""
         return self.cable if self.follower else None
 
     @model_validator(mode="after")

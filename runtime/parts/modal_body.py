@@ -106,7 +106,7 @@ class ModalBody(Part):
 
     @property
     def mesh(self) -> Cable:
-        """Return the mesh that the modes are of, in body axes from its start."""
+        """Return the mesh of its modes, in body axes from its start."""
         return Cable(name=self.name, start=(0, 0, 0), end=(self._drawn.length, 0, 0), elements=self.elements,
                      element=self.element, law=self.law, section=self.section, material=self.material)
 
@@ -117,18 +117,17 @@ class ModalBody(Part):
 
     @property
     def offset(self) -> float:
-        """Return how far along the beam the frame's origin is, in m."""
+        """Return the position of the frame's origin along the beam, in m."""
         return 0.0 if self.boundary == "attached" else self._drawn.length / 2
 
     @cached_property
     def shape(self) -> Shape:
-        """Return its modes and inertia: those of its file, or of its mesh, which a scene has made when it is asked for
-        them.
+        """Return its modes and inertia, of its file, or of its mesh by way of its scene.
 
-        Raises SceneError for a mesh of a body that is in no scene.
+        Raises SceneError for the mesh of a body without scene.
         """
         if self.data is not None:
-            from .body_shape import of_file  # for these bodies alone: `import funicular` stays quick
+            from .body_shape import of_file  # slow to import
 
             return of_file(self.data, self.orthogonal)
         if self._of_mesh is None:
@@ -137,14 +136,14 @@ class ModalBody(Part):
         return self._of_mesh(self)
 
     def with_modes_by(self, of_mesh: Callable[[ModalBody], Shape]) -> Self:
-        """Return a copy that has the modes of its mesh made by ``of_mesh``, once, when they are first asked for."""
+        """Return a copy whose modes ``of_mesh`` computes on the first access."""
         copy = self.model_copy()
         copy._of_mesh = of_mesh
         return copy
 
     @property
     def modes_in_words(self) -> str:
-        """Return which modes it has, for a run's report."""
+        """Return a description of its modes for the report of a run."""
         squares, _ = self.shape.vibrations
         hertz = np.sqrt(np.maximum(squares, 0)) / (2 * np.pi)
         kind = "of a file" if self.data is not None else {
@@ -154,18 +153,17 @@ class ModalBody(Part):
 
     @property
     def frame(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return where the frame's origin starts, (3,) in m, and its attitude, (4,) unit quaternion."""
+        """Return the initial position (3,) in m and orientation (4,), a unit quaternion, of its frame."""
         if self.data is not None:
             return np.array(self.position), np.array(self.orientation)
         axes = self._drawn.axes.T
         return np.array(self.start) + self.offset * axes[:, 0], quaternion(axes)
 
     def attachment_modes(self, at: Vector) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the point ``at`` (m, body axes) as the engine has it: undeformed (3,), and there modes and turns (n,
-        3).
+        """Return the point ``at`` (m, body axes) for the engine: undeformed (3,), and its modes and rotations (n, 3).
 
-        It is a node, or goes with a node's section, where sections turn: of a beam any point across its axis there.
-        Raises ValueError(cause, remedy).
+        It is a node, or a point of the section at a node, of a beam any point across its axis there. Raises
+        ValueError(cause, remedy).
         """
         shape, point = self.shape, np.array(at, dtype=float)
         distance = np.linalg.norm(shape.nodes - point, axis=1)
@@ -178,7 +176,7 @@ class ModalBody(Part):
         return point, shape.modes[:, node] + np.cross(shape.rotations[:, node], arm), shape.rotations[:, node]
 
     def point(self, at: Vector) -> np.ndarray:
-        """Return (3,): where the body's point ``at`` (m, body axes) starts, in m."""
+        """Return (3,): the initial position of the point ``at`` (m, body axes), in m."""
         position, orientation = self.frame
         return position + rotate(orientation, at)
 
@@ -188,8 +186,7 @@ class ModalBody(Part):
         return rotate(self.frame[1], np.eye(3)).T
 
     def located(self, at: Vector | None = None, s: float | None = None) -> Vector:
-        """Return the point ``at`` or, of a beam, the one at the arc-length s (m), in body axes; the first end without
-        either.
+        """Return in body axes the point ``at``, or that of a beam at the arc-length s (m), by default the first node.
 
         Raises ValueError(cause, remedy).
         """

@@ -1,4 +1,4 @@
-"""Forces between two points: what springs and the like have in common."""
+"""Forces between two points, such as springs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .validation import Name
 
 
 class PointForce(Part):
-    """Base of forces along the gap between the points of two attachments, a and b.
+    """Base of forces along the line between the points of two attachments, a and b.
 
     The parameters of its law are fields of the same names. A further force is a class of this kind, an entry in
     kinds.py, and its law in derive/couplings/point_laws.
@@ -23,7 +23,7 @@ class PointForce(Part):
     positional: ClassVar[tuple[str, ...]] = ("a", "b")
     results: ClassVar[dict[str, Quantity]] = {
         "force": of_engine("point_force", "force", "force on the first end"),
-        "tension": of_time("N", "force with which the ends are drawn together"),
+        "tension": of_time("N", "force that draws the ends together"),
         "length": of_time("m", "distance of the ends"),
     }
     name: Name | None = None
@@ -32,21 +32,21 @@ class PointForce(Part):
 
     @property
     def law(self) -> str:
-        """Return the name of its law, that of a file in derive/couplings/point_laws."""
+        """Return the name of its law, a file in derive/couplings/point_laws."""
         return self.kind
 
     @property
     def loses_direction(self) -> bool:
-        """Return whether its force has no direction where its points meet."""
+        """Return whether it has a force, and so no direction, where its points meet."""
         return True
 
     @property
     def only_pulls(self) -> bool:
-        """Return whether it draws its ends together and never pushes them apart, as ropes and droppers do."""
+        """Return whether it has tension only, as ropes and droppers."""
         return False
 
     def at_distance(self, distance: float) -> Self:
-        """Return the part complete; distance: of its points at the start, m."""
+        """Return the part complete; distance: initial distance of its points, m."""
         return self
 
     @model_validator(mode="after")

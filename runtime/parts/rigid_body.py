@@ -1,4 +1,4 @@
-"""Rigid bodies: mass, inertia, position and attitude at the start."""
+"""Rigid bodies: mass, inertia, initial position and orientation."""
 
 from __future__ import annotations
 
@@ -32,21 +32,19 @@ def _check_inertia(matrix: np.ndarray) -> None:
 
 
 def unit_quaternion(value: Any) -> Quaternion:
-    """Return a unit quaternion, rounded to one."""
+    """Return a quaternion of unit length to 1e-3, normalised. Raises ValueError."""
     w, x, y, z = vector(value, size=4)
     quaternion, norm = (w, x, y, z), math.hypot(w, x, y, z)
     if abs(norm - 1) > 1e-3:
-        raise ValueError(
-            f"must be a unit quaternion (w, x, y, z), got {show(quaternion)}, of length {norm:.6g}",
-            "divide it by its length",
-        )
-    if abs(norm - 1) < 1e-15:  # already rounded to a unit: dividing again would only move the last digit
+        raise ValueError(f"must be a unit quaternion (w, x, y, z), got {show(quaternion)}, of length {norm:.6g}",
+                         "divide it by its length")
+    if abs(norm - 1) < 1e-15:  # a unit quaternion to rounding keeps its digits
         return quaternion
     return w / norm, x / norm, y / norm, z / norm
 
 
 Orientation = Annotated[Quaternion, checked(unit_quaternion, list_schema("", 4, 4), Turning(ORIENTATION, "name"))]
-"""The attitude of the body ``name``."""
+"""The orientation of the body ``name``."""
 
 
 def largest_moment(inertia: np.ndarray | Matrix) -> float:
@@ -56,7 +54,7 @@ def largest_moment(inertia: np.ndarray | Matrix) -> float:
 
 
 class RigidBody(Part):
-    """A rigid body. All points of the body count from its origin.
+    """A rigid body. Its points are given from its origin.
 
     mass: kg
     inertia: about the centre of mass, in body axes, 3 principal moments or 3x3, kg m²
@@ -93,7 +91,7 @@ class RigidBody(Part):
 
     @property
     def frame(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return where its origin starts, (3,) in m, and its attitude, (4,) unit quaternion."""
+        """Return its initial position (3,) in m and orientation (4,), a unit quaternion."""
         return np.array(self.position), np.array(self.orientation)
 
     @property
@@ -102,10 +100,10 @@ class RigidBody(Part):
         return rotate(self.orientation, np.eye(3)).T
 
     def arm(self, at: Vector) -> tuple[float, float, float]:
-        """Return the point ``at`` from the centre of mass, in body axes, in m: what the engine knows it by."""
+        """Return the point ``at`` from the centre of mass, in body axes, in m."""
         (x, y, z), (x0, y0, z0) = at, self.centre
         return x - x0, y - y0, z - z0
 
     def point(self, at: Vector) -> np.ndarray:
-        """Return (3,): where the body's point ``at`` (m, body axes) starts, in m."""
+        """Return (3,): the initial position of the point ``at`` (m, body axes), in m."""
         return np.array(self.position) + rotate(self.orientation, at)

@@ -1,4 +1,4 @@
-"""Slides: joints between a cable and a point that rides along its centreline."""
+"""Slides: joints between a cable and a point on its centreline."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .validation import Name, Reference, Vector, direction, items, one_of, place
 
 
 class Slide(Part):
-    """A point of a body, of another cable or of the ground that rides the centreline of a cable.
+    """A sliding joint: a point of a body, of another cable or of the ground rides the centreline of a cable.
 
     body: the rider: a body; ("link", s), the point of another cable; or a point (x, y, z) of the ground, an eyelet
         through which the cable slides
@@ -103,24 +103,24 @@ class Slide(Part):
         return self
 
     def entries(self) -> dict[str, Any]:
-        """Return what it could be made with; of an eyelet its point as the body."""
+        """Return its entries; the body of an eyelet is its point."""
         entries = super().entries()
         return entries if self.body is not None else {"body": self.at} | {k: v for k, v in entries.items() if k != "at"}
 
     def entries_with(self, changes: Mapping[str, Any]) -> dict[str, Any]:
-        """Return what a slide like this one is made with; another rider has its own point."""
+        """Return the entries with changes; another rider has its own point."""
         other = changes.get("body")
         point = ("at", "body_s") if other is not None and other != self.entries()["body"] else ()
         return super().entries_with(dict.fromkeys(point) | {**changes})
 
     @property
     def rider(self) -> Attachment:
-        """Return the point that rides."""
+        """Return the attachment that rides."""
         return Attachment(on=self.body, at=self.at) if self.body_s is None else Attachment(on=self.body, s=self.body_s)
 
     @property
     def arc_length(self) -> float:
-        """Return s in m, of a slide that a scene has completed."""
+        """Return s in m, of a complete slide."""
         assert self.s is not None, f"{self.where} is not complete"
         return self.s
 
@@ -131,5 +131,5 @@ class Slide(Part):
 
     @property
     def prescribed(self) -> Signal | None:
-        """Return s over time in m, where it is driven."""
+        """Return the driven s over time in m, else None."""
         return self.drive if self.velocity is None else Integral(rate=self.velocity, start=self.arc_length)

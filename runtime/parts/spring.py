@@ -41,11 +41,11 @@ class Spring(PointForce):
 
     @property
     def has_pieces(self) -> bool:
-        """Return whether its law differs by its extension. Distances are not negative, so that of no length pulls."""
+        """Return whether its law has several segments; a spring of zero length has tension only."""
         return self.table is not None or self.free_play > 0 or (self.tension_only and self.length != 0.0)
 
     def pieces(self) -> list[Piece]:
-        """Return the pieces of its law."""
+        """Return the segments of its law."""
         if self.table is not None:
             return tabulated(self.table, self.tension_only)
         assert self.stiffness is not None, f"{self.where} has no stiffness"
@@ -55,7 +55,7 @@ class Spring(PointForce):
 
     @property
     def loses_direction(self) -> bool:
-        """Return whether its force has no direction where its points meet: not if it is free of force there."""
+        """Return whether it has a force, and so no direction, where its points meet."""
         if self.length is None or not self.has_pieces:
             return self.length != 0.0
         meeting = next(piece for piece in self.pieces() if self.length + piece.end > 0)
@@ -63,12 +63,12 @@ class Spring(PointForce):
 
     @property
     def only_pulls(self) -> bool:
-        """Return whether it has no force but tension: with tension_only, or by its table."""
+        """Return whether it has tension only, by tension_only or its table."""
         return self.tension_only or (self.table is not None and all(
             piece.sense in (PULLS_ALONE, HAS_NO_FORCE) for piece in self.pieces()))
 
     def at_distance(self, distance: float) -> Self:
-        """Return the spring with its length, the distance of its points at the start if not given."""
+        """Return the spring with its length, by default the initial distance of its points."""
         return self.completed({"length": distance}) if self.length is None else self
 
     @model_validator(mode="after")

@@ -1,4 +1,4 @@
-"""What supports or joins the nodes of cables: pins, clamps, ties, prescribed motions."""
+"""Supports and ties of the nodes of cables: pins, clamps, prescribed motions."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from .validation import Name, Reference, Vector, direction, items, one_of, place
 
 
 def _called(cable: Any) -> str:
-    """Return what messages call a cable, given as itself, as its name, or as what is neither."""
+    """Return the name in messages of a cable, given as part, name or neither."""
     name = getattr(cable, "name", cable)
     return f'"{name}"' if isinstance(name, str) else shown(name)
 
 
 ON_CABLE = {"force": vector_of_time("N", "force on the cable"), "moment": vector_of_time("N m", "moment on the cable")}
-"""Quantities of what holds a section of a cable."""
+"""Results of supports that hold a section of a cable."""
 
 
 class Support(Part):
@@ -38,17 +38,17 @@ class Support(Part):
 
     @classmethod
     def title(cls, data: dict) -> str:
-        """Return how messages name the support."""
+        """Return the name of the support in messages."""
         return f"{cls.kind} on {_called(data.get('cable'))}"
 
     @property
     def label(self) -> str:
-        """Return the its name in the results, such as ``wire@0``."""
+        """Return its name in results, such as ``wire@0``."""
         return f"{self.cable}@{self.s + 0.0:.12g}"
 
 
 class Pin(Support):
-    """Holds the position of a cable's node at ``s`` (m) where it starts; its slopes stay free."""
+    """Holds the position of a cable's node at ``s`` (m); its slopes stay free."""
 
     kind: ClassVar[str] = "pin"
     group: ClassVar[str] = "pins"
@@ -71,22 +71,20 @@ class Clamp(Support):
 
 
 class Rotation(Part):
-    """A turn about ``axis``, fixed in the ground, by the signal ``angle`` in rad."""
+    """A rotation about ``axis``, fixed in the ground, by the signal ``angle`` in rad."""
 
     axis: Annotated[Vector, direction(turns=AXIS)]
     angle: Signal
 
     def as_given(self) -> list:
-        """Return it as a scene file has it: [axis, angle]."""
+        """Return its form in a scene file: [axis, angle]."""
         return [self.axis, self.angle]
 
 
 FREE = "free"
-"""A direction that a motion leaves free, in scenes."""
-
-
+"""A free direction of a motion."""
 Displacement = tuple[Signal | None, Signal | None, Signal | None]
-"""A signal for each direction, None for one that stays free."""
+"""A signal for each direction, None for a free one."""
 
 
 def _displacement(value: Any) -> Displacement | None:
@@ -110,7 +108,7 @@ def _component(axis: str, value: Any) -> Signal:
 
 
 def _of(name: str, error: ValueError) -> ValueError:
-    """Return the same complaint about a part of a quantity; a model's own errors name theirs."""
+    """Return an error of a component of a quantity, by the name of the component."""
     if hasattr(error, "errors"):
         first = error.errors(include_url=False)[0]
         cause = first.get("ctx", {}).get("error")
@@ -134,7 +132,7 @@ def _rotation(value: Any) -> Rotation | None:
     norm = math.hypot(*axis)
     if not norm > 0:
         raise ValueError("axis must not be zero")
-    if abs(norm - 1) > 1e-15:  # already rounded to a unit: dividing again would only move the last digit
+    if abs(norm - 1) > 1e-15:  # a unit vector to rounding keeps its digits
         axis = tuple(a / norm for a in axis)
     return Rotation(axis=axis, angle=_component("angle", given[1]))
 
@@ -142,10 +140,10 @@ def _rotation(value: Any) -> Rotation | None:
 class Motion(Support):
     """Moves a cable's node at ``s`` (m) as prescribed.
 
-    displacement: three signals in m, from where the node is drawn, or numbers, 0 for a direction that is held; None, or
-        "free", leaves a direction free. Without it the position stays free
-    rotation: an axis and a signal in rad, by which the section turns from where it is drawn, by any number of turns (of
-        cables r_x, whose length is held, too; of beams r_y and r_z). Without it the section stays free
+    displacement: three signals or numbers from the drawn position of the node, m; 0 holds a direction, None or "free"
+        leaves it free. Without a displacement the position stays free
+    rotation: an axis, and a signal of the rotation of the section from its drawn orientation, rad, of any number of
+        turns. It moves r_x of cables, whose length is held, and r_y and r_z of beams. Without it the section stays free
     """
 
     kind: ClassVar[str] = "motion"
@@ -161,7 +159,7 @@ class Motion(Support):
         return self
 
     def entries(self) -> dict[str, Any]:
-        """Return what it could be made with; "free" for the directions that it leaves free."""
+        """Return its entries, with "free" for free directions."""
         entries = super().entries()
         if self.displacement is not None:
             entries["displacement"] = [FREE if each is None else each for each in self.displacement]
@@ -181,9 +179,9 @@ class Tie(Part):
     s: arc-length of its node, m
     to: the other cable
     at: arc-length of the node of the other cable, m
-    rotation: "rigid" (a frame's corner): the sections turn together, at the angle at which they are drawn; in line, and
-        in space, they share all slopes. In space that makes a corner of beams, and a beam joined to a cable, too soft,
-        which a `FunicularWarning` says: take a `Joint` of the kind "weld". "free" (a hinge): they turn freely
+    rotation: "rigid" (a corner of a frame): the sections turn together at their drawn angle; cables in line, and all
+        cables in space, share all slopes. In space a corner of beams, or of a beam and a cable, is then too soft; a
+        `FunicularWarning` reports it, and a `Joint` of the kind "weld" is exact. "free" (a hinge): they turn freely
     """
 
     kind: ClassVar[str] = "tie"
@@ -199,7 +197,7 @@ class Tie(Part):
 
     @classmethod
     def title(cls, data: dict) -> str:
-        """Return how messages name the tie."""
+        """Return the name of the tie in messages."""
         if data.get("name") is not None:
             return super().title(data)
         return f"tie of {_called(data.get('cable'))} and {_called(data.get('to'))}"

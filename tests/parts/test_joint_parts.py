@@ -9,7 +9,7 @@ from funicular import Circle, FunicularWarning, Harmonic, Material, Ramp, Scene,
 from funicular.checks.frames import cable_frame, end_frame, joint_axes
 from funicular.checks.joint_placement import check_drive
 from funicular.parts.attachment import Attachment
-from funicular.parts.joint import KINDS, Joint
+from funicular.parts.joint import JOINT_KINDS, Joint
 from funicular.scene.file import loads
 from numpy.testing import assert_allclose
 
@@ -160,7 +160,7 @@ BARE = ('section axes of cable "rope", but cable12 has a tangent only, (1, 0, 0)
 
 @pytest.mark.parametrize(("given", "complaint"), [
     ({"kind": "revolut"}, 'joint: kind "revolut" is not known; did you mean "revolute"?'),
-    ({"kind": 7}, "joint: kind must be a name, got 7; known: " + ", ".join(KINDS)),
+    ({"kind": 7}, "joint: kind must be a name, got 7; known: " + ", ".join(JOINT_KINDS)),
     ({"kind": "weld", "a": (0, 0, 0)}, "joint: has both ends on the ground; put one of them on a cable or a body"),
     ({"kind": "weld", "a": 3}, 'joint: a must be an end, got 3; give a point (x, y, z), a body, ("body", (x, y, z)) or '
      '("cable", s)'),
