@@ -7,9 +7,9 @@
 
 #include <math.h>
 
-#define MOST_GROWTH 0.5          /* of the energy exchanged, or of motion: a larger growth ends the run */
-#define BEGUN 1e-4               /* of the size of the scene: a smaller motion has not begun */
-#define LEAST_MOTION 1e-10       /* of the largest coordinate: motion of a scene at rest by step control and rounding */
+#define MAX_ENERGY_GROWTH 0.5    /* of the energy exchanged, or of motion: a larger growth ends the run */
+#define MIN_CHECKED_MOTION 1e-4  /* of the size of the scene: a smaller motion has not begun */
+#define MIN_MOTION 1e-10         /* of the largest coordinate: motion of a scene at rest by step control and rounding */
 #define ROUNDING_OF_ENERGY 1e-14 /* of the energies: rounding of a sum over many elements */
 
 /* Returns the power of driven constraints, by the multipliers of eq 38, W. */
@@ -112,7 +112,7 @@ void fu_impact(fu_run *run, const double *change, double restitution)
 /* Returns whether the motion exceeds that of a scene at rest by step control and rounding. */
 int fu_moves(const fu_run *run)
 {
-    return run->motion > LEAST_MOTION * run->extent;
+    return run->motion > MIN_MOTION * run->extent;
 }
 
 /* Returns the rounding of the sum of the energies, J, including that of coordinates far from the origin under
@@ -141,7 +141,8 @@ int fu_check_energy_balance(fu_run *run, const double energies[FU_ENERGIES], int
     balance->rounding = fmax(balance->rounding, rounding(run, energies));
     balance->grown = fmax(balance->grown, grown);
     balance->lost = fmax(balance->lost, -grown);
-    if (run->motion <= BEGUN * run->size || grown <= MOST_GROWTH * fmax(balance->exchanged, balance->in_motion))
+    if (run->motion <= MIN_CHECKED_MOTION * run->size ||
+        grown <= MAX_ENERGY_GROWTH * fmax(balance->exchanged, balance->in_motion))
         return 0;
     return fu_fail(run, FU_NO_FAILURE, run->now.v, -1);
 }

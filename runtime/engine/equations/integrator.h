@@ -22,7 +22,7 @@ typedef struct {
     long (*n_dissipation_state)(const fu_run *run);
     /* Starts at `now`, with consistent velocities, accelerations and forces; returns a status. */
     int (*start)(fu_run *run);
-    /* Makes `next` from `now`; returns 0, or nonzero on failure. */
+    /* Computes `next` from `now`; returns 0, or nonzero on failure. */
     int (*step)(fu_run *run, double h);
     /* Returns the local error of positions of the last step, m. */
     double (*error)(fu_run *run, double h);
@@ -32,10 +32,10 @@ typedef struct {
     void (*account)(fu_run *run, double h);
     /* Drops data kept from step to step in its work space, as at a pause; null: none. */
     void (*forget)(fu_run *run);
-    int keeps_scratch; /* checkpoints hold its work space, which is real numbers alone */
-    int keeps_energy;  /* velocities are unchanged by a restart: their projection would cost energy */
-    int coasts;        /* a very short step leaves no data to continue with: no restart after one */
-    int has_matrix;    /* run->newton has the mass and the stiffness of a step, times its square */
+    int keeps_scratch;       /* checkpoints hold its work space, which is real numbers alone */
+    int keeps_energy;        /* velocities are unchanged by a restart: their projection would cost energy */
+    int coasts;              /* a very short step leaves no data to continue with: no restart after one */
+    int has_matrix;          /* run->newton has the mass and the stiffness of a step, times its square */
     int crosses_boundaries;  /* finds the slides' elements within a step, which may cross boundaries of elements */
     const fu_newton *newton; /* of implicit steps with constraints on positions; null where eq 38 gives accelerations */
 } fu_integrator;

@@ -9,7 +9,7 @@
 #include <math.h>
 
 /* increments of the size of rounding whose ratio exceeds this are rounding */
-#define STAGNANT 0.3
+#define STAGNATION_RATIO 0.3
 /* assumed before the second increment: too large to stop after one iteration */
 #define FIRST_CONTRACTION 0.5
 #define MAX_CONTRACTION 0.9 /* largest contraction for the estimate of the remaining error */
@@ -19,9 +19,9 @@
 /* of a matrix, in iterations: below its true cost, since an old one costs accuracy, too */
 #define MATRIX_COST 2.0
 /* largest ratio of the contraction of the residual, which weights stiffness more, to that of increments */
-#define UNDERESTIMATE 10.0
+#define RESIDUAL_UNDERESTIMATE 10.0
 /* a step with more than a fourth of the permitted iterations requests a new matrix for the next */
-#define MANY 4
+#define SLOW_ITERATION_FRACTION 4
 
 static int factor(fu_run *run, const fu_newton *method, double h)
 {
@@ -123,7 +123,7 @@ static void close_gaps(fu_run *run, const fu_newton *method, double h)
 static int leaves_nothing(const fu_run *run, const fu_newton *method, double size, double ratio)
 {
     if (size * run->contraction / (1.0 - run->contraction) <= run->newton_tolerance) return 1;
-    if (method->to_rounding) return size <= run->round_off && ratio > STAGNANT;
+    if (method->to_rounding) return size <= run->round_off && ratio > STAGNATION_RATIO;
     return size <= run->round_off || (ratio >= 1.0 && size <= ROUNDING_FACTOR * run->round_off);
 }
 
@@ -150,8 +150,9 @@ static int iterate(fu_run *run, const fu_newton *method, double h)
         }
         if (leaves_nothing(run, method, size, ratio)) {
             method->kinematics(run, h);
-            if (method->note_rest) count_for_matrix(run, i + 1, method->most_iterations / MANY);
-            else if (MANY * (i + 1) > method->most_iterations) run->factored = 0; /* renewed for the next step */
+            if (method->note_rest) count_for_matrix(run, i + 1, method->most_iterations / SLOW_ITERATION_FRACTION);
+            else if (SLOW_ITERATION_FRACTION * (i + 1) > method->most_iterations)
+                run->factored = 0; /* renewed for the next step */
             return 0;
         }
         last = size;
@@ -186,7 +187,7 @@ static double contraction_of_residual(residual_size before, residual_size after)
 {
     const double motion = before.motion > 0.0 ? after.motion / before.motion : 0.0;
     const double own = before.own > 0.0 ? after.own / before.own : 0.0;
-    return fmin(1.0, UNDERESTIMATE * fmax(motion, own));
+    return fmin(1.0, RESIDUAL_UNDERESTIMATE * fmax(motion, own));
 }
 
 /* Returns whether an iteration may end after an increment of this size, at this contraction and these gaps. */
@@ -219,7 +220,7 @@ static int iterate_and_note(fu_run *run, const fu_newton *method, double h)
         if (i > 0) contraction = fmin(contraction, ratio / (1.0 - ratio));
         if (leaves_little(run, size, contraction, after.gap)) {
             method->note_rest(run, h);
-            count_for_matrix(run, i + 1, method->most_iterations / MANY);
+            count_for_matrix(run, i + 1, method->most_iterations / SLOW_ITERATION_FRACTION);
             return 0;
         }
         last = size;
@@ -231,7 +232,7 @@ static int iterate_and_note(fu_run *run, const fu_newton *method, double h)
     return 0;
 }
 
-/* Makes one step of size h from `now` to `next`; returns 0 if the Newton iteration converged. */
+/* Computes one step of size h from `now` to `next`; returns 0 if the Newton iteration converged. */
 int fu_newton_step(fu_run *run, const fu_newton *method, double h)
 {
     if (fabs(h - run->h_factored) > FU_SAME_STEP * h) run->factored = 0;

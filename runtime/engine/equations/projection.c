@@ -11,9 +11,9 @@
 #include <string.h>
 
 /* largest number of projections of positions, each of second order */
-#define MOST_PROJECTIONS 10
-#define SHORT_STEP 1e-3 /* of the usual step: in a shorter one rounding over h^2 would dominate accelerations */
-#define CLOSED 1e-13    /* of the largest length: smaller initial gaps are rounding */
+#define MAX_PROJECTIONS 10
+#define SHORT_STEP 1e-3     /* of the usual step: in a shorter one rounding over h^2 would dominate accelerations */
+#define GAP_TOLERANCE 1e-13 /* of the largest length: smaller initial gaps are rounding */
 /* of the largest length: gaps of a probed mechanism that is back on its joints */
 #define PROBE_TOLERANCE 1e-12
 
@@ -53,7 +53,7 @@ static int close_gaps(fu_run *run, fu_state *state, double enough)
         if (fu_project_positions(model, state, &run->accelerator, run->work))
             return fu_fail(run, FU_MATRIX, state->v, -1);
         const double size = fu_size(model, run->work);
-        if (!(size < FU_RUNS_AWAY) || i == MOST_PROJECTIONS) return fu_fail(run, FU_ITERATION, run->work, -1);
+        if (!(size < FU_RUNS_AWAY) || i == MAX_PROJECTIONS) return fu_fail(run, FU_ITERATION, run->work, -1);
         fu_move(model, state->q, run->work);
         const fu_coupling *failed = fu_solve_coordinates(model, state);
         if (failed) return lost(run, state->v, failed);
@@ -65,7 +65,7 @@ static int close_gaps(fu_run *run, fu_state *state, double enough)
  * convergence. */
 int fu_close(fu_run *run)
 {
-    const double rounding = CLOSED * fu_largest_length(run);
+    const double rounding = GAP_TOLERANCE * fu_largest_length(run);
     if (fu_project_positions(run->model, &run->now, &run->accelerator, run->work)) return 1;
     run->closed = fu_size(run->model, run->work);
     return run->closed > rounding && close_gaps(run, &run->now, rounding);
@@ -123,7 +123,7 @@ int fu_is_short(const fu_run *run, double h)
     return h < SHORT_STEP * run->usual;
 }
 
-/* Makes such a step of any length: `next` from `now` by its accelerations, projected on the joints, without further
+/* Computes such a step of any length: `next` from `now` by its accelerations, projected on the joints, without further
  * quantities of the scheme; returns 0 on convergence. */
 int fu_coast(fu_run *run, double h)
 {

@@ -51,9 +51,9 @@ struct fu_run {
     const double *controlled; /* n_dof: model->weight of dofs in the error of tol, 0 of the others */
     const double *counted;    /* n_dof: the weight of each in the error, with that of parts that act on named ones */
     double *first;            /* n_q: the configuration at the start */
-    int n_knots;
-    const fu_breakpoint *knots; /* increasing; steps end there */
-    long most_evaluations;      /* number at which fu_advance returns; 0: unlimited */
+    int n_breakpoints;
+    const fu_breakpoint *breakpoints; /* increasing; steps end there */
+    long most_evaluations;            /* number at which fu_advance returns; 0: unlimited */
 
     /* Step: written by the integrators and equations/. */
     fu_state now, next;
@@ -64,19 +64,19 @@ struct fu_run {
     double *s_slope;                     /* per slide: predicts ds/dt; by run/steps.c */
 
     /* Events: written by events/. */
-    int n_watches;
-    const fu_event_function *watches; /* the caller's, then those of couplings */
-    double (*call)(void *context, int watch, const fu_state *state);
+    int n_event_functions;
+    const fu_event_function *event_functions; /* the caller's, then those of couplings */
+    double (*call)(void *context, int function, const fu_state *state);
     void *context;
-    double *watched;         /* per event function: its value at `now`, 0 just after a passage */
+    double *event_values;    /* per event function: its value at `now`, 0 just after a deferred event */
     int *late;               /* per event function: the side to which it passed together with another event */
-    double *passed_at;       /* per event function: time of a deferred event for the caller, s; negative for none */
-    const char **passed;     /* per event function: that event in words */
+    double *deferred_at;     /* per event function: time of a deferred event for the caller, s; negative for none */
+    const char **deferred;   /* per event function: that event in words */
     fu_slackness *slackness; /* per cable */
     double *deepest;         /* per coupling: the deepest penetration since the start, or a checkpoint, m */
     double *farthest;        /* per coupling: the farthest contact beyond the ends of its surface since then, m */
-    double *watch_work;      /* n_dof + n_outputs: accelerations and a row of output for an event function */
-    int watch_solution;      /* state of these accelerations: FU_SOLVE_ANEW and the like */
+    double *event_work;      /* n_dof + n_outputs: accelerations and a row of output for an event function */
+    int event_solution;      /* state of these accelerations: FU_SOLVE_ANEW and the like */
     fu_event event;          /* at which the run has stopped; by run/ */
     double event_time;       /* s: its instant, of couplings */
 
@@ -126,7 +126,7 @@ struct fu_run {
     int goes_over;     /* the last event to which a step led was deferred */
     int most_deferred; /* of any stage of a step, or of its end for other integrators */
     int keep_forces;   /* couplings have no deferred event in a step, which ends at one */
-    int keep_pieces;   /* couplings keep their path segments in a step, which ends where one leaves its segment */
+    int keep_segments; /* couplings keep their path segments in a step, which ends where one leaves its segment */
 
     double recorded; /* s: time of the last row; by run/record.c */
     int rest_start;  /* for order.py only: start the scheme from zero accelerations */
@@ -139,9 +139,11 @@ static inline double fu_largest_length(const fu_run *run)
 }
 
 /* Returns the coupling of an event function; null for one of another kind. */
-static inline const fu_coupling *fu_event_coupling(const fu_run *run, int watch)
+static inline const fu_coupling *fu_event_coupling(const fu_run *run, int function)
 {
-    return run->watches[watch].kind == FU_EVENT_OF_COUPLING ? run->model->couplings[run->watches[watch].index] : 0;
+    return run->event_functions[function].kind == FU_EVENT_OF_COUPLING
+               ? run->model->couplings[run->event_functions[function].index]
+               : 0;
 }
 
 #endif

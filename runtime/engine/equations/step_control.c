@@ -6,30 +6,30 @@
 #include <math.h>
 
 /* of the largest motion: permitted error of a step in dofs that nobody named, so that they do not disturb the step */
-#define UNCONTROLLED 0.1
+#define UNCONTROLLED_ERROR_SHARE 0.1
 
-#define RECOVERY 1.05 /* growth of the upper bound of steps with each accepted step after a failure */
+#define CEILING_GROWTH 1.05 /* growth of the upper bound of steps with each accepted step after a failure */
 /* of the duration: errors in it share one allowance, since hardly anything has moved */
-#define FIRST_PART 1e-3
-#define SAFETY 0.5             /* of tol: local errors add up to tol times a logarithm, which this compensates */
-#define CAUTIOUS 0.8           /* of the step that the error would permit; smaller factors shorten the step */
-#define LARGEST_FACTOR 2.0     /* growth of a step over the one before */
-#define LEAST_FACTOR 0.2       /* of a step that was rejected for its error: least next step */
-#define LEAST_RATIO 1e-12      /* of an error to the permitted one, to avoid overflow of its power */
-#define MIN_GROWTH 1.4         /* growth below which a step keeps its size, and its factored matrix */
-#define AFTER_FAILURE 0.5      /* of a failed step: the next one */
-#define ROUNDING_OF_STEPS 1e-9 /* of a number of steps: its rounding */
-#define ROUND_OFF 4e-16        /* of a coordinate or a lever: two units in its last place */
-#define NEWTON_PART 0.1        /* of the permitted error, times the step over the duration: Newton's tolerance */
-#define NEWTON_MOST 1e-10      /* of the extent: largest Newton tolerance */
+#define FIRST_PERIOD 1e-3
+#define ERROR_SAFETY 0.5           /* of tol: local errors add up to tol times a logarithm, which this compensates */
+#define STEP_SAFETY 0.8            /* of the step that the error would permit; smaller factors shorten the step */
+#define MAX_STEP_GROWTH 2.0        /* growth of a step over the one before */
+#define MIN_STEP_FACTOR 0.2        /* of a step that was rejected for its error: least next step */
+#define MIN_ERROR_RATIO 1e-12      /* of an error to the permitted one, to avoid overflow of its power */
+#define MIN_GROWTH 1.4             /* growth below which a step keeps its size, and its factored matrix */
+#define RETRY_FACTOR 0.5           /* of a failed step: the next one */
+#define ROUNDING_OF_STEPS 1e-9     /* of a number of steps: its rounding */
+#define ROUND_OFF 4e-16            /* of a coordinate or a lever: two units in its last place */
+#define NEWTON_SHARE 0.1           /* of the permitted error, times the step over the duration: Newton's tolerance */
+#define MAX_NEWTON_TOLERANCE 1e-10 /* of the extent: largest Newton tolerance */
 /* of the last step's error, times the step over the duration: Newton's tolerance of a fixed step */
-#define FIXED_PART 1e-2
-#define FIXED_MOST 1e-14 /* of the extent: largest Newton tolerance of a fixed step */
+#define FIXED_NEWTON_SHARE 1e-2
+#define MAX_FIXED_NEWTON_TOLERANCE 1e-14 /* of the extent: largest Newton tolerance of a fixed step */
 /* of the permitted error: Newton's tolerance if later steps compensate the residual */
-#define CARRIED_PART 1e-3
-#define CARRIED_MOST 1e-9        /* of the extent: the largest one then */
-#define CARRIED_FIXED_PART 3e-3  /* of the last step's error: Newton's tolerance of a fixed step then */
-#define CARRIED_FIXED_MOST 1e-10 /* of the extent: the largest one of a fixed step then */
+#define CARRIED_NEWTON_SHARE 1e-3
+#define MAX_CARRIED_NEWTON_TOLERANCE 1e-9        /* of the extent: the largest one then */
+#define CARRIED_FIXED_NEWTON_SHARE 3e-3          /* of the last step's error: Newton's tolerance of a fixed step then */
+#define MAX_CARRIED_FIXED_NEWTON_TOLERANCE 1e-10 /* of the extent: the largest one of a fixed step then */
 
 /* Returns the step that ends at the target, or one of equal steps to there, none larger than intended, s. */
 double fu_fit_step(double remaining, double want)
@@ -47,10 +47,10 @@ static double newton_tolerance(const fu_run *run, double h, double allowed, doub
     const int fixed = run->fixed_step > 0.0;
     const double share = h / run->duration;
     if (fu_carries_rest(run))
-        return fixed ? fmin(CARRIED_FIXED_PART * run->last_error, CARRIED_FIXED_MOST * extent)
-                     : fmin(CARRIED_PART * allowed, CARRIED_MOST * extent);
-    return fixed ? fmin(FIXED_PART * share * run->last_error, FIXED_MOST * extent)
-                 : fmin(NEWTON_PART * share * allowed, NEWTON_MOST * extent);
+        return fixed ? fmin(CARRIED_FIXED_NEWTON_SHARE * run->last_error, MAX_CARRIED_FIXED_NEWTON_TOLERANCE * extent)
+                     : fmin(CARRIED_NEWTON_SHARE * allowed, MAX_CARRIED_NEWTON_TOLERANCE * extent);
+    return fixed ? fmin(FIXED_NEWTON_SHARE * share * run->last_error, MAX_FIXED_NEWTON_TOLERANCE * extent)
+                 : fmin(NEWTON_SHARE * share * allowed, MAX_NEWTON_TOLERANCE * extent);
 }
 
 /* Returns the error permitted over the whole run, m, by the motion so far. */
@@ -71,7 +71,7 @@ double fu_error_size(const fu_run *run, const double *error, double others)
 /* Returns the permitted error of a step in dofs that are not named, m. */
 double fu_allowed_elsewhere(const fu_run *run)
 {
-    return UNCONTROLLED * fmax(run->motion, run->least_motion);
+    return UNCONTROLLED_ERROR_SHARE * fmax(run->motion, run->least_motion);
 }
 
 /* Sets the tolerances of a step: of its error, of Newton, and of rounding. Returns the first, m. */
@@ -84,7 +84,8 @@ double fu_allow(fu_run *run, double h)
      * motion, would take most of the steps. For named quantities that holds only without rotations: these reach their
      * size within a moment, and the error of a vibration then grows until the end. */
     const int turns = run->controlled != run->model->weight && run->model->n_bodies;
-    const double share = SAFETY * h / (turns ? run->duration : fmax(run->now.t + h, FIRST_PART * run->duration));
+    const double share =
+        ERROR_SAFETY * h / (turns ? run->duration : fmax(run->now.t + h, FIRST_PERIOD * run->duration));
     const double allowed = fmax(fu_allowed_error(run) * fmin(1.0, run->error_overestimate * share), run->round_off);
     run->newton_tolerance = newton_tolerance(run, h, allowed, fmax(run->extent, scale));
     return run->allowed = allowed;
@@ -95,18 +96,18 @@ double fu_allow(fu_run *run, double h)
  * next ones stay below it for a while. */
 void fu_adapt_step(fu_run *run, double h, double ratio)
 {
-    const double factor = fmin(LARGEST_FACTOR, CAUTIOUS * pow(fmax(ratio, LEAST_RATIO), -1.0 / run->order));
-    run->ceiling = fmin(RECOVERY * run->ceiling, run->duration);
+    const double factor = fmin(MAX_STEP_GROWTH, STEP_SAFETY * pow(fmax(ratio, MIN_ERROR_RATIO), -1.0 / run->order));
+    run->ceiling = fmin(CEILING_GROWTH * run->ceiling, run->duration);
     const double larger = fmin(h * factor, run->ceiling);
     if (larger > MIN_GROWTH * h) run->h = fmax(run->h, larger);
-    else if (factor < CAUTIOUS) run->h = h * factor;
+    else if (factor < STEP_SAFETY) run->h = h * factor;
 }
 
 /* Returns the step after one whose error was too large, s. */
 double fu_shrink_step(fu_run *run, double h, double ratio)
 {
-    double want = h * fmax(LEAST_FACTOR, CAUTIOUS * pow(ratio, -1.0 / run->order));
-    if (!(want > 0.0)) want = LEAST_FACTOR * h; /* an error that is not finite */
+    double want = h * fmax(MIN_STEP_FACTOR, STEP_SAFETY * pow(ratio, -1.0 / run->order));
+    if (!(want > 0.0)) want = MIN_STEP_FACTOR * h; /* an error that is not finite */
     fu_fail(run, FU_ERROR, run->work, -1);
     ++run->statistics.rejected;
     ++run->net_rejections;
@@ -116,7 +117,7 @@ double fu_shrink_step(fu_run *run, double h, double ratio)
 /* Returns the step after a failed one, s. */
 double fu_retry_step(fu_run *run, double h)
 {
-    const double want = AFTER_FAILURE * h;
+    const double want = RETRY_FACTOR * h;
     if (run->fixed_step <= 0.0 && run->retry_factor > 0.0) {
         run->h = want;
         run->ceiling = run->retry_factor * h;

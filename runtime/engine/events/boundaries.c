@@ -1,5 +1,5 @@
 /* Boundaries between the segments of couplings' paths: couplings outside of their segments, and the times of
- * passages. */
+ * deferred events. */
 #include "equations/run.h"
 #include "events/boundaries.h"
 
@@ -8,12 +8,12 @@
 #include <string.h>
 
 /* of a segment: smaller distances beyond a boundary are rounding */
-#define TOLERANCE 1e-11
+#define BOUNDARY_TOLERANCE 1e-11
 
 /* Returns the permitted distance of a coordinate beyond its segment, m. */
 double fu_boundary_tolerance(fu_path path)
 {
-    return TOLERANCE * path.length;
+    return BOUNDARY_TOLERANCE * path.length;
 }
 
 /* Returns the start of the k-th segment of a path, the end of the one before, m. */
@@ -33,17 +33,17 @@ static double coordinate_of(const fu_coupling *coupling, const fu_state *state)
     return state->s[coupling->coordinate];
 }
 
-static int piece_of(const fu_coupling *coupling, const fu_state *state)
+static int segment_of(const fu_coupling *coupling, const fu_state *state)
 {
-    return state->piece[coupling->coordinate];
+    return state->segment[coupling->coordinate];
 }
 
 /* Returns the distance of a coupling's coordinate outside its segment, m, negative inside, and the nearer side. */
 double fu_outside(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int *side)
 {
     const fu_path path = fu_path_of(model, coupling, state);
-    const double length = fu_path_segment_length(path, piece_of(coupling, state));
-    const double x = coordinate_of(coupling, state) - fu_boundary(path, piece_of(coupling, state));
+    const double length = fu_path_segment_length(path, segment_of(coupling, state));
+    const double x = coordinate_of(coupling, state) - fu_boundary(path, segment_of(coupling, state));
     *side = x > 0.5 * length ? 1 : -1;
     return *side > 0 ? x - length : -x;
 }
@@ -63,16 +63,16 @@ int fu_stop_at_boundaries(const fu_model *model)
 void fu_choose_path_segments(fu_run *run)
 {
     const fu_model *model = run->model;
-    if (run->keep_pieces) return;
+    if (run->keep_segments) return;
     FU_EACH_COUPLING(c, model->always_active, model->n_always_active) {
         const fu_path path = fu_path_of(model, c, &run->next);
-        int side, *piece = &run->next.piece[c->coordinate];
+        int side, *segment = &run->next.segment[c->coordinate];
         if (!path.n || !(fu_outside(model, c, &run->next, &side) > fu_boundary_tolerance(path))) continue;
         const double s = coordinate_of(c, &run->next);
         const double holds = path.boundaries ? fu_last_reached(path.boundaries, 0, path.n, s)
                                              : fmin(fmax(s / path.length, 0.0), path.n - 1.0);
-        if ((int)holds != *piece) run->factored = 0;
-        *piece = (int)holds;
+        if ((int)holds != *segment) run->factored = 0;
+        *segment = (int)holds;
     }
 }
 
@@ -83,12 +83,12 @@ void fu_find_path_segments(const fu_model *model, fu_state *state)
     FU_EACH_COUPLING(c, model->always_active, model->n_always_active) {
         const fu_path path = fu_path_of(model, c, state);
         const double s = path.n ? coordinate_of(c, state) : 0.0;
-        int *piece = &state->piece[c->coordinate];
-        if (!path.n || (fu_boundary(path, *piece) <= s && s <= fu_boundary(path, *piece + 1))) continue;
+        int *segment = &state->segment[c->coordinate];
+        if (!path.n || (fu_boundary(path, *segment) <= s && s <= fu_boundary(path, *segment + 1))) continue;
         const double holds = path.boundaries
                                  ? fu_last_reached(path.boundaries, 0, path.n, s)
                                  : round((s - fmod(s, path.length)) / path.length); /* a quotient may be rounded up */
-        *piece = (int)fmin(fmax(holds, 0.0), path.n - 1.0);
+        *segment = (int)fmin(fmax(holds, 0.0), path.n - 1.0);
     }
 }
 
@@ -96,14 +96,14 @@ void fu_find_path_segments(const fu_model *model, fu_state *state)
 int fu_count_changes(const fu_run *run)
 {
     int count = 0;
-    for (int i = 0; i < run->model->n_coordinates; ++i) count += abs(run->next.piece[i] - run->now.piece[i]);
+    for (int i = 0; i < run->model->n_coordinates; ++i) count += abs(run->next.segment[i] - run->now.segment[i]);
     return count;
 }
 
 /* Returns the couplings of `next` to the segments of `now`, which they have left. */
 void fu_keep_path_segments(fu_run *run)
 {
-    memcpy(run->next.piece, run->now.piece, sizeof(int) * (size_t)run->model->n_coordinates);
+    memcpy(run->next.segment, run->now.segment, sizeof(int) * (size_t)run->model->n_coordinates);
 }
 
 /* Returns the time until the first coupling reaches a boundary of its segment at its present rate, s. */
@@ -114,7 +114,7 @@ double fu_time_to_boundary(const fu_run *run)
         const fu_path path = fu_path_of(run->model, c, &run->now);
         if (!path.n) continue;
         const double rate = c->events->path->rate(run->model, c, &run->now);
-        const double end = fu_boundary(path, piece_of(c, &run->now) + (rate > 0.0));
+        const double end = fu_boundary(path, segment_of(c, &run->now) + (rate > 0.0));
         const double way = fabs(end - coordinate_of(c, &run->now));
         if (way > fu_boundary_tolerance(path)) least = fmin(least, way / fabs(rate));
     }
@@ -128,8 +128,8 @@ static double part_to_turn(const fu_run *run, const fu_coupling *c, fu_path path
     const double rise = h * c->events->path->rate(run->model, c, &run->now), tolerance = fu_boundary_tolerance(path);
     const double moved = coordinate_of(c, &run->next) - coordinate_of(c, &run->now);
     const double part = 0.5 * rise / (rise - moved), s = coordinate_of(c, &run->now);
-    const int up = rise > 0.0, piece = piece_of(c, &run->now);
-    const double ahead = fabs(fu_boundary(path, piece + up) - s), behind = fabs(fu_boundary(path, piece + !up) - s);
+    const int up = rise > 0.0, segment = segment_of(c, &run->now);
+    const double ahead = fabs(fu_boundary(path, segment + up) - s), behind = fabs(fu_boundary(path, segment + !up) - s);
     const double forward = (up ? 1.0 : -1.0) * moved;
     const int returns = 0.5 * fabs(rise) * part > ahead + tolerance && forward < ahead;
     const int leaves = behind <= tolerance && forward < -behind - tolerance;
@@ -163,8 +163,8 @@ int fu_are_on_path_segments(const fu_model *model, const fu_state *state, double
     FU_EACH_COUPLING(c, model->always_active, model->n_always_active) {
         const fu_path path = fu_path_of(model, c, state);
         if (!path.n) continue;
-        const double x = coordinate_of(c, state) - fu_boundary(path, piece_of(c, state));
-        const double length = fu_path_segment_length(path, piece_of(c, state));
+        const double x = coordinate_of(c, state) - fu_boundary(path, segment_of(c, state));
+        const double length = fu_path_segment_length(path, segment_of(c, state));
         if (!(x >= -aside * length && x <= (1.0 + aside) * length)) return 0;
     }
     return 1;

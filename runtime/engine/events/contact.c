@@ -31,16 +31,16 @@ static double deepest(const fu_model *model, const fu_contact *contact, const fu
     return depth;
 }
 
-static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
+static double value_of(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {
     (void)which;
     return deepest(run->model, of(coupling), state);
 }
 
-static double depth(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double watched_value)
+static double depth(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double value)
 {
     (void)model, (void)coupling, (void)state;
-    return watched_value;
+    return value;
 }
 
 /* Returns the distance of contact beyond the ends of the surface, m. */
@@ -128,7 +128,7 @@ static double reach_of(const fu_model *model, const fu_contact *contact, const f
                 2.0 * farthest * sqrt(fu_dot(model->dim == 3 ? 3 : 1, on->omega, on->omega)));
 }
 
-#define RESOLVED 0.25 /* of an impact's time over pi: upper bound of steps in it */
+#define MAX_IMPACT_STEP 0.25 /* of an impact's time over pi: upper bound of steps in it */
 
 /* Returns the step that resolves an impact of a body that begins at `now`, s; 0 if unnecessary, since its reversed
  * speed moves it by less than tol in the remaining time. */
@@ -151,7 +151,7 @@ static double step_of_impact(const fu_run *run, const fu_contact *contact, doubl
     double stiffness = contact->n_points * contact->law.stiffness;
     if (contact->law.hertz) /* at the penetration for this speed: 2/5 k d^(5/2) = m v^2/2 */
         stiffness *= 1.5 * sqrt(fmax(deepest_now, pow(1.25 * mass * fastest * fastest / stiffness, 0.4)));
-    const double longest = RESOLVED * sqrt(mass / stiffness);
+    const double longest = MAX_IMPACT_STEP * sqrt(mass / stiffness);
     return h > 1.5 * longest ? longest : 0.0;
 }
 
@@ -178,7 +178,7 @@ static double grazing(const fu_run *run, const fu_coupling *coupling, int which,
 }
 
 const fu_coupling_events fu_contact_events = {.direction = 0,
-                                              .watched = watched,
+                                              .value = value_of,
                                               .depth = depth,
                                               .beyond = beyond,
                                               .sign = sign,

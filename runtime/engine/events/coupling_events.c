@@ -10,7 +10,7 @@ int fu_coupling_event_functions(const fu_model *model, fu_event_function *out)
     FU_EACH_COUPLING(c, model->couplings, model->n_couplings) {
         if (!c->events) continue;
         const int first = n;
-        if (c->events->watches) n += c->events->watches(c, out ? out + first : 0);
+        if (c->events->functions) n += c->events->functions(c, out ? out + first : 0);
         else if (n++, out) out[first] = (fu_event_function){.direction = c->events->direction};
         for (int i = first; i < n && out; ++i) {
             out[i].kind = FU_EVENT_OF_COUPLING;

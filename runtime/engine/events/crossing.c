@@ -5,7 +5,7 @@
 #include "equations/run.h"
 #include "events/list.h"
 
-#define PARTED 1e-6 /* of the energy of contact: lines with less at its end had separated */
+#define SEPARATION_ENERGY 1e-6 /* of the energy of contact: lines with less at its end had separated */
 
 static const fu_crossing *crossing_of(const fu_coupling *coupling)
 {
@@ -37,7 +37,7 @@ static double grazing(const fu_run *run, const fu_coupling *coupling, int which,
 
 /* The value is negative while the state of contact is unchanged. In motion, lines that are apart over their whole
  * length do not touch: they may become parallel, or pass round each other's ends. */
-static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
+static double value_of(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {
     const double margin = fu_crossing_margin(run->model, crossing_of(coupling), state);
     (void)which;
@@ -47,10 +47,10 @@ static double watched(const fu_run *run, const fu_coupling *coupling, const fu_s
     return gap > 0.0 ? -gap : margin;
 }
 
-static double depth(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double watched_value)
+static double depth(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double value)
 {
     fu_course gap;
-    (void)watched_value;
+    (void)value;
     if (!state->flags[coupling->flags]) return 0.0;
     gap_of(model, crossing_of(coupling), state, &gap);
     return -gap.value;
@@ -68,7 +68,7 @@ static int has_come_round(const fu_run *run, const fu_crossing *crossing)
     fu_crossing_contact_at(crossing, &points, &contact);
     const int at_end =
         fu_crossing_margin_of(crossing, &points, &contact) == fu_crossing_distance_to_ends(crossing, &points);
-    return at_end && contact.depth[0] > crossing->law[0] && left_behind < PARTED * contact.energy;
+    return at_end && contact.depth[0] > crossing->law[0] && left_behind < SEPARATION_ENERGY * contact.energy;
 }
 
 static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
@@ -102,7 +102,7 @@ static int begin(fu_run *run, const fu_coupling *coupling)
 
 const fu_coupling_events fu_crossing_events = {
     .direction = 1,
-    .watched = watched,
+    .value = value_of,
     .depth = depth,
     .act = act,
     .grazing = grazing,

@@ -17,9 +17,9 @@
 #include <math.h>
 #include <string.h>
 
-#define DOUBLE 2.0 /* the counted error over the bound, since the errors of many events add up */
+#define DEFERRED_ERROR_FACTOR 2.0 /* the counted error over the bound, since the errors of many events add up */
 /* of a step: uncertainty of the instant of an event, for the bound of its error */
-#define AROUND 0.1
+#define PART_UNCERTAINTY 0.1
 #define SCANNED_INSTANTS 8 /* number of instants evaluated on either side */
 
 static int has_passed(const fu_run *run, const fu_coupling *c)
@@ -35,9 +35,9 @@ int fu_choose_deferred(fu_run *run, int first)
     const fu_model *model = run->model;
     int changed = 0;
     if (run->keep_forces) return 0;
-    FU_EACH_COUPLING(c, model->always_active, model->n_passing ? model->n_always_active : 0)
+    FU_EACH_COUPLING(c, model->always_active, model->n_deferring ? model->n_always_active : 0)
         changed |= fu_can_defer(c) && c->events->deferred->follow(model, c, &run->now, &run->next);
-    const int count = model->n_passing ? fu_count_deferred(run) : 0;
+    const int count = model->n_deferring ? fu_count_deferred(run) : 0;
     if (first || count > run->most_deferred) run->most_deferred = count;
     return changed;
 }
@@ -45,14 +45,14 @@ int fu_choose_deferred(fu_run *run, int first)
 /* Returns whether a stage of the last step had an event that its end has not: then its error has no bound. */
 int fu_strayed(const fu_run *run)
 {
-    return !run->keep_forces && run->model->n_passing && run->most_deferred > fu_count_deferred(run);
+    return !run->keep_forces && run->model->n_deferring && run->most_deferred > fu_count_deferred(run);
 }
 
 /* Returns the number of couplings with an event in the step. */
 int fu_count_deferred(const fu_run *run)
 {
     int count = 0;
-    FU_EACH_COUPLING(c, run->model->always_active, run->model->n_passing ? run->model->n_always_active : 0)
+    FU_EACH_COUPLING(c, run->model->always_active, run->model->n_deferring ? run->model->n_always_active : 0)
         count += has_passed(run, c);
     return count;
 }
@@ -61,7 +61,7 @@ int fu_count_deferred(const fu_run *run)
 void fu_undo_deferred(fu_run *run)
 {
     run->keep_forces = 1;
-    FU_EACH_COUPLING(c, run->model->always_active, run->model->n_passing ? run->model->n_always_active : 0) {
+    FU_EACH_COUPLING(c, run->model->always_active, run->model->n_deferring ? run->model->n_always_active : 0) {
         if (!has_passed(run, c)) continue;
         memcpy(run->next.flags + c->flags, run->now.flags + c->flags, sizeof(int) * (size_t)c->type->n_flags);
         run->factored = 0;
@@ -71,12 +71,12 @@ void fu_undo_deferred(fu_run *run)
 /* Records the events of couplings in the step that is about to be accepted, for the caller. */
 void fu_note_deferred(fu_run *run, double h)
 {
-    for (int k = 0; k < run->n_watches && run->model->n_passing; ++k) {
+    for (int k = 0; k < run->n_event_functions && run->model->n_deferring; ++k) {
         const fu_coupling *c = fu_event_coupling(run, k);
         if (!c || !has_passed(run, c)) continue;
         const double part = c->events->deferred->part(run->model, c, &run->now, &run->next, h,
-                                                      !run->integrator->keeps_energy, &run->passed[k]);
-        run->passed_at[k] = run->now.t + part * h;
+                                                      !run->integrator->keeps_energy, &run->deferred[k]);
+        run->deferred_at[k] = run->now.t + part * h;
     }
 }
 
@@ -94,7 +94,7 @@ static double largest_defect(fu_quadrature rule, double x)
 {
     double worst = 0.0;
     for (int i = -SCANNED_INSTANTS; i <= SCANNED_INSTANTS; ++i) {
-        const double at = x + AROUND * i / SCANNED_INSTANTS;
+        const double at = x + PART_UNCERTAINTY * i / SCANNED_INSTANTS;
         if (at >= 0.0 && at < 1.0) worst = fmax(worst, defect(rule, at));
     }
     return worst;
@@ -132,7 +132,7 @@ double fu_deferred_error(fu_run *run, double h)
         const double part = largest_defect(run->integrator->quadrature(run), x);
         c->events->deferred->force_change(model, c, &run->now, &run->next, part, run->before);
     }
-    return size_of_response(run, run->before, DOUBLE * h * h);
+    return size_of_response(run, run->before, DEFERRED_ERROR_FACTOR * h * h);
 }
 
 /* Returns the local error of positions by kinks of forces within the last step that its estimate may miss, m: an error
@@ -148,16 +148,16 @@ double fu_friction_error(fu_run *run, double h)
     return size_of_response(run, run->before, h * h);
 }
 
-/* Makes the earliest unreported deferred event or slack cable the event of the run; returns 0 if there is none. */
+/* Computes the earliest unreported deferred event or slack cable the event of the run; returns 0 if there is none. */
 int fu_take_deferred(fu_run *run)
 {
     int first = -1;
-    for (int k = 0; k < run->n_watches && run->model->n_passing; ++k)
-        if (run->passed[k] && (first < 0 || run->passed_at[k] < run->passed_at[first])) first = k;
-    if (fu_take_slackness(run, first < 0 ? INFINITY : run->passed_at[first])) return 1;
+    for (int k = 0; k < run->n_event_functions && run->model->n_deferring; ++k)
+        if (run->deferred[k] && (first < 0 || run->deferred_at[k] < run->deferred_at[first])) first = k;
+    if (fu_take_slackness(run, first < 0 ? INFINITY : run->deferred_at[first])) return 1;
     if (first < 0) return 0;
-    run->event = (fu_event){FU_DEFERRED, run->watches[first].index, 0, run->passed[first]};
-    run->event_time = run->passed_at[first];
-    run->passed[first] = 0;
+    run->event = (fu_event){FU_DEFERRED, run->event_functions[first].index, 0, run->deferred[first]};
+    run->event_time = run->deferred_at[first];
+    run->deferred[first] = 0;
     return 1;
 }

@@ -9,39 +9,39 @@
 
 #include <math.h>
 
-#define MOST_TRIALS 80 /* trial steps for the end on an event */
+#define MAX_TRIALS 80 /* trial steps for the end on an event */
 /* number of trials after which every second one halves the interval, since rounding may dominate the value */
-#define FEW_TRIALS 10
-#define LEAST_STEP 1e-13 /* of the duration: shorter intervals are not divided */
+#define SECANT_TRIALS 10
+#define MIN_BRACKET 1e-13 /* of the duration: shorter intervals are not divided */
 /* of Newton's tolerance near an event, so that its error does not decide the instant */
-#define FINER 1e-2
+#define NEWTON_TOLERANCE_FACTOR 1e-2
 /* of a segment, or of the change of an event function in the step: distance of the step's end from an event */
 #define EVENT_TOLERANCE 1e-13
-#define LITTLE 1e-2 /* of the permitted error: that of an event beside a boundary */
+#define BOUNDARY_ERROR_SHARE 1e-2 /* of the permitted error: that of an event beside a boundary */
 /* of the change of a distance in the step: distance of an adaptive step's end from a deferrable event */
 #define DEFERRED_TOLERANCE 1e-6
-#define LARGEST_MISS 1e-6  /* of a segment: largest distance of a step's end from a boundary */
-#define SIGNED_ZERO 1e-300 /* a value with a sign that is nearly zero */
+#define MAX_BOUNDARY_DISTANCE 1e-6 /* of a segment: largest distance of a step's end from a boundary */
+#define SMALLEST_VALUE 1e-300      /* a value with a sign that is nearly zero */
 
 const fu_event fu_no_event = {FU_NO_EVENT, 0, 0, 0};
 
 const double *fu_event_accelerations(const fu_run *run, const fu_state *state)
 {
     fu_run *scratch = (fu_run *)run; /* a run is never a constant object */
-    int known = run->watch_solution;
+    int known = run->event_solution;
     if (known == FU_SOLVE_ANEW || known == FU_SOLVE_ONCE) {
-        const int failed = fu_accelerations(run->model, state, &scratch->accelerator, run->watch_work, 0);
-        if (known == FU_SOLVE_ONCE) scratch->watch_solution = failed ? FU_HAS_NO_SOLUTION : FU_IS_SOLVED;
+        const int failed = fu_accelerations(run->model, state, &scratch->accelerator, run->event_work, 0);
+        if (known == FU_SOLVE_ONCE) scratch->event_solution = failed ? FU_HAS_NO_SOLUTION : FU_IS_SOLVED;
         known = failed ? FU_HAS_NO_SOLUTION : FU_IS_SOLVED;
     }
-    return known == FU_IS_SOLVED ? run->watch_work : 0;
+    return known == FU_IS_SOLVED ? run->event_work : 0;
 }
 
 /* Returns a component of a coupling's row of output; NaN if eq 38 has no solution. */
 static double output_of(const fu_run *run, const fu_state *state, const fu_coupling *c, int which)
 {
     const double *acceleration = fu_event_accelerations(run, state);
-    double *out = run->watch_work + run->model->n_dof;
+    double *out = run->event_work + run->model->n_dof;
     if (!acceleration) return NAN;
     c->type->outputs(run->model, c, state, acceleration, &run->accelerator, out);
     return out[which];
@@ -58,38 +58,39 @@ static double called(const fu_run *run, const fu_state *state, int k)
 }
 
 /* Returns the value of an event function of the user or of a coupling. */
-static double watched(const fu_run *run, const fu_state *state, int k)
+static double value_of(const fu_run *run, const fu_state *state, int k)
 {
-    const fu_event_function *watch = &run->watches[k];
-    if (watch->kind == FU_EVENT_OF_Q) return state->q[watch->index] - watch->value;
-    if (watch->kind == FU_EVENT_OF_V) return state->v[watch->index] - watch->value;
-    if (watch->kind == FU_EVENT_OF_S) return state->s[watch->index] - watch->value;
-    if (watch->kind == FU_EVENT_OF_CALL) return called(run, state, k);
-    const fu_coupling *c = run->model->couplings[watch->index];
-    if (watch->kind == FU_EVENT_OF_RATE) return c->events->path->rate(run->model, c, state) - watch->value;
-    if (watch->kind == FU_EVENT_OF_OUTPUT) return output_of(run, state, c, watch->which) - watch->value;
-    return c->events->watched(run, c, state, watch->which);
+    const fu_event_function *function = &run->event_functions[k];
+    if (function->kind == FU_EVENT_OF_Q) return state->q[function->index] - function->value;
+    if (function->kind == FU_EVENT_OF_V) return state->v[function->index] - function->value;
+    if (function->kind == FU_EVENT_OF_S) return state->s[function->index] - function->value;
+    if (function->kind == FU_EVENT_OF_CALL) return called(run, state, k);
+    const fu_coupling *c = run->model->couplings[function->index];
+    if (function->kind == FU_EVENT_OF_RATE) return c->events->path->rate(run->model, c, state) - function->value;
+    if (function->kind == FU_EVENT_OF_OUTPUT) return output_of(run, state, c, function->which) - function->value;
+    return c->events->value(run, c, state, function->which);
 }
 
 /* Returns the value of an event at a state: the event happens where it reaches zero from below. */
 static double value(const fu_run *run, const fu_state *state, fu_event event)
 {
-    if (event.kind == FU_EVENT_FUNCTION) return event.side * watched(run, state, event.which);
+    if (event.kind == FU_EVENT_FUNCTION) return event.side * value_of(run, state, event.which);
     const fu_coupling *c = run->model->couplings[event.which];
-    const int boundary = run->now.piece[c->coordinate] + (event.side > 0);
+    const int boundary = run->now.segment[c->coordinate] + (event.side > 0);
     return event.side * (state->s[c->coordinate] - fu_boundary(fu_path_of(run->model, c, &run->now), boundary));
 }
 
 /* Returns the event of an event function that passes zero between the stored value and this one, else none. */
 static fu_event passes(const fu_run *run, int k, double after)
 {
-    const double before = run->watched[k];
+    const double before = run->event_values[k];
     const int side = before < 0.0 && after >= 0.0 ? 1 : before > 0.0 && after < 0.0 ? -1 : 0;
-    return side && run->watches[k].direction * side >= 0 ? (fu_event){FU_EVENT_FUNCTION, k, side, 0} : fu_no_event;
+    return side && run->event_functions[k].direction * side >= 0 ? (fu_event){FU_EVENT_FUNCTION, k, side, 0}
+                                                                 : fu_no_event;
 }
 
-/* Returns the boundary passage of the coupling of `next` that is farthest outside its segment, else the first event
- * function that passes zero between `now` and `next`; without the event `but`. */
+/* Returns the boundary deferred event of the coupling of `next` that is farthest outside its segment, else the first
+ * event function that passes zero between `now` and `next`; without the event `but`. */
 fu_event fu_find_event(fu_run *run, fu_event but)
 {
     fu_event found = fu_no_event;
@@ -105,15 +106,15 @@ fu_event fu_find_event(fu_run *run, fu_event but)
             found = (fu_event){FU_PATH_BOUNDARY, c->number, side, 0};
         }
     }
-    run->watch_solution = FU_SOLVE_ONCE;
+    run->event_solution = FU_SOLVE_ONCE;
     for (int i = 0; i < near.n && !found.kind; ++i) {
         const int k = fu_event_function_of(near, i);
         if (but.kind == FU_EVENT_FUNCTION && but.which == k) continue;
-        found = passes(run, k, watched(run, &run->next, k));
+        found = passes(run, k, value_of(run, &run->next, k));
         if (found.kind && fu_is_far_event_function(run, k))
-            run->watched[k] = watched(run, &run->now, k); /* which was not evaluated before */
+            run->event_values[k] = value_of(run, &run->now, k); /* which was not evaluated before */
     }
-    run->watch_solution = FU_SOLVE_ANEW;
+    run->event_solution = FU_SOLVE_ANEW;
     return found;
 }
 
@@ -156,14 +157,15 @@ static landing_place landing(const fu_run *run, fu_event event, double range)
                    : (landing_place){0.0, EVENT_TOLERANCE * range};
     const fu_coupling *c = run->model->couplings[event.which];
     const fu_path path = fu_path_of(run->model, c, &run->now);
-    const int next = run->now.piece[c->coordinate] + event.side;
+    const int next = run->now.segment[c->coordinate] + event.side;
     if (run->fixed_step > 0.0 || next < 0 || next >= path.n) return (landing_place){0.0, EVENT_TOLERANCE * path.length};
     const double shorter = fmin(fu_path_segment_length(path, next), fu_path_segment_length(path, next - event.side));
-    return (landing_place){
-        0.0, fmax(EVENT_TOLERANCE * path.length, fmin(LARGEST_MISS, LITTLE * run->allowed / range) * shorter)};
+    return (landing_place){0.0,
+                           fmax(EVENT_TOLERANCE * path.length,
+                                fmin(MAX_BOUNDARY_DISTANCE, BOUNDARY_ERROR_SHARE * run->allowed / range) * shorter)};
 }
 
-/* Returns whether an event belongs to an event function of a coupling, whose value leaves its zero anew after each
+/* Returns whether an event belongs to an event function of a coupling, whose value leaves its zero again after each
  * event. */
 static int is_of_a_coupling(const fu_run *run, fu_event event)
 {
@@ -197,7 +199,7 @@ static void narrow(bracket *b, double middle, double g)
     b->last = side;
 }
 
-/* Moves the low end, for an event that has just happened and whose value leaves its zero anew, to where it is off that
+/* Moves the low end, for an event that has just happened and whose value leaves its zero again, to where it is off that
  * zero again. Returns 1 if found, 0 if there is none, -1 if a step fails. */
 static int leave_zero(fu_run *run, fu_event event, bracket *b, double least, double close)
 {
@@ -216,9 +218,9 @@ static double search(fu_run *run, fu_event event, bracket b, double middle, doub
 {
     b.g_low -= at.aim;
     b.g_high -= at.aim;
-    for (int i = 0; i < MOST_TRIALS; ++i) {
+    for (int i = 0; i < MAX_TRIALS; ++i) {
         /* rounding may dominate g */
-        if (!(middle > b.low && middle < b.high) || (i > FEW_TRIALS && i % 2)) middle = 0.5 * (b.low + b.high);
+        if (!(middle > b.low && middle < b.high) || (i > SECANT_TRIALS && i % 2)) middle = 0.5 * (b.low + b.high);
         if (run->integrator->step(run, middle)) return 0.0;
         const double g = value(run, &run->next, event) - at.aim;
         if (fabs(g) <= at.close || (g >= 0.0 && middle - b.low <= least)) return middle;
@@ -233,8 +235,9 @@ static double search(fu_run *run, fu_event event, bracket b, double middle, doub
 static double locate(fu_run *run, fu_event event, double h)
 {
     bracket b = {0.0, h, 0.0, value(run, &run->next, event), 0};
-    b.g_low = event.kind == FU_EVENT_FUNCTION ? event.side * run->watched[event.which] : value(run, &run->now, event);
-    const double least = LEAST_STEP * run->duration;
+    b.g_low =
+        event.kind == FU_EVENT_FUNCTION ? event.side * run->event_values[event.which] : value(run, &run->now, event);
+    const double least = MIN_BRACKET * run->duration;
     const landing_place at = landing(run, event, b.g_high - b.g_low);
     double middle = h * b.g_low / (b.g_low - b.g_high);
     if (event.kind == FU_PATH_BOUNDARY) {
@@ -262,11 +265,11 @@ static double locate(fu_run *run, fu_event event, double h)
  * one leaves its segment. Returns the step, 0 on failure; `next` is there then. */
 double fu_locate(fu_run *run, fu_event event, double h)
 {
-    const int kept = run->keep_pieces;
-    run->keep_pieces |= event.kind == FU_PATH_BOUNDARY;
-    run->newton_tolerance *= FINER;
+    const int kept = run->keep_segments;
+    run->keep_segments |= event.kind == FU_PATH_BOUNDARY;
+    run->newton_tolerance *= NEWTON_TOLERANCE_FACTOR;
     const double found = locate(run, event, h);
-    run->keep_pieces = kept;
+    run->keep_segments = kept;
     return found;
 }
 
@@ -276,25 +279,25 @@ void fu_evaluate_event_functions(fu_run *run, fu_event event, double h)
 {
     const int moved = h > FU_AT_ONCE * run->duration;
     const fu_event_function_list near = fu_near_event_functions(run, &run->now);
-    run->watch_solution = FU_SOLVE_ONCE;
+    run->event_solution = FU_SOLVE_ONCE;
     for (int i = 0; i < near.n; ++i) {
         const int k = fu_event_function_of(near, i);
         const int expected = event.kind == FU_EVENT_FUNCTION && event.which == k;
-        const double value = expected ? 0.0 : watched(run, &run->now, k);
+        const double value = expected ? 0.0 : value_of(run, &run->now, k);
         const fu_event late = passes(run, k, value);
-        if (expected || late.kind) run->watched[k] = 0.0;
-        else if (value != 0.0 && (moved || run->watched[k] != 0.0)) run->watched[k] = value;
+        if (expected || late.kind) run->event_values[k] = 0.0;
+        else if (value != 0.0 && (moved || run->event_values[k] != 0.0)) run->event_values[k] = value;
         if (!expected && late.kind) run->late[k] = late.side;
     }
-    run->watch_solution = FU_SOLVE_ANEW;
+    run->event_solution = FU_SOLVE_ANEW;
 }
 
 /* Evaluates at `now` the event functions of far pairs (couplings/common/proximity.c), which are not updated
  * otherwise. */
 void fu_evaluate_far_event_functions(fu_run *run)
 {
-    for (int k = 0; k < run->n_watches; ++k)
-        if (fu_is_far_event_function(run, k)) run->watched[k] = watched(run, &run->now, k);
+    for (int k = 0; k < run->n_event_functions; ++k)
+        if (fu_is_far_event_function(run, k)) run->event_values[k] = value_of(run, &run->now, k);
 }
 
 /* Returns whether an event function of a coupling is not finite: then it cannot continue, and the cause is recorded. */
@@ -304,7 +307,7 @@ int fu_has_lost_an_event(fu_run *run)
     for (int i = 0; i < near.n; ++i) {
         const int k = fu_event_function_of(near, i);
         const fu_coupling *c = fu_event_coupling(run, k);
-        if (c && isnan(run->watched[k])) return fu_fail(run, FU_NOT_KNOWN, run->now.v, c->number);
+        if (c && isnan(run->event_values[k])) return fu_fail(run, FU_NOT_KNOWN, run->now.v, c->number);
     }
     return 0;
 }
@@ -314,7 +317,7 @@ int fu_has_lost_an_event(fu_run *run)
 void fu_restart_event_functions(fu_run *run, int coupling)
 {
     const fu_event_function_list near = fu_near_event_functions(run, &run->now);
-    run->watch_solution = FU_SOLVE_ONCE;
+    run->event_solution = FU_SOLVE_ONCE;
     for (int i = 0; i < near.n; ++i) {
         const int k = fu_event_function_of(near, i);
         const fu_coupling *c = fu_event_coupling(run, k);
@@ -322,16 +325,16 @@ void fu_restart_event_functions(fu_run *run, int coupling)
         if (c->number == coupling) run->late[k] = 0;
         if (run->late[k]) continue;
         const fu_coupling_events *events = c->events;
-        const int sign = events->sign ? events->sign(run->model, c, &run->now, run->watches[k].which) : -1;
-        run->watched[k] = sign * fmax(sign * watched(run, &run->now, k), SIGNED_ZERO);
+        const int sign = events->sign ? events->sign(run->model, c, &run->now, run->event_functions[k].which) : -1;
+        run->event_values[k] = sign * fmax(sign * value_of(run, &run->now, k), SMALLEST_VALUE);
     }
-    run->watch_solution = FU_SOLVE_ANEW;
+    run->event_solution = FU_SOLVE_ANEW;
 }
 
 /* Returns an event that passed together with another one, and is still to happen; none if there is none. */
 fu_event fu_late_event(fu_run *run)
 {
-    for (int k = 0; k < run->n_watches; ++k)
+    for (int k = 0; k < run->n_event_functions; ++k)
         if (run->late[k]) {
             const fu_event event = {FU_EVENT_FUNCTION, k, run->late[k], 0};
             run->late[k] = 0;

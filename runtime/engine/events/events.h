@@ -5,7 +5,7 @@
 #include "base/common.h"
 #include "base/event.h"
 
-/* Solution of eq 38 for event functions: anew for each; once for all evaluated at one state, not done yet, done, or
+/* Solution of eq 38 for event functions: again for each; once for all evaluated at one state, not done yet, done, or
  * without a solution. */
 enum { FU_SOLVE_ANEW = 0, FU_SOLVE_ONCE, FU_IS_SOLVED, FU_HAS_NO_SOLUTION };
 /* Returns the accelerations at a state for an event function, with run->accelerator in its state after them; null

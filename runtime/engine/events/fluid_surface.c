@@ -7,11 +7,11 @@
 
 #include <math.h>
 
-#define OF_SURFACE 2 /* event functions of each: first contact, and last */
+#define N_SURFACE_FUNCTIONS 2 /* event functions of each: first contact, and last */
 
 static double level_of(const fu_drag *drag, int which)
 {
-    return which < OF_SURFACE ? drag->surface : drag->bottom;
+    return which < N_SURFACE_FUNCTIONS ? drag->surface : drag->bottom;
 }
 
 static int is_level(double height)
@@ -53,5 +53,6 @@ double fu_surface_event_value(const fu_model *model, const fu_drag *drag, const 
     const double reach = fu_wet_reach(drag);
     double low, high;
     heights_of(model, drag, state, &low, &high);
-    return which % OF_SURFACE == 0 ? level_of(drag, which) + reach - low : level_of(drag, which) - reach - high;
+    return which % N_SURFACE_FUNCTIONS == 0 ? level_of(drag, which) + reach - low
+                                            : level_of(drag, which) - reach - high;
 }

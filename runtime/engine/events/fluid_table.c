@@ -6,9 +6,9 @@
 
 #include <math.h>
 
-#define OF_TABLE 1 /* event functions of the table, before those of surfaces */
+#define N_TABLE_FUNCTIONS 1 /* event functions of the table, before those of surfaces */
 /* of an axis of a table: smaller distances beyond an edge are at it, as of a run that ends with a table */
-#define AT_EDGE 1e-9
+#define EDGE_TOLERANCE 1e-9
 
 /* Returns the distance of a position within the table, with a surface that of the nearest position in the fluid. */
 static double margin_at(const fu_model *model, const fu_drag *drag, double t, const double *r)
@@ -33,7 +33,7 @@ static double margin(const fu_model *model, const fu_drag *drag, const fu_state 
         fu_attachment_at(model, &drag->attachments[0], state, 0.0, FU_POINT, &end);
         least = margin_at(model, drag, state->t, end.p);
     }
-    return least + AT_EDGE;
+    return least + EDGE_TOLERANCE;
 }
 
 static int has_edges(const fu_drag *drag)
@@ -47,19 +47,19 @@ static int *is_outside(const fu_coupling *coupling, const fu_state *state)
     return state->flags + coupling->flags;
 }
 
-static int watches(const fu_coupling *coupling, fu_event_function *out)
+static int functions(const fu_coupling *coupling, fu_event_function *out)
 {
     const fu_drag *drag = (const fu_drag *)coupling;
     const int n = has_edges(drag);
     if (n && out) *out = (fu_event_function){.which = 0, .direction = 0};
-    return n + fu_surface_event_functions(drag, OF_TABLE, out ? out + n : 0);
+    return n + fu_surface_event_functions(drag, N_TABLE_FUNCTIONS, out ? out + n : 0);
 }
 
-static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
+static double value_of(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {
     const fu_drag *drag = (const fu_drag *)coupling;
-    return which < OF_TABLE ? margin(run->model, drag, state)
-                            : fu_surface_event_value(run->model, drag, state, which - OF_TABLE);
+    return which < N_TABLE_FUNCTIONS ? margin(run->model, drag, state)
+                                     : fu_surface_event_value(run->model, drag, state, which - N_TABLE_FUNCTIONS);
 }
 
 static int sign(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which)
@@ -73,7 +73,9 @@ static int sign(const fu_model *model, const fu_coupling *coupling, const fu_sta
 static int pass_edge(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
 {
     is_outside(coupling, &run->now)[which] = side < 0;
-    *what = which >= OF_TABLE ? 0 : side < 0 ? "leaves the table of its fluid" : "is back in the table of its fluid";
+    *what = which >= N_TABLE_FUNCTIONS ? 0
+            : side < 0                 ? "leaves the table of its fluid"
+                                       : "is back in the table of its fluid";
     return FU_RUNNING;
 }
 
@@ -86,12 +88,12 @@ static int can_act(const fu_coupling *coupling)
 static int begin(fu_run *run, const fu_coupling *coupling)
 {
     fu_event_function at[FU_DRAG_FLAGS];
-    const int n = watches(coupling, at);
+    const int n = functions(coupling, at);
     *is_outside(coupling, &run->now) = margin(run->model, (const fu_drag *)coupling, &run->now) < 0.0;
     for (int k = 0; k < n; ++k)
-        is_outside(coupling, &run->now)[at[k].which] = watched(run, coupling, &run->now, at[k].which) < 0.0;
+        is_outside(coupling, &run->now)[at[k].which] = value_of(run, coupling, &run->now, at[k].which) < 0.0;
     return FU_RUNNING;
 }
 
 const fu_coupling_events fu_drag_events = {
-    .watches = watches, .watched = watched, .sign = sign, .act = pass_edge, .can_act = can_act, .begin = begin};
+    .functions = functions, .value = value_of, .sign = sign, .act = pass_edge, .can_act = can_act, .begin = begin};

@@ -31,21 +31,21 @@ static double rate_of_q(const fu_model *model, const fu_state *state, int index)
 }
 
 /* Computes value and rate of an event function of the state itself; the rate of others is NaN. */
-static fu_course course_of(const fu_model *model, const fu_event_function *watch, const fu_state *state)
+static fu_course course_of(const fu_model *model, const fu_event_function *function, const fu_state *state)
 {
-    if (watch->kind == FU_EVENT_OF_Q)
-        return (fu_course){state->q[watch->index] - watch->value, rate_of_q(model, state, watch->index)};
-    if (watch->kind == FU_EVENT_OF_V)
-        return (fu_course){state->v[watch->index] - watch->value, state->acceleration[watch->index]};
-    FU_EACH_COUPLING(c, model->always_active, watch->kind == FU_EVENT_OF_S ? model->n_always_active : 0) {
-        if (c->n_coordinates && c->coordinate == watch->index)
-            return (fu_course){state->s[watch->index] - watch->value, c->events->path->rate(model, c, state)};
+    if (function->kind == FU_EVENT_OF_Q)
+        return (fu_course){state->q[function->index] - function->value, rate_of_q(model, state, function->index)};
+    if (function->kind == FU_EVENT_OF_V)
+        return (fu_course){state->v[function->index] - function->value, state->acceleration[function->index]};
+    FU_EACH_COUPLING(c, model->always_active, function->kind == FU_EVENT_OF_S ? model->n_always_active : 0) {
+        if (c->n_coordinates && c->coordinate == function->index)
+            return (fu_course){state->s[function->index] - function->value, c->events->path->rate(model, c, state)};
     }
     return (fu_course){0.0, NAN};
 }
 
 /* Returns the part of a step after which an event function that has just passed to this side is farthest there, and is
- * back at the end; 0 if it is not. Without a value of its own its passage back would be missed. */
+ * back at the end; 0 if it is not. Without a value of its own its deferred event back would be missed. */
 static double return_of(fu_course from, fu_course to, double h, double least)
 {
     const int side = from.rate > 0.0 ? 1 : -1;
@@ -55,17 +55,17 @@ static double return_of(fu_course from, fu_course to, double h, double least)
 }
 
 /* Returns the time of the largest excursion of an event function beyond zero in the step, s after `now`. */
-static double dip_of(const fu_run *run, int k, double h)
+static double grazing_of(const fu_run *run, int k, double h)
 {
-    const fu_event_function *watch = &run->watches[k];
+    const fu_event_function *function = &run->event_functions[k];
     const fu_coupling *c = fu_event_coupling(run, k);
-    if (c) return c->events->grazing ? c->events->grazing(run, c, watch->which, h) : 0.0;
-    const fu_course from = course_of(run->model, watch, &run->now), to = course_of(run->model, watch, &run->next);
+    if (c) return c->events->grazing ? c->events->grazing(run, c, function->which, h) : 0.0;
+    const fu_course from = course_of(run->model, function, &run->now), to = course_of(run->model, function, &run->next);
     if (isnan(from.rate)) return 0.0;
-    const double least = ROUNDING_OF_VALUES *
-                         fmax(fabs(watch->value), fmax(fabs(from.value + watch->value), fabs(to.value + watch->value)));
-    if (run->watched[k] == 0.0) return return_of(from, to, h, least);
-    return fu_grazing_time(from, to, run->watched[k] > 0.0 ? 1 : -1, h, least);
+    const double least = ROUNDING_OF_VALUES * fmax(fabs(function->value), fmax(fabs(from.value + function->value),
+                                                                               fabs(to.value + function->value)));
+    if (run->event_values[k] == 0.0) return return_of(from, to, h, least);
+    return fu_grazing_time(from, to, run->event_values[k] > 0.0 ? 1 : -1, h, least);
 }
 
 /* Returns the time of the largest excursion of the first event function that passes zero and returns within the step, s
@@ -75,8 +75,8 @@ double fu_time_of_grazing(const fu_run *run, double h)
     double first = 0.0;
     const fu_event_function_list near = fu_near_event_functions_within(run, h);
     for (int i = 0; i < near.n; ++i) {
-        const double dip = dip_of(run, fu_event_function_of(near, i), h);
-        if (dip > 0.0 && (first == 0.0 || dip < first)) first = dip;
+        const double grazing = grazing_of(run, fu_event_function_of(near, i), h);
+        if (grazing > 0.0 && (first == 0.0 || grazing < first)) first = grazing;
     }
     return first;
 }

@@ -15,7 +15,7 @@ static const char *const words[] = {"", "struck", "came into contact", "lost con
 /* Event functions: the distance, or of a closed contact the normal force; friction. */
 enum { OF_DISTANCE, OF_FRICTION };
 
-static int watches(const fu_coupling *coupling, fu_event_function *out)
+static int functions(const fu_coupling *coupling, fu_event_function *out)
 {
     const int n = coupling->n_forces > 1 ? 2 : 1;
     for (int k = 0; k < n && out; ++k) out[k] = (fu_event_function){.which = k, .direction = 1};
@@ -48,7 +48,7 @@ static double friction_margin(const fu_run *run, const fu_coupling *coupling, co
 }
 
 /* Penetration, m; of a closed contact the tension, N. */
-static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
+static double value_of(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {
     const int mode = fu_hard_flags_of(coupling, state)->mode;
     fu_hard_row row;
@@ -109,4 +109,4 @@ static double beyond(const fu_model *model, const fu_coupling *coupling, const f
 }
 
 const fu_coupling_events fu_hard_contact_events = {
-    .beyond = beyond, .watches = watches, .watched = watched, .grazing = grazing, .act = act, .begin = begin};
+    .beyond = beyond, .functions = functions, .value = value_of, .grazing = grazing, .act = act, .begin = begin};

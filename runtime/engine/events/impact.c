@@ -20,7 +20,7 @@
 /* of the kinetic energy of the jump: largest gain in an impact */
 #define ENERGY_TOLERANCE 1e-9
 
-enum { MOST = FU_MOST_HARD_CONTACTS };
+enum { MAX_CONTACTS = FU_MOST_HARD_CONTACTS };
 
 /* Collects the active points and opens all of them, so that their rows are not in eq 38. */
 static void collect(fu_run *run, const fu_coupling *first, fu_active_contacts *t)
@@ -70,8 +70,8 @@ static void jump(fu_run *run, const fu_active_contacts *t)
  * are none. */
 static int solve_impulses(fu_active_contacts *t, double least)
 {
-    double b[MOST];
-    int unused[MOST];
+    double b[MAX_CONTACTS];
+    int unused[MAX_CONTACTS];
     for (int k = 0; k < t->n; ++k) b[k] = t->before[k] - t->target[k];
     if (fu_complement(t->n, t->G, b, least, t->impulse, unused)) return 1;
     for (int k = 0; k < t->n; ++k) t->after[k] = t->before[k] + fu_dot(t->n, t->G + k * t->n, t->impulse);
@@ -120,8 +120,8 @@ static int strike(fu_run *run, fu_active_contacts *t, double least)
 static int press(fu_run *run, fu_active_contacts *t, double least)
 {
     const fu_model *model = run->model;
-    int n = 0, at[MOST], kind[MOST];
-    double G[MOST * MOST], b[MOST], force[MOST], largest = 0.0;
+    int n = 0, at[MAX_CONTACTS], kind[MAX_CONTACTS];
+    double G[MAX_CONTACTS * MAX_CONTACTS], b[MAX_CONTACTS], force[MAX_CONTACTS], largest = 0.0;
     for (int k = 0; k < t->n; ++k) {
         t->stays[k] = t->after[k] <= fmax(least, SEPARATION_SPEED * fu_hard_contact_of(t->of[k])->rest_velocity);
         if (t->stays[k]) at[n++] = k;
@@ -155,8 +155,8 @@ static int news_of(const fu_active_contacts *t, int k, const fu_hard_flags *flag
 /* Triggers an event function of a coupling at once, too. */
 static void let_happen(fu_run *run, const fu_coupling *coupling)
 {
-    for (int k = 0; k < run->n_watches; ++k)
-        if (fu_event_coupling(run, k) == coupling && !run->watches[k].which) run->late[k] = 1;
+    for (int k = 0; k < run->n_event_functions; ++k)
+        if (fu_event_coupling(run, k) == coupling && !run->event_functions[k].which) run->late[k] = 1;
 }
 
 int fu_resolve_hard_contacts(fu_run *run, const fu_coupling *first, int yields)

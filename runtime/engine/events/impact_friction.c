@@ -11,22 +11,22 @@
 #include <math.h>
 #include <string.h>
 
-#define MAX_SWEEPS 20000 /* largest number of sweeps over the points of an impact */
-#define CONVERGED 1e-14  /* change of an impulse in a sweep, over the largest */
+#define MAX_SWEEPS 20000        /* largest number of sweeps over the points of an impact */
+#define IMPULSE_TOLERANCE 1e-14 /* change of an impulse in a sweep, over the largest */
 /* of the velocity below which a point comes to rest: slower points stick, if possible */
 #define STICKING_SPEED 0.1
-#define EXCESS 1e-9          /* of the friction limit: excess that breaks a point loose */
-#define PULL_TOLERANCE 1e-10 /* of the largest force: a larger tension opens a point, a smaller one is rounding */
-#define APPROACH 1e-6        /* of the accelerations: above the compliance of sticking */
-#define MOST_CHANGES 200     /* largest number of changes of states of points */
+#define FRICTION_TOLERANCE 1e-9 /* of the friction limit: excess that breaks a point loose */
+#define PULL_TOLERANCE 1e-10    /* of the largest force: a larger tension opens a point, a smaller one is rounding */
+#define APPROACH_TOLERANCE 1e-6 /* of the accelerations: above the compliance of sticking */
+#define MAX_CHANGES 200         /* largest number of changes of states of points */
 
-enum { MOST = FU_MOST_HARD_CONTACTS, ROWS = FU_SPACE * FU_MOST_HARD_CONTACTS };
+enum { MAX_CONTACTS = FU_MOST_HARD_CONTACTS, MAX_ROWS = FU_SPACE * FU_MOST_HARD_CONTACTS };
 
 /* Rows of an impact with friction: of each point its normal, then the directions across it. */
 typedef struct {
     int n;
-    double A[ROWS * ROWS], before[ROWS], after[ROWS], impulse[ROWS];
-    fu_hard_along along[MOST];
+    double A[MAX_ROWS * MAX_ROWS], before[MAX_ROWS], after[MAX_ROWS], impulse[MAX_ROWS];
+    fu_hard_along along[MAX_CONTACTS];
 } friction_impulse;
 
 static const double *row_of(const fu_active_contacts *t, const friction_impulse *r, int dim, int k)
@@ -85,14 +85,14 @@ int fu_impact_with_friction(fu_run *run, fu_active_contacts *t)
     friction_impulse r;
     prepare(run, t, &r);
     double change = INFINITY, largest = 0.0;
-    for (int sweep = 0; sweep < MAX_SWEEPS && change > CONVERGED * largest; ++sweep) {
+    for (int sweep = 0; sweep < MAX_SWEEPS && change > IMPULSE_TOLERANCE * largest; ++sweep) {
         change = 0.0;
         for (int k = 0; k < t->n; ++k) {
             change = fmax(change, mend(t, &r, k, dim));
             largest = fmax(largest, r.impulse[k * dim]);
         }
     }
-    if (!(change <= sqrt(CONVERGED) * largest)) return 1;
+    if (!(change <= sqrt(IMPULSE_TOLERANCE) * largest)) return 1;
     t->taken = 0.0;
     memset(run->before, 0, sizeof(double) * (size_t)run->model->n_dof);
     for (int k = 0; k < r.n; ++k) {
@@ -101,7 +101,7 @@ int fu_impact_with_friction(fu_run *run, fu_active_contacts *t)
         fu_hard_push(run, &t->row[k / dim], row_of(t, &r, dim, k), r.impulse[k]);
         if (k % dim) continue;
         t->impulse[k / dim] = r.impulse[k];
-        t->after[k / dim] = fabs(r.after[k] - t->target[k / dim]) <= sqrt(CONVERGED) * fabs(t->before[k / dim])
+        t->after[k / dim] = fabs(r.after[k] - t->target[k / dim]) <= sqrt(IMPULSE_TOLERANCE) * fabs(t->before[k / dim])
                                 ? t->target[k / dim]
                                 : r.after[k];
     }
@@ -169,7 +169,7 @@ static void aim_all(fu_run *run, const fu_active_contacts *t, int *aimed)
 static int change_one(fu_run *run, const fu_active_contacts *t, const fu_coupling *loose, int *closed)
 {
     const fu_model *model = run->model;
-    double largest = 0.0, worst = EXCESS;
+    double largest = 0.0, worst = FRICTION_TOLERANCE;
     const fu_coupling *breaks = 0;
     *closed = -1;
     for (int k = 0; k < t->n; ++k) largest = fmax(largest, fabs(run->now.forces[t->of[k]->force]));
@@ -189,8 +189,8 @@ static int change_one(fu_run *run, const fu_active_contacts *t, const fu_couplin
             acceleration += part;
             size += fabs(part);
         }
-        if (flags->mode == FU_APART && fabs(acceleration) <= APPROACH * size) flags->mode = FU_IMPLIED;
-        if (acceleration >= -APPROACH * size) continue;
+        if (flags->mode == FU_APART && fabs(acceleration) <= APPROACH_TOLERANCE * size) flags->mode = FU_IMPLIED;
+        if (acceleration >= -APPROACH_TOLERANCE * size) continue;
         flags->mode = FU_CLOSED;
         begin(run, t, k);
         *closed = k;
@@ -221,12 +221,12 @@ static int stop(fu_run *run)
 
 int fu_settle_friction(fu_run *run, fu_active_contacts *t, const fu_coupling *loose)
 {
-    int closed = -1, changes = 0, aimed[MOST] = {0};
+    int closed = -1, changes = 0, aimed[MAX_CONTACTS] = {0};
     for (int k = 0; k < t->n; ++k)
         if (fu_hard_flags_of(t->of[k], &run->now)->mode == FU_CLOSED && t->of[k]->n_forces > 1) begin(run, t, k);
     if (stop(run)) return 1;
     fu_complete(run, &run->now); /* sticking points share forces by normal forces, which the next one takes from here */
-    for (; changes < MOST_CHANGES; ++changes) {
+    for (; changes < MAX_CHANGES; ++changes) {
         if (fu_complete(run, &run->now)) {
             if (closed < 0) return 1;
             fu_hard_flags_of(t->of[closed], &run->now)->mode = FU_IMPLIED;

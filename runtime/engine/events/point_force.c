@@ -20,20 +20,20 @@ static double norm(int dim, const double *gap)
 }
 
 /* Returns the margin of the force of a segment on its permitted side of zero, m; infinity if it may pull and push. */
-static double margin_of_sense(const fu_point_force *between, int piece, const double *gap, const double *rate,
+static double margin_of_sense(const fu_point_force *between, int segment, const double *gap, const double *rate,
                               double distance)
 {
-    const int sense = between->senses[piece];
+    const int sense = between->senses[segment];
     double force[3];
     if (sense != FU_PULLS_ALONE && sense != FU_PUSHES_ALONE) return INFINITY;
-    between->law->force(fu_segment_parameters(between, piece), gap, rate, force);
+    between->law->force(fu_segment_parameters(between, segment), gap, rate, force);
     return sense * between->compliance * fu_dot(between->dim, force, gap) / distance;
 }
 
 /* A transition of the force from its segment to another: `margin` is negative before it, m. */
 typedef struct {
     double margin;
-    int piece;
+    int segment;
 } transition;
 
 static transition farther(transition a, transition b)
@@ -42,61 +42,62 @@ static transition farther(transition a, transition b)
 }
 
 /* Returns the nearest segment without force, towards the distances at which a segment's own force is zero. */
-static int free_beside(const fu_point_force *between, int piece)
+static int free_beside(const fu_point_force *between, int segment)
 {
-    const int step = -between->senses[piece];
-    while (between->senses[piece] != FU_HAS_NO_FORCE) piece += step;
-    return piece;
+    const int step = -between->senses[segment];
+    while (between->senses[segment] != FU_HAS_NO_FORCE) segment += step;
+    return segment;
 }
 
 /* Returns the transition to a segment with a force on one side of a segment without: the distance is in it, and its
  * force has the permitted sense. */
-static transition entering(const fu_point_force *between, int piece, int side, const double *gap, const double *rate,
+static transition entering(const fu_point_force *between, int segment, int side, const double *gap, const double *rate,
                            double distance)
 {
-    const double beyond = side * (distance - between->bounds[piece - (side < 0)]);
+    const double beyond = side * (distance - between->bounds[segment - (side < 0)]);
     int entered = fu_segment_at_distance(between, distance);
-    if (side * (entered - piece) < 1) entered = piece + side;
+    if (side * (entered - segment) < 1) entered = segment + side;
     return (transition){fmin(beyond, margin_of_sense(between, entered, gap, rate, distance)), entered};
 }
 
 /* Returns the nearest transition from a segment, or one that has happened. */
-static transition passage_from(const fu_model *model, const fu_point_force *between, const fu_state *state, int piece)
+static transition transition_from(const fu_model *model, const fu_point_force *between, const fu_state *state,
+                                  int segment)
 {
-    transition found = {-INFINITY, piece};
+    transition found = {-INFINITY, segment};
     double gap[3], rate[3];
     fu_gap(model, between, state->q, state->v, gap, rate);
     const double distance = norm(between->dim, gap);
-    const double sense = margin_of_sense(between, piece, gap, rate, distance);
-    if (sense < INFINITY) found = (transition){-sense, free_beside(between, piece)};
+    const double sense = margin_of_sense(between, segment, gap, rate, distance);
+    if (sense < INFINITY) found = (transition){-sense, free_beside(between, segment)};
     for (int side = -1; side <= 1; side += 2) {
-        const int beside = piece + side;
+        const int beside = segment + side;
         if (beside < 0 || beside >= between->n_pieces) continue;
-        if (between->senses[piece] == FU_HAS_NO_FORCE)
-            found = farther(found, entering(between, piece, side, gap, rate, distance));
-        else found = farther(found, (transition){side * (distance - between->bounds[piece - (side < 0)]), beside});
+        if (between->senses[segment] == FU_HAS_NO_FORCE)
+            found = farther(found, entering(between, segment, side, gap, rate, distance));
+        else found = farther(found, (transition){side * (distance - between->bounds[segment - (side < 0)]), beside});
     }
     return found;
 }
 
-static transition next_passage(const fu_model *model, const fu_point_force *between, const fu_state *state)
+static transition next_transition(const fu_model *model, const fu_point_force *between, const fu_state *state)
 {
-    return passage_from(model, between, state, fu_force_segment(between, state));
+    return transition_from(model, between, state, fu_force_segment(between, state));
 }
 
 /* Transitions follow from the positions of the points; each leads from segment to segment. */
 static int follow(const fu_model *model, const fu_coupling *coupling, const fu_state *from, fu_state *to)
 {
     const fu_point_force *between = force_of(coupling);
-    int *piece = &to->flags[coupling->flags];
-    const int before = *piece;
-    *piece = from->flags[coupling->flags];
+    int *segment = &to->flags[coupling->flags];
+    const int before = *segment;
+    *segment = from->flags[coupling->flags];
     for (int i = 0; i < between->n_pieces; ++i) {
-        const transition next = next_passage(model, between, to);
+        const transition next = next_transition(model, between, to);
         if (!(next.margin > 0.0)) break;
-        *piece = next.piece;
+        *segment = next.segment;
     }
-    return *piece != before;
+    return *segment != before;
 }
 
 /* The event of a transition from segment to segment in words; null at a corner of a table. */
@@ -173,12 +174,13 @@ static double part_of_step(const fu_model *model, const fu_coupling *coupling, c
 {
     const fu_point_force *between = force_of(coupling);
     const int before = fu_force_segment(between, from), there = fu_force_segment(between, to);
-    const int after = there == before ? passage_from(model, between, to, before).piece : there, up = after > before;
+    const int after = there == before ? transition_from(model, between, to, before).segment : there,
+              up = after > before;
     double low = 0.0, high = 1.0;
     *what = words(between, before, after);
     if (coupling->is_damped) {
-        const double a = passage_from(model, between, from, before).margin,
-                     b = passage_from(model, between, to, before).margin;
+        const double a = transition_from(model, between, from, before).margin,
+                     b = transition_from(model, between, to, before).margin;
         return a < 0.0 && b > 0.0 ? a / (a - b) : 1.0;
     }
     const int bound = up ? before : before - 1;
@@ -194,7 +196,7 @@ static double part_of_step(const fu_model *model, const fu_coupling *coupling, c
 static double since(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     const fu_point_force *between = force_of(coupling);
-    const int before = fu_force_segment(between, state), up = next_passage(model, between, state).piece > before;
+    const int before = fu_force_segment(between, state), up = next_transition(model, between, state).segment > before;
     if (coupling->is_damped) return NAN;
     const fu_course course = from_bound(model, between, state, up ? before : before - 1);
     return course.value / course.rate;
@@ -206,17 +208,17 @@ static void force_change(const fu_model *model, const fu_coupling *coupling, con
     fu_add_force_change(model, force_of(coupling), to, fu_force_segment(force_of(coupling), from), factor, f);
 }
 
-static int watches(const fu_coupling *coupling, fu_event_function *out)
+static int functions(const fu_coupling *coupling, fu_event_function *out)
 {
     if (force_of(coupling)->n_pieces == 1) return 0;
     if (out) *out = (fu_event_function){.which = 0, .direction = 1};
     return 1;
 }
 
-static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
+static double value_of(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {
     (void)which;
-    return next_passage(run->model, force_of(coupling), state).margin;
+    return next_transition(run->model, force_of(coupling), state).margin;
 }
 
 /* Returns the distance beyond a bound to a side, m, and its rate. */
@@ -227,17 +229,17 @@ static fu_course beyond(const fu_point_force *between, int bound, int side, cons
 }
 
 /* Returns the distance of a segment's force on the wrong side of zero, m, and its rate. */
-static fu_course wrong_sense(const fu_point_force *between, int piece, const gap_motion *l)
+static fu_course wrong_sense(const fu_point_force *between, int segment, const gap_motion *l)
 {
     const int dim = between->dim;
     double force[3], by_gap[9], by_rate[9], change = 0.0;
-    between->law->tangent(fu_segment_parameters(between, piece), l->gap, l->rate, force, by_gap, by_rate);
+    between->law->tangent(fu_segment_parameters(between, segment), l->gap, l->rate, force, by_gap, by_rate);
     for (int i = 0; i < dim; ++i)
         for (int k = 0; k < dim; ++k)
             change += l->gap[i] * (by_gap[i * dim + k] * l->rate[k] + by_rate[i * dim + k] * l->acceleration[k]);
     const double along = fu_dot(dim, force, l->gap) / l->distance, rate = fu_dot(dim, l->gap, l->rate) / l->distance;
     const double slope = (change + fu_dot(dim, force, l->rate) - along * rate) / l->distance;
-    const double unit = -between->senses[piece] * between->compliance;
+    const double unit = -between->senses[segment] * between->compliance;
     return (fu_course){unit * along, unit * slope};
 }
 
@@ -246,17 +248,17 @@ static fu_course wrong_sense(const fu_point_force *between, int piece, const gap
 static double grazing(const fu_run *run, const fu_coupling *coupling, int which, double h)
 {
     const fu_point_force *between = force_of(coupling);
-    const int piece = fu_force_segment(between, &run->now), sense = between->senses[piece];
+    const int segment = fu_force_segment(between, &run->now), sense = between->senses[segment];
     const gap_motion from = look_at(run->model, between, &run->now), to = look_at(run->model, between, &run->next);
     double first = 0.0;
     (void)which;
     for (int side = -1; side <= 1; ++side) {
-        const int bound = piece - (side < 0), by_sense = side == 0;
+        const int bound = segment - (side < 0), by_sense = side == 0;
         if (by_sense ? sense != FU_PULLS_ALONE && sense != FU_PUSHES_ALONE
                      : bound < 0 || bound >= between->n_pieces - 1)
             continue;
-        const double found = by_sense ? fu_grazing_time(wrong_sense(between, piece, &from),
-                                                        wrong_sense(between, piece, &to), -1, h, run->round_off)
+        const double found = by_sense ? fu_grazing_time(wrong_sense(between, segment, &from),
+                                                        wrong_sense(between, segment, &to), -1, h, run->round_off)
                                       : fu_grazing_time(beyond(between, bound, side, &from),
                                                         beyond(between, bound, side, &to), -1, h, run->round_off);
         if (found > 0.0 && (first == 0.0 || found < first)) first = found;
@@ -267,7 +269,8 @@ static double grazing(const fu_run *run, const fu_coupling *coupling, int which,
 static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
 {
     const fu_point_force *between = force_of(coupling);
-    const int before = fu_force_segment(between, &run->now), after = next_passage(run->model, between, &run->now).piece;
+    const int before = fu_force_segment(between, &run->now),
+              after = next_transition(run->model, between, &run->now).segment;
     (void)which, (void)side;
     run->now.flags[coupling->flags] = after;
     *what = words(between, before, after);
@@ -286,8 +289,8 @@ static int begin(fu_run *run, const fu_coupling *coupling)
     fu_state *now = &run->now;
     if (between->n_pieces == 1) return FU_RUNNING;
     fu_detect_segment(run->model, coupling, now);
-    const transition next = next_passage(run->model, between, now);
-    if (next.margin > 0.0) now->flags[coupling->flags] = next.piece;
+    const transition next = next_transition(run->model, between, now);
+    if (next.margin > 0.0) now->flags[coupling->flags] = next.segment;
     return FU_RUNNING;
 }
 
@@ -295,8 +298,8 @@ static const fu_deferred_operations deferred = {
     .follow = follow, .part = part_of_step, .since = since, .force_change = force_change};
 
 const fu_coupling_events fu_point_force_events = {
-    .watches = watches,
-    .watched = watched,
+    .functions = functions,
+    .value = value_of,
     .grazing = grazing,
     .act = act,
     .can_act = can_act,

@@ -1,4 +1,4 @@
-/* Search for near pairs: clearances of couplings measured anew, and event functions that may pass zero.
+/* Search for near pairs: clearances of couplings measured again, and event functions that may pass zero.
  * couplings/common/proximity.c explains the search and the interval between two searches. */
 #include "equations/run.h"
 #include "events/proximity.h"
@@ -6,8 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-#define STEPS_A_LOOK 16            /* for which a search should suffice */
-#define MAX_STEPS_A_LOOK 256       /* steps after which the search is repeated, since motions may have become slower */
+#define STEPS_PER_UPDATE 16        /* for which a search should suffice */
+#define MAX_STEPS_PER_UPDATE 256   /* steps after which the search is repeated, since motions may have become slower */
 #define ROUNDING_OF_CLEARANCE 1e-9 /* of clearances, path lengths and positions */
 
 /* Computes the speeds of a moving part, m/s and rad/s. */
@@ -25,19 +25,19 @@ static void speeds_of(const fu_model *model, int mover, const double *v, double 
     *spin = sqrt(*spin);
 }
 
-static fu_event_function_list every_watch(const fu_run *run)
+static fu_event_function_list every_function(const fu_run *run)
 {
-    return (fu_event_function_list){0, run->n_watches};
+    return (fu_event_function_list){0, run->n_event_functions};
 }
 
-static fu_event_function_list near_watches(const fu_run *run)
+static fu_event_function_list near_functions(const fu_run *run)
 {
-    return (fu_event_function_list){run->model->proximity->near_watches, run->model->proximity->n_near_watches};
+    return (fu_event_function_list){run->model->proximity->near_functions, run->model->proximity->n_near_functions};
 }
 
 fu_event_function_list fu_near_event_functions(const fu_run *run, const fu_state *state)
 {
-    return run->model->n_pairs && fu_movers_are_near(run->model, state->q) ? near_watches(run) : every_watch(run);
+    return run->model->n_pairs && fu_movers_are_near(run->model, state->q) ? near_functions(run) : every_function(run);
 }
 
 /* A cubic moves no farther from its ends than a third of the step at their rates. */
@@ -46,7 +46,7 @@ fu_event_function_list fu_near_event_functions_within(const fu_run *run, double 
     const fu_model *model = run->model;
     const fu_proximity *p = model->proximity;
     const fu_state *ends[2] = {&run->now, &run->next};
-    if (!model->n_pairs || !p->is_known) return every_watch(run);
+    if (!model->n_pairs || !p->is_known) return every_function(run);
     for (int m = 0; m < p->n_movers; ++m)
         for (int end = 0; end < 2 && p->movers[m].pairs; ++end) {
             double way, turn, speed, spin;
@@ -54,14 +54,14 @@ fu_event_function_list fu_near_event_functions_within(const fu_run *run, double 
             speeds_of(model, m, ends[end]->v, &speed, &spin);
             way += 0.34 * h * (speed + spin * p->movers[m].radius);
             turn += 0.34 * h * spin;
-            if (!(way <= p->movers[m].way && turn <= p->movers[m].turn)) return every_watch(run);
+            if (!(way <= p->movers[m].way && turn <= p->movers[m].turn)) return every_function(run);
         }
-    return near_watches(run);
+    return near_functions(run);
 }
 
-int fu_is_far_event_function(const fu_run *run, int watch)
+int fu_is_far_event_function(const fu_run *run, int function)
 {
-    const fu_coupling *c = fu_event_coupling(run, watch);
+    const fu_coupling *c = fu_event_coupling(run, function);
     return c && run->model->n_pairs && run->model->proximity->is_known && run->model->proximity->is_far[c->number];
 }
 
@@ -114,12 +114,12 @@ static void list_near(fu_run *run)
 {
     const fu_model *model = run->model;
     fu_proximity *p = model->proximity;
-    p->n_near = p->n_near_watches = 0;
+    p->n_near = p->n_near_functions = 0;
     FU_EACH_COUPLING(c, model->couplings, model->n_couplings)
         if (!p->is_far[c->number] || !p->is_alone[c->number]) p->near[p->n_near++] = c;
     p->is_known = 1;
-    for (int k = 0; k < run->n_watches; ++k)
-        if (!fu_is_far_event_function(run, k)) p->near_watches[p->n_near_watches++] = k;
+    for (int k = 0; k < run->n_event_functions; ++k)
+        if (!fu_is_far_event_function(run, k)) p->near_functions[p->n_near_functions++] = k;
 }
 
 /* Adds the path lengths of parts since the last search; returns whether one has used half of its limit. */
@@ -148,8 +148,8 @@ static void expect(const fu_model *model, const fu_state *state, double h, int s
         speeds_of(model, m, state->v, &speed, &spin);
         mover->gone += ways[m];
         mover->turned += turns[m];
-        mover->way = STEPS_A_LOOK * fmax(ways[m] / steps, h * (speed + spin * mover->radius));
-        mover->turn = STEPS_A_LOOK * fmax(turns[m] / steps, h * spin);
+        mover->way = STEPS_PER_UPDATE * fmax(ways[m] / steps, h * (speed + spin * mover->radius));
+        mover->turn = STEPS_PER_UPDATE * fmax(turns[m] / steps, h * spin);
     }
 }
 
@@ -162,7 +162,7 @@ void fu_look_around(fu_run *run, double h, int anew)
     anew |= !p->is_known;
     ++p->age;
     if (anew) memset(ways, 0, sizeof(double) * 2 * (size_t)p->n_movers);
-    else if (!count_ways(model, &run->now, ways, turns) && p->age < MAX_STEPS_A_LOOK) return;
+    else if (!count_ways(model, &run->now, ways, turns) && p->age < MAX_STEPS_PER_UPDATE) return;
     expect(model, &run->now, run->fixed_step > 0.0 ? run->fixed_step : fmax(h, run->h), p->age, ways, turns);
     memcpy(p->at, run->now.q, sizeof(double) * (size_t)model->n_q);
     sort_pairs(run, &run->now, anew);

@@ -17,7 +17,7 @@ static inline int fu_event_function_of(fu_event_function_list list, int i)
     return list.list ? list.list[i] : i;
 }
 /* Whether an event function was left out at the last evaluation at `now`. */
-int fu_is_far_event_function(const fu_run *run, int watch);
+int fu_is_far_event_function(const fu_run *run, int function);
 
 /* Repeats the search for near pairs after a step of h, if necessary or in any case. */
 void fu_look_around(fu_run *run, double h, int anew);

@@ -62,7 +62,7 @@ void fu_note_slackness(fu_run *run, double h)
     }
 }
 
-/* Makes the earliest unreported change, if it is before an instant, the event of the run; returns 0 if there is
+/* Computes the earliest unreported change, if it is before an instant, the event of the run; returns 0 if there is
  * none. */
 int fu_take_slackness(fu_run *run, double before)
 {

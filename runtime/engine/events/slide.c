@@ -48,21 +48,21 @@ static int stops_at_boundaries(const fu_model *model, const fu_coupling *couplin
  * projected away before, so that it does not count as a loss. The tangent of the neighbour differs by the jump of the
  * curvature times the distance beyond the boundary: if the axes were not rotated at once, the first short step would
  * rotate them, at a speed without a counterpart in the energies. */
-static int enter(fu_run *run, const fu_coupling *coupling, int piece)
+static int enter(fu_run *run, const fu_coupling *coupling, int segment)
 {
     const fu_model *model = run->model;
     fu_state *now = &run->now;
     if (!fu_ties_a_frame(model, coupling->index)) return FU_RUNNING;
     if (fu_project_velocities(model, now, &run->accelerator, run->work)) return FU_SINGULAR;
     for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->work[i];
-    now->piece[coupling->coordinate] = piece;
+    now->segment[coupling->coordinate] = segment;
     if (fu_close(run)) return FU_NO_CONVERGENCE;
     if (fu_project_velocities(model, now, &run->accelerator, run->work)) return FU_SINGULAR;
     fu_impact(run, run->work, 0.0);
     return FU_RUNNING;
 }
 
-static int watches(const fu_coupling *coupling, fu_event_function *out)
+static int functions(const fu_coupling *coupling, fu_event_function *out)
 {
     const fu_slide *slide = slide_of(coupling);
     fu_event_function found[3];
@@ -77,7 +77,7 @@ static int watches(const fu_coupling *coupling, fu_event_function *out)
     return n;
 }
 
-static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
+static double value_of(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {
     return which == STICKING ? fu_stick_margin(run, state, coupling->index)
                              : fu_buffer_margin(run, state, coupling->index, which);
@@ -112,8 +112,8 @@ static const fu_path_operations path = {
     .at = path_at, .rate = rate, .stops_at_boundaries = stops_at_boundaries, .enter = enter, .reach_end = fu_reach_end};
 
 const fu_coupling_events fu_slide_events = {
-    .watches = watches,
-    .watched = watched,
+    .functions = functions,
+    .value = value_of,
     .grazing = grazing,
     .sign = sign,
     .act = act,
