@@ -79,8 +79,7 @@ def error_estimate(scene: S, run: Run, settings: RunSettings, from_a_state: bool
     for what in ("time", "mesh", "both"):
         if np.isinf(getattr(found, what)):
             setattr(found, what, np.nan)
-            found.messages.append(f'the error "{what}" is not estimated: nothing moves by more than rounding, over '
-                                  "which it would be told")
+            found.messages.append(f'the error "{what}" is not estimated: nothing moves by more than rounding')
     found.cpu_s = time.process_time() - begin
     return found
 

@@ -17,7 +17,7 @@ from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
 from ..solve.motion.run import FAILED_STATUSES, Simulation
 from ..solve.notes.coincident_points import MeetingPoints
-from ..solve.notes.diagnosis import stopped
+from ..solve.notes.diagnosis import RESULTS_KEPT, stopped
 from .quantities import ENERGIES
 
 
@@ -108,8 +108,7 @@ def _message(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
             slide = model.slides[engine.stopped_slide]
             cable = model.cables[slide.cable]
             end = "end" if engine.stopped_s > 0.5 * cable.mesh.total else "start"
-            return (f'slide "{slide.name}": ran off the {end} of cable "{cable.name}" at {when}; '
-                    "what was computed up to there is kept")
+            return (f'slide "{slide.name}": ran off the {end} of cable "{cable.name}" at {when}; {RESULTS_KEPT}')
         case _ if status in FAILED_STATUSES:
             now, q, *_ = engine.now()
             points = MeetingPoints(scene, model)
@@ -119,6 +118,6 @@ def _message(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
         case "event":
             return f'stopped by event "{simulation.watcher.stopped_by}" at {when}'
         case "interrupted":
-            goes_on = "" if settings.save is None else ", and resume goes on with it"
-            return f"interrupted at {when}; what was computed up to there is kept{goes_on}"
+            remedy = "" if settings.save is None else ", and resume continues the run"
+            return f"interrupted at {when}; {RESULTS_KEPT}{remedy}"
     return f"completed {settings.duration:.6g} s"

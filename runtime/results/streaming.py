@@ -210,7 +210,7 @@ class Stream:
             self._report(report, self._file.rows)
 
     def _unfinished(self) -> dict[str, Any]:
-        return {"status": "unfinished", "message": "the run goes on, or was killed", "resumed_at_s": self._resumed,
+        return {"status": "unfinished", "message": "the run is active, or was killed", "resumed_at_s": self._resumed,
                 "messages": self._scene.messages, "settings": self._settings.field_values()}
 
     def _publish(self) -> None:
@@ -268,7 +268,7 @@ class Stream:
 
     def _lost(self) -> ResultFileError:
         return self._refused("it was removed or replaced while the run was writing it",
-                             "leave it where it is until the run has come to its end")
+                             "leave it unchanged until the run has ended")
 
     def _written(self, write: Callable[[], None]) -> None:
         try:
@@ -277,7 +277,7 @@ class Stream:
             kept = self._has_name and self._path.exists()
             complete = f"its first {self._file.rows} times are whole; " if kept else ""
             raise ResultFileError(f"{self._path}: the results could not be written: {error.strerror}; {complete}"
-                                  "make room, and go on with resume where there is a checkpoint") from error
+                                  "free disk space, and resume the run if there is a checkpoint") from error
 
     def _claim_older(self) -> int:
         """Return a locked descriptor of the existing file, -1 if there is none."""
@@ -319,7 +319,7 @@ class Stream:
 
     def _compare(self, facts: Facts, name: str, difference: str) -> None:
         if getattr(facts, name) != self._facts[name]:
-            raise self._refused(f"its run cannot go on {difference}")
+            raise self._refused(f"its run cannot be resumed {difference}")
 
     def _to_resume(self) -> Checkpoint:
         """Return the checkpoint, checked against scene and settings, and open the file."""
@@ -327,11 +327,11 @@ class Stream:
             raise self._refused("there is no run to resume: there is no such file")
         status = opened(open_file(self._path), self._read_scene, check=False).status
         if status not in RESUMABLE:
-            raise self._refused(f"its run has come to its end ({status}): there is nothing to resume")
+            raise self._refused(f"its run has ended ({status}): there is nothing to resume")
         kept = self._read_checkpoint()
         for name, now in self._facts["settings"].items():
             if (before := kept.facts.settings.get(name)) != now:
-                raise self._refused(f"its run was started with {name} = {before}, and cannot go on with {now}",
+                raise self._refused(f"its run was started with {name} = {before}, and cannot be resumed with {now}",
                                     "resume it with the settings that it was started with, or start it anew")
         self._compare(kept.facts, "scene", "with another scene")
         self._compare(kept.facts, "programs", "with another version of funicular, NumPy or SciPy")

@@ -84,7 +84,7 @@ def points(clip: Clip) -> Iterator[np.ndarray]:
 
 
 def all_points(animation: Animation) -> np.ndarray:
-    """Return (n, 3): the points of all clips; the origin where there are none."""
+    """Return the points (n, 3) of all clips; the origin without any."""
     found = [each.reshape(-1, 3) for clip in animation.clips for each in points(clip)]
     return np.concatenate(found) if found else np.zeros((1, 3))
 

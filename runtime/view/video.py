@@ -90,7 +90,7 @@ def _write_mp4(path: Path, pictures: Iterator[np.ndarray]) -> None:
     finally:
         writer.close()
     if not _is_whole(path):  # ffmpeg does not report a full disk
-        raise OSError(0, "the film was cut short; make room")
+        raise OSError(0, "the film was cut short; free disk space")
 
 
 def _is_whole(path: Path) -> bool:

@@ -142,7 +142,7 @@ def test_an_equilibrium_to_start_from(tmp_path, monkeypatch):
         failing(patch, 100, Killed())
         with pytest.raises(Killed):
             scene.run(**settings, initial="equilibrium", save=path)
-    with file_refused(path, "its run cannot go on from another state" + ANEW):
+    with file_refused(path, "its run cannot be resumed from another state" + ANEW):
         scene.run(**settings, initial=scene.equilibrium(load_steps=3, tolerance=1e-5), save=path, resume=True)
     scene.run(**settings, initial=scene.equilibrium(), save=path, resume=True)
     assert content(path) == content(tmp_path / "whole.nc")
@@ -155,7 +155,7 @@ def test_ctrl_c_leaves_what_there_is_and_goes_on(uninterrupted, tmp_path):
         if time > 0.095:
             raise KeyboardInterrupt
 
-    with pytest.warns(FunicularWarning, match=r"interrupted at .*, and resume goes on with it$"):
+    with pytest.warns(FunicularWarning, match=r"interrupted at .*, and resume continues the run$"):
         run = short().run(**SETTINGS, save=path, progress=stop)
     assert (run.status, load_run(path).status) == ("interrupted", "interrupted")
     assert len(run.time) == 11
@@ -197,7 +197,7 @@ def test_a_run_that_ends_early_leaves_its_rows_and_no_checkpoint(tmp_path):
     assert_array_equal(stopped.value.run["trolley.s"], run["trolley.s"])
     assert run["trolley.s"][-1] == pytest.approx(1.5, abs=1e-9)
     assert [p.name for p in tmp_path.iterdir()] == ["x.nc"]
-    with file_refused(path, r"its run has come to its end \(end_of_cable\): there is nothing to resume" + ANEW):
+    with file_refused(path, r"its run has ended \(end_of_cable\): there is nothing to resume" + ANEW):
         short(5.0).run(duration=0.5, output_step=0.01, tol=1e-3, save=path, resume=True)
 
 
@@ -221,7 +221,7 @@ def test_full_disk(tmp_path, monkeypatch, uninterrupted):
     with monkeypatch.context() as patch:
         failing(patch, 30, OSError(28, "No space left on device"))
         with file_refused(path, "the results could not be written: No space left on device; its first 10 times "
-                                "are whole; make room, and go on with resume"):
+                                "are whole; free disk space, and resume the run"):
             short().run(**SETTINGS, save=path)
     assert len(load_run(path).time) == 10
     assert {p.name for p in tmp_path.iterdir()} == {"x.nc", "x.nc.state"}
@@ -235,21 +235,21 @@ def test_what_cannot_be_resumed(stopped, tmp_path):
         resumed(tmp_path / "y.nc")
     with pytest.raises(ResultFileError, match=r"^run: there is nothing to resume without a file of results; name it"):
         short().run(**SETTINGS, resume=True)
-    with file_refused(stopped, "its run was started with tol = 0.001, and cannot go on with 0.01; "
+    with file_refused(stopped, "its run was started with tol = 0.001, and cannot be resumed with 0.01; "
                                "resume it with the sett"):
         resumed(stopped, tol=1e-2)
-    with file_refused(stopped, "its run was started with duration = 0.2, and cannot go on with 0.3;"):
+    with file_refused(stopped, "its run was started with duration = 0.2, and cannot be resumed with 0.3;"):
         resumed(stopped, duration=0.3)
     other = short()
     other.pin("wire", s=0.75)
-    with file_refused(stopped, "its run cannot go on with another scene" + ANEW):
+    with file_refused(stopped, "its run cannot be resumed with another scene" + ANEW):
         other.run(**SETTINGS, save=stopped, resume=True)
     for damaged in (whole[:-1], whole[:20], b"", whole.replace(b"{", b"[", 1), whole[:-1] + bytes([whole[-1] ^ 1])):
         state.write_bytes(damaged)
         with file_refused(stopped, r"its checkpoint x\.nc\.state is damaged" + ANEW):
             resumed(stopped)
     state.write_bytes(signed(whole.replace(b'"programs": "', b'"programs": "0')))
-    with file_refused(stopped, "its run cannot go on with another version of funicular, NumPy or SciPy" + ANEW):
+    with file_refused(stopped, "its run cannot be resumed with another version of funicular, NumPy or SciPy" + ANEW):
         resumed(stopped)
     state.write_bytes(whole)
     File(stopped, writable=True).truncate(3)
@@ -262,7 +262,7 @@ def test_what_cannot_be_resumed(stopped, tmp_path):
 
 def test_auto_goes_on_with_the_same_integrator(stopped):
     """A given spectral radius decides for genalpha, even with its default value."""
-    with file_refused(stopped, 'its run cannot go on with integrator "genalpha"' + ANEW):
+    with file_refused(stopped, 'its run cannot be resumed with integrator "genalpha"' + ANEW):
         resumed(stopped, spectral_radius=0.9)
 
 

@@ -57,7 +57,7 @@ def is_cut(model: Model, cables: list[int]) -> bool:
 
 
 def _unknown(contact: ContactModel, is_rest: bool) -> str:
-    """Return what is unknown of a contact, empty if nothing."""
+    """Return why the forces of a contact are unknown, empty if they are known."""
     if contact.friction and not is_rest:
         return "has friction, which results do not record along"
     return "moves with a body along" if contact.on[0].body >= 0 else ""
