@@ -1,1 +1,1 @@
-"""What all other packages stand on: files, interruptions, rotations, the operating system."""
+"""The lowest layer of the package: files, interruptions, rotations, the operating system."""

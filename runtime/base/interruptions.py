@@ -1,11 +1,10 @@
-"""Ctrl-C (SIGINT) at instants where work can be left.
+"""Ctrl-C (SIGINT) at instants where work can stop.
 
-Python raises KeyboardInterrupt between any two instructions: between the opening of a file and the note that it is
-open, say. Whoever has files, locks or settings of the process to put back works inside ``with uninterrupted():``, which
-notes Ctrl-C, and lets what takes long be interrupted inside ``with interruptible():``.
+Python raises KeyboardInterrupt between any two instructions, such as the opening of a file and the assignment of its
+descriptor. Code with files, locks or settings of the process to restore runs inside ``with uninterrupted():``, which
+notes Ctrl-C; its long parts run inside ``with interruptible():``, where Ctrl-C acts at once.
 
-Signals reach the main thread alone, and only what replaces Python's own handler or another one in Python: elsewhere
-both do nothing.
+Signals reach the main thread alone, and both replace only a handler in Python: elsewhere they do nothing.
 """
 
 from __future__ import annotations
@@ -19,16 +18,15 @@ Handler = Callable[[int, FrameType | None], Any]
 
 
 class _Now:
-    """Whether and how Ctrl-C is taken at present; changed by the main thread alone."""
+    """The present treatment of Ctrl-C, changed by the main thread alone.
+
+    depth: number of enclosing blocks of `uninterrupted`; is_open: whether Ctrl-C is passed on at once; is_noted:
+    whether one was not passed on; handler: the handler before the outermost block, which gets it.
+    """
 
     depth = 0
-    """Blocks of `uninterrupted` around."""
-    is_open = False
-    """Whether Ctrl-C is passed on at once."""
-    is_noted = False
-    """Whether there was one that was not passed on."""
+    is_open = is_noted = False
     handler: Handler
-    """What it is passed on to: the handler before the outermost block."""
 
 
 def _take(number: int, frame: FrameType | None) -> None:
@@ -36,21 +34,21 @@ def _take(number: int, frame: FrameType | None) -> None:
     if not _Now.is_open:
         _Now.is_noted = True
         return
-    _Now.is_open = False  # a second one does not interrupt what puts things back after the first one
+    _Now.is_open = False  # a second one does not interrupt the restoring after the first one
     _Now.handler(number, frame)
-    _Now.is_open = True  # the handler was another one, which has raised nothing
+    _Now.is_open = True  # the handler raised nothing
 
 
 def _pass_on() -> None:
-    """Let the handler have what was noted."""
-    import signal  # here and below: 1,600 calls, which the import of the package does without
+    """Pass a noted Ctrl-C on to the handler."""
+    import signal  # here and below: 1,600 calls, which the import of the package avoids
 
     _Now.is_noted = False
     _Now.handler(signal.SIGINT, None)
 
 
 def _is_here() -> bool:
-    """Return whether this is the thread that signals reach."""
+    """Return whether this is the main thread, which signals reach."""
     return threading.current_thread() is threading.main_thread()
 
 
@@ -67,7 +65,7 @@ class uninterrupted:  # noqa: N801  for ``with``
             import signal  # see _pass_on
 
             handler = signal.getsignal(signal.SIGINT)
-            if not callable(handler):  # SIGINT is ignored, ends the process, or is for a program around Python
+            if not callable(handler):  # SIGINT is ignored, ends the process, or belongs to an embedding program
                 return
             _Now.handler, _Now.is_open, _Now.is_noted = handler, False, False
             signal.signal(signal.SIGINT, _take)
@@ -76,7 +74,7 @@ class uninterrupted:  # noqa: N801  for ``with``
         self._entered = True
 
     def __exit__(self, kind: type[BaseException] | None, *exception: object) -> None:
-        """Pass Ctrl-C on, unless it has been already, as KeyboardInterrupt."""
+        """Pass Ctrl-C on, unless this was done as KeyboardInterrupt."""
         import signal  # see _pass_on
 
         if not self._entered:
@@ -85,7 +83,7 @@ class uninterrupted:  # noqa: N801  for ``with``
         _Now.depth -= 1
         if _Now.depth:
             _Now.is_open = self._was_open
-        elif signal.getsignal(signal.SIGINT) is _take:  # and no handler that was set inside
+        elif signal.getsignal(signal.SIGINT) is _take:  # not a handler that was set inside
             signal.signal(signal.SIGINT, _Now.handler)
         if _Now.is_noted and (self._was_open or not _Now.depth):
             if kind is not None and issubclass(kind, KeyboardInterrupt):
@@ -95,7 +93,7 @@ class uninterrupted:  # noqa: N801  for ``with``
 
 
 class interruptible:  # noqa: N801
-    """Passes Ctrl-C on inside, what was noted before too, within a block of `uninterrupted`."""
+    """Passes Ctrl-C on inside, also one noted before, within a block of `uninterrupted`."""
 
     _was_open = False
 
@@ -109,19 +107,19 @@ class interruptible:  # noqa: N801
         _Now.is_open = True
 
     def __exit__(self, *exception: object) -> None:
-        """Go back to what was before."""
+        """Restore the previous treatment."""
         if _Now.depth and _is_here():
             _Now.is_open = self._was_open and _Now.is_open
 
 
 def check_interrupted() -> None:
-    """Pass on what was noted: raises KeyboardInterrupt after Ctrl-C."""
+    """Pass on a noted Ctrl-C: raises KeyboardInterrupt."""
     if _Now.is_noted and _is_here():
         _pass_on()
 
 
 def was_interrupted() -> bool:
-    """Return whether Ctrl-C was noted, which then is passed on no more: for work that is done."""
+    """Return whether Ctrl-C was noted, and clear the note, after finished work."""
     try:
         check_interrupted()
     except KeyboardInterrupt:

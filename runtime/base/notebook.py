@@ -1,4 +1,4 @@
-"""Whether a notebook is watching."""
+"""Detection of notebooks."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import sys
 
 
 def in_notebook() -> bool:
-    """Return whether this is the kernel of a notebook; a terminal's IPython is none."""
-    ipython = sys.modules.get("IPython")  # where a notebook runs it is there
+    """Return whether this is the kernel of a notebook, not IPython in a terminal."""
+    ipython = sys.modules.get("IPython")  # a notebook has imported it
     shell = ipython.get_ipython() if ipython is not None else None
     return getattr(shell, "kernel", None) is not None

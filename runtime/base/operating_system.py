@@ -1,6 +1,6 @@
-"""What differs between operating systems: locks of files, reads and writes at a place of a file, the machine's memory.
+"""Differences of operating systems: locks of files, reads and writes at a position of a file, the machine's memory.
 
-POSIX systems take their own calls. The others are for Windows, where `fcntl` and some of `os` are missing.
+Windows lacks `fcntl` and some functions of `os`, for which it gets its own ones.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any
 
 
 def _module(name: str) -> Any:
-    """Return a module of Python's, None where this system lacks it."""
+    """Return a module of the standard library, None where this system lacks it."""
     try:
         return importlib.import_module(name)
     except ModuleNotFoundError:
@@ -22,18 +22,18 @@ def _module(name: str) -> Any:
 
 fcntl, msvcrt = _module("fcntl"), _module("msvcrt")  # one of the two, for POSIX and for Windows
 
-# Flags of os.open: bytes as they are, none for child processes, and no links, where a system has such a flag.
+# Flags of os.open, where a system has them: unchanged bytes, no inheritance by child processes; no links.
 BYTES = getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_NOINHERIT", 0)
 NO_LINK = getattr(os, "O_NOFOLLOW", 0)
 
-_LOCKED_BYTE = 2**31 - 2  # Windows locks bytes and keeps others from reading them: this one is behind most files' end
+_LOCKED_BYTE = 2**31 - 2  # Windows locks bytes against reading: this one is behind the end of most files
 _one_at_a_time = threading.Lock()
 
 
 def lock(descriptor: int) -> None:
     """Lock an open file until it is closed, also by the end of the process.
 
-    Raises BlockingIOError where somebody else has it, OSError where the file system has no locks.
+    Raises BlockingIOError where it is locked already, OSError where the file system has no locks.
     """
     if fcntl:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -50,7 +50,7 @@ def lock(descriptor: int) -> None:
 
 
 def read_at(descriptor: int, size: int, at: int) -> bytes:
-    """Return the bytes of a file from `at` on: `size`, or fewer where the file ends. Raises OSError."""
+    """Return `size` bytes of a file from `at` on, fewer at its end. Raises OSError."""
     if hasattr(os, "pread"):
         return os.pread(descriptor, size, at)
     with _one_at_a_time:
@@ -59,7 +59,7 @@ def read_at(descriptor: int, size: int, at: int) -> bytes:
 
 
 def read_into(descriptor: int, buffer: memoryview, at: int) -> int:
-    """Fill a buffer of bytes from `at` on; returns how many bytes the file had. Raises OSError."""
+    """Fill a buffer with bytes from `at` on; return their number. Raises OSError."""
     if hasattr(os, "preadv"):
         return os.preadv(descriptor, [buffer], at)
     data = read_at(descriptor, len(buffer), at)
@@ -68,7 +68,7 @@ def read_into(descriptor: int, buffer: memoryview, at: int) -> int:
 
 
 def write_at(descriptor: int, data: memoryview, at: int) -> int:
-    """Write bytes into a file from `at` on; returns how many were written. Raises OSError."""
+    """Write bytes into a file from `at` on; return the number of written bytes. Raises OSError."""
     if hasattr(os, "pwrite"):
         return os.pwrite(descriptor, data, at)
     with _one_at_a_time:
@@ -77,11 +77,11 @@ def write_at(descriptor: int, data: memoryview, at: int) -> int:
 
 
 def machine_memory() -> int:
-    """Return the bytes of memory that the machine has."""
+    """Return the memory of the machine, in bytes."""
     if hasattr(os, "sysconf"):
         return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     status = (ctypes.c_uint64 * 8)(64)  # MEMORYSTATUSEX: its size and the load in the first word, then the total
-    windows: Any = ctypes  # whose names for Windows type checkers miss elsewhere
+    windows: Any = ctypes  # type checkers know its names for Windows only there
     if not windows.windll.kernel32.GlobalMemoryStatusEx(status):
         raise windows.WinError()
     return status[1]

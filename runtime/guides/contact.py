@@ -12,7 +12,7 @@ many pairs: ``scene.contact(["ball", "rope"], "all")``. Distant pairs cost next 
 # -----------------------------
 #
 # A force of 150 N along the bed and the weight of 14 m upwards pull a line of 30 m. By the catenary 14 m are lifted and
-# 16 m lie on the bed. The line is drawn in this shape; its bending is what differs.
+# 16 m lie on the bed. The line is drawn in this shape; it differs by its bending.
 
 from math import pi, sqrt
 

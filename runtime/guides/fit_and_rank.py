@@ -26,8 +26,8 @@ SETTINGS = {"duration": 0.6, "output_step": 0.02, "tol": 1e-4}
 
 scene = fu.load_scene("paper51")
 truth = fu.sweep(scene, {STIFFNESS: [0.43e9], FRICTION: [0.12]}, keep=["A.position"], workers=0, **SETTINGS)
-way = truth["A.position"][0, 0].values[:, :2]
-measured = way + NOISE * np.random.default_rng(7).standard_normal(way.shape)
+path = truth["A.position"][0, 0].values[:, :2]
+measured = path + NOISE * np.random.default_rng(7).standard_normal(path.shape)
 
 # %%
 # A function of many points
@@ -38,8 +38,8 @@ measured = way + NOISE * np.random.default_rng(7).standard_normal(way.shape)
 # hundreds of points.
 
 
-def ways(stiffness: np.ndarray, friction: np.ndarray) -> np.ndarray:
-    """Return (points, time, 2): the trolley's way in the plane, in m, for stiffnesses in GPa and frictions."""
+def paths(stiffness: np.ndarray, friction: np.ndarray) -> np.ndarray:
+    """Return (points, time, 2): the trolley's path in the plane, in m, for stiffnesses in GPa and frictions."""
     found = fu.sweep(scene, {STIFFNESS: 1e9 * stiffness, FRICTION: friction}, method="list", keep=["A.position"],
                      workers=0, progress=False, **SETTINGS)
     assert (found.status == "completed").all()
@@ -60,27 +60,27 @@ rounds: list[np.ndarray] = []
 def left(x: np.ndarray) -> np.ndarray:
     """Return (measurements,) at x, stiffness and friction."""
     rounds.append(x.copy())
-    return ((ways(x[:1], x[1:])[0] - measured) / NOISE).ravel()
+    return ((paths(x[:1], x[1:])[0] - measured) / NOISE).ravel()
 
 
 def derivatives(x: np.ndarray) -> np.ndarray:
     """Return (measurements, 2) at x."""
     points = x + np.array([[1, 0], [-1, 0], [0, 1], [0, -1]]) * SMALL
-    found = ways(*points.T) / NOISE
+    found = paths(*points.T) / NOISE
     return np.stack([(found[0] - found[1]).ravel() / (2 * SMALL[0]), (found[2] - found[3]).ravel() / (2 * SMALL[1])], 1)
 
 
 fit = least_squares(left, x0=[0.3, 0.02], jac=derivatives, bounds=([0.1, 0.0], [0.58, 0.5]))
 spread = np.sqrt(np.diag(np.linalg.inv(fit.jac.T @ fit.jac)))
 print(f"stiffness {fit.x[0]:.4f} ± {spread[0]:.4f} GPa, friction {fit.x[1]:.4f} ± {spread[1]:.4f}, "
-      f"in {len(rounds)} rounds; mean square of what is left: {np.mean(fit.fun**2):.2f}")
+      f"in {len(rounds)} rounds; mean square of the residuals: {np.mean(fit.fun**2):.2f}")
 assert np.all(abs(fit.x - [0.43, 0.12]) < 4 * spread) and 0.6 < np.mean(fit.fun**2) < 1.5
 
 figure, (left_axis, right_axis) = plt.subplots(1, 2, figsize=(9, 3.4), layout="constrained")
 left_axis.plot(*(1e3 * measured.T), ".", label="measured")
 for k, label in ((0, "first guess"), (-1, "fit")):
-    left_axis.plot(*(1e3 * ways(rounds[k][:1], rounds[k][1:])[0].T), label=label)
-left_axis.set(xlabel="x in mm", ylabel="y in mm", title="the trolley's way")
+    left_axis.plot(*(1e3 * paths(rounds[k][:1], rounds[k][1:])[0].T), label=label)
+left_axis.set(xlabel="x in mm", ylabel="y in mm", title="path of the trolley")
 left_axis.legend(frameon=False)
 right_axis.plot(*np.transpose(rounds), "o-")
 right_axis.plot(0.43, 0.12, "r*", markersize=14)
@@ -96,7 +96,7 @@ right_axis.set(xlabel="stiffness in GPa", ylabel="friction", title="rounds of th
 problem = {"num_vars": 4, "names": [STIFFNESS, FRICTION, "A.mass", "wire.material.density"],
            "bounds": [[0.38e9, 0.48e9], [0.08, 0.16], [0.8, 1.2], [4000.0, 4400.0]]}
 drawn = sobol_sample.sample(problem, 32, calc_second_order=False, seed=1)
-answers = {"sag": lambda run: -run["A.position"][:, 1].min(), "way": lambda run: run["trolley.s"][-1]}
+answers = {"sag": lambda run: -run["A.position"][:, 1].min(), "travel": lambda run: run["trolley.s"][-1]}
 found = fu.sweep(scene, dict(zip(problem["names"], drawn.T, strict=True)), method="list", keep=answers, workers=0,
                  **SETTINGS | {"tol": 1e-3})
 assert (found.status == "completed").all()
@@ -115,4 +115,4 @@ axes.legend(frameon=False)
 # %%
 # The stiffness determines the sag of the trolley, the friction its travel.
 
-assert np.argmax(total["sag"]) == 0 and np.argmax(total["way"]) == 1
+assert np.argmax(total["sag"]) == 0 and np.argmax(total["travel"]) == 1

@@ -84,7 +84,7 @@ for name, each in {'"genalpha", tol 1e-3': run, '"energy", step 2 ms': kept}.ite
     total = sum(each[f"energy.{kind}"] for kind in ("kinetic", "elastic", "potential"))
     exchanged = each.energy_balance().exchanged
     axes.plot(each.time, (total - total[0]) / exchanged, label=name)
-    print(f"{name}: total energy changed by {abs(total - total[0]).max() / exchanged:.1e} of what was exchanged")
+    print(f"{name}: total energy changed by {abs(total - total[0]).max() / exchanged:.1e} of the energy exchanged")
 axes.set(xlabel="time in s", ylabel="change of the total energy", title="relative to the energy exchanged")
 axes.legend(frameon=False)
 

@@ -51,7 +51,7 @@ for mu in grid[friction].values:
     left.plot(grid[stiffness] / 1e9, 1e3 * grid["sag"].sel({friction: mu}), "o-", label=f"friction {mu:g}")
     right.plot(grid.time, grid["position"].sel({stiffness: 4e8, friction: mu}, method="nearest").sel(xyz="x"))
 left.set(xlabel="Young's modulus in GPa", ylabel="mm", title="sag under the trolley")
-right.set(xlabel="time in s", ylabel="x in m", title="the trolley's way, at 0.4 GPa")
+right.set(xlabel="time in s", ylabel="x in m", title="position of the trolley, at 0.4 GPa")
 left.legend(frameon=False)
 assert np.all(np.diff(grid["sag"], axis=0) < 0)  # the stiffer the cable, the less it sags
 assert np.all(np.diff(grid["position"].isel(time=-1).sel(xyz="x"), axis=1) < 0)  # friction holds the trolley back

@@ -25,7 +25,7 @@ import funicular as fu
 
 
 def funicular(*arguments: str) -> str:
-    """Return what the command prints."""
+    """Return the output of the command."""
     return subprocess.run([sys.executable, "-m", "funicular", *arguments], check=True, capture_output=True, text=True,
                           env={**os.environ, "COLUMNS": "110"}).stdout
 
