@@ -1,4 +1,4 @@
-"""What each kind of part is checked for when it is added to a scene, and completed by; see `Scene.add`."""
+"""Checks and completion of each kind of part as it is added to a scene; see `Scene.add`."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ from .drag_placement import placed_drag, placed_fluid
 from .event_placement import placed_event
 from .joint_placement import placed_joint
 from .placement import placed_between, placed_load, placed_point_force, placed_support, placed_tie
-from .planarity import check_plane
 from .slide_placement import placed_slide
+from .whole_scene import check_plane
 
 
 def placed_cable(scene: SceneData, cable: Cable) -> Cable:
-    """Return the cable, drawn as it hangs, sure to be of the dimension of the others and of what is there already."""
+    """Return the cable, drawn as it hangs, checked to have the dimension and the plane of the scene."""
     cable = cable.hanging_under(scene.gravity)
     for other in scene.cables.values():
         if other.dim != cable.dim:
@@ -72,13 +72,13 @@ _CHECKS: dict[type[Part], Callable[[SceneData, Any], Part]] = {
 def check_of(part: Part) -> Callable[[SceneData, Any], Any]:
     """Return the function that checks such a part against a scene and returns it complete.
 
-    It is that of its class, else of the nearest base class. Others have their attachments completed.
+    It is that of its class or the nearest base class, by default the completion of its attachments.
     """
     return _check_of(type(part))
 
 
 def check_all_of(part: Part) -> Callable[[SceneData, Any], Any]:
-    """Return the function that does so with a list of parts like this one."""
+    """Return the same function for a list of parts like this one."""
     check = check_of(part)
     if check is placed_contact:
         return placed_contacts

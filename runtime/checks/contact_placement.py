@@ -1,10 +1,10 @@
-"""Checks of surfaces, and of contact with them, against the scene that they join."""
+"""Checks of surfaces and contacts against their scene, and the resolution of contact by cables."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from ..base.rotations import conjugate, rotate
 from ..engine import MAX_HARD_CONTACTS
 from ..errors import SceneError, near
 from ..parts.cable import Cable
-from ..parts.contact import Contact
+from ..parts.contact import GAUSS_POINTS, Contact
 from ..parts.modal_body import ModalBody
 from ..parts.rigid_body import RigidBody
 from ..parts.scene_data import SceneData
@@ -21,19 +21,25 @@ from ..parts.surface import Surface
 from ..parts.surface_shapes import HeightField
 from ..parts.validation import show
 
-SUNK = 0.01
-"""Of the radius: what the weight sinks in by with the stiffness that is taken where none is given."""
-OVERLAP = 0.5
-"""Of the radius: a start deeper below the surface is refused."""
-
+WEIGHT_PENETRATION = 0.01
+"""Penetration under the weight with the default stiffness, as a fraction of the radius."""
+MAX_START_PENETRATION = 0.5
+"""Penetration at the start above which a contact is refused, as a fraction of the radius."""
 SAMPLES = 8
-"""Of an element, at which it is looked at for that."""
-OVERLAP_HARD = 1e-9
-"""Of the lengths that a distance is computed from: rounding, by which a start of hard contact may be below."""
+"""Points of an element at which the penetration at the start is checked."""
+HARD_PENETRATION_ROUNDING = 1e-9
+"""Rounding of the penetration of hard contact at the start, as a fraction of the lengths in it."""
+MAX_POINT_DISTANCE = float(np.diff(np.polynomial.legendre.leggauss(GAUSS_POINTS)[0]).max()) / 2
+"""Largest distance of neighbouring points of quadrature, as a fraction of the element; across a node it is smaller."""
+MAX_UNSEEN_PENETRATION = 1e-2
+"""Penetration between points of a cable without a radius above which a note is given, as a fraction of the surface's
+radius."""
+MIN_CONTACT_RADIUS = 0.01
+"""Radius of contact below which it is that of the centreline, over the radius of a circle of the section's area."""
 
 
 def placed_surface(scene: SceneData, surface: Surface) -> Surface:
-    """Return the surface, sure to be on the ground or on a rigid body. Raises SceneError."""
+    """Return the surface, checked to be on the ground or on a rigid body. Raises SceneError."""
     if surface.on is None:
         return surface
     if surface.on not in scene.bodies:
@@ -47,15 +53,12 @@ def placed_surface(scene: SceneData, surface: Surface) -> Surface:
 
 
 def placed_contact(scene: SceneData, contact: Contact) -> Contact:
-    """Return the contact complete, sure to be of a cable or body with a surface, apart at the start.
-
-    Raises SceneError.
-    """
+    """Return the contact complete and checked to be open at the start. Raises SceneError."""
     return placed_contacts(scene, [contact])[0]
 
 
 def placed_contacts(scene: SceneData, contacts: list[Contact]) -> list[Contact]:
-    """Return contacts complete, each as `placed_contact` does, with one look at each surface. Raises SceneError."""
+    """Return contacts as `placed_contact` does, with one evaluation of each surface. Raises SceneError."""
     made: list[Contact] = []
     starts: list[_Start] = []
     own: dict[tuple[str, str], Contact] = {}
@@ -74,7 +77,7 @@ def placed_contacts(scene: SceneData, contacts: list[Contact]) -> list[Contact]:
 
 
 def _of_surface(scene: SceneData, contact: Contact, own: Mapping[tuple[str, str], Contact]) -> Contact:
-    """Return a contact with the surface second; own: contacts that are added with it, by what touches."""
+    """Return a contact with the surface second; own: contacts added with it, by pair."""
     if contact.a in scene.surfaces and contact.b not in scene.surfaces:
         contact = contact.model_copy(update={"a": contact.b, "b": contact.a})
     if contact.b not in scene.surfaces:
@@ -106,7 +109,7 @@ def _complete(scene: SceneData, contact: Contact) -> Contact:
 
 @dataclass
 class _Start:
-    """Where the points of what touches are drawn, (n, 3) in m; its weight, in N or N/m."""
+    """Points of a cable or body as drawn, (n, 3) in m, and its weight, N or N/m."""
 
     of: tuple[str, Any]
     drawn: np.ndarray
@@ -114,7 +117,7 @@ class _Start:
 
 
 def _start_of(scene: SceneData, contact: Contact, last: _Start | None) -> _Start:
-    """Return the start of what has a contact, which is that of the last one where that is of the same points."""
+    """Return the start of a contact, that of the last one for the same points."""
     key = contact.a, contact.points
     if last is not None and last.of == key:
         return last
@@ -134,8 +137,8 @@ def _of_cable(scene: SceneData, contact: Contact, cable: Cable) -> Contact:
         raise SceneError(contact.where, f'acts along cable "{cable.name}" and takes no points', "leave points out")
     radius = outer_radius_of(cable.section) if contact.radius is None else contact.radius
     if radius is None:
-        raise SceneError(contact.where, "radius is missing, which the section of the cable does not tell",
-                         "give radius, in m: how far the surface is from the axis where they touch")
+        raise SceneError(contact.where, "radius is missing, which does not follow from the section of the cable",
+                         "give radius, in m: the distance of the surface from the axis at contact")
     return _with_stiffness(scene, contact, radius)
 
 
@@ -151,7 +154,7 @@ def _of_body(scene: SceneData, contact: Contact, body: RigidBody | ModalBody, su
 
 
 def _weight(scene: SceneData, contact: Contact) -> float:
-    """Return the weight of what has the contact: of a length of a cable, in N/m, or of a body, in N."""
+    """Return the weight of a cable per length, N/m, or of a body, N."""
     cable = scene.cables.get(contact.a)
     mass = scene.bodies[contact.a].mass if cable is None else cable.material.density * cable.section.area
     return mass * float(np.linalg.norm(scene.gravity))
@@ -159,9 +162,7 @@ def _weight(scene: SceneData, contact: Contact) -> float:
 
 def _with_stiffness(scene: SceneData, contact: Contact, radius: float,
                     others: Mapping[str, Any] | None = None) -> Contact:
-    """Return the contact with its radius, other values and, where none is given, the stiffness that the weight asks
-    for.
-    """
+    """Return the contact with its radius, other values and, by default, a stiffness that follows from the weight."""
     found: dict[str, Any] = {"radius": radius, **(others or {})}
     if contact.stiffness is None:
         weight = _weight(scene, contact)
@@ -169,31 +170,31 @@ def _with_stiffness(scene: SceneData, contact: Contact, radius: float,
             lacks = "gravity" if not weight > 0 else "a radius"
             raise SceneError(contact.where, f"stiffness is missing, and without {lacks} there is none to begin with",
                              "give stiffness, in N/m (a length of a cable)")
-        found["stiffness"] = weight / (SUNK * radius) ** contact.exponent
+        found["stiffness"] = weight / (WEIGHT_PENETRATION * radius) ** contact.exponent
     return contact.completed(found)
 
 
 def _check_hard(scene: SceneData, contact: Contact, added: int) -> None:
-    """Raise SceneError where there are too many points in hard contact, or one is of what has no distance.
+    """Raise SceneError for too many points in hard contact, and for a surface without exact distances.
 
-    added: points in hard contact that are being added.
+    added: number of points in hard contact that are being added.
     """
     n = added + sum(_hard_points(scene, other) for other in scene.contacts.values() if other.is_hard)
     if n > MAX_HARD_CONTACTS:
         raise SceneError(contact.where, f"the scene has {n} points in hard contact, and {MAX_HARD_CONTACTS} are the "
                          "most", "give some of the contacts stiffness in place of restitution")
     if contact.radius and isinstance(scene.surfaces[contact.b].shape, HeightField):
-        raise SceneError(contact.where, "a height field tells distances where they are nil: hard contact with it is of "
-                         "points without radius", "leave radius out, or give stiffness in place of restitution")
+        raise SceneError(contact.where, "distances from a height field are exact only on it: hard contact with it is "
+                         "that of points without radius", "leave radius out, or give stiffness in place of restitution")
 
 
 def _hard_points(scene: SceneData, contact: Contact) -> int:
-    """Return how many constraints a hard contact may take: one a point, and in a hollow box a wall."""
+    """Return the number of constraints of a hard contact: one per point, in a hollow box one per point and wall."""
     return len(contact.points or ()) * len(scene.surfaces[contact.b].geometry.walls(scene.dim))
 
 
 def _check_fits(scene: SceneData, contact: Contact) -> None:
-    """Raise SceneError where what touches a hollow from within is too thick for it."""
+    """Raise SceneError where a cable or body in a hollow is too thick for it."""
     surface = scene.surfaces[contact.b]
     if not surface.inside:
         return
@@ -208,17 +209,17 @@ def _check_fits(scene: SceneData, contact: Contact) -> None:
 
 
 def _allowed(scene: SceneData, contact: Contact, start: _Start) -> tuple[float, str]:
-    """Return how deep below the surface a start may be, in m, and why, in words."""
+    """Return the allowed penetration at the start, m, and its reason in words."""
     if contact.is_hard:
-        return OVERLAP_HARD * _largest_length(scene, contact), ": a hard contact has no depth"
+        return HARD_PENETRATION_ROUNDING * _largest_length(scene, contact), ": a hard contact has no depth"
     assert contact.radius is not None and contact.stiffness is not None, f"{contact.where} is not complete"
     sinks = (start.weight / contact.stiffness) ** (1 / contact.exponent)
-    allowed = max(OVERLAP * contact.radius, 10 * sinks)
+    allowed = max(MAX_START_PENETRATION * contact.radius, 10 * sinks)
     return allowed, f"; {show(float(allowed), 'm')} is allowed"
 
 
 def _largest_length(scene: SceneData, contact: Contact) -> float:
-    """Return the largest length in m that the distance of a body from a surface is computed from."""
+    """Return the largest length in the computation of the distance of a body from a surface, m."""
     surface = scene.surfaces[contact.b]
     carriers = [scene.bodies[name].frame[0] for name in (contact.a, surface.on) if name is not None]
     return max(np.abs(np.array([*(contact.points or ()), *carriers])).max(), contact.radius or 0.0,
@@ -233,7 +234,7 @@ def _normal(scene: SceneData) -> np.ndarray | None:
 
 
 def _check_depths(scene: SceneData, contacts: list[Contact], starts: list[_Start]) -> None:
-    """Raise SceneError where one of the points of what has a contact is deeper below its surface than is allowed."""
+    """Raise SceneError where a point starts deeper below its surface than allowed."""
     of_surface: dict[str, list[int]] = {}
     for k, contact in enumerate(contacts):
         of_surface.setdefault(contact.b, []).append(k)
@@ -256,7 +257,7 @@ def _check_depths(scene: SceneData, contacts: list[Contact], starts: list[_Start
 
 
 def _too_deep(scene: SceneData, contact: Contact, start: _Start, distance: np.ndarray) -> SceneError | None:
-    """Return what is wrong where a point is too deep; distance: of the points (n,) from the surface, in m."""
+    """Return an error where a point is too deep; distance: of the points (n,) from the surface, m."""
     allowed, why = _allowed(scene, contact, start)
     k = int(distance.argmin())
     depth = (contact.radius or 0.0) - distance[k]
@@ -265,3 +266,42 @@ def _too_deep(scene: SceneData, contact: Contact, start: _Start, distance: np.nd
     return SceneError(
         contact.where, f'"{contact.a}" starts {show(float(depth), "m")} below the surface "{contact.b}", at '
         f"{show(start.drawn[k], 'm')}", f"draw it higher, or the surface lower{why}")
+
+
+def radius_of(scene: SceneData, contact: Contact) -> float:
+    """Return the radius of a contact, m, 0 where it is negligible beside the section of the cable."""
+    assert contact.radius is not None, f"{contact.where} is not complete"
+    cable = scene.cables.get(contact.a)
+    least = 0.0 if cable is None else MIN_CONTACT_RADIUS * float(np.sqrt(cable.section.moments()[0] / np.pi))
+    return contact.radius if contact.radius > least else 0.0
+
+
+class Resolution(NamedTuple):
+    """Penetration of a cable between its points, and the chord of the surface of that height, m."""
+
+    allowed: float
+    chord: float
+
+
+def resolved(scene: SceneData, contact: Contact) -> Resolution | None:
+    """Return the resolution of a surface that the points of a cable need; None for a flat one."""
+    radius = radius_of(scene, contact)
+    bend = _bend_radius(scene.surfaces[contact.b], radius)
+    if not np.isfinite(bend):
+        return None
+    allowed = min(radius or MAX_UNSEEN_PENETRATION * bend, bend)
+    return Resolution(allowed, float(2 * np.sqrt(allowed * (2 * bend - allowed))))
+
+
+def _bend_radius(surface: Surface, own: float) -> float:
+    """Return the least radius of curvature of a cable's axis bent over a surface, m.
+
+    own: the radius of the cable, m. For a box, whose edges have no radius, its least size counts. In a hollow, a chord
+    between two points stays inside, so that the cable is bent only over its ends.
+    """
+    shape = surface.geometry
+    if shape.inside:
+        return np.inf if shape.word == "round" and shape.direction.any() else shape.inner_radius - own
+    if shape.word == "terrain":
+        return own + 1 / shape.bend if shape.bend > 0 else np.inf
+    return own + {"flat": np.inf, "box": float(shape.half_size.min())}.get(shape.word, shape.radius)

@@ -1,4 +1,4 @@
-"""Checks of crossings against the scene that they join."""
+"""Checks of crossings against their scene."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from ..parts.scene_data import OfDrawing, SceneData
 from ..parts.validation import LENGTH_TOLERANCE, show
 from .placement import placed_attachment
 
-LEAST_SINE = 1e-3
-"""Of the angle between lines as drawn: at smaller ones their closest points are no longer those of a crossing."""
+MIN_CROSSING_SINE = 1e-3
+"""Sine of the angle between lines as drawn below which their closest points are not those of a crossing."""
 
 
 def placed_crossing(scene: SceneData, part: Crossing) -> Crossing:
-    """Return the crossing with its place complete, of lines that cross and are apart. Raises SceneError."""
+    """Return the crossing complete, checked to be of lines that cross and are apart. Raises SceneError."""
     if part.a not in scene.cables:
         raise SceneError(part.where, f'there is no cable "{part.a}"', near(part.a, scene.cables))
     if part.b in scene.cables:
@@ -36,7 +36,7 @@ def placed_crossing(scene: SceneData, part: Crossing) -> Crossing:
 
 
 def _check_cables(scene: SceneData, part: Crossing) -> None:
-    """Raise SceneError where two cables cannot cross, or the part has what only a bar has."""
+    """Raise SceneError where two cables cannot cross, or the part has fields of a bar."""
     given = [name for name in ("at", "axis", "length") if getattr(part, name) is not None]
     if given:
         raise SceneError(part.where, f'{given[0]} is given, but b is the cable "{part.b}"', "leave it out")
@@ -66,8 +66,8 @@ def _placed_bar(scene: SceneData, part: Crossing) -> Crossing:
 
 
 def _check_start(scene: SceneData, part: Crossing, start: Start, radius: float) -> None:
-    """Raise SceneError where lines are parallel, on no side of each other, or overlap as drawn."""
-    if start.sine < LEAST_SINE:
+    """Raise SceneError where lines are parallel, meet, or overlap as drawn."""
+    if start.sine < MIN_CROSSING_SINE:
         raise SceneError(part.where, "the lines are parallel where they are closest as drawn",
                          "draw them at an angle: a crossing has one point of contact")
     size = scene.cables[part.a].length
@@ -75,14 +75,14 @@ def _check_start(scene: SceneData, part: Crossing, start: Start, radius: float) 
     if part.side is None and abs(gap) <= LENGTH_TOLERANCE * size:
         raise SceneError(part.where, f"the lines meet as drawn, at {show(_place(scene, part, start), 'm')}",
                          "give side, the direction in which a is of b, or draw them apart")
-    if part.side is not None and abs(np.dot(part.side, start.normal)) < LEAST_SINE * np.linalg.norm(part.side):
+    if part.side is not None and abs(np.dot(part.side, start.normal)) < MIN_CROSSING_SINE * np.linalg.norm(part.side):
         raise SceneError(part.where, f"side {show(part.side)} is not across both lines",
                          f"give a direction such as {show(start.normal)} or its opposite")
     overlap = radius - gap * sign_of(part, start.normal, start.d)
     if overlap > 2 * radius + LENGTH_TOLERANCE * size:
         raise SceneError(part.where, f"the lines are on the other side of each other as drawn, {abs(gap):.6g} m apart",
                          "draw them on their side, or give the opposite side")
-    if overlap > LENGTH_TOLERANCE * size and np.linalg.norm(start.d) < radius:  # else one is beyond an end of the other
+    if overlap > LENGTH_TOLERANCE * size and np.linalg.norm(start.d) < radius:  # else past an end
         message = (f"{part.where}: the lines overlap by {overlap:.6g} m as drawn, where the contact force is "
                    f"{part.stiffness * overlap**part.exponent:.4g} N; draw them apart, or start with "
                    'initial="equilibrium"')

@@ -1,4 +1,4 @@
-"""Checks of drag against the scene that it joins."""
+"""Checks of fluids and drags against their scene."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from .frames import draws_section
 from .placement import placed_attachment
 
 PLACES = 65
-"""On a cable, that are looked at."""
+"""Number of points of a cable that are checked."""
 
 
 def placed_drag(scene: SceneData, drag: Drag) -> Drag:
-    """Return the drag with its fluid and its place complete, sure to act on something. Raises SceneError."""
+    """Return the drag complete, checked to have an effect. Raises SceneError."""
     drag = drag.completed({"fluid": _fluid(scene, drag)})
     _check_surfaces(scene, drag)
     if drag.on in scene.cables:
@@ -42,7 +42,7 @@ def placed_drag(scene: SceneData, drag: Drag) -> Drag:
 
 
 def _check_table(scene: SceneData, drag: Drag, places_of: Callable[[], np.ndarray]) -> None:
-    """Raise SceneError where a drag begins outside of the table of its fluid; places_of: gives places (n, 3), in m."""
+    """Raise SceneError where a drag starts outside of the table of its fluid; places_of: returns points (n, 3), m."""
     for fluid in scene.fluids_of(drag):
         if fluid.table is not None:
             places = fluid.nearest(places_of(), scene.up, scene.fluids.values())
@@ -61,7 +61,7 @@ def _check_in_table(drag: Drag, fluid: Fluid, table: VelocityTable, places: np.n
 
 
 def placed_fluid(scene: SceneData, fluid: Fluid) -> Fluid:
-    """Return the fluid, sure to share no surface with another, and to suit the drags. Raises SceneError."""
+    """Return the fluid, checked to share no surface with another one, and to suit the drags. Raises SceneError."""
     fluids = list(scene.fluids.values())
     if fluid.surface is None:
         if other := next((each for each in fluids if each.surface is None), None):
@@ -79,7 +79,7 @@ def placed_fluid(scene: SceneData, fluid: Fluid) -> Fluid:
 
 
 def _check_surfaces(scene: SceneData, drag: Drag) -> None:
-    """Raise SceneError where a surface may cut what a drag has no wet part for."""
+    """Raise SceneError where a surface may cut a section whose wet part is not known."""
     if any(fluid.surface is not None or fluid.bottom(scene.fluids.values()) > -NO_SURFACE
            for fluid in scene.fluids_of(drag)):
         _check_cut(scene, drag)
@@ -87,8 +87,8 @@ def _check_surfaces(scene: SceneData, drag: Drag) -> None:
 
 def _check_cut(scene: SceneData, drag: Drag) -> None:
     if drag.polar is not None and drag.on in scene.cables:
-        raise SceneError(drag.where, f'has a polar on cable "{drag.on}", in a fluid with a surface, which does not '
-                         "know the wet part of a section that turns", "take normal and lift, or leave surface out")
+        raise SceneError(drag.where, f'has a polar on cable "{drag.on}", in a fluid with a surface: the wet part of a '
+                         "section that turns is not known", "take normal and lift, or leave surface out")
 
 
 def _fluid(scene: SceneData, drag: Drag) -> str | None:
@@ -111,13 +111,13 @@ def _fluid(scene: SceneData, drag: Drag) -> str | None:
 
 
 def _are_apart(scene: SceneData, one: Drag, other: Drag) -> bool:
-    """Return whether two drags are in fluids that are at no common place, as surfaces part them."""
+    """Return whether surfaces separate the fluids of two drags."""
     tops = {fluid.top for drag in (one, other) for fluid in scene.fluids_of(drag)}
     return len(tops) > 1
 
 
 def _check_cable(scene: SceneData, drag: Drag) -> None:
-    """Raise SceneError where a drag does not suit its cable."""
+    """Raise SceneError for a drag that its cable does not admit."""
     _refuse(drag, "cable")
     cable = scene.cables[drag.on]
     _check_added_mass(drag, drag.displaced(cable), "displaced_area, in m²")
@@ -143,20 +143,20 @@ def _check_cable(scene: SceneData, drag: Drag) -> None:
 
 
 def _check_section(drag: Drag, cable: Cable) -> None:
-    """Raise SceneError where a polar does not suit the sections of its cable, or has two coefficients."""
+    """Raise SceneError for a polar that the sections of its cable do not admit, or with a second coefficient."""
     if drag.polar is None:
         _refuse_chord(drag)
         return
     if cable.dim == 2:
-        raise SceneError(drag.where, f'has a polar, and cable "{drag.on}" is of the planar element {cable.element}, '
-                         "past whose sections nothing flows but along their height", "take the element beam24")
+        raise SceneError(drag.where, f'has a polar, and cable "{drag.on}" has the planar element {cable.element}, '
+                         "past whose sections a fluid flows only along their height", "take the element beam24")
     if not draws_section(cable):
-        raise SceneError(drag.where, f'has a polar, and cable "{drag.on}" is of the element {cable.element}, which '
-                         "knows no turn of its section", "take the element beam24, or normal and lift")
+        raise SceneError(drag.where, f'has a polar, and cable "{drag.on}" has the element {cable.element} '
+                         "without rotation of its section", "take the element beam24, or normal and lift")
     for name in ("normal", "lift"):
         if getattr(drag, name) != 0:
-            raise SceneError(drag.where, f"has a polar and {name}", "leave it out: the polar has all coefficients but "
-                             "tangential")
+            raise SceneError(drag.where, f"has a polar and {name}",
+                             "leave it out: the polar has all coefficients except tangential")
     if drag.chord is None:
         raise SceneError(drag.where, "chord is missing, from which the polar counts its angle",
                          "give chord, a direction across the axis in local axes: (0, 1, 0) is the section's height")
@@ -166,13 +166,13 @@ def _check_section(drag: Drag, cable: Cable) -> None:
 
 
 def _refuse_chord(drag: Drag) -> None:
-    """Raise SceneError where a chord is given, which only a polar counts from."""
+    """Raise SceneError for a chord without a polar."""
     if drag.chord is not None:
         raise SceneError(drag.where, "chord is given without a polar", "give polar, or leave chord out")
 
 
 def _check_foil(scene: SceneData, drag: Drag) -> None:
-    """Raise SceneError where lift of a body lacks its axes, or has two coefficients."""
+    """Raise SceneError for lift of a body without its axes, or with a second coefficient."""
     if drag.polar is None:
         _refuse_chord(drag)
         if drag.lift == 0 and drag.span is not None:
@@ -186,8 +186,8 @@ def _check_foil(scene: SceneData, drag: Drag) -> None:
     if drag.polar is None and drag.lift == 0:
         return
     if drag.polar is not None and drag.polar.moment is not None:
-        raise SceneError(drag.where, f'acts on body "{drag.on}", and its polar has a moment, which beams alone take',
-                         "leave it out, and put the centre of pressure at the place where the moment is nil")
+        raise SceneError(drag.where, f'acts on body "{drag.on}", and its polar has a moment, which only beams take',
+                         "leave it out, and place the drag where the moment is zero")
     if drag.area == 0:
         raise SceneError(drag.where, "has lift without an area", "give area, in m²")
     if drag.span is None and not any(cable.dim == 2 for cable in scene.cables.values()):
@@ -199,17 +199,17 @@ def _check_foil(scene: SceneData, drag: Drag) -> None:
 
 
 def _check_added_mass(drag: Drag, displaced: float, name: str) -> None:
-    """Raise SceneError where added mass has no volume that it is a multiple of; name: of the entry that gives one."""
+    """Raise SceneError for added mass without a displaced volume; name: of the entry for this volume."""
     if drag.added_mass is None and drag.added_mass_tangential:
         raise SceneError(drag.where, "added_mass_tangential is given without added_mass",
                          "give added_mass, that across the cable: 1 for a round one, 0 for none")
     if drag.added_mass is not None and displaced == 0:
-        raise SceneError(drag.where, "added_mass counts by the mass of the fluid displaced, which is nil",
+        raise SceneError(drag.where, "added_mass is a multiple of the displaced mass, which is zero",
                          f"give {name}")
 
 
 def _refuse(drag: Drag, kind: str) -> None:
-    """Raise SceneError where values are given that a part of this kind, "cable" or "body", does not take."""
+    """Raise SceneError for values that a drag on this kind of part, "cable" or "body", does not take."""
     defaults = {name: field.default for name, field in Drag.model_fields.items()}
     takes, others = (OF_CABLE, OF_BODY) if kind == "cable" else (OF_BODY, OF_CABLE)
     for name in (name for name in others if name not in takes):

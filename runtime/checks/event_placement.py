@@ -1,4 +1,4 @@
-"""Checks of an event against the scene that it joins."""
+"""Checks of events against their scene."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from .placement import node_at
 AXES = ("x", "y", "z")
 WATCHABLE = {"rigid_body": ("position", "velocity"), "modal_body": ("position", "velocity"),
              "cable": ("position", "velocity", "least_strain"), "slide": ("s", "s_rate", "traction")}
-"""Quantities that a threshold can be set on, by kind of part."""
+"""Quantities with thresholds, by kind of part."""
 WHOLE = ("s", "s_rate", "traction", "least_strain")
-"""Those that have no components, and no place on a cable."""
+"""Quantities without components and without a place on a cable."""
 
 
 def _normal(scene: SceneData) -> tuple[float, ...]:
@@ -21,7 +21,7 @@ def _normal(scene: SceneData) -> tuple[float, ...]:
 
 
 def placed_event(scene: SceneData, event: Event) -> Event:
-    """Return the event, sure to watch a function or a quantity that the scene has. Raises SceneError."""
+    """Return the event, checked to watch a function or a quantity of the scene. Raises SceneError."""
     if event.quantity is None:
         return event
     name, _, quantity = event.quantity.partition(".")

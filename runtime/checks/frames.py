@@ -1,4 +1,4 @@
-"""The frames that joints and slides hold, as they start: columns are unit vectors along the ground's axes."""
+"""Frames of joints and slides at the start: columns are unit vectors along the ground's axes."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from ..parts.slide import Slide
 class JointAxes(NamedTuple):
     """(3, 3) each: the axes of a joint as columns, in the frames of its two ends; equal in the ground's at the start.
 
-    Frame of an end: a body's axes, the ground's, or at a cable `section_frame`, else `cable_frame`.
-    The joint's z is its axis.
+    Frame of an end: axes of the body or the ground, on a cable `section_frame`, else `cable_frame`. z is the joint's
+    axis.
     """
 
     a: np.ndarray
@@ -26,15 +26,15 @@ class JointAxes(NamedTuple):
 
 
 def has_section(cable: Cable) -> bool:
-    """Return whether its elements know the turn about the tangent, which in the plane there is not."""
+    """Return whether its elements determine the rotation about the tangent, or are planar."""
     return cable.dim == 2 or bool(cable.kind_of_element.director)
 
 
 def cable_frame(cable: Cable, s: float, up: Sequence[float] | None = None) -> np.ndarray:
     """Return (3, 3): tangent, height and width at ``s`` as the elements draw them, as columns.
 
-    The tangent frame of eq 16 to 18: k square to the tangent and to r_y or, where ``up`` is given, to that (up must be
-    off the tangent); the cable's own axes where there is neither.
+    The tangent frame of eq 16 to 18: k perpendicular to the tangent and to ``up``, by default to r_y or the axes of the
+    cable.
     """
     tangent = _unit(cable.slope(s))
     width = cable.normal if cable.dim == 2 else _unit(np.cross(tangent, cable.height(s) if up is None else up))
@@ -42,15 +42,14 @@ def cable_frame(cable: Cable, s: float, up: Sequence[float] | None = None) -> np
 
 
 def draws_section(cable: Cable) -> bool:
-    """Return whether its elements have sections of their own, which shear turns away from the tangent."""
+    """Return whether its elements have sections that shear rotates away from the tangent."""
     return {2: {"r_y"}, 3: {"r_y", "r_z"}}[cable.dim] <= set(cable.kind_of_element.nodal_vectors)
 
 
 def section_frame(cable: Cable, s: float) -> np.ndarray:
-    """Return (3, 3): normal, height and width of the section at ``s`` as the elements draw it, as columns; height along
-    r_y.
+    """Return (3, 3): normal, height along r_y, and width of the section at ``s`` as the elements draw it, as columns.
 
-    What a joint holds: a moment on r_x alone bends a beam that shears sharply there, the more the finer its elements.
+    Joints hold this frame: a moment on r_x alone would shear the beam locally, the more the finer its elements.
     """
     height = _unit(cable.height(s))
     normal = _unit(np.cross(height, cable.width(s)))
@@ -62,7 +61,7 @@ def _unit(vector: np.ndarray) -> np.ndarray:
 
 
 def end_frame(scene: SceneData, end: Attachment, up: Sequence[float] | None = None) -> np.ndarray:
-    """Return (3, 3): the frame of a complete end; ``up`` completes that of a cable without section axes."""
+    """Return (3, 3): the frame of a complete end; ``up``: for a cable without section axes."""
     if end.on is None:
         return np.eye(3)
     if end.on in scene.bodies:
@@ -77,11 +76,10 @@ def joint_axes(scene: SceneData, joint: Joint) -> JointAxes:
 
 
 def slide_axes(scene: SceneData, slide: Slide) -> JointAxes:
-    """Return the axes that a slide of frame "tangent" or "section" keeps together: a in the cable's frame, b in the
-    rider's.
+    """Return the axes that a slide of frame "tangent" or "section" aligns: a in the cable's frame, b in the rider's.
 
     z along the tangent, x along the height, y along the width. With roll "fixed" the cable's frame is that of
-    `cable_frame` with the slide's up, at every s; with roll "free" the turn about z is free.
+    `cable_frame` with the slide's up, at every s; with roll "free" the rotation about z is free.
     """
     along = scene.cables[slide.along]
     frame = (section_frame(along, slide.arc_length) if slide.frame == "section" and draws_section(along)

@@ -1,4 +1,4 @@
-"""Checks of a part against the scene that it joins, and what it takes from there."""
+"""Checks of parts against their scene, and their completion."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def node_at(scene: SceneData, name: str, place: str, s: float, keyword: str = "s
     if node is not None:
         return name, node
     nodes = cable.node_s
-    if len(nodes) > 12:  # a long list helps less than the two neighbours
+    if len(nodes) > 12:  # of a long list only the two neighbours
         right = int(np.searchsorted(nodes, s))
         nodes = nodes[right - 1 : right + 1]
     raise SceneError(
@@ -52,7 +52,7 @@ def node_at(scene: SceneData, name: str, place: str, s: float, keyword: str = "s
 
 
 def placed_support(scene: SceneData, support: Support) -> Support:
-    """Return the support, sure to be on a node that nothing holds yet."""
+    """Return the support, checked to be on a free node."""
     node = node_at(scene, support.cable, support.where, support.s)
     if (other := support_of(scene, node)) is None:
         return support
@@ -63,7 +63,7 @@ def placed_support(scene: SceneData, support: Support) -> Support:
 
 
 def placed_tie(scene: SceneData, tie: Tie) -> Tie:
-    """Return the tie, sure to be of two nodes at one place that are not joined yet, at most one of them supported."""
+    """Return the tie, checked to be between two nodes at one place, not yet joined, at most one of them supported."""
     one = node_at(scene, tie.cable, tie.where, tie.s)
     other = node_at(scene, tie.to, tie.where, tie.at, "at")
     if other in joined(scene, one):
@@ -89,7 +89,7 @@ def placed_tie(scene: SceneData, tie: Tie) -> Tie:
 def _shears_the_end(a: Cable, s: float, b: Cable, at: float) -> bool:
     """Return whether a rigid tie in space joins the tangent of one cable to the section of the other.
 
-    In the plane, ties at an angle share the turn of the section alone (model/unknowns.py), which is not linear in
+    In the plane, ties at an angle share only the rotation of the section (model/unknowns.py), which is nonlinear in
     space.
     """
     if 2 in (a.dim, b.dim):
@@ -100,7 +100,7 @@ def _shears_the_end(a: Cable, s: float, b: Cable, at: float) -> bool:
 
 
 def placed_load(scene: SceneData, load: Force | DistributedForce | Moment) -> Part:
-    """Return the load with its place complete, and sure to be one that the element can carry."""
+    """Return the load with its place complete, checked to be admissible for the element."""
     if isinstance(load, DistributedForce):
         along = cable_at(scene, load.cable, load.where, load.start or 0.0, "start")
         start, stop = load.start or 0.0, along.length if load.stop is None else load.stop
@@ -113,7 +113,7 @@ def placed_load(scene: SceneData, load: Force | DistributedForce | Moment) -> Pa
         at = getattr(load, "at", None)
         end = placed_attachment(scene, Attachment(on=load.on, s=load.s, at=at), load.where)
         update: dict[str, Any] = {}
-        if not isinstance(scene.bodies.get(load.on), ModalBody):  # of which a moment's s says all
+        if not isinstance(scene.bodies.get(load.on), ModalBody):  # a moment's s is complete
             update = {"s": end.s}
         update |= {"at": end.at, "s": end.s} if isinstance(load, Force) else {}
         load = load.completed(update)
@@ -124,8 +124,7 @@ def placed_load(scene: SceneData, load: Force | DistributedForce | Moment) -> Pa
 
 
 def _check_without_section(load: Force | DistributedForce | Moment, cable: Cable) -> None:
-    """Raise SceneError for a load that needs the axes of the section, where the elements have none."""
-    with_axes = "element=" + " or ".join(f'"{n}"' for n, kind in built_in().items() if kind.director and kind.dim == 3)
+    """Raise SceneError for a load that needs section axes on elements without them."""
     if isinstance(load, Moment):
         assert load.s is not None, f"{load.where} is not complete"
         value, tangent = np.array(load.value), cable.axes_at(load.s)[0]
@@ -133,16 +132,22 @@ def _check_without_section(load: Force | DistributedForce | Moment, cable: Cable
         if abs(twist) > LENGTH_TOLERANCE * np.linalg.norm(value):
             raise SceneError(
                 load.where, f'twists cable "{cable.name}" by {twist:.6g} N m about its tangent {show(tangent)}, but '
-                f"{cable.element} has no torsion", f"give a moment across the tangent, or take {with_axes}")
+                f"{cable.element} has no torsion",
+                f"give a moment across the tangent, or take {elements_with_sections()}")
     elif load.follower and any(load.value[1:]):
         raise SceneError(
             load.where, f'follower force across cable "{cable.name}", but {cable.element} has no section axes that it '
             f"could follow, got {show(load.value, 'N' if isinstance(load, Force) else 'N/m')}",
-            f"possible is one along the tangent, (F, 0, 0), or take {with_axes}")
+            f"possible is one along the tangent, (F, 0, 0), or take {elements_with_sections()}")
+
+
+def elements_with_sections() -> str:
+    """Return the spatial elements with section axes, for a remedy."""
+    return "element=" + " or ".join(f'"{n}"' for n, kind in built_in().items() if kind.director and kind.dim == 3)
 
 
 def placed_attachment(scene: SceneData, end: Attachment, where: str, prefix: str = "") -> Attachment:
-    """Return where on a cable or a body something acts, complete."""
+    """Return an attachment complete. Raises SceneError."""
     if end.on is None:
         return end
     if end.on in scene.cables:
@@ -176,7 +181,7 @@ def placed_between(scene: SceneData, part: P) -> P:
 
 
 def placed_point_force(scene: SceneData, force: PointForce) -> PointForce:
-    """Return a force between two points with its ends complete, and with what follows from their distance."""
+    """Return a force between two points with complete ends, and with fields that follow from their distance."""
     force = placed_between(scene, force)
     points = point_of(scene, force.a), point_of(scene, force.b)
     distance = float(np.linalg.norm(points[1] - points[0]))

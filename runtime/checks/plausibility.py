@@ -1,4 +1,4 @@
-"""Numbers that look like another unit, and contacts that are left out, in words: notes of a run, never a refusal."""
+"""Notes on numbers that suggest other units, and on missing contacts."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from ..parts.solids import Solid
 from ..parts.validation import show
 
 MODULI = 1e3, 2e12
-"""Pa: soft gels have 1e3, diamond 1.1e12."""
+"""Range of moduli, Pa: soft gels have 1e3, diamond 1.1e12."""
 DENSITIES = 20.0, 2.5e4
-"""kg/m³: foams have 20, osmium 22,600."""
+"""Range of densities, kg/m³: foams have 20, osmium 22,600."""
 WAVE_SPEED = 2.5e4
-"""m/s: of axial waves, sqrt(E / density); diamond has 18,000."""
+"""Bound of the speed of axial waves, sqrt(E / density), m/s; diamond has 18,000."""
 GRAVITY = 300.0
-"""m/s²: above that of the Sun."""
+"""Bound of gravity, m/s², above that of the Sun."""
 
 
 def implausible(scene: SceneData) -> list[str]:
-    """Return a note for each number of a scene that looks like one in other units than SI, for idle surfaces, and for
-    bodies that have a shape and touch by their origin alone.
+    """Return notes on numbers that do not look like SI, on surfaces without contact, and on bodies with a shape whose
+    only point of contact is the origin.
     """
     return [*_gravity(scene), *_materials(scene), *_surfaces(scene), *_origins(scene)]
 

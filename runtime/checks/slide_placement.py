@@ -1,4 +1,4 @@
-"""Checks of a slide against the scene that it joins, and what it takes from there."""
+"""Checks of a slide against its scene, and its completion."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
 from ..parts.validation import LENGTH_TOLERANCE, show
 from .frames import cable_frame, has_section
-from .joint_placement import check_up, elements_with_sections
-from .placement import cable_at, placed_attachment
+from .joint_placement import check_up
+from .placement import cable_at, elements_with_sections, placed_attachment
 
-MOVABLE = 1e-3
-"""A rider nearer to its cable than this part of the cable's length is moved onto it at the start."""
-UNLIKE = 10.0
-"""Times the least distance: a place of the cable farther from the rider's point than that is not the one meant."""
+MAX_GAP = 1e-3
+"""Largest distance of a rider that is moved onto its cable at the start, as a fraction of the cable's length."""
+MAX_DISTANCE_RATIO = 10.0
+"""Largest distance of an alternative place on the cable, over the least distance."""
 
 
 def placed_slide(scene: SceneData, slide: Slide) -> Slide:
-    """Return the slide with its places and its up complete, its rider on the cable."""
+    """Return the slide complete, with its rider on the cable. Raises SceneError."""
     if slide.body in scene.cables and slide.body_s is None:
         raise SceneError(slide.where, f'cable "{slide.body}" rides and needs the arc-length of its point',
                          f'give body=("{slide.body}", s)')
@@ -47,25 +47,24 @@ def placed_slide(scene: SceneData, slide: Slide) -> Slide:
 
 
 def check_on_cable(scene: SceneData, slide: Slide) -> None:
-    """Raise SceneError where a body is not on its cable any more, since others moved it."""
+    """Raise SceneError for a body off its cable because another slide moved it."""
     gap, moved = _gap(scene, slide), isinstance(scene.bodies.get(slide.body or ""), RigidBody)
-    if gap > (LENGTH_TOLERANCE if moved else MOVABLE) * scene.cables[slide.along].length:
+    if gap > (LENGTH_TOLERANCE if moved else MAX_GAP) * scene.cables[slide.along].length:
         raise SceneError(slide.where, _away(scene, slide, gap),
                          f"{_carrier(slide)} is on more than one slide: it cannot be moved for each")
 
 
 def _start(scene: SceneData, slide: Slide, cable: Cable) -> float:
-    """Return the arc-length, in m, from which a slide starts that names none. Raises SceneError where it is not clear.
-    """
+    """Return the arc-length at which a slide without s starts, m. Raises SceneError for several places."""
     if slide.drive is not None:
         return float(slide.drive.value(0.0))
     point = point_of(scene, slide.rider)
     places = cable.nearest_s(point)
     gaps = np.linalg.norm(cable.points_at(places) - point, axis=-1)
-    if gaps[0] > MOVABLE * cable.length:
+    if gaps[0] > MAX_GAP * cable.length:
         raise SceneError(slide.where, _away(scene, slide.completed({"s": places[0]}), gaps[0]) + ", the nearest place",
                          "draw one through the other")
-    if len(near := places[gaps <= max(UNLIKE * gaps[0], LENGTH_TOLERANCE * cable.length)]) > 1:
+    if len(near := places[gaps <= max(MAX_DISTANCE_RATIO * gaps[0], LENGTH_TOLERANCE * cable.length)]) > 1:
         raise SceneError(slide.where, f'cable "{cable.name}" passes the point of {_carrier(slide)} at '
                          f"{show(point, 'm')} at s = {' and '.join(f'{s:.6g}' for s in np.sort(near))} m", "give s")
     return float(places[0])
@@ -88,14 +87,14 @@ def _check_rider(scene: SceneData, slide: Slide) -> None:
 
 
 def _carrier(slide: Slide) -> str:
-    """Return what the rider's point belongs to, for messages."""
+    """Return the name of the rider in messages."""
     if slide.body is None:
         return "the ground"
     return f'{"body" if slide.body_s is None else "cable"} "{slide.body}"'
 
 
 def _framed(scene: SceneData, slide: Slide, cable: Cable) -> Slide:
-    """Return the slide with up complete, sure that cable and rider have the vectors that its frame needs."""
+    """Return the slide with up complete, checked for the vectors that its frame needs."""
     if slide.frame == "point":
         return slide
     if slide.frame == "section" and not cable.kind_of_element.director:
@@ -117,7 +116,7 @@ def _framed(scene: SceneData, slide: Slide, cable: Cable) -> Slide:
 
 
 def _check_drive(slide: Slide, cable: Cable) -> None:
-    """Raise SceneError unless a driven slide starts where it is, on the cable."""
+    """Raise SceneError unless a driven slide starts at its place on the cable."""
     if slide.drive is None:
         return
     start = float(slide.drive.value(0.0))
@@ -135,13 +134,13 @@ def _gap(scene: SceneData, slide: Slide) -> float:
 
 
 def _away(scene: SceneData, slide: Slide, gap: float) -> str:
-    """Return a sentence on that distance."""
+    """Return a sentence about this distance."""
     rider = f'the point of {_carrier(slide)} at {show(point_of(scene, slide.rider), "m")}'
     return f'{rider} is {gap:.6g} m away from cable "{slide.along}" at s = {slide.arc_length:.9g} m'
 
 
 def _seated(scene: SceneData, slide: Slide, cable: Cable) -> Slide:
-    """Return the slide with its rider's point on the cable, brought there by a small move; refuse a large one."""
+    """Return the slide with its rider moved onto the cable. Raises SceneError for a large distance."""
     gap = _gap(scene, slide)
     if gap <= LENGTH_TOLERANCE * cable.length:
         return slide
@@ -149,7 +148,7 @@ def _seated(scene: SceneData, slide: Slide, cable: Cable) -> Slide:
     point = point_of(scene, slide.rider)
     body, onto = scene.bodies.get(slide.body or ""), cable.point(slide.arc_length) - point
     body = body if isinstance(body, RigidBody) else None
-    if gap > MOVABLE * cable.length:
+    if gap > MAX_GAP * cable.length:
         remedy = f"slide from s = {cable.nearest_s(point)[0]:.6g} m"
         if body is not None:
             remedy = f"start the body at position {show(body.position + onto, 'm')}, or {remedy}"
@@ -166,15 +165,15 @@ def _seated(scene: SceneData, slide: Slide, cable: Cable) -> Slide:
 
 
 def _nearest(scene: SceneData, slide: Slide, cable: Cable, gap: float) -> tuple[Slide, str]:
-    """Return the slide at the place nearest to its rider's point, in m around the one that it names, and what to say
-    of the move; a point of another cable keeps the place, as cables give way.
+    """Return the slide at the place nearest to its rider's point, and a sentence about the change; a point of another
+    cable keeps its place, as cables deform.
     """
     together = "; they are brought together"
     if slide.body_s is not None:
         return slide, together
     places = cable.nearest_s(point_of(scene, slide.rider))
     s = float(places[np.argmin(np.abs(places - slide.arc_length))])
-    if not LENGTH_TOLERANCE * cable.length < abs(s - slide.arc_length) <= UNLIKE * gap:
+    if not LENGTH_TOLERANCE * cable.length < abs(s - slide.arc_length) <= MAX_DISTANCE_RATIO * gap:
         return slide, together
     slide = slide.completed({"s": min(max(s, 0.0), cable.length)})
     left = _gap(scene, slide)

@@ -1,5 +1,5 @@
-"""Velocities that jump, in words: of motions that start at another rate than their cable, of driven slides that start
-at another rate than their rider, and of both where the rate jumps later.
+"""Notes on jumps of velocity: motions and driven slides whose rate differs from that of their cable or rider at the
+start, or jumps later.
 """
 
 from __future__ import annotations
@@ -16,26 +16,25 @@ from ..parts.slide import Slide
 from ..parts.support import Motion
 from ..parts.validation import show
 
-SMALL = 1e-4
-"""Of the largest rate in the run: a jump that is smaller sends a shock that is nothing beside the motion."""
+NEGLIGIBLE_JUMP = 1e-4
+"""Negligible jump of a rate, as a fraction of the largest rate in the run."""
 SAMPLES = 200
-"""Instants of the run at which rates are looked at."""
+"""Instants of a run at which rates are evaluated."""
 VELOCITIES = "velocity", "angular_velocity", "nodal_velocity"
-"""Results that say how fast bodies and cables are."""
+"""Results that give velocities of bodies and cables."""
 
 
 def velocity_jumps(scene: SceneData, duration: float, given: Container[str] = ()) -> list[str]:
-    """Return a message for each motion and driven slide whose velocity jumps as the run starts, or within its duration,
-    s.
+    """Return a message for each motion and driven slide whose velocity jumps at the start or within the duration, s.
 
-    given: names of results that the run starts with, which are not as drawn.
+    given: names of results in the initial state of the run, which are not as drawn.
     """
     found = []
     for motion in scene.motions:
         where = f"{motion.where} at s = {show(motion.s, 'm')}"
         for what, signal, own, unit in _rates(scene, motion):
             rates = signal.value(np.linspace(0, duration, SAMPLES), 1)
-            start, least = rates[0], SMALL * max(np.abs(rates).max(), abs(own))
+            start, least = rates[0], NEGLIGIBLE_JUMP * max(np.abs(rates).max(), abs(own))
             if abs(start - own) > least:
                 found.append(
                     f"{where}: {what} starts at {show(start, unit)}, but its node "
@@ -49,13 +48,13 @@ def velocity_jumps(scene: SceneData, duration: float, given: Container[str] = ()
 
 
 def _of_slide(scene: SceneData, slide: Slide, signal: Signal, duration: float, given: Container[str]) -> Iterator[str]:
-    """Yield a message where a driven slide starts at another rate than its rider, and where its rate jumps later."""
+    """Yield messages on jumps of the rate of a driven slide, at the start and later."""
     cable = scene.cables[slide.along]
     slope = cable.slope(slide.arc_length)
     relative = velocity_of(scene, slide.rider) - velocity_of(scene, Attachment(on=slide.along, s=slide.s))
     own = float(relative @ slope / (slope @ slope))
     rates = signal.value(np.linspace(0, duration, SAMPLES), 1)
-    least = SMALL * max(np.abs(rates).max(), abs(own))
+    least = NEGLIGIBLE_JUMP * max(np.abs(rates).max(), abs(own))
     as_drawn = not any(f"{part}.{name}" in given for part in (slide.body, slide.along) for name in VELOCITIES)
     if as_drawn and abs(jump := float(rates[0]) - own) > least:
         body = scene.bodies.get(slide.body or "")
@@ -70,7 +69,7 @@ def _of_slide(scene: SceneData, slide: Slide, signal: Signal, duration: float, g
 
 
 def _later(where: str, what: str, signal: Signal, unit: str, duration: float, least: float) -> Iterator[str]:
-    """Yield a message where a rate jumps by more than the least within the duration, s."""
+    """Yield a message where a rate jumps by more than `least` within the duration, s."""
     jumps = [(t, jump) for t, jump in jumps_of_rate(signal) if 0 < t < duration and abs(jump) > least]
     if jumps:
         t, jump = jumps[0]
@@ -81,7 +80,7 @@ def _later(where: str, what: str, signal: Signal, unit: str, duration: float, le
 
 
 def jumps_of_rate(signal: Signal) -> list[tuple[float, float]]:
-    """Return the times, s, at which pieces of a signal meet, and by how much its rate jumps at each, 1/s."""
+    """Return the times between pieces of a signal, s, and the jumps of its rate, 1/s."""
     breaks, coefficients = signal.pieces()
     powers = np.arange(1, coefficients.shape[1])
     before = np.sum(powers * coefficients[:-1, 1:] * np.diff(breaks)[:-1, None] ** (powers - 1), axis=1)
@@ -89,7 +88,7 @@ def jumps_of_rate(signal: Signal) -> list[tuple[float, float]]:
 
 
 def _rates(scene: SceneData, motion: Motion) -> Iterator[tuple[str, Signal, float, str]]:
-    """Name, signal and the node's own rate at t = 0, with its unit, of all that a motion prescribes."""
+    """Yield name, signal, rate of the node at t = 0, and unit of each prescribed quantity of a motion."""
     cable = scene.cables[motion.cable]
     node, names = cable.node_at(motion.s), cable.kind_of_element.nodal_vectors
     own, drawn = cable.nodal_rates[node], cable.nodal_vectors[node]

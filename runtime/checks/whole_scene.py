@@ -1,18 +1,44 @@
-"""Checks of a scene as a whole, before a run, a search for equilibrium or an analysis of modes."""
+"""Checks of a scene as a whole: its plane, its consistency, its start, and whether it can come to rest."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
+import numpy as np
+
 from ..errors import SceneError
+from ..kernels.elements import built_in
+from ..parts.laid import turned_alone
 from ..parts.modal_body import ModalBody
+from ..parts.part import Part
+from ..parts.plane import aligned, called
 from ..parts.scene_data import SceneData
+from ..parts.signal import Signal, signals_of
 from ..parts.validation import LENGTH_TOLERANCE, show
 from .joint_placement import check_drive, check_joint
-from .planarity import check_plane
 from .slide_placement import check_on_cable
 
 
+def check_plane(scene: SceneData, part: Part | None = None) -> None:
+    """Raise SceneError where a part, by default any part of the scene, leaves the plane of planar cables."""
+    planar = next((cable for cable in scene.cables.values() if cable.dim == 2), None)
+    if planar is None:
+        return
+    spatial = ", ".join(f'"{name}"' for name, kind in built_in().items() if kind.dim == 3)
+    remedy = f"let it stay in the plane, or take spatial elements: {spatial}"
+    own = planar.plane
+    plane = f'leaves {called(own)} of the {planar.element} cable "{planar.name}"'
+    gravity = scene.gravity if own is None else aligned(own.into(np.array(scene.gravity)))
+    if part is None and gravity[2]:
+        raise SceneError("scene", f"gravity {show(scene.gravity, 'm/s²')} {plane}", remedy)
+    for each in scene.parts() if part is None else [part]:
+        seen = each if own is None else turned_alone(scene, own, each)
+        for what in seen.off_plane():
+            raise SceneError(each.where, f"{what} {plane}" + ", in whose axes it is" * (own is not None), remedy)
+
+
 def check_scene(scene: SceneData) -> None:
-    """Raise SceneError where the parts of a scene do not go together."""
+    """Raise SceneError where the parts of a scene are inconsistent."""
     if not scene.cables and not scene.bodies:
         raise SceneError("scene", "is empty: there is nothing to simulate", "add a cable or a rigid body")
     check_plane(scene)
@@ -27,7 +53,7 @@ def check_scene(scene: SceneData) -> None:
 
 
 def check_start_as_drawn(scene: SceneData) -> None:
-    """Raise SceneError where a run that starts as drawn would begin with a jump of what motions and joints drive."""
+    """Raise SceneError where a run as drawn would begin with a jump of a motion or a driven joint."""
     for motion in scene.motions:
         length = scene.cables[motion.cable].length
         starts = [(f"displacement {axis}", signal, length, "m")
@@ -40,3 +66,30 @@ def check_start_as_drawn(scene: SceneData) -> None:
                                  "drawn", 'let it start from 0, or start with initial="equilibrium"')
     for joint in scene.joints.values():
         check_drive(scene, joint)
+
+
+def check_comes_to_rest(scene: SceneData) -> None:
+    """Raise SceneError for loads and drives that change with time, and for friction that creeps."""
+    for part in scene.parts():
+        for name, signal in _given(part):
+            if not _is_constant(signal):
+                raise SceneError(part.where, f"{name} changes with time, so that the scene does not come to rest",
+                                 "take a constant value, with scene.replace")
+    for slide in scene.slides.values():
+        if slide.friction is not None and not slide.friction.sticks and slide.friction.sliding > 0:
+            raise SceneError(slide.where, "its friction is regularised, so that a rider creeps and never comes to rest",
+                             'take model="stick", which holds it, or leave friction out')
+
+
+def _given(part: Part) -> Iterator[tuple[str, Signal]]:
+    """Yield all signals of a part with their names, the integral of a rate included."""
+    yield from signals_of(part)
+    prescribed = getattr(part, "prescribed", None)
+    if isinstance(prescribed, Signal):
+        yield "its drive", prescribed
+
+
+def _is_constant(signal: Signal) -> bool:
+    """Return whether a signal has one value for all times."""
+    _, coefficients = signal.pieces()
+    return not signal.sine.amplitude and not np.any(coefficients[:, 1:]) and not np.any(np.diff(coefficients[:, 0]))

@@ -34,7 +34,7 @@ class DescribedScene(SceneMethods):
         Returns the part as it stands in the scene. Raises SceneError.
         """
         from ..checks.adding import check_of  # not needed where saved runs are read alone
-        from ..checks.planarity import check_plane  # likewise
+        from ..checks.whole_scene import check_plane  # likewise
 
         if part.is_named():
             if part.given_name is None:
@@ -54,7 +54,7 @@ class DescribedScene(SceneMethods):
         then none of them is added.
         """
         from ..checks.adding import check_all_of  # likewise
-        from ..checks.planarity import check_plane  # likewise
+        from ..checks.whole_scene import check_plane  # likewise
 
         pairs = pairs_of(self, kind, entries)
         ends, given = kind.positional, entries.get("name")

@@ -328,7 +328,7 @@ class Scene(Viewable, DescribedScene):
         settings = RelaxationSettings(**self.relax_settings | {k: v for k, v in given.items() if v is not None})
         self.check()
 
-        from ..checks.constant_scene import check_comes_to_rest
+        from ..checks.whole_scene import check_comes_to_rest
         from ..results.equilibrium import Equilibrium  # brings SciPy
         from ..solve.statics.relaxation import relax
 

@@ -291,7 +291,7 @@ REFUSED = {
     "height": (lambda s: s.drag("buoy", volume=1.0, height=-1.0), "height must be positive, got -1 m"),
     "height of a cable": (lambda s: s.drag("line", height=1.0), "takes no height"),
     "polar": (lambda s: s.drag("line", chord=(0, 1, 0), diameter=0.1, polar=fu.Polar(
-        angle=[-pi, 0, pi], drag=[1, 1, 1], lift=[0, 0, 0])), "does not know the wet part of a section that turns"),
+        angle=[-pi, 0, pi], drag=[1, 1, 1], lift=[0, 0, 0])), "the wet part of a section that turns is not known"),
     "twice": (lambda s: (s.drag("line", normal=1.0), s.fluid("air", density=1.2), s.drag("line", normal=1.0)),
               'has the drag "drag_1" already'),
     "two without": (lambda s: (s.fluid("air", density=1.2), s.drag("line", normal=1), s.fluid("gas", density=0.8)),

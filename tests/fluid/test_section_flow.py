@@ -241,9 +241,9 @@ def on(element, **more):
 
 
 REFUSED = {
-    "cable12": (on("cable12"), 'has a polar, and cable "wire" is of the element cable12, which knows no turn'),
-    "cable18": (on("cable18"), "knows no turn of its section; take the element beam24, or normal and lift"),
-    "beam12p": (on("beam12p"), 'has a polar, and cable "wire" is of the planar element beam12p'),
+    "cable12": (on("cable12"), 'has a polar, and cable "wire" has the element cable12 without rotation'),
+    "cable18": (on("cable18"), "without rotation of its section; take the element beam24, or normal and lift"),
+    "beam12p": (on("beam12p"), 'has a polar, and cable "wire" has the planar element beam12p'),
     "no chord": (on("beam24", chord=None), "chord is missing, from which the polar counts its angle; give chord"),
     "chord along": (on("beam24", chord=(0.1, 1, 0)), "chord must be square to the axis of the cable, x, got"),
     "chord alone": (on("beam24", polar=None, normal=1), "chord is given without a polar"),
@@ -251,7 +251,7 @@ REFUSED = {
     "lift": (on("beam24", lift=1.0), "has a polar and lift; leave it out"),
     "span": (on("beam24", span=(1, 0, 0)), "takes no span"),
     "a body's moment": (lambda s: (s.rigid_body("A", mass=1, inertia=(1, 1, 1), position=(0, 0, 0)), s.drag(
-        "A", area=1, polar=iced(), chord=(1, 0, 0), span=(0, 0, 1))), "its polar has a moment, which beams alone take"),
+        "A", area=1, polar=iced(), chord=(1, 0, 0), span=(0, 0, 1))), "its polar has a moment, which only beams take"),
     "ends": (lambda s: fu.Polar(angle=[-pi, 0, pi], drag=[0] * 3, lift=[0] * 3, moment=[0, 0, 1]),
              "moment must be the same at both ends"),
     "length": (lambda s: fu.Polar(angle=[-pi, 0, pi], drag=[0] * 3, lift=[0] * 3, moment=[0, 0]), "moment"),

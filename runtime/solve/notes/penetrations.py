@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...checks.contact_resolution import radius_of
+from ...checks.contact_placement import radius_of
 from ...engine import Engine, outputs_by_name
 from .note import Note, Rows
 

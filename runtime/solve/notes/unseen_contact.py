@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...checks.contact_resolution import APART, resolved
+from ...checks.contact_placement import MAX_POINT_DISTANCE, resolved
 from ...engine import Engine
 from ...model.contact_points import distances
 from ...model.contacts import ContactModel
@@ -40,7 +40,7 @@ class UnseenContact(Note):
         for contact in self.model.contacts:
             if contact.cable >= 0 and (limit := resolved(self.scene, self.scene.contacts[contact.name])) is not None:
                 cable = self.model.cables[contact.cable]
-                apart = APART * np.broadcast_to(cable.mesh.lengths, cable.n_elements)
+                apart = MAX_POINT_DISTANCE * np.broadcast_to(cable.mesh.lengths, cable.n_elements)
                 long = np.flatnonzero(apart > limit.chord)
                 if len(long):
                     self._coarse.append(_CoarseContact(contact, long, apart[long], *limit))
@@ -60,6 +60,6 @@ class UnseenContact(Note):
         """Return a note for each contact with such an element."""
         return [f'{part.where}: "{part.a}" touches by points that are up to {self.found[name][0]:.3g} m apart; between '
                 f'them it may be more than {show(each.allowed, "m")} below "{part.b}", or pass through it, unseen; '
-                f"where it touches, take elements of at most {each.chord / APART:.3g} m"
+                f"where it touches, take elements of at most {each.chord / MAX_POINT_DISTANCE:.3g} m"
                 for each in self._coarse if (name := each.contact.name) in self.found
                 for part in (self.scene.contacts[name],)]
