@@ -41,7 +41,7 @@ class OfDrawing(str):
 
 
 def _refuse(*given: Any, **named: Any) -> Never:
-    """Raise SceneError."""
+    """Raise SceneError: parts are for reading."""
     raise SceneError("scene", "its parts are for reading", "add one with the scene's method for its kind, or take "
                      'another scene: scene.replace("wire", ...), scene.without("wire")')
 
@@ -56,7 +56,7 @@ class PartsByName(dict[str, Any]):
         super().__setitem__(name, part)
 
     def copy(self) -> Self:
-        """Return a copy."""
+        """Return a copy with the same parts."""
         return type(self)(self)
 
     def __reduce__(self) -> tuple[type[Self], tuple[dict[str, Any]]]:
@@ -75,7 +75,7 @@ class PartsInOrder(list[Any]):
         super().append(part)
 
     def copy(self) -> Self:
-        """Return a copy."""
+        """Return a copy with the same parts."""
         return type(self)(self)
 
     def __reduce__(self) -> tuple[type[Self], tuple[list[Any]]]:

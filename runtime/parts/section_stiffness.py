@@ -47,7 +47,7 @@ class _Doubled:
     section: Section
 
     def moments(self) -> np.ndarray:
-        """Return its moments."""
+        """Return the moments of the scaled section."""
         return self.section.moments() * 2.0 ** np.array([2, 4, 4, 6, 6, 6])
 
     def shear_factors(self, poisson_ratio: float) -> tuple[float, float]:

@@ -97,7 +97,7 @@ class Constant(Signal):
     constant: Value
 
     def as_given(self) -> float:
-        """Return the constant."""
+        """Return the constant value itself."""
         return self.constant
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
@@ -242,7 +242,7 @@ class Harmonic(Signal):
 
     @property
     def sine(self) -> Sine:
-        """Return its sine."""
+        """Return the sinusoidal part of the signal."""
         return Sine(self.amplitude, 2 * pi * self.frequency, self.phase)
 
 

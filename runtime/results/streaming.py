@@ -82,7 +82,7 @@ class Stream:
         return self
 
     def __exit__(self, *exception: object) -> None:
-        """Release the file."""
+        """Release the file of results."""
         self._release()
 
     def _release(self) -> None:

@@ -150,6 +150,18 @@ def _motion(lines: Lines) -> list[Relation]:
         ("s_dot", "e", "arc-lengths"), ("t_dot", "t", "slopes"), ("d_dot", "d", "d"))]
 
 
+def _unit(x: Any) -> Any:
+    return x / x.dot(x) ** 0.5
+
+
+def _direction(s: State) -> Any:
+    """Return the direction of a stretch that slides, from the stretch and the slip at both ends of the step."""
+    r, change = (s["r_1"] + s["r_0"]) / 2, s["x_now"] - s["x_old"]
+    A = change.dot(change) ** 0.5 / r
+    return r * (s["x_old"] / s["r_0"] + (A + A**2 / 2 + A**3 / 4) * _unit(change)
+                - (A + A**2) / 12 * s["h"] / r * s["slip_old"] + (A**2 / 12 + A**4 / 24) * _unit(s["slip"]))
+
+
 def _friction(lines: Lines) -> list[Relation]:
     """Return the relations of friction that sticks, or slides by its spring, in closed form."""
     def along(s: State) -> Any:
@@ -183,9 +195,6 @@ def _friction(lines: Lines) -> list[Relation]:
         x = s["x"] + s["h"] / 6 * (s["v"] + 4 * slip(half(s)) + slip(s))
         return old({**s, "x": x})
 
-    def unit(x: Any) -> Any:
-        return x / x.dot(x) ** 0.5
-
     def turned(s: State) -> Any:
         """Return the direction of what slides as a sum of unit vectors, those of the slip at both ends among them."""
         r, change = (s["mu"] * _size(s) / s["k_t"] + s["r_0"]) / 2, now(s) - old(s)
@@ -193,21 +202,14 @@ def _friction(lines: Lines) -> list[Relation]:
         first = old({**s, "x": s["v"]})
         last = s["u"] - across(s) * across(s).dot(s["u"])
         return old(s) / s["r_0"] - (A + A**2) / 12 * s["h"] / r * first + (
-            A + A**2 / 2 + A**3 / 4) * unit(change) + (A**2 / 12 + A**4 / 24) * unit(last)
+            A + A**2 / 2 + A**3 / 4) * _unit(change) + (A**2 / 12 + A**4 / 24) * _unit(last)
 
     def sliding(s: State) -> Any:
         x = turned(s) if lines.lines == 2 else now(s)
         return -s["mu"] * _size(s) / x.dot(x) ** 0.5 * x
 
-    def direction(s: State) -> Any:
-        """Return the direction of what slides, from the stretch and the slip at both ends of the step."""
-        r, change = (s["r_1"] + s["r_0"]) / 2, s["x_now"] - s["x_old"]
-        A = change.dot(change) ** 0.5 / r
-        return r * (s["x_old"] / s["r_0"] + (A + A**2 / 2 + A**3 / 4) * unit(change)
-                    - (A + A**2) / 12 * s["h"] / r * s["slip_old"] + (A**2 / 12 + A**4 / 24) * unit(s["slip"]))
-
     return [Relation(kernel, name, text, 0, root(function)) for kernel, name, text, function in (
-        ("turned", "direction", "r times a sum of unit vectors, those of the slip among them", direction),
+        ("turned", "direction", "r times a sum of unit vectors, those of the slip among them", _direction),
         ("stretch", "along", "b/|b|, in the plane a/|a|", along), ("stretch", "old", "x_1 i + x_2 n x i", old),
         ("stretch", "now", "old and the integral of the slip", now),
         ("sticking", "F", "-k_t now", lambda s: -s["k_t"] * now(s)), ("sliding", "F", "-mu N now/|now|", sliding))]

@@ -19,7 +19,7 @@ SectionForces = Callable[[str, np.ndarray], dict[str, np.ndarray]]
 
 
 def no_forces(cable: str, s: np.ndarray) -> dict[str, np.ndarray]:
-    """Return no forces."""
+    """Return no section forces."""
     return {}
 
 
