@@ -1,4 +1,4 @@
-"""What the engine watches for a scene's events, and what a run reports of them."""
+"""The event functions of a scene's events in the engine, and the events that a run reports."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ LEAVES_TABLE_TEXT = "leaves the table of its fluid"
 
 
 class Watch:
-    """What the engine watches for an event: kind, entry, value, direction.
+    """The event function of an event: kind, index, value, direction.
 
-    kind: "q" or "v", of which the index is an entry; "s", "s_rate", "traction", of which it is the number of a slide
-    among the couplings; "function".
+    kind: "q" or "v" with the index of an entry; "s", "s_rate", "traction" with the number of a slide among the
+    couplings; "function".
     """
 
     def __init__(self, event: Event, scene: SceneData, model: Model):
@@ -45,7 +45,7 @@ class Watch:
         of = "configuration" if what == "position" else "dof"
         self.kind = "q" if what == "position" else "v"
         if name in scene.bodies and np.any(getattr(scene.bodies[name], "centre", 0.0)):
-            self.kind, self.index = "function", 0  # the engine knows the mass centre, and not the body's origin
+            self.kind, self.index = "function", 0  # the engine has the mass centre alone, not the body's origin
             return
         if name in scene.bodies:
             start = getattr(model.bodies[list(scene.bodies).index(name)], of)
@@ -61,7 +61,7 @@ def _quantity(event: Event) -> str:
 
 
 class State:
-    """Quantities at one instant, by the names that results have: positions, velocities, nodal vectors, s."""
+    """Quantities at one instant, by the names of results: positions, velocities, nodal vectors, s."""
 
     def __init__(self, model: Model, q: np.ndarray, v: np.ndarray, s: np.ndarray):
         """q (n_q,), v (n_dof,), s (slides,): the engine's state."""
@@ -79,7 +79,7 @@ class State:
         return found[quantity]
 
     def names(self) -> list[str]:
-        """Return the bodies, cables and slides that the state has quantities of."""
+        """Return the bodies, cables and slides with quantities in the state."""
         model = self._model
         return [*(body.name for body in model.bodies), *(cable.name for cable in model.cables),
                 *(slide.name for slide in model.slides)]
@@ -100,7 +100,7 @@ class State:
 
 
 class EventWatcher:
-    """The events of a run as the engine meets them: what it asks, and what has happened."""
+    """The events of a run: the callbacks of the engine, and the list of events."""
 
     def __init__(self, scene: SceneData, model: Model):
         self.model = model
@@ -122,7 +122,7 @@ class EventWatcher:
         return value
 
     def _of_quantity(self, event: Event) -> Callable[[float, State], float]:
-        """Return the function that a threshold on a body's origin, or on the least strain of a cable, stands for."""
+        """Return the function of a threshold on a body's origin, or on the smallest strain of a cable."""
         name, axis = _quantity(event).rsplit(".", 1)
         if axis == "least_strain":
             cable = next(cable for cable in self.model.cables if cable.name == name)
@@ -131,10 +131,10 @@ class EventWatcher:
         return lambda time, state: np.asarray(state[name])[AXES.index(axis)] - event.value
 
     def acts(self, which: int, what: str, time: float, passed: bool, s: float | None) -> None:
-        """Note what a coupling of this number has done by itself: stuck, struck the end, and so on.
+        """Record an event of the coupling with this number, such as sticking or an impact on an end stop.
 
-        Without a word it is no event for a user: a corner of a table. passed: a step went over it, and did not end
-        there; s: of a slide, m.
+        An event without a text, such as a corner of a table, is not reported. passed: it lies within a step; s: of a
+        slide, in m.
         """
         if not what:
             return
@@ -144,15 +144,14 @@ class EventWatcher:
         self._note(happened if s is None else happened | {"s": s})
 
     def gives_way(self, cable: int, what: str, time: float, element: int) -> None:
-        """Note that the first element of a cable has become slack, or that all are taut again; element: which was
-        first, or last.
+        """Record that the first element of a cable has become slack, or that the last one is taut again; element: its
+        number.
         """
         self._note({"name": self.model.cables[cable].name, "time": time, "what": what, "element": element,
                     "passed": True})
 
     def _note(self, happened: dict) -> None:
-        """Keep an event, before those that were told first and are later: steps tell at their end what they went over.
-        """
+        """Insert an event by its time: events within a step are reported at its end, out of order."""
         insort(self.happened, happened, key=lambda each: each["time"])
 
     def notes(self) -> list[str]:
@@ -165,7 +164,7 @@ class EventWatcher:
                 "as it is there; take a larger table" for name, time in first.items()]
 
     def happens(self, which: int, time: float, q: np.ndarray, v: np.ndarray, s: np.ndarray) -> bool:
-        """Note an event; return whether the run goes on."""
+        """Record an event; return whether the run continues."""
         event, state = self.watches[which].event, State(self.model, q, v, s)
         at = {f"{body.name}.{k}": np.asarray(state[f"{body.name}.{k}"]).tolist() for body in self.model.bodies
               for k in ("position", "velocity")}

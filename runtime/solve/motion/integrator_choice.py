@@ -1,4 +1,4 @@
-"""The choice of a run's integrator, by what the scene asks for."""
+"""The choice of a run's integrator by the demands of the scene."""
 
 from __future__ import annotations
 
@@ -70,7 +70,9 @@ misses its errors."""
 
 @dataclass(frozen=True)
 class Rival:
-    """Another integrator for a run, the work from which on it is taken, in evaluations of eq 38, and its own rival."""
+    """Another integrator for a run, the work in evaluations of eq 38 from which on it replaces the first, and its
+    rival.
+    """
 
     method: Integrator
     cost: float
@@ -79,11 +81,10 @@ class Rival:
 
 def choose(settings: RunSettings, scene: SceneData, model: Model, engine: Engine,
            resumed: str | None) -> tuple[Integrator, str, Rival | None]:
-    """Return the integrator that a run begins with, why it is that one, and the one that replaces it if that turns out
-    cheaper.
+    """Return the first integrator of a run, the reason, and the rival that replaces it if that is cheaper.
 
-    resumed: the integrator's name of a run that goes on. Raises SceneError where the one that was asked for cannot run
-    the scene.
+    resumed: the name of the integrator of a resumed run. Raises SceneError where the integrator that was asked for
+    cannot run the scene.
     """
     if settings.integrator != AUTO or settings.step is not None or "spectral_radius" in settings.model_fields_set:
         return *_asked_for(settings, scene, model, engine), None
@@ -98,8 +99,7 @@ def choose(settings: RunSettings, scene: SceneData, model: Model, engine: Engine
 
 
 def tol_of(settings: RunSettings, method: Integrator) -> float:
-    """Return the tolerance that a run's steps are chosen by: less than its tol where the method of low order was chosen
-    and not asked for.
+    """Return the tolerance of a run's steps: its tol, or less where the method of low order was chosen automatically.
     """
     own = settings.integrator == AUTO and settings.step is None and "spectral_radius" not in settings.model_fields_set
     reduced = own and method.name == stable_at(fixed_step=True).name
@@ -107,7 +107,7 @@ def tol_of(settings: RunSettings, method: Integrator) -> float:
 
 
 def _asked_for(settings: RunSettings, scene: SceneData, model: Model, engine: Engine) -> tuple[Integrator, str]:
-    """Return the integrator that the settings ask for, themselves or by what they say of the step, and why."""
+    """Return the integrator that the settings determine, directly or by the step, and the reason."""
     if settings.integrator != AUTO:
         chosen = INTEGRATORS[settings.integrator].of(settings.spectral_radius)
         check(chosen, scene, model, engine)
@@ -119,10 +119,10 @@ def _asked_for(settings: RunSettings, scene: SceneData, model: Model, engine: En
 
 
 def cheapest(demands: Demands, duration: float) -> tuple[Integrator, str, Rival | None]:
-    """Return the integrator whose cost is expected to be the least, or worth a trial, why, and its rival on trial.
+    """Return the integrator with the lowest expected cost, or worth a trial, the reason, and its rival.
 
-    What stability asks for is sure, what the motion asks for is expected: of two that are near each other the latter is
-    tried, but for kinks of friction, which it follows less well.
+    The cost by stability is certain, the cost by the motion is an estimate: of two similar ones the latter is tried,
+    except with kinks of friction, which that method resolves less well.
     """
     said = {one: cost for one in INTEGRATORS.values() if (cost := one.cost(demands)) is not None}
     stable, limited = stable_at(fixed_step=False), min(said, key=lambda one: (one.stability is None, said[one][0]))
@@ -136,8 +136,8 @@ def cheapest(demands: Demands, duration: float) -> tuple[Integrator, str, Rival 
 
 
 def suits_low_order(demands: Demands, scene: SceneData, model: Model) -> bool:
-    """Return whether the error of positions that genalpha estimates is the one that counts: not where supports are
-    moved, slides rub at a tight tol, bodies turn fast or outrun their cable's waves, nor where there are bodies alone.
+    """Return whether the error of positions that genalpha estimates is decisive: not with moving supports, friction of
+    slides at a tight tol, bodies that turn fast or outrun their cable's waves, nor without cables.
     """
     fastest = max((float(np.linalg.norm(body.angular_velocity)) for body in scene.bodies.values()), default=0.0)
     return (bool(model.cables) and not model.motions
@@ -147,10 +147,10 @@ def suits_low_order(demands: Demands, scene: SceneData, model: Model) -> bool:
 
 def begin_with_low_order(demands: Demands, duration: float, method: Integrator, why: str,
                          rival: Rival | None) -> tuple[Integrator, str, Rival | None]:
-    """Return genalpha on trial, why, and the method that was chosen without it as its rival; that method itself where
-    the explicit one is cheap.
+    """Return genalpha on trial, the reason, and the method chosen without it as rival; that method itself where the
+    explicit one is cheap.
 
-    The rival is sure where the explicit method's cost is the least. What radau costs is expected alone.
+    The cost of the explicit method is certain, that of radau is an estimate.
     """
     explicit, radau = Explicit.cost(demands)[0], Radau.cost(demands)[0]
     if explicit * duration < MIN_LOW_ORDER_EVALUATIONS:
@@ -162,10 +162,10 @@ def begin_with_low_order(demands: Demands, duration: float, method: Integrator, 
 
 def end_with_low_order(demands: Demands, duration: float, method: Integrator, why: str,
                        rival: Rival | None) -> tuple[Integrator, str, Rival | None]:
-    """Return the method that was chosen without genalpha, why, and genalpha as its rival where that is radau: where
-    slides cross many elements, its steps are many at any tol.
+    """Return the method chosen without genalpha, the reason, and genalpha as its rival where the method is radau, which
+    takes many steps at any tol where slides pass many nodes.
 
-    The rival gives way where it costs four times what is expected of it.
+    The rival is replaced where it costs four times the estimate.
     """
     tol = LOW_ORDER_TOL_FRACTION * demands.tol
     expected = duration * LOW_ORDER_EVALUATIONS_PER_RADIAN * demands.slow / math.sqrt(tol)
@@ -177,7 +177,7 @@ def end_with_low_order(demands: Demands, duration: float, method: Integrator, wh
 
 
 def demands_of(settings: RunSettings, scene: SceneData, model: Model, engine: Engine) -> Demands:
-    """Return what a scene asks of an integrator."""
+    """Return the demands of a scene on an integrator."""
     frequency, decay = fastest_rates(model, engine)
     decay = max(decay, *(regularised_decay(scene, slide) for slide in scene.slides.values()), 0.0)
     rubs = any(slide.friction is not None and slide.friction.sliding for slide in scene.slides.values()) or any(
@@ -215,13 +215,13 @@ def check(integrator: Integrator, scene: SceneData, model: Model, engine: Engine
 
 
 def _take_another(capability: str) -> str:
-    """Return the end of a message: which integrators can."""
+    """Return the end of a message with the integrators that have a capability."""
     able = [one.name for one in INTEGRATORS.values() if getattr(one, capability)]
     return f"take another integrator: {', '.join(able[:-1])} or {able[-1]}"
 
 
 def _check_gradients(integrator: Integrator, scene: SceneData, model: Model, engine: Engine) -> None:
-    """Raise SceneError for what has no discrete gradient, or lacks the algorithmic dissipation that is asked for."""
+    """Raise SceneError for parts without a discrete gradient, or without the algorithmic dissipation asked for."""
     who = f'integrator "{integrator.name}"'
     for cable in model.cables:
         if not of_library(cable.library)[cable.element].laws[cable.law].discrete_gradient:
@@ -243,8 +243,7 @@ def _check_gradients(integrator: Integrator, scene: SceneData, model: Model, eng
 
 
 def regularised_decay(scene: SceneData, slide: Slide) -> float:
-    """Return how fast, in 1/s, a slow rider under its weight comes to the speed at which regularised friction lets it
-    creep.
+    """Return the rate in 1/s at which a slow rider under its weight approaches the creep speed of regularised friction.
     """
     friction = slide.friction
     if friction is None or friction.sticks or slide.is_driven:
@@ -253,8 +252,8 @@ def regularised_decay(scene: SceneData, slide: Slide) -> float:
 
 
 def slowest_rate(scene: SceneData, model: Model, duration: float) -> float:
-    """Return the rate of the motion as a whole in rad/s: a pendulum as long as the scene, or what crosses it, or the
-    run.
+    """Return the rate of the overall motion in rad/s: the largest of a pendulum of the scene's size, of a passage
+    through the scene, and of the run.
     """
     points = [node.vector("r") for nodes in model.nodes.values() for node in nodes]
     points += [model.q[b.configuration : b.configuration + model.dim] for b in model.bodies]
@@ -266,9 +265,8 @@ def slowest_rate(scene: SceneData, model: Model, duration: float) -> float:
 
 
 def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:
-    """Return the highest frequency in rad/s and rate of decay in 1/s of the state at the start, its slides left out.
-
-    Holding riders on their cables only lowers them.
+    """Return the highest frequency in rad/s and rate of decay in 1/s of the state at the start, without slides, whose
+    constraints only lower them.
     """
     engine.set_state(0.0)
     n = model.n_band + model.n_border_dof
@@ -286,10 +284,10 @@ def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:
 
 
 def _largest(matrix: Any, mass: Any, by_mass: Callable[[np.ndarray], np.ndarray]) -> float:
-    """Return about the largest eigenvalue of the symmetric part by the mass, in size, by power iteration: some per cent
-    low.
+    """Return about the largest absolute eigenvalue of the symmetric part of a matrix relative to the mass, some per
+    cent low, by power iteration.
 
-    matrix, mass: (n, n), arrays or sparse; by_mass: returns the mass^-1 times (n,).
+    matrix, mass: (n, n), arrays or sparse; by_mass: returns mass^-1 times (n,).
     """
     symmetric = (matrix + matrix.T) / 2
     x = np.random.default_rng(0).normal(size=matrix.shape[0])
@@ -305,5 +303,5 @@ def _largest(matrix: Any, mass: Any, by_mass: Callable[[np.ndarray], np.ndarray]
 
 @cache
 def _made(kind: type[Integrator]) -> Integrator:
-    """Return the integrator of a kind with the parameters that it has by itself: they are the same in every run."""
+    """Return the integrator of a kind with its default parameters, which are the same in every run."""
     return kind()

@@ -1,4 +1,4 @@
-"""Runs of very many steps: how many there will be, when the run ends at its present rate, and why."""
+"""Runs of very many steps: their expected number and end at the present rate, and the cause."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ STABILITY_LIMIT_FRACTION = 0.3
 
 
 class LongRun:
-    """Follows the steps of a run; called with the time reached, s, it passes that on to the progress meter."""
+    """Observes the steps of a run; a call with the time reached in s updates the progress meter."""
 
     def __init__(self, model: Model, engine: Engine, settings: RunSettings, watcher: EventWatcher, meter: Meter):
         self._model, self._engine, self._settings = model, engine, settings
@@ -41,7 +41,7 @@ class LongRun:
         self._warned = False
 
     def __call__(self, reached: float) -> None:
-        """Show the progress; where the run will be long, its rate and end, and once a warning that says why."""
+        """Show the progress; for a long run also its rate and end, and once a warning with the cause."""
         with interruptible():
             self._meter(reached)
         now = time.monotonic()
@@ -66,9 +66,7 @@ class LongRun:
                           f"present rate of {rate:.2g} a second: {self._why()}", FunicularWarning, stacklevel=6)
 
     def notes(self) -> list[str]:
-        """Return, for the report, how many steps the run has taken or was to take, and why; empty for a run of few
-        steps.
-        """
+        """Return for the report the number of steps of a long run, and the cause; empty for other runs."""
         if self._steps > MANY_STEPS_LIMIT:
             return [f"the run took {self._steps:.3g} steps: {self._why()}"]
         if self._warned and self._engine.time < self._settings.duration:
@@ -81,7 +79,7 @@ class LongRun:
         return self._engine.n_steps
 
     def _why(self) -> str:
-        """Return what rules the step, and what makes it larger."""
+        """Return the cause of the step size, and the remedy."""
         engine, settings, counts = self._engine, self._settings, self._engine.statistics
         mean = engine.time / max(counts["steps"], 1)
         if settings.step is not None:
@@ -113,7 +111,7 @@ class LongRun:
                 "part there")
 
     def _fastest(self) -> tuple[float, float]:
-        """Return the highest frequency, rad/s, and rate of decay, 1/s, of the state at the start."""
+        """Return the highest frequency in rad/s and rate of decay in 1/s of the state at the start."""
         return fastest_rates(self._model, Engine(self._model))
 
 

@@ -1,4 +1,4 @@
-"""When a run pauses, so that its rows can be taken and its state be kept."""
+"""Pauses of a run, at which its rows are taken and its state is kept."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ MAX_BUFFERED_BYTES = 8e6
 
 
 class Pauses(NamedTuple):
-    """Output rows from one pause to the next, and rows that are kept in memory."""
+    """Output rows between two pauses, and rows that are kept in memory."""
 
     every: int
     capacity: int
 
 
 def pauses(rows: int, row_bytes: int) -> Pauses:
-    """Return when a run pauses: it must not depend on the clock, nor on whether results are saved."""
+    """Return the pauses of a run, which depend neither on the clock nor on whether results are saved."""
     most = max(1, int(MAX_BUFFERED_BYTES // row_bytes))
     every = min(most, -(-rows // MIN_PAUSES))
     return Pauses(every, min(rows, most // every * every) + 2)  # the start, and where a run is cut short

@@ -19,13 +19,13 @@ def _nothing(_: float | str) -> None:
 
 @dataclass(frozen=True)
 class Meter:
-    """Takes the time reached, s, when it is called, and by ``tell`` what is to be said of the pace, in words."""
+    """Takes the time reached in s when it is called, and a text on the pace by ``tell``."""
 
     reached: OnProgress = _nothing
     tell: Callable[[str], None] = _nothing
 
     def __call__(self, time: float) -> None:
-        """Show that the run has come to this time, s."""
+        """Show the time reached by the run, in s."""
         self.reached(time)
 
 
@@ -35,7 +35,7 @@ def progress_bar(duration: float, progress: bool | OnProgress | None) -> Iterato
     if callable(progress):
         yield Meter(progress)
     elif progress is True or (progress is None and is_watched()):
-        from rich.console import Console  # for runs that a person watches
+        from rich.console import Console  # needed only for a visible progress bar
         from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
         reached = TextColumn("{task.completed:.4g} of {task.total:.4g} s")
@@ -48,5 +48,5 @@ def progress_bar(duration: float, progress: bool | OnProgress | None) -> Iterato
 
 
 def is_watched() -> bool:
-    """Return whether a terminal watches, or a notebook, which shows a bar by ipywidgets alone."""
+    """Return whether output goes to a terminal, or to a notebook with ipywidgets, which a bar needs there."""
     return sys.stderr.isatty() or (in_notebook() and importlib.util.find_spec("ipywidgets") is not None)

@@ -1,14 +1,13 @@
-"""A run: the model of a scene through time, what is said of it on the way, and what is left at its end."""
+"""A run: the integration of a scene's model over time, with its messages and its result."""
 
 from __future__ import annotations
 
 import logging
 import time
 import warnings
-from collections.abc import Container
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -57,7 +56,7 @@ class Start(Protocol):
 
     @property
     def messages(self) -> list[str]:
-        """Return what the report says of it."""
+        """Return its messages for the report."""
 
     def start(self, model: Model, scene: SceneData) -> None:
         """Put a freshly built model of the scene into this state. Raises SceneError."""
@@ -65,11 +64,11 @@ class Start(Protocol):
 
 @dataclass
 class Simulation:
-    """What is left at the end of a run: the engine with its last rows, how it ended, why it was integrated so.
+    """The end of a run: the engine with its last rows, the status, the reason for the integrator.
 
     Wall time: set_up_s until the engine starts, start_s from there to its first step, notes_s of the notes on results
-    after its last one, total_s of all that; solve_cpu_s: CPU seconds of the integration alone, whatever else the
-    machine does, and other threads of the process with other scenes.
+    after its last one, total_s of all; solve_cpu_s: CPU time of the integration in s, without other processes and
+    without threads of other scenes.
     """
 
     model: Model
@@ -89,8 +88,8 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
              stream: Sink | None = None, trials: SharedTrials | None = None) -> Simulation:
     """Integrate a checked scene; calls on_progress(time reached in s) about twenty times a second.
 
-    initial: a state of this scene to start from; stream: takes the rows as they come, so that only the last ones are in
-    what is returned; trials: of other scenes of this shape.
+    initial: a state of this scene to start from; stream: takes the rows as they come, so that the engine keeps only the
+    last ones; trials: of other scenes of this shape.
     """
     begin = time.perf_counter()
     with interruptible():
@@ -109,23 +108,26 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     LOG.info("run of %g s: %d degrees of freedom, %s (%s), set up in %.3g s", settings.duration, ready.model.n_dof,
              method.name, reason, set_up)
     run = _begun(scene, settings, ready, method, pace, on_progress, stream, on_trial=rival is not None)
-    while rival is not None and run.status is None:
-        run.status, lost = on_trial(run.engine, rival, method, settings.duration, pace.every, run.follow, stream)
+    status = run.status
+    while rival is not None and status is None:
+        status, lost = on_trial(run.engine, rival, method, settings.duration, pace.every, run.follow, stream)
         if lost:
             if trials is not None:
                 trials.note(scene, method, rival)
             method, reason, rival = rival.method, f"{reason}; {lost}", rival.rival
             run = _begun(scene, settings, _prepared(scene, settings, initial), method, pace, on_progress, stream,
                          on_trial=rival is not None)
+            status = run.status
         elif stream is not None:
             stream.settled()
-    messages += run.changed.gaps + _warned([*_broken_velocities(run.model, run.changed.velocities),
-                                            *velocity_jumps(scene.as_drawn, settings.duration, _given(initial)),
-                                            *unresolved(scene.as_drawn, settings)])
-    started, status = run.began - begin - set_up, run.status
+    given = initial if isinstance(initial, InitialState) else ()  # a state of rest starts at the scene's velocities
+    messages += run.gaps + _warned([*_broken_velocities(run.model, run.change),
+                                    *velocity_jumps(scene.as_drawn, settings.duration, given),
+                                    *unresolved(scene.as_drawn, settings)])
+    started = run.began - begin - set_up
     if status in (None, "running"):
         status = run.engine.advance(run.follow, pace.every, stream)
-    if status == "interrupted" and stream is not None and not stream.has_begun:  # it gets a checkpoint to go on from
+    if status == "interrupted" and stream is not None and not stream.has_begun:  # write a checkpoint to resume from
         run = _begun(scene, settings, _prepared(scene, settings, initial), method, pace, on_progress, stream)
     messages += run.follow.notes() + _warned(run.watcher.notes())
     cpu, ended = clock() - cpu, time.perf_counter()
@@ -148,30 +150,22 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
 
 def _rows_again(scene: SceneData, initial: Start | None, method: Integrator,
                 settings: RunSettings) -> dict[str, np.ndarray]:
-    """Return the rows of a second run of a scene with other settings and the same method, which says nothing."""
+    """Return the rows of a second run of a scene with other settings and the same method, without warnings."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", FunicularWarning)
         second = settings.model_copy(update={"integrator": method.name})
         return simulate(scene, second, Meter(), initial).engine.rows()
 
 
-def _given(initial: Start | None) -> Container[str]:
-    """Return the names of results that a state to start from is made of; none of one at rest, from which a run starts
-    at the velocities of the scene.
-    """
-    return initial if isinstance(initial, InitialState) else ()
-
-
 def _warned(messages: list[str]) -> list[str]:
-    """Return messages, each of them given as a warning, too."""
+    """Return messages after a warning for each."""
     for message in messages:
         warnings.warn(message, FunicularWarning, stacklevel=6)
     return messages
 
 
-@dataclass
-class _Prepared:
-    """The model of a scene, an engine that is not started, what watches its events, and messages on them."""
+class _Prepared(NamedTuple):
+    """The model of a scene, an engine that is not started, the watcher of its events, and messages."""
 
     model: Model
     engine: Engine
@@ -180,7 +174,7 @@ class _Prepared:
 
 
 def _prepared(scene: SceneData, settings: RunSettings, initial: Start | None) -> _Prepared:
-    """Return what a run of a scene begins with."""
+    """Return the model, engine and watcher of a run."""
     model = build(scene)
     if initial is not None:
         initial.start(model, scene)
@@ -190,25 +184,17 @@ def _prepared(scene: SceneData, settings: RunSettings, initial: Start | None) ->
                      drop_redundant_rows(model, engine) + share_elements(engine, settings.threads))
 
 
-@dataclass
-class _Changed:
-    """What the start was changed by: gaps that were closed, in words, and velocities (n_dof,)."""
-
-    gaps: list[str]
-    velocities: np.ndarray
-
-
-@dataclass
-class _Begun:
-    """A run at its start: how it has ended there, None where it goes on, what the start has changed, what follows its
-    steps and its rows, and when they began, in s.
+class _Begun(NamedTuple):
+    """A run after its start: the status where it has ended, else None, messages on closed gaps, changes of velocities
+    (n_dof,), the observers of its steps and rows, and the time of the clock in s.
     """
 
     model: Model
     engine: Engine
     watcher: EventWatcher
     status: str | None
-    changed: _Changed
+    gaps: list[str]
+    change: np.ndarray
     follow: LongRun
     row_notes: RowNotes
     began: float
@@ -216,19 +202,20 @@ class _Begun:
 
 def _begun(scene: SceneData, settings: RunSettings, ready: _Prepared, method: Integrator, pace: Pauses, meter: Meter,
            stream: Sink | None, on_trial: bool = False) -> _Begun:
-    """Return a run of what is prepared, which the stream takes; on_trial: it may begin anew with another method."""
-    model, engine, watcher = ready.model, ready.engine, ready.watcher
-    status, changed = _start(scene, settings, model, engine, method, None if stream is None else pace.capacity)
+    """Start a prepared run, with its stream; on_trial: it may begin anew with another method."""
+    model, engine, watcher, _ = ready
+    status, gaps, change = _start(scene, settings, model, engine, method, None if stream is None else pace.capacity)
     row_notes = RowNotes(scene, model, settings.step_taken or 0.0, settings.duration)
     if stream is not None and status is None:
         stream.start(model, engine, pace, watcher.happened, row_notes, on_trial)
     follow = LongRun(model, engine, settings, watcher, meter)
-    return _Begun(model, engine, watcher, status, changed, follow, row_notes, time.perf_counter())
+    return _Begun(model, engine, watcher, status, gaps, change, follow, row_notes, time.perf_counter())
 
 
 def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine, method: Integrator,
-           capacity: int | None) -> tuple[str | None, _Changed]:
-    """Start the engine; returns how the run ended, None where it goes on. Raises SceneError for a singular start."""
+           capacity: int | None) -> tuple[str | None, list[str], np.ndarray]:
+    """Start the engine; return the status where the run has ended, else None. Raises SceneError for a singular start.
+    """
     tol = tol_of(settings, method)
     status, change = engine.start(
         duration=settings.duration,
@@ -251,12 +238,11 @@ def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine
                          "along its tangent", "look at masses and inertias, and at up")
     closed = engine.closed > 1e-9 * engine.extent
     gaps = [f"gaps of joints were closed at the start: things moved by up to {engine.closed:.3g} m"] * closed
-    return status, _Changed(gaps, change)
+    return status, gaps, change
 
 
 def _control(settings: RunSettings, scene: SceneData, model: Model) -> dict[str, Any]:
-    """Return what tells the engine which error steps follow, and what is allowed beside tol; nothing where the step is
-    fixed.
+    """Return the arguments of the engine on the controlled error and the absolute tolerance; none for a fixed step.
 
     Raises SceneError for a quantity whose error is not estimated.
     """
@@ -270,7 +256,7 @@ def _control(settings: RunSettings, scene: SceneData, model: Model) -> dict[str,
 
 
 def _controlled_alone(engine: Engine, settings: RunSettings) -> list[str]:
-    """Say which quantities steps were chosen by, where the user named some."""
+    """Return a message on the quantities that the steps control, where the user named some."""
     if settings.quantities is None:
         return []
     named = ", ".join(settings.quantities)
@@ -281,7 +267,7 @@ def _controlled_alone(engine: Engine, settings: RunSettings) -> list[str]:
 
 
 def _divided_step(settings: RunSettings) -> list[str]:
-    """Say where a fixed step is made smaller, so that steps end on output times."""
+    """Return a message where a fixed step is made smaller, so that steps end on output times."""
     step = settings.step_taken
     if settings.step is None or step is None or step >= settings.step * (1 - 1e-6):
         return []
@@ -289,7 +275,7 @@ def _divided_step(settings: RunSettings) -> list[str]:
 
 
 def _broken_velocities(model: Model, change: np.ndarray) -> list[str]:
-    """Say where the start changed velocities (n_dof,), which broke a joint."""
+    """Return a message where the start changed velocities (n_dof,), which broke a joint."""
     largest = float(np.max(np.abs(change) * model.weight, initial=0.0))  # rates of slopes and turns as those of points
     if largest <= 1e-9 * (1.0 + np.max(np.abs(model.v) * model.weight, initial=0.0)):
         return []
@@ -297,7 +283,7 @@ def _broken_velocities(model: Model, change: np.ndarray) -> list[str]:
 
 
 def _check_size(row_bytes: int, settings: RunSettings, stream: Sink | None) -> None:
-    """Refuse what no memory holds or, for a stream, what does not fit on its disk. Raises SceneError."""
+    """Raise SceneError for results beyond the memory or, for a stream, beyond its disk."""
     need = row_bytes * settings.duration / settings.output_step
     most, where = (MAX_OUTPUT_BYTES, "") if stream is None else (stream.free, " that are free on the disk")
     if not need < most:

@@ -1,4 +1,4 @@
-"""What takes the rows of a run as they come."""
+"""The interface of a stream that takes the rows of a run as they come."""
 
 from __future__ import annotations
 
@@ -19,24 +19,24 @@ class Sink(Protocol):
 
     @property
     def integrator(self) -> str | None:
-        """Return the name of the integrator of a run that is resumed, None where one begins."""
+        """Return the name of the integrator of a resumed run, None for a new one."""
 
     @property
     def free(self) -> int:
-        """Return the bytes that it can take."""
+        """Return the free space in bytes."""
 
     @property
     def has_begun(self) -> bool:
-        """Return whether the run can go on from what it has taken."""
+        """Return whether the run can be resumed from the rows taken."""
 
     def start(self, model: Model, engine: Engine, pace: Pauses, events: list[dict], row_notes: RowNotes,
               on_trial: bool) -> None:
-        """Take the first row, or bring the engine to where the run is resumed; on_trial: the run may begin anew, with
+        """Take the first row, or bring the engine to the state of a resumed run; on_trial: the run may begin anew, with
         another call.
         """
 
     def settled(self) -> None:
-        """Let the rows of a trial be those of the run."""
+        """Keep the rows of a trial as those of the run."""
 
     def pause(self) -> None:
         """Take the rows that the engine has at a pause, and write a checkpoint if it is time to."""

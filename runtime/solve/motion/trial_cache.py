@@ -1,4 +1,4 @@
-"""Trials of integrators that scenes of one shape share: what lost with the first one is not tried with the others."""
+"""Trials of integrators that scenes of one shape share: a method that lost in the first scene is not tried again."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ MAX_COST_RATIO = 2.0
 class SharedTrials:
     """The outcome of the first scene's trials.
 
-    Each scene chooses by its own numbers. Where that comes to the trial that the first scene had, and the first one's
-    was lost, the rival begins; its cost is known beforehand. A trial that is won costs nothing, and is not left out.
+    Each scene chooses by its own numbers. Where these lead to a trial that the first scene lost, the rival begins; its
+    cost is known beforehand. A trial that is won costs nothing, and is not left out.
 
-    shape: of the first scene, where that lost a trial; lost: by the names of both methods, the cost of the rival.
-    is_open: whether the first scene is still to come or under way, whose trials are those that count.
+    shape: of the first scene, where that lost a trial; lost: the cost of the rival by the names of both methods;
+    is_open: until the end of the first scene, whose trials count.
     """
 
     shape: tuple = ()
@@ -32,7 +32,7 @@ class SharedTrials:
 
     def of(self, scene: SceneData, method: Integrator, reason: str,
            rival: Rival | None) -> tuple[Integrator, str, Rival | None]:
-        """Return the choice for a scene, as `choose` does, of which this is the choice by its own numbers."""
+        """Return the choice for a scene, as `choose` does, from its choice by its own numbers."""
         while rival is not None and self._lost(method, rival) and shape_of(scene) == self.shape:
             reason += f"; {method.name} on trial lost in the first scene, which has the same shape"
             method, rival = rival.method, rival.rival
@@ -43,14 +43,13 @@ class SharedTrials:
         return rival.cost <= MAX_COST_RATIO * self.lost.get((method.name, rival.method.name), 0.0)
 
     def note(self, scene: SceneData, method: Integrator, rival: Rival) -> None:
-        """Take note that a trial of a method was lost, if it is the first scene's."""
+        """Keep the lost trial of a method in the first scene."""
         if self.is_open:
             self.shape = shape_of(scene)
             self.lost[method.name, rival.method.name] = rival.cost
 
 
 def shape_of(scene: SceneData) -> tuple:
-    """Return what scenes of one shape have in common: their parts by kind and name, elements and laws; all but numbers.
-    """
+    """Return what scenes of one shape share: their parts by kind and name, elements and laws; all but numbers."""
     return scene.dim, *((type(part), part.given_name) for part in scene.parts()), *(
         (cable.element, cable.elements, cable.law, cable.library) for cable in scene.cables.values())

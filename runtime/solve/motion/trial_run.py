@@ -1,9 +1,10 @@
-"""A trial of the integrator that a scene's data let expect to be the cheaper one: its cost is measured as it runs.
+"""A trial of the integrator with the lower expected cost: its cost is measured while it runs.
 
-What steps must follow, an estimate by a scene's stiffness and tolerance cannot know: how much of a motion is vibration.
-What stability asks of the explicit method is known beforehand. So the run begins with an implicit one, and where what
-remains would cost more at its present rate than the rival may cost, it begins anew with that, on trial itself where it
-has a rival. Costs are counted in evaluations of eq 38 and not in seconds: a run takes the same course on any machine.
+Stiffness and tolerance of a scene do not tell how much of its motion is vibration, which an implicit method must
+resolve. The cost of the explicit method by its stability limit is known beforehand. The run therefore begins with an
+implicit method. Where the rest would cost more at the present rate than the rival, the run begins anew with the rival,
+on trial itself where it has a rival. Costs are counted in evaluations of eq 38 and not in seconds: a run takes the same
+course on any machine.
 """
 
 from __future__ import annotations
@@ -20,7 +21,6 @@ TRIAL_DURATION_FRACTION = 0.25
 ASSESSMENT_COST_FRACTION = 0.05
 """The remaining cost is assessed each time the trial has used this fraction of the rival's cost."""
 
-
 SETTLING_ASSESSMENTS = 4
 """Number of assessments before the rate is used: the motion may begin with a shock."""
 
@@ -33,11 +33,11 @@ EARLY_STOP_COST_RATIO = 10.0
 
 def on_trial(engine: Engine, rival: Rival, method: Integrator, duration: float, every: int, follow: LongRun,
              stream: Sink | None) -> tuple[str, str]:
-    """Run a started engine as far as it takes to judge its method by its cost; every: rows between pauses, at which the
-    stream may take them.
+    """Run a started engine until the cost of its method is known; every: rows between pauses, at which the stream may
+    take them.
 
-    Returns the status that the run has come to, "running" where there is more of it, and why the rival is the cheaper
-    one, or "" where it is not. The first share of the cost, in which steps find their size, does not count.
+    Returns the status of the run, "running" before its end, and the reason for the rival, "" where it is not cheaper.
+    The first part of the cost, in which steps find their size, does not count.
     """
     share = max(1, int(min(ASSESSMENT_COST_FRACTION * rival.cost / method.cost_of_evaluation, MAX_EVALUATIONS)))
     before, shares = engine.time, 0

@@ -1,4 +1,4 @@
-"""Why a run stopped, and what its results are worth: place, likely cause and remedy, in words."""
+"""Messages on the failure of a run and on the errors of its results: place, likely cause and remedy."""
 
 from __future__ import annotations
 
@@ -104,12 +104,12 @@ def _too_large(engine: Engine, settings: RunSettings) -> str:
 
 
 def _is_force(model: Model, coupling: int | None) -> bool:
-    """Return whether what failed is a coupling that gives a force by a law, and has no constraint."""
+    """Return whether a failure is of a coupling with a force law and without a constraint."""
     return coupling is not None and not isinstance(model.couplings[coupling], SlideModel | HardContactModel)
 
 
 def _self_locking(model: Model, coupling: int | None, where: str) -> str:
-    """Return what has no solution where friction has none."""
+    """Return a text on the coupling whose friction has no solution."""
     if coupling is not None and isinstance(model.couplings[coupling], HardContactModel):
         return (f"no forces that press and rub let {where} go on: friction is self-locking, or changes follow each "
                 "other at once")
@@ -119,7 +119,7 @@ def _self_locking(model: Model, coupling: int | None, where: str) -> str:
 
 
 def describe_dof(model: Model, dof: int, coupling: int | None = None) -> str:
-    """Return what a dof is of, or what a coupling of this number is."""
+    """Return the part and place of a dof, or the coupling with this number."""
     if coupling is not None:
         failed = model.couplings[coupling]
         if not isinstance(failed, SlideModel):
@@ -132,7 +132,7 @@ def describe_dof(model: Model, dof: int, coupling: int | None = None) -> str:
 
 
 def damping(model: Model, dof: int, coupling: int | None = None) -> str:
-    """Return how to damp what a dof is of, or the cable of a slide: the end of a remedy; empty for a rigid body."""
+    """Return the end of a remedy: the damping of the part of a dof, or of a slide's cable; empty for a rigid body."""
     found, failed = _node(model, dof), None if coupling is None else model.couplings[coupling]
     cable = model.cables[failed.cable] if isinstance(failed, SlideModel) else found and found[0]
     if cable:
@@ -142,7 +142,7 @@ def damping(model: Model, dof: int, coupling: int | None = None) -> str:
 
 
 def condition(model: Model, dof: int, q: np.ndarray, v: np.ndarray) -> tuple[str, bool]:
-    """Return how the place of a dof fares, and whether its cable is folded up there."""
+    """Return a text on the state at a dof, and whether its cable is folded there."""
     speed = f"{abs(v[dof]) * model.weight[dof]:.3g} m/s"
     if (found := _node(model, dof)) is None:
         return speed, False
@@ -156,7 +156,7 @@ def condition(model: Model, dof: int, q: np.ndarray, v: np.ndarray) -> tuple[str
 
 
 def _node(model: Model, dof: int) -> tuple[CableModel, int] | None:
-    """Return the cable and number of the node that a dof is of; None where it is a body's."""
+    """Return the cable and the number of the node of a dof; None for a body's."""
     for cable in model.cables:
         if cable.coordinates.start <= dof < cable.coordinates.stop:
             return cable, (dof - cable.first) // (cable.shape[1] * cable.shape[2])
@@ -164,7 +164,7 @@ def _node(model: Model, dof: int) -> tuple[CableModel, int] | None:
 
 
 def notes(engine: Engine, settings: RunSettings) -> list[str]:
-    """Return what a user should know of a completed run whose results are coarse; empty where they are good."""
+    """Return notes on a completed run whose results are coarse."""
     counts, notes = engine.statistics, []
     if settings.step is not None and counts["rejected_steps"]:
         notes.append(f"{counts['rejected_steps']} times no step of {settings.step:g} s was possible: it was divided, "
@@ -184,7 +184,7 @@ def notes(engine: Engine, settings: RunSettings) -> list[str]:
 
 
 def _coarse_for_little_motion(engine: Engine, settings: RunSettings) -> list[str]:
-    """Return a note where the absolute error that was allowed unasked is more than tol of the motion."""
+    """Return a note where the default absolute tolerance exceeds tol times the motion."""
     allowed, motion = engine.absolute_tol, engine.controlled_motion
     if settings.step is not None or settings.absolute_tol is not None or allowed <= settings.tol * motion:
         return []
@@ -193,7 +193,7 @@ def _coarse_for_little_motion(engine: Engine, settings: RunSettings) -> list[str
 
 
 def trapped(scene: SceneData, engine: Engine) -> list[str]:
-    """Return a note where slides that tie a frame went to and fro over nodes at which the curvature jumps."""
+    """Return a note where slides that tie a frame passed many nodes, at which the curvature jumps."""
     counts = engine.statistics
     names = [f'"{slide.name}"' for slide in scene.slides.values()
              if slide.frame != "point" and scene.cables[slide.along].element != CONTINUOUS_CURVATURE_ELEMENT]
@@ -205,8 +205,7 @@ def trapped(scene: SceneData, engine: Engine) -> list[str]:
 
 
 def unexplained(engine: Engine, settings: RunSettings) -> list[str]:
-    """Return a note where energy has come or gone that nothing in the scene explains; empty where the balance closes.
-    """
+    """Return a note where the energy balance of the scene does not close."""
     grown, lost, exchanged, in_motion, rounding = engine.balance
     off, fixed = max(grown, lost), settings.step is not None
     quiet = ENERGY_ERROR_LIMIT if fixed else min(max(ENERGY_ERROR_LIMIT, 100 * settings.tol), LOOSE_ENERGY_ERROR_LIMIT)

@@ -1,4 +1,4 @@
-"""Signals that change faster than a fixed step can follow, in words: no error control shortens such a step."""
+"""Signals that change too fast for a fixed step, which no error control shortens."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ INTEGRAL_ERROR_LIMIT = 0.05
 
 
 def unresolved(scene: SceneData, settings: RunSettings) -> list[str]:
-    """Return a message for each signal that a fixed step is too long for; none where tol chooses the steps."""
+    """Return a message for each signal that changes too fast for a fixed step; none where tol chooses the steps."""
     step = settings.step_taken
     if step is None:
         return []
@@ -40,7 +40,7 @@ def unresolved(scene: SceneData, settings: RunSettings) -> list[str]:
 
 
 def signals(scene: SceneData) -> Iterator[tuple[str, Signal]]:
-    """Yield all signals of a scene that are not constant, each with the name of the part that it is of."""
+    """Yield all signals of a scene that are not constant, each with the name of its part."""
     for part in scene.parts():
         yield from ((part.where, signal) for _, signal in signals_of(part) if not isinstance(signal, Constant))
 
@@ -51,7 +51,7 @@ def frequency(signal: Signal) -> float:
 
 
 def _error_of_integral(signal: Signal, step: float, settings: RunSettings) -> float:
-    """Return how far the trapezoidal rule on the steps of a run is off a signal's integral, of what varies of it."""
+    """Return the error of the trapezoidal rule on the steps of a run, over the variation of a signal's integral."""
     breaks, coefficients = signal.pieces()
     inner = breaks[(breaks > 0) & (breaks < settings.duration)]
     if np.diff(inner, prepend=0.0, append=settings.duration).min() > RESOLVED_STEPS * step:

@@ -1,7 +1,7 @@
-"""What moves along a cable faster than the waves of its tension: it runs in a shock, and makes waves as short as
-bending lets them be.
+"""Loads that move along a cable faster than its transverse waves: they run in a shock, with waves as short as the
+bending stiffness allows.
 
-Waves of wave number k along a cable of tension T, stretch a, bending stiffness B and mass m, all of a metre at rest,
+Waves of wave number k along a cable of tension T, stretch a, bending stiffness B and mass m per unit length at rest
 have the speed sqrt((T/a + B k²)/m) along it.
 """
 
@@ -15,7 +15,7 @@ from ...parts.scene_data import SceneData
 
 
 def excess(cable: Cable, stretch: ArrayLike, speed: ArrayLike) -> np.ndarray:
-    """Return m v² - T/a in N: above 0 where a point outruns the waves of a cable's tension.
+    """Return m v² - T/a in N, which is positive where a point outruns the transverse waves of a cable.
 
     stretch: of the cable; speed: of the point, in m/s of its arc-length at rest.
     """
@@ -25,8 +25,8 @@ def excess(cable: Cable, stretch: ArrayLike, speed: ArrayLike) -> np.ndarray:
 
 
 def outrunning(scene: SceneData) -> list[str]:
-    """Return the slides whose bodies start faster than the transverse waves of a cable that is drawn taut: the shock
-    that they run in damps out in steps of genalpha.
+    """Return the slides whose bodies start faster than the transverse waves of a cable that is drawn taut; steps of
+    genalpha damp the shock.
     """
     found = []
     for slide in scene.slides.values():
