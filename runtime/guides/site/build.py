@@ -1,8 +1,9 @@
-"""Collects the sources of the site in a directory of their own, and runs Sphinx there; nothing else is written."""
+"""Collects the sources of the site in a separate directory, and runs Sphinx there; nothing else is written."""
 
 from __future__ import annotations
 
 import json
+import posixpath
 import re
 import shutil
 import subprocess
@@ -16,17 +17,36 @@ from funicular.base.written_files import write_whole
 SITE = Path(__file__).parent
 GUIDES = SITE.parent
 REPOSITORY = GUIDES.parents[1]
-"""Where the package is built from; installed, there is none."""
+"""The repository of the package, which an installed package lacks."""
 
 PAGES = {"runtime/README.md": "reference.md", "derive/README.md": "derivation.md",
          "tests/benchmarks/README.md": "benchmarks.md", "tests/benchmarks/validation.md": "validation.md",
          "tests/benchmarks/speed.md": "speed.md",
          **{page.relative_to(REPOSITORY).as_posix(): page.name for page in sorted(GUIDES.glob("pages/*.md"))}}
-"""Pages beside the code, those of a subject among them, and what they are called in the site."""
+"""Pages beside the code, and their names in the site."""
+
+ORDER = ("first_scene", "choose_an_element", "choose_a_model", "cable_car", "crane", "zip_line", "pantograph",
+         "cable_robot", "slackline", "slack_and_taut", "droppers", "contact", "wind_and_water", "modes", "results",
+         "sweep", "fit_and_rank", "long_runs", "your_own_element", "verify_and_benchmark", "c_kernels")
+"""Guides in the order of the gallery: first steps, examples, special subjects."""
+
+GALLERY_HEADER = """Guides
+======
+
+Each is a script that runs; its pictures and numbers are what it printed when this site was built.
+"""
+
+THEORY = """# Theory
+
+All equations in the order of the paper, with its equation numbers, and a page for each element: its use, limits,
+measured errors and formulas. They are made from the specs of the C kernels, and each formula was compared with the
+compiled kernel when this site was built. Formulas are MathML: a browser shows them without a script.
+
+"""
 
 
 def build(out: Path, work: Path) -> int:
-    """Build the site and return 0, or 1 if the theory is wrong or Sphinx warned: then ``out`` stays what it was.
+    """Build the site and return 0, or 1 if the theory is wrong or Sphinx warned: then ``out`` stays as it was.
 
     work: an empty directory. Raises FunicularError where pages are missing, as in an installed package.
     """
@@ -39,26 +59,24 @@ def build(out: Path, work: Path) -> int:
         [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html", str(sources), str(made)],
         check=False).returncode
     if not failed:
-        shutil.copytree(made, out, dirs_exist_ok=True, ignore=shutil.ignore_patterns(".doctrees"), copy_function=_put)
+        shutil.copytree(made, out, dirs_exist_ok=True, ignore=shutil.ignore_patterns(".doctrees"), copy_function=(
+            lambda file, target: write_whole(target, lambda part: shutil.copyfile(file, part), "the site")))
     return failed
 
 
-def _put(made: str, target: str) -> None:
-    """Copy a file of the site to its place, whole. Raises ResultFileError."""
-    write_whole(target, lambda part: shutil.copyfile(made, part), "the site")
-
-
 def _collect(work: Path) -> int:
-    """Collect what the site is made of in an empty directory; return 1 if the theory is wrong."""
-    for file in SITE.glob("*.md"):
+    """Collect the sources of the site in an empty directory; return 1 if the theory is wrong."""
+    for file in (*SITE.glob("*.md"), SITE / "conf.py"):
         shutil.copy(file, work)
-    shutil.copy(SITE / "conf.py", work)
     shutil.copytree(SITE / "static", work / "static")
     shutil.copytree(GUIDES, work / "guides_source", ignore=shutil.ignore_patterns("site", "pages", "__*"))
     (work / "guides_source" / "GALLERY_HEADER.rst").write_text(GALLERY_HEADER, encoding="utf-8")
     for page, name in PAGES.items():
-        (work / name).write_text(_moved((REPOSITORY / page).read_text(encoding="utf-8"), page), encoding="utf-8")
-        _copy_pictures(REPOSITORY / page, work)
+        text = (REPOSITORY / page).read_text(encoding="utf-8")
+        (work / name).write_text(_moved(text, page), encoding="utf-8")
+        for picture in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", text):
+            (work / picture).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy((REPOSITORY / page).parent / picture, work / picture)
     (work / "command_line.md").write_text(command_line(), encoding="utf-8")
     (work / "extra").mkdir()
     (work / "extra" / "funicular.schema.json").write_text(json.dumps(scene_schema(), indent=1), encoding="utf-8")
@@ -69,55 +87,25 @@ def _collect(work: Path) -> int:
     return 0
 
 
-GALLERY_HEADER = """Guides
-======
-
-Each is a script that runs; its pictures and numbers are what it printed when this site was built.
-"""
-
-
-ORDER = ("first_scene", "choose_an_element", "choose_a_model", "cable_car", "crane", "zip_line", "pantograph",
-         "cable_robot", "slackline", "slack_and_taut", "droppers", "contact", "wind_and_water", "modes", "results",
-         "sweep", "fit_and_rank", "long_runs",
-         "your_own_element", "verify_and_benchmark", "c_kernels")
-"""Of the guides in the site: from the first steps over examples to what few need."""
-
-
 def place_in_order(filename: str | Path) -> int:
     """Return the place of a guide's file in the gallery."""
     return ORDER.index(Path(filename).stem)
 
 
-def _copy_pictures(page: Path, work: Path) -> None:
-    """Copy the pictures that a page shows to where the site's page looks for them."""
-    for path in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", page.read_text(encoding="utf-8")):
-        target = work / path
-        target.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(page.parent / path, target)
-
-
 def _moved(text: str, page: str) -> str:
-    """Return a page with links to other pages and to guides as they are in the site; other links lose their target."""
-    here = Path(page).parent
-
+    """Return a page with links to other pages and to guides of the site; other links lose their target."""
     def link(found: re.Match[str]) -> str:
         words, target = found.groups()
         if target.startswith(("#", "http")):
             return found[0]
-        path, _, anchor = target.partition("#")
-        parts: list[str] = []
-        for part in (here / path).parts:
-            if part == ".." and parts:
-                parts.pop()
-            elif part != "..":
-                parts.append(part)
-        whole = "/".join(parts)
+        path, mark, anchor = target.partition("#")
+        whole = posixpath.normpath(posixpath.join(posixpath.dirname(page), path))
         name = PAGES.get(whole) or PAGES.get(f"{whole}/README.md")
         if name is not None:
-            return f"[{words}]({name}{'#' + anchor if anchor else ''})"
+            return f"[{words}]({name}{mark}{anchor})"
         if REPOSITORY / whole in (GUIDES / f"{guide}.py" for guide in ORDER):
             return f"[{words}](guides/{Path(whole).stem})"
-        return found[0] if path.endswith(".png") and len(parts) == len(here.parts) + 1 else words
+        return found[0] if path.endswith(".png") and "/" not in posixpath.normpath(path) else words
 
     return re.sub(r"(?<!!)\[([^\]]*)\]\(([^)]+)\)", link, text)
 
@@ -127,15 +115,6 @@ def command_line() -> str:
     command = [sys.executable, "-m", "typer", "funicular.cli.main", "utils", "docs", "--name", "funicular"]
     text = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     return re.sub(r"^# `funicular`", "# Command line", text, flags=re.MULTILINE)
-
-
-THEORY = """# Theory
-
-All equations in the order of the paper, with its equation numbers, and a page for each element: what it is for, its
-limits, its measured errors and its formulas. They are made from the same specs as the C kernels, and each formula was
-compared with the compiled kernel when this site was built. Formulas are MathML: a browser shows them without a script.
-
-"""
 
 
 def theory_page(extra: Path) -> str:

@@ -1,4 +1,4 @@
-"""Sphinx's configuration; `build.py` copies it beside the sources that it collects."""
+"""The configuration of Sphinx, which `build.py` copies beside the collected sources."""
 
 import logging
 import warnings

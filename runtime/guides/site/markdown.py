@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from functools import partial
 
 QUOTED = re.compile(r"^>>> .*(?:\n.+)*|\0[^\0]*\0|`[^`]*`|\(\".*?\)|\"([\w.@]+)\"", re.MULTILINE)
-"""Words in quotes, such as a value, but for those in examples, in code and in tuples."""
+"""Words in quotes, such as a value, outside of examples, code and tuples."""
 
 
 def prose(thing: object) -> str:
@@ -25,11 +25,11 @@ def markdown(docstring: str) -> str:
 
 HEADING = re.compile(r"^##+ (\S+)$", re.MULTILINE)
 OF_PACKAGE = re.compile(r"fu\.|catenary\.(?=[A-Z])")
-"""What stands before names of headings that docstrings leave out."""
+"""Prefixes of names in headings that docstrings leave out."""
 
 
 def link(pages: dict[str, str]) -> dict[str, str]:
-    """Return pages by file name with links from names in code to the headings that these have on any of them."""
+    """Return pages by file name with links from names in code to their headings on any of them."""
     targets = {OF_PACKAGE.sub("", heading[:1].upper() + heading[1:] if heading.startswith("scene.") else heading):
                (file, anchor(heading)) for file, text in pages.items() for heading in HEADING.findall(text)}
 
@@ -42,11 +42,11 @@ def link(pages: dict[str, str]) -> dict[str, str]:
 
 
 ARGUMENT = re.compile(r"^(\w+(?:, \w+)*): (.*(?:\n    .*)*)\n?", re.MULTILINE)
-"""A line of a docstring that says what an argument is, or several, and those that go on with it."""
+"""A line of a docstring on one or more arguments, with its continuation."""
 
 
 def split(docstring: str, names: Iterable[str]) -> tuple[str, dict[str, str]]:
-    """Return a docstring without the lines on arguments, and what they say of each of them; names: of all."""
+    """Return a docstring without the lines on arguments, and the texts of these by argument; names: of all."""
     known, meanings = set(names), dict[str, str]()
 
     def taken(found: re.Match[str]) -> str:
@@ -61,13 +61,13 @@ def split(docstring: str, names: Iterable[str]) -> tuple[str, dict[str, str]]:
 
 
 def anchor(heading: str) -> str:
-    """Return the anchor of a heading, as hosts make them."""
+    """Return the anchor of a heading, as on repository hosts."""
     return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
 
 
 def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> list[str]:
     """Return the lines of a table and an empty one; none where there are no rows."""
-    cells = [" | ".join(cell.replace("|", r"\|") for cell in row) for row in rows]
     columns = list(head)
-    lines = [" | ".join(columns), "|".join(["---"] * len(columns)), *cells]
-    return [*(f"| {line} |" if "---" not in line else f"|{line}|" for line in lines), ""] if cells else []
+    cells = [" | ".join(cell.replace("|", r"\|") for cell in row) for row in rows]
+    lines = [f"| {line} |" for line in (" | ".join(columns), *cells)]
+    return [lines[0], "|---" * len(columns) + "|", *lines[1:], ""] if cells else []

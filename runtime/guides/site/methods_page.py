@@ -39,7 +39,7 @@ OTHERS = (InitialState, State, Stability, Relaxation, Adjustment, EnergyBalance,
 """Classes without methods that users call."""
 
 INTERNAL = re.compile(r"_|check_|of$|start$|put$|(from_recording|heading|overview|sketch|summary_rows|facts)$")
-"""Names that users have no need of."""
+"""Names that users do not need."""
 
 
 def methods_page() -> str:
@@ -63,7 +63,7 @@ def methods_page() -> str:
 
 
 def _members(title: str, owner: type, also: type) -> Iterator[str]:
-    """Yield the lines on the methods and properties that a class has of its own; also: the class that may have more."""
+    """Yield the lines on a class's own methods and properties; also: the class whose members come first."""
     for name, member in vars(owner).items():
         taken = owner is not also and name in vars(also)
         if INTERNAL.match(name) or taken or (title != "Pictures" and name in vars(Viewable)):
@@ -87,7 +87,6 @@ def _arguments(thing: object) -> str:
 
 def _errors() -> list[str]:
     """Return the table of errors and warnings."""
-    kinds = [each for name in sorted(dir(funicular)) if inspect.isclass(each := getattr(funicular, name))
-             and issubclass(each, Exception)]
     return table(("error", "is"), [
-        (f"`fu.{each.__name__}`", prose(each).split("\n\n")[0].replace("\n", " ")) for each in kinds])
+        (f"`fu.{each.__name__}`", prose(each).split("\n\n")[0].replace("\n", " ")) for name in sorted(dir(funicular))
+        if inspect.isclass(each := getattr(funicular, name)) and issubclass(each, Exception)])

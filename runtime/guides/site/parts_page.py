@@ -56,7 +56,7 @@ def parts_page() -> str:
 
 def _groups(schema: dict[str, Any]) -> Iterator[tuple[str, list[type[Part]]]]:
     """Yield the titles and classes of the tables within parts, each class once."""
-    seen: set[type[Part]] = set()
+    seen = set[type[Part]]()
     for name, title in TITLES.items():
         new = [part for part in FAMILIES[name].kinds if part not in seen]
         seen.update(new)
@@ -78,7 +78,7 @@ def _classes(base: type[Part]) -> Iterator[type[Part]]:
 
 
 def _section(part: type[Part], schema: dict[str, Any]) -> list[str]:
-    """Return heading, way to write it, docstring, arguments and results of a part."""
+    """Return heading, syntax, docstring, arguments and results of a part."""
     entries, tag = _entries(part, schema)
     text, _ = split(inspect.getdoc(part) or "", part.keywords())
     lines = [f"### {part.__name__}", "", _written(part, tag), "", markdown(text), ""]
@@ -95,7 +95,7 @@ def _section(part: type[Part], schema: dict[str, Any]) -> list[str]:
 
 
 def meanings_of(part: type[Part]) -> dict[str, str]:
-    """Return what the docstrings of a part and of its bases say of its arguments."""
+    """Return the texts of the docstrings of a part and of its bases on its arguments."""
     found = {"name": "by which the scene and its results know it"}
     for base in reversed(part.__mro__):
         if issubclass(base, Part):
@@ -104,12 +104,12 @@ def meanings_of(part: type[Part]) -> dict[str, str]:
 
 
 def _without_unit(meaning: str, unit: str) -> str:
-    """Return the meaning of an argument without its unit, which stands in what it takes."""
+    """Return the text of an argument without its unit, which is in another column."""
     return re.sub(rf"(?:^|, ){re.escape(unit)}(?=$|[;.:,])", "", meaning, count=1).lstrip("; ,") if unit else meaning
 
 
 def _taken(part: type[Part], keyword: str, properties: dict[str, Any]) -> str:
-    """Return in words what a part takes for a keyword."""
+    """Return in words the values that a part takes for a keyword."""
     field = properties.get(keyword, {"type": "a function; in Python only"})
     named = names_a_part(part.model_fields[part.keywords()[keyword]]) and "description" not in field
     return "a part or its name" if named else _words(field)
@@ -121,14 +121,14 @@ def _default(value: Any) -> str:
 
 
 def _code(value: Any) -> str:
-    """Return a value as users write it."""
+    """Return a value in the form that users write."""
     if isinstance(value, tuple | list):
         return f"({', '.join(map(_code, value))})"
     return f"{value:g}" if isinstance(value, float) else json.dumps(value)
 
 
 def _written(part: type[Part], tag: tuple[str, str] | None) -> str:
-    """Return how a part is written in Python and in a file."""
+    """Return the syntax of a part in Python and in a file."""
     if part in KINDS:
         return f"`scene.{part.kind}()`, `[[{part.kind}]]`"
     for name, settings in SETTINGS.items():
@@ -138,7 +138,7 @@ def _written(part: type[Part], tag: tuple[str, str] | None) -> str:
 
 
 def _entries(part: type[Part], schema: dict[str, Any]) -> tuple[dict[str, Any], tuple[str, str] | None]:
-    """Return the schema of a part's table, and the entry that says which part it is."""
+    """Return the schema of a part's table, and the entry that names the part."""
     for name, settings in SETTINGS.items():
         if part is settings:
             return schema["properties"][name], None
@@ -151,7 +151,7 @@ def _entries(part: type[Part], schema: dict[str, Any]) -> tuple[dict[str, Any], 
 
 
 def _words(field: dict[str, Any]) -> str:
-    """Return in words what a field takes."""
+    """Return in words the values of a field."""
     note = f" {field['description']}" if field.get("description", "in 1") != "in 1" else ""
     if "$ref" in field:
         name = field["$ref"].rsplit("/", 1)[1]
@@ -179,7 +179,7 @@ def _words(field: dict[str, Any]) -> str:
 
 
 WORDS = {"string": "text", "boolean": "true or false", "object": "table"}
-"""Of types of JSON."""
+"""Words for types of JSON."""
 
 
 def _limits() -> list[str]:
@@ -198,7 +198,7 @@ def _elements() -> list[str]:
 
 
 def _laws(kind: ElementKind) -> str:
-    """Return how the laws of an element are named: by ``law``, or by the measures of a cable."""
+    """Return the names of an element's laws: by ``law``, or by the measures of a cable."""
     laws = possible_laws(kind)
     if not kind.is_cable:
         return ", ".join(f'`law="{law}"`' for law in laws)
@@ -225,4 +225,4 @@ def _first_paragraph(text: str) -> str:
 
 LISTS = {"Elements of cables": _elements, "Energies": _energies, "Bounds of numbers": _limits,
          "Bundled scenes": _scenes}
-"""Titles of the sections after those of parts, and what prints them."""
+"""Titles of the sections after those of parts, and their functions."""

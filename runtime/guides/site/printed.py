@@ -12,7 +12,7 @@ from .parts_page import parts_page
 
 FOLDER = Path(__file__).parents[1] / "pages"
 PRINTED: dict[str, Callable[[], str]] = {"parts.md": parts_page, "methods.md": methods_page}
-"""What writes each of them, without links between them."""
+"""The functions that print them, without links between them."""
 
 
 def printed() -> dict[str, str]:
