@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..errors import SceneError, near
-from ..kernels.libraries import kernels_of
 from ..parts.cable import Cable
 from ..parts.paths import COMPONENTS
 from ..parts.scene_data import SceneData
 from ..results.run import Run
+from ..results.shape_functions import on_axis
 
 STATIONS = 12
 """Equal parts of a cable, at whose ends motions on two meshes are compared."""
@@ -63,14 +63,9 @@ def along(cable: Cable, nodal_vectors: np.ndarray, parts: int = STATIONS, deriva
 
     nodal_vectors: (time, node, vector, 3); derivative: 0, 1 or 2.
     """
-    mesh, at = cable.mesh, np.arange(parts + 1) / parts
-    if mesh.is_even:
-        places = at * cable.elements
-        element = np.minimum((places * (1 + 1e-12)).astype(int), cable.elements - 1)
-        x = (cable.length / cable.elements) * (places - element)
-    else:
-        element, x = mesh.place(at * cable.length)
-    N = shapes(cable, element, x, derivative)
+    s = np.arange(parts + 1) / parts * cable.length
+    element = cable.mesh.element_at(s * (1 + 1e-12))
+    N = shapes(cable, element, s - cable.mesh.each_start(element), derivative)
     vectors = np.concatenate([nodal_vectors[:, element], nodal_vectors[:, element + 1]], axis=2)
     found: np.ndarray = np.einsum("pk,tpkd->tpd", N, vectors.reshape(len(nodal_vectors), parts + 1, -1, 3))
     return found
@@ -81,10 +76,8 @@ def shapes(cable: Cable, element: np.ndarray, x: np.ndarray, derivative: int) ->
 
     The second derivative is a difference of the first.
     """
-    rows = getattr(kernels_of(cable.library), f"{cable.element}_on_axis").rows
-    lengths = np.broadcast_to(cable.mesh.lengths, cable.elements)[element]
     if derivative < 2:
-        found: np.ndarray = rows(len(x), lengths, x)[derivative]
-        return found
+        return on_axis(cable, element, x)[derivative]
+    lengths = np.asarray(cable.mesh.each_length(element))
     low, high = np.maximum(x - 1e-3 * lengths, 0.0), np.minimum(x + 1e-3 * lengths, lengths)
-    return np.asarray((rows(len(x), lengths, high)[1] - rows(len(x), lengths, low)[1]) / (high - low)[:, None])
+    return np.asarray((on_axis(cable, element, high)[1] - on_axis(cable, element, low)[1]) / (high - low)[:, None])
