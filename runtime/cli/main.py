@@ -1,4 +1,4 @@
-"""The command line. A command imports its own modules when it is called, so that all commands start quickly."""
+"""The command line. The modules of a command are imported when it is called, so that all commands start quickly."""
 
 from __future__ import annotations
 
