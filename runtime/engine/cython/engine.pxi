@@ -190,7 +190,7 @@ cdef extern from * nogil:
         fu_matrix_block *columns, *rows
         int *pivot_band, *pivot_border
         fu_threads *threads
-    int FU_INVERSE_MOST
+    int FU_MAX_INVERTED
     long FU_INVERSE_ROWS(long n)
     ctypedef struct fu_model:
         int dim, n_cables, n_bodies, n_couplings, n_motions
@@ -259,7 +259,7 @@ cdef extern from * nogil:
         double *scratch
         int n_event_functions
         const fu_event_function *event_functions
-        double *watched, *watch_work, *deepest, *farthest, *passed_at
+        double *event_values, *event_work, *deepest, *farthest, *deferred_at
         int *late
         fu_slackness *slackness
         const char **deferred

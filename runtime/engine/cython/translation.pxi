@@ -369,7 +369,7 @@ cdef class Translation(Arrays):
         a = &run.accelerator
         self._system(&a.mass, &self.mass_fronts, model, accelerations, width)
         sizes = np.diff(model.chains).tolist()
-        if max(sizes, default=0) <= min(FU_INVERSE_MOST, INVERSE_SIZE_FACTOR * (width + 1)):
+        if max(sizes, default=0) <= min(FU_MAX_INVERTED, INVERSE_SIZE_FACTOR * (width + 1)):
             a.mass.inverse = self._zeros(sum(n * FU_INVERSE_ROWS(n) for n in sizes))
         # shared: the mass matrix is factored elsewhere before the first Newton matrix is made
         run.newton.K = a.mass.K = self._zeros((3.0 * width + 1) * model.n_band)
