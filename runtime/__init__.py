@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from .cli import start as command_start  # noqa: F401  first: its Ctrl-C holds while the others are imported
+from .cli import start as command_start  # noqa: F401  first: handles Ctrl-C during the other imports
 from .errors import (
     ConvergenceError,
     EndOfCableError,
@@ -47,78 +47,23 @@ from .scene.scene import Scene
 from .sweeps.many_scenes import run_many
 
 __all__ = [
-    "Box",
-    "Buffer",
-    "Cable",
-    "Capsule",
-    "Circle",
-    "Clamp",
-    "Contact",
-    "ConvergenceError",
-    "Crossing",
-    "Cylinder",
-    "DistributedForce",
-    "Drag",
-    "EndOfCableError",
-    "EquilibriumError",
-    "EquilibriumSettings",
-    "Event",
-    "Fluid",
-    "Force",
-    "ForceTable",
-    "Friction",
-    "FunicularError",
-    "FunicularWarning",
-    "GeneralSection",
-    "HardStop",
-    "Harmonic",
-    "HeightField",
-    "Joint",
-    "Material",
-    "MeshShape",
-    "ModalBody",
-    "Moment",
-    "Motion",
-    "Pin",
-    "Plane",
-    "Polar",
-    "PowerProfile",
-    "Pulse",
-    "Ramp",
-    "Rectangle",
-    "ResultFileError",
-    "RigidBody",
-    "Run",
-    "RunSettings",
-    "Scene",
-    "SceneError",
-    "Slide",
-    "Sphere",
-    "Spring",
-    "Surface",
-    "TableProfile",
-    "TableSignal",
-    "Tie",
-    "Tube",
-    "UnknownResultError",
-    "VelocityTable",
-    "__version__",
-    "bundled_scenes",
-    "combine",
-    "load_run",
-    "load_scene",
+    "Box", "Buffer", "Cable", "Capsule", "Circle", "Clamp", "Contact", "ConvergenceError", "Crossing", "Cylinder",
+    "DistributedForce", "Drag", "EndOfCableError", "EquilibriumError", "EquilibriumSettings", "Event", "Fluid",
+    "Force", "ForceTable", "Friction", "FunicularError", "FunicularWarning", "GeneralSection", "HardStop",
+    "Harmonic", "HeightField", "Joint", "Material", "MeshShape", "ModalBody", "Moment", "Motion", "Pin", "Plane",
+    "Polar", "PowerProfile", "Pulse", "Ramp", "Rectangle", "ResultFileError", "RigidBody", "Run", "RunSettings",
+    "Scene", "SceneError", "Slide", "Sphere", "Spring", "Surface", "TableProfile", "TableSignal", "Tie", "Tube",
+    "UnknownResultError", "VelocityTable", "__version__", "bundled_scenes", "combine", "load_run", "load_scene",
     "run_many",
 ]
-
-
 LAZY = {"Choice": "choice.choice", "Equilibrium": "results.equilibrium", "InitialState": "model.initial_state",
         "LogUniform": "sweeps.parameters", "Modes": "solve.modes.modes", "Uniform": "sweeps.parameters",
         "load_sweep": "sweeps.dataset", "sweep": "sweeps.sweep", "sweep_cost": "sweeps.sweep"}
-"""What brings SciPy or xarray along, which take as long as all the rest: imported when it is asked for."""
+"""Modules of names whose imports (SciPy, xarray) take as long as all others, imported on first use."""
 
 
 def __dir__() -> list[str]:
-    """Return the names of the interface, which editors and IPython complete."""
+    """Return the public names."""
     return sorted({*__all__, *LAZY, "__all__", "__doc__", "__file__", "__name__", "__path__", "__version__"})
 
 
@@ -127,7 +72,7 @@ def __getattr__(name: str) -> Any:
         from importlib import import_module
 
         return getattr(import_module(f".{LAZY[name]}", __name__), name)
-    if name == "__version__":  # the metadata take a tenth of the time of the whole import
+    if name == "__version__":  # the metadata take a tenth of the import
         from importlib.metadata import version
 
         return version("funicular")

@@ -1,4 +1,4 @@
-"""What funicular raises and warns with: messages name the place, the cause and, where it helps, a remedy."""
+"""Errors and warnings: their messages name place, cause and remedy."""
 
 from __future__ import annotations
 
@@ -13,54 +13,48 @@ RENAMED = {"join": "tie", "joins": "ties", "General": "GeneralSection", "Table":
            "second_moment_yy": "second_moment_about_z", "second_moment_zz": "second_moment_about_y",
            "pair": "joint_kind", "hold": "fix", "held": "fixed",
            "rotary_moment_yy": "rotary_moment_about_z", "rotary_moment_zz": "rotary_moment_about_y"}
-"""What older versions called parts, keywords, tables of scene files and attributes, and what they are called now."""
+"""New names of parts, keywords, tables of scene files and attributes by their names in older versions."""
 
 INTEGRALS = {"about_z": ", the integral of y²", "about_y": ", the integral of z²"}
-"""What a moment is whose name says about which axis it is; the older names said which coordinate is squared."""
+"""Definitions of moments by the end of their new names; the older names had the squared coordinate."""
 
-_MOST_SHOWN = 150
-"""Characters of a path's start and end in a message."""
+MAX_SHOWN_LENGTH = 150
+"""Characters of the start and of the end of a path in a message."""
 
 
 class FunicularError(Exception):
-    """Base of all errors that funicular raises on purpose; the message is complete for a user."""
+    """Base of all errors that funicular raises on purpose."""
 
-    __str__ = Exception.__str__  # KeyError, a base of one subclass, would show its message in quotes
+    __str__ = Exception.__str__  # KeyError, a base of a subclass, quotes its message
 
 
 class FunicularWarning(UserWarning):
-    """Something was adjusted or left unfinished; the same text stands in ``run.report["messages"]``."""
+    """A note on an adjustment or an incomplete result; also in ``run.report["messages"]``."""
 
 
 class SceneError(FunicularError, ValueError):
-    """The scene cannot be simulated as it is described.
+    """The scene cannot be simulated as described.
 
-    ``errors`` are all that were found: of a scene file, or of the values of a part; the message is that of the first,
-    of a file that of all.
+    ``errors``: all errors of a scene file or of the values of a part. The message is that of the first one, of a file
+    that of all.
     """
 
     def __init__(self, place: str, cause: str, remedy: str | None = None, entry: str | None = None):
-        """place: what is wrong, such as ``cable "wire"``; cause: why; remedy: what to do, or None.
-
-        entry: the keyword whose value is wrong, None where it is not one alone.
-        """
+        """place: such as ``cable "wire"``; entry: keyword of the wrong value, None for several."""
         super().__init__(f"{place}: {cause}" + (f"; {remedy}" if remedy else ""))
         self.place, self.cause, self.remedy, self.entry = place, cause, remedy, entry
         self.errors: tuple[SceneError, ...] = (self,)
 
     def inside(self, outer: str) -> SceneError:
-        """Return the same error seen from ``outer`` (a file, say)."""
+        """Return the same error with a place, such as a file, in front."""
         return SceneError(f"{outer}: {self.place}", self.cause, self.remedy)
 
 
 class SceneFileError(SceneError):
-    """All that is wrong with a scene file, a line each."""
+    """All errors of a scene file, a line each."""
 
     def __init__(self, origin: str, found: Sequence[tuple[int | None, SceneError]], more: bool = False):
-        """origin: what messages call the file; found: errors with the numbers of their lines, where these are known.
-
-        more: whether there may be others, which were not looked for.
-        """
+        """origin: name of the file in messages; found: errors with line numbers; more: whether to expect others."""
         found = sorted(found, key=lambda each: (each[0] is None, each[0] or 0))
         first = found[0][1]
         lines = [(f"line {number}: " if number else "") + str(error) for number, error in found]
@@ -75,24 +69,24 @@ class _StoppedError(FunicularError):
     """A run that stopped early."""
 
     def __init__(self, message: str, run: Any):
-        """run: the results up to then, a `funicular.Run`."""
+        """run: the results up to the stop, a `funicular.Run`."""
         super().__init__(message)
         self.run = run
 
 
 class EndOfCableError(_StoppedError):
-    """A slide reached an end of its cable; ``run`` holds everything up to then."""
+    """A slide reached an end of its cable; ``run`` holds the results up to then."""
 
 
 class ConvergenceError(_StoppedError):
-    """The integrator found no acceptable step; ``run`` holds everything up to then."""
+    """The integrator found no acceptable step; ``run`` holds the results up to then."""
 
 
 class EquilibriumError(FunicularError):
-    """No static equilibrium was reached; ``state`` holds the last one on the way, at ``load_fraction`` of the loads."""
+    """No static equilibrium was reached; ``state`` is the last one, at ``load_fraction`` of the loads."""
 
     def __init__(self, message: str, state: Any, load_fraction: float):
-        """state: the last `Scene.equilibrium`; load_fraction: the part of the loads that it carries, 0 to 1."""
+        """state: the last `Scene.equilibrium`; load_fraction: of the loads in it, 0 to 1."""
         super().__init__(message)
         self.state, self.load_fraction = state, load_fraction
 
@@ -107,7 +101,7 @@ class UnknownResultError(FunicularError, KeyError):
 
 @contextmanager
 def enough_memory() -> Iterator[None]:
-    """Turn a MemoryError of what is inside into a SceneError."""
+    """Turn a MemoryError into a SceneError."""
     try:
         yield
     except MemoryError:
@@ -115,27 +109,25 @@ def enough_memory() -> Iterator[None]:
                          "take fewer elements, fewer bodies and slides, or a larger output_step") from None
 
 
-def shown_path(path: str | os.PathLike) -> str:
-    """Return a path for a message: what does not print is escaped, and the middle of a very long one is left out."""
+def shown_path(path: str | os.PathLike[str]) -> str:
+    """Return a path for messages, with escapes for unprintable characters and without the middle of a long one."""
     text = os.fspath(path)
     text = text if text.isprintable() else ascii(text)[1:-1]
-    return text if len(text) <= 2 * _MOST_SHOWN else f"{text[:_MOST_SHOWN]}...{text[-_MOST_SHOWN:]}"
+    return text if len(text) <= 2 * MAX_SHOWN_LENGTH else f"{text[:MAX_SHOWN_LENGTH]}...{text[-MAX_SHOWN_LENGTH:]}"
 
 
 def near(name: str, known: Iterable[str]) -> str:
-    """Return the remedy for an unknown name: what it is called now, the nearest known one, or the list of them."""
+    """Return the remedy for an unknown name: its new name, the nearest known name, or all known names."""
     known = list(known)
     if (new := new_name(name)) in known:
         return f'it is called "{new}" now{INTEGRALS.get(new[-7:], "")}'
-    if len(str(name)) <= _MOST_SHOWN and (matches := get_close_matches(str(name), known, n=1)):
+    if len(str(name)) <= MAX_SHOWN_LENGTH and (matches := get_close_matches(str(name), known, n=1)):
         return f'did you mean "{matches[0]}"?'
     return "known: " + ", ".join(known) if known else "the scene has none yet"
 
 
 def new_name(name: str) -> str:
-    """Return what an older version's name is now, also where a number or a quantity of a result follows it; else
-    itself.
-    """
+    """Return the new name of a name of an older version, also before a number or a quantity of results; else itself."""
     if name in RENAMED:
         return RENAMED[name]
     numbered = re.fullmatch(r"([a-z]+)(_\d+(?:\..+)?)", str(name))
@@ -143,6 +135,6 @@ def new_name(name: str) -> str:
 
 
 def check_renamed(owner: str, name: str, known: Iterable[str]) -> None:
-    """Raise AttributeError that names the new name of an attribute which an older version had; owner: of what."""
+    """Raise AttributeError with the new name of an attribute of an older version; owner: of the attribute, in words."""
     if name in RENAMED and RENAMED[name] in set(known):
         raise AttributeError(f"{owner} has no attribute {name!r}: {near(name, [RENAMED[name]])}")

@@ -127,7 +127,7 @@ def of_points(nodes: ArrayLike, modes: ArrayLike, masses: ArrayLike, stiffness: 
     return shape
 
 
-def _has_shape(name: str, array: np.ndarray, expected: tuple, cause: str = "") -> None:
+def _has_shape(name: str, array: np.ndarray, expected: tuple[int | None, ...], cause: str = "") -> None:
     if array.ndim != len(expected) or any(e not in (None, n) for e, n in zip(expected, array.shape, strict=False)):
         wanted = ", ".join("any" if e is None else str(e) for e in expected)
         raise ValueError(f"array {name} {cause}must be of shape ({wanted}), got {array.shape}")

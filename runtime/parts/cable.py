@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from pydantic import model_validator
@@ -12,7 +12,7 @@ from ..errors import SceneError
 from ..kernels.elements import built_in
 from ..kernels.libraries import of_library
 from . import cable_drawing, cable_laws, cable_mesh, curves
-from .cable_fields import library_directory
+from .cable_fields import CableFields, library_directory
 from .cable_laws import others, possible_laws
 from .drawn_cable import DrawnCable
 from .hanging import catenary
@@ -21,7 +21,7 @@ from .section_stiffness import kernel_law
 from .validation import LENGTH_TOLERANCE, show, shown
 
 
-class Cable(DrawnCable):
+class Cable(DrawnCable, CableFields):
     """A cable of elements, drawn straight, through points or along a curve.
 
     All arc-lengths s are of the undeformed cable. Drawn is how a run starts. The tangent of a curve must be continuous,
@@ -69,8 +69,8 @@ class Cable(DrawnCable):
     angular_velocity: about the first point at the start, rad/s, along the ground's axes
     """
 
-    kind: ClassVar[str] = "cable"
-    group: ClassVar[str] = "cables"
+    kind = "cable"
+    group = "cables"
 
     @model_validator(mode="before")
     @classmethod

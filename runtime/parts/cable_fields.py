@@ -53,7 +53,7 @@ class CableFields(Part):
     start: Annotated[Vector | None, xyz("m")] = None
     end: Annotated[Vector | None, xyz("m")] = None
     points: Annotated[Points | None, checked(curves.points, list_of_lists("m"), Turning(POINT))] = None
-    curve: Annotated[Callable | None, GivenAs(ONLY_PYTHON)] = None  # kept as points, see `Cable._settled`
+    curve: Annotated[Callable[..., Any] | None, GivenAs(ONLY_PYTHON)] = None  # kept as points, see `Cable._settled`
     shape: Annotated[str | None, one_of(("straight", "hanging"), optional=True)] = None
     given_elements: Annotated[Count | None, Field(alias="elements")] = None
     nodes: Nodes | None = None

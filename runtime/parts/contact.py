@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any
 
 from pydantic import model_validator
 
 from .friction import AnyFriction
 from .part import Part
-from .quantity import Quantity, all_of_engine
+from .quantity import all_of_engine
 from .schemas import POINT, Turning, checked, list_schema
 from .validation import Listed, Name, Vector, items, not_negative, number, positive, shown, vector3, within
 
@@ -62,11 +62,11 @@ class Contact(Part):
     points: of a body, in its axes, m; by default its origin
     """
 
-    kind: ClassVar[str] = "contact"
-    group: ClassVar[str] = "contacts"
-    positional: ClassVar[tuple[str, ...]] = ("a", "b")
-    takes_lists: ClassVar[bool] = True
-    results: ClassVar[dict[str, Quantity]] = all_of_engine(
+    kind = "contact"
+    group = "contacts"
+    positional = ("a", "b")
+    takes_lists = True
+    results = all_of_engine(
         "contact",
         force="force of the surface on the cable or body",
         friction_force="friction component of the force",

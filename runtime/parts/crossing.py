@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, ClassVar
+from typing import Annotated
 
 from pydantic import model_validator
 
@@ -11,7 +11,7 @@ from .cable import Cable
 from .contact import Exponent
 from .friction import AnyFriction
 from .part import Part
-from .quantity import Quantity, all_of_engine
+from .quantity import all_of_engine
 from .section import outer_radius_of
 from .validation import Listed, Name, Vector, direction, not_negative, positive, xyz
 
@@ -39,11 +39,11 @@ class Crossing(Part):
     side: direction from b to a, along the ground's axes; by default as at the start
     """
 
-    kind: ClassVar[str] = "crossing"
-    group: ClassVar[str] = "crossings"
-    positional: ClassVar[tuple[str, ...]] = ("a", "b")
-    takes_lists: ClassVar[bool] = True
-    results: ClassVar[dict[str, Quantity]] = all_of_engine(
+    kind = "crossing"
+    group = "crossings"
+    positional = ("a", "b")
+    takes_lists = True
+    results = all_of_engine(
         "crossing",
         force="contact force on the cable a",
         friction_force="friction component of the force",

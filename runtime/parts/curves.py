@@ -262,7 +262,7 @@ def _distances(spline: Any, low: np.ndarray, high: np.ndarray, points: np.ndarra
     return np.linalg.norm(spline(t) - points, axis=1)
 
 
-def _refuse_a_jump(at: Callable, low: float, high: float, far: float) -> None:
+def _refuse_a_jump(at: Callable[..., Any], low: float, high: float, far: float) -> None:
     """Raise ValueError for a jump of a curve, a gap that does not shrink with the interval of u."""
     for _ in range(50):
         middle = 0.5 * (low + high)
@@ -273,7 +273,8 @@ def _refuse_a_jump(at: Callable, low: float, high: float, far: float) -> None:
                          "draw two cables where it has to be broken")
 
 
-def _refuse_a_kink(at: Callable, low: float, high: float, point: np.ndarray, gap: float, chord: float) -> None:
+def _refuse_a_kink(at: Callable[..., Any], low: float, high: float, point: np.ndarray, gap: float,
+                   chord: float) -> None:
     """Raise ValueError for a kink of a curve, whose angle does not shrink with the interval, as that of a bend does."""
 
     def angle(step: float) -> float:

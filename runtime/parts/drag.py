@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from numbers import Real
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any
 
 import numpy as np
 
 from .cable import Cable
 from .part import Part
 from .polar import Polar
-from .quantity import Quantity, all_of_engine
+from .quantity import all_of_engine
 from .schemas import AXIS, TENSOR, Turning, checked, list_of_lists, list_schema, number_schema
 from .section import Tube, outer_radius_of
 from .validation import (
@@ -89,10 +89,10 @@ class Drag(Part):
     added_mass_tangential: of a cable, the same for the motion along it
     """
 
-    kind: ClassVar[str] = "drag"
-    group: ClassVar[str] = "drags"
-    positional: ClassVar[tuple[str, ...]] = ("on",)
-    results: ClassVar[dict[str, Quantity]] = all_of_engine("drag", force="drag and buoyancy on the cable or body")
+    kind = "drag"
+    group = "drags"
+    positional = ("on",)
+    results = all_of_engine("drag", force="drag and buoyancy on the cable or body")
     name: Name | None = None
     on: Reference
     fluid: Reference | None = None

@@ -18,7 +18,11 @@ from .section_stiffness import kernel_law
 from .validation import LENGTH_TOLERANCE, Vector
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
+    from numpy.typing import ArrayLike  # 9 ms
+
+    Fields = CableFields
+else:
+    Fields = object  # pydantic reads the fields of each base class again, 1 % of the import
 
 SAMPLES_WITHOUT_MESH = 257
 """Number of sample points along a cable whose elements are still to be chosen."""
@@ -26,7 +30,7 @@ MAX_ITERATIONS = 30
 """Of the search for the nearest point of a cable: three or four reach rounding for a point near it."""
 
 
-class DrawnCable(CableFields):
+class DrawnCable(Fields):
     """Base of a cable: its shape, nodes and nodal vectors."""
 
     @property

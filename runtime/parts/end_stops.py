@@ -18,7 +18,7 @@ WORDS = ("error", "leave")
 class Stop(Part):
     """Base of the stops at an end of a cable."""
 
-    tag: ClassVar[str] = "stop"
+    tag = "stop"
     stop: ClassVar[str]
 
 
@@ -28,7 +28,7 @@ class HardStop(Stop):
     restitution: speed of the rider after the impact over that before it, 0 to 1
     """
 
-    stop: ClassVar[str] = "hard"
+    stop = "hard"
     restitution: Annotated[float, within(0, 1, ends=True)]
 
 
@@ -42,7 +42,7 @@ class Buffer(Stop):
     damping: N s/m
     """
 
-    stop: ClassVar[str] = "buffer"
+    stop = "buffer"
     length: Annotated[float, positive("m")]
     stiffness: Annotated[float, not_negative("N/m")]
     damping: Annotated[float, not_negative("N s/m")] = 0.0
@@ -57,7 +57,7 @@ class Buffer(Stop):
 STOPS = Family("stop", "a word or a stop such as HardStop(restitution=0.5)", (HardStop, Buffer))
 
 
-def _end(value: Any) -> str | Stop:
+def _end(value: Any) -> Any:
     """Return a word, or the stop that a value describes. Raises ValueError."""
     if not isinstance(value, str):
         return STOPS.part(value, "words: " + ", ".join(WORDS))

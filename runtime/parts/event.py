@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import Annotated, Any, ClassVar
+from collections.abc import Iterator
+from typing import Annotated, Any
 
 from pydantic import model_validator
 
@@ -12,7 +12,7 @@ from .schemas import ONLY_PYTHON, checked
 from .validation import Name, finite, one_of, place_on, shown
 
 
-def _function(value: Any) -> Callable | None:
+def _function(value: Any) -> Any:
     if value is not None and not callable(value):
         raise ValueError(f"must be a function of (time, state), got {shown(value)}")
     return value
@@ -38,8 +38,8 @@ class Event(Part):
     action: "record", or "stop", which ends the run
     """
 
-    kind: ClassVar[str] = "event"
-    group: ClassVar[str] = "events"
+    kind = "event"
+    group = "events"
     name: Name | None = None
     quantity: Annotated[str | None, checked(_text, {"type": "string"})] = None
     s: Annotated[float, place_on("watched")] | None = None

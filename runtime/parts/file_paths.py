@@ -18,7 +18,7 @@ class FilePath(str):
 
     folder: str
 
-    def __new__(cls, text: str, folder: str | os.PathLike = "") -> Self:
+    def __new__(cls, text: str, folder: str | os.PathLike[str] = "") -> Self:
         """Return the path; folder: of the file, by default the working directory."""
         made = super().__new__(cls, text)
         made.folder = os.fspath(folder)

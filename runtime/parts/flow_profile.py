@@ -15,7 +15,7 @@ from .validation import check_function, list_of, not_negative, one_of, positive
 class Profile(Part):
     """Base of factors of a velocity over height."""
 
-    tag: ClassVar[str] = "form"
+    tag = "form"
     form: ClassVar[str]
 
     def factor(self, height: np.ndarray) -> np.ndarray:
@@ -35,7 +35,7 @@ class PowerProfile(Profile):
     [0.5, 1.0, 2.0]
     """
 
-    form: ClassVar[str] = "power"
+    form = "power"
     exponent: Annotated[float, not_negative()]
     reference_height: Annotated[float, positive("m")]
     least_height: Annotated[float, positive("m")] = 1.0
@@ -53,7 +53,7 @@ class TableProfile(Profile):
     interpolation: "linear", or "cubic", a spline
     """
 
-    form: ClassVar[str] = "table"
+    form = "table"
     height: Annotated[tuple[float, ...], list_of("m", least=2)]
     factors: Annotated[tuple[float, ...], list_of("", least=2)]
     interpolation: Annotated[str, one_of(("linear", "cubic"))] = "linear"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Annotated, ClassVar
+from typing import Annotated
 
 import numpy as np
 from pydantic import model_validator
@@ -33,8 +33,8 @@ class Fluid(Part):
     table: velocity in time and space, a `VelocityTable`, in the place of velocity and profile
     """
 
-    kind: ClassVar[str] = "fluid"
-    group: ClassVar[str] = "fluids"
+    kind = "fluid"
+    group = "fluids"
     name: Name | None = None
     density: Annotated[float, positive("kg/m³")]
     surface: Annotated[float, finite("m")] | None = None

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, ClassVar
+from typing import Annotated
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from .attachment import AnyAttachment
 from .part import Part
-from .quantity import Quantity, all_of_engine
+from .quantity import all_of_engine
 from .signal import AnySignal, Integral, Signal
 from .validation import Name, Vector, direction, one_of, positive, show
 
@@ -54,10 +54,10 @@ class Joint(Part):
     length: of a distance joint, m; by default the distance at the start
     """
 
-    kind: ClassVar[str] = "joint"
-    group: ClassVar[str] = "joints"
-    positional: ClassVar[tuple[str, ...]] = ("kind", "a", "b")
-    results: ClassVar[dict[str, Quantity]] = all_of_engine(
+    kind = "joint"
+    group = "joints"
+    positional = ("kind", "a", "b")
+    results = all_of_engine(
         "joint",
         force="force on what carries the end b, at that end",
         moment="moment on what carries the end b, about that end",

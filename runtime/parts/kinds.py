@@ -12,8 +12,9 @@ from .joint import Joint
 from .load import DistributedForce, Force, Moment
 from .modal_body import ModalBody
 from .part import Part
-from .quantity import DIRECTION, IN_BODY_AXES, NODAL_VECTORS, POINT, UNCHANGED, Quantity
+from .quantity import IN_BODY_AXES, NODAL_VECTORS, UNCHANGED, Quantity
 from .rigid_body import RigidBody
+from .schemas import DIRECTION, POINT
 from .slide import Slide
 from .spring import Spring
 from .support import Clamp, Motion, Pin, Tie

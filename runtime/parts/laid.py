@@ -57,7 +57,7 @@ def turned_alone(scene: SceneData, plane: Plane, part: Part) -> Part:
     if isinstance(part, Cable | Event):
         return part
     planar = next(iter(scene.cables.values()))
-    axes = PlaneAxes(plane, ChainMap({part.given_name: part}, scene.bodies), _size([planar]))
+    axes = PlaneAxes(plane, ChainMap[Any, Any]({part.given_name: part}, scene.bodies), _size([planar]))
     return turned(part, axes, scene)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar
+from typing import Annotated
 
 from pydantic import model_validator
 
@@ -19,7 +19,7 @@ class Load(Part):
     scale: factor over time, a signal
     """
 
-    group: ClassVar[str] = "loads"
+    group = "loads"
     name: Name | None = None
     scale: AnySignal = ONE
 
@@ -35,8 +35,8 @@ class Force(Load):
         modal body those of the section there; else along the ground's
     """
 
-    kind: ClassVar[str] = "force"
-    positional: ClassVar[tuple[str, ...]] = ("on",)
+    kind = "force"
+    positional = ("on",)
     on: Reference
     s: Annotated[float, place_on("on")] | None = None
     at: Annotated[Vector, xyz("m", of="on")] | None = None
@@ -58,8 +58,8 @@ class DistributedForce(Load):
     follower: as of a `Force`
     """
 
-    kind: ClassVar[str] = "distributed_force"
-    positional: ClassVar[tuple[str, ...]] = ("cable",)
+    kind = "distributed_force"
+    positional = ("cable",)
     cable: Reference
     value: Annotated[Vector, xyz("N/m", of="along")]
     start: Annotated[float, place_on("cable")] | None = None
@@ -86,8 +86,8 @@ class Moment(Load):
     s: of a cable or a modal beam, the arc-length, m; by default its start
     """
 
-    kind: ClassVar[str] = "moment"
-    positional: ClassVar[tuple[str, ...]] = ("on",)
+    kind = "moment"
+    positional = ("on",)
     on: Reference
     s: Annotated[float, place_on("on")] | None = None
     value: Annotated[Vector, xyz("N m")]

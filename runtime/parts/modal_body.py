@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Annotated, Any, Self
 
 import numpy as np
 from pydantic import PrivateAttr, model_validator
@@ -15,7 +15,6 @@ from ..errors import SceneError
 from .cable import Cable
 from .material import Material
 from .part import Part
-from .quantity import Quantity
 from .rigid_body import Orientation, RigidBody
 from .schemas import checked
 from .section import AnySection
@@ -64,9 +63,9 @@ class ModalBody(Part):
 
     _of_mesh: Callable[[ModalBody], Any] | None = PrivateAttr(None)
 
-    kind: ClassVar[str] = "modal_body"
-    group: ClassVar[str] = "bodies"
-    results: ClassVar[dict[str, Quantity]] = RigidBody.results
+    kind = "modal_body"
+    group = "bodies"
+    results = RigidBody.results
     name: Name
     start: Annotated[Vector | None, xyz("m")] = None
     end: Annotated[Vector | None, xyz("m")] = None

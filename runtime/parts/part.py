@@ -121,7 +121,7 @@ class Part(BaseModel, metaclass=_TranslatingType):
         return super().__getattr__(name)  # type: ignore[misc]  # which pydantic hides from type checkers
 
     @classmethod
-    def title(cls, data: dict) -> str:
+    def title(cls, data: dict[str, Any]) -> str:
         """Return the name in messages of a part with these entries."""
         kind = cls.kind or cls.__name__
         return f'{kind} "{data["name"]}"' if isinstance(data.get("name"), str) else kind

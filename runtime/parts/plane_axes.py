@@ -12,8 +12,9 @@ from ..base.rotations import conjugate, product, quaternion, rotate
 from .kinds import TURNING
 from .part import Part
 from .plane import Plane, flattened
-from .quantity import IN_BODY_AXES, NODAL_VECTORS, ORIENTATION, POINT, UNCHANGED
+from .quantity import IN_BODY_AXES, NODAL_VECTORS, UNCHANGED
 from .rigid_body import RigidBody
+from .schemas import ORIENTATION, POINT
 
 UNTURNED = np.array([1.0, 0.0, 0.0, 0.0])
 

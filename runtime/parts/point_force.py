@@ -19,8 +19,8 @@ class PointForce(Part):
     kinds.py, and its law in derive/couplings/point_laws.
     """
 
-    group: ClassVar[str] = "point_forces"
-    positional: ClassVar[tuple[str, ...]] = ("a", "b")
+    group = "point_forces"
+    positional = ("a", "b")
     results: ClassVar[dict[str, Quantity]] = {
         "force": of_engine("point_force", "force", "force on the first end"),
         "tension": of_time("N", "force that draws the ends together"),

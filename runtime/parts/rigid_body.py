@@ -9,8 +9,8 @@ import numpy as np
 
 from ..base.rotations import rotate
 from .part import Part
-from .quantity import IN_BODY_AXES, ORIENTATION, POINT, Quantity, vector_of_time
-from .schemas import TENSOR, Turning, checked, list_of_lists, list_schema
+from .quantity import IN_BODY_AXES, Quantity, vector_of_time
+from .schemas import ORIENTATION, POINT, TENSOR, Turning, checked, list_of_lists, list_schema
 from .solids import AnySolid
 from .validation import LENGTH_TOLERANCE, Matrix, Name, Vector, positive, show, symmetric, vector, xyz
 
@@ -67,8 +67,8 @@ class RigidBody(Part):
         inertia
     """
 
-    kind: ClassVar[str] = "rigid_body"
-    group: ClassVar[str] = "bodies"
+    kind = "rigid_body"
+    group = "bodies"
     results: ClassVar[dict[str, Quantity]] = {
         "position": vector_of_time("m", "position of the body's origin", POINT),
         "orientation": Quantity(("time", "wxyz"), "1", "unit quaternion from body axes to the ground's",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Callable
+from typing import Any
 
 MAX_NAME_LENGTH = 1000
 """Characters of a name that is sought: a pattern of a million takes seconds."""
@@ -36,7 +37,7 @@ def _entry(name: str) -> str:
     return rf"\s*[\"']?{re.escape(name)}[\"']?\s*[=.]"
 
 
-def _first(lines: list[str], pattern: str, fits: Callable[[dict], bool] = lambda before: True,
+def _first(lines: list[str], pattern: str, fits: Callable[[dict[str, Any]], bool] = lambda before: True,
            after: int = -1, skip: int = 0) -> int | None:
     """Return the index of the first matching line whose preceding lines are TOML that fits.
 
@@ -47,7 +48,7 @@ def _first(lines: list[str], pattern: str, fits: Callable[[dict], bool] = lambda
     return next((k for k in matches[skip:] if (before := _parsed(lines[:k])) is not None and fits(before)), None)
 
 
-def _parsed(lines: list[str]) -> dict | None:
+def _parsed(lines: list[str]) -> dict[str, Any] | None:
     try:
         return tomllib.loads("".join(lines))
     except (ValueError, RecursionError):

@@ -25,6 +25,7 @@ from .scene_data import SceneData
 from .scene_lines import line_of
 from .settings import EquilibriumSettings, RelaxationSettings, RunSettings
 
+Directory = str | os.PathLike[str]
 BARE = re.compile(r"[A-Za-z0-9_-]+")
 """A key without quotes."""
 SETTINGS = {"run": RunSettings, "equilibrium": EquilibriumSettings, "relax": RelaxationSettings}
@@ -53,8 +54,8 @@ class Addable(Protocol):
 S = TypeVar("S", bound=Addable)
 
 
-def read(text: str, origin: str, new: Callable[..., S], directory: str | os.PathLike = "",
-         libraries: Iterable[str | os.PathLike] = ()) -> S:
+def read(text: str, origin: str, new: Callable[..., S], directory: Directory = "",
+         libraries: Iterable[Directory] = ()) -> S:
     """Return a scene from the text of a scene file; origin: its name in messages.
 
     new: makes an empty scene from the keyword gravity; directory: of relative paths in the text, by default the working
@@ -100,7 +101,7 @@ def _check_depth(text: str, origin: str) -> None:
 class _Reader:
     """Adds the parts of a file to a scene, and continues after errors to find all of them."""
 
-    def __init__(self, text: str, tables: dict[str, Any], directory: str | os.PathLike):
+    def __init__(self, text: str, tables: dict[str, Any], directory: Directory):
         self.text, self.tables, self.directory = text, tables, directory
         self.found: list[tuple[int | None, SceneError]] = []
         self.refused: set[str] = set()
@@ -178,13 +179,13 @@ def _is_array(value: Any) -> bool:
 
 
 def _array(tables: dict[str, Any], kind: str) -> list[dict[str, Any]]:
-    array = tables.get(kind, [])
+    array: list[dict[str, Any]] = tables.get(kind, [])
     if not _is_array(array):
         raise SceneError(f"[{kind}]", "must be an array of tables", f"write [[{kind}]], in two brackets")
     return array
 
 
-def _check_libraries(tables: dict[str, Any], directory: str | os.PathLike, allowed: list[str | os.PathLike]) -> None:
+def _check_libraries(tables: dict[str, Any], directory: Directory, allowed: list[Directory]) -> None:
     """Raise SceneError for libraries that the caller does not allow, before any is loaded."""
     for kind, part in PARTS.items():
         for index, table in enumerate(_array(tables, kind), start=1):
@@ -197,7 +198,7 @@ def _check_libraries(tables: dict[str, Any], directory: str | os.PathLike, allow
                 check_allowed(asked, allowed, place)
 
 
-def _placed(table: dict[str, Any], directory: str | os.PathLike) -> dict[str, Any]:
+def _placed(table: dict[str, Any], directory: Directory) -> dict[str, Any]:
     """Return a table with its paths of library, data and mesh relative to the working directory."""
     here = {name: os.path.join(directory, table[name]) for name in ("library", "data", "file")
             if isinstance(table.get(name), str)}
@@ -221,7 +222,7 @@ def _numbered(error: SceneError, part: type[Part], index: int) -> SceneError:
     return unnamed[0]
 
 
-def _settings(name: str, table: Any, directory: str | os.PathLike) -> dict[str, Any]:
+def _settings(name: str, table: Any, directory: Directory) -> dict[str, Any]:
     """Return the checked settings of a table; directory: of the file."""
     if not isinstance(table, dict):
         raise SceneError(f"[{name}]", "must be a table")

@@ -36,7 +36,7 @@ class Section(Part):
     shear_factors: (ky, kz), in the place of those of the shape
     """
 
-    tag: ClassVar[str] = "shape"
+    tag = "shape"
     shape: ClassVar[str]
     given_torsion_constant: Annotated[float, positive("m⁴")] | None = Field(None, alias="torsion_constant")
     given_shear_factors: Annotated[tuple[float, float], checked(_factors, list_schema("", 2, 2))] | None = Field(
@@ -94,7 +94,7 @@ class Rectangle(Section):
     width: m
     """
 
-    shape: ClassVar[str] = "rectangle"
+    shape = "rectangle"
     height: Length
     width: Length
 
@@ -146,7 +146,7 @@ class Circle(_Round):
     radius: m
     """
 
-    shape: ClassVar[str] = "circle"
+    shape = "circle"
     radius: Length
 
     def moments(self) -> np.ndarray:
@@ -161,7 +161,7 @@ class Tube(_Round):
     inner_radius: m
     """
 
-    shape: ClassVar[str] = "tube"
+    shape = "tube"
     outer_radius: Length
     inner_radius: Length
 
@@ -205,7 +205,7 @@ class GeneralSection(Section):
         moments if none is
     """
 
-    shape: ClassVar[str] = "general"
+    shape = "general"
     area_: Annotated[float, positive("m²")] = Field(alias="area")
     about_z: Annotated[float, positive("m⁴")] = Field(alias="second_moment_about_z")
     about_y: Annotated[float, positive("m⁴")] = Field(default_factory=lambda data: data["about_z"],

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -71,7 +71,7 @@ class RunSettings(Part):
         `ErrorEstimate`
     """
 
-    kind: ClassVar[str] = "run"
+    kind = "run"
     duration: Duration
     tol: Annotated[float, positive()] = 1e-4
     absolute_tol: Annotated[float, not_negative("m")] | None = None
@@ -175,7 +175,7 @@ class EquilibriumSettings(Part):
     to: values of the state by name, such as "A.position.y" or "wire@12.5.tension"
     """
 
-    kind: ClassVar[str] = "equilibrium"
+    kind = "equilibrium"
     load_steps: Count = 1
     tolerance: Annotated[float, within(0, 1, ends=False)] = 1e-9
     max_iterations: Count = 50
@@ -205,7 +205,7 @@ class RelaxationSettings(Part):
     max_steps: of the motion
     """
 
-    kind: ClassVar[str] = "relax"
+    kind = "relax"
     tol: Annotated[float, within(0, 1, ends=False)] = 1e-6
     max_steps: Count = 20_000
 
@@ -213,5 +213,5 @@ class RelaxationSettings(Part):
 class ModeSettings(Part):
     """The number of modes."""
 
-    kind: ClassVar[str] = "modes"
+    kind = "modes"
     n: Count

@@ -46,7 +46,7 @@ class Sine(NamedTuple):
 class Signal(Part):
     """Base of the functions of time."""
 
-    tag: ClassVar[str] = "form"
+    tag = "form"
     form: ClassVar[str]
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
@@ -93,7 +93,7 @@ def _check_apart(times: Iterable[float]) -> None:
 class Constant(Signal):
     """A ``constant`` value, in a scene a plain number."""
 
-    form: ClassVar[str] = "constant"
+    form = "constant"
     constant: Value
 
     def as_given(self) -> float:
@@ -114,7 +114,7 @@ class TableSignal(Signal):
         should be cubic: the rate of straight lines jumps
     """
 
-    form: ClassVar[str] = "table"
+    form = "table"
     time: Annotated[tuple[float, ...], list_of("s", least=2)]
     values: Annotated[tuple[float, ...], list_of("", least=2)] = Field(alias="value")
     interpolation: Annotated[str, one_of(("cubic", "linear"))] = "cubic"
@@ -186,7 +186,7 @@ class Ramp(_Steps):
     [0.0, 5.0, 10.0]
     """
 
-    form: ClassVar[str] = "ramp"
+    form = "ramp"
     before: Value = 0.0
     after: Value = 1.0
 
@@ -203,7 +203,7 @@ class Pulse(_Steps):
     height: value between
     """
 
-    form: ClassVar[str] = "pulse"
+    form = "pulse"
     rise: Annotated[float, positive("s")] | None = None
     height: Value = 1.0
 
@@ -230,7 +230,7 @@ class Harmonic(Signal):
     offset: mean value
     """
 
-    form: ClassVar[str] = "harmonic"
+    form = "harmonic"
     amplitude: Value
     frequency: Annotated[float, positive("Hz")]
     phase: Annotated[float, finite("rad")] = 0.0
@@ -249,7 +249,7 @@ class Harmonic(Signal):
 class Integral(Signal):
     """The integral of ``rate`` over time, ``start`` at t = 0, exact in each piece; only in code."""
 
-    form: ClassVar[str] = "integral"
+    form = "integral"
     rate: Signal
     start: Value = 0.0
 
@@ -288,7 +288,8 @@ def signal(value: Any) -> Signal:
     """Return the signal that a signal, a number or a table describes. Raises ValueError."""
     if isinstance(value, Real) and not isinstance(value, bool):
         return Constant.model_validate({"constant": value})
-    return SIGNALS.part(value)
+    made: Signal = SIGNALS.part(value)
+    return made
 
 
 def signals_of(part: Part) -> Iterator[tuple[str, Signal]]:

@@ -39,9 +39,9 @@ class Slide(Part):
     at_start, at_end: at the ends of the cable: "error", "leave" (the rider flies on), a `HardStop` or a `Buffer`
     """
 
-    kind: ClassVar[str] = "slide"
-    group: ClassVar[str] = "slides"
-    positional: ClassVar[tuple[str, ...]] = ("body",)
+    kind = "slide"
+    group = "slides"
+    positional = ("body",)
     results: ClassVar[dict[str, Quantity]] = {
         "s": of_time("m", "undeformed arc-length of the rider's place"),
         "s_rate": of_engine("slide", "s_rate", "rate of s"),

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 from pathlib import PurePath
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import model_validator
@@ -44,7 +44,7 @@ class Solid(Part):
     at: middle of the shape, in body axes, m
     """
 
-    tag: ClassVar[str] = "kind"
+    tag = "kind"
     at: Annotated[Vector, xyz("m", DIRECTION, HOLDER)] = (0.0, 0.0, 0.0)
 
 
@@ -55,8 +55,8 @@ class Box(Solid):
     along, up: directions; by default the body's axes
     """
 
-    kind: ClassVar[str] = "box"
-    positional: ClassVar[tuple[str, ...]] = ("size",)
+    kind = "box"
+    positional = ("size",)
     size: Annotated[Vector, checked(_lengths, list_schema("m"), Turning(LENGTHS))]
     along: Annotated[Vector, direction(HOLDER)] = (1.0, 0.0, 0.0)
     up: Annotated[Vector, direction(HOLDER)] = (0.0, 1.0, 0.0)
@@ -79,8 +79,8 @@ class Sphere(Solid):
     radius: m
     """
 
-    kind: ClassVar[str] = "sphere"
-    positional: ClassVar[tuple[str, ...]] = ("radius",)
+    kind = "sphere"
+    positional = ("radius",)
     radius: Length
 
 
@@ -92,8 +92,8 @@ class Cylinder(Solid):
     axis: direction in body axes
     """
 
-    kind: ClassVar[str] = "cylinder"
-    positional: ClassVar[tuple[str, ...]] = ("radius", "length", "axis")
+    kind = "cylinder"
+    positional = ("radius", "length", "axis")
     radius: Length
     length: Length
     axis: Annotated[Vector, direction(HOLDER)] = (0.0, 0.0, 1.0)
@@ -109,8 +109,8 @@ class MeshShape(Solid):
     at: origin of the file, in body axes, m
     """
 
-    kind: ClassVar[str] = "mesh"
-    positional: ClassVar[tuple[str, ...]] = ("file",)
+    kind = "mesh"
+    positional = ("file",)
     file: Annotated[str, checked(_mesh_file, {"type": "string"})]
     scale: Annotated[float, positive()] = 1.0
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Self
+from typing import Annotated, Self
 
 from pydantic import model_validator
 
@@ -24,7 +24,7 @@ class Spring(PointForce):
     table: tension by extension beyond the length, in the place of a stiffness
     """
 
-    kind: ClassVar[str] = "spring"
+    kind = "spring"
     stiffness: Annotated[float, not_negative("N/m")] | None = None
     damping: Annotated[float, not_negative("N s/m")] = 0.0
     length: Annotated[float, not_negative("m")] | None = None

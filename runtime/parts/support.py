@@ -32,12 +32,12 @@ class Support(Part):
     s: arc-length of the node, m
     """
 
-    results: ClassVar[dict[str, Quantity]] = ON_CABLE
+    results = ON_CABLE
     cable: Reference
     s: Annotated[float, place_on("cable")]
 
     @classmethod
-    def title(cls, data: dict) -> str:
+    def title(cls, data: dict[str, Any]) -> str:
         """Return the name of the support in messages."""
         return f"{cls.kind} on {_called(data.get('cable'))}"
 
@@ -50,9 +50,9 @@ class Support(Part):
 class Pin(Support):
     """Holds the position of a cable's node at ``s`` (m); its slopes stay free."""
 
-    kind: ClassVar[str] = "pin"
-    group: ClassVar[str] = "pins"
-    positional: ClassVar[tuple[str, ...]] = ("cable",)
+    kind = "pin"
+    group = "pins"
+    positional = ("cable",)
     results: ClassVar[dict[str, Quantity]] = {"force": ON_CABLE["force"]}
 
 
@@ -64,9 +64,9 @@ class Clamp(Support):
         vector
     """
 
-    kind: ClassVar[str] = "clamp"
-    group: ClassVar[str] = "clamps"
-    positional: ClassVar[tuple[str, ...]] = ("cable",)
+    kind = "clamp"
+    group = "clamps"
+    positional = ("cable",)
     fix: Annotated[str, one_of(("section", "all"))] = "section"
 
 
@@ -76,7 +76,7 @@ class Rotation(Part):
     axis: Annotated[Vector, direction(turns=AXIS)]
     angle: Signal
 
-    def as_given(self) -> list:
+    def as_given(self) -> list[Any]:
         """Return its form in a scene file: [axis, angle]."""
         return [self.axis, self.angle]
 
@@ -146,9 +146,9 @@ class Motion(Support):
         turns. It moves r_x of cables, whose length is held, and r_y and r_z of beams. Without it the section stays free
     """
 
-    kind: ClassVar[str] = "motion"
-    group: ClassVar[str] = "motions"
-    positional: ClassVar[tuple[str, ...]] = ("cable",)
+    kind = "motion"
+    group = "motions"
+    positional = ("cable",)
     displacement: Annotated[Displacement | None, checked(_displacement, some(3))] = None
     rotation: Annotated[Rotation | None, checked(_rotation, some(2))] = None
 
@@ -184,10 +184,10 @@ class Tie(Part):
         `FunicularWarning` reports it, and a `Joint` of the kind "weld" is exact. "free" (a hinge): they turn freely
     """
 
-    kind: ClassVar[str] = "tie"
-    group: ClassVar[str] = "ties"
-    positional: ClassVar[tuple[str, ...]] = ("cable",)
-    results: ClassVar[dict[str, Quantity]] = ON_CABLE
+    kind = "tie"
+    group = "ties"
+    positional = ("cable",)
+    results = ON_CABLE
     name: Name | None = None
     cable: Reference
     s: Annotated[float, place_on("cable")]
@@ -196,7 +196,7 @@ class Tie(Part):
     rotation: Annotated[str, one_of(("rigid", "free"))] = "rigid"
 
     @classmethod
-    def title(cls, data: dict) -> str:
+    def title(cls, data: dict[str, Any]) -> str:
         """Return the name of the tie in messages."""
         if data.get("name") is not None:
             return super().title(data)

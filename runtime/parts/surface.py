@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import model_validator
@@ -28,9 +28,9 @@ class Surface(Part):
     inside: whether the shape is a hollow, a duct, a tube or a container, which is touched from within
     """
 
-    kind: ClassVar[str] = "surface"
-    group: ClassVar[str] = "surfaces"
-    positional: ClassVar[tuple[str, ...]] = ("name", "shape")
+    kind = "surface"
+    group = "surfaces"
+    positional = ("name", "shape")
     name: Name
     shape: AnySurfaceShape
     on: Reference | None = None

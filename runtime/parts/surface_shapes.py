@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import model_validator
@@ -28,7 +28,7 @@ HALF_WIDTH = 1e6
 class SurfaceShape(Part):
     """Base of the shapes of surfaces that are no shapes of bodies."""
 
-    tag: ClassVar[str] = "kind"
+    tag = "kind"
 
 
 class Plane(SurfaceShape):
@@ -38,8 +38,8 @@ class Plane(SurfaceShape):
     normal: direction to the side where things may be
     """
 
-    kind: ClassVar[str] = "plane"
-    positional: ClassVar[tuple[str, ...]] = ("point", "normal")
+    kind = "plane"
+    positional = ("point", "normal")
     point: Annotated[Vector, xyz("m", DIRECTION, HOLDER)] = (0.0, 0.0, 0.0)
     normal: Annotated[Vector, direction(HOLDER)] = (0.0, 1.0, 0.0)
 
@@ -58,8 +58,8 @@ class Capsule(SurfaceShape):
     at: its middle, m
     """
 
-    kind: ClassVar[str] = "capsule"
-    positional: ClassVar[tuple[str, ...]] = ("radius", "length", "axis")
+    kind = "capsule"
+    positional = ("radius", "length", "axis")
     radius: Length
     length: Length
     axis: Annotated[Vector, direction(HOLDER)] = (0.0, 0.0, 1.0)
@@ -91,8 +91,8 @@ class HeightField(SurfaceShape):
     along, up: directions
     """
 
-    kind: ClassVar[str] = "height_field"
-    positional: ClassVar[tuple[str, ...]] = ("x", "heights")
+    kind = "height_field"
+    positional = ("x", "heights")
     x: Annotated[tuple[float, ...], list_of("m", least=2)]
     heights: Annotated[tuple[Any, ...], checked(_heights, {"anyOf": [
         list_schema("m", 2, None), {"type": "array", "items": list_schema("m", 2, None), "minItems": 2}]})]
