@@ -489,20 +489,20 @@ fu_body_point_kernel rigid_point;
 /* b 4, u 2, w 3, p 2, p_q 2x3, v 2, bias 2 */
 fu_body_point_kernel planar_rigid_point;
 
-typedef void fu_body_point_force_kernel(const fu_real *b, const fu_real *u, const fu_real *f, fu_real *p, fu_real *p_q, fu_real *K);
-/* position and Jacobian of a point, derivative of the force p_q' f: b [m, 1]; u [m]; f [N] -> p [m]; p_q [1, m]; K
- * [N/m, N, N m] */
-/* b 7, u 3, f 3, p 3, p_q 3x6, K 6x6 */
-fu_body_point_force_kernel rigid_point_force;
-/* b 4, u 2, f 2, p 2, p_q 2x3, K 3x3 */
-fu_body_point_force_kernel planar_rigid_point_force;
-
-typedef void fu_body_frame_kernel(const fu_real *b, const fu_real *m, fu_real *A, fu_real *T, fu_real *K);
-/* axes, their turn, and the derivative of a moment on them: b [m, 1]; m [N m] -> A [1]; T [rad]; K [N m] */
-/* b 7, m 3, A 3x3, T 3x6, K 6x6 */
+typedef void fu_body_frame_kernel(const fu_real *b, fu_real *A, fu_real *T);
+/* axes of the body, and their turn: b [m, 1] -> A [1]; T [rad] */
+/* b 7, A 3x3, T 3x6 */
 fu_body_frame_kernel rigid_frame;
-/* b 4, m 1, A 2x2, T 1x3, K 3x3 */
+/* b 4, A 2x2, T 1x3 */
 fu_body_frame_kernel planar_rigid_frame;
+
+typedef void fu_body_wrench_kernel(const fu_real *b, const fu_real *u, const fu_real *w, const fu_real *f, const fu_real *m, fu_real *K, fu_real *v_q, fu_real *omega_q);
+/* derivatives of the generalised force of a wrench, and of velocities at a point: b [m, 1]; u [m]; w [m/s, rad/s]; f
+ * [N]; m [N m] -> K [N/m, N, N m]; v_q [1/s, m/s]; omega_q [1/(m s), 1/s] */
+/* b 7, u 3, w 6, f 3, m 3, K 6x6, v_q 3x6, omega_q 3x6 */
+fu_body_wrench_kernel rigid_wrench;
+/* b 4, u 2, w 3, f 2, m 1, K 3x3, v_q 2x3, omega_q 1x3 */
+fu_body_wrench_kernel planar_rigid_wrench;
 
 typedef void fu_body_inertia_force_kernel(fu_real mass, const fu_real *J, const fu_real *w, const fu_real *a, fu_real *f);
 /* m R'' and J omega' + omega x J omega: mass [kg]; J [kg m^2]; w [m/s, rad/s]; a [m/s^2, rad/s^2] -> f [N, N m] */
@@ -532,27 +532,6 @@ typedef void fu_body_discrete_point_kernel(const fu_real *b, const fu_real *u, c
 fu_body_discrete_point_kernel rigid_discrete_point;
 /* b 4, u 2, b_next 4, P 2x3 */
 fu_body_discrete_point_kernel planar_rigid_discrete_point;
-
-typedef void fu_body_force_kernel(const fu_real *b, const fu_real *u, const fu_real *f, fu_real *g, fu_real *K);
-/* generalised force of a force at a point: b [m, 1]; u [m]; f [N] -> g [N, N m]; K [N, N m] */
-/* b 7, u 3, f 3, g 6, K 6x6 */
-fu_body_force_kernel rigid_force;
-/* b 4, u 2, f 2, g 3, K 3x3 */
-fu_body_force_kernel planar_rigid_force;
-
-typedef void fu_body_follower_force_kernel(const fu_real *b, const fu_real *u, const fu_real *c, fu_real *g, fu_real *K);
-/* generalised force of a force at a point that turns with the body: b [m, 1]; u [m]; c [N] -> g [N, N m]; K [N, N m] */
-/* b 7, u 3, c 3, g 6, K 6x6 */
-fu_body_follower_force_kernel rigid_follower_force;
-/* b 4, u 2, c 2, g 3, K 3x3 */
-fu_body_follower_force_kernel planar_rigid_follower_force;
-
-typedef void fu_body_moment_kernel(const fu_real *b, const fu_real *m, fu_real *g, fu_real *K);
-/* generalised force of a moment: b [m, 1]; m [N m] -> g [N, N m]; K [N, N m] */
-/* b 7, m 3, g 6, K 6x6 */
-fu_body_moment_kernel rigid_moment;
-/* b 4, m 1, g 3, K 3x3 */
-fu_body_moment_kernel planar_rigid_moment;
 
 typedef void fu_body_move_kernel(const fu_real *b, const fu_real *step, fu_real *b_next);
 /* configuration moved by a translation and a rotation vector: b [m, 1]; step [m, rad] -> b_next [m, 1] */
@@ -698,53 +677,30 @@ fu_modal_attachment_mode_kernel modal_attachment_mode;
 /* b 4, u 2, theta 1, phi 2, psi 1, P 2, T 1 */
 fu_modal_attachment_mode_kernel planar_modal_attachment_mode;
 
-typedef void fu_modal_attachment_force_kernel(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *f, const fu_real *m, fu_real *K);
-/* derivatives of the frame's rows of P' f + T' m by the frame: b [m, 1]; u [m]; theta [rad]; f [N]; m [N m] -> K
- * [N/m, N, N m] */
-/* b 7, u 3, theta 3, f 3, m 3, K 6x6 */
-fu_modal_attachment_force_kernel modal_attachment_force;
-/* b 4, u 2, theta 1, f 2, m 1, K 3x3 */
-fu_modal_attachment_force_kernel planar_modal_attachment_force;
+typedef void fu_modal_attachment_wrench_kernel(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *f, const fu_real *m, const fu_real *w, const fu_real *u1, const fu_real *theta1, fu_real *K, fu_real *v_q, fu_real *omega_q);
+/* derivatives by the frame of its rows of P' f + T' m, and of velocities: b [m, 1]; u [m]; theta [rad]; f [N]; m [N
+ * m]; w [m/s, rad/s]; u1 [m/s]; theta1 [rad/s] -> K [N/m, N, N m]; v_q [1/s, m/s]; omega_q [1/(m s), 1/s] */
+/* b 7, u 3, theta 3, f 3, m 3, w 6, u1 3, theta1 3, K 6x6, v_q 3x6, omega_q 3x6 */
+fu_modal_attachment_wrench_kernel modal_attachment_wrench;
+/* b 4, u 2, theta 1, f 2, m 1, w 3, u1 2, theta1 1, K 3x3, v_q 2x3, omega_q 1x3 */
+fu_modal_attachment_wrench_kernel planar_modal_attachment_wrench;
 
-typedef void fu_modal_attachment_mode_force_kernel(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *f, const fu_real *m, fu_real *K, fu_real *K_frame);
-/* derivatives of P' f + T' m: the mode's row by the frame, and the reverse: b [m, 1]; u [m]; theta [rad]; phi [1];
- * psi [rad/m]; f [N]; m [N m] -> K [N/m, N]; K_frame [N/m, N] */
-/* b 7, u 3, theta 3, phi 3, psi 3, f 3, m 3, K 6, K_frame 6 */
-fu_modal_attachment_mode_force_kernel modal_attachment_mode_force;
-/* b 4, u 2, theta 1, phi 2, psi 1, f 2, m 1, K 3, K_frame 3 */
-fu_modal_attachment_mode_force_kernel planar_modal_attachment_mode_force;
+typedef void fu_modal_attachment_mode_wrench_kernel(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *f, const fu_real *m, const fu_real *w, const fu_real *u1, const fu_real *theta1, fu_real *K, fu_real *K_frame, fu_real *v_eta, fu_real *omega_eta);
+/* derivatives of P' f + T' m: the mode's row by the frame, and the reverse; of velocities by the mode: b [m, 1]; u
+ * [m]; theta [rad]; phi [1]; psi [rad/m]; f [N]; m [N m]; w [m/s, rad/s]; u1 [m/s]; theta1 [rad/s] -> K [N/m, N];
+ * K_frame [N/m, N]; v_eta [1/s]; omega_eta [1/(m s)] */
+/* b 7, u 3, theta 3, phi 3, psi 3, f 3, m 3, w 6, u1 3, theta1 3, K 6, K_frame 6, v_eta 3, omega_eta 3 */
+fu_modal_attachment_mode_wrench_kernel modal_attachment_mode_wrench;
+/* b 4, u 2, theta 1, phi 2, psi 1, f 2, m 1, w 3, u1 2, theta1 1, K 3, K_frame 3, v_eta 2, omega_eta 1 */
+fu_modal_attachment_mode_wrench_kernel planar_modal_attachment_mode_wrench;
 
-typedef void fu_modal_attachment_pair_force_kernel(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K);
+typedef void fu_modal_attachment_pair_wrench_kernel(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K);
 /* derivative of mode k's row of P' f + T' m by eta of mode l: b [m, 1]; u [m]; theta [rad]; phi [1]; psi [rad/m];
  * phi_l [1]; psi_l [rad/m]; f [N]; m [N m] -> K [N/m] */
 /* b 7, u 3, theta 3, phi 3, psi 3, phi_l 3, psi_l 3, f 3, m 3, K 1 */
-fu_modal_attachment_pair_force_kernel modal_attachment_pair_force;
+fu_modal_attachment_pair_wrench_kernel modal_attachment_pair_wrench;
 /* b 4, u 2, theta 1, phi 2, psi 1, phi_l 2, psi_l 1, f 2, m 1, K 1 */
-fu_modal_attachment_pair_force_kernel planar_modal_attachment_pair_force;
-
-typedef void fu_modal_attachment_follower_kernel(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *c, fu_real *g, fu_real *K);
-/* the frame's rows of a force that turns with the section: b [m, 1]; u [m]; theta [rad]; c [N] -> g [N, N m]; K [N,
- * N m] */
-/* b 7, u 3, theta 3, c 3, g 6, K 6x6 */
-fu_modal_attachment_follower_kernel modal_attachment_follower;
-/* b 4, u 2, theta 1, c 2, g 3, K 3x3 */
-fu_modal_attachment_follower_kernel planar_modal_attachment_follower;
-
-typedef void fu_modal_attachment_mode_follower_kernel(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *c, fu_real *g, fu_real *K_frame);
-/* a mode's row of a force that turns with the section; K by eta: b [m, 1]; u [m]; theta [rad]; phi [1]; psi [rad/m];
- * c [N] -> g [N]; K_frame [N/m, N] */
-/* b 7, u 3, theta 3, phi 3, psi 3, c 3, g 1, K_frame 6 */
-fu_modal_attachment_mode_follower_kernel modal_attachment_mode_follower;
-/* b 4, u 2, theta 1, phi 2, psi 1, c 2, g 1, K_frame 3 */
-fu_modal_attachment_mode_follower_kernel planar_modal_attachment_mode_follower;
-
-typedef void fu_modal_attachment_pair_follower_kernel(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *c, fu_real *K);
-/* derivative of mode k's row of a follower force by eta of mode l: b [m, 1]; u [m]; theta [rad]; phi [1]; psi
- * [rad/m]; phi_l [1]; psi_l [rad/m]; c [N] -> K [N/m] */
-/* b 7, u 3, theta 3, phi 3, psi 3, phi_l 3, psi_l 3, c 3, K 1 */
-fu_modal_attachment_pair_follower_kernel modal_attachment_pair_follower;
-/* b 4, u 2, theta 1, phi 2, psi 1, phi_l 2, psi_l 1, c 2, K 1 */
-fu_modal_attachment_pair_follower_kernel planar_modal_attachment_pair_follower;
+fu_modal_attachment_pair_wrench_kernel planar_modal_attachment_pair_wrench;
 
 typedef void fu_slide_constraint_kernel(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
 /* C, C_s and the Newton step for s: l [m]; x [m]; e [m, 1]; b [m, 1]; u [m]; director [1] -> C [m]; C_s [1]; s_step
@@ -1216,6 +1172,18 @@ fu_surface_sliding_kernel surface_sliding;
 /* n 2, H 2x2, w 2, press 3, x 2, f 2, f_y 2x2, f_w 2x2, f_x 2x2 */
 fu_surface_sliding_kernel planar_surface_sliding;
 
+typedef void fu_surface_reaction_kernel(const fu_real *x, const fu_real *w, const fu_real *omega_o, const fu_real *f, const fu_real *f_y, const fu_real *f_w, const fu_real *f_x, const fu_real *H, fu_real radius, const fu_real *arm, const fu_real *turn, const fu_real *mean_arm, fu_real share, const fu_real *dr, const fu_real *dv, const fu_real *dtheta, const fu_real *dtheta_o, const fu_real *domega_o, fu_real *f_t, fu_real *m_t, fu_real *m_o_t);
+/* change of contact along a motion of the point and of the surface: x [m]; w [m/s]; omega_o [rad/s]; f [N (a
+ * length)]; f_y [N/m (a length)]; f_w [N s/m (a length)]; f_x [N/m (a length)]; H [1/m]; radius [m]; arm [m]; turn
+ * [rad]; mean_arm [m]; share [1]; dr [m]; dv [m/s]; dtheta [rad]; dtheta_o [rad]; domega_o [rad/s] -> f_t [N (a
+ * length)]; m_t [N m (a length)]; m_o_t [N m (a length)] */
+/* x 3, w 3, omega_o 3, f 3, f_y 3x3, f_w 3x3, f_x 3x3, H 3x3, arm 3, turn 3, mean_arm 3, dr 3, dv 3, dtheta 3,
+ * dtheta_o 3, domega_o 3, f_t 3, m_t 3, m_o_t 3 */
+fu_surface_reaction_kernel surface_reaction;
+/* x 2, w 2, omega_o 1, f 2, f_y 2x2, f_w 2x2, f_x 2x2, H 2x2, arm 2, turn 1, mean_arm 2, dr 2, dv 2, dtheta 1,
+ * dtheta_o 1, domega_o 1, f_t 2, m_t 1, m_o_t 1 */
+fu_surface_reaction_kernel planar_surface_reaction;
+
 typedef void fu_surface_motion_kernel(const fu_real *n, const fu_real *H, const fu_real *r, const fu_real *v, const fu_real *a, const fu_real *r_o, const fu_real *v_o, const fu_real *a_o, const fu_real *omega_o, const fu_real *alpha_o, fu_real *g_t, fu_real *g_tt);
 /* rates of the distance of a moving point from a moving surface: n [1]; H [1/m]; r [m]; v [m/s]; a [m/s^2]; r_o [m];
  * v_o [m/s]; a_o [m/s^2]; omega_o [rad/s]; alpha_o [rad/s^2] -> g_t [m/s]; g_tt [m/s^2] */
@@ -1502,15 +1470,12 @@ typedef struct {
     int velocity;
     fu_body_place_kernel *place;
     fu_body_point_kernel *point;
-    fu_body_point_force_kernel *point_force;
     fu_body_frame_kernel *frame;
+    fu_body_wrench_kernel *wrench;
     fu_body_inertia_force_kernel *inertia_force;
     fu_body_inertia_tangent_kernel *inertia_tangent;
     fu_body_kinetic_energy_kernel *kinetic_energy;
     fu_body_discrete_point_kernel *discrete_point;
-    fu_body_force_kernel *force;
-    fu_body_follower_force_kernel *follower_force;
-    fu_body_moment_kernel *moment;
     fu_body_move_kernel *move;
     fu_body_move_tangent_kernel *move_tangent;
     fu_body_cayley_move_kernel *cayley_move;
@@ -1536,12 +1501,9 @@ typedef struct {
     fu_modal_potential_energy_kernel *potential_energy;
     fu_modal_attachment_kernel *attachment;
     fu_modal_attachment_mode_kernel *attachment_mode;
-    fu_modal_attachment_force_kernel *attachment_force;
-    fu_modal_attachment_mode_force_kernel *attachment_mode_force;
-    fu_modal_attachment_pair_force_kernel *attachment_pair_force;
-    fu_modal_attachment_follower_kernel *attachment_follower;
-    fu_modal_attachment_mode_follower_kernel *attachment_mode_follower;
-    fu_modal_attachment_pair_follower_kernel *attachment_pair_follower;
+    fu_modal_attachment_wrench_kernel *attachment_wrench;
+    fu_modal_attachment_mode_wrench_kernel *attachment_mode_wrench;
+    fu_modal_attachment_pair_wrench_kernel *attachment_pair_wrench;
 } fu_modal_kernels;
 
 /* What the engine needs of a slide. */
@@ -1630,6 +1592,7 @@ typedef struct {
     fu_surface_pressing_kernel *pressing;
     fu_surface_sticking_kernel *sticking;
     fu_surface_sliding_kernel *sliding;
+    fu_surface_reaction_kernel *reaction;
     fu_surface_motion_kernel *motion;
     fu_surface_slip_kernel *slip;
 } fu_surface_kernels;

@@ -29,7 +29,7 @@
         d_th1_a0_y = A1_z*(a[0] - g[0]) + A2_z*(a[1] - g[1]) + A3_z*(a[2] - g[2]), \
         d_th1_a0_z = -A1_y*(a[0] - g[0]) - A2_y*(a[1] - g[1]) - A3_y*(a[2] - g[2]);
 
-/* part of axes: of modal_attachment and 9 more */
+/* part of axes: of modal_attachment and 7 more */
 #define MODAL_PART_OF_AXES \
     const fu_real \
         A1_x = -2.0*b[5]*b[5] - 2.0*b[6]*b[6] + 1.0, \
@@ -59,21 +59,14 @@
         W3_y = a[3] + w[4]*w[5], \
         W3_z = -w[3]*w[3] - w[4]*w[4];
 
-/* axes: of modal_mass_matrix and 3 more */
+/* axes: of modal_mass_matrix and 2 more */
 #define MODAL_AXES \
     MODAL_PART_OF_AXES
 
-/* axes: of modal_attachment_mode and 4 more */
+/* axes: of modal_attachment_mode and 3 more */
 #define MODAL_AXES_2 \
     MODAL_PART_OF_AXES \
     const fu_real inv_theta = 1.0/(0.25*theta[0]*theta[0] + 0.25*theta[1]*theta[1] + 0.25*theta[2]*theta[2] + 1.0);
-
-/* force in body axes: of modal_attachment_follower and 1 more */
-#define MODAL_FORCE_IN_BODY_AXES \
-    const fu_real \
-        F_x = c[0]*(inv_theta*(-0.5*theta[1]*theta[1] - 0.5*theta[2]*theta[2]) + 1.0) + c[1]*inv_theta*(0.5*theta[0]*theta[1] - theta[2]) + c[2]*inv_theta*(0.5*theta[0]*theta[2] + theta[1]), \
-        F_y = c[0]*inv_theta*(0.5*theta[0]*theta[1] + theta[2]) + c[1]*(inv_theta*(-0.5*theta[0]*theta[0] - 0.5*theta[2]*theta[2]) + 1.0) + c[2]*inv_theta*(-theta[0] + 0.5*theta[1]*theta[2]), \
-        F_z = c[0]*inv_theta*(0.5*theta[0]*theta[2] - theta[1]) + c[1]*inv_theta*(theta[0] + 0.5*theta[1]*theta[2]) + c[2]*(inv_theta*(-0.5*theta[0]*theta[0] - 0.5*theta[1]*theta[1]) + 1.0);
 
 /* inertia and weight of a modal body: force, moment about its origin; 132 add, 180 mul */
 void modal_inertia_force(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *S2, const fu_real *X, const fu_real *X1, const fu_real *X2, fu_real *f)
@@ -453,11 +446,30 @@ void modal_attachment_mode(const fu_real *b, const fu_real *u, const fu_real *th
     T[2] = A3_x*inv_theta*(psi[0] - 0.5*psi[1]*theta[2] + 0.5*psi[2]*theta[1]) + A3_y*inv_theta*(0.5*psi[0]*theta[2] + psi[1] - 0.5*psi[2]*theta[0]) + A3_z*inv_theta*(-0.5*psi[0]*theta[1] + 0.5*psi[1]*theta[0] + psi[2]);
 }
 
-/* derivatives of the frame's rows of P' f + T' m by the frame; 57 add, 126 mul */
-void modal_attachment_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *f, const fu_real *m, fu_real *K)
+/* derivatives by the frame of its rows of P' f + T' m, and of velocities; 168 add, 294 mul, 1 div */
+void modal_attachment_wrench(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *f, const fu_real *m, const fu_real *w, const fu_real *u1, const fu_real *theta1, fu_real *K, fu_real *v_q, fu_real *omega_q)
 {
-    (void)theta;
-    MODAL_AXES
+    MODAL_AXES_2
+    /* derivatives */
+    const fu_real
+        d_th1_dt_arm_x = -A1_y*(u1[2] - u[0]*w[4] + u[1]*w[3]) + A1_z*(u1[1] + u[0]*w[5] - u[2]*w[3]),
+        d_th1_dt_arm_y = -A2_y*(u1[2] - u[0]*w[4] + u[1]*w[3]) + A2_z*(u1[1] + u[0]*w[5] - u[2]*w[3]),
+        d_th1_dt_arm_z = -A3_y*(u1[2] - u[0]*w[4] + u[1]*w[3]) + A3_z*(u1[1] + u[0]*w[5] - u[2]*w[3]),
+        d_th2_dt_arm_x = A1_x*(u1[2] - u[0]*w[4] + u[1]*w[3]) - A1_z*(u1[0] - u[1]*w[5] + u[2]*w[4]),
+        d_th2_dt_arm_y = A2_x*(u1[2] - u[0]*w[4] + u[1]*w[3]) - A2_z*(u1[0] - u[1]*w[5] + u[2]*w[4]),
+        d_th2_dt_arm_z = A3_x*(u1[2] - u[0]*w[4] + u[1]*w[3]) - A3_z*(u1[0] - u[1]*w[5] + u[2]*w[4]),
+        d_th3_dt_arm_x = -A1_x*(u1[1] + u[0]*w[5] - u[2]*w[3]) + A1_y*(u1[0] - u[1]*w[5] + u[2]*w[4]),
+        d_th3_dt_arm_y = -A2_x*(u1[1] + u[0]*w[5] - u[2]*w[3]) + A2_y*(u1[0] - u[1]*w[5] + u[2]*w[4]),
+        d_th3_dt_arm_z = -A3_x*(u1[1] + u[0]*w[5] - u[2]*w[3]) + A3_y*(u1[0] - u[1]*w[5] + u[2]*w[4]),
+        d_th1_spin_x = -A1_y*(inv_theta*(-0.5*theta1[0]*theta[1] + 0.5*theta1[1]*theta[0] + theta1[2]) + w[5]) + A1_z*(inv_theta*(0.5*theta1[0]*theta[2] + theta1[1] - 0.5*theta1[2]*theta[0]) + w[4]),
+        d_th1_spin_y = -A2_y*(inv_theta*(-0.5*theta1[0]*theta[1] + 0.5*theta1[1]*theta[0] + theta1[2]) + w[5]) + A2_z*(inv_theta*(0.5*theta1[0]*theta[2] + theta1[1] - 0.5*theta1[2]*theta[0]) + w[4]),
+        d_th1_spin_z = -A3_y*(inv_theta*(-0.5*theta1[0]*theta[1] + 0.5*theta1[1]*theta[0] + theta1[2]) + w[5]) + A3_z*(inv_theta*(0.5*theta1[0]*theta[2] + theta1[1] - 0.5*theta1[2]*theta[0]) + w[4]),
+        d_th2_spin_x = A1_x*(inv_theta*(-0.5*theta1[0]*theta[1] + 0.5*theta1[1]*theta[0] + theta1[2]) + w[5]) - A1_z*(inv_theta*(theta1[0] - 0.5*theta1[1]*theta[2] + 0.5*theta1[2]*theta[1]) + w[3]),
+        d_th2_spin_y = A2_x*(inv_theta*(-0.5*theta1[0]*theta[1] + 0.5*theta1[1]*theta[0] + theta1[2]) + w[5]) - A2_z*(inv_theta*(theta1[0] - 0.5*theta1[1]*theta[2] + 0.5*theta1[2]*theta[1]) + w[3]),
+        d_th2_spin_z = A3_x*(inv_theta*(-0.5*theta1[0]*theta[1] + 0.5*theta1[1]*theta[0] + theta1[2]) + w[5]) - A3_z*(inv_theta*(theta1[0] - 0.5*theta1[1]*theta[2] + 0.5*theta1[2]*theta[1]) + w[3]),
+        d_th3_spin_x = -A1_x*(inv_theta*(0.5*theta1[0]*theta[2] + theta1[1] - 0.5*theta1[2]*theta[0]) + w[4]) + A1_y*(inv_theta*(theta1[0] - 0.5*theta1[1]*theta[2] + 0.5*theta1[2]*theta[1]) + w[3]),
+        d_th3_spin_y = -A2_x*(inv_theta*(0.5*theta1[0]*theta[2] + theta1[1] - 0.5*theta1[2]*theta[0]) + w[4]) + A2_y*(inv_theta*(theta1[0] - 0.5*theta1[1]*theta[2] + 0.5*theta1[2]*theta[1]) + w[3]),
+        d_th3_spin_z = -A3_x*(inv_theta*(0.5*theta1[0]*theta[2] + theta1[1] - 0.5*theta1[2]*theta[0]) + w[4]) + A3_y*(inv_theta*(theta1[0] - 0.5*theta1[1]*theta[2] + 0.5*theta1[2]*theta[1]) + w[3]);
     /* outputs */
     FU_PAIRS(i, j, 3, K[6*i + j] = 0.0;)
     FU_PAIRS(i, j, 3, K[6*i + j + 3] = 0.0;)
@@ -471,13 +483,43 @@ void modal_attachment_force(const fu_real *b, const fu_real *u, const fu_real *t
     K[33] = -A1_y*m[0] + A1_z*f[0]*u[0] - A2_y*m[1] + A2_z*f[1]*u[0] - A3_y*m[2] + A3_z*f[2]*u[0];
     K[34] = A1_x*m[0] + A1_z*f[0]*u[1] + A2_x*m[1] + A2_z*f[1]*u[1] + A3_x*m[2] + A3_z*f[2]*u[1];
     K[35] = -A1_x*f[0]*u[0] - A1_y*f[0]*u[1] - A2_x*f[1]*u[0] - A2_y*f[1]*u[1] - A3_x*f[2]*u[0] - A3_y*f[2]*u[1];
+    FU_PAIRS(i, j, 3, v_q[6*i + j] = 0.0;)
+    v_q[3] = d_th1_dt_arm_x;
+    v_q[4] = d_th2_dt_arm_x;
+    v_q[5] = d_th3_dt_arm_x;
+    v_q[9] = d_th1_dt_arm_y;
+    v_q[10] = d_th2_dt_arm_y;
+    v_q[11] = d_th3_dt_arm_y;
+    v_q[15] = d_th1_dt_arm_z;
+    v_q[16] = d_th2_dt_arm_z;
+    v_q[17] = d_th3_dt_arm_z;
+    FU_PAIRS(i, j, 3, omega_q[6*i + j] = 0.0;)
+    omega_q[3] = d_th1_spin_x;
+    omega_q[4] = d_th2_spin_x;
+    omega_q[5] = d_th3_spin_x;
+    omega_q[9] = d_th1_spin_y;
+    omega_q[10] = d_th2_spin_y;
+    omega_q[11] = d_th3_spin_y;
+    omega_q[15] = d_th1_spin_z;
+    omega_q[16] = d_th2_spin_z;
+    omega_q[17] = d_th3_spin_z;
 }
 
-/* derivatives of P' f + T' m: the mode's row by the frame, and the reverse; 99 add, 210 mul, 1 div */
-void modal_attachment_mode_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *f, const fu_real *m, fu_real *K, fu_real *K_frame)
+/* derivatives of P' f + T' m: the mode's row by the frame, and the reverse; of velocities by the mode; 158 add, 356 mul, 1 div */
+void modal_attachment_mode_wrench(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *f, const fu_real *m, const fu_real *w, const fu_real *u1, const fu_real *theta1, fu_real *K, fu_real *K_frame, fu_real *v_eta, fu_real *omega_eta)
 {
     (void)u;
+    (void)u1;
     MODAL_AXES_2
+    /* derivatives */
+    const fu_real
+        d_eta_dt_arm_x = phi[0]*(A1_y*w[5] - A1_z*w[4]) + phi[1]*(-A1_x*w[5] + A1_z*w[3]) + phi[2]*(A1_x*w[4] - A1_y*w[3]),
+        d_eta_dt_arm_y = phi[0]*(A2_y*w[5] - A2_z*w[4]) + phi[1]*(-A2_x*w[5] + A2_z*w[3]) + phi[2]*(A2_x*w[4] - A2_y*w[3]),
+        d_eta_dt_arm_z = phi[0]*(A3_y*w[5] - A3_z*w[4]) + phi[1]*(-A3_x*w[5] + A3_z*w[3]) + phi[2]*(A3_x*w[4] - A3_y*w[3]),
+        d_eta_inv_theta = -(inv_theta*inv_theta*(0.5*psi[0]*theta[0] + 0.5*psi[1]*theta[1] + 0.5*psi[2]*theta[2])),
+        d_eta_spin_x = d_eta_inv_theta*(A1_x*(theta1[0] - 0.5*theta1[1]*theta[2] + 0.5*theta1[2]*theta[1]) + A1_y*(0.5*theta1[0]*theta[2] + theta1[1] - 0.5*theta1[2]*theta[0]) + A1_z*(-0.5*theta1[0]*theta[1] + 0.5*theta1[1]*theta[0] + theta1[2])) + psi[0]*(-0.5*A1_y*inv_theta*theta1[2] + 0.5*A1_z*inv_theta*theta1[1]) + psi[1]*(0.5*A1_x*inv_theta*theta1[2] - 0.5*A1_z*inv_theta*theta1[0]) + psi[2]*(-0.5*A1_x*inv_theta*theta1[1] + 0.5*A1_y*inv_theta*theta1[0]),
+        d_eta_spin_y = d_eta_inv_theta*(A2_x*(theta1[0] - 0.5*theta1[1]*theta[2] + 0.5*theta1[2]*theta[1]) + A2_y*(0.5*theta1[0]*theta[2] + theta1[1] - 0.5*theta1[2]*theta[0]) + A2_z*(-0.5*theta1[0]*theta[1] + 0.5*theta1[1]*theta[0] + theta1[2])) + psi[0]*(-0.5*A2_y*inv_theta*theta1[2] + 0.5*A2_z*inv_theta*theta1[1]) + psi[1]*(0.5*A2_x*inv_theta*theta1[2] - 0.5*A2_z*inv_theta*theta1[0]) + psi[2]*(-0.5*A2_x*inv_theta*theta1[1] + 0.5*A2_y*inv_theta*theta1[0]),
+        d_eta_spin_z = d_eta_inv_theta*(A3_x*(theta1[0] - 0.5*theta1[1]*theta[2] + 0.5*theta1[2]*theta[1]) + A3_y*(0.5*theta1[0]*theta[2] + theta1[1] - 0.5*theta1[2]*theta[0]) + A3_z*(-0.5*theta1[0]*theta[1] + 0.5*theta1[1]*theta[0] + theta1[2])) + psi[0]*(-0.5*A3_y*inv_theta*theta1[2] + 0.5*A3_z*inv_theta*theta1[1]) + psi[1]*(0.5*A3_x*inv_theta*theta1[2] - 0.5*A3_z*inv_theta*theta1[0]) + psi[2]*(-0.5*A3_x*inv_theta*theta1[1] + 0.5*A3_y*inv_theta*theta1[0]);
     /* outputs */
     K[0] = 0.0;
     K[1] = 0.0;
@@ -491,10 +533,16 @@ void modal_attachment_mode_force(const fu_real *b, const fu_real *u, const fu_re
     K_frame[3] = phi[1]*(A1_z*f[0] + A2_z*f[1] + A3_z*f[2]) + phi[2]*(-A1_y*f[0] - A2_y*f[1] - A3_y*f[2]);
     K_frame[4] = phi[0]*(-A1_z*f[0] - A2_z*f[1] - A3_z*f[2]) + phi[2]*(A1_x*f[0] + A2_x*f[1] + A3_x*f[2]);
     K_frame[5] = phi[0]*(A1_y*f[0] + A2_y*f[1] + A3_y*f[2]) + phi[1]*(-A1_x*f[0] - A2_x*f[1] - A3_x*f[2]);
+    v_eta[0] = d_eta_dt_arm_x;
+    v_eta[1] = d_eta_dt_arm_y;
+    v_eta[2] = d_eta_dt_arm_z;
+    omega_eta[0] = d_eta_spin_x;
+    omega_eta[1] = d_eta_spin_y;
+    omega_eta[2] = d_eta_spin_z;
 }
 
 /* derivative of mode k's row of P' f + T' m by eta of mode l; 49 add, 114 mul, 1 div */
-void modal_attachment_pair_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K)
+void modal_attachment_pair_wrench(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K)
 {
     (void)u;
     (void)phi;
@@ -505,70 +553,4 @@ void modal_attachment_pair_force(const fu_real *b, const fu_real *u, const fu_re
     const fu_real d_eta_inv_theta = -(inv_theta*inv_theta*(0.5*psi_l[0]*theta[0] + 0.5*psi_l[1]*theta[1] + 0.5*psi_l[2]*theta[2]));
     /* outputs */
     K[0] = d_eta_inv_theta*((psi[0] - 0.5*psi[1]*theta[2] + 0.5*psi[2]*theta[1])*(A1_x*m[0] + A2_x*m[1] + A3_x*m[2]) + (A1_y*m[0] + A2_y*m[1] + A3_y*m[2])*(0.5*psi[0]*theta[2] + psi[1] - 0.5*psi[2]*theta[0]) + (A1_z*m[0] + A2_z*m[1] + A3_z*m[2])*(-0.5*psi[0]*theta[1] + 0.5*psi[1]*theta[0] + psi[2])) + psi_l[0]*(0.5*inv_theta*psi[1]*(A1_z*m[0] + A2_z*m[1] + A3_z*m[2]) - 0.5*inv_theta*psi[2]*(A1_y*m[0] + A2_y*m[1] + A3_y*m[2])) + psi_l[1]*(-0.5*inv_theta*psi[0]*(A1_z*m[0] + A2_z*m[1] + A3_z*m[2]) + 0.5*inv_theta*psi[2]*(A1_x*m[0] + A2_x*m[1] + A3_x*m[2])) + psi_l[2]*(0.5*inv_theta*psi[0]*(A1_y*m[0] + A2_y*m[1] + A3_y*m[2]) - 0.5*inv_theta*psi[1]*(A1_x*m[0] + A2_x*m[1] + A3_x*m[2]));
-}
-
-/* the frame's rows of a force that turns with the section; 51 add, 117 mul, 1 div */
-void modal_attachment_follower(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *c, fu_real *g, fu_real *K)
-{
-    MODAL_AXES_2
-    MODAL_FORCE_IN_BODY_AXES
-    /* outputs */
-    g[0] = A1_x*F_x + A1_y*F_y + A1_z*F_z;
-    g[1] = A2_x*F_x + A2_y*F_y + A2_z*F_z;
-    g[2] = A3_x*F_x + A3_y*F_y + A3_z*F_z;
-    g[3] = -F_y*u[2] + F_z*u[1];
-    g[4] = F_x*u[2] - F_z*u[0];
-    g[5] = -F_x*u[1] + F_y*u[0];
-    FU_PAIRS(i, j, 3, K[6*i + j] = 0.0;)
-    K[3] = -A1_y*F_z + A1_z*F_y;
-    K[4] = A1_x*F_z - A1_z*F_x;
-    K[5] = -A1_x*F_y + A1_y*F_x;
-    K[9] = -A2_y*F_z + A2_z*F_y;
-    K[10] = A2_x*F_z - A2_z*F_x;
-    K[11] = -A2_x*F_y + A2_y*F_x;
-    K[15] = -A3_y*F_z + A3_z*F_y;
-    K[16] = A3_x*F_z - A3_z*F_x;
-    K[17] = -A3_x*F_y + A3_y*F_x;
-    FU_PAIRS(i, j, 3, K[6*i + j + 18] = 0.0;)
-    FU_PAIRS(i, j, 3, K[6*i + j + 21] = 0.0;)
-}
-
-/* a mode's row of a force that turns with the section; K by eta; 91 add, 215 mul, 1 div */
-void modal_attachment_mode_follower(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *c, fu_real *g, fu_real *K_frame)
-{
-    MODAL_AXES_2
-    MODAL_FORCE_IN_BODY_AXES
-    /* derivatives */
-    const fu_real
-        d_eta_inv_theta = -(inv_theta*inv_theta*(0.5*psi[0]*theta[0] + 0.5*psi[1]*theta[1] + 0.5*psi[2]*theta[2])),
-        d_eta_F_x = d_eta_inv_theta*(c[0]*(-0.5*theta[1]*theta[1] - 0.5*theta[2]*theta[2]) + c[1]*(0.5*theta[0]*theta[1] - theta[2]) + c[2]*(0.5*theta[0]*theta[2] + theta[1])) + psi[0]*(0.5*c[1]*inv_theta*theta[1] + 0.5*c[2]*inv_theta*theta[2]) + psi[1]*(-c[0]*inv_theta*theta[1] + 0.5*c[1]*inv_theta*theta[0] + c[2]*inv_theta) + psi[2]*(-c[0]*inv_theta*theta[2] - c[1]*inv_theta + 0.5*c[2]*inv_theta*theta[0]),
-        d_eta_F_y = d_eta_inv_theta*(c[0]*(0.5*theta[0]*theta[1] + theta[2]) + c[1]*(-0.5*theta[0]*theta[0] - 0.5*theta[2]*theta[2]) + c[2]*(-theta[0] + 0.5*theta[1]*theta[2])) + psi[0]*(0.5*c[0]*inv_theta*theta[1] - c[1]*inv_theta*theta[0] - c[2]*inv_theta) + psi[1]*(0.5*c[0]*inv_theta*theta[0] + 0.5*c[2]*inv_theta*theta[2]) + psi[2]*(c[0]*inv_theta - c[1]*inv_theta*theta[2] + 0.5*c[2]*inv_theta*theta[1]),
-        d_eta_F_z = d_eta_inv_theta*(c[0]*(0.5*theta[0]*theta[2] - theta[1]) + c[1]*(theta[0] + 0.5*theta[1]*theta[2]) + c[2]*(-0.5*theta[0]*theta[0] - 0.5*theta[1]*theta[1])) + psi[0]*(0.5*c[0]*inv_theta*theta[2] + c[1]*inv_theta - c[2]*inv_theta*theta[0]) + psi[1]*(-c[0]*inv_theta + 0.5*c[1]*inv_theta*theta[2] - c[2]*inv_theta*theta[1]) + psi[2]*(0.5*c[0]*inv_theta*theta[0] + 0.5*c[1]*inv_theta*theta[1]);
-    /* outputs */
-    g[0] = F_x*phi[0] + F_y*phi[1] + F_z*phi[2];
-    K_frame[0] = A1_x*d_eta_F_x + A1_y*d_eta_F_y + A1_z*d_eta_F_z;
-    K_frame[1] = A2_x*d_eta_F_x + A2_y*d_eta_F_y + A2_z*d_eta_F_z;
-    K_frame[2] = A3_x*d_eta_F_x + A3_y*d_eta_F_y + A3_z*d_eta_F_z;
-    K_frame[3] = -F_y*phi[2] + F_z*phi[1] - d_eta_F_y*u[2] + d_eta_F_z*u[1];
-    K_frame[4] = F_x*phi[2] - F_z*phi[0] + d_eta_F_x*u[2] - d_eta_F_z*u[0];
-    K_frame[5] = -F_x*phi[1] + F_y*phi[0] - d_eta_F_x*u[1] + d_eta_F_y*u[0];
-}
-
-/* derivative of mode k's row of a follower force by eta of mode l; 46 add, 116 mul, 1 div */
-void modal_attachment_pair_follower(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *c, fu_real *K)
-{
-    (void)b;
-    (void)u;
-    (void)psi;
-    (void)phi_l;
-    /* axes */
-    const fu_real inv_theta = 1.0/(0.25*theta[0]*theta[0] + 0.25*theta[1]*theta[1] + 0.25*theta[2]*theta[2] + 1.0);
-    /* derivative */
-    const fu_real
-        d_eta_inv_theta = -(inv_theta*inv_theta*(0.5*psi_l[0]*theta[0] + 0.5*psi_l[1]*theta[1] + 0.5*psi_l[2]*theta[2])),
-        d_eta_F_x = d_eta_inv_theta*(c[0]*(-0.5*theta[1]*theta[1] - 0.5*theta[2]*theta[2]) + c[1]*(0.5*theta[0]*theta[1] - theta[2]) + c[2]*(0.5*theta[0]*theta[2] + theta[1])) + psi_l[0]*(0.5*c[1]*inv_theta*theta[1] + 0.5*c[2]*inv_theta*theta[2]) + psi_l[1]*(-c[0]*inv_theta*theta[1] + 0.5*c[1]*inv_theta*theta[0] + c[2]*inv_theta) + psi_l[2]*(-c[0]*inv_theta*theta[2] - c[1]*inv_theta + 0.5*c[2]*inv_theta*theta[0]),
-        d_eta_F_y = d_eta_inv_theta*(c[0]*(0.5*theta[0]*theta[1] + theta[2]) + c[1]*(-0.5*theta[0]*theta[0] - 0.5*theta[2]*theta[2]) + c[2]*(-theta[0] + 0.5*theta[1]*theta[2])) + psi_l[0]*(0.5*c[0]*inv_theta*theta[1] - c[1]*inv_theta*theta[0] - c[2]*inv_theta) + psi_l[1]*(0.5*c[0]*inv_theta*theta[0] + 0.5*c[2]*inv_theta*theta[2]) + psi_l[2]*(c[0]*inv_theta - c[1]*inv_theta*theta[2] + 0.5*c[2]*inv_theta*theta[1]),
-        d_eta_F_z = d_eta_inv_theta*(c[0]*(0.5*theta[0]*theta[2] - theta[1]) + c[1]*(theta[0] + 0.5*theta[1]*theta[2]) + c[2]*(-0.5*theta[0]*theta[0] - 0.5*theta[1]*theta[1])) + psi_l[0]*(0.5*c[0]*inv_theta*theta[2] + c[1]*inv_theta - c[2]*inv_theta*theta[0]) + psi_l[1]*(-c[0]*inv_theta + 0.5*c[1]*inv_theta*theta[2] - c[2]*inv_theta*theta[1]) + psi_l[2]*(0.5*c[0]*inv_theta*theta[0] + 0.5*c[1]*inv_theta*theta[1]);
-    /* outputs */
-    K[0] = d_eta_F_x*phi[0] + d_eta_F_y*phi[1] + d_eta_F_z*phi[2];
 }

@@ -216,24 +216,45 @@ void planar_modal_attachment_mode(const fu_real *b, const fu_real *u, const fu_r
     T[0] = inv_theta*psi[0];
 }
 
-/* derivatives of the frame's rows of P' f + T' m by the frame; 3 add, 6 mul */
-void planar_modal_attachment_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *f, const fu_real *m, fu_real *K)
+/* derivatives by the frame of its rows of P' f + T' m, and of velocities; 9 add, 14 mul */
+void planar_modal_attachment_wrench(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *f, const fu_real *m, const fu_real *w, const fu_real *u1, const fu_real *theta1, fu_real *K, fu_real *v_q, fu_real *omega_q)
 {
     (void)theta;
     (void)m;
+    (void)theta1;
+    /* derivatives */
+    const fu_real
+        d_th_dt_arm_x = b[2]*(-u1[1] - u[0]*w[2]) - b[3]*(u1[0] - u[1]*w[2]),
+        d_th_dt_arm_y = b[2]*(u1[0] - u[1]*w[2]) - b[3]*(u1[1] + u[0]*w[2]);
     /* outputs */
     FU_EACH(g, 8,
         K[g] = 0.0;)
     K[8] = b[2]*(-f[0]*u[0] - f[1]*u[1]) - b[3]*(-f[0]*u[1] + f[1]*u[0]);
+    v_q[0] = 0.0;
+    v_q[1] = 0.0;
+    v_q[2] = d_th_dt_arm_x;
+    v_q[3] = 0.0;
+    v_q[4] = 0.0;
+    v_q[5] = d_th_dt_arm_y;
+    omega_q[0] = 0.0;
+    omega_q[1] = 0.0;
+    omega_q[2] = 0.0;
 }
 
-/* derivatives of P' f + T' m: the mode's row by the frame, and the reverse; 6 add, 12 mul */
-void planar_modal_attachment_mode_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *f, const fu_real *m, fu_real *K, fu_real *K_frame)
+/* derivatives of P' f + T' m: the mode's row by the frame, and the reverse; of velocities by the mode; 9 add, 27 mul, 1 div */
+void planar_modal_attachment_mode_wrench(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *f, const fu_real *m, const fu_real *w, const fu_real *u1, const fu_real *theta1, fu_real *K, fu_real *K_frame, fu_real *v_eta, fu_real *omega_eta)
 {
     (void)u;
-    (void)theta;
-    (void)psi;
     (void)m;
+    (void)u1;
+    /* axes */
+    const fu_real inv_theta = 1.0/(0.25*theta[0]*theta[0] + 1.0);
+    /* derivatives */
+    const fu_real
+        d_eta_dt_arm_x = -b[2]*phi[1]*w[2] - b[3]*phi[0]*w[2],
+        d_eta_dt_arm_y = b[2]*phi[0]*w[2] - b[3]*phi[1]*w[2],
+        d_eta_inv_theta = -(0.5*inv_theta*inv_theta*psi[0]*theta[0]),
+        d_eta_spin_x = d_eta_inv_theta*theta1[0];
     /* outputs */
     K[0] = 0.0;
     K[1] = 0.0;
@@ -241,10 +262,13 @@ void planar_modal_attachment_mode_force(const fu_real *b, const fu_real *u, cons
     K_frame[0] = 0.0;
     K_frame[1] = 0.0;
     K_frame[2] = phi[0]*(b[2]*f[1] - b[3]*f[0]) + phi[1]*(-b[2]*f[0] - b[3]*f[1]);
+    v_eta[0] = d_eta_dt_arm_x;
+    v_eta[1] = d_eta_dt_arm_y;
+    omega_eta[0] = d_eta_spin_x;
 }
 
 /* derivative of mode k's row of P' f + T' m by eta of mode l; 1 add, 8 mul, 1 div */
-void planar_modal_attachment_pair_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K)
+void planar_modal_attachment_pair_wrench(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K)
 {
     (void)b;
     (void)u;
@@ -257,67 +281,4 @@ void planar_modal_attachment_pair_force(const fu_real *b, const fu_real *u, cons
     const fu_real d_eta_inv_theta = -(0.5*inv_theta*inv_theta*psi_l[0]*theta[0]);
     /* outputs */
     K[0] = d_eta_inv_theta*m[0]*psi[0];
-}
-
-/* the frame's rows of a force that turns with the section; 10 add, 24 mul, 1 div */
-void planar_modal_attachment_follower(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *c, fu_real *g, fu_real *K)
-{
-    /* axes */
-    const fu_real inv_theta = 1.0/(0.25*theta[0]*theta[0] + 1.0);
-    /* force in body axes */
-    const fu_real
-        F_x = c[0]*(-0.5*inv_theta*theta[0]*theta[0] + 1.0) - c[1]*inv_theta*theta[0],
-        F_y = c[0]*inv_theta*theta[0] + c[1]*(-0.5*inv_theta*theta[0]*theta[0] + 1.0);
-    /* outputs */
-    g[0] = F_x*b[2] - F_y*b[3];
-    g[1] = F_x*b[3] + F_y*b[2];
-    g[2] = -F_x*u[1] + F_y*u[0];
-    K[0] = 0.0;
-    K[1] = 0.0;
-    K[2] = -F_x*b[3] - F_y*b[2];
-    K[3] = 0.0;
-    K[4] = 0.0;
-    K[5] = F_x*b[2] - F_y*b[3];
-    K[6] = 0.0;
-    K[7] = 0.0;
-    K[8] = 0.0;
-}
-
-/* a mode's row of a force that turns with the section; K by eta; 17 add, 46 mul, 1 div */
-void planar_modal_attachment_mode_follower(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *c, fu_real *g, fu_real *K_frame)
-{
-    /* axes */
-    const fu_real inv_theta = 1.0/(0.25*theta[0]*theta[0] + 1.0);
-    /* force in body axes */
-    const fu_real
-        F_x = c[0]*(-0.5*inv_theta*theta[0]*theta[0] + 1.0) - c[1]*inv_theta*theta[0],
-        F_y = c[0]*inv_theta*theta[0] + c[1]*(-0.5*inv_theta*theta[0]*theta[0] + 1.0);
-    /* derivatives */
-    const fu_real
-        d_eta_inv_theta = -(0.5*inv_theta*inv_theta*psi[0]*theta[0]),
-        d_eta_F_x = d_eta_inv_theta*(-0.5*c[0]*theta[0]*theta[0] - c[1]*theta[0]) + psi[0]*(-c[0]*inv_theta*theta[0] - c[1]*inv_theta),
-        d_eta_F_y = d_eta_inv_theta*(c[0]*theta[0] - 0.5*c[1]*theta[0]*theta[0]) + psi[0]*(c[0]*inv_theta - c[1]*inv_theta*theta[0]);
-    /* outputs */
-    g[0] = F_x*phi[0] + F_y*phi[1];
-    K_frame[0] = b[2]*d_eta_F_x - b[3]*d_eta_F_y;
-    K_frame[1] = b[2]*d_eta_F_y + b[3]*d_eta_F_x;
-    K_frame[2] = -F_x*phi[1] + F_y*phi[0] - d_eta_F_x*u[1] + d_eta_F_y*u[0];
-}
-
-/* derivative of mode k's row of a follower force by eta of mode l; 8 add, 26 mul, 1 div */
-void planar_modal_attachment_pair_follower(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *c, fu_real *K)
-{
-    (void)b;
-    (void)u;
-    (void)psi;
-    (void)phi_l;
-    /* axes */
-    const fu_real inv_theta = 1.0/(0.25*theta[0]*theta[0] + 1.0);
-    /* derivative */
-    const fu_real
-        d_eta_inv_theta = -(0.5*inv_theta*inv_theta*psi_l[0]*theta[0]),
-        d_eta_F_x = d_eta_inv_theta*(-0.5*c[0]*theta[0]*theta[0] - c[1]*theta[0]) + psi_l[0]*(-c[0]*inv_theta*theta[0] - c[1]*inv_theta),
-        d_eta_F_y = d_eta_inv_theta*(c[0]*theta[0] - 0.5*c[1]*theta[0]*theta[0]) + psi_l[0]*(c[0]*inv_theta - c[1]*inv_theta*theta[0]);
-    /* outputs */
-    K[0] = d_eta_F_x*phi[0] + d_eta_F_y*phi[1];
 }

@@ -62,42 +62,9 @@ void planar_rigid_point(const fu_real *b, const fu_real *u, const fu_real *w, fu
     bias[1] = dt_dt_arm_y;
 }
 
-/* position and Jacobian of a point, derivative of the force p_q' f; 9 add, 14 mul */
-void planar_rigid_point_force(const fu_real *b, const fu_real *u, const fu_real *f, fu_real *p, fu_real *p_q, fu_real *K)
+/* axes of the body, and their turn; no operations */
+void planar_rigid_frame(const fu_real *b, fu_real *A, fu_real *T)
 {
-    /* position */
-    const fu_real
-        arm_x = b[2]*u[0] - b[3]*u[1],
-        arm_y = b[2]*u[1] + b[3]*u[0],
-        p_x = arm_x + b[0],
-        p_y = arm_y + b[1];
-    /* derivatives */
-    const fu_real
-        d_th_arm_x = -b[2]*u[1] - b[3]*u[0],
-        d_th_arm_y = b[2]*u[0] - b[3]*u[1];
-    /* derivative of the generalised force */
-    const fu_real
-        d_th_d_th_arm_x = -b[2]*u[0] + b[3]*u[1],
-        d_th_d_th_arm_y = -b[2]*u[1] - b[3]*u[0],
-        d_th_g2 = d_th_d_th_arm_x*f[0] + d_th_d_th_arm_y*f[1];
-    /* outputs */
-    p[0] = p_x;
-    p[1] = p_y;
-    p_q[0] = 1.0;
-    p_q[1] = 0.0;
-    p_q[2] = d_th_arm_x;
-    p_q[3] = 0.0;
-    p_q[4] = 1.0;
-    p_q[5] = d_th_arm_y;
-    FU_EACH(g, 8,
-        K[g] = 0.0;)
-    K[8] = d_th_g2;
-}
-
-/* axes, their turn, and the derivative of a moment on them; no operations */
-void planar_rigid_frame(const fu_real *b, const fu_real *m, fu_real *A, fu_real *T, fu_real *K)
-{
-    (void)m;
     /* outputs */
     A[0] = b[2];
     A[1] = -b[3];
@@ -106,8 +73,32 @@ void planar_rigid_frame(const fu_real *b, const fu_real *m, fu_real *A, fu_real 
     T[0] = 0.0;
     T[1] = 0.0;
     T[2] = 1.0;
-    FU_EACH(g, 9,
+}
+
+/* derivatives of the generalised force of a wrench, and of velocities at a point; 5 add, 14 mul */
+void planar_rigid_wrench(const fu_real *b, const fu_real *u, const fu_real *w, const fu_real *f, const fu_real *m, fu_real *K, fu_real *v_q, fu_real *omega_q)
+{
+    (void)m;
+    /* derivatives by translation and rotation */
+    const fu_real
+        d_th_d_th_arm_x = -b[2]*u[0] + b[3]*u[1],
+        d_th_d_th_arm_y = -b[2]*u[1] - b[3]*u[0],
+        d_th_g2 = d_th_d_th_arm_x*f[0] + d_th_d_th_arm_y*f[1],
+        d_th_dt_arm_x = -b[2]*u[0]*w[2] + b[3]*u[1]*w[2],
+        d_th_dt_arm_y = -b[2]*u[1]*w[2] - b[3]*u[0]*w[2];
+    /* outputs */
+    FU_EACH(g, 8,
         K[g] = 0.0;)
+    K[8] = d_th_g2;
+    v_q[0] = 0.0;
+    v_q[1] = 0.0;
+    v_q[2] = d_th_dt_arm_x;
+    v_q[3] = 0.0;
+    v_q[4] = 0.0;
+    v_q[5] = d_th_dt_arm_y;
+    omega_q[0] = 0.0;
+    omega_q[1] = 0.0;
+    omega_q[2] = 0.0;
 }
 
 /* m R'' and J omega' + omega x J omega (M q'' of eq 12); 3 mul */
@@ -160,65 +151,6 @@ void planar_rigid_discrete_point(const fu_real *b, const fu_real *u, const fu_re
     P[3] = 0.0;
     P[4] = 1.0;
     P[5] = mean_arm_x;
-}
-
-/* generalised force of a force at a point; 6 add, 12 mul */
-void planar_rigid_force(const fu_real *b, const fu_real *u, const fu_real *f, fu_real *g, fu_real *K)
-{
-    /* axes */
-    const fu_real
-        local_x = b[2]*f[0] + b[3]*f[1],
-        local_y = b[2]*f[1] - b[3]*f[0];
-    /* generalised force and its derivatives */
-    const fu_real
-        g2 = -local_x*u[1] + local_y*u[0],
-        d_th_local_x = b[2]*f[1] - b[3]*f[0],
-        d_th_local_y = -b[2]*f[0] - b[3]*f[1],
-        d_th_g2 = -d_th_local_x*u[1] + d_th_local_y*u[0];
-    /* outputs */
-    g[0] = f[0];
-    g[1] = f[1];
-    g[2] = g2;
-    FU_EACH(point, 8,
-        K[point] = 0.0;)
-    K[8] = d_th_g2;
-}
-
-/* generalised force of a force at a point that turns with the body; 5 add, 10 mul */
-void planar_rigid_follower_force(const fu_real *b, const fu_real *u, const fu_real *c, fu_real *g, fu_real *K)
-{
-    /* generalised force and its derivatives */
-    const fu_real
-        g0 = b[2]*c[0] - b[3]*c[1],
-        g1 = b[2]*c[1] + b[3]*c[0],
-        g2 = -c[0]*u[1] + c[1]*u[0],
-        d_th_g0 = -b[2]*c[1] - b[3]*c[0],
-        d_th_g1 = b[2]*c[0] - b[3]*c[1];
-    /* outputs */
-    g[0] = g0;
-    g[1] = g1;
-    g[2] = g2;
-    K[0] = 0.0;
-    K[1] = 0.0;
-    K[2] = d_th_g0;
-    K[3] = 0.0;
-    K[4] = 0.0;
-    K[5] = d_th_g1;
-    K[6] = 0.0;
-    K[7] = 0.0;
-    K[8] = 0.0;
-}
-
-/* generalised force of a moment; no operations */
-void planar_rigid_moment(const fu_real *b, const fu_real *m, fu_real *g, fu_real *K)
-{
-    (void)b;
-    /* outputs */
-    g[0] = 0.0;
-    g[1] = 0.0;
-    g[2] = m[0];
-    FU_EACH(point, 9,
-        K[point] = 0.0;)
 }
 
 /* configuration moved by a translation and a rotation vector (exponential map); 5 add, 8 mul, 1 div, 1 sqrt, 1 cos, 1 sin */

@@ -217,6 +217,39 @@ void planar_surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w
         f_x[g] = 0.0;)
 }
 
+/* change of contact along a motion of the point and of the surface; 39 add, 46 mul */
+void planar_surface_reaction(const fu_real *x, const fu_real *w, const fu_real *omega_o, const fu_real *f, const fu_real *f_y, const fu_real *f_w, const fu_real *f_x, const fu_real *H, fu_real radius, const fu_real *arm, const fu_real *turn, const fu_real *mean_arm, fu_real share, const fu_real *dr, const fu_real *dv, const fu_real *dtheta, const fu_real *dtheta_o, const fu_real *domega_o, fu_real *f_t, fu_real *m_t, fu_real *m_o_t)
+{
+    /* moments about the centre and about the surface's origin */
+    const fu_real
+        lever_x = arm[0] + x[0],
+        lever_y = arm[1] + x[1];
+    /* changes along axes of the surface */
+    const fu_real
+        y_x = dr[0] + dtheta_o[0]*x[1],
+        y_y = dr[1] - dtheta_o[0]*x[0],
+        past_x = domega_o[0]*x[1] + dr[1]*omega_o[0] + dtheta_o[0]*w[1] + dv[0],
+        past_y = -domega_o[0]*x[0] - dr[0]*omega_o[0] - dtheta_o[0]*w[0] + dv[1],
+        arm_y_x = -(radius*(H[0]*y_x + H[1]*y_y)),
+        arm_y_y = -(radius*(H[2]*y_x + H[3]*y_y)),
+        phi0 = dtheta[0] - dtheta_o[0],
+        stretch_x = -arm_y_y*share*turn[0] - mean_arm[1]*phi0,
+        stretch_y = arm_y_x*share*turn[0] + mean_arm[0]*phi0;
+    /* changes in global axes */
+    const fu_real
+        df_x = -dtheta_o[0]*f[1] + f_w[0]*past_x + f_w[1]*past_y + f_x[0]*stretch_x + f_x[1]*stretch_y + f_y[0]*y_x + f_y[1]*y_y,
+        df_y = dtheta_o[0]*f[0] + f_w[2]*past_x + f_w[3]*past_y + f_x[2]*stretch_x + f_x[3]*stretch_y + f_y[2]*y_x + f_y[3]*y_y,
+        d_near0 = arm[0]*df_y - arm[1]*df_x - f[0]*(arm[0]*dtheta_o[0] + arm_y_y) + f[1]*(-arm[1]*dtheta_o[0] + arm_y_x),
+        d_lever_x = -arm[1]*dtheta_o[0] + arm_y_x + dr[0],
+        d_lever_y = arm[0]*dtheta_o[0] + arm_y_y + dr[1],
+        d_far0 = d_lever_x*f[1] - d_lever_y*f[0] - df_x*lever_y + df_y*lever_x;
+    /* outputs */
+    f_t[0] = df_x;
+    f_t[1] = df_y;
+    m_t[0] = d_near0;
+    m_o_t[0] = d_far0;
+}
+
 /* rates of the distance of a moving point from a moving surface; 22 add, 18 mul */
 void planar_surface_motion(const fu_real *n, const fu_real *H, const fu_real *r, const fu_real *v, const fu_real *a, const fu_real *r_o, const fu_real *v_o, const fu_real *a_o, const fu_real *omega_o, const fu_real *alpha_o, fu_real *g_t, fu_real *g_tt)
 {

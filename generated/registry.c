@@ -152,27 +152,23 @@ static const fu_law_kernels laws[] = {
 };
 
 static const fu_body_kernels bodys[] = {
-    {"rigid", 3, 7, 6, rigid_place, rigid_point, rigid_point_force, rigid_frame, rigid_inertia_force,
-     rigid_inertia_tangent, rigid_kinetic_energy, rigid_discrete_point, rigid_force, rigid_follower_force, rigid_moment,
-     rigid_move, rigid_move_tangent, rigid_cayley_move, rigid_cayley_tangent, rigid_cayley_error, rigid_halfway,
-     rigid_rate, rigid_increment},
-    {"planar_rigid", 2, 4, 3, planar_rigid_place, planar_rigid_point, planar_rigid_point_force, planar_rigid_frame,
+    {"rigid", 3, 7, 6, rigid_place, rigid_point, rigid_frame, rigid_wrench, rigid_inertia_force, rigid_inertia_tangent,
+     rigid_kinetic_energy, rigid_discrete_point, rigid_move, rigid_move_tangent, rigid_cayley_move,
+     rigid_cayley_tangent, rigid_cayley_error, rigid_halfway, rigid_rate, rigid_increment},
+    {"planar_rigid", 2, 4, 3, planar_rigid_place, planar_rigid_point, planar_rigid_frame, planar_rigid_wrench,
      planar_rigid_inertia_force, planar_rigid_inertia_tangent, planar_rigid_kinetic_energy, planar_rigid_discrete_point,
-     planar_rigid_force, planar_rigid_follower_force, planar_rigid_moment, planar_rigid_move, planar_rigid_move_tangent,
-     planar_rigid_cayley_move, planar_rigid_cayley_tangent, planar_rigid_cayley_error, planar_rigid_halfway,
-     planar_rigid_rate, planar_rigid_increment},
+     planar_rigid_move, planar_rigid_move_tangent, planar_rigid_cayley_move, planar_rigid_cayley_tangent,
+     planar_rigid_cayley_error, planar_rigid_halfway, planar_rigid_rate, planar_rigid_increment},
 };
 
 static const fu_modal_kernels modals[] = {
     {"modal", 3, modal_inertia_force, modal_mass_matrix, modal_inertia_tangent, modal_mode_force, modal_mode_mass,
      modal_mode_tangent, modal_pair_tangent, modal_kinetic_energy, modal_potential_energy, modal_attachment,
-     modal_attachment_mode, modal_attachment_force, modal_attachment_mode_force, modal_attachment_pair_force,
-     modal_attachment_follower, modal_attachment_mode_follower, modal_attachment_pair_follower},
+     modal_attachment_mode, modal_attachment_wrench, modal_attachment_mode_wrench, modal_attachment_pair_wrench},
     {"planar_modal", 2, planar_modal_inertia_force, planar_modal_mass_matrix, planar_modal_inertia_tangent,
      planar_modal_mode_force, planar_modal_mode_mass, planar_modal_mode_tangent, planar_modal_pair_tangent,
      planar_modal_kinetic_energy, planar_modal_potential_energy, planar_modal_attachment, planar_modal_attachment_mode,
-     planar_modal_attachment_force, planar_modal_attachment_mode_force, planar_modal_attachment_pair_force,
-     planar_modal_attachment_follower, planar_modal_attachment_mode_follower, planar_modal_attachment_pair_follower},
+     planar_modal_attachment_wrench, planar_modal_attachment_mode_wrench, planar_modal_attachment_pair_wrench},
 };
 
 static const fu_slide_kernels slides[] = {
@@ -257,10 +253,10 @@ static const fu_crossing_kernels crossings[] = {
 
 static const fu_surface_kernels surfaces[] = {
     {"surface", 3, surface_flat, surface_rounded, surface_terrain, surface_push, surface_push_hertz, surface_pressing,
-     surface_sticking, surface_sliding, surface_motion, surface_slip},
+     surface_sticking, surface_sliding, surface_reaction, surface_motion, surface_slip},
     {"planar_surface", 2, planar_surface_flat, planar_surface_rounded, planar_surface_terrain, planar_surface_push,
      planar_surface_push_hertz, planar_surface_pressing, planar_surface_sticking, planar_surface_sliding,
-     planar_surface_motion, planar_surface_slip},
+     planar_surface_reaction, planar_surface_motion, planar_surface_slip},
 };
 
 static const fu_point_law_kernels point_laws[] = {
@@ -296,10 +292,9 @@ static const fu_point_law_kernels point_laws[] = {
 #define FU_ARGUMENTS_ssvvv_4 *a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]
 #define FU_ARGUMENTS_vv_2 a[0], a[1], out[0], out[1]
 #define FU_ARGUMENTS_vvv_4 a[0], a[1], a[2], out[0], out[1], out[2], out[3]
-#define FU_ARGUMENTS_vvv_3 a[0], a[1], a[2], out[0], out[1], out[2]
-#define FU_ARGUMENTS_vv_3 a[0], a[1], out[0], out[1], out[2]
+#define FU_ARGUMENTS_v_2 a[0], out[0], out[1]
+#define FU_ARGUMENTS_vvvvv_3 a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vvv_1 a[0], a[1], a[2], out[0]
-#define FU_ARGUMENTS_vvv_2 a[0], a[1], a[2], out[0], out[1]
 #define FU_ARGUMENTS_v_1 a[0], out[0]
 #define FU_ARGUMENTS_vvvvsvvvvvv_1 a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0]
 #define FU_ARGUMENTS_vsvv_1 a[0], *a[1], a[2], a[3], out[0]
@@ -310,18 +305,19 @@ static const fu_point_law_kernels point_laws[] = {
 #define FU_ARGUMENTS_vvsvvvvs_1 a[0], a[1], *a[2], a[3], a[4], a[5], a[6], *a[7], out[0]
 #define FU_ARGUMENTS_vvsv_1 a[0], a[1], *a[2], a[3], out[0]
 #define FU_ARGUMENTS_vvvvvv_8 a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7]
-#define FU_ARGUMENTS_vvvvv_1 a[0], a[1], a[2], a[3], a[4], out[0]
-#define FU_ARGUMENTS_vvvvvvv_2 a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1]
+#define FU_ARGUMENTS_vvvvvvvv_3 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vvvvvvvvvv_4 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], out[0], out[1], out[2], out[3]
 #define FU_ARGUMENTS_vvvvvvvvv_1 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], out[0]
-#define FU_ARGUMENTS_vvvv_2 a[0], a[1], a[2], a[3], out[0], out[1]
-#define FU_ARGUMENTS_vvvvvv_2 a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1]
 #define FU_ARGUMENTS_ssvvvv_4 *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]
 #define FU_ARGUMENTS_ssvvvvvv_9 *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]
 #define FU_ARGUMENTS_ssvvvv_2 *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]
 #define FU_ARGUMENTS_sssvvvv_1 *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]
-#define FU_ARGUMENTS_vvvvv_3 a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vvvvvv_2 a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1]
+#define FU_ARGUMENTS_vvv_2 a[0], a[1], a[2], out[0], out[1]
 #define FU_ARGUMENTS_vvvvvvvv_2 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]
 #define FU_ARGUMENTS_vvvvv_5 a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]
+#define FU_ARGUMENTS_vvv_3 a[0], a[1], a[2], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vvvv_2 a[0], a[1], a[2], a[3], out[0], out[1]
 #define FU_ARGUMENTS_vvvvv_10 a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8], out[9]
 #define FU_ARGUMENTS_vvvvvvv_4 a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1], out[2], out[3]
 #define FU_ARGUMENTS_v_4 a[0], out[0], out[1], out[2], out[3]
@@ -335,10 +331,12 @@ static const fu_point_law_kernels point_laws[] = {
 #define FU_ARGUMENTS_vvvvvvvvssvsvvvvvvvsss_6 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], *a[8], *a[9], a[10], *a[11], a[12], a[13], a[14], a[15], a[16], a[17], a[18], *a[19], *a[20], *a[21], out[0], out[1], out[2], out[3], out[4], out[5]
 #define FU_ARGUMENTS_vvvvsssv_3 a[0], a[1], a[2], a[3], *a[4], *a[5], *a[6], a[7], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vvs_3 a[0], a[1], *a[2], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vv_3 a[0], a[1], out[0], out[1], out[2]
 #define FU_ARGUMENTS_ssvs_6 *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]
 #define FU_ARGUMENTS_vvvv_3 a[0], a[1], a[2], a[3], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vvvs_4 a[0], a[1], a[2], *a[3], out[0], out[1], out[2], out[3]
 #define FU_ARGUMENTS_vvvvvs_4 a[0], a[1], a[2], a[3], a[4], *a[5], out[0], out[1], out[2], out[3]
+#define FU_ARGUMENTS_vvvvvvvvsvvvsvvvvv_3 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], *a[8], a[9], a[10], a[11], *a[12], a[13], a[14], a[15], a[16], a[17], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vvvvvvvvvv_2 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], out[0], out[1]
 #define FU_ARGUMENTS_vvvvvvvvvvsvv_2 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], *a[10], a[11], a[12], out[0], out[1]
 #define FU_ARGUMENTS_vsvv_2 a[0], *a[1], a[2], a[3], out[0], out[1]
@@ -621,15 +619,12 @@ static const fu_point_law_kernels point_laws[] = {
     X(cable8p_engineering_exact_tension_only_section_forces, ssvv_4) \
     X(rigid_place, vv_2) \
     X(rigid_point, vvv_4) \
-    X(rigid_point_force, vvv_3) \
-    X(rigid_frame, vv_3) \
+    X(rigid_frame, v_2) \
+    X(rigid_wrench, vvvvv_3) \
     X(rigid_inertia_force, svvv_1) \
     X(rigid_inertia_tangent, svv_2) \
     X(rigid_kinetic_energy, svv_1) \
     X(rigid_discrete_point, vvv_1) \
-    X(rigid_force, vvv_2) \
-    X(rigid_follower_force, vvv_2) \
-    X(rigid_moment, vv_2) \
     X(rigid_move, vv_1) \
     X(rigid_move_tangent, v_1) \
     X(rigid_cayley_move, vv_1) \
@@ -640,15 +635,12 @@ static const fu_point_law_kernels point_laws[] = {
     X(rigid_increment, vv_1) \
     X(planar_rigid_place, vv_2) \
     X(planar_rigid_point, vvv_4) \
-    X(planar_rigid_point_force, vvv_3) \
-    X(planar_rigid_frame, vv_3) \
+    X(planar_rigid_frame, v_2) \
+    X(planar_rigid_wrench, vvvvv_3) \
     X(planar_rigid_inertia_force, svvv_1) \
     X(planar_rigid_inertia_tangent, svv_2) \
     X(planar_rigid_kinetic_energy, svv_1) \
     X(planar_rigid_discrete_point, vvv_1) \
-    X(planar_rigid_force, vvv_2) \
-    X(planar_rigid_follower_force, vvv_2) \
-    X(planar_rigid_moment, vv_2) \
     X(planar_rigid_move, vv_1) \
     X(planar_rigid_move_tangent, v_1) \
     X(planar_rigid_cayley_move, vv_1) \
@@ -668,12 +660,9 @@ static const fu_point_law_kernels point_laws[] = {
     X(modal_potential_energy, vvsv_1) \
     X(modal_attachment, vvvvvv_8) \
     X(modal_attachment_mode, vvvvv_2) \
-    X(modal_attachment_force, vvvvv_1) \
-    X(modal_attachment_mode_force, vvvvvvv_2) \
-    X(modal_attachment_pair_force, vvvvvvvvv_1) \
-    X(modal_attachment_follower, vvvv_2) \
-    X(modal_attachment_mode_follower, vvvvvv_2) \
-    X(modal_attachment_pair_follower, vvvvvvvv_1) \
+    X(modal_attachment_wrench, vvvvvvvv_3) \
+    X(modal_attachment_mode_wrench, vvvvvvvvvv_4) \
+    X(modal_attachment_pair_wrench, vvvvvvvvv_1) \
     X(planar_modal_inertia_force, vvvvsvvvvvv_1) \
     X(planar_modal_mass_matrix, vsvv_1) \
     X(planar_modal_inertia_tangent, vvvvsvvvvvv_2) \
@@ -685,12 +674,9 @@ static const fu_point_law_kernels point_laws[] = {
     X(planar_modal_potential_energy, vvsv_1) \
     X(planar_modal_attachment, vvvvvv_8) \
     X(planar_modal_attachment_mode, vvvvv_2) \
-    X(planar_modal_attachment_force, vvvvv_1) \
-    X(planar_modal_attachment_mode_force, vvvvvvv_2) \
-    X(planar_modal_attachment_pair_force, vvvvvvvvv_1) \
-    X(planar_modal_attachment_follower, vvvv_2) \
-    X(planar_modal_attachment_mode_follower, vvvvvv_2) \
-    X(planar_modal_attachment_pair_follower, vvvvvvvv_1) \
+    X(planar_modal_attachment_wrench, vvvvvvvv_3) \
+    X(planar_modal_attachment_mode_wrench, vvvvvvvvvv_4) \
+    X(planar_modal_attachment_pair_wrench, vvvvvvvvv_1) \
     X(slide_beam24_rigid_constraint, ssvvvv_4) \
     X(slide_beam24_rigid_terms, ssvvvvvv_9) \
     X(slide_beam24_rigid_residual, ssvvvv_2) \
@@ -845,6 +831,7 @@ static const fu_point_law_kernels point_laws[] = {
     X(surface_pressing, vvvv_3) \
     X(surface_sticking, vvvs_4) \
     X(surface_sliding, vvvvvs_4) \
+    X(surface_reaction, vvvvvvvvsvvvsvvvvv_3) \
     X(surface_motion, vvvvvvvvvv_2) \
     X(surface_slip, vvvvvvvvvvsvv_2) \
     X(planar_surface_flat, vv_2) \
@@ -855,6 +842,7 @@ static const fu_point_law_kernels point_laws[] = {
     X(planar_surface_pressing, vvvv_3) \
     X(planar_surface_sticking, vvvs_4) \
     X(planar_surface_sliding, vvvvvs_4) \
+    X(planar_surface_reaction, vvvvvvvvsvvvsvvvvv_3) \
     X(planar_surface_motion, vvvvvvvvvv_2) \
     X(planar_surface_slip, vvvvvvvvvvsvv_2) \
     X(spring_energy, vv_1) \

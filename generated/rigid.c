@@ -4,7 +4,20 @@
  */
 #include "kernels.h"
 
-/* part of outputs: of rigid_place and 2 more */
+/* part of derivatives: of rigid_place and 1 more */
+#define RIGID_PART_OF_DERIVATIVES \
+    const fu_real \
+        d_th1_arm_x = -A1_y*u[2] + A1_z*u[1], \
+        d_th1_arm_y = -A2_y*u[2] + A2_z*u[1], \
+        d_th1_arm_z = -A3_y*u[2] + A3_z*u[1], \
+        d_th2_arm_x = A1_x*u[2] - A1_z*u[0], \
+        d_th2_arm_y = A2_x*u[2] - A2_z*u[0], \
+        d_th2_arm_z = A3_x*u[2] - A3_z*u[0], \
+        d_th3_arm_x = -A1_x*u[1] + A1_y*u[0], \
+        d_th3_arm_y = -A2_x*u[1] + A2_y*u[0], \
+        d_th3_arm_z = -A3_x*u[1] + A3_y*u[0];
+
+/* part of outputs: of rigid_place and 1 more */
 #define RIGID_PART_OF_OUTPUTS \
     p[0] = p_x; \
     p[1] = p_y; \
@@ -28,21 +41,8 @@
     p_q[16] = d_th2_arm_z; \
     p_q[17] = d_th3_arm_z;
 
-/* part of derivatives: of rigid_point and 2 more */
-#define RIGID_PART_OF_DERIVATIVES \
-    const fu_real \
-        d_th1_arm_x = -A1_y*u[2] + A1_z*u[1], \
-        d_th1_arm_y = -A2_y*u[2] + A2_z*u[1], \
-        d_th1_arm_z = -A3_y*u[2] + A3_z*u[1], \
-        d_th2_arm_x = A1_x*u[2] - A1_z*u[0], \
-        d_th2_arm_y = A2_x*u[2] - A2_z*u[0], \
-        d_th2_arm_z = A3_x*u[2] - A3_z*u[0], \
-        d_th3_arm_x = -A1_x*u[1] + A1_y*u[0], \
-        d_th3_arm_y = -A2_x*u[1] + A2_y*u[0], \
-        d_th3_arm_z = -A3_x*u[1] + A3_y*u[0];
-
-/* part of axes: of rigid_force and 2 more */
-#define RIGID_PART_OF_AXES \
+/* part of position: of rigid_wrench and 2 more */
+#define RIGID_PART_OF_POSITION \
     const fu_real \
         A1_x = -2.0*b[5]*b[5] - 2.0*b[6]*b[6] + 1.0, \
         A1_y = -2.0*b[3]*b[6] + 2.0*b[4]*b[5], \
@@ -54,18 +54,10 @@
         A3_y = 2.0*b[3]*b[4] + 2.0*b[5]*b[6], \
         A3_z = -2.0*b[4]*b[4] - 2.0*b[5]*b[5] + 1.0;
 
-/* position: of rigid_place and 2 more */
+/* position: of rigid_place and 1 more */
 #define RIGID_POSITION \
+    RIGID_PART_OF_POSITION \
     const fu_real \
-        A1_x = -2.0*b[5]*b[5] - 2.0*b[6]*b[6] + 1.0, \
-        A1_y = -2.0*b[3]*b[6] + 2.0*b[4]*b[5], \
-        A1_z = 2.0*b[3]*b[5] + 2.0*b[4]*b[6], \
-        A2_x = 2.0*b[3]*b[6] + 2.0*b[4]*b[5], \
-        A2_y = -2.0*b[4]*b[4] - 2.0*b[6]*b[6] + 1.0, \
-        A2_z = -2.0*b[3]*b[4] + 2.0*b[5]*b[6], \
-        A3_x = -2.0*b[3]*b[5] + 2.0*b[4]*b[6], \
-        A3_y = 2.0*b[3]*b[4] + 2.0*b[5]*b[6], \
-        A3_z = -2.0*b[4]*b[4] - 2.0*b[5]*b[5] + 1.0, \
         arm_x = A1_x*u[0] + A1_y*u[1] + A1_z*u[2], \
         arm_y = A2_x*u[0] + A2_y*u[1] + A2_z*u[2], \
         arm_z = A3_x*u[0] + A3_y*u[1] + A3_z*u[2], \
@@ -73,19 +65,12 @@
         p_y = arm_y + b[1], \
         p_z = arm_z + b[2];
 
-/* derivatives: of rigid_place and 1 more */
-#define RIGID_DERIVATIVES \
-    RIGID_PART_OF_DERIVATIVES
-
-/* axes: of rigid_follower_force and 1 more */
-#define RIGID_AXES \
-    RIGID_PART_OF_AXES
-
 /* position and Jacobian of a point; 30 add, 63 mul */
 void rigid_place(const fu_real *b, const fu_real *u, fu_real *p, fu_real *p_q)
 {
     RIGID_POSITION
-    RIGID_DERIVATIVES
+    /* derivatives */
+    RIGID_PART_OF_DERIVATIVES
     /* outputs */
     RIGID_PART_OF_OUTPUTS
 }
@@ -116,12 +101,36 @@ void rigid_point(const fu_real *b, const fu_real *u, const fu_real *w, fu_real *
     bias[2] = dt_dt_arm_z;
 }
 
-/* position and Jacobian of a point, derivative of the force p_q' f; 57 add, 126 mul */
-void rigid_point_force(const fu_real *b, const fu_real *u, const fu_real *f, fu_real *p, fu_real *p_q, fu_real *K)
+/* axes of the body, and their turn; 12 add, 36 mul */
+void rigid_frame(const fu_real *b, fu_real *A, fu_real *T)
 {
-    RIGID_POSITION
-    RIGID_DERIVATIVES
-    /* derivative of the generalised force */
+    /* axes */
+    fu_real A1[3], A2[3], A3[3];
+    A1[0] = -2.0*b[5]*b[5] - 2.0*b[6]*b[6] + 1.0;
+    A1[1] = -2.0*b[3]*b[6] + 2.0*b[4]*b[5];
+    A1[2] = 2.0*b[3]*b[5] + 2.0*b[4]*b[6];
+    A2[0] = 2.0*b[3]*b[6] + 2.0*b[4]*b[5];
+    A2[1] = -2.0*b[4]*b[4] - 2.0*b[6]*b[6] + 1.0;
+    A2[2] = -2.0*b[3]*b[4] + 2.0*b[5]*b[6];
+    A3[0] = -2.0*b[3]*b[5] + 2.0*b[4]*b[6];
+    A3[1] = 2.0*b[3]*b[4] + 2.0*b[5]*b[6];
+    A3[2] = -2.0*b[4]*b[4] - 2.0*b[5]*b[5] + 1.0;
+    /* outputs */
+    FU_EACH(i, 3, A[i] = A1[i];)
+    FU_EACH(i, 3, A[i + 3] = A2[i];)
+    FU_EACH(i, 3, A[i + 6] = A3[i];)
+    FU_PAIRS(i, j, 3, T[6*i + j] = 0.0;)
+    FU_EACH(i, 3, T[i + 3] = A1[i];)
+    FU_EACH(i, 3, T[i + 9] = A2[i];)
+    FU_EACH(i, 3, T[i + 15] = A3[i];)
+}
+
+/* derivatives of the generalised force of a wrench, and of velocities at a point; 93 add, 189 mul */
+void rigid_wrench(const fu_real *b, const fu_real *u, const fu_real *w, const fu_real *f, const fu_real *m, fu_real *K, fu_real *v_q, fu_real *omega_q)
+{
+    /* position */
+    RIGID_PART_OF_POSITION
+    /* derivatives by translation and rotation */
     const fu_real
         d_th1_d_th1_arm_x = -A1_y*u[1] - A1_z*u[2],
         d_th1_d_th1_arm_y = -A2_y*u[1] - A2_z*u[2],
@@ -130,15 +139,15 @@ void rigid_point_force(const fu_real *b, const fu_real *u, const fu_real *f, fu_
         d_th1_d_th2_arm_x = A1_y*u[0],
         d_th1_d_th2_arm_y = A2_y*u[0],
         d_th1_d_th2_arm_z = A3_y*u[0],
-        d_th1_g4 = d_th1_d_th2_arm_x*f[0] + d_th1_d_th2_arm_y*f[1] + d_th1_d_th2_arm_z*f[2],
+        d_th1_g4 = A1_z*m[0] + A2_z*m[1] + A3_z*m[2] + d_th1_d_th2_arm_x*f[0] + d_th1_d_th2_arm_y*f[1] + d_th1_d_th2_arm_z*f[2],
         d_th1_d_th3_arm_x = A1_z*u[0],
         d_th1_d_th3_arm_y = A2_z*u[0],
         d_th1_d_th3_arm_z = A3_z*u[0],
-        d_th1_g5 = d_th1_d_th3_arm_x*f[0] + d_th1_d_th3_arm_y*f[1] + d_th1_d_th3_arm_z*f[2],
+        d_th1_g5 = -A1_y*m[0] - A2_y*m[1] - A3_y*m[2] + d_th1_d_th3_arm_x*f[0] + d_th1_d_th3_arm_y*f[1] + d_th1_d_th3_arm_z*f[2],
         d_th2_d_th1_arm_x = A1_x*u[1],
         d_th2_d_th1_arm_y = A2_x*u[1],
         d_th2_d_th1_arm_z = A3_x*u[1],
-        d_th2_g3 = d_th2_d_th1_arm_x*f[0] + d_th2_d_th1_arm_y*f[1] + d_th2_d_th1_arm_z*f[2],
+        d_th2_g3 = -A1_z*m[0] - A2_z*m[1] - A3_z*m[2] + d_th2_d_th1_arm_x*f[0] + d_th2_d_th1_arm_y*f[1] + d_th2_d_th1_arm_z*f[2],
         d_th2_d_th2_arm_x = -A1_x*u[0] - A1_z*u[2],
         d_th2_d_th2_arm_y = -A2_x*u[0] - A2_z*u[2],
         d_th2_d_th2_arm_z = -A3_x*u[0] - A3_z*u[2],
@@ -146,21 +155,38 @@ void rigid_point_force(const fu_real *b, const fu_real *u, const fu_real *f, fu_
         d_th2_d_th3_arm_x = A1_z*u[1],
         d_th2_d_th3_arm_y = A2_z*u[1],
         d_th2_d_th3_arm_z = A3_z*u[1],
-        d_th2_g5 = d_th2_d_th3_arm_x*f[0] + d_th2_d_th3_arm_y*f[1] + d_th2_d_th3_arm_z*f[2],
+        d_th2_g5 = A1_x*m[0] + A2_x*m[1] + A3_x*m[2] + d_th2_d_th3_arm_x*f[0] + d_th2_d_th3_arm_y*f[1] + d_th2_d_th3_arm_z*f[2],
         d_th3_d_th1_arm_x = A1_x*u[2],
         d_th3_d_th1_arm_y = A2_x*u[2],
         d_th3_d_th1_arm_z = A3_x*u[2],
-        d_th3_g3 = d_th3_d_th1_arm_x*f[0] + d_th3_d_th1_arm_y*f[1] + d_th3_d_th1_arm_z*f[2],
+        d_th3_g3 = A1_y*m[0] + A2_y*m[1] + A3_y*m[2] + d_th3_d_th1_arm_x*f[0] + d_th3_d_th1_arm_y*f[1] + d_th3_d_th1_arm_z*f[2],
         d_th3_d_th2_arm_x = A1_y*u[2],
         d_th3_d_th2_arm_y = A2_y*u[2],
         d_th3_d_th2_arm_z = A3_y*u[2],
-        d_th3_g4 = d_th3_d_th2_arm_x*f[0] + d_th3_d_th2_arm_y*f[1] + d_th3_d_th2_arm_z*f[2],
+        d_th3_g4 = -A1_x*m[0] - A2_x*m[1] - A3_x*m[2] + d_th3_d_th2_arm_x*f[0] + d_th3_d_th2_arm_y*f[1] + d_th3_d_th2_arm_z*f[2],
         d_th3_d_th3_arm_x = -A1_x*u[0] - A1_y*u[1],
         d_th3_d_th3_arm_y = -A2_x*u[0] - A2_y*u[1],
         d_th3_d_th3_arm_z = -A3_x*u[0] - A3_y*u[1],
-        d_th3_g5 = d_th3_d_th3_arm_x*f[0] + d_th3_d_th3_arm_y*f[1] + d_th3_d_th3_arm_z*f[2];
+        d_th3_g5 = d_th3_d_th3_arm_x*f[0] + d_th3_d_th3_arm_y*f[1] + d_th3_d_th3_arm_z*f[2],
+        d_th1_dt_arm_x = -A1_y*(-u[0]*w[4] + u[1]*w[3]) + A1_z*(u[0]*w[5] - u[2]*w[3]),
+        d_th1_dt_arm_y = -A2_y*(-u[0]*w[4] + u[1]*w[3]) + A2_z*(u[0]*w[5] - u[2]*w[3]),
+        d_th1_dt_arm_z = -A3_y*(-u[0]*w[4] + u[1]*w[3]) + A3_z*(u[0]*w[5] - u[2]*w[3]),
+        d_th2_dt_arm_x = A1_x*(-u[0]*w[4] + u[1]*w[3]) - A1_z*(-u[1]*w[5] + u[2]*w[4]),
+        d_th2_dt_arm_y = A2_x*(-u[0]*w[4] + u[1]*w[3]) - A2_z*(-u[1]*w[5] + u[2]*w[4]),
+        d_th2_dt_arm_z = A3_x*(-u[0]*w[4] + u[1]*w[3]) - A3_z*(-u[1]*w[5] + u[2]*w[4]),
+        d_th3_dt_arm_x = -A1_x*(u[0]*w[5] - u[2]*w[3]) + A1_y*(-u[1]*w[5] + u[2]*w[4]),
+        d_th3_dt_arm_y = -A2_x*(u[0]*w[5] - u[2]*w[3]) + A2_y*(-u[1]*w[5] + u[2]*w[4]),
+        d_th3_dt_arm_z = -A3_x*(u[0]*w[5] - u[2]*w[3]) + A3_y*(-u[1]*w[5] + u[2]*w[4]),
+        d_th1_spin0 = -A1_y*w[5] + A1_z*w[4],
+        d_th1_spin1 = -A2_y*w[5] + A2_z*w[4],
+        d_th1_spin2 = -A3_y*w[5] + A3_z*w[4],
+        d_th2_spin0 = A1_x*w[5] - A1_z*w[3],
+        d_th2_spin1 = A2_x*w[5] - A2_z*w[3],
+        d_th2_spin2 = A3_x*w[5] - A3_z*w[3],
+        d_th3_spin0 = -A1_x*w[4] + A1_y*w[3],
+        d_th3_spin1 = -A2_x*w[4] + A2_y*w[3],
+        d_th3_spin2 = -A3_x*w[4] + A3_y*w[3];
     /* outputs */
-    RIGID_PART_OF_OUTPUTS
     FU_EACH(g, 12,
         K[g] = 0.0;)
     FU_EACH(g, 9,
@@ -180,50 +206,42 @@ void rigid_point_force(const fu_real *b, const fu_real *u, const fu_real *f, fu_
     K[33] = d_th1_g5;
     K[34] = d_th2_g5;
     K[35] = d_th3_g5;
-}
-
-/* axes, their turn, and the derivative of a moment on them; 24 add, 54 mul */
-void rigid_frame(const fu_real *b, const fu_real *m, fu_real *A, fu_real *T, fu_real *K)
-{
-    /* axes */
-    fu_real A1[3], A2[3], A3[3];
-    A1[0] = -2.0*b[5]*b[5] - 2.0*b[6]*b[6] + 1.0;
-    A1[1] = -2.0*b[3]*b[6] + 2.0*b[4]*b[5];
-    A1[2] = 2.0*b[3]*b[5] + 2.0*b[4]*b[6];
-    A2[0] = 2.0*b[3]*b[6] + 2.0*b[4]*b[5];
-    A2[1] = -2.0*b[4]*b[4] - 2.0*b[6]*b[6] + 1.0;
-    A2[2] = -2.0*b[3]*b[4] + 2.0*b[5]*b[6];
-    A3[0] = -2.0*b[3]*b[5] + 2.0*b[4]*b[6];
-    A3[1] = 2.0*b[3]*b[4] + 2.0*b[5]*b[6];
-    A3[2] = -2.0*b[4]*b[4] - 2.0*b[5]*b[5] + 1.0;
-    /* moment about the axes of rotation */
-    const fu_real
-        d_th1_g4 = A1[2]*m[0] + A2[2]*m[1] + A3[2]*m[2],
-        d_th1_g5 = -A1[1]*m[0] - A2[1]*m[1] - A3[1]*m[2],
-        d_th2_g3 = -A1[2]*m[0] - A2[2]*m[1] - A3[2]*m[2],
-        d_th2_g5 = A1[0]*m[0] + A2[0]*m[1] + A3[0]*m[2],
-        d_th3_g3 = A1[1]*m[0] + A2[1]*m[1] + A3[1]*m[2],
-        d_th3_g4 = -A1[0]*m[0] - A2[0]*m[1] - A3[0]*m[2];
-    /* outputs */
-    FU_EACH(i, 3, A[i] = A1[i];)
-    FU_EACH(i, 3, A[i + 3] = A2[i];)
-    FU_EACH(i, 3, A[i + 6] = A3[i];)
-    FU_PAIRS(i, j, 3, T[6*i + j] = 0.0;)
-    FU_EACH(i, 3, T[i + 3] = A1[i];)
-    FU_EACH(i, 3, T[i + 9] = A2[i];)
-    FU_EACH(i, 3, T[i + 15] = A3[i];)
-    FU_PAIRS(i, j, 3, K[6*i + j] = 0.0;)
-    FU_PAIRS(i, j, 3, K[6*i + j + 3] = 0.0;)
-    FU_PAIRS(i, j, 3, K[6*i + j + 18] = 0.0;)
-    K[21] = 0.0;
-    K[22] = d_th2_g3;
-    K[23] = d_th3_g3;
-    K[27] = d_th1_g4;
-    K[28] = 0.0;
-    K[29] = d_th3_g4;
-    K[33] = d_th1_g5;
-    K[34] = d_th2_g5;
-    K[35] = 0.0;
+    v_q[0] = 0.0;
+    v_q[1] = 0.0;
+    v_q[2] = 0.0;
+    v_q[3] = d_th1_dt_arm_x;
+    v_q[4] = d_th2_dt_arm_x;
+    v_q[5] = d_th3_dt_arm_x;
+    v_q[6] = 0.0;
+    v_q[7] = 0.0;
+    v_q[8] = 0.0;
+    v_q[9] = d_th1_dt_arm_y;
+    v_q[10] = d_th2_dt_arm_y;
+    v_q[11] = d_th3_dt_arm_y;
+    v_q[12] = 0.0;
+    v_q[13] = 0.0;
+    v_q[14] = 0.0;
+    v_q[15] = d_th1_dt_arm_z;
+    v_q[16] = d_th2_dt_arm_z;
+    v_q[17] = d_th3_dt_arm_z;
+    omega_q[0] = 0.0;
+    omega_q[1] = 0.0;
+    omega_q[2] = 0.0;
+    omega_q[3] = d_th1_spin0;
+    omega_q[4] = d_th2_spin0;
+    omega_q[5] = d_th3_spin0;
+    omega_q[6] = 0.0;
+    omega_q[7] = 0.0;
+    omega_q[8] = 0.0;
+    omega_q[9] = d_th1_spin1;
+    omega_q[10] = d_th2_spin1;
+    omega_q[11] = d_th3_spin1;
+    omega_q[12] = 0.0;
+    omega_q[13] = 0.0;
+    omega_q[14] = 0.0;
+    omega_q[15] = d_th1_spin2;
+    omega_q[16] = d_th2_spin2;
+    omega_q[17] = d_th3_spin2;
 }
 
 /* m R'' and J omega' + omega x J omega (M q'' of eq 12); 18 add, 27 mul */
@@ -358,149 +376,6 @@ void rigid_discrete_point(const fu_real *b, const fu_real *u, const fu_real *b_n
     P[15] = B_x[0]*mean_arm_y - B_x[1]*mean_arm_x;
     P[16] = B_y[0]*mean_arm_y - B_y[1]*mean_arm_x;
     P[17] = B_z[0]*mean_arm_y - B_z[1]*mean_arm_x;
-}
-
-/* generalised force of a force at a point; 36 add, 81 mul */
-void rigid_force(const fu_real *b, const fu_real *u, const fu_real *f, fu_real *g, fu_real *K)
-{
-    /* axes */
-    RIGID_PART_OF_AXES
-    const fu_real
-        local_x = A1_x*f[0] + A2_x*f[1] + A3_x*f[2],
-        local_y = A1_y*f[0] + A2_y*f[1] + A3_y*f[2],
-        local_z = A1_z*f[0] + A2_z*f[1] + A3_z*f[2];
-    /* generalised force and its derivatives */
-    const fu_real
-        g3 = -local_y*u[2] + local_z*u[1],
-        g4 = local_x*u[2] - local_z*u[0],
-        g5 = -local_x*u[1] + local_y*u[0],
-        d_th1_local_y = A1_z*f[0] + A2_z*f[1] + A3_z*f[2],
-        d_th1_local_z = -A1_y*f[0] - A2_y*f[1] - A3_y*f[2],
-        d_th1_g3 = -d_th1_local_y*u[2] + d_th1_local_z*u[1],
-        d_th1_g4 = -(d_th1_local_z*u[0]),
-        d_th1_g5 = d_th1_local_y*u[0],
-        d_th2_local_z = A1_x*f[0] + A2_x*f[1] + A3_x*f[2],
-        d_th2_g3 = d_th2_local_z*u[1],
-        d_th2_local_x = -A1_z*f[0] - A2_z*f[1] - A3_z*f[2],
-        d_th2_g4 = d_th2_local_x*u[2] - d_th2_local_z*u[0],
-        d_th2_g5 = -(d_th2_local_x*u[1]),
-        d_th3_local_y = -A1_x*f[0] - A2_x*f[1] - A3_x*f[2],
-        d_th3_g3 = -(d_th3_local_y*u[2]),
-        d_th3_local_x = A1_y*f[0] + A2_y*f[1] + A3_y*f[2],
-        d_th3_g4 = d_th3_local_x*u[2],
-        d_th3_g5 = -d_th3_local_x*u[1] + d_th3_local_y*u[0];
-    /* outputs */
-    g[0] = f[0];
-    g[1] = f[1];
-    g[2] = f[2];
-    g[3] = g3;
-    g[4] = g4;
-    g[5] = g5;
-    FU_EACH(point, 12,
-        K[point] = 0.0;)
-    FU_EACH(point, 9,
-        K[point + 12] = 0.0;)
-    K[21] = d_th1_g3;
-    K[22] = d_th2_g3;
-    K[23] = d_th3_g3;
-    K[24] = 0.0;
-    K[25] = 0.0;
-    K[26] = 0.0;
-    K[27] = d_th1_g4;
-    K[28] = d_th2_g4;
-    K[29] = d_th3_g4;
-    K[30] = 0.0;
-    K[31] = 0.0;
-    K[32] = 0.0;
-    K[33] = d_th1_g5;
-    K[34] = d_th2_g5;
-    K[35] = d_th3_g5;
-}
-
-/* generalised force of a force at a point that turns with the body; 30 add, 69 mul */
-void rigid_follower_force(const fu_real *b, const fu_real *u, const fu_real *c, fu_real *g, fu_real *K)
-{
-    RIGID_AXES
-    /* generalised force and its derivatives */
-    const fu_real
-        g0 = A1_x*c[0] + A1_y*c[1] + A1_z*c[2],
-        g1 = A2_x*c[0] + A2_y*c[1] + A2_z*c[2],
-        g2 = A3_x*c[0] + A3_y*c[1] + A3_z*c[2],
-        g3 = -c[1]*u[2] + c[2]*u[1],
-        g4 = c[0]*u[2] - c[2]*u[0],
-        g5 = -c[0]*u[1] + c[1]*u[0],
-        d_th1_g0 = -A1_y*c[2] + A1_z*c[1],
-        d_th1_g1 = -A2_y*c[2] + A2_z*c[1],
-        d_th1_g2 = -A3_y*c[2] + A3_z*c[1],
-        d_th2_g0 = A1_x*c[2] - A1_z*c[0],
-        d_th2_g1 = A2_x*c[2] - A2_z*c[0],
-        d_th2_g2 = A3_x*c[2] - A3_z*c[0],
-        d_th3_g0 = -A1_x*c[1] + A1_y*c[0],
-        d_th3_g1 = -A2_x*c[1] + A2_y*c[0],
-        d_th3_g2 = -A3_x*c[1] + A3_y*c[0];
-    /* outputs */
-    g[0] = g0;
-    g[1] = g1;
-    g[2] = g2;
-    g[3] = g3;
-    g[4] = g4;
-    g[5] = g5;
-    K[0] = 0.0;
-    K[1] = 0.0;
-    K[2] = 0.0;
-    K[3] = d_th1_g0;
-    K[4] = d_th2_g0;
-    K[5] = d_th3_g0;
-    K[6] = 0.0;
-    K[7] = 0.0;
-    K[8] = 0.0;
-    K[9] = d_th1_g1;
-    K[10] = d_th2_g1;
-    K[11] = d_th3_g1;
-    K[12] = 0.0;
-    K[13] = 0.0;
-    K[14] = 0.0;
-    K[15] = d_th1_g2;
-    K[16] = d_th2_g2;
-    K[17] = d_th3_g2;
-    FU_EACH(point, 12,
-        K[point + 18] = 0.0;)
-    FU_EACH(point, 6,
-        K[point + 30] = 0.0;)
-}
-
-/* generalised force of a moment; 30 add, 63 mul */
-void rigid_moment(const fu_real *b, const fu_real *m, fu_real *g, fu_real *K)
-{
-    RIGID_AXES
-    /* generalised force and its derivatives */
-    const fu_real
-        g3 = A1_x*m[0] + A2_x*m[1] + A3_x*m[2],
-        g4 = A1_y*m[0] + A2_y*m[1] + A3_y*m[2],
-        g5 = A1_z*m[0] + A2_z*m[1] + A3_z*m[2],
-        d_th1_g4 = A1_z*m[0] + A2_z*m[1] + A3_z*m[2],
-        d_th1_g5 = -A1_y*m[0] - A2_y*m[1] - A3_y*m[2],
-        d_th2_g3 = -A1_z*m[0] - A2_z*m[1] - A3_z*m[2],
-        d_th2_g5 = A1_x*m[0] + A2_x*m[1] + A3_x*m[2],
-        d_th3_g3 = A1_y*m[0] + A2_y*m[1] + A3_y*m[2],
-        d_th3_g4 = -A1_x*m[0] - A2_x*m[1] - A3_x*m[2];
-    /* outputs */
-    FU_EACH(i, 3, g[i] = 0.0;)
-    g[3] = g3;
-    g[4] = g4;
-    g[5] = g5;
-    FU_PAIRS(i, j, 3, K[6*i + j] = 0.0;)
-    FU_PAIRS(i, j, 3, K[6*i + j + 3] = 0.0;)
-    FU_PAIRS(i, j, 3, K[6*i + j + 18] = 0.0;)
-    K[21] = 0.0;
-    K[22] = d_th2_g3;
-    K[23] = d_th3_g3;
-    K[27] = d_th1_g4;
-    K[28] = 0.0;
-    K[29] = d_th3_g4;
-    K[33] = d_th1_g5;
-    K[34] = d_th2_g5;
-    K[35] = 0.0;
 }
 
 /* configuration moved by a translation and a rotation vector (exponential map); 33 add, 46 mul, 2 div, 2 sqrt, 1 sin, 1 cos */

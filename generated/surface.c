@@ -356,6 +356,57 @@ void surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w, const
     f_x[8] = dx2_F_z;
 }
 
+/* change of contact along a motion of the point and of the surface; 126 add, 150 mul */
+void surface_reaction(const fu_real *x, const fu_real *w, const fu_real *omega_o, const fu_real *f, const fu_real *f_y, const fu_real *f_w, const fu_real *f_x, const fu_real *H, fu_real radius, const fu_real *arm, const fu_real *turn, const fu_real *mean_arm, fu_real share, const fu_real *dr, const fu_real *dv, const fu_real *dtheta, const fu_real *dtheta_o, const fu_real *domega_o, fu_real *f_t, fu_real *m_t, fu_real *m_o_t)
+{
+    /* moments about the centre and about the surface's origin */
+    const fu_real
+        lever_x = arm[0] + x[0],
+        lever_y = arm[1] + x[1],
+        lever_z = arm[2] + x[2];
+    /* changes along axes of the surface */
+    const fu_real
+        y_x = dr[0] - dtheta_o[1]*x[2] + dtheta_o[2]*x[1],
+        y_y = dr[1] + dtheta_o[0]*x[2] - dtheta_o[2]*x[0],
+        y_z = dr[2] - dtheta_o[0]*x[1] + dtheta_o[1]*x[0],
+        past_x = -domega_o[1]*x[2] + domega_o[2]*x[1] + dr[1]*omega_o[2] - dr[2]*omega_o[1] - dtheta_o[1]*w[2] + dtheta_o[2]*w[1] + dv[0],
+        past_y = domega_o[0]*x[2] - domega_o[2]*x[0] - dr[0]*omega_o[2] + dr[2]*omega_o[0] + dtheta_o[0]*w[2] - dtheta_o[2]*w[0] + dv[1],
+        past_z = -domega_o[0]*x[1] + domega_o[1]*x[0] + dr[0]*omega_o[1] - dr[1]*omega_o[0] - dtheta_o[0]*w[1] + dtheta_o[1]*w[0] + dv[2],
+        arm_y_x = -(radius*(H[0]*y_x + H[1]*y_y + H[2]*y_z)),
+        arm_y_y = -(radius*(H[3]*y_x + H[4]*y_y + H[5]*y_z)),
+        arm_y_z = -(radius*(H[6]*y_x + H[7]*y_y + H[8]*y_z)),
+        phi0 = dtheta[0] - dtheta_o[0],
+        phi1 = dtheta[1] - dtheta_o[1],
+        phi2 = dtheta[2] - dtheta_o[2],
+        stretch_x = -mean_arm[1]*(0.5*phi0*turn[1] - 0.5*phi1*turn[0] + phi2) + mean_arm[2]*(-0.5*phi0*turn[2] + phi1 + 0.5*phi2*turn[0]) + share*(-arm_y_y*turn[2] + arm_y_z*turn[1]),
+        stretch_y = mean_arm[0]*(0.5*phi0*turn[1] - 0.5*phi1*turn[0] + phi2) - mean_arm[2]*(phi0 + 0.5*phi1*turn[2] - 0.5*phi2*turn[1]) + share*(arm_y_x*turn[2] - arm_y_z*turn[0]),
+        stretch_z = -mean_arm[0]*(-0.5*phi0*turn[2] + phi1 + 0.5*phi2*turn[0]) + mean_arm[1]*(phi0 + 0.5*phi1*turn[2] - 0.5*phi2*turn[1]) + share*(-arm_y_x*turn[1] + arm_y_y*turn[0]);
+    /* changes in global axes */
+    const fu_real
+        df_x = dtheta_o[1]*f[2] - dtheta_o[2]*f[1] + f_w[0]*past_x + f_w[1]*past_y + f_w[2]*past_z + f_x[0]*stretch_x + f_x[1]*stretch_y + f_x[2]*stretch_z + f_y[0]*y_x + f_y[1]*y_y + f_y[2]*y_z,
+        df_y = -dtheta_o[0]*f[2] + dtheta_o[2]*f[0] + f_w[3]*past_x + f_w[4]*past_y + f_w[5]*past_z + f_x[3]*stretch_x + f_x[4]*stretch_y + f_x[5]*stretch_z + f_y[3]*y_x + f_y[4]*y_y + f_y[5]*y_z,
+        df_z = dtheta_o[0]*f[1] - dtheta_o[1]*f[0] + f_w[6]*past_x + f_w[7]*past_y + f_w[8]*past_z + f_x[6]*stretch_x + f_x[7]*stretch_y + f_x[8]*stretch_z + f_y[6]*y_x + f_y[7]*y_y + f_y[8]*y_z,
+        d_near0 = arm[1]*df_z - arm[2]*df_y - f[1]*(-arm[0]*dtheta_o[1] + arm[1]*dtheta_o[0] + arm_y_z) + f[2]*(arm[0]*dtheta_o[2] - arm[2]*dtheta_o[0] + arm_y_y),
+        d_near1 = -arm[0]*df_z + arm[2]*df_x + f[0]*(-arm[0]*dtheta_o[1] + arm[1]*dtheta_o[0] + arm_y_z) - f[2]*(-arm[1]*dtheta_o[2] + arm[2]*dtheta_o[1] + arm_y_x),
+        d_near2 = arm[0]*df_y - arm[1]*df_x - f[0]*(arm[0]*dtheta_o[2] - arm[2]*dtheta_o[0] + arm_y_y) + f[1]*(-arm[1]*dtheta_o[2] + arm[2]*dtheta_o[1] + arm_y_x),
+        d_lever_y = arm[0]*dtheta_o[2] - arm[2]*dtheta_o[0] + arm_y_y + dr[1],
+        d_lever_z = -arm[0]*dtheta_o[1] + arm[1]*dtheta_o[0] + arm_y_z + dr[2],
+        d_far0 = d_lever_y*f[2] - d_lever_z*f[1] - df_y*lever_z + df_z*lever_y,
+        d_lever_x = -arm[1]*dtheta_o[2] + arm[2]*dtheta_o[1] + arm_y_x + dr[0],
+        d_far1 = -d_lever_x*f[2] + d_lever_z*f[0] + df_x*lever_z - df_z*lever_x,
+        d_far2 = d_lever_x*f[1] - d_lever_y*f[0] - df_x*lever_y + df_y*lever_x;
+    /* outputs */
+    f_t[0] = df_x;
+    f_t[1] = df_y;
+    f_t[2] = df_z;
+    m_t[0] = d_near0;
+    m_t[1] = d_near1;
+    m_t[2] = d_near2;
+    m_o_t[0] = d_far0;
+    m_o_t[1] = d_far1;
+    m_o_t[2] = d_far2;
+}
+
 /* rates of the distance of a moving point from a moving surface; 49 add, 42 mul */
 void surface_motion(const fu_real *n, const fu_real *H, const fu_real *r, const fu_real *v, const fu_real *a, const fu_real *r_o, const fu_real *v_o, const fu_real *a_o, const fu_real *omega_o, const fu_real *alpha_o, fu_real *g_t, fu_real *g_tt)
 {

@@ -26,6 +26,11 @@ def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
+def moment_of(arm: np.ndarray, force: np.ndarray) -> np.ndarray:
+    """Return arm x force, (3,), in the plane (1,)."""
+    return cross(arm, force) if len(arm) == 3 else np.array([arm[0] * force[1] - arm[1] * force[0]])
+
+
 def spatial(vector: np.ndarray | Sequence[Any]) -> np.ndarray:
     """Return a vector of the plane or of space with three components."""
     return np.concatenate([vector, np.full(3 - len(vector), sp.S.Zero)])

@@ -12,14 +12,14 @@ import sympy as sp
 
 from ..algebra.tangent_frame import cross
 from ..codegen.program import DirectionalDerivative, Program
-from . import load_kernels, moves
+from . import moves
 from .body import Body, Rider
 
 
 def build(body: Body) -> list[Program]:
     """Return the programs of every kernel of a body."""
-    return [place(body), point(body), point_force(body), frame(body), inertia_force(body), inertia_tangent(body),
-            kinetic_energy(body), discrete_point(body), *load_kernels.build(body), *moves.build(body)]
+    return [place(body), point(body), frame(body), wrench(body), inertia_force(body), inertia_tangent(body),
+            kinetic_energy(body), discrete_point(body), *moves.build(body)]
 
 
 def _position(p: Program, body: Body, b: np.ndarray, u: np.ndarray) -> tuple[Any, np.ndarray,
@@ -62,36 +62,46 @@ def point(body: Body) -> Program:
     return p
 
 
-def point_force(body: Body) -> Program:
-    """Return the kernel of the derivative of p_q' f, what a force f on a point puts on the body."""
-    p = Program(f"{body.NAME}_point_force", "position and Jacobian of a point, derivative of the force p_q' f",
-                body.SOURCE)
-    b, u = body.configuration(p), body.attachment(p)
-    f = p.input("f", body.DIM, "N", "force on the point, held fixed")
-    _, at, by = _position(p, body, b, u)
-    p_q = _jacobian(p, at, by)
-    p.stage("derivative of the generalised force")
-    force = np.array([p.define(f"g{k}", f.dot(column)) for k, column in enumerate(p_q.T)])
-    p.output("K", np.stack([d.array(force) for d in by], axis=1), "N/m, N, N m",
-             "derivatives of p_q' f by translation and rotation")
-    return p
+def _turns(body: Body, A: np.ndarray) -> np.ndarray:
+    """Return T: the turn of the body about global axes by translation and rotation."""
+    turns = body.N_VELOCITY - body.DIM
+    T = np.zeros((turns, body.N_VELOCITY), dtype=object)
+    T[:, body.DIM :] = A if turns == body.DIM else 1
+    return T
 
 
 def frame(body: Body) -> Program:
-    """Return the kernel of the body's axes, their turn, and the derivative of a moment on them."""
-    p = Program(f"{body.NAME}_frame", "axes, their turn, and the derivative of a moment on them", body.SOURCE)
+    """Return the kernel of the body's axes and their turn."""
+    p = Program(f"{body.NAME}_frame", "axes of the body, and their turn", body.SOURCE)
     b = body.configuration(p)
-    turns = body.N_VELOCITY - body.DIM
-    m = p.input("m", turns, "N m", "moment in global axes, held fixed")
     p.stage("axes")
     A = body.axes(p, b)
-    T = np.zeros((turns, body.N_VELOCITY), dtype=object)
-    T[:, body.DIM :] = A if turns == body.DIM else 1
-    p.stage("moment about the axes of rotation")
-    g = np.array([p.define(f"g{k}", m.dot(column)) for k, column in enumerate(T.T)])
     p.output("A", A, "1", "axes of the body by columns")
-    p.output("T", T, "rad", "dA = (T dq)~ A: turn about global axes by translation and rotation")
-    p.output("K", np.stack([d.array(g) for d in body.tangents(p, b, A)], axis=1), "N m", "derivatives of T' m")
+    p.output("T", _turns(body, A), "rad", "dA = (T dq)~ A: turn about global axes by translation and rotation")
+    return p
+
+
+def wrench(body: Body) -> Program:
+    """Return the kernel of the derivatives by the configuration of the generalised force of a force and a moment at a
+    point, and of the velocities there at fixed rates.
+    """
+    p = Program(f"{body.NAME}_wrench", "derivatives of the generalised force of a wrench, and of velocities at a point",
+                body.SOURCE)
+    b, u, w = body.configuration(p), body.attachment(p), body.velocity(p)
+    f = p.input("f", body.DIM, "N", "force on the point, held fixed")
+    m = p.input("m", body.N_VELOCITY - body.DIM, "N m", "moment in global axes, held fixed")
+    A, at, by = _position(p, body, b, u)
+    p_q, T = np.stack([d.array(at) for d in by], axis=1), _turns(body, A)
+    p.stage("generalised force")
+    force = np.array([p.define(f"g{k}", f.dot(p_q[:, k]) + m.dot(T[:, k])) for k in range(body.N_VELOCITY)])
+    p.stage("velocities")
+    v = p.vector("speed", DirectionalDerivative(p, "dt", body.rate(b, A, w)).array(at))
+    omega = np.array([p.define(f"spin{k}", row.dot(w)) for k, row in enumerate(T)])
+    p.stage("derivatives by translation and rotation")
+    for name, values, unit, doc in (("K", force, "N/m, N, N m", "derivatives of p_q' f + T' m"),
+                                    ("v_q", v, "1/s, m/s", "derivatives of the velocity of the point at fixed rates"),
+                                    ("omega_q", omega, "1/(m s), 1/s", "derivatives of the angular velocity")):
+        p.output(name, np.stack([d.array(values) for d in by], axis=1), unit, f"{doc} by translation and rotation")
     return p
 
 

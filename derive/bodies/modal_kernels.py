@@ -30,8 +30,8 @@ def build(name: str, frame: Body) -> list[Program]:
     """Return the programs of every kernel of a modal body on a frame."""
     return [make(name, frame) for make in (
         inertia_force, mass_matrix, inertia_tangent, mode_force_, mode_mass, mode_tangent, pair_tangent,
-        kinetic_energy, potential_energy, attachment, attachment_mode, attachment_force, attachment_mode_force,
-        attachment_pair_force, attachment_follower, attachment_mode_follower, attachment_pair_follower)]
+        kinetic_energy, potential_energy, attachment, attachment_mode, attachment_wrench, attachment_mode_wrench,
+        attachment_pair_wrench)]
 
 
 def inertia_force(name: str, frame: Body) -> Program:
@@ -167,20 +167,10 @@ class Point:
         self.scale = p.define("inv_theta", 1 / (1 + self.theta.dot(self.theta) / 4))
         self.at = frame.origin(self.b) + frame.arm(p, self.A, self.u)
 
-    def section_in_body(self) -> np.ndarray:
-        """Return C, by columns the axes of the section in body axes."""
-        tilde = skew(self.theta)
-        return np.asarray(np.eye(len(tilde), dtype=int) + self.scale * (tilde + tilde.dot(tilde) / 2))
-
     def section(self) -> np.ndarray:
-        """Return A C, by columns the axes of the section."""
-        return np.asarray(self.A.dot(self.section_in_body()))
-
-    def follower(self) -> np.ndarray:
-        """Declare the input c, a force along the axes of the section, and return it in body axes."""
-        c = self.program.input("c", len(self.u), "N", "force on the point, along the axes of the section")
-        self.program.stage("force in body axes")
-        return self.program.vector("F", self.section_in_body().dot(c))
+        """Return A C, by columns the axes of the section; C has them in body axes."""
+        tilde = skew(self.theta)
+        return np.asarray(self.A.dot(np.eye(len(tilde), dtype=int) + self.scale * (tilde + tilde.dot(tilde) / 2)))
 
     def relative(self, rate: np.ndarray) -> np.ndarray:
         """Turn of the section in body axes by this rate of theta."""
@@ -206,6 +196,18 @@ class Point:
         return (p.input("f", len(self.u), "N", "force on the point, held fixed"),
                 p.input("m", self.turns, "N m", "moment on it, held fixed"))
 
+    def moving(self) -> tuple[DirectionalDerivative, np.ndarray, np.ndarray]:
+        """Declare the inputs w, u1, theta1; return the derivative in time, the velocity, the angular velocity."""
+        p, dim = self.program, self.frame.DIM
+        w = self.frame.velocity(p)
+        u1 = p.input("u1", dim, "m/s", "rate of u")
+        theta1 = p.input("theta1", self.turns, "rad/s", "rate of theta")
+        p.stage("along the motion")
+        along = DirectionalDerivative(p, "dt", self.frame.rate(self.b, self.A, w)
+                                      | dict(zip([*self.u, *self.theta], [*u1, *theta1], strict=True)))
+        velocity = p.vector("v", along.array(self.at))
+        return along, velocity, p.vector("spin", self.turned(w[dim:] + self.relative(theta1)))
+
     def frame_force(self, f: np.ndarray, m: np.ndarray) -> np.ndarray:
         """Return the rows of the frame of P' f + T' m, N and N m."""
         return np.concatenate([f, vector_product(self.u, self.A.T.dot(f)) + self.turned_back(m)])
@@ -228,17 +230,10 @@ def attachment(name: str, frame: Body) -> Program:
     """Return the kernel of a point and its axes: positions, Jacobians P and T by the frame, velocities and biases."""
     p = Program(f"{name}_attachment", "a point and its axes: dp = P dq, d(axes) = (T dq)~ axes, with rates", SOURCE)
     point = Point(p, frame)
-    w = frame.velocity(p)
-    u1 = p.input("u1", frame.DIM, "m/s", "rate of u")
-    theta1 = p.input("theta1", point.turns, "rad/s", "rate of theta")
     dim = frame.DIM
     turns = np.zeros((point.turns, frame.N_VELOCITY), dtype=int).astype(object)
     turns[:, dim:] = np.stack([point.turned(e) for e in np.eye(point.turns, dtype=int)], axis=1)
-    p.stage("along the motion")
-    along = DirectionalDerivative(p, "dt", frame.rate(point.b, point.A, w)
-                       | dict(zip([*point.u, *point.theta], [*u1, *theta1], strict=True)))
-    velocity = p.vector("v", along.array(point.at))
-    omega = p.vector("spin", point.turned(w[dim:] + point.relative(theta1)))
+    along, velocity, omega = point.moving()
     p.output("p", point.at, "m", "R + A u")
     p.output("axes", point.section(), "1", "axes of the section, by columns")
     p.output("P", point.by_frame(point.at), "1, m", "dp by translation and rotation about body axes")
@@ -260,78 +255,45 @@ def attachment_mode(name: str, frame: Body) -> Program:
     return p
 
 
-def attachment_force(name: str, frame: Body) -> Program:
-    """Return the kernel of the derivative of the frame's rows of P' f + T' m by the frame."""
-    p = Program(f"{name}_attachment_force", "derivatives of the frame's rows of P' f + T' m by the frame", SOURCE)
+def attachment_wrench(name: str, frame: Body) -> Program:
+    """Return the kernel of the derivatives by the frame of its rows of P' f + T' m, and of the velocities there."""
+    p = Program(f"{name}_attachment_wrench", "derivatives by the frame of its rows of P' f + T' m, and of velocities",
+                SOURCE)
     point = Point(p, frame)
     force = point.frame_force(*point.loads())
+    _, velocity, omega = point.moving()
     p.stage("derivatives")
     p.output("K", point.by_frame(force), "N/m, N, N m", "by translation and rotation")
+    p.output("v_q", point.by_frame(velocity), "1/s, m/s", "derivatives of p' at fixed rates")
+    p.output("omega_q", point.by_frame(omega), "1/(m s), 1/s", "derivatives of the angular velocity at fixed rates")
     return p
 
 
-def attachment_mode_force(name: str, frame: Body) -> Program:
-    """Return the kernel of the derivatives of P' f + T' m that couple the frame and a mode."""
-    p = Program(f"{name}_attachment_mode_force",
-                "derivatives of P' f + T' m: the mode's row by the frame, and the reverse", SOURCE)
+def attachment_mode_wrench(name: str, frame: Body) -> Program:
+    """Return the kernel of the derivatives of P' f + T' m that couple the frame and a mode, and of velocities by it."""
+    p = Program(f"{name}_attachment_mode_wrench",
+                "derivatives of P' f + T' m: the mode's row by the frame, and the reverse; of velocities by the mode",
+                SOURCE)
     point = Point(p, frame)
     phi, psi = point.mode()
     f, m = point.loads()
     force = point.mode_force(phi, psi, f, m)
+    _, velocity, omega = point.moving()
     p.stage("derivatives")
     p.output("K", point.by_frame(np.array([force]))[0], "N/m, N", "of the mode's row by translation and rotation")
     p.output("K_frame", point.by_mode(phi, psi, point.frame_force(f, m)), "N/m, N", "of the frame's rows by eta")
+    p.output("v_eta", point.by_mode(phi, psi, velocity), "1/s", "of p' by eta at fixed rates")
+    p.output("omega_eta", point.by_mode(phi, psi, omega), "1/(m s)", "of the angular velocity by eta at fixed rates")
     return p
 
 
-def attachment_pair_force(name: str, frame: Body) -> Program:
+def attachment_pair_wrench(name: str, frame: Body) -> Program:
     """Return the kernel of the derivatives of P' f + T' m that couple two modes."""
-    p = Program(f"{name}_attachment_pair_force", "derivative of mode k's row of P' f + T' m by eta of mode l", SOURCE)
+    p = Program(f"{name}_attachment_pair_wrench", "derivative of mode k's row of P' f + T' m by eta of mode l", SOURCE)
     point = Point(p, frame)
     phi, psi = point.mode()
     phi_l, psi_l = point.mode("_l")
     force = point.mode_force(phi, psi, *point.loads())
-    p.stage("derivative")
-    p.output("K", point.by_mode(phi_l, psi_l, np.array([force])), "N/m", "by eta_l")
-    return p
-
-
-def attachment_follower(name: str, frame: Body) -> Program:
-    """Return the kernel of the frame's rows of a follower force, and of K of the frame."""
-    p = Program(f"{name}_attachment_follower", "the frame's rows of a force that turns with the section", SOURCE)
-    point = Point(p, frame)
-    local = point.follower()
-    force = np.concatenate([point.A.dot(local), vector_product(point.u, local)])
-    p.stage("derivatives")
-    p.output("g", force, "N, N m", "force in global axes, moment about the origin in body axes")
-    p.output("K", point.by_frame(force), "N, N m", "by translation and rotation")
-    return p
-
-
-def attachment_mode_follower(name: str, frame: Body) -> Program:
-    """Return the kernel of a mode's row of a follower force, which the frame's motion does not change, and of K of the
-    frame by the mode.
-    """
-    p = Program(f"{name}_attachment_mode_follower", "a mode's row of a force that turns with the section; K by eta",
-                SOURCE)
-    point = Point(p, frame)
-    phi, psi = point.mode()
-    local = point.follower()
-    p.output("g", phi.dot(local), "N", "the mode's row")
-    p.stage("derivatives")
-    rows = np.concatenate([point.A.dot(local), vector_product(point.u, local)])
-    p.output("K_frame", point.by_mode(phi, psi, rows), "N/m, N", "of the frame's rows by eta")
-    return p
-
-
-def attachment_pair_follower(name: str, frame: Body) -> Program:
-    """Return the kernel of K between modes of a follower force."""
-    p = Program(f"{name}_attachment_pair_follower", "derivative of mode k's row of a follower force by eta of mode l",
-                SOURCE)
-    point = Point(p, frame)
-    phi, _ = point.mode()
-    phi_l, psi_l = point.mode("_l")
-    force = phi.dot(point.follower())
     p.stage("derivative")
     p.output("K", point.by_mode(phi_l, psi_l, np.array([force])), "N/m", "by eta_l")
     return p

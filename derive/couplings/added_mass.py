@@ -17,7 +17,7 @@ from __future__ import annotations
 import numpy as np
 import sympy as sp
 
-from ..algebra.tangent_frame import cross
+from ..algebra.tangent_frame import cross, moment_of
 from ..codegen.program import DirectionalDerivative, Program, jacobian
 
 PAST = "velocity of the point past the fluid"
@@ -149,7 +149,7 @@ def of_point(name: str, dim: int) -> Program:
     impulse = p.vector("P", M.dot(w))
     rest = p.vector("rest", w_rate - cross(omega, w))
     impulse_rate = p.vector("P_rate", M.dot(rest) + cross(omega, impulse))
-    moment = np.array([p.define(f"moment{k}", value) for k, value in enumerate(_moment(w, impulse))])
+    moment = np.array([p.define(f"moment{k}", value) for k, value in enumerate(moment_of(w, impulse))])
     p.stage("derivatives")
     units = np.eye(turns, dtype=int)
     swung = [DirectionalDerivative(p, f"d_th{k + 1}", turned(A, axis)) for k, axis in enumerate(units)]
@@ -191,20 +191,15 @@ def of_point_step(name: str, dim: int) -> Program:
     P, P_next = p.vector("P", M.dot(w)), p.vector("Q", M_next.dot(w_next))
     dp = p.vector("dp", P_next - P)
     p.stage("moment")
-    moment = _moment(turning, dp) / 4
+    moment = moment_of(turning, dp) / 4
     for sign, at in ((1, p.vector("a", (w + w_next) / 2)), (-1, p.vector("b", (w_next - w) / 2))):
         y = p.vector(f"y_{'ab'[sign < 0]}", cross(theta, at))
-        moment = moment + sign * (_moment(at, (M + M_next).dot(at)) / 2 - _moment(y, N.dot(y)) / 4)
+        moment = moment + sign * (moment_of(at, (M + M_next).dot(at)) / 2 - moment_of(y, N.dot(y)) / 4)
     p.output("dp", dp, "kg m/s", "change of the impulse A C A' w")
     p.output("p", (P + P_next) / 2, "kg m/s", "its mean")
     p.output("moment", moment, "N m", "that does the work of w x p over the step")
     p.output("more", cross(theta, turning) / 4, "m/s", "mean velocity at both ends, less way over step")
     return p
-
-
-def _moment(w: np.ndarray, impulse: np.ndarray) -> np.ndarray:
-    """Return w x p, (3,), in the plane (1,)."""
-    return cross(w, impulse) if len(w) == 3 else np.array([w[0] * impulse[1] - w[1] * impulse[0]])
 
 
 def turned(A: np.ndarray, axis: np.ndarray) -> dict[sp.Symbol, sp.Expr]:

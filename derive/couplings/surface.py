@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from ..algebra.tangent_frame import cross
+from ..algebra.tangent_frame import cross, moment_of
 from ..codegen.program import DirectionalDerivative, Program
 from .frame import TURNS
 from .stretch import sliding_force, sticking_force
@@ -32,7 +32,7 @@ HEIGHTS = {2: ("h", "h_1", "h_11", "h_111"),
 def build(dim: int) -> list[Program]:
     """Return the kernels in space or in the plane."""
     return [*(make(dim) for make in (flat, rounded, terrain)), push(dim, hertz=False), push(dim, hertz=True),
-            *(make(dim) for make in (pressing, sticking, sliding, motion, slip))]
+            *(make(dim) for make in (pressing, sticking, sliding, reaction, motion, slip))]
 
 
 def _program(dim: int, name: str, doc: str) -> Program:
@@ -223,6 +223,52 @@ def sliding(dim: int) -> Program:
     _outputs(p, f, _moving(p, dim, press, n, H, w, by_d, by_rate, x))
     # in the plane friction that slides has one direction, whatever the stretch is
     return _by_stretch(p, np.zeros((dim, dim), dtype=int) if dim == 2 else _along_each(p, dim, f, x))
+
+
+def reaction(dim: int) -> Program:
+    """Return the kernel of the change of contact, and of its moments, along a motion of a sphere and of a surface.
+
+    The force depends on place, velocity and stretch along axes that turn with the surface. The stretch of a sphere that
+    rolls has the part turn x mean_arm; a turn phi changes `turn` by phi - turn x phi/2, to first order in `turn`.
+    """
+    p = _program(dim, "reaction", "change of contact along a motion of the point and of the surface")
+    turns = TURNS[dim]
+    x = p.input("x", dim, "m", "the point from the surface's origin")
+    w = p.input("w", dim, "m/s", "velocity of the point past the surface")
+    omega_o = p.input("omega_o", turns, "rad/s", "angular velocity of the surface, global axes")
+    f = p.input("f", dim, "N (a length)", "force on the point")
+    f_y, f_w, f_x = (p.input(name, (dim, dim), unit, f"its derivatives by {by}") for name, unit, by in (
+        ("f_y", "N/m (a length)", "the place"), ("f_w", "N s/m (a length)", "the velocity"),
+        ("f_x", "N/m (a length)", "the stretch alone")))
+    H = p.input("H", (dim, dim), "1/m", "second derivative of the distance")
+    radius = p.input("radius", (), "m", "radius of the sphere about the point")
+    arm = p.input("arm", dim, "m", "from the point to where the force acts")
+    turn = p.input("turn", turns, "rad", "turn of the sphere past the surface since the last step, global axes")
+    mean_arm = p.input("mean_arm", dim, "m", "mean of the arms now and then")
+    share = p.input("share", (), "1", "share of the arm in that mean")
+    dr = p.input("dr", dim, "m", "change of x")
+    dv = p.input("dv", dim, "m/s", "change of the velocity of the point past that of the surface's origin")
+    turned, turned_o = (p.input(name, turns, "rad", f"turn of the {of}") for name, of in (
+        ("dtheta", "sphere"), ("dtheta_o", "surface")))
+    faster = p.input("domega_o", turns, "rad/s", "change of omega_o")
+    p.stage("moments about the centre and about the surface's origin")
+    moments = [np.array([p.define(f"{name}{k}", each) for k, each in enumerate(moment_of(of, f))])
+               for name, of in (("near", arm), ("far", p.vector("lever", x + arm)))]
+    p.stage("changes along axes of the surface")
+    y = p.vector("y", dr - cross(turned_o, x))
+    past = p.vector("past", dv - cross(omega_o, dr) - cross(faster, x) - cross(turned_o, w))
+    arm_y = p.vector("arm_y", -radius * H.dot(y))
+    relative = np.array([p.define(f"phi{k}", each) for k, each in enumerate(turned - turned_o)])
+    rolled = relative - cross(turn, relative) / 2 if dim == 3 else relative
+    stretch = p.vector("stretch", cross(rolled, mean_arm) + share * cross(turn, arm_y))
+    p.stage("changes in global axes")
+    force = p.vector("df", f_y.dot(y) + f_w.dot(past) + f_x.dot(stretch) + cross(turned_o, f))
+    by = DirectionalDerivative(p, "d", dict(zip([*x, *arm, *f], [*dr, *(arm_y + cross(turned_o, arm)), *force],
+                                                strict=True)))
+    p.output("f_t", force, "N (a length)", "change of f")
+    p.output("m_t", by.array(moments[0]), "N m (a length)", "change of arm x f")
+    p.output("m_o_t", by.array(moments[1]), "N m (a length)", "change of (x + arm) x f")
+    return p
 
 
 class _Passing:

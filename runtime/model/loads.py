@@ -10,7 +10,7 @@ import numpy as np
 from ..checks.placement import placed_attachment
 from ..parts.attachment import Attachment
 from ..parts.load import DistributedForce, Force, Load, Moment
-from .attachments import ModelBuilder
+from .attachments import AttachmentModel, ModelBuilder
 from .coupling import CouplingKind, CouplingModel
 
 GAUSS = np.polynomial.legendre.leggauss(4)
@@ -35,17 +35,14 @@ class DeadLoadModel(CouplingModel):
 class LoadModel(CouplingModel):
     """A load that depends on rotations of its cable or body.
 
-    kind: cable_follower, cable_moment, body_force, body_follower or body_moment; modal: see `AttachmentModel`.
+    kind: cable_follower, cable_moment, body_force, body_follower or body_moment; x: place in an element, m.
     """
 
     kind: str
     signal: int
-    on: int
-    element: int
+    on: AttachmentModel
     x: float
-    u: tuple[float, ...]
     c: tuple[float, float, float]
-    modal: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
 
 
 class LoadBuilder:
@@ -73,8 +70,8 @@ class LoadBuilder:
             kind = "body_moment" if isinstance(load, Moment) else "body_follower" if load.follower else "body_force"
             attachment = Attachment(on=load.on, s=load.s, at=getattr(load, "at", None))
             on = self.builder.attachment(placed_attachment(self.scene, attachment, load.where))
-            self.turning.append(LoadModel(kind, number, on.body, 0, 0.0, on.u, (value[0], value[1], value[2]), on.modal,
-                                          type="load"))
+            on.axes = np.eye(self.scene.dim)
+            self.turning.append(LoadModel(kind, number, on, 0.0, (value[0], value[1], value[2]), type="load"))
 
     def _distributed(self, load: DistributedForce, number: int, value: np.ndarray) -> None:
         model = self.cables[self.builder.cable_index[load.cable]]
@@ -102,8 +99,9 @@ class LoadBuilder:
     def _turning(self, kind: str, number: int, cable: str, points: Iterable[tuple[int, float, float]],
                  value: np.ndarray) -> None:
         c = np.array([value[2], 0.0, 0.0]) if kind == "cable_moment" and self.scene.dim == 2 else value
-        self.turning += [LoadModel(kind, number, self.builder.cable_index[cable], element, x, (0.0, 0.0, 0.0),
-                                   tuple(weight * c), type="load") for element, x, weight in points]
+        on = self.builder.cable_index[cable]
+        self.turning += [LoadModel(kind, number, AttachmentModel(cable=on, element=element), x, tuple(weight * c),
+                                   type="load") for element, x, weight in points]
 
 
 def _loads(builder: ModelBuilder) -> tuple[list[DeadLoadModel], list[LoadModel]]:

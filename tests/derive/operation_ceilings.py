@@ -155,28 +155,24 @@ CEILINGS = {
         "damping_tangent": 2313, "dissipation": 329, "section_forces": 343
     },
     "rigid": {
-        "place": 93, "point": 207, "point_force": 183, "inertia_force": 45, "inertia_tangent": 48, "kinetic_energy": 31,
-        "discrete_point": 230, "frame": 78, "force": 117, "follower_force": 99, "moment": 93, "move": 93,
-        "move_tangent": 82, "cayley_move": 43, "cayley_tangent": 16, "halfway": 26, "rate": 23, "increment": 24,
-        "cayley_error": 51
+        "place": 93, "point": 207, "wrench": 282, "inertia_force": 45, "inertia_tangent": 48, "kinetic_energy": 31,
+        "discrete_point": 230, "frame": 48, "move": 93, "move_tangent": 82, "cayley_move": 43,
+        "cayley_tangent": 16, "halfway": 26, "rate": 23, "increment": 24, "cayley_error": 51
     },
     "planar_rigid": {
-        "place": 14, "point": 40, "point_force": 23, "inertia_force": 3, "inertia_tangent": 0, "kinetic_energy": 9,
-        "discrete_point": 18, "frame": 0, "force": 18, "follower_force": 15, "moment": 0, "move": 17,
-        "move_tangent": 0, "cayley_move": 22, "cayley_tangent": 4, "halfway": 15, "rate": 2, "increment": 3,
-        "cayley_error": 3
+        "place": 14, "point": 40, "wrench": 19, "inertia_force": 3, "inertia_tangent": 0, "kinetic_energy": 9,
+        "discrete_point": 18, "frame": 0, "move": 17, "move_tangent": 0, "cayley_move": 22, "cayley_tangent": 4,
+        "halfway": 15, "rate": 2, "increment": 3, "cayley_error": 3
     },
     "modal": {
         "inertia_force": 312, "mass_matrix": 105, "inertia_tangent": 675, "mode_force": 137, "mode_mass": 66,
         "mode_tangent": 459, "pair_tangent": 55, "kinetic_energy": 135, "potential_energy": 74, "attachment": 836,
-        "attachment_mode": 151, "attachment_force": 183, "attachment_mode_force": 310, "attachment_pair_force": 164,
-        "attachment_follower": 169, "attachment_mode_follower": 307, "attachment_pair_follower": 163
+        "attachment_mode": 151, "attachment_wrench": 463, "attachment_mode_wrench": 515, "attachment_pair_wrench": 164
     },
     "planar_modal": {
         "inertia_force": 71, "mass_matrix": 13, "inertia_tangent": 80, "mode_force": 31, "mode_mass": 7,
         "mode_tangent": 94, "pair_tangent": 14, "kinetic_energy": 32, "potential_energy": 13, "attachment": 107,
-        "attachment_mode": 11, "attachment_force": 9, "attachment_mode_force": 18, "attachment_pair_force": 10,
-        "attachment_follower": 35, "attachment_mode_follower": 64, "attachment_pair_follower": 35
+        "attachment_mode": 11, "attachment_wrench": 23, "attachment_mode_wrench": 37, "attachment_pair_wrench": 10
     },
     "slide_beam24_rigid": {"constraint": 599, "terms": 1646, "residual": 209, "tangent": 286, "discrete_gradient": 397},
     "slide_cable12_rigid": {
@@ -251,7 +247,7 @@ CEILINGS = {
     "planar_crossing": {"closest": 12, "contact": 59, "force": 309, "motion": 24, "stretch": 97, "sticking": 523,
                         "sliding": 324, "step": 101, "turned": 56},
     "surface": {"flat": 5, "rounded": 61, "terrain": 116, "push": 12, "push_hertz": 29, "pressing": 90, "sticking": 185,
-                "sliding": 468, "motion": 91, "slip": 123},
+                "sliding": 468, "reaction": 276, "motion": 91, "slip": 123},
     "planar_surface": {"flat": 3, "rounded": 33, "terrain": 35, "push": 12, "push_hertz": 29, "pressing": 40,
-                       "sticking": 89, "sliding": 170, "motion": 40, "slip": 48},
+                       "sticking": 89, "sliding": 170, "reaction": 85, "motion": 40, "slip": 48},
 }

@@ -60,7 +60,7 @@ def test_what_is_checked_in_passes(capsys):
     ("rigid", "rigid_point", "p_q[4]"),
     ("rigid", "rigid_inertia_force", "f[5]"),
     ("rigid", "rigid_kinetic_energy", "T[0]"),
-    ("planar_rigid", "planar_rigid_point_force", "K[8]"),
+    ("planar_rigid", "planar_rigid_wrench", "K[8]"),
     ("slide_cable8p_planar_rigid", "slide_cable8p_planar_rigid_terms", "W[0]"),
     ("beam12p", "beam12p_follower_force", "K[2]"),
     ("cable12", "cable12_moment", "f[4]"),

@@ -172,6 +172,8 @@ def test_attachments_are_derivatives_of_points_and_axes(tmp_path):
         np.testing.assert_allclose((after["axes"] - before["axes"]) / (2 * h), turned, atol=1e-8)
         pulled = [out["P"].T @ f + out["T"].T @ m for out in (after, before)]
         np.testing.assert_allclose((pulled[0] - pulled[1]) / (2 * h), here["K"][:, k], atol=1e-7)
+        for name, value in (("v_q", "velocity"), ("omega_q", "omega")):
+            np.testing.assert_allclose((after[value] - before[value]) / (2 * h), here[name][:, k], atol=1e-7)
     np.testing.assert_allclose(here["velocity"], here["P"] @ w, atol=1e-13)
     np.testing.assert_allclose(here["omega"], here["T"] @ w, atol=1e-13)
     for name, value in (("bias", "velocity"), ("omega_bias", "omega")):

@@ -17,7 +17,7 @@ def body(family: BodyFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     """Yield lengths, power, and digits far away."""
     rider = RIDERS[family.rider]
     dim, n = rider.dim, rider.n_velocity
-    out, force = k("point", s), k("point_force", s)
+    out, force = k("point", s), k("wrench", {**s, "m": 0 * s["m"]})
     distance = np.linalg.norm(out["p"] - s["b"][:dim])
     yield "the point keeps its distance", float(abs(distance / np.linalg.norm(s["u"]) - 1)), 8 * EPS
     yield "velocity is p_q w", relative(out["v"] - out["p_q"] @ s["w"], out["v"]), 8 * EPS
@@ -27,9 +27,9 @@ def body(family: BodyFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     yield "position at 10⁴ lengths", relative(away["p"] - b[:dim] - arm, b[:dim]), 2 * EPS
     yield "derivatives: same digits at 10⁴ lengths", max(
         *(relative(away[name] - out[name], out[name]) for name in ("p_q", "v", "bias")),
-        relative(k("point_force", s, b=b)["K"] - force["K"], force["K"])), 0.0
+        *(relative(k("wrench", s, b=b)[name] - k("wrench", s)[name], force["K"]) for name in ("K", "v_q"))), 0.0
     turning = force["K"][dim:, dim:]
-    bracket = rider.bracket((force["p_q"].T @ s["f"])[dim:])
+    bracket = rider.bracket((out["p_q"].T @ s["f"])[dim:])
     yield "K symmetric, but for the bracket of rotations", relative(turning - turning.T - bracket, turning), 16 * EPS
     f = k("inertia_force", s)["f"]
     still = k("inertia_force", s, a=np.zeros(n))["f"]

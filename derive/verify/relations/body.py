@@ -9,7 +9,7 @@ import numpy as np
 from ...codegen.family import BodyFamily
 from ..methods import Relation
 from ..motion import RIDERS, cross, exponential, spin, swung_axes, turned
-from .moves import loads, moves
+from .moves import moves
 from .paths import entry, from_kernel, unit
 
 
@@ -24,9 +24,11 @@ def body(family: BodyFamily) -> list[Relation]:
     def by_coordinate(k, s, t, j):
         return point(k, s, t * unit(s["w"], j))
 
-    def force_of_point(k, s, t, j):
-        out = k("point_force", s, b=rider.moved(k, s["b"], t * unit(s["w"], j)))
-        return out["p_q"].T.dot(s["f"])
+    def moved(kernel, k, s, t, j):
+        return k(kernel, s, b=rider.moved(k, s["b"], t * unit(s["w"], j)))
+
+    def force_of_wrench(k, s, t, j):
+        return moved("point", k, s, t, j)["p_q"].T.dot(s["f"]) + moved("frame", k, s, t, j)["T"].T.dot(s["m"])
 
     def momentum(k, s, t, j):
         """Return momenta in the axes of t = 0: mass velocity, A J omega about the axes of rotation."""
@@ -50,10 +52,12 @@ def body(family: BodyFamily) -> list[Relation]:
         Relation("point", "bias", "d²p/dt² at constant velocities", 2, lambda k, s, t, j: point(k, s, t * s["w"])),
         replace(at, kernel="place"),
         replace(p_q, kernel="place"),
-        replace(at, kernel="point_force"),
-        replace(p_q, kernel="point_force"),
         *_frame(rider),
-        Relation("point_force", "K", "d(p_q' f) by translation and rotation", 1, force_of_point, n),
+        Relation("wrench", "K", "d(p_q' f + T' m) by translation and rotation", 1, force_of_wrench, n),
+        Relation("wrench", "v_q", "dv by translation and rotation at fixed rates", 1,
+                 lambda k, s, t, j: moved("point", k, s, t, j)["v"], n),
+        Relation("wrench", "omega_q", "d(T w) by translation and rotation at fixed rates", 1,
+                 lambda k, s, t, j: moved("frame", k, s, t, j)["T"].dot(s["w"]), n),
         Relation("discrete_point", "P", "P step is p_next - p", 0,
                  lambda k, s, t, j: rider.point(s["b_next"], s["u"]) - rider.point(s["b"], s["u"]),
                  of=lambda k, s: k("discrete_point", s)["P"].dot(rider.step(s["b"], s["b_next"]))),
@@ -63,7 +67,6 @@ def body(family: BodyFamily) -> list[Relation]:
         Relation("inertia_tangent", "M", "df/da", 1, from_kernel("inertia_force", "f", a=entry("a")), n),
         Relation("inertia_tangent", "D", "df/dw", 1, from_kernel("inertia_force", "f", w=entry("w")), n),
         Relation("kinetic_energy", "T", "Σ ½ m v² of point masses", 0, kinetic_energy),
-        *loads(rider),
         *moves(rider),
     ]
 
@@ -93,6 +96,4 @@ def _frame(rider) -> list[Relation]:
     return [
         Relation("frame", "A", "axes by quaternions or complex numbers", 0, axes),
         Relation("frame", "T", "dA is T's turn of A", 1, lambda k, s, t, j: moved(k, s, t, j)["A"], n, of=turn),
-        Relation("frame", "K", "d(T' m) by translation and rotation", 1,
-                 lambda k, s, t, j: moved(k, s, t, j)["T"].T.dot(s["m"]), n),
     ]

@@ -159,14 +159,8 @@ def mode_pulled(k: Numbers, s: State, **changes) -> np.ndarray:
     return out["P"].dot(s["f"]) + out["T"].dot(s["m"])
 
 
-def followed(k: Numbers, s: State) -> np.ndarray:
-    """Return the force c along the axes of the section, in global axes."""
-    return k("attachment", s)["axes"].dot(s["c"])
-
-
-def follower(kernel: str) -> Callable[..., Any]:
-    """Return the force g of a kernel as a function of the state, changed."""
-    return lambda k, s, **changes: k(kernel, s, **changes)["g"]
+RATES_OF = (("v", "velocity"), ("omega", "omega"))
+"""Names of velocities in the kernels of derivatives, and in `attachment`."""
 
 
 def modal(family: BodyFamily) -> list[Relation]:
@@ -213,22 +207,17 @@ def _of_attachment(p: Paths) -> list[Relation]:
         Relation("attachment_mode", "P", "dp by eta", 1, p.point(0, "mode")),
         Relation("attachment_mode", "T", "d axes by eta", 1, p.point(1, "mode"),
                  of=turning("attachment_mode", "T", columns=False)),
-        Relation("attachment_force", "K", "d(P' f + T' m) by translation and rotation", 1, p.by_frame(pulled), n),
-        Relation("attachment_mode_force", "K", "d(P' f + T' m) of the mode by translation and rotation", 1,
+        Relation("attachment_wrench", "K", "d(P' f + T' m) by translation and rotation", 1, p.by_frame(pulled), n),
+        Relation("attachment_mode_wrench", "K", "d(P' f + T' m) of the mode by translation and rotation", 1,
                  p.by_frame(mode_pulled), n),
-        Relation("attachment_mode_force", "K_frame", "d(P' f + T' m) of the frame by eta", 1, by_mode(pulled, 0)),
-        Relation("attachment_pair_force", "K", "d(P' f + T' m) of the mode by eta of the other", 1,
+        Relation("attachment_mode_wrench", "K_frame", "d(P' f + T' m) of the frame by eta", 1, by_mode(pulled, 0)),
+        *(Relation("attachment_wrench", f"{rate}_q", f"d({output}) by translation and rotation at fixed rates", 1,
+                   p.frame_moved("attachment", output), n) for rate, output in RATES_OF),
+        *(Relation("attachment_mode_wrench", f"{rate}_eta", f"d({output}) by eta at fixed rates", 1,
+                   by_mode(lambda k, s, output=output, **changes: k("attachment", s, **changes)[output], 0))
+          for rate, output in RATES_OF),
+        Relation("attachment_pair_wrench", "K", "d(P' f + T' m) of the mode by eta of the other", 1,
                  by_mode(mode_pulled, 1)),
-        Relation("attachment_follower", "g", "P' (axes c)", 0,
-                 lambda k, s, t, j: k("attachment", s)["P"].T.dot(followed(k, s))),
-        Relation("attachment_follower", "K", "dg by translation and rotation", 1,
-                 p.by_frame(follower("attachment_follower")), n),
-        Relation("attachment_mode_follower", "g", "P' (axes c) of the mode", 0,
-                 lambda k, s, t, j: k("attachment_mode", s)["P"].dot(followed(k, s))),
-        Relation("attachment_mode_follower", "K_frame", "dg of the frame by eta", 1,
-                 by_mode(follower("attachment_follower"), 0)),
-        Relation("attachment_pair_follower", "K", "dg of the mode by eta of the other", 1,
-                 by_mode(follower("attachment_mode_follower"), 1)),
     ]
 
 

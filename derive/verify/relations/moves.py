@@ -1,4 +1,4 @@
-"""Moves of bodies and loads on them under verification: by quaternions and complex numbers in any kind of number."""
+"""Moves of bodies under verification: by quaternions and complex numbers in any kind of number."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import numpy as np
 
 from ..methods import Relation
 from ..numbers import Numbers
-from .paths import unit
 
 
 def moves(rider) -> list[Relation]:
@@ -76,29 +75,3 @@ def _cayley_error(w: np.ndarray, a: np.ndarray) -> np.ndarray:
 
 def _normalised(k: Numbers, b: np.ndarray, dim: int) -> np.ndarray:
     return np.concatenate([b[:dim], b[dim:] / k.sqrt(b[dim:].dot(b[dim:]))])
-
-
-def loads(rider) -> list[Relation]:
-    """Return what every output of a body's load kernels is: from virtual work."""
-    n, dim = rider.n_velocity, rider.dim
-
-    def work(force):
-        def path(k, s, t, j):
-            return force(s).dot(rider.point(rider.moved(k, s["b"], t * unit(s["w"], j)), s["u"]))
-        return path
-
-    def following(s):
-        return rider.point(np.concatenate([0 * s["b"][:dim], s["b"][dim:]]), s["c"])
-
-    def tangent(kernel):
-        return Relation(kernel, "K", "dg by translation and rotation", 1, lambda k, s, t, j: k(
-            kernel, s, b=rider.moved(k, s["b"], t * unit(s["w"], j)))["g"], n)
-
-    return [
-        Relation("force", "g", "work of f on the point's motions", 1, work(lambda s: s["f"]), n),
-        tangent("force"),
-        Relation("follower_force", "g", "work of A c on the point's motions", 1, work(following), n),
-        tangent("follower_force"),
-        Relation("moment", "g", "T' m, T of the body's axes", 0, lambda k, s, t, j: k("frame", s)["T"].T.dot(s["m"])),
-        tangent("moment"),
-    ]

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from ...algebra.tangent_frame import cross, moment_of
 from ...codegen.family import CouplingFamily
 from ...couplings.surface import HEIGHTS
 from ..methods import Relation
@@ -15,7 +16,8 @@ from .paths import entry, from_kernel, unit
 
 def surface(family: CouplingFamily) -> list[Relation]:
     """Return the relations of distances, laws and forces."""
-    return [*_distances(family.dim), *_laws(), *_forces(family.dim), *_motions(family.dim)]
+    return [*_distances(family.dim), *_laws(), *_forces(family.dim), *_reactions(family.dim),
+            *_motions(family.dim)]
 
 
 def _distances(dim: int) -> list[Relation]:
@@ -115,6 +117,26 @@ def _forces(dim: int) -> list[Relation]:
             Relation("sliding", "f_y", "df by the place", 1, by_place("sliding", True, True), dim),
             Relation("sliding", "f_x", "df by the stretch", 1, by_stretch("sliding"), dim),
             Relation("sliding", "f_w", "df by the velocity", 1, by_rate("sliding"), dim)]
+
+
+def _reactions(dim: int) -> list[Relation]:
+    """Return those of contact on a body: a force that follows a surface, along axes turned by quaternions."""
+    def moved(k: Any, s: Any, t: Any) -> dict[str, Any]:
+        """Return the force and its moments after a part t of the motion."""
+        axes = turned_axes(k, t * s["dtheta_o"], np.eye(dim, dtype=int))
+        x = s["x"] + t * s["dr"]
+        past = s["w"] + cross(s["omega_o"], s["x"]) + t * s["dv"] - cross(s["omega_o"] + t * s["domega_o"], x)
+        y, w = axes.T.dot(x) - s["x"], axes.T.dot(past) - s["w"]
+        arm_y = -s["radius"] * s["H"].dot(y)
+        relative = t * (s["dtheta"] - s["dtheta_o"])
+        turn = s["turn"] + relative - (cross(s["turn"], relative) / 2 if dim == 3 else 0)
+        stretch = cross(turn, s["mean_arm"] + s["share"] * arm_y) - cross(s["turn"], s["mean_arm"])
+        f = axes.dot(s["f"] + s["f_y"].dot(y) + s["f_w"].dot(w) + s["f_x"].dot(stretch))
+        arm = axes.dot(s["arm"] + arm_y)
+        return {"f_t": f, "m_t": moment_of(arm, f), "m_o_t": moment_of(x + arm, f)}
+
+    return [Relation("reaction", output, "along a finite motion", 1,
+                     lambda k, s, t, j, output=output: moved(k, s, t)[output]) for output in ("f_t", "m_t", "m_o_t")]
 
 
 def _motions(dim: int) -> list[Relation]:

@@ -17,7 +17,12 @@ def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) 
     second = random.normal(size=(dim, dim))
     r, v, a, r_o, v_o, a_o = random.normal(size=(6, dim))
     omega, alpha, omega_o, alpha_o = random.normal(size=(4, TURNS[dim]))
-    return {"y": y, "axis": (dim - 2) * axis / np.linalg.norm(axis), "normal": n / np.linalg.norm(n),
+    f, arm, mean_arm, dr, dv = random.normal(size=(5, dim))
+    turn, dtheta, dtheta_o, domega_o = random.normal(size=(4, TURNS[dim]))
+    f_y, f_w, f_x = random.normal(size=(3, dim, dim))
+    return {"f": f, "f_y": f_y, "f_w": f_w, "f_x": f_x, "arm": arm, "mean_arm": mean_arm, "share": np.array(0.5),
+            "turn": turn, "dr": dr, "dv": dv, "dtheta": dtheta, "dtheta_o": dtheta_o, "domega_o": domega_o,
+            "y": y, "axis": (dim - 2) * axis / np.linalg.norm(axis), "normal": n / np.linalg.norm(n),
             "radius": np.array(0.4),
             "h": 0.5 * random.normal(size=len(HEIGHTS[dim])), "depth": np.array(0.7), "depth_next": np.array(0.4),
             "depth_rate": np.array(0.3), "law": np.array([1.7, 0.6]), "n": 1.1 * n / np.linalg.norm(n),

@@ -8,9 +8,9 @@
 
 /* FU_INTEGER, FU_REAL: numbers. FU_LENGTH: a length from which positions are computed, m. FU_WORD: the index of a word
  * among `words`. FU_KERNELS: a table of kernels by its name, null if empty; words[0] is its role, or the name of the
- * coupling's type if words is null. FU_ATTACHMENT: an attachment. FU_MODAL_POINT: the point of a modal body, left out
- * for None. FU_INTEGERS, FU_REALS: an array of any length, to which the structure has a pointer. */
-enum { FU_INTEGER, FU_REAL, FU_LENGTH, FU_WORD, FU_KERNELS, FU_ATTACHMENT, FU_MODAL_POINT, FU_INTEGERS, FU_REALS };
+ * coupling's type if words is null. FU_ATTACHMENT: an attachment. FU_INTEGERS, FU_REALS: an array of
+ * any length, to which the structure has a pointer. */
+enum { FU_INTEGER, FU_REAL, FU_LENGTH, FU_WORD, FU_KERNELS, FU_ATTACHMENT, FU_INTEGERS, FU_REALS };
 typedef struct {
     const char *name; /* null ends a list */
     int kind;

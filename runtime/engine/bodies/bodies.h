@@ -70,9 +70,10 @@ double fu_bodies_dissipation(const fu_model *model, const double *q, const doubl
 /* modal.c: points */
 void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *attachment, const double *b,
                                const double *w, fu_modal_point *out, double *P, double *T);
-void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *attachment, const double *b,
-                               const double *f, const double *m, double *K);
-void fu_modal_attachment_follower(const fu_body *body, const fu_modal_attachment *attachment, const double *b,
-                                  const double *c, double *g, double *K);
+/* Computes K (n x n), the derivative by the body's dofs of P' f + T' m at fixed f and m, and those of the velocities at
+ * fixed rates. */
+void fu_modal_attachment_wrench(const fu_body *body, const fu_modal_attachment *attachment, const double *b,
+                                const double *w, const double *f, const double *m, double *K, double *v_q,
+                                double *omega_q);
 
 #endif

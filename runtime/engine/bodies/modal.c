@@ -224,52 +224,34 @@ void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *a
     }
 }
 
-/* Computes K (n x n), the derivative by the body's dofs of P' f + T' m at fixed f and m. */
-void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *attachment, const double *b,
-                               const double *f, const double *m, double *K)
+void fu_modal_attachment_wrench(const fu_body *body, const fu_modal_attachment *attachment, const double *b,
+                                const double *w, const double *f, const double *m, double *K, double *v_q,
+                                double *omega_q)
 {
     const fu_modal_kernels *kernel = body->shape->kernel;
     const int dim = body->kernel->dim, frame = body->kernel->velocity, turns = frame - dim, n = fu_body_dofs(body);
-    double u[FU_SPACE], theta[FU_SPACE], of_frame[FU_FRAME_DOFS * FU_FRAME_DOFS], row[FU_FRAME_DOFS],
-        column[FU_FRAME_DOFS];
+    double u[FU_SPACE], theta[FU_SPACE], u1[FU_SPACE], theta1[FU_SPACE], K_frame[FU_FRAME_DOFS * FU_FRAME_DOFS],
+        v_frame[18], omega_frame[18], row[FU_FRAME_DOFS], column[FU_FRAME_DOFS], v[FU_SPACE], omega[FU_SPACE];
     point_of(body, attachment, eta_of(body, b), 0, u, theta);
-    kernel->attachment_force(b, u, theta, f, m, of_frame);
-    for (int i = 0; i < frame; ++i)
-        for (int j = 0; j < frame; ++j) K[i * n + j] = of_frame[i * frame + j];
-    for (int k = 0; k < body->modes; ++k) {
-        const double *phi = attachment->phi + k * dim, *psi = attachment->psi + k * turns;
-        kernel->attachment_mode_force(b, u, theta, phi, psi, f, m, row, column);
-        for (int i = 0; i < frame; ++i) {
-            K[(frame + k) * n + i] = row[i];
-            K[i * n + frame + k] = column[i];
-        }
-        for (int l = 0; l < body->modes; ++l)
-            kernel->attachment_pair_force(b, u, theta, phi, psi, attachment->phi + l * dim, attachment->psi + l * turns,
-                                          f, m, K + (frame + k) * n + frame + l);
+    point_of(body, attachment, rate_of(body, w), 1, u1, theta1);
+    kernel->attachment_wrench(b, u, theta, f, m, w, u1, theta1, K_frame, v_frame, omega_frame);
+    for (int j = 0; j < frame; ++j) {
+        for (int i = 0; i < frame; ++i) K[i * n + j] = K_frame[i * frame + j];
+        for (int d = 0; d < dim; ++d) v_q[d * n + j] = v_frame[d * frame + j];
+        for (int d = 0; d < turns; ++d) omega_q[d * n + j] = omega_frame[d * frame + j];
     }
-}
-
-/* Computes the generalised force g of a force c along the axes of the section at a point, with which it rotates, and K
- * (n x n), the derivative of g by the body's dofs. The frame's motion does not change the row of a mode. */
-void fu_modal_attachment_follower(const fu_body *body, const fu_modal_attachment *attachment, const double *b,
-                                  const double *c, double *g, double *K)
-{
-    const fu_modal_kernels *kernel = body->shape->kernel;
-    const int dim = body->kernel->dim, frame = body->kernel->velocity, turns = frame - dim, n = fu_body_dofs(body);
-    double u[FU_SPACE], theta[FU_SPACE], of_frame[FU_FRAME_DOFS * FU_FRAME_DOFS], column[FU_FRAME_DOFS];
-    point_of(body, attachment, eta_of(body, b), 0, u, theta);
-    kernel->attachment_follower(b, u, theta, c, g, of_frame);
-    for (int i = 0; i < frame; ++i)
-        for (int j = 0; j < frame; ++j) K[i * n + j] = of_frame[i * frame + j];
     for (int k = 0; k < body->modes; ++k) {
         const double *phi = attachment->phi + k * dim, *psi = attachment->psi + k * turns;
-        kernel->attachment_mode_follower(b, u, theta, phi, psi, c, g + frame + k, column);
+        const int mode = frame + k;
+        kernel->attachment_mode_wrench(b, u, theta, phi, psi, f, m, w, u1, theta1, row, column, v, omega);
         for (int i = 0; i < frame; ++i) {
-            K[(frame + k) * n + i] = 0.0;
-            K[i * n + frame + k] = column[i];
+            K[mode * n + i] = row[i];
+            K[i * n + mode] = column[i];
         }
+        for (int d = 0; d < dim; ++d) v_q[d * n + mode] = v[d];
+        for (int d = 0; d < turns; ++d) omega_q[d * n + mode] = omega[d];
         for (int l = 0; l < body->modes; ++l)
-            kernel->attachment_pair_follower(b, u, theta, phi, psi, attachment->phi + l * dim,
-                                             attachment->psi + l * turns, c, K + (frame + k) * n + frame + l);
+            kernel->attachment_pair_wrench(b, u, theta, phi, psi, attachment->phi + l * dim,
+                                           attachment->psi + l * turns, f, m, K + mode * n + frame + l);
     }
 }

@@ -56,7 +56,7 @@ cdef extern from * nogil:
     int FU_NO_FAILURE, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE, FU_SELF_LOCKING, FU_NOT_KNOWN
     int FU_EVENT_OF_Q, FU_EVENT_OF_V, FU_EVENT_OF_S, FU_EVENT_OF_RATE, FU_EVENT_OF_OUTPUT, FU_EVENT_OF_CALL
     int FU_ACTED, FU_DEFERRED, FU_WENT_SLACK
-    int FU_INTEGER, FU_REAL, FU_LENGTH, FU_WORD, FU_KERNELS, FU_ATTACHMENT, FU_MODAL_POINT, FU_INTEGERS, FU_REALS
+    int FU_INTEGER, FU_REAL, FU_LENGTH, FU_WORD, FU_KERNELS, FU_ATTACHMENT, FU_INTEGERS, FU_REALS
     int FU_SIGNAL_TERMS, FU_BAND_GROUP
     int FU_BAND_MORE(int width)
     long FU_BAND_BEYOND(int width)
@@ -105,8 +105,9 @@ cdef extern from * nogil:
     int fu_body_dofs(const fu_body *body)
     void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *attachment, const double *b, const double *w,
                          fu_modal_point *out, double *P, double *T)
-    void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *attachment, const double *b, const double *f,
-                               const double *m, double *K)
+    void fu_modal_attachment_wrench(const fu_body *body, const fu_modal_attachment *attachment, const double *b,
+                                    const double *w, const double *f, const double *m, double *K, double *v_q,
+                                    double *omega_q)
     ctypedef struct fu_field:
         const char *name
         int kind, most

@@ -123,18 +123,20 @@ cdef class Translation(Arrays):
         """Evaluate a point of modal body `index` with its axes (engine/bodies/modal.c); for tests.
 
         x (dim,), phi (modes, dim), psi (modes, turns); b, w: the body's entries of q and v. Returns the members of
-        `fu_modal_point`, P, T, and K for a force f and a moment m on the point.
+        `fu_modal_point`, P, T, K for a force f and a moment m on the point, and the derivatives of its velocities.
         """
         cdef fu_body *r = &self.bodies[index]
         cdef fu_modal_attachment modal
         cdef fu_modal_point out
         cdef int n = fu_body_dofs(r), dim = r.kernel.dim, turns = r.kernel.velocity - r.kernel.dim
         modal.x, modal.phi, modal.psi = self._doubles(x), self._doubles(phi), self._doubles(psi)
-        P, T, K = np.zeros((dim, n)), np.zeros((turns, n)), np.zeros((n, n))
-        cdef double[:, ::1] P_view = P, T_view = T, K_view = K
+        P, T, K, v_q, omega_q = (np.zeros((rows, n)) for rows in (dim, turns, n, dim, turns))
+        cdef double[:, ::1] P_view = P, T_view = T, K_view = K, v_view = v_q, omega_view = omega_q
         fu_modal_attachment_state(r, &modal, self._doubles(b), self._doubles(w), &out, &P_view[0, 0], &T_view[0, 0])
-        fu_modal_attachment_force(r, &modal, self._doubles(b), self._doubles(f), self._doubles(m), &K_view[0, 0])
+        fu_modal_attachment_wrench(r, &modal, self._doubles(b), self._doubles(w), self._doubles(f), self._doubles(m),
+                                   &K_view[0, 0], &v_view[0, 0], &omega_view[0, 0])
         return {"p": np.array(out.p)[:dim], "axes": np.array(out.axes)[:dim * dim].reshape(dim, dim), "P": P, "T": T, "K": K,
+                "v_q": v_q, "omega_q": omega_q,
                 "velocity": np.array(out.velocity)[:dim], "omega": np.array(out.omega)[:turns],
                 "bias": np.array(out.bias)[:dim], "omega_bias": np.array(out.omega_bias)[:turns]}
 
@@ -228,9 +230,6 @@ cdef class Translation(Arrays):
             (<const double **>to)[0] = self._doubles(value)
         elif field.kind == FU_ATTACHMENT:
             self._end(<fu_attachment *>to, value, tables)
-        elif field.kind == FU_MODAL_POINT:
-            if value is not None:
-                self._modal_attachment(<fu_modal_attachment *>to, value)
         elif field.kind == FU_KERNELS:
             role = type if field.words == NULL else field.words[0].decode()
             (<const void **>to)[0] = _found(tables, role, value) if value else NULL

@@ -66,7 +66,7 @@ static transition transition_from(const fu_model *model, const fu_point_force *b
 {
     transition found = {-INFINITY, segment};
     double gap[3], rate[3];
-    fu_gap(model, between, state->q, state->v, gap, rate);
+    fu_gap(model, between, state, gap, rate);
     const double distance = norm(between->dim, gap);
     const double sense = margin_of_sense(between, segment, gap, rate, distance);
     if (sense < INFINITY) found = (transition){-sense, free_beside(between, segment)};
@@ -135,7 +135,7 @@ static gap_motion look_at(const fu_model *model, const fu_point_force *between, 
 static fu_course from_bound(const fu_model *model, const fu_point_force *between, const fu_state *state, int bound)
 {
     double gap[3], gap_rate[3];
-    fu_gap(model, between, state->q, state->v, gap, gap_rate);
+    fu_gap(model, between, state, gap, gap_rate);
     const double distance = norm(between->dim, gap);
     return (fu_course){distance - between->bounds[bound], fu_dot(between->dim, gap, gap_rate) / distance};
 }

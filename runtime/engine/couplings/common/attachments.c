@@ -136,8 +136,7 @@ static void axes_of(const fu_model *model, const fu_attachment *on, const fu_sta
     memset(out->T, 0, sizeof(double) * (size_t)(turns * n));
     if (on->body >= 0) {
         const fu_body *body = &model->bodies[on->body];
-        double unused[36];
-        body->kernel->frame(state->q + body->configuration, model->zero, A, out->T, unused);
+        body->kernel->frame(state->q + body->configuration, A, out->T);
         multiply(turns, n, 1, out->T, state->v + body->dof, out->omega); /* at omega' = 0 the axes' own bias is nil */
     } else if (on->frame) {
         frame_vectors w;
@@ -189,30 +188,24 @@ void fu_attachment_at(const fu_model *model, const fu_attachment *on, const fu_s
 void fu_discrete_point(const fu_model *model, const fu_attachment *on, const fu_state *now, const fu_state *next,
                        double *P)
 {
+    if (on->body < 0) return;
     const fu_body *body = &model->bodies[on->body];
     body->kernel->discrete_point(now->q + body->configuration, on->u, next->q + body->configuration, P);
 }
 
-/* Does what fu_geometric_stiffness does, for an attachment to a body. */
-static void add_stiffness_of_body(const fu_model *model, const fu_attachment *on, const fu_state *state,
-                                  const double *f, const double *m, int n, double *K)
+/* Does what fu_wrench_derivatives does, for an attachment to a body. */
+static void derivatives_on_body(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *f,
+                                const double *m, double *K, double *v_q, double *omega_q)
 {
     const fu_body *body = &model->bodies[on->body];
-    const double *b = state->q + body->configuration, none[3] = {0.0};
-    double p[3], A[9], P[18], part[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
-    if (body->modes) {
-        fu_modal_attachment_force(body, &on->modal, b, f ? f : none, m ? m : none, part);
-        for (int i = 0; i < n * n; ++i) K[i] += part[i];
-        return;
-    }
-    if (f) {
-        body->kernel->point_force(b, on->u, f, p, P, part);
-        for (int i = 0; i < n * n; ++i) K[i] += part[i];
-    }
-    if (m) {
-        body->kernel->frame(b, m, A, P, part);
-        for (int i = 0; i < n * n; ++i) K[i] += part[i];
-    }
+    const double *b = state->q + body->configuration, *w = state->v + body->dof, none[3] = {0.0};
+    double unused[2][3 * FU_ATTACHMENT_COORDINATES];
+    if (!f) f = none;
+    if (!m) m = none;
+    if (!v_q) v_q = unused[0];
+    if (!omega_q) omega_q = unused[1];
+    if (body->modes) fu_modal_attachment_wrench(body, &on->modal, b, w, f, m, K, v_q, omega_q);
+    else body->kernel->wrench(b, on->u, w, f, m, K, v_q, omega_q);
 }
 
 /* Adds what depends on s of the frame where a slide is; g: derivatives of the moment's work by the frame's two vectors.
@@ -234,18 +227,17 @@ static void add_stiffness_of_s(const fu_model *model, const fu_attachment *on, c
         }
 }
 
-/* Adds to K (n x n) the derivative by the attachment's coordinates of P' f + T' m at a fixed force f and moment m,
- * either of which may be null. */
-void fu_geometric_stiffness(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *f,
-                            const double *m, int n, double *K)
+void fu_wrench_derivatives(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *f,
+                           const double *m, int n, double *K, double *v_q, double *omega_q)
 {
     const int dim = model->dim;
     frame_vectors w;
     double g[6], of_frame[36], half[6 * FU_ATTACHMENT_COORDINATES];
     if (on->body >= 0) {
-        add_stiffness_of_body(model, on, state, f, m, n, K);
+        derivatives_on_body(model, on, state, f, m, K, v_q, omega_q);
         return;
     }
+    memset(K, 0, sizeof(double) * (size_t)(n * n));
     if (!m || !on->frame) return;
     vectors_of(model, on, state, 0.0, n, &w);
     on->frame->moment(w.value[0], w.value[1], m, g, of_frame);

@@ -42,11 +42,14 @@ static inline void fu_turn_in_space(int dim, const double *turn, double out[3])
 int fu_attachment_coordinates(const fu_model *model, const fu_attachment *on, const fu_state *state, int *at);
 void fu_attachment_at(const fu_model *model, const fu_attachment *on, const fu_state *state, double s_rate, int what,
                       fu_attachment_state *out);
-/* Makes how the point of a body moves with its dofs over a step, P: P psi is its whole way. */
+/* Computes, of an attachment on a body, P over a step: P psi is the displacement of its point. Other points keep P. */
 void fu_discrete_point(const fu_model *model, const fu_attachment *on, const fu_state *now, const fu_state *next,
                        double *P);
-void fu_geometric_stiffness(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *f,
-                            const double *m, int n, double *K);
+/* Computes K (n x n), the derivative by the attachment's coordinates of P' f + T' m at a fixed force f and moment m,
+ * and those of velocity and angular velocity at fixed rates, where these are known: on a body. All but K may be null.
+ */
+void fu_wrench_derivatives(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *f,
+                           const double *m, int n, double *K, double *v_q, double *omega_q);
 /* Derivatives by an attachment's coordinates, the first of them in column `first`, made those by psi that moves the
  * bodies; psi null: they are. */
 void fu_turn_attachment(const fu_model *model, const fu_attachment *on, const double *psi, double *rows, int n_rows,

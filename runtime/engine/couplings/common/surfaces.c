@@ -3,6 +3,7 @@
 #include "bodies/model.h"
 #include "bodies/state.h"
 #include "couplings/common/surfaces.h"
+#include "couplings/common/wrench.h"
 
 #include <math.h>
 #include <string.h>
@@ -244,16 +245,10 @@ double fu_surface_clearance(int dim, const fu_surface *surface, const fu_attachm
 
 void fu_surface_velocity(int dim, const fu_attachment_state *at, const double *r, double *v)
 {
-    const double *w = at->omega, x[3] = {r[0] - at->p[0], r[1] - at->p[1], dim == 3 ? r[2] - at->p[2] : 0.0};
-    if (dim == 2) {
-        v[0] = at->v[0] - w[0] * x[1];
-        v[1] = at->v[1] + w[0] * x[0];
-        return;
-    }
-    for (int d = 0; d < 3; ++d) {
-        const int e = (d + 1) % 3, f = (d + 2) % 3;
-        v[d] = at->v[d] + w[e] * x[f] - w[f] * x[e];
-    }
+    double x[3];
+    for (int d = 0; d < dim; ++d) x[d] = r[d] - at->p[d];
+    fu_swing(dim, at->omega, x, v);
+    for (int d = 0; d < dim; ++d) v[d] += at->v[d];
 }
 
 void fu_surface_past(int dim, const fu_attachment_state *at, const double *r, const double *v, double *past)
@@ -261,21 +256,4 @@ void fu_surface_past(int dim, const fu_attachment_state *at, const double *r, co
     double w[3];
     fu_surface_velocity(dim, at, r, w);
     for (int d = 0; d < dim; ++d) past[d] = v[d] - w[d];
-}
-
-void fu_surface_motion(int dim, const fu_attachment_state *at, const double *r, double *P)
-{
-    const double x[3] = {r[0] - at->p[0], r[1] - at->p[1], dim == 3 ? r[2] - at->p[2] : 0.0};
-    const int n = at->n;
-    for (int i = 0; i < n; ++i) {
-        if (dim == 2) {
-            P[i] = at->P[i] - at->T[i] * x[1];
-            P[n + i] = at->P[n + i] + at->T[i] * x[0];
-            continue;
-        }
-        for (int d = 0; d < 3; ++d) {
-            const int e = (d + 1) % 3, f = (d + 2) % 3;
-            P[d * n + i] = at->P[d * n + i] + at->T[e * n + i] * x[f] - at->T[f * n + i] * x[e];
-        }
-    }
 }

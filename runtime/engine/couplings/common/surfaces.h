@@ -52,8 +52,6 @@ void fu_surface_step_normal(int dim, const fu_surface *surface, const fu_attachm
 void fu_surface_velocity(int dim, const fu_attachment_state *at, const double *r, double *v);
 /* Velocity of what is at r, and moves at v, past that point. */
 void fu_surface_past(int dim, const fu_attachment_state *at, const double *r, const double *v, double *past);
-/* How that point moves with the n coordinates of the body: P (dim x n). */
-void fu_surface_motion(int dim, const fu_attachment_state *at, const double *r, double *P);
 /* The vector of a shape's own axes along the ground's, and back. */
 void fu_surface_out(int dim, const fu_attachment_state *at, const double *own, double *out);
 void fu_surface_into(int dim, const fu_attachment_state *at, const double *given, double *own);

@@ -129,7 +129,6 @@ void fu_contact_add_force(const fu_model *model, const fu_contact *contact, cons
                           double *f);
 void fu_contact_add_on_cable(const fu_model *model, const fu_contact *contact, int element, int number,
                              const double *force, double *f);
-void fu_contact_add_along(int dim, int n, const int *at, const double *P, const double *f, double factor, double *sum);
 
 /* couplings/contact/rolling.c: whether friction acts off the points, on spheres of a body; the axes of a body along the
  * shape's, and how fast they turn, along the shape's axes; the turn since the mark, and its rate. */

@@ -8,6 +8,7 @@
  */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
+#include "couplings/common/wrench.h"
 #include "couplings/contact/contact.h"
 
 #include <string.h>
@@ -142,7 +143,8 @@ static void add_reaction(const fu_model *model, const fu_contact *contact, const
 {
     const int dim = model->dim;
     fu_attachment there = contact->surface.on[0];
-    double lever[3], columns[9], P[3 * FU_ATTACHMENT_COORDINATES];
+    fu_attachment_state end = on->ends[0];
+    double lever[3], columns[9];
     int pivot[3];
     for (int i = 0; i < dim; ++i) {
         lever[i] = middle[i] - on->mean.p[i];
@@ -151,8 +153,8 @@ static void add_reaction(const fu_model *model, const fu_contact *contact, const
     if (fu_small_factor(dim, columns, pivot)) return; /* a turn by pi in a step, which no Cayley vector makes */
     fu_small_solve(dim, columns, pivot, lever);
     for (int i = 0; i < dim; ++i) there.u[i] += fu_dot(dim, there.axes + i * dim, lever);
-    fu_discrete_point(model, &there, at->now, at->next, P);
-    fu_contact_add_along(dim, on->ends[0].n, on->ends[0].at, P, force, weight, f);
+    fu_discrete_point(model, &there, at->now, at->next, end.P);
+    fu_add_wrench(dim, &end, force, 0, weight, f);
 }
 
 /* Adds a force over a step on a point, `to` of a body, and its reaction, to what stands on the left of the equations.
@@ -173,9 +175,9 @@ static void add_step_force(const fu_model *model, const fu_contact *contact, con
         return;
     }
     fu_attachment_state end;
-    fu_attachment_at(model, to, at->now, 0.0, FU_POINT, &end);
+    fu_attachment_at(model, to, at->now, 0.0, FU_PLACE, &end);
     fu_discrete_point(model, to, at->now, at->next, end.P);
-    fu_contact_add_along(dim, end.n, end.at, end.P, force, -weight, f);
+    fu_add_wrench(dim, &end, force, 0, -weight, f);
 }
 
 /* Does for a step what the force does for an instant; returns the energy that goes to heat in it and that the contact
@@ -248,6 +250,7 @@ void fu_contact_step_tangent(const fu_model *model, const fu_coupling *coupling,
                 fu_surface_out(dim, &on.mean, force, next->f);
                 turn_derivative(dim, &on.mean, next->by_place);
                 turn_derivative(dim, &on.mean, next->by_stretch);
+                turn_derivative(dim, &on.mean, next->distance.H);
             }
             if (on.moves || !n) {
                 memcpy(next->r, point.middle, sizeof next->r);

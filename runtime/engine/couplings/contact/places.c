@@ -1,5 +1,6 @@
 /* Points of a contact: where they are, which may touch, and what a force on one of them does. */
 #include "bodies/model.h"
+#include "couplings/common/wrench.h"
 #include "couplings/contact/contact.h"
 
 #include <math.h>
@@ -111,13 +112,6 @@ void fu_contact_place(const fu_model *model, const fu_contact *contact, const fu
         }
 }
 
-/* Adds P' f of a motion, times a factor, to what stands on the left of the equations of motion. */
-void fu_contact_add_along(int dim, int n, const int *at, const double *P, const double *f, double factor, double *sum)
-{
-    for (int d = 0; d < dim; ++d)
-        for (int i = 0; i < n; ++i) sum[at[i]] += factor * P[d * n + i] * f[d];
-}
-
 /* Adds a force on a point of a cable, times its weight, to what stands on the left of the equations of motion. */
 void fu_contact_add_on_cable(const fu_model *model, const fu_contact *contact, int element, int number,
                              const double *force, double *f)
@@ -136,22 +130,22 @@ void fu_contact_add_force(const fu_model *model, const fu_contact *contact, cons
                           const fu_attachment_state *on, int element, int number, const fu_contact_point *point,
                           double *f)
 {
-    const int dim = model->dim;
+    const int dim = model->dim, rolls = fu_contact_rolls(contact);
     const double weight = fu_contact_weight(contact, element, number), *force = point->f;
-    double P[3 * FU_ATTACHMENT_COORDINATES], r[3] = {0.0};
-    for (int d = 0; d < dim; ++d) r[d] = point->r[d] + point->arm[d];
+    double arm[3], moment[3];
     if (on->n) {
-        fu_surface_motion(dim, on, r, P);
-        fu_contact_add_along(dim, on->n, on->at, P, force, weight, f);
+        for (int d = 0; d < dim; ++d) arm[d] = point->r[d] + point->arm[d] - on->p[d];
+        fu_moment_of(dim, arm, force, moment);
+        fu_add_wrench(dim, on, force, moment, weight, f);
     }
     if (contact->cable >= 0) {
         fu_contact_add_on_cable(model, contact, element, number, force, f);
         return;
     }
     fu_attachment_state end;
-    fu_attachment_at(model, &contact->attachments[number], state, 0.0, FU_POINT | FU_AXES, &end);
-    fu_surface_motion(dim, &end, r, P);
-    fu_contact_add_along(dim, end.n, end.at, P, force, -weight, f);
+    fu_attachment_at(model, &contact->attachments[number], state, 0.0, rolls ? FU_PLACE | FU_AXES : FU_PLACE, &end);
+    fu_moment_of(dim, point->arm, force, moment);
+    fu_add_wrench(dim, &end, force, rolls ? moment : 0, -weight, f);
 }
 
 void fu_contact_visit(const fu_model *model, const fu_contact *contact, const fu_state *state,

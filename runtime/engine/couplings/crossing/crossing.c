@@ -2,11 +2,11 @@
  * a Newton matrix its change and the ways of the closest points along both lines are unknowns of their own, so that two
  * cables that cross do not widen the band: with them the matrix is that of the equations without them.
  */
-#include "bodies/rotation.h"
+#include "bodies/model.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
+#include "couplings/common/wrench.h"
 #include "couplings/crossing/crossing.h"
-#include "couplings/force/point_force.h"
 
 #include <math.h>
 #include <string.h>
@@ -97,92 +97,88 @@ static void add_friction_derivatives(const fu_model *model, const fu_crossing *c
     memcpy(by->F_k, of.F_k, sizeof by->F_k);
 }
 
-/* How a line's point moves by the unknowns: its derivatives turned, and those of its velocity and of the slope's rate
- * by the place. */
-typedef struct {
-    fu_line_moves moves, turned;
-    double by_place[3 * FU_ATTACHMENT_COORDINATES], slope_by_place[3 * FU_ATTACHMENT_COORDINATES],
-        K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
-} line_changes;
-
-/* The rate of a bar's slope is that of the point one metre on less that of the point. */
-static void turn_slope(const fu_model *model, const fu_crossing *crossing, const fu_equations *at,
-                       const fu_line_point *point, fu_attachment_state *end, line_changes *out)
+/* Computes the motion of a line's point: `at` has the derivatives P of the point and T of the slope, and `by` those by
+ * the unknowns of place, velocity, slope, rate of the slope and, of a cable, curvature; the last two where friction
+ * sticks. */
+static void motion_of_cable(const fu_model *model, int cable, const fu_line_point *point, const double *N_xx,
+                            double rate, fu_point_motion *out)
 {
-    const int n = out->moves.n;
-    const double none[3] = {0.0};
-    double turned[3 * FU_ATTACHMENT_COORDINATES] = {0.0}, K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
+    const int dim = model->dim, n = model->cables[cable].coordinates,
+              first = model->cables[cable].first + point->element * model->cables[cable].per_node;
+    fu_element_motion(model, first, n, point->N, rate, out);
+    memset(out->at.T, 0, sizeof(double) * (size_t)(dim * n));
+    memset(out->by + 2 * dim * n, 0, sizeof(double) * (size_t)(3 * dim * n));
+    for (int i = 0; i < n; ++i) {
+        const int row = i % dim;
+        out->at.T[row * n + i] = out->by[(2 * dim + row) * n + i] = point->N_x[i / dim];
+        out->by[(3 * dim + row) * n + i] = rate * point->N_x[i / dim];
+        out->by[(4 * dim + row) * n + i] = N_xx[i / dim];
+    }
+    out->rows = 5 * dim;
+}
+
+/* The same of a bar. Its slope is the difference between the point one metre on and the point. */
+static void motion_of_bar(const fu_model *model, const fu_crossing *crossing, const fu_equations *at,
+                          const fu_line_point *point, const double *force, fu_point_motion *out)
+{
+    const int dim = model->dim;
     fu_attachment on = point->on;
-    for (int d = 0; d < 3; ++d) on.u[d] += crossing->axis[d];
-    fu_turn_point(model, &on, at->next, none, at->psi, end, turned, out->slope_by_place, K);
-    for (int i = 0; i < 3 * n; ++i) out->slope_by_place[i] -= out->by_place[i];
+    fu_point_motion end;
+    fu_point_motion_at(model, &on, at->next, FU_POINT, force, 0, at->psi, at->weights.rate, out);
+    if (dim == 2) return;
+    const int n = out->at.n;
+    for (int d = 0; d < dim; ++d) on.u[d] += crossing->axis[d];
+    fu_point_motion_at(model, &on, at->next, FU_POINT, 0, 0, at->psi, at->weights.rate, &end);
+    for (int i = 0; i < dim * n; ++i) out->at.T[i] = end.at.P[i] - out->at.P[i];
+    for (int i = 0; i < 2 * dim * n; ++i) out->by[2 * dim * n + i] = end.by[i] - out->by[i];
+    out->rows = 4 * dim;
 }
 
-static void changes_of(const fu_model *model, const fu_crossing *crossing, int line, const fu_equations *at,
-                       const fu_line_point *point, const double *force, line_changes *out)
+/* Writes the derivatives of n_values values by a vector (rows of `stride`), times a factor, into columns of `by`. */
+static void put(int dim, int n_values, double factor, const double *values, int stride, int rows, double *by)
 {
-    const int dim = model->dim, body = crossing->cables[line] < 0 ? point->on.body : -1;
-    fu_line_moves_at(model, crossing, line, at->next, point, &out->moves);
-    const int n = out->moves.n;
-    out->turned = out->moves;
-    memset(out->by_place, 0, sizeof(double) * (size_t)(dim * n));
-    memset(out->slope_by_place, 0, sizeof(double) * (size_t)(dim * n));
-    memset(out->K, 0, sizeof(double) * (size_t)(n * n));
-    if (body < 0) return;
-    fu_attachment_state end;
-    end.n = n;
-    memcpy(end.at, out->moves.at, sizeof(int) * (size_t)n);
-    fu_turn_point(model, &point->on, at->next, force, at->psi, &end, out->turned.P, out->by_place, out->K);
-    if (at->psi)
-        fu_turn_columns(model->bodies[body].kernel, out->turned.T, dim, n, 0, at->psi + model->bodies[body].dof);
-    if (crossing->friction > 0.0 && dim == 3) turn_slope(model, crossing, at, point, &end, out);
-}
-
-/* Change of a component of friction by one of a line's unknowns, through the rate of its slope and its curvature. */
-static double change_by_rates(const fu_crossing *crossing, int line, const line_changes *c, const derivatives *by,
-                              double rate, int d, int i)
-{
-    const int dim = crossing->kernel->dim, n = c->moves.n, first = (d * (dim - 1) + line) * dim;
-    double change = crossing->cables[line] < 0 ? 0.0 : by->F_k[first + i % dim] * by->bends.N_xx[line][i / dim];
-    for (int k = 0; k < dim; ++k)
-        change += by->F_w[first + k] * (c->slope_by_place[k * n + i] + rate * c->moves.T[k * n + i]);
-    return change;
+    for (int k = 0; k < n_values; ++k)
+        for (int d = 0; d < dim; ++d) by[k * rows + d] = factor * values[k * stride + d];
 }
 
 /* Adds to a system what a line's coordinates have in the rows and columns of the own unknowns, the first of them in
  * `row`: dim of the force, in N, and one of each arc-length, times the stiffness, in N. */
 static void add_line(const fu_model *model, const fu_crossing *crossing, int line, const fu_equations *at,
-                     const line_changes *c, const derivatives *by, int row, double unit, fu_system *system)
+                     const fu_closest_points *points, const derivatives *by, int row, double unit, fu_system *system)
 {
-    const int dim = model->dim, n = c->moves.n, lines = dim - 1;
-    const double sign = line ? -1.0 : 1.0, stiffness = at->weights.stiffness, rate = at->weights.rate;
-    const double *P = c->moves.P, *T = c->moves.T, *P_q = c->turned.P, *T_q = c->turned.T;
+    const int dim = model->dim, lines = dim - 1, cable = crossing->cables[line], all = lines * dim;
+    const double sign = line ? -1.0 : 1.0, stiffness = at->weights.stiffness;
+    double of[(3 + FU_LINES) * FU_MOTION_ROWS], changes[(3 + FU_LINES) * FU_ATTACHMENT_COORDINATES];
+    fu_point_motion motion;
+    if (cable >= 0) motion_of_cable(model, cable, &points->line[line], by->bends.N_xx[line], at->weights.rate, &motion);
+    else motion_of_bar(model, crossing, at, &points->line[line], by->F, &motion);
+    if (!(crossing->friction > 0.0) && motion.rows > 3 * dim) motion.rows = 3 * dim;
+    const int n = motion.at.n, rows = motion.rows;
+    double *of_s = of + dim * rows;
+    memset(of, 0, sizeof(double) * (size_t)((dim + lines) * rows));
+    put(dim, dim, sign, by->F_d, dim, rows, of);
+    put(dim, dim, sign, by->F_u, dim, rows, of + dim);
+    put(dim, lines, sign, by->s_d, dim, rows, of_s);
+    if (line < lines) {
+        put(dim, dim, 1.0, by->F_t + line * dim, all, rows, of + 2 * dim);
+        put(dim, lines, 1.0, by->s_t + line * dim, all, rows, of_s + 2 * dim);
+        if (rows > 3 * dim) put(dim, dim, 1.0, by->F_w + line * dim, all, rows, of + 3 * dim);
+        if (rows > 4 * dim) put(dim, dim, 1.0, by->F_k + line * dim, all, rows, of + 4 * dim);
+    }
+    fu_changes(&motion, dim + lines, of, changes);
     for (int i = 0; i < n; ++i) {
+        const int dof = motion.at.at[i];
         double along = 0.0;
         for (int d = 0; d < dim; ++d) {
-            double change = 0.0;
-            for (int k = 0; k < dim; ++k) {
-                change += sign * by->F_d[d * dim + k] * P_q[k * n + i];
-                change += sign * by->F_u[d * dim + k] * (c->by_place[k * n + i] + rate * P[k * n + i]);
-                if (line < lines) change += by->F_t[(d * lines + line) * dim + k] * T_q[k * n + i];
-            }
-            if (line < lines && crossing->friction > 0.0) change += change_by_rates(crossing, line, c, by, rate, d, i);
-            along += T[d * n + i] * by->F[d];
-            fu_add(model, system, row + d, c->moves.at[i], -stiffness * change);
-            fu_add(model, system, c->moves.at[i], row + d, -sign * unit * P[d * n + i]);
+            along += line < lines ? motion.at.T[d * n + i] * by->F[d] : 0.0;
+            fu_add(model, system, row + d, dof, -stiffness * changes[d * n + i]);
+            fu_add(model, system, dof, row + d, -sign * unit * motion.at.P[d * n + i]);
         }
-        for (int l = 0; l < lines; ++l) {
-            double change = 0.0;
-            for (int k = 0; k < dim; ++k) {
-                change += sign * by->s_d[l * dim + k] * P_q[k * n + i];
-                if (line < lines) change += by->s_t[(l * lines + line) * dim + k] * T_q[k * n + i];
-            }
-            fu_add(model, system, row + dim + l, c->moves.at[i], -stiffness * crossing->stiffness * change);
-        }
-        if (line < lines)
-            fu_add(model, system, c->moves.at[i], row + dim + line, -sign * unit * along / crossing->stiffness);
-        for (int j = 0; j < n && crossing->cables[line] < 0; ++j)
-            fu_add(model, system, c->moves.at[i], c->moves.at[j], -sign * stiffness * c->K[i * n + j]);
+        for (int l = 0; l < lines; ++l)
+            fu_add(model, system, row + dim + l, dof, -stiffness * crossing->stiffness * changes[(dim + l) * n + i]);
+        if (line < lines) fu_add(model, system, dof, row + dim + line, -sign * unit * along / crossing->stiffness);
+        for (int j = 0; j < n && cable < 0; ++j)
+            fu_add(model, system, dof, motion.at.at[j], -sign * stiffness * motion.K[i * n + j]);
     }
 }
 
@@ -192,18 +188,14 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     const int row = fu_extra(model, coupling->unknown);
     const double unit = fu_row_unit(at->weights.inertia, coupling->scale[0]);
     fu_closest_points points;
-    derivatives by;
-    line_changes changes;
+    derivatives by = {.bends = {{0.0}, {0.0}, {{0.0}}}};
     for (int i = 0; i < coupling->n_forces; ++i) fu_add(model, system, row + i, row + i, unit);
     if (!at->next->flags[coupling->flags]) return;
     fu_find_closest(model, crossing, at->next, &points);
     crossing->kernel->force(points.d, points.t, points.k, points.w, points.u, crossing->law, by.F, by.F_d, by.F_t,
                             by.F_u, by.s_d, by.s_t);
     if (crossing->friction > 0.0) add_friction_derivatives(model, crossing, at->next, &points, &by);
-    for (int line = 0; line < FU_LINES; ++line) {
-        changes_of(model, crossing, line, at, &points.line[line], by.F, &changes);
-        add_line(model, crossing, line, at, &changes, &by, row, unit, system);
-    }
+    for (int line = 0; line < FU_LINES; ++line) add_line(model, crossing, line, at, &points, &by, row, unit, system);
 }
 
 /* The middle moves by half of psi, which weights.stiffness has; the law's mean force is taken as that of the middle. */

@@ -15,6 +15,7 @@
  */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
+#include "couplings/common/wrench.h"
 #include "couplings/fluid/drag.h"
 
 #include <string.h>
@@ -135,7 +136,7 @@ static void wet_length(const fu_model *model, const fu_drag *drag, const fu_drag
 static void wet_point(const fu_model *model, const fu_drag *drag, const fu_attachment_state *end,
                       const fu_fluid_past *past, of_point *out)
 {
-    const int dim = model->dim, turns = dim == 3 ? 3 : 1;
+    const int dim = model->dim, turns = fu_turns(dim);
     double p_rate[3], f_turn[9], f_w[9], f_n[9];
     by_wet_part(dim, drag, past, out->p, out->p_rate, turns, out->moment, &out->wet);
     take_part((int)(offsetof(of_point, wet) / sizeof(double)), past, (double *)out);
@@ -221,30 +222,56 @@ void fu_added_mass_densities(const fu_model *model, const fu_coupling *coupling,
     }
 }
 
-/* Makes the derivatives of a force on particles by the slope and by the place, and those of g (dim x dim each); rate:
- * that of velocities by places. */
+/* Adds the product of two matrices (dim x dim), times a factor. */
+static void add_product(int dim, double factor, const double *A, const double *B, double *sum)
+{
+    for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j)
+            for (int k = 0; k < dim; ++k) sum[i * dim + j] += factor * A[i * dim + k] * B[k * dim + j];
+}
+
+/* Computes the derivatives of the force on particles by place and velocity (dim x dim each): past the fluid the place
+ * changes w by -G, the velocity changes w by one and its rate by -G. */
+static void particle_derivatives(const fu_drag *drag, int dim, const fu_fluid_past *past, const double *M,
+                                 const double *p_rate_w, const of_wet_part *wet, double by_place[9],
+                                 double by_velocity[9])
+{
+    const double *G = past->flow.gradient;
+    double by_w[9], G_transposed[9];
+    for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) G_transposed[i * dim + j] = G[j * dim + i];
+    memcpy(by_w, p_rate_w, sizeof by_w);
+    add_product(dim, 1.0, G_transposed, M, by_w);
+    memcpy(by_place, wet->force_place, sizeof wet->force_place);
+    add_product(dim, -1.0, by_w, G, by_place);
+    add_product(dim, -past->wet * drag->displaced, G, G, by_place);
+    for (int i = 0; i < dim * dim; ++i) by_velocity[i] = by_w[i] + wet->by_v[i];
+    add_product(dim, -1.0, M, G, by_velocity);
+}
+
+/* Adds G' p of the derivatives of an impulse by `columns` quantities. */
+static void add_strained(int dim, int columns, const fu_fluid_past *past, const double *p_by, double *sum)
+{
+    for (int i = 0; i < dim; ++i)
+        for (int k = 0; k < dim; ++k)
+            for (int j = 0; j < columns; ++j)
+                sum[i * columns + j] += past->flow.gradient[k * dim + i] * p_by[k * columns + j];
+}
+
+/* Computes the derivatives of a force on particles of a cable by the slope and by the place, and that of g by the place
+ * (dim x dim each); rate: that of velocities by places. */
 static void derivatives(const fu_drag *drag, int dim, const of_length *of, const fu_fluid_past *past, double rate,
                         double by_slope[9], double by_place[9], double g_place[9])
 {
-    const double *G = past->flow.gradient;
-    for (int i = 0; i < dim; ++i)
-        for (int j = 0; j < dim; ++j) {
-            const int ij = i * dim + j;
-            by_slope[ij] = of->p_rate_t[ij] + rate * of->p_rate_t_rate[ij];
-            by_place[ij] = of->wet.force_place[ij] + rate * of->wet.by_v[ij];
-            g_place[ij] = of->wet.other_place[ij];
-            for (int k = 0; k < dim; ++k) {
-                const double w = (k == j ? rate : 0.0) - G[k * dim + j]; /* of w by the place */
-                by_slope[ij] += G[k * dim + i] * of->p_t[k * dim + j];
-                by_place[ij] += of->p_rate_w[i * dim + k] * w - rate * of->M[i * dim + k] * G[k * dim + j] -
-                                past->wet * drag->displaced * G[i * dim + k] * G[k * dim + j];
-                for (int l = 0; l < dim; ++l) {
-                    const double w_l = (l == j ? rate : 0.0) - G[l * dim + j];
-                    by_place[ij] += G[k * dim + i] * of->M[k * dim + l] * w_l;
-                }
-                g_place[ij] += of->g_w[i * dim + k] * w;
-            }
-        }
+    double by_velocity[9];
+    particle_derivatives(drag, dim, past, of->M, of->p_rate_w, &of->wet, by_place, by_velocity);
+    for (int i = 0; i < dim * dim; ++i) {
+        by_place[i] += rate * by_velocity[i];
+        by_slope[i] = of->p_rate_t[i] + rate * of->p_rate_t_rate[i];
+        g_place[i] = of->wet.other_place[i] + rate * of->g_w[i];
+    }
+    add_strained(dim, dim, past, of->p_t, by_slope);
+    add_product(dim, -1.0, of->g_w, past->flow.gradient, g_place);
 }
 
 static void tangent_of_cable(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
@@ -280,18 +307,16 @@ static void tangent_of_cable(const fu_model *model, const fu_drag *drag, const f
 static fu_fluid_past at_body(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
                              fu_attachment_state *end, of_point *out)
 {
-    const int dim = model->dim, turns = dim == 3 ? 3 : 1;
-    double acceleration[3], omega[3] = {0.0};
+    const int dim = model->dim;
+    double acceleration[3];
     fu_attachment_at(model, &drag->attachments[0], state, 0.0, FU_POINT | FU_AXES, end);
     memcpy(acceleration, end->bias, sizeof acceleration);
     for (int d = 0; d < dim && a; ++d)
         for (int i = 0; i < end->n; ++i) acceleration[d] += end->P[d * end->n + i] * a[end->at[i]];
-    for (int k = 0; k < turns; ++k)
-        for (int i = 0; i < end->n; ++i) omega[k] += end->T[k * end->n + i] * state->v[end->at[i]];
     const fu_fluid_past past = fu_past_fluid(model, drag, state->t, end->p, end->v, acceleration);
-    drag->kernel->inertia_of_point(end->A, drag->added, omega, past.w, past.w_rate, out->p, out->p_rate, out->moment,
-                                   out->M, out->p_turn, out->p_rate_turn, out->moment_turn, out->p_rate_omega,
-                                   out->p_rate_w, out->moment_w);
+    drag->kernel->inertia_of_point(end->A, drag->added, end->omega, past.w, past.w_rate, out->p, out->p_rate,
+                                   out->moment, out->M, out->p_turn, out->p_rate_turn, out->moment_turn,
+                                   out->p_rate_omega, out->p_rate_w, out->moment_w);
     if (drag->wet == FU_ALL_WET) memset(&out->wet, 0, sizeof out->wet);
     else wet_point(model, drag, end, &past, out);
     return past;
@@ -300,7 +325,7 @@ static fu_fluid_past at_body(const fu_model *model, const fu_drag *drag, const f
 static void on_body(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
                     const fu_drag_sums *sums)
 {
-    const int dim = model->dim, turns = dim == 3 ? 3 : 1;
+    const int dim = model->dim, turns = fu_turns(dim);
     double left[3];
     fu_attachment_state end;
     of_point terms;
@@ -308,74 +333,47 @@ static void on_body(const fu_model *model, const fu_drag *drag, const fu_state *
     fu_fluid_on_particles(model, drag, &past, terms.p, terms.p_rate, end.v, model->load_fraction, left, sums->power);
     for (int d = 0; d < dim; ++d) left[d] -= model->load_fraction * terms.wet.pull[d];
     for (int d = 0; d < dim && sums->total; ++d) sums->total[d] -= left[d];
-    for (int i = 0; sums->f && i < end.n; ++i) {
-        double sum = 0.0;
-        for (int d = 0; d < dim; ++d) sum += end.P[d * end.n + i] * left[d];
-        for (int k = 0; k < turns; ++k) sum += model->load_fraction * end.T[k * end.n + i] * terms.moment[k];
-        sums->f[end.at[i]] += sum;
-    }
+    for (int k = 0; k < turns; ++k) terms.moment[k] *= model->load_fraction;
+    if (sums->f) fu_add_wrench(dim, &end, left, terms.moment, 1.0, sums->f);
 }
 
-/* Adds the derivatives of the same, but for those of the acceleration of the point by the place. */
+/* Adds the derivatives of the same, except those of the acceleration of the point by the place. */
 static void tangent_of_body(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
                             const double *psi, fu_weights weights, fu_system *system)
 {
-    const fu_attachment *on = &drag->attachments[0];
-    const int dim = model->dim, turns = dim == 3 ? 3 : 1;
-    double turned[3 * FU_ATTACHMENT_COORDINATES], axes[3 * FU_ATTACHMENT_COORDINATES];
-    double K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES], left[3];
+    const int dim = model->dim, turns = fu_turns(dim), rows = 2 * (dim + turns);
+    double f_by[3 * 12], m_by[3 * 12] = {0.0}, left[3], by_place[9], by_velocity[9];
+    double f[3 * FU_ATTACHMENT_COORDINATES], m[3 * FU_ATTACHMENT_COORDINATES];
     fu_attachment_state end;
+    fu_point_motion motion;
     of_point of;
     const fu_fluid_past past = at_body(model, drag, state, a, &end, &of);
-    const int n = end.n;
-    const double *G = past.flow.gradient;
     fu_fluid_on_particles(model, drag, &past, of.p, of.p_rate, end.v, 1.0, left, 0);
     for (int d = 0; d < dim; ++d) left[d] -= of.wet.pull[d];
-    memcpy(turned, end.P, sizeof turned);
-    memcpy(axes, end.T, sizeof axes);
-    memset(K, 0, sizeof(double) * (size_t)(n * n));
-    fu_geometric_stiffness(model, on, state, left, of.moment, n, K);
-    fu_turn_attachment(model, on, psi, turned, dim, n, 0);
-    fu_turn_attachment(model, on, psi, axes, turns, n, 0);
-    fu_turn_attachment(model, on, psi, K, n, n, 0);
-    for (int j = 0; j < n; ++j) {
-        double w[3], w_rate[3], force[3], moment[3], p[3], strained[3];
-        for (int d = 0; d < dim; ++d) {
-            w[d] = weights.rate * end.P[d * n + j];
-            w_rate[d] = 0.0;
-            for (int k = 0; k < dim; ++k) {
-                w[d] -= G[d * dim + k] * turned[k * n + j];
-                w_rate[d] -= weights.rate * G[d * dim + k] * end.P[k * n + j];
-            }
-        }
-        for (int d = 0; d < dim; ++d) {
-            force[d] = p[d] = 0.0;
-            for (int k = 0; k < dim; ++k) {
-                force[d] += of.p_rate_w[d * dim + k] * w[k] + of.M[d * dim + k] * w_rate[k] +
-                            of.wet.force_place[d * dim + k] * turned[k * n + j] +
-                            weights.rate * of.wet.by_v[d * dim + k] * end.P[k * n + j];
-                p[d] += of.M[d * dim + k] * w[k];
-            }
-            for (int k = 0; k < turns; ++k) {
-                force[d] += of.p_rate_turn[d * turns + k] * axes[k * n + j] +
-                            weights.rate * of.p_rate_omega[d * turns + k] * end.T[k * n + j];
-                p[d] += of.p_turn[d * turns + k] * axes[k * n + j];
-            }
-        }
-        back(dim, &past, p, strained);
-        for (int k = 0; k < turns; ++k) {
-            moment[k] = 0.0;
-            for (int d = 0; d < dim; ++d)
-                moment[k] += of.moment_w[k * dim + d] * w[d] + of.wet.other_place[k * dim + d] * turned[d * n + j];
-            for (int l = 0; l < turns; ++l) moment[k] += of.moment_turn[k * turns + l] * axes[l * n + j];
-        }
-        for (int i = 0; i < n; ++i) {
-            double sum = K[i * n + j];
-            for (int d = 0; d < dim; ++d) sum += end.P[d * n + i] * (force[d] + strained[d]);
-            for (int k = 0; k < turns; ++k) sum += end.T[k * n + i] * moment[k];
-            fu_add(model, system, end.at[i], end.at[j], weights.stiffness * model->load_fraction * sum);
-        }
+    particle_derivatives(drag, dim, &past, of.M, of.p_rate_w, &of.wet, by_place, by_velocity);
+    add_strained(dim, turns, &past, of.p_turn, of.p_rate_turn);
+    for (int d = 0; d < dim; ++d) {
+        double *row = f_by + d * rows;
+        memcpy(row, by_place + d * dim, sizeof(double) * (size_t)dim);
+        memcpy(row + dim, by_velocity + d * dim, sizeof(double) * (size_t)dim);
+        memcpy(row + 2 * dim, of.p_rate_turn + d * turns, sizeof(double) * (size_t)turns);
+        memcpy(row + 2 * dim + turns, of.p_rate_omega + d * turns, sizeof(double) * (size_t)turns);
     }
+    for (int k = 0; k < turns; ++k) {
+        double *row = m_by + k * rows;
+        for (int d = 0; d < dim; ++d) {
+            row[d] = of.wet.other_place[k * dim + d];
+            row[dim + d] = of.moment_w[k * dim + d];
+            for (int e = 0; e < dim; ++e) row[d] -= of.moment_w[k * dim + e] * past.flow.gradient[e * dim + d];
+        }
+        memcpy(row + 2 * dim, of.moment_turn + k * turns, sizeof(double) * (size_t)turns);
+    }
+    fu_point_motion_at(model, &drag->attachments[0], state, FU_POINT | FU_AXES, left, of.moment, psi, weights.rate,
+                       &motion);
+    fu_changes(&motion, dim, f_by, f);
+    fu_changes(&motion, turns, m_by, m);
+    fu_add_wrench_tangent(model, &motion.at, &motion.at, f, m, fu_stiffness_of(&motion),
+                          weights.stiffness * model->load_fraction, system);
 }
 
 void fu_added_mass_forces(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,

@@ -8,6 +8,7 @@
  * changes with c by D of added_mass.py, so D times the change of c over that of the height acts along the vertical.
  */
 #include "bodies/model.h"
+#include "couplings/common/wrench.h"
 #include "couplings/fluid/drag.h"
 
 #include <math.h>
@@ -117,10 +118,10 @@ typedef struct {
 static void body_over_step(const fu_model *model, const fu_drag *drag, const fu_equations *at, body_step *out)
 {
     const fu_attachment *on = &drag->attachments[0];
-    const int dim = model->dim, turns = dim == 3 ? 3 : 1, dof = model->bodies[on->body].dof;
+    const int dim = model->dim, turns = fu_turns(dim), dof = model->bodies[on->body].dof;
     const fu_state *states[2] = {at->now, at->next};
     fu_attachment_state *const ends = out->ends;
-    double middle[3] = {0.0}, arm[3] = {0.0}, turned[3] = {0.0};
+    double middle[3] = {0.0}, arm[3] = {0.0}, turned[3];
     for (int i = 0; i < 2; ++i) {
         fu_attachment_at(model, on, states[i], 0.0, FU_POINT | FU_AXES, &ends[i]);
         out->past[i] = fu_past_fluid(model, drag, states[i]->t, ends[i].p, ends[i].v, model->zero);
@@ -135,11 +136,7 @@ static void body_over_step(const fu_model *model, const fu_drag *drag, const fu_
         out->v[d] = (ends[1].p[d] - ends[0].p[d]) / at->h;
         arm[d] = out->v[d] - at->psi[dof + d] / at->h;
     }
-    if (dim == 3) fu_cross(out->theta, arm, turned);
-    else {
-        turned[0] = -out->theta[0] * arm[1];
-        turned[1] = out->theta[0] * arm[0];
-    }
+    fu_swing(dim, out->theta, arm, turned);
     for (int d = 0; d < dim; ++d)
         out->change[d] = ends[1].v[d] - ends[0].v[d] - (states[1]->v[dof + d] - states[0]->v[dof + d]) - turned[d];
     out->halfway = fu_past_fluid(model, drag, at->middle->t, middle, out->v, model->zero);
@@ -149,7 +146,7 @@ static void body_over_step(const fu_model *model, const fu_drag *drag, const fu_
 static void wet_body_over_step(const fu_model *model, const fu_drag *drag, const body_step *of, double dp[3],
                                double mean[3], double moment[3], double on_place[3])
 {
-    const int dim = model->dim, turns = dim == 3 ? 3 : 1;
+    const int dim = model->dim, turns = fu_turns(dim);
     const wet_step wet = wet_over_step(model, drag, of->ends[0].p, of->ends[1].p);
     double p[2][3], M[2][9], more[3], with[3];
     for (int i = 0; i < 2; ++i) drag->kernel->impulse_of_point(of->ends[i].A, drag->added, of->past[i].w, p[i], M[i]);
@@ -158,16 +155,15 @@ static void wet_body_over_step(const fu_model *model, const fu_drag *drag, const
         more[d] = 0.25 * wet.change * 0.5 * (p[0][d] + p[1][d]);
         mean[d] *= of->halfway.wet;
     }
-    if (dim == 3) fu_cross(of->change, more, with);
-    else with[0] = of->change[0] * more[1] - of->change[1] * more[0];
+    fu_moment_of(dim, of->change, more, with);
     for (int k = 0; k < turns; ++k) moment[k] = wet.mean * moment[k] + with[k];
 }
 
 static void on_body_in_step(const fu_model *model, const fu_drag *drag, const fu_equations *at,
                             const fu_drag_sums *sums)
 {
-    const int dim = model->dim, turns = dim == 3 ? 3 : 1;
-    double dp[3], mean[3], moment[3], more[3], rate[3], left[3], on_place[3] = {0.0}, P[3 * FU_ATTACHMENT_COORDINATES];
+    const int dim = model->dim;
+    double dp[3], mean[3], moment[3], more[3], rate[3], left[3], on_place[3] = {0.0};
     body_step of;
     body_over_step(model, drag, at, &of);
     drag->kernel->inertia_of_point_step(of.ends[0].A, of.ends[1].A, drag->added, of.past[0].w, of.past[1].w, of.theta,
@@ -181,13 +177,8 @@ static void on_body_in_step(const fu_model *model, const fu_drag *drag, const fu
             rate[d] * (0.5 * (of.past[0].w[d] + of.past[1].w[d]) - of.v[d] - more[d] + of.halfway.flow.U[d]);
     for (int d = 0; d < dim && sums->total; ++d) sums->total[d] -= left[d];
     if (!sums->f) return;
-    fu_discrete_point(model, &drag->attachments[0], at->now, at->next, P);
-    for (int i = 0; i < of.turning.n; ++i) {
-        double sum = 0.0;
-        for (int d = 0; d < dim; ++d) sum += P[d * of.turning.n + i] * left[d];
-        for (int k = 0; k < turns; ++k) sum += of.turning.T[k * of.turning.n + i] * moment[k];
-        sums->f[of.turning.at[i]] += sum;
-    }
+    fu_discrete_point(model, &drag->attachments[0], at->now, at->next, of.turning.P);
+    fu_add_wrench(dim, &of.turning, left, moment, 1.0, sums->f);
 }
 
 void fu_added_mass_step_forces(const fu_model *model, const fu_drag *drag, const fu_equations *at,

@@ -2,6 +2,7 @@
  * (couplings/fluid/added_mass.c). */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
+#include "couplings/common/wrench.h"
 #include "couplings/fluid/drag.h"
 
 #include <string.h>
@@ -40,8 +41,7 @@ void fu_added_mass_force(const fu_model *model, const fu_coupling *coupling, con
             for (int i = 0; i < end.n; ++i) w[d] += end.P[d * end.n + i] * a[end.at[i]];
         drag->kernel->impulse_of_point(end.A, drag->added, w, p, M);
         wet_impulse(model, drag, end.p, p, M);
-        for (int d = 0; d < dim; ++d)
-            for (int i = 0; i < end.n; ++i) f[end.at[i]] += end.P[d * end.n + i] * p[d];
+        fu_add_wrench(dim, &end, p, 0, 1.0, f);
         return;
     }
     const fu_cable *cable = &model->cables[drag->cable];

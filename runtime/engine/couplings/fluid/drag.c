@@ -8,8 +8,8 @@
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/accelerator.h"
+#include "couplings/common/wrench.h"
 #include "couplings/fluid/drag.h"
-#include "couplings/force/point_force.h"
 
 #include <string.h>
 
@@ -164,45 +164,35 @@ static void on_body(const fu_model *model, const fu_drag *drag, double t, const 
     fu_drag_act(model, drag, t, &at, end.A, &a);
     whole_force(model, &a, force);
     if (sums->power) add_powers(model, &at, &a, 1.0, sums->power);
-    for (int d = 0; d < model->dim; ++d) {
-        if (sums->total) sums->total[d] += force[d];
-        for (int i = 0; sums->f && i < end.n; ++i) sums->f[end.at[i]] -= end.P[d * end.n + i] * force[d];
-    }
+    for (int d = 0; d < model->dim && sums->total; ++d) sums->total[d] += force[d];
+    if (sums->f) fu_add_wrench(model->dim, &end, force, 0, -1.0, sums->f);
 }
 
 static void matrix_of_body(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *psi,
                            fu_weights weights, fu_system *system)
 {
-    const fu_attachment *on = &drag->attachments[0];
-    const int dim = model->dim, turns = dim == 3 ? 3 : 1;
-    double turned[3 * FU_ATTACHMENT_COORDINATES], of_rate[3 * FU_ATTACHMENT_COORDINATES];
-    double K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES], force[3], gradient[9];
+    const int dim = model->dim, turns = drag->is_foil ? fu_turns(dim) : 0, rows = 2 * dim + 2 * turns;
+    double by[3 * 12] = {0.0}, changes[3 * FU_ATTACHMENT_COORDINATES], force[3], gradient[9];
     fu_attachment_state end;
+    fu_point_motion motion;
     fu_drag_place at;
     fu_drag_action a;
     place_on_body(model, drag, state, 0, &at, &end);
     fu_drag_act(model, drag, state->t, &at, end.A, &a);
     whole_force(model, &a, force);
-    const int n = end.n;
-    memcpy(turned, end.P, sizeof turned);
-    memset(of_rate, 0, sizeof of_rate);
-    fu_turn_point(model, on, state, force, psi, &end, turned, of_rate, K);
+    fu_point_motion_at(model, &drag->attachments[0], state, drag->is_foil ? FU_POINT | FU_AXES : FU_POINT, force, 0,
+                       psi, weights.rate, &motion);
     by_place(dim, &a, gradient);
-    if (drag->is_foil) fu_turn_attachment(model, on, psi, end.T, turns, n, 0);
-    for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j) {
-            double sum = K[i * n + j];
-            for (int d = 0; d < dim && drag->is_foil; ++d)
-                for (int k = 0; k < turns; ++k)
-                    sum += model->load_fraction * end.P[d * n + i] * a.by_turn[d * turns + k] * end.T[k * n + j];
-            for (int d = 0; d < dim; ++d)
-                for (int c = 0; c < dim; ++c) {
-                    const double rate = of_rate[c * n + j] + weights.rate * end.P[c * n + j];
-                    const double change = gradient[d * dim + c] * turned[c * n + j] - a.by_w[d * dim + c] * rate;
-                    sum += model->load_fraction * end.P[d * n + i] * change;
-                }
-            fu_add(model, system, end.at[i], end.at[j], -weights.stiffness * sum);
+    for (int d = 0; d < dim; ++d) {
+        for (int k = 0; k < dim; ++k) {
+            by[d * rows + k] = model->load_fraction * gradient[d * dim + k];
+            by[d * rows + dim + k] = -model->load_fraction * a.by_w[d * dim + k];
         }
+        for (int k = 0; k < turns; ++k) by[d * rows + 2 * dim + k] = model->load_fraction * a.by_turn[d * turns + k];
+    }
+    fu_changes(&motion, dim, by, changes);
+    fu_add_wrench_tangent(model, &motion.at, &motion.at, changes, 0, fu_stiffness_of(&motion), -weights.stiffness,
+                          system);
 }
 
 /* Adds what drag and buoyancy do at a state, or over a step. */

@@ -1,7 +1,7 @@
 /* Forces and moments from outside, and their derivatives where they turn with what they act on. */
-#include "bodies/rotation.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
+#include "couplings/common/wrench.h"
 #include "couplings/force/loads.h"
 
 #include <string.h>
@@ -12,53 +12,39 @@ static double scale_at(const fu_model *model, int signal, double t)
     return signal < 0 ? 1.0 : fu_signal_at(&model->signals[signal], t, 0, 0);
 }
 
-/* Does what `generalised` does, for a load c on a point of a modal body; what follows turns with the section there. */
-static int on_modes(const fu_model *model, const fu_load *load, const double *c, const double *q, double *g, double *K)
+/* Computes the generalised force g of a load on an element at unit signal, and its derivative K by the element's dofs;
+ * returns their number, and the first. */
+static int on_element(const fu_model *model, const fu_load *load, const double *q, double *g, double *K, int *first)
 {
-    const fu_body *body = &model->bodies[load->on];
-    const int dim = model->dim, turns = dim == 3 ? 3 : 1, n = fu_body_dofs(body);
-    const double *b = q + body->configuration;
-    double P[3 * FU_ATTACHMENT_COORDINATES], T[3 * FU_ATTACHMENT_COORDINATES], f[3] = {0.0}, m[3] = {0.0};
-    fu_modal_point at;
-    if (load->kind == FU_BODY_FOLLOWER) {
-        fu_modal_attachment_follower(body, &load->modal, b, c, g, K);
-        return n;
-    }
-    fu_modal_attachment_state(body, &load->modal, b, model->zero, &at, P, T);
-    if (load->kind == FU_BODY_MOMENT) memcpy(m, c + (dim == 2 ? 2 : 0), sizeof(double) * (size_t)turns);
-    else memcpy(f, c, sizeof(double) * (size_t)dim);
-    for (int i = 0; i < n; ++i) {
-        g[i] = 0.0;
-        for (int d = 0; d < dim; ++d) g[i] += P[d * n + i] * f[d];
-        for (int d = 0; d < turns; ++d) g[i] += T[d * n + i] * m[d];
-    }
-    fu_modal_attachment_force(body, &load->modal, b, f, m, K);
-    return n;
-}
-
-/* Makes the generalised force g of the part of a load that acts, at unit signal, and its derivative K by the dofs (row
- * by row); returns their number, and the first dof. On a body: translation of the force c, rotation of its moment about
- * the mass centre. */
-static int generalised(const fu_model *model, const fu_load *load, const double *q, double *g, double *K, int *first)
-{
+    const fu_cable *cable = &model->cables[load->on.cable];
     double c[3];
     for (int d = 0; d < 3; ++d) c[d] = model->load_fraction * load->c[d];
-    if (load->kind == FU_CABLE_FOLLOWER || load->kind == FU_CABLE_MOMENT) {
-        const fu_cable *cable = &model->cables[load->on];
-        *first = cable->first + load->element * cable->per_node;
-        (load->kind == FU_CABLE_MOMENT ? cable->kernel->moment : cable->kernel->follower_force)(
-            fu_element_length(cable, load->element), load->x, q + *first, c, g, K);
-        return cable->coordinates;
-    }
-    const fu_body *body = &model->bodies[load->on];
-    const fu_body_kernels *kernel = body->kernel;
-    const double *b = q + body->configuration;
-    *first = body->dof;
-    if (body->modes) return on_modes(model, load, c, q, g, K);
-    if (load->kind == FU_BODY_FORCE) kernel->force(b, load->u, c, g, K);
-    else if (load->kind == FU_BODY_FOLLOWER) kernel->follower_force(b, load->u, c, g, K);
-    else kernel->moment(b, c + (kernel->dim == 2 ? 2 : 0), g, K);
-    return kernel->velocity;
+    *first = cable->first + load->on.element * cable->per_node;
+    (load->kind == FU_CABLE_MOMENT ? cable->kernel->moment : cable->kernel->follower_force)(
+        fu_element_length(cable, load->on.element), load->x, q + *first, c, g, K);
+    return cable->coordinates;
+}
+
+/* Computes the load on a body at unit signal: the attachment, a force `f` or a moment `m` in global axes, null where
+ * there is none. */
+typedef struct {
+    fu_attachment_state at;
+    double vector[3];
+    const double *f, *m;
+} body_load;
+
+static void on_body(const fu_model *model, const fu_load *load, const fu_state *state, body_load *out)
+{
+    static const int needs[] = {
+        [FU_BODY_FORCE] = FU_PLACE, [FU_BODY_FOLLOWER] = FU_PLACE | FU_AXES, [FU_BODY_MOMENT] = FU_AXES};
+    const int dim = model->dim, is_moment = load->kind == FU_BODY_MOMENT;
+    const double *c = load->c + (is_moment && dim == 2 ? 2 : 0);
+    fu_attachment_at(model, &load->on, state, 0.0, needs[load->kind], &out->at);
+    for (int d = 0; d < (is_moment ? fu_turns(dim) : dim); ++d)
+        out->vector[d] =
+            model->load_fraction * (load->kind == FU_BODY_FOLLOWER ? fu_dot(dim, out->at.A + d * dim, c) : c[d]);
+    out->f = is_moment ? 0 : out->vector;
+    out->m = is_moment ? out->vector : 0;
 }
 
 static void dead_force(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f)
@@ -83,50 +69,69 @@ const fu_coupling_type fu_dead_load_type = {
 static void external_force(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f)
 {
     const fu_load *load = (const fu_load *)coupling;
-    double g[FU_ATTACHMENT_COORDINATES], K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
     const double scale = scale_at(model, load->signal, t);
-    int first;
-    const int n = generalised(model, load, q, g, K, &first);
-    for (int i = 0; i < n; ++i) f[first + i] -= scale * g[i];
+    if (load->on.body < 0) {
+        double g[FU_MAX_COORDINATES], K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
+        int first;
+        const int n = on_element(model, load, q, g, K, &first);
+        for (int i = 0; i < n; ++i) f[first + i] -= scale * g[i];
+        return;
+    }
+    const fu_state state = {.q = (double *)q, .v = (double *)model->zero};
+    body_load of;
+    on_body(model, load, &state, &of);
+    fu_add_wrench(model->dim, &of.at, of.f, of.m, -scale, f);
 }
 
-/* Subtracts stiffness times the load's derivatives from a system, by psi where that is given. */
-static void matrix(const fu_model *model, const fu_load *load, double t, const double *q, const double *psi,
+/* Subtracts stiffness times the load's derivatives from a system, by psi where that is given. A follower force turns
+ * with the body. */
+static void matrix(const fu_model *model, const fu_load *load, const fu_state *state, const double *psi,
                    double stiffness, fu_system *system)
 {
-    double g[FU_ATTACHMENT_COORDINATES], K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
-    const double scale = stiffness * scale_at(model, load->signal, t);
-    int first;
-    const int n = generalised(model, load, q, g, K, &first);
-    if (psi && load->kind >= FU_BODY_FORCE) fu_turn_columns(model->bodies[load->on].kernel, K, n, n, 0, psi + first);
-    for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j)
-            if (K[i * n + j] != 0.0) fu_add(model, system, first + i, first + j, -scale * K[i * n + j]);
+    const double scale = stiffness * scale_at(model, load->signal, state->t);
+    const int dim = model->dim;
+    if (load->on.body < 0) {
+        double g[FU_MAX_COORDINATES], K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
+        int first;
+        const int n = on_element(model, load, state->q, g, K, &first);
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n; ++j)
+                if (K[i * n + j] != 0.0) fu_add(model, system, first + i, first + j, -scale * K[i * n + j]);
+        return;
+    }
+    body_load of;
+    fu_point_motion motion;
+    double changes[3 * FU_ATTACHMENT_COORDINATES];
+    on_body(model, load, state, &of);
+    fu_point_motion_at(model, &load->on, state, FU_PLACE | FU_AXES, of.f, of.m, psi, 0.0, &motion);
+    const int n = motion.at.n;
+    for (int i = 0; i < n && load->kind == FU_BODY_FOLLOWER; ++i) {
+        double turn[3], change[3];
+        for (int k = 0; k < fu_turns(dim); ++k) turn[k] = motion.by[(2 * dim + k) * n + i];
+        fu_swing(dim, turn, of.f, change);
+        for (int d = 0; d < dim; ++d) changes[d * n + i] = change[d];
+    }
+    fu_add_wrench_tangent(model, &motion.at, &motion.at, load->kind == FU_BODY_FOLLOWER ? changes : 0, 0,
+                          fu_stiffness_of(&motion), -scale, system);
 }
 
 static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
 {
-    matrix(model, (const fu_load *)coupling, at->next->t, at->next->q, at->psi, at->weights.stiffness, system);
+    matrix(model, (const fu_load *)coupling, at->next, at->psi, at->weights.stiffness, system);
 }
 
 /* The middle moves by half of psi, which weights.stiffness has. */
 static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
 {
-    matrix(model, (const fu_load *)coupling, at->middle->t, at->middle->q, 0, at->weights.stiffness, system);
+    matrix(model, (const fu_load *)coupling, at->middle, 0, at->weights.stiffness, system);
 }
 
 static const char *const kinds[] = {"cable_follower", "cable_moment", "body_force", "body_follower", "body_moment", 0};
 
 static const fu_field fields[] = {
-    FU_FIELD(fu_load, kind, FU_WORD, kinds),
-    FU_FIELD(fu_load, signal, FU_INTEGER, 0),
-    FU_FIELD(fu_load, on, FU_INTEGER, 0),
-    FU_FIELD(fu_load, element, FU_INTEGER, 0),
-    FU_FIELD(fu_load, x, FU_REAL, 0),
-    FU_FIELD_ARRAY(fu_load, u, FU_REAL),
-    FU_FIELD_ARRAY(fu_load, c, FU_REAL),
-    FU_FIELD(fu_load, modal, FU_MODAL_POINT, 0),
-    {0},
+    FU_FIELD(fu_load, kind, FU_WORD, kinds), FU_FIELD(fu_load, signal, FU_INTEGER, 0),
+    FU_FIELD(fu_load, on, FU_ATTACHMENT, 0), FU_FIELD(fu_load, x, FU_REAL, 0),
+    FU_FIELD_ARRAY(fu_load, c, FU_REAL),     {0},
 };
 
 const fu_coupling_type fu_load_type = {.name = "load",

@@ -1,9 +1,9 @@
 /* Forces between the points of two attachments by the kernels of a law (derive/couplings/point_law.py). In a Newton
  * system the force is an unknown of its own, so that two points far apart on cables do not widen the band.
  */
-#include "bodies/rotation.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
+#include "couplings/common/wrench.h"
 #include "couplings/force/point_force.h"
 
 #include <math.h>
@@ -22,7 +22,7 @@ static void force_at(const fu_model *model, const fu_coupling *coupling, const f
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
     double gap[3], rate[3];
-    fu_gap(model, between, state->q, state->v, gap, rate);
+    fu_gap(model, between, state, gap, rate);
     force_of_piece(between, fu_force_segment(between, state), gap, rate, force);
 }
 
@@ -91,13 +91,13 @@ static double step_force(const fu_model *model, const fu_coupling *coupling, con
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
     const int several = is_of_several(model, between, at), piece = step_piece(model, between, at);
-    double gap[3], gap_next[3], unused[3], power;
+    double gap[3], gap_next[3], power;
     if (!several && between->senses[piece] == FU_HAS_NO_FORCE) {
         memset(force, 0, sizeof(double[3]));
         return 0.0;
     }
-    fu_gap(model, between, at->now->q, model->zero, gap, unused);
-    fu_gap(model, between, at->next->q, model->zero, gap_next, unused);
+    fu_gap(model, between, at->now, gap, 0);
+    fu_gap(model, between, at->next, gap_next, 0);
     if (several) {
         const point_motion w = way_of(between, gap, gap_next);
         for (int d = 0; d < between->dim; ++d) force[d] = w.tension * (gap[d] + gap_next[d]) / (w.from + w.to);
@@ -107,34 +107,16 @@ static double step_force(const fu_model *model, const fu_coupling *coupling, con
     return power;
 }
 
-/* Adds P' force of one attachment to f. */
-static void add_force(int dim, int first, int e, const fu_attachment_state *at, const double *force, double *f)
-{
-    for (int d = 0; d < dim; ++d)
-        for (int i = 0; i < at->n; ++i) f[first + i] += (e ? 1.0 : -1.0) * at->P[d * at->n + i] * force[d];
-}
-
-/* Adds what a force on the first point, and its opposite on the second, puts on the left of the equations of motion. */
-static void add_forces(const fu_model *model, const fu_point_force *between, const double *q, const double *force,
-                       double *f)
+/* Adds a force on the first point, and its opposite on the second, to the left of the equations of motion: at a state,
+ * or over a step to `next`, where its work is that on the change of the gap. */
+static void add_forces(const fu_model *model, const fu_point_force *between, const fu_state *state,
+                       const fu_state *next, const double *force, double *f)
 {
     for (int e = 0; e < 2; ++e) {
         fu_attachment_state at;
-        const int first = fu_force_point(model, &between->attachments[e], q, model->zero, &at);
-        add_force(between->dim, first, e, &at, force, f);
-    }
-}
-
-/* Does the same over a step: what the force does is its work on the gap's change. */
-static void add_step_forces(const fu_model *model, const fu_point_force *between, const fu_equations *step,
-                            const double *force, double *f)
-{
-    for (int e = 0; e < 2; ++e) {
-        const fu_attachment *on = &between->attachments[e];
-        fu_attachment_state at;
-        const int first = fu_force_point(model, on, step->now->q, model->zero, &at);
-        if (on->body >= 0) fu_discrete_point(model, on, step->now, step->next, at.P);
-        add_force(between->dim, first, e, &at, force, f);
+        fu_attachment_at(model, &between->attachments[e], state, 0.0, FU_PLACE, &at);
+        if (next) fu_discrete_point(model, &between->attachments[e], state, next, at.P);
+        fu_add_wrench(between->dim, &at, force, 0, e ? 1.0 : -1.0, f);
     }
 }
 
@@ -142,11 +124,11 @@ void fu_add_force_change(const fu_model *model, const fu_point_force *between, c
                          double factor, double *f)
 {
     double gap[3], rate[3], force[3], other[3];
-    fu_gap(model, between, state->q, state->v, gap, rate);
+    fu_gap(model, between, state, gap, rate);
     force_of_piece(between, fu_force_segment(between, state), gap, rate, force);
     force_of_piece(between, piece, gap, rate, other);
     for (int d = 0; d < between->dim; ++d) force[d] = factor * (force[d] - other[d]);
-    add_forces(model, between, state->q, force, f);
+    add_forces(model, between, state, 0, force, f);
 }
 
 /* Writes minus the residuals of the own unknowns: the forces less those of the law. */
@@ -160,7 +142,7 @@ static void own_rows(const fu_coupling *coupling, const fu_equations *at, const 
 static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)
 {
     double force[3];
-    add_forces(model, (const fu_point_force *)coupling, at->next->q, at->next->forces + coupling->force, f);
+    add_forces(model, (const fu_point_force *)coupling, at->next, 0, at->next->forces + coupling->force, f);
     force_at(model, coupling, at->next, force);
     own_rows(coupling, at, force, own);
 }
@@ -169,30 +151,9 @@ static void step_residual(const fu_model *model, const fu_coupling *coupling, co
                           double *own)
 {
     double force[3];
-    add_step_forces(model, (const fu_point_force *)coupling, at, at->next->forces + coupling->force, f);
+    add_forces(model, (const fu_point_force *)coupling, at->now, at->next, at->next->forces + coupling->force, f);
     step_force(model, coupling, at, force);
     own_rows(coupling, at, force, own);
-}
-
-void fu_turn_point(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *own,
-                   const double *psi, const fu_attachment_state *at, double *turned, double *by_place, double *K)
-{
-    const fu_body *body = &model->bodies[on->body];
-    const double *turn = psi ? psi + body->dof : 0;
-    const int dim = model->dim, n = at->n, first = at->at[0];
-    for (int d = 0; d < dim; ++d) {
-        const double axis[3] = {d == 0, d == 1, d == 2};
-        memset(K, 0, sizeof(double) * (size_t)(n * n));
-        fu_geometric_stiffness(model, on, state, axis, 0, n, K);
-        for (int i = 0; i < n; ++i)
-            for (int j = 0; j < n; ++j) by_place[d * n + j] += state->v[first + i] * K[i * n + j];
-    }
-    memset(K, 0, sizeof(double) * (size_t)(n * n));
-    fu_geometric_stiffness(model, on, state, own, 0, n, K);
-    if (!turn) return;
-    fu_turn_columns(body->kernel, turned, dim, n, 0, turn);
-    fu_turn_columns(body->kernel, by_place, dim, n, 0, turn);
-    fu_turn_columns(body->kernel, K, n, n, 0, turn);
 }
 
 /* Adds the derivatives of the equations at a state to a system, by the law of a piece; own: the forces; psi as in
@@ -203,36 +164,36 @@ static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_
     const fu_point_force *between = (const fu_point_force *)coupling;
     const int dim = between->dim, row = fu_extra(model, coupling->unknown);
     const double unit = fu_row_unit(weights.inertia, coupling->scale[0]), stiffness = weights.stiffness;
-    double gap[3], rate[3], force[3], by_gap[9], by_rate[9];
-    fu_gap(model, between, state->q, state->v, gap, rate);
-    memset(by_gap, 0, sizeof by_gap), memset(by_rate, 0, sizeof by_rate);
+    double gap[3], rate[3], force[3], by_gap[9] = {0.0}, by_rate[9] = {0.0}, by[18];
+    double changes[3 * FU_ATTACHMENT_COORDINATES];
+    fu_point_motion motions[2];
+    for (int e = 0; e < 2; ++e)
+        fu_point_motion_at(model, &between->attachments[e], state, FU_POINT, own, 0, psi, weights.rate, &motions[e]);
+    for (int d = 0; d < dim; ++d) {
+        gap[d] = motions[1].at.p[d] - motions[0].at.p[d];
+        rate[d] = motions[1].at.v[d] - motions[0].at.v[d];
+    }
     if (known) memcpy(by_gap, known, sizeof by_gap);
     else if (between->senses[piece] != FU_HAS_NO_FORCE)
         between->law->tangent(fu_segment_parameters(between, piece), gap, rate, force, by_gap, by_rate);
-    for (int d = 0; d < dim; ++d) fu_add(model, system, row + d, row + d, unit);
+    for (int d = 0; d < dim; ++d) {
+        memcpy(by + 2 * d * dim, by_gap + d * dim, sizeof(double) * (size_t)dim);
+        memcpy(by + (2 * d + 1) * dim, by_rate + d * dim, sizeof(double) * (size_t)dim);
+        fu_add(model, system, row + d, row + d, unit);
+    }
     for (int e = 0; e < 2; ++e) {
-        fu_attachment_state at;
-        double turned[3 * FU_ATTACHMENT_COORDINATES], by_place[3 * FU_ATTACHMENT_COORDINATES];
-        const int first = fu_force_point(model, &between->attachments[e], state->q, state->v, &at), n = at.n;
-        const double sign = e ? 1.0 : -1.0, *P = at.P;
-        memcpy(turned, P, sizeof turned);
-        for (int i = 0; i < dim * n; ++i) by_place[i] = 0.0;
-        if (between->attachments[e].body >= 0) {
-            double K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
-            fu_turn_point(model, &between->attachments[e], state, own, psi, &at, turned, by_place, K);
-            for (int i = 0; i < n; ++i)
-                for (int j = 0; j < n; ++j)
-                    fu_add(model, system, first + i, first + j, sign * stiffness * K[i * n + j]);
-        }
-        for (int i = 0; i < n; ++i)
+        const fu_attachment_state *at = &motions[e].at;
+        const int n = at->n;
+        const double sign = e ? 1.0 : -1.0;
+        fu_changes(&motions[e], dim, by, changes);
+        for (int i = 0; i < n; ++i) {
+            for (int j = 0; j < n && motions[e].is_stiff; ++j)
+                fu_add(model, system, at->at[i], at->at[j], sign * stiffness * motions[e].K[i * n + j]);
             for (int d = 0; d < dim; ++d) {
-                double change = 0.0;
-                for (int k = 0; k < dim; ++k)
-                    change += by_gap[d * dim + k] * turned[k * n + i] +
-                              by_rate[d * dim + k] * (by_place[k * n + i] + weights.rate * P[k * n + i]);
-                fu_add(model, system, row + d, first + i, -sign * stiffness * change);
-                fu_add(model, system, first + i, row + d, sign * unit * P[d * n + i]);
+                fu_add(model, system, row + d, at->at[i], -sign * stiffness * changes[d * n + i]);
+                fu_add(model, system, at->at[i], row + d, sign * unit * at->P[d * n + i]);
             }
+        }
     }
 }
 
@@ -247,10 +208,10 @@ static void step_tangent(const fu_model *model, const fu_coupling *coupling, con
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
     const int several = is_of_several(model, between, at), piece = step_piece(model, between, at);
-    double gap[3], gap_next[3], unused[3], by_gap[9];
+    double gap[3], gap_next[3], by_gap[9];
     if (several) {
-        fu_gap(model, between, at->now->q, model->zero, gap, unused);
-        fu_gap(model, between, at->next->q, model->zero, gap_next, unused);
+        fu_gap(model, between, at->now, gap, 0);
+        fu_gap(model, between, at->next, gap_next, 0);
         mean_stiffness(between, gap, gap_next, piece, by_gap);
     }
     matrix(model, coupling, at->middle, piece, at->next->forces + coupling->force, 0, several ? by_gap : 0, at->weights,
@@ -267,7 +228,7 @@ static void own_force(const fu_model *model, const fu_coupling *coupling, const 
 {
     double force[3];
     force_at(model, coupling, state, force);
-    add_forces(model, (const fu_point_force *)coupling, state->q, force, f);
+    add_forces(model, (const fu_point_force *)coupling, state, 0, force, f);
 }
 
 /* work: null in a state of rest, where the force is an unknown. */
@@ -290,9 +251,9 @@ static double energy(const fu_model *model, const fu_coupling *coupling, const f
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
     const int piece = fu_segment_at(model, between, state);
-    double gap[3], rate[3], stored;
+    double gap[3], stored;
     if (between->senses[piece] == FU_HAS_NO_FORCE) return 0.0;
-    fu_gap(model, between, state->q, model->zero, gap, rate);
+    fu_gap(model, between, state, gap, 0);
     between->law->energy(fu_segment_parameters(between, piece), gap, &stored);
     return stored;
 }
@@ -305,7 +266,7 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
     double gap[3], rate[3], power;
     (void)work;
     if (!coupling->is_damped || between->senses[piece] == FU_HAS_NO_FORCE) return 0.0;
-    fu_gap(model, between, state->q, state->v, gap, rate);
+    fu_gap(model, between, state, gap, rate);
     between->law->dissipation(fu_segment_parameters(between, piece), gap, rate, &power);
     return power;
 }

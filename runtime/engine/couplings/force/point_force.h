@@ -27,23 +27,13 @@ typedef struct {
 
 extern const fu_coupling_type fu_point_force_type;
 
-/* couplings/force/gap.c; the first makes position and velocity of an attachment's point, and how it moves with its
- * coordinates; returns its first dof. */
-int fu_force_point(const fu_model *model, const fu_attachment *on, const double *q, const double *v,
-                   fu_attachment_state *at);
-void fu_gap(const fu_model *model, const fu_point_force *between, const double *q, const double *v, double gap[3],
-            double rate[3]);
 /* couplings/force/point_force.c */
-/* Makes, for an attachment to a body, whose point's derivatives P change with its coordinates: `turned`, P by the
- * unknowns, from P; adds to `by_place` the derivatives of the point's velocity by them at fixed rates; K, those of P'
- * own, of a force `own`. */
-void fu_turn_point(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *own,
-                   const double *psi, const fu_attachment_state *at, double *turned, double *by_place, double *K);
 /* Adds to f, times a factor, by how much the forces at a state differ from those by the law of another piece. */
 void fu_add_force_change(const fu_model *model, const fu_point_force *between, const fu_state *state, int piece,
                          double factor, double *f);
 
-/* couplings/force/segments.c */
+/* couplings/force/segments.c; the first computes the gap between the points and, unless null, its rate. */
+void fu_gap(const fu_model *model, const fu_point_force *between, const fu_state *state, double gap[3], double *rate);
 int fu_force_segment(const fu_point_force *between, const fu_state *state);
 int fu_segment_at(const fu_model *model, const fu_point_force *between, const fu_state *state);
 int fu_segment_at_distance(const fu_point_force *between, double distance);

@@ -33,12 +33,23 @@ int fu_segment_at_distance(const fu_point_force *between, double distance)
     return piece;
 }
 
+void fu_gap(const fu_model *model, const fu_point_force *between, const fu_state *state, double gap[3], double *rate)
+{
+    fu_attachment_state at[2];
+    for (int e = 0; e < 2; ++e)
+        fu_attachment_at(model, &between->attachments[e], state, 0.0, rate ? FU_POINT : FU_PLACE, &at[e]);
+    for (int d = 0; d < 3; ++d) {
+        gap[d] = at[1].p[d] - at[0].p[d];
+        if (rate) rate[d] = at[1].v[d] - at[0].v[d];
+    }
+}
+
 /* Returns the piece that the distance of the points is on. */
 int fu_segment_at(const fu_model *model, const fu_point_force *between, const fu_state *state)
 {
-    double gap[3], rate[3];
+    double gap[3];
     if (between->n_pieces == 1) return 0;
-    fu_gap(model, between, state->q, model->zero, gap, rate);
+    fu_gap(model, between, state, gap, 0);
     return fu_segment_at_distance(between, sqrt(fu_dot(between->dim, gap, gap)));
 }
 

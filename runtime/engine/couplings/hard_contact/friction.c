@@ -1,6 +1,7 @@
 /* Friction of hard contacts: how the point of a body that touches goes past the surface, and against what friction is.
  */
 #include "bodies/model.h"
+#include "couplings/common/wrench.h"
 #include "couplings/hard_contact/hard_contact.h"
 
 #include <math.h>
@@ -57,12 +58,13 @@ void fu_hard_along_at(const fu_model *model, const fu_hard_contact *contact, con
 {
     const int dim = model->dim;
     fu_attachment_state point, on;
-    double r[3] = {0.0}, bias[3], P[3 * FU_ATTACHMENT_COORDINATES], Q[3 * FU_ATTACHMENT_COORDINATES];
+    double arm[3], lever[3], moment[3], bias[3];
     fu_attachment_at(model, contact->contact.attachments, state, 0.0, FU_POINT | FU_AXES, &point);
     fu_surface_at(model, &contact->contact.surface, state, &on);
-    for (int d = 0; d < dim; ++d) r[d] = point.p[d] - contact->contact.radius * row->normal[d];
-    fu_surface_motion(dim, &point, r, P);
-    fu_surface_motion(dim, &on, r, Q);
+    for (int d = 0; d < dim; ++d) {
+        arm[d] = -contact->contact.radius * row->normal[d];
+        lever[d] = point.p[d] + arm[d] - on.p[d];
+    }
     memset(out->past, 0, sizeof out->past);
     contact->contact.surface.kernel->slip(row->normal, row->curvature, point.p, point.v, point.bias, on.p, on.v,
                                           on.bias, on.omega, on.alpha, contact->contact.radius, point.omega,
@@ -75,11 +77,10 @@ void fu_hard_along_at(const fu_model *model, const fu_hard_contact *contact, con
         const double *t = k < dim - 1 ? out->t[k] : out->direction;
         double *H = k < dim - 1 ? out->H[k] : out->slip;
         if (k < dim - 1) out->bias[k] = fu_dot(dim, t, bias);
-        for (int i = 0; i < row->n; ++i) {
-            H[i] = 0.0;
-            for (int d = 0; d < dim; ++d)
-                H[i] += t[d] * (i < point.n ? P[d * point.n + i] : -Q[d * on.n + i - point.n]);
-        }
+        fu_moment_of(dim, arm, t, moment);
+        fu_wrench_force(dim, &point, t, moment, 1.0, H);
+        fu_moment_of(dim, lever, t, moment);
+        fu_wrench_force(dim, &on, t, moment, -1.0, H + point.n);
     }
 }
 

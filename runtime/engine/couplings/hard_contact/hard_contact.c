@@ -4,6 +4,7 @@
  */
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
+#include "couplings/common/wrench.h"
 #include "couplings/hard_contact/hard_contact.h"
 
 #include <string.h>
@@ -30,7 +31,7 @@ void fu_hard_row_at(const fu_model *model, const fu_hard_contact *contact, const
     const int dim = model->dim;
     fu_attachment_state point, on;
     fu_distance distance;
-    double P[3 * FU_ATTACHMENT_COORDINATES];
+    double arm[3], moment[3];
     fu_attachment_at(model, contact->contact.attachments, state, 0.0, FU_POINT, &point);
     fu_surface_at(model, &contact->contact.surface, state, &on);
     fu_surface_distance(dim, &contact->contact.surface, &on, point.p, &distance);
@@ -38,17 +39,12 @@ void fu_hard_row_at(const fu_model *model, const fu_hard_contact *contact, const
     memcpy(out->normal, distance.n, sizeof(double) * (size_t)dim);
     memcpy(out->curvature, distance.H, sizeof out->curvature);
     out->n = point.n + on.n;
-    for (int i = 0; i < point.n; ++i) {
-        out->at[i] = point.at[i];
-        out->H[i] = 0.0;
-        for (int d = 0; d < dim; ++d) out->H[i] += distance.n[d] * point.P[d * point.n + i];
-    }
-    fu_surface_motion(dim, &on, point.p, P);
-    for (int i = 0; i < on.n; ++i) {
-        out->at[point.n + i] = on.at[i];
-        out->H[point.n + i] = 0.0;
-        for (int d = 0; d < dim; ++d) out->H[point.n + i] -= distance.n[d] * P[d * on.n + i];
-    }
+    memcpy(out->at, point.at, sizeof(int) * (size_t)point.n);
+    memcpy(out->at + point.n, on.at, sizeof(int) * (size_t)on.n);
+    for (int d = 0; d < dim; ++d) arm[d] = point.p[d] - on.p[d];
+    fu_moment_of(dim, arm, distance.n, moment);
+    fu_wrench_force(dim, &point, distance.n, 0, 1.0, out->H);
+    fu_wrench_force(dim, &on, distance.n, moment, -1.0, out->H + point.n);
     contact->contact.surface.kernel->motion(distance.n, distance.H, point.p, point.v, point.bias, on.p, on.v, on.bias,
                                             on.omega, on.alpha, &out->rate, &out->bias);
 }
@@ -211,7 +207,7 @@ static void step_row(const fu_model *model, const fu_hard_contact *contact, cons
     const fu_attachment *to = contact->contact.attachments;
     fu_attachment_state point[2], on;
     fu_distance distance, middle;
-    double P[3 * FU_ATTACHMENT_COORDINATES], g[2];
+    double g[2];
     const fu_state *states[2] = {at->now, at->next};
     fu_surface_at(model, surface, at->next, &on); /* it does not move */
     for (int e = 0; e < 2; ++e) {
@@ -220,13 +216,10 @@ static void step_row(const fu_model *model, const fu_hard_contact *contact, cons
         g[e] = distance.g - contact->contact.radius;
     }
     fu_surface_step_normal(dim, surface, &on, point[0].p, point[1].p, g[1] - g[0], &middle, out->normal);
-    fu_discrete_point(model, to, at->now, at->next, P);
+    fu_discrete_point(model, to, at->now, at->next, point[0].P);
     out->n = point[0].n;
-    for (int i = 0; i < out->n; ++i) {
-        out->at[i] = point[0].at[i];
-        out->H[i] = 0.0;
-        for (int d = 0; d < dim; ++d) out->H[i] += out->normal[d] * P[d * out->n + i];
-    }
+    memcpy(out->at, point[0].at, sizeof(int) * (size_t)out->n);
+    fu_wrench_force(dim, &point[0], out->normal, 0, 1.0, out->H);
     out->g = g[1];
 }
 

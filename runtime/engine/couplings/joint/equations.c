@@ -159,8 +159,8 @@ void fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_sta
             out->K[f][e] = out->J[e] + (rows + (f ? out->n[0] : 0)) * n;
             memset(out->K[f][e], 0, sizeof(double) * (size_t)(out->n[f] * n));
         }
-        fu_geometric_stiffness(model, &joint->attachments[e], state, pull, view.turns ? g + dim + e * view.turns : 0, n,
-                               out->K[e][e]);
+        fu_wrench_derivatives(model, &joint->attachments[e], state, pull, view.turns ? g + dim + e * view.turns : 0, n,
+                              out->K[e][e], 0, 0);
         if (!out->across) continue;
         over_coordinates(dim, &view, e, view.moves, of_moves, half);
         add_elastic(dim, &view, !e, n, half, out->K[!e][e]);

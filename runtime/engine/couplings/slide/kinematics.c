@@ -108,9 +108,8 @@ void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const
             const int a = i < n_element ? i : from - 1, b = k < n_element ? k : from - 1;
             K[(i < n_element ? i : n - 1) * n + (k < n_element ? k : n - 1)] = of_point[a * from + b];
         }
-    memset(part, 0, sizeof(double) * (size_t)(n_rider * n_rider));
     for (int d = 0; d < dim; ++d) pull[d] = -f[d];
-    fu_geometric_stiffness(model, &slide->rider, state, pull, 0, n_rider, part);
+    fu_wrench_derivatives(model, &slide->rider, state, pull, 0, n_rider, part, 0, 0);
     for (int i = 0; i < n_rider; ++i)
         for (int k = 0; k < n_rider; ++k) K[(n_element + i) * n + n_element + k] = part[i * n_rider + k];
 }
