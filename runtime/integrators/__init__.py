@@ -1,4 +1,4 @@
-"""Integrators that a run can take: a file each, and their list; the engine's is in engine/integrators/list.c."""
+"""Integrators of runs: one file each, and their list; that of the engine is in engine/integrators/list.c."""
 
 from .energy import EnergyMomentum
 from .explicit import Explicit
@@ -9,11 +9,11 @@ from .radau import Radau
 LIST = (GeneralisedAlpha, Explicit, Radau, EnergyMomentum)
 INTEGRATORS: dict[str, type[Integrator]] = {one.name: one for one in LIST}
 AUTO = "auto"
-"""The name by which a run chooses one itself."""
+"""Name for the integrator that a run chooses itself."""
 
 
 def stable_at(fixed_step: bool) -> type[Integrator]:
-    """Return the integrator that is stable at any step: with a fixed step, or with steps chosen by the tolerance."""
+    """Return the integrator that is stable at any step, for a fixed step or for steps chosen by the tolerance."""
     return GeneralisedAlpha if fixed_step else Radau
 
 

@@ -1,4 +1,4 @@
-"""The energy-momentum method as the engine takes it: its one parameter and what it can run."""
+"""The energy-momentum method: parameters and capabilities."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from .integrator import Integrator
 class EnergyMomentum(Integrator):
     """Implicit, of order 2; keeps energy and momenta to rounding (Simo & Tarnow 1992; Gonzalez 1996).
 
-    With a spectral radius below 1 at infinite frequency it keeps momenta alone, while algorithmic dissipation takes
-    energy from the fast vibrations of cables (engine/integrators/algorithmic_dissipation.c).
+    With a spectral radius below 1 at infinite frequency it keeps only momenta, and algorithmic dissipation damps fast
+    vibrations of cables (engine/integrators/algorithmic_dissipation.c).
     """
 
     spectral_radius: float = 1.0
@@ -32,7 +32,7 @@ class EnergyMomentum(Integrator):
     def parameters(self) -> np.ndarray:
         """Return lag in steps, viscosity, inertia, and the weight that follows from them.
 
-        The modulus 1 + inertia p^2 + viscosity p lag p/(1 + lag p) of elasticity and algorithmic stress is to be
+        The modulus 1 + inertia p^2 + viscosity p lag p/(1 + lag p) of elasticity and algorithmic stress equals
         (1 + p/a)^3/(1 + lag p), with p = -a where (1 + p/2)/(1 - p/2) is minus the spectral radius.
         """
         a = 2 * (1 + self.spectral_radius) / (1 - self.spectral_radius) if self.spectral_radius < 1 else np.inf

@@ -7,15 +7,15 @@ import numpy as np
 from .integrator import Demands, Integrator, StabilityLimit
 
 STAGES = 12
-"""Of Dormand and Prince's method: evaluations of eq 38 for a step."""
+"""Evaluations of eq 38 in a step."""
 
 
 class Explicit(Integrator):
     """The Runge-Kutta method of order 8 of Dormand & Prince (Hairer, Norsett & Wanner 1993, DOP853), as scipy has it.
 
     Steps are chosen by its error estimate of order 7. Methods of order 5 have a third of its imaginary stability
-    interval for each evaluation, so that it is the cheaper one at any tolerance. The stability limit is where step
-    control keeps steps: the method's imaginary stability interval is 5.96, its real one 6.40.
+    interval per evaluation, so that it is cheaper at any tolerance. The stability limit is that of step control: the
+    imaginary stability interval of the method is 5.96, its real one 6.40.
     """
 
     name = "explicit"
@@ -35,8 +35,8 @@ class Explicit(Integrator):
 
     @classmethod
     def cost(cls, demands: Demands) -> tuple[float, str]:
-        """Return the evaluations a second that stability asks for."""
+        """Return the evaluations per second that stability requires."""
         cost = STAGES * cls.stability.steps_per_second(demands.frequency, demands.decay)
         decay = f", fastest decay {demands.decay:.3g} 1/s" if demands.decay else ""
-        return cost, (f"stability asks the explicit method for {cost:.3g} evaluations a second (highest frequency "
+        return cost, (f"stability of the explicit method requires {cost:.3g} evaluations a second (highest frequency "
                       f"{demands.frequency:.3g} rad/s{decay})")

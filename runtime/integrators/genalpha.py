@@ -1,4 +1,4 @@
-"""The generalised-alpha method as the engine takes it: its parameters from the spectral radius."""
+"""The generalised-alpha method: parameters from the spectral radius."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an integrator says of itself: its name, its parameters, what it can do."""
+"""Base of integrators: name, parameters, capabilities, cost."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Demands:
-    """What a scene asks of an integrator: highest frequency in rad/s and rate of decay in 1/s of its parts, the rate in
-    1/s of its motion as a whole, whether slides rub, and the tolerance.
+    """Demands of a scene on an integrator: highest frequency, rad/s, and rate of decay, 1/s, of its parts, rate of its
+    motion as a whole, 1/s, friction of slides, and the tolerance.
     """
 
     frequency: float
@@ -25,28 +25,28 @@ class Demands:
 
 @dataclass(frozen=True)
 class StabilityLimit:
-    """What the step times the highest frequency, or times the highest rate of decay, must stay below."""
+    """Upper bounds of the step times the highest frequency and times the highest rate of decay."""
 
     frequency: float
     decay: float
 
     def part(self, step: float, frequency: float, decay: float) -> float:
-        """Return which part of the limit a step in s takes: 1 and more is unstable."""
+        """Return a step in s as a fraction of the limit; from 1 on it is unstable."""
         return step * self.steps_per_second(frequency, decay)
 
     def steps_per_second(self, frequency: float, decay: float) -> float:
-        """Return how many steps a second there must be at least."""
+        """Return the least number of steps per second."""
         return max(frequency / self.frequency, decay / self.decay)
 
 
 class Integrator(ABC):
     """A method of integration in time; the engine's part of the same name is in engine/integrators/.
 
-    order: of the error in positions that steps are chosen by; error_overestimate: how much larger the estimate of the
-    local error is than that error; retry_factor: what steps stay below for a while after one that failed, as a part of
-    that one, 0 where failures are cheap; default_spectral_radius: None where the integrator has none; stability: None
-    where steps of any size are stable; loses_energy_by_spectral_radius: whether one below 1 takes energy that
-    nothing counts as dissipated; the other flags say which scenes it can run.
+    order: of the error in positions that steps are chosen by; error_overestimate: ratio of the estimate to the local
+    error; retry_factor: bound of the steps after a failed one, as a fraction of it, 0 where failures are cheap;
+    default_spectral_radius: None without a spectral radius; stability: None for unconditional stability;
+    loses_energy_by_spectral_radius: whether a radius below 1 dissipates energy that the balance does not count; the
+    other flags say which scenes it can run.
     """
 
     name: ClassVar[str]
@@ -63,24 +63,23 @@ class Integrator(ABC):
     @property
     @abstractmethod
     def parameters(self) -> np.ndarray:
-        """Return the numbers that the engine's part takes, in the order of its structure."""
+        """Return the parameters in the order of the engine's structure."""
 
     @classmethod
     def of(cls, spectral_radius: float) -> Integrator:
-        """Return the integrator with this spectral radius at infinite frequency, if it has one."""
+        """Return the integrator, with this spectral radius at infinite frequency if it has one."""
         return _made(cls)
 
     cost_of_evaluation: ClassVar[float] = 1.0
-    """Of an evaluation of eq 38, or of an iteration where these are not counted, with its share of the other work of a
-    step, in evaluations alone."""
+    """Cost of an evaluation of eq 38, or of an iteration, with the rest of the step, in evaluations."""
 
     @classmethod
     def cost(cls, demands: Demands) -> tuple[float, str] | None:
-        """Return what a second of a scene costs, in evaluations of eq 38, and why; None: "auto" does not take it."""
+        """Return the cost of a second of a scene in evaluations of eq 38, and its reason; None: not for "auto"."""
         return None
 
 
 @cache
 def _made(kind: type[Integrator]) -> Integrator:
-    """Return the integrator of a kind without parameters: its coefficients are the same in every run."""
+    """Return the integrator of a class without parameters, made once."""
     return kind()

@@ -6,20 +6,20 @@ import numpy as np
 
 from .integrator import Demands, Integrator
 
-EVALUATIONS = 4e3
-"""Evaluations of eq 38 that a radian of the motion as a whole costs at tol = 1e-4, by tests/benchmarks/choice.py; they
-grow with the third root of 1/tol."""
-KINKS = 2.0
-"""What friction multiplies that by: where a normal force turns round, friction has a kink, which only short steps find.
-Vibrations of it count as well, by what they make of the sign, and radau would damp them."""
+EVALUATIONS_PER_RADIAN = 4e3
+"""Evaluations of eq 38 per radian of the motion as a whole at tol = 1e-4 (tests/benchmarks/choice.py), proportional to
+the third root of 1/tol."""
+FRICTION_COST_FACTOR = 2.0
+"""Factor for friction: its kink at a change of sign of the normal force needs short steps, as do vibrations of this
+force, which radau would damp."""
 
 
 class Radau(Integrator):
     """Radau IIA of three stages, of order 5 (Hairer & Wanner 1996, IV.5 and IV.8), from its nodes.
 
-    Steps are chosen by an embedded estimate of order 3 and, for vibrations, by one of the method's own order that
-    follows from it (engine/integrators/radau.c). Factorisations are dear: after a step that failed the next ones stay
-    below a part of it for a while.
+    Steps are chosen by an embedded estimate of order 3 and, for vibrations, by an estimate of the method's order that
+    follows from it (engine/integrators/radau.c). Factorisations are expensive, so that steps after a failed one are
+    limited.
     """
 
     name, order, retry_factor = "radau", 3, 0.65
@@ -51,8 +51,8 @@ class Radau(Integrator):
 
     @classmethod
     def cost(cls, demands: Demands) -> tuple[float, str]:
-        """Return the evaluations a second that the motion as a whole costs at the tolerance."""
-        cost = EVALUATIONS * demands.slow * (1e-4 / demands.tol) ** (1 / 3)
+        """Return the evaluations per second for the motion as a whole at the tolerance."""
+        cost = EVALUATIONS_PER_RADIAN * demands.slow * (1e-4 / demands.tol) ** (1 / 3)
         if demands.friction:
-            cost *= KINKS
-        return cost, f"tol asks radau for work like {cost:.3g}"
+            cost *= FRICTION_COST_FACTOR
+        return cost, f"tol requires work of radau like {cost:.3g}"

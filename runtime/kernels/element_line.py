@@ -1,4 +1,4 @@
-"""A line of elements between nodes with given nodal vectors: its points and slopes, as the elements draw them."""
+"""Points and slopes of a line of elements with given nodal vectors."""
 
 from __future__ import annotations
 
@@ -31,9 +31,7 @@ class ElementLine:
         return np.pad(r_x, (0, 3 - len(r_x)))
 
     def _element_at(self, s: float) -> tuple[float, float, np.ndarray]:
-        """Return the length of the element that holds ``s`` and x within it, in m, and its nodal vectors (2 vectors,
-        dim).
-        """
+        """Return the length of the element at ``s`` and x in it, m, and its nodal vectors (2 vectors, dim)."""
         element = int(self.mesh.element_at(s))
         return (self.mesh.length(element), s - self.mesh.start(element),
                 np.concatenate(self.nodal_vectors[element : element + 2]))

@@ -1,4 +1,4 @@
-"""What scenes can be made of: the elements of this package and of libraries, as their manifests tell."""
+"""Elements of this package and of libraries, from their manifests."""
 
 from __future__ import annotations
 
@@ -13,17 +13,16 @@ MANIFEST = "manifest.json"
 
 @dataclass(frozen=True)
 class LawTraits:
-    """What an elastic law is, as the manifest has it.
+    """Traits of an elastic law in the manifest.
 
-    stiffness_of       the law of this package whose section stiffness it takes: itself, but for a law of the user's
+    stiffness_of       the law of this package with the same section stiffness; itself, except for a law of the user's
     kind               "cable" (of the axis alone), "continuum" or "structural" (of the whole section)
     strain, curvature  the measures of a cable: "green" or "engineering", "exact" or "linear"; else empty
-    membrane           how a cable represents its axial strain: "full", "assumed" or "tension_only"; else empty
-    straight           where the law is for a curved stress-free shape: the law for a straight one; else empty
+    membrane           representation of the axial strain of a cable: "full", "assumed" or "tension_only"; else empty
+    straight           of a law for a curved stress-free shape, the law for a straight one; else empty
     takes_shape        whether its kernels take the stress-free shape
-    shared             by kernel, the family (ELEMENT_LAW) whose kernel it takes in place of one of its own, as the
-                       engine's table of kernels has it
-    discrete_gradient  whether its energy has one, which the integrator "energy" needs
+    shared             by kernel, the family (ELEMENT_LAW) that provides it, as in the engine's table of kernels
+    discrete_gradient  whether its energy has a discrete gradient, which the integrator "energy" needs
     """
 
     stiffness_of: str
@@ -48,17 +47,15 @@ class ElementKind:
 
     @property
     def is_cable(self) -> bool:
-        """Return whether its laws know the section by its axial and bending stiffness alone."""
+        """Return whether its laws depend only on the axial and bending stiffness of the section."""
         return all(law.kind == "cable" for law in self.laws.values())
 
     def law_kernel(self, element: str, law: str, kernel: str) -> str:
-        """Return the name of a kernel of a law on this element, of that name: its own, or the one that it takes from
-        another law.
-        """
+        """Return the full name of a kernel of a law on this element, possibly that of another law."""
         return f"{self.laws[law].shared.get(kernel, f'{element}_{law}')}_{kernel}"
 
     def law_for_curved_shape(self, law: str) -> str | None:
-        """Return the law that stands for a law where the stress-free shape is curved; None if the element has none."""
+        """Return the form of a law for curved stress-free shapes; None if the element has none."""
         if law in self.laws and self.laws[law].takes_shape:
             return law
         return next((name for name, traits in self.laws.items() if traits.straight == law), None)
@@ -90,7 +87,7 @@ def built_in_laws() -> dict[str, LawTraits]:
 
 
 def gauge(vectors: tuple[str, ...], length: float, y: float, z: float) -> Iterator[float]:
-    """Return how far, in m, a unit of each nodal vector moves a point of an element of that length.
+    """Yield the displacement of a point of an element of that length by a unit of each nodal vector, m.
 
     1 for positions; a unit of r_x moves the middle of an element by l/8, of r_xx by about l²/64; one of r_y or r_z
     moves the surface by the section's radius of gyration ``y`` or ``z``.

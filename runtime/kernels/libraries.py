@@ -1,7 +1,7 @@
-"""Libraries of the user's own elements: what `funicular derive --spec FILE --out DIR` leaves in DIR, loaded.
+"""Libraries of the user's elements, made by `funicular derive --spec FILE --out DIR`.
 
-A library is machine code: to load it is to run it. Only the person who runs a scene may ask for that, by naming the
-directory in Python or on the command line; a file that names one is refused otherwise (`check_allowed`).
+A library is machine code, which runs when it is loaded. Only the person who runs a scene may allow that, by naming the
+directory in Python or on the command line; otherwise a file that names one is refused (`check_allowed`).
 """
 
 from __future__ import annotations
@@ -52,24 +52,24 @@ def resolved(directory: str | os.PathLike) -> str:
 
 
 def check_allowed(asked: str, allowed: Iterable[str | os.PathLike], place: str) -> None:
-    """Raise SceneError unless the library that a file asks for is among the directories that the caller allows.
+    """Raise SceneError unless the library that a file names is among the directories that the caller allows.
 
-    asked: its resolved path; place: the part of the file that asks for it.
+    asked: its resolved path; place: the part of the file that names it.
     """
     if asked not in set(map(resolved, allowed)):
         raise SceneError(place, f'takes its element from the library "{asked}", which is machine code, and a file '
-                         "alone may not load that", "if you trust this directory, allow it: in Python with "
+                         "alone may not load it", "if you trust this directory, allow it: in Python with "
                          f'libraries=["{asked}"], on the command line with --library {asked}')
 
 
 def manifest_digest(content: dict) -> str:
-    """Return sha256 of a library's manifest, but for the digest in it."""
+    """Return sha256 of a library's manifest without its digest."""
     bare = content | {"library": {name: value for name, value in content["library"].items() if name != "digest"}}
     return hashlib.sha256(json.dumps(bare, sort_keys=True).encode()).hexdigest()
 
 
 def read_manifest(directory: Path) -> tuple[bytes, dict]:
-    """Return the manifest of the library in a directory, as it stands there and as data. Raises LibraryError."""
+    """Return the manifest of the library in a directory, as bytes and as data. Raises LibraryError."""
     try:
         text = (directory / MANIFEST).read_bytes()
     except OSError as error:
@@ -86,7 +86,7 @@ def read_manifest(directory: Path) -> tuple[bytes, dict]:
 
 
 class Kernel:
-    """A kernel of a library as a function of arrays, called like those of `funicular.generated.kernels`."""
+    """A kernel of a library as a function of arrays, as those of `funicular.generated.kernels`."""
 
     def __init__(self, shared: ctypes.CDLL, name: str, entry: dict):
         self.__name__, self.__doc__ = name, f"{entry['doc']} ({entry['source']})."
@@ -111,7 +111,7 @@ class Kernel:
         return outputs[0] if len(outputs) == 1 else tuple(outputs)
 
     def rows(self, n: int, *given: ArrayLike) -> np.ndarray | tuple[np.ndarray, ...]:
-        """Return the outputs (n, ...) of n calls; each argument once, or (n, ...) for each its own."""
+        """Return the outputs (n, ...) of n calls; each argument for all, or (n, ...)."""
         if len(given) != len(self._inputs):
             raise TypeError(f"{self.__name__} takes ({', '.join(name for name, _ in self._inputs)})")
         arrays = [np.asarray(value, dtype=float) for value in given]
@@ -136,7 +136,7 @@ class Kernel:
 
 @dataclass(frozen=True)
 class Library:
-    """A library in memory: its elements by name, its kernels as functions, and where its fu_all is (kernels.h).
+    """A library in memory: elements by name, kernels as functions, address of its fu_all (kernels.h).
 
     digest: sha256 of its machine code.
     """
@@ -149,7 +149,7 @@ class Library:
 
 
 def load(directory: str | os.PathLike) -> Library:
-    """Return the library in a directory; once loaded it stays. Raises LibraryError."""
+    """Return the library in a directory; it stays loaded. Raises LibraryError."""
     path = Path(resolved(directory))
     text, content = read_manifest(path)
     if _loaded.get(str(path), (b"",))[0] != text:
@@ -178,7 +178,7 @@ def tables_of(library: str | None) -> int:
 
 
 def _open(path: Path, content: dict) -> Library:
-    # not at the top: `funicular derive` has to start where generated/ is missing or broken, to mend it
+    # not at the top: `funicular derive` must start where generated/ is missing or broken
     from funicular.generated import described as described_kernels
 
     made, described = content["interface"], content["library"]
@@ -188,7 +188,7 @@ def _open(path: Path, content: dict) -> Library:
                            f"are laid out as {made}, here as {elements.manifest()['interface']}", again)
     if manifest_digest(content) != described.get("digest"):
         raise LibraryError(f'"{path}" is damaged: its {MANIFEST} is not the one that was made', again)
-    file = path / Path(described["file"]).name  # nothing from elsewhere, whatever the manifest says
+    file = path / Path(described["file"]).name  # in this directory, whatever the manifest says
     try:
         if file.is_symlink() or hashlib.sha256(file.read_bytes()).hexdigest() != described["sha256"]:
             raise LibraryError(f'"{path}" is damaged: {file.name} is not the file that was made', again)
@@ -198,7 +198,7 @@ def _open(path: Path, content: dict) -> Library:
         tables = ctypes.addressof(ctypes.c_char.in_dll(shared, "fu_all"))
     except OSError as error:
         raise LibraryError(f'"{path}" cannot be loaded here: {error}', again) from None
-    except (AttributeError, KeyError, ValueError) as error:  # a name or argument that is not there
+    except (AttributeError, KeyError, ValueError) as error:  # a missing name or argument
         if isinstance(error, LibraryError):
             raise
         raise LibraryError(f'"{path}" is damaged: {file.name} lacks what its {MANIFEST} names: {error}',

@@ -1,4 +1,4 @@
-"""What the manifest of a library of elements has to be."""
+"""The form of the manifest of a library of elements."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class _Element(_Described):
 
 
 class Manifest(_Described):
-    """What a library's manifest must have to be loaded."""
+    """Entries required to load a library."""
 
     interface: str
     library: _Shared

@@ -1,4 +1,4 @@
-"""Where the nodes of a cable are along it: elements of one length, or of a length each."""
+"""Meshes of cables: elements of equal or of individual lengths."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 class Mesh:
     """The elements of a cable.
 
-    lengths: (1,) in m where they are equal, else (elements,); given: (nodes,) arc-lengths in m where they are not.
+    lengths: (1,) in m of equal elements, else (elements,); given: (nodes,) arc-lengths in m of unequal ones.
     """
 
     n_elements: int
@@ -30,7 +30,7 @@ class Mesh:
 
     @classmethod
     def of_nodes(cls, node_s: np.ndarray) -> Mesh:
-        """Return the mesh with nodes at arc-lengths (nodes,) in m, which increase from 0."""
+        """Return the mesh with nodes at arc-lengths (nodes,) in m, increasing from 0."""
         return cls(len(node_s) - 1, np.diff(node_s), node_s)
 
     @property
@@ -62,7 +62,7 @@ class Mesh:
         return float(element * self.lengths[0] if self.given is None else self.given[element])
 
     def each_length(self, element: ArrayLike) -> ArrayLike:
-        """Return the lengths of elements (...), in m: one for all where they are equal, else (...)."""
+        """Return the lengths of elements (...), in m: one for equal elements, else (...)."""
         return float(self.lengths[0]) if self.is_even else self.lengths[np.asarray(element)]
 
     def each_start(self, element: ArrayLike) -> np.ndarray:
@@ -71,7 +71,7 @@ class Mesh:
         return element * self.lengths[0] if self.given is None else self.given[element]
 
     def element_at(self, s: ArrayLike) -> np.ndarray:
-        """Return the elements (...) that arc-lengths s (...) are in; at a node the element that begins there."""
+        """Return the elements (...) at arc-lengths s (...); at a node the element that begins there."""
         s = np.asarray(s, dtype=float)
         found = s // self.lengths[0] if self.given is None else np.searchsorted(self.given, s, side="right") - 1
         return np.clip(found, 0, self.n_elements - 1).astype(int)
@@ -84,12 +84,12 @@ class Mesh:
         return np.searchsorted((self.given[1:] + self.given[:-1]) / 2, s)
 
     def place(self, s: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-        """Return the elements (...) that arc-lengths s (...) are in, and x in them, in m."""
+        """Return the elements (...) at arc-lengths s (...), and x in them, in m."""
         element = self.element_at(s)
         return element, np.asarray(s, dtype=float) - self.each_start(element)
 
     def covered(self, start: float, stop: float) -> Iterator[tuple[int, float, float]]:
-        """Yield the elements that lie between two arc-lengths, with where that begins and ends in each, x in m."""
+        """Yield the elements between two arc-lengths, with first and last x in each, m."""
         for element in range(self.n_elements):
             begin = self.start(element)
             first, last = max(start - begin, 0.0), min(stop - begin, self.length(element))
@@ -97,5 +97,5 @@ class Mesh:
                 yield element, first, last
 
     def divided(self, parts: int) -> np.ndarray:
-        """Return (parts elements + 1,): arc-lengths of the nodes and of points that divide each element alike, in m."""
+        """Return (parts elements + 1,): arc-lengths of nodes and of equidistant points of each element, m."""
         return np.interp(np.arange(parts * self.n_elements + 1) / parts, np.arange(self.n_elements + 1), self.node_s)

@@ -1,4 +1,4 @@
-"""Laws of forces between two points, as the manifest of the kernels tells of them."""
+"""Laws of forces between two points, from the manifest of the kernels."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from .elements import manifest
 class PointLaw:
     """The law of a force between two points.
 
-    parameters  their units by name, in the order in which the kernels take them
-    damping     which of them is the damper's; empty where the law has none
+    parameters  units by name, in the order of the kernels' arguments
+    damping     name of the parameter of damping; empty without any
     """
 
     parameters: Mapping[str, str]

@@ -1,1 +1,1 @@
-"""A scene: what a user describes, reads from a file, and runs."""
+"""Scenes: described, read from files, run."""

@@ -1,4 +1,4 @@
-"""The scene as the user describes it: parts that are added, replaced, read, written and checked."""
+"""The description of a scene: parts are added, replaced, read, written and checked."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ if TYPE_CHECKING:
 
 P = TypeVar("P", bound=Part)
 
-MOST_LISTED = 20
-"""Parts that a message names."""
+MAX_LISTED = 20
+"""Number of parts that a message names."""
 
 
 class DescribedScene(SceneMethods):
-    """Base of a scene: parts, which are checked as they are added."""
+    """Base of scenes: parts are checked as they are added."""
 
     def add(self, part: P) -> P:
-        """Add a part, completed with what the scene knows, and return it; the methods for each kind end here.
+        """Add a part, completed from the scene; the methods for each kind end here.
 
-        Returns the part as it stands in the scene. Raises SceneError.
+        Returns the part as in the scene. Raises SceneError.
         """
-        from ..checks.adding import check_of  # not needed where saved runs are read alone
+        from ..checks.adding import check_of  # not needed to read saved runs
         from ..checks.whole_scene import check_plane  # likewise
 
         if part.is_named():
@@ -48,10 +48,10 @@ class DescribedScene(SceneMethods):
         return part
 
     def add_pairs(self, kind: type[P], entries: Mapping[str, Any]) -> list[P]:
-        """Add parts of many pairs, such as contacts, by lists in the entries that `kind` is made with.
+        """Add parts of many pairs, such as contacts, by lists among the keywords of `kind`.
 
-        Returns the parts as they stand in the scene, the pairs of the first one's list first. Raises SceneError, and
-        then none of them is added.
+        Returns the parts as in the scene, pairs of the first entry of the list first. Raises SceneError; then none of
+        them is added.
         """
         from ..checks.adding import check_all_of  # likewise
         from ..checks.whole_scene import check_plane  # likewise
@@ -70,9 +70,8 @@ class DescribedScene(SceneMethods):
     def replace(self, part: Part | str, **changes: Any) -> Self:
         """Return a scene like this one with other values of one part, checked as any scene is; this one stays.
 
-        part: its name, or the part itself; changes: by the keywords that such a part is made with, such as
-        ``scene.replace("trolley", friction=fu.Friction(coefficient=0.1))``; None leaves out what was given. Raises
-        SceneError.
+        part: its name, or the part itself; changes: by keywords of the part, as in ``scene.replace("trolley",
+        friction=fu.Friction(coefficient=0.1))``; None restores the default. Raises SceneError.
 
         >>> import funicular as fu
         >>> scene = fu.load_scene("paper51")
@@ -82,10 +81,10 @@ class DescribedScene(SceneMethods):
         return self.changed([(self._part(part), changes)])
 
     def without(self, *parts: Part | str) -> Self:
-        """Return a scene without some parts and without what hangs on them, checked as any scene is; this one stays.
+        """Return a scene without some parts and those that refer to them, checked as any scene is; this one stays.
 
-        parts: their names, or the parts themselves. What hangs on them, such as the supports, slides and loads of a
-        cable, is named in the new scene's ``messages``. Raises SceneError.
+        parts: their names, or the parts themselves. Parts that refer to them, such as supports, slides and loads of a
+        cable, are named in the new scene's ``messages``. Raises SceneError.
 
         >>> import funicular as fu
         >>> scene = fu.load_scene("paper51")
@@ -119,9 +118,9 @@ class DescribedScene(SceneMethods):
     @classmethod
     def from_toml(cls, text: str, origin: str = "scene", directory: str | os.PathLike = "",
                   libraries: Iterable[str | os.PathLike] = ()) -> Self:
-        """Return a scene from the text of a scene file; ``origin`` is what error messages call it.
+        """Return a scene from the text of a scene file; ``origin``: its name in messages.
 
-        directory: where paths in the text start from, by default the working directory; libraries: directories of
+        directory: base of relative paths in the text, by default the working directory; libraries: directories of
         elements that the text may load. Raises SceneError.
         """
         return read(text, origin, cls, directory, libraries)
@@ -137,12 +136,12 @@ class DescribedScene(SceneMethods):
         check_scene(self)
 
     def __repr__(self) -> str:
-        """Return how many parts of which kind there are, in a line."""
+        """Return the number of parts of each kind in a line."""
         counts = ", ".join(_counted(len(names), kind.replace("_", " ")) for kind, names in self._names().items())
         return f"<funicular.Scene: {counts or 'empty'}>"
 
     def _names(self) -> dict[str, list[str]]:
-        """Return the names of the parts by their kind; those of supports are the names in results."""
+        """Return the names of the parts by kind, of supports those in results."""
         found: dict[str, list[str]] = {}
         for part in self.parts():
             name = part.given_name or getattr(part, "label", part.kind)
@@ -151,23 +150,23 @@ class DescribedScene(SceneMethods):
 
 
 def _names_of(parts: list[Part]) -> set[str]:
-    """Return the names by which other parts may refer to these: events have names of their own."""
+    """Return the names by which other parts refer to these; names of events are separate."""
     return {part.given_name for part in parts if part.given_name is not None and part.group != Event.group}
 
 
 def _listing(parts: list[Part]) -> str:
-    """Return in words which parts these are."""
-    named = [part.where for part in parts[:MOST_LISTED]]
-    return ", ".join(named) + (f" and {len(parts) - MOST_LISTED} more" if len(parts) > MOST_LISTED else "")
+    """Return the names of parts as text."""
+    named = [part.where for part in parts[:MAX_LISTED]]
+    return ", ".join(named) + (f" and {len(parts) - MAX_LISTED} more" if len(parts) > MAX_LISTED else "")
 
 
 def _counted(number: int, thing: str) -> str:
-    """Return a number of things in words."""
+    """Return a number of things as text."""
     return f"{number} {thing if number == 1 else plural_of(thing)}"
 
 
 def _modes_of_mesh(body: ModalBody) -> Shape:
-    """Make the modes of a modal body that is described by a beam."""
+    """Return the modes of a modal body described by a beam."""
     from ..solve.modes.body_modes import of_mesh  # brings SciPy
 
     return of_mesh(body)

@@ -1,4 +1,4 @@
-"""Scenes from files, and runs from theirs."""
+"""Scenes and runs from files."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ loads = Scene.from_toml
 
 
 def bundled_scenes() -> dict[str, Path]:
-    """Return the scenes that come with the package, by name.
+    """Return the scenes of the package by name.
 
     >>> import funicular as fu
     >>> "cable_car" in fu.bundled_scenes()
@@ -33,7 +33,7 @@ def load_scene(path: str | os.PathLike, libraries: Iterable[str | os.PathLike] =
     Raises SceneError.
     """
     file = Path(path)
-    if not os.path.isfile(file):  # False also of what no path can be
+    if not os.path.isfile(file):  # False also for an invalid path
         bundled = bundled_scenes()
         if os.fspath(path) not in bundled:
             raise SceneError(
@@ -57,15 +57,15 @@ def load_scene(path: str | os.PathLike, libraries: Iterable[str | os.PathLike] =
 
 
 def load_run(path: str | os.PathLike, libraries: Iterable[str | os.PathLike] = (), salvage: bool = False) -> Run:
-    """Open the results of a run, also of one that goes on or was killed; arrays are read when they are asked for.
+    """Open the results of a run, also of one that is running or was killed; arrays are read on demand.
 
-    All of the file is checked: its header, its report and its rows have checksums.
+    Checksums protect header, report and rows.
 
     libraries: directories of elements (`funicular derive --spec`) that ``run.scene`` may load; they are machine code.
-    salvage: leave out the rows that are damaged, with a `FunicularWarning`, where the file would be refused otherwise.
+    salvage: omit damaged rows, with a `FunicularWarning`, instead of refusing the file.
     Raises ResultFileError, also for a damaged or foreign file.
     """
-    from ..results.files import open_file  # with checkpoints, which scenes and runs in memory do without
+    from ..results.files import open_file  # with checkpoints, not needed for scenes and runs in memory
     from ..results.opening import opened
 
     return opened(open_file(path), Scene.from_toml, libraries, salvage)

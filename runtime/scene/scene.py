@@ -1,4 +1,4 @@
-"""The scene: what the user describes (scene/described.py), and how it is run."""
+"""The scene: its description (scene/described.py), runs and analyses."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ from ..solve.motion.progress import progress_bar
 from .described import DescribedScene
 
 if TYPE_CHECKING:
-    # Model, solvers and their results bring SciPy along, which would double the time of `import funicular`; checks take
-    # a tenth of it. So they are imported by the methods that need them, here and below.
+    # Model, solvers and results import SciPy, which would double the time of `import funicular`; checks take a tenth of
+    # it. So the methods that need them import them.
     from numpy.typing import ArrayLike
 
     from ..choice.choice import Choice
@@ -46,21 +46,19 @@ SYNONYMS = {"dt": "step", "time_step": "step", "timestep": "step", "h": "step", 
             "end_time": "duration", "time": "duration", "rtol": "tol", "tolerance": "tol", "solver": "integrator",
             "method": "integrator", "output": "save", "path": "save", "file": "save", "dt_out": "output_step",
             "output_dt": "output_step", "n_threads": "threads"}
-"""What other programs call the settings of a run."""
-
-
-MOST_NAMED = 12
-"""Parts of a kind that a notebook names."""
+"""Names of the settings of a run in other programs."""
+MAX_NAMED = 12
+"""Number of parts of a kind that a notebook names."""
 
 
 class Scene(Viewable, DescribedScene):
-    """Cables, bodies, and what joins, holds and loads them.
+    """Cables, bodies, their couplings, supports and loads.
 
     ``gravity`` in m/s²; ``cables``, ``bodies``, ``joints``, ``slides``, ``ties``, ``loads``, ``point_forces``,
-    ``events`` are dicts by name; ``pins``, ``clamps`` and ``motions`` are lists, all for reading: methods add parts,
-    `replace` and `without` make other scenes; ``messages`` lists what was adjusted;
-    ``run_settings``, ``equilibrium_settings`` and ``relax_settings`` hold the settings that a scene file gives;
-    ``title`` is what pictures are called: the name of the scene's file without the ending, or what you set.
+    ``events`` are dicts by name; ``pins``, ``clamps`` and ``motions`` are lists, all read-only: methods add parts,
+    `replace` and `without` make other scenes. ``messages`` lists adjustments; ``run_settings``,
+    ``equilibrium_settings`` and ``relax_settings`` hold the settings of the scene's file; ``title``, of pictures, is by
+    default the name of this file without the ending.
     """
 
     def _check_for(self, settings: RunSettings) -> None:
@@ -93,22 +91,21 @@ class Scene(Viewable, DescribedScene):
     ) -> Run:
         """Simulate the scene for ``duration`` (s); see `RunSettings` for the settings and their defaults.
 
-        Settings not given here are the scene file's, if it gave them. model: "auto" chooses what of the cables was not
-        given, elements, laws and meshes, and the integrator, so that the error of all stays below tol, see `choose`;
-        cables without elements are always chosen so. ``run.report["choice"]`` says what was chosen and why,
-        ``run.scene`` is the chosen scene. initial: "drawn", "equilibrium" or "relaxed" (found first), a state that
-        `equilibrium` or `relax` returned, at the velocities drawn, a state ``run.at(time)`` of another run, or arrays
-        by the names of results such as ``{"wire.nodal_vectors": ...}``, see `InitialState`. save: a netCDF file,
-        written while the run goes on, with a checkpoint (the same name and ``.state``) that stays when the run is
-        killed or interrupted; results are read from the file when they are asked for. resume: go on from there, to the
-        same numbers. progress: a bar (True), none (False), a bar if a terminal watches (None), or a function of the
-        time reached.
+        By default settings are those of the scene's file. model: "auto" chooses elements, laws and meshes of cables,
+        where they were not given, and the integrator, so that the total error stays below tol, see `choose`; cables
+        without elements are always chosen so. ``run.report["choice"]`` gives the choice and its reasons, ``run.scene``
+        is the chosen scene. initial: "drawn", "equilibrium" or "relaxed" (found first), a state of `equilibrium` or
+        `relax`, with the velocities drawn, a state ``run.at(time)`` of another run, or arrays by the names of results
+        such as ``{"wire.nodal_vectors": ...}``, see `InitialState`. save: a netCDF file, written during the run, with a
+        checkpoint (the same name and ``.state``) that stays when the run is killed or interrupted; results are read
+        from the file on demand. resume: continue from the checkpoint, with the same numbers. progress: a bar (True),
+        none (False), a bar in a terminal (None), or a function of the time reached.
 
-        While it goes on the BLAS of NumPy and SciPy has one thread, in the whole process: what other threads of it
-        compute meanwhile with large matrices takes longer.
+        During the run the BLAS of NumPy and SciPy uses one thread in the whole process; computations with large
+        matrices in other threads take longer.
 
         Raises SceneError, ResultFileError, EquilibriumError; EndOfCableError and ConvergenceError, whose ``run`` holds
-        everything up to then. Ctrl-C returns what was computed, with a `FunicularWarning`.
+        the results so far. Ctrl-C returns the results so far, with a `FunicularWarning`.
         """
         _refuse_unknown("run", unknown, (*RunSettings.keywords(), "resume", "progress"))
         given = {"duration": duration, "tol": tol, "absolute_tol": absolute_tol, "quantities": quantities, "step": step,
@@ -118,7 +115,7 @@ class Scene(Viewable, DescribedScene):
 
     def _run(self, settings_given: Mapping[str, Any], resume: bool, progress: bool | Callable[[float], None] | None,
              trials: SharedTrials | None = None) -> Run:
-        """Return the run with these settings, None for those not given, see `run`; trials: of scenes of one shape."""
+        """Return the run with these settings, None for defaults, see `run`; trials: of scenes of one shape."""
         given = {name: value for name, value in settings_given.items() if value is not None}
         initial = given.get("initial")
         state = None if initial is None or isinstance(initial, str) else _state(self, initial)
@@ -141,9 +138,7 @@ class Scene(Viewable, DescribedScene):
         return run
 
     def _adjusted(self, settings: RunSettings, state: Start | None) -> tuple[Self, Start | None]:
-        """Return the scene and the state that a run starts from: adjusted where it starts from a state of rest for
-        which the scene's file adjusts parameters.
-        """
+        """Return the scene and the state at the start of a run, adjusted where the scene's file adjusts parameters."""
         if state is not None or settings.initial != "equilibrium" or not self.equilibrium_settings.get("adjust"):
             return self, state
         rest = self.equilibrium()
@@ -154,15 +149,15 @@ class Scene(Viewable, DescribedScene):
                unequal: bool = False) -> Choice[Self]:
         """Choose element, law and mesh of each cable, and the integrator, so that a run errs by less than ``tol``.
 
-        tol: of the error of model and mesh, against the finest model at hand, with that of time, over the largest
-        change; 1e-3 if neither this nor the scene's file gives one. quantities: names of results that count, such as
-        "A.position" or "trolley.force"; the motion of all cables and bodies if none is named. free: "unset" chooses
-        what was not given: the number of elements of cables without ``elements``, element and law of those without
-        ``element``; "all" chooses all. duration in s, initial and integrator are those of the run, by default the scene
-        file's. unequal: elements of unequal lengths are tried, too, and taken where they save a third.
+        tol: of the error of model, mesh and time, relative to the largest change, with the finest model available as
+        the reference; by default that of the scene's file, or 1e-3. quantities: names of results such as "A.position"
+        or "trolley.force", by default the motion of all cables and bodies. free: "unset" chooses what was not
+        given, the number of elements of cables without ``elements``, element and law of cables without ``element``;
+        "all" chooses all. duration in s, initial and integrator are those of the run, by default of the scene's file.
+        unequal: elements of unequal lengths are tried, too, and taken where they save a third.
 
-        It is decided by short runs on coarse meshes and by what they indicate. The choice has the chosen ``scene``,
-        ``reasons`` and ``table``, the alternatives with their estimated errors and costs; print it. Raises SceneError.
+        Short runs on coarse meshes and error indicators decide. The choice has the chosen ``scene``, ``reasons``, and
+        ``table``, the alternatives with their estimated errors and costs; print it. Raises SceneError.
         """
         given = {"tol": tol, "duration": duration, "initial": initial, "integrator": integrator}
         given = {name: value for name, value in given.items() if value is not None}
@@ -172,13 +167,13 @@ class Scene(Viewable, DescribedScene):
         return self._choose(settings, quantities, free, unequal)
 
     def _chosen_for(self, settings: RunSettings) -> Choice[Self] | None:
-        """Return the choice where a run needs one: where that is asked for, or elements were left out; else None."""
+        """Return the choice where a run requests one, or cables lack elements; else None."""
         if settings.model == "auto":
             return self._choose(settings, settings.quantities or (), "unset")
         if not any(cable.is_open for cable in self.cables.values()):
             return None
         chosen = self._choose(settings, settings.quantities or (), "unset")
-        warnings.warn(chosen.messages()[0], FunicularWarning, stacklevel=4)  # which nobody has asked for
+        warnings.warn(chosen.messages()[0], FunicularWarning, stacklevel=4)  # it was not requested
         return chosen
 
     def _choose(self, settings: RunSettings, quantities: Sequence[str], free: str,
@@ -200,7 +195,7 @@ class Scene(Viewable, DescribedScene):
     def _simulated(self, settings: RunSettings, state: Start | None, resume: bool,
                    progress: bool | Callable[[float], None] | None, chosen: Choice | None = None,
                    trials: SharedTrials | None = None) -> Run:
-        """Return the run with these settings, however it ended, from a state or as the settings say."""
+        """Return the run with these settings, in any status, from a state or as the settings say."""
         with uninterrupted(), self._saving(settings, resume) as stream, one_blas_thread, enough_memory():
             from ..results.recording import recorded  # brings SciPy and the engine
             from ..solve.motion.run import simulate
@@ -222,20 +217,18 @@ class Scene(Viewable, DescribedScene):
                 self._estimate(run, settings, given)
                 if stream:
                     stream.add_to_report(run.report)
-            if was_interrupted() and run.status != "interrupted":  # what is done is not lost
+            if was_interrupted() and run.status != "interrupted":  # after the end: results are complete
                 warnings.warn("the run had come to its end when it was interrupted", FunicularWarning, stacklevel=5)
             return run
 
     def _saving(self, settings: RunSettings, resume: bool) -> AbstractContextManager[Stream | None]:
-        """Return what writes the file of a run, if one is asked for."""
+        """Return the writer of the file of a run, if it has one."""
         from ..results.streaming import Stream  # as above
 
         return nullcontext() if settings.save is None else Stream(settings.save, self, settings, resume, self.from_toml)
 
     def _estimate(self, run: Run, settings: RunSettings, state: Start | None) -> None:
-        """Add the errors of a run, of its steps and of its mesh, to its report, unless Ctrl-C ends that; state: what it
-        was given to start.
-        """
+        """Add the errors of steps and mesh to the report of a run, unless interrupted; state: the given start."""
         from ..results.error_estimate import error_estimate  # brings SciPy
 
         def again(scene: Self, changes: dict[str, Any]) -> Run:
@@ -277,27 +270,25 @@ class Scene(Viewable, DescribedScene):
     ) -> Equilibrium:
         """Find the static equilibrium under all loads at t = 0; see `EquilibriumSettings` for the defaults.
 
-        Settings not given here are the scene file's, if it gave them. The state is stable, unless the
-        settings ask for others, which say so in ``stable``, in ``messages`` and by a `FunicularWarning`; friction of
-        slides is left out. start: a state of this
-        scene, under the same loads or others, also on other meshes of the same elements, from which the search begins
-        instead of as drawn; method "arc_length" goes on from its load_fraction in its sense, or, from a state under all
-        its loads, anew from rest without loads, and needs the same mesh.
+        By default settings are those of the scene's file. The state is stable, unless the settings admit others, which
+        are marked in ``stable``, in ``messages`` and by a `FunicularWarning`; friction of slides is omitted. start: a
+        state of this scene, under the same or other loads, also on another mesh of the same elements, from which the
+        search begins instead of the drawn state; method "arc_length" continues from its load_fraction in its direction,
+        or, from a state under all loads, starts anew from rest without loads, and needs the same mesh.
 
         adjust, to: parameters, by path with limits or "free", that are changed until the state has given values, by
         name: ``adjust={"dropper.length": "free"}, to={"wire@20.position.y": 5.3}``. The state's ``scene`` is the
-        adjusted one, from which runs start, ``adjusted`` has the values found, ``adjustment`` more about them. With
-        more parameters than values the least change is taken. Places on a cable whose length is adjusted keep their
-        part of it.
+        adjusted one, for runs; ``adjusted`` has the values found, ``adjustment`` details. With more parameters than
+        values the change is the least. Places on a cable whose length is adjusted keep their fraction of it.
 
-        Raises SceneError; EquilibriumError, which keeps the state that was reached.
+        Raises SceneError; EquilibriumError, which holds the last state.
         """
         _refuse_unknown("equilibrium", unknown, (*EquilibriumSettings.keywords(), "start"))
         given = {"load_steps": load_steps, "tolerance": tolerance, "max_iterations": max_iterations, "method": method,
                  "largest_step": largest_step, "seek_stable": seek_stable, "scale_gravity": scale_gravity,
                  "adjust": adjust, "to": to}
         settings = EquilibriumSettings(**self.equilibrium_settings | {k: v for k, v in given.items() if v is not None})
-        any_mesh = settings.method != "arc_length"  # whose path has a heading on its mesh
+        any_mesh = settings.method != "arc_length"  # which needs the direction of its path
         begin = None if start is None else _equilibrium_state(self, start, anew=True, any_mesh=any_mesh)
         self.check()
 
@@ -314,14 +305,15 @@ class Scene(Viewable, DescribedScene):
             return adjusted(self, settings, begin, Equilibrium, reader)
 
     def relax(self, *, tol: float | None = None, max_steps: int | None = None, **unknown: Never) -> Equilibrium:
-        """Bring the scene to rest by dynamic relaxation: a motion from the place drawn, damped until it ends; see
-        `RelaxationSettings` for the defaults.
+        """Find a state of rest by dynamic relaxation, a damped motion from the drawn state.
 
-        For what a path of equilibria does not lead to: slack cables that fall into their shape, riders that run to the
-        lowest point of a cable or that friction holds, buckled rods, mechanisms that hang. Velocities drawn are left
-        out. The state is one that `equilibrium` returns, with ``relaxation``, which says how it came to rest. Settings
-        not given here are the scene file's, if it gave them. Raises SceneError for loads and drives that change with
-        time, and for friction that creeps; EquilibriumError, which says what is farthest from rest and keeps the state.
+        See `RelaxationSettings` for the defaults.
+
+        For states that no path of equilibria reaches: slack cables that fall into their shape, riders that run to the
+        lowest point of a cable or that friction holds, buckled rods, hanging mechanisms. Drawn velocities are omitted.
+        The state is like one of `equilibrium`, with the history in ``relaxation``. By default settings are those of the
+        scene's file. Raises SceneError for loads and drives that change with time, and for friction that creeps;
+        EquilibriumError, which names the largest residual and holds the state.
         """
         _refuse_unknown("relax", unknown, RelaxationSettings.keywords())
         given = {"tol": tol, "max_steps": max_steps}
@@ -337,12 +329,12 @@ class Scene(Viewable, DescribedScene):
             return relax(laid(self), settings, Equilibrium)
 
     def modes(self, n: int, about: Equilibrium | None = None, *, as_drawn: bool = False) -> Modes:
-        """Return the ``n`` lowest natural frequencies and shapes, about a state from `equilibrium`, or about the scene
-        as drawn where forces balance there.
+        """Return the ``n`` lowest natural frequencies and shapes, about a state of `equilibrium`, or about the drawn
+        state if forces balance there.
 
-        as_drawn: also where they do not; joints and slides bear nothing then, so that what swings by its weight has
-        0 Hz. Damping and friction are left out; what rounding hides, and a state that is not stable, is reported, as in
-        `Modes`. Raises SceneError, which names the force left over.
+        as_drawn: also without balance; then joints and slides bear no forces, and a pendulum has 0 Hz. Damping and
+        friction are omitted; frequencies below rounding and unstable states are reported, as in `Modes`. Raises
+        SceneError, which names the residual force.
         """
         settings = ModeSettings(n=n)
         state = None if about is None else _equilibrium_state(self, about)
@@ -355,22 +347,22 @@ class Scene(Viewable, DescribedScene):
             return Modes.of(modes(laid(self), settings.n, state, as_drawn), self, state)
 
     def animation(self, title: str | None = None) -> Animation:
-        """Return the scene as it is drawn, before it runs, as pictures show it; see `Viewable.animation`."""
+        """Return pictures of the scene as drawn; see `Viewable.animation`."""
         from ..results.animation.clips import of_scene  # brings SciPy
 
         return of_scene(self, title or self.title or "scene")
 
     def overview(self) -> list[tuple[str, str]]:
-        """Return what is in the scene, for a notebook; see `Viewable.overview`."""
+        """Return the contents of the scene for a notebook; see `Viewable.overview`."""
         found = [("gravity", show(self.gravity, "m/s²"))]
         for kind, names in self._names().items():
-            more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
-            found.append((kind, ", ".join(names[:MOST_NAMED]) + more))
+            more = f" and {len(names) - MAX_NAMED} more" if len(names) > MAX_NAMED else ""
+            found.append((kind, ", ".join(names[:MAX_NAMED]) + more))
         return found + [("note", message) for message in self.messages]
 
 
 def _refuse_unknown(method: str, unknown: Iterable[str], known: Collection[str]) -> None:
-    """Raise SceneError for a keyword that a method does not take."""
+    """Raise SceneError for unknown keywords of a method."""
     for name in unknown:
         meant = SYNONYMS.get(name)
         raise SceneError(method, f'"{name}" is not known here',
@@ -378,7 +370,7 @@ def _refuse_unknown(method: str, unknown: Iterable[str], known: Collection[str])
 
 
 def _check_resume(resume: bool, settings: RunSettings) -> None:
-    """Raise SceneError where resume is no bool, and ResultFileError where there is no file to go on from."""
+    """Raise SceneError for a resume that is no bool, and ResultFileError without a file to continue."""
     if not isinstance(resume, bool):
         raise SceneError("run", f"resume must be true or false, got {shown(resume)}")
     if resume and settings.save is None:
@@ -386,7 +378,7 @@ def _check_resume(resume: bool, settings: RunSettings) -> None:
 
 
 def _raise_where_stopped(run: Run) -> None:
-    """Raise EndOfCableError or ConvergenceError where the run ended so."""
+    """Raise EndOfCableError or ConvergenceError by the status of a run."""
     if run.status == "end_of_cable":
         raise EndOfCableError(run.report["message"], run)
     if run.status == "no_convergence":
@@ -394,17 +386,16 @@ def _raise_where_stopped(run: Run) -> None:
 
 
 def _at_rest(initial: str, scene: Scene, start: Equilibrium | None) -> Equilibrium:
-    """Return the state of rest that a run starts from, by the name that its settings have for it.
+    """Return the state of rest at the start of a run, by its name in the settings.
 
-    start: a state that the search for equilibrium begins from where it fits, of any mesh. Raises SceneError,
-    EquilibriumError.
+    start: a state from which the search begins if it fits, on any mesh. Raises SceneError, EquilibriumError.
     """
     if initial == "relaxed":
         return scene.relax()
     if start is not None and not scene.equilibrium_settings and _fits(scene, start):
         try:
             return scene.equilibrium(start=start)
-        except EquilibriumError:  # the path from the drawn state may reach what this one does not
+        except EquilibriumError:  # the path from the drawn state may still succeed
             pass
     state = scene.equilibrium()
     state.check_stable()
@@ -412,7 +403,7 @@ def _at_rest(initial: str, scene: Scene, start: Equilibrium | None) -> Equilibri
 
 
 def _fits(scene: Scene, start: Equilibrium) -> bool:
-    """Return whether a search for equilibrium can begin from a state."""
+    """Return whether a search for equilibrium can begin at a state."""
     try:
         start.check_fits(scene, any_mesh=True)
     except SceneError:
@@ -432,10 +423,11 @@ def _state(scene: Scene, given: Equilibrium | Mapping[str, ArrayLike]) -> Start:
 
 
 def _equilibrium_state(scene: Scene, state: Equilibrium, *, anew: bool = False, any_mesh: bool = False) -> Equilibrium:
-    """Return a state to start from, checked against the scene; anew: a search, which may be for other values; any_mesh:
-    which may begin from another mesh.
+    """Return a state to start from, checked against the scene.
+
+    anew: of a search, possibly for other adjusted values; any_mesh: also of another mesh.
     """
-    from ..results.equilibrium import Equilibrium  # brings SciPy; there is a state only where it is loaded already
+    from ..results.equilibrium import Equilibrium  # already loaded where a state exists
 
     if not isinstance(state, Equilibrium):
         raise SceneError("scene", "the state to start from must be one that equilibrium() returned, got "

@@ -1,4 +1,4 @@
-"""The JSON Schema of scene files, from the parts' fields: editors complete and check scene files by it."""
+"""The JSON Schema of scene files, from the fields of parts, for completion and checks in editors."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ..parts.scene_text import SETTINGS
 from ..parts.schemas import TABLE_OF
 
 DIALECT = "http://json-schema.org/draft-07/schema#"
-"""The newest one that editors of TOML know."""
+"""The newest dialect that TOML editors support."""
 
 
 def scene_schema() -> dict[str, Any]:
@@ -52,14 +52,14 @@ def _linked(schema: Any) -> Any:
 
 
 def _closed(schema: dict[str, Any]) -> dict[str, Any]:
-    """Return the schema of a table that holds nothing else, without what only Python can give."""
+    """Return the schema of a table without other entries, and without those that only Python can give."""
     properties = {name: _without_null(field) for name, field in schema.get("properties", {}).items()
                   if field.get("not") != {}}
     return schema | {"properties": properties, "additionalProperties": False}
 
 
 def _without_null(field: dict[str, Any]) -> dict[str, Any]:
-    """Return the schema of an entry without null, which TOML has not, and without a title that repeats its name."""
+    """Return the schema of an entry without null, which TOML lacks, and without a title that repeats its name."""
     kept = {key: each for key, each in field.items() if key != "title" and (key, each) != ("default", None)}
     some = [each for each in kept.get("anyOf", []) if each != {"type": "null"}]
     return {key: each for key, each in kept.items() if key != "anyOf"} | some[0] if len(some) == 1 else kept

@@ -217,7 +217,7 @@ def naming(library) -> str:
 
 def not_allowed(library: Path) -> str:
     return re.escape(f'cable "wire": takes its element from the library "{library}", which is machine code, and a file '
-                     f"alone may not load that; if you trust this directory, allow it: in Python with "
+                     f"alone may not load it; if you trust this directory, allow it: in Python with "
                      f'libraries=["{library}"], on the command line with --library {library}')
 
 
