@@ -248,14 +248,14 @@ def sweep(
 
     The same command resumes a stopped sweep. Exit code: 1 for an error, 130 after Ctrl-C.
     """
-    from .sweep import SweepOptions, run_sweep
+    from .sweep import run_sweep
 
     given = {"duration": duration, "tol": tol, "output_step": output_step, "integrator": integrator}
-    options = SweepOptions(method, samples, seed, 0 if serial else workers, cluster, batch, record_invalid,
-                           retry_failed, {name: value for name, value in given.items() if value is not None})
-    whole = run_sweep(scene, values, _listed(",".join(keep)) or [],
-                      output or Path(f"{Path(scene).stem}-sweep.nc"), options, library or [], estimate)
-    if not whole:
+    options = {"keep": _listed(",".join(keep)), "method": method, "samples": samples, "seed": seed,
+               "workers": 0 if serial else workers, "record_invalid": record_invalid,
+               **{name: value for name, value in given.items() if value is not None}}
+    if not run_sweep(scene, values, output or Path(f"{Path(scene).stem}-sweep.nc"), library or [], estimate, options,
+                     cluster=cluster, batch=batch, retry_failed=retry_failed):
         raise typer.Exit(EXIT_INTERRUPTED)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 import time
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -17,21 +16,6 @@ from ..sweeps.parameters import DRAWN, SWEEP, LogUniform, Uniform
 from ..sweeps.sweep import sweep, sweep_cost
 
 SPACINGS = ("lin", "log")
-
-
-@dataclass
-class SweepOptions:
-    """The options of the command, as in `funicular.sweep`; settings: of the runs, given ones alone."""
-
-    method: str = "grid"
-    samples: int | None = None
-    seed: int = 0
-    workers: int | None = None
-    cluster: str | None = None
-    batch: int | None = None
-    record_invalid: bool = False
-    retry_failed: bool = False
-    settings: dict[str, Any] = field(default_factory=dict)
 
 
 def parameter_of(text: str, method: str) -> tuple[str, Any]:
@@ -96,19 +80,19 @@ def parameters_of(texts: list[str], method: str) -> dict[str, Any]:
     return found
 
 
-def run_sweep(scene: str, texts: list[str], keep: list[str], output: Path, options: SweepOptions, libraries: list[Path],
-              estimate: bool) -> bool:
-    """Run the command and print its result; return whether all points are in the file. Raises FunicularError."""
+def run_sweep(scene: str, texts: list[str], output: Path, libraries: list[Path], estimate: bool,
+              options: dict[str, Any], **of_work: Any) -> bool:
+    """Run the command and print its result; return whether all points are in the file. Raises FunicularError.
+
+    options: of `sweep_cost`; of_work: of `sweep` alone.
+    """
     described = load_scene(scene, libraries)
-    parameters = parameters_of(texts, options.method)
-    given: dict[str, Any] = {"keep": keep, "method": options.method, "samples": options.samples, "seed": options.seed,
-                             "workers": options.workers, "record_invalid": options.record_invalid, **options.settings}
+    parameters = parameters_of(texts, options["method"])
     if estimate:
-        print(sweep_cost(described, parameters, **given))
+        print(sweep_cost(described, parameters, **options))
         return True
     begin = time.monotonic()
-    dataset = sweep(described, parameters, **given, save=output, cluster=options.cluster, batch=options.batch,
-                    retry_failed=options.retry_failed,
+    dataset = sweep(described, parameters, **options, **of_work, save=output,
                     on_cost=lambda cost: print(cost, file=sys.stderr) if cost.points else None)
     message, status = dataset["message"], dataset["status"].values.ravel()
     failed = np.flatnonzero(status == "failed")

@@ -26,7 +26,7 @@ from .contacts import (
     side_by_side,
     tangents_of,
 )
-from .rods import CLAMPED, RodOptions, ends_of, scene_of
+from .rods import CLAMPED, ends_of, scene_of
 
 if TYPE_CHECKING:
     from cosseratbench.scenario import Rod, Scenario
@@ -60,10 +60,10 @@ class Choices:
         usual = REST_TOL if scenario.quasi_static else MOTION_TOL
         return (usual if self.tol is None else self.tol) * self.time_step_scale**4
 
-    def rods_of(self, scenario: Scenario) -> RodOptions:
-        """Return the options of the rods. On the way to rest they are damped in proportion to mass."""
-        rate = 2 * DAMPING_RATIO * scenario.slowest_frequency() if scenario.quasi_static else 0.0
-        return RodOptions(damping_rate=rate, bending=self.bending)
+    @staticmethod
+    def damping_rate(scenario: Scenario) -> float:
+        """Return the rate of damping proportional to mass, in 1/s, on the way to rest, else 0."""
+        return 2 * DAMPING_RATIO * scenario.slowest_frequency() if scenario.quasi_static else 0.0
 
 
 def moved(scenario: Scenario, elements: int, frames: int,
@@ -127,7 +127,7 @@ def _motions(scenario: Scenario, pairs: set[tuple[int, int]], elements: int, fra
     for group in range(groups):
         members = np.flatnonzero(group_of == group).tolist()
         rods = [scenario.rods[k] for k in members]
-        made = scene_of(scenario, rods, elements, choices.rods_of(scenario))
+        made = scene_of(scenario, rods, elements, choices.damping_rate(scenario), choices.bending)
         of = {k: (rod, cable) for k, rod, cable in zip(members, rods, made.cables, strict=True)}
         for i, j in sorted(pairs):
             if i in of:

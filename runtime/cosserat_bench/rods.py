@@ -41,14 +41,6 @@ LIMP_RATIO = 1e-8
 """Part of the bending stiffness that a rod without bending keeps, for solvable equations."""
 
 
-@dataclass(frozen=True)
-class RodOptions:
-    """Options of rods: the rate of damping proportional to mass in 1/s, and whether rods resist bending."""
-
-    damping_rate: float = 0.0
-    bending: bool = True
-
-
 @dataclass
 class RodScene:
     """A scene of rods with the cable of each, and its initial state as `Scene.run` takes it."""
@@ -112,14 +104,18 @@ def element_of(scenario: Scenario, rod: Rod, alone: bool) -> str:
     return PLANAR if alone and plane_normal(scenario, rod) is not None else SPATIAL
 
 
-def scene_of(scenario: Scenario, rods: list[Rod], elements: int, options: RodOptions) -> RodScene:
-    """Return a scene of rods of a scenario, ``rod0`` and so on, each with a number of equal elements."""
+def scene_of(scenario: Scenario, rods: list[Rod], elements: int, damping_rate: float = 0.0,
+             bending: bool = True) -> RodScene:
+    """Return a scene of rods of a scenario, ``rod0`` and so on, each with a number of equal elements.
+
+    damping_rate: of damping proportional to mass, in 1/s; bending: whether rods without torsion resist bending.
+    """
     made = RodScene(Scene(gravity=scenario.gravity), [])
     for number, rod in enumerate(rods):
         kind = element_of(scenario, rod, alone=len(rods) == 1)
         name = f"rod{number}"
         cable = made.scene.cable(name, elements=elements, **_drawing(scenario, rod, kind),
-                                 **_stiffness(rod, kind, options))
+                                 **_stiffness(rod, kind, damping_rate, bending))
         made.cables.append(cable)
         for s, condition, motion in ends_of(rod):
             _support(made.scene, cable, s, condition, motion)
@@ -150,18 +146,18 @@ def _drawing(scenario: Scenario, rod: Rod, kind: str) -> dict[str, Any]:
     return {"points": [tuple(point) for point in points.tolist()], "rest": "straight", **drawn}
 
 
-def _stiffness(rod: Rod, kind: str, options: RodOptions) -> dict[str, Any]:
+def _stiffness(rod: Rod, kind: str, damping_rate: float, bending: bool) -> dict[str, Any]:
     """Return section, material and law of a rod's cable. Raises NotImplementedError."""
     given = rod.material
     moduli = {"shear_modulus": given.shear_modulus} if kind == TORSION else {"poisson_ratio": 0.0}
     if kind == TORSION and given.shear_modulus < given.youngs_modulus / 3 * (1 - PLANE_TOLERANCE):
         raise NotImplementedError("torsion of a shear modulus below a third of Young's modulus")
-    material = Material(youngs_modulus=given.youngs_modulus, density=given.density, mass_damping=options.damping_rate,
+    material = Material(youngs_modulus=given.youngs_modulus, density=given.density, mass_damping=damping_rate,
                         **moduli)
     if kind == TORSION:
         return {"section": Circle(radius=rod.radius), "material": material, "law": "structural"}
     stiff = rod.second_moment_of_area * LIMP_RATIO
-    section = Circle(radius=rod.radius) if options.bending else GeneralSection(
+    section = Circle(radius=rod.radius) if bending else GeneralSection(
         area=rod.area, second_moment_about_y=stiff, second_moment_about_z=stiff)
     return {"section": section, "material": material, "strain": "engineering"}
 

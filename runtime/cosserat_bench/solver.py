@@ -38,7 +38,7 @@ class FunicularSolver:
         return {
             "integrator": INTEGRATOR,
             "tolerance": self.choices.tol_of(scenario),
-            "damping_rate": self.choices.rods_of(scenario).damping_rate,
+            "damping_rate": self.choices.damping_rate(scenario),
             "elements": sorted({element_of(scenario, rod, alone=alone) for rod in scenario.rods}),
         }
 

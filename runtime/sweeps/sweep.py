@@ -8,7 +8,7 @@ import os
 import time
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -198,33 +198,29 @@ def _check_workers(workers: int | None, cluster: str | None, batch: int | None) 
 def _begun(plan: Plan, save: str | os.PathLike[str] | None,
            retry_failed: bool) -> Iterator[tuple[Store, Layout, np.ndarray, dict[int, Outcome]]]:
     """Yield the file, new or of a resumed sweep, its layout, the remaining points, and a sample, which it contains."""
-    facts = plan.facts
-    store = None if save is None else stored(save, facts)
-    if store is None:
-        missing = np.arange(plan.points.number)
+    store = None if save is None else stored(save, plan.facts)
+    with ExitStack() as files:
+        if store is None:
+            missing = np.arange(plan.points.number)
+        else:
+            files.callback(store.file.close)
+            missing = np.sort(np.concatenate([store.missing, store.failed()])) if retry_failed else store.missing
         with interruptible():
             sampled = sample(plan.subject, plan.points, missing)
+        if store is None:
             layout = plan.layout(sampled)
-        if save is None and layout.row_bytes * plan.points.number > MAX_BYTES_IN_MEMORY:
-            raise ResultFileError(f"sweep: {plan.points.number} points of {layout.row_bytes} bytes are more than the "
-                                  f"{MAX_BYTES_IN_MEMORY:.3g} that a sweep may keep in memory; name a file with save")
-        store = new_store(save, layout, facts, plan.scene_text)
-    else:
-        layout = Layout.in_file(store.file, [*plan.points.columns])
-        missing = np.sort(np.concatenate([store.missing, store.failed()])) if retry_failed else store.missing
-        try:
-            with interruptible():
-                sampled = sample(plan.subject, plan.points, missing)
-        except BaseException:
-            store.file.close()
-            raise
-    try:
+            if save is None and layout.row_bytes * plan.points.number > MAX_BYTES_IN_MEMORY:
+                raise ResultFileError(f"sweep: {plan.points.number} points of {layout.row_bytes} bytes are more than "
+                                      f"the {MAX_BYTES_IN_MEMORY:.3g} that a sweep may keep in memory; name a file "
+                                      "with save")
+            store = new_store(save, layout, plan.facts, plan.scene_text)
+            files.callback(store.file.close)
+        else:
+            layout = Layout.in_file(store.file, [*plan.points.columns])
         numbers = np.array([*sampled], int)
         if len(numbers):
             store.put(numbers, layout.pack(store.file.row_dtype, plan.points.at(numbers), [*sampled.values()]))
         yield store, layout, np.delete(missing, np.searchsorted(missing, numbers)), sampled
-    finally:
-        store.file.close()
 
 
 def _cost(plan: Plan, layout: Layout, left: int, sampled: dict[int, Outcome], workers: int | None) -> SweepCost:

@@ -9,7 +9,7 @@ import pytest
 from cosserat_rods import CLAMPED, FREE, PINNED, Rod, Scenario, load, motion
 from funicular.cosserat_bench.contacts import tangents_of
 from funicular.cosserat_bench.motion import Choices, moved, untwisted
-from funicular.cosserat_bench.rods import RodOptions, element_of, scene_of
+from funicular.cosserat_bench.rods import element_of, scene_of
 
 DOWN = (0.0, 0.0, -9.81)
 STRAIGHT = [(0, 0, 0), (1, 0, 0)]
@@ -30,12 +30,12 @@ STILL = motion((0.0, 1.0))
 ])
 def test_the_cheapest_element(rod, gravity, element):
     assert element_of(Scenario(gravity=gravity), rod, alone=True) == element
-    assert scene_of(Scenario(gravity=gravity), [rod], 4, RodOptions()).cables[0].element == element
+    assert scene_of(Scenario(gravity=gravity), [rod], 4).cables[0].element == element
 
 
 def test_rods_beside_others_are_spatial():
     rods = [Rod(STRAIGHT, start=PINNED), Rod([(0, 1, 0), (1, 1, 0)], start=PINNED)]
-    made = scene_of(Scenario(gravity=DOWN), rods, 4, RodOptions())
+    made = scene_of(Scenario(gravity=DOWN), rods, 4)
     assert [cable.element for cable in made.cables] == ["cable12", "cable12"]
     assert [cable.name for cable in made.cables] == ["rod0", "rod1"]
 
@@ -90,14 +90,14 @@ def test_clamped_end_of_a_stretched_rod_keeps_its_direction():
     s = np.linspace(0, 1, 101)
     bow = np.stack([1.02 * s, 0 * s, 0.05 * np.sin(np.pi * s)], axis=1)
     rod = Rod(bow, start=CLAMPED, normal=(0, 1, 0), rest_arc_length=tuple(s))
-    made = scene_of(Scenario(rod), [rod], 10, RodOptions())
+    made = scene_of(Scenario(rod), [rod], 10)
     run = made.scene.run(duration=1e-3, initial=made.start)
     assert run["rod0.position"][0] == pytest.approx(bow[::10], abs=1e-6)
 
 
 def test_flexible_rods_have_no_bending():
     rod = Rod(STRAIGHT, start=PINNED)
-    made = [scene_of(Scenario(rod), [rod], 4, RodOptions(bending=bending)).cables[0] for bending in (True, False)]
+    made = [scene_of(Scenario(rod), [rod], 4, bending=bending).cables[0] for bending in (True, False)]
     areas, moments = zip(*((cable.section.moments()[0], cable.section.moments()[1]) for cable in made), strict=True)
     assert areas[0] == pytest.approx(areas[1])
     assert moments[1] < 1e-7 * moments[0]
@@ -106,7 +106,7 @@ def test_flexible_rods_have_no_bending():
 def test_smooth_motions_are_splines_and_others_straight_lines():
     def signals(displacement, times):
         rod = Rod(STRAIGHT, start=CLAMPED, end=CLAMPED, end_motion=motion(times, displacement=displacement))
-        (driven,) = scene_of(Scenario(rod), [rod], 2, RodOptions()).scene.motions
+        (driven,) = scene_of(Scenario(rod), [rod], 2).scene.motions
         return driven.displacement
 
     t = np.linspace(0, 1, 51)
@@ -157,8 +157,8 @@ def test_steps_follow_the_scale():
     scenario = Scenario(Rod(STRAIGHT, start=PINNED, normal=(0, 1, 0)), gravity=DOWN, quasi_static=False)
     assert Choices(time_step_scale=2.0).tol_of(scenario) == 16 * Choices().tol_of(scenario)
     assert Choices(tol=1e-5).tol_of(scenario) == 1e-5
-    assert Choices().rods_of(scenario).damping_rate == 0
-    assert Choices().rods_of(Scenario(frequency=2.0)).damping_rate == pytest.approx(3.8)
+    assert Choices.damping_rate(scenario) == 0
+    assert Choices.damping_rate(Scenario(frequency=2.0)) == pytest.approx(3.8)
 
 
 def test_funicular_and_the_mapping_do_without_cosseratbench():
