@@ -68,7 +68,7 @@ struct fu_run {
     const fu_event_function *event_functions; /* the caller's, then those of couplings */
     double (*call)(void *context, int function, const fu_state *state);
     void *context;
-    double *event_values;    /* per event function: its value at `now`, 0 just after a deferred event */
+    double *event_values;    /* per event function: its value at `now`, 0 just after its event */
     int *late;               /* per event function: the side to which it passed together with another event */
     double *deferred_at;     /* per event function: time of a deferred event for the caller, s; negative for none */
     const char **deferred;   /* per event function: that event in words */
