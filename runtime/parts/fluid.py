@@ -10,7 +10,7 @@ from pydantic import model_validator
 
 from .flow_profile import AnyProfile
 from .part import Part
-from .signal import AnySignal, Constant
+from .signal import ONE, AnySignal
 from .validation import Name, Vector, finite, positive, xyz
 from .velocity_table import VelocityTable
 
@@ -39,7 +39,7 @@ class Fluid(Part):
     density: Annotated[float, positive("kg/m³")]
     surface: Annotated[float, finite("m")] | None = None
     velocity: Annotated[Vector, xyz("m/s")] = (0.0, 0.0, 0.0)
-    scale: AnySignal = Constant(constant=1.0)
+    scale: AnySignal = ONE
     profile: AnyProfile | None = None
     table: VelocityTable | None = None
 

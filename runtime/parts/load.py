@@ -7,10 +7,8 @@ from typing import Annotated
 from pydantic import model_validator
 
 from .part import Part
-from .signal import AnySignal, Constant
+from .signal import ONE, AnySignal
 from .validation import Flag, Name, Reference, Vector, place_on, show, xyz
-
-ONE = Constant(constant=1.0)
 
 
 class Load(Part):

@@ -105,6 +105,10 @@ class Constant(Signal):
         return np.array([0.0, 1.0]), np.eye(1, DEGREE + 1) * self.constant
 
 
+ONE = Constant.model_construct(constant=1.0)
+"""The factor of one, made without a validation, whose schema is built when first used."""
+
+
 class TableSignal(Signal):
     """Values at given times; before the first time and after the last one the value stays.
 
