@@ -1,4 +1,4 @@
-"""Cables: what they are made with, and which elements and elastic laws suit which sections."""
+"""Cables, and the checks of their shape, mesh, law and section."""
 
 from __future__ import annotations
 
@@ -24,49 +24,49 @@ from .validation import LENGTH_TOLERANCE, show, shown
 class Cable(DrawnCable, CableFields):
     """A cable of elements, drawn straight, through points or along a curve.
 
-    All arc-lengths s are of the undeformed cable. Drawn is how a run starts. The tangent of a curve must be continuous,
-    the curvature need not: straight, arc, straight is possible.
+    Arc-lengths s are those of the undeformed cable. A run starts from the drawn shape. The tangent of a curve must be
+    continuous; the curvature may jump, as from a straight part to an arc.
 
     Without ``elements`` and ``nodes``, `Scene.choose`, or a run with ``model="auto"``, chooses equal elements for a
-    tolerance, and element and law where no ``element`` is given.
+    tolerance, and also element and law without an ``element``.
 
-    Planar elements lie in the plane through their line and ``up``, with the height on the side of ``up``; a line in z =
-    0 with ``up`` in it stays in that plane, with the height at z x tangent.
+    Planar elements lie in the plane through their line and ``up``, with the height on the side of ``up``. With line and
+    ``up`` in z = 0 the height is z x tangent.
 
-    A cable that is stress-free where it is curved has the exact curvature, whose size alone it measures: it resists
-    bending in the plane of its curve, and across that plane by tension alone. The law "structural" is the one for thin
-    arcs of beams: the continuum locks there, unless its elements are about as short as two heights.
+    A cable with a curved stress-free shape measures the magnitude of the exact curvature: it resists bending in the
+    plane of its curve, and only by tension bending across it. For thin arcs of beams the law is "structural": the
+    continuum locks, unless its elements are shorter than about two heights.
 
     start, end: ends of a straight or hanging cable, m
     points: points (x, y, z) of a smooth curve, m
     curve: a function of u from 0 to 1 that returns x, y, z in m; kept as points
-    shape: "straight"; or "hanging": from ``start`` to ``end`` along the catenary of an inextensible cable of this
-        ``rest_length``, longer than the span, under the gravity of the scene, straight where it is stress-free
+    shape: "straight"; or "hanging": along the catenary of an inextensible cable of the ``rest_length``, longer than the
+        span, from ``start`` to ``end`` under the gravity of the scene, with a straight stress-free shape
     elements: number of elements of equal length
-    nodes: arc-lengths of the nodes, from 0 to the length, m; close where the cable bends much or where something is
-        attached. The longest element is at most 1e6 times as long as the shortest
+    nodes: arc-lengths of the nodes, from 0 to the length, m; close together where the cable bends sharply or parts are
+        attached. The ratio of the longest and the shortest element is at most 1e6
     library: directory of a library of elements
     element: name of the element
     law: of beams, "continuum" (the default), "poisson_split" or "structural"
     strain: of cable elements, the axial measure, "green" (the default) or "engineering"
     curvature: of cable elements, the measure of bending, "exact" (the default) or "linear"
     membrane: of cable elements, the representation of axial strain. "full" (the default): at every point.
-        "tension_only": the same, engineering strain, with 1e-4 of the axial stiffness in compression, where the force
-        is at most that and 2.5e-7 EA. "assumed": by Legendre modes of degree 0 to 2 ("cable18": 0 to 4). "reduced": by
-        those of degree 0 and 1 ("cable18": 0 to 2), with 1 % of the axial stiffness on the modes above. Beside a point
-        force on a taut rope, the tension of full and assumed strain oscillates along the cable, that of reduced strain
-        hardly. Reduced strain is for small strain: stable up to a compression of 1 %, with about four times as many
+        "tension_only": at every point, engineering strain, with 1e-4 of the axial stiffness in compression, where the
+        force is at most that plus 2.5e-7 EA. "assumed": by Legendre modes of degree 0 to 2 ("cable18": 0 to 4).
+        "reduced": by modes of degree 0 and 1 ("cable18": 0 to 2), with 1 % of the axial stiffness on higher modes.
+        Beside a point force on a taut rope, the tension of full and assumed strain oscillates, that of reduced strain
+        hardly. Reduced strain is for small strain, stable up to a compression of 1 %, and needs about four times the
         elements for axial waves
     section: cross-section
     material: material
-    up: direction of the section's height at the start, of which the part across the axis counts; from there on the
-        section follows the curve without turning about its tangent. It may lie along the axis where the section is
-        round or the element has no axes across: the height then lies along the ground's axis most nearly across
+    up: direction of the section's height at the start, less its component along the axis; the section follows the curve
+        without rotation about its tangent. It may lie along the axis of a round section or of an element without
+        section axes: the height is then along the ground's axis most nearly across
     rest: undeformed shape, "drawn" or "straight"
-    rest_length: undeformed length, m, by default the length as drawn. A shorter one makes the drawn cable taut, a
-        longer one slack (a straight one is compressed)
-    velocity: of the first point at the start, m/s; the cable moves as a rigid body, except where supports hold it
-    angular_velocity: about the first point at the start, rad/s, along the ground's axes
+    rest_length: undeformed length, m, by default the drawn length. A shorter one makes the drawn cable taut, a longer
+        one slack, or compressed where it is straight
+    velocity: initial velocity of the first point, m/s; the cable moves as a rigid body, except at its supports
+    angular_velocity: initial angular velocity about the first point, rad/s, along the ground's axes
     """
 
     kind = "cable"

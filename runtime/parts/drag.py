@@ -56,20 +56,19 @@ class Drag(Part):
     The velocity w is that of the fluid past the cable or body, w_n and w_t its parts across and along a cable, i the
     direction along the cable from its start, s the span of a body, w_p the part of w across the span.
 
-    Where a fluid has a surface, all of these count by the wet part: of a cable the part of a circular section of the
-    diameter d (without one, of the displaced area) below the surface, at each place along it; of a body the part of a
-    sphere of its ``volume`` about ``at`` (without a volume, of its ``area``), or of a column with ``height``. Buoyancy
-    acts at ``at``, not at the middle of the wet part: a body that heels takes several drags, and is too stiff by its
-    weight times that distance.
+    At the surface of a fluid, all forces are proportional to the wet part. Of a cable it is the part below the surface
+    of a circular section of the diameter d, without one of the displaced area, at each point along it. Of a body it is
+    the part of a sphere of its ``volume`` about ``at``, without a volume of its ``area``, or of a column of ``height``.
+    Buoyancy acts at ``at``, not at the middle of the wet part. A heeling body needs several drags; its stiffness is too
+    high by its weight times that distance.
 
     on: the cable, all of it, or the body
-    fluid: by default the only one of the scene, or all of them, each where it is, if no two of them are at the same
-        place
+    fluid: by default all fluids of the scene, which must not overlap
     normal: of a cable, coefficient of the force ``ρ/2 d normal |w_n| w_n`` a length
     tangential: of a cable, coefficient of the force ``ρ/2 π d tangential |w_t| w_t`` a length
     diameter: of a cable, d, m; by default that of the section
-    displaced_area: displaced volume a length of a cable, m²; by default that of the section, of a tube with its inside;
-        0 for no buoyancy
+    displaced_area: displaced volume a length of a cable, m²; by default the area of the section, including the inside
+        of a tube; 0 for no buoyancy
     lift: C_L, of either sign: of a cable ``ρ/2 d C_L |w_n| i × w_n`` a length, of a body ``ρ/2 area C_L |w_p| s × w_p``
     area: of a body, m²
     coefficient: of a body, of the force ``ρ/2 area coefficient |w| w`` at ``at``
@@ -81,12 +80,12 @@ class Drag(Part):
         height, z the width)
     at: of a body, the centre of pressure and of buoyancy in body axes, m
     volume: displaced by a body, m³
-    height: of a body that a surface cuts, m: a column, upright in all attitudes, with half of its height below ``at``;
-        both ends are rounded by a fortieth of the height. By default a sphere
-    added_mass: C, coefficient of the fluid's inertia: C times the displaced mass moves with a cable across it, or with
-        a body at ``at``; three numbers along the axes of a body, or 3x3. The acceleration of the fluid then acts with
-        (1 + C) times the displaced mass. None: neither; 0: the acceleration of the fluid alone
-    added_mass_tangential: of a cable, the same for the motion along it
+    height: of a body at a surface, m: of a column, upright in all orientations, with half of its height below ``at``,
+        and ends rounded by a fortieth of the height. By default the body is a sphere
+    added_mass: C, coefficient of the inertia of the fluid: C times the displaced mass moves with a cable across it, or
+        with a body at ``at``; three numbers along the axes of a body, or 3x3. The acceleration of the fluid acts with
+        (1 + C) times the displaced mass. None: no inertia; 0: only the acceleration of the fluid
+    added_mass_tangential: of a cable, C of the motion along it
     """
 
     kind = "drag"

@@ -19,11 +19,10 @@ NO_SURFACE = 1e300
 
 
 class Fluid(Part):
-    """Air or water, at rest or in motion; it acts on what a `Drag` names.
+    """Air or water, at rest or in motion, that acts through a `Drag`.
 
-    It fills the scene, or the space below its ``surface``. Of several fluids, the one with the lowest surface above a
-    place is there; one without a surface is above all others. Heights are counted from the origin, against gravity,
-    along y without gravity.
+    It fills the scene, or the space below its ``surface``. A point is in the fluid with the lowest surface above it; a
+    fluid without a surface is above all others. Heights are from the origin, against gravity, along y without gravity.
 
     density: kg/m³
     surface: level of the surface, m

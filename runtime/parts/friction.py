@@ -1,4 +1,4 @@
-"""Friction of slides, contacts and crossings: Coulomb's, of slides also viscous and rolling; it may stick."""
+"""Friction of slides, contacts and crossings: Coulomb friction, of slides also viscous and rolling friction."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from .validation import not_negative, one_of, positive, show, shown
 
 
 class Friction(Part):
-    """Friction of a slide, a contact or a crossing, from the normal force N there and the speed of sliding.
+    """Friction of a slide, a contact or a crossing, from the normal force N and the speed of sliding.
 
-    A number in its place is the coefficient alone. Slides find the instants of sticking and breaking loose as events;
-    contacts and crossings hold what sticks by a spring, which slides where its force exceeds friction. On a driven
-    slide friction acts against the drive, and is part of the slide's traction; while the drive stands there is none.
+    A number in its place is the coefficient. Slides find the instants at which they stick and break loose as events.
+    In contacts and crossings a spring holds sticking points, and slides where its force exceeds friction. Friction of a
+    driven slide acts against the drive, is part of the slide's traction, and is zero while the drive stands.
 
     coefficient: of sliding, Coulomb's
     static_coefficient: of sticking, of slides alone; by default that of sliding
     viscous: of slides alone, N s/m
     rolling: coefficient of rolling resistance, of slides alone, a force of rolling N against the motion (for wheels:
         the arm of the resistance over the radius)
-    model: "regularised": the force rises smoothly with the speed, so that what is at rest creeps; "stick": at rest it
-        holds. By default contacts with surfaces stick, slides and crossings are regularised
-    velocity: of "regularised", at which the force has 0.7 of its full value, m/s
+    model: "regularised": the force rises smoothly with the speed and permits creep at rest; "stick": it holds at rest.
+        By default contacts with surfaces stick, slides and crossings are regularised
+    velocity: of "regularised", at which the force is 0.7 of its limit, m/s
     """
 
     coefficient: Annotated[float, not_negative()] = 0.0

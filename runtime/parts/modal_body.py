@@ -31,28 +31,28 @@ def _path(value: Any) -> str | None:
 
 
 class ModalBody(Part):
-    """A body that deforms little, in a few modes, while its frame moves at any speed (floating frame of reference).
+    """A body with small deformation in a few modes, and any motion of its frame (floating frame of reference).
 
-    It is a straight beam from ``start`` to ``end``, whose body axes are along the beam, the height and the width, or it
-    comes from ``data``. A run starts undeformed. Tension does not stiffen the modes: they do not model a beam that
-    spins about as fast as it vibrates. Cable elements have no torsion: their modes bend and stretch, and the frame
-    alone turns them. The error of a frequency falls with about the third power of the number of modes where joints hold
-    points, and with the first where they hold sections that the modes do not bend, as those of a free end.
+    It is a straight beam from ``start`` to ``end``, with body axes along the beam, the height and the width, or it is
+    read from ``data``. A run starts undeformed. Tension does not stiffen the modes, which are no model of a beam that
+    spins about as fast as it vibrates. Modes of cable elements, which have no torsion, bend and stretch. The error of a
+    frequency falls with about the third power of the number of modes where joints hold points, and with the first where
+    they hold sections that the modes do not bend, as those of a free end.
 
     start, end: ends of the beam, m
     section: cross-section, as of a `Cable`
     material: material
     up: direction of the section's height
-    elements: number of elements of the mesh whose modes are taken
+    elements: number of elements of the mesh of the modes
     element: their kind
     law: their law
     modes: number of lowest modes
-    boundary: "free": free-free modes, the frame at the mass centre (the coupling M_rf vanishes undeformed), for a body
-        that flies, or is held at points that its modes move. "attached": the frame fixed to the section at ``start``,
-        modes of the cantilever, for a body that is held there
+    boundary: "free": free-free modes, the frame at the mass centre (the undeformed coupling M_rf vanishes), for a free
+        body, or one held at points that its modes move. "attached": cantilever modes, the frame fixed to the section at
+        ``start``, for a body held there
     data: an .npz or netCDF file of arrays in SI units, in body axes: ``nodes`` (N, 3) undeformed, ``modes`` (n, N, 3)
-        displacements by a unit of each mode, ``masses`` (N,), ``stiffness`` (n, n), and where a joint holds a section
-        ``rotations`` (n, N, 3), turns in rad by a unit of each mode
+        displacements by a unit of each mode, ``masses`` (N,), ``stiffness`` (n, n), and for joints of sections
+        ``rotations`` (n, N, 3) in rad by a unit of each mode
     orthogonal: whether the modes of a file are orthogonal in the mass; if not, their full mass matrix is used
     position: of the frame of ``data``, m
     orientation: of the frame of ``data``, a unit quaternion (w, x, y, z)
@@ -90,7 +90,7 @@ class ModalBody(Part):
         drawn = {name: getattr(self, name) for name in ("start", "end", "section", "material")}
         if self.data is not None:
             if given := [name for name, value in drawn.items() if value is not None]:
-                raise ValueError(f"has data and {given[0]}", "give the file, or what a beam is made of")
+                raise ValueError(f"has data and {given[0]}", "give the file, or the entries of a beam")
             if self.position is None:
                 raise ValueError("position is missing: where is the frame of its data?")
             self.shape  # noqa: B018  what the file says is checked here

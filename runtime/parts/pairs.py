@@ -45,7 +45,7 @@ def pairs_of(scene: SceneData, kind: type[Part], entries: Mapping[str, Any]) -> 
             taken.add(pair)
         found.append((a, b))
     if not found:
-        raise SceneError(where, "there is no pair of what is named that could touch and has none yet",
+        raise SceneError(where, "there is no new pair of the named parts that could touch",
                          "add cables, bodies and surfaces before")
     return found
 

@@ -1,4 +1,4 @@
-"""What a scene file may say, as JSON Schema beside each check; `scene_schema` makes one document of them."""
+"""JSON Schema beside each check of a value, from which `scene.schema` makes one document."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from pydantic import PlainValidator
 
 
 class GivenAs:
-    """The JSON Schema of what a scene file may say for a field; as pydantic's own, which would take 15 ms to import."""
+    """The JSON Schema of a field in a scene file; pydantic's own class takes 15 ms to import."""
 
     def __init__(self, schema: Mapping[str, Any]):
         self.schema = schema
 
     def __get_pydantic_json_schema__(self, core_schema: Any, handler: Any) -> dict[str, Any]:
-        """Return the schema, as pydantic asks for it."""
+        """Return the schema, for pydantic."""
         return dict(self.schema)
 
 
@@ -50,18 +50,18 @@ class Place:
 
 @dataclass(frozen=True)
 class Check(PlainValidator):
-    """A check of values. ``about``: how other axes change them, or the cable along which they are; else None."""
+    """A check of values; about: how vectors turn, or the cable of an arc-length."""
 
     about: Turning | Place | None = None
 
 
 def checked(check: Callable[..., Any], schema: Mapping[str, Any], about: Turning | Place | None = None) -> Check:
-    """Return a check of values; schema: what a scene file may say there, as JSON Schema (`scene_schema`)."""
+    """Return a check of values; schema: JSON Schema of the values in scene files."""
     return Check(check, json_schema_input_type=Annotated[Any, GivenAs(schema)], about=about)
 
 
 ONLY_PYTHON: dict[str, Any] = {"not": {}}
-"""JSON Schema of what no scene file can hold."""
+"""JSON Schema of a value that no scene file can hold."""
 
 
 def some(n: int) -> dict[str, Any]:
@@ -79,7 +79,7 @@ def number_schema(unit: str = "", **bounds: float) -> dict[str, Any]:
 
 
 def list_schema(unit: str = "", least: int = 3, most: int | None = 3) -> dict[str, Any]:
-    """Return the JSON Schema of a list of numbers, of three if not said otherwise."""
+    """Return the JSON Schema of a list of numbers, by default of three."""
     lengths = {"minItems": least} | ({} if most is None else {"maxItems": most})
     return {"type": "array", "items": {"type": "number"}, **lengths} | ({"description": f"in {unit}"} if unit else {})
 
@@ -90,6 +90,6 @@ def list_of_lists(unit: str) -> dict[str, Any]:
 
 
 def attachment_schema(more: str) -> dict[str, Any]:
-    """Return the JSON Schema of an attachment; more: what it may be beside "A" and ["wire", s]."""
+    """Return the JSON Schema of an attachment; more: other forms than "A" and ["wire", s]."""
     return {"description": f'"A", ["wire", s], {more}, in m',
             "anyOf": [{"type": "string"}, {"type": "array", "minItems": 2, "maxItems": 3}]}

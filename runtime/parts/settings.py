@@ -1,4 +1,4 @@
-"""The settings of a run, of searches for rest, and of an analysis of modes."""
+"""The settings of runs, of equilibria and relaxations, and of modes."""
 
 from __future__ import annotations
 
@@ -45,15 +45,15 @@ def overridden(settings: Mapping[str, Any], given: Mapping[str, Any]) -> dict[st
 
 
 class RunSettings(Part):
-    """How a scene is run.
+    """The settings of a run.
 
     duration: s
-    tol: error aimed at in positions, relative to the largest motion in the scene; steps follow from it
+    tol: target error of positions, relative to the largest motion in the scene; it determines the steps
     absolute_tol: error allowed beside ``tol``, m; by default tol times 1e-6 of the scene's size
-    quantities: results such as "A.position", "wire.position.y" or "trolley.s" that alone count, in the error and in the
-        motion that tol is relative to
-    step: a fixed step, s, in the place of ``tol``; divided so that steps end on output times and where a signal is not
-        smooth
+    quantities: results such as "A.position", "wire.position.y" or "trolley.s" that determine the error and the largest
+        motion, by default all positions
+    step: a fixed step, s, in the place of ``tol``; divided so that steps end at output times and where signals
+        are not smooth
     output_step: s; by default a hundredth of the duration
     integrator: "explicit" (Runge-Kutta of order 8), "radau" (implicit, order 5, for stiff scenes), "genalpha"
         (implicit, order 2, with control of the dissipation), "energy" (order 2, keeps energy and momenta to rounding),
@@ -61,12 +61,12 @@ class RunSettings(Part):
         given
     spectral_radius: of genalpha (default 0.9) and energy (1) at infinite frequency: 1 keeps and 0 removes the fastest
         vibrations, energy's of the cables, counted as dissipated
-    model: "given", the cables' elements as they are, or "auto": elements that were not given, and the integrator, are
-        chosen so that the error of model, mesh and time stays below tol, as `Scene.choose` does
+    model: "given", the elements as they are, or "auto": as `Scene.choose`, elements that are not given, and the
+        integrator, are chosen for an error of model, mesh and time below tol
     initial: "drawn", "equilibrium" (static, under the loads at t = 0), "relaxed" (see `Scene.relax`), or a state that
         `Scene.run` is given
     save: the file to write, or None
-    threads: that share the work on cables of some hundred elements or more, at most one for each processor
+    threads: number of threads for cables of some hundred elements or more, at most one per processor
     estimate: whether two more runs measure the error of the steps and of the mesh, in ``report["errors"]``, see
         `ErrorEstimate`
     """
@@ -157,21 +157,21 @@ _TO = {"type": "object", "additionalProperties": {"type": "number"}, "minPropert
 
 
 class EquilibriumSettings(Part):
-    """How a static equilibrium is sought.
+    """The settings of a static equilibrium.
 
-    load_steps: number of steps in which the loads are raised from 0, more where one does not converge
-    tolerance: of the last correction of positions, relative to the size of the scene; and of the values in ``to``,
+    load_steps: number of steps in which the loads rise from 0; a step that does not converge is divided
+    tolerance: of the last correction of positions, relative to the size of the scene, and of the values in ``to``,
         relative to their scale
     max_iterations: of a load step
-    method: "newton", which ends in a stable state, or "arc_length", which follows the path of equilibria, also where
-        the load falls again and where they are unstable
-    largest_step: of a path, the largest difference of two neighbouring states, of the load fraction, and of positions
+    method: "newton", which ends in a stable state, or "arc_length", which follows the path of equilibria, also past
+        limit points and along unstable states
+    largest_step: of a path, the largest difference of two successive states in the load fraction, and in positions
         relative to the size of the scene
-    seek_stable: whether "newton" goes on from an unstable state, and ends in an error if it finds no stable one; else
-        that state is returned with its label
-    scale_gravity: whether a load fraction p is p times gravity, too; else gravity is whole from the start
-    adjust: parameters of the scene, by the paths that sweeps have, such as "dropper.length", with their limits (low,
-        high) or "free", which are changed until the state has the values ``to``
+    seek_stable: whether "newton" continues from an unstable state, with an error if it finds no stable one; else the
+        result is the unstable state with its label
+    scale_gravity: whether load fractions also apply to gravity; else gravity acts in full from the start
+    adjust: parameters of the scene, by paths as in sweeps, such as "dropper.length", with limits (low, high) or "free",
+        that are adjusted until the state has the values ``to``
     to: values of the state by name, such as "A.position.y" or "wire@12.5.tension"
     """
 
@@ -198,10 +198,10 @@ class EquilibriumSettings(Part):
 
 
 class RelaxationSettings(Part):
-    """How a scene is brought to rest by a damped motion.
+    """The settings of a relaxation, a damped motion to rest.
 
-    tol: largest force that may be left over, relative to the largest load, where Newton's method does not find the
-        state to rounding, and where friction has part in it
+    tol: largest residual force relative to the largest load, for states with friction and where Newton's method does
+        not reach rounding
     max_steps: of the motion
     """
 

@@ -25,18 +25,17 @@ class Slide(Part):
         through which the cable slides
     body_s: of a cable that rides, the arc-length of its point, m, which body=("link", 0.5) gives, too
     along: the cable
-    s: arc-length at the start, m; by default where ``drive`` starts, else the place of the drawn cable nearest to the
-        rider
+    s: initial arc-length, m; by default that of ``drive``, else the point of the drawn cable nearest to the rider
     at: the rider's point in body axes, m
-    frame: "point": the rider turns freely. "tangent": it keeps its angle to the tangent at the start, so that a
-        trolley's floor stays along the cable. "section": it keeps its orientation to the cable's section at the start,
-        which transmits torsion and needs an element with section axes
+    frame: "point": the rider rotates freely. "tangent": it keeps its initial angle to the tangent, so that the floor of
+        a trolley stays along the cable. "section": it keeps its initial orientation to the section of the cable, which
+        transmits torsion and needs an element with section axes
     roll: with the frame "tangent", the rotation about the tangent: "free", or "fixed" against the direction ``up``
     up: a direction fixed in the ground, by default the one against gravity, else the cable's own
-    drive: s over time as a signal, m; the slide follows it, whatever the force
+    drive: s over time as a signal, m, prescribed for any force
     velocity: rate of s as a signal, m/s, in the place of ``drive``
     friction: a coefficient, or a `Friction`
-    at_start, at_end: at the ends of the cable: "error", "leave" (the rider flies on), a `HardStop` or a `Buffer`
+    at_start, at_end: at the ends of the cable: "error", "leave" (the cable), a `HardStop` or a `Buffer`
     """
 
     kind = "slide"

@@ -152,7 +152,7 @@ def one_of(known: Iterable[str], optional: bool = False) -> Check:
 
 
 def bounded(unit: str, allowed: Callable[[float], bool], rule: str, **bounds: float) -> Check:
-    """Return the check of a finite number that is allowed; rule: what it must do; bounds: keywords of JSON Schema."""
+    """Return the check of a finite, allowed number; rule: in words, as "be positive"; bounds: of JSON Schema."""
     def check(value: Any) -> float:
         result = number(value, unit)
         if not allowed(result):
@@ -197,7 +197,7 @@ def within(low: float, high: float, *, ends: bool) -> Check:
 def xyz(unit: str = "", turns: str | None = None, of: str | None = None) -> Check:
     """Return the check of three finite numbers: by their unit a point, an axis of rotation or a direction.
 
-    turns: what they are instead; of: the attribute that names the body whose axes they are along, see `Turning`.
+    turns: of another `Turning`; of: the attribute that names the body whose axes they are along, see `Turning`.
     """
     by_unit = {"m": POINT, "rad/s": AXIS, "N m": AXIS}
     turning = Turning(turns or by_unit.get(unit, DIRECTION), of, unit)
