@@ -222,7 +222,7 @@ def _largest_length(scene: SceneData, contact: Contact) -> float:
     """Return the largest length in the computation of the distance of a body from a surface, m."""
     surface = scene.surfaces[contact.b]
     carriers = [scene.bodies[name].frame[0] for name in (contact.a, surface.on) if name is not None]
-    return max(np.abs(np.array([*(contact.points or ()), *carriers])).max(), contact.radius or 0.0,
+    return max(float(np.abs(np.array([*(contact.points or ()), *carriers])).max()), contact.radius or 0.0,
                surface.geometry.largest_length)
 
 

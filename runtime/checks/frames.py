@@ -57,7 +57,7 @@ def section_frame(cable: Cable, s: float) -> np.ndarray:
 
 
 def _unit(vector: np.ndarray) -> np.ndarray:
-    return vector / np.linalg.norm(vector)
+    return np.asarray(vector / np.linalg.norm(vector))
 
 
 def end_frame(scene: SceneData, end: Attachment, up: Sequence[float] | None = None) -> np.ndarray:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -63,7 +64,7 @@ def check_drive(scene: SceneData, joint: Joint) -> None:
                          f"{show(start, DRIVE_UNITS[name])}", 'let it start there, or start with initial="equilibrium"')
 
 
-def _completed(scene: SceneData, joint: Joint) -> dict:
+def _completed(scene: SceneData, joint: Joint) -> dict[str, Any]:
     """Return the fields that follow from the scene."""
     if joint.joint_kind == "revolute" and joint.axis is None:
         if scene.dim == 3:

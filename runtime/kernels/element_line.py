@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -36,5 +37,6 @@ class ElementLine:
         return (self.mesh.length(element), s - self.mesh.start(element),
                 np.concatenate(self.nodal_vectors[element : element + 2]))
 
-    def _kernel(self, name: str) -> Callable:
-        return getattr(kernels_of(self.library), f"{self.element}_{name}")
+    def _kernel(self, name: str) -> Callable[..., Any]:
+        kernel: Callable[..., Any] = getattr(kernels_of(self.library), f"{self.element}_{name}")
+        return kernel

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
+from typing import Any
 
 MANIFEST = "manifest.json"
 
@@ -62,12 +63,13 @@ class ElementKind:
 
 
 @cache
-def manifest() -> dict:
+def manifest() -> dict[str, Any]:
     """Return the manifest of this package's kernels."""
-    return json.loads((resources.files("funicular.generated") / MANIFEST).read_text(encoding="utf-8"))
+    found: dict[str, Any] = json.loads((resources.files("funicular.generated") / MANIFEST).read_text(encoding="utf-8"))
+    return found
 
 
-def of_manifest(content: dict) -> dict[str, ElementKind]:
+def of_manifest(content: dict[str, Any]) -> dict[str, ElementKind]:
     """Return the elements of a manifest by name."""
     return {name: ElementKind(tuple(e["nodal_vectors"]), e["dim"], e["director"],
                               {law: LawTraits(**traits) for law, traits in e["laws"].items()})

@@ -43,7 +43,7 @@ class LibraryError(FunicularError, ValueError):
         return "library " + "; ".join(self.args)
 
 
-def resolved(directory: str | os.PathLike) -> str:
+def resolved(directory: str | os.PathLike[str]) -> str:
     """Return a directory's absolute path without links. Raises ValueError for what no path can be."""
     try:
         return os.path.realpath(os.fspath(directory))
@@ -51,7 +51,7 @@ def resolved(directory: str | os.PathLike) -> str:
         raise ValueError(f"must be a directory, got {directory!r}") from None
 
 
-def check_allowed(asked: str, allowed: Iterable[str | os.PathLike], place: str) -> None:
+def check_allowed(asked: str, allowed: Iterable[str | os.PathLike[str]], place: str) -> None:
     """Raise SceneError unless the library that a file names is among the directories that the caller allows.
 
     asked: its resolved path; place: the part of the file that names it.
@@ -62,13 +62,13 @@ def check_allowed(asked: str, allowed: Iterable[str | os.PathLike], place: str) 
                          f'libraries=["{asked}"], on the command line with --library {asked}')
 
 
-def manifest_digest(content: dict) -> str:
+def manifest_digest(content: dict[str, Any]) -> str:
     """Return sha256 of a library's manifest without its digest."""
     bare = content | {"library": {name: value for name, value in content["library"].items() if name != "digest"}}
     return hashlib.sha256(json.dumps(bare, sort_keys=True).encode()).hexdigest()
 
 
-def read_manifest(directory: Path) -> tuple[bytes, dict]:
+def read_manifest(directory: Path) -> tuple[bytes, dict[str, Any]]:
     """Return the manifest of the library in a directory, as bytes and as data. Raises LibraryError."""
     try:
         text = (directory / MANIFEST).read_bytes()
@@ -88,7 +88,7 @@ def read_manifest(directory: Path) -> tuple[bytes, dict]:
 class Kernel:
     """A kernel of a library as a function of arrays, as those of `funicular.generated.kernels`."""
 
-    def __init__(self, shared: ctypes.CDLL, name: str, entry: dict):
+    def __init__(self, shared: ctypes.CDLL, name: str, entry: dict[str, Any]):
         self.__name__, self.__doc__ = name, f"{entry['doc']} ({entry['source']})."
         self._inputs = [(a["name"], tuple(a["shape"])) for a in entry["inputs"]]
         self._outputs = [tuple(a["shape"]) for a in entry["outputs"]]
@@ -148,7 +148,7 @@ class Library:
     digest: str
 
 
-def load(directory: str | os.PathLike) -> Library:
+def load(directory: str | os.PathLike[str]) -> Library:
     """Return the library in a directory; it stays loaded. Raises LibraryError."""
     path = Path(resolved(directory))
     text, content = read_manifest(path)
@@ -177,7 +177,7 @@ def tables_of(library: str | None) -> int:
     return load(library).tables if library is not None else 0
 
 
-def _open(path: Path, content: dict) -> Library:
+def _open(path: Path, content: dict[str, Any]) -> Library:
     # not at the top: `funicular derive` must start where generated/ is missing or broken
     from funicular.generated import described as described_kernels
 

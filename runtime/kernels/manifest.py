@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict
 
@@ -46,6 +46,6 @@ class Manifest(_Described):
     arguments: dict[str, _Argument]
     kernels: dict[str, dict[str, _Kernel]]
     tools: dict[str, str]
-    families: dict[str, dict]
+    families: dict[str, dict[str, Any]]
     sources: dict[str, str]
     files: dict[str, str]

@@ -68,7 +68,8 @@ class Mesh:
     def each_start(self, element: ArrayLike) -> np.ndarray:
         """Return the arc-lengths (...) at which elements (...) begin, in m."""
         element = np.asarray(element)
-        return element * self.lengths[0] if self.given is None else self.given[element]
+        starts: np.ndarray = element * self.lengths[0] if self.given is None else self.given[element]
+        return starts
 
     def element_at(self, s: ArrayLike) -> np.ndarray:
         """Return the elements (...) at arc-lengths s (...); at a node the element that begins there."""
@@ -80,7 +81,7 @@ class Mesh:
         """Return the numbers (...) of the nodes nearest to arc-lengths s (...)."""
         s = np.asarray(s, dtype=float)
         if self.given is None:
-            return np.clip(np.rint(s / self.lengths[0]), 0, self.n_elements).astype(int)
+            return np.asarray(np.clip(np.rint(s / self.lengths[0]), 0, self.n_elements).astype(int))
         return np.searchsorted((self.given[1:] + self.given[:-1]) / 2, s)
 
     def place(self, s: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
@@ -98,4 +99,5 @@ class Mesh:
 
     def divided(self, parts: int) -> np.ndarray:
         """Return (parts elements + 1,): arc-lengths of nodes and of equidistant points of each element, m."""
-        return np.interp(np.arange(parts * self.n_elements + 1) / parts, np.arange(self.n_elements + 1), self.node_s)
+        at, nodes = np.arange(parts * self.n_elements + 1) / parts, np.arange(self.n_elements + 1)
+        return np.asarray(np.interp(at, nodes, self.node_s))

@@ -60,7 +60,7 @@ class ModelBuilder:
     cables, bodies: the models, in the scene's order.
     """
 
-    def __init__(self, scene: SceneData, cables: list, bodies: list):
+    def __init__(self, scene: SceneData, cables: list[Any], bodies: list[Any]):
         self.scene: SceneData = scene
         self.cables, self.bodies = cables, bodies
         self.cable_index = {name: k for k, name in enumerate(scene.cables)}

@@ -19,9 +19,8 @@ def body_models(scene: SceneData, at: int) -> list[BodyModel]:
     dim, made, dof = scene.dim, [], at
     kernel, n_configuration, n_velocity = BODIES[dim]
     for body in scene.bodies.values():
-        is_modal = isinstance(body, ModalBody)
-        shape = _shape(body, np.array(scene.gravity)[:dim]) if is_modal else None
-        centre = np.zeros(3) if is_modal else np.array(body.centre)
+        shape = _shape(body, np.array(scene.gravity)[:dim]) if isinstance(body, ModalBody) else None
+        centre = np.zeros(3) if isinstance(body, ModalBody) else np.array(body.centre)
         made.append(BodyModel(body.name, kernel, body.mass, np.array(body.inertia), centre, at, dof, shape))
         at += n_configuration + made[-1].modes
         dof += n_velocity + made[-1].modes

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
 
@@ -45,10 +46,10 @@ def element_constants(library: str | None, element: str, law: str, length: float
         straight = getattr(kernels, f"{element}_{traits.straight}_stiffness")
         return np.concatenate([straight(length, S),
                                *integral_over_volume(getattr(kernels, f"{element}_{law}_stiffness_at"), length, e0, S)])
-    return getattr(kernels, f"{element}_{law}_stiffness")(length, *([] if e0 is None else [e0]), S)
+    return np.asarray(getattr(kernels, f"{element}_{law}_stiffness")(length, *([] if e0 is None else [e0]), S))
 
 
-def integral_over_volume(stiffness_at: Callable, length: float, e0: np.ndarray | None,
+def integral_over_volume(stiffness_at: Callable[..., Any], length: float, e0: np.ndarray | None,
                          S: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the integral of the kernel `stiffness_at`: the form over Gram products, and the Gram products of e0."""
     places, weights = np.polynomial.legendre.leggauss(POINTS)

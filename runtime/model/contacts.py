@@ -172,13 +172,13 @@ def _along_cable(model: ContactModel, index: int, builder: ModelBuilder) -> np.n
     vectors = builder.scene.cables[cable.name].nodal_vectors
     both = np.concatenate([vectors[:-1], vectors[1:]], axis=1)
     N = np.broadcast_to(model.N, (cable.n_elements, *model.N.shape[1:]))
-    return np.einsum("egk,ekd->egd", N, both).reshape(-1, 3)
+    return np.asarray(np.einsum("egk,ekd->egd", N, both).reshape(-1, 3))
 
 
 def _arc_lengths(mesh: Mesh, x: np.ndarray) -> np.ndarray:
     """Return (elements points,): arc-lengths of points on all elements, in m."""
     starts = mesh.node_s[:-1, None]
-    return (starts + np.diff(mesh.node_s)[:, None] * (1 + x) / 2).ravel()
+    return np.asarray(starts + np.diff(mesh.node_s)[:, None] * (1 + x) / 2).ravel()
 
 
 def hard_contact_models(builder: ModelBuilder) -> Iterator[HardContactModel]:

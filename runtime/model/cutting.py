@@ -60,4 +60,4 @@ def _beginning(element: int, touches: Touches, low: np.ndarray, numbering: Numbe
     own = touches.unknown[touches.element == element]
     of_own = np.isin(touches.unknown, own) & (low[touches.element] < low[element])
     shared = np.unique(touches.unknown[of_own])
-    return shared[numbering.number[shared] < numbering.n_band]
+    return np.asarray(shared[numbering.number[shared] < numbering.n_band])

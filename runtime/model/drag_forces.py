@@ -61,7 +61,8 @@ def _at_points(cable: CableModel, shape: np.ndarray, values: np.ndarray) -> np.n
     """Return (T, elements, points, dim) from shape functions (1 or elements, points, vectors) and vectors (T, elements,
     vectors, dim).
     """
-    return np.einsum("egk,tekd->tegd", np.broadcast_to(shape, (cable.n_elements, *shape.shape[1:])), values)
+    N = np.broadcast_to(shape, (cable.n_elements, *shape.shape[1:]))
+    return np.asarray(np.einsum("egk,tekd->tegd", N, values))
 
 
 def _on_sections(drag: DragModel, polar: Polar, t: np.ndarray, d: np.ndarray, w: np.ndarray) -> np.ndarray:
@@ -72,7 +73,7 @@ def _on_sections(drag: DragModel, polar: Polar, t: np.ndarray, d: np.ndarray, w:
     values = np.zeros((len(t), 6))  # derivatives by the angle are not needed
     values[:, ::2] = polar.coefficients(angle).T
     kernel = getattr(kernels_of(None), f"{drag.kernel}_on_section")
-    return kernel.rows(len(t), t, d, w, np.array(drag.section), values)[0].reshape(-1, 3, 3)
+    return np.asarray(kernel.rows(len(t), t, d, w, np.array(drag.section), values)[0]).reshape(-1, 3, 3)
 
 
 def _velocity(drag: DragModel, time: np.ndarray, r: np.ndarray) -> np.ndarray:
@@ -82,7 +83,7 @@ def _velocity(drag: DragModel, time: np.ndarray, r: np.ndarray) -> np.ndarray:
 
 def _place(drag: DragModel, r: np.ndarray) -> np.ndarray:
     """Return positions (..., 3) along the ground's axes from r (..., dim) along the model's."""
-    return drag.origin + r @ drag.axes.reshape(3, 3)[:, : r.shape[-1]].T
+    return np.asarray(drag.origin + r @ drag.axes.reshape(3, 3)[:, : r.shape[-1]].T)
 
 
 def outside_tables(model: Model, q: np.ndarray) -> list[str]:

@@ -49,7 +49,7 @@ class Elimination:
     @property
     def sizes(self) -> np.ndarray:
         """Return (fronts,): the number of unknowns of each, neighbours included."""
-        return self.pivots + self.neighbours
+        return np.asarray(self.pivots + self.neighbours)
 
     @property
     def size(self) -> int:

@@ -61,6 +61,7 @@ def _hull(on_axis: Any, length: float) -> np.ndarray:
         binomials = np.array([comb(degree, int(k)) for k in order])
         basis = binomials * at[:, None] ** order * (1 - at[:, None]) ** (degree - order)
         values = np.array([on_axis(length, length * t)[0] for t in at])
+        points: np.ndarray
         points, *_ = np.linalg.lstsq(basis, values, rcond=None)
         # by column: the share of a vector is proportional to a power of the length
         if np.all(np.abs(basis @ points - values).max(axis=0) <= FIT_TOLERANCE * np.abs(values).max(axis=0)):

@@ -112,7 +112,8 @@ def _derivatives(kernel: str, dim: int) -> np.ndarray:
     """Return the derivatives (rows, dim + turns) of a joint's equations by gap and rotations, in a generic state."""
     eye, ones = np.eye(dim), np.ones(dim)
     force = getattr(kernels_of(None), f"{kernel}_force")
-    return force(ones, eye, eye, np.array([0.5, np.cos(0.5), np.sin(0.5)]), np.zeros(force.shapes["f"]))[1]
+    generic = np.array([0.5, np.cos(0.5), np.sin(0.5)])
+    return np.asarray(force(ones, eye, eye, generic, np.zeros(force.shapes["f"]))[1])
 
 
 @cache

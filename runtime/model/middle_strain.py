@@ -15,7 +15,7 @@ Rule = tuple[Sequence[float], Sequence[float]]
 def slopes(cable: CableModel, part: float) -> np.ndarray:
     """Return (1 or elements, vectors): shape functions of the slope at a fraction of the element's length."""
     lengths = cable.mesh.lengths
-    return cable.kernel("on_axis").rows(len(lengths), lengths, part * lengths)[1]
+    return np.asarray(cable.kernel("on_axis").rows(len(lengths), lengths, part * lengths)[1])
 
 
 def gauss_rule(points: int) -> Rule:
@@ -48,12 +48,12 @@ def middle_strain(cable: CableModel, nodal_vectors: np.ndarray) -> np.ndarray:
 
 def strain_at(cable: CableModel, nodal_vectors: np.ndarray, part: float) -> np.ndarray:
     """Return (T, elements): the axial strain at a fraction of the length of each element."""
-    return np.linalg.norm(slope_at(cable, nodal_vectors, slopes(cable, part)), axis=-1) - 1.0
+    return np.asarray(np.linalg.norm(slope_at(cable, nodal_vectors, slopes(cable, part)), axis=-1) - 1.0)
 
 
 def slope_at(cable: CableModel, nodal_vectors: np.ndarray, shapes: np.ndarray) -> np.ndarray:
     """Return (T, elements, dim): the sums of the vectors of each element's nodes, weighted as `slopes` returns."""
     vectors = cable.shape[1]
     N = np.broadcast_to(shapes, (cable.n_elements, 2 * vectors))
-    return (np.einsum("ek,tekd->ted", N[:, :vectors], nodal_vectors[:, :-1])
-            + np.einsum("ek,tekd->ted", N[:, vectors:], nodal_vectors[:, 1:]))
+    return np.asarray(np.einsum("ek,tekd->ted", N[:, :vectors], nodal_vectors[:, :-1])
+                      + np.einsum("ek,tekd->ted", N[:, vectors:], nodal_vectors[:, 1:]))

@@ -86,12 +86,12 @@ class CableModel:
 
     def kernel(self, name: str) -> Kernel:
         """Return a kernel of its element."""
-        return getattr(kernels_of(self.library), f"{self.element}_{name}")
+        return cast(Kernel, getattr(kernels_of(self.library), f"{self.element}_{name}"))
 
     def law_kernel(self, name: str) -> Kernel:
         """Return a kernel of its law, the one that the engine uses."""
         kind = of_library(self.library)[self.element]
-        return getattr(kernels_of(self.library), kind.law_kernel(self.element, self.law, name))
+        return cast(Kernel, getattr(kernels_of(self.library), kind.law_kernel(self.element, self.law, name)))
 
 
 @dataclass

@@ -75,7 +75,7 @@ def body_state(model: Model, body: BodyModel, q: np.ndarray) -> dict[str, np.nda
 
 
 def body_rates(model: Model, body: BodyModel, orientation: np.ndarray, v: np.ndarray,
-               a: np.ndarray | None = None) -> dict:
+               a: np.ndarray | None = None) -> dict[str, np.ndarray]:
     """Return the velocity of a body's origin and angular_velocity from v (time, n_dof), and accelerations from a."""
     at = slice(body.dof, body.dof + model.dim)
     turn = slice(at.stop, at.stop + (3 if model.dim == 3 else 1))
@@ -92,7 +92,7 @@ def body_rates(model: Model, body: BodyModel, orientation: np.ndarray, v: np.nda
 
 
 def modal_state(model: Model, body: BodyModel, state: dict[str, np.ndarray], q: np.ndarray,
-                v: np.ndarray | None = None) -> dict:
+                v: np.ndarray | None = None) -> dict[str, np.ndarray]:
     """Return modal_coordinates (time, mode) and nodes (time, node, 3) of a modal body from the `state` of its frame.
 
     With v (time, n_dof), modal_velocities, too.
@@ -141,5 +141,5 @@ def attachment_points(model: Model, attachment: AttachmentModel, q: np.ndarray) 
         if attachment.modal is not None:
             eta = modal_state(model, body, state, q)["modal_coordinates"]
             arm = spatial(attachment.modal[0] + eta @ attachment.modal[1])
-        return state["position"] + rotate(state["orientation"], arm)
+        return np.asarray(state["position"] + rotate(state["orientation"], arm))
     return np.broadcast_to(np.array(attachment.u), (len(q), 3))

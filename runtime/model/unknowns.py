@@ -104,7 +104,7 @@ class Node:
     @property
     def dim(self) -> int:
         """Return the dimension of the element, 2 or 3."""
-        return self.vectors.shape[1]
+        return int(self.vectors.shape[1])
 
     @property
     def directors(self) -> list[str]:
@@ -113,7 +113,7 @@ class Node:
 
     def vector(self, name: str) -> np.ndarray:
         """Return a nodal vector (dim,) as drawn."""
-        return self.vectors[self.names.index(name)]
+        return np.asarray(self.vectors[self.names.index(name)])
 
     def dofs(self, name: str) -> range:
         """Return the numbers of the dofs of a nodal vector."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Self, TypeVar, cast
 
 from ..errors import SceneError, near
 from ..parts.event import Event
@@ -63,7 +63,8 @@ class DescribedScene(SceneMethods):
         parts = [one.model_copy(update={**dict(zip(ends, pair, strict=True)), "name": name})
                  for pair, name in zip(pairs, names, strict=True)]
         check_plane(self, one)
-        for part in (parts := check_all_of(one)(self, parts)):
+        parts = cast(list[P], check_all_of(one)(self, parts))
+        for part in parts:
             self.put(part)
         return parts
 
@@ -116,8 +117,8 @@ class DescribedScene(SceneMethods):
         raise SceneError("scene", f"has no such part: {shown(part)}", "give its name, or a part that the scene holds")
 
     @classmethod
-    def from_toml(cls, text: str, origin: str = "scene", directory: str | os.PathLike = "",
-                  libraries: Iterable[str | os.PathLike] = ()) -> Self:
+    def from_toml(cls, text: str, origin: str = "scene", directory: str | os.PathLike[str] = "",
+                  libraries: Iterable[str | os.PathLike[str]] = ()) -> Self:
         """Return a scene from the text of a scene file; ``origin``: its name in messages.
 
         directory: base of relative paths in the text, by default the working directory; libraries: directories of

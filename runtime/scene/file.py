@@ -26,7 +26,7 @@ def bundled_scenes() -> dict[str, Path]:
     return {path.stem: path for path in sorted(SCENES.glob("*.toml"))}
 
 
-def load_scene(path: str | os.PathLike, libraries: Iterable[str | os.PathLike] = ()) -> Scene:
+def load_scene(path: str | os.PathLike[str], libraries: Iterable[str | os.PathLike[str]] = ()) -> Scene:
     """Read a scene file, or the bundled scene of that name; its [run] table becomes ``scene.run_settings``.
 
     libraries: directories of elements (`funicular derive --spec`) that the file may load; they are machine code.
@@ -56,7 +56,8 @@ def load_scene(path: str | os.PathLike, libraries: Iterable[str | os.PathLike] =
     return scene
 
 
-def load_run(path: str | os.PathLike, libraries: Iterable[str | os.PathLike] = (), salvage: bool = False) -> Run:
+def load_run(path: str | os.PathLike[str], libraries: Iterable[str | os.PathLike[str]] = (),
+             salvage: bool = False) -> Run:
     """Open the results of a run, also of one that is running or was killed; arrays are read on demand.
 
     Checksums protect header, report and rows.

@@ -83,7 +83,7 @@ class Scene(Viewable, DescribedScene):
         model: str | None = None,
         initial: str | Equilibrium | Mapping[str, ArrayLike] | None = None,
         threads: int | None = None,
-        save: str | os.PathLike | None = None,
+        save: str | os.PathLike[str] | None = None,
         resume: bool = False,
         progress: bool | Callable[[float], None] | None = None,
         estimate: bool | None = None,
@@ -193,7 +193,7 @@ class Scene(Viewable, DescribedScene):
         return choose(self, settings, quantities, free, Runner(simulate, partial(_at_rest, settings.initial)), unequal)
 
     def _simulated(self, settings: RunSettings, state: Start | None, resume: bool,
-                   progress: bool | Callable[[float], None] | None, chosen: Choice | None = None,
+                   progress: bool | Callable[[float], None] | None, chosen: Choice[Self] | None = None,
                    trials: SharedTrials | None = None) -> Run:
         """Return the run with these settings, in any status, from a state or as the settings say."""
         with uninterrupted(), self._saving(settings, resume) as stream, one_blas_thread, enough_memory():
