@@ -51,19 +51,19 @@ def by_length(model: CableModel, cable: Cable, q: np.ndarray) -> np.ndarray:
     """
     if cable.reference is not None or cable.library is not None:
         below, above = (_of_length(model, cable, q, 1 + change) for change in (-DIFFERENCE_STEP, DIFFERENCE_STEP))
-        return (above - below) / (2 * DIFFERENCE_STEP)
+        return np.asarray((above - below) / (2 * DIFFERENCE_STEP))
     law = cable.stiffness_law, cable.section, cable.material, cable.dim
     S, orders = section_stiffness(*law), lengths_in_stiffness(*law)
     here = elastic_force(model, model.A, q)
     beside = elastic_force(model, constants(cable, S=S + np.where(orders > 0, 2.0 - orders, 0.0) * S), q)
     directed = np.array([name in DIRECTORS for name in model.vectors])
     on_directors = np.where(directed[:, None], here.reshape(model.shape), 0.0).ravel()
-    return beside - here + on_directors - _stiffness_times(model, q, ~directed)
+    return np.asarray(beside - here + on_directors - _stiffness_times(model, q, ~directed))
 
 
 def same_points(model: CableModel, q: np.ndarray) -> np.ndarray:
     """Return (coordinates,): derivative of the coordinates of the same points, q (n_q,), by the ratio of lengths."""
-    return -(_slopes(model) * model.nodal(q)).ravel()
+    return np.asarray(-(_slopes(model) * model.nodal(q)).ravel())
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,8 @@ class Own:
 
     def of(self, cable: Cable) -> np.ndarray:
         """Return (coordinates,): those of the cable with another section or material."""
-        return elastic_force(self.model, constants(cable), self.q) - cable_gravity(self.model, cable, self.gravity)
+        weight = cable_gravity(self.model, cable, self.gravity)
+        return np.asarray(elastic_force(self.model, constants(cable), self.q) - weight)
 
 
 def _of_length(model: CableModel, cable: Cable, q: np.ndarray, ratio: float) -> np.ndarray:

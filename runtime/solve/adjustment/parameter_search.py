@@ -71,7 +71,7 @@ class Way:
         moves = np.hypot(problem.length(rates), 0.0 if change.c is None else np.linalg.norm(change.c))
         return cls(DIFFERENCE_STEP * problem.size / moves if moves > 0 else 1.0, rates, change)
 
-    def begin(self, kept: dict, step: float) -> dict:
+    def begin(self, kept: dict[str, np.ndarray], step: float) -> dict[str, np.ndarray]:
         """Return a state with prescribed dofs moved by a step of the parameter."""
         if self.change.c is None:
             return kept
@@ -89,7 +89,7 @@ class Beside:
 
     def residual(self) -> np.ndarray:
         """Return the residual (unknowns,), in the first state's order."""
-        return self.state.residual()[self.order]
+        return np.asarray(self.state.residual()[self.order])
 
     def move(self, change: np.ndarray) -> None:
         """Move the state by a change of the unknowns, in the first state's order."""
@@ -101,7 +101,7 @@ class Beside:
 class ParameterSearch(Generic[S]):
     """Newton's method on the parameters; misfits are over the scales of the targets."""
 
-    def __init__(self, parameters: Parameters, settings: EquilibriumSettings, made: type[S], reader: Reader):
+    def __init__(self, parameters: Parameters[SceneData], settings: EquilibriumSettings, made: type[S], reader: Reader):
         self.parameters, self.settings, self.made, self.reader = parameters, settings, made, reader
 
     def laid(self, scene: SceneData) -> SceneData:
@@ -173,7 +173,7 @@ class ParameterSearch(Generic[S]):
             found[k][first : first + model.dim] = (laws[0].at_rest(b - a) - laws[1].at_rest(b - a)) / (2 * h)
         return found
 
-    def along(self, problem: StaticState, kept: dict, ways: Sequence[Way]) -> np.ndarray:
+    def along(self, problem: StaticState, kept: dict[str, np.ndarray], ways: Sequence[Way]) -> np.ndarray:
         """Return (targets, n): derivatives of the values in n directions from a state `kept`, which is restored."""
         def ends(some: Sequence[Way]) -> Iterator[StaticState]:
             for way in some:
@@ -195,7 +195,7 @@ class ParameterSearch(Generic[S]):
         problem.restore(kept)
         return np.concatenate(found).T if found else np.zeros((len(self.reader.in_metres), 0))
 
-    def beside(self, at: AtRest, k: int, change: float, kept: dict) -> Beside:
+    def beside(self, at: AtRest, k: int, change: float, kept: dict[str, np.ndarray]) -> Beside:
         """Return the state `kept` with parameter k changed."""
         p = at.p.copy()
         p[k] += change

@@ -66,4 +66,4 @@ class Reader:
 
     def values(self, state: StaticState) -> np.ndarray:
         """Return (targets,): the values of a state."""
-        return self.read(state, Snapshots.of([state], self.reactions))[0]
+        return np.asarray(self.read(state, Snapshots.of([state], self.reactions))[0])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -32,7 +33,7 @@ class Linear:
     gains: float
 
     @classmethod
-    def of(cls, parameters: Parameters, p: np.ndarray, G: np.ndarray, scales: np.ndarray, misfit: np.ndarray,
+    def of(cls, parameters: Parameters[Any], p: np.ndarray, G: np.ndarray, scales: np.ndarray, misfit: np.ndarray,
            sizes: np.ndarray) -> Linear:
         """Return the model at the values p (n,); G (targets, n): derivatives. A parameter stops at its limit, and the
         others reduce the remaining misfit.
@@ -67,7 +68,7 @@ def why_unreachable(linear: Linear, g: np.ndarray, to: Mapping[str, float], caus
     return f"the targets are not reached: {values}; {cause}; the state there is kept in .state"
 
 
-def cause_of(parameters: Parameters, linear: Linear, names: list[str], reason: str) -> str:
+def cause_of(parameters: Parameters[Any], linear: Linear, names: list[str], reason: str) -> str:
     """Return the cause of the end of a search, in words; names: of the targets; reason: why no step was taken."""
     silent = ~np.any(np.abs(linear.A) > RANK_TOLERANCE * max(np.max(np.abs(linear.A)), 1e-300), axis=1)
     if silent.any():
@@ -93,7 +94,7 @@ def _in_conflict(linear: Linear, columns: np.ndarray, names: list[str]) -> str |
     return _quoted([names[k] for k in np.flatnonzero(share > MIN_PARTICIPATION)])
 
 
-def _at_limit(parameters: Parameters, linear: Linear, k: int) -> str:
+def _at_limit(parameters: Parameters[Any], linear: Linear, k: int) -> str:
     """Return a text on the limit of a parameter."""
     down = linear.step[k] < 0 or not np.isfinite(parameters.high[k])
     name = f'"{parameters.names[k]}"'

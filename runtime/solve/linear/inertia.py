@@ -121,7 +121,7 @@ def _scale(K: csc_array, units: np.ndarray) -> np.ndarray:
     per_unit = diags_array(1.0 / units)
     stiffness = abs(per_unit @ K @ per_unit).max(axis=1).toarray().ravel()
     largest = stiffness.max(initial=0.0) or 1.0
-    return 1.0 / (units * np.sqrt(np.maximum(stiffness, MIN_STIFFNESS_RATIO * largest)))
+    return np.asarray(1.0 / (units * np.sqrt(np.maximum(stiffness, MIN_STIFFNESS_RATIO * largest))))
 
 
 def _independent(C: csr_array) -> csr_array:
@@ -161,7 +161,7 @@ def negatives(K: csc_array, C: csc_array | csr_array) -> int:
     by = diags_array(equilibrating(whole))
     whole = (by @ whole @ by).tocsc()
     if n + m <= MAX_DENSE_ROWS:
-        return _negatives_of_blocks(whole.toarray()) - m
+        return int(_negatives_of_blocks(whole.toarray()) - m)
     is_late = np.abs(whole.diagonal()) < MIN_PIVOT
     growth = GROWTH_LIMIT
     for _ in range(MAX_FACTORISATIONS):
@@ -169,12 +169,12 @@ def negatives(K: csc_array, C: csc_array | csr_array) -> int:
         if len(late) > MAX_DEFERRED_UNKNOWNS:
             break
         if not len(early):
-            return _negatives_of_blocks(whole.toarray()) - m
+            return int(_negatives_of_blocks(whole.toarray()) - m)
         border = whole[early][:, late]
         pivots, rest, growing = _eliminated(whole[early][:, early].tocsc(), border.toarray(), growth)
         if not len(growing):
             left = whole[late][:, late].toarray() - border.T @ rest
-            return int(np.count_nonzero(pivots < 0)) + _negatives_of_blocks(left) - m
+            return int(np.count_nonzero(pivots < 0) + _negatives_of_blocks(left) - m)
         is_late[early[growing]] = True
         growth = min(growth * GROWTH_LIMIT_RATIO, MAX_GROWTH_LIMIT)
     raise ArithmeticError("the pivots of the stiffness are too small for their signs to be known")

@@ -116,7 +116,7 @@ class Pencil:
         def solve(y: np.ndarray) -> np.ndarray:
             right = np.zeros((n + m, y.shape[1]))
             right[:n] = self.M @ y
-            return by[:n, None] * factor.solve(by[:, None] * right)[:n]
+            return np.asarray(by[:n, None] * factor.solve(by[:, None] * right)[:n])
 
         return solve
 
@@ -187,7 +187,7 @@ class Pencil:
     def uncertainty(self, x: np.ndarray) -> np.ndarray:
         """Return the error of x'Kx / x'Mx by the rounding of K's entries, for each column of x."""
         change = STIFFNESS_ROUNDING * np.sum(np.abs(x) * (abs(self.K) @ np.abs(x)), axis=0)
-        return change / np.sum(x * (self.M @ x), axis=0)
+        return np.asarray(change / np.sum(x * (self.M @ x), axis=0))
 
     def reaching(self, n: int) -> float:
         """Return a positive shift, about the smallest, with at least n eigenvalues below it."""
@@ -234,7 +234,8 @@ class Pencil:
         order = np.argsort(values)
         return values[order], x[:, order]
 
-    def _nearest(self, solve: Callable, start: np.ndarray, known: np.ndarray, wanted: int) -> np.ndarray:
+    def _nearest(self, solve: Callable[[np.ndarray], np.ndarray], start: np.ndarray, known: np.ndarray,
+                 wanted: int) -> np.ndarray:
         """Return (n, wanted): vectors of the next eigenvalues above the shift of ``solve``, without the known ones.
 
         A block method: the subspace grows from many vectors at once by the residuals of the inverse (Davidson, J.
@@ -265,7 +266,7 @@ class Pencil:
             across = MV.T @ image
             T = np.block([[T, across], [across.T, new.T @ (self.M @ image)]])
             V, MV, W = np.hstack([V, new]), np.hstack([MV, self.M @ new]), np.hstack([W, image])
-        return W @ y / of  # the inverse once more removes the rounding of the highest eigenvalues
+        return np.asarray(W @ y / of)  # the inverse once more removes the rounding of the highest eigenvalues
 
     def _orthonormal(self, x: np.ndarray, *against: np.ndarray) -> np.ndarray:
         """Return a basis of the columns of x, x'Mx = 1, orthogonal to others; dependent columns are left out."""

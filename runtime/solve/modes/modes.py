@@ -325,4 +325,4 @@ def _nodes(model: Model, body: BodyModel, q: np.ndarray, dofs: np.ndarray) -> np
     strained = np.einsum("tk,kni->tni", dofs[:, at : at + body.modes], fields.modes)
     frame = spatial(dofs[:, None, body.dof : body.dof + model.dim])
     bent = fields.nodes + np.einsum("k,kni->ni", eta, fields.modes)
-    return frame + rotate(orientation, np.cross(turn[:, None], bent) + strained)
+    return np.asarray(frame + rotate(orientation, np.cross(turn[:, None], bent) + strained))

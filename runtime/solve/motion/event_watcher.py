@@ -105,7 +105,7 @@ class EventWatcher:
     def __init__(self, scene: SceneData, model: Model):
         self.model = model
         self.watches = [Watch(event, scene, model) for event in scene.events.values()]
-        self.happened: list[dict] = []
+        self.happened: list[dict[str, Any]] = []
         self.stopped_by: str | None = None
 
     def call(self, which: int, time: float, q: np.ndarray, v: np.ndarray, s: np.ndarray) -> float:
@@ -138,7 +138,7 @@ class EventWatcher:
         """
         if not what:
             return
-        happened: dict = {"name": self.model.couplings[which].name, "time": time, "what": what}
+        happened: dict[str, Any] = {"name": self.model.couplings[which].name, "time": time, "what": what}
         if passed:
             happened["passed"] = True
         self._note(happened if s is None else happened | {"s": s})
@@ -150,7 +150,7 @@ class EventWatcher:
         self._note({"name": self.model.cables[cable].name, "time": time, "what": what, "element": element,
                     "passed": True})
 
-    def _note(self, happened: dict) -> None:
+    def _note(self, happened: dict[str, Any]) -> None:
         """Insert an event by its time: events within a step are reported at its end, out of order."""
         insort(self.happened, happened, key=lambda each: each["time"])
 

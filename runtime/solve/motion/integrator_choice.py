@@ -261,7 +261,7 @@ def slowest_rate(scene: SceneData, model: Model, duration: float) -> float:
     if size == 0.0:
         return 1.0 / duration
     speed = max((float(np.linalg.norm(body.velocity)) for body in scene.bodies.values()), default=0.0)
-    return max(np.sqrt(np.linalg.norm(scene.gravity) / size), speed / size, 1.0 / duration)
+    return float(max(np.sqrt(np.linalg.norm(scene.gravity) / size), speed / size, 1.0 / duration))
 
 
 def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Any, Protocol
 
 from ...engine import Engine
 from ...model.model import Model
@@ -29,7 +29,7 @@ class Sink(Protocol):
     def has_begun(self) -> bool:
         """Return whether the run can be resumed from the rows taken."""
 
-    def start(self, model: Model, engine: Engine, pace: Pauses, events: list[dict], row_notes: RowNotes,
+    def start(self, model: Model, engine: Engine, pace: Pauses, events: list[dict[str, Any]], row_notes: RowNotes,
               on_trial: bool) -> None:
         """Take the first row, or bring the engine to the state of a resumed run; on_trial: the run may begin anew, with
         another call.

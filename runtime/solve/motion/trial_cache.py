@@ -26,7 +26,7 @@ class SharedTrials:
     is_open: until the end of the first scene, whose trials count.
     """
 
-    shape: tuple = ()
+    shape: tuple[object, ...] = ()
     lost: dict[tuple[str, str], float] = field(default_factory=dict)
     is_open: bool = True
 
@@ -49,7 +49,7 @@ class SharedTrials:
             self.lost[method.name, rival.method.name] = rival.cost
 
 
-def shape_of(scene: SceneData) -> tuple:
+def shape_of(scene: SceneData) -> tuple[object, ...]:
     """Return what scenes of one shape share: their parts by kind and name, elements and laws; all but numbers."""
     return scene.dim, *((type(part), part.given_name) for part in scene.parts()), *(
         (cable.element, cable.elements, cable.law, cable.library) for cable in scene.cables.values())

@@ -123,7 +123,8 @@ class _Line:
             force, along = (sum(part.sum(axis=1, keepdims=True) for part in each) for each in (forces, length))
             r = np.concatenate([each.cable.positions(q)[:, each.supported] for each in self.strains], axis=1)
             apart = np.linalg.norm(r[:, :, None] - r[:, None], axis=-1).max(axis=(1, 2), initial=0.0)[:, None]
-        return stretching + np.sum(np.maximum(force - force / np.where(along > 0, along, 1.0) * apart, 0.0), axis=1)
+        unrolling = np.maximum(force - force / np.where(along > 0, along, 1.0) * apart, 0.0)
+        return np.asarray(stretching + np.sum(unrolling, axis=1))
 
     def note(self, lost: np.ndarray, measure: float, tension: np.ndarray) -> str | None:
         """Return a note where E (elements,) is large beside its measure; tension: (elements,) in N."""

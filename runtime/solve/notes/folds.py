@@ -111,9 +111,9 @@ def _turns(cable: CableModel, nodal: np.ndarray) -> np.ndarray:
     tangents = np.concatenate([slope_at(cable, nodal, slopes(cable, part)) for part in TANGENT_POSITIONS])
     tangents /= np.maximum(np.linalg.norm(tangents, axis=-1, keepdims=True), np.finfo(float).tiny)
     cosines = np.einsum("aed,bed->eab", tangents, tangents).min(axis=(1, 2))
-    return np.arccos(np.clip(cosines, -1, 1))
+    return np.asarray(np.arccos(np.clip(cosines, -1, 1)))
 
 
 def _chords(r: np.ndarray) -> np.ndarray:
     """Return (..., elements): distances in m of consecutive nodes (..., nodes, dim)."""
-    return np.linalg.norm(np.diff(r, axis=-2), axis=-1)
+    return np.asarray(np.linalg.norm(np.diff(r, axis=-2), axis=-1))

@@ -96,7 +96,7 @@ class Sensitivity(Note):
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # of a rope without stiffness
             k = np.clip(np.nan_to_num(np.sqrt(N / (2 * EI)), posinf=np.inf), np.pi / part.length,
                         np.pi / cable.mesh.lengths)
-            return np.nan_to_num(np.sqrt(np.maximum(k**2 * (N - EI * k**2), 0.0) / mass))
+            return np.asarray(np.nan_to_num(np.sqrt(np.maximum(k**2 * (N - EI * k**2), 0.0) / mass)))
 
     def _of_joint(self, k: int, joint: JointModel, rows: dict[str, np.ndarray]) -> np.ndarray:
         """Return (times, 1): the larger rate in 1/s at which a body at one of its ends falls over."""
@@ -145,4 +145,4 @@ def _falling(model: Model, body: BodyModel, point: np.ndarray, force: np.ndarray
     own = float(along @ body.inertia @ along)
     across = (float(np.trace(body.inertia)) - own) / 2 + body.mass * length**2
     push = np.einsum("ti,ti->t", force, arm)
-    return np.sqrt(np.maximum(push / across - (own * (turns @ along) / (2 * across)) ** 2, 0.0))
+    return np.asarray(np.sqrt(np.maximum(push / across - (own * (turns @ along) / (2 * across)) ** 2, 0.0)))

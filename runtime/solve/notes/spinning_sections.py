@@ -60,7 +60,7 @@ def torsion_ratio(cable: CableModel, part: Cable, nodal: np.ndarray) -> np.ndarr
     section, material = part.section, part.material
     tension = material.youngs_modulus * section.area * ((stretch[..., 1:] + stretch[..., :-1]) / 2 - 1.0)
     torsion = material.lame()[1] * section.torsion_constant
-    return (tension * (angle * cable.mesh.lengths) ** 2).max(axis=-1) / torsion
+    return np.asarray((tension * (angle * cable.mesh.lengths) ** 2).max(axis=-1) / torsion)
 
 
 def stable_length(cable: CableModel, ratio: float) -> float:

@@ -84,7 +84,7 @@ def _straight(r: np.ndarray, before: bool) -> np.ndarray:
     straight &= beside
     if straight.any():
         straight[straight] = _on_line(r[straight])
-    return straight
+    return np.asarray(straight)
 
 
 def _on_line(r: np.ndarray) -> np.ndarray:
@@ -94,7 +94,7 @@ def _on_line(r: np.ndarray) -> np.ndarray:
     offset = r - r[:, :1]
     along = np.einsum("tnd,td->tn", offset, chord) / np.where(length > 0, length, 1.0)[:, None] ** 2
     off = np.linalg.norm(offset - along[:, :, None] * chord[:, None], axis=2).max(axis=1)
-    return (off <= STRAIGHTNESS_TOLERANCE * length) & np.all(np.diff(along, axis=1) > 0, axis=1)
+    return np.asarray((off <= STRAIGHTNESS_TOLERANCE * length) & np.all(np.diff(along, axis=1) > 0, axis=1))
 
 
 def _unstable(model: Model, cable: CableModel, t: float, q: np.ndarray, s: np.ndarray) -> int:

@@ -21,7 +21,7 @@ def excess(cable: Cable, stretch: ArrayLike, speed: ArrayLike) -> np.ndarray:
     """
     a, area = np.asarray(stretch), float(cable.section.moments()[0])
     tension = cable.material.youngs_modulus * area * (a - 1.0)
-    return cable.material.density * area * np.square(speed) - tension / a
+    return np.asarray(cable.material.density * area * np.square(speed) - tension / a)
 
 
 def outrunning(scene: SceneData) -> list[str]:

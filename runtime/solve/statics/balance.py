@@ -37,9 +37,8 @@ def balance(static: StaticState) -> Balance:
     """
     model, drawn = static.model, static.keep()
     n, rows, units = model.n_band + model.n_border_dof, coordinates_of(model), units_of(static.weight, model)
-    by_law, free = ([n + k for coupling in model.couplings for k in entries(coupling)] for entries in (
-        lambda coupling: coupling.force_unknowns if coupling.follows_law else [],
-        lambda coupling: [] if coupling.follows_law else coupling.force_unknowns))
+    by_law, free = ([n + k for coupling in model.couplings for k in coupling.force_unknowns
+                     if coupling.follows_law == is_law] for is_law in (True, False))
     stiffness = static.tangent().tocsr()
     change = np.zeros(stiffness.shape[0])
     change[by_law] = -static.residual()[by_law] / stiffness.diagonal()[by_law]
@@ -63,7 +62,8 @@ def _shared(columns: csr_array, residual: np.ndarray, units: np.ndarray) -> np.n
     if not len(touched):
         return np.zeros(columns.shape[1])
     over = 1.0 / units[touched]
-    return np.linalg.lstsq(over[:, None] * columns[touched].toarray(), -over * residual[touched], rcond=None)[0]
+    matrix = over[:, None] * columns[touched].toarray()
+    return np.asarray(np.linalg.lstsq(matrix, -over * residual[touched], rcond=None)[0])
 
 
 def _size_of_sums(static: StaticState, stiffness: csr_array) -> np.ndarray:
@@ -72,7 +72,7 @@ def _size_of_sums(static: StaticState, stiffness: csr_array) -> np.ndarray:
     free = static.model.unknown_of_dof >= 0
     points = static.model.unknown_of_dof[free & (static.model.weight == 1.0)]
     largest[points] = max(1.0, float(np.abs(static.keep()["q"]).max(initial=0.0)))
-    return abs(stiffness) @ largest
+    return np.asarray(abs(stiffness) @ largest)
 
 
 def _place(static: StaticState, rows: np.ndarray, most: int) -> str:

@@ -35,7 +35,7 @@ class Point:
     unit vector of these; advance: the arc-length from the previous point.
     """
 
-    kept: dict
+    kept: dict[str, np.ndarray]
     fraction: float
     along: np.ndarray
     rate: float

@@ -12,7 +12,7 @@ from __future__ import annotations
 import logging
 import warnings
 from dataclasses import dataclass, field
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
@@ -75,7 +75,7 @@ class _PassedError(Exception):
 class _NoEvents:
     """Watches no events but those of couplings, which the engine handles."""
 
-    watches: list = field(default_factory=list)
+    watches: list[Any] = field(default_factory=list)
 
     def acts(self, which: int, what: str, time: float, passed: bool, s: float | None) -> None:
         """Ignore an event of a coupling."""
@@ -132,7 +132,7 @@ class _Motion:
 
     def force(self, acceleration: np.ndarray) -> np.ndarray:
         """Return the forces (n,) on the unknowns in N at accelerations (n_dof,) from rest."""
-        return np.abs(self.problem.mass @ self.over_unknowns(acceleration)) / self.units
+        return np.asarray(np.abs(self.problem.mass @ self.over_unknowns(acceleration)) / self.units)
 
     def energy(self, rows: dict[str, np.ndarray], q: np.ndarray) -> float:
         """Return the energy of a first row in J: elastic, of weight, and of loads of constant direction."""
@@ -222,7 +222,7 @@ class _Search(Generic[S]):
         self.sticking = [f'"{name}"' for name, slide in scene.slides.items() if slide.friction is not None]
         self.last: _Place | None = None
         self.near, self.pushes, self.force = NEWTON_RESIDUAL, 0, np.zeros(0)
-        self.branch: dict | None = None
+        self.branch: dict[str, np.ndarray] | None = None
 
     def _turn(self) -> None:
         """Follow prescribed angles without loads, before the motion begins."""

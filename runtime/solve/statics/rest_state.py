@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
@@ -36,9 +36,9 @@ def in_loads(fraction: float) -> str:
     return "all loads" if fraction == 1 else f"{fraction:.6g} times the loads"
 
 
-def layout(scene: SceneData) -> dict[str, list]:
+def layout(scene: SceneData) -> dict[str, list[Any]]:
     """Return the properties that two scenes share if a state of one is a state of the other."""
-    found: dict[str, list] = {
+    found: dict[str, list[Any]] = {
         "cables": [(c.name, c.element, c.elements, c.length, *c.uneven_nodes) for c in scene.cables.values()],
         "plane": [called(scene.plane)], "bodies": list(scene.bodies)}
     for kind in COUPLINGS:
@@ -53,7 +53,7 @@ def _without_ends(part: Part) -> str | tuple[str, str]:
     return (name, part.joint_kind) if isinstance(part, Joint) else name
 
 
-def _without_mesh(cable: tuple) -> tuple:
+def _without_mesh(cable: tuple[Any, ...]) -> tuple[Any, ...]:
     """Return the name, element and length of a cable in a layout."""
     name, element, _, length, *_ = cable
     return name, element, length
@@ -134,7 +134,7 @@ class RestState(NamedArrays):
 
     scene: SceneData
     model: Model
-    static_state: dict
+    static_state: dict[str, np.ndarray]
     reaction: np.ndarray
     load_fraction: float
     iterations: int
@@ -147,7 +147,7 @@ class RestState(NamedArrays):
     path: list[RestState] = field(default_factory=list, repr=False)
     critical_points: list[CriticalPoint] = field(default_factory=list)
     messages: list[str] = field(default_factory=list)
-    layout: dict[str, list] = field(default_factory=dict, repr=False)
+    layout: dict[str, list[Any]] = field(default_factory=dict, repr=False)
     turned: dict[str, float] = field(default_factory=dict, repr=False)
     relaxation: Relaxation | None = None
     adjustment: Adjustment | None = None

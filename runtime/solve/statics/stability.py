@@ -104,8 +104,8 @@ def lowest_direction(problem: StaticProblem) -> np.ndarray:
     direction[problem.coordinates] = scale * found
     along = direction @ problem.load_vector()
     largest = direction[np.argmax(np.abs(problem.weight * direction))]
-    return direction * (np.sign(along) if abs(along) > 1e-9 * np.linalg.norm(direction) * np.linalg.norm(
-        problem.load_vector()) else np.sign(largest)) / problem.length(direction)
+    return np.asarray(direction * (np.sign(along) if abs(along) > 1e-9 * np.linalg.norm(direction) * np.linalg.norm(
+        problem.load_vector()) else np.sign(largest)) / problem.length(direction))
 
 
 def push_off(problem: StaticProblem) -> None:

@@ -13,7 +13,7 @@ COORDINATE_ROUNDING = 1e-13
 """Relative difference, due to rounding, of a coordinate from the value that a support prescribes."""
 
 
-def with_moved_supports(model: Model, begin: dict) -> dict:
+def with_moved_supports(model: Model, begin: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Return the state as drawn with each cable's free nodes moved, too: linearly along the cable between those that
     motions prescribe.
 
@@ -34,7 +34,7 @@ def with_moved_supports(model: Model, begin: dict) -> dict:
     return begin | {"q": q}
 
 
-def fitted(kept: dict, model: Model) -> dict:
+def fitted(kept: dict[str, np.ndarray], model: Model) -> dict[str, np.ndarray]:
     """Return a static state with the supports of a model, which may be drawn elsewhere: fixed coordinates are as drawn,
     tied ones follow, and free ones stay to the bit.
     """
@@ -48,7 +48,8 @@ def fitted(kept: dict, model: Model) -> dict:
     return kept | {"q": q}
 
 
-def on_mesh(kept: Mapping[str, np.ndarray], was: Model, model: Model, drawn: Mapping[str, np.ndarray]) -> dict:
+def on_mesh(kept: Mapping[str, np.ndarray], was: Model, model: Model, drawn: Mapping[str, np.ndarray]
+            ) -> dict[str, np.ndarray]:
     """Return a static state on the meshes of another model of the same parts; itself on the same meshes.
 
     kept: of `was`; drawn: the state of the other model, which keeps the numbers of its elements, and the forces of

@@ -57,11 +57,11 @@ class StaticState:
         """Return R at the static state under the present load: internal less external forces, and constraints."""
         return self.engine.static_residual()
 
-    def keep(self) -> dict:
+    def keep(self) -> dict[str, np.ndarray]:
         """Return the static state, the argument of `restore`."""
         return self.engine.state()
 
-    def restore(self, kept: dict, prescribe: bool = True) -> None:
+    def restore(self, kept: dict[str, np.ndarray], prescribe: bool = True) -> None:
         """Go back to a state that `keep` returned; prescribe: with the prescribed coordinates of motions."""
         self.engine.set_state(0.0, **kept, prescribe=prescribe)
 
@@ -79,7 +79,7 @@ class StaticState:
         self.load(1.0)
         with_all = self.residual()
         self.load(fraction)
-        return without - with_all
+        return np.asarray(without - with_all)
 
     def tangent(self) -> csc_array:
         """Return the tangent stiffness dR/dx over the unknowns, (n, n), sparse."""
@@ -137,7 +137,7 @@ class StaticProblem(StaticState):
         K, _ = condensed(self.tangent(), self.model)
         return float(along @ (K @ along)) + 0.9 * mass * float(change @ (self.mass @ change))
 
-    def distance(self, kept: dict) -> float:
+    def distance(self, kept: dict[str, np.ndarray]) -> float:
         """Return the largest change in m of a coordinate of a position from a state."""
         moved = np.abs(self.engine.state()["q"] - kept["q"])[self.point_entries]
         return float(np.max(moved, initial=0.0))
@@ -230,4 +230,5 @@ def solver(matrix: csc_array) -> Callable[[np.ndarray], np.ndarray]:
     """Return the solver of a sparse matrix. Raises RuntimeError where it is exactly singular."""
     if not matrix.shape[0]:
         return lambda right: right
-    return splu(matrix.tocsc(), permc_spec="COLAMD").solve
+    factor = splu(matrix.tocsc(), permc_spec="COLAMD")
+    return lambda right: np.asarray(factor.solve(right))

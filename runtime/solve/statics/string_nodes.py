@@ -59,7 +59,7 @@ class StringNodes:
     @property
     def fixed(self) -> np.ndarray:
         """Return (nodes, dim): which coordinates of positions are fixed."""
-        return (self.unknown == -1) | self.held[:, None]
+        return np.asarray((self.unknown == -1) | self.held[:, None])
 
     @cached_property
     def string_node(self) -> np.ndarray:
@@ -125,7 +125,7 @@ class StringNodes:
             if not ((unknown["r_x"] == -1).any() or np.count_nonzero(unknown["r_x"] >= 0) == 1):
                 return None
             along = values["r_x"]
-        return along / np.linalg.norm(along)
+        return np.asarray(along / np.linalg.norm(along))
 
     def _hold(self) -> None:
         """Find the actions of couplings on cables except loads, fluids and fixed planes."""

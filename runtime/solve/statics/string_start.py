@@ -274,4 +274,4 @@ def _stiffness(contact: ContactModel, pressure: np.ndarray) -> np.ndarray:
     """
     if not contact.hertz:
         return np.full(len(pressure), contact.stiffness)
-    return contact.stiffness ** (2 / 3) * np.maximum(pressure, np.finfo(float).tiny) ** (1 / 3)
+    return np.asarray(contact.stiffness ** (2 / 3) * np.maximum(pressure, np.finfo(float).tiny) ** (1 / 3))

@@ -20,7 +20,7 @@ def slopes(r: np.ndarray, length: np.ndarray, ends: tuple[np.ndarray | None, np.
             known = along[first] if len(along) == 1 else 1.5 * along[first] - 0.5 * along[second]
         found[end] = known
     size = np.concatenate([stretch[:1], (stretch[:-1] + stretch[1:]) / 2, stretch[-1:]])
-    return found * (size / np.maximum(np.linalg.norm(found, axis=1), np.finfo(float).tiny))[:, None]
+    return np.asarray(found * (size / np.maximum(np.linalg.norm(found, axis=1), np.finfo(float).tiny))[:, None])
 
 
 def laid_vectors(names: tuple[str, ...], was: np.ndarray, r: np.ndarray, slope: np.ndarray, s: np.ndarray,
@@ -46,7 +46,7 @@ def laid_vectors(names: tuple[str, ...], was: np.ndarray, r: np.ndarray, slope: 
 
 def _of_length(directions: np.ndarray, like: np.ndarray) -> np.ndarray:
     lengths = [np.linalg.norm(of, axis=-1, keepdims=True) for of in (like, directions)]
-    return directions * lengths[0] / lengths[1]
+    return np.asarray(directions * lengths[0] / lengths[1])
 
 
 def _sections(given: dict[str, np.ndarray], slope: np.ndarray, s: np.ndarray,

@@ -77,7 +77,7 @@ class Strings:
         pull = (start[self.links[:, 1]] - start[self.links[:, 0]]) / self.length[:, None]
         np.add.at(force, self.links[:, 0], pull)
         np.add.at(force, self.links[:, 1], -pull)
-        return start + system.solve(system.factor(system.of_links(stiffness) + system.held), force)
+        return np.asarray(start + system.solve(system.factor(system.of_links(stiffness) + system.held), force))
 
 
 @dataclass
@@ -155,12 +155,14 @@ class _Banded:
 
     def factor(self, matrix: np.ndarray) -> np.ndarray:
         """Return the factor of a matrix. Raises LinAlgError where that is not positive definite."""
-        return cholesky_banded(matrix.reshape(self.above + 1, self.n), overwrite_ab=True, check_finite=False)
+        bands = matrix.reshape(self.above + 1, self.n)
+        return np.asarray(cholesky_banded(bands, overwrite_ab=True, check_finite=False))
 
     def solve(self, factor: np.ndarray, force: np.ndarray) -> np.ndarray:
         """Return (n, dim): displacements under forces (n, dim), by the factor of a matrix."""
         right = np.where(self.free, force.ravel(), 0.0)
-        return cho_solve_banded((factor, False), right, overwrite_b=True, check_finite=False).reshape(force.shape)
+        x: np.ndarray = cho_solve_banded((factor, False), right, overwrite_b=True, check_finite=False)
+        return x.reshape(force.shape)
 
 
 @dataclass

@@ -88,12 +88,12 @@ class Turns:
 def directions(cable: CableModel, q: np.ndarray) -> np.ndarray:
     """Return (nodes, vectors, dim): the unit vectors along a cable's slopes at a configuration."""
     vectors = cable.nodal(q)[:, [name in ("r_x", "r_y", "r_z") for name in cable.vectors]]
-    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), np.finfo(float).tiny)
+    return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), np.finfo(float).tiny))
 
 
 def angles(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Return (nodes,): the largest angle between directions (nodes, vectors, dim) and others, rad."""
-    return np.arccos(np.clip(np.sum(one * other, axis=-1).min(axis=1), -1, 1))
+    return np.asarray(np.arccos(np.clip(np.sum(one * other, axis=-1).min(axis=1), -1, 1)))
 
 
 def largest_turn(model: Model, before: np.ndarray, after: np.ndarray) -> float:
