@@ -1,8 +1,8 @@
-"""How a kernel was derived: the command `funicular derive --explain NAME`.
+"""The command `funicular derive --explain NAME`: how a kernel was derived.
 
-It derives the family and prints, for each of its kernels, the stages with their operations, the terms that cost most,
-the intermediate results that are used several times, and what decided the form: the sources' own words and the loops,
-blocks and shared macros of the printed text. The files in generated/ are read, not written.
+It derives the family and prints, for each kernel, the stages with their operations, the most expensive terms, the
+intermediate results with several uses, and the reasons for the form: docstrings of the sources, loops, blocks and
+shared macros of the printed text. It reads generated/ and writes nothing.
 """
 
 from __future__ import annotations
@@ -31,21 +31,21 @@ from .codegen.program import Program, operations_of
 from .codegen.provenance import deciding
 from .codegen.sharing import header
 
-MOST_ROWS = 12
-"""Rows of a table of terms; the others are summed in the last one."""
+MAX_ROWS = 12
+"""Largest number of terms in a table; a last row sums the others."""
 REASONS = ("elements/", "laws/", "bodies/", "couplings/", "algebra/")
 """Folders whose sources say why a kernel has its form."""
-WIDE = 150
+CONSOLE_WIDTH = 150
 DERIVE = Path(__file__).parent
 NAME = re.compile(r"^    ([A-Z][A-Z0-9_]+)$", re.MULTILINE)
-"""A shared stage where it stands in a kernel."""
+"""The name of a shared stage in a kernel."""
 
 
 def main(names: list[str]) -> int:
     """Explain families, or single kernels of them, and return the exit code of the command."""
     console = Console(highlight=False, markup=False)
     if not console.is_terminal:
-        console = Console(highlight=False, markup=False, width=WIDE)
+        console = Console(highlight=False, markup=False, width=CONSOLE_WIDTH)
     try:
         for name in names:
             family, kernel = chosen(name)
@@ -58,7 +58,7 @@ def main(names: list[str]) -> int:
 
 
 def chosen(name: str) -> tuple[Family, str]:
-    """Return the family of a name, and the kernel if the name goes on as that of a kernel does, else an empty name.
+    """Return the family of a name, and the kernel if the name is that of a kernel, else an empty name.
 
     Raises KeyError for a name of neither.
     """
@@ -68,7 +68,7 @@ def chosen(name: str) -> tuple[Family, str]:
 
 
 def explained(family: Family, kernel: str = "") -> Iterator[str | Table]:
-    """Yield what there is to say of a family and of its kernels, or of one of them, as text and tables.
+    """Yield the explanation of a family and its kernels, or of one of them, as text and tables.
 
     Raises KeyError for a kernel that the family has not.
     """
@@ -198,8 +198,8 @@ def _ranked(title: str, every: list[Term], by: str, total: int) -> Table:
     table = _table(title, ["term", "definitions", "uses", "operations", "saved", *(["share"] if total else [])],
                    left=("term",))
     ranked = sorted((term for term in every if getattr(term, by)), key=lambda term: -getattr(term, by))
-    rest = ranked[MOST_ROWS:]
-    shown = ranked[:MOST_ROWS]
+    rest = ranked[MAX_ROWS:]
+    shown = ranked[:MAX_ROWS]
     if rest:
         shown.append(Term(f"{len(rest)} others", *(sum(getattr(term, part) for term in rest)
                                                    for part in ("definitions", "operations", "uses", "saved"))))

@@ -1,4 +1,4 @@
-"""From specs to files, in one direction: the command `funicular derive`.
+"""The command `funicular derive`: from specs to files, in one direction.
 
 specs      elements, laws, bodies and couplings, as `catalogue.families` lists them
            -> families: a builder each, with the modules that decide its text
@@ -58,7 +58,7 @@ def generate(names: list[str] | None = None, show: bool = False) -> dict[str, st
 
 
 def _origin(record: dict[str, Any], wanted: Collection[str] | None) -> manifest.Origin:
-    """Return what the files of all families are made from once those of the wanted ones (None: of all) are.
+    """Return the origin of all files after the derivation of the wanted families (None: of all).
 
     While another family is stale, its record must stay that of the sources that it was made from.
     """
@@ -92,7 +92,7 @@ def main(names: list[str], check: bool = False) -> int:
     out = Console(soft_wrap=True, highlight=False, markup=False)
     err = Console(stderr=True, soft_wrap=True, highlight=False, markup=False)
     try:
-        # a check believes no hash: it derives everything
+        # a check derives everything, whatever the hashes
         files = generate(names or (None if check else changed()), show=err.is_terminal)
         written = [] if check else drift.write(files)
     except (KeyError, OSError, FamilyError, ResultFileError) as problem:

@@ -1,5 +1,4 @@
-"""What a spec is: of an element its basis and nodal conditions, of a law what it knows and what it takes, of a force
-between two points its energy.
+"""Specs: of an element its basis and nodal conditions, of a law its traits, of a force between two points its energy.
 
 The shape functions are solved from the nodal conditions (eq 1-2), never typed in.
 """
@@ -23,7 +22,7 @@ TENSION_ONLY_LAWS = ("engineering_exact_tension_only",)
 
 @dataclass(frozen=True)
 class LawTraits:
-    """What a law is, beyond its kernels: the manifest tells it to whoever needs to know.
+    """Traits of a law, for the manifest and for scenes.
 
     kind               "cable" (of the axis alone), "continuum" or "structural" (of the whole section)
     strain, curvature  the measures of a cable: "green" or "engineering", "exact" or "linear"
@@ -50,7 +49,7 @@ class Element:
     """r(x, y, z) = sum_k N_k d_k, eq 2: monomials, nodes, and which vectors the nodes carry.
 
     `director` names the nodal vector from which the tangent frame takes its normal, eq 16; empty where there is
-    none. `laws` are the energies that it comes with: names in laws/, or classes of the same interface.
+    none. `laws` are its energies: names in laws/, or classes of the same interface.
     """
 
     name: str
@@ -114,7 +113,7 @@ class Element:
 
 
 class Stages(Protocol):
-    """What a spec names its intermediate values with: a kernel's program."""
+    """The part of a kernel's program that names intermediate values of a spec."""
 
     def stage(self, title: str) -> None:
         """Open a stage of that title."""
@@ -131,10 +130,10 @@ class PointLaw:
     parameters   unit and meaning by name; the part of the scene has a field of each name
     energy       energy(p, e, c): the stored energy U in J by the measures e, which makes the force dU/dgap on the first
                  point and its opposite on the second; c.<name> is a parameter, p: see `Stages`
-    measures     measures(p, gap, c): what the energy is a function of, such as a distance; not given: the gap itself
+    measures     measures(p, gap, c): arguments of the energy, such as a distance; the gap itself by default
     damping      the parameter c of a damper, whose power is c e'.e'; empty where there is none
 
-    U and e.e must not change where the gap is turned: the law knows no axes.
+    U and e.e must not change when the gap is rotated.
     """
 
     doc: str

@@ -1,4 +1,4 @@
-"""A family at every save of a source: the command `funicular derive --watch NAME`.
+"""The command `funicular derive --watch NAME`: one family at every save of a source.
 
 Each round runs in a process of its own, which reads the sources anew. It derives the family alone, compiles it in a
 temporary folder, verifies it as `funicular verify` does, and prints operations and time of its kernels. Neither the
@@ -36,7 +36,7 @@ from .verify.compiled import SHARED_FLAGS, CompilerError, compile_units, link_sh
 from .verify.report import Report
 
 PAUSE = 0.3
-"""Seconds from one look at the sources to the next."""
+"""Seconds between two looks at the sources."""
 WATCHED = ("*.py", "*.jinja")
 ROUNDS = 3
 """Repetitions of a timing, of which the shortest counts."""

@@ -945,7 +945,7 @@ void crossing_force(const fu_real *d, const fu_real *t, const fu_real *k, const 
     s_t[11] = s1_8;
 }
 
-/* how the closest points move in time; 49 add, 62 mul, 1 div */
+/* motion of the closest points; 49 add, 62 mul, 1 div */
 void crossing_motion(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, fu_real *s_dot, fu_real *t_dot, fu_real *d_dot)
 {
     /* conditions of closeness */
@@ -970,7 +970,7 @@ void crossing_motion(const fu_real *d, const fu_real *t, const fu_real *k, const
     d_dot[2] = rate_d_z;
 }
 
-/* stretch of the spring that friction is while it sticks; 134 add, 208 mul, 10 div, 4 sqrt */
+/* stretch of the friction spring in stick; 134 add, 208 mul, 10 div, 4 sqrt */
 void crossing_stretch(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *now, fu_real *old, fu_real *along)
 {
     /* normal */
@@ -1031,7 +1031,7 @@ void crossing_turned(const fu_real *x_now, const fu_real *x_old, const fu_real *
     direction[2] = turned_z;
 }
 
-/* friction that sticks, its derivatives with the points moving; 1409 add, 2442 mul, 95 div, 4 sqrt */
+/* friction in stick, its derivatives with the points moving; 1409 add, 2442 mul, 95 div, 4 sqrt */
 void crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real k_t, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k)
 {
     /* normal */
@@ -1243,7 +1243,7 @@ void crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, con
     CROSSING_PART_OF_OUTPUTS
 }
 
-/* friction that slides, its derivatives with the points moving; 2674 add, 4855 mul, 214 div, 9 sqrt */
+/* friction in sliding, its derivatives with the points moving; 2674 add, 4855 mul, 214 div, 9 sqrt */
 void crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real mu, fu_real k_t, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real slid, fu_real r_0, fu_real turns, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k)
 {
     /* normal */

@@ -155,7 +155,7 @@ void frame_motion(const fu_real *a, const fu_real *b, const fu_real *a_rate, con
     alpha[2] = dt_omega_2;
 }
 
-/* what a moment on the frame puts on the vectors, and the derivative of that; 379 add, 853 mul, 4 div, 2 sqrt */
+/* generalised force of a moment on the frame, and its derivative; 379 add, 853 mul, 4 div, 2 sqrt */
 void frame_moment(const fu_real *a, const fu_real *b, const fu_real *m, fu_real *g, fu_real *K)
 {
     /* frame */

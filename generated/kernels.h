@@ -584,7 +584,7 @@ fu_body_rate_kernel rigid_rate;
 fu_body_rate_kernel planar_rigid_rate;
 
 typedef void fu_body_increment_kernel(const fu_real *b, const fu_real *change, fu_real *step);
-/* translation and small turn that a change of b is: b [m, 1]; change [m, 1] -> step [m, rad] */
+/* translation and small turn of a change of b: b [m, 1]; change [m, 1] -> step [m, rad] */
 /* b 7, change 7, step 6 */
 fu_body_increment_kernel rigid_increment;
 /* b 4, change 4, step 3 */
@@ -622,7 +622,7 @@ fu_modal_mode_force_kernel modal_mode_force;
 fu_modal_mode_force_kernel planar_modal_mode_force;
 
 typedef void fu_modal_mode_mass_kernel(const fu_real *b, const fu_real *s, const fu_real *Y, fu_real *M);
-/* column of a mode in M_rf: what couples its acceleration with the frame's: b [m, 1]; s [kg m]; Y [kg m^2] -> M [kg,
+/* column of a mode in M_rf: it couples its acceleration with the frame's: b [m, 1]; s [kg m]; Y [kg m^2] -> M [kg,
  * kg m] */
 /* b 7, s 3, Y 3x3, M 6 */
 fu_modal_mode_mass_kernel modal_mode_mass;
@@ -850,8 +850,7 @@ fu_frame_motion_kernel frame_motion;
 fu_frame_motion_kernel planar_frame_motion;
 
 typedef void fu_frame_moment_kernel(const fu_real *a, const fu_real *b, const fu_real *m, fu_real *g, fu_real *K);
-/* what a moment on the frame puts on the vectors, and the derivative of that: a [1]; b [1]; m [N m] -> g [N m]; K [N
- * m] */
+/* generalised force of a moment on the frame, and its derivative: a [1]; b [1]; m [N m] -> g [N m]; K [N m] */
 /* a 3, b 3, m 3, g 6, K 6x6 */
 fu_frame_moment_kernel frame_moment;
 /* a 2, b 2, m 1, g 4, K 4x4 */
@@ -1054,17 +1053,16 @@ fu_crossing_force_kernel crossing_force;
 fu_crossing_force_kernel planar_crossing_force;
 
 typedef void fu_crossing_motion_kernel(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, fu_real *s_dot, fu_real *t_dot, fu_real *d_dot);
-/* how the closest points move in time: d [m]; t [1]; k [1/m]; w [1/s]; u [m/s] -> s_dot [m/s]; t_dot [1/s]; d_dot
- * [m/s] */
+/* motion of the closest points: d [m]; t [1]; k [1/m]; w [1/s]; u [m/s] -> s_dot [m/s]; t_dot [1/s]; d_dot [m/s] */
 /* d 3, t 2x3, k 2x3, w 2x3, u 3, s_dot 2, t_dot 2x3, d_dot 3 */
 fu_crossing_motion_kernel crossing_motion;
 /* d 2, t 1x2, k 1x2, w 1x2, u 2, s_dot 1, t_dot 1x2, d_dot 2 */
 fu_crossing_motion_kernel planar_crossing_motion;
 
 typedef void fu_crossing_stretch_kernel(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *now, fu_real *old, fu_real *along);
-/* stretch of the spring that friction is while it sticks: d [m]; t [1]; k [1/m]; w [1/s]; u [m/s]; c [m, 1, N/m,
- * N/m^1.5, s/m, m, 1, m/s]; e [m]; h [s]; d_0 [m]; d_rate [m/s]; t_0 [1]; t_rate [1/s]; s_rate [m/s]; x [m]; v [m/s]
- * -> now [m]; old [m]; along [1] */
+/* stretch of the friction spring in stick: d [m]; t [1]; k [1/m]; w [1/s]; u [m/s]; c [m, 1, N/m, N/m^1.5, s/m, m,
+ * 1, m/s]; e [m]; h [s]; d_0 [m]; d_rate [m/s]; t_0 [1]; t_rate [1/s]; s_rate [m/s]; x [m]; v [m/s] -> now [m]; old
+ * [m]; along [1] */
 /* d 3, t 2x3, k 2x3, w 2x3, u 3, c 8, e 2, d_0 3, d_rate 3, t_0 2x3, t_rate 2x3, s_rate 2, x 2, v 2, now 3, old 3,
  * along 3 */
 fu_crossing_stretch_kernel crossing_stretch;
@@ -1081,10 +1079,9 @@ fu_crossing_turned_kernel crossing_turned;
 fu_crossing_turned_kernel planar_crossing_turned;
 
 typedef void fu_crossing_sticking_kernel(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real k_t, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k);
-/* friction that sticks, its derivatives with the points moving: d [m]; t [1]; k [1/m]; w [1/s]; u [m/s]; third
- * [1/m^2]; k_rate [1/(m s)]; c [m, 1, N/m, N/m^1.5, s/m, m, 1, m/s]; k_t [N/m]; e [m]; h [s]; d_0 [m]; d_rate [m/s];
- * t_0 [1]; t_rate [1/s]; s_rate [m/s]; x [m]; v [m/s] -> F [N]; F_d [N/m]; F_t [N]; F_u [N s/m]; F_w [N s]; F_k [N
- * m] */
+/* friction in stick, its derivatives with the points moving: d [m]; t [1]; k [1/m]; w [1/s]; u [m/s]; third [1/m^2];
+ * k_rate [1/(m s)]; c [m, 1, N/m, N/m^1.5, s/m, m, 1, m/s]; k_t [N/m]; e [m]; h [s]; d_0 [m]; d_rate [m/s]; t_0 [1];
+ * t_rate [1/s]; s_rate [m/s]; x [m]; v [m/s] -> F [N]; F_d [N/m]; F_t [N]; F_u [N s/m]; F_w [N s]; F_k [N m] */
 /* d 3, t 2x3, k 2x3, w 2x3, u 3, third 2x3, k_rate 2x3, c 8, e 2, d_0 3, d_rate 3, t_0 2x3, t_rate 2x3, s_rate 2, x
  * 2, v 2, F 3, F_d 3x3, F_t 3x6, F_u 3x3, F_w 3x6, F_k 3x6 */
 fu_crossing_sticking_kernel crossing_sticking;
@@ -1093,7 +1090,7 @@ fu_crossing_sticking_kernel crossing_sticking;
 fu_crossing_sticking_kernel planar_crossing_sticking;
 
 typedef void fu_crossing_sliding_kernel(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real mu, fu_real k_t, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real slid, fu_real r_0, fu_real turns, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k);
-/* friction that slides, its derivatives with the points moving: d [m]; t [1]; k [1/m]; w [1/s]; u [m/s]; third
+/* friction in sliding, its derivatives with the points moving: d [m]; t [1]; k [1/m]; w [1/s]; u [m/s]; third
  * [1/m^2]; k_rate [1/(m s)]; c [m, 1, N/m, N/m^1.5, s/m, m, 1, m/s]; mu [1]; k_t [N/m]; e [m]; h [s]; d_0 [m];
  * d_rate [m/s]; t_0 [1]; t_rate [1/s]; s_rate [m/s]; x [m]; v [m/s]; slid [1]; r_0 [m]; turns [1] -> F [N]; F_d
  * [N/m]; F_t [N]; F_u [N s/m]; F_w [N s]; F_k [N m] */
@@ -1135,14 +1132,14 @@ fu_surface_terrain_kernel surface_terrain;
 fu_surface_terrain_kernel planar_surface_terrain;
 
 typedef void fu_surface_push_kernel(fu_real depth, fu_real depth_rate, const fu_real *law, fu_real depth_next, fu_real *p, fu_real *p_d, fu_real *p_rate, fu_real *p_e, fu_real *U, fu_real *mean);
-/* what contact presses with, of the exponent 1, with its derivatives: depth [m]; depth_rate [m/s]; law [N/m^e (a
+/* normal force of contact by the depth to the power 1, and derivatives: depth [m]; depth_rate [m/s]; law [N/m^e (a
  * length), s/m]; depth_next [m] -> p [N (a length)]; p_d [N/m (a length)]; p_rate [N s/m (a length)]; p_e [N (a
  * length)]; U [J (a length)]; mean [N (a length)] */
 /* law 2, p 1, p_d 1, p_rate 1, p_e 1, U 1, mean 1 */
 fu_surface_push_kernel surface_push, planar_surface_push;
 
 typedef void fu_surface_push_hertz_kernel(fu_real depth, fu_real depth_rate, const fu_real *law, fu_real depth_next, fu_real *p, fu_real *p_d, fu_real *p_rate, fu_real *p_e, fu_real *U, fu_real *mean);
-/* what contact presses with, of the exponent 3/2, with its derivatives: depth [m]; depth_rate [m/s]; law [N/m^e (a
+/* normal force of contact by the depth to the power 3/2, and derivatives: depth [m]; depth_rate [m/s]; law [N/m^e (a
  * length), s/m]; depth_next [m] -> p [N (a length)]; p_d [N/m (a length)]; p_rate [N s/m (a length)]; p_e [N (a
  * length)]; U [J (a length)]; mean [N (a length)] */
 /* law 2, p 1, p_d 1, p_rate 1, p_e 1, U 1, mean 1 */
@@ -1157,16 +1154,16 @@ fu_surface_pressing_kernel surface_pressing;
 fu_surface_pressing_kernel planar_surface_pressing;
 
 typedef void fu_surface_sticking_kernel(const fu_real *n, const fu_real *H, const fu_real *x, fu_real k_t, fu_real *f, fu_real *f_y, fu_real *t, fu_real *f_x);
-/* friction that sticks, and its derivatives: n [1]; H [1/m]; x [m]; k_t [N/m (a length)] -> f [N (a length)]; f_y
- * [N/m (a length)]; t [m]; f_x [N/m (a length)] */
+/* friction in stick, and its derivatives: n [1]; H [1/m]; x [m]; k_t [N/m (a length)] -> f [N (a length)]; f_y [N/m
+ * (a length)]; t [m]; f_x [N/m (a length)] */
 /* n 3, H 3x3, x 3, f 3, f_y 3x3, t 3, f_x 3x3 */
 fu_surface_sticking_kernel surface_sticking;
 /* n 2, H 2x2, x 2, f 2, f_y 2x2, t 2, f_x 2x2 */
 fu_surface_sticking_kernel planar_surface_sticking;
 
 typedef void fu_surface_sliding_kernel(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, const fu_real *x, fu_real mu, fu_real *f, fu_real *f_y, fu_real *f_w, fu_real *f_x);
-/* friction that slides, and its derivatives: n [1]; H [1/m]; w [m/s]; press [N, N/m, N s/m (a length)]; x [m]; mu
- * [1] -> f [N (a length)]; f_y [N/m (a length)]; f_w [N s/m (a length)]; f_x [N/m (a length)] */
+/* friction in sliding, and its derivatives: n [1]; H [1/m]; w [m/s]; press [N, N/m, N s/m (a length)]; x [m]; mu [1]
+ * -> f [N (a length)]; f_y [N/m (a length)]; f_w [N s/m (a length)]; f_x [N/m (a length)] */
 /* n 3, H 3x3, w 3, press 3, x 3, f 3, f_y 3x3, f_w 3x3, f_x 3x3 */
 fu_surface_sliding_kernel surface_sliding;
 /* n 2, H 2x2, w 2, press 3, x 2, f 2, f_y 2x2, f_w 2x2, f_x 2x2 */
@@ -1219,17 +1216,17 @@ fu_point_law_energy_kernel zero_length_spring_energy;
 fu_point_law_energy_kernel planar_zero_length_spring_energy;
 
 typedef void fu_point_law_dissipation_kernel(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
-/* power that the damper takes: parameters [N/m, N s/m, m]; gap [m]; gap_rate [m/s] -> P [W] */
+/* power of the damper: parameters [N/m, N s/m, m]; gap [m]; gap_rate [m/s] -> P [W] */
 /* parameters 3, gap 3, gap_rate 3, P 1 */
 fu_point_law_dissipation_kernel spring_dissipation;
 /* parameters 3, gap 2, gap_rate 2, P 1 */
 fu_point_law_dissipation_kernel planar_spring_dissipation;
-/* power that the damper takes: parameters [N/m, N s/m, m, N, J]; gap [m]; gap_rate [m/s] -> P [W] */
+/* power of the damper: parameters [N/m, N s/m, m, N, J]; gap [m]; gap_rate [m/s] -> P [W] */
 /* parameters 5, gap 3, gap_rate 3, P 1 */
 fu_point_law_dissipation_kernel spring_piece_dissipation;
 /* parameters 5, gap 2, gap_rate 2, P 1 */
 fu_point_law_dissipation_kernel planar_spring_piece_dissipation;
-/* power that the damper takes: parameters [N/m, N s/m]; gap [m]; gap_rate [m/s] -> P [W] */
+/* power of the damper: parameters [N/m, N s/m]; gap [m]; gap_rate [m/s] -> P [W] */
 /* parameters 2, gap 3, gap_rate 3, P 1 */
 fu_point_law_dissipation_kernel zero_length_spring_dissipation;
 /* parameters 2, gap 2, gap_rate 2, P 1 */
@@ -1273,20 +1270,20 @@ fu_point_law_tangent_kernel zero_length_spring_tangent;
 fu_point_law_tangent_kernel planar_zero_length_spring_tangent;
 
 typedef void fu_point_law_discrete_force_kernel(const fu_real *parameters, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
-/* force over a step, which takes the work that is stored and dissipated: parameters [N/m, N s/m, m]; h [s]; gap [m];
- * gap_next [m] -> f [N]; P [W] */
+/* force over a step, whose work is stored and dissipated: parameters [N/m, N s/m, m]; h [s]; gap [m]; gap_next [m]
+ * -> f [N]; P [W] */
 /* parameters 3, gap 3, gap_next 3, f 3, P 1 */
 fu_point_law_discrete_force_kernel spring_discrete_force;
 /* parameters 3, gap 2, gap_next 2, f 2, P 1 */
 fu_point_law_discrete_force_kernel planar_spring_discrete_force;
-/* force over a step, which takes the work that is stored and dissipated: parameters [N/m, N s/m, m, N, J]; h [s];
- * gap [m]; gap_next [m] -> f [N]; P [W] */
+/* force over a step, whose work is stored and dissipated: parameters [N/m, N s/m, m, N, J]; h [s]; gap [m]; gap_next
+ * [m] -> f [N]; P [W] */
 /* parameters 5, gap 3, gap_next 3, f 3, P 1 */
 fu_point_law_discrete_force_kernel spring_piece_discrete_force;
 /* parameters 5, gap 2, gap_next 2, f 2, P 1 */
 fu_point_law_discrete_force_kernel planar_spring_piece_discrete_force;
-/* force over a step, which takes the work that is stored and dissipated: parameters [N/m, N s/m]; h [s]; gap [m];
- * gap_next [m] -> f [N]; P [W] */
+/* force over a step, whose work is stored and dissipated: parameters [N/m, N s/m]; h [s]; gap [m]; gap_next [m] -> f
+ * [N]; P [W] */
 /* parameters 2, gap 3, gap_next 3, f 3, P 1 */
 fu_point_law_discrete_force_kernel zero_length_spring_discrete_force;
 /* parameters 2, gap 2, gap_next 2, f 2, P 1 */

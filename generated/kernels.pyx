@@ -29,7 +29,7 @@ cdef extern from "kernels.h" nogil:
     const int fu_n_kernels
 
 cdef enum:
-    MOST_ARRAYS = 64  # of a kernel, its arguments and results
+    MAX_ARRAYS = 64  # of a kernel, its arguments and results
 
 
 tables = PyCapsule_New(<void *>&fu_all, "funicular.generated.kernels.tables", NULL)
@@ -129,9 +129,9 @@ cdef size_t _address(array) except? 0:
 
 cdef _call(int place, list inputs, list outputs):
     """Run a kernel on arrays."""
-    cdef size_t at[MOST_ARRAYS]
+    cdef size_t at[MAX_ARRAYS]
     cdef int k = 0, n = len(inputs)
-    if n + len(outputs) > MOST_ARRAYS:
+    if n + len(outputs) > MAX_ARRAYS:
         raise ValueError("more arrays than a kernel may have")
     for array in inputs:
         at[k] = _address(array)

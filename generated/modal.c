@@ -231,7 +231,7 @@ void modal_mode_force(const fu_real *b, const fu_real *w, const fu_real *a, cons
     f[0] = W1_x*Y[0] + W1_y*Y[1] + W1_z*Y[2] + W2_x*Y[3] + W2_y*Y[4] + W2_z*Y[5] + W3_x*Y[6] + W3_y*Y[7] + W3_z*Y[8] - 2.0*Y1[1]*w[5] + 2.0*Y1[2]*w[4] + 2.0*Y1[3]*w[5] - 2.0*Y1[5]*w[3] - 2.0*Y1[6]*w[4] + 2.0*Y1[7]*w[3] + Y2[0] + Y2[4] + Y2[8] + a0_x*s[0] + a0_y*s[1] + a0_z*s[2];
 }
 
-/* column of a mode in M_rf: what couples its acceleration with the frame's (paper eq 12); 21 add, 45 mul */
+/* column of a mode in M_rf: it couples its acceleration with the frame's (paper eq 12); 21 add, 45 mul */
 void modal_mode_mass(const fu_real *b, const fu_real *s, const fu_real *Y, fu_real *M)
 {
     MODAL_AXES

@@ -204,7 +204,7 @@ void planar_crossing_force(const fu_real *d, const fu_real *t, const fu_real *k,
     s_t[1] = s0_3;
 }
 
-/* how the closest points move in time; 10 add, 13 mul, 1 div */
+/* motion of the closest points; 10 add, 13 mul, 1 div */
 void planar_crossing_motion(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, fu_real *s_dot, fu_real *t_dot, fu_real *d_dot)
 {
     /* conditions of closeness */
@@ -222,7 +222,7 @@ void planar_crossing_motion(const fu_real *d, const fu_real *t, const fu_real *k
     d_dot[1] = rate_d_y;
 }
 
-/* stretch of the spring that friction is while it sticks; 35 add, 57 mul, 3 div, 2 sqrt */
+/* stretch of the friction spring in stick; 35 add, 57 mul, 3 div, 2 sqrt */
 void planar_crossing_stretch(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *now, fu_real *old, fu_real *along)
 {
     (void)c;
@@ -274,7 +274,7 @@ void planar_crossing_turned(const fu_real *x_now, const fu_real *x_old, const fu
     direction[1] = turned_y;
 }
 
-/* friction that sticks, its derivatives with the points moving; 170 add, 347 mul, 4 div, 2 sqrt */
+/* friction in stick, its derivatives with the points moving; 170 add, 347 mul, 4 div, 2 sqrt */
 void planar_crossing_sticking(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real k_t, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k)
 {
     (void)c;
@@ -456,7 +456,7 @@ void planar_crossing_sticking(const fu_real *d, const fu_real *t, const fu_real 
     F_k[3] = F_9_2[1];
 }
 
-/* friction that slides, its derivatives with the points moving; 90 add, 214 mul, 14 div, 6 sqrt */
+/* friction in sliding, its derivatives with the points moving; 90 add, 214 mul, 14 div, 6 sqrt */
 void planar_crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real mu, fu_real k_t, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real slid, fu_real r_0, fu_real turns, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k)
 {
     (void)third;

@@ -67,7 +67,7 @@ void planar_frame_motion(const fu_real *a, const fu_real *b, const fu_real *a_ra
     alpha[0] = dt_omega_0;
 }
 
-/* what a moment on the frame puts on the vectors, and the derivative of that; 12 add, 40 mul, 2 div, 1 sqrt */
+/* generalised force of a moment on the frame, and its derivative; 12 add, 40 mul, 2 div, 1 sqrt */
 void planar_frame_moment(const fu_real *a, const fu_real *b, const fu_real *m, fu_real *g, fu_real *K)
 {
     (void)b;

@@ -86,7 +86,7 @@ void planar_modal_mode_force(const fu_real *b, const fu_real *w, const fu_real *
     f[0] = W1_x*Y[0] + W1_y*Y[1] + W2_y*Y[3] - 2.0*Y1[1]*w[2] + 2.0*Y1[2]*w[2] + Y2[0] + Y2[3] + Y[2]*a[2] + a0_x*s[0] + a0_y*s[1];
 }
 
-/* column of a mode in M_rf: what couples its acceleration with the frame's (paper eq 12); 3 add, 4 mul */
+/* column of a mode in M_rf: it couples its acceleration with the frame's (paper eq 12); 3 add, 4 mul */
 void planar_modal_mode_mass(const fu_real *b, const fu_real *s, const fu_real *Y, fu_real *M)
 {
     /* outputs */

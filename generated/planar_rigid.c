@@ -244,7 +244,7 @@ void planar_rigid_rate(const fu_real *b, const fu_real *w, fu_real *b_rate)
     b_rate[3] = b[2]*w[2];
 }
 
-/* translation and small turn that a change of b is; 1 add, 2 mul */
+/* translation and small turn of a change of b; 1 add, 2 mul */
 void planar_rigid_increment(const fu_real *b, const fu_real *change, fu_real *step)
 {
     /* turn of the attitude */

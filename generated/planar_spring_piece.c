@@ -21,7 +21,7 @@ void planar_spring_piece_energy(const fu_real *parameters, const fu_real *gap, f
     U[0] = beyond*(0.5*beyond*stiffness + tension) + energy;
 }
 
-/* power that the damper takes; 2 add, 8 mul, 1 div, 1 sqrt */
+/* power of the damper; 2 add, 8 mul, 1 div, 1 sqrt */
 void planar_spring_piece_dissipation(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *P)
 {
     /* parameters */
@@ -124,7 +124,7 @@ void planar_spring_piece_tangent(const fu_real *parameters, const fu_real *gap, 
     D[3] = d_y_distance*d_y_distance*damping;
 }
 
-/* force over a step, which takes the work that is stored and dissipated (discrete gradient of the energy; Gonzalez, J. Nonlinear Sci. 6 (1996) 449-467); 16 add, 20 mul, 3 div, 2 sqrt */
+/* force over a step, whose work is stored and dissipated (discrete gradient of the energy; Gonzalez, J. Nonlinear Sci. 6 (1996) 449-467); 16 add, 20 mul, 3 div, 2 sqrt */
 void planar_spring_piece_discrete_force(const fu_real *parameters, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P)
 {
     /* parameters */

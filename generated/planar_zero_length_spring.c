@@ -13,7 +13,7 @@ void planar_zero_length_spring_energy(const fu_real *parameters, const fu_real *
     U[0] = 0.5*stiffness*(gap[0]*gap[0] + gap[1]*gap[1]);
 }
 
-/* power that the damper takes; 1 add, 3 mul */
+/* power of the damper; 1 add, 3 mul */
 void planar_zero_length_spring_dissipation(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *P)
 {
     (void)gap;
@@ -63,7 +63,7 @@ void planar_zero_length_spring_tangent(const fu_real *parameters, const fu_real 
     D[3] = damping;
 }
 
-/* force over a step, which takes the work that is stored and dissipated (discrete gradient of the energy; Gonzalez, J. Nonlinear Sci. 6 (1996) 449-467); 7 add, 11 mul, 1 div */
+/* force over a step, whose work is stored and dissipated (discrete gradient of the energy; Gonzalez, J. Nonlinear Sci. 6 (1996) 449-467); 7 add, 11 mul, 1 div */
 void planar_zero_length_spring_discrete_force(const fu_real *parameters, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P)
 {
     /* parameters */

@@ -527,7 +527,7 @@ void rigid_rate(const fu_real *b, const fu_real *w, fu_real *b_rate)
     b_rate[6] = b[3]*turning_z + b[4]*turning_y - b[5]*turning_x;
 }
 
-/* translation and small turn that a change of b is; 9 add, 15 mul */
+/* translation and small turn of a change of b; 9 add, 15 mul */
 void rigid_increment(const fu_real *b, const fu_real *change, fu_real *step)
 {
     /* turn of the attitude */

@@ -19,7 +19,7 @@ void spring_energy(const fu_real *parameters, const fu_real *gap, fu_real *U)
     U[0] = 0.5*extension*extension*stiffness;
 }
 
-/* power that the damper takes; 4 add, 11 mul, 1 div, 1 sqrt */
+/* power of the damper; 4 add, 11 mul, 1 div, 1 sqrt */
 void spring_dissipation(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *P)
 {
     /* parameters */
@@ -150,7 +150,7 @@ void spring_tangent(const fu_real *parameters, const fu_real *gap, const fu_real
     D[8] = d_z_distance*d_z_distance*damping;
 }
 
-/* force over a step, which takes the work that is stored and dissipated (discrete gradient of the energy; Gonzalez, J. Nonlinear Sci. 6 (1996) 449-467); 19 add, 18 mul, 4 div, 2 sqrt */
+/* force over a step, whose work is stored and dissipated (discrete gradient of the energy; Gonzalez, J. Nonlinear Sci. 6 (1996) 449-467); 19 add, 18 mul, 4 div, 2 sqrt */
 void spring_discrete_force(const fu_real *parameters, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P)
 {
     /* parameters */

@@ -97,7 +97,7 @@ void surface_terrain(const fu_real *y, const fu_real *h, fu_real *g, fu_real *g_
     g_yy[8] = d2_d2_distance;
 }
 
-/* what contact presses with, of the exponent 1, with its derivatives; 2 add, 10 mul */
+/* normal force of contact by the depth to the power 1, and derivatives; 2 add, 10 mul */
 void surface_push(fu_real depth, fu_real depth_rate, const fu_real *law, fu_real depth_next, fu_real *p, fu_real *p_d, fu_real *p_rate, fu_real *p_e, fu_real *U, fu_real *mean)
 {
     /* force */
@@ -113,7 +113,7 @@ void surface_push(fu_real depth, fu_real depth_rate, const fu_real *law, fu_real
     mean[0] = 0.5*law[0]*(depth + depth_next);
 }
 
-/* what contact presses with, of the exponent 3/2, with its derivatives; 6 add, 20 mul, 1 div, 2 sqrt */
+/* normal force of contact by the depth to the power 3/2, and derivatives; 6 add, 20 mul, 1 div, 2 sqrt */
 void surface_push_hertz(fu_real depth, fu_real depth_rate, const fu_real *law, fu_real depth_next, fu_real *p, fu_real *p_d, fu_real *p_rate, fu_real *p_e, fu_real *U, fu_real *mean)
 {
     /* force */
@@ -151,7 +151,7 @@ void surface_pressing(const fu_real *n, const fu_real *H, const fu_real *w, cons
     FU_PAIRS(i, j, 3, f_w[3*i + j] = -(n[i]*n[j]*press[2]);)
 }
 
-/* friction that sticks, and its derivatives; 46 add, 138 mul, 1 div */
+/* friction in stick, and its derivatives; 46 add, 138 mul, 1 div */
 void surface_sticking(const fu_real *n, const fu_real *H, const fu_real *x, fu_real k_t, fu_real *f, fu_real *f_y, fu_real *t, fu_real *f_x)
 {
     /* friction */
@@ -239,7 +239,7 @@ void surface_sticking(const fu_real *n, const fu_real *H, const fu_real *x, fu_r
     f_x[8] = dx2_F_z;
 }
 
-/* friction that slides, and its derivatives; 102 add, 363 mul, 2 div, 1 sqrt */
+/* friction in sliding, and its derivatives; 102 add, 363 mul, 2 div, 1 sqrt */
 void surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, const fu_real *x, fu_real mu, fu_real *f, fu_real *f_y, fu_real *f_w, fu_real *f_x)
 {
     /* friction */

@@ -13,7 +13,7 @@ void zero_length_spring_energy(const fu_real *parameters, const fu_real *gap, fu
     U[0] = 0.5*stiffness*(gap[0]*gap[0] + gap[1]*gap[1] + gap[2]*gap[2]);
 }
 
-/* power that the damper takes; 2 add, 4 mul */
+/* power of the damper; 2 add, 4 mul */
 void zero_length_spring_dissipation(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *P)
 {
     (void)gap;
@@ -71,7 +71,7 @@ void zero_length_spring_tangent(const fu_real *parameters, const fu_real *gap, c
     D[8] = damping;
 }
 
-/* force over a step, which takes the work that is stored and dissipated (discrete gradient of the energy; Gonzalez, J. Nonlinear Sci. 6 (1996) 449-467); 11 add, 16 mul, 1 div */
+/* force over a step, whose work is stored and dissipated (discrete gradient of the energy; Gonzalez, J. Nonlinear Sci. 6 (1996) 449-467); 11 add, 16 mul, 1 div */
 void zero_length_spring_discrete_force(const fu_real *parameters, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P)
 {
     /* parameters */

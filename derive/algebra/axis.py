@@ -1,4 +1,4 @@
-"""The centreline of an element, r(x) = r(x, 0, 0): its shape functions, and the vectors that they make there."""
+"""The centreline of an element, r(x) = r(x, 0, 0): its shape functions and vectors."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ class Axis:
         return self.program.define(name, scale * self.program.define(f"P{name[1:]}", polynomial))
 
     def vector(self, name: str, shape: np.ndarray, e: np.ndarray) -> np.ndarray:
-        """Return the sum of shape functions times nodal vectors, positions counted from the first node.
+        """Return the sum of shape functions times nodal vectors, with positions relative to the first node.
 
-        So no digits are lost far from the origin; derivatives of the shape functions do not see the difference.
+        Digits are kept far from the origin. Derivatives of the shape functions do not change.
         """
         return self.program.vector(name, shape.dot(e - np.outer(np.array(self.element.is_position, dtype=int), e[0])))

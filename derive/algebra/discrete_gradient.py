@@ -4,8 +4,8 @@ With mean x~ = (x0 + x1)/2 and difference dx = x1 - x0,
 
     d(x + y) = dx + dy,   d(x y) = x~ dy + y~ dx,   d(1/x) = -dx/(x0 x1),   d(sqrt x) = dx/(sqrt x0 + sqrt x1)
 
-hold exactly, have no difference below a line, are the same with 0 and 1 exchanged, and are the derivative where the two
-states are one. Carried through a law's stages they give D with U1 - U0 = sum D dI over its invariants I: the discrete
+hold exactly, divide by no difference, are symmetric in 0 and 1, and equal the derivative where the two states coincide.
+Carried through a law's stages they give D with U1 - U0 = sum D dI over its invariants I: the discrete
 gradient of an energy-momentum scheme (Gonzalez, J. Nonlinear Sci. 6 (1996) 449-467).
 """
 
@@ -22,7 +22,7 @@ STATES = ("now", "next")
 
 
 class DiscreteGradient:
-    """What a law staged in the program `law` is at two states; `program` takes the definitions.
+    """The values at two states of a law staged in the program `law`; `program` takes the definitions.
 
     inputs: for each input symbol of `law` that differs between the states, its two values; others are the same.
     """
@@ -67,7 +67,7 @@ class DiscreteGradient:
         return [_Along(self, symbol, by, constant)(expr) for symbol in by]
 
     def moves(self, symbol: sp.Symbol) -> sp.Expr | None:
-        """Return what a symbol differs from by a constant."""
+        """Return an expression that differs from a symbol by a constant."""
         return self._moves.get(symbol)
 
 

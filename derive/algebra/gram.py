@@ -1,4 +1,4 @@
-"""Gram products of strain vectors: what any elastic energy that does not see rigid motion is a function of (eq 5-8).
+"""Gram products of strain vectors, the arguments of every elastic energy that rigid motion does not change (eq 5-8).
 
 r is linear in the nodal vectors, so r = sum_m c_m psi_m in any other basis psi of the same span. With psi_0 = 1
 and the others built on Legendre polynomials along the axis, the gradient F needs the *strain vectors* c_m,
@@ -7,7 +7,7 @@ G_mn = c_m . c_n; a law (laws/) gives u = dU/dG and A = d2U/dG2, and then
 
     f_m = sum_n u_mn dG_mn/dc_m,   K = B' A B + u (x) I,   B = dG/dc.
 
-G0 belongs to the straight reference of length l, whose strain vectors are unit axes; G - G0 is what is staged.
+G0 belongs to the straight reference of length l, whose strain vectors are unit axes; programs stage G - G0.
 """
 
 from __future__ import annotations

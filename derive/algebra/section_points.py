@@ -1,7 +1,7 @@
-"""Points of a section with the moments of its stiffness table up to the fourth, as Gauss points have a rectangle's.
+"""Quadrature points of a section that reproduce the moments of its stiffness table up to the fourth.
 
-They stand at the middle, on both axes and in the four corners of a rectangle: nine, or three of a planar section. At
-distance y the second and the fourth moments of all of them are right: y^2 is the fourth moment over the second.
+They lie at the middle, on both axes and in the four corners of a rectangle: nine, or three of a planar section. The
+distance y makes second and fourth moments exact: y^2 is the fourth moment over the second.
 """
 
 from __future__ import annotations

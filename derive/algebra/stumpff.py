@@ -1,7 +1,7 @@
-"""Stumpff's functions c_k(x) = sum_j (-x)^j/(2 j + k)!, of which rotations by a vector of length sqrt(x) are made.
+"""Stumpff's functions c_k(x) = sum_j (-x)^j/(2 j + k)!, the coefficients of a rotation by a vector of length sqrt(x).
 
-c_0 = cos sqrt x, c_1 = sin sqrt x/sqrt x, and so on: quotients that lose their digits towards zero, where the series
-takes their place. Source: Stiefel & Scheifele, Linear and Regular Celestial Mechanics, 1971.
+c_0 = cos sqrt x, c_1 = sin sqrt x/sqrt x, and so on. Near zero the series replaces these quotients, which
+lose digits there. Source: Stiefel & Scheifele, Linear and Regular Celestial Mechanics, 1971.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ import sympy as sp
 from ..codegen.program import Program
 
 SERIES_BELOW = (sp.Rational(1, 4), sp.Rational(1, 4), sp.Integer(1), sp.Integer(1))
-"""Value of x, for each k, below which the series is taken: the quotients of c_0 and c_1 lose no digits, so that fewer
-terms do; those of c_2 and c_3 have not lost more than three bits above 1."""
+"""Value of x, for each k, below which the series is taken. The quotients of c_0 and c_1 lose no digits, so that fewer
+terms suffice; those of c_2 and c_3 lose at most three bits above 1."""
 ROUNDING = sp.Rational(1, 2**54)
 
 
@@ -24,7 +24,7 @@ def stumpff(p: Program, name: str, k: int, x: sp.Expr, root: sp.Expr) -> sp.Expr
 
 
 def _series(k: int, x: sp.Expr) -> sp.Expr:
-    """Return the series by Horner's rule, with so many terms that the first left out is below rounding of the first."""
+    """Return the series by Horner's rule, up to the first term below rounding of the leading one."""
     terms = next(j for j in count() if SERIES_BELOW[k]**j * sp.factorial(k) / sp.factorial(2 * j + k) < ROUNDING)
     value = sp.S.Zero
     for j in reversed(range(terms)):

@@ -39,7 +39,7 @@ def spatial(vector: np.ndarray | Sequence[Any]) -> np.ndarray:
 def tangent_frame(program: Program, tangent: np.ndarray, director: np.ndarray | None) -> np.ndarray:
     """Return A_t = [i j k], by columns: i along the tangent, k normal to tangent and director.
 
-    In the plane [i j], whatever the director; in space without one, [i] is all that the tangent fixes. Eq 16 prints
+    In the plane [i j], whatever the director; in space without one, [i] alone. Eq 16 prints
     k = i x r_y/|r_y|, of unit length only where r_y is perpendicular to i: here the product is normalised. Singular
     where the director is along the tangent.
     """
@@ -57,7 +57,7 @@ def tangent_frame(program: Program, tangent: np.ndarray, director: np.ndarray | 
 def turning(p: Program, A_t: np.ndarray, tangent: np.ndarray, director: np.ndarray | None = None) -> list[np.ndarray]:
     """Return the rotation rate of the frame for each entry of tangent and director.
 
-    Not from derivatives of i: these are what is left of 1 - i_x^2, without digits where i is along an axis.
+    Derivatives of i would subtract i_x^2 from 1 and lose all digits where i is along an axis.
     """
     i, dim = A_t[:, 0], len(tangent)
     inverse = p.define("inv_t", 1 / p.define("t_i", tangent.dot(i)))

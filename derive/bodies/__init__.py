@@ -1,4 +1,4 @@
-"""Body specs, one short file each; what can ride a slide."""
+"""Body specs, one short file each; riders of slides."""
 
 from . import planar_rigid, rigid
 from .body import Body, Rider

@@ -1,4 +1,4 @@
-"""What a body's file gives: the interface of modules such as bodies/rigid.py and of riders such as bodies/point.py.
+"""The interface of the modules of bodies, such as bodies/rigid.py, and of riders, such as bodies/point.py.
 
 Configurations b have N_CONFIGURATION entries and velocities w N_VELOCITY: the translation first, then the rotation.
 """
@@ -14,7 +14,7 @@ from ..codegen.program import DirectionalDerivative, Program
 
 
 class Rider(Protocol):
-    """What rides a slide: a point, its derivatives along its velocities, and its change over a step."""
+    """The rider of a slide: a point, its derivatives along its velocities, and its change over a step."""
 
     @property
     def NAME(self) -> str:  # noqa: N802
@@ -79,16 +79,16 @@ class Body(Rider, Protocol):
         """Return the product of two attitudes: the rotation q in body axes after p."""
 
     def exponential(self, program: Program, psi: np.ndarray) -> np.ndarray:
-        """Return the attitude, of unit size, that the rotation vector psi is."""
+        """Return the attitude, of unit size, of the rotation vector psi."""
 
     def exponential_tangent(self, program: Program, psi: np.ndarray) -> np.ndarray:
         """Return T, the turn in body axes by a change of psi: dtheta = T dpsi."""
 
     def cayley(self, half: np.ndarray) -> np.ndarray:
-        """Return the attitude, not of unit size, that half of a Cayley vector is."""
+        """Return the attitude, not of unit size, of half of a Cayley vector."""
 
     def turning_inertia(self, J: np.ndarray) -> np.ndarray:
-        """Return the part of the inertia J (3, 3) that the rotations of this body meet, kg m^2."""
+        """Return the part of the inertia J (3, 3) for the rotations of this body, kg m^2."""
 
     def gyroscopic_moment(self, program: Program, J: np.ndarray, omega: np.ndarray) -> np.ndarray:
-        """Return omega x J omega, N m, as far as the rotations of this body meet it."""
+        """Return omega x J omega, N m, for the rotations of this body."""

@@ -41,7 +41,7 @@ def _jacobian(p: Program, at: np.ndarray, by: list[DirectionalDerivative]) -> np
 
 
 def place(body: Body) -> Program:
-    """Return the kernel of the position R + A u and its Jacobian, which are all that a joint's equations need."""
+    """Return the kernel of the position R + A u and its Jacobian, for the equations of a joint."""
     p = Program(f"{body.NAME}_place", "position and Jacobian of a point", body.SOURCE)
     b, u = body.configuration(p), body.attachment(p)
     _, at, by = _position(p, body, b, u)

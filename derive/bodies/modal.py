@@ -64,7 +64,7 @@ class Moments:
 
     @classmethod
     def given(cls, p: Program, dim: int, rates: int = 3) -> Moments:
-        """Declare the moments of the fields, with so many of their rates, as inputs and return them."""
+        """Declare the moments of the fields and of their rates up to an order as inputs and return them."""
         fields = ("u", "u'", "u''")[:rates]
         mass = p.input("mass", (), "kg", "mass")
         first = [p.input(f"S{k or ''}", dim, "kg m", f"int rho {field}") for k, field in enumerate(fields)]
@@ -87,7 +87,7 @@ class ModeMoments:
                            for k, field in enumerate(("u", "u'", "u''"))])
 
     def of_body(self, rate: int) -> Moments:
-        """Return what the body's moments grow by as eta (rate 0) or eta' (rate 1) of the mode grows by one."""
+        """Return the change of the body's moments for eta (rate 0) or eta' (rate 1) of the mode larger by one."""
         none, with_u = np.zeros_like(self.first), self.second[0].T
         first, second = [none] * 3, [np.zeros_like(with_u)] * 3
         first[rate], second[rate] = self.first, with_u

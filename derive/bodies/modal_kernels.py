@@ -82,7 +82,7 @@ def mode_force_(name: str, frame: Body) -> Program:
 
 def mode_mass(name: str, frame: Body) -> Program:
     """Return the kernel of a mode's column of M_rf, of eq 12."""
-    p = Program(f"{name}_mode_mass", "column of a mode in M_rf: what couples its acceleration with the frame's",
+    p = Program(f"{name}_mode_mass", "column of a mode in M_rf: it couples its acceleration with the frame's",
                 "paper eq 12")
     dim = frame.DIM
     b = frame.configuration(p)

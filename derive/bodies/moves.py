@@ -2,8 +2,8 @@
 
 A step psi is a translation and a turn in body axes: a rotation vector for `move`, a Cayley vector (twice the tangent of
 half the angle, about the axis) for `cayley_move`. The tangents T say how the body turns about its axes where psi
-changes: dtheta = T dpsi. A body gives the product of its attitudes, the attitude that a turn is, and its WINDING, the
-body's angle over that of the attitude: 2 for quaternions, 1 for complex numbers.
+changes: dtheta = T dpsi. A body gives the product of its attitudes, the attitude of a turn, and its WINDING, the angle
+of the body over that of the attitude: 2 for quaternions, 1 for complex numbers.
 """
 
 from __future__ import annotations
@@ -141,7 +141,7 @@ def rate(body: Body) -> Program:
 
 def increment(body: Body) -> Program:
     """Return the kernel that undoes `rate`: the columns of small turns are normal to each other and equally long."""
-    p = Program(f"{body.NAME}_increment", "translation and small turn that a change of b is", body.SOURCE)
+    p = Program(f"{body.NAME}_increment", "translation and small turn of a change of b", body.SOURCE)
     b = body.configuration(p)
     change = p.input("change", body.N_CONFIGURATION, "m, 1", "small change of b")
     p.stage("turn of the attitude")

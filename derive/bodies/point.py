@@ -1,7 +1,7 @@
-"""A rider that is a point of something else: where its body's origin is, and the arm from there, in global axes.
+"""A point as rider: the origin of its body and the arm from there, in global axes.
 
-Whatever has points can ride by this one, a cable as well as a body of modes: the chain rule through the point's own
-Jacobian (dp = P dq) and the bias of its acceleration is the engine's.
+Any point can be a rider, of a cable as well as of a modal body. The engine applies the chain rule through the point's
+Jacobian (dp = P dq) and the bias of its acceleration.
 """
 
 from __future__ import annotations

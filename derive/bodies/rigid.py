@@ -119,7 +119,7 @@ def step_turn(program: Program, b: np.ndarray, A: np.ndarray, b_next: np.ndarray
 
 
 def turning_inertia(J: np.ndarray) -> np.ndarray:
-    """Return the part of the inertia that the rotations of this body meet."""
+    """Return the inertia."""
     return J
 
 

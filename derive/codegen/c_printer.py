@@ -1,8 +1,8 @@
-"""SymPy expressions to C text: the same text on every machine.
+"""C text of SymPy expressions, the same on every machine.
 
-Order is SymPy's canonical one, small integer powers become products, halves, quarters and eighths become decimals,
-other rationals quotients of doubles that the compiler folds, and square roots, sines and cosines go through macros so
-that the same text serves double and complex.
+Terms stand in SymPy's canonical order. Small integer powers become products. Halves, quarters and eighths become
+decimals; other rationals become quotients that the compiler folds. Square roots, sines and cosines are macros, so that
+the same text serves double and complex numbers.
 """
 # ruff: noqa: N802  (SymPy dispatches on these names)
 
@@ -33,7 +33,7 @@ class KernelPrinter(C99CodePrinter):
         return repr(float(expr)) if _is_short(expr) else f"{int(expr.p)}.0/{int(expr.q)}.0"
 
     def parenthesize(self, item: sp.Expr, level: int, strict: bool = False) -> str:
-        """Return the text of a part of an expression, in brackets where it needs them: a short decimal does not."""
+        """Return the text of a part of an expression, in brackets where they are needed: a short decimal needs none."""
         return self._print(item) if _is_short(item) else super().parenthesize(item, level, strict)
 
     def _print_Float(self, expr: sp.Float) -> str:
@@ -94,7 +94,7 @@ class KernelPrinter(C99CodePrinter):
 
 
 def _is_short(expr: sp.Expr) -> bool:
-    """Return whether it is a positive fraction with a few binary digits: its decimals are exact."""
+    """Return whether a number is a positive fraction with exact short decimals."""
     return expr.is_Rational and expr > 0 and int(expr.q) in (2, 4, 8)
 
 

@@ -24,9 +24,9 @@ Pattern = tuple[int | str, ...]
 NAME = re.compile(r"(.*?)_([xyz]{1,2})(_\d+)?")
 SYMBOL = re.compile(r"[A-Za-z_]\w*(\[\d+\])?")
 LOOP_VARIABLES = (("i", "j"), ("row", "col"), ("along", "across"))
-"""The first two that no symbol of the program is called are taken."""
-LONGEST_REST = 6
-"""Operations of what entries on a diagonal have besides; with more of them the expressions are not alike."""
+"""Names of loop variables, by preference: the first pair that no symbol of the program has."""
+MAX_DIAGONAL_OPERATIONS = 6
+"""Largest number of additional operations of a diagonal entry in a group with one expression."""
 
 
 @dataclass(frozen=True)
@@ -116,7 +116,7 @@ class Layout:
                 self.places.update((symbol, Place(array, index)) for index, symbol in self.groups[base].items())
 
     def keep(self, needed: set[str]) -> None:
-        """Forget the arrays of definitions that are not needed: their symbols stay numbers by themselves."""
+        """Drop the arrays of definitions that are not needed; their symbols become single numbers."""
         for base in self.groups.keys() - needed:
             for symbol in self.groups.pop(base).values():
                 del self.places[symbol]
@@ -137,13 +137,13 @@ class Layout:
                 patterns[symbol] = pattern
         rest = self._rest(exprs, first, patterns, turns)
         if rest is None or (rest and (rank == 1 or rest.keys() != {(k, k) for k in range(dim)}
-                                     or any(sp.count_ops(r) > LONGEST_REST for r in rest.values()))):
+                                     or any(sp.count_ops(r) > MAX_DIAGONAL_OPERATIONS for r in rest.values()))):
             return None
         return Match(exprs[first], patterns, rest)
 
     def _rest(self, exprs: Mapping[Index, sp.Expr], first: Index, patterns: Mapping[sp.Symbol, Pattern],
               turns: Mapping[Index, Mapping[str, int]]) -> dict[Index, sp.Expr] | None:
-        """Return what expressions have besides the image of the first, by turn; None where a symbol has no image."""
+        """Return the additional terms of expressions beyond the image of the first, by turn; None without an image."""
         rest = {}
         for turn, expr in exprs.items():
             images = {s: self._image(self.places[s], pattern, turns[turn]) for s, pattern in patterns.items()}
@@ -179,8 +179,8 @@ class Layout:
 
 
 def _sizes(indices: set[Index]) -> Index | None:
-    """Return the sizes of the array that has these entries, or these on and above its diagonal; None where some are
-    missing.
+    """Return the sizes of the array with these entries, on and above its diagonal if it is symmetric; None where some
+    are missing.
     """
     for dim in (3, 2):
         pairs = set(product(range(dim), repeat=2))

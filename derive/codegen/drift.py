@@ -1,4 +1,4 @@
-"""The folder of generated files: what stands in it, how it differs from what the specs say, and how it is written."""
+"""The folder of generated files: its contents, its differences from the specs, and writing to it."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from .family import Family
 
 MANIFEST = "manifest.json"
 PARTS = ("tools", "families", "sources", "files", "arguments", "kernels")
-"""Of a manifest: what says which files are up to date."""
+"""Parts of a manifest that decide which files are up to date."""
 
 BYTECODE = "__pycache__"
 
 
 def folder() -> Path:
-    """Return the folder of this installation's generated files, found without importing what may be broken there.
+    """Return the folder of this installation's generated files, without an import of funicular.generated.
 
     It stands beside the folder of this package, in the repository as in an installation.
     """
@@ -75,13 +75,12 @@ def differences(files: dict[str, str], stale: Iterable[Family]) -> list[str]:
 
 
 def of(family: Family) -> list[str]:
-    """Return the names of the files that a family's text stands in: its own, and the header of its group."""
+    """Return the names of the files of a family: its own, and the header of its group."""
     return [f"{family.name}.c", *([sharing.header(family.group)] if family.group else [])]
 
 
 def extra(families: Mapping[str, Family]) -> list[str]:
-    """Return a line for each file in the folder, of whatever kind and however deep, that neither one of these families
-    nor a build makes.
+    """Return a line for each file in the folder and below that neither these families nor a build make.
     """
     known = {MANIFEST, *emit.COMMON, *(name for family in families.values() for name in of(family))}
     modules = [Path(name).stem for name in emit.COMMON if name.endswith(".pyx")]
@@ -92,7 +91,7 @@ def extra(families: Mapping[str, Family]) -> list[str]:
 
 
 def _is_made(path: Path, known: set[str], modules: list[str]) -> bool:
-    """Return whether specs make a file, seen from generated/, or a build in place or an import leave it.
+    """Return whether a file in generated/ comes from a spec, a build in place, or an import.
 
     modules: what is compiled, of which Cython leaves C, and each Python its own extension module.
     """

@@ -1,4 +1,4 @@
-"""What one generated file is made of: a family of kernels."""
+"""Families of kernels: one generated file each."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Family:
     facts            integers of the family in the engine's table
     outside_table    kernels of its own signature, which the table leaves out
     shared           by kernel, the family of the role whose kernel this one takes instead of one of its own
-    missing          kernels of the role that this family cannot have: null pointers in the table
+    missing          kernels of the role that this family lacks: null pointers in the table
     element, law, rider (name of a body), dim    what the kernels are about: verification samples their states
     stiffness_of     the law in laws/ whose section stiffness the law takes: itself, but for a law of the user's
     traits           what the law is

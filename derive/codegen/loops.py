@@ -1,4 +1,4 @@
-"""Programs to lines of C: what differs in direction only is printed once, for each direction.
+"""Lines of C of a program. Statements that differ in direction alone become one loop over directions.
 
 FU_EACH and its like (kernels.h) repeat a statement with the loop variable a constant: compilers keep the arrays in
 registers, and a kernel costs what it costs written out. Outputs that are copies of a group are written where the group
@@ -28,12 +28,12 @@ from .repeats import NAME, Arrays, Item, fold
 
 WIDTH = 120
 REPETITIONS = ("g", "point", "repetition")
-"""Variable of repeated blocks: the first that no symbol is called."""
+"""Names of the variable of repeated blocks, by preference: the first that no symbol has."""
 HEADS = {(1, False): "FU_EACH", (2, False): "FU_PAIRS", (2, True): "FU_UPPER"}
 """Macros of kernels.h: for directions i, pairs of directions (i, j), and pairs with i <= j."""
-MOST_LEFT = {150: 0.6, math.inf: 0.8}
-"""Share of the assignments that loops may leave, by their number without loops: else the text stays as it is derived.
-Small kernels gain little, and compilers may make a few per cent more instructions of them.
+MAX_ASSIGNMENT_SHARE = {150: 0.6, math.inf: 0.8}
+"""Largest share of assignments that remain with loops, by their number without; above it the kernel has no loops.
+Small kernels gain little from loops, and compilers may emit a few per cent more instructions.
 """
 
 
@@ -141,7 +141,7 @@ class _Writer:
         before = len(self.exprs) + sum(len(block.exprs) for block in self.blocks)
         saved = sum(len(self.layout.groups[base]) - 1 for base in self.matches)
         saved += sum(len(block.exprs) - 1 for block in self.blocks)
-        return before - saved <= before * next(share for most, share in MOST_LEFT.items() if before < most)
+        return before - saved <= before * next(share for most, share in MAX_ASSIGNMENT_SHARE.items() if before < most)
 
     def _entries(self, name: str) -> list[Block]:
         """Return an output in blocks of one entry each."""
@@ -176,8 +176,7 @@ class _Writer:
                 yield from self._split(array, values, moving[1:], spans)
 
     def _in_place(self) -> dict[str, list[Block]]:
-        """Return, by group, the blocks of outputs that copy it and are written where it is computed: no input is read
-        later.
+        """Return, by group, the outputs that copy it and can be written where it is computed: no input is read later.
         """
         inputs = {s for a in self.program.inputs for s in np.ravel(self.program.symbols[a.name])}
         last = max((self.at[s] for s, expr in self.exprs.items() if expr.free_symbols & inputs), default=-1)
@@ -193,7 +192,7 @@ class _Writer:
         return found
 
     def _local(self) -> set[str]:
-        """Return the groups that are more than outputs: an expression or another output takes them."""
+        """Return the groups that expressions or other outputs use."""
         copied = {block for blocks in self.in_place.values() for block in blocks}
         used = {s for expr in self.exprs.values() for s in expr.free_symbols}
         used |= {s for b in self.blocks if b not in copied for e in b.exprs.values() for s in e.free_symbols}
@@ -201,8 +200,7 @@ class _Writer:
                 if base not in self.in_place or self.matches[base].rest or not used.isdisjoint(group.values())}
 
     def _mirrored(self) -> set[str]:
-        """Return the symmetric groups of which entries below the diagonal are used, by a loop that is not over pairs i
-        <= j, and their like at other points.
+        """Return the symmetric groups whose entries below the diagonal are used, with the same groups at other points.
         """
         found = set()
         uses = [(match, self.layout.array[base].symmetric) for base, match in self.matches.items()]
@@ -280,7 +278,7 @@ class _Writer:
         return [block.array.entry(block.index(turn if block.match.patterns[block.match.expr] == turn else turn[::-1]))]
 
     def _diagonal(self, array: Array, match: Match, dim: int) -> None:
-        """Print what entries on the diagonal have besides."""
+        """Print the additional terms of entries on the diagonal."""
         i, = self._turn(1)
         found = self.layout.match({(k,): match.rest[k, k] for k in range(dim)}, dim)
         if found:

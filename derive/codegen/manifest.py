@@ -1,4 +1,4 @@
-"""manifest.json: what the generated files hold, from which sources and with which tools they were made.
+"""manifest.json: the contents of the generated files, their sources and the tools.
 
 Each source and each file of a family has one row with a hash. The files of all families have none: they are rendered
 anew each time. A kernel has a row below its family, and names the source where it is not the family's. It lists its
@@ -21,7 +21,7 @@ from .rendering import Derived, Recorded, digest, interface, layout, tables, too
 
 
 def recorded(family: Family, manifest: dict[str, Any]) -> Derived | None:
-    """Return a family as the manifest has it, without a derivation; None where it has not."""
+    """Return a family from the manifest, without a derivation; None where the manifest lacks it."""
     if family.name not in manifest.get("families", {}):
         return None
 
@@ -35,14 +35,14 @@ def recorded(family: Family, manifest: dict[str, Any]) -> Derived | None:
 
 @dataclass(frozen=True)
 class Origin:
-    """What decides the generated text: versions of tools, hashes of sources."""
+    """Versions of tools and hashes of sources, which decide the generated text."""
 
     tools: dict[str, str]
     sources: dict[str, str]
 
 
 def origin(families: Collection[Family]) -> Origin:
-    """Return what decides the text of these families now."""
+    """Return the present tools and sources of these families."""
     return Origin(tools(), hashes(families))
 
 
@@ -107,7 +107,7 @@ def _rows(value: Any, depth: int, indent: str) -> str:
 
 
 def _element(family: Family, every: list[Derived]) -> dict[str, Any]:
-    """Return what a scene needs to know of an element; `laws`: each with what it is, see `LawTraits`."""
+    """Return the row of an element for scenes; `laws`: the traits of each law, see `LawTraits`."""
     element = family.element
     assert element is not None
     laws = {d.family.law: _law(d.family) for d in every if d.family.role == "law" and d.family.element is element}
@@ -116,7 +116,7 @@ def _element(family: Family, every: list[Derived]) -> dict[str, Any]:
 
 
 def _law(family: Family) -> dict[str, Any]:
-    """Return what a scene needs to know of a law: its traits, and whose section stiffness and kernels it takes."""
+    """Return the row of a law for scenes: its traits, and the laws whose section stiffness and kernels it takes."""
     assert family.traits is not None
     traits = {name: value for name, value in asdict(family.traits).items()
               if name not in ("damped_like", "relaxed_like")}
@@ -125,7 +125,7 @@ def _law(family: Family) -> dict[str, Any]:
 
 
 def _point_law(family: PointLawFamily) -> dict[str, Any]:
-    """Return what a scene needs to know of the law of a force between two points; `parameters`: units by name."""
+    """Return the row of the law of a force between two points for scenes; `parameters`: units by name."""
     law = family.point_law
     return {"parameters": {name: unit for name, (unit, _) in law.parameters.items()}, "damping": law.damping}
 

@@ -1,5 +1,5 @@
-"""Build of the extension modules: their C files are found and compiled side by side, since setuptools compiles those
-of one module in turn; threads for those that take them. MSVC has options of its own, and no threads.
+"""Build of the extension modules. Their C files are found and compiled in parallel: setuptools compiles the files of
+one module one after the other. MSVC has its own options, and no threads.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class ParallelBuild(build_ext):
             module.depends += found(DEPENDENCIES[module.name])
 
     def build_extensions(self) -> None:
-        """Build all modules; files in a pool of as many threads as there are cores, each calling the compiler."""
+        """Build all modules, with one call of the compiler a file in a pool of one thread a core."""
         is_msvc = self.compiler.compiler_type == "msvc"
         for module in self.extensions:
             if is_msvc:

@@ -1,8 +1,8 @@
-"""Staged programs: what stands between a symbolic derivation and a C function.
+"""Staged programs: the form between a symbolic derivation and a C function.
 
 A `Program` is one kernel: inputs, then named stages of scalar definitions (each may use the inputs and every
 earlier definition), then outputs. Enters: SymPy expressions. Leaves: the same, ordered and named, for
-`printer` (text), `verify` (50 digits) and the operation counts.
+`c_printer`, `verify` (50 digits) and the operation counts.
 
 Differentiation goes through the stages by the chain rule and never expands them: a `DirectionalDerivative` is fixed by
 its value on the inputs (or on a cut of intermediate symbols) and adds its own definitions to the program.
@@ -73,10 +73,10 @@ class Program:
         self.stages.append(Stage(title))
 
     def define(self, name: str, expr: sp.Expr, derivative_of: sp.Expr | None = None, alias: bool = False) -> sp.Expr:
-        """Give an expression a name. Numbers and bare symbols pass through: a name would say nothing more.
+        """Give an expression a name. Numbers and bare symbols need none and are returned.
 
         `derivative_of` is an expression that differs from this one by a constant: derivatives are taken of that one
-        instead. With `alias` a bare symbol gets the name too, so that it is called as its like at other points are.
+        instead. With `alias` a bare symbol gets the name too, as at other points.
         """
         expr = sp.sympify(expr)
         if expr.is_Number or (expr.is_Symbol and not alias):
@@ -91,7 +91,7 @@ class Program:
         return symbol
 
     def define_once(self, name: str, expr: sp.Expr) -> sp.Expr:
-        """Give an expression a name, the first time; later the same name."""
+        """Give an expression a name; the same expression keeps the name."""
         symbol = sp.Symbol(name)
         return symbol if self.definition.get(symbol) == expr else self.define(name, expr)
 

@@ -1,6 +1,6 @@
-"""Programs to files: the last stage. Enters: families of programs. Leaves: text by file name.
+"""Files from programs, the last stage. Enters: families of programs. Leaves: text by file name.
 
-Everything a template prints is decided here or earlier; the templates only lay it out.
+Templates only lay out text that is decided here or earlier.
 """
 
 from __future__ import annotations
@@ -31,16 +31,16 @@ HEADER, REGISTRY = "kernels.h", "registry.c"
 COMMON = (HEADER, REGISTRY, "blocks.h", "blocks.c", "kernels.pyx", "__init__.py", "__main__.py")
 """Files of all families; a library has the first two."""
 BLOCKS = ("elastic_force", "elastic_tangent", "damping_force", "dissipation")
-"""Kernels of a law that are compiled for several elements at once as well (blocks.c), unless ..."""
-MOST_OPERATIONS = 3000
-"""... they have more operations: the tangents of beam24 would take longer to compile than all the others; or ..."""
-LEAST_PER_OUTPUT = 6
-"""... fewer operations a number: sorting the numbers by element then costs what it gains."""
+"""Kernels of a law that are also compiled for several elements at once (blocks.c)."""
+MAX_BLOCK_OPERATIONS = 3000
+"""Largest kernels in blocks.c: the tangents of beam24 would take longer to compile than all others."""
+MIN_OPERATIONS_PER_OUTPUT = 6
+"""Smallest kernels in blocks.c, per output number: below, the sorting of numbers by element costs the gain."""
 
 
 @dataclass(frozen=True)
 class Recorded:
-    """What the manifest knows of a kernel: all that the files common to every family need of a Program."""
+    """A kernel from the manifest: the data of a Program for the files common to all families."""
 
     name: str
     doc: str
@@ -79,7 +79,7 @@ def derived(family: Family, programs: list[Program]) -> Derived:
 
 @dataclass(frozen=True)
 class Table:
-    """What the engine needs of the families of a role: names of their facts, kernels by suffix with C parameters."""
+    """The engine's table of a role: names of facts, kernels by suffix with C parameters."""
 
     members: list[Derived]
     facts: list[str]
@@ -87,7 +87,7 @@ class Table:
 
 
 def tables(every: list[Derived], layout: dict[str, Any] | None = None) -> dict[str, Table]:
-    """Return the engine's tables by role: laid out as these families allow, or as a manifest's "tables" has them.
+    """Return the engine's tables by role, with the layout of these families, or of a manifest's "tables".
 
     Raises FamilyError for a family without a kernel that the layout asks for.
     """
@@ -108,7 +108,7 @@ def tables(every: list[Derived], layout: dict[str, Any] | None = None) -> dict[s
 
 
 def layout(of: dict[str, Table]) -> dict[str, dict[str, Any]]:
-    """Return what a manifest keeps of tables, so that a library of the user's has the same layout."""
+    """Return the layout of tables for the manifest; a user's library takes the same layout."""
     return {role: {"facts": table.facts, "kernels": table.kernels} for role, table in of.items()}
 
 
@@ -169,7 +169,7 @@ def digest(text: str) -> str:
 
 
 def tools() -> dict[str, str]:
-    """Return the versions of what decides the generated text."""
+    """Return the versions of the tools that decide the generated text."""
     return {name: metadata.version(name) for name in TOOLS}
 
 
@@ -240,16 +240,16 @@ def _entry(derived: Derived, table: Table) -> list[str]:
 
 
 def block_kernels(derived: Derived) -> list[str]:
-    """Return the names of a law's kernels that are compiled for several elements at once as well."""
+    """Return the names of a law's kernels that are also compiled for several elements at once."""
     if derived.family.role != "law":
         return []
     hot = {f"{derived.family.name}_{kernel}" for kernel in BLOCKS}
     return [p.name for p in derived.programs if p.name in hot
-            and LEAST_PER_OUTPUT * p.outputs[0].size <= sum(p.operations().values()) <= MOST_OPERATIONS]
+            and MIN_OPERATIONS_PER_OUTPUT * p.outputs[0].size <= sum(p.operations().values()) <= MAX_BLOCK_OPERATIONS]
 
 
 def _number(expr: sp.Expr) -> str:
-    """Return an expression where a fu_real is assigned: a constant is not one where that is several numbers."""
+    """Return the C text of an expression that is assigned to a fu_real, which may be a vector of numbers."""
     return f"FU_NUMBER({c_expression(expr)})" if expr.is_number else c_expression(expr)
 
 

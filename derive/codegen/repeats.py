@@ -1,7 +1,7 @@
-"""Blocks of assignments that repeat with other names, as those at the points of a quadrature do, are printed once.
+"""Repeated blocks of assignments with other names, such as those at quadrature points, are printed once.
 
-Names that such blocks have at one place become entries of an array: a_0, a_1, a_2 are a[0], a[1], a[2], and FU_EACH
-(kernels.h) repeats the block with the index a constant. The order of the assignments stays as it is.
+Corresponding names become entries of an array: a_0, a_1, a_2 are a[0], a[1], a[2]. FU_EACH (kernels.h) repeats the
+block with a constant index. The order of the assignments does not change.
 
 Enters: items, texts of one or more assignments each. Leaves: items of which some stand for several, and the arrays.
 """
@@ -16,11 +16,11 @@ from typing import Any
 
 NAME = re.compile(r"(?<![\w.])[A-Za-z_]\w*")
 PLACE = re.compile(r"(?<![\w.])[A-Za-z_]\w*|(?<=\[)\d+(?=\])")
-"""What may change from one repetition to the next: names, and indices."""
-MOST, LONGEST = 12, 90
-"""Repetitions that FU_EACH knows, and items in a block."""
-LEAST = 3
-"""Items that a repetition must save."""
+"""Names and indices, which may change from one repetition to the next."""
+MAX_REPETITIONS, MAX_BLOCK_ITEMS = 12, 90
+"""Largest count of FU_EACH in kernels.h, and largest number of items in a block."""
+MIN_SAVED_ITEMS = 3
+"""Smallest number of items that a repetition saves."""
 
 
 @dataclass
@@ -39,7 +39,7 @@ class Item:
 
     @cached_property
     def shape(self) -> tuple[Any, ...]:
-        """What items of repeated blocks have in common."""
+        """Return what corresponding items of repeated blocks share: kind, count, and text without names and indices."""
         return bool(self.constant), self.times, PLACE.sub("#", self.text)
 
     @cached_property
@@ -48,7 +48,7 @@ class Item:
         return PLACE.findall(self.text)
 
     def lines(self) -> list[str]:
-        """Lines of C."""
+        """Return the lines of C."""
         if not self.times:
             whole = self.macro or self.text.startswith("FU_") or self.text.endswith(";")
             return [self.text if whole else f"{self.text};"]
@@ -66,8 +66,8 @@ class Arrays:
     of: dict[str, tuple[str, int]] = field(default_factory=dict)
 
     def index(self, names: Sequence[str], variable: str, new: dict[tuple[str, ...], str]) -> str | None:
-        """What stands for these names of one place in a block, by repetition; `new` takes an array to be.
-        None where they are no array.
+        """Return the text for corresponding names of a block, by repetition; `new` collects new arrays. None where they
+        form no array.
         """
         if len(set(names)) == 1:
             return names[0]
@@ -78,7 +78,7 @@ class Arrays:
         return self._new_entry(names, variable, new)
 
     def _entry(self, names: Sequence[str], variable: str) -> str | None:
-        """Return the entry of an array that there is for these names; None where not all are of one array."""
+        """Return the entry of an existing array for these names; None where they belong to several arrays."""
         found = [self.of.get(name, ("", -1)) for name in names]
         arrays = {array for array, _ in found}
         if len(arrays) > 1:
@@ -87,7 +87,7 @@ class Arrays:
         return place and f"{arrays.pop()}[{place}]"
 
     def _new_entry(self, names: Sequence[str], variable: str, new: dict[tuple[str, ...], str]) -> str | None:
-        """Return the entry of an array to be, which `new` takes; None where another one has some of the names."""
+        """Return the entry of a new array, which joins `new`; None where another array has some of the names."""
         distinct = next((other for other in new if set(names) <= set(other)), tuple(dict.fromkeys(names)))
         if any(set(other) & set(distinct) for other in new if other != distinct):
             return None
@@ -99,9 +99,7 @@ class Arrays:
         return f"{base}[{place}]"
 
     def _base(self, names: Sequence[str], others: set[str]) -> str:
-        """What names have in common that differ in numbers only; empty where they have nothing, or others are called
-        so.
-        """
+        """Return the common part of names that differ in numbers alone; empty without one, or where it is taken."""
         parts = [re.split(r"(\d+)", name) for name in names]
         if len({len(p) for p in parts}) > 1:
             return ""
@@ -121,7 +119,7 @@ class Arrays:
         self.of.update((name, (base, k)) for k, name in enumerate(names))
 
     def placed(self, text: str) -> str:
-        """A text with the entries of arrays."""
+        """Return a text with the entries of arrays in place of names."""
         def entry(found: re.Match[str]) -> str:
             name, place = self.of.get(found[0], (found[0], None))
             return name if place is None else f"{name}[{place}]"
@@ -141,7 +139,7 @@ def _steps(indices: Sequence[int], variable: str) -> str | None:
 
 
 def _progression(places: Sequence[int], variable: str) -> str | None:
-    """The expression in a variable 0, 1, ... that gives these numbers: a step of one, up, down, or up and down."""
+    """Return the expression in a variable 0, 1, ... with these values: a step of one up, down, or up and down."""
     first, last = places[0], places[-1]
     turns = range(len(places))
     if all(k == first for k in places):
@@ -159,11 +157,11 @@ def fold(stages: Sequence[list[Item]], sizes: Mapping[str, str], taken: set[str]
     """Replace repeated blocks in the stages by items that stand for them; returns the arrays that this makes.
 
     sizes: C sizes by local name, "" for a number; taken: names that no array may have. The last stage, the outputs,
-    makes no array: what is only written there may be in registers, and compilers write it two at a time.
+    makes no array: compilers keep its values in registers and write two at a time.
     """
     arrays = Arrays(sizes, set(taken))
     numbers: dict[tuple[Any, ...], int] = {}
-    for times in range(MOST, 1, -1):
+    for times in range(MAX_REPETITIONS, 1, -1):
         for items in stages:
             shapes = [numbers.setdefault(item.shape, len(numbers)) for item in items]
             start = 0
@@ -190,12 +188,12 @@ def _place(item: Item, arrays: Arrays) -> None:
 
 def _longest(items: Sequence[Item], shapes: Sequence[int], start: int, times: int, arrays: Arrays,
              variable: str, may_add: bool) -> list[Item] | None:
-    """The longest block at a place that stands there so many times, with the variable in it.
+    """Return the longest block at a place that repeats `times` times, with the variable in it.
 
     shapes: a number for the shape of each item, the same for the same shape; may_add: whether it may make arrays.
     """
-    for length in range(min(LONGEST, (len(items) - start) // times), 0, -1):
-        if length * (times - 1) < LEAST:
+    for length in range(min(MAX_BLOCK_ITEMS, (len(items) - start) // times), 0, -1):
+        if length * (times - 1) < MIN_SAVED_ITEMS:
             return None
         if shapes[start] != shapes[start + length]:
             continue
@@ -208,7 +206,7 @@ def _longest(items: Sequence[Item], shapes: Sequence[int], start: int, times: in
 
 
 def _block(blocks: Sequence[Sequence[Item]], arrays: Arrays, variable: str, may_add: bool) -> list[Item] | None:
-    """One block for these, None where their names are no entries of arrays."""
+    """Return one block for several, None where their names form no arrays."""
     new: dict[tuple[str, ...], str] = {}
     found = []
     for items in zip(*blocks, strict=True):
@@ -222,7 +220,7 @@ def _block(blocks: Sequence[Sequence[Item]], arrays: Arrays, variable: str, may_
 
 
 def _folded(items: Sequence[Item], arrays: Arrays, variable: str, new: dict[tuple[str, ...], str]) -> Item | None:
-    """One item for these, None where their names are no entries of arrays."""
+    """Return one item for several, None where their names form no arrays."""
     found = []
     for names in zip(*(item.places for item in items), strict=True):
         if all(name.isdigit() for name in names):

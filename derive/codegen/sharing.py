@@ -1,8 +1,8 @@
-"""Stages that several kernels have alike are printed once: as macros, which a kernel names where the stage stands.
+"""Stages that several kernels share are printed once, as macros.
 
-A macro and not a function: a stage makes many numbers that later stages take, and as a macro it costs what it costs
-written out. Stages of one file stand at its head, those of several files of a group (the laws of an element, the
-slides) in the header of the group. Where stages of one title agree in a part only, that part is a macro.
+A stage defines many numbers that later stages use: a macro costs no more than the text written out, a function would.
+Stages of one file stand at its head. Stages of several files of a group (the laws of an element, the slides) stand in
+the header of the group. Where stages of one title agree in a part, the part is a macro.
 
 Enters: sections by kernel by family. Leaves: the same with names for what is shared, and the shared stages.
 """
@@ -19,15 +19,15 @@ from .family import Family
 from .loops import Section, lines_of
 from .repeats import Item
 
-LEAST = 300
-"""Characters of a stage, or of a part of one, that are worth a macro: below, a reader finds more where it stands."""
+MIN_SHARED_CHARACTERS = 300
+"""Shortest stage, or part of one, that becomes a macro: shorter ones read better in place."""
 Sections = dict[str, list[Section]]
 """The sections of a family's kernels, by kernel."""
 
 
 @dataclass
 class SharedStage:
-    """A stage of several kernels, or a part of one: name of its macro, title, names of the kernels, what it holds."""
+    """A stage of several kernels, or a part of one: name of its macro, title, names of the kernels, contents."""
 
     name: str
     title: str
@@ -36,7 +36,7 @@ class SharedStage:
 
     @property
     def text(self) -> str:
-        """Return the definition of the macro, with a comment on what it is and whose."""
+        """Return the definition of the macro, below a comment with its title and its kernels."""
         users = f"{self.kernels[0]} and {len(self.kernels) - 1} more"
         return " \\\n".join([f"/* {self.title}: of {users} */\n#define {self.name}",
                               *(f"    {line}" for line in self.section.lines)])
@@ -48,7 +48,7 @@ def header(group: str) -> str:
 
 
 def share(families: Mapping[str, Family], sections: Mapping[str, Sections]) -> dict[str, list[SharedStage]]:
-    """Put names in place of the stages that kernels share; return the shared stages by where they stand.
+    """Replace shared stages by the names of macros; return the shared stages by file.
 
     families: all of each group that is among them, by name; sections: by family. The stages stand in a family's own
     file, by its name, or in a header, by the name of that.
@@ -101,7 +101,7 @@ class _Group:
     def _stages(self) -> list[tuple[str, SharedStage]]:
         alike: dict[tuple[Any, ...], list[_Use]] = {}
         for use in self.uses:
-            if sum(map(len, use.section.lines)) >= LEAST:
+            if sum(map(len, use.section.lines)) >= MIN_SHARED_CHARACTERS:
                 alike.setdefault((use.title, tuple(use.section.lines)), []).append(use)
         found = []
         for (title, _), users in alike.items():
@@ -119,16 +119,16 @@ class _Group:
     def _parts(self) -> list[tuple[str, SharedStage]]:
         found = []
         for (title, _), run in self._runs().items():
-            if len(run.places) > 1 and sum(map(len, lines_of(run.items))) >= LEAST:
+            if len(run.places) > 1 and sum(map(len, lines_of(run.items))) >= MIN_SHARED_CHARACTERS:
                 kernels = {kernel: family for use, _ in run.places for kernel, family in use.kernels.items()}
                 where, name = self._place(f"part of {title}", kernels)
                 found.append((where, SharedStage(name, f"part of {title}", tuple(kernels),
                                                  Section("", [], run.items))))
                 for use, start in run.places:  # as many items as before: places of other runs stay
                     use.section.items[start:start + len(run.items)] = [Item(name, macro=True),
-                                                                       *[_GONE] * (len(run.items) - 1)]
+                                                                       *[_REMOVED] * (len(run.items) - 1)]
         for use in self.uses:
-            use.section.items = [item for item in use.section.items if item is not _GONE]
+            use.section.items = [item for item in use.section.items if item is not _REMOVED]
         return found
 
     def _runs(self) -> dict[Key, _Run]:
@@ -153,7 +153,7 @@ class _Group:
         return found
 
     def _place(self, title: str, kernels: Mapping[str, str]) -> tuple[str, str]:
-        """Return where a macro of a title stands that these kernels of families name, and its name."""
+        """Return the file of a macro that these kernels of families use, and its name."""
         files = set(kernels.values())
         where, prefix = (header(self.name), self.name) if len(files) > 1 else (next(iter(files)),) * 2
         name = re.sub(r"\W+", "_", f"{prefix} {title}").strip("_").upper()
@@ -161,5 +161,5 @@ class _Group:
         return where, name if self._taken[name] == 1 else f"{name}_{self._taken[name]}"
 
 
-_GONE = Item("")
-"""In place of items that a macro stands for."""
+_REMOVED = Item("")
+"""Placeholder of items that a macro replaces."""

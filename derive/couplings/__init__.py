@@ -1,1 +1,1 @@
-"""Joint specs: constraints and everything that follows from them by differentiation."""
+"""Specs of couplings: constraints, energies and forces, and their derivatives."""

@@ -1,4 +1,4 @@
-"""Inertia of the fluid that a cable or a body carries along: added mass, from the kinetic energy of that fluid.
+"""Added mass of a cable or a body, from the kinetic energy of the fluid.
 
 Of a length of a cable it is T = (m_n |w_n|^2 + m_t w_t^2)/2, with the velocity w past the fluid, w_n across the axis
 and w_t along it, and the added masses m_n and m_t of a length of the undeformed cable. M = m_n 1 - (m_n - m_t) i i'
@@ -51,7 +51,7 @@ def impulse_of_cable(name: str, dim: int) -> Program:
 
 
 def of_cable(name: str, dim: int) -> Program:
-    """Return the kernel of the impulse of the fluid a length of cable, its rate, and what acts on the slope."""
+    """Return the kernel of the impulse of the fluid a length of cable, its rate, and the force on the slope."""
     p = Program(f"{name}_inertia_of_cable", "impulse of the fluid along a cable, its rate, and their derivatives",
                 LENGTH)
     t, t_rate = p.input("t", dim, "1", "slope r_x of the axis"), p.input("t_rate", dim, "1/s", "its rate")
@@ -172,7 +172,7 @@ def of_point_step(name: str, dim: int) -> Program:
     A_next - A = theta~ (A + A_next)/2. With a and b, the half sum and half difference of w at the ends, and M = A C A',
     T_next - T = dp . a - (D_next - D) for D = (a . M a - b . M b)/2. D_next - D is -theta . m(a) + theta . m(b),
     with m(x) = x x M_mean x - y x N y/4, y = theta x x, and N that of the mean axes: of a sphere m is nil. The mean
-    velocity of the point is its way over the step's length and theta x turning/4; `moment` has the work of that, too.
+    velocity of the point is its displacement over the step and theta x turning/4; `moment` does the work of both.
     """
     turns = 3 if dim == 3 else 1
     p = Program(f"{name}_inertia_of_point_step", "impulse of the fluid at a body over a step, and its moment",
@@ -198,11 +198,11 @@ def of_point_step(name: str, dim: int) -> Program:
     p.output("dp", dp, "kg m/s", "change of the impulse A C A' w")
     p.output("p", (P + P_next) / 2, "kg m/s", "its mean")
     p.output("moment", moment, "N m", "that does the work of w x p over the step")
-    p.output("more", cross(theta, turning) / 4, "m/s", "mean velocity at both ends, less way over step")
+    p.output("more", cross(theta, turning) / 4, "m/s", "mean velocity at both ends, less displacement over step")
     return p
 
 
 def turned(A: np.ndarray, axis: np.ndarray) -> dict[sp.Symbol, sp.Expr]:
-    """Return what a turn about a global axis changes the entries of A by."""
+    """Return the change of the entries of A by a turn about a global axis."""
     change = np.stack([cross(axis, column) for column in A.T], axis=1)
     return dict(zip(A.ravel(), change.ravel(), strict=True))

@@ -1,10 +1,10 @@
 """Two lines that touch at their closest points: a cable under the bar of a body, a cable that crosses another.
 
 Each line is known at its point by position, slope, curvature r_xx, and the rates of the first two. In the plane the
-second line is a bar square to it, which is seen as a point. The points are closest where the way d between them, from
-the second to the first, is square to both lines. These conditions say how the points move along their lines with all
-the rest. The normal n is square to both slopes, of a sign that is given (``side``), so that the gap keeps its sign
-where the lines pass through each other.
+second line is a bar square to it, which is seen as a point. The points are closest where the displacement d from
+the second to the first is square to both lines. These conditions give the motion of the points along their lines. The
+normal n is square to both slopes and has a given sign (``side``), so that the gap keeps its sign where the lines pass
+through each other.
 
 The force on the first line is N n, with N = k p^e (1 + damping p') of the penetration p = radii - n.d: the law of Hunt
 & Crossley, J. Appl. Mech. 42 (1975) 440-445. k p^e is c_1 p + c_2 p sqrt(|p|), of which one coefficient is zero. It is
@@ -33,13 +33,13 @@ from .stretch import sliding_force, sticking_force
 
 CROSSINGS = {3: "crossing", 2: "planar_crossing"}
 PENALTY = ("radii", "side", "linear", "root", "damping", "least", "friction", "v0")
-NEGLIGIBLE = sp.Rational(1, 10**16)  # of the square of a line's size: ways of which rounding is all
+NEGLIGIBLE = sp.Rational(1, 10**16)  # share of the square of a line's size: shorter displacements are rounding
 SOURCE = "Hunt & Crossley 1975; closest points by the implicit function theorem"
 NONE = np.zeros(0, dtype=object)
 
 
 class _Lines(NamedTuple):
-    """What is known of both lines: the way between the points, and slopes and curvatures of those that have some."""
+    """The data of both lines: the displacement between the points, slopes and curvatures."""
 
     d: np.ndarray
     t: np.ndarray
@@ -47,7 +47,7 @@ class _Lines(NamedTuple):
 
     @property
     def signs(self) -> list[int]:
-        """Return with which sign each point counts in d."""
+        """Return the sign of each point in d."""
         return [1, -1][: len(self.t)]
 
 
@@ -58,7 +58,7 @@ def build(dim: int) -> list[Program]:
 
 
 def _lines(p: Program, dim: int, with_curvature: bool = True) -> _Lines:
-    """Declare what is known of both lines; of the second in the plane that is its point alone."""
+    """Declare the data of both lines; in the plane the second has its point alone."""
     shape = (dim - 1, dim)
     d = p.input("d", dim, "m", "position of the first point less that of the second")
     t = p.input("t", shape, "1", "slopes of the lines")
@@ -81,7 +81,7 @@ def _solve(p: Program, lines: _Lines, right: Sequence[Sequence[sp.Expr]]) -> lis
 
 
 def closest(dim: int) -> Program:
-    """Return the kernel of how far the closest points are away along both lines."""
+    """Return the kernel of the distances to the closest points along both lines."""
     p = Program(f"{CROSSINGS[dim]}_closest", "a step of Newton's method to the closest points", SOURCE)
     lines = _lines(p, dim)
     p.stage("conditions of closeness")
@@ -103,7 +103,7 @@ def _normal(p: Program, lines: _Lines, side: sp.Expr) -> np.ndarray:
 
 
 def _law(p: Program, n: np.ndarray, d: np.ndarray, u: np.ndarray, c: np.ndarray) -> dict[str, Any]:
-    """Return penetration, its rate, the force k p^e without damping, and with it, what friction divides slip by."""
+    """Return penetration, its rate, the force k p^e without and with damping, and the speed that divides the slip."""
     radii, _, linear, root, damping, least, friction, v0 = c
     depth = p.define("depth", radii - n.dot(d))
     rate = p.define("rate", -n.dot(u))
@@ -119,15 +119,15 @@ def _law(p: Program, n: np.ndarray, d: np.ndarray, u: np.ndarray, c: np.ndarray)
 
 def _penalty(p: Program) -> np.ndarray:
     return p.input("c", len(PENALTY), "m, 1, N/m, N/m^1.5, s/m, m, 1, m/s",
-                   "sum of the radii, sign of the normal, coefficients of p and p^1.5, damping, what |p| is not below, "
+                   "sum of the radii, sign of the normal, coefficients of p and p^1.5, damping, least |p|, "
                    "coefficient of friction, speed at which it is 0.7 of its full value")
 
 
 def contact(dim: int) -> Program:
-    """Return the kernel of what is told of a contact at closest points."""
+    """Return the kernel of the results of a contact at closest points."""
     p = Program(f"{CROSSINGS[dim]}_contact", "penetration and contact force at closest points", SOURCE)
     lines = _lines(p, dim, with_curvature=False)
-    u = p.input("u", dim, "m/s", "rate of the way d between the points on their lines")
+    u = p.input("u", dim, "m/s", "rate of the displacement d between the points on their lines")
     c = _penalty(p)
     p.stage("normal")
     n = _normal(p, lines, c[1])
@@ -216,7 +216,7 @@ def _with_points_moving(p: Program, lines: _Lines, F: np.ndarray, of: _Moving,
 
 
 def _motion(p: Program, lines: _Lines, w: np.ndarray, u: np.ndarray) -> Motion:
-    """Return how the closest points move."""
+    """Return the motion of the closest points."""
     (rates,) = _solve(p, lines, [[-t.dot(u) - w[i].dot(lines.d) for i, t in enumerate(lines.t)]])
     s_rate = np.array([p.define(f"s_rate_{i}", rate) for i, rate in enumerate(rates)])
     d_rate = u
@@ -233,8 +233,8 @@ def _stretch(p: Program, lines: _Lines, side: sp.Expr, n: np.ndarray, w: np.ndar
 
 
 def motion(dim: int) -> Program:
-    """Return the kernel of how the closest points move."""
-    p = Program(f"{CROSSINGS[dim]}_motion", "how the closest points move in time", SOURCE)
+    """Return the kernel of the motion of the closest points."""
+    p = Program(f"{CROSSINGS[dim]}_motion", "motion of the closest points", SOURCE)
     lines = _lines(p, dim)
     w, u = _rates(p, lines)
     p.stage("conditions of closeness")
@@ -248,12 +248,12 @@ def motion(dim: int) -> Program:
 def _rates(p: Program, lines: _Lines) -> tuple[np.ndarray, np.ndarray]:
     """Declare the rates of slopes and of d."""
     return (p.input("w", lines.t.shape, "1/s", "rates of the slopes"),
-            p.input("u", len(lines.d), "m/s", "rate of the way d between the points on their lines"))
+            p.input("u", len(lines.d), "m/s", "rate of the displacement d between the points on their lines"))
 
 
 def stretch(dim: int) -> Program:
-    """Return the kernel of what friction's spring is stretched by without sliding."""
-    p = Program(f"{CROSSINGS[dim]}_stretch", "stretch of the spring that friction is while it sticks", SOURCE)
+    """Return the kernel of the stretch of friction's spring without sliding."""
+    p = Program(f"{CROSSINGS[dim]}_stretch", "stretch of the friction spring in stick", SOURCE)
     lines = _lines(p, dim)
     w, u = _rates(p, lines)
     c = _penalty(p)
@@ -288,8 +288,8 @@ def _along_lines(p: Program, shape: tuple[int, int]) -> tuple[np.ndarray, np.nda
 
 
 def sticking(dim: int) -> Program:
-    """Return the kernel of friction that sticks, with its derivatives."""
-    p = Program(f"{CROSSINGS[dim]}_sticking", "friction that sticks, its derivatives with the points moving", SOURCE)
+    """Return the kernel of friction in stick, with its derivatives."""
+    p = Program(f"{CROSSINGS[dim]}_sticking", "friction in stick, its derivatives with the points moving", SOURCE)
     lines = _lines(p, dim)
     w, u = _rates(p, lines)
     third, k_rate = _along_lines(p, lines.t.shape)
@@ -303,8 +303,8 @@ def sticking(dim: int) -> Program:
 
 
 def sliding(dim: int) -> Program:
-    """Return the kernel of friction that slides, with its derivatives."""
-    p = Program(f"{CROSSINGS[dim]}_sliding", "friction that slides, its derivatives with the points moving", SOURCE)
+    """Return the kernel of friction in sliding, with its derivatives."""
+    p = Program(f"{CROSSINGS[dim]}_sliding", "friction in sliding, its derivatives with the points moving", SOURCE)
     lines = _lines(p, dim)
     w, u = _rates(p, lines)
     third, k_rate = _along_lines(p, lines.t.shape)
@@ -323,7 +323,7 @@ def sliding(dim: int) -> Program:
 
 
 def _sliding_force(p: Program, found: Stretch, turned: np.ndarray, most: sp.Expr) -> tuple[np.ndarray, list[sp.Symbol]]:
-    """Return the force and what is constant in it: in the plane the spring is stretched to one of two sides."""
+    """Return the force and its constants: in the plane the spring is stretched to one of two sides."""
     if len(found.along) == 3:
         return sliding_force(p, turned, most), []
     size = p.define("x_along", found.now.dot(found.along))
@@ -334,10 +334,10 @@ def _sliding_force(p: Program, found: Stretch, turned: np.ndarray, most: sp.Expr
 def step(dim: int) -> Program:
     """Return the kernel of the forces over a step that balance energy.
 
-    The points are those that are closest in the middle of the step, of which the way and the changes of the slopes over
-    the step are known. The law's mean force N = (U_next - U)/(p_next - p) acts along a discrete gradient of the gap
-    n.d = radii - p (Gonzalez 1996): its gradient half-way is n, by the way. What that leaves of p - p_next is made up
-    for along the way and the changes of the slopes: it is of third order in them, and zero where they are.
+    The points are those closest in the middle of the step, with the changes of d and of the slopes over the step. The
+    law's mean force N = (U_next - U)/(p_next - p) acts along a discrete gradient of the gap n.d = radii - p (Gonzalez
+    1996). Its gradient half-way by d is n. A correction along the changes of d and of the slopes accounts for the rest
+    of p - p_next, which is of third order in these changes.
     """
     p = Program(f"{CROSSINGS[dim]}_step", "forces over a step that balance energy", f"{SOURCE}; Gonzalez 1996")
     n = p.input("n", dim, "1", "normal half-way")
@@ -369,6 +369,6 @@ def step(dim: int) -> Program:
     p.output("F", normal * (n + left * way) - rub * slip, "N",
              "force on the first line; its opposite acts on the second")
     p.output("M", np.array([normal * left * square * each for square, each in zip(squares, turn, strict=True)]), "N m",
-             "what acts on the slopes")
-    p.output("lost", [(normal - elastic) * sunk + rub * slip.dot(way)], "J", "what goes to heat")
+             "force on the slopes")
+    p.output("lost", [(normal - elastic) * sunk + rub * slip.dot(way)], "J", "dissipated energy")
     return p

@@ -1,4 +1,4 @@
-"""The stretch of friction's spring between two lines after a step, as if nothing slid off it.
+"""The stretch of friction's spring between two lines after a step, without sliding.
 
 Simpson's rule makes the integral of the slip v over the step, with v half-way from cubics through values and rates of
 d, of the slopes and of the arc-lengths of the closest points at both ends of the step.
@@ -39,7 +39,7 @@ class Motion(NamedTuple):
 
 
 class _Before(NamedTuple):
-    """What is known of the last step: of d, slopes and arc-lengths; components of the stretch and of its rate."""
+    """The data of the last step: d, slopes and arc-lengths; components of the stretch and of its rate."""
 
     h: sp.Expr
     d: np.ndarray
@@ -52,7 +52,7 @@ class _Before(NamedTuple):
 
 
 def _before(p: Program, shape: tuple[int, int]) -> _Before:
-    """Declare what is known of the last step."""
+    """Declare the data of the last step."""
     lines, dim = shape
     told = "of the last step: along the last line that has a slope, and square to it"
     return _Before(p.input("h", (), "s", "time since the last step; 0 where it is unknown, and rates do not count"),
@@ -78,7 +78,7 @@ def _frame(p: Program, name: str, slopes: np.ndarray, side: sp.Expr, n: np.ndarr
 
 def stretch_after(p: Program, d: np.ndarray, t: np.ndarray, signs: Sequence[int], side: sp.Expr, n: np.ndarray,
                   u: np.ndarray, rates: Motion) -> Stretch:
-    """Declare what is known of the last step; return the stretch that follows.
+    """Declare the data of the last step; return the stretch that follows.
 
     d, t, n, u: as the kernels of a crossing take them, with the sign ``side`` of the normal n; signs: with which each
     point counts in d.

@@ -46,7 +46,7 @@ def along_cable(dim: int) -> Program:
     t = p.input("t", dim, "1", "slope r_x of the axis")
     w = p.input("w", dim, "m/s", RELATIVE)
     normal, tangential, least = p.input("c", 3, "N s^2/m^3, N s^2/m^3, m/s",
-                                        "rho d C_n/2, rho pi d C_t/2, and what sizes of velocities are not below")
+                                        "rho d C_n/2, rho pi d C_t/2, and the least size of velocities")
     p.stage("tangent")
     length = _size(p, "len_t", t.dot(t), sp.S.Zero)
     i = p.vector("i", t / length)
@@ -72,7 +72,7 @@ def lift_along_cable() -> Program:
     p = Program(f"{DRAGS[3]}_lift_along_cable", "lift a length of a cable, and its derivatives", SOURCE)
     t = p.input("t", 3, "1", "slope r_x of the axis")
     w = p.input("w", 3, "m/s", RELATIVE)
-    lift, least = p.input("c_lift", 2, "N s^2/m^3, m/s", "rho d C_L/2, and what the size of w across is not below")
+    lift, least = p.input("c_lift", 2, "N s^2/m^3, m/s", "rho d C_L/2, and the least size of w across")
     p.stage("flow across")
     inverse = p.define("inv_len_t", 1 / p.define("len_t", sp.sqrt(t.dot(t))))
     i = p.vector("i", t * inverse)
@@ -97,7 +97,7 @@ def on_foil(dim: int) -> Program:
     p = Program(f"{DRAGS[dim]}_on_foil", "drag and lift on a body with a span, and their derivatives", SOURCE)
     w = p.input("w", dim, "m/s", RELATIVE)
     s = p.input("s", 3 if dim == 3 else 1, "1", "unit vector along the span; in the plane its sense along z")
-    scale, least = p.input("c_foil", 2, "N s^2/m^2, m/s", "rho A/2, and what the size of w across is not below")
+    scale, least = p.input("c_foil", 2, "N s^2/m^2, m/s", "rho A/2, and the least size of w across")
     values = p.input("coefficients", 4, "1, 1/rad", "C_D and its derivative by the angle of attack, C_L and its")
     p.stage("flow across the span")
     across = w - s.dot(w) * s if dim == 3 else w
@@ -119,7 +119,7 @@ def on_point(dim: int) -> Program:
     """Return the kernel of the force on a point, with its derivatives."""
     p = Program(f"{DRAGS[dim]}_on_point", "drag on a point, and its derivatives", SOURCE)
     w = p.input("w", dim, "m/s", RELATIVE)
-    coefficient, least = p.input("c_point", 2, "N s^2/m^2, m/s", "rho A C/2, and what the size of w is not below")
+    coefficient, least = p.input("c_point", 2, "N s^2/m^2, m/s", "rho A C/2, and the least size of w")
     p.stage("force")
     size = _size(p, "size", w.dot(w), least)
     f = p.vector("F", p.define("c_size", coefficient * size) * w)

@@ -1,7 +1,7 @@
-"""The frame of two vectors, [i j k] of eq 18: how it stands, turns, and what a moment on it does.
+"""The frame of two vectors, [i j k] of eq 18: its attitude, its turn, and the force of a moment on it.
 
-Of r_x and a director (eq 13-17) it goes with the tangent, of r_y and r_z with the cross-section: k x j there is the
-section's normal. Vectors and not an element's coordinates come in: their shape functions are the chain rule's.
+With r_x and a director (eq 13-17) it follows the tangent, with r_y and r_z the cross-section, whose normal is k x j.
+The inputs are vectors; the engine applies the chain rule through the shape functions to the coordinates.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def build(dim: int) -> list[Program]:
 
 
 class _Frame:
-    """Inputs a and b; A, and the turn that each entry of both gives it."""
+    """Inputs a and b; A, and its turn by each entry of both."""
 
     def __init__(self, kernel: str, dim: int, doc: str):
         self.program = p = Program(f"{FRAMES[dim]}_{kernel}", doc, "eq 13-18")
@@ -68,8 +68,8 @@ def motion(dim: int) -> Program:
 
 
 def moment(dim: int) -> Program:
-    """Return the kernel of T' m, what a moment puts on the vectors, and of its derivative."""
-    f = _Frame("moment", dim, "what a moment on the frame puts on the vectors, and the derivative of that")
+    """Return the kernel of T' m, the generalised force of a moment on the vectors, and of its derivative."""
+    f = _Frame("moment", dim, "generalised force of a moment on the frame, and its derivative")
     p = f.program
     m = p.input("m", TURNS[dim], "N m", "moment in global axes, held fixed")
     p.stage("force on the vectors, and its derivative")

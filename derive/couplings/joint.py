@@ -1,8 +1,8 @@
-"""Joints between two frames, of whatever carries them: each a few scalar equations between their points and axes.
+"""Joints between two frames of any bodies: each a few scalar equations between their points and axes.
 
 A frame has a point p and axes A = [x y z] (in the plane [x y]); gap = p_2 - p_1. The axis of a joint is z of both, in
-the plane x. Derivatives are by the gap and by the turns of both frames about global axes: the chain rule from there to
-coordinates is that of what carries the frames. Haug, Computer Aided Kinematics and Dynamics (1989), ch. 3 and 9.
+the plane x. Derivatives are by the gap and by the turns of both frames about global axes: the engine applies the chain
+rule from there to the coordinates of the bodies. Haug, Computer Aided Kinematics and Dynamics (1989), ch. 3 and 9.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ from .frame import TURNS, spun
 
 
 class TwoFrames:
-    """Inputs of a kernel: the gap, the axes of both frames, and what drives the joint."""
+    """Inputs of a kernel: the gap, the axes of both frames, and the driven quantity."""
 
     def __init__(self, program: Program, dim: int):
         self.program, self.dim, self.turns = program, dim, TURNS[dim]
         self.gap = program.input("gap", dim, "m", "p_2 - p_1")
         self.A1 = program.input("A1", (dim, dim), "1", "axes of the first frame, by columns")
         self.A2 = program.input("A2", (dim, dim), "1", "axes of the second frame, by columns")
-        self.c = program.input("c", 3, "m or rad, 1, 1", "what drives the joint (else unused), its cosine and sine")
+        self.c = program.input("c", 3, "m or rad, 1, 1", "driven quantity (else unused), its cosine and sine")
 
     def along(self, tag: str, gap: np.ndarray, turn_1: np.ndarray, turn_2: np.ndarray,
               more: dict[str, Any] | None = None) -> DirectionalDerivative:
@@ -97,7 +97,7 @@ JOINTS = {3: {"spherical": [_meet],
               "planar_weld": [_meet, _across("yx")],
               "planar_distance": [_distant],
               "planar_locked": [_across("yx")]}}
-"""The equations of each joint, by dimension; aligned and locked hold axes alone, beside a slide."""
+"""The equations of each joint, by dimension; aligned and locked, beside a slide, constrain axes alone."""
 
 
 def rows(dim: int, name: str) -> int:
@@ -128,14 +128,14 @@ def force(dim: int, name: str) -> Program:
     p.stage("force")
     g = np.array([p.define(f"g_{k}", f.dot(column)) for k, column in enumerate(J.T)])
     p.stage("derivative of the force")
-    p.output("phi", phi, "m, 1", "what is zero")
+    p.output("phi", phi, "m, 1", "residual of the equations")
     p.output("J", J, "1, m", "derivatives by the gap and the turns of both frames about global axes")
     p.output("K", np.stack([d.array(g) for d in by], axis=1), "N/m, N, N m", "derivatives of J' f by the same")
     return p
 
 
 def motion(dim: int, name: str) -> Program:
-    """Return the kernel of what stays of phi' at rest, and of phi'' without accelerations: -gamma (eq 10)."""
+    """Return the kernel of phi' at rest, and of phi'' without accelerations: -gamma (eq 10)."""
     p = Program(f"joint_{name}_motion", "derivatives of the equations in time", "eq 33")
     frames = TwoFrames(p, dim)
     phi = _equations(frames, name)
@@ -149,6 +149,6 @@ def motion(dim: int, name: str) -> Program:
     still = np.zeros(frames.turns, dtype=int)
     driven = frames.along("dc", rest, still, still, driving)
     moved = frames.along("dt", gap_rate, turn_1, turn_2, driving)
-    p.output("phi_t", driven.array(phi), "m/s, 1/s", "rate at rest: what drives the joint")
+    p.output("phi_t", driven.array(phi), "m/s, 1/s", "rate at rest, of the driven quantity")
     p.output("Q_d", moved.array(moved.array(phi)), "m/s^2, 1/s^2", "second rate at zero accelerations")
     return p

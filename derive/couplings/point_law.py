@@ -27,7 +27,7 @@ def build(name: str, law: PointLaw, dim: int) -> list[Program]:
 
 
 def missing(law: PointLaw) -> tuple[str, ...]:
-    """Return the kernels that a law cannot have."""
+    """Return the kernels that a law lacks."""
     return () if law.damping else ("dissipation",)
 
 
@@ -97,7 +97,7 @@ def energy(name: str, law: PointLaw, dim: int) -> Program:
 
 def dissipation(name: str, law: PointLaw, dim: int) -> Program:
     """Return the kernel of P."""
-    at = _Law(f"{name}_dissipation", law, dim, "power that the damper takes")
+    at = _Law(f"{name}_dissipation", law, dim, "power of the damper")
     rates = at.rates(at.directions())
     at.program.output("P", getattr(at.c, law.damping) * rates.dot(rates), "W", "dissipated power c e'.e'")
     return at.program
@@ -123,8 +123,8 @@ def tangent(name: str, law: PointLaw, dim: int) -> Program:
 
 
 def discrete_force(name: str, law: PointLaw, dim: int) -> Program:
-    """Return the kernel of the force over a step whose work is what is stored and dissipated."""
-    p = _program(f"{name}_discrete_force", law, "force over a step, which takes the work that is stored and dissipated",
+    """Return the kernel of the force over a step, whose work is the energy stored and dissipated."""
+    p = _program(f"{name}_discrete_force", law, "force over a step, whose work is stored and dissipated",
                  "discrete gradient of the energy; Gonzalez, J. Nonlinear Sci. 6 (1996) 449-467")
     h = p.input("h", (), "s", "step")
     gap = p.input("gap", dim, "m", "second point less the first, at the start of the step")

@@ -1,4 +1,4 @@
-"""What acts along the cable on a slide that slides: friction, and the buffer that it has run into.
+"""Forces along the cable on a slide that moves: friction, and the buffer in contact.
 
 R is the generalised force of s: the length of r_x times a force on the rider along it. The normal force N is the part
 across of the whole force f of the joint. Friction is Coulomb's: its direction is given
@@ -28,7 +28,7 @@ def force(dim: int) -> Program:
     u = p.input("u", dim, "m/s", "velocity of the rider's point less that of the cable's particle")
     f = p.input("f", dim, "N", "force of the joint on the rider")
     mu, viscous, v0, slip_direction, least = p.input("friction", len(FRICTION), "1, N s/m, m/s, 1, N",
-                                          "coefficient, viscous, v0, slip_direction, and what N is not below")
+                                          "coefficient, viscous, v0, slip_direction, and the least N")
     stiffness, damping, x, side = p.input("buffer", len(BUFFER), "N/m, N s/m, m, 1",
                                           "stiffness, damping, compression, its end of the cable: 1, the start -1")
     p.stage("tangent and speed")

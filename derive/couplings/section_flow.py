@@ -21,16 +21,16 @@ SOURCE = "strip theory; Den Hartog 1932"
 
 
 def on_section(name: str, relative: str) -> Program:
-    """Return the kernel of what a length of the undeformed beam feels, with its derivatives.
+    """Return the kernel of force and moment a length of the undeformed beam, with derivatives.
 
-    name: of the family; relative: what w is.
+    name: of the family; relative: meaning of w.
     """
     p = Program(f"{name}_on_section", "drag, lift and moment a length of a beam by the angle of attack of its section",
                 SOURCE)
     t, d = p.input("t", 3, "1", "slope r_x of the axis"), p.input("d", 3, "1", "director along the chord")
     w = p.input("w", 3, "m/s", relative)
     scale, width, least = p.input("c_section", 3, "N s^2/m^3, m, m/s",
-                                  "rho b/2, b, and what the size of w across is not below")
+                                  "rho b/2, b, and the least size of w across")
     values = p.input("polar", 6, "1, 1/rad", "C_D and its derivative by the angle of attack, C_L and its, C_M and its")
     p.stage("flow and chord across the axis")
     length = p.define("len_t", sp.sqrt(t.dot(t)))

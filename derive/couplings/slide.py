@@ -45,11 +45,10 @@ class Slide:
         self.r_p = program.vector("r_p", gap + (self.r - arm))
 
     def _director(self) -> tuple[np.ndarray, list[Any]]:
-        """Return what gives a spatial frame its normal, and its entries that move with e.
+        """Return the director of a spatial frame, and its entries that move with e.
 
-        A slope of the element, or a direction from outside, held fixed: only the direction of the two normals hangs
-        on it, not the plane that they span. A planar frame needs neither; the input stays, so that all slides are
-        called alike.
+        It is a slope of the element, or a fixed direction from outside, which decides the directions of the two normals
+        and not their plane. A planar frame needs neither; the input stays, so that all slides have one signature.
         """
         outside = self.program.input("director", self.element.dim, "1",
                                      "a direction off the tangent; used in space, where an element has none")
@@ -79,7 +78,7 @@ class Slide:
                          for entry, value in zip(self.entries, values, strict=True)])
 
     def by_arc_length(self) -> np.ndarray:
-        """Return C_s (dim,). dr_p/ds = r_x is along i: along j and k it is zero, and would be nothing but rounding."""
+        """Return C_s (dim,). dr_p/ds = r_x is along i: along j and k it is zero but for rounding."""
         dim = len(self.r_p)
         C_s = self.C_cut[:, dim:].dot(self.by_s.array(np.array(self.cut[dim:], dtype=object)))
         C_s[0] += self.A_t[:, 0].dot(self.t)
@@ -133,7 +132,7 @@ def _terms(name: str, element: Element, rider: Rider) -> Program:
     Q_d = slide.named("Q_d", along.array(along.array(C)))
     p.stage("H (eq 31) and W (eq 37)")
     H = C_q[1:] + np.outer(C_s[1:], G)
-    W = -Q_d[1:] + C_s[1:] * inverse * Q_d[0]  # what is left of C_M'' by eliminating s'' (eq 35)
+    W = -Q_d[1:] + C_s[1:] * inverse * Q_d[0]  # C_M'' after elimination of s'' (eq 35)
     p.output("C", C, "m", _C_DOC)
     p.output("C_q", C_q, "1, m", "derivatives of C by the nodal vectors, then the rider")
     p.output("C_s", C_s, "1", "derivative of C by s")
@@ -169,7 +168,7 @@ def _residual(name: str, element: Element, rider: Rider) -> Program:
     p = Program(f"{name}_residual", "phi and the gradient of f . phi by (e, rider, s)", "eq 19, 28-30")
     slide, _, g = _lagrangian(p, element, rider)
     p.output("phi", slide.r_p, "m", "r(s) - p")
-    p.output("g", g, "N, N m", "gradient of f . phi, what the slide adds to M q'' - Q and to the row of s (eq 28)")
+    p.output("g", g, "N, N m", "gradient of f . phi, the terms of the slide in M q'' - Q and in the row of s (eq 28)")
     return p
 
 

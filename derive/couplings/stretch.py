@@ -1,8 +1,8 @@
-"""Coulomb friction with stick, by a spring that is stretched along what is touched.
+"""Coulomb friction with stick, by a spring along the contact.
 
-While it sticks the spring is elastic. What it is stretched by beyond friction slides: the spring is then as long as
-friction allows (return mapping, Wriggers, Computational Contact Mechanics, 2nd ed. 2006, section 5.2). The stretch is
-that of a point from its anchor on a surface, or of the particles of two lines that have met.
+In stick the spring is elastic. In sliding its stretch is the one at which its force is the friction (return mapping,
+Wriggers, Computational Contact Mechanics, 2nd ed. 2006, section 5.2). The stretch is that of a point from its anchor on
+a surface, or of the particles of two lines that have met.
 """
 
 from __future__ import annotations

@@ -26,7 +26,7 @@ SOURCE = "Hunt & Crossley 1975; Wriggers 2006"
 PLACE = "the point from the shape's origin, along its axes"
 HEIGHTS = {2: ("h", "h_1", "h_11", "h_111"),
            3: ("h", "h_1", "h_2", "h_11", "h_12", "h_22", "h_111", "h_112", "h_122", "h_222")}
-"""What a terrain's kernel takes of its height: derivatives along the first and the second horizontal axis."""
+"""Inputs of a terrain's kernel: derivatives of its height along the first and the second horizontal axis."""
 
 
 def build(dim: int) -> list[Program]:
@@ -77,7 +77,7 @@ def terrain(dim: int) -> Program:
     axes = {1: 0} if dim == 2 else {1: 0, 2: 2}  # the entries of y that the horizontal axes are
 
     def along(k: int) -> dict[sp.Symbol, sp.Expr]:
-        """Return what an entry of y changes: itself, and heights where it is horizontal."""
+        """Return the derivatives by an entry of y: of itself, and of heights where it is horizontal."""
         known = {s: sp.Integer(s == y[k]) for s in y}
         axis = next((a for a, at in axes.items() if at == k), None)
         for name, symbol in value.items():
@@ -104,9 +104,9 @@ def terrain(dim: int) -> Program:
 
 
 def push(dim: int, hertz: bool) -> Program:
-    """Return the kernel of the law of contact at a depth: what presses, what is stored, and both over a step."""
+    """Return the kernel of the law of contact at a depth: normal force and energy, at an instant and over a step."""
     p = _program(dim, "push_hertz" if hertz else "push",
-                 f"what contact presses with, of the exponent {'3/2' if hertz else '1'}, with its derivatives")
+                 f"normal force of contact by the depth to the power {'3/2' if hertz else '1'}, and derivatives")
     depth = p.input("depth", (), "m", "depth d below the surface")
     rate = p.input("depth_rate", (), "m/s", "its rate")
     k, c = p.input("law", 2, "N/m^e (a length), s/m", "stiffness, damping")
@@ -125,7 +125,7 @@ def push(dim: int, hertz: bool) -> Program:
         elastic, by_depth, stored = p.define("spring", k * depth), k, k * depth * depth / 2
         mean = k * (depth + later) / 2
     damped = p.define("damped", 1 + c * rate)
-    p.output("p", elastic * damped, "N (a length)", "what presses")
+    p.output("p", elastic * damped, "N (a length)", "normal force")
     p.output("p_d", by_depth * damped, "N/m (a length)", "derivative by the depth")
     p.output("p_rate", elastic * c, "N s/m (a length)", "derivative by its rate")
     p.output("p_e", elastic, "N (a length)", "the part that is elastic")
@@ -136,7 +136,9 @@ def push(dim: int, hertz: bool) -> Program:
 
 def _moving(p: Program, dim: int, press: sp.Symbol, n: np.ndarray, H: np.ndarray, w: np.ndarray, by_d: sp.Symbol,
             by_rate: sp.Symbol, x: np.ndarray | None = None) -> tuple[list[Any], list[Any]]:
-    """Return what differentiates by the place y and by the velocity w: n by H, what presses by depth and its rate."""
+    """Return the derivations by the place y and by the velocity w: of n by H, of the normal force by depth and its
+    rate.
+    """
     turned = p.vector("Hw", H @ w)
     of_place, of_rate = [], []
     for k in range(dim):
@@ -181,8 +183,8 @@ def _across(p: Program, dim: int, n: np.ndarray, x: np.ndarray) -> np.ndarray:
 
 
 def sticking(dim: int) -> Program:
-    """Return the kernel of the spring that friction is while it sticks."""
-    p = _program(dim, "sticking", "friction that sticks, and its derivatives")
+    """Return the kernel of the friction spring in stick."""
+    p = _program(dim, "sticking", "friction in stick, and its derivatives")
     n = p.input("n", dim, "1", "gradient of the distance")
     H = p.input("H", (dim, dim), "1/m", "its second derivative")
     x = p.input("x", dim, "m", "the point from its anchor")
@@ -206,14 +208,16 @@ def _along_each(p: Program, dim: int, f: np.ndarray, x: np.ndarray) -> np.ndarra
 
 
 def _by_stretch(p: Program, f_x: np.ndarray) -> Program:
-    """Add the derivatives by x alone: a sphere that rolls changes it and stays in its place."""
+    """Add the derivatives by x alone, which a sphere changes as it rolls in place."""
     p.output("f_x", f_x, "N/m (a length)", "derivatives by x alone")
     return p
 
 
 def sliding(dim: int) -> Program:
-    """Return the kernel of friction that slides: its size is that of what presses, against x along the surface."""
-    p = _program(dim, "sliding", "friction that slides, and its derivatives")
+    """Return the kernel of sliding friction: its size is mu times the normal force, its direction against x along the
+    surface.
+    """
+    p = _program(dim, "sliding", "friction in sliding, and its derivatives")
     n, H, w, (press, by_d, by_rate) = _inputs(p, dim)
     x = p.input("x", dim, "m", "the point from its anchor")
     mu = p.input("mu", (), "1", "coefficient of friction")

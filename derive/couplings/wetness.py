@@ -1,4 +1,4 @@
-"""The part of a body or of a cable's section below the surface of a fluid, and what its change does to the inertia.
+"""The part of a body or of a cable's section below the surface of a fluid, and the change of inertia with it.
 
 Buoyancy has a potential. Below its surface at the height z_s a fluid at rest has the pressure rho g (z_s - z), and a
 volume V that it displaces has the energy of that pressure, rho g V R e(u): R is half of the vertical extent of V, u the
@@ -13,8 +13,8 @@ Between two surfaces, the fluid's own and that of the fluid below, the wet part 
 The added mass is that of the wet part, c M, and so is the energy T = c w . M w/2. Lagrange's equations of it give,
 beside c times those of M, the rate of c in that of the impulse and the derivative of T by the place. At a vertical
 entry in still water the slamming force is half of that of von Karman (NACA TN 321, 1929), c' m v^2/R, who has the first
-alone. The other half of the energy that he has lost goes into the jet, which has no part in T:
-here energy is conserved, and a body that leaves the water gets back what it gave.
+alone. The other half goes into the jet, which has no part in T: here energy is
+conserved, and a body that leaves the water regains it.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def build(name: str, dim: int) -> list[Program]:
 
 def _output(p: Program, values: tuple[sp.Expr, ...]) -> Program:
     e, c, c_u, c_uu = values
-    p.output("e", e, "1", "mean depth of what is wet, over half of the extent")
+    p.output("e", e, "1", "mean depth of the wet part, over half of the extent")
     p.output("c", c, "1", "wet part, the derivative of e by u")
     p.output("c_u", c_u, "1", "derivative of c by u")
     p.output("c_uu", c_uu, "1", "derivative of c_u by u")
@@ -99,7 +99,9 @@ def _entry(p: Program, dim: int, M: np.ndarray) -> tuple[dict[str, np.ndarray], 
 
 def _output_entry(p: Program, given: dict[str, np.ndarray], rate: np.ndarray, pull: np.ndarray, turned_by: np.ndarray,
                   units: tuple[str, str, str], name: str, words: str) -> None:
-    """Define the outputs, with the derivatives of their difference; turned_by: that by what `name` and `words` say."""
+    """Define the outputs, with the derivatives of their difference; turned_by: the derivative by `name`, which is
+    `words`.
+    """
     force, per_velocity, per_slope = units
     by = {key: jacobian(p, rate - pull, value) for key, value in given.items()}
     p.output("p_rate", rate, force, "rate of the impulse by that of the wet part")
@@ -110,7 +112,7 @@ def _output_entry(p: Program, given: dict[str, np.ndarray], rate: np.ndarray, pu
 
 
 def entry_of_cable(name: str, dim: int) -> Program:
-    """Return the kernel of what the change of the wet part adds to the inertia of the fluid a length of cable."""
+    """Return the kernel of the inertia of the fluid a length of cable from the change of its wet part."""
     p = Program(f"{name}_entry_of_cable", "added mass of a cable whose wet part changes", SLAMMING)
     t = p.input("t", dim, "1", "slope r_x of the axis")
     m = p.input("m", 2, "kg/m", "added masses of a length of the undeformed cable, across and along")
@@ -125,7 +127,7 @@ def entry_of_cable(name: str, dim: int) -> Program:
 
 
 def entry_of_point(name: str, dim: int) -> Program:
-    """Return the kernel of what the change of the wet part adds to the inertia of the fluid at a point of a body."""
+    """Return the kernel of the inertia of the fluid at a point of a body from the change of its wet part."""
     p = Program(f"{name}_entry_of_point", "added mass of a body whose wet part changes", SLAMMING)
     A, M = mass_of_point(p, dim)
     given, rate, pull = _entry(p, dim, M)

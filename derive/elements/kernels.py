@@ -1,4 +1,4 @@
-"""The kernels of an element that no law enters (eq 2-4): position, mass, gravity, loads."""
+"""The kernels of an element without its law (eq 2-4): position, mass, gravity, loads."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def _integral(p: PolyElement, length: sp.Symbol, section: np.ndarray) -> sp.Expr
 
 
 def build(element: Element) -> list[Program]:
-    """Return the programs of every kernel of an element that no law enters."""
+    """Return the programs of every kernel of an element without its law."""
     shape = [_ring(n) for n in element.shape_functions]
     return [mass(element, shape), gravity(element, shape), inertia_force(element, shape), position(element),
             *load_kernels.build(element)]
@@ -84,7 +84,7 @@ def inertia_force(element: Element, shape: Any) -> Program:
     """Return the kernel of M a with M = m (x) I; it leaves out the zeros of m."""
     p = _program(element, "inertia_force", "M a", "M e'' of eq 9")
     n = element.n_vectors
-    m = p.input("m", (n, n), "kg, kg m, kg m^2", f"mass matrix from {element.name}_mass")
+    m = p.input("m", (n, n), "kg, kg m, kg m^2", "mass matrix of the kernel mass")
     a = _coordinates(p, element, "a", "m/s^2, 1/s^2", "accelerations of the nodal vectors")
     filled = [[bool(integrals.over_element(shape[j] * shape[k])) for k in range(n)] for j in range(n)]
     p.output("f", [sum(m[j, k] * a[k] for k in range(n) if filled[j][k]) for j in range(n)], "N, N m", "M a")
@@ -92,7 +92,7 @@ def inertia_force(element: Element, shape: Any) -> Program:
 
 
 def _horner(n: sp.Expr, power: int, xi: sp.Symbol) -> sp.Expr:
-    """Return a shape function as l^power times a polynomial in xi with whole coefficients: monomials in x cancel."""
+    """Return a shape function as l^power times a polynomial in xi with integer coefficients: powers of l cancel."""
     return l**power * sp.horner(sp.expand(n.subs(x, xi * l) / l**power), xi)
 
 

@@ -1,4 +1,4 @@
-"""The kernels of loads at a point of an element's centreline: where they act, and how they turn with it."""
+"""The kernels of loads at a point of an element's centreline: shape functions, follower forces, moments."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ def on_axis(element: Element) -> Program:
 
 
 def slopes(element: Element) -> Program:
-    """Return the kernel of what a frame along the centreline is made of: r_x, r_y, r_z and their derivatives by x."""
+    """Return the kernel of the vectors of a frame along the centreline: r_x, r_y, r_z and their derivatives by x."""
     p = Program(f"{element.name}_slopes", "slopes of a point of the centreline, and their derivatives by x", "eq 13-16")
     axis = Axis(p, element)
     p.stage("derivatives of the shape functions")
     p.output("S", [[axis.shape(letter + order) for order in ("", "x", "xx")] for letter in "xyz"], "1/m, 1",
-             "shape functions by x, y, z (zeros where there is no such slope), then by x so many times more")
+             "shape functions by x, y, z (zeros where there is no such slope), and their first two derivatives by x")
     return p
 
 
@@ -57,8 +57,7 @@ def follower_force(element: Element) -> Program:
 
 
 def turning_slopes(element: Element) -> list[str]:
-    """Return the slopes, by x, y, z, that say how a section turns: those across, and the tangent where they are too
-    few.
+    """Return the slopes, by x, y, z, that define the turn of a section: those across, with the tangent where one lacks.
     """
     across = [c for c in "yz" if f"r_{c}" in element.nodal_vectors]
     return across if len(across) >= element.dim - 1 else ["x", *across]
@@ -67,8 +66,8 @@ def turning_slopes(element: Element) -> list[str]:
 def moment(element: Element) -> Program:
     """Return the kernel of f from M . omega = f . v, omega the rotation rate of the section.
 
-    It is the one that fits the rates of the section's slopes best: sum |a' - omega x a|^2 is least. A tangent alone in
-    space turns across itself only: the moment along it does no work.
+    omega is the least-squares fit of the rates of the section's slopes: sum |a' - omega x a|^2 is minimal. A tangent
+    alone in space turns across itself only: the moment along it does no work.
     """
     p = Program(f"{element.name}_moment", "generalised force of a moment in global axes",
                 "work on the rotation of the section")
@@ -86,7 +85,8 @@ def moment(element: Element) -> Program:
 
 
 def _on_one(p: Program, M: np.ndarray, a: np.ndarray) -> tuple[list[np.ndarray], np.ndarray]:
-    """Define, in a stage, the force F on a slope with a x F = M, as far as that can be; return it and its derivative.
+    """Define, in a stage, the force F on a slope with a x F = M up to the part of M along a; return it and its
+    derivative.
     """
     p.stage("force on the slope")
     F = p.vector("F", cross(p.define("inv_T", 1 / p.define("T", a.dot(a))) * M, a))
@@ -100,7 +100,7 @@ def _on_two(p: Program, M: np.ndarray, a: np.ndarray, b: np.ndarray) -> tuple[li
 
     The plane's normal n = a x b is a principal axis of this system: along it both slopes turn alike, across it M is
     the sum of two couples of forces along n. Derivatives of the latter in the dual basis of a, b, n: the change of
-    nu = n/n.n with a is -(nu.da a* + a*.da nu), and what M.da nu has in common with it goes.
+    nu = n/n.n with a is -(nu.da a* + a*.da nu), and the common part of M.da nu cancels.
     """
     p.stage("forces on the slopes")
     n = p.vector("n", cross(a, b))

@@ -1,4 +1,4 @@
-"""Elastic laws by name: energies as functions of Gram products, and what each law is."""
+"""Elastic laws by name: energies as functions of Gram products, and traits."""
 
 from collections.abc import Callable
 from functools import partial
@@ -27,11 +27,11 @@ _CABLES: list[tuple[tuple[str, ...], Callable[..., Any], Callable[..., Any]]] = 
 
 LAWS: dict[str, Callable[..., Any]] = {continuum.NAME: continuum.Continuum,
                                        curved_continuum.NAME: curved_continuum.CurvedContinuum}
-"""What makes a law from the Gram products of an element."""
+"""Constructors of laws from the Gram products of an element."""
 
 TRAITS: dict[str, LawTraits] = {continuum.NAME: continuum.TRAITS, curved_continuum.NAME: curved_continuum.TRAITS,
                                 structural.NAME: structural.TRAITS}
-"""What each law is; the structural one has kernels of its own, without Gram products."""
+"""Traits of each law; the structural one has its own kernels, without Gram products."""
 
 for names, law, traits in _CABLES:
     LAWS |= {name: partial(law, **_measures(name)) for name in names}
@@ -49,10 +49,10 @@ def stiffness_of(law: str | type) -> str:
 
 
 def law_traits(law: str | type) -> LawTraits:
-    """Return what an entry of an element's `laws` is; a law of the user's is what the one of `stiffness_of` is."""
+    """Return the traits of an entry of an element's `laws`; a user's law has those of its `stiffness_of`."""
     return TRAITS[stiffness_of(law)]
 
 
 def law_class(law: str | type) -> Callable[..., Any]:
-    """Return what makes the law of an entry of an element's `laws` from Gram products."""
+    """Return the constructor of the law of an entry of an element's `laws`."""
     return LAWS[law] if isinstance(law, str) else law

@@ -1,6 +1,6 @@
 """The kernels of a law on an element (eq 5-9): constants, energy, forces, tangents, Kelvin-Voigt damping.
 
-Signatures are the same for every law; A holds what the law calls its constants.
+Signatures are the same for every law; A holds its constants.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ RETARDATION = ("tau", (), "s", "retardation time of the Kelvin-Voigt law")
 
 
 def missing(law: str | type) -> tuple[str, ...]:
-    """Return the kernels that a law does not give: a discrete gradient of its energy, a measure of strain for a step.
+    """Return the kernels that a law lacks: a discrete gradient of its energy, a measure of strain for a step.
     """
     return tuple(kernel for kernels, method in ((DISCRETE, "discrete_forces"), (ALGORITHMIC, "algorithmic_forces"))
                  for kernel in kernels if not hasattr(_class(law), method))
 
 
 def facts(element: Element, law: str | type) -> dict[str, int]:
-    """Return what the engine needs to know of a law's rates of strain: how many, and whether a spin is one."""
+    """Return the engine's facts of a law's rates of strain: their number, and whether a spin is one."""
     return {"rates": 0, "spins": 0} if missing(law) else _class(law).rates(element)
 
 
@@ -62,7 +62,7 @@ def taken(element: Element, law: str | type) -> dict[str, str]:
 
 
 def build(element: Element, law: str | type) -> list[Program]:
-    """Return every kernel of a law on an element, but for those that it takes from another law."""
+    """Return every kernel of a law on an element, without those from another law."""
     left_out = {*missing(law), *taken(element, law)}
     more = [kernel for kernel in (*DISCRETE, *DAMPING, *ALGORITHMIC) if kernel not in left_out]
     kernels = Kernels(element, law)
@@ -86,7 +86,7 @@ class Kernels:
         return program.input(name, (self.element.n_vectors, self.element.dim), unit, doc)
 
     def _strain(self, program: Program) -> tuple[Any, ...]:
-        """Declare the inputs l, e, A, open the stage of the strain vectors, and return what they make."""
+        """Declare the inputs l, e, A, open the stage of the strain vectors, and return these."""
         length = program.input("l", (), "m", "length of the element")
         e, A = self._coordinates(program), self.law.constants(program)
         program.stage("strain vectors")
@@ -151,7 +151,7 @@ class Kernels:
         return p
 
     def step_stiffness(self) -> Program:
-        """Return the kernel of what the Newton matrix of discrete_force has besides the tangent half-way."""
+        """Return the kernel of the Newton matrix of discrete_force beyond the tangent half-way."""
         p = self._program("step_stiffness", "k: elastic_tangent half-way + k (x) I has the mean stress", "eq 8")
         w, A, *c = self._ends(p)
         change = [p.vector(f"change_{name}", b - a) for name, a, b in zip(self.gram.names, *c, strict=True)]
@@ -168,7 +168,7 @@ class Kernels:
         return p
 
     def damping_force(self) -> Program:
-        """Return the kernel of Q_d of eq 9, its sign turned."""
+        """Return the kernel of -Q_d of eq 9."""
         p = self._program("damping_force", "minus the Kelvin-Voigt damping force Q_d", "Q_d of eq 9")
         w, A, tau, c, dc = self._rates(p)
         p.output("f", self._nodal(p, self.law.damping_forces(p, A, tau, c, dc, w), w), "N, N m", "-Q_d")
@@ -185,15 +185,15 @@ class Kernels:
         return p
 
     def dissipation(self) -> Program:
-        """Return the kernel of the power that the damping force takes out."""
+        """Return the kernel of the power of the damping force."""
         p = self._program("dissipation", "power dissipated by the damping force", "v . Q_d of eq 9")
         w, A, tau, c, dc = self._rates(p)
         p.output("P", [sp.sympify(self.law.dissipation(p, A, tau, c, dc, w))], "W", "dissipated power, never negative")
         return p
 
     def algorithmic_force(self) -> Program:
-        """Return the kernel of the forces of a step with algorithmic dissipation: stresses that its integrator makes of
-        changes of strain.
+        """Return the kernel of the forces of a step with algorithmic dissipation: stresses from changes of
+        strain by the integrator.
         """
         p = self._program("algorithmic_force",
                           "force of the stress D (weight dE - relaxed_strain), dE the strain that v makes",
@@ -207,7 +207,7 @@ class Kernels:
         return p
 
     def section_forces(self) -> Program:
-        """Return the kernel of what passes through the section at x from the side of greater x."""
+        """Return the kernel of force and moment through the section at x from the side of greater x."""
         p = self._program("section_forces", "force and moment resultants of a section", "eq 6-8 at a section")
         length, x = p.input("l", (), "m", "length of the element"), p.input("x", (), "m", "arc-length from its start")
         e, S = self._coordinates(p), self.law.section_stiffness(p)

@@ -1,4 +1,4 @@
-"""Whether emitted text says what the kernels do: formulas read back from HTML and LaTeX, evaluated, and compared."""
+"""Check of the emitted text: formulas are read back from HTML and LaTeX, evaluated, and compared with the kernels."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def measure(document: Document, trees: dict[str, Node] | None = None) -> None:
 
 
 def faults(document: Document, page: str, source: str) -> list[str]:
-    """Return what is wrong with the emitted texts, a sentence each; none if all is well."""
+    """Return the faults of the emitted texts, a sentence each."""
     try:
         of_page, of_source = read_html(page), read_tex(source)
     except (FormulaError, ValueError) as problem:

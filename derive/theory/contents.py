@@ -1,4 +1,4 @@
-"""What the documents are made of: the chapters of the theory in the order of the paper, and the pages of elements."""
+"""Contents of the documents: the chapters of the theory in the order of the paper, and the pages of elements."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ LEAD = ("Formulas are printed from the specs and programs that make the kernels,
 MAIN = {"element": "beam24", "law": "beam24_continuum", "slide": "slide_beam24_rigid", "body": "rigid",
         "modal": "modal", "frame": "frame", "point_law": "spring", "resistance": "resistance", "drag": "drag",
         "surface": "surface", "crossing": "crossing"}
-"""What the theory is printed for: the element and the rider of the paper."""
+"""The families of the theory: the element and the rider of the paper."""
 
 
 def theory() -> Document:

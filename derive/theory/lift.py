@@ -1,8 +1,8 @@
-"""From the scalar definitions of a program back to vectors: what a kernel does, stage by stage, in vector notation.
+"""Vector notation of a kernel, stage by stage, from the scalar definitions of its program.
 
 Programs define vectors component by component: name_x, name_y, name_z. Where the components of an expression are the
 same but for the axis, one vector formula stands for all of them; sums over the axes become scalar products, cyclic
-differences vector products. What does not lift is printed component by component, so that nothing is left out.
+differences vector products. Other expressions are printed component by component.
 """
 
 from __future__ import annotations

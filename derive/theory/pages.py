@@ -1,4 +1,4 @@
-"""Pages of elements: what an element knows, what it costs, how it converges, and its formulas with each of its laws."""
+"""Pages of elements: properties, cost, convergence, and formulas with each law."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a formula went: the generated function with its file and line, its operations, and what verifies it."""
+"""Provenance of a formula: the generated function with its file and line, its operations, and its verification."""
 
 from __future__ import annotations
 

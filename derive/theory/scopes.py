@@ -1,4 +1,4 @@
-"""What the symbols of a chapter stand for: the inputs of the kernels that it explains, at random points.
+"""Meanings of the symbols of a chapter: the inputs of its kernels, at random points.
 
 Samples are those of `funicular verify`: bent, stretched, turned; sizes of order one.
 """
@@ -26,8 +26,8 @@ TOLERANCE = 1e-12
 """Of a printed formula against the compiled kernel, relative to the largest entry of the output."""
 
 State = dict[str, Any]
-MOST = 6
-"""Symbols of one argument that have a row of their own in a legend."""
+MAX_LEGEND_ROWS = 6
+"""Largest number of symbols of one argument with their own rows in a legend."""
 _OTHERS = {"rectangle": ("height and width of the section's rectangle", "m"),
            "D": ("elastic constants, the same all over the section", "N/m^2")}
 
@@ -142,7 +142,7 @@ class Scope:
             if known is None and argument not in _OTHERS:
                 continue  # of kernels that another family has for this one
             about = (known.doc, known.unit) if known else _OTHERS[argument]
-            if len(of) > MOST:
+            if len(of) > MAX_LEGEND_ROWS:
                 of_them = f"${of[0].latex}$ to ${of[-1].latex}$"
                 rows.append([of_them, f"`{argument}`", *about])
             else:

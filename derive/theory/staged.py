@@ -1,4 +1,4 @@
-"""What a kernel does, stage by stage: its program in vector notation, with the inputs under the program's own names."""
+"""A kernel stage by stage: its program in vector notation, with the names of the program."""
 
 from __future__ import annotations
 

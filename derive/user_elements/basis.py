@@ -1,4 +1,4 @@
-"""What an element's spec must be before anything is derived from it: names, basis, nodal conditions."""
+"""Checks of an element's spec before its derivation: names, basis, nodal conditions."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ from ..laws.kernels import Kernels
 from ..verify import timing
 from ..verify.command import examined
 from ..verify.compiled import SHARED_FLAGS, CompilerError, compile_units, compiler, link_shared
-from ..verify.report import WIDE, Report
+from ..verify.report import CONSOLE_WIDTH, Report
 from . import basis, energy, library, load
 from .load import SpecError
 
@@ -33,7 +33,7 @@ def main(spec: Path, out: Path) -> None:
     begin = time.perf_counter()
     console = Console(highlight=False, markup=False, soft_wrap=True)
     if not console.is_terminal:
-        console = Console(highlight=False, markup=False, width=WIDE)  # piped lines stay whole
+        console = Console(highlight=False, markup=False, width=CONSOLE_WIDTH)  # piped lines stay whole
     spec, out = spec.resolve(), out.resolve()
     library.check_destination(out)
     try:
@@ -96,7 +96,7 @@ def _make(spec: Path, families: dict[str, Family], work: Path, out: Path, consol
 
 
 def _derived(spec: Path, family: Family) -> emit.Derived:
-    """Derive a family; what the user's own code raises, and what the law lacks, is told with its place."""
+    """Derive a family. Errors of the user's code and of the law name their place."""
     assert family.element is not None  # a user's families are those of elements
     place = f'{spec}: element "{family.element.name}"' + (f', law "{family.law}"' if family.law else "")
     with load.blaming(spec, place):

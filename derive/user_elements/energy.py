@@ -1,7 +1,7 @@
-"""What an elastic law on an element must be, tried at 50 digits before it is compiled.
+"""Checks of an elastic law on an element at 50 digits, before it is compiled.
 
-Stress-free where it is straight, the same after rigid motion, without kinks, everywhere a finite number; the samples
-are those of verification (two bent elements and the straight reference), the latter turned as well.
+Its energy is zero where the element is straight, unchanged by rigid motion, smooth and finite. The samples are those of
+verification (two bent elements and the straight reference), the latter also turned.
 """
 
 from __future__ import annotations

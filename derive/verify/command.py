@@ -1,9 +1,9 @@
-"""`funicular verify`: every derivative in the generated C, tried by independent methods, rounding, and the invariances.
+"""`funicular verify`: derivatives by independent methods, rounding, and invariances of the generated C.
 
-The files of generated/ are compiled as they stand: a sign changed by hand shows at once. Relations, invariances,
+The files of generated/ are compiled as they stand: verification finds a sign changed by hand. Relations, invariances,
 references and samples are packages with a file for each role. Methods and their ceilings are in verify/methods.py,
-rounding and its ceilings in verify/rounding.py. Families come from the list in catalogue.py, so a new element or rider
-is covered by being there.
+rounding and its ceilings in verify/rounding.py. Families come from the list in catalogue.py, so new elements and riders
+are covered.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def prepare(family: Family, generated: Path, work: Path, programs: list[Program]
 
 
 def uncovered(family: Family, programs: list[Program]) -> list[str]:
-    """Return the outputs that no relation is about."""
+    """Return the outputs without a relation."""
     known = {(f"{family.name}_{r.kernel}", r.output) for r in relations(family)}
     return [f"{p.name}: {a.name}" for p in programs for a in p.outputs if (p.name, a.name) not in known]
 

@@ -5,8 +5,8 @@ tiny strain     the stress-free shape turned, coordinates off by 1e-9; riders at
 large rotation  bent by 2.4 rad from end to end, turned by 3 rad; riders in any attitude
 far origin      the samples moved by 10⁴ lengths
 
-None lies along the axes: entries that are zero there by chance of the frame, 1 - i_x², would be held to digits that no
-other frame shows.
+None lies along the axes: entries that vanish in such a frame alone, such as 1 - i_x², would be compared to digits that
+other frames lack.
 """
 
 from __future__ import annotations

@@ -28,7 +28,7 @@ CEILINGS = {
     ("complex step", 1): 2e-14, ("complex step", 2): 5e-12,
     ("central", 1): 1e-10, ("central", 2): 5e-8,
 }
-VANISHING = 1e-20  # far below any output of a sample, far above differences at 50 digits of what is zero
+ZERO_SCALE = 1e-20  # far below any output of a sample, far above differences of zero at 50 digits
 _FIRST = ((-2, 1 / 12), (-1, -8 / 12), (1, 8 / 12), (2, -1 / 12))
 _SECOND = ((-2, -1 / 12), (-1, 16 / 12), (0, -30 / 12), (1, 16 / 12), (2, -1 / 12))
 _STEPS = tuple(10.0**-k for k in np.arange(1.5, 5.1, 0.5))
@@ -58,13 +58,13 @@ class Relation:
 
     def along(self, numbers: Numbers, state: State, t: Any) -> np.ndarray:
         """Return the paths' values at t -> (any, n)."""
-        assert self.path is not None  # it is only where a finding has come from another process
+        assert self.path is not None  # None only in findings from another process
         return np.stack([np.asarray(self.path(numbers, state, t, j)).ravel() for j in range(self.n)], axis=-1)
 
 
 @dataclass
 class Finding:
-    """How one relation fared over all states: the worst error by method, relative to the output's largest entry."""
+    """The worst error of a relation over all states, by method, relative to the largest entry of the output."""
 
     kernel: str
     relation: Relation
@@ -117,7 +117,7 @@ def examine(kernel: str, relation: Relation, kinds: dict[str, Numbers], states: 
         s = exact.state(values)
         truth = _exact(relation, exact, s)
         scale = float(np.abs(truth).max())
-        scale = scale if scale > VANISHING else 1.0  # the samples are of order one
+        scale = scale if scale > ZERO_SCALE else 1.0  # the samples are of order one
         finding.take("rounding", analytic, relation.value(exact, s).astype(float), scale)
         finding.take("50 digits", analytic, truth, scale)
         if relation.order:

@@ -15,7 +15,7 @@ from .inputs import KINDS
 from .methods import METHODS, Finding
 from .rounding import ENTRY, NORM, Rounding
 
-WIDE = 220  # columns that the whole table takes
+CONSOLE_WIDTH = 220  # columns of the whole table
 
 
 class Report:
@@ -28,7 +28,7 @@ class Report:
         self.uncovered: list[str] = []
         self.out = Console(highlight=False, markup=False)
         if not self.out.is_terminal:
-            self.out = Console(highlight=False, markup=False, width=WIDE)  # piped lines stay whole
+            self.out = Console(highlight=False, markup=False, width=CONSOLE_WIDTH)  # piped lines stay whole
 
     @contextmanager
     def progress(self, total: int) -> Iterator[Callable[[], None]]:
@@ -97,7 +97,7 @@ class Report:
         return self.failures
 
     def _derivatives(self) -> Table:
-        wide = self.out.width >= WIDE
+        wide = self.out.width >= CONSOLE_WIDTH
         table = _table("Every output against what it is: worst error, relative to its largest entry",
                        left=["kernel", "output", "is"] if wide else ["kernel", "output"],
                        right=[*METHODS, "step"], last=["worst at"])

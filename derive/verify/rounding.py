@@ -5,13 +5,13 @@ input and the result may change it by,
 
     u (sum_j |dy_i/dx_j| |x_j| + |y_i|),   u = 2^-53,
 
-dy/dx by complex step. A kernel at one unit could not be told from exact arithmetic on rounded inputs. Coordinates of
-positions count here by their size near the origin: far from it their differences are as exact as they were, and a
-kernel has no excuse for losing digits there.
+dy/dx by complex step. One unit is the error of exact arithmetic on rounded inputs. Coordinates of
+positions count here by their size near the origin: far from it their differences are as exact, and a kernel must not
+lose digits there.
 
 `entry` is the worst over single entries. It is hard on entries in which the contributions of quadrature points or of
-the axes of a frame cancel; `norm`, the largest error of an output over the largest that is allowed in it, is what its
-user sees.
+the axes of a frame cancel; `norm`, the largest error of an output over the largest that is allowed in it, is the
+error for its user.
 """
 
 from __future__ import annotations

@@ -259,8 +259,8 @@ def edit(monkeypatch, file: str, old: str, new: str) -> None:
 @pytest.mark.parametrize(("file", "old", "new"), [
     ("codegen/c_printer.py", "Return the C text of an expression.", "Return an expression as C text."),
     ("codegen/c_printer.py", "# SymPy's printer knows", "# The printer of SymPy knows"),
-    ("codegen/c_printer.py", "SymPy expressions to C text: the same", "SymPy expressions as C text, the same"),
-    ("codegen/sharing.py", "Characters of a stage, or of a part of one,", "Characters of a stage or a part of one"),
+    ("codegen/c_printer.py", "C text of SymPy expressions, the same", "SymPy expressions as C text: the same"),
+    ("codegen/sharing.py", "Shortest stage, or part of one, that", "Least size of a stage or a part that"),
 ], ids=["docstring", "comment", "module", "constant"])
 def test_docstrings_and_comments_of_a_source_change_nothing(monkeypatch, file, old, new):
     edit(monkeypatch, file, old, new)

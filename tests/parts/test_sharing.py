@@ -30,7 +30,7 @@ def one_by_one(text: str) -> str:
 
 def test_a_kernel_is_what_it_is_with_its_own_stages(derived, monkeypatch):
     shared = emit.render(derived, NAMES, lambda done: None)
-    monkeypatch.setattr(sharing, "LEAST", 10**9)
+    monkeypatch.setattr(sharing, "MIN_SHARED_CHARACTERS", 10**9)
     apart = emit.render(derived, NAMES, lambda done: None)
     assert stages(shared[HEADER])
     assert not stages(apart[HEADER])
@@ -66,7 +66,7 @@ def trial(kernels: dict[str, str]) -> tuple[dict, str]:
 
 
 def test_a_part_that_stages_have_alike_is_cut_where_the_kernels_part(monkeypatch):
-    monkeypatch.setattr(sharing, "LEAST", len("const fu_real a = x;") + 1)
+    monkeypatch.setattr(sharing, "MIN_SHARED_CHARACTERS", len("const fu_real a = x;") + 1)
     one, two, three = (f"TRIAL_PART_OF_STAGE{number}" for number in ("", "_2", "_3"))
     kernels, macros = trial({"k": "abcdefg", "l": "abcdz", "m": "cdefy"})
     assert kernels == {"k": f"{one} {two} {three} g;", "l": f"{one} {two} z;", "m": f"{two} {three} y;"}

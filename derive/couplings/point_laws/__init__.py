@@ -1,6 +1,6 @@
 """Laws of the force between two points, one a file.
 
-A file here is a law by being here: its name is the law's, its `LAW` says what the law is.
+Every file here is a law with the name of the file; its `LAW` describes it.
 """
 
 from importlib import import_module

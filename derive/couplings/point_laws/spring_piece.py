@@ -9,7 +9,7 @@ from ...spec import PointLaw, Stages
 
 
 def beyond(p: Stages, gap: np.ndarray, c: Any) -> list[sp.Expr]:
-    """Return how far the distance of the points is beyond that at which the piece has the tension given."""
+    """Return the distance of the points beyond that with the given tension."""
     distance = p.define("distance", sp.sqrt(gap.dot(gap)))
     p.define("inv_distance", 1 / distance)
     return [p.define("beyond", distance - c.reference)]

@@ -1,17 +1,17 @@
-"""Cable with an assumed axial strain: an element has the lowest Legendre modes of its strain, and no others.
+"""Cable with an assumed axial strain: the lowest Legendre modes of the strain of an element.
 
 The strain along a centreline of degree d has degree 2(d - 1) in X, but the lengths of the slopes can make it constant
-only up to degree d - 1. The rest is energy that no motion of the nodes relieves: the element is too stiff where its
-slope turns (membrane locking), and its tension swings. Here
+only up to degree d - 1. No motion of the nodes relieves the rest: the element is too stiff where its slope turns
+(membrane locking), and its tension oscillates. Here
 
     strain(X) = sum_m strain_m P_m(X),   strain_m = (2m + 1)/2 ∫ strain P_m dX,   m < d,
 
 and the membrane energy is l/2 sum_m EA_m strain_m^2/(2m + 1). The modes of the Green strain are linear in Gram products
 and integrated exactly.
 
-A node has (d + 1)/2 coordinates along the cable. With as many modes an element is free of locking, but a straight cable
-then has a motion without energy, in which the slopes change their length and no node moves: it is unstable under any
-compression. The modes above, the upper ones, have an axial stiffness of their own, the third constant. EA gives the
+A node has (d + 1)/2 coordinates along the cable. With (d + 1)/2 modes an element is free of locking, but a straight
+cable then has a motion without energy, in which the slopes change their length and no node moves: it is unstable under
+any compression. The modes above, the upper ones, have an axial stiffness of their own, the third constant. EA gives the
 modes of degree d - 1 entirely; a small part of EA relieves them and keeps the slopes stable as long as the compressive
 strain is below that part.
 
@@ -39,7 +39,7 @@ from .points import Point, gathered
 
 
 def traits(strain: str, curvature: str) -> LawTraits:
-    """Return what the law with these measures is; it is damped like the full law with the same strain."""
+    """Return the traits of the law with these measures; it is damped like the full law with the same strain."""
     return LawTraits("cable", strain, curvature, membrane="assumed", damped_like=f"{strain}_exact")
 
 
@@ -61,8 +61,8 @@ class AssumedCable(Cable):
 
     @property
     def axial_points(self) -> list[Point]:
-        """Return the points for the axial strain: see `Cable`; else so many that they are exact for the modes of the
-        green strain, of degree 3(d - 1).
+        """Return the points for the axial strain: see `Cable`; else enough for exact modes of the Green strain, of
+        degree 3(d - 1).
         """
         if self.curvature == "exact" or self.strain == "engineering":
             return super().axial_points

@@ -66,7 +66,9 @@ class Term:
 
 
 def traits(strain: str, curvature: str) -> LawTraits:
-    """Return what the law with these measures is. Damping knows the strain alone: laws of one strain share it."""
+    """Return the traits of the law with these measures. Damping depends on the strain alone: laws of one strain share
+    it.
+    """
     damped_like = "" if curvature == "exact" else f"{strain}_exact"
     return LawTraits("cable", strain, curvature, membrane="full", damped_like=damped_like)
 
@@ -106,8 +108,8 @@ class Cable(Damping):
 
     @property
     def axial_points(self) -> list[Point]:
-        """Return the points for the axial strain: with the exact curvature those for bending; else so many that they
-        are exact for the green strain, whose square has degree 4(d - 1).
+        """Return the points for the axial strain: with the exact curvature those for bending; else enough for
+        the exact integral of the squared Green strain, of degree 4(d - 1).
         """
         return self.points(2 * self.degree - 1) if self.curvature == "linear" else self.bending_points
 
@@ -126,7 +128,7 @@ class Cable(Damping):
         return self._stiffness(program, "A")
 
     def section_stiffness(self, program: Program) -> np.ndarray:
-        """Declare the input S: EA in N, EI in N m^2, and what else ``stiffness_doc`` tells of; return it."""
+        """Declare the input S: EA in N, EI in N m^2, and further constants of ``stiffness_doc``; return it."""
         return self._stiffness(program, "S")
 
     def _stiffness(self, program: Program, name: str) -> np.ndarray:
@@ -271,7 +273,7 @@ class Cable(Damping):
 
     def stress_of_turning(self, program: Program, A: np.ndarray, change: np.ndarray, w: sp.Expr) -> np.ndarray:
         """Return blocks (n, n, 1, 1) over strain vectors that the mean stress of a step has more than the stress of the
-        mean vectors: EA (dr'.dr')/8, for that is what a turn takes off the strain. Of what bends it is none.
+        mean vectors: EA (dr'.dr')/8, by which a turn reduces the strain. Bending has none.
         """
         program.stage("strain of the change at the quadrature points")
         stiffness = program.define("EA_l", A[0] / (2 * w))

@@ -5,8 +5,8 @@ ds0 = |r0'| dx; the strain is Green's or the engineering one of |r'|/|r0'|; the 
 stiffness, whose sections turn about the tangent until the curvature points where kappa0 does; the energy is the least
 over these turns. Hence
 - in the plane of a curved shape it is a curved rod, as long as its curvature keeps its side;
-- across that plane nothing resists but tension: bent there, the size of the curvature stays the same to first order,
-  and a ring may become any curve of the same curvature. What has to hold its shape in space is a beam;
+- across that plane tension alone resists: bending there keeps the size of the curvature to first order, and a ring may
+  become any curve of the same curvature. A line that holds its shape in space is a beam;
 - where the cable is straight the energy has a kink, for the curvature may leave to any side. It is rounded within
   kappa < kappa0/1000, which takes 1e-6 off the bending stiffness elsewhere.
 A kappa0 below 2e-6/l is none: the straight law.
@@ -32,8 +32,8 @@ FLOOR = sp.Rational(1, 10**12)  # squared, of 2/l: below it, a curvature of the 
 
 @dataclass(frozen=True)
 class Reference:
-    """What a point takes of the stress-free shape: |r0'|, 1/r0'.r0', kappa0^2, the square that rounds the kink, the
-    rounded kappa0, and what is left of it where the shape is straight.
+    """The data of the stress-free shape at a point: |r0'|, 1/r0'.r0', kappa0^2, the square that rounds the kink, the
+    rounded kappa0, and its remainder where the shape is straight.
     """
 
     stretch: sp.Expr
@@ -48,7 +48,7 @@ N_REFERENCE = 6
 
 
 def traits(strain: str, curvature: str) -> LawTraits:
-    """Return what the law with these measures is; it is damped like the law for a straight shape."""
+    """Return the traits of the law with these measures; it is damped like the law for a straight shape."""
     straight = f"{strain}_{curvature}"
     return LawTraits("cable", strain, curvature, "full", straight, takes_shape=True, damped_like=straight)
 

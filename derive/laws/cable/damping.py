@@ -1,12 +1,12 @@
 """Kelvin-Voigt damping of a cable: N_strain tau strain'^2 + EI tau |D_t r''|^2 along the centreline.
 
 N_strain is the axial stiffness at the strain there: EA, or of a law that gives way in compression the derivative of its
-force, so that a slack cable is damped by as little as it resists.
+force: a slack cable has little damping, as it has little stiffness.
 
 D_t is the rate as seen from the tangent, which turns with i x di/dt and does not spin about itself: smooth where the
 cable is straight (the rate of |r''| is not). A bent cable that spins as a whole about its own tangent is braked,
 P = EI tau (Omega.i)^2 |i x r''|^2: no continuous law that damps the vibration of a straight cable is free of that.
-Damping need not be integrated exactly: as many points as the degree.
+Damping need not be integrated exactly: the number of points is the degree.
 """
 
 from __future__ import annotations
@@ -58,8 +58,8 @@ class Damping:
         return {"rates": degree + (degree - 1) * element.dim, "spins": int(element.dim == 3)}
 
     def stiffness_share(self, program: Program, A: np.ndarray) -> Share | None:
-        """Define what the axial stiffness over EA has in common at all points, and return what gives it at one, from a
-        tag and r' (dim,) there, with its derivative by the strain; None where the stiffness is EA.
+        """Define the part of the axial stiffness over EA that all points share, and return the function of a tag and
+        r' (dim,) for its value and its derivative by the strain at a point; None where the stiffness is EA.
         """
         return None
 

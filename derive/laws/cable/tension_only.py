@@ -27,7 +27,7 @@ from .damping import Share
 
 
 def traits(strain: str, curvature: str) -> LawTraits:
-    """Return what the law with these measures is; algorithmic dissipation has the stiffness of the full law."""
+    """Return the traits of the law with these measures; algorithmic dissipation has the stiffness of the full law."""
     return LawTraits("cable", strain, curvature, membrane="tension_only", relaxed_like=f"{strain}_exact")
 
 
@@ -52,7 +52,7 @@ class TensionOnlyCable(Cable):
         return stiffness * strain**2 * (A[2] + lost * (1 + strain * inverse))
 
     def stiffness_share(self, program: Program, A: np.ndarray) -> Share:
-        """Return what gives the second derivative of the energy by the strain over EA, and the third."""
+        """Return the function for the second and the third derivative of the energy by the strain over EA."""
         square = program.define_once("transition2", A[3] ** 2)
         quarter = program.define_once("quarter_lost", (1 - A[2]) / 4)
 

@@ -63,7 +63,7 @@ class CurvedContinuum(Continuum):
                              f"{element}_{NAME}_stiffness_at; its G0")
 
     def set_up(self, program: Program) -> None:
-        """Declare the inputs l, e0, at, D and the outputs A, G0: what a point of the volume adds."""
+        """Declare the inputs l, e0, at, D and the outputs A, G0: the contribution of a point of the volume."""
         length = program.input("l", (), "m", "length of the element")
         e0 = stress_free.shape(program, self.gram.element)
         at = program.input("at", 3, "m", "local coordinates x, y, z of a point")

@@ -42,7 +42,7 @@ class Kernels:
         return Program(f"{self.element.name}_{self.law.name}_{kernel}", doc, self.law.source)
 
     def _inputs(self, program: Program, *names: str) -> tuple[Any, ...]:
-        """Declare the inputs l, e, A, or l, e, v, A, tau, and return what they make."""
+        """Declare the inputs l, e, A, or l, e, v, A, tau; return the configuration from them."""
         shape = (self.element.n_vectors, self.element.dim)
         about = {"e": ("m, 1", "nodal vectors e, eq 1"), "v": ("m/s, 1/s", "rates of the nodal vectors")}
         length = program.input("l", (), "m", "length of the element")
@@ -129,7 +129,7 @@ class Kernels:
         return p
 
     def section_forces(self) -> Program:
-        """Return the kernel of what passes through the section at x from the side of greater x."""
+        """Return the kernel of force and moment through the section at x from the side of greater x."""
         p = self._program("section_forces", "force and moment resultants of a section")
         length, x = p.input("l", (), "m", "length of the element"), p.input("x", (), "m", "arc-length from its start")
         shape = (self.element.n_vectors, self.element.dim)

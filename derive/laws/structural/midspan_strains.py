@@ -1,7 +1,7 @@
 """Derivatives of the structural law's strains half way, through the components of r_x there: chain rule by hand.
 
 Stretch and shears are functions of these components alone, and they, with the curvatures, of the scalars: the mean
-components in the nodes' frames and the Gibbs vector between these. Two small steps cost less than one from all to all.
+components in the nodes' frames and the Gibbs vector between these. Two steps cost less than one.
 """
 
 from __future__ import annotations

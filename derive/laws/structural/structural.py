@@ -6,8 +6,9 @@ The section's frame t is made of the directors r_y, r_z. With r_x cubic and the 
     twist, curvature                     constant: the rotation vector from node to node over l,
     of the section  r_y.r_y/2, r_z.r_z/2, r_y.r_z   at the nodes, linear in between,
 
-are as many as the element can have (18 in space, 9 in the plane): nothing to lock and no hourglass. Half way, the frame
-is that of half the rotation between the nodes. Its Gibbs vector g = tan(angle/2) axis comes from the two frames.
+have the number that the element can have (18 in space, 9 in the plane): no locking and no hourglass modes. Half way,
+the frame is that of half the rotation between the nodes. Its Gibbs vector g = tan(angle/2) axis comes from the two
+frames.
 
 Rotations are linear, and so forbid the linear curvature of a beam under shear force. An inner bubble of rotation,
 amplitude beta (1 - X^2), takes it up; it is condensed: exact for Timoshenko's beam under end loads. It turns the
@@ -72,7 +73,7 @@ def arc(square: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
 
 
 class Structural:
-    """What the section's strains are, and the resultants that go with them."""
+    """Strains of the section and their resultants."""
 
     name, doc, source = NAME, DOC, SOURCE
 

@@ -139,7 +139,7 @@ def _moving(lines: Lines, s: State) -> State:
 
 
 def _motion(lines: Lines) -> list[Relation]:
-    """Return the relations of how the closest points move in time."""
+    """Return the relations of motion of the closest points."""
     def later(s: State, t: Any) -> State:
         return {**s, "d": s["d"] + t * s["u"], "t": s["t"] + t * s["w"], "e": 0 * s["e"]}
 
@@ -163,7 +163,7 @@ def _direction(s: State) -> Any:
 
 
 def _friction(lines: Lines) -> list[Relation]:
-    """Return the relations of friction that sticks, or slides by its spring, in closed form."""
+    """Return the relations of friction in stick, or slides by its spring, in closed form."""
     def along(s: State) -> Any:
         return s["t"][-1] / s["t"][-1].dot(s["t"][-1]) ** 0.5
 
