@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import warnings
-
 import numpy as np
 
-from ..errors import FunicularWarning, SceneError, near
+from ..errors import SceneError, near
 from ..parts.attachment import Attachment
 from ..parts.crossing import Crossing
 from ..parts.crossing_start import Start, radii, sign_of, start_of
 from ..parts.modal_body import ModalBody
 from ..parts.scene_data import OfDrawing, SceneData
 from ..parts.validation import LENGTH_TOLERANCE, show
-from .placement import placed_attachment
+from .placement import placed_attachment, report
 
 MIN_CROSSING_SINE = 1e-3
 """Sine of the angle between lines as drawn below which their closest points are not those of a crossing."""
@@ -86,8 +84,7 @@ def _check_start(scene: SceneData, part: Crossing, start: Start, radius: float) 
         message = (f"{part.where}: the lines overlap by {overlap:.6g} m as drawn, where the contact force is "
                    f"{part.stiffness * overlap**part.exponent:.4g} N; draw them apart, or start with "
                    'initial="equilibrium"')
-        scene.messages.append(OfDrawing(message))
-        warnings.warn(message, FunicularWarning, stacklevel=4)
+        report(scene, OfDrawing(message))
 
 
 def _place(scene: SceneData, part: Crossing, start: Start) -> np.ndarray:

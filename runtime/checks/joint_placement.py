@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from ..base.rotations import cross
-from ..errors import FunicularWarning, SceneError
+from ..errors import SceneError
 from ..parts.attachment import Attachment
 from ..parts.joint import DRIVE_UNITS, DRIVEN, LINE_KINDS, POINT_KINDS, Joint
 from ..parts.locations import Node, joined, point_of, support_of
@@ -17,7 +16,7 @@ from ..parts.scene_data import SceneData
 from ..parts.support import Motion, Support
 from ..parts.validation import LENGTH_TOLERANCE, show
 from .frames import cable_frame, has_section
-from .placement import SUPPORTED, elements_with_sections, placed_between
+from .placement import SUPPORTED, elements_with_sections, placed_between, report
 
 MAX_GAP = 1e-3
 """Largest gap of a joint that the start closes, as a fraction of the scene's size."""
@@ -35,9 +34,7 @@ def placed_joint(scene: SceneData, joint: Joint) -> Joint:
     check_other_joints(scene, joint, lambda: LENGTH_TOLERANCE * scene_size(scene, joint))
     check_joint(scene, joint)
     if _is_beyond(scene, joint, gap := _gap(scene, joint), LENGTH_TOLERANCE):
-        message = f"{joint.where}: {_apart(scene, joint, gap)}; they are brought together"
-        scene.messages.append(message)
-        warnings.warn(message, FunicularWarning, stacklevel=4)
+        report(scene, f"{joint.where}: {_apart(scene, joint, gap)}; they are brought together")
     return joint
 
 

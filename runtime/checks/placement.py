@@ -25,6 +25,12 @@ P = TypeVar("P", bound=Part)
 SUPPORTED = {"pin": "pinned", "clamp": "clamped", "motion": "moved as prescribed"}
 
 
+def report(scene: SceneData, message: str, level: int = 5) -> None:
+    """Add a message to the scene, and warn at the caller's `level` of the stack."""
+    scene.messages.append(message)
+    warnings.warn(message, FunicularWarning, stacklevel=level)
+
+
 def cable_at(scene: SceneData, name: str, place: str, s: float, keyword: str = "s") -> Cable:
     """Return the cable ``name``, on which ``s`` must lie."""
     if name not in scene.cables:
@@ -81,8 +87,7 @@ def placed_tie(scene: SceneData, tie: Tie) -> Tie:
         message = (f"{tie.where}: the tie shares the slopes of both cables, so that a moment on one shears the last "
                    "element of the other: the corner is too soft, the more so the shorter the elements are; "
                    'take scene.joint("weld", ...) instead, with up for an element without section axes')
-        scene.messages.append(message)
-        warnings.warn(message, FunicularWarning, stacklevel=4)
+        report(scene, message)
     return tie
 
 

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import warnings
-
 import numpy as np
 
-from ..errors import FunicularWarning, SceneError
+from ..errors import SceneError
 from ..parts.cable import Cable
 from ..parts.end_stops import Buffer
 from ..parts.locations import point_of
@@ -16,7 +14,7 @@ from ..parts.slide import Slide
 from ..parts.validation import LENGTH_TOLERANCE, show
 from .frames import cable_frame, has_section
 from .joint_placement import check_up
-from .placement import cable_at, elements_with_sections, placed_attachment
+from .placement import cable_at, elements_with_sections, placed_attachment, report
 
 MAX_GAP = 1e-3
 """Largest distance of a rider that is moved onto its cable at the start, as a fraction of the cable's length."""
@@ -159,8 +157,7 @@ def _seated(scene: SceneData, slide: Slide, cable: Cable) -> Slide:
     else:
         slide, nearest = _nearest(scene, slide, cable, gap)
         message = f"{slide.where}: {where}{nearest}"
-    scene.messages.append(message)
-    warnings.warn(message, FunicularWarning, stacklevel=5)
+    report(scene, message, 6)
     return slide
 
 

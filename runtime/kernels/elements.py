@@ -1,9 +1,9 @@
-"""Elements of this package and of libraries, from their manifests."""
+"""Elements of this package and of libraries, and laws of forces between points, from their manifests."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
@@ -97,3 +97,27 @@ def gauge(vectors: tuple[str, ...], length: float, y: float, z: float) -> Iterat
     for vector in vectors:
         by = vector.partition("_")[2]
         yield (length / 8) ** by.count("x") * y ** by.count("y") * z ** by.count("z")
+
+
+@dataclass(frozen=True)
+class PointLaw:
+    """The law of a force between two points.
+
+    parameters  units by name, in the order of the kernels' arguments
+    damping     name of the parameter of damping; empty without any
+    """
+
+    parameters: Mapping[str, str]
+    damping: str
+
+
+def point_law(kernel: str) -> PointLaw:
+    """Return the law of the kernels of that name.
+
+    Raises ValueError where there are none.
+    """
+    found = manifest()["point_laws"].get(kernel)
+    if found is None:
+        raise ValueError(f'no kernels of a point law "{kernel}": write its spec in derive/couplings/point_laws, run '
+                         "`funicular derive` and install again")
+    return PointLaw(**found)

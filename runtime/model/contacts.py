@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..engine import FRICTION_MARK, NO_TIME
+from ..kernels.element_line import along_elements
 from ..kernels.mesh import Mesh
 from ..parts.attachment import Attachment
 from ..parts.contact import GAUSS_POINTS, Contact
@@ -20,7 +21,6 @@ from ..parts.surface_shapes import HALF_WIDTH, Geometry
 from ..parts.validation import Vector
 from .attachments import AttachmentModel, ModelBuilder
 from .coupling import CouplingKind, CouplingModel, no_numbers
-from .quadrature import along_elements
 
 GAUSS = np.polynomial.legendre.leggauss(GAUSS_POINTS)
 KERNELS = {2: "planar_surface", 3: "surface"}

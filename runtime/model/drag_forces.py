@@ -10,9 +10,8 @@ from ..kernels.libraries import kernels_of
 from ..parts.polar import Polar
 from ..parts.validation import LENGTH_TOLERANCE
 from .drags import DragModel
-from .element_coordinates import element_coordinates, positions
 from .model import CableModel, Model
-from .states import attachment_points, spatial
+from .states import attachment_points, element_coordinates, positions, spatial
 
 
 @dataclass

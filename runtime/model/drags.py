@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..kernels.element_line import along_elements
 from ..parts.attachment import Attachment
 from ..parts.cable import Cable
 from ..parts.drag import Drag
@@ -19,7 +20,6 @@ from ..parts.velocity_table import AXES
 from .attachments import AttachmentModel, ModelBuilder
 from .coupling import CouplingKind, CouplingModel, no_numbers
 from .loads import GAUSS
-from .quadrature import along_elements
 
 MIN_SPEED = 1e-30
 """Lower bound of speeds in the kernels, m/s: derivatives at rest would be 0/0 without it."""

@@ -189,6 +189,11 @@ class MotionModel:
     sine: float
 
 
+def _couplings_of(kind: type[K]) -> cached_property[list[K]]:
+    """Return a property of a model: its couplings of a class, in their order."""
+    return cached_property(lambda model: cast(Model, model).of(kind))
+
+
 @dataclass
 class Model:
     """Arrays that the engine reads, explained in engine/bodies/model.h.
@@ -222,6 +227,14 @@ class Model:
     newton: Elimination = field(init=False)
     accelerations: Elimination = field(init=False)
 
+    slides = _couplings_of(SlideModel)
+    joints = _couplings_of(JointModel)  # first those between a rider's axes and its cable
+    point_forces = _couplings_of(PointForceModel)
+    drags = _couplings_of(DragModel)
+    crossings = _couplings_of(CrossingModel)
+    contacts = _couplings_of(ContactModel)
+    hard_contacts = _couplings_of(HardContactModel)
+
     def of(self, *kinds: type[K]) -> list[K]:
         """Return the couplings of these classes, in their order."""
         return [cast(K, coupling) for coupling in self.couplings if type(coupling) in kinds]
@@ -235,41 +248,6 @@ class Model:
         """Put the slides at arc-lengths (slides,) in m."""
         for slide, at in zip(self.slides, s, strict=True):
             slide.place_at(float(at), self.cables[slide.cable])
-
-    @cached_property
-    def slides(self) -> list[SlideModel]:
-        """Return the slides among the couplings."""
-        return self.of(SlideModel)
-
-    @cached_property
-    def joints(self) -> list[JointModel]:
-        """Return the joints, first those between a rider's axes and its cable."""
-        return self.of(JointModel)
-
-    @cached_property
-    def point_forces(self) -> list[PointForceModel]:
-        """Return the forces between two points."""
-        return self.of(PointForceModel)
-
-    @cached_property
-    def drags(self) -> list[DragModel]:
-        """Return the forces of fluids."""
-        return self.of(DragModel)
-
-    @cached_property
-    def crossings(self) -> list[CrossingModel]:
-        """Return the contacts of lines."""
-        return self.of(CrossingModel)
-
-    @cached_property
-    def contacts(self) -> list[ContactModel]:
-        """Return the contacts with surfaces by penalty."""
-        return self.of(ContactModel)
-
-    @cached_property
-    def hard_contacts(self) -> list[HardContactModel]:
-        """Return the points of hard contacts."""
-        return self.of(HardContactModel)
 
     def prescribed_at(self, t: float) -> dict[int, float]:
         """Return the prescribed values at the time t in s, by dof."""

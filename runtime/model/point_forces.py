@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from ..kernels.elements import point_law
 from ..kernels.libraries import kernels_of
-from ..kernels.point_laws import point_law
 from ..parts.force_pieces import HAS_NO_FORCE, PULLS_AND_PUSHES
 from ..parts.point_force import PointForce
 from ..parts.spring import Spring

@@ -9,13 +9,14 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ..base.rotations import cross, rotate
+from ..base.rotations import conjugate, cross, rotate
 from ..parts.locations import ends_of, joined, node_of
 from ..parts.scene_data import SceneData
 from ..parts.support import Support, Tie
 from .attachments import AttachmentModel
+from .contacts import ContactModel
 from .joints import JointModel
-from .model import BodyModel, Model
+from .model import BodyModel, CableModel, Model
 from .point_forces import PointForceModel
 from .unknowns import Node
 
@@ -143,3 +144,37 @@ def attachment_points(model: Model, attachment: AttachmentModel, q: np.ndarray) 
             arm = spatial(attachment.modal[0] + eta @ attachment.modal[1])
         return np.asarray(state["position"] + rotate(state["orientation"], arm))
     return np.broadcast_to(np.array(attachment.u), (len(q), 3))
+
+
+def element_coordinates(cable: CableModel, values: np.ndarray, element: np.ndarray | None = None) -> np.ndarray:
+    """Return (T, elements, vectors, dim) of a cable from (T, n); with element (T,) those of one element each, (T,
+    vectors, dim).
+    """
+    nodal = cable.nodal(values)
+    if element is not None:
+        rows = np.arange(len(values))
+        return np.concatenate([nodal[rows, element], nodal[rows, element + 1]], axis=1)
+    return np.concatenate([nodal[:, :-1], nodal[:, 1:]], axis=2)
+
+
+def positions(cable: CableModel) -> np.ndarray:
+    """Return (vectors,): which of an element's nodal vectors are positions."""
+    return np.array([name == "r" for name in cable.vectors] * 2)
+
+
+def distances(model: Model, scene: SceneData, contact: ContactModel, q: np.ndarray,
+              elements: np.ndarray | None = None) -> np.ndarray:
+    """Return (T, elements, points): distances in m of the points of a contact from its surface, in configurations q (T,
+    n_q), of some elements or of all.
+    """
+    cable, surface = model.cables[contact.cable], scene.surfaces[scene.contacts[contact.name].b]
+    elements = np.arange(cable.n_elements) if elements is None else elements
+    vectors = cable.nodal(q)
+    both = np.concatenate([vectors[:, elements], vectors[:, elements + 1]], axis=2)
+    N = np.broadcast_to(contact.N, (cable.n_elements, *contact.N.shape[1:]))[elements]
+    points = spatial(np.einsum("egk,tekd->tegd", N, both))
+    if surface.on is not None:
+        frame = body_state(model, next(body for body in model.bodies if body.name == surface.on), q)
+        turned = conjugate(frame["orientation"])[:, None, None]
+        points = rotate(turned, points - frame["position"][:, None, None])
+    return surface.geometry.distance(points)

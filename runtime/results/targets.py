@@ -13,9 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import SceneError, near
-from ..model.element_coordinates import element_coordinates
 from ..model.part_states import part_states
-from ..model.states import spatial
+from ..model.states import element_coordinates, spatial
 from ..parts.paths import COMPONENTS
 from ..parts.validation import LENGTH_TOLERANCE
 from ..solve.adjustment.snapshots import Reader, Snapshots

@@ -11,7 +11,7 @@ from funicular.integrators import GeneralisedAlpha
 from funicular.model import border, elimination
 from funicular.model.build import build
 from funicular.model.elimination import BorderGraph, eliminated
-from funicular.model.loops import bridges, joints_in_loops
+from funicular.model.redundant_constraints import bridges, joints_in_loops
 from linear_cost import SCENES as CABLES
 from linear_cost import scene as cables
 from shared_scenes import cable_scene

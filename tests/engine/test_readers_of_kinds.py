@@ -21,7 +21,7 @@ PLACES = {
         "solve/notes/uncontrolled_errors.py", "solve/statics/relaxation.py", "solve/statics/rest_state.py",
         "solve/statics/static_problem.py"],
     "joints close loops, in which equations are redundant; their ends and angles are prescribed": [
-        "model/loops.py", "model/redundant_constraints.py", "solve/adjustment/change.py", "solve/notes/sensitivity.py",
+        "model/redundant_constraints.py", "solve/adjustment/change.py", "solve/notes/sensitivity.py",
         "solve/statics/turns.py"],
     "an instant or a frequency of fluids: their signals, tables and added mass": [
         "model/drag_forces.py", "model/knots.py", "results/section_forces/balance_limits.py",

@@ -16,8 +16,7 @@ from funicular.derive.verify.command import prepare, uncovered, verify
 from funicular.derive.verify.exact import DIGITS
 from funicular.derive.verify.report import Report
 from funicular.generated import kernels
-from funicular.kernels.elements import manifest
-from funicular.kernels.point_laws import point_law
+from funicular.kernels.elements import manifest, point_law
 from funicular.parts.kinds import KINDS
 from funicular.parts.point_force import PointForce
 from numpy.testing import assert_allclose

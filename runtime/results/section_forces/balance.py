@@ -15,9 +15,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...model.element_coordinates import positions
 from ...model.model import CableModel
-from ...model.states import spatial
+from ...model.states import positions, spatial
 from ...parts.cable import Cable
 from ...parts.validation import LENGTH_TOLERANCE
 from ..shape_functions import of_slopes, on_axis

@@ -17,11 +17,10 @@ from ...kernels.libraries import kernels_of
 from ...model.attachments import CARRIED, UP, AttachmentModel
 from ...model.drag_forces import Turning, densities
 from ...model.drags import DragModel
-from ...model.element_coordinates import element_coordinates, positions
 from ...model.kinds import COUPLINGS
 from ...model.loads import GAUSS
 from ...model.model import CableModel, Model
-from ...model.states import attachment_points, spatial
+from ...model.states import attachment_points, element_coordinates, positions, spatial
 from ...parts.load import DistributedForce, Moment
 from ...parts.scene_data import SceneData
 from ..shape_functions import of_slopes, on_axis

@@ -6,9 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ...model.element_coordinates import positions
 from ...model.model import CableModel
-from ...model.states import spatial
+from ...model.states import positions, spatial
 from ...parts.cable import Cable
 from ...parts.scene_data import SceneData
 from ...parts.support import Clamp, Motion, Support

@@ -8,8 +8,8 @@ import numpy as np
 from scipy.sparse import block_diag, coo_array, csc_array, csr_array, kron
 from scipy.sparse.linalg import splu
 
-from ...model.element_coordinates import element_coordinates, positions
 from ...model.model import CableModel, Model
+from ...model.states import element_coordinates, positions
 from ...model.unknowns import by_unknowns
 from .cable_loads import CableLoads, Instants
 from .spreads import Spread

@@ -19,8 +19,8 @@ import numpy as np
 
 from ...model.cables import cable_gravity
 from ...model.constants import constants
-from ...model.element_coordinates import element_coordinates
 from ...model.model import CableModel
+from ...model.states import element_coordinates
 from ...parts.cable import Cable
 from ...parts.section_stiffness import lengths_in_stiffness, section_stiffness
 

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...model.contact_points import distances
 from ...model.contacts import ContactModel
 from ...model.model import Model
+from ...model.states import distances
 from ...parts.scene_data import SceneData
 
 

@@ -18,9 +18,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...kernels.mesh import Mesh
-from ...model.element_coordinates import element_coordinates
 from ...model.middle_strain import gauss_rule, strain_at
 from ...model.model import CableModel, Model
+from ...model.states import element_coordinates
 from ...parts.locations import attached
 from ...parts.scene_data import SceneData
 from .note import LineStiffness, Note, Rows

@@ -15,9 +15,9 @@ import numpy as np
 from ...base.rotations import rotate
 from ...engine import Engine, outputs_by_name
 from ...model.joints import JointModel
-from ...model.loops import joints_in_loops
 from ...model.middle_strain import stretches
 from ...model.model import BodyModel, CableModel, Model
+from ...model.redundant_constraints import joints_in_loops
 from ...model.states import attachment_points, body_rates, body_state, joint_state
 from ...parts.cable import Cable
 from ...parts.section_stiffness import compressive_stiffness

@@ -8,8 +8,8 @@ import numpy as np
 
 from ...checks.contact_placement import MAX_POINT_DISTANCE, resolved
 from ...engine import Engine
-from ...model.contact_points import distances
 from ...model.contacts import ContactModel
+from ...model.states import distances
 from ...parts.validation import show
 from .note import Note, Rows
 

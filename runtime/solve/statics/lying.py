@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...engine import outputs_by_name
-from ...model.contact_points import distances
 from ...model.model import Model
+from ...model.states import distances
 from ...parts.scene_data import SceneData
 from .static_problem import StaticProblem
 
