@@ -112,7 +112,7 @@ def _errors(s: np.ndarray, kept: np.ndarray, column: np.ndarray) -> np.ndarray:
 
 
 def _distances(s: np.ndarray, column: np.ndarray, left: np.ndarray, right: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Return the distances (T, n) of a column at stations (n,) from the lines between two others of each."""
+    """Return the distances (T, n) of a column at stations (n,) from the lines between others, (n,) or one pair."""
     length = s[right] - s[left]
     weight = np.where(length > 0, (s[at] - s[left]) / np.where(length > 0, length, 1), 0.0)[:, None]
     line = column[:, left] * (1 - weight) + column[:, right] * weight
@@ -125,7 +125,7 @@ def _subdivided(s: np.ndarray, columns: list[np.ndarray]) -> np.ndarray:
         inner = np.arange(left + 1, right)
         if len(inner) == 0:
             return (0.0, left, right, left)
-        ends = np.full(len(inner), left), np.full(len(inner), right)
+        ends = np.array([left]), np.array([right])
         error = np.max([_distances(s, column, *ends, inner).max(axis=0) for column in columns], axis=0)
         farthest = int(error.argmax())
         return (-float(error[farthest]), left, right, int(inner[farthest]))

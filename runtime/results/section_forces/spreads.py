@@ -17,19 +17,25 @@ from ..shape_functions import on_axis
 
 
 @dataclass
-class Spread:
-    """A force per length on an element from x = start to stop (m).
-
-    x, weights (n,): points and weights of a quadrature on this part, m; density (T, n, 3): force per length there, N/m,
-    interpolated by a polynomial; f (T, vectors, dim): its generalised force. on_slope (T, n, 3): generalised force per
-    length on r_x, N; couple (T, n, 3): moment per length, N; both as the density, or None.
-    """
+class Quadrature:
+    """Points x and weights (n,) in m on an element, from start to stop (m)."""
 
     element: int
     start: float
     stop: float
     x: np.ndarray
     weights: np.ndarray
+
+
+@dataclass
+class Spread(Quadrature):
+    """A force per length on a part of an element.
+
+    density (T, n, 3): force per length at the points, N/m, interpolated by a polynomial; f (T, vectors, dim): its
+    generalised force. on_slope (T, n, 3): generalised force per length on r_x, N; couple (T, n, 3): moment per length,
+    N; both as the density, or None.
+    """
+
     density: np.ndarray
     f: np.ndarray
     on_slope: np.ndarray | None = None
@@ -42,17 +48,9 @@ class Spread:
 
 
 @dataclass
-class Rule:
-    """A quadrature on a part of an element: n points x and weights (m), shape functions (n, vectors) there.
+class Rule(Quadrature):
+    """Shape functions (n, vectors) at the points: N of positions, N_x of r_x, N_chord of the chord of a foil."""
 
-    N: of positions, N_x: of r_x, N_chord: of the director along the chord of a foil.
-    """
-
-    element: int
-    start: float
-    stop: float
-    x: np.ndarray
-    weights: np.ndarray
     N: np.ndarray
     N_x: np.ndarray
     N_chord: np.ndarray | None = None
