@@ -2,29 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
-import numpy as np
 from pydantic import model_validator
 
 from ..parts.part import Part
-from ..parts.schemas import checked
-from ..parts.validation import not_negative, positive, shown, vector
-
-
-def _each(unit: str, above: bool) -> Any:
-    """Return the check of a list of one or more numbers, which are not negative, or positive (above)."""
-    def check(value: Any) -> tuple[float, ...]:
-        value = value.tolist() if isinstance(value, np.ndarray) else value
-        if not isinstance(value, list | tuple) or not value:
-            raise ValueError(f"must be a list of numbers, one at least, got {shown(value)}")
-        numbers = vector(value, unit, len(value))
-        for number in numbers:
-            if number < 0 or (above and number == 0):
-                raise ValueError(f"must {'be above nil' if above else 'not be negative'}, got {number:.9g} {unit}")
-        return numbers
-
-    return checked(check, {"type": "array", "items": {"type": "number"}})
+from ..parts.validation import list_of, not_negative, positive
 
 
 class Pantograph(Part):
@@ -37,19 +20,23 @@ class Pantograph(Part):
     has it in series with the dent in the wire that elements leave out, see `local_sag`.
     """
 
-    masses: Annotated[tuple[float, ...], _each("kg", above=True)]
-    stiffness: Annotated[tuple[float, ...], _each("N/m", above=False)]
-    damping: Annotated[tuple[float, ...], _each("N s/m", above=False)]
+    masses: Annotated[tuple[float, ...], list_of("kg", least=1)]
+    stiffness: Annotated[tuple[float, ...], list_of("N/m", least=1)]
+    damping: Annotated[tuple[float, ...], list_of("N s/m", least=1)]
     uplift: Annotated[float, not_negative("N")]
     aerodynamic: Annotated[float, not_negative("N s²/m²")] = 0.0
     contact_stiffness: Annotated[float, positive("N/m")] = 50e3
 
     @model_validator(mode="after")
     def _is_a_chain(self) -> Pantograph:
-        for name in ("stiffness", "damping"):
-            if len(getattr(self, name)) != len(self.masses):
-                raise ValueError(f"has {len(self.masses)} masses, but {len(getattr(self, name))} values of {name}",
+        for name, unit in (("masses", "kg"), ("stiffness", "N/m"), ("damping", "N s/m")):
+            values = getattr(self, name)
+            if len(values) != len(self.masses):
+                raise ValueError(f"has {len(self.masses)} masses, but {len(values)} values of {name}",
                                  "give one for each mass, of what is below it")
+            if (least := min(values)) < 0 or (name == "masses" and least == 0):
+                raise ValueError(f"{name} must {'be above nil' if name == 'masses' else 'not be negative'}, got "
+                                 f"{least:.9g} {unit}")
         for k, (stiffness, damping) in enumerate(zip(self.stiffness, self.damping, strict=True)):
             if not stiffness and not damping:
                 raise ValueError(f"has nothing below mass {k + 1}", "give it stiffness or damping")

@@ -31,7 +31,7 @@ from .parameters import SWEEP, Points, check_whole, points_of
 from .store import Store, new_store, stored
 from .stored_points import Keep
 from .subject import FAILED, Outcome, SceneSubject, Subject, subject_of
-from .workers import MISSING, Workers, workers_of
+from .workers import Workers, workers_of
 
 if TYPE_CHECKING:
     import xarray
@@ -191,7 +191,9 @@ def _check_workers(workers: int | None, cluster: str | None, batch: int | None) 
     if workers != 0:
         for name in ("dask", "distributed"):
             if importlib.util.find_spec(name) is None:
-                raise FunicularError(MISSING.format(name=f'"{name}"'))
+                raise FunicularError(f'sweep: needs Dask to compute on more than one core, and the package "{name}" is '
+                                     "missing; pip install 'funicular[sweep]', or compute in this process alone "
+                                     "(workers=0, --serial)")
 
 
 @contextmanager

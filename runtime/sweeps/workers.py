@@ -38,8 +38,6 @@ BATCHES_PER_WORKER = 3
 """Batches that a worker has at once: one to compute, and others so that it need not wait."""
 POLL = 1.0
 """Seconds between two checks of the scheduler and the number of its workers."""
-MISSING = ("sweep: needs Dask to compute on more than one core, and the package {name} is missing; pip install "
-           "'funicular[sweep]', or compute in this process alone (workers=0, --serial)")
 
 
 class Workers:
@@ -58,14 +56,6 @@ class Workers:
             yield batch, task(batch)
 
 
-def dask_module(name: str) -> Any:
-    """Return a module of Dask. Raises FunicularError where it is not installed."""
-    try:
-        return importlib.import_module(name)
-    except ModuleNotFoundError as error:
-        raise FunicularError(MISSING.format(name=f'"{error.name}"')) from None
-
-
 @contextmanager
 def workers_of(number: int | None, cluster: str | None) -> Iterator[Workers]:
     """Yield the workers.
@@ -76,7 +66,6 @@ def workers_of(number: int | None, cluster: str | None) -> Iterator[Workers]:
     if cluster is None and number == 0:
         yield Workers()
         return
-    dask_module("dask")
     with local_cluster(number or available()) if cluster is None else nullcontext(cluster) as address:
         workers = DaskWorkers(address)
         try:
@@ -94,7 +83,7 @@ def local_cluster(number: int) -> Iterator[str]:
     The command `dask worker` starts them, so that a script needs no ``if __name__ == "__main__"``. They end with this
     process, also where it is killed. Raises FunicularError.
     """
-    distributed = dask_module("distributed")
+    distributed: Any = importlib.import_module("distributed")  # of an extra
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     with tempfile.TemporaryDirectory(prefix="funicular-", ignore_cleanup_errors=True) as folder:
         cluster = distributed.LocalCluster(n_workers=0, processes=True, dashboard_address="127.0.0.1:0",
@@ -131,7 +120,8 @@ class DaskWorkers(Workers):
     """The workers of a Dask scheduler."""
 
     def __init__(self, address: str):
-        self._address, self._distributed = address, dask_module("distributed")
+        self._distributed: Any = importlib.import_module("distributed")
+        self._address = address
         self._client: Any = None
         self._threads, self._counted_at = 1, -POLL
         self._suspects: list[Batch] = []
