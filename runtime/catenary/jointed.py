@@ -101,7 +101,7 @@ class JointedPantograph(Part):
                                     ("guide and the carrier's lever", high - low, high - head)):
             size = float(np.linalg.norm(first) * np.linalg.norm(second))
             if not abs(across(first) @ second) > DEAD_CENTRE_SINE * size:
-                raise ValueError(f"the {what} are in line, or one of them has no length: what moves then is not led",
+                raise ValueError(f"the {what} are in line, or one of them has no length: the posture is not determined",
                                  "move an end of one of them")
         if not abs(self.rates()[1]) > DEAD_CENTRE_SINE * float(np.linalg.norm(knee)):
             raise ValueError("the head does not rise as the lower arm turns: no moment makes a force there",

@@ -33,9 +33,9 @@ class Pantograph(Part):
             values = getattr(self, name)
             if len(values) != len(self.masses):
                 raise ValueError(f"has {len(self.masses)} masses, but {len(values)} values of {name}",
-                                 "give one for each mass, of what is below it")
+                                 "give one for each mass, for the spring and damper below it")
             if (least := min(values)) < 0 or (name == "masses" and least == 0):
-                raise ValueError(f"{name} must {'be above nil' if name == 'masses' else 'not be negative'}, got "
+                raise ValueError(f"{name} must {'be positive' if name == 'masses' else 'not be negative'}, got "
                                  f"{least:.9g} {unit}")
         for k, (stiffness, damping) in enumerate(zip(self.stiffness, self.damping, strict=True)):
             if not stiffness and not damping:

@@ -70,7 +70,7 @@ def add_pantograph(scene: Scene, pantograph: Pantograph | JointedPantograph, at:
         raise SceneError("pantograph", 'there is no cable "contact"', "make the scene with funicular.catenary.scene")
     (begin, level, _), (end, *_) = wire.drawn_through[0], wire.drawn_through[-1]
     if not begin < at < end - END_DISTANCE or not 0 <= speed < np.inf:
-        raise SceneError("pantograph", f"at {at:.6g} m with {speed:.6g} m/s is not on its way along the line",
+        raise SceneError("pantograph", f"at {at:.6g} m with {speed:.6g} m/s does not move along the line",
                          f"begin between {begin:.6g} and {end - END_DISTANCE:.6g} m, with a speed that is not negative")
     has_tolerance = "absolute_tol" in scene.run_settings
     scene.run_settings = settings = overridden(RUN, scene.run_settings)

@@ -123,6 +123,6 @@ def mass_damping(ratio: float, frequency: float) -> float:
     Other modes have ratios in inverse proportion to their frequencies. Raises SceneError.
     """
     if not (0 <= ratio < 1 and 0 < frequency < np.inf):
-        raise SceneError("mass_damping", f"needs a ratio from 0 to 1 and a frequency above nil, got {shown(ratio)} and "
+        raise SceneError("mass_damping", f"needs a ratio from 0 to 1 and a positive frequency, got {shown(ratio)} and "
                          f"{shown(frequency)} Hz")
     return float(4 * np.pi * frequency * ratio)

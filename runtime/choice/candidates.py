@@ -1,4 +1,4 @@
-"""The elements and laws that a cable can have: the cheapest that models what the scene asks for, and the finest."""
+"""The elements and laws that a cable can have: the cheapest one that suits the scene, and the finest."""
 
 from __future__ import annotations
 

@@ -13,9 +13,9 @@ from .remeshing import CableModel, S
 
 def of_unchanged(names: list[str]) -> str:
     """Return the sentence on quantities that did not change."""
-    told = ("the error of the shape at rest is over the scene's extent" if names == [MOTION] else
+    error = ("the error of the shape at rest is over the scene's extent" if names == [MOTION] else
             "nothing is estimated of that")
-    return f"{' and '.join(names)} did not change in the short runs: {told}"
+    return f"{' and '.join(names)} did not change in the short runs: {error}"
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ class Choice(Generic[S]):
     def messages(self) -> list[str]:
         """Return the messages of a run on the choice."""
         kept = "" if self.kept or self.unresolved else f"; no model at hand keeps it, the estimate is {self.error:.1e}"
-        given = f"; what was given of {', '.join(self.given)} is kept, its error not estimated" if self.given else ""
+        given = f"; elements of {', '.join(self.given)} are kept as given, without an estimate" if self.given else ""
         still = of_unchanged(self.unchanged) if self.unchanged else ""
         return [f"model chosen {self.heading}{kept}{given}", *filter(None, (self.planar, still)), *self.unresolved]
 

@@ -3,7 +3,7 @@
 The error of a run has three parts, which share the tolerance: the error of the model (deformations that its elements
 leave out), that of the mesh, and that of time, which the integrator bounds by its own tolerance.
 
-1. Each cable gets the elements that can model what the scene asks for (`candidates`): those of a cable, or of a beam.
+1. Each cable gets the elements that suit the scene (`candidates`): those of a cable, or of a beam.
 2. Meshes, each of half the element length, are run until the error of the needed one can be extrapolated
    (`mesh_error`). On the second mesh two integrators are compared, which gives the tolerance of the other probes
    (`time_error`). Meshes whose difference is hidden by the error of these steps are run again with shorter ones. Where
@@ -206,12 +206,12 @@ class Chooser(Generic[S]):
         apart = self.prober.difference(self.probe(levels[-1]), finest) / (1.0 if asked else 1 - 1 / FINEST_TOL_RATIO)
         if not self.time.distrusts(apart):
             return mesh, levels
-        tells = f"on a fine mesh {self.time.probed} with tol {self.time.probe_tol:.2g} errs by {apart:.1e}"
-        self.reasons.append(tells)
+        reason = f"on a fine mesh {self.time.probed} with tol {self.time.probe_tol:.2g} errs by {apart:.1e}"
+        self.reasons.append(reason)
         if asked:
             self.time = replace(self.time, error=apart)
             return mesh, levels
-        self.time = self.time.automatic(self.tol, tells)
+        self.time = self.time.automatic(self.tol, reason)
         return self._ladder(level)
 
     def _model_errors(self, level: int) -> dict[str, float]:

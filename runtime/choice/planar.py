@@ -49,7 +49,7 @@ class Planar(Generic[S]):
         if self.scene is None:
             return "the scene is spatial: " + "; ".join(self.reasons)
         changed = ", ".join(f"{name} of {element}" for name, element in self.elements)
-        return (f"the scene stays in {called(self.plane)}: {changed}; what would leave the plane, such as lateral "
+        return (f"the scene stays in {called(self.plane)}: {changed}; motion out of the plane, such as lateral "
                 "buckling, is not in it")
 
 

@@ -192,7 +192,7 @@ def view(
     equilibrium: Annotated[bool, typer.Option("--equilibrium", help="of a scene, its state of rest")] = False,
     relaxed: Annotated[bool, typer.Option("--relaxed", help="of a scene, where a damped motion comes to rest")] = False,
     path: Annotated[bool, typer.Option("--path", help="of a scene, the load path to its state of rest")] = False,
-    modes: Annotated[int | None, typer.Option(help="of a scene, so many modes; about its rest with --equilibrium")
+    modes: Annotated[int | None, typer.Option(help="of a scene, number of modes; about its rest with --equilibrium")
                      ] = None,
     as_drawn: Annotated[bool, typer.Option("--as-drawn", help="of --modes, also where forces do not balance as drawn")
                         ] = False,

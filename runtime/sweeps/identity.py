@@ -59,7 +59,7 @@ def _described(value: Any, seen: set[int]) -> str:
     own = "" if _is_library(what) else _text(what)
     try:
         return f"{what.__qualname__} {own} {hashlib.sha256(pickle.dumps(value)).hexdigest()}"
-    except Exception:  # objects raise what they like where they cannot be pickled
+    except Exception:  # an object that cannot be pickled may raise any error
         return f"{what.__qualname__} {own}"
 
 

@@ -25,7 +25,7 @@ WORD_BYTES = 8
 
 
 class Slot(NamedTuple):
-    """The place of a variable of a point in a row: numbers, or a text of at most so many bytes."""
+    """The place of a variable of a point in a row: numbers, or a text of at most `text_bytes` bytes."""
 
     dims: tuple[str, ...]
     shape: tuple[int, ...]
@@ -41,7 +41,7 @@ class Slot(NamedTuple):
 
 
 OF_STATUS = {STATUS: Slot((), (), "1", "how the point's run ended, or failed", STATUS_BYTES),
-             MESSAGE: Slot((), (), "1", "why the point failed, else what its run noted", MESSAGE_BYTES),
+             MESSAGE: Slot((), (), "1", "error of the point, else notes of its run", MESSAGE_BYTES),
              SECONDS: Slot((), (), "s", "wall time of the point")}
 """Variables of every sweep."""
 
@@ -172,7 +172,7 @@ def _misfit(name: str, each: Slot, kept: Kept) -> str | None:
         return (f'"{name}" is over {", ".join(dims) or "nothing"} here, and over {", ".join(each.dims) or "nothing"} '
                 "at the first points")
     if shape[over_rows:] != room[over_rows:] or len(shape) != len(room):
-        return f'"{name}" has the shape {shape} here, and {room} at the first points; keep what has one shape, or ' \
+        return f'"{name}" has the shape {shape} here, and {room} at the first points; keep results of one shape, or ' \
                "sweep in parts"
     if over_rows and shape[0] > room[0]:
         return f"the point has {shape[0]} output times, and the first ones had at most {room[0]}"

@@ -60,7 +60,7 @@ def run_many(scenes: Iterable[Scene | Callable[[], Scene]], *, threads: int | No
     """
     for name in SINGLE_RUN_SETTINGS:
         if name in settings:
-            raise SceneError("run_many", f'"{name}" is of one run', "take what the results yield, as they come")
+            raise SceneError("run_many", f'"{name}" belongs to one run', "use the results that the iteration yields")
     if isinstance(scenes, Scene):
         raise SceneError("run_many", "takes many scenes, got one", "give a list, or call run of the scene")
     RunSettings(**{"duration": 1.0} | {name: value for name, value in settings.items() if name != "initial"})

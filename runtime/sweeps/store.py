@@ -65,7 +65,7 @@ class Store:
                 self.file.count_rows(len(self.finished) if self.finished[at + gap] else at + gap)
         except OSError as error:
             raise ResultFileError(f"{self.file.path}: the results could not be written: {error.strerror}; make room, "
-                                  "and repeat the sweep: what is written is not computed again") from error
+                                  "and repeat the sweep: finished points are not computed again") from error
 
     def failed(self) -> np.ndarray:
         """Return the numbers of the points that were recorded as failed."""

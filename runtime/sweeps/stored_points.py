@@ -124,7 +124,7 @@ def as_variable(name: str, value: Any) -> Variable:
     """Return a number or an array of any shape, with numbered dimensions. Raises SceneError."""
     values = np.asarray(value)
     if values.dtype.kind not in "fiub" or not (isinstance(value, Real | np.ndarray | np.generic | list | tuple)):
-        raise SceneError(SWEEP, f'what is kept as "{name}" must be a number or an array of numbers, got '
+        raise SceneError(SWEEP, f'the result kept as "{name}" must be a number or an array of numbers, got '
                          + shown(value))
     return Variable(tuple(f"{name}.{k}" for k in range(values.ndim)), values.astype(float), "", "")
 

@@ -211,7 +211,7 @@ def _run(scene: Scene) -> Run:
 
 
 def _attempt(act: Callable[[Any], Any], given: Any, keep: Keep) -> Outcome | Scene:
-    """Return the outcome of a point by what a function makes of it; a scene, which is to be run, as it is."""
+    """Return the outcome of a point from the result of a function; a scene as it is, to be run later."""
     begin = time.perf_counter()
     try:
         made = act(given)

@@ -140,7 +140,7 @@ def sweep(subject: Scene | Callable[..., Any], parameters: Mapping[str, Any], *,
     fails has NaN, the ``status`` "failed" and its error in ``message``. record_invalid: record scenes that cannot be
     simulated in this way instead of refusing them before the work; retry_failed: compute failed points again.
 
-    Raises SceneError, ResultFileError, FunicularError. Ctrl-C returns what was computed, with a `FunicularWarning`.
+    Raises SceneError, ResultFileError, FunicularError. Ctrl-C returns the finished points, with a `FunicularWarning`.
     """
     _check_workers(workers, cluster, batch)
     plan = Plan.of(subject, parameters, keep, method, samples, seed, settings, record_invalid)
@@ -172,7 +172,7 @@ def sweep_cost(subject: Scene | Callable[..., Any], parameters: Mapping[str, Any
                keep: Sequence[str] | Mapping[str, Any] | None = None, method: str = "grid",
                samples: int | None = None, seed: int = 0, workers: int | None = None, record_invalid: bool = False,
                **settings: Any) -> SweepCost:
-    """Return what `sweep` of the same arguments would cost, from a sample of its points; nothing is written."""
+    """Return the estimated cost of `sweep` with the same arguments, from a sample of its points; writes nothing."""
     plan = Plan.of(subject, parameters, keep, method, samples, seed, settings, record_invalid)
     sampled = sample(plan.subject, plan.points, np.arange(plan.points.number))
     return _cost(plan, plan.layout(sampled), plan.points.number, sampled, workers)

@@ -140,7 +140,7 @@ class DaskWorkers(Workers):
         begin, cause = time.monotonic(), "it does not answer"
         while (left := PATIENCE - (time.monotonic() - begin)) > 0:
             try:
-                self._ended = queue.SimpleQueue()  # what the scheduler lost stays in the older one
+                self._ended = queue.SimpleQueue()  # futures that the scheduler lost stay in the older one
                 self._client = self._distributed.Client(self._address, timeout=min(left, 5.0), set_as_default=False)
                 self._client.wait_for_workers(1, timeout=max(left, 1.0))
                 return

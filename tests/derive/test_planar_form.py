@@ -78,7 +78,7 @@ def test_the_motion_is_that_of_the_spatial_scene(scene):
 def test_the_planar_scene_says_what_it_is():
     found = planar_of(rider())
     assert dict(found.elements) == {"wire": "cable8p"}
-    assert str(found) == ("the scene stays in the plane z = 0: wire of cable8p; what would leave the plane, such as "
+    assert str(found) == ("the scene stays in the plane z = 0: wire of cable8p; motion out of the plane, such as "
                           "lateral buckling, is not in it")
 
 

@@ -129,7 +129,7 @@ def test_slides_and_joints():
 
 def test_the_planar_scene_says_its_plane():
     assert str(planar_of(turned_scene(shaken(), *UPRIGHT))).startswith("the scene stays in the plane y = 0: rope of "
-                                                                     "cable8p; what would leave")
+                                                                     "cable8p; motion out of the plane")
     found = planar_of(turned_scene(shaken(), (np.pi / 2, 0, 0), (0, 0.25, 0)))
     assert "the plane y = 0.25: " in str(found)
     assert "the plane through (" in str(planar_of(turned_scene(shaken(), *ASKEW)))

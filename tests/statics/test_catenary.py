@@ -142,7 +142,7 @@ def test_lines_that_do_not_hang_are_refused(changes, says):
 
 @pytest.mark.parametrize(("changes", "says"), [
     ({"masses": []}, "masses must be a list"),
-    ({"masses": [7.2, 0]}, "above nil"),
+    ({"masses": [7.2, 0]}, "must be positive"),
     ({"stiffness": [4200]}, "2 masses, but 1 values of stiffness"),
     ({"damping": [10, -1]}, "not be negative"),
     ({"stiffness": [4200, 0], "damping": [10, 0]}, "nothing below mass 2"),

@@ -98,7 +98,7 @@ def test_what_was_given_is_kept_unless_all_is_free():
     scene = strip(elements=5, element="cable12", strain="green")
     choice = scene.choose(1e-2, duration=0.1)
     assert choice.models == {"strip": CableModel("cable12", "green_exact", 5)}
-    assert "its error not estimated" in choice.messages()[0] and choice.facts()["given"] == ["strip"]
+    assert "kept as given, without an estimate" in choice.messages()[0] and choice.facts()["given"] == ["strip"]
     assert any("the error of its mesh is not estimated" in reason for reason in choice.reasons)
     kept = strip(element="beam24", law="structural").choose(1e-2, duration=0.1)
     assert (kept.models["strip"].element, kept.models["strip"].law) == ("beam24", "structural")
