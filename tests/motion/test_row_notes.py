@@ -1,6 +1,8 @@
 """Notes on output rows include all rows, also those on disk of a streamed run: struts, strains, springs."""
 
+import importlib
 import json
+import pkgutil
 
 import numpy as np
 import pytest
@@ -17,8 +19,10 @@ from funicular import (
     TableSignal,
 )
 from funicular.model.build import build
+from funicular.solve import notes
 from funicular.solve.motion import pauses
-from funicular.solve.notes.row_notes import RowNotes
+from funicular.solve.notes.note import Note
+from funicular.solve.notes.row_notes import NOTES, RowNotes
 from shared_scenes import cable_scene
 
 RADIUS, MODULUS = 1e-3, 1e8
@@ -174,3 +178,10 @@ def test_a_distance_that_is_driven_to_nothing_is_named(integrator):
     with pytest.raises(ConvergenceError, match=r'^joint "winch": at t = 1 s both ends are at .* its direction is '
                                                'lost; keep them apart, or take kind="spherical"'):
         scene.run(2.0, output_step=0.1, integrator=integrator, progress=False)
+
+
+def test_the_list_of_notes_is_complete():
+    """A note that is not in `row_notes.NOTES` would measure nothing."""
+    for module in pkgutil.iter_modules(notes.__path__, f"{notes.__name__}."):
+        importlib.import_module(module.name)
+    assert set(NOTES) == set(Note.__subclasses__()), "add the new note to NOTES of runtime/solve/notes/row_notes.py"

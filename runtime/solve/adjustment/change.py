@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,21 +18,20 @@ from ..statics.static_problem import StaticProblem
 from .snapshots import Reader
 
 
-@dataclass
 class Change:
     """The change by a unit of a parameter of the forces on the dofs f (n_dof,), of the equations of couplings g
-    (n_extra,), of prescribed dofs c (n_dof,), and of the unknowns at fixed points of cables, same (unknowns,); None:
-    zero.
+    (n_extra,), of prescribed dofs c (n_dof,), and of the unknowns at fixed points of cables, same (unknowns,).
     """
 
-    f: np.ndarray | None = None
-    c: np.ndarray | None = None
-    g: np.ndarray | None = None
-    same: np.ndarray | None = None
+    def __init__(self, model: Model):
+        n = model.n_band + model.n_border_dof + model.n_extra
+        self.f, self.g = np.zeros(model.n_dof), np.zeros(model.n_extra)
+        self.c, self.same = np.zeros(model.n_dof), np.zeros(n)
 
-    def less(self, factor: float, other: Change) -> Change:
-        """Return this less the forces and equations of another parameter times a factor."""
-        return replace(self, f=_less(self.f, factor, other.f), g=_less(self.g, factor, other.g))
+    def subtract(self, factor: float, other: Change) -> None:
+        """Subtract the forces and equations of another parameter times a factor."""
+        self.f -= factor * other.f
+        self.g -= factor * other.g
 
 
 class Rest:
@@ -92,8 +91,3 @@ def altered(model: Model, **changes: Any) -> Model:
     made = replace(model, **changes)
     made.newton, made.accelerations = model.newton, model.accelerations
     return made
-
-
-def _less(a: np.ndarray | None, factor: float, b: np.ndarray | None) -> np.ndarray | None:
-    """Return a - factor b, with None for zero."""
-    return a if b is None else -factor * b + (0.0 if a is None else a)

@@ -50,19 +50,19 @@ def hangs_plainly(rest: Rest, cable: Cable) -> bool:
 def by_length(rest: Rest, cable: Cable) -> Change:
     """Return the change by the length of a cable: of all forces per unit length."""
     model, q = rest.model_of(cable.name), rest.problem.keep()["q"]
-    at, f = model.coordinates, np.zeros(rest.model.n_dof)
-    f[at] = of_elements(model, cable, q) - rest.model.gravity[at]
+    at, change = model.coordinates, Change(rest.model)
+    change.f[at] = of_elements(model, cable, q) - rest.model.gravity[at]
     spread = {k: load for k, load in enumerate(rest.scene.loads.values())
               if isinstance(load, DistributedForce) and load.cable == cable.name}
-    for k in spread:
-        change = by_values(rest, {k: spread[k]})[k]
-        assert change.f is not None, "loads are forces"
-        f += change.f
-    f += _touching(rest, rest.model.cables.index(model))
-    same, unknown = np.zeros(len(rest.problem.weight)), rest.model.unknown_of_dof[at]
+    for load in by_values(rest, spread).values():
+        change.f += load.f
+    change.f += _touching(rest, rest.model.cables.index(model))
+    unknown = rest.model.unknown_of_dof[at]
     free = unknown >= 0
-    same[unknown[free]] = same_points(model, q)[free]
-    return Change(f / cable.length, same=same / cable.length)
+    change.same[unknown[free]] = same_points(model, q)[free]
+    change.f /= cable.length
+    change.same /= cable.length
+    return change
 
 
 def _touching(rest: Rest, cable: int) -> np.ndarray:

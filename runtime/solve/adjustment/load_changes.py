@@ -48,10 +48,10 @@ def by_values(rest: Rest, units: Mapping[int, AnyLoad]) -> dict[int, Change]:
     couplings = in_order([*loads.dead, *loads.turning, *others])
     loaded = altered(model, couplings=couplings, signals=builder.signals)
     engine = rest.engine(loaded)
-    found = {k: np.zeros(model.n_dof) for k in units}
+    found = {k: Change(model) for k in units}
     for number, k in enumerate([*owners["dead"], *owners["turning"]]):
-        found[k] += engine.external_forces(number, number + 1)[0]
-    return {k: Change(f) for k, f in found.items()}
+        found[k].f += engine.external_forces(number, number + 1)[0]
+    return found
 
 
 def by_end(rest: Rest, part: PointForce, path: Path) -> Change | None:
@@ -64,7 +64,7 @@ def by_end(rest: Rest, part: PointForce, path: Path) -> Change | None:
         return None
     number = next(k for k, force in enumerate(model.point_forces) if force.name == part.name)
     force, kept = model.point_forces[number], rest.problem.keep()
-    sign, f = -1.0 if path.entries[0] == "a" else 1.0, np.zeros(model.n_dof)
+    sign, change = -1.0 if path.entries[0] == "a" else 1.0, Change(model)
     if place.on is None:
         moved = rest.along(path.entries[1])
         if moved is None:
@@ -72,13 +72,12 @@ def by_end(rest: Rest, part: PointForce, path: Path) -> Change | None:
     elif place.on in rest.scene.cables and not rest.reader.sections:
         N, at = rest.shape(place.on, place.arc_length, derivative=1)
         moved = N @ kept["q"][at].reshape(len(N), model.dim)
-        f[at] = sign * np.outer(N, kept["point_force"][number][: model.dim]).ravel()
+        change.f[at] = sign * np.outer(N, kept["point_force"][number][: model.dim]).ravel()
     else:
         return None
     a, b = (attachment_points(model, end, kept["q"][None])[0, : model.dim] for end in force.attachments)
-    g = np.zeros(model.n_extra)
-    g[force.unknown : force.unknown + model.dim] = -sign * force.tangent_at_rest(b - a) @ moved
-    return Change(f, g=g)
+    change.g[force.unknown : force.unknown + model.dim] = -sign * force.tangent_at_rest(b - a) @ moved
+    return change
 
 
 def by_place(rest: Rest, part: Force | DistributedForce, path: Path) -> Change | None:
@@ -91,6 +90,6 @@ def by_place(rest: Rest, part: Force | DistributedForce, path: Path) -> Change |
         return None
     N, at = rest.shape(on, s, derivative=int(path.entries[0] == "s"))
     value = float(load.scale.value(0.0)) * np.array(load.value)[: rest.model.dim]
-    f = np.zeros(rest.model.n_dof)
-    f[at] = (1.0 if path.entries[0] == "start" else -1.0) * np.outer(N, value).ravel()
-    return Change(f)
+    change = Change(rest.model)
+    change.f[at] = (1.0 if path.entries[0] == "start" else -1.0) * np.outer(N, value).ravel()
+    return change

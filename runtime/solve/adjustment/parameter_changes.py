@@ -76,17 +76,11 @@ class Changes:
     def columns(self) -> dict[int, np.ndarray]:
         """Return dR/dp (unknowns,) of each parameter found."""
         model = self.model
-        forces = {k: np.zeros(model.n_dof + model.n_extra) for k in self.found}
-        moves = any(change.c is not None for change in self.found.values())
-        K = self._tangent_over_dofs() if moves else None
-        for k, change in self.found.items():
-            if change.f is not None:
-                forces[k][: model.n_dof] += change.f
-            if change.c is not None:
-                assert K is not None, "what is prescribed moves"
-                forces[k] += K[:, : model.n_dof] @ change.c
-            if change.g is not None:
-                forces[k][model.n_dof :] += change.g
+        forces = {k: np.concatenate([change.f, change.g]) for k, change in self.found.items()}
+        if moves := [k for k, change in self.found.items() if change.c.any()]:
+            K = self._tangent_over_dofs()[:, : model.n_dof]
+            for k in moves:
+                forces[k] += K @ self.found[k].c
         by_unknowns = _by_unknowns(model).T
         return {k: by_unknowns @ force for k, force in forces.items()}
 
@@ -102,13 +96,11 @@ class Changes:
                 continue
             for j, other in paths.items():
                 s = None if other.part is None else _place(parts[other.part], other, cable.name)
+                if s is not None and j not in self.found:
+                    del self.found[k]
+                    break
                 if s is not None:
-                    change = None if change is None or j not in self.found else change.less(s / cable.length,
-                                                                                            self.found[j])
-            if change is None:
-                del self.found[k]
-            else:
-                self.found[k] = change
+                    change.subtract(s / cable.length, self.found[j])
 
     def _weighs_plainly(self, *names: str) -> bool:
         """Return whether weight is a force of constant direction on each dof, and nothing else depends on the weight of
@@ -130,7 +122,9 @@ class Changes:
             return None
         cables = [cable_gravity(model, self.scene.cables[model.name], direction) for model in self.model.cables]
         bodies = [body_gravity(body, direction) for body in self.model.bodies]
-        return Change(-np.concatenate([*cables, *bodies]))
+        change = Change(self.model)
+        change.f -= np.concatenate([*cables, *bodies])
+        return change
 
     @singledispatchmethod
     def _of(self, part: Part, path: Path) -> Change | None:
@@ -141,10 +135,9 @@ class Changes:
     def _of_cable(self, part: Cable, path: Path) -> Change | None:
         cable = self.scene.cables[part.name]
         if path.entries == ("material", "density"):
-            f = np.zeros(self.model.n_dof)
-            at = self.rest.model_of(cable.name).coordinates
-            f[at] = -self.model.gravity[at] / cable.material.density
-            return Change(f) if self._weighs_plainly(cable.name) else None
+            change, at = Change(self.model), self.rest.model_of(cable.name).coordinates
+            change.f[at] = -self.model.gravity[at] / cable.material.density
+            return change if self._weighs_plainly(cable.name) else None
         if self.rest.reader.sections or cable.name in self.rest.reader.parts:
             return None
         if path.entries == ("rest_length",):
@@ -158,10 +151,9 @@ class Changes:
         if path.entries != ("mass",) or not self._weighs_plainly(part.name):
             return None
         model = next(body for body in self.model.bodies if body.name == part.name)
-        f = np.zeros(self.model.n_dof)
-        dofs = slice(model.dof, model.dof + self.model.dim)
-        f[dofs] = -self.model.gravity[dofs] / part.mass
-        return Change(f)
+        change, dofs = Change(self.model), slice(model.dof, model.dof + self.model.dim)
+        change.f[dofs] = -self.model.gravity[dofs] / part.mass
+        return change
 
     @_of.register
     def _of_motion(self, part: Motion, path: Path) -> Change | None:
@@ -169,13 +161,13 @@ class Changes:
         direction = self.rest.along(entries[1]) if len(entries) == 2 and entries[0] == "displacement" else None
         if direction is None:
             return None
-        model, c = self.model, np.zeros(self.model.n_dof)
+        model, change = self.model, Change(self.model)
         node = model.nodes[part.cable][self.scene.cables[part.cable].node(part.s)]
         moved = dict(zip(node.dofs("r"), direction.tolist(), strict=True))
         signals = {motion.signal: moved[motion.dof] for motion in model.motions if moved.get(motion.dof)}
         for motion in model.motions:
-            c[motion.dof] += motion.linear * signals.get(motion.signal, 0.0)
-        return Change(c=c)
+            change.c[motion.dof] += motion.linear * signals.get(motion.signal, 0.0)
+        return change
 
     def _of_section(self, cable: Cable, path: Path) -> Change | None:
         """Return the change by a number of a cable's section or material: the difference of its elastic forces and
@@ -196,9 +188,9 @@ class Changes:
             below, above = (own.of(cable.remade(changes_of(drawn, {path: end})[path.part])) for end in ends)
         except SceneError:  # at a bound of the section or material
             return None
-        f = np.zeros(self.model.n_dof)
-        f[model.coordinates] = (above - below) / (ends[1] - ends[0])
-        return Change(f)
+        change = Change(self.model)
+        change.f[model.coordinates] = (above - below) / (ends[1] - ends[0])
+        return change
 
     @_of.register
     def _of_point_force(self, part: PointForce, path: Path) -> Change | None:

@@ -68,12 +68,12 @@ class Way:
     @classmethod
     def of(cls, problem: StaticProblem, rates: np.ndarray, change: Change) -> Way:
         """Return the direction of a parameter, with the step that moves the state by a fraction of the scene's size."""
-        moves = np.hypot(problem.length(rates), 0.0 if change.c is None else np.linalg.norm(change.c))
+        moves = np.hypot(problem.length(rates), np.linalg.norm(change.c))
         return cls(DIFFERENCE_STEP * problem.size / moves if moves > 0 else 1.0, rates, change)
 
     def begin(self, kept: dict[str, np.ndarray], step: float) -> dict[str, np.ndarray]:
         """Return a state with prescribed dofs moved by a step of the parameter."""
-        if self.change.c is None:
+        if not self.change.c.any():
             return kept
         q = kept["q"].copy()
         q[: len(self.change.c)] += step * self.change.c
@@ -139,14 +139,13 @@ class ParameterSearch(Generic[S]):
         rates = -problem.solver()(np.stack([columns[k] for k in range(len(p))], axis=1))
         G = np.zeros((len(at.g), len(p)))
         G[:, list(here)] = self.along(problem, kept, [
-            Way.of(problem, rates[:, k], changes.found.get(k, Change())) for k in here])
+            Way.of(problem, rates[:, k], changes.found.get(k, Change(problem.model))) for k in here])
         for k, (below, above) in ends.items():
             below.move(-steps[k] * rates[:, k])
             above.move(steps[k] * rates[:, k])
             G[:, k] = (self.reader.values(above.state) - self.reader.values(below.state)) / (2 * steps[k])
         for k, change in changes.found.items():
-            if change.same is not None:
-                rates[:, k] += change.same
+            rates[:, k] += change.same
         return rates, G
 
     def without_effect(self, at: AtRest) -> int:
@@ -178,7 +177,7 @@ class ParameterSearch(Generic[S]):
         def ends(some: Sequence[Way]) -> Iterator[StaticState]:
             for way in some:
                 for step in (-way.step, way.step):
-                    problem.restore(way.begin(kept, step), prescribe=way.change.c is None)
+                    problem.restore(way.begin(kept, step), prescribe=not way.change.c.any())
                     problem.move(step * way.rates)
                     yield problem
 
@@ -188,8 +187,7 @@ class ParameterSearch(Generic[S]):
             some = ways[first : first + together]
             snapshots = Snapshots.of(ends(some), self.reader.reactions)
             for k, way in enumerate(some):
-                if way.change.f is not None:
-                    snapshots.reaction[2 * k : 2 * k + 2] += np.outer((-way.step, way.step), way.change.f)
+                snapshots.reaction[2 * k : 2 * k + 2] += np.outer((-way.step, way.step), way.change.f)
             values = self.reader.read(problem, snapshots)
             found.append((values[1::2] - values[::2]) / (2 * np.array([way.step for way in some]))[:, None])
         problem.restore(kept)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from ...model.knots import of_pieces
@@ -26,8 +24,10 @@ def unresolved(scene: SceneData, settings: RunSettings) -> list[str]:
     if step is None:
         return []
     found = []
-    for where, signal in signals(scene):
-        rate = frequency(signal)
+    for where, signal in ((part.where, signal) for part in scene.parts() for _, signal in signals_of(part)):
+        if isinstance(signal, Constant):
+            continue
+        rate = signal.sine.angular_frequency / (2 * np.pi) if signal.sine.amplitude else 0.0
         if rate * step * MIN_STEPS_PER_PERIOD > 1:
             found.append(f"{where}: its sine has a period of {show(1 / rate, 's')}, and the fixed step is "
                          f"{show(step, 's')}: the steps do not follow it. Take a step of "
@@ -37,17 +37,6 @@ def unresolved(scene: SceneData, settings: RunSettings) -> list[str]:
                          f"over time it misses by {error:.2g} of its size. Take a smaller step, or none, so that tol "
                          "chooses it")
     return found
-
-
-def signals(scene: SceneData) -> Iterator[tuple[str, Signal]]:
-    """Yield all signals of a scene that are not constant, each with the name of its part."""
-    for part in scene.parts():
-        yield from ((part.where, signal) for _, signal in signals_of(part) if not isinstance(signal, Constant))
-
-
-def frequency(signal: Signal) -> float:
-    """Return the frequency of the sine of a signal, Hz; 0 where it has none."""
-    return signal.sine.angular_frequency / (2 * np.pi) if signal.sine.amplitude else 0.0
 
 
 def _error_of_integral(signal: Signal, step: float, settings: RunSettings) -> float:
