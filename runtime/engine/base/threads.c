@@ -1,9 +1,10 @@
-/* Threads that share the work of a run, for jobs of some microseconds. OpenMP's threads wait for each other either for
- * milliseconds at full load or through the system; both take longer than such a job on a busy machine. A job has one
- * part per thread. Each thread takes its own part, whose data are in its cache from the last time, then parts that
- * nobody has taken. The thread that shares its work thus waits for a part in progress, never for one that has not
- * begun: a sleeping thread costs nothing. A thread without work looks for some for about 0.1 ms, yields its processor
- * to others in the meantime, and then sleeps. */
+/* Threads that share the work of a run, for jobs of some microseconds. OpenMP's threads wait for each other either
+ * for milliseconds at full load or through the system; both take longer than such a job on a busy machine.
+ *
+ * A job has one part per thread. Each thread takes its own part, whose data are in its cache from the last time,
+ * then parts that nobody has taken. The thread that shares its work thus waits for a part in progress, never for one
+ * that has not begun: a sleeping thread costs nothing. A thread without work looks for some for about 0.1 ms, yields
+ * its processor to others in the meantime, and then sleeps. */
 #if !defined(_WIN32)
 #define _POSIX_C_SOURCE 200809L
 #endif

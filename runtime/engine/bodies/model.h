@@ -1,12 +1,17 @@
-/* The model. Coordinates: q is the configuration, for each cable its nodal vectors node by node, then for each body
- * position and attitude (unit quaternion; in the plane unit complex number) and, of a modal one, the coordinates of its
+/* The model.
+ *
+ * Coordinates: q is the configuration, for each cable its nodal vectors node by node, then for each body position
+ * and attitude (unit quaternion; in the plane unit complex number) and, of a modal one, the coordinates of its
  * modes. v, accelerations and increments have one entry a degree of freedom (dof): the cables' as in q, then the
- * bodies' (translation; rotation about body axes; modes). Unknowns of a linear system: the free coordinates of the
- * cables ("band"), then the border: those of nodes where cables meet, if that is cheaper (model/numbering.py), those of
- * the bodies, then those of each joint and spring. Supports make dofs linear in the unknowns, dofs = T unknowns +
- * prescribed values; unknown_of_dof[dof] is the number of the unknown that the dof is, -1 if it is fixed or prescribed,
- * -2 - k if it is the k-th combination of unknowns (bodies/unknowns.c). Every array belongs to the caller; nothing here
- * allocates. */
+ * bodies' (translation; rotation about body axes; modes).
+ *
+ * Unknowns of a linear system: the free coordinates of the cables ("band"), then the border: those of nodes where
+ * cables meet, if that is cheaper (model/numbering.py), those of the bodies, then those of each joint and spring.
+ * Supports make dofs linear in the unknowns, dofs = T unknowns + prescribed values; unknown_of_dof[dof] is the
+ * number of the unknown that the dof is, -1 if it is fixed or prescribed, -2 - k if it is the k-th combination of
+ * unknowns (bodies/unknowns.c).
+ *
+ * Every array belongs to the caller; nothing here allocates. */
 #ifndef FUNICULAR_BODIES_MODEL_H
 #define FUNICULAR_BODIES_MODEL_H
 

@@ -1,11 +1,14 @@
-/* Deferred events: changes of couplings within a step whose discontinuity of forces is within the permitted error. The
- * forces at the step's end, and at all stages within it, are those of the couplings' state there. An event at a part x
- * of the step makes the force grow as (t - x h) F/(h - x h), to F at the end. A quadrature with weights b at c has an
- * error of a part of F h in the momentum: |(1 - x)/2 - sum over c > x of b (c - x)/(1 - x)|. That is the error of
- * velocities. Times h it counts as a local error of positions, since errors of velocities persist and the permitted
- * error is h/t of the whole. Estimates of integrators do not replace it: they assume smooth forces, and may vanish by
- * chance. A discrete gradient of the energy is the mean force over the path, also across events: it conserves the
- * energy, has hardly a larger error than without events, and defers all of them, at steps of any kind. */
+/* Deferred events: changes of couplings within a step whose discontinuity of forces is within the permitted error.
+ * The forces at the step's end, and at all stages within it, are those of the couplings' state there.
+ *
+ * An event at a part x of the step makes the force grow as (t - x h) F/(h - x h), to F at the end. A quadrature with
+ * weights b at c has an error of a part of F h in the momentum: |(1 - x)/2 - sum over c > x of b (c - x)/(1 - x)|.
+ * That is the error of velocities. Times h it counts as a local error of positions, since errors of velocities
+ * persist and the permitted error is h/t of the whole. Estimates of integrators do not replace it: they assume
+ * smooth forces, and may vanish by chance.
+ *
+ * A discrete gradient of the energy is the mean force over the path, also across events: it conserves the energy,
+ * has hardly a larger error than without events, and defers all of them, at steps of any kind. */
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
 #include "equations/acceleration.h"

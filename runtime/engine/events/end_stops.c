@@ -1,6 +1,8 @@
-/* Slides that stick, break loose, or reach the end of their cable: events that change the constraint on s. mode is
- * FU_SLIDES, FU_LOCKED (by sticking friction, or against a hard stop; contact says which) or FU_LEFT. slip_direction is
- * the direction of sliding. For friction that sticks at rest it is known, since its change is an event. */
+/* Slides that stick, break loose, or reach the end of their cable: events that change the constraint on s.
+ *
+ * mode is FU_SLIDES, FU_LOCKED (by sticking friction, or against a hard stop; contact says which) or FU_LEFT.
+ * slip_direction is the direction of sliding. For friction that sticks at rest it is known, since its change is an
+ * event. */
 #include "couplings/joint/joint.h"
 #include "couplings/slide/resistance.h"
 #include "equations/acceleration.h"

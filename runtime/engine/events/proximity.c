@@ -1,4 +1,5 @@
 /* Search for near pairs: clearances of couplings measured again, and event functions that may pass zero.
+ *
  * couplings/common/proximity.c explains the search and the interval between two searches. */
 #include "equations/run.h"
 #include "events/proximity.h"

@@ -1,38 +1,40 @@
-/* Algorithmic dissipation of the energy-momentum method: stresses that fast vibrations meet and slow motion does not.
+/* Algorithmic dissipation of the energy-momentum method: stresses by fast vibrations, without an effect on slow
+ * motion.
  *
- * Over a step a strain changes by dE = B psi, B the rates of strain in the middle that damping_force has. To its stress
+ * Over a step a strain changes by dE = B psi, with the rates of strain B in the middle as in damping_force. Its
+ * stress gets the addition
+ *     S = D (viscosity (g_1 - g_0) + inertia (r_1 - r_0)),   g_1 - g_0 = dE - (g_0 + g_1)/(2 lag),   r_0 + r_1 = 2 dE,
+ * with the stiffness D. The first part is a Maxwell element between the strain and a quantity that follows it within
+ * `lag` steps, g being their difference; the second is inertia against strain, r being the change that the
+ * velocities at an end of the step would make in one. The work of S over the step, S dE, is dissipated as
+ *     viscosity D (g_1 - g_0)^2
+ * and stored in
+ *     viscosity/(2 lag) D g^2 + inertia/2 D r^2,
+ * which is returned or lost: the energy never exceeds its start.
  *
- *   S = D (viscosity (g_1 - g_0) + inertia (r_1 - r_0)),   g_1 - g_0 = dE - (g_0 + g_1)/(2 lag),   r_0 + r_1 = 2 dE
- *
- * is added, D the stiffness: the first part is a Maxwell element between the strain and what follows it within `lag`
- * steps, g how far that is behind; the second is inertia against strain, r the change that the velocities at an end of
- * the step would make in one. What S takes out over the step, S dE, is
- *
- *   viscosity D (g_1 - g_0)^2   and what goes into   viscosity/(2 lag) D g^2 + inertia/2 D r^2
- *
- * which comes back or is lost: energy is never above its start. r_0 = h B v_0 at the start of the step; where its
- * energy would be more than r_1 of the step before has left, it is shortened to that. S is of the order of h^2 in slow
- * motion, and none in rigid motion. The aim is that of Armero & Romero (Comput. Methods Appl. Mech. Eng. 190 (2001)
- * 6783-6824); the form is linear: an oscillator of stiffness D has p^2 (1 + lag p) + (h omega)^2 (1 + p/a)^3 = 0 for
- * its eigenvalues (1 + p/2)/(1 - p/2), with the three numbers of integrators/energy.py, and all three reach the
+ * r_0 = h B v_0 at the start of the step; if its energy would exceed that of r_1 of the step before, it is shortened
+ * to that. S is of the order of h^2 in slow motion, and zero in rigid motion. The aim is that of Armero & Romero
+ * (Comput. Methods Appl. Mech. Eng. 190 (2001) 6783-6824); the form is linear: an oscillator of stiffness D has
+ *     p^2 (1 + lag p) + (h omega)^2 (1 + p/a)^3 = 0
+ * for its eigenvalues (1 + p/2)/(1 - p/2), with the three numbers of integrators/energy.py, and all three reach the
  * spectral radius as h omega grows.
  *
- * B of a spatial cable sees a turn about the tangent where it is bent (cable_damping.py), which would cost momentum. A
- * turn of the cable as a whole is taken off, v - omega x r, the one that leaves its forces without a moment.
+ * B of a spatial cable contains a rotation about the tangent where it is bent (cable_damping.py), which would change
+ * the momentum. A rotation of the cable as a whole is subtracted, v - omega x r, the one that leaves its forces
+ * without a moment.
  *
- * g of a bent cable has directions in space, and stays there while the cable turns: that changes S by the order of h^2.
- */
+ * g of a bent cable has directions in space, which do not rotate with the cable: that changes S by the order of h^2. */
 #include "equations/run.h"
 #include "integrators/algorithmic_dissipation.h"
 
 #include <math.h>
 #include <string.h>
 
-#define MIN_PIVOT 1e-14 /* of the largest pivot: a smaller one is of a turn that bends nothing */
+#define MIN_PIVOT 1e-14 /* of the largest pivot: a smaller one belongs to a rotation without strain */
 
 static const double none[FU_MAX_RATES];
 
-/* A cable in motion, and the turn that is subtracted from its motion. */
+/* A moving cable, and the rotation that is subtracted from its motion. */
 typedef struct {
     const fu_cable *cable;
     const double *q, *v;
@@ -44,13 +46,13 @@ const fu_algorithmic *fu_algorithmic_of(const fu_run *run)
     return (const fu_algorithmic *)run->parameters;
 }
 
-/* Returns how many numbers an element has: g, and the energy of r. */
+/* Returns the number of values of an element: g, and the energy of r. */
 static long numbers_of(const fu_cable *cable)
 {
     return cable->law->rates + 1;
 }
 
-/* Returns how many numbers of it a state keeps. */
+/* Returns the number of its values in a state. */
 long fu_algorithmic_state(const fu_run *run)
 {
     long numbers = 0;
@@ -58,14 +60,14 @@ long fu_algorithmic_state(const fu_run *run)
     return fu_algorithmic_of(run)->weight != 0.0 ? numbers : 0;
 }
 
-/* Returns the numbers of a cable's k-th element in an array of those of all. */
+/* Returns the values of a cable's k-th element in an array of all. */
 static double *state_of(const fu_cable *cable, double *numbers, int k)
 {
     return numbers + cable->dissipation_state + k * numbers_of(cable);
 }
 
-/* Returns the head of the work space, laid out as a state's numbers: r, what the velocities at the start of the step
- * would change, and its energy; at the head of the scratch. */
+/* Returns the head of the work space, laid out as in a state: r, the change by the velocities at the start of the step,
+ * and its energy. */
 static double *expected_of(const fu_run *run)
 {
     return run->scratch;
@@ -89,7 +91,7 @@ static void turn(const moving *m, int k, const double omega[3], double *turned)
     }
 }
 
-/* Computes f of D (weight dE - relaxed), and dE; returns the work of the one with the other. */
+/* Computes f of D (weight dE - relaxed), and dE; returns their work. */
 static double element_force(const moving *m, int k, const double *relaxed, double *f, double *dE)
 {
     const fu_cable *cable = m->cable;
@@ -102,7 +104,7 @@ static double element_force(const moving *m, int k, const double *relaxed, doubl
     return fu_dot(cable->coordinates, f, v);
 }
 
-/* Solves N x = b, N symmetric and not negative; x is zero where N is. */
+/* Solves N x = b, with N symmetric and positive semidefinite; x is zero for N zero. */
 static void solve(double N[9], double b[3], double x[3])
 {
     const double least = MIN_PIVOT * fmax(N[0], fmax(N[4], N[8]));
@@ -130,7 +132,7 @@ static void solve(double N[9], double b[3], double x[3])
 
 typedef void (*stress_of)(const fu_run *run, const fu_cable *cable, int k, double *relaxed);
 
-/* Kinds of `relaxed`, the part of dE that makes no stress: of the whole stress, of its second part, of none. */
+/* Kinds of `relaxed`, the part of dE without stress: of the whole stress, of its second part, of none. */
 static void of_both(const fu_run *run, const fu_cable *cable, int k, double *relaxed)
 {
     const fu_algorithmic *a = fu_algorithmic_of(run);
@@ -151,7 +153,7 @@ static void of_none(const fu_run *run, const fu_cable *cable, int k, double *rel
     memset(relaxed, 0, sizeof(double) * (size_t)cable->law->rates);
 }
 
-/* Returns the cable, with the turn that leaves the forces of D (weight dE - relaxed) without a moment. */
+/* Returns the cable with the rotation that leaves the forces of D (weight dE - relaxed) without a moment. */
 static moving without_turn(const fu_run *run, const fu_cable *cable, const double *q, const double *v, double weight,
                            stress_of stress)
 {
@@ -196,7 +198,7 @@ void fu_algorithmic_start(fu_run *run, double h)
     }
 }
 
-/* Adds the forces of the step from `now` by psi, q its middle. */
+/* Adds the forces of the step from `now` by psi; q is its middle. */
 void fu_algorithmic_forces(fu_run *run, const double *q, double *force)
 {
     const double weight = fu_algorithmic_of(run)->weight;
@@ -212,7 +214,7 @@ void fu_algorithmic_forces(fu_run *run, const double *q, double *force)
     }
 }
 
-/* Fills the dissipation state at the end of a step that is taken; returns the work of the stresses, J. */
+/* Updates the dissipation state at the end of an accepted step; returns the work of the stresses, J. */
 double fu_algorithmic_account(fu_run *run, const double *q)
 {
     const fu_algorithmic *a = fu_algorithmic_of(run);

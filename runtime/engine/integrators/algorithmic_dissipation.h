@@ -4,8 +4,8 @@
 
 #include "base/common.h"
 
-/* The parameters of the energy-momentum method. weight: of a change of strain in the stress; zero: there is no
- * algorithmic dissipation. */
+/* The parameters of the energy-momentum method. weight: of a change of strain in the stress; zero without algorithmic
+ * dissipation. */
 typedef struct {
     double lag, viscosity, inertia, weight;
 } fu_algorithmic;

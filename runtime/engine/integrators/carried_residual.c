@@ -1,21 +1,21 @@
-/* What Newton's method leaves of the equations of motion, carried into the next steps.
+/* Remaining residuals of Newton's method in the equations of motion, compensated by later steps.
  *
- * The residual r that an iteration leaves has one sign step after step, and acts like a force: after n steps it has
- * moved positions by n^2/2 times the increment that was left out. Here its impulse P and the moment X of that are
- * summed,
+ * The residual r of an iteration has one sign step after step, and acts like a force: after n steps it has moved
+ * positions by n^2/2 times the omitted increment. Its impulse P and the moment X of that are summed,
+ *     P_n+1 = P_n + h r_n+1,   X_n+1 = X_n + h P_n+1,
+ * and the next step is solved with the force c = -(X/T + P)/T on its right side, r = c + the remaining residual
+ * there. T = h returns both sums in one step: r_n+1 = e_n+1 - 2 e_n + e_n-1 of the remaining residuals e, so that
+ * the error of the motion is e alone, for any number of steps. (The noise of quantisation is treated likewise:
+ * Schreier & Temes 2005.)
  *
- *   P_n+1 = P_n + h r_n+1,   X_n+1 = X_n + h P_n+1
+ * The equations are those of the dofs and of couplings' own coordinates: of a slide, the balance along the cable.
+ * The residual of a constraint is a gap of `next` alone.
  *
- * and the next step is solved with the force c = -(X/T + P)/T on its right side, r = c + what Newton leaves there. With
- * T = h that brings both sums back in one step: r_n+1 = e_n+1 - 2 e_n + e_n-1 of what is left in each step, e, so that
- * the motion is off by e alone, however many steps are made. (The same is done to the noise of quantisation: Schreier &
- * Temes 2005.) Equations of motion are those of the dofs and of couplings' own coordinates: of a slide, the balance
- * along the cable. What is left of a constraint is a gap of `next` alone. After a step of T, T does not end sooner than
- * that step would have been made up for: each step takes no more than its own h from T. Otherwise one short step to an
- * event would make up for a long one with a large force, and many, each shorter than the last, with forces that grow
- * without bounds. For T > h the sums go to zero in some steps, for any T. Steps that are solved to rounding make up for
- * those before as well: without the force c, the impulse would go on moving positions.
- */
+ * After a step of T, T must not end sooner than that step would have been compensated: each step takes no more than
+ * its own h from T. Otherwise one short step to an event would compensate a long one with a large force, and many,
+ * each shorter than the last, with unbounded forces. For T > h the sums go to zero in some steps, for any T. Steps
+ * that are solved to rounding compensate earlier ones as well: without the force c, the impulse would continue to
+ * move positions. */
 #include "base/workspace.h"
 #include "equations/run.h"
 #include "integrators/carried_residual.h"
@@ -23,13 +23,13 @@
 #include <math.h>
 #include <string.h>
 
-/* Returns how many equations there are: those of constraints have their places too, but nothing to carry. */
+/* Returns the number of equations: those of constraints have places, but no carried residual. */
 static int size(const fu_model *model)
 {
     return model->n_band + model->n_border_dof + model->n_extra;
 }
 
-/* Places the arrays in a work space; only counts them where it is null. */
+/* Places the arrays in a work space; only counts them if it is null. */
 void fu_carried_residual_take(fu_carried_residual *carried, const fu_model *model, double *scratch, long *taken)
 {
     double **arrays[] = {&carried->impulse, &carried->moment, &carried->correction, &carried->left};
@@ -37,7 +37,7 @@ void fu_carried_residual_take(fu_carried_residual *carried, const fu_model *mode
     carried->span = fu_take(scratch, taken, 1);
 }
 
-/* Begins with nothing to make up for. */
+/* Starts without residuals. */
 void fu_carried_residual_start(const fu_carried_residual *carried, const fu_model *model)
 {
     double *arrays[] = {carried->impulse, carried->moment, carried->correction, carried->left};
@@ -51,8 +51,7 @@ static double span(const fu_carried_residual *carried, double h)
     return fmax(h, *carried->span - h);
 }
 
-/* Computes the force by which a step of size h makes up for the steps before: its residual, unless Newton leaves
- * something. */
+/* Computes the force by which a step of size h compensates earlier steps: its residual, apart from Newton's own. */
 void fu_carried_residual_correct(const fu_carried_residual *carried, const fu_model *model, double h)
 {
     const double per = 1.0 / span(carried, h);
@@ -60,7 +59,7 @@ void fu_carried_residual_correct(const fu_carried_residual *carried, const fu_mo
         carried->left[i] = carried->correction[i] = -(per * carried->moment[i] + carried->impulse[i]) * per;
 }
 
-/* Notes that the step just made satisfies the equations of motion, without that force. */
+/* Records that the last step satisfies the equations of motion, without that force. */
 void fu_carried_residual_note_none(const fu_carried_residual *carried, const fu_model *model)
 {
     memset(carried->left, 0, sizeof(double) * (size_t)size(model));
@@ -72,7 +71,7 @@ void fu_carried_residual_add(const fu_carried_residual *carried, fu_run *run, do
     for (int i = 0; i < size(run->model); ++i) run->rhs[i] += scale * carried->correction[i];
 }
 
-/* Notes the residual of the step just made, of which run->rhs has what Newton left. */
+/* Records the residual of the last step, with Newton's in run->rhs. */
 void fu_carried_residual_note(const fu_carried_residual *carried, const fu_run *run, double scale)
 {
     const fu_model *model = run->model;
@@ -82,7 +81,7 @@ void fu_carried_residual_note(const fu_carried_residual *carried, const fu_run *
         for (int i = 0; i < c->n_forces; ++i) own[c->unknown + c->n_coordinates + i] = 0.0;
 }
 
-/* Takes the step just made: what it left is to be made up for. */
+/* Accepts the last step, whose residual is to be compensated. */
 void fu_carried_residual_accept(const fu_carried_residual *carried, const fu_model *model, double h)
 {
     *carried->span = span(carried, h);

@@ -1,5 +1,4 @@
-/* What Newton's method leaves of the equations of motion, carried into the next steps: integrators/carried_residual.c.
- */
+/* Remaining residuals of Newton's method, compensated by later steps: integrators/carried_residual.c. */
 #ifndef FUNICULAR_INTEGRATORS_CARRIED_RESIDUAL_H
 #define FUNICULAR_INTEGRATORS_CARRIED_RESIDUAL_H
 
@@ -7,11 +6,11 @@
 
 /* Arrays over the unknowns, in the work space of an integrator. */
 typedef struct {
-    double *impulse; /* of what has been left until `now`, N s */
-    double *moment;  /* sum of steps times impulses, N s^2: what has been left moves positions by this over the mass */
-    double *correction; /* force of the step to come that makes up for both, N */
-    double *left;       /* residual of the step just made, N */
-    double *span;       /* s: over which they were made up for last; 0 where they never were */
+    double *impulse;    /* of the residuals until `now`, N s */
+    double *moment;     /* sum of steps times impulses, N s^2: displacement by the residuals times the mass */
+    double *correction; /* force of the next step that compensates both, N */
+    double *left;       /* residual of the last step, N */
+    double *span;       /* s: time of the last compensation; 0 before any */
 } fu_carried_residual;
 
 void fu_carried_residual_take(fu_carried_residual *carried, const fu_model *model, double *scratch, long *taken);

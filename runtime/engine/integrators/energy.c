@@ -1,19 +1,17 @@
 /* Energy-momentum method with constraints on positions (Simo & Tarnow 1992; Gonzalez 1996, 1999; Simo & Wong 1991).
+ *     psi = q_n+1 - q_n = h (v_n + v_n+1)/2,
+ *     M (v_n+1 - v_n)/h + f(q_n, q_n+1) + G' lambda = Q at the middle,   phi(q_n+1) = 0,
+ * where f is a discrete gradient of the elastic energy, f . psi = U_n+1 - U_n, and G one of the constraints, G psi =
+ * phi_n+1 - phi_n: energy is conserved to rounding, and so are linear and angular momentum without external forces.
  *
- *   psi = q_n+1 - q_n = h (v_n + v_n+1)/2
- *   M (v_n+1 - v_n)/h + f(q_n, q_n+1) + G' lambda = Q at the middle,   phi(q_n+1) = 0
+ * Bodies rotate by a Cayley vector Theta, A_n+1 = A_n cay(Theta), (Omega_n + Omega_n+1)/2 = Theta/h; the balance of
+ * their spatial angular momentum A J Omega, along the columns of A_n (1 + Theta~/2), is that of J (Omega_n+1 -
+ * Omega_n)/h + Theta/h x J Theta/h with the moments along them: the inertia force at the mean velocity.
  *
- * f is a discrete gradient of the elastic energy, f . psi = U_n+1 - U_n, and G one of the constraints, G psi =
- * phi_n+1 - phi_n: energy is kept to rounding, and so are linear and angular momentum where nothing outside takes them.
- * Bodies turn by a Cayley vector Theta, A_n+1 = A_n cay(Theta), (Omega_n + Omega_n+1)/2 = Theta/h; the balance of their
- * spatial angular momentum A J Omega, along the columns of A_n (1 + Theta~/2), is that of J (Omega_n+1 - Omega_n)/h +
- * Theta/h x J Theta/h with the moments along them: the inertia force as it stands, at the mean velocity.
- *
- * Unknowns as in genalpha.c with sigma = h^2/2. The Newton matrix takes elasticity at the middle, which leaves the
- * change of curvature of the energy over a step out: Newton converges linearly, by a factor that falls as h^2 or
- * faster. Algorithmic dissipation (algorithmic_dissipation.c) stands in it as so much more stiffness, which it is but
- * for turns and tension.
- */
+ * Unknowns as in genalpha.c with sigma = h^2/2. The Newton matrix has the elasticity at the middle, without the
+ * change of curvature of the energy over a step: Newton converges linearly, by a factor of order h^2 or higher.
+ * Algorithmic dissipation (algorithmic_dissipation.c) appears in it as additional stiffness, exact except for
+ * rotations and tension. */
 #include "base/clock.h"
 #include "base/workspace.h"
 #include "bodies/rotation.h"
@@ -27,9 +25,9 @@
 
 #include <string.h>
 
-#define NEWTON_TOLERANCE 1e-17 /* of the way of a step: what Newton may leave, which is as little as it can */
+#define NEWTON_TOLERANCE 1e-17 /* of the displacement in a step: Newton's tolerance, as small as possible */
 
-/* Part of the work space, behind what algorithmic dissipation keeps there: the middle of the step, and forces. */
+/* Part of the work space after that of algorithmic dissipation: the middle of the step, and forces. */
 typedef struct {
     double *q, *v, *force;
 } middle_view;
@@ -51,7 +49,7 @@ static long n_scratch(const fu_run *run)
     return run->model->n_dissipation_state + (long)run->model->n_q + 2L * run->model->n_dof;
 }
 
-/* Returns the same as a state; its couplings' unknowns are those of `next`. */
+/* Returns the middle as a state; its couplings' unknowns are those of `next`. */
 static fu_state middle_of(const fu_run *run, double h)
 {
     const middle_view m = middle(run);
@@ -117,8 +115,8 @@ static void residual(fu_run *run, double h)
     run->statistics.time_residual += fu_clock() - begin;
 }
 
-/* Adds the stiffness of the mean stress. Elasticity half-way has the stress of the mean vectors, which a turn over the
- * step shortens; the mean stress it does not change. */
+/* Adds the stiffness of the mean stress. Elasticity half-way has the stress of the mean vectors, which a rotation over
+ * the step shortens; it does not change the mean stress. */
 static void mean_stress(fu_run *run, double stiffness)
 {
     const fu_model *model = run->model;
@@ -171,14 +169,14 @@ static int start(fu_run *run)
 
 static int step(fu_run *run, double h)
 {
-    /* what Newton leaves does work on the step: it is measured by psi and not by positions */
+    /* the remaining residual does work on the step: psi and not positions measure it */
     run->newton_tolerance = NEWTON_TOLERANCE * h * fu_size(run->model, run->now.v);
     fu_algorithmic_start(run, h);
     return fu_newton_step(run, &newton, h);
 }
 
-/* Adds to the local error of turns what the change of their rate does not contain: Cayley's map is off by the order of
- * h^3 in a steady turn, too. */
+/* Adds to the local error of rotations the part that the change of their rate does not contain: Cayley's map has an
+ * error of order h^3 in a steady rotation, too. */
 static void add_turn_errors(const fu_model *model, double h, const double *rate, const double *change, double *error)
 {
     FU_EACH_BODY(body, model) {
@@ -190,7 +188,7 @@ static void add_turn_errors(const fu_model *model, double h, const double *rate,
 }
 
 /* Returns the local error of positions, m: h^3/12 times the rate of acceleration, from the means of this step and the
- * one before, and that of finite turns. */
+ * one before, and that of finite rotations. */
 static double error(fu_run *run, double h)
 {
     const double factor = h * h * h / 12.0 / (0.5 * h + run->since);
@@ -200,7 +198,7 @@ static double error(fu_run *run, double h)
     return fu_filtered_size(run);
 }
 
-/* Adds the work of the forces that are not conserved, as the step has it: energy balances to rounding. */
+/* Adds the work of nonconservative forces by the quadrature of the step: energy balances to rounding. */
 static void account(fu_run *run, double h)
 {
     const fu_model *model = run->model;
@@ -209,7 +207,7 @@ static void account(fu_run *run, double h)
     const fu_state middle_state = middle_of(run, h);
     const fu_equations at = equations(run, &middle_state, h);
     run->since = 0.5 * h;
-    if (fu_count_deferred(run)) run->factored = 0; /* the matrix has the mean stiffness of the step's way */
+    if (fu_count_deferred(run)) run->factored = 0; /* the matrix has the mean stiffness over the step */
     for (int i = 0; i < model->n_dof; ++i) m.force[i] = 0.0;
     fu_rate_forces(model, m.q, m.v, m.force);
     const int n_flexible = model->n_bodies ? model->bodies[0].dof : model->n_dof; /* gyroscopic moments do no work */
@@ -224,7 +222,7 @@ static void account(fu_run *run, double h)
     fu_coupling_external_forces(model, now->t + 0.5 * h, m.q, m.force);
     for (int i = 0; i < model->n_dof; ++i) run->external -= m.force[i] * run->psi[i];
     if (!model->n_motions) return;
-    /* of the motions: velocities there are given, so that their mean is not quite psi/h */
+    /* of the motions: velocities there are given, so that their mean differs slightly from psi/h */
     residual(run, h);
     fu_constant_mass_times(model, m.q, next->acceleration, m.force);
     for (int k = 0; k < model->n_motions; ++k) {

@@ -1,10 +1,9 @@
 /* Explicit Runge-Kutta with an embedded error estimate on the index-1 form of the equations, eq 38.
  *
- * Differentiated are the entries of the configuration (attitudes as they stand, normalised at the end of a step) and
- * the velocities; the slides' s is where C_l = 0, eq 21, at every stage. What the constraints lost in a step is
- * projected away, in the norm of the mass: C_m = 0 by Newton, then H v = 0. The accelerations at the end are the first
- * stage of the next step and the last of the error estimate (Hairer, Norsett & Wanner 1993, II.5 and II.10).
- */
+ * The entries of the configuration (attitudes included, normalised at the end of a step) and the velocities are
+ * integrated; the slides' s solves C_l = 0, eq 21, at every stage. Constraint errors of a step are projected away in
+ * the norm of the mass: C_m = 0 by Newton, then H v = 0. The accelerations at the end are the first stage of the
+ * next step and the last of the error estimate (Hairer, Norsett & Wanner 1993, II.5 and II.10). */
 #include "base/clock.h"
 #include "bodies/cables.h"
 #include "bodies/rotation.h"
@@ -20,11 +19,10 @@
 
 /* of the coarse estimate's square, as in DOP853 (Hairer, Norsett & Wanner 1993, II.10) */
 #define COARSE_SHARE 0.01
-/* of the heat of a step: what the method's quadrature may be off by; from -z = 3 on it is more */
+/* of the dissipation of a step: permitted error of the method's quadrature; from -z = 3 on it is larger */
 #define HEAT_TOLERANCE 0.01
 
-/* The powers that a state keeps: that of damping within bodies, of all else that goes to heat, and external power, W.
- */
+/* The powers of a state: of damping within bodies, of other dissipation, and external power, W. */
 enum { INTERNAL, OTHER, EXTERNAL, POWERS };
 
 /* An explicit Runge-Kutta method with two embedded error estimates: A (stages x stages, row by row), b, c (stages),
@@ -72,7 +70,7 @@ static double *known_at(const fu_run *run)
     return powers(run, tableau_of(run).stages + 1);
 }
 
-/* Computes the rates of the configuration and of the velocities of a state whose accelerations are known. */
+/* Computes the rates of the configuration and of the velocities of a state with known accelerations. */
 static void rates(const fu_model *model, const fu_state *state, double *rate)
 {
     const int n_flexible = model->n_bodies ? model->bodies[0].dof : model->n_dof;
@@ -97,7 +95,7 @@ static void combine(fu_run *run, const double *row, int n, double h, double *q, 
     }
 }
 
-/* Keeps the rates of stage k, and the powers of its state. */
+/* Stores the rates of stage k, and the powers of its state. */
 static void keep(fu_run *run, int k, const fu_state *state)
 {
     rates(run->model, state, stage(run, k));
@@ -106,8 +104,7 @@ static void keep(fu_run *run, int k, const fu_state *state)
     powers(run, k)[EXTERNAL] = fu_external_power(run, state, run->force);
 }
 
-/* Computes `next` from `now` and the row's combination, at t, with each slide where C_l = 0; returns 0 where that was
- * found. */
+/* Computes `next` from `now` and the row's combination, at t, with C_l = 0 at each slide; returns 0 on convergence. */
 static int move_to(fu_run *run, const double *row, int n, double t, double h)
 {
     const fu_model *model = run->model;
@@ -128,7 +125,7 @@ static int start(fu_run *run)
     return FU_RUNNING;
 }
 
-/* Computes the rates of all stages but the first, which is at hand; returns 0 where they were found. */
+/* Computes the rates of all stages after the first, which is known; returns 0 on success. */
 static int evaluate(fu_run *run, double h)
 {
     const double begin = fu_clock();
@@ -169,7 +166,7 @@ static int step(fu_run *run, double h)
     return 0;
 }
 
-/* Computes the increments of dofs of those of the configuration. */
+/* Converts increments of the configuration to those of dofs. */
 static void increments(const fu_run *run, const double *q, double *out)
 {
     const fu_model *model = run->model;
@@ -193,7 +190,7 @@ static double estimate(fu_run *run, const double *row, double h)
     increments(run, q, run->work);
     for (int k = 0; k < model->n_motions; ++k) run->work[model->motions[k].dof] = v[model->motions[k].dof] = 0.0;
     for (int i = 0; i < model->n_dof; ++i) v[i] *= h;
-    /* what is not named must not either grow unstable: it errs by tol of the largest motion */
+    /* dofs that are not named must not become unstable either: their error is limited to tol of the largest motion */
     const double others = run->allowed * run->tol * fmax(run->motion, run->least_motion) / fu_allowed_error(run);
     return fmax(fu_error_size(run, run->work, others), fu_error_size(run, v, others));
 }
@@ -203,7 +200,7 @@ static double error(fu_run *run, double h)
 {
     const tableau method = tableau_of(run);
     const double fine = estimate(run, method.error, h);
-    if (fine * fine == 0.0) return 0.0; /* of two that vanish together the quotient would be no number */
+    if (fine * fine == 0.0) return 0.0; /* the quotient of two that vanish together would be NaN */
     const double coarse = estimate(run, method.coarse, h);
     return fine * fine / sqrt(fine * fine + COARSE_SHARE * coarse * coarse);
 }
@@ -214,9 +211,9 @@ static fu_quadrature quadrature(const fu_run *run)
     return (fu_quadrature){method.stages, method.b, method.c};
 }
 
-/* Returns what damping takes in a step by its force's mean over the stages, along the way of the step, J. The power is
- * a quadratic form of velocities, B(v, v), and this is h B(dq/h, (v_n + v_n+1)/2): what the method itself takes from a
- * mode, however fast that decays. */
+/* Returns the dissipation of damping in a step by its force's mean over the stages, along the displacement of the step,
+ * J. The power is a quadratic form of velocities, B(v, v), and this is h B(dq/h, (v_n + v_n+1)/2): the loss that the
+ * method itself gives a mode of any decay. */
 static double taken_by_means(fu_run *run, double h)
 {
     const fu_model *model = run->model;
@@ -234,9 +231,9 @@ static double taken_by_means(fu_run *run, double h)
     return taken;
 }
 
-/* Returns what damping within bodies takes in a step, J: by the method's quadrature, whose error is known like that of
- * the step. In steps at the stability limit the fastest modes decay by so much that stages overshoot them, and their
- * squares count for many times the energy that the modes have. */
+/* Returns the dissipation of damping within bodies in a step, J: by the method's quadrature, whose error is estimated
+ * like that of the step. In steps at the stability limit the fastest modes decay so much that stages overshoot them,
+ * and their squares are many times the energy of the modes. */
 static double taken_within(fu_run *run, double h)
 {
     const tableau method = tableau_of(run);
@@ -248,8 +245,9 @@ static double taken_within(fu_run *run, double h)
     return fabs(off) <= HEAT_TOLERANCE * fabs(sum) ? h * sum : taken_by_means(run, h);
 }
 
-/* Counts heat, J. In a step beyond the limit the method gives energy to the fastest modes, which is no heat: it is
- * owed, and what the modes lose again pays for it first. While it is owed the balance shows it. */
+/* Adds dissipation, J. In a step beyond the limit the method gives energy to the fastest modes, which is no
+ * dissipation: it is recorded as owed, and later losses of the modes compensate it first. Until then the balance shows
+ * it. */
 static void count_heat(fu_run *run, double heat)
 {
     const double counted = fmax(heat - run->heat_owed, 0.0);

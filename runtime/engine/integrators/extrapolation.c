@@ -1,13 +1,11 @@
-/* Prediction of a step from the steps before. Accelerations are those of what a step resolves, which a polynomial
- * through the last steps predicts, and of vibrations that it does not, which none predicts. So the next step is
- * predicted by the polynomial, of degree 0 to 2, that would have predicted the last one best; or, where velocities
- * alone would have been better, by `rest` times the last acceleration, with which the integrator goes on with its
- * velocities.
+/* Prediction of a step from earlier ones. Accelerations consist of motions that a step resolves, which a polynomial
+ * through the last steps predicts, and of unresolved vibrations, which nothing predicts. The next step is predicted
+ * by the polynomial, of degree 0 to 2, that would have predicted the last one best; or, if velocities alone would
+ * have been better, by `rest` times the last acceleration, with which the integrator continues its velocities.
  *
- * A polynomial goes over unknowns alone: dofs that are tied to them follow, those that are prescribed have `rest` times
- * the last. Newton's method does not mend what a prediction has besides, and rounding in that, continued by
- * polynomials, would grow without bounds.
- */
+ * A polynomial extrapolates unknowns alone: dofs tied to them follow, prescribed ones have `rest` times the last.
+ * Newton's method does not correct other parts of a prediction, and rounding in them, extrapolated by polynomials,
+ * would grow without bounds. */
 #include "base/workspace.h"
 #include "bodies/unknowns.h"
 #include "equations/run.h"
@@ -18,7 +16,7 @@
 
 enum { BY_VELOCITIES = -1, MAX_DEGREE = 2 };
 
-/* Places the arrays in a work space; only counts them where it is null. */
+/* Places the arrays in a work space; only counts them if it is null. */
 void fu_extrapolation_take(fu_extrapolation *past, const fu_model *model, double *scratch, long *taken)
 {
     past->before = fu_take(scratch, taken, model->n_dof);
@@ -30,13 +28,13 @@ void fu_extrapolation_take(fu_extrapolation *past, const fu_model *model, double
     past->last = (fu_last_steps *)fu_take(scratch, taken, FU_DOUBLES(1, fu_last_steps));
 }
 
-/* Begins where nothing is known of the past. */
+/* Starts without a history. */
 void fu_extrapolation_start(const fu_extrapolation *past)
 {
     *past->last = (fu_last_steps){0.0, 0.0, 0.0, BY_VELOCITIES};
 }
 
-/* Factors by which a prediction has the accelerations at `now` and of the two steps before. */
+/* Factors of the accelerations at `now` and of the two steps before in a prediction. */
 typedef struct {
     double now, before, earlier;
 } factors;
@@ -57,8 +55,8 @@ static double predicted(const fu_extrapolation *past, factors f, const double *a
     return f.now * a[i] + f.before * past->before[i] + f.earlier * past->earlier[i];
 }
 
-/* Computes the accelerations of a first `next`: `rest` times those at `now`, and what unknowns change by beyond that.
- */
+/* Computes the accelerations of a first `next`: `rest` times those at `now`, and the predicted change of unknowns
+ * beyond that. */
 static void predict_accelerations(const fu_extrapolation *past, fu_run *run, factors f, double rest)
 {
     const fu_model *model = run->model;
@@ -72,9 +70,8 @@ static void predict_accelerations(const fu_extrapolation *past, fu_run *run, fac
     for (int i = 0; i < model->n_dof; ++i) run->next.a[i] = rest * a[i] + run->work[i];
 }
 
-/* Computes the forces of a first `next`, which go with accelerations. Those that have not changed stay as they are, as
- * those of redundant rows do. Steps that the error chooses gain nothing by it: they are as large as Newton's method
- * takes them. */
+/* Computes the forces of a first `next`, predicted like accelerations. Unchanged ones stay, such as those of redundant
+ * rows. Steps with error control gain nothing by it: they are as large as Newton's method permits. */
 static void predict_forces(const fu_extrapolation *past, fu_run *run, factors f)
 {
     const double *now = run->now.forces;
@@ -84,8 +81,7 @@ static void predict_forces(const fu_extrapolation *past, fu_run *run, factors f)
                 f.now * now[i] + f.before * past->force_before[i] + f.earlier * past->force_earlier[i];
 }
 
-/* Computes a first `next`: its accelerations, and the couplings' own coordinates, which are those of a parabola, and
- * forces. */
+/* Computes a first `next`: its accelerations, and the couplings' coordinates, by a parabola, and forces. */
 void fu_extrapolate(const fu_extrapolation *past, fu_run *run, double rest, double h)
 {
     const fu_last_steps *last = past->last;
@@ -99,7 +95,7 @@ void fu_extrapolate(const fu_extrapolation *past, fu_run *run, double rest, doub
         run->next.s[i] += bend * (past->slope[i] - past->slope_before[i]);
 }
 
-/* Returns the sum of squares of what the prediction of the unknowns' `next` was off by. */
+/* Returns the sum of squares of the errors of a prediction of the unknowns' `next`. */
 static double miss(const fu_extrapolation *past, const fu_run *run, factors f)
 {
     const double *weight = run->model->weight;
@@ -112,7 +108,7 @@ static double miss(const fu_extrapolation *past, const fu_run *run, factors f)
     return sum;
 }
 
-/* Takes the step just made from `now` to `next`, and chooses how the one to come is predicted. */
+/* Records the last step from `now` to `next`, and chooses the prediction of the next one. */
 void fu_extrapolation_accept(const fu_extrapolation *past, const fu_run *run, double rest, double h)
 {
     const size_t dofs = sizeof(double) * (size_t)run->model->n_dof;

@@ -1,16 +1,16 @@
-/* Prediction of a step from the steps before: integrators/extrapolation.c. */
+/* Prediction of a step from earlier ones: integrators/extrapolation.c. */
 #ifndef FUNICULAR_INTEGRATORS_EXTRAPOLATION_H
 #define FUNICULAR_INTEGRATORS_EXTRAPOLATION_H
 
 #include "base/common.h"
 
-/* Of the last steps: sizes of the last one and of the one before, s; how many are known; the degree of the polynomial
- * that would have predicted the last one best, -1: none. Whole numbers are real ones here, as work spaces have. */
+/* Of the last steps: sizes of the last one and of the one before, s; their number; the degree of the polynomial that
+ * would have predicted the last one best, -1: none. Integers are stored as real numbers, as in work spaces. */
 typedef struct {
     double h, h_before, steps, degree;
 } fu_last_steps;
 
-/* What an integrator keeps of the last steps, in its work space. */
+/* The history of an integrator in its work space. */
 typedef struct {
     double *before, *earlier;     /* n_dof: its accelerations one and two steps before `now` */
     double *slope, *slope_before; /* of the couplings' own coordinates in the last step, and in the one before */

@@ -1,21 +1,20 @@
 /* Generalised-alpha, index 3, on the group of configurations (Chung & Hulbert 1993; Arnold & Bruels 2007; Bruels &
  * Cardona 2010).
+ *     psi = h v_n + h^2 ((1/2 - beta) a_n + beta a_n+1),   q_n+1 = q_n moved by psi,
+ *     v_n+1 = v_n + h ((1 - gamma) a_n + gamma a_n+1),
+ *     (1 - alpha_m) a_n+1 + alpha_m a_n = (1 - alpha_f) q''_n+1 + alpha_f q''_n,
+ * with equilibrium and constraints at t_n+1.
  *
- *   psi = h v_n + h^2 ((1/2 - beta) a_n + beta a_n+1),   q_n+1 = q_n moved by psi
- *   v_n+1 = v_n + h ((1 - gamma) a_n + gamma a_n+1)
- *   (1 - alpha_m) a_n+1 + alpha_m a_n = (1 - alpha_f) q''_n+1 + alpha_f q''_n
+ * Unknowns of the Newton iteration: psi, and per slide s and f~, with the force f = f~ mass/sigma and sigma = beta
+ * h^2 (1 - alpha_f)/(1 - alpha_m). Rows of equilibrium are multiplied by sigma, constraint rows by the mass: the
+ * matrix is M + sigma K bordered by mass C_q, of one scale for any h (Bottasso, Dopico & Trainelli 2008). Later
+ * steps compensate Newton's remaining residual (carried_residual.c).
  *
- * with equilibrium and constraints at t_n+1. Unknowns of the Newton iteration: psi, and per slide s and f~, where
- * the force is f = f~ mass/sigma with sigma = beta h^2 (1 - alpha_f)/(1 - alpha_m). Rows of equilibrium are multiplied
- * by sigma, constraint rows by the mass: the matrix is M + sigma K bordered by mass C_q, of one scale for any h
- * (Bottasso, Dopico & Trainelli 2008). What Newton leaves of a step, the next ones make up for (carried_residual.c).
- *
- * Of vibrations that steps do not resolve, h a_n is as large as velocities are, however long h is. Where a step is much
- * shorter than the next one, as what is left between an event and an output time can be, its a_n+1 would push the next
- * one by that times the ratio of both, and vibrations would grow from event to event, the more so the stiffer a cable
- * is. After such a step the a_n that it began with goes on, nor is the scheme started again with a_n = q''_n, which
- * holds their acceleration in full.
- */
+ * In vibrations that steps do not resolve, h a_n has the size of velocities for any h. If a step is much shorter
+ * than the next one, such as one between an event and an output time, its a_n+1 would change the next one by the
+ * ratio of both, and vibrations would grow from event to event, the more so the stiffer a cable is. After such a
+ * step its initial a_n continues, without a restart of the scheme by a_n = q''_n, which contains the full
+ * acceleration of vibrations. */
 #include "base/workspace.h"
 #include "bodies/rotation.h"
 #include "couplings/common/couplings.h"
@@ -31,9 +30,9 @@
 #include <math.h>
 #include <string.h>
 
-/* of the usual step: a shorter one leaves a_n as it was, which is off by less than the usual step's error */
+/* of the usual step: a shorter one keeps a_n, with an error below that of the usual step */
 #define SHORT_STEP_SHARE 0.1
-#define MEAN_JUMP_DISTANCE 0.25 /* of a step: from its middle to the instant of a jump, on average */
+#define MEAN_JUMP_DISTANCE 0.25 /* of a step: mean distance of a discontinuity from its middle */
 
 typedef struct {
     double alpha_m, alpha_f, beta, gamma;
@@ -57,7 +56,7 @@ typedef struct {
     fu_extrapolation past;
 } workspace;
 
-/* Places its arrays in the scratch; returns how many doubles it takes, which is all that is done where it is null. */
+/* Places its arrays in the scratch, unless it is null; returns their number of doubles. */
 static long lay_out(const fu_run *run, double *scratch, workspace *w)
 {
     long taken = 0;
@@ -124,7 +123,7 @@ static void kinematics(fu_run *run, double h)
     fu_share(model->threads, model->n_dof, kinematics_part, &job);
     fu_move(model, next->q, run->psi);
     if (model->n_motions) fu_prescribe(model, next);
-    if (fu_choose_deferred(run, 1)) run->factored = 0; /* the matrix is of the flags that it was made with */
+    if (fu_choose_deferred(run, 1)) run->factored = 0; /* the matrix belongs to the flags with which it was computed */
 }
 
 /* Returns the equations at the end of a step. */
@@ -150,7 +149,7 @@ static double apply(fu_run *run, double h)
     return size;
 }
 
-/* Returns what a_n+1 is of a_n where psi = h v. */
+/* Returns the factor of a_n in a_n+1 for psi = h v. */
 static double of_velocities(const fu_run *run)
 {
     return 1.0 - 0.5 / scheme_of(run)->beta;
@@ -172,7 +171,7 @@ static void residual(fu_run *run, double h)
     fu_carried_residual_add(&w.carried, run, at.weights.stiffness);
 }
 
-/* Computes minus the residual of the couplings' own equations, beside zero for the dofs. */
+/* Computes minus the residual of the couplings' internal equations, and zero for the dofs. */
 static void own_residual(fu_run *run, double h)
 {
     const fu_equations at = equations(run, h);
@@ -197,10 +196,10 @@ static int step(fu_run *run, double h)
     return fu_coast(run, h);
 }
 
-/* Returns the local error of positions, m: h^2 |beta + (alpha_m - alpha_f)/2 - 1/6| (q''_n+1 - q''_n). Where a slide
- * has changed its element the accelerations have jumped at some instant of the step, and velocities are wrong by the
- * part of h that lies between it and the middle, times the jump. That counts as over one step: what is allowed is h/t
- * of the whole. */
+/* Returns the local error of positions, m: h^2 |beta + (alpha_m - alpha_f)/2 - 1/6| (q''_n+1 - q''_n). If a slide has
+ * changed its element the accelerations are discontinuous at some instant of the step, and velocities have an error of
+ * the jump times the time between it and the middle. That counts as over one step: the permitted error is h/t of the
+ * whole. */
 static double error(fu_run *run, double h)
 {
     const parameters *g = scheme_of(run);
@@ -211,7 +210,7 @@ static double error(fu_run *run, double h)
     return fu_is_short(run, h) ? fu_error_size(run, run->work, fu_allowed_elsewhere(run)) : fu_filtered_size(run);
 }
 
-/* What the spectral radius changes of the rule of trapezoids, deferred events do not need. */
+/* Deferred events do not need the change of the trapezoidal rule by the spectral radius. */
 static fu_quadrature quadrature(const fu_run *run)
 {
     static const double b[] = {0.5, 0.5}, c[] = {0.0, 1.0};

@@ -4,7 +4,7 @@
 
 #include "equations/integrator.h"
 
-/* Returns the integrator of this name, null where there is none. */
+/* Returns the integrator of this name, null if there is none. */
 const fu_integrator *fu_integrator_of(const char *name);
 
 #endif

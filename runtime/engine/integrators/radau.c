@@ -3,30 +3,29 @@
  * Unknowns are the stages' velocities less those at the start, Z; configurations follow from them by the same
  * quadrature (attitudes by a few sweeps of it), slides by C_l = 0, accelerations by eq 38. Newton's systems are, for
  * each eigenvalue L of A^-1,
+ *     (M + (h/L) D + (h/L)^2 K) x + H' mu = M r,   H x = H r,
+ *     r = (h/L)^2 (T^-1 a - (L/h) T^-1 Z),
+ * and T^-1 Z changes by (L/h) x: the real one has the form of any implicit step, the complex one the same parts.
  *
- *   (M + (h/L) D + (h/L)^2 K) x + H' mu = M r,   H x = H r,   r = (h/L)^2 (T^-1 a - (L/h) T^-1 Z)
- *
- * with T^-1 Z growing by (L/h) x: the real one is that of any implicit step, the complex one has the same parts. What
- * depends on the state in M^-1 H' but K is left out. The end of the step is its last stage, projected on the joints.
- * (Hairer & Wanner 1996, IV.8.)
- */
+ * The dependence of M^-1 H' on the state is neglected, except K. The end of the step is its last stage, projected on
+ * the joints. (Hairer & Wanner 1996, IV.8.) */
 #include "equations/projection.h"
 #include "integrators/radau.h"
 
 #include <math.h>
 #include <string.h>
 
-#define MAX_ITERATIONS 10     /* of Newton's in a step, before it fails */
-#define FIRST_CONTRACTION 0.5 /* of an increment to the one before: what is assumed before there are two */
-/* contraction above which the matrix is made again for the next step */
+#define MAX_ITERATIONS 10     /* of Newton's method in a step before it fails */
+#define FIRST_CONTRACTION 0.5 /* ratio of increments assumed before the second one */
+/* contraction above which the matrix is renewed for the next step */
 #define SLOW_CONTRACTION 0.3
-/* least contraction by which the rest of the error is estimated: a smaller one may be chance */
+/* least contraction for the estimate of the remaining error: a smaller one may be chance */
 #define MIN_CONTRACTION 1e-3
-#define MAX_CONTRACTION 0.9 /* largest contraction by which the rest is estimated, at 9 increments */
+#define MAX_CONTRACTION 0.9 /* largest contraction for it, 9 increments */
 /* growth of an increment from one iteration to the next at which the iteration fails */
 #define DIVERGENCE_GROWTH 2.0
 #define ROUNDING_FACTOR 100.0 /* times the rounding of positions: an increment that is not rounding */
-#define NEWTON_SHARE 1.5e-2   /* of the allowed error: what Newton may leave */
+#define NEWTON_SHARE 1.5e-2   /* of the permitted error: Newton's tolerance */
 
 static long n_parameters(const double *given)
 {
@@ -34,7 +33,7 @@ static long n_parameters(const double *given)
     return FU_DOUBLES(1, fu_radau_parameters);
 }
 
-/* Places the arrays in the scratch; returns how many doubles it takes, which is all that is done where it is null. */
+/* Places the arrays in the scratch, unless it is null; returns their number of doubles. */
 static long lay_out(const fu_run *run, double *scratch)
 {
     const fu_model *model = run->model;
@@ -60,7 +59,7 @@ static long n_scratch(const fu_run *run)
     return lay_out(run, NULL);
 }
 
-/* Newton's method from the prediction with the matrix at hand; returns 0 where it converged. */
+/* Newton's method from the prediction with the current matrix; returns 0 on convergence. */
 static int iterate(fu_run *run, fu_radau_workspace *w, double h)
 {
     double last = 0.0, before = 0.0;
@@ -77,8 +76,8 @@ static int iterate(fu_run *run, fu_radau_workspace *w, double h)
             ratio = size / last;
             if (ratio >= DIVERGENCE_GROWTH || (ratio >= 1.0 && size > ROUNDING_FACTOR * run->round_off && i > 2))
                 return fu_fail(run, FU_ITERATION, run->work, -1);
-            /* the mean of two, as in RADAU5: one may be small by chance, where corrections of what is stiff and of what
-             * constraints hold take turns */
+            /* the mean of two, as in RADAU5: one may be small by chance, where corrections of stiff and of constrained
+             * motions alternate */
             const double mean = i > 1 ? sqrt(ratio * before) : ratio;
             run->contraction = mean < MIN_CONTRACTION   ? MIN_CONTRACTION
                                : mean > MAX_CONTRACTION ? MAX_CONTRACTION
@@ -102,7 +101,7 @@ static int start(fu_run *run)
     return FU_RUNNING;
 }
 
-/* Computes `next` as `now`, for what is linearised there and for what a step does not change. */
+/* Copies `now` to `next`, for linearisation there and for unchanged parts. */
 static void begin_step(fu_run *run)
 {
     const fu_model *model = run->model;

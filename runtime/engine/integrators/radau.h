@@ -1,5 +1,5 @@
-/* What the files of the integrator Radau IIA share: integrators/radau.c, radau_stages.c, radau_newton.c, radau_error.c.
- * None but they includes this. */
+/* Declarations of the integrator Radau IIA: integrators/radau.c, radau_stages.c, radau_newton.c, radau_error.c, its
+ * only users. */
 #ifndef FUNICULAR_INTEGRATORS_RADAU_H
 #define FUNICULAR_INTEGRATORS_RADAU_H
 
@@ -25,44 +25,43 @@ typedef struct {
     double *w;           /* their transforms: likewise */
     double *q;           /* configurations, n_q each */
     double *powers;      /* dissipated and external, of each stage */
-    double *multipliers; /* of eq 38 at the start and at each stage, where forces depend on them */
+    double *multipliers; /* of eq 38 at the start and at each stage, if forces depend on them */
     double *unknowns;    /* of a Newton system */
     double *D_real;      /* the real system's border before it was factored */
-    double *kept;        /* what the border's rows make of dofs */
+    double *kept;        /* products of the border's rows with dofs */
     double *last;        /* the last step's Z */
-    double h_last;       /* its size, s; 0: there is none to predict from */
+    double h_last;       /* its size, s; 0 without a last step */
     fu_complex_system newton;
 } fu_radau_workspace;
 
 const fu_radau_parameters *fu_radau_method(const fu_run *run);
 fu_radau_workspace *fu_radau_space(const fu_run *run);
 
-/* radau_stages.c. Stages from the last step's polynomial, else from the acceleration at hand. */
+/* radau_stages.c. Stages from the last step's polynomial, else from the present acceleration. */
 void fu_radau_predict(fu_run *run, fu_radau_workspace *w, double h);
 /* Moves the dofs of all stages by the quadrature of velocities. */
 void fu_radau_configure(fu_run *run, fu_radau_workspace *w, double h);
-/* Computes `next` stage k, without accelerations; returns 0 where its slides were found. */
+/* Computes `next` as stage k, without accelerations; returns 0 if its slides converged. */
 int fu_radau_place_stage(fu_run *run, fu_radau_workspace *w, int k, double h);
-/* Finds the accelerations of all stages, and the powers of their couplings and loads; returns 0 where they were found.
- */
+/* Computes the accelerations of all stages, and the powers of their couplings and loads; returns 0 on success. */
 int fu_radau_evaluate(fu_run *run, fu_radau_workspace *w, double h);
-/* Adds what damping of cables and bodies takes to the powers of the stages, once the iteration has found them; `next`
- * is the last of them then. */
+/* Adds the dissipation of cables and bodies to the powers of the stages after the iteration; `next` is the last of them
+ * then. */
 void fu_radau_add_internal_dissipation(fu_run *run, fu_radau_workspace *w, double h);
-/* Keeps the multipliers of the state that accelerations have just been found of, as those of stage k. */
+/* Stores the multipliers of the last solution of eq 38 as those of stage k. */
 void fu_radau_keep_multipliers(fu_run *run, fu_radau_workspace *w, int k);
-/* Adds the powers of the stages to the energy balance, and keeps the stages for the next prediction. */
+/* Adds the powers of the stages to the energy balance, and stores the stages for the next prediction. */
 void fu_radau_account(fu_run *run, double h);
 
-/* radau_newton.c. Computes and factors the real and the complex matrix at `now`; returns 0, or not 0 where one is
+/* radau_newton.c. Computes and factors the real and the complex matrix at `now`; returns 0, or nonzero if one is
  * singular. */
 int fu_radau_factor(fu_run *run, double h);
-/* Computes run->rhs = [M r; H r] of dofs r that keep to the supports; unknowns: work space. */
+/* Computes run->rhs = [M r; H r] of dofs r consistent with the supports; unknowns: work space. */
 void fu_radau_right_side(fu_run *run, const double *r, double *unknowns);
 /* Computes one Newton correction of the stages; returns its size as a length. */
 double fu_radau_correct(fu_run *run, fu_radau_workspace *w, double h);
 
-/* radau_error.c. Returns the local error of positions of the step just made, m. */
+/* radau_error.c. Returns the local error of positions of the last step, m. */
 double fu_radau_error(fu_run *run, double h);
 
 #endif

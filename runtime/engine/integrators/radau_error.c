@@ -6,24 +6,24 @@
 
 #include <math.h>
 
-/* times the estimate for vibrations is what counts: errors of one are not of one sign */
+/* factor of the estimate for vibrations: their errors alternate in sign */
 #define VIBRATION_FACTOR 0.5
-#define EMBEDDED_FACTOR 0.08 /* times the embedded estimate is what counts, as its order is too low */
-/* the same where motions, drives or friction feed vibrations: there errors grow with them */
+#define EMBEDDED_FACTOR 0.08 /* factor of the embedded estimate, whose order is too low */
+/* factor where motions, drives or friction excite vibrations, whose errors then grow with them */
 #define FED_VIBRATION_FACTOR 4.0
 #define FED_EMBEDDED_FACTOR 0.1
-/* the same where bodies turn: there what vibrations lose changes the turns for good */
+/* factor where bodies rotate: lost vibrations change the rotation permanently */
 #define TURNING_VIBRATION_FACTOR 2.0
-#define TURNING_EMBEDDED_FACTOR 0.1 /* as the matrix has nothing of turns */
-/* of what is allowed: by how much a body, as a length, turns within a step where it turns */
+#define TURNING_EMBEDDED_FACTOR 0.1 /* since the matrix contains no rotations */
+/* of the permitted error: least rotation of a body within a step, as a length, that counts */
 #define MIN_TURN_SHARE 0.01
-#define REPORTED_FACTOR 2.0 /* times the estimate for vibrations is what is told of a fixed step */
-/* of all that is allowed: the error of vibrations that a step does not resolve */
+#define REPORTED_FACTOR 2.0 /* factor of the estimate for vibrations in the report of fixed steps */
+/* of the total permitted error: that of vibrations which a step does not resolve */
 #define VIBRATION_SHARE 0.1
-#define KINK_ERROR_SHARE 0.15 /* of tol: the error that one kink of friction may make */
+#define KINK_ERROR_SHARE 0.15 /* of tol: permitted error of one kink of friction */
 
-/* Returns the largest error that a kink of a force within the step may make, as a part of what is allowed, m. Kinks are
- * single events, so that one may cost a part of tol, however short its step. */
+/* Returns the largest error of a kink of a force within the step, relative to the permitted one, m. Kinks are single
+ * events, so that one may have a share of tol in a step of any size. */
 static double kink(fu_run *run, fu_radau_workspace *w, double h)
 {
     const fu_model *model = run->model;
@@ -53,8 +53,7 @@ static double filtered(fu_run *run, fu_radau_workspace *w, const double *r)
     return fu_error_size(run, run->work, fu_allowed_elsewhere(run));
 }
 
-/* Computes run->work what the filter takes from what is in run->work, which it was made by; returns the size of what it
- * leaves. */
+/* Computes in run->work the part of run->work that the filter removes; returns the size of the rest. */
 static double take_filtered(fu_run *run, fu_radau_workspace *w)
 {
     const int n = run->model->n_dof;
@@ -64,7 +63,7 @@ static double take_filtered(fu_run *run, fu_radau_workspace *w)
     return left;
 }
 
-/* Computes run->work the embedded estimate E of the error; returns its size as a length. */
+/* Computes in run->work the embedded estimate E of the error; returns its size as a length. */
 static double embedded(fu_run *run, fu_radau_workspace *w, double h)
 {
     const fu_radau_parameters *method = fu_radau_method(run);
@@ -83,7 +82,7 @@ static double embedded(fu_run *run, fu_radau_workspace *w, double h)
     return filtered(run, w, w->w);
 }
 
-/* Returns whether a body turns within the step. */
+/* Returns whether a body rotates within the step. */
 static int turns(const fu_run *run, double h)
 {
     const fu_model *model = run->model;
@@ -94,17 +93,17 @@ static int turns(const fu_run *run, double h)
     return 0;
 }
 
-/* Returns the local error of positions, m. The embedded estimate E, (L/h - J)^-1 of the rate at the start and what the
- * stages say of it for the real L, is of order 3: for a vibration with h omega = z it is z^-2 times the error of the
- * method. What the same filter, applied to E, takes away, V, has the right order, and is 0.55 to 2.5 times the error
- * for every z. A part of E counts beside it, for what the matrix has nothing of: loads that change in time, bodies that
- * turn.
+/* Returns the local error of positions, m. The embedded estimate E, (L/h - J)^-1 of the rate at the start minus that
+ * by the stages for the real L, is of order 3: for a vibration with h omega = z it is z^-2 times the error of the
+ * method. The part V that the same filter, applied to E, removes has the right order, and is 0.55 to 2.5 times the
+ * error for every z. A part of E counts beside it, for effects that are not in the matrix: loads that change in
+ * time, rotating bodies.
  *
- * Errors of steps add up, those of vibrations that a step does not resolve do not: the method damps them, so that all
- * that can be lost is what there is, once. They may be a part of all that is allowed; what adds up, which the filter
- * leaves of E and V, may be the step's share of it. Friction has kinks, which show in what the filter takes away: there
- * all counts as adding up. So it does where bodies turn: a vibration acts on a turn with the square of its size, as a
- * torque, and one that is lost makes an error that grows with the square of the time. */
+ * Errors of steps add up, those of unresolved vibrations do not: the method damps them, so that they can be lost
+ * only once. They may be a share of the total permitted error; errors that add up, which the filter leaves of E and
+ * V, may be the step's share of it. Friction has kinks, which appear in the removed part: there all errors count as
+ * adding up. So they do where bodies rotate: a vibration acts on a rotation with the square of its size, as a
+ * torque, and a lost one makes an error that grows with the square of the time. */
 double fu_radau_error(fu_run *run, double h)
 {
     const fu_model *model = run->model;

@@ -32,8 +32,8 @@ static void add_weights(fu_run *run, fu_weights weights, int whole, fu_complex f
     fu_complex_system_accumulate(&fu_radau_space(run)->newton, &run->newton, factor);
 }
 
-/* Computes both matrices at `now`. They are made of M + J, K and D, which systems of other weights differ by. Cables
- * without damping have M, and M + K; their K, which takes longest, is made once. */
+/* Computes both matrices at `now`, from M + J, K and D, the differences of systems with other weights. Cables without
+ * damping have M, and M + K; their K, the most expensive part, is computed once. */
 static void make_matrices(fu_run *run, double h)
 {
     const fu_radau_parameters *method = fu_radau_method(run);
@@ -44,8 +44,8 @@ static void make_matrices(fu_run *run, double h)
     const fu_complex by_damping = {other.re / real, other.im / real};
     const fu_complex by_stiffness = {square.re / (real * real), square.im / (real * real)};
     const int whole = cables_are_damped(model),
-              damped = whole || model->n_damped || model->n_bodies; /* forces of inertia
-                                                                     * go with the velocity of a body */
+              /* inertial forces depend on the velocity of a body */
+        damped = whole || model->n_damped || model->n_bodies;
     const fu_complex last = damped ? by_damping : (fu_complex){2.0 - by_stiffness.re, -by_stiffness.im};
     fu_complex_system_clear(c, &run->newton);
     add_weights(run, (fu_weights){1.0, 0.0, 2.0 * real * real}, whole,
@@ -66,8 +66,7 @@ static void make_matrices(fu_run *run, double h)
     fu_complex_system_accumulate(c, &run->newton, last);
 }
 
-/* Computes both and factors the real band. Where that is not definite, the complex one needs more than its lower half.
- */
+/* Computes both and factors the real band. If that is not definite, the complex one needs more than its lower half. */
 static int make_and_factor_band(fu_run *run, double h)
 {
     fu_system *s = &run->newton;
@@ -77,11 +76,11 @@ static int make_and_factor_band(fu_run *run, double h)
         memcpy(w->D_real, s->D, sizeof(double) * (size_t)s->fronts->size);
         const int info = fu_system_factor_band(s, run->model->lapack);
         if (s->definite || !w->newton.is_lower) return info;
-        w->newton.is_lower = 0; /* from now on: it may stay so */
+        w->newton.is_lower = 0; /* from now on, since it may stay so */
     }
 }
 
-/* Computes and factors the real and the complex matrix at `now`; returns 0, or not 0 where one is singular. */
+/* Computes and factors the real and the complex matrix at `now`; returns 0, or nonzero if one is singular. */
 int fu_radau_factor(fu_run *run, double h)
 {
     const double begin = fu_clock();
@@ -96,7 +95,7 @@ int fu_radau_factor(fu_run *run, double h)
     return info;
 }
 
-/* Computes the border's rows times dofs, which for constraint rows are H r. */
+/* Computes the products of the border's rows with dofs, which for constraint rows are H r. */
 static void keep_rows(fu_run *run, const double *unknowns)
 {
     const fu_system *s = &run->newton;

@@ -9,10 +9,10 @@
 
 #include <string.h>
 
-/* of the attitudes' quadrature for each iteration of Newton's, which goes on with those at hand */
+/* of the attitudes' quadrature for each Newton iteration, from the present ones */
 #define SWEEPS 4
 
-/* Moves the entries of the stages' q that have n dofs for rates by the quadrature of velocities. */
+/* Moves the entries of the stages' q whose rates are dofs by the quadrature of velocities. */
 static void integrate(fu_run *run, fu_radau_workspace *w, double h, int at, int dof, int n)
 {
     const fu_model *model = run->model;
@@ -27,7 +27,7 @@ static void integrate(fu_run *run, fu_radau_workspace *w, double h, int at, int 
     }
 }
 
-/* Moves the stages' dofs by the quadrature of velocities, attitudes by sweeps over those at hand. */
+/* Moves the stages' dofs by the quadrature of velocities, attitudes by sweeps from the present ones. */
 void fu_radau_configure(fu_run *run, fu_radau_workspace *w, double h)
 {
     const fu_model *model = run->model;
@@ -57,7 +57,7 @@ void fu_radau_configure(fu_run *run, fu_radau_workspace *w, double h)
         }
 }
 
-/* Computes the time and the dofs of `next` those of stage k. */
+/* Sets time and dofs of `next` to those of stage k. */
 static void move_to_stage(fu_run *run, const fu_radau_workspace *w, int k, double h)
 {
     const fu_model *model = run->model;
@@ -84,7 +84,7 @@ void fu_radau_add_internal_dissipation(fu_run *run, fu_radau_workspace *w, doubl
     }
 }
 
-/* Keeps the multipliers of the state that accelerations have just been found of, as those of stage k. */
+/* Stores the multipliers of the last solution of eq 38 as those of stage k. */
 void fu_radau_keep_multipliers(fu_run *run, fu_radau_workspace *w, int k)
 {
     const long n = run->model->n_multipliers;
@@ -92,7 +92,7 @@ void fu_radau_keep_multipliers(fu_run *run, fu_radau_workspace *w, int k)
         memcpy(w->multipliers + k * n, run->accelerator.multipliers, sizeof(double) * (size_t)n);
 }
 
-/* Finds the accelerations of all stages, the powers of their couplings and loads; returns 0 where they were found. */
+/* Computes the accelerations of all stages, the powers of their couplings and loads; returns 0 on success. */
 int fu_radau_evaluate(fu_run *run, fu_radau_workspace *w, double h)
 {
     const double begin = fu_clock();
@@ -113,7 +113,7 @@ int fu_radau_evaluate(fu_run *run, fu_radau_workspace *w, double h)
     return 0;
 }
 
-/* Predicts the stages from the last step's polynomial, else from the acceleration at hand. */
+/* Predicts the stages from the last step's polynomial, else from the present acceleration. */
 void fu_radau_predict(fu_run *run, fu_radau_workspace *w, double h)
 {
     const fu_model *model = run->model;
@@ -136,7 +136,7 @@ void fu_radau_predict(fu_run *run, fu_radau_workspace *w, double h)
     }
 }
 
-/* Adds the stages' powers by their weights, the last row of A, and keeps the stages for the next prediction. */
+/* Adds the stages' powers by their weights, the last row of A, and stores the stages for the next prediction. */
 void fu_radau_account(fu_run *run, double h)
 {
     fu_radau_workspace *w = fu_radau_space(run);

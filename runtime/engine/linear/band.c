@@ -1,7 +1,9 @@
-/* Symmetric positive definite band matrices: Cholesky factorisation by LAPACK, substitution here. LAPACK calls a BLAS
- * kernel for each column, which takes three times as long as the arithmetic of the short columns of cables
- * (tests/benchmarks/linear_cost.py). Storage: columns of the lower triangle from the diagonal down, width + 1 each, and
- * columns of a unit matrix up to a whole number of groups, whose columns are eliminated at once. */
+/* Symmetric positive definite band matrices: Cholesky factorisation by LAPACK, substitution here. LAPACK calls a
+ * BLAS kernel for each column, which takes three times as long as the arithmetic of the short columns of cables
+ * (tests/benchmarks/linear_cost.py).
+ *
+ * Storage: columns of the lower triangle from the diagonal down, width + 1 each, and columns of a unit matrix up to
+ * a whole number of groups, whose columns are eliminated at once. */
 #include "linear/linear.h"
 
 /* Converts Cholesky's columns to those of L D L': L below the diagonal, 1/D on it. */

@@ -1,11 +1,13 @@
-/* Complex band matrices that are symmetric, or nearly so, factored without pivots: A = L D L', or A = L D U'. The
- * stages of Radau IIA have A = M + z D + z^2 K with z = h/L and an argument of -49 degrees. Times conj(z)/|z|, the real
- * part of A is cos 49 (M + |z|^2 K) + |z| D. It is positive definite if the real system's M + s D + s^2 K is, since |z|
- * < s = h/gamma and D is dissipative. The values x* A x then lie in a sector of less than a half plane. So do those of
- * the inverse, of its diagonal blocks, and of their inverses, the Schur complements: no pivot is small beside its
- * column. The unsymmetric part must be small, as in unsymmetric_band.c. Storage: columns of the lower triangle from the
- * diagonal down, FU_COMPLEX_STRIDE numbers each with zeros beyond the band, real and imaginary parts apart; those of
- * the upper one, transposed, likewise. */
+/* Complex band matrices that are symmetric, or nearly so, factored without pivots: A = L D L', or A = L D U'.
+ *
+ * The stages of Radau IIA have A = M + z D + z^2 K with z = h/L and an argument of -49 degrees. Times conj(z)/|z|,
+ * the real part of A is cos 49 (M + |z|^2 K) + |z| D. It is positive definite if the real system's M + s D + s^2 K
+ * is, since |z| < s = h/gamma and D is dissipative. The values x* A x then lie in a sector of less than a half
+ * plane. So do those of the inverse, of its diagonal blocks, and of their inverses, the Schur complements: no pivot
+ * is small beside its column. The unsymmetric part must be small, as in unsymmetric_band.c.
+ *
+ * Storage: columns of the lower triangle from the diagonal down, FU_COMPLEX_STRIDE numbers each with zeros beyond
+ * the band, real and imaginary parts apart; those of the upper one, transposed, likewise. */
 #include "base/simd.h"
 #include "linear/complex_system.h"
 

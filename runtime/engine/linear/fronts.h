@@ -2,10 +2,11 @@
 #ifndef FUNICULAR_LINEAR_FRONTS_H
 #define FUNICULAR_LINEAR_FRONTS_H
 
-/* The order in which the unknowns of a border are eliminated, found once for a scene (model/elimination.py). A front
- * eliminates its pivots and updates the Schur complement of their neighbours, which are pivots of later fronts. With
- * one front the matrix is dense. Storage of the matrix, of front k from start[k] on: the columns of its pivots, over
- * the rows of pivots and neighbours; then the columns of the neighbours, over the rows of the pivots. */
+/* The order in which the unknowns of a border are eliminated, found once for a scene (model/elimination.py).
+ *
+ * A front eliminates its pivots and updates the Schur complement of their neighbours, which are pivots of later
+ * fronts. With one front the matrix is dense. Storage of the matrix, of front k from start[k] on: the columns of its
+ * pivots, over the rows of pivots and neighbours; then the columns of the neighbours, over the rows of the pivots. */
 typedef struct {
     int m, n;                            /* unknowns, fronts */
     int size;                            /* numbers in the storage */

@@ -2,9 +2,11 @@
  * linear/fronts.c, linear/complex_fronts.c. A file that includes this has defined NUMBER, PREFIX(name), SIZE(x),
  * DIVIDE(x, by), TIMES(a, b), ADD(to, x), ZERO, ONE, FACTOR (LAPACK's getrf), APPLY, which eliminates pivots from a
  * column, FORWARD, which does so for a right side with all pivots of a front, and BACK, which computes the first
- * unknowns of a front from the others. A pivot is taken from the fully summed rows and columns, if it is not much
- * smaller than the largest entry of its column. Columns without a pivot are delayed to the parent front. The last front
- * has no other rows: LAPACK factors it. Pivots are stored as their inverses. */
+ * unknowns of a front from the others.
+ *
+ * A pivot is taken from the fully summed rows and columns, if it is not much smaller than the largest entry of its
+ * column. Columns without a pivot are delayed to the parent front. The last front has no other rows: LAPACK factors
+ * it. Pivots are stored as their inverses. */
 /* of a column's largest entry: least pivot. Rounding grows by at most its inverse. */
 #define PIVOT_THRESHOLD 1e-5
 

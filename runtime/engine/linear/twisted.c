@@ -1,11 +1,13 @@
-/* Long chains, eliminated from both ends towards their middle: a twisted factorisation (van der Vorst 1987, "Analysis
- * of a parallel solution method for tridiagonal linear systems"; for bands Lang 1992). There is no fill beyond the
- * middle, the number of operations equals that from one end, and both halves are independent: in the factorisation, and
- * in either half of a substitution. The order, and so the bits, do not depend on the number of threads. A chain of n
- * unknowns has n = count + middle + count. Each half is a banded matrix of count + middle columns, the second one
- * backwards from the chain's end. The last columns of Cholesky's factors of both, L1 and L2, hold the Schur complement
- * of the middle block A after one half: A - U1 = L1 L1' and A - U2 = L2 L2'. After both halves it is A - U1 - U2 = L1
- * L1' + L2 L2' - A. */
+/* Long chains, eliminated from both ends towards their middle: a twisted factorisation (van der Vorst 1987,
+ * "Analysis of a parallel solution method for tridiagonal linear systems"; for bands Lang 1992). There is no fill
+ * beyond the middle, the number of operations equals that from one end, and both halves are independent: in the
+ * factorisation, and in either half of a substitution. The order, and so the bits, do not depend on the number of
+ * threads.
+ *
+ * A chain of n unknowns has n = count + middle + count. Each half is a banded matrix of count + middle columns, the
+ * second one backwards from the chain's end. The last columns of Cholesky's factors of both, L1 and L2, hold the
+ * Schur complement of the middle block A after one half: A - U1 = L1 L1' and A - U2 = L2 L2'. After both halves it
+ * is A - U1 - U2 = L1 L1' + L2 L2' - A. */
 #include "linear/linear.h"
 
 /* A chain in halves. L: columns of either half, those of the first one with the middle's. */

@@ -1,8 +1,9 @@
 /* Nearly symmetric band matrices, as with damping whose direction rotates with the configuration: A = L D U' without
  * pivots. That is stable if the symmetric part is positive definite and dominates the rest (Golub & Van Loan 1979,
  * "Unsymmetric positive definite linear systems"). LAPACK's factorisation with pivots calls a BLAS kernel for each
- * column, which takes several times as long, in each solution, too. Storage: L and U each in the form of band.c, with
- * 1/D on both diagonals, so that its substitutions apply. */
+ * column, which takes several times as long, in each solution, too.
+ *
+ * Storage: L and U each in the form of band.c, with 1/D on both diagonals, so that its substitutions apply. */
 #include "linear/linear.h"
 
 #define SYMMETRY_TOLERANCE 1e-2 /* of the diagonals: largest difference of both halves */

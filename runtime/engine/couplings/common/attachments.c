@@ -1,6 +1,5 @@
-/* Attachments: a point and axes of the ground, of a cable, of a body; how they move with the coordinates of what
- * carries them, and what a force and a moment on them change with these.
- */
+/* Attachments: a point and axes of the ground, of a cable, of a body; their motion with the coordinates of their
+ * carrier, and the derivatives of a force and a moment on them. */
 #include "bodies/model.h"
 #include "bodies/rotation.h"
 #include "bodies/unknowns.h"
@@ -10,7 +9,7 @@
 
 static const double unit_axes[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
 
-/* Makes C (n x m) = A (n x k) B (k x m). */
+/* Computes C (n x m) = A (n x k) B (k x m). */
 static void multiply(int n, int k, int m, const double *A, const double *B, double *C)
 {
     for (int i = 0; i < n; ++i)
@@ -21,8 +20,8 @@ static void multiply(int n, int k, int m, const double *A, const double *B, doub
         }
 }
 
-/* Makes the two vectors of a cable's frame; `rows` then holds their derivatives by the element's coordinates and, on a
- * slide, by s. */
+/* Computes the two vectors of a cable's frame; `rows` then holds their derivatives by the element's coordinates and, on
+ * a slide, by s. */
 typedef struct {
     double value[2][3], rate[2][3], second[2][3], rows[6 * FU_ATTACHMENT_COORDINATES];
     double S[2]
@@ -63,7 +62,8 @@ static void vectors_of(const fu_model *model, const fu_attachment *on, const fu_
         for (int d = 0; d < dim; ++d) {
             double value = 0.0, slope = 0.0, bend = 0.0, rate = 0.0, slope_rate = 0.0;
             for (int i = 0; i < n; ++i) {
-                /* from the first node: slopes do not see where that is, and no digits are lost far from the origin */
+                /* from the first node: slopes do not depend on its position, and no digits are lost far from the
+                 * origin */
                 const double at = e[i * dim + d] - (i % cable->kernel->vectors == 0 ? e[d] : 0.0);
                 value += S[i] * at;
                 slope += S_x[i] * at;
@@ -80,7 +80,8 @@ static void vectors_of(const fu_model *model, const fu_attachment *on, const fu_
     }
 }
 
-/* Returns how many coordinates an attachment has, and their numbers for fu_add; on a slide the last of them is s. */
+/* Returns the number of coordinates of an attachment, and their numbers for fu_add; on a slide the last of them is
+ * s. */
 int fu_attachment_coordinates(const fu_model *model, const fu_attachment *on, const fu_state *state, int *at)
 {
     if (on->body >= 0) {
@@ -137,7 +138,7 @@ static void axes_of(const fu_model *model, const fu_attachment *on, const fu_sta
     if (on->body >= 0) {
         const fu_body *body = &model->bodies[on->body];
         body->kernel->frame(state->q + body->configuration, A, out->T);
-        multiply(turns, n, 1, out->T, state->v + body->dof, out->omega); /* at omega' = 0 the axes' own bias is nil */
+        multiply(turns, n, 1, out->T, state->v + body->dof, out->omega); /* at omega' = 0 the axes' own bias is zero */
     } else if (on->frame) {
         frame_vectors w;
         double T[18];
@@ -153,7 +154,7 @@ static void axes_of(const fu_model *model, const fu_attachment *on, const fu_sta
     multiply(dim, dim, dim, A, on->axes, out->A);
 }
 
-/* Makes the state of a node of a modal body: of its point and its axes together. */
+/* Computes the state of a node of a modal body: of its point and its axes together. */
 static void of_modes(const fu_model *model, const fu_attachment *on, const fu_state *state, fu_attachment_state *out)
 {
     const fu_body *body = &model->bodies[on->body];
@@ -172,7 +173,7 @@ static void of_modes(const fu_model *model, const fu_attachment *on, const fu_st
     multiply(dim, dim, dim, at.axes, on->axes, out->A);
 }
 
-/* Makes the state of an attachment: of its point, its axes, or both; s_rate: of its slide, where velocities count. */
+/* Computes the state of an attachment: of its point, its axes, or both; s_rate: of its slide, if velocities count. */
 void fu_attachment_at(const fu_model *model, const fu_attachment *on, const fu_state *state, double s_rate, int what,
                       fu_attachment_state *out)
 {
@@ -193,7 +194,7 @@ void fu_discrete_point(const fu_model *model, const fu_attachment *on, const fu_
     body->kernel->discrete_point(now->q + body->configuration, on->u, next->q + body->configuration, P);
 }
 
-/* Does what fu_wrench_derivatives does, for an attachment to a body. */
+/* fu_wrench_derivatives for an attachment to a body. */
 static void derivatives_on_body(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *f,
                                 const double *m, double *K, double *v_q, double *omega_q)
 {
@@ -208,8 +209,7 @@ static void derivatives_on_body(const fu_model *model, const fu_attachment *on, 
     else body->kernel->wrench(b, on->u, w, f, m, K, v_q, omega_q);
 }
 
-/* Adds what depends on s of the frame where a slide is; g: derivatives of the moment's work by the frame's two vectors.
- */
+/* Adds the terms with s of the frame at a slide; g: derivatives of the moment's work by the frame's two vectors. */
 static void add_stiffness_of_s(const fu_model *model, const fu_attachment *on, const fu_state *state,
                                const frame_vectors *w, const double *g, int n, double *K)
 {

@@ -1,15 +1,15 @@
 /* Continuous collision detection by conservative advancement (Mirtich 1996).
  *
  * Between the ends of a step all points move along the cubics of their positions and velocities there (Hermite). The
- * distance of two objects changes by no more than the paths of their points; so they stay apart for as long a part of
- * the step as their paths need for their distance, and are evaluated next where that part ends. Advances have a lower
- * bound. Where it is longer than that part, and the gap has a minimum between two evaluations, the minimum decides.
- */
+ * distance of two objects changes by at most the paths of their points: they stay apart for the part of the step in
+ * which their paths are shorter than the distance, and are evaluated again where that part ends. Advances have a
+ * lower bound. If it is longer than that part, and the gap has a minimum between two evaluations, the minimum
+ * decides. */
 #include "couplings/common/continuous_detection.h"
 
 #include <math.h>
 
-#define BRACKET_MARGIN 1e-2    /* of a bracket of the minimum: the least distance of the next evaluation from its ends */
+#define BRACKET_MARGIN 1e-2 /* of a bracket of the minimum: the least distance of the next evaluation from its ends */
 #define GRAZING_TOLERANCE 1e-2 /* of the depth of a minimum: a predicted distance from zero that is examined */
 
 enum { SECTIONS = 8 }; /* of a bracket of the minimum */

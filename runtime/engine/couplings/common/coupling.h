@@ -1,4 +1,4 @@
-/* Couplings: what acts between attachments, or on one. couplings/common/couplings.c loops over them. */
+/* Couplings: interactions between attachments, or on one. couplings/common/couplings.c loops over them. */
 #ifndef FUNICULAR_COUPLINGS_COMMON_COUPLING_H
 #define FUNICULAR_COUPLINGS_COMMON_COUPLING_H
 
@@ -12,29 +12,29 @@
 typedef struct fu_coupling_type fu_coupling_type;
 typedef struct fu_coupling_events fu_coupling_events;
 
-/* What each coupling begins with: fu_slide, fu_joint, fu_point_force and fu_load have it as their first member, `base`.
+/* Base of each coupling: fu_slide, fu_joint, fu_point_force and fu_load have it as their first member, `base`.
  *
- * A coupling may have unknowns of its own in a Newton system. They stand together from `unknown` on: first its
+ * A coupling may have internal unknowns in a Newton system. They are contiguous from `unknown` on: first its
  * coordinates (s of a slide), then its forces (multipliers are forces). fu_list_couplings numbers them. */
 struct fu_coupling {
     const fu_coupling_type *type;
-    const fu_coupling_events *events; /* that it finds by itself; null: none (couplings/common/coupling_events.h) */
+    const fu_coupling_events *events; /* its events; null: none (couplings/common/coupling_events.h) */
     int index;                        /* among the couplings of its structure */
     int number;                       /* among all couplings of the model */
     int unknown;                      /* the first of its unknowns, counted beyond the dofs */
     int n_coordinates, coordinate;    /* its own coordinates, and the first of them in state->s */
     int n_forces, force;              /* its own forces, and the first of them in state->forces */
-    int n_multipliers, multiplier;    /* multipliers of eq 38: the most that it needs, and the first of them */
-    int row;                          /* its entry in fu_accelerator.rows, -1 where it has no constraints */
+    int n_multipliers, multiplier;    /* multipliers of eq 38: their maximum, and the first of them */
+    int row;                          /* its entry in fu_accelerator.rows, -1 without constraints */
     int output;                       /* its first number in a row of output */
-    int numbers, flags;               /* its own part of a state: the first of them in state->numbers, state->flags */
-    int scratch;                      /* its own part of fu_accelerator.scratch: the first of it */
-    int n_numbers;                    /* of its own in a state beyond those that its type has */
-    int reacts;                       /* nonzero where it has a force that depends on the multipliers of eq 38 */
-    int is_damped;                    /* nonzero where it has a force that depends on velocities */
-    int is_driven;                    /* nonzero where a signal does work on it */
-    int has_inertia;                  /* nonzero where it has a mass of its own */
-    double scale[FU_MAX_FORCES];      /* kg or kg m: rows of constraints times it have the scale of the mass matrix */
+    int numbers, flags;               /* its part of a state: the first of them in state->numbers, state->flags */
+    int scratch;                      /* first place of its part of fu_accelerator.scratch */
+    int n_numbers;                    /* of its own in a state beyond those of its type */
+    int reacts;                       /* nonzero if a force of it depends on the multipliers of eq 38 */
+    int is_damped;                    /* nonzero if a force of it depends on velocities */
+    int is_driven;                    /* nonzero if a signal does work on it */
+    int has_inertia;                  /* nonzero if it has a mass */
+    double scale[FU_MAX_FORCES];      /* kg or kg m: brings rows of constraints to the scale of the mass matrix */
 };
 
 extern const fu_field fu_coupling_fields[]; /* of fu_coupling */
@@ -43,48 +43,48 @@ extern const fu_field fu_coupling_fields[]; /* of fu_coupling */
 #define FU_EACH_COUPLING(c, list, n)                                                                                   \
     for (const fu_coupling *const *c##_at = (list), *c = NULL; c##_at - (list) < (n) && (c = *c##_at) != NULL; ++c##_at)
 
-/* Where a Newton method makes its equations: at `next`, or, in a method that conserves energy, over the step from `now`
+/* Place of the equations of a Newton method: at `next`, or, in a method that conserves energy, over the step from `now`
  * to `next` with `middle` between them. Rows of equilibrium are multiplied by weights.stiffness, rows of constraints by
- * fu_row_unit; a coupling's own forces are solved for in units of fu_row_unit/weights.stiffness. */
+ * fu_row_unit; internal forces of couplings are solved for in units of fu_row_unit/weights.stiffness. */
 typedef struct {
     const fu_state *now, *next, *middle;
-    const double *psi; /* what has moved the bodies to `next`; null where the unknowns move them from there */
+    const double *psi; /* displacement of the bodies to `next`; null if the unknowns move them from there */
     double h;          /* s: of the step; 0 at an instant */
     fu_weights weights;
 } fu_equations;
 
-/* How far what a coupling acts between is from acting, m, at least; what turns of the second of it are to be multiplied
- * by to be ways of the first, m; how far points of the first are from its origin, if it is a body, m. */
+/* Lower bound of the gap between the two parts of a coupling, m; the factor that converts rotations of the second part
+ * to displacements of the first, m; the largest distance of points of the first from its origin, if it is a body, m. */
 typedef struct {
     double gap, lever, radius;
 } fu_clearance;
 
-/* A mass that depends on the configuration. What inertia gives without accelerations is in `force`, `residual` and
- * `tangent`. */
+/* A mass that depends on the configuration. `force`, `residual` and `tangent` contain its inertial force at zero
+ * accelerations. */
 typedef struct {
     /* Adds M a to f. */
     void (*force)(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a, double *f);
     /* Adds scale M to a system. */
     void (*matrix)(const fu_model *model, const fu_coupling *coupling, const double *q, double scale,
                    fu_system *system);
-    /* Returns the kinetic energy, J, at the velocities v; or of these alone, where the coupling is of a fluid that
-     * moves and past_fluid is zero. */
+    /* Returns the kinetic energy, J, at the velocities v; or of these alone, if the coupling is of a moving fluid and
+     * past_fluid is zero. */
     double (*kinetic_energy)(const fu_model *model, const fu_coupling *coupling, double t, const double *q,
                              const double *v, int past_fluid);
 } fu_inertia_operations;
 
-/* A lower bound of the distance at which a coupling acts. While motions have not used it up, operations may be skipped
+/* A lower bound of the distance at which a coupling acts. Until motions have used it up, operations may be skipped
  * (couplings/common/proximity.c). */
 typedef struct {
-    /* Returns the clearance at a state: motions of both sides, and turns of the second by the lever, shrink its gap at
-     * most. */
+    /* Returns the clearance at a state: motions of both sides, and rotations of the second times the lever, reduce its
+     * gap at most. */
     fu_clearance (*clearance)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
-    /* Computes what the coupling acts between: the number of a cable, n_cables and that of a body, -1 for the ground.
-     */
+    /* Computes the two parts of the coupling: the number of a cable, n_cables plus that of a body, -1 for the
+     * ground. */
     void (*between)(const fu_model *model, const fu_coupling *coupling, int between[2]);
 } fu_proximity_operations;
 
-/* Work from outside by the coupling's own force. */
+/* External work of the coupling's force. */
 typedef struct {
     /* Returns the power at an instant, W. */
     double (*power)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
@@ -98,17 +98,16 @@ typedef struct {
      * since the last call over the force. */
     double (*update)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
                      fu_accelerator *work);
-    /* Takes what follows from the final multipliers. */
+    /* Accepts the final multipliers. */
     void (*accept)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
                    fu_accelerator *work);
-    /* Returns the error that a kink of the friction within a step may make, m: from n states of it, their weights in
-     * the mean, and the multipliers there (n x model->n_multipliers); square: the step times the time that is left,
-     * s^2. */
+    /* Returns the largest error of a kink of the friction within a step, m: from n states of it, their weights in the
+     * mean, and the multipliers there (n x model->n_multipliers); square: the step times the remaining time, s^2. */
     double (*friction_error)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int n,
                              const double *weights, const double *multipliers, double square);
 } fu_reaction_operations;
 
-/* Own coordinates that follow from the others. */
+/* Coordinates that follow from the others. */
 typedef struct {
     /* Computes their rates, after eq 38. */
     void (*rates)(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, double *rates);
@@ -124,31 +123,28 @@ typedef struct {
     double (*error)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);
 } fu_history_operations;
 
-/* What a coupling can do. A null operation: it does nothing of that.
- * f: generalised forces on the dofs, as they stand on the left of the equations of motion; own: minus the scaled
- * residual of the unknowns beyond the dofs.
+/* Operations of a coupling. A null operation does nothing. f: generalised forces on the dofs, with the signs of the
+ * left side of the equations of motion; own: minus the scaled residual of the unknowns beyond the dofs.
  *
- * There is no operation that lists the columns of a system that a coupling touches, its own unknowns among them:
- * `tangent` and `rows` name each entry by its dof or unknown, and fu_add (bodies/unknowns.h) finds its place and notes
- * which rows of the border count. A list beside it would say the same a second time, and would have to be kept in step
- * with it. */
+ * No operation lists the columns of a system that a coupling touches: `tangent` and `rows` name each entry by its
+ * dof or unknown, and fu_add (bodies/unknowns.h) finds its place and extends the row spans of the border. A separate
+ * list would state this a second time. */
 struct fu_coupling_type {
     const char *name;
     size_t size;                    /* bytes of its structure */
-    const fu_field *fields;         /* what of it the model gives */
-    const fu_output *output_fields; /* what it gives to a row of output; null: nothing */
-    int n_numbers, n_flags;         /* real and whole numbers that it keeps in a state */
-    int n_scratch;                  /* doubles that it keeps from `rows` to `outputs` */
+    const fu_field *fields;         /* its fields from the model */
+    const fu_output *output_fields; /* its numbers in a row of output; null: none */
+    int n_numbers, n_flags;         /* real numbers and integers in a state */
+    int n_scratch;                  /* doubles stored from `rows` to `outputs` */
 
-    const fu_inertia_operations *inertia; /* these, where a coupling has them; null: it has not */
+    const fu_inertia_operations *inertia; /* tables of operations; null: none */
     const fu_proximity_operations *proximity;
     const fu_supply_operations *supply;
     const fu_reaction_operations *reaction;
     const fu_coordinate_operations *coordinates;
     const fu_history_operations *history;
 
-    /* What of a coupling as the model gives it is more than the engine has room for, in words; null where nothing is.
-     */
+    /* Returns in words which data of a coupling exceed the limits of the engine; null if none does. */
     const char *(*excess)(const fu_coupling *coupling);
 
     /* Newton systems at an instant: residual and its derivative. */
@@ -163,44 +159,41 @@ struct fu_coupling_type {
 
     /* Computes the constraint rows of accelerations (eq 38), H and W among them, in work->rows[coupling->row]. */
     void (*rows)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work);
-    /* Adds the coupling's own force to f; adds a force from outside, whose work the energy balance counts as external.
-     */
+    /* Adds the coupling's force to f; adds an external force, whose work the energy balance counts as external. */
     void (*force)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f);
     void (*external_force)(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f);
-    /* Make, after eq 38, the state's own forces; the numbers of `output_fields`. */
+    /* Compute, after eq 38, the internal forces of the state; the numbers of `output_fields`. */
     void (*take_forces)(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work,
                         fu_state *state);
     void (*outputs)(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                     const double *acceleration, const fu_accelerator *work, double *out);
 
-    /* Computes what is left of the constraints, redundant ones among them: one number an own force. */
+    /* Computes the residuals of the constraints, redundant ones included: one number per internal force. */
     void (*gaps)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *gaps);
 
-    /* Return the stored energy, J; the power that goes to heat, W, by the state's own forces, or where work is not null
-     * by those of eq 38. */
+    /* Return the stored energy, J; the dissipated power, W, by the internal forces of the state, or, if work is not
+     * null, by those of eq 38. */
     double (*energy)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
     double (*dissipation)(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                           const fu_accelerator *work);
 
     /* Returns the energy that a step from one state to another dissipates beside that power, J; by_ends: by the forces
-     * at its ends alone, as methods of order 2 have them. */
+     * at its ends alone, as in methods of order 2. */
     double (*lost_in_step)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
                            int by_ends);
 
-    /* Adds to f what the mean force over a step from one state to another is off by, N, where a rule of n weights b at
-     * parts c of the step makes it, as the force has kinks within; returns whether it has. */
+    /* Adds to f the error of the mean force over a step from one state to another, N, by a quadrature of n weights b at
+     * parts c of the step, since the force has kinks within; returns whether it has. */
     int (*quadrature_error)(const fu_model *model, const fu_coupling *coupling, const fu_state *from,
                             const fu_state *to, int n, const double *b, const double *c, double *f);
 
-    /* Returns whether a start may be off the constraints by a small gap. */
+    /* Returns whether a start may violate the constraints by a small gap. */
     int (*may_start_open)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
-    /* Sets own coordinates, segments, numbers and flags of the state in the initial configuration; those that it does
-     * not set are zero.
-     */
+    /* Sets coordinates, segments, numbers and flags of the state in the initial configuration; others are zero. */
     void (*reset)(const fu_coupling *coupling, fu_state *state);
-    /* Finds contact that follows from the positions, in statics. */
+    /* Detects contact from the positions, in statics. */
     void (*detect)(const fu_model *model, const fu_coupling *coupling, fu_state *state);
-    /* Returns whether a state that was read from a file is possible. */
+    /* Returns whether a state from a file is possible. */
     int (*is_possible)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 };
 

@@ -1,4 +1,4 @@
-/* Loops over the couplings of a model, in the order of its list: each calls the one operation that it is about. */
+/* Loops over the couplings of a model, in the order of its list, each for one operation. */
 #include "couplings/common/couplings.h"
 #include "couplings/common/proximity.h"
 #include "couplings/slide/slide.h"
@@ -14,7 +14,7 @@ const fu_field fu_coupling_fields[] = {
     FU_FIELD_ARRAY(fu_coupling, scale, FU_REAL),      {0},
 };
 
-/* Puts a coupling into the lists that it is in. */
+/* Adds a coupling to its lists. */
 static void list_coupling(fu_model *model, const fu_coupling *c)
 {
     const int alone = fu_acts_alone(c);
@@ -192,7 +192,7 @@ void fu_coupling_outputs(const fu_model *model, const fu_state *state, const dou
         if (c->type->outputs) c->type->outputs(model, c, state, acceleration, work, out + c->output);
 }
 
-/* Computes the row of output of a coupling that needs no accelerations for it. */
+/* Computes the row of output of a coupling whose outputs do not depend on accelerations. */
 void fu_outputs_at_rest(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
 {
     coupling->type->outputs(model, coupling, state, 0, 0, out);
@@ -235,7 +235,7 @@ void fu_detect_contact(const fu_model *model, fu_state *state)
         if (c->type->detect) c->type->detect(model, c, state);
 }
 
-/* Finds own coordinates that follow from the others; returns null, or the first coupling of which none were found. */
+/* Solves for coordinates that follow from the others; returns null, or the first coupling without a solution. */
 const fu_coupling *fu_solve_coordinates(const fu_model *model, fu_state *state)
 {
     FU_EACH_COUPLING(c, model->always_active, model->n_always_active)

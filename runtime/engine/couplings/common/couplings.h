@@ -6,8 +6,8 @@
 #include "couplings/common/coupling.h"
 #include "bodies/model.h"
 
-/* Number the couplings of model->couplings: `index` and `unknown` and the like are given, offsets follow; sums go to
- * model; `lists` has room for 2 n. */
+/* Number the couplings of model->couplings: `index`, `unknown` and the other members are given, offsets follow; sums go
+ * to model; `lists` has room for 2 n. */
 void fu_number_couplings(fu_coupling *const *couplings, int n, const fu_coupling **lists, fu_model *model);
 
 /* Couplings over which to loop. */
@@ -15,7 +15,7 @@ typedef struct {
     const fu_coupling *const *list;
     int n;
 } fu_couplings;
-/* Those that may act at a state, or over a step (couplings/common/proximity.c). */
+/* Couplings that may act at a state, or over a step (couplings/common/proximity.c). */
 fu_couplings fu_acting(const fu_model *model, const fu_state *state);
 fu_couplings fu_acting_in_step(const fu_model *model, const fu_equations *at);
 
@@ -44,17 +44,17 @@ int fu_may_start_open(const fu_model *model, const fu_state *state);
 const fu_coupling *fu_solve_coordinates(const fu_model *model, fu_state *state);
 void fu_reset(const fu_model *model, fu_state *state);
 void fu_update_history(const fu_model *model, fu_state *state);
-/* How far off what is carried along may be after a step, m. */
+/* Returns the largest error of history variables after a step, m. */
 double fu_history_error(const fu_model *model, const fu_state *from, const fu_state *to);
 void fu_outputs_at_rest(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);
 void fu_detect_contact(const fu_model *model, fu_state *state);
 int fu_is_possible(const fu_model *model, const fu_state *state);
 
-/* Scale of constraint rows, and of own forces, by the inertia of a system: statics has none. */
+/* Scale of constraint rows, and of internal forces, by the inertia of a system: statics has none. */
 double fu_row_unit(double inertia, double mass);
-/* Own coordinates and forces += a solution `own` of a Newton system whose equilibrium is multiplied by `scale`. */
+/* Adds a solution `own` of a Newton system, whose equilibrium is multiplied by `scale`, to coordinates and forces. */
 void fu_add_internal(const fu_model *model, fu_state *state, const double *own, double inertia, double scale);
-/* The coupling that has this unknown beyond the dofs. */
+/* Returns the coupling of an unknown beyond the dofs. */
 const fu_coupling *fu_owner(const fu_model *model, int unknown);
 
 #endif

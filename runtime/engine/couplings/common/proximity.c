@@ -1,12 +1,11 @@
-/* Couplings that are far from acting, as most of many pairs of bodies and surfaces are: loops pass them over.
+/* Couplings that are far from acting, as most of many pairs of bodies and surfaces: loops skip them.
  *
- * Each such coupling tells its clearance at a configuration. It is far while the ways of what it is between have not
- * used that up. The ways are counted from look to look; between two looks each cable and body may go as far as it is
- * expected to go in some steps, which is taken off the clearances beforehand. So a state needs only its distance from
- * the configuration of the last look, cable by cable and body by body: where one has gone farther, all couplings are
- * taken. What is passed over would give nothing, and the rest stays in its order: results do not depend on when it was
- * looked.
- */
+ * Each such coupling gives its clearance at a configuration. It is far until the paths of its parts have used that
+ * up. Path lengths are summed from search to search. Between two searches each cable and body may move as far as
+ * expected in some steps, which is subtracted from the clearances beforehand. So a state needs only its distance
+ * from the configuration of the last search, cable by cable and body by body: if one has moved farther, all
+ * couplings are evaluated. Skipped couplings would contribute nothing, and the others keep their order: results do
+ * not depend on the times of searches. */
 #include "couplings/common/coupling_events.h"
 #include "couplings/common/couplings.h"
 #include "couplings/common/proximity.h"
@@ -28,7 +27,7 @@ int fu_acts_alone(const fu_coupling *coupling)
     return type->proximity && !asked;
 }
 
-/* Returns how far points of a cable may be moved at most by numbers that its nodal vectors differ by, or by their
+/* Returns the largest displacement of points of a cable by a change of its nodal vectors, or the speed by their
  * rates. */
 double fu_most_of_cable(const fu_cable *cable, const double *to, const double *from)
 {
@@ -51,8 +50,8 @@ double fu_most_of_cable(const fu_cable *cable, const double *to, const double *f
     return sum;
 }
 
-/* Computes how far a mover is from where it was at the last look: its way, m, and the norm of the change of its axes.
- */
+/* Computes the distance of a moving part from its position at the last search, m, and the norm of the change of its
+ * axes. */
 void fu_mover_gone_by(const fu_model *model, int mover, const double *q, double *way, double *turn)
 {
     const fu_body *body = fu_body_of_mover(model, mover);
@@ -72,7 +71,7 @@ void fu_mover_gone_by(const fu_model *model, int mover, const double *q, double 
     *turn = 2.0 * sqrt(turned); /* of unit quaternions at an angle of a/2: 2 sin(a/2) <= 2 |e - e0| */
 }
 
-/* Returns whether no mover is farther from where it was at the last look than it may be. */
+/* Returns whether all moving parts are within their limits from the last search. */
 int fu_movers_are_near(const fu_model *model, const double *q)
 {
     const fu_proximity *p = model->proximity;
@@ -96,7 +95,7 @@ static fu_couplings near_of(const fu_model *model)
     return (fu_couplings){model->proximity->near, model->proximity->n_near};
 }
 
-/* Returns whether evaluations pass over couplings that are far: those that are more than a contact take part in all. */
+/* Returns whether evaluations skip far couplings: those that are more than a contact take part in all. */
 static int has_lone_pairs(const fu_model *model)
 {
     return model->n_always_active < model->n_couplings;
@@ -114,13 +113,13 @@ fu_couplings fu_acting_in_step(const fu_model *model, const fu_equations *at)
                : all_of(model);
 }
 
-/* Adds a cable or body to those whose ways are counted, where they can be told. */
+/* Adds a cable or body to the moving parts, if its motion can be bounded. */
 static void add_mover(const fu_model *model, fu_proximity *p, int mover)
 {
     if (mover >= 0 && (mover >= model->n_cables || model->cables[mover].share)) ++p->movers[mover].pairs;
 }
 
-/* Takes the next n bytes of a block of memory, on a border of 16; only counts them where it is null. */
+/* Takes the next n bytes of a block of memory, aligned to 16; only counts them if it is null. */
 static void *take(char *memory, size_t *taken, size_t n)
 {
     void *found = memory ? memory + *taken : 0;
@@ -128,7 +127,7 @@ static void *take(char *memory, size_t *taken, size_t n)
     return found;
 }
 
-/* Places the arrays in a block of memory; returns how many bytes they take. */
+/* Places the arrays in a block of memory; returns their bytes. */
 static size_t place(const fu_model *model, int n_event_functions, char *memory, fu_proximity *p)
 {
     const size_t couplings = (size_t)model->n_couplings;

@@ -1,46 +1,45 @@
-/* Which couplings may act where: couplings/common/proximity.c. */
+/* Couplings that may act: couplings/common/proximity.c. */
 #ifndef FUNICULAR_COUPLINGS_COMMON_PROXIMITY_H
 #define FUNICULAR_COUPLINGS_COMMON_PROXIMITY_H
 
 #include "couplings/common/coupling.h"
 #include "bodies/model.h"
 
-/* A cable or a body: how far it may have gone, m, and turned, from where it was at the last look, before pairs that
- * were far may be near; how far it went and turned at all until then; the largest radius of its points. */
+/* A cable or a body: limits of its displacement, m, and rotation since the last search before far pairs may be near;
+ * its total displacement and rotation until then; the largest radius of its points. */
 typedef struct {
     double way, turn, gone, turned, radius;
-    int pairs; /* that it is in */
+    int pairs; /* number of its pairs */
 } fu_mover;
 
-/* A coupling that has a clearance: what its movers have to have gone at all before it is to be looked at again. */
+/* A coupling with a clearance: total motion of its parts at which it is measured again. */
 typedef struct {
     double limit, lever;
     int between[2], coupling;
 } fu_pair;
 
-/* What is known of them all. */
+/* State of the search. */
 struct fu_proximity {
     int n_movers, n_pairs, n_near, n_near_functions;
-    int is_known, age; /* the lists are of some configuration; steps since then */
+    int is_known, age; /* the lists belong to a configuration; steps since then */
     double *at;        /* that configuration */
     fu_mover *movers;
     fu_pair *pairs;
     double *ways;             /* work space: 2 x n_movers */
     char *is_far, *is_alone;  /* of each coupling; is_alone: fu_acts_alone */
-    const fu_coupling **near; /* those that may act while no mover has gone farther than its way, in their order */
-    int *near_functions;      /* likewise, those of the user among them */
+    const fu_coupling **near; /* those that may act while no part has exceeded its limit, in their order */
+    int *near_functions;      /* likewise, with those of the user */
 };
 
-/* Bytes that it takes in one block with n event_functions; computes it in such a block of zeros. */
+/* Bytes of the structure in one block with n event functions; places it in such a block of zeros. */
 size_t fu_proximity_size(const fu_model *model, int n_event_functions);
 void fu_proximity_place(fu_model *model, int n_event_functions, void *memory);
 
-/* Whether couplings of a type do nothing but act, by themselves, while what they are between is near: nothing else asks
- * for them. */
+/* Whether couplings of a type only act while their parts are near: nothing else needs them. */
 int fu_acts_alone(const fu_coupling *coupling);
-/* A mover's body, null for a cable; how far points of a cable may be moved at most by numbers that its nodal vectors
- * differ by, or by their rates; how far a mover is from where it was at the last look, m, and the norm of the change of
- * its axes; whether none is farther than it may be. */
+/* A moving part's body, null for a cable; the largest displacement of points of a cable by a change of its nodal
+ * vectors, or the speed by their rates; the distance of a moving part from its position at the last search, m, and the
+ * norm of the change of its axes; whether none exceeds its limit. */
 const fu_body *fu_body_of_mover(const fu_model *model, int mover);
 double fu_most_of_cable(const fu_cable *cable, const double *to, const double *from);
 void fu_mover_gone_by(const fu_model *model, int mover, const double *q, double *way, double *turn);

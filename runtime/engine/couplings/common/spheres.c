@@ -1,13 +1,13 @@
-/* Spheres about the elements of cables and the points of bodies, by which clearances are told. */
+/* Bounding spheres of the elements of cables and the points of bodies, for clearances. */
 #include "couplings/common/spheres.h"
 
 #include <math.h>
 
 const fu_clearance fu_no_clearance = {.gap = -INFINITY};
 
-/* Computes the middle of a sphere about an element; returns its radius, m. Between the element's nodes its points are
- * off the middle by half of the way between these at most, with the share of places, and by what the other vectors move
- * them. */
+/* Computes the centre of a sphere about an element; returns its radius, m. Between the element's nodes its points
+ * are within half of their distance from the centre, by the share of positions, plus the displacement by the other
+ * vectors. */
 double fu_sphere_about(const fu_cable *cable, const double *q, int element, double middle[3])
 {
     const int dim = cable->kernel->dim, vectors = cable->kernel->vectors;
@@ -32,7 +32,7 @@ double fu_distance_between(int dim, const double *a, const double *b)
     return sqrt(square);
 }
 
-/* Returns the place of a body, or null where its points cannot be told by its frame alone. */
+/* Returns the position of a body, or null if its frame alone does not bound its points. */
 const double *fu_place_of_body(const fu_model *model, const fu_state *state, int body)
 {
     return model->bodies[body].modes ? 0 : state->q + model->bodies[body].configuration;

@@ -1,26 +1,23 @@
-/* Friction that sticks beside a force by penalty: of contact with surfaces and of crossings.
+/* Sticking friction beside a penalty force: of contact with surfaces and of crossings.
  *
- * A spring is stretched as what it holds goes past what is touched, and slides where it is stretched by more than the
- * bound b that friction has there. Along one direction, with the stretch a(x) as if nothing slid after the beginning of
- * a step, the stretch at its end is
- *
+ * A spring is stretched by the displacement along the contact, and slides where its stretch exceeds the bound b of
+ * friction. Along one direction, with the stretch a(x) as without sliding since the beginning of a step, the stretch
+ * at its end is
  *     a(1) + min(0, min over x of b(x) - a(x)),
- *
- * and the like of sliding backwards. Where it slides to the end of the step the smallest is that at the end: the spring
- * is then as long as friction allows. Where it slid within the step and then sticks, the smallest is where that
- * changes. With the cubics through places and velocities at both ends of the step that error is of the fourth order in
- * the step; by the ends alone it was of the second.
- */
+ * and likewise for sliding backwards. If it slides until the end of the step the minimum is at the end: the spring
+ * then has the length of the friction limit. If it slid within the step and then sticks, the minimum is at the
+ * transition. With the cubics through positions and velocities at both ends of the step that error is of the fourth
+ * order in the step; by the ends alone it is of the second. */
 #include "base/common.h"
 #include "couplings/common/stick_friction.h"
 
 #include <math.h>
 #include <string.h>
 
-/* parts of a step that the room to the bound is known at the ends of: of the cubic through it */
+/* parts of a step at whose ends the margin to the bound is evaluated, for the cubic through it */
 #define BOUND_SAMPLES 3
-#define REFINEMENTS 2 /* of where that room is least */
-#define WORK_PARTS 8  /* of a step: those that friction's work is summed over */
+#define REFINEMENTS 2 /* of the position of the least margin */
+#define WORK_PARTS 8  /* of a step: intervals of the sum of friction's work */
 
 int fu_limit_stretch(int dim, double stiffness, double most, double *stretch)
 {
@@ -30,7 +27,7 @@ int fu_limit_stretch(int dim, double stiffness, double most, double *stretch)
     return 1;
 }
 
-/* Returns where the cubic through values at equal distances on [0, 1] is least, or 1. */
+/* Returns the position of the minimum of the cubic through values at equal distances on [0, 1], or 1. */
 static double least_of(const double g[BOUND_SAMPLES + 1])
 {
     const double a = 0.5 * (-11.0 * g[0] + 18.0 * g[1] - 9.0 * g[2] + 2.0 * g[3]);
@@ -47,7 +44,7 @@ double fu_bound_within(const fu_friction_path *way, double x)
     return depth > 0.0 ? way->bound(way->of, depth, fu_rate_within(&way->depth, way->h, x)) : 0.0;
 }
 
-/* Returns the bound at a part of the step, m, and computes the stretch as if nothing slid. */
+/* Returns the bound at a part of the step, m, and computes the stretch as without sliding. */
 static double bound_at(const fu_friction_path *way, double x, double *stretch)
 {
     *stretch = fu_value_within(&way->stretch, way->h, x);
@@ -61,7 +58,7 @@ static double room_at(const fu_friction_path *way, double x, int side)
     return bound - side * stretch;
 }
 
-/* Returns the least room to a side near x, which is improved by parabolas. */
+/* Returns the least margin to a side near x, refined by parabolas. */
 static double least_room(const fu_friction_path *way, int side, double *x)
 {
     double width = 0.1 * (1.0 - way->from), least = room_at(way, *x, side);

@@ -1,18 +1,18 @@
-/* Friction that sticks beside a force by penalty: couplings/common/stick_friction.c. */
+/* Sticking friction beside a penalty force: couplings/common/stick_friction.c. */
 #ifndef FUNICULAR_COUPLINGS_COMMON_STICK_FRICTION_H
 #define FUNICULAR_COUPLINGS_COMMON_STICK_FRICTION_H
 
 #include "base/cubic.h"
 
-/* Limits the stretch of friction's spring, of this stiffness in N/m, to what friction allows, in N; returns whether
- * that slides. */
+/* Limits the stretch of friction's spring, of this stiffness in N/m, to the friction limit, N; returns whether it
+ * slides. */
 int fu_limit_stretch(int dim, double stiffness, double most, double *stretch);
 
-/* What friction may be on its way through a step, N, at a depth, m, that changes at a rate, m/s. */
+/* Limit of friction within a step, N, at a penetration, m, with a rate, m/s. */
 typedef double fu_friction_bound(const void *of, double depth, double rate);
 
-/* A spring's way through a step of h, s, along the direction of its stretch at the end: its stretch as if nothing slid,
- * m, and the depth; `from`: the part of the step that it begins at; stiffness: N/m. */
+/* The path of a spring through a step of h, s, along the direction of its stretch at the end: its stretch as without
+ * sliding, m, and the penetration; `from`: the part of the step at which it begins; stiffness: N/m. */
 typedef struct {
     fu_step_ends stretch, depth;
     double h, from, stiffness;
@@ -23,8 +23,8 @@ typedef struct {
 /* The bound at a part of the step, N. */
 double fu_bound_within(const fu_friction_path *way, double x);
 
-/* The stretch at the end, m; after which part of the step it slid last, and whether forwards, 1, backwards, -1, or not
- * at all, 0. */
+/* The stretch at the end, m; the part of the step after which it slid last, and whether forwards, 1, backwards, -1, or
+ * not at all, 0. */
 typedef struct {
     double stretch, part;
     int slid;
@@ -34,18 +34,18 @@ fu_friction_end fu_end_of_friction(const fu_friction_path *way);
 /* The same at a part of the step. */
 double fu_friction_within(const fu_friction_path *way, double x);
 
-/* The same with vectors along what is touched: the stretch at the beginning, how far what it holds goes past, m, its
+/* The same with vectors along the contact: the stretch at the beginning, the displacement along the contact, m, the
  * velocities at both ends, m/s. */
 typedef struct {
     double stretch[3], change[3], rates[2][3];
 } fu_friction_travel;
-/* Computes the direction of the stretch at the end as if nothing slid, and the way along it; returns its size, m. */
+/* Computes the direction of the stretch at the end as without sliding, and the path along it; returns its size, m. */
 double fu_path_length(int dim, const fu_friction_travel *travel, double along[3], fu_friction_path *way);
-/* Returns the work that friction takes over the stiffness, m^2, where the stretch at the end is as given: by parts of
- * the step, and by half as many (Richardson), or by the ends alone. */
+/* Returns the work of friction over the stiffness, m^2, for a given stretch at the end: by parts of the step, and by
+ * half as many (Richardson), or by the ends alone. */
 double fu_taken_by_friction(int dim, const fu_friction_travel *travel, const fu_friction_path *way, const double *end,
                             int by_ends);
 
-#define FU_NO_TIME 1e300 /* s: of numbers in the initial configuration, from where no step begins */
+#define FU_NO_TIME 1e300 /* s: of numbers in the initial configuration, before any step */
 
 #endif

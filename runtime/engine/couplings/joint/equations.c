@@ -1,6 +1,6 @@
-/* Joints between two attachments: equations phi of the gap between their points and of their axes (derive/couplings/
- * joint.py), made equations over the coordinates of what carries them. Of an attachment on a slide s is one of them.
- */
+/* Joints between two attachments: equations phi of the gap between their points and of their axes
+ * (derive/couplings/joint.py), over the coordinates of their carriers. For an attachment on a slide s is one of
+ * them. */
 #include "base/simd.h"
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
@@ -13,21 +13,19 @@
 
 enum {
     MAX_MOVES = 9
-}; /* gap, turn of the first attachment, turn of the second: as many in space, fewer in the plane */
+}; /* gap, rotation of the first attachment, rotation of the second: three components each in space */
 
 /* A joint at a state. */
 typedef struct {
     fu_attachment_state at[2];
-    const double *A[2]; /* axes of both; nil where the joint does not see turns */
+    const double *A[2]; /* axes of both; null for a joint without rotations */
     double gap[3], c[3], rate, second;
-    int moves, turns; /* columns of the kernel's derivatives; those of each turn, 0 where the joint does not see them */
+    int moves, turns; /* columns of the kernel's derivatives; those of each rotation, 0 for a joint without */
 } joint_view;
 
 static const double nil[9] = {0.0};
 
-/* Computes what a joint sees of a state; s_rate: of the slides that its ends are on, null where no velocities are
- * wanted.
- */
+/* Computes the arguments of a joint at a state; s_rate: of the slides at its ends, null without velocities. */
 static void look(const fu_model *model, const fu_joint *joint, const fu_state *state, const double s_rate[2],
                  joint_view *view)
 {
@@ -44,7 +42,7 @@ static void look(const fu_model *model, const fu_joint *joint, const fu_state *s
     view->c[0] = joint->c0;
     if (joint->signal >= 0)
         view->c[0] += fu_signal_at(&model->signals[joint->signal], state->t, &view->rate, &view->second);
-    const int is_turned = view->c[0] != 0.0; /* most joints have no angle to see */
+    const int is_turned = view->c[0] != 0.0; /* most joints have no angle */
     view->c[1] = is_turned ? cos(view->c[0]) : 1.0;
     view->c[2] = is_turned ? sin(view->c[0]) : 0.0;
 }
@@ -55,7 +53,7 @@ FU_INLINE void add_row(int n, double value, const double *row, double *restrict 
     for (int i = 0; i < n; ++i) to[i] += value * row[i];
 }
 
-/* Does what over_coordinates does, for n coordinates. */
+/* over_coordinates for n coordinates. */
 FU_INLINE void over_n(int n, int dim, const joint_view *view, int e, int rows, const double *by_moves, double *J)
 {
     const fu_attachment_state *at = &view->at[e];
@@ -69,7 +67,7 @@ FU_INLINE void over_n(int n, int dim, const joint_view *view, int e, int rows, c
     }
 }
 
-/* Computes J (rows x n) over an attachment's n coordinates from that over gap and turns. */
+/* Computes J (rows x n) over an attachment's n coordinates from that over gap and rotations. */
 static void over_coordinates(int dim, const joint_view *view, int e, int rows, const double *by_moves, double *J)
 {
     const int n = view->at[e].n;
@@ -83,7 +81,7 @@ static void take_coordinates(const joint_view *view, int e, int *n, int *at)
     for (int i = 0; i < *n; ++i) at[i] = view->at[e].at[i];
 }
 
-/* Returns whether the slide that a joint is on has left its cable. */
+/* Returns whether the slide of a joint has left its cable. */
 int fu_joint_is_inactive(const fu_model *model, const fu_joint *joint, const fu_state *state)
 {
     for (int e = 0; e < 2; ++e) {
@@ -121,8 +119,8 @@ static int any(int n, const double *numbers)
     return 0;
 }
 
-/* Adds to K (n_f x n_e) what an attachment f has of the derivative by the coordinates of e, of which that of the work
- * by the moves is `half` (moves x n_e). */
+/* Adds to K (n_f x n_e) the contribution of an attachment f to the derivative by the coordinates of e; `half` (moves x
+ * n_e) is that of the work by the moves. */
 static void add_elastic(int dim, const joint_view *view, int f, int n_e, const double *half, double *K)
 {
     const fu_attachment_state *at = &view->at[f];
@@ -175,8 +173,8 @@ static const fu_rows *rows_of_slide(const fu_model *model, const fu_joint *joint
     return &work->rows[model->slides[joint->attachments[e].slide].base.row];
 }
 
-/* Computes H and W over the joint's coordinates those over the dofs: s of an attachment on a slide follows (eq 24, 31,
- * 37). */
+/* Converts H and W over the joint's coordinates to those over the dofs: s of an attachment on a slide follows (eq 24,
+ * 31, 37). */
 static void replace_s(const fu_model *model, const fu_joint *joint, const joint_view *view,
                       double J[2][6 * FU_ATTACHMENT_COORDINATES], const fu_accelerator *work, fu_rows *rows)
 {
@@ -209,8 +207,8 @@ static void replace_s(const fu_model *model, const fu_joint *joint, const joint_
     }
 }
 
-/* Computes H q'' = W, what is left of phi, and its rate at rest; s of an attachment on a slide follows (eq 24, 31, 37):
- * H = C_q + C_s G, W = -Q_d - C_s (s'' - G q''). The rows of that slide are there. */
+/* Computes H q'' = W, the residual phi, and its rate at rest; s of an attachment on a slide follows (eq 24, 31, 37): H
+ * = C_q + C_s G, W = -Q_d - C_s (s'' - G q''). The rows of that slide exist already. */
 void fu_joint_rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work)
 {
     const fu_joint *joint = (const fu_joint *)coupling;
@@ -257,8 +255,7 @@ void fu_joint_rows(const fu_model *model, const fu_coupling *coupling, const fu_
         }
 }
 
-/* Returns whether an unknown that the joint touches moves: all do but s of a slide that does not slide, whose row says
- * so. */
+/* Returns whether an unknown of the joint moves: all do except s of a locked slide, whose row says so. */
 int fu_joint_moves(const fu_model *model, const fu_joint *joint, const fu_state *state, int at)
 {
     for (int e = 0; e < 2 && at >= model->n_dof; ++e) {

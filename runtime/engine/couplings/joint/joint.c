@@ -1,4 +1,4 @@
-/* What a joint does as a coupling. Its own unknowns are its multipliers; their equations are phi = 0. */
+/* A joint as a coupling. Its internal unknowns are its multipliers; their equations are phi = 0. */
 #include "base/simd.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
@@ -32,7 +32,7 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
             if (!n) continue; /* the ground */
             const double *J = at.J[e] + r * n;
             double *on =
-                f + at.at[e][0]; /* an attachment's coordinates stand together, but s, the last of them on a slide */
+                f + at.at[e][0]; /* an attachment's coordinates are contiguous, except s, the last of them on a slide */
             if (n == FU_FRAME_DOFS && !on_slide)
                 add_row(FU_FRAME_DOFS, multipliers[r], J, on); /* a loop without remainder */
             else add_row(n - on_slide, multipliers[r], J, on);
@@ -42,7 +42,7 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
     }
 }
 
-/* Adds unit rows where rows (bits of `which`) are not in use: their multipliers are nil. */
+/* Adds unit rows for inactive rows (bits of `which`): their multipliers are zero. */
 static void unit_rows(const fu_model *model, const fu_joint *joint, int which, double inertia, fu_system *system)
 {
     const int first = fu_extra(model, joint->base.unknown);
@@ -66,8 +66,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     unit_rows(model, joint, joint->redundant_rows, w.inertia, system);
     for (int r = 0; r < rows; ++r) at[r] = fu_extra(model, coupling->unknown) + r;
     const fu_side own = {rows, at, 1};
-    fu_side columns[2],
-        moving[2]; /* those that have a row of their own: s of a slide that does not slide has another */
+    fu_side columns[2], moving[2]; /* those with a row of their own: s of a locked slide has another */
     for (int e = 0; e < 2; ++e) {
         columns[e] = moving[e] = (fu_side){by.n[e], by.at[e], joint->attachments[e].body >= 0};
         if (by.n[e]) moving[e].n -= !fu_joint_moves(model, joint, equations->next, by.at[e][by.n[e] - 1]);
@@ -85,7 +84,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
             for (int i = 0; i < n; ++i) J[r * n + i] *= unit[r];
         fu_add_block(model, system, own, columns[e], 1.0, J, n, 1);
         fu_add_block(model, system, moving[e], columns[e], w.stiffness, by.K[e][e], n, 1);
-        /* what is between two cables would widen the band: Newton converges without */
+        /* terms between two cables would widen the band: Newton converges without them */
         if (by.across && !fu_between_cables(joint))
             fu_add_block(model, system, moving[!e], columns[e], w.stiffness, by.K[!e][e], n, 1);
     }
@@ -115,13 +114,13 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
                     const double *acceleration, const fu_accelerator *work, double *out)
 {
     const double *multipliers =
-        work ? work->multipliers + coupling->multiplier : state->forces + coupling->force; /* of rest */
+        work ? work->multipliers + coupling->multiplier : state->forces + coupling->force; /* in equilibrium */
     (void)acceleration;
     fu_joint_outputs(model, (const fu_joint *)coupling, state, multipliers, (fu_joint_output *)out);
 }
 
-/* Returns whether a slide, or any where `which` is -1, ties its rider's axes to the cable: their turn jumps where its
- * curvature does. */
+/* Returns whether a slide, or any for `which` -1, ties its rider's axes to the cable: their rotation is discontinuous
+ * with the curvature. */
 int fu_ties_a_frame(const fu_model *model, int which)
 {
     FU_EACH_COUPLING(c, model->couplings, model->n_couplings) {

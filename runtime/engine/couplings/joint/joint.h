@@ -1,19 +1,19 @@
-/* Joints between two attachments: couplings/joint/equations.c has their equations, couplings/joint/joint.c what
- * couplings do. */
+/* Joints between two attachments: couplings/joint/equations.c has their equations, couplings/joint/joint.c their
+ * operations as couplings. */
 #ifndef FUNICULAR_COUPLINGS_JOINT_JOINT_H
 #define FUNICULAR_COUPLINGS_JOINT_JOINT_H
 
 #include "couplings/common/attachments.h"
 #include "couplings/common/coupling.h"
 
-/* A joint between two attachments; c = distance or angle = its base + its signal drives it. */
+/* A joint between two attachments; the drive sets c = distance or angle to its base + its signal. */
 typedef struct {
     fu_coupling base; /* as many forces, multipliers, as equations */
     const fu_joint_kernels *kernel;
     fu_attachment attachments[2];
     int signal;
-    int of_points;      /* its equations are of the two points alone, and do not see turns */
-    int redundant_rows; /* bits of the rows that other joints' imply: their multipliers are nil */
+    int of_points;      /* its equations contain the two points alone, without rotations */
+    int redundant_rows; /* bits of rows that depend on other joints' rows: their multipliers are zero */
     double c0;          /* m or rad: c without the signal */
 } fu_joint;
 extern const fu_coupling_type fu_joint_type;
@@ -23,15 +23,15 @@ typedef struct {
     double force[3], moment[3], residual; /* on the second attachment, at its point; the largest of phi */
 } fu_joint_output;
 
-/* A joint's equations at a state: phi; of both attachments the numbers of their n coordinates for fu_add, and the
+/* A joint's equations at a state: phi; for both attachments the numbers of their n coordinates for fu_add, and the
  * derivatives J of phi by these (rows x n). */
 typedef struct {
     int n[2], at[2][FU_ATTACHMENT_COORDINATES];
     double phi[6], J[2][6 * FU_ATTACHMENT_COORDINATES];
 } fu_joint_rows_at;
 
-/* Derivatives of both attachments likewise; K[f][e]: those of J[f]' multipliers by the coordinates of e (n[f] x n[e]),
- * which are stored behind J[e]; nil between two attachments unless `across`. */
+/* Derivatives for both attachments likewise; K[f][e]: those of J[f]' multipliers by the coordinates of e (n[f] x n[e]),
+ * which are stored behind J[e]; zero between two attachments unless `across`. */
 typedef struct {
     int n[2], at[2][FU_ATTACHMENT_COORDINATES], across;
     double *K[2][2], J[2][(6 + 2 * FU_ATTACHMENT_COORDINATES) * FU_ATTACHMENT_COORDINATES];

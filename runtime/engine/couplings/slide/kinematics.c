@@ -1,8 +1,7 @@
-/* A slide's kernels over its own coordinates, whatever rides: the element's, the rider's, s.
+/* A slide's kernels over its own coordinates, for any rider: the element's, the rider's, s.
  *
- * A rigid body has kernels of its own; any other rider is a point of something, and the kernels' derivatives by that
- * point become those by its coordinates: dp = P dq, p'' = P q'' + bias.
- */
+ * A rigid body has kernels of its own; any other rider is a point of a part, and the chain rule converts derivatives
+ * by that point to those by its coordinates: dp = P dq, p'' = P q'' + bias. */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/accelerator.h"
@@ -10,11 +9,11 @@
 
 #include <string.h>
 
-/* A slide at a state, as the kernels take it. */
+/* Arguments of the kernels of a slide at a state. */
 typedef struct {
     double length, x;
     const double *e, *v, *b, *u, *w;
-    fu_attachment_state rider; /* where it is a point */
+    fu_attachment_state rider; /* if it is a point */
 } slide_view;
 
 static const double no_arm[3];
@@ -41,7 +40,7 @@ static void look(const fu_model *model, const fu_state *state, int j, slide_view
     view->u = no_arm;
 }
 
-/* Computes rows over (element, point, `more`) rows over (element, rider, `more`). */
+/* Expands rows over (element, point, `more`) to rows over (element, rider, `more`). */
 static void expand(const fu_slide *slide, const slide_view *view, int n_rows, int n_element, int more,
                    const double *given, double *rows)
 {
@@ -60,8 +59,8 @@ static void expand(const fu_slide *slide, const slide_view *view, int n_rows, in
     }
 }
 
-/* Finds the numbers for fu_add of a slide's coordinates, and after them of s; the force follows s. Returns how many
- * stand before s. */
+/* Computes the numbers for fu_add of a slide's coordinates, and of s after them; the force follows s. Returns the
+ * number of coordinates before s. */
 int fu_slide_coordinates(const fu_model *model, const fu_state *state, int j, int *at)
 {
     const fu_slide *slide = &model->slides[j];
@@ -101,7 +100,7 @@ void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const
     const int n_rider = v.rider.n, n = n_element + n_rider + 1;
     slide->kernel->tangent(v.length, v.x, v.e, v.b, v.u, f, J_point, of_point);
     expand(slide, &v, dim, n_element, 1, J_point, J);
-    /* the rider's point stands in phi = r - p alone: of second derivatives there are those of the point itself */
+    /* the rider's point appears linearly in phi = r - p: second derivatives are those of the point itself */
     memset(K, 0, sizeof(double) * (size_t)(n * n));
     for (int i = 0; i <= n_element; ++i)
         for (int k = 0; k <= n_element; ++k) {
@@ -114,7 +113,7 @@ void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const
         for (int k = 0; k < n_rider; ++k) K[(n_element + i) * n + n_element + k] = part[i * n_rider + k];
 }
 
-/* Computes eq 20-37 over the slide's coordinates: H and W of the constraints that stay, and how s follows. */
+/* Computes eq 20-37 over the slide's coordinates: H and W of the active constraints, and the coefficients of s. */
 void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows *rows, fu_slide_state *slide_state)
 {
     const fu_slide *slide = &model->slides[j];
@@ -122,7 +121,7 @@ void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows
     double C_q[3 * FU_SLIDE_COORDINATES], C_s[3], Q_d[3], H[2 * FU_SLIDE_COORDINATES], G[FU_SLIDE_COORDINATES];
     slide_view v;
     const fu_slide_flags *flags = fu_slide_flags_of(model, state, j);
-    if (flags->mode == FU_LEFT) { /* far from the cable, nothing of it means anything */
+    if (flags->mode == FU_LEFT) { /* far from the cable, its values have no meaning */
         memset(slide_state, 0, sizeof *slide_state);
         rows->n = rows->rows = 0;
         return;
@@ -161,7 +160,7 @@ void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows
     rows->W[across] = second - slide_state->s_bias;
 }
 
-/* Returns s of a slide that is locked, m, with its rate and its second rate. */
+/* Returns s of a locked slide, m, with its rate and its second rate. */
 double fu_slide_locked_s(const fu_model *model, const fu_state *state, int j, double *rate, double *second)
 {
     *rate = *second = 0.0;
@@ -190,8 +189,8 @@ double fu_slide_step(const fu_model *model, const fu_state *state, int j, double
     return constraints_at(model, state, j, s, C_s, A_t);
 }
 
-/* Computes the tangent frame where a slide is, and returns the length of the centreline there over that without stress.
- */
+/* Computes the tangent frame at a slide, and returns the length of the centreline there relative to that without
+ * stress. */
 double fu_slide_frame(const fu_model *model, const fu_state *state, int j, double A_t[9])
 {
     double C_s[3];

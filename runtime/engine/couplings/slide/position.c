@@ -1,16 +1,16 @@
-/* Where a slide is on its cable: s by C_l = 0, eq 21, and the director that goes with the tangent there. */
+/* Position of a slide on its cable: s by C_l = 0, eq 21, and the director that follows the tangent there. */
 #include "bodies/model.h"
 #include "couplings/slide/slide.h"
 
 #include <math.h>
 
-/* of Newton's method: it converges quadratically, or there is no such point of the cable near */
+/* of Newton's method, which converges quadratically unless there is no such point of the cable near */
 #define MAX_ITERATIONS 50
 /* of an element and of s: a correction that is rounding ends the iteration */
 #define ROUNDING_OF_LENGTH 1e-15
-/* of an element: a correction that is as good as rounding where rounding keeps it from shrinking */
+/* of an element: a correction of this size is sufficient if rounding keeps it from shrinking */
 #define LENGTH_TOLERANCE 1e-12
-/* cosine of the angle between tangent and director from which on another axis takes over: 8 degrees */
+/* cosine of the angle between tangent and director from which on another axis replaces the director: 8 degrees */
 #define MAX_ALIGNMENT 0.99
 
 /* Returns the Newton step for s of a slide, m, and the unit tangent there. */
@@ -23,8 +23,7 @@ static double evaluate_constraint(const fu_model *model, const fu_state *state, 
     return step;
 }
 
-/* Finds s by Newton's method for C_l(s) = 0, eq 21 on the curve of the element that holds s; returns 0 where it
- * converged. */
+/* Solves C_l(s) = 0 for s by Newton's method, eq 21 on the curve of the element of s; returns 0 on convergence. */
 int fu_find_arc_length(const fu_model *model, const fu_state *state, int j, double *s)
 {
     const double length = model->cables[model->slides[j].cable].length;
@@ -37,8 +36,8 @@ int fu_find_arc_length(const fu_model *model, const fu_state *state, int j, doub
     return fabs(step) <= LENGTH_TOLERANCE * length ? 0 : 1;
 }
 
-/* Turns the director that no element gives with the tangent: it becomes its part across the tangent, of unit length.
- * Where the tangent has swung onto it, the axis least along the tangent takes over. */
+/* Rotates the director, if no element gives it, with the tangent: it becomes its component normal to the tangent, of
+ * unit length. If the tangent has approached it, the axis least along the tangent replaces it. */
 void fu_update_director(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     const int j = coupling->index;

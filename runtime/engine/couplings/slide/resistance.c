@@ -1,10 +1,10 @@
-/* Friction of a slide that slides, and the buffer that it has run into: R, the force along the cable on the rider times
- * r_x, from the tangent t = r_x, the velocity u of the rider's point over the cable's particle and the whole force f.
+/* Friction of a sliding slide, and the buffer that it compresses: R, the force along the cable on the rider times
+ * r_x, from the tangent t = r_x, the velocity u of the rider's point relative to the cable's particle and the whole
+ * force f.
  *
  * R stands in the row of s, f . r_x = R (eq 30 has zero there), and in eq 38 as G' R. A locked slide needs none: the
- * force along the cable is then that of the lock. Of a slide that is driven R is a part of that force: the drive gives
- * the rest, and R counts for the drive's power and for the energy dissipated.
- */
+ * force along the cable is then that of the lock. For a driven slide R is a part of that force: the drive gives the
+ * rest, and R counts for the drive's power and for the dissipation. */
 #include "bodies/model.h"
 #include "couplings/common/accelerator.h"
 #include "couplings/slide/resistance.h"
@@ -13,13 +13,13 @@
 #include <math.h>
 #include <string.h>
 
-/* of the change that the law asks for: the first step of R, lest it turn the normal force round */
+/* of the change by the law: the first step of R, so that it does not reverse the normal force */
 #define FIRST_STEP_SHARE 0.1
-/* slope of the secant below which R takes the change that its law asks for */
+/* slope of the secant below which R changes by its law */
 #define MIN_SECANT_SLOPE 0.1
-#define MIN_NORMAL_FORCE 1e-30 /* N: of a normal force of zero there is no direction */
+#define MIN_NORMAL_FORCE 1e-30 /* N: a zero normal force has no direction */
 
-/* Returns whether R acts on a slide as it is. */
+/* Returns whether R acts on a slide in its state. */
 static int has_resistance(const fu_model *model, const fu_state *state, int j)
 {
     const fu_slide *slide = &model->slides[j];
@@ -27,7 +27,8 @@ static int has_resistance(const fu_model *model, const fu_state *state, int j)
     return slide->resistance && (flags->mode == FU_SLIDES || (flags->mode == FU_LOCKED && slide->drive >= 0));
 }
 
-/* Returns the direction that friction is against, 0 where it rises smoothly with the speed, and of a drive at rest. */
+/* Returns the direction opposed by friction, 0 for friction that rises smoothly with the speed, and for a drive at
+ * rest. */
 static double direction_of(const fu_model *model, const fu_state *state, int j)
 {
     double rate, second;
@@ -36,7 +37,7 @@ static double direction_of(const fu_model *model, const fu_state *state, int j)
     return model->slides[j].sticks ? (rate > 0.0) - (rate < 0.0) : 0.0;
 }
 
-/* Returns how far a slide is in the buffer of one side, m; negative outside. */
+/* Returns the compression of the buffer of one side by a slide, m; negative outside. */
 double fu_compression(const fu_model *model, const fu_state *state, int j, int side)
 {
     const fu_slide *slide = &model->slides[j];
@@ -44,7 +45,7 @@ double fu_compression(const fu_model *model, const fu_state *state, int j, int s
     return side > 0 ? state->s[j] - (fu_length(model, j) - length) : length - state->s[j];
 }
 
-/* Returns the buffer that a slide presses, null where there is none. */
+/* Returns the buffer that a slide compresses, null if there is none. */
 static const fu_end_stop *pressed(const fu_model *model, const fu_state *state, int j)
 {
     const fu_slide_flags *flags = fu_slide_flags_of(model, state, j);
@@ -68,7 +69,7 @@ void fu_resistance_at(const fu_model *model, const fu_state *state, int j, const
     resistance->by_s = side * by_x;
 }
 
-/* Returns the power that goes to heat, W: that of all of R but the buffer's spring, which keeps what it takes. */
+/* Returns the dissipated power, W: that of R without the buffer's spring, which stores its work. */
 static double power_of(const fu_model *model, const fu_state *state, int j, const double *t, const double *u,
                        const double *f)
 {
@@ -85,7 +86,7 @@ static double power_of(const fu_model *model, const fu_state *state, int j, cons
     return -(resistance.R - spring) * along / square;
 }
 
-/* Returns the energy in the springs of the buffers that a slide is in, J: of those alone that it does not touch, or of
+/* Returns the energy of the springs of the buffers around a slide, J: of those that it does not compress alone, or of
  * all. */
 static double energy_in_buffers(const fu_model *model, const fu_state *state, int j, int all)
 {
@@ -157,7 +158,7 @@ void fu_resistance_rows(const fu_model *model, const fu_state *state, int j, con
     by_rate[s] = 0.0;
 }
 
-/* Computes t = r_x, and u, the velocity along it, of a slide in eq 38. */
+/* Computes t = r_x, and the velocity u along it, of a slide in eq 38. */
 static void along(const fu_model *model, const fu_slide_state *slide_state, double *t, double *u)
 {
     const int dim = model->dim;
@@ -170,8 +171,8 @@ static void along(const fu_model *model, const fu_slide_state *slide_state, doub
     }
 }
 
-/* Returns by how much R should change where its law asks for `change`: by the secant of the last sweep, as what
- * friction presses on the cable or takes off it depends on R almost linearly. */
+/* Returns the change of R for the change by its law: by the secant of the last sweep, since the normal force depends on
+ * R almost linearly. */
 static double secant_step(fu_slide_state *last, double change)
 {
     const double slope = last->step != 0.0 ? (last->change - change) / last->step : 0.0;
@@ -206,8 +207,7 @@ double fu_resistance_update(const fu_model *model, const fu_coupling *coupling, 
     return change != 0.0 ? fabs(change) / size : 0.0;
 }
 
-/* Finds, of a slide that is driven, the part of the force along the cable that its drive does not give, and what it
- * takes. */
+/* Computes, for a driven slide, the part of the force along the cable that the drive does not give, and its power. */
 void fu_resistance_accept(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                           const double *lambda, fu_accelerator *work)
 {
@@ -239,9 +239,9 @@ double fu_resistance_dissipation(const fu_model *model, const fu_coupling *coupl
     return power_of(model, state, j, t, u, f);
 }
 
-/* Where the normal force reverses within a step, friction has a kink, and no quadrature over the step is right: the
- * friction of the mean normal force differs from the mean friction, by at least the error made. The rider's speed stays
- * wrong, and its position is off by that times the time that is left. */
+/* If the normal force reverses within a step, friction has a kink, and no quadrature over the step is accurate: the
+ * friction of the mean normal force differs from the mean friction by at least the error. The rider's speed keeps the
+ * error, and its position differs by that times the remaining time. */
 double fu_resistance_friction_error(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int n,
                                     const double *weights, const double *multipliers, double square)
 {

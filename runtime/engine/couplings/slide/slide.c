@@ -1,6 +1,5 @@
-/* What a slide does as a coupling. Own unknowns: s and the force f on the rider. Their equations are f . r_x = R,
- * equilibrium along the cable, eq 30, and phi = r - p = 0.
- */
+/* A slide as a coupling. Internal unknowns: s and the force f on the rider. Their equations are f . r_x = R,
+ * equilibrium along the cable, eq 30, and phi = r - p = 0. */
 #include "base/workspace.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
@@ -11,8 +10,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Computes t = r_x and u, as couplings/slide/resistance.c has them, from the derivatives J of phi by the coordinates
- * and s, and R by the own force. */
+/* Computes t = r_x and u, as in couplings/slide/resistance.c, from the derivatives J of phi by the coordinates and s,
+ * and R by the internal force. */
 static void resistance_of(const fu_model *model, const fu_state *state, int j, const double *J,
                           fu_resistance *resistance)
 {
@@ -54,7 +53,7 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
         own[1 + d] = mode == FU_LEFT ? -scale * next->forces[coupling->force + d] : -unit * phi[d];
 }
 
-/* Adds what R adds to the row of s; J: derivatives of phi by the coordinates themselves. */
+/* Adds the derivatives of R to the row of s; J: derivatives of phi by the coordinates themselves. */
 static void resistance_matrix(const fu_model *model, int j, const fu_equations *equations, const double *J,
                               fu_system *system)
 {
@@ -117,7 +116,7 @@ void fu_slide_now(const fu_model *model, const fu_state *state, int j, fu_slide_
     fu_slide_terms(model, state, j, &unused, slide_state);
 }
 
-/* Returns ds/dt, m/s, zero where s is locked where it stands. */
+/* Returns ds/dt, m/s, zero for s locked at rest. */
 double fu_slide_rate(const fu_model *model, const fu_state *state, int j)
 {
     fu_slide_state slide_state;
@@ -131,8 +130,8 @@ static void rates(const fu_model *model, const fu_coupling *coupling, const fu_a
     *rate = fu_slide_state_of(model, work, coupling->index)->s_rate;
 }
 
-/* Adds the force along the cable on a slide's rider that comes of joints whose frame goes with the slide: what their
- * moments put on s, which stands in their rows as G. */
+/* Adds the force along the cable on a slide's rider by joints whose frame follows the slide: the contribution of their
+ * moments to s, which is in their rows as G. */
 static void add_force_of_frame(const fu_model *model, const fu_accelerator *work, int j, const double *lambda,
                                double *f)
 {
@@ -177,7 +176,7 @@ void fu_slide_outputs(const fu_model *model, const fu_state *state, int j, const
     add_force_of_frame(model, work, j, lambda, out->force);
 }
 
-/* Returns what joints put on s whose frame goes with a slide, in the balance along its cable. */
+/* Returns the force of joints whose frame follows a slide in the balance along its cable. */
 static double of_frame(const fu_model *model, const fu_state *state, int j)
 {
     double sum = 0.0;
@@ -195,7 +194,7 @@ static double of_frame(const fu_model *model, const fu_state *state, int j)
     return sum;
 }
 
-/* Computes the numbers of a slide in a state of rest, where its force is along all axes of the ground. */
+/* Computes the outputs of a slide in equilibrium, with its force along the axes of the ground. */
 static void outputs_at_rest(const fu_model *model, const fu_state *state, int j, fu_slide_output *out)
 {
     const fu_slide *slide = &model->slides[j];
@@ -213,10 +212,10 @@ static void outputs_at_rest(const fu_model *model, const fu_state *state, int j,
         for (int c = 0; c < dim - 1; ++c) out->multiplier[c] += A_t[d * dim + 1 + c] * force[d];
     }
     out->traction = g[fu_slide_coordinates(model, state, j, at)] + of_frame(model, state, j);
-    if (slide->drive < 0) out->traction /= stretch; /* of a drive it is the power over the rate of s */
+    if (slide->drive < 0) out->traction /= stretch; /* of a drive: the power over the rate of s */
 }
 
-/* work: null in a state of rest. */
+/* work: null in equilibrium. */
 static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                     const double *acceleration, const fu_accelerator *work, double *out)
 {
@@ -224,14 +223,14 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     else fu_slide_outputs(model, state, coupling->index, acceleration, work, (fu_slide_output *)out);
 }
 
-/* A rigid body is put on its cable when it is drawn; s of one that is not locked follows. */
+/* A rigid body is placed on its cable in the drawing; s of a slide that is not locked follows. */
 static int may_start_open(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     const int locked = fu_slide_flags_of(model, state, coupling->index)->mode == FU_LOCKED;
     return locked || !((const fu_slide *)coupling)->rider_is_rigid;
 }
 
-/* Finds s where C_l = 0, eq 21. */
+/* Solves C_l = 0 for s, eq 21. */
 static int solve(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     const int j = coupling->index;
@@ -255,7 +254,7 @@ static int in_range(int value, int least, int most)
     return value >= least && value <= most;
 }
 
-/* Returns whether a slide can be in its mode: only then is there a multiplier that locks it. */
+/* Returns whether a slide permits its mode: only then is there a multiplier that locks it. */
 static int is_possible_mode(const fu_slide *slide, int mode)
 {
     const int kinds[2] = {slide->stops[0].kind, slide->stops[1].kind};
