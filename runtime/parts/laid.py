@@ -12,7 +12,6 @@ import numpy as np
 from ..base.rotations import conjugate, rotate
 from ..errors import SceneError
 from .cable import Cable
-from .combined_signal import combined
 from .curves import shape_through
 from .event import Event
 from .modal_body import ModalBody
@@ -22,7 +21,7 @@ from .plane import FLAT, Plane, aligned, called, flattened
 from .plane_axes import UNTURNED, PlaneAxes
 from .scene_data import SceneData
 from .schemas import HOLDER, LENGTHS, ORIENTATION, POINT, TENSOR, Turning
-from .signal import Constant, Signal
+from .signal import Constant, Signal, combined
 from .support import Motion
 from .velocity_table import VelocityTable
 

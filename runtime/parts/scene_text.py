@@ -10,9 +10,9 @@ import json
 import os
 import re
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from itertools import takewhile
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 from ..errors import SceneError, SceneFileError, near, shown_path
 from ..kernels.libraries import check_allowed, resolved
@@ -22,16 +22,13 @@ from .kinds import PARTS
 from .pairs import are_lists
 from .part import Part
 from .scene_data import SceneData
-from .scene_lines import line_of
 from .settings import EquilibriumSettings, RelaxationSettings, RunSettings
 
 Directory = str | os.PathLike[str]
 BARE = re.compile(r"[A-Za-z0-9_-]+")
 """A key without quotes."""
 SETTINGS = {"run": RunSettings, "equilibrium": EquilibriumSettings, "relax": RelaxationSettings}
-
 TABLES = ("gravity", *PARTS, *SETTINGS)
-
 
 DOTTED = re.compile(r"""\.[ \t]*+(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+(?=\.)""")
 """A part in the middle of a key with dots."""
@@ -39,19 +36,10 @@ MAX_KEY_PARTS = 100
 """Keys of scene files have three."""
 MAX_ERRORS = 20
 """Of a file in a message; each one is located in the text."""
+MAX_PATTERN_LENGTH = 1000
+"""Characters of a name that is located: a pattern of a million takes seconds."""
 
-
-class Addable(Protocol):
-    """A scene to which parts can be added."""
-
-    def add(self, part: Part) -> Part:
-        """Add a part. Raises SceneError."""
-
-    def add_pairs(self, kind: type[Part], entries: Mapping[str, Any]) -> list[Part]:
-        """Add the parts of many pairs. Raises SceneError."""
-
-
-S = TypeVar("S", bound=Addable)
+S = TypeVar("S", bound=SceneData)
 
 
 def read(text: str, origin: str, new: Callable[..., S], directory: Directory = "",
@@ -112,7 +100,7 @@ class _Reader:
         for each in error.errors[: MAX_ERRORS - len(self.found)]:
             self.found.append((line_of(self.text, table, index, each.entry), each))
 
-    def read_all(self, scene: Addable) -> None:
+    def read_all(self, scene: SceneData) -> None:
         """Add all parts and settings to an empty scene."""
         for name in self.tables:
             if len(self.found) == MAX_ERRORS:
@@ -137,7 +125,7 @@ class _Reader:
                 except SceneError as error:
                     self.note(error, name)
 
-    def _add(self, scene: Addable, kind: str, index: int, table: dict[str, Any]) -> None:
+    def _add(self, scene: SceneData, kind: str, index: int, table: dict[str, Any]) -> None:
         try:
             self._add_parts(scene, PARTS[kind], _placed(table, self.directory), index + 1)
         except SceneError as error:
@@ -145,7 +133,7 @@ class _Reader:
             if isinstance(table.get("name"), str):
                 self.refused.add(table["name"])
 
-    def _add_parts(self, scene: Any, kind: type[Part], table: dict[str, Any], number: int) -> None:
+    def _add_parts(self, scene: SceneData, kind: type[Part], table: dict[str, Any], number: int) -> None:
         """Add the parts of a table, unless it refers to refused ones."""
         refers = not self.refused & set(_words(table))
         if not are_lists(scene, kind, table):
@@ -287,3 +275,47 @@ def as_toml(value: Any) -> str:
             return "[" + ", ".join(map(as_toml, value)) + "]"
         case _:
             return repr(value)
+
+
+def line_of(text: str, table: str, index: int | None = None, entry: str | None = None) -> int | None:
+    """Return the line number, from 1, of an entry of a table in a scene file, else of the head of the table.
+
+    table: its name; index: in an array of tables, from 0; entry: its name. None where the line is not found, such as
+    that of a missing entry of a table in one line.
+    """
+    if max(len(table), len(entry or "")) > MAX_PATTERN_LENGTH:
+        return None
+    lines = text.splitlines(keepends=True)
+    head = _first(lines, rf"\s*\[{{{1 if index is None else 2}}}\s*[\"']?{re.escape(table)}[\"']?\s*\]",
+                  lambda before: index is None or len(before.get(table, [])) == index, skip=index or 0)
+    if head is None:
+        found = None if entry is not None else _first(lines, _entry(table))
+        return None if found is None else found + 1
+    if entry is None:
+        return head + 1
+    end = _first(lines, rf"\s*\[+\s*(?!{re.escape(table)}\s*\.)", after=head)
+    within = lines[: len(lines) if end is None else end]
+    found = _first(within, rf"{_entry(entry)}|\s*\[+\s*{re.escape(table)}\s*\.\s*{re.escape(entry)}\b", after=head)
+    return (head if found is None else found) + 1
+
+
+def _entry(name: str) -> str:
+    return rf"\s*[\"']?{re.escape(name)}[\"']?\s*[=.]"
+
+
+def _first(lines: list[str], pattern: str, fits: Callable[[dict[str, Any]], bool] = lambda before: True,
+           after: int = -1, skip: int = 0) -> int | None:
+    """Return the index of the first matching line whose preceding lines are TOML that fits.
+
+    Lines before one inside a multi-line text or list are no TOML. after: a line that precedes it; skip: number of
+    matches that cannot be it, as each test parses all lines before.
+    """
+    matches = [k for k in range(after + 1, len(lines)) if re.match(pattern, lines[k])]
+    return next((k for k in matches[skip:] if (before := _parsed(lines[:k])) is not None and fits(before)), None)
+
+
+def _parsed(lines: list[str]) -> dict[str, Any] | None:
+    try:
+        return tomllib.loads("".join(lines))
+    except (ValueError, RecursionError):
+        return None

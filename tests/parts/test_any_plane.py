@@ -19,9 +19,8 @@ from funicular import (
     load_scene,
 )
 from funicular.choice.planar import planar_of
-from funicular.parts.combined_signal import combined
 from funicular.parts.laid import laid
-from funicular.parts.signal import Constant
+from funicular.parts.signal import Constant, combined
 from test_planar_form import FLAT, RUBBER, SCENES, WIRE, beam
 from turned_scenes import ASKEW, UPRIGHT, differences, turned_scene
 

@@ -7,11 +7,10 @@ import funicular as fu
 import numpy as np
 import pytest
 from funicular.base.rotations import conjugate, product, quaternion
-from funicular.parts.arc_lengths import following
 from funicular.parts.attachment import Attachment
 from funicular.parts.kinds import KINDS
 from funicular.parts.laid import turned_fields
-from funicular.parts.locations import on_cables
+from funicular.parts.locations import following, on_cables
 from funicular.parts.part import Part, about_fields
 from funicular.parts.plane import Plane
 from funicular.parts.plane_axes import PlaneAxes

@@ -9,8 +9,8 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from ...errors import FunicularWarning, SceneError
-from ...parts.arc_lengths import following, remade
 from ...parts.cable import Cable
+from ...parts.locations import following, remade
 from ...parts.paths import Path, changes_of, check_each_once, gravity_of, path_of, unit_of, value_at
 from ...parts.point_force import PointForce
 from ...parts.scene_data import SceneData
