@@ -131,5 +131,5 @@ def test_newton_contracts_faster_with_smaller_steps(dim, other, exponent):
 
 def test_friction_that_sticks_is_refused():
     scene = thrown(3, "bar", friction=fu.Friction(coefficient=0.3, model="stick"))
-    with pytest.raises(fu.SceneError, match='"energy" does not know friction of crossings that sticks'):
+    with pytest.raises(fu.SceneError, match='"energy" does not support friction of crossings that sticks'):
         scene.run(duration=0.01, output_step=0.01, integrator="energy")

@@ -160,7 +160,7 @@ def test_friction_that_has_no_solution_is_reported():
 
 def test_the_energy_integrator_refuses():
     for given in ({"friction": Friction(viscous=1.0)}, {"at_end": "leave"}):
-        with pytest.raises(SceneError, match='integrator "energy" knows neither friction nor ends of cables'):
+        with pytest.raises(SceneError, match='integrator "energy" supports neither friction nor ends of cables'):
             block(1.0, **given).run(0.1, integrator="energy")
 
 

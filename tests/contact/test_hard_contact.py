@@ -338,7 +338,7 @@ def test_cables_and_what_integrators_do_not_know_are_refused():
                 material=fu.Material(youngs_modulus=1e7, poisson_ratio=0.0, density=2000))
     with pytest.raises(fu.SceneError, match='hard contact is of points of bodies, and "wire" is a cable'):
         scene.contact("wire", "ground", restitution=0.5)
-    with pytest.raises(fu.SceneError, match='integrator "energy" does not know friction of hard contacts'):
+    with pytest.raises(fu.SceneError, match='integrator "energy" does not support friction of hard contacts'):
         ball(friction=0.2).run(duration=1.0, output_step=0.1, integrator="energy")
 
 

@@ -53,7 +53,7 @@ def test_a_failure_without_a_cause():
     model = build(two_hinges())
     said = stopped(model, failed(model, 1.0), "no_convergence", RunSettings(duration=1))
     assert said == ("no step could be made at t = 0.5 s of 1 s: to pass an event there it would have to be shorter "
-                    "than 1e-12 of the duration; what was computed up to there is kept. Look at slides, stops and "
+                    "than 1e-12 of the duration; results up to that time are kept. Look at slides, stops and "
                     "events that act at the same instant")
 
 

@@ -105,7 +105,7 @@ def test_modes_that_are_not_orthogonal_are_taken_when_said(tmp_path):
 def test_what_does_not_know_modal_bodies_says_so():
     scene = Scene()
     scene.modal_body("bar", **BEAM)
-    with pytest.raises(SceneError, match='modal_body "bar": integrator "energy" does not know modal bodies; take'):
+    with pytest.raises(SceneError, match='modal_body "bar": integrator "energy" does not support modal bodies; take'):
         scene.run(duration=0.1, integrator="energy", step=1e-3)
 
 

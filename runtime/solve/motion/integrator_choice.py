@@ -190,21 +190,21 @@ def check(integrator: Integrator, scene: SceneData, model: Model, engine: Engine
     who = f'integrator "{integrator.name}"'
     for body in model.bodies:
         if body.modes and not integrator.takes_modal_bodies:
-            raise SceneError(scene.bodies[body.name].where, f"{who} does not know modal bodies",
+            raise SceneError(scene.bodies[body.name].where, f"{who} does not support modal bodies",
                              f"{_take_another('takes_modal_bodies')}, with a small tol")
     for slide in scene.slides.values():
         if integrator.takes_friction_and_stops:
             break
         if slide.friction is not None or (slide.at_start, slide.at_end) != ("error", "error"):
-            raise SceneError(slide.where, f"{who} knows neither friction nor ends of cables",
+            raise SceneError(slide.where, f"{who} supports neither friction nor ends of cables",
                              _take_another("takes_friction_and_stops"))
     for crossing in scene.crossings.values():
         if integrator.needs_discrete_gradient and crossing.friction is not None and crossing.friction.sticks:
-            raise SceneError(crossing.where, f"{who} does not know friction of crossings that sticks",
+            raise SceneError(crossing.where, f"{who} does not support friction of crossings that sticks",
                              "take model=\"regularised\", or another integrator")
     for contact in scene.contacts.values():
         if contact.is_hard and contact.friction_coefficient and not integrator.takes_friction_and_stops:
-            raise SceneError(contact.where, f"{who} does not know friction of hard contacts",
+            raise SceneError(contact.where, f"{who} does not support friction of hard contacts",
                              _take_another("takes_friction_and_stops"))
         on = scene.surfaces[contact.b].on
         if contact.is_hard and on is not None and integrator.needs_discrete_gradient:

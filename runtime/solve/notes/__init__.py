@@ -1,1 +1,1 @@
-"""Notes on results: what a run or a state of rest is worth, and why."""
+"""Notes on the errors of runs and states of rest: quantity, limit, cause and remedy."""

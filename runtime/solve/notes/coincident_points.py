@@ -36,7 +36,7 @@ class MeetingPoints(Note):
                    for part, of in zip(scene.point_forces.values(), model.point_forces, strict=True)
                    if part.loses_direction]
         joints = [(scene.joints[of.name], of.attachments,
-                   'keep them apart, or take kind="spherical" for points that stay one')
+                   'keep them apart, or take kind="spherical" for points that coincide')
                   for of in model.joints if of.slide is None and scene.joints[of.name].joint_kind == "distance"]
         self._parts = []
         for part, (first, second), remedy in [*springs, *joints]:

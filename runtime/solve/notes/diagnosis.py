@@ -14,7 +14,7 @@ from ...parts.settings import RunSettings
 from .folds import FOLDED_CHORD
 from .note import FIXED_STEP_ERROR_LIMIT
 
-RESULTS_KEPT = "what was computed up to there is kept"
+RESULTS_KEPT = "results up to that time are kept"
 
 MAX_PLAUSIBLE_STRETCH = 3.0
 """Messages name elements that are longer than this multiple of their undeformed length."""
@@ -62,12 +62,12 @@ def stopped(model: Model, engine: Engine, status: str, settings: RunSettings) ->
         return (f"the equations are singular at {when}, first at {where} ({state}): a joint or the mass matrix is "
                 f"degenerate{why}; {RESULTS_KEPT}. {remedy}")
     assert cause is not None, "a step that failed has a cause"
-    what = {"iteration": f"the iteration does not converge, least of all at {where}",
-            "error": f"the error stays above what tol allows, most of all at {where}",
+    what = {"iteration": f"the iteration does not converge, with the largest correction at {where}",
+            "error": f"the error exceeds what tol allows, most at {where}",
             "lost_rider": f"{where} does not find its point on the cable any more",
             "not_finite": f"{where} diverges",
             "self_locking": _self_locking(model, coupling, where),
-            "not_known": f"{where} does not know any more whether it acts"}[cause]
+            "not_known": f"{where} has no contact state any more"}[cause]
     counts = engine.statistics
     gone = f" after {counts['steps']} steps down to {counts['smallest_step_s']:.2g} s" if counts["steps"] else ""
     if cause == "not_known":

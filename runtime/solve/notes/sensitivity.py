@@ -1,11 +1,11 @@
-"""How much small errors grow in a motion: what is compressed while it moves buckles or falls over, and the way in which
-it does so depends on the least difference.
+"""Growth of small errors in a motion: parts under compression buckle or fall over while they move, in a direction that
+depends on the smallest difference.
 
 A straight cable under a compression N deflects as exp(rate t): rate² = k² (N - E I k²) / (rho A) of a wave number k,
 the largest at k² = N / (2 E I). A body that a joint pushes with the force N towards its centre of mass, at the distance
-l of it, falls over with rate² = N l / I less what its spin about that line resists, (I_s omega / 2 I)² (I about the
-joint). The exponents are sums of the rates over the output times. Of a cable's a part counts alone: it bends, and then
-bears less. Both parts are measured, over scenes that were compared with their references (tests/benchmarks/choice.py).
+l of it, falls over with rate² = N l / I - (I_s omega / 2 I)², with the stabilising spin about that line (I about the
+joint). The exponents are sums of the rates over the output times. Only a fraction of a cable's exponent counts, as a
+bent cable bears less. Both fractions are measured on scenes with references (tests/benchmarks/choice.py).
 """
 
 from __future__ import annotations

@@ -41,8 +41,8 @@ class SurfaceEnds(Note):
             surface = self.scene.surfaces[contact.b]
             if isinstance(surface.shape, Cylinder):
                 extent, end = surface.shape.length, "end"
-                what = ("which goes on without ends: give it a greater length, or take a Capsule, which ends in half "
-                        "spheres")
+                what = ("which the contact continues without end: give it a greater length, or take a Capsule, which "
+                        "ends in half spheres")
             else:
                 axes = [each for each in (surface.geometry.first, surface.geometry.second) if each is not None]
                 extent, end = float(max(np.ptp(each) for each in axes)), "table"

@@ -26,7 +26,7 @@ class Balance:
 
     def __str__(self) -> str:
         """Return it in words."""
-        return f"forces of up to {self.left:.3g} N are left over, most of all on {self.where}"
+        return f"residual forces are up to {self.left:.3g} N, largest on {self.where}"
 
 
 def balance(static: StaticState) -> Balance:
