@@ -74,6 +74,17 @@ def claimed_for(part: Path, path: Path, writer: str) -> int:
                               ) from None
 
 
+def locked(path: Path, writer: str) -> int:
+    """Return a locked descriptor of an existing file; writer: as for `claimed_for`. Raises OSError, ResultFileError."""
+    descriptor = os.open(path, os.O_RDWR | BYTES)
+    try:
+        lock(descriptor)
+    except Taken:
+        os.close(descriptor)
+        raise being_written(path, writer) from None
+    return descriptor
+
+
 def being_written(path: Path, writer: str) -> ResultFileError:
     """Return the error for a file that another run or sweep writes."""
     return ResultFileError(f"{path}: another {writer} is writing it; wait for its end, or give another name")

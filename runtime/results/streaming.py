@@ -14,7 +14,6 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from ..base.operating_system import BYTES
 from ..engine import Engine
 from ..errors import ResultFileError
 from ..model.model import Model
@@ -26,7 +25,7 @@ from ..solve.motion.pauses import Pauses
 from ..solve.notes.row_notes import RowNotes
 from .checkpoints import Checkpoint, DamagedCheckpointError, Facts, checkpoint_of
 from .files import check_writable, create_file, file_text, open_file, over_time
-from .locks import Taken, being_written, claimed_for, is_at, lock
+from .locks import claimed_for, is_at, locked
 from .netcdf import File
 from .opening import opened
 from .quantities import Variable, labelled
@@ -283,17 +282,12 @@ class Stream:
         """Return a locked descriptor of the existing file, -1 if there is none."""
         while self._path.exists():
             try:
-                descriptor = os.open(self._path, os.O_RDWR | BYTES)
+                descriptor = locked(self._path, RUN)
             except FileNotFoundError:
                 return -1
             except OSError as error:
                 raise self._refused(f"the results cannot be written here: {error.strerror}", "give another path"
                                     ) from None
-            try:
-                lock(descriptor)
-            except Taken:
-                os.close(descriptor)
-                raise being_written(self._path, RUN) from None
             if is_at(descriptor, self._path):
                 return descriptor
             os.close(descriptor)  # replaced while it was opened

@@ -18,10 +18,9 @@ from typing import Any
 
 import numpy as np
 
-from ..base.operating_system import BYTES
 from ..errors import ResultFileError
 from ..results.files import check_writable
-from ..results.locks import Taken, being_written, claimed_for, lock
+from ..results.locks import being_written, claimed_for, locked
 from ..results.netcdf import MAX_ROW_BYTES, File, create
 from ..results.netcdf_header import last_report
 from .layout import POINT, STATUS, Layout
@@ -83,16 +82,11 @@ def stored(path: str | os.PathLike[str], facts: Mapping[str, Any]) -> Store | No
     """
     resolved = check_writable(path)
     try:
-        descriptor = os.open(resolved, os.O_RDWR | BYTES)
+        descriptor = locked(resolved, SWEEP)
     except FileNotFoundError:
         return None
     except OSError as error:
         raise ResultFileError(f"{resolved}: cannot be read: {error.strerror}") from None
-    try:
-        lock(descriptor)
-    except Taken:
-        os.close(descriptor)
-        raise being_written(resolved, SWEEP) from None
     try:
         file = File(resolved, descriptor=descriptor)
     except (OSError, ValueError) as error:
