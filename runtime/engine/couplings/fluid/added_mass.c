@@ -169,57 +169,50 @@ void fu_fluid_on_element(const fu_model *model, const fu_drag *drag, int first, 
     }
 }
 
-static void on_cable(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
-                     const fu_drag_sums *sums)
+static fu_fluid_past terms_at(const fu_model *model, const fu_drag *drag, double t, const fu_drag_place *at,
+                              of_length *terms)
 {
-    const fu_cable *cable = &model->cables[drag->cable];
-    const int dim = model->dim;
-    for (int e = 0; e < cable->n_elements; ++e) {
-        const int first = cable->first + e * cable->per_node;
-        fu_drag_points points;
-        fu_drag_points_on(model, drag, e, state->q + first, &points);
-        for (int k = 0; k < points.n; ++k) {
-            const fu_quadrature_point point = points.at[k];
-            const double part = point.weight * model->load_fraction;
-            double left[3];
-            fu_drag_place at;
-            of_length terms;
-            fu_drag_place_on_axis(model, drag, state->q + first, state->v + first, a ? a + first : 0, point, &at);
-            const fu_fluid_past past = fu_past_fluid(model, drag, state->t, at.r, at.v, at.a);
-            terms_of_length(model, drag, &at, &past, &terms);
-            fu_fluid_on_particles(model, drag, &past, terms.p, terms.p_rate, at.v, part, left, sums->power);
-            for (int d = 0; d < dim; ++d) left[d] -= part * terms.wet.pull[d];
-            for (int d = 0; d < dim; ++d) terms.g[d] *= part;
-            fu_fluid_on_element(model, drag, first, point, left, terms.g, sums);
-        }
+    const fu_fluid_past past = fu_past_fluid(model, drag, t, at->r, at->v, at->a);
+    terms_of_length(model, drag, at, &past, terms);
+    return past;
+}
+
+static void add_at(const fu_model *model, const fu_drag *drag, const fu_drag_site *site, fu_drag_loop *loop, double *K)
+{
+    const double part = site->point.weight * model->load_fraction;
+    double left[3];
+    of_length terms;
+    (void)K;
+    const fu_fluid_past past = terms_at(model, drag, loop->t, &site->at, &terms);
+    fu_fluid_on_particles(model, drag, &past, terms.p, terms.p_rate, site->at.v, part, left, loop->sums->power);
+    for (int d = 0; d < model->dim; ++d) {
+        left[d] -= part * terms.wet.pull[d];
+        terms.g[d] *= part;
     }
+    fu_fluid_on_element(model, drag, site->first, site->point, left, terms.g, loop->sums);
+}
+
+static void densities_at(const fu_model *model, const fu_drag *drag, const fu_drag_site *site, fu_drag_loop *loop,
+                         double *K)
+{
+    double left[3], *out = loop->rows;
+    of_length terms;
+    (void)K;
+    const fu_fluid_past past = terms_at(model, drag, loop->t, &site->at, &terms);
+    fu_fluid_on_particles(model, drag, &past, terms.p, terms.p_rate, site->at.v, model->load_fraction, left, 0);
+    memset(out, 0, sizeof(double[FU_ADDED_MASS_DENSITIES]));
+    for (int d = 0; d < model->dim; ++d) {
+        out[d] = model->load_fraction * terms.wet.pull[d] - left[d];
+        out[3 + d] = model->load_fraction * terms.g[d];
+    }
+    memcpy(out + 6, terms.M, sizeof(double) * (size_t)(model->dim * model->dim));
+    loop->rows += FU_ADDED_MASS_DENSITIES;
 }
 
 void fu_added_mass_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
 {
-    const fu_drag *drag = (const fu_drag *)coupling;
-    const fu_cable *cable = &model->cables[drag->cable];
-    const int dim = model->dim;
-    for (int e = 0; e < cable->n_elements; ++e) {
-        const int first = cable->first + e * cable->per_node;
-        fu_drag_points points;
-        fu_drag_points_on(model, drag, e, state->q + first, &points);
-        for (int k = 0; k < points.n; ++k, out += FU_ADDED_MASS_DENSITIES) {
-            double left[3];
-            fu_drag_place at;
-            of_length terms;
-            fu_drag_place_on_axis(model, drag, state->q + first, state->v + first, 0, points.at[k], &at);
-            const fu_fluid_past past = fu_past_fluid(model, drag, state->t, at.r, at.v, at.a);
-            terms_of_length(model, drag, &at, &past, &terms);
-            fu_fluid_on_particles(model, drag, &past, terms.p, terms.p_rate, at.v, model->load_fraction, left, 0);
-            memset(out, 0, sizeof(double[FU_ADDED_MASS_DENSITIES]));
-            for (int d = 0; d < dim; ++d) {
-                out[d] = model->load_fraction * terms.wet.pull[d] - left[d];
-                out[3 + d] = model->load_fraction * terms.g[d];
-            }
-            memcpy(out + 6, terms.M, sizeof(double) * (size_t)(dim * dim));
-        }
-    }
+    fu_drag_loop loop = {.t = state->t, .rows = out};
+    fu_drag_visit(model, (const fu_drag *)coupling, state->q, state->v, 0, densities_at, &loop, 0);
 }
 
 /* Adds the product of two matrices (dim x dim), times a factor. */
@@ -274,33 +267,20 @@ static void derivatives(const fu_drag *drag, int dim, const of_length *of, const
     add_product(dim, -1.0, of->g_w, past->flow.gradient, g_place);
 }
 
-static void tangent_of_cable(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
-                             fu_weights weights, fu_system *system)
+static void tangent_at(const fu_model *model, const fu_drag *drag, const fu_drag_site *site, fu_drag_loop *loop,
+                       double *K)
 {
-    const fu_cable *cable = &model->cables[drag->cable];
-    const int dim = model->dim, all = cable->coordinates;
-    double K[FU_MAX_COORDINATES * FU_MAX_COORDINATES], by_slope[9], by_place[9], g_place[9];
-    for (int e = 0; e < cable->n_elements; ++e) {
-        const int first = cable->first + e * cable->per_node;
-        fu_drag_points points;
-        memset(K, 0, sizeof(double) * (size_t)(all * all));
-        fu_drag_points_on(model, drag, e, state->q + first, &points);
-        for (int k = 0; k < points.n; ++k) {
-            const fu_quadrature_point point = points.at[k];
-            const double part = weights.stiffness * model->load_fraction * point.weight;
-            fu_drag_place at;
-            of_length terms;
-            fu_drag_place_on_axis(model, drag, state->q + first, state->v + first, a ? a + first : 0, point, &at);
-            const fu_fluid_past past = fu_past_fluid(model, drag, state->t, at.r, at.v, at.a);
-            terms_of_length(model, drag, &at, &past, &terms);
-            derivatives(drag, dim, &terms, &past, weights.rate, by_slope, by_place, g_place);
-            fu_add_element_product(dim, all, part, point.N, point.N_x, by_slope, K);
-            fu_add_element_product(dim, all, part, point.N, point.N, by_place, K);
-            fu_add_element_product(dim, all, -part, point.N_x, point.N_x, terms.g_t, K);
-            fu_add_element_product(dim, all, -part, point.N_x, point.N, g_place, K);
-        }
-        fu_add_element_matrix(model, first, all, K, system);
-    }
+    const int dim = model->dim, all = model->cables[drag->cable].coordinates;
+    const double part = loop->weights.stiffness * model->load_fraction * site->point.weight;
+    const double *N = site->point.N, *N_x = site->point.N_x;
+    double by_slope[9], by_place[9], g_place[9];
+    of_length terms;
+    const fu_fluid_past past = terms_at(model, drag, loop->t, &site->at, &terms);
+    derivatives(drag, dim, &terms, &past, loop->weights.rate, by_slope, by_place, g_place);
+    fu_add_element_product(dim, all, part, N, N_x, by_slope, K);
+    fu_add_element_product(dim, all, part, N, N, by_place, K);
+    fu_add_element_product(dim, all, -part, N_x, N_x, terms.g_t, K);
+    fu_add_element_product(dim, all, -part, N_x, N, g_place, K);
 }
 
 /* Makes the state of a body's point with its axes, its acceleration, and what the kernel gives of it. */
@@ -379,13 +359,15 @@ static void tangent_of_body(const fu_model *model, const fu_drag *drag, const fu
 void fu_added_mass_forces(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
                           const fu_drag_sums *sums)
 {
-    if (drag->cable >= 0) on_cable(model, drag, state, a, sums);
+    fu_drag_loop loop = {.t = state->t, .sums = sums};
+    if (drag->cable >= 0) fu_drag_visit(model, drag, state->q, state->v, a, add_at, &loop, 0);
     else on_body(model, drag, state, a, sums);
 }
 
 void fu_added_mass_tangent(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
                            const double *psi, fu_weights weights, fu_system *system)
 {
-    if (drag->cable >= 0) tangent_of_cable(model, drag, state, a, weights, system);
+    fu_drag_loop loop = {.t = state->t, .has_matrix = 1, .weights = weights};
+    if (drag->cable >= 0) fu_drag_visit(model, drag, state->q, state->v, a, tangent_at, &loop, system);
     else tangent_of_body(model, drag, state, a, psi, weights, system);
 }

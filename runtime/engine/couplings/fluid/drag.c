@@ -38,97 +38,71 @@ static void add_powers(const fu_model *model, const fu_drag_place *at, const fu_
     sum->external += part * (fu_dot(model->dim, a->f, a->flow.U) + fu_dot(model->dim, a->buoyancy, at->v));
 }
 
-/* Adds what drag and buoyancy do to a cable. */
-static void on_cable(const fu_model *model, const fu_drag *drag, double t, const double *q, const double *v,
-                     const fu_drag_sums *sums)
+/* Adds the forces of drag and buoyancy at a point of a cable. */
+static void add_at(const fu_model *model, const fu_drag *drag, const fu_drag_site *site, fu_drag_loop *loop, double *K)
 {
-    const fu_cable *cable = &model->cables[drag->cable];
-    const int dim = model->dim, n = cable->coordinates / dim;
-    for (int e = 0; e < cable->n_elements; ++e) {
-        const int first = cable->first + e * cable->per_node;
-        fu_drag_points points;
-        fu_drag_points_on(model, drag, e, q + first, &points);
-        for (int g = 0; g < points.n; ++g) {
-            fu_drag_place at;
-            fu_drag_action a;
-            double force[3];
-            const fu_quadrature_point point = points.at[g];
-            fu_drag_place_on_axis(model, drag, q + first, v + first, 0, point, &at);
-            fu_drag_act(model, drag, t, &at, 0, &a);
-            whole_force(model, &a, force);
-            const double share = point.weight * model->load_fraction;
-            if (sums->power) add_powers(model, &at, &a, point.weight, sums->power);
-            if (sums->power && point.N_chord) sums->power->external += share * fu_section_power(&at, &a);
-            if (sums->f && point.N_chord) fu_section_forces(&a, point, share, n, sums->f + first);
-            for (int d = 0; d < dim; ++d) {
-                const double part = point.weight * force[d];
-                if (sums->total) sums->total[d] += part;
-                for (int k = 0; sums->f && k < n; ++k) sums->f[first + k * dim + d] -= point.N[k] * part;
-            }
-        }
+    const fu_drag_sums *sums = loop->sums;
+    const fu_quadrature_point point = site->point;
+    const int dim = model->dim, n = model->cables[drag->cable].coordinates / dim;
+    const double share = point.weight * model->load_fraction;
+    fu_drag_action a;
+    double force[3];
+    (void)K;
+    fu_drag_act(model, drag, loop->t, &site->at, 0, &a);
+    whole_force(model, &a, force);
+    if (sums->power) add_powers(model, &site->at, &a, point.weight, sums->power);
+    if (sums->power && point.N_chord) sums->power->external += share * fu_section_power(&site->at, &a);
+    if (sums->f && point.N_chord) fu_section_forces(&a, point, share, n, sums->f + site->first);
+    for (int d = 0; d < dim; ++d) {
+        const double part = point.weight * force[d];
+        if (sums->total) sums->total[d] += part;
+        for (int k = 0; sums->f && k < n; ++k) sums->f[site->first + k * dim + d] -= point.N[k] * part;
     }
+}
+
+static void densities_at(const fu_model *model, const fu_drag *drag, const fu_drag_site *site, fu_drag_loop *loop,
+                         double *K)
+{
+    double *out = loop->rows + (long)loop->n_rows++ * FU_DRAG_DENSITIES, force[3] = {0.0};
+    fu_drag_action a;
+    (void)K;
+    fu_drag_act(model, drag, loop->t, &site->at, 0, &a);
+    whole_force(model, &a, force);
+    out[0] = site->element;
+    out[1] = site->part;
+    out[2] = site->x;
+    out[3] = site->point.weight;
+    memcpy(out + 4, force, sizeof force);
 }
 
 int fu_drag_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
 {
-    const fu_drag *drag = (const fu_drag *)coupling;
-    const fu_cable *cable = &model->cables[drag->cable];
-    int n = 0;
-    for (int e = 0; e < cable->n_elements; ++e) {
-        const int first = cable->first + e * cable->per_node;
-        fu_drag_points points;
-        fu_drag_points_on(model, drag, e, state->q + first, &points);
-        for (int g = 0; g < points.n; ++g, ++n, out += FU_DRAG_DENSITIES) {
-            fu_drag_place at;
-            fu_drag_action a;
-            double force[3] = {0.0};
-            fu_drag_place_on_axis(model, drag, state->q + first, state->v + first, 0, points.at[g], &at);
-            fu_drag_act(model, drag, state->t, &at, 0, &a);
-            whole_force(model, &a, force);
-            out[0] = e;
-            out[1] = points.part[g];
-            out[2] = points.x[g];
-            out[3] = points.at[g].weight;
-            memcpy(out + 4, force, sizeof force);
-        }
-    }
-    return n;
+    fu_drag_loop loop = {.t = state->t, .rows = out};
+    fu_drag_visit(model, (const fu_drag *)coupling, state->q, state->v, 0, densities_at, &loop, 0);
+    return loop.n_rows;
 }
 
-/* Adds the derivatives of the same to a system. */
-static void matrix_of_cable(const fu_model *model, const fu_drag *drag, const fu_state *state, fu_weights weights,
-                            fu_system *system)
+/* Adds the derivatives of the forces at a point to the matrix of the element. */
+static void matrix_at(const fu_model *model, const fu_drag *drag, const fu_drag_site *site, fu_drag_loop *loop,
+                      double *K)
 {
-    const fu_cable *cable = &model->cables[drag->cable];
-    const int dim = model->dim, n = cable->coordinates / dim, all = cable->coordinates;
-    double K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
-    for (int e = 0; e < cable->n_elements; ++e) {
-        const int first = cable->first + e * cable->per_node;
-        fu_drag_points points;
-        memset(K, 0, sizeof(double) * (size_t)(all * all));
-        fu_drag_points_on(model, drag, e, state->q + first, &points);
-        for (int g = 0; g < points.n; ++g) {
-            const fu_quadrature_point point = points.at[g];
-            const double *N = point.N, *N_x = point.N_x;
-            const double scale = -weights.stiffness * model->load_fraction * point.weight;
-            double gradient[9];
-            fu_drag_place at;
-            fu_drag_action a;
-            fu_drag_place_on_axis(model, drag, state->q + first, state->v + first, 0, point, &at);
-            fu_drag_act(model, drag, state->t, &at, 0, &a);
-            by_place(dim, &a, gradient);
-            for (int i = 0; i < dim; ++i)
-                for (int j = 0; j < dim; ++j) {
-                    const double by_r = gradient[i * dim + j] - weights.rate * a.by_w[i * dim + j];
-                    for (int k = 0; k < n; ++k)
-                        for (int l = 0; l < n; ++l)
-                            K[(k * dim + i) * all + l * dim + j] +=
-                                scale * N[k] * (a.by_slope[i * dim + j] * N_x[l] + by_r * N[l]);
-                }
-            if (point.N_chord) fu_section_matrix(&a, point, scale, weights.rate, all, K);
+    const fu_quadrature_point point = site->point;
+    const int dim = model->dim, all = model->cables[drag->cable].coordinates, n = all / dim;
+    const double *N = point.N, *N_x = point.N_x;
+    const double scale = -loop->weights.stiffness * model->load_fraction * point.weight;
+    double gradient[9];
+    fu_drag_action a;
+    fu_drag_act(model, drag, loop->t, &site->at, 0, &a);
+    by_place(dim, &a, gradient);
+    for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) {
+            const double by_r = gradient[i * dim + j] - loop->weights.rate * a.by_w[i * dim + j];
+            for (int k = 0; k < n; ++k)
+                for (int l = 0; l < n; ++l)
+                    K[(k * dim + i) * all + l * dim + j] +=
+                        scale * N[k] * (a.by_slope[i * dim + j] * N_x[l] + by_r * N[l]);
         }
-        fu_add_element_matrix(model, first, all, K, system);
-    }
+    if (point.N_chord) fu_section_matrix(&a, point, scale, loop->weights.rate, all, K);
 }
 
 /* Makes the place of a body's point, and how the point moves with the coordinates; over a step that conserves energy,
@@ -199,7 +173,8 @@ static void matrix_of_body(const fu_model *model, const fu_drag *drag, const fu_
 static void add(const fu_model *model, const fu_drag *drag, const fu_state *state, const fu_equations *step,
                 const fu_drag_sums *sums)
 {
-    if (drag->cable >= 0) on_cable(model, drag, state->t, state->q, state->v, sums);
+    fu_drag_loop loop = {.t = state->t, .sums = sums};
+    if (drag->cable >= 0) fu_drag_visit(model, drag, state->q, state->v, 0, add_at, &loop, 0);
     else on_body(model, drag, state->t, state, step, sums);
 }
 
@@ -245,7 +220,8 @@ static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_
                    const double *psi, fu_weights weights, fu_system *system)
 {
     const fu_drag *drag = (const fu_drag *)coupling;
-    if (drag->cable >= 0) matrix_of_cable(model, drag, state, weights, system);
+    fu_drag_loop loop = {.t = state->t, .has_matrix = 1, .weights = weights};
+    if (drag->cable >= 0) fu_drag_visit(model, drag, state->q, state->v, 0, matrix_at, &loop, system);
     else matrix_of_body(model, drag, state, psi, weights, system);
     if (coupling->has_inertia)
         fu_added_mass_tangent(model, drag, state, weights.inertia != 0.0 ? a : 0, psi, weights, system);

@@ -98,10 +98,40 @@ static inline int fu_drag_on_section(const fu_drag *drag)
     return drag->cable >= 0 && drag->is_foil;
 }
 
+/* A point of quadrature on an element whose first dof is `first`: its number among the parts between two cuts, and its
+ * place in the element, m. */
+typedef struct {
+    int element, first, part;
+    double x;
+    fu_quadrature_point point;
+    fu_drag_place at;
+} fu_drag_site;
+
+/* Arguments and results of a loop over points: those that its visitor needs. rows: the next row of densities; energy: a
+ * kinetic energy, J, past the fluid or in a fluid at rest. */
+typedef struct {
+    double t;
+    const fu_drag_sums *sums;
+    int has_matrix;
+    fu_weights weights;
+    double *rows;
+    int n_rows;
+    double energy;
+    int past_fluid;
+} fu_drag_loop;
+typedef void fu_drag_visitor(const fu_model *model, const fu_drag *drag, const fu_drag_site *site, fu_drag_loop *loop,
+                             double *K);
+
 /* couplings/fluid/quadrature.c */
 fu_quadrature_point fu_drag_point(const fu_drag *drag, int n, int element, int point);
 void fu_drag_place_on_axis(const fu_model *model, const fu_drag *drag, const double *e, const double *v,
                            const double *a, fu_quadrature_point point, fu_drag_place *at);
+
+/* couplings/fluid/point_loop.c: calls `visit` at each point of a cable with the coordinates q, rates v and
+ * accelerations a; null: without. K: matrix of the element, which is added to the system (or to none, null) after its
+ * points if loop->has_matrix. */
+void fu_drag_visit(const fu_model *model, const fu_drag *drag, const double *q, const double *v, const double *a,
+                   fu_drag_visitor *visit, fu_drag_loop *loop, fu_system *system);
 
 /* couplings/fluid/wetness.c: the wet part at a height; the height of a place, m; the points of an element with the
  * coordinates e, and of one with these at both ends of a step. */
