@@ -28,9 +28,8 @@ from ..parts.validation import show
 from .contact_placement import placed_contact, placed_contacts, placed_surface
 from .crossing_placement import placed_crossing
 from .drag_placement import placed_drag, placed_fluid
-from .event_placement import placed_event
 from .joint_placement import placed_joint
-from .placement import placed_between, placed_load, placed_point_force, placed_support, placed_tie
+from .placement import placed_between, placed_event, placed_load, placed_point_force, placed_support, placed_tie
 from .slide_placement import placed_slide
 from .whole_scene import check_plane
 

@@ -20,6 +20,7 @@ from ..parts.section import outer_radius_of
 from ..parts.surface import Surface
 from ..parts.surface_shapes import HeightField
 from ..parts.validation import show
+from .frames import plane_normal
 
 WEIGHT_PENETRATION = 0.01
 """Penetration under the weight with the default stiffness, as a fraction of the radius."""
@@ -199,8 +200,8 @@ def _check_fits(scene: SceneData, contact: Contact) -> None:
     if not surface.inside:
         return
     shape, radius = surface.geometry, contact.radius or 0.0
-    normal, body = _normal(scene), scene.bodies.get(surface.on or "")
-    if normal is not None:
+    if scene.dim == 2:
+        normal, body = plane_normal(scene), scene.bodies.get(surface.on or "")
         shape = shape.in_plane(normal if body is None else rotate(conjugate(body.frame[1]), normal))
     if not radius < shape.inner_radius:
         raise SceneError(contact.where, f'"{contact.a}" does not fit into "{contact.b}": its radius is '
@@ -226,19 +227,12 @@ def _largest_length(scene: SceneData, contact: Contact) -> float:
                surface.geometry.largest_length)
 
 
-def _normal(scene: SceneData) -> np.ndarray | None:
-    """Return the unit vector (3,) across the plane of a planar scene, None in space."""
-    if scene.dim == 3:
-        return None
-    return np.array([0.0, 0.0, 1.0]) if scene.plane is None else scene.plane.normal
-
-
 def _check_depths(scene: SceneData, contacts: list[Contact], starts: list[_Start]) -> None:
     """Raise SceneError where a point starts deeper below its surface than allowed."""
     of_surface: dict[str, list[int]] = {}
     for k, contact in enumerate(contacts):
         of_surface.setdefault(contact.b, []).append(k)
-    normal = _normal(scene)
+    normal = plane_normal(scene) if scene.dim == 2 else None
     found: list[tuple[int, SceneError]] = []
     for name, numbers in of_surface.items():
         surface = scene.surfaces[name]

@@ -71,7 +71,8 @@ def _check_start(scene: SceneData, part: Crossing, start: Start, radius: float) 
     size = scene.cables[part.a].length
     gap = float(np.dot(start.d, start.normal))
     if part.side is None and abs(gap) <= LENGTH_TOLERANCE * size:
-        raise SceneError(part.where, f"the lines meet as drawn, at {show(_place(scene, part, start), 'm')}",
+        place = scene.cables[part.a].point(float(start.s[0]))
+        raise SceneError(part.where, f"the lines meet as drawn, at {show(place, 'm')}",
                          "give side, the direction in which a is of b, or draw them apart")
     if part.side is not None and abs(np.dot(part.side, start.normal)) < MIN_CROSSING_SINE * np.linalg.norm(part.side):
         raise SceneError(part.where, f"side {show(part.side)} is not across both lines",
@@ -85,7 +86,3 @@ def _check_start(scene: SceneData, part: Crossing, start: Start, radius: float) 
                    f"{part.stiffness * overlap**part.exponent:.4g} N; draw them apart, or start with "
                    'initial="equilibrium"')
         report(scene, OfDrawing(message))
-
-
-def _place(scene: SceneData, part: Crossing, start: Start) -> np.ndarray:
-    return scene.cables[part.a].point(float(start.s[0]))

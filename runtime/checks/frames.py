@@ -25,6 +25,11 @@ class JointAxes(NamedTuple):
     b: np.ndarray
 
 
+def plane_normal(scene: SceneData) -> np.ndarray:
+    """Return (3,): the unit normal of the plane of a planar scene."""
+    return np.array([0.0, 0.0, 1.0]) if scene.plane is None else scene.plane.normal
+
+
 def has_section(cable: Cable) -> bool:
     """Return whether its elements determine the rotation about the tangent, or are planar."""
     return cable.dim == 2 or bool(cable.kind_of_element.director)

@@ -15,7 +15,7 @@ from ..parts.locations import Node, joined, point_of, support_of
 from ..parts.scene_data import SceneData
 from ..parts.support import Motion, Support
 from ..parts.validation import LENGTH_TOLERANCE, show
-from .frames import cable_frame, has_section
+from .frames import cable_frame, has_section, plane_normal
 from .placement import SUPPORTED, elements_with_sections, placed_between, report
 
 MAX_GAP = 1e-3
@@ -66,8 +66,7 @@ def _completed(scene: SceneData, joint: Joint) -> dict[str, Any]:
     if joint.joint_kind == "revolute" and joint.axis is None:
         if scene.dim == 3:
             raise SceneError(joint.where, "axis is missing: a revolute joint needs it")
-        plane = scene.plane
-        return {"axis": (0.0, 0.0, 1.0) if plane is None else tuple(plane.normal.tolist())}
+        return {"axis": tuple(plane_normal(scene).tolist())}
     if joint.joint_kind != "distance":
         return {}
     points = point_of(scene, joint.a), point_of(scene, joint.b)

@@ -11,6 +11,7 @@ from ..errors import FunicularWarning, SceneError, near
 from ..kernels.elements import built_in
 from ..parts.attachment import Attachment
 from ..parts.cable import Cable
+from ..parts.event import Event
 from ..parts.load import DistributedForce, Force, Moment
 from ..parts.locations import Node, joined, node_of, point_of, support_of
 from ..parts.modal_body import ModalBody
@@ -19,10 +20,19 @@ from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.support import Support, Tie
 from ..parts.validation import LENGTH_TOLERANCE, show
+from .frames import plane_normal
 
 P = TypeVar("P", bound=Part)
 
 SUPPORTED = {"pin": "pinned", "clamp": "clamped", "motion": "moved as prescribed"}
+
+
+AXES = ("x", "y", "z")
+WATCHABLE = {"rigid_body": ("position", "velocity"), "modal_body": ("position", "velocity"),
+             "cable": ("position", "velocity", "least_strain"), "slide": ("s", "s_rate", "traction")}
+"""Quantities with thresholds, by kind of part."""
+WHOLE = ("s", "s_rate", "traction", "least_strain")
+"""Quantities without components and without a place on a cable."""
 
 
 def report(scene: SceneData, message: str, level: int = 5) -> None:
@@ -194,3 +204,31 @@ def placed_point_force(scene: SceneData, force: PointForce) -> PointForce:
         raise SceneError(force.where, f"both ends are at {show(points[0], 'm')}: its direction is lost",
                          "join the points, draw them apart, or give a spring length=0")
     return force.at_distance(distance)
+
+
+def placed_event(scene: SceneData, event: Event) -> Event:
+    """Return the event, checked to watch a function or a quantity of the scene. Raises SceneError."""
+    if event.quantity is None:
+        return event
+    name, _, quantity = event.quantity.partition(".")
+    what, _, axis = quantity.partition(".")
+    parts = {**scene.bodies, **scene.cables, **scene.slides}
+    if name not in parts:
+        raise SceneError(event.where, f'there is no body, cable or slide "{name}"', near(name, parts))
+    part = parts[name]
+    known = WATCHABLE[part.kind]
+    if what not in known or (axis if what in WHOLE else axis not in AXES):
+        forms = ", ".join(f"{name}.{k}" if k in WHOLE else f"{name}.{k}.x" for k in known)
+        raise SceneError(event.where, f'"{event.quantity}" cannot be watched', f"{forms}, with x, y or z, can"
+                         if part.kind != "slide" else f"{forms} can")
+    if scene.dim == 2 and axis and abs(plane_normal(scene)[AXES.index(axis)]) == 1.0:
+        same = "always 0" if scene.plane is None else "always the same"
+        others = " or ".join(each for each in AXES if each != axis)
+        raise SceneError(event.where, f'"{event.quantity}" is {same}: the scene is planar', f"watch {others}")
+    if part.kind == "cable" and what not in WHOLE:
+        if event.s is None:
+            raise SceneError(event.where, "s is missing: where on the cable?", "give the s of a node")
+        node_at(scene, name, event.where, event.s)
+    elif event.s is not None:
+        raise SceneError(event.where, f'"{event.quantity}" has no place s', "leave it out")
+    return event

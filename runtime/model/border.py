@@ -58,7 +58,9 @@ class _Border:
         elements: list[np.ndarray] = []
         for cable in model.cables:
             per_node = cable.shape[1] * cable.shape[2]
-            for k in range(cable.n_elements if self._in_border(cable.coordinates) else 0):
+            if not np.any(self._unknowns(cable.coordinates) >= model.n_band):
+                continue
+            for k in range(cable.n_elements):
                 at = self._unknowns(slice(cable.first + k * per_node, cable.first + (k + 2) * per_node))
                 for unknown in at[at >= model.n_band]:
                     shared.setdefault(int(unknown), []).append(len(elements))
@@ -72,9 +74,6 @@ class _Border:
         for at in elements:
             place = self._of_unknowns(at)
             self._touch(place.groups, place)
-
-    def _in_border(self, dofs: slice) -> bool:
-        return bool(np.any(self._unknowns(dofs) >= self.model.n_band))
 
     def _unknowns(self, dofs: slice) -> np.ndarray:
         """Return the unknowns on which these dofs depend."""

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from ..checks.event_placement import AXES
+from ..checks.placement import AXES
 from ..errors import SceneError, near
 from ..parts.locations import connected
 from ..parts.scene_data import SceneData

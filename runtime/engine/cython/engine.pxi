@@ -302,7 +302,6 @@ cdef extern from * nogil:
     size_t fu_proximity_size(const fu_model *model, int n_event_functions)
     void fu_proximity_place(fu_model *model, int n_event_functions, void *memory)
     int fu_coupling_event_functions(const fu_model *model, fu_event_function *out)
-    double fu_elastic_energy(const fu_model *model, const fu_state *state)
     void fu_reset(const fu_model *model, fu_state *state)
     void fu_find_path_segments(const fu_model *model, fu_state *state)
     void fu_outputs_at_rest(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)

@@ -256,10 +256,6 @@ cdef class Statics(Translation):
                                                [np.zeros((self.model.n_extra, dofs.shape[1])), np.eye(self.model.n_extra)]]))
         return self.spreads.T @ stiffness @ self.spreads
 
-    def elastic_energy(self):
-        """J, of the static state."""
-        return fu_elastic_energy(&self.model, &self.run.next)
-
     def spread(self, unknowns):
         """Return (n_dof,): changes of the dofs by changes of the unknowns."""
         cdef double[::1] x = np.ascontiguousarray(unknowns, dtype=float)

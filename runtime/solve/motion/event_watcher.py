@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...base.interruptions import interruptible
-from ...checks.event_placement import AXES
+from ...checks.placement import AXES
 from ...errors import SceneError, near
 from ...model.middle_strain import middle_strain
 from ...model.model import Model
