@@ -87,14 +87,6 @@ def _staggered(start: float, end: float, height: float, sides: tuple[float, ...]
     return [(start + float(at) / spans * (end - start), height, float(side)) for at, side in zip(u, z, strict=True)]
 
 
-def missing_at_droppers(line: Line, longest: tuple[float, float]) -> np.ndarray:
-    """Return the compliance of both wires at each dropper that their elements lack, in m/N."""
-    at = np.array(line.droppers.at)
-    contact, messenger = (missing_compliance(wire.tension, wire.bending_stiffness, mesh(line, each) * line.span, at)
-                          for wire, each in zip((line.contact, line.messenger), longest, strict=True))
-    return np.asarray(contact + messenger)
-
-
 def hold_ends(scene: Scene) -> None:
     """Hold the ends of the contact wire level and along the track, free to rise."""
     for s in (0.0, scene.cables["contact"].length):
@@ -134,7 +126,10 @@ def form(line: Line, longest: tuple[float, float] = LONGEST) -> Form:
         scene.pin("messenger", s=s)
     hold_ends(scene)
     adjust, to = {"contact.rest_length": "free", "messenger.rest_length": "free"}, {}
-    missing = missing_at_droppers(line, longest)
+    contact, messenger = (missing_compliance(wire.tension, wire.bending_stiffness, mesh(line, each) * line.span,
+                                             np.array(droppers.at))
+                          for wire, each in zip((line.contact, line.messenger), longest, strict=True))
+    missing = contact + messenger  # of both wires at each dropper, in m/N
     for k, x in enumerate(droppers.at):
         upper, lower = (x / line.span * lengths[name] for name in ("messenger", "contact"))
         aside = (line.staggers[1] - line.staggers[0]) * (1 - 2 * x / line.span)
@@ -145,13 +140,12 @@ def form(line: Line, longest: tuple[float, float] = LONGEST) -> Form:
         adjust[f"dropper_{k + 1}.length"] = "free"
         to[f"contact@{lower:.15g}.position.y"] = -float(droppers.depths[k])
     to |= {"contact@0.force.x": -line.contact.tension, "messenger@0.force.x": -line.messenger.tension}
-    return _read(line, longest, scene.equilibrium(adjust=adjust, to=to))
+    return _read(line, longest, missing, scene.equilibrium(adjust=adjust, to=to))
 
 
-def _read(line: Line, longest: tuple[float, float], rest: Equilibrium) -> Form:
+def _read(line: Line, longest: tuple[float, float], missing: np.ndarray, rest: Equilibrium) -> Form:
     names = [f"dropper_{k + 1}" for k in range(len(line.droppers.at))]
     forces = np.array([float(rest[f"{name}.tension"]) for name in names])
-    missing = missing_at_droppers(line, longest)
     distances = np.array([float(rest[f"{name}.length"]) for name in names]) - missing * forces
     lengths = np.array([rest.adjusted[f"{name}.length"] for name in names])
     if line.droppers.axial_stiffness is not None:  # which is over this length, not over the distance
