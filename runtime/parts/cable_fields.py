@@ -16,7 +16,7 @@ from .cable_laws import DEFAULT_ELEMENT, MEASURES
 from .cable_mesh import Nodes
 from .material import Material
 from .part import Part
-from .schemas import ONLY_PYTHON, POINT, GivenAs, Turning, checked, list_of_lists
+from .schemas import ONLY_PYTHON, POINT, FileEntry, GivenAs, Turning, checked, list_of_lists
 from .section import AnySection, outer_radius_of
 from .validation import Count, Name, Points, Vector, one_of, positive, shown, xyz
 
@@ -57,7 +57,7 @@ class CableFields(Part):
     shape: Annotated[str | None, one_of(("straight", "hanging"), optional=True)] = None
     given_elements: Annotated[Count | None, Field(alias="elements")] = None
     nodes: Nodes | None = None
-    library: Annotated[str | None, checked(library_directory, {"type": "string"})] = None
+    library: Annotated[str | None, checked(library_directory, {"type": "string"}, FileEntry())] = None
     element: Annotated[str, checked(_element, {"type": "string"})] = DEFAULT_ELEMENT
     law: str = None  # type: ignore[assignment]  # `Cable._settled` chooses one where none is given
     strain: Annotated[str | None, one_of(MEASURES["strain"], optional=True)] = None

@@ -16,7 +16,7 @@ from .cable import Cable
 from .material import Material
 from .part import Part
 from .rigid_body import Orientation, RigidBody
-from .schemas import checked
+from .schemas import FileEntry, checked
 from .section import AnySection
 from .validation import LENGTH_TOLERANCE, Count, Flag, Name, Vector, not_negative, one_of, show, shown, xyz
 
@@ -77,7 +77,7 @@ class ModalBody(Part):
     law: str | None = None
     modes: Count = 5
     boundary: Annotated[str, one_of(("free", "attached"))] = "free"
-    data: Annotated[str | None, checked(_path, {"type": "string"})] = None
+    data: Annotated[str | None, checked(_path, {"type": "string"}, FileEntry())] = None
     orthogonal: Flag = True
     position: Annotated[Vector | None, xyz("m")] = None
     orientation: Orientation = (1.0, 0.0, 0.0, 0.0)

@@ -13,7 +13,7 @@ from pydantic import BaseModel, ConfigDict, PlainValidator, ValidationError, mod
 
 from ..errors import RENAMED, SceneError, check_renamed, near, shown_path
 from .quantity import Quantity
-from .schemas import AXIS, DIRECTION, HOLDER, ORIENTATION, POINT, TABLE_OF, Check, Place, Turning, checked
+from .schemas import AXIS, DIRECTION, HOLDER, ORIENTATION, POINT, TABLE_OF, About, Check, Turning, checked
 from .validation import NAMES_A_PART, show, shown
 
 if TYPE_CHECKING:
@@ -225,8 +225,8 @@ def names_a_part(field: FieldInfo) -> bool:
 
 
 @cache
-def about_fields(kind: type[Part]) -> dict[str, Turning | Place]:
-    """Return how vectors turn and along which cables arc-lengths are, by field of a kind of part."""
+def about_fields(kind: type[Part]) -> dict[str, About]:
+    """Return how vectors turn, the cables of arc-lengths, and paths, by field of a kind of part."""
     return {name: mark.about for name, field in kind.model_fields.items() for mark in _marks(field)
             if isinstance(mark, Check) and mark.about is not None}
 

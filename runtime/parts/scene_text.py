@@ -11,6 +11,7 @@ import os
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator
+from functools import cache
 from itertools import takewhile
 from typing import Any, TypeVar
 
@@ -20,8 +21,9 @@ from .event import Event
 from .file_paths import FilePath
 from .kinds import PARTS
 from .pairs import are_lists
-from .part import Part
+from .part import Part, about_fields
 from .scene_data import SceneData
+from .schemas import FileEntry
 from .settings import EquilibriumSettings, RelaxationSettings, RunSettings
 
 Directory = str | os.PathLike[str]
@@ -187,11 +189,24 @@ def _check_libraries(tables: dict[str, Any], directory: Directory, allowed: list
 
 
 def _placed(table: dict[str, Any], directory: Directory) -> dict[str, Any]:
-    """Return a table with its paths of library, data and mesh relative to the working directory."""
-    here = {name: os.path.join(directory, table[name]) for name in ("library", "data", "file")
-            if isinstance(table.get(name), str)}
-    return table | here | {name: _placed(table[name], directory) for name in ("shape", "table")
-                           if isinstance(table.get(name), dict)}
+    """Return a table of a part with its paths, also those of tables in it, relative to the working directory."""
+    made = dict(table)
+    for name, value in table.items():
+        if isinstance(value, dict):
+            made[name] = _placed(value, directory)
+        elif isinstance(value, str) and name in _paths():
+            made[name] = os.path.join(directory, value)
+    return made
+
+
+@cache
+def _paths() -> set[str]:
+    """Return the keywords of parts that are paths."""
+    kinds = [Part]
+    for kind in kinds:
+        kinds += kind.__subclasses__()
+    return {keyword for kind in kinds for keyword, name in kind.keywords().items()
+            if isinstance(about_fields(kind).get(name), FileEntry)}
 
 
 def _part(part: type[Part], table: dict[str, Any], index: int) -> Part:

@@ -49,13 +49,21 @@ class Place:
 
 
 @dataclass(frozen=True)
+class FileEntry:
+    """A path, in a scene file relative to the folder of the file."""
+
+
+About = Turning | Place | FileEntry
+
+
+@dataclass(frozen=True)
 class Check(PlainValidator):
-    """A check of values; about: how vectors turn, or the cable of an arc-length."""
+    """A check of values; about: how vectors turn, the cable of an arc-length, or that it is a path."""
 
-    about: Turning | Place | None = None
+    about: About | None = None
 
 
-def checked(check: Callable[..., Any], schema: Mapping[str, Any], about: Turning | Place | None = None) -> Check:
+def checked(check: Callable[..., Any], schema: Mapping[str, Any], about: About | None = None) -> Check:
     """Return a check of values; schema: JSON Schema of the values in scene files."""
     return Check(check, json_schema_input_type=Annotated[Any, GivenAs(schema)], about=about)
 

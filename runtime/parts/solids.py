@@ -14,7 +14,7 @@ from pydantic import model_validator
 
 from .part import Family, Part
 from .plane import aligned
-from .schemas import DIRECTION, HOLDER, LENGTHS, Turning, checked, list_schema
+from .schemas import DIRECTION, HOLDER, LENGTHS, FileEntry, Turning, checked, list_schema
 from .validation import Vector, check_square, direction, positive, shown, vector, xyz
 
 Length = Annotated[float, positive("m")]
@@ -111,7 +111,7 @@ class MeshShape(Solid):
 
     kind = "mesh"
     positional = ("file",)
-    file: Annotated[str, checked(_mesh_file, {"type": "string"})]
+    file: Annotated[str, checked(_mesh_file, {"type": "string"}, FileEntry())]
     scale: Annotated[float, positive()] = 1.0
 
 

@@ -14,7 +14,7 @@ from ..errors import near
 from .data_files import MAX_NUMBERS, FileArrays, arrays_of
 from .part import Part
 from .plane import flattened
-from .schemas import checked
+from .schemas import FileEntry, checked
 from .validation import LIMITS, OTHER_LIMITS, list_of, one_of, show
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ class VelocityTable(Part):
         "linear"
     """
 
-    file: Annotated[str | None, checked(lambda value: str(value), {"type": "string"})] = None
+    file: Annotated[str | None, checked(lambda value: str(value), {"type": "string"}, FileEntry())] = None
     time: Times = None
     x: Lengths = None
     y: Lengths = None

@@ -14,7 +14,8 @@ from funicular.parts.locations import following, on_cables
 from funicular.parts.part import Part, about_fields
 from funicular.parts.plane import Plane
 from funicular.parts.plane_axes import PlaneAxes
-from funicular.parts.schemas import DIRECTION, POINT, TENSOR, Turning
+from funicular.parts.scene_text import read
+from funicular.parts.schemas import DIRECTION, POINT, TENSOR, FileEntry, Turning
 from funicular.parts.surface_shapes import SURFACE_SHAPES
 from funicular.parts.validation import Matrix, Vector, direction, place_on, xyz
 
@@ -101,3 +102,13 @@ def test_arc_lengths_of_parts_keep_their_part_of_a_cable():
     found = following(scene, {0: {"rest_length": 4.4}})
     parts = list(scene.parts())
     assert scene.changed([(parts[k], entries) for k, entries in found.items()]).events["low"].s == 1.1
+
+
+def test_paths_of_parts_in_a_scene_file_are_relative_to_it(tmp_path):
+    """Each check of a path has a `FileEntry`; without it the path is relative to the working directory."""
+    text = '[[rigid_body]]\nname = "A"\nmass = 1.0\ninertia = [1, 1, 1]\nposition = [0, 0, 0]\n'
+    scene = read(text + 'shape = { kind = "mesh", file = "a.stl" }', "scene", fu.Scene, tmp_path)
+    assert scene.bodies["A"].shape.file == str(tmp_path / "a.stl")
+    paths = {f"{kind.__name__}.{name}" for kind in (*KINDS, fu.MeshShape, fu.VelocityTable)
+             for name, about in about_fields(kind).items() if isinstance(about, FileEntry)}
+    assert paths == {"Cable.library", "ModalBody.data", "MeshShape.file", "VelocityTable.file"}
