@@ -1,10 +1,9 @@
 /* Continuous collision detection of a point, with a sphere about it, and a surface, in the axes of its shape.
  *
- * A height field has no distance but the vertical one, G, over the root of 1 + slope^2, which is the distance at the
- * surface alone. Over a path w the slope is the one here plus w times the largest second derivative at most, and
- * nowhere more than the largest slope; with that slope, s, the point stays off the surface while G - w (1 + s^2)^(1/2)
- * > radius (1 + s^2)^(1/2).
- */
+ * A height field has only the vertical distance, G; over the root of 1 + slope^2 it is the distance at the surface
+ * alone. Over a path w the slope is at most the one here plus w times the largest second derivative, and nowhere
+ * more than the largest slope; with that slope, s, the point stays off the surface while
+ *     G - w (1 + s^2)^(1/2) > radius (1 + s^2)^(1/2). */
 #include "base/cubic.h"
 #include "couplings/common/continuous_detection.h"
 
@@ -23,8 +22,8 @@ typedef struct {
     fu_attachment_state own; /* the axes of the shape */
 } point_path;
 
-/* Returns the distance of a point from a terrain's table, m, 0 above it, and the nearest place of the table, beyond
- * which heights stay. */
+/* Returns the distance of a point from a terrain's table, m, 0 above it, and the nearest point of the table, beyond
+ * which heights are constant. */
 static double beyond_table(int dim, const fu_surface *surface, const double *y, double *inside)
 {
     double beyond = 0.0;
@@ -41,7 +40,7 @@ static double slope_of(const double *n)
     return sqrt(fmax(1.0 / (n[1] * n[1]) - 1.0, 0.0));
 }
 
-/* Returns the path that a point can go without passing a terrain, m: `most` at most. */
+/* Returns the path length free of a terrain, m, at most `most`. */
 static double free_over_terrain(const point_path *of, const fu_surface_end *at, double most)
 {
     const fu_surface *surface = of->surface;
@@ -62,7 +61,7 @@ static double free_over_terrain(const point_path *of, const fu_surface_end *at, 
     return found;
 }
 
-/* Returns the path that a point can go without reaching the surface from either side, m. */
+/* Returns the path length free of the surface from either side, m. */
 static double free_path(const point_path *of, const fu_surface_end *at, double most)
 {
     return of->surface->shape == FU_TERRAIN ? free_over_terrain(of, at, most) : fabs(at->gap);

@@ -1,5 +1,5 @@
-/* Surfaces that cables and bodies touch: distances by the kernels of derive/couplings/surface.py, in the axes of the
- * ground. */
+/* Surfaces in contact with cables and bodies: distances by the kernels of derive/couplings/surface.py, in the axes of
+ * the ground. */
 #include "bodies/model.h"
 #include "bodies/state.h"
 #include "couplings/common/surfaces.h"
@@ -31,7 +31,7 @@ void fu_surface_into(int dim, const fu_attachment_state *at, const double *given
     }
 }
 
-/* Makes a point from the origin along the shape's axes. */
+/* Computes a point from the origin along the shape's axes. */
 static void local(int dim, const fu_attachment_state *at, const double *r, double *y)
 {
     double from[3] = {0.0};
@@ -39,8 +39,8 @@ static void local(int dim, const fu_attachment_state *at, const double *r, doubl
     fu_surface_into(dim, at, from, y);
 }
 
-/* Returns the cell of a table's knots that x is in, and in *x where from its first knot; beyond the table that is its
- * edge, and *inside is 0. */
+/* Returns the cell of x in a table's knots, and in *x its distance from the first knot of the cell; beyond the table it
+ * is at the edge, and *inside is 0. */
 static int cell_of(int n, const double *knots, double *x, int *inside)
 {
     *inside = *x >= knots[0] && *x <= knots[n - 1];
@@ -50,7 +50,7 @@ static int cell_of(int n, const double *knots, double *x, int *inside)
     return low;
 }
 
-/* Makes powers of x by the order of their derivative: B[k] (4) are those of the k-th; those of what does not change are
+/* Computes powers of x by the order of their derivative: B[k] (4) are those of the k-th; those of a constant are
  * zero. */
 static void powers_of(double x, int changes, double B[4][4])
 {
@@ -61,7 +61,7 @@ static void powers_of(double x, int changes, double B[4][4])
     memcpy(B, all, changes ? sizeof all : sizeof all[0]);
 }
 
-/* Makes the height of a terrain and its derivatives in the order that the kernel takes. */
+/* Computes the height of a terrain and its derivatives in the order of the kernel. */
 static void heights_at(int dim, const fu_surface *surface, const double *y, double *h)
 {
     static const int orders[10][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}, {3, 0}, {2, 1}, {1, 2}, {0, 3}};
@@ -82,8 +82,8 @@ static void heights_at(int dim, const fu_surface *surface, const double *y, doub
     }
 }
 
-/* Makes what a point is nearest to of a box: y from it, which is a corner (zero axis), an edge (its axis) or, returning
- * 1, a face (its normal); of a point inside the nearest face. */
+/* Computes the nearest element of a box: y from it, for a corner (zero axis), an edge (its axis) or, returning 1, a
+ * face (its normal); of a point inside, the nearest face. */
 static int nearest_of_box(int dim, const fu_surface *surface, double *y, double *axis, double *normal)
 {
     const double *half = surface->half_size;
@@ -102,7 +102,7 @@ static int nearest_of_box(int dim, const fu_surface *surface, double *y, double 
     return outside < 2;
 }
 
-/* Makes the distance from a shape, from where it lies outside. */
+/* Computes the distance from a shape from outside. */
 static void from_outside(int dim, const fu_surface *surface, const fu_attachment_state *at, double y[3],
                          fu_distance *out)
 {
@@ -140,7 +140,7 @@ static void from_outside(int dim, const fu_surface *surface, const fu_attachment
         for (int j = 0; j < dim; ++j) out->H[i * dim + j] = fu_dot(dim, half + i * dim, at->A + j * dim);
 }
 
-/* Returns whether a point is on the axis of what is round, or at its centre, where the distance has no gradient. */
+/* Returns whether a point is on the axis of a round shape, or at its centre, where the distance has no gradient. */
 static int is_on_axis(int dim, const fu_surface *surface, const double *y)
 {
     double along = fu_dot(dim, surface->direction, y), square = 0.0;
@@ -195,7 +195,7 @@ static double from_box(int dim, const double *half, const double *y)
     return most > 0.0 ? sqrt(square) : most;
 }
 
-/* Returns how far x is beyond the ends of a table, negative within. */
+/* Returns the distance of x beyond the ends of a table, negative within. */
 static double beyond_knots(int n, const double *knots, double x)
 {
     return fmax(knots[0] - x, x - knots[n - 1]);
@@ -218,7 +218,7 @@ double fu_surface_beyond(int dim, const fu_surface *surface, const fu_attachment
     return fabs(fu_dot(dim, surface->direction, y)) - surface->half_length;
 }
 
-/* Returns the distance of a point, along the shape's axes, from what is no terrain, m. */
+/* Returns the distance of a point, along the shape's axes, from a shape other than a terrain, m. */
 static double distance_at(int dim, const fu_surface *surface, double y[3])
 {
     if (surface->shape == FU_BOX) return from_box(dim, surface->half_size, y);

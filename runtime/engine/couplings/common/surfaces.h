@@ -1,4 +1,4 @@
-/* Surfaces that cables and bodies touch: couplings/common/surfaces.c. */
+/* Surfaces in contact with cables and bodies: couplings/common/surfaces.c. */
 #ifndef FUNICULAR_COUPLINGS_COMMON_SURFACES_H
 #define FUNICULAR_COUPLINGS_COMMON_SURFACES_H
 
@@ -9,25 +9,26 @@
  * or over two horizontal axes; a box. */
 enum { FU_FLAT, FU_ROUND, FU_CAPSULE, FU_TERRAIN, FU_BOX };
 
-/* A surface: its shape from an origin along axes that an attachment gives, of the ground or of a body. */
+/* A surface: its shape from an origin along the axes of an attachment, of the ground or of a body. */
 typedef struct {
     const fu_surface_kernels *kernel;
     int shape;
     double direction[3];              /* normal of a plane; axis of a cylinder or capsule, zero for a sphere */
-    double round_radius, half_length; /* m; a cylinder goes on beyond it */
+    double round_radius, half_length; /* m; a cylinder continues beyond it */
     double half_size[3];              /* of a box along its axes, m */
-    int inside;   /* not zero: a hollow; what touches is within. Distances are `inset` less those of the shape */
-    double inset; /* m: of a hollow box, by how much half_size is less than its own: a sphere of that radius then
-                   * touches each wall where it is beyond that size, in edges and corners as the sum of the walls */
+    int inside; /* nonzero: a hollow, with contact from inside. Distances are `inset` less those of the shape */
+    /* m: of a hollow box, the reduction of half_size: a sphere of that radius then touches each wall where it is
+     * beyond that size, and in edges and corners the walls add up */
+    double inset;
     int n_first, n_second; /* knots of a terrain along its horizontal axes, m; no second in the plane */
     const double *first, *second,
         *heights; /* heights: 4 (or 4 x 4) coefficients of a cell's cubics, from its first knots */
     double highest, steepest,
-        bend; /* bounds of a terrain's height, m, its slope, and how much that changes along it, 1/m */
+        bend; /* bounds of a terrain's height, m, its slope, and the rate of change of that, 1/m */
     fu_attachment on[1];
 } fu_surface;
 
-/* Where the surface is: the state of its attachment. Distance of a point, its gradient and its second derivative, by
+/* Position of a surface: the state of its attachment. Distance of a point, its gradient and its second derivative, by
  * the ground's axes; the point from the origin along the shape's own. */
 typedef struct {
     double g, n[3], H[9], y[3];
@@ -36,23 +37,23 @@ typedef struct {
 void fu_surface_at(const fu_model *model, const fu_surface *surface, const fu_state *state, fu_attachment_state *at);
 void fu_surface_distance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r,
                          fu_distance *out);
-/* How far r is beyond the ends of a cylinder or the table of a terrain, m, where the shape goes on; negative within
- * them. */
+/* Returns the distance of r beyond the ends of a cylinder or the table of a terrain, m, where the shape continues;
+ * negative within them. */
 double fu_surface_beyond(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r);
 /* Whether a surface has such ends. */
 int fu_surface_has_ends(const fu_surface *surface);
-/* The least that the distance of any point within `reach` of r can be, m. */
+/* Returns a lower bound of the distance of any point within `reach` of r, m. */
 double fu_surface_clearance(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *r,
                             double reach);
-/* The normal over a step on a surface that does not move: its product with the way between two points is what the
- * distance changes by, `rise` (Gonzalez 1996). middle: the distance half-way. */
+/* Computes the normal over a step on a fixed surface: its product with the vector between two points is the change of
+ * the distance, `rise` (Gonzalez 1996). middle: the distance half-way. */
 void fu_surface_step_normal(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *from,
                             const double *to, double rise, fu_distance *middle, double *n);
-/* Velocity of the point of the body at r that the surface is on. */
+/* Velocity of the body's point at r, of the body of the surface. */
 void fu_surface_velocity(int dim, const fu_attachment_state *at, const double *r, double *v);
-/* Velocity of what is at r, and moves at v, past that point. */
+/* Velocity relative to that point of a point at r with the velocity v. */
 void fu_surface_past(int dim, const fu_attachment_state *at, const double *r, const double *v, double *past);
-/* The vector of a shape's own axes along the ground's, and back. */
+/* Converts a vector along a shape's axes to the ground's, and back. */
 void fu_surface_out(int dim, const fu_attachment_state *at, const double *own, double *out);
 void fu_surface_into(int dim, const fu_attachment_state *at, const double *given, double *own);
 

@@ -1,4 +1,4 @@
-/* Clearances of contacts with surfaces: by spheres about the elements of cables and about the points of bodies. */
+/* Clearances of contacts with surfaces, by bounding spheres of the elements of cables and the points of bodies. */
 #include "couplings/common/spheres.h"
 #include "couplings/contact/contact.h"
 

@@ -1,9 +1,7 @@
 /* Contact of a cable, along its length, or of points of a body with a surface: residuals and their derivatives.
  *
- * Along a cable the force is integrated by quadrature on each element, points of which touch one after the other as the
- * element comes down: the sum has no jumps. Elements that are off the surface as a whole are passed over by a sphere
- * about them.
- */
+ * Along a cable the force is integrated by quadrature on each element, whose points come into contact one after the
+ * other: the sum is continuous. A bounding sphere skips elements that are entirely off the surface. */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
 #include "couplings/contact/contact.h"

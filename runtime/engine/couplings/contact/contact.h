@@ -8,7 +8,7 @@
 
 #define FU_CONTACT_POINTS 16 /* of a body */
 
-/* What presses, by its depth d: stiffness d^e (1 + damping d'), e 3/2 where hertz is not zero. Friction has the
+/* Normal force by the penetration d: stiffness d^e (1 + damping d'), e 3/2 if hertz is nonzero. Friction has the
  * coefficient `friction` and a spring along the surface, whose stretch is among the numbers of a state:
  * fu_friction_mark. */
 typedef struct {
@@ -16,10 +16,10 @@ typedef struct {
     int hertz;
 } fu_contact_law;
 
-/* What a state keeps of friction since the last step. Of each point, along the shape's axes: the stretch of the spring,
- * the place, the normal (zero as drawn, where it is not known) and its rate, the velocity where it touches past the
- * surface, how far it is off the surface, and how fast that grows. After those of all points, of the contact: the axes
- * of the body along the shape's; the time, s (far ahead as drawn, from where no step begins). */
+/* History of friction in a state, from the last step. Of each point, along the shape's axes: the stretch of the spring,
+ * the position, the normal (zero as drawn, where it is unknown) and its rate, the velocity past the surface at the
+ * point of contact, the gap, and its rate. After those of all points, of the contact: the axes of the body along the
+ * shape's; the time, s (FU_NO_TIME as drawn, before any step). */
 typedef struct {
     double stretch[3], place[3], normal[3], normal_rate[3], rate[3], gap, gap_rate;
 } fu_friction_mark;
@@ -37,32 +37,32 @@ typedef struct {
     int cable;     /* -1: points of a body */
     double radius; /* of the cable, or of the spheres about the points, m */
     int n_points;  /* of an element; of the body */
-    int stride;    /* of shape functions and weights from one element's to the next's: 0 where they are equal */
+    int stride;    /* of shape functions and weights from one element's to the next's: 0 for equal elements */
     const double *weights, *N, *arc; /* arc: arc-lengths of all points of the cable, m */
     double length;                   /* of the cable, m */
-    int n_hull; /* points between which an element lies, made of its vectors by `hull` (n_hull x vectors of an element)
-                 */
+    int n_hull; /* points whose hull contains an element, from its vectors by `hull` (n_hull x vectors of an element) */
     const double *hull;
-    const double *spread; /* of each vector of an element: the largest share of it in a point of the hull; of a body:
-                           * how far from its origin its points are at most, m */
-    const double *marks;  /* numbers of a state as drawn */
+    /* of each vector of an element: its largest share in a point of the hull; of a body: the largest distance of its
+     * points from its origin, m */
+    const double *spread;
+    const double *marks; /* numbers of a state as drawn */
     fu_attachment attachments[FU_CONTACT_POINTS];
 } fu_contact;
 extern const fu_coupling_type fu_contact_type;
 
-/* Numbers of a row of output: the force on the cable or body, and the part of it that is friction; the largest depth;
- * the length that touches, of a body how many points do; the arc-lengths of its ends. */
+/* Numbers of a row of output: the force on the cable or body, and its friction; the largest penetration; the length in
+ * contact, of a body the number of points; the arc-lengths of its ends. */
 typedef struct {
     double force[3], friction_force[3], penetration, touching, first, last;
 } fu_contact_output;
 
-/* A point that may touch: where it is, how it moves; its mark, null without friction; the time since, s, the turn of
- * its body past the surface since then, and the rate of that, along the shape's axes; and how it touches: how deep it
- * is and how fast it sinks, the normal, its rate along the shape's axes, the way from it to where its sphere touches,
- * the velocity there past the surface, along the shape's axes, the force on it (a length) with its part that is
- * friction, derivatives by its place, by its velocity past the surface and by the stretch alone, the stored energy and
- * the power that goes to heat in the normal force, what friction's spring is stretched by, along the shape's axes, and
- * how that has come about, whether friction slides. */
+/* A point that may be in contact: its position and velocity; its history, null without friction; the time since, s,
+ * the rotation of its body past the surface since then, and its rate, along the shape's axes. In contact:
+ * penetration and its rate, the normal, its rate along the shape's axes, the arm from the point to the contact of
+ * its sphere, the velocity there past the surface, along the shape's axes, the force on it (a length) with its
+ * friction, derivatives by its position, by its velocity past the surface and by the stretch alone, the stored
+ * energy and the dissipated power of the normal force, the stretch of friction's spring, along the shape's axes, its
+ * path, and whether friction slides. */
 typedef struct {
     double r[3], v[3];
     const fu_friction_mark *mark;
@@ -73,27 +73,27 @@ typedef struct {
     int slides;
 } fu_contact_point;
 
-/* The normal force at a depth, with its derivatives, its elastic part, the stored energy; the mean of that part on a
- * way to another depth. */
+/* The normal force at a penetration, with its derivatives, its elastic part, the stored energy; the mean of that part
+ * on the path to another penetration. */
 typedef struct {
     double p, by_depth, by_rate, elastic, energy, mean;
 } fu_normal_force;
 
-/* couplings/contact/friction.c: friction where a point touches, and its derivatives, added to those of the normal
+/* couplings/contact/friction.c: friction of a point in contact, and its derivatives, added to those of the normal
  * force. */
 void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                         fu_contact_point *point);
-/* How far off the stretch may be at the end of the step by the parts that its direction is summed over, m. */
+/* Returns the largest error of the stretch at the end of the step by the intervals of the sum of its direction, m. */
 double fu_contact_turn_error(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                              const fu_contact_point *point);
-/* Makes the way of a point through a step as fu_contact_stretch does, and the direction of its spring, along the
+/* Computes the path of a point through a step as fu_contact_stretch does, and the direction of its spring, along the
  * shape's axes. */
 void fu_contact_path(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                      const fu_contact_point *point, fu_friction_path *way, double along[3]);
-/* The way of a point's spring through a step but for the stretch: how deep it is. */
+/* Returns the path of a point's spring through a step without the stretch: its penetration. */
 fu_friction_path fu_contact_normal_path(const fu_contact *contact, const fu_contact_point *point);
-/* Makes what a point has moved by along the surface since its mark, m: along the shape's axes, as the normal there is.
- */
+/* Computes the displacement of a point along the surface since its mark, m: along the shape's axes, normal to the
+ * present normal. */
 void fu_contact_change(int dim, const fu_contact *contact, const fu_contact_point *point, const double *normal,
                        double change[3]);
 void fu_contact_friction_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
@@ -102,7 +102,7 @@ void fu_contact_friction_derivatives(const fu_model *model, const fu_contact *co
 /* couplings/contact/normal_force.c */
 fu_normal_force fu_normal_force_at(const fu_contact *contact, double depth, double rate, double depth_next);
 
-/* couplings/contact/point.c; fu_contact_slip: makes distance, depth and velocities of a point, whether it touches or
+/* couplings/contact/point.c; fu_contact_slip: computes distance, penetration and velocities of a point, in contact or
  * not. */
 void fu_contact_slip(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                      fu_contact_point *point);
@@ -131,14 +131,14 @@ void fu_contact_add_on_cable(const fu_model *model, const fu_contact *contact, i
                              const double *force, double *f);
 
 /* couplings/contact/rolling.c: whether friction acts off the points, on spheres of a body; the axes of a body along the
- * shape's, and how fast they turn, along the shape's axes; the turn since the mark, and its rate. */
+ * shape's, and their angular velocity, along the shape's axes; the rotation since the mark, and its rate. */
 int fu_contact_rolls(const fu_contact *contact);
 void fu_contact_axes(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                      const fu_state *state, double axes[9], double spin[3]);
 void fu_contact_turning(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                         const fu_state *state, fu_contact_point *point);
 fu_friction_begin *fu_contact_begin_of(const fu_contact *contact, const fu_state *state);
-/* Makes what the point where a sphere touches has moved by its turning alone, along the shape's axes. */
+/* Computes the displacement of a sphere's point of contact by rotation alone, along the shape's axes. */
 void fu_contact_roll(int dim, const fu_contact *contact, const double turn[3], const double *normal,
                      const fu_friction_mark *mark, double out[3]);
 
@@ -152,14 +152,14 @@ double fu_contact_lost(const fu_model *model, const fu_coupling *coupling, const
 double fu_contact_history_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from,
                                 const fu_state *to);
 
-/* couplings/contact/places.c: calls `visit` with each point that touches. */
+/* couplings/contact/places.c: calls `visit` with each point in contact. */
 typedef void fu_contact_visitor(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                                 int element, int number, const fu_contact_point *point, void *context);
 void fu_contact_visit(const fu_model *model, const fu_contact *contact, const fu_state *state,
                       fu_contact_visitor *visit, void *context);
 
-/* couplings/contact/derivatives.c: adds to a system the derivatives of what a point that touches, and its reaction, put
- * on the left of the equations of motion; psi as in fu_equations. */
+/* couplings/contact/derivatives.c: adds to a system the derivatives of the force on a point in contact, and of its
+ * reaction, with the signs of the left side of the equations of motion; psi as in fu_equations. */
 void fu_contact_add_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                                 const fu_state *state, int element, int number, const fu_contact_point *point,
                                 const double *psi, fu_weights weights, fu_system *system);

@@ -14,8 +14,8 @@ typedef struct {
         far[3 * FU_ATTACHMENT_COORDINATES];
 } changes;
 
-/* A point as `reaction` takes it: place and velocity past the surface, the turn since the last step in global axes, the
- * mean of the arms now and then, and the share of the arm in it. */
+/* Arguments of `reaction` for a point: position and velocity past the surface, the rotation since the last step in
+ * global axes, the mean of the arms now and then, and the share of the arm in it. */
 typedef struct {
     double x[3], w[3], radius, turn[3], mean_arm[3], share;
 } rolling_point;
@@ -39,13 +39,13 @@ static void rolling_of(int dim, const fu_contact *contact, const fu_attachment_s
     else out->turn[0] = point->turn[2];
 }
 
-/* Computes the changes by the unknowns of the point or, is_surface not zero, of the surface. */
+/* Computes the changes by the unknowns of the point or, if is_surface is nonzero, of the surface. */
 static void changes_by(int dim, const fu_contact *contact, const fu_attachment_state *on, const fu_contact_point *point,
                        const rolling_point *rolling, const fu_point_motion *of, int is_surface, changes *out)
 {
     const int n = of->at.n, turns = of->rows > 2 * dim ? fu_turns(dim) : 0;
     for (int i = 0; i < n; ++i) {
-        /* place, velocity, turn of the point; turn and angular velocity of the surface */
+        /* position, velocity, rotation of the point; rotation and angular velocity of the surface */
         double by[5][3] = {{0.0}}, force[3], near[3], far[3];
         const double sign = is_surface ? -1.0 : 1.0;
         for (int d = 0; d < dim; ++d) {

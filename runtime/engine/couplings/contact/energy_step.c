@@ -1,11 +1,10 @@
-/* Contact over a step, for the integrator that balances energy: residuals, their derivatives, and what goes to heat.
+/* Contact over a step, for the integrator that balances energy: residuals, their derivatives, and dissipation.
  *
- * On a body that moves the step is taken along the shape's own axes, where a point's place is y = A'(r - p). The force
- * there has the product -(U_next - U) with the way y_next - y. As y is bilinear in A and r - p, its change is, with
- * means over the step, mean(A)'(change of r - p) + (change of A)' mean(r - p): so mean(A) times the force acts on the
- * point, and its opposite on the body at the lever mean(r - p). Both have the same line, and keep momentum and angular
- * momentum as they keep energy.
- */
+ * On a moving body the step is evaluated along the shape's own axes, with the position y = A'(r - p) of a point. The
+ * work of the force there, along y_next - y, is -(U_next - U). As y is bilinear in A and r - p, its change is, with
+ * means over the step, mean(A)'(change of r - p) + (change of A)' mean(r - p): so mean(A) times the force acts on
+ * the point, and its opposite on the body at the lever mean(r - p). Both have one line of action, and conserve
+ * momentum and angular momentum as they conserve energy. */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/wrench.h"
@@ -18,15 +17,15 @@ static const fu_contact *of(const fu_coupling *coupling)
     return (const fu_contact *)coupling;
 }
 
-/* A surface over a step: at both ends, its mean p and A, and the frame in which points are placed: the ground's axes if
- * it does not move, else the shape's own. */
+/* A surface over a step: at both ends, its mean p and A, and the frame of the points: the ground's axes if it does not
+ * move, else the shape's own. */
 typedef struct {
     int moves;
     fu_attachment_state ends[2], mean, frame;
 } surface_step;
 
-/* A point over a step: at both ends in the surface's frame, and its mean place in the ground's axes. Where its sphere
- * touches, if it rolls: the same of the particle of the body that is there in the mean, and the attachment to it. */
+/* A point over a step: at both ends in the surface's frame, and its mean position in the ground's axes. If its sphere
+ * rolls: the same of the body's particle at the mean point of contact, and the attachment to it. */
 typedef struct {
     fu_contact_point now, next;
     double middle[3], from[3], to[3], touched[3];
@@ -54,7 +53,7 @@ static void surface_over_step(const fu_model *model, const fu_contact *contact, 
     for (int i = 0; i < dim * dim; ++i) out->mean.A[i] = 0.5 * (ends[0].A[i] + ends[1].A[i]);
 }
 
-/* Returns whether any point of an element may touch at an end of the step. */
+/* Returns whether any point of an element may be in contact at an end of the step. */
 static int may_touch(const fu_model *model, const fu_contact *contact, const surface_step *on, const fu_equations *at,
                      int element)
 {
@@ -62,8 +61,8 @@ static int may_touch(const fu_model *model, const fu_contact *contact, const sur
            fu_contact_may_be_active(model, contact, &on->ends[1], at->next, element, 0.0);
 }
 
-/* Places a point at an end of a step along the axes of the shape; forces of the step do not depend on its velocity
- * there. */
+/* Computes the position of a point at an end of a step along the axes of the shape; forces of the step do not depend on
+ * its velocity there. */
 static void place_along_shape(int dim, const fu_attachment_state *end, fu_contact_point *point)
 {
     double from[3] = {0.0};
@@ -73,7 +72,7 @@ static void place_along_shape(int dim, const fu_attachment_state *end, fu_contac
     fu_surface_into(dim, end, from, point->r);
 }
 
-/* Makes the particle of a body that its sphere touches with in the mean of the step, and the arm to it, along the
+/* Computes the body's particle at the mean point of contact of its sphere in the step, and the arm to it, along the
  * ground's axes. */
 static void particle_over_step(const fu_model *model, const fu_contact *contact, const surface_step *on,
                                const fu_equations *at, int number, point_step *out)
@@ -105,7 +104,7 @@ static void particle_over_step(const fu_model *model, const fu_contact *contact,
     memcpy(out->to, ends[1].r, sizeof out->to);
 }
 
-/* Makes a point over a step; returns whether it may touch in it. */
+/* Computes a point over a step; returns whether it may be in contact in it. */
 static int point_over_step(const fu_model *model, const fu_contact *contact, const surface_step *on,
                            const fu_equations *at, int element, int number, point_step *out)
 {
@@ -123,7 +122,8 @@ static int point_over_step(const fu_model *model, const fu_contact *contact, con
     return touches;
 }
 
-/* Makes the derivative of a force by the place along the shape's axes that by the place along the ground's. */
+/* Converts the derivative of a force by the position along the shape's axes to that by the position along the
+ * ground's. */
 static void turn_derivative(int dim, const fu_attachment_state *mean, double *by_place)
 {
     double half[9];
@@ -136,7 +136,7 @@ static void turn_derivative(int dim, const fu_attachment_state *mean, double *by
         }
 }
 
-/* Adds what a force over a step puts on the body that the surface is on: at its point u with mean(A of the body) u the
+/* Adds the reaction of a force over a step on the body of the surface: at its point u, with mean(A of the body) u the
  * lever. */
 static void add_reaction(const fu_model *model, const fu_contact *contact, const surface_step *on,
                          const fu_equations *at, const double *middle, const double *force, double weight, double *f)
@@ -150,15 +150,15 @@ static void add_reaction(const fu_model *model, const fu_contact *contact, const
         lever[i] = middle[i] - on->mean.p[i];
         for (int j = 0; j < dim; ++j) columns[j * dim + i] = on->mean.A[i * dim + j];
     }
-    if (fu_small_factor(dim, columns, pivot)) return; /* a turn by pi in a step, which no Cayley vector makes */
+    /* a rotation by pi in a step, which no Cayley vector represents */
+    if (fu_small_factor(dim, columns, pivot)) return;
     fu_small_solve(dim, columns, pivot, lever);
     for (int i = 0; i < dim; ++i) there.u[i] += fu_dot(dim, there.axes + i * dim, lever);
     fu_discrete_point(model, &there, at->now, at->next, end.P);
     fu_add_wrench(dim, &end, force, 0, weight, f);
 }
 
-/* Adds a force over a step on a point, `to` of a body, and its reaction, to what stands on the left of the equations.
- */
+/* Adds a force over a step on a point, `to` of a body, and its reaction, to the left side of the equations. */
 static void add_step_force(const fu_model *model, const fu_contact *contact, const surface_step *on,
                            const fu_equations *at, int element, int number, const fu_attachment *to,
                            const double *middle, const double *own, double *f)
@@ -180,8 +180,8 @@ static void add_step_force(const fu_model *model, const fu_contact *contact, con
     fu_add_wrench(dim, &end, force, 0, -weight, f);
 }
 
-/* Does for a step what the force does for an instant; returns the energy that goes to heat in it and that the contact
- * stores, J. f may be null. */
+/* The force of a step, as that of an instant; returns the dissipation in it and the energy that the contact stores, J.
+ * f may be null. */
 static double over_step(const fu_model *model, const fu_contact *contact, const fu_equations *at, double *f)
 {
     const int dim = model->dim, rolls = fu_contact_rolls(contact);
@@ -216,8 +216,8 @@ void fu_contact_step_residual(const fu_model *model, const fu_coupling *coupling
     over_step(model, of(coupling), at, f);
 }
 
-/* The middle moves by half of psi, which weights.stiffness has: what the end does counts twice. How bodies turn in the
- * step is taken as at its middle. */
+/* The middle moves by half of psi, which is in weights.stiffness: terms of the end count twice. The rotation of bodies
+ * in the step is that at its middle. */
 void fu_contact_step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,
                              fu_system *system)
 {
@@ -268,7 +268,7 @@ void fu_contact_step_tangent(const fu_model *model, const fu_coupling *coupling,
     }
 }
 
-/* All that goes to heat, less what fu_contact_lost counts. */
+/* The dissipation without that of fu_contact_lost. */
 double fu_contact_step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
 {
     const double stored = fu_contact_energy(model, coupling, at->next) - fu_contact_energy(model, coupling, at->now);

@@ -1,16 +1,15 @@
-/* Friction of contact at a point: the stretch of its spring at the end of its way since the mark
- * (couplings/common/stick_friction.c), and how that changes with where the point is and how it moves.
- */
+/* Friction of contact at a point: the stretch of its spring at the end of its path since the mark
+ * (couplings/common/stick_friction.c), and its derivatives by position and velocity of the point. */
 #include "bodies/model.h"
 #include "couplings/contact/contact.h"
 
 #include <math.h>
 #include <string.h>
 
-#define DIRECTION_PARTS 8 /* of a step: those that the direction of what slides is summed over */
+#define DIRECTION_PARTS 8 /* of a step: intervals of the sum of the direction of sliding */
 
-/* The way of a point since its mark, along the shape's axes: by the end of it, by its beginning; the stretch as if
- * nothing slid, with its direction; where the way is not known in time, as in statics, h is 0. */
+/* The path of a point since its mark, along the shape's axes: by its end, by its beginning; the stretch as without
+ * sliding, with its direction; if the time of the path is unknown, as in statics, h is 0. */
 typedef struct {
     double normal[3], change[3], begin[3], x[3], along[3], size, from;
     fu_friction_path way;
@@ -30,7 +29,7 @@ fu_friction_path fu_contact_normal_path(const fu_contact *contact, const fu_cont
     return way;
 }
 
-/* Computes the part of a step after which the point touches, and how far it has gone until then. */
+/* Computes the part of a step after which the point comes into contact, and its displacement until then. */
 static void begin_at_touch(int dim, const fu_contact_point *point, friction_course *of, double gone[3])
 {
     const fu_friction_mark *mark = point->mark;
@@ -56,8 +55,8 @@ void fu_contact_change(int dim, const fu_contact *contact, const fu_contact_poin
     if (fu_contact_rolls(contact)) fu_contact_roll(dim, contact, point->turn, normal, mark, roll);
     for (int d = 0; d < dim; ++d) change[d] = point->distance.y[d] - mark->place[d] + roll[d];
     if (!(before > 0.0)) return;
-    /* what it sinks by is not along the surface: the integral of the normal times the rate of the gap, both by cubics,
-     * by Simpson's rule */
+    /* the change of the penetration is not along the surface: the integral of the normal times the rate of the gap,
+     * both by cubics, by Simpson's rule */
     for (int d = 0; d < dim; ++d) {
         const double n[2] = {mark->normal[d] / before, normal[d] / now},
                      turned = mark->normal_rate[d] / before - point->normal_rate[d] / now;
@@ -66,8 +65,8 @@ void fu_contact_change(int dim, const fu_contact *contact, const fu_contact_poin
     }
 }
 
-/* Computes a stretch along the surface at the mark that along it at the end: turned as the normal has, by the shortest
- * way. */
+/* Rotates a stretch along the surface at the mark to one along it at the end, with the normal, by the smallest
+ * rotation. */
 static void turn_along(int dim, const fu_friction_mark *mark, const double *normal, double stretch[3])
 {
     const double before = sqrt(fu_dot(dim, mark->normal, mark->normal)), now = sqrt(fu_dot(dim, normal, normal));
@@ -104,8 +103,8 @@ static void path_of(const fu_model *model, const fu_contact *contact, const fu_a
     out->way.stretch.rate[1] = fu_dot(dim, out->along, point->slip);
 }
 
-/* Computes the stretch, m, of a spring that slides along the way, in so many equal parts of it: in each it is stretched
- * at the velocity at the part's end, and slides back to the bound. */
+/* Computes the stretch, m, of a spring that slides along the path in equal intervals: in each it is stretched by the
+ * velocity at the interval's end, and slides back to the bound. */
 static void slide(int dim, const fu_contact_point *point, const friction_course *of, int parts, double out[3])
 {
     const double whole = 1.0 - of->from, normal = fu_dot(dim, of->normal, of->normal);
@@ -122,9 +121,9 @@ static void slide(int dim, const fu_contact_point *point, const friction_course 
     }
 }
 
-/* Turns the stretch of a point that slides, in space: it lags behind the velocity, by the way along which it is
- * stretched as much. Summed over parts of the step and half as many (Richardson); the sum over the step alone would be
- * of the first order. Returns the time that the way takes, s, 0 where nothing is turned. */
+/* Rotates the stretch of a sliding point, in space: it lags behind the velocity by the path of its own length. The sum
+ * over intervals of the step and half as many (Richardson) is accurate; the sum over the step alone would be of the
+ * first order. Returns the time of that path, s, 0 without a rotation. */
 static double turn_to_slip(int dim, const fu_contact_point *point, int parts, friction_course *of)
 {
     const double h = (1.0 - of->from) * of->way.h;
@@ -187,8 +186,8 @@ void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const 
     point->energy += 0.5 * contact->law.tangential * fu_dot(dim, x, x);
 }
 
-/* Adds what follows from a way that touches only after a part of the step: of that the place and the velocity at the
- * end count less. */
+/* Adds the derivatives of a path in contact for a part of the step only, in which position and velocity at the end have
+ * smaller shares. */
 static void add_touching(int dim, const fu_attachment_state *on, const friction_course *of, fu_contact_point *point)
 {
     const double h = of->way.h, *n = point->distance.n;
@@ -261,7 +260,7 @@ void fu_contact_friction_derivatives(const fu_model *model, const fu_contact *co
     const double h = turn_to_slip(dim, point, DIRECTION_PARTS, &of);
     fu_surface_out(dim, on, of.x, x);
     if (fu_dot(dim, point->mark->normal, point->mark->normal) >
-        0.0) /* half of what it sinks by turns with this normal, half with that before */
+        0.0) /* half of the change of the penetration rotates with this normal, half with that before */
         for (int d = 0; d < dim; ++d) x[d] -= 0.5 * (point->depth + point->mark->gap) * at->n[d];
     if (point->friction_end.slid && of.size > 0.0) add_sliding(dim, contact, on, &of, x, point);
     else {

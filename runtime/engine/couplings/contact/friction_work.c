@@ -1,13 +1,12 @@
-/* What friction by springs takes within a step, by the cubics through places and velocities at its ends; and how far
- * off the stretch is that the spring has at its end.
- */
+/* Dissipation of friction springs within a step, by the cubics through positions and velocities at its ends, and the
+ * error of the stretch at its end. */
 #include "bodies/model.h"
 #include "couplings/contact/contact.h"
 
 #include <math.h>
 #include <string.h>
 
-/* A point that may touch within a step: at its end, the change of its place and the stretch there. */
+/* A point that may be in contact within a step: at its end, the change of its position and the stretch there. */
 typedef struct {
     fu_contact_point end;
     fu_attachment_state on;
@@ -42,8 +41,8 @@ static double taken_on_way(const fu_model *model, const fu_contact *contact, ste
     return taken(model, contact, of, 0);
 }
 
-/* Returns how far off the stretch may be at the end, m: by how much another way leads elsewhere, the parabola without
- * the velocities at the beginning, and by the parts of the step that its direction is summed over. */
+/* Returns the largest error of the stretch at the end, m: the difference to another path, the parabola without the
+ * velocities at the beginning, plus the error by the intervals of the sum of its direction. */
 static double astray(const fu_model *model, const fu_contact *contact, step_point *of)
 {
     const int dim = model->dim;
@@ -62,7 +61,7 @@ static double astray(const fu_model *model, const fu_contact *contact, step_poin
 
 typedef double visitor(const fu_model *model, const fu_contact *contact, step_point *of);
 
-/* Makes a point over the step; returns whether it touches at one of the ends. */
+/* Computes the point over the step; returns whether it is in contact at one of the ends. */
 static int point_over_step(const fu_model *model, const fu_contact *contact, const fu_state *to, int element,
                            int number, step_point *out)
 {
@@ -79,8 +78,7 @@ static int point_over_step(const fu_model *model, const fu_contact *contact, con
     return 1;
 }
 
-/* Calls `visit` with each point that touches at an end of the step; returns the largest value, or their sum by weight.
- */
+/* Calls `visit` with each point in contact at an end of the step; returns the largest value, or their weighted sum. */
 static double visit_points(const fu_model *model, const fu_contact *contact, const fu_state *from, const fu_state *to,
                            visitor *visit, int largest)
 {

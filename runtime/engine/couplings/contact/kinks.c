@@ -1,17 +1,16 @@
-/* Kinks of contact within a step: where a point touches or comes off, begins to slide or sticks. The force is
- * continuous there, its rate jumps, and a rule of quadrature that an integrator has is off by a part of that. Estimates
- * of its error rest on smooth forces.
- */
+/* Kinks of contact within a step: a point comes into contact or loses it, begins to slide or sticks. The force is
+ * continuous there, its rate is not, and an integrator's quadrature has an error in proportion to that. Its error
+ * estimates assume smooth forces. */
 #include "bodies/model.h"
 #include "couplings/contact/contact.h"
 
 #include <math.h>
 #include <string.h>
 
-#define INTERVALS 16             /* of a step, that a force is summed over by Simpson's rule */
-#define ROUNDING_OF_STRETCH 1e-9 /* of a stretch: what it may be below the bound of one that slides */
+#define INTERVALS 16             /* of a step, for the sum of a force by Simpson's rule */
+#define ROUNDING_OF_STRETCH 1e-9 /* of a stretch: its tolerance below the bound of a sliding one */
 
-/* A point over a step, as friction has it; without friction the way has no bound. */
+/* A point over a step with its friction; without friction the path has no bound. */
 typedef struct {
     const fu_contact *contact;
     fu_contact_point end;
@@ -20,7 +19,7 @@ typedef struct {
     double along[3];
 } step_point;
 
-/* Makes the normal force and friction at a part of the step, N (a length). */
+/* Computes the normal force and friction at a part of the step, N (a length). */
 static void forces_at(const step_point *of, double x, double out[2])
 {
     const fu_contact *contact = of->contact;
@@ -32,7 +31,7 @@ static void forces_at(const step_point *of, double x, double out[2])
         out[1] = -contact->law.tangential * of->way.stretch.value[0] * (of->way.from == 0.0);
 }
 
-/* Makes by how much the mean forces of a rule are off. */
+/* Computes the error of the mean forces of a quadrature. */
 static void error_of_rule(const step_point *of, int n, const double *b, const double *c, double out[2])
 {
     double at[2];
@@ -58,8 +57,8 @@ static int slides_at(const step_point *of, double x)
                : 0;
 }
 
-/* Returns whether the force has a kink: the point is pressed at one end alone, or does not stick, or slide one way, all
- * the while. */
+/* Returns whether the force has a kink: the point is in contact at one end alone, or neither sticks nor slides one way
+ * during the whole step. */
 static int has_kink(const step_point *of)
 {
     double at[2][2];
@@ -70,7 +69,7 @@ static int has_kink(const step_point *of)
     return begin != end || (end ? slides_at(of, 0.5) != end : of->end.friction_end.slid);
 }
 
-/* Makes a point over the step; returns whether it touches at one of the ends. */
+/* Computes the point over the step; returns whether it is in contact at one of the ends. */
 static int point_over_step(const fu_model *model, const fu_contact *contact, const fu_attachment_state on[2],
                            const fu_state *from, const fu_state *to, int element, int number, step_point *out)
 {

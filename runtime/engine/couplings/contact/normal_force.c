@@ -1,4 +1,4 @@
-/* The normal force of contact at a depth, by the kernels of derive/couplings/surface.py. */
+/* The normal force of contact at a penetration, by the kernels of derive/couplings/surface.py. */
 #include "couplings/contact/contact.h"
 
 fu_normal_force fu_normal_force_at(const fu_contact *contact, double depth, double rate, double depth_next)

@@ -1,4 +1,4 @@
-/* Points of a contact: where they are, which may touch, and what a force on one of them does. */
+/* Points of a contact: their positions, which may be in contact, and the forces on them. */
 #include "bodies/model.h"
 #include "couplings/common/wrench.h"
 #include "couplings/contact/contact.h"
@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Returns into how many elements the points are divided; those of a body are one. */
+/* Returns the number of elements that the points are divided into; those of a body are one. */
 int fu_contact_elements(const fu_model *model, const fu_contact *contact)
 {
     return contact->cable >= 0 ? model->cables[contact->cable].n_elements : 1;
@@ -35,7 +35,7 @@ int fu_contact_first(const fu_model *model, const fu_contact *contact, int eleme
     return cable->first + element * cable->per_node;
 }
 
-/* Returns whether a sphere about an element's first node, larger than need be but cheap, is off the surface by more
+/* Returns whether a sphere about an element's first node, larger than necessary but cheap, is off the surface by more
  * than `beyond`. */
 static int is_far(int dim, int n, const fu_contact *contact, const fu_attachment_state *on, int element,
                   const double *q, double beyond)
@@ -51,7 +51,7 @@ static int is_far(int dim, int n, const fu_contact *contact, const fu_attachment
     return fu_surface_clearance(dim, &contact->surface, on, q, reach) > beyond;
 }
 
-/* Returns whether any point of an element may be nearer to the surface than `below` is beyond the radius. */
+/* Returns whether any point of an element may be nearer to the surface than the radius plus `below`. */
 int fu_contact_may_be_active(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                              const fu_state *state, int element, double below)
 {
@@ -82,7 +82,7 @@ int fu_contact_may_be_active(const fu_model *model, const fu_contact *contact, c
     return fu_surface_clearance(dim, &contact->surface, on, middle, sqrt(square)) <= contact->radius + below;
 }
 
-/* Makes the place and the velocity of a point, its mark, and the turn since then. */
+/* Computes position and velocity of a point, its mark, and the rotation since then. */
 void fu_contact_place(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                       const fu_state *state, int element, int point, fu_contact_point *out)
 {
@@ -112,7 +112,7 @@ void fu_contact_place(const fu_model *model, const fu_contact *contact, const fu
         }
 }
 
-/* Adds a force on a point of a cable, times its weight, to what stands on the left of the equations of motion. */
+/* Adds a force on a point of a cable, times its weight, to the left side of the equations of motion. */
 void fu_contact_add_on_cable(const fu_model *model, const fu_contact *contact, int element, int number,
                              const double *force, double *f)
 {
@@ -124,8 +124,8 @@ void fu_contact_add_on_cable(const fu_model *model, const fu_contact *contact, i
         for (int d = 0; d < dim; ++d) f[first + k * dim + d] -= weight * N[k] * force[d];
 }
 
-/* Adds the force where a point touches, and its reaction on the body that the surface is on, to what stands on the left
- * of the equations. */
+/* Adds the force at a point of contact, and its reaction on the body of the surface, to the left side of the
+ * equations. */
 void fu_contact_add_force(const fu_model *model, const fu_contact *contact, const fu_state *state,
                           const fu_attachment_state *on, int element, int number, const fu_contact_point *point,
                           double *f)

@@ -1,5 +1,5 @@
-/* The force of contact at a point, by the kernels of derive/couplings/surface.py: an instant's, its derivatives, a
- * step's. */
+/* The force of contact at a point, by the kernels of derive/couplings/surface.py: at an instant, its derivatives, over
+ * a step. */
 #include "bodies/model.h"
 #include "couplings/contact/contact.h"
 
@@ -30,7 +30,7 @@ void fu_contact_slip(const fu_model *model, const fu_contact *contact, const fu_
     for (int d = 0; d < dim; ++d) point->slip[d] += turning[d];
 }
 
-/* Makes how a point touches, but for derivatives; returns whether it does. */
+/* Computes the contact of a point without derivatives; returns whether there is one. */
 int fu_contact_is_active(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                          fu_contact_point *point)
 {
@@ -48,7 +48,7 @@ int fu_contact_is_active(const fu_model *model, const fu_contact *contact, const
     return 1;
 }
 
-/* Makes the derivatives of the force on a point that touches. */
+/* Computes the derivatives of the force on a point in contact. */
 void fu_contact_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                             fu_contact_point *point)
 {
@@ -64,8 +64,8 @@ void fu_contact_derivatives(const fu_model *model, const fu_contact *contact, co
     if (point->mark && of.p > 0.0) fu_contact_friction_derivatives(model, contact, on, point);
 }
 
-/* Makes friction over a step: that of the mean stretch, which at the end is as what presses allows; by_depth: what that
- * changes by. */
+/* Computes friction over a step: that of the mean stretch, limited at the end by the normal force; by_depth: derivative
+ * of that by the penetration. */
 static void step_friction(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, double press,
                           double by_depth, const fu_contact_point *now, const fu_contact_point *next, double f[3],
                           double by_next[9], double by_stretch[9])
@@ -74,7 +74,7 @@ static void step_friction(const fu_model *model, const fu_contact *contact, cons
     fu_contact_point end = *next, begin = *now;
     end.mark = begin.mark = now->mark;
     end.press = press;
-    begin.press = INFINITY; /* what is carried into the step is as long as it may be */
+    begin.press = INFINITY; /* the initial stretch is not limited */
     end.since = begin.since = 0.0;
     memset(end.f, 0, sizeof end.f);
     memset(begin.f, 0, sizeof begin.f);
@@ -82,7 +82,7 @@ static void step_friction(const fu_model *model, const fu_contact *contact, cons
     fu_contact_stretch(model, contact, on, &end);
     for (int d = 0; d < dim; ++d) f[d] = 0.5 * (begin.f[d] + end.f[d]);
     const double part =
-        now->mark->gap > 0.0 ? next->depth / (next->depth + now->mark->gap) : 1.0; /* of the way, after it touches */
+        now->mark->gap > 0.0 ? next->depth / (next->depth + now->mark->gap) : 1.0; /* of the path, in contact */
     const fu_distance *at = &end.distance;
     const double none[3] = {0.0}, law[3] = {press, by_depth, 0.0};
     double own[3], x[3], of_end[3], by_place[9], by_rate[9];
@@ -105,9 +105,9 @@ static void step_friction(const fu_model *model, const fu_contact *contact, cons
     }
 }
 
-/* Makes the normal force and friction over a step of h, s, between two places of a point in axes where the surface
- * stays, and what they do by the place, and by the stretch alone, at the end: of the normal force's elastic part a
- * discrete gradient (Gonzalez 1996). Returns the energy that its damping takes, J. */
+/* Computes the normal force and friction over a step of h, s, between two positions of a point in axes in which the
+ * surface does not move, and their derivatives by the position, and by the stretch alone, at the end: for the elastic
+ * normal force a discrete gradient (Gonzalez 1996). Returns the dissipation of its damping, J. */
 double fu_contact_step(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, double h,
                        const fu_contact_point *now, const fu_contact_point *next, double f[3], double friction[3],
                        double by_next[9], double by_stretch[9])
@@ -126,7 +126,7 @@ double fu_contact_step(const fu_model *model, const fu_contact *contact, const f
     const fu_normal_force of = fu_normal_force_at(contact, from, rate, to),
                           end = fu_normal_force_at(contact, to, 0.0, to);
     const double elastic = part * of.mean, press = fmax(0.0, elastic * (1.0 + contact->law.damping * rate));
-    /* of the end's depth: (U' - mean)/change, which is half of the stiffness where the law is linear */
+    /* of the penetration at the end: (U' - mean)/change, half of the stiffness of a linear law */
     const double stiffness = from > 0.0 && contact->law.hertz == 0 && to > 0.0 ? 0.5 * end.by_depth
                              : fabs(sunk) > 1e-9 * fmax(from, to)              ? (end.elastic - elastic) / sunk
                                                                                : 0.5 * end.by_depth;

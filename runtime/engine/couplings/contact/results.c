@@ -1,4 +1,4 @@
-/* What contact with a surface stores and takes, what results tell of it, and the anchors of its friction. */
+/* Stored and dissipated energy of contact with a surface, its results, and the history of its friction. */
 #include "bodies/model.h"
 #include "couplings/common/accelerator.h"
 #include "couplings/contact/contact.h"
@@ -32,7 +32,7 @@ static void add_power(const fu_model *model, const fu_contact *contact, const fu
     *(double *)context += fu_contact_weight(contact, element, number) * point->power;
 }
 
-/* That of damping in the normal force; friction's is counted step by step. */
+/* The dissipation of damping in the normal force; that of friction is added step by step. */
 double fu_contact_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                               const fu_accelerator *work)
 {
@@ -49,7 +49,7 @@ void fu_contact_reset(const fu_coupling *coupling, fu_state *state)
         memcpy(state->numbers + coupling->numbers, contact->marks, sizeof(double) * (size_t)coupling->n_numbers);
 }
 
-/* Takes the marks along: the stretch of friction's springs, and where the points are; what does not touch has no
+/* Updates the marks: the stretch of friction's springs, and the positions of the points; points without contact have no
  * stretch. */
 void fu_contact_update_history(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
@@ -79,15 +79,15 @@ void fu_contact_update_history(const fu_model *model, const fu_coupling *couplin
     if (fu_contact_rolls(contact)) fu_contact_axes(model, contact, &on, state, begin->axes, unused);
 }
 
-/* Sums over the points of a contact in their order, and the ends of what touches: what is between two points is linear.
- */
+/* Sums over the points of a contact in their order, and the ends of the length in contact; values between two points
+ * are linear. */
 typedef struct {
     fu_contact_output *numbers;
     double s, depth;
     int begun;
 } tally;
 
-/* Takes a next point at s, this deep, into the length that touches, and its ends. */
+/* Adds a next point at s, with its penetration, to the length in contact, and updates its ends. */
 static void take_into_length(tally *sum, double s, double depth)
 {
     fu_contact_output *numbers = sum->numbers;
@@ -134,7 +134,7 @@ void fu_contact_outputs(const fu_model *model, const fu_coupling *coupling, cons
     if (contact->cable >= 0) take_into_length(&sum, contact->length, sum.depth); /* to its end */
 }
 
-/* Makes the force on each point, N/m or N, in their order: out (points x 3). */
+/* Computes the force on each point, N/m or N, in order: out (points x 3). */
 void fu_contact_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
 {
     const fu_contact *contact = of(coupling);

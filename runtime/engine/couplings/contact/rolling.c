@@ -1,11 +1,10 @@
-/* Spheres of a body that roll on a surface: friction acts where they touch, off their centres, and is stretched by
- * their turning too.
+/* Spheres of a body that roll on a surface: friction acts at their points of contact, off their centres, and
+ * rotation stretches it too.
  *
- * Of a sphere of the radius R that touches along the normal n, the point of contact is at a = -R n from the centre. Its
- * velocity past the surface is that of the centre plus w x a, with the angular velocity w past the surface: over a
- * step, with the turn p of it, the place changes by p x a on top of the way of the centre, with the mean of the normals
- * at both ends of the step.
- */
+ * For a sphere of the radius R in contact along the normal n, the point of contact is at a = -R n from the centre.
+ * Its velocity past the surface is that of the centre plus w x a, with the angular velocity w past the surface: over
+ * a step, with the rotation p, the position changes by p x a in addition to the displacement of the centre, with the
+ * mean of the normals at both ends of the step. */
 #include "bodies/model.h"
 #include "couplings/contact/contact.h"
 
@@ -40,7 +39,7 @@ void fu_contact_axes(const fu_model *model, const fu_contact *contact, const fu_
     if (dim == 3) fu_surface_into(dim, on, about, spin);
 }
 
-/* Makes the turn from one set of axes to another, along the axes that both are given in. */
+/* Computes the rotation from one set of axes to another, along the axes in which both are given. */
 static void turn_between(int dim, const double *from, const double *to, double turn[3])
 {
     double R[9];

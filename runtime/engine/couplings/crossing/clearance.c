@@ -1,4 +1,4 @@
-/* Clearances of crossings: by spheres about the elements of cables. */
+/* Clearances of crossings, by bounding spheres of the elements of cables. */
 #include "couplings/common/spheres.h"
 #include "couplings/crossing/crossing.h"
 

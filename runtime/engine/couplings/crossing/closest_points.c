@@ -1,9 +1,8 @@
-/* The closest points of the two lines of a crossing: found by Newton's method from where they were, over all elements
+/* The closest points of the two lines of a crossing, by Newton's method from their last positions, over all elements
  * of a cable.
  *
- * Beyond its ends a cable goes on straight, so that points have arc-lengths there, too, from which the way to the end
- * is known.
- */
+ * Beyond its ends a cable continues straight, so that points have arc-lengths there, too, which give the distance to
+ * the end. */
 #include "base/cubic.h"
 #include "bodies/model.h"
 #include "couplings/crossing/crossing.h"
@@ -14,10 +13,10 @@
 #define MAX_ITERATIONS 40
 /* of the line's size and s: a correction that is rounding ends the iteration */
 #define ROUNDING_OF_LENGTH 1e-15
-/* of the size: a correction as good as rounding where rounding keeps it from shrinking */
+/* of the size: a correction of this size is sufficient if rounding keeps it from shrinking */
 #define LENGTH_TOLERANCE 1e-11
-#define MAX_CORRECTION 2.0    /* elements that a correction goes at most */
-#define SAMPLES_PER_ELEMENT 4 /* of an element, where the search begins again */
+#define MAX_CORRECTION 2.0    /* elements: largest correction */
+#define SAMPLES_PER_ELEMENT 4 /* of an element, for a new search */
 
 /* Returns the element of a cable that holds s. */
 static int element_at(const fu_cable *cable, double s)
@@ -41,7 +40,7 @@ static void point_of_cable(const fu_cable *cable, const double *q, const double 
     for (int i = 0; i < n; ++i)
         for (int d = 0; d < dim; ++d) {
             const double at = q[first + i * dim + d], rate = v[first + i * dim + d];
-            /* from the first node: slopes do not see where that is, and no digits are lost far from the origin */
+            /* from the first node: slopes do not depend on its position, and no digits are lost far from the origin */
             const double local = at - (i % cable->kernel->vectors == 0 ? q[first + d] : 0.0);
             out->r[d] += out->N[i] * at;
             out->t[d] += out->N_x[i] * local;
@@ -59,7 +58,7 @@ static fu_attachment on_bar(const fu_crossing *crossing, double s)
     return on;
 }
 
-/* A bar is straight: its slope is the way to the point one metre on. */
+/* A bar is straight: its slope is the vector to the point one metre further. */
 static void point_of_bar(const fu_model *model, const fu_crossing *crossing, const fu_state *state, double s,
                          fu_line_point *out)
 {
@@ -87,7 +86,8 @@ void fu_line_point_of(const fu_model *model, const fu_crossing *crossing, int li
     else point_of_bar(model, crossing, state, s, out);
 }
 
-/* Computes how fast the second derivatives by arc-length change: those of a cable are linear in its coordinates. */
+/* Computes the rates of change of the second derivatives by arc-length: those of a cable are linear in its
+ * coordinates. */
 static void bends_of_line(const fu_model *model, const fu_crossing *crossing, int line, const fu_state *state, double s,
                           double *out)
 {
@@ -122,7 +122,7 @@ void fu_line_bends_at(const fu_model *model, const fu_crossing *crossing, const 
     }
 }
 
-/* Computes a line's point at a moment; a bar's is not on its carrier within a step. */
+/* Computes a line's point at an instant; a bar's is not on its carrier within a step. */
 static void point_at(const fu_model *model, const fu_crossing *crossing, int line, const fu_moment *at, double s,
                      fu_line_point *out)
 {
@@ -139,7 +139,7 @@ static void point_at(const fu_model *model, const fu_crossing *crossing, int lin
     fu_vector_within(3, from.k, from_k, to.k, to_k, at->h, at->x, out->k, unused);
 }
 
-/* Computes both points at out->s as the kernels take them. */
+/* Computes both points at out->s in the form of the kernels. */
 static void put_together(const fu_model *model, const fu_crossing *crossing, const fu_moment *moment,
                          fu_closest_points *out)
 {
@@ -164,7 +164,7 @@ double fu_line_size(const fu_model *model, const fu_crossing *crossing, int line
     return cable >= 0 ? model->cables[cable].length : 0.5 * (crossing->high[line] - crossing->low[line]);
 }
 
-/* Finds the closest points by Newton's method from out->s; returns whether it has. `out` is there then. */
+/* Solves for the closest points by Newton's method from out->s; returns whether it converged. `out` is there then. */
 static int converge(const fu_model *model, const fu_crossing *crossing, const fu_moment *moment, fu_closest_points *out)
 {
     const int lines = model->dim - 1;
@@ -185,8 +185,7 @@ static int converge(const fu_model *model, const fu_crossing *crossing, const fu
     return 0;
 }
 
-/* Returns the square of the distance of a point from the second line, and the arc-length there; a cable's by its
- * samples. */
+/* Returns the squared distance of a point from the second line, and the arc-length there; a cable's by its samples. */
 static double distance_from_second(const fu_model *model, const fu_crossing *crossing, const fu_moment *moment,
                                    const double *r, double *s)
 {
@@ -214,7 +213,7 @@ static double distance_from_second(const fu_model *model, const fu_crossing *cro
     return least;
 }
 
-/* Begins the search again: where samples of both lines are closest. Returns their distance, m. */
+/* Starts a new search at the closest samples of both lines. Returns their distance, m. */
 static double search(const fu_model *model, const fu_crossing *crossing, const fu_moment *moment, double s[FU_LINES])
 {
     const fu_cable *cable = &model->cables[crossing->cables[0]];

@@ -1,4 +1,4 @@
-/* How deep two lines touch at their closest points, and the normal force there. */
+/* Penetration of two lines at their closest points, and the normal force there. */
 #include "bodies/model.h"
 #include "couplings/crossing/crossing.h"
 
@@ -17,7 +17,7 @@ int fu_crossing_swung(const fu_crossing *crossing, const fu_state *state, const 
     return fu_dot(3, state->numbers + crossing->base.numbers + FU_CROSSING_NORMAL, contact->normal) < 0.0;
 }
 
-/* Returns how far the closest points are within the ends of their lines, m. */
+/* Returns the distance of the closest points from the ends of their lines, m. */
 double fu_crossing_distance_to_ends(const fu_crossing *crossing, const fu_closest_points *points)
 {
     double way = INFINITY;

@@ -9,13 +9,12 @@
 #include <math.h>
 #include <string.h>
 
-#define MAX_ADVANCE 0.0625 /* of a step: also the advance where no bound is known */
+#define MAX_ADVANCE 0.0625 /* of a step: also the advance without a bound */
 #define MIN_ADVANCE 1e-4   /* of a step */
-#define ADVANCE_SHARE                                                                                                  \
-    0.25           /* of the distance at which lines touch: the shortest path of points from advance to advance */
-#define SAFETY 0.5 /* of the path of closest points to the ends of their lines, at their rate */
+#define ADVANCE_SHARE 0.25 /* of the distance of contact: the shortest path of points from advance to advance */
+#define SAFETY 0.5         /* of the path of closest points to the ends of their lines, at their rate */
 
-/* What is followed through a step, and the longest path of points of both lines in it, m. */
+/* The lines in a step, and the longest path of points of both lines in it, m. */
 typedef struct {
     const fu_model *model;
     const fu_crossing *crossing;
@@ -39,7 +38,7 @@ static void rates_of_points(const fu_crossing *crossing, const fu_closest_points
     }
 }
 
-/* Returns the part of the step that a closest point needs at least to come within the ends of its line. */
+/* Returns a lower bound of the part of the step in which a closest point comes within the ends of its line. */
 static double part_beyond_ends(const line_approach *of, const fu_closest_points *points)
 {
     const fu_crossing *crossing = of->crossing;
@@ -78,7 +77,7 @@ static fu_approach follow(const void *what, const fu_approach *near, double x)
     out.depth = fu_crossing_margin_of(crossing, &points, &contact);
     out.free = out.depth > 0.0 ? out.depth / of->path : fmax(out.gap / of->path, part_beyond_ends(of, &points));
     if (!(out.free > 0.0))
-        out.free = out.gap < 0.0 ? MAX_ADVANCE : of->min_advance; /* damping would turn the force round */
+        out.free = out.gap < 0.0 ? MAX_ADVANCE : of->min_advance; /* damping would reverse the force */
     return out;
 }
 

@@ -1,7 +1,6 @@
-/* Two lines that touch at their closest points (derive/couplings/crossing.py). The force is a function of the state. In
- * a Newton matrix its change and the ways of the closest points along both lines are unknowns of their own, so that two
- * cables that cross do not widen the band: with them the matrix is that of the equations without them.
- */
+/* Two lines in contact at their closest points (derive/couplings/crossing.py). The force is a function of the state. In
+ * a Newton matrix its change and the displacements of the closest points along both lines are internal unknowns, so
+ * that two cables that cross do not widen the band: the matrix is equivalent to that without them. */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
@@ -16,7 +15,7 @@ static const fu_crossing *crossing_of(const fu_coupling *coupling)
     return (const fu_crossing *)coupling;
 }
 
-/* Makes the part of the force that is friction; adds that which sticks. */
+/* Computes the friction of the force; adds sticking friction. */
 static void add_friction(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
                          fu_crossing_contact *contact)
 {
@@ -33,8 +32,7 @@ static void add_friction(const fu_crossing *crossing, const fu_state *state, con
     }
 }
 
-/* Makes the force on the first line; the closest points, and what the contact tells. Not a number where there are no
- * such points. */
+/* Computes the force on the first line, the closest points, and the values of the contact. NaN without such points. */
 static void contact_force(const fu_model *model, const fu_crossing *crossing, const fu_state *state,
                           fu_closest_points *points, fu_crossing_contact *contact, double force[3])
 {
@@ -65,14 +63,14 @@ static void own_force(const fu_model *model, const fu_coupling *coupling, const 
     }
 }
 
-/* The own unknowns are changes in a matrix alone: nothing is left of their equations. */
+/* The internal unknowns are changes in a matrix alone: their equations have no residual. */
 static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)
 {
     own_force(model, coupling, at->next, f);
     for (int i = 0; i < coupling->n_forces; ++i) own[coupling->unknown + i] = 0.0;
 }
 
-/* The force on the first line and its derivatives, and those of the arc-lengths, as the kernel gives them. */
+/* The force on the first line and its derivatives, and those of the arc-lengths, from the kernel. */
 typedef struct {
     double F[3], F_d[9], F_t[18], F_u[9], F_w[18], F_k[18], s_d[6], s_t[12];
     fu_line_bends bends;
@@ -141,8 +139,8 @@ static void put(int dim, int n_values, double factor, const double *values, int 
         for (int d = 0; d < dim; ++d) by[k * rows + d] = factor * values[k * stride + d];
 }
 
-/* Adds to a system what a line's coordinates have in the rows and columns of the own unknowns, the first of them in
- * `row`: dim of the force, in N, and one of each arc-length, times the stiffness, in N. */
+/* Adds to a system the entries of a line's coordinates in the rows and columns of the internal unknowns, the first of
+ * them in `row`: dim of the force, in N, and one of each arc-length, times the stiffness, in N. */
 static void add_line(const fu_model *model, const fu_crossing *crossing, int line, const fu_equations *at,
                      const fu_closest_points *points, const derivatives *by, int row, double unit, fu_system *system)
 {
@@ -198,7 +196,8 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     for (int line = 0; line < FU_LINES; ++line) add_line(model, crossing, line, at, &points, &by, row, unit, system);
 }
 
-/* The middle moves by half of psi, which weights.stiffness has; the law's mean force is taken as that of the middle. */
+/* The middle moves by half of psi, which is in weights.stiffness; the law's mean force is approximated by that of the
+ * middle. */
 static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
 {
     const fu_state middle = fu_crossing_middle(at);
@@ -214,9 +213,8 @@ static void take_forces(const fu_model *model, const fu_coupling *coupling, cons
     for (int i = 0; i < coupling->n_forces; ++i) state->forces[coupling->force + i] = 0.0;
 }
 
-/* The force on the first line and the size of that along the normal; how deep the lines are in each other; arc-lengths
- * of the closest points, and the one on the first line's axis; the part of the force that is friction, and whether that
- * sticks. */
+/* The force on the first line and its size along the normal; the penetration of the lines; arc-lengths of the closest
+ * points, and the one on the first line's axis; the friction of the force, and whether it sticks. */
 typedef struct {
     double force[3], normal_force, penetration, s, s_b, position[3], friction_force[3], sticking;
 } fu_crossing_output;
@@ -260,8 +258,8 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
     return contact.dissipated;
 }
 
-/* Returns what friction that sticks takes as it slides. What contact had stored when it ended goes to heat in the step
- * after. */
+/* Returns the dissipation of sticking friction by sliding. The energy stored by contact at its end is dissipated in the
+ * step after. */
 static double lost_in_step(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
                            int by_ends)
 {
@@ -271,7 +269,7 @@ static double lost_in_step(const fu_model *model, const fu_coupling *coupling, c
                : 0.0;
 }
 
-/* Notes in the state where the closest points are, unless the lines have been parallel. */
+/* Records the closest points in the state, unless the lines have been parallel. */
 static void note(const fu_coupling *coupling, const fu_closest_points *points, fu_state *state)
 {
     fu_crossing_contact contact;
@@ -303,7 +301,7 @@ static void reset(const fu_coupling *coupling, fu_state *state)
     if (crossing->friction > 0.0) fu_crossing_reset_stick(crossing, state);
 }
 
-/* In statics lines touch where they penetrate; where that is not known, so is no force. */
+/* In statics lines are in contact if they penetrate; without closest points the force is unknown. */
 static void touch(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     fu_closest_points points;

@@ -1,13 +1,12 @@
-/* Lines that touch over a step, for the integrator that balances energy (derive/couplings/crossing.py): the force acts
- * at the points that are closest in the middle of the step, along a discrete gradient of the gap.
- */
+/* Lines in contact over a step, for the integrator that balances energy (derive/couplings/crossing.py): the force acts
+ * at the closest points in the middle of the step, along a discrete gradient of the gap. */
 #include "bodies/model.h"
 #include "couplings/crossing/crossing.h"
 
 #include <math.h>
 
-/* A crossing over a step: how the points half-way move with the coordinates, the forces on them and on the slopes, and
- * what goes to heat, J. */
+/* A crossing over a step: the motion of the points half-way with the coordinates, the forces on them and on the slopes,
+ * and the dissipation, J. */
 typedef struct {
     fu_line_moves moves[FU_LINES];
     double force[3], on_slopes[6], lost;
@@ -21,7 +20,7 @@ fu_state fu_crossing_middle(const fu_equations *at)
     return middle;
 }
 
-/* Makes the closest points of a state and the contact there; returns whether there are such points. */
+/* Computes the closest points of a state and the contact there; returns whether there are such points. */
 static int touch_at(const fu_model *model, const fu_crossing *crossing, const fu_state *state,
                     fu_closest_points *points, fu_crossing_contact *contact)
 {
@@ -30,7 +29,7 @@ static int touch_at(const fu_model *model, const fu_crossing *crossing, const fu
     return points->found && !fu_crossing_swung(crossing, state, contact);
 }
 
-/* Makes how a line's point moves over the step: its way is P psi, and its slope changes by T psi. */
+/* Computes the motion of a line's point over the step: its displacement is P psi, and its slope changes by T psi. */
 static void moves_over_step(const fu_model *model, const fu_crossing *crossing, int line, const fu_equations *at,
                             const fu_state *middle, const fu_line_point *point, fu_line_moves *out)
 {

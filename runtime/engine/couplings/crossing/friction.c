@@ -1,15 +1,14 @@
-/* Friction that sticks where lines touch: a spring, stretched by how far particles of both lines have slid past each
- * other since the last step, and no longer than friction allows (derive/couplings/crossing.py, stretch.py).
- */
+/* Sticking friction of lines in contact: a spring, stretched by the relative displacement of particles of both lines
+ * since the last step, up to the friction limit (derive/couplings/crossing.py, stretch.py). */
 #include "bodies/model.h"
 #include "couplings/crossing/crossing.h"
 
 #include <math.h>
 #include <string.h>
 
-/* State of the last step: the closest points, the way between them and the slopes there, with their rates; along and
- * across the last line the stretch and the velocity of particles past each other; nonzero where it has slid, as then
- * the stretch is just what friction allows; the penetration and its rate; the time. */
+/* State of the last step: the closest points, the vector between them and the slopes there, with their rates; along and
+ * across the last line the stretch and the relative velocity of particles; nonzero if it has slid, when the stretch
+ * equals the friction limit; the penetration and its rate; the time. */
 typedef struct {
     double s[FU_LINES], s_rate[FU_LINES], way[3], way_rate[3], slopes[6], slope_rates[6];
     double stretch[2], slid, rate[2], depth, sinking, time;
@@ -26,13 +25,13 @@ static void moved_since(const last_step *last, const fu_closest_points *points, 
     for (int line = 0; line < FU_LINES; ++line) e[line] = points->s[line] - last->s[line];
 }
 
-/* Time since the last step, s; 0 since what is drawn. */
+/* Returns the time since the last step, s; 0 for the drawn state. */
 static double time_since(const last_step *last, double time)
 {
     return fmax(time - last->time, 0.0);
 }
 
-/* What friction allows, N, by the law of kernel->contact. */
+/* Returns the friction limit, N, by the law of kernel->contact. */
 static double bound(const void *of, double depth, double rate)
 {
     const fu_crossing *crossing = of;
@@ -52,7 +51,7 @@ static double bound(const void *of, double depth, double rate)
     return crossing->friction * fmax(at.size, 0.0);
 }
 
-/* A direction along the lines' common tangent plane, as the last line and what is across it, in space. */
+/* Converts a direction in the lines' common tangent plane, along and across the last line, to space. */
 static void in_space(int dim, const double *along, const double *normal, const double parts[2], double out[3])
 {
     double across[3] = {0.0};
@@ -60,13 +59,13 @@ static void in_space(int dim, const double *along, const double *normal, const d
     for (int d = 0; d < dim; ++d) out[d] = parts[0] * along[d] + parts[1] * across[d];
 }
 
-/* Computes how fast particles of both lines go past each other. */
+/* Computes the relative velocity of particles of both lines. */
 static void slip_of(int dim, const fu_closest_points *points, const fu_crossing_contact *contact, double slip[3])
 {
     for (int d = 0; d < dim; ++d) slip[d] = points->u[d] + contact->depth[1] * contact->normal[d];
 }
 
-/* Computes how friction's spring goes from the last step to points; the grip has the stretches by the kernel. */
+/* Computes the path of friction's spring from the last step to points; the stretches are those of the kernel. */
 static void travel_since(const fu_crossing *crossing, const last_step *last, const fu_closest_points *points,
                          const fu_crossing_contact *contact, double time, const fu_crossing_stick *grip,
                          fu_friction_travel *travel, fu_friction_path *way)
@@ -84,7 +83,7 @@ static void travel_since(const fu_crossing *crossing, const last_step *last, con
     way->depth = (fu_step_ends){{last->depth, contact->depth[0]}, {last->sinking, contact->depth[1]}};
 }
 
-/* Size of the stretch at the last step where it slid then, m, else 1. */
+/* Returns the size of the stretch at the last step if it slid then, m, else 1. */
 static double slid_stretch(const last_step *last)
 {
     const double size = sqrt(fu_dot(2, last->stretch, last->stretch));
@@ -96,8 +95,8 @@ static int slid_before(const last_step *last)
     return last->slid != 0.0 && fu_dot(2, last->stretch, last->stretch) > 0.0;
 }
 
-/* Whether a stretch takes the direction of turn_to_slip: in the plane there is one direction; against the slip it is
- * unloaded. */
+/* Returns whether a stretch takes the direction of turn_to_slip: in the plane there is one direction; against the slip
+ * it is unloaded. */
 static int turns(int dim, const fu_crossing_stick *grip, const fu_friction_travel *travel)
 {
     const double *now = grip->without_sliding;
@@ -154,8 +153,8 @@ void fu_crossing_stick_at(const fu_crossing *crossing, const fu_state *state, co
     grip_since(crossing, before_of(crossing, state), points, contact, state->t, out);
 }
 
-/* Computes the derivatives of what has slid within the step and then sticks: parts of those that stick, as a velocity
- * at the end also moves where it slid last, and of those that slide. */
+/* Computes the derivatives of friction that has slid within the step and then sticks: shares of those of sticking,
+ * since a velocity at the end also moves the end of sliding, and of sliding. */
 static void mix_derivatives(const fu_crossing *crossing, const fu_crossing_stick *grip, double h,
                             const fu_crossing_stick_changes *stuck, fu_crossing_stick_changes *by)
 {
@@ -206,7 +205,7 @@ void fu_crossing_stick_derivatives(const fu_crossing *crossing, const fu_state *
     memcpy(by->F, grip.force, sizeof by->F);
 }
 
-/* Takes the stretch of a grip, null for none, along to points. */
+/* Updates the stretch, null for none, to points. */
 static void take_along(const fu_crossing *crossing, const fu_closest_points *points, const fu_crossing_contact *contact,
                        double time, const fu_crossing_stick *grip, const double *line, last_step *last)
 {
@@ -239,7 +238,7 @@ void fu_crossing_begin_stick(const fu_crossing *crossing, const fu_closest_point
     fu_crossing_contact_at(crossing, points, &contact);
     memcpy(here.s, points->s, sizeof here.s);
     memcpy(here.slopes, points->t, sizeof here.slopes);
-    grip_since(crossing, &here, points, &contact, here.time, &grip); /* of it the direction of the last line */
+    grip_since(crossing, &here, points, &contact, here.time, &grip); /* for the direction of the last line */
     take_along(crossing, points, &contact, state->t, 0, grip.along, before_of(crossing, state));
 }
 
@@ -251,9 +250,8 @@ void fu_crossing_update_stick(const fu_crossing *crossing, const fu_closest_poin
     take_along(crossing, points, contact, state->t, &grip, grip.along, before_of(crossing, state));
 }
 
-/* Computes the grip at the end of a step, and the way to it; returns whether lines that touch have closest points
- * there.
- */
+/* Computes the stretch at the end of a step, and the path to it; returns whether lines in contact have closest points
+ * there. */
 static int grip_over_step(const fu_model *model, const fu_crossing *crossing, const fu_state *from, const fu_state *to,
                           fu_crossing_stick *grip, fu_friction_travel *travel, fu_friction_path *way)
 {
@@ -268,7 +266,7 @@ static int grip_over_step(const fu_model *model, const fu_crossing *crossing, co
     return 1;
 }
 
-/* By how much another way leads elsewhere, the parabola without the velocities at the beginning. */
+/* The difference to another path, the parabola without the velocities at the beginning. */
 double fu_crossing_history_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from,
                                  const fu_state *to)
 {

@@ -1,4 +1,4 @@
-/* Forces and moments from outside, and their derivatives where they turn with what they act on. */
+/* External forces and moments, and their derivatives if they rotate with their carrier. */
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
 #include "couplings/common/wrench.h"
@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* Returns the value of a signal, 1 where there is none. */
+/* Returns the value of a signal, 1 without one. */
 static double scale_at(const fu_model *model, int signal, double t)
 {
     return signal < 0 ? 1.0 : fu_signal_at(&model->signals[signal], t, 0, 0);
@@ -25,8 +25,8 @@ static int on_element(const fu_model *model, const fu_load *load, const double *
     return cable->coordinates;
 }
 
-/* Computes the load on a body at unit signal: the attachment, a force `f` or a moment `m` in global axes, null where
- * there is none. */
+/* Computes the load on a body at unit signal: the attachment, a force `f` or a moment `m` in global axes, null without
+ * one. */
 typedef struct {
     fu_attachment_state at;
     double vector[3];
@@ -83,8 +83,8 @@ static void external_force(const fu_model *model, const fu_coupling *coupling, d
     fu_add_wrench(model->dim, &of.at, of.f, of.m, -scale, f);
 }
 
-/* Subtracts stiffness times the load's derivatives from a system, by psi where that is given. A follower force turns
- * with the body. */
+/* Subtracts stiffness times the load's derivatives from a system, by psi if given. A follower force rotates with the
+ * body. */
 static void matrix(const fu_model *model, const fu_load *load, const fu_state *state, const double *psi,
                    double stiffness, fu_system *system)
 {
@@ -120,7 +120,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     matrix(model, (const fu_load *)coupling, at->next, at->psi, at->weights.stiffness, system);
 }
 
-/* The middle moves by half of psi, which weights.stiffness has. */
+/* The middle moves by half of psi, which is in weights.stiffness. */
 static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
 {
     matrix(model, (const fu_load *)coupling, at->middle, 0, at->weights.stiffness, system);

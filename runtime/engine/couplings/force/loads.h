@@ -14,7 +14,7 @@ typedef struct {
 } fu_dead_load;
 extern const fu_coupling_type fu_dead_load_type;
 
-/* A load that turns with what it acts on, or whose lever does: at x of a cable's element, or at a point of a body. */
+/* A load that rotates with its carrier, or whose lever does: at x of a cable's element, or at a point of a body. */
 enum { FU_CABLE_FOLLOWER, FU_CABLE_MOMENT, FU_BODY_FORCE, FU_BODY_FOLLOWER, FU_BODY_MOMENT };
 typedef struct {
     fu_coupling base;

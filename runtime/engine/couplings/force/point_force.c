@@ -1,6 +1,5 @@
 /* Forces between the points of two attachments by the kernels of a law (derive/couplings/point_law.py). In a Newton
- * system the force is an unknown of its own, so that two points far apart on cables do not widen the band.
- */
+ * system the force is an internal unknown, so that two points far apart on cables do not widen the band. */
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
 #include "couplings/common/wrench.h"
@@ -9,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Makes the force on the first point by the law of a piece. */
+/* Computes the force on the first point by the law of a segment. */
 static void force_of_piece(const fu_point_force *between, int piece, const double gap[3], const double rate[3],
                            double force[3])
 {
@@ -17,7 +16,7 @@ static void force_of_piece(const fu_point_force *between, int piece, const doubl
     else between->law->force(fu_segment_parameters(between, piece), gap, rate, force);
 }
 
-/* Makes the force on the first point by the law. */
+/* Computes the force on the first point by the law. */
 static void force_at(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double force[3])
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
@@ -31,14 +30,13 @@ static double length(int dim, const double *gap)
     return sqrt(fu_dot(dim, gap, gap));
 }
 
-/* A point_motion over several pieces of a law without a damper: the distances at its ends, m, and the mean tension, N.
- */
+/* A path over several segments of a law without a damper: the distances at its ends, m, and the mean tension, N. */
 typedef struct {
     double from, to, tension;
 } point_motion;
 
-/* Returns the point_motion from one gap to another. The tension of each piece counts for as much of it as lies on the
- * piece: what the mean does on the point_motion is the change of the energy. */
+/* Returns the path from one gap to another. The tension of each segment counts by its share of the path: the work of
+ * the mean on the path is the change of the energy. */
 static point_motion way_of(const fu_point_force *between, const double gap[3], const double gap_next[3])
 {
     const int dim = between->dim;
@@ -56,8 +54,8 @@ static point_motion way_of(const fu_point_force *between, const double gap[3], c
     return (point_motion){from, to, work / (high - low)};
 }
 
-/* Makes the derivatives of the mean force by the gap in the middle, which moves by half of what its end does: those
- * across the mean direction are of the mean tension. */
+/* Computes the derivatives of the mean force by the gap in the middle, which moves by half of its end: those across the
+ * mean direction belong to the mean tension. */
 static void mean_stiffness(const fu_point_force *between, const double gap[3], const double gap_next[3], int piece,
                            double by_gap[9])
 {
@@ -72,21 +70,21 @@ static void mean_stiffness(const fu_point_force *between, const double gap[3], c
         for (int k = 0; k < dim; ++k) by_gap[d * dim + k] = (along - across) * e[d] * e[k] + (d == k ? across : 0.0);
 }
 
-/* Returns the piece on which a step ends: without a damper that of the distance, as energy has it. */
+/* Returns the segment at the end of a step: without a damper that of the distance, as in the energy. */
 static int step_piece(const fu_model *model, const fu_point_force *between, const fu_equations *at)
 {
     return between->base.is_damped ? fu_force_segment(between, at->next) : fu_segment_at(model, between, at->next);
 }
 
-/* Returns whether the force over a step is that of several pieces: those of a law without a damper that the distance
- * goes over. */
+/* Returns whether the force over a step belongs to several segments: of a law without a damper whose distance crosses
+ * bounds. */
 static int is_of_several(const fu_model *model, const fu_point_force *between, const fu_equations *at)
 {
     if (between->base.is_damped || between->n_pieces == 1) return 0;
     return fu_segment_at(model, between, at->now) != fu_segment_at(model, between, at->next);
 }
 
-/* Makes the force over a step; returns the power that it dissipates, W. */
+/* Computes the force over a step; returns the power that it dissipates, W. */
 static double step_force(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double force[3])
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
@@ -107,8 +105,8 @@ static double step_force(const fu_model *model, const fu_coupling *coupling, con
     return power;
 }
 
-/* Adds a force on the first point, and its opposite on the second, to the left of the equations of motion: at a state,
- * or over a step to `next`, where its work is that on the change of the gap. */
+/* Adds a force on the first point, and its opposite on the second, to the left side of the equations of motion: at a
+ * state, or over a step to `next`, where its work is that on the change of the gap. */
 static void add_forces(const fu_model *model, const fu_point_force *between, const fu_state *state,
                        const fu_state *next, const double *force, double *f)
 {
@@ -131,7 +129,7 @@ void fu_add_force_change(const fu_model *model, const fu_point_force *between, c
     add_forces(model, between, state, 0, force, f);
 }
 
-/* Writes minus the residuals of the own unknowns: the forces less those of the law. */
+/* Writes minus the residuals of the internal unknowns: the forces less those of the law. */
 static void own_rows(const fu_coupling *coupling, const fu_equations *at, const double *force, double *own)
 {
     const double *unknown = at->next->forces + coupling->force;
@@ -156,7 +154,7 @@ static void step_residual(const fu_model *model, const fu_coupling *coupling, co
     own_rows(coupling, at, force, own);
 }
 
-/* Adds the derivatives of the equations at a state to a system, by the law of a piece; own: the forces; psi as in
+/* Adds the derivatives of the equations at a state to a system, by the law of a segment; own: the forces; psi as in
  * fu_equations; known: the derivatives by the gap of a force that does not follow that law, else null. */
 static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int piece,
                    const double *own, const double *psi, const double *known, fu_weights weights, fu_system *system)
@@ -203,7 +201,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     matrix(model, coupling, at->next, piece, at->next->forces + coupling->force, at->psi, 0, at->weights, system);
 }
 
-/* The middle moves by half of psi, which weights.stiffness has. */
+/* The middle moves by half of psi, which is in weights.stiffness. */
 static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
@@ -231,7 +229,7 @@ static void own_force(const fu_model *model, const fu_coupling *coupling, const 
     add_forces(model, (const fu_point_force *)coupling, state, 0, force, f);
 }
 
-/* work: null in a state of rest, where the force is an unknown. */
+/* work: null in equilibrium, where the force is an unknown. */
 static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                     const double *acceleration, const fu_accelerator *work, double *out)
 {
@@ -245,8 +243,7 @@ static void take_forces(const fu_model *model, const fu_coupling *coupling, cons
     outputs(model, coupling, state, 0, work, state->forces + coupling->force);
 }
 
-/* Returns the stored energy, J: that of the piece that the points' distance is on, whether the force follows its law or
- * not. */
+/* Returns the stored energy, J: of the segment of the points' distance, whether the force follows its law or not. */
 static double energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
@@ -271,8 +268,7 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
     return power;
 }
 
-/* Returns the stored energy that comes back to nobody, J: of a spring whose damper would push, so that it has no force.
- */
+/* Returns the stored energy that is dissipated, J: of a spring whose damper would push, so that it has no force. */
 static double energy_without_force(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     const fu_point_force *between = (const fu_point_force *)coupling;

@@ -5,14 +5,14 @@
 #include "couplings/common/attachments.h"
 #include "couplings/common/coupling.h"
 
-/* What a piece of a law may do: pull and push, one of them alone, or neither: then it has no force. */
+/* Permitted senses of a segment of a law: pull and push, one of them alone, or none: then it has no force. */
 enum { FU_PUSHES_ALONE = -1, FU_PULLS_AND_PUSHES = 0, FU_PULLS_ALONE = 1, FU_HAS_NO_FORCE = 2 };
 
 /* A force between the points of two attachments, by a law and its parameters.
  *
- * The parameters may differ by the distance of the points: n_pieces sets of them, one after the other, and the
- * distances `bounds` at which one piece ends and the next begins (couplings/force/segments.c). The flag of a state is
- * the piece whose law the force follows. */
+ * The parameters may depend on the distance of the points: n_pieces sets of them, one after the other, and the
+ * distances `bounds` between segments (couplings/force/segments.c). The flag of a state is the segment whose law the
+ * force follows. */
 typedef struct {
     fu_coupling base;
     const fu_point_law_kernels *law;
@@ -21,14 +21,14 @@ typedef struct {
     int dim;
     int n_pieces, n_parameters;
     const double *bounds; /* (n_pieces - 1), m */
-    const int *senses;    /* (n_pieces): what each piece may do */
-    double compliance;    /* m/N: makes lengths of forces, to compare them */
+    const int *senses;    /* (n_pieces): permitted senses of each segment */
+    double compliance;    /* m/N: converts forces to lengths, for comparison */
 } fu_point_force;
 
 extern const fu_coupling_type fu_point_force_type;
 
 /* couplings/force/point_force.c */
-/* Adds to f, times a factor, by how much the forces at a state differ from those by the law of another piece. */
+/* Adds to f, times a factor, the difference of the forces at a state from those by the law of another segment. */
 void fu_add_force_change(const fu_model *model, const fu_point_force *between, const fu_state *state, int piece,
                          double factor, double *f);
 

@@ -1,9 +1,9 @@
-/* Forces between two points whose law differs by pieces of their distance: springs that pull alone, free play, tables.
+/* Forces between two points whose law has segments by their distance: tension-only springs, free play, tables.
  *
- * Within a step the force follows the law of one piece, the flag of the state, so that each step is smooth. A piece
- * that pulls alone, or pushes alone, is left where its force, the damper's part of it included, turns round; it is
- * entered where the points are on it and its force has its sense. Steps end where the force passes from piece to piece.
- */
+ * Within a step the force follows the law of one segment, the flag of the state, so that each step is smooth. A
+ * tension-only or compression-only segment is left where its force, the damper's part included, reverses; it is
+ * entered where the distance is in it and its force has the permitted sense. Steps end where the force changes its
+ * segment. */
 #include "bodies/model.h"
 #include "couplings/force/point_force.h"
 
@@ -14,7 +14,7 @@ static const fu_point_force *force_of(const fu_coupling *coupling)
     return (const fu_point_force *)coupling;
 }
 
-/* Returns the piece whose law the force follows. */
+/* Returns the segment whose law the force follows. */
 int fu_force_segment(const fu_point_force *between, const fu_state *state)
 {
     return state->flags[between->base.flags];
@@ -25,7 +25,7 @@ const double *fu_segment_parameters(const fu_point_force *between, int piece)
     return between->parameters + (long)piece * between->n_parameters;
 }
 
-/* Returns the piece that a distance is on. */
+/* Returns the segment of a distance. */
 int fu_segment_at_distance(const fu_point_force *between, double distance)
 {
     int piece = 0;
@@ -44,7 +44,7 @@ void fu_gap(const fu_model *model, const fu_point_force *between, const fu_state
     }
 }
 
-/* Returns the piece that the distance of the points is on. */
+/* Returns the segment of the distance of the points. */
 int fu_segment_at(const fu_model *model, const fu_point_force *between, const fu_state *state)
 {
     double gap[3];

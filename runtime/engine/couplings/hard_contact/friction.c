@@ -1,5 +1,4 @@
-/* Friction of hard contacts: how the point of a body that touches goes past the surface, and against what friction is.
- */
+/* Friction of hard contacts: the motion of a body's point along the surface, and the direction of friction. */
 #include "bodies/model.h"
 #include "couplings/common/wrench.h"
 #include "couplings/hard_contact/hard_contact.h"
@@ -7,15 +6,15 @@
 #include <math.h>
 #include <string.h>
 
-/* of the velocity below which a point comes to rest: what turns the direction of sliding */
+/* of the velocity below which a point comes to rest: least speed that rotates the direction of sliding */
 #define SLIDING_SPEED 1e-6
-/* m/s^2 over N: so little do points that stick give way, and share by their normal forces what holds them */
+/* m/s^2 per N: compliance of sticking points, which share the tangential force by their normal forces */
 #define STICKING_COMPLIANCE 1e-10
-/* of the weight: so much more is held, as a point may bear nothing, and be held by rounding */
+/* of the weight: added to the friction limit, since a point may bear nothing, and stick by rounding */
 #define WEIGHT_TOLERANCE 1e-9
-#define MIN_ACCELERATION 1e-10 /* m/s^2: normal force over mass, below which it counts as that */
+#define MIN_ACCELERATION 1e-10 /* m/s^2: least normal force over mass */
 
-/* Makes directions across the normal: one in the plane, two in space. */
+/* Computes directions normal to n: one in the plane, two in space. */
 static void across(int dim, const double *n, double t[2][3])
 {
     memset(t, 0, sizeof(double[2][3]));
@@ -35,8 +34,8 @@ static void across(int dim, const double *n, double t[2][3])
     fu_cross(n, t[0], t[1]);
 }
 
-/* Makes the direction of sliding: that of the velocity while it goes on forwards, that of the last step where it has
- * turned. */
+/* Computes the direction of sliding: that of the velocity for forward sliding, that of the last step after a
+ * reversal. */
 static void find_direction(int dim, const fu_hard_contact *contact, const fu_state *state, const double *n,
                            const double *past, double *out)
 {
@@ -84,7 +83,7 @@ void fu_hard_along_at(const fu_model *model, const fu_hard_contact *contact, con
     }
 }
 
-/* Returns what friction can take of a point that sticks, N. */
+/* Returns the friction limit of a sticking point, N. */
 double fu_hard_friction_limit(const fu_hard_contact *contact, double multiplier)
 {
     return contact->friction *

@@ -1,7 +1,6 @@
-/* Hard contact of a point with a surface: while it is closed its distance is a constraint like those of a joint, eq 38,
- * whose multiplier may press alone. events/hard_contact.c has when it closes and opens, events/impact.c what then
- * happens.
- */
+/* Hard contact of a point with a surface: while it is closed its distance is a constraint like that of a joint, eq 38,
+ * whose multiplier can only push. events/hard_contact.c detects its closing and opening, events/impact.c has the
+ * actions. */
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
 #include "couplings/common/wrench.h"
@@ -9,7 +8,7 @@
 
 #include <string.h>
 
-#define CONTACT_TOLERANCE 1e-9 /* m: what is no farther apart touches in statics */
+#define CONTACT_TOLERANCE 1e-9 /* m: largest distance of a contact in statics */
 
 static const fu_hard_contact *contact_of(const fu_coupling *coupling)
 {
@@ -49,7 +48,7 @@ void fu_hard_row_at(const fu_model *model, const fu_hard_contact *contact, const
                                             on.omega, on.alpha, &out->rate, &out->bias);
 }
 
-/* Adds rows of what friction holds, or what it is against where the point slides. */
+/* Adds rows of sticking friction, or the direction of friction of a sliding point. */
 static void friction_rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                           const fu_hard_row *row, fu_rows *rows)
 {
@@ -87,13 +86,13 @@ static void rows(const fu_model *model, const fu_coupling *coupling, const fu_st
     if (has_friction(coupling)) friction_rows(model, coupling, state, &row, rows);
 }
 
-/* Returns by how much the distance gives way with the multiplier, m/N: in statics, else nil. */
+/* Returns the compliance of the distance to the multiplier, m/N: in statics, else zero. */
 static double compliance(const fu_coupling *coupling, fu_weights weights)
 {
     return weights.inertia == 0.0 ? 1.0 / contact_of(coupling)->stiffness : 0.0;
 }
 
-/* Writes the equation of the own unknown: what is left of the distance, or that it is nil. */
+/* Writes the equation of the internal unknown: the residual of the distance, or that the unknown is zero. */
 static void own_row(const fu_coupling *coupling, const fu_equations *at, double g, double *own)
 {
     const double multiplier = at->next->forces[coupling->force],
@@ -103,7 +102,7 @@ static void own_row(const fu_coupling *coupling, const fu_equations *at, double 
     else own[coupling->unknown] = -at->weights.stiffness * at->next->forces[coupling->force];
 }
 
-/* Adds friction: against sliding, or the forces that keep velocities past the surface nil, as lengths over a step. */
+/* Adds friction: against sliding, or the forces that keep velocities past the surface zero, as lengths over a step. */
 static void friction_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,
                               const fu_hard_row *row, double *f, double *own)
 {
@@ -138,8 +137,8 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
     own_row(coupling, at, row.g, own);
 }
 
-/* Adds what friction's forces are by its own unknowns, and its rows by velocities; how both turn with the unknowns is
- * left out. */
+/* Adds the derivatives of friction's forces by its internal unknowns, and of its rows by velocities; the rotation of
+ * both with the unknowns is neglected. */
 static void friction_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,
                              const fu_hard_row *row, fu_system *system)
 {
@@ -159,7 +158,7 @@ static void friction_tangent(const fu_model *model, const fu_coupling *coupling,
         fu_add(model, system, row->at[i], first, -unit * contact->friction * along.slip[i]);
 }
 
-/* Adds, of a contact that is closed, how its distance and the force of its multiplier change with the unknowns. */
+/* Adds, for a closed contact, the derivatives of its distance and of its multiplier's force by the unknowns. */
 static void tangent_of_closed(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,
                               const fu_hard_row *row, fu_system *system)
 {
@@ -199,7 +198,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     tangent_of_closed(model, coupling, at, &row, system);
 }
 
-/* Makes the row over a step: H psi is what the distance changes by. */
+/* Computes the row over a step: H psi is the change of the distance. */
 static void step_row(const fu_model *model, const fu_hard_contact *contact, const fu_equations *at, fu_hard_row *out)
 {
     const int dim = model->dim;
@@ -260,7 +259,7 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
 {
     fu_hard_contact_output *numbers = (fu_hard_contact_output *)out;
     const double *multiplier =
-        work ? work->multipliers + coupling->multiplier : state->forces + coupling->force; /* or statics' */
+        work ? work->multipliers + coupling->multiplier : state->forces + coupling->force; /* or of statics */
     const double press = is_closed(coupling, state) ? -*multiplier : 0.0;
     fu_hard_along along;
     fu_hard_row row;
@@ -300,7 +299,7 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
     return contact_of(coupling)->friction * press * fu_dot(model->dim, along.direction, along.past);
 }
 
-/* The direction of sliding goes along. */
+/* The direction of sliding is the history variable. */
 static void carry(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     fu_hard_row row;
@@ -311,8 +310,8 @@ static void carry(const fu_model *model, const fu_coupling *coupling, fu_state *
     memcpy(fu_hard_numbers_of(coupling, state)->direction, along.direction, sizeof(double) * (size_t)model->dim);
 }
 
-/* In statics a point touches where it presses, or is nearer than that: the active set follows from both
- * (Hintermueller). */
+/* In statics a point is in contact if its multiplier pushes, or if it is nearer than that: the active set follows from
+ * both (Hintermueller). */
 static void touch(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     const fu_hard_contact *contact = contact_of(coupling);

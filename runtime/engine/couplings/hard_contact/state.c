@@ -1,4 +1,4 @@
-/* The parts of a state that belong to a hard contact, and where its surface ends. */
+/* The parts of a state of a hard contact, and the ends of its surface. */
 #include "bodies/model.h"
 #include "couplings/hard_contact/hard_contact.h"
 
