@@ -8,6 +8,8 @@ import re
 from pathlib import Path
 
 import funicular
+from funicular.checks.placement import WATCHABLE
+from funicular.model.controlled import COUNTED
 from funicular.model.coupling import CouplingModel
 from funicular.model.kinds import COUPLINGS
 from funicular.model.model import Model
@@ -123,3 +125,14 @@ def models_of(name):
 
 def descendants(kind):
     return {kind}.union(*(descendants(each) for each in kind.__subclasses__()))
+
+
+def test_every_kind_of_part_is_exported():
+    missing = [kind.__name__ for kind in KINDS if kind.__name__ not in funicular.__all__]
+    assert not missing, f"{missing}: add them to runtime/__init__.py"
+
+
+def test_kinds_with_coordinates_have_error_estimates_and_thresholds():
+    kinds = {kind.kind for kind in KINDS if kind.group in ("cables", "bodies", "slides")}
+    assert kinds == {*COUNTED}, f"{kinds ^ {*COUNTED}}: COUNTED of runtime/model/controlled.py"
+    assert kinds == {*WATCHABLE}, f"{kinds ^ {*WATCHABLE}}: WATCHABLE of runtime/checks/placement.py"
