@@ -27,7 +27,7 @@ PLACES = {
         "solve/statics/turns.py"],
     "an instant or a frequency of fluids: their signals, tables and added mass": [
         "model/drag_forces.py", "model/knots.py", "results/section_forces/balance_limits.py",
-        "solve/statics/string_loads.py"],
+        "solve/statics/string_start.py"],
     "contact with surfaces: depth, ends of the surface, what a cable lies on": [
         "solve/linear/condensation.py", "solve/modes/contact_edges.py", "solve/notes/penetrations.py",
         "solve/notes/surface_ends.py", "solve/notes/unseen_contact.py", "solve/statics/lying.py",

@@ -16,7 +16,7 @@ import numpy as np
 from ...engine import Engine
 from ...model.middle_strain import gauss_rule, slope_at, slopes, stretches
 from ...model.model import CableModel
-from .note import Note, Rows
+from .note import Note, Rows, element_place
 
 FOLDED_CHORD = 0.8
 """An element is folded where its chord is shorter than this fraction of its centreline: an arc of 130 degrees."""
@@ -86,11 +86,8 @@ class Folds(Note):
         for cable, _ in self._cables:
             if cable.name in self.found:
                 fold, time, element = self.found[cable.name]
-                element = int(element)
-                start = cable.mesh.start(element)
-                yield (cable, f'cable "{cable.name}" is folded onto itself in element {element}, from s = '
-                       f"{start:.6g} m to {start + cable.mesh.length(element):.6g} m: its nodes are {1 - fold:.2g} of "
-                       "its length from each other", time)
+                yield (cable, f'cable "{cable.name}" is folded onto itself in {element_place(cable, int(element))}: '
+                       f"its nodes are {1 - fold:.2g} of its length from each other", time)
 
     def _far_turns(self, cable: CableModel, q: np.ndarray) -> Iterator[str]:
         """Yield a note where an element at coordinates q (1, n) turns far beyond its shape without stress."""
@@ -99,10 +96,10 @@ class Folds(Note):
             turns = turns - _turns(cable, part.rest_nodal_vectors[None])
         k = int(np.argmax(turns))
         if turns[k] > MAX_ELEMENT_TURN:
-            start, length = cable.mesh.start(k), cable.mesh.length(k)
-            yield (f'cable "{cable.name}" turns by {np.degrees(turns[k]):.0f} degrees within element {k}, from s = '
-                   f"{start:.6g} m to {start + length:.6g} m: the state is that of few elements, not of the cable. "
-                   f"Take elements of at most {length * ACCURATE_ELEMENT_TURN / turns[k]:.2g} m there")
+            length = cable.mesh.length(k) * ACCURATE_ELEMENT_TURN / turns[k]
+            yield (f'cable "{cable.name}" turns by {np.degrees(turns[k]):.0f} degrees within '
+                   f"{element_place(cable, k)}: the state is that of few elements, not of the cable. Take elements of "
+                   f"at most {length:.2g} m there")
 
 
 def _turns(cable: CableModel, nodal: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...engine import Engine
-from ...model.model import Model
+from ...model.model import CableModel, Model
 from ...parts.cable import Cable
 from ...parts.scene_data import SceneData
 from ...parts.settings import RunSettings
@@ -81,6 +81,12 @@ class LineStiffness(NamedTuple):
         bending = moments[1:2] if dim == 2 else moments[1:3]
         return cls(E * float(moments[0]), E * float(min(bending)), E * float(max(bending)),
                    part.material.density * float(part.section.mass_moments()[0]))
+
+
+def element_place(cable: CableModel, k: int) -> str:
+    """Return the number and the arc-lengths of an element as a text."""
+    start = cable.mesh.start(k)
+    return f"element {k}, from s = {start:.6g} m to {start + cable.mesh.length(k):.6g} m"
 
 
 def allowed_error(engine: Engine, settings: RunSettings) -> float:

@@ -11,9 +11,12 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from ...model.contacts import ContactModel
+from ...model.drag_forces import densities
+from ...model.drags import DragModel
+from ...model.loads import GAUSS, DeadLoadModel
+from ...model.model import Model
 from ...model.unknowns import as_supports_leave
 from .static_problem import StaticProblem
-from .string_loads import depend_on_shape, string_loads
 from .string_nodes import SmoothTie, StringNodes, rests
 from .string_vectors import laid_vectors, slopes
 from .strings import Rest, Strings, rest_of
@@ -51,8 +54,8 @@ def hang(problem: StaticProblem, every: bool) -> bool:
         nodes.others.isdisjoint(group.tolist()) and _is_straight_and_slack(nodes, group, problem.as_drawn)))]
     found = False
     uneven = any(rests(contact) and contact.shape == "terrain" for contact in model.contacts)
-    for _ in range(SHAPE_ITERATIONS if groups and (uneven or depend_on_shape(model)) else 1):
-        force = string_loads(problem, q) if groups else q
+    for _ in range(SHAPE_ITERATIONS if groups and (uneven or _depend_on_shape(model)) else 1):
+        force = _string_loads(problem, q) if groups else q
         for group in groups:
             line, rest = _at_rest(problem, nodes, group, q, force)
             if rest is not None and (rest.taut.all() or (every and rest.shortest > MIN_LENGTH_RATIO)):
@@ -85,6 +88,38 @@ def _is_straight_and_slack(nodes: StringNodes, group: np.ndarray, q: np.ndarray)
             return False
         slack |= bool(drawn < (1 - STRAIGHTNESS_TOLERANCE) * length)
     return slack
+
+
+def _string_loads(problem: StaticProblem, q: np.ndarray) -> np.ndarray:
+    """Return (n_dof,): forces on the dofs of cables at a configuration under the present load, in N."""
+    model, engine, p = problem.model, problem.engine, problem.fraction
+    force = model.gravity * (p if problem.settings.scale_gravity else 1.0)
+    for k, load in enumerate(model.loads):
+        if isinstance(load, DeadLoadModel):
+            scale = 1.0 if load.signal < 0 else float(model.signals[load.signal].value(np.zeros(1))[0])
+            force[load.dofs] += p * scale * np.array(load.values)
+        else:
+            force -= engine.external_forces(k, k + 1)[0]
+    for drag in model.drags:
+        if drag.cable >= 0:
+            _add_drag(model, drag, q, p, force)
+    return force
+
+
+def _depend_on_shape(model: Model) -> bool:
+    """Return whether loads on cables depend on their shape: those of flowing fluids."""
+    return any(drag.cable >= 0 and (drag.velocity.any() or drag.degree) for drag in model.drags)
+
+
+def _add_drag(model: Model, drag: DragModel, q: np.ndarray, p: float, force: np.ndarray) -> None:
+    """Add p times the forces of a fluid on a cable at rest, distributed linearly to the nodes of each element."""
+    cable = model.cables[drag.cable]
+    f = densities(model, drag, np.zeros(1), q[None], np.zeros((1, model.n_dof)))[0][0, ..., : model.dim]
+    f = p * f * np.broadcast_to(drag.weights, f.shape[:2])[:, :, None]
+    share, at = (1 + GAUSS[0]) / 2, cable.vectors.index("r")
+    own = cable.nodal(force)
+    own[:-1, at] += np.einsum("egd,g->ed", f, 1 - share)
+    own[1:, at] += np.einsum("egd,g->ed", f, share)
 
 
 class _Line:

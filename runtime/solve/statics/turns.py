@@ -16,6 +16,7 @@ from ...parts.joint import DRIVEN
 from ...parts.locations import node_of
 from ...parts.scene_data import SceneData
 from ...parts.validation import show
+from ..notes.note import element_place
 
 ANGLE_STEP = np.pi / 3
 """Step of an angle in rad, with which Newton's method finds the nearest of the states that differ by whole turns."""
@@ -112,8 +113,7 @@ def too_long(model: Model, q: np.ndarray, begin: np.ndarray) -> str:
         turned[before > MAX_TURN_BETWEEN_NODES] = 0.0
         k = int(np.argmax(turned))
         if turned[k] > MAX_TURN_BETWEEN_NODES:
-            start, length = cable.mesh.start(k), cable.mesh.length(k)
-            return (f'cable "{cable.name}" turns by {np.degrees(turned[k]):.0f} degrees within element {k}, from s = '
-                    f"{start:.6g} m to {start + length:.6g} m, and would lose a turn: take elements of at most "
-                    f"{length * ACCURATE_TURN_BETWEEN_NODES / turned[k]:.2g} m there")
+            length = cable.mesh.length(k) * ACCURATE_TURN_BETWEEN_NODES / turned[k]
+            return (f'cable "{cable.name}" turns by {np.degrees(turned[k]):.0f} degrees within '
+                    f"{element_place(cable, k)}, and would lose a turn: take elements of at most {length:.2g} m there")
     return ""
