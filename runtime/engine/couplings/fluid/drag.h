@@ -9,8 +9,8 @@
 #define FU_NO_SURFACE 1e300          /* m: beyond all heights (runtime/parts/fluid.py) */
 #define FU_SURFACE_EVENT_FUNCTIONS 4 /* events of its two surfaces */
 
-/* What of a cable's section or of a body's volume a fluid wets: all of it, or what is below its surface and above its
- * bottom, of a circle, a sphere, or a column (couplings/fluid/wetness.c). */
+/* Wetted part of a cable's section or of a body's volume: all, or the part between surface and bottom of the fluid, of
+ * a circle, a sphere, or a column (couplings/fluid/wetness.c). */
 enum { FU_ALL_WET, FU_WET_SECTION, FU_WET_SPHERE, FU_WET_COLUMN };
 
 /* The force of a fluid on a whole cable, or on a point of a body. */
@@ -29,9 +29,9 @@ typedef struct {
     int n_angles;      /* polynomials of the angle, as a signal's of time, of each coefficient; */
     const double *angles, *polar_drag, *polar_lift, *polar_moment; /* that of the moment of a beam alone */
     double buoyancy[3];     /* N/m a length of the undeformed cable, N on a body */
-    int wet;                /* see above */
-    double extent;          /* half the height of what is wetted, m */
-    double surface, bottom; /* heights between which the fluid is, m */
+    int wet;                /* FU_ALL_WET and the like */
+    double extent;          /* half the height of the wetted shape, m */
+    double surface, bottom; /* heights of the fluid, m */
     double displaced;       /* mass of the fluid displaced: kg/m, kg */
     double added[9]; /* mass added: of a length of cable across and along it, kg/m; of a body in its axes (dim x dim),
                         kg */
@@ -65,28 +65,27 @@ typedef struct {
     double part, slope, curvature;
 } fu_wetness;
 
-/* Where the fluid acts: a point of a cable's axis, or of a body. r_x, its rate, and `a`, acceleration, only of a cable;
- * the director along the chord and its rate only of a beam's foil. */
+/* A point of a cable's axis, or of a body, in the fluid. r_x, its rate, and `a`, acceleration, of a cable only; the
+ * director along the chord and its rate of a beam's foil only. */
 typedef struct {
     double r[3], r_x[3], v[3], r_x_rate[3], a[3], chord[3], chord_rate[3];
 } fu_drag_place;
 
-/* What the fluid does at a place: its velocity with derivatives, that past the place; drag and lift with their
- * derivatives, and buoyancy, all of the wet part; by_wet: derivative of their sum by the place where the wet part
- * changes. of_section: of a beam's foil the forces on r, r_x and chord, with their derivatives by r_x, chord and w; f
- * has the first. */
+/* Action of the fluid at a place: its velocity with derivatives, that relative to the place; drag and lift with their
+ * derivatives, and buoyancy, all of the wet part; by_wet: derivative of their sum by the place through the wet part.
+ * of_section: of a beam's foil the forces on r, r_x and chord, with their derivatives by r_x, chord and w; f has the
+ * first. */
 typedef struct {
     fu_flow_state flow;
     double w[3], f[3], buoyancy[3], by_wet[9], by_slope[9], by_w[9], by_turn[9], of_section[9], section_by[81];
 } fu_drag_action;
 
-/* Powers: what goes to heat, what the fluid gives, W. */
+/* Dissipated power, and external power by the fluid, W. */
 typedef struct {
     double dissipated, external;
 } fu_drag_powers;
 
-/* What is asked of a sum of forces: each may be null. f: on the left of the equations of motion; total: on the cable or
- * body. */
+/* Sums of forces, each of which may be null. f: on the left of the equations of motion; total: on the cable or body. */
 typedef struct {
     double *f, *total;
     fu_drag_powers *power;
@@ -162,8 +161,8 @@ void fu_section_matrix(const fu_drag_action *action, fu_quadrature_point point, 
 /* Flags of a state are one of the table and one a watch of surfaces */
 #define FU_DRAG_FLAGS (1 + FU_SURFACE_EVENT_FUNCTIONS)
 
-/* A place past the fluid: w and its rate; DU/Dt of the fluid; the derivative of w_rate by the velocity is minus the
- * flow's gradient. The wet part, its derivative by the place, and the second one by the height. */
+/* Motion of a place relative to the fluid: w and its rate, whose derivative by the velocity is minus the flow's
+ * gradient; DU/Dt of the fluid; the wet part, its derivative by the place, and its second derivative by the height. */
 typedef struct {
     fu_flow_state flow;
     double w[3], w_rate[3], material[3], wet, by_place[3], curvature;
