@@ -77,7 +77,8 @@ static double least_room(const fu_friction_path *way, int side, double *x)
     return least;
 }
 
-fu_friction_end fu_end_of_friction(const fu_friction_path *way)
+/* Returns the stretch at the end of a path in time. */
+static fu_friction_end end_of(const fu_friction_path *way)
 {
     const double all = way->stretch.value[1];
     double room[2][BOUND_SAMPLES + 1], bound = 0.0;
@@ -103,6 +104,12 @@ fu_friction_end fu_end_of_friction(const fu_friction_path *way)
     return end;
 }
 
+fu_friction_end fu_end_of_friction(const fu_friction_path *way, double most)
+{
+    const double size = way->stretch.value[1];
+    return way->h > 0.0 ? end_of(way) : (fu_friction_end){fmin(size, most), 1.0, size > most};
+}
+
 /* Returns the cubic of values from the beginning of a step to a part of it. */
 static fu_step_ends first_part(const fu_step_ends *ends, double h, double x)
 {
@@ -117,21 +124,16 @@ double fu_friction_within(const fu_friction_path *way, double x)
     part.depth = first_part(&way->depth, way->h, x);
     part.h = x * way->h;
     part.from = way->from / x;
-    return fu_end_of_friction(&part).stretch;
+    return end_of(&part).stretch;
 }
 
-double fu_path_length(int dim, const fu_friction_travel *travel, double along[3], fu_friction_path *way)
+double fu_path_along(int dim, const double *change, const double *rate, const double *rate_next, double along[3],
+                     fu_friction_path *way)
 {
-    double square = 0.0;
-    for (int d = 0; d < dim; ++d) {
-        along[d] = travel->stretch[d] + travel->change[d];
-        square += along[d] * along[d];
-    }
-    const double size = sqrt(square);
+    const double size = sqrt(fu_dot(dim, along, along));
     for (int d = 0; d < dim && size > 0.0; ++d) along[d] /= size;
-    way->stretch.value[0] = size - fu_dot(dim, along, travel->change);
-    way->stretch.value[1] = size;
-    for (int e = 0; e < 2; ++e) way->stretch.rate[e] = fu_dot(dim, along, travel->rates[e]);
+    way->stretch = (fu_step_ends){{size - fu_dot(dim, along, change), size},
+                                  {fu_dot(dim, along, rate), fu_dot(dim, along, rate_next)}};
     return size;
 }
 

@@ -29,7 +29,8 @@ typedef struct {
     double stretch, part;
     int slid;
 } fu_friction_end;
-fu_friction_end fu_end_of_friction(const fu_friction_path *way);
+/* `most`: the bound of the stretch, m, where the path has no duration, as in statics. */
+fu_friction_end fu_end_of_friction(const fu_friction_path *way, double most);
 
 /* The same at a part of the step. */
 double fu_friction_within(const fu_friction_path *way, double x);
@@ -39,8 +40,10 @@ double fu_friction_within(const fu_friction_path *way, double x);
 typedef struct {
     double stretch[3], change[3], rates[2][3];
 } fu_friction_travel;
-/* Computes the direction of the stretch at the end as without sliding, and the path along it; returns its size, m. */
-double fu_path_length(int dim, const fu_friction_travel *travel, double along[3], fu_friction_path *way);
+/* Normalises the stretch `along` as without sliding, and computes the path along it, from the displacement over the
+ * step, m, and the velocities at both ends, m/s; returns its size, m. */
+double fu_path_along(int dim, const double *change, const double *rate, const double *rate_next, double along[3],
+                     fu_friction_path *way);
 /* Returns the work of friction over the stiffness, m^2, for a given stretch at the end: by parts of the step, and by
  * half as many (Richardson), or by the ends alone. */
 double fu_taken_by_friction(int dim, const fu_friction_travel *travel, const fu_friction_path *way, const double *end,

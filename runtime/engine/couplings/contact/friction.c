@@ -94,13 +94,8 @@ static void path_of(const fu_model *model, const fu_contact *contact, const fu_a
     }
     const double across = fu_dot(dim, out->normal, out->x) / fu_dot(dim, out->normal, out->normal);
     for (int d = 0; d < dim; ++d) out->along[d] = out->x[d] - across * out->normal[d];
-    out->size = sqrt(fu_dot(dim, out->along, out->along));
-    for (int d = 0; d < dim && out->size > 0.0; ++d) out->along[d] /= out->size;
     out->way.from = out->from;
-    out->way.stretch.value[0] = out->size - fu_dot(dim, out->along, out->change);
-    out->way.stretch.value[1] = out->size;
-    out->way.stretch.rate[0] = fu_dot(dim, out->along, mark->rate);
-    out->way.stretch.rate[1] = fu_dot(dim, out->along, point->slip);
+    out->size = fu_path_along(dim, out->change, mark->rate, point->slip, out->along, &out->way);
 }
 
 /* Computes the stretch, m, of a spring that slides along the path in equal intervals: in each it is stretched by the
@@ -173,8 +168,8 @@ void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const 
     double x[3];
     friction_course of;
     path_of(model, contact, on, point, &of);
-    if (of.way.h > 0.0) point->friction_end = fu_end_of_friction(&of.way);
-    else point->friction_end = (fu_friction_end){fmin(of.size, most), 1.0, of.size > most || most == 0.0};
+    point->friction_end = fu_end_of_friction(&of.way, most);
+    point->friction_end.slid |= !(of.way.h > 0.0) && most == 0.0;
     point->slides = point->friction_end.slid != 0 && point->friction_end.part == 1.0;
     turn_to_slip(dim, point, DIRECTION_PARTS, &of);
     for (int d = 0; d < dim; ++d) point->stretch[d] = point->friction_end.stretch * of.along[d];

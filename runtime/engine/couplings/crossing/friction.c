@@ -133,9 +133,9 @@ static void grip_since(const fu_crossing *crossing, const last_step *last, const
                               time_since(last, time), last->way, last->way_rate, last->slopes, last->slope_rates,
                               last->s_rate, last->stretch, last->rate, out->without_sliding, out->old, out->along);
     travel_since(crossing, last, points, contact, time, out, &travel, &way);
-    const double size = fu_path_length(dim, &travel, along, &way);
-    if (way.h > 0.0) out->end = fu_end_of_friction(&way);
-    else out->end = (fu_friction_end){fmin(size, most), 1.0, size > most};
+    for (int d = 0; d < dim; ++d) along[d] = travel.stretch[d] + travel.change[d];
+    fu_path_along(dim, travel.change, travel.rates[0], travel.rates[1], along, &way);
+    out->end = fu_end_of_friction(&way, most);
     out->slides = out->end.slid && out->end.part == 1.0;
     out->turns = turns(dim, out, &travel);
     if (out->turns) turn_to_slip(crossing, last, time, points, contact, out, along);
@@ -280,8 +280,9 @@ double fu_crossing_history_error(const fu_model *model, const fu_coupling *coupl
     if (!grip_over_step(model, crossing, from, to, &grip, &travel, &way)) return 0.0;
     for (int d = 0; d < dim; ++d) travel.rates[0][d] = 2.0 * travel.change[d] / way.h - travel.rates[1][d];
     way.depth.rate[0] = 2.0 * (way.depth.value[1] - way.depth.value[0]) / way.h - way.depth.rate[1];
-    fu_path_length(dim, &travel, along, &way);
-    const fu_friction_end other = fu_end_of_friction(&way);
+    for (int d = 0; d < dim; ++d) along[d] = travel.stretch[d] + travel.change[d];
+    fu_path_along(dim, travel.change, travel.rates[0], travel.rates[1], along, &way);
+    const fu_friction_end other = fu_end_of_friction(&way, INFINITY);
     if (grip.turns && other.slid > 0 && other.part == 1.0) return fabs(other.stretch - grip.end.stretch);
     for (int d = 0; d < dim; ++d) {
         const double off = other.stretch * along[d] - grip.stretch[d];
