@@ -60,18 +60,6 @@ void fu_between(const fu_model *model, const double *q, const double *q_next, do
     }
 }
 
-/* Computes the rates of the entries of b from the velocity w: translation, and rotation about body axes. */
-void fu_body_rate(const fu_body_kernels *kernel, const double *b, const double *w, double *rate)
-{
-    kernel->rate(b, w, rate);
-}
-
-/* Converts a small change of the entries of b to an increment of its dofs: the inverse of `fu_body_rate`. */
-void fu_body_increment(const fu_body_kernels *kernel, const double *b, const double *change, double *increment)
-{
-    kernel->increment(b, change, increment);
-}
-
 /* Multiplies rows by T in the columns of a body's rotations. */
 static inline void turn_columns(const fu_body_kernels *kernel, double *rows, int n_rows, int n_columns, int first,
                                 const double *T)

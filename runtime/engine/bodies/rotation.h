@@ -5,8 +5,6 @@
 #include "base/common.h"
 
 void fu_move(const fu_model *model, double *q, const double *dofs);
-void fu_body_rate(const fu_body_kernels *kernel, const double *b, const double *w, double *rate);
-void fu_body_increment(const fu_body_kernels *kernel, const double *b, const double *change, double *increment);
 void fu_cayley_move(const fu_model *model, double *q, const double *psi);
 void fu_cayley_columns(const fu_body_kernels *kernel, double *rows, int n_rows, int n_columns, int first,
                        const double *psi);

@@ -101,19 +101,22 @@ static int factor_border(const fu_model *model, const fu_state *state, fu_accele
     return fu_system_factor_border(s, model->lapack);
 }
 
+static void scale_multipliers(const fu_model *model, const fu_accelerator *work, double *lambda)
+{
+    for (int r = 0; r < model->n_rows; ++r)
+        for (int c = 0; c < work->rows[r].max_multipliers; ++c)
+            lambda[work->rows[r].first + c] *= work->rows[r].scale[c];
+}
+
 /* Solves [M H'; H 0] with forces on the dofs and right sides of the joints; multipliers are scaled back. */
 static void solve(const fu_model *model, fu_accelerator *work, const double *force, double *solution)
 {
     double *x = work->rhs, *lambda = x + model->n_band + model->n_border_dof;
     fu_gather(model, force, x);
-    for (int r = 0; r < model->n_rows; ++r)
-        for (int c = 0; c < work->rows[r].max_multipliers; ++c)
-            lambda[work->rows[r].first + c] *= work->rows[r].scale[c];
+    scale_multipliers(model, work, lambda);
     fu_system_solve(&work->mass, model->lapack, x);
     fu_spread(model, x, solution);
-    for (int r = 0; r < model->n_rows; ++r)
-        for (int c = 0; c < work->rows[r].max_multipliers; ++c)
-            lambda[work->rows[r].first + c] *= work->rows[r].scale[c];
+    scale_multipliers(model, work, lambda);
 }
 
 /* Returns -sum_k H_ck x_k, the contribution of known accelerations or velocities to the right sides. */

@@ -53,14 +53,6 @@ void fu_matrix(fu_run *run, const fu_equations *at)
     add_matrix_of_others(run, at);
 }
 
-/* Computes the same for these weights, unfactored; unknowns move bodies from `next`. */
-void fu_matrix_of_weights(fu_run *run, fu_weights weights)
-{
-    const fu_equations at = {.now = &run->now, .next = &run->next, .weights = weights};
-    fu_matrix(run, &at);
-    run->factored = 0;
-}
-
 /* Computes the cables' part of it. */
 void fu_matrix_of_cables(fu_run *run, fu_weights weights)
 {
@@ -74,6 +66,13 @@ void fu_add_matrix_of_others(fu_run *run, fu_weights weights)
 {
     const fu_equations at = {.now = &run->now, .next = &run->next, .weights = weights};
     add_matrix_of_others(run, &at);
+}
+
+/* Computes the same for these weights, unfactored; unknowns move bodies from `next`. */
+void fu_matrix_of_weights(fu_run *run, fu_weights weights)
+{
+    fu_matrix_of_cables(run, weights);
+    fu_add_matrix_of_others(run, weights);
 }
 
 /* Moves `next` by unknowns from its position, in statics. */

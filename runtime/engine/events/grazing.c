@@ -24,7 +24,7 @@ static double rate_of_q(const fu_model *model, const fu_state *state, int index)
         if (k < 0) continue;
         if (k >= body->kernel->configuration)
             return state->v[body->dof + body->kernel->velocity + k - body->kernel->configuration];
-        fu_body_rate(body->kernel, state->q + body->configuration, state->v + body->dof, rate);
+        body->kernel->rate(state->q + body->configuration, state->v + body->dof, rate);
         return rate[k];
     }
     return NAN;

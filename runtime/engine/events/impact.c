@@ -7,7 +7,6 @@
 #include "equations/run.h"
 #include "events/events.h"
 #include "events/hard_contact.h"
-#include "events/penetration.h"
 
 #include <math.h>
 #include <string.h>
@@ -33,8 +32,9 @@ static void collect(fu_run *run, const fu_coupling *first, fu_active_contacts *t
         fu_hard_row *row = &t->row[t->n];
         fu_hard_row_at(model, fu_hard_contact_of(c), &run->now, row);
         if (flags->mode == FU_APART && c != first && row->g > CONTACT_TOLERANCE * fu_largest_length(run)) continue;
-        fu_keep_largest(&run->farthest[c->number],
-                        fu_hard_beyond(model, fu_hard_contact_of(c), &run->now)); /* it may separate within the step */
+        run->farthest[c->number] =
+            fmax(run->farthest[c->number],
+                 fu_hard_beyond(model, fu_hard_contact_of(c), &run->now)); /* it may separate within the step */
         t->was[t->n] = flags->mode;
         t->stuck[t->n] = flags->sticks;
         t->friction |= fu_hard_contact_of(c)->friction > 0.0;

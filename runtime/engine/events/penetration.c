@@ -7,11 +7,6 @@
 
 #include <math.h>
 
-void fu_keep_largest(double *largest, double value)
-{
-    if (value > *largest) *largest = value;
-}
-
 double fu_beyond(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     const fu_coupling_events *events = coupling->events;
@@ -27,8 +22,8 @@ void fu_note_depths(fu_run *run)
         const fu_coupling *c = fu_event_coupling(run, k);
         if (!c) continue;
         const fu_coupling_events *events = c->events;
-        if (events->depth)
-            fu_keep_largest(&run->deepest[c->number], events->depth(run->model, c, &run->now, run->event_values[k]));
-        fu_keep_largest(&run->farthest[c->number], fu_beyond(run->model, c, &run->now));
+        double *deepest = &run->deepest[c->number], *farthest = &run->farthest[c->number];
+        if (events->depth) *deepest = fmax(*deepest, events->depth(run->model, c, &run->now, run->event_values[k]));
+        *farthest = fmax(*farthest, fu_beyond(run->model, c, &run->now));
     }
 }

@@ -76,7 +76,7 @@ static void rates(const fu_model *model, const fu_state *state, double *rate)
     const int n_flexible = model->n_bodies ? model->bodies[0].dof : model->n_dof;
     memcpy(rate, state->v, sizeof(double) * (size_t)n_flexible);
     FU_EACH_BODY(body, model) {
-        fu_body_rate(body->kernel, state->q + body->configuration, state->v + body->dof, rate + body->configuration);
+        body->kernel->rate(state->q + body->configuration, state->v + body->dof, rate + body->configuration);
         memcpy(rate + body->configuration + body->kernel->configuration, state->v + body->dof + body->kernel->velocity,
                sizeof(double) * (size_t)body->modes);
     }
@@ -173,7 +173,7 @@ static void increments(const fu_run *run, const double *q, double *out)
     const int n_flexible = model->n_bodies ? model->bodies[0].dof : model->n_dof;
     memcpy(out, q, sizeof(double) * (size_t)n_flexible);
     FU_EACH_BODY(body, model) {
-        fu_body_increment(body->kernel, run->next.q + body->configuration, q + body->configuration, out + body->dof);
+        body->kernel->increment(run->next.q + body->configuration, q + body->configuration, out + body->dof);
         memcpy(out + body->dof + body->kernel->velocity, q + body->configuration + body->kernel->configuration,
                sizeof(double) * (size_t)body->modes);
     }

@@ -34,8 +34,16 @@ typedef struct {
     fu_complex_system newton;
 } fu_radau_workspace;
 
-const fu_radau_parameters *fu_radau_method(const fu_run *run);
-fu_radau_workspace *fu_radau_space(const fu_run *run);
+/* The parameters and the work space of a run. */
+static inline const fu_radau_parameters *fu_radau_method(const fu_run *run)
+{
+    return (const fu_radau_parameters *)run->parameters;
+}
+
+static inline fu_radau_workspace *fu_radau_space(const fu_run *run)
+{
+    return (fu_radau_workspace *)run->scratch;
+}
 
 /* radau_stages.c. Stages from the last step's polynomial, else from the present acceleration. */
 void fu_radau_predict(fu_run *run, fu_radau_workspace *w, double h);

@@ -46,7 +46,7 @@ void fu_radau_configure(fu_run *run, fu_radau_workspace *w, double h)
             for (int k = 0; k < STAGES; ++k) {
                 for (int i = 0; i < body->kernel->velocity; ++i)
                     velocity[i] = now->v[body->dof + i] + w->Z[(long)k * n + body->dof + i];
-                fu_body_rate(body->kernel, w->q + (long)k * model->n_q + at, velocity, rates[k]);
+                body->kernel->rate(w->q + (long)k * model->n_q + at, velocity, rates[k]);
             }
             for (int k = 0; k < STAGES; ++k) {
                 const double *row = method->A + STAGES * k;

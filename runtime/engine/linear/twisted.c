@@ -17,13 +17,20 @@ typedef struct {
 } chain_in_halves;
 
 /* A job shared by two threads, half each. */
-typedef struct {
+typedef struct job {
     const fu_system *system;
     const fu_lapack *lapack;
     chain_in_halves chain;
     fu_span rows; /* nonzero rows of x */
     double *x;
+    void (*work)(const struct job *job, int half);
 } job;
+
+static void work_part(const void *what, int part, int parts)
+{
+    const job *job = what;
+    for (int half = part; half < 2; half += parts) job->work(job, half);
+}
 
 int fu_is_twisted(const fu_system *s, int chain)
 {
@@ -71,18 +78,13 @@ static void eliminate(const job *job, int half)
     s->pivot_band[c->start + half] = info;
 }
 
-static void eliminate_part(const void *what, int part, int parts)
-{
-    for (int half = part; half < 2; half += parts) eliminate(what, half);
-}
-
 /* Factors a chain of K; returns nonzero if it is not symmetric or not positive definite. */
 int fu_twisted_factor(fu_system *s, const fu_lapack *lapack, int chain)
 {
-    const job job = {s, lapack, in_halves(s, chain), {0, 0}, 0};
+    const job job = {s, lapack, in_halves(s, chain), {0, 0}, 0, eliminate};
     const chain_in_halves *c = &job.chain;
     const int width = s->width, stride = width + 1, last = c->middle - 1;
-    fu_share(s->threads, c->n, eliminate_part, &job);
+    fu_share(s->threads, c->n, work_part, &job);
     if (s->pivot_band[c->start] || s->pivot_band[c->start + 1]) return 1;
     double *first = c->L[0] + (long)c->count * stride;
     const double *second = c->L[1] + (long)c->count * stride;
@@ -127,24 +129,15 @@ static void backward(const job *job, int half)
     for (int i = 0; i < c->count; ++i) x[c->n - 1 - i] = mirror[i];
 }
 
-static void forward_part(const void *what, int part, int parts)
-{
-    for (int half = part; half < 2; half += parts) forward(what, half);
-}
-
-static void backward_part(const void *what, int part, int parts)
-{
-    for (int half = part; half < 2; half += parts) backward(what, half);
-}
-
 /* Computes x = K^-1 x in a chain, with x zero outside of these rows. */
 void fu_twisted_solve(const fu_system *s, int chain, fu_span rows, double *x)
 {
-    const job job = {s, 0, in_halves(s, chain), rows, x};
+    job job = {s, 0, in_halves(s, chain), rows, x, forward};
     const chain_in_halves *c = &job.chain;
     double *middle = x + c->start + c->count;
-    fu_share(s->threads, c->n, forward_part, &job);
+    fu_share(s->threads, c->n, work_part, &job);
     for (int i = 0; i < c->middle; ++i) middle[i] += s->mirror[c->start + c->count + c->middle - 1 - i];
     fu_band_solve(c->middle, s->width, c->L[0] + (long)c->count * (s->width + 1), 0, middle);
-    fu_share(s->threads, c->n, backward_part, &job);
+    job.work = backward;
+    fu_share(s->threads, c->n, work_part, &job);
 }

@@ -51,7 +51,10 @@ void fu_detect_contact(const fu_model *model, fu_state *state);
 int fu_is_possible(const fu_model *model, const fu_state *state);
 
 /* Scale of constraint rows, and of internal forces, by the inertia of a system: statics has none. */
-double fu_row_unit(double inertia, double mass);
+static inline double fu_row_unit(double inertia, double mass)
+{
+    return inertia != 0.0 ? mass : 1.0;
+}
 /* Adds a solution `own` of a Newton system, whose equilibrium is multiplied by `scale`, to coordinates and forces. */
 void fu_add_internal(const fu_model *model, fu_state *state, const double *own, double inertia, double scale);
 /* Returns the coupling of an unknown beyond the dofs. */

@@ -83,16 +83,15 @@ static void travel_since(const fu_crossing *crossing, const last_step *last, con
     way->depth = (fu_step_ends){{last->depth, contact->depth[0]}, {last->sinking, contact->depth[1]}};
 }
 
-/* Returns the size of the stretch at the last step if it slid then, m, else 1. */
-static double slid_stretch(const last_step *last)
-{
-    const double size = sqrt(fu_dot(2, last->stretch, last->stretch));
-    return last->slid != 0.0 && size > 0.0 ? size : 1.0;
-}
-
 static int slid_before(const last_step *last)
 {
     return last->slid != 0.0 && fu_dot(2, last->stretch, last->stretch) > 0.0;
+}
+
+/* Returns the size of the stretch at the last step if it slid then, m, else 1. */
+static double slid_stretch(const last_step *last)
+{
+    return slid_before(last) ? sqrt(fu_dot(2, last->stretch, last->stretch)) : 1.0;
 }
 
 /* Returns whether a stretch takes the direction of turn_to_slip: in the plane there is one direction; against the slip

@@ -44,7 +44,7 @@ void fu_update_director(const fu_model *model, const fu_coupling *coupling, fu_s
     double *d = fu_slide_numbers_of(model, state, j)->director, i[3];
     if (!model->slides[j].carries_director) return;
     evaluate_constraint(model, state, j, state->s[j], i);
-    double along = i[0] * d[0] + i[1] * d[1] + i[2] * d[2], square = 0.0;
+    double along = fu_dot(3, i, d);
     if (!(fabs(along) < MAX_ALIGNMENT)) {
         const double x = fabs(i[0]), y = fabs(i[1]), z = fabs(i[2]);
         const int least = x <= y && x <= z ? 0 : y <= z ? 1 : 2;
@@ -52,6 +52,6 @@ void fu_update_director(const fu_model *model, const fu_coupling *coupling, fu_s
         along = i[least];
     }
     for (int k = 0; k < 3; ++k) d[k] -= along * i[k];
-    for (int k = 0; k < 3; ++k) square += d[k] * d[k];
-    for (int k = 0; k < 3; ++k) d[k] /= sqrt(square);
+    const double size = sqrt(fu_dot(3, d, d));
+    for (int k = 0; k < 3; ++k) d[k] /= size;
 }

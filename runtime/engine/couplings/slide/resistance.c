@@ -76,14 +76,9 @@ static double power_of(const fu_model *model, const fu_state *state, int j, cons
     const fu_end_stop *stop = pressed(model, state, j);
     const int side = fu_slide_flags_of(model, state, j)->contact;
     const double spring = stop ? -side * stop->stiffness * fu_compression(model, state, j, side) : 0.0;
-    double along = 0.0, square = 0.0;
     fu_resistance resistance;
     fu_resistance_at(model, state, j, t, u, f, &resistance);
-    for (int d = 0; d < model->dim; ++d) {
-        along += t[d] * u[d];
-        square += t[d] * t[d];
-    }
-    return -(resistance.R - spring) * along / square;
+    return -(resistance.R - spring) * fu_dot(model->dim, t, u) / fu_dot(model->dim, t, t);
 }
 
 /* Returns the energy of the springs of the buffers around a slide, J: of those that it does not compress alone, or of
@@ -163,8 +158,7 @@ static void along(const fu_model *model, const fu_slide_state *slide_state, doub
 {
     const int dim = model->dim;
     const double *G = slide_state->by_point + (dim - 1) * dim;
-    double square = 0.0;
-    for (int d = 0; d < dim; ++d) square += G[d] * G[d];
+    const double square = fu_dot(dim, G, G);
     for (int d = 0; d < dim; ++d) {
         t[d] = G[d] / square;
         u[d] = t[d] * slide_state->s_rate;
