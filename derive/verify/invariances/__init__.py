@@ -1,4 +1,4 @@
-"""What no motion of the frame may change in a kernel: by role of the family, each as (text, error, ceiling).
+"""Invariances of kernels under motions of the frame: by role of the family, each as (text, error, ceiling).
 
 The error is relative to the scale that the text's quantity has in the sample.
 """

@@ -1,4 +1,4 @@
-"""What no motion of the frame may change in a body's kernels."""
+"""Invariances of a body's kernels under motions of the frame."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What lines that touch do in cases known without derivation."""
+"""Lines in contact in cases known without derivation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What drag is in cases known without derivation."""
+"""Drag in cases known without derivation."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def drag(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]:
 
 
 def _on_section(k: Numbers, s: State) -> Iterator[Invariance]:
-    """Yield that forces on a section turn with the scene, have the moment C_M, and what they do to the flow."""
+    """Yield that forces on a section turn with the scene, have the moment C_M, and take power from the flow."""
     out = k("on_section", s)
     f, vectors = out["f"], [s[name] for name in "tdw"]
     for spin in spins(3):
@@ -75,7 +75,9 @@ def _wetness(k: Numbers, s: State) -> Iterator[Invariance]:
 
 
 def _added_mass(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]:
-    """Yield that impulses turn with the scene, and that over a step the energy of the fluid is what its force gives."""
+    """Yield that impulses turn with the scene, and that over a step the force gives the change of the energy of the
+    fluid.
+    """
     out = k("inertia_of_cable", s)
     for spin in spins(family.dim):
         turned = out["p_t"] @ (spin @ s["t"]) + out["M"] @ (spin @ s["w"])

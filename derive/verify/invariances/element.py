@@ -1,4 +1,4 @@
-"""What no motion of the frame may change in an element's kernels."""
+"""Invariances of an element's kernels under motions of the frame."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .measures import Invariance, relative
 
 
 def element(family: ElementFamily, k: Numbers, s: State) -> Iterator[Invariance]:
-    """Yield partition of unity, totals, and what holds of loads."""
+    """Yield partition of unity, totals, and balances of loads."""
     yield from _shape_and_mass(family, k, s)
     yield from load.invariances(family.element, k, s)
 

@@ -1,4 +1,4 @@
-"""What no turn may change in the frame of two vectors."""
+"""Invariances of the frame of two vectors under turns."""
 
 from __future__ import annotations
 

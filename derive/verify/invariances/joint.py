@@ -21,7 +21,7 @@ FREE = {"spherical": "rx ry rz", "revolute": "rz", "revolute_angle": "", "univer
 
 
 def joint(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]:
-    """Yield that phi is zero where the joint is met, blind to what it lets pass and to nothing else."""
+    """Yield that phi is zero on the joint, and changes with all motions but those that the joint leaves free."""
     dim, turns = family.dim, TURNS[family.dim]
     name = family.name.removeprefix("joint_")
     c = float(s["c"][0])

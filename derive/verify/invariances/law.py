@@ -1,4 +1,4 @@
-"""What no motion of the frame may change in the kernels of a law."""
+"""Invariances of the kernels of a law under motions of the frame."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .measures import FAR, Invariance, quantised, relative, spins
 
 
 def law(family: LawFamily, k: Numbers, s: State) -> Iterator[Invariance]:
-    """Yield what rigid motion must not change in any kernel of a law."""
+    """Yield the invariances of the kernels of a law under rigid motion."""
     yield from _rigid_motion(family, k, s)
     yield from _deformed(family, k, s)
     if "discrete_force" not in family.missing:
@@ -84,7 +84,7 @@ def _deformed(family: LawFamily, k: Numbers, s: State) -> Iterator[Invariance]:
 
 
 def _step(family: LawFamily, k: Numbers, s: State) -> Iterator[Invariance]:
-    """Yield what holds of forces and moments over a step."""
+    """Yield the balances of forces and moments over a step."""
     spec = family.element
     positions = np.array(spec.is_position, dtype=float)
     e, e_next = quantised(s["e"]), quantised(s["e_next"])

@@ -1,4 +1,4 @@
-"""What no motion of the frame may change in the load kernels of an element."""
+"""Invariances of the load kernels of an element under motions of the frame."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What invariances are made of: errors with ceilings, numbers that shift exactly, infinitesimal rotations."""
+"""Parts of invariances: errors with ceilings, numbers that shift exactly, infinitesimal rotations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the moves of bodies keep."""
+"""Invariances of the moves of bodies."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .measures import Invariance
 
 
 def moves(rider: Motions, k: Numbers, s: State) -> Iterator[Invariance]:
-    """Yield what moves must keep: the attitude's size; the way that they reach where small and large turns part."""
+    """Yield that moves keep the size of the attitude, also where the formulas of small and large turns meet."""
     dim = rider.dim
     for kernel, output in (("move", "b_next"), ("cayley_move", "b_next"), ("halfway", "b_half")):
         size = np.linalg.norm(k(kernel, s)[output][dim:])

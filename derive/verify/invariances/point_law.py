@@ -1,4 +1,4 @@
-"""What no law of a force between two points may do."""
+"""Invariances of the laws of forces between two points."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .measures import Invariance, relative
 
 
 def point_law(family: PointLawFamily, k: Numbers, s: State) -> Iterator[Invariance]:
-    """Yield what no law may do: know directions of its own, turn the pair of points, depend on the path at rest."""
+    """Yield that a law has no directions of its own, no moment on the pair of points, and a symmetric stiffness."""
     Q = rotation(np.random.default_rng(0), family.dim)
     turned = {name: Q @ s[name] for name in ("gap", "gap_rate", "gap_next")}
     for kernel, output in (("energy", "U"), ("force", "f"), ("discrete_force", "f")):

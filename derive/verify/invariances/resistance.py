@@ -1,4 +1,4 @@
-"""What friction and buffers are in cases known without derivation."""
+"""Friction and buffers in cases known without derivation."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .measures import Invariance
 
 
 def resistance(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]:
-    """Yield that friction acts against the motion, as large as the normal force makes it, and what a buffer does."""
+    """Yield that friction acts against the motion with mu times the normal force, and the force of a buffer."""
     i = s["t"] / np.linalg.norm(s["t"])
     length, v = np.linalg.norm(s["t"]), i @ s["u"]
     N = np.linalg.norm(s["f"] - (s["f"] @ i) * i)

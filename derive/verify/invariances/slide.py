@@ -55,7 +55,7 @@ def _kept(family: SlideFamily, k: Numbers, s: State, n_e: int) -> Iterator[Invar
 
 
 def _frame(family: SlideFamily, k: Numbers, s: State, out: dict[str, Any], n_e: int) -> Iterator[Invariance]:
-    """Yield what a turn of the whole scene changes in the tangent frame, and what a move far away changes."""
+    """Yield the changes in the tangent frame by a turn of the whole scene, and by a shift far away."""
     element, rider = family.element, RIDERS[family.rider]
     positions = np.array(element.is_position, dtype=float)
     Q, turn = rider.frame(np.random.default_rng(3))
@@ -88,7 +88,7 @@ def _frame(family: SlideFamily, k: Numbers, s: State, out: dict[str, Any], n_e: 
 
 
 def _step(family: SlideFamily, k: Numbers, s: State, n_e: int) -> Iterator[Invariance]:
-    """Yield the momenta over a step: what the joint's force does to cable and rider, about the rider's mean place."""
+    """Yield the momenta over a step of the joint's force on cable and rider, about the rider's mean place."""
     element, rider = family.element, RIDERS[family.rider]
     dim, positions = element.dim, np.array(element.is_position, dtype=float)
     forces = k("discrete_gradient", s)["G"].T @ s["f"]

@@ -1,4 +1,4 @@
-"""What surfaces and contact are in cases known without derivation."""
+"""Surfaces and contact in cases known without derivation."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ from ..motion import cross, frame
 from .element import Shape, density, gauss, section_points, spatial, stress
 
 mp = mpmath.mp
-ALONG = 5  # Gauss points of the sample's A: whatever their number, A is their sum
+ALONG = 5  # Gauss points of the sample's A, of which A is the sum
 
 
 class Body:

@@ -1,4 +1,4 @@
-"""What the outputs of the kernels `section_forces` are, for any law."""
+"""References of the kernels `section_forces`, for any law."""
 
 from __future__ import annotations
 

@@ -124,7 +124,7 @@ def _with_bubble(gamma: Callable[..., Any], kappa, shear, bending, sign: int, l)
 
 
 def _least(parabola: Callable[..., Any]):
-    """Return where a parabola is least; 0 where it is flat."""
+    """Return the place of the minimum of a parabola; 0 where it is flat."""
     below, here, above = (parabola(mp.mpf(beta)) for beta in (-1, 0, 1))
     curvature = above - 2 * here + below
     return mp.mpf(0) if curvature == 0 else (below - above) / (2 * curvature)

@@ -1,4 +1,4 @@
-"""What every output of every kernel is the derivative of: by role of the family, for any element and any rider."""
+"""Relations between the outputs of kernels and derivatives, by role of the family, for any element and any rider."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""What the kernels of added mass are derivatives of: the kinetic energy of the fluid, and its impulse over time."""
+"""Relations of the kernels of added mass: derivatives of the kinetic energy of the fluid, and of its impulse in time.
+"""
 
 from __future__ import annotations
 
@@ -97,7 +98,7 @@ def _body_over_step() -> list[Relation]:
         return [k("impulse_of_point", s, A=A, w=s[w])["p"] for A, w in zip(ends(s), ("w", "w_next"), strict=True)]
 
     def work(k, s):
-        """Return what the kinetic energy changes by, less the work of dp on the way of the point."""
+        """Return the change of the kinetic energy less the work of dp on the displacement of the point."""
         before, after = impulses(k, s)
         energy = (after.dot(s["w_next"]) - before.dot(s["w"])) / 2
         return energy - (after - before).dot((s["w"] + s["w_next"]) / 2 - more(k, s, 0, 0))

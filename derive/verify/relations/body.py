@@ -1,4 +1,4 @@
-"""What the outputs of a body's kernels are: points along finite motions, and Newton-Euler from momentum."""
+"""Relations of the kernels of bodies: points along finite motions, and Newton-Euler from momentum."""
 
 from __future__ import annotations
 

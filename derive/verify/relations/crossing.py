@@ -1,4 +1,4 @@
-"""What the kernels of lines that touch are derivatives of: the force at closest points that are found anew."""
+"""Relations of the kernels of lines in contact: derivatives of the force at closest points found anew."""
 
 from __future__ import annotations
 
@@ -196,7 +196,9 @@ def _friction(lines: Lines) -> list[Relation]:
         return old({**s, "x": x})
 
     def turned(s: State) -> Any:
-        """Return the direction of what slides as a sum of unit vectors, those of the slip at both ends among them."""
+        """Return the direction of a sliding stretch as a sum of unit vectors, those of the slip at both ends among
+        them.
+        """
         r, change = (s["mu"] * _size(s) / s["k_t"] + s["r_0"]) / 2, now(s) - old(s)
         A = change.dot(change) ** 0.5 / r
         first = old({**s, "x": s["v"]})
@@ -216,7 +218,7 @@ def _friction(lines: Lines) -> list[Relation]:
 
 
 def _contact() -> list[Relation]:
-    """Return the relations of what contact is at the closest points, in closed form."""
+    """Return the relations of contact at the closest points, in closed form."""
     def depth(s: State) -> Any:
         n = across(s)
         return np.array([s["c"][0] - n.dot(s["d"]), -n.dot(s["u"])])
@@ -272,7 +274,7 @@ def _step() -> list[Relation]:
         return np.array([(normal - elastic) * (s["p_next"] - s["p"]) - friction(k, s).dot(slip(s))])
 
     def makes_up(s: State) -> Any:
-        """Return what the gap changes by, less what its gradient half-way has, over the square of all that moves."""
+        """Return the change of the gap less that of its gradient half-way, over the square of all changes."""
         way, gap = s["way"], s["p"] - s["p_next"]
         turns = sum(size * size * (turn.dot(turn) + NEGLIGIBLE)
                     for turn, size in zip(s["turn"], s["size"], strict=True))

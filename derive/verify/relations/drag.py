@@ -1,4 +1,4 @@
-"""What the kernels of drag are derivatives of: the force, of a potential by the relative velocity."""
+"""Relations of the kernels of drag: the force is the derivative of a potential by the relative velocity."""
 
 from __future__ import annotations
 

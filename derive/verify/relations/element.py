@@ -1,4 +1,4 @@
-"""What the outputs of an element's kernels are: eq 2-4, and loads."""
+"""Relations of the kernels of elements: eq 2-4, and loads."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the kernels of the frame of two vectors are derivatives of."""
+"""Relations of the kernels of the frame of two vectors."""
 
 from __future__ import annotations
 

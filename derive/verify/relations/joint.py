@@ -1,4 +1,4 @@
-"""What the kernels of joints are derivatives of. Axes are turned by quaternions, which the derivation does not use."""
+"""Relations of the kernels of joints. Axes are turned by quaternions, which the derivation does not use."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the outputs of the kernels of a law are: eq 5-9."""
+"""Relations of the kernels of laws: eq 5-9."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def law(family: LawFamily) -> list[Relation]:
         energy, power = (root(f, spec, family.law) for f in (reference.energy, reference.dissipation))
         sections = [(output, text, root(section.resultant(output), spec, family.law))
                    for output, text in section.TEXTS.items()]
-    else:  # a law of the user's is what its energy and its dissipated power say
+    else:  # the energy and the dissipated power of a user's law define it
         energy, power = from_kernel("energy", "U"), from_kernel("dissipation", "P")
         sections = [(output, "as derived, at 50 digits", from_kernel("section_forces", output))
                    for output in section.TEXTS]
@@ -103,7 +103,7 @@ def _stiffness_at(spec: Element) -> list[Relation]:
         return [curved_continuum.density_at(spec, s | {"e": e}) for e in near(s)]
 
     def near(s):
-        """Return so many states that no other quadratic form in their Gram products gives these energies."""
+        """Return enough states for one quadratic form in their Gram products alone to give these energies."""
         moves = np.random.default_rng(1).normal(size=(450, *s["e"].shape))
         return [s["e"] + move for move in moves]
 

@@ -1,4 +1,4 @@
-"""What the outputs of the load kernels are, for any element."""
+"""Relations of the kernels of loads, for any element."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def loads(spec: Element) -> list[Relation]:
 
 
 def turning_rate(slopes: list[np.ndarray], rates: list[np.ndarray]) -> np.ndarray:
-    """Return the least omega of those with the least sum |a' - omega x a|^2, in mpmath numbers."""
+    """Return the smallest omega with the least sum |a' - omega x a|^2, in mpmath numbers."""
     if len(slopes[0]) == 2:
         return np.array([sum(a[0] * v[1] - a[1] * v[0] for a, v in zip(slopes, rates, strict=True))
                          / sum(a.dot(a) for a in slopes)])

@@ -1,4 +1,4 @@
-"""What the outputs of a modal body's kernels are: sums over mass points, moved along finite motions."""
+"""Relations of the kernels of modal bodies: sums over mass points, moved along finite motions."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Paths:
         return np.array([self.rider.point(b, u) for u in at]) - t * t * s["g"] / 2
 
     def work(self, k: Numbers, s: State, t: Any, j: int = 0) -> np.ndarray:
-        """Return the masses times the places, along what the frame's coordinates move."""
+        """Return the masses times the places, along the motion by the frame's coordinates."""
         moved, A = self.falling(k, s, t), self.axes(s["b"])
         at = s["points"] + np.tensordot(s["eta"], s["modes"], 1)
         rho = s["masses"]
@@ -133,7 +133,7 @@ def power(k: Numbers, s: State) -> Any:
 
 
 def turning(kernel: str, output: str, columns: bool = True) -> Callable[..., Any]:
-    """Return what turns the axes by each column, or by the one vector, of an output."""
+    """Return the turn of the axes by each column, or by the one vector, of an output."""
     def of(k, s):
         axes, T = k("attachment", s)["axes"], k(kernel, s)[output]
         T = T if columns else T[:, None]

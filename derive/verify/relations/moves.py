@@ -9,7 +9,7 @@ from ..numbers import Numbers
 
 
 def moves(rider) -> list[Relation]:
-    """Return what every output of the kernels of moves is."""
+    """Return the relations of the kernels of moves."""
     n, dim = rider.n_velocity, rider.dim
     turns = n - dim
 

@@ -10,7 +10,7 @@ from .paths import entry, from_kernel
 
 
 def point_law(family: PointLawFamily) -> list[Relation]:
-    """Return what every output of a law's kernels is."""
+    """Return the relations of the kernels of a law."""
     dim, U, e, rates = family.dim, reference.energy(family), reference.measures(family), reference.rates(family)
 
     def energy(k, s, t, j, at="gap"):

@@ -1,4 +1,4 @@
-"""What the kernels of friction and buffers are derivatives of."""
+"""Relations of the kernels of friction and buffers."""
 
 from __future__ import annotations
 

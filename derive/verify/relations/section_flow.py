@@ -1,4 +1,4 @@
-"""What the kernel of a section in a flow gives: forces by another form of them, and their derivatives."""
+"""Relations of the kernel of a section in a flow: forces from another formula, and their derivatives."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def _angle(t: Any, d: Any, w: Any) -> tuple[Any, Any]:
 
 
 def _coefficients(s: State, now: tuple[Any, ...]) -> Any:
-    """Return C_D, C_L and C_M at moved vectors, to first order of what the angle has turned by."""
+    """Return C_D, C_L and C_M at moved vectors, to first order in the turn of the angle."""
     (sine, cosine), (old_sine, old_cosine) = _angle(*now), _angle(*(s[name] for name in MOVED))
     turned = (sine * old_cosine - cosine * old_sine) / (cosine * old_cosine + sine * old_sine)
     return s["polar"][0::2] + s["polar"][1::2] * turned

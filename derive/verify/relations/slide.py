@@ -1,6 +1,6 @@
-"""What the outputs of the slide's kernels are derivatives of, for any element and any rider.
+"""Relations of the kernels of slides, for any element and any rider.
 
-s(q) is the root of C_l(q, s) = C_l at the sample, found by Newton in whatever numbers are in use: the samples are
+s(q) is the root of C_l(q, s) = C_l at the sample, found by Newton in the kind of number in use: the samples are
 off the joint, since the formulas hold there too.
 """
 
@@ -59,7 +59,7 @@ class Paths:
             now = k("constraint", s, x=x, **q)
             step = (now["C"][0] - level) / now["C_s"][0]
             x = x - step
-            if abs(step) ** 2 < k.eps / 100:  # what is left is of the order of the square
+            if abs(step) ** 2 < k.eps / 100:  # the rest is of second order
                 break
         return x
 
@@ -73,7 +73,7 @@ class Paths:
             return get(k, s, **(self.by_coordinate(k, s, t, j) if j < self.n else {"x": s["x"] + t}))
         return path
 
-    # --- what C and phi are, from shape functions at 50 digits --------------------------------------------------
+    # --- C and phi from shape functions at 50 digits ------------------------------------------------------------
 
     def reference_gap(self, k: Numbers, s: State, t: Any, j: int) -> np.ndarray:
         """Return r - p."""

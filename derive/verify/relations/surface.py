@@ -1,4 +1,4 @@
-"""What the kernels of surfaces and contact are derivatives of: distances, stored energy, forces along a normal."""
+"""Relations of the kernels of surfaces and contact: distances, stored energy, forces along a normal."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def _laws() -> list[Relation]:
 
 
 def _forces(dim: int) -> list[Relation]:
-    """Return those of forces: along a place the normal turns by H, and what presses changes with depth and rate."""
+    """Return the relations of forces: along a place the normal turns by H, its force changes with depth and rate."""
     def by_place(kernel: str, with_x: bool, presses: bool) -> Any:
         def path(k: Any, s: Any, t: Any, j: int) -> Any:
             move = t * unit(s["n"], j)

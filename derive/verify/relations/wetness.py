@@ -1,4 +1,4 @@
-"""What the kernels of wet parts are derivatives of: the mean depth, and the energy of the fluid."""
+"""Relations of the kernels of wet parts: the mean depth, and the energy of the fluid."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .paths import entry, from_kernel, unit
 
 
 def wetness(family: CouplingFamily) -> list[Relation]:
-    """Return the relations of wet parts, and of what their change adds to the inertia of the fluid."""
+    """Return the relations of wet parts, and of the inertia of the fluid from their change."""
     return [*_wet_parts(), *_entry(family.dim)]
 
 

@@ -57,6 +57,6 @@ def element_state(element: Element, random: np.random.Generator) -> State:
 
 
 def loads(element: Element, random: np.random.Generator) -> State:
-    """Return the components of a follower force and of a moment, as many as the element takes."""
+    """Return the components of a follower force and of a moment on the element."""
     local = element.dim if element.dim == 2 or element.director else 1
     return {"c": random.normal(size=local), "M": random.normal(size=1 if element.dim == 2 else 3)}

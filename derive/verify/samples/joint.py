@@ -11,7 +11,7 @@ from ..numbers import Numbers, State
 
 
 def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) -> State:
-    """Return two frames in any attitude, not on the joint, with velocities, and what drives the joint."""
+    """Return two frames in any attitude, not on the joint, with velocities, and the driven quantity."""
     dim, turns = family.dim, TURNS[family.dim]
     c = random.uniform(0.3, 1.2)
     return {"gap": random.normal(size=dim), "A1": _attitude(random, dim), "A2": _attitude(random, dim),
