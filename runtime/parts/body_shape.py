@@ -12,7 +12,7 @@ from ..errors import near
 from .data_files import arrays_of
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
+    from numpy.typing import ArrayLike  # 9 ms, and for type checkers
 
 ARRAYS = ("nodes", "modes", "masses", "stiffness")
 SYMMETRY_TOLERANCE, ORTHOGONALITY_TOLERANCE, DEFINITENESS_TOLERANCE = 1e-9, 1e-6, 1e-10

@@ -110,9 +110,9 @@ class Cable(DrawnCable, CableFields):
         if self.shape is not None and self.points is not None:
             raise ValueError(f'has points and shape="{self.shape}"', "give one of them")
         if self.shape == "hanging" and self.rest_length is None:
-            raise ValueError("hangs with the length that it has, but rest_length is missing")
+            raise ValueError('has shape="hanging", but rest_length is missing')
         if self.shape == "hanging" and self.rest != "straight":
-            raise ValueError('has shape="hanging", but is to be free of stress as drawn', 'leave rest out, or give the '
+            raise ValueError('has shape="hanging", but rest="drawn"', 'leave rest out, or give the '
                              "catenary as curve")
         if self.start is not None and self.end is not None and self.start == self.end:
             raise ValueError(

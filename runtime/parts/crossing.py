@@ -76,7 +76,7 @@ class Crossing(Part):
     @model_validator(mode="after")
     def _is_of_two_lines(self) -> Crossing:
         if self.a == self.b:
-            raise ValueError(f'is of the cable "{self.a}" with itself', "name two cables, or a cable and a body")
+            raise ValueError(f'has the cable "{self.a}" on both sides', "name two cables, or a cable and a body")
         if self.friction is not None:
             self.friction.check_coulomb()
             if self.friction.sticks and self.exponent != 1.0 and self.tangential_stiffness is None:

@@ -18,7 +18,7 @@ from ..base.rotations import cross
 from .validation import Points, items, show, shown, vector
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
+    from numpy.typing import ArrayLike  # 9 ms, and for type checkers
 
 FOLD_SAMPLES = 33
 """Points of an interval at which folds are sought."""

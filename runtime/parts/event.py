@@ -61,8 +61,8 @@ class Event(Part):
     @model_validator(mode="after")
     def _watches_one_thing(self) -> Event:
         if (self.quantity is None) == (self.function is None):
-            raise ValueError("must watch either a quantity or a function", 'give quantity="A.position.y" or function=f')
+            raise ValueError("must have either a quantity or a function", 'give quantity="A.position.y" or function=f')
         if self.function is not None and (self.value or self.s is not None):
-            raise ValueError("watches a function, which passes zero: value and s are not for it",
+            raise ValueError("has a function, which takes neither value nor s",
                              "subtract the value in the function")
         return self

@@ -80,7 +80,7 @@ def tabulated(table: ForceTable, pulls_alone: bool) -> list[Piece]:
         return _with_energies(pieces)
     if slopes[-1] < 0 or not (T[-1] > 0 or slopes[-1] > 0):
         raise ValueError("with tension_only, a table must have tension at large extensions",
-                         "give a last piece that does not fall, with tension above nil")
+                         "give a last segment with positive, not decreasing tension")
     start = _loses_force(x, T, slopes)
     taut = [Piece(p.end, max(p.at, start), p.tension + p.stiffness * max(start - p.at, 0.0), p.stiffness, PULLS_ALONE)
             for p in pieces if p.end > start]
@@ -92,12 +92,12 @@ def _loses_force(x: np.ndarray, T: np.ndarray, slopes: np.ndarray) -> float:
     if T[0] > 0:
         if slopes[0] <= 0:
             raise ValueError("with tension_only, a table must have no tension at small extensions",
-                             "let it begin with tension nil")
+                             "let it begin with zero tension")
         return float(x[0] - T[0] / slopes[0])
     last = int(np.flatnonzero(T <= 0)[-1])
     if np.any(T[:last] > 0):
         raise ValueError("with tension_only, a table must not lose its tension as it is extended",
-                         "give tensions that stay above nil once they are")
+                         "give tensions that stay positive")
     return float(x[last] - T[last] / slopes[min(last, len(slopes) - 1)])
 
 

@@ -67,9 +67,9 @@ class Friction(Part):
         """Raise ValueError unless it is Coulomb friction, the friction of contacts and crossings."""
         for name in ("viscous", "rolling"):
             if getattr(self, name):
-                raise ValueError(f"takes no {name} friction, which is of slides", f"leave {name} out")
+                raise ValueError(f"has {name} friction, which only slides have", f"leave {name} out")
         if self.static != self.coefficient:
-            raise ValueError("sticks by its coefficient of sliding: a static_coefficient of its own is of slides",
+            raise ValueError("has a static_coefficient, which only slides have",
                              "leave static_coefficient out")
 
 

@@ -146,7 +146,7 @@ def _cable(part: Cable, axes: PlaneAxes, scene: SceneData) -> Cable:
         along = np.linspace(0, 1, 8 * len(part.drawn_through))
         apart = axes.plane.points_into(drawn.point(along * drawn.length)) - laid_down.point(along * laid_down.length)
         if np.abs(apart).max() > FLAT * max(axes.size, drawn.length):
-            raise SceneError(part.where, f"its curve through the points is another one in the axes of "
+            raise SceneError(part.where, f"its curve through the points changes in the axes of "
                              f"{called(axes.plane)}", "give more points")
     return made
 

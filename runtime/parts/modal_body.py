@@ -92,13 +92,13 @@ class ModalBody(Part):
             if given := [name for name, value in drawn.items() if value is not None]:
                 raise ValueError(f"has data and {given[0]}", "give the file, or the entries of a beam")
             if self.position is None:
-                raise ValueError("position is missing: where is the frame of its data?")
+                raise ValueError("position is missing: data needs that of its frame")
             self.shape  # noqa: B018  what the file says is checked here
             return self
         if missing := [name for name, value in drawn.items() if value is None]:
             raise ValueError(f"{missing[0]} is missing", "give start, end, section and material, or data")
         if self.position is not None or self.orientation != (1.0, 0.0, 0.0, 0.0):
-            raise ValueError("has start and end, which say where its frame is",
+            raise ValueError("has start and end, which define its frame",
                              "leave out position and orientation: they go with data")
         self._drawn  # noqa: B018
         return self

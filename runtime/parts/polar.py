@@ -55,7 +55,7 @@ class Polar(Part):
         if abs(self.angle[0] + pi) > ANGLE_TOLERANCE or abs(self.angle[-1] - pi) > ANGLE_TOLERANCE:
             raise ValueError(f"angle must go from -π to π, got {show(self.angle[0], 'rad')} to "
                              f"{show(self.angle[-1], 'rad')}",
-                             "give the coefficients for flow from all sides: past the stall those of a flat plate")
+                             "give the coefficients for all directions of flow, beyond the stall those of a flat plate")
         if min(self.drag) < 0 or self._table(self.drag).value(np.linspace(-pi, pi, 721)).min() < -1e-9:
             raise ValueError("drag must not be negative at any angle",
                              'look at the values, or take interpolation="linear"')

@@ -289,7 +289,7 @@ class SceneData:
             raise SceneError(part.where, f"there is already {article} {other.kind} of that name",
                              "give each part its own name")
         if name in RESERVED:
-            raise SceneError(part.where, "that name is taken by the results", "give another one")
+            raise SceneError(part.where, "its name is a name of results", "give another one")
 
     def free_name(self, part: type[Part]) -> str:
         """Return the least free name with a number, where all below it are taken."""

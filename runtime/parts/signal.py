@@ -22,7 +22,7 @@ from .schemas import checked
 from .validation import check_function, finite, list_of, one_of, positive, show
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
+    from numpy.typing import ArrayLike  # 9 ms, and for type checkers
 
 DEGREE = 6
 """Of the integral of a smooth rise; FU_SIGNAL_TERMS in engine/base/common.h is one more."""

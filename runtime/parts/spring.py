@@ -76,11 +76,11 @@ class Spring(PointForce):
         if self.table is not None and self.stiffness is not None:
             raise ValueError("has both a stiffness and a table", "give one of them")
         if self.table is not None and self.free_play:
-            raise ValueError("has both free play and a table", "write the free play into the table, as tension nil")
+            raise ValueError("has both free play and a table", "write the free play into the table, as zero tension")
         if self.table is None and not self.stiffness and (self.damping == 0 or self.tension_only or self.free_play):
             needs = " with tension_only or free_play" * bool(self.tension_only or self.free_play)
             raise ValueError("has neither stiffness nor damping" if not needs else f"needs a stiffness{needs}",
-                             "give one of them, or both" if not needs else "give a stiffness above nil")
+                             "give one of them, or both" if not needs else "give a positive stiffness")
         if self.table is not None:
             self.pieces()
         return self

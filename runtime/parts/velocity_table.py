@@ -51,7 +51,7 @@ def _check_numbers(array: np.ndarray) -> None:
     wrong = np.argwhere(~np.isfinite(array))
     if len(wrong):
         raise ValueError(f"must be finite, got {array[tuple(wrong[0])]} at the indices {wrong[0].tolist()}, one of "
-                         f"{len(wrong)} such places", "fill in what is missing, such as places on land")
+                         f"{len(wrong)} such places", "fill in missing values, such as those on land")
     if np.abs(array).max(initial=0.0) > OTHER_LIMITS[1]:
         raise ValueError(f"must not exceed {show(OTHER_LIMITS[1], 'm/s')} in size")
 

@@ -246,7 +246,7 @@ BAR = {"axis": None, "length": None}
 
 
 @pytest.mark.parametrize(("changes", "message"), [
-    ({"b": "wire", **BAR}, 'is of the cable "wire" with itself'),
+    ({"b": "wire", **BAR}, 'has the cable "wire" on both sides'),
     ({"b": "other", **BAR}, "radius is missing"),
     ({"b": "other"}, 'axis is given, but b is the cable "other"'),
     ({"b": "none"}, 'there is no cable or body "none"'),
@@ -264,7 +264,7 @@ BAR = {"axis": None, "length": None}
     ({"stiffness": 0.0}, "stiffness must be positive"),
     ({"damping": -1.0}, "damping must not be negative"),
     ({"friction": fu.Friction(coefficient=0.1, model="stick"), "exponent": 1.5}, "tangential_stiffness is missing"),
-    ({"friction": fu.Friction(coefficient=0.1, viscous=1.0)}, "takes no viscous friction"),
+    ({"friction": fu.Friction(coefficient=0.1, viscous=1.0)}, "has viscous friction"),
 ])
 def test_bad_input_is_refused(changes, message):
     with pytest.raises(fu.SceneError, match=message):

@@ -95,10 +95,10 @@ def test_of_a_scene_file_and_back():
     ({"quantity": "wire.position.y"}, "s is missing"),
     ({"quantity": "wire.position.y", "s": 4.9}, "node"),
     ({"quantity": "A.position.y", "s": 1.0}, "has no place s"),
-    ({}, "must watch either a quantity or a function"),
+    ({}, "must have either a quantity or a function"),
     ({"quantity": "A.position.y", "action": "halt"}, '"halt" is not known'),
     ({"function": 3}, "must be a function of"),
-    ({"function": abs, "value": 1.0}, "value and s are not for it"),
+    ({"function": abs, "value": 1.0}, "takes neither value nor s"),
 ])
 def test_what_cannot_be_watched(wrong, message):
     with pytest.raises(fu.SceneError) as error:

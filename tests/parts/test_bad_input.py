@@ -182,7 +182,7 @@ def test_names_are_unique():
         made.rigid_body("wire", **BODY)
     with refused('slide "A": there is already a rigid_body of that name; give each part its own name'):
         made.slide("A", along="wire", s=0.25, name="A")
-    with refused('rigid_body "energy": that name is taken by the results; give another one'):
+    with refused('rigid_body "energy": its name is a name of results; give another one'):
         made.rigid_body("energy", **BODY)
     assert list(made.bodies) == ["A"]
 

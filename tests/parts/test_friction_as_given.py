@@ -85,9 +85,9 @@ def test_what_is_none_is_refused(friction, message):
 
 
 @pytest.mark.parametrize(("friction", "message"), [
-    ({"coefficient": 0.1, "viscous": 1.0}, "takes no viscous friction"),
-    ({"rolling": 0.1}, "takes no rolling friction"),
-    ({"coefficient": 0.1, "static_coefficient": 0.2}, "static_coefficient of its own is of slides"),
+    ({"coefficient": 0.1, "viscous": 1.0}, "has viscous friction"),
+    ({"rolling": 0.1}, "has rolling friction"),
+    ({"coefficient": 0.1, "static_coefficient": 0.2}, "has a static_coefficient, which only slides have"),
 ])
 def test_what_is_of_slides_alone(friction, message):
     fu.Slide(body="a", along="b", s=1.0, friction=friction)

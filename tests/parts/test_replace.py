@@ -208,7 +208,7 @@ ONE_OF_TWO = {("force", "s"), ("event", "s"), ("event", "function"), ("modal_bod
 """Fields of parts that are described otherwise, or of other kinds of joints."""
 
 
-REASONS = "missing", "needs", "has neither", "must watch", "is for frame", "are for cable elements", "there is no fluid"
+REASONS = "missing", "needs", "has neither", "either a", "is for frame", "are for cable elements", "there is no fluid"
 """Why a value cannot be left out."""
 
 

@@ -11,7 +11,7 @@ VIOLATIONS = {
     "the model that imports a solver": ("model/build.py", "from ..solve import modes", "Layers of the package"),
     "a solver that imports results": ("solve/modes/modes.py", "from ..results import run", "Layers of the package"),
     "results that import the scene": ("results/run.py", "from ..scene import Scene", "Layers of the package"),
-    "for type checkers alone": ("parts/spring.py", "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n"
+    "for type checkers": ("parts/spring.py", "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n"
                                 "    from ..scene import Scene", "Layers of the package"),
     "within a function": ("parts/spring.py", "def later():\n    from ..scene import Scene", "Layers of the package"),
     "a circle": ("parts/material.py", "from . import cable", "No circles"),
