@@ -15,9 +15,9 @@ from .cable_changes import same_points
 from .change import Change, Rest, altered, named
 from .load_changes import by_values
 
-KEEPING_PLACE = "loads", "joints", "point_forces", "contacts"
+SCALING_GROUPS = "loads", "joints", "point_forces", "contacts"
 """Groups of couplings whose positions on a cable are fractions of its length."""
-SLIDING = tuple({kind.group for kind in COUPLINGS} - {*KEEPING_PLACE})
+NOT_SCALING_GROUPS = tuple({kind.group for kind in COUPLINGS} - {*SCALING_GROUPS})
 """The other groups: their positions on a cable are no fractions of its length, or their forces depend on its length and
 size."""
 
@@ -31,7 +31,7 @@ def lengthens_plainly(rest: Rest, cable: Cable) -> bool:
     scene, name = rest.scene, cable.name
     rigid = any(tie.rotation == "rigid" and name in (tie.cable, tie.to) for tie in scene.ties.values())
     touches = [contact for contact in scene.contacts.values() if contact.a == name]
-    if rigid or rest.names(name, SLIDING) or any(contact.name in rest.reader.parts for contact in touches):
+    if rigid or rest.names(name, NOT_SCALING_GROUPS) or any(contact.name in rest.reader.parts for contact in touches):
         return False
     return cable.shape != "hanging" or hangs_plainly(rest, cable)
 

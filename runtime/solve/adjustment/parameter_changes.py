@@ -39,12 +39,12 @@ from ...parts.support import Motion
 from ..statics.static_problem import StaticProblem
 from .cable_changes import Own
 from .change import Change, Rest, altered
-from .length_changes import SLIDING, by_length, hangs_plainly, lengthens_plainly
+from .length_changes import NOT_SCALING_GROUPS, by_length, hangs_plainly, lengthens_plainly
 from .load_changes import AnyLoad, by_end, by_place, by_values, unit_of
 from .snapshots import Reader
 
-APART_FROM_SECTIONS = "loads", "slides", "joints", "point_forces"
-OF_SECTIONS = tuple({kind.group for kind in COUPLINGS} - {*APART_FROM_SECTIONS})
+SECTION_INDEPENDENT_GROUPS = "loads", "slides", "joints", "point_forces"
+SECTION_DEPENDENT_GROUPS = tuple({kind.group for kind in COUPLINGS} - {*SECTION_INDEPENDENT_GROUPS})
 """Groups of parts that may depend on the size and the weight of a cable's section."""
 DIFFERENCE_STEP = 1e-6
 """Relative step of a number of a section, to either side, of differences of the forces of its cable."""
@@ -118,7 +118,8 @@ class Changes:
         if path.head != "gravity" or direction is None or not self._weighs_plainly(*self.scene.cables,
                                                                                    *self.scene.bodies):
             return None
-        if any(self.rest.names(cable.name, SLIDING) or not hangs_plainly(self.rest, cable) for cable in hanging):
+        if any(self.rest.names(cable.name, NOT_SCALING_GROUPS) or not hangs_plainly(self.rest, cable)
+               for cable in hanging):
             return None
         cables = [cable_gravity(model, self.scene.cables[model.name], direction) for model in self.model.cables]
         bodies = [body_gravity(body, direction) for body in self.model.bodies]
@@ -142,7 +143,7 @@ class Changes:
             return None
         if path.entries == ("rest_length",):
             return by_length(self.rest, cable) if lengthens_plainly(self.rest, cable) else None
-        if path.entries[0] not in ("section", "material") or self.rest.names(cable.name, OF_SECTIONS):
+        if path.entries[0] not in ("section", "material") or self.rest.names(cable.name, SECTION_DEPENDENT_GROUPS):
             return None
         return self._of_section(cable, path)
 
