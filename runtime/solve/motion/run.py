@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import time
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, NamedTuple, Protocol
@@ -134,18 +135,23 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     run.row_notes.see(run.engine)
     messages += _controlled_alone(run.engine, settings)
     if status not in FAILED_STATUSES:
-        seen, engine = run.row_notes, run.engine
-        unmeasured = [] if settings.estimate else [
-            *sensitive(engine, settings, seen[Sensitivity]),
-            *grown(engine, settings, seen[SlackMotion], partial(_rows_again, scene, initial, method)),
-            *uncontrolled_errors(scene, engine, settings, seen[FastTurns], seen[NormalForces])]
-        messages += _warned([*notes(engine, settings), *trapped(scene, engine), *seen.notes(), *unmeasured])
+        messages += _warned(_result_notes(scene, settings, run, partial(_rows_again, scene, initial, method)))
     noted = time.perf_counter() - ended
     total = time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
     LOG.info("run %s after %.3g s", status.replace("_", " "), total)
     for message in messages:
         LOG.info("run: %s", message)
     return Simulation(run.model, run.engine, run.watcher, status, messages, reason, set_up, started, noted, total, cpu)
+
+
+def _result_notes(scene: SceneData, settings: RunSettings, run: _Begun,
+                  again: Callable[[RunSettings], dict[str, np.ndarray]]) -> list[str]:
+    """Return the notes on the results of a run; again: returns the rows of a second run with other settings."""
+    seen, engine = run.row_notes, run.engine
+    unmeasured = [] if settings.estimate else [
+        *sensitive(engine, settings, seen[Sensitivity]), *grown(engine, settings, seen[SlackMotion], again),
+        *uncontrolled_errors(scene, engine, settings, seen[FastTurns], seen[NormalForces])]
+    return [*notes(engine, settings), *trapped(scene, engine), *seen.notes(), *unmeasured]
 
 
 def _rows_again(scene: SceneData, initial: Start | None, method: Integrator,
