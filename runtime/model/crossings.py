@@ -71,8 +71,8 @@ def _crossing(part: Crossing, builder: ModelBuilder) -> CrossingModel:
         stiffness=part.stiffness * (1.0 if linear else math.sqrt(max(radius, 1e-3))),
         scale=[max(*masses, *(end.mass for end in ends), 0.0)] * (2 * dim - 1), follows_law=True,
         is_damped=part.damping > 0 or sliding is not None, n_numbers=CROSSING_STICK if sticking else 0,
-        entries={"axis": axis, "low": (0.0, low), "high": (lines[0].mesh.total, high), "start": start.s, "way": start.d,
-                 "slopes": slopes, "friction": sticking,
+        entries={"axis": axis, "low": (0.0, low), "high": (lines[0].mesh.total, high), "start": start.s,
+                 "separation": start.d, "slopes": slopes, "friction": sticking,
                  "tangential": part.stiffness if part.tangential_stiffness is None else part.tangential_stiffness})
 
 

@@ -182,7 +182,7 @@ cdef extern from * nogil:
         int n, width, m, n_chains, n_strips, n_strip_rows
         const fu_strip *strips
         const int *first_strip, *chain_start, *on_chain
-        int *way, *n_columns, *n_rows, *constant_columns, *constant_rows
+        int *factorisations, *n_columns, *n_rows, *constant_columns, *constant_rows
         const fu_fronts *fronts
         fu_factors factors
         const int *chains, *half

@@ -69,8 +69,8 @@ cdef class Statics(Translation):
         if fu_system_factor_band(&self.run.newton, &LAPACK) or fu_system_factor_border(&self.run.newton, &LAPACK):
             raise ArithmeticError("singular")
         fu_system_solve(&self.run.newton, &LAPACK, self.run.rhs)
-        ways = {self.run.newton.way[c] for c in range(self.run.newton.n_chains)}
-        how = " and ".join(name for k, name in enumerate(("symmetric", "unpivoted", "pivoted")) if k in ways)
+        used = {self.run.newton.factorisations[c] for c in range(self.run.newton.n_chains)}
+        how = " and ".join(name for k, name in enumerate(("symmetric", "unpivoted", "pivoted")) if k in used)
         return np.array([self.run.rhs[i] for i in range(total)]), how
 
     def set_state(self, double t=0.0, q=None, s=None, prescribe=True, **given):

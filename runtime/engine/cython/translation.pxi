@@ -300,7 +300,7 @@ cdef class Translation(Arrays):
         system.X = self._zeros(self._counted(ends_of_x[-1] if n else 0))
         system.span_B, system.span_C = <fu_span *>self._int_zeros(2 * 2 * n), <fu_span *>self._int_zeros(2 * 2 * n)
         system.columns, system.rows = <fu_matrix_block *>self._int_zeros(4 * 2 * n), <fu_matrix_block *>self._int_zeros(4 * 2 * n)
-        system.way = self._int_zeros(chains)
+        system.factorisations = self._int_zeros(chains)
         system.n_columns, system.n_rows = self._int_zeros(chains), self._int_zeros(chains)
         system.constant_columns, system.constant_rows = self._int_zeros(chains), self._int_zeros(chains)
 

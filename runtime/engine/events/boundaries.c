@@ -115,8 +115,8 @@ double fu_time_to_boundary(const fu_run *run)
         if (!path.n) continue;
         const double rate = c->events->path->rate(run->model, c, &run->now);
         const double end = fu_boundary(path, segment_of(c, &run->now) + (rate > 0.0));
-        const double way = fabs(end - coordinate_of(c, &run->now));
-        if (way > fu_boundary_tolerance(path)) least = fmin(least, way / fabs(rate));
+        const double distance = fabs(end - coordinate_of(c, &run->now));
+        if (distance > fu_boundary_tolerance(path)) least = fmin(least, distance / fabs(rate));
     }
     return least;
 }

@@ -73,23 +73,23 @@ static int has_come_round(const fu_run *run, const fu_crossing *crossing)
 
 static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
 {
-    int *touches = &run->now.flags[coupling->flags];
+    int *in_contact = &run->now.flags[coupling->flags];
     (void)which, (void)side;
-    if (!*touches && has_come_round(run, crossing_of(coupling))) {
+    if (!*in_contact && has_come_round(run, crossing_of(coupling))) {
         fu_fail(run, FU_NOT_KNOWN, run->now.v, coupling->number);
         return FU_NO_CONVERGENCE;
     }
     const double stored = coupling->type->energy(run->model, coupling, &run->now);
-    run->now.numbers[coupling->numbers + FU_CROSSING_LEFT_BEHIND] = *touches ? stored : 0.0;
-    *touches = !*touches;
-    if (*touches && crossing_of(coupling)->friction > 0.0) {
+    run->now.numbers[coupling->numbers + FU_CROSSING_LEFT_BEHIND] = *in_contact ? stored : 0.0;
+    *in_contact = !*in_contact;
+    if (*in_contact && crossing_of(coupling)->friction > 0.0) {
         fu_closest_points points;
         fu_find_closest(run->model, crossing_of(coupling), &run->now, &points);
         fu_crossing_begin_stick(crossing_of(coupling), &points, &run->now);
     }
     /* a bar from beyond an end may overlap already: the stored energy is external work */
-    if (*touches) run->external += coupling->type->energy(run->model, coupling, &run->now);
-    *what = *touches ? "came into contact" : "lost contact";
+    if (*in_contact) run->external += coupling->type->energy(run->model, coupling, &run->now);
+    *what = *in_contact ? "came into contact" : "lost contact";
     return FU_RUNNING;
 }
 

@@ -28,8 +28,8 @@ double fu_hard_rate(const fu_hard_row *row, const double *H, const double *dofs)
 
 /* events/impact_friction.c: the jump of velocities by impulses with friction, in run->work; the continuation of
  * friction and normal forces, of which `loose` may be known to break loose. They return nonzero without a solution. */
-int fu_impact_with_friction(fu_run *run, fu_active_contacts *touching);
-int fu_settle_friction(fu_run *run, fu_active_contacts *touching, const fu_coupling *loose);
+int fu_impact_with_friction(fu_run *run, fu_active_contacts *active);
+int fu_settle_friction(fu_run *run, fu_active_contacts *active, const fu_coupling *loose);
 
 /* events/impact.c: determines the continuation of hard contacts at `now`, after one of them, `first` (null: at the
  * start), has closed, would pull, stops sliding, or breaks loose if it `yields`; returns a status. Each contact records

@@ -117,7 +117,7 @@ static int strike(fu_run *run, fu_active_contacts *t, double least)
 
 /* Solves for the normal forces of points that do not separate, by the accelerations without them; returns nonzero
  * without a solution. */
-static int press(fu_run *run, fu_active_contacts *t, double least)
+static int find_normal_forces(fu_run *run, fu_active_contacts *t, double least)
 {
     const fu_model *model = run->model;
     int n = 0, at[MAX_CONTACTS], kind[MAX_CONTACTS];
@@ -173,7 +173,7 @@ int fu_resolve_hard_contacts(fu_run *run, const fu_coupling *first, int yields)
         approach = fmax(approach, -t.before[k]);
     }
     if (approach > least && strike(run, &t, least)) return FU_NO_CONVERGENCE;
-    if (press(run, &t, least)) return FU_NO_CONVERGENCE;
+    if (find_normal_forces(run, &t, least)) return FU_NO_CONVERGENCE;
     if (t.friction && fu_settle_friction(run, &t, yields ? first : 0)) return FU_NO_CONVERGENCE;
     for (int k = 0; k < t.n; ++k) {
         fu_hard_flags *flags = fu_hard_flags_of(t.of[k], &run->now);

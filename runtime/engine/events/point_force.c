@@ -186,8 +186,8 @@ static double part_of_step(const fu_model *model, const fu_coupling *coupling, c
     const int bound = up ? before : before - 1;
     const end_course a = end_of(model, between, from, bound, h), b = end_of(model, between, to, bound, h);
     for (int i = 0; i < BISECTIONS; ++i) {
-        const double x = 0.5 * (low + high), way = between_ends(a, b, bends, x);
-        if ((up ? way : -way) < 0.0) low = x;
+        const double x = 0.5 * (low + high), value = between_ends(a, b, bends, x);
+        if ((up ? value : -value) < 0.0) low = x;
         else high = x;
     }
     return high;

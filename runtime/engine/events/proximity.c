@@ -50,12 +50,12 @@ fu_event_function_list fu_near_event_functions_within(const fu_run *run, double 
     if (!model->n_pairs || !p->is_known) return every_function(run);
     for (int m = 0; m < p->n_movers; ++m)
         for (int end = 0; end < 2 && p->movers[m].pairs; ++end) {
-            double way, turn, speed, spin;
-            fu_mover_gone_by(model, m, ends[end]->q, &way, &turn);
+            double displacement, turn, speed, spin;
+            fu_mover_gone_by(model, m, ends[end]->q, &displacement, &turn);
             speeds_of(model, m, ends[end]->v, &speed, &spin);
-            way += 0.34 * h * (speed + spin * p->movers[m].radius);
+            displacement += 0.34 * h * (speed + spin * p->movers[m].radius);
             turn += 0.34 * h * spin;
-            if (!(way <= p->movers[m].way && turn <= p->movers[m].turn)) return every_function(run);
+            if (!(displacement <= p->movers[m].displacement && turn <= p->movers[m].turn)) return every_function(run);
         }
     return near_functions(run);
 }
@@ -73,7 +73,7 @@ static double used_by(const fu_proximity *p, const fu_pair *pair, int ahead)
     for (int i = 0; i < 2; ++i) {
         if (pair->between[i] < 0) continue;
         const fu_mover *mover = &p->movers[pair->between[i]];
-        sum += ahead ? mover->way : mover->gone;
+        sum += ahead ? mover->displacement : mover->travelled;
         if (i) sum += pair->lever * (ahead ? mover->turn : mover->turned);
     }
     return sum;
@@ -124,21 +124,21 @@ static void list_near(fu_run *run)
 }
 
 /* Adds the path lengths of parts since the last search; returns whether one has used half of its limit. */
-static int count_ways(const fu_model *model, const fu_state *state, double *ways, double *turns)
+static int count_ways(const fu_model *model, const fu_state *state, double *displacements, double *turns)
 {
     const fu_proximity *p = model->proximity;
     int is_late = 0;
     for (int m = 0; m < p->n_movers; ++m) {
-        ways[m] = turns[m] = 0.0;
+        displacements[m] = turns[m] = 0.0;
         if (!p->movers[m].pairs) continue;
-        fu_mover_gone_by(model, m, state->q, &ways[m], &turns[m]);
-        is_late |= !(ways[m] <= 0.5 * p->movers[m].way && turns[m] <= 0.5 * p->movers[m].turn);
+        fu_mover_gone_by(model, m, state->q, &displacements[m], &turns[m]);
+        is_late |= !(displacements[m] <= 0.5 * p->movers[m].displacement && turns[m] <= 0.5 * p->movers[m].turn);
     }
     return is_late;
 }
 
 /* Sets the limits of parts until the next search to their recent or present motion over several steps of h. */
-static void expect(const fu_model *model, const fu_state *state, double h, int steps, const double *ways,
+static void expect(const fu_model *model, const fu_state *state, double h, int steps, const double *displacements,
                    const double *turns)
 {
     fu_proximity *p = model->proximity;
@@ -147,9 +147,9 @@ static void expect(const fu_model *model, const fu_state *state, double h, int s
         double speed, spin;
         if (!mover->pairs) continue;
         speeds_of(model, m, state->v, &speed, &spin);
-        mover->gone += ways[m];
+        mover->travelled += displacements[m];
         mover->turned += turns[m];
-        mover->way = STEPS_PER_UPDATE * fmax(ways[m] / steps, h * (speed + spin * mover->radius));
+        mover->displacement = STEPS_PER_UPDATE * fmax(displacements[m] / steps, h * (speed + spin * mover->radius));
         mover->turn = STEPS_PER_UPDATE * fmax(turns[m] / steps, h * spin);
     }
 }
@@ -159,12 +159,12 @@ void fu_look_around(fu_run *run, double h, int anew)
     const fu_model *model = run->model;
     fu_proximity *p = model->proximity;
     if (!model->n_pairs) return;
-    double *ways = p->ways, *turns = p->ways + p->n_movers;
+    double *displacements = p->displacements, *turns = p->displacements + p->n_movers;
     anew |= !p->is_known;
     ++p->age;
-    if (anew) memset(ways, 0, sizeof(double) * 2 * (size_t)p->n_movers);
-    else if (!count_ways(model, &run->now, ways, turns) && p->age < MAX_STEPS_PER_UPDATE) return;
-    expect(model, &run->now, run->fixed_step > 0.0 ? run->fixed_step : fmax(h, run->h), p->age, ways, turns);
+    if (anew) memset(displacements, 0, sizeof(double) * 2 * (size_t)p->n_movers);
+    else if (!count_ways(model, &run->now, displacements, turns) && p->age < MAX_STEPS_PER_UPDATE) return;
+    expect(model, &run->now, run->fixed_step > 0.0 ? run->fixed_step : fmax(h, run->h), p->age, displacements, turns);
     memcpy(p->at, run->now.q, sizeof(double) * (size_t)model->n_q);
     sort_pairs(run, &run->now, anew);
     list_near(run);

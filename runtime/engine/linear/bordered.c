@@ -60,9 +60,11 @@ int fu_system_factor_band(fu_system *s, const fu_lapack *lapack)
     int width = s->width, rows = FU_BAND_ROWS(width), info = 0;
     s->definite = 1;
     for (int c = 0; c < s->n_chains; ++c) {
-        s->way[c] = factor_symmetric(s, lapack, c) ? FU_SYMMETRIC : factor_unpivoted(s, c) ? FU_UNPIVOTED : FU_PIVOTED;
-        s->definite &= s->way[c] == FU_SYMMETRIC;
-        if (s->way[c] != FU_PIVOTED) continue;
+        s->factorisations[c] = factor_symmetric(s, lapack, c) ? FU_SYMMETRIC
+                               : factor_unpivoted(s, c)       ? FU_UNPIVOTED
+                                                              : FU_PIVOTED;
+        s->definite &= s->factorisations[c] == FU_SYMMETRIC;
+        if (s->factorisations[c] != FU_PIVOTED) continue;
         int n = size_of(s, c), first = s->chains[c];
         lapack->dgbtrf(&n, &n, &width, &width, s->K + (long)first * rows, &rows, s->pivot_band + first, &info);
         if (info) return first + info;
@@ -99,10 +101,10 @@ static void solve_chain(const fu_system *s, const fu_lapack *lapack, int chain, 
 {
     int n = size_of(s, chain), start = s->chains[chain], width = s->width, rows = FU_BAND_ROWS(width), one = 1, info;
     if (s->inverted) multiply_chain(s, chain, (fu_span){of.first - start, of.end - start}, x + start);
-    else if (s->way[chain] == FU_SYMMETRIC && fu_is_twisted(s, chain)) fu_twisted_solve(s, chain, of, x);
-    else if (s->way[chain] == FU_SYMMETRIC)
+    else if (s->factorisations[chain] == FU_SYMMETRIC && fu_is_twisted(s, chain)) fu_twisted_solve(s, chain, of, x);
+    else if (s->factorisations[chain] == FU_SYMMETRIC)
         fu_band_solve(n, width, fu_factor_of(s, chain), of.first - start, x + start);
-    else if (s->way[chain] == FU_UNPIVOTED) {
+    else if (s->factorisations[chain] == FU_UNPIVOTED) {
         fu_band_forward(n, width, s->L + fu_factor_at(s, chain), of.first - start, x + start);
         if (n) fu_band_backward(n, width, s->U + fu_factor_at(s, chain), x + start);
     } else

@@ -29,7 +29,7 @@ void fu_complex_system_take(fu_complex_system *c, const fu_system *s, double *sc
     c->x = take(scratch, taken, n + m);
     c->columns = (fu_matrix_block *)fu_take(scratch, taken, FU_DOUBLES(blocks, fu_matrix_block));
     c->n_columns = (int *)fu_take(scratch, taken, FU_DOUBLES((long)s->n_chains, int));
-    c->way = (int *)fu_take(scratch, taken, FU_DOUBLES((long)s->n_chains, int));
+    c->factorisations = (int *)fu_take(scratch, taken, FU_DOUBLES((long)s->n_chains, int));
     c->pivot_band = (int *)fu_take(scratch, taken, FU_DOUBLES(n, int));
     c->pivot_border = (int *)fu_take(scratch, taken, FU_DOUBLES(m, int));
     c->factors = *real;
@@ -103,7 +103,7 @@ static int factor_unpivoted(fu_complex_system *c, const fu_system *s, int chain)
     const long at = (long)first * FU_COMPLEX_STRIDE(s->width);
     double *const L[2] = {c->L[0] + at, c->L[1] + at}, *const U[2] = {c->U[0] + at, c->U[1] + at};
     if (!c->is_lower) pack(c, s, chain, 1, c->L);
-    if (c->way[chain] == FU_SYMMETRIC) {
+    if (c->factorisations[chain] == FU_SYMMETRIC) {
         fu_complex_band_factor(n, s->width, L[0], L[1]);
         return 0;
     }
@@ -118,9 +118,10 @@ static int factor_band(fu_complex_system *c, const fu_system *s, const fu_lapack
     int width = s->width, rows = FU_BAND_ROWS(width), info = 0;
     for (int chain = 0; chain < s->n_chains; ++chain) {
         int first = s->chains[chain], n = s->chains[chain + 1] - first;
-        c->way[chain] = s->way[chain];
-        if (c->way[chain] != FU_PIVOTED && factor_unpivoted(c, s, chain)) c->way[chain] = FU_PIVOTED;
-        if (n && c->way[chain] == FU_PIVOTED)
+        c->factorisations[chain] = s->factorisations[chain];
+        if (c->factorisations[chain] != FU_PIVOTED && factor_unpivoted(c, s, chain))
+            c->factorisations[chain] = FU_PIVOTED;
+        if (n && c->factorisations[chain] == FU_PIVOTED)
             lapack->zgbtrf(&n, &n, &width, &width, c->K + first * storage_rows(s), &rows, c->pivot_band + first, &info);
         if (info) return first + info;
     }
@@ -134,7 +135,7 @@ static void solve_chain(const fu_complex_system *c, const fu_system *s, const fu
     int first = s->chains[chain], n = s->chains[chain + 1] - first, width = s->width, rows = FU_BAND_ROWS(width);
     int one = 1, info;
     if (!n) return;
-    if (c->way[chain] == FU_PIVOTED) {
+    if (c->factorisations[chain] == FU_PIVOTED) {
         lapack->zgbtrs("N", &n, &width, &width, &one, c->K + first * storage_rows(s), &rows, c->pivot_band + first,
                        x + first, &n, &info);
         return;
@@ -146,7 +147,7 @@ static void solve_chain(const fu_complex_system *c, const fu_system *s, const fu
         im[i] = i < n ? x[first + i].im : 0.0;
     }
     double *const L[2] = {c->L[0] + at, c->L[1] + at}, *const U[2] = {c->U[0] + at, c->U[1] + at};
-    fu_complex_band_solve(n, width, L, c->way[chain] == FU_SYMMETRIC ? L : U, from - first, re, im);
+    fu_complex_band_solve(n, width, L, c->factorisations[chain] == FU_SYMMETRIC ? L : U, from - first, re, im);
     for (int i = 0; i < n; ++i) x[first + i] = (fu_complex){re[i], im[i]};
 }
 

@@ -24,7 +24,7 @@ typedef struct {
     int *pivot_band, *pivot_border;
     int is_lower;        /* the band is in L, its lower half, else in K, all of it */
     double *L[2], *U[2]; /* FU_COMPLEX_STRIDE x n, real and imaginary parts (complex_band.c) */
-    int *way;            /* n_chains: factorisation of each: in L, in L and U, in K (zgbtrf) */
+    int *factorisations; /* n_chains: factorisation of each: in L, in L and U, in K (zgbtrf) */
     double *right[2];    /* n + FU_COMPLEX_BEYOND: a right side of the band, likewise */
 } fu_complex_system;
 

@@ -83,7 +83,7 @@ typedef struct {
     int n_chains;
     int constant;                      /* number of first unknowns of the border that are constant */
     int definite;                      /* all chains are factored as FU_SYMMETRIC */
-    int *way;                          /* n_chains: factorisation of each */
+    int *factorisations;               /* n_chains: factorisation of each */
     int n_strips, n_strip_rows;        /* n_strip_rows: the numbers of B, or of C */
     const fu_strip *strips;            /* by unknown of the border, then by chain */
     const int *first_strip;            /* m + 1: of each unknown of the border, and n_strips */

@@ -41,9 +41,9 @@ double fu_detect_within(const fu_detection *of, const fu_approach *start, double
     while (from.x < end) {
         const double advance = fmin(fmax(from.free, of->min_advance), of->max_advance);
         const fu_approach to = of->follow(of->of, &from, fmin(from.x + advance, end));
-        const int touches = to.depth > of->least;
-        if (first > 0.0 && (!touches || -to.gap > of->deepest)) return 0.5 * of->h * (first + to.x);
-        if (first == 0.0 && touches && to.x < end) first = to.x;
+        const int in_contact = to.depth > of->least;
+        if (first > 0.0 && (!in_contact || -to.gap > of->deepest)) return 0.5 * of->h * (first + to.x);
+        if (first == 0.0 && in_contact && to.x < end) first = to.x;
         if (first == 0.0) {
             const double grazing = grazing_between(of, from, to, ends);
             if (grazing > 0.0) return of->h * grazing;

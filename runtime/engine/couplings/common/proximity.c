@@ -52,13 +52,13 @@ double fu_most_of_cable(const fu_cable *cable, const double *to, const double *f
 
 /* Computes the distance of a moving part from its position at the last search, m, and the norm of the change of its
  * axes. */
-void fu_mover_gone_by(const fu_model *model, int mover, const double *q, double *way, double *turn)
+void fu_mover_gone_by(const fu_model *model, int mover, const double *q, double *displacement, double *turn)
 {
     const fu_body *body = fu_body_of_mover(model, mover);
     const double *from = model->proximity->at;
     *turn = 0.0;
     if (!body) {
-        *way = fu_most_of_cable(&model->cables[mover], q, from);
+        *displacement = fu_most_of_cable(&model->cables[mover], q, from);
         return;
     }
     const double *b = q + body->configuration, *b0 = from + body->configuration;
@@ -67,7 +67,7 @@ void fu_mover_gone_by(const fu_model *model, int mover, const double *q, double 
         const double change = b[i] - b0[i];
         *(i < model->dim ? &square : &turned) += change * change;
     }
-    *way = sqrt(square);
+    *displacement = sqrt(square);
     *turn = 2.0 * sqrt(turned); /* of unit quaternions at an angle of a/2: 2 sin(a/2) <= 2 |e - e0| */
 }
 
@@ -77,10 +77,10 @@ int fu_movers_are_near(const fu_model *model, const double *q)
     const fu_proximity *p = model->proximity;
     if (!p || !p->is_known) return 0;
     for (int m = 0; m < p->n_movers; ++m) {
-        double way, turn;
+        double displacement, turn;
         if (!p->movers[m].pairs) continue;
-        fu_mover_gone_by(model, m, q, &way, &turn);
-        if (!(way <= p->movers[m].way && turn <= p->movers[m].turn)) return 0;
+        fu_mover_gone_by(model, m, q, &displacement, &turn);
+        if (!(displacement <= p->movers[m].displacement && turn <= p->movers[m].turn)) return 0;
     }
     return 1;
 }
@@ -134,7 +134,7 @@ static size_t place(const fu_model *model, int n_event_functions, char *memory, 
     size_t taken = (sizeof *p + 15) / 16 * 16;
     p->n_movers = model->n_cables + model->n_bodies;
     p->at = take(memory, &taken, sizeof(double) * (size_t)model->n_q);
-    p->ways = take(memory, &taken, sizeof(double) * 2 * (size_t)p->n_movers);
+    p->displacements = take(memory, &taken, sizeof(double) * 2 * (size_t)p->n_movers);
     p->movers = take(memory, &taken, sizeof(fu_mover) * (size_t)p->n_movers);
     p->pairs = take(memory, &taken, sizeof(fu_pair) * (size_t)model->n_pairs);
     p->is_far = take(memory, &taken, couplings);

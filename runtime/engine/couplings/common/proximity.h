@@ -8,7 +8,7 @@
 /* A cable or a body: limits of its displacement, m, and rotation since the last search before far pairs may be near;
  * its total displacement and rotation until then; the largest radius of its points. */
 typedef struct {
-    double way, turn, gone, turned, radius;
+    double displacement, turn, travelled, turned, radius;
     int pairs; /* number of its pairs */
 } fu_mover;
 
@@ -25,7 +25,7 @@ struct fu_proximity {
     double *at;        /* that configuration */
     fu_mover *movers;
     fu_pair *pairs;
-    double *ways;             /* work space: 2 x n_movers */
+    double *displacements;    /* work space: 2 x n_movers */
     char *is_far, *is_alone;  /* of each coupling; is_alone: fu_acts_alone */
     const fu_coupling **near; /* those that may act while no part has exceeded its limit, in their order */
     int *near_functions;      /* likewise, with those of the user */
@@ -42,7 +42,7 @@ int fu_acts_alone(const fu_coupling *coupling);
  * norm of the change of its axes; whether none exceeds its limit. */
 const fu_body *fu_body_of_mover(const fu_model *model, int mover);
 double fu_most_of_cable(const fu_cable *cable, const double *to, const double *from);
-void fu_mover_gone_by(const fu_model *model, int mover, const double *q, double *way, double *turn);
+void fu_mover_gone_by(const fu_model *model, int mover, const double *q, double *displacement, double *turn);
 int fu_movers_are_near(const fu_model *model, const double *q);
 
 #endif

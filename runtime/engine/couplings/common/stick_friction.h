@@ -21,7 +21,7 @@ typedef struct {
 } fu_friction_path;
 
 /* The bound at a part of the step, N. */
-double fu_bound_within(const fu_friction_path *way, double x);
+double fu_bound_within(const fu_friction_path *path, double x);
 
 /* The stretch at the end, m; the part of the step after which it slid last, and whether forwards, 1, backwards, -1, or
  * not at all, 0. */
@@ -30,10 +30,10 @@ typedef struct {
     int slid;
 } fu_friction_end;
 /* `most`: the bound of the stretch, m, where the path has no duration, as in statics. */
-fu_friction_end fu_end_of_friction(const fu_friction_path *way, double most);
+fu_friction_end fu_end_of_friction(const fu_friction_path *path, double most);
 
 /* The same at a part of the step. */
-double fu_friction_within(const fu_friction_path *way, double x);
+double fu_friction_within(const fu_friction_path *path, double x);
 
 /* The same with vectors along the contact: the stretch at the beginning, the displacement along the contact, m, the
  * velocities at both ends, m/s. */
@@ -43,10 +43,10 @@ typedef struct {
 /* Normalises the stretch `along` as without sliding, and computes the path along it, from the displacement over the
  * step, m, and the velocities at both ends, m/s; returns its size, m. */
 double fu_path_along(int dim, const double *change, const double *rate, const double *rate_next, double along[3],
-                     fu_friction_path *way);
+                     fu_friction_path *path);
 /* Returns the work of friction over the stiffness, m^2, for a given stretch at the end: by parts of the step, and by
  * half as many (Richardson), or by the ends alone. */
-double fu_taken_by_friction(int dim, const fu_friction_travel *travel, const fu_friction_path *way, const double *end,
+double fu_taken_by_friction(int dim, const fu_friction_travel *travel, const fu_friction_path *path, const double *end,
                             int by_ends);
 
 #define FU_NO_TIME 1e300 /* s: of numbers in the initial configuration, before any step */

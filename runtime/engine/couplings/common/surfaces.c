@@ -172,15 +172,15 @@ void fu_surface_distance(int dim, const fu_surface *surface, const fu_attachment
 void fu_surface_step_normal(int dim, const fu_surface *surface, const fu_attachment_state *at, const double *from,
                             const double *to, double rise, fu_distance *middle, double *n)
 {
-    double way[3] = {0.0}, halfway[3] = {0.0}, square = 0.0;
+    double displacement[3] = {0.0}, halfway[3] = {0.0}, square = 0.0;
     for (int d = 0; d < dim; ++d) {
         halfway[d] = 0.5 * (from[d] + to[d]);
-        way[d] = to[d] - from[d];
-        square += way[d] * way[d];
+        displacement[d] = to[d] - from[d];
+        square += displacement[d] * displacement[d];
     }
     fu_surface_distance(dim, surface, at, halfway, middle);
-    const double beyond = square > 0.0 ? (rise - fu_dot(dim, middle->n, way)) / square : 0.0;
-    for (int d = 0; d < dim; ++d) n[d] = middle->n[d] + beyond * way[d];
+    const double beyond = square > 0.0 ? (rise - fu_dot(dim, middle->n, displacement)) / square : 0.0;
+    for (int d = 0; d < dim; ++d) n[d] = middle->n[d] + beyond * displacement[d];
 }
 
 /* Returns the distance of a point from a box, m, negative inside. */

@@ -46,7 +46,7 @@ static void matrix(const fu_model *model, const fu_contact *contact, const fu_st
     fu_attachment_state on;
     fu_surface_at(model, &contact->surface, state, &on);
     for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
-        int touches = 0;
+        int in_contact = 0;
         if (!fu_contact_may_be_active(model, contact, &on, state, e, 0.0)) continue;
         const int n = contact->cable >= 0 ? model->cables[contact->cable].coordinates : 0;
         for (int k = 0; k < contact->n_points; ++k) {
@@ -59,12 +59,12 @@ static void matrix(const fu_model *model, const fu_contact *contact, const fu_st
                 continue;
             }
             const double weight = fu_contact_weight(contact, e, k);
-            if (!touches++) memset(K, 0, sizeof(double) * (size_t)(n * n));
+            if (!in_contact++) memset(K, 0, sizeof(double) * (size_t)(n * n));
             for (int i = 0; i < dim * dim; ++i) point.by_place[i] += weights.rate * point.by_rate[i];
             const double *N = fu_contact_shapes(contact, n / dim, e, k);
             fu_add_element_product(dim, n, -weights.stiffness * weight, N, N, point.by_place, K);
         }
-        if (touches) fu_add_element_matrix(model, fu_contact_first(model, contact, e), n, K, system);
+        if (in_contact) fu_add_element_matrix(model, fu_contact_first(model, contact, e), n, K, system);
     }
 }
 

@@ -67,7 +67,8 @@ typedef struct {
     double r[3], v[3];
     const fu_friction_mark *mark;
     double since, turn[3], spin[3], arm[3], slip[3], normal_rate[3];
-    double depth, sinking, press, f[3], friction[3], by_place[9], by_rate[9], by_stretch[9], energy, power, stretch[3];
+    double depth, sinking, normal_force, f[3], friction[3], by_place[9], by_rate[9], by_stretch[9], energy, power,
+        stretch[3];
     fu_distance distance;
     fu_friction_end friction_end;
     int slides;
@@ -89,7 +90,7 @@ double fu_contact_turn_error(const fu_model *model, const fu_contact *contact, c
 /* Computes the path of a point through a step as fu_contact_stretch does, and the direction of its spring, along the
  * shape's axes. */
 void fu_contact_path(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
-                     const fu_contact_point *point, fu_friction_path *way, double along[3]);
+                     const fu_contact_point *point, fu_friction_path *path, double along[3]);
 /* Returns the path of a point's spring through a step without the stretch: its penetration. */
 fu_friction_path fu_contact_normal_path(const fu_contact *contact, const fu_contact_point *point);
 /* Computes the displacement of a point along the surface since its mark, m: along the shape's axes, normal to the

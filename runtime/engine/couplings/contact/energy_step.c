@@ -54,8 +54,8 @@ static void surface_over_step(const fu_model *model, const fu_contact *contact, 
 }
 
 /* Returns whether any point of an element may be in contact at an end of the step. */
-static int may_touch(const fu_model *model, const fu_contact *contact, const surface_step *on, const fu_equations *at,
-                     int element)
+static int may_be_in_contact(const fu_model *model, const fu_contact *contact, const surface_step *on,
+                             const fu_equations *at, int element)
 {
     return fu_contact_may_be_active(model, contact, &on->ends[0], at->now, element, 0.0) ||
            fu_contact_may_be_active(model, contact, &on->ends[1], at->next, element, 0.0);
@@ -116,10 +116,10 @@ static int point_over_step(const fu_model *model, const fu_contact *contact, con
         place_along_shape(model->dim, &on->ends[1], &out->next);
     }
     const int touched = fu_contact_is_active(model, contact, &on->frame, &out->now);
-    const int touches = fu_contact_is_active(model, contact, &on->frame, &out->next) || touched;
+    const int in_contact = fu_contact_is_active(model, contact, &on->frame, &out->next) || touched;
     memset(out->touched, 0, sizeof out->touched);
-    if (touches && fu_contact_rolls(contact)) particle_over_step(model, contact, on, at, number, out);
-    return touches;
+    if (in_contact && fu_contact_rolls(contact)) particle_over_step(model, contact, on, at, number, out);
+    return in_contact;
 }
 
 /* Converts the derivative of a force by the position along the shape's axes to that by the position along the
@@ -189,7 +189,7 @@ static double over_step(const fu_model *model, const fu_contact *contact, const 
     surface_step on;
     surface_over_step(model, contact, at, &on);
     for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
-        if (!may_touch(model, contact, &on, at, e)) continue;
+        if (!may_be_in_contact(model, contact, &on, at, e)) continue;
         for (int k = 0; k < contact->n_points; ++k) {
             point_step point;
             double force[3], friction[3], unused[2][9];
@@ -229,8 +229,8 @@ void fu_contact_step_tangent(const fu_model *model, const fu_coupling *coupling,
     surface_over_step(model, contact, at, &on);
     fu_surface_at(model, &contact->surface, at->middle, &on_middle);
     for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
-        int touches = 0;
-        if (!may_touch(model, contact, &on, at, e)) continue;
+        int in_contact = 0;
+        if (!may_be_in_contact(model, contact, &on, at, e)) continue;
         const int n = contact->cable >= 0 ? model->cables[contact->cable].coordinates : 0;
         for (int k = 0; k < contact->n_points; ++k) {
             point_step point;
@@ -259,12 +259,12 @@ void fu_contact_step_tangent(const fu_model *model, const fu_coupling *coupling,
                 fu_contact_add_derivatives(model, contact, &on_middle, at->middle, e, k, next, 0, at->weights, system);
                 continue;
             }
-            if (!touches++) memset(K, 0, sizeof(double) * (size_t)(n * n));
+            if (!in_contact++) memset(K, 0, sizeof(double) * (size_t)(n * n));
             const double *N = fu_contact_shapes(contact, n / dim, e, k);
             fu_add_element_product(dim, n, -at->weights.stiffness * fu_contact_weight(contact, e, k), N, N,
                                    next->by_place, K);
         }
-        if (touches) fu_add_element_matrix(model, fu_contact_first(model, contact, e), n, K, system);
+        if (in_contact) fu_add_element_matrix(model, fu_contact_first(model, contact, e), n, K, system);
     }
 }
 

@@ -12,7 +12,7 @@
  * sliding, with its direction; if the time of the path is unknown, as in statics, h is 0. */
 typedef struct {
     double normal[3], change[3], begin[3], x[3], along[3], size, from;
-    fu_friction_path way;
+    fu_friction_path path;
 } friction_course;
 
 static double bound(const void *of, double depth, double rate)
@@ -24,19 +24,19 @@ static double bound(const void *of, double depth, double rate)
 fu_friction_path fu_contact_normal_path(const fu_contact *contact, const fu_contact_point *point)
 {
     const fu_friction_mark *mark = point->mark;
-    fu_friction_path way = {.h = point->since, .stiffness = contact->law.tangential, .bound = bound, .of = contact};
-    way.depth = (fu_step_ends){{-mark->gap, point->depth}, {-mark->gap_rate, point->sinking}};
-    return way;
+    fu_friction_path path = {.h = point->since, .stiffness = contact->law.tangential, .bound = bound, .of = contact};
+    path.depth = (fu_step_ends){{-mark->gap, point->depth}, {-mark->gap_rate, point->sinking}};
+    return path;
 }
 
 /* Computes the part of a step after which the point comes into contact, and its displacement until then. */
-static void begin_at_touch(int dim, const fu_contact_point *point, friction_course *of, double gone[3])
+static void begin_at_contact(int dim, const fu_contact_point *point, friction_course *of, double gone[3])
 {
     const fu_friction_mark *mark = point->mark;
-    const double h = of->way.h;
+    const double h = of->path.h;
     of->from = 0.0;
     if (!(mark->gap > 0.0)) return;
-    of->from = h > 0.0 ? fu_part_to_rise(&of->way.depth, h) : mark->gap / (mark->gap + point->depth);
+    of->from = h > 0.0 ? fu_part_to_rise(&of->path.depth, h) : mark->gap / (mark->gap + point->depth);
     for (int d = 0; d < dim; ++d) {
         const fu_step_ends ends = {{0.0, of->change[d]}, {mark->rate[d], point->slip[d]}};
         gone[d] = h > 0.0 ? fu_value_within(&ends, h, of->from) : of->from * of->change[d];
@@ -86,16 +86,16 @@ static void path_of(const fu_model *model, const fu_contact *contact, const fu_a
     fu_surface_into(dim, on, point->distance.n, out->normal);
     turn_along(dim, mark, out->normal, stretch);
     fu_contact_change(dim, contact, point, out->normal, out->change);
-    out->way = fu_contact_normal_path(contact, point);
-    begin_at_touch(dim, point, out, gone);
+    out->path = fu_contact_normal_path(contact, point);
+    begin_at_contact(dim, point, out, gone);
     for (int d = 0; d < dim; ++d) {
         out->begin[d] = out->from > 0.0 ? 0.0 : stretch[d];
         out->x[d] = out->begin[d] + out->change[d] - gone[d];
     }
     const double across = fu_dot(dim, out->normal, out->x) / fu_dot(dim, out->normal, out->normal);
     for (int d = 0; d < dim; ++d) out->along[d] = out->x[d] - across * out->normal[d];
-    out->way.from = out->from;
-    out->size = fu_path_along(dim, out->change, mark->rate, point->slip, out->along, &out->way);
+    out->path.from = out->from;
+    out->size = fu_path_along(dim, out->change, mark->rate, point->slip, out->along, &out->path);
 }
 
 /* Computes the stretch, m, of a spring that slides along the path in equal intervals: in each it is stretched by the
@@ -108,11 +108,11 @@ static void slide(int dim, const fu_contact_point *point, const friction_course 
         const double x = of->from + whole * i / parts;
         for (int d = 0; d < dim; ++d) {
             const fu_step_ends ends = {{0.0, of->change[d]}, {point->mark->rate[d], point->slip[d]}};
-            out[d] += whole / parts * of->way.h * fu_rate_within(&ends, of->way.h, x);
+            out[d] += whole / parts * of->path.h * fu_rate_within(&ends, of->path.h, x);
         }
         const double across = fu_dot(dim, of->normal, out) / normal;
         for (int d = 0; d < dim; ++d) out[d] -= across * of->normal[d];
-        fu_limit_stretch(dim, of->way.stiffness, fu_bound_within(&of->way, x), out);
+        fu_limit_stretch(dim, of->path.stiffness, fu_bound_within(&of->path, x), out);
     }
 }
 
@@ -121,7 +121,7 @@ static void slide(int dim, const fu_contact_point *point, const friction_course 
  * first order. Returns the time of that path, s, 0 without a rotation. */
 static double turn_to_slip(int dim, const fu_contact_point *point, int parts, friction_course *of)
 {
-    const double h = (1.0 - of->from) * of->way.h;
+    const double h = (1.0 - of->from) * of->path.h;
     double fine[3], coarse[3];
     if (dim != 3 || !(h > 0.0) || !point->slides) return 0.0;
     slide(dim, point, of, parts, fine);
@@ -138,11 +138,11 @@ static double turn_to_slip(int dim, const fu_contact_point *point, int parts, fr
 }
 
 void fu_contact_path(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
-                     const fu_contact_point *point, fu_friction_path *way, double along[3])
+                     const fu_contact_point *point, fu_friction_path *path, double along[3])
 {
     friction_course of;
     path_of(model, contact, on, point, &of);
-    *way = of.way;
+    *path = of.path;
     memcpy(along, of.along, sizeof of.along);
 }
 
@@ -164,12 +164,12 @@ void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const 
                         fu_contact_point *point)
 {
     const int dim = model->dim;
-    const double most = contact->law.friction * point->press / contact->law.tangential;
+    const double most = contact->law.friction * point->normal_force / contact->law.tangential;
     double x[3];
     friction_course of;
     path_of(model, contact, on, point, &of);
-    point->friction_end = fu_end_of_friction(&of.way, most);
-    point->friction_end.slid |= !(of.way.h > 0.0) && most == 0.0;
+    point->friction_end = fu_end_of_friction(&of.path, most);
+    point->friction_end.slid |= !(of.path.h > 0.0) && most == 0.0;
     point->slides = point->friction_end.slid != 0 && point->friction_end.part == 1.0;
     turn_to_slip(dim, point, DIRECTION_PARTS, &of);
     for (int d = 0; d < dim; ++d) point->stretch[d] = point->friction_end.stretch * of.along[d];
@@ -183,11 +183,11 @@ void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const 
 
 /* Adds the derivatives of a path in contact for a part of the step only, in which position and velocity at the end have
  * smaller shares. */
-static void add_touching(int dim, const fu_attachment_state *on, const friction_course *of, fu_contact_point *point)
+static void add_late_contact(int dim, const fu_attachment_state *on, const friction_course *of, fu_contact_point *point)
 {
-    const double h = of->way.h, *n = point->distance.n;
+    const double h = of->path.h, *n = point->distance.n;
     const fu_cubic at = fu_cubic_at(of->from);
-    const double sinking = h > 0.0 ? h * fu_rate_within(&of->way.depth, h, of->from) : point->depth + point->mark->gap;
+    const double sinking = h > 0.0 ? h * fu_rate_within(&of->path.depth, h, of->from) : point->depth + point->mark->gap;
     const double end = h > 0.0 ? at.change : of->from, rate = h > 0.0 ? h * at.rates[1] : 0.0;
     double by_place[9], by_rate[9], slope[3], own[3];
     for (int d = 0; d < dim; ++d) {
@@ -225,15 +225,15 @@ static void add_sliding(int dim, const fu_contact *contact, const fu_attachment_
     double depth = point->depth, sinking = point->sinking;
     if (end->part < 1.0) {
         weights = fu_cubic_at(end->part);
-        depth = fu_value_within(&of->way.depth, of->way.h, end->part);
-        sinking = fu_rate_within(&of->way.depth, of->way.h, end->part);
+        depth = fu_value_within(&of->path.depth, of->path.h, end->part);
+        sinking = fu_rate_within(&of->path.depth, of->path.h, end->part);
     }
     const fu_normal_force law = fu_normal_force_at(contact, depth, sinking, depth);
-    const double h = of->way.h, sign = end->slid;
+    const double h = of->path.h, sign = end->slid;
     const double rate = h > 0.0 ? weights.slope / h : 0.0, lag = h > 0.0 ? h * weights.rates[1] : 0.0;
-    const double press[3] = {k * end->stretch / mu, sign * (law.by_depth * weights.change + law.by_rate * rate),
-                             sign * (law.by_depth * lag + law.by_rate * weights.slope_rates[1])};
-    contact->surface.kernel->sliding(at->n, at->H, w, press, x, mu, f, by_place, by_rate, point->by_stretch);
+    const double normal_force[3] = {k * end->stretch / mu, sign * (law.by_depth * weights.change + law.by_rate * rate),
+                                    sign * (law.by_depth * lag + law.by_rate * weights.slope_rates[1])};
+    contact->surface.kernel->sliding(at->n, at->H, w, normal_force, x, mu, f, by_place, by_rate, point->by_stretch);
     fu_surface_out(dim, on, of->along, along);
     for (int i = 0; i < dim; ++i)
         for (int j = 0; j < dim; ++j) {
@@ -267,5 +267,5 @@ void fu_contact_friction_derivatives(const fu_model *model, const fu_contact *co
         point->by_rate[i] += h * point->by_stretch[i];
         point->by_stretch[i] = 0.0;
     }
-    if (of.from > 0.0) add_touching(dim, on, &of, point);
+    if (of.from > 0.0) add_late_contact(dim, on, &of, point);
 }

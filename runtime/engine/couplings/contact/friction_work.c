@@ -27,8 +27,8 @@ static fu_friction_travel travel_of(int dim, const step_point *of)
 static double taken(const fu_model *model, const fu_contact *contact, const step_point *of, int by_ends)
 {
     const fu_friction_travel travel = travel_of(model->dim, of);
-    const fu_friction_path way = fu_contact_normal_path(contact, &of->end);
-    return fu_taken_by_friction(model->dim, &travel, &way, of->stretch, by_ends);
+    const fu_friction_path path = fu_contact_normal_path(contact, &of->end);
+    return fu_taken_by_friction(model->dim, &travel, &path, of->stretch, by_ends);
 }
 
 static double taken_by_ends(const fu_model *model, const fu_contact *contact, step_point *of)
@@ -69,12 +69,12 @@ static int point_over_step(const fu_model *model, const fu_contact *contact, con
     fu_contact_point *end = &out->end;
     double normal[3];
     fu_contact_place(model, contact, &out->on, to, element, number, end);
-    const int touches = fu_contact_is_active(model, contact, &out->on, end);
-    if (!touches && !(end->mark->gap < 0.0)) return 0;
+    const int in_contact = fu_contact_is_active(model, contact, &out->on, end);
+    if (!in_contact && !(end->mark->gap < 0.0)) return 0;
     fu_surface_into(dim, &out->on, end->distance.n, normal);
     fu_contact_change(dim, contact, end, normal, out->change);
     memset(out->stretch, 0, sizeof out->stretch);
-    for (int d = 0; d < dim && touches; ++d) out->stretch[d] = end->stretch[d];
+    for (int d = 0; d < dim && in_contact; ++d) out->stretch[d] = end->stretch[d];
     return 1;
 }
 

@@ -15,7 +15,7 @@ typedef struct {
     const fu_contact *contact;
     fu_contact_point end;
     fu_friction_mark mark;
-    fu_friction_path way;
+    fu_friction_path path;
     double along[3];
 } step_point;
 
@@ -23,12 +23,12 @@ typedef struct {
 static void forces_at(const step_point *of, double x, double out[2])
 {
     const fu_contact *contact = of->contact;
-    const double depth = fu_value_within(&of->way.depth, of->way.h, x);
+    const double depth = fu_value_within(&of->path.depth, of->path.h, x);
     out[0] =
-        depth > 0.0 ? fu_normal_force_at(contact, depth, fu_rate_within(&of->way.depth, of->way.h, x), depth).p : 0.0;
-    out[1] = contact->law.friction > 0.0 && x > 0.0 ? -contact->law.tangential * fu_friction_within(&of->way, x) : 0.0;
+        depth > 0.0 ? fu_normal_force_at(contact, depth, fu_rate_within(&of->path.depth, of->path.h, x), depth).p : 0.0;
+    out[1] = contact->law.friction > 0.0 && x > 0.0 ? -contact->law.tangential * fu_friction_within(&of->path, x) : 0.0;
     if (contact->law.friction > 0.0 && x == 0.0)
-        out[1] = -contact->law.tangential * of->way.stretch.value[0] * (of->way.from == 0.0);
+        out[1] = -contact->law.tangential * of->path.stretch.value[0] * (of->path.from == 0.0);
 }
 
 /* Computes the error of the mean forces of a quadrature. */
@@ -57,7 +57,7 @@ static int slides_at(const step_point *of, double x)
                : 0;
 }
 
-/* Returns whether the force has a kink: the point is in contact at one end alone, or neither sticks nor slides one way
+/* Returns whether the force has a kink: the point is in contact at one end alone, or neither sticks nor slides one path
  * during the whole step. */
 static int has_kink(const step_point *of)
 {
@@ -76,7 +76,7 @@ static int point_over_step(const fu_model *model, const fu_contact *contact, con
     fu_contact_point begin;
     out->contact = contact;
     fu_contact_place(model, contact, &on[1], to, element, number, &out->end);
-    const int touches = fu_contact_is_active(model, contact, &on[1], &out->end);
+    const int in_contact = fu_contact_is_active(model, contact, &on[1], &out->end);
     if (contact->law.friction > 0.0) out->mark = *out->end.mark;
     else {
         fu_contact_place(model, contact, &on[0], from, element, number, &begin);
@@ -84,11 +84,11 @@ static int point_over_step(const fu_model *model, const fu_contact *contact, con
         out->mark.gap = -begin.depth;
         out->mark.gap_rate = -begin.sinking;
     }
-    if (!touches && !(out->mark.gap < 0.0)) return 0;
-    out->way.h = to->t - from->t;
-    out->way.depth = (fu_step_ends){{-out->mark.gap, out->end.depth}, {-out->mark.gap_rate, out->end.sinking}};
+    if (!in_contact && !(out->mark.gap < 0.0)) return 0;
+    out->path.h = to->t - from->t;
+    out->path.depth = (fu_step_ends){{-out->mark.gap, out->end.depth}, {-out->mark.gap_rate, out->end.sinking}};
     memset(out->along, 0, sizeof out->along);
-    if (contact->law.friction > 0.0) fu_contact_path(model, contact, &on[1], &out->end, &out->way, out->along);
+    if (contact->law.friction > 0.0) fu_contact_path(model, contact, &on[1], &out->end, &out->path, out->along);
     return 1;
 }
 

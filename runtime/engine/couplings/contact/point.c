@@ -38,7 +38,7 @@ int fu_contact_is_active(const fu_model *model, const fu_contact *contact, const
     fu_contact_slip(model, contact, on, point);
     if (!(point->depth > 0.0)) return 0;
     const fu_normal_force of = fu_normal_force_at(contact, point->depth, point->sinking, point->depth);
-    point->press = of.p;
+    point->normal_force = of.p;
     point->energy = of.energy;
     point->power = (of.p - of.elastic) * point->sinking;
     memset(point->friction, 0, sizeof point->friction);
@@ -66,15 +66,15 @@ void fu_contact_derivatives(const fu_model *model, const fu_contact *contact, co
 
 /* Computes friction over a step: that of the mean stretch, limited at the end by the normal force; by_depth: derivative
  * of that by the penetration. */
-static void step_friction(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, double press,
-                          double by_depth, const fu_contact_point *now, const fu_contact_point *next, double f[3],
-                          double by_next[9], double by_stretch[9])
+static void step_friction(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                          double normal_force, double by_depth, const fu_contact_point *now,
+                          const fu_contact_point *next, double f[3], double by_next[9], double by_stretch[9])
 {
     const int dim = model->dim;
     fu_contact_point end = *next, begin = *now;
     end.mark = begin.mark = now->mark;
-    end.press = press;
-    begin.press = INFINITY; /* the initial stretch is not limited */
+    end.normal_force = normal_force;
+    begin.normal_force = INFINITY; /* the initial stretch is not limited */
     end.since = begin.since = 0.0;
     memset(end.f, 0, sizeof end.f);
     memset(begin.f, 0, sizeof begin.f);
@@ -84,17 +84,17 @@ static void step_friction(const fu_model *model, const fu_contact *contact, cons
     const double part =
         now->mark->gap > 0.0 ? next->depth / (next->depth + now->mark->gap) : 1.0; /* of the path, in contact */
     const fu_distance *at = &end.distance;
-    const double none[3] = {0.0}, law[3] = {press, by_depth, 0.0};
+    const double none[3] = {0.0}, law[3] = {normal_force, by_depth, 0.0};
     double own[3], x[3], of_end[3], by_place[9], by_rate[9];
     if (!end.slides)
         for (int d = 0; d < dim; ++d)
             for (int e = 0; e < dim; ++e)
                 by_place[d * dim + e] = by_stretch[d * dim + e] =
                     contact->law.tangential * (at->n[d] * at->n[e] - (d == e));
-    else if (press > 0.0) {
-        fu_friction_path way;
-        fu_contact_path(model, contact, on, &end, &way, own);
-        for (int d = 0; d < dim; ++d) own[d] *= way.stretch.value[1];
+    else if (normal_force > 0.0) {
+        fu_friction_path path;
+        fu_contact_path(model, contact, on, &end, &path, own);
+        for (int d = 0; d < dim; ++d) own[d] *= path.stretch.value[1];
         fu_surface_out(dim, on, own, x);
         contact->surface.kernel->sliding(at->n, at->H, none, law, x, contact->law.friction, of_end, by_place, by_rate,
                                          by_stretch);
@@ -125,23 +125,23 @@ double fu_contact_step(const fu_model *model, const fu_contact *contact, const f
     const double part = from > 0.0 && to > 0.0 ? 1.0 : (to - from) / sunk, rate = sunk / h;
     const fu_normal_force of = fu_normal_force_at(contact, from, rate, to),
                           end = fu_normal_force_at(contact, to, 0.0, to);
-    const double elastic = part * of.mean, press = fmax(0.0, elastic * (1.0 + contact->law.damping * rate));
+    const double elastic = part * of.mean, normal_force = fmax(0.0, elastic * (1.0 + contact->law.damping * rate));
     /* of the penetration at the end: (U' - mean)/change, half of the stiffness of a linear law */
     const double stiffness = from > 0.0 && contact->law.hertz == 0 && to > 0.0 ? 0.5 * end.by_depth
                              : fabs(sunk) > 1e-9 * fmax(from, to)              ? (end.elastic - elastic) / sunk
                                                                                : 0.5 * end.by_depth;
     const double by_depth =
-        press > 0.0 ? stiffness * (1.0 + contact->law.damping * rate) + elastic * contact->law.damping / h : 0.0;
+        normal_force > 0.0 ? stiffness * (1.0 + contact->law.damping * rate) + elastic * contact->law.damping / h : 0.0;
     for (int d = 0; d < dim; ++d) {
-        f[d] = press * n[d];
+        f[d] = normal_force * n[d];
         for (int e = 0; e < dim; ++e)
-            by_next[d * dim + e] = 0.5 * press * at.H[d * dim + e] - by_depth * n[d] * next->distance.n[e];
+            by_next[d * dim + e] = 0.5 * normal_force * at.H[d * dim + e] - by_depth * n[d] * next->distance.n[e];
     }
-    if (!now->mark || !(press > 0.0)) return (press - elastic) * sunk;
+    if (!now->mark || !(normal_force > 0.0)) return (normal_force - elastic) * sunk;
     /* the bound at the end, with the rate there by that at the beginning: the mean over the step would lag by half of
      * it */
     const fu_normal_force last = fu_normal_force_at(contact, to, 2.0 * rate + now->mark->gap_rate, to);
     step_friction(model, contact, on, to > 0.0 ? last.p : 0.0, to > 0.0 ? last.by_depth + 2.0 * last.by_rate / h : 0.0,
                   now, next, friction, by_next, by_stretch);
-    return (press - elastic) * sunk;
+    return (normal_force - elastic) * sunk;
 }

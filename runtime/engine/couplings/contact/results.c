@@ -62,10 +62,10 @@ void fu_contact_update_history(const fu_model *model, const fu_coupling *couplin
         for (int k = 0; k < contact->n_points; ++k) {
             fu_contact_point point;
             fu_contact_place(model, contact, &on, state, e, k, &point);
-            const int touches = fu_contact_is_active(model, contact, &on, &point);
+            const int in_contact = fu_contact_is_active(model, contact, &on, &point);
             fu_friction_mark *mark = fu_contact_mark(contact, state, e, k);
             memset(mark, 0, sizeof *mark);
-            if (touches) memcpy(mark->stretch, point.stretch, sizeof(double) * (size_t)dim);
+            if (in_contact) memcpy(mark->stretch, point.stretch, sizeof(double) * (size_t)dim);
             memcpy(mark->place, point.distance.y, sizeof(double) * (size_t)dim);
             memcpy(mark->rate, point.slip, sizeof(double) * (size_t)dim);
             memcpy(mark->normal_rate, point.normal_rate, sizeof(double) * (size_t)dim);
@@ -121,9 +121,9 @@ void fu_contact_outputs(const fu_model *model, const fu_coupling *coupling, cons
             fu_contact_point point;
             const double weight = fu_contact_weight(contact, e, k);
             fu_contact_place(model, contact, &on, state, e, k, &point);
-            const int touches = fu_contact_is_active(model, contact, &on, &point);
+            const int in_contact = fu_contact_is_active(model, contact, &on, &point);
             if (contact->cable >= 0) take_into_length(&sum, contact->arc[(long)e * contact->n_points + k], point.depth);
-            if (!touches) continue;
+            if (!in_contact) continue;
             for (int d = 0; d < model->dim; ++d) {
                 numbers->force[d] += weight * point.f[d];
                 numbers->friction_force[d] += weight * point.friction[d];
@@ -144,7 +144,7 @@ void fu_contact_densities(const fu_model *model, const fu_coupling *coupling, co
         for (int k = 0; k < contact->n_points; ++k, out += 3) {
             fu_contact_point point;
             fu_contact_place(model, contact, &on, state, e, k, &point);
-            const int touches = fu_contact_is_active(model, contact, &on, &point);
-            for (int d = 0; d < 3; ++d) out[d] = touches && d < model->dim ? point.f[d] : 0.0;
+            const int in_contact = fu_contact_is_active(model, contact, &on, &point);
+            for (int d = 0; d < 3; ++d) out[d] = in_contact && d < model->dim ? point.f[d] : 0.0;
         }
 }

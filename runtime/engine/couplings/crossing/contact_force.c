@@ -20,10 +20,10 @@ int fu_crossing_swung(const fu_crossing *crossing, const fu_state *state, const 
 /* Returns the distance of the closest points from the ends of their lines, m. */
 double fu_crossing_distance_to_ends(const fu_crossing *crossing, const fu_closest_points *points)
 {
-    double way = INFINITY;
+    double distance = INFINITY;
     for (int line = 0; line < FU_LINES; ++line)
-        way = fmin(way, fmin(points->s[line] - crossing->low[line], crossing->high[line] - points->s[line]));
-    return way;
+        distance = fmin(distance, fmin(points->s[line] - crossing->low[line], crossing->high[line] - points->s[line]));
+    return distance;
 }
 
 double fu_crossing_margin_of(const fu_crossing *crossing, const fu_closest_points *points,

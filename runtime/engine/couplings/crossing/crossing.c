@@ -19,16 +19,16 @@ static const fu_crossing *crossing_of(const fu_coupling *coupling)
 static void add_friction(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
                          fu_crossing_contact *contact)
 {
-    fu_crossing_stick grip;
+    fu_crossing_stick stick;
     for (int d = 0; d < 3 && crossing->law[FU_LAW_FRICTION] > 0.0; ++d)
         contact->friction[d] = contact->force[d] - contact->size * contact->normal[d];
     if (!(crossing->friction > 0.0)) return;
-    fu_crossing_stick_at(crossing, state, points, contact, &grip);
-    contact->sticks = grip.sticks;
-    contact->energy += grip.energy;
+    fu_crossing_stick_at(crossing, state, points, contact, &stick);
+    contact->sticks = stick.sticks;
+    contact->energy += stick.energy;
     for (int d = 0; d < 3; ++d) {
-        contact->friction[d] = grip.force[d];
-        contact->force[d] += grip.force[d];
+        contact->friction[d] = stick.force[d];
+        contact->force[d] += stick.force[d];
     }
 }
 
@@ -36,12 +36,12 @@ static void add_friction(const fu_crossing *crossing, const fu_state *state, con
 static void contact_force(const fu_model *model, const fu_crossing *crossing, const fu_state *state,
                           fu_closest_points *points, fu_crossing_contact *contact, double force[3])
 {
-    const int touches = state->flags[crossing->base.flags];
+    const int in_contact = state->flags[crossing->base.flags];
     fu_find_closest(model, crossing, state, points);
     fu_crossing_contact_at(crossing, points, contact);
     if (!points->found || fu_crossing_swung(crossing, state, contact)) contact->size = NAN;
     add_friction(crossing, state, points, contact);
-    for (int d = 0; d < 3; ++d) force[d] = !touches ? 0.0 : isnan(contact->size) ? NAN : contact->force[d];
+    for (int d = 0; d < 3; ++d) force[d] = !in_contact ? 0.0 : isnan(contact->size) ? NAN : contact->force[d];
 }
 
 /* Adds the contact force to the left of the equations of motion. */
@@ -302,7 +302,7 @@ static void reset(const fu_coupling *coupling, fu_state *state)
 }
 
 /* In statics lines are in contact if they penetrate; without closest points the force is unknown. */
-static void touch(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+static void detect_contact(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     fu_closest_points points;
     fu_find_closest_anew(model, crossing_of(coupling), state, &points);
@@ -320,7 +320,7 @@ static const fu_field fields[] = {
     FU_FIELD_ARRAY(fu_crossing, high, FU_REAL),
     FU_FIELD_ARRAY(fu_crossing, law, FU_REAL),
     FU_FIELD_ARRAY(fu_crossing, start, FU_REAL),
-    FU_FIELD_ARRAY(fu_crossing, way, FU_REAL),
+    FU_FIELD_ARRAY(fu_crossing, separation, FU_REAL),
     FU_FIELD_ARRAY(fu_crossing, slopes, FU_REAL),
     FU_FIELD(fu_crossing, friction, FU_REAL, 0),
     FU_FIELD(fu_crossing, tangential, FU_REAL, 0),
@@ -363,7 +363,7 @@ const fu_coupling_type fu_crossing_type = {
     .dissipation = dissipation,
     .lost_in_step = lost_in_step,
     .reset = reset,
-    .detect = touch,
+    .detect = detect_contact,
     .proximity = &proximity_of_lines,
     .history = &history,
 };

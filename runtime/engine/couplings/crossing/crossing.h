@@ -24,7 +24,7 @@ typedef struct {
     double low[FU_LINES], high[FU_LINES]; /* the ends of the lines, m; infinite in the plane, for a bar */
     double law[FU_CROSSING_LAW];          /* arguments of the kernels */
     double start[FU_LINES];               /* the arc-lengths as drawn, m */
-    double way[3];                        /* between the points as drawn, from the second, m */
+    double separation[3];                 /* between the points as drawn, from the second, m */
     double slopes[6];                     /* of the lines there, as drawn */
     double friction, tangential;          /* of sticking friction: its coefficient, 0 for none, and its spring, N/m */
     double stiffness;                     /* N/m: converts lengths to forces, to scale equations */

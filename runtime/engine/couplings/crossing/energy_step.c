@@ -21,8 +21,8 @@ fu_state fu_crossing_middle(const fu_equations *at)
 }
 
 /* Computes the closest points of a state and the contact there; returns whether there are such points. */
-static int touch_at(const fu_model *model, const fu_crossing *crossing, const fu_state *state,
-                    fu_closest_points *points, fu_crossing_contact *contact)
+static int contact_at(const fu_model *model, const fu_crossing *crossing, const fu_state *state,
+                      fu_closest_points *points, fu_crossing_contact *contact)
 {
     fu_find_closest(model, crossing, state, points);
     fu_crossing_contact_at(crossing, points, contact);
@@ -49,22 +49,22 @@ static void over_step(const fu_model *model, const fu_crossing *crossing, const 
     const fu_state middle = fu_crossing_middle(at);
     fu_closest_points points;
     fu_crossing_contact now, next, half;
-    double way[3] = {0.0}, turn[6] = {0.0}, size[FU_LINES] = {0.0};
-    int found = touch_at(model, crossing, at->now, &points, &now);
-    found &= touch_at(model, crossing, at->next, &points, &next);
-    found &= touch_at(model, crossing, &middle, &points, &half); /* the last: its points are those of the force */
+    double displacement[3] = {0.0}, turn[6] = {0.0}, size[FU_LINES] = {0.0};
+    int found = contact_at(model, crossing, at->now, &points, &now);
+    found &= contact_at(model, crossing, at->next, &points, &next);
+    found &= contact_at(model, crossing, &middle, &points, &half); /* the last: its points are those of the force */
     for (int line = 0; line < FU_LINES; ++line) {
         fu_line_moves *moves = &out->moves[line];
         moves_over_step(model, crossing, line, at, &middle, &points.line[line], moves);
         for (int d = 0; d < dim; ++d)
             for (int i = 0; i < moves->n; ++i) {
-                way[d] += (line ? -1.0 : 1.0) * moves->P[d * moves->n + i] * at->psi[moves->at[i]];
+                displacement[d] += (line ? -1.0 : 1.0) * moves->P[d * moves->n + i] * at->psi[moves->at[i]];
                 if (line < lines) turn[line * dim + d] += moves->T[d * moves->n + i] * at->psi[moves->at[i]];
             }
         if (line < lines) size[line] = fu_line_size(model, crossing, line);
     }
-    crossing->kernel->step(half.normal, way, turn, size, now.depth[0], next.depth[0], at->h, crossing->law, out->force,
-                           out->on_slopes, &out->lost);
+    crossing->kernel->step(half.normal, displacement, turn, size, now.depth[0], next.depth[0], at->h, crossing->law,
+                           out->force, out->on_slopes, &out->lost);
     if (!found)
         for (int d = 0; d < dim; ++d) out->force[d] = NAN;
 }

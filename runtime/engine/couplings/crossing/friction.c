@@ -10,7 +10,7 @@
  * across the last line the stretch and the relative velocity of particles; nonzero if it has slid, when the stretch
  * equals the friction limit; the penetration and its rate; the time. */
 typedef struct {
-    double s[FU_LINES], s_rate[FU_LINES], way[3], way_rate[3], slopes[6], slope_rates[6];
+    double s[FU_LINES], s_rate[FU_LINES], separation[3], separation_rate[3], slopes[6], slope_rates[6];
     double stretch[2], slid, rate[2], depth, sinking, time;
 } last_step;
 _Static_assert(sizeof(last_step) == FU_CROSSING_STICK * sizeof(double), "numbers of a state are doubles");
@@ -67,20 +67,20 @@ static void slip_of(int dim, const fu_closest_points *points, const fu_crossing_
 
 /* Computes the path of friction's spring from the last step to points; the stretches are those of the kernel. */
 static void travel_since(const fu_crossing *crossing, const last_step *last, const fu_closest_points *points,
-                         const fu_crossing_contact *contact, double time, const fu_crossing_stick *grip,
-                         fu_friction_travel *travel, fu_friction_path *way)
+                         const fu_crossing_contact *contact, double time, const fu_crossing_stick *stick,
+                         fu_friction_travel *travel, fu_friction_path *path)
 {
     const int dim = crossing->kernel->dim;
     memset(travel, 0, sizeof *travel);
     for (int d = 0; d < dim; ++d) {
-        travel->stretch[d] = grip->old[d];
-        travel->change[d] = grip->without_sliding[d] - grip->old[d];
+        travel->stretch[d] = stick->old[d];
+        travel->change[d] = stick->without_sliding[d] - stick->old[d];
     }
-    in_space(dim, grip->along, contact->normal, last->rate, travel->rates[0]);
+    in_space(dim, stick->along, contact->normal, last->rate, travel->rates[0]);
     slip_of(dim, points, contact, travel->rates[1]);
-    *way =
+    *path =
         (fu_friction_path){.h = time - last->time, .stiffness = crossing->tangential, .bound = bound, .of = crossing};
-    way->depth = (fu_step_ends){{last->depth, contact->depth[0]}, {last->sinking, contact->depth[1]}};
+    path->depth = (fu_step_ends){{last->depth, contact->depth[0]}, {last->sinking, contact->depth[1]}};
 }
 
 static int slid_before(const last_step *last)
@@ -96,45 +96,46 @@ static double slid_stretch(const last_step *last)
 
 /* Returns whether a stretch takes the direction of turn_to_slip: in the plane there is one direction; against the slip
  * it is unloaded. */
-static int turns(int dim, const fu_crossing_stick *grip, const fu_friction_travel *travel)
+static int turns(int dim, const fu_crossing_stick *stick, const fu_friction_travel *travel)
 {
-    const double *now = grip->without_sliding;
-    return dim == 3 && grip->slides && grip->end.slid > 0 && fu_dot(3, now, travel->change) > 0.0 &&
-           fu_dot(3, now, travel->rates[1]) > 0.0 && fu_dot(3, now, grip->old) >= 0.0;
+    const double *now = stick->without_sliding;
+    return dim == 3 && stick->slides && stick->end.slid > 0 && fu_dot(3, now, travel->change) > 0.0 &&
+           fu_dot(3, now, travel->rates[1]) > 0.0 && fu_dot(3, now, stick->old) >= 0.0;
 }
 
 /* Computes the direction of a stretch that slides as the step ends. */
 static void turn_to_slip(const fu_crossing *crossing, const last_step *last, double time,
                          const fu_closest_points *points, const fu_crossing_contact *contact,
-                         const fu_crossing_stick *grip, double along[3])
+                         const fu_crossing_stick *stick, double along[3])
 {
     const double r = crossing->friction * fmax(contact->size, 0.0) / crossing->tangential;
     double slip[2][3];
-    in_space(3, grip->along, contact->normal, last->rate, slip[0]);
+    in_space(3, stick->along, contact->normal, last->rate, slip[0]);
     slip_of(3, points, contact, slip[1]);
-    crossing->kernel->turned(grip->without_sliding, grip->old, slip[0], slip[1], time_since(last, time), r,
+    crossing->kernel->turned(stick->without_sliding, stick->old, slip[0], slip[1], time_since(last, time), r,
                              crossing->law[FU_LAW_LEAST], slid_before(last), slid_stretch(last), 1.0, along);
     const double size = sqrt(fu_dot(3, along, along));
     for (int d = 0; d < 3 && size > 0.0; ++d) along[d] /= size;
 }
 
-static void grip_since(const fu_crossing *crossing, const last_step *last, const fu_closest_points *points,
-                       const fu_crossing_contact *contact, double time, fu_crossing_stick *out)
+static void stick_since(const fu_crossing *crossing, const last_step *last, const fu_closest_points *points,
+                        const fu_crossing_contact *contact, double time, fu_crossing_stick *out)
 {
     const int dim = crossing->kernel->dim;
     const double most = crossing->friction * fmax(contact->size, 0.0) / crossing->tangential;
     double e[FU_LINES], along[3] = {0.0};
     fu_friction_travel travel;
-    fu_friction_path way;
+    fu_friction_path path;
     memset(out, 0, sizeof *out);
     moved_since(last, points, e);
     crossing->kernel->stretch(points->d, points->t, points->k, points->w, points->u, crossing->law, e,
-                              time_since(last, time), last->way, last->way_rate, last->slopes, last->slope_rates,
-                              last->s_rate, last->stretch, last->rate, out->without_sliding, out->old, out->along);
-    travel_since(crossing, last, points, contact, time, out, &travel, &way);
+                              time_since(last, time), last->separation, last->separation_rate, last->slopes,
+                              last->slope_rates, last->s_rate, last->stretch, last->rate, out->without_sliding,
+                              out->old, out->along);
+    travel_since(crossing, last, points, contact, time, out, &travel, &path);
     for (int d = 0; d < dim; ++d) along[d] = travel.stretch[d] + travel.change[d];
-    fu_path_along(dim, travel.change, travel.rates[0], travel.rates[1], along, &way);
-    out->end = fu_end_of_friction(&way, most);
+    fu_path_along(dim, travel.change, travel.rates[0], travel.rates[1], along, &path);
+    out->end = fu_end_of_friction(&path, most);
     out->slides = out->end.slid && out->end.part == 1.0;
     out->turns = turns(dim, out, &travel);
     if (out->turns) turn_to_slip(crossing, last, time, points, contact, out, along);
@@ -149,17 +150,17 @@ static void grip_since(const fu_crossing *crossing, const last_step *last, const
 void fu_crossing_stick_at(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
                           const fu_crossing_contact *contact, fu_crossing_stick *out)
 {
-    grip_since(crossing, before_of(crossing, state), points, contact, state->t, out);
+    stick_since(crossing, before_of(crossing, state), points, contact, state->t, out);
 }
 
 /* Computes the derivatives of friction that has slid within the step and then sticks: shares of those of sticking,
  * since a velocity at the end also moves the end of sliding, and of sliding. */
-static void mix_derivatives(const fu_crossing *crossing, const fu_crossing_stick *grip, double h,
+static void mix_derivatives(const fu_crossing *crossing, const fu_crossing_stick *stick, double h,
                             const fu_crossing_stick_changes *stuck, fu_crossing_stick_changes *by)
 {
     const int dim = crossing->kernel->dim;
-    const fu_cubic at = fu_cubic_at(grip->end.part);
-    const double lag = crossing->tangential * h * at.rates[1], square = fu_dot(dim, grip->stretch, grip->stretch);
+    const fu_cubic at = fu_cubic_at(stick->end.part);
+    const double lag = crossing->tangential * h * at.rates[1], square = fu_dot(dim, stick->stretch, stick->stretch);
     for (int i = 0; i < dim * dim; ++i) by->F_d[i] = at.change * by->F_d[i] + (1.0 - at.change) * stuck->F_d[i];
     for (int i = 0; i < dim * dim * (dim - 1); ++i) {
         by->F_t[i] = at.change * by->F_t[i] + (1.0 - at.change) * stuck->F_t[i];
@@ -170,7 +171,7 @@ static void mix_derivatives(const fu_crossing *crossing, const fu_crossing_stick
         for (int j = 0; j < dim && square > 0.0; ++j) {
             const int ij = i * dim + j;
             by->F_u[ij] = at.change * by->F_u[ij] + (1.0 - at.change) * stuck->F_u[ij] +
-                          lag * grip->stretch[i] * grip->stretch[j] / square;
+                          lag * stick->stretch[i] * stick->stretch[j] / square;
         }
 }
 
@@ -182,40 +183,40 @@ void fu_crossing_stick_derivatives(const fu_crossing *crossing, const fu_state *
     const fu_crossing_kernels *kernel = crossing->kernel;
     const double friction = contact->size > 0.0 ? crossing->friction : 0.0, h = time_since(last, state->t);
     double e[FU_LINES];
-    fu_crossing_stick grip;
+    fu_crossing_stick stick;
     fu_crossing_stick_changes stuck;
-    fu_crossing_stick_at(crossing, state, points, contact, &grip);
+    fu_crossing_stick_at(crossing, state, points, contact, &stick);
     moved_since(last, points, e);
     memset(by, 0, sizeof *by);
     memset(&stuck, 0, sizeof stuck);
-    if (grip.end.slid)
+    if (stick.end.slid)
         kernel->sliding(points->d, points->t, points->k, points->w, points->u, bends->third, bends->rate, crossing->law,
-                        friction, crossing->tangential, e, h, last->way, last->way_rate, last->slopes,
+                        friction, crossing->tangential, e, h, last->separation, last->separation_rate, last->slopes,
                         last->slope_rates, last->s_rate, last->stretch, last->rate,
-                        grip.turns ? slid_before(last) : 0.0, slid_stretch(last), grip.turns, by->F, by->F_d, by->F_t,
+                        stick.turns ? slid_before(last) : 0.0, slid_stretch(last), stick.turns, by->F, by->F_d, by->F_t,
                         by->F_u, by->F_w, by->F_k);
-    if (!grip.slides)
+    if (!stick.slides)
         kernel->sticking(points->d, points->t, points->k, points->w, points->u, bends->third, bends->rate,
-                         crossing->law, crossing->tangential, e, h, last->way, last->way_rate, last->slopes,
-                         last->slope_rates, last->s_rate, last->stretch, last->rate, stuck.F, stuck.F_d, stuck.F_t,
-                         stuck.F_u, stuck.F_w, stuck.F_k);
-    if (!grip.end.slid) *by = stuck;
-    else if (!grip.slides) mix_derivatives(crossing, &grip, state->t - last->time, &stuck, by);
-    memcpy(by->F, grip.force, sizeof by->F);
+                         crossing->law, crossing->tangential, e, h, last->separation, last->separation_rate,
+                         last->slopes, last->slope_rates, last->s_rate, last->stretch, last->rate, stuck.F, stuck.F_d,
+                         stuck.F_t, stuck.F_u, stuck.F_w, stuck.F_k);
+    if (!stick.end.slid) *by = stuck;
+    else if (!stick.slides) mix_derivatives(crossing, &stick, state->t - last->time, &stuck, by);
+    memcpy(by->F, stick.force, sizeof by->F);
 }
 
 /* Updates the stretch, null for none, to points. */
 static void take_along(const fu_crossing *crossing, const fu_closest_points *points, const fu_crossing_contact *contact,
-                       double time, const fu_crossing_stick *grip, const double *line, last_step *last)
+                       double time, const fu_crossing_stick *stick, const double *line, last_step *last)
 {
     const int dim = crossing->kernel->dim;
     double across[3] = {0.0}, slip[3];
     memset(last, 0, sizeof *last);
     memcpy(last->s, points->s, sizeof last->s);
-    memcpy(last->way, points->d, sizeof(double) * (size_t)dim);
+    memcpy(last->separation, points->d, sizeof(double) * (size_t)dim);
     memcpy(last->slopes, points->t, sizeof(double) * (size_t)(dim * (dim - 1)));
     crossing->kernel->motion(points->d, points->t, points->k, points->w, points->u, last->s_rate, last->slope_rates,
-                             last->way_rate);
+                             last->separation_rate);
     last->depth = contact->depth[0];
     last->sinking = contact->depth[1];
     last->time = time;
@@ -223,36 +224,36 @@ static void take_along(const fu_crossing *crossing, const fu_closest_points *poi
     if (dim == 3) fu_cross(contact->normal, line, across);
     last->rate[0] = fu_dot(dim, line, slip);
     last->rate[1] = fu_dot(dim, across, slip);
-    if (!grip) return;
-    last->slid = grip->slides;
-    last->stretch[0] = fu_dot(dim, line, grip->stretch);
-    last->stretch[1] = fu_dot(dim, across, grip->stretch);
+    if (!stick) return;
+    last->slid = stick->slides;
+    last->stretch[0] = fu_dot(dim, line, stick->stretch);
+    last->stretch[1] = fu_dot(dim, across, stick->stretch);
 }
 
 void fu_crossing_begin_stick(const fu_crossing *crossing, const fu_closest_points *points, fu_state *state)
 {
     last_step here = *before_of(crossing, state);
     fu_crossing_contact contact;
-    fu_crossing_stick grip;
+    fu_crossing_stick stick;
     fu_crossing_contact_at(crossing, points, &contact);
     memcpy(here.s, points->s, sizeof here.s);
     memcpy(here.slopes, points->t, sizeof here.slopes);
-    grip_since(crossing, &here, points, &contact, here.time, &grip); /* for the direction of the last line */
-    take_along(crossing, points, &contact, state->t, 0, grip.along, before_of(crossing, state));
+    stick_since(crossing, &here, points, &contact, here.time, &stick); /* for the direction of the last line */
+    take_along(crossing, points, &contact, state->t, 0, stick.along, before_of(crossing, state));
 }
 
 void fu_crossing_update_stick(const fu_crossing *crossing, const fu_closest_points *points,
                               const fu_crossing_contact *contact, fu_state *state)
 {
-    fu_crossing_stick grip;
-    fu_crossing_stick_at(crossing, state, points, contact, &grip);
-    take_along(crossing, points, contact, state->t, &grip, grip.along, before_of(crossing, state));
+    fu_crossing_stick stick;
+    fu_crossing_stick_at(crossing, state, points, contact, &stick);
+    take_along(crossing, points, contact, state->t, &stick, stick.along, before_of(crossing, state));
 }
 
 /* Computes the stretch at the end of a step, and the path to it; returns whether lines in contact have closest points
  * there. */
-static int grip_over_step(const fu_model *model, const fu_crossing *crossing, const fu_state *from, const fu_state *to,
-                          fu_crossing_stick *grip, fu_friction_travel *travel, fu_friction_path *way)
+static int stick_over_step(const fu_model *model, const fu_crossing *crossing, const fu_state *from, const fu_state *to,
+                           fu_crossing_stick *stick, fu_friction_travel *travel, fu_friction_path *path)
 {
     const last_step *last = before_of(crossing, from);
     fu_closest_points end;
@@ -260,8 +261,8 @@ static int grip_over_step(const fu_model *model, const fu_crossing *crossing, co
     fu_find_closest(model, crossing, to, &end);
     if (!end.found || !(to->t > last->time)) return 0;
     fu_crossing_contact_at(crossing, &end, &contact);
-    grip_since(crossing, last, &end, &contact, to->t, grip);
-    travel_since(crossing, last, &end, &contact, to->t, grip, travel, way);
+    stick_since(crossing, last, &end, &contact, to->t, stick);
+    travel_since(crossing, last, &end, &contact, to->t, stick, travel, path);
     return 1;
 }
 
@@ -271,20 +272,20 @@ double fu_crossing_history_error(const fu_model *model, const fu_coupling *coupl
 {
     const fu_crossing *crossing = (const fu_crossing *)coupling;
     const int dim = model->dim;
-    fu_crossing_stick grip;
+    fu_crossing_stick stick;
     fu_friction_travel travel;
-    fu_friction_path way;
+    fu_friction_path path;
     double along[3] = {0.0}, square = 0.0;
     if (!(crossing->friction > 0.0) || !from->flags[coupling->flags]) return 0.0;
-    if (!grip_over_step(model, crossing, from, to, &grip, &travel, &way)) return 0.0;
-    for (int d = 0; d < dim; ++d) travel.rates[0][d] = 2.0 * travel.change[d] / way.h - travel.rates[1][d];
-    way.depth.rate[0] = 2.0 * (way.depth.value[1] - way.depth.value[0]) / way.h - way.depth.rate[1];
+    if (!stick_over_step(model, crossing, from, to, &stick, &travel, &path)) return 0.0;
+    for (int d = 0; d < dim; ++d) travel.rates[0][d] = 2.0 * travel.change[d] / path.h - travel.rates[1][d];
+    path.depth.rate[0] = 2.0 * (path.depth.value[1] - path.depth.value[0]) / path.h - path.depth.rate[1];
     for (int d = 0; d < dim; ++d) along[d] = travel.stretch[d] + travel.change[d];
-    fu_path_along(dim, travel.change, travel.rates[0], travel.rates[1], along, &way);
-    const fu_friction_end other = fu_end_of_friction(&way, INFINITY);
-    if (grip.turns && other.slid > 0 && other.part == 1.0) return fabs(other.stretch - grip.end.stretch);
+    fu_path_along(dim, travel.change, travel.rates[0], travel.rates[1], along, &path);
+    const fu_friction_end other = fu_end_of_friction(&path, INFINITY);
+    if (stick.turns && other.slid > 0 && other.part == 1.0) return fabs(other.stretch - stick.end.stretch);
     for (int d = 0; d < dim; ++d) {
-        const double off = other.stretch * along[d] - grip.stretch[d];
+        const double off = other.stretch * along[d] - stick.stretch[d];
         square += off * off;
     }
     return sqrt(square);
@@ -293,11 +294,11 @@ double fu_crossing_history_error(const fu_model *model, const fu_coupling *coupl
 double fu_crossing_slip_work(const fu_model *model, const fu_crossing *crossing, const fu_state *from,
                              const fu_state *to, int by_ends)
 {
-    fu_crossing_stick grip;
+    fu_crossing_stick stick;
     fu_friction_travel travel;
-    fu_friction_path way;
-    if (!grip_over_step(model, crossing, from, to, &grip, &travel, &way)) return 0.0;
-    return crossing->tangential * fu_taken_by_friction(model->dim, &travel, &way, grip.stretch, by_ends);
+    fu_friction_path path;
+    if (!stick_over_step(model, crossing, from, to, &stick, &travel, &path)) return 0.0;
+    return crossing->tangential * fu_taken_by_friction(model->dim, &travel, &path, stick.stretch, by_ends);
 }
 
 void fu_crossing_reset_stick(const fu_crossing *crossing, fu_state *state)
@@ -305,7 +306,7 @@ void fu_crossing_reset_stick(const fu_crossing *crossing, fu_state *state)
     last_step *last = before_of(crossing, state);
     memset(last, 0, sizeof *last);
     memcpy(last->s, crossing->start, sizeof last->s);
-    memcpy(last->way, crossing->way, sizeof last->way);
+    memcpy(last->separation, crossing->separation, sizeof last->separation);
     memcpy(last->slopes, crossing->slopes, sizeof last->slopes);
     last->time = FU_NO_TIME;
 }

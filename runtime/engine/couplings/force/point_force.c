@@ -9,11 +9,11 @@
 #include <string.h>
 
 /* Computes the force on the first point by the law of a segment. */
-static void force_of_piece(const fu_point_force *between, int piece, const double gap[3], const double rate[3],
-                           double force[3])
+static void force_of_segment(const fu_point_force *between, int segment, const double gap[3], const double rate[3],
+                             double force[3])
 {
-    if (between->senses[piece] == FU_HAS_NO_FORCE) memset(force, 0, sizeof(double[3]));
-    else between->law->force(fu_segment_parameters(between, piece), gap, rate, force);
+    if (between->senses[segment] == FU_HAS_NO_FORCE) memset(force, 0, sizeof(double[3]));
+    else between->law->force(fu_segment_parameters(between, segment), gap, rate, force);
 }
 
 /* Computes the force on the first point by the law. */
@@ -22,7 +22,7 @@ static void force_at(const fu_model *model, const fu_coupling *coupling, const f
     const fu_point_force *between = (const fu_point_force *)coupling;
     double gap[3], rate[3];
     fu_gap(model, between, state, gap, rate);
-    force_of_piece(between, fu_force_segment(between, state), gap, rate, force);
+    force_of_segment(between, fu_force_segment(between, state), gap, rate, force);
 }
 
 static double length(int dim, const double *gap)
@@ -37,18 +37,18 @@ typedef struct {
 
 /* Returns the path from one gap to another. The tension of each segment counts by its share of the path: the work of
  * the mean on the path is the change of the energy. */
-static point_motion way_of(const fu_point_force *between, const double gap[3], const double gap_next[3])
+static point_motion path_of(const fu_point_force *between, const double gap[3], const double gap_next[3])
 {
     const int dim = between->dim;
     const double from = length(dim, gap), to = length(dim, gap_next), low = fmin(from, to), high = fmax(from, to);
     double work = 0.0;
-    for (int piece = 0; piece < between->n_pieces; ++piece) {
-        const double a = piece > 0 ? fmax(low, between->bounds[piece - 1]) : low;
-        const double b = piece < between->n_pieces - 1 ? fmin(high, between->bounds[piece]) : high;
+    for (int segment = 0; segment < between->n_pieces; ++segment) {
+        const double a = segment > 0 ? fmax(low, between->bounds[segment - 1]) : low;
+        const double b = segment < between->n_pieces - 1 ? fmin(high, between->bounds[segment]) : high;
         const double start[3] = {a, 0.0, 0.0}, end[3] = {b, 0.0, 0.0};
         double tension[3], unused;
-        if (!(b > a) || between->senses[piece] == FU_HAS_NO_FORCE) continue;
-        between->law->discrete_force(fu_segment_parameters(between, piece), 1.0, start, end, tension, &unused);
+        if (!(b > a) || between->senses[segment] == FU_HAS_NO_FORCE) continue;
+        between->law->discrete_force(fu_segment_parameters(between, segment), 1.0, start, end, tension, &unused);
         work += tension[0] * (b - a);
     }
     return (point_motion){from, to, work / (high - low)};
@@ -56,14 +56,14 @@ static point_motion way_of(const fu_point_force *between, const double gap[3], c
 
 /* Computes the derivatives of the mean force by the gap in the middle, which moves by half of its end: those across the
  * mean direction belong to the mean tension. */
-static void mean_stiffness(const fu_point_force *between, const double gap[3], const double gap_next[3], int piece,
+static void mean_stiffness(const fu_point_force *between, const double gap[3], const double gap_next[3], int segment,
                            double by_gap[9])
 {
-    const point_motion w = way_of(between, gap, gap_next);
+    const point_motion w = path_of(between, gap, gap_next);
     const int dim = between->dim;
     const double end[3] = {w.to, 0.0, 0.0}, rate[3] = {0.0, 0.0, 0.0};
     double tension[3], e[3];
-    force_of_piece(between, piece, end, rate, tension);
+    force_of_segment(between, segment, end, rate, tension);
     const double along = 2.0 * (tension[0] - w.tension) / (w.to - w.from), across = 2.0 * w.tension / (w.from + w.to);
     for (int d = 0; d < dim; ++d) e[d] = (gap[d] + gap_next[d]) / (w.from + w.to);
     for (int d = 0; d < dim; ++d)
@@ -71,7 +71,7 @@ static void mean_stiffness(const fu_point_force *between, const double gap[3], c
 }
 
 /* Returns the segment at the end of a step: without a damper that of the distance, as in the energy. */
-static int step_piece(const fu_model *model, const fu_point_force *between, const fu_equations *at)
+static int step_segment(const fu_model *model, const fu_point_force *between, const fu_equations *at)
 {
     return between->base.is_damped ? fu_force_segment(between, at->next) : fu_segment_at(model, between, at->next);
 }
@@ -88,20 +88,20 @@ static int is_of_several(const fu_model *model, const fu_point_force *between, c
 static double step_force(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double force[3])
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
-    const int several = is_of_several(model, between, at), piece = step_piece(model, between, at);
+    const int several = is_of_several(model, between, at), segment = step_segment(model, between, at);
     double gap[3], gap_next[3], power;
-    if (!several && between->senses[piece] == FU_HAS_NO_FORCE) {
+    if (!several && between->senses[segment] == FU_HAS_NO_FORCE) {
         memset(force, 0, sizeof(double[3]));
         return 0.0;
     }
     fu_gap(model, between, at->now, gap, 0);
     fu_gap(model, between, at->next, gap_next, 0);
     if (several) {
-        const point_motion w = way_of(between, gap, gap_next);
+        const point_motion w = path_of(between, gap, gap_next);
         for (int d = 0; d < between->dim; ++d) force[d] = w.tension * (gap[d] + gap_next[d]) / (w.from + w.to);
         return 0.0;
     }
-    between->law->discrete_force(fu_segment_parameters(between, piece), at->h, gap, gap_next, force, &power);
+    between->law->discrete_force(fu_segment_parameters(between, segment), at->h, gap, gap_next, force, &power);
     return power;
 }
 
@@ -118,13 +118,13 @@ static void add_forces(const fu_model *model, const fu_point_force *between, con
     }
 }
 
-void fu_add_force_change(const fu_model *model, const fu_point_force *between, const fu_state *state, int piece,
+void fu_add_force_change(const fu_model *model, const fu_point_force *between, const fu_state *state, int segment,
                          double factor, double *f)
 {
     double gap[3], rate[3], force[3], other[3];
     fu_gap(model, between, state, gap, rate);
-    force_of_piece(between, fu_force_segment(between, state), gap, rate, force);
-    force_of_piece(between, piece, gap, rate, other);
+    force_of_segment(between, fu_force_segment(between, state), gap, rate, force);
+    force_of_segment(between, segment, gap, rate, other);
     for (int d = 0; d < between->dim; ++d) force[d] = factor * (force[d] - other[d]);
     add_forces(model, between, state, 0, force, f);
 }
@@ -156,7 +156,7 @@ static void step_residual(const fu_model *model, const fu_coupling *coupling, co
 
 /* Adds the derivatives of the equations at a state to a system, by the law of a segment; own: the forces; psi as in
  * fu_equations; known: the derivatives by the gap of a force that does not follow that law, else null. */
-static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int piece,
+static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int segment,
                    const double *own, const double *psi, const double *known, fu_weights weights, fu_system *system)
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
@@ -172,8 +172,8 @@ static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_
         rate[d] = motions[1].at.v[d] - motions[0].at.v[d];
     }
     if (known) memcpy(by_gap, known, sizeof by_gap);
-    else if (between->senses[piece] != FU_HAS_NO_FORCE)
-        between->law->tangent(fu_segment_parameters(between, piece), gap, rate, force, by_gap, by_rate);
+    else if (between->senses[segment] != FU_HAS_NO_FORCE)
+        between->law->tangent(fu_segment_parameters(between, segment), gap, rate, force, by_gap, by_rate);
     for (int d = 0; d < dim; ++d) {
         memcpy(by + 2 * d * dim, by_gap + d * dim, sizeof(double) * (size_t)dim);
         memcpy(by + (2 * d + 1) * dim, by_rate + d * dim, sizeof(double) * (size_t)dim);
@@ -197,23 +197,23 @@ static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_
 
 static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
 {
-    const int piece = fu_force_segment((const fu_point_force *)coupling, at->next);
-    matrix(model, coupling, at->next, piece, at->next->forces + coupling->force, at->psi, 0, at->weights, system);
+    const int segment = fu_force_segment((const fu_point_force *)coupling, at->next);
+    matrix(model, coupling, at->next, segment, at->next->forces + coupling->force, at->psi, 0, at->weights, system);
 }
 
 /* The middle moves by half of psi, which is in weights.stiffness. */
 static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
-    const int several = is_of_several(model, between, at), piece = step_piece(model, between, at);
+    const int several = is_of_several(model, between, at), segment = step_segment(model, between, at);
     double gap[3], gap_next[3], by_gap[9];
     if (several) {
         fu_gap(model, between, at->now, gap, 0);
         fu_gap(model, between, at->next, gap_next, 0);
-        mean_stiffness(between, gap, gap_next, piece, by_gap);
+        mean_stiffness(between, gap, gap_next, segment, by_gap);
     }
-    matrix(model, coupling, at->middle, piece, at->next->forces + coupling->force, 0, several ? by_gap : 0, at->weights,
-           system);
+    matrix(model, coupling, at->middle, segment, at->next->forces + coupling->force, 0, several ? by_gap : 0,
+           at->weights, system);
 }
 
 static double step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
@@ -247,11 +247,11 @@ static void take_forces(const fu_model *model, const fu_coupling *coupling, cons
 static double energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
-    const int piece = fu_segment_at(model, between, state);
+    const int segment = fu_segment_at(model, between, state);
     double gap[3], stored;
-    if (between->senses[piece] == FU_HAS_NO_FORCE) return 0.0;
+    if (between->senses[segment] == FU_HAS_NO_FORCE) return 0.0;
     fu_gap(model, between, state, gap, 0);
-    between->law->energy(fu_segment_parameters(between, piece), gap, &stored);
+    between->law->energy(fu_segment_parameters(between, segment), gap, &stored);
     return stored;
 }
 
@@ -259,12 +259,12 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
                           const fu_accelerator *work)
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
-    const int piece = fu_force_segment(between, state);
+    const int segment = fu_force_segment(between, state);
     double gap[3], rate[3], power;
     (void)work;
-    if (!coupling->is_damped || between->senses[piece] == FU_HAS_NO_FORCE) return 0.0;
+    if (!coupling->is_damped || between->senses[segment] == FU_HAS_NO_FORCE) return 0.0;
     fu_gap(model, between, state, gap, rate);
-    between->law->dissipation(fu_segment_parameters(between, piece), gap, rate, &power);
+    between->law->dissipation(fu_segment_parameters(between, segment), gap, rate, &power);
     return power;
 }
 

@@ -29,7 +29,7 @@ extern const fu_coupling_type fu_point_force_type;
 
 /* couplings/force/point_force.c */
 /* Adds to f, times a factor, the difference of the forces at a state from those by the law of another segment. */
-void fu_add_force_change(const fu_model *model, const fu_point_force *between, const fu_state *state, int piece,
+void fu_add_force_change(const fu_model *model, const fu_point_force *between, const fu_state *state, int segment,
                          double factor, double *f);
 
 /* couplings/force/segments.c; the first computes the gap between the points and, unless null, its rate. */
@@ -37,7 +37,7 @@ void fu_gap(const fu_model *model, const fu_point_force *between, const fu_state
 int fu_force_segment(const fu_point_force *between, const fu_state *state);
 int fu_segment_at(const fu_model *model, const fu_point_force *between, const fu_state *state);
 int fu_segment_at_distance(const fu_point_force *between, double distance);
-const double *fu_segment_parameters(const fu_point_force *between, int piece);
+const double *fu_segment_parameters(const fu_point_force *between, int segment);
 void fu_detect_segment(const fu_model *model, const fu_coupling *coupling, fu_state *state);
 
 #endif

@@ -20,17 +20,17 @@ int fu_force_segment(const fu_point_force *between, const fu_state *state)
     return state->flags[between->base.flags];
 }
 
-const double *fu_segment_parameters(const fu_point_force *between, int piece)
+const double *fu_segment_parameters(const fu_point_force *between, int segment)
 {
-    return between->parameters + (long)piece * between->n_parameters;
+    return between->parameters + (long)segment * between->n_parameters;
 }
 
 /* Returns the segment of a distance. */
 int fu_segment_at_distance(const fu_point_force *between, double distance)
 {
-    int piece = 0;
-    while (piece < between->n_pieces - 1 && distance > between->bounds[piece]) ++piece;
-    return piece;
+    int segment = 0;
+    while (segment < between->n_pieces - 1 && distance > between->bounds[segment]) ++segment;
+    return segment;
 }
 
 void fu_gap(const fu_model *model, const fu_point_force *between, const fu_state *state, double gap[3], double *rate)

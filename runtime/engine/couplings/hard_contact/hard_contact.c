@@ -260,19 +260,19 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     fu_hard_contact_output *numbers = (fu_hard_contact_output *)out;
     const double *multiplier =
         work ? work->multipliers + coupling->multiplier : state->forces + coupling->force; /* or of statics */
-    const double press = is_closed(coupling, state) ? -*multiplier : 0.0;
+    const double normal_force = is_closed(coupling, state) ? -*multiplier : 0.0;
     fu_hard_along along;
     fu_hard_row row;
     (void)acceleration;
     *numbers = (fu_hard_contact_output){.gap = 0.0};
     fu_hard_row_at(model, contact_of(coupling), state, &row);
-    for (int d = 0; d < model->dim; ++d) numbers->force[d] = press * row.normal[d];
-    if (has_friction(coupling) && press != 0.0) {
+    for (int d = 0; d < model->dim; ++d) numbers->force[d] = normal_force * row.normal[d];
+    if (has_friction(coupling) && normal_force != 0.0) {
         fu_hard_along_at(model, contact_of(coupling), state, &row, &along);
         for (int d = 0; d < model->dim; ++d) {
             if (fu_hard_flags_of(coupling, state)->sticks)
                 for (int k = 1; k < model->dim; ++k) numbers->friction_force[d] -= multiplier[k] * along.t[k - 1][d];
-            else numbers->friction_force[d] = -contact_of(coupling)->friction * press * along.direction[d];
+            else numbers->friction_force[d] = -contact_of(coupling)->friction * normal_force * along.direction[d];
             numbers->force[d] += numbers->friction_force[d];
         }
     }
@@ -290,13 +290,13 @@ static void gaps(const fu_model *model, const fu_coupling *coupling, const fu_st
 static double dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                           const fu_accelerator *work)
 {
-    const double press = -(work ? work->multipliers + coupling->multiplier : state->forces + coupling->force)[0];
+    const double normal_force = -(work ? work->multipliers + coupling->multiplier : state->forces + coupling->force)[0];
     fu_hard_row row;
     fu_hard_along along;
     if (!has_friction(coupling) || !is_closed(coupling, state) || fu_hard_flags_of(coupling, state)->sticks) return 0.0;
     fu_hard_row_at(model, contact_of(coupling), state, &row);
     fu_hard_along_at(model, contact_of(coupling), state, &row, &along);
-    return contact_of(coupling)->friction * press * fu_dot(model->dim, along.direction, along.past);
+    return contact_of(coupling)->friction * normal_force * fu_dot(model->dim, along.direction, along.past);
 }
 
 /* The direction of sliding is the history variable. */
@@ -312,14 +312,14 @@ static void carry(const fu_model *model, const fu_coupling *coupling, fu_state *
 
 /* In statics a point is in contact if its multiplier pushes, or if it is nearer than that: the active set follows from
  * both (Hintermueller). */
-static void touch(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+static void detect_contact(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     const fu_hard_contact *contact = contact_of(coupling);
     fu_hard_row row;
     fu_hard_row_at(model, contact, state, &row);
-    const double press = -state->forces[coupling->force];
+    const double normal_force = -state->forces[coupling->force];
     fu_hard_flags_of(coupling, state)->mode =
-        press > contact->stiffness * (row.g - CONTACT_TOLERANCE) ? FU_CLOSED : FU_APART;
+        normal_force > contact->stiffness * (row.g - CONTACT_TOLERANCE) ? FU_CLOSED : FU_APART;
 }
 
 static int is_possible(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
@@ -367,7 +367,7 @@ const fu_coupling_type fu_hard_contact_type = {
     .outputs = outputs,
     .gaps = gaps,
     .dissipation = dissipation,
-    .detect = touch,
+    .detect = detect_contact,
     .is_possible = is_possible,
     .history = &history,
 };

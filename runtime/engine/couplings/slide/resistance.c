@@ -46,7 +46,7 @@ double fu_compression(const fu_model *model, const fu_state *state, int j, int s
 }
 
 /* Returns the buffer that a slide compresses, null if there is none. */
-static const fu_end_stop *pressed(const fu_model *model, const fu_state *state, int j)
+static const fu_end_stop *compressed(const fu_model *model, const fu_state *state, int j)
 {
     const fu_slide_flags *flags = fu_slide_flags_of(model, state, j);
     const fu_end_stop *stop = &model->slides[j].stops[flags->contact > 0];
@@ -57,7 +57,7 @@ void fu_resistance_at(const fu_model *model, const fu_state *state, int j, const
                       const double *f, fu_resistance *resistance)
 {
     const fu_slide *slide = &model->slides[j];
-    const fu_end_stop *stop = pressed(model, state, j);
+    const fu_end_stop *stop = compressed(model, state, j);
     const int side = fu_slide_flags_of(model, state, j)->contact;
     const double friction[5] = {slide->friction, slide->viscous, slide->velocity, direction_of(model, state, j),
                                 MIN_NORMAL_FORCE};
@@ -73,7 +73,7 @@ void fu_resistance_at(const fu_model *model, const fu_state *state, int j, const
 static double power_of(const fu_model *model, const fu_state *state, int j, const double *t, const double *u,
                        const double *f)
 {
-    const fu_end_stop *stop = pressed(model, state, j);
+    const fu_end_stop *stop = compressed(model, state, j);
     const int side = fu_slide_flags_of(model, state, j)->contact;
     const double spring = stop ? -side * stop->stiffness * fu_compression(model, state, j, side) : 0.0;
     fu_resistance resistance;
