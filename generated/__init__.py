@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
 
 def described(manifest: dict[str, Any], families: Iterable[str] | None = None) -> dict[str, dict[str, Any]]:

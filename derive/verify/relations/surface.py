@@ -135,10 +135,11 @@ def _reactions(dim: int) -> list[Relation]:
         arm = axes.dot(s["arm"] + arm_y)
         return {"f_t": f, "m_t": moment_of(arm, f), "m_o_t": moment_of(x + arm, f)}
 
-    def of(output):
+    def path(output: str) -> Any:
         return lambda k, s, t, j: moved(k, s, t)[output]
 
-    return [Relation("reaction", output, "along a finite motion", 1, of(output)) for output in ("f_t", "m_t", "m_o_t")]
+    return [Relation("reaction", output, "along a finite motion", 1, path(output))
+            for output in ("f_t", "m_t", "m_o_t")]
 
 
 def _motions(dim: int) -> list[Relation]:
