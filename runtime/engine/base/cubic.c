@@ -8,29 +8,6 @@
 #define ROUNDING_OF_PART 1e-15   /* of a step */
 #define MAX_ITERATIONS 50        /* of Newton's method with bisection */
 
-fu_cubic fu_cubic_at(double x)
-{
-    const double rest = 1.0 - x;
-    return (fu_cubic){x * x * (3.0 - 2.0 * x),
-                      {rest * rest * x, -x * x * rest},
-                      6.0 * x * rest,
-                      {rest * (1.0 - 3.0 * x), x * (3.0 * x - 2.0)}};
-}
-
-double fu_value_within(const fu_step_ends *ends, double h, double x)
-{
-    const fu_cubic at = fu_cubic_at(x);
-    return ends->value[0] + at.change * (ends->value[1] - ends->value[0]) +
-           h * (at.rates[0] * ends->rate[0] + at.rates[1] * ends->rate[1]);
-}
-
-double fu_rate_within(const fu_step_ends *ends, double h, double x)
-{
-    const fu_cubic at = fu_cubic_at(x);
-    return at.slope * (ends->value[1] - ends->value[0]) / h + at.slope_rates[0] * ends->rate[0] +
-           at.slope_rates[1] * ends->rate[1];
-}
-
 void fu_vector_within(int dim, const double *from, const double *from_rate, const double *to, const double *to_rate,
                       double h, double x, double *value, double *rate)
 {

@@ -7,7 +7,14 @@
 typedef struct {
     double change, rates[2], slope, slope_rates[2];
 } fu_cubic;
-fu_cubic fu_cubic_at(double x);
+static inline fu_cubic fu_cubic_at(double x)
+{
+    const double rest = 1.0 - x;
+    return (fu_cubic){x * x * (3.0 - 2.0 * x),
+                      {rest * rest * x, -x * x * rest},
+                      6.0 * x * rest,
+                      {rest * (1.0 - 3.0 * x), x * (3.0 * x - 2.0)}};
+}
 
 /* A value and its rate at an instant, and at both ends of a step. */
 typedef struct {
@@ -18,8 +25,20 @@ typedef struct {
 } fu_step_ends;
 
 /* Return value and rate after the part x of a step of h, s; likewise of a vector. */
-double fu_value_within(const fu_step_ends *ends, double h, double x);
-double fu_rate_within(const fu_step_ends *ends, double h, double x);
+static inline double fu_value_within(const fu_step_ends *ends, double h, double x)
+{
+    const fu_cubic at = fu_cubic_at(x);
+    return ends->value[0] + at.change * (ends->value[1] - ends->value[0]) +
+           h * (at.rates[0] * ends->rate[0] + at.rates[1] * ends->rate[1]);
+}
+
+static inline double fu_rate_within(const fu_step_ends *ends, double h, double x)
+{
+    const fu_cubic at = fu_cubic_at(x);
+    return at.slope * (ends->value[1] - ends->value[0]) / h + at.slope_rates[0] * ends->rate[0] +
+           at.slope_rates[1] * ends->rate[1];
+}
+
 void fu_vector_within(int dim, const double *from, const double *from_rate, const double *to, const double *to_rate,
                       double h, double x, double *value, double *rate);
 /* Returns an upper bound of the length of a point's path in a step, m, relative to points with the velocity `mean`. */
