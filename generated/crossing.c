@@ -552,10 +552,10 @@
         slip_z = n_z*rate + u[2], \
         speed = FU_SQRT(c[7]*c[7] + slip_x*slip_x + slip_y*slip_y + slip_z*slip_z), \
         inv_speed = 1.0/speed, \
-        rub = N_law*c[6]*inv_speed, \
-        F_x = N_law*n_x - rub*slip_x, \
-        F_y = N_law*n_y - rub*slip_y, \
-        F_z = N_law*n_z - rub*slip_z;
+        friction_force = N_law*c[6]*inv_speed, \
+        F_x = N_law*n_x - friction_force*slip_x, \
+        F_y = N_law*n_y - friction_force*slip_y, \
+        F_z = N_law*n_z - friction_force*slip_z;
 
 /* rates of the closest points: of crossing_stretch and 2 more */
 #define CROSSING_RATES_OF_THE_CLOSEST_POINTS \
@@ -663,7 +663,7 @@ void crossing_contact(const fu_real *d, const fu_real *t, const fu_real *u, cons
     f[1] = F_y;
     f[2] = F_z;
     U[0] = depth*depth*(0.5*c[2] + (2.0/5.0)*c[3]*root_p);
-    P[0] = c[4]*elastic*rate*rate + rub*(slip_x*slip_x + slip_y*slip_y + slip_z*slip_z);
+    P[0] = c[4]*elastic*rate*rate + friction_force*(slip_x*slip_x + slip_y*slip_y + slip_z*slip_z);
 }
 
 /* contact force, and its derivatives with the closest points moving; 349 add, 660 mul, 21 div, 4 sqrt */
@@ -714,28 +714,28 @@ void crossing_force(const fu_real *d, const fu_real *t, const fu_real *k, const 
         d_d0_root_p = 0.5*d_d0_size_p/root_p,
         d_d0_elastic = c[3]*d_d0_root_p*depth + d_d0_depth*(c[2] + c[3]*root_p),
         d_d0_N_law = d_d0_elastic*(c[4]*rate + 1.0),
-        d_d0_rub = c[6]*d_d0_N_law*inv_speed,
-        d_d0_F_x = d_d0_N_law*n_x - d_d0_rub*slip_x,
-        d_d0_F_y = d_d0_N_law*n_y - d_d0_rub*slip_y,
-        d_d0_F_z = d_d0_N_law*n_z - d_d0_rub*slip_z,
+        d_d0_friction_force = c[6]*d_d0_N_law*inv_speed,
+        d_d0_F_x = d_d0_N_law*n_x - d_d0_friction_force*slip_x,
+        d_d0_F_y = d_d0_N_law*n_y - d_d0_friction_force*slip_y,
+        d_d0_F_z = d_d0_N_law*n_z - d_d0_friction_force*slip_z,
         d_d1_depth = -n_y,
         d_d1_size_p = d_d1_depth*depth/size_p,
         d_d1_root_p = 0.5*d_d1_size_p/root_p,
         d_d1_elastic = c[3]*d_d1_root_p*depth + d_d1_depth*(c[2] + c[3]*root_p),
         d_d1_N_law = d_d1_elastic*(c[4]*rate + 1.0),
-        d_d1_rub = c[6]*d_d1_N_law*inv_speed,
-        d_d1_F_x = d_d1_N_law*n_x - d_d1_rub*slip_x,
-        d_d1_F_y = d_d1_N_law*n_y - d_d1_rub*slip_y,
-        d_d1_F_z = d_d1_N_law*n_z - d_d1_rub*slip_z,
+        d_d1_friction_force = c[6]*d_d1_N_law*inv_speed,
+        d_d1_F_x = d_d1_N_law*n_x - d_d1_friction_force*slip_x,
+        d_d1_F_y = d_d1_N_law*n_y - d_d1_friction_force*slip_y,
+        d_d1_F_z = d_d1_N_law*n_z - d_d1_friction_force*slip_z,
         d_d2_depth = -n_z,
         d_d2_size_p = d_d2_depth*depth/size_p,
         d_d2_root_p = 0.5*d_d2_size_p/root_p,
         d_d2_elastic = c[3]*d_d2_root_p*depth + d_d2_depth*(c[2] + c[3]*root_p),
         d_d2_N_law = d_d2_elastic*(c[4]*rate + 1.0),
-        d_d2_rub = c[6]*d_d2_N_law*inv_speed,
-        d_d2_F_x = d_d2_N_law*n_x - d_d2_rub*slip_x,
-        d_d2_F_y = d_d2_N_law*n_y - d_d2_rub*slip_y,
-        d_d2_F_z = d_d2_N_law*n_z - d_d2_rub*slip_z,
+        d_d2_friction_force = c[6]*d_d2_N_law*inv_speed,
+        d_d2_F_x = d_d2_N_law*n_x - d_d2_friction_force*slip_x,
+        d_d2_F_y = d_d2_N_law*n_y - d_d2_friction_force*slip_y,
+        d_d2_F_z = d_d2_N_law*n_z - d_d2_friction_force*slip_z,
         d_t0_m_y = -t[5],
         d_t0_len_m = inv_m*(d_t0_m_y*m_y + m_z*t[4]),
         d_t0_inv_m = -(d_t0_len_m*inv_m*inv_m),
@@ -750,10 +750,10 @@ void crossing_force(const fu_real *d, const fu_real *t, const fu_real *k, const 
         d_t0_slip_z = d_t0_n_z*rate + d_t0_rate*n_z,
         d_t0_speed = inv_speed*(d_t0_slip_x*slip_x + d_t0_slip_y*slip_y + d_t0_slip_z*slip_z),
         d_t0_inv_speed = -(d_t0_speed*inv_speed*inv_speed),
-        d_t0_rub = N_law*c[6]*d_t0_inv_speed + c[6]*d_t0_N_law*inv_speed,
-        d_t0_F_x = N_law*d_t0_n_x + d_t0_N_law*n_x - d_t0_rub*slip_x - d_t0_slip_x*rub,
-        d_t0_F_y = N_law*d_t0_n_y + d_t0_N_law*n_y - d_t0_rub*slip_y - d_t0_slip_y*rub,
-        d_t0_F_z = N_law*d_t0_n_z + d_t0_N_law*n_z - d_t0_rub*slip_z - d_t0_slip_z*rub,
+        d_t0_friction_force = N_law*c[6]*d_t0_inv_speed + c[6]*d_t0_N_law*inv_speed,
+        d_t0_F_x = N_law*d_t0_n_x + d_t0_N_law*n_x - d_t0_friction_force*slip_x - d_t0_slip_x*friction_force,
+        d_t0_F_y = N_law*d_t0_n_y + d_t0_N_law*n_y - d_t0_friction_force*slip_y - d_t0_slip_y*friction_force,
+        d_t0_F_z = N_law*d_t0_n_z + d_t0_N_law*n_z - d_t0_friction_force*slip_z - d_t0_slip_z*friction_force,
         d_t1_m_z = -t[3],
         d_t1_len_m = inv_m*(d_t1_m_z*m_z + m_x*t[5]),
         d_t1_inv_m = -(d_t1_len_m*inv_m*inv_m),
@@ -768,10 +768,10 @@ void crossing_force(const fu_real *d, const fu_real *t, const fu_real *k, const 
         d_t1_slip_z = d_t1_n_z*rate + d_t1_rate*n_z,
         d_t1_speed = inv_speed*(d_t1_slip_x*slip_x + d_t1_slip_y*slip_y + d_t1_slip_z*slip_z),
         d_t1_inv_speed = -(d_t1_speed*inv_speed*inv_speed),
-        d_t1_rub = N_law*c[6]*d_t1_inv_speed + c[6]*d_t1_N_law*inv_speed,
-        d_t1_F_x = N_law*d_t1_n_x + d_t1_N_law*n_x - d_t1_rub*slip_x - d_t1_slip_x*rub,
-        d_t1_F_y = N_law*d_t1_n_y + d_t1_N_law*n_y - d_t1_rub*slip_y - d_t1_slip_y*rub,
-        d_t1_F_z = N_law*d_t1_n_z + d_t1_N_law*n_z - d_t1_rub*slip_z - d_t1_slip_z*rub,
+        d_t1_friction_force = N_law*c[6]*d_t1_inv_speed + c[6]*d_t1_N_law*inv_speed,
+        d_t1_F_x = N_law*d_t1_n_x + d_t1_N_law*n_x - d_t1_friction_force*slip_x - d_t1_slip_x*friction_force,
+        d_t1_F_y = N_law*d_t1_n_y + d_t1_N_law*n_y - d_t1_friction_force*slip_y - d_t1_slip_y*friction_force,
+        d_t1_F_z = N_law*d_t1_n_z + d_t1_N_law*n_z - d_t1_friction_force*slip_z - d_t1_slip_z*friction_force,
         d_t2_m_x = -t[4],
         d_t2_len_m = inv_m*(d_t2_m_x*m_x + m_y*t[3]),
         d_t2_inv_m = -(d_t2_len_m*inv_m*inv_m),
@@ -786,10 +786,10 @@ void crossing_force(const fu_real *d, const fu_real *t, const fu_real *k, const 
         d_t2_slip_z = d_t2_n_z*rate + d_t2_rate*n_z,
         d_t2_speed = inv_speed*(d_t2_slip_x*slip_x + d_t2_slip_y*slip_y + d_t2_slip_z*slip_z),
         d_t2_inv_speed = -(d_t2_speed*inv_speed*inv_speed),
-        d_t2_rub = N_law*c[6]*d_t2_inv_speed + c[6]*d_t2_N_law*inv_speed,
-        d_t2_F_x = N_law*d_t2_n_x + d_t2_N_law*n_x - d_t2_rub*slip_x - d_t2_slip_x*rub,
-        d_t2_F_y = N_law*d_t2_n_y + d_t2_N_law*n_y - d_t2_rub*slip_y - d_t2_slip_y*rub,
-        d_t2_F_z = N_law*d_t2_n_z + d_t2_N_law*n_z - d_t2_rub*slip_z - d_t2_slip_z*rub,
+        d_t2_friction_force = N_law*c[6]*d_t2_inv_speed + c[6]*d_t2_N_law*inv_speed,
+        d_t2_F_x = N_law*d_t2_n_x + d_t2_N_law*n_x - d_t2_friction_force*slip_x - d_t2_slip_x*friction_force,
+        d_t2_F_y = N_law*d_t2_n_y + d_t2_N_law*n_y - d_t2_friction_force*slip_y - d_t2_slip_y*friction_force,
+        d_t2_F_z = N_law*d_t2_n_z + d_t2_N_law*n_z - d_t2_friction_force*slip_z - d_t2_slip_z*friction_force,
         d_t3_m_z = -t[1],
         d_t3_len_m = inv_m*(d_t3_m_z*m_z + m_y*t[2]),
         d_t3_inv_m = -(d_t3_len_m*inv_m*inv_m),
@@ -804,10 +804,10 @@ void crossing_force(const fu_real *d, const fu_real *t, const fu_real *k, const 
         d_t3_slip_z = d_t3_n_z*rate + d_t3_rate*n_z,
         d_t3_speed = inv_speed*(d_t3_slip_x*slip_x + d_t3_slip_y*slip_y + d_t3_slip_z*slip_z),
         d_t3_inv_speed = -(d_t3_speed*inv_speed*inv_speed),
-        d_t3_rub = N_law*c[6]*d_t3_inv_speed + c[6]*d_t3_N_law*inv_speed,
-        d_t3_F_x = N_law*d_t3_n_x + d_t3_N_law*n_x - d_t3_rub*slip_x - d_t3_slip_x*rub,
-        d_t3_F_y = N_law*d_t3_n_y + d_t3_N_law*n_y - d_t3_rub*slip_y - d_t3_slip_y*rub,
-        d_t3_F_z = N_law*d_t3_n_z + d_t3_N_law*n_z - d_t3_rub*slip_z - d_t3_slip_z*rub,
+        d_t3_friction_force = N_law*c[6]*d_t3_inv_speed + c[6]*d_t3_N_law*inv_speed,
+        d_t3_F_x = N_law*d_t3_n_x + d_t3_N_law*n_x - d_t3_friction_force*slip_x - d_t3_slip_x*friction_force,
+        d_t3_F_y = N_law*d_t3_n_y + d_t3_N_law*n_y - d_t3_friction_force*slip_y - d_t3_slip_y*friction_force,
+        d_t3_F_z = N_law*d_t3_n_z + d_t3_N_law*n_z - d_t3_friction_force*slip_z - d_t3_slip_z*friction_force,
         d_t4_m_x = -t[2],
         d_t4_len_m = inv_m*(d_t4_m_x*m_x + m_z*t[0]),
         d_t4_inv_m = -(d_t4_len_m*inv_m*inv_m),
@@ -822,10 +822,10 @@ void crossing_force(const fu_real *d, const fu_real *t, const fu_real *k, const 
         d_t4_slip_z = d_t4_n_z*rate + d_t4_rate*n_z,
         d_t4_speed = inv_speed*(d_t4_slip_x*slip_x + d_t4_slip_y*slip_y + d_t4_slip_z*slip_z),
         d_t4_inv_speed = -(d_t4_speed*inv_speed*inv_speed),
-        d_t4_rub = N_law*c[6]*d_t4_inv_speed + c[6]*d_t4_N_law*inv_speed,
-        d_t4_F_x = N_law*d_t4_n_x + d_t4_N_law*n_x - d_t4_rub*slip_x - d_t4_slip_x*rub,
-        d_t4_F_y = N_law*d_t4_n_y + d_t4_N_law*n_y - d_t4_rub*slip_y - d_t4_slip_y*rub,
-        d_t4_F_z = N_law*d_t4_n_z + d_t4_N_law*n_z - d_t4_rub*slip_z - d_t4_slip_z*rub,
+        d_t4_friction_force = N_law*c[6]*d_t4_inv_speed + c[6]*d_t4_N_law*inv_speed,
+        d_t4_F_x = N_law*d_t4_n_x + d_t4_N_law*n_x - d_t4_friction_force*slip_x - d_t4_slip_x*friction_force,
+        d_t4_F_y = N_law*d_t4_n_y + d_t4_N_law*n_y - d_t4_friction_force*slip_y - d_t4_slip_y*friction_force,
+        d_t4_F_z = N_law*d_t4_n_z + d_t4_N_law*n_z - d_t4_friction_force*slip_z - d_t4_slip_z*friction_force,
         d_t5_m_y = -t[0],
         d_t5_len_m = inv_m*(d_t5_m_y*m_y + m_x*t[1]),
         d_t5_inv_m = -(d_t5_len_m*inv_m*inv_m),
@@ -840,10 +840,10 @@ void crossing_force(const fu_real *d, const fu_real *t, const fu_real *k, const 
         d_t5_slip_z = d_t5_n_z*rate + d_t5_rate*n_z,
         d_t5_speed = inv_speed*(d_t5_slip_x*slip_x + d_t5_slip_y*slip_y + d_t5_slip_z*slip_z),
         d_t5_inv_speed = -(d_t5_speed*inv_speed*inv_speed),
-        d_t5_rub = N_law*c[6]*d_t5_inv_speed + c[6]*d_t5_N_law*inv_speed,
-        d_t5_F_x = N_law*d_t5_n_x + d_t5_N_law*n_x - d_t5_rub*slip_x - d_t5_slip_x*rub,
-        d_t5_F_y = N_law*d_t5_n_y + d_t5_N_law*n_y - d_t5_rub*slip_y - d_t5_slip_y*rub,
-        d_t5_F_z = N_law*d_t5_n_z + d_t5_N_law*n_z - d_t5_rub*slip_z - d_t5_slip_z*rub,
+        d_t5_friction_force = N_law*c[6]*d_t5_inv_speed + c[6]*d_t5_N_law*inv_speed,
+        d_t5_F_x = N_law*d_t5_n_x + d_t5_N_law*n_x - d_t5_friction_force*slip_x - d_t5_slip_x*friction_force,
+        d_t5_F_y = N_law*d_t5_n_y + d_t5_N_law*n_y - d_t5_friction_force*slip_y - d_t5_slip_y*friction_force,
+        d_t5_F_z = N_law*d_t5_n_z + d_t5_N_law*n_z - d_t5_friction_force*slip_z - d_t5_slip_z*friction_force,
         d_u0_rate = -n_x,
         d_u0_N_law = c[4]*d_u0_rate*elastic,
         d_u0_slip_x = d_u0_rate*n_x + 1.0,
@@ -851,10 +851,10 @@ void crossing_force(const fu_real *d, const fu_real *t, const fu_real *k, const 
         d_u0_slip_z = d_u0_rate*n_z,
         d_u0_speed = inv_speed*(d_u0_slip_x*slip_x + d_u0_slip_y*slip_y + d_u0_slip_z*slip_z),
         d_u0_inv_speed = -(d_u0_speed*inv_speed*inv_speed),
-        d_u0_rub = N_law*c[6]*d_u0_inv_speed + c[6]*d_u0_N_law*inv_speed,
-        d_u0_F_x = d_u0_N_law*n_x - d_u0_rub*slip_x - d_u0_slip_x*rub,
-        d_u0_F_y = d_u0_N_law*n_y - d_u0_rub*slip_y - d_u0_slip_y*rub,
-        d_u0_F_z = d_u0_N_law*n_z - d_u0_rub*slip_z - d_u0_slip_z*rub,
+        d_u0_friction_force = N_law*c[6]*d_u0_inv_speed + c[6]*d_u0_N_law*inv_speed,
+        d_u0_F_x = d_u0_N_law*n_x - d_u0_friction_force*slip_x - d_u0_slip_x*friction_force,
+        d_u0_F_y = d_u0_N_law*n_y - d_u0_friction_force*slip_y - d_u0_slip_y*friction_force,
+        d_u0_F_z = d_u0_N_law*n_z - d_u0_friction_force*slip_z - d_u0_slip_z*friction_force,
         d_u1_rate = -n_y,
         d_u1_N_law = c[4]*d_u1_rate*elastic,
         d_u1_slip_x = d_u1_rate*n_x,
@@ -862,10 +862,10 @@ void crossing_force(const fu_real *d, const fu_real *t, const fu_real *k, const 
         d_u1_slip_z = d_u1_rate*n_z,
         d_u1_speed = inv_speed*(d_u1_slip_x*slip_x + d_u1_slip_y*slip_y + d_u1_slip_z*slip_z),
         d_u1_inv_speed = -(d_u1_speed*inv_speed*inv_speed),
-        d_u1_rub = N_law*c[6]*d_u1_inv_speed + c[6]*d_u1_N_law*inv_speed,
-        d_u1_F_x = d_u1_N_law*n_x - d_u1_rub*slip_x - d_u1_slip_x*rub,
-        d_u1_F_y = d_u1_N_law*n_y - d_u1_rub*slip_y - d_u1_slip_y*rub,
-        d_u1_F_z = d_u1_N_law*n_z - d_u1_rub*slip_z - d_u1_slip_z*rub,
+        d_u1_friction_force = N_law*c[6]*d_u1_inv_speed + c[6]*d_u1_N_law*inv_speed,
+        d_u1_F_x = d_u1_N_law*n_x - d_u1_friction_force*slip_x - d_u1_slip_x*friction_force,
+        d_u1_F_y = d_u1_N_law*n_y - d_u1_friction_force*slip_y - d_u1_slip_y*friction_force,
+        d_u1_F_z = d_u1_N_law*n_z - d_u1_friction_force*slip_z - d_u1_slip_z*friction_force,
         d_u2_rate = -n_z,
         d_u2_N_law = c[4]*d_u2_rate*elastic,
         d_u2_slip_x = d_u2_rate*n_x,
@@ -873,10 +873,10 @@ void crossing_force(const fu_real *d, const fu_real *t, const fu_real *k, const 
         d_u2_slip_z = d_u2_rate*n_z + 1.0,
         d_u2_speed = inv_speed*(d_u2_slip_x*slip_x + d_u2_slip_y*slip_y + d_u2_slip_z*slip_z),
         d_u2_inv_speed = -(d_u2_speed*inv_speed*inv_speed),
-        d_u2_rub = N_law*c[6]*d_u2_inv_speed + c[6]*d_u2_N_law*inv_speed,
-        d_u2_F_x = d_u2_N_law*n_x - d_u2_rub*slip_x - d_u2_slip_x*rub,
-        d_u2_F_y = d_u2_N_law*n_y - d_u2_rub*slip_y - d_u2_slip_y*rub,
-        d_u2_F_z = d_u2_N_law*n_z - d_u2_rub*slip_z - d_u2_slip_z*rub;
+        d_u2_friction_force = N_law*c[6]*d_u2_inv_speed + c[6]*d_u2_N_law*inv_speed,
+        d_u2_F_x = d_u2_N_law*n_x - d_u2_friction_force*slip_x - d_u2_slip_x*friction_force,
+        d_u2_F_y = d_u2_N_law*n_y - d_u2_friction_force*slip_y - d_u2_slip_y*friction_force,
+        d_u2_F_z = d_u2_N_law*n_z - d_u2_friction_force*slip_z - d_u2_slip_z*friction_force;
     /* derivatives of the force along the lines */
     const fu_real
         F_s0_x = d_d0_F_x*t[0] + d_d1_F_x*t[1] + d_d2_F_x*t[2] + d_t0_F_x*k[0] + d_t1_F_x*k[1] + d_t2_F_x*k[2] + d_u0_F_x*w[0] + d_u1_F_x*w[1] + d_u2_F_x*w[2],
@@ -1911,18 +1911,18 @@ void crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *k, cons
 }
 
 /* forces over a step that balance energy (Hunt & Crossley 1975; closest points by the implicit function theorem; Gonzalez 1996); 41 add, 76 mul, 7 div, 5 sqrt */
-void crossing_step(const fu_real *n, const fu_real *way, const fu_real *turn, const fu_real *size, fu_real p, fu_real p_next, fu_real h, const fu_real *c, fu_real *F, fu_real *M, fu_real *lost)
+void crossing_step(const fu_real *n, const fu_real *displacement, const fu_real *turn, const fu_real *size, fu_real p, fu_real p_next, fu_real h, const fu_real *c, fu_real *F, fu_real *M, fu_real *lost)
 {
     /* discrete gradient of the gap */
     const fu_real
         square_0 = size[0]*size[0],
         square_1 = size[1]*size[1],
-        measure = square_0*(turn[0]*turn[0] + turn[1]*turn[1] + turn[2]*turn[2] + 1.0/10000000000000000.0) + square_1*(turn[3]*turn[3] + turn[4]*turn[4] + turn[5]*turn[5] + 1.0/10000000000000000.0) + way[0]*way[0] + way[1]*way[1] + way[2]*way[2],
-        along = n[0]*way[0] + n[1]*way[1] + n[2]*way[2],
+        measure = displacement[0]*displacement[0] + displacement[1]*displacement[1] + displacement[2]*displacement[2] + square_0*(turn[0]*turn[0] + turn[1]*turn[1] + turn[2]*turn[2] + 1.0/10000000000000000.0) + square_1*(turn[3]*turn[3] + turn[4]*turn[4] + turn[5]*turn[5] + 1.0/10000000000000000.0),
+        along = displacement[0]*n[0] + displacement[1]*n[1] + displacement[2]*n[2],
         left = (-along + p - p_next)/measure;
     /* law */
     const fu_real
-        sunk = -p + p_next,
+        penetration = -p + p_next,
         size_0 = FU_SQRT(c[5]*c[5] + p*p),
         root_0 = FU_SQRT(size_0),
         size_1 = FU_SQRT(c[5]*c[5] + p_next*p_next),
@@ -1930,23 +1930,23 @@ void crossing_step(const fu_real *n, const fu_real *way, const fu_real *turn, co
         half = 0.5*p*p + 0.5*p_next*p_next,
         mean_root = half/((root_0 + root_1)*(root_0*root_0 + root_1*root_1)) + 0.5*root_0 + 0.5*root_1,
         elastic = (c[2] + (4.0/5.0)*c[3]*mean_root)*(0.5*p + 0.5*p_next),
-        N_law = elastic*(c[4]*sunk/h + 1.0);
+        N_law = elastic*(c[4]*penetration/h + 1.0);
     /* friction */
     const fu_real
-        slip_x = (-along*n[0] + way[0])/h,
-        slip_y = (-along*n[1] + way[1])/h,
-        slip_z = (-along*n[2] + way[2])/h,
+        slip_x = (-along*n[0] + displacement[0])/h,
+        slip_y = (-along*n[1] + displacement[1])/h,
+        slip_z = (-along*n[2] + displacement[2])/h,
         speed = FU_SQRT(c[7]*c[7] + slip_x*slip_x + slip_y*slip_y + slip_z*slip_z),
-        rub = N_law*c[6]/speed;
+        friction_force = N_law*c[6]/speed;
     /* outputs */
-    F[0] = N_law*(left*way[0] + n[0]) - rub*slip_x;
-    F[1] = N_law*(left*way[1] + n[1]) - rub*slip_y;
-    F[2] = N_law*(left*way[2] + n[2]) - rub*slip_z;
+    F[0] = N_law*(displacement[0]*left + n[0]) - friction_force*slip_x;
+    F[1] = N_law*(displacement[1]*left + n[1]) - friction_force*slip_y;
+    F[2] = N_law*(displacement[2]*left + n[2]) - friction_force*slip_z;
     M[0] = N_law*left*square_0*turn[0];
     M[1] = N_law*left*square_0*turn[1];
     M[2] = N_law*left*square_0*turn[2];
     M[3] = N_law*left*square_1*turn[3];
     M[4] = N_law*left*square_1*turn[4];
     M[5] = N_law*left*square_1*turn[5];
-    lost[0] = rub*(slip_x*way[0] + slip_y*way[1] + slip_z*way[2]) + sunk*(N_law - elastic);
+    lost[0] = friction_force*(displacement[0]*slip_x + displacement[1]*slip_y + displacement[2]*slip_z) + penetration*(N_law - elastic);
 }

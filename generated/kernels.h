@@ -1101,12 +1101,12 @@ fu_crossing_sliding_kernel crossing_sliding;
  * 1, v 1, F 2, F_d 2x2, F_t 2x2, F_u 2x2, F_w 2x2, F_k 2x2 */
 fu_crossing_sliding_kernel planar_crossing_sliding;
 
-typedef void fu_crossing_step_kernel(const fu_real *n, const fu_real *way, const fu_real *turn, const fu_real *size, fu_real p, fu_real p_next, fu_real h, const fu_real *c, fu_real *F, fu_real *M, fu_real *lost);
-/* forces over a step that balance energy: n [1]; way [m]; turn [1]; size [m]; p [m]; p_next [m]; h [s]; c [m, 1,
- * N/m, N/m^1.5, s/m, m, 1, m/s] -> F [N]; M [N m]; lost [J] */
-/* n 3, way 3, turn 2x3, size 2, c 8, F 3, M 2x3, lost 1 */
+typedef void fu_crossing_step_kernel(const fu_real *n, const fu_real *displacement, const fu_real *turn, const fu_real *size, fu_real p, fu_real p_next, fu_real h, const fu_real *c, fu_real *F, fu_real *M, fu_real *lost);
+/* forces over a step that balance energy: n [1]; displacement [m]; turn [1]; size [m]; p [m]; p_next [m]; h [s]; c
+ * [m, 1, N/m, N/m^1.5, s/m, m, 1, m/s] -> F [N]; M [N m]; lost [J] */
+/* n 3, displacement 3, turn 2x3, size 2, c 8, F 3, M 2x3, lost 1 */
 fu_crossing_step_kernel crossing_step;
-/* n 2, way 2, turn 1x2, size 1, c 8, F 2, M 1x2, lost 1 */
+/* n 2, displacement 2, turn 1x2, size 1, c 8, F 2, M 1x2, lost 1 */
 fu_crossing_step_kernel planar_crossing_step;
 
 typedef void fu_surface_flat_kernel(const fu_real *y, const fu_real *normal, fu_real *g, fu_real *g_y);
@@ -1145,12 +1145,12 @@ typedef void fu_surface_push_hertz_kernel(fu_real depth, fu_real depth_rate, con
 /* law 2, p 1, p_d 1, p_rate 1, p_e 1, U 1, mean 1 */
 fu_surface_push_hertz_kernel surface_push_hertz, planar_surface_push_hertz;
 
-typedef void fu_surface_pressing_kernel(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, fu_real *f, fu_real *f_y, fu_real *f_w);
-/* normal force of contact, and its derivatives: n [1]; H [1/m]; w [m/s]; press [N, N/m, N s/m (a length)] -> f [N (a
- * length)]; f_y [N/m (a length)]; f_w [N s/m (a length)] */
-/* n 3, H 3x3, w 3, press 3, f 3, f_y 3x3, f_w 3x3 */
+typedef void fu_surface_pressing_kernel(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *normal_force, fu_real *f, fu_real *f_y, fu_real *f_w);
+/* normal force of contact, and its derivatives: n [1]; H [1/m]; w [m/s]; normal_force [N, N/m, N s/m (a length)] ->
+ * f [N (a length)]; f_y [N/m (a length)]; f_w [N s/m (a length)] */
+/* n 3, H 3x3, w 3, normal_force 3, f 3, f_y 3x3, f_w 3x3 */
 fu_surface_pressing_kernel surface_pressing;
-/* n 2, H 2x2, w 2, press 3, f 2, f_y 2x2, f_w 2x2 */
+/* n 2, H 2x2, w 2, normal_force 3, f 2, f_y 2x2, f_w 2x2 */
 fu_surface_pressing_kernel planar_surface_pressing;
 
 typedef void fu_surface_sticking_kernel(const fu_real *n, const fu_real *H, const fu_real *x, fu_real k_t, fu_real *f, fu_real *f_y, fu_real *t, fu_real *f_x);
@@ -1161,12 +1161,12 @@ fu_surface_sticking_kernel surface_sticking;
 /* n 2, H 2x2, x 2, f 2, f_y 2x2, t 2, f_x 2x2 */
 fu_surface_sticking_kernel planar_surface_sticking;
 
-typedef void fu_surface_sliding_kernel(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, const fu_real *x, fu_real mu, fu_real *f, fu_real *f_y, fu_real *f_w, fu_real *f_x);
-/* friction in sliding, and its derivatives: n [1]; H [1/m]; w [m/s]; press [N, N/m, N s/m (a length)]; x [m]; mu [1]
- * -> f [N (a length)]; f_y [N/m (a length)]; f_w [N s/m (a length)]; f_x [N/m (a length)] */
-/* n 3, H 3x3, w 3, press 3, x 3, f 3, f_y 3x3, f_w 3x3, f_x 3x3 */
+typedef void fu_surface_sliding_kernel(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *normal_force, const fu_real *x, fu_real mu, fu_real *f, fu_real *f_y, fu_real *f_w, fu_real *f_x);
+/* friction in sliding, and its derivatives: n [1]; H [1/m]; w [m/s]; normal_force [N, N/m, N s/m (a length)]; x [m];
+ * mu [1] -> f [N (a length)]; f_y [N/m (a length)]; f_w [N s/m (a length)]; f_x [N/m (a length)] */
+/* n 3, H 3x3, w 3, normal_force 3, x 3, f 3, f_y 3x3, f_w 3x3, f_x 3x3 */
 fu_surface_sliding_kernel surface_sliding;
-/* n 2, H 2x2, w 2, press 3, x 2, f 2, f_y 2x2, f_w 2x2, f_x 2x2 */
+/* n 2, H 2x2, w 2, normal_force 3, x 2, f 2, f_y 2x2, f_w 2x2, f_x 2x2 */
 fu_surface_sliding_kernel planar_surface_sliding;
 
 typedef void fu_surface_reaction_kernel(const fu_real *x, const fu_real *w, const fu_real *omega_o, const fu_real *f, const fu_real *f_y, const fu_real *f_w, const fu_real *f_x, const fu_real *H, fu_real radius, const fu_real *arm, const fu_real *turn, const fu_real *mean_arm, fu_real share, const fu_real *dr, const fu_real *dv, const fu_real *dtheta, const fu_real *dtheta_o, const fu_real *domega_o, fu_real *f_t, fu_real *m_t, fu_real *m_o_t);
@@ -1206,9 +1206,9 @@ fu_point_law_energy_kernel spring_energy;
 fu_point_law_energy_kernel planar_spring_energy;
 /* stored energy: parameters [N/m, N s/m, m, N, J]; gap [m] -> U [J] */
 /* parameters 5, gap 3, U 1 */
-fu_point_law_energy_kernel spring_piece_energy;
+fu_point_law_energy_kernel spring_segment_energy;
 /* parameters 5, gap 2, U 1 */
-fu_point_law_energy_kernel planar_spring_piece_energy;
+fu_point_law_energy_kernel planar_spring_segment_energy;
 /* stored energy: parameters [N/m, N s/m]; gap [m] -> U [J] */
 /* parameters 2, gap 3, U 1 */
 fu_point_law_energy_kernel zero_length_spring_energy;
@@ -1223,9 +1223,9 @@ fu_point_law_dissipation_kernel spring_dissipation;
 fu_point_law_dissipation_kernel planar_spring_dissipation;
 /* power of the damper: parameters [N/m, N s/m, m, N, J]; gap [m]; gap_rate [m/s] -> P [W] */
 /* parameters 5, gap 3, gap_rate 3, P 1 */
-fu_point_law_dissipation_kernel spring_piece_dissipation;
+fu_point_law_dissipation_kernel spring_segment_dissipation;
 /* parameters 5, gap 2, gap_rate 2, P 1 */
-fu_point_law_dissipation_kernel planar_spring_piece_dissipation;
+fu_point_law_dissipation_kernel planar_spring_segment_dissipation;
 /* power of the damper: parameters [N/m, N s/m]; gap [m]; gap_rate [m/s] -> P [W] */
 /* parameters 2, gap 3, gap_rate 3, P 1 */
 fu_point_law_dissipation_kernel zero_length_spring_dissipation;
@@ -1240,9 +1240,9 @@ fu_point_law_force_kernel spring_force;
 fu_point_law_force_kernel planar_spring_force;
 /* force between the points: parameters [N/m, N s/m, m, N, J]; gap [m]; gap_rate [m/s] -> f [N] */
 /* parameters 5, gap 3, gap_rate 3, f 3 */
-fu_point_law_force_kernel spring_piece_force;
+fu_point_law_force_kernel spring_segment_force;
 /* parameters 5, gap 2, gap_rate 2, f 2 */
-fu_point_law_force_kernel planar_spring_piece_force;
+fu_point_law_force_kernel planar_spring_segment_force;
 /* force between the points: parameters [N/m, N s/m]; gap [m]; gap_rate [m/s] -> f [N] */
 /* parameters 2, gap 3, gap_rate 3, f 3 */
 fu_point_law_force_kernel zero_length_spring_force;
@@ -1259,9 +1259,9 @@ fu_point_law_tangent_kernel planar_spring_tangent;
 /* force between the points, and its derivatives: parameters [N/m, N s/m, m, N, J]; gap [m]; gap_rate [m/s] -> f [N];
  * K [N/m]; D [N s/m] */
 /* parameters 5, gap 3, gap_rate 3, f 3, K 3x3, D 3x3 */
-fu_point_law_tangent_kernel spring_piece_tangent;
+fu_point_law_tangent_kernel spring_segment_tangent;
 /* parameters 5, gap 2, gap_rate 2, f 2, K 2x2, D 2x2 */
-fu_point_law_tangent_kernel planar_spring_piece_tangent;
+fu_point_law_tangent_kernel planar_spring_segment_tangent;
 /* force between the points, and its derivatives: parameters [N/m, N s/m]; gap [m]; gap_rate [m/s] -> f [N]; K [N/m];
  * D [N s/m] */
 /* parameters 2, gap 3, gap_rate 3, f 3, K 3x3, D 3x3 */
@@ -1279,9 +1279,9 @@ fu_point_law_discrete_force_kernel planar_spring_discrete_force;
 /* force over a step, whose work is stored and dissipated: parameters [N/m, N s/m, m, N, J]; h [s]; gap [m]; gap_next
  * [m] -> f [N]; P [W] */
 /* parameters 5, gap 3, gap_next 3, f 3, P 1 */
-fu_point_law_discrete_force_kernel spring_piece_discrete_force;
+fu_point_law_discrete_force_kernel spring_segment_discrete_force;
 /* parameters 5, gap 2, gap_next 2, f 2, P 1 */
-fu_point_law_discrete_force_kernel planar_spring_piece_discrete_force;
+fu_point_law_discrete_force_kernel planar_spring_segment_discrete_force;
 /* force over a step, whose work is stored and dissipated: parameters [N/m, N s/m]; h [s]; gap [m]; gap_next [m] -> f
  * [N]; P [W] */
 /* parameters 2, gap 3, gap_next 3, f 3, P 1 */

@@ -59,9 +59,9 @@
         slip_y = n_y*rate + u[1], \
         speed = FU_SQRT(c[7]*c[7] + slip_x*slip_x + slip_y*slip_y), \
         inv_speed = 1.0/speed, \
-        rub = N_law*c[6]*inv_speed, \
-        F_x = N_law*n_x - rub*slip_x, \
-        F_y = N_law*n_y - rub*slip_y;
+        friction_force = N_law*c[6]*inv_speed, \
+        F_x = N_law*n_x - friction_force*slip_x, \
+        F_y = N_law*n_y - friction_force*slip_y;
 
 /* slip half-way, times the step: of planar_crossing_stretch and 2 more */
 #define PLANAR_CROSSING_SLIP_HALF_WAY_TIMES_THE_STEP \
@@ -103,7 +103,7 @@ void planar_crossing_contact(const fu_real *d, const fu_real *t, const fu_real *
     f[0] = F_x;
     f[1] = F_y;
     U[0] = depth*depth*(0.5*c[2] + (2.0/5.0)*c[3]*root_p);
-    P[0] = c[4]*elastic*rate*rate + rub*(slip_x*slip_x + slip_y*slip_y);
+    P[0] = c[4]*elastic*rate*rate + friction_force*(slip_x*slip_x + slip_y*slip_y);
 }
 
 /* contact force, and its derivatives with the closest points moving; 92 add, 202 mul, 11 div, 4 sqrt */
@@ -132,53 +132,53 @@ void planar_crossing_force(const fu_real *d, const fu_real *t, const fu_real *k,
         d_d0_root_p = 0.5*d_d0_size_p/root_p,
         d_d0_elastic = c[3]*d_d0_root_p*depth + d_d0_depth*(c[2] + c[3]*root_p),
         d_d0_N_law = d_d0_elastic*(c[4]*rate + 1.0),
-        d_d0_rub = c[6]*d_d0_N_law*inv_speed,
-        d_d0_F_x = d_d0_N_law*n_x - d_d0_rub*slip_x,
-        d_d0_F_y = d_d0_N_law*n_y - d_d0_rub*slip_y,
+        d_d0_friction_force = c[6]*d_d0_N_law*inv_speed,
+        d_d0_F_x = d_d0_N_law*n_x - d_d0_friction_force*slip_x,
+        d_d0_F_y = d_d0_N_law*n_y - d_d0_friction_force*slip_y,
         d_d1_depth = -n_y,
         d_d1_size_p = d_d1_depth*depth/size_p,
         d_d1_root_p = 0.5*d_d1_size_p/root_p,
         d_d1_elastic = c[3]*d_d1_root_p*depth + d_d1_depth*(c[2] + c[3]*root_p),
         d_d1_N_law = d_d1_elastic*(c[4]*rate + 1.0),
-        d_d1_rub = c[6]*d_d1_N_law*inv_speed,
-        d_d1_F_x = d_d1_N_law*n_x - d_d1_rub*slip_x,
-        d_d1_F_y = d_d1_N_law*n_y - d_d1_rub*slip_y;
+        d_d1_friction_force = c[6]*d_d1_N_law*inv_speed,
+        d_d1_F_x = d_d1_N_law*n_x - d_d1_friction_force*slip_x,
+        d_d1_F_y = d_d1_N_law*n_y - d_d1_friction_force*slip_y;
     PLANAR_CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY
     const fu_real
         d_t0_slip_x = d_t0_n_x*rate + d_t0_rate*n_x,
         d_t0_slip_y = d_t0_n_y*rate + d_t0_rate*n_y,
         d_t0_speed = inv_speed*(d_t0_slip_x*slip_x + d_t0_slip_y*slip_y),
         d_t0_inv_speed = -(d_t0_speed*inv_speed*inv_speed),
-        d_t0_rub = N_law*c[6]*d_t0_inv_speed + c[6]*d_t0_N_law*inv_speed,
-        d_t0_F_x = N_law*d_t0_n_x + d_t0_N_law*n_x - d_t0_rub*slip_x - d_t0_slip_x*rub,
-        d_t0_F_y = N_law*d_t0_n_y + d_t0_N_law*n_y - d_t0_rub*slip_y - d_t0_slip_y*rub;
+        d_t0_friction_force = N_law*c[6]*d_t0_inv_speed + c[6]*d_t0_N_law*inv_speed,
+        d_t0_F_x = N_law*d_t0_n_x + d_t0_N_law*n_x - d_t0_friction_force*slip_x - d_t0_slip_x*friction_force,
+        d_t0_F_y = N_law*d_t0_n_y + d_t0_N_law*n_y - d_t0_friction_force*slip_y - d_t0_slip_y*friction_force;
     PLANAR_CROSSING_PART_OF_DERIVATIVES_OF_THE_FORCE_WHERE_THE_POINTS_STAY_2
     const fu_real
         d_t1_slip_x = d_t1_n_x*rate + d_t1_rate*n_x,
         d_t1_slip_y = d_t1_n_y*rate + d_t1_rate*n_y,
         d_t1_speed = inv_speed*(d_t1_slip_x*slip_x + d_t1_slip_y*slip_y),
         d_t1_inv_speed = -(d_t1_speed*inv_speed*inv_speed),
-        d_t1_rub = N_law*c[6]*d_t1_inv_speed + c[6]*d_t1_N_law*inv_speed,
-        d_t1_F_x = N_law*d_t1_n_x + d_t1_N_law*n_x - d_t1_rub*slip_x - d_t1_slip_x*rub,
-        d_t1_F_y = N_law*d_t1_n_y + d_t1_N_law*n_y - d_t1_rub*slip_y - d_t1_slip_y*rub,
+        d_t1_friction_force = N_law*c[6]*d_t1_inv_speed + c[6]*d_t1_N_law*inv_speed,
+        d_t1_F_x = N_law*d_t1_n_x + d_t1_N_law*n_x - d_t1_friction_force*slip_x - d_t1_slip_x*friction_force,
+        d_t1_F_y = N_law*d_t1_n_y + d_t1_N_law*n_y - d_t1_friction_force*slip_y - d_t1_slip_y*friction_force,
         d_u0_rate = -n_x,
         d_u0_N_law = c[4]*d_u0_rate*elastic,
         d_u0_slip_x = d_u0_rate*n_x + 1.0,
         d_u0_slip_y = d_u0_rate*n_y,
         d_u0_speed = inv_speed*(d_u0_slip_x*slip_x + d_u0_slip_y*slip_y),
         d_u0_inv_speed = -(d_u0_speed*inv_speed*inv_speed),
-        d_u0_rub = N_law*c[6]*d_u0_inv_speed + c[6]*d_u0_N_law*inv_speed,
-        d_u0_F_x = d_u0_N_law*n_x - d_u0_rub*slip_x - d_u0_slip_x*rub,
-        d_u0_F_y = d_u0_N_law*n_y - d_u0_rub*slip_y - d_u0_slip_y*rub,
+        d_u0_friction_force = N_law*c[6]*d_u0_inv_speed + c[6]*d_u0_N_law*inv_speed,
+        d_u0_F_x = d_u0_N_law*n_x - d_u0_friction_force*slip_x - d_u0_slip_x*friction_force,
+        d_u0_F_y = d_u0_N_law*n_y - d_u0_friction_force*slip_y - d_u0_slip_y*friction_force,
         d_u1_rate = -n_y,
         d_u1_N_law = c[4]*d_u1_rate*elastic,
         d_u1_slip_x = d_u1_rate*n_x,
         d_u1_slip_y = d_u1_rate*n_y + 1.0,
         d_u1_speed = inv_speed*(d_u1_slip_x*slip_x + d_u1_slip_y*slip_y),
         d_u1_inv_speed = -(d_u1_speed*inv_speed*inv_speed),
-        d_u1_rub = N_law*c[6]*d_u1_inv_speed + c[6]*d_u1_N_law*inv_speed,
-        d_u1_F_x = d_u1_N_law*n_x - d_u1_rub*slip_x - d_u1_slip_x*rub,
-        d_u1_F_y = d_u1_N_law*n_y - d_u1_rub*slip_y - d_u1_slip_y*rub;
+        d_u1_friction_force = N_law*c[6]*d_u1_inv_speed + c[6]*d_u1_N_law*inv_speed,
+        d_u1_F_x = d_u1_N_law*n_x - d_u1_friction_force*slip_x - d_u1_slip_x*friction_force,
+        d_u1_F_y = d_u1_N_law*n_y - d_u1_friction_force*slip_y - d_u1_slip_y*friction_force;
     /* derivatives of the force along the lines */
     const fu_real
         F_s0_x = d_d0_F_x*t[0] + d_d1_F_x*t[1] + d_t0_F_x*k[0] + d_t1_F_x*k[1] + d_u0_F_x*w[0] + d_u1_F_x*w[1],
@@ -580,17 +580,17 @@ void planar_crossing_sliding(const fu_real *d, const fu_real *t, const fu_real *
 }
 
 /* forces over a step that balance energy (Hunt & Crossley 1975; closest points by the implicit function theorem; Gonzalez 1996); 29 add, 50 mul, 6 div, 5 sqrt */
-void planar_crossing_step(const fu_real *n, const fu_real *way, const fu_real *turn, const fu_real *size, fu_real p, fu_real p_next, fu_real h, const fu_real *c, fu_real *F, fu_real *M, fu_real *lost)
+void planar_crossing_step(const fu_real *n, const fu_real *displacement, const fu_real *turn, const fu_real *size, fu_real p, fu_real p_next, fu_real h, const fu_real *c, fu_real *F, fu_real *M, fu_real *lost)
 {
     /* discrete gradient of the gap */
     const fu_real
         square_0 = size[0]*size[0],
-        measure = square_0*(turn[0]*turn[0] + turn[1]*turn[1] + 1.0/10000000000000000.0) + way[0]*way[0] + way[1]*way[1],
-        along = n[0]*way[0] + n[1]*way[1],
+        measure = displacement[0]*displacement[0] + displacement[1]*displacement[1] + square_0*(turn[0]*turn[0] + turn[1]*turn[1] + 1.0/10000000000000000.0),
+        along = displacement[0]*n[0] + displacement[1]*n[1],
         left = (-along + p - p_next)/measure;
     /* law */
     const fu_real
-        sunk = -p + p_next,
+        penetration = -p + p_next,
         size_0 = FU_SQRT(c[5]*c[5] + p*p),
         root_0 = FU_SQRT(size_0),
         size_1 = FU_SQRT(c[5]*c[5] + p_next*p_next),
@@ -598,17 +598,17 @@ void planar_crossing_step(const fu_real *n, const fu_real *way, const fu_real *t
         half = 0.5*p*p + 0.5*p_next*p_next,
         mean_root = half/((root_0 + root_1)*(root_0*root_0 + root_1*root_1)) + 0.5*root_0 + 0.5*root_1,
         elastic = (c[2] + (4.0/5.0)*c[3]*mean_root)*(0.5*p + 0.5*p_next),
-        N_law = elastic*(c[4]*sunk/h + 1.0);
+        N_law = elastic*(c[4]*penetration/h + 1.0);
     /* friction */
     const fu_real
-        slip_x = (-along*n[0] + way[0])/h,
-        slip_y = (-along*n[1] + way[1])/h,
+        slip_x = (-along*n[0] + displacement[0])/h,
+        slip_y = (-along*n[1] + displacement[1])/h,
         speed = FU_SQRT(c[7]*c[7] + slip_x*slip_x + slip_y*slip_y),
-        rub = N_law*c[6]/speed;
+        friction_force = N_law*c[6]/speed;
     /* outputs */
-    F[0] = N_law*(left*way[0] + n[0]) - rub*slip_x;
-    F[1] = N_law*(left*way[1] + n[1]) - rub*slip_y;
+    F[0] = N_law*(displacement[0]*left + n[0]) - friction_force*slip_x;
+    F[1] = N_law*(displacement[1]*left + n[1]) - friction_force*slip_y;
     M[0] = N_law*left*square_0*turn[0];
     M[1] = N_law*left*square_0*turn[1];
-    lost[0] = rub*(slip_x*way[0] + slip_y*way[1]) + sunk*(N_law - elastic);
+    lost[0] = friction_force*(displacement[0]*slip_x + displacement[1]*slip_y) + penetration*(N_law - elastic);
 }

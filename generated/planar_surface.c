@@ -99,16 +99,16 @@ void planar_surface_push_hertz(fu_real depth, fu_real depth_rate, const fu_real 
 }
 
 /* normal force of contact, and its derivatives; 10 add, 30 mul */
-void planar_surface_pressing(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, fu_real *f, fu_real *f_y, fu_real *f_w)
+void planar_surface_pressing(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *normal_force, fu_real *f, fu_real *f_y, fu_real *f_w)
 {
     /* normal force */
     fu_real Hw[2];
     Hw[0] = H[0]*w[0] + H[1]*w[1];
     Hw[1] = H[2]*w[0] + H[3]*w[1];
     /* outputs */
-    FU_EACH(i, 2, f[i] = n[i]*press[0];)
-    FU_PAIRS(i, j, 2, f_y[2*i + j] = H[2*i + j]*press[0] + n[i]*(-Hw[j]*press[2] - n[j]*press[1]);)
-    FU_PAIRS(i, j, 2, f_w[2*i + j] = -(n[i]*n[j]*press[2]);)
+    FU_EACH(i, 2, f[i] = n[i]*normal_force[0];)
+    FU_PAIRS(i, j, 2, f_y[2*i + j] = H[2*i + j]*normal_force[0] + n[i]*(-Hw[j]*normal_force[2] - n[j]*normal_force[1]);)
+    FU_PAIRS(i, j, 2, f_w[2*i + j] = -(n[i]*n[j]*normal_force[2]);)
 }
 
 /* friction in stick, and its derivatives; 22 add, 66 mul, 1 div */
@@ -163,7 +163,7 @@ void planar_surface_sticking(const fu_real *n, const fu_real *H, const fu_real *
 }
 
 /* friction in sliding, and its derivatives; 37 add, 130 mul, 2 div, 1 sqrt */
-void planar_surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, const fu_real *x, fu_real mu, fu_real *f, fu_real *f_y, fu_real *f_w, fu_real *f_x)
+void planar_surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *normal_force, const fu_real *x, fu_real mu, fu_real *f, fu_real *f_y, fu_real *f_w, fu_real *f_x)
 {
     /* friction */
     const fu_real
@@ -174,8 +174,8 @@ void planar_surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w
         t_y = -along*inv_nn*n[1] + x[1],
         size = FU_SQRT(t_x*t_x + t_y*t_y),
         inv_size = 1.0/size,
-        F_x = -(inv_size*mu*press[0]*t_x),
-        F_y = -(inv_size*mu*press[0]*t_y),
+        F_x = -(inv_size*mu*normal_force[0]*t_x),
+        F_y = -(inv_size*mu*normal_force[0]*t_y),
         Hw_x = H[0]*w[0] + H[1]*w[1],
         Hw_y = H[2]*w[0] + H[3]*w[1];
     /* derivatives */
@@ -187,8 +187,8 @@ void planar_surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w
         dy0_t_y = -H[2]*along*inv_nn - along*dy0_inv_nn*n[1] - dy0_along*inv_nn*n[1],
         dy0_size = inv_size*(dy0_t_x*t_x + dy0_t_y*t_y),
         dy0_inv_size = -(dy0_size*inv_size*inv_size),
-        dy0_F_x = -dy0_inv_size*mu*press[0]*t_x - dy0_t_x*inv_size*mu*press[0] - inv_size*mu*t_x*(-Hw_x*press[2] - n[0]*press[1]),
-        dy0_F_y = -dy0_inv_size*mu*press[0]*t_y - dy0_t_y*inv_size*mu*press[0] - inv_size*mu*t_y*(-Hw_x*press[2] - n[0]*press[1]),
+        dy0_F_x = -dy0_inv_size*mu*normal_force[0]*t_x - dy0_t_x*inv_size*mu*normal_force[0] - inv_size*mu*t_x*(-Hw_x*normal_force[2] - n[0]*normal_force[1]),
+        dy0_F_y = -dy0_inv_size*mu*normal_force[0]*t_y - dy0_t_y*inv_size*mu*normal_force[0] - inv_size*mu*t_y*(-Hw_x*normal_force[2] - n[0]*normal_force[1]),
         dy1_along = H[1]*x[0] + H[3]*x[1] + n[1],
         dy1_nn = 2.0*H[1]*n[0] + 2.0*H[3]*n[1],
         dy1_inv_nn = -(dy1_nn*inv_nn*inv_nn),
@@ -196,12 +196,12 @@ void planar_surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w
         dy1_t_y = -H[3]*along*inv_nn - along*dy1_inv_nn*n[1] - dy1_along*inv_nn*n[1] + 1.0,
         dy1_size = inv_size*(dy1_t_x*t_x + dy1_t_y*t_y),
         dy1_inv_size = -(dy1_size*inv_size*inv_size),
-        dy1_F_x = -dy1_inv_size*mu*press[0]*t_x - dy1_t_x*inv_size*mu*press[0] - inv_size*mu*t_x*(-Hw_y*press[2] - n[1]*press[1]),
-        dy1_F_y = -dy1_inv_size*mu*press[0]*t_y - dy1_t_y*inv_size*mu*press[0] - inv_size*mu*t_y*(-Hw_y*press[2] - n[1]*press[1]),
-        dw0_F_x = inv_size*mu*n[0]*press[2]*t_x,
-        dw0_F_y = inv_size*mu*n[0]*press[2]*t_y,
-        dw1_F_x = inv_size*mu*n[1]*press[2]*t_x,
-        dw1_F_y = inv_size*mu*n[1]*press[2]*t_y;
+        dy1_F_x = -dy1_inv_size*mu*normal_force[0]*t_x - dy1_t_x*inv_size*mu*normal_force[0] - inv_size*mu*t_x*(-Hw_y*normal_force[2] - n[1]*normal_force[1]),
+        dy1_F_y = -dy1_inv_size*mu*normal_force[0]*t_y - dy1_t_y*inv_size*mu*normal_force[0] - inv_size*mu*t_y*(-Hw_y*normal_force[2] - n[1]*normal_force[1]),
+        dw0_F_x = inv_size*mu*n[0]*normal_force[2]*t_x,
+        dw0_F_y = inv_size*mu*n[0]*normal_force[2]*t_y,
+        dw1_F_x = inv_size*mu*n[1]*normal_force[2]*t_x,
+        dw1_F_y = inv_size*mu*n[1]*normal_force[2]*t_y;
     /* outputs */
     f[0] = F_x;
     f[1] = F_y;

@@ -263,10 +263,10 @@ static const fu_point_law_kernels point_laws[] = {
     {"spring", 3, 3, spring_energy, spring_dissipation, spring_force, spring_tangent, spring_discrete_force},
     {"planar_spring", 2, 3, planar_spring_energy, planar_spring_dissipation, planar_spring_force, planar_spring_tangent,
      planar_spring_discrete_force},
-    {"spring_piece", 3, 5, spring_piece_energy, spring_piece_dissipation, spring_piece_force, spring_piece_tangent,
-     spring_piece_discrete_force},
-    {"planar_spring_piece", 2, 5, planar_spring_piece_energy, planar_spring_piece_dissipation,
-     planar_spring_piece_force, planar_spring_piece_tangent, planar_spring_piece_discrete_force},
+    {"spring_segment", 3, 5, spring_segment_energy, spring_segment_dissipation, spring_segment_force,
+     spring_segment_tangent, spring_segment_discrete_force},
+    {"planar_spring_segment", 2, 5, planar_spring_segment_energy, planar_spring_segment_dissipation,
+     planar_spring_segment_force, planar_spring_segment_tangent, planar_spring_segment_discrete_force},
     {"zero_length_spring", 3, 2, zero_length_spring_energy, zero_length_spring_dissipation, zero_length_spring_force,
      zero_length_spring_tangent, zero_length_spring_discrete_force},
     {"planar_zero_length_spring", 2, 2, planar_zero_length_spring_energy, planar_zero_length_spring_dissipation,
@@ -855,16 +855,16 @@ static const fu_point_law_kernels point_laws[] = {
     X(planar_spring_force, vvv_1) \
     X(planar_spring_tangent, vvv_3) \
     X(planar_spring_discrete_force, vsvv_2) \
-    X(spring_piece_energy, vv_1) \
-    X(spring_piece_dissipation, vvv_1) \
-    X(spring_piece_force, vvv_1) \
-    X(spring_piece_tangent, vvv_3) \
-    X(spring_piece_discrete_force, vsvv_2) \
-    X(planar_spring_piece_energy, vv_1) \
-    X(planar_spring_piece_dissipation, vvv_1) \
-    X(planar_spring_piece_force, vvv_1) \
-    X(planar_spring_piece_tangent, vvv_3) \
-    X(planar_spring_piece_discrete_force, vsvv_2) \
+    X(spring_segment_energy, vv_1) \
+    X(spring_segment_dissipation, vvv_1) \
+    X(spring_segment_force, vvv_1) \
+    X(spring_segment_tangent, vvv_3) \
+    X(spring_segment_discrete_force, vsvv_2) \
+    X(planar_spring_segment_energy, vv_1) \
+    X(planar_spring_segment_dissipation, vvv_1) \
+    X(planar_spring_segment_force, vvv_1) \
+    X(planar_spring_segment_tangent, vvv_3) \
+    X(planar_spring_segment_discrete_force, vsvv_2) \
     X(zero_length_spring_energy, vv_1) \
     X(zero_length_spring_dissipation, vvv_1) \
     X(zero_length_spring_force, vvv_1) \

@@ -135,7 +135,7 @@ void surface_push_hertz(fu_real depth, fu_real depth_rate, const fu_real *law, f
 }
 
 /* normal force of contact, and its derivatives; 24 add, 66 mul */
-void surface_pressing(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, fu_real *f, fu_real *f_y, fu_real *f_w)
+void surface_pressing(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *normal_force, fu_real *f, fu_real *f_y, fu_real *f_w)
 {
     /* normal force */
     const fu_real
@@ -143,12 +143,12 @@ void surface_pressing(const fu_real *n, const fu_real *H, const fu_real *w, cons
         Hw_y = H[3]*w[0] + H[4]*w[1] + H[5]*w[2],
         Hw_z = H[6]*w[0] + H[7]*w[1] + H[8]*w[2];
     /* outputs */
-    FU_EACH(i, 3, f[i] = n[i]*press[0];)
+    FU_EACH(i, 3, f[i] = n[i]*normal_force[0];)
     FU_EACH(g, 3,
-        f_y[3*g] = H[3*g]*press[0] + n[g]*(-Hw_x*press[2] - n[0]*press[1]);
-        f_y[3*g + 1] = H[3*g + 1]*press[0] + n[g]*(-Hw_y*press[2] - n[1]*press[1]);
-        f_y[3*g + 2] = H[3*g + 2]*press[0] + n[g]*(-Hw_z*press[2] - n[2]*press[1]);)
-    FU_PAIRS(i, j, 3, f_w[3*i + j] = -(n[i]*n[j]*press[2]);)
+        f_y[3*g] = H[3*g]*normal_force[0] + n[g]*(-Hw_x*normal_force[2] - n[0]*normal_force[1]);
+        f_y[3*g + 1] = H[3*g + 1]*normal_force[0] + n[g]*(-Hw_y*normal_force[2] - n[1]*normal_force[1]);
+        f_y[3*g + 2] = H[3*g + 2]*normal_force[0] + n[g]*(-Hw_z*normal_force[2] - n[2]*normal_force[1]);)
+    FU_PAIRS(i, j, 3, f_w[3*i + j] = -(n[i]*n[j]*normal_force[2]);)
 }
 
 /* friction in stick, and its derivatives; 46 add, 138 mul, 1 div */
@@ -240,7 +240,7 @@ void surface_sticking(const fu_real *n, const fu_real *H, const fu_real *x, fu_r
 }
 
 /* friction in sliding, and its derivatives; 102 add, 363 mul, 2 div, 1 sqrt */
-void surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *press, const fu_real *x, fu_real mu, fu_real *f, fu_real *f_y, fu_real *f_w, fu_real *f_x)
+void surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *normal_force, const fu_real *x, fu_real mu, fu_real *f, fu_real *f_y, fu_real *f_w, fu_real *f_x)
 {
     /* friction */
     const fu_real
@@ -252,9 +252,9 @@ void surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w, const
         t_z = -along*inv_nn*n[2] + x[2],
         size = FU_SQRT(t_x*t_x + t_y*t_y + t_z*t_z),
         inv_size = 1.0/size,
-        F_x = -(inv_size*mu*press[0]*t_x),
-        F_y = -(inv_size*mu*press[0]*t_y),
-        F_z = -(inv_size*mu*press[0]*t_z),
+        F_x = -(inv_size*mu*normal_force[0]*t_x),
+        F_y = -(inv_size*mu*normal_force[0]*t_y),
+        F_z = -(inv_size*mu*normal_force[0]*t_z),
         Hw_x = H[0]*w[0] + H[1]*w[1] + H[2]*w[2],
         Hw_y = H[3]*w[0] + H[4]*w[1] + H[5]*w[2],
         Hw_z = H[6]*w[0] + H[7]*w[1] + H[8]*w[2];
@@ -269,9 +269,9 @@ void surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w, const
         dy0_t_z = -H[6]*along*inv_nn - along*dy0_inv_nn*n[2] - dy0_along*inv_nn*n[2],
         dy0_size = inv_size*(dy0_t_x*t_x + dy0_t_y*t_y + dy0_t_z*t_z),
         dy0_inv_size = -(dy0_size*inv_size*inv_size),
-        dy0_F_x = -dy0_inv_size*mu*press[0]*t_x - dy0_t_x*inv_size*mu*press[0] - inv_size*mu*t_x*(-Hw_x*press[2] - n[0]*press[1]),
-        dy0_F_y = -dy0_inv_size*mu*press[0]*t_y - dy0_t_y*inv_size*mu*press[0] - inv_size*mu*t_y*(-Hw_x*press[2] - n[0]*press[1]),
-        dy0_F_z = -dy0_inv_size*mu*press[0]*t_z - dy0_t_z*inv_size*mu*press[0] - inv_size*mu*t_z*(-Hw_x*press[2] - n[0]*press[1]),
+        dy0_F_x = -dy0_inv_size*mu*normal_force[0]*t_x - dy0_t_x*inv_size*mu*normal_force[0] - inv_size*mu*t_x*(-Hw_x*normal_force[2] - n[0]*normal_force[1]),
+        dy0_F_y = -dy0_inv_size*mu*normal_force[0]*t_y - dy0_t_y*inv_size*mu*normal_force[0] - inv_size*mu*t_y*(-Hw_x*normal_force[2] - n[0]*normal_force[1]),
+        dy0_F_z = -dy0_inv_size*mu*normal_force[0]*t_z - dy0_t_z*inv_size*mu*normal_force[0] - inv_size*mu*t_z*(-Hw_x*normal_force[2] - n[0]*normal_force[1]),
         dy1_along = H[1]*x[0] + H[4]*x[1] + H[7]*x[2] + n[1],
         dy1_nn = 2.0*H[1]*n[0] + 2.0*H[4]*n[1] + 2.0*H[7]*n[2],
         dy1_inv_nn = -(dy1_nn*inv_nn*inv_nn),
@@ -280,9 +280,9 @@ void surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w, const
         dy1_t_z = -H[7]*along*inv_nn - along*dy1_inv_nn*n[2] - dy1_along*inv_nn*n[2],
         dy1_size = inv_size*(dy1_t_x*t_x + dy1_t_y*t_y + dy1_t_z*t_z),
         dy1_inv_size = -(dy1_size*inv_size*inv_size),
-        dy1_F_x = -dy1_inv_size*mu*press[0]*t_x - dy1_t_x*inv_size*mu*press[0] - inv_size*mu*t_x*(-Hw_y*press[2] - n[1]*press[1]),
-        dy1_F_y = -dy1_inv_size*mu*press[0]*t_y - dy1_t_y*inv_size*mu*press[0] - inv_size*mu*t_y*(-Hw_y*press[2] - n[1]*press[1]),
-        dy1_F_z = -dy1_inv_size*mu*press[0]*t_z - dy1_t_z*inv_size*mu*press[0] - inv_size*mu*t_z*(-Hw_y*press[2] - n[1]*press[1]),
+        dy1_F_x = -dy1_inv_size*mu*normal_force[0]*t_x - dy1_t_x*inv_size*mu*normal_force[0] - inv_size*mu*t_x*(-Hw_y*normal_force[2] - n[1]*normal_force[1]),
+        dy1_F_y = -dy1_inv_size*mu*normal_force[0]*t_y - dy1_t_y*inv_size*mu*normal_force[0] - inv_size*mu*t_y*(-Hw_y*normal_force[2] - n[1]*normal_force[1]),
+        dy1_F_z = -dy1_inv_size*mu*normal_force[0]*t_z - dy1_t_z*inv_size*mu*normal_force[0] - inv_size*mu*t_z*(-Hw_y*normal_force[2] - n[1]*normal_force[1]),
         dy2_along = H[2]*x[0] + H[5]*x[1] + H[8]*x[2] + n[2],
         dy2_nn = 2.0*H[2]*n[0] + 2.0*H[5]*n[1] + 2.0*H[8]*n[2],
         dy2_inv_nn = -(dy2_nn*inv_nn*inv_nn),
@@ -291,38 +291,38 @@ void surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w, const
         dy2_t_z = -H[8]*along*inv_nn - along*dy2_inv_nn*n[2] - dy2_along*inv_nn*n[2] + 1.0,
         dy2_size = inv_size*(dy2_t_x*t_x + dy2_t_y*t_y + dy2_t_z*t_z),
         dy2_inv_size = -(dy2_size*inv_size*inv_size),
-        dy2_F_x = -dy2_inv_size*mu*press[0]*t_x - dy2_t_x*inv_size*mu*press[0] - inv_size*mu*t_x*(-Hw_z*press[2] - n[2]*press[1]),
-        dy2_F_y = -dy2_inv_size*mu*press[0]*t_y - dy2_t_y*inv_size*mu*press[0] - inv_size*mu*t_y*(-Hw_z*press[2] - n[2]*press[1]),
-        dy2_F_z = -dy2_inv_size*mu*press[0]*t_z - dy2_t_z*inv_size*mu*press[0] - inv_size*mu*t_z*(-Hw_z*press[2] - n[2]*press[1]);
+        dy2_F_x = -dy2_inv_size*mu*normal_force[0]*t_x - dy2_t_x*inv_size*mu*normal_force[0] - inv_size*mu*t_x*(-Hw_z*normal_force[2] - n[2]*normal_force[1]),
+        dy2_F_y = -dy2_inv_size*mu*normal_force[0]*t_y - dy2_t_y*inv_size*mu*normal_force[0] - inv_size*mu*t_y*(-Hw_z*normal_force[2] - n[2]*normal_force[1]),
+        dy2_F_z = -dy2_inv_size*mu*normal_force[0]*t_z - dy2_t_z*inv_size*mu*normal_force[0] - inv_size*mu*t_z*(-Hw_z*normal_force[2] - n[2]*normal_force[1]);
     FU_EACH(g, 3,
-        dw_F_x[g] = inv_size*mu*n[g]*press[2]*t_x;
-        dw_F_y[g] = inv_size*mu*n[g]*press[2]*t_y;
-        dw_F_z[g] = inv_size*mu*n[g]*press[2]*t_z;)
+        dw_F_x[g] = inv_size*mu*n[g]*normal_force[2]*t_x;
+        dw_F_y[g] = inv_size*mu*n[g]*normal_force[2]*t_y;
+        dw_F_z[g] = inv_size*mu*n[g]*normal_force[2]*t_z;)
     const fu_real
         dx0_t_x = -inv_nn*n[0]*n[0] + 1.0,
         dx0_t_y = -(inv_nn*n[0]*n[1]),
         dx0_t_z = -(inv_nn*n[0]*n[2]),
         dx0_size = inv_size*(dx0_t_x*t_x + dx0_t_y*t_y + dx0_t_z*t_z),
         dx0_inv_size = -(dx0_size*inv_size*inv_size),
-        dx0_F_x = -dx0_inv_size*mu*press[0]*t_x - dx0_t_x*inv_size*mu*press[0],
-        dx0_F_y = -dx0_inv_size*mu*press[0]*t_y - dx0_t_y*inv_size*mu*press[0],
-        dx0_F_z = -dx0_inv_size*mu*press[0]*t_z - dx0_t_z*inv_size*mu*press[0],
+        dx0_F_x = -dx0_inv_size*mu*normal_force[0]*t_x - dx0_t_x*inv_size*mu*normal_force[0],
+        dx0_F_y = -dx0_inv_size*mu*normal_force[0]*t_y - dx0_t_y*inv_size*mu*normal_force[0],
+        dx0_F_z = -dx0_inv_size*mu*normal_force[0]*t_z - dx0_t_z*inv_size*mu*normal_force[0],
         dx1_t_x = -(inv_nn*n[0]*n[1]),
         dx1_t_y = -inv_nn*n[1]*n[1] + 1.0,
         dx1_t_z = -(inv_nn*n[1]*n[2]),
         dx1_size = inv_size*(dx1_t_x*t_x + dx1_t_y*t_y + dx1_t_z*t_z),
         dx1_inv_size = -(dx1_size*inv_size*inv_size),
-        dx1_F_x = -dx1_inv_size*mu*press[0]*t_x - dx1_t_x*inv_size*mu*press[0],
-        dx1_F_y = -dx1_inv_size*mu*press[0]*t_y - dx1_t_y*inv_size*mu*press[0],
-        dx1_F_z = -dx1_inv_size*mu*press[0]*t_z - dx1_t_z*inv_size*mu*press[0],
+        dx1_F_x = -dx1_inv_size*mu*normal_force[0]*t_x - dx1_t_x*inv_size*mu*normal_force[0],
+        dx1_F_y = -dx1_inv_size*mu*normal_force[0]*t_y - dx1_t_y*inv_size*mu*normal_force[0],
+        dx1_F_z = -dx1_inv_size*mu*normal_force[0]*t_z - dx1_t_z*inv_size*mu*normal_force[0],
         dx2_t_x = -(inv_nn*n[0]*n[2]),
         dx2_t_y = -(inv_nn*n[1]*n[2]),
         dx2_t_z = -inv_nn*n[2]*n[2] + 1.0,
         dx2_size = inv_size*(dx2_t_x*t_x + dx2_t_y*t_y + dx2_t_z*t_z),
         dx2_inv_size = -(dx2_size*inv_size*inv_size),
-        dx2_F_x = -dx2_inv_size*mu*press[0]*t_x - dx2_t_x*inv_size*mu*press[0],
-        dx2_F_y = -dx2_inv_size*mu*press[0]*t_y - dx2_t_y*inv_size*mu*press[0],
-        dx2_F_z = -dx2_inv_size*mu*press[0]*t_z - dx2_t_z*inv_size*mu*press[0];
+        dx2_F_x = -dx2_inv_size*mu*normal_force[0]*t_x - dx2_t_x*inv_size*mu*normal_force[0],
+        dx2_F_y = -dx2_inv_size*mu*normal_force[0]*t_y - dx2_t_y*inv_size*mu*normal_force[0],
+        dx2_F_z = -dx2_inv_size*mu*normal_force[0]*t_z - dx2_t_z*inv_size*mu*normal_force[0];
     /* outputs */
     f[0] = F_x;
     f[1] = F_y;

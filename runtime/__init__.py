@@ -22,7 +22,7 @@ from .parts.end_stops import Buffer, HardStop
 from .parts.event import Event
 from .parts.flow_profile import PowerProfile, TableProfile
 from .parts.fluid import Fluid
-from .parts.force_pieces import ForceTable
+from .parts.force_segments import ForceTable
 from .parts.friction import Friction
 from .parts.joint import Joint
 from .parts.load import DistributedForce, Force, Moment

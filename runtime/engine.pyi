@@ -33,7 +33,7 @@ class Engine:
     def __init__(self, model: Model, blocks: bool = True) -> None: ...
     # a run
     def use_threads(self, threads: int) -> int: ...
-    def watch(self, watcher: Any) -> None: ...
+    def handle_events(self, event_handler: Any) -> None: ...
     def start(self, *, duration: float, output_step: float, tol: float, step: float | None, method: Integrator,
               first_step: float, knots: tuple[ArrayLike, ArrayLike] = ((), ()),
               capacity: int | None = None, rest_start: bool = False, absolute_tol: float = 0.0,
@@ -89,7 +89,7 @@ class Engine:
     in_blocks: list[bool]
     integrator: str
     self_locking: int
-    knots_passed: int
+    breakpoints_passed: int
     memory: int
     moves: bool
     row_bytes: int

@@ -139,7 +139,7 @@ cdef double _call(void *context, int which, const fu_state *state) noexcept with
     if engine.error is not None:
         return 0.0
     try:
-        return engine.watcher.call(which, *engine._snapshot(state))
+        return engine.event_handler.call(which, *engine._snapshot(state))
     except BaseException as error:
         engine.error = error
         return 0.0
@@ -157,7 +157,7 @@ cdef class Engine(Report):
     blocks: use kernels of several elements at once where they exist.
     """
 
-    cdef object watcher, error
+    cdef object event_handler, error
     cdef bint has_started
 
     cdef int _check_started(self) except -1:
@@ -217,52 +217,53 @@ cdef class Engine(Report):
         m.is_shared, m.shared_dofs, m.shared_unknowns = self._ints(shared), self._ints(dofs), self._ints(unknowns)
         m.n_shared_dofs, m.n_shared_unknowns = len(dofs), len(unknowns)
 
-    def watch(self, watcher):
+    def handle_events(self, event_handler):
         """Set the `Watcher` of events; call it before `start`."""
-        self.watcher, self.error = watcher, None
-        self._watch(watcher.watches)
+        self.event_handler, self.error = event_handler, None
+        self._set_event_functions(event_handler.event_functions)
         self.run.call, self.run.context = &_call, <void *>self
 
-    def _watch(self, watches):
+    def _set_event_functions(self, functions):
         """Set the event functions: these, and after them those of couplings."""
         kinds = {"q": FU_EVENT_OF_Q, "v": FU_EVENT_OF_V, "s": FU_EVENT_OF_S, "s_rate": FU_EVENT_OF_RATE,
                  "traction": FU_EVENT_OF_OUTPUT, "function": FU_EVENT_OF_CALL}
-        cdef int i, n = len(watches), own = fu_coupling_event_functions(&self.model, NULL)
-        PyMem_Free(self.watches)
-        self.watches = <fu_event_function *>PyMem_Calloc(n + own + 1, sizeof(fu_event_function))
-        if not self.watches:
+        cdef int i, n = len(functions), own = fu_coupling_event_functions(&self.model, NULL)
+        PyMem_Free(self.event_functions)
+        self.event_functions = <fu_event_function *>PyMem_Calloc(n + own + 1, sizeof(fu_event_function))
+        if not self.event_functions:
             raise MemoryError
-        for i, watch in enumerate(watches):
-            w = &self.watches[i]
-            w.kind, w.index, w.direction, w.value = kinds[watch.kind], watch.index, watch.direction, watch.value
+        for i, function in enumerate(functions):
+            w = &self.event_functions[i]
+            w.kind, w.index = kinds[function.kind], function.index
+            w.direction, w.value = function.direction, function.value
             if w.kind == FU_EVENT_OF_OUTPUT:
-                w.which = OUTPUTS["slide"][watch.kind].first
+                w.which = OUTPUTS["slide"][function.kind].first
             elif w.kind == FU_EVENT_OF_S:
-                w.index = self.couplings[watch.index].coordinate
-        fu_coupling_event_functions(&self.model, self.watches + n)
+                w.index = self.couplings[function.index].coordinate
+        fu_coupling_event_functions(&self.model, self.event_functions + n)
         run = &self.run
-        run.n_event_functions, run.event_functions = n + own, self.watches
+        run.n_event_functions, run.event_functions = n + own, self.event_functions
         run.event_values, run.late = self._zeros(run.n_event_functions), self._int_zeros(run.n_event_functions)
         run.deferred_at = self._zeros(run.n_event_functions)
         run.deferred = <const char **>self._memory(<double>run.n_event_functions * sizeof(char *))
         run.event_work = self._zeros(self.model.n_dof + self.model.n_outputs)
         fu_proximity_place(&self.model, run.n_event_functions, self._memory(fu_proximity_size(&self.model, run.n_event_functions)))
 
-    def _knots(self, times, jumps):
+    def _breakpoints(self, times, jumps):
         """Set the instants at which steps end."""
-        PyMem_Free(self.knots)
-        self.knots = <fu_breakpoint *>PyMem_Calloc(len(times) + 1, sizeof(fu_breakpoint))
-        if not self.knots:
+        PyMem_Free(self.breakpoints)
+        self.breakpoints = <fu_breakpoint *>PyMem_Calloc(len(times) + 1, sizeof(fu_breakpoint))
+        if not self.breakpoints:
             raise MemoryError
         for i, (time, jump) in enumerate(zip(times, jumps, strict=True)):
-            self.knots[i].t, self.knots[i].jumps = time, jump
-        self.run.n_breakpoints, self.run.breakpoints = len(times), self.knots
+            self.breakpoints[i].t, self.breakpoints[i].jumps = time, jump
+        self.run.n_breakpoints, self.run.breakpoints = len(times), self.breakpoints
 
-    def start(self, *, duration, output_step, tol, step, method, first_step, knots=((), ()), capacity=None,
+    def start(self, *, duration, output_step, tol, step, method, first_step, breakpoints=((), ()), capacity=None,
               rest_start=False, absolute_tol=0.0, controlled=None):
         """Allocate output rows, `capacity` of them or all, and compute the consistent start; method: one of integrators/.
 
-        knots: times at which steps end, increasing, and what jumps there (model/knots.py). absolute_tol in m, negative: by
+        breakpoints: times at which steps end, and what jumps there (model/breakpoints.py). absolute_tol in m, negative: by
         the scene's size. controlled: two arrays of weights (n_dof,), for the error that tol bounds and for all errors that
         count; by default the model's weights.
         Returns a status for a failed start, else None, and the change of velocities by the joints. Raises RuntimeError in
@@ -280,7 +281,7 @@ cdef class Engine(Report):
         run.controlled = run.counted = self.model.weight
         if controlled is not None:
             run.controlled, run.counted = self._doubles(controlled[0]), self._doubles(controlled[1])
-        self._knots(*knots)
+        self._breakpoints(*breakpoints)
         self._take_integrator(method)
         rows = int(np.ceil(duration / output_step * (1 - 1e-12))) + 2 if capacity is None else capacity
         m = &self.model
@@ -332,7 +333,7 @@ cdef class Engine(Report):
                     self._tell()
                     status = FU_RUNNING
                 if status == FU_EVENT:
-                    if not self.watcher.happens(run.event.which, *self._snapshot(&run.now)):
+                    if not self.event_handler.happens(run.event.which, *self._snapshot(&run.now)):
                         while fu_take_deferred(run):  # of the step that ended there
                             self._tell()
                         with nogil:
@@ -350,16 +351,16 @@ cdef class Engine(Report):
         return STATUS[status]
 
     cdef _tell(self):
-        """Report the event of a part to the watcher."""
+        """Report the event of a part to the event handler."""
         event = self.run.event
-        if self.watcher is None:
+        if self.event_handler is None:
             return
         if event.kind == FU_WENT_SLACK:
-            self.watcher.gives_way(event.which, event.what.decode(), self.run.event_time, event.side)
+            self.event_handler.slack_event(event.which, event.what.decode(), self.run.event_time, event.side)
             return
         c = self.couplings[event.which]
         s = self._view(&self.run.now, "s")[c.coordinate] if c.n_coordinates else None
-        self.watcher.acts(c.number, event.what.decode(), self.run.event_time, event.kind == FU_DEFERRED, s)
+        self.event_handler.acts(c.number, event.what.decode(), self.run.event_time, event.kind == FU_DEFERRED, s)
 
     def rows(self):
         """Return recorded arrays by name, cut to the rows filled."""

@@ -1,7 +1,7 @@
 """Searches for values of equilibria, and their derivatives by differences of whole scenes."""
 
 import numpy as np
-from funicular.parts.laid import laid
+from funicular.parts.in_plane import in_plane
 from funicular.parts.settings import EquilibriumSettings
 from funicular.results.equilibrium import Equilibrium
 from funicular.results.targets import reader
@@ -15,7 +15,7 @@ from funicular.solve.statics.static import equilibrium
 def search_of(scene, paths, to):
     """Return a search for these values at the equilibrium of the scene."""
     settings = EquilibriumSettings(adjust=dict.fromkeys(paths, "free"), to=dict.fromkeys(to, 0.0))
-    rest = equilibrium(laid(scene), settings, None, Equilibrium)
+    rest = equilibrium(in_plane(scene), settings, None, Equilibrium)
     search = ParameterSearch(Parameters(scene, settings.adjust), settings, Equilibrium, reader(rest, to))
     return search, search.begin(rest)
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from funicular.parts.end_stops import Stop
 from funicular.parts.flow_profile import Profile
-from funicular.parts.force_pieces import ForceTable
+from funicular.parts.force_segments import ForceTable
 from funicular.parts.friction import Friction
 from funicular.parts.kinds import KINDS
 from funicular.parts.material import Material

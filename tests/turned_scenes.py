@@ -2,7 +2,7 @@
 
 import numpy as np
 from funicular.base.rotations import rotate, turned_by
-from funicular.parts.laid import laid_into
+from funicular.parts.in_plane import into_plane
 from funicular.parts.plane import Plane
 
 UPRIGHT = ((np.pi / 2, 0, 0), (0, 0, 0))
@@ -17,7 +17,7 @@ def turned_scene(scene, rotation, shift):
     """Return a scene moved as a rigid body: rotated by a vector in rad, then shifted in m."""
     axes = rotate(turned_by(np.array(rotation)), np.eye(3))  # rows: the new ground's axes, seen from the old one
     axes = np.where(np.abs(axes) < 1e-15, 0.0, axes)
-    made = laid_into(scene, Plane(axes, -axes @ shift))
+    made = into_plane(scene, Plane(axes, -axes @ shift))
     made.plane_axes = made.drawn = None
     made.run_settings = dict(scene.run_settings)
     return made

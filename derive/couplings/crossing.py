@@ -112,9 +112,9 @@ def _law(p: Program, n: np.ndarray, d: np.ndarray, u: np.ndarray, c: np.ndarray)
     normal = p.define("N_law", elastic * (1 + damping * rate))
     slip = p.vector("slip", u + rate * n)
     speed = p.define("inv_speed", 1 / p.define("speed", sp.sqrt(slip.dot(slip) + v0 * v0)))
-    rub = p.define("rub", friction * normal * speed)
-    return {"depth": depth, "rate": rate, "elastic": elastic, "root": size, "normal": normal, "rub": rub, "slip": slip,
-            "force": p.vector("F", normal * n - rub * slip)}
+    friction_force = p.define("friction_force", friction * normal * speed)
+    return {"depth": depth, "rate": rate, "elastic": elastic, "root": size, "normal": normal,
+            "friction_force": friction_force, "slip": slip, "force": p.vector("F", normal * n - friction_force * slip)}
 
 
 def _penalty(p: Program) -> np.ndarray:
@@ -140,7 +140,7 @@ def contact(dim: int) -> Program:
     p.output("f", law["force"], "N", "force on the first line, with friction")
     p.output("U", [depth * depth * (linear / 2 + sp.Rational(2, 5) * root * law["root"])], "J", "energy of k p^e")
     slip = law["slip"]
-    p.output("P", [law["elastic"] * c[4] * law["rate"] ** 2 + law["rub"] * slip.dot(slip)], "W",
+    p.output("P", [law["elastic"] * c[4] * law["rate"] ** 2 + law["friction_force"] * slip.dot(slip)], "W",
              "power that damping and friction dissipate")
     return p
 
@@ -341,7 +341,8 @@ def step(dim: int) -> Program:
     """
     p = Program(f"{CROSSINGS[dim]}_step", "forces over a step that balance energy", f"{SOURCE}; Gonzalez 1996")
     n = p.input("n", dim, "1", "normal half-way")
-    way = p.input("way", dim, "m", "change of d over the step, of the points that are closest half-way")
+    displacement = p.input("displacement", dim, "m",
+                           "change of d over the step, of the points that are closest half-way")
     turn = p.input("turn", (dim - 1, dim), "1", "changes of the slopes there")
     sizes = p.input("size", dim - 1, "m", "of the lines, with which changes of slopes count")
     depth, after = p.input("p", (), "m", "penetration"), p.input("p_next", (), "m", "that at the end of the step")
@@ -350,25 +351,27 @@ def step(dim: int) -> Program:
     _, _, linear, root, damping, least, friction, v0 = c
     p.stage("discrete gradient of the gap")
     squares = [p.define(f"square_{i}", size * size) for i, size in enumerate(sizes)]
-    measure = p.define("measure", way.dot(way) + sum(
+    measure = p.define("measure", displacement.dot(displacement) + sum(
         square * (each.dot(each) + NEGLIGIBLE) for square, each in zip(squares, turn, strict=True)))
-    along = p.define("along", n.dot(way))
+    along = p.define("along", n.dot(displacement))
     left = p.define("left", (depth - after - along) / measure)
     p.stage("law")
-    sunk = p.define("sunk", after - depth)
+    penetration = p.define("penetration", after - depth)
     roots = [p.define(f"root_{i}", sp.sqrt(p.define(f"size_{i}", sp.sqrt(at * at + least * least))))
              for i, at in enumerate((depth, after))]
     half = p.define("half", (depth * depth + after * after) / 2)
     mean = p.define("mean_root", (roots[0] + roots[1]) / 2 + half / (
         (roots[0] + roots[1]) * (roots[0] * roots[0] + roots[1] * roots[1])))
     elastic = p.define("elastic", (depth + after) / 2 * (linear + sp.Rational(4, 5) * root * mean))
-    normal = p.define("N_law", elastic * (1 + damping * sunk / h))
+    normal = p.define("N_law", elastic * (1 + damping * penetration / h))
     p.stage("friction")
-    slip = p.vector("slip", (way - along * n) / h)
-    rub = p.define("rub", friction * normal / p.define("speed", sp.sqrt(slip.dot(slip) + v0 * v0)))
-    p.output("F", normal * (n + left * way) - rub * slip, "N",
+    slip = p.vector("slip", (displacement - along * n) / h)
+    speed = p.define("speed", sp.sqrt(slip.dot(slip) + v0 * v0))
+    friction_force = p.define("friction_force", friction * normal / speed)
+    p.output("F", normal * (n + left * displacement) - friction_force * slip, "N",
              "force on the first line; its opposite acts on the second")
     p.output("M", np.array([normal * left * square * each for square, each in zip(squares, turn, strict=True)]), "N m",
              "force on the slopes")
-    p.output("lost", [(normal - elastic) * sunk + rub * slip.dot(way)], "J", "dissipated energy")
+    p.output("lost", [(normal - elastic) * penetration + friction_force * slip.dot(displacement)], "J",
+             "dissipated energy")
     return p

@@ -134,7 +134,7 @@ def push(dim: int, hertz: bool) -> Program:
     return p
 
 
-def _moving(p: Program, dim: int, press: sp.Symbol, n: np.ndarray, H: np.ndarray, w: np.ndarray, by_d: sp.Symbol,
+def _moving(p: Program, dim: int, normal_force: sp.Symbol, n: np.ndarray, H: np.ndarray, w: np.ndarray, by_d: sp.Symbol,
             by_rate: sp.Symbol, x: np.ndarray | None = None) -> tuple[list[Any], list[Any]]:
     """Return the derivations by the place y and by the velocity w: of n by H, of the normal force by depth and its
     rate.
@@ -142,11 +142,11 @@ def _moving(p: Program, dim: int, press: sp.Symbol, n: np.ndarray, H: np.ndarray
     turned = p.vector("Hw", H @ w)
     of_place, of_rate = [], []
     for k in range(dim):
-        known = {n[i]: H[i, k] for i in range(dim)} | {press: -by_d * n[k] - by_rate * turned[k]}
+        known = {n[i]: H[i, k] for i in range(dim)} | {normal_force: -by_d * n[k] - by_rate * turned[k]}
         if x is not None:
             known |= {x[i]: sp.Integer(i == k) for i in range(dim)}
         of_place.append(DirectionalDerivative(p, f"dy{k}", known))
-        of_rate.append(DirectionalDerivative(p, f"dw{k}", {press: -by_rate * n[k]}))
+        of_rate.append(DirectionalDerivative(p, f"dw{k}", {normal_force: -by_rate * n[k]}))
     return of_place, of_rate
 
 
@@ -154,8 +154,9 @@ def _inputs(p: Program, dim: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, n
     n = p.input("n", dim, "1", "gradient of the distance")
     H = p.input("H", (dim, dim), "1/m", "its second derivative")
     w = p.input("w", dim, "m/s", "velocity of the point past the surface")
-    press = p.input("press", 3, "N, N/m, N s/m (a length)", "p, and its derivatives by the depth and by its rate")
-    return n, H, w, press
+    normal_force = p.input("normal_force", 3, "N, N/m, N s/m (a length)",
+                           "p, and its derivatives by the depth and by its rate")
+    return n, H, w, normal_force
 
 
 def _outputs(p: Program, f: np.ndarray, by: tuple[list[Any], list[Any]]) -> Program:
@@ -170,10 +171,10 @@ def _outputs(p: Program, f: np.ndarray, by: tuple[list[Any], list[Any]]) -> Prog
 def pressing(dim: int) -> Program:
     """Return the kernel of the normal force."""
     p = _program(dim, "pressing", "normal force of contact, and its derivatives")
-    n, H, w, (press, by_d, by_rate) = _inputs(p, dim)
+    n, H, w, (normal_force, by_d, by_rate) = _inputs(p, dim)
     p.stage("normal force")
-    by = _moving(p, dim, press, n, H, w, by_d, by_rate)
-    return _outputs(p, press * n, by)
+    by = _moving(p, dim, normal_force, n, H, w, by_d, by_rate)
+    return _outputs(p, normal_force * n, by)
 
 
 def _across(p: Program, dim: int, n: np.ndarray, x: np.ndarray) -> np.ndarray:
@@ -218,13 +219,13 @@ def sliding(dim: int) -> Program:
     surface.
     """
     p = _program(dim, "sliding", "friction in sliding, and its derivatives")
-    n, H, w, (press, by_d, by_rate) = _inputs(p, dim)
+    n, H, w, (normal_force, by_d, by_rate) = _inputs(p, dim)
     x = p.input("x", dim, "m", "the point from its anchor")
     mu = p.input("mu", (), "1", "coefficient of friction")
     p.stage("friction")
     t = _across(p, dim, n, x)
-    f = sliding_force(p, t, mu * press)
-    _outputs(p, f, _moving(p, dim, press, n, H, w, by_d, by_rate, x))
+    f = sliding_force(p, t, mu * normal_force)
+    _outputs(p, f, _moving(p, dim, normal_force, n, H, w, by_d, by_rate, x))
     # in the plane friction that slides has one direction, whatever the stretch is
     return _by_stretch(p, np.zeros((dim, dim), dtype=int) if dim == 2 else _along_each(p, dim, f, x))
 

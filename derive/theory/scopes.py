@@ -398,7 +398,7 @@ def surface_scope(name: str) -> Scope:
     numbers = [Symbol(letter, argument, number) for letter, argument in (
         ("R", "radius"), ("d", "depth"), ("v", "depth_rate"), ("k_{t}", "k_t"), (r"\mu", "mu"))]
     return Scope(families()[name], (*vectors, *numbers, Symbol("k", "law", entry(0)), Symbol("c", "law", entry(1)),
-                                    Symbol("p", "press", entry(0))))
+                                    Symbol("p", "normal_force", entry(0))))
 
 
 def scope(role: str, name: str) -> Scope:

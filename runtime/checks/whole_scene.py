@@ -8,7 +8,7 @@ import numpy as np
 
 from ..errors import SceneError
 from ..kernels.elements import built_in
-from ..parts.laid import turned_alone
+from ..parts.in_plane import turned_alone
 from ..parts.modal_body import ModalBody
 from ..parts.part import Part
 from ..parts.plane import aligned, called

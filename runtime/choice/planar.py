@@ -16,7 +16,7 @@ import numpy as np
 from ..errors import SceneError
 from ..kernels.libraries import of_library
 from ..parts.cable import Cable
-from ..parts.laid import laid_into
+from ..parts.in_plane import into_plane
 from ..parts.load import DistributedForce, Force
 from ..parts.part import Part
 from ..parts.plane import Plane, aligned, called, normal_of
@@ -70,7 +70,7 @@ def planar_of(scene: S) -> Planar[S]:
 def _planar_in(scene: S, plane: Plane | None) -> Planar[S]:
     """Return the scene with planar elements in a plane, None for z = 0."""
     try:
-        flat = scene if plane is None else laid_into(scene, plane)
+        flat = scene if plane is None else into_plane(scene, plane)
     except SceneError as error:
         return Planar(None, (str(error),))
     pairs = list(zip(scene.parts(), flat.parts(), strict=True))

@@ -20,7 +20,7 @@ from .unknowns import Node, supports
 def build(scene: SceneData) -> Model:
     """Number the coordinates of a scene and evaluate the constants of its elements. Raises SceneError.
 
-    A scene of planar elements lies in the plane z = 0 (see parts/laid.py).
+    A scene of planar elements lies in the plane z = 0 (see parts/in_plane.py).
     """
     assert scene.plane is None, "a scene in another plane is laid into z = 0 first"
     dim, gravity = scene.dim, np.array(scene.gravity)[: scene.dim]

@@ -22,11 +22,11 @@ class CouplingModel:
 
     type: the engine's type of coupling. name: of its part. n_coordinates: number of internal coordinates in a Newton
     system. scale: factors of the equations of its internal forces there, kg or kg m. n_multipliers: the largest number
-    of multipliers of eq 38. n_numbers: of its history variables. reacts, is_damped: whether a force depends on these
-    multipliers, on velocities. has_inertia: whether it adds mass. drive: number of the signal that prescribes a motion,
-    or -1. follows_law: whether a law gives the internal forces, and not constraints. redundant_rows: constraints that
-    follow from others, without forces (redundant_constraints.py). unknown, multiplier: the first of each, of unknowns
-    beyond the dofs, as `number` counts them. entries: fields that the engine alone reads.
+    of multipliers of eq 38. n_numbers: of its history variables. needs_reactions, is_damped: whether a force depends on
+    these multipliers, on velocities. has_inertia: whether it adds mass. drive: number of the signal that prescribes a
+    motion, or -1. follows_law: whether a law gives the internal forces, and not constraints. redundant_rows:
+    constraints that follow from others, without forces (redundant_constraints.py). unknown, multiplier: the first of
+    each, of unknowns beyond the dofs, as `number` counts them. entries: fields that the engine alone reads.
 
     keeps_forces: whether a search for rest continues from the internal forces of the last state, which else start at
     zero; reports_cost: whether the report of a run has its computing time.
@@ -40,7 +40,7 @@ class CouplingModel:
     scale: Sequence[float] | np.ndarray = ()
     n_multipliers: int = 0
     n_numbers: int = 0
-    reacts: bool = False
+    needs_reactions: bool = False
     is_damped: bool = False
     has_inertia: bool = False
     drive: int = -1

@@ -141,7 +141,7 @@ def _profile(fluid: Fluid) -> dict[str, Any]:
     breaks, coefficients = fluid.profile.pieces() if isinstance(fluid.profile, TableProfile) else (NONE, NONE)
     power = fluid.profile if isinstance(fluid.profile, PowerProfile) else PowerProfile(exponent=0, reference_height=1)
     return {"profile": "uniform" if fluid.profile is None else fluid.profile.form, "reference": power.reference_height,
-            "exponent": power.exponent, "least": power.least_height, "n_pieces": len(coefficients), "breaks": breaks,
+            "exponent": power.exponent, "least": power.least_height, "n_segments": len(coefficients), "breaks": breaks,
             "coefficients_of_profile": coefficients}
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..kernels.elements import point_law
 from ..kernels.libraries import kernels_of
-from ..parts.force_pieces import HAS_NO_FORCE, PULLS_AND_PUSHES
+from ..parts.force_segments import HAS_NO_FORCE, PULLS_AND_PUSHES
 from ..parts.point_force import PointForce
 from ..parts.spring import Spring
 from .attachments import AttachmentModel, ModelBuilder
@@ -22,14 +22,14 @@ class ForceLaw:
     """The law of a force between two points.
 
     law: the name of its kernels; parameters: in the order of the kernels' arguments, for one linear segment after the
-    other. bounds (n_pieces - 1), in m: distances of the points between segments. senses (n_pieces): whether a segment
-    pulls, pushes, or has no force. compliance: of the stiffest segment, m/N.
+    other. bounds (n_segments - 1), in m: distances of the points between segments. senses (n_segments): whether a
+    segment pulls, pushes, or has no force. compliance: of the stiffest segment, m/N.
     """
 
     law: str
     dim: int
     parameters: tuple[float, ...]
-    n_pieces: int = 1
+    n_segments: int = 1
     n_parameters: int = 0
     bounds: tuple[float, ...] = ()
     senses: tuple[int, ...] = (PULLS_AND_PUSHES,)
@@ -40,7 +40,7 @@ class ForceLaw:
         """Return the law of a complete part in `dim` dimensions."""
         name = ("planar_" if dim == 2 else "") + part.law
         names = list(point_law(name).parameters)
-        if isinstance(part, Spring) and part.has_pieces:
+        if isinstance(part, Spring) and part.has_segments:
             return cls(name, dim, n_parameters=len(names), **_pieces(part, names))
         return cls(name, dim, tuple(float(getattr(part, each)) for each in names), n_parameters=len(names))
 
@@ -60,10 +60,10 @@ class ForceLaw:
 
     def _at(self, gap: np.ndarray) -> np.ndarray | None:
         """Return the parameters of the segment at a gap (dim,), None where it has no force."""
-        piece = int(np.searchsorted(self.bounds, np.linalg.norm(gap)))
-        if self.senses[piece] == HAS_NO_FORCE:
+        segment = int(np.searchsorted(self.bounds, np.linalg.norm(gap)))
+        if self.senses[segment] == HAS_NO_FORCE:
             return None
-        return np.array(self.parameters[piece * self.n_parameters :][: self.n_parameters])
+        return np.array(self.parameters[segment * self.n_parameters :][: self.n_parameters])
 
 
 @dataclass(kw_only=True)
@@ -92,14 +92,14 @@ def point_force_models(builder: ModelBuilder) -> Iterator[PointForceModel]:
 def _pieces(part: Spring, names: list[str]) -> dict[str, Any]:
     """Return the fields of the linear segments of a spring that positive distances reach."""
     assert part.length is not None, f"{part.where} is not complete"
-    pieces = [piece for piece in part.pieces() if part.length + piece.end > 0]
-    values = [{"stiffness": piece.stiffness, "damping": part.damping * (piece.sense != HAS_NO_FORCE),
-               "reference": part.length + piece.at, "tension": piece.tension, "energy": piece.energy}
-              for piece in pieces]
-    return {"parameters": tuple(float(of[name]) for of in values for name in names), "n_pieces": len(pieces),
-            "bounds": tuple(part.length + piece.end for piece in pieces[:-1]),
-            "senses": tuple(piece.sense for piece in pieces),
-            "compliance": 1 / max((abs(piece.stiffness) for piece in pieces), default=1.0)}
+    segments = [segment for segment in part.segments() if part.length + segment.end > 0]
+    values = [{"stiffness": segment.stiffness, "damping": part.damping * (segment.sense != HAS_NO_FORCE),
+               "reference": part.length + segment.at, "tension": segment.tension, "energy": segment.energy}
+              for segment in segments]
+    return {"parameters": tuple(float(of[name]) for of in values for name in names), "n_segments": len(segments),
+            "bounds": tuple(part.length + segment.end for segment in segments[:-1]),
+            "senses": tuple(segment.sense for segment in segments),
+            "compliance": 1 / max((abs(segment.stiffness) for segment in segments), default=1.0)}
 
 
 KINDS = (CouplingKind("point_force", PointForce.group, point_force_models),)

@@ -45,8 +45,8 @@ def _slide(slide: Slide, builder: ModelBuilder) -> SlideModel:
         kernel=f"slide_{along.element}_{BODIES[dim][0] if rider_is_rigid else RIDERS[dim]}",
         cable=builder.cable_index[slide.along], rider=rider, rider_is_rigid=rider_is_rigid, s=slide.arc_length,
         element=min(max(element, 0), along.elements - 1), director=axes[1], resistance=RESISTANCES[dim] * resists,
-        n_coordinates=1, scale=[mass] * dim, n_multipliers=dim - 1 + may_be_locked, reacts=resists, is_damped=resists,
-        drive=builder.signals.add(slide.prescribed),
+        n_coordinates=1, scale=[mass] * dim, n_multipliers=dim - 1 + may_be_locked,
+        needs_reactions=resists, is_damped=resists, drive=builder.signals.add(slide.prescribed),
         entries={"carries_director": dim == 3 and not along.kind_of_element.director}
         | _friction(friction) | _stops(ends))
 

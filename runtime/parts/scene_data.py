@@ -109,9 +109,9 @@ class SceneData:
     contacts: dict[str, Contact]
     events: dict[str, Event]
     plane_axes: PlaneAxes | None = None
-    """The axes of a scene that `laid.laid` made, which turn its results into the ground's axes."""
+    """The axes of a scene that `in_plane` made, which turn its results into the ground's axes."""
     drawn: SceneData | None = None
-    """The original of a scene that `laid.laid` made."""
+    """The original of a scene that `in_plane` made."""
 
     def __init__(self, gravity: Any = (0, -9.81, 0)):
         """Make an empty scene; gravity: 3 numbers in m/s². Raises SceneError."""

@@ -15,7 +15,7 @@ from .end_stops import Stop
 from .event import Event
 from .flow_profile import Profile
 from .fluid import Fluid
-from .force_pieces import ForceTable
+from .force_segments import ForceTable
 from .friction import Friction
 from .joint import Joint
 from .load import DistributedForce, Force, Moment

@@ -26,7 +26,7 @@ HOLDER = "holder"
 
 @dataclass(frozen=True)
 class Turning:
-    """How other axes change the vectors of a field, see `laid`: as a POINT, a DIRECTION, an AXIS of rotation, the unit
+    """How other axes change the vectors of a field, see `in_plane`: as a POINT, DIRECTION, AXIS of rotation, the unit
     quaternion of an ORIENTATION or a symmetric TENSOR. LENGTHS along axes of their own stay.
 
     of: the attribute of the part that names the body whose axes they are along, None for the ground's; HOLDER: those of

@@ -6,7 +6,7 @@ from typing import Annotated, Self
 
 from pydantic import model_validator
 
-from .force_pieces import HAS_NO_FORCE, PULLS_ALONE, ForceTable, Piece, pulling, tabulated, with_play
+from .force_segments import HAS_NO_FORCE, PULLS_ALONE, ForceTable, Segment, pulling, tabulated, with_play
 from .point_force import PointForce
 from .validation import Flag, not_negative
 
@@ -35,16 +35,16 @@ class Spring(PointForce):
     @property
     def law(self) -> str:
         """Return the name of its law, that of a file in derive/couplings/point_laws."""
-        if self.has_pieces:
-            return "spring_piece"
+        if self.has_segments:
+            return "spring_segment"
         return "spring" if self.length else "zero_length_spring"
 
     @property
-    def has_pieces(self) -> bool:
+    def has_segments(self) -> bool:
         """Return whether its law has several segments; a spring of zero length has tension only."""
         return self.table is not None or self.free_play > 0 or (self.tension_only and self.length != 0.0)
 
-    def pieces(self) -> list[Piece]:
+    def segments(self) -> list[Segment]:
         """Return the segments of its law."""
         if self.table is not None:
             return tabulated(self.table, self.tension_only)
@@ -56,16 +56,16 @@ class Spring(PointForce):
     @property
     def loses_direction(self) -> bool:
         """Return whether it has a force, and so no direction, where its points meet."""
-        if self.length is None or not self.has_pieces:
+        if self.length is None or not self.has_segments:
             return self.length != 0.0
-        meeting = next(piece for piece in self.pieces() if self.length + piece.end > 0)
+        meeting = next(segment for segment in self.segments() if self.length + segment.end > 0)
         return meeting.sense != HAS_NO_FORCE
 
     @property
     def only_pulls(self) -> bool:
         """Return whether it has tension only, by tension_only or its table."""
         return self.tension_only or (self.table is not None and all(
-            piece.sense in (PULLS_ALONE, HAS_NO_FORCE) for piece in self.pieces()))
+            segment.sense in (PULLS_ALONE, HAS_NO_FORCE) for segment in self.segments()))
 
     def at_distance(self, distance: float) -> Self:
         """Return the spring with its length, by default the initial distance of its points."""
@@ -82,5 +82,5 @@ class Spring(PointForce):
             raise ValueError("has neither stiffness nor damping" if not needs else f"needs a stiffness{needs}",
                              "give one of them, or both" if not needs else "give a positive stiffness")
         if self.table is not None:
-            self.pieces()
+            self.segments()
         return self

@@ -58,7 +58,7 @@ def named(model: Model, scene: SceneData, engine: Engine) -> Rows:
 def recorded(simulation: Simulation, scene: SceneData, settings: RunSettings) -> Recording:
     """Return the rows of the engine by name, and the report on the run."""
     begin = time.perf_counter()
-    model, engine, watcher, status = simulation.model, simulation.engine, simulation.watcher, simulation.status
+    model, engine, status = simulation.model, simulation.engine, simulation.status
     statistics = engine.statistics
     costs, rows = _costs(model, engine), named(model, scene, engine)
     results = time.perf_counter() - begin
@@ -76,7 +76,7 @@ def recorded(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
         "unknowns": model.n_band + model.n_border_dof + model.n_extra,
         "kernels": model.kernels,
         "messages": simulation.messages,
-        "events": watcher.happened,
+        "events": simulation.event_handler.happened,
         **statistics,
         "time_s": seconds | statistics["time_s"] | {"solve_cpu": simulation.solve_cpu_s},
         "us_per_step": costs,
@@ -116,7 +116,7 @@ def _message(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
             jumps = [each for each in velocity_jumps(scene.as_drawn, settings.duration) if each in simulation.messages]
             return "; ".join([*points.notes(), stopped(model, engine, status, settings), *jumps])
         case "event":
-            return f'stopped by event "{simulation.watcher.stopped_by}" at {when}'
+            return f'stopped by event "{simulation.event_handler.stopped_by}" at {when}'
         case "interrupted":
             remedy = "" if settings.save is None else ", and resume continues the run"
             return f"interrupted at {when}; {RESULTS_KEPT}{remedy}"

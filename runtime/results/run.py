@@ -18,7 +18,7 @@ from ..base.named_arrays import NamedArrays
 from ..base.written_files import write_whole
 from ..errors import FunicularWarning, UnknownResultError, near
 from ..parts.cable import Cable
-from ..parts.laid import laid
+from ..parts.in_plane import in_plane
 from ..parts.scene_data import OfDrawing, SceneData
 from ..parts.scene_text import dumps
 from ..parts.settings import RunSettings
@@ -283,7 +283,7 @@ class Run(Viewable, NamedArrays):
         """
         from ..model.build import build
 
-        return build(laid(self.scene))
+        return build(in_plane(self.scene))
 
     def slack_elements(self, cable: Cable | str) -> xarray.DataArray:
         """Return which elements of ``cable`` are slack, (time, element): shorter in the middle than at rest.

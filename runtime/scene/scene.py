@@ -20,7 +20,7 @@ from ..errors import (
     enough_memory,
     near,
 )
-from ..parts.laid import laid
+from ..parts.in_plane import in_plane
 from ..parts.settings import EquilibriumSettings, ModeSettings, RelaxationSettings, RunSettings, overridden
 from ..parts.validation import show, shown
 from ..results.run import Run
@@ -204,7 +204,7 @@ class Scene(Viewable, DescribedScene):
             if settings.initial in ("equilibrium", "relaxed") and state is None:
                 with interruptible():
                     state = _at_rest(settings.initial, self, None if chosen is None else chosen.rest)
-            flat = laid(self)
+            flat = in_plane(self)
             with progress_bar(settings.duration, progress) as on_progress:
                 simulation = simulate(flat, settings, on_progress, initial=state, stream=stream, trials=trials)
             recording = recorded(simulation, flat, settings)
@@ -297,7 +297,7 @@ class Scene(Viewable, DescribedScene):
 
         with uninterrupted(), one_blas_thread, enough_memory(), interruptible():
             if settings.adjust is None:
-                return equilibrium(laid(self), settings, begin, Equilibrium)
+                return equilibrium(in_plane(self), settings, begin, Equilibrium)
 
             from ..results.targets import reader
             from ..solve.adjustment.adjustment import adjusted
@@ -326,7 +326,7 @@ class Scene(Viewable, DescribedScene):
 
         check_comes_to_rest(self)
         with uninterrupted(), one_blas_thread, enough_memory(), interruptible():
-            return relax(laid(self), settings, Equilibrium)
+            return relax(in_plane(self), settings, Equilibrium)
 
     def modes(self, n: int, about: Equilibrium | None = None, *, as_drawn: bool = False) -> Modes:
         """Return the ``n`` lowest natural frequencies and shapes, about a state of `equilibrium`, or about the drawn
@@ -344,7 +344,7 @@ class Scene(Viewable, DescribedScene):
         from ..solve.modes.modes import modes
 
         with uninterrupted(), one_blas_thread, enough_memory(), interruptible():
-            return Modes.of(modes(laid(self), settings.n, state, as_drawn), self, state)
+            return Modes.of(modes(in_plane(self), settings.n, state, as_drawn), self, state)
 
     def animation(self, title: str | None = None) -> Animation:
         """Return pictures of the scene as drawn; see `Viewable.animation`."""

@@ -76,10 +76,10 @@ def net(n: int) -> Scene:
     scene, side = Scene(gravity=(0, -GRAVITY, 0)), round(n**0.5)
     for i in range(side):
         for j in range(side):
-            scene.rigid_body(f"knot{i}_{j}", mass=MASS, inertia=INERTIA, position=(i * LENGTH, 0, j * LENGTH))
-            scene.joint("distance", f"knot{i - 1}_{j}" if i else (-LENGTH, 0, j * LENGTH), f"knot{i}_{j}")
+            scene.rigid_body(f"breakpoint{i}_{j}", mass=MASS, inertia=INERTIA, position=(i * LENGTH, 0, j * LENGTH))
+            scene.joint("distance", f"breakpoint{i - 1}_{j}" if i else (-LENGTH, 0, j * LENGTH), f"breakpoint{i}_{j}")
             if j:
-                scene.joint("distance", f"knot{i}_{j - 1}", f"knot{i}_{j}")
+                scene.joint("distance", f"breakpoint{i}_{j - 1}", f"breakpoint{i}_{j}")
     return scene
 
 

@@ -25,13 +25,13 @@ from funicular import Run, Scene, load_scene
 from funicular.checks.plausibility import implausible
 from funicular.engine import Engine
 from funicular.integrators import Integrator
+from funicular.model.breakpoints import breakpoints
 from funicular.model.build import build
 from funicular.model.elimination import eliminated
-from funicular.model.knots import knots
 from funicular.model.numbering import ordered
 from funicular.model.redundant_constraints import drop_redundant_rows
 from funicular.parts.settings import RunSettings
-from funicular.solve.motion.event_watcher import EventWatcher
+from funicular.solve.motion.event_handler import EventHandler
 from funicular.solve.motion.integrator_choice import choose
 from table import arguments, few, show
 
@@ -104,7 +104,7 @@ def set_up(make: Callable[[], Scene], clock: Clock | None = None) -> Engine:
     model = build(scene)
     clock.lap("model")
     engine = Engine(model)
-    engine.watch(EventWatcher(scene, model))
+    engine.watch(EventHandler(scene, model))
     clock.lap("engine")
     implausible(scene)
     drop_redundant_rows(model, engine)
@@ -112,7 +112,7 @@ def set_up(make: Callable[[], Scene], clock: Clock | None = None) -> Engine:
     method: Integrator = choose(settings, scene, model, engine, None)[0]
     clock.lap("choice")
     engine.start(duration=RUN, output_step=OUTPUT, tol=settings.tol, step=0.0, method=method, first_step=1e-3 * RUN,
-                 knots=knots(model, RUN, settings.tol))
+                 breakpoints=breakpoints(model, RUN, settings.tol))
     clock.lap("start")
     return engine
 

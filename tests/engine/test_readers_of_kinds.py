@@ -19,14 +19,14 @@ RUNTIME = Path(funicular.__file__).parent
 PLACES = {
     "a slide has an arc-length, and attachments may be on it": [
         "model/border.py", "model/controlled.py", "model/initial_state.py", "results/recording.py",
-        "results/resume_facts.py", "solve/motion/event_watcher.py", "solve/notes/coarse_slides.py",
+        "results/resume_facts.py", "solve/motion/event_handler.py", "solve/notes/coarse_slides.py",
         "solve/notes/uncontrolled_errors.py", "solve/statics/relaxation.py", "solve/statics/rest_state.py",
         "solve/statics/static_problem.py"],
     "joints close loops, in which equations are redundant; their ends and angles are prescribed": [
         "model/redundant_constraints.py", "solve/adjustment/change.py", "solve/notes/sensitivity.py",
         "solve/statics/turns.py"],
     "an instant or a frequency of fluids: their signals, tables and added mass": [
-        "model/drag_forces.py", "model/knots.py", "results/section_forces/balance_limits.py",
+        "model/drag_forces.py", "model/breakpoints.py", "results/section_forces/balance_limits.py",
         "solve/statics/string_start.py"],
     "contact with surfaces: depth, ends of the surface, what a cable lies on": [
         "solve/linear/condensation.py", "solve/modes/contact_edges.py", "solve/notes/penetrations.py",
@@ -51,7 +51,7 @@ SCENE_PLACES = {
     "points that move along a cable: slides and crossings": [
         "choice/chooser.py", "results/animation/curves.py", "results/animation/references.py",
         "results/animation/sources.py", "results/charts.py", "results/section_forces/forces.py",
-        "results/trajectories.py", "solve/motion/event_watcher.py", "solve/motion/run.py", "solve/notes/diagnosis.py",
+        "results/trajectories.py", "solve/motion/event_handler.py", "solve/motion/run.py", "solve/notes/diagnosis.py",
         "solve/notes/supersonic_loads.py"],
     "loads and flows at a point or along a cable": [
         "choice/candidates.py", "choice/planar.py", "choice/remeshing.py", "results/section_forces/cable_loads.py"],
@@ -66,7 +66,7 @@ SCENE_PLACES = {
         "solve/adjustment/adjustment.py", "solve/adjustment/length_changes.py",
         "solve/adjustment/parameter_changes.py", "solve/adjustment/parameter_search.py",
         "solve/adjustment/parameters.py"],
-    "the plane of a scene: quantities that events watch": ["parts/laid.py"],
+    "the plane of a scene: quantities that events watch": ["parts/in_plane.py"],
 }
 """Places that read a group of couplings of a scene, by what they read; one module a kind in model/ and checks/, and
 applications, know their kinds by definition."""

@@ -126,7 +126,7 @@ def test_parts_have_the_parameters_of_their_laws_in_the_same_units(part):
 
 
 def test_every_law_is_that_of_a_part():
-    parts = {complete(kind).law for kind in KINDS_OF_FORCE} | {"zero_length_spring", "spring_piece"}
+    parts = {complete(kind).law for kind in KINDS_OF_FORCE} | {"zero_length_spring", "spring_segment"}
     assert parts == set(LAWS)
     assert set(manifest()["point_laws"]) == {prefix + law for law in LAWS for prefix in ("", "planar_")}
 

@@ -19,7 +19,7 @@ from funicular import (
     load_scene,
 )
 from funicular.choice.planar import planar_of
-from funicular.parts.laid import laid
+from funicular.parts.in_plane import in_plane
 from funicular.parts.signal import Constant, combined
 from test_planar_form import FLAT, RUBBER, SCENES, WIRE, beam
 from turned_scenes import ASKEW, UPRIGHT, differences, turned_scene
@@ -362,4 +362,4 @@ def test_sums_of_signals():
 def test_spatial_scenes_and_those_in_z_0_are_not_turned():
     for name in ("paper51", "cable_car"):
         scene = load_scene(name)
-        assert laid(scene) is scene
+        assert in_plane(scene) is scene

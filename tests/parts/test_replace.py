@@ -120,7 +120,7 @@ def everything() -> fu.Scene:
     scene.pin("rope", s=0.0)
     scene.clamp("bar", s=0.5, fix="all")
     scene.motion("bar", s=1.0, displacement=(fu.Harmonic(amplitude=0.1, frequency=1.0), 0, "free"))
-    scene.tie("hook", s=0.0, to="rope", at=1.0, rotation="free", name="knot")
+    scene.tie("hook", s=0.0, to="rope", at=1.0, rotation="free", name="breakpoint")
     scene.rigid_body("A", mass=1, inertia=(1, 1, 1), position=(0.5, 0, 0), shape=fu.Sphere(radius=0.1))
     scene.rigid_body("B", mass=1, inertia=(1, 1, 1), position=(0.5, -1, 0))
     scene.modal_body("beam", start=(0, 0, 3), end=(1, 0, 3), section=fu.Circle(radius=0.01), material=ROPE["material"],

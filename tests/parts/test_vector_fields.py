@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from funicular.base.rotations import conjugate, product, quaternion
 from funicular.parts.attachment import Attachment
+from funicular.parts.in_plane import turned_fields
 from funicular.parts.kinds import KINDS
-from funicular.parts.laid import turned_fields
 from funicular.parts.locations import following, on_cables
 from funicular.parts.part import Part, about_fields
 from funicular.parts.plane import Plane

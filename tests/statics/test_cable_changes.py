@@ -6,7 +6,7 @@ import pytest
 from funicular.kernels.libraries import of_library
 from funicular.model.cables import cable_model
 from funicular.parts.cable_laws import possible_laws
-from funicular.parts.laid import laid
+from funicular.parts.in_plane import in_plane
 from funicular.solve.adjustment.cable_changes import Own, by_length, elastic_force, same_points
 
 LAWS = [(element, law) for element, kind in of_library(None).items() for law in possible_laws(kind)]
@@ -22,7 +22,7 @@ def cable_of(element, law, stretch, shape=None):
     drawn = fu.Scene().cable("wire", **given).length
     scene = fu.Scene()
     scene.cable("wire", **given, rest_length=drawn / stretch)
-    return laid(scene).cables["wire"]
+    return in_plane(scene).cables["wire"]
 
 
 def disturbed(cable, size):

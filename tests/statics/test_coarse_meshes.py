@@ -7,7 +7,7 @@ import funicular as fu
 import numpy as np
 import pytest
 from funicular.model.build import build
-from funicular.parts.laid import laid
+from funicular.parts.in_plane import in_plane
 from funicular.solve.notes.coarse_meshes import ROW_INTERVAL, CoarseMeshes
 from funicular.solve.notes.coarse_slides import CoarseSlides
 from funicular.solve.notes.row_notes import RowNotes
@@ -125,7 +125,7 @@ def test_what_flies_free_of_stress_is_not_told():
 
 def test_rows_may_come_in_any_parts():
     """The findings of 40 rows do not depend on their division, as after a checkpoint."""
-    scene = laid(rope(6))
+    scene = in_plane(rope(6))
     scene.slide((5.0, float(scene.cables["wire"].point(15.0)[1]), 0), along="wire", s=15.0)
     model = build(scene)
     rng = np.random.default_rng(1)

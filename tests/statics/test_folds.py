@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from funicular import Circle, FunicularWarning, Material, Scene
 from funicular.model.build import build
-from funicular.parts.laid import laid
+from funicular.parts.in_plane import in_plane
 from funicular.solve.notes.folds import Folds
 from scipy.optimize import brentq
 from shared_scenes import cable_scene
@@ -46,7 +46,7 @@ def pushed_back(way) -> Scene:
 
 
 def test_rows_of_a_run_tell_of_the_element_that_is_folded_most_and_when():
-    scene = laid(cable_scene(elements=4, element="cable12"))
+    scene = in_plane(cable_scene(elements=4, element="cable12"))
     model = build(scene)
     q = np.repeat(model.q[None], 3, axis=0)
     last = q[:, model.cables[0].coordinates].reshape(3, *model.cables[0].shape)
@@ -62,12 +62,12 @@ def test_rows_of_a_run_tell_of_the_element_that_is_folded_most_and_when():
 
 def with_last_node_at(scene: Scene, x: float, slope: float) -> list[str]:
     """Return the notes on the drawn wire of four elements after a change of its last node and all slopes."""
-    model = build(laid(scene))
+    model = build(in_plane(scene))
     cable = model.cables[0]
     vectors = model.q[cable.coordinates].reshape(cable.shape)
     vectors[-1, 0, 0] = x
     vectors[-2:, 1, 0] = slope
-    found = Folds(laid(scene), model)
+    found = Folds(in_plane(scene), model)
     found.see_rest({"q": model.q[None], "time": np.zeros(1)}, engine=None)
     return found.notes_at_rest()
 
@@ -86,8 +86,8 @@ def test_a_ring_of_few_elements_is_not_folded():
     u = np.linspace(0, 4, 33)
     points = np.stack([np.cos(u), np.sin(u), np.zeros(33)], axis=1)
     scene.cable("arc", points=points, elements=1, element="cable12", section=Circle(radius=0.005), material=SOFT)
-    model = build(laid(scene))
-    found = Folds(laid(scene), model)
+    model = build(in_plane(scene))
+    found = Folds(in_plane(scene), model)
     found.see({"q": model.q[None], "time": np.zeros(1)})
     assert not found.notes()
 

@@ -23,7 +23,7 @@ def of_supports() -> Scene:
     rope(scene, "line", 0.0)
     scene.motion("line", s=0, displacement=(0, 0.01, 0))
     scene.cable("link", start=(1, 0, 0), end=(1.5, 0, 0), elements=3, element="cable12", section=THIN, material=SOFT)
-    scene.tie("line", s=1.0, to="link", at=0, rotation="free", name="knot")
+    scene.tie("line", s=1.0, to="link", at=0, rotation="free", name="breakpoint")
     scene.pin("link", s=0.5)
     scene.rigid_body("A", mass=0.05, inertia=(1e-3,) * 3, position=(1, 1, 0.2))
     scene.joint("spherical", ("beam", 1.0), ("A", (0, 0, -0.2)), name="hinge")

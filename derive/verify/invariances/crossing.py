@@ -27,7 +27,7 @@ def crossing(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invarianc
     yield "the normal is square to the lines", float(np.max(np.abs(s["t"] @ n))), 64 * EPS
     yield "the points are closest: no step is left", float(np.max(np.abs(k("closest", s)["step"]))), 64 * EPS
     depth, rate = told["p"]
-    yield "way and penetration make the radii", abs(float(np.linalg.norm(s["d"])) + depth - s["c"][0]), 64 * EPS
+    yield "distance and penetration make the radii", abs(float(np.linalg.norm(s["d"])) + depth - s["c"][0]), 64 * EPS
     elastic = k("contact", {**s, "u": 0 * s["u"]})["N"][0]
     power = relative(-F @ s["u"] - elastic * rate - told["P"], told["P"])
     yield "the force's power is stored or dissipated", power, 256 * EPS
@@ -43,7 +43,7 @@ def crossing(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invarianc
                                                          sliding @ now), 64 * EPS
     step = k("step", s)
     before, after = (k("contact", {**s, "d": (s["c"][0] - s[key]) * n})["U"][0] for key in ("p", "p_next"))
-    work = step["F"] @ s["way"] + np.sum(step["M"] * s["turn"])
-    scale = np.abs([before, after, *step["lost"], *step["F"] * s["way"], *np.ravel(step["M"] * s["turn"])])
+    work = step["F"] @ s["displacement"] + np.sum(step["M"] * s["turn"])
+    scale = np.abs([before, after, *step["lost"], *step["F"] * s["displacement"], *np.ravel(step["M"] * s["turn"])])
     left = relative(work - before + after + step["lost"], scale)
     yield "work over a step is what is stored less, and lost", left, 512 * EPS

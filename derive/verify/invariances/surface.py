@@ -29,18 +29,18 @@ def surface(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance
         yield "the normal of a slope is that of a plane", relative(k("terrain", {**s, "h": slope})["g_y"] - normal,
                                                                   normal), 64 * EPS
     for name in ("push", "push_hertz"):
-        pressed = k(name, s)
+        now = k(name, s)
         later = k(name, {**s, "depth": s["depth_next"]})
-        work = pressed["mean"] * (s["depth_next"] - s["depth"])
+        work = now["mean"] * (s["depth_next"] - s["depth"])
         yield f"{name}: what presses over a step gives the change of the stored energy", relative(
-            np.atleast_1d(later["U"] - pressed["U"] - work), np.atleast_1d(pressed["U"])), 64 * EPS
+            np.atleast_1d(later["U"] - now["U"] - work), np.atleast_1d(now["U"])), 64 * EPS
         still = k(name, {**s, "depth_rate": 0 * s["depth_rate"]})
         yield f"{name}: without a rate all of it is elastic", relative(
             np.atleast_1d(still["p"] - still["p_e"]), np.atleast_1d(still["p"])), 64 * EPS
     slides = k("sliding", s)["f"]
     yield "friction is along the surface", relative(np.atleast_1d(slides @ s["n"]), slides), 64 * EPS
     yield "friction that slides has its coefficient's size", abs(
-        float(np.linalg.norm(slides)) / float(s["mu"] * s["press"][0]) - 1), 64 * EPS
+        float(np.linalg.norm(slides)) / float(s["mu"] * s["normal_force"][0]) - 1), 64 * EPS
     sticks = k("sticking", s)
     yield "friction that sticks is a spring along the surface", relative(sticks["f"] + s["k_t"] * sticks["t"],
                                                                         sticks["f"]), 64 * EPS

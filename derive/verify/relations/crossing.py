@@ -257,13 +257,13 @@ def _step() -> list[Relation]:
         return k("contact", {**s, "d": (s["c"][0] - s[depth]) * across(s)})["U"][0]
 
     def slip(s: State) -> Any:
-        return s["way"] - s["n"] * s["n"].dot(s["way"])
+        return s["displacement"] - s["n"] * s["n"].dot(s["displacement"])
 
     def law(k: Numbers, s: State) -> tuple[Any, Any]:
         """Return the mean force without damping, and with it."""
-        sunk = s["p_next"] - s["p"]
-        elastic = (stored(k, s, "p_next") - stored(k, s, "p")) / sunk
-        return elastic, elastic * (1 + s["c"][4] * sunk / s["h"])
+        penetration = s["p_next"] - s["p"]
+        elastic = (stored(k, s, "p_next") - stored(k, s, "p")) / penetration
+        return elastic, elastic * (1 + s["c"][4] * penetration / s["h"])
 
     def friction(k: Numbers, s: State) -> Any:
         rate = slip(s) / s["h"]
@@ -275,13 +275,13 @@ def _step() -> list[Relation]:
 
     def makes_up(s: State) -> Any:
         """Return the change of the gap less that of its gradient half-way, over the square of all changes."""
-        way, gap = s["way"], s["p"] - s["p_next"]
+        displacement, gap = s["displacement"], s["p"] - s["p_next"]
         turns = sum(size * size * (turn.dot(turn) + NEGLIGIBLE)
                     for turn, size in zip(s["turn"], s["size"], strict=True))
-        return (gap - s["n"].dot(way)) / (way.dot(way) + turns)
+        return (gap - s["n"].dot(displacement)) / (displacement.dot(displacement) + turns)
 
     def force(k: Numbers, s: State) -> Any:
-        return law(k, s)[1] * (s["n"] + makes_up(s) * s["way"]) + friction(k, s)
+        return law(k, s)[1] * (s["n"] + makes_up(s) * s["displacement"]) + friction(k, s)
 
     def on_slopes(k: Numbers, s: State) -> Any:
         factor = law(k, s)[1] * makes_up(s)
@@ -291,5 +291,5 @@ def _step() -> list[Relation]:
         return lambda k, s, t, j: of(k, s)
 
     return [Relation("step", name, text, 0, equal(of)) for name, text, of in (
-        ("F", "N (n + its correction along the way) and friction", force),
+        ("F", "N (n + its correction along the displacement) and friction", force),
         ("M", "N times the correction along the turns", on_slopes), ("lost", "damping and friction", lost))]

@@ -88,9 +88,9 @@ def _forces(dim: int) -> list[Relation]:
             move = t * unit(s["n"], j)
             changed: dict[str, Any] = {"n": s["n"] + s["H"] @ move}
             if presses:
-                p, by_d, by_rate = s["press"]
+                p, by_d, by_rate = s["normal_force"]
                 depth, rate = -(s["n"] @ move), -((s["H"] @ s["w"]) @ move)
-                changed["press"] = s["press"] * 0 + [p + by_d * depth + by_rate * rate, by_d, by_rate]
+                changed["normal_force"] = s["normal_force"] * 0 + [p + by_d * depth + by_rate * rate, by_d, by_rate]
             if with_x:
                 changed["x"] = s["x"] + move
             return k(kernel, s, **changed)["f"]
@@ -98,9 +98,9 @@ def _forces(dim: int) -> list[Relation]:
 
     def by_rate(kernel: str) -> Any:
         def path(k: Any, s: Any, t: Any, j: int) -> Any:
-            p, by_d, by_rate = s["press"]
-            press = s["press"] * 0 + [p - by_rate * (s["n"] @ (t * unit(s["n"], j))), by_d, by_rate]
-            return k(kernel, s, press=press)["f"]
+            p, by_d, by_rate = s["normal_force"]
+            normal_force = s["normal_force"] * 0 + [p - by_rate * (s["n"] @ (t * unit(s["n"], j))), by_d, by_rate]
+            return k(kernel, s, normal_force=normal_force)["f"]
         return path
 
     def by_stretch(kernel: str) -> Any:

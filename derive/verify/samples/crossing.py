@@ -23,7 +23,7 @@ def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) 
             "t_0": t + 0.1 * random.normal(size=shape), "t_rate": random.normal(size=shape),
             "s_rate": random.normal(size=dim - 1), "v": random.normal(size=dim - 1),
             "slid": 1.0, "r_0": 0.35, "turns": 1.0, "x": 0.6 + 0.2 * random.random(dim - 1),
-            "n": square / np.linalg.norm(square), "way": 0.1 * random.normal(size=dim),
+            "n": square / np.linalg.norm(square), "displacement": 0.1 * random.normal(size=dim),
             "turn": 0.1 * random.normal(size=shape), "size": 0.5 + random.random(dim - 1), "p": 0.3 * random.random(),
             "p_next": 0.3 * random.random(), "h": 0.1,
             **{name: random.normal(size=dim) for name in ("x_now", "x_old", "slip_old", "slip")}, "r_1": 0.4,

@@ -3,8 +3,9 @@
 #ifndef FUNICULAR_BASE_SIMD_H
 #define FUNICULAR_BASE_SIMD_H
 
-#define FU_LANES 4
-typedef double fu_lanes __attribute__((vector_size(FU_LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
+#define FU_SIMD_WIDTH 4
+typedef double fu_simd_block
+    __attribute__((vector_size(FU_SIMD_WIDTH * sizeof(double)), aligned(sizeof(double)), may_alias));
 
 #define FU_INLINE static inline __attribute__((always_inline))
 #if defined(__x86_64__) && defined(__GNUC__)
@@ -16,7 +17,7 @@ typedef double fu_lanes __attribute__((vector_size(FU_LANES * sizeof(double)), a
 #endif
 
 /* Defines a function without result, and a second one for AVX2, by a body that is inlined in both. */
-#define FU_IN_LANES(name, body, parameters, arguments)                                                                 \
+#define FU_SIMD_FUNCTION(name, body, parameters, arguments)                                                            \
     FU_AVX2 static void name##_avx2 parameters                                                                         \
     {                                                                                                                  \
         body arguments;                                                                                                \

@@ -24,7 +24,7 @@ typedef struct {
     int A_stride;          /* from one element's constants to the next's: zero for equal elements */
     /* of each vector of a node: largest displacement of points of its elements by a unit of it; null if unknown */
     const double *share;
-    int gives_way;         /* nonzero for a law with reduced stiffness in compression */
+    int tension_only;      /* nonzero for a law with reduced stiffness in compression */
     int dissipation_state; /* first number in a state's of algorithmic dissipation: law->rates + 1 an element */
 } fu_cable;
 

@@ -36,8 +36,8 @@ struct fu_model {
     /* Sums over the couplings: own coordinates, internal forces, sets of constraint rows, numbers in a row of output,
      * own numbers and flags in a state, own work space; numbers of those that depend on reactions, have external work,
      * are driven, are damped, may have deferred events, have inertia. */
-    int n_coordinates, n_forces, n_rows, n_outputs, n_numbers, n_flags, n_scratch, n_reacting, n_external, n_driven,
-        n_damped, n_deferring, n_inertial;
+    int n_coordinates, n_forces, n_rows, n_outputs, n_numbers, n_flags, n_scratch, n_needing_reactions, n_external,
+        n_driven, n_damped, n_deferring, n_inertial;
     int n_dissipation_state;    /* zero without algorithmic dissipation */
     int n_extra, n_multipliers; /* unknowns of couplings in a Newton system, and in eq 38 */
     const int *unknown_of_dof;

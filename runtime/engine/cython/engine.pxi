@@ -64,7 +64,7 @@ cdef extern from * nogil:
         const fu_element_kernels *kernel
         const fu_law_kernels *law
         const fu_law_blocks *blocks
-        int n_elements, first, coordinates, per_node, l_stride, m_stride, A_stride, dissipation_state, gives_way
+        int n_elements, first, coordinates, per_node, l_stride, m_stride, A_stride, dissipation_state, tension_only
         const double *share
         double length, tau, mass_damping
         const double *lengths, *nodes, *m, *A
@@ -264,7 +264,7 @@ cdef extern from * nogil:
         int *late
         fu_slackness *slackness
         const char **deferred
-        double (*call)(void *context, int watch, const fu_state *state) noexcept nogil
+        double (*call)(void *context, int function, const fu_state *state) noexcept nogil
         void *context
         fu_event event
         double event_time

@@ -22,8 +22,8 @@ cdef class Report(Statics):
                 if self.couplings[i].type.residual != NULL and self.couplings[i].type.step_residual == NULL]
 
     @property
-    def knots_passed(self):
-        """Return the number of knots of signals passed."""
+    def breakpoints_passed(self):
+        """Return the number of breakpoints of signals passed."""
         cdef int k, passed = 0
         for k in range(self.run.n_breakpoints):
             passed += self.run.breakpoints[k].t <= self.run.now.t

@@ -19,10 +19,10 @@ cdef class Translation(Arrays):
     cdef fu_shape *shapes
     cdef fu_motion *motions
     cdef fu_signal *signals
-    cdef fu_breakpoint *knots
+    cdef fu_breakpoint *breakpoints
     cdef fu_coupling **couplings  # in the order of the engine's sums
     cdef char *coupling_memory  # their structures, one behind the other
-    cdef fu_event_function *watches
+    cdef fu_event_function *event_functions
     cdef fu_model model
     cdef fu_run run
     cdef fu_fronts newton_fronts, mass_fronts
@@ -45,8 +45,8 @@ cdef class Translation(Arrays):
         fu_threads_end(self.model.threads)
         PyMem_Free(self.model.threads)
         for pointer in (<size_t>self.cables, <size_t>self.bodies, <size_t>self.shapes, <size_t>self.motions,
-                        <size_t>self.signals, <size_t>self.knots, <size_t>self.couplings,
-                        <size_t>self.coupling_memory, <size_t>self.watches):
+                        <size_t>self.signals, <size_t>self.breakpoints, <size_t>self.couplings,
+                        <size_t>self.coupling_memory, <size_t>self.event_functions):
             PyMem_Free(<void *><size_t>pointer)
 
     def __init__(self, model, blocks=True):
@@ -80,7 +80,7 @@ cdef class Translation(Arrays):
             c.lengths, c.l_stride = self._doubles(mesh.lengths), 0 if mesh.is_even else 1
             c.nodes = NULL if mesh.is_even else self._doubles(mesh.node_s)
             c.share = NULL if cable.share is None else self._doubles(cable.share)
-            c.gives_way = cable.law.endswith("tension_only")
+            c.tension_only = cable.law.endswith("tension_only")
             c.tau, c.mass_damping = cable.tau, cable.mass_damping
             c.per_node = c.kernel.vectors * c.kernel.dim
             c.coordinates = c.kernel.nodes * c.per_node
@@ -389,4 +389,4 @@ cdef class Translation(Arrays):
         run.psi, run.force = self._zeros(n_dof), self._zeros(n_dof)
         run.work, run.before = self._zeros(n_dof), self._zeros(n_dof)
         run.first, run.s_slope = self._zeros(model.n_q), self._zeros(self.model.n_coordinates)
-        self._watch([])
+        self._set_event_functions([])

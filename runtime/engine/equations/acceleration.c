@@ -129,7 +129,8 @@ static double minus_H(const fu_rows *rows, int c, const double *x)
 
 /* Adds the forces that depend on these multipliers to work->work; null: on those of the state. Returns the largest
  * change relative to the force, of the coupling work->self_locking. */
-static double react(const fu_model *model, const fu_state *state, fu_accelerator *work, const double *lambda)
+static double update_reaction_forces(const fu_model *model, const fu_state *state, fu_accelerator *work,
+                                     const double *lambda)
 {
     double largest = 0.0;
     FU_EACH_COUPLING(c, model->always_active, model->n_always_active) {
@@ -142,7 +143,8 @@ static double react(const fu_model *model, const fu_state *state, fu_accelerator
     return largest;
 }
 
-static void reacted(const fu_model *model, const fu_state *state, fu_accelerator *work, const double *lambda)
+static void solve_with_reactions(const fu_model *model, const fu_state *state, fu_accelerator *work,
+                                 const double *lambda)
 {
     FU_EACH_COUPLING(c, model->always_active, model->n_always_active)
         if (c->type->reaction) c->type->reaction->accept(model, c, state, lambda, work);
@@ -154,15 +156,15 @@ static void reacted(const fu_model *model, const fu_state *state, fu_accelerator
 static int solve_friction(const fu_model *model, const fu_state *state, fu_accelerator *work, double *acceleration)
 {
     double *lambda = work->rhs + model->n_band + model->n_border_dof, last = INFINITY;
-    if (model->n_reacting) react(model, state, work, 0);
+    if (model->n_needing_reactions) update_reaction_forces(model, state, work, 0);
     for (int sweep = 0;; ++sweep) {
         for (int r = 0; r < model->n_rows; ++r)
             for (int c = 0; c < work->rows[r].max_multipliers; ++c)
                 lambda[work->rows[r].first + c] =
                     c < work->rows[r].rows ? work->rows[r].W[c] + minus_H(&work->rows[r], c, work->prescribed) : 0.0;
         solve(model, work, work->work, acceleration);
-        if (!model->n_reacting) return 0;
-        const double change = react(model, state, work, lambda);
+        if (!model->n_needing_reactions) return 0;
+        const double change = update_reaction_forces(model, state, work, lambda);
         if (change <= ROUNDING_OF_FORCE || (change <= FORCE_TOLERANCE && change >= last)) break;
         if (!(change < DIVERGED) || sweep == MAX_SWEEPS) return 1;
         last = change;
@@ -243,7 +245,7 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
     if (accelerated) fu_mass_times(model, state->q, prescribed, work->work);
     for (int i = 0; i < model->n_dof; ++i) work->work[i] = -work->force[i] - work->work[i];
     if (solve_friction(model, state, work, acceleration)) return 1;
-    reacted(model, state, work, lambda);
+    solve_with_reactions(model, state, work, lambda);
     for (int i = 0; i < model->n_dof; ++i) acceleration[i] += prescribed[i];
     memcpy(work->multipliers, lambda, sizeof(double) * (size_t)model->n_multipliers);
     if (reaction) reactions(model, state, work, acceleration, lambda, reaction);

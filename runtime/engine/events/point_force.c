@@ -72,7 +72,7 @@ static transition transition_from(const fu_model *model, const fu_point_force *b
     if (sense < INFINITY) found = (transition){-sense, free_beside(between, segment)};
     for (int side = -1; side <= 1; side += 2) {
         const int beside = segment + side;
-        if (beside < 0 || beside >= between->n_pieces) continue;
+        if (beside < 0 || beside >= between->n_segments) continue;
         if (between->senses[segment] == FU_HAS_NO_FORCE)
             found = farther(found, entering(between, segment, side, gap, rate, distance));
         else found = farther(found, (transition){side * (distance - between->bounds[segment - (side < 0)]), beside});
@@ -92,7 +92,7 @@ static int follow(const fu_model *model, const fu_coupling *coupling, const fu_s
     int *segment = &to->flags[coupling->flags];
     const int before = *segment;
     *segment = from->flags[coupling->flags];
-    for (int i = 0; i < between->n_pieces; ++i) {
+    for (int i = 0; i < between->n_segments; ++i) {
         const transition next = next_transition(model, between, to);
         if (!(next.margin > 0.0)) break;
         *segment = next.segment;
@@ -210,7 +210,7 @@ static void force_change(const fu_model *model, const fu_coupling *coupling, con
 
 static int functions(const fu_coupling *coupling, fu_event_function *out)
 {
-    if (force_of(coupling)->n_pieces == 1) return 0;
+    if (force_of(coupling)->n_segments == 1) return 0;
     if (out) *out = (fu_event_function){.which = 0, .direction = 1};
     return 1;
 }
@@ -255,7 +255,7 @@ static double grazing(const fu_run *run, const fu_coupling *coupling, int which,
     for (int side = -1; side <= 1; ++side) {
         const int bound = segment - (side < 0), by_sense = side == 0;
         if (by_sense ? sense != FU_PULLS_ALONE && sense != FU_PUSHES_ALONE
-                     : bound < 0 || bound >= between->n_pieces - 1)
+                     : bound < 0 || bound >= between->n_segments - 1)
             continue;
         const double found = by_sense ? fu_grazing_time(wrong_sense(between, segment, &from),
                                                         wrong_sense(between, segment, &to), -1, h, run->round_off)
@@ -279,7 +279,7 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
 
 static int can_act(const fu_coupling *coupling)
 {
-    return force_of(coupling)->n_pieces > 1;
+    return force_of(coupling)->n_segments > 1;
 }
 
 /* A force that the damper would reverse at the start is zero. */
@@ -287,7 +287,7 @@ static int begin(fu_run *run, const fu_coupling *coupling)
 {
     const fu_point_force *between = force_of(coupling);
     fu_state *now = &run->now;
-    if (between->n_pieces == 1) return FU_RUNNING;
+    if (between->n_segments == 1) return FU_RUNNING;
     fu_detect_segment(run->model, coupling, now);
     const transition next = next_transition(run->model, between, now);
     if (next.margin > 0.0) now->flags[coupling->flags] = next.segment;

@@ -38,7 +38,7 @@ void fu_begin_slackness(fu_run *run)
     for (int c = 0; c < run->model->n_cables; ++c) {
         fu_slackness *of = &run->slackness[c];
         *of = (fu_slackness){0};
-        if (!run->model->cables[c].gives_way) continue;
+        if (!run->model->cables[c].tension_only) continue;
         of->least = least_strain(&run->model->cables[c], run->now.q, &of->element);
         of->is_slack = of->least < -FU_SLACK_STRAIN;
     }
@@ -49,7 +49,7 @@ void fu_note_slackness(fu_run *run, double h)
 {
     for (int c = 0; c < run->model->n_cables; ++c) {
         fu_slackness *of = &run->slackness[c];
-        if (!run->model->cables[c].gives_way) continue;
+        if (!run->model->cables[c].tension_only) continue;
         int element;
         const double before = of->least, limit = of->is_slack ? 0.0 : -FU_SLACK_STRAIN;
         of->least = least_strain(&run->model->cables[c], run->next.q, &element);

@@ -20,17 +20,17 @@
 #define REPORTED_FACTOR 2.0 /* factor of the estimate for vibrations in the report of fixed steps */
 /* of the total permitted error: that of vibrations which a step does not resolve */
 #define VIBRATION_SHARE 0.1
-#define KINK_ERROR_SHARE 0.15 /* of tol: permitted error of one kink of friction */
+#define FRICTION_ERROR_SHARE 0.15 /* of tol: permitted error of one kink of friction */
 
 /* Returns the largest error of a kink of a force within the step, relative to the permitted one, m. Kinks are single
  * events, so that one may have a share of tol in a step of any size. */
-static double kink(fu_run *run, fu_radau_workspace *w, double h)
+static double friction_error(fu_run *run, fu_radau_workspace *w, double h)
 {
     const fu_model *model = run->model;
     const double *c = fu_radau_method(run)->c, left = run->duration - run->now.t;
     const double weight[STAGES + 1] = {0.5 * c[0], 0.5 * c[1], 0.5 * (c[2] - c[0]), 0.5 * (c[2] - c[1])};
     double worst = 0.0;
-    if (!model->n_reacting) return 0.0;
+    if (!model->n_needing_reactions) return 0.0;
     if (fu_accelerations(model, &run->now, &run->accelerator, run->work, 0)) return INFINITY;
     fu_radau_keep_multipliers(run, w, 0);
     ++run->statistics.evaluations;
@@ -39,7 +39,7 @@ static double kink(fu_run *run, fu_radau_workspace *w, double h)
         worst = fmax(worst, coupling->type->reaction->friction_error(model, coupling, &run->next, STAGES + 1, weight,
                                                                      w->multipliers, h * left));
     }
-    return worst * run->allowed / (KINK_ERROR_SHARE * fu_allowed_error(run));
+    return worst * run->allowed / (FRICTION_ERROR_SHARE * fu_allowed_error(run));
 }
 
 /* Computes run->work = (M + (h/L) D + (h/L)^2 K)^-1 M r on the joints, for the real L; returns its size as a length. */
@@ -108,12 +108,12 @@ double fu_radau_error(fu_run *run, double h)
 {
     const fu_model *model = run->model;
     fu_radau_workspace *w = fu_radau_space(run);
-    const int fed = model->n_motions || model->n_driven || model->n_reacting;
+    const int fed = model->n_motions || model->n_driven || model->n_needing_reactions;
     const double all = embedded(run, w, h), slow = take_filtered(run, w);
     const double vibration = fu_error_size(run, run->work, fu_allowed_elsewhere(run));
     if (run->fixed_step > 0.0) return fmax(REPORTED_FACTOR * vibration, FED_EMBEDDED_FACTOR * all);
-    if (model->n_reacting)
-        return fmax(fmax(FED_VIBRATION_FACTOR * vibration, FED_EMBEDDED_FACTOR * all), kink(run, w, h));
+    if (model->n_needing_reactions)
+        return fmax(fmax(FED_VIBRATION_FACTOR * vibration, FED_EMBEDDED_FACTOR * all), friction_error(run, w, h));
     if ((fed && model->n_bodies) || turns(run, h))
         return fmax((fed ? FED_VIBRATION_FACTOR : TURNING_VIBRATION_FACTOR) * vibration, TURNING_EMBEDDED_FACTOR * all);
     for (int i = 0; i < model->n_dof; ++i) w->w[i] = run->work[i];

@@ -88,7 +88,7 @@ void fu_radau_add_internal_dissipation(fu_run *run, fu_radau_workspace *w, doubl
 void fu_radau_keep_multipliers(fu_run *run, fu_radau_workspace *w, int k)
 {
     const long n = run->model->n_multipliers;
-    if (run->model->n_reacting)
+    if (run->model->n_needing_reactions)
         memcpy(w->multipliers + k * n, run->accelerator.multipliers, sizeof(double) * (size_t)n);
 }
 

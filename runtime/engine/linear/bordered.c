@@ -243,7 +243,8 @@ FU_INLINE void take(const fu_system *s, const double *y, double *x)
             const double *column = s->X + s->strips[p->strip].x, scale = y[p->k];
             const int end = p->rows.end;
             int i = p->rows.first;
-            for (; i + FU_LANES <= end; i += FU_LANES) *(fu_lanes *)(x + i) -= *(const fu_lanes *)(column + i) * scale;
+            for (; i + FU_SIMD_WIDTH <= end; i += FU_SIMD_WIDTH)
+                *(fu_simd_block *)(x + i) -= *(const fu_simd_block *)(column + i) * scale;
             for (; i < end; ++i) x[i] -= scale * column[i];
         }
     }
@@ -251,7 +252,7 @@ FU_INLINE void take(const fu_system *s, const double *y, double *x)
 
 /* Subtracts from x, of the band, the contribution K^-1 B y of the border's solution y. */
 static void take_columns(const fu_system *s, const double *y, double *x);
-FU_IN_LANES(take_columns, take, (const fu_system *s, const double *y, double *x), (s, y, x))
+FU_SIMD_FUNCTION(take_columns, take, (const fu_system *s, const double *y, double *x), (s, y, x))
 
 /* Sets the entries beyond the unknowns to zero: a step that overflows leaves NaN there, which later steps would
  * keep. */

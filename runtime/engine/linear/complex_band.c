@@ -23,10 +23,10 @@ static fu_complex inverse_of(double re, double im)
 /* Computes y -= a f over whole SIMD blocks, for n numbers. */
 FU_INLINE void subtract(int n, const double *a_re, const double *a_im, fu_complex f, double *y_re, double *y_im)
 {
-    for (int i = 0; i < n; i += FU_LANES) {
-        const fu_lanes re = *(const fu_lanes *)(a_re + i), im = *(const fu_lanes *)(a_im + i);
-        *(fu_lanes *)(y_re + i) -= re * f.re - im * f.im;
-        *(fu_lanes *)(y_im + i) -= re * f.im + im * f.re;
+    for (int i = 0; i < n; i += FU_SIMD_WIDTH) {
+        const fu_simd_block re = *(const fu_simd_block *)(a_re + i), im = *(const fu_simd_block *)(a_im + i);
+        *(fu_simd_block *)(y_re + i) -= re * f.re - im * f.im;
+        *(fu_simd_block *)(y_im + i) -= re * f.im + im * f.re;
     }
 }
 
@@ -93,10 +93,10 @@ FU_INLINE void solve(int n, int width, double *const L[2], double *const U[2], i
     }
     for (int j = n - 1; j >= 0; --j) {
         const double *a = U[0] + (long)j * stride, *b = U[1] + (long)j * stride;
-        fu_lanes sum_re = {0.0}, sum_im = {0.0};
-        for (int i = 1; i <= width; i += FU_LANES) {
-            const fu_lanes l_re = *(const fu_lanes *)(a + i), l_im = *(const fu_lanes *)(b + i);
-            const fu_lanes x_re = *(const fu_lanes *)(x + j + i), x_im = *(const fu_lanes *)(y + j + i);
+        fu_simd_block sum_re = {0.0}, sum_im = {0.0};
+        for (int i = 1; i <= width; i += FU_SIMD_WIDTH) {
+            const fu_simd_block l_re = *(const fu_simd_block *)(a + i), l_im = *(const fu_simd_block *)(b + i);
+            const fu_simd_block x_re = *(const fu_simd_block *)(x + j + i), x_im = *(const fu_simd_block *)(y + j + i);
             sum_re += l_re * x_re - l_im * x_im;
             sum_im += l_re * x_im + l_im * x_re;
         }
@@ -108,12 +108,12 @@ FU_INLINE void solve(int n, int width, double *const L[2], double *const U[2], i
 
 FU_INLINE void add(int n, int width, const double *K, fu_complex factor, double *re, double *im)
 {
-    const int rows = width + 1, whole = rows - rows % FU_LANES;
+    const int rows = width + 1, whole = rows - rows % FU_SIMD_WIDTH;
     for (int j = 0; j < n; ++j, re += FU_COMPLEX_STRIDE(width), im += FU_COMPLEX_STRIDE(width)) {
         const double *below = K + (long)j * FU_BAND_ROWS(width) + FU_BAND_DIAGONAL(width);
-        for (int i = 0; i < whole; i += FU_LANES) {
-            *(fu_lanes *)(re + i) += *(const fu_lanes *)(below + i) * factor.re;
-            *(fu_lanes *)(im + i) += *(const fu_lanes *)(below + i) * factor.im;
+        for (int i = 0; i < whole; i += FU_SIMD_WIDTH) {
+            *(fu_simd_block *)(re + i) += *(const fu_simd_block *)(below + i) * factor.re;
+            *(fu_simd_block *)(im + i) += *(const fu_simd_block *)(below + i) * factor.im;
         }
         for (int i = whole; i < rows; ++i) {
             re[i] += below[i] * factor.re;
@@ -123,26 +123,27 @@ FU_INLINE void add(int n, int width, const double *K, fu_complex factor, double 
 }
 
 /* Adds the lower half of a real band, in LAPACK's storage, times a factor. */
-FU_IN_LANES(fu_complex_band_add, add, (int n, int width, const double *K, fu_complex factor, double *re, double *im),
-            (n, width, K, factor, re, im))
+FU_SIMD_FUNCTION(fu_complex_band_add, add,
+                 (int n, int width, const double *K, fu_complex factor, double *re, double *im),
+                 (n, width, K, factor, re, im))
 
 /* Factors in place: L below the diagonal, 1/D on it. */
-FU_IN_LANES(fu_complex_band_factor, factor, (int n, int width, double *re, double *im), (n, width, re, im))
+FU_SIMD_FUNCTION(fu_complex_band_factor, factor, (int n, int width, double *re, double *im), (n, width, re, im))
 
-static void unsymmetric_in_lanes(int n, int width, double *const L[2], double *const U[2], int *failed);
-FU_IN_LANES(unsymmetric_in_lanes, factor_unsymmetric,
-            (int n, int width, double *const L[2], double *const U[2], int *failed), (n, width, L, U, failed))
+static void unsymmetric_by_blocks(int n, int width, double *const L[2], double *const U[2], int *failed);
+FU_SIMD_FUNCTION(unsymmetric_by_blocks, factor_unsymmetric,
+                 (int n, int width, double *const L[2], double *const U[2], int *failed), (n, width, L, U, failed))
 
 /* Factors in place: L and U' below the diagonal, 1/D on both; returns nonzero if a pivot is too small. */
 int fu_complex_unsymmetric_factor(int n, int width, double *const L[2], double *const U[2])
 {
     int failed;
-    unsymmetric_in_lanes(n, width, L, U, &failed);
+    unsymmetric_by_blocks(n, width, L, U, &failed);
     return failed;
 }
 
 /* Computes x + i y = A^-1 (x + i y), zero before `first`, for a symmetric A with L as U. FU_COMPLEX_BEYOND numbers of
  * both beyond n are finite and kept. */
-FU_IN_LANES(fu_complex_band_solve, solve,
-            (int n, int width, double *const L[2], double *const U[2], int first, double *x, double *y),
-            (n, width, L, U, first, x, y))
+FU_SIMD_FUNCTION(fu_complex_band_solve, solve,
+                 (int n, int width, double *const L[2], double *const U[2], int first, double *x, double *y),
+                 (n, width, L, U, first, x, y))

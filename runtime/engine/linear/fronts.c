@@ -21,9 +21,9 @@ FU_INLINE void subtract_four(int n, const double *const column[4], const double 
     const double *a = column[0], *b = column[1], *c = column[2], *d = column[3];
     const double w = factor[0], x = factor[1], y = factor[2], z = factor[3];
     int i = 0;
-    for (; i + FU_LANES <= n; i += FU_LANES)
-        *(fu_lanes *)(to + i) -= *(const fu_lanes *)(a + i) * w + *(const fu_lanes *)(b + i) * x +
-                                 *(const fu_lanes *)(c + i) * y + *(const fu_lanes *)(d + i) * z;
+    for (; i + FU_SIMD_WIDTH <= n; i += FU_SIMD_WIDTH)
+        *(fu_simd_block *)(to + i) -= *(const fu_simd_block *)(a + i) * w + *(const fu_simd_block *)(b + i) * x +
+                                      *(const fu_simd_block *)(c + i) * y + *(const fu_simd_block *)(d + i) * z;
     for (; i < n; ++i) to[i] -= a[i] * w + b[i] * x + c[i] * y + d[i] * z;
 }
 
@@ -31,7 +31,8 @@ FU_INLINE void subtract_four(int n, const double *const column[4], const double 
 FU_INLINE void subtract_one(int n, const double *column, double factor, double *restrict to)
 {
     int i = 0;
-    for (; i + FU_LANES <= n; i += FU_LANES) *(fu_lanes *)(to + i) -= *(const fu_lanes *)(column + i) * factor;
+    for (; i + FU_SIMD_WIDTH <= n; i += FU_SIMD_WIDTH)
+        *(fu_simd_block *)(to + i) -= *(const fu_simd_block *)(column + i) * factor;
     for (; i < n; ++i) to[i] -= column[i] * factor;
 }
 
@@ -132,20 +133,21 @@ FU_INLINE void factor(const fu_fronts *t, const double *matrix, fu_factors *fact
     *info = real_factor(t, matrix, factors, lapack);
 }
 
-static void factor_in_lanes(const fu_fronts *t, const double *matrix, fu_factors *factors, const fu_lapack *lapack,
-                            int *info);
-FU_IN_LANES(factor_in_lanes, factor,
-            (const fu_fronts *t, const double *matrix, fu_factors *factors, const fu_lapack *lapack, int *info),
-            (t, matrix, factors, lapack, info))
+static void factor_by_blocks(const fu_fronts *t, const double *matrix, fu_factors *factors, const fu_lapack *lapack,
+                             int *info);
+FU_SIMD_FUNCTION(factor_by_blocks, factor,
+                 (const fu_fronts *t, const double *matrix, fu_factors *factors, const fu_lapack *lapack, int *info),
+                 (t, matrix, factors, lapack, info))
 
 int fu_fronts_factor(const fu_fronts *t, const double *matrix, fu_factors *factors, const fu_lapack *lapack)
 {
     int info;
-    factor_in_lanes(t, matrix, factors, lapack, &info);
+    factor_by_blocks(t, matrix, factors, lapack, &info);
     return info;
 }
 
-FU_IN_LANES(fu_fronts_solve, real_solve, (const fu_fronts *t, const fu_factors *factors, double *y), (t, factors, y))
+FU_SIMD_FUNCTION(fu_fronts_solve, real_solve, (const fu_fronts *t, const fu_factors *factors, double *y),
+                 (t, factors, y))
 
 /* Returns the place of an unknown among the neighbours of a front, -1 if it is none of them. */
 static int neighbour(const fu_fronts *t, int k, int unknown)

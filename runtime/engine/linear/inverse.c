@@ -20,14 +20,16 @@ FU_INLINE void times(int rows, const double *inverse, int first, int end, const 
 {
     for (int i = 0; i < rows; i += FU_INVERSE_GROUP) {
         const double *column = inverse + (long)first * rows + i;
-        fu_lanes sum[FU_INVERSE_GROUP / FU_LANES] = {{0.0}};
+        fu_simd_block sum[FU_INVERSE_GROUP / FU_SIMD_WIDTH] = {{0.0}};
         for (int j = first; j < end; ++j, column += rows)
-            for (int k = 0; k < FU_INVERSE_GROUP / FU_LANES; ++k)
-                sum[k] += *(const fu_lanes *)(column + k * FU_LANES) * b[j];
-        for (int k = 0; k < FU_INVERSE_GROUP / FU_LANES; ++k) *(fu_lanes *)(x + i + k * FU_LANES) = sum[k];
+            for (int k = 0; k < FU_INVERSE_GROUP / FU_SIMD_WIDTH; ++k)
+                sum[k] += *(const fu_simd_block *)(column + k * FU_SIMD_WIDTH) * b[j];
+        for (int k = 0; k < FU_INVERSE_GROUP / FU_SIMD_WIDTH; ++k)
+            *(fu_simd_block *)(x + i + k * FU_SIMD_WIDTH) = sum[k];
     }
 }
 
 /* Computes x, FU_INVERSE_ROWS numbers, as the inverse times b, which is zero outside of [first, end). */
-FU_IN_LANES(fu_inverse_times, times, (int rows, const double *inverse, int first, int end, const double *b, double *x),
-            (rows, inverse, first, end, b, x))
+FU_SIMD_FUNCTION(fu_inverse_times, times,
+                 (int rows, const double *inverse, int first, int end, const double *b, double *x),
+                 (rows, inverse, first, end, b, x))

@@ -12,7 +12,7 @@ from ...errors import FunicularError, FunicularWarning, UnknownResultError, near
 from ...kernels.libraries import kernels_of
 from ...model.model import Model
 from ...parts.cable import Cable
-from ...parts.laid import laid
+from ...parts.in_plane import in_plane
 from ...parts.locations import attached
 from ...parts.scene_data import SceneData
 from ...parts.section_stiffness import section_stiffness
@@ -105,7 +105,7 @@ def along_ground(model: Model, name: str, found: dict[str, np.ndarray]) -> dict[
 def of_run(run: Recorded, name: str, s: np.ndarray, chosen: Any = slice(None), *, method: str = "balance",
            side: str = "after") -> dict[str, np.ndarray]:
     """Return `cut_forces` of a run at the chosen times; s: (1 or T, n)."""
-    scene, model = laid(run.scene), run.model
+    scene, model = in_plane(run.scene), run.model
     time = run.time[chosen]
     numbers = np.arange(len(run.time))[chosen]
     found: list[dict[str, np.ndarray]] = []
@@ -136,7 +136,7 @@ def _instants(run: Recorded, numbers: np.ndarray) -> Instants:
 def of_equilibrium(state: RestState, name: str, s: np.ndarray, *, method: str = "balance",
                    side: str = "after") -> dict[str, np.ndarray]:
     """Return `cut_forces` of a state of rest: T = 1; s: (1, n)."""
-    return along_ground(state.model, name, cut_forces(laid(state.scene), state.model, rest_instants(state), name, s,
+    return along_ground(state.model, name, cut_forces(in_plane(state.scene), state.model, rest_instants(state), name, s,
                                                       method=method, side=side))
 
 

@@ -14,7 +14,7 @@ from typing import TypeVar
 import numpy as np
 
 from ...errors import EquilibriumError, FunicularWarning, SceneError
-from ...parts.laid import laid
+from ...parts.in_plane import in_plane
 from ...parts.scene_data import SceneData
 from ...parts.settings import EquilibriumSettings
 from ...parts.spring import Spring
@@ -54,7 +54,7 @@ def adjusted(scene: SceneData, settings: EquilibriumSettings, start: RestState |
                          + ", ".join(to), "adjust as many parameters as there are targets, or more")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", FunicularWarning)  # of the state returned alone
-        rest = equilibrium(laid(scene), settings, start, made)
+        rest = equilibrium(in_plane(scene), settings, start, made)
     read = reader(rest, list(to))
     search = ParameterSearch(parameters, settings, made, read)
     at = search.begin(rest)
@@ -132,12 +132,12 @@ def _with_all_taut(search: ParameterSearch[S], to: Mapping[str, float], scales: 
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", FunicularWarning)  # as above
-            rest = equilibrium(laid(both), settings, None, search.made)
+            rest = equilibrium(in_plane(both), settings, None, search.made)
         found = _approach(pushing, pushing.begin(rest), to, scales)
         if found.cause:
             return found.cause
         at = found.at
-        problem = StaticProblem(search.laid(search.parameters.scene_at(at.p)), settings)
+        problem = StaticProblem(search.in_plane(search.parameters.scene_at(at.p)), settings)
     except (EquilibriumError, SceneError) as error:
         return str(error)
     if pushes := _pushing(pushing.state(at.problem), pulling, settings.tolerance):

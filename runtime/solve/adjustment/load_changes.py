@@ -12,7 +12,7 @@ from ...model.kinds import in_order
 from ...model.loads import DeadLoadModel, LoadBuilder, LoadModel
 from ...model.signals import Signals
 from ...model.states import attachment_points
-from ...parts.laid import turned
+from ...parts.in_plane import turned
 from ...parts.load import DistributedForce, Force, Moment
 from ...parts.paths import Path
 from ...parts.point_force import PointForce

@@ -23,7 +23,7 @@ from ...errors import SceneError
 from ...model.model import Model
 from ...model.point_forces import ForceLaw
 from ...model.states import attachment_points
-from ...parts.laid import laid
+from ...parts.in_plane import in_plane
 from ...parts.plane import called
 from ...parts.scene_data import SceneData
 from ...parts.settings import EquilibriumSettings
@@ -104,7 +104,7 @@ class ParameterSearch(Generic[S]):
     def __init__(self, parameters: Parameters[SceneData], settings: EquilibriumSettings, made: type[S], reader: Reader):
         self.parameters, self.settings, self.made, self.reader = parameters, settings, made, reader
 
-    def laid(self, scene: SceneData) -> SceneData:
+    def in_plane(self, scene: SceneData) -> SceneData:
         """Return a scene of the search in the axes of its plane.
 
         Raises SceneError where these are not the axes of the first scene: coordinates would mean other positions.
@@ -114,7 +114,7 @@ class ParameterSearch(Generic[S]):
                                                   and not plane.has_same_axes(first)):
             raise SceneError("equilibrium", f"what is adjusted moves or turns {called(first)}, in which the "
                              "scene lies", "adjust what leaves its planar elements in their plane")
-        return laid(scene)
+        return in_plane(scene)
 
     def state(self, problem: StaticState) -> S:
         """Return the state of a problem, without its stability."""
@@ -122,7 +122,7 @@ class ParameterSearch(Generic[S]):
 
     def begin(self, rest: RestState) -> AtRest:
         """Return the first state of the search."""
-        problem = StaticProblem(self.laid(rest.scene), self.settings)
+        problem = StaticProblem(self.in_plane(rest.scene), self.settings)
         problem.restore(rest.static_state)
         return AtRest(problem, self.parameters.values, self.reader.values(problem))
 
@@ -197,7 +197,7 @@ class ParameterSearch(Generic[S]):
         """Return the state `kept` with parameter k changed."""
         p = at.p.copy()
         p[k] += change
-        other = StaticState(self.laid(self.parameters.scene_at(p)), self.settings)
+        other = StaticState(self.in_plane(self.parameters.scene_at(p)), self.settings)
         order = self.order(at.problem.model, other.model, k)
         other.restore(fitted(kept, other.model))
         return Beside(other, order)
@@ -220,7 +220,7 @@ class ParameterSearch(Generic[S]):
         """Return the state of rest after a step of the parameters, or why there is none, in words."""
         p = at.p + step
         try:
-            problem = StaticProblem(self.laid(self.parameters.scene_at(p)), self.settings, at.problem.turns.reached)
+            problem = StaticProblem(self.in_plane(self.parameters.scene_at(p)), self.settings, at.problem.turns.reached)
         except SceneError as error:
             return str(error)
         problem.iterations = at.problem.iterations

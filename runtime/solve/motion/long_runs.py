@@ -13,7 +13,7 @@ from ...integrators import INTEGRATORS, stable_at
 from ...model.model import Model
 from ...parts.settings import RunSettings
 from ..notes.diagnosis import damping, describe_dof
-from .event_watcher import EventWatcher
+from .event_handler import EventHandler
 from .integrator_choice import fastest_rates
 from .progress import Meter
 
@@ -34,9 +34,9 @@ STABILITY_LIMIT_FRACTION = 0.3
 class LongRun:
     """Observes the steps of a run; a call with the time reached in s updates the progress meter."""
 
-    def __init__(self, model: Model, engine: Engine, settings: RunSettings, watcher: EventWatcher, meter: Meter):
+    def __init__(self, model: Model, engine: Engine, settings: RunSettings, event_handler: EventHandler, meter: Meter):
         self._model, self._engine, self._settings = model, engine, settings
-        self._watcher, self._meter = watcher, meter
+        self._events, self._meter = event_handler, meter
         self._marks: deque[tuple[float, float, int]] = deque([(time.monotonic(), engine.time, self._steps)])
         self._warned = False
 
@@ -86,10 +86,11 @@ class LongRun:
             return f"the step is fixed at {settings.step:.3g} s. Take a larger one, or none, so that tol chooses it"
         if settings.output_step < 2 * mean:
             return f"a step ends at each output time. Take an output_step larger than {settings.output_step:.3g} s"
-        if self._engine.knots_passed > FREQUENT_EVENT_RATE * counts["steps"]:
-            return (f"a step ends at each of the {self._engine.knots_passed} knots of signals so far. Give tables "
+        if self._engine.breakpoints_passed > FREQUENT_EVENT_RATE * counts["steps"]:
+            passed = self._engine.breakpoints_passed
+            return (f"a step ends at each of the {passed} breakpoints of signals so far. Give tables "
                     'fewer samples, or interpolation="cubic"')
-        events = len(self._watcher.happened) + counts["element_crossings"]
+        events = len(self._events.happened) + counts["element_crossings"]
         if events > FREQUENT_EVENT_RATE * counts["steps"]:
             return (f"there were {events} events and crossings of elements in {counts['steps']} steps, and a step ends "
                     "at each. Look at the slides that stick, strike or cross nodes")

@@ -18,10 +18,10 @@ from ...checks.velocity_jumps import velocity_jumps
 from ...engine import Engine
 from ...errors import FunicularWarning, SceneError
 from ...integrators import Integrator
+from ...model.breakpoints import breakpoints
 from ...model.build import build
 from ...model.controlled import controlled_weights, counted_weights
 from ...model.initial_state import InitialState
-from ...model.knots import knots
 from ...model.model import Model
 from ...model.redundant_constraints import drop_redundant_rows
 from ...parts.scene_data import SceneData
@@ -34,7 +34,7 @@ from ..notes.sensitivity import Sensitivity, sensitive
 from ..notes.signal_steps import unresolved
 from ..notes.slack_growth import SlackMotion, grown
 from ..notes.uncontrolled_errors import NormalForces, uncontrolled_errors
-from .event_watcher import EventWatcher
+from .event_handler import EventHandler
 from .integrator_choice import choose, tol_of
 from .long_runs import LongRun
 from .pauses import Pauses, pauses
@@ -74,7 +74,7 @@ class Simulation:
 
     model: Model
     engine: Engine
-    watcher: EventWatcher
+    event_handler: EventHandler
     status: str
     messages: list[str]
     reason: str
@@ -130,7 +130,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
         status = run.engine.advance(run.follow, pace.every, stream)
     if status == "interrupted" and stream is not None and not stream.has_begun:  # write a checkpoint to resume from
         run = _begun(scene, settings, _prepared(scene, settings, initial), method, pace, on_progress, stream)
-    messages += run.follow.notes() + _warned(run.watcher.notes())
+    messages += run.follow.notes() + _warned(run.event_handler.notes())
     cpu, ended = clock() - cpu, time.perf_counter()
     run.row_notes.see(run.engine)
     messages += _controlled_alone(run.engine, settings)
@@ -141,7 +141,8 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     LOG.info("run %s after %.3g s", status.replace("_", " "), total)
     for message in messages:
         LOG.info("run: %s", message)
-    return Simulation(run.model, run.engine, run.watcher, status, messages, reason, set_up, started, noted, total, cpu)
+    return Simulation(run.model, run.engine, run.event_handler, status, messages, reason, set_up, started, noted, total,
+                      cpu)
 
 
 def _result_notes(scene: SceneData, settings: RunSettings, run: _Begun,
@@ -171,22 +172,22 @@ def _warned(messages: list[str]) -> list[str]:
 
 
 class _Prepared(NamedTuple):
-    """The model of a scene, an engine that is not started, the watcher of its events, and messages."""
+    """The model of a scene, an engine that is not started, the event_handler of its events, and messages."""
 
     model: Model
     engine: Engine
-    watcher: EventWatcher
+    event_handler: EventHandler
     messages: list[str]
 
 
 def _prepared(scene: SceneData, settings: RunSettings, initial: Start | None) -> _Prepared:
-    """Return the model, engine and watcher of a run."""
+    """Return the model, engine and event_handler of a run."""
     model = build(scene)
     if initial is not None:
         initial.start(model, scene)
-    engine, watcher = Engine(model), EventWatcher(scene, model)
-    engine.watch(watcher)
-    return _Prepared(model, engine, watcher,
+    engine, event_handler = Engine(model), EventHandler(scene, model)
+    engine.handle_events(event_handler)
+    return _Prepared(model, engine, event_handler,
                      drop_redundant_rows(model, engine) + share_elements(engine, settings.threads))
 
 
@@ -197,7 +198,7 @@ class _Begun(NamedTuple):
 
     model: Model
     engine: Engine
-    watcher: EventWatcher
+    event_handler: EventHandler
     status: str | None
     gaps: list[str]
     change: np.ndarray
@@ -209,13 +210,13 @@ class _Begun(NamedTuple):
 def _begun(scene: SceneData, settings: RunSettings, ready: _Prepared, method: Integrator, pace: Pauses, meter: Meter,
            stream: Sink | None, on_trial: bool = False) -> _Begun:
     """Start a prepared run, with its stream; on_trial: it may begin anew with another method."""
-    model, engine, watcher, _ = ready
+    model, engine, event_handler, _ = ready
     status, gaps, change = _start(scene, settings, model, engine, method, None if stream is None else pace.capacity)
     row_notes = RowNotes(scene, model, settings.step_taken or 0.0, settings.duration)
     if stream is not None and status is None:
-        stream.start(model, engine, pace, watcher.happened, row_notes, on_trial)
-    follow = LongRun(model, engine, settings, watcher, meter)
-    return _Begun(model, engine, watcher, status, gaps, change, follow, row_notes, time.perf_counter())
+        stream.start(model, engine, pace, event_handler.happened, row_notes, on_trial)
+    follow = LongRun(model, engine, settings, event_handler, meter)
+    return _Begun(model, engine, event_handler, status, gaps, change, follow, row_notes, time.perf_counter())
 
 
 def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine, method: Integrator,
@@ -231,7 +232,7 @@ def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine
         **_control(settings, scene, model),
         method=method,
         first_step=min(settings.output_step, 1e-3 * settings.duration),
-        knots=knots(model, settings.duration, tol, turns=settings.step is None),
+        breakpoints=breakpoints(model, settings.duration, tol, turns=settings.step is None),
         capacity=capacity,
     )
     if status == "singular" and engine.self_locking >= 0:

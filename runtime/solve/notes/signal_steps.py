@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...model.knots import of_pieces
+from ...model.breakpoints import of_polynomials
 from ...parts.scene_data import SceneData
 from ...parts.settings import RunSettings
 from ...parts.signal import Constant, Integral, Signal, signals_of
@@ -45,8 +45,9 @@ def _error_of_integral(signal: Signal, step: float, settings: RunSettings) -> fl
     inner = breaks[(breaks > 0) & (breaks < settings.duration)]
     if np.diff(inner, prepend=0.0, append=settings.duration).min() > RESOLVED_STEPS * step:
         return 0.0
-    knots = [time for time, _ in of_pieces(breaks, coefficients, False, settings.tol) if 0 < time < settings.duration]
-    times = np.union1d(np.arange(0.0, settings.duration, step), [*knots, settings.duration])
+    found = of_polynomials(breaks, coefficients, False, settings.tol)
+    breakpoints = [time for time, _ in found if 0 < time < settings.duration]
+    times = np.union1d(np.arange(0.0, settings.duration, step), [*breakpoints, settings.duration])
     values, exact = signal.value(times), Integral(rate=signal).value(times)
     sums = np.cumsum(np.diff(times) * (values[1:] + values[:-1]) / 2)
     varying = exact - exact[-1] * times / times[-1]

@@ -75,12 +75,12 @@ class _PassedError(Exception):
 class _NoEvents:
     """Watches no events but those of couplings, which the engine handles."""
 
-    watches: list[Any] = field(default_factory=list)
+    event_functions: list[Any] = field(default_factory=list)
 
     def acts(self, which: int, what: str, time: float, passed: bool, s: float | None) -> None:
         """Ignore an event of a coupling."""
 
-    def gives_way(self, cable: int, what: str, time: float, element: int) -> None:
+    def slack_event(self, cable: int, what: str, time: float, element: int) -> None:
         """Ignore that a cable becomes slack or taut."""
 
 
@@ -152,7 +152,7 @@ class _Motion:
         """Move until the kinetic energy has passed a maximum, or for `STEP_REVIEW_INTERVAL` steps."""
         engine = Engine(self.model)
         drop_redundant_rows(self.model, engine)
-        engine.watch(_NoEvents())
+        engine.handle_events(_NoEvents())
         start, duration = (self.model.q.copy(), self.model.v.copy()), STEP_REVIEW_INTERVAL * self.step
         status, _ = engine.start(duration=duration, output_step=duration, tol=1e-2, step=self.step,
                                  method=GeneralisedAlpha(0.0), first_step=self.step)

@@ -18,7 +18,7 @@ from ...model.model import Model
 from ...model.unknowns import as_supports_leave
 from .static_problem import StaticProblem
 from .string_nodes import SmoothTie, StringNodes, rests
-from .string_vectors import laid_vectors, slopes
+from .string_vectors import slopes, vectors_along
 from .strings import Rest, Strings, rest_of
 
 SHAPE_ITERATIONS = 3
@@ -59,7 +59,7 @@ def hang(problem: StaticProblem, every: bool) -> bool:
         for group in groups:
             line, rest = _at_rest(problem, nodes, group, q, force)
             if rest is not None and (rest.taut.all() or (every and rest.shortest > MIN_LENGTH_RATIO)):
-                q, found = line.laid(q, rest), True
+                q, found = line.set_in(q, rest), True
             elif rest is not None:
                 problem.slack |= line.slack(rest)
     if found:
@@ -282,7 +282,7 @@ class _Line:
         r[self.order] = rest.r
         return r
 
-    def laid(self, q: np.ndarray, rest: Rest) -> np.ndarray:
+    def set_in(self, q: np.ndarray, rest: Rest) -> np.ndarray:
         """Return a configuration with these cables along the strings at rest, within supports and ties."""
         r, known = self._drawn_order(rest), dict(self.clamped)
         for tie in self.ties:
@@ -296,7 +296,7 @@ class _Line:
             cable, first, last = self.model.cables[c], int(self.nodes.first[c]), int(self.nodes.first[c + 1]) - 1
             slope = slopes(r[along], length, (known.get(first), known.get(last)))[:: self.parts]
             was = cable.nodal(q)
-            found[cable.coordinates] = laid_vectors(cable.vectors, was, r[along[:: self.parts]], slope,
+            found[cable.coordinates] = vectors_along(cable.vectors, was, r[along[:: self.parts]], slope,
                                                     cable.mesh.node_s, last in self.clamped).ravel()
         own = slice(0, self.model.cables[-1].coordinates.stop)
         found[own] = q[own] + as_supports_leave(found[own] - q[own], self.model.unknown_of_dof[own],

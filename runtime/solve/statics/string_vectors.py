@@ -23,24 +23,24 @@ def slopes(r: np.ndarray, length: np.ndarray, ends: tuple[np.ndarray | None, np.
     return np.asarray(found * (size / np.maximum(np.linalg.norm(found, axis=1), np.finfo(float).tiny))[:, None])
 
 
-def laid_vectors(names: tuple[str, ...], was: np.ndarray, r: np.ndarray, slope: np.ndarray, s: np.ndarray,
+def vectors_along(names: tuple[str, ...], was: np.ndarray, r: np.ndarray, slope: np.ndarray, s: np.ndarray,
                  end_is_held: bool) -> np.ndarray:
     """Return (n, vectors, dim): nodal vectors of a cable along r (n, dim) with slopes (n, dim); was: the previous ones.
 
     s (n,): arc-lengths in m. end_is_held: whether the section at the end is fixed: the twist is then uniform.
     """
     found, given = was.copy(), {name: was[:, k] for k, name in enumerate(names)}
-    laid = {"r": r, "r_x": slope}
+    vectors = {"r": r, "r_x": slope}
     if "r_xx" in names:
-        laid["r_xx"] = np.gradient(slope, s, axis=0)
+        vectors["r_xx"] = np.gradient(slope, s, axis=0)
     if "r_z" in names:
-        laid |= dict(zip(("r_y", "r_z"), _sections(given, slope, s, end_is_held), strict=True))
+        vectors |= dict(zip(("r_y", "r_z"), _sections(given, slope, s, end_is_held), strict=True))
     elif "r_y" in names:
         height = given["r_y"]
         side = np.sign(given["r_x"][:, 0] * height[:, 1] - given["r_x"][:, 1] * height[:, 0])
-        laid["r_y"] = _of_length(np.stack([-slope[:, 1], slope[:, 0]], axis=1) * side[:, None], height)
+        vectors["r_y"] = _of_length(np.stack([-slope[:, 1], slope[:, 0]], axis=1) * side[:, None], height)
     for k, name in enumerate(names):
-        found[:, k] = laid[name]
+        found[:, k] = vectors[name]
     return found
 
 

@@ -30,7 +30,7 @@ struct fu_coupling {
     int numbers, flags;               /* its part of a state: the first of them in state->numbers, state->flags */
     int scratch;                      /* first place of its part of fu_accelerator.scratch */
     int n_numbers;                    /* of its own in a state beyond those of its type */
-    int reacts;                       /* nonzero if a force of it depends on the multipliers of eq 38 */
+    int needs_reactions;              /* nonzero if a force of it depends on the multipliers of eq 38 */
     int is_damped;                    /* nonzero if a force of it depends on velocities */
     int is_driven;                    /* nonzero if a signal does work on it */
     int has_inertia;                  /* nonzero if it has a mass */

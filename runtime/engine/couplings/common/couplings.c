@@ -6,12 +6,12 @@
 #include <math.h>
 
 const fu_field fu_coupling_fields[] = {
-    FU_FIELD(fu_coupling, unknown, FU_INTEGER, 0),    FU_FIELD(fu_coupling, n_coordinates, FU_INTEGER, 0),
-    FU_FIELD(fu_coupling, n_forces, FU_INTEGER, 0),   FU_FIELD(fu_coupling, n_multipliers, FU_INTEGER, 0),
-    FU_FIELD(fu_coupling, multiplier, FU_INTEGER, 0), FU_FIELD(fu_coupling, n_numbers, FU_INTEGER, 0),
-    FU_FIELD(fu_coupling, reacts, FU_INTEGER, 0),     FU_FIELD(fu_coupling, is_damped, FU_INTEGER, 0),
-    FU_FIELD(fu_coupling, is_driven, FU_INTEGER, 0),  FU_FIELD(fu_coupling, has_inertia, FU_INTEGER, 0),
-    FU_FIELD_ARRAY(fu_coupling, scale, FU_REAL),      {0},
+    FU_FIELD(fu_coupling, unknown, FU_INTEGER, 0),         FU_FIELD(fu_coupling, n_coordinates, FU_INTEGER, 0),
+    FU_FIELD(fu_coupling, n_forces, FU_INTEGER, 0),        FU_FIELD(fu_coupling, n_multipliers, FU_INTEGER, 0),
+    FU_FIELD(fu_coupling, multiplier, FU_INTEGER, 0),      FU_FIELD(fu_coupling, n_numbers, FU_INTEGER, 0),
+    FU_FIELD(fu_coupling, needs_reactions, FU_INTEGER, 0), FU_FIELD(fu_coupling, is_damped, FU_INTEGER, 0),
+    FU_FIELD(fu_coupling, is_driven, FU_INTEGER, 0),       FU_FIELD(fu_coupling, has_inertia, FU_INTEGER, 0),
+    FU_FIELD_ARRAY(fu_coupling, scale, FU_REAL),           {0},
 };
 
 /* Adds a coupling to its lists. */
@@ -40,8 +40,8 @@ void fu_number_couplings(fu_coupling *const *couplings, int n, const fu_coupling
     model->slides = 0;
     model->n_coordinates = model->n_forces = model->n_rows = model->n_outputs = 0;
     model->n_numbers = model->n_flags = model->n_scratch = 0;
-    model->n_reacting = model->n_external = model->n_driven = model->n_damped = model->n_deferring = model->n_inertial =
-        0;
+    model->n_needing_reactions = model->n_external = model->n_driven = model->n_damped = model->n_deferring =
+        model->n_inertial = 0;
     for (int k = 0; k < n; ++k) {
         fu_coupling *c = couplings[k];
         c->number = k;
@@ -60,7 +60,7 @@ void fu_number_couplings(fu_coupling *const *couplings, int n, const fu_coupling
         model->n_numbers += c->type->n_numbers + c->n_numbers;
         model->n_flags += c->type->n_flags;
         model->n_scratch += c->type->n_scratch;
-        model->n_reacting += c->reacts;
+        model->n_needing_reactions += c->needs_reactions;
         model->n_external += c->type->external_force != 0;
         model->n_driven += c->is_driven;
         model->n_damped += c->is_damped;

@@ -143,7 +143,7 @@ fu_friction_begin *fu_contact_begin_of(const fu_contact *contact, const fu_state
 void fu_contact_roll(int dim, const fu_contact *contact, const double turn[3], const double *normal,
                      const fu_friction_mark *mark, double out[3]);
 
-/* couplings/contact/kinks.c */
+/* couplings/contact/friction_error.c */
 int fu_contact_quadrature_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from,
                                 const fu_state *to, int n, const double *b, const double *c, double *f);
 

@@ -297,7 +297,7 @@ static const fu_field fields[] = {
     FLOW_FIELD(reference, FU_REAL, 0),
     FLOW_FIELD(exponent, FU_REAL, 0),
     FLOW_FIELD(least, FU_REAL, 0),
-    FLOW_FIELD(n_pieces, FU_INTEGER, 0),
+    FLOW_FIELD(n_segments, FU_INTEGER, 0),
     FLOW_FIELD(breaks, FU_REALS, 0),
     {"coefficients_of_profile", FU_REALS, offsetof(fu_drag, flow.coefficients), 1, 0, NULL},
     FLOW_FIELD(degree, FU_INTEGER, 0),

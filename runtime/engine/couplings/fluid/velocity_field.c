@@ -11,7 +11,7 @@ static double profile_at(const fu_flow *flow, double height, double *slope)
 {
     *slope = 0.0;
     if (flow->profile == FU_TABLE) {
-        const fu_signal table = {flow->n_pieces, flow->breaks, flow->coefficients, 0.0, 0.0, 0.0};
+        const fu_signal table = {flow->n_segments, flow->breaks, flow->coefficients, 0.0, 0.0, 0.0};
         return fu_signal_at(&table, height, slope, 0);
     }
     if (flow->profile == FU_UNIFORM) return 1.0;

@@ -16,7 +16,7 @@ typedef struct {
     double velocity[3], up[3], base; /* base: height of the origin, m */
     int signal, profile;
     double reference, exponent, least; /* of a power: (max(height, least)/reference)^exponent, heights in m */
-    int n_pieces;                      /* of a table of the height: polynomials, as a signal's of time */
+    int n_segments;                    /* of a table of the height: polynomials, as a signal's of time */
     const double *breaks, *coefficients;
     /* Of a table of time and place: degree of its splines, 0 without one; along each axis how many of them and their
      * knots, one axis after the other, one spline without knots where the velocity does not depend on it; their

@@ -42,9 +42,9 @@ static point_motion path_of(const fu_point_force *between, const double gap[3], 
     const int dim = between->dim;
     const double from = length(dim, gap), to = length(dim, gap_next), low = fmin(from, to), high = fmax(from, to);
     double work = 0.0;
-    for (int segment = 0; segment < between->n_pieces; ++segment) {
+    for (int segment = 0; segment < between->n_segments; ++segment) {
         const double a = segment > 0 ? fmax(low, between->bounds[segment - 1]) : low;
-        const double b = segment < between->n_pieces - 1 ? fmin(high, between->bounds[segment]) : high;
+        const double b = segment < between->n_segments - 1 ? fmin(high, between->bounds[segment]) : high;
         const double start[3] = {a, 0.0, 0.0}, end[3] = {b, 0.0, 0.0};
         double tension[3], unused;
         if (!(b > a) || between->senses[segment] == FU_HAS_NO_FORCE) continue;
@@ -80,7 +80,7 @@ static int step_segment(const fu_model *model, const fu_point_force *between, co
  * bounds. */
 static int is_of_several(const fu_model *model, const fu_point_force *between, const fu_equations *at)
 {
-    if (between->base.is_damped || between->n_pieces == 1) return 0;
+    if (between->base.is_damped || between->n_segments == 1) return 0;
     return fu_segment_at(model, between, at->now) != fu_segment_at(model, between, at->next);
 }
 
@@ -280,7 +280,7 @@ static double lost_in_step(const fu_model *model, const fu_coupling *coupling, c
                            int by_ends)
 {
     (void)by_ends;
-    if (!coupling->is_damped || ((const fu_point_force *)coupling)->n_pieces == 1) return 0.0;
+    if (!coupling->is_damped || ((const fu_point_force *)coupling)->n_segments == 1) return 0.0;
     return energy_without_force(model, coupling, from) - energy_without_force(model, coupling, to);
 }
 
@@ -290,7 +290,7 @@ static const fu_field fields[] = {
     FU_FIELD(fu_point_force, parameters, FU_REALS, 0),
     FU_FIELD_ARRAY(fu_point_force, attachments, FU_ATTACHMENT),
     FU_FIELD(fu_point_force, dim, FU_INTEGER, 0),
-    FU_FIELD(fu_point_force, n_pieces, FU_INTEGER, 0),
+    FU_FIELD(fu_point_force, n_segments, FU_INTEGER, 0),
     FU_FIELD(fu_point_force, n_parameters, FU_INTEGER, 0),
     FU_FIELD(fu_point_force, bounds, FU_REALS, 0),
     FU_FIELD(fu_point_force, senses, FU_INTEGERS, 0),

@@ -10,7 +10,7 @@ enum { FU_PUSHES_ALONE = -1, FU_PULLS_AND_PUSHES = 0, FU_PULLS_ALONE = 1, FU_HAS
 
 /* A force between the points of two attachments, by a law and its parameters.
  *
- * The parameters may depend on the distance of the points: n_pieces sets of them, one after the other, and the
+ * The parameters may depend on the distance of the points: n_segments sets of them, one after the other, and the
  * distances `bounds` between segments (couplings/force/segments.c). The flag of a state is the segment whose law the
  * force follows. */
 typedef struct {
@@ -19,9 +19,9 @@ typedef struct {
     const double *parameters;
     fu_attachment attachments[2];
     int dim;
-    int n_pieces, n_parameters;
-    const double *bounds; /* (n_pieces - 1), m */
-    const int *senses;    /* (n_pieces): permitted senses of each segment */
+    int n_segments, n_parameters;
+    const double *bounds; /* (n_segments - 1), m */
+    const int *senses;    /* (n_segments): permitted senses of each segment */
     double compliance;    /* m/N: converts forces to lengths, for comparison */
 } fu_point_force;
 

@@ -29,7 +29,7 @@ const double *fu_segment_parameters(const fu_point_force *between, int segment)
 int fu_segment_at_distance(const fu_point_force *between, double distance)
 {
     int segment = 0;
-    while (segment < between->n_pieces - 1 && distance > between->bounds[segment]) ++segment;
+    while (segment < between->n_segments - 1 && distance > between->bounds[segment]) ++segment;
     return segment;
 }
 
@@ -48,7 +48,7 @@ void fu_gap(const fu_model *model, const fu_point_force *between, const fu_state
 int fu_segment_at(const fu_model *model, const fu_point_force *between, const fu_state *state)
 {
     double gap[3];
-    if (between->n_pieces == 1) return 0;
+    if (between->n_segments == 1) return 0;
     fu_gap(model, between, state, gap, 0);
     return fu_segment_at_distance(between, sqrt(fu_dot(between->dim, gap, gap)));
 }

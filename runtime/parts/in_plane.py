@@ -28,16 +28,16 @@ from .velocity_table import VelocityTable
 S = TypeVar("S", bound=SceneData)
 
 
-def laid(scene: S) -> S:
+def in_plane(scene: S) -> S:
     """Return the scene in the axes of the plane of its planar cables; itself for z = 0 and for spatial scenes.
 
     Raises SceneError for parts that cannot be turned.
     """
     plane = scene.plane
-    return scene if plane is None else laid_into(scene, plane)
+    return scene if plane is None else into_plane(scene, plane)
 
 
-def laid_into(scene: S, plane: Plane) -> S:
+def into_plane(scene: S, plane: Plane) -> S:
     """Return a scene, planar or spatial, in the axes of a plane, without new checks.
 
     Raises SceneError for parts that cannot be turned.
@@ -141,10 +141,10 @@ def _cable(part: Cable, axes: PlaneAxes, scene: SceneData) -> Cable:
     made = Cable(**part.entries() | changes)
     if part.shape == "hanging":
         made = made.hanging_through(_vector(axes, None, point, is_point=True) for point in part.drawn_through)
-    drawn, laid_down = shape_through(part.drawn_through), shape_through(made.drawn_through)
+    drawn, flat = shape_through(part.drawn_through), shape_through(made.drawn_through)
     if not drawn.straight:  # Akima splines, unlike cubic ones, depend on the axes
         along = np.linspace(0, 1, 8 * len(part.drawn_through))
-        apart = axes.plane.points_into(drawn.point(along * drawn.length)) - laid_down.point(along * laid_down.length)
+        apart = axes.plane.points_into(drawn.point(along * drawn.length)) - flat.point(along * flat.length)
         if np.abs(apart).max() > FLAT * max(axes.size, drawn.length):
             raise SceneError(part.where, f"its curve through the points changes in the axes of "
                              f"{called(axes.plane)}", "give more points")

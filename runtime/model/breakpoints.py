@@ -1,9 +1,9 @@
-"""Knots of signals: instants at which a signal is not smooth, where integration steps end.
+"""Breakpoints of signals: instants at which a signal is not smooth, where integration steps end.
 
-A piecewise polynomial has a knot where two pieces meet. In a step over a knot, neither the result nor the error
-estimate has the order of the method, and a pulse shorter than the step is missed. Negligible knots are omitted, so that
-a table of many samples of a smooth function does not limit the steps. With steps chosen by tol, extremes of tables are
-knots, too: a smooth pulse is short beside the steps of a scene at rest.
+A piecewise polynomial has a breakpoint where two pieces meet. In a step over a breakpoint, neither the result nor the
+error estimate has the order of the method, and a pulse shorter than the step is missed. Negligible breakpoints are
+omitted, so that a table of many samples of a smooth function does not limit the steps. With steps chosen by tol,
+extremes of tables are breakpoints, too: a smooth pulse is short beside the steps of a scene at rest.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from .model import Model
 from .signals import SignalModel
 
 HIGHER, ACCELERATION, RATE = range(3)
-"""What jumps at a knot: a higher derivative, the acceleration or the rate of a driven motion; as in
+"""What jumps at a breakpoint: a higher derivative, the acceleration or the rate of a driven motion; as in
 engine/bodies/motions.h."""
 
 ROUNDING = 1e-14
@@ -24,14 +24,14 @@ ROUNDING = 1e-14
 TINY = 1e-300
 """Positive bound for signals that are constant."""
 INSTANT_TOLERANCE = 1e-12
-"""Distance of coincident knots, as a fraction of the duration (engine/equations/run.h)."""
+"""Distance of coincident breakpoints, as a fraction of the duration (engine/equations/run.h)."""
 
 
-def knots(model: Model, duration: float, tol: float, turns: bool = True) -> tuple[np.ndarray, np.ndarray]:
-    """Return the times of the significant knots, in s, increasing, and what jumps at each.
+def breakpoints(model: Model, duration: float, tol: float, turns: bool = True) -> tuple[np.ndarray, np.ndarray]:
+    """Return the times of the significant breakpoints, in s, increasing, and what jumps at each.
 
-    turns: whether extremes of tables are included. A knot at the end of the run is included: the last row is of the
-    instant before it.
+    turns: whether extremes of tables are included. A breakpoint at the end of the run is included: the last row is of
+    the instant before it.
     """
     driving, inertial = driving_signals(model), {drag.signal for drag in model.drags if drag.has_inertia}
     found = [each for number, signal in enumerate(model.signals)
@@ -69,17 +69,17 @@ def _of_tables(model: Model) -> list[tuple[float, int]]:
 
 
 def _of_signal(signal: SignalModel, drives: bool, accelerates: bool, tol: float) -> list[tuple[float, int]]:
-    """Return `of_pieces` of a signal; accelerates: whether its rate is a force, as that of a fluid with added mass."""
-    found = of_pieces(signal.breaks, signal.coefficients, drives or accelerates, tol)
+    """Return `of_polynomials` of a signal; accelerates: whether its rate is a force, as of a fluid with added mass."""
+    found = of_polynomials(signal.breaks, signal.coefficients, drives or accelerates, tol)
     return found if drives else [(time, min(jump, ACCELERATION)) for time, jump in found]
 
 
-def of_pieces(breaks: np.ndarray, coefficients: np.ndarray, drives: bool, tol: float) -> list[tuple[float, int]]:
-    """Return the time and the jump of each significant knot of a piecewise polynomial.
+def of_polynomials(breaks: np.ndarray, coefficients: np.ndarray, drives: bool, tol: float) -> list[tuple[float, int]]:
+    """Return the time and the jump of each significant breakpoint of a piecewise polynomial.
 
-    A knot is significant where the pieces on both sides, continued over the length of the shorter one, differ by more
-    than tol of the signal, or in their rates if the signal prescribes a motion. A step does not notice a jump of the
-    rate, and such errors add up: the sum of the jumps omitted is at most tol of the rate.
+    A breakpoint is significant where the pieces on both sides, continued over the length of the shorter one, differ by
+    more than tol of the signal, or in their rates if the signal prescribes a motion. A step does not notice a jump of
+    the rate, and such errors add up: the sum of the jumps omitted is at most tol of the rate.
     """
     if len(coefficients) < 2:
         return []

@@ -42,7 +42,7 @@ class ForceTable(Part):
 
 
 @dataclass(frozen=True)
-class Piece:
+class Segment:
     """A linear segment up to the extension ``end`` (m): ``tension`` (N) at ``at`` (m), of slope ``stiffness`` (N/m).
 
     sense: signs of its force; energy: at ``at``, in J.
@@ -56,18 +56,18 @@ class Piece:
     energy: float = 0.0
 
 
-def pulling(start: float, stiffness: float) -> list[Piece]:
+def pulling(start: float, stiffness: float) -> list[Segment]:
     """Return the segments of a spring without force up to an extension, and with tension beyond it."""
-    return [Piece(start, start, 0.0, 0.0, HAS_NO_FORCE), Piece(np.inf, start, 0.0, stiffness, PULLS_ALONE)]
+    return [Segment(start, start, 0.0, 0.0, HAS_NO_FORCE), Segment(np.inf, start, 0.0, stiffness, PULLS_ALONE)]
 
 
-def with_play(play: float, stiffness: float) -> list[Piece]:
+def with_play(play: float, stiffness: float) -> list[Segment]:
     """Return the segments of a spring without force over the length ``play`` (m) about zero extension."""
     half = play / 2
-    return [Piece(-half, -half, 0.0, stiffness, PUSHES_ALONE), *pulling(half, stiffness)]
+    return [Segment(-half, -half, 0.0, stiffness, PUSHES_ALONE), *pulling(half, stiffness)]
 
 
-def tabulated(table: ForceTable, pulls_alone: bool) -> list[Piece]:
+def tabulated(table: ForceTable, pulls_alone: bool) -> list[Segment]:
     """Return the segments of a table; pulls_alone: without its compression.
 
     Raises ValueError for a table without compression that has no tension, or loses it with extension.
@@ -75,16 +75,16 @@ def tabulated(table: ForceTable, pulls_alone: bool) -> list[Piece]:
     x, T = np.array(table.extension), np.array(table.tension)
     slopes = np.diff(T) / np.diff(x)
     ends = [*x[1:-1], np.inf]
-    pieces = [Piece(end, at, tension, slope) for end, at, tension, slope in zip(ends, x, T, slopes, strict=False)]
+    segments = [Segment(end, at, tension, slope) for end, at, tension, slope in zip(ends, x, T, slopes, strict=False)]
     if not pulls_alone:
-        return _with_energies(pieces)
+        return _with_energies(segments)
     if slopes[-1] < 0 or not (T[-1] > 0 or slopes[-1] > 0):
         raise ValueError("with tension_only, a table must have tension at large extensions",
                          "give a last segment with positive, not decreasing tension")
     start = _loses_force(x, T, slopes)
-    taut = [Piece(p.end, max(p.at, start), p.tension + p.stiffness * max(start - p.at, 0.0), p.stiffness, PULLS_ALONE)
-            for p in pieces if p.end > start]
-    return _with_energies([Piece(start, start, 0.0, 0.0, HAS_NO_FORCE), *taut])
+    taut = [Segment(p.end, max(p.at, start), p.tension + p.stiffness * max(start - p.at, 0.0), p.stiffness, PULLS_ALONE)
+            for p in segments if p.end > start]
+    return _with_energies([Segment(start, start, 0.0, 0.0, HAS_NO_FORCE), *taut])
 
 
 def _loses_force(x: np.ndarray, T: np.ndarray, slopes: np.ndarray) -> float:
@@ -101,14 +101,14 @@ def _loses_force(x: np.ndarray, T: np.ndarray, slopes: np.ndarray) -> float:
     return float(x[last] - T[last] / slopes[min(last, len(slopes) - 1)])
 
 
-def _with_energies(pieces: Sequence[Piece]) -> list[Piece]:
+def _with_energies(segments: Sequence[Segment]) -> list[Segment]:
     """Return the segments with their energies; that of a table is zero at zero extension."""
-    at = [p.at for p in pieces]
+    at = [p.at for p in segments]
     rises = [p.tension * (b - p.at) + p.stiffness * (b - p.at) ** 2 / 2
-             for p, b in zip(pieces[:-1], at[1:], strict=True)]
+             for p, b in zip(segments[:-1], at[1:], strict=True)]
     energies = np.cumsum([0.0, *rises])
-    if pieces[0].sense == PULLS_AND_PUSHES:
-        k = int(np.searchsorted([p.end for p in pieces[:-1]], 0.0))
-        energies -= energies[k] + pieces[k].tension * -at[k] + pieces[k].stiffness * at[k] ** 2 / 2
-    return [Piece(p.end, p.at, p.tension, p.stiffness, p.sense, float(energy))
-            for p, energy in zip(pieces, energies, strict=True)]
+    if segments[0].sense == PULLS_AND_PUSHES:
+        k = int(np.searchsorted([p.end for p in segments[:-1]], 0.0))
+        energies -= energies[k] + segments[k].tension * -at[k] + segments[k].stiffness * at[k] ** 2 / 2
+    return [Segment(p.end, p.at, p.tension, p.stiffness, p.sense, float(energy))
+            for p, energy in zip(segments, energies, strict=True)]

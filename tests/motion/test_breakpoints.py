@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from expectations import energy_error
 from funicular import FunicularWarning, Harmonic, Material, Pulse, Ramp, Rectangle, Scene, TableSignal
-from funicular.model.knots import ACCELERATION, HIGHER, RATE, knots
+from funicular.model.breakpoints import ACCELERATION, HIGHER, RATE, breakpoints
 from funicular.model.signals import SignalModel
 from funicular.parts.signal import Constant, Integral
 from numpy.testing import assert_allclose
@@ -46,7 +46,7 @@ def straight(*values, times=TIMES) -> TableSignal:
     (TableSignal(time=(0, 0.3, 0.6, 1, 3), value=(0, 0.5, 1.5, 2, 3)), True, [0.6], [HIGHER]),
 ])
 def test_knots_are_where_a_signal_is_not_smooth(signal, drives, times, jumps):
-    found, kinds = knots(model(signal, driving=[0] if drives else []), 1.5, 1e-4)
+    found, kinds = breakpoints(model(signal, driving=[0] if drives else []), 1.5, 1e-4)
     assert_allclose(found, times, rtol=1e-15)
     assert kinds.tolist() == jumps
 
@@ -54,13 +54,13 @@ def test_knots_are_where_a_signal_is_not_smooth(signal, drives, times, jumps):
 def test_a_table_of_many_samples_of_a_smooth_function_has_no_knots_but_its_turns():
     cubic, polygon = TableSignal(**SMOOTH), TableSignal(**SMOOTH, interpolation="linear")
     for tol in (1e-3, 1e-6):
-        found, alone = (knots(model(cubic, driving=[0]), TIME, tol, turns=turns)[0] for turns in (True, False))
+        found, alone = (breakpoints(model(cubic, driving=[0]), TIME, tol, turns=turns)[0] for turns in (True, False))
         assert_allclose(found[found < TIME], [TIME / 2])  # at its end its acceleration jumps
         assert len(alone[alone < TIME]) == 0
-        assert_allclose(knots(model(polygon), TIME, tol)[0], [TIME / 2])
-    assert len(knots(model(polygon, driving=[0]), TIME, 1e-3)[0]) > 9000  # its rate jumps at each
+        assert_allclose(breakpoints(model(polygon), TIME, tol)[0], [TIME / 2])
+    assert len(breakpoints(model(polygon, driving=[0]), TIME, 1e-3)[0]) > 9000  # its rate jumps at each
     waves = TableSignal(time=SAMPLES, value=np.sin(1e4 * np.array(SAMPLES)))
-    found = knots(model(waves), TIME, 1e-3)[0]
+    found = breakpoints(model(waves), TIME, 1e-3)[0]
     assert len(found[found < TIME]) == int(1e4 * TIME / np.pi + 0.5)
 
 
@@ -68,14 +68,14 @@ def test_turns_are_larger_than_tol_and_a_stay_before_one_ends_at_a_knot():
     """Two humps of a smooth table, the second of them 1e-3 of the first."""
     time = np.linspace(0, 2, 4001)
     table = TableSignal(time=time.tolist(), value=(hump(time, 1.0, 0.02) + 1e-3 * hump(time, 1.5, 0.02)).tolist())
-    start, top = knots(model(table), 2.0, 2e-3)[0]
+    start, top = breakpoints(model(table), 2.0, 2e-3)[0]
     assert 0.94 < start < top == 1.0
-    assert_allclose(knots(model(table), 2.0, 1e-4)[0][[1, 4]], [1.0, 1.5])
+    assert_allclose(breakpoints(model(table), 2.0, 1e-4)[0][[1, 4]], [1.0, 1.5])
 
 
 def test_knots_at_one_instant_are_one_and_the_most_that_jumps_counts():
     ramp, table = Ramp(start=0.5, end=0.8), TableSignal(**TWO_PARTS, interpolation="linear")
-    times, jumps = knots(model(ramp, table, driving=[1]), 1.2, 1e-4)
+    times, jumps = breakpoints(model(ramp, table, driving=[1]), 1.2, 1e-4)
     assert_allclose(times, [0.5, 0.8, 1.0], rtol=1e-15)
     assert jumps.tolist() == [RATE, HIGHER, RATE]
 
@@ -168,7 +168,7 @@ DRIVEN = {
     "slide, s": lambda: carried(drive=straight(0.6, 0.6, 0.7, 0.7, 0.75)),
     "slide, velocity": lambda: carried(velocity=straight(0, 0, 3, 3, 1)),
 }
-"""Their rates or accelerations jump, at knots within steps."""
+"""Their rates or accelerations jump, at breakpoints within steps."""
 
 
 @pytest.mark.parametrize("scene", DRIVEN.values(), ids=DRIVEN)

@@ -1,4 +1,4 @@
-"""One piece of a spring whose tension is piecewise linear in its extension, with a damper along the gap."""
+"""One segment of a spring whose tension is piecewise linear in its extension, with a damper along the gap."""
 
 from typing import Any
 
@@ -21,7 +21,7 @@ def energy(p: Stages, e: np.ndarray, c: Any) -> sp.Expr:
 
 
 LAW = PointLaw(
-    doc="one piece of a spring of piecewise linear tension, and damper, between two points",
+    doc="one segment of a spring of piecewise linear tension, and damper, between two points",
     source="piecewise linear spring and damper along the gap",
     parameters={"stiffness": ("N/m", "slope of the tension"),
                 "damping": ("N s/m", "damping along the gap"),

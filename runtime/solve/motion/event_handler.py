@@ -21,7 +21,7 @@ LEAVES_TABLE_TEXT = "leaves the table of its fluid"
 """Text of the engine's event (engine/events/fluid_table.c)."""
 
 
-class Watch:
+class EventFunction:
     """The event function of an event: kind, index, value, direction.
 
     kind: "q" or "v" with the index of an entry; "s", "s_rate", "traction" with the number of a slide among the
@@ -99,18 +99,18 @@ class State:
         return {"s": float(self._s[slides.index(name)])} if name in slides else {}
 
 
-class EventWatcher:
+class EventHandler:
     """The events of a run: the callbacks of the engine, and the list of events."""
 
     def __init__(self, scene: SceneData, model: Model):
         self.model = model
-        self.watches = [Watch(event, scene, model) for event in scene.events.values()]
+        self.event_functions = [EventFunction(event, scene, model) for event in scene.events.values()]
         self.happened: list[dict[str, Any]] = []
         self.stopped_by: str | None = None
 
     def call(self, which: int, time: float, q: np.ndarray, v: np.ndarray, s: np.ndarray) -> float:
         """Return the function of an event at a state. Raises SceneError where it fails or gives no number."""
-        event = self.watches[which].event
+        event = self.event_functions[which].event
         try:
             with interruptible():
                 value = float((event.function or self._of_quantity(event))(time, State(self.model, q, v, s)))
@@ -143,7 +143,7 @@ class EventWatcher:
             happened["passed"] = True
         self._note(happened if s is None else happened | {"s": s})
 
-    def gives_way(self, cable: int, what: str, time: float, element: int) -> None:
+    def slack_event(self, cable: int, what: str, time: float, element: int) -> None:
         """Record that the first element of a cable has become slack, or that the last one is taut again; element: its
         number.
         """
@@ -165,7 +165,7 @@ class EventWatcher:
 
     def happens(self, which: int, time: float, q: np.ndarray, v: np.ndarray, s: np.ndarray) -> bool:
         """Record an event; return whether the run continues."""
-        event, state = self.watches[which].event, State(self.model, q, v, s)
+        event, state = self.event_functions[which].event, State(self.model, q, v, s)
         at = {f"{body.name}.{k}": np.asarray(state[f"{body.name}.{k}"]).tolist() for body in self.model.bodies
               for k in ("position", "velocity")}
         at |= {f"{slide.name}.s": state[f"{slide.name}.s"] for slide in self.model.slides}
