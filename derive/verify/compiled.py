@@ -24,6 +24,9 @@ from ..codegen.program import Program
 SHARED_FLAGS = ("-std=c11", "-O3", "-fPIC")
 """Options for the C of a library that is used, not only verified."""
 
+COMPILERS = ThreadPoolExecutor(2)
+"""Compilers that run beside the derivation: for real and for complex numbers."""
+
 
 class CompilerError(Exception):
     """No C compiler, or it refused the generated text."""
@@ -81,7 +84,7 @@ class Library:
         # no optimisation: what is verified is the text, and the large kernels compile ten times faster
         command = [*compiler(), "-O0", "-w", "-fPIC", "-shared", *define, f"-I{generated}", "-o", str(self._path),
                    str(generated / f"{family}.c"), str(shim), "-lm"]
-        self._process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+        self._compilation = COMPILERS.submit(subprocess.run, command, stderr=subprocess.PIPE, text=True)
         self._functions: dict[str, Any] = {}
 
     def _shim(self) -> str:
@@ -94,9 +97,9 @@ class Library:
 
     def load(self) -> Library:
         """Wait for the compiler. Raises CompilerError with its first messages."""
-        _, messages = self._process.communicate()
-        if self._process.returncode:
-            first = "\n".join(messages.splitlines()[:12])
+        done = self._compilation.result()
+        if done.returncode:
+            first = "\n".join(done.stderr.splitlines()[:12])
             raise CompilerError(f"generated/{self.family}.c does not compile; `funicular derive --check` says what "
                                 f"differs from the specs\n{first}")
         shared = ctypes.CDLL(str(self._path))
