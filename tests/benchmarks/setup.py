@@ -104,7 +104,7 @@ def set_up(make: Callable[[], Scene], clock: Clock | None = None) -> Engine:
     model = build(scene)
     clock.lap("model")
     engine = Engine(model)
-    engine.watch(EventHandler(scene, model))
+    engine.handle_events(EventHandler(scene, model))
     clock.lap("engine")
     implausible(scene)
     drop_redundant_rows(model, engine)

@@ -14,7 +14,7 @@ from funicular.results.error_estimate import ErrorEstimate
 from funicular.results.run import EnergyBalance, Run
 from funicular.results.viewable import Viewable
 from funicular.scene.described import DescribedScene
-from funicular.solve.motion.event_watcher import State
+from funicular.solve.motion.event_handler import State
 from funicular.solve.statics.rest_state import Adjustment, Relaxation, RestState
 from funicular.solve.statics.stability import Stability
 from funicular.sweeps.cost import SweepCost
