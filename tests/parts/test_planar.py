@@ -46,7 +46,7 @@ def spatial_element(planar: str, spatial: str, s: dict) -> dict:
 def spatial_body(s: dict) -> dict:
     half = np.arctan2(s["b"][3], s["b"][2]) / 2
     changes = {"b": [*s["b"][:2], 0, np.cos(half), 0, 0, np.sin(half)]}
-    changes |= {name: lifted(s[name], RIDER, 6) for name in ("w", "a")}
+    changes |= {name: lifted(s[name], RIDER, 6) for name in ("w", "a")} | {"m": lifted(s["m"], [2], 3)}
     return s | changes | {name: np.append(s[name], 0.0) for name in ("u", "f")}
 
 
@@ -93,7 +93,7 @@ def test_bodies(number):
     S, plane = spatial_body(s), [0, 1]
     axes = {
         "point": [[plane], [plane, RIDER], [plane], [plane]],
-        "point_force": [[plane], [plane, RIDER], [RIDER, RIDER]],
+        "wrench": [[RIDER, RIDER], [plane, RIDER], [[2], RIDER]],
         "inertia_force": [[RIDER]],
         "inertia_tangent": [[RIDER, RIDER], [RIDER, RIDER]],
         "kinetic_energy": [[[0]]],
