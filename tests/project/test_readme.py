@@ -398,10 +398,12 @@ def test_front_page_is_short():
 
 
 def test_layout_is_that_of_the_folders():
-    """The table under "Layout" names all folders of the top level and of derive/."""
+    """The table under "Layout" names all folders of the top level, and all packages of derive and runtime."""
     rows = [row.split("|") for row in README.section("Layout").splitlines() if row.startswith("| ")][1:]
     named = {re.search(r"\w+", row[1])[0]: re.findall(r"`(\w+)`", row[3]) for row in rows}
     assert set(named) == {"derive", "generated", "runtime", "tests"}
     for folder, inside in named.items():
         for name in inside:
             assert (ROOT / folder / name).is_dir(), f"{folder}/{name}"
+        packages = {path.parent.name for path in (ROOT / folder).glob("*/__init__.py")}
+        assert folder not in ("derive", "runtime") or packages <= set(inside), packages - set(inside)
