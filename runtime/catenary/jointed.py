@@ -57,7 +57,7 @@ class Limb(Part):
 class JointedPantograph(Part):
     """A pantograph of two arms: rigid bodies with hinges, on a base that the train moves.
 
-    Points are (x, y) in m as drawn, at the height where it touches the contact wire at the outer droppers: x
+    Points are (x, y) in m as drawn, at the height of contact with the contact wire at the outer droppers: x
     along the track, y up, from the pivot of the lower arm on the base. knee: of lower and upper arm. rod_base and
     rod_top: the ends of the thrust rod, on the base and on the upper arm. head: on the end of the upper arm, about
     which the carrier of the collector turns. guide: the ends of the rod without mass that keeps it level, on the lower

@@ -73,7 +73,7 @@ def placed_contacts(scene: SceneData, contacts: list[Contact]) -> list[Contact]:
     for contact in made:
         if contact.is_hard:
             _check_hard(scene, contact, n_hard)
-    _check_depths(scene, made, starts)
+    _check_penetrations(scene, made, starts)
     return made
 
 
@@ -86,7 +86,7 @@ def _of_surface(scene: SceneData, contact: Contact, own: Mapping[tuple[str, str]
                          near(contact.b, scene.surfaces) if scene.surfaces else
                          'add one before: scene.surface("ground", fu.Plane())')
     pair = (contact.a, contact.b)
-    if (other := scene.touching.get(pair)) is not None or pair in own:
+    if (other := scene.contact_of_pair.get(pair)) is not None or pair in own:
         where = (own[pair] if other is None else scene.contacts[other]).where
         raise SceneError(contact.where, f'"{contact.a}" and "{contact.b}" have the {where} already',
                          "leave one of them out")
@@ -145,7 +145,7 @@ def _of_cable(scene: SceneData, contact: Contact, cable: Cable) -> Contact:
 
 def _of_body(scene: SceneData, contact: Contact, body: RigidBody | ModalBody, surface: Surface) -> Contact:
     if isinstance(body, ModalBody):
-        raise SceneError(contact.where, f'modal_body "{body.name}" cannot touch surfaces', "take a rigid body")
+        raise SceneError(contact.where, f'modal_body "{body.name}" has no contact with surfaces', "take a rigid body")
     if surface.on == body.name:
         raise SceneError(contact.where, f'surface "{surface.name}" is on that body itself', "name another one")
     points = contact.points if contact.points is not None else ((0.0, 0.0, 0.0),)
@@ -227,7 +227,7 @@ def _largest_length(scene: SceneData, contact: Contact) -> float:
                surface.geometry.largest_length)
 
 
-def _check_depths(scene: SceneData, contacts: list[Contact], starts: list[_Start]) -> None:
+def _check_penetrations(scene: SceneData, contacts: list[Contact], starts: list[_Start]) -> None:
     """Raise SceneError where a point starts deeper below its surface than allowed."""
     of_surface: dict[str, list[int]] = {}
     for k, contact in enumerate(contacts):

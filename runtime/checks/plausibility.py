@@ -29,15 +29,15 @@ def implausible(scene: SceneData) -> list[str]:
 
 
 def _surfaces(scene: SceneData) -> Iterator[str]:
-    touched = {contact.b for contact in scene.contacts.values()}
-    yield from (f"{surface.where} has no contact: nothing can touch it; add scene.contact(..., \"{name}\")"
-                for name, surface in scene.surfaces.items() if name not in touched)
+    in_contact = {contact.b for contact in scene.contacts.values()}
+    yield from (f"{surface.where} has no contact and exerts no force; add scene.contact(..., \"{name}\")"
+                for name, surface in scene.surfaces.items() if name not in in_contact)
 
 
 def _origins(scene: SceneData) -> Iterator[str]:
     shaped = {name for name, body in scene.bodies.items() if isinstance(getattr(body, "shape", None), Solid)}
     shaped |= {surface.on for surface in scene.surfaces.values() if surface.on}
-    yield from (f"{contact.where} touches with the origin of \"{contact.a}\" alone, and not with the shape of that "
+    yield from (f"{contact.where} acts at the origin of \"{contact.a}\" alone, not on the surface of that "
                 "body: give points=, such as corners of a box, or a radius= about them"
                 for contact in (each.as_made() for each in scene.contacts.values())
                 if contact.a in shaped and contact.points is None and not contact.radius)

@@ -300,8 +300,8 @@ class Chooser(Generic[S]):
 
     def _is_stiff(self, cable: Cable, probe: Probe[S]) -> bool:
         """Return whether a cable moves as a rigid body, within a part of the tolerance."""
-        touched = {name for crossing in self.scene.crossings.values() for name in (crossing.a, crossing.b)}
-        if probe.run is None or cable.name in touched.union(slide.along for slide in self.scene.slides.values()):
+        crossing = {name for crossing in self.scene.crossings.values() for name in (crossing.a, crossing.b)}
+        if probe.run is None or cable.name in crossing.union(slide.along for slide in self.scene.slides.values()):
             return False
         return deformation(probe.scene.cables[cable.name], probe.run) < self.wanted * largest_change(
             motion(probe.scene, probe.run))

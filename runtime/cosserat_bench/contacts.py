@@ -31,10 +31,10 @@ EARTH_GRAVITY = 9.81
 """m/s²: assumed where a scenario has no gravity."""
 
 CLOSE_START = 0.1
-"""Distance below which rods are expected to touch, over the length of the shorter one."""
+"""Distance below which contact of rods is expected, over the length of the shorter one."""
 
 DEEP_PENETRATION = 0.25
-"""Part of the distance of two touching axes above which a penetration means that rods passed into each other."""
+"""Part of the distance of two axes in contact above which a penetration means that rods passed into each other."""
 
 MIN_CROSSING_SINE = 0.1
 """Smallest sine of the angle of two rods that cross."""
@@ -43,7 +43,7 @@ POINT_SPACING = 0.5
 """Distance of the points on rods between which distances are computed, in radii."""
 
 MIN_SELF_CONTACT_TURN = 0.9 * np.pi
-"""rad: smallest turn along a rod with which it can touch itself."""
+"""rad: smallest turn along a rod with which it can have contact with itself."""
 
 
 def tangents_of(positions: np.ndarray) -> np.ndarray:
@@ -73,14 +73,14 @@ def stand(scene: Scene, scenario: Scenario, rods: list[Rod], cables: list[Cable]
 
 
 def cross(scene: Scene, scenario: Scenario, first: tuple[Rod, Cable], second: tuple[Rod, Cable]) -> None:
-    """Let two rods touch at the points where they are closest, without friction."""
+    """Add frictionless contact of two rods at their closest points."""
     lighter = min(first[0], second[0], key=lambda rod: _weight(rod, scenario) * rod.length)
     scene.crossing(first[1], second[1], damping=_damping(lighter, scenario),
                    stiffness=_weight(lighter, scenario) * lighter.length / (PENETRATION * lighter.radius))
 
 
 def near(scenario: Scenario) -> set[tuple[int, int]]:
-    """Return the pairs of rods that are expected to touch: those that start close to each other."""
+    """Return the pairs of rods whose contact is expected: those that start close to each other."""
     rods = scenario.rods
     return {(i, j) for i, j in combinations(range(len(rods)), 2)
             if _gaps(rods[i], rods[j], *_starts(rods[i], rods[j])).min()
@@ -88,7 +88,7 @@ def near(scenario: Scenario) -> set[tuple[int, int]]:
 
 
 def side_by_side(first: Rod, second: Rod) -> bool:
-    """Return whether two rods start in parallel where they are closest, so that no single point would touch."""
+    """Return whether two rods start in parallel where they are closest, so that their contact would not be a point."""
     points = [_points(nodes[0], rod)[0] for nodes, rod in zip(_starts(first, second), (first, second), strict=True)]
     tangents = [np.gradient(line, axis=0)[k] for line, k in zip(points, _closest(*points), strict=True)]
     sine = np.linalg.norm(cross_product(*tangents)) / np.prod(np.linalg.norm(tangents, axis=1))
@@ -102,15 +102,15 @@ def line_of(vectors: np.ndarray, names: tuple[str, ...], rod: Rod) -> np.ndarray
     """
     at, slope = vectors[:, :, names.index("r")], vectors[:, :, names.index("r_x")]
     length = rod.length / (at.shape[1] - 1)
-    pieces = 1 + int(length / (POINT_SPACING * rod.radius))
-    x = (np.arange(pieces) / pieces)[:, None]
+    intervals = 1 + int(length / (POINT_SPACING * rod.radius))
+    x = (np.arange(intervals) / intervals)[:, None]
     inside = ((1 - 3 * x**2 + 2 * x**3) * at[:, :-1, None] + (3 * x**2 - 2 * x**3) * at[:, 1:, None]
               + length * ((x - 2 * x**2 + x**3) * slope[:, :-1, None] + (x**3 - x**2) * slope[:, 1:, None]))
     return np.concatenate([inside.reshape(len(at), -1, 3), at[:, -1:]], axis=1)
 
 
 def may_meet(scenario: Scenario, lines: list[np.ndarray]) -> set[tuple[int, int]]:
-    """Return the pairs of rods that may touch in a frame or between two; lines: (frames, points, 3) of each, in m."""
+    """Return the pairs of rods with possible contact in a frame or between two; lines: (frames, points, 3), m."""
     rods = scenario.rods
     travels = [_travel(line) for line in lines]
     return {(i, j) for i, j in combinations(range(len(rods)), 2)
@@ -147,7 +147,7 @@ def passes_into_itself(rod: Rod, line: np.ndarray) -> int | None:
 
 
 def beyond_a_cylinder(scenario: Scenario, positions: list[np.ndarray]) -> bool:
-    """Return whether a rod touches the extension of a cylinder: those of scenes are endless."""
+    """Return whether a rod has contact with the extension of a cylinder: those of scenes are endless."""
     obstacle: Any
     for obstacle in scenario.obstacles:
         if is_plane(obstacle):

@@ -70,7 +70,7 @@ def moved(scenario: Scenario, elements: int, frames: int,
           choices: Choices) -> tuple[list[np.ndarray], list[np.ndarray]]:
     """Return positions (frames, nodes, 3) in m and directors (frames, elements, 3) of each rod.
 
-    Rods that touch are in one scene, the others each in its own: first those that start close to each other, then again
+    Rods in contact are in one scene, the others each in its own: first those that start close to each other, then again
     with those that may have met. A warning reports contact that is left out. Raises NotImplementedError for features
     that cannot be modelled, ConvergenceError where a run ends early.
     """
@@ -117,12 +117,12 @@ class _RodMotion:
 
 def _motions(scenario: Scenario, pairs: set[tuple[int, int]], elements: int, frames: int,
              choices: Choices) -> list[_RodMotion]:
-    """Return the motion of each rod, where pairs of rods touch."""
+    """Return the motion of each rod, with contact of pairs of rods."""
     count = len(scenario.rods)
-    touching = np.zeros((count, count))
+    in_contact = np.zeros((count, count))
     for pair in pairs:
-        touching[pair] = 1
-    groups, group_of = connected_components(csr_array(touching), directed=False)
+        in_contact[pair] = 1
+    groups, group_of = connected_components(csr_array(in_contact), directed=False)
     motions: dict[int, _RodMotion] = {}
     for group in range(groups):
         members = np.flatnonzero(group_of == group).tolist()

@@ -2,7 +2,7 @@
 Contact: a sea bed, a ball, two ropes
 =====================================
 
-Three kinds of contact exist. A cable touches a surface along its length. Points of a body strike a surface without
+Three kinds of contact exist. A cable may lie on a surface along its length. Points of a body strike a surface without
 penetration. A cable crosses a cable or a bar at one point. Each is compared with a closed form. Lists, or "all", make
 many pairs: ``scene.contact(["ball", "rope"], "all")``. Distant pairs cost next to nothing.
 """

@@ -73,7 +73,7 @@ class _Border:
             self.group_of_node.update(dict.fromkeys(unknowns, number))
         for at in elements:
             place = self._of_unknowns(at)
-            self._touch(place.groups, place)
+            self._couple(place.groups, place)
 
     def _unknowns(self, dofs: slice) -> np.ndarray:
         """Return the unknowns on which these dofs depend."""
@@ -91,11 +91,11 @@ class _Border:
     def _place(self, dofs: slice) -> _Place:
         return self._of_unknowns(self._unknowns(dofs))
 
-    def _touch(self, groups: Iterable[int], place: _Place) -> None:
-        """Let groups touch each other and a place."""
+    def _couple(self, groups: Iterable[int], place: _Place) -> None:
+        """Make groups adjacent to each other and to a place."""
         self.graph.join({*groups, *place.groups})
         for group in groups:
-            self.graph.touch(group, place.chains)
+            self.graph.couple(group, place.chains)
 
     def _coupling(self, coupling: CouplingModel) -> None:
         """Add the unknowns of a coupling and its connections."""
@@ -107,19 +107,20 @@ class _Border:
             return
         places = [self._end(end) for end in coupling.ends]
         if count:
-            self._own(coupling, range(self.model.n_border_dof + first, self.model.n_border_dof + first + count), places)
+            first += self.model.n_border_dof
+            self._add_internal(coupling, range(first, first + count), places)
         if ties:
             for one, other in permutations([*places, *(self.cables[k] for k in coupling.along)], 2):
-                self._touch(one.groups, other)
+                self._couple(one.groups, other)
 
-    def _own(self, coupling: CouplingModel, unknowns: range, places: list[_Place]) -> None:
-        """Add the internal unknowns of a coupling, which touch all its places."""
+    def _add_internal(self, coupling: CouplingModel, unknowns: range, places: list[_Place]) -> None:
+        """Add the internal unknowns of a coupling, adjacent to all its places."""
         bodies = {body for end in coupling.ends for body in self._bodies_of(end)}
-        own = self.graph.group(unknowns, None if coupling.follows_law else bodies)
+        internal = self.graph.group(unknowns, None if coupling.follows_law else bodies)
         if isinstance(coupling, SlideModel):
-            self.slides.append(own)
+            self.slides.append(internal)
         for place in [*places, *(self.cables[k] for k in coupling.along)]:
-            self._touch({own}, place)
+            self._couple({internal}, place)
 
     def _bodies_of(self, end: AttachmentModel) -> set[int]:
         """Return the groups of the body of an attachment, on a slide those of the rider."""

@@ -155,7 +155,7 @@ def _on_body(name: str, points: tuple[Vector, ...],
     on = [builder.attachment(Attachment(on=name, at=point)) for point in points]
     for each in on:
         each.axes = np.eye(builder.scene.dim)  # those of the body, by whose turning spheres roll
-    assert not isinstance(body, ModalBody), f"{body.where} touches no surfaces"
+    assert not isinstance(body, ModalBody), f"{body.where} has no contact with surfaces"
     farthest = np.linalg.norm([body.arm(point) for point in points], axis=1).max()
     return on, np.array([farthest]), np.array([body.point(point) for point in points])
 

@@ -1,4 +1,4 @@
-"""Lines that touch at their closest points, as the engine takes them."""
+"""Models of crossings: contact of two lines at their closest points."""
 
 from __future__ import annotations
 

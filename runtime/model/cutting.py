@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..parts.scene_data import SceneData
-from .numbering import Numbering, Touches, extents, numbered
+from .numbering import Incidence, Numbering, extents, numbered
 
 MAX_ATTACHMENTS = 24
 """Attachments of a chain up to which it is not divided: the border is small."""
@@ -31,11 +31,11 @@ def attached(scene: SceneData) -> np.ndarray:
     return np.array([before[end.on] + int(cables[end.on].mesh.element_at(end.arc_length)) for end in ends], dtype=int)
 
 
-def cut(numbering: Numbering, touches: Touches, at: np.ndarray) -> Numbering:
+def cut(numbering: Numbering, incidence: Incidence, at: np.ndarray) -> Numbering:
     """Return a numbering with chains of more than `MAX_ATTACHMENTS` attachments divided; at: elements, `attached`."""
     if len(at) <= MAX_ATTACHMENTS:
         return numbering
-    low, _ = extents(touches, numbering.number, numbering.n_band)
+    low, _ = extents(incidence, numbering.number, numbering.n_band)
     order = at[np.argsort(low[at], kind="stable")]
     chain = np.searchsorted(numbering.chains, low[order], "right") - 1
     border = np.zeros(len(numbering.number), dtype=bool)
@@ -45,19 +45,19 @@ def cut(numbering: Numbering, touches: Touches, at: np.ndarray) -> Numbering:
             continue
         for place in range(SUBSTRUCTURE_ATTACHMENTS, len(mine) - SUBSTRUCTURE_ATTACHMENTS // 2,
                            SUBSTRUCTURE_ATTACHMENTS):
-            border[_beginning(mine[place], touches, low, numbering)] = True
+            border[_beginning(mine[place], incidence, low, numbering)] = True
     if not border.any():
         return numbering
     taken = np.argsort(numbering.number)
     number = np.argsort(np.concatenate([taken[~border[taken]], taken[border[taken]]]))
     # the former border stays between the band and the nodes that have moved to the border
     n_band = numbering.n_band - int(border.sum())
-    return numbered(touches, number, n_band)
+    return numbered(incidence, number, n_band)
 
 
-def _beginning(element: int, touches: Touches, low: np.ndarray, numbering: Numbering) -> np.ndarray:
+def _beginning(element: int, incidence: Incidence, low: np.ndarray, numbering: Numbering) -> np.ndarray:
     """Return the unknowns of the band that an element shares with those before it in its chain."""
-    own = touches.unknown[touches.element == element]
-    of_own = np.isin(touches.unknown, own) & (low[touches.element] < low[element])
-    shared = np.unique(touches.unknown[of_own])
+    of_element = incidence.unknown[incidence.element == element]
+    earlier = np.isin(incidence.unknown, of_element) & (low[incidence.element] < low[element])
+    shared = np.unique(incidence.unknown[earlier])
     return np.asarray(shared[numbering.number[shared] < numbering.n_band])

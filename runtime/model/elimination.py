@@ -25,7 +25,7 @@ SOLVES = 5
 
 @dataclass
 class Elimination:
-    """Fronts as in engine/linear/fronts.h; strips (n, 2): an unknown and a chain that it touches, increasing."""
+    """Fronts as in engine/linear/fronts.h; strips (n, 2): an unknown and a chain coupled to it, increasing."""
 
     m: int
     start: np.ndarray
@@ -85,7 +85,7 @@ def dense(m: int, strips: np.ndarray) -> Elimination:
 
 
 class BorderGraph:
-    """Groups of the border's unknowns, their adjacency, and the chains of the band that they touch.
+    """Groups of the border's unknowns, their adjacency, and the chains of the band that are coupled to them.
 
     A constraint waits for its bodies: before their elimination its rows have no pivots.
     """
@@ -111,8 +111,8 @@ class BorderGraph:
             self.beside[group] |= groups
             self.beside[group].discard(group)
 
-    def touch(self, group: int, chains: Iterable[int]) -> None:
-        """Let a group touch chains, whose elimination connects all their groups."""
+    def couple(self, group: int, chains: Iterable[int]) -> None:
+        """Couple a group to chains, whose elimination connects all their groups."""
         for chain in chains:
             self.on_chain.setdefault(chain, set()).add(group)
 

@@ -27,7 +27,7 @@ class Numbering:
 
 
 @dataclass
-class Touches:
+class Incidence:
     """Incidence of elements and unknowns: an element and an unknown per entry."""
 
     element: np.ndarray
@@ -58,10 +58,10 @@ def cheapest(elements: np.ndarray, made_of: np.ndarray, shape: tuple[int, int]) 
 def ordered(of_elements: bytes, of_dofs: bytes, shape: tuple[int, int]) -> Numbering:
     """Return `cheapest` of arrays given by their bytes, cached."""
     elements, made_of = (np.frombuffer(given, dtype=int).reshape(-1, 2) for given in (of_elements, of_dofs))
-    touches = _touches(elements, made_of, shape)
-    entry = touches.tocoo()
-    entries = Touches(entry.row, entry.col, len(elements))
-    orders = ((np.arange(shape[1]), shape[1]), _near(touches), _strung(touches))
+    incidence = _incidence_matrix(elements, made_of, shape)
+    entry = incidence.tocoo()
+    entries = Incidence(entry.row, entry.col, len(elements))
+    orders = ((np.arange(shape[1]), shape[1]), _reverse_cuthill_mckee(incidence), _in_chains(incidence))
     return min((numbered(entries, *order) for order in orders),
                key=lambda one: _operations(one, entries))
 
@@ -72,30 +72,30 @@ def _dofs(elements: np.ndarray) -> np.ndarray:
     return np.repeat(elements[:, 0] - np.cumsum(counts) + counts, counts) + np.arange(counts.sum())
 
 
-def _touches(elements: np.ndarray, made_of: np.ndarray, shape: tuple[int, int]) -> csr_array:
+def _incidence_matrix(elements: np.ndarray, made_of: np.ndarray, shape: tuple[int, int]) -> csr_array:
     """Return (elements, unknowns): 1 where an element has an unknown; made_of (k, 2): a dof, an unknown of it."""
     dofs = _dofs(elements)
     has = csr_array((np.ones(len(dofs)), dofs, np.append(0, np.cumsum(elements[:, 1]))),
                     shape=(len(elements), shape[0]))
-    touches = has @ coo_array((np.ones(len(made_of)), (made_of[:, 0], made_of[:, 1])), shape=shape).tocsr()
-    touches.data[:] = 1.0
-    return touches
+    incidence = has @ coo_array((np.ones(len(made_of)), (made_of[:, 0], made_of[:, 1])), shape=shape).tocsr()
+    incidence.data[:] = 1.0
+    return incidence
 
 
-def _near(touches: csr_array) -> tuple[np.ndarray, int]:
+def _reverse_cuthill_mckee(incidence: csr_array) -> tuple[np.ndarray, int]:
     """Return the numbers of the unknowns and the size of the band: all in the band, by reverse Cuthill and McKee."""
-    order = reverse_cuthill_mckee((touches.T @ touches).tocsr(), symmetric_mode=True)
+    order = reverse_cuthill_mckee((incidence.T @ incidence).tocsr(), symmetric_mode=True)
     return np.argsort(order), len(order)
 
 
-def _strung(touches: csr_array) -> tuple[np.ndarray, int]:
+def _in_chains(incidence: csr_array) -> tuple[np.ndarray, int]:
     """Return the numbers of the unknowns and the size of the band: elements in chains, most shared unknowns first.
 
     Unknowns that other elements share than two consecutive ones of a chain are the border: nodes of more than two ends,
     and one node of each ring.
     """
-    n_elements, n = touches.shape
-    shared = triu(touches @ touches.T, 1).tocoo()
+    n_elements, n = incidence.shape
+    shared = triu(incidence @ incidence.T, 1).tocoo()
     beside: list[list[int]] = [[] for _ in range(n_elements)]
     chain = list(range(n_elements))
 
@@ -110,41 +110,41 @@ def _strung(touches: csr_array) -> tuple[np.ndarray, int]:
             beside[a].append(b)
             beside[b].append(a)
             chain[root(a)] = root(b)
-    string: list[int] = []
+    sequence: list[int] = []
     at = np.full(n_elements, -1)
     for end in (e for e in range(n_elements) if len(beside[e]) < 2):
         following = [end] if at[end] < 0 else []
         while following:
-            at[following[0]] = len(string)
-            string.append(following[0])
-            following = [e for e in beside[string[-1]] if at[e] < 0]
-    entry = touches.tocoo()
+            at[following[0]] = len(sequence)
+            sequence.append(following[0])
+            following = [e for e in beside[sequence[-1]] if at[e] < 0]
+    entry = incidence.tocoo()
     first, last = np.full(n, n_elements), np.full(n, -1)
     np.minimum.at(first, entry.col, at[entry.row])
     np.maximum.at(last, entry.col, at[entry.row])
-    follows = np.array([b in beside[a] for a, b in zip(string, string[1:] + string[:1], strict=True)])
+    follows = np.array([b in beside[a] for a, b in zip(sequence, sequence[1:] + sequence[:1], strict=True)])
     border = (last > first + 1) | (last > first) & ~follows[first]
     return np.argsort(np.lexsort((np.arange(n), first, last, border))), n - int(border.sum())
 
 
-def touched(elements: np.ndarray, made_of: np.ndarray, shape: tuple[int, int]) -> Touches:
+def incidence_of(elements: np.ndarray, made_of: np.ndarray, shape: tuple[int, int]) -> Incidence:
     """Return the incidence of elements and unknowns, by the arguments of `cheapest`."""
-    entry = _touches(elements, made_of, shape).tocoo()
-    return Touches(entry.row, entry.col, len(elements))
+    entry = _incidence_matrix(elements, made_of, shape).tocoo()
+    return Incidence(entry.row, entry.col, len(elements))
 
 
-def numbered(touches: Touches, number: np.ndarray, n_band: int) -> Numbering:
+def numbered(incidence: Incidence, number: np.ndarray, n_band: int) -> Numbering:
     """Return the numbering with these numbers of the unknowns; the first n_band are the band."""
-    return _numbering(*extents(touches, number, n_band), number, n_band)
+    return _numbering(*extents(incidence, number, n_band), number, n_band)
 
 
-def extents(touches: Touches, number: np.ndarray, n_band: int) -> tuple[np.ndarray, np.ndarray]:
+def extents(incidence: Incidence, number: np.ndarray, n_band: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the first and the last row of the band of each element; n_band and -1 without any."""
-    at = number[touches.unknown]
+    at = number[incidence.unknown]
     inside = at < n_band
-    low, high = np.full(touches.n_elements, n_band), np.full(touches.n_elements, -1)
-    np.minimum.at(low, touches.element[inside], at[inside])
-    np.maximum.at(high, touches.element[inside], at[inside])
+    low, high = np.full(incidence.n_elements, n_band), np.full(incidence.n_elements, -1)
+    np.minimum.at(low, incidence.element[inside], at[inside])
+    np.maximum.at(high, incidence.element[inside], at[inside])
     return low, high
 
 
@@ -158,14 +158,14 @@ def _numbering(low: np.ndarray, high: np.ndarray, number: np.ndarray, n_band: in
     return Numbering(number, n_band, int(np.max(high - low, initial=0)), chains)
 
 
-def _operations(numbering: Numbering, touches: Touches) -> float:
+def _operations(numbering: Numbering, incidence: Incidence) -> float:
     """Return the operations of a factorisation and of its solves (engine/linear/bordered.c)."""
     n_band, width, chains = numbering.n_band, numbering.width, numbering.chains
-    low, high = extents(touches, numbering.number, n_band)
-    at = numbering.number[touches.unknown]
-    outside = (at >= n_band) & (high >= 0)[touches.element]
+    low, high = extents(incidence, numbering.number, n_band)
+    at = numbering.number[incidence.unknown]
+    outside = (at >= n_band) & (high >= 0)[incidence.element]
     of = np.searchsorted(chains, low, "right") - 1
-    columns = np.unique(np.stack([at[outside], of[touches.element[outside]]]), axis=1)  # of the border, by chain
+    columns = np.unique(np.stack([at[outside], of[incidence.element[outside]]]), axis=1)  # of the border, by chain
     coupled, m = float(np.diff(chains)[columns[1]].sum()), len(numbering.number) - n_band
     factor = n_band * width**2 / 2 + 2 * width * coupled + m**3 / 3
     return factor + SOLVES * (2 * width * n_band + coupled + m**2)

@@ -162,14 +162,14 @@ def _point_forces(model: Model, at: States, kind: str, asked: Asked) -> Values:
 
 
 def _contacts(model: Model, at: States, kind: str, asked: Asked) -> Values:
-    """Return the outputs of contacts; arc-lengths are NaN where nothing touches."""
+    """Return the outputs of contacts; arc-lengths are NaN without contact."""
     found: Values = {}
     for k, contact in enumerate(model.contacts):
         outputs = at.outputs(kind, k)
-        touching = outputs["touching"]
-        touches = touching > 0 if contact.cable >= 0 else np.zeros(len(touching), dtype=bool)
-        ends = {name: np.where(touches, outputs[name], np.nan) for name in ("first", "last")}
-        found[contact.name] = outputs | ends | {"gap": np.full(len(touching), np.nan)}
+        length = outputs["touching"]
+        active = length > 0 if contact.cable >= 0 else np.zeros(len(length), dtype=bool)
+        ends = {name: np.where(active, outputs[name], np.nan) for name in ("first", "last")}
+        found[contact.name] = outputs | ends | {"gap": np.full(len(length), np.nan)}
     return found
 
 

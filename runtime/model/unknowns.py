@@ -20,7 +20,7 @@ from ..errors import SceneError
 from ..parts.scene_data import SceneData
 from ..parts.signal import Signal
 from .cutting import MAX_ATTACHMENTS, cut
-from .numbering import Numbering, as_drawn, cheapest, touched
+from .numbering import Numbering, as_drawn, cheapest, incidence_of
 
 PARALLEL_SINE = 1e-9
 """Sine of the angle below which tangents are parallel."""
@@ -249,7 +249,7 @@ class Supports:
         numbering = cheapest(elements, made_of, shape) if combined else as_drawn(elements, drawn)
         if len(attached) <= MAX_ATTACHMENTS:
             return numbering
-        return cut(numbering, touched(elements, made_of, shape), attached)
+        return cut(numbering, incidence_of(elements, made_of, shape), attached)
 
 
 @lru_cache(maxsize=64)

@@ -95,7 +95,7 @@ def _nearest(a: _Line, b: _Line) -> np.ndarray:
 
 
 def radii(scene: SceneData, part: Crossing) -> float:
-    """Return the distance of the axes of touching lines, m. Raises ValueError."""
+    """Return the distance of the axes of lines in contact, m. Raises ValueError."""
     if part.radius is not None:
         return part.radius
     return sum(radius_of(scene.cables[name]) for name in (part.a, part.b) if name in scene.cables)

@@ -45,7 +45,7 @@ def pairs_of(scene: SceneData, kind: type[Part], entries: Mapping[str, Any]) -> 
             taken.add(pair)
         found.append((a, b))
     if not found:
-        raise SceneError(where, "there is no new pair of the named parts that could touch",
+        raise SceneError(where, "the named parts form no new pair for contact",
                          "add cables, bodies and surfaces before")
     return found
 

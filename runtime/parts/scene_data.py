@@ -121,7 +121,7 @@ class SceneData:
             raise SceneError("scene", f"gravity {error}") from None
         for kind in KINDS:
             setattr(self, kind.group, PartsByName() if kind.is_named() else PartsInOrder())
-        self._touching: dict[tuple[str, str], str] = {}
+        self._contact_of_pair: dict[tuple[str, str], str] = {}
         self.messages: list[str] = []
         self.title = ""
         self.run_settings: dict[str, Any] = {}
@@ -150,9 +150,9 @@ class SceneData:
         super().__setattr__(name, value)
 
     @property
-    def touching(self) -> Mapping[tuple[str, str], str]:
+    def contact_of_pair(self) -> Mapping[tuple[str, str], str]:
         """Return the names of contacts by the names of both sides; added contacts are entered on the next access."""
-        known = self._touching
+        known = self._contact_of_pair
         added = [*islice(reversed(self.contacts.values()), len(self.contacts) - len(known))]
         known.update(((part.a, part.b), part.given_name or "") for part in reversed(added))
         return known

@@ -18,14 +18,14 @@ from .validation import Flag, Name, Reference, Vector, show, xyz
 
 
 class Surface(Part):
-    """A surface of the ground or of a rigid body; a `Contact` says what touches it.
+    """A surface of the ground or of a rigid body; a `Contact` names the part in contact with it.
 
-    A cylinder has no ends: it is touched beyond its length, which pictures draw, and a message reports it.
+    Contact with a cylinder continues beyond its length, which pictures draw; a message reports it.
 
     shape: a `Plane`, `HeightField`, `Sphere`, `Cylinder`, `Capsule` or `Box`
     on: the body, in whose axes the shape is given; by default the ground
     at: origin of the shape's own places, m
-    inside: whether the shape is a hollow, a duct, a tube or a container, which is touched from within
+    inside: whether the shape is a hollow, a duct, a tube or a container, with contact on its inside
     """
 
     kind = "surface"

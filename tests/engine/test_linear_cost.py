@@ -122,7 +122,7 @@ def test_a_border_changes_nothing_but_rounding(name, integrator, monkeypatch):
         return np.concatenate([run[f"{cable}.nodal_vectors"][-1] for cable in run.scene.cables])
 
     with_border = motion()
-    monkeypatch.setattr(numbering, "_strung", lambda touches: (np.arange(touches.shape[1]), touches.shape[1]))
+    monkeypatch.setattr(numbering, "_in_chains", lambda incidence: (np.arange(incidence.shape[1]), incidence.shape[1]))
     np.testing.assert_allclose(motion(), with_border, rtol=0, atol=1e-13)
 
 

@@ -49,8 +49,8 @@ def test_all_stands_for_what_can_touch_and_does_not_yet():
     whole = {(a, b) for a in ("rope", "ball0", "ball1", "ball2") for b in ("ground", "wall", "shield")}
     assert set(pairs(made)) == whole - {("ball0", "ground"), ("ball1", "shield")} and len(made) == 10
     assert [part.name for part in made] == [f"any_{k}" for k in range(1, 11)]
-    assert list(scene.touching) == pairs(scene.contacts.values())
-    with refused("contact: there is no new pair of the named parts that could touch; add cables, bodies and "
+    assert list(scene.contact_of_pair) == pairs(scene.contacts.values())
+    with refused("contact: the named parts form no new pair for contact; add cables, bodies and "
                  "surfaces before"):
         scene.contact("all", "all", stiffness=1e4)
 

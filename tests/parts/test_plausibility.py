@@ -42,7 +42,7 @@ def test_a_body_with_a_shape_that_touches_by_its_origin_alone_is_noted(shape, gi
         made.surface("skin", fu.Sphere(radius=0.1), on="box")
     made.contact("box", "ground", name="foot", restitution=0.2, **given)
     found = made.run(duration=1e-3, tol=1e-3).report["messages"]
-    says = 'contact "foot" touches with the origin of "box" alone, and not with the shape of that body: give points='
+    says = 'contact "foot" acts at the origin of "box" alone, not on the surface of that body: give points='
     assert any(each.startswith(says) for each in found) == noted
 
 

@@ -70,7 +70,7 @@ def marks(frames: Frames, refs: Frames, size: float) -> Iterator[Mark]:
     for part in coupling_parts(scene):
         name = part.given_name or part.kind
         if "position" in part.results and frames.has(f"{name}.position"):
-            yield Mark(name, "point", still(frames.value(f"{name}.position")), _touching(part))
+            yield Mark(name, "point", still(frames.value(f"{name}.position")), _point_description(part))
     for part, end in _attachments(scene):
         if end.on is None:
             yield Mark(part.given_name or part.kind, "ground", place(frames, end), f"ground end of {part.where}")
@@ -92,7 +92,7 @@ def _attachments(scene: SceneData) -> Iterator[tuple[Part, Attachment]]:
     return ((part, value) for part in scene.parts() for _, value in part if isinstance(value, Attachment))
 
 
-def _touching(part: Part) -> str:
+def _point_description(part: Part) -> str:
     """Return the description of a part that acts at a point."""
     if not isinstance(part, Crossing):
         return part.where

@@ -30,8 +30,8 @@ def lengthens_plainly(rest: Rest, cable: Cable) -> bool:
     """
     scene, name = rest.scene, cable.name
     rigid = any(tie.rotation == "rigid" and name in (tie.cable, tie.to) for tie in scene.ties.values())
-    touches = [contact for contact in scene.contacts.values() if contact.a == name]
-    if rigid or rest.names(name, NOT_SCALING_GROUPS) or any(contact.name in rest.reader.parts for contact in touches):
+    contacts = [contact for contact in scene.contacts.values() if contact.a == name]
+    if rigid or rest.names(name, NOT_SCALING_GROUPS) or any(contact.name in rest.reader.parts for contact in contacts):
         return False
     return cable.shape != "hanging" or hangs_plainly(rest, cable)
 
@@ -56,7 +56,7 @@ def by_length(rest: Rest, cable: Cable) -> Change:
               if isinstance(load, DistributedForce) and load.cable == cable.name}
     for load in by_values(rest, spread).values():
         change.f += load.f
-    change.f += _touching(rest, rest.model.cables.index(model))
+    change.f += _of_contacts(rest, rest.model.cables.index(model))
     unknown = rest.model.unknown_of_dof[at]
     free = unknown >= 0
     change.same[unknown[free]] = same_points(model, q)[free]
@@ -65,8 +65,8 @@ def by_length(rest: Rest, cable: Cable) -> Change:
     return change
 
 
-def _touching(rest: Rest, cable: int) -> np.ndarray:
-    """Return (n_dof,): the part of the residual by surfaces that a cable touches."""
+def _of_contacts(rest: Rest, cable: int) -> np.ndarray:
+    """Return (n_dof,): the part of the residual by the contacts of a cable with surfaces."""
     model = rest.model
     if not any(contact.cable == cable for contact in model.contacts):
         return np.zeros(model.n_dof)

@@ -30,9 +30,9 @@ def condensed(full: csc_array, model: Model) -> tuple[csc_array, csc_array]:
     kept = np.concatenate([np.arange(n), np.array(own, dtype=int)])
     full = full.tocsr()
     K = without_forces(full, kept, model)
-    touching = {n + k for contact in model.hard_contacts for k in contact.force_unknowns}
+    of_contacts = {n + k for contact in model.hard_contacts for k in contact.force_unknowns}
     return K.tocsc(), _independent(full[np.array(forces, dtype=int)][:, kept],
-                                   [row for row, k in enumerate(forces) if k in touching]).tocsc()
+                                   [row for row, k in enumerate(forces) if k in of_contacts]).tocsc()
 
 
 def _independent(rows: csr_array, of_contacts: list[int]) -> csr_array:

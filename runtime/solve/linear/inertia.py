@@ -130,8 +130,8 @@ def _independent(C: csr_array) -> csr_array:
     C = (diags_array(1.0 / np.where(length > 0, length, 1.0)) @ C).tocsr()[length > 0]
     if not C.shape[0]:
         return C
-    touched = np.unique(C.indices)
-    r, order = qr(C[:, touched].toarray().T, mode="r", pivoting=True)
+    occurring = np.unique(C.indices)
+    r, order = qr(C[:, occurring].toarray().T, mode="r", pivoting=True)
     diagonal = np.abs(np.diag(r))
     return C[np.sort(order[: np.count_nonzero(diagonal > DEPENDENCE_TOLERANCE)])]
 

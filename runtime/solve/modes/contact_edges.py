@@ -1,6 +1,6 @@
 """The ends of contact along a cable, between the points of its quadrature.
 
-The stiffness of a penalty contact is that of the points that touch. Where the cable leaves the surface, a whole point
+The stiffness of a penalty contact is that of the points in contact. Where the cable leaves the surface, a whole point
 enters or leaves contact as the mesh changes: frequencies of a line on a bed scattered by 0.3 %. For a linearisation the
 point at the end of the contact has the length up to the zero of the depth.
 """
@@ -16,7 +16,7 @@ from ...parts.scene_data import SceneData
 
 
 def resolve_contact_edges(model: Model, scene: SceneData, q: np.ndarray) -> None:
-    """Give points at the ends of contact, in a model of a scene at a configuration, the length of cable that touches.
+    """Give points at the ends of contact, in a model of a scene at a configuration, the length of cable in contact.
 
     Laws of exponent 1.5 do not change: their stiffness begins at zero.
     """
@@ -33,10 +33,10 @@ def _weigh(contact: ContactModel, elements: int, depth: np.ndarray) -> None:
         of_one = getattr(contact, name)
         setattr(contact, name, np.broadcast_to(of_one, (elements, *of_one.shape[1:])).copy())
     contact.stride, weights = contact.n_points, contact.weights.ravel()
-    ends, touches = np.cumsum(weights), depth > 0
-    for k in np.flatnonzero(touches[:-1] != touches[1:]):
+    ends, active = np.cumsum(weights), depth > 0
+    for k in np.flatnonzero(active[:-1] != active[1:]):
         passed = contact.arc[k] + (contact.arc[k + 1] - contact.arc[k]) * depth[k] / (depth[k] - depth[k + 1])
-        if touches[k]:
+        if active[k]:
             weights[k] += passed - ends[k]
         else:
             weights[k + 1] += ends[k] - passed

@@ -73,7 +73,7 @@ def stopped(model: Model, engine: Engine, status: str, settings: RunSettings) ->
     if cause == "not_known":
         return (f"no force is known at {when}: {what}; {RESULTS_KEPT}. A crossing has no closest points where its "
                 "lines are parallel near each other, or wind around each other: keep them at an angle. A line that "
-                "moves round an end of the other changes sides: let them touch beforehand, or make them longer")
+                "moves round an end of the other changes sides: begin with them in contact, or make them longer")
     if settings.step is not None and INTEGRATORS[engine.integrator].stability is not None:
         remedy = _too_large(engine, settings)
     elif cause == "self_locking" and _is_force(model, coupling):

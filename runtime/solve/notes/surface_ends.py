@@ -14,7 +14,7 @@ KINDS = "contact", "hard_contact"
 
 
 class SurfaceEnds(Note):
-    """The largest distance in m beyond the ends of its surface at which each contact touches."""
+    """The largest distance in m beyond the ends of its surface at which each contact acts."""
 
     assesses_rest = True
 
@@ -34,7 +34,7 @@ class SurfaceEnds(Note):
             self.keep(contact.name, distance)
 
     def notes(self) -> list[str]:
-        """Return a note for each contact that touches beyond an end."""
+        """Return a note for each contact beyond an end."""
         notes = []
         for name, (distance,) in self.found.items():
             contact = self.scene.contacts[name]
@@ -48,6 +48,6 @@ class SurfaceEnds(Note):
                 extent, end = float(max(np.ptp(each) for each in axes)), "table"
                 what = "where its height stays that of the edge: give a table that reaches farther"
             if distance > END_TOLERANCE * extent:
-                notes.append(f'{contact.where} touches up to {distance:.3g} m beyond the {end} of "{contact.b}", '
+                notes.append(f'{contact.where} acts up to {distance:.3g} m beyond the {end} of "{contact.b}", '
                              f"{what}")
         return notes

@@ -58,12 +58,12 @@ def balance(static: StaticState) -> Balance:
 
 def _shared(columns: csr_array, residual: np.ndarray, units: np.ndarray) -> np.ndarray:
     """Return the forces with the smallest residual, in the least squares of N."""
-    touched = np.flatnonzero(np.diff(columns.indptr))
-    if not len(touched):
+    occupied = np.flatnonzero(np.diff(columns.indptr))
+    if not len(occupied):
         return np.zeros(columns.shape[1])
-    over = 1.0 / units[touched]
-    matrix = over[:, None] * columns[touched].toarray()
-    return np.asarray(np.linalg.lstsq(matrix, -over * residual[touched], rcond=None)[0])
+    over = 1.0 / units[occupied]
+    matrix = over[:, None] * columns[occupied].toarray()
+    return np.asarray(np.linalg.lstsq(matrix, -over * residual[occupied], rcond=None)[0])
 
 
 def _size_of_sums(static: StaticState, stiffness: csr_array) -> np.ndarray:

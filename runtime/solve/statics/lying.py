@@ -20,7 +20,7 @@ BED_SHAPES = ("flat", "terrain")
 GAP_TOLERANCE = 0.1
 """Gaps below this fraction of a cable's radius count as closed in the drawing."""
 MIN_CONTACT_FRACTION = 0.1
-"""A cable has left its bed if it touches less than this fraction of the length on which it lies as drawn."""
+"""A cable has left its bed if it is in contact on less than this fraction of the length on which it lies as drawn."""
 MAX_RMS_STEP = 0.02
 """Root mean square over the nodes of a step, as a fraction of the same length."""
 
@@ -56,10 +56,10 @@ def left(problem: StaticProblem, places: list[Lying]) -> list[str]:
     """Return a message for each of these contacts that the cable has left in the static state."""
     if not places:
         return []
-    touching = outputs_by_name("contact", problem.engine.static_outputs("contact"))["touching"]
+    in_contact = outputs_by_name("contact", problem.engine.static_outputs("contact"))["touching"]
     return [f"{_lies(problem, place)}, and has left it: it slid off, or the search carried it past the surface. Take "
             "scene.relax(), or more friction" for place in places
-            if touching[place.contact] < MIN_CONTACT_FRACTION * (place.last - place.first)]
+            if in_contact[place.contact] < MIN_CONTACT_FRACTION * (place.last - place.first)]
 
 
 def not_held(problem: StaticProblem, places: list[Lying]) -> str:

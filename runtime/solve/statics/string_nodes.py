@@ -37,9 +37,9 @@ class StringNodes:
     """The nodes of all cables of a model, numbered cable by cable.
 
     first: the number of the first node of each cable, and their end. r, slope (nodes, dim): dofs of position and of
-    r_x. held (nodes,): those that joints and springs hold to the ground or to bodies, which stay as drawn. others:
+    r_x. held (nodes,): those that joints and springs hold to the ground or to bodies, which stay as drawn. acted_on:
     cables under other actions than supports, ties, loads, fluids, fixed planes, and joints to ground and bodies;
-    joined: cables on which other cables act, except by ties; touched: cables in contact with what strings would pass
+    joined: cables on which other cables act, except by ties; in_contact: cables in contact with what strings would pass
     through.
     """
 
@@ -82,12 +82,12 @@ class StringNodes:
         return np.concatenate([np.arange(*self.first[c : c + 2]) for c in group])
 
     def can_hang(self, group: np.ndarray) -> bool:
-        """Return whether a group is held somewhere, acts on no other cables, touches only planes, and has no unknown
+        """Return whether a group is supported, acts on no other cables, has contact with planes only, and no unknown
         nodal vectors.
         """
         own = self.of(group)
         return bool(self.fixed[own].any() and (self.unknown[own] >= -1).all()
-                    and (self.joined | self.touched).isdisjoint(group.tolist())
+                    and (self.joined | self.in_contact).isdisjoint(group.tolist())
                     and all(STRING_VECTORS.issuperset(self.model.cables[c].vectors) for c in group))
 
     def smooth_ties(self, group: np.ndarray) -> list[SmoothTie]:
@@ -130,7 +130,7 @@ class StringNodes:
     def _hold(self) -> None:
         """Find the actions of couplings on cables except loads, fluids and fixed planes."""
         self.held = np.zeros(len(self.cable), dtype=bool)
-        self.others, self.joined, self.touched = set[int](), set[int](), set[int]()
+        self.acted_on, self.joined, self.in_contact = set[int](), set[int](), set[int]()
         for coupling in self.model.couplings:
             if isinstance(coupling, DeadLoadModel | LoadModel | DragModel) or rests(coupling):
                 continue
@@ -139,11 +139,11 @@ class StringNodes:
             if node is not None:
                 self.held[node] = True
             if node is None or not isinstance(coupling, JointModel):
-                self.others |= cables
+                self.acted_on |= cables
             if len(cables) > 1:
                 self.joined |= cables
             if isinstance(coupling, ContactModel | CrossingModel):
-                self.touched |= cables
+                self.in_contact |= cables
 
     def _node_of(self, coupling: object) -> int | None:
         """Return the node that a joint, or a force on an end of a cable, holds to ground or bodies; else None."""

@@ -51,7 +51,7 @@ def hang(problem: StaticProblem, every: bool) -> bool:
     if not (every or np.array_equal(q, problem.begin)):
         return False
     groups = [group for group in nodes.groups() if nodes.can_hang(group) and (every or (
-        nodes.others.isdisjoint(group.tolist()) and _is_straight_and_slack(nodes, group, problem.as_drawn)))]
+        nodes.acted_on.isdisjoint(group.tolist()) and _is_straight_and_slack(nodes, group, problem.as_drawn)))]
     found = False
     uneven = any(rests(contact) and contact.shape == "terrain" for contact in model.contacts)
     for _ in range(SHAPE_ITERATIONS if groups and (uneven or _depend_on_shape(model)) else 1):
