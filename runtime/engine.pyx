@@ -438,8 +438,8 @@ cdef class Engine(Report):
         n = fu_drag_densities(&self.model, self.couplings[<int>self._of("drag")[drag]], &self.run.next, &out[0, 0])
         return found[:n]
 
-    def fluid_inertia_densities(self, int drag, int points, double t, q, v):
-        """Return the inertia forces of added mass on a cable (points, 3) and on its slope (points, 3), in a state without
+    def added_mass_densities(self, int drag, int points, double t, q, v):
+        """Return the inertia forces of added mass on a cable (points, 3) and on its slope (points, 3) without
         accelerations, and the added mass (points, dim, dim), at the points of quadrature of its drag.
         """
         found = np.zeros((points, FU_ADDED_MASS_DENSITIES))

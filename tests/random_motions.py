@@ -133,8 +133,8 @@ def thrown_on_ground(scene, rng) -> float:
     body(scene, rng, "A", (0, 0.13 + decade(rng, 0.005, 0.3), 0), velocity=(float(rng.uniform(0, 2)), 0, 0))
     law = {"restitution": float(rng.choice([0.0, 0.5]))} if rng.random() < 0.5 else {
         "stiffness": decade(rng, 5e3, 1e5), "damping": float(rng.choice([0.0, 0.5]))}
-    rubs = {} if rng.random() < 0.5 else {"friction": float(rng.uniform(0.1, 0.5))}
-    scene.contact("A", "ground", radius=0.02, points=points[: int(rng.integers(1, 4))], **law, **rubs)
+    friction = {} if rng.random() < 0.5 else {"friction": float(rng.uniform(0.1, 0.5))}
+    scene.contact("A", "ground", radius=0.02, points=points[: int(rng.integers(1, 4))], **law, **friction)
     return decade(rng, 0.3, 0.8)
 
 
@@ -142,8 +142,8 @@ def rope_on_ground(scene, rng) -> float:
     """A short rope falls onto a plane."""
     rope = cable(scene, rng, "rope", (0, 0.15, 0), (1, 0.2, 0), soft=True, velocity=(float(rng.uniform(0, 1)), 0, 0))
     scene.surface("ground", fu.Plane())
-    rubs = {} if rng.random() < 0.5 else {"friction": float(rng.uniform(0.1, 0.5))}
-    scene.contact(rope, "ground", stiffness=decade(rng, 5e3, 5e4), damping=1.0, **rubs)
+    friction = {} if rng.random() < 0.5 else {"friction": float(rng.uniform(0.1, 0.5))}
+    scene.contact(rope, "ground", stiffness=decade(rng, 5e3, 5e4), damping=1.0, **friction)
     return decade(rng, 0.25, 0.5)
 
 

@@ -115,17 +115,17 @@ class InTime:
 
 
 def compared(probe: Callable[[str, float], Probe[Any]], difference: Callable[[Probe[Any], Probe[Any]], float],
-             asked: str, tol: float, rubs: bool = False) -> InTime:
+             asked: str, tol: float, friction: bool = False) -> InTime:
     """Return the integrators: generalised-alpha where it agrees with the automatic choice for less work.
 
     Its tolerance is smaller than that of the run where this is needed. probe: returns the run on a coarse mesh by an
-    integrator and its tolerance; difference: of two of them; asked: the integrator of the settings; rubs: whether the
-    scene has friction.
+    integrator and its tolerance; difference: of two of them; asked: the integrator of the settings; friction: whether
+    the scene has any.
     """
     if asked != AUTO:
         return InTime(asked, tol, ASSUMED_ERROR * tol, asked, min(tol, MAX_PROBE_TOL), ASSUMED_ERROR, 1.0, tol,
                       f"integrator {asked}: as asked for")
-    tried = min((1.0 if rubs else PROBE_TOL_RATIO) * tol, MAX_PROBE_TOL)
+    tried = min((1.0 if friction else PROBE_TOL_RATIO) * tol, MAX_PROBE_TOL)
     found = probe(AUTO, tried)
     for shorter in (tol, tol / RETRY_TOL_RATIO):  # a run with too long steps may fail
         if found.run is None and shorter < tried:

@@ -16,7 +16,7 @@ from ..parts.modal_body import ModalBody
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
 from ..solve.motion.run import FAILED_STATUSES, Simulation
-from ..solve.notes.coincident_points import MeetingPoints
+from ..solve.notes.coincident_points import CoincidentPoints
 from ..solve.notes.diagnosis import RESULTS_KEPT, stopped
 from .quantities import ENERGIES
 
@@ -111,7 +111,7 @@ def _message(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
             return (f'slide "{slide.name}": ran off the {end} of cable "{cable.name}" at {when}; {RESULTS_KEPT}')
         case _ if status in FAILED_STATUSES:
             now, q, *_ = engine.now()
-            points = MeetingPoints(scene, model)
+            points = CoincidentPoints(scene, model)
             points.see({"time": np.array([now]), "q": q[None]})
             jumps = [each for each in velocity_jumps(scene.as_drawn, settings.duration) if each in simulation.messages]
             return "; ".join([*points.notes(), stopped(model, engine, status, settings), *jumps])

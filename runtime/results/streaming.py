@@ -1,8 +1,8 @@
 """Results on disk during a run, and checkpoints from which a stopped run is resumed.
 
-A run saved as OUT.nc writes its rows there. At some of its pauses (pauses.py) it replaces the checkpoint OUT.nc.state.
-The clock decides at which pauses, but it does not change results: every pause brings the engine into a state that a
-checkpoint holds completely. A completed run leaves no checkpoint.
+A run saved as OUT.nc writes its rows there. At some of its pauses (row_stream.py) it replaces the checkpoint
+OUT.nc.state. The clock selects these pauses without an effect on results: at every pause the state of the engine is
+one that a checkpoint holds completely. A completed run leaves no checkpoint.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from ..parts.file_paths import GIVE, FilePath
 from ..parts.scene_data import SceneData
 from ..parts.scene_text import dumps, parts_text
 from ..parts.settings import RunSettings
-from ..solve.motion.pauses import Pauses
+from ..solve.motion.row_stream import RowBlocks
 from ..solve.notes.row_notes import RowNotes
 from .checkpoints import Checkpoint, DamagedCheckpointError, Facts, checkpoint_of
 from .files import check_writable, create_file, file_text, open_file, over_time
@@ -114,7 +114,7 @@ class Stream:
         """Return the bytes available to the file: free space plus the older file."""
         return shutil.disk_usage(self._path.parent).free + (self._path.stat().st_size if self._path.exists() else 0)
 
-    def start(self, model: Model, engine: Engine, pace: Pauses, events: list[dict[str, Any]], row_notes: RowNotes,
+    def start(self, model: Model, engine: Engine, blocks: RowBlocks, events: list[dict[str, Any]], row_notes: RowNotes,
               on_trial: bool) -> None:
         """Record a run from its first row, or restore its checkpoint.
 
@@ -122,7 +122,7 @@ class Stream:
         restart with another call of `start`. Until it is `settled`, rows stay in the engine or, if they are too many,
         in the part file: an older file stays unchanged.
         """
-        self._model, self._engine, self._pace, self._events = model, engine, pace, events
+        self._model, self._engine, self._blocks, self._events = model, engine, blocks, events
         self._row_notes = row_notes
         self._begin = time.monotonic()
         self._facts |= {"start": start_of(model), "integrator": engine.integrator}
@@ -162,9 +162,9 @@ class Stream:
         if not (self._has_name or self._on_trial):
             self._publish()
             return
-        free_rows = self._pace.capacity - (self._engine.n_rows - self._taken)
+        free_rows = self._blocks.capacity - (self._engine.n_rows - self._taken)
         due = self._has_name and time.monotonic() - self._checked > CHECKPOINT_INTERVAL
-        if due or free_rows < self._pace.every + 1:
+        if due or free_rows < self._blocks.every + 1:
             self._take()
             if self._has_name:
                 self._checkpoint()

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from ..results.modes import Modes
     from ..results.streaming import Stream
     from ..solve.motion.run import Start
-    from ..solve.motion.trial_cache import SharedTrials
+    from ..solve.motion.trial_cache import TrialCache
     from ..view.animation import Animation
 
 SYNONYMS = {"dt": "step", "time_step": "step", "timestep": "step", "h": "step", "t_end": "duration", "tend": "duration",
@@ -114,7 +114,7 @@ class Scene(Viewable, DescribedScene):
         return self._run(given, resume, progress)
 
     def _run(self, settings_given: Mapping[str, Any], resume: bool, progress: bool | Callable[[float], None] | None,
-             trials: SharedTrials | None = None) -> Run:
+             trials: TrialCache | None = None) -> Run:
         """Return the run with these settings, None for defaults, see `run`; trials: of scenes of one shape."""
         given = {name: value for name, value in settings_given.items() if value is not None}
         initial = given.get("initial")
@@ -194,7 +194,7 @@ class Scene(Viewable, DescribedScene):
 
     def _simulated(self, settings: RunSettings, state: Start | None, resume: bool,
                    progress: bool | Callable[[float], None] | None, chosen: Choice[Self] | None = None,
-                   trials: SharedTrials | None = None) -> Run:
+                   trials: TrialCache | None = None) -> Run:
         """Return the run with these settings, in any status, from a state or as the settings say."""
         with uninterrupted(), self._saving(settings, resume) as stream, one_blas_thread, enough_memory():
             from ..results.recording import recorded  # brings SciPy and the engine

@@ -16,7 +16,7 @@ from ..parts.validation import shown
 from ..results.run import Run
 from ..scene.scene import Scene
 from ..solve.linear.threads import available, one_blas_thread
-from ..solve.motion.trial_cache import SharedTrials
+from ..solve.motion.trial_cache import TrialCache
 
 if TYPE_CHECKING:
     from concurrent.futures import Future
@@ -104,7 +104,7 @@ def _results(scenes: Iterator[Scene | Callable[[], Scene]], threads: int, keep: 
         except FunicularError as error:
             return _bare(error)
 
-    trials = SharedTrials(is_open=settings.get("integrator") in (None, AUTO) and settings.get("step") is None)
+    trials = TrialCache(is_open=settings.get("integrator") in (None, AUTO) and settings.get("step") is None)
     from concurrent.futures import ThreadPoolExecutor, wait  # which one scene does without
 
     waiting: deque[Future[Result]] = deque()

@@ -5,7 +5,7 @@ import re
 import funicular as fu
 import pytest
 
-NOTE = "may be more than .* unseen; where it touches, take elements of at most ([0-9.]+) m"
+NOTE = "may be more than .* undetected; in the contact zone, take elements of at most ([0-9.]+) m"
 SHAPES = {"sphere": fu.Sphere(radius=0.02, at=(0.545, -0.055, 0)),
           "cylinder": fu.Cylinder(radius=0.02, length=1, at=(0.545, -0.055, 0)),
           "box": fu.Box(size=(0.04, 0.04, 1), at=(0.545, -0.055, 0)),

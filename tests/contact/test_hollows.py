@@ -115,7 +115,7 @@ def test_a_rope_rests_on_the_bottom_of_its_duct(duct, element):
     held = [rest[f"{name}.force"][1] for name in ("rope@0", "rope@4.02", "touch")]
     assert held[2] > 0.8 * weight * 4.02
     assert sum(held) == pytest.approx(weight * 4.02, rel=1e-6)
-    assert not [message for message in rest.messages if "unseen" in message or "beyond" in message]
+    assert not [message for message in rest.messages if "undetected" in message or "beyond" in message]
 
 
 @pytest.mark.parametrize("integrator", ["radau", "genalpha", "energy"])

@@ -30,7 +30,7 @@ PLACES = {
         "solve/statics/string_start.py"],
     "contact with surfaces: depth, ends of the surface, what a cable lies on": [
         "solve/linear/condensation.py", "solve/modes/contact_edges.py", "solve/notes/penetrations.py",
-        "solve/notes/surface_ends.py", "solve/notes/unseen_contact.py", "solve/statics/lying.py",
+        "solve/notes/surface_ends.py", "solve/notes/coarse_contact.py", "solve/statics/lying.py",
         "solve/statics/string_start.py"],
     "derivatives of a state of rest by what a part is given; others are differenced": [
         "solve/adjustment/length_changes.py", "solve/adjustment/load_changes.py",
@@ -59,7 +59,7 @@ SCENE_PLACES = {
         "solve/notes/coarse_meshes.py", "solve/notes/coincident_points.py", "solve/notes/sensitivity.py",
         "solve/statics/turns.py"],
     "surfaces, and depths below them": [
-        "solve/notes/penetrations.py", "solve/notes/surface_ends.py", "solve/notes/unseen_contact.py",
+        "solve/notes/penetrations.py", "solve/notes/surface_ends.py", "solve/notes/coarse_contact.py",
         "solve/statics/lying.py", "solve/statics/string_start.py"],
     "pictures of each kind": ["results/animation/marks.py"],
     "parameters that are adjusted": [

@@ -20,7 +20,7 @@ from funicular import (
 )
 from funicular.model.build import build
 from funicular.solve import notes
-from funicular.solve.motion import pauses
+from funicular.solve.motion import row_stream
 from funicular.solve.notes.note import Note
 from funicular.solve.notes.row_notes import NOTES, RowNotes
 from shared_scenes import cable_scene
@@ -71,7 +71,7 @@ def noted(run, said: str) -> list[str]:
 def test_rows_on_disk_are_noted_too(said, tmp_path, monkeypatch):
     """The last rows of a streamed run have no compression any more."""
     whole = SCENES[said]().run(**SETTINGS)
-    monkeypatch.setattr(pauses, "MAX_BUFFERED_BYTES", 1.0)
+    monkeypatch.setattr(row_stream, "MAX_BUFFERED_BYTES", 1.0)
     streamed = SCENES[said]().run(**SETTINGS, save=tmp_path / "run.nc")
     assert len(noted(whole, said)) == 1
     assert noted(streamed, said) == noted(whole, said)
@@ -150,7 +150,7 @@ def test_a_spring_of_no_length_has_no_direction_to_lose():
 def test_a_body_that_is_put_on_the_end_of_its_spring_is_noted():
     """Rounding decides the direction of the 5 N of its spring."""
     said = (r'spring "coil": at t = 0.02 s both ends are at \(0, 0, 0\) m: its direction is lost; keep them apart, '
-            "or take length=0 where they may meet")
+            "or take length=0 where they may coincide")
     with pytest.warns(FunicularWarning, match=said):
         met(stays=True).run(**SETTINGS)
 

@@ -76,7 +76,7 @@ def test_rows_of_a_trial_that_do_not_fit_in_memory(tmp_path, monkeypatch, lost):
         return times_reached(long_trial, tol=1e-4, **settings)[0]
 
     plain = run()
-    monkeypatch.setattr("funicular.solve.motion.pauses.MAX_BUFFERED_BYTES", 4.0 * max(1, plain["time"].nbytes))
+    monkeypatch.setattr("funicular.solve.motion.row_stream.MAX_BUFFERED_BYTES", 4.0 * max(1, plain["time"].nbytes))
     taken: list[bool] = []
     take = streaming.Stream._take
 

@@ -192,7 +192,7 @@ def test_where_the_damped_integrator_fails_or_costs_more_it_is_not_taken():
                          lambda one, other, apart=apart: apart, "auto", 1e-4)
         assert found.integrator == found.probed == "auto" and found.tol == 1e-4
     tried = []
-    compared(lambda integrator, tol: tried.append(tol) or _probe(1e3), lambda one, other: 1e-5, "auto", 1e-4, rubs=True)
+    compared(lambda integrator, tol: tried.append(tol) or _probe(1e3), lambda one, other: 1e-5, "auto", 1e-4, True)
     assert tried == [1e-4, 1e-4]  # with friction errors jump as steps grow
     asked = compared(lambda integrator, tol: None, lambda one, other: 0.0, "radau", 1e-4)
     assert (asked.integrator, asked.tol, asked.probed) == ("radau", 1e-4, "radau")

@@ -238,8 +238,8 @@ def _contact() -> list[Relation]:
 
     def dissipated(s: State) -> Any:
         p, rate = depth(s)
-        rubs, slip = friction(s)
-        return np.array([(s["c"][2] * p + s["c"][3] * p * p**0.5) * s["c"][4] * rate * rate - rubs.dot(slip)])
+        force, slip = friction(s)
+        return np.array([(s["c"][2] * p + s["c"][3] * p * p**0.5) * s["c"][4] * rate * rate - force.dot(slip)])
 
     def whole(s: State) -> Any:
         return size(s)[0] * across(s) + friction(s)[0]

@@ -189,7 +189,7 @@ class CableLoads:
         on_slope = M = None
         if drag.has_inertia:
             force, on_slope, M = self._at_points(
-                cable, drag.n_points, lambda *at: self._engine.fluid_inertia_densities(number, *at))
+                cable, drag.n_points, lambda *at: self._engine.added_mass_densities(number, *at))
             density = density + force
         for k, rule in enumerate(rules_of(cable, drag)):
             turned = None if turning is None else Turning(*(getattr(turning, field.name)[:, k]
@@ -204,7 +204,7 @@ class CableLoads:
         found = self._engine.drag_densities(number, cable.n_elements, t, q, v)
         density, on_slope, M = found[:, 4:], None, None
         if len(found) and drag.has_inertia:
-            force, on_slope, M = self._engine.fluid_inertia_densities(number, len(found), t, q, v)
+            force, on_slope, M = self._engine.added_mass_densities(number, len(found), t, q, v)
             density = density + force
         changes = np.flatnonzero(np.any(np.diff(found[:, :2], axis=0) != 0, axis=1)) + 1  # of element or part
         for rows in np.split(np.arange(len(found)), changes) if len(found) else []:

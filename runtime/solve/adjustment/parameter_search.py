@@ -56,7 +56,7 @@ class AtRest:
 
 
 @dataclass(frozen=True)
-class Way:
+class Direction:
     """The direction of a difference of values: the step of a parameter to either side, dx/dp (unknowns,), and the
     direct change by the parameter.
     """
@@ -66,7 +66,7 @@ class Way:
     change: Change
 
     @classmethod
-    def of(cls, problem: StaticProblem, rates: np.ndarray, change: Change) -> Way:
+    def of(cls, problem: StaticProblem, rates: np.ndarray, change: Change) -> Direction:
         """Return the direction of a parameter, with the step that moves the state by a fraction of the scene's size."""
         moves = np.hypot(problem.length(rates), np.linalg.norm(change.c))
         return cls(DIFFERENCE_STEP * problem.size / moves if moves > 0 else 1.0, rates, change)
@@ -139,7 +139,7 @@ class ParameterSearch(Generic[S]):
         rates = -problem.solver()(np.stack([columns[k] for k in range(len(p))], axis=1))
         G = np.zeros((len(at.g), len(p)))
         G[:, list(here)] = self.along(problem, kept, [
-            Way.of(problem, rates[:, k], changes.found.get(k, Change(problem.model))) for k in here])
+            Direction.of(problem, rates[:, k], changes.found.get(k, Change(problem.model))) for k in here])
         for k, (below, above) in ends.items():
             below.move(-steps[k] * rates[:, k])
             above.move(steps[k] * rates[:, k])
@@ -172,24 +172,24 @@ class ParameterSearch(Generic[S]):
             found[k][first : first + model.dim] = (laws[0].at_rest(b - a) - laws[1].at_rest(b - a)) / (2 * h)
         return found
 
-    def along(self, problem: StaticState, kept: dict[str, np.ndarray], ways: Sequence[Way]) -> np.ndarray:
+    def along(self, problem: StaticState, kept: dict[str, np.ndarray], directions: Sequence[Direction]) -> np.ndarray:
         """Return (targets, n): derivatives of the values in n directions from a state `kept`, which is restored."""
-        def ends(some: Sequence[Way]) -> Iterator[StaticState]:
-            for way in some:
-                for step in (-way.step, way.step):
-                    problem.restore(way.begin(kept, step), prescribe=not way.change.c.any())
-                    problem.move(step * way.rates)
+        def ends(some: Sequence[Direction]) -> Iterator[StaticState]:
+            for direction in some:
+                for step in (-direction.step, direction.step):
+                    problem.restore(direction.begin(kept, step), prescribe=not direction.change.c.any())
+                    problem.move(step * direction.rates)
                     yield problem
 
         found = []
         together = max(1, MAX_NUMBERS_AT_ONCE // max(1, problem.model.n_q))
-        for first in range(0, len(ways), together):
-            some = ways[first : first + together]
+        for first in range(0, len(directions), together):
+            some = directions[first : first + together]
             snapshots = Snapshots.of(ends(some), self.reader.reactions)
-            for k, way in enumerate(some):
-                snapshots.reaction[2 * k : 2 * k + 2] += np.outer((-way.step, way.step), way.change.f)
+            for k, direction in enumerate(some):
+                snapshots.reaction[2 * k : 2 * k + 2] += np.outer((-direction.step, direction.step), direction.change.f)
             values = self.reader.read(problem, snapshots)
-            found.append((values[1::2] - values[::2]) / (2 * np.array([way.step for way in some]))[:, None])
+            found.append((values[1::2] - values[::2]) / (2 * np.array([direction.step for direction in some]))[:, None])
         problem.restore(kept)
         return np.concatenate(found).T if found else np.zeros((len(self.reader.in_metres), 0))
 

@@ -180,9 +180,9 @@ def demands_of(settings: RunSettings, scene: SceneData, model: Model, engine: En
     """Return the demands of a scene on an integrator."""
     frequency, decay = fastest_rates(model, engine)
     decay = max(decay, *(regularised_decay(scene, slide) for slide in scene.slides.values()), 0.0)
-    rubs = any(slide.friction is not None and slide.friction.sliding for slide in scene.slides.values()) or any(
+    friction = any(slide.friction is not None and slide.friction.sliding for slide in scene.slides.values()) or any(
         contact.is_hard and contact.friction_coefficient for contact in scene.contacts.values())
-    return Demands(frequency, decay, slowest_rate(scene, model, settings.duration), rubs, settings.tol)
+    return Demands(frequency, decay, slowest_rate(scene, model, settings.duration), friction, settings.tol)
 
 
 def check(integrator: Integrator, scene: SceneData, model: Model, engine: Engine) -> None:

@@ -15,7 +15,7 @@ from ...parts.settings import RunSettings
 from ..notes.diagnosis import damping, describe_dof
 from .event_handler import EventHandler
 from .integrator_choice import fastest_rates
-from .progress import Meter
+from .progress import ProgressDisplay
 
 MANY_STEPS_LIMIT = 1_000_000
 """Number of steps above which a run reports it."""
@@ -32,18 +32,19 @@ STABILITY_LIMIT_FRACTION = 0.3
 
 
 class LongRun:
-    """Observes the steps of a run; a call with the time reached in s updates the progress meter."""
+    """Observes the steps of a run; a call with the time reached in s updates the progress display."""
 
-    def __init__(self, model: Model, engine: Engine, settings: RunSettings, event_handler: EventHandler, meter: Meter):
+    def __init__(self, model: Model, engine: Engine, settings: RunSettings, event_handler: EventHandler,
+                 progress: ProgressDisplay):
         self._model, self._engine, self._settings = model, engine, settings
-        self._events, self._meter = event_handler, meter
+        self._events, self._progress = event_handler, progress
         self._marks: deque[tuple[float, float, int]] = deque([(time.monotonic(), engine.time, self._steps)])
         self._warned = False
 
     def __call__(self, reached: float) -> None:
         """Show the progress; for a long run also its rate and end, and once a warning with the cause."""
         with interruptible():
-            self._meter(reached)
+            self._progress(reached)
         now = time.monotonic()
         self._marks.append((now, reached, self._steps))
         if self._steps < MIN_STEPS_FOR_PREDICTION:
@@ -58,7 +59,7 @@ class LongRun:
         if self._steps + more <= MANY_STEPS_LIMIT:
             return
         rate = made / (now - since)
-        self._meter.tell(f"{self._steps:.3g} of about {self._steps + more:.2g} steps, {rate:.2g} a second, "
+        self._progress.describe(f"{self._steps:.3g} of about {self._steps + more:.2g} steps, {rate:.2g} a second, "
                          f"{_duration(more / rate)} left")
         if not self._warned:
             self._warned = True

@@ -18,11 +18,11 @@ def _nothing(_: float | str) -> None:
 
 
 @dataclass(frozen=True)
-class Meter:
-    """Takes the time reached in s when it is called, and a text on the pace by ``tell``."""
+class ProgressDisplay:
+    """Displays the time reached in s, given by a call, and a text on the rate, given to ``describe``."""
 
     reached: OnProgress = _nothing
-    tell: Callable[[str], None] = _nothing
+    describe: Callable[[str], None] = _nothing
 
     def __call__(self, time: float) -> None:
         """Show the time reached by the run, in s."""
@@ -30,10 +30,10 @@ class Meter:
 
 
 @contextmanager
-def progress_bar(duration: float, progress: bool | OnProgress | None) -> Iterator[Meter]:
-    """Yields the meter to call with each time reached (s); ``progress`` as in `Scene.run`."""
+def progress_bar(duration: float, progress: bool | OnProgress | None) -> Iterator[ProgressDisplay]:
+    """Yields the display to call with each time reached (s); ``progress`` as in `Scene.run`."""
     if callable(progress):
-        yield Meter(progress)
+        yield ProgressDisplay(progress)
     elif progress is True or (progress is None and is_watched()):
         from rich.console import Console  # needed only for a visible progress bar
         from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
@@ -42,9 +42,10 @@ def progress_bar(duration: float, progress: bool | OnProgress | None) -> Iterato
         columns = reached, BarColumn(), TimeRemainingColumn(), TextColumn("{task.description}")
         with Progress(*columns, console=Console(stderr=not in_notebook()), transient=True) as bar:
             task = bar.add_task("", total=duration)
-            yield Meter(lambda time: bar.update(task, completed=time), lambda text: bar.update(task, description=text))
+            yield ProgressDisplay(lambda time: bar.update(task, completed=time),
+                                  lambda text: bar.update(task, description=text))
     else:
-        yield Meter()
+        yield ProgressDisplay()
 
 
 def is_watched() -> bool:

@@ -37,10 +37,9 @@ from ..notes.uncontrolled_errors import NormalForces, uncontrolled_errors
 from .event_handler import EventHandler
 from .integrator_choice import choose, tol_of
 from .long_runs import LongRun
-from .pauses import Pauses, pauses
-from .progress import Meter
-from .sink import Sink
-from .trial_cache import SharedTrials
+from .progress import ProgressDisplay
+from .row_stream import RowBlocks, RowStream, row_blocks
+from .trial_cache import TrialCache
 from .trial_run import on_trial
 
 LOG = logging.getLogger(__name__)
@@ -85,8 +84,8 @@ class Simulation:
     solve_cpu_s: float
 
 
-def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initial: Start | None = None,
-             stream: Sink | None = None, trials: SharedTrials | None = None) -> Simulation:
+def simulate(scene: SceneData, settings: RunSettings, on_progress: ProgressDisplay, initial: Start | None = None,
+             stream: RowStream | None = None, trials: TrialCache | None = None) -> Simulation:
     """Integrate a checked scene; calls on_progress(time reached in s) about twenty times a second.
 
     initial: a state of this scene to start from; stream: takes the rows as they come, so that the engine keeps only the
@@ -96,7 +95,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     with interruptible():
         ready = _prepared(scene, settings, initial)
     _check_size(ready.engine.row_bytes, settings, stream)
-    pace = pauses(int(np.ceil(settings.duration / settings.output_step)) + 1, ready.engine.row_bytes)
+    blocks = row_blocks(int(np.ceil(settings.duration / settings.output_step)) + 1, ready.engine.row_bytes)
     messages = implausible(scene) + ready.messages
     if initial is not None:
         messages += [f"state to start from: {message}" for message in initial.messages]
@@ -108,15 +107,15 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     cpu = clock()
     LOG.info("run of %g s: %d degrees of freedom, %s (%s), set up in %.3g s", settings.duration, ready.model.n_dof,
              method.name, reason, set_up)
-    run = _begun(scene, settings, ready, method, pace, on_progress, stream, on_trial=rival is not None)
+    run = _begun(scene, settings, ready, method, blocks, on_progress, stream, on_trial=rival is not None)
     status = run.status
     while rival is not None and status is None:
-        status, lost = on_trial(run.engine, rival, method, settings.duration, pace.every, run.follow, stream)
+        status, lost = on_trial(run.engine, rival, method, settings.duration, blocks.every, run.observer, stream)
         if lost:
             if trials is not None:
                 trials.note(scene, method, rival)
             method, reason, rival = rival.method, f"{reason}; {lost}", rival.rival
-            run = _begun(scene, settings, _prepared(scene, settings, initial), method, pace, on_progress, stream,
+            run = _begun(scene, settings, _prepared(scene, settings, initial), method, blocks, on_progress, stream,
                          on_trial=rival is not None)
             status = run.status
         elif stream is not None:
@@ -127,10 +126,10 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
                                     *unresolved(scene.as_drawn, settings)])
     started = run.began - begin - set_up
     if status in (None, "running"):
-        status = run.engine.advance(run.follow, pace.every, stream)
+        status = run.engine.advance(run.observer, blocks.every, stream)
     if status == "interrupted" and stream is not None and not stream.has_begun:  # write a checkpoint to resume from
-        run = _begun(scene, settings, _prepared(scene, settings, initial), method, pace, on_progress, stream)
-    messages += run.follow.notes() + _warned(run.event_handler.notes())
+        run = _begun(scene, settings, _prepared(scene, settings, initial), method, blocks, on_progress, stream)
+    messages += run.observer.notes() + _warned(run.event_handler.notes())
     cpu, ended = clock() - cpu, time.perf_counter()
     run.row_notes.see(run.engine)
     messages += _controlled_alone(run.engine, settings)
@@ -161,7 +160,7 @@ def _rows_again(scene: SceneData, initial: Start | None, method: Integrator,
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", FunicularWarning)
         second = settings.model_copy(update={"integrator": method.name})
-        return simulate(scene, second, Meter(), initial).engine.rows()
+        return simulate(scene, second, ProgressDisplay(), initial).engine.rows()
 
 
 def _warned(messages: list[str]) -> list[str]:
@@ -202,21 +201,21 @@ class _Begun(NamedTuple):
     status: str | None
     gaps: list[str]
     change: np.ndarray
-    follow: LongRun
+    observer: LongRun
     row_notes: RowNotes
     began: float
 
 
-def _begun(scene: SceneData, settings: RunSettings, ready: _Prepared, method: Integrator, pace: Pauses, meter: Meter,
-           stream: Sink | None, on_trial: bool = False) -> _Begun:
+def _begun(scene: SceneData, settings: RunSettings, ready: _Prepared, method: Integrator, blocks: RowBlocks,
+           progress: ProgressDisplay, stream: RowStream | None, on_trial: bool = False) -> _Begun:
     """Start a prepared run, with its stream; on_trial: it may begin anew with another method."""
     model, engine, event_handler, _ = ready
-    status, gaps, change = _start(scene, settings, model, engine, method, None if stream is None else pace.capacity)
+    status, gaps, change = _start(scene, settings, model, engine, method, None if stream is None else blocks.capacity)
     row_notes = RowNotes(scene, model, settings.step_taken or 0.0, settings.duration)
     if stream is not None and status is None:
-        stream.start(model, engine, pace, event_handler.happened, row_notes, on_trial)
-    follow = LongRun(model, engine, settings, event_handler, meter)
-    return _Begun(model, engine, event_handler, status, gaps, change, follow, row_notes, time.perf_counter())
+        stream.start(model, engine, blocks, event_handler.happened, row_notes, on_trial)
+    observer = LongRun(model, engine, settings, event_handler, progress)
+    return _Begun(model, engine, event_handler, status, gaps, change, observer, row_notes, time.perf_counter())
 
 
 def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine, method: Integrator,
@@ -289,7 +288,7 @@ def _broken_velocities(model: Model, change: np.ndarray) -> list[str]:
     return [f"initial velocities broke a joint: changed by up to {largest:.3g} m/s to keep it"]
 
 
-def _check_size(row_bytes: int, settings: RunSettings, stream: Sink | None) -> None:
+def _check_size(row_bytes: int, settings: RunSettings, stream: RowStream | None) -> None:
     """Raise SceneError for results beyond the memory or, for a stream, beyond its disk."""
     need = row_bytes * settings.duration / settings.output_step
     most, where = (MAX_OUTPUT_BYTES, "") if stream is None else (stream.free, " that are free on the disk")

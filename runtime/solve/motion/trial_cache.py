@@ -1,4 +1,4 @@
-"""Trials of integrators that scenes of one shape share: a method that lost in the first scene is not tried again."""
+"""Cache of integrator trials for scenes of one shape: a method that lost in the first scene is not tried again."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ MAX_COST_RATIO = 2.0
 
 
 @dataclass
-class SharedTrials:
+class TrialCache:
     """The outcome of the first scene's trials.
 
-    Each scene chooses by its own numbers. Where these lead to a trial that the first scene lost, the rival begins; its
-    cost is known beforehand. A trial that is won costs nothing, and is not left out.
+    Each scene selects its method from its own data. If that leads to a trial that the first scene lost, the rival runs,
+    whose cost is known beforehand. A successful trial costs nothing and is repeated.
 
     shape: of the first scene, where that lost a trial; lost: the cost of the rival by the names of both methods;
     is_open: until the end of the first scene, whose trials count.
@@ -50,6 +50,6 @@ class SharedTrials:
 
 
 def shape_of(scene: SceneData) -> tuple[object, ...]:
-    """Return what scenes of one shape share: their parts by kind and name, elements and laws; all but numbers."""
+    """Return the key of scenes of one shape: parts by kind and name, elements, meshes and laws."""
     return scene.dim, *((type(part), part.given_name) for part in scene.parts()), *(
         (cable.element, cable.elements, cable.law, cable.library) for cable in scene.cables.values())

@@ -13,7 +13,7 @@ from ...engine import Engine
 from ...integrators import Integrator
 from .integrator_choice import Rival
 from .long_runs import LongRun
-from .sink import Sink
+from .row_stream import RowStream
 
 TRIAL_DURATION_FRACTION = 0.25
 """Fraction of the duration that a trial runs."""
@@ -31,8 +31,8 @@ EARLY_STOP_COST_RATIO = 10.0
 """Remaining cost over the rival's cost above which a trial stops before that."""
 
 
-def on_trial(engine: Engine, rival: Rival, method: Integrator, duration: float, every: int, follow: LongRun,
-             stream: Sink | None) -> tuple[str, str]:
+def on_trial(engine: Engine, rival: Rival, method: Integrator, duration: float, every: int, observer: LongRun,
+             stream: RowStream | None) -> tuple[str, str]:
     """Run a started engine until the cost of its method is known; every: rows between pauses, at which the stream may
     take them.
 
@@ -43,7 +43,7 @@ def on_trial(engine: Engine, rival: Rival, method: Integrator, duration: float, 
     before, shares = engine.time, 0
     while True:
         shares += 1
-        status = engine.advance(follow, every, stream, most_evaluations=shares * share)
+        status = engine.advance(observer, every, stream, most_evaluations=shares * share)
         time = engine.time
         if status != "running" or time >= TRIAL_DURATION_FRACTION * duration:
             return status, ""

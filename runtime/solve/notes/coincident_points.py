@@ -26,13 +26,13 @@ class _Directed(NamedTuple):
     remedy: str
 
 
-class MeetingPoints(Note):
+class CoincidentPoints(Note):
     """The first time in s at which the points of each spring or distance joint coincided, and their position in m."""
 
     def prepare(self) -> None:
         """Select the parts to measure."""
         scene, model = self.scene, self.model
-        springs = [(part, of.attachments, "keep them apart, or take length=0 where they may meet")
+        springs = [(part, of.attachments, "keep them apart, or take length=0 where they may coincide")
                    for part, of in zip(scene.point_forces.values(), model.point_forces, strict=True)
                    if part.loses_direction]
         joints = [(scene.joints[of.name], of.attachments,
@@ -47,11 +47,11 @@ class MeetingPoints(Note):
         """Measure further output rows: their time and coordinates."""
         for part in self._parts:
             a, b = (attachment_points(self.model, end, rows["q"]) for end in part.ends)
-            met = np.flatnonzero(np.linalg.norm(b - a, axis=1) <= COINCIDENCE_TOLERANCE * part.start)
-            if len(met):
-                place = self.model.results(part.where, {"position": a[met[0]]})["position"]
+            coincide = np.flatnonzero(np.linalg.norm(b - a, axis=1) <= COINCIDENCE_TOLERANCE * part.start)
+            if len(coincide):
+                place = self.model.results(part.where, {"position": a[coincide[0]]})["position"]
                 place = place.round(POSITION_DECIMALS) + 0.0  # no -0
-                self.found.setdefault(part.where, [float(rows["time"][met[0]]), place.tolist()])
+                self.found.setdefault(part.where, [float(rows["time"][coincide[0]]), place.tolist()])
 
     def notes(self) -> list[str]:
         """Return a note for each of them."""

@@ -36,7 +36,7 @@ class FastTurns(Note):
                 f"{self.step * MAX_TURN_PER_STEP / 10 / angle:.2g} s or less, or none, so that tol chooses it"
                 for name, (angle, time, _, _) in self.found.items() if angle > MAX_TURN_PER_STEP]
 
-    def unseen(self, steps: int, tol: float) -> list[str]:
+    def uncontrolled(self, steps: int, tol: float) -> list[str]:
         """Return the bodies that turned too fast for steps that tol has chosen by the error of positions alone.
 
         In a step of a method of second order a turn by an angle a lags behind by a³/12.

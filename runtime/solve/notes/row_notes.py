@@ -10,9 +10,10 @@ import numpy as np
 from ...engine import Engine
 from ...model.model import Model
 from ...parts.scene_data import SceneData
+from .coarse_contact import CoarseContact
 from .coarse_meshes import CoarseMeshes
 from .coarse_slides import CoarseSlides
-from .coincident_points import MeetingPoints
+from .coincident_points import CoincidentPoints
 from .fast_turns import FastTurns
 from .folds import Folds
 from .note import Note
@@ -25,11 +26,10 @@ from .straight_struts import StraightStruts
 from .straightened import Straightened
 from .surface_ends import SurfaceEnds
 from .uncontrolled_errors import NormalForces
-from .unseen_contact import UnseenContact
 
 NOTES: tuple[type[Note], ...] = (
     StraightStruts, Folds, ReducedStrain, CoarseMeshes, CoarseSlides, Straightened, Sensitivity, SlackMotion,
-    MeetingPoints, FastTurns, NormalForces, SpinningSections, Penetrations, SurfaceEnds, UnseenContact)
+    CoincidentPoints, FastTurns, NormalForces, SpinningSections, Penetrations, SurfaceEnds, CoarseContact)
 
 N = TypeVar("N", bound=Note)
 

@@ -62,8 +62,9 @@ def uncontrolled_errors(scene: SceneData, engine: Engine, settings: RunSettings,
 
 def _of_genalpha(scene: SceneData, engine: Engine, settings: RunSettings, turns: FastTurns) -> list[str]:
     """Friction, bodies that turn fast, slides that outrun the waves of their cable."""
+    fast = turns.uncontrolled(engine.statistics["steps"], settings.tol)
     errors = [*(f'the friction of slide "{name}"' for name in scene.slides if _has_friction(scene, name)),
-              *(f'how fast body "{name}" turns' for name in turns.unseen(engine.statistics["steps"], settings.tol)),
+              *(f'how fast body "{name}" turns' for name in fast),
               *(f'the shock before slide "{name}", which is faster than waves in its cable'
                 for name in outrunning(scene))]
     if not errors:

@@ -17,7 +17,7 @@ PATH_POSITIONS = 17
 """Positions on the straight path from the drawing to a state of rest at which contact is assessed."""
 
 
-class _CoarseContact(NamedTuple):
+class _LongElements(NamedTuple):
     """A contact with elements that are too long: their numbers, the largest distance in m of the contact points of
     each, the depth in m that the check allows, and the longest distance in m of points that resolves it.
     """
@@ -29,7 +29,7 @@ class _CoarseContact(NamedTuple):
     chord: float
 
 
-class UnseenContact(Note):
+class CoarseContact(Note):
     """The largest distance in m of the contact points of an element that came near a surface and is too long for it."""
 
     assesses_rest = True
@@ -43,7 +43,7 @@ class UnseenContact(Note):
                 apart = MAX_POINT_DISTANCE * np.broadcast_to(cable.mesh.lengths, cable.n_elements)
                 long = np.flatnonzero(apart > limit.chord)
                 if len(long):
-                    self._coarse.append(_CoarseContact(contact, long, apart[long], *limit))
+                    self._coarse.append(_LongElements(contact, long, apart[long], *limit))
 
     def see(self, rows: Rows) -> None:
         """Measure further output rows."""
@@ -58,8 +58,8 @@ class UnseenContact(Note):
 
     def notes(self) -> list[str]:
         """Return a note for each contact with such an element."""
-        return [f'{part.where}: "{part.a}" touches by points that are up to {self.found[name][0]:.3g} m apart; between '
-                f'them it may be more than {show(each.allowed, "m")} below "{part.b}", or pass through it, unseen; '
-                f"where it touches, take elements of at most {each.chord / MAX_POINT_DISTANCE:.3g} m"
+        return [f'{part.where}: "{part.a}" has contact points that are up to {self.found[name][0]:.3g} m apart; '
+                f'between them it may be more than {show(each.allowed, "m")} below "{part.b}", or pass through it, '
+                f"undetected; in the contact zone, take elements of at most {each.chord / MAX_POINT_DISTANCE:.3g} m"
                 for each in self._coarse if (name := each.contact.name) in self.found
                 for part in (self.scene.contacts[name],)]
