@@ -1,17 +1,18 @@
 /* Inertia of the fluid around cables and bodies (derive/couplings/added_mass.py): the kinetic energy T = w . M w/2 of
- * what they carry along at w = v - U past the fluid, and the force on the mass displaced where the fluid itself is
- * accelerated.
+ * the added mass M at the velocity w = v - U relative to the fluid, and the force on the displaced mass in an
+ * accelerated fluid.
  *
- * Lagrange's equations of T, with p = M w: along a cable p' + G' p with each particle, and -g with the slope, g =
- * dT/dr_x; on a body p' + G' p with the point, and the moment w x p with its turn. G is the gradient of U, and w' = a -
- * dU/dt - G v. M a, of the accelerations, is the mass, which Newton's matrix and that of eq 38 have as well. On the
- * displaced mass acts its part of DU/Dt = dU/dt + G U, as in the undisturbed fluid.
+ * Lagrange's equations of T, with p = M w: along a cable the force p' + G' p on each particle and -g on the slope, g =
+ * dT/dr_x; on a body the force p' + G' p on the point and the moment w x p. G is the gradient of U, and w' = a - dU/dt
+ * - G v. M a belongs to the inertia: Newton's matrix and that of eq 38 contain M. The force on the displaced mass is
+ * that of the undisturbed fluid, the mass times DU/Dt = dU/dt + G U.
  *
- * Of what is partly wet, T and the displaced mass count by the wet part c (derive/couplings/wetness.py): the rate of
- * the impulse has that of c, and the derivative of T by the place acts as well.
+ * Of a partly wet section or body, T and the displaced mass are multiplied by the wet part c
+ * (derive/couplings/wetness.py). The rate of the impulse then contains the rate of c, and the derivative of T by
+ * position acts as an additional force.
  *
- * The fluid gives the power -p' . U - (G' p) . v, work from outside, where T counts as kinetic energy. In the matrix
- * second derivatives of U are left out: Newton's method converges without.
+ * With T counted as kinetic energy, the fluid's external power is -p' . U - (G' p) . v. The matrix neglects second
+ * derivatives of U: Newton's method converges without them.
  */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
@@ -20,17 +21,17 @@
 
 #include <string.h>
 
-/* What the change of the wet part adds: the derivative of T by the place; derivatives of force by velocity and place,
- * and of what acts on the slope, or turns, by the place. */
+/* Contribution of the change of the wet part: the derivative of T by position; derivatives of the force by velocity and
+ * position, and of the force on the slope, or of the moment, by position. */
 typedef struct {
     double pull[3], by_v[9], force_place[9], other_place[9];
 } of_wet_part;
 
-/* What the kernels give: impulse, its rate, and their derivatives, of a cable or of a body's point. p_rate_t,
+/* Results of the kernels: impulse, its rate, and their derivatives, of a cable or of a body's point. p_rate_t,
  * p_rate_turn and p_rate_w are derivatives of the rate less the pull. */
 typedef struct {
     double p[3], p_rate[3], g[3], M[9], p_t[9], p_rate_t[9], p_rate_t_rate[9], p_rate_w[9], g_t[9], g_w[9];
-    of_wet_part wet; /* nil where all is wet */
+    of_wet_part wet; /* zero if entirely wet */
 } of_length;
 typedef struct {
     double p[3], p_rate[3], moment[3], M[9], p_turn[9], p_rate_turn[9], moment_turn[9], p_rate_omega[9], p_rate_w[9],
@@ -58,7 +59,7 @@ fu_fluid_past fu_past_fluid(const fu_model *model, const fu_drag *drag, double t
     return out;
 }
 
-/* Makes G' x. */
+/* Computes G' x. */
 static void back(int dim, const fu_fluid_past *at, const double *x, double out[3])
 {
     for (int j = 0; j < dim; ++j) {
@@ -91,8 +92,8 @@ static void take_part(int n, const fu_fluid_past *past, double *x)
     for (int i = 0; i < n; ++i) x[i] *= past->wet;
 }
 
-/* Makes the derivatives by the place of force and of n other numbers, which are those where all is wet, times the wet
- * part. */
+/* Computes the derivatives, by position through the wet part, of the force and of n other quantities, given as those of
+ * full wetting. */
 static void by_wet_part(int dim, const fu_drag *drag, const fu_fluid_past *past, const double *p, const double *p_rate,
                         int n, const double *other, of_wet_part *out)
 {
@@ -106,8 +107,8 @@ static void by_wet_part(int dim, const fu_drag *drag, const fu_fluid_past *past,
         for (int j = 0; j < dim; ++j) out->other_place[i * dim + j] = other[i] * past->by_place[j];
 }
 
-/* Adds to the derivative of the force by the place that by the derivative n of the wet part, which changes along the
- * vertical. */
+/* Adds to the derivative of the force by position the contribution of the second derivative of the wet part along the
+ * vertical; f_n: derivative of the force by the gradient of the wet part. */
 static void by_curvature(int dim, const fu_drag *drag, const fu_fluid_past *past, const double *f_n, of_wet_part *out)
 {
     const double *up = drag->flow.up;
@@ -116,7 +117,7 @@ static void by_curvature(int dim, const fu_drag *drag, const fu_fluid_past *past
             out->force_place[i * dim + j] += past->curvature * fu_dot(dim, f_n + i * dim, up) * up[j];
 }
 
-/* Takes the wet part of a length, with what its change adds. */
+/* Multiplies the terms of a length by the wet part and adds those of its change. */
 static void wet_length(const fu_model *model, const fu_drag *drag, const fu_drag_place *at, const fu_fluid_past *past,
                        of_length *out)
 {
@@ -132,7 +133,7 @@ static void wet_length(const fu_model *model, const fu_drag *drag, const fu_drag
     add_to(dim * dim, f_w, out->p_rate_w);
 }
 
-/* The same of a body's point, which moves at v. */
+/* The same for a body's point. */
 static void wet_point(const fu_model *model, const fu_drag *drag, const fu_attachment_state *end,
                       const fu_fluid_past *past, of_point *out)
 {
@@ -223,8 +224,8 @@ static void add_product(int dim, double factor, const double *A, const double *B
             for (int k = 0; k < dim; ++k) sum[i * dim + j] += factor * A[i * dim + k] * B[k * dim + j];
 }
 
-/* Computes the derivatives of the force on particles by place and velocity (dim x dim each): past the fluid the place
- * changes w by -G, the velocity changes w by one and its rate by -G. */
+/* Computes the derivatives of the force on particles by position and velocity (dim x dim each): dw/dr = -G, dw/dv = 1,
+ * dw'/dv = -G. */
 static void particle_derivatives(const fu_drag *drag, int dim, const fu_fluid_past *past, const double *M,
                                  const double *p_rate_w, const of_wet_part *wet, double by_place[9],
                                  double by_velocity[9])
@@ -251,8 +252,8 @@ static void add_strained(int dim, int columns, const fu_fluid_past *past, const 
                 sum[i * columns + j] += past->flow.gradient[k * dim + i] * p_by[k * columns + j];
 }
 
-/* Computes the derivatives of a force on particles of a cable by the slope and by the place, and that of g by the place
- * (dim x dim each); rate: that of velocities by places. */
+/* Computes the derivatives of a force on particles of a cable by the slope and by position, and that of g by position
+ * (dim x dim each); rate: derivative of velocities by positions. */
 static void derivatives(const fu_drag *drag, int dim, const of_length *of, const fu_fluid_past *past, double rate,
                         double by_slope[9], double by_place[9], double g_place[9])
 {
@@ -283,7 +284,8 @@ static void tangent_at(const fu_model *model, const fu_drag *drag, const fu_drag
     fu_add_element_product(dim, all, -part, N_x, N, g_place, K);
 }
 
-/* Makes the state of a body's point with its axes, its acceleration, and what the kernel gives of it. */
+/* Computes the state of a body's point with its axes, its motion relative to the fluid, and the kernel's terms there.
+ */
 static fu_fluid_past at_body(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
                              fu_attachment_state *end, of_point *out)
 {
@@ -317,7 +319,8 @@ static void on_body(const fu_model *model, const fu_drag *drag, const fu_state *
     if (sums->f) fu_add_wrench(dim, &end, left, terms.moment, 1.0, sums->f);
 }
 
-/* Adds the derivatives of the same, except those of the acceleration of the point by the place. */
+/* Adds the derivatives of the force and moment on a body, without the derivative of the point's acceleration by
+ * position. */
 static void tangent_of_body(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
                             const double *psi, fu_weights weights, fu_system *system)
 {

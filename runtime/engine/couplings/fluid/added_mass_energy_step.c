@@ -1,11 +1,12 @@
 /* Inertia of the fluid around cables and bodies over a step, for the integrator that balances energy: the kinetic
- * energy T changes by the work of the force, and by that of the fluid, from outside.
+ * energy T changes by the work of the force and by the external work of the fluid.
  *
  * The impulse's rate is its change over the step; on the slope of a cable acts a discrete gradient, and on a body a
  * moment of the same kind (derive/couplings/added_mass.py). Moments act along the axes in the middle of the step.
  *
- * Of a wet part c both are those of the mean of c, and the impulse changes by that of c times its own mean, too. T
- * changes with c by D of added_mass.py, so D times the change of c over that of the height acts along the vertical.
+ * With a wet part c, gradient and moment are multiplied by the mean of c, and the change of the impulse contains the
+ * change of c times the mean impulse. T changes with c by D of added_mass.py: a vertical force D times the change of c
+ * over the change of the height balances it.
  */
 #include "bodies/model.h"
 #include "couplings/common/wrench.h"
@@ -14,10 +15,10 @@
 #include <math.h>
 #include <string.h>
 
-/* of the extent: below it the change of the wet part over the rise is its derivative in between */
+/* of the extent: for a smaller rise the derivative half-way replaces the quotient of changes */
 #define NO_RISE 1e-7
 
-/* The wet part over a step: its mean, its change, and the derivative by the place that gives this change. */
+/* The wet part over a step: its mean, its change, and its discrete gradient by position. */
 typedef struct {
     double mean, change, by_place[3];
 } wet_step;
@@ -35,8 +36,8 @@ static wet_step wet_over_step(const fu_model *model, const fu_drag *drag, const 
     return out;
 }
 
-/* Takes the wet part of the change dp of an impulse, which is p at both ends of a step by the masses M, and makes the
- * force that acts on the place. */
+/* Includes the wet part in the change dp of an impulse over a step, and computes the force on the position; p, M:
+ * impulse and mass at both ends of the step if entirely wet. */
 static void take_wet_step(int dim, const wet_step *wet, const fu_fluid_past past[2], double p[2][3], double M[2][9],
                           double dp[3], double on_place[3])
 {
@@ -51,8 +52,8 @@ static void take_wet_step(int dim, const wet_step *wet, const fu_fluid_past past
     for (int d = 0; d < dim; ++d) on_place[d] = D * wet->by_place[d];
 }
 
-/* Takes the wet part of the change of an impulse over a step, of what acts on the slope, and of the impulse half-way.
- */
+/* Includes the wet part in the change of an impulse over a step, the force g on the slope, and the impulse half-way;
+ * computes the force on the position. */
 static void wet_length_over_step(const fu_model *model, const fu_drag *drag, const fu_drag_place place[2],
                                  const fu_fluid_past past[2], const fu_fluid_past *halfway, double dp[3], double g[3],
                                  double mean[3], double on_place[3])
@@ -94,8 +95,8 @@ static void on_cable_in_step(const fu_model *model, const fu_drag *drag, const f
                 wet_length_over_step(model, drag, place, past, &halfway, dp, g, mean, on_place);
             for (int d = 0; d < dim; ++d) rate[d] = dp[d] / at->h;
             fu_fluid_on_particles(model, drag, &halfway, mean, rate, middle.v, point.weight, left, sums->power);
-            if (sums->power) /* that T changes by, with the velocities at both ends; fu_fluid_on_particles has -rate . U
-                                half-way */
+            if (sums->power) /* the change of T contains the velocities at both ends; fu_fluid_on_particles has -rate .
+                                U half-way */
                 for (int d = 0; d < dim; ++d)
                     sums->power->external += point.weight * rate[d] *
                                              (0.5 * (past[0].w[d] + past[1].w[d]) - middle.v[d] + halfway.flow.U[d]);
@@ -106,13 +107,13 @@ static void on_cable_in_step(const fu_model *model, const fu_drag *drag, const f
     }
 }
 
-/* A body's point at both ends of a step, on its way, and the fluid past it there; theta: the Cayley vector of its turn.
- */
+/* A body's point at both ends of a step and half-way, and its motion relative to the fluid there; theta: Cayley vector
+ * of the rotation. */
 typedef struct {
     fu_attachment_state ends[2], turning;
     fu_fluid_past past[2], halfway;
-    double v[3], theta[3],
-        change[3]; /* way over the step's length; change of the velocity of turning, as the kernel takes it */
+    double v[3], theta[3], change[3]; /* mean velocity of the point in the step; argument of the kernel: change of the
+                                         velocity by rotation */
 } body_step;
 
 static void body_over_step(const fu_model *model, const fu_drag *drag, const fu_equations *at, body_step *out)
@@ -142,7 +143,7 @@ static void body_over_step(const fu_model *model, const fu_drag *drag, const fu_
     out->halfway = fu_past_fluid(model, drag, at->middle->t, middle, out->v, model->zero);
 }
 
-/* The same of a body, whose moment takes the work of the impulse's change with the turn as well. */
+/* The same for a body: its moment also balances the work of the impulse's change by rotation. */
 static void wet_body_over_step(const fu_model *model, const fu_drag *drag, const body_step *of, double dp[3],
                                double mean[3], double moment[3], double on_place[3])
 {

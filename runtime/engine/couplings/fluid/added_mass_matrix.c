@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-/* Computes the impulse M w at a place with the velocity at->v past the fluid, and M; A: axes of a body there. */
+/* Computes the impulse M w and M at a point of the velocity at->v relative to the fluid; A: axes of the body. */
 static void impulse(const fu_model *model, const fu_drag *drag, const fu_drag_place *at, const double *A, double p[3],
                     double M[9])
 {
@@ -19,7 +19,7 @@ static void impulse(const fu_model *model, const fu_drag *drag, const fu_drag_pl
     for (int i = 0; i < model->dim * model->dim; ++i) M[i] *= part;
 }
 
-/* Computes the place of a body's point. */
+/* Computes position and velocity of a body's point. */
 static void place_on_body(const fu_model *model, const fu_drag *drag, const double *q, const double *v,
                           fu_attachment_state *end, fu_drag_place *at)
 {
@@ -92,7 +92,7 @@ void fu_added_mass_matrix(const fu_model *model, const fu_coupling *coupling, co
     fu_add_wrench_tangent(model, &end, &end, changes, 0, 0, scale, system);
 }
 
-/* Returns the energy at a place. */
+/* Returns the kinetic energy at a point, J/m or J. */
 static double energy_at(const fu_model *model, const fu_drag *drag, const fu_drag_loop *loop, const double *A,
                         fu_drag_place at)
 {

@@ -1,9 +1,9 @@
-/* The force of a fluid on cables and bodies: drag by the square of the velocity of the fluid past them
- * (derive/couplings/drag.py), and buoyancy; with the inertia of the fluid, which couplings/fluid/added_mass.c adds.
- * Along a cable it is integrated by Gauss quadrature on each element.
+/* The force of a fluid on cables and bodies: drag, quadratic in the relative velocity (derive/couplings/drag.py), and
+ * buoyancy; couplings/fluid/added_mass.c adds the inertia of the fluid. Along a cable it is integrated by Gauss
+ * quadrature on each element.
  *
- * With the velocity U of the fluid and w = U - v, the power of drag f on what moves at v is f . U - f . w: the fluid
- * gives the first, work from outside, and the second, which is never negative, goes to heat.
+ * With the velocity U of the fluid and w = U - v, the power of drag f at a point of the velocity v is f . U - f . w.
+ * The first term is external power of the fluid. The second, f . w, is never negative and is dissipated.
  */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
@@ -13,7 +13,7 @@
 
 #include <string.h>
 
-/* Makes the derivative of drag by the place (dim x dim). */
+/* Computes the derivative of drag by position (dim x dim). */
 static void by_place(int dim, const fu_drag_action *a, double out[9])
 {
     for (int i = 0; i < dim; ++i)
@@ -23,13 +23,13 @@ static void by_place(int dim, const fu_drag_action *a, double out[9])
         }
 }
 
-/* Makes the force of drag and buoyancy, N/m or N: so much of it as of all loads acts. */
+/* Computes the force of drag and buoyancy, N/m or N, times the load fraction. */
 static void whole_force(const fu_model *model, const fu_drag_action *a, double force[3])
 {
     for (int d = 0; d < model->dim; ++d) force[d] = model->load_fraction * (a->f[d] + a->buoyancy[d]);
 }
 
-/* Adds to `sum` the powers at a place of this weight. */
+/* Adds the powers at a point of this weight to `sum`. */
 static void add_powers(const fu_model *model, const fu_drag_place *at, const fu_drag_action *a, double weight,
                        fu_drag_powers *sum)
 {
@@ -105,14 +105,14 @@ static void matrix_at(const fu_model *model, const fu_drag *drag, const fu_drag_
     if (point.N_chord) fu_section_matrix(&a, point, scale, loop->weights.rate, all, K);
 }
 
-/* Makes the place of a body's point, and how the point moves with the coordinates; over a step that conserves energy,
- * the place in its middle, with the velocity that the step has on average. */
+/* Computes a body's point, and its motion with the coordinates; over a step that conserves energy, the mean position
+ * with the mean velocity. */
 static void place_on_body(const fu_model *model, const fu_drag *drag, const fu_state *state, const fu_equations *step,
                           fu_drag_place *at, fu_attachment_state *end)
 {
     const fu_attachment *on = &drag->attachments[0];
     memset(at, 0, sizeof *at);
-    if (drag->is_foil) fu_attachment_at(model, on, state, 0.0, FU_AXES, end); /* in a step those in its middle */
+    if (drag->is_foil) fu_attachment_at(model, on, state, 0.0, FU_AXES, end); /* in a step: those in its middle */
     fu_attachment_at(model, on, step ? step->now : state, 0.0, FU_POINT, end);
     memcpy(at->r, end->p, sizeof at->r);
     memcpy(at->v, end->v, sizeof at->v);
@@ -126,7 +126,7 @@ static void place_on_body(const fu_model *model, const fu_drag *drag, const fu_s
     fu_discrete_point(model, on, step->now, step->next, end->P);
 }
 
-/* Does for a body what on_cable does for a cable. */
+/* Adds drag and buoyancy of a body's point, at a state or over a step. */
 static void on_body(const fu_model *model, const fu_drag *drag, double t, const fu_state *state,
                     const fu_equations *step, const fu_drag_sums *sums)
 {
@@ -169,7 +169,7 @@ static void matrix_of_body(const fu_model *model, const fu_drag *drag, const fu_
                           system);
 }
 
-/* Adds what drag and buoyancy do at a state, or over a step. */
+/* Adds drag and buoyancy at a state, or over a step. */
 static void add(const fu_model *model, const fu_drag *drag, const fu_state *state, const fu_equations *step,
                 const fu_drag_sums *sums)
 {
@@ -178,7 +178,7 @@ static void add(const fu_model *model, const fu_drag *drag, const fu_state *stat
     else on_body(model, drag, state->t, state, step, sums);
 }
 
-/* Adds all that the fluid does at a state, with the accelerations a or without, null. */
+/* Adds all forces of the fluid at a state, with accelerations a (null: zero). */
 static void add_all(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *a,
                     const fu_drag_sums *sums)
 {
@@ -187,7 +187,7 @@ static void add_all(const fu_model *model, const fu_coupling *coupling, const fu
     if (coupling->has_inertia) fu_added_mass_forces(model, drag, state, a, sums);
 }
 
-/* Adds the same over a step. */
+/* Adds all forces of the fluid over a step. */
 static void add_step(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,
                      const fu_drag_sums *sums)
 {
@@ -232,7 +232,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     matrix(model, coupling, at->next, at->next->acceleration, at->psi, at->weights, system);
 }
 
-/* The middle moves by half of psi, which weights.stiffness has. */
+/* The middle moves by half of psi, which is in weights.stiffness. */
 static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
 {
     matrix(model, coupling, at->middle, at->next->acceleration, 0, at->weights, system);

@@ -1,4 +1,4 @@
-/* Forces of a fluid that moves, drag, buoyancy and inertia: couplings/fluid/drag.c, couplings/fluid/added_mass.c. */
+/* Forces of a moving fluid, drag, buoyancy and added mass: couplings/fluid/drag.c, couplings/fluid/added_mass.c. */
 #ifndef FUNICULAR_COUPLINGS_FLUID_DRAG_H
 #define FUNICULAR_COUPLINGS_FLUID_DRAG_H
 
@@ -15,29 +15,29 @@ enum { FU_ALL_WET, FU_WET_SECTION, FU_WET_SPHERE, FU_WET_COLUMN };
 
 /* The force of a fluid on a whole cable, or on a point of a body. */
 typedef struct {
-    fu_coupling base; /* base.has_inertia: that of the fluid is in it */
+    fu_coupling base; /* base.has_inertia: with added mass */
     const fu_drag_kernels *kernel;
     fu_flow flow;
-    int cable;              /* -1: on a body, at its attachment */
+    int cable;              /* -1: at a point of a body */
     double coefficients[3]; /* as the kernel takes them */
-    double lift[2];         /* of a cable, as the kernel takes them: none where the first is zero */
-    int is_foil; /* not zero: a force by the angle of attack, of a body with a span or of a beam with a chord */
+    double lift[2];         /* of a cable, arguments of the kernel: no lift if the first is zero */
+    int is_foil; /* nonzero: forces depend on the angle of attack, of a body with a span or of a beam with a chord */
     double foil[2], span[3],
-        chord[3];      /* of a body: as the kernel takes them; along its axes, span[0] in the plane its sense */
-    double foil_lift;  /* coefficient without a polar: drag is by `coefficients` then */
-    double section[3]; /* of a beam, as the kernel takes them */
-    int n_angles;      /* polynomials of the angle, as a signal's of time, of each coefficient; */
-    const double *angles, *polar_drag, *polar_lift, *polar_moment; /* that of the moment of a beam alone */
+        chord[3];      /* of a body: arguments of the kernel; along its axes; in the plane span[0] is the sense */
+    double foil_lift;  /* coefficient of lift without a polar; drag then has `coefficients` */
+    double section[3]; /* of a beam, arguments of the kernel */
+    int n_angles;      /* segments of the polynomials of the coefficients by the angle, in the form of a signal; */
+    const double *angles, *polar_drag, *polar_lift, *polar_moment; /* polar_moment: of a beam alone */
     double buoyancy[3];     /* N/m a length of the undeformed cable, N on a body */
-    int wet;                /* FU_ALL_WET and the like */
+    int wet;                /* FU_ALL_WET, ..., FU_WET_COLUMN */
     double extent;          /* half the height of the wetted shape, m */
     double surface, bottom; /* heights of the fluid, m */
     double displaced;       /* mass of the fluid displaced: kg/m, kg */
-    double added[9]; /* mass added: of a length of cable across and along it, kg/m; of a body in its axes (dim x dim),
-                        kg */
-    int n_points;    /* of quadrature on an element: weights in m, shape functions, their slopes, */
-    int stride;      /* each of the first element; points from one element's to the next's: 0 where they are equal */
-    const double *weights, *N, *N_x, *N_chord; /* N_chord of a beam's foil: of the director along the chord */
+    double added[9]; /* added mass: of a cable across and along it, kg/m; of a body in its axes (dim x dim), kg */
+    int n_points;    /* of quadrature on an element */
+    int stride;      /* points from one element's tables to the next's: 0 for equal elements */
+    const double *weights, *N, *N_x, *N_chord; /* weights in m; shape functions, their slopes; of a beam's foil those of
+                                                  the director along the chord */
     fu_attachment attachments[1];
 } fu_drag;
 extern const fu_coupling_type fu_drag_type;
@@ -49,8 +49,8 @@ typedef struct {
     const double *N, *N_x, *N_chord;
 } fu_quadrature_point;
 
-/* Those of an element that act, with the shape functions of those that stand in no table, their places in it, m, and
- * the part between two cuts that each is on. */
+/* The points of quadrature of an element: shape functions of those beyond the tables, positions in the element, m, and
+ * numbers of the parts between two cuts. */
 #define FU_DRAG_POINTS 200
 typedef struct {
     int n;
@@ -60,7 +60,7 @@ typedef struct {
     double shapes[FU_DRAG_POINTS * FU_MAX_COORDINATES];
 } fu_drag_points;
 
-/* A wet part, and its derivatives by the height of the place, 1/m and 1/m^2. */
+/* A wet part, and its derivatives by the height of the point, 1/m and 1/m^2. */
 typedef struct {
     double part, slope, curvature;
 } fu_wetness;
@@ -71,10 +71,10 @@ typedef struct {
     double r[3], r_x[3], v[3], r_x_rate[3], a[3], chord[3], chord_rate[3];
 } fu_drag_place;
 
-/* Action of the fluid at a place: its velocity with derivatives, that relative to the place; drag and lift with their
- * derivatives, and buoyancy, all of the wet part; by_wet: derivative of their sum by the place through the wet part.
- * of_section: of a beam's foil the forces on r, r_x and chord, with their derivatives by r_x, chord and w; f has the
- * first. */
+/* Forces of the fluid at a point: the fluid's velocity with derivatives, and that relative to the point; drag and lift
+ * with their derivatives, and buoyancy, all of the wet part; by_wet: derivative of their sum by position through the
+ * wet part. of_section: of a beam's foil the forces on r, r_x and chord, with their derivatives by r_x, chord and w; f
+ * includes the first. */
 typedef struct {
     fu_flow_state flow;
     double w[3], f[3], buoyancy[3], by_wet[9], by_slope[9], by_w[9], by_turn[9], of_section[9], section_by[81];
@@ -91,14 +91,14 @@ typedef struct {
     fu_drag_powers *power;
 } fu_drag_sums;
 
-/* Returns whether it is on a beam, by the angle of attack of its section. */
+/* Returns whether the forces act on a beam and depend on the angle of attack of its section. */
 static inline int fu_drag_on_section(const fu_drag *drag)
 {
     return drag->cable >= 0 && drag->is_foil;
 }
 
-/* A point of quadrature on an element whose first dof is `first`: its number among the parts between two cuts, and its
- * place in the element, m. */
+/* A point of quadrature on an element whose first dof is `first`: number of its part between two cuts, and position in
+ * the element, m. */
 typedef struct {
     int element, first, part;
     double x;
@@ -106,8 +106,8 @@ typedef struct {
     fu_drag_place at;
 } fu_drag_site;
 
-/* Arguments and results of a loop over points: those that its visitor needs. rows: the next row of densities; energy: a
- * kinetic energy, J, past the fluid or in a fluid at rest. */
+/* Arguments and results of a loop over points: a visitor uses those of its purpose. rows: the next row of densities;
+ * energy: a kinetic energy, J, past the fluid or in a fluid at rest. */
 typedef struct {
     double t;
     const fu_drag_sums *sums;
@@ -127,65 +127,64 @@ void fu_drag_place_on_axis(const fu_model *model, const fu_drag *drag, const dou
                            const double *a, fu_quadrature_point point, fu_drag_place *at);
 
 /* couplings/fluid/point_loop.c: calls `visit` at each point of a cable with the coordinates q, rates v and
- * accelerations a; null: without. K: matrix of the element, which is added to the system (or to none, null) after its
+ * accelerations a (null: none). K: matrix of the element, which is added to the system (or to none, null) after its
  * points if loop->has_matrix. */
 void fu_drag_visit(const fu_model *model, const fu_drag *drag, const double *q, const double *v, const double *a,
                    fu_drag_visitor *visit, fu_drag_loop *loop, fu_system *system);
 
-/* couplings/fluid/wetness.c: the wet part at a height; the height of a place, m; the points of an element with the
- * coordinates e, and of one with these at both ends of a step. */
+/* couplings/fluid/wetness.c: the wet part at a height; the height of a point, m; the points of quadrature of an element
+ * at the coordinates e, and over a step between two coordinates. */
 fu_wetness fu_wet_at_height(const fu_drag *drag, double height);
-double fu_wet_reach(const fu_drag *drag); /* how far from a surface the wet part changes, m */
+double fu_wet_reach(const fu_drag *drag); /* largest distance from a surface at which the wet part changes, m */
 double fu_drag_height(const fu_model *model, const fu_drag *drag, const double *r);
 void fu_drag_points_on(const fu_model *model, const fu_drag *drag, int element, const double *e, fu_drag_points *out);
 void fu_drag_points_over(const fu_model *model, const fu_drag *drag, int element, const double *e, const double *e_next,
                          fu_drag_points *out);
 
-/* couplings/fluid/drag.c: makes at the points of all elements of a cable the number of the element, that of the part,
- * the place in the element and the weight, m, and drag with buoyancy, N/m (3): out (points x FU_DRAG_DENSITIES).
- * Returns how many they are. */
+/* couplings/fluid/drag.c: computes out (points x FU_DRAG_DENSITIES), of each point of quadrature of a cable: number of
+ * the element, number of the part, position in the element, m, weight, m, and drag with buoyancy, N/m (3). Returns the
+ * number of points. */
 #define FU_DRAG_DENSITIES 7
 int fu_drag_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);
 
-/* couplings/fluid/drag_force.c: makes what the fluid does at a place; A: axes of a body there. */
+/* couplings/fluid/drag_force.c: computes the forces of the fluid at a point; A: axes of the body. */
 void fu_drag_act(const fu_model *model, const fu_drag *drag, double t, const fu_drag_place *at, const double *A,
                  fu_drag_action *out);
 
-/* couplings/fluid/section_moment.c: forces on slope and chord of a beam's foil at a point of quadrature, and what they
- * add to the matrix. */
+/* couplings/fluid/section_moment.c: forces on slope and chord of a beam's foil at a point of quadrature, their power,
+ * and their derivatives. */
 double fu_section_power(const fu_drag_place *at, const fu_drag_action *action);
 void fu_section_forces(const fu_drag_action *action, fu_quadrature_point point, double part, int n, double *f);
 void fu_section_matrix(const fu_drag_action *action, fu_quadrature_point point, double scale, double rate, int all,
                        double *K);
 
-/* Flags of a state are one of the table and one a watch of surfaces */
+/* flags of a state: one of the table, one of each event function of surfaces */
 #define FU_DRAG_FLAGS (1 + FU_SURFACE_EVENT_FUNCTIONS)
 
-/* Motion of a place relative to the fluid: w and its rate, whose derivative by the velocity is minus the flow's
- * gradient; DU/Dt of the fluid; the wet part, its derivative by the place, and its second derivative by the height. */
+/* Motion of a point relative to the fluid: w and its rate, whose derivative by the velocity is minus the flow's
+ * gradient; DU/Dt of the fluid; the wet part, its derivative by position, and its second derivative by the height. */
 typedef struct {
     fu_flow_state flow;
     double w[3], w_rate[3], material[3], wet, by_place[3], curvature;
 } fu_fluid_past;
 
-/* couplings/fluid/added_mass.c: what the inertia of the fluid gives, with the accelerations `a` of the dofs, or
- * without, null. */
+/* couplings/fluid/added_mass.c: inertial forces of the fluid, with the accelerations `a` of the dofs (null: zero). */
 void fu_added_mass_forces(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
                           const fu_drag_sums *sums);
 void fu_added_mass_tangent(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
                            const double *psi, fu_weights weights, fu_system *system);
-/* Makes what it does a length of a cable without accelerations, at all points of quadrature: out (points x
- * FU_ADDED_MASS_DENSITIES), the force (3) and that on the slope (3), as they act on the cable, and the mass added (dim
- * x dim of 9). */
+/* Computes the inertial forces of the fluid per length of a cable at zero accelerations, at all points of quadrature:
+ * out (points x FU_ADDED_MASS_DENSITIES), the force (3) and the force on the slope (3) on the cable, and the added mass
+ * (dim x dim of 9). */
 #define FU_ADDED_MASS_DENSITIES 15
 void fu_added_mass_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);
 fu_fluid_past fu_past_fluid(const fu_model *model, const fu_drag *drag, double t, const double *r, const double *v,
                             const double *a);
-/* Makes the force with the particles, of an impulse p and its rate, as it stands on the left of the equations of
- * motion, and adds the power. */
+/* Computes the force on particles by an impulse p and its rate, with the sign of the left side of the equations of
+ * motion, and adds its power. */
 void fu_fluid_on_particles(const fu_model *model, const fu_drag *drag, const fu_fluid_past *at, const double *p,
                            const double *p_rate, const double *v, double part, double left[3], fu_drag_powers *power);
-/* Adds a force with the particles and one on the slope, at a point of quadrature, to those on an element's dofs. */
+/* Adds a force on the particles and one on the slope, at a point of quadrature, to the forces on an element's dofs. */
 void fu_fluid_on_element(const fu_model *model, const fu_drag *drag, int first, fu_quadrature_point point,
                          const double *left, const double *on_slope, const fu_drag_sums *sums);
 

@@ -1,4 +1,4 @@
-/* What a fluid does at a place of a cable or of a body: drag and lift by the velocity past it
+/* Forces of a fluid at a point of a cable or of a body: drag and lift by the relative velocity
  * (derive/couplings/drag.py), with their derivatives. */
 #include "bodies/model.h"
 #include "couplings/fluid/drag.h"
@@ -11,7 +11,7 @@ static void add_to(int n, const double *x, double *sum)
     for (int i = 0; i < n; ++i) sum[i] += x[i];
 }
 
-/* Makes a x b; in the plane b turned by a quarter times a[0]. */
+/* Computes a x b; in the plane a[0] times b rotated by a right angle. */
 static void cross(int dim, const double *a, const double *b, double out[3])
 {
     if (dim == 2) {
@@ -22,8 +22,8 @@ static void cross(int dim, const double *a, const double *b, double out[3])
     fu_cross(a, b, out);
 }
 
-/* Makes n coefficients, of drag, lift and moment, each with its derivative by the angle of attack: that of the flow w
- * from the chord, across the span, about it. */
+/* Computes the first n of the coefficients of drag, lift and moment, each with its derivative by the angle of attack,
+ * the angle about the span from the chord to the flow w. */
 static void coefficients_of(int dim, const fu_drag *drag, const double *chord, const double *span, const double *w,
                             int n, double *coefficients)
 {
@@ -53,7 +53,7 @@ static void add_foil(int dim, const fu_drag *drag, const double *A, fu_drag_acti
     drag->kernel->on_foil(out->w, span, drag->foil, coefficients, f, by_w);
     add_to(dim, f, out->f);
     add_to(dim * dim, by_w, out->by_w);
-    for (int k = 0; k < turns; ++k) { /* by a turn of the body, as if the flow had turned back */
+    for (int k = 0; k < turns; ++k) { /* a rotation of the body is the opposite rotation of the flow */
         const double axis[3] = {k == 0, k == 1, k == 2};
         double turned[3], flow[3];
         cross(dim, axis, f, turned);
@@ -93,7 +93,7 @@ static void scale(int n, double by, double *x)
     for (int i = 0; i < n; ++i) x[i] *= by;
 }
 
-/* Takes the wet part of what acts where all is wet, with the derivative by the place that this gives. */
+/* Multiplies the forces of full wetting by the wet part, and computes their derivative by position through it. */
 static void take_wet_part(const fu_model *model, const fu_drag *drag, const fu_drag_place *at, fu_drag_action *out)
 {
     const int dim = model->dim;

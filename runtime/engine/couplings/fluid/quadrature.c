@@ -1,4 +1,4 @@
-/* Points of quadrature on the elements of a cable in a fluid, and where they are. */
+/* Points of quadrature on the elements of a cable in a fluid, and their positions. */
 #include "bodies/model.h"
 #include "couplings/fluid/drag.h"
 
@@ -12,8 +12,8 @@ fu_quadrature_point fu_drag_point(const fu_drag *drag, int n, int element, int p
                                  fu_drag_on_section(drag) ? drag->N_chord + k * n : 0};
 }
 
-/* Makes the place of a point of quadrature on an element with the coordinates e, rates v and accelerations a; null:
- * without. */
+/* Computes the motion of a point of quadrature on an element with the coordinates e, rates v and accelerations a (null:
+ * none). */
 void fu_drag_place_on_axis(const fu_model *model, const fu_drag *drag, const double *e, const double *v,
                            const double *a, fu_quadrature_point point, fu_drag_place *at)
 {
@@ -23,7 +23,7 @@ void fu_drag_place_on_axis(const fu_model *model, const fu_drag *drag, const dou
     memset(at, 0, sizeof *at);
     for (int k = 0; k < n; ++k)
         for (int d = 0; d < dim; ++d) {
-            /* from the first node: slopes do not see where that is, and no digits are lost far from the origin */
+            /* from the first node: slopes do not depend on its position, and no digits are lost far from the origin */
             const int is_place = k % cable->kernel->vectors == 0;
             const double local = e[k * dim + d] - (is_place ? e[d] : 0.0);
             at->r[d] += N[k] * e[k * dim + d];

@@ -1,18 +1,18 @@
-/* What a fluid does to slope and chord of a beam by the moment on its section (derive/couplings/section_flow.py),
- * beside the force on its axis that couplings/fluid/drag.c has as that of any cable.
- */
+/* Forces of a fluid on slope and chord of a beam by the moment on its section (derive/couplings/section_flow.py). The
+ * force on its axis is that of any cable, in couplings/fluid/drag.c. */
 #include "bodies/cables.h"
 #include "couplings/fluid/drag.h"
 
 #include <string.h>
 
-/* Returns the power a length of the forces on slope and chord, W/m. */
+/* Returns the power per length of the forces on slope and chord, W/m. */
 double fu_section_power(const fu_drag_place *at, const fu_drag_action *action)
 {
     return fu_dot(3, action->of_section + 3, at->r_x_rate) + fu_dot(3, action->of_section + 6, at->chord_rate);
 }
 
-/* Takes them times `part` from f, of an element of n shape functions, on the left of the equations of motion. */
+/* Subtracts `part` times these forces from f, the left side of the equations of motion of an element of n shape
+ * functions. */
 void fu_section_forces(const fu_drag_action *action, fu_quadrature_point point, double part, int n, double *f)
 {
     for (int k = 0; k < n; ++k)
@@ -21,15 +21,15 @@ void fu_section_forces(const fu_drag_action *action, fu_quadrature_point point, 
                 part * (point.N_x[k] * action->of_section[3 + d] + point.N_chord[k] * action->of_section[6 + d]);
 }
 
-/* Makes the derivatives of one of the three forces by one of r_x, chord and w. */
+/* Computes the derivative of one of the three forces by one of r_x, chord and w. */
 static void block(const fu_drag_action *action, int force, int by, double out[9])
 {
     for (int d = 0; d < 3; ++d)
         memcpy(out + 3 * d, action->section_by + 9 * (3 * force + d) + 3 * by, sizeof(double[3]));
 }
 
-/* Adds to K (all x all) `scale` times their derivatives, and that of the force on the axis by the chord; rate: that of
- * velocities by places. */
+/* Adds to K (all x all) `scale` times their derivatives, and that of the force on the axis by the chord; rate:
+ * derivative of velocities by positions. */
 void fu_section_matrix(const fu_drag_action *action, fu_quadrature_point point, double scale, double rate, int all,
                        double *K)
 {

@@ -1,5 +1,5 @@
-/* The velocity of a fluid by place and time, with its derivatives: a velocity times a profile over height, or a table
- * of splines, times a signal. */
+/* The velocity of a fluid by position and time, with its derivatives: a velocity times a profile over height, or a
+ * table of splines, times a signal. */
 #include "bodies/model.h"
 #include "couplings/fluid/velocity_field.h"
 
@@ -20,21 +20,21 @@ static double profile_at(const fu_flow *flow, double height, double *slope)
     return factor;
 }
 
-/* B-splines along an axis that are not zero at a place: the number of the first, their values, and derivatives. */
+/* The nonzero B-splines at a point of an axis: the number of the first, their values and derivatives. */
 typedef struct {
     int first, n;
     double value[FU_FLOW_DEGREE + 1], slope[FU_FLOW_DEGREE + 1];
 } splines;
 
-/* Makes those of n splines with these knots (de Boor's recursion; derivatives from the splines of one degree less).
- * Beyond the ends of the axis the values at the ends stay. */
+/* Computes the nonzero ones of n splines with these knots (de Boor's recursion; derivatives from the splines of one
+ * degree less). Values are constant beyond the ends of the axis. */
 static splines splines_at(int degree, int n, const double *knots, double x)
 {
     splines out = {0, 1, {1.0}, {0.0}};
     if (n == 1) return out;
     const double low = knots[degree], high = knots[n], at = fmin(fmax(x, low), high);
     const int left = fu_last_reached(
-        knots, degree, n, at); /* knots[left] <= at < knots[left + 1], at the axis's end but for the equality */
+        knots, degree, n, at); /* knots[left] <= at < knots[left + 1]; at the end of the axis at = knots[left + 1] */
     out.first = left - degree;
     out.n = degree + 1;
     for (int k = 1; k <= degree; ++k) {
@@ -55,7 +55,7 @@ static splines splines_at(int degree, int n, const double *knots, double x)
     return out;
 }
 
-/* Makes the place on the axes of a table: time, and the ground's directions. */
+/* Computes the coordinates of a point on the axes of a table: time, and three directions of the ground. */
 static void place_in_table(const fu_model *model, const fu_flow *flow, double t, const double *r,
                            double x[FU_FLOW_AXES])
 {
@@ -63,7 +63,7 @@ static void place_in_table(const fu_model *model, const fu_flow *flow, double t,
     for (int i = 0; i < 3; ++i) x[i + 1] = flow->origin[i] + fu_dot(model->dim, flow->axes + 3 * i, r);
 }
 
-/* Makes the velocity of a table and its derivatives, without the signal. */
+/* Computes the velocity of a table and its derivatives, without the signal. */
 static void table_at(const fu_model *model, const fu_flow *flow, double t, const double *r, fu_flow_state *out)
 {
     const int dim = model->dim, *n = flow->n_splines;
@@ -99,7 +99,7 @@ static void table_at(const fu_model *model, const fu_flow *flow, double t, const
             for (int k = 0; k < 3; ++k) out->gradient[i * dim + j] += by_ground[i * 3 + k] * flow->axes[k * 3 + j];
 }
 
-/* Makes the velocity of a fluid at a place and its derivatives. */
+/* Computes the velocity of a fluid at a point and its derivatives. */
 void fu_flow_at(const fu_model *model, const fu_flow *flow, double t, const double *r, fu_flow_state *out)
 {
     const int dim = model->dim;
@@ -120,7 +120,8 @@ void fu_flow_at(const fu_model *model, const fu_flow *flow, double t, const doub
     }
 }
 
-/* Returns how far within a table a place and time are, as a part of its axes: negative outside; 1 without a table. */
+/* Returns the distance of a point and time within the edges of a table, relative to its axes: negative outside, 1
+ * without a table. */
 double fu_flow_margin(const fu_model *model, const fu_flow *flow, double t, const double *r)
 {
     const double *knots = flow->knots;

@@ -1,13 +1,13 @@
-/* The velocity of a fluid by place and time: couplings/fluid/velocity_field.c. */
+/* The velocity of a fluid by position and time: couplings/fluid/velocity_field.c. */
 #ifndef FUNICULAR_COUPLINGS_FLUID_VELOCITY_FIELD_H
 #define FUNICULAR_COUPLINGS_FLUID_VELOCITY_FIELD_H
 
 #include "base/common.h"
 
 #define FU_FLOW_AXES 4   /* of a table: time, and three directions of the ground */
-#define FU_FLOW_DEGREE 3 /* of its splines, at most */
+#define FU_FLOW_DEGREE 3 /* largest degree of its splines */
 
-/* How the velocity changes with height: not at all; as a power of it; as a table. */
+/* Profiles of the velocity over height: constant; a power of the height; a table. */
 enum { FU_UNIFORM, FU_POWER, FU_TABLE };
 
 /* The velocity of a fluid: a signal (-1: one) times `velocity` times the profile at the height base + up . r, or times
@@ -16,17 +16,17 @@ typedef struct {
     double velocity[3], up[3], base; /* base: height of the origin, m */
     int signal, profile;
     double reference, exponent, least; /* of a power: (max(height, least)/reference)^exponent, heights in m */
-    int n_segments;                    /* of a table of the height: polynomials, as a signal's of time */
+    int n_segments;                    /* of a table over height: polynomials, in the form of a signal */
     const double *breaks, *coefficients;
-    /* Of a table of time and place: degree of its splines, 0 without one; along each axis how many of them and their
-     * knots, one axis after the other, one spline without knots where the velocity does not depend on it; their
-     * coefficients (t, x, y, z, dim). Place on the ground's axes: origin + axes r, axes (3 x 3) by rows. */
+    /* Of a table over time and position: degree of its B-splines, 0 without a table; along each axis their number and
+     * their knots, one axis after the other; a single spline without knots if the velocity does not depend on the axis;
+     * their coefficients (t, x, y, z, dim). Coordinates on the table's axes: origin + axes r, axes (3 x 3) by rows. */
     int degree, n_splines[FU_FLOW_AXES];
     const double *knots, *table;
     double origin[3], axes[9];
 } fu_flow;
 
-/* The velocity at a place, its rate there, and its gradient by r (dim x dim), row i of component i. */
+/* The velocity at a point, its rate there, and its gradient by r (dim x dim), row i of component i. */
 typedef struct {
     double U[3], rate[3], gradient[9];
 } fu_flow_state;

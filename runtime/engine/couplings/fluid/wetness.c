@@ -1,9 +1,9 @@
 /* Fluids with a surface: the wet part of a body or of a cable's section (derive/couplings/wetness.py), and the
- * quadrature along an element that a surface cuts.
+ * quadrature along an element cut by a surface.
  *
  * Along an element the wet part is 0, 1, or changes over the short length on which the surface cuts the section. The
- * quadrature ends where that length begins and ends, so that the integral is smooth in the coordinates. Within it
- * points gather at both ends, where the waterline has a root.
+ * quadrature ends where that length begins and ends, so that the integral is smooth in the coordinates. Within that
+ * length points are denser near both ends, where the wet part has singular derivatives.
  */
 #include "bodies/model.h"
 #include "couplings/fluid/drag.h"
@@ -12,14 +12,14 @@
 
 /* of half the height of a column: its ends are rounded by this to both sides (runtime/parts/drag.py) */
 #define COLUMN_ROUNDING 0.05
-/* of the radius of a section: beyond, matrices leave out the second derivative, which has a pole */
-#define MOST_DEPTH 0.99
-/* an element is cut into, on each of which heights are a cubic: exact for cubic elements */
+/* of the radius of a section: beyond it matrices neglect the second derivative, which is singular at 1 */
+#define MAX_SECTION_DEPTH 0.99
+/* spans of an element, on each of which heights are a cubic: exact for cubic elements */
 #define SPANS_AN_ELEMENT 4
-#define MAX_CUTS 24 /* of an element by the ends of a section that two surfaces cut, of two cubics */
-/* of an element's length, times its steepest slope at the samples: what heights between them differ by */
+#define MAX_CUTS 24 /* of an element by the edges of a section at two surfaces, in two configurations */
+/* of an element's length times its steepest slope at the samples: variation of heights between samples */
 #define HEIGHT_VARIATION 0.35
-#define MIN_PART 1e-12 /* of an element: shorter parts of it hold no points */
+#define MIN_PART 1e-12 /* of an element: shorter parts have no points */
 
 static double end_of(const fu_drag *drag)
 {
@@ -31,7 +31,7 @@ double fu_wet_reach(const fu_drag *drag)
     return end_of(drag) * drag->extent;
 }
 
-/* Returns the part below a level. */
+/* Returns the part of the shape below a level. */
 static fu_wetness below(const fu_drag *drag, double level, double height)
 {
     const double u = (level - height) / drag->extent, end = end_of(drag);
@@ -42,7 +42,7 @@ static fu_wetness below(const fu_drag *drag, double level, double height)
     else if (drag->wet == FU_WET_SECTION) {
         const double theta = asin(u);
         drag->kernel->wet_section(&theta, &e, &c, &c_u, &c_uu);
-        if (fabs(u) > MOST_DEPTH) c_uu = 0.0;
+        if (fabs(u) > MAX_SECTION_DEPTH) c_uu = 0.0;
     } else {
         const double lower = -fabs(u), rounding = COLUMN_ROUNDING;
         c = 0.5 * (1.0 + lower);
@@ -68,7 +68,7 @@ double fu_drag_height(const fu_model *model, const fu_drag *drag, const double *
     return drag->flow.base + fu_dot(model->dim, drag->flow.up, r);
 }
 
-/* Heights of an element's axis over a part of it: a0 + a1 x + a2 x^2 + a3 x^3, x from 0 to 1. */
+/* Heights of the axis over a span of an element: a0 + a1 x + a2 x^2 + a3 x^3, x from 0 to 1. */
 typedef struct {
     double start, length, a[4];
 } heights;
@@ -83,8 +83,7 @@ static double slope_on(const heights *of, double x)
     return of->a[1] + x * (2.0 * of->a[2] + x * 3.0 * of->a[3]);
 }
 
-/* Returns where heights that rise or fall all the way from low to high are at a level between their ends (Newton,
- * bisection). */
+/* Returns the x in [low, high] at which heights, monotone there, reach a level (Newton's method with bisection). */
 static double reached_at(const heights *of, double level, double low, double high)
 {
     const double sense = height_on(of, high) > height_on(of, low) ? 1.0 : -1.0;
@@ -101,7 +100,7 @@ static double reached_at(const heights *of, double level, double low, double hig
     return x;
 }
 
-/* Makes the ends of the parts of 0 to 1 in which heights rise or fall all the way; returns how many parts. */
+/* Computes the ends of the parts of [0, 1] with monotone heights; returns the number of parts. */
 static int monotone_parts(const heights *of, double ends[4])
 {
     const double a = 3.0 * of->a[3], b = of->a[2], c = of->a[1], square = b * b - a * c;
@@ -122,7 +121,7 @@ static int monotone_parts(const heights *of, double ends[4])
     return n;
 }
 
-/* Adds where heights are at a level to the cuts, in increasing order. */
+/* Adds the positions at which heights reach a level to the cuts, in increasing order. */
 static void cut_at(const heights *of, double level, double cuts[MAX_CUTS], int *n)
 {
     double ends[4];
@@ -137,7 +136,7 @@ static void cut_at(const heights *of, double level, double cuts[MAX_CUTS], int *
     }
 }
 
-/* Gauss's rules from 0 to 1. */
+/* Gauss's rules on [0, 1]. */
 static const double PLAIN[2][4] = {{0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970262},
                                    {0.1739274225687269, 0.32607257743127305, 0.32607257743127305, 0.1739274225687269}};
 static const double GATHERED[2][8] = {
@@ -157,14 +156,14 @@ static void add_point(const fu_cable *cable, double length, int n, int part, dou
     out->at[out->n++] = (fu_quadrature_point){weight, N, N_x, 0};
 }
 
-/* The shape of an element by the coordinates e, and the heights of its axis over its spans. */
+/* A configuration of an element: coordinates e, and the heights of its axis over its spans. */
 typedef struct {
     const double *e;
     heights of[SPANS_AN_ELEMENT];
 } shape;
 
-/* Adds the points of a part of an element, in the middle of which one or two shapes are wet so: none where all are dry.
- */
+/* Adds the points of a part of an element, unless it is dry; wet: wet parts of one or two configurations in the middle
+ * of it. */
 static void add_part(const fu_cable *cable, double length, int n, int number, double from, double to,
                      const fu_wetness *wet, int n_shapes, fu_drag_points *out)
 {
@@ -184,7 +183,8 @@ static void add_part(const fu_cable *cable, double length, int n, int number, do
     }
 }
 
-/* Returns the height of an element's axis where its shape functions, or their slopes, have these values. */
+/* Returns the height above the origin of a point of an element's axis by its shape functions, or the slope of the
+ * height by their slopes. */
 static double along_axis(const fu_model *model, const fu_drag *drag, int n, const double *shape, const double *e)
 {
     double sum = 0.0;
@@ -192,7 +192,7 @@ static double along_axis(const fu_model *model, const fu_drag *drag, int n, cons
     return sum;
 }
 
-/* Returns whether all of an element is on one side of both surfaces, where its height is; else 0. */
+/* Returns whether an element is entirely on one side of each surface; *height is then a height of it. */
 static int is_uncut(const fu_model *model, const fu_drag *drag, int n, int element, const double *e, double *height)
 {
     const fu_cable *cable = &model->cables[drag->cable];
@@ -213,7 +213,8 @@ static int is_uncut(const fu_model *model, const fu_drag *drag, int n, int eleme
            (low - reach > drag->bottom || high + reach < drag->bottom);
 }
 
-/* Makes the heights of a shape, and adds where a surface begins or ceases to cut its section to the cuts. */
+/* Computes the heights of a configuration, and adds the positions at which a surface touches the edge of the section to
+ * the cuts. */
 static void cut_shape(const fu_model *model, const fu_drag *drag, int n, double length, shape *of,
                       double cuts[MAX_CUTS], int *n_cuts)
 {
@@ -235,7 +236,7 @@ static void cut_shape(const fu_model *model, const fu_drag *drag, int n, double 
     }
 }
 
-/* Makes the points of an element that a surface cuts, or may cut, in one or two shapes. */
+/* Computes the points of an element that a surface may cut, in one or two configurations. */
 static void cut_points(const fu_model *model, const fu_drag *drag, int n, int element, shape *shapes, int n_shapes,
                        fu_drag_points *out)
 {
@@ -254,7 +255,7 @@ static void cut_points(const fu_model *model, const fu_drag *drag, int n, int el
     }
 }
 
-/* Makes the points of an element that acts in one or two shapes. */
+/* Computes the points of an element, in one or two configurations. */
 static void points_of(const fu_model *model, const fu_drag *drag, int element, shape *shapes, int n_shapes,
                       fu_drag_points *out)
 {
