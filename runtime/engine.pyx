@@ -115,7 +115,7 @@ OUTPUTS = _described_outputs()
 """Fields of a row of output by name, of each kind of coupling with outputs; a state of rest has them, too."""
 SLACK_STRAIN = FU_SLACK_STRAIN
 """Least compression of a slack element in its middle."""
-MAX_HARD_CONTACTS = FU_MOST_HARD_CONTACTS
+MAX_HARD_CONTACTS = FU_MAX_HARD_CONTACTS
 """Largest number of points in hard contact of a scene."""
 CROSSING_STICK, FRICTION_MARK = FU_CROSSING_STICK, FU_FRICTION_MARK
 """Numbers that a state keeps of friction: of a crossing that sticks, of a point of a contact."""

@@ -123,10 +123,10 @@ static void take(fu_threads *all, member *owner, unsigned work)
 }
 
 /* Does the part of a member, then parts that nobody has taken. The first part is that of the sharing thread. */
-static void take_parts(fu_threads *all, int own, unsigned work)
+static void take_parts(fu_threads *all, int first, unsigned work)
 {
-    for (int k = own; k < all->n; ++k) take(all, &all->members[k], work);
-    for (int k = 1; k < own; ++k) take(all, &all->members[k], work);
+    for (int k = first; k < all->n; ++k) take(all, &all->members[k], work);
+    for (int k = 1; k < first; ++k) take(all, &all->members[k], work);
 }
 
 /* Returns the number of a new job, or the last number if the threads shall end. */

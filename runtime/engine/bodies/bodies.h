@@ -9,7 +9,7 @@ typedef struct {
     const double *b, *w, *a;
 } fu_instant;
 
-/* Functions of a kind of body: bodies.c, modal.c. b, w, a and f begin with the body's own entries. */
+/* Functions of a kind of body: bodies.c, modal.c. b, w, a and f begin with the body's entries. */
 typedef struct fu_body fu_body;
 typedef struct {
     int constant; /* its M is constant in body axes, and it has no K */

@@ -33,9 +33,9 @@ struct fu_model {
     const fu_motion *motions;
     const fu_signal *signals;
     int n_q, n_dof, n_band, n_border_dof;
-    /* Sums over the couplings: own coordinates, internal forces, sets of constraint rows, numbers in a row of output,
-     * own numbers and flags in a state, own work space; numbers of those that depend on reactions, have external work,
-     * are driven, are damped, may have deferred events, have inertia. */
+    /* Sums over the couplings: internal coordinates and forces, sets of constraint rows, numbers in a row of output,
+     * numbers and flags in a state, work space; numbers of those that depend on reactions, have external work, are
+     * driven, are damped, may have deferred events, have inertia. */
     int n_coordinates, n_forces, n_rows, n_outputs, n_numbers, n_flags, n_scratch, n_needing_reactions, n_external,
         n_driven, n_damped, n_deferring, n_inertial;
     int n_dissipation_state;    /* zero without algorithmic dissipation */

@@ -8,7 +8,7 @@
 #define FU_STATE_OF_COUPLINGS(ARRAY)                                                                                   \
     /* internal forces of couplings: on the rider of a slide, multipliers of a joint, on a spring's first end */       \
     ARRAY(double, forces, model->n_forces)                                                                             \
-    ARRAY(int, segment, model->n_coordinates) /* per own coordinate: its path segment (coupling_events.h) */           \
+    ARRAY(int, segment, model->n_coordinates) /* per coordinate of a coupling: its path segment (coupling_events.h) */ \
     /* private data of a coupling's type, n_numbers and n_flags of it */                                               \
     ARRAY(double, numbers, model->n_numbers)                                                                           \
     ARRAY(int, flags, model->n_flags)
@@ -19,7 +19,7 @@
     ARRAY(double, v, model->n_dof)                                                                                     \
     ARRAY(double, acceleration, model->n_dof)                                                                          \
     ARRAY(double, a, model->n_dof)         /* the integrator's auxiliary acceleration */                               \
-    ARRAY(double, s, model->n_coordinates) /* couplings' own coordinates: of each slide the arc-length, m */           \
+    ARRAY(double, s, model->n_coordinates) /* coordinates of couplings: of each slide the arc-length, m */             \
     FU_STATE_OF_COUPLINGS(ARRAY)                                                                                       \
     /* of algorithmic dissipation (integrators/algorithmic_dissipation.c) */                                           \
     ARRAY(double, dissipation_state, model->n_dissipation_state)

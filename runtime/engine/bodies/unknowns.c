@@ -96,7 +96,7 @@ int fu_extra(const fu_model *model, int k)
 }
 
 /* Extends a span to a row. */
-static void touch(fu_span *span, int row)
+static void extend_span(fu_span *span, int row)
 {
     if (row < span->first) span->first = row;
     if (row >= span->end) span->end = row + 1;
@@ -122,7 +122,7 @@ static void add(fu_system *s, int row, int column, double value)
             return;
         }
         (row < n ? s->B : s->C)[s->strips[strip].at + in_band] += value;
-        touch((row < n ? s->span_B : s->span_C) + FU_HALVES * strip + half % FU_HALVES, in_band);
+        extend_span((row < n ? s->span_B : s->span_C) + FU_HALVES * strip + half % FU_HALVES, in_band);
     }
 }
 
@@ -210,14 +210,14 @@ void fu_add_body(const fu_model *model, fu_system *s, int dof, int n, const doub
 void fu_add_row_and_column(const fu_model *model, fu_system *system, int row, int n, const int *at, const double *value,
                            double factor)
 {
-    const int own = model->n_band + model->n_border_dof - model->n_dof + row;
+    const int extra = model->n_band + model->n_border_dof - model->n_dof + row;
     if (!system) return;
     for (int i = 0; i < n; ++i) {
         const int unknown = model->unknown_of_dof[at[i]];
         const double added = factor * value[i];
         if (unknown >= 0) {
-            add(system, own, unknown, added);
-            add(system, unknown, own, added);
+            add(system, extra, unknown, added);
+            add(system, unknown, extra, added);
         } else if (unknown != FU_FIXED) {
             fu_add(model, system, row, at[i], added);
             fu_add(model, system, at[i], row, added);

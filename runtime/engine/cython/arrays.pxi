@@ -15,13 +15,13 @@ cdef class Arrays:
 
     cdef list named
     cdef readonly dict arrays
-    cdef double bytes_kept
+    cdef double bytes_allocated
     cdef void **chunks
     cdef size_t n_chunks, left
     cdef char *at
 
     def __cinit__(self, *args, **kwargs):
-        self.named, self.arrays, self.bytes_kept = [], {}, 0.0
+        self.named, self.arrays, self.bytes_allocated = [], {}, 0.0
 
     def __dealloc__(self):
         cdef size_t k
@@ -31,8 +31,8 @@ cdef class Arrays:
 
     cdef int _count(self, double size) except -1:
         """Add to the bytes owned. Raises MemoryError."""
-        self.bytes_kept += size
-        if self.bytes_kept > MACHINE_MEMORY:
+        self.bytes_allocated += size
+        if self.bytes_allocated > MACHINE_MEMORY:
             raise MemoryError
         return 0
 

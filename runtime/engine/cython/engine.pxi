@@ -50,7 +50,7 @@ cdef extern from * nogil:
     #include "run/run.h"
     """
     double FU_SLACK_STRAIN, FU_NO_TIME
-    int FU_CROSSING_STICK, FU_FRICTION_MARK, FU_MOST_HARD_CONTACTS
+    int FU_CROSSING_STICK, FU_FRICTION_MARK, FU_MAX_HARD_CONTACTS
     int FU_MAX_COORDINATES, FU_MAX_RATES, FU_ATTACHMENT_COORDINATES
     int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT, FU_UNSTABLE
     int FU_NO_FAILURE, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE, FU_SELF_LOCKING, FU_NOT_KNOWN
@@ -242,7 +242,7 @@ cdef extern from * nogil:
     ctypedef struct fu_energy_balance:
         double exchanged, in_motion, grown, lost, rounding
     ctypedef struct fu_statistics:
-        long steps, rejected, newton_iterations, factorisations, crossings, newton_failures, evaluations
+        long steps, rejected, newton_iterations, factorisations, node_passages, newton_failures, evaluations
         double h_min, h_max, error_sum, time_factor, time_solve, time_residual, time_output, time_step, time_error
     ctypedef struct fu_record:
         int n, first, pause

@@ -54,7 +54,7 @@ cdef class Report(Statics):
         s = self.run.statistics
         return {"steps": s.steps, "rejected_steps": s.rejected, "newton_iterations": s.newton_iterations,
                 "factorisations": s.factorisations, "newton_failures": s.newton_failures, "evaluations": s.evaluations,
-                "element_crossings": s.crossings, "smallest_step_s": s.h_min, "largest_step_s": s.h_max,
+                "element_crossings": s.node_passages, "smallest_step_s": s.h_min, "largest_step_s": s.h_max,
                 "sum_of_local_error_estimates_m": s.error_sum, "largest_motion_m": self.run.motion,
                 "time_s": {"residual": s.time_residual, "factorisation": s.time_factor, "solve": s.time_solve,
                            "step": s.time_step, "error": s.time_error, "output": s.time_output}}
@@ -96,7 +96,7 @@ cdef class Report(Statics):
     @property
     def memory(self):
         """Bytes of the engine's arrays; recorded rows count only after `start`."""
-        return int(self.bytes_kept)
+        return int(self.bytes_allocated)
 
     @property
     def time(self):

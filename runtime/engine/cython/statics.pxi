@@ -105,7 +105,7 @@ cdef class Statics(Translation):
         """Return the static state as the arguments of `set_state`, without t."""
         cdef fu_state *state = &self.run.next
         forces = self._view(state, "forces")
-        own = {kind: self._own(kind, forces, width) for kind, width in self.kept_forces.items()}
+        own = {kind: self._own(kind, forces, width) for kind, width in self.static_forces.items()}
         return {"q": self._view(state, "q").copy(), "s": self._view(state, "s").copy()} | own
 
     cdef _own(self, str kind, forces, int width):
@@ -129,9 +129,9 @@ cdef class Statics(Translation):
             self.weight = {"dofs": [m.gravity[i] for i in range(m.n_dof)],
                            "shapes": [[self.shapes[i].g[k] for k in range(3)] for i in range(m.n_bodies)]}
         m.load_fraction = fraction
-        cdef double *own_weight = <double *>m.gravity
+        cdef double *dof_gravity = <double *>m.gravity
         for i, value in enumerate(self.weight["dofs"]):
-            own_weight[i] = weight * value
+            dof_gravity[i] = weight * value
         for i in range(m.n_bodies):
             for k in range(3):
                 self.shapes[i].g[k] = weight * self.weight["shapes"][i][k]

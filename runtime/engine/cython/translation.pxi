@@ -27,7 +27,7 @@ cdef class Translation(Arrays):
     cdef fu_run run
     cdef fu_fronts newton_fronts, mass_fronts
     cdef object newton_elimination
-    cdef dict kept_forces  # by kind of coupling: largest number of internal forces in static states
+    cdef dict static_forces  # by kind of coupling: largest number of internal forces in static states
 
     def __cinit__(self, model, blocks=True):
         self.cables = <fu_cable *>PyMem_Calloc(len(model.cables) + 1, sizeof(fu_cable))
@@ -175,7 +175,7 @@ cdef class Translation(Arrays):
         cdef size_t at = 0
         cdef fu_coupling *coupling
         cdef int n = len(model.couplings)
-        counts, self.kept_forces = {}, dict.fromkeys(OUTPUTS, 0)
+        counts, self.static_forces = {}, dict.fromkeys(OUTPUTS, 0)
         for k, given in enumerate(model.couplings):
             coupling = self.couplings[k] = <fu_coupling *>(self.coupling_memory + at)
             coupling.type = _type_of(given)
@@ -189,7 +189,7 @@ cdef class Translation(Arrays):
                 raise ValueError(f"{given.type} {given.name!r}: more {coupling.type.excess(coupling).decode()} than the "
                                  "engine has room for")
             if given.keeps_forces and given.n_forces:
-                self.kept_forces[kind] = max(self.kept_forces.get(kind, 0), given.n_forces)
+                self.static_forces[kind] = max(self.static_forces.get(kind, 0), given.n_forces)
             at += coupling.type.size
         fu_number_couplings(self.couplings, n, <const fu_coupling **>self._memory(2.0 * n * sizeof(fu_coupling *)), &self.model)
 

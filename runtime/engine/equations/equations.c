@@ -39,7 +39,7 @@ static void matrix_of_cables(fu_run *run, const fu_equations *at)
     fu_dynamic_matrix(run->model, at->next->q, at->next->v, w.inertia, w.rate, w.stiffness, &run->newton);
 }
 
-static void add_matrix_of_others(fu_run *run, const fu_equations *at)
+static void add_matrix_without_cables(fu_run *run, const fu_equations *at)
 {
     fu_bodies_matrix(run->model, at->next, at->psi, at->weights, &run->newton);
     if (at->weights.inertia != 0.0) fu_coupling_masses(run->model, at->next->q, at->weights.inertia, &run->newton);
@@ -50,7 +50,7 @@ static void add_matrix_of_others(fu_run *run, const fu_equations *at)
 void fu_matrix(fu_run *run, const fu_equations *at)
 {
     matrix_of_cables(run, at);
-    add_matrix_of_others(run, at);
+    add_matrix_without_cables(run, at);
 }
 
 /* Computes the cables' part of it. */
@@ -62,17 +62,17 @@ void fu_matrix_of_cables(fu_run *run, fu_weights weights)
 }
 
 /* Adds the part of bodies and couplings. */
-void fu_add_matrix_of_others(fu_run *run, fu_weights weights)
+void fu_add_matrix_without_cables(fu_run *run, fu_weights weights)
 {
     const fu_equations at = {.now = &run->now, .next = &run->next, .weights = weights};
-    add_matrix_of_others(run, &at);
+    add_matrix_without_cables(run, &at);
 }
 
 /* Computes the same for these weights, unfactored; unknowns move bodies from `next`. */
 void fu_matrix_of_weights(fu_run *run, fu_weights weights)
 {
     fu_matrix_of_cables(run, weights);
-    fu_add_matrix_of_others(run, weights);
+    fu_add_matrix_without_cables(run, weights);
 }
 
 /* Moves `next` by unknowns from its position, in statics. */

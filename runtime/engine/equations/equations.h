@@ -11,7 +11,7 @@ void fu_residual(fu_run *run, const fu_equations *at);
 void fu_matrix(fu_run *run, const fu_equations *at);
 void fu_matrix_of_weights(fu_run *run, fu_weights weights);
 void fu_matrix_of_cables(fu_run *run, fu_weights weights);
-void fu_add_matrix_of_others(fu_run *run, fu_weights weights);
+void fu_add_matrix_without_cables(fu_run *run, fu_weights weights);
 void fu_static_move(fu_run *run, const double *change);
 void fu_static_residual(fu_run *run);
 

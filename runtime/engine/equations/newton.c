@@ -69,12 +69,12 @@ void fu_predict_internal(fu_run *run, double h)
 static int blame(fu_run *run)
 {
     const fu_model *model = run->model;
-    const double *own = fu_internal_unknowns(run);
+    const double *internal = fu_internal_unknowns(run);
     double largest = fu_size(model, run->work);
     int coupling = -1;
     FU_EACH_COUPLING(c, model->always_active, model->n_always_active) {
         for (int i = 0; c->n_coordinates && i < c->n_coordinates + c->n_forces; ++i) {
-            const double size = fabs(own[c->unknown + i]);
+            const double size = fabs(internal[c->unknown + i]);
             if (!(size > largest)) continue;
             largest = size;
             coupling = c->number;
@@ -96,22 +96,22 @@ static void count_for_matrix(fu_run *run, int iterations, int most)
 static double largest_gap(fu_run *run)
 {
     const fu_model *model = run->model;
-    const double *own = fu_internal_unknowns(run);
+    const double *internal = fu_internal_unknowns(run);
     double gap = 0.0;
     FU_EACH_COUPLING(c, model->always_active, model->n_always_active)
         for (int i = 0; i < c->n_forces; ++i)
-            gap = fmax(gap, fabs(own[c->unknown + c->n_coordinates + i]) / c->scale[i]);
+            gap = fmax(gap, fabs(internal[c->unknown + c->n_coordinates + i]) / c->scale[i]);
     return gap;
 }
 
-/* Closes the gaps after an iteration with the factored matrix, as if the dofs' own equations were linear. Gaps result
+/* Closes the gaps after an iteration with the factored matrix, as if the equations of the dofs were linear. Gaps result
  * from directions that have rotated since the factorisation, and dominate the next iteration. This needs no forces of
  * cables and no substitution in their chains; without chains it would cost as much as an iteration. */
 static void close_gaps(fu_run *run, const fu_newton *method, double h)
 {
     const fu_model *model = run->model;
-    if (!method->own_residual || !model->n_extra || !model->n_band) return;
-    method->own_residual(run, h);
+    if (!method->internal_residual || !model->n_extra || !model->n_band) return;
+    method->internal_residual(run, h);
     if (largest_gap(run) <= run->round_off) return;
     fu_system_solve_border(&run->newton, model->lapack, run->rhs);
     method->apply(run, h);
@@ -167,17 +167,17 @@ static int iterate(fu_run *run, const fu_newton *method, double h)
 /* Largest residuals in run->rhs: root of the sum of squares over the equations of motion; of the couplings' internal
  * equations; and gaps of constraints, m. */
 typedef struct {
-    double motion, own, gap;
+    double motion, internal, gap;
 } residual_size;
 
 static residual_size size_of_residual(fu_run *run)
 {
     const fu_model *model = run->model;
-    const double *own = fu_internal_unknowns(run);
+    const double *internal = fu_internal_unknowns(run);
     residual_size size = {0.0, 0.0, 0.0};
     for (int i = 0; i < model->n_band + model->n_border_dof; ++i) size.motion += run->rhs[i] * run->rhs[i];
     size.motion = sqrt(size.motion);
-    for (int i = 0; i < model->n_extra; ++i) size.own = fmax(size.own, fabs(own[i]));
+    for (int i = 0; i < model->n_extra; ++i) size.internal = fmax(size.internal, fabs(internal[i]));
     size.gap = largest_gap(run);
     return size;
 }
@@ -186,8 +186,8 @@ static residual_size size_of_residual(fu_run *run)
 static double contraction_of_residual(residual_size before, residual_size after)
 {
     const double motion = before.motion > 0.0 ? after.motion / before.motion : 0.0;
-    const double own = before.own > 0.0 ? after.own / before.own : 0.0;
-    return fmin(1.0, RESIDUAL_UNDERESTIMATE * fmax(motion, own));
+    const double internal = before.internal > 0.0 ? after.internal / before.internal : 0.0;
+    return fmin(1.0, RESIDUAL_UNDERESTIMATE * fmax(motion, internal));
 }
 
 /* Returns whether an iteration may end after an increment of this size, at this contraction and these gaps. */
@@ -198,7 +198,7 @@ static int leaves_little(const fu_run *run, double size, double contraction, dou
 }
 
 /* Iterates likewise if later steps compensate the remaining residual, which is evaluated and bounds the error. */
-static int iterate_and_note(fu_run *run, const fu_newton *method, double h)
+static int iterate_compensated(fu_run *run, const fu_newton *method, double h)
 {
     double last = INFINITY;
     method->kinematics(run, h);
@@ -237,7 +237,8 @@ int fu_newton_step(fu_run *run, const fu_newton *method, double h)
 {
     if (fabs(h - run->h_factored) > FU_SAME_STEP * h) run->factored = 0;
     const int stale = run->factored;
-    int (*const solve)(fu_run *, const fu_newton *, double) = fu_carries_rest(run) ? iterate_and_note : iterate;
+    int (*const solve)(fu_run *, const fu_newton *, double) =
+        fu_compensates_residual(run) ? iterate_compensated : iterate;
     method->predict(run, h);
     if (!solve(run, method, h)) return 0;
     if (stale) { /* the matrix belonged to an earlier step: renew it before giving up */

@@ -23,13 +23,13 @@ typedef struct {
      * motion like a force. */
     void (*note_rest)(fu_run *run, double h);
     /* Computes minus the scaled residual of the couplings' internal equations in run->rhs, and zero for the dofs. */
-    void (*own_residual)(fu_run *run, double h);
+    void (*internal_residual)(fu_run *run, double h);
 } fu_newton;
 
 void fu_linearise(fu_run *run, double h, const double *change);
 
 int fu_goes_on(const fu_run *run);
-int fu_carries_rest(const fu_run *run);
+int fu_compensates_residual(const fu_run *run);
 int fu_newton_step(fu_run *run, const fu_newton *method, double h);
 void fu_predict_internal(fu_run *run, double h);
 void fu_add_solution(fu_run *run, double inertia, double scale);

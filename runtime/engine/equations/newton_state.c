@@ -29,7 +29,7 @@ int fu_goes_on(const fu_run *run)
 /* Returns whether later steps compensate the remaining residual of one. Fixed steps of scenes with couplings are solved
  * to rounding instead: a gap of 1e-14 m after a step of 1 ms causes a force of 1e-8 N per kg in the next one, whose
  * vibrations decay slowly. So are fixed steps that had to be divided, or are too coarse. */
-int fu_carries_rest(const fu_run *run)
+int fu_compensates_residual(const fu_run *run)
 {
     const fu_newton *method = run->integrator->newton;
     if (!method || !method->note_rest || !fu_goes_on(run)) return 0;

@@ -17,14 +17,13 @@
 /* of the largest length: gaps of a probed mechanism that is back on its joints */
 #define PROBE_TOLERANCE 1e-12
 
-/* Records that a coupling's coordinates do not follow from the others; returns 1. */
+/* Records a coupling whose dependent coordinates have no solution; returns 1. */
 static int lost(fu_run *run, const double *v, const fu_coupling *coupling)
 {
     return fu_fail(run, FU_LOST_RIDER, v, coupling->number);
 }
 
-/* Solves for the coordinates of `next` that follow from the others, predicted by the last step's slope; returns 0 on
- * convergence. */
+/* Solves for the dependent coordinates of `next`, predicted by the last step's slope; returns 0 on convergence. */
 int fu_find_internal(fu_run *run)
 {
     fu_state *next = &run->next;

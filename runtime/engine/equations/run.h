@@ -14,7 +14,7 @@
 #include "bodies/state.h"
 
 typedef struct {
-    long steps, rejected, newton_iterations, factorisations, crossings, newton_failures, evaluations;
+    long steps, rejected, newton_iterations, factorisations, node_passages, newton_failures, evaluations;
     double h_min, h_max, error_sum;
     /* s, each without the others: of output; of steps, apart from residuals, matrices and solutions; of error
      * estimates */
@@ -123,10 +123,10 @@ struct fu_run {
     /* Events: written by run/event_handling.c, run/steps.c and events/. */
     double acted; /* s: last change of state of a coupling */
     int acts, stopped_slide;
-    int goes_over;     /* the last event to which a step led was deferred */
-    int most_deferred; /* of any stage of a step, or of its end for other integrators */
-    int keep_forces;   /* couplings have no deferred event in a step, which ends at one */
-    int keep_segments; /* couplings keep their path segments in a step, which ends where one leaves its segment */
+    int last_event_deferred; /* the last event to which a step led was deferred */
+    int max_deferred;        /* of any stage of a step, or of its end for other integrators */
+    int keep_forces;         /* couplings have no deferred event in a step, which ends at one */
+    int keep_segments;       /* couplings keep their path segments in a step, which ends where one leaves its segment */
 
     double recorded; /* s: time of the last row; by run/record.c */
     int rest_start;  /* for order.py only: start the scheme from zero accelerations */

@@ -46,7 +46,7 @@ static double newton_tolerance(const fu_run *run, double h, double allowed, doub
 {
     const int fixed = run->fixed_step > 0.0;
     const double share = h / run->duration;
-    if (fu_carries_rest(run))
+    if (fu_compensates_residual(run))
         return fixed ? fmin(CARRIED_FIXED_NEWTON_SHARE * run->last_error, MAX_CARRIED_FIXED_NEWTON_TOLERANCE * extent)
                      : fmin(CARRIED_NEWTON_SHARE * allowed, MAX_CARRIED_NEWTON_TOLERANCE * extent);
     return fixed ? fmin(FIXED_NEWTON_SHARE * share * run->last_error, MAX_FIXED_NEWTON_TOLERANCE * extent)
@@ -60,12 +60,12 @@ double fu_allowed_error(const fu_run *run)
 }
 
 /* Returns the size of a step's error of the dofs, m: of the dofs in the error of tol and those that act on them, and of
- * the others relative to their own permitted error (others, m), so that both are compared to run->allowed. */
-double fu_error_size(const fu_run *run, const double *error, double others)
+ * the unnamed relative to their permitted error (unnamed, m), so that both are compared to run->allowed. */
+double fu_error_size(const fu_run *run, const double *error, double unnamed)
 {
     const fu_model *model = run->model;
     if (run->controlled == model->weight) return fu_size(model, error);
-    return fmax(fu_weighted_size(model, run->counted, error), fu_size(model, error) * run->allowed / others);
+    return fmax(fu_weighted_size(model, run->counted, error), fu_size(model, error) * run->allowed / unnamed);
 }
 
 /* Returns the permitted error of a step in dofs that are not named, m. */

@@ -100,8 +100,8 @@ int fu_count_changes(const fu_run *run)
     return count;
 }
 
-/* Returns the couplings of `next` to the segments of `now`, which they have left. */
-void fu_keep_path_segments(fu_run *run)
+/* Assigns the couplings of `next` to their segments of `now`. */
+void fu_restore_path_segments(fu_run *run)
 {
     memcpy(run->next.segment, run->now.segment, sizeof(int) * (size_t)run->model->n_coordinates);
 }
@@ -121,8 +121,9 @@ double fu_time_to_boundary(const fu_run *run)
     return least;
 }
 
-/* Returns the part of a step, by the parabola through both ends of the step, after which a coupling reverses that is
- * back at `next` from beyond a boundary, or beyond one that it stood on and has left inwards; 0 if it does neither. */
+/* Returns the part of a step after which the coordinate of a coupling turns back beyond a boundary, by the parabola
+ * through both ends of the step; 0 if it does not. At `next` the coordinate is within its segment again, or beyond the
+ * boundary on which it stood at `now`. */
 static double part_to_turn(const fu_run *run, const fu_coupling *c, fu_path path, double h)
 {
     const double rise = h * c->events->path->rate(run->model, c, &run->now), tolerance = fu_boundary_tolerance(path);
@@ -136,7 +137,7 @@ static double part_to_turn(const fu_run *run, const fu_coupling *c, fu_path path
     return part > 0.0 && part < 1.0 && (returns || leaves) ? part : 0.0;
 }
 
-/* Returns the time after `now` of the first such reversal, s; 0 for none. */
+/* Returns the time after `now` of the first such reversal of all couplings, s; 0 for none. */
 double fu_time_of_turn(const fu_run *run, double h)
 {
     FU_EACH_COUPLING(c, run->model->always_active, run->model->n_always_active) {
@@ -147,7 +148,7 @@ double fu_time_of_turn(const fu_run *run, double h)
     return 0.0;
 }
 
-/* Returns whether a coupling is on the boundary already: then its segment changes and not the time. */
+/* Returns whether a coupling is on the boundary at `now`: its segment then changes without a step. */
 int fu_stands_on_boundary(const fu_run *run, fu_event event)
 {
     if (event.kind != FU_PATH_BOUNDARY) return 0;

@@ -13,7 +13,7 @@ double fu_time_to_boundary(const fu_run *run);
 double fu_time_of_turn(const fu_run *run, double h);
 void fu_choose_path_segments(fu_run *run);
 int fu_count_changes(const fu_run *run);
-void fu_keep_path_segments(fu_run *run);
+void fu_restore_path_segments(fu_run *run);
 void fu_find_path_segments(const fu_model *model, fu_state *state);
 int fu_stands_on_boundary(const fu_run *run, fu_event event);
 int fu_are_on_path_segments(const fu_model *model, const fu_state *state, double aside);

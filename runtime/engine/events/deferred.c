@@ -39,16 +39,16 @@ int fu_choose_deferred(fu_run *run, int first)
     int changed = 0;
     if (run->keep_forces) return 0;
     FU_EACH_COUPLING(c, model->always_active, model->n_deferring ? model->n_always_active : 0)
-        changed |= fu_can_defer(c) && c->events->deferred->follow(model, c, &run->now, &run->next);
+        changed |= fu_can_defer(c) && c->events->deferred->update_flags(model, c, &run->now, &run->next);
     const int count = model->n_deferring ? fu_count_deferred(run) : 0;
-    if (first || count > run->most_deferred) run->most_deferred = count;
+    if (first || count > run->max_deferred) run->max_deferred = count;
     return changed;
 }
 
 /* Returns whether a stage of the last step had an event that its end has not: then its error has no bound. */
 int fu_strayed(const fu_run *run)
 {
-    return !run->keep_forces && run->model->n_deferring && run->most_deferred > fu_count_deferred(run);
+    return !run->keep_forces && run->model->n_deferring && run->max_deferred > fu_count_deferred(run);
 }
 
 /* Returns the number of couplings with an event in the step. */

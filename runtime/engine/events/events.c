@@ -265,11 +265,11 @@ static double locate(fu_run *run, fu_event event, double h)
  * one leaves its segment. Returns the step, 0 on failure; `next` is there then. */
 double fu_locate(fu_run *run, fu_event event, double h)
 {
-    const int kept = run->keep_segments;
+    const int saved = run->keep_segments;
     run->keep_segments |= event.kind == FU_PATH_BOUNDARY;
     run->newton_tolerance *= NEWTON_TOLERANCE_FACTOR;
     const double found = locate(run, event, h);
-    run->keep_segments = kept;
+    run->keep_segments = saved;
     return found;
 }
 

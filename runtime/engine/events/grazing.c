@@ -45,7 +45,7 @@ static fu_course course_of(const fu_model *model, const fu_event_function *funct
 }
 
 /* Returns the part of a step after which an event function that has just passed to this side is farthest there, and is
- * back at the end; 0 if it is not. Without a value of its own its deferred event back would be missed. */
+ * back at the end; 0 if it is not. Without this check its deferred return would be missed. */
 static double return_of(fu_course from, fu_course to, double h, double least)
 {
     const int side = from.rate > 0.0 ? 1 : -1;

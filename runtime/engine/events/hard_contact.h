@@ -12,12 +12,11 @@ static inline const fu_hard_contact *fu_hard_contact_of(const fu_coupling *coupl
 /* The active points: their earlier state; rows, compliance, normal velocities before and after, least velocities after,
  * impulses, their energy loss, J; whether they stay closed; whether any has friction. */
 typedef struct {
-    int n, friction, was[FU_MOST_HARD_CONTACTS], stuck[FU_MOST_HARD_CONTACTS], stays[FU_MOST_HARD_CONTACTS];
-    const fu_coupling *of[FU_MOST_HARD_CONTACTS];
-    fu_hard_row row[FU_MOST_HARD_CONTACTS];
-    double G[FU_MOST_HARD_CONTACTS * FU_MOST_HARD_CONTACTS], before[FU_MOST_HARD_CONTACTS],
-        after[FU_MOST_HARD_CONTACTS];
-    double target[FU_MOST_HARD_CONTACTS], impulse[FU_MOST_HARD_CONTACTS], taken;
+    int n, friction, was[FU_MAX_HARD_CONTACTS], stuck[FU_MAX_HARD_CONTACTS], stays[FU_MAX_HARD_CONTACTS];
+    const fu_coupling *of[FU_MAX_HARD_CONTACTS];
+    fu_hard_row row[FU_MAX_HARD_CONTACTS];
+    double G[FU_MAX_HARD_CONTACTS * FU_MAX_HARD_CONTACTS], before[FU_MAX_HARD_CONTACTS], after[FU_MAX_HARD_CONTACTS];
+    double target[FU_MAX_HARD_CONTACTS], impulse[FU_MAX_HARD_CONTACTS], taken;
 } fu_active_contacts;
 
 /* events/impulse.c: adds an impulse along H, of a row's dofs, to run->before; computes in run->work the jump of

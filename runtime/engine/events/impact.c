@@ -19,7 +19,7 @@
 /* of the kinetic energy of the jump: largest gain in an impact */
 #define ENERGY_TOLERANCE 1e-9
 
-enum { MAX_CONTACTS = FU_MOST_HARD_CONTACTS };
+enum { MAX_CONTACTS = FU_MAX_HARD_CONTACTS };
 
 /* Collects the active points and opens all of them, so that their rows are not in eq 38. */
 static void collect(fu_run *run, const fu_coupling *first, fu_active_contacts *t)

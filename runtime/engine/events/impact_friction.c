@@ -20,7 +20,7 @@
 #define APPROACH_TOLERANCE 1e-6 /* of the accelerations: above the compliance of sticking */
 #define MAX_CHANGES 200         /* largest number of changes of states of points */
 
-enum { MAX_CONTACTS = FU_MOST_HARD_CONTACTS, MAX_ROWS = FU_SPACE * FU_MOST_HARD_CONTACTS };
+enum { MAX_CONTACTS = FU_MAX_HARD_CONTACTS, MAX_ROWS = FU_SPACE * FU_MAX_HARD_CONTACTS };
 
 /* Rows of an impact with friction: of each point its normal, then the directions across it. */
 typedef struct {

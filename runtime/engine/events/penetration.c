@@ -14,7 +14,7 @@ double fu_beyond(const fu_model *model, const fu_coupling *coupling, const fu_st
 }
 
 /* Records the penetrations at `now`, with known event functions. Distant pairs do not touch. */
-void fu_note_depths(fu_run *run)
+void fu_record_penetrations(fu_run *run)
 {
     const fu_event_function_list near = fu_near_event_functions(run, &run->now);
     for (int i = 0; i < near.n; ++i) {

@@ -4,7 +4,7 @@
 
 #include "couplings/common/coupling.h"
 
-void fu_note_depths(fu_run *run);
+void fu_record_penetrations(fu_run *run);
 /* Returns the distance of contact beyond the ends of a surface, m; not positive for none. */
 double fu_beyond(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 

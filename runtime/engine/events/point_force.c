@@ -41,7 +41,7 @@ static transition farther(transition a, transition b)
     return b.margin > a.margin ? b : a;
 }
 
-/* Returns the nearest segment without force, towards the distances at which a segment's own force is zero. */
+/* Returns the nearest segment without force, towards the distances at which the segment's force is zero. */
 static int free_beside(const fu_point_force *between, int segment)
 {
     const int step = -between->senses[segment];
@@ -86,7 +86,7 @@ static transition next_transition(const fu_model *model, const fu_point_force *b
 }
 
 /* Transitions follow from the positions of the points; each leads from segment to segment. */
-static int follow(const fu_model *model, const fu_coupling *coupling, const fu_state *from, fu_state *to)
+static int update_flags(const fu_model *model, const fu_coupling *coupling, const fu_state *from, fu_state *to)
 {
     const fu_point_force *between = force_of(coupling);
     int *segment = &to->flags[coupling->flags];
@@ -158,11 +158,11 @@ static end_course end_of(const fu_model *model, const fu_point_force *between, c
 
 /* Returns the polynomial at a part of the step: of degree 3 without second derivatives at its ends, else of degree
  * 5. */
-static double between_ends(end_course a, end_course b, int bends, double x)
+static double between_ends(end_course a, end_course b, int has_accelerations, double x)
 {
     const double y = 1.0 - x;
     const fu_step_ends ends = {{a.value, b.value}, {a.rate, b.rate}};
-    if (!bends) return fu_value_within(&ends, 1.0, x);
+    if (!has_accelerations) return fu_value_within(&ends, 1.0, x);
     return y * y * y * ((1.0 + 3.0 * x + 6.0 * x * x) * a.value + x * (1.0 + 3.0 * x) * a.rate + 0.5 * x * x * a.bend) +
            x * x * x * ((1.0 + 3.0 * y + 6.0 * y * y) * b.value - y * (1.0 + 3.0 * y) * b.rate + 0.5 * y * y * b.bend);
 }
@@ -170,7 +170,7 @@ static double between_ends(end_course a, end_course b, int bends, double x)
 /* By the polynomial of the distance through both ends of the step (Hermite); where a damper reverses the force, by the
  * line of its margins. */
 static double part_of_step(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
-                           double h, int bends, const char **what)
+                           double h, int has_accelerations, const char **what)
 {
     const fu_point_force *between = force_of(coupling);
     const int before = fu_force_segment(between, from), there = fu_force_segment(between, to);
@@ -186,7 +186,7 @@ static double part_of_step(const fu_model *model, const fu_coupling *coupling, c
     const int bound = up ? before : before - 1;
     const end_course a = end_of(model, between, from, bound, h), b = end_of(model, between, to, bound, h);
     for (int i = 0; i < BISECTIONS; ++i) {
-        const double x = 0.5 * (low + high), value = between_ends(a, b, bends, x);
+        const double x = 0.5 * (low + high), value = between_ends(a, b, has_accelerations, x);
         if ((up ? value : -value) < 0.0) low = x;
         else high = x;
     }
@@ -295,7 +295,7 @@ static int begin(fu_run *run, const fu_coupling *coupling)
 }
 
 static const fu_deferred_operations deferred = {
-    .follow = follow, .part = part_of_step, .since = since, .force_change = force_change};
+    .update_flags = update_flags, .part = part_of_step, .since = since, .force_change = force_change};
 
 const fu_coupling_events fu_point_force_events = {
     .functions = functions,

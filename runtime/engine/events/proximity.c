@@ -124,7 +124,7 @@ static void list_near(fu_run *run)
 }
 
 /* Adds the path lengths of parts since the last search; returns whether one has used half of its limit. */
-static int count_ways(const fu_model *model, const fu_state *state, double *displacements, double *turns)
+static int add_path_lengths(const fu_model *model, const fu_state *state, double *displacements, double *turns)
 {
     const fu_proximity *p = model->proximity;
     int is_late = 0;
@@ -163,7 +163,7 @@ void fu_look_around(fu_run *run, double h, int anew)
     anew |= !p->is_known;
     ++p->age;
     if (anew) memset(displacements, 0, sizeof(double) * 2 * (size_t)p->n_movers);
-    else if (!count_ways(model, &run->now, displacements, turns) && p->age < MAX_STEPS_PER_UPDATE) return;
+    else if (!add_path_lengths(model, &run->now, displacements, turns) && p->age < MAX_STEPS_PER_UPDATE) return;
     expect(model, &run->now, run->fixed_step > 0.0 ? run->fixed_step : fmax(h, run->h), p->age, displacements, turns);
     memcpy(p->at, run->now.q, sizeof(double) * (size_t)model->n_q);
     sort_pairs(run, &run->now, anew);

@@ -1,21 +1,21 @@
 /* Remaining residuals of Newton's method in the equations of motion, compensated by later steps.
  *
  * The residual r of an iteration has one sign step after step, and acts like a force: after n steps it has moved
- * positions by n^2/2 times the omitted increment. Its impulse P and the moment X of that are summed,
- *     P_n+1 = P_n + h r_n+1,   X_n+1 = X_n + h P_n+1,
- * and the next step is solved with the force c = -(X/T + P)/T on its right side, r = c + the remaining residual
- * there. T = h returns both sums in one step: r_n+1 = e_n+1 - 2 e_n + e_n-1 of the remaining residuals e, so that
- * the error of the motion is e alone, for any number of steps. (The noise of quantisation is treated likewise:
- * Schreier & Temes 2005.)
+ * positions by n^2/2 times the omitted increment. Its impulse P and the moment X of that are summed, P_n+1 = P_n + h
+ * r_n+1,   X_n+1 = X_n + h P_n+1, and the next step is solved with the force c = -(X/T + P)/T on its right side, r = c
+ * + the remaining residual there. T = h returns both sums in one step: r_n+1 = e_n+1 - 2 e_n + e_n-1 of the remaining
+ * residuals e, so that the error of the motion is e alone, for any number of steps. (The noise of quantisation is
+ * treated likewise: Schreier & Temes 2005.)
  *
- * The equations are those of the dofs and of couplings' own coordinates: of a slide, the balance along the cable.
- * The residual of a constraint is a gap of `next` alone.
+ * The equations are those of the dofs and of couplings' coordinates: of a slide, the balance along the cable. The
+ * residual of a constraint is a gap of `next` alone.
  *
- * After a step of T, T must not end sooner than that step would have been compensated: each step takes no more than
- * its own h from T. Otherwise one short step to an event would compensate a long one with a large force, and many,
- * each shorter than the last, with unbounded forces. For T > h the sums go to zero in some steps, for any T. Steps
- * that are solved to rounding compensate earlier ones as well: without the force c, the impulse would continue to
- * move positions. */
+ * After a step of T, T must not end sooner than that step would have been compensated: each step reduces T by no more
+ * than its h. Otherwise one short step to an event would compensate a long one with a large force, and many, each
+ * shorter than the last, with unbounded forces. For T > h the sums go to zero in some steps, for any T. Steps that are
+ * solved to rounding compensate earlier ones as well: without the force c, the impulse would continue to move
+ * positions.
+ */
 #include "base/workspace.h"
 #include "equations/run.h"
 #include "integrators/carried_residual.h"
@@ -51,7 +51,8 @@ static double span(const fu_carried_residual *carried, double h)
     return fmax(h, *carried->span - h);
 }
 
-/* Computes the force by which a step of size h compensates earlier steps: its residual, apart from Newton's own. */
+/* Computes the force by which a step of size h compensates earlier steps: its residual without that of Newton's method.
+ */
 void fu_carried_residual_correct(const fu_carried_residual *carried, const fu_model *model, double h)
 {
     const double per = 1.0 / span(carried, h);
@@ -75,10 +76,10 @@ void fu_carried_residual_add(const fu_carried_residual *carried, fu_run *run, do
 void fu_carried_residual_note(const fu_carried_residual *carried, const fu_run *run, double scale)
 {
     const fu_model *model = run->model;
-    double *own = carried->left + model->n_band + model->n_border_dof;
+    double *internal = carried->left + model->n_band + model->n_border_dof;
     for (int i = 0; i < size(model); ++i) carried->left[i] = carried->correction[i] - run->rhs[i] / scale;
     FU_EACH_COUPLING(c, model->always_active, model->n_always_active)
-        for (int i = 0; i < c->n_forces; ++i) own[c->unknown + c->n_coordinates + i] = 0.0;
+        for (int i = 0; i < c->n_forces; ++i) internal[c->unknown + c->n_coordinates + i] = 0.0;
 }
 
 /* Accepts the last step, whose residual is to be compensated. */

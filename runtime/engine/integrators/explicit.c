@@ -96,7 +96,7 @@ static void combine(fu_run *run, const double *row, int n, double h, double *q, 
 }
 
 /* Stores the rates of stage k, and the powers of its state. */
-static void keep(fu_run *run, int k, const fu_state *state)
+static void store_stage(fu_run *run, int k, const fu_state *state)
 {
     rates(run->model, state, stage(run, k));
     powers(run, k)[INTERNAL] = fu_internal_dissipation(run->model, state->q, state->v);
@@ -137,7 +137,7 @@ static int evaluate(fu_run *run, double h)
         if (move_to(run, method.A + k * n, k, run->now.t + method.c[k] * h, h)) return 1;
         double *reaction = fu_supports_move(model, next) ? run->force : 0;
         if (fu_accelerations(model, next, &run->accelerator, next->acceleration, reaction)) return fu_fail_eq38(run);
-        keep(run, k, next);
+        store_stage(run, k, next);
     }
     run->statistics.time_residual += fu_clock() - begin;
     return 0;
@@ -159,7 +159,7 @@ static int step(fu_run *run, double h)
     if (move_to(run, method.b, n, run->now.t + h, h)) return 1;
     if (fu_return_to_joints(run, next)) return 1;
     if (fu_complete(run, next)) return fu_fail_eq38(run);
-    keep(run, n, next);
+    store_stage(run, n, next);
     run->statistics.evaluations += n;
     for (int i = 0; i < model->n_dof; ++i)
         if (!(fabs(next->v[i]) < FU_RUNS_AWAY)) return fu_fail(run, FU_NOT_FINITE, next->v, -1);
@@ -191,8 +191,8 @@ static double estimate(fu_run *run, const double *row, double h)
     for (int k = 0; k < model->n_motions; ++k) run->work[model->motions[k].dof] = v[model->motions[k].dof] = 0.0;
     for (int i = 0; i < model->n_dof; ++i) v[i] *= h;
     /* dofs that are not named must not become unstable either: their error is limited to tol of the largest motion */
-    const double others = run->allowed * run->tol * fmax(run->motion, run->least_motion) / fu_allowed_error(run);
-    return fmax(fu_error_size(run, run->work, others), fu_error_size(run, v, others));
+    const double unnamed = run->allowed * run->tol * fmax(run->motion, run->least_motion) / fu_allowed_error(run);
+    return fmax(fu_error_size(run, run->work, unnamed), fu_error_size(run, v, unnamed));
 }
 
 /* Returns the local error of positions, m, from two embedded estimates, combined as in DOP853. */

@@ -12,8 +12,8 @@ typedef struct {
 
 /* The history of an integrator in its work space. */
 typedef struct {
-    double *before, *earlier;     /* n_dof: its accelerations one and two steps before `now` */
-    double *slope, *slope_before; /* of the couplings' own coordinates in the last step, and in the one before */
+    double *before, *earlier;             /* n_dof: its accelerations one and two steps before `now` */
+    double *slope, *slope_before;         /* of the couplings' coordinates in the last step, and in the one before */
     double *force_before, *force_earlier; /* of the couplings, one and two steps before `now` */
     fu_last_steps *last;
 } fu_extrapolation;

@@ -172,7 +172,7 @@ static void residual(fu_run *run, double h)
 }
 
 /* Computes minus the residual of the couplings' internal equations, and zero for the dofs. */
-static void own_residual(fu_run *run, double h)
+static void internal_residual(fu_run *run, double h)
 {
     const fu_equations at = equations(run, h);
     fu_coupling_residuals(run->model, &at, run->force, fu_internal_unknowns(run));
@@ -185,7 +185,7 @@ static void note_rest(fu_run *run, double h)
     fu_carried_residual_note(&w.carried, run, sigma(scheme_of(run), h));
 }
 
-static const fu_newton newton = {predict, kinematics, residual, matrix, apply, 12, 0, note_rest, own_residual};
+static const fu_newton newton = {predict, kinematics, residual, matrix, apply, 12, 0, note_rest, internal_residual};
 
 static int step(fu_run *run, double h)
 {

@@ -48,7 +48,7 @@ static long lay_out(const fu_run *run, double *scratch)
     w->multipliers = fu_take(scratch, &taken, (STAGES + 1) * (long)model->n_multipliers);
     w->unknowns = fu_take(scratch, &taken, run->newton.n + m);
     w->D_real = fu_take(scratch, &taken, run->newton.fronts->size);
-    w->kept = fu_take(scratch, &taken, m);
+    w->border_product = fu_take(scratch, &taken, m);
     w->last = fu_take(scratch, &taken, STAGES * n);
     fu_complex_system_take(&w->newton, &run->newton, scratch, &taken);
     return taken;

@@ -20,17 +20,17 @@ _Static_assert(sizeof(fu_radau_parameters) == (4 * STAGES * STAGES + 2 * STAGES 
 
 /* The head of the integrator's work space, and the arrays behind it. */
 typedef struct {
-    double *Z;           /* stages' increments of velocity, n_dof each */
-    double *a;           /* accelerations: likewise */
-    double *w;           /* their transforms: likewise */
-    double *q;           /* configurations, n_q each */
-    double *powers;      /* dissipated and external, of each stage */
-    double *multipliers; /* of eq 38 at the start and at each stage, if forces depend on them */
-    double *unknowns;    /* of a Newton system */
-    double *D_real;      /* the real system's border before it was factored */
-    double *kept;        /* products of the border's rows with dofs */
-    double *last;        /* the last step's Z */
-    double h_last;       /* its size, s; 0 without a last step */
+    double *Z;              /* stages' increments of velocity, n_dof each */
+    double *a;              /* accelerations: likewise */
+    double *w;              /* their transforms: likewise */
+    double *q;              /* configurations, n_q each */
+    double *powers;         /* dissipated and external, of each stage */
+    double *multipliers;    /* of eq 38 at the start and at each stage, if forces depend on them */
+    double *unknowns;       /* of a Newton system */
+    double *D_real;         /* the real system's border before it was factored */
+    double *border_product; /* products of the border's rows with dofs */
+    double *last;           /* the last step's Z */
+    double h_last;          /* its size, s; 0 without a last step */
     fu_complex_system newton;
 } fu_radau_workspace;
 

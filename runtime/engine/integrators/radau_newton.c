@@ -27,7 +27,7 @@ static void add_weights(fu_run *run, fu_weights weights, int whole, fu_complex f
     if (whole) fu_matrix_of_weights(run, weights);
     else {
         fu_system_clear(&run->newton);
-        fu_add_matrix_of_others(run, weights);
+        fu_add_matrix_without_cables(run, weights);
     }
     fu_complex_system_accumulate(&fu_radau_space(run)->newton, &run->newton, factor);
 }
@@ -62,7 +62,7 @@ static void make_matrices(fu_run *run, double h)
     if (!whole)
         fu_complex_system_accumulate(c, &run->newton,
                                      (fu_complex){by_stiffness.re - last.re, by_stiffness.im - last.im});
-    fu_add_matrix_of_others(run, (fu_weights){1.0, rate, real * real});
+    fu_add_matrix_without_cables(run, (fu_weights){1.0, rate, real * real});
     fu_complex_system_accumulate(c, &run->newton, last);
 }
 
@@ -96,18 +96,19 @@ int fu_radau_factor(fu_run *run, double h)
 }
 
 /* Computes the products of the border's rows with dofs, which for constraint rows are H r. */
-static void keep_rows(fu_run *run, const double *unknowns)
+static void border_times(fu_run *run, const double *unknowns)
 {
     const fu_system *s = &run->newton;
-    double *kept = fu_radau_space(run)->kept;
-    for (int row = 0; row < s->m; ++row) kept[row] = 0.0;
+    double *border_product = fu_radau_space(run)->border_product;
+    for (int row = 0; row < s->m; ++row) border_product[row] = 0.0;
     for (int c = 0; c < s->n_chains; ++c) {
         const fu_matrix_block *rows = s->rows + FU_HALVES * s->chain_start[c];
         for (const fu_matrix_block *p = rows; p < rows + s->n_rows[c]; ++p)
             for (int i = p->rows.first; i < p->rows.end; ++i)
-                kept[p->k] += s->C[s->strips[p->strip].at + i] * unknowns[i];
+                border_product[p->k] += s->C[s->strips[p->strip].at + i] * unknowns[i];
     }
-    fu_fronts_add_product(s->fronts, fu_radau_space(run)->D_real, run->model->n_border_dof, unknowns + s->n, kept);
+    fu_fronts_add_product(s->fronts, fu_radau_space(run)->D_real, run->model->n_border_dof, unknowns + s->n,
+                          border_product);
 }
 
 void fu_radau_right_side(fu_run *run, const double *r, double *unknowns)
@@ -121,11 +122,11 @@ void fu_radau_right_side(fu_run *run, const double *r, double *unknowns)
     fu_mass_times(model, run->next.q, run->work, run->psi);
     fu_gather(model, run->psi, run->rhs);
     for (int i = 0; i < model->n_extra; ++i) run->rhs[beyond + i] = 0.0;
-    keep_rows(run, unknowns);
+    border_times(run, unknowns);
     FU_EACH_COUPLING(c, model->always_active, model->n_always_active) {
         const int first = c->unknown + c->n_coordinates;
         for (int i = first; i < first + c->n_forces && c->row >= 0; ++i)
-            run->rhs[beyond + i] = fu_radau_space(run)->kept[model->n_border_dof + i];
+            run->rhs[beyond + i] = fu_radau_space(run)->border_product[model->n_border_dof + i];
     }
 }
 

@@ -190,9 +190,9 @@ void fu_system_keep_border(fu_system *s, const fu_lapack *lapack, int columns)
     for (int c = 0; c < s->n_chains; ++c) {
         const int start = FU_HALVES * s->chain_start[c];
         const fu_matrix_block *column = s->columns + start, *row = s->rows + start;
-        int *kept[2] = {&s->constant_columns[c], &s->constant_rows[c]};
-        for (*kept[0] = 0; *kept[0] < s->n_columns[c] && column[*kept[0]].k < columns;) ++*kept[0];
-        for (*kept[1] = 0; *kept[1] < s->n_rows[c] && row[*kept[1]].k < columns;) ++*kept[1];
+        int *count[2] = {&s->constant_columns[c], &s->constant_rows[c]};
+        for (*count[0] = 0; *count[0] < s->n_columns[c] && column[*count[0]].k < columns;) ++*count[0];
+        for (*count[1] = 0; *count[1] < s->n_rows[c] && row[*count[1]].k < columns;) ++*count[1];
     }
 }
 

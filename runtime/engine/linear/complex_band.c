@@ -100,9 +100,9 @@ FU_INLINE void solve(int n, int width, double *const L[2], double *const U[2], i
             sum_re += l_re * x_re - l_im * x_im;
             sum_im += l_re * x_im + l_im * x_re;
         }
-        const fu_complex own = fu_complex_product((fu_complex){x[j], y[j]}, (fu_complex){a[0], b[0]});
-        x[j] = own.re - ((sum_re[0] + sum_re[1]) + (sum_re[2] + sum_re[3]));
-        y[j] = own.im - ((sum_im[0] + sum_im[1]) + (sum_im[2] + sum_im[3]));
+        const fu_complex scaled = fu_complex_product((fu_complex){x[j], y[j]}, (fu_complex){a[0], b[0]});
+        x[j] = scaled.re - ((sum_re[0] + sum_re[1]) + (sum_re[2] + sum_re[3]));
+        y[j] = scaled.im - ((sum_im[0] + sum_im[1]) + (sum_im[2] + sum_im[3]));
     }
 }
 

@@ -35,11 +35,11 @@ void fu_complex_system_take(fu_complex_system *c, const fu_system *s, double *sc
     c->factors = *real;
     c->factors.numbers = (double *)take(scratch, taken, real->most_numbers);
     c->factors.x = (double *)take(scratch, taken, 2 * m);
-    int **own[] = {&c->factors.unknowns, &c->factors.map,    &c->factors.start, &c->factors.first,
-                   &c->factors.size,     &c->factors.pivots, &c->factors.done};
+    int **integers[] = {&c->factors.unknowns, &c->factors.map,    &c->factors.start, &c->factors.first,
+                        &c->factors.size,     &c->factors.pivots, &c->factors.done};
     const long fronts = s->fronts->n, lengths[] = {real->most_unknowns, m, fronts, fronts, fronts, fronts, fronts};
-    for (int k = 0; k < (int)(sizeof own / sizeof *own); ++k)
-        *own[k] = (int *)fu_take(scratch, taken, FU_DOUBLES(lengths[k], int));
+    for (int k = 0; k < (int)(sizeof integers / sizeof *integers); ++k)
+        *integers[k] = (int *)fu_take(scratch, taken, FU_DOUBLES(lengths[k], int));
     c->is_lower = 1;
     for (int part = 0; part < 2; ++part) {
         c->L[part] = fu_take(scratch, taken, FU_COMPLEX_STRIDE((long)s->width) * n);

@@ -79,17 +79,17 @@ FU_INLINE int PREFIX(assemble)(const fu_fronts *t, const NUMBER *matrix, fu_fact
 FU_INLINE void PREFIX(swap)(NUMBER *a, NUMBER *b, int n, int stride)
 {
     for (int i = 0; i < n * stride; i += stride) {
-        const NUMBER kept = a[i];
+        const NUMBER saved = a[i];
         a[i] = b[i];
-        b[i] = kept;
+        b[i] = saved;
     }
 }
 
 FU_INLINE void PREFIX(swap_unknowns)(int *unknowns, int a, int b)
 {
-    const int kept = unknowns[a];
+    const int saved = unknowns[a];
     unknowns[a] = unknowns[b];
-    unknowns[b] = kept;
+    unknowns[b] = saved;
 }
 
 /* Returns the row of the largest entry of a column among those from k to q, -1 if that is no pivot; n: its length. */

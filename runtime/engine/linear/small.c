@@ -27,9 +27,9 @@ int fu_small_factor(int n, double *A, int *pivot)
         }
         if (p != j)
             for (int k = 0; k < n; ++k) {
-                const double kept = A[k * n + j];
+                const double saved = A[k * n + j];
                 A[k * n + j] = A[k * n + p];
-                A[k * n + p] = kept;
+                A[k * n + p] = saved;
             }
         const double scale = 1.0 / column[j];
         column[j] = scale;
@@ -47,9 +47,9 @@ int fu_small_factor(int n, double *A, int *pivot)
 void fu_small_solve(int n, const double *A, const int *pivot, double *x)
 {
     for (int j = 0; j < n; ++j) {
-        const double kept = x[pivot[j]];
+        const double saved = x[pivot[j]];
         x[pivot[j]] = x[j];
-        x[j] = kept;
+        x[j] = saved;
     }
     for (int j = 0; j < n; ++j)
         for (int i = j + 1; i < n; ++i) x[i] -= A[j * n + i] * x[j];

@@ -117,8 +117,8 @@ static int is_paused(const fu_run *run, int rows)
 static int possible_counts(const fu_run *run)
 {
     const fu_statistics *s = &run->statistics;
-    const long counts[] = {s->steps,     s->rejected,        s->newton_iterations, s->factorisations,
-                           s->crossings, s->newton_failures, s->evaluations,       run->accelerator.evaluated};
+    const long counts[] = {s->steps,         s->rejected,        s->newton_iterations, s->factorisations,
+                           s->node_passages, s->newton_failures, s->evaluations,       run->accelerator.evaluated};
     for (size_t i = 0; i < sizeof counts / sizeof *counts; ++i)
         if (counts[i] < 0) return 0;
     for (int k = 0; k < run->n_event_functions; ++k)
@@ -132,8 +132,8 @@ static int possible_indices(const fu_run *run)
 {
     const int last = last_of(run->model->n_couplings);
     return in_range(run->stopped_slide, 0, last) && in_range(run->keep_segments, 0, 1) &&
-           in_range(run->keep_forces, 0, 1) && in_range(run->goes_over, 0, 1) && in_range(run->rest_start, 0, 1) &&
-           in_range(run->failure.cause, FU_NO_FAILURE, FU_SELF_LOCKING) &&
+           in_range(run->keep_forces, 0, 1) && in_range(run->last_event_deferred, 0, 1) &&
+           in_range(run->rest_start, 0, 1) && in_range(run->failure.cause, FU_NO_FAILURE, FU_SELF_LOCKING) &&
            in_range(run->failure.dof, 0, last_of(run->model->n_dof)) && in_range(run->failure.coupling, -1, last);
 }
 

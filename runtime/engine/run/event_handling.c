@@ -42,7 +42,7 @@ static int cross(fu_run *run, const fu_coupling *coupling, int side)
     const int status = events->path->enter ? events->path->enter(run, coupling, segment) : FU_RUNNING;
     if (status) return status;
     now->segment[coupling->coordinate] = segment;
-    ++run->statistics.crossings;
+    ++run->statistics.node_passages;
     fu_evaluate_event_functions(run, fu_no_event, 0.0);
     return fu_start_scheme(run, !run->integrator->keeps_energy);
 }

@@ -24,10 +24,10 @@ static void work_of(fu_run *run, const fu_coupling *c, int what)
     if (what == TANGENT && c->type->tangent) c->type->tangent(model, c, &at, 0);
     if (what == ROWS && c->row >= 0) c->type->rows(model, c, &run->now, &run->accelerator);
     if (what == OWN_COORDINATES && c->type->coordinates) {
-        double kept[FU_MAX_FORCES];
-        for (int i = 0; i < c->n_coordinates; ++i) kept[i] = run->now.s[c->coordinate + i];
+        double saved[FU_MAX_FORCES];
+        for (int i = 0; i < c->n_coordinates; ++i) saved[i] = run->now.s[c->coordinate + i];
         c->type->coordinates->solve(model, c, &run->now);
-        for (int i = 0; i < c->n_coordinates; ++i) run->now.s[c->coordinate + i] = kept[i];
+        for (int i = 0; i < c->n_coordinates; ++i) run->now.s[c->coordinate + i] = saved[i];
     }
 }
 

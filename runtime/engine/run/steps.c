@@ -65,7 +65,7 @@ static int must_keep_segments(const fu_run *run)
 static int must_keep_forces(const fu_run *run)
 {
     if (run->integrator->keeps_energy) return 0;
-    return !is_adaptive(run) || !run->goes_over || !run->integrator->quadrature;
+    return !is_adaptive(run) || !run->last_event_deferred || !run->integrator->quadrature;
 }
 
 /* A trial step: its intended and its actual size, s; the place of a cut at a grazing event, s, else 0, and the number
@@ -122,7 +122,7 @@ static void refuse(fu_run *run, trial *t)
 {
     fu_undo_deferred(run);
     t->refused = 1;
-    run->goes_over = 0;
+    run->last_event_deferred = 0;
 }
 
 /* Computes the step and estimates its error; returns 0 if it is rejected for a shorter one. */
@@ -131,7 +131,7 @@ static int attempt(fu_run *run, trial *t)
     const double allowed = fu_allow(run, t->h);
     run->failure.cause = FU_NO_FAILURE;
     run->usual = t->want;
-    run->most_deferred = 0;
+    run->max_deferred = 0;
     if (make(run, t->h)) {
         if (run->model->n_deferring && !run->keep_forces) { /* its iteration may alternate across an event */
             refuse(run, t);
@@ -177,7 +177,7 @@ static void find_event(fu_run *run, trial *t)
     if (t->deferred && is_adaptive(run) && !(t->ratio <= 1.0)) refuse(run, t);
     t->event = fu_find_event(run, fu_no_event);
     if (t->changes && (t->event.kind == FU_PATH_BOUNDARY || !(t->ratio <= 1.0))) {
-        fu_keep_path_segments(run);
+        fu_restore_path_segments(run);
         t->event = fu_find_event(run, fu_no_event);
     }
 }
@@ -228,7 +228,7 @@ static void accept(fu_run *run, const trial *t)
     fu_note_deferred(run, h);
     fu_note_slackness(run, h);
     run->dissipated += fu_lost_in_step(model, &run->now, &run->next, run->order <= 2);
-    run->statistics.crossings += fu_count_changes(run);
+    run->statistics.node_passages += fu_count_changes(run);
     const fu_state state = run->now;
     run->now = run->next;
     run->next = state;
@@ -239,7 +239,7 @@ static void accept(fu_run *run, const trial *t)
     run->controlled_motion =
         run->controlled == model->weight ? run->motion : fmax(run->controlled_motion, fu_controlled_motion(run));
     fu_evaluate_event_functions(run, t->event, h);
-    fu_note_depths(run);
+    fu_record_penetrations(run);
     run->net_rejections -= run->net_rejections > 0 ? run->fixed_step > 0.0 ? REJECTIONS_PER_STEP : 1 : 0;
     fu_statistics *s = &run->statistics;
     ++s->steps;
@@ -250,7 +250,7 @@ static void accept(fu_run *run, const trial *t)
 /* Accepts a step that ends on no event; returns a status. */
 static int take_step(fu_run *run, const trial *t)
 {
-    if (t->deferred) run->goes_over = 1;
+    if (t->deferred) run->last_event_deferred = 1;
     accept(run, t);
     if (fu_has_lost_an_event(run)) return FU_NO_CONVERGENCE;
     run->turned = 0;

@@ -28,8 +28,8 @@ typedef struct {
             [3 * FU_MAX_COORDINATES]; /* shape functions of each: themselves, their first and second derivative by x */
 } frame_vectors;
 
-static void vectors_of(const fu_model *model, const fu_attachment *on, const fu_state *state, double s_rate, int n_own,
-                       frame_vectors *w)
+static void vectors_of(const fu_model *model, const fu_attachment *on, const fu_state *state, double s_rate,
+                       int n_columns, frame_vectors *w)
 {
     const int on_slide = on->slide >= 0;
     const fu_cable *cable = &model->cables[on->cable];
@@ -38,7 +38,7 @@ static void vectors_of(const fu_model *model, const fu_attachment *on, const fu_
     const double *e = state->q + cable->first + element * cable->per_node;
     const double *v = state->v + cable->first + element * cable->per_node;
     double every[9 * FU_MAX_COORDINATES];
-    memset(w->rows, 0, sizeof(double) * 2 * (size_t)(dim * n_own));
+    memset(w->rows, 0, sizeof(double) * 2 * (size_t)(dim * n_columns));
     if (on_slide)
         cable->kernel->slopes(fu_element_length(cable, element),
                               state->s[on->slide] - fu_element_start(model, on->slide, element), every);
@@ -70,12 +70,12 @@ static void vectors_of(const fu_model *model, const fu_attachment *on, const fu_
                 bend += S_xx[i] * at;
                 rate += S[i] * v[i * dim + d];
                 slope_rate += S_x[i] * v[i * dim + d];
-                w->rows[(k * dim + d) * n_own + i * dim + d] = S[i];
+                w->rows[(k * dim + d) * n_columns + i * dim + d] = S[i];
             }
             w->value[k][d] = value;
             w->rate[k][d] = rate + slope * s_rate;
             w->second[k][d] = (2.0 * slope_rate + bend * s_rate) * s_rate;
-            if (on_slide) w->rows[(k * dim + d) * n_own + n * dim] = slope;
+            if (on_slide) w->rows[(k * dim + d) * n_columns + n * dim] = slope;
         }
     }
 }

@@ -22,7 +22,7 @@ static double grazing_between(const fu_detection *of, fu_approach from, fu_appro
     if (!from.known || !to.known || !(from.gap >= 0.0 && from.rate < 0.0 && to.rate > 0.0)) return 0.0;
     for (int i = 0; i < SECTIONS; ++i) {
         const double part = fmin(fmax(from.rate / (from.rate - to.rate), BRACKET_MARGIN), 1.0 - BRACKET_MARGIN);
-        const fu_approach bottom = of->follow(of->of, &near, from.x + part * (to.x - from.x));
+        const fu_approach bottom = of->approach(of->of, &near, from.x + part * (to.x - from.x));
         if (!bottom.known) return 0.0;
         if (bottom.depth > of->least) return bottom.x;
         /* a convex gap lies above its tangent */
@@ -40,7 +40,7 @@ double fu_detect_within(const fu_detection *of, const fu_approach *start, double
     double first = 0.0;
     while (from.x < end) {
         const double advance = fmin(fmax(from.free, of->min_advance), of->max_advance);
-        const fu_approach to = of->follow(of->of, &from, fmin(from.x + advance, end));
+        const fu_approach to = of->approach(of->of, &from, fmin(from.x + advance, end));
         const int in_contact = to.depth > of->least;
         if (first > 0.0 && (!in_contact || -to.gap > of->deepest)) return 0.5 * of->h * (first + to.x);
         if (first == 0.0 && in_contact && to.x < end) first = to.x;

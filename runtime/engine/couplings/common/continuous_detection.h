@@ -16,7 +16,7 @@ typedef struct {
 /* Two objects in a step of h, s. The penetration of a contact exceeds `least`, m; beyond `deepest` the objects have
  * passed through each other. Advances are parts of the step. */
 typedef struct {
-    fu_approach (*follow)(const void *of, const fu_approach *near, double x);
+    fu_approach (*approach)(const void *of, const fu_approach *near, double x);
     const void *of;
     double h, least, deepest, min_advance, max_advance;
 } fu_detection;

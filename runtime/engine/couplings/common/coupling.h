@@ -22,14 +22,14 @@ struct fu_coupling {
     int index;                        /* among the couplings of its structure */
     int number;                       /* among all couplings of the model */
     int unknown;                      /* the first of its unknowns, counted beyond the dofs */
-    int n_coordinates, coordinate;    /* its own coordinates, and the first of them in state->s */
-    int n_forces, force;              /* its own forces, and the first of them in state->forces */
+    int n_coordinates, coordinate;    /* its coordinates, and the first of them in state->s */
+    int n_forces, force;              /* its internal forces, and the first of them in state->forces */
     int n_multipliers, multiplier;    /* multipliers of eq 38: their maximum, and the first of them */
     int row;                          /* its entry in fu_accelerator.rows, -1 without constraints */
     int output;                       /* its first number in a row of output */
     int numbers, flags;               /* its part of a state: the first of them in state->numbers, state->flags */
     int scratch;                      /* first place of its part of fu_accelerator.scratch */
-    int n_numbers;                    /* of its own in a state beyond those of its type */
+    int n_numbers;                    /* its numbers in a state beyond those of its type */
     int needs_reactions;              /* nonzero if a force of it depends on the multipliers of eq 38 */
     int is_damped;                    /* nonzero if a force of it depends on velocities */
     int is_driven;                    /* nonzero if a signal does work on it */
@@ -73,7 +73,7 @@ typedef struct {
                              const double *v, int past_fluid);
 } fu_inertia_operations;
 
-/* A lower bound of the distance at which a coupling acts. Until motions have used it up, operations may be skipped
+/* A lower bound of the distance at which a coupling acts. Operations may be skipped until motions have exceeded it
  * (couplings/common/proximity.c). */
 typedef struct {
     /* Returns the clearance at a state: motions of both sides, and rotations of the second times the lever, reduce its
@@ -101,17 +101,17 @@ typedef struct {
     /* Accepts the final multipliers. */
     void (*accept)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
                    fu_accelerator *work);
-    /* Returns the largest error of a kink of the friction within a step, m: from n states of it, their weights in the
-     * mean, and the multipliers there (n x model->n_multipliers); square: the step times the remaining time, s^2. */
+    /* Returns the estimate of the friction error within a step, m, by n states of it, their weights in the mean, and
+     * the multipliers there (n x model->n_multipliers); square: the step times the remaining time, s^2. */
     double (*friction_error)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int n,
                              const double *weights, const double *multipliers, double square);
 } fu_reaction_operations;
 
-/* Coordinates that follow from the others. */
+/* Dependent coordinates. */
 typedef struct {
     /* Computes their rates, after eq 38. */
     void (*rates)(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, double *rates);
-    /* Finds them at a state; returns nonzero where there are none. */
+    /* Solves for them at a state; returns nonzero without a solution. */
     int (*solve)(const fu_model *model, const fu_coupling *coupling, fu_state *state);
 } fu_coordinate_operations;
 
@@ -124,11 +124,12 @@ typedef struct {
 } fu_history_operations;
 
 /* Operations of a coupling. A null operation does nothing. f: generalised forces on the dofs, with the signs of the
- * left side of the equations of motion; own: minus the scaled residual of the unknowns beyond the dofs.
+ * left side of the equations of motion; internal: minus the scaled residual of the unknowns beyond the dofs.
  *
- * No operation lists the columns of a system that a coupling touches: `tangent` and `rows` name each entry by its
- * dof or unknown, and fu_add (bodies/unknowns.h) finds its place and extends the row spans of the border. A separate
- * list would state this a second time. */
+ * No operation lists the columns of a coupling in a system: `tangent` and `rows` name each entry by its dof or unknown,
+ * and fu_add (bodies/unknowns.h) finds its place and extends the row spans of the border. A separate list would state
+ * this a second time.
+ */
 struct fu_coupling_type {
     const char *name;
     size_t size;                    /* bytes of its structure */
@@ -149,11 +150,11 @@ struct fu_coupling_type {
 
     /* Newton systems at an instant: residual and its derivative. */
     void (*residual)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
-                     double *own);
+                     double *internal);
     void (*tangent)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system);
     /* The same over a step that conserves energy; and the energy that the coupling dissipates in it, J. */
     void (*step_residual)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
-                          double *own);
+                          double *internal);
     void (*step_tangent)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system);
     double (*step_dissipation)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
 

@@ -8,7 +8,7 @@
 
 /* The path of a coupling's coordinate: n segments, of one length, m, or between given boundaries, m, if that is not
  * null, with their mean length. At the boundaries the equations are not smooth. state->segment is the segment of a
- * coupling. n is zero while the coupling is on none of them. */
+ * coupling. n is zero for a coupling without a segment. */
 typedef struct {
     int n;
     double length;
@@ -32,16 +32,15 @@ typedef struct {
 
 /* Deferred events: changes within a step, at which only a slope of the force is discontinuous. */
 typedef struct {
-    /* Computes the flags of `to` from the flags of `from` and the positions of `to`; returns whether that changes
-     * them. */
-    int (*follow)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, fu_state *to);
-    /* Returns the part of a step of h from one state to the other after which the event happens; *what as above. Bends:
-     * the states have the accelerations there, and not means of steps. */
+    /* Computes the flags of `to` from the flags of `from` and the positions of `to`; returns whether they change. */
+    int (*update_flags)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, fu_state *to);
+    /* Returns the part of a step of h from one state to the other after which the event happens; *what as above.
+     * has_accelerations: the states contain accelerations at their instants, not means over steps. */
     double (*part)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
-                   double h, int bends, const char **what);
+                   double h, int has_accelerations, const char **what);
     /* Returns the time between the event and a state close to it, s; NaN if that needs the state itself. */
     double (*since)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
-    /* Adds to f, times a factor, the difference of the force at `to` from that without the change. */
+    /* Adds to f a factor times the difference between the force at `to` and the force there without the change. */
     void (*force_change)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
                          double factor, double *f);
 } fu_deferred_operations;
@@ -55,17 +54,16 @@ struct fu_coupling_events {
     int (*functions)(const fu_coupling *coupling, fu_event_function *out);
     int direction;
     double (*value)(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which);
-    /* Returns the time of the largest excursion of an event function beyond zero in the last step, of h, at both ends
-     * of which it is on one side, as predicted by fu_grazing_time (base/cubic.h); or the end of a step that an impact
-     * needs; else 0. Null: unknown. */
+    /* For an event function on one side at both ends of the last step, of h: returns the time of its largest excursion
+     * beyond zero within the step, as predicted by fu_grazing_time (base/cubic.h), or the end of the step that resolves
+     * an impact; 0 without either. Null: unknown. */
     double (*grazing)(const fu_run *run, const fu_coupling *coupling, int which, double h);
     /* Returns the penetration, m, at a state with this value of the coupling's event function. Null: no penetration. */
     double (*depth)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double value);
     /* Returns the distance of contact beyond the ends of the surface's shape (fu_surface_beyond), m; not positive for
      * none. Null: its surface has no ends. */
     double (*beyond)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
-    /* Returns the sign of an event function from here on, after it has been zero and the coupling has changed: 1 or -1.
-     * Null: -1. */
+    /* Returns the sign, 1 or -1, of an event function after its zero and the change of the coupling. Null: -1. */
     int (*sign)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which);
     /* Executes the action of an event function that has passed zero to this side; returns a status. *what describes the
      * change in words, and is null if there is none. */

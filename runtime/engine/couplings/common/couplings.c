@@ -70,18 +70,18 @@ void fu_number_couplings(fu_coupling *const *couplings, int n, const fu_coupling
     }
 }
 
-void fu_coupling_residuals(const fu_model *model, const fu_equations *at, double *f, double *own)
+void fu_coupling_residuals(const fu_model *model, const fu_equations *at, double *f, double *internal)
 {
     const fu_couplings near = fu_acting(model, at->next);
     FU_EACH_COUPLING(c, near.list, near.n)
-        if (c->type->residual) c->type->residual(model, c, at, f, own);
+        if (c->type->residual) c->type->residual(model, c, at, f, internal);
 }
 
-void fu_coupling_step_residuals(const fu_model *model, const fu_equations *at, double *f, double *own)
+void fu_coupling_step_residuals(const fu_model *model, const fu_equations *at, double *f, double *internal)
 {
     const fu_couplings near = fu_acting_in_step(model, at);
     FU_EACH_COUPLING(c, near.list, near.n)
-        if (c->type->step_residual) c->type->step_residual(model, c, at, f, own);
+        if (c->type->step_residual) c->type->step_residual(model, c, at, f, internal);
 }
 
 void fu_coupling_tangents(const fu_model *model, const fu_equations *at, fu_system *system)
@@ -235,7 +235,7 @@ void fu_detect_contact(const fu_model *model, fu_state *state)
         if (c->type->detect) c->type->detect(model, c, state);
 }
 
-/* Solves for coordinates that follow from the others; returns null, or the first coupling without a solution. */
+/* Solves for dependent coordinates; returns null, or the first coupling without a solution. */
 const fu_coupling *fu_solve_coordinates(const fu_model *model, fu_state *state)
 {
     FU_EACH_COUPLING(c, model->always_active, model->n_always_active)
@@ -258,10 +258,10 @@ int fu_is_possible(const fu_model *model, const fu_state *state)
     return 1;
 }
 
-void fu_add_internal(const fu_model *model, fu_state *state, const double *own, double inertia, double scale)
+void fu_add_internal(const fu_model *model, fu_state *state, const double *internal, double inertia, double scale)
 {
     FU_EACH_COUPLING(c, model->always_active, model->n_always_active) {
-        const double *of = own + c->unknown;
+        const double *of = internal + c->unknown;
         for (int i = 0; i < c->n_coordinates; ++i) state->s[c->coordinate + i] += of[i];
         for (int i = 0; i < c->n_forces; ++i)
             state->forces[c->force + i] += of[c->n_coordinates + i] * fu_row_unit(inertia, c->scale[i]) / scale;

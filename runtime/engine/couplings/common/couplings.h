@@ -19,9 +19,9 @@ typedef struct {
 fu_couplings fu_acting(const fu_model *model, const fu_state *state);
 fu_couplings fu_acting_in_step(const fu_model *model, const fu_equations *at);
 
-void fu_coupling_residuals(const fu_model *model, const fu_equations *at, double *f, double *own);
+void fu_coupling_residuals(const fu_model *model, const fu_equations *at, double *f, double *internal);
 void fu_coupling_tangents(const fu_model *model, const fu_equations *at, fu_system *system);
-void fu_coupling_step_residuals(const fu_model *model, const fu_equations *at, double *f, double *own);
+void fu_coupling_step_residuals(const fu_model *model, const fu_equations *at, double *f, double *internal);
 void fu_coupling_step_tangents(const fu_model *model, const fu_equations *at, fu_system *system);
 void fu_coupling_inertia(const fu_model *model, const double *q, const double *a, double *f);
 void fu_coupling_masses(const fu_model *model, const double *q, double scale, fu_system *system);
@@ -55,8 +55,9 @@ static inline double fu_row_unit(double inertia, double mass)
 {
     return inertia != 0.0 ? mass : 1.0;
 }
-/* Adds a solution `own` of a Newton system, whose equilibrium is multiplied by `scale`, to coordinates and forces. */
-void fu_add_internal(const fu_model *model, fu_state *state, const double *own, double inertia, double scale);
+/* Adds a solution `internal` of a Newton system, whose equilibrium is multiplied by `scale`, to coordinates and forces.
+ */
+void fu_add_internal(const fu_model *model, fu_state *state, const double *internal, double inertia, double scale);
 /* Returns the coupling of an unknown beyond the dofs. */
 const fu_coupling *fu_owner(const fu_model *model, int unknown);
 

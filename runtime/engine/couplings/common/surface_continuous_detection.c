@@ -19,7 +19,7 @@ typedef struct {
     const fu_surface *surface;
     const fu_surface_end *ends;
     double radius, h, longest;
-    fu_attachment_state own; /* the axes of the shape */
+    fu_attachment_state axes; /* the axes of the shape */
 } point_path;
 
 /* Returns the distance of a point from a terrain's table, m, 0 above it, and the nearest point of the table, beyond
@@ -49,7 +49,7 @@ static double free_over_terrain(const point_path *of, const fu_surface_end *at, 
     fu_distance edge;
     const double beyond = beyond_table(of->dim, surface, at->y, inside);
     if (beyond > 0.0) {
-        fu_surface_distance(of->dim, surface, &of->own, inside, &edge);
+        fu_surface_distance(of->dim, surface, &of->axes, inside, &edge);
         over = slope_of(edge.n);
     }
     for (int i = 0; i < HALVINGS && found < path; ++i, path *= 0.5) {
@@ -68,7 +68,7 @@ static double free_path(const point_path *of, const fu_surface_end *at, double m
 }
 
 /* Follows the point to the part x of the step. */
-static fu_approach follow(const void *what, const fu_approach *near, double x)
+static fu_approach approach(const void *what, const fu_approach *near, double x)
 {
     const point_path *of = what;
     const fu_surface_end *from = &of->ends[0], *to = &of->ends[1];
@@ -77,7 +77,7 @@ static fu_approach follow(const void *what, const fu_approach *near, double x)
     (void)near;
     memset(&here, 0, sizeof here);
     fu_vector_within(of->dim, from->y, from->rate, to->y, to->rate, of->h, x, here.y, here.rate);
-    fu_surface_distance(of->dim, of->surface, &of->own, here.y, &at);
+    fu_surface_distance(of->dim, of->surface, &of->axes, here.y, &at);
     memcpy(here.n, at.n, sizeof at.n);
     here.gap = at.g - of->radius;
     return (fu_approach){.x = x,
@@ -94,11 +94,11 @@ double fu_surface_detect_within(int dim, const fu_surface *surface, double radiu
     static const double still[3] = {0.0};
     point_path of = {.dim = dim, .surface = surface, .ends = ends, .radius = radius, .h = h};
     if (!(ends[0].gap >= -least && ends[1].gap >= -least)) return 0.0;
-    for (int d = 0; d < dim; ++d) of.own.A[d * dim + d] = 1.0;
+    for (int d = 0; d < dim; ++d) of.axes.A[d * dim + d] = 1.0;
     of.longest = fu_longest_path(dim, ends[0].y, ends[0].rate, ends[1].y, ends[1].rate, still, h);
     const double from = free_path(&of, &ends[0], 2.0 * of.longest), to = free_path(&of, &ends[1], 2.0 * of.longest);
     if (!(from + to <= of.longest)) return 0.0;
-    const fu_detection detection = {follow, &of, h, least, INFINITY, MIN_ADVANCE, 1.0};
-    const fu_approach start = follow(&of, NULL, from / of.longest);
+    const fu_detection detection = {approach, &of, h, least, INFINITY, MIN_ADVANCE, 1.0};
+    const fu_approach start = approach(&of, NULL, from / of.longest);
     return fu_detect_within(&detection, &start, 1.0 - to / of.longest, fmin(ends[0].gap, ends[1].gap));
 }

@@ -18,16 +18,16 @@ void fu_surface_at(const fu_model *model, const fu_surface *surface, const fu_st
     fu_attachment_at(model, surface->on, state, 0.0, FU_POINT | FU_AXES, at);
 }
 
-void fu_surface_out(int dim, const fu_attachment_state *at, const double *own, double *out)
+void fu_surface_out(int dim, const fu_attachment_state *at, const double *components, double *out)
 {
-    for (int i = 0; i < dim; ++i) out[i] = fu_dot(dim, at->A + i * dim, own);
+    for (int i = 0; i < dim; ++i) out[i] = fu_dot(dim, at->A + i * dim, components);
 }
 
-void fu_surface_into(int dim, const fu_attachment_state *at, const double *given, double *own)
+void fu_surface_into(int dim, const fu_attachment_state *at, const double *given, double *components)
 {
     for (int i = 0; i < dim; ++i) {
-        own[i] = 0.0;
-        for (int k = 0; k < dim; ++k) own[i] += at->A[k * dim + i] * given[k];
+        components[i] = 0.0;
+        for (int k = 0; k < dim; ++k) components[i] += at->A[k * dim + i] * given[k];
     }
 }
 
@@ -39,14 +39,14 @@ static void local(int dim, const fu_attachment_state *at, const double *r, doubl
     fu_surface_into(dim, at, from, y);
 }
 
-/* Returns the cell of x in a table's knots, and in *x its distance from the first knot of the cell; beyond the table it
- * is at the edge, and *inside is 0. */
-static int cell_of(int n, const double *knots, double *x, int *inside)
+/* Returns the cell of x in a table's grid, and in *x its distance from the start of the cell; beyond the table it is at
+ * the edge, and *inside is 0. */
+static int cell_of(int n, const double *grid, double *x, int *inside)
 {
-    *inside = *x >= knots[0] && *x <= knots[n - 1];
-    *x = fmin(fmax(*x, knots[0]), knots[n - 1]);
-    const int low = fu_last_reached(knots, 0, n - 1, *x);
-    *x -= knots[low];
+    *inside = *x >= grid[0] && *x <= grid[n - 1];
+    *x = fmin(fmax(*x, grid[0]), grid[n - 1]);
+    const int low = fu_last_reached(grid, 0, n - 1, *x);
+    *x -= grid[low];
     return low;
 }
 
@@ -196,9 +196,9 @@ static double from_box(int dim, const double *half, const double *y)
 }
 
 /* Returns the distance of x beyond the ends of a table, negative within. */
-static double beyond_knots(int n, const double *knots, double x)
+static double beyond_grid(int n, const double *grid, double x)
 {
-    return fmax(knots[0] - x, x - knots[n - 1]);
+    return fmax(grid[0] - x, x - grid[n - 1]);
 }
 
 int fu_surface_has_ends(const fu_surface *surface)
@@ -212,8 +212,8 @@ double fu_surface_beyond(int dim, const fu_surface *surface, const fu_attachment
     if (!fu_surface_has_ends(surface)) return -INFINITY;
     local(dim, at, r, y);
     if (surface->shape == FU_TERRAIN) {
-        const double along = beyond_knots(surface->n_first, surface->first, y[0]);
-        return dim == 2 ? along : fmax(along, beyond_knots(surface->n_second, surface->second, y[2]));
+        const double along = beyond_grid(surface->n_first, surface->first, y[0]);
+        return dim == 2 ? along : fmax(along, beyond_grid(surface->n_second, surface->second, y[2]));
     }
     return fabs(fu_dot(dim, surface->direction, y)) - surface->half_length;
 }

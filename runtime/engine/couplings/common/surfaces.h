@@ -17,19 +17,19 @@ typedef struct {
     double round_radius, half_length; /* m; a cylinder continues beyond it */
     double half_size[3];              /* of a box along its axes, m */
     int inside; /* nonzero: a hollow, with contact from inside. Distances are `inset` less those of the shape */
-    /* m: of a hollow box, the reduction of half_size: a sphere of that radius then touches each wall where it is
-     * beyond that size, and in edges and corners the walls add up */
+    /* m: of a hollow box, the reduction of half_size: a sphere of that radius touches each wall where its centre is
+     * beyond that size; at edges and corners the walls act together */
     double inset;
-    int n_first, n_second; /* knots of a terrain along its horizontal axes, m; no second in the plane */
+    int n_first, n_second; /* grid of a terrain along its horizontal axes, m; in the plane there is one axis */
     const double *first, *second,
-        *heights; /* heights: 4 (or 4 x 4) coefficients of a cell's cubics, from its first knots */
+        *heights; /* heights: 4 (or 4 x 4) coefficients of each cell's cubics, from the start of the cell */
     double highest, steepest,
         bend; /* bounds of a terrain's height, m, its slope, and the rate of change of that, 1/m */
     fu_attachment on[1];
 } fu_surface;
 
 /* Position of a surface: the state of its attachment. Distance of a point, its gradient and its second derivative, by
- * the ground's axes; the point from the origin along the shape's own. */
+ * the ground's axes; the vector from the shape's origin to the point, along the shape's axes. */
 typedef struct {
     double g, n[3], H[9], y[3];
 } fu_distance;
@@ -54,8 +54,8 @@ void fu_surface_velocity(int dim, const fu_attachment_state *at, const double *r
 /* Velocity relative to that point of a point at r with the velocity v. */
 void fu_surface_past(int dim, const fu_attachment_state *at, const double *r, const double *v, double *past);
 /* Converts a vector along a shape's axes to the ground's, and back. */
-void fu_surface_out(int dim, const fu_attachment_state *at, const double *own, double *out);
-void fu_surface_into(int dim, const fu_attachment_state *at, const double *given, double *own);
+void fu_surface_out(int dim, const fu_attachment_state *at, const double *components, double *out);
+void fu_surface_into(int dim, const fu_attachment_state *at, const double *given, double *components);
 
 /* Fields of a structure's member `surface` (base/fields.h), which has the words of its shapes in fu_surface_shapes. */
 extern const char *const fu_surface_shapes[], *const fu_surface_role[];

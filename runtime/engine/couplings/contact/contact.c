@@ -32,9 +32,10 @@ static void force(const fu_model *model, const fu_coupling *coupling, const fu_s
     fu_contact_visit(model, of(coupling), state, add_force, &to);
 }
 
-static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)
+static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
+                     double *internal)
 {
-    (void)own;
+    (void)internal;
     force(model, coupling, at->next, f);
 }
 

@@ -167,7 +167,7 @@ void fu_contact_add_derivatives(const fu_model *model, const fu_contact *contact
 
 /* couplings/contact/energy_step.c */
 void fu_contact_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
-                              double *own);
+                              double *internal);
 void fu_contact_step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,
                              fu_system *system);
 double fu_contact_step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);

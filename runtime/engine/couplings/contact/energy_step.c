@@ -1,6 +1,6 @@
 /* Contact over a step, for the integrator that balances energy: residuals, their derivatives, and dissipation.
  *
- * On a moving body the step is evaluated along the shape's own axes, with the position y = A'(r - p) of a point. The
+ * On a moving body the step is evaluated along the shape's local axes, with the position y = A'(r - p) of a point. The
  * work of the force there, along y_next - y, is -(U_next - U). As y is bilinear in A and r - p, its change is, with
  * means over the step, mean(A)'(change of r - p) + (change of A)' mean(r - p): so mean(A) times the force acts on
  * the point, and its opposite on the body at the lever mean(r - p). Both have one line of action, and conserve
@@ -18,7 +18,7 @@ static const fu_contact *of(const fu_coupling *coupling)
 }
 
 /* A surface over a step: at both ends, its mean p and A, and the frame of the points: the ground's axes if it does not
- * move, else the shape's own. */
+ * move, else the shape's local. */
 typedef struct {
     int moves;
     fu_attachment_state ends[2], mean, frame;
@@ -28,7 +28,7 @@ typedef struct {
  * rolls: the same of the body's particle at the mean point of contact, and the attachment to it. */
 typedef struct {
     fu_contact_point now, next;
-    double middle[3], from[3], to[3], touched[3];
+    double middle[3], from[3], to[3], at_contact[3];
     fu_attachment particle;
 } point_step;
 
@@ -85,19 +85,19 @@ static void particle_over_step(const fu_model *model, const fu_contact *contact,
     double u[3] = {0.0};
     out->particle = contact->attachments[number];
     for (int e = 0; e < 2; ++e) {
-        double arm[3] = {0.0}, own[3];
-        for (int d = 0; d < dim; ++d) own[d] = -contact->radius * points[e]->distance.n[d];
-        if (on->moves) fu_surface_out(dim, &on->ends[e], own, arm);
-        else memcpy(arm, own, sizeof arm);
+        double arm[3] = {0.0}, local[3];
+        for (int d = 0; d < dim; ++d) local[d] = -contact->radius * points[e]->distance.n[d];
+        if (on->moves) fu_surface_out(dim, &on->ends[e], local, arm);
+        else memcpy(arm, local, sizeof arm);
         fu_attachment_at(model, &contact->attachments[number], states[e], 0.0, FU_AXES, &body);
-        fu_surface_into(dim, &body, arm, own);
-        for (int d = 0; d < dim; ++d) u[d] += 0.5 * own[d];
+        fu_surface_into(dim, &body, arm, local);
+        for (int d = 0; d < dim; ++d) u[d] += 0.5 * local[d];
     }
     for (int d = 0; d < dim; ++d) out->particle.u[d] += fu_dot(dim, out->particle.axes + d * dim, u);
     for (int e = 0; e < 2; ++e) {
         fu_attachment_at(model, &out->particle, states[e], 0.0, FU_POINT, &body);
         memcpy(ends[e].r, body.p, sizeof body.p);
-        for (int d = 0; d < dim; ++d) out->touched[d] += 0.5 * body.p[d];
+        for (int d = 0; d < dim; ++d) out->at_contact[d] += 0.5 * body.p[d];
         if (on->moves) place_along_shape(dim, &on->ends[e], &ends[e]);
     }
     memcpy(out->from, ends[0].r, sizeof out->from);
@@ -115,9 +115,9 @@ static int point_over_step(const fu_model *model, const fu_contact *contact, con
         place_along_shape(model->dim, &on->ends[0], &out->now);
         place_along_shape(model->dim, &on->ends[1], &out->next);
     }
-    const int touched = fu_contact_is_active(model, contact, &on->frame, &out->now);
-    const int in_contact = fu_contact_is_active(model, contact, &on->frame, &out->next) || touched;
-    memset(out->touched, 0, sizeof out->touched);
+    const int was_active = fu_contact_is_active(model, contact, &on->frame, &out->now);
+    const int in_contact = fu_contact_is_active(model, contact, &on->frame, &out->next) || was_active;
+    memset(out->at_contact, 0, sizeof out->at_contact);
     if (in_contact && fu_contact_rolls(contact)) particle_over_step(model, contact, on, at, number, out);
     return in_contact;
 }
@@ -161,13 +161,13 @@ static void add_reaction(const fu_model *model, const fu_contact *contact, const
 /* Adds a force over a step on a point, `to` of a body, and its reaction, to the left side of the equations. */
 static void add_step_force(const fu_model *model, const fu_contact *contact, const surface_step *on,
                            const fu_equations *at, int element, int number, const fu_attachment *to,
-                           const double *middle, const double *own, double *f)
+                           const double *middle, const double *local, double *f)
 {
     const int dim = model->dim;
     const double weight = fu_contact_weight(contact, element, number);
-    double force[3] = {own[0], own[1], dim == 3 ? own[2] : 0.0};
+    double force[3] = {local[0], local[1], dim == 3 ? local[2] : 0.0};
     if (on->moves) {
-        fu_surface_out(dim, &on->mean, own, force);
+        fu_surface_out(dim, &on->mean, local, force);
         add_reaction(model, contact, on, at, middle, force, weight, f);
     }
     if (contact->cable >= 0) {
@@ -203,16 +203,17 @@ static double over_step(const fu_model *model, const fu_contact *contact, const 
                 lost -= weight * force[d] * (point.next.r[d] - point.now.r[d]);
             }
             if (f) add_step_force(model, contact, &on, at, e, k, &contact->attachments[k], point.middle, force, f);
-            if (f && rolls) add_step_force(model, contact, &on, at, e, k, &point.particle, point.touched, friction, f);
+            if (f && rolls)
+                add_step_force(model, contact, &on, at, e, k, &point.particle, point.at_contact, friction, f);
         }
     }
     return lost;
 }
 
 void fu_contact_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
-                              double *own)
+                              double *internal)
 {
-    (void)own;
+    (void)internal;
     over_step(model, of(coupling), at, f);
 }
 
@@ -255,7 +256,7 @@ void fu_contact_step_tangent(const fu_model *model, const fu_coupling *coupling,
             if (on.moves || !n) {
                 memcpy(next->r, point.middle, sizeof next->r);
                 for (int d = 0; d < dim && fu_contact_rolls(contact); ++d)
-                    next->arm[d] = point.touched[d] - point.middle[d];
+                    next->arm[d] = point.at_contact[d] - point.middle[d];
                 fu_contact_add_derivatives(model, contact, &on_middle, at->middle, e, k, next, 0, at->weights, system);
                 continue;
             }

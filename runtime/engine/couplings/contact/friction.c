@@ -116,9 +116,9 @@ static void slide(int dim, const fu_contact_point *point, const friction_course 
     }
 }
 
-/* Rotates the stretch of a sliding point, in space: it lags behind the velocity by the path of its own length. The sum
- * over intervals of the step and half as many (Richardson) is accurate; the sum over the step alone would be of the
- * first order. Returns the time of that path, s, 0 without a rotation. */
+/* Rotates the stretch of a sliding point, in space. Its direction lags behind the velocity by a path of the stretch's
+ * length. The sum over intervals of the step and half as many (Richardson) is accurate; the sum over the step alone
+ * would be of the first order. Returns the time of that path, s, 0 without a rotation. */
 static double turn_to_slip(int dim, const fu_contact_point *point, int parts, friction_course *of)
 {
     const double h = (1.0 - of->from) * of->path.h;
@@ -189,12 +189,12 @@ static void add_late_contact(int dim, const fu_attachment_state *on, const frict
     const fu_cubic at = fu_cubic_at(of->from);
     const double sinking = h > 0.0 ? h * fu_rate_within(&of->path.depth, h, of->from) : point->depth + point->mark->gap;
     const double end = h > 0.0 ? at.change : of->from, rate = h > 0.0 ? h * at.rates[1] : 0.0;
-    double by_place[9], by_rate[9], slope[3], own[3];
+    double by_place[9], by_rate[9], slope[3], local[3];
     for (int d = 0; d < dim; ++d) {
         const fu_step_ends ends = {{0.0, of->change[d]}, {point->mark->rate[d], point->slip[d]}};
-        own[d] = h > 0.0 ? h * fu_rate_within(&ends, h, of->from) : of->change[d];
+        local[d] = h > 0.0 ? h * fu_rate_within(&ends, h, of->from) : of->change[d];
     }
-    fu_surface_out(dim, on, own, slope);
+    fu_surface_out(dim, on, local, slope);
     for (int i = 0; i < dim; ++i)
         for (int j = 0; j < dim; ++j) {
             by_place[i * dim + j] = -end * (i == j) - slope[i] * n[j] * end / sinking;

@@ -59,7 +59,7 @@ static int slides_at(const step_point *of, double x)
 
 /* Returns whether the force has a kink: the point is in contact at one end alone, or neither sticks nor slides one path
  * during the whole step. */
-static int has_kink(const step_point *of)
+static int is_nonsmooth(const step_point *of)
 {
     double at[2][2];
     for (int e = 0; e < 2; ++e) forces_at(of, e, at[e]);
@@ -108,7 +108,7 @@ int fu_contact_quadrature_error(const fu_model *model, const fu_coupling *coupli
             continue;
         for (int k = 0; k < contact->n_points; ++k) {
             double off[2], along[3];
-            if (!point_over_step(model, contact, on, from, to, e, k, &of) || !has_kink(&of)) continue;
+            if (!point_over_step(model, contact, on, from, to, e, k, &of) || !is_nonsmooth(&of)) continue;
             error_of_rule(&of, n, b, c, off);
             fu_surface_out(dim, &on[1], of.along, along);
             for (int d = 0; d < dim; ++d) of.end.f[d] = off[0] * of.end.distance.n[d] + off[1] * along[d];

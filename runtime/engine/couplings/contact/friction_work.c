@@ -31,12 +31,12 @@ static double taken(const fu_model *model, const fu_contact *contact, const step
     return fu_taken_by_friction(model->dim, &travel, &path, of->stretch, by_ends);
 }
 
-static double taken_by_ends(const fu_model *model, const fu_contact *contact, step_point *of)
+static double dissipated_by_ends(const fu_model *model, const fu_contact *contact, step_point *of)
 {
     return taken(model, contact, of, 1);
 }
 
-static double taken_on_way(const fu_model *model, const fu_contact *contact, step_point *of)
+static double dissipated_within_step(const fu_model *model, const fu_contact *contact, step_point *of)
 {
     return taken(model, contact, of, 0);
 }
@@ -105,7 +105,8 @@ double fu_contact_lost(const fu_model *model, const fu_coupling *coupling, const
                        int by_ends)
 {
     const fu_contact *contact = (const fu_contact *)coupling;
-    return contact->law.tangential * visit_points(model, contact, from, to, by_ends ? taken_by_ends : taken_on_way, 0);
+    return contact->law.tangential *
+           visit_points(model, contact, from, to, by_ends ? dissipated_by_ends : dissipated_within_step, 0);
 }
 
 double fu_contact_history_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from,

@@ -85,7 +85,7 @@ static void step_friction(const fu_model *model, const fu_contact *contact, cons
         now->mark->gap > 0.0 ? next->depth / (next->depth + now->mark->gap) : 1.0; /* of the path, in contact */
     const fu_distance *at = &end.distance;
     const double none[3] = {0.0}, law[3] = {normal_force, by_depth, 0.0};
-    double own[3], x[3], of_end[3], by_place[9], by_rate[9];
+    double local[3], x[3], of_end[3], by_place[9], by_rate[9];
     if (!end.slides)
         for (int d = 0; d < dim; ++d)
             for (int e = 0; e < dim; ++e)
@@ -93,9 +93,9 @@ static void step_friction(const fu_model *model, const fu_contact *contact, cons
                     contact->law.tangential * (at->n[d] * at->n[e] - (d == e));
     else if (normal_force > 0.0) {
         fu_friction_path path;
-        fu_contact_path(model, contact, on, &end, &path, own);
-        for (int d = 0; d < dim; ++d) own[d] *= path.stretch.value[1];
-        fu_surface_out(dim, on, own, x);
+        fu_contact_path(model, contact, on, &end, &path, local);
+        for (int d = 0; d < dim; ++d) local[d] *= path.stretch.value[1];
+        fu_surface_out(dim, on, local, x);
         contact->surface.kernel->sliding(at->n, at->H, none, law, x, contact->law.friction, of_end, by_place, by_rate,
                                          by_stretch);
     } else memset(by_place, 0, sizeof by_place);

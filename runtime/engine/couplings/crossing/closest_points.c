@@ -253,13 +253,13 @@ void fu_find_closest(const fu_model *model, const fu_crossing *crossing, const f
 void fu_find_closest_anew(const fu_model *model, const fu_crossing *crossing, const fu_state *state,
                           fu_closest_points *out)
 {
-    const double *kept = state->numbers + crossing->base.numbers + FU_CROSSING_S;
+    const double *saved = state->numbers + crossing->base.numbers + FU_CROSSING_S;
     const fu_moment moment = {.now = state};
     fu_closest_points other;
     int moved = 0;
     fu_find_closest(model, crossing, state, out);
     for (int line = 0; line < model->dim - 1; ++line)
-        moved |= fabs(out->s[line] - kept[line]) > fu_line_size(model, crossing, line);
+        moved |= fabs(out->s[line] - saved[line]) > fu_line_size(model, crossing, line);
     if (!moved) return;
     other = *out;
     search(model, crossing, &moment, other.s);

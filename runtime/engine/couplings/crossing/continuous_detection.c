@@ -52,7 +52,7 @@ static double part_beyond_ends(const line_approach *of, const fu_closest_points 
 }
 
 /* Follows the closest points to the part x of the step. */
-static fu_approach follow(const void *what, const fu_approach *near, double x)
+static fu_approach approach(const void *what, const fu_approach *near, double x)
 {
     const line_approach *of = what;
     const fu_crossing *crossing = of->crossing;
@@ -134,9 +134,9 @@ double fu_crossing_detect_within(const fu_model *model, const fu_crossing *cross
     of.min_advance = fmin(fmax(ADVANCE_SHARE * crossing->law[0] / of.path, MIN_ADVANCE), MAX_ADVANCE);
     memcpy(start.s, numbers + FU_CROSSING_S, sizeof start.s);
     memcpy(start.normal, numbers + FU_CROSSING_NORMAL, sizeof start.normal);
-    start = follow(&of, &start, 0.0);
+    start = approach(&of, &start, 0.0);
     if (start.depth > 0.0 || (start.known && start.free > 1.0)) return 0.0;
-    const fu_approach end = follow(&of, &start, 1.0);
-    const fu_detection detection = {follow, &of, h, least, crossing->law[0], of.min_advance, MAX_ADVANCE};
+    const fu_approach end = approach(&of, &start, 1.0);
+    const fu_detection detection = {approach, &of, h, least, crossing->law[0], of.min_advance, MAX_ADVANCE};
     return fu_detect_within(&detection, &start, 1.0, fmin(start.gap, end.gap));
 }

@@ -45,7 +45,7 @@ static void contact_force(const fu_model *model, const fu_crossing *crossing, co
 }
 
 /* Adds the contact force to the left of the equations of motion. */
-static void own_force(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f)
+static void add_force(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f)
 {
     const fu_crossing *crossing = crossing_of(coupling);
     const int dim = model->dim;
@@ -64,16 +64,17 @@ static void own_force(const fu_model *model, const fu_coupling *coupling, const 
 }
 
 /* The internal unknowns are changes in a matrix alone: their equations have no residual. */
-static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)
+static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
+                     double *internal)
 {
-    own_force(model, coupling, at->next, f);
-    for (int i = 0; i < coupling->n_forces; ++i) own[coupling->unknown + i] = 0.0;
+    add_force(model, coupling, at->next, f);
+    for (int i = 0; i < coupling->n_forces; ++i) internal[coupling->unknown + i] = 0.0;
 }
 
 /* The force on the first line and its derivatives, and those of the arc-lengths, from the kernel. */
 typedef struct {
     double F[3], F_d[9], F_t[18], F_u[9], F_w[18], F_k[18], s_d[6], s_t[12];
-    fu_line_bends bends;
+    fu_line_bends has_accelerations;
 } derivatives;
 
 static void add_friction_derivatives(const fu_model *model, const fu_crossing *crossing, const fu_state *state,
@@ -83,8 +84,8 @@ static void add_friction_derivatives(const fu_model *model, const fu_crossing *c
     fu_crossing_stick_changes of;
     fu_crossing_contact contact;
     fu_crossing_contact_at(crossing, points, &contact);
-    fu_line_bends_at(model, crossing, state, points, &by->bends);
-    fu_crossing_stick_derivatives(crossing, state, points, &by->bends, &contact, &of);
+    fu_line_bends_at(model, crossing, state, points, &by->has_accelerations);
+    fu_crossing_stick_derivatives(crossing, state, points, &by->has_accelerations, &contact, &of);
     for (int d = 0; d < dim; ++d) by->F[d] += of.F[d];
     for (int i = 0; i < dim * dim; ++i) {
         by->F_d[i] += of.F_d[i];
@@ -148,7 +149,8 @@ static void add_line(const fu_model *model, const fu_crossing *crossing, int lin
     const double sign = line ? -1.0 : 1.0, stiffness = at->weights.stiffness;
     double of[(3 + FU_LINES) * FU_MOTION_ROWS], changes[(3 + FU_LINES) * FU_ATTACHMENT_COORDINATES];
     fu_point_motion motion;
-    if (cable >= 0) motion_of_cable(model, cable, &points->line[line], by->bends.N_xx[line], at->weights.rate, &motion);
+    if (cable >= 0)
+        motion_of_cable(model, cable, &points->line[line], by->has_accelerations.N_xx[line], at->weights.rate, &motion);
     else motion_of_bar(model, crossing, at, &points->line[line], by->F, &motion);
     if (!(crossing->friction > 0.0) && motion.rows > 3 * dim) motion.rows = 3 * dim;
     const int n = motion.at.n, rows = motion.rows;
@@ -186,7 +188,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     const int row = fu_extra(model, coupling->unknown);
     const double unit = fu_row_unit(at->weights.inertia, coupling->scale[0]);
     fu_closest_points points;
-    derivatives by = {.bends = {{0.0}, {0.0}, {{0.0}}}};
+    derivatives by = {.has_accelerations = {{0.0}, {0.0}, {{0.0}}}};
     for (int i = 0; i < coupling->n_forces; ++i) fu_add(model, system, row + i, row + i, unit);
     if (!at->next->flags[coupling->flags]) return;
     fu_find_closest(model, crossing, at->next, &points);
@@ -282,7 +284,7 @@ static void note(const fu_coupling *coupling, const fu_closest_points *points, f
     numbers[FU_CROSSING_LEFT_BEHIND] = 0.0;
 }
 
-static void carry(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+static void update_history(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     fu_closest_points points;
     fu_find_closest(model, crossing_of(coupling), state, &points);
@@ -330,7 +332,7 @@ static const fu_field fields[] = {
 
 static const fu_proximity_operations proximity_of_lines = {.clearance = fu_crossing_clearance,
                                                            .between = fu_crossing_between};
-static const fu_history_operations history = {.update = carry, .error = fu_crossing_history_error};
+static const fu_history_operations history = {.update = update_history, .error = fu_crossing_history_error};
 
 static const fu_output output_fields[] = {
     FU_OUTPUT(fu_crossing_output, force, "N", "direction"),
@@ -356,7 +358,7 @@ const fu_coupling_type fu_crossing_type = {
     .step_residual = fu_crossing_step_residual,
     .step_tangent = step_tangent,
     .step_dissipation = fu_crossing_step_dissipation,
-    .force = own_force,
+    .force = add_force,
     .take_forces = take_forces,
     .outputs = outputs,
     .energy = energy,

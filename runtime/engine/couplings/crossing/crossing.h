@@ -133,7 +133,7 @@ double fu_crossing_detect_within(const fu_model *model, const fu_crossing *cross
 void fu_crossing_stick_at(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
                           const fu_crossing_contact *contact, fu_crossing_stick *out);
 void fu_crossing_stick_derivatives(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
-                                   const fu_line_bends *bends, const fu_crossing_contact *contact,
+                                   const fu_line_bends *has_accelerations, const fu_crossing_contact *contact,
                                    fu_crossing_stick_changes *by);
 /* Returns the dissipation of friction from one state of lines in contact to another, J; by_ends: by these alone. */
 double fu_crossing_slip_work(const fu_model *model, const fu_crossing *crossing, const fu_state *from,
@@ -154,7 +154,7 @@ int fu_crossing_swung(const fu_crossing *crossing, const fu_state *state, const 
 /* couplings/crossing/energy_step.c; the first: the middle of a step, with the numbers and the flags of its end. */
 fu_state fu_crossing_middle(const fu_equations *at);
 void fu_crossing_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
-                               double *own);
+                               double *internal);
 double fu_crossing_step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
 
 /* couplings/crossing/clearance.c */

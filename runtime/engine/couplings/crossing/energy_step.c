@@ -10,7 +10,7 @@
 typedef struct {
     fu_line_moves moves[FU_LINES];
     double force[3], on_slopes[6], lost;
-} touching_step;
+} contact_step;
 
 fu_state fu_crossing_middle(const fu_equations *at)
 {
@@ -43,7 +43,7 @@ static void moves_over_step(const fu_model *model, const fu_crossing *crossing, 
     for (int i = 0; i < model->dim * out->n; ++i) out->T[i] -= out->P[i];
 }
 
-static void over_step(const fu_model *model, const fu_crossing *crossing, const fu_equations *at, touching_step *out)
+static void over_step(const fu_model *model, const fu_crossing *crossing, const fu_equations *at, contact_step *out)
 {
     const int dim = model->dim, lines = dim - 1;
     const fu_state middle = fu_crossing_middle(at);
@@ -70,11 +70,11 @@ static void over_step(const fu_model *model, const fu_crossing *crossing, const 
 }
 
 void fu_crossing_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
-                               double *own)
+                               double *internal)
 {
     const int dim = model->dim;
-    touching_step step;
-    for (int i = 0; i < coupling->n_forces; ++i) own[coupling->unknown + i] = 0.0;
+    contact_step step;
+    for (int i = 0; i < coupling->n_forces; ++i) internal[coupling->unknown + i] = 0.0;
     if (!at->next->flags[coupling->flags]) return;
     over_step(model, (const fu_crossing *)coupling, at, &step);
     for (int line = 0; line < FU_LINES; ++line) {
@@ -89,7 +89,7 @@ void fu_crossing_step_residual(const fu_model *model, const fu_coupling *couplin
 
 double fu_crossing_step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
 {
-    touching_step step;
+    contact_step step;
     if (!at->next->flags[coupling->flags]) return 0.0;
     over_step(model, (const fu_crossing *)coupling, at, &step);
     return step.lost;

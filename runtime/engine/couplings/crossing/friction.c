@@ -176,7 +176,7 @@ static void mix_derivatives(const fu_crossing *crossing, const fu_crossing_stick
 }
 
 void fu_crossing_stick_derivatives(const fu_crossing *crossing, const fu_state *state, const fu_closest_points *points,
-                                   const fu_line_bends *bends, const fu_crossing_contact *contact,
+                                   const fu_line_bends *has_accelerations, const fu_crossing_contact *contact,
                                    fu_crossing_stick_changes *by)
 {
     const last_step *last = before_of(crossing, state);
@@ -190,16 +190,16 @@ void fu_crossing_stick_derivatives(const fu_crossing *crossing, const fu_state *
     memset(by, 0, sizeof *by);
     memset(&stuck, 0, sizeof stuck);
     if (stick.end.slid)
-        kernel->sliding(points->d, points->t, points->k, points->w, points->u, bends->third, bends->rate, crossing->law,
-                        friction, crossing->tangential, e, h, last->separation, last->separation_rate, last->slopes,
-                        last->slope_rates, last->s_rate, last->stretch, last->rate,
+        kernel->sliding(points->d, points->t, points->k, points->w, points->u, has_accelerations->third,
+                        has_accelerations->rate, crossing->law, friction, crossing->tangential, e, h, last->separation,
+                        last->separation_rate, last->slopes, last->slope_rates, last->s_rate, last->stretch, last->rate,
                         stick.turns ? slid_before(last) : 0.0, slid_stretch(last), stick.turns, by->F, by->F_d, by->F_t,
                         by->F_u, by->F_w, by->F_k);
     if (!stick.slides)
-        kernel->sticking(points->d, points->t, points->k, points->w, points->u, bends->third, bends->rate,
-                         crossing->law, crossing->tangential, e, h, last->separation, last->separation_rate,
-                         last->slopes, last->slope_rates, last->s_rate, last->stretch, last->rate, stuck.F, stuck.F_d,
-                         stuck.F_t, stuck.F_u, stuck.F_w, stuck.F_k);
+        kernel->sticking(points->d, points->t, points->k, points->w, points->u, has_accelerations->third,
+                         has_accelerations->rate, crossing->law, crossing->tangential, e, h, last->separation,
+                         last->separation_rate, last->slopes, last->slope_rates, last->s_rate, last->stretch,
+                         last->rate, stuck.F, stuck.F_d, stuck.F_t, stuck.F_u, stuck.F_w, stuck.F_k);
     if (!stick.end.slid) *by = stuck;
     else if (!stick.slides) mix_derivatives(crossing, &stick, state->t - last->time, &stuck, by);
     memcpy(by->F, stick.force, sizeof by->F);

@@ -16,7 +16,7 @@
 #include <string.h>
 
 /* of the extent: for a smaller rise the derivative half-way replaces the quotient of changes */
-#define NO_RISE 1e-7
+#define MIN_RISE 1e-7
 
 /* The wet part over a step: its mean, its change, and its discrete gradient by position. */
 typedef struct {
@@ -28,8 +28,8 @@ static wet_step wet_over_step(const fu_model *model, const fu_drag *drag, const 
     wet_step out = {1.0, 0.0, {0.0}};
     const double from = fu_drag_height(model, drag, r), to = fu_drag_height(model, drag, r_next);
     const double before = fu_wet_at_height(drag, from).part, after = fu_wet_at_height(drag, to).part;
-    const double slope = fabs(to - from) > NO_RISE * drag->extent ? (after - before) / (to - from)
-                                                                  : fu_wet_at_height(drag, 0.5 * (from + to)).slope;
+    const double slope = fabs(to - from) > MIN_RISE * drag->extent ? (after - before) / (to - from)
+                                                                   : fu_wet_at_height(drag, 0.5 * (from + to)).slope;
     out.mean = 0.5 * (before + after);
     out.change = after - before;
     for (int d = 0; d < model->dim; ++d) out.by_place[d] = slope * drag->flow.up[d];

@@ -202,17 +202,18 @@ static void force(const fu_model *model, const fu_coupling *coupling, const fu_s
     add_all(model, coupling, state, 0, &sums);
 }
 
-static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)
+static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
+                     double *internal)
 {
-    (void)own;
+    (void)internal;
     force(model, coupling, at->next, f);
 }
 
 static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
-                          double *own)
+                          double *internal)
 {
     const fu_drag_sums sums = {.f = f};
-    (void)own;
+    (void)internal;
     add_step(model, coupling, at, &sums);
 }
 

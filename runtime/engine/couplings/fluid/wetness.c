@@ -15,7 +15,7 @@
 /* of the radius of a section: beyond it matrices neglect the second derivative, which is singular at 1 */
 #define MAX_SECTION_DEPTH 0.99
 /* spans of an element, on each of which heights are a cubic: exact for cubic elements */
-#define SPANS_AN_ELEMENT 4
+#define SPANS_PER_ELEMENT 4
 #define MAX_CUTS 24 /* of an element by the edges of a section at two surfaces, in two configurations */
 /* of an element's length times its steepest slope at the samples: variation of heights between samples */
 #define HEIGHT_VARIATION 0.35
@@ -159,7 +159,7 @@ static void add_point(const fu_cable *cable, double length, int n, int part, dou
 /* A configuration of an element: coordinates e, and the heights of its axis over its spans. */
 typedef struct {
     const double *e;
-    heights of[SPANS_AN_ELEMENT];
+    heights of[SPANS_PER_ELEMENT];
 } shape;
 
 /* Adds the points of a part of an element, unless it is dry; wet: wet parts of one or two configurations in the middle
@@ -220,14 +220,14 @@ static void cut_shape(const fu_model *model, const fu_drag *drag, int n, double 
 {
     const double levels[4] = {drag->surface - drag->extent, drag->surface + drag->extent, drag->bottom - drag->extent,
                               drag->bottom + drag->extent};
-    const double span = length / SPANS_AN_ELEMENT;
-    double N[FU_MAX_COORDINATES], N_x[FU_MAX_COORDINATES], h[SPANS_AN_ELEMENT + 1], slope[SPANS_AN_ELEMENT + 1];
-    for (int k = 0; k <= SPANS_AN_ELEMENT; ++k) {
+    const double span = length / SPANS_PER_ELEMENT;
+    double N[FU_MAX_COORDINATES], N_x[FU_MAX_COORDINATES], h[SPANS_PER_ELEMENT + 1], slope[SPANS_PER_ELEMENT + 1];
+    for (int k = 0; k <= SPANS_PER_ELEMENT; ++k) {
         model->cables[drag->cable].kernel->on_axis(length, k * span, N, N_x);
         h[k] = drag->flow.base + along_axis(model, drag, n, N, of->e);
         slope[k] = span * along_axis(model, drag, n, N_x, of->e);
     }
-    for (int k = 0; k < SPANS_AN_ELEMENT; ++k) {
+    for (int k = 0; k < SPANS_PER_ELEMENT; ++k) {
         of->of[k] = (heights){k * span,
                               span,
                               {h[k], slope[k], 3.0 * (h[k + 1] - h[k]) - 2.0 * slope[k] - slope[k + 1],
@@ -241,14 +241,14 @@ static void cut_points(const fu_model *model, const fu_drag *drag, int n, int el
                        fu_drag_points *out)
 {
     const fu_cable *cable = &model->cables[drag->cable];
-    const double length = fu_element_length(cable, element), span = length / SPANS_AN_ELEMENT;
+    const double length = fu_element_length(cable, element), span = length / SPANS_PER_ELEMENT;
     double cuts[MAX_CUTS];
     int n_cuts = 0;
     for (int s = 0; s < n_shapes; ++s) cut_shape(model, drag, n, length, &shapes[s], cuts, &n_cuts);
     for (int k = 0; k <= n_cuts; ++k) {
         const double from = k ? cuts[k - 1] : 0.0, to = k < n_cuts ? cuts[k] : length,
                      middle = 0.5 * (from + to) / span;
-        const int in = middle < SPANS_AN_ELEMENT - 1 ? (int)middle : SPANS_AN_ELEMENT - 1;
+        const int in = middle < SPANS_PER_ELEMENT - 1 ? (int)middle : SPANS_PER_ELEMENT - 1;
         fu_wetness wet[2];
         for (int s = 0; s < n_shapes; ++s) wet[s] = fu_wet_at_height(drag, height_on(&shapes[s].of[in], middle - in));
         add_part(cable, length, n, k, from, to, wet, n_shapes, out);

@@ -130,34 +130,37 @@ void fu_add_force_change(const fu_model *model, const fu_point_force *between, c
 }
 
 /* Writes minus the residuals of the internal unknowns: the forces less those of the law. */
-static void own_rows(const fu_coupling *coupling, const fu_equations *at, const double *force, double *own)
+static void internal_residual(const fu_coupling *coupling, const fu_equations *at, const double *force,
+                              double *internal)
 {
     const double *unknown = at->next->forces + coupling->force;
     for (int d = 0; d < coupling->n_forces; ++d)
-        own[coupling->unknown + d] = -at->weights.stiffness * (unknown[d] - force[d]);
+        internal[coupling->unknown + d] = -at->weights.stiffness * (unknown[d] - force[d]);
 }
 
-static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)
+static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
+                     double *internal)
 {
     double force[3];
     add_forces(model, (const fu_point_force *)coupling, at->next, 0, at->next->forces + coupling->force, f);
     force_at(model, coupling, at->next, force);
-    own_rows(coupling, at, force, own);
+    internal_residual(coupling, at, force, internal);
 }
 
 static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
-                          double *own)
+                          double *internal)
 {
     double force[3];
     add_forces(model, (const fu_point_force *)coupling, at->now, at->next, at->next->forces + coupling->force, f);
     step_force(model, coupling, at, force);
-    own_rows(coupling, at, force, own);
+    internal_residual(coupling, at, force, internal);
 }
 
-/* Adds the derivatives of the equations at a state to a system, by the law of a segment; own: the forces; psi as in
- * fu_equations; known: the derivatives by the gap of a force that does not follow that law, else null. */
+/* Adds the derivatives of the equations at a state to a system, by the law of a segment; internal: the forces; psi as
+ * in fu_equations; known: the derivatives by the gap of a force that does not follow that law, else null. */
 static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int segment,
-                   const double *own, const double *psi, const double *known, fu_weights weights, fu_system *system)
+                   const double *internal, const double *psi, const double *known, fu_weights weights,
+                   fu_system *system)
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
     const int dim = between->dim, row = fu_extra(model, coupling->unknown);
@@ -166,7 +169,8 @@ static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_
     double changes[3 * FU_ATTACHMENT_COORDINATES];
     fu_point_motion motions[2];
     for (int e = 0; e < 2; ++e)
-        fu_point_motion_at(model, &between->attachments[e], state, FU_POINT, own, 0, psi, weights.rate, &motions[e]);
+        fu_point_motion_at(model, &between->attachments[e], state, FU_POINT, internal, 0, psi, weights.rate,
+                           &motions[e]);
     for (int d = 0; d < dim; ++d) {
         gap[d] = motions[1].at.p[d] - motions[0].at.p[d];
         rate[d] = motions[1].at.v[d] - motions[0].at.v[d];
@@ -222,7 +226,7 @@ static double step_dissipation(const fu_model *model, const fu_coupling *couplin
     return at->h * step_force(model, coupling, at, force);
 }
 
-static void own_force(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f)
+static void add_force(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f)
 {
     double force[3];
     force_at(model, coupling, state, force);
@@ -317,7 +321,7 @@ const fu_coupling_type fu_point_force_type = {.name = "point_force",
                                               .step_residual = step_residual,
                                               .step_tangent = step_tangent,
                                               .step_dissipation = step_dissipation,
-                                              .force = own_force,
+                                              .force = add_force,
                                               .take_forces = take_forces,
                                               .outputs = outputs,
                                               .energy = energy,

@@ -93,18 +93,18 @@ static double compliance(const fu_coupling *coupling, fu_weights weights)
 }
 
 /* Writes the equation of the internal unknown: the residual of the distance, or that the unknown is zero. */
-static void own_row(const fu_coupling *coupling, const fu_equations *at, double g, double *own)
+static void internal_residual(const fu_coupling *coupling, const fu_equations *at, double g, double *internal)
 {
     const double multiplier = at->next->forces[coupling->force],
                  left = g - compliance(coupling, at->weights) * multiplier;
     if (is_closed(coupling, at->next))
-        own[coupling->unknown] = -fu_row_unit(at->weights.inertia, coupling->scale[0]) * left;
-    else own[coupling->unknown] = -at->weights.stiffness * at->next->forces[coupling->force];
+        internal[coupling->unknown] = -fu_row_unit(at->weights.inertia, coupling->scale[0]) * left;
+    else internal[coupling->unknown] = -at->weights.stiffness * at->next->forces[coupling->force];
 }
 
 /* Adds friction: against sliding, or the forces that keep velocities past the surface zero, as lengths over a step. */
 static void friction_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,
-                              const fu_hard_row *row, double *f, double *own)
+                              const fu_hard_row *row, double *f, double *internal)
 {
     const fu_hard_contact *contact = contact_of(coupling);
     const double *multipliers = at->next->forces + coupling->force,
@@ -119,22 +119,23 @@ static void friction_residual(const fu_model *model, const fu_coupling *coupling
                  soft = step * step * fu_hard_softness(contact, at->now->forces[coupling->force]);
     for (int k = 1; k < coupling->n_forces; ++k) {
         for (int i = 0; i < row->n; ++i) f[row->at[i]] += along.H[k - 1][i] * multipliers[k];
-        own[coupling->unknown + k] =
+        internal[coupling->unknown + k] =
             -unit * (step * fu_dot(model->dim, along.t[k - 1], along.past) - soft * multipliers[k]);
     }
 }
 
-static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own)
+static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
+                     double *internal)
 {
     fu_hard_row row = {.g = 0.0};
     for (int k = 1; k < coupling->n_forces; ++k)
-        own[coupling->unknown + k] = -at->weights.stiffness * at->next->forces[coupling->force + k];
+        internal[coupling->unknown + k] = -at->weights.stiffness * at->next->forces[coupling->force + k];
     if (is_closed(coupling, at->next)) {
         fu_hard_row_at(model, contact_of(coupling), at->next, &row);
         for (int i = 0; i < row.n; ++i) f[row.at[i]] += row.H[i] * at->next->forces[coupling->force];
-        if (has_friction(coupling)) friction_residual(model, coupling, at, &row, f, own);
+        if (has_friction(coupling)) friction_residual(model, coupling, at, &row, f, internal);
     }
-    own_row(coupling, at, row.g, own);
+    internal_residual(coupling, at, row.g, internal);
 }
 
 /* Adds the derivatives of friction's forces by its internal unknowns, and of its rows by velocities; the rotation of
@@ -163,7 +164,7 @@ static void tangent_of_closed(const fu_model *model, const fu_coupling *coupling
                               const fu_hard_row *row, fu_system *system)
 {
     const fu_hard_contact *contact = contact_of(coupling);
-    const int dim = model->dim, own = fu_extra(model, coupling->unknown);
+    const int dim = model->dim, internal = fu_extra(model, coupling->unknown);
     const double *psi = at->psi, multiplier = at->next->forces[coupling->force];
     const double unit = fu_row_unit(at->weights.inertia, coupling->scale[0]);
     fu_attachment_state on;
@@ -174,11 +175,11 @@ static void tangent_of_closed(const fu_model *model, const fu_coupling *coupling
     fu_turn_attachment(model, contact->contact.attachments, psi, turned, 1, row->n - on.n, 0);
     fu_turn_attachment(model, contact->contact.surface.on, psi, turned + row->n - on.n, 1, on.n, 0);
     for (int i = 0; i < row->n; ++i) {
-        fu_add(model, system, row->at[i], own, unit * row->H[i]);
-        fu_add(model, system, own, row->at[i], unit * turned[i]);
+        fu_add(model, system, row->at[i], internal, unit * row->H[i]);
+        fu_add(model, system, internal, row->at[i], unit * turned[i]);
     }
     if (has_friction(coupling)) friction_tangent(model, coupling, at, row, system);
-    fu_add(model, system, own, own, -unit * compliance(coupling, at->weights) / at->weights.stiffness);
+    fu_add(model, system, internal, internal, -unit * compliance(coupling, at->weights) / at->weights.stiffness);
     fu_contact_place(model, &contact->contact, &on, at->next, 0, 0, &point);
     for (int d = 0; d < dim; ++d) point.f[d] = -multiplier * row->normal[d];
     for (int i = 0; i < dim * dim; ++i) point.by_place[i] = -multiplier * row->curvature[i];
@@ -187,11 +188,11 @@ static void tangent_of_closed(const fu_model *model, const fu_coupling *coupling
 
 static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
 {
-    const int own = fu_extra(model, coupling->unknown);
+    const int internal = fu_extra(model, coupling->unknown);
     fu_hard_row row;
     if (!is_closed(coupling, at->next)) {
         for (int k = 0; k < coupling->n_forces; ++k)
-            fu_add(model, system, own + k, own + k, fu_row_unit(at->weights.inertia, coupling->scale[0]));
+            fu_add(model, system, internal + k, internal + k, fu_row_unit(at->weights.inertia, coupling->scale[0]));
         return;
     }
     fu_hard_row_at(model, contact_of(coupling), at->next, &row);
@@ -223,27 +224,27 @@ static void step_row(const fu_model *model, const fu_hard_contact *contact, cons
 }
 
 static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
-                          double *own)
+                          double *internal)
 {
     fu_hard_row row = {.g = 0.0};
     if (is_closed(coupling, at->next)) {
         step_row(model, contact_of(coupling), at, &row);
         for (int i = 0; i < row.n; ++i) f[row.at[i]] += row.H[i] * at->next->forces[coupling->force];
     }
-    own_row(coupling, at, row.g, own);
+    internal_residual(coupling, at, row.g, internal);
 }
 
 static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
 {
-    const int own = fu_extra(model, coupling->unknown);
+    const int internal = fu_extra(model, coupling->unknown);
     const double unit = fu_row_unit(at->weights.inertia, coupling->scale[0]);
     fu_hard_row row;
     if (!is_closed(coupling, at->next)) {
-        fu_add(model, system, own, own, unit);
+        fu_add(model, system, internal, internal, unit);
         return;
     }
     step_row(model, contact_of(coupling), at, &row);
-    fu_add_row_and_column(model, system, own, row.n, row.at, row.H, unit);
+    fu_add_row_and_column(model, system, internal, row.n, row.at, row.H, unit);
 }
 
 static void take_forces(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state)
@@ -300,7 +301,7 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
 }
 
 /* The direction of sliding is the history variable. */
-static void carry(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+static void update_history(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     fu_hard_row row;
     fu_hard_along along;
@@ -342,7 +343,7 @@ static const fu_field fields[] = {
     {0},
 };
 
-static const fu_history_operations history = {.update = carry};
+static const fu_history_operations history = {.update = update_history};
 
 static const fu_output output_fields[] = {
     FU_OUTPUT(fu_hard_contact_output, force, "N", "direction"),

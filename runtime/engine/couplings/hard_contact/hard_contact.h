@@ -5,7 +5,7 @@
 #include "couplings/contact/contact.h"
 #include "linear/complementarity.h"
 
-#define FU_MOST_HARD_CONTACTS FU_MAX_COMPLEMENTARY /* of a scene */
+#define FU_MAX_HARD_CONTACTS FU_MAX_COMPLEMENTARY /* of a scene */
 
 /* One point, the contact's only one. A row g = 0 of its distance, less its radius, has a multiplier while it is closed:
  * minus the normal force. */

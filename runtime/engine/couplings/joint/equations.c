@@ -179,17 +179,18 @@ static void replace_s(const fu_model *model, const fu_joint *joint, const joint_
                       double J[2][6 * FU_ATTACHMENT_COORDINATES], const fu_accelerator *work, fu_rows *rows)
 {
     const int m = joint->kernel->rows;
-    int n = 0, own[2]; /* coordinates that are dofs: all but s, which is the last */
+    int n = 0, n_dofs[2]; /* coordinates that are dofs: all but s, which is the last */
     for (int e = 0; e < 2; ++e) {
-        own[e] = view->at[e].n - (joint->attachments[e].slide >= 0);
-        for (int i = 0; i < own[e]; ++i) rows->at[n++] = view->at[e].at[i];
+        n_dofs[e] = view->at[e].n - (joint->attachments[e].slide >= 0);
+        for (int i = 0; i < n_dofs[e]; ++i) rows->at[n++] = view->at[e].at[i];
     }
     rows->n = n;
     for (int e = 0; e < 2; ++e)
         if (joint->attachments[e].slide >= 0) rows->n += rows_of_slide(model, joint, e, work)->n;
     for (int r = 0; r < m; ++r)
         for (int e = 0; e < 2; ++e)
-            memcpy(rows->H + r * rows->n + (e ? own[0] : 0), J[e] + r * view->at[e].n, sizeof(double) * (size_t)own[e]);
+            memcpy(rows->H + r * rows->n + (e ? n_dofs[0] : 0), J[e] + r * view->at[e].n,
+                   sizeof(double) * (size_t)n_dofs[e]);
     for (int e = 0, to = n; e < 2; ++e) {
         const int slide = joint->attachments[e].slide;
         if (slide < 0) continue;

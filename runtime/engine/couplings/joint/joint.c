@@ -13,20 +13,20 @@ FU_INLINE void add_row(int n, double factor, const double *row, double *restrict
 }
 
 static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, double *f,
-                     double *own)
+                     double *internal)
 {
     const fu_joint *joint = (const fu_joint *)coupling;
     const fu_state *next = equations->next;
     const double *multipliers = next->forces + coupling->force, scale = equations->weights.stiffness;
     fu_joint_rows_at at;
     if (fu_joint_is_inactive(model, joint, next)) {
-        for (int r = 0; r < joint->kernel->rows; ++r) own[coupling->unknown + r] = -scale * multipliers[r];
+        for (int r = 0; r < joint->kernel->rows; ++r) internal[coupling->unknown + r] = -scale * multipliers[r];
         return;
     }
     fu_joint_equations(model, joint, next, &at);
     for (int r = 0; r < joint->kernel->rows; ++r) {
         if (joint->redundant_rows >> r & 1) at.phi[r] = 0.0;
-        own[coupling->unknown + r] = -fu_row_unit(equations->weights.inertia, coupling->scale[r]) * at.phi[r];
+        internal[coupling->unknown + r] = -fu_row_unit(equations->weights.inertia, coupling->scale[r]) * at.phi[r];
         for (int e = 0; e < 2; ++e) {
             const int n = at.n[e], last = n - 1, on_slide = joint->attachments[e].slide >= 0;
             if (!n) continue; /* the ground */
@@ -37,7 +37,7 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
                 add_row(FU_FRAME_DOFS, multipliers[r], J, on); /* a loop without remainder */
             else add_row(n - on_slide, multipliers[r], J, on);
             if (on_slide && fu_joint_moves(model, joint, next, at.at[e][last]))
-                own[at.at[e][last] - model->n_dof] -= scale * (J[last] * multipliers[r]);
+                internal[at.at[e][last] - model->n_dof] -= scale * (J[last] * multipliers[r]);
         }
     }
 }
@@ -65,8 +65,8 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     fu_joint_tangent(model, joint, equations->next, &by);
     unit_rows(model, joint, joint->redundant_rows, w.inertia, system);
     for (int r = 0; r < rows; ++r) at[r] = fu_extra(model, coupling->unknown) + r;
-    const fu_side own = {rows, at, 1};
-    fu_side columns[2], moving[2]; /* those with a row of their own: s of a locked slide has another */
+    const fu_side internal = {rows, at, 1};
+    fu_side columns[2], moving[2]; /* those with a row of their internal: s of a locked slide has another */
     for (int e = 0; e < 2; ++e) {
         columns[e] = moving[e] = (fu_side){by.n[e], by.at[e], joint->attachments[e].body >= 0};
         if (by.n[e]) moving[e].n -= !fu_joint_moves(model, joint, equations->next, by.at[e][by.n[e] - 1]);
@@ -78,11 +78,11 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
             unit[r] = joint->redundant_rows >> r & 1 ? 0.0 : fu_row_unit(w.inertia, coupling->scale[r]);
             for (int i = 0; i < n; ++i) scaled[r * n + i] = unit[r] * J[r * n + i];
         }
-        fu_add_block(model, system, moving[e], own, 1.0, scaled, 1, n);
+        fu_add_block(model, system, moving[e], internal, 1.0, scaled, 1, n);
         fu_turn_attachment(model, &joint->attachments[e], equations->psi, J, rows + by.n[0] + by.n[1], n, 0);
         for (int r = 0; r < rows; ++r)
             for (int i = 0; i < n; ++i) J[r * n + i] *= unit[r];
-        fu_add_block(model, system, own, columns[e], 1.0, J, n, 1);
+        fu_add_block(model, system, internal, columns[e], 1.0, J, n, 1);
         fu_add_block(model, system, moving[e], columns[e], w.stiffness, by.K[e][e], n, 1);
         /* terms between two cables would widen the band: Newton converges without them */
         if (by.across && !fu_between_cables(joint))

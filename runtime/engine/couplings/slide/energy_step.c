@@ -25,9 +25,9 @@ static void discrete_gradient(const fu_model *model, const fu_coupling *coupling
                                      rider_at(model, now, slide), rider_at(model, next, slide), G);
 }
 
-/* Adds the force's discrete work to f, and the equations of s and of the force to own. */
+/* Adds the force's discrete work to f, and the equations of s and of the force to `internal`. */
 void fu_slide_over_step(const fu_model *model, const fu_coupling *coupling, const fu_equations *step, double *f,
-                        double *own)
+                        double *internal)
 {
     const fu_slide *slide = (const fu_slide *)coupling;
     const fu_state *next = step->next;
@@ -39,13 +39,13 @@ void fu_slide_over_step(const fu_model *model, const fu_coupling *coupling, cons
     discrete_gradient(model, coupling, step, at[0], G);
     slide->kernel->residual(fu_element_length(&model->cables[slide->cable], step->now->segment[j]), next->s[j] - start,
                             next->q + at[0], rider_at(model, next, slide), slide->rider.u, force, phi, unused);
-    own += coupling->unknown;
+    internal += coupling->unknown;
     for (int d = 0; d < slide->kernel->dim; ++d) {
         for (int i = 0; i < s; ++i) f[at[i]] += force[d] * G[d * n + i];
         along += force[d] * G[d * n + s];
-        own[1 + d] = -slide->base.scale[0] * phi[d];
+        internal[1 + d] = -slide->base.scale[0] * phi[d];
     }
-    own[0] = -step->weights.stiffness * along;
+    internal[0] = -step->weights.stiffness * along;
 }
 
 /* Adds the derivatives: rows of the constraint at the end of the step, columns of its discrete gradient, and half the

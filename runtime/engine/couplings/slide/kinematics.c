@@ -1,7 +1,8 @@
-/* A slide's kernels over its own coordinates, for any rider: the element's, the rider's, s.
+/* A slide's kernels over its coordinates, for any rider: the element's, the rider's, s.
  *
- * A rigid body has kernels of its own; any other rider is a point of a part, and the chain rule converts derivatives
- * by that point to those by its coordinates: dp = P dq, p'' = P q'' + bias. */
+ * A rigid body has kernels of its own; any other rider is a point of a part, and the chain rule converts derivatives by
+ * that point to those by its coordinates: dp = P dq, p'' = P q'' + bias.
+ */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/accelerator.h"

@@ -31,7 +31,7 @@ static double resisted(const fu_model *model, const fu_state *state, int j)
 }
 
 static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, double *f,
-                     double *own)
+                     double *internal)
 {
     const fu_slide *slide = (const fu_slide *)coupling;
     const fu_state *next = equations->next;
@@ -41,16 +41,16 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
     double phi[3], g[FU_SLIDE_COORDINATES + 1], rate, second;
     int at[FU_SLIDE_COORDINATES + 1];
     const int s = fu_slide_coordinates(model, next, j, at);
-    own += coupling->unknown;
+    internal += coupling->unknown;
     fu_slide_residual(model, next, j, phi, g);
     for (int i = 0; i < s; ++i) f[at[i]] += g[i];
-    own[0] = mode == FU_SLIDES
-                 ? -scale * g[s]
-                 : -unit * (next->s[j] - (mode == FU_LOCKED ? fu_slide_locked_s(model, next, j, &rate, &second)
-                                                            : equations->now->s[j]));
-    if (slide->resistance && mode == FU_SLIDES) own[0] += scale * resisted(model, next, j);
+    internal[0] = mode == FU_SLIDES
+                      ? -scale * g[s]
+                      : -unit * (next->s[j] - (mode == FU_LOCKED ? fu_slide_locked_s(model, next, j, &rate, &second)
+                                                                 : equations->now->s[j]));
+    if (slide->resistance && mode == FU_SLIDES) internal[0] += scale * resisted(model, next, j);
     for (int d = 0; d < slide->kernel->dim; ++d)
-        own[1 + d] = mode == FU_LEFT ? -scale * next->forces[coupling->force + d] : -unit * phi[d];
+        internal[1 + d] = mode == FU_LEFT ? -scale * next->forces[coupling->force + d] : -unit * phi[d];
 }
 
 /* Adds the derivatives of R to the row of s; J: derivatives of phi by the coordinates themselves. */

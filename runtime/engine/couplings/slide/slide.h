@@ -29,7 +29,7 @@ struct fu_slide {
     fu_attachment rider;
     int rider_is_rigid;                      /* the kernels take the rider's own configuration: it is a rigid body */
     int drive;                               /* signal of s, -1 */
-    int carries_director;                    /* the element has none of its own */
+    int carries_director;                    /* the element has no director */
     const fu_resistance_kernels *resistance; /* null without friction and buffers */
     int sticks;                              /* friction holds it at rest, else friction rises with the speed */
     double friction, static_friction, viscous, velocity; /* coefficients sliding and at rest; N s/m; m/s */
@@ -70,7 +70,7 @@ double fu_slide_step(const fu_model *model, const fu_state *state, int j, double
 
 /* couplings/slide/energy_step.c: residual and tangent over a step that conserves energy. */
 void fu_slide_over_step(const fu_model *model, const fu_coupling *coupling, const fu_equations *step, double *f,
-                        double *own);
+                        double *internal);
 void fu_slide_over_step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *step,
                                 fu_system *system);
 
