@@ -1,61 +1,58 @@
 """funicular: very flexible cables and the bodies that slide on them. SI units everywhere."""
 
-from typing import Any
+from types import ModuleType as _ModuleType
+from typing import TYPE_CHECKING as _TYPE_CHECKING
+from typing import Any as _Any
 
-from .cli import start as command_start  # noqa: F401  first: handles Ctrl-C during the other imports
-from .errors import (
-    ConvergenceError,
-    EndOfCableError,
-    EquilibriumError,
-    FunicularError,
-    FunicularWarning,
-    ResultFileError,
-    SceneError,
-    UnknownResultError,
-    check_renamed,
-)
-from .parts.cable import Cable
-from .parts.contact import Contact
-from .parts.crossing import Crossing
-from .parts.drag import Drag
-from .parts.end_stops import Buffer, HardStop
-from .parts.event import Event
-from .parts.flow_profile import PowerProfile, TableProfile
-from .parts.fluid import Fluid
-from .parts.force_segments import ForceTable
-from .parts.friction import Friction
-from .parts.joint import Joint
-from .parts.load import DistributedForce, Force, Moment
-from .parts.material import Material
-from .parts.modal_body import ModalBody
-from .parts.polar import Polar
-from .parts.rigid_body import RigidBody
-from .parts.section import Circle, GeneralSection, Rectangle, Tube
-from .parts.settings import EquilibriumSettings, RunSettings
-from .parts.signal import Harmonic, Pulse, Ramp, TableSignal
-from .parts.slide import Slide
-from .parts.solids import Box, Cylinder, MeshShape, Sphere
-from .parts.spring import Spring
-from .parts.support import Clamp, Motion, Pin, Tie
-from .parts.surface import Surface
-from .parts.surface_shapes import Capsule, HeightField, Plane
-from .parts.velocity_table import VelocityTable
-from .results.combination import combine
-from .results.run import Run
-from .scene.file import bundled_scenes, load_run, load_scene
-from .scene.scene import Scene
-from .sweeps.many_scenes import run_many
+from .cli import start as _start  # noqa: F401  first: handles Ctrl-C during the other imports
+from .errors import ConvergenceError as ConvergenceError
+from .errors import EndOfCableError as EndOfCableError
+from .errors import EquilibriumError as EquilibriumError
+from .errors import FunicularError as FunicularError
+from .errors import FunicularWarning as FunicularWarning
+from .errors import ResultFileError as ResultFileError
+from .errors import SceneError as SceneError
+from .errors import UnknownResultError as UnknownResultError
+from .errors import check_renamed as _check_renamed
+from .parts.end_stops import Buffer as Buffer
+from .parts.end_stops import HardStop as HardStop
+from .parts.flow_profile import PowerProfile as PowerProfile
+from .parts.flow_profile import TableProfile as TableProfile
+from .parts.force_segments import ForceTable as ForceTable
+from .parts.friction import Friction as Friction
+from .parts.listed import *  # noqa: F403  the kinds of parts
+from .parts.material import Material as Material
+from .parts.polar import Polar as Polar
+from .parts.section import Circle as Circle
+from .parts.section import GeneralSection as GeneralSection
+from .parts.section import Rectangle as Rectangle
+from .parts.section import Tube as Tube
+from .parts.settings import EquilibriumSettings as EquilibriumSettings
+from .parts.settings import RunSettings as RunSettings
+from .parts.signal import Harmonic as Harmonic
+from .parts.signal import Pulse as Pulse
+from .parts.signal import Ramp as Ramp
+from .parts.signal import TableSignal as TableSignal
+from .parts.solids import Box as Box
+from .parts.solids import Cylinder as Cylinder
+from .parts.solids import MeshShape as MeshShape
+from .parts.solids import Sphere as Sphere
+from .parts.surface_shapes import Capsule as Capsule
+from .parts.surface_shapes import HeightField as HeightField
+from .parts.surface_shapes import Plane as Plane
+from .parts.velocity_table import VelocityTable as VelocityTable
+from .results.combination import combine as combine
+from .results.run import Run as Run
+from .scene.file import bundled_scenes as bundled_scenes
+from .scene.file import load_run as load_run
+from .scene.file import load_scene as load_scene
+from .scene.scene import Scene as Scene
+from .sweeps.many_scenes import run_many as run_many
 
-__all__ = [
-    "Box", "Buffer", "Cable", "Capsule", "Circle", "Clamp", "Contact", "ConvergenceError", "Crossing", "Cylinder",
-    "DistributedForce", "Drag", "EndOfCableError", "EquilibriumError", "EquilibriumSettings", "Event", "Fluid",
-    "Force", "ForceTable", "Friction", "FunicularError", "FunicularWarning", "GeneralSection", "HardStop",
-    "Harmonic", "HeightField", "Joint", "Material", "MeshShape", "ModalBody", "Moment", "Motion", "Pin", "Plane",
-    "Polar", "PowerProfile", "Pulse", "Ramp", "Rectangle", "ResultFileError", "RigidBody", "Run", "RunSettings",
-    "Scene", "SceneError", "Slide", "Sphere", "Spring", "Surface", "TableProfile", "TableSignal", "Tie", "Tube",
-    "UnknownResultError", "VelocityTable", "__version__", "bundled_scenes", "combine", "load_run", "load_scene",
-    "run_many",
-]
+if not _TYPE_CHECKING:  # type checkers read the imports, those of parts/listed.py included
+    __all__ = ["__version__", *(name for name, value in globals().items()  # noqa: F405
+                                if not name.startswith("_") and not isinstance(value, _ModuleType))]
+
 LAZY = {"Choice": "choice.choice", "Equilibrium": "results.equilibrium", "InitialState": "model.initial_state",
         "LogUniform": "sweeps.parameters", "Modes": "solve.modes.modes", "Uniform": "sweeps.parameters",
         "load_sweep": "sweeps.dataset", "sweep": "sweeps.sweep", "sweep_cost": "sweeps.sweep"}
@@ -67,7 +64,7 @@ def __dir__() -> list[str]:
     return sorted({*__all__, *LAZY, "__all__", "__doc__", "__file__", "__name__", "__path__", "__version__"})
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> _Any:
     if name in LAZY:
         from importlib import import_module
 
@@ -76,5 +73,5 @@ def __getattr__(name: str) -> Any:
         from importlib.metadata import version
 
         return version("funicular")
-    check_renamed(f"module {__name__!r}", name, __all__)
+    _check_renamed(f"module {__name__!r}", name, __all__)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

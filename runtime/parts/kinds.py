@@ -1,28 +1,14 @@
-"""The kinds of parts of a scene. A further kind is one file beside this one and one entry here."""
+"""The kinds of parts of a scene by name, and how their results turn."""
 
 from collections.abc import Iterable, Mapping
 
-from .cable import Cable
-from .contact import Contact
-from .crossing import Crossing
-from .drag import Drag
-from .event import Event
-from .fluid import Fluid
-from .joint import Joint
-from .load import DistributedForce, Force, Moment
-from .modal_body import ModalBody
+from . import listed
 from .part import Part
 from .quantity import IN_BODY_AXES, NODAL_VECTORS, UNCHANGED, Quantity
-from .rigid_body import RigidBody
 from .schemas import DIRECTION, POINT
-from .slide import Slide
-from .spring import Spring
-from .support import Clamp, Motion, Pin, Tie
-from .surface import Surface
 
-KINDS: tuple[type[Part], ...] = (Cable, Pin, Clamp, Motion, Tie, RigidBody, ModalBody, Joint, Slide, Force,
-                                 DistributedForce, Moment, Spring, Fluid, Drag, Crossing, Surface, Contact, Event)
-"""In an order in which they can be added: a slide needs its cable and its body."""
+KINDS: tuple[type[Part], ...] = tuple(each for each in vars(listed).values() if isinstance(each, type))
+"""In the order of `parts/listed.py`."""
 
 
 def plural_of(name: str) -> str:

@@ -15,8 +15,8 @@ from .validation import Name
 class PointForce(Part):
     """Base of forces along the line between the points of two attachments, a and b.
 
-    The parameters of its law are fields of the same names. A further force is a class of this kind, an entry in
-    kinds.py, and its law in derive/couplings/point_laws.
+    The parameters of its law are fields of the same names. A further force is a class of this kind, a line in
+    listed.py, and its law in derive/couplings/point_laws.
     """
 
     group = "point_forces"

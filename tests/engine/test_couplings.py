@@ -21,7 +21,8 @@ def test_a_run_knows_no_kind_of_coupling_and_no_kind_of_event(path):
 
 
 def test_each_type_of_coupling_stands_in_the_list_once():
-    listed = re.findall(r"\{&(fu_\w+_type)", (ENGINE / "events" / "list.c").read_text())
+    listed = [f"fu_{kind}_type" for kind in re.findall(r"^    (?:ALONE|WITH_EVENTS)\((\w+)\)",
+                                                     (ENGINE / "events" / "list.c").read_text(), re.M)]
     defined = [name for path in ENGINE.glob("couplings/*/*.c")
                for name in re.findall(r"^const fu_coupling_type (\w+) =", path.read_text(), re.M)]
     assert defined and sorted(listed) == sorted(defined)

@@ -6,6 +6,7 @@ outputs. Its spec is a file in derive/couplings/point_laws, which no list names.
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -20,14 +21,11 @@ import pytest
 TRIAL = Path(__file__).parent / "trial_coupling"
 TESTS = Path(__file__).parents[1]
 RUNTIME = Path(funicular.__file__).parent
-FILES = {"law.py": "derive/couplings/point_laws/tow.py", "tow.c": "engine/events/tow.c",
-         "tow.h": "engine/events/tow.h", "tow.py": "parts/tow.py", "tows.py": "model/tows.py"}
-LINES = {"engine/events/list.c": [
-             ('#include "events/list.h"\n', '#include "events/tow.h"\n'),
-             ("} types[] = {", "{&fu_tow_type, &fu_tow_events}, ")],
-         "parts/kinds.py": [("from .surface import Surface\n", "from .tow import Tow\n"),
-                            ("Surface, Contact, ", "Tow, ")]}
-"""Lists that name each kind of coupling, and what they get: after which text, and which."""
+FILES = {"law.py": "derive/couplings/point_laws/tow.py", "tow.c": "engine/couplings/tow/tow.c",
+         "tow.py": "parts/tow.py", "tows.py": "model/tows.py"}
+LINES = {"engine/events/list.c": ("    WITH_EVENTS(crossing)", "    WITH_EVENTS(tow) \\\n"),
+         "parts/listed.py": ("from .surface ", "from .tow import Tow as Tow\n")}
+"""Lists that name each kind of coupling: how the line before the new one begins, and the new one."""
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(sys.platform == "win32", reason="calls a compiler of Unix")]
 
 
@@ -40,13 +38,12 @@ def copied(folder):
         shutil.copytree(Path(__import__(f"funicular.{part}").__dict__[part].__path__[0]), package / part,
                         ignore=ignored)
     for name, place in FILES.items():
+        (package / place).parent.mkdir(exist_ok=True)
         shutil.copy(TRIAL / name, package / place)
-    for name, edits in LINES.items():
-        text = (package / name).read_text()
-        for after, line in edits:
-            assert text.count(after) == 1, f"{name}: {after!r}"
-            text = text.replace(after, after + line)
-        (package / name).write_text(text)
+    for name, (before, line) in LINES.items():
+        lines = (package / name).read_text().splitlines(keepends=True)
+        (after,) = (k for k, each in enumerate(lines, 1) if each.startswith(before))
+        (package / name).write_text("".join([*lines[:after], line, *lines[after:]]))
     subprocess.run([sys.executable, package / "derive", "tow", "planar_tow"], check=True, capture_output=True)
     return package
 
@@ -91,13 +88,19 @@ def uses(tmp_path_factory):
 
 
 def test_what_it_costs(capsys):
-    """Two lists name the kinds: those of the engine's types and of parts. A third one is a step back."""
-    entries = {name: len([line for _, line in edits if "import" not in line and "#include" not in line])
-               for name, edits in LINES.items()}
+    """Two lists name the kinds, one line each: those of the engine's types and of parts. A third is a step back."""
+    lines = {name: line.count("\n") for name, (_, line) in LINES.items()}
     with capsys.disabled():
-        print(f"\na trial coupling: {len(FILES)} files of its own, {len(LINES)} lists with an entry each: "
-              f"{', '.join(LINES)}")
-    assert entries == dict.fromkeys(LINES, 1) and len(LINES) <= 2
+        print(f"\na trial coupling: {len(FILES)} files of its own, {', '.join(FILES.values())}; and "
+              f"{sum(lines.values())} lines in {len(LINES)} files of the package: {', '.join(LINES)}")
+    assert lines == dict.fromkeys(LINES, 1) and len(LINES) <= 2
+    assert len(FILES) <= 4
+
+
+def test_its_c_file_stands_in_the_layer_of_couplings():
+    """It includes no header of a higher layer, though it finds an event."""
+    layers = set(re.findall(r'#include "(\w+)/', (TRIAL / "tow.c").read_text()))
+    assert layers <= {"base", "linear", "bodies", "couplings"}, layers
 
 
 def test_all_integrators_run_it(uses):

@@ -1,8 +1,8 @@
 /* Start and end of contact with a surface: the largest penetration passes zero, at the ends of a step or within it. */
 #include "base/cubic.h"
+#include "couplings/common/coupling_events.h"
 #include "equations/run.h"
 #include "events/contact.h"
-#include "events/list.h"
 
 #include <math.h>
 #include <string.h>
@@ -31,10 +31,10 @@ static double deepest(const fu_model *model, const fu_contact *contact, const fu
     return depth;
 }
 
-static double value_of(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
+static double value_of(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which)
 {
     (void)which;
-    return deepest(run->model, of(coupling), state);
+    return deepest(model, of(coupling), state);
 }
 
 static double depth(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double value)
@@ -69,18 +69,16 @@ static int sign(const fu_model *model, const fu_coupling *coupling, const fu_sta
     return state->flags[coupling->flags] ? 1 : -1;
 }
 
-static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
+static const char *change(const fu_model *model, const fu_coupling *coupling, fu_state *now, int which, int side)
 {
-    (void)which;
-    run->now.flags[coupling->flags] = side > 0;
-    *what = side > 0 ? "came into contact" : "lost contact";
-    return FU_RUNNING;
+    (void)model, (void)which;
+    now->flags[coupling->flags] = side > 0;
+    return side > 0 ? "came into contact" : "lost contact";
 }
 
-static int begin(fu_run *run, const fu_coupling *coupling)
+static void begin(const fu_model *model, const fu_coupling *coupling, fu_state *now)
 {
-    run->now.flags[coupling->flags] = deepest(run->model, of(coupling), &run->now) > 0.0;
-    return FU_RUNNING;
+    now->flags[coupling->flags] = deepest(model, of(coupling), now) > 0.0;
 }
 
 /* Returns a point at a state along the axes of its surface's shape. */
@@ -177,11 +175,7 @@ static double grazing(const fu_run *run, const fu_coupling *coupling, int which,
     return first;
 }
 
-const fu_coupling_events fu_contact_events = {.direction = 0,
-                                              .value = value_of,
-                                              .depth = depth,
-                                              .beyond = beyond,
-                                              .sign = sign,
-                                              .act = act,
-                                              .begin = begin,
-                                              .grazing = grazing};
+static const fu_state_event_operations of_state = {.value = value_of, .change = change, .begin = begin};
+
+const fu_coupling_events fu_contact_events = {
+    .of_state = &of_state, .direction = 0, .depth = depth, .beyond = beyond, .sign = sign, .grazing = grazing};

@@ -40,8 +40,11 @@ int fu_begin_couplings(fu_run *run)
 {
     fu_couplings_take_velocities(run);
     FU_EACH_COUPLING(c, run->model->couplings, run->model->n_couplings) {
-        const int status = c->events ? c->events->begin(run, c) : FU_RUNNING;
+        if (!c->events) continue;
+        const fu_state_event_operations *of_state = c->events->of_state;
+        const int status = of_state ? FU_RUNNING : c->events->begin(run, c);
         if (status) return status;
+        if (of_state && of_state->begin) of_state->begin(run->model, c, &run->now);
     }
     return FU_RUNNING;
 }

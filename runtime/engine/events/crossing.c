@@ -1,9 +1,9 @@
 /* Start and end of contact of lines in a crossing: the penetration passes zero, damping would reverse the force, or a
  * closest point passes the end of its line. */
 #include "base/cubic.h"
+#include "couplings/common/coupling_events.h"
 #include "couplings/crossing/crossing.h"
 #include "equations/run.h"
-#include "events/list.h"
 
 #define SEPARATION_ENERGY 1e-6 /* of the energy of contact: lines with less at its end had separated */
 

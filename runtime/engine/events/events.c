@@ -68,7 +68,8 @@ static double value_of(const fu_run *run, const fu_state *state, int k)
     const fu_coupling *c = run->model->couplings[function->index];
     if (function->kind == FU_EVENT_OF_RATE) return c->events->path->rate(run->model, c, state) - function->value;
     if (function->kind == FU_EVENT_OF_OUTPUT) return output_of(run, state, c, function->which) - function->value;
-    return c->events->value(run, c, state, function->which);
+    return c->events->of_state ? c->events->of_state->value(run->model, c, state, function->which)
+                               : c->events->value(run, c, state, function->which);
 }
 
 /* Returns the value of an event at a state: the event happens where it reaches zero from below. */

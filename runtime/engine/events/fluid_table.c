@@ -1,8 +1,8 @@
 /* Events of drag in a fluid with a table: a part leaves the table, or is entirely within it again; with those of
  * surfaces (events/fluid_surface.c). */
-#include "equations/run.h"
+#include "bodies/model.h"
+#include "couplings/common/coupling_events.h"
 #include "events/fluid_surface.h"
-#include "events/list.h"
 
 #include <math.h>
 
@@ -55,11 +55,11 @@ static int functions(const fu_coupling *coupling, fu_event_function *out)
     return n + fu_surface_event_functions(drag, N_TABLE_FUNCTIONS, out ? out + n : 0);
 }
 
-static double value_of(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
+static double value_of(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which)
 {
     const fu_drag *drag = (const fu_drag *)coupling;
-    return which < N_TABLE_FUNCTIONS ? margin(run->model, drag, state)
-                                     : fu_surface_event_value(run->model, drag, state, which - N_TABLE_FUNCTIONS);
+    return which < N_TABLE_FUNCTIONS ? margin(model, drag, state)
+                                     : fu_surface_event_value(model, drag, state, which - N_TABLE_FUNCTIONS);
 }
 
 static int sign(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which)
@@ -70,13 +70,12 @@ static int sign(const fu_model *model, const fu_coupling *coupling, const fu_sta
 
 /* Records the side of a surface. Of a table, records that a part leaves the table, or is entirely within it again. The
  * velocity is continuous there, its derivatives are not. */
-static int pass_edge(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
+static const char *pass_edge(const fu_model *model, const fu_coupling *coupling, fu_state *now, int which, int side)
 {
-    is_outside(coupling, &run->now)[which] = side < 0;
-    *what = which >= N_TABLE_FUNCTIONS ? 0
-            : side < 0                 ? "leaves the table of its fluid"
-                                       : "is back in the table of its fluid";
-    return FU_RUNNING;
+    (void)model;
+    is_outside(coupling, now)[which] = side < 0;
+    if (which >= N_TABLE_FUNCTIONS) return 0;
+    return side < 0 ? "leaves the table of its fluid" : "is back in the table of its fluid";
 }
 
 static int can_act(const fu_coupling *coupling)
@@ -85,15 +84,16 @@ static int can_act(const fu_coupling *coupling)
     return has_edges(drag) || drag->wet != FU_ALL_WET;
 }
 
-static int begin(fu_run *run, const fu_coupling *coupling)
+static void begin(const fu_model *model, const fu_coupling *coupling, fu_state *now)
 {
     fu_event_function at[FU_DRAG_FLAGS];
     const int n = functions(coupling, at);
-    *is_outside(coupling, &run->now) = margin(run->model, (const fu_drag *)coupling, &run->now) < 0.0;
+    *is_outside(coupling, now) = margin(model, (const fu_drag *)coupling, now) < 0.0;
     for (int k = 0; k < n; ++k)
-        is_outside(coupling, &run->now)[at[k].which] = value_of(run, coupling, &run->now, at[k].which) < 0.0;
-    return FU_RUNNING;
+        is_outside(coupling, now)[at[k].which] = value_of(model, coupling, now, at[k].which) < 0.0;
 }
 
+static const fu_state_event_operations of_state = {.value = value_of, .change = pass_edge, .begin = begin};
+
 const fu_coupling_events fu_drag_events = {
-    .functions = functions, .value = value_of, .sign = sign, .act = pass_edge, .can_act = can_act, .begin = begin};
+    .of_state = &of_state, .functions = functions, .sign = sign, .can_act = can_act};

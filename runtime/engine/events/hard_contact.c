@@ -1,9 +1,9 @@
 /* Events of a hard contact (couplings/common/coupling_events.h): it closes, and opens under tension. */
+#include "couplings/common/coupling_events.h"
 #include "equations/run.h"
 #include "events/contact.h"
 #include "events/events.h"
 #include "events/hard_contact.h"
-#include "events/list.h"
 
 #include <math.h>
 

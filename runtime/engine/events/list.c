@@ -1,27 +1,30 @@
-/* The types of couplings. A new one has its line here. */
-#include "couplings/crossing/crossing.h"
-#include "couplings/fluid/drag.h"
-#include "couplings/force/loads.h"
-#include "couplings/force/point_force.h"
-#include "couplings/hard_contact/hard_contact.h"
-#include "couplings/joint/joint.h"
-#include "couplings/slide/slide.h"
+/* The types of couplings. A new one has its line here: WITH_EVENTS if it finds events. */
 #include "events/list.h"
 
 #include <string.h>
 
+#define FU_TYPES(ALONE, WITH_EVENTS)                                                                                   \
+    ALONE(dead_load)                                                                                                   \
+    ALONE(load)                                                                                                        \
+    WITH_EVENTS(slide)                                                                                                 \
+    ALONE(joint)                                                                                                       \
+    WITH_EVENTS(point_force)                                                                                           \
+    WITH_EVENTS(drag)                                                                                                  \
+    WITH_EVENTS(crossing)                                                                                              \
+    WITH_EVENTS(contact)                                                                                               \
+    WITH_EVENTS(hard_contact)
+
+#define DECLARE(kind) extern const fu_coupling_type fu_##kind##_type;
+#define DECLARE_BOTH(kind) DECLARE(kind) extern const fu_coupling_events fu_##kind##_events;
+#define ENTRY(kind) {&fu_##kind##_type, 0},
+#define ENTRY_OF_BOTH(kind) {&fu_##kind##_type, &fu_##kind##_events},
+
+FU_TYPES(DECLARE, DECLARE_BOTH)
+
 static const struct {
     const fu_coupling_type *type;
     const fu_coupling_events *events;
-} types[] = {{&fu_dead_load_type, 0},
-             {&fu_load_type, 0},
-             {&fu_slide_type, &fu_slide_events},
-             {&fu_joint_type, 0},
-             {&fu_point_force_type, &fu_point_force_events},
-             {&fu_drag_type, &fu_drag_events},
-             {&fu_crossing_type, &fu_crossing_events},
-             {&fu_contact_type, &fu_contact_events},
-             {&fu_hard_contact_type, &fu_hard_contact_events}};
+} types[] = {FU_TYPES(ENTRY, ENTRY_OF_BOTH)};
 
 const fu_coupling_type *fu_coupling_type_of(const char *name)
 {

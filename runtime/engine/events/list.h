@@ -4,13 +4,6 @@
 
 #include "couplings/common/coupling_events.h"
 
-extern const fu_coupling_events fu_contact_events;
-extern const fu_coupling_events fu_crossing_events;
-extern const fu_coupling_events fu_drag_events;
-extern const fu_coupling_events fu_hard_contact_events;
-extern const fu_coupling_events fu_point_force_events;
-extern const fu_coupling_events fu_slide_events;
-
 /* The type of this name, null if there is none; assigns the events of its type to a coupling. */
 const fu_coupling_type *fu_coupling_type_of(const char *name);
 const fu_coupling_type *fu_coupling_type_at(size_t k); /* type number k, null beyond the last */

@@ -1,9 +1,9 @@
 /* Transitions of forces between two points from segment to segment of their law (couplings/force/segments.c): the
  * distance passes a bound, or the force reverses. */
 #include "base/cubic.h"
+#include "couplings/common/coupling_events.h"
 #include "couplings/force/point_force.h"
 #include "equations/run.h"
-#include "events/list.h"
 
 #include <math.h>
 
@@ -215,10 +215,10 @@ static int functions(const fu_coupling *coupling, fu_event_function *out)
     return 1;
 }
 
-static double value_of(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
+static double value_of(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which)
 {
     (void)which;
-    return next_transition(run->model, force_of(coupling), state).margin;
+    return next_transition(model, force_of(coupling), state).margin;
 }
 
 /* Returns the distance beyond a bound to a side, m, and its rate. */
@@ -266,15 +266,13 @@ static double grazing(const fu_run *run, const fu_coupling *coupling, int which,
     return first;
 }
 
-static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
+static const char *change(const fu_model *model, const fu_coupling *coupling, fu_state *now, int which, int side)
 {
     const fu_point_force *between = force_of(coupling);
-    const int before = fu_force_segment(between, &run->now),
-              after = next_transition(run->model, between, &run->now).segment;
+    const int before = fu_force_segment(between, now), after = next_transition(model, between, now).segment;
     (void)which, (void)side;
-    run->now.flags[coupling->flags] = after;
-    *what = words(between, before, after);
-    return FU_RUNNING;
+    now->flags[coupling->flags] = after;
+    return words(between, before, after);
 }
 
 static int can_act(const fu_coupling *coupling)
@@ -283,26 +281,23 @@ static int can_act(const fu_coupling *coupling)
 }
 
 /* A force that the damper would reverse at the start is zero. */
-static int begin(fu_run *run, const fu_coupling *coupling)
+static void begin(const fu_model *model, const fu_coupling *coupling, fu_state *now)
 {
     const fu_point_force *between = force_of(coupling);
-    fu_state *now = &run->now;
-    if (between->n_segments == 1) return FU_RUNNING;
-    fu_detect_segment(run->model, coupling, now);
-    const transition next = next_transition(run->model, between, now);
+    if (between->n_segments == 1) return;
+    fu_detect_segment(model, coupling, now);
+    const transition next = next_transition(model, between, now);
     if (next.margin > 0.0) now->flags[coupling->flags] = next.segment;
-    return FU_RUNNING;
 }
 
+static const fu_state_event_operations of_state = {.value = value_of, .change = change, .begin = begin};
 static const fu_deferred_operations deferred = {
     .update_flags = update_flags, .part = part_of_step, .since = since, .force_change = force_change};
 
 const fu_coupling_events fu_point_force_events = {
+    .of_state = &of_state,
     .functions = functions,
-    .value = value_of,
     .grazing = grazing,
-    .act = act,
     .can_act = can_act,
-    .begin = begin,
     .deferred = &deferred,
 };

@@ -1,13 +1,13 @@
 /* Events of a slide (couplings/common/coupling_events.h): it passes from element to element of its cable, sticks,
  * breaks loose, and reaches the ends. events/end_stops.c has the actions. */
 #include "base/cubic.h"
+#include "couplings/common/coupling_events.h"
 #include "couplings/joint/joint.h"
 #include "couplings/slide/resistance.h"
 #include "equations/acceleration.h"
 #include "equations/projection.h"
 #include "equations/run.h"
 #include "events/end_stops.h"
-#include "events/list.h"
 
 /* Event functions of a slide: whether it stays locked, or slides in its direction; or, as the side of that end, its
  * buffer. */

@@ -53,11 +53,13 @@ int fu_handle_event(fu_run *run, fu_event event)
     if (event.kind == FU_PATH_BOUNDARY) return cross(run, run->model->couplings[event.which], event.side);
     const fu_coupling *coupling = fu_event_coupling(run, event.which);
     if (coupling) {
+        const fu_coupling_events *events = coupling->events;
+        const int which = run->event_functions[event.which].which;
         const char *what = 0;
-        const double since =
-            coupling->events->deferred ? coupling->events->deferred->since(run->model, coupling, &run->now) : 0.0;
-        const int status =
-            coupling->events->act(run, coupling, run->event_functions[event.which].which, event.side, &what);
+        const double since = events->deferred ? events->deferred->since(run->model, coupling, &run->now) : 0.0;
+        int status = FU_RUNNING;
+        if (events->of_state) what = events->of_state->change(run->model, coupling, &run->now, which, event.side);
+        else status = events->act(run, coupling, which, event.side, &what);
         return status || !what ? status
                                : acted(run, coupling, what, fabs(since) < MAX_DELAY * run->duration ? since : 0.0);
     }

@@ -3,11 +3,11 @@
  * with the factor 1/radius, the equation of the rail phi = U(centre - p) = 0; its multiplier is an own force.
  * The flag of a state: whether the spring has broken; the number: the energy that it stored then, J.
  */
-#include "events/tow.h"
+#include "base/event.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/attachments.h"
+#include "couplings/common/coupling_events.h"
 #include "couplings/common/couplings.h"
-#include "equations/run.h"
 
 #include <math.h>
 
@@ -245,36 +245,21 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     }
 }
 
-static int functions(const fu_coupling *coupling, fu_event_function *out)
-{
-    (void)coupling;
-    if (out) *out = (fu_event_function){.which = 0, .direction = 1};
-    return 1;
-}
-
-static double value_of(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
+static double value_of(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which)
 {
     fu_attachment_state at;
     double gap[3], spoke[3];
     (void)which;
-    if (is_broken(coupling, &run->now)) return -1.0;
-    return tow_of(coupling)->spring[0] * gaps_at(run->model, coupling, state, &at, gap, spoke) -
-           tow_of(coupling)->strength;
+    if (is_broken(coupling, state)) return -1.0;
+    return tow_of(coupling)->spring[0] * gaps_at(model, coupling, state, &at, gap, spoke) - tow_of(coupling)->strength;
 }
 
-static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
+static const char *change(const fu_model *model, const fu_coupling *coupling, fu_state *now, int which, int side)
 {
     (void)which, (void)side;
-    run->now.numbers[coupling->numbers] = energy(run->model, coupling, &run->now);
-    run->now.flags[coupling->flags] = 1;
-    *what = "broke";
-    return FU_RUNNING;
-}
-
-static int begin(fu_run *run, const fu_coupling *coupling)
-{
-    (void)run, (void)coupling;
-    return FU_RUNNING;
+    now->numbers[coupling->numbers] = energy(model, coupling, now);
+    now->flags[coupling->flags] = 1;
+    return "broke";
 }
 
 static const char *const role[] = {"point_law", 0};
@@ -318,4 +303,6 @@ const fu_coupling_type fu_tow_type = {.name = "tow",
                                       .energy = energy,
                                       .supply = &supply};
 
-const fu_coupling_events fu_tow_events = {.functions = functions, .value = value_of, .act = act, .begin = begin};
+static const fu_state_event_operations of_state = {.value = value_of, .change = change};
+
+const fu_coupling_events fu_tow_events = {.of_state = &of_state, .direction = 1};

@@ -45,9 +45,22 @@ typedef struct {
                          double factor, double *f);
 } fu_deferred_operations;
 
+/* Events that follow from states alone and change only the coupling's own state. The file of a coupling has them, as
+ * they need no run. */
+typedef struct {
+    /* Returns the value of an event function at a state. */
+    double (*value)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which);
+    /* Changes the coupling's state where an event function has passed zero to this side; returns the change in words,
+     * null if there is none. */
+    const char *(*change)(const fu_model *model, const fu_coupling *coupling, fu_state *now, int which, int side);
+    /* Determines the coupling's state at the start. Null: it stays as it is given. */
+    void (*begin)(const fu_model *model, const fu_coupling *coupling, fu_state *now);
+} fu_state_event_operations;
+
 struct fu_coupling_events {
-    const fu_path_operations *path;         /* null: the coupling has no path */
-    const fu_deferred_operations *deferred; /* null: steps end on each of its events */
+    const fu_state_event_operations *of_state; /* null: `value`, `act` and `begin` need the run */
+    const fu_path_operations *path;            /* null: the coupling has no path */
+    const fu_deferred_operations *deferred;    /* null: steps end on each of its events */
 
     /* Event functions: numbers, each an event where it passes zero. Writes their `which` and `direction` to `out`,
      * unless it is null, and returns their number. Null: there is one, of this direction. */
