@@ -118,15 +118,20 @@ cdef extern from * nogil:
         int first, size
         const char *unit, *turns
     const fu_field *fu_coupling_fields
+    ctypedef struct fu_supply_operations:
+        void (*force)(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f)
+    ctypedef struct fu_start_operations:
+        const char *(*excess)(const fu_coupling *coupling)
     ctypedef struct fu_coupling_type:
         const char *name
         size_t size
         const fu_field *fields
         const fu_output *output_fields
-        const char *(*excess)(const fu_coupling *coupling)
-        void (*residual)(const fu_model *model, const fu_coupling *coupling, const void *at, double *f, double *own)
-        void (*step_residual)(const fu_model *model, const fu_coupling *coupling, const void *at, double *f, double *own)
-        void (*external_force)(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f)
+        const fu_supply_operations *supply
+        const fu_start_operations *start
+        void (*residual)(const fu_model *model, const fu_coupling *coupling, const void *at, double *f, double *internal)
+        void (*step_residual)(const fu_model *model, const fu_coupling *coupling, const void *at, double *f,
+                              double *internal)
         void (*outputs)(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                         const double *acceleration, const void *work, double *out)
     ctypedef struct fu_coupling:

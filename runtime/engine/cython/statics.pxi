@@ -175,7 +175,7 @@ cdef class Statics(Translation):
         cdef int k
         for k in range(first, stop if self.model.n_dof else first):
             c = self.couplings[k]
-            c.type.external_force(&self.model, c, self.run.next.t, &q[0], &view[k - first, 0])
+            c.type.supply.force(&self.model, c, self.run.next.t, &q[0], &view[k - first, 0])
         return out
 
     def reaction(self):

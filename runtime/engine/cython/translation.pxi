@@ -185,8 +185,9 @@ cdef class Translation(Arrays):
             counts[kind] += 1
             self._fields(<char *>coupling, fu_coupling_fields, given, tables)
             self._fields(<char *>coupling, coupling.type.fields, given, tables)
-            if coupling.type.excess != NULL and coupling.type.excess(coupling) != NULL:
-                raise ValueError(f"{given.type} {given.name!r}: more {coupling.type.excess(coupling).decode()} than the "
+            start = coupling.type.start
+            if start != NULL and start.excess != NULL and start.excess(coupling) != NULL:
+                raise ValueError(f"{given.type} {given.name!r}: more {start.excess(coupling).decode()} than the "
                                  "engine has room for")
             if given.keeps_forces and given.n_forces:
                 self.static_forces[kind] = max(self.static_forces.get(kind, 0), given.n_forces)

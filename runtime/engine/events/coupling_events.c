@@ -28,17 +28,17 @@ int fu_couplings_can_act(const fu_model *model)
     return 0;
 }
 
-/* Updates `now` after a jump of velocities. */
-void fu_couplings_take_velocities(fu_run *run)
+/* Updates directions of motion at `now` after a jump of velocities. */
+void fu_update_directions(fu_run *run)
 {
     FU_EACH_COUPLING(c, run->model->couplings, run->model->n_couplings)
-        if (c->events && c->events->take_velocities) c->events->take_velocities(run, c);
+        if (c->events && c->events->path) c->events->path->update_direction(run, c);
 }
 
 /* Determines the state of couplings at the start; returns a status. */
 int fu_begin_couplings(fu_run *run)
 {
-    fu_couplings_take_velocities(run);
+    fu_update_directions(run);
     FU_EACH_COUPLING(c, run->model->couplings, run->model->n_couplings) {
         if (!c->events) continue;
         const fu_state_event_operations *of_state = c->events->of_state;

@@ -166,7 +166,7 @@ static int strike(fu_run *run, int j, int side)
         flags->contact = side;
         if (try_to_stick(run, j)) return FU_SINGULAR;
     }
-    fu_couplings_take_velocities(run);
+    fu_update_directions(run);
     return FU_RUNNING;
 }
 

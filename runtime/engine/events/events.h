@@ -30,7 +30,7 @@ int fu_coupling_event_functions(const fu_model *model, fu_event_function *out);
  * actions at the end of a path, and after an event function of a coupling has passed zero. */
 int fu_couplings_can_act(const fu_model *model);
 int fu_begin_couplings(fu_run *run);
-void fu_couplings_take_velocities(fu_run *run);
+void fu_update_directions(fu_run *run);
 
 extern const fu_event fu_no_event;
 

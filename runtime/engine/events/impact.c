@@ -111,7 +111,7 @@ static int strike(fu_run *run, fu_active_contacts *t, double least)
         if (solve(run, t, least)) return 1;
     }
     fu_take_jump(run, run->work, t->taken);
-    fu_couplings_take_velocities(run);
+    fu_update_directions(run);
     return 0;
 }
 

@@ -108,8 +108,12 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
     return FU_RUNNING;
 }
 
-static const fu_path_operations path = {
-    .at = path_at, .rate = rate, .stops_at_boundaries = stops_at_boundaries, .enter = enter, .reach_end = fu_reach_end};
+static const fu_path_operations path = {.at = path_at,
+                                        .rate = rate,
+                                        .stops_at_boundaries = stops_at_boundaries,
+                                        .enter = enter,
+                                        .reach_end = fu_reach_end,
+                                        .update_direction = fu_find_slip_direction};
 
 const fu_coupling_events fu_slide_events = {
     .functions = functions,
@@ -119,6 +123,5 @@ const fu_coupling_events fu_slide_events = {
     .act = act,
     .can_act = can_act,
     .begin = fu_begin_stops,
-    .take_velocities = fu_find_slip_direction,
     .path = &path,
 };

@@ -216,7 +216,7 @@ static void account(fu_run *run, double h)
     const fu_couplings near = fu_acting_in_step(model, &at);
     FU_EACH_COUPLING(c, near.list, near.n) {
         if (c->type->step_dissipation) run->dissipated += c->type->step_dissipation(model, c, &at);
-        if (c->type->supply) run->external += c->type->supply->step_work(model, c, &at);
+        if (c->type->supply && c->type->supply->step_work) run->external += c->type->supply->step_work(model, c, &at);
     }
     for (int i = 0; i < model->n_dof; ++i) m.force[i] = 0.0;
     fu_coupling_external_forces(model, now->t + 0.5 * h, m.q, m.force);

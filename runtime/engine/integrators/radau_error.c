@@ -35,9 +35,9 @@ static double friction_error(fu_run *run, fu_radau_workspace *w, double h)
     fu_radau_keep_multipliers(run, w, 0);
     ++run->statistics.evaluations;
     FU_EACH_COUPLING(coupling, model->always_active, model->n_always_active) {
-        if (!coupling->type->reaction) continue;
-        worst = fmax(worst, coupling->type->reaction->friction_error(model, coupling, &run->next, STAGES + 1, weight,
-                                                                     w->multipliers, h * left));
+        if (!coupling->type->errors || !coupling->type->errors->friction) continue;
+        worst = fmax(worst, coupling->type->errors->friction(model, coupling, &run->next, STAGES + 1, weight,
+                                                             w->multipliers, h * left));
     }
     return worst * run->allowed / (FRICTION_ERROR_SHARE * fu_allowed_error(run));
 }

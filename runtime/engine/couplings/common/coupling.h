@@ -84,11 +84,13 @@ typedef struct {
     void (*between)(const fu_model *model, const fu_coupling *coupling, int between[2]);
 } fu_proximity_operations;
 
-/* External work of the coupling's force. */
+/* External work: of an external force alone, whose power the energy balance computes; or of a part of `force`. */
 typedef struct {
-    /* Returns the power at an instant, W. */
+    /* Adds an external force to f. Null: none. */
+    void (*force)(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f);
+    /* Returns the external power of `force` at an instant, W. Null: none. */
     double (*power)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
-    /* Returns the work over a step that conserves energy, J. */
+    /* Returns that work over a step that conserves energy, J. Null: none. */
     double (*step_work)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
 } fu_supply_operations;
 
@@ -101,11 +103,19 @@ typedef struct {
     /* Accepts the final multipliers. */
     void (*accept)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
                    fu_accelerator *work);
-    /* Returns the estimate of the friction error within a step, m, by n states of it, their weights in the mean, and
-     * the multipliers there (n x model->n_multipliers); square: the step times the remaining time, s^2. */
-    double (*friction_error)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int n,
-                             const double *weights, const double *multipliers, double square);
 } fu_reaction_operations;
+
+/* Errors of a step by forces that are not smooth within it: estimates of integrators assume smooth forces. */
+typedef struct {
+    /* Adds to f the error of the mean force over a step from one state to another, N, by a quadrature of n weights b at
+     * parts c of the step; returns whether there is one. Null: none. */
+    int (*quadrature)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
+                      int n, const double *b, const double *c, double *f);
+    /* Returns the error of friction by reactions, m, by n states of the step, their weights in the mean, and the
+     * multipliers there (n x model->n_multipliers); square: the step times the remaining time, s^2. Null: none. */
+    double (*friction)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int n,
+                       const double *weights, const double *multipliers, double square);
+} fu_error_operations;
 
 /* Dependent coordinates. */
 typedef struct {
@@ -122,6 +132,18 @@ typedef struct {
     /* Returns their error after a step from one state to another, m. Null: none. */
     double (*error)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);
 } fu_history_operations;
+
+/* Limits of a coupling, its initial configuration, and the check of states. */
+typedef struct {
+    /* Returns in words which data of a coupling exceed the limits of the engine; null if none does. */
+    const char *(*excess)(const fu_coupling *coupling);
+    /* Sets coordinates, segments, numbers and flags of the state in the initial configuration; others are zero. */
+    void (*reset)(const fu_coupling *coupling, fu_state *state);
+    /* Returns whether a start may violate the constraints by a small gap. */
+    int (*may_be_open)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+    /* Returns whether a state from a file is possible. */
+    int (*is_possible)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+} fu_start_operations;
 
 /* Operations of a coupling. A null operation does nothing. f: generalised forces on the dofs, with the signs of the
  * left side of the equations of motion; internal: minus the scaled residual of the unknowns beyond the dofs.
@@ -144,9 +166,8 @@ struct fu_coupling_type {
     const fu_reaction_operations *reaction;
     const fu_coordinate_operations *coordinates;
     const fu_history_operations *history;
-
-    /* Returns in words which data of a coupling exceed the limits of the engine; null if none does. */
-    const char *(*excess)(const fu_coupling *coupling);
+    const fu_error_operations *errors;
+    const fu_start_operations *start;
 
     /* Newton systems at an instant: residual and its derivative. */
     void (*residual)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
@@ -160,9 +181,8 @@ struct fu_coupling_type {
 
     /* Computes the constraint rows of accelerations (eq 38), H and W among them, in work->rows[coupling->row]. */
     void (*rows)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work);
-    /* Adds the coupling's force to f; adds an external force, whose work the energy balance counts as external. */
+    /* Adds the coupling's force to f. */
     void (*force)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f);
-    void (*external_force)(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f);
     /* Compute, after eq 38, the internal forces of the state; the numbers of `output_fields`. */
     void (*take_forces)(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work,
                         fu_state *state);
@@ -183,19 +203,8 @@ struct fu_coupling_type {
     double (*lost_in_step)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
                            int by_ends);
 
-    /* Adds to f the error of the mean force over a step from one state to another, N, by a quadrature of n weights b at
-     * parts c of the step, since the force has kinks within; returns whether it has. */
-    int (*quadrature_error)(const fu_model *model, const fu_coupling *coupling, const fu_state *from,
-                            const fu_state *to, int n, const double *b, const double *c, double *f);
-
-    /* Returns whether a start may violate the constraints by a small gap. */
-    int (*may_start_open)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
-    /* Sets coordinates, segments, numbers and flags of the state in the initial configuration; others are zero. */
-    void (*reset)(const fu_coupling *coupling, fu_state *state);
     /* Detects contact from the positions, in statics. */
     void (*detect)(const fu_model *model, const fu_coupling *coupling, fu_state *state);
-    /* Returns whether a state from a file is possible. */
-    int (*is_possible)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 };
 
 #endif

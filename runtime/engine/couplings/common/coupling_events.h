@@ -28,6 +28,8 @@ typedef struct {
     /* Handles a coupling that leaves its path at an end: at the last segment for side 1, at the first for -1. Returns a
      * status; *what describes the event in words. */
     int (*reach_end)(fu_run *run, const fu_coupling *coupling, int side, const char **what);
+    /* Updates the direction of motion along the path after a jump of velocities. */
+    void (*update_direction)(fu_run *run, const fu_coupling *coupling);
 } fu_path_operations;
 
 /* Deferred events: changes within a step, at which only a slope of the force is discontinuous. */
@@ -86,8 +88,6 @@ struct fu_coupling_events {
      * a status. */
     int (*can_act)(const fu_coupling *coupling);
     int (*begin)(fu_run *run, const fu_coupling *coupling);
-    /* Updates the state after a jump of velocities. Null: no change. */
-    void (*take_velocities)(fu_run *run, const fu_coupling *coupling);
 };
 
 /* Whether a coupling can change its state. */

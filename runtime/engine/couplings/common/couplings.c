@@ -61,7 +61,7 @@ void fu_number_couplings(fu_coupling *const *couplings, int n, const fu_coupling
         model->n_flags += c->type->n_flags;
         model->n_scratch += c->type->n_scratch;
         model->n_needing_reactions += c->needs_reactions;
-        model->n_external += c->type->external_force != 0;
+        model->n_external += c->type->supply && c->type->supply->force;
         model->n_driven += c->is_driven;
         model->n_damped += c->is_damped;
         model->n_deferring += fu_can_defer(c);
@@ -128,14 +128,14 @@ void fu_coupling_forces(const fu_model *model, const fu_state *state, double *f)
 void fu_coupling_external_forces(const fu_model *model, double t, const double *q, double *f)
 {
     FU_EACH_COUPLING(c, model->always_active, model->n_always_active)
-        if (c->type->external_force) c->type->external_force(model, c, t, q, f);
+        if (c->type->supply && c->type->supply->force) c->type->supply->force(model, c, t, q, f);
 }
 
 double fu_coupling_external_power(const fu_model *model, const fu_state *state)
 {
     double total = 0.0;
     FU_EACH_COUPLING(c, model->always_active, model->n_always_active)
-        if (c->type->supply) total += c->type->supply->power(model, c, state);
+        if (c->type->supply && c->type->supply->power) total += c->type->supply->power(model, c, state);
     return total;
 }
 
@@ -174,8 +174,8 @@ int fu_coupling_quadrature_error(const fu_model *model, const fu_state *from, co
     const fu_couplings near = fu_acting_in_step(model, &step);
     int found = 0;
     FU_EACH_COUPLING(coupling, near.list, near.n)
-        if (coupling->type->quadrature_error)
-            found |= coupling->type->quadrature_error(model, coupling, from, to, n, b, c, f);
+        if (coupling->type->errors && coupling->type->errors->quadrature)
+            found |= coupling->type->errors->quadrature(model, coupling, from, to, n, b, c, f);
     return found;
 }
 
@@ -213,7 +213,7 @@ void fu_coordinate_rates(const fu_model *model, const fu_accelerator *work, doub
 void fu_reset(const fu_model *model, fu_state *state)
 {
     FU_EACH_COUPLING(c, model->couplings, model->n_couplings)
-        if (c->type->reset) c->type->reset(c, state);
+        if (c->type->start && c->type->start->reset) c->type->start->reset(c, state);
 }
 
 double fu_history_error(const fu_model *model, const fu_state *from, const fu_state *to)
@@ -247,14 +247,14 @@ int fu_may_start_open(const fu_model *model, const fu_state *state)
 {
     int open = 0;
     FU_EACH_COUPLING(c, model->always_active, model->n_always_active)
-        if (c->type->may_start_open) open |= c->type->may_start_open(model, c, state);
+        if (c->type->start && c->type->start->may_be_open) open |= c->type->start->may_be_open(model, c, state);
     return open;
 }
 
 int fu_is_possible(const fu_model *model, const fu_state *state)
 {
     FU_EACH_COUPLING(c, model->always_active, model->n_always_active)
-        if (c->type->is_possible && !c->type->is_possible(model, c, state)) return 0;
+        if (c->type->start && c->type->start->is_possible && !c->type->start->is_possible(model, c, state)) return 0;
     return 1;
 }
 

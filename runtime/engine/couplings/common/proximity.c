@@ -21,9 +21,10 @@ int fu_acts_alone(const fu_coupling *coupling)
 {
     const fu_coupling_type *type = coupling->type;
     const fu_coupling_events *events = coupling->events;
-    const int asked = type->inertia || type->rows || type->external_force || type->supply || type->reaction ||
-                      type->take_forces || type->gaps || type->coordinates || type->may_start_open || type->detect ||
-                      type->is_possible || (events && (events->path || events->deferred || events->take_velocities));
+    const int asked = type->inertia || type->rows || type->supply || type->reaction || type->take_forces ||
+                      type->gaps || type->coordinates || type->detect ||
+                      (type->start && (type->start->may_be_open || type->start->is_possible)) ||
+                      (events && (events->path || events->deferred));
     return type->proximity && !asked;
 }
 

@@ -99,6 +99,8 @@ static const fu_field fields[] = {
 
 static const fu_proximity_operations proximity_of_surface = {.clearance = fu_contact_clearance,
                                                              .between = fu_contact_between};
+static const fu_error_operations errors = {.quadrature = fu_contact_quadrature_error};
+static const fu_start_operations start = {.reset = fu_contact_reset};
 static const fu_history_operations history = {.update = fu_contact_update_history, .error = fu_contact_history_error};
 
 static const fu_output output_fields[] = {
@@ -127,8 +129,8 @@ const fu_coupling_type fu_contact_type = {
     .dissipation = fu_contact_dissipation,
     .lost_in_step = fu_contact_lost,
     .outputs = fu_contact_outputs,
-    .reset = fu_contact_reset,
-    .quadrature_error = fu_contact_quadrature_error,
     .proximity = &proximity_of_surface,
     .history = &history,
+    .errors = &errors,
+    .start = &start,
 };

@@ -332,6 +332,7 @@ static const fu_field fields[] = {
 
 static const fu_proximity_operations proximity_of_lines = {.clearance = fu_crossing_clearance,
                                                            .between = fu_crossing_between};
+static const fu_start_operations start = {.reset = reset};
 static const fu_history_operations history = {.update = update_history, .error = fu_crossing_history_error};
 
 static const fu_output output_fields[] = {
@@ -364,8 +365,8 @@ const fu_coupling_type fu_crossing_type = {
     .energy = energy,
     .dissipation = dissipation,
     .lost_in_step = lost_in_step,
-    .reset = reset,
     .detect = detect_contact,
     .proximity = &proximity_of_lines,
     .history = &history,
+    .start = &start,
 };

@@ -63,10 +63,11 @@ static const fu_field dead_fields[] = {
     {0},
 };
 
+static const fu_supply_operations dead_supply = {.force = dead_force};
 const fu_coupling_type fu_dead_load_type = {
-    .name = "dead load", .size = sizeof(fu_dead_load), .fields = dead_fields, .external_force = dead_force};
+    .name = "dead load", .size = sizeof(fu_dead_load), .fields = dead_fields, .supply = &dead_supply};
 
-static void external_force(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f)
+static void rotating_force(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f)
 {
     const fu_load *load = (const fu_load *)coupling;
     const double scale = scale_at(model, load->signal, t);
@@ -134,10 +135,11 @@ static const fu_field fields[] = {
     FU_FIELD_ARRAY(fu_load, c, FU_REAL),     {0},
 };
 
+static const fu_supply_operations supply = {.force = rotating_force};
 const fu_coupling_type fu_load_type = {.name = "load",
                                        .size = sizeof(fu_load),
                                        .fields = fields,
-                                       .external_force = external_force,
+                                       .supply = &supply,
                                        .tangent = tangent,
                                        .step_tangent = step_tangent};
 

@@ -343,6 +343,7 @@ static const fu_field fields[] = {
     {0},
 };
 
+static const fu_start_operations start = {.is_possible = is_possible};
 static const fu_history_operations history = {.update = update_history};
 
 static const fu_output output_fields[] = {
@@ -369,6 +370,6 @@ const fu_coupling_type fu_hard_contact_type = {
     .gaps = gaps,
     .dissipation = dissipation,
     .detect = detect_contact,
-    .is_possible = is_possible,
     .history = &history,
+    .start = &start,
 };

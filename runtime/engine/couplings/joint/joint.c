@@ -97,7 +97,7 @@ static void gaps(const fu_model *model, const fu_coupling *coupling, const fu_st
     memcpy(phi, at.phi, sizeof(double) * (size_t)coupling->n_forces);
 }
 
-static int may_start_open(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+static int may_be_open(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     (void)model, (void)coupling, (void)state;
     return 1;
@@ -147,6 +147,8 @@ static const fu_output output_fields[] = {
     FU_LAST_OUTPUT(fu_joint_output),
 };
 
+static const fu_start_operations start = {.may_be_open = may_be_open};
+
 const fu_coupling_type fu_joint_type = {
     .name = "joint",
     .size = sizeof(fu_joint),
@@ -158,5 +160,5 @@ const fu_coupling_type fu_joint_type = {
     .take_forces = take_forces,
     .outputs = outputs,
     .gaps = gaps,
-    .may_start_open = may_start_open,
+    .start = &start,
 };

@@ -224,7 +224,7 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
 }
 
 /* A rigid body is placed on its cable in the drawing; s of a slide that is not locked follows. */
-static int may_start_open(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+static int may_be_open(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     const int locked = fu_slide_flags_of(model, state, coupling->index)->mode == FU_LOCKED;
     return locked || !((const fu_slide *)coupling)->rider_is_rigid;
@@ -308,8 +308,10 @@ static const fu_field fields[] = {
     {0},
 };
 
-static const fu_reaction_operations reaction = {
-    .update = fu_resistance_update, .accept = fu_resistance_accept, .friction_error = fu_resistance_friction_error};
+static const fu_reaction_operations reaction = {.update = fu_resistance_update, .accept = fu_resistance_accept};
+static const fu_error_operations errors = {.friction = fu_resistance_friction_error};
+static const fu_start_operations start = {
+    .excess = excess, .reset = reset, .may_be_open = may_be_open, .is_possible = is_possible};
 static const fu_coordinate_operations coordinates = {.rates = rates, .solve = solve};
 static const fu_history_operations history = {.update = fu_update_director};
 
@@ -327,12 +329,10 @@ const fu_coupling_type fu_slide_type = {
     .name = "slide",
     .size = sizeof(fu_slide),
     .fields = fields,
-    .excess = excess,
     .output_fields = output_fields,
     .n_numbers = (int)(sizeof(fu_slide_numbers) / sizeof(double)),
     .n_flags = (int)(sizeof(fu_slide_flags) / sizeof(int)),
     .n_scratch = (int)FU_DOUBLES(1, fu_slide_state),
-    .reset = reset,
     .residual = residual,
     .tangent = tangent,
     .step_residual = fu_slide_over_step,
@@ -343,10 +343,10 @@ const fu_coupling_type fu_slide_type = {
     .energy = fu_buffer_energy,
     .dissipation = fu_resistance_dissipation,
     .lost_in_step = fu_lost_in_buffers,
-    .may_start_open = may_start_open,
     .detect = fu_detect_buffers,
-    .is_possible = is_possible,
     .reaction = &reaction,
     .coordinates = &coordinates,
     .history = &history,
+    .errors = &errors,
+    .start = &start,
 };
