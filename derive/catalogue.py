@@ -98,7 +98,7 @@ def _drag(dim: int) -> CouplingFamily:
 
 
 def _crossing(dim: int) -> CouplingFamily:
-    return CouplingFamily(crossing.CROSSINGS[dim], f"lines that touch at their closest points in {_SPACE[dim]}",
+    return CouplingFamily(crossing.CROSSINGS[dim], f"contact of lines at their closest points in {_SPACE[dim]}",
                           partial(crossing.build, dim),
                           ("couplings.crossing", "couplings.crossing_stretch", "couplings.stretch"), role="crossing",
                           facts={"dim": dim}, dim=dim)

@@ -1,8 +1,8 @@
 """The command `funicular derive --watch NAME`: one family at every save of a source.
 
 Each round runs in a process of its own, which reads the sources anew. It derives the family alone, compiles it in a
-temporary folder, verifies it as `funicular verify` does, and prints operations and time of its kernels. Neither the
-other families nor generated/ are touched, so that a round takes seconds; `funicular derive` writes the files at the
+temporary folder, verifies it as `funicular verify` does, and prints operations and time of its kernels. Other
+families and generated/ do not change, so that a round takes seconds; `funicular derive` writes the files at the
 end.
 """
 

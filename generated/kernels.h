@@ -1145,13 +1145,13 @@ typedef void fu_surface_push_hertz_kernel(fu_real depth, fu_real depth_rate, con
 /* law 2, p 1, p_d 1, p_rate 1, p_e 1, U 1, mean 1 */
 fu_surface_push_hertz_kernel surface_push_hertz, planar_surface_push_hertz;
 
-typedef void fu_surface_pressing_kernel(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *normal_force, fu_real *f, fu_real *f_y, fu_real *f_w);
+typedef void fu_surface_frictionless_kernel(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *normal_force, fu_real *f, fu_real *f_y, fu_real *f_w);
 /* normal force of contact, and its derivatives: n [1]; H [1/m]; w [m/s]; normal_force [N, N/m, N s/m (a length)] ->
  * f [N (a length)]; f_y [N/m (a length)]; f_w [N s/m (a length)] */
 /* n 3, H 3x3, w 3, normal_force 3, f 3, f_y 3x3, f_w 3x3 */
-fu_surface_pressing_kernel surface_pressing;
+fu_surface_frictionless_kernel surface_frictionless;
 /* n 2, H 2x2, w 2, normal_force 3, f 2, f_y 2x2, f_w 2x2 */
-fu_surface_pressing_kernel planar_surface_pressing;
+fu_surface_frictionless_kernel planar_surface_frictionless;
 
 typedef void fu_surface_sticking_kernel(const fu_real *n, const fu_real *H, const fu_real *x, fu_real k_t, fu_real *f, fu_real *f_y, fu_real *t, fu_real *f_x);
 /* friction in stick, and its derivatives: n [1]; H [1/m]; x [m]; k_t [N/m (a length)] -> f [N (a length)]; f_y [N/m
@@ -1190,7 +1190,7 @@ fu_surface_motion_kernel surface_motion;
 fu_surface_motion_kernel planar_surface_motion;
 
 typedef void fu_surface_slip_kernel(const fu_real *n, const fu_real *H, const fu_real *r, const fu_real *v, const fu_real *a, const fu_real *r_o, const fu_real *v_o, const fu_real *a_o, const fu_real *omega_o, const fu_real *alpha_o, fu_real radius, const fu_real *omega, const fu_real *alpha, fu_real *w, fu_real *w_t);
-/* velocity past a moving surface of the particle of a sphere that touches it: n [1]; H [1/m]; r [m]; v [m/s]; a
+/* velocity past a moving surface of the particle of a sphere in contact with it: n [1]; H [1/m]; r [m]; v [m/s]; a
  * [m/s^2]; r_o [m]; v_o [m/s]; a_o [m/s^2]; omega_o [rad/s]; alpha_o [rad/s^2]; radius [m]; omega [rad/s]; alpha
  * [rad/s^2] -> w [m/s]; w_t [m/s^2] */
 /* n 3, H 3x3, r 3, v 3, a 3, r_o 3, v_o 3, a_o 3, omega_o 3, alpha_o 3, omega 3, alpha 3, w 3, w_t 3 */
@@ -1586,7 +1586,7 @@ typedef struct {
     fu_surface_terrain_kernel *terrain;
     fu_surface_push_kernel *push;
     fu_surface_push_hertz_kernel *push_hertz;
-    fu_surface_pressing_kernel *pressing;
+    fu_surface_frictionless_kernel *frictionless;
     fu_surface_sticking_kernel *sticking;
     fu_surface_sliding_kernel *sliding;
     fu_surface_reaction_kernel *reaction;

@@ -33,7 +33,7 @@ cdef enum:
 
 
 tables = PyCapsule_New(<void *>&fu_all, "funicular.generated.kernels.tables", NULL)
-"""The engine's way to the kernels: a pointer to fu_all of kernels.h."""
+"""The engine's access to the kernels: a pointer to fu_all of kernels.h."""
 
 _PLACE = {fu_kernels[i].name.decode(): i for i in range(fu_n_kernels)}
 

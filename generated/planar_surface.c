@@ -99,7 +99,7 @@ void planar_surface_push_hertz(fu_real depth, fu_real depth_rate, const fu_real 
 }
 
 /* normal force of contact, and its derivatives; 10 add, 30 mul */
-void planar_surface_pressing(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *normal_force, fu_real *f, fu_real *f_y, fu_real *f_w)
+void planar_surface_frictionless(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *normal_force, fu_real *f, fu_real *f_y, fu_real *f_w)
 {
     /* normal force */
     fu_real Hw[2];
@@ -274,7 +274,7 @@ void planar_surface_motion(const fu_real *n, const fu_real *H, const fu_real *r,
     g_tt[0] = dt_rate;
 }
 
-/* velocity past a moving surface of the particle of a sphere that touches it; 26 add, 22 mul */
+/* velocity past a moving surface of the particle of a sphere in contact with it; 26 add, 22 mul */
 void planar_surface_slip(const fu_real *n, const fu_real *H, const fu_real *r, const fu_real *v, const fu_real *a, const fu_real *r_o, const fu_real *v_o, const fu_real *a_o, const fu_real *omega_o, const fu_real *alpha_o, fu_real radius, const fu_real *omega, const fu_real *alpha, fu_real *w, fu_real *w_t)
 {
     /* velocity past the surface */

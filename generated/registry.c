@@ -252,10 +252,10 @@ static const fu_crossing_kernels crossings[] = {
 };
 
 static const fu_surface_kernels surfaces[] = {
-    {"surface", 3, surface_flat, surface_rounded, surface_terrain, surface_push, surface_push_hertz, surface_pressing,
-     surface_sticking, surface_sliding, surface_reaction, surface_motion, surface_slip},
+    {"surface", 3, surface_flat, surface_rounded, surface_terrain, surface_push, surface_push_hertz,
+     surface_frictionless, surface_sticking, surface_sliding, surface_reaction, surface_motion, surface_slip},
     {"planar_surface", 2, planar_surface_flat, planar_surface_rounded, planar_surface_terrain, planar_surface_push,
-     planar_surface_push_hertz, planar_surface_pressing, planar_surface_sticking, planar_surface_sliding,
+     planar_surface_push_hertz, planar_surface_frictionless, planar_surface_sticking, planar_surface_sliding,
      planar_surface_reaction, planar_surface_motion, planar_surface_slip},
 };
 
@@ -828,7 +828,7 @@ static const fu_point_law_kernels point_laws[] = {
     X(surface_terrain, vv_3) \
     X(surface_push, ssvs_6) \
     X(surface_push_hertz, ssvs_6) \
-    X(surface_pressing, vvvv_3) \
+    X(surface_frictionless, vvvv_3) \
     X(surface_sticking, vvvs_4) \
     X(surface_sliding, vvvvvs_4) \
     X(surface_reaction, vvvvvvvvsvvvsvvvvv_3) \
@@ -839,7 +839,7 @@ static const fu_point_law_kernels point_laws[] = {
     X(planar_surface_terrain, vv_3) \
     X(planar_surface_push, ssvs_6) \
     X(planar_surface_push_hertz, ssvs_6) \
-    X(planar_surface_pressing, vvvv_3) \
+    X(planar_surface_frictionless, vvvv_3) \
     X(planar_surface_sticking, vvvs_4) \
     X(planar_surface_sliding, vvvvvs_4) \
     X(planar_surface_reaction, vvvvvvvvsvvvsvvvvv_3) \

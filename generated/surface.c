@@ -135,7 +135,7 @@ void surface_push_hertz(fu_real depth, fu_real depth_rate, const fu_real *law, f
 }
 
 /* normal force of contact, and its derivatives; 24 add, 66 mul */
-void surface_pressing(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *normal_force, fu_real *f, fu_real *f_y, fu_real *f_w)
+void surface_frictionless(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *normal_force, fu_real *f, fu_real *f_y, fu_real *f_w)
 {
     /* normal force */
     const fu_real
@@ -427,7 +427,7 @@ void surface_motion(const fu_real *n, const fu_real *H, const fu_real *r, const 
     g_tt[0] = dt_rate;
 }
 
-/* velocity past a moving surface of the particle of a sphere that touches it; 66 add, 57 mul */
+/* velocity past a moving surface of the particle of a sphere in contact with it; 66 add, 57 mul */
 void surface_slip(const fu_real *n, const fu_real *H, const fu_real *r, const fu_real *v, const fu_real *a, const fu_real *r_o, const fu_real *v_o, const fu_real *a_o, const fu_real *omega_o, const fu_real *alpha_o, fu_real radius, const fu_real *omega, const fu_real *alpha, fu_real *w, fu_real *w_t)
 {
     /* velocity past the surface */

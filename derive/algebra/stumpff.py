@@ -15,7 +15,7 @@ from ..codegen.program import Program
 SERIES_BELOW = (sp.Rational(1, 4), sp.Rational(1, 4), sp.Integer(1), sp.Integer(1))
 """Value of x, for each k, below which the series is taken. The quotients of c_0 and c_1 lose no digits, so that fewer
 terms suffice; those of c_2 and c_3 lose at most three bits above 1."""
-ROUNDING = sp.Rational(1, 2**54)
+SERIES_ERROR = sp.Rational(1, 2**54)
 
 
 def stumpff(p: Program, name: str, k: int, x: sp.Expr, root: sp.Expr) -> sp.Expr:
@@ -25,7 +25,7 @@ def stumpff(p: Program, name: str, k: int, x: sp.Expr, root: sp.Expr) -> sp.Expr
 
 def _series(k: int, x: sp.Expr) -> sp.Expr:
     """Return the series by Horner's rule, up to the first term below rounding of the leading one."""
-    terms = next(j for j in count() if SERIES_BELOW[k]**j * sp.factorial(k) / sp.factorial(2 * j + k) < ROUNDING)
+    terms = next(j for j in count() if SERIES_BELOW[k]**j * sp.factorial(k) / sp.factorial(2 * j + k) < SERIES_ERROR)
     value = sp.S.Zero
     for j in reversed(range(terms)):
         value = sp.Rational((-1) ** j, sp.factorial(2 * j + k)) + x * value

@@ -1,4 +1,4 @@
-"""Two lines that touch at their closest points: a cable under the bar of a body, a cable that crosses another.
+"""Contact of two lines at their closest points: a cable under the bar of a body, a cable that crosses another.
 
 Each line is known at its point by position, slope, curvature r_xx, and the rates of the first two. In the plane the
 second line is a bar square to it, which is seen as a point. The points are closest where the displacement d from

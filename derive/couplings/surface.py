@@ -1,10 +1,10 @@
-"""Surfaces that cables and bodies touch: distance of each shape with its derivatives, and the force of contact.
+"""Contact of cables and bodies with surfaces: distance of each shape with its derivatives, and the force.
 
 Places y are those of a point of the axis of a cable, or of the centre of a body's sphere, from the shape's origin along
 its axes. The distance of a plane and of a round shape (sphere, cylinder) is exact. That of a terrain of the height h is
 the vertical one over sqrt(1 + h'^2), which is exact to first order at the surface; forces are along its exact gradient.
 
-Contact presses by p = k d^e (1 + c d'), with the depth d below the surface and e = 1 or 3/2 (Hertz): the law of Hunt &
+The normal force is p = k d^e (1 + c d'), with the depth d below the surface and e = 1 or 3/2 (Hertz): the law of Hunt &
 Crossley, J. Appl. Mech. 42 (1975) 440-445, whose damping makes no jump where contact begins. Friction is Coulomb's with
 a tangential spring from an anchor on the surface (`stretch`).
 """
@@ -32,7 +32,7 @@ HEIGHTS = {2: ("h", "h_1", "h_11", "h_111"),
 def build(dim: int) -> list[Program]:
     """Return the kernels in space or in the plane."""
     return [*(make(dim) for make in (flat, rounded, terrain)), push(dim, hertz=False), push(dim, hertz=True),
-            *(make(dim) for make in (pressing, sticking, sliding, reaction, motion, slip))]
+            *(make(dim) for make in (frictionless, sticking, sliding, reaction, motion, slip))]
 
 
 def _program(dim: int, name: str, doc: str) -> Program:
@@ -168,9 +168,9 @@ def _outputs(p: Program, f: np.ndarray, by: tuple[list[Any], list[Any]]) -> Prog
     return p
 
 
-def pressing(dim: int) -> Program:
-    """Return the kernel of the normal force."""
-    p = _program(dim, "pressing", "normal force of contact, and its derivatives")
+def frictionless(dim: int) -> Program:
+    """Return the kernel of contact without friction."""
+    p = _program(dim, "frictionless", "normal force of contact, and its derivatives")
     n, H, w, (normal_force, by_d, by_rate) = _inputs(p, dim)
     p.stage("normal force")
     by = _moving(p, dim, normal_force, n, H, w, by_d, by_rate)
@@ -322,8 +322,8 @@ def motion(dim: int) -> Program:
 
 
 def slip(dim: int) -> Program:
-    """Return the kernel of the slip of a sphere past the surface where it touches, and its rate."""
-    p = _program(dim, "slip", "velocity past a moving surface of the particle of a sphere that touches it")
+    """Return the kernel of the slip of a sphere past the surface at the point of contact, and its rate."""
+    p = _program(dim, "slip", "velocity past a moving surface of the particle of a sphere in contact with it")
     of = _Passing(p, dim)
     radius = p.input("radius", (), "m", "radius of the sphere about the point")
     omega, alpha = of.turning("", dim, "the sphere")

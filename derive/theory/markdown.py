@@ -35,7 +35,7 @@ class Line:
 
 @dataclass
 class Block:
-    """A piece of a chapter: kind is heading, paragraph, list, table, or the word of a fence."""
+    """A block of a chapter: kind is heading, paragraph, list, table, or the word of a fence."""
 
     kind: str
     text: str = ""

@@ -168,7 +168,7 @@ def joint_motion(scope: Scope) -> list[Line]:
 
 
 def spring_extension(scope: Scope) -> list[Line]:
-    """Return extension, energy, dissipated power, force and its derivatives of a spring, or of a piece of one."""
+    """Return extension, energy, dissipated power, force and its derivatives of a spring, or of a segment of one."""
     gap, rate = r"\mathbf{gap}", r"\dot{\mathbf{gap}}"
     assert isinstance(scope.family, PointLawFamily), f"{scope.family.name} is no law of a force between two points"
     parameters = scope.family.point_law.parameters

@@ -372,7 +372,7 @@ def drag_scope(name: str) -> Scope:
 
 
 def crossing_scope(name: str) -> Scope:
-    """Return the scope of lines that touch at their closest points."""
+    """Return the scope of contact of lines at their closest points."""
     family = families()[name]
     assert isinstance(family, CouplingFamily), f"{name} is no coupling"
     letters = (r"\rho", r"\sigma", "k_{1}", "k_{2}", r"\lambda", "p_{0}", r"\mu", "v_{0}")

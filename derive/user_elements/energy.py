@@ -21,7 +21,7 @@ from ..verify.samples.shapes import reference, rotation
 from .load import SpecError
 
 SAMPLES = ("bent element 1", "bent element 2", "the straight reference", "the straight reference, turned")
-PLAIN = (sp.Symbol, sp.Rational, sp.Float, sp.Add, sp.Mul, sp.Pow)
+NODE_KINDS = (sp.Symbol, sp.Rational, sp.Float, sp.Add, sp.Mul, sp.Pow)
 STEP = mpmath.mpf(10) ** -14
 TOLERANCE = 1e-8  # differences at 50 digits keep ten more of a smooth energy, and none of a kinked one
 
@@ -37,7 +37,7 @@ def check_arithmetic(programs: list[Program], place: str) -> None:
                 if isinstance(node, (sp.Abs, sp.Max, sp.Min, sp.sign, sp.Piecewise, sp.Heaviside)):
                     raise SpecError(place, f"the energy has a kink: kernel {program.name} has {name} in {expr}",
                                     "write it smooth, with products and square roots of what stays positive")
-                if not isinstance(node, PLAIN) or (isinstance(node, sp.Pow) and not (2 * node.exp).is_Integer):
+                if not isinstance(node, NODE_KINDS) or (isinstance(node, sp.Pow) and not (2 * node.exp).is_Integer):
                     raise SpecError(place, f"kernel {program.name} is not plain arithmetic: {node}",
                                     "kernels have +, -, *, / and square roots")
 

@@ -40,7 +40,7 @@ Item = Finding | Rounding | tuple[str, float, float]
 
 @dataclass(frozen=True)
 class Subject:
-    """A family with its programs, on its way through the compiler."""
+    """A family with its programs during compilation."""
 
     family: Family
     programs: list[Program]

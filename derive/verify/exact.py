@@ -1,4 +1,4 @@
-"""Staged programs evaluated at 50 digits, by way of Python source of their own: no C printer, no compiler."""
+"""Staged programs evaluated at 50 digits, through generated Python source, without C printer and compiler."""
 
 from __future__ import annotations
 

@@ -25,8 +25,8 @@ from .samples.shapes import director, on_axis, reference, rotation
 from .samples.step import following
 
 KINDS = ("ordinary", "tiny strain", "large rotation", "far origin")
-TINY, FAR = 1e-9, 1e4
-BEND, TURN, ROUGHNESS = 2.4, 3.0, 0.05
+SMALL_CHANGE, ORIGIN_DISTANCE = 1e-9, 1e4
+ARC_ANGLE, ROTATION_ANGLE, VECTOR_NOISE = 2.4, 3.0, 0.05
 
 
 @dataclass(frozen=True)
@@ -61,16 +61,16 @@ def _tiny(family: Family, s: State, random: np.random.Generator) -> dict[str, np
     if element := family.element:
         e = s["e0"] if "e0" in s else reference(element, float(s["l"]))
         e = e @ rotation(random, element.dim).T
-        changes["e"] = e + TINY * random.normal(size=e.shape)
-        changes["e_next"] = e @ rotation(random, element.dim).T + TINY * random.normal(size=e.shape)
+        changes["e"] = e + SMALL_CHANGE * random.normal(size=e.shape)
+        changes["e_next"] = e @ rotation(random, element.dim).T + SMALL_CHANGE * random.normal(size=e.shape)
         near = on_axis(element, s | changes)
     if family.rider:
         rider = RIDERS[family.rider]
         changes |= rider.at_rest(near)
-        changes["b"] = rider.moved(np, changes["b"], TINY * random.normal(size=rider.n_velocity))
-        changes["b_next"] = rider.moved(np, changes["b"], TINY * random.normal(size=rider.n_velocity))
+        changes["b"] = rider.moved(np, changes["b"], SMALL_CHANGE * random.normal(size=rider.n_velocity))
+        changes["b_next"] = rider.moved(np, changes["b"], SMALL_CHANGE * random.normal(size=rider.n_velocity))
     if family.role == "body":
-        changes["step"] = TINY * s["step"]
+        changes["step"] = SMALL_CHANGE * s["step"]
     return changes
 
 
@@ -78,17 +78,17 @@ def _turned(family: Family, s: State, random: np.random.Generator) -> dict[str, 
     changes, near = {}, np.zeros(_dim(family))
     if element := family.element:
         e = _arc(element, float(s["l"]))
-        e += ROUGHNESS * random.normal(size=e.shape)
-        changes["e"] = e @ rotation(random, element.dim, angle=TURN).T
+        e += VECTOR_NOISE * random.normal(size=e.shape)
+        changes["e"] = e @ rotation(random, element.dim, angle=ROTATION_ANGLE).T
         near = on_axis(element, s | changes)
     if family.rider:
         rider = RIDERS[family.rider]
         changes |= rider.sample(random, near)
         turn = np.zeros(rider.n_velocity)
-        turn[rider.rotations][:1] = TURN
+        turn[rider.rotations][:1] = ROTATION_ANGLE
         changes["b"] = rider.moved(np, changes["b"], turn)
     if family.role == "body":
-        changes["step"] = TURN / np.linalg.norm(s["step"][rider.rotations]) * s["step"]
+        changes["step"] = ROTATION_ANGLE / np.linalg.norm(s["step"][rider.rotations]) * s["step"]
     return changes | following(family, s | changes, random)
 
 
@@ -96,18 +96,18 @@ def _arc(element: Element, l: float) -> np.ndarray:
     """Return the straight element bent to an arc in the plane x y."""
     e, per_node = reference(element, l), len(element.nodal_vectors)
     for k, ratio in enumerate(element.node_ratios):
-        angle = BEND * (float(ratio) - 0.5)
+        angle = ARC_ANGLE * (float(ratio) - 0.5)
         c, s = np.cos(angle), np.sin(angle)
         rows = slice(k * per_node, (k + 1) * per_node)
         e[rows, :2] = e[rows, :2] @ np.array([[c, s], [-s, c]])
         positions = np.flatnonzero(element.is_position[rows]) + rows.start
-        e[positions, :2] = l / BEND * np.array([s, -c])
+        e[positions, :2] = l / ARC_ANGLE * np.array([s, -c])
     return e
 
 
 def _far(family: Family, s: State, random: np.random.Generator) -> dict[str, np.ndarray]:
     offset = random.normal(size=_dim(family))
-    offset *= FAR * float(s.get("l", 1.0)) / np.linalg.norm(offset)
+    offset *= ORIGIN_DISTANCE * float(s.get("l", 1.0)) / np.linalg.norm(offset)
     changes: dict[str, np.ndarray] = {}
     if family.element:
         shift = np.outer(np.array(family.element.is_position, dtype=float), offset)

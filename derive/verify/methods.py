@@ -1,4 +1,4 @@
-"""A relation between a kernel's output and a derivative along a path, and the four ways in which it is tried.
+"""A relation between a kernel's output and a derivative along a path, and the four methods that check it.
 
 rounding       the output in C against the same expression at 50 digits
 50 digits      the output in C against differences at 50 digits of what it is the derivative of

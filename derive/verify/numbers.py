@@ -1,4 +1,4 @@
-"""One way to evaluate kernels in three kinds of number, so that a relation is written once.
+"""Evaluation of kernels in three kinds of number, so that a relation is written once.
 
 Relations get a `Numbers` and a state (values by the kernels' argument names, in that kind of number) and use plain
 array arithmetic, `dot`, and the functions here.

@@ -18,13 +18,13 @@ from .wires import MODULUS, Wire
 if TYPE_CHECKING:
     from ..results.equilibrium import Equilibrium
 
-DRAWN_PIECES = 16
-"""Straight pieces of a span with staggers, as drawn."""
+DRAWN_SEGMENTS = 16
+"""Straight segments of a span with staggers, as drawn."""
 
-LONGEST = 1.0, 1.0
+ELEMENT_LENGTHS = 1.0, 1.0
 """Default length of the longest element of the contact wire and of the messenger, in m."""
 
-LEVER = 1.0
+ARM_LENGTH = 1.0
 """m: distance of supports and steady arms from their fixed points."""
 
 
@@ -53,9 +53,9 @@ class Form:
 def mesh(line: Line, longest: float) -> np.ndarray:
     """Return the places of the nodes of a span, from 0 to 1 of it: masts, droppers, and equal elements between."""
     ends = np.array([0.0, *line.droppers.at, line.span])
-    pieces = [np.linspace(a, b, max(int(np.ceil((b - a) / longest - 1e-9)), 1) + 1)[:-1]
+    segments = [np.linspace(a, b, max(int(np.ceil((b - a) / longest - 1e-9)), 1) + 1)[:-1]
               for a, b in pairwise(ends.tolist())]
-    return np.append(np.concatenate(pieces), line.span) / line.span
+    return np.append(np.concatenate(segments), line.span) / line.span
 
 
 def add_wire(scene: Scene, name: str, wire: Wire, start: float, end: float, height: float, nodes: np.ndarray,
@@ -80,7 +80,7 @@ def add_wire(scene: Scene, name: str, wire: Wire, start: float, end: float, heig
 def _staggered(start: float, end: float, height: float, sides: tuple[float, ...]) -> list[tuple[float, float, float]]:
     """Return points from side to side across the track, at equal distances from start to end, in m."""
     spans = len(sides) - 1
-    u = np.linspace(0, spans, DRAWN_PIECES * spans + 1)
+    u = np.linspace(0, spans, DRAWN_SEGMENTS * spans + 1)
     before = np.minimum(u.astype(int), spans - 1)
     swing = (1 - np.cos(np.pi * (u - before))) / 2
     z = np.array(sides)[before] * (1 - swing) + np.array(sides)[before + 1] * swing
@@ -107,7 +107,7 @@ def add_dropper(scene: Scene, name: str, messenger: str, places: tuple[float, fl
             scene.force(wire, s=s, value=(0, scene.gravity[1] * mass, 0))
 
 
-def form(line: Line, longest: tuple[float, float] = LONGEST) -> Form:
+def form(line: Line, longest: tuple[float, float] = ELEMENT_LENGTHS) -> Form:
     """Return the form of one span of a line: all spans are equal.
 
     The contact wire has the line's sags at the droppers and is level at the masts, where both wires have their
@@ -156,7 +156,7 @@ def _read(line: Line, longest: tuple[float, float], missing: np.ndarray, rest: E
                 rest.adjusted["messenger.rest_length"], float(rest["contact.position"][0, 1]), mast, rest)
 
 
-def scene(line: Line | Form, longest: tuple[float, float] = LONGEST) -> Scene:
+def scene(line: Line | Form, longest: tuple[float, float] = ELEMENT_LENGTHS) -> Scene:
     """Return the scene of a formed catenary, x along the track, y up from the contact wire at the outer droppers.
 
     line: or its form, where it is known; longest: as in `form`. The contact wire is "contact", the messenger
@@ -194,8 +194,8 @@ def _add_masts(made: Scene, formed: Form) -> None:
         x, z = mast * line.span, of_messenger[mast]
         before = made.cables[f"messenger_{mast}"]
         made.tie(before, s=before.length, to=f"messenger_{mast + 1}", at=0.0, rotation="free")
-        made.spring((x, line.height + LEVER, z), (before, before.length), name=f"support_{mast}",
-                    stiffness=line.support, length=LEVER - formed.mast_force / line.support)
+        made.spring((x, line.height + ARM_LENGTH, z), (before, before.length), name=f"support_{mast}",
+                    stiffness=line.support, length=ARM_LENGTH - formed.mast_force / line.support)
         if not line.planar:
             made.motion(before, s=before.length, displacement=("free", "free", 0))
             side = of_contact[mast]  # a rod holds the contact wire on this side of the track, and pulls it there
@@ -205,8 +205,8 @@ def _add_masts(made: Scene, formed: Form) -> None:
     for mast in range(line.spans + 1):
         if arm.stiffness:
             s = mast * formed.contact_length
-            made.spring((mast * line.span, formed.height + LEVER, of_contact[mast]), ("contact", s), name=f"arm_{mast}",
-                        stiffness=arm.stiffness, length=LEVER)
+            made.spring((mast * line.span, formed.height + ARM_LENGTH, of_contact[mast]), ("contact", s),
+                        name=f"arm_{mast}", stiffness=arm.stiffness, length=ARM_LENGTH)
 
 
 def _sides(line: Line, first: float) -> tuple[float, ...]:

@@ -53,7 +53,7 @@ def paths(stiffness: np.ndarray, friction: np.ndarray) -> np.ndarray:
 # ``least_squares`` needs the residuals in units of the camera's error, and their derivatives: four runs for central
 # differences, in one sweep.
 
-SMALL = np.array([1e-3, 1e-3])
+STEPS = np.array([1e-3, 1e-3])
 rounds: list[np.ndarray] = []
 
 
@@ -65,9 +65,9 @@ def left(x: np.ndarray) -> np.ndarray:
 
 def derivatives(x: np.ndarray) -> np.ndarray:
     """Return (measurements, 2) at x."""
-    points = x + np.array([[1, 0], [-1, 0], [0, 1], [0, -1]]) * SMALL
+    points = x + np.array([[1, 0], [-1, 0], [0, 1], [0, -1]]) * STEPS
     found = paths(*points.T) / NOISE
-    return np.stack([(found[0] - found[1]).ravel() / (2 * SMALL[0]), (found[2] - found[3]).ravel() / (2 * SMALL[1])], 1)
+    return np.stack([(found[0] - found[1]).ravel() / (2 * STEPS[0]), (found[2] - found[3]).ravel() / (2 * STEPS[1])], 1)
 
 
 fit = least_squares(left, x0=[0.3, 0.02], jac=derivatives, bounds=([0.1, 0.0], [0.58, 0.5]))

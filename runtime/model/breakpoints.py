@@ -19,9 +19,9 @@ HIGHER, ACCELERATION, RATE = range(3)
 """What jumps at a breakpoint: a higher derivative, the acceleration or the rate of a driven motion; as in
 engine/bodies/motions.h."""
 
-ROUNDING = 1e-14
+SIGNAL_ROUNDING = 1e-14
 """Rounding of the difference of two pieces, as a fraction of the largest value of the signal."""
-TINY = 1e-300
+MIN_SIGNAL_RANGE = 1e-300
 """Positive bound for signals that are constant."""
 INSTANT_TOLERANCE = 1e-12
 """Distance of coincident breakpoints, as a fraction of the duration (engine/equations/run.h)."""
@@ -90,14 +90,14 @@ def of_polynomials(breaks: np.ndarray, coefficients: np.ndarray, drives: bool, t
     jumps = np.abs(coefficients[1:] - ends[:-1])
     over = np.minimum(length[:-1], length[1:])
     values = coefficients[1:, 0]
-    parting = jumps * over**powers / (tol * np.ptp(values) + ROUNDING * np.abs(values).max() + TINY)
+    parting = jumps * over**powers / (tol * np.ptp(values) + SIGNAL_ROUNDING * np.abs(values).max() + MIN_SIGNAL_RANGE)
     kinds = np.full(len(parting), HIGHER)
     counts = parting.sum(axis=1) > 1
     if drives:
         rates = np.abs([coefficients[:-1, 1], ends[:-1, 1], np.diff(coefficients[:, 0]) / length[:-1, 0]])
-        of_rates = powers * jumps * over ** (powers - 1.0) / (tol * rates.max() + TINY)
-        rounding = ROUNDING * np.abs(values).max() / over[:, 0]
-        leaps = jumps[:, 1] > tol / len(jumps) * rates.max() + rounding + TINY
+        of_rates = powers * jumps * over ** (powers - 1.0) / (tol * rates.max() + MIN_SIGNAL_RANGE)
+        rounding = SIGNAL_ROUNDING * np.abs(values).max() / over[:, 0]
+        leaps = jumps[:, 1] > tol / len(jumps) * rates.max() + rounding + MIN_SIGNAL_RANGE
         kinds[np.maximum(parting, of_rates)[:, 2] > 1] = ACCELERATION
         kinds[leaps] = RATE
         counts |= (of_rates.sum(axis=1) > 1) | leaps
@@ -109,7 +109,7 @@ def _turns(breaks: np.ndarray, values: np.ndarray, tol: float) -> list[tuple[flo
 
     The end of a constant part is included where it is longer than the change that follows.
     """
-    least = tol * np.ptp(values) + ROUNDING * np.abs(values).max() + TINY
+    least = tol * np.ptp(values) + SIGNAL_ROUNDING * np.abs(values).max() + MIN_SIGNAL_RANGE
     rises, falls, low, high = False, False, 0, 0  # low, high: breaks of the extremes since the last one
     turns, stays = [], []
     for k, value in enumerate(values):

@@ -19,7 +19,7 @@ MAX_DENSE_BORDER = 60
 """Unknowns of a border up to which one front is as fast as several."""
 FRONT_OVERHEAD = 500.0
 """Work of a front beside its arithmetic, in operations."""
-SOLVES = 5
+SOLVES_PER_FACTORISATION = 5
 """Approximate number of solves per factorisation."""
 
 
@@ -278,4 +278,4 @@ def _parents(fronts: list[list[int]], neighbours: list[set[int]]) -> list[int]:
 
 def _cost(p: Any, s: Any) -> Any:
     """Return the operations of a front with p pivots and s neighbours, solves included."""
-    return p**3 / 3 + p**2 * s + p * s**2 + SOLVES * (p**2 + 2 * p * s) + FRONT_OVERHEAD
+    return p**3 / 3 + p**2 * s + p * s**2 + SOLVES_PER_FACTORISATION * (p**2 + 2 * p * s) + FRONT_OVERHEAD

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array, triu
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-SOLVES = 30
+SOLVE_WEIGHT = 30
 """Weight of solves per factorisation: about ten, three times as slow per operation, as they read from memory."""
 
 
@@ -168,4 +168,4 @@ def _operations(numbering: Numbering, incidence: Incidence) -> float:
     columns = np.unique(np.stack([at[outside], of[incidence.element[outside]]]), axis=1)  # of the border, by chain
     coupled, m = float(np.diff(chains)[columns[1]].sum()), len(numbering.number) - n_band
     factor = n_band * width**2 / 2 + 2 * width * coupled + m**3 / 3
-    return factor + SOLVES * (2 * width * n_band + coupled + m**2)
+    return factor + SOLVE_WEIGHT * (2 * width * n_band + coupled + m**2)

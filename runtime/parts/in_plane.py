@@ -17,7 +17,7 @@ from .event import Event
 from .modal_body import ModalBody
 from .part import Part, about_fields
 from .paths import COMPONENTS
-from .plane import FLAT, Plane, aligned, called, flattened
+from .plane import PLANE_ROUNDING, Plane, aligned, called, flattened
 from .plane_axes import UNTURNED, PlaneAxes
 from .scene_data import SceneData
 from .schemas import HOLDER, LENGTHS, ORIENTATION, POINT, TENSOR, Turning
@@ -76,7 +76,7 @@ def _vector(axes: PlaneAxes, on: str | None, vector: Any, is_point: bool = False
         return tuple(made.tolist())
     if (turn := axes.turn_of(on)) is not None:
         made = aligned(rotate(conjugate(turn), made))
-    return tuple((flattened(made, FLAT * axes.size) if is_point else made).tolist())
+    return tuple((flattened(made, PLANE_ROUNDING * axes.size) if is_point else made).tolist())
 
 
 def _tensor(axes: PlaneAxes, body: str, tensor: Any) -> tuple[tuple[float, ...], ...]:
@@ -84,7 +84,7 @@ def _tensor(axes: PlaneAxes, body: str, tensor: Any) -> tuple[tuple[float, ...],
     turn = axes.turn_of(body)
     own = np.eye(3) if turn is None else rotate(turn, np.eye(3)).T  # columns: the axes in the plane
     found = own.T @ np.array(tensor) @ own
-    found[np.abs(found) <= FLAT * np.abs(found).max()] = 0.0
+    found[np.abs(found) <= PLANE_ROUNDING * np.abs(found).max()] = 0.0
     return tuple(map(tuple, ((found + found.T) / 2).tolist()))
 
 
@@ -136,7 +136,7 @@ def turned(part: Part, axes: PlaneAxes, scene: SceneData) -> Part:
 @turned.register
 def _cable(part: Cable, axes: PlaneAxes, scene: SceneData) -> Cable:
     changes = turned_fields(part, axes)
-    if part.dim == 2 and abs(axes.plane.into(part.normal)[2]) > 1 - FLAT:  # its height is normal x tangent in z = 0
+    if part.dim == 2 and abs(axes.plane.into(part.normal)[2]) > 1 - PLANE_ROUNDING:  # height normal x tangent in z = 0
         changes["up"] = (0.0, 1.0, 0.0)
     made = Cable(**part.entries() | changes)
     if part.shape == "hanging":
@@ -145,7 +145,7 @@ def _cable(part: Cable, axes: PlaneAxes, scene: SceneData) -> Cable:
     if not drawn.straight:  # Akima splines, unlike cubic ones, depend on the axes
         along = np.linspace(0, 1, 8 * len(part.drawn_through))
         apart = axes.plane.points_into(drawn.point(along * drawn.length)) - flat.point(along * flat.length)
-        if np.abs(apart).max() > FLAT * max(axes.size, drawn.length):
+        if np.abs(apart).max() > PLANE_ROUNDING * max(axes.size, drawn.length):
             raise SceneError(part.where, f"its curve through the points changes in the axes of "
                              f"{called(axes.plane)}", "give more points")
     return made

@@ -10,7 +10,7 @@ import numpy as np
 from ..base.rotations import cross
 from .validation import show
 
-FLAT = 1e-12
+PLANE_ROUNDING = 1e-12
 """Rounding of points and directions off a plane, relative to their size."""
 MIN_SINE = 1e-6
 """Of the angle between two directions that define a plane."""
@@ -63,7 +63,7 @@ class Plane:
     def contains(self, points: np.ndarray) -> bool:
         """Return whether points (n, 3), in m, lie in it to rounding."""
         off = np.abs(self.points_into(points)[:, 2])
-        return bool(np.all(off <= FLAT * np.abs(points).max(initial=0.0)))
+        return bool(np.all(off <= PLANE_ROUNDING * np.abs(points).max(initial=0.0)))
 
     def is_same(self, other: Plane) -> bool:
         """Return whether another plane, also a parallel one, has the same normal to rounding."""
@@ -120,7 +120,7 @@ def called(plane: Plane | None) -> str:
 def flattened(vectors: np.ndarray, size: float = 0.0) -> np.ndarray:
     """Return vectors (..., 3) without z components that are rounding of the largest one or of a size."""
     made = np.array(vectors, dtype=float)
-    least = FLAT * max(size, float(np.abs(made).max(initial=0.0)))
+    least = PLANE_ROUNDING * max(size, float(np.abs(made).max(initial=0.0)))
     made[..., 2] = np.where(np.abs(made[..., 2]) <= least, 0.0, made[..., 2])
     return made
 
@@ -128,5 +128,5 @@ def flattened(vectors: np.ndarray, size: float = 0.0) -> np.ndarray:
 def aligned(vector: np.ndarray) -> np.ndarray:
     """Return a vector (3,) without components that are rounding of its size."""
     made = np.array(vector, dtype=float)
-    made[np.abs(made) <= FLAT * np.abs(made).max(initial=0.0)] = 0.0
+    made[np.abs(made) <= PLANE_ROUNDING * np.abs(made).max(initial=0.0)] = 0.0
     return made

@@ -11,7 +11,7 @@ from pydantic import model_validator
 
 from ..base.rotations import conjugate, rotate
 from .part import Part
-from .plane import FLAT
+from .plane import PLANE_ROUNDING
 from .solids import Box, Cylinder, Sphere
 from .surface_shapes import AnySurfaceShape, Capsule, Geometry, geometry
 from .validation import Flag, Name, Reference, Vector, show, xyz
@@ -54,13 +54,13 @@ class Surface(Part):
         lies = isinstance(self.shape, Sphere)
         if isinstance(self.shape, Cylinder | Capsule):
             axis = np.abs(np.array(self.shape.axis)) / np.linalg.norm(self.shape.axis)
-            lies = bool(axis[2] <= FLAT)
-            if not lies and max(axis[:2]) > FLAT:
+            lies = bool(axis[2] <= PLANE_ROUNDING)
+            if not lies and max(axis[:2]) > PLANE_ROUNDING:
                 yield f"axis {show(self.shape.axis)}"
         if isinstance(self.shape, Box):
             box = self.geometry
             lies = abs(box.origin[2]) > box.half_size[2]
-            if np.abs(box.axes[:2, 2]).max() > FLAT:
+            if np.abs(box.axes[:2, 2]).max() > PLANE_ROUNDING:
                 yield f"along {show(self.shape.along)}, up {show(self.shape.up)}"
         if lies:  # a shape across the plane, or without end that way, reaches the plane from anywhere
             for name, at in (("at", self.at), ("shape.at", getattr(self.shape, "at", None))):

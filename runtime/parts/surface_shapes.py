@@ -16,7 +16,7 @@ from pydantic import model_validator
 
 from .height_bounds import height_bounds
 from .part import Family, Part
-from .plane import FLAT, aligned
+from .plane import PLANE_ROUNDING, aligned
 from .schemas import DIRECTION, HOLDER, checked, list_schema
 from .solids import Box, Cylinder, Length, Sphere
 from .validation import Vector, check_function, check_square, direction, items, list_of, show, shown, vector, xyz
@@ -170,7 +170,8 @@ class Geometry:
 
     def in_plane(self, normal: np.ndarray) -> Geometry:
         """Return it for planes across a unit vector (3,), along which a box has no end."""
-        return replace(self, half_size=np.where(np.abs(normal @ self.axes) > 1 - FLAT, np.inf, self.half_size))
+        across = np.abs(normal @ self.axes) > 1 - PLANE_ROUNDING
+        return replace(self, half_size=np.where(across, np.inf, self.half_size))
 
     def into(self, points: np.ndarray) -> np.ndarray:
         """Return points (..., 3), in m, in its axes."""

@@ -35,7 +35,7 @@ PROGRAM = """#define _POSIX_C_SOURCE 199309L
 #include "blocks.h"
 #include "kernels.h"
 static double now(void) { struct timespec t; clock_gettime(CLOCK_MONOTONIC, &t); return t.tv_sec + 1e-9 * t.tv_nsec; }
-static double e[@MOST@], v[@MOST@], out[@MOST@ * 32], sum;
+static double e[@SIZE@], v[@SIZE@], out[@SIZE@ * 32], sum;
 static void fill(double *to, const double *from, int n)
 {
     for (int k = 0; k < @ELEMENTS@; ++k)
@@ -129,7 +129,7 @@ def rows(repetitions: int) -> list[dict]:
     if platform.machine() not in ("x86_64", "AMD64"):
         return []
     text, operations = loops()
-    program = PROGRAM.replace("@LOOPS@", text).replace("@MOST@", str(32 * ELEMENTS))
+    program = PROGRAM.replace("@LOOPS@", text).replace("@SIZE@", str(32 * ELEMENTS))
     least: dict[str, np.ndarray] = {}
     with tempfile.TemporaryDirectory() as folder:
         source, binary = Path(folder) / "blocks_loop.c", Path(folder) / "blocks_loop"

@@ -42,7 +42,7 @@ SAMPLE = (0.5, 1.1, 2.0)
 STEPS = (50, 100, 200, 500, 1000, 2000, 4000)
 FINEST = (16000, 32000)
 """Steps from which their converged path is extrapolated; its order is 1."""
-EXACT = 1e-7
+CONVERGED_TOL = 1e-7
 """The tolerance of our converged path."""
 SETTINGS = {"duration": DURATION, "tol": TOL, "output_step": DURATION / OUTPUTS}
 
@@ -111,7 +111,7 @@ def variants(make: Callable[[float], fu.Scene], n: int) -> Iterator[fu.Scene]:
 def our_error(make: Callable[[float], fu.Scene], integrator: str) -> float:
     """Return the largest error of the sample in funicular."""
     def of(mass: float) -> float:
-        exact = make(mass).run(**SETTINGS | {"tol": EXACT})["A.position"]
+        exact = make(mass).run(**SETTINGS | {"tol": CONVERGED_TOL})["A.position"]
         return distance(make(mass).run(**SETTINGS, integrator=integrator)["A.position"], exact) / largest_change(exact)
 
     return max(of(mass) for mass in SAMPLE)

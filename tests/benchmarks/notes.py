@@ -27,9 +27,9 @@ from random_motions import Motion, motion
 
 TOLS = (1e-3, 1e-4)
 TIMES = 40
-LONGEST = 2.0
+MAX_CPU_TIME = 2.0
 """CPU seconds of a run: longer ones are given up."""
-SILENT = 3.0
+NOTE_LIMIT = 3.0
 """tol: an error above it must be noted."""
 WARNS = re.compile(r"errors may|energy balance|perfectly straight|beyond the ends|"
                    r"past each other|folded|step is too long|are rounded|turns by|shock|estimated error")
@@ -41,7 +41,7 @@ def run(made: Motion, tol: float, integrator: str) -> fu.Run | None:
     begin = time.process_time()
 
     def give_up(reached: float) -> None:
-        if time.process_time() - begin > LONGEST:
+        if time.process_time() - begin > MAX_CPU_TIME:
             raise KeyboardInterrupt
 
     try:
@@ -84,7 +84,7 @@ def cells(seed: int) -> list[dict]:
 def summary(rows: list[dict]) -> list[dict]:
     """Counts of runs by error, noted or not; of those with a reference."""
     known = [row for row in rows if np.isfinite(row["error/tol"])]
-    edges = [0.0, 1.0, SILENT, 10.0, np.inf]
+    edges = [0.0, 1.0, NOTE_LIMIT, 10.0, np.inf]
     return [{"error": f"{low:g} to {high:g} tol", "runs": len(chosen),
              "noted": sum(bool(row["noted"]) for row in chosen),
              "silent": sum(not row["noted"] for row in chosen)}
@@ -93,9 +93,9 @@ def summary(rows: list[dict]) -> list[dict]:
 
 
 def silent_part(rows: list[dict]) -> float:
-    """Return the share of the runs with a reference whose error exceeds `SILENT` tol without a note."""
+    """Return the share of the runs with a reference whose error exceeds `NOTE_LIMIT` tol without a note."""
     known = [row for row in rows if np.isfinite(row["error/tol"])]
-    return sum(row["error/tol"] > SILENT and not row["noted"] for row in known) / max(len(known), 1)
+    return sum(row["error/tol"] > NOTE_LIMIT and not row["noted"] for row in known) / max(len(known), 1)
 
 
 def main() -> None:
@@ -105,8 +105,8 @@ def main() -> None:
     show([row for row in rows if not row["error/tol"] <= 1.0] or rows[:1], options.out, "beyond")
     show(summary(rows), table="counts")
     known = sum(np.isfinite(row["error/tol"]) for row in rows)
-    print(f"{known} of {len(rows)} runs have a reference; {silent_part(rows):.2%} err by more than {SILENT:g} tol and "
-          "say nothing")
+    print(f"{known} of {len(rows)} runs have a reference; {silent_part(rows):.2%} err by more than {NOTE_LIMIT:g} tol "
+          "without a note")
 
 
 if __name__ == "__main__":

@@ -45,7 +45,7 @@ COLUMNS = ("mean", "sigma", "mean+3s", "mean-3s", "max", "min", "uplift", "loss 
 
 FINE, USUAL, COARSE = (0.5, 0.5), (1.0, 1.0), (2.0, 2.0)
 """Longest elements of contact wire and messenger, m."""
-AFTER = 18.0
+FILTER_LENGTH = 18.0
 """m: beyond the section that is judged, so far the run goes on: the filter looks ahead."""
 MATERIAL = 1e-4
 """s: damping time of the wires' material, without which waves above 50 Hz have hardly any damping."""
@@ -124,7 +124,7 @@ def judge(kmh: float, longest=USUAL, tol=TOL, uplift=120.0, spans=10, settings=N
     pantograph = catenary.Pantograph(masses=TWO_MASSES.masses, stiffness=TWO_MASSES.stiffness,
                                      damping=TWO_MASSES.damping, uplift=uplift)
     run = passage(reference(spans, **line), {"pantograph": (pantograph, 20.0)}, kmh, longest, absolute_tol=tol,
-                  **{"duration": (middle + 60.0 + AFTER - 20.0) / (kmh / 3.6), **(settings or {})})
+                  **{"duration": (middle + 60.0 + FILTER_LENGTH - 20.0) / (kmh / 3.6), **(settings or {})})
     return run, figures(run, [(middle - 60.0, middle + 60.0)])
 
 
@@ -179,7 +179,7 @@ def kinds_rows() -> list[dict]:
     for what, line, pantograph in (("arms and hinges", level, jointed), ("its masses", level, jointed.equivalent()),
                                    ("two masses, staggers", staggered, TWO_MASSES)):
         run = passage(line, {"pantograph": (pantograph, 20.0)}, 300, USUAL, absolute_tol=TOL,
-                      duration=(360.0 + AFTER - 20.0) / (300 / 3.6))
+                      duration=(360.0 + FILTER_LENGTH - 20.0) / (300 / 3.6))
         rows.append(row(300, what, figures(run, [(240.0, 360.0)]), run))
         print(rows[-1], flush=True)
     return rows

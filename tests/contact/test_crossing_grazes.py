@@ -9,7 +9,7 @@ from funicular import Circle, Material
 
 RADIUS = 0.005
 SECTION, MATERIAL = Circle(radius=RADIUS), Material(youngs_modulus=1e3, poisson_ratio=0.3, density=1000)
-DEEP = 2e-4
+MIN_GRAZE_DEPTH = 2e-4
 """m: how deep lines touch at least, in short steps, where long steps must not miss it: more than these err by."""
 SEEDS = range(24)
 pytestmark = pytest.mark.slow
@@ -75,7 +75,7 @@ def deepest(seed: int) -> float:
     ("explicit", None)])
 def test_bent_cables_that_turn_do_not_graze_unseen(integrator, steps):
     given = {"tol": 1e-3} if steps is None else {"step": 1 / steps}
-    grazes = [seed for seed in SEEDS if deepest(seed) > DEEP]
+    grazes = [seed for seed in SEEDS if deepest(seed) > MIN_GRAZE_DEPTH]
     given |= {"integrator": integrator, "output_step": 1.0, "progress": False}
     missed = {seed: deepest(seed) for seed in grazes if not touches(flight(seed).run(1.0, **given))}
     assert len(grazes) > 10

@@ -246,8 +246,8 @@ CEILINGS = {
                  "sliding": 7752, "step": 129, "turned": 69},
     "planar_crossing": {"closest": 12, "contact": 59, "force": 309, "motion": 24, "stretch": 97, "sticking": 523,
                         "sliding": 324, "step": 101, "turned": 56},
-    "surface": {"flat": 5, "rounded": 61, "terrain": 116, "push": 12, "push_hertz": 29, "pressing": 90, "sticking": 185,
-                "sliding": 468, "reaction": 276, "motion": 91, "slip": 123},
-    "planar_surface": {"flat": 3, "rounded": 33, "terrain": 35, "push": 12, "push_hertz": 29, "pressing": 40,
+    "surface": {"flat": 5, "rounded": 61, "terrain": 116, "push": 12, "push_hertz": 29, "frictionless": 90,
+                "sticking": 185, "sliding": 468, "reaction": 276, "motion": 91, "slip": 123},
+    "planar_surface": {"flat": 3, "rounded": 33, "terrain": 35, "push": 12, "push_hertz": 29, "frictionless": 40,
                        "sticking": 89, "sliding": 170, "reaction": 85, "motion": 40, "slip": 48},
 }

@@ -7,9 +7,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { CASES = 400, MOST = FU_MAX_INVERTED, WIDEST = 32 };
+enum { CASES = 400, MAX_SIZE = FU_MAX_INVERTED, MAX_WIDTH = 32 };
 
-static double A[MOST * MOST], x[4 * MOST], y[4 * MOST], bx[MOST], by[MOST];
+static double A[MAX_SIZE * MAX_SIZE], x[4 * MAX_SIZE], y[4 * MAX_SIZE], bx[MAX_SIZE], by[MAX_SIZE];
 
 static double number(void)
 {
@@ -33,7 +33,7 @@ static void half_of(int n, int width, int transposed, double *K)
 /* A complex band, symmetric or not, factored and solved with: what is left of its equations. */
 static double complex_band(int n, int width, int symmetric)
 {
-    static double K[FU_BAND_ROWS(WIDEST) * MOST], halves[4][FU_COMPLEX_STRIDE(WIDEST) * MOST];
+    static double K[FU_BAND_ROWS(MAX_WIDTH) * MAX_SIZE], halves[4][FU_COMPLEX_STRIDE(MAX_WIDTH) * MAX_SIZE];
     double *const L[2] = {halves[0], halves[1]}, *const U[2] = {halves[2], halves[3]};
     const fu_complex factor = {0.3, -0.8};
     double worst = 0.0;
@@ -45,7 +45,7 @@ static double complex_band(int n, int width, int symmetric)
             A[i * n + j] = A[j * n + i] = i == j ? width + 3.0 : number();
             if (i > j && !symmetric) A[j * n + i] += 0.1 * number();
         }
-    for (int i = 0; i < 4 * MOST; ++i) x[i] = y[i] = 0.0;
+    for (int i = 0; i < 4 * MAX_SIZE; ++i) x[i] = y[i] = 0.0;
     for (int i = 0; i < n; ++i) {
         bx[i] = x[i] = number();
         by[i] = y[i] = number();
@@ -72,8 +72,8 @@ static double complex_band(int n, int width, int symmetric)
 /* The inverse of a band that is factored already, times a part of a column: how far it is from the substitution. */
 static double inverse(int n, int width)
 {
-    static double L[(WIDEST + 1) * (MOST + FU_BAND_GROUP)], made[FU_INVERSE_ROWS(MOST) * MOST],
-        out[FU_INVERSE_ROWS(MOST)];
+    static double L[(MAX_WIDTH + 1) * (MAX_SIZE + FU_BAND_GROUP)], made[FU_INVERSE_ROWS(MAX_SIZE) * MAX_SIZE],
+        out[FU_INVERSE_ROWS(MAX_SIZE)];
     const int stride = width + 1, first = rand() % n, end = first + rand() % (n - first + 1);
     double worst = 0.0;
     for (int j = 0; j < n + FU_BAND_GROUP; ++j)
@@ -81,7 +81,7 @@ static double inverse(int n, int width)
             const double inside = i ? 0.2 * number() : 1.0 / (2.0 + number());
             L[j * stride + i] = i + j < n ? inside : j >= n && i == 0;
         }
-    for (int i = 0; i < 4 * MOST; ++i) x[i] = 0.0;
+    for (int i = 0; i < 4 * MAX_SIZE; ++i) x[i] = 0.0;
     for (int i = 0; i < n; ++i) bx[i] = x[i] = i >= first && i < end ? number() : 0.0;
     fu_inverse_make(n, width, L, made);
     fu_inverse_times(FU_INVERSE_ROWS(n), made, first, end, bx, out);
@@ -115,7 +115,7 @@ int main(void)
     int pivot[2];
     double singular[4] = {1.0, 2.0, 2.0, 4.0};
     for (int k = 0; k < CASES; ++k) {
-        const int n = 1 + rand() % MOST, width = FU_BAND_GROUP - 1 + rand() % (WIDEST - FU_BAND_GROUP);
+        const int n = 1 + rand() % MAX_SIZE, width = FU_BAND_GROUP - 1 + rand() % (MAX_WIDTH - FU_BAND_GROUP);
         band = larger(band, complex_band(n, width, 1));
         unsymmetric = larger(unsymmetric, complex_band(n, width, 0));
         inverted = larger(inverted, inverse(n, width));

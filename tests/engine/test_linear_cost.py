@@ -70,7 +70,7 @@ def test_band_is_factored_as_it_allows(made, size, how):
     assert error < 1e-9
 
 
-LONG = 1024
+TWISTED_SIZE = 1024
 """Unknowns of a chain from which on it is eliminated from both ends (FU_TWISTED_FROM)."""
 
 
@@ -79,7 +79,7 @@ LONG = 1024
     ("three riders", 180), ("three cables", 186), ("ring", 186), ("ladder", 200)])
 def test_long_chains_are_solved_from_both_ends(name, elements):
     engine = started(scene(name, elements))
-    assert engine.band[0] >= LONG
+    assert engine.band[0] >= TWISTED_SIZE
     error, how = solution_error(engine, 1e-4, 1e-6)
     assert how == "symmetric"
     assert error < 1e-9

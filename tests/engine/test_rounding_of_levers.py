@@ -7,20 +7,20 @@ import numpy as np
 import pytest
 
 POINTS = [(-.05, -.05, -.05), (.05, -.05, -.05), (0, -.05, .05)]
-LARGE = 1e3
+SHAPE_SIZE = 1e3
 """m: the radius of round surfaces; over 0.1 m they are flat to 5e-6 m, and turn by 1e-4."""
 FLAT = {
     "box": fu.Box(size=(10, 10, 10), at=(0, -5, 0)),
-    "large box": fu.Box(size=(100, 2 * LARGE, 100), at=(0, -LARGE, 0)),
+    "large box": fu.Box(size=(100, 2 * SHAPE_SIZE, 100), at=(0, -SHAPE_SIZE, 0)),
     "turned box": fu.Box(size=(10, 10, 10), at=(0, -5, 0), along=(0.6, 0, 0.8)),
     "plane from afar": fu.Plane(point=(3000, 0, -2000)),
     "height field": fu.HeightField(x=[-5, 0, 5], heights=[0, 0, 0]),
     "two-way height field": fu.HeightField(x=[-5, 0, 5], across=[-3, 3], heights=[[0, 0]] * 3),
 }
 ROUND = {
-    "sphere": fu.Sphere(radius=LARGE, at=(0, -LARGE, 0)),
-    "cylinder": fu.Cylinder(radius=LARGE, length=10, at=(0, -LARGE, 0)),
-    "capsule": fu.Capsule(radius=LARGE, length=10, at=(0, -LARGE, 0)),
+    "sphere": fu.Sphere(radius=SHAPE_SIZE, at=(0, -SHAPE_SIZE, 0)),
+    "cylinder": fu.Cylinder(radius=SHAPE_SIZE, length=10, at=(0, -SHAPE_SIZE, 0)),
+    "capsule": fu.Capsule(radius=SHAPE_SIZE, length=10, at=(0, -SHAPE_SIZE, 0)),
 }
 
 

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from shared_scenes import cable_scene
 
-TINY = 1e-310
+SUBNORMAL_VELOCITY = 1e-310
 FLUSHED = pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="others take them as they are")
 
 
 def drifting() -> fu.Scene:
     scene = fu.Scene(gravity=(0, 0, 0))
-    scene.rigid_body("A", mass=1.0, inertia=(1.0, 1.0, 1.0), position=(0, 0, 0), velocity=(TINY, 1.0, 0))
+    scene.rigid_body("A", mass=1.0, inertia=(1.0, 1.0, 1.0), position=(0, 0, 0), velocity=(SUBNORMAL_VELOCITY, 1.0, 0))
     return scene
 
 
@@ -30,14 +30,14 @@ def test_they_stay_in_functions_of_events_and_after_a_run():
     seen = []
 
     def watch(time, state):
-        seen.append(np.float64(TINY) * 0.5)
+        seen.append(np.float64(SUBNORMAL_VELOCITY) * 0.5)
         return 1.0
 
     scene = drifting()
     scene.event("none", function=watch)
     scene.run(0.1, step=0.01, integrator="genalpha", progress=False)
     assert len(seen) > 10
-    assert set(seen) == {np.float64(TINY) * 0.5}
+    assert set(seen) == {np.float64(SUBNORMAL_VELOCITY) * 0.5}
     assert min(seen) > 0.0
 
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from published import CASES, Kind, cantilevers, lookup
 
-ROUNDING = 1e-12
+ROUNDING_OF_MASS = 1e-12
 
 WITHIN = {
-    "E1 mass": {"beam24": ROUNDING},  # all digits printed
+    "E1 mass": {"beam24": ROUNDING_OF_MASS},  # all digits printed
     "E1 force": {"beam24": 1e-9},  # a difference: G A γ of forces E A
     "E2 bending": {"structural": 5e-3, "poisson_split": 1.8e-2},
     # digits printed; reduced: a soft upper mode

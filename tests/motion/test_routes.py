@@ -17,16 +17,16 @@ from small_vibrations import displaced, free_to_vibrate, lowest_modes, undamped
 
 pytestmark = pytest.mark.slow
 TOL = 1e-6
-WITHIN = 20.0
+ROUTE_TOLERANCE = 20.0
 """tol: two routes agree, as errors of either may be a few tol; or one of them has a note that errors may be larger."""
-SAME = 1.0
+SAME_STEPS_TOLERANCE = 1.0
 """tol: of a scene written anew, whose steps are the same but for rounding; "turned" ones have other errors."""
 SEEDS = [*range(6 * len(MOTIONS))]
 ROWS = [*range(1000, 1040)]
 """Seeds of motions, and of scenes in which two or three features meet."""
 NO_REST = 33,
 """Seeds of scenes whose state of rest is sought in vain, for 20 s."""
-LONGEST = 1.0
+MAX_CPU_TIME = 1.0
 """CPU seconds: runs that take longer, such as explicit ones of stiff beams, are given up and not compared."""
 
 
@@ -35,7 +35,7 @@ def run(scene, duration, integrator="radau", until=np.inf, **settings):
     begin = time.process_time()
 
     def give_up(reached):
-        if time.process_time() - begin > LONGEST or reached >= until:
+        if time.process_time() - begin > MAX_CPU_TIME or reached >= until:
             raise KeyboardInterrupt
 
     try:
@@ -46,7 +46,7 @@ def run(scene, duration, integrator="radau", until=np.inf, **settings):
     return found if found.status == "completed" or until < duration else None
 
 
-def check(subject, name, found, *runs, within=WITHIN):
+def check(subject, name, found, *runs, within=ROUTE_TOLERANCE):
     """Check a motion by another route against that of the drawn scene."""
     assert apart(subject.points, found) < within * TOL or is_noted(subject.run, *runs)
 
@@ -93,7 +93,8 @@ def test_integrators_agree(subject, integrator):
 def test_scene_written_anew_has_the_same_motion(subject, name):
     if (route := ROUTES[name](subject.scene)) is not None:
         other = run(route.scene, subject.duration / route.frame.time)
-        check(subject, name, points(other, route), other, within=WITHIN if name in ("turned", "moved") else SAME)
+        tolerance = ROUTE_TOLERANCE if name in ("turned", "moved") else SAME_STEPS_TOLERANCE
+        check(subject, name, points(other, route), other, within=tolerance)
 
 
 def test_resumed_run_is_the_same(subject, tmp_path):

@@ -5,7 +5,7 @@ import pytest
 from choice import TOLS, cell, references
 from choice_scenes import SCENES
 
-WITHIN, MOST = 0.95, 3.0
+MIN_SHARE_WITHIN_TOL, MAX_ERROR_RATIO = 0.95, 3.0
 """Part of the cells that are within tol, and the largest error of any, over tol."""
 
 QUICK = ("heavy top, 150 rad/s", "heavy top on a spring", "flexible link", "taut cable, struck", "taut cable, rider",
@@ -25,14 +25,14 @@ def errors(names, tols) -> np.ndarray:
 @pytest.mark.parametrize("tol", [1e-3, 1e-4])
 def test_the_error_is_at_most_three_tol(tol):
     """Scenes with errors of up to 60 tol by genalpha, or by radau's embedded estimate alone."""
-    assert errors(QUICK, [tol]).max() < MOST
+    assert errors(QUICK, [tol]).max() < MAX_ERROR_RATIO
 
 
 @pytest.mark.slow
 def test_the_error_is_within_tol_in_nearly_all_cells():
     found = errors(SCENES, TOLS)
-    assert np.mean(found <= 1) >= WITHIN
-    assert found.max() <= MOST
+    assert np.mean(found <= 1) >= MIN_SHARE_WITHIN_TOL
+    assert found.max() <= MAX_ERROR_RATIO
 
 
 def test_references_are_converged():

@@ -12,7 +12,7 @@ from funicular.generated import kernels
 
 PAIRS = [("cable8p", "cable12"), ("beam12p", "beam24")]
 RIDER = [0, 1, 5]  # translation in the plane and rotation about its normal, of the six velocities
-ROUNDING = 2e-15  # of the samples' order, one: measured 6e-16
+PLANAR_ROUNDING = 2e-15  # of the samples' order, one: measured 6e-16
 
 
 def call(name: str, state: dict) -> tuple:
@@ -54,7 +54,7 @@ def same(planar: np.ndarray, spatial: np.ndarray, *axes: list[int] | np.ndarray)
     """Compare at the places given for each axis; entries with one axis out of the plane must be zero, since the mirror
     image in the plane is the same state and changes their sign.
     """
-    limit = ROUNDING * max(1.0, np.abs(planar).max())  # the samples are of order one
+    limit = PLANAR_ROUNDING * max(1.0, np.abs(planar).max())  # the samples are of order one
     np.testing.assert_allclose(spatial[np.ix_(*axes)], planar, rtol=0, atol=limit)
     outside = [np.isin(np.arange(n), at, invert=True) for n, at in zip(spatial.shape, axes, strict=True)]
     odd = np.logical_xor.reduce(np.meshgrid(*outside, indexing="ij"))

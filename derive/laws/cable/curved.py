@@ -26,8 +26,8 @@ from ...spec import LawTraits
 from .. import stress_free
 from .cable import Cable, Term
 
-ROUNDING = sp.Rational(1, 10**6)  # squared, of kappa0
-FLOOR = sp.Rational(1, 10**12)  # squared, of 2/l: below it, a curvature of the stress-free shape is none
+CURVATURE_TOLERANCE = sp.Rational(1, 10**6)  # squared, of kappa0
+MIN_CURVATURE = sp.Rational(1, 10**12)  # squared, of 2/l: below it, a curvature of the stress-free shape is none
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ def traits(strain: str, curvature: str) -> LawTraits:
 class CurvedCable(Cable):
     """The law with e0; the damping is that of the straight law."""
 
-    floor = FLOOR
+    floor = MIN_CURVATURE
 
     def __init__(self, gram: Any, strain: str, curvature: str):
         super().__init__(gram, strain, curvature)
@@ -81,16 +81,16 @@ class CurvedCable(Cable):
         for g, point in enumerate(self.bending_points):
             r1, r2 = (program.vector(f"r{k}_{g}", sum(f * v for f, v in zip(series, c, strict=True)))
                       for k, series in ((1, point.value), (2, point.slope)))
-            found += astuple(self.reference(program, f"_{g}", r1, r2, FLOOR))
+            found += astuple(self.reference(program, f"_{g}", r1, r2, MIN_CURVATURE))
         program.output("A", found, "N, N m^2, 1", "EA, EI, and the stress-free shape at each Gauss point")
 
     def reference(self, program: Program, tag: str, r1: np.ndarray, r2: np.ndarray, floor: sp.Expr) -> Reference:
-        """Return the reference from r0' and r0''; floor is FLOOR in the units of r0''."""
+        """Return the reference from r0' and r0''; floor is MIN_CURVATURE in the units of r0''."""
         a, b, c = (program.define(f"{name}0{tag}", value) for name, value in
                    (("a", r1.dot(r1)), ("b", r1.dot(r2)), ("c", r2.dot(r2))))
         inverse = program.define(f"inv_a0{tag}", 1 / a)
         k2 = program.define(f"k02{tag}", (a * c - b * b) * inverse**3)
-        rounding = program.define(f"round{tag}", ROUNDING * k2 + floor)
+        rounding = program.define(f"round{tag}", CURVATURE_TOLERANCE * k2 + floor)
         kappa = program.define(f"k0{tag}", sp.sqrt(k2 + rounding))
         none = program.define(f"none{tag}", 1 / (k2**2 + floor**2))
         return Reference(program.define(f"j0{tag}", sp.sqrt(a)), inverse, k2, rounding, kappa,

@@ -1,1 +1,1 @@
-"""Formulas: their tree, their text in LaTeX and MathML, the way back from the text, and their value."""
+"""Formulas: their tree, their text in LaTeX and MathML, the parser of that text, and their value."""

@@ -9,7 +9,7 @@ import numpy as np
 from ...codegen.family import BodyFamily
 from ..motion import RIDERS
 from ..numbers import EPS, Numbers, State
-from .measures import FAR, Invariance, quantised, relative
+from .measures import ORIGIN_SHIFT, Invariance, quantised, relative
 from .moves import moves
 
 
@@ -21,7 +21,7 @@ def body(family: BodyFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     distance = np.linalg.norm(out["p"] - s["b"][:dim])
     yield "the point keeps its distance", float(abs(distance / np.linalg.norm(s["u"]) - 1)), 8 * EPS
     yield "velocity is p_q w", relative(out["v"] - out["p_q"] @ s["w"], out["v"]), 8 * EPS
-    b = np.concatenate([quantised(s["b"][:dim]) + FAR, s["b"][dim:]])
+    b = np.concatenate([quantised(s["b"][:dim]) + ORIGIN_SHIFT, s["b"][dim:]])
     away = k("point", s, b=b)
     arm = rider.point(np.concatenate([np.zeros(dim), s["b"][dim:]]), s["u"])
     yield "position at 10⁴ lengths", relative(away["p"] - b[:dim] - arm, b[:dim]), 2 * EPS

@@ -12,7 +12,7 @@ from ...spec import Element
 from ..numbers import EPS, Numbers, State
 from ..references.element import Shape
 from ..samples.shapes import reference, rotation
-from .measures import FAR, Invariance, quantised, relative, spins
+from .measures import ORIGIN_SHIFT, Invariance, quantised, relative, spins
 
 
 def law(family: LawFamily, k: Numbers, s: State) -> Iterator[Invariance]:
@@ -65,7 +65,7 @@ def _deformed(family: LawFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     spec = family.element
     positions = np.array(spec.is_position, dtype=float)
     e = quantised(s["e"])
-    away = e + np.outer(positions, np.full(spec.dim, FAR))
+    away = e + np.outer(positions, np.full(spec.dim, ORIGIN_SHIFT))
     f, K = k("elastic_force", s, e=e)["f"], k("elastic_tangent", s, e=e)["K"]
     for at, where in ((e, ""), (away, " at 10⁴ lengths")):
         force = k("elastic_force", s, e=at)["f"]
@@ -88,7 +88,7 @@ def _step(family: LawFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     spec = family.element
     positions = np.array(spec.is_position, dtype=float)
     e, e_next = quantised(s["e"]), quantised(s["e_next"])
-    away = np.outer(positions, np.full(spec.dim, FAR))
+    away = np.outer(positions, np.full(spec.dim, ORIGIN_SHIFT))
     f, back = k("discrete_force", s, e=e, e_next=e_next)["f"], k("discrete_force", s, e=e_next, e_next=e)["f"]
     scale = max(np.max(np.abs(f)), _stiffness(family, s) / s["l"])
     yield "step: no net force", relative(positions @ f, scale), 8 * EPS

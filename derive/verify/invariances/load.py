@@ -10,14 +10,14 @@ from ...elements.load_kernels import turning_slopes
 from ...spec import Element
 from ..numbers import EPS, Numbers, State
 from ..samples.shapes import rotation
-from .measures import FAR, Invariance, quantised, relative, spins
+from .measures import ORIGIN_SHIFT, Invariance, quantised, relative, spins
 
 
 def invariances(spec: Element, k: Numbers, s: State) -> Iterator[Invariance]:
     """Yield work on rotations, turned frames, and digits far away."""
     positions = np.array(spec.is_position, dtype=float)
     e = quantised(s["e"])
-    away = {**s, "e": e + np.outer(positions, np.full(spec.dim, FAR))}
+    away = {**s, "e": e + np.outer(positions, np.full(spec.dim, ORIGIN_SHIFT))}
     for kernel in ("follower_force", "moment"):
         out, there = k(kernel, s, e=e), k(kernel, away)
         yield "loads: same digits at 10⁴ lengths", max(float(np.max(np.abs(out[n] - there[n]))) for n in out), 0.0

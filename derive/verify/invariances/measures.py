@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 Invariance = tuple[str, float, float]
-FAR = 2.0**13  # above 10^4 lengths of the sample element; a power of two, so that moving there rounds nothing
+ORIGIN_SHIFT = 2.0**13  # above 10^4 lengths of the sample element; a power of two, so that moving there rounds nothing
 
 
 def quantised(values: np.ndarray) -> np.ndarray:
-    """Return values rounded to 2^-20, so that adding FAR is exact."""
+    """Return values rounded to 2^-20, so that adding ORIGIN_SHIFT is exact."""
     return np.round(values * 2.0**20) / 2.0**20
 
 

@@ -10,7 +10,7 @@ from ...bodies.modal import vector_product
 from ...codegen.family import BodyFamily
 from ..motion import RIDERS
 from ..numbers import EPS, Numbers, State
-from .measures import FAR, Invariance, quantised, relative
+from .measures import ORIGIN_SHIFT, Invariance, quantised, relative
 
 
 def modal(family: BodyFamily, k: Numbers, s: State) -> Iterator[Invariance]:
@@ -22,7 +22,7 @@ def modal(family: BodyFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     yield "M positive definite (least eigenvalue below zero)", max(-least, 0.0), 0.0
     axes = k("attachment", s)["axes"]
     yield "axes' axes = 1", relative(axes.T @ axes - np.eye(len(axes)), 1), 8 * EPS
-    b = np.concatenate([quantised(s["b"][: dim]) + FAR, s["b"][dim :]])
+    b = np.concatenate([quantised(s["b"][: dim]) + ORIGIN_SHIFT, s["b"][dim :]])
     yield "forces: same digits at 10⁴ lengths", max(
         relative(k(name, s, b=b)["f"] - k(name, s)["f"], 1) for name in ("inertia_force", "mode_force")), 0.0
     along = vector_product(s["S"], s["g"])

@@ -21,5 +21,5 @@ def moves(rider: Motions, k: Numbers, s: State) -> Iterator[Invariance]:
     for kernel, output in (("move", "b_next"), ("move_tangent", "T")):
         for length in (1.0, 2.0):  # series below one of these, quotients above
             step = length / np.linalg.norm(direction) * direction
-            below, above = (k(kernel, s, step=(1 + way * 1e-15) * step)[output] for way in (-1, 1))
+            below, above = (k(kernel, s, step=(1 + sign * 1e-15) * step)[output] for sign in (-1, 1))
             yield "no jump from series to quotients", float(np.abs(above - below).max()), 32 * EPS

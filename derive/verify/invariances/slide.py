@@ -10,7 +10,7 @@ import numpy as np
 from ...codegen.family import SlideFamily
 from ..motion import RIDERS, swung
 from ..numbers import EPS, Numbers, State
-from .measures import FAR, Invariance, quantised, relative
+from .measures import ORIGIN_SHIFT, Invariance, quantised, relative
 
 _OUTPUTS = ("C", "C_s", "s_rate", "Q_d", "W", "s_bias")
 
@@ -23,13 +23,13 @@ def slide(family: SlideFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     out = k("terms", s)
     n_e = family.element.n_coordinates
     yield "eq 30: C_lq + C_ls G = 0", relative(out["C_q"][0] + out["C_s"][0] * out["G"], out["C_q"][0]), 8 * EPS
-    yield from _kept(family, k, s, n_e)
+    yield from _constraint_invariances(family, k, s, n_e)
     yield from _frame(family, k, s, out, n_e)
     yield from _forces(family, k, s, n_e)
     yield from _step(family, k, s, n_e)
 
 
-def _kept(family: SlideFamily, k: Numbers, s: State, n_e: int) -> Iterator[Invariance]:
+def _constraint_invariances(family: SlideFamily, k: Numbers, s: State, n_e: int) -> Iterator[Invariance]:
     """Yield that H is blind to any velocity of the cable, any turning and any speed of sliding on the joint."""
     gap = k("residual", s)["phi"]
     b = s["b"].copy()
@@ -78,9 +78,9 @@ def _frame(family: SlideFamily, k: Numbers, s: State, out: dict[str, Any], n_e: 
     for name, value in ends.items():
         if name.startswith("b"):
             value[: element.dim] = quantised(value[: element.dim])
-            shift = FAR * (np.arange(len(value)) < element.dim)
+            shift = ORIGIN_SHIFT * (np.arange(len(value)) < element.dim)
         else:
-            shift = np.outer(positions, np.full(element.dim, FAR))
+            shift = np.outer(positions, np.full(element.dim, ORIGIN_SHIFT))
         away[name] = value + shift
     for kernel in ("constraint", "terms", "residual", "tangent", "discrete_gradient"):
         here, there = k(kernel, near), k(kernel, away)

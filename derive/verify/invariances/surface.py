@@ -32,10 +32,10 @@ def surface(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance
         now = k(name, s)
         later = k(name, {**s, "depth": s["depth_next"]})
         work = now["mean"] * (s["depth_next"] - s["depth"])
-        yield f"{name}: what presses over a step gives the change of the stored energy", relative(
+        yield f"{name}: the mean force of a step gives the change of the stored energy", relative(
             np.atleast_1d(later["U"] - now["U"] - work), np.atleast_1d(now["U"])), 64 * EPS
         still = k(name, {**s, "depth_rate": 0 * s["depth_rate"]})
-        yield f"{name}: without a rate all of it is elastic", relative(
+        yield f"{name}: at zero rate the force is elastic", relative(
             np.atleast_1d(still["p"] - still["p_e"]), np.atleast_1d(still["p"])), 64 * EPS
     slides = k("sliding", s)["f"]
     yield "friction is along the surface", relative(np.atleast_1d(slides @ s["n"]), slides), 64 * EPS

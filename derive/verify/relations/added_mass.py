@@ -112,8 +112,8 @@ def _body_over_step() -> list[Relation]:
                  lambda k, s, t, j: impulses(k, s)[1] - impulses(k, s)[0], of=lambda k, s: step(k, s)["dp"]),
         Relation(kernel, "p", "its mean", 0, lambda k, s, t, j: sum(impulses(k, s)) / 2,
                  of=lambda k, s: step(k, s)["p"]),
-        Relation(kernel, "moment", "moment . theta = change of T less dp . way/h", 0, lambda k, s, t, j: work(k, s),
-                 of=lambda k, s: step(k, s)["moment"].dot(s["theta"])),
+        Relation(kernel, "moment", "moment . theta = change of T less dp . displacement/h", 0,
+                 lambda k, s, t, j: work(k, s), of=lambda k, s: step(k, s)["moment"].dot(s["theta"])),
         Relation(kernel, "more", "mean of A y over both ends less A y of the means", 0, more,
                  of=lambda k, s: step(k, s)["more"]),
     ]

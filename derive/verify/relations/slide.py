@@ -63,7 +63,7 @@ class Paths:
                 break
         return x
 
-    def kept(self, k: Numbers, s: State, q: State) -> np.ndarray:
+    def constraint_along(self, k: Numbers, s: State, q: State) -> np.ndarray:
         """Return C_m along s(q)."""
         return constraint(k, s, self.closed(k, s, q), **q)[1:]
 
@@ -102,7 +102,7 @@ class Paths:
     def bend_left(self, k: Numbers, s: State, t: Any, j: int) -> np.ndarray:
         """Return t^2/2 H q'' - C_m along s(q), whose second derivative is W."""
         q = self.by_motion(k, s, t)
-        return t * t / 2 * k("terms", s)["H"].dot(_acceleration(s)) - self.kept(k, s, q)
+        return t * t / 2 * k("terms", s)["H"].dot(_acceleration(s)) - self.constraint_along(k, s, q)
 
     def slide_left(self, k: Numbers, s: State, t: Any, j: int) -> Any:
         """Return s - t^2/2 G q'', whose second derivative is s_bias."""
@@ -111,7 +111,7 @@ class Paths:
     # --- over a step --------------------------------------------------------------------------------------------
 
     def step(self, s: State) -> np.ndarray:
-        """Return the way from one end of a step to the other, over (e, rider, s)."""
+        """Return the change over a step, over (e, rider, s)."""
         return np.concatenate([(s["e_next"] - s["e"]).ravel(), self.rider.step(s["b"], s["b_next"]),
                                [s["x_next"].item() - s["x"].item()]])
 
@@ -179,6 +179,6 @@ def _of_terms(p: Paths) -> list[Relation]:
                      lambda k, s, t, j: p.closed(k, s, p.by_motion(k, s, t))),
             Relation("terms", "Q_d", "d²C/dt² at q'' = s'' = 0", 2, p.unaccelerated),
             Relation("terms", "H", "dC_m/dq along s(q)", 1,
-                     lambda k, s, t, j: p.kept(k, s, p.by_coordinate(k, s, t, j)), p.n),
+                     lambda k, s, t, j: p.constraint_along(k, s, p.by_coordinate(k, s, t, j)), p.n),
             Relation("terms", "W", "H q'' - d²C_m/dt² along s(q)", 2, p.bend_left),
             Relation("terms", "s_bias", "d²s/dt² - G q''", 2, p.slide_left)]

@@ -83,11 +83,11 @@ def _laws() -> list[Relation]:
 
 def _forces(dim: int) -> list[Relation]:
     """Return the relations of forces: along a place the normal turns by H, its force changes with depth and rate."""
-    def by_place(kernel: str, with_x: bool, presses: bool) -> Any:
+    def by_place(kernel: str, with_x: bool, with_force: bool) -> Any:
         def path(k: Any, s: Any, t: Any, j: int) -> Any:
             move = t * unit(s["n"], j)
             changed: dict[str, Any] = {"n": s["n"] + s["H"] @ move}
-            if presses:
+            if with_force:
                 p, by_d, by_rate = s["normal_force"]
                 depth, rate = -(s["n"] @ move), -((s["H"] @ s["w"]) @ move)
                 changed["normal_force"] = s["normal_force"] * 0 + [p + by_d * depth + by_rate * rate, by_d, by_rate]
@@ -106,9 +106,9 @@ def _forces(dim: int) -> list[Relation]:
     def by_stretch(kernel: str) -> Any:
         return lambda k, s, t, j: k(kernel, s, x=s["x"] + t * unit(s["x"], j))["f"]
 
-    return [Relation("pressing", "f", "at 50 digits", 0, from_kernel("pressing", "f")),
-            Relation("pressing", "f_y", "df by the place", 1, by_place("pressing", False, True), dim),
-            Relation("pressing", "f_w", "df by the velocity", 1, by_rate("pressing"), dim),
+    return [Relation("frictionless", "f", "at 50 digits", 0, from_kernel("frictionless", "f")),
+            Relation("frictionless", "f_y", "df by the place", 1, by_place("frictionless", False, True), dim),
+            Relation("frictionless", "f_w", "df by the velocity", 1, by_rate("frictionless"), dim),
             Relation("sticking", "f", "at 50 digits", 0, from_kernel("sticking", "f")),
             Relation("sticking", "t", "at 50 digits", 0, from_kernel("sticking", "t")),
             Relation("sticking", "f_y", "df by the place", 1, by_place("sticking", True, False), dim),
@@ -162,13 +162,13 @@ def _motions(dim: int) -> list[Relation]:
         return k("slip", s, n=axes.dot(s["n"] + s["H"].dot(move)), **moved)["w"]
 
     def slip_of_particles(k: Any, s: Any, t: Any, j: int) -> Any:
-        """Return the way of the sphere's particle less that of the surface's, both at the place of contact now."""
+        """Return the displacement of the sphere's particle less that of the surface's, both at the point of contact."""
         arm = -s["radius"] * s["n"]
         place_o = s["r"] - s["r_o"] + arm
         axes, axes_o = (turned_axes(k, t * s[name], np.eye(dim, dtype=int)) for name in ("omega", "omega_o"))
         return t * (s["v"] - s["v_o"]) + axes.dot(arm) - axes_o.dot(place_o)
 
-    return [Relation("slip", "w", "d/dt of both particles' ways", 1, slip_of_particles),
+    return [Relation("slip", "w", "d/dt of both particles' displacements", 1, slip_of_particles),
             Relation("slip", "w_t", "dw/dt at zero accelerations", 1, slips),
             Relation("motion", "g_t", "dg/dt of the series", 1, distance),
             Relation("motion", "g_tt", "d²g/dt² of the series at zero accelerations", 2, distance)]

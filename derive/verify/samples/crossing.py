@@ -1,4 +1,4 @@
-"""Samples of lines that touch."""
+"""Samples of lines in contact."""
 
 from __future__ import annotations
 

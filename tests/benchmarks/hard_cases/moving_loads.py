@@ -11,7 +11,7 @@ from .case import Subject, simulate
 HERE = Subject()
 L, RADIUS, E, DENSITY = 1.0, 1e-2, 1e9, 1000.0
 AREA, EI = np.pi * RADIUS**2, E * np.pi / 4 * RADIUS**4
-SMALL = 1e-6
+DEFLECTION_RATIO = 1e-6
 """Static deflection of the beam under the load, over its length."""
 
 
@@ -20,7 +20,7 @@ def crossing(alpha: float, mu: float, elements: int):
 
     Returns t v/L and the deflection at mid-span over F L³/48EI.
     """
-    speed, force = alpha * np.pi / L * np.sqrt(EI / (DENSITY * AREA)), 48 * EI / L**2 * SMALL
+    speed, force = alpha * np.pi / L * np.sqrt(EI / (DENSITY * AREA)), 48 * EI / L**2 * DEFLECTION_RATIO
     scene = Scene(gravity=(0, 0, 0))
     beam = scene.cable("beam", start=(0, 0, 0), end=(L, 0, 0), elements=elements, element="cable12", curvature="linear",
                        section=Circle(radius=RADIUS), material=Material(youngs_modulus=E, poisson_ratio=0.0,
@@ -38,9 +38,9 @@ def measured(alpha: float, mu: float, at: str, exact: float):
     def measure(integrator):
         scene, duration = crossing(alpha, mu, 8)
         # tol is relative to the travel of the rider
-        settings = {"tol": 1e-3 * SMALL} if integrator == "explicit" else {"step": duration / 2000}
+        settings = {"tol": 1e-3 * DEFLECTION_RATIO} if integrator == "explicit" else {"step": duration / 2000}
         run = simulate(scene, 0.999 * duration, output_step=0.999 * duration / 1000, integrator=integrator, **settings)
-        middle = -run["beam.nodal_vectors"][:, 4, 0, 1] / (SMALL * L)
+        middle = -run["beam.nodal_vectors"][:, 4, 0, 1] / (DEFLECTION_RATIO * L)
         found = middle.max() if at == "largest" else float(np.interp(0.5 * duration, run.time, middle))
         return {"found": float(found), "published": exact, "error": float(abs(found - exact)),
                 "speed lost": float(1 - run["A.velocity"][-1, 0] / run["A.velocity"][0, 0])}

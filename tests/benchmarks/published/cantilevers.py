@@ -96,8 +96,8 @@ def stretched(kind: Kind, elements: int) -> tuple[float, float]:
 
 # --- B3: stout, with shear --------------------------------------------------------------------------------------------
 
-SMALL, LARGE = 62500.0, 62.5e6  # N
-FORCES = {SMALL: [("w", 8.09903382e-4)], LARGE: [("u", 0.15097119), ("w", 0.71056873)]}
+SMALL_FORCE, LARGE_FORCE = 62500.0, 62.5e6  # N
+FORCES = {SMALL_FORCE: [("w", 8.09903382e-4)], LARGE_FORCE: [("u", 0.15097119), ("w", 0.71056873)]}
 
 
 def stout_scene(kind: Kind, elements: int) -> Scene:
@@ -172,12 +172,13 @@ B2 = Case(
     notes={"poisson_split": OWN_SHEAR, "continuum": OWN_SHEAR})
 
 B3_SMALL = Case(
-    "B3 small", "stout cantilever, 62.5 kN", "Timoshenko's beam", stout_quantities(SMALL), stout(SMALL), 16, KINDS,
-    own_elements={"structural": 1}, notes=STOUT_NOTES)
+    "B3 small", "stout cantilever, 62.5 kN", "Timoshenko's beam", stout_quantities(SMALL_FORCE), stout(SMALL_FORCE), 16,
+    KINDS, own_elements={"structural": 1}, notes=STOUT_NOTES)
 
 B3_LARGE = Case(
-    "B3 large", "stout cantilever, 62.5 MN", "Reissner's beam, converged", stout_quantities(LARGE), stout(LARGE), 16,
-    KINDS, own_elements={"structural": 8}, ordered=STRUCTURAL,  # finer, it is at 1e-6 and goes on with order 2
+    "B3 large", "stout cantilever, 62.5 MN", "Reissner's beam, converged", stout_quantities(LARGE_FORCE),
+    stout(LARGE_FORCE), 16, KINDS, own_elements={"structural": 8},
+    ordered=STRUCTURAL,  # finer, it is at 1e-6 and goes on with order 2
     notes=STOUT_NOTES | {"poisson_split": FULLY_INTEGRATED})
 
 B4 = [

@@ -77,7 +77,7 @@ def princeton(kind: Kind, elements: int) -> list[float]:
 # --- B8: the right-angle frame ----------------------------------------------------------------------------------------
 
 BUCKLING = 1.088  # N
-NEAR = 0.03
+LOAD_STEP = 0.03
 """Part of the load to both sides where frequencies are told from rounding, which the stiff height makes coarse."""
 
 
@@ -107,8 +107,8 @@ def buckling(kind: Kind, elements: int) -> tuple[float]:
     def square(force: float) -> float:
         return lowest_square(frame(kind, elements, force))
 
-    rough = brentq(square, 0.9, 4.0, rtol=NEAR)
-    around = rough * (1 + NEAR * np.array([-2, -1, 1, 2]))
+    rough = brentq(square, 0.9, 4.0, rtol=LOAD_STEP)
+    around = rough * (1 + LOAD_STEP * np.array([-2, -1, 1, 2]))
     through = np.polynomial.Polynomial.fit(around, [square(force) for force in around], 3)
     return (brentq(through, around[0], around[-1]),)
 

@@ -59,7 +59,7 @@ void fu_contact_derivatives(const fu_model *model, const fu_contact *contact, co
     fu_surface_past(dim, on, point->r, point->v, w);
     const fu_normal_force of = fu_normal_force_at(contact, point->depth, -fu_dot(dim, at->n, w), point->depth);
     const double law[3] = {of.p, of.by_depth, of.by_rate};
-    kernel->pressing(at->n, at->H, w, law, f, point->by_place, point->by_rate);
+    kernel->frictionless(at->n, at->H, w, law, f, point->by_place, point->by_rate);
     memset(point->by_stretch, 0, sizeof point->by_stretch);
     if (point->mark && of.p > 0.0) fu_contact_friction_derivatives(model, contact, on, point);
 }
