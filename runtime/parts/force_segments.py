@@ -13,7 +13,7 @@ from .part import Part
 from .validation import check_function, list_of, show
 
 PUSHES_ALONE, PULLS_AND_PUSHES, PULLS_ALONE, HAS_NO_FORCE = -1, 0, 1, 2
-"""Signs of the force of a linear segment, as in runtime/engine/couplings/force/point_force.h."""
+"""Signs of the force of a linear segment, as in runtime/engine/couplings/force/force.h."""
 
 
 class ForceTable(Part):

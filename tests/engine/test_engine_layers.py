@@ -96,6 +96,20 @@ def test_no_header_gathers_others(file):
     assert lines, f"{file} declares nothing"
 
 
+def test_cython_includes_the_public_headers():
+    """A public header says so in its first line; all others are private to the engine."""
+    public = {file for file in HEADERS if (ENGINE / file).read_text(encoding="utf-8").startswith("/* Public: ")}
+    interface = (ENGINE / "cython" / "engine.pxi").read_text(encoding="utf-8")
+    assert public == set(re.findall(r'#include "(.*?)"', interface))
+    assert len(public) <= 14, "the interface of the engine has fourteen headers: put the declaration in one of them"
+
+
+def test_a_kind_of_coupling_has_one_header():
+    kinds = [file.split("/")[1] for file in HEADERS if file.startswith("couplings/") and "/common/" not in file]
+    assert sorted(kinds) == sorted(path.name for path in (ENGINE / "couplings").iterdir()
+                                   if path.is_dir() and path.name != "common")
+
+
 def test_functions_are_declared_in_the_layer_that_defines_them():
     of = home()
     elsewhere = [(file, name, of[name]) for file, text in HEADERS.items()

@@ -1,4 +1,4 @@
-/* Degrees of freedom and unknowns: bodies/unknowns.c. */
+/* Public: degrees of freedom and unknowns: bodies/unknowns.c. */
 #ifndef FUNICULAR_BODIES_UNKNOWNS_H
 #define FUNICULAR_BODIES_UNKNOWNS_H
 

@@ -1,9 +1,8 @@
 /* Eq 38: accelerations and multipliers of a state from M, H, W; and other solutions with M and H. */
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
-#include "couplings/force/loads.h"
-#include "equations/acceleration.h"
-#include "equations/energies.h"
+#include "couplings/force/force.h"
+#include "equations/equations.h"
 
 #include <math.h>
 #include <string.h>

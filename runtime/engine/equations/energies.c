@@ -1,6 +1,6 @@
 /* Inertia and energies of a whole scene: of cables and bodies, and of couplings. */
 #include "couplings/common/couplings.h"
-#include "equations/energies.h"
+#include "equations/equations.h"
 
 /* Computes f = M a. */
 void fu_mass_times(const fu_model *model, const double *q, const double *a, double *f)

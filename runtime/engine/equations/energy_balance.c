@@ -1,8 +1,6 @@
 /* External work and dissipation of a scene. */
 #include "couplings/common/couplings.h"
-#include "equations/acceleration.h"
-#include "equations/energies.h"
-#include "equations/projection.h"
+#include "equations/equations.h"
 #include "equations/run.h"
 
 #include <math.h>

@@ -3,8 +3,7 @@
 #include "bodies/rotation.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
-#include "couplings/force/loads.h"
-#include "equations/energies.h"
+#include "couplings/force/force.h"
 #include "equations/equations.h"
 #include "equations/run.h"
 

@@ -1,7 +1,6 @@
 /* Newton's method of an implicit step: residual and matrix belong to the integrator, the iteration is here. */
 #include "base/clock.h"
 #include "bodies/unknowns.h"
-#include "equations/energies.h"
 #include "equations/equations.h"
 #include "equations/run.h"
 #include "equations/step_control.h"

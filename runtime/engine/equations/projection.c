@@ -3,8 +3,7 @@
 #include "bodies/rotation.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
-#include "equations/acceleration.h"
-#include "equations/projection.h"
+#include "equations/equations.h"
 #include "equations/run.h"
 
 #include <math.h>

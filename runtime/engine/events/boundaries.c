@@ -1,7 +1,7 @@
 /* Boundaries between the segments of couplings' paths: couplings outside of their segments, and the times of
  * deferred events. */
 #include "equations/run.h"
-#include "events/boundaries.h"
+#include "events/events.h"
 
 #include <math.h>
 #include <stdlib.h>

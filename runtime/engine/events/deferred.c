@@ -11,10 +11,10 @@
  * has hardly a larger error than without events, and defers all of them, at steps of any kind. */
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
-#include "equations/acceleration.h"
+#include "equations/equations.h"
 #include "equations/run.h"
 #include "equations/step_control.h"
-#include "events/deferred.h"
+#include "events/events.h"
 #include "events/slack_cables.h"
 
 #include <math.h>

@@ -4,9 +4,8 @@
  * slip_direction is the direction of sliding. For friction that sticks at rest it is known, since its change is an
  * event. */
 #include "couplings/joint/joint.h"
-#include "couplings/slide/resistance.h"
-#include "equations/acceleration.h"
-#include "equations/projection.h"
+#include "couplings/slide/slide.h"
+#include "equations/equations.h"
 #include "equations/run.h"
 #include "events/end_stops.h"
 #include "events/events.h"

@@ -1,11 +1,9 @@
 /* Events: a coupling passes a boundary of its path or changes its state, a quantity passes a threshold, a function of
  * the user changes sign. */
 #include "base/underflow.h"
-#include "equations/acceleration.h"
+#include "equations/equations.h"
 #include "equations/run.h"
-#include "events/boundaries.h"
 #include "events/events.h"
-#include "events/proximity.h"
 
 #include <math.h>
 

@@ -6,7 +6,6 @@
 #include "equations/run.h"
 #include "events/events.h"
 #include "couplings/common/coupling_events.h"
-#include "events/proximity.h"
 
 #include <math.h>
 

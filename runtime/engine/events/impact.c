@@ -2,8 +2,7 @@
  * active points at once; then normal forces, by the accelerations that follow. Both are complementarity problems over
  * the compliance H M^-1 H' of the active points, with all other constraints unchanged. */
 #include "bodies/unknowns.h"
-#include "equations/acceleration.h"
-#include "equations/energies.h"
+#include "equations/equations.h"
 #include "equations/run.h"
 #include "events/events.h"
 #include "events/hard_contact.h"

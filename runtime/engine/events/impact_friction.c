@@ -2,9 +2,7 @@
  * friction times the normal impulse, and equal to it if the point still slides afterwards (Coulomb's law for impulses,
  * with Newton's restitution). After it, or where sliding stops: normal force, sticking and sliding of the points, by
  * the accelerations that follow. */
-#include "equations/acceleration.h"
-#include "equations/energies.h"
-#include "equations/projection.h"
+#include "equations/equations.h"
 #include "equations/run.h"
 #include "events/hard_contact.h"
 

@@ -1,5 +1,5 @@
 /* Impulses along the rows of hard contacts, and their jumps of velocities. */
-#include "equations/acceleration.h"
+#include "equations/equations.h"
 #include "equations/run.h"
 #include "events/hard_contact.h"
 

@@ -1,4 +1,4 @@
-/* The types of couplings with the events that they find: events/list.c. */
+/* Public: the types of couplings with the events that they find: events/list.c. */
 #ifndef FUNICULAR_EVENTS_LIST_H
 #define FUNICULAR_EVENTS_LIST_H
 

@@ -2,8 +2,7 @@
  * output may miss. */
 #include "couplings/common/coupling_events.h"
 #include "equations/run.h"
-#include "events/penetration.h"
-#include "events/proximity.h"
+#include "events/events.h"
 
 #include <math.h>
 

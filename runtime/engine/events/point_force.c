@@ -2,7 +2,7 @@
  * distance passes a bound, or the force reverses. */
 #include "base/cubic.h"
 #include "couplings/common/coupling_events.h"
-#include "couplings/force/point_force.h"
+#include "couplings/force/force.h"
 #include "equations/run.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
  *
  * couplings/common/proximity.c explains the search and the interval between two searches. */
 #include "equations/run.h"
-#include "events/proximity.h"
+#include "events/events.h"
 
 #include <math.h>
 #include <string.h>

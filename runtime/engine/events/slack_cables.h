@@ -1,4 +1,4 @@
-/* Tension-only cables that become slack and taut: events/slack_cables.c. */
+/* Public: tension-only cables that become slack and taut: events/slack_cables.c. */
 #ifndef FUNICULAR_EVENTS_SLACK_CABLES_H
 #define FUNICULAR_EVENTS_SLACK_CABLES_H
 

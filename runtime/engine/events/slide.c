@@ -3,9 +3,8 @@
 #include "base/cubic.h"
 #include "couplings/common/coupling_events.h"
 #include "couplings/joint/joint.h"
-#include "couplings/slide/resistance.h"
-#include "equations/acceleration.h"
-#include "equations/projection.h"
+#include "couplings/slide/slide.h"
+#include "equations/equations.h"
 #include "equations/run.h"
 #include "events/end_stops.h"
 

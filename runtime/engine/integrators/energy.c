@@ -17,10 +17,10 @@
 #include "bodies/rotation.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
-#include "couplings/force/loads.h"
+#include "couplings/force/force.h"
 #include "equations/equations.h"
 #include "equations/run.h"
-#include "events/deferred.h"
+#include "events/events.h"
 #include "integrators/algorithmic_dissipation.h"
 
 #include <string.h>

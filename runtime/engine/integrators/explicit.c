@@ -8,11 +8,10 @@
 #include "bodies/cables.h"
 #include "bodies/rotation.h"
 #include "couplings/common/couplings.h"
-#include "equations/acceleration.h"
-#include "equations/projection.h"
+#include "equations/equations.h"
 #include "equations/run.h"
 #include "equations/step_control.h"
-#include "events/deferred.h"
+#include "events/events.h"
 
 #include <math.h>
 #include <string.h>

@@ -19,11 +19,9 @@
 #include "bodies/rotation.h"
 #include "couplings/common/couplings.h"
 #include "equations/equations.h"
-#include "equations/projection.h"
 #include "equations/run.h"
 #include "equations/step_control.h"
-#include "events/boundaries.h"
-#include "events/deferred.h"
+#include "events/events.h"
 #include "integrators/carried_residual.h"
 #include "integrators/extrapolation.h"
 

@@ -1,4 +1,4 @@
-/* The list of integrators: integrators/list.c. */
+/* Public: the list of integrators: integrators/list.c. */
 #ifndef FUNICULAR_INTEGRATORS_LIST_H
 #define FUNICULAR_INTEGRATORS_LIST_H
 

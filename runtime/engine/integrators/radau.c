@@ -9,7 +9,7 @@
  *
  * The dependence of M^-1 H' on the state is neglected, except K. The end of the step is its last stage, projected on
  * the joints. (Hairer & Wanner 1996, IV.8.) */
-#include "equations/projection.h"
+#include "equations/equations.h"
 #include "integrators/radau.h"
 
 #include <math.h>

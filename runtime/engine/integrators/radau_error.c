@@ -1,6 +1,6 @@
 /* The local error of Radau IIA. */
 #include "bodies/unknowns.h"
-#include "equations/acceleration.h"
+#include "equations/equations.h"
 #include "equations/step_control.h"
 #include "integrators/radau.h"
 

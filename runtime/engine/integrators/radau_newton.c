@@ -1,7 +1,6 @@
 /* Newton's systems of Radau IIA, a real and a complex one (integrators/radau.c). */
 #include "base/clock.h"
 #include "bodies/unknowns.h"
-#include "equations/energies.h"
 #include "equations/equations.h"
 #include "integrators/radau.h"
 

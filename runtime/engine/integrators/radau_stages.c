@@ -2,9 +2,8 @@
 #include "base/clock.h"
 #include "bodies/rotation.h"
 #include "couplings/common/couplings.h"
-#include "equations/acceleration.h"
-#include "equations/projection.h"
-#include "events/deferred.h"
+#include "equations/equations.h"
+#include "events/events.h"
 #include "integrators/radau.h"
 
 #include <string.h>

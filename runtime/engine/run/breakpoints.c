@@ -1,6 +1,5 @@
 /* Breakpoints: instants at which signals are not smooth, and steps end. */
-#include "equations/acceleration.h"
-#include "equations/energies.h"
+#include "equations/equations.h"
 #include "events/events.h"
 #include "run/run.h"
 

@@ -2,10 +2,9 @@
 #include "couplings/common/couplings.h"
 #include "couplings/common/proximity.h"
 #include "equations/run.h"
-#include "events/boundaries.h"
 #include "events/events.h"
 #include "events/slack_cables.h"
-#include "run/checkpoint.h"
+#include "run/run.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -3,7 +3,7 @@
 #include "base/clock.h"
 #include "equations/equations.h"
 #include "equations/run.h"
-#include "run/part_timing.h"
+#include "run/run.h"
 
 #include <math.h>
 

@@ -1,8 +1,7 @@
 /* Rows of output. */
 #include "base/clock.h"
 #include "couplings/common/couplings.h"
-#include "equations/acceleration.h"
-#include "equations/energies.h"
+#include "equations/equations.h"
 #include "run/run.h"
 
 #include <string.h>

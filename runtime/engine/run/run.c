@@ -1,7 +1,7 @@
 /* The time loop: from breakpoint to breakpoint, from output time to output time. */
 #include "base/clock.h"
 #include "base/underflow.h"
-#include "events/deferred.h"
+#include "events/events.h"
 #include "run/run.h"
 
 /* of a breakpoint: distance of the end of a step before it, at which the signal is still that of the step */

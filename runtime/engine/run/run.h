@@ -1,7 +1,9 @@
-/* The time loop of a run: run/run.c. */
+/* Public: the time loop of a run: run/run.c; checkpoints: run/checkpoint.c; time of each coupling:
+ * run/part_timing.c. */
 #ifndef FUNICULAR_RUN_RUN_H
 #define FUNICULAR_RUN_RUN_H
 
+#include "base/common.h"
 #include "equations/run.h"
 
 /* run/record.c */
@@ -26,5 +28,13 @@ int fu_step_towards(fu_run *run, double target);
 /* run/run.c: the time loop */
 int fu_has_worked(const fu_run *run);
 int fu_advance(fu_run *run, double seconds);
+
+/* run/checkpoint.c: all data on which later steps depend */
+void fu_pause(fu_run *run);
+long fu_save(const fu_run *run, char *bytes);
+int fu_restore(fu_run *run, const char *bytes, int rows);
+
+/* run/part_timing.c: time of each coupling */
+void fu_part_timing(fu_run *run, double *seconds);
 
 #endif

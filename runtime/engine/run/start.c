@@ -1,11 +1,8 @@
 /* The start of a run, and of its scheme after any discontinuity. */
 #include "couplings/common/couplings.h"
-#include "equations/acceleration.h"
-#include "equations/projection.h"
+#include "equations/equations.h"
 #include "equations/scene_size.h"
 #include "events/events.h"
-#include "events/penetration.h"
-#include "events/proximity.h"
 #include "events/slack_cables.h"
 #include "run/run.h"
 

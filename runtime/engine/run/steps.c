@@ -1,14 +1,10 @@
 /* Steps: their size, trial, error and events, until one is accepted. */
 #include "base/clock.h"
 #include "couplings/common/couplings.h"
-#include "equations/projection.h"
+#include "equations/equations.h"
 #include "equations/scene_size.h"
 #include "equations/step_control.h"
-#include "events/boundaries.h"
-#include "events/deferred.h"
 #include "events/events.h"
-#include "events/penetration.h"
-#include "events/proximity.h"
 #include "events/slack_cables.h"
 #include "run/run.h"
 

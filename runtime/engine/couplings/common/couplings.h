@@ -1,4 +1,4 @@
-/* Loops over the couplings of a model: couplings/common/couplings.c. */
+/* Public: loops over the couplings of a model: couplings/common/couplings.c. */
 #ifndef FUNICULAR_COUPLINGS_COMMON_COUPLINGS_H
 #define FUNICULAR_COUPLINGS_COMMON_COUPLINGS_H
 

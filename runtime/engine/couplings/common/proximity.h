@@ -1,9 +1,10 @@
-/* Couplings that may act: couplings/common/proximity.c. */
+/* Public: couplings that may act: couplings/common/proximity.c; bounding spheres for their clearances:
+ * couplings/common/spheres.c. */
 #ifndef FUNICULAR_COUPLINGS_COMMON_PROXIMITY_H
 #define FUNICULAR_COUPLINGS_COMMON_PROXIMITY_H
 
-#include "couplings/common/coupling.h"
 #include "bodies/model.h"
+#include "couplings/common/coupling.h"
 
 /* A cable or a body: limits of its displacement, m, and rotation since the last search before far pairs may be near;
  * its total displacement and rotation until then; the largest radius of its points. */
@@ -44,5 +45,10 @@ const fu_body *fu_body_of_mover(const fu_model *model, int mover);
 double fu_most_of_cable(const fu_cable *cable, const double *to, const double *from);
 void fu_mover_gone_by(const fu_model *model, int mover, const double *q, double *displacement, double *turn);
 int fu_movers_are_near(const fu_model *model, const double *q);
+
+extern const fu_clearance fu_no_clearance; /* of a coupling that may act */
+double fu_sphere_about(const fu_cable *cable, const double *q, int element, double middle[3]);
+double fu_distance_between(int dim, const double *a, const double *b);
+const double *fu_place_of_body(const fu_model *model, const fu_state *state, int body);
 
 #endif

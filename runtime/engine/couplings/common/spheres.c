@@ -1,5 +1,5 @@
 /* Bounding spheres of the elements of cables and the points of bodies, for clearances. */
-#include "couplings/common/spheres.h"
+#include "couplings/common/proximity.h"
 
 #include <math.h>
 

@@ -3,7 +3,7 @@
 #include "bodies/model.h"
 #include "bodies/state.h"
 #include "couplings/common/surfaces.h"
-#include "couplings/common/wrench.h"
+#include "couplings/common/attachments.h"
 
 #include <math.h>
 #include <string.h>

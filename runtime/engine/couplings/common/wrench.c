@@ -3,7 +3,7 @@
  */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
-#include "couplings/common/wrench.h"
+#include "couplings/common/attachments.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* Clearances of contacts with surfaces, by bounding spheres of the elements of cables and the points of bodies. */
-#include "couplings/common/spheres.h"
+#include "couplings/common/proximity.h"
 #include "couplings/contact/contact.h"
 
 #include <math.h>

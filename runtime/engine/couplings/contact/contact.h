@@ -1,4 +1,4 @@
-/* Contact of a cable, or of points of a body, with a surface, by penalty: couplings/contact/contact.c. */
+/* Public: contact of a cable, or of points of a body, with a surface, by penalty: couplings/contact/contact.c. */
 #ifndef FUNICULAR_COUPLINGS_CONTACT_CONTACT_H
 #define FUNICULAR_COUPLINGS_CONTACT_CONTACT_H
 

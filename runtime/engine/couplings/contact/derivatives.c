@@ -2,7 +2,7 @@
  * and of the reaction with its moment on that body, by the kernel `reaction` (derive/couplings/surface.py).
  */
 #include "bodies/model.h"
-#include "couplings/common/wrench.h"
+#include "couplings/common/attachments.h"
 #include "couplings/contact/contact.h"
 
 #include <string.h>

@@ -7,7 +7,7 @@
  * momentum and angular momentum as they conserve energy. */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
-#include "couplings/common/wrench.h"
+#include "couplings/common/attachments.h"
 #include "couplings/contact/contact.h"
 
 #include <string.h>

@@ -1,6 +1,6 @@
 /* Points of a contact: their positions, which may be in contact, and the forces on them. */
 #include "bodies/model.h"
-#include "couplings/common/wrench.h"
+#include "couplings/common/attachments.h"
 #include "couplings/contact/contact.h"
 
 #include <math.h>

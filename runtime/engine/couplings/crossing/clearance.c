@@ -1,5 +1,5 @@
 /* Clearances of crossings, by bounding spheres of the elements of cables. */
-#include "couplings/common/spheres.h"
+#include "couplings/common/proximity.h"
 #include "couplings/crossing/crossing.h"
 
 #include <math.h>

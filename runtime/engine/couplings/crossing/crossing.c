@@ -4,7 +4,7 @@
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
-#include "couplings/common/wrench.h"
+#include "couplings/common/attachments.h"
 #include "couplings/crossing/crossing.h"
 
 #include <math.h>

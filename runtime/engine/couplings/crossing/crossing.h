@@ -1,6 +1,6 @@
-/* Two lines in contact at their closest points, a cable and another one or a bar: couplings/crossing/crossing.c,
- * couplings/crossing/closest_points.c, couplings/crossing/continuous_detection.c, couplings/crossing/friction.c,
- * events/crossing.c. */
+/* Public: two lines in contact at their closest points, a cable and another one or a bar:
+ * couplings/crossing/crossing.c, couplings/crossing/closest_points.c, couplings/crossing/continuous_detection.c,
+ * couplings/crossing/friction.c, events/crossing.c. */
 #ifndef FUNICULAR_COUPLINGS_CROSSING_CROSSING_H
 #define FUNICULAR_COUPLINGS_CROSSING_CROSSING_H
 

@@ -16,7 +16,7 @@
  */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
-#include "couplings/common/wrench.h"
+#include "couplings/common/attachments.h"
 #include "couplings/fluid/drag.h"
 
 #include <string.h>

@@ -9,7 +9,7 @@
  * over the change of the height balances it.
  */
 #include "bodies/model.h"
-#include "couplings/common/wrench.h"
+#include "couplings/common/attachments.h"
 #include "couplings/fluid/drag.h"
 
 #include <math.h>

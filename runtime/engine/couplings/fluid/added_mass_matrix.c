@@ -2,7 +2,7 @@
  * (couplings/fluid/added_mass.c). */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
-#include "couplings/common/wrench.h"
+#include "couplings/common/attachments.h"
 #include "couplings/fluid/drag.h"
 
 #include <string.h>

@@ -1,7 +1,7 @@
 /* The velocity of a fluid by position and time, with its derivatives: a velocity times a profile over height, or a
  * table of splines, times a signal. */
 #include "bodies/model.h"
-#include "couplings/fluid/velocity_field.h"
+#include "couplings/fluid/drag.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 /* External forces and moments, and their derivatives if they rotate with their carrier. */
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
-#include "couplings/common/wrench.h"
-#include "couplings/force/loads.h"
+#include "couplings/common/attachments.h"
+#include "couplings/force/force.h"
 
 #include <string.h>
 

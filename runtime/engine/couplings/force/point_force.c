@@ -2,8 +2,8 @@
  * system the force is an internal unknown, so that two points far apart on cables do not widen the band. */
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
-#include "couplings/common/wrench.h"
-#include "couplings/force/point_force.h"
+#include "couplings/common/attachments.h"
+#include "couplings/force/force.h"
 
 #include <math.h>
 #include <string.h>

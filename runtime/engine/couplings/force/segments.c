@@ -5,7 +5,7 @@
  * entered where the distance is in it and its force has the permitted sense. Steps end where the force changes its
  * segment. */
 #include "bodies/model.h"
-#include "couplings/force/point_force.h"
+#include "couplings/force/force.h"
 
 #include <math.h>
 

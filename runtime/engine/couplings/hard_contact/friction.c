@@ -1,6 +1,6 @@
 /* Friction of hard contacts: the motion of a body's point along the surface, and the direction of friction. */
 #include "bodies/model.h"
-#include "couplings/common/wrench.h"
+#include "couplings/common/attachments.h"
 #include "couplings/hard_contact/hard_contact.h"
 
 #include <math.h>

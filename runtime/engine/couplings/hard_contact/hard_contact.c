@@ -3,7 +3,7 @@
  * actions. */
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
-#include "couplings/common/wrench.h"
+#include "couplings/common/attachments.h"
 #include "couplings/hard_contact/hard_contact.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-/* Hard contact of a point of a body with a surface: a multiplier that pushes, and never pulls. */
+/* Public: hard contact of a point of a body with a surface: a multiplier that pushes, and never pulls. */
 #ifndef FUNICULAR_COUPLINGS_HARD_CONTACT_HARD_CONTACT_H
 #define FUNICULAR_COUPLINGS_HARD_CONTACT_HARD_CONTACT_H
 

@@ -1,5 +1,5 @@
-/* Joints between two attachments: couplings/joint/equations.c has their equations, couplings/joint/joint.c their
- * operations as couplings. */
+/* Public: joints between two attachments: couplings/joint/equations.c has their equations, couplings/joint/joint.c
+ * their operations as couplings. */
 #ifndef FUNICULAR_COUPLINGS_JOINT_JOINT_H
 #define FUNICULAR_COUPLINGS_JOINT_JOINT_H
 

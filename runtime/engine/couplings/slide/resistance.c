@@ -7,7 +7,6 @@
  * rest, and R counts for the drive's power and for the dissipation. */
 #include "bodies/model.h"
 #include "couplings/common/accelerator.h"
-#include "couplings/slide/resistance.h"
 #include "couplings/slide/slide.h"
 
 #include <math.h>

@@ -4,7 +4,6 @@
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
 #include "couplings/joint/joint.h"
-#include "couplings/slide/resistance.h"
 #include "couplings/slide/slide.h"
 
 #include <math.h>

@@ -1,13 +1,23 @@
 /* Slides: couplings/slide/kinematics.c has their kernels over their coordinates, couplings/slide/slide.c their
- * operations as couplings. */
+ * operations as couplings, couplings/slide/resistance.c friction and buffers; events/end_stops.c has the actions of end
+ * stops. */
 #ifndef FUNICULAR_COUPLINGS_SLIDE_SLIDE_H
 #define FUNICULAR_COUPLINGS_SLIDE_SLIDE_H
 
 #include "couplings/common/attachments.h"
-#include "couplings/common/constraints.h"
+#include "couplings/common/accelerator.h"
 #include "couplings/common/coupling.h"
 #include "couplings/common/coupling_events.h"
-#include "couplings/slide/end_stops.h"
+
+/* End stop at an end of a cable: the restitution of a hard stop; the length before the end, m, the stiffness, N/m, and
+ * the damping, N s/m, of a buffer. */
+enum { FU_END_IS_ERROR, FU_END_IS_OPEN, FU_END_IS_HARD, FU_END_IS_BUFFERED };
+typedef struct {
+    int kind;
+    double restitution, length, stiffness, damping;
+} fu_end_stop;
+
+extern const char *const fu_end_stop_kinds[]; /* their words: couplings/slide/state.c */
 
 /* A slide's part of a state: its flags, and its numbers.
  *
@@ -89,5 +99,31 @@ void fu_slide_force(const fu_model *model, const fu_accelerator *work, int j, co
 /* couplings/slide/state.c */
 double fu_length(const fu_model *model, int slide);
 double fu_element_start(const fu_model *model, int slide, int element);
+
+/* R of a slide, the force along its cable times r_x, and its derivatives */
+typedef struct {
+    double R, by_t[3], by_u[3], by_f[3], by_s;
+} fu_resistance;
+
+void fu_resistance_at(const fu_model *model, const fu_state *state, int j, const double *t, const double *u,
+                      const double *f, fu_resistance *resistance);
+double fu_compression(const fu_model *model, const fu_state *state, int j, int side);
+void fu_slide_motion(const fu_model *model, const fu_state *state, int j, const double *J, double *t, double *u);
+void fu_resistance_rows(const fu_model *model, const fu_state *state, int j, const double *J,
+                        const fu_resistance *resistance, double *by_place, double *by_rate);
+
+/* Operations of a slide as a coupling (couplings/common/coupling.h). */
+double fu_resistance_update(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                            const double *lambda, fu_accelerator *work);
+void fu_resistance_accept(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                          const double *lambda, fu_accelerator *work);
+double fu_resistance_friction_error(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int n,
+                                    const double *weights, const double *multipliers, double square);
+double fu_resistance_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                                 const fu_accelerator *work);
+double fu_buffer_energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+double fu_lost_in_buffers(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
+                          int by_ends);
+void fu_detect_buffers(const fu_model *model, const fu_coupling *coupling, fu_state *state);
 
 #endif
