@@ -4,76 +4,55 @@
  */
 #include "kernels.h"
 
-/* part of derivatives: of drag_inertia_of_point and 1 more */
+/* part of derivatives: of drag_inertia_of_cable_tangent and 1 more */
 #define DRAG_PART_OF_DERIVATIVES \
     const fu_real \
-        d_th1_CM1_y = -A[6]*C[0] - A[7]*C[1] - A[8]*C[2], \
-        d_th1_CM2_y = -A[6]*C[3] - A[7]*C[4] - A[8]*C[5], \
-        d_th1_CM3_y = -A[6]*C[6] - A[7]*C[7] - A[8]*C[8], \
-        d_th1_M1_y = A[0]*d_th1_CM1_y + A[1]*d_th1_CM2_y + A[2]*d_th1_CM3_y, \
-        d_th1_CM1_z = A[3]*C[0] + A[4]*C[1] + A[5]*C[2], \
-        d_th1_CM2_z = A[3]*C[3] + A[4]*C[4] + A[5]*C[5], \
-        d_th1_CM3_z = A[3]*C[6] + A[4]*C[7] + A[5]*C[8], \
-        d_th1_M1_z = A[0]*d_th1_CM1_z + A[1]*d_th1_CM2_z + A[2]*d_th1_CM3_z;
+        d_material_x_F_x = -displaced_wet, \
+        d_material_y_F_y = -displaced_wet, \
+        d_material_z_F_z = -displaced_wet, \
+        d_v0_P_wet_rate_x = P_x*c_place_x, \
+        d_v0_P_wet_rate_y = P_y*c_place_x, \
+        d_v0_P_wet_rate_z = P_z*c_place_x, \
+        d_v1_P_wet_rate_x = P_x*c_place_y, \
+        d_v1_P_wet_rate_y = P_y*c_place_y, \
+        d_v1_P_wet_rate_z = P_z*c_place_y, \
+        d_v2_P_wet_rate_x = P_x*c_place_z, \
+        d_v2_P_wet_rate_y = P_y*c_place_z, \
+        d_v2_P_wet_rate_z = P_z*c_place_z, \
+        d_wet0_carried_x = displaced*material_x, \
+        d_wet0_strained_x = G[0]*P_x + G[3]*P_y + G[6]*P_z, \
+        d_wet0_F_x = P_rate_x - d_wet0_carried_x + d_wet0_strained_x, \
+        d_wet0_carried_y = displaced*material_y, \
+        d_wet0_strained_y = G[1]*P_x + G[4]*P_y + G[7]*P_z, \
+        d_wet0_F_y = P_rate_y - d_wet0_carried_y + d_wet0_strained_y, \
+        d_wet0_carried_z = displaced*material_z, \
+        d_wet0_strained_z = G[2]*P_x + G[5]*P_y + G[8]*P_z, \
+        d_wet0_F_z = P_rate_z - d_wet0_carried_z + d_wet0_strained_z, \
+        d_c_place_x_P_wet_rate_x = P_x*v[0], \
+        d_c_place_x_F_x = -T + d_c_place_x_P_wet_rate_x, \
+        d_c_place_x_P_wet_rate_y = P_y*v[0], \
+        d_c_place_x_P_wet_rate_z = P_z*v[0], \
+        d_c_place_y_P_wet_rate_x = P_x*v[1], \
+        d_c_place_y_P_wet_rate_y = P_y*v[1], \
+        d_c_place_y_F_y = -T + d_c_place_y_P_wet_rate_y, \
+        d_c_place_y_P_wet_rate_z = P_z*v[1], \
+        d_c_place_z_P_wet_rate_x = P_x*v[2], \
+        d_c_place_z_P_wet_rate_y = P_y*v[2], \
+        d_c_place_z_P_wet_rate_z = P_z*v[2], \
+        d_c_place_z_F_z = -T + d_c_place_z_P_wet_rate_z;
 
-/* part of derivatives: of drag_inertia_of_point and 1 more */
-#define DRAG_PART_OF_DERIVATIVES_2 \
+/* part of impulse, its rate and moment: of drag_inertia_of_point and 1 more */
+#define DRAG_PART_OF_IMPULSE_ITS_RATE_AND_MOMENT \
     const fu_real \
-        d_th1_M2_x = -A[6]*CM_x[0] - A[7]*CM_x[1] - A[8]*CM_x[2], \
-        d_th1_M2_y = A[3]*d_th1_CM1_y + A[4]*d_th1_CM2_y + A[5]*d_th1_CM3_y - A[6]*CM_y[0] - A[7]*CM_y[1] - A[8]*CM_y[2], \
-        d_th1_M2_z = A[3]*d_th1_CM1_z + A[4]*d_th1_CM2_z + A[5]*d_th1_CM3_z - A[6]*CM_z[0] - A[7]*CM_z[1] - A[8]*CM_z[2];
-
-/* part of derivatives: of drag_inertia_of_point and 1 more */
-#define DRAG_PART_OF_DERIVATIVES_3 \
-    const fu_real \
-        d_th1_M3_x = A[3]*CM_x[0] + A[4]*CM_x[1] + A[5]*CM_x[2], \
-        d_th1_M3_y = A[3]*CM_y[0] + A[4]*CM_y[1] + A[5]*CM_y[2] + A[6]*d_th1_CM1_y + A[7]*d_th1_CM2_y + A[8]*d_th1_CM3_y, \
-        d_th1_M3_z = A[3]*CM_z[0] + A[4]*CM_z[1] + A[5]*CM_z[2] + A[6]*d_th1_CM1_z + A[7]*d_th1_CM2_z + A[8]*d_th1_CM3_z;
-
-/* part of derivatives: of drag_inertia_of_point and 1 more */
-#define DRAG_PART_OF_DERIVATIVES_4 \
-    const fu_real \
-        d_th2_CM1_x = A[6]*C[0] + A[7]*C[1] + A[8]*C[2], \
-        d_th2_CM2_x = A[6]*C[3] + A[7]*C[4] + A[8]*C[5], \
-        d_th2_CM3_x = A[6]*C[6] + A[7]*C[7] + A[8]*C[8], \
-        d_th2_M1_x = A[0]*d_th2_CM1_x + A[1]*d_th2_CM2_x + A[2]*d_th2_CM3_x + A[6]*CM_x[0] + A[7]*CM_x[1] + A[8]*CM_x[2], \
-        d_th2_M1_y = A[6]*CM_y[0] + A[7]*CM_y[1] + A[8]*CM_y[2], \
-        d_th2_CM1_z = -A[0]*C[0] - A[1]*C[1] - A[2]*C[2], \
-        d_th2_CM2_z = -A[0]*C[3] - A[1]*C[4] - A[2]*C[5], \
-        d_th2_CM3_z = -A[0]*C[6] - A[1]*C[7] - A[2]*C[8], \
-        d_th2_M1_z = A[0]*d_th2_CM1_z + A[1]*d_th2_CM2_z + A[2]*d_th2_CM3_z + A[6]*CM_z[0] + A[7]*CM_z[1] + A[8]*CM_z[2];
-
-/* part of derivatives: of drag_inertia_of_point and 1 more */
-#define DRAG_PART_OF_DERIVATIVES_5 \
-    const fu_real \
-        d_th2_M3_x = -A[0]*CM_x[0] - A[1]*CM_x[1] - A[2]*CM_x[2] + A[6]*d_th2_CM1_x + A[7]*d_th2_CM2_x + A[8]*d_th2_CM3_x, \
-        d_th2_M3_y = -A[0]*CM_y[0] - A[1]*CM_y[1] - A[2]*CM_y[2], \
-        d_th2_M3_z = -A[0]*CM_z[0] - A[1]*CM_z[1] - A[2]*CM_z[2] + A[6]*d_th2_CM1_z + A[7]*d_th2_CM2_z + A[8]*d_th2_CM3_z;
-
-/* part of outputs: of drag_entry_of_cable and 1 more */
-#define DRAG_PART_OF_OUTPUTS \
-    f_w[0] = -d_w0_pull[0] + d_w0_rate_x; \
-    f_w[1] = -d_w1_pull[0] + d_w1_rate_x; \
-    f_w[2] = -d_w2_pull[0] + d_w2_rate_x; \
-    f_w[3] = -d_w0_pull[1] + d_w0_rate_y; \
-    f_w[4] = -d_w1_pull[1] + d_w1_rate_y; \
-    f_w[5] = -d_w2_pull[1] + d_w2_rate_y; \
-    f_w[6] = -d_w0_pull[2] + d_w0_rate_z; \
-    f_w[7] = -d_w1_pull[2] + d_w1_rate_z; \
-    f_w[8] = -d_w2_pull[2] + d_w2_rate_z; \
-    FU_EACH(point, 3, \
-        f_v[3*point] = d_v0_rate[point]; \
-        f_v[3*point + 1] = d_v1_rate[point]; \
-        f_v[3*point + 2] = d_v2_rate[point];) \
-    f_n[0] = -T + d_n0_rate[0]; \
-    f_n[1] = d_n1_rate[0]; \
-    f_n[2] = d_n2_rate[0]; \
-    f_n[3] = d_n0_rate[1]; \
-    f_n[4] = -T + d_n1_rate[1]; \
-    f_n[5] = d_n2_rate[1]; \
-    f_n[6] = d_n0_rate[2]; \
-    f_n[7] = d_n1_rate[2]; \
-    f_n[8] = -T + d_n2_rate[2];
+        P_x = M_x[0]*w_x + M_y[0]*w_y + M_z[0]*w_z, \
+        P_y = M_x[1]*w_x + M_y[1]*w_y + M_z[1]*w_z, \
+        P_z = M_x[2]*w_x + M_y[2]*w_y + M_z[2]*w_z, \
+        rest_x = -omega[1]*w_z + omega[2]*w_y + w_rate_x, \
+        rest_y = omega[0]*w_z - omega[2]*w_x + w_rate_y, \
+        rest_z = -omega[0]*w_y + omega[1]*w_x + w_rate_z, \
+        P_rate_x = M_x[0]*rest_x + M_y[0]*rest_y + M_z[0]*rest_z - P_y*omega[2] + P_z*omega[1], \
+        P_rate_y = M_x[1]*rest_x + M_y[1]*rest_y + M_z[1]*rest_z + P_x*omega[2] - P_z*omega[0], \
+        P_rate_z = M_x[2]*rest_x + M_y[2]*rest_y + M_z[2]*rest_z - P_x*omega[1] + P_y*omega[0];
 
 /* outputs: of drag_along_cable and 1 more */
 #define DRAG_OUTPUTS \
@@ -99,7 +78,23 @@
     f_w[7] = d_w1_F_z; \
     f_w[8] = d_w2_F_z;
 
-/* added mass: of drag_impulse_of_point and 1 more */
+/* motion past the fluid: of drag_inertia_of_cable_tangent and 2 more */
+#define DRAG_MOTION_PAST_THE_FLUID \
+    const fu_real \
+        w_x = -U[0] + v[0], \
+        w_y = -U[1] + v[1], \
+        w_z = -U[2] + v[2], \
+        w_rate_x = -G[0]*v[0] - G[1]*v[1] - G[2]*v[2] - U_rate[0] + a[0], \
+        w_rate_y = -G[3]*v[0] - G[4]*v[1] - G[5]*v[2] - U_rate[1] + a[1], \
+        w_rate_z = -G[6]*v[0] - G[7]*v[1] - G[8]*v[2] - U_rate[2] + a[2], \
+        material_x = G[0]*U[0] + G[1]*U[1] + G[2]*U[2] + U_rate[0], \
+        material_y = G[3]*U[0] + G[4]*U[1] + G[5]*U[2] + U_rate[1], \
+        material_z = G[6]*U[0] + G[7]*U[1] + G[8]*U[2] + U_rate[2], \
+        c_place_x = up[0]*wet[1], \
+        c_place_y = up[1]*wet[1], \
+        c_place_z = up[2]*wet[1];
+
+/* added mass: of drag_impulse_of_point and 2 more */
 #define DRAG_ADDED_MASS \
     fu_real CM_x[3], CM_y[3], CM_z[3], M_x[3], M_y[3], M_z[3]; \
     FU_EACH(g, 3, \
@@ -838,14 +833,23 @@ void drag_impulse_of_cable(const fu_real *t, const fu_real *w, const fu_real *m,
     M[8] = m[0] - scale*t[2]*t[2];
 }
 
-/* impulse of the fluid along a cable, its rate, and their derivatives (Lighthill 1971; Lagrange's equations of T); 274 add, 741 mul, 1 div, 1 sqrt */
-void drag_inertia_of_cable(const fu_real *t, const fu_real *t_rate, const fu_real *w, const fu_real *w_rate, const fu_real *m, fu_real *p, fu_real *p_rate, fu_real *g, fu_real *M, fu_real *p_t, fu_real *p_rate_t, fu_real *p_rate_t_rate, fu_real *p_rate_w, fu_real *g_t, fu_real *g_w)
+/* force of the inertia of the fluid on a length of cable (Lighthill 1971; Lagrange's equations of T); 85 add, 124 mul, 1 div, 1 sqrt */
+void drag_inertia_of_cable(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *g, fu_real *power)
 {
-    /* difference of the added masses */
-    const fu_real less = m[0] - m[1];
+    /* motion past the fluid */
+    fu_real w[3], w_rate[3], material[3], c_place[3];
+    FU_EACH(row, 3, w[row] = -U[row] + v[row];)
+    w_rate[0] = -G[0]*v[0] - G[1]*v[1] - G[2]*v[2] - U_rate[0] + a[0];
+    w_rate[1] = -G[3]*v[0] - G[4]*v[1] - G[5]*v[2] - U_rate[1] + a[1];
+    w_rate[2] = -G[6]*v[0] - G[7]*v[1] - G[8]*v[2] - U_rate[2] + a[2];
+    material[0] = G[0]*U[0] + G[1]*U[1] + G[2]*U[2] + U_rate[0];
+    material[1] = G[3]*U[0] + G[4]*U[1] + G[5]*U[2] + U_rate[1];
+    material[2] = G[6]*U[0] + G[7]*U[1] + G[8]*U[2] + U_rate[2];
+    FU_EACH(row, 3, c_place[row] = up[row]*wet[1];)
     /* tangent and its rate */
     fu_real i[3], i_rate[3];
     const fu_real
+        less = m[0] - m[1],
         len_t = FU_SQRT(t[0]*t[0] + t[1]*t[1] + t[2]*t[2]),
         inv_len_t = 1.0/len_t;
     FU_EACH(row, 3, i[row] = inv_len_t*t[row];)
@@ -860,171 +864,364 @@ void drag_inertia_of_cable(const fu_real *t, const fu_real *t_rate, const fu_rea
     FU_EACH(row, 3, P[row] = -i[row]*less*w_t + m[0]*w[row];)
     FU_EACH(row, 3, P_rate[row] = -less*(i_rate[row]*w_t + i[row]*w_t_rate) + m[0]*w_rate[row];)
     /* derivative of the kinetic energy by the slope */
-    fu_real G[3];
-    FU_EACH(row, 3, G[row] = -(inv_len_t*less*w_t*(-i[row]*w_t + w[row]));)
+    fu_real G_t[3];
+    const fu_real pull = inv_len_t*less*w_t*wet[0];
+    FU_EACH(row, 3, G_t[row] = -(pull*(-i[row]*w_t + w[row]));)
+    /* force on the particle */
+    fu_real P_wet[3], P_wet_rate[3], strained[3], carried[3];
+    FU_EACH(row, 3, P_wet[row] = P[row]*wet[0];)
+    const fu_real c_rate = c_place[0]*v[0] + c_place[1]*v[1] + c_place[2]*v[2];
+    FU_EACH(row, 3, P_wet_rate[row] = P_rate[row]*wet[0] + P[row]*c_rate;)
+    strained[0] = G[0]*P_wet[0] + G[3]*P_wet[1] + G[6]*P_wet[2];
+    strained[1] = G[1]*P_wet[0] + G[4]*P_wet[1] + G[7]*P_wet[2];
+    strained[2] = G[2]*P_wet[0] + G[5]*P_wet[1] + G[8]*P_wet[2];
+    const fu_real displaced_wet = displaced*wet[0];
+    FU_EACH(row, 3, carried[row] = displaced_wet*material[row];)
+    const fu_real T = 0.5*P[0]*w[0] + 0.5*P[1]*w[1] + 0.5*P[2]*w[2];
+    FU_EACH(row, 3, f[row] = P_wet_rate[row] - T*c_place[row] - carried[row] + strained[row];)
+    /* outputs */
+    FU_EACH(row, 3, g[row] = G_t[row];)
+    power[0] = -P_wet_rate[0]*U[0] - P_wet_rate[1]*U[1] - P_wet_rate[2]*U[2] + carried[0]*v[0] + carried[1]*v[1] + carried[2]*v[2] - strained[0]*v[0] - strained[1]*v[1] - strained[2]*v[2];
+}
+
+/* derivatives of the force of the inertia of the fluid on a cable (derivatives of Lighthill 1971; Lagrange's equations of T); 545 add, 1059 mul, 1 div, 1 sqrt */
+void drag_inertia_of_cable_tangent(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_t, fu_real *f_t_rate, fu_real *f_r, fu_real *f_v, fu_real *g_t, fu_real *g_r, fu_real *g_v)
+{
+    DRAG_MOTION_PAST_THE_FLUID
+    /* tangent and its rate */
+    const fu_real
+        less = m[0] - m[1],
+        len_t = FU_SQRT(t[0]*t[0] + t[1]*t[1] + t[2]*t[2]),
+        inv_len_t = 1.0/len_t,
+        i_x = inv_len_t*t[0],
+        i_y = inv_len_t*t[1],
+        i_z = inv_len_t*t[2],
+        i_rate_x = inv_len_t*(-i_x*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[0]),
+        i_rate_y = inv_len_t*(-i_y*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[1]),
+        i_rate_z = inv_len_t*(-i_z*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[2]);
+    /* impulse and its rate */
+    const fu_real
+        w_t = i_x*w_x + i_y*w_y + i_z*w_z,
+        w_t_rate = i_rate_x*w_x + i_rate_y*w_y + i_rate_z*w_z + i_x*w_rate_x + i_y*w_rate_y + i_z*w_rate_z,
+        P_x = -i_x*less*w_t + m[0]*w_x,
+        P_y = -i_y*less*w_t + m[0]*w_y,
+        P_z = -i_z*less*w_t + m[0]*w_z,
+        P_rate_x = -less*(i_rate_x*w_t + i_x*w_t_rate) + m[0]*w_rate_x,
+        P_rate_y = -less*(i_rate_y*w_t + i_y*w_t_rate) + m[0]*w_rate_y,
+        P_rate_z = -less*(i_rate_z*w_t + i_z*w_t_rate) + m[0]*w_rate_z;
+    /* derivative of the kinetic energy by the slope */
+    const fu_real pull = inv_len_t*less*w_t*wet[0];
+    /* force on the particle */
+    const fu_real
+        c_rate = c_place_x*v[0] + c_place_y*v[1] + c_place_z*v[2],
+        displaced_wet = displaced*wet[0],
+        T = 0.5*P_x*w_x + 0.5*P_y*w_y + 0.5*P_z*w_z;
     /* derivatives */
-    fu_real d_t0_i[3], d_t0_P[3], d_t1_i[3], d_t1_P[3], d_t2_i[3], d_t2_P[3], d_t0_i_2[3], d_t0_i_rate[3],
-        d_t0_P_rate[3], d_t1_i_2[3], d_t1_i_rate[3], d_t1_P_rate[3], d_t2_i_2[3], d_t2_i_rate[3], d_t2_P_rate[3],
-        d_t_rate0_i_rate[3], d_t_rate0_P_rate[3], d_t_rate1_i_rate[3], d_t_rate1_P_rate[3], d_t_rate2_i_rate[3],
-        d_t_rate2_P_rate[3], d_w1_P_rate[3], d_w2_P_rate[3], d_t0_i_3[3], d_t0_G[3], d_t1_i_3[3], d_t1_G[3],
-        d_t2_i_3[3], d_t2_G[3];
     const fu_real
         d_t0_len_t = inv_len_t*t[0],
-        d_t0_inv_len_t = -(d_t0_len_t*inv_len_t*inv_len_t);
-    d_t0_i[0] = d_t0_inv_len_t*t[0] + inv_len_t;
-    d_t0_i[1] = d_t0_inv_len_t*t[1];
-    d_t0_i[2] = d_t0_inv_len_t*t[2];
-    const fu_real d_t0_w_t = d_t0_i[0]*w[0] + d_t0_i[1]*w[1] + d_t0_i[2]*w[2];
-    FU_EACH(row, 3, d_t0_P[row] = -d_t0_i[row]*less*w_t - d_t0_w_t*i[row]*less;)
-    const fu_real
+        d_t0_inv_len_t = -(d_t0_len_t*inv_len_t*inv_len_t),
+        d_t0_i_x = d_t0_inv_len_t*t[0] + inv_len_t,
+        d_t0_i_y = d_t0_inv_len_t*t[1],
+        d_t0_i_z = d_t0_inv_len_t*t[2],
+        d_t0_i_rate_x = d_t0_i_x*inv_len_t*(-2.0*i_x*t_rate[0] - i_y*t_rate[1] - i_z*t_rate[2]) - d_t0_i_y*i_x*inv_len_t*t_rate[1] - d_t0_i_z*i_x*inv_len_t*t_rate[2] + d_t0_inv_len_t*(-i_x*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[0]),
+        d_t0_w_t = d_t0_i_x*w_x + d_t0_i_y*w_y + d_t0_i_z*w_z,
+        d_t0_i_rate_y = -d_t0_i_x*i_y*inv_len_t*t_rate[0] + d_t0_i_y*inv_len_t*(-i_x*t_rate[0] - 2.0*i_y*t_rate[1] - i_z*t_rate[2]) - d_t0_i_z*i_y*inv_len_t*t_rate[2] + d_t0_inv_len_t*(-i_y*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[1]),
+        d_t0_i_rate_z = -d_t0_i_x*i_z*inv_len_t*t_rate[0] - d_t0_i_y*i_z*inv_len_t*t_rate[1] + d_t0_i_z*inv_len_t*(-i_x*t_rate[0] - i_y*t_rate[1] - 2.0*i_z*t_rate[2]) + d_t0_inv_len_t*(-i_z*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[2]),
+        d_t0_w_t_rate = d_t0_i_rate_x*w_x + d_t0_i_rate_y*w_y + d_t0_i_rate_z*w_z + d_t0_i_x*w_rate_x + d_t0_i_y*w_rate_y + d_t0_i_z*w_rate_z,
+        d_t0_P_rate_x = -d_t0_i_rate_x*less*w_t - d_t0_i_x*less*w_t_rate - d_t0_w_t*i_rate_x*less - d_t0_w_t_rate*i_x*less,
+        d_t0_P_x = -d_t0_i_x*less*w_t - d_t0_w_t*i_x*less,
+        d_t0_P_wet_rate_x = c_rate*d_t0_P_x + d_t0_P_rate_x*wet[0],
+        d_t0_P_y = -d_t0_i_y*less*w_t - d_t0_w_t*i_y*less,
+        d_t0_P_z = -d_t0_i_z*less*w_t - d_t0_w_t*i_z*less,
+        d_t0_T = 0.5*d_t0_P_x*w_x + 0.5*d_t0_P_y*w_y + 0.5*d_t0_P_z*w_z,
+        d_t0_P_wet_x = d_t0_P_x*wet[0],
+        d_t0_P_wet_y = d_t0_P_y*wet[0],
+        d_t0_P_wet_z = d_t0_P_z*wet[0],
+        d_t0_strained_x = G[0]*d_t0_P_wet_x + G[3]*d_t0_P_wet_y + G[6]*d_t0_P_wet_z,
+        d_t0_F_x = -c_place_x*d_t0_T + d_t0_P_wet_rate_x + d_t0_strained_x,
+        d_t0_P_rate_y = -d_t0_i_rate_y*less*w_t - d_t0_i_y*less*w_t_rate - d_t0_w_t*i_rate_y*less - d_t0_w_t_rate*i_y*less,
+        d_t0_P_wet_rate_y = c_rate*d_t0_P_y + d_t0_P_rate_y*wet[0],
+        d_t0_strained_y = G[1]*d_t0_P_wet_x + G[4]*d_t0_P_wet_y + G[7]*d_t0_P_wet_z,
+        d_t0_F_y = -c_place_y*d_t0_T + d_t0_P_wet_rate_y + d_t0_strained_y,
+        d_t0_P_rate_z = -d_t0_i_rate_z*less*w_t - d_t0_i_z*less*w_t_rate - d_t0_w_t*i_rate_z*less - d_t0_w_t_rate*i_z*less,
+        d_t0_P_wet_rate_z = c_rate*d_t0_P_z + d_t0_P_rate_z*wet[0],
+        d_t0_strained_z = G[2]*d_t0_P_wet_x + G[5]*d_t0_P_wet_y + G[8]*d_t0_P_wet_z,
+        d_t0_F_z = -c_place_z*d_t0_T + d_t0_P_wet_rate_z + d_t0_strained_z,
         d_t1_len_t = inv_len_t*t[1],
-        d_t1_inv_len_t = -(d_t1_len_t*inv_len_t*inv_len_t);
-    d_t1_i[0] = d_t1_inv_len_t*t[0];
-    d_t1_i[1] = d_t1_inv_len_t*t[1] + inv_len_t;
-    d_t1_i[2] = d_t1_inv_len_t*t[2];
-    const fu_real d_t1_w_t = d_t1_i[0]*w[0] + d_t1_i[1]*w[1] + d_t1_i[2]*w[2];
-    FU_EACH(row, 3, d_t1_P[row] = -d_t1_i[row]*less*w_t - d_t1_w_t*i[row]*less;)
-    const fu_real
+        d_t1_inv_len_t = -(d_t1_len_t*inv_len_t*inv_len_t),
+        d_t1_i_x = d_t1_inv_len_t*t[0],
+        d_t1_i_y = d_t1_inv_len_t*t[1] + inv_len_t,
+        d_t1_i_z = d_t1_inv_len_t*t[2],
+        d_t1_i_rate_x = d_t1_i_x*inv_len_t*(-2.0*i_x*t_rate[0] - i_y*t_rate[1] - i_z*t_rate[2]) - d_t1_i_y*i_x*inv_len_t*t_rate[1] - d_t1_i_z*i_x*inv_len_t*t_rate[2] + d_t1_inv_len_t*(-i_x*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[0]),
+        d_t1_w_t = d_t1_i_x*w_x + d_t1_i_y*w_y + d_t1_i_z*w_z,
+        d_t1_i_rate_y = -d_t1_i_x*i_y*inv_len_t*t_rate[0] + d_t1_i_y*inv_len_t*(-i_x*t_rate[0] - 2.0*i_y*t_rate[1] - i_z*t_rate[2]) - d_t1_i_z*i_y*inv_len_t*t_rate[2] + d_t1_inv_len_t*(-i_y*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[1]),
+        d_t1_i_rate_z = -d_t1_i_x*i_z*inv_len_t*t_rate[0] - d_t1_i_y*i_z*inv_len_t*t_rate[1] + d_t1_i_z*inv_len_t*(-i_x*t_rate[0] - i_y*t_rate[1] - 2.0*i_z*t_rate[2]) + d_t1_inv_len_t*(-i_z*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[2]),
+        d_t1_w_t_rate = d_t1_i_rate_x*w_x + d_t1_i_rate_y*w_y + d_t1_i_rate_z*w_z + d_t1_i_x*w_rate_x + d_t1_i_y*w_rate_y + d_t1_i_z*w_rate_z,
+        d_t1_P_rate_x = -d_t1_i_rate_x*less*w_t - d_t1_i_x*less*w_t_rate - d_t1_w_t*i_rate_x*less - d_t1_w_t_rate*i_x*less,
+        d_t1_P_x = -d_t1_i_x*less*w_t - d_t1_w_t*i_x*less,
+        d_t1_P_wet_rate_x = c_rate*d_t1_P_x + d_t1_P_rate_x*wet[0],
+        d_t1_P_y = -d_t1_i_y*less*w_t - d_t1_w_t*i_y*less,
+        d_t1_P_z = -d_t1_i_z*less*w_t - d_t1_w_t*i_z*less,
+        d_t1_T = 0.5*d_t1_P_x*w_x + 0.5*d_t1_P_y*w_y + 0.5*d_t1_P_z*w_z,
+        d_t1_P_wet_x = d_t1_P_x*wet[0],
+        d_t1_P_wet_y = d_t1_P_y*wet[0],
+        d_t1_P_wet_z = d_t1_P_z*wet[0],
+        d_t1_strained_x = G[0]*d_t1_P_wet_x + G[3]*d_t1_P_wet_y + G[6]*d_t1_P_wet_z,
+        d_t1_F_x = -c_place_x*d_t1_T + d_t1_P_wet_rate_x + d_t1_strained_x,
+        d_t1_P_rate_y = -d_t1_i_rate_y*less*w_t - d_t1_i_y*less*w_t_rate - d_t1_w_t*i_rate_y*less - d_t1_w_t_rate*i_y*less,
+        d_t1_P_wet_rate_y = c_rate*d_t1_P_y + d_t1_P_rate_y*wet[0],
+        d_t1_strained_y = G[1]*d_t1_P_wet_x + G[4]*d_t1_P_wet_y + G[7]*d_t1_P_wet_z,
+        d_t1_F_y = -c_place_y*d_t1_T + d_t1_P_wet_rate_y + d_t1_strained_y,
+        d_t1_P_rate_z = -d_t1_i_rate_z*less*w_t - d_t1_i_z*less*w_t_rate - d_t1_w_t*i_rate_z*less - d_t1_w_t_rate*i_z*less,
+        d_t1_P_wet_rate_z = c_rate*d_t1_P_z + d_t1_P_rate_z*wet[0],
+        d_t1_strained_z = G[2]*d_t1_P_wet_x + G[5]*d_t1_P_wet_y + G[8]*d_t1_P_wet_z,
+        d_t1_F_z = -c_place_z*d_t1_T + d_t1_P_wet_rate_z + d_t1_strained_z,
         d_t2_len_t = inv_len_t*t[2],
-        d_t2_inv_len_t = -(d_t2_len_t*inv_len_t*inv_len_t);
-    d_t2_i[0] = d_t2_inv_len_t*t[0];
-    d_t2_i[1] = d_t2_inv_len_t*t[1];
-    d_t2_i[2] = d_t2_inv_len_t*t[2] + inv_len_t;
-    const fu_real d_t2_w_t = d_t2_i[0]*w[0] + d_t2_i[1]*w[1] + d_t2_i[2]*w[2];
-    FU_EACH(row, 3, d_t2_P[row] = -d_t2_i[row]*less*w_t - d_t2_w_t*i[row]*less;)
+        d_t2_inv_len_t = -(d_t2_len_t*inv_len_t*inv_len_t),
+        d_t2_i_x = d_t2_inv_len_t*t[0],
+        d_t2_i_y = d_t2_inv_len_t*t[1],
+        d_t2_i_z = d_t2_inv_len_t*t[2] + inv_len_t,
+        d_t2_i_rate_x = d_t2_i_x*inv_len_t*(-2.0*i_x*t_rate[0] - i_y*t_rate[1] - i_z*t_rate[2]) - d_t2_i_y*i_x*inv_len_t*t_rate[1] - d_t2_i_z*i_x*inv_len_t*t_rate[2] + d_t2_inv_len_t*(-i_x*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[0]),
+        d_t2_w_t = d_t2_i_x*w_x + d_t2_i_y*w_y + d_t2_i_z*w_z,
+        d_t2_i_rate_y = -d_t2_i_x*i_y*inv_len_t*t_rate[0] + d_t2_i_y*inv_len_t*(-i_x*t_rate[0] - 2.0*i_y*t_rate[1] - i_z*t_rate[2]) - d_t2_i_z*i_y*inv_len_t*t_rate[2] + d_t2_inv_len_t*(-i_y*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[1]),
+        d_t2_i_rate_z = -d_t2_i_x*i_z*inv_len_t*t_rate[0] - d_t2_i_y*i_z*inv_len_t*t_rate[1] + d_t2_i_z*inv_len_t*(-i_x*t_rate[0] - i_y*t_rate[1] - 2.0*i_z*t_rate[2]) + d_t2_inv_len_t*(-i_z*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[2]),
+        d_t2_w_t_rate = d_t2_i_rate_x*w_x + d_t2_i_rate_y*w_y + d_t2_i_rate_z*w_z + d_t2_i_x*w_rate_x + d_t2_i_y*w_rate_y + d_t2_i_z*w_rate_z,
+        d_t2_P_rate_x = -d_t2_i_rate_x*less*w_t - d_t2_i_x*less*w_t_rate - d_t2_w_t*i_rate_x*less - d_t2_w_t_rate*i_x*less,
+        d_t2_P_x = -d_t2_i_x*less*w_t - d_t2_w_t*i_x*less,
+        d_t2_P_wet_rate_x = c_rate*d_t2_P_x + d_t2_P_rate_x*wet[0],
+        d_t2_P_y = -d_t2_i_y*less*w_t - d_t2_w_t*i_y*less,
+        d_t2_P_z = -d_t2_i_z*less*w_t - d_t2_w_t*i_z*less,
+        d_t2_T = 0.5*d_t2_P_x*w_x + 0.5*d_t2_P_y*w_y + 0.5*d_t2_P_z*w_z,
+        d_t2_P_wet_x = d_t2_P_x*wet[0],
+        d_t2_P_wet_y = d_t2_P_y*wet[0],
+        d_t2_P_wet_z = d_t2_P_z*wet[0],
+        d_t2_strained_x = G[0]*d_t2_P_wet_x + G[3]*d_t2_P_wet_y + G[6]*d_t2_P_wet_z,
+        d_t2_F_x = -c_place_x*d_t2_T + d_t2_P_wet_rate_x + d_t2_strained_x,
+        d_t2_P_rate_y = -d_t2_i_rate_y*less*w_t - d_t2_i_y*less*w_t_rate - d_t2_w_t*i_rate_y*less - d_t2_w_t_rate*i_y*less,
+        d_t2_P_wet_rate_y = c_rate*d_t2_P_y + d_t2_P_rate_y*wet[0],
+        d_t2_strained_y = G[1]*d_t2_P_wet_x + G[4]*d_t2_P_wet_y + G[7]*d_t2_P_wet_z,
+        d_t2_F_y = -c_place_y*d_t2_T + d_t2_P_wet_rate_y + d_t2_strained_y,
+        d_t2_P_rate_z = -d_t2_i_rate_z*less*w_t - d_t2_i_z*less*w_t_rate - d_t2_w_t*i_rate_z*less - d_t2_w_t_rate*i_z*less,
+        d_t2_P_wet_rate_z = c_rate*d_t2_P_z + d_t2_P_rate_z*wet[0],
+        d_t2_strained_z = G[2]*d_t2_P_wet_x + G[5]*d_t2_P_wet_y + G[8]*d_t2_P_wet_z,
+        d_t2_F_z = -c_place_z*d_t2_T + d_t2_P_wet_rate_z + d_t2_strained_z,
+        d_t_rate0_i_rate_x = inv_len_t*(-i_x*i_x + 1.0),
+        d_t_rate0_i_rate_y = -(i_x*i_y*inv_len_t),
+        d_t_rate0_i_rate_z = -(i_x*i_z*inv_len_t),
+        d_t_rate0_w_t_rate = d_t_rate0_i_rate_x*w_x + d_t_rate0_i_rate_y*w_y + d_t_rate0_i_rate_z*w_z,
+        d_t_rate0_P_rate_x = -d_t_rate0_i_rate_x*less*w_t - d_t_rate0_w_t_rate*i_x*less,
+        d_t_rate0_P_wet_rate_x = d_t_rate0_P_rate_x*wet[0],
+        d_t_rate0_P_rate_y = -d_t_rate0_i_rate_y*less*w_t - d_t_rate0_w_t_rate*i_y*less,
+        d_t_rate0_P_wet_rate_y = d_t_rate0_P_rate_y*wet[0],
+        d_t_rate0_P_rate_z = -d_t_rate0_i_rate_z*less*w_t - d_t_rate0_w_t_rate*i_z*less,
+        d_t_rate0_P_wet_rate_z = d_t_rate0_P_rate_z*wet[0],
+        d_t_rate1_i_rate_x = -(i_x*i_y*inv_len_t),
+        d_t_rate1_i_rate_y = inv_len_t*(-i_y*i_y + 1.0),
+        d_t_rate1_i_rate_z = -(i_y*i_z*inv_len_t),
+        d_t_rate1_w_t_rate = d_t_rate1_i_rate_x*w_x + d_t_rate1_i_rate_y*w_y + d_t_rate1_i_rate_z*w_z,
+        d_t_rate1_P_rate_x = -d_t_rate1_i_rate_x*less*w_t - d_t_rate1_w_t_rate*i_x*less,
+        d_t_rate1_P_wet_rate_x = d_t_rate1_P_rate_x*wet[0],
+        d_t_rate1_P_rate_y = -d_t_rate1_i_rate_y*less*w_t - d_t_rate1_w_t_rate*i_y*less,
+        d_t_rate1_P_wet_rate_y = d_t_rate1_P_rate_y*wet[0],
+        d_t_rate1_P_rate_z = -d_t_rate1_i_rate_z*less*w_t - d_t_rate1_w_t_rate*i_z*less,
+        d_t_rate1_P_wet_rate_z = d_t_rate1_P_rate_z*wet[0],
+        d_t_rate2_i_rate_x = -(i_x*i_z*inv_len_t),
+        d_t_rate2_i_rate_y = -(i_y*i_z*inv_len_t),
+        d_t_rate2_i_rate_z = inv_len_t*(-i_z*i_z + 1.0),
+        d_t_rate2_w_t_rate = d_t_rate2_i_rate_x*w_x + d_t_rate2_i_rate_y*w_y + d_t_rate2_i_rate_z*w_z,
+        d_t_rate2_P_rate_x = -d_t_rate2_i_rate_x*less*w_t - d_t_rate2_w_t_rate*i_x*less,
+        d_t_rate2_P_wet_rate_x = d_t_rate2_P_rate_x*wet[0],
+        d_t_rate2_P_rate_y = -d_t_rate2_i_rate_y*less*w_t - d_t_rate2_w_t_rate*i_y*less,
+        d_t_rate2_P_wet_rate_y = d_t_rate2_P_rate_y*wet[0],
+        d_t_rate2_P_rate_z = -d_t_rate2_i_rate_z*less*w_t - d_t_rate2_w_t_rate*i_z*less,
+        d_t_rate2_P_wet_rate_z = d_t_rate2_P_rate_z*wet[0],
+        d_w_x_P_rate_x = -(2.0*i_rate_x*i_x*less),
+        d_w_x_P_x = -i_x*i_x*less + m[0],
+        d_w_x_P_wet_rate_x = c_rate*d_w_x_P_x + d_w_x_P_rate_x*wet[0],
+        d_w_x_P_y = -(i_x*i_y*less),
+        d_w_x_P_z = -(i_x*i_z*less),
+        d_w_x_T = 0.5*P_x + 0.5*d_w_x_P_x*w_x + 0.5*d_w_x_P_y*w_y + 0.5*d_w_x_P_z*w_z,
+        d_w_x_P_wet_x = d_w_x_P_x*wet[0],
+        d_w_x_P_wet_y = d_w_x_P_y*wet[0],
+        d_w_x_P_wet_z = d_w_x_P_z*wet[0],
+        d_w_x_strained_x = G[0]*d_w_x_P_wet_x + G[3]*d_w_x_P_wet_y + G[6]*d_w_x_P_wet_z,
+        d_w_x_F_x = -c_place_x*d_w_x_T + d_w_x_P_wet_rate_x + d_w_x_strained_x,
+        d_w_x_P_rate_y = -i_rate_x*i_y*less - i_rate_y*i_x*less,
+        d_w_x_P_wet_rate_y = c_rate*d_w_x_P_y + d_w_x_P_rate_y*wet[0],
+        d_w_x_strained_y = G[1]*d_w_x_P_wet_x + G[4]*d_w_x_P_wet_y + G[7]*d_w_x_P_wet_z,
+        d_w_x_F_y = -c_place_y*d_w_x_T + d_w_x_P_wet_rate_y + d_w_x_strained_y,
+        d_w_x_P_rate_z = -i_rate_x*i_z*less - i_rate_z*i_x*less,
+        d_w_x_P_wet_rate_z = c_rate*d_w_x_P_z + d_w_x_P_rate_z*wet[0],
+        d_w_x_strained_z = G[2]*d_w_x_P_wet_x + G[5]*d_w_x_P_wet_y + G[8]*d_w_x_P_wet_z,
+        d_w_x_F_z = -c_place_z*d_w_x_T + d_w_x_P_wet_rate_z + d_w_x_strained_z,
+        d_w_y_P_rate_x = -i_rate_x*i_y*less - i_rate_y*i_x*less,
+        d_w_y_P_x = -(i_x*i_y*less),
+        d_w_y_P_wet_rate_x = c_rate*d_w_y_P_x + d_w_y_P_rate_x*wet[0],
+        d_w_y_P_y = -i_y*i_y*less + m[0],
+        d_w_y_P_z = -(i_y*i_z*less),
+        d_w_y_T = 0.5*P_y + 0.5*d_w_y_P_x*w_x + 0.5*d_w_y_P_y*w_y + 0.5*d_w_y_P_z*w_z,
+        d_w_y_P_wet_x = d_w_y_P_x*wet[0],
+        d_w_y_P_wet_y = d_w_y_P_y*wet[0],
+        d_w_y_P_wet_z = d_w_y_P_z*wet[0],
+        d_w_y_strained_x = G[0]*d_w_y_P_wet_x + G[3]*d_w_y_P_wet_y + G[6]*d_w_y_P_wet_z,
+        d_w_y_F_x = -c_place_x*d_w_y_T + d_w_y_P_wet_rate_x + d_w_y_strained_x,
+        d_w_y_P_rate_y = -(2.0*i_rate_y*i_y*less),
+        d_w_y_P_wet_rate_y = c_rate*d_w_y_P_y + d_w_y_P_rate_y*wet[0],
+        d_w_y_strained_y = G[1]*d_w_y_P_wet_x + G[4]*d_w_y_P_wet_y + G[7]*d_w_y_P_wet_z,
+        d_w_y_F_y = -c_place_y*d_w_y_T + d_w_y_P_wet_rate_y + d_w_y_strained_y,
+        d_w_y_P_rate_z = -i_rate_y*i_z*less - i_rate_z*i_y*less,
+        d_w_y_P_wet_rate_z = c_rate*d_w_y_P_z + d_w_y_P_rate_z*wet[0],
+        d_w_y_strained_z = G[2]*d_w_y_P_wet_x + G[5]*d_w_y_P_wet_y + G[8]*d_w_y_P_wet_z,
+        d_w_y_F_z = -c_place_z*d_w_y_T + d_w_y_P_wet_rate_z + d_w_y_strained_z,
+        d_w_z_P_rate_x = -i_rate_x*i_z*less - i_rate_z*i_x*less,
+        d_w_z_P_x = -(i_x*i_z*less),
+        d_w_z_P_wet_rate_x = c_rate*d_w_z_P_x + d_w_z_P_rate_x*wet[0],
+        d_w_z_P_y = -(i_y*i_z*less),
+        d_w_z_P_z = -i_z*i_z*less + m[0],
+        d_w_z_T = 0.5*P_z + 0.5*d_w_z_P_x*w_x + 0.5*d_w_z_P_y*w_y + 0.5*d_w_z_P_z*w_z,
+        d_w_z_P_wet_x = d_w_z_P_x*wet[0],
+        d_w_z_P_wet_y = d_w_z_P_y*wet[0],
+        d_w_z_P_wet_z = d_w_z_P_z*wet[0],
+        d_w_z_strained_x = G[0]*d_w_z_P_wet_x + G[3]*d_w_z_P_wet_y + G[6]*d_w_z_P_wet_z,
+        d_w_z_F_x = -c_place_x*d_w_z_T + d_w_z_P_wet_rate_x + d_w_z_strained_x,
+        d_w_z_P_rate_y = -i_rate_y*i_z*less - i_rate_z*i_y*less,
+        d_w_z_P_wet_rate_y = c_rate*d_w_z_P_y + d_w_z_P_rate_y*wet[0],
+        d_w_z_strained_y = G[1]*d_w_z_P_wet_x + G[4]*d_w_z_P_wet_y + G[7]*d_w_z_P_wet_z,
+        d_w_z_F_y = -c_place_y*d_w_z_T + d_w_z_P_wet_rate_y + d_w_z_strained_y,
+        d_w_z_P_rate_z = -(2.0*i_rate_z*i_z*less),
+        d_w_z_P_wet_rate_z = c_rate*d_w_z_P_z + d_w_z_P_rate_z*wet[0],
+        d_w_z_strained_z = G[2]*d_w_z_P_wet_x + G[5]*d_w_z_P_wet_y + G[8]*d_w_z_P_wet_z,
+        d_w_z_F_z = -c_place_z*d_w_z_T + d_w_z_P_wet_rate_z + d_w_z_strained_z,
+        d_w_rate_x_P_rate_x = -i_x*i_x*less + m[0],
+        d_w_rate_x_P_wet_rate_x = d_w_rate_x_P_rate_x*wet[0],
+        d_w_rate_x_P_rate_y = -(i_x*i_y*less),
+        d_w_rate_x_P_wet_rate_y = d_w_rate_x_P_rate_y*wet[0],
+        d_w_rate_x_P_rate_z = -(i_x*i_z*less),
+        d_w_rate_x_P_wet_rate_z = d_w_rate_x_P_rate_z*wet[0],
+        d_w_rate_y_P_rate_x = -(i_x*i_y*less),
+        d_w_rate_y_P_wet_rate_x = d_w_rate_y_P_rate_x*wet[0],
+        d_w_rate_y_P_rate_y = -i_y*i_y*less + m[0],
+        d_w_rate_y_P_wet_rate_y = d_w_rate_y_P_rate_y*wet[0],
+        d_w_rate_y_P_rate_z = -(i_y*i_z*less),
+        d_w_rate_y_P_wet_rate_z = d_w_rate_y_P_rate_z*wet[0],
+        d_w_rate_z_P_rate_x = -(i_x*i_z*less),
+        d_w_rate_z_P_wet_rate_x = d_w_rate_z_P_rate_x*wet[0],
+        d_w_rate_z_P_rate_y = -(i_y*i_z*less),
+        d_w_rate_z_P_wet_rate_y = d_w_rate_z_P_rate_y*wet[0],
+        d_w_rate_z_P_rate_z = -i_z*i_z*less + m[0],
+        d_w_rate_z_P_wet_rate_z = d_w_rate_z_P_rate_z*wet[0];
+    DRAG_PART_OF_DERIVATIVES
     const fu_real
         d_t0_len_t_2 = inv_len_t*t[0],
-        d_t0_inv_len_t_2 = -(d_t0_len_t_2*inv_len_t*inv_len_t);
-    d_t0_i_2[0] = d_t0_inv_len_t_2*t[0] + inv_len_t;
-    d_t0_i_2[1] = d_t0_inv_len_t_2*t[1];
-    d_t0_i_2[2] = d_t0_inv_len_t_2*t[2];
-    d_t0_i_rate[0] = d_t0_i_2[0]*inv_len_t*(-2.0*i[0]*t_rate[0] - i[1]*t_rate[1] - i[2]*t_rate[2]) - d_t0_i_2[1]*i[0]*inv_len_t*t_rate[1] - d_t0_i_2[2]*i[0]*inv_len_t*t_rate[2] + d_t0_inv_len_t_2*(-i[0]*(i[0]*t_rate[0] + i[1]*t_rate[1] + i[2]*t_rate[2]) + t_rate[0]);
-    const fu_real d_t0_w_t_2 = d_t0_i_2[0]*w[0] + d_t0_i_2[1]*w[1] + d_t0_i_2[2]*w[2];
-    d_t0_i_rate[1] = -d_t0_i_2[0]*i[1]*inv_len_t*t_rate[0] + d_t0_i_2[1]*inv_len_t*(-i[0]*t_rate[0] - 2.0*i[1]*t_rate[1] - i[2]*t_rate[2]) - d_t0_i_2[2]*i[1]*inv_len_t*t_rate[2] + d_t0_inv_len_t_2*(-i[1]*(i[0]*t_rate[0] + i[1]*t_rate[1] + i[2]*t_rate[2]) + t_rate[1]);
-    d_t0_i_rate[2] = -d_t0_i_2[0]*i[2]*inv_len_t*t_rate[0] - d_t0_i_2[1]*i[2]*inv_len_t*t_rate[1] + d_t0_i_2[2]*inv_len_t*(-i[0]*t_rate[0] - i[1]*t_rate[1] - 2.0*i[2]*t_rate[2]) + d_t0_inv_len_t_2*(-i[2]*(i[0]*t_rate[0] + i[1]*t_rate[1] + i[2]*t_rate[2]) + t_rate[2]);
-    const fu_real d_t0_w_t_rate = d_t0_i_rate[0]*w[0] + d_t0_i_rate[1]*w[1] + d_t0_i_rate[2]*w[2] + d_t0_i_2[0]*w_rate[0] + d_t0_i_2[1]*w_rate[1] + d_t0_i_2[2]*w_rate[2];
-    FU_EACH(row, 3, d_t0_P_rate[row] = -d_t0_i_rate[row]*less*w_t - d_t0_i_2[row]*less*w_t_rate - d_t0_w_t_2*i_rate[row]*less - d_t0_w_t_rate*i[row]*less;)
-    const fu_real
+        d_t0_inv_len_t_2 = -(d_t0_len_t_2*inv_len_t*inv_len_t),
+        d_t0_i_x_2 = d_t0_inv_len_t_2*t[0] + inv_len_t,
+        d_t0_i_y_2 = d_t0_inv_len_t_2*t[1],
+        d_t0_i_z_2 = d_t0_inv_len_t_2*t[2],
+        d_t0_w_t_2 = d_t0_i_x_2*w_x + d_t0_i_y_2*w_y + d_t0_i_z_2*w_z,
+        d_t0_pull = d_t0_inv_len_t_2*less*w_t*wet[0] + d_t0_w_t_2*inv_len_t*less*wet[0],
+        d_t0_G_t_x = d_t0_i_x_2*pull*w_t + d_t0_pull*(i_x*w_t - w_x) + d_t0_w_t_2*i_x*pull,
+        d_t0_G_t_y = d_t0_i_y_2*pull*w_t + d_t0_pull*(i_y*w_t - w_y) + d_t0_w_t_2*i_y*pull,
+        d_t0_G_t_z = d_t0_i_z_2*pull*w_t + d_t0_pull*(i_z*w_t - w_z) + d_t0_w_t_2*i_z*pull,
         d_t1_len_t_2 = inv_len_t*t[1],
-        d_t1_inv_len_t_2 = -(d_t1_len_t_2*inv_len_t*inv_len_t);
-    d_t1_i_2[0] = d_t1_inv_len_t_2*t[0];
-    d_t1_i_2[1] = d_t1_inv_len_t_2*t[1] + inv_len_t;
-    d_t1_i_2[2] = d_t1_inv_len_t_2*t[2];
-    d_t1_i_rate[0] = d_t1_i_2[0]*inv_len_t*(-2.0*i[0]*t_rate[0] - i[1]*t_rate[1] - i[2]*t_rate[2]) - d_t1_i_2[1]*i[0]*inv_len_t*t_rate[1] - d_t1_i_2[2]*i[0]*inv_len_t*t_rate[2] + d_t1_inv_len_t_2*(-i[0]*(i[0]*t_rate[0] + i[1]*t_rate[1] + i[2]*t_rate[2]) + t_rate[0]);
-    const fu_real d_t1_w_t_2 = d_t1_i_2[0]*w[0] + d_t1_i_2[1]*w[1] + d_t1_i_2[2]*w[2];
-    d_t1_i_rate[1] = -d_t1_i_2[0]*i[1]*inv_len_t*t_rate[0] + d_t1_i_2[1]*inv_len_t*(-i[0]*t_rate[0] - 2.0*i[1]*t_rate[1] - i[2]*t_rate[2]) - d_t1_i_2[2]*i[1]*inv_len_t*t_rate[2] + d_t1_inv_len_t_2*(-i[1]*(i[0]*t_rate[0] + i[1]*t_rate[1] + i[2]*t_rate[2]) + t_rate[1]);
-    d_t1_i_rate[2] = -d_t1_i_2[0]*i[2]*inv_len_t*t_rate[0] - d_t1_i_2[1]*i[2]*inv_len_t*t_rate[1] + d_t1_i_2[2]*inv_len_t*(-i[0]*t_rate[0] - i[1]*t_rate[1] - 2.0*i[2]*t_rate[2]) + d_t1_inv_len_t_2*(-i[2]*(i[0]*t_rate[0] + i[1]*t_rate[1] + i[2]*t_rate[2]) + t_rate[2]);
-    const fu_real d_t1_w_t_rate = d_t1_i_rate[0]*w[0] + d_t1_i_rate[1]*w[1] + d_t1_i_rate[2]*w[2] + d_t1_i_2[0]*w_rate[0] + d_t1_i_2[1]*w_rate[1] + d_t1_i_2[2]*w_rate[2];
-    FU_EACH(row, 3, d_t1_P_rate[row] = -d_t1_i_rate[row]*less*w_t - d_t1_i_2[row]*less*w_t_rate - d_t1_w_t_2*i_rate[row]*less - d_t1_w_t_rate*i[row]*less;)
-    const fu_real
+        d_t1_inv_len_t_2 = -(d_t1_len_t_2*inv_len_t*inv_len_t),
+        d_t1_i_x_2 = d_t1_inv_len_t_2*t[0],
+        d_t1_i_y_2 = d_t1_inv_len_t_2*t[1] + inv_len_t,
+        d_t1_i_z_2 = d_t1_inv_len_t_2*t[2],
+        d_t1_w_t_2 = d_t1_i_x_2*w_x + d_t1_i_y_2*w_y + d_t1_i_z_2*w_z,
+        d_t1_pull = d_t1_inv_len_t_2*less*w_t*wet[0] + d_t1_w_t_2*inv_len_t*less*wet[0],
+        d_t1_G_t_x = d_t1_i_x_2*pull*w_t + d_t1_pull*(i_x*w_t - w_x) + d_t1_w_t_2*i_x*pull,
+        d_t1_G_t_y = d_t1_i_y_2*pull*w_t + d_t1_pull*(i_y*w_t - w_y) + d_t1_w_t_2*i_y*pull,
+        d_t1_G_t_z = d_t1_i_z_2*pull*w_t + d_t1_pull*(i_z*w_t - w_z) + d_t1_w_t_2*i_z*pull,
         d_t2_len_t_2 = inv_len_t*t[2],
-        d_t2_inv_len_t_2 = -(d_t2_len_t_2*inv_len_t*inv_len_t);
-    d_t2_i_2[0] = d_t2_inv_len_t_2*t[0];
-    d_t2_i_2[1] = d_t2_inv_len_t_2*t[1];
-    d_t2_i_2[2] = d_t2_inv_len_t_2*t[2] + inv_len_t;
-    d_t2_i_rate[0] = d_t2_i_2[0]*inv_len_t*(-2.0*i[0]*t_rate[0] - i[1]*t_rate[1] - i[2]*t_rate[2]) - d_t2_i_2[1]*i[0]*inv_len_t*t_rate[1] - d_t2_i_2[2]*i[0]*inv_len_t*t_rate[2] + d_t2_inv_len_t_2*(-i[0]*(i[0]*t_rate[0] + i[1]*t_rate[1] + i[2]*t_rate[2]) + t_rate[0]);
-    const fu_real d_t2_w_t_2 = d_t2_i_2[0]*w[0] + d_t2_i_2[1]*w[1] + d_t2_i_2[2]*w[2];
-    d_t2_i_rate[1] = -d_t2_i_2[0]*i[1]*inv_len_t*t_rate[0] + d_t2_i_2[1]*inv_len_t*(-i[0]*t_rate[0] - 2.0*i[1]*t_rate[1] - i[2]*t_rate[2]) - d_t2_i_2[2]*i[1]*inv_len_t*t_rate[2] + d_t2_inv_len_t_2*(-i[1]*(i[0]*t_rate[0] + i[1]*t_rate[1] + i[2]*t_rate[2]) + t_rate[1]);
-    d_t2_i_rate[2] = -d_t2_i_2[0]*i[2]*inv_len_t*t_rate[0] - d_t2_i_2[1]*i[2]*inv_len_t*t_rate[1] + d_t2_i_2[2]*inv_len_t*(-i[0]*t_rate[0] - i[1]*t_rate[1] - 2.0*i[2]*t_rate[2]) + d_t2_inv_len_t_2*(-i[2]*(i[0]*t_rate[0] + i[1]*t_rate[1] + i[2]*t_rate[2]) + t_rate[2]);
-    const fu_real d_t2_w_t_rate = d_t2_i_rate[0]*w[0] + d_t2_i_rate[1]*w[1] + d_t2_i_rate[2]*w[2] + d_t2_i_2[0]*w_rate[0] + d_t2_i_2[1]*w_rate[1] + d_t2_i_2[2]*w_rate[2];
-    FU_EACH(row, 3, d_t2_P_rate[row] = -d_t2_i_rate[row]*less*w_t - d_t2_i_2[row]*less*w_t_rate - d_t2_w_t_2*i_rate[row]*less - d_t2_w_t_rate*i[row]*less;)
-    d_t_rate0_i_rate[0] = inv_len_t*(-i[0]*i[0] + 1.0);
-    d_t_rate0_i_rate[1] = -(i[0]*i[1]*inv_len_t);
-    d_t_rate0_i_rate[2] = -(i[0]*i[2]*inv_len_t);
-    const fu_real d_t_rate0_w_t_rate = d_t_rate0_i_rate[0]*w[0] + d_t_rate0_i_rate[1]*w[1] + d_t_rate0_i_rate[2]*w[2];
-    FU_EACH(row, 3, d_t_rate0_P_rate[row] = -d_t_rate0_i_rate[row]*less*w_t - d_t_rate0_w_t_rate*i[row]*less;)
-    d_t_rate1_i_rate[0] = -(i[0]*i[1]*inv_len_t);
-    d_t_rate1_i_rate[1] = inv_len_t*(-i[1]*i[1] + 1.0);
-    d_t_rate1_i_rate[2] = -(i[1]*i[2]*inv_len_t);
-    const fu_real d_t_rate1_w_t_rate = d_t_rate1_i_rate[0]*w[0] + d_t_rate1_i_rate[1]*w[1] + d_t_rate1_i_rate[2]*w[2];
-    FU_EACH(row, 3, d_t_rate1_P_rate[row] = -d_t_rate1_i_rate[row]*less*w_t - d_t_rate1_w_t_rate*i[row]*less;)
-    d_t_rate2_i_rate[0] = -(i[0]*i[2]*inv_len_t);
-    d_t_rate2_i_rate[1] = -(i[1]*i[2]*inv_len_t);
-    d_t_rate2_i_rate[2] = inv_len_t*(-i[2]*i[2] + 1.0);
-    const fu_real d_t_rate2_w_t_rate = d_t_rate2_i_rate[0]*w[0] + d_t_rate2_i_rate[1]*w[1] + d_t_rate2_i_rate[2]*w[2];
-    FU_EACH(row, 3, d_t_rate2_P_rate[row] = -d_t_rate2_i_rate[row]*less*w_t - d_t_rate2_w_t_rate*i[row]*less;)
-    const fu_real
-        d_w0_P_rate_x = -(2.0*i_rate[0]*i[0]*less),
-        d_w0_P_rate_y = -i_rate[0]*i[1]*less - i_rate[1]*i[0]*less,
-        d_w0_P_rate_z = -i_rate[0]*i[2]*less - i_rate[2]*i[0]*less;
-    FU_EACH(row, 3, d_w1_P_rate[row] = -i_rate[row]*i[1]*less - i_rate[1]*i[row]*less;)
-    FU_EACH(row, 3, d_w2_P_rate[row] = -i_rate[row]*i[2]*less - i_rate[2]*i[row]*less;)
-    const fu_real
-        d_t0_len_t_3 = inv_len_t*t[0],
-        d_t0_inv_len_t_3 = -(d_t0_len_t_3*inv_len_t*inv_len_t);
-    d_t0_i_3[0] = d_t0_inv_len_t_3*t[0] + inv_len_t;
-    d_t0_i_3[1] = d_t0_inv_len_t_3*t[1];
-    d_t0_i_3[2] = d_t0_inv_len_t_3*t[2];
-    const fu_real d_t0_w_t_3 = d_t0_i_3[0]*w[0] + d_t0_i_3[1]*w[1] + d_t0_i_3[2]*w[2];
-    FU_EACH(row, 3, d_t0_G[row] = d_t0_i_3[row]*inv_len_t*less*w_t*w_t - d_t0_inv_len_t_3*less*w_t*(-i[row]*w_t + w[row]) + d_t0_w_t_3*(i[row]*inv_len_t*less*w_t - inv_len_t*less*(-i[row]*w_t + w[row]));)
-    const fu_real
-        d_t1_len_t_3 = inv_len_t*t[1],
-        d_t1_inv_len_t_3 = -(d_t1_len_t_3*inv_len_t*inv_len_t);
-    d_t1_i_3[0] = d_t1_inv_len_t_3*t[0];
-    d_t1_i_3[1] = d_t1_inv_len_t_3*t[1] + inv_len_t;
-    d_t1_i_3[2] = d_t1_inv_len_t_3*t[2];
-    const fu_real d_t1_w_t_3 = d_t1_i_3[0]*w[0] + d_t1_i_3[1]*w[1] + d_t1_i_3[2]*w[2];
-    FU_EACH(row, 3, d_t1_G[row] = d_t1_i_3[row]*inv_len_t*less*w_t*w_t - d_t1_inv_len_t_3*less*w_t*(-i[row]*w_t + w[row]) + d_t1_w_t_3*(i[row]*inv_len_t*less*w_t - inv_len_t*less*(-i[row]*w_t + w[row]));)
-    const fu_real
-        d_t2_len_t_3 = inv_len_t*t[2],
-        d_t2_inv_len_t_3 = -(d_t2_len_t_3*inv_len_t*inv_len_t);
-    d_t2_i_3[0] = d_t2_inv_len_t_3*t[0];
-    d_t2_i_3[1] = d_t2_inv_len_t_3*t[1];
-    d_t2_i_3[2] = d_t2_inv_len_t_3*t[2] + inv_len_t;
-    const fu_real d_t2_w_t_3 = d_t2_i_3[0]*w[0] + d_t2_i_3[1]*w[1] + d_t2_i_3[2]*w[2];
-    FU_EACH(row, 3, d_t2_G[row] = d_t2_i_3[row]*inv_len_t*less*w_t*w_t - d_t2_inv_len_t_3*less*w_t*(-i[row]*w_t + w[row]) + d_t2_w_t_3*(i[row]*inv_len_t*less*w_t - inv_len_t*less*(-i[row]*w_t + w[row]));)
-    const fu_real
-        d_w0_G_x = i[0]*(i[0]*inv_len_t*less*w_t - inv_len_t*less*(-i[0]*w_t + w[0])) - inv_len_t*less*w_t,
-        d_w0_G_y = i[0]*(i[1]*inv_len_t*less*w_t - inv_len_t*less*(-i[1]*w_t + w[1])),
-        d_w0_G_z = i[0]*(i[2]*inv_len_t*less*w_t - inv_len_t*less*(-i[2]*w_t + w[2])),
-        d_w1_G_x = i[1]*(i[0]*inv_len_t*less*w_t - inv_len_t*less*(-i[0]*w_t + w[0])),
-        d_w1_G_y = i[1]*(i[1]*inv_len_t*less*w_t - inv_len_t*less*(-i[1]*w_t + w[1])) - inv_len_t*less*w_t,
-        d_w1_G_z = i[1]*(i[2]*inv_len_t*less*w_t - inv_len_t*less*(-i[2]*w_t + w[2])),
-        d_w2_G_x = i[2]*(i[0]*inv_len_t*less*w_t - inv_len_t*less*(-i[0]*w_t + w[0])),
-        d_w2_G_y = i[2]*(i[1]*inv_len_t*less*w_t - inv_len_t*less*(-i[1]*w_t + w[1])),
-        d_w2_G_z = i[2]*(i[2]*inv_len_t*less*w_t - inv_len_t*less*(-i[2]*w_t + w[2])) - inv_len_t*less*w_t;
+        d_t2_inv_len_t_2 = -(d_t2_len_t_2*inv_len_t*inv_len_t),
+        d_t2_i_x_2 = d_t2_inv_len_t_2*t[0],
+        d_t2_i_y_2 = d_t2_inv_len_t_2*t[1],
+        d_t2_i_z_2 = d_t2_inv_len_t_2*t[2] + inv_len_t,
+        d_t2_w_t_2 = d_t2_i_x_2*w_x + d_t2_i_y_2*w_y + d_t2_i_z_2*w_z,
+        d_t2_pull = d_t2_inv_len_t_2*less*w_t*wet[0] + d_t2_w_t_2*inv_len_t*less*wet[0],
+        d_t2_G_t_x = d_t2_i_x_2*pull*w_t + d_t2_pull*(i_x*w_t - w_x) + d_t2_w_t_2*i_x*pull,
+        d_t2_G_t_y = d_t2_i_y_2*pull*w_t + d_t2_pull*(i_y*w_t - w_y) + d_t2_w_t_2*i_y*pull,
+        d_t2_G_t_z = d_t2_i_z_2*pull*w_t + d_t2_pull*(i_z*w_t - w_z) + d_t2_w_t_2*i_z*pull,
+        d_w_x_pull = i_x*inv_len_t*less*wet[0],
+        d_w_x_G_t_x = d_w_x_pull*(i_x*w_t - w_x) + i_x*i_x*pull - pull,
+        d_w_x_G_t_y = d_w_x_pull*(i_y*w_t - w_y) + i_x*i_y*pull,
+        d_w_x_G_t_z = d_w_x_pull*(i_z*w_t - w_z) + i_x*i_z*pull,
+        d_w_y_pull = i_y*inv_len_t*less*wet[0],
+        d_w_y_G_t_x = d_w_y_pull*(i_x*w_t - w_x) + i_x*i_y*pull,
+        d_w_y_G_t_y = d_w_y_pull*(i_y*w_t - w_y) + i_y*i_y*pull - pull,
+        d_w_y_G_t_z = d_w_y_pull*(i_z*w_t - w_z) + i_y*i_z*pull,
+        d_w_z_pull = i_z*inv_len_t*less*wet[0],
+        d_w_z_G_t_x = d_w_z_pull*(i_x*w_t - w_x) + i_x*i_z*pull,
+        d_w_z_G_t_y = d_w_z_pull*(i_y*w_t - w_y) + i_y*i_z*pull,
+        d_w_z_G_t_z = d_w_z_pull*(i_z*w_t - w_z) + i_z*i_z*pull - pull,
+        d_wet0_pull = inv_len_t*less*w_t,
+        d_wet0_G_t_x = d_wet0_pull*(i_x*w_t - w_x),
+        d_wet0_G_t_y = d_wet0_pull*(i_y*w_t - w_y),
+        d_wet0_G_t_z = d_wet0_pull*(i_z*w_t - w_z);
     /* outputs */
-    FU_EACH(row, 3, p[row] = P[row];)
-    FU_EACH(row, 3, p_rate[row] = P_rate[row];)
-    FU_EACH(row, 3, g[row] = G[row];)
-    FU_PAIRS(row, col, 3, M[3*row + col] = -(i[row]*i[col]*less);)
-    M[0] += m[0];
-    M[4] += m[0];
-    M[8] += m[0];
-    FU_EACH(point, 3,
-        p_t[3*point] = d_t0_P[point];
-        p_t[3*point + 1] = d_t1_P[point];
-        p_t[3*point + 2] = d_t2_P[point];)
-    FU_EACH(point, 3,
-        p_rate_t[3*point] = d_t0_P_rate[point];
-        p_rate_t[3*point + 1] = d_t1_P_rate[point];
-        p_rate_t[3*point + 2] = d_t2_P_rate[point];)
-    FU_EACH(point, 3,
-        p_rate_t_rate[3*point] = d_t_rate0_P_rate[point];
-        p_rate_t_rate[3*point + 1] = d_t_rate1_P_rate[point];
-        p_rate_t_rate[3*point + 2] = d_t_rate2_P_rate[point];)
-    p_rate_w[0] = d_w0_P_rate_x;
-    p_rate_w[1] = d_w1_P_rate[0];
-    p_rate_w[2] = d_w2_P_rate[0];
-    p_rate_w[3] = d_w0_P_rate_y;
-    p_rate_w[4] = d_w1_P_rate[1];
-    p_rate_w[5] = d_w2_P_rate[1];
-    p_rate_w[6] = d_w0_P_rate_z;
-    p_rate_w[7] = d_w1_P_rate[2];
-    p_rate_w[8] = d_w2_P_rate[2];
-    FU_EACH(point, 3,
-        g_t[3*point] = d_t0_G[point];
-        g_t[3*point + 1] = d_t1_G[point];
-        g_t[3*point + 2] = d_t2_G[point];)
-    g_w[0] = d_w0_G_x;
-    g_w[1] = d_w1_G_x;
-    g_w[2] = d_w2_G_x;
-    g_w[3] = d_w0_G_y;
-    g_w[4] = d_w1_G_y;
-    g_w[5] = d_w2_G_y;
-    g_w[6] = d_w0_G_z;
-    g_w[7] = d_w1_G_z;
-    g_w[8] = d_w2_G_z;
+    f_t[0] = d_t0_F_x;
+    f_t[1] = d_t1_F_x;
+    f_t[2] = d_t2_F_x;
+    f_t[3] = d_t0_F_y;
+    f_t[4] = d_t1_F_y;
+    f_t[5] = d_t2_F_y;
+    f_t[6] = d_t0_F_z;
+    f_t[7] = d_t1_F_z;
+    f_t[8] = d_t2_F_z;
+    f_t_rate[0] = d_t_rate0_P_wet_rate_x;
+    f_t_rate[1] = d_t_rate1_P_wet_rate_x;
+    f_t_rate[2] = d_t_rate2_P_wet_rate_x;
+    f_t_rate[3] = d_t_rate0_P_wet_rate_y;
+    f_t_rate[4] = d_t_rate1_P_wet_rate_y;
+    f_t_rate[5] = d_t_rate2_P_wet_rate_y;
+    f_t_rate[6] = d_t_rate0_P_wet_rate_z;
+    f_t_rate[7] = d_t_rate1_P_wet_rate_z;
+    f_t_rate[8] = d_t_rate2_P_wet_rate_z;
+    f_r[0] = G[0]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[3]*(G[1]*d_material_x_F_x - d_w_y_F_x) + G[6]*(G[2]*d_material_x_F_x - d_w_z_F_x) + c_place_x*d_wet0_F_x + up[0]*wet[2]*(d_c_place_x_F_x*up[0] + d_c_place_y_P_wet_rate_x*up[1] + d_c_place_z_P_wet_rate_x*up[2]);
+    f_r[1] = G[1]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[4]*(G[1]*d_material_x_F_x - d_w_y_F_x) + G[7]*(G[2]*d_material_x_F_x - d_w_z_F_x) + c_place_y*d_wet0_F_x + up[1]*wet[2]*(d_c_place_x_F_x*up[0] + d_c_place_y_P_wet_rate_x*up[1] + d_c_place_z_P_wet_rate_x*up[2]);
+    f_r[2] = G[2]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[5]*(G[1]*d_material_x_F_x - d_w_y_F_x) + G[8]*(G[2]*d_material_x_F_x - d_w_z_F_x) + c_place_z*d_wet0_F_x + up[2]*wet[2]*(d_c_place_x_F_x*up[0] + d_c_place_y_P_wet_rate_x*up[1] + d_c_place_z_P_wet_rate_x*up[2]);
+    f_r[3] = G[0]*(G[3]*d_material_y_F_y - d_w_x_F_y) + G[3]*(G[4]*d_material_y_F_y - d_w_y_F_y) + G[6]*(G[5]*d_material_y_F_y - d_w_z_F_y) + c_place_x*d_wet0_F_y + up[0]*wet[2]*(d_c_place_x_P_wet_rate_y*up[0] + d_c_place_y_F_y*up[1] + d_c_place_z_P_wet_rate_y*up[2]);
+    f_r[4] = G[1]*(G[3]*d_material_y_F_y - d_w_x_F_y) + G[4]*(G[4]*d_material_y_F_y - d_w_y_F_y) + G[7]*(G[5]*d_material_y_F_y - d_w_z_F_y) + c_place_y*d_wet0_F_y + up[1]*wet[2]*(d_c_place_x_P_wet_rate_y*up[0] + d_c_place_y_F_y*up[1] + d_c_place_z_P_wet_rate_y*up[2]);
+    f_r[5] = G[2]*(G[3]*d_material_y_F_y - d_w_x_F_y) + G[5]*(G[4]*d_material_y_F_y - d_w_y_F_y) + G[8]*(G[5]*d_material_y_F_y - d_w_z_F_y) + c_place_z*d_wet0_F_y + up[2]*wet[2]*(d_c_place_x_P_wet_rate_y*up[0] + d_c_place_y_F_y*up[1] + d_c_place_z_P_wet_rate_y*up[2]);
+    f_r[6] = G[0]*(G[6]*d_material_z_F_z - d_w_x_F_z) + G[3]*(G[7]*d_material_z_F_z - d_w_y_F_z) + G[6]*(G[8]*d_material_z_F_z - d_w_z_F_z) + c_place_x*d_wet0_F_z + up[0]*wet[2]*(d_c_place_x_P_wet_rate_z*up[0] + d_c_place_y_P_wet_rate_z*up[1] + d_c_place_z_F_z*up[2]);
+    f_r[7] = G[1]*(G[6]*d_material_z_F_z - d_w_x_F_z) + G[4]*(G[7]*d_material_z_F_z - d_w_y_F_z) + G[7]*(G[8]*d_material_z_F_z - d_w_z_F_z) + c_place_y*d_wet0_F_z + up[1]*wet[2]*(d_c_place_x_P_wet_rate_z*up[0] + d_c_place_y_P_wet_rate_z*up[1] + d_c_place_z_F_z*up[2]);
+    f_r[8] = G[2]*(G[6]*d_material_z_F_z - d_w_x_F_z) + G[5]*(G[7]*d_material_z_F_z - d_w_y_F_z) + G[8]*(G[8]*d_material_z_F_z - d_w_z_F_z) + c_place_z*d_wet0_F_z + up[2]*wet[2]*(d_c_place_x_P_wet_rate_z*up[0] + d_c_place_y_P_wet_rate_z*up[1] + d_c_place_z_F_z*up[2]);
+    f_v[0] = -G[0]*d_w_rate_x_P_wet_rate_x - G[3]*d_w_rate_y_P_wet_rate_x - G[6]*d_w_rate_z_P_wet_rate_x + d_v0_P_wet_rate_x + d_w_x_F_x;
+    f_v[1] = -G[1]*d_w_rate_x_P_wet_rate_x - G[4]*d_w_rate_y_P_wet_rate_x - G[7]*d_w_rate_z_P_wet_rate_x + d_v1_P_wet_rate_x + d_w_y_F_x;
+    f_v[2] = -G[2]*d_w_rate_x_P_wet_rate_x - G[5]*d_w_rate_y_P_wet_rate_x - G[8]*d_w_rate_z_P_wet_rate_x + d_v2_P_wet_rate_x + d_w_z_F_x;
+    f_v[3] = -G[0]*d_w_rate_x_P_wet_rate_y - G[3]*d_w_rate_y_P_wet_rate_y - G[6]*d_w_rate_z_P_wet_rate_y + d_v0_P_wet_rate_y + d_w_x_F_y;
+    f_v[4] = -G[1]*d_w_rate_x_P_wet_rate_y - G[4]*d_w_rate_y_P_wet_rate_y - G[7]*d_w_rate_z_P_wet_rate_y + d_v1_P_wet_rate_y + d_w_y_F_y;
+    f_v[5] = -G[2]*d_w_rate_x_P_wet_rate_y - G[5]*d_w_rate_y_P_wet_rate_y - G[8]*d_w_rate_z_P_wet_rate_y + d_v2_P_wet_rate_y + d_w_z_F_y;
+    f_v[6] = -G[0]*d_w_rate_x_P_wet_rate_z - G[3]*d_w_rate_y_P_wet_rate_z - G[6]*d_w_rate_z_P_wet_rate_z + d_v0_P_wet_rate_z + d_w_x_F_z;
+    f_v[7] = -G[1]*d_w_rate_x_P_wet_rate_z - G[4]*d_w_rate_y_P_wet_rate_z - G[7]*d_w_rate_z_P_wet_rate_z + d_v1_P_wet_rate_z + d_w_y_F_z;
+    f_v[8] = -G[2]*d_w_rate_x_P_wet_rate_z - G[5]*d_w_rate_y_P_wet_rate_z - G[8]*d_w_rate_z_P_wet_rate_z + d_v2_P_wet_rate_z + d_w_z_F_z;
+    g_t[0] = d_t0_G_t_x;
+    g_t[1] = d_t1_G_t_x;
+    g_t[2] = d_t2_G_t_x;
+    g_t[3] = d_t0_G_t_y;
+    g_t[4] = d_t1_G_t_y;
+    g_t[5] = d_t2_G_t_y;
+    g_t[6] = d_t0_G_t_z;
+    g_t[7] = d_t1_G_t_z;
+    g_t[8] = d_t2_G_t_z;
+    g_r[0] = -G[0]*d_w_x_G_t_x - G[3]*d_w_y_G_t_x - G[6]*d_w_z_G_t_x + c_place_x*d_wet0_G_t_x;
+    g_r[1] = -G[1]*d_w_x_G_t_x - G[4]*d_w_y_G_t_x - G[7]*d_w_z_G_t_x + c_place_y*d_wet0_G_t_x;
+    g_r[2] = -G[2]*d_w_x_G_t_x - G[5]*d_w_y_G_t_x - G[8]*d_w_z_G_t_x + c_place_z*d_wet0_G_t_x;
+    g_r[3] = -G[0]*d_w_x_G_t_y - G[3]*d_w_y_G_t_y - G[6]*d_w_z_G_t_y + c_place_x*d_wet0_G_t_y;
+    g_r[4] = -G[1]*d_w_x_G_t_y - G[4]*d_w_y_G_t_y - G[7]*d_w_z_G_t_y + c_place_y*d_wet0_G_t_y;
+    g_r[5] = -G[2]*d_w_x_G_t_y - G[5]*d_w_y_G_t_y - G[8]*d_w_z_G_t_y + c_place_z*d_wet0_G_t_y;
+    g_r[6] = -G[0]*d_w_x_G_t_z - G[3]*d_w_y_G_t_z - G[6]*d_w_z_G_t_z + c_place_x*d_wet0_G_t_z;
+    g_r[7] = -G[1]*d_w_x_G_t_z - G[4]*d_w_y_G_t_z - G[7]*d_w_z_G_t_z + c_place_y*d_wet0_G_t_z;
+    g_r[8] = -G[2]*d_w_x_G_t_z - G[5]*d_w_y_G_t_z - G[8]*d_w_z_G_t_z + c_place_z*d_wet0_G_t_z;
+    g_v[0] = d_w_x_G_t_x;
+    g_v[1] = d_w_y_G_t_x;
+    g_v[2] = d_w_z_G_t_x;
+    g_v[3] = d_w_x_G_t_y;
+    g_v[4] = d_w_y_G_t_y;
+    g_v[5] = d_w_z_G_t_y;
+    g_v[6] = d_w_x_G_t_z;
+    g_v[7] = d_w_y_G_t_z;
+    g_v[8] = d_w_z_G_t_z;
 }
 
 /* impulse of the fluid along a cable over a step (Lighthill 1971; Lagrange's equations of T; Gonzalez 1996); 58 add, 105 mul, 3 div */
@@ -1080,41 +1277,132 @@ void drag_impulse_of_point(const fu_real *A, const fu_real *C, const fu_real *w,
         M[3*g + 2] = M_z[g];)
 }
 
-/* impulse of the fluid at a body, its rate and moment, and their derivatives (Lamb, Hydrodynamics, art. 124; Taylor 1928); 297 add, 408 mul */
-void drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_real *omega, const fu_real *w, const fu_real *w_rate, fu_real *p, fu_real *p_rate, fu_real *moment, fu_real *M, fu_real *p_turn, fu_real *p_rate_turn, fu_real *moment_turn, fu_real *p_rate_omega, fu_real *p_rate_w, fu_real *moment_w)
+/* force and moment of the inertia of the fluid on a body (Lamb, Hydrodynamics, art. 124; Taylor 1928); 117 add, 157 mul */
+void drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *moment, fu_real *power)
 {
     DRAG_ADDED_MASS
+    DRAG_MOTION_PAST_THE_FLUID
     /* impulse, its rate and moment */
+    DRAG_PART_OF_IMPULSE_ITS_RATE_AND_MOMENT
     const fu_real
-        P_x = M_x[0]*w[0] + M_y[0]*w[1] + M_z[0]*w[2],
-        P_y = M_x[1]*w[0] + M_y[1]*w[1] + M_z[1]*w[2],
-        P_z = M_x[2]*w[0] + M_y[2]*w[1] + M_z[2]*w[2],
-        rest_x = -omega[1]*w[2] + omega[2]*w[1] + w_rate[0],
-        rest_y = omega[0]*w[2] - omega[2]*w[0] + w_rate[1],
-        rest_z = -omega[0]*w[1] + omega[1]*w[0] + w_rate[2],
-        P_rate_x = M_x[0]*rest_x + M_y[0]*rest_y + M_z[0]*rest_z - P_y*omega[2] + P_z*omega[1],
-        P_rate_y = M_x[1]*rest_x + M_y[1]*rest_y + M_z[1]*rest_z + P_x*omega[2] - P_z*omega[0],
-        P_rate_z = M_x[2]*rest_x + M_y[2]*rest_y + M_z[2]*rest_z - P_x*omega[1] + P_y*omega[0],
-        moment0 = -P_y*w[2] + P_z*w[1],
-        moment1 = P_x*w[2] - P_z*w[0],
-        moment2 = -P_x*w[1] + P_y*w[0];
+        moment0 = wet[0]*(-P_y*w_z + P_z*w_y),
+        moment1 = wet[0]*(P_x*w_z - P_z*w_x),
+        moment2 = wet[0]*(-P_x*w_y + P_y*w_x);
+    /* force on the particle */
+    const fu_real
+        P_wet_x = P_x*wet[0],
+        P_wet_y = P_y*wet[0],
+        P_wet_z = P_z*wet[0],
+        c_rate = c_place_x*v[0] + c_place_y*v[1] + c_place_z*v[2],
+        P_wet_rate_x = P_rate_x*wet[0] + P_x*c_rate,
+        P_wet_rate_y = P_rate_y*wet[0] + P_y*c_rate,
+        P_wet_rate_z = P_rate_z*wet[0] + P_z*c_rate,
+        strained_x = G[0]*P_wet_x + G[3]*P_wet_y + G[6]*P_wet_z,
+        strained_y = G[1]*P_wet_x + G[4]*P_wet_y + G[7]*P_wet_z,
+        strained_z = G[2]*P_wet_x + G[5]*P_wet_y + G[8]*P_wet_z,
+        displaced_wet = displaced*wet[0],
+        carried_x = displaced_wet*material_x,
+        carried_y = displaced_wet*material_y,
+        carried_z = displaced_wet*material_z,
+        T = 0.5*P_x*w_x + 0.5*P_y*w_y + 0.5*P_z*w_z,
+        F_x = P_wet_rate_x - T*c_place_x - carried_x + strained_x,
+        F_y = P_wet_rate_y - T*c_place_y - carried_y + strained_y,
+        F_z = P_wet_rate_z - T*c_place_z - carried_z + strained_z;
+    /* outputs */
+    f[0] = F_x;
+    f[1] = F_y;
+    f[2] = F_z;
+    moment[0] = moment0;
+    moment[1] = moment1;
+    moment[2] = moment2;
+    power[0] = -P_wet_rate_x*U[0] - P_wet_rate_y*U[1] - P_wet_rate_z*U[2] + carried_x*v[0] + carried_y*v[1] + carried_z*v[2] - strained_x*v[0] - strained_y*v[1] - strained_z*v[2];
+}
+
+/* derivatives of force and moment of the inertia of the fluid (derivatives of Lamb, Hydrodynamics, art. 124; Taylor 1928); 589 add, 865 mul */
+void drag_inertia_of_point_tangent(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_by, fu_real *moment_by)
+{
+    DRAG_ADDED_MASS
+    DRAG_MOTION_PAST_THE_FLUID
+    /* impulse, its rate and moment */
+    DRAG_PART_OF_IMPULSE_ITS_RATE_AND_MOMENT
+    /* force on the particle */
+    const fu_real
+        c_rate = c_place_x*v[0] + c_place_y*v[1] + c_place_z*v[2],
+        displaced_wet = displaced*wet[0],
+        T = 0.5*P_x*w_x + 0.5*P_y*w_y + 0.5*P_z*w_z;
     /* derivatives */
-    fu_real d_th_P_x[3], d_th_P_y[3], d_th_P_z[3], d_th_moment0[3], d_th_moment1[3], d_th_moment2[3];
-    DRAG_PART_OF_DERIVATIVES
-    d_th_P_x[0] = d_th1_M1_y*w[1] + d_th1_M1_z*w[2];
-    DRAG_PART_OF_DERIVATIVES_2
-    d_th_P_y[0] = d_th1_M2_x*w[0] + d_th1_M2_y*w[1] + d_th1_M2_z*w[2];
-    DRAG_PART_OF_DERIVATIVES_3
-    d_th_P_z[0] = d_th1_M3_x*w[0] + d_th1_M3_y*w[1] + d_th1_M3_z*w[2];
-    DRAG_PART_OF_DERIVATIVES_4
-    d_th_P_x[1] = d_th2_M1_x*w[0] + d_th2_M1_y*w[1] + d_th2_M1_z*w[2];
+    fu_real d_th_P_y[3], d_th_P_z[3], d_th_P_x[3], d_th_moment0[3], d_th_moment1[3], d_th_moment2[3];
     const fu_real
+        d_th1_CM1_y = -A[6]*C[0] - A[7]*C[1] - A[8]*C[2],
+        d_th1_CM2_y = -A[6]*C[3] - A[7]*C[4] - A[8]*C[5],
+        d_th1_CM3_y = -A[6]*C[6] - A[7]*C[7] - A[8]*C[8],
+        d_th1_M1_y = A[0]*d_th1_CM1_y + A[1]*d_th1_CM2_y + A[2]*d_th1_CM3_y,
+        d_th1_CM1_z = A[3]*C[0] + A[4]*C[1] + A[5]*C[2],
+        d_th1_CM2_z = A[3]*C[3] + A[4]*C[4] + A[5]*C[5],
+        d_th1_CM3_z = A[3]*C[6] + A[4]*C[7] + A[5]*C[8],
+        d_th1_M1_z = A[0]*d_th1_CM1_z + A[1]*d_th1_CM2_z + A[2]*d_th1_CM3_z,
+        d_th1_M2_x = -A[6]*CM_x[0] - A[7]*CM_x[1] - A[8]*CM_x[2],
+        d_th1_M2_y = A[3]*d_th1_CM1_y + A[4]*d_th1_CM2_y + A[5]*d_th1_CM3_y - A[6]*CM_y[0] - A[7]*CM_y[1] - A[8]*CM_y[2],
+        d_th1_M2_z = A[3]*d_th1_CM1_z + A[4]*d_th1_CM2_z + A[5]*d_th1_CM3_z - A[6]*CM_z[0] - A[7]*CM_z[1] - A[8]*CM_z[2];
+    d_th_P_y[0] = d_th1_M2_x*w_x + d_th1_M2_y*w_y + d_th1_M2_z*w_z;
+    const fu_real
+        d_th1_M3_x = A[3]*CM_x[0] + A[4]*CM_x[1] + A[5]*CM_x[2],
+        d_th1_M3_y = A[3]*CM_y[0] + A[4]*CM_y[1] + A[5]*CM_y[2] + A[6]*d_th1_CM1_y + A[7]*d_th1_CM2_y + A[8]*d_th1_CM3_y,
+        d_th1_M3_z = A[3]*CM_z[0] + A[4]*CM_z[1] + A[5]*CM_z[2] + A[6]*d_th1_CM1_z + A[7]*d_th1_CM2_z + A[8]*d_th1_CM3_z;
+    d_th_P_z[0] = d_th1_M3_x*w_x + d_th1_M3_y*w_y + d_th1_M3_z*w_z;
+    const fu_real d_th1_P_rate_x = d_th1_M1_y*rest_y + d_th1_M1_z*rest_z - d_th_P_y[0]*omega[2] + d_th_P_z[0]*omega[1];
+    d_th_P_x[0] = d_th1_M1_y*w_y + d_th1_M1_z*w_z;
+    const fu_real
+        d_th1_P_wet_rate_x = c_rate*d_th_P_x[0] + d_th1_P_rate_x*wet[0],
+        d_th1_T = 0.5*d_th_P_x[0]*w_x + 0.5*d_th_P_y[0]*w_y + 0.5*d_th_P_z[0]*w_z,
+        d_th1_P_wet_x = d_th_P_x[0]*wet[0],
+        d_th1_P_wet_y = d_th_P_y[0]*wet[0],
+        d_th1_P_wet_z = d_th_P_z[0]*wet[0],
+        d_th1_strained_x = G[0]*d_th1_P_wet_x + G[3]*d_th1_P_wet_y + G[6]*d_th1_P_wet_z,
+        d_th1_F_x = -c_place_x*d_th1_T + d_th1_P_wet_rate_x + d_th1_strained_x,
+        d_th1_P_rate_y = d_th1_M2_x*rest_x + d_th1_M2_y*rest_y + d_th1_M2_z*rest_z + d_th_P_x[0]*omega[2] - d_th_P_z[0]*omega[0],
+        d_th1_P_wet_rate_y = c_rate*d_th_P_y[0] + d_th1_P_rate_y*wet[0],
+        d_th1_strained_y = G[1]*d_th1_P_wet_x + G[4]*d_th1_P_wet_y + G[7]*d_th1_P_wet_z,
+        d_th1_F_y = -c_place_y*d_th1_T + d_th1_P_wet_rate_y + d_th1_strained_y,
+        d_th1_P_rate_z = d_th1_M3_x*rest_x + d_th1_M3_y*rest_y + d_th1_M3_z*rest_z - d_th_P_x[0]*omega[1] + d_th_P_y[0]*omega[0],
+        d_th1_P_wet_rate_z = c_rate*d_th_P_z[0] + d_th1_P_rate_z*wet[0],
+        d_th1_strained_z = G[2]*d_th1_P_wet_x + G[5]*d_th1_P_wet_y + G[8]*d_th1_P_wet_z,
+        d_th1_F_z = -c_place_z*d_th1_T + d_th1_P_wet_rate_z + d_th1_strained_z,
+        d_th2_CM1_x = A[6]*C[0] + A[7]*C[1] + A[8]*C[2],
+        d_th2_CM2_x = A[6]*C[3] + A[7]*C[4] + A[8]*C[5],
+        d_th2_CM3_x = A[6]*C[6] + A[7]*C[7] + A[8]*C[8],
+        d_th2_M1_x = A[0]*d_th2_CM1_x + A[1]*d_th2_CM2_x + A[2]*d_th2_CM3_x + A[6]*CM_x[0] + A[7]*CM_x[1] + A[8]*CM_x[2],
+        d_th2_M1_y = A[6]*CM_y[0] + A[7]*CM_y[1] + A[8]*CM_y[2],
+        d_th2_CM1_z = -A[0]*C[0] - A[1]*C[1] - A[2]*C[2],
+        d_th2_CM2_z = -A[0]*C[3] - A[1]*C[4] - A[2]*C[5],
+        d_th2_CM3_z = -A[0]*C[6] - A[1]*C[7] - A[2]*C[8],
+        d_th2_M1_z = A[0]*d_th2_CM1_z + A[1]*d_th2_CM2_z + A[2]*d_th2_CM3_z + A[6]*CM_z[0] + A[7]*CM_z[1] + A[8]*CM_z[2],
         d_th2_M2_x = A[3]*d_th2_CM1_x + A[4]*d_th2_CM2_x + A[5]*d_th2_CM3_x,
         d_th2_M2_z = A[3]*d_th2_CM1_z + A[4]*d_th2_CM2_z + A[5]*d_th2_CM3_z;
-    d_th_P_y[1] = d_th2_M2_x*w[0] + d_th2_M2_z*w[2];
-    DRAG_PART_OF_DERIVATIVES_5
-    d_th_P_z[1] = d_th2_M3_x*w[0] + d_th2_M3_y*w[1] + d_th2_M3_z*w[2];
+    d_th_P_y[1] = d_th2_M2_x*w_x + d_th2_M2_z*w_z;
     const fu_real
+        d_th2_M3_x = -A[0]*CM_x[0] - A[1]*CM_x[1] - A[2]*CM_x[2] + A[6]*d_th2_CM1_x + A[7]*d_th2_CM2_x + A[8]*d_th2_CM3_x,
+        d_th2_M3_y = -A[0]*CM_y[0] - A[1]*CM_y[1] - A[2]*CM_y[2],
+        d_th2_M3_z = -A[0]*CM_z[0] - A[1]*CM_z[1] - A[2]*CM_z[2] + A[6]*d_th2_CM1_z + A[7]*d_th2_CM2_z + A[8]*d_th2_CM3_z;
+    d_th_P_z[1] = d_th2_M3_x*w_x + d_th2_M3_y*w_y + d_th2_M3_z*w_z;
+    const fu_real d_th2_P_rate_x = d_th2_M1_x*rest_x + d_th2_M1_y*rest_y + d_th2_M1_z*rest_z - d_th_P_y[1]*omega[2] + d_th_P_z[1]*omega[1];
+    d_th_P_x[1] = d_th2_M1_x*w_x + d_th2_M1_y*w_y + d_th2_M1_z*w_z;
+    const fu_real
+        d_th2_P_wet_rate_x = c_rate*d_th_P_x[1] + d_th2_P_rate_x*wet[0],
+        d_th2_T = 0.5*d_th_P_x[1]*w_x + 0.5*d_th_P_y[1]*w_y + 0.5*d_th_P_z[1]*w_z,
+        d_th2_P_wet_x = d_th_P_x[1]*wet[0],
+        d_th2_P_wet_y = d_th_P_y[1]*wet[0],
+        d_th2_P_wet_z = d_th_P_z[1]*wet[0],
+        d_th2_strained_x = G[0]*d_th2_P_wet_x + G[3]*d_th2_P_wet_y + G[6]*d_th2_P_wet_z,
+        d_th2_F_x = -c_place_x*d_th2_T + d_th2_P_wet_rate_x + d_th2_strained_x,
+        d_th2_P_rate_y = d_th2_M2_x*rest_x + d_th2_M2_z*rest_z + d_th_P_x[1]*omega[2] - d_th_P_z[1]*omega[0],
+        d_th2_P_wet_rate_y = c_rate*d_th_P_y[1] + d_th2_P_rate_y*wet[0],
+        d_th2_strained_y = G[1]*d_th2_P_wet_x + G[4]*d_th2_P_wet_y + G[7]*d_th2_P_wet_z,
+        d_th2_F_y = -c_place_y*d_th2_T + d_th2_P_wet_rate_y + d_th2_strained_y,
+        d_th2_P_rate_z = d_th2_M3_x*rest_x + d_th2_M3_y*rest_y + d_th2_M3_z*rest_z - d_th_P_x[1]*omega[1] + d_th_P_y[1]*omega[0],
+        d_th2_P_wet_rate_z = c_rate*d_th_P_z[1] + d_th2_P_rate_z*wet[0],
+        d_th2_strained_z = G[2]*d_th2_P_wet_x + G[5]*d_th2_P_wet_y + G[8]*d_th2_P_wet_z,
+        d_th2_F_z = -c_place_z*d_th2_T + d_th2_P_wet_rate_z + d_th2_strained_z,
         d_th3_CM1_x = -A[3]*C[0] - A[4]*C[1] - A[5]*C[2],
         d_th3_CM2_x = -A[3]*C[3] - A[4]*C[4] - A[5]*C[5],
         d_th3_CM3_x = -A[3]*C[6] - A[4]*C[7] - A[5]*C[8],
@@ -1123,133 +1411,206 @@ void drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_real *om
         d_th3_CM2_y = A[0]*C[3] + A[1]*C[4] + A[2]*C[5],
         d_th3_CM3_y = A[0]*C[6] + A[1]*C[7] + A[2]*C[8],
         d_th3_M1_y = A[0]*d_th3_CM1_y + A[1]*d_th3_CM2_y + A[2]*d_th3_CM3_y - A[3]*CM_y[0] - A[4]*CM_y[1] - A[5]*CM_y[2],
-        d_th3_M1_z = -A[3]*CM_z[0] - A[4]*CM_z[1] - A[5]*CM_z[2];
-    d_th_P_x[2] = d_th3_M1_x*w[0] + d_th3_M1_y*w[1] + d_th3_M1_z*w[2];
-    const fu_real
+        d_th3_M1_z = -A[3]*CM_z[0] - A[4]*CM_z[1] - A[5]*CM_z[2],
         d_th3_M2_x = A[0]*CM_x[0] + A[1]*CM_x[1] + A[2]*CM_x[2] + A[3]*d_th3_CM1_x + A[4]*d_th3_CM2_x + A[5]*d_th3_CM3_x,
         d_th3_M2_y = A[0]*CM_y[0] + A[1]*CM_y[1] + A[2]*CM_y[2] + A[3]*d_th3_CM1_y + A[4]*d_th3_CM2_y + A[5]*d_th3_CM3_y,
         d_th3_M2_z = A[0]*CM_z[0] + A[1]*CM_z[1] + A[2]*CM_z[2];
-    d_th_P_y[2] = d_th3_M2_x*w[0] + d_th3_M2_y*w[1] + d_th3_M2_z*w[2];
+    d_th_P_y[2] = d_th3_M2_x*w_x + d_th3_M2_y*w_y + d_th3_M2_z*w_z;
     const fu_real
         d_th3_M3_x = A[6]*d_th3_CM1_x + A[7]*d_th3_CM2_x + A[8]*d_th3_CM3_x,
         d_th3_M3_y = A[6]*d_th3_CM1_y + A[7]*d_th3_CM2_y + A[8]*d_th3_CM3_y;
-    d_th_P_z[2] = d_th3_M3_x*w[0] + d_th3_M3_y*w[1];
+    d_th_P_z[2] = d_th3_M3_x*w_x + d_th3_M3_y*w_y;
+    const fu_real d_th3_P_rate_x = d_th3_M1_x*rest_x + d_th3_M1_y*rest_y + d_th3_M1_z*rest_z - d_th_P_y[2]*omega[2] + d_th_P_z[2]*omega[1];
+    d_th_P_x[2] = d_th3_M1_x*w_x + d_th3_M1_y*w_y + d_th3_M1_z*w_z;
     const fu_real
-        d_th1_P_rate_x = d_th1_M1_y*rest_y + d_th1_M1_z*rest_z - d_th_P_y[0]*omega[2] + d_th_P_z[0]*omega[1],
-        d_th1_P_rate_y = d_th1_M2_x*rest_x + d_th1_M2_y*rest_y + d_th1_M2_z*rest_z + d_th_P_x[0]*omega[2] - d_th_P_z[0]*omega[0],
-        d_th1_P_rate_z = d_th1_M3_x*rest_x + d_th1_M3_y*rest_y + d_th1_M3_z*rest_z - d_th_P_x[0]*omega[1] + d_th_P_y[0]*omega[0],
-        d_th2_P_rate_x = d_th2_M1_x*rest_x + d_th2_M1_y*rest_y + d_th2_M1_z*rest_z - d_th_P_y[1]*omega[2] + d_th_P_z[1]*omega[1],
-        d_th2_P_rate_y = d_th2_M2_x*rest_x + d_th2_M2_z*rest_z + d_th_P_x[1]*omega[2] - d_th_P_z[1]*omega[0],
-        d_th2_P_rate_z = d_th2_M3_x*rest_x + d_th2_M3_y*rest_y + d_th2_M3_z*rest_z - d_th_P_x[1]*omega[1] + d_th_P_y[1]*omega[0],
-        d_th3_P_rate_x = d_th3_M1_x*rest_x + d_th3_M1_y*rest_y + d_th3_M1_z*rest_z - d_th_P_y[2]*omega[2] + d_th_P_z[2]*omega[1],
+        d_th3_P_wet_rate_x = c_rate*d_th_P_x[2] + d_th3_P_rate_x*wet[0],
+        d_th3_T = 0.5*d_th_P_x[2]*w_x + 0.5*d_th_P_y[2]*w_y + 0.5*d_th_P_z[2]*w_z,
+        d_th3_P_wet_x = d_th_P_x[2]*wet[0],
+        d_th3_P_wet_y = d_th_P_y[2]*wet[0],
+        d_th3_P_wet_z = d_th_P_z[2]*wet[0],
+        d_th3_strained_x = G[0]*d_th3_P_wet_x + G[3]*d_th3_P_wet_y + G[6]*d_th3_P_wet_z,
+        d_th3_F_x = -c_place_x*d_th3_T + d_th3_P_wet_rate_x + d_th3_strained_x,
         d_th3_P_rate_y = d_th3_M2_x*rest_x + d_th3_M2_y*rest_y + d_th3_M2_z*rest_z + d_th_P_x[2]*omega[2] - d_th_P_z[2]*omega[0],
-        d_th3_P_rate_z = d_th3_M3_x*rest_x + d_th3_M3_y*rest_y - d_th_P_x[2]*omega[1] + d_th_P_y[2]*omega[0];
-    FU_EACH(g, 3,
-        d_th_moment0[g] = -d_th_P_y[g]*w[2] + d_th_P_z[g]*w[1];
-        d_th_moment1[g] = d_th_P_x[g]*w[2] - d_th_P_z[g]*w[0];
-        d_th_moment2[g] = -d_th_P_x[g]*w[1] + d_th_P_y[g]*w[0];)
+        d_th3_P_wet_rate_y = c_rate*d_th_P_y[2] + d_th3_P_rate_y*wet[0],
+        d_th3_strained_y = G[1]*d_th3_P_wet_x + G[4]*d_th3_P_wet_y + G[7]*d_th3_P_wet_z,
+        d_th3_F_y = -c_place_y*d_th3_T + d_th3_P_wet_rate_y + d_th3_strained_y,
+        d_th3_P_rate_z = d_th3_M3_x*rest_x + d_th3_M3_y*rest_y - d_th_P_x[2]*omega[1] + d_th_P_y[2]*omega[0],
+        d_th3_P_wet_rate_z = c_rate*d_th_P_z[2] + d_th3_P_rate_z*wet[0],
+        d_th3_strained_z = G[2]*d_th3_P_wet_x + G[5]*d_th3_P_wet_y + G[8]*d_th3_P_wet_z,
+        d_th3_F_z = -c_place_z*d_th3_T + d_th3_P_wet_rate_z + d_th3_strained_z,
+        d_w_x_rest_y = -omega[2],
+        d_w_x_P_rate_x = M_y[0]*d_w_x_rest_y + M_z[0]*omega[1] - M_x[1]*omega[2] + M_x[2]*omega[1],
+        d_w_x_P_wet_rate_x = M_x[0]*c_rate + d_w_x_P_rate_x*wet[0],
+        d_w_x_T = 0.5*M_x[0]*w_x + 0.5*M_x[1]*w_y + 0.5*M_x[2]*w_z + 0.5*P_x,
+        d_w_x_P_wet_x = M_x[0]*wet[0],
+        d_w_x_P_wet_y = M_x[1]*wet[0],
+        d_w_x_P_wet_z = M_x[2]*wet[0],
+        d_w_x_strained_x = G[0]*d_w_x_P_wet_x + G[3]*d_w_x_P_wet_y + G[6]*d_w_x_P_wet_z,
+        d_w_x_F_x = -c_place_x*d_w_x_T + d_w_x_P_wet_rate_x + d_w_x_strained_x,
+        d_w_x_P_rate_y = M_x[0]*omega[2] + M_y[1]*d_w_x_rest_y + M_z[1]*omega[1] - M_x[2]*omega[0],
+        d_w_x_P_wet_rate_y = M_x[1]*c_rate + d_w_x_P_rate_y*wet[0],
+        d_w_x_strained_y = G[1]*d_w_x_P_wet_x + G[4]*d_w_x_P_wet_y + G[7]*d_w_x_P_wet_z,
+        d_w_x_F_y = -c_place_y*d_w_x_T + d_w_x_P_wet_rate_y + d_w_x_strained_y,
+        d_w_x_P_rate_z = -M_x[0]*omega[1] + M_x[1]*omega[0] + M_y[2]*d_w_x_rest_y + M_z[2]*omega[1],
+        d_w_x_P_wet_rate_z = M_x[2]*c_rate + d_w_x_P_rate_z*wet[0],
+        d_w_x_strained_z = G[2]*d_w_x_P_wet_x + G[5]*d_w_x_P_wet_y + G[8]*d_w_x_P_wet_z,
+        d_w_x_F_z = -c_place_z*d_w_x_T + d_w_x_P_wet_rate_z + d_w_x_strained_z,
+        d_w_y_rest_z = -omega[0],
+        d_w_y_P_rate_x = M_x[0]*omega[2] + M_z[0]*d_w_y_rest_z - M_y[1]*omega[2] + M_y[2]*omega[1],
+        d_w_y_P_wet_rate_x = M_y[0]*c_rate + d_w_y_P_rate_x*wet[0],
+        d_w_y_T = 0.5*M_y[0]*w_x + 0.5*M_y[1]*w_y + 0.5*M_y[2]*w_z + 0.5*P_y,
+        d_w_y_P_wet_x = M_y[0]*wet[0],
+        d_w_y_P_wet_y = M_y[1]*wet[0],
+        d_w_y_P_wet_z = M_y[2]*wet[0],
+        d_w_y_strained_x = G[0]*d_w_y_P_wet_x + G[3]*d_w_y_P_wet_y + G[6]*d_w_y_P_wet_z,
+        d_w_y_F_x = -c_place_x*d_w_y_T + d_w_y_P_wet_rate_x + d_w_y_strained_x,
+        d_w_y_P_rate_y = M_y[0]*omega[2] + M_x[1]*omega[2] + M_z[1]*d_w_y_rest_z - M_y[2]*omega[0],
+        d_w_y_P_wet_rate_y = M_y[1]*c_rate + d_w_y_P_rate_y*wet[0],
+        d_w_y_strained_y = G[1]*d_w_y_P_wet_x + G[4]*d_w_y_P_wet_y + G[7]*d_w_y_P_wet_z,
+        d_w_y_F_y = -c_place_y*d_w_y_T + d_w_y_P_wet_rate_y + d_w_y_strained_y,
+        d_w_y_P_rate_z = -M_y[0]*omega[1] + M_y[1]*omega[0] + M_x[2]*omega[2] + M_z[2]*d_w_y_rest_z,
+        d_w_y_P_wet_rate_z = M_y[2]*c_rate + d_w_y_P_rate_z*wet[0],
+        d_w_y_strained_z = G[2]*d_w_y_P_wet_x + G[5]*d_w_y_P_wet_y + G[8]*d_w_y_P_wet_z,
+        d_w_y_F_z = -c_place_z*d_w_y_T + d_w_y_P_wet_rate_z + d_w_y_strained_z,
+        d_w_z_rest_x = -omega[1],
+        d_w_z_P_rate_x = M_x[0]*d_w_z_rest_x + M_y[0]*omega[0] - M_z[1]*omega[2] + M_z[2]*omega[1],
+        d_w_z_P_wet_rate_x = M_z[0]*c_rate + d_w_z_P_rate_x*wet[0],
+        d_w_z_T = 0.5*M_z[0]*w_x + 0.5*M_z[1]*w_y + 0.5*M_z[2]*w_z + 0.5*P_z,
+        d_w_z_P_wet_x = M_z[0]*wet[0],
+        d_w_z_P_wet_y = M_z[1]*wet[0],
+        d_w_z_P_wet_z = M_z[2]*wet[0],
+        d_w_z_strained_x = G[0]*d_w_z_P_wet_x + G[3]*d_w_z_P_wet_y + G[6]*d_w_z_P_wet_z,
+        d_w_z_F_x = -c_place_x*d_w_z_T + d_w_z_P_wet_rate_x + d_w_z_strained_x,
+        d_w_z_P_rate_y = M_z[0]*omega[2] + M_x[1]*d_w_z_rest_x + M_y[1]*omega[0] - M_z[2]*omega[0],
+        d_w_z_P_wet_rate_y = M_z[1]*c_rate + d_w_z_P_rate_y*wet[0],
+        d_w_z_strained_y = G[1]*d_w_z_P_wet_x + G[4]*d_w_z_P_wet_y + G[7]*d_w_z_P_wet_z,
+        d_w_z_F_y = -c_place_y*d_w_z_T + d_w_z_P_wet_rate_y + d_w_z_strained_y,
+        d_w_z_P_rate_z = -M_z[0]*omega[1] + M_z[1]*omega[0] + M_x[2]*d_w_z_rest_x + M_y[2]*omega[0],
+        d_w_z_P_wet_rate_z = M_z[2]*c_rate + d_w_z_P_rate_z*wet[0],
+        d_w_z_strained_z = G[2]*d_w_z_P_wet_x + G[5]*d_w_z_P_wet_y + G[8]*d_w_z_P_wet_z,
+        d_w_z_F_z = -c_place_z*d_w_z_T + d_w_z_P_wet_rate_z + d_w_z_strained_z,
+        d_w_rate_x_P_wet_rate_x = M_x[0]*wet[0],
+        d_w_rate_x_P_wet_rate_y = M_x[1]*wet[0],
+        d_w_rate_x_P_wet_rate_z = M_x[2]*wet[0],
+        d_w_rate_y_P_wet_rate_x = M_y[0]*wet[0],
+        d_w_rate_y_P_wet_rate_y = M_y[1]*wet[0],
+        d_w_rate_y_P_wet_rate_z = M_y[2]*wet[0],
+        d_w_rate_z_P_wet_rate_x = M_z[0]*wet[0],
+        d_w_rate_z_P_wet_rate_y = M_z[1]*wet[0],
+        d_w_rate_z_P_wet_rate_z = M_z[2]*wet[0];
+    DRAG_PART_OF_DERIVATIVES
     const fu_real
-        d_omega0_rest_z = -w[1],
-        d_omega0_P_rate_x = M_y[0]*w[2] + M_z[0]*d_omega0_rest_z,
-        d_omega0_P_rate_y = M_y[1]*w[2] + M_z[1]*d_omega0_rest_z - P_z,
-        d_omega0_P_rate_z = M_y[2]*w[2] + M_z[2]*d_omega0_rest_z + P_y,
-        d_omega1_rest_x = -w[2],
-        d_omega1_P_rate_x = M_x[0]*d_omega1_rest_x + M_z[0]*w[0] + P_z,
-        d_omega1_P_rate_y = M_x[1]*d_omega1_rest_x + M_z[1]*w[0],
-        d_omega1_P_rate_z = M_x[2]*d_omega1_rest_x + M_z[2]*w[0] - P_x,
-        d_omega2_rest_y = -w[0],
-        d_omega2_P_rate_x = M_x[0]*w[1] + M_y[0]*d_omega2_rest_y - P_y,
-        d_omega2_P_rate_y = M_x[1]*w[1] + M_y[1]*d_omega2_rest_y + P_x,
-        d_omega2_P_rate_z = M_x[2]*w[1] + M_y[2]*d_omega2_rest_y,
-        d_w0_rest_y = -omega[2],
-        d_w0_P_rate_x = M_y[0]*d_w0_rest_y + M_z[0]*omega[1] - M_x[1]*omega[2] + M_x[2]*omega[1],
-        d_w0_P_rate_y = M_x[0]*omega[2] + M_y[1]*d_w0_rest_y + M_z[1]*omega[1] - M_x[2]*omega[0],
-        d_w0_P_rate_z = -M_x[0]*omega[1] + M_x[1]*omega[0] + M_y[2]*d_w0_rest_y + M_z[2]*omega[1],
-        d_w1_rest_z = -omega[0],
-        d_w1_P_rate_x = M_x[0]*omega[2] + M_z[0]*d_w1_rest_z - M_y[1]*omega[2] + M_y[2]*omega[1],
-        d_w1_P_rate_y = M_y[0]*omega[2] + M_x[1]*omega[2] + M_z[1]*d_w1_rest_z - M_y[2]*omega[0],
-        d_w1_P_rate_z = -M_y[0]*omega[1] + M_y[1]*omega[0] + M_x[2]*omega[2] + M_z[2]*d_w1_rest_z,
-        d_w2_rest_x = -omega[1],
-        d_w2_P_rate_x = M_x[0]*d_w2_rest_x + M_y[0]*omega[0] - M_z[1]*omega[2] + M_z[2]*omega[1],
-        d_w2_P_rate_y = M_z[0]*omega[2] + M_x[1]*d_w2_rest_x + M_y[1]*omega[0] - M_z[2]*omega[0],
-        d_w2_P_rate_z = -M_z[0]*omega[1] + M_z[1]*omega[0] + M_x[2]*d_w2_rest_x + M_y[2]*omega[0],
-        d_w0_moment0 = -M_x[1]*w[2] + M_x[2]*w[1],
-        d_w0_moment1 = M_x[0]*w[2] - M_x[2]*w[0] - P_z,
-        d_w0_moment2 = -M_x[0]*w[1] + M_x[1]*w[0] + P_y,
-        d_w1_moment0 = -M_y[1]*w[2] + M_y[2]*w[1] + P_z,
-        d_w1_moment1 = M_y[0]*w[2] - M_y[2]*w[0],
-        d_w1_moment2 = -M_y[0]*w[1] + M_y[1]*w[0] - P_x,
-        d_w2_moment0 = -M_z[1]*w[2] + M_z[2]*w[1] - P_y,
-        d_w2_moment1 = M_z[0]*w[2] - M_z[2]*w[0] + P_x,
-        d_w2_moment2 = -M_z[0]*w[1] + M_z[1]*w[0];
-    /* outputs */
-    p[0] = P_x;
-    p[1] = P_y;
-    p[2] = P_z;
-    p_rate[0] = P_rate_x;
-    p_rate[1] = P_rate_y;
-    p_rate[2] = P_rate_z;
-    moment[0] = moment0;
-    moment[1] = moment1;
-    moment[2] = moment2;
+        d_omega0_rest_z = -w_y,
+        d_omega0_P_rate_x = M_y[0]*w_z + M_z[0]*d_omega0_rest_z,
+        d_omega0_P_wet_rate_x = d_omega0_P_rate_x*wet[0],
+        d_omega0_P_rate_y = M_y[1]*w_z + M_z[1]*d_omega0_rest_z - P_z,
+        d_omega0_P_wet_rate_y = d_omega0_P_rate_y*wet[0],
+        d_omega0_P_rate_z = M_y[2]*w_z + M_z[2]*d_omega0_rest_z + P_y,
+        d_omega0_P_wet_rate_z = d_omega0_P_rate_z*wet[0],
+        d_omega1_rest_x = -w_z,
+        d_omega1_P_rate_x = M_x[0]*d_omega1_rest_x + M_z[0]*w_x + P_z,
+        d_omega1_P_wet_rate_x = d_omega1_P_rate_x*wet[0],
+        d_omega1_P_rate_y = M_x[1]*d_omega1_rest_x + M_z[1]*w_x,
+        d_omega1_P_wet_rate_y = d_omega1_P_rate_y*wet[0],
+        d_omega1_P_rate_z = M_x[2]*d_omega1_rest_x + M_z[2]*w_x - P_x,
+        d_omega1_P_wet_rate_z = d_omega1_P_rate_z*wet[0],
+        d_omega2_rest_y = -w_x,
+        d_omega2_P_rate_x = M_x[0]*w_y + M_y[0]*d_omega2_rest_y - P_y,
+        d_omega2_P_wet_rate_x = d_omega2_P_rate_x*wet[0],
+        d_omega2_P_rate_y = M_x[1]*w_y + M_y[1]*d_omega2_rest_y + P_x,
+        d_omega2_P_wet_rate_y = d_omega2_P_rate_y*wet[0],
+        d_omega2_P_rate_z = M_x[2]*w_y + M_y[2]*d_omega2_rest_y,
+        d_omega2_P_wet_rate_z = d_omega2_P_rate_z*wet[0];
     FU_EACH(g, 3,
-        M[3*g] = M_x[g];
-        M[3*g + 1] = M_y[g];
-        M[3*g + 2] = M_z[g];)
-    p_turn[0] = d_th_P_x[0];
-    p_turn[1] = d_th_P_x[1];
-    p_turn[2] = d_th_P_x[2];
-    p_turn[3] = d_th_P_y[0];
-    p_turn[4] = d_th_P_y[1];
-    p_turn[5] = d_th_P_y[2];
-    p_turn[6] = d_th_P_z[0];
-    p_turn[7] = d_th_P_z[1];
-    p_turn[8] = d_th_P_z[2];
-    p_rate_turn[0] = d_th1_P_rate_x;
-    p_rate_turn[1] = d_th2_P_rate_x;
-    p_rate_turn[2] = d_th3_P_rate_x;
-    p_rate_turn[3] = d_th1_P_rate_y;
-    p_rate_turn[4] = d_th2_P_rate_y;
-    p_rate_turn[5] = d_th3_P_rate_y;
-    p_rate_turn[6] = d_th1_P_rate_z;
-    p_rate_turn[7] = d_th2_P_rate_z;
-    p_rate_turn[8] = d_th3_P_rate_z;
-    moment_turn[0] = d_th_moment0[0];
-    moment_turn[1] = d_th_moment0[1];
-    moment_turn[2] = d_th_moment0[2];
-    moment_turn[3] = d_th_moment1[0];
-    moment_turn[4] = d_th_moment1[1];
-    moment_turn[5] = d_th_moment1[2];
-    moment_turn[6] = d_th_moment2[0];
-    moment_turn[7] = d_th_moment2[1];
-    moment_turn[8] = d_th_moment2[2];
-    p_rate_omega[0] = d_omega0_P_rate_x;
-    p_rate_omega[1] = d_omega1_P_rate_x;
-    p_rate_omega[2] = d_omega2_P_rate_x;
-    p_rate_omega[3] = d_omega0_P_rate_y;
-    p_rate_omega[4] = d_omega1_P_rate_y;
-    p_rate_omega[5] = d_omega2_P_rate_y;
-    p_rate_omega[6] = d_omega0_P_rate_z;
-    p_rate_omega[7] = d_omega1_P_rate_z;
-    p_rate_omega[8] = d_omega2_P_rate_z;
-    p_rate_w[0] = d_w0_P_rate_x;
-    p_rate_w[1] = d_w1_P_rate_x;
-    p_rate_w[2] = d_w2_P_rate_x;
-    p_rate_w[3] = d_w0_P_rate_y;
-    p_rate_w[4] = d_w1_P_rate_y;
-    p_rate_w[5] = d_w2_P_rate_y;
-    p_rate_w[6] = d_w0_P_rate_z;
-    p_rate_w[7] = d_w1_P_rate_z;
-    p_rate_w[8] = d_w2_P_rate_z;
-    moment_w[0] = d_w0_moment0;
-    moment_w[1] = d_w1_moment0;
-    moment_w[2] = d_w2_moment0;
-    moment_w[3] = d_w0_moment1;
-    moment_w[4] = d_w1_moment1;
-    moment_w[5] = d_w2_moment1;
-    moment_w[6] = d_w0_moment2;
-    moment_w[7] = d_w1_moment2;
-    moment_w[8] = d_w2_moment2;
+        d_th_moment0[g] = -d_th_P_y[g]*w_z*wet[0] + d_th_P_z[g]*w_y*wet[0];
+        d_th_moment1[g] = d_th_P_x[g]*w_z*wet[0] - d_th_P_z[g]*w_x*wet[0];
+        d_th_moment2[g] = -d_th_P_x[g]*w_y*wet[0] + d_th_P_y[g]*w_x*wet[0];)
+    const fu_real
+        d_w_x_moment0 = -M_x[1]*w_z*wet[0] + M_x[2]*w_y*wet[0],
+        d_w_x_moment1 = M_x[0]*w_z*wet[0] - M_x[2]*w_x*wet[0] - P_z*wet[0],
+        d_w_x_moment2 = -M_x[0]*w_y*wet[0] + M_x[1]*w_x*wet[0] + P_y*wet[0],
+        d_w_y_moment0 = -M_y[1]*w_z*wet[0] + M_y[2]*w_y*wet[0] + P_z*wet[0],
+        d_w_y_moment1 = M_y[0]*w_z*wet[0] - M_y[2]*w_x*wet[0],
+        d_w_y_moment2 = -M_y[0]*w_y*wet[0] + M_y[1]*w_x*wet[0] - P_x*wet[0],
+        d_w_z_moment0 = -M_z[1]*w_z*wet[0] + M_z[2]*w_y*wet[0] - P_y*wet[0],
+        d_w_z_moment1 = M_z[0]*w_z*wet[0] - M_z[2]*w_x*wet[0] + P_x*wet[0],
+        d_w_z_moment2 = -M_z[0]*w_y*wet[0] + M_z[1]*w_x*wet[0],
+        d_wet0_moment0 = -P_y*w_z + P_z*w_y,
+        d_wet0_moment1 = P_x*w_z - P_z*w_x,
+        d_wet0_moment2 = -P_x*w_y + P_y*w_x;
+    /* outputs */
+    f_by[0] = G[0]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[3]*(G[1]*d_material_x_F_x - d_w_y_F_x) + G[6]*(G[2]*d_material_x_F_x - d_w_z_F_x) + c_place_x*d_wet0_F_x + up[0]*wet[2]*(d_c_place_x_F_x*up[0] + d_c_place_y_P_wet_rate_x*up[1] + d_c_place_z_P_wet_rate_x*up[2]);
+    f_by[1] = G[1]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[4]*(G[1]*d_material_x_F_x - d_w_y_F_x) + G[7]*(G[2]*d_material_x_F_x - d_w_z_F_x) + c_place_y*d_wet0_F_x + up[1]*wet[2]*(d_c_place_x_F_x*up[0] + d_c_place_y_P_wet_rate_x*up[1] + d_c_place_z_P_wet_rate_x*up[2]);
+    f_by[2] = G[2]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[5]*(G[1]*d_material_x_F_x - d_w_y_F_x) + G[8]*(G[2]*d_material_x_F_x - d_w_z_F_x) + c_place_z*d_wet0_F_x + up[2]*wet[2]*(d_c_place_x_F_x*up[0] + d_c_place_y_P_wet_rate_x*up[1] + d_c_place_z_P_wet_rate_x*up[2]);
+    f_by[3] = -G[0]*d_w_rate_x_P_wet_rate_x - G[3]*d_w_rate_y_P_wet_rate_x - G[6]*d_w_rate_z_P_wet_rate_x + d_v0_P_wet_rate_x + d_w_x_F_x;
+    f_by[4] = -G[1]*d_w_rate_x_P_wet_rate_x - G[4]*d_w_rate_y_P_wet_rate_x - G[7]*d_w_rate_z_P_wet_rate_x + d_v1_P_wet_rate_x + d_w_y_F_x;
+    f_by[5] = -G[2]*d_w_rate_x_P_wet_rate_x - G[5]*d_w_rate_y_P_wet_rate_x - G[8]*d_w_rate_z_P_wet_rate_x + d_v2_P_wet_rate_x + d_w_z_F_x;
+    f_by[6] = d_th1_F_x;
+    f_by[7] = d_th2_F_x;
+    f_by[8] = d_th3_F_x;
+    f_by[9] = d_omega0_P_wet_rate_x;
+    f_by[10] = d_omega1_P_wet_rate_x;
+    f_by[11] = d_omega2_P_wet_rate_x;
+    f_by[12] = G[0]*(G[3]*d_material_y_F_y - d_w_x_F_y) + G[3]*(G[4]*d_material_y_F_y - d_w_y_F_y) + G[6]*(G[5]*d_material_y_F_y - d_w_z_F_y) + c_place_x*d_wet0_F_y + up[0]*wet[2]*(d_c_place_x_P_wet_rate_y*up[0] + d_c_place_y_F_y*up[1] + d_c_place_z_P_wet_rate_y*up[2]);
+    f_by[13] = G[1]*(G[3]*d_material_y_F_y - d_w_x_F_y) + G[4]*(G[4]*d_material_y_F_y - d_w_y_F_y) + G[7]*(G[5]*d_material_y_F_y - d_w_z_F_y) + c_place_y*d_wet0_F_y + up[1]*wet[2]*(d_c_place_x_P_wet_rate_y*up[0] + d_c_place_y_F_y*up[1] + d_c_place_z_P_wet_rate_y*up[2]);
+    f_by[14] = G[2]*(G[3]*d_material_y_F_y - d_w_x_F_y) + G[5]*(G[4]*d_material_y_F_y - d_w_y_F_y) + G[8]*(G[5]*d_material_y_F_y - d_w_z_F_y) + c_place_z*d_wet0_F_y + up[2]*wet[2]*(d_c_place_x_P_wet_rate_y*up[0] + d_c_place_y_F_y*up[1] + d_c_place_z_P_wet_rate_y*up[2]);
+    f_by[15] = -G[0]*d_w_rate_x_P_wet_rate_y - G[3]*d_w_rate_y_P_wet_rate_y - G[6]*d_w_rate_z_P_wet_rate_y + d_v0_P_wet_rate_y + d_w_x_F_y;
+    f_by[16] = -G[1]*d_w_rate_x_P_wet_rate_y - G[4]*d_w_rate_y_P_wet_rate_y - G[7]*d_w_rate_z_P_wet_rate_y + d_v1_P_wet_rate_y + d_w_y_F_y;
+    f_by[17] = -G[2]*d_w_rate_x_P_wet_rate_y - G[5]*d_w_rate_y_P_wet_rate_y - G[8]*d_w_rate_z_P_wet_rate_y + d_v2_P_wet_rate_y + d_w_z_F_y;
+    f_by[18] = d_th1_F_y;
+    f_by[19] = d_th2_F_y;
+    f_by[20] = d_th3_F_y;
+    f_by[21] = d_omega0_P_wet_rate_y;
+    f_by[22] = d_omega1_P_wet_rate_y;
+    f_by[23] = d_omega2_P_wet_rate_y;
+    f_by[24] = G[0]*(G[6]*d_material_z_F_z - d_w_x_F_z) + G[3]*(G[7]*d_material_z_F_z - d_w_y_F_z) + G[6]*(G[8]*d_material_z_F_z - d_w_z_F_z) + c_place_x*d_wet0_F_z + up[0]*wet[2]*(d_c_place_x_P_wet_rate_z*up[0] + d_c_place_y_P_wet_rate_z*up[1] + d_c_place_z_F_z*up[2]);
+    f_by[25] = G[1]*(G[6]*d_material_z_F_z - d_w_x_F_z) + G[4]*(G[7]*d_material_z_F_z - d_w_y_F_z) + G[7]*(G[8]*d_material_z_F_z - d_w_z_F_z) + c_place_y*d_wet0_F_z + up[1]*wet[2]*(d_c_place_x_P_wet_rate_z*up[0] + d_c_place_y_P_wet_rate_z*up[1] + d_c_place_z_F_z*up[2]);
+    f_by[26] = G[2]*(G[6]*d_material_z_F_z - d_w_x_F_z) + G[5]*(G[7]*d_material_z_F_z - d_w_y_F_z) + G[8]*(G[8]*d_material_z_F_z - d_w_z_F_z) + c_place_z*d_wet0_F_z + up[2]*wet[2]*(d_c_place_x_P_wet_rate_z*up[0] + d_c_place_y_P_wet_rate_z*up[1] + d_c_place_z_F_z*up[2]);
+    f_by[27] = -G[0]*d_w_rate_x_P_wet_rate_z - G[3]*d_w_rate_y_P_wet_rate_z - G[6]*d_w_rate_z_P_wet_rate_z + d_v0_P_wet_rate_z + d_w_x_F_z;
+    f_by[28] = -G[1]*d_w_rate_x_P_wet_rate_z - G[4]*d_w_rate_y_P_wet_rate_z - G[7]*d_w_rate_z_P_wet_rate_z + d_v1_P_wet_rate_z + d_w_y_F_z;
+    f_by[29] = -G[2]*d_w_rate_x_P_wet_rate_z - G[5]*d_w_rate_y_P_wet_rate_z - G[8]*d_w_rate_z_P_wet_rate_z + d_v2_P_wet_rate_z + d_w_z_F_z;
+    f_by[30] = d_th1_F_z;
+    f_by[31] = d_th2_F_z;
+    f_by[32] = d_th3_F_z;
+    f_by[33] = d_omega0_P_wet_rate_z;
+    f_by[34] = d_omega1_P_wet_rate_z;
+    f_by[35] = d_omega2_P_wet_rate_z;
+    moment_by[0] = -G[0]*d_w_x_moment0 - G[3]*d_w_y_moment0 - G[6]*d_w_z_moment0 + c_place_x*d_wet0_moment0;
+    moment_by[1] = -G[1]*d_w_x_moment0 - G[4]*d_w_y_moment0 - G[7]*d_w_z_moment0 + c_place_y*d_wet0_moment0;
+    moment_by[2] = -G[2]*d_w_x_moment0 - G[5]*d_w_y_moment0 - G[8]*d_w_z_moment0 + c_place_z*d_wet0_moment0;
+    moment_by[3] = d_w_x_moment0;
+    moment_by[4] = d_w_y_moment0;
+    moment_by[5] = d_w_z_moment0;
+    moment_by[6] = d_th_moment0[0];
+    moment_by[7] = d_th_moment0[1];
+    moment_by[8] = d_th_moment0[2];
+    moment_by[9] = 0.0;
+    moment_by[10] = 0.0;
+    moment_by[11] = 0.0;
+    moment_by[12] = -G[0]*d_w_x_moment1 - G[3]*d_w_y_moment1 - G[6]*d_w_z_moment1 + c_place_x*d_wet0_moment1;
+    moment_by[13] = -G[1]*d_w_x_moment1 - G[4]*d_w_y_moment1 - G[7]*d_w_z_moment1 + c_place_y*d_wet0_moment1;
+    moment_by[14] = -G[2]*d_w_x_moment1 - G[5]*d_w_y_moment1 - G[8]*d_w_z_moment1 + c_place_z*d_wet0_moment1;
+    moment_by[15] = d_w_x_moment1;
+    moment_by[16] = d_w_y_moment1;
+    moment_by[17] = d_w_z_moment1;
+    moment_by[18] = d_th_moment1[0];
+    moment_by[19] = d_th_moment1[1];
+    moment_by[20] = d_th_moment1[2];
+    moment_by[21] = 0.0;
+    moment_by[22] = 0.0;
+    moment_by[23] = 0.0;
+    moment_by[24] = -G[0]*d_w_x_moment2 - G[3]*d_w_y_moment2 - G[6]*d_w_z_moment2 + c_place_x*d_wet0_moment2;
+    moment_by[25] = -G[1]*d_w_x_moment2 - G[4]*d_w_y_moment2 - G[7]*d_w_z_moment2 + c_place_y*d_wet0_moment2;
+    moment_by[26] = -G[2]*d_w_x_moment2 - G[5]*d_w_y_moment2 - G[8]*d_w_z_moment2 + c_place_z*d_wet0_moment2;
+    moment_by[27] = d_w_x_moment2;
+    moment_by[28] = d_w_y_moment2;
+    moment_by[29] = d_w_z_moment2;
+    moment_by[30] = d_th_moment2[0];
+    moment_by[31] = d_th_moment2[1];
+    moment_by[32] = d_th_moment2[2];
+    moment_by[33] = 0.0;
+    moment_by[34] = 0.0;
+    moment_by[35] = 0.0;
 }
 
 /* impulse of the fluid at a body over a step, and its moment (Lamb, Hydrodynamics, art. 124; Taylor 1928; Simo & Wong 1991; Gonzalez 1996); 306 add, 462 mul */
@@ -1356,215 +1717,4 @@ void drag_wet_column(const fu_real *u, const fu_real *delta, fu_real *e, fu_real
     c[0] = 0.125*(delta[0] + u[0] + 1.0)*(delta[0] + u[0] + 1.0)/delta[0];
     c_u[0] = 0.25*(delta[0] + u[0] + 1.0)/delta[0];
     c_uu[0] = 0.25/delta[0];
-}
-
-/* added mass of a cable whose wet part changes (Lagrange's equations of T; von Karman, NACA TN 321); 91 add, 255 mul, 4 div */
-void drag_entry_of_cable(const fu_real *t, const fu_real *m, const fu_real *w, const fu_real *v, const fu_real *n, fu_real *p_rate, fu_real *g, fu_real *f_t, fu_real *f_w, fu_real *f_v, fu_real *f_n)
-{
-    /* added mass */
-    const fu_real
-        less = m[0] - m[1],
-        scale = less/((t[0]*t[0] + t[1]*t[1] + t[2]*t[2])),
-        M1_x = m[0] - scale*t[0]*t[0],
-        M1_y = -(scale*t[0]*t[1]),
-        M1_z = -(scale*t[0]*t[2]),
-        M2_x = -(scale*t[0]*t[1]),
-        M2_y = m[0] - scale*t[1]*t[1],
-        M2_z = -(scale*t[1]*t[2]),
-        M3_x = -(scale*t[0]*t[2]),
-        M3_y = -(scale*t[1]*t[2]),
-        M3_z = m[0] - scale*t[2]*t[2];
-    /* entry */
-    fu_real P[3], rate[3], pull[3];
-    P[0] = M1_x*w[0] + M1_y*w[1] + M1_z*w[2];
-    P[1] = M2_x*w[0] + M2_y*w[1] + M2_z*w[2];
-    P[2] = M3_x*w[0] + M3_y*w[1] + M3_z*w[2];
-    const fu_real c_rate = n[0]*v[0] + n[1]*v[1] + n[2]*v[2];
-    FU_EACH(i, 3, rate[i] = P[i]*c_rate;)
-    const fu_real T = 0.5*P[0]*w[0] + 0.5*P[1]*w[1] + 0.5*P[2]*w[2];
-    FU_EACH(i, 3, pull[i] = T*n[i];)
-    /* derivatives */
-    fu_real d_t0_P[3], d_t0_M_x[2], d_t0_M_y[2], d_t0_M_z[2], d_t0_pull[3], d_t0_rate[3], d_t1_P[3], d_t1_pull[3],
-        d_t1_rate[3], d_t2_M_x[2], d_t2_M_y[2], d_t2_M_z[2], d_t2_P[3], d_t2_pull[3], d_t2_rate[3], d_w0_pull[3],
-        d_w1_pull[3], d_w2_pull[3], d_v0_rate[3], d_v1_rate[3], d_v2_rate[3], d_n0_rate[3], d_n1_rate[3], d_n2_rate[3];
-    const fu_real
-        d_t0_scale = -(2.0*less*t[0]/((t[0]*t[0] + t[1]*t[1] + t[2]*t[2])*(t[0]*t[0] + t[1]*t[1] + t[2]*t[2]))),
-        d_t0_M1_x = -d_t0_scale*t[0]*t[0] - 2.0*scale*t[0],
-        d_t0_M1_y = -d_t0_scale*t[0]*t[1] - scale*t[1],
-        d_t0_M1_z = -d_t0_scale*t[0]*t[2] - scale*t[2];
-    d_t0_P[0] = d_t0_M1_x*w[0] + d_t0_M1_y*w[1] + d_t0_M1_z*w[2];
-    FU_EACH(point, 2,
-        d_t0_M_x[point] = -d_t0_scale*t[0]*t[point + 1] - scale*t[point + 1];
-        d_t0_M_y[point] = -(d_t0_scale*t[1]*t[point + 1]);
-        d_t0_M_z[point] = -(d_t0_scale*t[point + 1]*t[2]);
-        d_t0_P[point + 1] = d_t0_M_x[point]*w[0] + d_t0_M_y[point]*w[1] + d_t0_M_z[point]*w[2];)
-    const fu_real d_t0_T = 0.5*d_t0_P[0]*w[0] + 0.5*d_t0_P[1]*w[1] + 0.5*d_t0_P[2]*w[2];
-    FU_EACH(i, 3, d_t0_pull[i] = d_t0_T*n[i];)
-    FU_EACH(i, 3, d_t0_rate[i] = c_rate*d_t0_P[i];)
-    const fu_real
-        d_t1_scale = -(2.0*less*t[1]/((t[0]*t[0] + t[1]*t[1] + t[2]*t[2])*(t[0]*t[0] + t[1]*t[1] + t[2]*t[2]))),
-        d_t1_M1_x = -(d_t1_scale*t[0]*t[0]),
-        d_t1_M1_y = -d_t1_scale*t[0]*t[1] - scale*t[0],
-        d_t1_M1_z = -(d_t1_scale*t[0]*t[2]);
-    d_t1_P[0] = d_t1_M1_x*w[0] + d_t1_M1_y*w[1] + d_t1_M1_z*w[2];
-    const fu_real
-        d_t1_M2_x = -d_t1_scale*t[0]*t[1] - scale*t[0],
-        d_t1_M2_y = -d_t1_scale*t[1]*t[1] - 2.0*scale*t[1],
-        d_t1_M2_z = -d_t1_scale*t[1]*t[2] - scale*t[2];
-    d_t1_P[1] = d_t1_M2_x*w[0] + d_t1_M2_y*w[1] + d_t1_M2_z*w[2];
-    const fu_real
-        d_t1_M3_x = -(d_t1_scale*t[0]*t[2]),
-        d_t1_M3_y = -d_t1_scale*t[1]*t[2] - scale*t[2],
-        d_t1_M3_z = -(d_t1_scale*t[2]*t[2]);
-    d_t1_P[2] = d_t1_M3_x*w[0] + d_t1_M3_y*w[1] + d_t1_M3_z*w[2];
-    const fu_real d_t1_T = 0.5*d_t1_P[0]*w[0] + 0.5*d_t1_P[1]*w[1] + 0.5*d_t1_P[2]*w[2];
-    FU_EACH(i, 3, d_t1_pull[i] = d_t1_T*n[i];)
-    FU_EACH(i, 3, d_t1_rate[i] = c_rate*d_t1_P[i];)
-    const fu_real d_t2_scale = -(2.0*less*t[2]/((t[0]*t[0] + t[1]*t[1] + t[2]*t[2])*(t[0]*t[0] + t[1]*t[1] + t[2]*t[2])));
-    FU_EACH(point, 2,
-        d_t2_M_x[point] = -(d_t2_scale*t[0]*t[point]);
-        d_t2_M_y[point] = -(d_t2_scale*t[point]*t[1]);
-        d_t2_M_z[point] = -d_t2_scale*t[point]*t[2] - scale*t[point];
-        d_t2_P[point] = d_t2_M_x[point]*w[0] + d_t2_M_y[point]*w[1] + d_t2_M_z[point]*w[2];)
-    const fu_real
-        d_t2_M3_x = -d_t2_scale*t[0]*t[2] - scale*t[0],
-        d_t2_M3_y = -d_t2_scale*t[1]*t[2] - scale*t[1],
-        d_t2_M3_z = -d_t2_scale*t[2]*t[2] - 2.0*scale*t[2];
-    d_t2_P[2] = d_t2_M3_x*w[0] + d_t2_M3_y*w[1] + d_t2_M3_z*w[2];
-    const fu_real d_t2_T = 0.5*d_t2_P[0]*w[0] + 0.5*d_t2_P[1]*w[1] + 0.5*d_t2_P[2]*w[2];
-    FU_EACH(i, 3, d_t2_pull[i] = d_t2_T*n[i];)
-    FU_EACH(i, 3, d_t2_rate[i] = c_rate*d_t2_P[i];)
-    const fu_real d_w0_T = 0.5*M1_x*w[0] + 0.5*M2_x*w[1] + 0.5*M3_x*w[2] + 0.5*P[0];
-    FU_EACH(i, 3, d_w0_pull[i] = d_w0_T*n[i];)
-    const fu_real
-        d_w0_rate_x = M1_x*c_rate,
-        d_w0_rate_y = M2_x*c_rate,
-        d_w0_rate_z = M3_x*c_rate,
-        d_w1_T = 0.5*M1_y*w[0] + 0.5*M2_y*w[1] + 0.5*M3_y*w[2] + 0.5*P[1];
-    FU_EACH(i, 3, d_w1_pull[i] = d_w1_T*n[i];)
-    const fu_real
-        d_w1_rate_x = M1_y*c_rate,
-        d_w1_rate_y = M2_y*c_rate,
-        d_w1_rate_z = M3_y*c_rate,
-        d_w2_T = 0.5*M1_z*w[0] + 0.5*M2_z*w[1] + 0.5*M3_z*w[2] + 0.5*P[2];
-    FU_EACH(i, 3, d_w2_pull[i] = d_w2_T*n[i];)
-    const fu_real
-        d_w2_rate_x = M1_z*c_rate,
-        d_w2_rate_y = M2_z*c_rate,
-        d_w2_rate_z = M3_z*c_rate;
-    FU_EACH(i, 3, d_v0_rate[i] = P[i]*n[0];)
-    FU_EACH(i, 3, d_v1_rate[i] = P[i]*n[1];)
-    FU_EACH(i, 3, d_v2_rate[i] = P[i]*n[2];)
-    FU_EACH(i, 3, d_n0_rate[i] = P[i]*v[0];)
-    FU_EACH(i, 3, d_n1_rate[i] = P[i]*v[1];)
-    FU_EACH(i, 3, d_n2_rate[i] = P[i]*v[2];)
-    /* outputs */
-    FU_EACH(i, 3, p_rate[i] = rate[i];)
-    FU_EACH(i, 3, g[i] = pull[i];)
-    FU_EACH(point, 3,
-        f_t[3*point] = -d_t0_pull[point] + d_t0_rate[point];
-        f_t[3*point + 1] = -d_t1_pull[point] + d_t1_rate[point];
-        f_t[3*point + 2] = -d_t2_pull[point] + d_t2_rate[point];)
-    DRAG_PART_OF_OUTPUTS
-}
-
-/* added mass of a body whose wet part changes (Lagrange's equations of T; von Karman, NACA TN 321); 217 add, 357 mul */
-void drag_entry_of_point(const fu_real *A, const fu_real *C, const fu_real *w, const fu_real *v, const fu_real *n, fu_real *p_rate, fu_real *g, fu_real *f_turn, fu_real *f_w, fu_real *f_v, fu_real *f_n)
-{
-    /* added mass */
-    fu_real CM_x[3], CM_y[3], CM_z[3], M_x[3], M_y[3], M_z[3];
-    FU_EACH(point, 3,
-        CM_x[point] = A[0]*C[3*point] + A[1]*C[3*point + 1] + A[2]*C[3*point + 2];
-        CM_y[point] = A[3]*C[3*point] + A[4]*C[3*point + 1] + A[5]*C[3*point + 2];
-        CM_z[point] = A[6]*C[3*point] + A[7]*C[3*point + 1] + A[8]*C[3*point + 2];)
-    FU_EACH(point, 3,
-        M_x[point] = A[3*point]*CM_x[0] + A[3*point + 1]*CM_x[1] + A[3*point + 2]*CM_x[2];
-        M_y[point] = A[3*point]*CM_y[0] + A[3*point + 1]*CM_y[1] + A[3*point + 2]*CM_y[2];
-        M_z[point] = A[3*point]*CM_z[0] + A[3*point + 1]*CM_z[1] + A[3*point + 2]*CM_z[2];)
-    /* entry */
-    fu_real P[3], rate[3], pull[3];
-    P[0] = M_x[0]*w[0] + M_y[0]*w[1] + M_z[0]*w[2];
-    P[1] = M_x[1]*w[0] + M_y[1]*w[1] + M_z[1]*w[2];
-    P[2] = M_x[2]*w[0] + M_y[2]*w[1] + M_z[2]*w[2];
-    const fu_real c_rate = n[0]*v[0] + n[1]*v[1] + n[2]*v[2];
-    FU_EACH(i, 3, rate[i] = P[i]*c_rate;)
-    const fu_real T = 0.5*P[0]*w[0] + 0.5*P[1]*w[1] + 0.5*P[2]*w[2];
-    FU_EACH(i, 3, pull[i] = T*n[i];)
-    /* derivatives */
-    fu_real d_th1_P[3], d_th1_pull[3], d_th1_rate[3], d_th2_P[3], d_th2_pull[3], d_th2_rate[3], d_th3_CM1[2],
-        d_th3_CM2[2], d_th3_CM3[2], d_th3_P[3], d_th3_M3[2], d_th3_pull[3], d_th3_rate[3], d_w0_pull[3], d_w1_pull[3],
-        d_w2_pull[3], d_v0_rate[3], d_v1_rate[3], d_v2_rate[3], d_n0_rate[3], d_n1_rate[3], d_n2_rate[3];
-    DRAG_PART_OF_DERIVATIVES
-    d_th1_P[0] = d_th1_M1_y*w[1] + d_th1_M1_z*w[2];
-    DRAG_PART_OF_DERIVATIVES_2
-    d_th1_P[1] = d_th1_M2_x*w[0] + d_th1_M2_y*w[1] + d_th1_M2_z*w[2];
-    DRAG_PART_OF_DERIVATIVES_3
-    d_th1_P[2] = d_th1_M3_x*w[0] + d_th1_M3_y*w[1] + d_th1_M3_z*w[2];
-    const fu_real d_th1_T = 0.5*d_th1_P[0]*w[0] + 0.5*d_th1_P[1]*w[1] + 0.5*d_th1_P[2]*w[2];
-    FU_EACH(i, 3, d_th1_pull[i] = d_th1_T*n[i];)
-    FU_EACH(i, 3, d_th1_rate[i] = c_rate*d_th1_P[i];)
-    DRAG_PART_OF_DERIVATIVES_4
-    d_th2_P[0] = d_th2_M1_x*w[0] + d_th2_M1_y*w[1] + d_th2_M1_z*w[2];
-    const fu_real
-        d_th2_M2_x = A[3]*d_th2_CM1_x + A[4]*d_th2_CM2_x + A[5]*d_th2_CM3_x,
-        d_th2_M2_z = A[3]*d_th2_CM1_z + A[4]*d_th2_CM2_z + A[5]*d_th2_CM3_z;
-    d_th2_P[1] = d_th2_M2_x*w[0] + d_th2_M2_z*w[2];
-    DRAG_PART_OF_DERIVATIVES_5
-    d_th2_P[2] = d_th2_M3_x*w[0] + d_th2_M3_y*w[1] + d_th2_M3_z*w[2];
-    const fu_real d_th2_T = 0.5*d_th2_P[0]*w[0] + 0.5*d_th2_P[1]*w[1] + 0.5*d_th2_P[2]*w[2];
-    FU_EACH(i, 3, d_th2_pull[i] = d_th2_T*n[i];)
-    FU_EACH(i, 3, d_th2_rate[i] = c_rate*d_th2_P[i];)
-    d_th3_CM1[0] = -A[3]*C[0] - A[4]*C[1] - A[5]*C[2];
-    d_th3_CM2[0] = -A[3]*C[3] - A[4]*C[4] - A[5]*C[5];
-    d_th3_CM3[0] = -A[3]*C[6] - A[4]*C[7] - A[5]*C[8];
-    const fu_real d_th3_M1_x = A[0]*d_th3_CM1[0] + A[1]*d_th3_CM2[0] + A[2]*d_th3_CM3[0] - A[3]*CM_x[0] - A[4]*CM_x[1] - A[5]*CM_x[2];
-    d_th3_CM1[1] = A[0]*C[0] + A[1]*C[1] + A[2]*C[2];
-    d_th3_CM2[1] = A[0]*C[3] + A[1]*C[4] + A[2]*C[5];
-    d_th3_CM3[1] = A[0]*C[6] + A[1]*C[7] + A[2]*C[8];
-    const fu_real
-        d_th3_M1_y = A[0]*d_th3_CM1[1] + A[1]*d_th3_CM2[1] + A[2]*d_th3_CM3[1] - A[3]*CM_y[0] - A[4]*CM_y[1] - A[5]*CM_y[2],
-        d_th3_M1_z = -A[3]*CM_z[0] - A[4]*CM_z[1] - A[5]*CM_z[2];
-    d_th3_P[0] = d_th3_M1_x*w[0] + d_th3_M1_y*w[1] + d_th3_M1_z*w[2];
-    const fu_real
-        d_th3_M2_x = A[0]*CM_x[0] + A[1]*CM_x[1] + A[2]*CM_x[2] + A[3]*d_th3_CM1[0] + A[4]*d_th3_CM2[0] + A[5]*d_th3_CM3[0],
-        d_th3_M2_y = A[0]*CM_y[0] + A[1]*CM_y[1] + A[2]*CM_y[2] + A[3]*d_th3_CM1[1] + A[4]*d_th3_CM2[1] + A[5]*d_th3_CM3[1],
-        d_th3_M2_z = A[0]*CM_z[0] + A[1]*CM_z[1] + A[2]*CM_z[2];
-    d_th3_P[1] = d_th3_M2_x*w[0] + d_th3_M2_y*w[1] + d_th3_M2_z*w[2];
-    FU_EACH(i, 2, d_th3_M3[i] = A[6]*d_th3_CM1[i] + A[7]*d_th3_CM2[i] + A[8]*d_th3_CM3[i];)
-    d_th3_P[2] = d_th3_M3[0]*w[0] + d_th3_M3[1]*w[1];
-    const fu_real d_th3_T = 0.5*d_th3_P[0]*w[0] + 0.5*d_th3_P[1]*w[1] + 0.5*d_th3_P[2]*w[2];
-    FU_EACH(i, 3, d_th3_pull[i] = d_th3_T*n[i];)
-    FU_EACH(i, 3, d_th3_rate[i] = c_rate*d_th3_P[i];)
-    const fu_real d_w0_T = 0.5*M_x[0]*w[0] + 0.5*M_x[1]*w[1] + 0.5*M_x[2]*w[2] + 0.5*P[0];
-    FU_EACH(i, 3, d_w0_pull[i] = d_w0_T*n[i];)
-    const fu_real
-        d_w0_rate_x = M_x[0]*c_rate,
-        d_w0_rate_y = M_x[1]*c_rate,
-        d_w0_rate_z = M_x[2]*c_rate,
-        d_w1_T = 0.5*M_y[0]*w[0] + 0.5*M_y[1]*w[1] + 0.5*M_y[2]*w[2] + 0.5*P[1];
-    FU_EACH(i, 3, d_w1_pull[i] = d_w1_T*n[i];)
-    const fu_real
-        d_w1_rate_x = M_y[0]*c_rate,
-        d_w1_rate_y = M_y[1]*c_rate,
-        d_w1_rate_z = M_y[2]*c_rate,
-        d_w2_T = 0.5*M_z[0]*w[0] + 0.5*M_z[1]*w[1] + 0.5*M_z[2]*w[2] + 0.5*P[2];
-    FU_EACH(i, 3, d_w2_pull[i] = d_w2_T*n[i];)
-    const fu_real
-        d_w2_rate_x = M_z[0]*c_rate,
-        d_w2_rate_y = M_z[1]*c_rate,
-        d_w2_rate_z = M_z[2]*c_rate;
-    FU_EACH(i, 3, d_v0_rate[i] = P[i]*n[0];)
-    FU_EACH(i, 3, d_v1_rate[i] = P[i]*n[1];)
-    FU_EACH(i, 3, d_v2_rate[i] = P[i]*n[2];)
-    FU_EACH(i, 3, d_n0_rate[i] = P[i]*v[0];)
-    FU_EACH(i, 3, d_n1_rate[i] = P[i]*v[1];)
-    FU_EACH(i, 3, d_n2_rate[i] = P[i]*v[2];)
-    /* outputs */
-    FU_EACH(i, 3, p_rate[i] = rate[i];)
-    FU_EACH(i, 3, g[i] = pull[i];)
-    FU_EACH(point, 3,
-        f_turn[3*point] = -d_th1_pull[point] + d_th1_rate[point];
-        f_turn[3*point + 1] = -d_th2_pull[point] + d_th2_rate[point];
-        f_turn[3*point + 2] = -d_th3_pull[point] + d_th3_rate[point];)
-    DRAG_PART_OF_OUTPUTS
 }

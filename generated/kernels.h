@@ -953,16 +953,24 @@ fu_drag_impulse_of_cable_kernel drag_impulse_of_cable;
 /* t 2, w 2, m 2, p 2, M 2x2 */
 fu_drag_impulse_of_cable_kernel planar_drag_impulse_of_cable;
 
-typedef void fu_drag_inertia_of_cable_kernel(const fu_real *t, const fu_real *t_rate, const fu_real *w, const fu_real *w_rate, const fu_real *m, fu_real *p, fu_real *p_rate, fu_real *g, fu_real *M, fu_real *p_t, fu_real *p_rate_t, fu_real *p_rate_t_rate, fu_real *p_rate_w, fu_real *g_t, fu_real *g_w);
-/* impulse of the fluid along a cable, its rate, and their derivatives: t [1]; t_rate [1/s]; w [m/s]; w_rate [m/s^2];
- * m [kg/m] -> p [kg/s]; p_rate [N/m]; g [N]; M [kg/m]; p_t [kg/s]; p_rate_t [N/m]; p_rate_t_rate [kg/s]; p_rate_w
- * [kg/(m s)]; g_t [N]; g_w [kg/s] */
-/* t 3, t_rate 3, w 3, w_rate 3, m 2, p 3, p_rate 3, g 3, M 3x3, p_t 3x3, p_rate_t 3x3, p_rate_t_rate 3x3, p_rate_w
- * 3x3, g_t 3x3, g_w 3x3 */
+typedef void fu_drag_inertia_of_cable_kernel(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *g, fu_real *power);
+/* force of the inertia of the fluid on a length of cable: t [1]; t_rate [1/s]; m [kg/m]; displaced [kg/m]; v [m/s];
+ * a [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2]; up [1] -> f [N/m]; g [N]; power [W/m] */
+/* t 3, t_rate 3, m 2, v 3, a 3, U 3, U_rate 3, G 3x3, wet 3, up 3, f 3, g 3, power 1 */
 fu_drag_inertia_of_cable_kernel drag_inertia_of_cable;
-/* t 2, t_rate 2, w 2, w_rate 2, m 2, p 2, p_rate 2, g 2, M 2x2, p_t 2x2, p_rate_t 2x2, p_rate_t_rate 2x2, p_rate_w
- * 2x2, g_t 2x2, g_w 2x2 */
+/* t 2, t_rate 2, m 2, v 2, a 2, U 2, U_rate 2, G 2x2, wet 3, up 2, f 2, g 2, power 1 */
 fu_drag_inertia_of_cable_kernel planar_drag_inertia_of_cable;
+
+typedef void fu_drag_inertia_of_cable_tangent_kernel(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_t, fu_real *f_t_rate, fu_real *f_r, fu_real *f_v, fu_real *g_t, fu_real *g_r, fu_real *g_v);
+/* derivatives of the force of the inertia of the fluid on a cable: t [1]; t_rate [1/s]; m [kg/m]; displaced [kg/m];
+ * v [m/s]; a [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2]; up [1] -> f_t [SI]; f_t_rate [SI]; f_r
+ * [SI]; f_v [SI]; g_t [SI]; g_r [SI]; g_v [SI] */
+/* t 3, t_rate 3, m 2, v 3, a 3, U 3, U_rate 3, G 3x3, wet 3, up 3, f_t 3x3, f_t_rate 3x3, f_r 3x3, f_v 3x3, g_t 3x3,
+ * g_r 3x3, g_v 3x3 */
+fu_drag_inertia_of_cable_tangent_kernel drag_inertia_of_cable_tangent;
+/* t 2, t_rate 2, m 2, v 2, a 2, U 2, U_rate 2, G 2x2, wet 3, up 2, f_t 2x2, f_t_rate 2x2, f_r 2x2, f_v 2x2, g_t 2x2,
+ * g_r 2x2, g_v 2x2 */
+fu_drag_inertia_of_cable_tangent_kernel planar_drag_inertia_of_cable_tangent;
 
 typedef void fu_drag_inertia_step_kernel(const fu_real *t, const fu_real *t_next, const fu_real *w, const fu_real *w_next, const fu_real *m, fu_real *dp, fu_real *g);
 /* impulse of the fluid along a cable over a step: t [1]; t_next [1]; w [m/s]; w_next [m/s]; m [kg/m] -> dp [kg/s]; g
@@ -979,16 +987,21 @@ fu_drag_impulse_of_point_kernel drag_impulse_of_point;
 /* A 2x2, C 2x2, w 2, p 2, M 2x2 */
 fu_drag_impulse_of_point_kernel planar_drag_impulse_of_point;
 
-typedef void fu_drag_inertia_of_point_kernel(const fu_real *A, const fu_real *C, const fu_real *omega, const fu_real *w, const fu_real *w_rate, fu_real *p, fu_real *p_rate, fu_real *moment, fu_real *M, fu_real *p_turn, fu_real *p_rate_turn, fu_real *moment_turn, fu_real *p_rate_omega, fu_real *p_rate_w, fu_real *moment_w);
-/* impulse of the fluid at a body, its rate and moment, and their derivatives: A [1]; C [kg]; omega [rad/s]; w [m/s];
- * w_rate [m/s^2] -> p [kg m/s]; p_rate [N]; moment [N m]; M [kg]; p_turn [SI]; p_rate_turn [SI]; moment_turn [SI];
- * p_rate_omega [kg m/s]; p_rate_w [kg/s]; moment_w [kg m/s] */
-/* A 3x3, C 3x3, omega 3, w 3, w_rate 3, p 3, p_rate 3, moment 3, M 3x3, p_turn 3x3, p_rate_turn 3x3, moment_turn
- * 3x3, p_rate_omega 3x3, p_rate_w 3x3, moment_w 3x3 */
+typedef void fu_drag_inertia_of_point_kernel(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *moment, fu_real *power);
+/* force and moment of the inertia of the fluid on a body: A [1]; C [kg]; omega [rad/s]; displaced [kg]; v [m/s]; a
+ * [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2]; up [1] -> f [N]; moment [N m]; power [W] */
+/* A 3x3, C 3x3, omega 3, v 3, a 3, U 3, U_rate 3, G 3x3, wet 3, up 3, f 3, moment 3, power 1 */
 fu_drag_inertia_of_point_kernel drag_inertia_of_point;
-/* A 2x2, C 2x2, omega 1, w 2, w_rate 2, p 2, p_rate 2, moment 1, M 2x2, p_turn 2x1, p_rate_turn 2x1, moment_turn
- * 1x1, p_rate_omega 2x1, p_rate_w 2x2, moment_w 1x2 */
+/* A 2x2, C 2x2, omega 1, v 2, a 2, U 2, U_rate 2, G 2x2, wet 3, up 2, f 2, moment 1, power 1 */
 fu_drag_inertia_of_point_kernel planar_drag_inertia_of_point;
+
+typedef void fu_drag_inertia_of_point_tangent_kernel(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_by, fu_real *moment_by);
+/* derivatives of force and moment of the inertia of the fluid: A [1]; C [kg]; omega [rad/s]; displaced [kg]; v
+ * [m/s]; a [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2]; up [1] -> f_by [SI]; moment_by [SI] */
+/* A 3x3, C 3x3, omega 3, v 3, a 3, U 3, U_rate 3, G 3x3, wet 3, up 3, f_by 3x12, moment_by 3x12 */
+fu_drag_inertia_of_point_tangent_kernel drag_inertia_of_point_tangent;
+/* A 2x2, C 2x2, omega 1, v 2, a 2, U 2, U_rate 2, G 2x2, wet 3, up 2, f_by 2x6, moment_by 1x6 */
+fu_drag_inertia_of_point_tangent_kernel planar_drag_inertia_of_point_tangent;
 
 typedef void fu_drag_inertia_of_point_step_kernel(const fu_real *A, const fu_real *A_next, const fu_real *C, const fu_real *w, const fu_real *w_next, const fu_real *theta, const fu_real *turning, fu_real *dp, fu_real *p, fu_real *moment, fu_real *more);
 /* impulse of the fluid at a body over a step, and its moment: A [1]; A_next [1]; C [kg]; w [m/s]; w_next [m/s];
@@ -1012,22 +1025,6 @@ typedef void fu_drag_wet_column_kernel(const fu_real *u, const fu_real *delta, f
 /* wet part of a column at its lower end: u [1]; delta [1] -> e [1]; c [1]; c_u [1]; c_uu [1] */
 /* u 1, delta 1, e 1, c 1, c_u 1, c_uu 1 */
 fu_drag_wet_column_kernel drag_wet_column, planar_drag_wet_column;
-
-typedef void fu_drag_entry_of_cable_kernel(const fu_real *t, const fu_real *m, const fu_real *w, const fu_real *v, const fu_real *n, fu_real *p_rate, fu_real *g, fu_real *f_t, fu_real *f_w, fu_real *f_v, fu_real *f_n);
-/* added mass of a cable whose wet part changes: t [1]; m [kg/m]; w [m/s]; v [m/s]; n [1/m] -> p_rate [N/m]; g [N/m];
- * f_t [N/m]; f_w [kg/(m s)]; f_v [kg/(m s)]; f_n [J] */
-/* t 3, m 2, w 3, v 3, n 3, p_rate 3, g 3, f_t 3x3, f_w 3x3, f_v 3x3, f_n 3x3 */
-fu_drag_entry_of_cable_kernel drag_entry_of_cable;
-/* t 2, m 2, w 2, v 2, n 2, p_rate 2, g 2, f_t 2x2, f_w 2x2, f_v 2x2, f_n 2x2 */
-fu_drag_entry_of_cable_kernel planar_drag_entry_of_cable;
-
-typedef void fu_drag_entry_of_point_kernel(const fu_real *A, const fu_real *C, const fu_real *w, const fu_real *v, const fu_real *n, fu_real *p_rate, fu_real *g, fu_real *f_turn, fu_real *f_w, fu_real *f_v, fu_real *f_n);
-/* added mass of a body whose wet part changes: A [1]; C [kg]; w [m/s]; v [m/s]; n [1/m] -> p_rate [N]; g [N]; f_turn
- * [N]; f_w [kg/s]; f_v [kg/s]; f_n [J m] */
-/* A 3x3, C 3x3, w 3, v 3, n 3, p_rate 3, g 3, f_turn 3x3, f_w 3x3, f_v 3x3, f_n 3x3 */
-fu_drag_entry_of_point_kernel drag_entry_of_point;
-/* A 2x2, C 2x2, w 2, v 2, n 2, p_rate 2, g 2, f_turn 2x1, f_w 2x2, f_v 2x2, f_n 2x2 */
-fu_drag_entry_of_point_kernel planar_drag_entry_of_point;
 
 typedef void fu_crossing_closest_kernel(const fu_real *d, const fu_real *t, const fu_real *k, fu_real *step);
 /* a step of Newton's method to the closest points: d [m]; t [1]; k [1/m] -> step [m] */
@@ -1551,15 +1548,15 @@ typedef struct {
     fu_drag_on_foil_kernel *on_foil;
     fu_drag_impulse_of_cable_kernel *impulse_of_cable;
     fu_drag_inertia_of_cable_kernel *inertia_of_cable;
+    fu_drag_inertia_of_cable_tangent_kernel *inertia_of_cable_tangent;
     fu_drag_inertia_step_kernel *inertia_step;
     fu_drag_impulse_of_point_kernel *impulse_of_point;
     fu_drag_inertia_of_point_kernel *inertia_of_point;
+    fu_drag_inertia_of_point_tangent_kernel *inertia_of_point_tangent;
     fu_drag_inertia_of_point_step_kernel *inertia_of_point_step;
     fu_drag_wet_sphere_kernel *wet_sphere;
     fu_drag_wet_section_kernel *wet_section;
     fu_drag_wet_column_kernel *wet_column;
-    fu_drag_entry_of_cable_kernel *entry_of_cable;
-    fu_drag_entry_of_point_kernel *entry_of_point;
 } fu_drag_kernels;
 
 /* What the engine needs of a crossing. */

@@ -4,56 +4,77 @@
  */
 #include "kernels.h"
 
-/* part of derivatives: of planar_drag_inertia_of_point and 1 more */
+/* part of derivatives: of planar_drag_inertia_of_cable_tangent and 1 more */
 #define PLANAR_DRAG_PART_OF_DERIVATIVES \
     const fu_real \
-        d_th1_CM1_x = -A[2]*C[0] - A[3]*C[1], \
-        d_th1_CM2_x = -A[2]*C[2] - A[3]*C[3], \
-        d_th1_M1_x = A[0]*d_th1_CM1_x + A[1]*d_th1_CM2_x - A[2]*CM1_x - A[3]*CM2_x, \
-        d_th1_CM1_y = A[0]*C[0] + A[1]*C[1], \
-        d_th1_CM2_y = A[0]*C[2] + A[1]*C[3], \
-        d_th1_M1_y = A[0]*d_th1_CM1_y + A[1]*d_th1_CM2_y - A[2]*CM1_y - A[3]*CM2_y, \
-        d_th1_P_x = d_th1_M1_x*w[0] + d_th1_M1_y*w[1], \
-        d_th1_M2_x = A[0]*CM1_x + A[1]*CM2_x + A[2]*d_th1_CM1_x + A[3]*d_th1_CM2_x, \
-        d_th1_M2_y = A[0]*CM1_y + A[1]*CM2_y + A[2]*d_th1_CM1_y + A[3]*d_th1_CM2_y, \
-        d_th1_P_y = d_th1_M2_x*w[0] + d_th1_M2_y*w[1];
+        d_material_x_F_x = -displaced_wet, \
+        d_material_y_F_y = -displaced_wet, \
+        d_v0_P_wet_rate_x = P_x*c_place_x, \
+        d_v0_P_wet_rate_y = P_y*c_place_x, \
+        d_v1_P_wet_rate_x = P_x*c_place_y, \
+        d_v1_P_wet_rate_y = P_y*c_place_y, \
+        d_wet0_carried_x = displaced*material_x, \
+        d_wet0_strained_x = G[0]*P_x + G[2]*P_y, \
+        d_wet0_F_x = P_rate_x - d_wet0_carried_x + d_wet0_strained_x, \
+        d_wet0_carried_y = displaced*material_y, \
+        d_wet0_strained_y = G[1]*P_x + G[3]*P_y, \
+        d_wet0_F_y = P_rate_y - d_wet0_carried_y + d_wet0_strained_y, \
+        d_c_place_x_P_wet_rate_x = P_x*v[0], \
+        d_c_place_x_F_x = -T + d_c_place_x_P_wet_rate_x, \
+        d_c_place_x_P_wet_rate_y = P_y*v[0], \
+        d_c_place_y_P_wet_rate_x = P_x*v[1], \
+        d_c_place_y_P_wet_rate_y = P_y*v[1], \
+        d_c_place_y_F_y = -T + d_c_place_y_P_wet_rate_y;
 
-/* part of derivatives: of planar_drag_entry_of_cable and 1 more */
-#define PLANAR_DRAG_PART_OF_DERIVATIVES_2 \
+/* motion past the fluid: of planar_drag_inertia_of_cable and 3 more */
+#define PLANAR_DRAG_MOTION_PAST_THE_FLUID \
     const fu_real \
-        d_w0_T = 0.5*M1_x*w[0] + 0.5*M2_x*w[1] + 0.5*P_x, \
-        d_w0_pull_x = d_w0_T*n[0], \
-        d_w0_rate_x = M1_x*c_rate, \
-        d_w0_pull_y = d_w0_T*n[1], \
-        d_w0_rate_y = M2_x*c_rate, \
-        d_w1_T = 0.5*M1_y*w[0] + 0.5*M2_y*w[1] + 0.5*P_y, \
-        d_w1_pull_x = d_w1_T*n[0], \
-        d_w1_rate_x = M1_y*c_rate, \
-        d_w1_pull_y = d_w1_T*n[1], \
-        d_w1_rate_y = M2_y*c_rate, \
-        d_v0_rate_x = P_x*n[0], \
-        d_v0_rate_y = P_y*n[0], \
-        d_v1_rate_x = P_x*n[1], \
-        d_v1_rate_y = P_y*n[1], \
-        d_n0_rate_x = P_x*v[0], \
-        d_n0_rate_y = P_y*v[0], \
-        d_n1_rate_x = P_x*v[1], \
-        d_n1_rate_y = P_y*v[1];
+        w_x = -U[0] + v[0], \
+        w_y = -U[1] + v[1], \
+        w_rate_x = -G[0]*v[0] - G[1]*v[1] - U_rate[0] + a[0], \
+        w_rate_y = -G[2]*v[0] - G[3]*v[1] - U_rate[1] + a[1], \
+        material_x = G[0]*U[0] + G[1]*U[1] + U_rate[0], \
+        material_y = G[2]*U[0] + G[3]*U[1] + U_rate[1], \
+        c_place_x = up[0]*wet[1], \
+        c_place_y = up[1]*wet[1];
 
-/* part of outputs: of planar_drag_entry_of_cable and 1 more */
-#define PLANAR_DRAG_PART_OF_OUTPUTS \
-    f_w[0] = -d_w0_pull_x + d_w0_rate_x; \
-    f_w[1] = -d_w1_pull_x + d_w1_rate_x; \
-    f_w[2] = -d_w0_pull_y + d_w0_rate_y; \
-    f_w[3] = -d_w1_pull_y + d_w1_rate_y; \
-    f_v[0] = d_v0_rate_x; \
-    f_v[1] = d_v1_rate_x; \
-    f_v[2] = d_v0_rate_y; \
-    f_v[3] = d_v1_rate_y; \
-    f_n[0] = -T + d_n0_rate_x; \
-    f_n[1] = d_n1_rate_x; \
-    f_n[2] = d_n0_rate_y; \
-    f_n[3] = -T + d_n1_rate_y;
+/* tangent and its rate: of planar_drag_inertia_of_cable and 1 more */
+#define PLANAR_DRAG_TANGENT_AND_ITS_RATE \
+    const fu_real \
+        less = m[0] - m[1], \
+        len_t = FU_SQRT(t[0]*t[0] + t[1]*t[1]), \
+        inv_len_t = 1.0/len_t, \
+        i_x = inv_len_t*t[0], \
+        i_y = inv_len_t*t[1], \
+        i_rate_x = inv_len_t*(-i_x*(i_x*t_rate[0] + i_y*t_rate[1]) + t_rate[0]), \
+        i_rate_y = inv_len_t*(-i_y*(i_x*t_rate[0] + i_y*t_rate[1]) + t_rate[1]);
+
+/* impulse and its rate: of planar_drag_inertia_of_cable and 1 more */
+#define PLANAR_DRAG_IMPULSE_AND_ITS_RATE \
+    const fu_real \
+        w_t = i_x*w_x + i_y*w_y, \
+        w_t_rate = i_rate_x*w_x + i_rate_y*w_y + i_x*w_rate_x + i_y*w_rate_y, \
+        P_x = -i_x*less*w_t + m[0]*w_x, \
+        P_y = -i_y*less*w_t + m[0]*w_y, \
+        P_rate_x = -less*(i_rate_x*w_t + i_x*w_t_rate) + m[0]*w_rate_x, \
+        P_rate_y = -less*(i_rate_y*w_t + i_y*w_t_rate) + m[0]*w_rate_y;
+
+/* force on the particle: of planar_drag_inertia_of_cable and 1 more */
+#define PLANAR_DRAG_FORCE_ON_THE_PARTICLE \
+    const fu_real \
+        P_wet_x = P_x*wet[0], \
+        P_wet_y = P_y*wet[0], \
+        c_rate = c_place_x*v[0] + c_place_y*v[1], \
+        P_wet_rate_x = P_rate_x*wet[0] + P_x*c_rate, \
+        P_wet_rate_y = P_rate_y*wet[0] + P_y*c_rate, \
+        strained_x = G[0]*P_wet_x + G[2]*P_wet_y, \
+        strained_y = G[1]*P_wet_x + G[3]*P_wet_y, \
+        displaced_wet = displaced*wet[0], \
+        carried_x = displaced_wet*material_x, \
+        carried_y = displaced_wet*material_y, \
+        T = 0.5*P_x*w_x + 0.5*P_y*w_y, \
+        F_x = P_wet_rate_x - T*c_place_x - carried_x + strained_x, \
+        F_y = P_wet_rate_y - T*c_place_y - carried_y + strained_y;
 
 /* drag a length of a cable, and its derivatives; 51 add, 136 mul, 11 div, 3 sqrt */
 void planar_drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *c, fu_real *f, fu_real *f_t, fu_real *f_w)
@@ -218,134 +239,187 @@ void planar_drag_impulse_of_cable(const fu_real *t, const fu_real *w, const fu_r
     M[3] = m[0] - scale*t[1]*t[1];
 }
 
-/* impulse of the fluid along a cable, its rate, and their derivatives (Lighthill 1971; Lagrange's equations of T); 114 add, 328 mul, 1 div, 1 sqrt */
-void planar_drag_inertia_of_cable(const fu_real *t, const fu_real *t_rate, const fu_real *w, const fu_real *w_rate, const fu_real *m, fu_real *p, fu_real *p_rate, fu_real *g, fu_real *M, fu_real *p_t, fu_real *p_rate_t, fu_real *p_rate_t_rate, fu_real *p_rate_w, fu_real *g_t, fu_real *g_w)
+/* force of the inertia of the fluid on a length of cable (Lighthill 1971; Lagrange's equations of T); 47 add, 76 mul, 1 div, 1 sqrt */
+void planar_drag_inertia_of_cable(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *g, fu_real *power)
 {
-    /* difference of the added masses */
-    const fu_real less = m[0] - m[1];
-    /* tangent and its rate */
-    const fu_real
-        len_t = FU_SQRT(t[0]*t[0] + t[1]*t[1]),
-        inv_len_t = 1.0/len_t,
-        i_x = inv_len_t*t[0],
-        i_y = inv_len_t*t[1],
-        i_rate_x = inv_len_t*(-i_x*(i_x*t_rate[0] + i_y*t_rate[1]) + t_rate[0]),
-        i_rate_y = inv_len_t*(-i_y*(i_x*t_rate[0] + i_y*t_rate[1]) + t_rate[1]);
-    /* impulse and its rate */
-    const fu_real
-        w_t = i_x*w[0] + i_y*w[1],
-        w_t_rate = i_rate_x*w[0] + i_rate_y*w[1] + i_x*w_rate[0] + i_y*w_rate[1],
-        P_x = -i_x*less*w_t + m[0]*w[0],
-        P_y = -i_y*less*w_t + m[0]*w[1],
-        P_rate_x = -less*(i_rate_x*w_t + i_x*w_t_rate) + m[0]*w_rate[0],
-        P_rate_y = -less*(i_rate_y*w_t + i_y*w_t_rate) + m[0]*w_rate[1];
+    PLANAR_DRAG_MOTION_PAST_THE_FLUID
+    PLANAR_DRAG_TANGENT_AND_ITS_RATE
+    PLANAR_DRAG_IMPULSE_AND_ITS_RATE
     /* derivative of the kinetic energy by the slope */
     const fu_real
-        G_x = -(inv_len_t*less*w_t*(-i_x*w_t + w[0])),
-        G_y = -(inv_len_t*less*w_t*(-i_y*w_t + w[1]));
+        pull = inv_len_t*less*w_t*wet[0],
+        G_t_x = -(pull*(-i_x*w_t + w_x)),
+        G_t_y = -(pull*(-i_y*w_t + w_y));
+    PLANAR_DRAG_FORCE_ON_THE_PARTICLE
+    /* outputs */
+    f[0] = F_x;
+    f[1] = F_y;
+    g[0] = G_t_x;
+    g[1] = G_t_y;
+    power[0] = -P_wet_rate_x*U[0] - P_wet_rate_y*U[1] + carried_x*v[0] + carried_y*v[1] - strained_x*v[0] - strained_y*v[1];
+}
+
+/* derivatives of the force of the inertia of the fluid on a cable (derivatives of Lighthill 1971; Lagrange's equations of T); 210 add, 450 mul, 1 div, 1 sqrt */
+void planar_drag_inertia_of_cable_tangent(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_t, fu_real *f_t_rate, fu_real *f_r, fu_real *f_v, fu_real *g_t, fu_real *g_r, fu_real *g_v)
+{
+    PLANAR_DRAG_MOTION_PAST_THE_FLUID
+    PLANAR_DRAG_TANGENT_AND_ITS_RATE
+    PLANAR_DRAG_IMPULSE_AND_ITS_RATE
+    /* derivative of the kinetic energy by the slope */
+    const fu_real pull = inv_len_t*less*w_t*wet[0];
+    /* force on the particle */
+    const fu_real
+        c_rate = c_place_x*v[0] + c_place_y*v[1],
+        displaced_wet = displaced*wet[0],
+        T = 0.5*P_x*w_x + 0.5*P_y*w_y;
     /* derivatives */
     const fu_real
         d_t0_len_t = inv_len_t*t[0],
         d_t0_inv_len_t = -(d_t0_len_t*inv_len_t*inv_len_t),
         d_t0_i_x = d_t0_inv_len_t*t[0] + inv_len_t,
         d_t0_i_y = d_t0_inv_len_t*t[1],
-        d_t0_w_t = d_t0_i_x*w[0] + d_t0_i_y*w[1],
+        d_t0_i_rate_x = d_t0_i_x*inv_len_t*(-2.0*i_x*t_rate[0] - i_y*t_rate[1]) - d_t0_i_y*i_x*inv_len_t*t_rate[1] + d_t0_inv_len_t*(-i_x*(i_x*t_rate[0] + i_y*t_rate[1]) + t_rate[0]),
+        d_t0_w_t = d_t0_i_x*w_x + d_t0_i_y*w_y,
+        d_t0_i_rate_y = -d_t0_i_x*i_y*inv_len_t*t_rate[0] + d_t0_i_y*inv_len_t*(-i_x*t_rate[0] - 2.0*i_y*t_rate[1]) + d_t0_inv_len_t*(-i_y*(i_x*t_rate[0] + i_y*t_rate[1]) + t_rate[1]),
+        d_t0_w_t_rate = d_t0_i_rate_x*w_x + d_t0_i_rate_y*w_y + d_t0_i_x*w_rate_x + d_t0_i_y*w_rate_y,
+        d_t0_P_rate_x = -d_t0_i_rate_x*less*w_t - d_t0_i_x*less*w_t_rate - d_t0_w_t*i_rate_x*less - d_t0_w_t_rate*i_x*less,
         d_t0_P_x = -d_t0_i_x*less*w_t - d_t0_w_t*i_x*less,
+        d_t0_P_wet_rate_x = c_rate*d_t0_P_x + d_t0_P_rate_x*wet[0],
         d_t0_P_y = -d_t0_i_y*less*w_t - d_t0_w_t*i_y*less,
+        d_t0_T = 0.5*d_t0_P_x*w_x + 0.5*d_t0_P_y*w_y,
+        d_t0_P_wet_x = d_t0_P_x*wet[0],
+        d_t0_P_wet_y = d_t0_P_y*wet[0],
+        d_t0_strained_x = G[0]*d_t0_P_wet_x + G[2]*d_t0_P_wet_y,
+        d_t0_F_x = -c_place_x*d_t0_T + d_t0_P_wet_rate_x + d_t0_strained_x,
+        d_t0_P_rate_y = -d_t0_i_rate_y*less*w_t - d_t0_i_y*less*w_t_rate - d_t0_w_t*i_rate_y*less - d_t0_w_t_rate*i_y*less,
+        d_t0_P_wet_rate_y = c_rate*d_t0_P_y + d_t0_P_rate_y*wet[0],
+        d_t0_strained_y = G[1]*d_t0_P_wet_x + G[3]*d_t0_P_wet_y,
+        d_t0_F_y = -c_place_y*d_t0_T + d_t0_P_wet_rate_y + d_t0_strained_y,
         d_t1_len_t = inv_len_t*t[1],
         d_t1_inv_len_t = -(d_t1_len_t*inv_len_t*inv_len_t),
         d_t1_i_x = d_t1_inv_len_t*t[0],
         d_t1_i_y = d_t1_inv_len_t*t[1] + inv_len_t,
-        d_t1_w_t = d_t1_i_x*w[0] + d_t1_i_y*w[1],
+        d_t1_i_rate_x = d_t1_i_x*inv_len_t*(-2.0*i_x*t_rate[0] - i_y*t_rate[1]) - d_t1_i_y*i_x*inv_len_t*t_rate[1] + d_t1_inv_len_t*(-i_x*(i_x*t_rate[0] + i_y*t_rate[1]) + t_rate[0]),
+        d_t1_w_t = d_t1_i_x*w_x + d_t1_i_y*w_y,
+        d_t1_i_rate_y = -d_t1_i_x*i_y*inv_len_t*t_rate[0] + d_t1_i_y*inv_len_t*(-i_x*t_rate[0] - 2.0*i_y*t_rate[1]) + d_t1_inv_len_t*(-i_y*(i_x*t_rate[0] + i_y*t_rate[1]) + t_rate[1]),
+        d_t1_w_t_rate = d_t1_i_rate_x*w_x + d_t1_i_rate_y*w_y + d_t1_i_x*w_rate_x + d_t1_i_y*w_rate_y,
+        d_t1_P_rate_x = -d_t1_i_rate_x*less*w_t - d_t1_i_x*less*w_t_rate - d_t1_w_t*i_rate_x*less - d_t1_w_t_rate*i_x*less,
         d_t1_P_x = -d_t1_i_x*less*w_t - d_t1_w_t*i_x*less,
+        d_t1_P_wet_rate_x = c_rate*d_t1_P_x + d_t1_P_rate_x*wet[0],
         d_t1_P_y = -d_t1_i_y*less*w_t - d_t1_w_t*i_y*less,
+        d_t1_T = 0.5*d_t1_P_x*w_x + 0.5*d_t1_P_y*w_y,
+        d_t1_P_wet_x = d_t1_P_x*wet[0],
+        d_t1_P_wet_y = d_t1_P_y*wet[0],
+        d_t1_strained_x = G[0]*d_t1_P_wet_x + G[2]*d_t1_P_wet_y,
+        d_t1_F_x = -c_place_x*d_t1_T + d_t1_P_wet_rate_x + d_t1_strained_x,
+        d_t1_P_rate_y = -d_t1_i_rate_y*less*w_t - d_t1_i_y*less*w_t_rate - d_t1_w_t*i_rate_y*less - d_t1_w_t_rate*i_y*less,
+        d_t1_P_wet_rate_y = c_rate*d_t1_P_y + d_t1_P_rate_y*wet[0],
+        d_t1_strained_y = G[1]*d_t1_P_wet_x + G[3]*d_t1_P_wet_y,
+        d_t1_F_y = -c_place_y*d_t1_T + d_t1_P_wet_rate_y + d_t1_strained_y,
+        d_t_rate0_i_rate_x = inv_len_t*(-i_x*i_x + 1.0),
+        d_t_rate0_i_rate_y = -(i_x*i_y*inv_len_t),
+        d_t_rate0_w_t_rate = d_t_rate0_i_rate_x*w_x + d_t_rate0_i_rate_y*w_y,
+        d_t_rate0_P_rate_x = -d_t_rate0_i_rate_x*less*w_t - d_t_rate0_w_t_rate*i_x*less,
+        d_t_rate0_P_wet_rate_x = d_t_rate0_P_rate_x*wet[0],
+        d_t_rate0_P_rate_y = -d_t_rate0_i_rate_y*less*w_t - d_t_rate0_w_t_rate*i_y*less,
+        d_t_rate0_P_wet_rate_y = d_t_rate0_P_rate_y*wet[0],
+        d_t_rate1_i_rate_x = -(i_x*i_y*inv_len_t),
+        d_t_rate1_i_rate_y = inv_len_t*(-i_y*i_y + 1.0),
+        d_t_rate1_w_t_rate = d_t_rate1_i_rate_x*w_x + d_t_rate1_i_rate_y*w_y,
+        d_t_rate1_P_rate_x = -d_t_rate1_i_rate_x*less*w_t - d_t_rate1_w_t_rate*i_x*less,
+        d_t_rate1_P_wet_rate_x = d_t_rate1_P_rate_x*wet[0],
+        d_t_rate1_P_rate_y = -d_t_rate1_i_rate_y*less*w_t - d_t_rate1_w_t_rate*i_y*less,
+        d_t_rate1_P_wet_rate_y = d_t_rate1_P_rate_y*wet[0],
+        d_w_x_P_rate_x = -(2.0*i_rate_x*i_x*less),
+        d_w_x_P_x = -i_x*i_x*less + m[0],
+        d_w_x_P_wet_rate_x = c_rate*d_w_x_P_x + d_w_x_P_rate_x*wet[0],
+        d_w_x_P_y = -(i_x*i_y*less),
+        d_w_x_T = 0.5*P_x + 0.5*d_w_x_P_x*w_x + 0.5*d_w_x_P_y*w_y,
+        d_w_x_P_wet_x = d_w_x_P_x*wet[0],
+        d_w_x_P_wet_y = d_w_x_P_y*wet[0],
+        d_w_x_strained_x = G[0]*d_w_x_P_wet_x + G[2]*d_w_x_P_wet_y,
+        d_w_x_F_x = -c_place_x*d_w_x_T + d_w_x_P_wet_rate_x + d_w_x_strained_x,
+        d_w_x_P_rate_y = -i_rate_x*i_y*less - i_rate_y*i_x*less,
+        d_w_x_P_wet_rate_y = c_rate*d_w_x_P_y + d_w_x_P_rate_y*wet[0],
+        d_w_x_strained_y = G[1]*d_w_x_P_wet_x + G[3]*d_w_x_P_wet_y,
+        d_w_x_F_y = -c_place_y*d_w_x_T + d_w_x_P_wet_rate_y + d_w_x_strained_y,
+        d_w_y_P_rate_x = -i_rate_x*i_y*less - i_rate_y*i_x*less,
+        d_w_y_P_x = -(i_x*i_y*less),
+        d_w_y_P_wet_rate_x = c_rate*d_w_y_P_x + d_w_y_P_rate_x*wet[0],
+        d_w_y_P_y = -i_y*i_y*less + m[0],
+        d_w_y_T = 0.5*P_y + 0.5*d_w_y_P_x*w_x + 0.5*d_w_y_P_y*w_y,
+        d_w_y_P_wet_x = d_w_y_P_x*wet[0],
+        d_w_y_P_wet_y = d_w_y_P_y*wet[0],
+        d_w_y_strained_x = G[0]*d_w_y_P_wet_x + G[2]*d_w_y_P_wet_y,
+        d_w_y_F_x = -c_place_x*d_w_y_T + d_w_y_P_wet_rate_x + d_w_y_strained_x,
+        d_w_y_P_rate_y = -(2.0*i_rate_y*i_y*less),
+        d_w_y_P_wet_rate_y = c_rate*d_w_y_P_y + d_w_y_P_rate_y*wet[0],
+        d_w_y_strained_y = G[1]*d_w_y_P_wet_x + G[3]*d_w_y_P_wet_y,
+        d_w_y_F_y = -c_place_y*d_w_y_T + d_w_y_P_wet_rate_y + d_w_y_strained_y,
+        d_w_rate_x_P_rate_x = -i_x*i_x*less + m[0],
+        d_w_rate_x_P_wet_rate_x = d_w_rate_x_P_rate_x*wet[0],
+        d_w_rate_x_P_rate_y = -(i_x*i_y*less),
+        d_w_rate_x_P_wet_rate_y = d_w_rate_x_P_rate_y*wet[0],
+        d_w_rate_y_P_rate_x = -(i_x*i_y*less),
+        d_w_rate_y_P_wet_rate_x = d_w_rate_y_P_rate_x*wet[0],
+        d_w_rate_y_P_rate_y = -i_y*i_y*less + m[0],
+        d_w_rate_y_P_wet_rate_y = d_w_rate_y_P_rate_y*wet[0];
+    PLANAR_DRAG_PART_OF_DERIVATIVES
+    const fu_real
         d_t0_len_t_2 = inv_len_t*t[0],
         d_t0_inv_len_t_2 = -(d_t0_len_t_2*inv_len_t*inv_len_t),
         d_t0_i_x_2 = d_t0_inv_len_t_2*t[0] + inv_len_t,
         d_t0_i_y_2 = d_t0_inv_len_t_2*t[1],
-        d_t0_i_rate_x = d_t0_i_x_2*inv_len_t*(-2.0*i_x*t_rate[0] - i_y*t_rate[1]) - d_t0_i_y_2*i_x*inv_len_t*t_rate[1] + d_t0_inv_len_t_2*(-i_x*(i_x*t_rate[0] + i_y*t_rate[1]) + t_rate[0]),
-        d_t0_w_t_2 = d_t0_i_x_2*w[0] + d_t0_i_y_2*w[1],
-        d_t0_i_rate_y = -d_t0_i_x_2*i_y*inv_len_t*t_rate[0] + d_t0_i_y_2*inv_len_t*(-i_x*t_rate[0] - 2.0*i_y*t_rate[1]) + d_t0_inv_len_t_2*(-i_y*(i_x*t_rate[0] + i_y*t_rate[1]) + t_rate[1]),
-        d_t0_w_t_rate = d_t0_i_rate_x*w[0] + d_t0_i_rate_y*w[1] + d_t0_i_x_2*w_rate[0] + d_t0_i_y_2*w_rate[1],
-        d_t0_P_rate_x = -d_t0_i_rate_x*less*w_t - d_t0_i_x_2*less*w_t_rate - d_t0_w_t_2*i_rate_x*less - d_t0_w_t_rate*i_x*less,
-        d_t0_P_rate_y = -d_t0_i_rate_y*less*w_t - d_t0_i_y_2*less*w_t_rate - d_t0_w_t_2*i_rate_y*less - d_t0_w_t_rate*i_y*less,
+        d_t0_w_t_2 = d_t0_i_x_2*w_x + d_t0_i_y_2*w_y,
+        d_t0_pull = d_t0_inv_len_t_2*less*w_t*wet[0] + d_t0_w_t_2*inv_len_t*less*wet[0],
+        d_t0_G_t_x = d_t0_i_x_2*pull*w_t + d_t0_pull*(i_x*w_t - w_x) + d_t0_w_t_2*i_x*pull,
+        d_t0_G_t_y = d_t0_i_y_2*pull*w_t + d_t0_pull*(i_y*w_t - w_y) + d_t0_w_t_2*i_y*pull,
         d_t1_len_t_2 = inv_len_t*t[1],
         d_t1_inv_len_t_2 = -(d_t1_len_t_2*inv_len_t*inv_len_t),
         d_t1_i_x_2 = d_t1_inv_len_t_2*t[0],
         d_t1_i_y_2 = d_t1_inv_len_t_2*t[1] + inv_len_t,
-        d_t1_i_rate_x = d_t1_i_x_2*inv_len_t*(-2.0*i_x*t_rate[0] - i_y*t_rate[1]) - d_t1_i_y_2*i_x*inv_len_t*t_rate[1] + d_t1_inv_len_t_2*(-i_x*(i_x*t_rate[0] + i_y*t_rate[1]) + t_rate[0]),
-        d_t1_w_t_2 = d_t1_i_x_2*w[0] + d_t1_i_y_2*w[1],
-        d_t1_i_rate_y = -d_t1_i_x_2*i_y*inv_len_t*t_rate[0] + d_t1_i_y_2*inv_len_t*(-i_x*t_rate[0] - 2.0*i_y*t_rate[1]) + d_t1_inv_len_t_2*(-i_y*(i_x*t_rate[0] + i_y*t_rate[1]) + t_rate[1]),
-        d_t1_w_t_rate = d_t1_i_rate_x*w[0] + d_t1_i_rate_y*w[1] + d_t1_i_x_2*w_rate[0] + d_t1_i_y_2*w_rate[1],
-        d_t1_P_rate_x = -d_t1_i_rate_x*less*w_t - d_t1_i_x_2*less*w_t_rate - d_t1_w_t_2*i_rate_x*less - d_t1_w_t_rate*i_x*less,
-        d_t1_P_rate_y = -d_t1_i_rate_y*less*w_t - d_t1_i_y_2*less*w_t_rate - d_t1_w_t_2*i_rate_y*less - d_t1_w_t_rate*i_y*less,
-        d_t_rate0_i_rate_x = inv_len_t*(-i_x*i_x + 1.0),
-        d_t_rate0_i_rate_y = -(i_x*i_y*inv_len_t),
-        d_t_rate0_w_t_rate = d_t_rate0_i_rate_x*w[0] + d_t_rate0_i_rate_y*w[1],
-        d_t_rate0_P_rate_x = -d_t_rate0_i_rate_x*less*w_t - d_t_rate0_w_t_rate*i_x*less,
-        d_t_rate0_P_rate_y = -d_t_rate0_i_rate_y*less*w_t - d_t_rate0_w_t_rate*i_y*less,
-        d_t_rate1_i_rate_x = -(i_x*i_y*inv_len_t),
-        d_t_rate1_i_rate_y = inv_len_t*(-i_y*i_y + 1.0),
-        d_t_rate1_w_t_rate = d_t_rate1_i_rate_x*w[0] + d_t_rate1_i_rate_y*w[1],
-        d_t_rate1_P_rate_x = -d_t_rate1_i_rate_x*less*w_t - d_t_rate1_w_t_rate*i_x*less,
-        d_t_rate1_P_rate_y = -d_t_rate1_i_rate_y*less*w_t - d_t_rate1_w_t_rate*i_y*less,
-        d_w0_P_rate_x = -(2.0*i_rate_x*i_x*less),
-        d_w0_P_rate_y = -i_rate_x*i_y*less - i_rate_y*i_x*less,
-        d_w1_P_rate_x = -i_rate_x*i_y*less - i_rate_y*i_x*less,
-        d_w1_P_rate_y = -(2.0*i_rate_y*i_y*less),
-        d_t0_len_t_3 = inv_len_t*t[0],
-        d_t0_inv_len_t_3 = -(d_t0_len_t_3*inv_len_t*inv_len_t),
-        d_t0_i_x_3 = d_t0_inv_len_t_3*t[0] + inv_len_t,
-        d_t0_i_y_3 = d_t0_inv_len_t_3*t[1],
-        d_t0_w_t_3 = d_t0_i_x_3*w[0] + d_t0_i_y_3*w[1],
-        d_t0_G_x = d_t0_i_x_3*inv_len_t*less*w_t*w_t - d_t0_inv_len_t_3*less*w_t*(-i_x*w_t + w[0]) + d_t0_w_t_3*(i_x*inv_len_t*less*w_t - inv_len_t*less*(-i_x*w_t + w[0])),
-        d_t0_G_y = d_t0_i_y_3*inv_len_t*less*w_t*w_t - d_t0_inv_len_t_3*less*w_t*(-i_y*w_t + w[1]) + d_t0_w_t_3*(i_y*inv_len_t*less*w_t - inv_len_t*less*(-i_y*w_t + w[1])),
-        d_t1_len_t_3 = inv_len_t*t[1],
-        d_t1_inv_len_t_3 = -(d_t1_len_t_3*inv_len_t*inv_len_t),
-        d_t1_i_x_3 = d_t1_inv_len_t_3*t[0],
-        d_t1_i_y_3 = d_t1_inv_len_t_3*t[1] + inv_len_t,
-        d_t1_w_t_3 = d_t1_i_x_3*w[0] + d_t1_i_y_3*w[1],
-        d_t1_G_x = d_t1_i_x_3*inv_len_t*less*w_t*w_t - d_t1_inv_len_t_3*less*w_t*(-i_x*w_t + w[0]) + d_t1_w_t_3*(i_x*inv_len_t*less*w_t - inv_len_t*less*(-i_x*w_t + w[0])),
-        d_t1_G_y = d_t1_i_y_3*inv_len_t*less*w_t*w_t - d_t1_inv_len_t_3*less*w_t*(-i_y*w_t + w[1]) + d_t1_w_t_3*(i_y*inv_len_t*less*w_t - inv_len_t*less*(-i_y*w_t + w[1])),
-        d_w0_G_x = i_x*(i_x*inv_len_t*less*w_t - inv_len_t*less*(-i_x*w_t + w[0])) - inv_len_t*less*w_t,
-        d_w0_G_y = i_x*(i_y*inv_len_t*less*w_t - inv_len_t*less*(-i_y*w_t + w[1])),
-        d_w1_G_x = i_y*(i_x*inv_len_t*less*w_t - inv_len_t*less*(-i_x*w_t + w[0])),
-        d_w1_G_y = i_y*(i_y*inv_len_t*less*w_t - inv_len_t*less*(-i_y*w_t + w[1])) - inv_len_t*less*w_t;
+        d_t1_w_t_2 = d_t1_i_x_2*w_x + d_t1_i_y_2*w_y,
+        d_t1_pull = d_t1_inv_len_t_2*less*w_t*wet[0] + d_t1_w_t_2*inv_len_t*less*wet[0],
+        d_t1_G_t_x = d_t1_i_x_2*pull*w_t + d_t1_pull*(i_x*w_t - w_x) + d_t1_w_t_2*i_x*pull,
+        d_t1_G_t_y = d_t1_i_y_2*pull*w_t + d_t1_pull*(i_y*w_t - w_y) + d_t1_w_t_2*i_y*pull,
+        d_w_x_pull = i_x*inv_len_t*less*wet[0],
+        d_w_x_G_t_x = d_w_x_pull*(i_x*w_t - w_x) + i_x*i_x*pull - pull,
+        d_w_x_G_t_y = d_w_x_pull*(i_y*w_t - w_y) + i_x*i_y*pull,
+        d_w_y_pull = i_y*inv_len_t*less*wet[0],
+        d_w_y_G_t_x = d_w_y_pull*(i_x*w_t - w_x) + i_x*i_y*pull,
+        d_w_y_G_t_y = d_w_y_pull*(i_y*w_t - w_y) + i_y*i_y*pull - pull,
+        d_wet0_pull = inv_len_t*less*w_t,
+        d_wet0_G_t_x = d_wet0_pull*(i_x*w_t - w_x),
+        d_wet0_G_t_y = d_wet0_pull*(i_y*w_t - w_y);
     /* outputs */
-    p[0] = P_x;
-    p[1] = P_y;
-    p_rate[0] = P_rate_x;
-    p_rate[1] = P_rate_y;
-    g[0] = G_x;
-    g[1] = G_y;
-    M[0] = -i_x*i_x*less + m[0];
-    M[1] = -(i_x*i_y*less);
-    M[2] = -(i_x*i_y*less);
-    M[3] = -i_y*i_y*less + m[0];
-    p_t[0] = d_t0_P_x;
-    p_t[1] = d_t1_P_x;
-    p_t[2] = d_t0_P_y;
-    p_t[3] = d_t1_P_y;
-    p_rate_t[0] = d_t0_P_rate_x;
-    p_rate_t[1] = d_t1_P_rate_x;
-    p_rate_t[2] = d_t0_P_rate_y;
-    p_rate_t[3] = d_t1_P_rate_y;
-    p_rate_t_rate[0] = d_t_rate0_P_rate_x;
-    p_rate_t_rate[1] = d_t_rate1_P_rate_x;
-    p_rate_t_rate[2] = d_t_rate0_P_rate_y;
-    p_rate_t_rate[3] = d_t_rate1_P_rate_y;
-    p_rate_w[0] = d_w0_P_rate_x;
-    p_rate_w[1] = d_w1_P_rate_x;
-    p_rate_w[2] = d_w0_P_rate_y;
-    p_rate_w[3] = d_w1_P_rate_y;
-    g_t[0] = d_t0_G_x;
-    g_t[1] = d_t1_G_x;
-    g_t[2] = d_t0_G_y;
-    g_t[3] = d_t1_G_y;
-    g_w[0] = d_w0_G_x;
-    g_w[1] = d_w1_G_x;
-    g_w[2] = d_w0_G_y;
-    g_w[3] = d_w1_G_y;
+    f_t[0] = d_t0_F_x;
+    f_t[1] = d_t1_F_x;
+    f_t[2] = d_t0_F_y;
+    f_t[3] = d_t1_F_y;
+    f_t_rate[0] = d_t_rate0_P_wet_rate_x;
+    f_t_rate[1] = d_t_rate1_P_wet_rate_x;
+    f_t_rate[2] = d_t_rate0_P_wet_rate_y;
+    f_t_rate[3] = d_t_rate1_P_wet_rate_y;
+    f_r[0] = G[0]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[2]*(G[1]*d_material_x_F_x - d_w_y_F_x) + c_place_x*d_wet0_F_x + up[0]*wet[2]*(d_c_place_x_F_x*up[0] + d_c_place_y_P_wet_rate_x*up[1]);
+    f_r[1] = G[1]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[3]*(G[1]*d_material_x_F_x - d_w_y_F_x) + c_place_y*d_wet0_F_x + up[1]*wet[2]*(d_c_place_x_F_x*up[0] + d_c_place_y_P_wet_rate_x*up[1]);
+    f_r[2] = G[0]*(G[2]*d_material_y_F_y - d_w_x_F_y) + G[2]*(G[3]*d_material_y_F_y - d_w_y_F_y) + c_place_x*d_wet0_F_y + up[0]*wet[2]*(d_c_place_x_P_wet_rate_y*up[0] + d_c_place_y_F_y*up[1]);
+    f_r[3] = G[1]*(G[2]*d_material_y_F_y - d_w_x_F_y) + G[3]*(G[3]*d_material_y_F_y - d_w_y_F_y) + c_place_y*d_wet0_F_y + up[1]*wet[2]*(d_c_place_x_P_wet_rate_y*up[0] + d_c_place_y_F_y*up[1]);
+    f_v[0] = -G[0]*d_w_rate_x_P_wet_rate_x - G[2]*d_w_rate_y_P_wet_rate_x + d_v0_P_wet_rate_x + d_w_x_F_x;
+    f_v[1] = -G[1]*d_w_rate_x_P_wet_rate_x - G[3]*d_w_rate_y_P_wet_rate_x + d_v1_P_wet_rate_x + d_w_y_F_x;
+    f_v[2] = -G[0]*d_w_rate_x_P_wet_rate_y - G[2]*d_w_rate_y_P_wet_rate_y + d_v0_P_wet_rate_y + d_w_x_F_y;
+    f_v[3] = -G[1]*d_w_rate_x_P_wet_rate_y - G[3]*d_w_rate_y_P_wet_rate_y + d_v1_P_wet_rate_y + d_w_y_F_y;
+    g_t[0] = d_t0_G_t_x;
+    g_t[1] = d_t1_G_t_x;
+    g_t[2] = d_t0_G_t_y;
+    g_t[3] = d_t1_G_t_y;
+    g_r[0] = -G[0]*d_w_x_G_t_x - G[2]*d_w_y_G_t_x + c_place_x*d_wet0_G_t_x;
+    g_r[1] = -G[1]*d_w_x_G_t_x - G[3]*d_w_y_G_t_x + c_place_y*d_wet0_G_t_x;
+    g_r[2] = -G[0]*d_w_x_G_t_y - G[2]*d_w_y_G_t_y + c_place_x*d_wet0_G_t_y;
+    g_r[3] = -G[1]*d_w_x_G_t_y - G[3]*d_w_y_G_t_y + c_place_y*d_wet0_G_t_y;
+    g_v[0] = d_w_x_G_t_x;
+    g_v[1] = d_w_y_G_t_x;
+    g_v[2] = d_w_x_G_t_y;
+    g_v[3] = d_w_y_G_t_y;
 }
 
 /* impulse of the fluid along a cable over a step (Lighthill 1971; Lagrange's equations of T; Gonzalez 1996); 33 add, 69 mul, 3 div */
@@ -403,8 +477,8 @@ void planar_drag_impulse_of_point(const fu_real *A, const fu_real *C, const fu_r
     M[3] = M2_y;
 }
 
-/* impulse of the fluid at a body, its rate and moment, and their derivatives (Lamb, Hydrodynamics, art. 124; Taylor 1928); 52 add, 82 mul */
-void planar_drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_real *omega, const fu_real *w, const fu_real *w_rate, fu_real *p, fu_real *p_rate, fu_real *moment, fu_real *M, fu_real *p_turn, fu_real *p_rate_turn, fu_real *moment_turn, fu_real *p_rate_omega, fu_real *p_rate_w, fu_real *moment_w)
+/* force and moment of the inertia of the fluid on a body (Lamb, Hydrodynamics, art. 124; Taylor 1928); 46 add, 68 mul */
+void planar_drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *moment, fu_real *power)
 {
     /* added mass */
     const fu_real
@@ -416,54 +490,131 @@ void planar_drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_r
         M1_y = A[0]*CM1_y + A[1]*CM2_y,
         M2_x = A[2]*CM1_x + A[3]*CM2_x,
         M2_y = A[2]*CM1_y + A[3]*CM2_y;
+    PLANAR_DRAG_MOTION_PAST_THE_FLUID
     /* impulse, its rate and moment */
     const fu_real
-        P_x = M1_x*w[0] + M1_y*w[1],
-        P_y = M2_x*w[0] + M2_y*w[1],
-        rest_x = omega[0]*w[1] + w_rate[0],
-        rest_y = -omega[0]*w[0] + w_rate[1],
+        P_x = M1_x*w_x + M1_y*w_y,
+        P_y = M2_x*w_x + M2_y*w_y,
+        rest_x = omega[0]*w_y + w_rate_x,
+        rest_y = -omega[0]*w_x + w_rate_y,
         P_rate_x = M1_x*rest_x + M1_y*rest_y - P_y*omega[0],
         P_rate_y = M2_x*rest_x + M2_y*rest_y + P_x*omega[0],
-        moment0 = -P_x*w[1] + P_y*w[0];
+        moment0 = wet[0]*(-P_x*w_y + P_y*w_x);
+    PLANAR_DRAG_FORCE_ON_THE_PARTICLE
+    /* outputs */
+    f[0] = F_x;
+    f[1] = F_y;
+    moment[0] = moment0;
+    power[0] = -P_wet_rate_x*U[0] - P_wet_rate_y*U[1] + carried_x*v[0] + carried_y*v[1] - strained_x*v[0] - strained_y*v[1];
+}
+
+/* derivatives of force and moment of the inertia of the fluid (derivatives of Lamb, Hydrodynamics, art. 124; Taylor 1928); 143 add, 227 mul */
+void planar_drag_inertia_of_point_tangent(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_by, fu_real *moment_by)
+{
+    /* added mass */
+    const fu_real
+        CM1_x = A[0]*C[0] + A[1]*C[1],
+        CM1_y = A[2]*C[0] + A[3]*C[1],
+        CM2_x = A[0]*C[2] + A[1]*C[3],
+        CM2_y = A[2]*C[2] + A[3]*C[3],
+        M1_x = A[0]*CM1_x + A[1]*CM2_x,
+        M1_y = A[0]*CM1_y + A[1]*CM2_y,
+        M2_x = A[2]*CM1_x + A[3]*CM2_x,
+        M2_y = A[2]*CM1_y + A[3]*CM2_y;
+    PLANAR_DRAG_MOTION_PAST_THE_FLUID
+    /* impulse, its rate and moment */
+    const fu_real
+        P_x = M1_x*w_x + M1_y*w_y,
+        P_y = M2_x*w_x + M2_y*w_y,
+        rest_x = omega[0]*w_y + w_rate_x,
+        rest_y = -omega[0]*w_x + w_rate_y,
+        P_rate_x = M1_x*rest_x + M1_y*rest_y - P_y*omega[0],
+        P_rate_y = M2_x*rest_x + M2_y*rest_y + P_x*omega[0];
+    /* force on the particle */
+    const fu_real
+        c_rate = c_place_x*v[0] + c_place_y*v[1],
+        displaced_wet = displaced*wet[0],
+        T = 0.5*P_x*w_x + 0.5*P_y*w_y;
     /* derivatives */
+    const fu_real
+        d_th1_CM1_x = -A[2]*C[0] - A[3]*C[1],
+        d_th1_CM2_x = -A[2]*C[2] - A[3]*C[3],
+        d_th1_M1_x = A[0]*d_th1_CM1_x + A[1]*d_th1_CM2_x - A[2]*CM1_x - A[3]*CM2_x,
+        d_th1_CM1_y = A[0]*C[0] + A[1]*C[1],
+        d_th1_CM2_y = A[0]*C[2] + A[1]*C[3],
+        d_th1_M1_y = A[0]*d_th1_CM1_y + A[1]*d_th1_CM2_y - A[2]*CM1_y - A[3]*CM2_y,
+        d_th1_M2_x = A[0]*CM1_x + A[1]*CM2_x + A[2]*d_th1_CM1_x + A[3]*d_th1_CM2_x,
+        d_th1_M2_y = A[0]*CM1_y + A[1]*CM2_y + A[2]*d_th1_CM1_y + A[3]*d_th1_CM2_y,
+        d_th1_P_y = d_th1_M2_x*w_x + d_th1_M2_y*w_y,
+        d_th1_P_rate_x = d_th1_M1_x*rest_x + d_th1_M1_y*rest_y - d_th1_P_y*omega[0],
+        d_th1_P_x = d_th1_M1_x*w_x + d_th1_M1_y*w_y,
+        d_th1_P_wet_rate_x = c_rate*d_th1_P_x + d_th1_P_rate_x*wet[0],
+        d_th1_T = 0.5*d_th1_P_x*w_x + 0.5*d_th1_P_y*w_y,
+        d_th1_P_wet_x = d_th1_P_x*wet[0],
+        d_th1_P_wet_y = d_th1_P_y*wet[0],
+        d_th1_strained_x = G[0]*d_th1_P_wet_x + G[2]*d_th1_P_wet_y,
+        d_th1_F_x = -c_place_x*d_th1_T + d_th1_P_wet_rate_x + d_th1_strained_x,
+        d_th1_P_rate_y = d_th1_M2_x*rest_x + d_th1_M2_y*rest_y + d_th1_P_x*omega[0],
+        d_th1_P_wet_rate_y = c_rate*d_th1_P_y + d_th1_P_rate_y*wet[0],
+        d_th1_strained_y = G[1]*d_th1_P_wet_x + G[3]*d_th1_P_wet_y,
+        d_th1_F_y = -c_place_y*d_th1_T + d_th1_P_wet_rate_y + d_th1_strained_y,
+        d_w_x_rest_y = -omega[0],
+        d_w_x_P_rate_x = M1_y*d_w_x_rest_y - M2_x*omega[0],
+        d_w_x_P_wet_rate_x = M1_x*c_rate + d_w_x_P_rate_x*wet[0],
+        d_w_x_T = 0.5*M1_x*w_x + 0.5*M2_x*w_y + 0.5*P_x,
+        d_w_x_P_wet_x = M1_x*wet[0],
+        d_w_x_P_wet_y = M2_x*wet[0],
+        d_w_x_strained_x = G[0]*d_w_x_P_wet_x + G[2]*d_w_x_P_wet_y,
+        d_w_x_F_x = -c_place_x*d_w_x_T + d_w_x_P_wet_rate_x + d_w_x_strained_x,
+        d_w_x_P_rate_y = M1_x*omega[0] + M2_y*d_w_x_rest_y,
+        d_w_x_P_wet_rate_y = M2_x*c_rate + d_w_x_P_rate_y*wet[0],
+        d_w_x_strained_y = G[1]*d_w_x_P_wet_x + G[3]*d_w_x_P_wet_y,
+        d_w_x_F_y = -c_place_y*d_w_x_T + d_w_x_P_wet_rate_y + d_w_x_strained_y,
+        d_w_y_P_rate_x = M1_x*omega[0] - M2_y*omega[0],
+        d_w_y_P_wet_rate_x = M1_y*c_rate + d_w_y_P_rate_x*wet[0],
+        d_w_y_T = 0.5*M1_y*w_x + 0.5*M2_y*w_y + 0.5*P_y,
+        d_w_y_P_wet_x = M1_y*wet[0],
+        d_w_y_P_wet_y = M2_y*wet[0],
+        d_w_y_strained_x = G[0]*d_w_y_P_wet_x + G[2]*d_w_y_P_wet_y,
+        d_w_y_F_x = -c_place_x*d_w_y_T + d_w_y_P_wet_rate_x + d_w_y_strained_x,
+        d_w_y_P_rate_y = M1_y*omega[0] + M2_x*omega[0],
+        d_w_y_P_wet_rate_y = M2_y*c_rate + d_w_y_P_rate_y*wet[0],
+        d_w_y_strained_y = G[1]*d_w_y_P_wet_x + G[3]*d_w_y_P_wet_y,
+        d_w_y_F_y = -c_place_y*d_w_y_T + d_w_y_P_wet_rate_y + d_w_y_strained_y,
+        d_w_rate_x_P_wet_rate_x = M1_x*wet[0],
+        d_w_rate_x_P_wet_rate_y = M2_x*wet[0],
+        d_w_rate_y_P_wet_rate_x = M1_y*wet[0],
+        d_w_rate_y_P_wet_rate_y = M2_y*wet[0];
     PLANAR_DRAG_PART_OF_DERIVATIVES
     const fu_real
-        d_th1_P_rate_x = d_th1_M1_x*rest_x + d_th1_M1_y*rest_y - d_th1_P_y*omega[0],
-        d_th1_P_rate_y = d_th1_M2_x*rest_x + d_th1_M2_y*rest_y + d_th1_P_x*omega[0],
-        d_th1_moment0 = -d_th1_P_x*w[1] + d_th1_P_y*w[0],
-        d_omega0_rest_y = -w[0],
-        d_omega0_P_rate_x = M1_x*w[1] + M1_y*d_omega0_rest_y - P_y,
-        d_omega0_P_rate_y = M2_x*w[1] + M2_y*d_omega0_rest_y + P_x,
-        d_w0_rest_y = -omega[0],
-        d_w0_P_rate_x = M1_y*d_w0_rest_y - M2_x*omega[0],
-        d_w0_P_rate_y = M1_x*omega[0] + M2_y*d_w0_rest_y,
-        d_w1_P_rate_x = M1_x*omega[0] - M2_y*omega[0],
-        d_w1_P_rate_y = M1_y*omega[0] + M2_x*omega[0],
-        d_w0_moment0 = -M1_x*w[1] + M2_x*w[0] + P_y,
-        d_w1_moment0 = -M1_y*w[1] + M2_y*w[0] - P_x;
+        d_omega0_rest_y = -w_x,
+        d_omega0_P_rate_x = M1_x*w_y + M1_y*d_omega0_rest_y - P_y,
+        d_omega0_P_wet_rate_x = d_omega0_P_rate_x*wet[0],
+        d_omega0_P_rate_y = M2_x*w_y + M2_y*d_omega0_rest_y + P_x,
+        d_omega0_P_wet_rate_y = d_omega0_P_rate_y*wet[0],
+        d_th1_moment0 = -d_th1_P_x*w_y*wet[0] + d_th1_P_y*w_x*wet[0],
+        d_w_x_moment0 = -M1_x*w_y*wet[0] + M2_x*w_x*wet[0] + P_y*wet[0],
+        d_w_y_moment0 = -M1_y*w_y*wet[0] + M2_y*w_x*wet[0] - P_x*wet[0],
+        d_wet0_moment0 = -P_x*w_y + P_y*w_x;
     /* outputs */
-    p[0] = P_x;
-    p[1] = P_y;
-    p_rate[0] = P_rate_x;
-    p_rate[1] = P_rate_y;
-    moment[0] = moment0;
-    M[0] = M1_x;
-    M[1] = M1_y;
-    M[2] = M2_x;
-    M[3] = M2_y;
-    p_turn[0] = d_th1_P_x;
-    p_turn[1] = d_th1_P_y;
-    p_rate_turn[0] = d_th1_P_rate_x;
-    p_rate_turn[1] = d_th1_P_rate_y;
-    moment_turn[0] = d_th1_moment0;
-    p_rate_omega[0] = d_omega0_P_rate_x;
-    p_rate_omega[1] = d_omega0_P_rate_y;
-    p_rate_w[0] = d_w0_P_rate_x;
-    p_rate_w[1] = d_w1_P_rate_x;
-    p_rate_w[2] = d_w0_P_rate_y;
-    p_rate_w[3] = d_w1_P_rate_y;
-    moment_w[0] = d_w0_moment0;
-    moment_w[1] = d_w1_moment0;
+    f_by[0] = G[0]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[2]*(G[1]*d_material_x_F_x - d_w_y_F_x) + c_place_x*d_wet0_F_x + up[0]*wet[2]*(d_c_place_x_F_x*up[0] + d_c_place_y_P_wet_rate_x*up[1]);
+    f_by[1] = G[1]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[3]*(G[1]*d_material_x_F_x - d_w_y_F_x) + c_place_y*d_wet0_F_x + up[1]*wet[2]*(d_c_place_x_F_x*up[0] + d_c_place_y_P_wet_rate_x*up[1]);
+    f_by[2] = -G[0]*d_w_rate_x_P_wet_rate_x - G[2]*d_w_rate_y_P_wet_rate_x + d_v0_P_wet_rate_x + d_w_x_F_x;
+    f_by[3] = -G[1]*d_w_rate_x_P_wet_rate_x - G[3]*d_w_rate_y_P_wet_rate_x + d_v1_P_wet_rate_x + d_w_y_F_x;
+    f_by[4] = d_th1_F_x;
+    f_by[5] = d_omega0_P_wet_rate_x;
+    f_by[6] = G[0]*(G[2]*d_material_y_F_y - d_w_x_F_y) + G[2]*(G[3]*d_material_y_F_y - d_w_y_F_y) + c_place_x*d_wet0_F_y + up[0]*wet[2]*(d_c_place_x_P_wet_rate_y*up[0] + d_c_place_y_F_y*up[1]);
+    f_by[7] = G[1]*(G[2]*d_material_y_F_y - d_w_x_F_y) + G[3]*(G[3]*d_material_y_F_y - d_w_y_F_y) + c_place_y*d_wet0_F_y + up[1]*wet[2]*(d_c_place_x_P_wet_rate_y*up[0] + d_c_place_y_F_y*up[1]);
+    f_by[8] = -G[0]*d_w_rate_x_P_wet_rate_y - G[2]*d_w_rate_y_P_wet_rate_y + d_v0_P_wet_rate_y + d_w_x_F_y;
+    f_by[9] = -G[1]*d_w_rate_x_P_wet_rate_y - G[3]*d_w_rate_y_P_wet_rate_y + d_v1_P_wet_rate_y + d_w_y_F_y;
+    f_by[10] = d_th1_F_y;
+    f_by[11] = d_omega0_P_wet_rate_y;
+    moment_by[0] = -G[0]*d_w_x_moment0 - G[2]*d_w_y_moment0 + c_place_x*d_wet0_moment0;
+    moment_by[1] = -G[1]*d_w_x_moment0 - G[3]*d_w_y_moment0 + c_place_y*d_wet0_moment0;
+    moment_by[2] = d_w_x_moment0;
+    moment_by[3] = d_w_y_moment0;
+    moment_by[4] = d_th1_moment0;
+    moment_by[5] = 0.0;
 }
 
 /* impulse of the fluid at a body over a step, and its moment (Lamb, Hydrodynamics, art. 124; Taylor 1928; Simo & Wong 1991; Gonzalez 1996); 77 add, 144 mul */
@@ -557,106 +708,4 @@ void planar_drag_wet_column(const fu_real *u, const fu_real *delta, fu_real *e, 
     c[0] = 0.125*(delta[0] + u[0] + 1.0)*(delta[0] + u[0] + 1.0)/delta[0];
     c_u[0] = 0.25*(delta[0] + u[0] + 1.0)/delta[0];
     c_uu[0] = 0.25/delta[0];
-}
-
-/* added mass of a cable whose wet part changes (Lagrange's equations of T; von Karman, NACA TN 321); 36 add, 108 mul, 3 div */
-void planar_drag_entry_of_cable(const fu_real *t, const fu_real *m, const fu_real *w, const fu_real *v, const fu_real *n, fu_real *p_rate, fu_real *g, fu_real *f_t, fu_real *f_w, fu_real *f_v, fu_real *f_n)
-{
-    /* added mass */
-    const fu_real
-        less = m[0] - m[1],
-        scale = less/((t[0]*t[0] + t[1]*t[1])),
-        M1_x = m[0] - scale*t[0]*t[0],
-        M1_y = -(scale*t[0]*t[1]),
-        M2_x = -(scale*t[0]*t[1]),
-        M2_y = m[0] - scale*t[1]*t[1];
-    /* entry */
-    const fu_real
-        P_x = M1_x*w[0] + M1_y*w[1],
-        P_y = M2_x*w[0] + M2_y*w[1],
-        c_rate = n[0]*v[0] + n[1]*v[1],
-        rate_x = P_x*c_rate,
-        rate_y = P_y*c_rate,
-        T = 0.5*P_x*w[0] + 0.5*P_y*w[1],
-        pull_x = T*n[0],
-        pull_y = T*n[1];
-    /* derivatives */
-    const fu_real
-        d_t0_scale = -(2.0*less*t[0]/((t[0]*t[0] + t[1]*t[1])*(t[0]*t[0] + t[1]*t[1]))),
-        d_t0_M1_x = -d_t0_scale*t[0]*t[0] - 2.0*scale*t[0],
-        d_t0_M1_y = -d_t0_scale*t[0]*t[1] - scale*t[1],
-        d_t0_P_x = d_t0_M1_x*w[0] + d_t0_M1_y*w[1],
-        d_t0_M2_x = -d_t0_scale*t[0]*t[1] - scale*t[1],
-        d_t0_M2_y = -(d_t0_scale*t[1]*t[1]),
-        d_t0_P_y = d_t0_M2_x*w[0] + d_t0_M2_y*w[1],
-        d_t0_T = 0.5*d_t0_P_x*w[0] + 0.5*d_t0_P_y*w[1],
-        d_t0_pull_x = d_t0_T*n[0],
-        d_t0_rate_x = c_rate*d_t0_P_x,
-        d_t0_pull_y = d_t0_T*n[1],
-        d_t0_rate_y = c_rate*d_t0_P_y,
-        d_t1_scale = -(2.0*less*t[1]/((t[0]*t[0] + t[1]*t[1])*(t[0]*t[0] + t[1]*t[1]))),
-        d_t1_M1_x = -(d_t1_scale*t[0]*t[0]),
-        d_t1_M1_y = -d_t1_scale*t[0]*t[1] - scale*t[0],
-        d_t1_P_x = d_t1_M1_x*w[0] + d_t1_M1_y*w[1],
-        d_t1_M2_x = -d_t1_scale*t[0]*t[1] - scale*t[0],
-        d_t1_M2_y = -d_t1_scale*t[1]*t[1] - 2.0*scale*t[1],
-        d_t1_P_y = d_t1_M2_x*w[0] + d_t1_M2_y*w[1],
-        d_t1_T = 0.5*d_t1_P_x*w[0] + 0.5*d_t1_P_y*w[1],
-        d_t1_pull_x = d_t1_T*n[0],
-        d_t1_rate_x = c_rate*d_t1_P_x,
-        d_t1_pull_y = d_t1_T*n[1],
-        d_t1_rate_y = c_rate*d_t1_P_y;
-    PLANAR_DRAG_PART_OF_DERIVATIVES_2
-    /* outputs */
-    p_rate[0] = rate_x;
-    p_rate[1] = rate_y;
-    g[0] = pull_x;
-    g[1] = pull_y;
-    f_t[0] = -d_t0_pull_x + d_t0_rate_x;
-    f_t[1] = -d_t1_pull_x + d_t1_rate_x;
-    f_t[2] = -d_t0_pull_y + d_t0_rate_y;
-    f_t[3] = -d_t1_pull_y + d_t1_rate_y;
-    PLANAR_DRAG_PART_OF_OUTPUTS
-}
-
-/* added mass of a body whose wet part changes (Lagrange's equations of T; von Karman, NACA TN 321); 43 add, 92 mul */
-void planar_drag_entry_of_point(const fu_real *A, const fu_real *C, const fu_real *w, const fu_real *v, const fu_real *n, fu_real *p_rate, fu_real *g, fu_real *f_turn, fu_real *f_w, fu_real *f_v, fu_real *f_n)
-{
-    /* added mass */
-    const fu_real
-        CM1_x = A[0]*C[0] + A[1]*C[1],
-        CM1_y = A[2]*C[0] + A[3]*C[1],
-        CM2_x = A[0]*C[2] + A[1]*C[3],
-        CM2_y = A[2]*C[2] + A[3]*C[3],
-        M1_x = A[0]*CM1_x + A[1]*CM2_x,
-        M1_y = A[0]*CM1_y + A[1]*CM2_y,
-        M2_x = A[2]*CM1_x + A[3]*CM2_x,
-        M2_y = A[2]*CM1_y + A[3]*CM2_y;
-    /* entry */
-    const fu_real
-        P_x = M1_x*w[0] + M1_y*w[1],
-        P_y = M2_x*w[0] + M2_y*w[1],
-        c_rate = n[0]*v[0] + n[1]*v[1],
-        rate_x = P_x*c_rate,
-        rate_y = P_y*c_rate,
-        T = 0.5*P_x*w[0] + 0.5*P_y*w[1],
-        pull_x = T*n[0],
-        pull_y = T*n[1];
-    /* derivatives */
-    PLANAR_DRAG_PART_OF_DERIVATIVES
-    const fu_real
-        d_th1_T = 0.5*d_th1_P_x*w[0] + 0.5*d_th1_P_y*w[1],
-        d_th1_pull_x = d_th1_T*n[0],
-        d_th1_rate_x = c_rate*d_th1_P_x,
-        d_th1_pull_y = d_th1_T*n[1],
-        d_th1_rate_y = c_rate*d_th1_P_y;
-    PLANAR_DRAG_PART_OF_DERIVATIVES_2
-    /* outputs */
-    p_rate[0] = rate_x;
-    p_rate[1] = rate_y;
-    g[0] = pull_x;
-    g[1] = pull_y;
-    f_turn[0] = -d_th1_pull_x + d_th1_rate_x;
-    f_turn[1] = -d_th1_pull_y + d_th1_rate_y;
-    PLANAR_DRAG_PART_OF_OUTPUTS
 }

@@ -234,13 +234,14 @@ static const fu_resistance_kernels resistances[] = {
 
 static const fu_drag_kernels drags[] = {
     {"drag", 3, drag_along_cable, drag_lift_along_cable, drag_on_section, drag_on_point, drag_on_foil,
-     drag_impulse_of_cable, drag_inertia_of_cable, drag_inertia_step, drag_impulse_of_point, drag_inertia_of_point,
-     drag_inertia_of_point_step, drag_wet_sphere, drag_wet_section, drag_wet_column, drag_entry_of_cable,
-     drag_entry_of_point},
+     drag_impulse_of_cable, drag_inertia_of_cable, drag_inertia_of_cable_tangent, drag_inertia_step,
+     drag_impulse_of_point, drag_inertia_of_point, drag_inertia_of_point_tangent, drag_inertia_of_point_step,
+     drag_wet_sphere, drag_wet_section, drag_wet_column},
     {"planar_drag", 2, planar_drag_along_cable, 0, 0, planar_drag_on_point, planar_drag_on_foil,
-     planar_drag_impulse_of_cable, planar_drag_inertia_of_cable, planar_drag_inertia_step, planar_drag_impulse_of_point,
-     planar_drag_inertia_of_point, planar_drag_inertia_of_point_step, planar_drag_wet_sphere, planar_drag_wet_section,
-     planar_drag_wet_column, planar_drag_entry_of_cable, planar_drag_entry_of_point},
+     planar_drag_impulse_of_cable, planar_drag_inertia_of_cable, planar_drag_inertia_of_cable_tangent,
+     planar_drag_inertia_step, planar_drag_impulse_of_point, planar_drag_inertia_of_point,
+     planar_drag_inertia_of_point_tangent, planar_drag_inertia_of_point_step, planar_drag_wet_sphere,
+     planar_drag_wet_section, planar_drag_wet_column},
 };
 
 static const fu_crossing_kernels crossings[] = {
@@ -318,11 +319,12 @@ static const fu_point_law_kernels point_laws[] = {
 #define FU_ARGUMENTS_vvvvv_5 a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]
 #define FU_ARGUMENTS_vvv_3 a[0], a[1], a[2], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vvvv_2 a[0], a[1], a[2], a[3], out[0], out[1]
-#define FU_ARGUMENTS_vvvvv_10 a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8], out[9]
+#define FU_ARGUMENTS_vvvsvvvvvvv_3 a[0], a[1], a[2], *a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vvvsvvvvvvv_7 a[0], a[1], a[2], *a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1], out[2], out[3], out[4], out[5], out[6]
+#define FU_ARGUMENTS_vvvsvvvvvvv_2 a[0], a[1], a[2], *a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1]
 #define FU_ARGUMENTS_vvvvvvv_4 a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1], out[2], out[3]
 #define FU_ARGUMENTS_v_4 a[0], out[0], out[1], out[2], out[3]
 #define FU_ARGUMENTS_vv_4 a[0], a[1], out[0], out[1], out[2], out[3]
-#define FU_ARGUMENTS_vvvvv_6 a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4], out[5]
 #define FU_ARGUMENTS_vvvv_6 a[0], a[1], a[2], a[3], out[0], out[1], out[2], out[3], out[4], out[5]
 #define FU_ARGUMENTS_vvvvvv_6 a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5]
 #define FU_ARGUMENTS_vvvvvvvsvvvvvvv_3 a[0], a[1], a[2], a[3], a[4], a[5], a[6], *a[7], a[8], a[9], a[10], a[11], a[12], a[13], a[14], out[0], out[1], out[2]
@@ -781,30 +783,30 @@ static const fu_point_law_kernels point_laws[] = {
     X(drag_on_point, vv_2) \
     X(drag_on_foil, vvvv_2) \
     X(drag_impulse_of_cable, vvv_2) \
-    X(drag_inertia_of_cable, vvvvv_10) \
+    X(drag_inertia_of_cable, vvvsvvvvvvv_3) \
+    X(drag_inertia_of_cable_tangent, vvvsvvvvvvv_7) \
     X(drag_inertia_step, vvvvv_2) \
     X(drag_impulse_of_point, vvv_2) \
-    X(drag_inertia_of_point, vvvvv_10) \
+    X(drag_inertia_of_point, vvvsvvvvvvv_3) \
+    X(drag_inertia_of_point_tangent, vvvsvvvvvvv_2) \
     X(drag_inertia_of_point_step, vvvvvvv_4) \
     X(drag_wet_sphere, v_4) \
     X(drag_wet_section, v_4) \
     X(drag_wet_column, vv_4) \
-    X(drag_entry_of_cable, vvvvv_6) \
-    X(drag_entry_of_point, vvvvv_6) \
     X(planar_drag_along_cable, vvv_3) \
     X(planar_drag_on_point, vv_2) \
     X(planar_drag_on_foil, vvvv_2) \
     X(planar_drag_impulse_of_cable, vvv_2) \
-    X(planar_drag_inertia_of_cable, vvvvv_10) \
+    X(planar_drag_inertia_of_cable, vvvsvvvvvvv_3) \
+    X(planar_drag_inertia_of_cable_tangent, vvvsvvvvvvv_7) \
     X(planar_drag_inertia_step, vvvvv_2) \
     X(planar_drag_impulse_of_point, vvv_2) \
-    X(planar_drag_inertia_of_point, vvvvv_10) \
+    X(planar_drag_inertia_of_point, vvvsvvvvvvv_3) \
+    X(planar_drag_inertia_of_point_tangent, vvvsvvvvvvv_2) \
     X(planar_drag_inertia_of_point_step, vvvvvvv_4) \
     X(planar_drag_wet_sphere, v_4) \
     X(planar_drag_wet_section, v_4) \
     X(planar_drag_wet_column, vv_4) \
-    X(planar_drag_entry_of_cable, vvvvv_6) \
-    X(planar_drag_entry_of_point, vvvvv_6) \
     X(crossing_closest, vvv_1) \
     X(crossing_contact, vvvv_6) \
     X(crossing_force, vvvvvv_6) \

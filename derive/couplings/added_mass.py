@@ -10,9 +10,17 @@ Of a body T = w . A C A' w/2 at a point, with C in the body's axes A: force and 
 
 w = v - U, and w' = a - dU/dt - (grad U) v: with U of the fluid these are Lagrange's equations of the same T, which for
 flow without curl are those of G. I. Taylor (Proc. R. Soc. A 120 (1928) 260-283).
+
+Of a partly wet section or body T is that of the wet part c: c T (wetness.py). Lagrange's equations then contain the
+rate of c in that of the impulse, and the derivative of T by the place. At a vertical entry in still water the slamming
+force is half of that of von Karman (NACA TN 321, 1929), c' m v^2/R, who has the first alone. In his model the other
+half is lost to the jet, which has no part in T: here energy is conserved, and a body that leaves the water regains it.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -27,8 +35,8 @@ POINT = "Lamb, Hydrodynamics, art. 124; Taylor 1928"
 
 def build(name: str, dim: int) -> list[Program]:
     """Return the kernels in space or in the plane, of the family `name`."""
-    return [impulse_of_cable(name, dim), of_cable(name, dim), of_cable_step(name, dim), impulse_of_point(name, dim),
-            of_point(name, dim), of_point_step(name, dim)]
+    return [impulse_of_cable(name, dim), of_cable(name, dim), of_cable_tangent(name, dim), of_cable_step(name, dim),
+            impulse_of_point(name, dim), of_point(name, dim), of_point_tangent(name, dim), of_point_step(name, dim)]
 
 
 def _input_masses(p: Program) -> tuple[sp.Symbol, sp.Expr]:
@@ -50,16 +58,83 @@ def impulse_of_cable(name: str, dim: int) -> Program:
     return p
 
 
-def of_cable(name: str, dim: int) -> Program:
-    """Return the kernel of the impulse of the fluid a length of cable, its rate, and the force on the slope."""
-    p = Program(f"{name}_inertia_of_cable", "impulse of the fluid along a cable, its rate, and their derivatives",
-                LENGTH)
+@dataclass(frozen=True)
+class Flow:
+    """The motion of a point and of the fluid there; vectors that are definitions are independent in derivatives."""
+
+    v: np.ndarray
+    w: np.ndarray
+    w_rate: np.ndarray
+    material: np.ndarray
+    U: np.ndarray
+    G: np.ndarray
+    part: sp.Expr
+    part_by_place: np.ndarray
+    curvature: sp.Expr
+    up: np.ndarray
+
+
+def _input_flow(p: Program, dim: int) -> Flow:
+    """Declare velocity and acceleration of a point, the flow, and the wet part; open a stage of the relative motion."""
+    v = p.input("v", dim, "m/s", "velocity of the point")
+    a = p.input("a", dim, "m/s^2", "acceleration of the point")
+    U = p.input("U", dim, "m/s", "velocity of the fluid")
+    U_rate = p.input("U_rate", dim, "m/s^2", "rate of U at a fixed place")
+    G = p.input("G", (dim, dim), "1/s", "gradient of U: derivatives of a component in a row")
+    wet = p.input("wet", 3, "1, 1/m, 1/m^2", "wet part c, and its derivatives by the height")
+    up = p.input("up", dim, "1", "vertical")
+    p.stage("motion past the fluid")
+    w = p.vector("w", v - U)
+    w_rate = p.vector("w_rate", a - U_rate - G.dot(v))
+    material = p.vector("material", U_rate + G.dot(U))
+    return Flow(v, w, w_rate, material, U, G, wet[0], p.vector("c_place", wet[1] * up), wet[2], up)
+
+
+def _by_motion(p: Program, name: str, values: np.ndarray, flow: Flow) -> tuple[np.ndarray, np.ndarray]:
+    """Return the derivatives of values (n,) by the place and by the velocity of the point -> (n, dim) each.
+
+    The gradient of U and the rate of U at a fixed place count as constants: second derivatives of U are neglected.
+    """
+    motion = [*flow.w, *flow.w_rate, *flow.material]
+    by_w, by_w_rate, by_material = (
+        np.array([p.vector(f"{name}{k + 1}_{key}", row) for k, row in enumerate(jacobian(p, values, vector))])
+        for key, vector in (("w", flow.w), ("w_rate", flow.w_rate), ("material", flow.material)))
+    by_v = jacobian(p, values, flow.v, constant=motion)
+    by_part = jacobian(p, values, [flow.part])[:, 0]
+    by_slope = jacobian(p, values, flow.part_by_place).dot(flow.up) * flow.curvature
+    by_place = (by_material.dot(flow.G) - by_w).dot(flow.G)
+    return (by_place + np.outer(by_part, flow.part_by_place) + np.outer(by_slope, flow.up),
+            by_w - by_w_rate.dot(flow.G) + by_v)
+
+
+def _forces(p: Program, flow: Flow, impulse: np.ndarray, impulse_rate: np.ndarray) -> tuple[np.ndarray, sp.Expr]:
+    """Return the force on a particle, on the left side of the equations of motion, and the external power.
+
+    Lagrange's equations of c T for the wet part c: the rate of c p, G' c p, less T times the derivative of c by the
+    place; and less the force of the undisturbed fluid on the mass that it displaces.
+    """
+    displaced = p.symbols["displaced"].item()
+    p.stage("force on the particle")
+    wet = p.vector("P_wet", flow.part * impulse)
+    part_rate = p.define("c_rate", flow.part_by_place.dot(flow.v))
+    rate = p.vector("P_wet_rate", flow.part * impulse_rate + part_rate * impulse)
+    strained = p.vector("strained", flow.G.T.dot(wet))
+    carried = p.vector("carried", p.define("displaced_wet", flow.part * displaced) * flow.material)
+    energy = p.define("T", flow.w.dot(impulse) / 2)
+    force = rate + strained - carried - energy * flow.part_by_place
+    return p.vector("F", force), carried.dot(flow.v) - rate.dot(flow.U) - strained.dot(flow.v)
+
+
+def _cable(p: Program, dim: int) -> tuple[Any, ...]:
+    """Return slope and rate, the flow, and impulse, its rate and the force on the slope of a length that is all wet."""
     t, t_rate = p.input("t", dim, "1", "slope r_x of the axis"), p.input("t_rate", dim, "1/s", "its rate")
-    w, w_rate = p.input("w", dim, "m/s", PAST), p.input("w_rate", dim, "m/s^2", "its rate")
-    normal, less = _input_masses(p)
+    m = p.input("m", 2, "kg/m", "added masses of a length of the undeformed cable, across and along")
+    p.input("displaced", (), "kg/m", "mass of the fluid that a length displaces")
+    flow = _input_flow(p, dim)
+    w, w_rate, normal = flow.w, flow.w_rate, m[0]
     p.stage("tangent and its rate")
-    length = p.define("len_t", sp.sqrt(t.dot(t)))
-    inverse = p.define("inv_len_t", 1 / length)
+    less = p.define("less", m[0] - m[1])
+    inverse = p.define("inv_len_t", 1 / p.define("len_t", sp.sqrt(t.dot(t))))
     i = p.vector("i", t * inverse)
     i_rate = p.vector("i_rate", inverse * (t_rate - i.dot(t_rate) * i))
     p.stage("impulse and its rate")
@@ -68,21 +143,34 @@ def of_cable(name: str, dim: int) -> Program:
     impulse = p.vector("P", normal * w - less * along * i)
     impulse_rate = p.vector("P_rate", normal * w_rate - less * (along_rate * i + along * i_rate))
     p.stage("derivative of the kinetic energy by the slope")
-    g = p.vector("G", -less * inverse * along * (w - along * i))
+    on_slope = p.vector("G_t", -p.define("pull", flow.part * less * inverse * along) * (w - along * i))
+    return t, t_rate, flow, impulse, impulse_rate, on_slope
+
+
+def of_cable(name: str, dim: int) -> Program:
+    """Return the kernel of the force of the fluid a length of cable, and of that on the slope."""
+    p = Program(f"{name}_inertia_of_cable", "force of the inertia of the fluid on a length of cable", LENGTH)
+    _, _, flow, impulse, impulse_rate, on_slope = _cable(p, dim)
+    force, power = _forces(p, flow, impulse, impulse_rate)
+    p.output("f", force, "N/m", "force on the particle, on the left side of the equations of motion")
+    p.output("g", on_slope, "N", "derivative of c T by t")
+    p.output("power", [power], "W/m", "external power of the fluid, with T as a kinetic energy")
+    return p
+
+
+def of_cable_tangent(name: str, dim: int) -> Program:
+    """Return the kernel of the derivatives of the force of the fluid on a length of cable, and of that on the slope."""
+    p = Program(f"{name}_inertia_of_cable_tangent", "derivatives of the force of the inertia of the fluid on a cable",
+                f"derivatives of {LENGTH}")
+    t, t_rate, flow, impulse, impulse_rate, on_slope = _cable(p, dim)
+    force, _ = _forces(p, flow, impulse, impulse_rate)
     p.stage("derivatives")
-    outputs = {"p": impulse, "p_rate": impulse_rate, "g": g}
-    by = {"t": t, "t_rate": t_rate, "w": w}
-    of = {f"{of}_{to}": jacobian(p, values, by[to]) for of, values in outputs.items() for to in by
-          if not (of != "p_rate" and to == "t_rate")}
-    p.output("p", impulse, "kg/s", "impulse M w of a length")
-    p.output("p_rate", impulse_rate, "N/m", "its rate")
-    p.output("g", g, "N", "derivative of T by t")
-    p.output("M", normal * np.eye(dim, dtype=int) - less * np.outer(i, i), "kg/m",
-             "added mass of a length")
-    units = {"p_t": "kg/s", "p_rate_t": "N/m", "p_rate_t_rate": "kg/s", "p_rate_w": "kg/(m s)", "g_t": "N",
-             "g_w": "kg/s"}
-    for key, unit in units.items():
-        p.output(key, of[key], unit, f"derivatives of {key.rpartition('_')[0]}")
+    for output, values, by in (("f", force, {"t": t, "t_rate": t_rate}), ("g", on_slope, {"t": t})):
+        for key, symbols in by.items():
+            p.output(f"{output}_{key}", jacobian(p, values, symbols), "SI", f"derivatives of {output} by {key}")
+        for key, by_motion in zip("rv", _by_motion(p, output, values, flow), strict=True):
+            p.output(f"{output}_{key}", by_motion, "SI",
+                     f"derivatives of {output} by the {'velocity' if key == 'v' else 'place'} of the point")
     return p
 
 
@@ -137,32 +225,44 @@ def impulse_of_point(name: str, dim: int) -> Program:
     return p
 
 
-def of_point(name: str, dim: int) -> Program:
-    """Return the kernel of the impulse of the fluid at a point of a body, its rate, and its moment."""
-    turns = 3 if dim == 3 else 1
-    p = Program(f"{name}_inertia_of_point",
-                "impulse of the fluid at a body, its rate and moment, and their derivatives", POINT)
+def _point(p: Program, dim: int) -> tuple[Any, ...]:
+    """Return axes, angular velocity, flow, force, moment and external power of the fluid at a point of a body."""
     A, M = mass_of_point(p, dim)
-    omega = p.input("omega", turns, "rad/s", "angular velocity in global axes")
-    w, w_rate = p.input("w", dim, "m/s", PAST), p.input("w_rate", dim, "m/s^2", "its rate")
+    omega = p.input("omega", 3 if dim == 3 else 1, "rad/s", "angular velocity in global axes")
+    p.input("displaced", (), "kg", "mass of the fluid that the body displaces")
+    flow = _input_flow(p, dim)
     p.stage("impulse, its rate and moment")
-    impulse = p.vector("P", M.dot(w))
-    rest = p.vector("rest", w_rate - cross(omega, w))
+    impulse = p.vector("P", M.dot(flow.w))
+    rest = p.vector("rest", flow.w_rate - cross(omega, flow.w))
     impulse_rate = p.vector("P_rate", M.dot(rest) + cross(omega, impulse))
-    moment = np.array([p.define(f"moment{k}", value) for k, value in enumerate(moment_of(w, impulse))])
+    moment = np.array([p.define(f"moment{k}", flow.part * value)
+                       for k, value in enumerate(moment_of(flow.w, impulse))])
+    return A, omega, flow, moment, *_forces(p, flow, impulse, impulse_rate)
+
+
+def of_point(name: str, dim: int) -> Program:
+    """Return the kernel of the force and the moment of the fluid at a point of a body."""
+    p = Program(f"{name}_inertia_of_point", "force and moment of the inertia of the fluid on a body", POINT)
+    *_, moment, force, power = _point(p, dim)
+    p.output("f", force, "N", "force at the point, on the left side of the equations of motion")
+    p.output("moment", moment, "N m", "c w x p")
+    p.output("power", [power], "W", "external power of the fluid, with T as a kinetic energy")
+    return p
+
+
+def of_point_tangent(name: str, dim: int) -> Program:
+    """Return the kernel of the derivatives of force and moment of the fluid at a point of a body."""
+    p = Program(f"{name}_inertia_of_point_tangent", "derivatives of force and moment of the inertia of the fluid",
+                f"derivatives of {POINT}")
+    A, omega, flow, moment, force, _ = _point(p, dim)
     p.stage("derivatives")
-    units = np.eye(turns, dtype=int)
-    swung = [DirectionalDerivative(p, f"d_th{k + 1}", turned(A, axis)) for k, axis in enumerate(units)]
-    p.output("p", impulse, "kg m/s", "impulse A C A' w")
-    p.output("p_rate", impulse_rate, "N", "its rate")
-    p.output("moment", moment, "N m", "w x p")
-    p.output("M", M, "kg", "added mass A C A' in global axes")
-    for key, values in {"p": impulse, "p_rate": impulse_rate, "moment": moment}.items():
-        p.output(f"{key}_turn", np.stack([d.array(values) for d in swung], axis=-1), "SI",
-                 f"derivatives of {key} by a turn of the body about global axes")
-    p.output("p_rate_omega", jacobian(p, impulse_rate, omega), "kg m/s", "derivatives of p_rate by omega")
-    p.output("p_rate_w", jacobian(p, impulse_rate, w), "kg/s", "derivatives of p_rate by w")
-    p.output("moment_w", jacobian(p, moment, w), "kg m/s", "derivatives of moment by w")
+    turns = [DirectionalDerivative(p, f"d_th{k + 1}", turned(A, axis))
+             for k, axis in enumerate(np.eye(len(omega), dtype=int))]
+    for output, values in {"f": force, "moment": moment}.items():
+        by_turn = np.stack([each.array(values) for each in turns], axis=-1)
+        p.output(f"{output}_by", np.concatenate([*_by_motion(p, output, values, flow), by_turn,
+                                                 jacobian(p, values, omega)], axis=1), "SI",
+                 f"derivatives of {output} by place, velocity, a turn about global axes, angular velocity")
     return p
 
 

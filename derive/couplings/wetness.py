@@ -1,4 +1,4 @@
-"""The part of a body or of a cable's section below the surface of a fluid, and the change of inertia with it.
+"""The part of a body or of a cable's section below the surface of a fluid.
 
 Buoyancy has a potential. Below its surface at the height z_s a fluid at rest has the pressure rho g (z_s - z), and a
 volume V that it displaces has the energy of that pressure, rho g V R e(u): R is half of the vertical extent of V, u the
@@ -9,30 +9,21 @@ A sphere has the segment pi h^2 (3R - h)/3, h = R (1 + u). A section of a cable 
 integral along the cable is that of drag. A column has the same section at all heights, so c = (1 + u)/2; at both ends c
 is rounded over the part delta of R to either side, as if the surface had waves of that height, and c' is continuous.
 Between two surfaces, the fluid's own and that of the fluid below, the wet part is the difference of two.
-
-The added mass is that of the wet part, c M, and so is the energy T = c w . M w/2. Lagrange's equations of it give,
-beside c times those of M, the rate of c in that of the impulse and the derivative of T by the place. At a vertical
-entry in still water the slamming force is half of that of von Karman (NACA TN 321, 1929), c' m v^2/R, who has the first
-alone. The other half goes into the jet, which has no part in T: here energy is
-conserved, and a body that leaves the water regains it.
 """
 
 from __future__ import annotations
 
-import numpy as np
 import sympy as sp
 
-from ..codegen.program import DirectionalDerivative, Program, jacobian
-from .added_mass import PAST, mass_of_point, turned
+from ..codegen.program import Program
 
 SOURCE = "Archimedes; potential of the hydrostatic pressure"
-SLAMMING = "Lagrange's equations of T; von Karman, NACA TN 321"
 DEPTH = "depth of the middle over half of the extent"
 
 
 def build(name: str, dim: int) -> list[Program]:
     """Return the kernels in space or in the plane, of the family `name`."""
-    return [of_sphere(name), of_section(name), of_column(name), entry_of_cable(name, dim), entry_of_point(name, dim)]
+    return [of_sphere(name), of_section(name), of_column(name)]
 
 
 def _output(p: Program, values: tuple[sp.Expr, ...]) -> Program:
@@ -84,56 +75,3 @@ def of_column(name: str) -> Program:
     e = (1 + u + delta) ** 3 / (24 * delta)
     p.stage("rounded end")
     return _output(p, tuple(sp.diff(e, u, k) for k in range(4)))
-
-
-def _entry(p: Program, dim: int, M: np.ndarray) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray]:
-    """Return inputs w, v and n; the rate of the impulse by that of the wet part; the derivative of T by the place."""
-    w, v = p.input("w", dim, "m/s", PAST), p.input("v", dim, "m/s", "velocity of the point")
-    n = p.input("n", dim, "1/m", "derivative of the wet part by the place")
-    p.stage("entry")
-    impulse = p.vector("P", M.dot(w))
-    rate = p.vector("rate", p.define("c_rate", n.dot(v)) * impulse)
-    pull = p.vector("pull", p.define("T", w.dot(impulse) / 2) * n)
-    return {"w": w, "v": v, "n": n}, rate, pull
-
-
-def _output_entry(p: Program, given: dict[str, np.ndarray], rate: np.ndarray, pull: np.ndarray, turned_by: np.ndarray,
-                  units: tuple[str, str, str], name: str, words: str) -> None:
-    """Define the outputs, with the derivatives of their difference; turned_by: the derivative by `name`, which is
-    `words`.
-    """
-    force, per_velocity, per_slope = units
-    by = {key: jacobian(p, rate - pull, value) for key, value in given.items()}
-    p.output("p_rate", rate, force, "rate of the impulse by that of the wet part")
-    p.output("g", pull, force, "derivative of the kinetic energy by the place")
-    p.output(f"f_{name}", turned_by, force, f"derivatives of p_rate - g by {words}")
-    for key, unit in zip(by, (per_velocity, per_velocity, per_slope), strict=True):
-        p.output(f"f_{key}", by[key], unit, f"derivatives of p_rate - g by {key}")
-
-
-def entry_of_cable(name: str, dim: int) -> Program:
-    """Return the kernel of the inertia of the fluid a length of cable from the change of its wet part."""
-    p = Program(f"{name}_entry_of_cable", "added mass of a cable whose wet part changes", SLAMMING)
-    t = p.input("t", dim, "1", "slope r_x of the axis")
-    m = p.input("m", 2, "kg/m", "added masses of a length of the undeformed cable, across and along")
-    p.stage("added mass")
-    scale = p.define("scale", p.define("less", m[0] - m[1]) / t.dot(t))
-    M = np.array([p.vector(f"M{k + 1}", row) for k, row in enumerate(
-        m[0] * np.eye(dim, dtype=int) - scale * np.outer(t, t))])
-    given, rate, pull = _entry(p, dim, M)
-    p.stage("derivatives")
-    _output_entry(p, given, rate, pull, jacobian(p, rate - pull, t), ("N/m", "kg/(m s)", "J"), "t", "t")
-    return p
-
-
-def entry_of_point(name: str, dim: int) -> Program:
-    """Return the kernel of the inertia of the fluid at a point of a body from the change of its wet part."""
-    p = Program(f"{name}_entry_of_point", "added mass of a body whose wet part changes", SLAMMING)
-    A, M = mass_of_point(p, dim)
-    given, rate, pull = _entry(p, dim, M)
-    p.stage("derivatives")
-    turns = [DirectionalDerivative(p, f"d_th{k + 1}", turned(A, axis))
-             for k, axis in enumerate(np.eye(3 if dim == 3 else 1, dtype=int))]
-    by_turn = np.stack([each.array(rate - pull) for each in turns], axis=-1)
-    _output_entry(p, given, rate, pull, by_turn, ("N", "kg/s", "J m"), "turn", "a turn of the body about global axes")
-    return p

@@ -362,13 +362,15 @@ def drag_scope(name: str) -> Scope:
                                     *(Symbol(s, "polar", entry(k)) for k, s in enumerate(
                                         ("C_{d}", "C_{d,1}", "C_{l}", "C_{l,1}", "C_{m}", "C_{m,1}"))),
                                     Symbol(r"\dot{\mathbf{t}}", "t_rate", column),
-                                    Symbol(r"\dot{\mathbf{w}}", "w_rate", column),
+                                    *(Symbol(rf"\mathbf{{{letter}}}", letter, column) for letter in "avU"),
+                                    Symbol(r"\mathbf{U}_{1}", "U_rate", column), Symbol(r"\mathbf{G}", "G", matrix),
+                                    *(Symbol(s, "wet", entry(k)) for k, s in enumerate(("c", "c_{1}", "c_{2}"))),
+                                    Symbol(r"\mathbf{z}", "up", column), Symbol("m_{d}", "displaced", number),
                                     *(Symbol(s, "m", entry(k)) for k, s in enumerate(("m_{n}", "m_{t}"))),
                                     Symbol(r"\mathbf{s}", "s", column), Symbol(r"\mathbf{A}", "A", matrix),
                                     Symbol(r"\mathbf{C}", "C", matrix),
                                     Symbol(r"\boldsymbol{\omega}", "omega", column),
-                                    Symbol("u", "u", entry(0)), Symbol(r"\delta", "delta", entry(0)),
-                                    Symbol(r"\mathbf{v}", "v", column), Symbol(r"\mathbf{z}", "n", column)))
+                                    Symbol("u", "u", entry(0)), Symbol(r"\delta", "delta", entry(0))))
 
 
 def crossing_scope(name: str) -> Scope:

@@ -78,10 +78,12 @@ def _added_mass(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invari
     """Yield that impulses turn with the scene, and that over a step the force gives the change of the energy of the
     fluid.
     """
-    out = k("inertia_of_cable", s)
+    out, one = k("inertia_of_cable", s), np.eye(family.dim)
     for spin in spins(family.dim):
-        turned = out["p_t"] @ (spin @ s["t"]) + out["M"] @ (spin @ s["w"])
-        yield "impulse turns with the scene", relative(turned - spin @ out["p"], out["p"]), 64 * EPS
+        turn = np.linalg.solve(one - spin, one + spin)
+        moved = {name: turn @ s[name] for name in ("t", "t_rate", "v", "a", "U", "U_rate", "up")}
+        turned = k("inertia_of_cable", s | moved | {"G": turn @ s["G"] @ turn.T})
+        yield "the fluid's inertia turns with the scene", relative(turned["f"] - turn @ out["f"], out["f"]), 64 * EPS
     yield "the force on the slope is across it", relative(s["t"] @ out["g"], out["g"]), 64 * EPS
     step, ends = k("inertia_step", s), [(s["t"], s["w"]), (s["t_next"], s["w_next"])]
     impulses = [k("impulse_of_cable", {**s, "t": t, "w": w})["p"] for t, w in ends]

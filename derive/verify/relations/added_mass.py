@@ -24,61 +24,148 @@ def _along_cable(s: State, t: Any = 0, j: int = 0, name: str = "") -> Any:
 
 
 def added_mass(family: CouplingFamily) -> list[Relation]:
-    """Return the relations of impulses, their rates, forces on the slope and moments, with their derivatives."""
-    dim = family.dim
-    turns = 3 if dim == 3 else 1
+    """Return the relations of impulses, of forces and moments with their derivatives, and of those over a step."""
+    return [*_impulses(family.dim), *_forces("inertia_of_cable", family.dim), *_on_slope(family.dim),
+            *_forces("inertia_of_point", family.dim), *_on_body(family.dim), *_cable_over_step(), *_body_over_step()]
+
+
+def _impulses(dim: int) -> list[Relation]:
+    cable, point = "impulse_of_cable", "impulse_of_point"
 
     def of_point(k, s, t, j):
         at_rest = s["A"].T.dot(s["w"] + t * unit(s["w"], j))
         return at_rest.dot(s["C"].dot(at_rest)) / 2
 
-    def swung(s, turn, t):
-        """Return the state with the axes turned by t times a turn, to first order."""
-        return {**s, "A": s["A"] + t * swung_axes(turn, s["A"])}
+    return [
+        Relation(cable, "p", "derivative of T by w", 1, lambda k, s, t, j: _along_cable(s, t, j, "w"), dim),
+        Relation(point, "p", "derivative of w . A C A' w/2 by w", 1, of_point, dim),
+        *(Relation(kernel, "M", "d p by w", 1, from_kernel(kernel, "p", w=entry("w")), dim)
+          for kernel in (cable, point)),
+    ]
 
-    def turned(output):
-        return lambda k, s, t, j: k("inertia_of_point", swung(s, np.eye(turns, dtype=int)[j], t))[output]
 
-    def minus_moment(k, s, t, j):
-        return -of_point(k, {**swung(s, np.eye(turns, dtype=int)[j], t)}, 0, 0)
+def _impulse(kernel: str, k: Any, s: State) -> Any:
+    """Return the impulse of what is all wet, at the velocity past the fluid."""
+    return k(kernel.replace("inertia", "impulse"), {**s, "w": s["v"] - s["U"]})["p"]
 
-    def in_time(k, s, t, j):
-        return k("impulse_of_point", swung({**s, "w": s["w"] + t * s["w_rate"]}, s["omega"], t))["p"]
 
-    def along_in_time(k, s, t, j):
-        return k("impulse_of_cable", s, t=s["t"] + t * s["t_rate"], w=s["w"] + t * s["w_rate"])["p"]
+def _energy(kernel: str, k: Any, s: State) -> Any:
+    """Return the kinetic energy of the fluid, w . M w/2 times the wet part."""
+    return s["wet"][0] * _impulse(kernel, k, s).dot(s["v"] - s["U"]) / 2
 
-    def by(kernel, output, *names):
-        return [Relation(kernel, f"{output}_{name}", f"d {output} by {name}", 1,
-                         from_kernel(kernel, output, **{name: entry(name)}), turns if name == "omega" else dim)
-                for name in names]
 
+def _swung(s: State, turn: Any, t: Any) -> State:
+    """Return the state with the axes turned by t times a turn, to first order."""
+    return {**s, "A": s["A"] + t * swung_axes(turn, s["A"])}
+
+
+def _displaced(s: State, place: Any, t: Any) -> State:
+    """Return the state at a place t times `place` away, where second derivatives of the flow are nil."""
+    height = s["up"].dot(place)
+    return {**s, "U": s["U"] + t * s["G"].dot(place),
+            "wet": s["wet"] + t * height * np.array([s["wet"][1], s["wet"][2], 0 * s["wet"][2]])}
+
+
+def _later(kernel: str, s: State, t: Any) -> State:
+    """Return the state at the time t: the point moves on, and the flow changes with its place and by its own rate."""
+    moved = _displaced(s, s["v"], t)
+    moved |= {"U": moved["U"] + t * s["U_rate"], "v": s["v"] + t * s["a"]}
+    return _swung(moved, s["omega"], t) if kernel == "inertia_of_point" else {**moved, "t": s["t"] + t * s["t_rate"]}
+
+
+def _forces(kernel: str, dim: int) -> list[Relation]:
+    """Return the relations of the force on a particle: Lagrange's equations of the energy that `_energy` returns."""
+    tangent = f"{kernel}_tangent"
+
+    def impulse(k, s, t, j):
+        later = _later(kernel, s, t)
+        return later["wet"][0] * _impulse(kernel, k, later)
+
+    def carried(s):
+        return s["displaced"] * s["wet"][0] * (s["U_rate"] + s["G"].dot(s["U"]))
+
+    def by_place(k, s, t, j):
+        return _energy(kernel, k, _displaced(s, unit(s["v"], j), t))
+
+    def rest(k, s):
+        """Return the force and that of the displaced fluid, less the rate of the impulse."""
+        wet = s["wet"][0] * _impulse(kernel, k, s)
+        pull = _energy(kernel, k, {**s, "wet": s["wet"] * 0 + 1}) * s["wet"][1] * s["up"]
+        return s["G"].T.dot(wet) - pull
+
+    def power(k, s, t, j):
+        force, strained = k(kernel, s)["f"], s["G"].T.dot(s["wet"][0] * _impulse(kernel, k, s))
+        rate = force + carried(s) - rest(k, s)
+        return carried(s).dot(s["v"]) - rate.dot(s["U"]) - strained.dot(s["v"])
+
+    def moved(k, s, t, j):
+        return k(kernel, _displaced(s, unit(s["v"], j), t))["f"]
+
+    return [
+        Relation(kernel, "f", "rate of c p, where T does not depend on the place", 1, impulse,
+                 of=lambda k, s: k(kernel, s)["f"] + carried(s) - rest(k, s)),
+        Relation(kernel, "f", "minus the derivative of c T by the place", 1, by_place, dim,
+                 of=lambda k, s: -rest(k, s)),
+        Relation(kernel, "power", "of the displaced fluid, and of U", 0, power),
+        *([Relation(tangent, "f_r", "df by the place", 1, moved, dim),
+           *(Relation(tangent, f"f_{name}", f"df by {name}", 1, from_kernel(kernel, "f", **{name: entry(name)}), dim)
+             for name in ("v", "t", "t_rate"))] if kernel == "inertia_of_cable" else []),
+    ]
+
+
+def _on_slope(dim: int) -> list[Relation]:
+    kernel, tangent = "inertia_of_cable", "inertia_of_cable_tangent"
+
+    def energy(k, s, t, j):
+        return s["wet"][0] * _along_cable({**s, "w": s["v"] - s["U"]}, t, j, "t")
+
+    return [
+        Relation(kernel, "g", "derivative of c T by t", 1, energy, dim),
+        *(Relation(tangent, f"g_{name}", f"dg by {name}", 1, from_kernel(kernel, "g", **{name: entry(name)}), dim)
+          for name in ("t", "v")),
+        Relation(tangent, "g_r", "dg by the place", 1,
+                 lambda k, s, t, j: k(kernel, _displaced(s, unit(s["v"], j), t))["g"], dim),
+    ]
+
+
+def _on_body(dim: int) -> list[Relation]:
+    """Return the relations of the moment, and of the derivatives by place, velocity, a turn, angular velocity."""
+    kernel, turns = "inertia_of_point", 3 if dim == 3 else 1
+    axes = np.eye(turns, dtype=int)
+
+    def minus_energy(k, s, t, j):
+        return -_energy(kernel, k, _swung(s, axes[j], t))
+
+    def moved(output):
+        def path(k, s, t, j):
+            if j < dim:
+                s = _displaced(s, unit(s["v"], j), t)
+            elif j < 2 * dim:
+                s = {**s, "v": s["v"] + t * unit(s["v"], j - dim)}
+            elif j < 2 * dim + turns:
+                s = _swung(s, axes[j - 2 * dim], t)
+            else:
+                s = {**s, "omega": s["omega"] + t * unit(s["omega"], j - 2 * dim - turns)}
+            return k(kernel, s)[output]
+        return path
+
+    return [Relation(kernel, "moment", "minus the derivative of c T by a turn", 1, minus_energy, turns),
+            *(Relation(f"{kernel}_tangent", f"{output}_by", f"d{output} by place, velocity, turn, angular velocity", 1,
+                       moved(output), 2 * (dim + turns)) for output in ("f", "moment"))]
+
+
+def _cable_over_step() -> list[Relation]:
     def difference(s):
         """Return D = (a . M a - b . M b)/2 at t_next less that at t, for half sum and half difference of w."""
         a, b = (s["w"] + s["w_next"]) / 2, (s["w_next"] - s["w"]) / 2
         ends = [[_along_cable({**s, "t": s[t], "w": w}) for w in (a, b)] for t in ("t", "t_next")]
         return (ends[1][0] - ends[1][1]) - (ends[0][0] - ends[0][1])
 
-    cable, point = "inertia_of_cable", "inertia_of_point"
     return [
-        *(Relation(kernel, "p", "derivative of T by w", 1, lambda k, s, t, j: _along_cable(s, t, j, "w"), dim)
-          for kernel in ("impulse_of_cable", cable)),
-        *(Relation(kernel, "M", "d p by w", 1, from_kernel(kernel, "p", w=entry("w")), dim)
-          for kernel in ("impulse_of_cable", cable, "impulse_of_point", point)),
-        Relation(cable, "g", "derivative of T by t", 1, lambda k, s, t, j: _along_cable(s, t, j, "t"), dim),
-        Relation(cable, "p_rate", "rate of p", 1, along_in_time),
-        *by(cable, "p", "t"), *by(cable, "p_rate", "t", "t_rate", "w"), *by(cable, "g", "t", "w"),
         Relation("inertia_step", "dp", "p at the end of the step less that before", 0, lambda k, s, t, j: k(
             "impulse_of_cable", s, t=s["t_next"], w=s["w_next"])["p"] - k("impulse_of_cable", s)["p"]),
         Relation("inertia_step", "g", "g . (t_next - t) = D_next - D", 0, lambda k, s, t, j: difference(s),
                  of=lambda k, s: k("inertia_step", s)["g"].dot(s["t_next"] - s["t"])),
-        *(Relation(kernel, "p", "derivative of w . A C A' w/2 by w", 1, of_point, dim)
-          for kernel in ("impulse_of_point", point)),
-        Relation(point, "p_rate", "rate of p", 1, in_time),
-        Relation(point, "moment", "minus the derivative of w . A C A' w/2 by a turn", 1, minus_moment, turns),
-        *(Relation(point, f"{output}_turn", f"d {output} by a turn", 1, turned(output), turns)
-          for output in ("p", "p_rate", "moment")),
-        *by(point, "p_rate", "omega", "w"), *by(point, "moment", "w"), *_body_over_step(),
     ]
 
 

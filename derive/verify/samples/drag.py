@@ -15,10 +15,12 @@ def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) 
     that cuts what is wetted.
     """
     dim = family.dim
-    moving = {name: random.normal(size=dim) for name in ("t", "w", "t_rate", "w_rate", "t_next", "w_next", "v", "n")}
+    vectors = ("t", "w", "t_rate", "t_next", "w_next", "v", "a", "U", "U_rate", "up")
+    moving = {name: random.normal(size=dim) for name in vectors}
     axes, half = np.linalg.qr(random.normal(size=(dim, dim)))[0], random.normal(size=(dim, dim))
-    sampled = moving | {"A": axes, "omega": random.normal(size=3 if dim == 3 else 1), "C": half @ half.T,
-                     "m": np.array([1.3, 0.2]),
+    sampled = moving | {"A": axes, "G": random.normal(size=(dim, dim)), "displaced": np.float64(1.7),
+                     "wet": np.array([0.6, -0.9, 0.7]),
+                     "omega": random.normal(size=3 if dim == 3 else 1), "C": half @ half.T, "m": np.array([1.3, 0.2]),
                      "u": np.array([-0.97]), "delta": np.array([0.05]), "phi": np.array([0.4]),
                      "s": _unit(random.normal(size=3)) if dim == 3 else -np.ones(1),
                      "c_lift": np.array([0.6, 1e-30]), "c_foil": np.array([0.9, 1e-30]),

@@ -18,6 +18,41 @@
 /* of the extent: for a smaller rise the derivative half-way replaces the quotient of changes */
 #define MIN_RISE 1e-7
 
+/* The motion of a point relative to the fluid: w, DU/Dt of the fluid, and the wet part. */
+typedef struct {
+    fu_flow_state flow;
+    double w[3], material[3], wet;
+} relative_motion;
+
+static relative_motion motion_in_fluid(const fu_model *model, const fu_drag *drag, double t, const double *r,
+                                       const double *v)
+{
+    const int dim = model->dim;
+    relative_motion out = {.wet = fu_wet_part(model, drag, r).part};
+    fu_flow_at(model, &drag->flow, t, r, &out.flow);
+    for (int d = 0; d < dim; ++d) {
+        out.w[d] = v[d] - out.flow.U[d];
+        out.material[d] = out.flow.rate[d] + fu_dot(dim, out.flow.gradient + d * dim, out.flow.U);
+    }
+    return out;
+}
+
+/* Computes the force on particles by an impulse p and its rate, with the sign of the left side of the equations of
+ * motion, and adds its power. */
+static void on_particles(const fu_model *model, const fu_drag *drag, const relative_motion *at, const double *p,
+                         const double *p_rate, const double *v, double part, double left[3], fu_drag_powers *power)
+{
+    const int dim = model->dim;
+    const double displaced = at->wet * drag->displaced;
+    double strained[3] = {0.0};
+    for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) strained[j] += at->flow.gradient[i * dim + j] * p[i];
+    for (int d = 0; d < dim; ++d) left[d] = part * (p_rate[d] + strained[d] - displaced * at->material[d]);
+    if (power)
+        power->external += part * (displaced * fu_dot(dim, at->material, v) - fu_dot(dim, p_rate, at->flow.U) -
+                                   fu_dot(dim, strained, v));
+}
+
 /* The wet part over a step: its mean, its change, and its discrete gradient by position. */
 typedef struct {
     double mean, change, by_place[3];
@@ -38,13 +73,13 @@ static wet_step wet_over_step(const fu_model *model, const fu_drag *drag, const 
 
 /* Includes the wet part in the change dp of an impulse over a step, and computes the force on the position; p, M:
  * impulse and mass at both ends of the step if entirely wet. */
-static void take_wet_step(int dim, const wet_step *wet, const fu_fluid_past past[2], double p[2][3], double M[2][9],
+static void take_wet_step(int dim, const wet_step *wet, const relative_motion motion[2], double p[2][3], double M[2][9],
                           double dp[3], double on_place[3])
 {
     double a[3], b[3], D = 0.0;
     for (int d = 0; d < dim; ++d) {
-        a[d] = 0.5 * (past[0].w[d] + past[1].w[d]);
-        b[d] = 0.5 * (past[1].w[d] - past[0].w[d]);
+        a[d] = 0.5 * (motion[0].w[d] + motion[1].w[d]);
+        b[d] = 0.5 * (motion[1].w[d] - motion[0].w[d]);
         dp[d] = wet->mean * dp[d] + wet->change * 0.5 * (p[0][d] + p[1][d]);
     }
     for (int i = 0; i < dim; ++i)
@@ -55,13 +90,13 @@ static void take_wet_step(int dim, const wet_step *wet, const fu_fluid_past past
 /* Includes the wet part in the change of an impulse over a step, the force g on the slope, and the impulse half-way;
  * computes the force on the position. */
 static void wet_length_over_step(const fu_model *model, const fu_drag *drag, const fu_drag_place place[2],
-                                 const fu_fluid_past past[2], const fu_fluid_past *halfway, double dp[3], double g[3],
-                                 double mean[3], double on_place[3])
+                                 const relative_motion motion[2], const relative_motion *halfway, double dp[3],
+                                 double g[3], double mean[3], double on_place[3])
 {
     const wet_step wet = wet_over_step(model, drag, place[0].r, place[1].r);
     double p[2][3], M[2][9];
-    for (int i = 0; i < 2; ++i) drag->kernel->impulse_of_cable(place[i].r_x, past[i].w, drag->added, p[i], M[i]);
-    take_wet_step(model->dim, &wet, past, p, M, dp, on_place);
+    for (int i = 0; i < 2; ++i) drag->kernel->impulse_of_cable(place[i].r_x, motion[i].w, drag->added, p[i], M[i]);
+    take_wet_step(model->dim, &wet, motion, p, M, dp, on_place);
     for (int d = 0; d < model->dim; ++d) {
         g[d] *= wet.mean;
         mean[d] *= halfway->wet;
@@ -81,25 +116,26 @@ static void on_cable_in_step(const fu_model *model, const fu_drag *drag, const f
         for (int k = 0; k < points.n; ++k) {
             const fu_quadrature_point point = points.at[k];
             fu_drag_place place[2], middle;
-            fu_fluid_past past[2];
+            relative_motion motion[2];
             double dp[3], g[3], rate[3], mean[3], M[9], left[3], on_place[3] = {0.0};
             for (int i = 0; i < 2; ++i) {
                 fu_drag_place_on_axis(model, drag, ends[i]->q + first, ends[i]->v + first, 0, point, &place[i]);
-                past[i] = fu_past_fluid(model, drag, ends[i]->t, place[i].r, place[i].v, place[i].a);
+                motion[i] = motion_in_fluid(model, drag, ends[i]->t, place[i].r, place[i].v);
             }
             fu_drag_place_on_axis(model, drag, at->middle->q + first, at->middle->v + first, 0, point, &middle);
-            const fu_fluid_past halfway = fu_past_fluid(model, drag, at->middle->t, middle.r, middle.v, middle.a);
-            drag->kernel->inertia_step(place[0].r_x, place[1].r_x, past[0].w, past[1].w, drag->added, dp, g);
+            const relative_motion halfway = motion_in_fluid(model, drag, at->middle->t, middle.r, middle.v);
+            drag->kernel->inertia_step(place[0].r_x, place[1].r_x, motion[0].w, motion[1].w, drag->added, dp, g);
             drag->kernel->impulse_of_cable(middle.r_x, halfway.w, drag->added, mean, M);
             if (drag->wet != FU_ALL_WET)
-                wet_length_over_step(model, drag, place, past, &halfway, dp, g, mean, on_place);
+                wet_length_over_step(model, drag, place, motion, &halfway, dp, g, mean, on_place);
             for (int d = 0; d < dim; ++d) rate[d] = dp[d] / at->h;
-            fu_fluid_on_particles(model, drag, &halfway, mean, rate, middle.v, point.weight, left, sums->power);
-            if (sums->power) /* the change of T contains the velocities at both ends; fu_fluid_on_particles has -rate .
+            on_particles(model, drag, &halfway, mean, rate, middle.v, point.weight, left, sums->power);
+            if (sums->power) /* the change of T contains the velocities at both ends; `on_particles` has -rate .
                                 U half-way */
                 for (int d = 0; d < dim; ++d)
-                    sums->power->external += point.weight * rate[d] *
-                                             (0.5 * (past[0].w[d] + past[1].w[d]) - middle.v[d] + halfway.flow.U[d]);
+                    sums->power->external +=
+                        point.weight * rate[d] *
+                        (0.5 * (motion[0].w[d] + motion[1].w[d]) - middle.v[d] + halfway.flow.U[d]);
             for (int d = 0; d < dim; ++d) left[d] -= point.weight * on_place[d];
             for (int d = 0; d < dim; ++d) g[d] *= point.weight;
             fu_fluid_on_element(model, drag, first, point, left, g, sums);
@@ -111,7 +147,7 @@ static void on_cable_in_step(const fu_model *model, const fu_drag *drag, const f
  * of the rotation. */
 typedef struct {
     fu_attachment_state ends[2], turning;
-    fu_fluid_past past[2], halfway;
+    relative_motion motion[2], halfway;
     double v[3], theta[3], change[3]; /* mean velocity of the point in the step; argument of the kernel: change of the
                                          velocity by rotation */
 } body_step;
@@ -125,7 +161,7 @@ static void body_over_step(const fu_model *model, const fu_drag *drag, const fu_
     double middle[3] = {0.0}, arm[3] = {0.0}, turned[3];
     for (int i = 0; i < 2; ++i) {
         fu_attachment_at(model, on, states[i], 0.0, FU_POINT | FU_AXES, &ends[i]);
-        out->past[i] = fu_past_fluid(model, drag, states[i]->t, ends[i].p, ends[i].v, model->zero);
+        out->motion[i] = motion_in_fluid(model, drag, states[i]->t, ends[i].p, ends[i].v);
     }
     fu_attachment_at(model, on, at->middle, 0.0, FU_AXES, &out->turning);
     memset(out->theta, 0, sizeof out->theta);
@@ -140,7 +176,7 @@ static void body_over_step(const fu_model *model, const fu_drag *drag, const fu_
     fu_swing(dim, out->theta, arm, turned);
     for (int d = 0; d < dim; ++d)
         out->change[d] = ends[1].v[d] - ends[0].v[d] - (states[1]->v[dof + d] - states[0]->v[dof + d]) - turned[d];
-    out->halfway = fu_past_fluid(model, drag, at->middle->t, middle, out->v, model->zero);
+    out->halfway = motion_in_fluid(model, drag, at->middle->t, middle, out->v);
 }
 
 /* The same for a body: its moment also balances the work of the impulse's change by rotation. */
@@ -150,8 +186,8 @@ static void wet_body_over_step(const fu_model *model, const fu_drag *drag, const
     const int dim = model->dim, turns = fu_turns(dim);
     const wet_step wet = wet_over_step(model, drag, of->ends[0].p, of->ends[1].p);
     double p[2][3], M[2][9], more[3], with[3];
-    for (int i = 0; i < 2; ++i) drag->kernel->impulse_of_point(of->ends[i].A, drag->added, of->past[i].w, p[i], M[i]);
-    take_wet_step(dim, &wet, of->past, p, M, dp, on_place);
+    for (int i = 0; i < 2; ++i) drag->kernel->impulse_of_point(of->ends[i].A, drag->added, of->motion[i].w, p[i], M[i]);
+    take_wet_step(dim, &wet, of->motion, p, M, dp, on_place);
     for (int d = 0; d < dim; ++d) {
         more[d] = 0.25 * wet.change * 0.5 * (p[0][d] + p[1][d]);
         mean[d] *= of->halfway.wet;
@@ -167,15 +203,15 @@ static void on_body_in_step(const fu_model *model, const fu_drag *drag, const fu
     double dp[3], mean[3], moment[3], more[3], rate[3], left[3], on_place[3] = {0.0};
     body_step of;
     body_over_step(model, drag, at, &of);
-    drag->kernel->inertia_of_point_step(of.ends[0].A, of.ends[1].A, drag->added, of.past[0].w, of.past[1].w, of.theta,
-                                        of.change, dp, mean, moment, more);
+    drag->kernel->inertia_of_point_step(of.ends[0].A, of.ends[1].A, drag->added, of.motion[0].w, of.motion[1].w,
+                                        of.theta, of.change, dp, mean, moment, more);
     if (drag->wet != FU_ALL_WET) wet_body_over_step(model, drag, &of, dp, mean, moment, on_place);
     for (int d = 0; d < dim; ++d) rate[d] = dp[d] / at->h;
-    fu_fluid_on_particles(model, drag, &of.halfway, mean, rate, of.v, 1.0, left, sums->power);
+    on_particles(model, drag, &of.halfway, mean, rate, of.v, 1.0, left, sums->power);
     for (int d = 0; d < dim; ++d) left[d] -= on_place[d];
     for (int d = 0; d < dim && sums->power; ++d) /* as along a cable */
         sums->power->external +=
-            rate[d] * (0.5 * (of.past[0].w[d] + of.past[1].w[d]) - of.v[d] - more[d] + of.halfway.flow.U[d]);
+            rate[d] * (0.5 * (of.motion[0].w[d] + of.motion[1].w[d]) - of.v[d] - more[d] + of.halfway.flow.U[d]);
     for (int d = 0; d < dim && sums->total; ++d) sums->total[d] -= left[d];
     if (!sums->f) return;
     fu_discrete_point(model, &drag->attachments[0], at->now, at->next, of.turning.P);

@@ -13,8 +13,7 @@ static void impulse(const fu_model *model, const fu_drag *drag, const fu_drag_pl
 {
     if (drag->cable >= 0) drag->kernel->impulse_of_cable(at->r_x, at->v, drag->added, p, M);
     else drag->kernel->impulse_of_point(A, drag->added, at->v, p, M);
-    if (drag->wet == FU_ALL_WET) return;
-    const double part = fu_wet_at_height(drag, fu_drag_height(model, drag, at->r)).part;
+    const double part = fu_wet_part(model, drag, at->r).part;
     for (int i = 0; i < model->dim; ++i) p[i] *= part;
     for (int i = 0; i < model->dim * model->dim; ++i) M[i] *= part;
 }

@@ -166,6 +166,7 @@ void fu_drag_visit(const fu_model *model, const fu_drag *drag, const double *q, 
 /* couplings/fluid/wetness.c: the wet part at a height; the height of a point, m; the points of quadrature of an element
  * at the coordinates e, and over a step between two coordinates. */
 fu_wetness fu_wet_at_height(const fu_drag *drag, double height);
+fu_wetness fu_wet_part(const fu_model *model, const fu_drag *drag, const double *r); /* at a point */
 double fu_wet_reach(const fu_drag *drag); /* largest distance from a surface at which the wet part changes, m */
 double fu_drag_height(const fu_model *model, const fu_drag *drag, const double *r);
 void fu_drag_points_on(const fu_model *model, const fu_drag *drag, int element, const double *e, fu_drag_points *out);
@@ -192,13 +193,6 @@ void fu_section_matrix(const fu_drag_action *action, fu_quadrature_point point, 
 /* flags of a state: one of the table, one of each event function of surfaces */
 #define FU_DRAG_FLAGS (1 + FU_SURFACE_EVENT_FUNCTIONS)
 
-/* Motion of a point relative to the fluid: w and its rate, whose derivative by the velocity is minus the flow's
- * gradient; DU/Dt of the fluid; the wet part, its derivative by position, and its second derivative by the height. */
-typedef struct {
-    fu_flow_state flow;
-    double w[3], w_rate[3], material[3], wet, by_place[3], curvature;
-} fu_fluid_past;
-
 /* couplings/fluid/added_mass.c: inertial forces of the fluid, with the accelerations `a` of the dofs (null: zero). */
 void fu_added_mass_forces(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
                           const fu_drag_sums *sums);
@@ -209,12 +203,6 @@ void fu_added_mass_tangent(const fu_model *model, const fu_drag *drag, const fu_
  * (dim x dim of 9). */
 #define FU_ADDED_MASS_DENSITIES 15
 void fu_added_mass_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);
-fu_fluid_past fu_past_fluid(const fu_model *model, const fu_drag *drag, double t, const double *r, const double *v,
-                            const double *a);
-/* Computes the force on particles by an impulse p and its rate, with the sign of the left side of the equations of
- * motion, and adds its power. */
-void fu_fluid_on_particles(const fu_model *model, const fu_drag *drag, const fu_fluid_past *at, const double *p,
-                           const double *p_rate, const double *v, double part, double left[3], fu_drag_powers *power);
 /* Adds a force on the particles and one on the slope, at a point of quadrature, to the forces on an element's dofs. */
 void fu_fluid_on_element(const fu_model *model, const fu_drag *drag, int first, fu_quadrature_point point,
                          const double *left, const double *on_slope, const fu_drag_sums *sums);

@@ -97,7 +97,7 @@ static void scale(int n, double by, double *x)
 static void take_wet_part(const fu_model *model, const fu_drag *drag, const fu_drag_place *at, fu_drag_action *out)
 {
     const int dim = model->dim;
-    const fu_wetness wet = fu_wet_at_height(drag, fu_drag_height(model, drag, at->r));
+    const fu_wetness wet = fu_wet_part(model, drag, at->r);
     for (int i = 0; i < dim; ++i)
         for (int j = 0; j < dim; ++j)
             out->by_wet[i * dim + j] = (out->f[i] + out->buoyancy[i]) * wet.slope * drag->flow.up[j];

@@ -68,6 +68,12 @@ double fu_drag_height(const fu_model *model, const fu_drag *drag, const double *
     return drag->flow.base + fu_dot(model->dim, drag->flow.up, r);
 }
 
+fu_wetness fu_wet_part(const fu_model *model, const fu_drag *drag, const double *r)
+{
+    return drag->wet == FU_ALL_WET ? (fu_wetness){1.0, 0.0, 0.0}
+                                   : fu_wet_at_height(drag, fu_drag_height(model, drag, r));
+}
+
 /* Heights of the axis over a span of an element: a0 + a1 x + a2 x^2 + a3 x^3, x from 0 to 1. */
 typedef struct {
     double start, length, a[4];
