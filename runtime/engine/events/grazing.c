@@ -1,6 +1,12 @@
-/* Grazing events: an event function passes zero within a step and returns by its end, as in a grazing contact. The step
- * then ends at the predicted largest excursion beyond zero, by the cubic through values and rates at both ends
- * (Hermite). */
+/* Grazing events: an event function passes zero within a step and returns by its end, as in a grazing contact. The
+ * step then ends at the predicted largest excursion beyond zero, by the cubic through values and rates at both ends
+ * (Hermite).
+ *
+ * The prediction serves event functions that are plain numbers: entries of q, v and s, ends of buffers, bounds and
+ * reversals of forces between points, and lines in contact. Without it, a double root within a step is found only if a
+ * step happens to end between the roots. The cubic is sufficient here, since these functions are smooth over a step;
+ * distances between bodies use couplings/common/continuous_detection.c.
+ */
 #include "base/cubic.h"
 #include "bodies/rotation.h"
 #include "equations/run.h"

@@ -1,9 +1,13 @@
 /* Continuous collision detection of a point, with a sphere about it, and a surface, in the axes of its shape.
  *
  * A height field has only the vertical distance, G; over the root of 1 + slope^2 it is the distance at the surface
- * alone. Over a path w the slope is at most the one here plus w times the largest second derivative, and nowhere
- * more than the largest slope; with that slope, s, the point stays off the surface while
- *     G - w (1 + s^2)^(1/2) > radius (1 + s^2)^(1/2). */
+ * alone. Over a path w the slope is at most the one here plus w times the largest second derivative, and nowhere more
+ * than the largest slope; with that slope, s, the point stays off the surface while G - w (1 + s^2)^(1/2) > radius (1
+ * + s^2)^(1/2).
+ *
+ * The bound by slope and second derivative is needed for terrains alone: other shapes have a distance of slope 1.
+ * Without it the largest slope would hold everywhere, and points over even ground would advance in shorter steps.
+ */
 #include "base/cubic.h"
 #include "couplings/common/continuous_detection.h"
 
