@@ -126,20 +126,27 @@ static int leaves_nothing(const fu_run *run, const fu_newton *method, double siz
     return size <= run->round_off || (ratio >= 1.0 && size <= ROUNDING_FACTOR * run->round_off);
 }
 
+/* Solves for a correction by the residual in run->rhs, and applies it; returns nonzero if there is none. */
+static int correct(fu_run *run, const fu_newton *method, double h, double *size)
+{
+    if (!run->factored && factor(run, method, h)) return 1;
+    const double begin = fu_clock();
+    fu_system_solve(&run->newton, run->model->lapack, run->rhs);
+    run->statistics.time_solve += fu_clock() - begin;
+    *size = method->apply(run, h);
+    ++run->statistics.newton_iterations;
+    return *size < FU_RUNS_AWAY ? 0 : blame(run);
+}
+
 /* Iterates from the prediction with the current matrix; returns 0 on convergence. */
 static int iterate(fu_run *run, const fu_newton *method, double h)
 {
     double last = 0.0, ratio = 0.0;
     method->kinematics(run, h);
     for (int i = 0; i < method->most_iterations; ++i) {
+        double size;
         method->residual(run, h);
-        if (!run->factored && factor(run, method, h)) return 1;
-        const double begin = fu_clock();
-        fu_system_solve(&run->newton, run->model->lapack, run->rhs);
-        run->statistics.time_solve += fu_clock() - begin;
-        const double size = method->apply(run, h);
-        ++run->statistics.newton_iterations;
-        if (!(size < FU_RUNS_AWAY)) return blame(run);
+        if (correct(run, method, h, &size)) return 1;
         if (i > 0) {
             ratio = size / last;
             if (ratio >= 1.0 && size > ROUNDING_FACTOR * run->round_off) return blame(run);
@@ -204,13 +211,9 @@ static int iterate_compensated(fu_run *run, const fu_newton *method, double h)
     method->residual(run, h);
     residual_size before = size_of_residual(run);
     for (int i = 0; i < method->most_iterations; ++i) {
-        if (!run->factored && factor(run, method, h)) return 1;
-        const double begin = fu_clock();
-        fu_system_solve(&run->newton, run->model->lapack, run->rhs);
-        run->statistics.time_solve += fu_clock() - begin;
-        const double size = method->apply(run, h), ratio = fmin(fmax(size / last, MIN_CONTRACTION), MAX_CONTRACTION);
-        ++run->statistics.newton_iterations;
-        if (!(size < FU_RUNS_AWAY)) return blame(run);
+        double size;
+        if (correct(run, method, h, &size)) return 1;
+        const double ratio = fmin(fmax(size / last, MIN_CONTRACTION), MAX_CONTRACTION);
         if (size >= last && size > ROUNDING_FACTOR * run->round_off) return blame(run);
         method->kinematics(run, h);
         method->residual(run, h);

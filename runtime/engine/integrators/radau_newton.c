@@ -129,15 +129,13 @@ void fu_radau_right_side(fu_run *run, const double *r, double *unknowns)
     }
 }
 
-double fu_radau_correct(fu_run *run, fu_radau_workspace *w, double h)
+/* Computes the right sides r of both systems, as dofs, from the stages' accelerations and increments. */
+static void transform_residual(const fu_run *run, fu_radau_workspace *w, double h)
 {
-    const double begin = fu_clock();
-    const fu_model *model = run->model;
     const fu_radau_parameters *method = fu_radau_method(run);
-    const int n = model->n_dof, all = run->newton.n + run->newton.m;
+    const int n = run->model->n_dof;
     const double real = h / method->gamma;
     const fu_complex other = complex_step(method, h), square = fu_complex_product(other, other);
-    fu_complex *x = w->newton.x;
     for (int i = 0; i < n; ++i)
         for (int r = 0; r < STAGES; ++r) {
             const double *row = method->T_inverse + STAGES * r;
@@ -154,23 +152,13 @@ double fu_radau_correct(fu_run *run, fu_radau_workspace *w, double h)
         w->w[n + i] = r.re;
         w->w[2 * n + i] = r.im;
     }
-    for (int part = 1; part < STAGES; ++part) {
-        fu_radau_right_side(run, w->w + (long)part * n, w->unknowns);
-        for (int i = 0; i < all; ++i) *(part == 1 ? &x[i].re : &x[i].im) = run->rhs[i];
-    }
-    fu_complex_system_solve(&w->newton, &run->newton, model->lapack);
-    fu_radau_right_side(run, w->w, w->unknowns);
-    fu_system_solve(&run->newton, model->lapack, run->rhs);
-    fu_spread(model, run->rhs, w->w);
-    for (int i = 0; i < n; ++i) w->w[i] /= real;
-    for (int part = 1; part < STAGES; ++part) {
-        for (int i = 0; i < all; ++i) {
-            const fu_complex change = fu_complex_quotient(x[i], other);
-            run->rhs[i] = part == 1 ? change.re : change.im;
-        }
-        fu_spread(model, run->rhs, w->w + (long)part * n);
-    }
-    for (int i = 0; i < model->n_extra; ++i) run->rhs[model->n_band + model->n_border_dof + i] = 0.0;
+}
+
+/* Adds the transformed solution to the stages' increments; returns the size of the correction as a length. */
+static double add_increments(fu_run *run, fu_radau_workspace *w, double h)
+{
+    const fu_radau_parameters *method = fu_radau_method(run);
+    const int n = run->model->n_dof;
     double largest = 0.0;
     for (int k = 0; k < STAGES; ++k) {
         const double *row = method->T + STAGES * k;
@@ -179,9 +167,39 @@ double fu_radau_correct(fu_run *run, fu_radau_workspace *w, double h)
             w->Z[(long)k * n + i] += change;
             run->work[i] = h * change;
         }
-        const double size = fu_size(model, run->work);
+        const double size = fu_size(run->model, run->work);
         if (!(size <= largest)) largest = size;
     }
+    return largest;
+}
+
+double fu_radau_correct(fu_run *run, fu_radau_workspace *w, double h)
+{
+    const double begin = fu_clock();
+    const fu_model *model = run->model;
+    const fu_radau_parameters *method = fu_radau_method(run);
+    const int n = model->n_dof, all = run->newton.n + run->newton.m;
+    const fu_complex other = complex_step(method, h);
+    fu_complex *x = w->newton.x;
+    transform_residual(run, w, h);
+    for (int part = 1; part < STAGES; ++part) {
+        fu_radau_right_side(run, w->w + (long)part * n, w->unknowns);
+        for (int i = 0; i < all; ++i) *(part == 1 ? &x[i].re : &x[i].im) = run->rhs[i];
+    }
+    fu_complex_system_solve(&w->newton, &run->newton, model->lapack);
+    fu_radau_right_side(run, w->w, w->unknowns);
+    fu_system_solve(&run->newton, model->lapack, run->rhs);
+    fu_spread(model, run->rhs, w->w);
+    for (int i = 0; i < n; ++i) w->w[i] /= h / method->gamma;
+    for (int part = 1; part < STAGES; ++part) {
+        for (int i = 0; i < all; ++i) {
+            const fu_complex change = fu_complex_quotient(x[i], other);
+            run->rhs[i] = part == 1 ? change.re : change.im;
+        }
+        fu_spread(model, run->rhs, w->w + (long)part * n);
+    }
+    for (int i = 0; i < model->n_extra; ++i) run->rhs[model->n_band + model->n_border_dof + i] = 0.0;
+    const double largest = add_increments(run, w, h);
     run->statistics.time_solve += fu_clock() - begin;
     return largest;
 }

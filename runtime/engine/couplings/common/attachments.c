@@ -28,6 +28,31 @@ typedef struct {
             [3 * FU_MAX_COORDINATES]; /* shape functions of each: themselves, their first and second derivative by x */
 } frame_vectors;
 
+/* Computes the k-th vector of the frame, a sum over the n vectors of an element with coordinates e and rates v. */
+static void add_vector(const fu_cable *cable, const double *e, const double *v, double s_rate, int on_slide,
+                       int n_columns, int k, frame_vectors *w)
+{
+    const int dim = cable->kernel->dim, n = cable->coordinates / dim;
+    const double *S = w->S[k], *S_x = S + n, *S_xx = S + 2 * n;
+    for (int d = 0; d < dim; ++d) {
+        double value = 0.0, slope = 0.0, bend = 0.0, rate = 0.0, slope_rate = 0.0;
+        for (int i = 0; i < n; ++i) {
+            /* from the first node: slopes do not depend on its position, and no digits are lost far from the origin */
+            const double at = e[i * dim + d] - (i % cable->kernel->vectors == 0 ? e[d] : 0.0);
+            value += S[i] * at;
+            slope += S_x[i] * at;
+            bend += S_xx[i] * at;
+            rate += S[i] * v[i * dim + d];
+            slope_rate += S_x[i] * v[i * dim + d];
+            w->rows[(k * dim + d) * n_columns + i * dim + d] = S[i];
+        }
+        w->value[k][d] = value;
+        w->rate[k][d] = rate + slope * s_rate;
+        w->second[k][d] = (2.0 * slope_rate + bend * s_rate) * s_rate;
+        if (on_slide) w->rows[(k * dim + d) * n_columns + n * dim] = slope;
+    }
+}
+
 static void vectors_of(const fu_model *model, const fu_attachment *on, const fu_state *state, double s_rate,
                        int n_columns, frame_vectors *w)
 {
@@ -58,25 +83,7 @@ static void vectors_of(const fu_model *model, const fu_attachment *on, const fu_
             memcpy(w->S[k], on->S + k * n, sizeof(double) * (size_t)n);
             memset(w->S[k] + n, 0, sizeof(double) * 2 * (size_t)n);
         }
-        const double *S = w->S[k], *S_x = S + n, *S_xx = S + 2 * n;
-        for (int d = 0; d < dim; ++d) {
-            double value = 0.0, slope = 0.0, bend = 0.0, rate = 0.0, slope_rate = 0.0;
-            for (int i = 0; i < n; ++i) {
-                /* from the first node: slopes do not depend on its position, and no digits are lost far from the
-                 * origin */
-                const double at = e[i * dim + d] - (i % cable->kernel->vectors == 0 ? e[d] : 0.0);
-                value += S[i] * at;
-                slope += S_x[i] * at;
-                bend += S_xx[i] * at;
-                rate += S[i] * v[i * dim + d];
-                slope_rate += S_x[i] * v[i * dim + d];
-                w->rows[(k * dim + d) * n_columns + i * dim + d] = S[i];
-            }
-            w->value[k][d] = value;
-            w->rate[k][d] = rate + slope * s_rate;
-            w->second[k][d] = (2.0 * slope_rate + bend * s_rate) * s_rate;
-            if (on_slide) w->rows[(k * dim + d) * n_columns + n * dim] = slope;
-        }
+        add_vector(cable, e, v, s_rate, on_slide, n_columns, k, w);
     }
 }
 

@@ -217,8 +217,31 @@ void fu_contact_step_residual(const fu_model *model, const fu_coupling *coupling
     over_step(model, of(coupling), at, f);
 }
 
-/* The middle moves by half of psi, which is in weights.stiffness: terms of the end count twice. The rotation of bodies
- * in the step is that at its middle. */
+/* Computes force and derivatives of a point over a step, in point->next, along the ground's axes. The middle moves by
+ * half of psi, which is in weights.stiffness: terms of the end count twice. */
+static void derivatives_over_step(const fu_model *model, const fu_contact *contact, const surface_step *on, double h,
+                                  point_step *point)
+{
+    const int dim = model->dim;
+    fu_contact_point *next = &point->next;
+    double force[3], friction[3];
+    fu_contact_step(model, contact, &on->frame, h, &point->now, next, force, friction, next->by_place,
+                    next->by_stretch);
+    for (int i = 0; i < dim * dim; ++i) {
+        next->by_place[i] *= 2.0;
+        next->by_stretch[i] *= 2.0;
+    }
+    for (int d = 0; d < dim; ++d) force[d] += friction[d];
+    memset(next->by_rate, 0, sizeof next->by_rate);
+    memcpy(next->f, force, sizeof next->f);
+    if (!on->moves) return;
+    fu_surface_out(dim, &on->mean, force, next->f);
+    turn_derivative(dim, &on->mean, next->by_place);
+    turn_derivative(dim, &on->mean, next->by_stretch);
+    turn_derivative(dim, &on->mean, next->distance.H);
+}
+
+/* The rotation of bodies in the step is that at its middle. */
 void fu_contact_step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,
                              fu_system *system)
 {
@@ -236,23 +259,8 @@ void fu_contact_step_tangent(const fu_model *model, const fu_coupling *coupling,
         for (int k = 0; k < contact->n_points; ++k) {
             point_step point;
             fu_contact_point *next = &point.next;
-            double force[3], friction[3];
             if (!point_over_step(model, contact, &on, at, e, k, &point)) continue;
-            fu_contact_step(model, contact, &on.frame, at->h, &point.now, next, force, friction, next->by_place,
-                            next->by_stretch);
-            for (int i = 0; i < dim * dim; ++i) {
-                next->by_place[i] *= 2.0;
-                next->by_stretch[i] *= 2.0;
-            }
-            for (int d = 0; d < dim; ++d) force[d] += friction[d];
-            memset(next->by_rate, 0, sizeof next->by_rate);
-            memcpy(next->f, force, sizeof next->f);
-            if (on.moves) {
-                fu_surface_out(dim, &on.mean, force, next->f);
-                turn_derivative(dim, &on.mean, next->by_place);
-                turn_derivative(dim, &on.mean, next->by_stretch);
-                turn_derivative(dim, &on.mean, next->distance.H);
-            }
+            derivatives_over_step(model, contact, &on, at->h, &point);
             if (on.moves || !n) {
                 memcpy(next->r, point.middle, sizeof next->r);
                 for (int d = 0; d < dim && fu_contact_rolls(contact); ++d)

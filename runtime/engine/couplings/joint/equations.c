@@ -208,6 +208,20 @@ static void replace_s(const fu_model *model, const fu_joint *joint, const joint_
     }
 }
 
+/* Subtracts the accelerations of gap and rotations at zero accelerations of the coordinates, times J, from W. */
+static void subtract_bias(int dim, int m, const joint_view *view, const double *by_moves, double *W)
+{
+    const fu_attachment_state *one = &view->at[0], *two = &view->at[1];
+    double bias[MAX_MOVES] = {0.0};
+    for (int d = 0; d < dim; ++d) bias[d] = two->bias[d] - one->bias[d];
+    for (int d = 0; d < view->turns; ++d) {
+        bias[dim + d] = one->alpha[d];
+        bias[dim + view->turns + d] = two->alpha[d];
+    }
+    for (int r = 0; r < m; ++r)
+        for (int k = 0; k < view->moves; ++k) W[r] -= by_moves[r * view->moves + k] * bias[k];
+}
+
 /* Computes H q'' = W, the residual phi, and its rate at rest; s of an attachment on a slide follows (eq 24, 31, 37): H
  * = C_q + C_s G, W = -Q_d - C_s (s'' - G q''). The rows of that slide exist already. */
 void fu_joint_rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work)
@@ -237,16 +251,8 @@ void fu_joint_rows(const fu_model *model, const fu_coupling *coupling, const fu_
     double Q_d[6];
     joint->kernel->motion(view.gap, view.A[0], view.A[1], view.c, gap_rate, turning[0], turning[1], driving, rows->rate,
                           Q_d);
-    double bias[MAX_MOVES] = {0.0};
-    for (int d = 0; d < dim; ++d) bias[d] = two->bias[d] - one->bias[d];
-    for (int d = 0; d < view.turns; ++d) {
-        bias[dim + d] = one->alpha[d];
-        bias[dim + view.turns + d] = two->alpha[d];
-    }
-    for (int r = 0; r < m; ++r) {
-        rows->W[r] = -Q_d[r];
-        for (int k = 0; k < view.moves; ++k) rows->W[r] -= by_moves[r * view.moves + k] * bias[k];
-    }
+    for (int r = 0; r < m; ++r) rows->W[r] = -Q_d[r];
+    subtract_bias(dim, m, &view, by_moves, rows->W);
     replace_s(model, joint, &view, J, work, rows);
     rows->redundant_rows = joint->redundant_rows;
     for (int r = 0; r < m; ++r)

@@ -114,6 +114,17 @@ void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const
         for (int k = 0; k < n_rider; ++k) K[(n_element + i) * n + n_element + k] = part[i * n_rider + k];
 }
 
+/* Adds the row that locks s to the rows across the cable: s of the slide less its signal or its place. */
+static void add_lock(const fu_model *model, const fu_state *state, int j, const fu_slide_state *slide_state, int across,
+                     fu_rows *rows)
+{
+    double rate, second;
+    memcpy(rows->H + across * rows->n, slide_state->G, sizeof(double) * (size_t)rows->n);
+    rows->C[across] = state->s[j] - fu_slide_locked_s(model, state, j, &rate, &second);
+    rows->rate[across] = -rate;
+    rows->W[across] = second - slide_state->s_bias;
+}
+
 /* Computes eq 20-37 over the slide's coordinates: H and W of the active constraints, and the coefficients of s. */
 void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows *rows, fu_slide_state *slide_state)
 {
@@ -153,12 +164,7 @@ void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows
         rows->C[c] = slide_state->C[1 + c];
         rows->rate[c] = 0.0;
     }
-    if (flags->mode != FU_LOCKED) return;
-    double rate, second;
-    memcpy(rows->H + across * n, slide_state->G, sizeof(double) * (size_t)n);
-    rows->C[across] = state->s[j] - fu_slide_locked_s(model, state, j, &rate, &second);
-    rows->rate[across] = -rate;
-    rows->W[across] = second - slide_state->s_bias;
+    if (flags->mode == FU_LOCKED) add_lock(model, state, j, slide_state, across, rows);
 }
 
 /* Returns s of a locked slide, m, with its rate and its second rate. */
