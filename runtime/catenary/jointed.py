@@ -104,7 +104,7 @@ class JointedPantograph(Part):
                 raise ValueError(f"the {what} are in line, or one of them has no length: the posture is not determined",
                                  "move an end of one of them")
         if not abs(self.rates()[1]) > DEAD_CENTRE_SINE * float(np.linalg.norm(knee)):
-            raise ValueError("the head does not rise as the lower arm turns: no moment makes a force there",
+            raise ValueError("the head does not rise as the lower arm turns: a moment on it exerts no vertical force",
                              "draw it at another height")
         return self
 

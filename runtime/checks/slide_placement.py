@@ -61,7 +61,7 @@ def _start(scene: SceneData, slide: Slide, cable: Cable) -> float:
     gaps = np.linalg.norm(cable.points_at(places) - point, axis=-1)
     if gaps[0] > MAX_GAP * cable.length:
         raise SceneError(slide.where, _away(scene, slide.completed({"s": places[0]}), gaps[0]) + ", the nearest place",
-                         "draw one through the other")
+                         "draw the cable through that point, or move the point to the cable")
     if len(near := places[gaps <= max(MAX_DISTANCE_RATIO * gaps[0], LENGTH_TOLERANCE * cable.length)]) > 1:
         raise SceneError(slide.where, f'cable "{cable.name}" passes the point of {_carrier(slide)} at '
                          f"{show(point, 'm')} at s = {' and '.join(f'{s:.6g}' for s in np.sort(near))} m", "give s")

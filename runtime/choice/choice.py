@@ -13,8 +13,8 @@ from .remeshing import CableModel, S
 
 def of_unchanged(names: list[str]) -> str:
     """Return the sentence on quantities that did not change."""
-    error = ("the error of the shape at rest is over the scene's extent" if names == [MOTION] else
-            "nothing is estimated of that")
+    error = ("the error of the shape at rest is relative to the extent of the scene" if names == [MOTION] else
+            "their error is not estimated")
     return f"{' and '.join(names)} did not change in the short runs: {error}"
 
 

@@ -148,7 +148,7 @@ class Chooser(Generic[S]):
 
     @property
     def wanted(self) -> float:
-        """Return the error that the mesh may have, before that of the model is known."""
+        """Return the error allowed for the mesh before the error of the model is known."""
         could_shear = any(each.could_shear for each in self.free)
         return max((1 - ASSUMED_ERROR * could_shear) * self.tol - self.time.error, MIN_MESH_SHARE * self.tol)
 

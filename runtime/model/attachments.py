@@ -1,4 +1,4 @@
-"""Attachments as the engine takes them, and the builder that couplings are made with."""
+"""Models of attachments, and the builder of couplings."""
 
 from __future__ import annotations
 

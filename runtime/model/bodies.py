@@ -1,4 +1,4 @@
-"""Rigid and modal bodies as the engine takes them: inertia, configuration, weight."""
+"""Models of rigid and modal bodies: inertia, configuration, weight."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def configuration_of(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
 
 
 def velocity_of(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
-    """Return its velocities at the start, those of modes zero."""
+    """Return the initial velocities of a body; modal velocities are zero."""
     turning = np.array(body.angular_velocity)
     velocity, modes = np.array(body.velocity), np.zeros(0)
     if isinstance(body, ModalBody):

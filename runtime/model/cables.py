@@ -1,4 +1,4 @@
-"""Cables as the engine takes them: constants of their elements, weight, and how they start."""
+"""Models of cables: constants of their elements, weight, initial state."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Surfaces and contact with them, as the engine takes them."""
+"""Models of surfaces and of contact with them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Fluids and the drag in them, as the engine takes them."""
+"""Models of fluids and of drag in them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Joints between two attachments as the engine takes them, those between a rider's axes and its cable included."""
+"""Models of joints between two attachments, those between a rider's axes and its cable included."""
 
 from __future__ import annotations
 

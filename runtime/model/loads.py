@@ -1,4 +1,4 @@
-"""Loads of a scene, as the engine takes them."""
+"""Models of loads: dead forces on dofs, and loads that depend on the state."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class LoadModel(CouplingModel):
 
 
 class LoadBuilder:
-    """Translates loads: into dead ones, of constant direction in the dofs, and others."""
+    """Builds the models of loads: dead ones, constant in the dofs, and others."""
 
     def __init__(self, builder: ModelBuilder):
         self.builder, self.scene, self.cables = builder, builder.scene, builder.cables

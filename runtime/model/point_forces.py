@@ -1,4 +1,4 @@
-"""Forces between two points of a scene, as the engine takes them."""
+"""Models of forces between two points of a scene."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Signals of a scene, as the engine takes them."""
+"""Models of the signals of a scene."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Slides as the engine takes them."""
+"""Models of slides: rider, cable, drive, resistances and end stops."""
 
 from __future__ import annotations
 

@@ -183,7 +183,7 @@ def _component(plane: Plane, k: int, displacement: tuple[Signal | None, ...]) ->
     if not prescribed:
         return None if k < 2 else Constant(constant=0.0)
     if len(prescribed) < len(given):
-        raise ValueError("leaves a direction free that lies neither in the plane's axes nor across them")
+        raise ValueError("leaves a direction free that is neither an axis of the plane nor its normal")
     factors, signals = zip(*prescribed, strict=True)
     return combined(factors, signals)
 

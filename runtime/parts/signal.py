@@ -263,7 +263,7 @@ class Integral(Signal):
     @model_validator(mode="after")
     def _fits(self) -> Integral:
         if isinstance(self.rate, Integral):
-            raise ValueError("rate is an integral, whose own integral has too high a degree")
+            raise ValueError("rate is an integral: the degree of its integral is too high")
         return self
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:

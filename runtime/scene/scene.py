@@ -217,8 +217,9 @@ class Scene(Viewable, DescribedScene):
                 self._estimate(run, settings, given)
                 if stream:
                     stream.add_to_report(run.report)
-            if was_interrupted() and run.status != "interrupted":  # after the end: results are complete
-                warnings.warn("the run had come to its end when it was interrupted", FunicularWarning, stacklevel=5)
+            if was_interrupted() and run.status != "interrupted":
+                warnings.warn("the interruption came after the end of the run: its results are complete",
+                              FunicularWarning, stacklevel=5)
             return run
 
     def _saving(self, settings: RunSettings, resume: bool) -> AbstractContextManager[Stream | None]:

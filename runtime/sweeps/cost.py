@@ -62,16 +62,16 @@ def in_words(seconds: float) -> str:
 
 
 def sample(subject: Subject, points: Points, missing: np.ndarray) -> dict[int, Outcome]:
-    """Return the outcomes of some of the points of these numbers, spread over them, in the order of their numbers.
+    """Return outcomes of points sampled among the missing ones, in the order of their numbers.
 
-    At least two are computed, except of very long ones: the first one also imports modules.
+    At least two are computed unless they take very long: the first one includes the import of modules.
     """
     begin, found = time.monotonic(), dict[int, Outcome]()
     places = [round(place * (len(missing) - 1)) for place in SAMPLE_PLACES] if len(missing) else []
     for number in dict.fromkeys(missing[places].tolist()):
         (found[number],) = subject.compute([points.point(number)])
         allowed = SAMPLE_SECONDS * (1 if len(found) > 1 else 3)
-        if any(outcome.kept for outcome in found.values()) and time.monotonic() - begin > allowed:
+        if any(outcome.stored for outcome in found.values()) and time.monotonic() - begin > allowed:
             break
     return dict(sorted(found.items()))
 

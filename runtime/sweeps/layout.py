@@ -1,4 +1,4 @@
-"""The layout of a sweep's file: one row a point, with its parameters, the kept results, and its status."""
+"""The layout of a sweep's file: one row a point, with its parameters, the stored results, and its status."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..errors import SceneError
 from ..results.netcdf import ROW_CHECKSUM, File, sealed
 from ..results.quantities import Variable
 from .parameters import SWEEP, Points
-from .stored_points import OF_POINT, TIME, Kept
+from .stored_points import OF_POINT, TIME, StoredPoint
 from .subject import FAILED, Outcome
 
 POINT, ROW = "point", "row"
@@ -59,32 +59,33 @@ class Layout:
     times: np.ndarray | None
 
     @classmethod
-    def of(cls, points: Points, units: Mapping[str, str], sampled: Sequence[Kept], own_times: int | None) -> Layout:
-        """Return the layout of a sweep from the kept results of some points.
+    def of(cls, points: Points, units: Mapping[str, str], sampled: Sequence[StoredPoint],
+           own_times: int | None) -> Layout:
+        """Return the layout of a sweep from the stored results of some points.
 
         units: of the parameters; own_times: the largest number of output times where points have their own, else None.
         A coordinate that differs among the points, such as the arc-length of a cable's nodes where its length is swept,
         becomes a variable of each. Raises SceneError for a name that is taken.
         """
-        kept = sampled[0].with_own_coords(_differing(sampled))
+        stored = sampled[0].with_own_coords(_differing(sampled))
         parameters = {name: _parameter(values, units.get(name, "")) for name, values in points.columns.items()}
         variables = {}
-        if kept.time is not None and own_times is not None:
+        if stored.time is not None and own_times is not None:
             variables[TIME] = Slot((ROW,), (own_times,), "s", "output time")
-        for name, each in kept.variables.items():
+        for name, each in stored.variables.items():
             dims, shape = each.dims, each.values.shape
             if own_times is not None and dims[:1] == (TIME,):
                 dims, shape = (ROW, *dims[1:]), (own_times, *shape[1:])
             variables[name] = Slot(dims, shape, each.units, each.long_name)
-        taken = {POINT, TIME, *OF_STATUS, *((ROW,) if own_times is not None else ()), *kept.coords}
-        for name in (*parameters, *kept.variables):
+        taken = {POINT, TIME, *OF_STATUS, *((ROW,) if own_times is not None else ()), *stored.coords}
+        for name in (*parameters, *stored.variables):
             if name in taken:
                 raise SceneError(SWEEP, f'the name "{name}" is taken by the dataset of a sweep', "give another one")
-            if name in parameters and name in kept.variables:
+            if name in parameters and name in stored.variables:
                 raise SceneError(SWEEP, f'"{name}" is a parameter, and kept as a result, too',
                                  f'keep it by another name: keep={{"kept": "{name}", ...}}')
-        shared = None if own_times is not None else kept.time
-        coords = kept.coords if shared is None else kept.coords | {TIME: Variable((TIME,), shared, "s", "time")}
+        shared = None if own_times is not None else stored.time
+        coords = stored.coords if shared is None else stored.coords | {TIME: Variable((TIME,), shared, "s", "time")}
         return cls(parameters, variables, coords, shared)
 
     @classmethod
@@ -124,15 +125,15 @@ class Layout:
         own_coords = [name.removesuffix(OF_POINT) for name in self.variables if name.endswith(OF_POINT)]
         for k, outcome in enumerate(outcomes):
             status, message = outcome.status, outcome.message
-            kept = None if outcome.kept is None else outcome.kept.with_own_coords(own_coords)
-            complaint = None if kept is None else self._complaint(kept)
+            stored = None if outcome.stored is None else outcome.stored.with_own_coords(own_coords)
+            complaint = None if stored is None else self._complaint(stored)
             if complaint is not None:
-                status, message, kept = FAILED, complaint, None
+                status, message, stored = FAILED, complaint, None
             for name, each in self.variables.items():
-                found = np.nan if kept is None else kept.time if name == TIME else kept.variables[name].values
+                found = np.nan if stored is None else stored.time if name == TIME else stored.variables[name].values
                 if each.dims[:1] == (ROW,):
                     rows[name][k] = np.nan  # behind the last output time of the point
-                    if kept is not None:
+                    if stored is not None:
                         rows[name][k][: len(np.asarray(found))] = found
                 else:
                     rows[name][k] = found
@@ -145,28 +146,28 @@ class Layout:
         """Return the number of these rows (n,) whose points failed."""
         return int(np.sum(np.all(rows[STATUS] == _text(FAILED, STATUS_BYTES), axis=1)))
 
-    def _complaint(self, kept: Kept) -> str | None:
+    def _complaint(self, stored: StoredPoint) -> str | None:
         """Return why a point does not fit in a row, None where it does."""
         for name, each in self.variables.items():
-            if name != TIME and (complaint := _misfit(name, each, kept)) is not None:
+            if name != TIME and (complaint := _misfit(name, each, stored)) is not None:
                 return f"{SWEEP}: {complaint}"
-        for name in kept.variables:
+        for name in stored.variables:
             if name not in self.variables:
                 return f'{SWEEP}: the point has "{name}", which the first points had not'
         for name, coordinate in self.coords.items():
-            here = kept.coords.get(name)
+            here = stored.coords.get(name)
             if name != TIME and (here is None or not np.array_equal(coordinate.values, here.values)):
                 return f'{SWEEP}: the point has another "{name}" than the first points; sweep in parts'
-        if self.times is not None and (kept.time is None or not np.array_equal(self.times, kept.time)):
+        if self.times is not None and (stored.time is None or not np.array_equal(self.times, stored.time)):
             return f"{SWEEP}: the point has other output times than the first ones; give all the same"
         return None
 
 
-def _misfit(name: str, each: Slot, kept: Kept) -> str | None:
+def _misfit(name: str, each: Slot, stored: StoredPoint) -> str | None:
     """Return why a variable of a point does not fit in its place, None where it does."""
-    if name not in kept.variables:
+    if name not in stored.variables:
         return f'the point has no "{name}", which the first points had'
-    dims, shape, room = kept.variables[name].dims, kept.variables[name].values.shape, each.shape
+    dims, shape, room = stored.variables[name].dims, stored.variables[name].values.shape, each.shape
     over_rows = each.dims[:1] == (ROW,)
     if dims != tuple(TIME if dim == ROW else dim for dim in each.dims):
         return (f'"{name}" is over {", ".join(dims) or "nothing"} here, and over {", ".join(each.dims) or "nothing"} '
@@ -179,7 +180,7 @@ def _misfit(name: str, each: Slot, kept: Kept) -> str | None:
     return None
 
 
-def _differing(sampled: Sequence[Kept]) -> list[str]:
+def _differing(sampled: Sequence[StoredPoint]) -> list[str]:
     """Return the dimensions whose coordinates are equally many numbers at all points, but not the same."""
     first = sampled[0].coords
     return [name for name, variable in first.items() if variable.values.dtype.kind == "f" and any(

@@ -1,4 +1,4 @@
-"""The kept results of each point of a sweep: results of its run by name, numbers from functions of it, or a dict."""
+"""Stored results of each point of a sweep: results of its run by name, numbers from functions of it, or a dict."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ OF_POINT = ".of_point"
 
 
 @dataclass(frozen=True)
-class Kept:
-    """The kept results of one point: variables, coordinates of their dimensions, and output times (time,) in s.
+class StoredPoint:
+    """The stored results of one point: variables, coordinates of their dimensions, and output times (time,) in s.
 
     time: None where no variable is over time.
     """
@@ -35,11 +35,11 @@ class Kept:
     coords: dict[str, Variable] = field(default_factory=dict)
     time: np.ndarray | None = None
 
-    def with_own_coords(self, names: Sequence[str]) -> Kept:
+    def with_own_coords(self, names: Sequence[str]) -> StoredPoint:
         """Return it with the coordinates of these dimensions as variables."""
         own = {f"{name}{OF_POINT}": self.coords[name] for name in names if name in self.coords}
         others = {name: each for name, each in self.coords.items() if name not in names}
-        return Kept(self.variables | own, others, self.time)
+        return StoredPoint(self.variables | own, others, self.time)
 
 
 @dataclass(frozen=True)
@@ -84,14 +84,14 @@ class Keep:
             if isinstance(what, str) and what not in known and what.rpartition(".")[0] not in known:
                 raise SceneError(SWEEP, f'runs of this scene have no result "{what}"', near(what, known))
 
-    def take(self, run: Run) -> Kept:
-        """Return the kept results of a run. Raises UnknownResultError, SceneError and any error of the functions."""
+    def take(self, run: Run) -> StoredPoint:
+        """Return the stored results of a run. Raises UnknownResultError, SceneError and any error of the functions."""
         variables = {}
         for name, what in self.wanted.items():
             variables[name] = _result(run, what) if isinstance(what, str) else as_variable(name, what(run))
         dims = {dim for variable in variables.values() for dim in variable.dims}
         coords = {dim: run.coords[dim] for dim in run.coords if dim in dims and dim != TIME}
-        return Kept(variables, coords, run.time if TIME in dims else None)
+        return StoredPoint(variables, coords, run.time if TIME in dims else None)
 
 
 def known_results(scene: SceneData) -> list[str]:
@@ -129,8 +129,8 @@ def as_variable(name: str, value: Any) -> Variable:
     return Variable(tuple(f"{name}.{k}" for k in range(values.ndim)), values.astype(float), "", "")
 
 
-def of_dict(data: Mapping[str, Any], keep: Keep) -> Kept:
-    """Return the kept ones of numbers and arrays by name: all, or those that are named. Raises SceneError."""
+def of_dict(data: Mapping[str, Any], keep: Keep) -> StoredPoint:
+    """Return numbers and arrays to store, by name: all, or those named. Raises SceneError."""
     names: Iterable[Any] = [what for what in keep.wanted.values() if isinstance(what, str)] or data
     variables = {}
     for name in names:
@@ -139,4 +139,4 @@ def of_dict(data: Mapping[str, Any], keep: Keep) -> Kept:
         if not isinstance(name, str) or not name:
             raise SceneError(SWEEP, f"a name that the function returned must be a text, got {shown(name)}")
         variables[name] = as_variable(name, data[name])
-    return Kept(variables)
+    return StoredPoint(variables)

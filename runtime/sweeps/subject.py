@@ -23,7 +23,7 @@ from ..scene.scene import Scene
 from ..solve.linear.threads import one_blas_thread
 from .identity import identity_of, identity_of_scene
 from .parameters import SWEEP, Points
-from .stored_points import Keep, Kept, of_dict
+from .stored_points import Keep, StoredPoint, of_dict
 
 FAILED = "failed"
 RETURNED = "returned"
@@ -36,11 +36,11 @@ MAX_CHECKED = 1000
 class Outcome(NamedTuple):
     """The outcome of a point.
 
-    kept: None where it failed; status: that of its run, "returned" where a function gave numbers, or "failed"; message:
-    the reason of the failure, else the notes of the run; seconds: wall time.
+    stored: None where it failed; status: that of its run, "returned" where a function gave numbers, or "failed";
+    message: the reason of the failure, else the notes of the run; seconds: wall time.
     """
 
-    kept: Kept | None
+    stored: StoredPoint | None
     status: str
     message: str
     seconds: float
@@ -222,16 +222,16 @@ def _attempt(act: Callable[[Any], Any], given: Any, keep: Keep) -> Outcome | Sce
                 raise KeyboardInterrupt
             if not keep.wanted:
                 raise SceneError(SWEEP, "names no results to keep", 'give keep=["A.position", ...]')
-            kept, status, message = keep.take(made), made.status, "; ".join(made.report["messages"])
+            stored, status, message = keep.take(made), made.status, "; ".join(made.report["messages"])
         elif isinstance(made, Mapping):
-            kept, status, message = of_dict(made, keep), RETURNED, ""
+            stored, status, message = of_dict(made, keep), RETURNED, ""
         else:
             raise SceneError(SWEEP, "the function must return a Scene, a Run, or a dict of numbers and arrays, got "
                              + shown(made))
     except Exception as error:  # of any kind: the other points go on
         message = str(error) if isinstance(error, FunicularError) else f"{type(error).__name__}: {error}"
         return Outcome(None, FAILED, message.removesuffix(": "), time.perf_counter() - begin)
-    return Outcome(kept, status, message, time.perf_counter() - begin)
+    return Outcome(stored, status, message, time.perf_counter() - begin)
 
 
 def _to_check(points: Points) -> list[int]:

@@ -100,16 +100,16 @@ class Plan:
 
     def layout(self, sampled: Mapping[int, Outcome]) -> Layout:
         """Return the layout from a sample. Raises FunicularError where all of it failed."""
-        kept = [outcome.kept for outcome in sampled.values() if outcome.kept is not None]
-        if not kept:
+        stored = [outcome.stored for outcome in sampled.values() if outcome.stored is not None]
+        if not stored:
             first = next(iter(sampled.values()))
             raise FunicularError(f"{SWEEP}: all {len(sampled)} points that were tried first failed; one of them: "
                                  f"{first.message}")
-        times = [each.time for each in kept if each.time is not None]
+        times = [each.time for each in stored if each.time is not None]
         own = self.own_times
         if own is None and any(not np.array_equal(each, times[0]) for each in times):
             own = max(map(len, times))
-        return Layout.of(self.points, self.units, kept, own if times else None)
+        return Layout.of(self.points, self.units, stored, own if times else None)
 
 
 def sweep(subject: Scene | Callable[..., Any], parameters: Mapping[str, Any], *,

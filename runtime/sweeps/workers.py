@@ -110,8 +110,8 @@ def _await_workers(cluster: Any, running: subprocess.Popen[bytes], number: int, 
     while len(cluster.scheduler.workers) < number:
         if running.poll() is not None or time.monotonic() - begin > PATIENCE:
             log.seek(0)
-            said = log.read().strip().splitlines()[-1:] or ["nothing"]
-            raise FunicularError(f"sweep: worker processes did not start; the last they said was: {said[0]}; "
+            output = log.read().strip().splitlines()[-1:] or ["nothing"]
+            raise FunicularError(f"sweep: worker processes did not start; their last output was: {output[0]}; "
                                  "compute in this process alone (workers=0, --serial)")
         time.sleep(0.02)
 

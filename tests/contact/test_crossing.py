@@ -296,7 +296,7 @@ def test_lines_that_become_parallel_end_the_run_with_a_message():
     scene = wire(10, dim=3)
     scene.rigid_body("head", mass=1.0, inertia=(1, 1, 1), position=(5.0, -0.01, 0), angular_velocity=(0, 10, 0))
     scene.crossing("wire", "head", axis=(0, 0, 1), length=2.0, stiffness=STIFFNESS)
-    message = r'crossing "crossing_1" has no contact state any more.* where its lines are parallel'
+    message = r'crossing "crossing_1" has lost its contact state.* where its lines are parallel'
     with pytest.raises(fu.FunicularError, match=message):
         scene.run(duration=0.2, output_step=0.02, step=np.pi / 2000, integrator="genalpha")
 

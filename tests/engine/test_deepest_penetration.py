@@ -85,7 +85,7 @@ def test_lines_that_pass_through_each_other_are_told(integrator):
     scene.pin(wire, s=2.0)
     scene.rigid_body("bar", mass=1.0, inertia=(1, 1, 1), position=(0.1, 0, -0.1), velocity=(0, 0, 2.0))
     crossing = scene.crossing(wire, "bar", axis=(0, 1, 0), length=1.0, stiffness=200.0, radius=0.05)
-    with pytest.warns(fu.FunicularWarning, match="past where its lines touch"):
+    with pytest.warns(fu.FunicularWarning, match="beyond the contact of its lines"):
         run = scene.run(0.6, output_step=0.6, integrator=integrator, tol=1e-4, progress=False)
         fine = scene.run(0.6, output_step=0.001, integrator="radau", tol=1e-5, progress=False)
     assert told_depth(run) == pytest.approx(float(fine[f"{crossing.name}.penetration"].max()), rel=1e-2)
@@ -104,7 +104,7 @@ def test_at_rest_lines_that_touch_are_told(force, told):
     found = Penetrations(scene, build(scene))
     found.see_rest({"contact": np.zeros((1, 0, 10)), "crossing": crossing[None]}, engine=None)
     assert len(found.notes()) == told
-    assert all("0.21 m past where its lines touch" in note for note in found.notes())
+    assert all("0.21 m beyond the contact of its lines" in note for note in found.notes())
 
 
 @pytest.mark.parametrize("shape", [

@@ -145,7 +145,7 @@ def free_in_part(scene):
 
 @pytest.mark.parametrize(("change", "move", "reason"), [
     (sideways, UPRIGHT, "in whose axes it is"), (sideways, ASKEW, "in whose axes it is"),
-    (free_in_part, ASKEW, "leaves a direction free that lies neither in the plane's axes nor across them")])
+    (free_in_part, ASKEW, "leaves a direction free that is neither an axis of the plane nor its normal")])
 def test_what_keeps_a_scene_spatial(change, move, reason):
     scene = turned_scene(shaken(), *move)
     change(scene)

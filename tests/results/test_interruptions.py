@@ -226,7 +226,7 @@ def test_a_finished_run_is_not_lost(monkeypatch):
         return recorded(*given)
 
     monkeypatch.setattr(recording, "recorded", late)
-    with pytest.warns(fu.FunicularWarning, match="had come to its end when it was interrupted"):
+    with pytest.warns(fu.FunicularWarning, match="the interruption came after the end of the run"):
         assert short().run(**SETTINGS).status == "completed"
 
 

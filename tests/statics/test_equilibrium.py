@@ -203,7 +203,7 @@ def test_a_state_of_another_scene_is_refused():
     other = Scene()
     add_cable(other)
     for use in (lambda: other.run(0.1, initial=state), lambda: other.modes(1, about=state)):
-        with pytest.raises(SceneError, match="the state to start from is of another scene: its cables are"):
+        with pytest.raises(SceneError, match="the state to start from belongs to another scene: its cables are"):
             use()
     with pytest.raises(UnknownResultError, match=r'no result "tie\.tensoin"; did you mean "tie\.tension"'):
         state["tie.tensoin"]
@@ -252,5 +252,5 @@ def test_a_state_of_another_mesh_starts_no_run_and_no_load_path():
     state, finer = hanging("cable8p", 6).equilibrium(), hanging("cable8p", 12)
     for use in (lambda: finer.run(0.1, initial=state), lambda: finer.equilibrium(start=state, method="arc_length"),
                 lambda: hanging("cable12", 6).equilibrium(start=state)):
-        with pytest.raises(SceneError, match="the state to start from is of another scene: its cables are"):
+        with pytest.raises(SceneError, match="the state to start from belongs to another scene: its cables are"):
             use()

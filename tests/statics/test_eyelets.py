@@ -137,7 +137,7 @@ def test_a_place_that_is_not_clear_is_refused():
     with pytest.raises(fu.SceneError, match=r'"rope" passes the point of the ground .* at s = .* and .* m; give s'):
         scene.slide(tuple(crossing), along=rope)
     assert scene.slide(tuple(crossing), along=rope, s=rope.nearest_s(crossing).max()).s > 2
-    with pytest.raises(fu.SceneError, match=r"at s = \d\.\d* m, the nearest place; draw one through the other"):
+    with pytest.raises(fu.SceneError, match=r"at s = \d\.\d* m, the nearest place; draw the cable through that point"):
         scene.slide((2, 1, 0), along=rope, name="inside")
 
 

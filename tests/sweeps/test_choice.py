@@ -406,7 +406,7 @@ def test_a_quantity_that_does_not_change_is_named():
     """Its relative error would be 0 with any model."""
     scene = fu.load_scene("paper51")
     choice = scene.choose(1e-2, duration=0.05, quantities=["energy.dissipated", "A.position"])
-    said = "energy.dissipated did not change in the short runs: nothing is estimated of that"
+    said = "energy.dissipated did not change in the short runs: their error is not estimated"
     assert said in choice.messages() and said in choice.reasons
     assert scene.choose(1e-2, duration=0.05, quantities=["A.position"]).unchanged == []
 
@@ -459,7 +459,7 @@ def test_the_shape_of_a_scene_at_rest_keeps_the_tolerance():
     scene, tol = fu.load_scene("mooring"), 1e-3
     choice = scene.choose(tol, duration=20.0, free="all")
     assert choice.kept and choice.unchanged == ["motion"]
-    assert choice.messages()[-1].endswith("the error of the shape at rest is over the scene's extent")
+    assert choice.messages()[-1].endswith("the error of the shape at rest is relative to the extent of the scene")
     run = choice.scene.run(output_step=10.0, progress=False)
     exact = remade(choice.scene, models(choice.scene, "cable8p", "engineering_exact", 64)).equilibrium()
     shape = along(remade(choice.scene, models(choice.scene, "cable8p", "engineering_exact", 64)).cables["line"],

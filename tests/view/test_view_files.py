@@ -92,9 +92,9 @@ def test_a_run_without_times_has_nothing_to_see(tmp_path):
             arrays |= {k: v[:0] for k, v in arrays.items() if k not in ("node_s", "vector_names")}
     recording.time, recording.energy = recording.time[:0], {k: v[:0] for k, v in recording.energy.items()}
     empty = Run.from_recording(recording, scene, RunSettings(duration=1.0), fu.Scene.from_toml)
-    with pytest.raises(FunicularError, match="the run has no output times: there is nothing to see"):
+    with pytest.raises(FunicularError, match="the run has no output times to show"):
         empty.save_html(tmp_path / "page.html")
-    assert "there is nothing to see" in empty._repr_html_()
+    assert "no output times to show" in empty._repr_html_()
 
 
 # ---- films

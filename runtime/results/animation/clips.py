@@ -47,7 +47,7 @@ def of_run(run: Recorded, title: str, frames: int = MAX_FRAMES, with_results: bo
     with_results: with quantities along cables and curves, or positions alone, which is faster.
     """
     if not len(run.time):
-        raise FunicularError("the run has no output times: there is nothing to see")
+        raise FunicularError("the run has no output times to show")
     notes = list(run.report["messages"])
     points = sum(len(stations(cable)) for cable in run.scene.cables.values())
     chosen = thinned(len(run.time), max(2, min(frames, MAX_POINTS // max(1, points))))

@@ -64,16 +64,16 @@ def stopped(model: Model, engine: Engine, status: str, settings: RunSettings) ->
     assert cause is not None, "a step that failed has a cause"
     what = {"iteration": f"the iteration does not converge, with the largest correction at {where}",
             "error": f"the error exceeds what tol allows, most at {where}",
-            "lost_rider": f"{where} does not find its point on the cable any more",
+            "lost_rider": f"{where} has lost its point on the cable",
             "not_finite": f"{where} diverges",
             "self_locking": _self_locking(model, coupling, where),
-            "not_known": f"{where} has no contact state any more"}[cause]
+            "not_known": f"{where} has lost its contact state"}[cause]
     counts = engine.statistics
     gone = f" after {counts['steps']} steps down to {counts['smallest_step_s']:.2g} s" if counts["steps"] else ""
     if cause == "not_known":
         return (f"no force is known at {when}: {what}; {RESULTS_KEPT}. A crossing has no closest points where its "
                 "lines are parallel near each other, or wind around each other: keep them at an angle. A line that "
-                "moves round an end of the other changes sides: begin with them in contact, or make them longer")
+                "moves around an end of the other changes sides: begin with them in contact, or make them longer")
     if settings.step is not None and INTEGRATORS[engine.integrator].stability is not None:
         remedy = _too_large(engine, settings)
     elif cause == "self_locking" and _is_force(model, coupling):
@@ -111,11 +111,11 @@ def _is_force(model: Model, coupling: int | None) -> bool:
 def _self_locking(model: Model, coupling: int | None, where: str) -> str:
     """Return a text on the coupling whose friction has no solution."""
     if coupling is not None and isinstance(model.couplings[coupling], HardContactModel):
-        return (f"no forces that press and rub let {where} go on: friction is self-locking, or changes follow each "
-                "other at once")
+        return (f"no normal and friction forces continue the motion of {where}: friction is self-locking, or contact "
+                "states alternate without end")
     if _is_force(model, coupling):
-        return f"{where} changes to and fro at one instant, again and again"
-    return f"friction is self-locking at {where}: the larger it is, the harder it presses the rider on the cable"
+        return f"{where} alternates between two states at one instant without end"
+    return f"friction is self-locking at {where}: friction increases the normal force of the rider on the cable"
 
 
 def describe_dof(model: Model, dof: int, coupling: int | None = None) -> str:
@@ -199,8 +199,8 @@ def trapped(scene: SceneData, engine: Engine) -> list[str]:
              if slide.frame != "point" and scene.cables[slide.along].element != CONTINUOUS_CURVATURE_ELEMENT]
     if not names or counts["element_crossings"] < max(MANY_NODE_PASSAGES, NODE_PASSAGES_PER_STEP * counts["steps"]):
         return []
-    return [f"slides went over nodes {counts['element_crossings']} times in {counts['steps']} steps: the curvature of "
-            f"their cables jumps there, and pushes the frame that {' or '.join(names)} ties back to the node. Take "
+    return [f"slides passed nodes {counts['element_crossings']} times in {counts['steps']} steps: the curvature of "
+            f"their cables jumps there and drives the frame of {' or '.join(names)} back to the node. Take "
             f'element="{CONTINUOUS_CURVATURE_ELEMENT}", whose curvature is continuous, or more elements']
 
 

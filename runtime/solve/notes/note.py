@@ -45,7 +45,7 @@ class Note:
         """Measure further output rows."""
 
     def see_steps(self, engine: Engine) -> None:
-        """Measure what the engine keeps of the ends of its steps."""
+        """Measure extremes that the engine records at the ends of its steps."""
 
     def see_rest(self, rows: Rows, engine: Engine) -> None:
         """Measure a state of rest: one row, and the engine whose static state it is."""

@@ -37,12 +37,12 @@ class Penetrations(Note):
             radius = min((r for r in radii if r > 0), default=np.inf)
             self._limits["contact"].append(_Limit(contact.name, contact.stiffness, PENETRATION_LIMIT * radius, radius,
                                                   "below its surface"))
-        for each in self.model.crossings:  # deeper, lines are past each other's axes; without a radius they touch there
+        for each in self.model.crossings:  # deeper, lines are past each other's axes; without a radius that is contact
             self._limits["crossing"].append(_Limit(each.name, each.stiffness, each.law[0] or np.inf, each.law[0],
-                                                   "past where its lines touch"))
+                                                   "beyond the contact of its lines"))
 
     def see_steps(self, engine: Engine) -> None:
-        """Measure what the engine keeps of the ends of its steps."""
+        """Measure extremes that the engine records at the ends of its steps."""
         for kind in self._limits:
             self._take(kind, engine.deepest(kind))
 
@@ -54,9 +54,9 @@ class Penetrations(Note):
                 is_apart = kind == "crossing" and of["normal_force"] <= 0  # lines past each other, beyond their ends
                 self._take(kind, np.where(is_apart, 0.0, of["penetration"]))
 
-    def _take(self, kind: str, depths: np.ndarray) -> None:
-        for limit, depth in zip(self._limits[kind], depths, strict=True):
-            self.keep(limit.name, depth)
+    def _take(self, kind: str, penetrations: np.ndarray) -> None:
+        for limit, penetration in zip(self._limits[kind], penetrations, strict=True):
+            self.keep(limit.name, penetration)
 
     def notes(self) -> list[str]:
         """Return a note for each contact or crossing with a large penetration."""

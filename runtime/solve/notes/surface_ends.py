@@ -19,7 +19,7 @@ class SurfaceEnds(Note):
     assesses_rest = True
 
     def see_steps(self, engine: Engine) -> None:
-        """Measure what the engine keeps of the ends of its steps."""
+        """Measure extremes that the engine records at the ends of its steps."""
         for kind in KINDS:
             self._take(kind, engine.farthest(kind))
 

@@ -230,16 +230,16 @@ class RestState(NamedArrays):
             if any_mesh and kind == "cables" and [_without_mesh(c) for c in here] == [_without_mesh(c) for c in held]:
                 continue
             if here != held:
-                raise SceneError("scene", f"the state to start from is of another scene: its {kind} are "
-                                 f"{held}, here they are {here}", "take an equilibrium of this scene")
+                raise SceneError("scene", f"the state to start from belongs to another scene: its {kind} are "
+                                 f"{held}, those of this scene {here}", "take an equilibrium of this scene")
 
     def check_adjusted(self, scene: SceneData) -> None:
         """Raise SceneError where the scene lacks the values that were adjusted for the state, as it would not rest."""
         for name, value in self.adjusted.items():
             here = value_at(scene, path_of(scene, name, "adjust"))
             if here is None or abs(here - value) > VALUE_ROUNDING * abs(value):
-                raise SceneError("scene", f"the state to start from is at rest with {name} = {value:.9g}, to which it "
-                                 f"was adjusted, here it is {here}", "take the state's own scene: rest.scene")
+                raise SceneError("scene", f"the state to start from is at rest with the adjusted value {name} = "
+                                 f"{value:.9g}, this scene has {here}", "take the state's own scene: rest.scene")
 
     def check_supports(self, model: Model, scene: SceneData) -> None:
         """Raise SceneError where supports or ends of joints, as drawn or prescribed at t = 0, are at other positions in

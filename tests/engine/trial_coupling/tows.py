@@ -1,4 +1,4 @@
-"""Tows as the engine takes them."""
+"""Models of tows."""
 
 from __future__ import annotations
 
