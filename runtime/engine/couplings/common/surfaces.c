@@ -18,19 +18,6 @@ void fu_surface_at(const fu_model *model, const fu_surface *surface, const fu_st
     fu_attachment_at(model, surface->on, state, 0.0, FU_POINT | FU_AXES, at);
 }
 
-void fu_surface_out(int dim, const fu_attachment_state *at, const double *components, double *out)
-{
-    for (int i = 0; i < dim; ++i) out[i] = fu_dot(dim, at->A + i * dim, components);
-}
-
-void fu_surface_into(int dim, const fu_attachment_state *at, const double *given, double *components)
-{
-    for (int i = 0; i < dim; ++i) {
-        components[i] = 0.0;
-        for (int k = 0; k < dim; ++k) components[i] += at->A[k * dim + i] * given[k];
-    }
-}
-
 /* Computes a point from the origin along the shape's axes. */
 static void local(int dim, const fu_attachment_state *at, const double *r, double *y)
 {

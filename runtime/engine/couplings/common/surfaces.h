@@ -54,8 +54,17 @@ void fu_surface_velocity(int dim, const fu_attachment_state *at, const double *r
 /* Velocity relative to that point of a point at r with the velocity v. */
 void fu_surface_past(int dim, const fu_attachment_state *at, const double *r, const double *v, double *past);
 /* Converts a vector along a shape's axes to the ground's, and back. */
-void fu_surface_out(int dim, const fu_attachment_state *at, const double *components, double *out);
-void fu_surface_into(int dim, const fu_attachment_state *at, const double *given, double *components);
+static inline void fu_surface_out(int dim, const fu_attachment_state *at, const double *components, double *out)
+{
+    for (int i = 0; i < dim; ++i) out[i] = fu_dot(dim, at->A + i * dim, components);
+}
+static inline void fu_surface_into(int dim, const fu_attachment_state *at, const double *given, double *components)
+{
+    for (int i = 0; i < dim; ++i) {
+        const double sum = 0.0 + at->A[i] * given[0] + at->A[dim + i] * given[1];
+        components[i] = dim == 3 ? sum + at->A[2 * 3 + i] * given[2] : sum;
+    }
+}
 
 /* Fields of a structure's member `surface` (base/fields.h), which has the words of its shapes in fu_surface_shapes. */
 extern const char *const fu_surface_shapes[], *const fu_surface_role[];
