@@ -108,8 +108,8 @@ double fu_contact_grazing(const fu_run *run, const fu_contact *contact, const fu
     return fu_surface_detect_within(model->dim, &contact->surface, contact->radius, ends, h, run->round_off);
 }
 
-/* Returns a bound of the displacement of a near point past the surface over a step, m, by the velocities at one end of
- * it. */
+/* Returns a bound of the displacement of a near point relative to the surface over a step, m, by the velocities at one
+ * end of it. */
 static double reach_of(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                        const fu_state *state, double h)
 {

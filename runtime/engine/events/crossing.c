@@ -23,7 +23,7 @@ static int gap_of(const fu_model *model, const fu_crossing *crossing, const fu_s
     return points.found && fu_crossing_distance_to_ends(crossing, &points) >= 0.0;
 }
 
-/* Lines in contact may separate within a step and meet again, others may touch. */
+/* Lines in contact may separate within a step and come into contact again; lines apart may come into contact. */
 static double grazing(const fu_run *run, const fu_coupling *coupling, int which, double h)
 {
     const fu_crossing *crossing = crossing_of(coupling);
@@ -56,9 +56,9 @@ static double depth(const fu_model *model, const fu_coupling *coupling, const fu
     return -gap.value;
 }
 
-/* Returns whether lines that are about to touch, since the closest points come within an end, are past each other's
- * axes: they have passed round that end, to the other side than that of contact. Lines that passed an end during
- * contact have not. */
+/* Returns whether lines have passed round an end of one of them and overlap from the opposite side: their closest
+ * points come within that end beyond each other's axes. There is no contact then. Lines that passed an end during
+ * contact are excluded. */
 static int has_come_round(const fu_run *run, const fu_crossing *crossing)
 {
     const double left_behind = run->now.numbers[crossing->base.numbers + FU_CROSSING_LEFT_BEHIND];

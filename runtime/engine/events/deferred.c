@@ -33,7 +33,7 @@ static int has_passed(const fu_run *run, const fu_coupling *c)
 
 /* Updates the flags of the couplings of `next`, unless they must keep those of `now`; returns whether that changes
  * them. First: it is the first stage of the step, or the only one. */
-int fu_choose_deferred(fu_run *run, int first)
+int fu_update_deferred(fu_run *run, int first)
 {
     const fu_model *model = run->model;
     int changed = 0;
@@ -46,7 +46,7 @@ int fu_choose_deferred(fu_run *run, int first)
 }
 
 /* Returns whether a stage of the last step had an event that its end has not: then its error has no bound. */
-int fu_strayed(const fu_run *run)
+int fu_has_unbounded_error(const fu_run *run)
 {
     return !run->keep_forces && run->model->n_deferring && run->max_deferred > fu_count_deferred(run);
 }
@@ -72,7 +72,7 @@ void fu_undo_deferred(fu_run *run)
 }
 
 /* Records the events of couplings in the step that is about to be accepted, for the caller. */
-void fu_note_deferred(fu_run *run, double h)
+void fu_record_deferred(fu_run *run, double h)
 {
     for (int k = 0; k < run->n_event_functions && run->model->n_deferring; ++k) {
         const fu_coupling *c = fu_event_coupling(run, k);
@@ -138,8 +138,8 @@ double fu_deferred_error(fu_run *run, double h)
     return size_of_response(run, run->before, DEFERRED_ERROR_FACTOR * h * h);
 }
 
-/* Returns the local error of positions by kinks of forces within the last step that its estimate may miss, m: an error
- * of momentum, which persists for the rest of the run. */
+/* Returns the local error of positions, m, by forces of the last step that are not smooth, which its estimate may miss:
+ * an error of momentum persists for the rest of the run. */
 double fu_friction_error(fu_run *run, double h)
 {
     const fu_model *model = run->model;

@@ -53,11 +53,11 @@ int fu_stands_on_boundary(const fu_run *run, fu_event event);
 int fu_are_on_path_segments(const fu_model *model, const fu_state *state, double aside);
 
 /* Deferred events, changes of couplings within a step: events/deferred.c. */
-int fu_choose_deferred(fu_run *run, int first);
-int fu_strayed(const fu_run *run);
+int fu_update_deferred(fu_run *run, int first);
+int fu_has_unbounded_error(const fu_run *run);
 int fu_count_deferred(const fu_run *run);
 void fu_undo_deferred(fu_run *run);
-void fu_note_deferred(fu_run *run, double h);
+void fu_record_deferred(fu_run *run, double h);
 double fu_deferred_error(fu_run *run, double h);
 double fu_friction_error(fu_run *run, double h);
 int fu_take_deferred(fu_run *run);
@@ -83,6 +83,6 @@ static inline int fu_event_function_of(fu_event_function_list list, int i)
 int fu_is_far_event_function(const fu_run *run, int function);
 
 /* Repeats the search for near pairs after a step of h, if necessary or in any case. */
-void fu_look_around(fu_run *run, double h, int anew);
+void fu_search_near_pairs(fu_run *run, double h, int anew);
 
 #endif

@@ -154,7 +154,7 @@ static void expect(const fu_model *model, const fu_state *state, double h, int s
     }
 }
 
-void fu_look_around(fu_run *run, double h, int anew)
+void fu_search_near_pairs(fu_run *run, double h, int anew)
 {
     const fu_model *model = run->model;
     fu_proximity *p = model->proximity;

@@ -88,7 +88,7 @@ static void kinematics(fu_run *run, double h)
         m.v[i] = run->psi[i] / h;
     }
     fu_between(model, now->q, next->q, m.q);
-    if (fu_choose_deferred(run, 1)) run->factored = 0;
+    if (fu_update_deferred(run, 1)) run->factored = 0;
 }
 
 /* Returns the equations over a step. */

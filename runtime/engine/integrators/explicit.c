@@ -114,7 +114,7 @@ static int move_to(fu_run *run, const double *row, int n, double t, double h)
     next->t = t;
     if (model->n_motions) fu_prescribe(model, next);
     if (fu_find_internal(run)) return 1;
-    fu_choose_deferred(run, n == 1);
+    fu_update_deferred(run, n == 1);
     return 0;
 }
 

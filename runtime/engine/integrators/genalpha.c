@@ -121,7 +121,7 @@ static void kinematics(fu_run *run, double h)
     fu_share(model->threads, model->n_dof, kinematics_part, &job);
     fu_move(model, next->q, run->psi);
     if (model->n_motions) fu_prescribe(model, next);
-    if (fu_choose_deferred(run, 1)) run->factored = 0; /* the matrix belongs to the flags with which it was computed */
+    if (fu_update_deferred(run, 1)) run->factored = 0; /* the matrix belongs to the flags with which it was computed */
 }
 
 /* Returns the equations at the end of a step. */

@@ -71,7 +71,7 @@ int fu_radau_place_stage(fu_run *run, fu_radau_workspace *w, int k, double h)
 {
     move_to_stage(run, w, k, h);
     if (fu_find_internal(run)) return 1;
-    fu_choose_deferred(run, k == 0);
+    fu_update_deferred(run, k == 0);
     return 0;
 }
 

@@ -103,7 +103,7 @@ int fu_start(fu_run *run)
     }
     fu_evaluate_event_functions(run, fu_no_event, INFINITY);
     fu_restart_event_functions(run, -1);
-    fu_look_around(run, 0.0, 1);
+    fu_search_near_pairs(run, 0.0, 1);
     fu_record_penetrations(run);
     return FU_RUNNING;
 }

@@ -137,7 +137,7 @@ static int attempt(fu_run *run, trial *t)
         t->want = fu_retry_step(run, t->h);
         return 0;
     }
-    if (fu_strayed(run)) {
+    if (fu_has_unbounded_error(run)) {
         refuse(run, t);
         return 0;
     }
@@ -160,7 +160,7 @@ static int shall_go_over(fu_run *run, trial *t)
         !run->model->n_deferring)
         return 0;
     run->keep_forces = 0;
-    fu_choose_deferred(run, 1);
+    fu_update_deferred(run, 1);
     if (fu_count_deferred(run) && fmax(t->error, fu_deferred_error(run, t->h)) <= run->allowed) return 1;
     fu_undo_deferred(run);
     return 0;
@@ -197,7 +197,7 @@ static int end_on_event(fu_run *run, trial *t)
 /* Returns whether a step that was cut at a discontinuity is accurate: its error without that was unknown before. */
 static int is_accurate_without_jump(fu_run *run, trial *t)
 {
-    const double ratio = fu_strayed(run) ? INFINITY : error_of(run, t->h) / fu_allow(run, t->h);
+    const double ratio = fu_has_unbounded_error(run) ? INFINITY : error_of(run, t->h) / fu_allow(run, t->h);
     if (ratio <= MAX_ERROR_RATIO) return 1;
     t->want = fu_shrink_step(run, t->h, ratio);
     return 0;
@@ -221,7 +221,7 @@ static void accept(fu_run *run, const trial *t)
     run->is_remainder = !t->cuts && (!t->event.kind || t->event.kind == FU_PATH_BOUNDARY);
     for (int i = 0; i < model->n_coordinates; ++i) run->s_slope[i] = (run->next.s[i] - run->now.s[i]) / h;
     run->integrator->account(run, h);
-    fu_note_deferred(run, h);
+    fu_record_deferred(run, h);
     fu_note_slackness(run, h);
     run->dissipated += fu_lost_in_step(model, &run->now, &run->next, run->order <= 2);
     run->statistics.node_passages += fu_count_changes(run);
@@ -229,7 +229,7 @@ static void accept(fu_run *run, const trial *t)
     run->now = run->next;
     run->next = state;
     fu_update_history(model, &run->now);
-    fu_look_around(run, h, 0);
+    fu_search_near_pairs(run, h, 0);
     const double moved = fu_largest_motion(model, run->first, run->now.q);
     if (moved > run->motion) run->motion = moved;
     run->controlled_motion =

@@ -28,7 +28,7 @@ typedef struct {
             [3 * FU_MAX_COORDINATES]; /* shape functions of each: themselves, their first and second derivative by x */
 } frame_vectors;
 
-/* Computes the k-th vector of the frame, a sum over the n vectors of an element with coordinates e and rates v. */
+/* Computes the k-th vector of the frame, a sum over the vectors of an element with coordinates e and rates v. */
 static void add_vector(const fu_cable *cable, const double *e, const double *v, double s_rate, int on_slide,
                        int n_columns, int k, frame_vectors *w)
 {

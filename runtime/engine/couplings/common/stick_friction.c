@@ -162,8 +162,8 @@ static double taken(int dim, const fu_friction_travel *travel, const fu_friction
     return sum + 0.5 * (fu_dot(dim, stretch, stretch) - fu_dot(dim, end, end));
 }
 
-double fu_taken_by_friction(int dim, const fu_friction_travel *travel, const fu_friction_path *path, const double *end,
-                            int by_ends)
+double fu_dissipated_by_friction(int dim, const fu_friction_travel *travel, const fu_friction_path *path,
+                                 const double *end, int by_ends)
 {
     if (by_ends) return taken(dim, travel, path, end, 1);
     return (4.0 * taken(dim, travel, path, end, WORK_PARTS) - taken(dim, travel, path, end, WORK_PARTS / 2)) / 3.0;

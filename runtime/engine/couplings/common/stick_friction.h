@@ -46,8 +46,8 @@ double fu_path_along(int dim, const double *change, const double *rate, const do
                      fu_friction_path *path);
 /* Returns the work of friction over the stiffness, m^2, for a given stretch at the end: by parts of the step, and by
  * half as many (Richardson), or by the ends alone. */
-double fu_taken_by_friction(int dim, const fu_friction_travel *travel, const fu_friction_path *path, const double *end,
-                            int by_ends);
+double fu_dissipated_by_friction(int dim, const fu_friction_travel *travel, const fu_friction_path *path,
+                                 const double *end, int by_ends);
 
 #define FU_NO_TIME 1e300 /* s: of numbers in the initial configuration, before any step */
 

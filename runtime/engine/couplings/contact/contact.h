@@ -17,9 +17,9 @@ typedef struct {
 } fu_contact_law;
 
 /* History of friction in a state, from the last step. Of each point, along the shape's axes: the stretch of the spring,
- * the position, the normal (zero as drawn, where it is unknown) and its rate, the velocity past the surface at the
- * point of contact, the gap, and its rate. After those of all points, of the contact: the axes of the body along the
- * shape's; the time, s (FU_NO_TIME as drawn, before any step). */
+ * the position, the normal (zero as drawn, where it is unknown) and its rate, the velocity relative to the surface at
+ * the point of contact, the gap, and its rate. After those of all points, of the contact: the axes of the body along
+ * the shape's; the time, s (FU_NO_TIME as drawn, before any step). */
 typedef struct {
     double stretch[3], place[3], normal[3], normal_rate[3], rate[3], gap, gap_rate;
 } fu_friction_mark;
@@ -57,10 +57,10 @@ typedef struct {
 } fu_contact_output;
 
 /* A point that may be in contact: its position and velocity; its history, null without friction; the time since, s,
- * the rotation of its body past the surface since then, and its rate, along the shape's axes. In contact:
+ * the rotation of its body relative to the surface since then, and its rate, along the shape's axes. In contact:
  * penetration and its rate, the normal, its rate along the shape's axes, the arm from the point to the contact of
- * its sphere, the velocity there past the surface, along the shape's axes, the force on it (a length) with its
- * friction, derivatives by its position, by its velocity past the surface and by the stretch alone, the stored
+ * its sphere, the velocity there relative to the surface, along the shape's axes, the force on it (a length) with its
+ * friction, derivatives by its position, by its velocity relative to the surface and by the stretch alone, the stored
  * energy and the dissipated power of the normal force, the stretch of friction's spring, along the shape's axes, its
  * path, and whether friction slides. */
 typedef struct {

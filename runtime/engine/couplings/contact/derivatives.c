@@ -14,8 +14,8 @@ typedef struct {
         far[3 * FU_ATTACHMENT_COORDINATES];
 } changes;
 
-/* Arguments of `reaction` for a point: position and velocity past the surface, the rotation since the last step in
- * global axes, the mean of the arms now and then, and the share of the arm in it. */
+/* Arguments of `reaction` for a point: position and velocity relative to the surface, the rotation since the last step
+ * in global axes, the mean of the arms now and then, and the share of the arm in it. */
 typedef struct {
     double x[3], w[3], radius, turn[3], mean_arm[3], share;
 } rolling_point;

@@ -1,6 +1,6 @@
-/* Kinks of contact within a step: a point comes into contact or loses it, begins to slide or sticks. The force is
- * continuous there, its rate is not, and an integrator's quadrature has an error in proportion to that. Its error
- * estimates assume smooth forces. */
+/* Friction error estimate of contact: within a step a point comes into contact or separates, begins to slide or sticks.
+ * The force is continuous there, its rate is not, and the error of an integrator's quadrature is proportional to the
+ * jump of the rate. Error estimates of integrators assume smooth forces. */
 #include "bodies/model.h"
 #include "couplings/contact/contact.h"
 
@@ -57,8 +57,8 @@ static int slides_at(const step_point *of, double x)
                : 0;
 }
 
-/* Returns whether the force has a kink: the point is in contact at one end alone, or neither sticks nor slides one path
- * during the whole step. */
+/* Returns whether the rate of the force is discontinuous: the point is in contact at one end alone, or neither sticks
+ * nor slides one path during the whole step. */
 static int is_nonsmooth(const step_point *of)
 {
     double at[2][2];

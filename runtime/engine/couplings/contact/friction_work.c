@@ -24,26 +24,26 @@ static fu_friction_travel travel_of(int dim, const step_point *of)
     return travel;
 }
 
-static double taken(const fu_model *model, const fu_contact *contact, const step_point *of, int by_ends)
+static double dissipated(const fu_model *model, const fu_contact *contact, const step_point *of, int by_ends)
 {
     const fu_friction_travel travel = travel_of(model->dim, of);
     const fu_friction_path path = fu_contact_normal_path(contact, &of->end);
-    return fu_taken_by_friction(model->dim, &travel, &path, of->stretch, by_ends);
+    return fu_dissipated_by_friction(model->dim, &travel, &path, of->stretch, by_ends);
 }
 
 static double dissipated_by_ends(const fu_model *model, const fu_contact *contact, step_point *of)
 {
-    return taken(model, contact, of, 1);
+    return dissipated(model, contact, of, 1);
 }
 
 static double dissipated_within_step(const fu_model *model, const fu_contact *contact, step_point *of)
 {
-    return taken(model, contact, of, 0);
+    return dissipated(model, contact, of, 0);
 }
 
 /* Returns the largest error of the stretch at the end, m: the difference to another path, the parabola without the
  * velocities at the beginning, plus the error by the intervals of the sum of its direction. */
-static double astray(const fu_model *model, const fu_contact *contact, step_point *of)
+static double stretch_error(const fu_model *model, const fu_contact *contact, step_point *of)
 {
     const int dim = model->dim;
     fu_friction_mark other = *of->end.mark;
@@ -112,5 +112,5 @@ double fu_contact_lost(const fu_model *model, const fu_coupling *coupling, const
 double fu_contact_history_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from,
                                 const fu_state *to)
 {
-    return visit_points(model, (const fu_contact *)coupling, from, to, astray, 1);
+    return visit_points(model, (const fu_contact *)coupling, from, to, stretch_error, 1);
 }

@@ -2,9 +2,9 @@
  * rotation stretches it too.
  *
  * For a sphere of the radius R in contact along the normal n, the point of contact is at a = -R n from the centre.
- * Its velocity past the surface is that of the centre plus w x a, with the angular velocity w past the surface: over
- * a step, with the rotation p, the position changes by p x a in addition to the displacement of the centre, with the
- * mean of the normals at both ends of the step. */
+ * Its velocity relative to the surface is that of the centre plus w x a, with the angular velocity w relative to the
+ * surface: over a step, with the rotation p, the position changes by p x a in addition to the displacement of the
+ * centre, with the mean of the normals at both ends of the step. */
 #include "bodies/model.h"
 #include "couplings/contact/contact.h"
 

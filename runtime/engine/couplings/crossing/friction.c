@@ -298,7 +298,7 @@ double fu_crossing_slip_work(const fu_model *model, const fu_crossing *crossing,
     fu_friction_travel travel;
     fu_friction_path path;
     if (!stick_over_step(model, crossing, from, to, &stick, &travel, &path)) return 0.0;
-    return crossing->tangential * fu_taken_by_friction(model->dim, &travel, &path, stick.stretch, by_ends);
+    return crossing->tangential * fu_dissipated_by_friction(model->dim, &travel, &path, stick.stretch, by_ends);
 }
 
 void fu_crossing_reset_stick(const fu_crossing *crossing, fu_state *state)

@@ -138,7 +138,7 @@ typedef struct {
 } fu_drag_site;
 
 /* Arguments and results of a loop over points: a visitor uses those of its purpose. rows: the next row of densities;
- * energy: a kinetic energy, J, past the fluid or in a fluid at rest. */
+ * energy: a kinetic energy, J, relative to the fluid or in a fluid at rest. */
 typedef struct {
     double t;
     const fu_drag_sums *sums;

@@ -102,7 +102,8 @@ static void internal_residual(const fu_coupling *coupling, const fu_equations *a
     else internal[coupling->unknown] = -at->weights.stiffness * at->next->forces[coupling->force];
 }
 
-/* Adds friction: against sliding, or the forces that keep velocities past the surface zero, as lengths over a step. */
+/* Adds friction: against sliding, or the forces that keep velocities relative to the surface zero, as lengths over a
+ * step. */
 static void friction_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,
                               const fu_hard_row *row, double *f, double *internal)
 {
