@@ -3,32 +3,24 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import partial
+from importlib import import_module
+from pkgutil import iter_modules
 
+from . import couplings
 from .bodies import BODIES, RIDERS, Body, Rider, modal, modal_kernels
 from .bodies import kernels as body_kernels
 from .bodies.point import Point
-from .codegen.family import (
-    BodyFamily,
-    CouplingFamily,
-    ElementFamily,
-    Family,
-    LawFamily,
-    PointLawFamily,
-    SlideFamily,
-)
-from .couplings import crossing, drag, frame, joint, point_law, resistance, slide, surface
-from .couplings.point_laws import LAWS as POINT_LAWS
+from .codegen.family import BodyFamily, ElementFamily, Family, LawFamily, SlideFamily
+from .couplings import slide
 from .elements import ELEMENTS
 from .elements import kernels as element_kernels
 from .laws import kernels as law_kernels
 from .laws import law_name, law_traits, stiffness_of
 from .laws.structural import kernels as structural_kernels
 from .laws.structural import structural
-from .spec import Element, PointLaw
-
-_SPACE = {2: "the plane", 3: "space"}
+from .spec import Element
 
 
 def _element(element: Element) -> ElementFamily:
@@ -79,50 +71,11 @@ def _slide(element: Element, rider: Rider) -> SlideFamily:
                        element=element, rider=rider.NAME)
 
 
-def _frame(dim: int) -> CouplingFamily:
-    return CouplingFamily(frame.FRAMES[dim], f"frame of two vectors in {_SPACE[dim]}", partial(frame.build, dim),
-                          ("couplings.frame",), role="frame", facts={"dim": dim}, dim=dim)
-
-
-def _resistance(dim: int) -> CouplingFamily:
-    return CouplingFamily(resistance.RESISTANCES[dim], f"friction and buffers of slides in {_SPACE[dim]}",
-                          partial(resistance.build, dim),
-                          ("couplings.resistance",), role="resistance", facts={"dim": dim}, dim=dim)
-
-
-def _drag(dim: int) -> CouplingFamily:
-    return CouplingFamily(drag.DRAGS[dim], f"drag of a fluid in {_SPACE[dim]}", partial(drag.build, dim),
-                          ("couplings.drag", "couplings.section_flow", "couplings.added_mass", "couplings.wetness"),
-                          role="drag", missing=() if dim == 3 else ("lift_along_cable", "on_section"),
-                          facts={"dim": dim}, dim=dim)
-
-
-def _crossing(dim: int) -> CouplingFamily:
-    return CouplingFamily(crossing.CROSSINGS[dim], f"contact of lines at their closest points in {_SPACE[dim]}",
-                          partial(crossing.build, dim),
-                          ("couplings.crossing", "couplings.crossing_stretch", "couplings.stretch"), role="crossing",
-                          facts={"dim": dim}, dim=dim)
-
-
-def _surface(dim: int) -> CouplingFamily:
-    return CouplingFamily(surface.SURFACES[dim], f"surfaces and contact with them in {_SPACE[dim]}",
-                          partial(surface.build, dim), ("couplings.surface", "couplings.stretch"), role="surface",
-                          facts={"dim": dim}, dim=dim)
-
-
-def _joint(dim: int, name: str) -> CouplingFamily:
-    return CouplingFamily(f"joint_{name}", f"{name.replace('_', ' ')} joint between two frames",
-                          partial(joint.build, dim, name), ("couplings.joint",), role="joint",
-                          facts={"dim": dim, "rows": joint.rows(dim, name)}, dim=dim)
-
-
-def of_point_law(name: str, law: PointLaw) -> list[Family]:
-    """Return the families of the force between two points by a law, in space and in the plane."""
-    return [PointLawFamily(prefix + name, f"{law.doc} in {_SPACE[dim]}",
-                           partial(point_law.build, prefix + name, law, dim),
-                           (f"couplings.point_laws.{name}", "couplings.point_law"), role="point_law",
-                           missing=point_law.missing(law), facts={"dim": dim, "parameters": len(law.parameters)},
-                           dim=dim, point_law=law) for dim, prefix in ((3, ""), (2, "planar_"))]
+def _couplings() -> Iterator[Family]:
+    """Yield the families of each module of couplings/ that has some; the slides are those of elements."""
+    for file in iter_modules(couplings.__path__):
+        of_module = getattr(import_module(f"{couplings.__name__}.{file.name}"), "families", list)
+        yield from of_module()
 
 
 def of_element(element: Element) -> list[Family]:
@@ -132,20 +85,13 @@ def of_element(element: Element) -> list[Family]:
 
 
 def families() -> dict[str, Family]:
-    """Return every family by name: elements, laws, bodies, the slide of each element and rider, joints, resistances,
-    drag, crossings, surfaces, forces between two points.
-    """
+    """Return every family by name: elements, laws, bodies, the slide of each element and rider, other couplings."""
     of_role: dict[str, list[Family]] = {"element": [], "law": [], "slide": []}
     for element in ELEMENTS.values():
         for family in of_element(element):
             of_role[family.role].append(family)
-    joints = [_joint(dim, name) for dim, of_dim in joint.JOINTS.items() for name in of_dim]
     every = [*of_role["element"], *of_role["law"], *map(_body, BODIES.values()),
-             *(_modal(name, body) for name, body in modal.FRAMES.items()),
-             *of_role["slide"],
-             *map(_frame, frame.FRAMES), *joints, *map(_resistance, resistance.RESISTANCES), *map(_drag, drag.DRAGS),
-             *map(_crossing, crossing.CROSSINGS), *map(_surface, surface.SURFACES),
-             *(family for name, law in POINT_LAWS.items() for family in of_point_law(name, law))]
+             *(_modal(name, body) for name, body in modal.FRAMES.items()), *of_role["slide"], *_couplings()]
     return {f.name: f for f in every}
 
 

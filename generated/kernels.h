@@ -834,82 +834,85 @@ fu_slide_discrete_gradient_kernel slide_beam12p_planar_point_discrete_gradient;
 /* e 4x2, e_next 4x2, b 2, b_next 2, G 2x11 */
 fu_slide_discrete_gradient_kernel slide_cable8p_planar_point_discrete_gradient;
 
-typedef void fu_frame_axes_kernel(const fu_real *a, const fu_real *b, fu_real *A, fu_real *T);
-/* frame of two vectors, and its turn by them: a [1]; b [1] -> A [1]; T [rad] */
-/* a 3, b 3, A 3x3, T 3x6 */
-fu_frame_axes_kernel frame_axes;
-/* a 2, b 2, A 2x2, T 1x4 */
-fu_frame_axes_kernel planar_frame_axes;
+typedef void fu_crossing_closest_kernel(const fu_real *d, const fu_real *t, const fu_real *k, fu_real *step);
+/* a step of Newton's method to the closest points: d [m]; t [1]; k [1/m] -> step [m] */
+/* d 3, t 2x3, k 2x3, step 2 */
+fu_crossing_closest_kernel crossing_closest;
+/* d 2, t 1x2, k 1x2, step 1 */
+fu_crossing_closest_kernel planar_crossing_closest;
 
-typedef void fu_frame_motion_kernel(const fu_real *a, const fu_real *b, const fu_real *a_rate, const fu_real *b_rate, const fu_real *a_second, const fu_real *b_second, fu_real *omega, fu_real *alpha);
-/* angular velocity and acceleration of the frame: a [1]; b [1]; a_rate [1/s]; b_rate [1/s]; a_second [1/s^2];
- * b_second [1/s^2] -> omega [rad/s]; alpha [rad/s^2] */
-/* a 3, b 3, a_rate 3, b_rate 3, a_second 3, b_second 3, omega 3, alpha 3 */
-fu_frame_motion_kernel frame_motion;
-/* a 2, b 2, a_rate 2, b_rate 2, a_second 2, b_second 2, omega 1, alpha 1 */
-fu_frame_motion_kernel planar_frame_motion;
+typedef void fu_crossing_contact_kernel(const fu_real *d, const fu_real *t, const fu_real *u, const fu_real *c, fu_real *n, fu_real *p, fu_real *N, fu_real *f, fu_real *U, fu_real *P);
+/* penetration and contact force at closest points: d [m]; t [1]; u [m/s]; c [m, 1, N/m, N/m^1.5, s/m, m, 1, m/s] ->
+ * n [1]; p [m, m/s]; N [N]; f [N]; U [J]; P [W] */
+/* d 3, t 2x3, u 3, c 8, n 3, p 2, N 1, f 3, U 1, P 1 */
+fu_crossing_contact_kernel crossing_contact;
+/* d 2, t 1x2, u 2, c 8, n 2, p 2, N 1, f 2, U 1, P 1 */
+fu_crossing_contact_kernel planar_crossing_contact;
 
-typedef void fu_frame_moment_kernel(const fu_real *a, const fu_real *b, const fu_real *m, fu_real *g, fu_real *K);
-/* generalised force of a moment on the frame, and its derivative: a [1]; b [1]; m [N m] -> g [N m]; K [N m] */
-/* a 3, b 3, m 3, g 6, K 6x6 */
-fu_frame_moment_kernel frame_moment;
-/* a 2, b 2, m 1, g 4, K 4x4 */
-fu_frame_moment_kernel planar_frame_moment;
+typedef void fu_crossing_force_kernel(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *s_d, fu_real *s_t);
+/* contact force, and its derivatives with the closest points moving: d [m]; t [1]; k [1/m]; w [1/s]; u [m/s]; c [m,
+ * 1, N/m, N/m^1.5, s/m, m, 1, m/s] -> F [N]; F_d [N/m]; F_t [N]; F_u [N s/m]; s_d [1]; s_t [m] */
+/* d 3, t 2x3, k 2x3, w 2x3, u 3, c 8, F 3, F_d 3x3, F_t 3x6, F_u 3x3, s_d 2x3, s_t 2x6 */
+fu_crossing_force_kernel crossing_force;
+/* d 2, t 1x2, k 1x2, w 1x2, u 2, c 8, F 2, F_d 2x2, F_t 2x2, F_u 2x2, s_d 1x2, s_t 1x2 */
+fu_crossing_force_kernel planar_crossing_force;
 
-typedef void fu_joint_force_kernel(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
-/* equations, their derivatives, and those of the force J' f: gap [m]; A1 [1]; A2 [1]; c [m or rad, 1, 1]; f [N, N m]
- * -> phi [m, 1]; J [1, m]; K [N/m, N, N m] */
-/* gap 3, A1 3x3, A2 3x3, c 3, f 3, phi 3, J 3x9, K 9x9 */
-fu_joint_force_kernel joint_spherical_force, joint_locked_force;
-/* gap 3, A1 3x3, A2 3x3, c 3, f 5, phi 5, J 5x9, K 9x9 */
-fu_joint_force_kernel joint_revolute_force, joint_cylindrical_angle_force, joint_cylindrical_distance_force,
-    joint_prismatic_force;
-/* gap 3, A1 3x3, A2 3x3, c 3, f 6, phi 6, J 6x9, K 9x9 */
-fu_joint_force_kernel joint_revolute_angle_force, joint_prismatic_distance_force, joint_weld_force;
-/* gap 3, A1 3x3, A2 3x3, c 3, f 4, phi 4, J 4x9, K 9x9 */
-fu_joint_force_kernel joint_universal_force, joint_cylindrical_force;
-/* gap 3, A1 3x3, A2 3x3, c 3, f 1, phi 1, J 1x9, K 9x9 */
-fu_joint_force_kernel joint_distance_force;
-/* gap 3, A1 3x3, A2 3x3, c 3, f 2, phi 2, J 2x9, K 9x9 */
-fu_joint_force_kernel joint_aligned_force;
-/* gap 2, A1 2x2, A2 2x2, c 3, f 2, phi 2, J 2x4, K 4x4 */
-fu_joint_force_kernel joint_planar_spherical_force, joint_planar_prismatic_force;
-/* gap 2, A1 2x2, A2 2x2, c 3, f 3, phi 3, J 3x4, K 4x4 */
-fu_joint_force_kernel joint_planar_revolute_angle_force, joint_planar_prismatic_distance_force, joint_planar_weld_force;
-/* gap 2, A1 2x2, A2 2x2, c 3, f 1, phi 1, J 1x4, K 4x4 */
-fu_joint_force_kernel joint_planar_distance_force, joint_planar_locked_force;
+typedef void fu_crossing_motion_kernel(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, fu_real *s_dot, fu_real *t_dot, fu_real *d_dot);
+/* motion of the closest points: d [m]; t [1]; k [1/m]; w [1/s]; u [m/s] -> s_dot [m/s]; t_dot [1/s]; d_dot [m/s] */
+/* d 3, t 2x3, k 2x3, w 2x3, u 3, s_dot 2, t_dot 2x3, d_dot 3 */
+fu_crossing_motion_kernel crossing_motion;
+/* d 2, t 1x2, k 1x2, w 1x2, u 2, s_dot 1, t_dot 1x2, d_dot 2 */
+fu_crossing_motion_kernel planar_crossing_motion;
 
-typedef void fu_joint_motion_kernel(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
-/* derivatives of the equations in time: gap [m]; A1 [1]; A2 [1]; c [m or rad, 1, 1]; gap_rate [m/s]; omega1 [rad/s];
- * omega2 [rad/s]; c_rate [m/s or rad/s, and per s] -> phi_t [m/s, 1/s]; Q_d [m/s^2, 1/s^2] */
-/* gap 3, A1 3x3, A2 3x3, c 3, gap_rate 3, omega1 3, omega2 3, c_rate 2, phi_t 3, Q_d 3 */
-fu_joint_motion_kernel joint_spherical_motion, joint_locked_motion;
-/* gap 3, A1 3x3, A2 3x3, c 3, gap_rate 3, omega1 3, omega2 3, c_rate 2, phi_t 5, Q_d 5 */
-fu_joint_motion_kernel joint_revolute_motion, joint_cylindrical_angle_motion, joint_cylindrical_distance_motion,
-    joint_prismatic_motion;
-/* gap 3, A1 3x3, A2 3x3, c 3, gap_rate 3, omega1 3, omega2 3, c_rate 2, phi_t 6, Q_d 6 */
-fu_joint_motion_kernel joint_revolute_angle_motion, joint_prismatic_distance_motion, joint_weld_motion;
-/* gap 3, A1 3x3, A2 3x3, c 3, gap_rate 3, omega1 3, omega2 3, c_rate 2, phi_t 4, Q_d 4 */
-fu_joint_motion_kernel joint_universal_motion, joint_cylindrical_motion;
-/* gap 3, A1 3x3, A2 3x3, c 3, gap_rate 3, omega1 3, omega2 3, c_rate 2, phi_t 1, Q_d 1 */
-fu_joint_motion_kernel joint_distance_motion;
-/* gap 3, A1 3x3, A2 3x3, c 3, gap_rate 3, omega1 3, omega2 3, c_rate 2, phi_t 2, Q_d 2 */
-fu_joint_motion_kernel joint_aligned_motion;
-/* gap 2, A1 2x2, A2 2x2, c 3, gap_rate 2, omega1 1, omega2 1, c_rate 2, phi_t 2, Q_d 2 */
-fu_joint_motion_kernel joint_planar_spherical_motion, joint_planar_prismatic_motion;
-/* gap 2, A1 2x2, A2 2x2, c 3, gap_rate 2, omega1 1, omega2 1, c_rate 2, phi_t 3, Q_d 3 */
-fu_joint_motion_kernel joint_planar_revolute_angle_motion, joint_planar_prismatic_distance_motion,
-    joint_planar_weld_motion;
-/* gap 2, A1 2x2, A2 2x2, c 3, gap_rate 2, omega1 1, omega2 1, c_rate 2, phi_t 1, Q_d 1 */
-fu_joint_motion_kernel joint_planar_distance_motion, joint_planar_locked_motion;
+typedef void fu_crossing_stretch_kernel(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *now, fu_real *old, fu_real *along);
+/* stretch of the friction spring in stick: d [m]; t [1]; k [1/m]; w [1/s]; u [m/s]; c [m, 1, N/m, N/m^1.5, s/m, m,
+ * 1, m/s]; e [m]; h [s]; d_0 [m]; d_rate [m/s]; t_0 [1]; t_rate [1/s]; s_rate [m/s]; x [m]; v [m/s] -> now [m]; old
+ * [m]; along [1] */
+/* d 3, t 2x3, k 2x3, w 2x3, u 3, c 8, e 2, d_0 3, d_rate 3, t_0 2x3, t_rate 2x3, s_rate 2, x 2, v 2, now 3, old 3,
+ * along 3 */
+fu_crossing_stretch_kernel crossing_stretch;
+/* d 2, t 1x2, k 1x2, w 1x2, u 2, c 8, e 1, d_0 2, d_rate 2, t_0 1x2, t_rate 1x2, s_rate 1, x 1, v 1, now 2, old 2,
+ * along 2 */
+fu_crossing_stretch_kernel planar_crossing_stretch;
 
-typedef void fu_resistance_force_kernel(const fu_real *t, const fu_real *u, const fu_real *f, const fu_real *friction, const fu_real *buffer, fu_real *R, fu_real *R_t, fu_real *R_u, fu_real *R_f, fu_real *R_x);
-/* force along the cable on a slide, and its derivatives: t [1]; u [m/s]; f [N]; friction [1, N s/m, m/s, 1, N];
- * buffer [N/m, N s/m, m, 1] -> R [N]; R_t [N]; R_u [N s/m]; R_f [1]; R_x [N/m] */
-/* t 3, u 3, f 3, friction 5, buffer 4, R 1, R_t 3, R_u 3, R_f 3, R_x 1 */
-fu_resistance_force_kernel resistance_force;
-/* t 2, u 2, f 2, friction 5, buffer 4, R 1, R_t 2, R_u 2, R_f 2, R_x 1 */
-fu_resistance_force_kernel planar_resistance_force;
+typedef void fu_crossing_turned_kernel(const fu_real *x_now, const fu_real *x_old, const fu_real *slip_old, const fu_real *slip, fu_real h, fu_real r_1, fu_real least, fu_real slid, fu_real r_0, fu_real turns, fu_real *direction);
+/* direction of a stretch that slides as the step ends: x_now [m]; x_old [m]; slip_old [m/s]; slip [m/s]; h [s]; r_1
+ * [m]; least [m]; slid [1]; r_0 [m]; turns [1] -> direction [m] */
+/* x_now 3, x_old 3, slip_old 3, slip 3, direction 3 */
+fu_crossing_turned_kernel crossing_turned;
+/* x_now 2, x_old 2, slip_old 2, slip 2, direction 2 */
+fu_crossing_turned_kernel planar_crossing_turned;
+
+typedef void fu_crossing_sticking_kernel(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real k_t, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k);
+/* friction in stick, its derivatives with the points moving: d [m]; t [1]; k [1/m]; w [1/s]; u [m/s]; third [1/m^2];
+ * k_rate [1/(m s)]; c [m, 1, N/m, N/m^1.5, s/m, m, 1, m/s]; k_t [N/m]; e [m]; h [s]; d_0 [m]; d_rate [m/s]; t_0 [1];
+ * t_rate [1/s]; s_rate [m/s]; x [m]; v [m/s] -> F [N]; F_d [N/m]; F_t [N]; F_u [N s/m]; F_w [N s]; F_k [N m] */
+/* d 3, t 2x3, k 2x3, w 2x3, u 3, third 2x3, k_rate 2x3, c 8, e 2, d_0 3, d_rate 3, t_0 2x3, t_rate 2x3, s_rate 2, x
+ * 2, v 2, F 3, F_d 3x3, F_t 3x6, F_u 3x3, F_w 3x6, F_k 3x6 */
+fu_crossing_sticking_kernel crossing_sticking;
+/* d 2, t 1x2, k 1x2, w 1x2, u 2, third 1x2, k_rate 1x2, c 8, e 1, d_0 2, d_rate 2, t_0 1x2, t_rate 1x2, s_rate 1, x
+ * 1, v 1, F 2, F_d 2x2, F_t 2x2, F_u 2x2, F_w 2x2, F_k 2x2 */
+fu_crossing_sticking_kernel planar_crossing_sticking;
+
+typedef void fu_crossing_sliding_kernel(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real mu, fu_real k_t, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real slid, fu_real r_0, fu_real turns, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k);
+/* friction in sliding, its derivatives with the points moving: d [m]; t [1]; k [1/m]; w [1/s]; u [m/s]; third
+ * [1/m^2]; k_rate [1/(m s)]; c [m, 1, N/m, N/m^1.5, s/m, m, 1, m/s]; mu [1]; k_t [N/m]; e [m]; h [s]; d_0 [m];
+ * d_rate [m/s]; t_0 [1]; t_rate [1/s]; s_rate [m/s]; x [m]; v [m/s]; slid [1]; r_0 [m]; turns [1] -> F [N]; F_d
+ * [N/m]; F_t [N]; F_u [N s/m]; F_w [N s]; F_k [N m] */
+/* d 3, t 2x3, k 2x3, w 2x3, u 3, third 2x3, k_rate 2x3, c 8, e 2, d_0 3, d_rate 3, t_0 2x3, t_rate 2x3, s_rate 2, x
+ * 2, v 2, F 3, F_d 3x3, F_t 3x6, F_u 3x3, F_w 3x6, F_k 3x6 */
+fu_crossing_sliding_kernel crossing_sliding;
+/* d 2, t 1x2, k 1x2, w 1x2, u 2, third 1x2, k_rate 1x2, c 8, e 1, d_0 2, d_rate 2, t_0 1x2, t_rate 1x2, s_rate 1, x
+ * 1, v 1, F 2, F_d 2x2, F_t 2x2, F_u 2x2, F_w 2x2, F_k 2x2 */
+fu_crossing_sliding_kernel planar_crossing_sliding;
+
+typedef void fu_crossing_step_kernel(const fu_real *n, const fu_real *displacement, const fu_real *turn, const fu_real *size, fu_real p, fu_real p_next, fu_real h, const fu_real *c, fu_real *F, fu_real *M, fu_real *lost);
+/* forces over a step that balance energy: n [1]; displacement [m]; turn [1]; size [m]; p [m]; p_next [m]; h [s]; c
+ * [m, 1, N/m, N/m^1.5, s/m, m, 1, m/s] -> F [N]; M [N m]; lost [J] */
+/* n 3, displacement 3, turn 2x3, size 2, c 8, F 3, M 2x3, lost 1 */
+fu_crossing_step_kernel crossing_step;
+/* n 2, displacement 2, turn 1x2, size 1, c 8, F 2, M 1x2, lost 1 */
+fu_crossing_step_kernel planar_crossing_step;
 
 typedef void fu_drag_along_cable_kernel(const fu_real *t, const fu_real *w, const fu_real *c, fu_real *f, fu_real *f_t, fu_real *f_w);
 /* drag a length of a cable, and its derivatives: t [1]; w [m/s]; c [N s^2/m^3, N s^2/m^3, m/s] -> f [N/m]; f_t
@@ -1026,174 +1029,74 @@ typedef void fu_drag_wet_column_kernel(const fu_real *u, const fu_real *delta, f
 /* u 1, delta 1, e 1, c 1, c_u 1, c_uu 1 */
 fu_drag_wet_column_kernel drag_wet_column, planar_drag_wet_column;
 
-typedef void fu_crossing_closest_kernel(const fu_real *d, const fu_real *t, const fu_real *k, fu_real *step);
-/* a step of Newton's method to the closest points: d [m]; t [1]; k [1/m] -> step [m] */
-/* d 3, t 2x3, k 2x3, step 2 */
-fu_crossing_closest_kernel crossing_closest;
-/* d 2, t 1x2, k 1x2, step 1 */
-fu_crossing_closest_kernel planar_crossing_closest;
+typedef void fu_frame_axes_kernel(const fu_real *a, const fu_real *b, fu_real *A, fu_real *T);
+/* frame of two vectors, and its turn by them: a [1]; b [1] -> A [1]; T [rad] */
+/* a 3, b 3, A 3x3, T 3x6 */
+fu_frame_axes_kernel frame_axes;
+/* a 2, b 2, A 2x2, T 1x4 */
+fu_frame_axes_kernel planar_frame_axes;
 
-typedef void fu_crossing_contact_kernel(const fu_real *d, const fu_real *t, const fu_real *u, const fu_real *c, fu_real *n, fu_real *p, fu_real *N, fu_real *f, fu_real *U, fu_real *P);
-/* penetration and contact force at closest points: d [m]; t [1]; u [m/s]; c [m, 1, N/m, N/m^1.5, s/m, m, 1, m/s] ->
- * n [1]; p [m, m/s]; N [N]; f [N]; U [J]; P [W] */
-/* d 3, t 2x3, u 3, c 8, n 3, p 2, N 1, f 3, U 1, P 1 */
-fu_crossing_contact_kernel crossing_contact;
-/* d 2, t 1x2, u 2, c 8, n 2, p 2, N 1, f 2, U 1, P 1 */
-fu_crossing_contact_kernel planar_crossing_contact;
+typedef void fu_frame_motion_kernel(const fu_real *a, const fu_real *b, const fu_real *a_rate, const fu_real *b_rate, const fu_real *a_second, const fu_real *b_second, fu_real *omega, fu_real *alpha);
+/* angular velocity and acceleration of the frame: a [1]; b [1]; a_rate [1/s]; b_rate [1/s]; a_second [1/s^2];
+ * b_second [1/s^2] -> omega [rad/s]; alpha [rad/s^2] */
+/* a 3, b 3, a_rate 3, b_rate 3, a_second 3, b_second 3, omega 3, alpha 3 */
+fu_frame_motion_kernel frame_motion;
+/* a 2, b 2, a_rate 2, b_rate 2, a_second 2, b_second 2, omega 1, alpha 1 */
+fu_frame_motion_kernel planar_frame_motion;
 
-typedef void fu_crossing_force_kernel(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *s_d, fu_real *s_t);
-/* contact force, and its derivatives with the closest points moving: d [m]; t [1]; k [1/m]; w [1/s]; u [m/s]; c [m,
- * 1, N/m, N/m^1.5, s/m, m, 1, m/s] -> F [N]; F_d [N/m]; F_t [N]; F_u [N s/m]; s_d [1]; s_t [m] */
-/* d 3, t 2x3, k 2x3, w 2x3, u 3, c 8, F 3, F_d 3x3, F_t 3x6, F_u 3x3, s_d 2x3, s_t 2x6 */
-fu_crossing_force_kernel crossing_force;
-/* d 2, t 1x2, k 1x2, w 1x2, u 2, c 8, F 2, F_d 2x2, F_t 2x2, F_u 2x2, s_d 1x2, s_t 1x2 */
-fu_crossing_force_kernel planar_crossing_force;
+typedef void fu_frame_moment_kernel(const fu_real *a, const fu_real *b, const fu_real *m, fu_real *g, fu_real *K);
+/* generalised force of a moment on the frame, and its derivative: a [1]; b [1]; m [N m] -> g [N m]; K [N m] */
+/* a 3, b 3, m 3, g 6, K 6x6 */
+fu_frame_moment_kernel frame_moment;
+/* a 2, b 2, m 1, g 4, K 4x4 */
+fu_frame_moment_kernel planar_frame_moment;
 
-typedef void fu_crossing_motion_kernel(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, fu_real *s_dot, fu_real *t_dot, fu_real *d_dot);
-/* motion of the closest points: d [m]; t [1]; k [1/m]; w [1/s]; u [m/s] -> s_dot [m/s]; t_dot [1/s]; d_dot [m/s] */
-/* d 3, t 2x3, k 2x3, w 2x3, u 3, s_dot 2, t_dot 2x3, d_dot 3 */
-fu_crossing_motion_kernel crossing_motion;
-/* d 2, t 1x2, k 1x2, w 1x2, u 2, s_dot 1, t_dot 1x2, d_dot 2 */
-fu_crossing_motion_kernel planar_crossing_motion;
+typedef void fu_joint_force_kernel(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+/* equations, their derivatives, and those of the force J' f: gap [m]; A1 [1]; A2 [1]; c [m or rad, 1, 1]; f [N, N m]
+ * -> phi [m, 1]; J [1, m]; K [N/m, N, N m] */
+/* gap 3, A1 3x3, A2 3x3, c 3, f 3, phi 3, J 3x9, K 9x9 */
+fu_joint_force_kernel joint_spherical_force, joint_locked_force;
+/* gap 3, A1 3x3, A2 3x3, c 3, f 5, phi 5, J 5x9, K 9x9 */
+fu_joint_force_kernel joint_revolute_force, joint_cylindrical_angle_force, joint_cylindrical_distance_force,
+    joint_prismatic_force;
+/* gap 3, A1 3x3, A2 3x3, c 3, f 6, phi 6, J 6x9, K 9x9 */
+fu_joint_force_kernel joint_revolute_angle_force, joint_prismatic_distance_force, joint_weld_force;
+/* gap 3, A1 3x3, A2 3x3, c 3, f 4, phi 4, J 4x9, K 9x9 */
+fu_joint_force_kernel joint_universal_force, joint_cylindrical_force;
+/* gap 3, A1 3x3, A2 3x3, c 3, f 1, phi 1, J 1x9, K 9x9 */
+fu_joint_force_kernel joint_distance_force;
+/* gap 3, A1 3x3, A2 3x3, c 3, f 2, phi 2, J 2x9, K 9x9 */
+fu_joint_force_kernel joint_aligned_force;
+/* gap 2, A1 2x2, A2 2x2, c 3, f 2, phi 2, J 2x4, K 4x4 */
+fu_joint_force_kernel joint_planar_spherical_force, joint_planar_prismatic_force;
+/* gap 2, A1 2x2, A2 2x2, c 3, f 3, phi 3, J 3x4, K 4x4 */
+fu_joint_force_kernel joint_planar_revolute_angle_force, joint_planar_prismatic_distance_force, joint_planar_weld_force;
+/* gap 2, A1 2x2, A2 2x2, c 3, f 1, phi 1, J 1x4, K 4x4 */
+fu_joint_force_kernel joint_planar_distance_force, joint_planar_locked_force;
 
-typedef void fu_crossing_stretch_kernel(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *c, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *now, fu_real *old, fu_real *along);
-/* stretch of the friction spring in stick: d [m]; t [1]; k [1/m]; w [1/s]; u [m/s]; c [m, 1, N/m, N/m^1.5, s/m, m,
- * 1, m/s]; e [m]; h [s]; d_0 [m]; d_rate [m/s]; t_0 [1]; t_rate [1/s]; s_rate [m/s]; x [m]; v [m/s] -> now [m]; old
- * [m]; along [1] */
-/* d 3, t 2x3, k 2x3, w 2x3, u 3, c 8, e 2, d_0 3, d_rate 3, t_0 2x3, t_rate 2x3, s_rate 2, x 2, v 2, now 3, old 3,
- * along 3 */
-fu_crossing_stretch_kernel crossing_stretch;
-/* d 2, t 1x2, k 1x2, w 1x2, u 2, c 8, e 1, d_0 2, d_rate 2, t_0 1x2, t_rate 1x2, s_rate 1, x 1, v 1, now 2, old 2,
- * along 2 */
-fu_crossing_stretch_kernel planar_crossing_stretch;
-
-typedef void fu_crossing_turned_kernel(const fu_real *x_now, const fu_real *x_old, const fu_real *slip_old, const fu_real *slip, fu_real h, fu_real r_1, fu_real least, fu_real slid, fu_real r_0, fu_real turns, fu_real *direction);
-/* direction of a stretch that slides as the step ends: x_now [m]; x_old [m]; slip_old [m/s]; slip [m/s]; h [s]; r_1
- * [m]; least [m]; slid [1]; r_0 [m]; turns [1] -> direction [m] */
-/* x_now 3, x_old 3, slip_old 3, slip 3, direction 3 */
-fu_crossing_turned_kernel crossing_turned;
-/* x_now 2, x_old 2, slip_old 2, slip 2, direction 2 */
-fu_crossing_turned_kernel planar_crossing_turned;
-
-typedef void fu_crossing_sticking_kernel(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real k_t, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k);
-/* friction in stick, its derivatives with the points moving: d [m]; t [1]; k [1/m]; w [1/s]; u [m/s]; third [1/m^2];
- * k_rate [1/(m s)]; c [m, 1, N/m, N/m^1.5, s/m, m, 1, m/s]; k_t [N/m]; e [m]; h [s]; d_0 [m]; d_rate [m/s]; t_0 [1];
- * t_rate [1/s]; s_rate [m/s]; x [m]; v [m/s] -> F [N]; F_d [N/m]; F_t [N]; F_u [N s/m]; F_w [N s]; F_k [N m] */
-/* d 3, t 2x3, k 2x3, w 2x3, u 3, third 2x3, k_rate 2x3, c 8, e 2, d_0 3, d_rate 3, t_0 2x3, t_rate 2x3, s_rate 2, x
- * 2, v 2, F 3, F_d 3x3, F_t 3x6, F_u 3x3, F_w 3x6, F_k 3x6 */
-fu_crossing_sticking_kernel crossing_sticking;
-/* d 2, t 1x2, k 1x2, w 1x2, u 2, third 1x2, k_rate 1x2, c 8, e 1, d_0 2, d_rate 2, t_0 1x2, t_rate 1x2, s_rate 1, x
- * 1, v 1, F 2, F_d 2x2, F_t 2x2, F_u 2x2, F_w 2x2, F_k 2x2 */
-fu_crossing_sticking_kernel planar_crossing_sticking;
-
-typedef void fu_crossing_sliding_kernel(const fu_real *d, const fu_real *t, const fu_real *k, const fu_real *w, const fu_real *u, const fu_real *third, const fu_real *k_rate, const fu_real *c, fu_real mu, fu_real k_t, const fu_real *e, fu_real h, const fu_real *d_0, const fu_real *d_rate, const fu_real *t_0, const fu_real *t_rate, const fu_real *s_rate, const fu_real *x, const fu_real *v, fu_real slid, fu_real r_0, fu_real turns, fu_real *F, fu_real *F_d, fu_real *F_t, fu_real *F_u, fu_real *F_w, fu_real *F_k);
-/* friction in sliding, its derivatives with the points moving: d [m]; t [1]; k [1/m]; w [1/s]; u [m/s]; third
- * [1/m^2]; k_rate [1/(m s)]; c [m, 1, N/m, N/m^1.5, s/m, m, 1, m/s]; mu [1]; k_t [N/m]; e [m]; h [s]; d_0 [m];
- * d_rate [m/s]; t_0 [1]; t_rate [1/s]; s_rate [m/s]; x [m]; v [m/s]; slid [1]; r_0 [m]; turns [1] -> F [N]; F_d
- * [N/m]; F_t [N]; F_u [N s/m]; F_w [N s]; F_k [N m] */
-/* d 3, t 2x3, k 2x3, w 2x3, u 3, third 2x3, k_rate 2x3, c 8, e 2, d_0 3, d_rate 3, t_0 2x3, t_rate 2x3, s_rate 2, x
- * 2, v 2, F 3, F_d 3x3, F_t 3x6, F_u 3x3, F_w 3x6, F_k 3x6 */
-fu_crossing_sliding_kernel crossing_sliding;
-/* d 2, t 1x2, k 1x2, w 1x2, u 2, third 1x2, k_rate 1x2, c 8, e 1, d_0 2, d_rate 2, t_0 1x2, t_rate 1x2, s_rate 1, x
- * 1, v 1, F 2, F_d 2x2, F_t 2x2, F_u 2x2, F_w 2x2, F_k 2x2 */
-fu_crossing_sliding_kernel planar_crossing_sliding;
-
-typedef void fu_crossing_step_kernel(const fu_real *n, const fu_real *displacement, const fu_real *turn, const fu_real *size, fu_real p, fu_real p_next, fu_real h, const fu_real *c, fu_real *F, fu_real *M, fu_real *lost);
-/* forces over a step that balance energy: n [1]; displacement [m]; turn [1]; size [m]; p [m]; p_next [m]; h [s]; c
- * [m, 1, N/m, N/m^1.5, s/m, m, 1, m/s] -> F [N]; M [N m]; lost [J] */
-/* n 3, displacement 3, turn 2x3, size 2, c 8, F 3, M 2x3, lost 1 */
-fu_crossing_step_kernel crossing_step;
-/* n 2, displacement 2, turn 1x2, size 1, c 8, F 2, M 1x2, lost 1 */
-fu_crossing_step_kernel planar_crossing_step;
-
-typedef void fu_surface_flat_kernel(const fu_real *y, const fu_real *normal, fu_real *g, fu_real *g_y);
-/* distance from a plane, and its gradient: y [m]; normal [1] -> g [m]; g_y [1] */
-/* y 3, normal 3, g 1, g_y 3 */
-fu_surface_flat_kernel surface_flat;
-/* y 2, normal 2, g 1, g_y 2 */
-fu_surface_flat_kernel planar_surface_flat;
-
-typedef void fu_surface_rounded_kernel(const fu_real *y, const fu_real *axis, fu_real radius, fu_real *g, fu_real *g_y, fu_real *g_yy);
-/* distance from a sphere or a cylinder, with its derivatives: y [m]; axis [1]; radius [m] -> g [m]; g_y [1]; g_yy
- * [1/m] */
-/* y 3, axis 3, g 1, g_y 3, g_yy 3x3 */
-fu_surface_rounded_kernel surface_rounded;
-/* y 2, axis 2, g 1, g_y 2, g_yy 2x2 */
-fu_surface_rounded_kernel planar_surface_rounded;
-
-typedef void fu_surface_terrain_kernel(const fu_real *y, const fu_real *h, fu_real *g, fu_real *g_y, fu_real *g_yy);
-/* distance from a height field, with its derivatives: y [m]; h [m, ...] -> g [m]; g_y [1]; g_yy [1/m] */
-/* y 3, h 10, g 1, g_y 3, g_yy 3x3 */
-fu_surface_terrain_kernel surface_terrain;
-/* y 2, h 4, g 1, g_y 2, g_yy 2x2 */
-fu_surface_terrain_kernel planar_surface_terrain;
-
-typedef void fu_surface_push_kernel(fu_real depth, fu_real depth_rate, const fu_real *law, fu_real depth_next, fu_real *p, fu_real *p_d, fu_real *p_rate, fu_real *p_e, fu_real *U, fu_real *mean);
-/* normal force of contact by the depth to the power 1, and derivatives: depth [m]; depth_rate [m/s]; law [N/m^e (a
- * length), s/m]; depth_next [m] -> p [N (a length)]; p_d [N/m (a length)]; p_rate [N s/m (a length)]; p_e [N (a
- * length)]; U [J (a length)]; mean [N (a length)] */
-/* law 2, p 1, p_d 1, p_rate 1, p_e 1, U 1, mean 1 */
-fu_surface_push_kernel surface_push, planar_surface_push;
-
-typedef void fu_surface_push_hertz_kernel(fu_real depth, fu_real depth_rate, const fu_real *law, fu_real depth_next, fu_real *p, fu_real *p_d, fu_real *p_rate, fu_real *p_e, fu_real *U, fu_real *mean);
-/* normal force of contact by the depth to the power 3/2, and derivatives: depth [m]; depth_rate [m/s]; law [N/m^e (a
- * length), s/m]; depth_next [m] -> p [N (a length)]; p_d [N/m (a length)]; p_rate [N s/m (a length)]; p_e [N (a
- * length)]; U [J (a length)]; mean [N (a length)] */
-/* law 2, p 1, p_d 1, p_rate 1, p_e 1, U 1, mean 1 */
-fu_surface_push_hertz_kernel surface_push_hertz, planar_surface_push_hertz;
-
-typedef void fu_surface_frictionless_kernel(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *normal_force, fu_real *f, fu_real *f_y, fu_real *f_w);
-/* normal force of contact, and its derivatives: n [1]; H [1/m]; w [m/s]; normal_force [N, N/m, N s/m (a length)] ->
- * f [N (a length)]; f_y [N/m (a length)]; f_w [N s/m (a length)] */
-/* n 3, H 3x3, w 3, normal_force 3, f 3, f_y 3x3, f_w 3x3 */
-fu_surface_frictionless_kernel surface_frictionless;
-/* n 2, H 2x2, w 2, normal_force 3, f 2, f_y 2x2, f_w 2x2 */
-fu_surface_frictionless_kernel planar_surface_frictionless;
-
-typedef void fu_surface_sticking_kernel(const fu_real *n, const fu_real *H, const fu_real *x, fu_real k_t, fu_real *f, fu_real *f_y, fu_real *t, fu_real *f_x);
-/* friction in stick, and its derivatives: n [1]; H [1/m]; x [m]; k_t [N/m (a length)] -> f [N (a length)]; f_y [N/m
- * (a length)]; t [m]; f_x [N/m (a length)] */
-/* n 3, H 3x3, x 3, f 3, f_y 3x3, t 3, f_x 3x3 */
-fu_surface_sticking_kernel surface_sticking;
-/* n 2, H 2x2, x 2, f 2, f_y 2x2, t 2, f_x 2x2 */
-fu_surface_sticking_kernel planar_surface_sticking;
-
-typedef void fu_surface_sliding_kernel(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *normal_force, const fu_real *x, fu_real mu, fu_real *f, fu_real *f_y, fu_real *f_w, fu_real *f_x);
-/* friction in sliding, and its derivatives: n [1]; H [1/m]; w [m/s]; normal_force [N, N/m, N s/m (a length)]; x [m];
- * mu [1] -> f [N (a length)]; f_y [N/m (a length)]; f_w [N s/m (a length)]; f_x [N/m (a length)] */
-/* n 3, H 3x3, w 3, normal_force 3, x 3, f 3, f_y 3x3, f_w 3x3, f_x 3x3 */
-fu_surface_sliding_kernel surface_sliding;
-/* n 2, H 2x2, w 2, normal_force 3, x 2, f 2, f_y 2x2, f_w 2x2, f_x 2x2 */
-fu_surface_sliding_kernel planar_surface_sliding;
-
-typedef void fu_surface_reaction_kernel(const fu_real *x, const fu_real *w, const fu_real *omega_o, const fu_real *f, const fu_real *f_y, const fu_real *f_w, const fu_real *f_x, const fu_real *H, fu_real radius, const fu_real *arm, const fu_real *turn, const fu_real *mean_arm, fu_real share, const fu_real *dr, const fu_real *dv, const fu_real *dtheta, const fu_real *dtheta_o, const fu_real *domega_o, fu_real *f_t, fu_real *m_t, fu_real *m_o_t);
-/* change of contact along a motion of the point and of the surface: x [m]; w [m/s]; omega_o [rad/s]; f [N (a
- * length)]; f_y [N/m (a length)]; f_w [N s/m (a length)]; f_x [N/m (a length)]; H [1/m]; radius [m]; arm [m]; turn
- * [rad]; mean_arm [m]; share [1]; dr [m]; dv [m/s]; dtheta [rad]; dtheta_o [rad]; domega_o [rad/s] -> f_t [N (a
- * length)]; m_t [N m (a length)]; m_o_t [N m (a length)] */
-/* x 3, w 3, omega_o 3, f 3, f_y 3x3, f_w 3x3, f_x 3x3, H 3x3, arm 3, turn 3, mean_arm 3, dr 3, dv 3, dtheta 3,
- * dtheta_o 3, domega_o 3, f_t 3, m_t 3, m_o_t 3 */
-fu_surface_reaction_kernel surface_reaction;
-/* x 2, w 2, omega_o 1, f 2, f_y 2x2, f_w 2x2, f_x 2x2, H 2x2, arm 2, turn 1, mean_arm 2, dr 2, dv 2, dtheta 1,
- * dtheta_o 1, domega_o 1, f_t 2, m_t 1, m_o_t 1 */
-fu_surface_reaction_kernel planar_surface_reaction;
-
-typedef void fu_surface_motion_kernel(const fu_real *n, const fu_real *H, const fu_real *r, const fu_real *v, const fu_real *a, const fu_real *r_o, const fu_real *v_o, const fu_real *a_o, const fu_real *omega_o, const fu_real *alpha_o, fu_real *g_t, fu_real *g_tt);
-/* rates of the distance of a moving point from a moving surface: n [1]; H [1/m]; r [m]; v [m/s]; a [m/s^2]; r_o [m];
- * v_o [m/s]; a_o [m/s^2]; omega_o [rad/s]; alpha_o [rad/s^2] -> g_t [m/s]; g_tt [m/s^2] */
-/* n 3, H 3x3, r 3, v 3, a 3, r_o 3, v_o 3, a_o 3, omega_o 3, alpha_o 3, g_t 1, g_tt 1 */
-fu_surface_motion_kernel surface_motion;
-/* n 2, H 2x2, r 2, v 2, a 2, r_o 2, v_o 2, a_o 2, omega_o 1, alpha_o 1, g_t 1, g_tt 1 */
-fu_surface_motion_kernel planar_surface_motion;
-
-typedef void fu_surface_slip_kernel(const fu_real *n, const fu_real *H, const fu_real *r, const fu_real *v, const fu_real *a, const fu_real *r_o, const fu_real *v_o, const fu_real *a_o, const fu_real *omega_o, const fu_real *alpha_o, fu_real radius, const fu_real *omega, const fu_real *alpha, fu_real *w, fu_real *w_t);
-/* velocity past a moving surface of the particle of a sphere in contact with it: n [1]; H [1/m]; r [m]; v [m/s]; a
- * [m/s^2]; r_o [m]; v_o [m/s]; a_o [m/s^2]; omega_o [rad/s]; alpha_o [rad/s^2]; radius [m]; omega [rad/s]; alpha
- * [rad/s^2] -> w [m/s]; w_t [m/s^2] */
-/* n 3, H 3x3, r 3, v 3, a 3, r_o 3, v_o 3, a_o 3, omega_o 3, alpha_o 3, omega 3, alpha 3, w 3, w_t 3 */
-fu_surface_slip_kernel surface_slip;
-/* n 2, H 2x2, r 2, v 2, a 2, r_o 2, v_o 2, a_o 2, omega_o 1, alpha_o 1, omega 1, alpha 1, w 2, w_t 2 */
-fu_surface_slip_kernel planar_surface_slip;
+typedef void fu_joint_motion_kernel(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
+/* derivatives of the equations in time: gap [m]; A1 [1]; A2 [1]; c [m or rad, 1, 1]; gap_rate [m/s]; omega1 [rad/s];
+ * omega2 [rad/s]; c_rate [m/s or rad/s, and per s] -> phi_t [m/s, 1/s]; Q_d [m/s^2, 1/s^2] */
+/* gap 3, A1 3x3, A2 3x3, c 3, gap_rate 3, omega1 3, omega2 3, c_rate 2, phi_t 3, Q_d 3 */
+fu_joint_motion_kernel joint_spherical_motion, joint_locked_motion;
+/* gap 3, A1 3x3, A2 3x3, c 3, gap_rate 3, omega1 3, omega2 3, c_rate 2, phi_t 5, Q_d 5 */
+fu_joint_motion_kernel joint_revolute_motion, joint_cylindrical_angle_motion, joint_cylindrical_distance_motion,
+    joint_prismatic_motion;
+/* gap 3, A1 3x3, A2 3x3, c 3, gap_rate 3, omega1 3, omega2 3, c_rate 2, phi_t 6, Q_d 6 */
+fu_joint_motion_kernel joint_revolute_angle_motion, joint_prismatic_distance_motion, joint_weld_motion;
+/* gap 3, A1 3x3, A2 3x3, c 3, gap_rate 3, omega1 3, omega2 3, c_rate 2, phi_t 4, Q_d 4 */
+fu_joint_motion_kernel joint_universal_motion, joint_cylindrical_motion;
+/* gap 3, A1 3x3, A2 3x3, c 3, gap_rate 3, omega1 3, omega2 3, c_rate 2, phi_t 1, Q_d 1 */
+fu_joint_motion_kernel joint_distance_motion;
+/* gap 3, A1 3x3, A2 3x3, c 3, gap_rate 3, omega1 3, omega2 3, c_rate 2, phi_t 2, Q_d 2 */
+fu_joint_motion_kernel joint_aligned_motion;
+/* gap 2, A1 2x2, A2 2x2, c 3, gap_rate 2, omega1 1, omega2 1, c_rate 2, phi_t 2, Q_d 2 */
+fu_joint_motion_kernel joint_planar_spherical_motion, joint_planar_prismatic_motion;
+/* gap 2, A1 2x2, A2 2x2, c 3, gap_rate 2, omega1 1, omega2 1, c_rate 2, phi_t 3, Q_d 3 */
+fu_joint_motion_kernel joint_planar_revolute_angle_motion, joint_planar_prismatic_distance_motion,
+    joint_planar_weld_motion;
+/* gap 2, A1 2x2, A2 2x2, c 3, gap_rate 2, omega1 1, omega2 1, c_rate 2, phi_t 1, Q_d 1 */
+fu_joint_motion_kernel joint_planar_distance_motion, joint_planar_locked_motion;
 
 typedef void fu_point_law_energy_kernel(const fu_real *parameters, const fu_real *gap, fu_real *U);
 /* stored energy: parameters [N/m, N s/m, m]; gap [m] -> U [J] */
@@ -1285,6 +1188,103 @@ fu_point_law_discrete_force_kernel planar_spring_segment_discrete_force;
 fu_point_law_discrete_force_kernel zero_length_spring_discrete_force;
 /* parameters 2, gap 2, gap_next 2, f 2, P 1 */
 fu_point_law_discrete_force_kernel planar_zero_length_spring_discrete_force;
+
+typedef void fu_resistance_force_kernel(const fu_real *t, const fu_real *u, const fu_real *f, const fu_real *friction, const fu_real *buffer, fu_real *R, fu_real *R_t, fu_real *R_u, fu_real *R_f, fu_real *R_x);
+/* force along the cable on a slide, and its derivatives: t [1]; u [m/s]; f [N]; friction [1, N s/m, m/s, 1, N];
+ * buffer [N/m, N s/m, m, 1] -> R [N]; R_t [N]; R_u [N s/m]; R_f [1]; R_x [N/m] */
+/* t 3, u 3, f 3, friction 5, buffer 4, R 1, R_t 3, R_u 3, R_f 3, R_x 1 */
+fu_resistance_force_kernel resistance_force;
+/* t 2, u 2, f 2, friction 5, buffer 4, R 1, R_t 2, R_u 2, R_f 2, R_x 1 */
+fu_resistance_force_kernel planar_resistance_force;
+
+typedef void fu_surface_flat_kernel(const fu_real *y, const fu_real *normal, fu_real *g, fu_real *g_y);
+/* distance from a plane, and its gradient: y [m]; normal [1] -> g [m]; g_y [1] */
+/* y 3, normal 3, g 1, g_y 3 */
+fu_surface_flat_kernel surface_flat;
+/* y 2, normal 2, g 1, g_y 2 */
+fu_surface_flat_kernel planar_surface_flat;
+
+typedef void fu_surface_rounded_kernel(const fu_real *y, const fu_real *axis, fu_real radius, fu_real *g, fu_real *g_y, fu_real *g_yy);
+/* distance from a sphere or a cylinder, with its derivatives: y [m]; axis [1]; radius [m] -> g [m]; g_y [1]; g_yy
+ * [1/m] */
+/* y 3, axis 3, g 1, g_y 3, g_yy 3x3 */
+fu_surface_rounded_kernel surface_rounded;
+/* y 2, axis 2, g 1, g_y 2, g_yy 2x2 */
+fu_surface_rounded_kernel planar_surface_rounded;
+
+typedef void fu_surface_terrain_kernel(const fu_real *y, const fu_real *h, fu_real *g, fu_real *g_y, fu_real *g_yy);
+/* distance from a height field, with its derivatives: y [m]; h [m, ...] -> g [m]; g_y [1]; g_yy [1/m] */
+/* y 3, h 10, g 1, g_y 3, g_yy 3x3 */
+fu_surface_terrain_kernel surface_terrain;
+/* y 2, h 4, g 1, g_y 2, g_yy 2x2 */
+fu_surface_terrain_kernel planar_surface_terrain;
+
+typedef void fu_surface_push_kernel(fu_real depth, fu_real depth_rate, const fu_real *law, fu_real depth_next, fu_real *p, fu_real *p_d, fu_real *p_rate, fu_real *p_e, fu_real *U, fu_real *mean);
+/* normal force of contact by the depth to the power 1, and derivatives: depth [m]; depth_rate [m/s]; law [N/m^e (a
+ * length), s/m]; depth_next [m] -> p [N (a length)]; p_d [N/m (a length)]; p_rate [N s/m (a length)]; p_e [N (a
+ * length)]; U [J (a length)]; mean [N (a length)] */
+/* law 2, p 1, p_d 1, p_rate 1, p_e 1, U 1, mean 1 */
+fu_surface_push_kernel surface_push, planar_surface_push;
+
+typedef void fu_surface_push_hertz_kernel(fu_real depth, fu_real depth_rate, const fu_real *law, fu_real depth_next, fu_real *p, fu_real *p_d, fu_real *p_rate, fu_real *p_e, fu_real *U, fu_real *mean);
+/* normal force of contact by the depth to the power 3/2, and derivatives: depth [m]; depth_rate [m/s]; law [N/m^e (a
+ * length), s/m]; depth_next [m] -> p [N (a length)]; p_d [N/m (a length)]; p_rate [N s/m (a length)]; p_e [N (a
+ * length)]; U [J (a length)]; mean [N (a length)] */
+/* law 2, p 1, p_d 1, p_rate 1, p_e 1, U 1, mean 1 */
+fu_surface_push_hertz_kernel surface_push_hertz, planar_surface_push_hertz;
+
+typedef void fu_surface_frictionless_kernel(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *normal_force, fu_real *f, fu_real *f_y, fu_real *f_w);
+/* normal force of contact, and its derivatives: n [1]; H [1/m]; w [m/s]; normal_force [N, N/m, N s/m (a length)] ->
+ * f [N (a length)]; f_y [N/m (a length)]; f_w [N s/m (a length)] */
+/* n 3, H 3x3, w 3, normal_force 3, f 3, f_y 3x3, f_w 3x3 */
+fu_surface_frictionless_kernel surface_frictionless;
+/* n 2, H 2x2, w 2, normal_force 3, f 2, f_y 2x2, f_w 2x2 */
+fu_surface_frictionless_kernel planar_surface_frictionless;
+
+typedef void fu_surface_sticking_kernel(const fu_real *n, const fu_real *H, const fu_real *x, fu_real k_t, fu_real *f, fu_real *f_y, fu_real *t, fu_real *f_x);
+/* friction in stick, and its derivatives: n [1]; H [1/m]; x [m]; k_t [N/m (a length)] -> f [N (a length)]; f_y [N/m
+ * (a length)]; t [m]; f_x [N/m (a length)] */
+/* n 3, H 3x3, x 3, f 3, f_y 3x3, t 3, f_x 3x3 */
+fu_surface_sticking_kernel surface_sticking;
+/* n 2, H 2x2, x 2, f 2, f_y 2x2, t 2, f_x 2x2 */
+fu_surface_sticking_kernel planar_surface_sticking;
+
+typedef void fu_surface_sliding_kernel(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *normal_force, const fu_real *x, fu_real mu, fu_real *f, fu_real *f_y, fu_real *f_w, fu_real *f_x);
+/* friction in sliding, and its derivatives: n [1]; H [1/m]; w [m/s]; normal_force [N, N/m, N s/m (a length)]; x [m];
+ * mu [1] -> f [N (a length)]; f_y [N/m (a length)]; f_w [N s/m (a length)]; f_x [N/m (a length)] */
+/* n 3, H 3x3, w 3, normal_force 3, x 3, f 3, f_y 3x3, f_w 3x3, f_x 3x3 */
+fu_surface_sliding_kernel surface_sliding;
+/* n 2, H 2x2, w 2, normal_force 3, x 2, f 2, f_y 2x2, f_w 2x2, f_x 2x2 */
+fu_surface_sliding_kernel planar_surface_sliding;
+
+typedef void fu_surface_reaction_kernel(const fu_real *x, const fu_real *w, const fu_real *omega_o, const fu_real *f, const fu_real *f_y, const fu_real *f_w, const fu_real *f_x, const fu_real *H, fu_real radius, const fu_real *arm, const fu_real *turn, const fu_real *mean_arm, fu_real share, const fu_real *dr, const fu_real *dv, const fu_real *dtheta, const fu_real *dtheta_o, const fu_real *domega_o, fu_real *f_t, fu_real *m_t, fu_real *m_o_t);
+/* change of contact along a motion of the point and of the surface: x [m]; w [m/s]; omega_o [rad/s]; f [N (a
+ * length)]; f_y [N/m (a length)]; f_w [N s/m (a length)]; f_x [N/m (a length)]; H [1/m]; radius [m]; arm [m]; turn
+ * [rad]; mean_arm [m]; share [1]; dr [m]; dv [m/s]; dtheta [rad]; dtheta_o [rad]; domega_o [rad/s] -> f_t [N (a
+ * length)]; m_t [N m (a length)]; m_o_t [N m (a length)] */
+/* x 3, w 3, omega_o 3, f 3, f_y 3x3, f_w 3x3, f_x 3x3, H 3x3, arm 3, turn 3, mean_arm 3, dr 3, dv 3, dtheta 3,
+ * dtheta_o 3, domega_o 3, f_t 3, m_t 3, m_o_t 3 */
+fu_surface_reaction_kernel surface_reaction;
+/* x 2, w 2, omega_o 1, f 2, f_y 2x2, f_w 2x2, f_x 2x2, H 2x2, arm 2, turn 1, mean_arm 2, dr 2, dv 2, dtheta 1,
+ * dtheta_o 1, domega_o 1, f_t 2, m_t 1, m_o_t 1 */
+fu_surface_reaction_kernel planar_surface_reaction;
+
+typedef void fu_surface_motion_kernel(const fu_real *n, const fu_real *H, const fu_real *r, const fu_real *v, const fu_real *a, const fu_real *r_o, const fu_real *v_o, const fu_real *a_o, const fu_real *omega_o, const fu_real *alpha_o, fu_real *g_t, fu_real *g_tt);
+/* rates of the distance of a moving point from a moving surface: n [1]; H [1/m]; r [m]; v [m/s]; a [m/s^2]; r_o [m];
+ * v_o [m/s]; a_o [m/s^2]; omega_o [rad/s]; alpha_o [rad/s^2] -> g_t [m/s]; g_tt [m/s^2] */
+/* n 3, H 3x3, r 3, v 3, a 3, r_o 3, v_o 3, a_o 3, omega_o 3, alpha_o 3, g_t 1, g_tt 1 */
+fu_surface_motion_kernel surface_motion;
+/* n 2, H 2x2, r 2, v 2, a 2, r_o 2, v_o 2, a_o 2, omega_o 1, alpha_o 1, g_t 1, g_tt 1 */
+fu_surface_motion_kernel planar_surface_motion;
+
+typedef void fu_surface_slip_kernel(const fu_real *n, const fu_real *H, const fu_real *r, const fu_real *v, const fu_real *a, const fu_real *r_o, const fu_real *v_o, const fu_real *a_o, const fu_real *omega_o, const fu_real *alpha_o, fu_real radius, const fu_real *omega, const fu_real *alpha, fu_real *w, fu_real *w_t);
+/* velocity past a moving surface of the particle of a sphere in contact with it: n [1]; H [1/m]; r [m]; v [m/s]; a
+ * [m/s^2]; r_o [m]; v_o [m/s]; a_o [m/s^2]; omega_o [rad/s]; alpha_o [rad/s^2]; radius [m]; omega [rad/s]; alpha
+ * [rad/s^2] -> w [m/s]; w_t [m/s^2] */
+/* n 3, H 3x3, r 3, v 3, a 3, r_o 3, v_o 3, a_o 3, omega_o 3, alpha_o 3, omega 3, alpha 3, w 3, w_t 3 */
+fu_surface_slip_kernel surface_slip;
+/* n 2, H 2x2, r 2, v 2, a 2, r_o 2, v_o 2, a_o 2, omega_o 1, alpha_o 1, omega 1, alpha 1, w 2, w_t 2 */
+fu_surface_slip_kernel planar_surface_slip;
 
 /* constants of the law from the stiffness of the section: l [m]; S [N, N m^2, N m^2, N m^4, N m^4, N m^4] -> A [N m] */
 /* S 9x6, A 61 */
@@ -1512,30 +1512,20 @@ typedef struct {
     fu_slide_discrete_gradient_kernel *discrete_gradient;
 } fu_slide_kernels;
 
-/* What the engine needs of a frame. */
+/* What the engine needs of a crossing. */
 typedef struct {
     const char *name;
     int dim;
-    fu_frame_axes_kernel *axes;
-    fu_frame_motion_kernel *motion;
-    fu_frame_moment_kernel *moment;
-} fu_frame_kernels;
-
-/* What the engine needs of a joint. */
-typedef struct {
-    const char *name;
-    int dim;
-    int rows;
-    fu_joint_force_kernel *force;
-    fu_joint_motion_kernel *motion;
-} fu_joint_kernels;
-
-/* What the engine needs of a resistance. */
-typedef struct {
-    const char *name;
-    int dim;
-    fu_resistance_force_kernel *force;
-} fu_resistance_kernels;
+    fu_crossing_closest_kernel *closest;
+    fu_crossing_contact_kernel *contact;
+    fu_crossing_force_kernel *force;
+    fu_crossing_motion_kernel *motion;
+    fu_crossing_stretch_kernel *stretch;
+    fu_crossing_turned_kernel *turned;
+    fu_crossing_sticking_kernel *sticking;
+    fu_crossing_sliding_kernel *sliding;
+    fu_crossing_step_kernel *step;
+} fu_crossing_kernels;
 
 /* What the engine needs of a drag. */
 typedef struct {
@@ -1559,20 +1549,42 @@ typedef struct {
     fu_drag_wet_column_kernel *wet_column;
 } fu_drag_kernels;
 
-/* What the engine needs of a crossing. */
+/* What the engine needs of a frame. */
 typedef struct {
     const char *name;
     int dim;
-    fu_crossing_closest_kernel *closest;
-    fu_crossing_contact_kernel *contact;
-    fu_crossing_force_kernel *force;
-    fu_crossing_motion_kernel *motion;
-    fu_crossing_stretch_kernel *stretch;
-    fu_crossing_turned_kernel *turned;
-    fu_crossing_sticking_kernel *sticking;
-    fu_crossing_sliding_kernel *sliding;
-    fu_crossing_step_kernel *step;
-} fu_crossing_kernels;
+    fu_frame_axes_kernel *axes;
+    fu_frame_motion_kernel *motion;
+    fu_frame_moment_kernel *moment;
+} fu_frame_kernels;
+
+/* What the engine needs of a joint. */
+typedef struct {
+    const char *name;
+    int dim;
+    int rows;
+    fu_joint_force_kernel *force;
+    fu_joint_motion_kernel *motion;
+} fu_joint_kernels;
+
+/* What the engine needs of a point_law. */
+typedef struct {
+    const char *name;
+    int dim;
+    int parameters;
+    fu_point_law_energy_kernel *energy;
+    fu_point_law_dissipation_kernel *dissipation;
+    fu_point_law_force_kernel *force;
+    fu_point_law_tangent_kernel *tangent;
+    fu_point_law_discrete_force_kernel *discrete_force;
+} fu_point_law_kernels;
+
+/* What the engine needs of a resistance. */
+typedef struct {
+    const char *name;
+    int dim;
+    fu_resistance_force_kernel *force;
+} fu_resistance_kernels;
 
 /* What the engine needs of a surface. */
 typedef struct {
@@ -1591,18 +1603,6 @@ typedef struct {
     fu_surface_slip_kernel *slip;
 } fu_surface_kernels;
 
-/* What the engine needs of a point_law. */
-typedef struct {
-    const char *name;
-    int dim;
-    int parameters;
-    fu_point_law_energy_kernel *energy;
-    fu_point_law_dissipation_kernel *dissipation;
-    fu_point_law_force_kernel *force;
-    fu_point_law_tangent_kernel *tangent;
-    fu_point_law_discrete_force_kernel *discrete_force;
-} fu_point_law_kernels;
-
 /* Every table, one entry a family. */
 typedef struct {
     int n_elements;
@@ -1615,20 +1615,20 @@ typedef struct {
     const fu_modal_kernels *modals;
     int n_slides;
     const fu_slide_kernels *slides;
+    int n_crossings;
+    const fu_crossing_kernels *crossings;
+    int n_drags;
+    const fu_drag_kernels *drags;
     int n_frames;
     const fu_frame_kernels *frames;
     int n_joints;
     const fu_joint_kernels *joints;
-    int n_resistances;
-    const fu_resistance_kernels *resistances;
-    int n_drags;
-    const fu_drag_kernels *drags;
-    int n_crossings;
-    const fu_crossing_kernels *crossings;
-    int n_surfaces;
-    const fu_surface_kernels *surfaces;
     int n_point_laws;
     const fu_point_law_kernels *point_laws;
+    int n_resistances;
+    const fu_resistance_kernels *resistances;
+    int n_surfaces;
+    const fu_surface_kernels *surfaces;
 } fu_tables;
 extern const fu_tables fu_all;
 
@@ -1645,20 +1645,20 @@ static inline const void *fu_find(const fu_tables *tables, const char *role, con
         if (!strcmp(tables->modals[i].name, name)) return &tables->modals[i];
     for (int i = 0; i < tables->n_slides && !strcmp(role, "slide"); ++i)
         if (!strcmp(tables->slides[i].name, name)) return &tables->slides[i];
+    for (int i = 0; i < tables->n_crossings && !strcmp(role, "crossing"); ++i)
+        if (!strcmp(tables->crossings[i].name, name)) return &tables->crossings[i];
+    for (int i = 0; i < tables->n_drags && !strcmp(role, "drag"); ++i)
+        if (!strcmp(tables->drags[i].name, name)) return &tables->drags[i];
     for (int i = 0; i < tables->n_frames && !strcmp(role, "frame"); ++i)
         if (!strcmp(tables->frames[i].name, name)) return &tables->frames[i];
     for (int i = 0; i < tables->n_joints && !strcmp(role, "joint"); ++i)
         if (!strcmp(tables->joints[i].name, name)) return &tables->joints[i];
-    for (int i = 0; i < tables->n_resistances && !strcmp(role, "resistance"); ++i)
-        if (!strcmp(tables->resistances[i].name, name)) return &tables->resistances[i];
-    for (int i = 0; i < tables->n_drags && !strcmp(role, "drag"); ++i)
-        if (!strcmp(tables->drags[i].name, name)) return &tables->drags[i];
-    for (int i = 0; i < tables->n_crossings && !strcmp(role, "crossing"); ++i)
-        if (!strcmp(tables->crossings[i].name, name)) return &tables->crossings[i];
-    for (int i = 0; i < tables->n_surfaces && !strcmp(role, "surface"); ++i)
-        if (!strcmp(tables->surfaces[i].name, name)) return &tables->surfaces[i];
     for (int i = 0; i < tables->n_point_laws && !strcmp(role, "point_law"); ++i)
         if (!strcmp(tables->point_laws[i].name, name)) return &tables->point_laws[i];
+    for (int i = 0; i < tables->n_resistances && !strcmp(role, "resistance"); ++i)
+        if (!strcmp(tables->resistances[i].name, name)) return &tables->resistances[i];
+    for (int i = 0; i < tables->n_surfaces && !strcmp(role, "surface"); ++i)
+        if (!strcmp(tables->surfaces[i].name, name)) return &tables->surfaces[i];
     return 0;
 }
 

@@ -198,6 +198,26 @@ static const fu_slide_kernels slides[] = {
      slide_cable8p_planar_point_discrete_gradient},
 };
 
+static const fu_crossing_kernels crossings[] = {
+    {"crossing", 3, crossing_closest, crossing_contact, crossing_force, crossing_motion, crossing_stretch,
+     crossing_turned, crossing_sticking, crossing_sliding, crossing_step},
+    {"planar_crossing", 2, planar_crossing_closest, planar_crossing_contact, planar_crossing_force,
+     planar_crossing_motion, planar_crossing_stretch, planar_crossing_turned, planar_crossing_sticking,
+     planar_crossing_sliding, planar_crossing_step},
+};
+
+static const fu_drag_kernels drags[] = {
+    {"drag", 3, drag_along_cable, drag_lift_along_cable, drag_on_section, drag_on_point, drag_on_foil,
+     drag_impulse_of_cable, drag_inertia_of_cable, drag_inertia_of_cable_tangent, drag_inertia_step,
+     drag_impulse_of_point, drag_inertia_of_point, drag_inertia_of_point_tangent, drag_inertia_of_point_step,
+     drag_wet_sphere, drag_wet_section, drag_wet_column},
+    {"planar_drag", 2, planar_drag_along_cable, 0, 0, planar_drag_on_point, planar_drag_on_foil,
+     planar_drag_impulse_of_cable, planar_drag_inertia_of_cable, planar_drag_inertia_of_cable_tangent,
+     planar_drag_inertia_step, planar_drag_impulse_of_point, planar_drag_inertia_of_point,
+     planar_drag_inertia_of_point_tangent, planar_drag_inertia_of_point_step, planar_drag_wet_sphere,
+     planar_drag_wet_section, planar_drag_wet_column},
+};
+
 static const fu_frame_kernels frames[] = {
     {"frame", 3, frame_axes, frame_motion, frame_moment},
     {"planar_frame", 2, planar_frame_axes, planar_frame_motion, planar_frame_moment},
@@ -227,39 +247,6 @@ static const fu_joint_kernels joints[] = {
     {"joint_planar_locked", 2, 1, joint_planar_locked_force, joint_planar_locked_motion},
 };
 
-static const fu_resistance_kernels resistances[] = {
-    {"resistance", 3, resistance_force},
-    {"planar_resistance", 2, planar_resistance_force},
-};
-
-static const fu_drag_kernels drags[] = {
-    {"drag", 3, drag_along_cable, drag_lift_along_cable, drag_on_section, drag_on_point, drag_on_foil,
-     drag_impulse_of_cable, drag_inertia_of_cable, drag_inertia_of_cable_tangent, drag_inertia_step,
-     drag_impulse_of_point, drag_inertia_of_point, drag_inertia_of_point_tangent, drag_inertia_of_point_step,
-     drag_wet_sphere, drag_wet_section, drag_wet_column},
-    {"planar_drag", 2, planar_drag_along_cable, 0, 0, planar_drag_on_point, planar_drag_on_foil,
-     planar_drag_impulse_of_cable, planar_drag_inertia_of_cable, planar_drag_inertia_of_cable_tangent,
-     planar_drag_inertia_step, planar_drag_impulse_of_point, planar_drag_inertia_of_point,
-     planar_drag_inertia_of_point_tangent, planar_drag_inertia_of_point_step, planar_drag_wet_sphere,
-     planar_drag_wet_section, planar_drag_wet_column},
-};
-
-static const fu_crossing_kernels crossings[] = {
-    {"crossing", 3, crossing_closest, crossing_contact, crossing_force, crossing_motion, crossing_stretch,
-     crossing_turned, crossing_sticking, crossing_sliding, crossing_step},
-    {"planar_crossing", 2, planar_crossing_closest, planar_crossing_contact, planar_crossing_force,
-     planar_crossing_motion, planar_crossing_stretch, planar_crossing_turned, planar_crossing_sticking,
-     planar_crossing_sliding, planar_crossing_step},
-};
-
-static const fu_surface_kernels surfaces[] = {
-    {"surface", 3, surface_flat, surface_rounded, surface_terrain, surface_push, surface_push_hertz,
-     surface_frictionless, surface_sticking, surface_sliding, surface_reaction, surface_motion, surface_slip},
-    {"planar_surface", 2, planar_surface_flat, planar_surface_rounded, planar_surface_terrain, planar_surface_push,
-     planar_surface_push_hertz, planar_surface_frictionless, planar_surface_sticking, planar_surface_sliding,
-     planar_surface_reaction, planar_surface_motion, planar_surface_slip},
-};
-
 static const fu_point_law_kernels point_laws[] = {
     {"spring", 3, 3, spring_energy, spring_dissipation, spring_force, spring_tangent, spring_discrete_force},
     {"planar_spring", 2, 3, planar_spring_energy, planar_spring_dissipation, planar_spring_force, planar_spring_tangent,
@@ -272,6 +259,19 @@ static const fu_point_law_kernels point_laws[] = {
      zero_length_spring_tangent, zero_length_spring_discrete_force},
     {"planar_zero_length_spring", 2, 2, planar_zero_length_spring_energy, planar_zero_length_spring_dissipation,
      planar_zero_length_spring_force, planar_zero_length_spring_tangent, planar_zero_length_spring_discrete_force},
+};
+
+static const fu_resistance_kernels resistances[] = {
+    {"resistance", 3, resistance_force},
+    {"planar_resistance", 2, planar_resistance_force},
+};
+
+static const fu_surface_kernels surfaces[] = {
+    {"surface", 3, surface_flat, surface_rounded, surface_terrain, surface_push, surface_push_hertz,
+     surface_frictionless, surface_sticking, surface_sliding, surface_reaction, surface_motion, surface_slip},
+    {"planar_surface", 2, planar_surface_flat, planar_surface_rounded, planar_surface_terrain, planar_surface_push,
+     planar_surface_push_hertz, planar_surface_frictionless, planar_surface_sticking, planar_surface_sliding,
+     planar_surface_reaction, planar_surface_motion, planar_surface_slip},
 };
 
 /* Arguments from arrays of pointers, to inputs `a` and outputs `out`: s a number, v an array, then how many outputs. */
@@ -313,18 +313,6 @@ static const fu_point_law_kernels point_laws[] = {
 #define FU_ARGUMENTS_ssvvvvvv_9 *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]
 #define FU_ARGUMENTS_ssvvvv_2 *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]
 #define FU_ARGUMENTS_sssvvvv_1 *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]
-#define FU_ARGUMENTS_vvvvvv_2 a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1]
-#define FU_ARGUMENTS_vvv_2 a[0], a[1], a[2], out[0], out[1]
-#define FU_ARGUMENTS_vvvvvvvv_2 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]
-#define FU_ARGUMENTS_vvvvv_5 a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]
-#define FU_ARGUMENTS_vvv_3 a[0], a[1], a[2], out[0], out[1], out[2]
-#define FU_ARGUMENTS_vvvv_2 a[0], a[1], a[2], a[3], out[0], out[1]
-#define FU_ARGUMENTS_vvvsvvvvvvv_3 a[0], a[1], a[2], *a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1], out[2]
-#define FU_ARGUMENTS_vvvsvvvvvvv_7 a[0], a[1], a[2], *a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1], out[2], out[3], out[4], out[5], out[6]
-#define FU_ARGUMENTS_vvvsvvvvvvv_2 a[0], a[1], a[2], *a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1]
-#define FU_ARGUMENTS_vvvvvvv_4 a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1], out[2], out[3]
-#define FU_ARGUMENTS_v_4 a[0], out[0], out[1], out[2], out[3]
-#define FU_ARGUMENTS_vv_4 a[0], a[1], out[0], out[1], out[2], out[3]
 #define FU_ARGUMENTS_vvvv_6 a[0], a[1], a[2], a[3], out[0], out[1], out[2], out[3], out[4], out[5]
 #define FU_ARGUMENTS_vvvvvv_6 a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5]
 #define FU_ARGUMENTS_vvvvvvvsvvvvvvv_3 a[0], a[1], a[2], a[3], a[4], a[5], a[6], *a[7], a[8], a[9], a[10], a[11], a[12], a[13], a[14], out[0], out[1], out[2]
@@ -332,6 +320,19 @@ static const fu_point_law_kernels point_laws[] = {
 #define FU_ARGUMENTS_vvvvvvvvsvsvvvvvvv_6 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], *a[8], a[9], *a[10], a[11], a[12], a[13], a[14], a[15], a[16], a[17], out[0], out[1], out[2], out[3], out[4], out[5]
 #define FU_ARGUMENTS_vvvvvvvvssvsvvvvvvvsss_6 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], *a[8], *a[9], a[10], *a[11], a[12], a[13], a[14], a[15], a[16], a[17], a[18], *a[19], *a[20], *a[21], out[0], out[1], out[2], out[3], out[4], out[5]
 #define FU_ARGUMENTS_vvvvsssv_3 a[0], a[1], a[2], a[3], *a[4], *a[5], *a[6], a[7], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vvv_3 a[0], a[1], a[2], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vvvv_2 a[0], a[1], a[2], a[3], out[0], out[1]
+#define FU_ARGUMENTS_vvv_2 a[0], a[1], a[2], out[0], out[1]
+#define FU_ARGUMENTS_vvvsvvvvvvv_3 a[0], a[1], a[2], *a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vvvsvvvvvvv_7 a[0], a[1], a[2], *a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1], out[2], out[3], out[4], out[5], out[6]
+#define FU_ARGUMENTS_vvvsvvvvvvv_2 a[0], a[1], a[2], *a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1]
+#define FU_ARGUMENTS_vvvvvvv_4 a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1], out[2], out[3]
+#define FU_ARGUMENTS_v_4 a[0], out[0], out[1], out[2], out[3]
+#define FU_ARGUMENTS_vv_4 a[0], a[1], out[0], out[1], out[2], out[3]
+#define FU_ARGUMENTS_vvvvvv_2 a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1]
+#define FU_ARGUMENTS_vvvvvvvv_2 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]
+#define FU_ARGUMENTS_vsvv_2 a[0], *a[1], a[2], a[3], out[0], out[1]
+#define FU_ARGUMENTS_vvvvv_5 a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]
 #define FU_ARGUMENTS_vvs_3 a[0], a[1], *a[2], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vv_3 a[0], a[1], out[0], out[1], out[2]
 #define FU_ARGUMENTS_ssvs_6 *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]
@@ -341,7 +342,6 @@ static const fu_point_law_kernels point_laws[] = {
 #define FU_ARGUMENTS_vvvvvvvvsvvvsvvvvv_3 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], *a[8], a[9], a[10], a[11], *a[12], a[13], a[14], a[15], a[16], a[17], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vvvvvvvvvv_2 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], out[0], out[1]
 #define FU_ARGUMENTS_vvvvvvvvvvsvv_2 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], *a[10], a[11], a[12], out[0], out[1]
-#define FU_ARGUMENTS_vsvv_2 a[0], *a[1], a[2], a[3], out[0], out[1]
 
 /* X(name, form of its arguments) for every kernel */
 #define FU_EVERY(X) \
@@ -729,6 +729,54 @@ static const fu_point_law_kernels point_laws[] = {
     X(slide_cable8p_planar_point_residual, ssvvvv_2) \
     X(slide_cable8p_planar_point_tangent, ssvvvv_2) \
     X(slide_cable8p_planar_point_discrete_gradient, sssvvvv_1) \
+    X(crossing_closest, vvv_1) \
+    X(crossing_contact, vvvv_6) \
+    X(crossing_force, vvvvvv_6) \
+    X(crossing_motion, vvvvv_3) \
+    X(crossing_stretch, vvvvvvvsvvvvvvv_3) \
+    X(crossing_turned, vvvvssssss_1) \
+    X(crossing_sticking, vvvvvvvvsvsvvvvvvv_6) \
+    X(crossing_sliding, vvvvvvvvssvsvvvvvvvsss_6) \
+    X(crossing_step, vvvvsssv_3) \
+    X(planar_crossing_closest, vvv_1) \
+    X(planar_crossing_contact, vvvv_6) \
+    X(planar_crossing_force, vvvvvv_6) \
+    X(planar_crossing_motion, vvvvv_3) \
+    X(planar_crossing_stretch, vvvvvvvsvvvvvvv_3) \
+    X(planar_crossing_turned, vvvvssssss_1) \
+    X(planar_crossing_sticking, vvvvvvvvsvsvvvvvvv_6) \
+    X(planar_crossing_sliding, vvvvvvvvssvsvvvvvvvsss_6) \
+    X(planar_crossing_step, vvvvsssv_3) \
+    X(drag_along_cable, vvv_3) \
+    X(drag_lift_along_cable, vvv_3) \
+    X(drag_on_section, vvvvv_2) \
+    X(drag_on_point, vv_2) \
+    X(drag_on_foil, vvvv_2) \
+    X(drag_impulse_of_cable, vvv_2) \
+    X(drag_inertia_of_cable, vvvsvvvvvvv_3) \
+    X(drag_inertia_of_cable_tangent, vvvsvvvvvvv_7) \
+    X(drag_inertia_step, vvvvv_2) \
+    X(drag_impulse_of_point, vvv_2) \
+    X(drag_inertia_of_point, vvvsvvvvvvv_3) \
+    X(drag_inertia_of_point_tangent, vvvsvvvvvvv_2) \
+    X(drag_inertia_of_point_step, vvvvvvv_4) \
+    X(drag_wet_sphere, v_4) \
+    X(drag_wet_section, v_4) \
+    X(drag_wet_column, vv_4) \
+    X(planar_drag_along_cable, vvv_3) \
+    X(planar_drag_on_point, vv_2) \
+    X(planar_drag_on_foil, vvvv_2) \
+    X(planar_drag_impulse_of_cable, vvv_2) \
+    X(planar_drag_inertia_of_cable, vvvsvvvvvvv_3) \
+    X(planar_drag_inertia_of_cable_tangent, vvvsvvvvvvv_7) \
+    X(planar_drag_inertia_step, vvvvv_2) \
+    X(planar_drag_impulse_of_point, vvv_2) \
+    X(planar_drag_inertia_of_point, vvvsvvvvvvv_3) \
+    X(planar_drag_inertia_of_point_tangent, vvvsvvvvvvv_2) \
+    X(planar_drag_inertia_of_point_step, vvvvvvv_4) \
+    X(planar_drag_wet_sphere, v_4) \
+    X(planar_drag_wet_section, v_4) \
+    X(planar_drag_wet_column, vv_4) \
     X(frame_axes, vv_2) \
     X(frame_motion, vvvvvv_2) \
     X(frame_moment, vvv_2) \
@@ -775,78 +823,6 @@ static const fu_point_law_kernels point_laws[] = {
     X(joint_planar_distance_motion, vvvvvvvv_2) \
     X(joint_planar_locked_force, vvvvv_3) \
     X(joint_planar_locked_motion, vvvvvvvv_2) \
-    X(resistance_force, vvvvv_5) \
-    X(planar_resistance_force, vvvvv_5) \
-    X(drag_along_cable, vvv_3) \
-    X(drag_lift_along_cable, vvv_3) \
-    X(drag_on_section, vvvvv_2) \
-    X(drag_on_point, vv_2) \
-    X(drag_on_foil, vvvv_2) \
-    X(drag_impulse_of_cable, vvv_2) \
-    X(drag_inertia_of_cable, vvvsvvvvvvv_3) \
-    X(drag_inertia_of_cable_tangent, vvvsvvvvvvv_7) \
-    X(drag_inertia_step, vvvvv_2) \
-    X(drag_impulse_of_point, vvv_2) \
-    X(drag_inertia_of_point, vvvsvvvvvvv_3) \
-    X(drag_inertia_of_point_tangent, vvvsvvvvvvv_2) \
-    X(drag_inertia_of_point_step, vvvvvvv_4) \
-    X(drag_wet_sphere, v_4) \
-    X(drag_wet_section, v_4) \
-    X(drag_wet_column, vv_4) \
-    X(planar_drag_along_cable, vvv_3) \
-    X(planar_drag_on_point, vv_2) \
-    X(planar_drag_on_foil, vvvv_2) \
-    X(planar_drag_impulse_of_cable, vvv_2) \
-    X(planar_drag_inertia_of_cable, vvvsvvvvvvv_3) \
-    X(planar_drag_inertia_of_cable_tangent, vvvsvvvvvvv_7) \
-    X(planar_drag_inertia_step, vvvvv_2) \
-    X(planar_drag_impulse_of_point, vvv_2) \
-    X(planar_drag_inertia_of_point, vvvsvvvvvvv_3) \
-    X(planar_drag_inertia_of_point_tangent, vvvsvvvvvvv_2) \
-    X(planar_drag_inertia_of_point_step, vvvvvvv_4) \
-    X(planar_drag_wet_sphere, v_4) \
-    X(planar_drag_wet_section, v_4) \
-    X(planar_drag_wet_column, vv_4) \
-    X(crossing_closest, vvv_1) \
-    X(crossing_contact, vvvv_6) \
-    X(crossing_force, vvvvvv_6) \
-    X(crossing_motion, vvvvv_3) \
-    X(crossing_stretch, vvvvvvvsvvvvvvv_3) \
-    X(crossing_turned, vvvvssssss_1) \
-    X(crossing_sticking, vvvvvvvvsvsvvvvvvv_6) \
-    X(crossing_sliding, vvvvvvvvssvsvvvvvvvsss_6) \
-    X(crossing_step, vvvvsssv_3) \
-    X(planar_crossing_closest, vvv_1) \
-    X(planar_crossing_contact, vvvv_6) \
-    X(planar_crossing_force, vvvvvv_6) \
-    X(planar_crossing_motion, vvvvv_3) \
-    X(planar_crossing_stretch, vvvvvvvsvvvvvvv_3) \
-    X(planar_crossing_turned, vvvvssssss_1) \
-    X(planar_crossing_sticking, vvvvvvvvsvsvvvvvvv_6) \
-    X(planar_crossing_sliding, vvvvvvvvssvsvvvvvvvsss_6) \
-    X(planar_crossing_step, vvvvsssv_3) \
-    X(surface_flat, vv_2) \
-    X(surface_rounded, vvs_3) \
-    X(surface_terrain, vv_3) \
-    X(surface_push, ssvs_6) \
-    X(surface_push_hertz, ssvs_6) \
-    X(surface_frictionless, vvvv_3) \
-    X(surface_sticking, vvvs_4) \
-    X(surface_sliding, vvvvvs_4) \
-    X(surface_reaction, vvvvvvvvsvvvsvvvvv_3) \
-    X(surface_motion, vvvvvvvvvv_2) \
-    X(surface_slip, vvvvvvvvvvsvv_2) \
-    X(planar_surface_flat, vv_2) \
-    X(planar_surface_rounded, vvs_3) \
-    X(planar_surface_terrain, vv_3) \
-    X(planar_surface_push, ssvs_6) \
-    X(planar_surface_push_hertz, ssvs_6) \
-    X(planar_surface_frictionless, vvvv_3) \
-    X(planar_surface_sticking, vvvs_4) \
-    X(planar_surface_sliding, vvvvvs_4) \
-    X(planar_surface_reaction, vvvvvvvvsvvvsvvvvv_3) \
-    X(planar_surface_motion, vvvvvvvvvv_2) \
-    X(planar_surface_slip, vvvvvvvvvvsvv_2) \
     X(spring_energy, vv_1) \
     X(spring_dissipation, vvv_1) \
     X(spring_force, vvv_1) \
@@ -877,6 +853,30 @@ static const fu_point_law_kernels point_laws[] = {
     X(planar_zero_length_spring_force, vvv_1) \
     X(planar_zero_length_spring_tangent, vvv_3) \
     X(planar_zero_length_spring_discrete_force, vsvv_2) \
+    X(resistance_force, vvvvv_5) \
+    X(planar_resistance_force, vvvvv_5) \
+    X(surface_flat, vv_2) \
+    X(surface_rounded, vvs_3) \
+    X(surface_terrain, vv_3) \
+    X(surface_push, ssvs_6) \
+    X(surface_push_hertz, ssvs_6) \
+    X(surface_frictionless, vvvv_3) \
+    X(surface_sticking, vvvs_4) \
+    X(surface_sliding, vvvvvs_4) \
+    X(surface_reaction, vvvvvvvvsvvvsvvvvv_3) \
+    X(surface_motion, vvvvvvvvvv_2) \
+    X(surface_slip, vvvvvvvvvvsvv_2) \
+    X(planar_surface_flat, vv_2) \
+    X(planar_surface_rounded, vvs_3) \
+    X(planar_surface_terrain, vv_3) \
+    X(planar_surface_push, ssvs_6) \
+    X(planar_surface_push_hertz, ssvs_6) \
+    X(planar_surface_frictionless, vvvv_3) \
+    X(planar_surface_sticking, vvvs_4) \
+    X(planar_surface_sliding, vvvvvs_4) \
+    X(planar_surface_reaction, vvvvvvvvsvvvsvvvvv_3) \
+    X(planar_surface_motion, vvvvvvvvvv_2) \
+    X(planar_surface_slip, vvvvvvvvvvsvv_2) \
 
 #define FU_CALL(name, form) \
     static void call_##name(const fu_real *const *a, fu_real *const *out) { name(FU_ARGUMENTS_##form); }
@@ -894,11 +894,11 @@ const fu_tables fu_all = {
     2, bodys,
     2, modals,
     10, slides,
+    2, crossings,
+    2, drags,
     2, frames,
     20, joints,
+    6, point_laws,
     2, resistances,
-    2, drags,
-    2, crossings,
-    2, surfaces,
-    6, point_laws
+    2, surfaces
 };

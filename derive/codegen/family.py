@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 
 from ..spec import Element, LawTraits, PointLaw
 from .program import Program
+
+SPACE = {2: "the plane", 3: "space"}
 
 
 class FamilyError(ValueError):
@@ -99,6 +103,13 @@ class CouplingFamily(Family):
     """The kernels of a coupling that knows its attachments by points and axes alone."""
 
     dim: int
+
+    @classmethod
+    def each(cls, role: str, doc: str, names: Mapping[int, str], build: Callable[[int], list[Program]],
+             missing: Mapping[int, tuple[str, ...]] = MappingProxyType({})) -> list[CouplingFamily]:
+        """Return the families of a role whose spec is the module of its name, in each dimension that `names` has."""
+        return [cls(name, f"{doc} in {SPACE[dim]}", partial(build, dim), (f"couplings.{role}",), role=role,
+                    missing=missing.get(dim, ()), facts={"dim": dim}, dim=dim) for dim, name in names.items()]
 
 
 @dataclass(frozen=True, kw_only=True)

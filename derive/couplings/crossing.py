@@ -27,6 +27,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import sympy as sp
 
+from ..codegen.family import CouplingFamily
 from ..codegen.program import Program
 from .crossing_stretch import Motion, Stretch, jacobian_along, stretch_after, turned_stretch
 from .stretch import sliding_force, sticking_force
@@ -49,6 +50,11 @@ class _Lines(NamedTuple):
     def signs(self) -> list[int]:
         """Return the sign of each point in d."""
         return [1, -1][: len(self.t)]
+
+
+def families() -> list[CouplingFamily]:
+    """Return the families in space and in the plane."""
+    return CouplingFamily.each("crossing", "contact of lines at their closest points", CROSSINGS, build)
 
 
 def build(dim: int) -> list[Program]:

@@ -18,12 +18,18 @@ import numpy as np
 import sympy as sp
 
 from ..algebra.tangent_frame import cross
+from ..codegen.family import CouplingFamily
 from ..codegen.program import Program, jacobian
 from . import added_mass, section_flow, wetness
 
 DRAGS = {3: "drag", 2: "planar_drag"}
 RELATIVE = "velocity of the fluid less that of the point"
 SOURCE = "Morison et al. 1950; Hall & Goupee 2015"
+
+
+def families() -> list[CouplingFamily]:
+    """Return the families in space and in the plane."""
+    return CouplingFamily.each("drag", "drag of a fluid", DRAGS, build, {2: ("lift_along_cable", "on_section")})
 
 
 def build(dim: int) -> list[Program]:

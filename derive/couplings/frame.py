@@ -11,10 +11,16 @@ from typing import Any
 import numpy as np
 
 from ..algebra.tangent_frame import cross, tangent_frame, turning
+from ..codegen.family import CouplingFamily
 from ..codegen.program import DirectionalDerivative, Program
 
 FRAMES = {3: "frame", 2: "planar_frame"}
 TURNS = {3: 3, 2: 1}
+
+
+def families() -> list[CouplingFamily]:
+    """Return the families in space and in the plane."""
+    return CouplingFamily.each("frame", "frame of two vectors", FRAMES, build)
 
 
 def build(dim: int) -> list[Program]:

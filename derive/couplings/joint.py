@@ -8,11 +8,13 @@ rule from there to the coordinates of the bodies. Haug, Computer Aided Kinematic
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 import sympy as sp
 
+from ..codegen.family import CouplingFamily
 from ..codegen.program import DirectionalDerivative, Program
 from .frame import TURNS, spun
 
@@ -109,6 +111,14 @@ def _equations(frames: TwoFrames, name: str) -> np.ndarray:
     frames.program.stage("equations of the joint")
     every = [e for equations in JOINTS[frames.dim][name] for e in equations(frames)]
     return np.array([frames.program.define(f"phi_{k}", e) for k, e in enumerate(every)])
+
+
+def families() -> list[CouplingFamily]:
+    """Return the families of all kinds of joints."""
+    return [CouplingFamily(f"joint_{name}", f"{name.replace('_', ' ')} joint between two frames",
+                           partial(build, dim, name), ("couplings.joint",), role="joint",
+                           facts={"dim": dim, "rows": rows(dim, name)}, dim=dim)
+            for dim, of_dim in JOINTS.items() for name in of_dim]
 
 
 def build(dim: int, name: str) -> list[Program]:

@@ -7,16 +7,26 @@ and verification serve every law.
 
 from __future__ import annotations
 
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
 import sympy as sp
 
 from ..algebra.discrete_gradient import DiscreteGradient
+from ..codegen.family import SPACE, PointLawFamily
 from ..codegen.program import AXES, DirectionalDerivative, Program
 from ..spec import PointLaw
 
 FIRST = "force on the first point"
+
+
+def families_of(name: str, law: PointLaw) -> list[PointLawFamily]:
+    """Return the families of the force between two points by a law, in space and in the plane."""
+    return [PointLawFamily(prefix + name, f"{law.doc} in {SPACE[dim]}", partial(build, prefix + name, law, dim),
+                           (f"couplings.point_laws.{name}", "couplings.point_law"), role="point_law",
+                           missing=missing(law), facts={"dim": dim, "parameters": len(law.parameters)},
+                           dim=dim, point_law=law) for dim, prefix in ((3, ""), (2, "planar_"))]
 
 
 def build(name: str, law: PointLaw, dim: int) -> list[Program]:

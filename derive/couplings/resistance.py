@@ -9,11 +9,17 @@ from __future__ import annotations
 
 import sympy as sp
 
+from ..codegen.family import CouplingFamily
 from ..codegen.program import DirectionalDerivative, Program
 
 RESISTANCES = {3: "resistance", 2: "planar_resistance"}
 FRICTION = ("coefficient", "viscous", "v0", "slip_direction", "least")
 BUFFER = ("stiffness", "damping", "x", "side")
+
+
+def families() -> list[CouplingFamily]:
+    """Return the families in space and in the plane."""
+    return CouplingFamily.each("resistance", "friction and buffers of slides", RESISTANCES, build)
 
 
 def build(dim: int) -> list[Program]:

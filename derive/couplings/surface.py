@@ -17,6 +17,7 @@ import numpy as np
 import sympy as sp
 
 from ..algebra.tangent_frame import cross, moment_of
+from ..codegen.family import CouplingFamily
 from ..codegen.program import DirectionalDerivative, Program
 from .frame import TURNS
 from .stretch import sliding_force, sticking_force
@@ -27,6 +28,11 @@ PLACE = "the point from the shape's origin, along its axes"
 HEIGHTS = {2: ("h", "h_1", "h_11", "h_111"),
            3: ("h", "h_1", "h_2", "h_11", "h_12", "h_22", "h_111", "h_112", "h_122", "h_222")}
 """Inputs of a terrain's kernel: derivatives of its height along the first and the second horizontal axis."""
+
+
+def families() -> list[CouplingFamily]:
+    """Return the families in space and in the plane."""
+    return CouplingFamily.each("surface", "surfaces and contact with them", SURFACES, build)
 
 
 def build(dim: int) -> list[Program]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..catalogue import families
-from ..codegen.family import Family
+from ..codegen.family import SPACE, Family
 from ..couplings.joint import JOINTS
 from .document import Composer, Document
 
@@ -13,46 +13,53 @@ LEAD = ("Formulas are printed from the specs and programs that make the kernels,
         "Equation numbers are those of the paper: J.-H. Seo, I.-H. Jung, T.-W. Park, H. Sugiyama, A. A. Shabana, The "
         "Development of a Sliding Joint for Very Flexible Multibody Dynamics, 2005 (in Korean).")
 MAIN = {"element": "beam24", "law": "beam24_continuum", "slide": "slide_beam24_rigid", "body": "rigid",
-        "modal": "modal", "frame": "frame", "point_law": "spring", "resistance": "resistance", "drag": "drag",
-        "surface": "surface", "crossing": "crossing"}
-"""The families of the theory: the element and the rider of the paper."""
+        "point_law": "spring", "joint": "joint_spherical"}
+"""The families of the theory: the element and the rider of the paper; of other roles the family called as the role."""
+
+THEORY: dict[str, dict[str, str]] = {
+    "elements/elements": {}, "laws/continuum/continuum": {}, "laws/cable/cable": {"law": "cable12_green_exact"},
+    "laws/structural/structural": {"law": "beam24_structural"}, "theory/motion": {}, "bodies/rigid": {},
+    "bodies/modal": {}, "couplings/joint": {}, "couplings/joint_kind": {}, "couplings/spring": {},
+    "algebra/tangent_frame": {}, "couplings/frame": {}, "couplings/slide": {}, "couplings/resistance": {},
+    "couplings/drag": {}, "couplings/added_mass": {}, "couplings/wetness": {}, "couplings/surface": {},
+    "couplings/hard_contact": {}, "couplings/crossing": {}, "theory/catenary": {}}
+"""The chapters of the theory in order, with families that differ from `MAIN`. Those of other roles follow."""
+
+
+def main_families() -> dict[str, str]:
+    """Return the family that the theory shows, by role."""
+    return {family.role: family.role for family in families().values()} | MAIN
+
+
+def chapters() -> list[str]:
+    """Return the chapters of the theory: those in order, then those of roles that these leave out."""
+    every = families()
+    return list(dict.fromkeys([*THEORY, *(chapter_of(every[name]) for name in main_families().values())]))
 
 
 def theory() -> Document:
     """Return the whole theory, eq 1 to 38."""
-    composer = Composer("The theory of funicular", LEAD)
-    composer.add("elements/elements", MAIN)
-    composer.add("laws/continuum/continuum", MAIN)
-    composer.add("laws/cable/cable", {"law": "cable12_green_exact"})
-    composer.add("laws/structural/structural", {"law": "beam24_structural"})
-    composer.add("theory/motion", MAIN)
-    composer.add("bodies/rigid", MAIN)
-    composer.add("bodies/modal", MAIN)
-    composer.add("couplings/joint", MAIN)
-    for dim, kinds in JOINTS.items():
-        composer.add_text(f"## Joints in {'the plane' if dim == 2 else 'space'}\n", MAIN)
-        for name in kinds:
-            composer.add_text(f"### {name.removeprefix('planar_').replace('_', ' ').capitalize()}\n", MAIN)
-            composer.add("couplings/joint_kind", {"joint": f"joint_{name}"})
-    composer.add("couplings/spring", MAIN)
-    composer.add("algebra/tangent_frame", MAIN)
-    composer.add("couplings/frame", MAIN)
-    composer.add("couplings/slide", MAIN)
-    composer.add("couplings/resistance", MAIN)
-    composer.add("couplings/drag", MAIN)
-    composer.add("couplings/added_mass", MAIN)
-    composer.add("couplings/wetness", MAIN)
-    composer.add("couplings/surface", MAIN)
-    composer.add("couplings/hard_contact", MAIN)
-    composer.add("couplings/crossing", MAIN)
-    composer.add("theory/catenary", MAIN)
+    composer, main = Composer("The theory of funicular", LEAD), main_families()
+    for chapter in chapters():
+        if chapter == CHAPTERS["joint"]:
+            _add_joints(composer, main)
+        else:
+            composer.add(chapter, main | THEORY.get(chapter, {}))
     return composer.document
 
 
-CHAPTERS = {"element": "elements/elements", "slide": "couplings/slide", "body": "bodies/rigid", "modal": "bodies/modal",
-            "joint": "couplings/joint_kind", "frame": "couplings/frame", "point_law": "couplings/point_law",
-            "resistance": "couplings/resistance", "drag": "couplings/drag", "surface": "couplings/surface",
-            "crossing": "couplings/crossing"}
+def _add_joints(composer: Composer, main: dict[str, str]) -> None:
+    """Append the chapter of each kind of joint."""
+    for dim, kinds in JOINTS.items():
+        composer.add_text(f"## Joints in {SPACE[dim]}\n", main)
+        for name in kinds:
+            composer.add_text(f"### {name.removeprefix('planar_').replace('_', ' ').capitalize()}\n", main)
+            composer.add(CHAPTERS["joint"], {"joint": f"joint_{name}"})
+
+
+CHAPTERS = {"element": "elements/elements", "body": "bodies/rigid", "modal": "bodies/modal",
+            "joint": "couplings/joint_kind"}
+"""The chapters of roles; of another role the one called as the role in couplings/."""
 
 
 def chapter_of(family: Family) -> str:
@@ -62,7 +69,7 @@ def chapter_of(family: Family) -> str:
     if family.name == "planar_crossing":
         return "couplings/planar_crossing"
     if family.role != "law":
-        return CHAPTERS[family.role]
+        return CHAPTERS.get(family.role, f"couplings/{family.role}")
     assert family.traits is not None
     kind = family.traits.kind
     return f"laws/{kind}/{kind}{'_curved' if kind == 'continuum' and family.traits.takes_shape else ''}"

@@ -404,8 +404,6 @@ def surface_scope(name: str) -> Scope:
 
 
 def scope(role: str, name: str) -> Scope:
-    """Return the scope of a family, by its role."""
-    return {"element": element_scope, "law": law_scope, "slide": slide_scope, "body": body_scope,
-            "modal": modal_scope, "frame": frame_scope, "joint": joint_scope, "point_law": point_law_scope,
-            "resistance": resistance_scope, "drag": drag_scope, "surface": surface_scope,
-            "crossing": crossing_scope}[role](name)
+    """Return the scope of a family: the function of this module called as its role makes it."""
+    found: Scope = globals()[f"{role}_scope"](name)
+    return found

@@ -8,8 +8,8 @@ import mpmath
 import numpy as np
 import pytest
 import sympy as sp
-from funicular.derive.catalogue import of_point_law
 from funicular.derive.codegen import rendering
+from funicular.derive.couplings.point_law import families_of
 from funicular.derive.couplings.point_laws import LAWS
 from funicular.derive.spec import PointLaw
 from funicular.derive.verify.command import prepare, uncovered, verify
@@ -55,7 +55,7 @@ def verified(family, folder, broken=("", "")):
 @pytest.mark.parametrize("damped", [False, True])
 @pytest.mark.parametrize("dim", [3, 2])
 def test_a_new_law_is_derived_and_verified_by_its_spec_alone(tmp_path, damped, dim):
-    family = next(family for family in of_point_law("magnet", magnet(damped)) if family.dim == dim)
+    family = next(family for family in families_of("magnet", magnet(damped)) if family.dim == dim)
     report = verified(family, tmp_path)
     assert report.failures == 0, report.first_failure
     assert {f.kernel.removeprefix(family.name + "_") for f in report.findings} == {
@@ -63,7 +63,7 @@ def test_a_new_law_is_derived_and_verified_by_its_spec_alone(tmp_path, damped, d
 
 
 def test_a_wrong_sign_is_found(tmp_path):
-    family, _ = of_point_law("magnet", magnet())
+    family, _ = families_of("magnet", magnet())
     report = verified(family, tmp_path, ("f[0] = tension", "f[0] = -tension"))
     failed = {f.kernel for f in report.findings if f.failed}
     assert failed == {"magnet_force", "magnet_tangent", "magnet_discrete_force"}
@@ -71,7 +71,7 @@ def test_a_wrong_sign_is_found(tmp_path):
 
 def test_a_law_that_knows_directions_is_found(tmp_path):
     law = replace(magnet(), energy=lambda p, gap, c: c.strength * gap[0] ** 2 + c.radius * gap[1] ** 2)
-    _, planar = of_point_law("magnet", law)
+    _, planar = families_of("magnet", law)
     report = verified(planar, tmp_path)
     broken = {text for _, text, error, ceiling in report.invariances if not error <= ceiling}
     assert broken >= {"energy turns with the gap", "force turns with the gap", "no moment on the pair of points"}
@@ -85,7 +85,7 @@ def test_a_damper_without_its_parameter_is_refused():
 @pytest.mark.parametrize("energy", [lambda p, gap, c: sp.sin(gap.dot(gap)) * c.strength,
                                     lambda p, gap, c: sp.Piecewise((gap.dot(gap), c.radius < gap.dot(gap)), (0, True))])
 def test_an_energy_without_a_discrete_gradient_is_refused(energy):
-    family, _ = of_point_law("magnet", replace(magnet(), energy=energy))
+    family, _ = families_of("magnet", replace(magnet(), energy=energy))
     with pytest.raises(ValueError, match="a discrete gradient goes through sums, products, quot"):
         family.build()
 
