@@ -1,7 +1,8 @@
 """The methods of a scene that add parts, one for each kind, from the fields of the kind.
 
 Signatures and docstrings are for `help` and notebooks. Editors and type checkers read scene_methods.pyi, which
-`python tests/scene_stub.py` writes and a test compares.
+`python tests/scene_stub.py` writes and a test compares. The module stands in parts/ and not in scene/, since the layer
+of choice, which is below scene/, is generic in these scenes.
 """
 
 from __future__ import annotations
