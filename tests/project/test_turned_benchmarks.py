@@ -26,7 +26,7 @@ NOT_PLANAR = ("rider on a soft rope", "modal link", "steel and rubber", "free fa
 
 def of_spatial_elements(scene):
     """Return a scene with the finest spatial model of each cable, on a mesh that the model permits."""
-    models = {name: possible(scene, cable).finest.with_elements(cable.given_elements or coarsest(scene, cable) or 1)
+    models = {name: possible(scene, cable).finest.of(cable.given_elements or coarsest(scene, cable) or 1)
               for name, cable in scene.cables.items()}
     return remade(scene, models)
 
