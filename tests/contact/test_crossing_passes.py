@@ -111,7 +111,7 @@ def test_a_bar_that_comes_round_an_end_is_refused():
     scene.rigid_body("body", mass=1, inertia=(1, 1, 1), position=(0, 0.1, 0), velocity=(1, 0, 0),
                      angular_velocity=tuple(direction(1.0, 0)))
     scene.crossing("wire", "body", axis=tuple(direction(0.25, 0.25)), length=0.4, radius=0.01, stiffness=1e-9)
-    with pytest.raises(fu.ConvergenceError, match="moves round an end"):
+    with pytest.raises(fu.ConvergenceError, match="moves around an end"):
         scene.run(1.0, tol=1e-4, progress=False)
 
 

@@ -116,5 +116,5 @@ def test_the_integral_of_a_signal(rate):
 
 
 def test_an_integral_is_not_integrated_again():
-    with pytest.raises(SceneError, match=r"^Integral: rate is an integral, whose"):
+    with pytest.raises(SceneError, match=r"^Integral: rate is an integral: the degree"):
         Integral(rate=Integral(rate=EVERY[0]))
