@@ -93,7 +93,7 @@ class LongRun:
                     'fewer samples, or interpolation="cubic"')
         events = len(self._events.happened) + counts["element_crossings"]
         if events > FREQUENT_EVENT_RATE * counts["steps"]:
-            return (f"there were {events} events and crossings of elements in {counts['steps']} steps, and a step ends "
+            return (f"there were {events} events and node passages in {counts['steps']} steps, and a step ends "
                     "at each. Look at the slides that stick, strike or cross nodes")
         _, dof, coupling = engine.failure  # of the last step that was rejected
         where = f", most of all at {describe_dof(self._model, dof, coupling)}" if counts["rejected_steps"] else ""

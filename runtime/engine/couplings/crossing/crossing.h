@@ -8,7 +8,7 @@
 #include "couplings/common/coupling.h"
 #include "couplings/common/stick_friction.h"
 
-enum { FU_LINES = 2, FU_CROSSING_LAW = 8, FU_LAW_DAMPING = 4, FU_LAW_LEAST, FU_LAW_FRICTION };
+enum { FU_LINES = 2, FU_CROSSING_LAW = 8, FU_LAW_DAMPING = 4, FU_LAW_REGULARISATION, FU_LAW_FRICTION };
 #define FU_INSTANT 1e-3 /* s: converts velocities to lengths, for comparison */
 
 /* The first line is a cable, the second another one, or a bar through the attachment's point; in the plane the bar is

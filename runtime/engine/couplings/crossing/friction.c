@@ -113,7 +113,7 @@ static void turn_to_slip(const fu_crossing *crossing, const last_step *last, dou
     in_space(3, stick->along, contact->normal, last->rate, slip[0]);
     slip_of(3, points, contact, slip[1]);
     crossing->kernel->turned(stick->without_sliding, stick->old, slip[0], slip[1], time_since(last, time), r,
-                             crossing->law[FU_LAW_LEAST], slid_before(last), slid_stretch(last), 1.0, along);
+                             crossing->law[FU_LAW_REGULARISATION], slid_before(last), slid_stretch(last), 1.0, along);
     const double size = sqrt(fu_dot(3, along, along));
     for (int d = 0; d < 3 && size > 0.0; ++d) along[d] /= size;
 }
