@@ -2,7 +2,7 @@
 
     python tests/benchmarks/hard.py [--out FILE.csv] [--only WORDS]
 
-(!) marks a broken bound; tests/hard asserts the bounds. Errors are over the largest motion,
+(!) marks a broken bound; tests/motion/test_hard_cases.py asserts the bounds. Errors are over the largest motion,
 `balance` over the energy exchanged, distances in m.
 """
 

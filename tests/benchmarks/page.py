@@ -16,6 +16,7 @@ from funicular.view.page import write_page
 from table import arguments, few, show
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[1] / "view"))
 SIZE = {"width": 1200, "height": 800}
 FRAMES = 60
 

@@ -205,5 +205,5 @@ the energy exchanged, residuals in m, counts of steps. A run that fails says whe
                {"case": "case"},
                by=("integrator", "{figure} {value} of {bound}"),
                rows=closest)],
-        test="tests/hard/test_hard_cases.py"),
+        test="tests/motion/test_hard_cases.py"),
 ]

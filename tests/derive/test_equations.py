@@ -12,4 +12,4 @@ def test_each_equation_has_exactly_one_tag():
 
 
 def test_the_table_of_the_readme_is_made_from_the_tags():
-    assert table() in (TOP / "README.md").read_text(encoding="utf-8"), "paste what python tests/equations.py prints"
+    assert table() in (TOP / "README.md").read_text(encoding="utf-8"), "paste what tests/derive/equations.py prints"

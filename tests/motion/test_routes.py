@@ -4,13 +4,13 @@ import time
 from dataclasses import dataclass
 
 import funicular as fu
-import meeting_scenes
 import numpy as np
+import paired_scenes
 import pytest
 from funicular.integrators import INTEGRATORS
 from funicular.results.trajectories import relative, trajectory
-from meeting_scenes import TIME, random_row
 from notes import WARNS
+from paired_scenes import TIME, random_row
 from random_motions import MOTIONS, motion
 from routes import ROUTES, Route, apart, points, simulate
 from small_vibrations import displaced, free_to_vibrate, lowest_modes, undamped
@@ -74,7 +74,7 @@ def subject(request, tmp_path_factory):
         scene, duration = made.scene, made.duration
     else:
         try:
-            scene, duration = meeting_scenes.build(random_row(seed), tmp_path_factory.mktemp("files")), TIME
+            scene, duration = paired_scenes.build(random_row(seed), tmp_path_factory.mktemp("files")), TIME
             scene.run_settings = {}
             scene.check()
         except fu.SceneError as error:

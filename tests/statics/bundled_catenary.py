@@ -1,6 +1,6 @@
 """The bundled scene of a catenary, made by its builder.
 
-    python tests/bundled_catenary.py
+    python tests/statics/bundled_catenary.py
 
 writes runtime/scenes/catenary.toml; tests/statics/test_bundled_catenary.py compares it.
 """
@@ -9,13 +9,13 @@ from pathlib import Path
 
 from funicular import Scene, catenary
 
-FILE = Path(__file__).parents[1] / "runtime" / "scenes" / "catenary.toml"
+FILE = Path(__file__).parents[2] / "runtime" / "scenes" / "catenary.toml"
 HEAD = """\
 # A catenary over a railway, three spans of 55 m, and a pantograph of three masses that passes below it at 275 km/h.
 #
-# Written by `python tests/bundled_catenary.py` with funicular.catenary: the lengths of the droppers are those with
-# which the contact wire lies on a parabola of 55 mm at the droppers and pulls with 22 kN. The mesh is coarse, for a
-# quick look; what its elements leave of the dents in the wires is in the stiffnesses of droppers and contact: see
+# Written by `python tests/statics/bundled_catenary.py` with funicular.catenary: the lengths of the droppers are those
+# with which the contact wire lies on a parabola of 55 mm at the droppers and pulls with 22 kN. The mesh is coarse, for
+# a quick look; what its elements leave of the dents in the wires is in the stiffnesses of droppers and contact: see
 # runtime/guides/pages/catenaries.md.
 """
 COARSE = 3.0, 6.0

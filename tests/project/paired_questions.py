@@ -20,7 +20,7 @@ from funicular.scene.file import loads
 from funicular.scene.schema import scene_schema
 from interrupted_runs import Killed, failing
 from matplotlib import pyplot
-from meeting_scenes import TIME
+from paired_scenes import TIME
 
 VALIDATOR = jsonschema.Draft7Validator(scene_schema())
 

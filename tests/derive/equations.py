@@ -1,6 +1,6 @@
 """Places of the equations of the paper: the tags `(eq N)` in the sources, and the table of README made from them.
 
-    python tests/equations.py
+    python tests/derive/equations.py
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from itertools import groupby
 from pathlib import Path
 
-TOP = Path(__file__).parents[1]
+TOP = Path(__file__).parents[2]
 EQUATIONS = range(1, 39)
 SOURCES = [("derive", "*.py"), ("runtime", "*.py"), ("runtime/engine", "*.[ch]"), ("runtime/engine", "*.pxi")]
 SUBJECTS = {

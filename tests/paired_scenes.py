@@ -1,9 +1,8 @@
 """Small scenes from one level of each of ten factors: a cable, its law, shape, section and support, its rider, a joint,
-a
-load, a fluid, a contact, an event.
+a load, a fluid, a contact, an event.
 
-Levels come from the lists of the project. A kind in a list without an entry in a table here fails `test_meetings.py`;
-with an entry, it is combined with everything else.
+Levels come from the lists of the project. A kind in a list without an entry in a table here fails
+`test_pairs_of_features.py`; with an entry, it is combined with everything else.
 """
 
 from __future__ import annotations

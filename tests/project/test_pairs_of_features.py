@@ -1,8 +1,8 @@
 """Every pair of a feature of a scene and a question works, or is refused before any work.
 
-The factors are those of `meeting_scenes.py`, the integrators and the questions of `meeting_questions.py`. Each question
-meets every level; a slow test covers all pairs of levels. A pair works if a row with it gives finite numbers without a
-RuntimeWarning.
+The factors are those of `paired_scenes.py`, the integrators and the questions of `paired_questions.py`. Each question
+is asked at every level; a slow test covers all pairs of levels. A pair works if a row with it gives finite numbers
+without a RuntimeWarning.
 """
 
 import inspect
@@ -17,7 +17,7 @@ from pathlib import Path
 
 import funicular as fu
 import matplotlib
-import meeting_questions
+import paired_questions
 import pytest
 from covering import CoveringArray, Level, Row, all_pairs, smallest
 from funicular.integrators import AUTO, INTEGRATORS
@@ -31,8 +31,8 @@ from funicular.parts.surface_shapes import SURFACE_SHAPES
 from funicular.results.equilibrium import Equilibrium
 from funicular.results.modes import Modes
 from funicular.results.run import Run
-from meeting_questions import QUESTIONS, Asked
-from meeting_scenes import FACTORS, PROFILES, SECTIONS, SIGNALS, SOLIDS, STOPS, SURFACES, build, laws
+from paired_questions import QUESTIONS, Asked
+from paired_scenes import FACTORS, PROFILES, SECTIONS, SIGNALS, SOLIDS, STOPS, SURFACES, build, laws
 
 SLOW = ("adjusted", "errors", "from_another_run", "loads_in_steps", "plots", "plots_of_run", "film_of_run",
         "picture_of_run", "page_of_run", "page_of_scene", "page_of_rest", "modes_as_drawn", "load_path", "relaxed",
@@ -181,7 +181,7 @@ def test_every_pair():
 
 
 def test_every_kind_in_the_lists_of_the_project_is_here():
-    """A new kind needs a value in `meeting_scenes.py`; laws, elements, joints and integrators enter through their
+    """A new kind needs a value in `paired_scenes.py`; laws, elements, joints and integrators enter through their
     lists.
     """
     for here, there in ((SECTIONS, ALL_SECTIONS), (SIGNALS, ALL_SIGNALS), (SOLIDS, ALL_SOLIDS),
@@ -201,5 +201,5 @@ def test_every_kind_of_part_is_in_some_scene(tmp_path):
 def test_every_method_of_a_scene_and_its_results_is_asked():
     methods = {name for kind in (fu.Scene, Run, Equilibrium, Modes) for name in dir(kind)
                if not name.startswith("_") and callable(getattr(kind, name))}
-    names = set(re.findall(r"\.(\w+)", inspect.getsource(meeting_questions)))
+    names = set(re.findall(r"\.(\w+)", inspect.getsource(paired_questions)))
     assert methods - names - PARTS.keys() - NOT_ASKED == set()
