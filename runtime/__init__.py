@@ -13,7 +13,6 @@ from .errors import FunicularWarning as FunicularWarning
 from .errors import ResultFileError as ResultFileError
 from .errors import SceneError as SceneError
 from .errors import UnknownResultError as UnknownResultError
-from .errors import check_renamed as _check_renamed
 from .parts.end_stops import Buffer as Buffer
 from .parts.end_stops import HardStop as HardStop
 from .parts.flow_profile import PowerProfile as PowerProfile
@@ -73,5 +72,4 @@ def __getattr__(name: str) -> _Any:
         from importlib.metadata import version
 
         return version("funicular")
-    _check_renamed(f"module {__name__!r}", name, __all__)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

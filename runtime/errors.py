@@ -3,20 +3,10 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from difflib import get_close_matches
 from typing import Any
-
-RENAMED = {"join": "tie", "joins": "ties", "General": "GeneralSection", "Table": "TableSignal",
-           "second_moment_yy": "second_moment_about_z", "second_moment_zz": "second_moment_about_y",
-           "pair": "joint_kind", "hold": "fix", "held": "fixed",
-           "rotary_moment_yy": "rotary_moment_about_z", "rotary_moment_zz": "rotary_moment_about_y"}
-"""New names of parts, keywords, tables of scene files and attributes by their names in older versions."""
-
-INTEGRALS = {"about_z": ", the integral of y²", "about_y": ", the integral of z²"}
-"""Definitions of moments by the end of their new names; the older names had the squared coordinate."""
 
 MAX_SHOWN_LENGTH = 150
 """Characters of the start and of the end of a path in a message."""
@@ -117,24 +107,8 @@ def shown_path(path: str | os.PathLike[str]) -> str:
 
 
 def near(name: str, known: Iterable[str]) -> str:
-    """Return the remedy for an unknown name: its new name, the nearest known name, or all known names."""
+    """Return the remedy for an unknown name: the nearest known name, or all known names."""
     known = list(known)
-    if (new := new_name(name)) in known:
-        return f'it is called "{new}" now{INTEGRALS.get(new[-7:], "")}'
     if len(str(name)) <= MAX_SHOWN_LENGTH and (matches := get_close_matches(str(name), known, n=1)):
         return f'did you mean "{matches[0]}"?'
     return "known: " + ", ".join(known) if known else "the scene has none yet"
-
-
-def new_name(name: str) -> str:
-    """Return the new name of a name of an older version, also before a number or a quantity of results; else itself."""
-    if name in RENAMED:
-        return RENAMED[name]
-    numbered = re.fullmatch(r"([a-z]+)(_\d+(?:\..+)?)", str(name))
-    return RENAMED.get(numbered[1], numbered[1]) + numbered[2] if numbered else name
-
-
-def check_renamed(owner: str, name: str, known: Iterable[str]) -> None:
-    """Raise AttributeError with the new name of an attribute of an older version; owner: of the attribute, in words."""
-    if name in RENAMED and RENAMED[name] in set(known):
-        raise AttributeError(f"{owner} has no attribute {name!r}: {near(name, [RENAMED[name]])}")

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..parts.joint import Joint
+from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from .numbering import Incidence, Numbering, extents, numbered
 
@@ -26,9 +28,9 @@ def attached(scene: SceneData) -> np.ndarray:
     if 2 * (len(scene.point_forces) + len(scene.joints)) <= MAX_ATTACHMENTS:
         return np.zeros(0, dtype=int)
     before = dict(zip(cables, np.cumsum([0, *(cable.elements for cable in cables.values())]).tolist(), strict=False))
-    ends = [end for part in (*scene.point_forces.values(), *scene.joints.values()) for end in (part.a, part.b)
-            if end.on in cables]
-    return np.array([before[end.on] + int(cables[end.on].mesh.element_at(end.arc_length)) for end in ends], dtype=int)
+    parts: list[PointForce | Joint] = [*scene.point_forces.values(), *scene.joints.values()]
+    return np.array([before[end.on] + int(cables[end.on].mesh.element_at(end.arc_length))
+                     for part in parts for end in (part.a, part.b) if end.on in cables], dtype=int)
 
 
 def cut(numbering: Numbering, incidence: Incidence, at: np.ndarray) -> Numbering:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, get_args
 
 from pydantic import BaseModel, ConfigDict, PlainValidator, ValidationError, model_validator
 
-from ..errors import RENAMED, SceneError, check_renamed, near, shown_path
+from ..errors import SceneError, near, shown_path
 from .quantity import Quantity
 from .schemas import AXIS, DIRECTION, HOLDER, ORIENTATION, POINT, TABLE_OF, About, Check, Turning, checked
 from .validation import NAMES_A_PART, show, shown
@@ -113,12 +113,6 @@ class Part(BaseModel, metaclass=_TranslatingType):
     def as_given(self) -> Any:
         """Return its short form in Python and scene files, by default itself."""
         return self
-
-    def __getattr__(self, name: str) -> Any:
-        """Refuse an unknown attribute; the message on one of an older version names the new one."""
-        if name in RENAMED:
-            check_renamed(f"{type(self).__name__!r} object", name, [*type(self).model_fields, *dir(type(self))])
-        return super().__getattr__(name)  # type: ignore[misc]  # which pydantic hides from type checkers
 
     @classmethod
     def title(cls, data: dict[str, Any]) -> str:

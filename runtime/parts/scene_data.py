@@ -10,7 +10,7 @@ from typing import Any, Never, Self
 
 import numpy as np
 
-from ..errors import SceneError, check_renamed
+from ..errors import SceneError
 from .attachment import Attachment
 from .cable import Cable
 from .contact import Contact
@@ -129,14 +129,10 @@ class SceneData:
         self.relax_settings: dict[str, Any] = {}
 
     def __getattr__(self, name: str) -> Any:
-        """Return the parts of one kind in a group of several: ``scene.springs`` of ``point_forces``.
-
-        The message on an attribute of an older version names the new one.
-        """
+        """Return the parts of one kind in a group of several: ``scene.springs`` of ``point_forces``."""
         if (kind := _views().get(name)) is not None:
             return PartsByName((label, part) for label, part in getattr(self, kind.group).items()
                                if type(part) is kind)
-        check_renamed(f"{type(self).__name__!r} object", name, dir(self))
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
     def __dir__(self) -> list[str]:

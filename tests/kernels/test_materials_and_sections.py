@@ -129,3 +129,9 @@ def test_a_cable_has_no_rotary_inertia():
                                          'it out, or take element="beam24"'):
         cable(element="cable12", law=None,
               section=GeneralSection(area=1, second_moment_about_z=1, rotary_moment_about_z=2))
+
+
+def test_rotary_moments_are_those_about_their_axes():
+    section = GeneralSection(area=1, second_moment_about_z=2, second_moment_about_y=3, rotary_moment_about_z=4,
+                             rotary_moment_about_y=5)
+    assert section.moments()[:3].tolist() == [1, 2, 3] and section.mass_moments()[:3].tolist() == [1, 4, 5]

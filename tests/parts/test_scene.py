@@ -1,5 +1,6 @@
 """Data that a scene computes and keeps: materials, geometry, starts of joints."""
 
+import funicular
 import numpy as np
 import pytest
 from funicular import FunicularWarning, Material, Rectangle, Scene, SceneError
@@ -54,6 +55,14 @@ def test_geometry_of_a_cable(scene):
     assert wire.nodal_vectors.shape == (5, 4, 3)
     assert_allclose(wire.nodal_vectors[1], [[1, 2, 3.5], [0, 0, 1], [1, 0, 0], [0, 1, 0]], atol=1e-15)
     assert [wire.node_at(s) for s in (0, 1.5, 2, 1.4)] == [0, 3, 4, None]
+
+
+def test_an_unknown_attribute_is_named(scene):
+    for owner, message in ((scene, "'Scene' object has no attribute 'cabel'"),
+                           (scene.cables["wire"], "'Cable' object has no attribute 'cabel'"),
+                           (funicular, "module 'funicular' has no attribute 'cabel'")):
+        with pytest.raises(AttributeError, match=f"^{message}$"):
+            _ = owner.cabel
 
 
 def test_the_ends_are_exact(scene):

@@ -142,7 +142,7 @@ VERTICAL = {"body": "B", "along": "link", "s": 0.5}
     ({"frame": "tangnt"}, 'frame "tangnt" is not known; did you mean "tangent"?'),
     ({"along": "rope", "frame": "section"}, 'frame "section" needs section axes (r_y) of cable "rope", but cable12 has '
      'a tangent only; take frame="tangent", or element="beam24"'),
-    ({"frame": "tangent", "roll": "held"}, 'roll "held" is not known; it is called "fixed" now'),
+    ({"frame": "tangent", "roll": "fixd"}, 'roll "fixd" is not known; did you mean "fixed"?'),
     ({"roll": "fixed"},
      'roll "fixed" is for frame "tangent", got frame "point"; leave it out, or take frame="tangent"'),
     ({"roll": "fixed", "frame": "section"}, 'roll "fixed" is for frame "tangent", got frame "section"; section axes '

@@ -4,6 +4,8 @@ import re
 import subprocess
 import sys
 
+import funicular as fu
+
 HEAVY = {"sympy", "jinja2", "matplotlib", "xarray", "h5py", "h5netcdf", "scipy", "pandas", "rich", "typer"}
 
 
@@ -65,3 +67,10 @@ def test_it_brings_modules_of_numpy_and_of_python_alone():
 def test_everything_it_announces_is_there():
     names = python("import funicular as f; print(*(n for n in f.__all__ if not hasattr(f, n)))").split()
     assert names == []
+
+
+def test_the_package_completes_its_interface_alone():
+    lazy = {"Choice", "Equilibrium", "InitialState", "LogUniform", "Modes", "Uniform", "load_sweep", "sweep",
+            "sweep_cost"}
+    assert {name for name in dir(fu) if not name.startswith("__")} == {*fu.__all__, *lazy} - {"__version__"}
+    assert all(hasattr(fu, name) for name in dir(fu))

@@ -82,8 +82,8 @@ def by_end(rest: Rest, part: PointForce, path: Path) -> Change | None:
 
 def by_place(rest: Rest, part: Force | DistributedForce, path: Path) -> Change | None:
     """Return the change by the position of a load along a cable, or by the start or stop of a distributed one."""
-    load = next(mine for mine, drawn in zip(rest.scene.parts(), rest.scene.as_drawn.parts(), strict=True)
-                if drawn is part)
+    load = cast(Force | DistributedForce, next(
+        mine for mine, drawn in zip(rest.scene.parts(), rest.scene.as_drawn.parts(), strict=True) if drawn is part))
     s = getattr(load, path.entries[0]) if path.entries[0] in ("s", "start", "stop") else None
     on = getattr(load, "cable", None) or getattr(load, "on", None)
     if s is None or on not in rest.scene.cables or rest.reader.sections or load.follower:
