@@ -200,7 +200,7 @@ static void on_body_in_step(const fu_model *model, const fu_drag *drag, const fu
                             const fu_drag_sums *sums)
 {
     const int dim = model->dim;
-    double dp[3], mean[3], moment[3], more[3], rate[3], left[3], on_place[3] = {0.0};
+    double dp[3], mean[3], moment[3], more[3], rate[3] = {0.0}, left[3], on_place[3] = {0.0};
     body_step of;
     body_over_step(model, drag, at, &of);
     drag->kernel->inertia_of_point_step(of.ends[0].A, of.ends[1].A, drag->added, of.motion[0].w, of.motion[1].w,
