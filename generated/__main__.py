@@ -93,6 +93,8 @@ SOURCES = (
     "planar_zero_length_spring.c",
     "resistance.c",
     "planar_resistance.c",
+    "planar_sheave.c",
+    "span_cable8p.c",
     "surface.c",
     "planar_surface.c",
     "registry.c",

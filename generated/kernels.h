@@ -16,6 +16,7 @@ typedef double _Complex fu_real;
 #define FU_SQRT csqrt
 #define FU_SIN csin
 #define FU_COS ccos
+#define FU_EXP cexp
 #define FU_REAL creal
 #elif defined(FU_BLOCK)
 #include <math.h>
@@ -34,6 +35,7 @@ typedef double fu_real;
 #define FU_SQRT sqrt
 #define FU_SIN sin
 #define FU_COS cos
+#define FU_EXP exp
 #define FU_REAL(x) (x)
 #endif
 
@@ -1197,6 +1199,181 @@ fu_resistance_force_kernel resistance_force;
 /* t 2, u 2, f 2, friction 5, buffer 4, R 1, R_t 2, R_u 2, R_f 2, R_x 1 */
 fu_resistance_force_kernel planar_resistance_force;
 
+typedef void fu_sheave_tangent_point_kernel(const fu_real *x, const fu_real *slope, fu_real R, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+/* conditions of a tangent point, and their derivatives: x [m]; slope [1]; R [m]; f [N] -> phi [m]; J [1, m]; K [N/m,
+ * N] */
+/* x 2, slope 2, f 2, phi 2, J 2x4, K 4x4 */
+fu_sheave_tangent_point_kernel planar_sheave_tangent_point;
+
+typedef void fu_sheave_tangent_point_motion_kernel(const fu_real *x, const fu_real *x_rate, const fu_real *slope_rate, fu_real *Q_d);
+/* second rates of the conditions at zero accelerations: x [m]; x_rate [m/s]; slope_rate [1/s] -> Q_d [m/s^2] */
+/* x 2, x_rate 2, slope_rate 2, Q_d 2 */
+fu_sheave_tangent_point_motion_kernel planar_sheave_tangent_point_motion;
+
+typedef void fu_sheave_angle_kernel(const fu_real *x, const fu_real *x_rate, const fu_real *x_acc, fu_real *rate, fu_real *acc, fu_real *phi_x, fu_real *phi_xx, fu_real *rate_x, fu_real *acc_x, fu_real *acc_v);
+/* rates of the angle of a tangent point, and their derivatives: x [m]; x_rate [m/s]; x_acc [m/s^2] -> rate [rad/s];
+ * acc [rad/s^2]; phi_x [1/m]; phi_xx [1/m^2]; rate_x [1/(m s)]; acc_x [1/(m s^2)]; acc_v [1/(m s)] */
+/* x 2, x_rate 2, x_acc 2, rate 1, acc 1, phi_x 2, phi_xx 2x2, rate_x 2, acc_x 2, acc_v 2 */
+fu_sheave_angle_kernel planar_sheave_angle;
+
+typedef void fu_sheave_energy_kernel(const fu_real *A, fu_real sense, fu_real R, const fu_real *phi, fu_real l, fu_real *U);
+/* elastic energy of a zone: A [N, N m^2]; sense [1]; R [m]; phi [rad]; l [m] -> U [J] */
+/* A 2, phi 2, U 1 */
+fu_sheave_energy_kernel planar_sheave_energy;
+
+typedef void fu_sheave_weight_kernel(fu_real rho, const fu_real *g, fu_real R, const fu_real *phi, const fu_real *c, fu_real l, fu_real *V);
+/* energy of gravity of a zone: rho [kg/m]; g [m/s^2]; R [m]; phi [rad]; c [m]; l [m] -> V [J] */
+/* g 2, phi 2, c 2, V 1 */
+fu_sheave_weight_kernel planar_sheave_weight;
+
+typedef void fu_sheave_force_kernel(const fu_real *A, fu_real sense, fu_real rho, const fu_real *g, fu_real R, const fu_real *phi, const fu_real *c, fu_real l, fu_real *f);
+/* derivatives of the elastic energy and of that of gravity: A [N, N m^2]; sense [1]; rho [kg/m]; g [m/s^2]; R [m];
+ * phi [rad]; c [m]; l [m] -> f [N] */
+/* A 2, g 2, phi 2, c 2, f 5 */
+fu_sheave_force_kernel planar_sheave_force;
+
+typedef void fu_sheave_tangent_kernel(const fu_real *A, fu_real sense, fu_real rho, const fu_real *g, fu_real R, const fu_real *phi, const fu_real *c, fu_real l, fu_real *K);
+/* second derivatives of the elastic energy and of that of gravity: A [N, N m^2]; sense [1]; rho [kg/m]; g [m/s^2]; R
+ * [m]; phi [rad]; c [m]; l [m] -> K [N/m] */
+/* A 2, g 2, phi 2, c 2, K 5x5 */
+fu_sheave_tangent_kernel planar_sheave_tangent;
+
+typedef void fu_sheave_kinetic_energy_kernel(fu_real rho, fu_real R, const fu_real *phi, fu_real l, const fu_real *phi_rate, const fu_real *c_rate, const fu_real *s_rate, fu_real *T);
+/* kinetic energy of a zone: rho [kg/m]; R [m]; phi [rad]; l [m]; phi_rate [rad/s]; c_rate [m/s]; s_rate [m/s] -> T
+ * [J] */
+/* phi 2, phi_rate 2, c_rate 2, s_rate 2, T 1 */
+fu_sheave_kinetic_energy_kernel planar_sheave_kinetic_energy;
+
+typedef void fu_sheave_inertia_kernel(fu_real rho, fu_real R, const fu_real *phi, fu_real l, const fu_real *phi_rate, const fu_real *c_rate, const fu_real *s_rate, const fu_real *phi_acc, const fu_real *c_acc, const fu_real *s_acc, fu_real *f);
+/* inertial forces d/dt dT/dv - dT/dq of a zone: rho [kg/m]; R [m]; phi [rad]; l [m]; phi_rate [rad/s]; c_rate [m/s];
+ * s_rate [m/s]; phi_acc [rad/s^2]; c_acc [m/s^2]; s_acc [m/s^2] -> f [N] */
+/* phi 2, phi_rate 2, c_rate 2, s_rate 2, phi_acc 2, c_acc 2, s_acc 2, f 6 */
+fu_sheave_inertia_kernel planar_sheave_inertia;
+
+typedef void fu_sheave_inertia_tangent_kernel(fu_real rho, fu_real R, const fu_real *phi, fu_real l, const fu_real *phi_rate, const fu_real *c_rate, const fu_real *s_rate, const fu_real *phi_acc, const fu_real *c_acc, const fu_real *s_acc, fu_real *M, fu_real *D, fu_real *K);
+/* derivatives of the inertial forces of a zone: rho [kg/m]; R [m]; phi [rad]; l [m]; phi_rate [rad/s]; c_rate [m/s];
+ * s_rate [m/s]; phi_acc [rad/s^2]; c_acc [m/s^2]; s_acc [m/s^2] -> M [kg]; D [kg/s]; K [SI] */
+/* phi 2, phi_rate 2, c_rate 2, s_rate 2, phi_acc 2, c_acc 2, s_acc 2, M 6x6, D 6x6, K 6x3 */
+fu_sheave_inertia_tangent_kernel planar_sheave_inertia_tangent;
+
+typedef void fu_sheave_dissipation_kernel(const fu_real *A, fu_real tau, fu_real R, const fu_real *phi, fu_real l, const fu_real *phi_rate, const fu_real *s_rate, fu_real *P);
+/* power dissipated by damping of a zone: A [N, N m^2]; tau [s]; R [m]; phi [rad]; l [m]; phi_rate [rad/s]; s_rate
+ * [m/s] -> P [W] */
+/* A 2, phi 2, phi_rate 2, s_rate 2, P 1 */
+fu_sheave_dissipation_kernel planar_sheave_dissipation;
+
+typedef void fu_sheave_damping_force_kernel(const fu_real *A, fu_real tau, fu_real R, const fu_real *phi, fu_real l, const fu_real *phi_rate, const fu_real *s_rate, fu_real *f);
+/* forces of damping of a zone: A [N, N m^2]; tau [s]; R [m]; phi [rad]; l [m]; phi_rate [rad/s]; s_rate [m/s] -> f
+ * [N m, N] */
+/* A 2, phi 2, phi_rate 2, s_rate 2, f 4 */
+fu_sheave_damping_force_kernel planar_sheave_damping_force;
+
+typedef void fu_sheave_damping_tangent_kernel(const fu_real *A, fu_real tau, fu_real R, const fu_real *phi, fu_real l, const fu_real *phi_rate, const fu_real *s_rate, fu_real *D, fu_real *K);
+/* derivatives of the forces of damping of a zone: A [N, N m^2]; tau [s]; R [m]; phi [rad]; l [m]; phi_rate [rad/s];
+ * s_rate [m/s] -> D [N m s, N s]; K [N m, N] */
+/* A 2, phi 2, phi_rate 2, s_rate 2, D 4x4, K 4x3 */
+fu_sheave_damping_tangent_kernel planar_sheave_damping_tangent;
+
+typedef void fu_sheave_friction_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, fu_real mu, fu_real v0, const fu_real *angles3, const fu_real *lengths2, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *F, fu_real *numbers, fu_real *power);
+/* friction at a point between a zone and a zone: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; mu [1]; v0 [m/s];
+ * angles3 [rad]; lengths2 [m]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> F [N m, N]; numbers [m/s, N, N];
+ * power [W] */
+/* A 2, angles3 3, lengths2 2, F 3, numbers 3, power 1 */
+fu_sheave_friction_kernel planar_sheave_friction;
+
+typedef void fu_sheave_friction_tangent_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, fu_real mu, fu_real v0, const fu_real *angles3, const fu_real *lengths2, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *K, fu_real *D);
+/* derivatives of friction between a zone and a zone: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; mu [1]; v0 [m/s];
+ * angles3 [rad]; lengths2 [m]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> K [SI]; D [SI] */
+/* A 2, angles3 3, lengths2 2, K 3x5, D 3x3 */
+fu_sheave_friction_tangent_kernel planar_sheave_friction_tangent;
+
+typedef void fu_sheave_friction_on_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *F, fu_real *numbers, fu_real *power);
+/* friction at a point between a span and a zone: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; mu [1]; v0 [m/s];
+ * angles2 [rad]; lengths1 [m]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> F [N m, N]; numbers
+ * [m/s, N, N]; power [W] */
+/* A 2, angles2 2, lengths1 1, span_slope 2, F 3, numbers 3, power 1 */
+fu_sheave_friction_on_kernel planar_sheave_friction_on;
+
+typedef void fu_sheave_friction_on_tangent_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *K, fu_real *D);
+/* derivatives of friction between a span and a zone: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; mu [1]; v0 [m/s];
+ * angles2 [rad]; lengths1 [m]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> K [SI]; D [SI] */
+/* A 2, angles2 2, lengths1 1, span_slope 2, K 3x5, D 3x3 */
+fu_sheave_friction_on_tangent_kernel planar_sheave_friction_on_tangent;
+
+typedef void fu_sheave_friction_off_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *F, fu_real *numbers, fu_real *power);
+/* friction at a point between a zone and a span: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; mu [1]; v0 [m/s];
+ * angles2 [rad]; lengths1 [m]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> F [N m, N]; numbers
+ * [m/s, N, N]; power [W] */
+/* A 2, angles2 2, lengths1 1, span_slope 2, F 3, numbers 3, power 1 */
+fu_sheave_friction_off_kernel planar_sheave_friction_off;
+
+typedef void fu_sheave_friction_off_tangent_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *K, fu_real *D);
+/* derivatives of friction between a zone and a span: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; mu [1]; v0 [m/s];
+ * angles2 [rad]; lengths1 [m]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> K [SI]; D [SI] */
+/* A 2, angles2 2, lengths1 1, span_slope 2, K 3x5, D 3x3 */
+fu_sheave_friction_off_tangent_kernel planar_sheave_friction_off_tangent;
+
+typedef void fu_span_point_kernel(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real xi, fu_real *r, fu_real *r_S, fu_real *velocity);
+/* place, slope and velocity of a material point: l [m]; e [m, 1]; v [m/s, 1/s]; s_rate [m/s]; xi [1] -> r [m]; r_S
+ * [1]; velocity [m/s] */
+/* e 4x2, v 4x2, s_rate 2, r 2, r_S 2, velocity 2 */
+fu_span_point_kernel span_cable8p_point;
+
+typedef void fu_span_kinetic_energy_kernel(fu_real rho, fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real *T);
+/* kinetic energy: rho [kg/m]; l [m]; e [m, 1]; v [m/s, 1/s]; s_rate [m/s] -> T [J] */
+/* e 4x2, v 4x2, s_rate 2, T 1 */
+fu_span_kinetic_energy_kernel span_cable8p_kinetic_energy;
+
+typedef void fu_span_inertia_kernel(fu_real rho, fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, const fu_real *a, const fu_real *s_acc, fu_real *f, fu_real *f_s);
+/* inertial forces d/dt dT/dv - dT/dq: rho [kg/m]; l [m]; e [m, 1]; v [m/s, 1/s]; s_rate [m/s]; a [m/s^2, 1/s^2];
+ * s_acc [m/s^2] -> f [N, N m]; f_s [N] */
+/* e 4x2, v 4x2, s_rate 2, a 4x2, s_acc 2, f 4x2, f_s 2 */
+fu_span_inertia_kernel span_cable8p_inertia;
+
+typedef void fu_span_inertia_tangent_kernel(fu_real rho, fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, const fu_real *a, const fu_real *s_acc, fu_real *M, fu_real *D, fu_real *K);
+/* derivatives of the inertial forces: rho [kg/m]; l [m]; e [m, 1]; v [m/s, 1/s]; s_rate [m/s]; a [m/s^2, 1/s^2];
+ * s_acc [m/s^2] -> M [SI]; D [SI]; K [SI] */
+/* e 4x2, v 4x2, s_rate 2, a 4x2, s_acc 2, M 10x10, D 10x10, K 10x9 */
+fu_span_inertia_tangent_kernel span_cable8p_inertia_tangent;
+
+typedef void fu_span_weight_kernel(fu_real rho, fu_real l, const fu_real *e, const fu_real *g, fu_real *V, fu_real *f, fu_real *f_l, fu_real *K_l, fu_real *K_ll);
+/* energy of gravity, and its derivatives: rho [kg/m]; l [m]; e [m, 1]; g [m/s^2] -> V [J]; f [N, N m]; f_l [N]; K_l
+ * [N/m, N]; K_ll [N/m] */
+/* e 4x2, g 2, V 1, f 4x2, f_l 1, K_l 4x2, K_ll 1 */
+fu_span_weight_kernel span_cable8p_weight;
+
+typedef void fu_span_energy_kernel(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+/* elastic energy: l [m]; e [m, 1]; A [N, N m^2, N] -> U [J] */
+/* e 4x2, A 3, U 1 */
+fu_span_energy_kernel span_cable8p_energy;
+
+typedef void fu_span_elastic_force_kernel(fu_real l, const fu_real *e, const fu_real *A, fu_real *f, fu_real *f_l);
+/* derivatives of the elastic energy: l [m]; e [m, 1]; A [N, N m^2, N] -> f [N, N m]; f_l [N] */
+/* e 4x2, A 3, f 4x2, f_l 1 */
+fu_span_elastic_force_kernel span_cable8p_elastic_force;
+
+typedef void fu_span_elastic_tangent_kernel(fu_real l, const fu_real *e, const fu_real *A, fu_real *K, fu_real *K_l, fu_real *K_ll);
+/* second derivatives of the elastic energy: l [m]; e [m, 1]; A [N, N m^2, N] -> K [N/m, N, N m]; K_l [N/m, N]; K_ll
+ * [N/m] */
+/* e 4x2, A 3, K 8x8, K_l 4x2, K_ll 1 */
+fu_span_elastic_tangent_kernel span_cable8p_elastic_tangent;
+
+typedef void fu_span_dissipation_kernel(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, const fu_real *A, fu_real tau, fu_real *P);
+/* power dissipated by damping: l [m]; e [m, 1]; v [m/s, 1/s]; s_rate [m/s]; A [N, N m^2, N]; tau [s] -> P [W] */
+/* e 4x2, v 4x2, s_rate 2, A 3, P 1 */
+fu_span_dissipation_kernel span_cable8p_dissipation;
+
+typedef void fu_span_damping_force_kernel(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, const fu_real *A, fu_real tau, fu_real *f, fu_real *f_s);
+/* forces of damping: l [m]; e [m, 1]; v [m/s, 1/s]; s_rate [m/s]; A [N, N m^2, N]; tau [s] -> f [N, N m]; f_s [N] */
+/* e 4x2, v 4x2, s_rate 2, A 3, f 4x2, f_s 2 */
+fu_span_damping_force_kernel span_cable8p_damping_force;
+
+typedef void fu_span_damping_tangent_kernel(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, const fu_real *A, fu_real tau, fu_real *D, fu_real *K);
+/* derivatives of the forces of damping: l [m]; e [m, 1]; v [m/s, 1/s]; s_rate [m/s]; A [N, N m^2, N]; tau [s] -> D
+ * [SI]; K [SI] */
+/* e 4x2, v 4x2, s_rate 2, A 3, D 10x10, K 10x9 */
+fu_span_damping_tangent_kernel span_cable8p_damping_tangent;
+
 typedef void fu_surface_flat_kernel(const fu_real *y, const fu_real *normal, fu_real *g, fu_real *g_y);
 /* distance from a plane, and its gradient: y [m]; normal [1] -> g [m]; g_y [1] */
 /* y 3, normal 3, g 1, g_y 3 */
@@ -1586,6 +1763,49 @@ typedef struct {
     fu_resistance_force_kernel *force;
 } fu_resistance_kernels;
 
+/* What the engine needs of a sheave. */
+typedef struct {
+    const char *name;
+    int dim;
+    fu_sheave_tangent_point_kernel *tangent_point;
+    fu_sheave_tangent_point_motion_kernel *tangent_point_motion;
+    fu_sheave_angle_kernel *angle;
+    fu_sheave_energy_kernel *energy;
+    fu_sheave_weight_kernel *weight;
+    fu_sheave_force_kernel *force;
+    fu_sheave_tangent_kernel *tangent;
+    fu_sheave_kinetic_energy_kernel *kinetic_energy;
+    fu_sheave_inertia_kernel *inertia;
+    fu_sheave_inertia_tangent_kernel *inertia_tangent;
+    fu_sheave_dissipation_kernel *dissipation;
+    fu_sheave_damping_force_kernel *damping_force;
+    fu_sheave_damping_tangent_kernel *damping_tangent;
+    fu_sheave_friction_kernel *friction;
+    fu_sheave_friction_tangent_kernel *friction_tangent;
+    fu_sheave_friction_on_kernel *friction_on;
+    fu_sheave_friction_on_tangent_kernel *friction_on_tangent;
+    fu_sheave_friction_off_kernel *friction_off;
+    fu_sheave_friction_off_tangent_kernel *friction_off_tangent;
+} fu_sheave_kernels;
+
+/* What the engine needs of a span. */
+typedef struct {
+    const char *name;
+    int dim;
+    int coordinates;
+    fu_span_point_kernel *point;
+    fu_span_kinetic_energy_kernel *kinetic_energy;
+    fu_span_inertia_kernel *inertia;
+    fu_span_inertia_tangent_kernel *inertia_tangent;
+    fu_span_weight_kernel *weight;
+    fu_span_energy_kernel *energy;
+    fu_span_elastic_force_kernel *elastic_force;
+    fu_span_elastic_tangent_kernel *elastic_tangent;
+    fu_span_dissipation_kernel *dissipation;
+    fu_span_damping_force_kernel *damping_force;
+    fu_span_damping_tangent_kernel *damping_tangent;
+} fu_span_kernels;
+
 /* What the engine needs of a surface. */
 typedef struct {
     const char *name;
@@ -1627,6 +1847,10 @@ typedef struct {
     const fu_point_law_kernels *point_laws;
     int n_resistances;
     const fu_resistance_kernels *resistances;
+    int n_sheaves;
+    const fu_sheave_kernels *sheaves;
+    int n_spans;
+    const fu_span_kernels *spans;
     int n_surfaces;
     const fu_surface_kernels *surfaces;
 } fu_tables;
@@ -1657,6 +1881,10 @@ static inline const void *fu_find(const fu_tables *tables, const char *role, con
         if (!strcmp(tables->point_laws[i].name, name)) return &tables->point_laws[i];
     for (int i = 0; i < tables->n_resistances && !strcmp(role, "resistance"); ++i)
         if (!strcmp(tables->resistances[i].name, name)) return &tables->resistances[i];
+    for (int i = 0; i < tables->n_sheaves && !strcmp(role, "sheave"); ++i)
+        if (!strcmp(tables->sheaves[i].name, name)) return &tables->sheaves[i];
+    for (int i = 0; i < tables->n_spans && !strcmp(role, "span"); ++i)
+        if (!strcmp(tables->spans[i].name, name)) return &tables->spans[i];
     for (int i = 0; i < tables->n_surfaces && !strcmp(role, "surface"); ++i)
         if (!strcmp(tables->surfaces[i].name, name)) return &tables->surfaces[i];
     return 0;

@@ -266,6 +266,21 @@ static const fu_resistance_kernels resistances[] = {
     {"planar_resistance", 2, planar_resistance_force},
 };
 
+static const fu_sheave_kernels sheaves[] = {
+    {"planar_sheave", 2, planar_sheave_tangent_point, planar_sheave_tangent_point_motion, planar_sheave_angle,
+     planar_sheave_energy, planar_sheave_weight, planar_sheave_force, planar_sheave_tangent,
+     planar_sheave_kinetic_energy, planar_sheave_inertia, planar_sheave_inertia_tangent, planar_sheave_dissipation,
+     planar_sheave_damping_force, planar_sheave_damping_tangent, planar_sheave_friction, planar_sheave_friction_tangent,
+     planar_sheave_friction_on, planar_sheave_friction_on_tangent, planar_sheave_friction_off,
+     planar_sheave_friction_off_tangent},
+};
+
+static const fu_span_kernels spans[] = {
+    {"span_cable8p", 2, 8, span_cable8p_point, span_cable8p_kinetic_energy, span_cable8p_inertia,
+     span_cable8p_inertia_tangent, span_cable8p_weight, span_cable8p_energy, span_cable8p_elastic_force,
+     span_cable8p_elastic_tangent, span_cable8p_dissipation, span_cable8p_damping_force, span_cable8p_damping_tangent},
+};
+
 static const fu_surface_kernels surfaces[] = {
     {"surface", 3, surface_flat, surface_rounded, surface_terrain, surface_push, surface_push_hertz,
      surface_frictionless, surface_sticking, surface_sliding, surface_reaction, surface_motion, surface_slip},
@@ -333,6 +348,28 @@ static const fu_surface_kernels surfaces[] = {
 #define FU_ARGUMENTS_vvvvvvvv_2 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]
 #define FU_ARGUMENTS_vsvv_2 a[0], *a[1], a[2], a[3], out[0], out[1]
 #define FU_ARGUMENTS_vvvvv_5 a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]
+#define FU_ARGUMENTS_vvsv_3 a[0], a[1], *a[2], a[3], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vvv_7 a[0], a[1], a[2], out[0], out[1], out[2], out[3], out[4], out[5], out[6]
+#define FU_ARGUMENTS_vssvs_1 a[0], *a[1], *a[2], a[3], *a[4], out[0]
+#define FU_ARGUMENTS_svsvvs_1 *a[0], a[1], *a[2], a[3], a[4], *a[5], out[0]
+#define FU_ARGUMENTS_vssvsvvs_1 a[0], *a[1], *a[2], a[3], *a[4], a[5], a[6], *a[7], out[0]
+#define FU_ARGUMENTS_ssvsvvv_1 *a[0], *a[1], a[2], *a[3], a[4], a[5], a[6], out[0]
+#define FU_ARGUMENTS_ssvsvvvvvv_1 *a[0], *a[1], a[2], *a[3], a[4], a[5], a[6], a[7], a[8], a[9], out[0]
+#define FU_ARGUMENTS_ssvsvvvvvv_3 *a[0], *a[1], a[2], *a[3], a[4], a[5], a[6], a[7], a[8], a[9], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vssvsvv_1 a[0], *a[1], *a[2], a[3], *a[4], a[5], a[6], out[0]
+#define FU_ARGUMENTS_vssvsvv_2 a[0], *a[1], *a[2], a[3], *a[4], a[5], a[6], out[0], out[1]
+#define FU_ARGUMENTS_vsssssvvsss_3 a[0], *a[1], *a[2], *a[3], *a[4], *a[5], a[6], a[7], *a[8], *a[9], *a[10], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vsssssvvsss_2 a[0], *a[1], *a[2], *a[3], *a[4], *a[5], a[6], a[7], *a[8], *a[9], *a[10], out[0], out[1]
+#define FU_ARGUMENTS_vsssssvvvsss_3 a[0], *a[1], *a[2], *a[3], *a[4], *a[5], a[6], a[7], a[8], *a[9], *a[10], *a[11], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vsssssvvvsss_2 a[0], *a[1], *a[2], *a[3], *a[4], *a[5], a[6], a[7], a[8], *a[9], *a[10], *a[11], out[0], out[1]
+#define FU_ARGUMENTS_svvvs_3 *a[0], a[1], a[2], a[3], *a[4], out[0], out[1], out[2]
+#define FU_ARGUMENTS_ssvvv_1 *a[0], *a[1], a[2], a[3], a[4], out[0]
+#define FU_ARGUMENTS_ssvvvvv_2 *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1]
+#define FU_ARGUMENTS_ssvvvvv_3 *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1], out[2]
+#define FU_ARGUMENTS_ssvv_5 *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3], out[4]
+#define FU_ARGUMENTS_svv_3 *a[0], a[1], a[2], out[0], out[1], out[2]
+#define FU_ARGUMENTS_svvvvs_1 *a[0], a[1], a[2], a[3], a[4], *a[5], out[0]
+#define FU_ARGUMENTS_svvvvs_2 *a[0], a[1], a[2], a[3], a[4], *a[5], out[0], out[1]
 #define FU_ARGUMENTS_vvs_3 a[0], a[1], *a[2], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vv_3 a[0], a[1], out[0], out[1], out[2]
 #define FU_ARGUMENTS_ssvs_6 *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]
@@ -855,6 +892,36 @@ static const fu_surface_kernels surfaces[] = {
     X(planar_zero_length_spring_discrete_force, vsvv_2) \
     X(resistance_force, vvvvv_5) \
     X(planar_resistance_force, vvvvv_5) \
+    X(planar_sheave_tangent_point, vvsv_3) \
+    X(planar_sheave_tangent_point_motion, vvv_1) \
+    X(planar_sheave_angle, vvv_7) \
+    X(planar_sheave_energy, vssvs_1) \
+    X(planar_sheave_weight, svsvvs_1) \
+    X(planar_sheave_force, vssvsvvs_1) \
+    X(planar_sheave_tangent, vssvsvvs_1) \
+    X(planar_sheave_kinetic_energy, ssvsvvv_1) \
+    X(planar_sheave_inertia, ssvsvvvvvv_1) \
+    X(planar_sheave_inertia_tangent, ssvsvvvvvv_3) \
+    X(planar_sheave_dissipation, vssvsvv_1) \
+    X(planar_sheave_damping_force, vssvsvv_1) \
+    X(planar_sheave_damping_tangent, vssvsvv_2) \
+    X(planar_sheave_friction, vsssssvvsss_3) \
+    X(planar_sheave_friction_tangent, vsssssvvsss_2) \
+    X(planar_sheave_friction_on, vsssssvvvsss_3) \
+    X(planar_sheave_friction_on_tangent, vsssssvvvsss_2) \
+    X(planar_sheave_friction_off, vsssssvvvsss_3) \
+    X(planar_sheave_friction_off_tangent, vsssssvvvsss_2) \
+    X(span_cable8p_point, svvvs_3) \
+    X(span_cable8p_kinetic_energy, ssvvv_1) \
+    X(span_cable8p_inertia, ssvvvvv_2) \
+    X(span_cable8p_inertia_tangent, ssvvvvv_3) \
+    X(span_cable8p_weight, ssvv_5) \
+    X(span_cable8p_energy, svv_1) \
+    X(span_cable8p_elastic_force, svv_2) \
+    X(span_cable8p_elastic_tangent, svv_3) \
+    X(span_cable8p_dissipation, svvvvs_1) \
+    X(span_cable8p_damping_force, svvvvs_2) \
+    X(span_cable8p_damping_tangent, svvvvs_2) \
     X(surface_flat, vv_2) \
     X(surface_rounded, vvs_3) \
     X(surface_terrain, vv_3) \
@@ -900,5 +967,7 @@ const fu_tables fu_all = {
     20, joints,
     6, point_laws,
     2, resistances,
+    1, sheaves,
+    1, spans,
     2, surfaces
 };

@@ -76,8 +76,15 @@ class Gram:
 
     def differences(self, program: Program, e: np.ndarray, w: sp.Expr, tag: str = "") -> np.ndarray:
         """Return the strain vectors (m, dim) of nodal vectors e (n, dim), through chords (r_k - r_1) w, w = 1/l."""
-        d = [program.vector(f"chord{tag}{k}" if v else "", (e[k] - e[0]) * w) if v else e[k]
-             for k, v in enumerate(self.element.is_position)]
+        return self.of_chords(program, self.chords(program, e, w, tag), tag)
+
+    def chords(self, program: Program, e: np.ndarray, w: sp.Expr, tag: str = "") -> np.ndarray:
+        """Return nodal vectors (n, dim) with chords (r_k - r_1) w in place of positions."""
+        return np.array([program.vector(f"chord{tag}{k}" if v else "", (e[k] - e[0]) * w) if v else e[k]
+                         for k, v in enumerate(self.element.is_position)])
+
+    def of_chords(self, program: Program, d: np.ndarray, tag: str = "") -> np.ndarray:
+        """Return the strain vectors (m, dim) of nodal vectors d with chords in place of positions."""
         return np.array([
             program.vector(f"{tag}{name}", sum(self.scaled[m][k] * d[k] for k in range(1, len(d))
                                                if self.scaled[m][k] != 0))

@@ -1,8 +1,8 @@
 """C text of SymPy expressions, the same on every machine.
 
 Terms stand in SymPy's canonical order. Small integer powers become products. Halves, quarters and eighths become
-decimals; other rationals become quotients that the compiler folds. Square roots, sines and cosines are macros, so that
-the same text serves double and complex numbers.
+decimals; other rationals become quotients that the compiler folds. Square roots, sines, cosines and exponentials are
+macros, so that the same text serves double and complex numbers.
 """
 # ruff: noqa: N802  (SymPy dispatches on these names)
 
@@ -16,12 +16,12 @@ from sympy.printing.precedence import PRECEDENCE
 
 from .program import two_cases
 
-_PRINTED = (sp.Symbol, sp.Rational, sp.Float, sp.Add, sp.Mul, sp.Pow, sp.sin, sp.cos, sp.Piecewise)
+_PRINTED = (sp.Symbol, sp.Rational, sp.Float, sp.Add, sp.Mul, sp.Pow, sp.sin, sp.cos, sp.exp, sp.Piecewise)
 _ADD, _MUL, _ATOM = PRECEDENCE["Add"], PRECEDENCE["Mul"], PRECEDENCE["Atom"]
 
 
 class KernelPrinter(C99CodePrinter):
-    """C99 with products for powers; raises on anything but plain arithmetic, sine, cosine, a choice of two."""
+    """C99 with products for powers; raises on anything but arithmetic, sine, cosine, exponential, a choice of two."""
 
     def _print_Symbol(self, expr: sp.Symbol) -> str:
         return str(expr.name)
@@ -80,6 +80,9 @@ class KernelPrinter(C99CodePrinter):
 
     def _print_cos(self, expr: sp.Expr) -> str:
         return f"FU_COS({self._print(expr.args[0])})"
+
+    def _print_exp(self, expr: sp.Expr) -> str:
+        return f"FU_EXP({self._print(expr.args[0])})"
 
     def _print_Piecewise(self, expr: sp.Piecewise) -> str:
         below, above, condition = two_cases(expr)

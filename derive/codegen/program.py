@@ -110,8 +110,8 @@ class Program:
         self._taken.add(name)
 
     def operations(self) -> dict[str, int]:
-        """Return the arithmetic operations of one call: additions, multiplications, divisions, square roots; sines and
-        cosines where there are any. Of a choice both cases count.
+        """Return the arithmetic operations of one call: additions, multiplications, divisions, square roots; sines,
+        cosines and exponentials where there are any. Of a choice both cases count.
         """
         exprs = [e for s in self.stages for _, e in s.definitions]
         exprs += [e for v in self.values.values() for e in v.ravel()]
@@ -151,7 +151,7 @@ def _count(expr: sp.Expr, count: dict[str, int]) -> None:
     args = expr.args
     if expr.is_Piecewise:
         args = two_cases(expr)[:2]
-    elif isinstance(expr, (sp.sin, sp.cos)):
+    elif isinstance(expr, (sp.sin, sp.cos, sp.exp)):
         name = expr.func.__name__
         count[name] = count.get(name, 0) + 1
     elif expr.is_Add:

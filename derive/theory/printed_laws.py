@@ -233,13 +233,15 @@ def cable_energy(scope: Scope) -> list[Line]:
 
 def cable_damping(scope: Scope) -> list[Line]:
     """Return the rates of strain and bending, the dissipated power, and the force; nothing of a law that has the
-    damping kernels of another.
+    damping kernels of another. A span's rates are those at material points.
     """
-    law, traits = _law(scope), scope.family.traits
+    law, traits, flows = _law(scope), scope.family.traits, scope.family.role == "span"
     assert traits is not None
-    if traits.damped_like:
+    if traits.damped_like and not flows:
         return []
     moved = r"\mathbf{e} \to \mathbf{e} + t \dot{\mathbf{e}}"
+    if flows:
+        moved = rf"x \to x - t \dot{{s}}_{{1}}, l \to l + t \dot{{l}}, {moved}"
     lines = [Line(r"\mathbf{i} = \frac{\mathbf{r}^{\prime}}{\lvert \mathbf{r}^{\prime} \rvert}")]
     for name in (r"\varepsilon", r"\mathbf{i}", r"\mathbf{r}^{\prime \prime}"):
         star = {r"\varepsilon": r"\varepsilon^{\ast}", r"\mathbf{i}": r"\mathbf{i}^{\ast}"}.get(

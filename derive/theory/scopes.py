@@ -403,6 +403,39 @@ def surface_scope(name: str) -> Scope:
                                     Symbol("p", "normal_force", entry(0))))
 
 
+def span_scope(name: str) -> Scope:
+    """Return the scope of a span of a rope: an element whose ends flow along the rope."""
+    family = families()[name]
+    dim = family.facts["dim"]
+    stiffness = [Symbol(rf"\mathrm{{EA}}{sub}" if k != 1 else r"\mathrm{EI}", "A", entry(k))
+                 for k, sub in enumerate(("", "", "_{u}"))]
+    ends = [Symbol(rf"\{accent}{{s}}_{{{k + 1}}}", argument, entry(k))
+            for accent, argument in (("dot", "s_rate"), ("ddot", "s_acc")) for k in range(2)]
+    return Scope(family, (Symbol("l", "l", number), _nodal(dim, r"\mathbf{e}", "e"),
+                          _nodal(dim, r"\dot{\mathbf{e}}", "v"), _nodal(dim, r"\ddot{\mathbf{e}}", "a"), *ends,
+                          Symbol(r"\rho", "rho", number), Symbol(r"\mathbf{g}", "g", column), *stiffness,
+                          Symbol(r"\tau", "tau", number)), constants=_of_span)
+
+
+def _of_span(scope: Scope, state: State) -> dict[str, Any]:
+    return _counts(scope, state) | {"x": float(state["xi"] * state["l"])}
+
+
+def sheave_scope(name: str) -> Scope:
+    """Return the scope of a rope on a sheave."""
+    vectors = [Symbol(latex, argument, column) for latex, argument in (
+        (r"\mathbf{x}", "x"), (r"\dot{\mathbf{x}}", "x_rate"), (r"\ddot{\mathbf{x}}", "x_acc"),
+        (r"\mathbf{t}", "slope"), (r"\dot{\mathbf{t}}", "slope_rate"), (r"\boldsymbol{\lambda}", "f"),
+        (r"\mathbf{c}", "c"), (r"\dot{\mathbf{c}}", "c_rate"), (r"\ddot{\mathbf{c}}", "c_acc"), (r"\mathbf{g}", "g"))]
+    ends = [Symbol(f"{latex}_{{{k + 1}}}", argument, entry(k)) for latex, argument in (
+        (r"\phi", "phi"), (r"\dot{\phi}", "phi_rate"), (r"\ddot{\phi}", "phi_acc"), (r"\dot{s}", "s_rate"),
+        (r"\ddot{s}", "s_acc")) for k in range(2)]
+    numbers = [Symbol(latex, argument, number) for latex, argument in (
+        ("R", "R"), ("l", "l"), (r"\sigma", "sense"), (r"\rho", "rho"), (r"\tau", "tau"))]
+    return Scope(families()[name], (*vectors, *ends, *numbers, Symbol(r"\mathrm{EA}", "A", entry(0)),
+                                    Symbol(r"\mathrm{EI}", "A", entry(1))))
+
+
 def scope(role: str, name: str) -> Scope:
     """Return the scope of a family: the function of this module called as its role makes it."""
     found: Scope = globals()[f"{role}_scope"](name)

@@ -31,7 +31,7 @@ def source(expr: sp.Expr) -> str:
     if expr.is_Pow and (2 * expr.exp).is_Integer:
         base = source(expr.base)
         return f"sqrt({base})**{int(2 * expr.exp)}" if expr.exp.q == 2 else f"{base}**{int(expr.exp)}"
-    if isinstance(expr, (sp.sin, sp.cos)):
+    if isinstance(expr, (sp.sin, sp.cos, sp.exp)):
         return f"{expr.func.__name__}({source(expr.args[0])})"
     if expr.is_Piecewise:
         below, above, condition = two_cases(expr)
@@ -53,7 +53,7 @@ class ExactProgram:
         results = (f"[{', '.join(source(e) for e in self.program.values[a.name].ravel())}]"
                    for a in self.program.outputs)
         lines.append(f"    return [{', '.join(results)}]")
-        space = {"sqrt": mpmath.mp.sqrt, "sin": mpmath.mp.sin, "cos": mpmath.mp.cos,
+        space = {"sqrt": mpmath.mp.sqrt, "sin": mpmath.mp.sin, "cos": mpmath.mp.cos, "exp": mpmath.mp.exp,
                  "q": lambda p, q: mpmath.mpf(p) / q, "number": mpmath.mpf}
         exec(compile("\n".join(lines), f"<{self.program.name} at {DIGITS} digits>", "exec"), space)
         kernel: Callable[..., Any] = space["kernel"]

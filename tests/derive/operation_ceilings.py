@@ -250,4 +250,16 @@ CEILINGS = {
                 "sticking": 185, "sliding": 468, "reaction": 276, "motion": 91, "slip": 123},
     "planar_surface": {"flat": 3, "rounded": 33, "terrain": 35, "push": 12, "push_hertz": 29, "frictionless": 40,
                        "sticking": 89, "sliding": 170, "reaction": 85, "motion": 40, "slip": 48},
+    "span_cable8p": {
+        "point": 105, "kinetic_energy": 137, "inertia": 257, "inertia_tangent": 1214, "weight": 63, "energy": 238,
+        "elastic_force": 439, "elastic_tangent": 1551, "dissipation": 267, "damping_force": 365,
+        "damping_tangent": 2171
+    },
+    "planar_sheave": {
+        "tangent_point": 27, "tangent_point_motion": 26, "angle": 121, "energy": 13, "weight": 21, "force": 85,
+        "tangent": 204, "kinetic_energy": 60, "inertia": 213, "inertia_tangent": 1209, "dissipation": 15,
+        "damping_force": 16, "damping_tangent": 50,
+        "friction": 56, "friction_tangent": 307, "friction_on": 56, "friction_on_tangent": 294, "friction_off": 56,
+        "friction_off_tangent": 294
+    },
 }

@@ -86,13 +86,14 @@ class AssumedCable(Cable):
             bending.append(k2)
         stresses = self._stresses(program, A, w, points, strains)
         for (invariants, vectors, series), k2, strain, stress in zip(every, bending, strains, stresses, strict=True):
-            yield Term(names, k2, invariants, vectors, series, strain, stress)
+            yield Term(names, k2, invariants, vectors, series, strain, stress, bending=k2)
         if names == "abc":
             return
         program.stage("curvature at the quadrature points")
         points = self.bending_points
-        for g, (invariants, *at) in enumerate(self._at_points(program, "b", "c", points, c)):
-            yield Term("c", self._weighted(program, points, g, "EI", EI) * invariants[0], invariants, *at)
+        for g, (invariants, vectors, series) in enumerate(self._at_points(program, "b", "c", points, c)):
+            twice = self._weighted(program, points, g, "EI", EI) * invariants[0]
+            yield Term("c", twice, invariants, vectors, series, bending=twice)
 
     # --- the strain by its modes ------------------------------------------------------------------------------
 
@@ -153,9 +154,8 @@ class AssumedCable(Cable):
 
     # --- second derivatives -----------------------------------------------------------------------------------
 
-    def tangent(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> np.ndarray:
+    def _tangent(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr, terms: list[Term]) -> np.ndarray:
         """Return d2U/dc2 over strain vectors: at the points with the stress constant, and what the stress changes."""
-        terms = list(self._terms(program, A, c, w))
         total = np.array(0)
         for names in dict.fromkeys(term.names for term in terms):
             total = total + self._second(program, [term for term in terms if term.names == names])

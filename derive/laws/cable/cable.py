@@ -8,7 +8,7 @@ and never through the coordinates.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
@@ -37,7 +37,8 @@ class Term:
     series of the vectors over the strain vectors.
 
     Where the energy is also a quadratic form over the strains of several points, `strain` is that of this point and
-    `stress` the derivative of twice the form by it.
+    `stress` the derivative of twice the form by it. `bending` is the part of `twice` that is proportional to 1/l at
+    constant strain vectors; what the term has besides is proportional to l.
     """
 
     names: str
@@ -47,6 +48,7 @@ class Term:
     series: list[tuple[sp.Float, ...]]
     strain: sp.Expr = sp.S.Zero
     stress: sp.Expr = sp.S.Zero
+    bending: sp.Expr = sp.S.Zero
 
     @property
     def share(self) -> sp.Expr:
@@ -190,9 +192,10 @@ class Cable(Damping):
             every = self._at_points(program, "", "abc", points, c)
             weighted = [[self._weighted(program, points, g, *stiff) for stiff in (("EA", EA), ("EI", EI))]
                         for g in range(len(points))]
-            for g, ((invariants, *at), (axial, bending)) in enumerate(zip(every, weighted, strict=True)):
+            for g, ((invariants, vectors, series), (axial, bending)) in enumerate(zip(every, weighted, strict=True)):
                 strain, k2, _ = self.measures(program, f"_{g}", invariants, bending)
-                yield Term("abc", self.twice_axial_energy(program, f"_{g}", A, axial, strain) + k2, invariants, *at)
+                yield Term("abc", self.twice_axial_energy(program, f"_{g}", A, axial, strain) + k2, invariants,
+                           vectors, series, bending=k2)
             return
         points = self.axial_points
         for g, (invariants, *at) in enumerate(self._at_points(program, "", "a", points, c)):
@@ -201,8 +204,9 @@ class Cable(Damping):
             yield Term("a", self.twice_axial_energy(program, f"_{g}", A, axial, strain), invariants, *at)
         program.stage("curvature at the quadrature points")
         points = self.bending_points
-        for g, (invariants, *at) in enumerate(self._at_points(program, "b", "c", points, c)):
-            yield Term("c", self._weighted(program, points, g, "EI", EI) * invariants[0], invariants, *at)
+        for g, (invariants, vectors, series) in enumerate(self._at_points(program, "b", "c", points, c)):
+            twice = self._weighted(program, points, g, "EI", EI) * invariants[0]
+            yield Term("c", twice, invariants, vectors, series, bending=twice)
 
     def _weighted(self, program: Program, points: list[Point], g: int, name: str, stiffness: sp.Expr) -> sp.Expr:
         """Return the weight of a point times a stiffness; points that mirror each other share it."""
@@ -232,14 +236,27 @@ class Cable(Damping):
 
     def forces(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> np.ndarray:
         """Return dU/dc on strain vectors."""
+        return self._forces(program, list(self._terms(program, A, c, w)), _first)
+
+    def _forces(self, program: Program, every: list[Term], first: First) -> np.ndarray:
+        """Return forces on strain vectors from derivatives by the invariants of each term."""
         f = np.zeros((len(self.gram.names), self.gram.element.dim), dtype=object)
-        for names, of_rule in groupby(list(self._terms(program, A, c, w)), key=lambda term: term.names):
+        for names, of_rule in groupby(every, key=lambda term: term.names):
             terms = list(of_rule)
             program.stage("forces at the quadrature points")
-            forces = [on_vectors(program, f"{names}{g}", term.vectors, _first(program, term))
+            forces = [on_vectors(program, f"{names}{g}", term.vectors, first(program, term))
                       for g, term in enumerate(terms)]
             f[self.axis_indices] += self._gathered(program, names, terms, forces)
         return self._named(program, f)
+
+    def forces_and_energies(self, program: Program, A: np.ndarray, c: np.ndarray,
+                            w: sp.Expr) -> tuple[np.ndarray, sp.Expr, sp.Expr]:
+        """Return dU/dc on strain vectors, and the energies of stretching and of bending, J."""
+        terms = list(self._terms(program, A, c, w))
+        f = self._forces(program, terms, _first)
+        program.stage("energies of stretching and of bending")
+        stretching = program.define("U_m", sum(term.share - term.bending for term in terms) / 2)
+        return f, stretching, program.define("U_b", sum(term.bending for term in terms) / 2)
 
     def _gathered(self, program: Program, names: str, terms: list[Term], forces: list[Any]) -> np.ndarray:
         """Return the forces on the strain vectors along the axis from those on the vectors of each point."""
@@ -290,8 +307,23 @@ class Cable(Damping):
 
     def tangent(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> np.ndarray:
         """Return d2U/dc2 over strain vectors."""
+        return self._tangent(program, A, c, w, list(self._terms(program, A, c, w)))
+
+    def tangent_and_parts(self, program: Program, A: np.ndarray, c: np.ndarray,
+                          w: sp.Expr) -> tuple[np.ndarray, np.ndarray, np.ndarray, sp.Expr]:
+        """Return d2U/dc2 over strain vectors, forces of stretching and of bending on these, and the energy of bending,
+        J.
+        """
+        terms = list(self._terms(program, A, c, w))
+        blocks = self._tangent(program, A, c, w, terms)
+        f = [self._forces(program, terms, first) for first in (_first_of_stretching, _first_of_bending)]
+        program.stage("energy of bending")
+        return blocks, *f, program.define("U_b", sum(term.bending for term in terms) / 2)
+
+    def _tangent(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr, every: list[Term]) -> np.ndarray:
+        """Return d2U/dc2 from the terms."""
         total = np.array(0)
-        for _, terms in groupby(list(self._terms(program, A, c, w)), key=lambda term: term.names):
+        for _, terms in groupby(every, key=lambda term: term.names):
             total = total + self._second(program, list(terms))
         program.stage("blocks over strain vectors")
         return named_blocks(program, self.gram.names, total, symmetric=True)
@@ -307,10 +339,27 @@ class Cable(Damping):
         return spread(program, names, [term.series for term in terms], at_points, symmetric=True)
 
 
+First = Callable[[Program, Term], list[sp.Expr]]
+"""Returns derivatives by a term's invariants."""
+
+
 def _first(program: Program, term: Term) -> list[sp.Expr]:
     """Return the derivatives of twice the energy by a term's invariants."""
     gradient = jacobian(program, np.array([term.varied]), term.invariants, term.constant)[0]
     return [program.define(f"D_{s.name}", d) for s, d in zip(term.invariants, gradient, strict=True)]
+
+
+def _first_of_stretching(program: Program, term: Term) -> list[sp.Expr]:
+    """Return the part of `_first` without bending."""
+    gradient = jacobian(program, np.array([term.varied - term.bending]), term.invariants, term.constant)[0]
+    return [program.define(f"Dm_{s.name}", d) for s, d in zip(term.invariants, gradient, strict=True)]
+
+
+def _first_of_bending(program: Program, term: Term) -> list[sp.Expr]:
+    """Return the part of bending: what `_first` has staged less what `_first_of_stretching` has."""
+    of_stretching = [sp.Symbol(f"Dm_{s.name}") for s in term.invariants]
+    return [sp.Symbol(f"D_{s.name}") - (part if part in program.definition else 0)
+            for s, part in zip(term.invariants, of_stretching, strict=True)]
 
 
 def _number(value: Any) -> sp.Expr:

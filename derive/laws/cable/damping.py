@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from itertools import groupby
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -133,13 +134,33 @@ class Damping:
         """Return df/dc + rate df/d(dc) over strain vectors, (vectors, vectors, dim, dim)."""
         points = self._points(program, A, tau, c, dc, w)
         program.stage("derivatives at the quadrature points")
+        total = self._spread(program, "d", points, lambda point: point.blocks(rate), symmetric=False)
+        program.stage("blocks over strain vectors")
+        return named_blocks(program, self.gram.names, total, symmetric=False)
+
+    def damping_parts(self, program: Program, A: np.ndarray, tau: sp.Expr, c: np.ndarray, dc: np.ndarray,
+                      w: sp.Expr) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Return forces of stretching and of bending on strain vectors, and derivatives of their sum by c and dc."""
+        points = self._points(program, A, tau, c, dc, w)
+        groups = [list(of_order) for _, of_order in groupby(points, key=lambda point: len(point.series))]
+        f = [self._summed(program, [(point, point.forces(point.rates)) for point in group]) for group in groups]
+        program.stage("derivatives at the quadrature points")
+        by_c = self._spread(program, "d", points, lambda point: point.blocks(sp.S.Zero), symmetric=False)
+        by_dc = self._spread(program, "v", points, lambda point: point.rate_blocks(), symmetric=True)
+        program.stage("blocks over strain vectors")
+        names = self.gram.names
+        return (f[0], f[1], named_blocks(program, names, by_c, symmetric=False),
+                named_blocks(program, [f"d{name}" for name in names], by_dc, symmetric=True))
+
+    def _spread(self, program: Program, tag: str, points: list[AxialPoint | BendingPoint],
+                blocks: Callable[[Any], PointBlocks], symmetric: bool) -> np.ndarray:
+        """Return the sum over the points of their blocks over strain vectors."""
         total = np.array(0)
         for order, of_order in groupby(points, key=lambda point: len(point.series)):
             group = list(of_order)
-            total = total + spread(program, f"d{order}", [point.series for point in group],
-                                   [point.blocks(rate) for point in group], symmetric=False)
-        program.stage("blocks over strain vectors")
-        return named_blocks(program, self.gram.names, total, symmetric=False)
+            total = total + spread(program, f"{tag}{order}", [point.series for point in group],
+                                   [blocks(point) for point in group], symmetric=symmetric)
+        return total
 
     def dissipation(self, program: Program, A: np.ndarray, tau: sp.Expr, c: np.ndarray, dc: np.ndarray,
                     w: sp.Expr) -> sp.Expr:
@@ -188,6 +209,11 @@ class AxialPoint:
             across = across + self.program.define(f"change_{self.tag}", self.change * self.rates[0]) * along
         return {(0, 0): named_block(self.program, f"K_{self.tag}",
                                     N * eye + np.outer(along, self._vector("by", across)))}
+
+    def rate_blocks(self) -> PointBlocks:
+        """Return dF/d(dr'/dt)."""
+        along = self._vector("by_rate", self.viscosity * self.inverse**2 * self.r)
+        return {(0, 0): named_block(self.program, f"Kv_{self.tag}", np.outer(self.r, along), symmetric=True)}
 
     def _vector(self, name: str, value: np.ndarray) -> np.ndarray:
         return self.program.vector(f"{name}_{self.tag}", value)
@@ -248,6 +274,15 @@ class BendingPoint:
         K12 = stiff * growth * eye + np.outer(self.r2, follows) - np.outer(self.rates, stiff_i) - lever * K22
         return {(0, 0): named_block(self.program, f"K11_{self.tag}", K11),
                 (0, 1): named_block(self.program, f"K12_{self.tag}", K12), (1, 0): K21, (1, 1): K22}
+
+    def rate_blocks(self) -> PointBlocks:
+        """Return dF/d(dr/dt): viscosity J' J with J = (i r2 - along)/|r1|, 1 the derivatives of D_t r2."""
+        eye = np.eye(len(self.i), dtype=int)
+        J = named_block(self.program, f"J_{self.tag}",
+                        self.inverse * (np.outer(self.i, self.r2) - self.along * eye))
+        K12 = named_block(self.program, f"Kv12_{self.tag}", self.viscosity * J.T)
+        K11 = named_block(self.program, f"Kv11_{self.tag}", K12.dot(J), symmetric=True)
+        return {(0, 0): K11, (0, 1): K12, (1, 1): self.viscosity * eye}
 
     def _number(self, name: str, value: sp.Expr) -> sp.Expr:
         return self.program.define(f"{name}_{self.tag}", value)

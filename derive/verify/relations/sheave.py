@@ -1,0 +1,190 @@
+"""Relations of the kernels of sheaves: a tangent point, its angle, and the zone of the wrap."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ...codegen.family import CouplingFamily
+from ..methods import Relation
+from ..numbers import Numbers, State
+from ..references import sheave as reference
+from .paths import entry, from_kernel, half, root, unit
+
+COORDINATES = (("phi", 2), ("c", 2), ("l", 1))
+"""Names and sizes of the coordinates of a zone; those of its rates and of its accelerations follow."""
+RATES = (("phi_rate", 2), ("c_rate", 2), ("s_rate", 2))
+SECOND_RATES = (("phi_acc", 2), ("c_acc", 2), ("s_acc", 2))
+N = sum(size for _, size in RATES)
+FRICTION = {"friction": (("angles3", 3), ("lengths2", 2)),
+            "friction_on": (("angles2", 2), ("lengths1", 1), ("span_slope", 2)),
+            "friction_off": (("angles2", 2), ("lengths1", 1), ("span_slope", 2))}
+"""Kernels of friction with their coordinates."""
+SLIDING = (("angle_rate", 1), ("spin", 1), ("flow", 1))
+
+
+def sheave(family: CouplingFamily) -> list[Relation]:
+    """Return the relations of a sheave's kernels."""
+    return [*_of_tangent_point(), *_of_angle(), *_of_energies(), *_of_inertia(), *_of_damping(),
+            *(each for kernel in FRICTION for each in _of_friction(kernel))]
+
+
+def along(path: Callable[..., Any], names: tuple[tuple[str, int], ...]) -> Callable[..., Any]:
+    """Return the path of path(k, state) along entry j of several inputs side by side."""
+    places = [(name, k) for name, size in names for k in range(size)]
+
+    def moved(k, s, t, j):
+        name, at = places[j]
+        return path(k, s | {name: s[name] + (t * unit(s[name], at) if s[name].ndim else t)})
+
+    return moved
+
+
+def of(kernel: str, output: str) -> Callable[..., Any]:
+    """Return the function of a state that is an output of a kernel."""
+    return lambda k, s: k(kernel, s)[output]
+
+
+def without(names: tuple[tuple[str, int], ...], one: str) -> tuple[tuple[str, int], ...]:
+    """Return names but for one of them."""
+    return tuple(pair for pair in names if pair[0] != one)
+
+
+def _of_tangent_point() -> list[Relation]:
+    inputs = (("x", 2), ("slope", 2))
+
+    def conditions(s):
+        return [s["x"].dot(s["x"]) ** 0.5 - s["R"].item(), s["slope"].dot(s["x"])]
+
+    def forces(k, s):
+        return k("tangent_point", s)["J"].T.dot(s["f"])
+
+    def drifting(k, s, t, j):
+        return k("tangent_point", s, x=s["x"] + t * s["x_rate"], slope=s["slope"] + t * s["slope_rate"])["phi"]
+
+    return [Relation("tangent_point", "phi", "|x| - R, r_S . x", 0, root(conditions)),
+            Relation("tangent_point", "J", "dphi by x and the slope", 1, along(of("tangent_point", "phi"), inputs), 4),
+            Relation("tangent_point", "K", "d(J' f) by x and the slope", 1, along(forces, inputs), 4),
+            Relation("tangent_point_motion", "Q_d", "d²phi/dt² at zero accelerations", 2, drifting)]
+
+
+def _of_angle() -> list[Relation]:
+    """Return those of the angle: the sine of its change has the same first and second derivatives where it is zero."""
+    def change(s: State, x: np.ndarray) -> Any:
+        return (s["x"][0] * x[1] - s["x"][1] * x[0]) / (s["x"].dot(s["x"]) * x.dot(x)) ** 0.5
+
+    def in_polar(k: Any, s: State) -> dict[str, Any]:
+        """Return the kernel's outputs on a motion in polar coordinates R, phi with the rates x_rate, x_acc of these."""
+        radius, phi = s["R"], s["phi"][0]
+        (radius_rate, phi_rate), (radius_acc, phi_acc) = s["x_rate"], s["x_acc"]
+        n, t = np.array([k.cos(phi), k.sin(phi)]), np.array([-k.sin(phi), k.cos(phi)])
+        return k("angle", s, x=radius * n, x_rate=radius_rate * n + radius * phi_rate * t,
+                 x_acc=(radius_acc - radius * phi_rate**2) * n + (radius * phi_acc + 2 * radius_rate * phi_rate) * t)
+
+    def by(output: str, name: str) -> Callable[..., Any]:
+        return from_kernel("angle", output, **{name: entry(name)})
+
+    return [
+        Relation("angle", "rate", "d/dt of the angle of x", 1, lambda k, s, t, j: change(s, s["x"] + t * s["x_rate"])),
+        Relation("angle", "rate", "that of polar coordinates", 0, root(lambda s: s["x_rate"][1]),
+                 of=lambda k, s: in_polar(k, s)["rate"]),
+        Relation("angle", "acc", "d²/dt² of the angle of x", 2,
+                 lambda k, s, t, j: change(s, s["x"] + s["x_rate"] * t + s["x_acc"] * t * t / 2)),
+        Relation("angle", "acc", "that of polar coordinates", 0, root(lambda s: s["x_acc"][1]),
+                 of=lambda k, s: in_polar(k, s)["acc"]),
+        Relation("angle", "phi_x", "d(angle) by x", 1, lambda k, s, t, j: change(s, s["x"] + t * unit(s["x"], j)), 2),
+        Relation("angle", "phi_x", "d(rate) by x'", 1, by("rate", "x_rate"), 2),
+        Relation("angle", "phi_x", "d(acc) by x''", 1, by("acc", "x_acc"), 2),
+        Relation("angle", "phi_xx", "d(phi_x) by x", 1, by("phi_x", "x"), 2),
+        Relation("angle", "rate_x", "d(rate) by x", 1, by("rate", "x"), 2),
+        Relation("angle", "acc_x", "d(acc) by x", 1, by("acc", "x"), 2),
+        Relation("angle", "acc_v", "d(acc) by x'", 1, by("acc", "x_rate"), 2)]
+
+
+def _of_energies() -> list[Relation]:
+    def total(k, s):
+        return k("energy", s)["U"] + k("weight", s)["V"]
+
+    return [Relation("energy", "U", "∫ EA strain² + EI curvature² dS/2 by quadrature", 0, root(reference.energy)),
+            Relation("weight", "V", "-rho ∫ g . r dS by quadrature", 0, root(reference.gravity)),
+            Relation("force", "f", "d(U + V) by the angles, c and l", 1, along(total, COORDINATES), 5),
+            Relation("tangent", "K", "df by the angles, c and l", 1, along(of("force", "f"), COORDINATES), 5)]
+
+
+def _of_inertia() -> list[Relation]:
+    places = [(rate, second, k) for (rate, size), (second, _) in zip(RATES, SECOND_RATES, strict=True)
+              for k in range(size)]
+
+    def energy(k, s, **changes):
+        return k("kinetic_energy", s, **changes)["T"]
+
+    def moved(s: State, t: Any) -> State:
+        """Return the zone at the time t of a motion with the state's rates and accelerations."""
+        return {"phi": s["phi"] + t * s["phi_rate"], "l": s["l"] + t * (s["s_rate"][1] - s["s_rate"][0]),
+                **{rate: s[rate] + t * s[second] for (rate, _), (second, _) in zip(RATES, SECOND_RATES, strict=True)}}
+
+    def momentum(k: Numbers, s: State, j: int) -> Any:
+        """Return dT by a rate: the difference over a unit is exact, as T is quadratic in the rates."""
+        name, _, at = places[j]
+        step = unit(s[name], at)
+        return (energy(k, s, **{name: s[name] + step}) - energy(k, s, **{name: s[name] - step})) / 2
+
+    def lagrange(k, s, t, j):
+        name, _, at = places[j]
+        displaced: State = {}  # of the centre: T does not depend on its place
+        if name == "phi_rate":
+            displaced = {"phi": s["phi"] + t * unit(s["phi"], at)}
+        if name == "s_rate":
+            displaced = {"l": s["l"] + t * (2 * at - 1)}
+        return momentum(k, s | moved(s, t), j) - energy(k, s, **displaced)
+
+    def power(k, s):
+        return k("inertia", s)["f"].dot(np.concatenate([s[name] for name, _ in RATES]))
+
+    inertia = of("inertia", "f")
+    return [Relation("kinetic_energy", "T", "rho/2 ∫ |dr/dt|² dS by quadrature over the material", 0,
+                     root(reference.kinetic_energy)),
+            Relation("inertia", "f", "d/dt dT/dv - dT/dq", 1, lagrange, N),
+            Relation("inertia", "f", "power: dT/dt", 1, lambda k, s, t, j: energy(k, s, **moved(s, t)), of=power),
+            Relation("inertia_tangent", "M", "df by accelerations", 1, along(inertia, SECOND_RATES), N),
+            Relation("inertia_tangent", "D", "df by rates", 1, along(inertia, RATES), N),
+            Relation("inertia_tangent", "K", "df by the angles and l", 1,
+                     along(inertia, without(COORDINATES, "c")), 3)]
+
+
+def _of_damping() -> list[Relation]:
+    rates, power, force = without(RATES, "c_rate"), of("dissipation", "P"), of("damping_force", "f")
+
+    def work(k, s):
+        return force(k, s).dot(np.concatenate([s[name] for name, _ in rates]))
+
+    return [Relation("dissipation", "P", "tau ∫ EA strain'² + EI curvature'² dS by quadrature, at material points", 0,
+                     root(reference.dissipation)),
+            Relation("damping_force", "f", "d(P/2) by rates of the angles and ends", 1, half(along(power, rates)), 4),
+            Relation("damping_force", "f", "power P", 0, lambda k, s, t, j: power(k, s), of=work),
+            Relation("damping_tangent", "D", "df by rates", 1, along(force, rates), 4),
+            Relation("damping_tangent", "K", "df by the angles and l", 1, along(force, without(COORDINATES, "c")), 3)]
+
+
+def _of_friction(kernel: str) -> list[Relation]:
+    def numbers(k, s):
+        return reference.friction(k, kernel, s)
+
+    def rates(s):
+        return [s[name] for name, _ in SLIDING]
+
+    def power(k, s, t, j):
+        return sum(force * rate for force, rate in zip(k(kernel, s)["F"], rates(s), strict=True))
+
+    places = FRICTION[kernel]
+    return [Relation(kernel, "numbers", "speed of sliding, P- + P+, Euler's jump of the tension", 0,
+                     lambda k, s, t, j: numbers(k, s)),
+            Relation(kernel, "F", "R f and its opposite on the angles, -f times the mean stretch on s", 0,
+                     lambda k, s, t, j: reference.friction_forces(k, kernel, s)),
+            Relation(kernel, "power", "F times the rates", 0, power),
+            Relation(f"{kernel}_tangent", "K", "dF by angles, lengths and the slope", 1, along(of(kernel, "F"), places),
+                     sum(size for _, size in places)),
+            Relation(f"{kernel}_tangent", "D", "dF by rates of the angle, of the sheave, and of s", 1,
+                     along(of(kernel, "F"), SLIDING), 3)]

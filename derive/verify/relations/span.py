@@ -1,0 +1,211 @@
+"""Relations of the kernels of spans: motions of the nodal vectors and of both ends, the law's own kernels."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from ...codegen.family import ElementFamily
+from ...laws.kernels import Kernels
+from ...spec import Element
+from ..exact import ExactProgram
+from ..methods import Relation
+from ..numbers import Numbers, State
+from ..references import element as of_element
+from ..references import law as of_law
+from ..references import span as reference
+from .paths import entry, from_kernel, half, root, unit
+
+ENDS = 2
+
+
+def span(family: ElementFamily) -> list[Relation]:
+    """Return the relations of a span's kernels."""
+    return [*_of_points(family.element), *_of_inertia(family.element), *_of_weight(family.element),
+            *_of_elasticity(family), *_of_damping(family)]
+
+
+def moved(s: State, t: Any) -> State:
+    """Return the element at the time t of a motion with the state's rates and accelerations."""
+    return {"e": s["e"] + t * s["v"], "l": s["l"] + t * (s["s_rate"][1] - s["s_rate"][0]),
+            "v": s["v"] + t * s["a"], "s_rate": s["s_rate"] + t * s["s_acc"]}
+
+
+def by_rate(path: Callable[..., Any], n: int) -> Callable[..., Any]:
+    """Return the path of path(k, state) along the rates of e (n of them) and of the ends."""
+    def along(k, s, t, j):
+        name, at = ("v", j) if j < n else ("s_rate", j - n)
+        return path(k, s | {name: s[name] + t * unit(s[name], at)})
+    return along
+
+
+def by_configuration(path: Callable[..., Any], n: int) -> Callable[..., Any]:
+    """Return the path of path(k, state) along e (n entries) and l."""
+    def along(k, s, t, j):
+        return path(k, s | ({"e": s["e"] + t * unit(s["e"], j)} if j < n else {"l": s["l"] + t}))
+    return along
+
+
+def both(kernel: str) -> Callable[..., Any]:
+    """Return the function of a state that is the forces of a kernel on e and the ends."""
+    def forces(k, s):
+        found = k(kernel, s)
+        return np.concatenate([found["f"].ravel(), found["f_s"]])
+    return forces
+
+
+def _of_points(spec: Element) -> list[Relation]:
+    def drifting(k, s, t, j):
+        now = moved(s, t)
+        return k("point", s, e=now["e"], l=now["l"], xi=(s["xi"] * s["l"] - t * s["s_rate"][0]) / now["l"])["r"]
+
+    return [Relation("point", "r", "Σ N d at 50 digits", 0,
+                     root(lambda s: reference.place(spec, s, s["xi"].item(), 0))),
+            Relation("point", "r_S", "dr/dS", 1, lambda k, s, t, j: k("point", s, xi=s["xi"] + t / s["l"])["r"]),
+            Relation("point", "velocity", "dr/dt of a point that stays in the material", 1, drifting)]
+
+
+def _of_inertia(spec: Element) -> list[Relation]:
+    n = spec.n_coordinates
+
+    def energy(k, s, **changes):
+        return k("kinetic_energy", s, **changes)["T"]
+
+    def momentum(k: Numbers, s: State, j: int) -> Any:
+        """Return dT by a rate: the difference over a unit is exact, as T is quadratic in the rates."""
+        name, at = ("v", j) if j < n else ("s_rate", j - n)
+        step = unit(s[name], at)
+        return (energy(k, s, **{name: s[name] + step}) - energy(k, s, **{name: s[name] - step})) / 2
+
+    def lagrange(k, s, t, j):
+        if j < n:
+            displaced = {"e": s["e"] + t * unit(s["e"], j)}
+        else:
+            displaced = {"l": s["l"] + t * (2 * (j - n) - 1)}
+        return momentum(k, s | moved(s, t), j) - energy(k, s, **displaced)
+
+    def on_ends(k, s, t, j):
+        return lagrange(k, s, t, n + j)
+
+    def power(k, s):
+        found = k("inertia", s)
+        return np.sum(found["f"] * s["v"]) + found["f_s"].dot(s["s_rate"])
+
+    def of_material(value: Callable[[Any, Any], Any]) -> Callable[..., Any]:
+        """Return the path along the motion of rho times the integral of value(r, velocity)."""
+        def path(k, s, t, j):
+            now = s | moved(s, t)
+            total = 0
+            for x, weight in of_element.gauss(spec.n_vectors + 1):
+                xi, part = k.array(np.array([(1 + x) / 2, weight / 2], dtype=object))
+                point = k("point", now, xi=xi)
+                total = total + part * value(point["r"], point["velocity"])
+            return s["rho"] * now["l"] * total
+        return path
+
+    def net_force(k, s):
+        positions = np.array(spec.is_position, dtype=int)
+        return positions.dot(k("inertia", s)["f"])
+
+    def at_rest(k, s):
+        return energy(k, s, s_rate=0 * s["s_rate"])
+
+    def of_mass(s):
+        return np.sum(s["v"] * of_element.mass(spec, s).dot(s["v"])) / 2
+
+    return [
+        Relation("kinetic_energy", "T", "rho/2 ∫ |dr/dt|² dS by quadrature over the material", 0,
+                 root(reference.kinetic_energy, spec)),
+        Relation("kinetic_energy", "T", "v' (m ⊗ I) v/2 where the ends are at rest", 0, root(of_mass), of=at_rest),
+        Relation("inertia", "f", "d/dt dT/dv - dT/de", 1, lagrange, n),
+        Relation("inertia", "f_s", "d/dt dT/ds' - dT/ds", 1, on_ends, ENDS),
+        Relation("inertia", "f", "net force: rate of the momentum of the material", 1,
+                 of_material(lambda r, velocity: velocity), of=net_force),
+        Relation("inertia", "f", "power: dT/dt", 1, lambda k, s, t, j: energy(k, s, **moved(s, t)), of=power),
+        *_of_inertia_tangent(spec)]
+
+
+def _of_inertia_tangent(spec: Element) -> list[Relation]:
+    n = spec.n_coordinates
+    every = n + ENDS
+
+    def by_acceleration(k, s, t, j):
+        name, at = ("a", j) if j < n else ("s_acc", j - n)
+        return both("inertia")(k, s | {name: s[name] + t * unit(s[name], at)})
+
+    def mass_block(k, s):
+        return k("inertia_tangent", s)["M"][:n, :n]
+
+    return [
+        Relation("inertia_tangent", "M", "df by accelerations", 1, by_acceleration, every),
+        Relation("inertia_tangent", "M", "m ⊗ I over e", 0,
+                 root(lambda s: np.kron(of_element.mass(spec, s), np.eye(spec.dim, dtype=int))), of=mass_block),
+        Relation("inertia_tangent", "D", "df by rates", 1, by_rate(both("inertia"), n), every),
+        Relation("inertia_tangent", "K", "df by e and l", 1, by_configuration(both("inertia"), n), n + 1)]
+
+
+def _of_weight(spec: Element) -> list[Relation]:
+    return [Relation("weight", "V", "-rho ∫ g . r dS by quadrature over the material", 0,
+                     root(reference.gravity, spec)),
+            *_of_energy("weight", "V", "weight", spec.n_coordinates),
+            Relation("weight", "K_l", "df/dl", 1, _by_length("weight", "f")),
+            Relation("weight", "K_ll", "df_l/dl", 1, _by_length("weight", "f_l"))]
+
+
+def _of_energy(kernel: str, output: str, force: str, n: int) -> list[Relation]:
+    """Return the relations of the first derivatives of an energy."""
+    return [Relation(force, "f", f"d{output}/de", 1, from_kernel(kernel, output, e=entry("e")), n),
+            Relation(force, "f_l", f"d{output}/dl", 1, _by_length(kernel, output))]
+
+
+def _by_length(kernel: str, output: str) -> Callable[..., Any]:
+    return from_kernel(kernel, output, l=lambda s, j: 1)
+
+
+def _of_elasticity(family: ElementFamily) -> list[Relation]:
+    spec, law = family.element, family.law
+    assert law is not None
+    n = spec.n_coordinates
+
+    def own(kernel: str, output: str) -> Callable[..., Any]:
+        """Return the output of the kernel of the element's own law."""
+        return root(lambda s: _law_kernel(spec, law, kernel)([s["l"], s["e"], s["A"]])[output])
+
+    return [
+        Relation("energy", "U", "the law's integral by quadrature", 0, root(of_law.energy, spec, law)),
+        Relation("energy", "U", "the element's own law", 0, own("energy", "U")),
+        *_of_energy("energy", "U", "elastic_force", n),
+        Relation("elastic_force", "f", "the element's own law", 0, own("elastic_force", "f")),
+        Relation("elastic_tangent", "K", "df/de", 1, from_kernel("elastic_force", "f", e=entry("e")), n),
+        Relation("elastic_tangent", "K_l", "df/dl", 1, _by_length("elastic_force", "f")),
+        Relation("elastic_tangent", "K_l", "df_l/de", 1, from_kernel("elastic_force", "f_l", e=entry("e")), n),
+        Relation("elastic_tangent", "K_ll", "df_l/dl", 1, _by_length("elastic_force", "f_l"))]
+
+
+@cache
+def _law_kernel(spec: Element, law: str, kernel: str) -> ExactProgram:
+    return ExactProgram(getattr(Kernels(spec, law), kernel)().prune())
+
+
+def _of_damping(family: ElementFamily) -> list[Relation]:
+    spec, n = family.element, family.element.n_coordinates
+
+    def power(k, s):
+        return k("dissipation", s)["P"]
+
+    def work(k, s):
+        found = k("damping_force", s)
+        return np.sum(found["f"] * s["v"]) + found["f_s"].dot(s["s_rate"])
+
+    along_rates = half(by_rate(power, n))
+    return [
+        Relation("dissipation", "P", "the law's integral by quadrature, rates at material points", 0,
+                 root(reference.dissipation, spec, family.law)),
+        Relation("damping_force", "f", "d(P/2)/dv", 1, along_rates, n),
+        Relation("damping_force", "f_s", "d(P/2)/ds'", 1, lambda k, s, t, j: along_rates(k, s, t, n + j), ENDS),
+        Relation("damping_force", "f", "power P", 0, lambda k, s, t, j: power(k, s), of=work),
+        Relation("damping_tangent", "D", "df by rates", 1, by_rate(both("damping_force"), n), n + ENDS),
+        Relation("damping_tangent", "K", "df by e and l", 1, by_configuration(both("damping_force"), n), n + 1)]

@@ -1,0 +1,30 @@
+"""Samples of a rope on a sheave."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...codegen.family import CouplingFamily
+from ..numbers import Numbers, State
+
+
+def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) -> State:
+    """Return a tangent point not far from the groove, and a zone of the wrap, stretched and moving, after a turn."""
+    vectors = ("slope", "slope_rate", "g", "c", "c_rate", "c_acc", "phi_rate", "phi_acc", "s_rate", "s_acc", "f")
+    found: State = {name: random.normal(size=2) for name in vectors}
+    # off the axes, rates both along and across x, and none that cancel: entries that nearly vanish have few digits
+    turn, R = np.pi / 4 * random.choice([1, 3, 5, 7]) + random.uniform(-0.4, 0.4), random.uniform(0.6, 0.9)
+    polar = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
+    found |= {"x": (R + 0.1 * random.normal()) * polar[0],
+              "x_rate": random.uniform(0.5, 1.5, 2) @ polar, "x_acc": random.uniform(0.5, 1.5, 2) * [1, -1] @ polar}
+    sense = float(random.choice([-1, 1]))
+    phi_a, angle = 2 * np.pi + turn, sense * random.uniform(1.0, 2.5)
+    angles, lengths = phi_a + angle * np.array([0.0, 0.4, 1.0]), abs(angle) * R * random.uniform(0.8, 0.9)
+    found |= {"angles3": angles, "angles2": angles[[0, 2]], "lengths2": lengths * np.array([0.41, 0.58]),
+              "lengths1": np.array([lengths]), "span_slope": random.uniform(1.1, 1.3) * polar[1],
+              "angle_rate": np.float64(random.uniform(0.02, 0.1)), "spin": np.float64(random.uniform(0.2, 0.4)),
+              "flow": np.float64(random.choice([-1, 1]) * random.uniform(0.05, 0.1)), "mu": np.float64(0.3),
+              "v0": np.float64(0.2)}
+    return found | {"R": np.float64(R), "phi": np.array([phi_a, phi_a + angle]), "sense": np.float64(sense),
+                    "l": np.float64(abs(angle) * R * random.uniform(0.8, 0.9)), "A": random.uniform(2, 5, 2),
+                    "rho": np.float64(1.3), "tau": np.float64(0.37)}
