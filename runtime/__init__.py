@@ -11,6 +11,7 @@ from .errors import EquilibriumError as EquilibriumError
 from .errors import FunicularError as FunicularError
 from .errors import FunicularWarning as FunicularWarning
 from .errors import ResultFileError as ResultFileError
+from .errors import RopeLeftError as RopeLeftError
 from .errors import SceneError as SceneError
 from .errors import UnknownResultError as UnknownResultError
 from .parts.end_stops import Buffer as Buffer
@@ -22,6 +23,8 @@ from .parts.friction import Friction as Friction
 from .parts.listed import *  # noqa: F403  the kinds of parts
 from .parts.material import Material as Material
 from .parts.polar import Polar as Polar
+from .parts.rope_items import Anchor as Anchor
+from .parts.rope_items import Sheave as Sheave
 from .parts.section import Circle as Circle
 from .parts.section import GeneralSection as GeneralSection
 from .parts.section import Rectangle as Rectangle

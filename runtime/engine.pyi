@@ -96,6 +96,7 @@ class Engine:
     n_rows: int
     n_steps: int
     statistics: dict[str, Any]
+    left: tuple[int, int]
     stopped_slide: int
     stopped_s: float
     time: float

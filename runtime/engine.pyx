@@ -105,7 +105,7 @@ def outputs_by_name(str kind, numbers):
 
 STATUS = {FU_DONE: "completed", FU_END_OF_CABLE: "end_of_cable", FU_NO_CONVERGENCE: "no_convergence",
           FU_SINGULAR: "singular", FU_EVENT: "event",
-          FU_UNSTABLE: "unstable"}
+          FU_UNSTABLE: "unstable", FU_ROPE_LEFT: "rope_left"}
 CAUSES = {FU_NO_FAILURE: None, FU_ITERATION: "iteration", FU_MATRIX: "matrix", FU_ERROR: "error",
           FU_LOST_RIDER: "lost_rider", FU_NOT_FINITE: "not_finite", FU_SELF_LOCKING: "self_locking",
           FU_NOT_KNOWN: "not_known"}

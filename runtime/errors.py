@@ -64,6 +64,10 @@ class _StoppedError(FunicularError):
         self.run = run
 
 
+class RopeLeftError(_StoppedError):
+    """A rope left a sheave, or a span between two sheaves vanished; ``run`` holds the results up to then."""
+
+
 class EndOfCableError(_StoppedError):
     """A slide reached an end of its cable; ``run`` holds the results up to then."""
 

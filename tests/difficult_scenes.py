@@ -1,7 +1,7 @@
 """Scenes that contain all terms of a Newton matrix: rotating bodies, joints, friction, modes."""
 
 import numpy as np
-from funicular import Buffer, Friction, Harmonic, Material, Ramp, Rectangle, Scene
+from funicular import Anchor, Buffer, Circle, Friction, Harmonic, Material, Ramp, Rectangle, Scene, Sheave
 
 
 def rider() -> Scene:
@@ -226,5 +226,31 @@ def modal_in_planar_joints() -> Scene:
     return scene
 
 
-SCENES = {f.__name__: f for f in (rider, loaded, planar, frame, star, jointed, jointed_plane, tied, modal,
+def reeved(*, held: str | None = None) -> Scene:
+    """Return a damped rope over a sheave that turns, with friction, a held one with friction, and one without, between
+    moving bodies.
+
+    held: a body that holds the second sheave, then without friction, in the place of the ground.
+    """
+    scene = Scene(gravity=(0.5, -9.81, 0))
+    scene.rigid_body("A", mass=4.4, inertia=(1, 1, 0.04), position=(-1.8, -1.2, 0), velocity=(0.1, 0.3, 0),
+                     angular_velocity=(0, 0, 2))
+    scene.rigid_body("B", mass=4.0, inertia=(1, 1, 0.05), position=(1.9, -1.0, 0), velocity=(0.3, -0.2, 0),
+                     angular_velocity=(0, 0, -3))
+    low: dict = {"at": (-0.5, -0.8, 0), "friction": Friction(coefficient=0.2, velocity=0.5), "zones": 2}
+    if held is not None:
+        scene.rigid_body(held, mass=3.0, inertia=(1, 1, 0.06), position=(-0.6, -0.9, 0), velocity=(0.1, 0.1, 0),
+                         angular_velocity=(0, 0, 1))
+        low = {"at": (held, (0.1, 0.1, 0))}
+    scene.rope("hoist", route=[
+        Anchor("A", at=(0.05, 0.1, 0)),
+        Sheave("turning", at=(-1.5, 0, 0), radius=0.25, side="right", inertia=0.02, friction=0.3, zones=2),
+        Sheave("low", radius=0.2, side="left", **low),
+        Sheave("smooth", at=(0.9, 0.2, 0), radius=0.3, side="right"), Anchor("B", at=(0, 0.1, 0))],
+        section=Circle(radius=1e-3), elements=(2, 1, 1, 2), tension=42.0,
+        material=Material(youngs_modulus=6e8, poisson_ratio=0.3, density=28000, damping_time=1e-4))
+    return scene
+
+
+SCENES = {f.__name__: f for f in (reeved, rider, loaded, planar, frame, star, jointed, jointed_plane, tied, modal,
                                  modal_in_the_plane, modal_in_joints, modal_in_planar_joints, resisted)}

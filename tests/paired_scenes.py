@@ -1,5 +1,5 @@
-"""Small scenes from one level of each of ten factors: a cable, its law, shape, section and support, its rider, a joint,
-a load, a fluid, a contact, an event.
+"""Small scenes from one level of each of eleven factors: a cable, its law, shape, section and support, its rider, a
+joint, a rope, a load, a fluid, a contact, an event.
 
 Levels come from the lists of the project. A kind in a list without an entry in a table here fails
 `test_pairs_of_features.py`; with an entry, it is combined with everything else.
@@ -193,6 +193,26 @@ JOINED: dict[str, Callable[[Site], object]] = {
     **{f"driven {kind}": partial(_joint, kind=kind, driven=True) for kind in DRIVEN}}
 
 
+# ---- ropes
+
+def _rope(on: Site, carried: bool = False, **given) -> None:
+    """Hang a body on a rope from the ground over a sheave beside the cable, which a held body may carry."""
+    x, y, _ = on.below(1.0, 0)
+    on.body("load", (x + 1.6, y - 1.0, 0))
+    at = (on.held("post", (x + 1.4, y, 0)), (0, 0.05, 0)) if carried else (x + 1.4, y, 0)
+    on.scene.rope("hoist", route=[fu.Anchor(at=(x + 0.8, y - 0.8, 0)), fu.Sheave("top", at=at, radius=0.2, **given),
+                                  fu.Anchor("load")], section=fu.Circle(radius=0.002), elements=2, tension=0.981,
+                  material=fu.Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1000, damping_time=1e-4))
+
+
+ROPES: dict[str, Callable[[Site], object]] = {
+    "none": lambda on: None,
+    "rope": _rope,
+    "rope on a rough sheave": partial(_rope, friction=0.2, zones=3),
+    "rope on a sheave that turns": partial(_rope, friction=0.2, zones=2, inertia=1e-3),
+    "rope over a body": partial(_rope, carried=True)}
+
+
 # ---- loads and springs
 
 def _sprung(on: Site, **given) -> None:
@@ -321,12 +341,12 @@ FACTORS: dict[str, list[str]] = {
     "element": ["cable12", *sorted(built_in().keys() - {"cable12"})],
     "law": ["default", *dict.fromkeys(law for of in laws().values() for law in of)],
     "drawn": [*DRAWN], "section": [*SECTIONS], "damping": [*DAMPING], "support": [*SUPPORTS], "end": [*ENDS],
-    "rider": [*RIDERS], "joint": [*JOINED], "load": [*LOADS], "fluid": [*FLUIDS], "touch": [*TOUCHING],
-    "event": [*EVENTS]}
+    "rider": [*RIDERS], "joint": [*JOINED], "rope": [*ROPES], "load": [*LOADS], "fluid": [*FLUIDS],
+    "touch": [*TOUCHING], "event": [*EVENTS]}
 """By factor its levels, the first of which is neutral."""
 
-ADDED = {"support": SUPPORTS, "end": ENDS, "rider": RIDERS, "joint": JOINED, "load": LOADS, "fluid": FLUIDS,
-         "touch": TOUCHING, "event": EVENTS}
+ADDED = {"support": SUPPORTS, "end": ENDS, "rider": RIDERS, "joint": JOINED, "rope": ROPES, "load": LOADS,
+         "fluid": FLUIDS, "touch": TOUCHING, "event": EVENTS}
 
 
 def build(row: dict[str, str], folder: Path) -> fu.Scene:

@@ -25,3 +25,44 @@ def spatial() -> fu.Scene:
     scene.force("boom", s=3.0, value=(0, 300, 0), scale=fu.Harmonic(amplitude=1, frequency=1), name="wind")
     scene.distributed_force("rope", value=(0, 8, 0), name="side")
     return scene
+
+
+STEEL = fu.Material(youngs_modulus=6e9, density=7000, poisson_ratio=0.3)
+
+
+def hoist(held: bool = False) -> fu.Scene:
+    """Return two weights on a rope over a sheave that turns; held: its ends at the ground instead, frictionless."""
+    scene = fu.Scene(gravity=(0, -9.81, 0))
+    ends = (-0.25, -2.5, 0), (1.9, -2.3348, 0)
+    for name, mass, place in () if held else (("C", 4.4, ends[0]), ("L", 4.0, ends[1])):
+        scene.rigid_body(name, mass=mass, inertia=(0.1, 0.1, 0.1), position=place)
+    anchors = [fu.Anchor(at=place) for place in ends] if held else [fu.Anchor("C"), fu.Anchor("L")]
+    turning = {} if held else {"inertia": 0.01, "friction": 0.2}
+    top = fu.Sheave("top", at=(0, 0, 0), radius=0.25, side="right", **turning)
+    scene.rope("rope", route=[anchors[0], top, anchors[1]], section=fu.Circle(radius=2e-3), material=STEEL, elements=3,
+               tension=42.0)
+    return scene
+
+
+def tackle() -> fu.Scene:
+    """Return a load in a block of two falls, and a counterweight, whose attachments are beside their mass centres."""
+    scene = fu.Scene(gravity=(0, -9.81, 0))
+    scene.rigid_body("hook", mass=40, inertia=(0.3, 0.3, 0.3), position=(0, -3.1, 0))
+    scene.rigid_body("W", mass=20.5, inertia=(0.1, 0.1, 0.1), position=(0.6, -2, 0))
+    scene.rope("line", route=[fu.Anchor(at=(-0.2, 0, 0)),
+                              fu.Sheave("block", at=("hook", (0, 0.1, 0)), radius=0.2, side="left"),
+                              fu.Sheave("top", at=(0.4, 0, 0), radius=0.2, side="right", inertia=0.02, friction=0.1),
+                              fu.Anchor("W", (0, 0.15, 0))],
+               section=fu.Circle(radius=2e-3), material=STEEL, elements=2, tension=200.0)
+    return scene
+
+
+def belt() -> fu.Scene:
+    """Return a flat belt on two pulleys."""
+    scene = fu.Scene(gravity=(0, 0, 0))
+    pulley = {"radius": 0.1, "side": "left", "inertia": 0.25, "friction": fu.Friction(coefficient=0.5)}
+    scene.rope("belt", closed=True, route=[fu.Sheave("driver", at=(0, 0, 0), **pulley),
+                                           fu.Sheave("driven", at=(0.314159, 0, 0), **pulley)],
+               section=fu.Rectangle(height=2e-3, width=0.05), elements=1, length=1.1938052,
+               material=fu.Material(youngs_modulus=7.6e7, density=8724.21, poisson_ratio=0.3))
+    return scene

@@ -20,6 +20,7 @@ from ..parts.load import Load
 from ..parts.part import Part
 from ..parts.plane import called
 from ..parts.point_force import PointForce
+from ..parts.rope import Rope
 from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
 from ..parts.support import Support, Tie
@@ -30,6 +31,7 @@ from .crossing_placement import placed_crossing
 from .drag_placement import placed_drag, placed_fluid
 from .joint_placement import placed_joint
 from .placement import placed_between, placed_event, placed_load, placed_point_force, placed_support, placed_tie
+from .rope_placement import check_beside_ropes, placed_rope
 from .slide_placement import placed_slide
 from .whole_scene import check_plane
 
@@ -48,6 +50,7 @@ def placed_cable(scene: SceneData, cable: Cable) -> Cable:
                 cable.where, f'lies in {called(cable.plane)}, with the height at {show(cable.normal)} x tangent, '
                 f'but cable "{other.name}" in {called(other.plane)}, with that at {show(other.normal)} x tangent',
                 "draw both in one plane, and give up, on the same side of it")
+    check_beside_ropes(scene, cable)
     others = scene.copied()
     others.put(cable)
     check_plane(others)
@@ -63,9 +66,9 @@ def _lie_in_one_plane(cable: Cable, other: Cable) -> bool:
 
 
 _CHECKS: dict[type[Part], Callable[[SceneData, Any], Part]] = {
-    Cable: placed_cable, Support: placed_support, Tie: placed_tie, Joint: placed_joint, Slide: placed_slide,
-    Load: placed_load, PointForce: placed_point_force, Event: placed_event, Fluid: placed_fluid, Drag: placed_drag,
-    Crossing: placed_crossing, Surface: placed_surface, Contact: placed_contact}
+    Cable: placed_cable, Support: placed_support, Tie: placed_tie, Rope: placed_rope, Joint: placed_joint,
+    Slide: placed_slide, Load: placed_load, PointForce: placed_point_force, Event: placed_event, Fluid: placed_fluid,
+    Drag: placed_drag, Crossing: placed_crossing, Surface: placed_surface, Contact: placed_contact}
 
 
 def check_of(part: Part) -> Callable[[SceneData, Any], Any]:

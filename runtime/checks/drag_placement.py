@@ -190,7 +190,7 @@ def _check_foil(scene: SceneData, drag: Drag) -> None:
                          "leave it out, and place the drag where the moment is zero")
     if drag.area == 0:
         raise SceneError(drag.where, "has lift without an area", "give area, in m²")
-    if drag.span is None and not any(cable.dim == 2 for cable in scene.cables.values()):
+    if drag.span is None and scene.dim == 3:
         raise SceneError(drag.where, "span is missing, across which lift acts", "give span, a direction in body axes")
     span, chord = drag.foil_axes
     if abs(span @ chord) > 1e-6:

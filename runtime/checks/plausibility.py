@@ -6,7 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ..parts.cable import Cable
 from ..parts.material import Material
+from ..parts.rope import Rope
 from ..parts.scene_data import SceneData
 from ..parts.solids import Solid
 from ..parts.validation import show
@@ -50,8 +52,9 @@ def _gravity(scene: SceneData) -> Iterator[str]:
 
 
 def _materials(scene: SceneData) -> Iterator[str]:
-    for cable in scene.cables.values():
-        yield from (f"{cable.where}: {note}" for note in _material(cable.material))
+    parts: list[Cable | Rope] = [*scene.cables.values(), *scene.ropes.values()]
+    for part in parts:
+        yield from (f"{part.where}: {note}" for note in _material(part.material))
 
 
 def _material(material: Material) -> Iterator[str]:

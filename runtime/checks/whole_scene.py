@@ -8,10 +8,12 @@ import numpy as np
 
 from ..errors import SceneError
 from ..kernels.elements import built_in
+from ..parts.cable import Cable
 from ..parts.in_plane import turned_alone
 from ..parts.modal_body import ModalBody
 from ..parts.part import Part
 from ..parts.plane import aligned, called
+from ..parts.rope import Rope
 from ..parts.scene_data import SceneData
 from ..parts.signal import Signal, signals_of
 from ..parts.validation import LENGTH_TOLERANCE, show
@@ -20,14 +22,18 @@ from .slide_placement import check_on_cable
 
 
 def check_plane(scene: SceneData, part: Part | None = None) -> None:
-    """Raise SceneError where a part, by default any part of the scene, leaves the plane of planar cables."""
-    planar = next((cable for cable in scene.cables.values() if cable.dim == 2), None)
+    """Raise SceneError where a part, by default any part of the scene, leaves the plane of planar cables or ropes."""
+    lines: list[Cable | Rope] = [*scene.cables.values(), *scene.ropes.values()]
+    planar = next((each for each in lines if each.dim == 2), None)
     if planar is None:
         return
-    spatial = ", ".join(f'"{name}"' for name, kind in built_in().items() if kind.dim == 3)
-    remedy = f"let it stay in the plane, or take spatial elements: {spatial}"
-    own = planar.plane
-    plane = f'leaves {called(own)} of the {planar.element} cable "{planar.name}"'
+    own, remedy = scene.plane, "let it stay in the plane"
+    if own is not None and isinstance(part, Rope):
+        return  # `placed_rope` refuses it
+    if not scene.ropes:
+        spatial = ", ".join(f'"{name}"' for name, kind in built_in().items() if kind.dim == 3)
+        remedy += f", or take spatial elements: {spatial}"
+    plane = f'leaves {called(own)} of the {planar.element} {planar.kind} "{planar.name}"'
     gravity = scene.gravity if own is None else aligned(own.into(np.array(scene.gravity)))
     if part is None and gravity[2]:
         raise SceneError("scene", f"gravity {show(scene.gravity, 'm/s²')} {plane}", remedy)
@@ -39,7 +45,7 @@ def check_plane(scene: SceneData, part: Part | None = None) -> None:
 
 def check_scene(scene: SceneData) -> None:
     """Raise SceneError where the parts of a scene are inconsistent."""
-    if not scene.cables and not scene.bodies:
+    if not scene.cables and not scene.bodies and not scene.ropes:
         raise SceneError("scene", "is empty: there is nothing to simulate", "add a cable or a rigid body")
     check_plane(scene)
     for joint in scene.joints.values():
@@ -79,6 +85,13 @@ def check_comes_to_rest(scene: SceneData) -> None:
         if slide.friction is not None and not slide.friction.sticks and slide.friction.sliding > 0:
             raise SceneError(slide.where, "its friction is regularised, so that a rider creeps and never comes to rest",
                              'take model="stick", which holds it, or leave friction out')
+
+
+    for rope in scene.ropes.values():
+        for sheave in rope.sheaves:
+            if sheave.coefficient > 0:
+                raise SceneError(f"{rope.where}: {sheave.where}", "its friction is regularised, so that the rope "
+                                 "creeps and never comes to rest", "leave friction out")
 
 
 def _given(part: Part) -> Iterator[tuple[str, Signal]]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TextIO
 import typer
 
 from ..base.written_files import write_text
-from ..errors import ConvergenceError, EndOfCableError, FunicularError, FunicularWarning
+from ..errors import ConvergenceError, EndOfCableError, FunicularError, FunicularWarning, RopeLeftError
 from ..scene.file import bundled_scenes, load_scene
 from .start import EXIT_INTERRUPTED, INTERRUPTED, raise_at_ctrl_c
 
@@ -126,7 +126,7 @@ def run(
         result = described.run(duration, tol=tol, absolute_tol=absolute_tol, quantities=_listed(quantities),
                                step=step, integrator=integrator, spectral_radius=spectral_radius, model=model,
                                save=path if named is None else output, resume=resume, estimate=estimate or None)
-    except (EndOfCableError, ConvergenceError) as error:
+    except (EndOfCableError, RopeLeftError, ConvergenceError) as error:
         result, stopped = error.run, error
     _report(result, path, pictures, forces)
     if stopped is not None:

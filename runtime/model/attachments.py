@@ -35,6 +35,8 @@ SECTIONS = {2: np.array([[0.0, 1.0], [-1.0, 0.0]]), 3: np.eye(3)[:, [2, 0, 1]]}
 class AttachmentModel:
     """fu_attachment of the engine; cable, body, slide: -1 where it is on none; mass and length: its scales, kg and m.
 
+    node: first dof of a node of a rope, -1 where it is on none.
+
     modal: of a node of a modal body, its undeformed place, and its displacements and rotations by modes.
     """
 
@@ -42,6 +44,7 @@ class AttachmentModel:
     body: int = -1
     element: int = 0
     slide: int = -1
+    node: int = -1
     u: tuple[float, ...] = (0.0,) * 3
     N: np.ndarray = field(default_factory=lambda: np.zeros(0))
     S: np.ndarray = field(default_factory=lambda: np.zeros(0))
@@ -57,12 +60,12 @@ class AttachmentModel:
 class ModelBuilder:
     """Makes attachments, hulls of cables and signals for the couplings of a model.
 
-    cables, bodies: the models, in the scene's order.
+    cables, ropes, bodies: the models, in the scene's order.
     """
 
-    def __init__(self, scene: SceneData, cables: list[Any], bodies: list[Any]):
+    def __init__(self, scene: SceneData, cables: list[Any], ropes: list[Any], bodies: list[Any]):
         self.scene: SceneData = scene
-        self.cables, self.bodies = cables, bodies
+        self.cables, self.ropes, self.bodies = cables, ropes, bodies
         self.cable_index = {name: k for k, name in enumerate(scene.cables)}
         self.body_index = {name: k for k, name in enumerate(scene.bodies)}
         self.signals = Signals()

@@ -43,9 +43,12 @@ class _Border:
         self.group_of_node: dict[int, int] = {}
         self._nodes()
         self.bodies = []
+        self._ropes()
         ends = [*(body.dof for body in model.bodies), model.n_dof]
         for first, end in pairwise(ends):
-            self.bodies.append(self.graph.group(model.unknown_of_dof[first:end] - model.n_band))
+            unknowns = model.unknown_of_dof[first:end]
+            self.bodies.append(self.graph.group(unknowns - model.n_band))
+            self.group_of_node.update(dict.fromkeys(unknowns.tolist(), self.bodies[-1]))
         self.cables = [self._place(cable.coordinates) for cable in model.cables]
         self.slides: list[int] = []
         for coupling in model.couplings:
@@ -75,7 +78,24 @@ class _Border:
             place = self._of_unknowns(at)
             self._couple(place.groups, place)
 
-    def _unknowns(self, dofs: slice) -> np.ndarray:
+    def _ropes(self) -> None:
+        """Add the unknowns of ropes: each node and each material coordinate is a group."""
+        for rope in self.model.ropes:
+            for span in rope.spans:
+                nodes = [span.node(k) for k in range(span.n_elements + 1)]
+                for dofs in (*nodes, *(slice(s, s + 1) for s in span.s)):
+                    unknowns = self._unknowns(dofs)
+                    self._group(unknowns)
+            for sheave in rope.sheaves:
+                self._group(self._unknowns(np.r_[sheave.s[1:-1], [sheave.turn] * (sheave.turn >= 0)].astype(int)))
+
+    def _group(self, unknowns: np.ndarray) -> None:
+        """Add a group of unknowns, if there are any."""
+        if len(unknowns):
+            group = self.graph.group(unknowns - self.model.n_band)
+            self.group_of_node.update(dict.fromkeys(unknowns.tolist(), group))
+
+    def _unknowns(self, dofs: slice | np.ndarray) -> np.ndarray:
         """Return the unknowns on which these dofs depend."""
         model = self.model
         unknown = model.unknown_of_dof[dofs]
@@ -103,19 +123,23 @@ class _Border:
         first, count = ((coupling.unknown, coupling.n_coordinates + coupling.n_forces) if newton
                         else (coupling.multiplier, coupling.n_multipliers))
         ties = newton and bool(coupling.ends) and coupling.ties_ends(self.model.dim)
-        if not count and not ties:
+        adjacent = [self._of_unknowns(self._unknowns(dofs)) for dofs in coupling.adjacent]
+        for place in adjacent:
+            self._couple(place.groups, place)
+        if not count and not ties and not adjacent:
             return
-        places = [self._end(end) for end in coupling.ends]
+        places = [*(self._end(end) for end in coupling.ends), *adjacent]
         if count:
             first += self.model.n_border_dof
             self._add_internal(coupling, range(first, first + count), places)
-        if ties:
+        if ties or adjacent:
             for one, other in permutations([*places, *(self.cables[k] for k in coupling.along)], 2):
                 self._couple(one.groups, other)
 
     def _add_internal(self, coupling: CouplingModel, unknowns: range, places: list[_Place]) -> None:
         """Add the internal unknowns of a coupling, adjacent to all its places."""
         bodies = {body for end in coupling.ends for body in self._bodies_of(end)}
+        bodies |= {group for dofs in coupling.adjacent for group in self._of_unknowns(self._unknowns(dofs)).groups}
         internal = self.graph.group(unknowns, None if coupling.follows_law else bodies)
         if isinstance(coupling, SlideModel):
             self.slides.append(internal)
@@ -124,6 +148,8 @@ class _Border:
 
     def _bodies_of(self, end: AttachmentModel) -> set[int]:
         """Return the groups of the body of an attachment, on a slide those of the rider."""
+        if end.node >= 0:
+            return self._end(end).groups
         body = self.model.slides[end.slide].rider.body if end.slide >= 0 else end.body
         return {self.bodies[body]} if body >= 0 else set()
 
@@ -135,6 +161,8 @@ class _Border:
             return along | (_Place({self.slides[end.slide]}) if self.system == NEWTON else self._end(slide.rider))
         if end.body >= 0:
             return _Place({self.bodies[end.body]})
+        if end.node >= 0:
+            return self._of_unknowns(self._unknowns(slice(end.node, end.node + self.model.dim)))
         if end.cable < 0:
             return _Place()
         cable = self.model.cables[end.cable]

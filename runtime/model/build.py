@@ -14,6 +14,7 @@ from .coupling import number
 from .cutting import attached
 from .kinds import COUPLINGS
 from .model import CableModel, Model, MotionModel
+from .ropes import rope_models, turn_motions
 from .unknowns import Node, supports
 
 
@@ -30,29 +31,37 @@ def build(scene: SceneData) -> Model:
     for cable in drawn:
         cables.append(cable_model(cable, n_flexible))
         n_flexible = cables[-1].coordinates.stop
-    bodies = body_models(scene, n_flexible)
+    ropes = rope_models(scene, n_flexible)
+    bodies = body_models(scene, ropes[-1].coordinates.stop if ropes else n_flexible)
     nodal = [cable.nodal_vectors[..., :dim] for cable in drawn]
     level_tied_slopes(scene, nodal)
     nodes = {model.name: _nodes(model, scene.cables[model.name].where, vectors)
              for model, vectors in zip(cables, nodal, strict=True)}
-    builder = ModelBuilder(scene, cables, bodies)
+    builder = ModelBuilder(scene, cables, ropes, bodies)
     reduction = supports(scene, nodes, builder.signals.add).reduce(n_flexible, _elements(nodes), attached(scene))
     couplings = [model for kind in COUPLINGS for model in kind.models(builder)]
     n_extra, n_multipliers = number(couplings)
     n_of_bodies = sum(dofs_of(body, dim) for body in bodies)
+    is_free = _joined(*(~rope.fixed for rope in ropes), np.ones(n_of_bodies)).astype(bool)
+    beside_cables = np.where(is_free, reduction.n_unknowns + np.cumsum(is_free) - 1, -1)
     numbering = reduction.numbering
     model = Model(
-        dim, cables, bodies, couplings, builder.signals,
-        [MotionModel(dof, p.signal, p.base, p.linear, p.cosine, p.sine) for dof, p in reduction.prescribed],
-        q=_joined(*(vectors.ravel() for vectors in nodal), *(configuration_of(body, dim) for body in described)),
-        v=_joined(cable_rates(scene, reduction), *(velocity_of(body, dim) for body in described)),
-        weight=_joined(*map(cable_weights, drawn), *(body_weights(body, dim) for body in described)),
+        dim, cables, ropes, bodies, couplings, builder.signals,
+        [*(MotionModel(dof, p.signal, p.base, p.linear, p.cosine, p.sine) for dof, p in reduction.prescribed),
+         *(MotionModel(dof, signal, 0.0, 1.0, 0.0, 0.0) for dof, signal in turn_motions(ropes, builder.signals))],
+        q=_joined(*(vectors.ravel() for vectors in nodal), *(rope.q for rope in ropes),
+                  *(configuration_of(body, dim) for body in described)),
+        v=_joined(cable_rates(scene, reduction), *(0 * rope.q for rope in ropes),
+                  *(velocity_of(body, dim) for body in described)),
+        weight=_joined(*map(cable_weights, drawn), *(rope.weight for rope in ropes),
+                       *(body_weights(body, dim) for body in described)),
         gravity=_joined(*(cable_gravity(model, cable, gravity) for model, cable in zip(cables, drawn, strict=True)),
+                        *(0 * rope.q for rope in ropes),
                         *(body_gravity(body, gravity) for body in bodies)),
-        unknown_of_dof=np.append(reduction.unknown_of_dof, reduction.n_unknowns + np.arange(n_of_bodies)).astype(int),
+        unknown_of_dof=np.append(reduction.unknown_of_dof, beside_cables).astype(int),
         combinations=reduction.combinations,
         n_band=numbering.n_band,
-        n_border_dof=reduction.n_unknowns - numbering.n_band + n_of_bodies,
+        n_border_dof=reduction.n_unknowns - numbering.n_band + int(is_free.sum()),
         n_extra=n_extra,
         n_multipliers=n_multipliers,
         width=numbering.width,

@@ -65,6 +65,11 @@ class CouplingModel:
         """Return the numbers of the cables on which its places move."""
         return ()
 
+    @property
+    def adjacent(self) -> Sequence[np.ndarray]:
+        """Return arrays of dofs beside those of cables that its mass and its tangent couple to each other."""
+        return ()
+
     def ties_ends(self, dim: int) -> bool:
         """Return whether its tangent has entries between the attachments, beside those of its internal unknowns."""
         return not self.n_forces

@@ -17,6 +17,7 @@ from ..parts.scene_data import SceneData
 from ..parts.validation import LENGTH_TOLERANCE, show, shown
 from .bodies import configuration_of, velocity_of
 from .model import BodyModel, CableModel, Model
+from .ropes import RopeModel
 from .unknowns import as_supports_leave
 
 CABLE = ("nodal_vectors", "nodal_velocity")
@@ -25,17 +26,19 @@ POINTS = ("position", "velocity")
 BODY = ("position", "orientation", "velocity", "angular_velocity")
 MODAL = (*BODY, "modal_coordinates", "modal_velocities")
 SLIDE = ("s",)
+ROPE = ("coordinates", "coordinate_rates")
 TIE_TOLERANCE = 1e-7
 """Error of ties in a state of `radau`, whose iteration stops there, as a fraction of the largest change."""
 
 
 class InitialState(Mapping[str, np.ndarray]):
-    """A state of cables, bodies and slides by the names of results, for ``scene.run(initial=...)``.
+    """A state of cables, bodies, slides and ropes by the names of results, for ``scene.run(initial=...)``.
 
     ``state["wire.nodal_vectors"]`` (node, vector, 3), ``state["wire.nodal_velocity"]``, or of cables without directors
     ``state["wire.position"]`` and ``state["wire.velocity"]`` (node, 3): slopes are then those of the cubic spline
     through the nodes over the undeformed arc-length. Of bodies position, orientation, velocity, angular_velocity,
-    modal_coordinates, modal_velocities; of slides s. Units are those of the results. Other quantities are as drawn.
+    modal_coordinates, modal_velocities; of slides s; of ropes coordinates and coordinate_rates. Units are those of the
+    results. Other quantities are as drawn.
     """
 
     def __init__(self, arrays: Mapping[str, Any], time: float | None = None, unstretched: Sequence[str] = ()):
@@ -104,6 +107,8 @@ class InitialState(Mapping[str, np.ndarray]):
         drawn, moving = model.q.copy(), model.v.copy()
         for cable in model.cables:
             self._place_cable(model, cable, scene.cables[cable.name])
+        for rope in model.ropes:
+            self._place_rope(model, rope)
         for body in model.bodies:
             self._place_body(model, body, scene.bodies[body.name])
         _check_supports(model, model.q - drawn, "places", "m")
@@ -125,6 +130,19 @@ class InitialState(Mapping[str, np.ndarray]):
             _check_plane(vectors, model, name)
             into[cable.coordinates] = vectors[..., : cable.shape[2]].ravel()
 
+    def _place_rope(self, model: Model, rope: RopeModel) -> None:
+        for quantity, into, unit in zip(ROPE, (model.q, model.v), ("m", "m/s"), strict=True):
+            name = f"{rope.part.name}.{quantity}"
+            if name not in self:
+                continue
+            values, at = _of_shape(self[name], rope.q.shape, name), rope.coordinates
+            off = np.abs(values - into[at])[rope.fixed]
+            if np.any(off > LENGTH_TOLERANCE * rope.route.length):
+                raise SceneError("initial", f'"{name}" has an end or the arc-length of an end of the rope by '
+                                 f"{show(float(off.max()), unit)} from where its anchor on the ground keeps it",
+                                 "give a state that fits, or draw the anchors elsewhere")
+            into[at] = np.where(rope.fixed, into[at], values)
+
     def _place_body(self, model: Model, body: BodyModel, drawn: RigidBody | ModalBody) -> None:
         given = {name: self[f"{body.name}.{name}"] for name in BODY if f"{body.name}.{name}" in self}
         modes = {name: _of_shape(self[f"{body.name}.{name}"], (body.modes,), f"{body.name}.{name}")
@@ -145,6 +163,7 @@ def names_of(scene: SceneData) -> Iterator[str]:
     for name, body in scene.bodies.items():
         yield from (f"{name}.{quantity}" for quantity in (MODAL if isinstance(body, ModalBody) else BODY))
     yield from (f"{slide}.{quantity}" for slide in scene.slides for quantity in SLIDE)
+    yield from (f"{rope}.{quantity}" for rope in scene.ropes for quantity in ROPE)
 
 
 def _frame(body: BodyModel, drawn: RigidBody | ModalBody, given: dict[str, np.ndarray],

@@ -26,6 +26,7 @@ from .elimination import Elimination
 from .joints import JointModel
 from .loads import DeadLoadModel, LoadModel
 from .point_forces import PointForceModel
+from .ropes import RopeModel, SheaveModel, SpanModel
 from .signals import SignalModel
 from .unknowns import Node
 
@@ -205,6 +206,7 @@ class Model:
 
     dim: int
     cables: list[CableModel]
+    ropes: list[RopeModel]
     bodies: list[BodyModel]
     couplings: list[CouplingModel]
     signals: list[SignalModel]
@@ -232,6 +234,8 @@ class Model:
     point_forces = _couplings_of(PointForceModel)
     drags = _couplings_of(DragModel)
     crossings = _couplings_of(CrossingModel)
+    spans = _couplings_of(SpanModel)
+    sheaves = _couplings_of(SheaveModel)
     contacts = _couplings_of(ContactModel)
     hard_contacts = _couplings_of(HardContactModel)
 

@@ -16,6 +16,8 @@ from ..parts.slide import Slide
 from ..parts.support import Support
 from .kinds import COUPLINGS
 from .model import Model
+from .rope_states import coordinates, end_forces, rope_state
+from .ropes import AnchorModel
 from .states import (
     body_rates,
     body_state,
@@ -196,6 +198,15 @@ def _drags(model: Model, at: States, kind: str, asked: Asked) -> Values:
     return found
 
 
-RESULTS = {"slide": _slides, "joint": _joints, "point_force": _point_forces, "drag": _drags, "contact": _contacts,
-           "hard_contact": _hard_contacts}
+def _ropes(model: Model, at: States, kind: str, asked: Asked) -> Values:
+    """Return points along ropes, and the forces at their ends."""
+    anchors = model.of(AnchorModel)
+    forces = {k: at.outputs(kind, k)["force"] for k in range(len(anchors))}
+    return {rope.part.name: rope_state(model, rope, at.q) | end_forces(model, rope, at.reaction, forces, anchors)
+            | coordinates(rope, at.q, at.v)
+            for rope in model.ropes if asked(rope.part.name)}
+
+
+RESULTS = {"slide": _slides, "anchor": _ropes, "joint": _joints, "point_force": _point_forces, "drag": _drags,
+           "contact": _contacts, "hard_contact": _hard_contacts}
 """Functions from outputs to results, of the kinds of couplings whose results are not the outputs themselves."""

@@ -123,6 +123,9 @@ def turned_fields(part: Part, axes: PlaneAxes, holder: str | None = None) -> dic
             changes[name] = value.turned(axes.plane.axes)
         elif isinstance(value, Part) and (held := turned_fields(value, axes, getattr(part, "on", None))):
             changes[name] = value.model_copy(update=held)
+        elif isinstance(value, tuple) and any(isinstance(each, Part) for each in value):
+            changes[name] = tuple(each.model_copy(update=turned_fields(each, axes)) if isinstance(each, Part) else each
+                                  for each in value)
     return changes
 
 

@@ -35,5 +35,5 @@ def turning_by_name(results: Iterable[Mapping[str, Quantity]]) -> dict[str, str]
     return found
 
 
-TURNING = turning_by_name(kind.results for kind in KINDS)
+TURNING = turning_by_name(part.results for kind in KINDS for part in (kind, *kind.parts_within))
 """How other axes change each quantity of results, by name."""

@@ -11,6 +11,7 @@ from .support import Motion as Motion
 from .support import Tie as Tie
 from .rigid_body import RigidBody as RigidBody
 from .modal_body import ModalBody as ModalBody
+from .rope import Rope as Rope
 from .joint import Joint as Joint
 from .slide import Slide as Slide
 from .load import Force as Force

@@ -99,6 +99,8 @@ class Part(BaseModel, metaclass=_TranslatingType):
     takes_lists: ClassVar[bool] = False
     """Whether the two positional entries may be lists where parts are added, see `pairs`."""
 
+    parts_within: ClassVar[tuple[type[Part], ...]] = ()
+    """Classes of parts in it whose names are names of results."""
     results: ClassVar[dict[str, Quantity]] = {}
     """Its results, beside the nodal vectors of cables and the modes of bodies."""
 
@@ -173,6 +175,10 @@ class Part(BaseModel, metaclass=_TranslatingType):
                 yield from value.refers_to()
             elif isinstance(value, str) and names_a_part(field):
                 yield value
+
+    def named_within(self) -> Iterator[Part]:
+        """Yield the parts in it whose names are names of results, as its own."""
+        return iter(())
 
     @property
     def given_name(self) -> str | None:

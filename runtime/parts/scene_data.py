@@ -27,6 +27,7 @@ from .plane import Plane
 from .plane_axes import PlaneAxes
 from .point_force import PointForce
 from .rigid_body import RigidBody
+from .rope import Rope
 from .slide import Slide
 from .support import Clamp, Motion, Pin, Support, Tie
 from .surface import Surface
@@ -98,6 +99,7 @@ class SceneData:
     motions: list[Motion]
     ties: dict[str, Tie]
     bodies: dict[str, RigidBody | ModalBody]
+    ropes: dict[str, Rope]
     joints: dict[str, Joint]
     slides: dict[str, Slide]
     loads: dict[str, Force | DistributedForce | Moment]
@@ -155,8 +157,8 @@ class SceneData:
 
     @property
     def dim(self) -> int:
-        """Return 2 if its cables are planar, else 3."""
-        return min((cable.dim for cable in self.cables.values()), default=3)
+        """Return 2 if its cables are planar or it has ropes, which are, else 3."""
+        return 2 if self.ropes else min((cable.dim for cable in self.cables.values()), default=3)
 
     @property
     def plane(self) -> Plane | None:
@@ -214,14 +216,17 @@ class SceneData:
     def part_named(self, name: str, group: str) -> Part | None:
         """Return the part of a name, None if the name is free for a part of a group.
 
-        All parts but events share one space of names, by which results are addressed.
+        All parts but events, and the sheaves of ropes, share one space of names, by which results are addressed.
         """
         return next((parts[name] for parts in self._names_beside(group) if name in parts), None)
 
     def _names_beside(self, group: str) -> list[dict[str, Part]]:
         """Return the groups that share the space of names of a group."""
         groups = ("events",) if group == "events" else [each for each in _groups() if each != "events"]
-        return [parts for each in groups if isinstance(parts := getattr(self, each), dict) and parts]
+        found = [parts for each in groups if isinstance(parts := getattr(self, each), dict) and parts]
+        if group != "events" and self.ropes:
+            found.append({each.given_name or "": each for rope in self.ropes.values() for each in rope.named_within()})
+        return found
 
     def add(self, part: Part) -> Part:
         """Add a part, see `funicular.Scene`."""
@@ -277,15 +282,16 @@ class SceneData:
         return scene
 
     def check_name(self, part: Part) -> None:
-        """Raise SceneError where the name of a part is taken."""
-        name = part.given_name
-        assert name is not None, f"{part.where} has no name yet"
-        if (other := self.part_named(name, part.group)) is not None:
-            article = "an" if part.kind == "event" else "a"
-            raise SceneError(part.where, f"there is already {article} {other.kind} of that name",
-                             "give each part its own name")
-        if name in RESERVED:
-            raise SceneError(part.where, "its name is a name of results", "give another one")
+        """Raise SceneError where the name of a part, or of a part in it, is taken."""
+        for each in (part, *part.named_within()):
+            name = each.given_name
+            assert name is not None, f"{part.where} has no name yet"
+            if (other := self.part_named(name, part.group)) is not None:
+                article = "an" if part.kind == "event" else "a"
+                raise SceneError(_place(part, each), f"there is already {article} {other.kind} of that name",
+                                 "give each part its own name")
+            if name in RESERVED:
+                raise SceneError(_place(part, each), "its name is a name of results", "give another one")
 
     def free_name(self, part: type[Part]) -> str:
         """Return the least free name with a number, where all below it are taken."""
@@ -313,6 +319,11 @@ class SceneData:
                 free = middle
         numbers = (number for number in count(free) if not is_taken(number))
         return [f"{stem}_{number}" for number in islice(numbers, n)]
+
+
+def _place(part: Part, within: Part) -> str:
+    """Return the name in messages of a part or of one within it."""
+    return part.where if within is part else f"{part.where}: {within.where}"
 
 
 @cache

@@ -24,6 +24,8 @@ from .modal_body import ModalBody
 from .part import Part
 from .polar import Polar
 from .rigid_body import RigidBody
+from .rope import Rope
+from .rope_items import Anchor, Sheave
 from .scene_data import SceneData
 from .section import Section
 from .signal import Signal
@@ -147,6 +149,21 @@ class SceneMethods(SceneData):
         angular_velocity: Numbers = (0.0, 0.0, 0.0),
     ) -> ModalBody:
         """Add a ModalBody, which see."""
+
+    def rope(
+        self,
+        name: str,
+        *,
+        route: Sequence[Anchor | Sheave | dict[str, Any]],
+        section: Section,
+        material: Material,
+        closed: bool = False,
+        elements: int | Sequence[int] = 4,
+        tension: float | None = None,
+        length: float | None = None,
+        element: str = "cable8p",
+    ) -> Rope:
+        """Add a Rope, which see."""
 
     def joint(
         self,

@@ -256,7 +256,8 @@ def _names(value: Any) -> tuple[str, ...]:
     return tuple(dict.fromkeys(given))
 
 
-def _count(value: Any) -> int:
+def whole_number(value: Any) -> int:
+    """Return ``value`` as an integer from 1 to `MAX_COUNT`. Raises ValueError."""
     if isinstance(value, bool) or not isinstance(value, Integral) or value < 1:
         raise ValueError(f"must be a whole number, 1 or more, got {shown(value)}")
     count = int(value)
@@ -287,7 +288,7 @@ def _listed(value: Any) -> str:
     return name
 
 
-Count = Annotated[int, checked(_count, {"type": "integer", "minimum": 1, "maximum": MAX_COUNT})]
+Count = Annotated[int, checked(whole_number, {"type": "integer", "minimum": 1, "maximum": MAX_COUNT})]
 Names = Annotated[tuple[str, ...], checked(_names, {"type": "array", "items": {"type": "string"}, "minItems": 1})]
 """One or more texts, each once."""
 Flag = Annotated[bool, checked(_flag, {"type": "boolean"})]

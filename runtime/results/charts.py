@@ -60,6 +60,25 @@ def slide(run: Recorded, figure: Figure) -> bool:
     return True
 
 
+def rope(run: Recorded, figure: Figure) -> bool:
+    """Draw the tensions of ropes on both sides of sheaves, and the wrap angles, over time; False without a rope."""
+    sheaves = [sheave.name for each in run.scene.ropes.values() for sheave in each.sheaves]
+    if not sheaves:
+        return False
+    figure.set_size_inches(7, 4.6)
+    tension, wrap = figure.subplots(2, sharex=True)
+    for number, name in enumerate(sheaves):
+        for side, style in (("on", "-"), ("off", (0, (4, 2)))):
+            tension.plot(run.time, run[f"{name}.tension_{side}"], color=f"C{number % 10}", linestyle=style,
+                         label=f"{name}, {side}")
+        wrap.plot(run.time, run[f"{name}.wrap_angle"], color=f"C{number % 10}")
+    tension.set_ylabel("tension / N")
+    tension.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
+    wrap.set_ylabel("wrap angle / rad")
+    wrap.set_xlabel("time / s")
+    return True
+
+
 def section_forces(run: Recorded, figure: Figure, cable: str) -> bool:
     """Draw tension and moment along a cable at a few times, coloured by time, on both sides of jumps."""
     described, shown, colour = run.scene.cables[cable], snapshots(len(run.time)), colour_scale(run.time)

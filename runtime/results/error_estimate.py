@@ -1,8 +1,8 @@
 """Separate estimates of the errors of the steps and of the mesh of a run, by two more runs.
 
 The first one has smaller steps: its distance from the run is the error of the steps. The second one has these steps and
-elements of half the length: its distance from the first is the error of the mesh, less the error of the finer mesh,
-which is a half of it at order 1 and a sixteenth at order 4.
+elements of half the length, and wraps of ropes with friction twice the zones: its distance from the first is the error
+of the mesh, less the error of the finer mesh, which is a half of it at order 1 and a sixteenth at order 4.
 """
 
 from __future__ import annotations
@@ -16,6 +16,9 @@ from typing import Any, TypeVar
 import numpy as np
 
 from ..errors import FunicularError, FunicularWarning
+from ..parts.cable import Cable
+from ..parts.part import Part
+from ..parts.rope import Rope
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
 from .run import Run
@@ -66,13 +69,17 @@ def error_estimate(scene: S, run: Run, settings: RunSettings, from_a_state: bool
     if tight is not None:
         found.time = relative(scene, motion, tight)
         found.messages += _beyond(found.time, settings)
-    if not scene.cables:
+    if not found.outputs:
+        found.time = np.nan
+        found.messages.append("the errors are not estimated: the scene has no body, cable or slide by whose motion "
+                              "they are measured")
+    elif not scene.cables and not scene.ropes:
         found.mesh, found.both = 0.0, found.time
     elif from_a_state:
         found.messages.append("the error of the mesh is not estimated: the state that the run starts from is of this "
                               "mesh alone")
     elif tight is not None:
-        finer = _try(found, "mesh", lambda: scene.remeshed(lambda cable: 2 * cable.elements),
+        finer = _try(found, "mesh", lambda: scene.with_parts(map(_finer, scene.parts())),
                      lambda other: again(other, steps))
         if finer is not None:
             found.mesh, found.both = relative(scene, tight, finer), relative(scene, motion, finer)
@@ -82,6 +89,13 @@ def error_estimate(scene: S, run: Run, settings: RunSettings, from_a_state: bool
             found.messages.append(f'the error "{what}" is not estimated: nothing moves by more than rounding')
     found.cpu_s = time.process_time() - begin
     return found
+
+
+def _finer(part: Part) -> Part:
+    """Return a cable or a rope with elements of half the length, and twice the zones as far as possible."""
+    if isinstance(part, Cable):
+        return part.remade(part.mesh_entries(2 * part.elements))
+    return part.refined() if isinstance(part, Rope) else part
 
 
 def _beyond(error: float, settings: RunSettings) -> list[str]:

@@ -24,15 +24,15 @@ Drawer = Callable[[Recorded, "Figure"], bool]
 def drawers(run: Recorded, forces: bool) -> dict[str, Drawer]:
     """Return the functions that draw pictures of a run, by name; forces: with those in each cable."""
     found: dict[str, Drawer] = {"shape": shape, "acceleration": charts.acceleration, "slide": charts.slide,
-                                "energy": charts.energy}
+                                "rope": charts.rope, "energy": charts.energy}
     if forces:
         found |= {f"forces-{name}": partial(charts.section_forces, cable=name) for name in run.scene.cables}
     return found
 
 
 def shape(run: Recorded, figure: Figure) -> bool:
-    """Draw cables and bodies at a few times; False without any."""
-    if not (run.scene.cables or run.scene.bodies):
+    """Draw cables, ropes and bodies at a few times; False without any."""
+    if not (run.scene.cables or run.scene.ropes or run.scene.bodies):
         return False
     shape_figure(of_run(run, "run", with_results=False), figure)
     return True
@@ -52,7 +52,7 @@ def plot(run: Recorded, what: str, figure: Figure) -> Figure:
 
 
 def save_plots(run: Recorded, directory: str | os.PathLike[str], prefix: str = "", forces: bool = False) -> list[Path]:
-    """Write the pictures of a run: shape, acceleration, slide, energy; with ``forces`` also those in each cable.
+    """Write the pictures of a run: shape, acceleration, slide, rope, energy; with ``forces`` also those in each cable.
 
     The files are ``directory/<prefix><picture>.png``; empty pictures are omitted. Returns their paths. Raises
     ResultFileError.

@@ -34,7 +34,8 @@ class EnergyBalance(NamedTuple):
 QUANTITIES: dict[str, dict[str, Quantity]] = {}
 """The results of the parts of each group, by name."""
 for _kind in KINDS:
-    QUANTITIES.setdefault(_kind.group, {}).update(_kind.results)
+    for _part in (_kind, *_kind.parts_within):
+        QUANTITIES.setdefault(_kind.group, {}).update(_part.results)
 
 STORED_ENERGIES = ("kinetic", "elastic", "potential")
 ENERGIES = {
@@ -75,7 +76,8 @@ def labelled(rows: Any) -> tuple[dict[str, Variable], dict[str, Variable]]:
         for name, arrays in parts.items():
             for quantity, values in arrays.items():
                 of = QUANTITIES[group][quantity]
-                variables[f"{name}.{quantity}"] = Variable(of.dims, values, of.units, of.long_name)
+                of_part = tuple(dim.format(part=name) for dim in of.dims)
+                variables[f"{name}.{quantity}"] = Variable(of_part, values, of.units, of.long_name)
     for name, values in rows.energy.items():
         variables[f"energy.{name}"] = Variable(("time",), values, "J", ENERGIES[name])
     return variables, coords

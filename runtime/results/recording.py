@@ -17,7 +17,7 @@ from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
 from ..solve.motion.run import FAILED_STATUSES, Simulation
 from ..solve.notes.coincident_points import CoincidentPoints
-from ..solve.notes.diagnosis import RESULTS_KEPT, stopped
+from ..solve.notes.diagnosis import RESULTS_KEPT, rope_left, stopped
 from .quantities import ENERGIES
 
 
@@ -109,6 +109,8 @@ def _message(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
             cable = model.cables[slide.cable]
             end = "end" if engine.stopped_s > 0.5 * cable.mesh.total else "start"
             return (f'slide "{slide.name}": ran off the {end} of cable "{cable.name}" at {when}; {RESULTS_KEPT}')
+        case "rope_left":
+            return f"{rope_left(model, *engine.left)} at {when}; {RESULTS_KEPT}"
         case _ if status in FAILED_STATUSES:
             now, q, *_ = engine.now()
             points = CoincidentPoints(scene, model)

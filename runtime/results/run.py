@@ -123,7 +123,8 @@ class Run(Viewable, NamedArrays):
 
     @property
     def status(self) -> str:
-        """Return ``completed``, ``event`` (stopped by one), ``interrupted``, ``end_of_cable`` or ``no_convergence``.
+        """Return ``completed``, ``event`` (stopped by one), ``interrupted``, ``end_of_cable``, ``rope_left`` or
+        ``no_convergence``.
 
         ``unfinished`` of an active or killed run.
         """
@@ -332,7 +333,8 @@ class Run(Viewable, NamedArrays):
         return of_run(self, "run", with_results=False)
 
     def plot(self, what: str = "shape") -> Figure:
-        """Return a Matplotlib figure: "shape", "acceleration", "slide", "energy", or "forces-wire" of the cable "wire".
+        """Return a Matplotlib figure: "shape", "acceleration", "slide", "rope", "energy", or "forces-wire" of the cable
+        "wire".
 
         A notebook shows it, `matplotlib.pyplot.show` in a script. Raises FunicularError.
         """

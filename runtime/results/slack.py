@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ..engine import SLACK_STRAIN
-from ..errors import UnknownResultError, near
 from ..model.middle_strain import middle_strain
 from ..parts.cable import Cable
 from ..solve.statics.rest_state import RestState
 from .recorded import Recorded
+from .section_forces.forces import no_cable
 
 if TYPE_CHECKING:
     import xarray
@@ -21,7 +21,7 @@ def slack_elements(state: Recorded | RestState, cable: Cable | str) -> xarray.Da
 
     name, over_time = cable.name if isinstance(cable, Cable) else cable, not isinstance(state, RestState)
     if name not in state.scene.cables:
-        raise UnknownResultError(f'there is no cable "{name}"; {near(name, state.scene.cables)}')
+        raise no_cable(state.scene, name)
     of = next(each for each in state.model.cables if each.name == name)
     vectors = state[f"{name}.nodal_vectors"]
     slack = middle_strain(of, vectors if over_time else vectors[None]) < -SLACK_STRAIN

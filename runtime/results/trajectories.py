@@ -15,16 +15,22 @@ from .shape_functions import on_axis
 
 ENERGIES = tuple(f"energy.{name}" for name in STORED_ENERGIES)
 PLACES = ("tip", "middle")
+TRAJECTORIES = (("time",), ("time", "xyz"))
+"""Dimensions of the results of ropes that do not depend on the mesh."""
 ROUNDING_OF_POSITION = 1e-14
 """Rounding error of a trajectory over its largest coordinate."""
 
 
 def default_outputs(scene: SceneData) -> list[str]:
-    """Return the positions of bodies, slides and cable ends; of a supported end the middle of the cable."""
+    """Return the positions of bodies, slides and cable ends; of a supported end the middle of the cable.
+
+    Without any, the speeds of ropes at their sheaves.
+    """
     supported = {node_of(scene, support) for support in scene.supports}
     places = [f"{name}.{'middle' if (name, cable.elements) in supported else 'tip'}"
               for name, cable in scene.cables.items()]
-    return [f"{name}.position" for name in scene.bodies] + [f"{name}.s" for name in scene.slides] + places
+    found = [f"{name}.position" for name in scene.bodies] + [f"{name}.s" for name in scene.slides] + places
+    return found or [f"{sheave.name}.material_speed" for rope in scene.ropes.values() for sheave in rope.sheaves]
 
 
 def check_output(scene: SceneData, name: str) -> None:
@@ -41,6 +47,9 @@ def known_outputs(scene: SceneData) -> list[str]:
                                        "point_forces": scene.point_forces}
     results = [f"{name}.{quantity}" for group, named in parts.items() for name in named
                for quantity in QUANTITIES[group] if quantity not in ("orientation", "multiplier")]
+    ropes = {rope.name: rope.results for rope in scene.ropes.values()}
+    ropes |= {sheave.name: sheave.results for rope in scene.ropes.values() for sheave in rope.sheaves}
+    results += [f"{name}.{key}" for name, of in ropes.items() for key, each in of.items() if each.dims in TRAJECTORIES]
     return results + [f"{name}.{place}" for name in scene.cables for place in PLACES] + list(ENERGIES)
 
 

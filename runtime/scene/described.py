@@ -34,6 +34,7 @@ class DescribedScene(SceneMethods):
         Returns the part as in the scene. Raises SceneError.
         """
         from ..checks.adding import check_of  # not needed to read saved runs
+        from ..checks.rope_placement import check_apart_from_ropes  # likewise
         from ..checks.whole_scene import check_plane  # likewise
 
         if part.is_named():
@@ -43,6 +44,7 @@ class DescribedScene(SceneMethods):
         if isinstance(part, ModalBody):
             part = part.with_modes_by(_modes_of_mesh)
         check_plane(self, part)
+        check_apart_from_ropes(self, part)
         part = check_of(part)(self, part)
         self.put(part)
         return part
@@ -54,6 +56,7 @@ class DescribedScene(SceneMethods):
         them is added.
         """
         from ..checks.adding import check_all_of  # likewise
+        from ..checks.rope_placement import check_apart_from_ropes  # likewise
         from ..checks.whole_scene import check_plane  # likewise
 
         pairs = pairs_of(self, kind, entries)
@@ -63,6 +66,8 @@ class DescribedScene(SceneMethods):
         parts = [one.model_copy(update={**dict(zip(ends, pair, strict=True)), "name": name})
                  for pair, name in zip(pairs, names, strict=True)]
         check_plane(self, one)
+        for part in parts:
+            check_apart_from_ropes(self, part)
         parts = cast(list[P], check_all_of(one)(self, parts))
         for part in parts:
             self.put(part)

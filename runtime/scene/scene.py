@@ -16,6 +16,7 @@ from ..errors import (
     EquilibriumError,
     FunicularWarning,
     ResultFileError,
+    RopeLeftError,
     SceneError,
     enough_memory,
     near,
@@ -54,9 +55,9 @@ MAX_NAMED = 12
 class Scene(Viewable, DescribedScene):
     """Cables, bodies, their couplings, supports and loads.
 
-    ``gravity`` in m/s²; ``cables``, ``bodies``, ``joints``, ``slides``, ``ties``, ``loads``, ``point_forces``,
-    ``events`` are dicts by name; ``pins``, ``clamps`` and ``motions`` are lists, all read-only: methods add parts,
-    `replace` and `without` make other scenes. ``messages`` lists adjustments; ``run_settings``,
+    ``gravity`` in m/s²; ``cables``, ``bodies``, ``ropes``, ``joints``, ``slides``, ``ties``, ``loads``,
+    ``point_forces``, ``events`` are dicts by name; ``pins``, ``clamps`` and ``motions`` are lists, all read-only:
+    methods add parts, `replace` and `without` make other scenes. ``messages`` lists adjustments; ``run_settings``,
     ``equilibrium_settings`` and ``relax_settings`` hold the settings of the scene's file; ``title``, of pictures, is by
     default the name of this file without the ending.
     """
@@ -104,8 +105,8 @@ class Scene(Viewable, DescribedScene):
         During the run the BLAS of NumPy and SciPy uses one thread in the whole process; computations with large
         matrices in other threads take longer.
 
-        Raises SceneError, ResultFileError, EquilibriumError; EndOfCableError and ConvergenceError, whose ``run`` holds
-        the results so far. Ctrl-C returns the results so far, with a `FunicularWarning`.
+        Raises SceneError, ResultFileError, EquilibriumError; EndOfCableError, RopeLeftError and ConvergenceError, whose
+        ``run`` holds the results so far. Ctrl-C returns the results so far, with a `FunicularWarning`.
         """
         _refuse_unknown("run", unknown, (*RunSettings.keywords(), "resume", "progress"))
         given = {"duration": duration, "tol": tol, "absolute_tol": absolute_tol, "quantities": quantities, "step": step,
@@ -379,9 +380,11 @@ def _check_resume(resume: bool, settings: RunSettings) -> None:
 
 
 def _raise_where_stopped(run: Run) -> None:
-    """Raise EndOfCableError or ConvergenceError by the status of a run."""
+    """Raise EndOfCableError, RopeLeftError or ConvergenceError by the status of a run."""
     if run.status == "end_of_cable":
         raise EndOfCableError(run.report["message"], run)
+    if run.status == "rope_left":
+        raise RopeLeftError(run.report["message"], run)
     if run.status == "no_convergence":
         raise ConvergenceError(run.report["message"], run)
 

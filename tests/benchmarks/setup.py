@@ -17,6 +17,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import cProfile
+import gc
 import time
 from collections.abc import Callable
 
@@ -118,11 +119,15 @@ def set_up(make: Callable[[], Scene], clock: Clock | None = None) -> Engine:
 
 
 def calls(function: Callable[[], object]) -> int:
-    """Return the number of calls of Python and C functions within a call."""
+    """Return the number of calls of Python and C functions within a call, without those of garbage collection."""
     profile = cProfile.Profile()
-    profile.enable()
-    function()
-    profile.disable()
+    gc.disable()
+    try:
+        profile.enable()
+        function()
+        profile.disable()
+    finally:
+        gc.enable()
     return sum(entry.callcount for entry in profile.getstats())
 
 

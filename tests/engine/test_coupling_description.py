@@ -26,7 +26,7 @@ def test_outputs_say_unit_and_turning(kind):
 
 def test_each_output_is_a_result_of_a_part():
     """A new output of the engine needs an entry with a description in `results` of its part."""
-    known = {name for kind in KINDS for name in kind.results}
+    known = {name for kind in KINDS for part in (kind, *kind.parts_within) for name in part.results}
     assert {name for fields in OUTPUTS.values() for name in fields} <= known
 
 
@@ -70,7 +70,8 @@ def test_a_result_without_a_declaration_is_refused():
 
 
 def test_every_result_of_a_part_has_a_turning():
-    assert {name for kind in KINDS for name in kind.results} <= set(TURNING)
+    parts = {part for kind in KINDS for part in (kind, *kind.parts_within)}
+    assert {name for part in parts for name in part.results} <= set(TURNING)
 
 
 def test_the_model_has_one_list_of_couplings():
@@ -78,11 +79,11 @@ def test_the_model_has_one_list_of_couplings():
     model = build(fu.load_scene("cable_car"))
     kinds = [kind.name for kind in COUPLINGS]
     numbers = [kinds.index(coupling.type) for coupling in model.couplings]
-    assert numbers == sorted(numbers) and {*OUTPUTS} == {*kinds} - {"dead load", "load"}
+    assert numbers == sorted(numbers) and {*OUTPUTS} == {*kinds} - {"dead load", "load", "span"}
     assert in_order(reversed(model.couplings[:1] + model.couplings[-1:])) == [model.couplings[0], model.couplings[-1]]
     assert [*model.of(SlideModel)] == model.slides and model.slides
     assert [each.name for each in fields(model) if isinstance(getattr(model, each.name), list)] == [
-        "cables", "bodies", "couplings", "signals", "motions", "tables"]
+        "cables", "ropes", "bodies", "couplings", "signals", "motions", "tables"]
 
 
 def test_all_groups_of_couplings_have_results():

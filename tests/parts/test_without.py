@@ -48,6 +48,21 @@ def everything() -> fu.Scene:
     return scene
 
 
+def around_a_rope() -> fu.Scene:
+    """Return a planar scene with a rope, which `everything` cannot have."""
+    scene = fu.Scene()
+    for k, name in enumerate(("n-load", "n-carrier", "n-other")):
+        scene.rigid_body(name, mass=1.0, inertia=(1, 1, 1), position=(2 * k, 3 * (k % 2), 0))
+    scene.rope("n-hoist", route=[fu.Anchor("n-load"), fu.Sheave("n-top", at="n-carrier", radius=0.2),
+                                 fu.Anchor("n-other", at=(0.1, 0, 0))],
+               section=fu.Circle(radius=0.001), material=ROPE["material"], tension=100.0)
+    scene.force("n-other", value=(0, 1, 0), name="n-force")
+    return scene
+
+
+EACH_PART = [(make, k) for make in (everything, around_a_rope) for k in range(len(list(make().parts())))]
+
+
 def named(parts) -> set[str]:
     return {part.given_name for part in parts if part.given_name is not None and part.kind != "event"}
 
@@ -68,12 +83,12 @@ def places(scene, parts) -> list[int]:
 
 
 def test_the_scene_has_all_kinds():
-    assert {part.kind for part in everything().parts()} == set(PARTS)
+    assert {part.kind for make in (everything, around_a_rope) for part in make().parts()} == set(PARTS)
 
 
-@pytest.mark.parametrize("number", range(len(list(everything().parts()))))
-def test_a_part_goes_with_what_hangs_on_it(number):
-    scene = everything()
+@pytest.mark.parametrize(("make", "number"), EACH_PART)
+def test_a_part_goes_with_what_hangs_on_it(make, number):
+    scene = make()
     text, part = scene.to_toml(), list(scene.parts())[number]
     gone = hanging(scene, part)
     made = scene.without(part)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from funicular import Circle, Material, Plane, Scene
+from funicular import Anchor, Circle, Material, Plane, Scene, Sheave
 from funicular.parts.kinds import KINDS
 
 SOFT = Material(youngs_modulus=4e6, poisson_ratio=0, density=1000, damping_time=1e-2)
@@ -71,7 +71,17 @@ def of_contacts() -> Scene:
     return scene
 
 
-SCENES = {"supports": of_supports, "slides": of_slides, "contacts": of_contacts}
+def of_ropes() -> Scene:
+    """Return a rope with a weight over a sheave."""
+    scene = Scene()
+    scene.rigid_body("A", mass=4.0, inertia=(1e-2,) * 3, position=(0.3, -2, 0))
+    scene.rope("line", route=[Anchor(at=(-0.3, -1, 0)), Sheave("top", at=(0, 0, 0), radius=0.3, side="right"),
+                              Anchor("A")], section=Circle(radius=1e-3), tension=40.0, elements=2,
+               material=Material(youngs_modulus=1e10, poisson_ratio=0.3, density=5000, damping_time=1e-2))
+    return scene
+
+
+SCENES = {"supports": of_supports, "slides": of_slides, "contacts": of_contacts, "ropes": of_ropes}
 
 
 def test_every_kind_of_part_with_results_is_there():

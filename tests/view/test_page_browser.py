@@ -15,6 +15,7 @@ from browser import PATIENCE, Opened, browser
 from funicular.view.animation import Clip, EventMark, Mark
 from funicular.view.page import write_page
 from matplotlib.image import imread, imsave
+from viewed_scenes import hoist
 
 pytestmark = pytest.mark.browser
 
@@ -39,13 +40,14 @@ def files(tmp_path_factory):
     disc = beam.clips[0].bodies[0]
     still = replace(beam.clips[0], time=np.zeros(1), cables=(), segments=(), curves=(), events=(),
                     bodies=(replace(disc, position=disc.position[:1], orientation=disc.orientation[:1]),))
+    hoisted = hoist().run(0.4, output_step=0.02, tol=1e-3, integrator="radau", progress=False).animation()
     made = {
         "paper51": paper, "twisted": beam, "modes": animations.modes(),
         "two": replace(paper, clips=(paper.clips[0], slower)),
         "still": replace(beam, clips=(still,)),
         "point": replace(beam, clips=(Clip("point", np.zeros(1), marks=(Mark("P", "point", np.ones((1, 3))),)),)),
         "loads": replace(beam, time_label="load factor", time_unit=""),
-        "catenary": fu.load_scene("catenary").animation(),
+        "hoist": hoisted, "catenary": fu.load_scene("catenary").animation(),
         "events": replace(beam, clips=(replace(beam.clips[0], events=tuple(
             EventMark(0.1 * k, f"event {k}") for k in range(1, 15))),)),
     }
@@ -71,7 +73,7 @@ def opened(chromium, files):
         assert len([url for url in page.asked if url.startswith("file:")]) == 1
 
 
-@pytest.mark.parametrize("name", ["paper51", "twisted", "modes", "two", "still", "loads", "events"])
+@pytest.mark.parametrize("name", ["paper51", "twisted", "modes", "two", "still", "loads", "events", "hoist"])
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_pages_open_without_complaints(opened, name, scheme):
     page = opened(name, color_scheme=scheme)
@@ -191,6 +193,33 @@ def test_pointing_at_a_slide_says_the_tension_on_both_sides(opened):
         assert f"tension {side} {tension / 1000:.3f} kN" in found["lines"]
     assert found["s"] == pytest.approx(np.interp(25 / 50, clip.time, clip.bodies[0].position[:, 0]), abs=0.01)
     assert "tension" not in found["values"]
+
+
+def test_the_material_of_a_rope_runs(opened):
+    """A point of a rope says its present arc-length. Marks, dark, are at its multiples of the spacing.
+
+    At x = -0.25 m the span of the counterweight hangs: s is the distance from its end, but for the stretch.
+    """
+    page = opened("hoist", **SMALL)
+    page("f.set({grid: false, quantity: ''})")
+    page("f.look('z')")
+    for frame in (0, 20):
+        page("f.goToFrame(a)", frame)
+        page.drawn()
+        picture, (_, foot, _) = image(page)[..., :3].mean(axis=-1), page("f.cable('rope')")[0]
+        scale = picture.shape[1] / page.page.evaluate(SIZE)[0]
+        found = page("f.pick(...f.pixel(a))", [-0.25, foot + 1.0, 0.0])
+        assert (found["kind"], found["name"]) == ("cable", "rope")
+        assert found["s"] == pytest.approx(1.0, abs=0.01)
+
+        def shade(s, foot=foot, scale=scale, picture=picture):
+            x, y = (round(scale * each) for each in page("f.pixel(a)", [-0.25, foot + s, 0.0]))
+            return picture[y, x - 1:x + 2].min()
+
+        marks, between = ([shade(0.1 * k + shift) for k in range(12, 22)] for shift in (0.0, 0.05))
+        assert max(marks) < min(between) - 0.05
+    spoke = page("f.body('top')")["orientation"]
+    assert abs(spoke[3]) > 0.05  # it has turned about z
 
 
 def test_pointing_at_a_body(opened):

@@ -57,6 +57,15 @@ struct fu_model {
     int n_shared_dofs, n_shared_unknowns;
 };
 
+/* Returns the dofs between those of the cables and those of the bodies, which are entries of q as those of cables: of
+ * ropes, their nodes, material coordinates, and rotations of sheaves. */
+static inline fu_range fu_rope_dofs(const fu_model *model)
+{
+    const fu_cable *last = model->n_cables ? &model->cables[model->n_cables - 1] : 0;
+    return (fu_range){last ? last->first + (last->n_elements + 1) * last->per_node : 0,
+                      model->n_bodies ? model->bodies[0].dof : model->n_dof};
+}
+
 /* Loops over the cables and over the bodies of a model. */
 #define FU_EACH_CABLE(cable, model)                                                                                    \
     for (const fu_cable *cable = (model)->cables; cable - (model)->cables < (model)->n_cables; ++cable)

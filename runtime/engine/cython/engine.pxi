@@ -44,7 +44,7 @@ cdef extern from * nogil:
     double FU_SLACK_STRAIN, FU_NO_TIME
     int FU_CROSSING_STICK, FU_FRICTION_MARK, FU_MAX_HARD_CONTACTS
     int FU_MAX_COORDINATES, FU_MAX_RATES, FU_ATTACHMENT_COORDINATES
-    int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT, FU_UNSTABLE
+    int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT, FU_UNSTABLE, FU_ROPE_LEFT
     int FU_NO_FAILURE, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE, FU_SELF_LOCKING, FU_NOT_KNOWN
     int FU_EVENT_OF_Q, FU_EVENT_OF_V, FU_EVENT_OF_S, FU_EVENT_OF_RATE, FU_EVENT_OF_OUTPUT, FU_EVENT_OF_CALL
     int FU_ACTED, FU_DEFERRED, FU_WENT_SLACK
@@ -78,7 +78,7 @@ cdef extern from * nogil:
     ctypedef struct fu_modal_attachment:
         const double *x, *phi, *psi
     ctypedef struct fu_attachment:
-        int cable, body, element, slide
+        int cable, body, element, slide, node
         double u[3]
         double N[32]
         const fu_frame_kernels *frame
@@ -277,7 +277,7 @@ cdef extern from * nogil:
         fu_statistics statistics
         double *rhs, *psi, *force, *work, *before, *first, *s_slope
         double h, motion, extent, controlled_motion, closed
-        int stopped_slide, rest_start
+        int stopped_slide, left, left_by, rest_start
         fu_failure failure
         fu_energy_balance balance
     ctypedef struct fu_integrator:

@@ -153,6 +153,11 @@ cdef class Report(Statics):
         return self._snapshot(&self.run.now)
 
     @property
+    def left(self):
+        """Number of the coupling of a rope that has left a sheave, and the reason (events/rope.c)."""
+        return self.run.left, self.run.left_by
+
+    @property
     def stopped_slide(self):
         """Index of the slide that ran off its cable."""
         return self.run.stopped_slide

@@ -148,7 +148,7 @@ cdef class Translation(Arrays):
 
     cdef int _end(self, fu_attachment *to, end, list tables) except -1:
         cdef int k
-        to.cable, to.body, to.element, to.slide = end.cable, end.body, end.element, end.slide
+        to.cable, to.body, to.element, to.slide, to.node = end.cable, end.body, end.element, end.slide, end.node
         to.frame = NULL
         for k in range(len(end.u)):
             to.u[k] = end.u[k]

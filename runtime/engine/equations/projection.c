@@ -11,8 +11,9 @@
 
 /* largest number of projections of positions, each of second order */
 #define MAX_PROJECTIONS 10
-#define SHORT_STEP 1e-3     /* of the usual step: in a shorter one rounding over h^2 would dominate accelerations */
-#define GAP_TOLERANCE 1e-13 /* of the largest length: smaller initial gaps are rounding */
+#define ROUNDING_FACTOR 100.0 /* times the rounding of positions: a correction that is not rounding */
+#define SHORT_STEP 1e-3       /* of the usual step: in a shorter one rounding over h^2 would dominate accelerations */
+#define GAP_TOLERANCE 1e-13   /* of the largest length: smaller initial gaps are rounding */
 /* of the largest length: gaps of a probed mechanism that is back on its joints */
 #define PROBE_TOLERANCE 1e-12
 
@@ -42,11 +43,13 @@ static void normalise(const fu_model *model, double *q)
     }
 }
 
-/* Projects the positions of a state, and s, on its joints until a correction is small enough; returns 0 on
- * convergence. */
+/* Projects the positions of a state, and s, on its joints until a correction is small enough, or does not decrease as
+ * it is rounding: that of a slope on a tangent point exceeds that of positions. Returns 0 on convergence. */
 static int close_gaps(fu_run *run, fu_state *state, double enough)
 {
     const fu_model *model = run->model;
+    const double rounding = ROUNDING_FACTOR * run->round_off;
+    double last = INFINITY;
     for (int i = 0;; ++i) {
         if (fu_project_positions(model, state, &run->accelerator, run->work))
             return fu_fail(run, FU_MATRIX, state->v, -1);
@@ -55,7 +58,8 @@ static int close_gaps(fu_run *run, fu_state *state, double enough)
         fu_move(model, state->q, run->work);
         const fu_coupling *failed = fu_solve_coordinates(model, state);
         if (failed) return lost(run, state->v, failed);
-        if (size <= enough) return 0;
+        if (size <= enough || (size >= last && size <= rounding)) return 0;
+        last = size;
     }
 }
 

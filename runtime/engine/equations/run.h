@@ -28,7 +28,8 @@ enum {
     FU_NO_CONVERGENCE = 3,
     FU_SINGULAR = 4,
     FU_EVENT = 5,
-    FU_UNSTABLE = 6
+    FU_UNSTABLE = 6,
+    FU_ROPE_LEFT = 7
 };
 
 #define FU_AT_ONCE 1e-12 /* of the duration: largest distance of simultaneous instants (model/knots.py) */
@@ -123,6 +124,7 @@ struct fu_run {
     /* Events: written by run/event_handling.c, run/steps.c and events/. */
     double acted; /* s: last change of state of a coupling */
     int acts, stopped_slide;
+    int left, left_by;       /* number of the coupling of a rope that has left a sheave, and why (events/rope.c) */
     int last_event_deferred; /* the last event to which a step led was deferred */
     int max_deferred;        /* of any stage of a step, or of its end for other integrators */
     int keep_forces;         /* couplings have no deferred event in a step, which ends at one */

@@ -1,5 +1,6 @@
 /* Lengths of a scene that scale errors and rounding. */
 #include "couplings/common/attachments.h"
+#include "couplings/rope/rope.h"
 #include "equations/run.h"
 #include "equations/scene_size.h"
 
@@ -13,7 +14,16 @@ static double square_between(const double *from, const double *to, int n)
     return square;
 }
 
-/* Returns the largest displacement of a node or a body's centre, m. */
+/* Returns the largest displacement of points by the dofs of ropes, m. */
+static double motion_of_ropes(const fu_model *model, const double *weight, const double *from, const double *to)
+{
+    const fu_range ropes = fu_rope_dofs(model);
+    double largest = 0.0;
+    for (int i = ropes.first; i < ropes.end; ++i) largest = fmax(largest, weight[i] * fabs(to[i] - from[i]));
+    return largest;
+}
+
+/* Returns the largest displacement of a node, of a rope's material, or of a body's centre, m. */
 double fu_largest_motion(const fu_model *model, const double *from, const double *to)
 {
     double largest = 0.0;
@@ -27,7 +37,7 @@ double fu_largest_motion(const fu_model *model, const double *from, const double
         const double square = square_between(from + body->configuration, to + body->configuration, body->kernel->dim);
         if (square > largest) largest = square;
     }
-    return sqrt(largest);
+    return fmax(sqrt(largest), motion_of_ropes(model, model->weight, from, to));
 }
 
 /* Returns the squared displacement by the dofs of a position, without those of no weight, m^2. */
@@ -73,7 +83,7 @@ double fu_controlled_motion(const fu_run *run)
         for (int i = 0; i < body->modes; ++i)
             largest = fmax(largest, of_modes[i] * fabs(to[mode + i] - from[mode + i]));
     }
-    return fmax(largest, sqrt(square));
+    return fmax(fmax(largest, sqrt(square)), motion_of_ropes(model, weight, from, to));
 }
 
 /* Returns the scale of rounding of coordinates, m: the farthest position, or the displacement of a point by unit slopes
@@ -108,6 +118,10 @@ double fu_scene_size(const fu_model *model, const double *origin, const double *
     FU_EACH_CABLE(cable, model)
         for (int k = 0, at = cable->first; k <= cable->n_elements; ++k, at += cable->per_node)
             widen(model->dim, q + at, low, high);
+    FU_EACH_COUPLING(c, model->couplings, model->n_couplings) {
+        const int nodes = c->type == &fu_span_type ? ((const fu_span_coupling *)c)->n_elements + 1 : 0;
+        for (int k = 0; k < nodes; ++k) widen(model->dim, fu_span_node((const fu_span_coupling *)c, k, q), low, high);
+    }
     FU_EACH_BODY(body, model) widen(model->dim, q + body->configuration, low, high);
     for (int d = 0; d < model->dim; ++d) largest = fmax(largest, high[d] - low[d]);
     return largest;

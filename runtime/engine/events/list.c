@@ -8,6 +8,9 @@
     ALONE(load)                                                                                                        \
     WITH_EVENTS(slide)                                                                                                 \
     ALONE(joint)                                                                                                       \
+    ALONE(anchor)                                                                                                      \
+    WITH_EVENTS(span)                                                                                                  \
+    WITH_EVENTS(sheave)                                                                                                \
     WITH_EVENTS(point_force)                                                                                           \
     WITH_EVENTS(drag)                                                                                                  \
     WITH_EVENTS(crossing)                                                                                              \

@@ -130,9 +130,10 @@ static int possible_counts(const fu_run *run)
 static int possible_indices(const fu_run *run)
 {
     const int last = last_of(run->model->n_couplings);
-    return in_range(run->stopped_slide, 0, last) && in_range(run->keep_segments, 0, 1) &&
-           in_range(run->keep_forces, 0, 1) && in_range(run->last_event_deferred, 0, 1) &&
-           in_range(run->rest_start, 0, 1) && in_range(run->failure.cause, FU_NO_FAILURE, FU_SELF_LOCKING) &&
+    return in_range(run->stopped_slide, 0, last) && in_range(run->left, 0, last) &&
+           in_range(run->keep_segments, 0, 1) && in_range(run->keep_forces, 0, 1) &&
+           in_range(run->last_event_deferred, 0, 1) && in_range(run->rest_start, 0, 1) &&
+           in_range(run->failure.cause, FU_NO_FAILURE, FU_SELF_LOCKING) &&
            in_range(run->failure.dof, 0, last_of(run->model->n_dof)) && in_range(run->failure.coupling, -1, last);
 }
 

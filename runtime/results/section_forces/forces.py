@@ -161,6 +161,15 @@ def with_sides(cable: Cable, s: np.ndarray, places: np.ndarray) -> np.ndarray:
     return np.sort(np.concatenate([np.broadcast_to(s, (*sides.shape[:-1], len(s))), sides], axis=-1), axis=-1)
 
 
+def no_cable(scene: SceneData, name: Any) -> UnknownResultError:
+    """Return the error of a name that is not a cable's."""
+    rope = scene.ropes.get(getattr(name, "name", name))
+    if rope is not None:
+        return UnknownResultError(f"{rope.where} is no cable: its tension is a result of its sheaves, "
+                                  f'"{rope.sheaves[0].name}.tension_on" and the like')
+    return UnknownResultError(f'there is no cable "{name}"; {near(name, scene.cables)}')
+
+
 def dataset(state: Recorded | RestState, cable: Cable | str, s: ArrayLike | Slide | None = None, *,
             method: str = "balance", side: str = "after") -> xarray.Dataset:
     """See `Run.section_forces`; of an equilibrium without the time."""
@@ -168,7 +177,7 @@ def dataset(state: Recorded | RestState, cable: Cable | str, s: ArrayLike | Slid
 
     scene, name = state.scene, cable.name if isinstance(cable, Cable) else cable
     if name not in scene.cables:
-        raise UnknownResultError(f'there is no cable "{name}"; {near(name, scene.cables)}')
+        raise no_cable(scene, name)
     for word, value, known in (("method", method, METHODS), ("side", side, SIDES)):
         if value not in known:
             raise FunicularError(f'section forces of "{name}": {word} must be '

@@ -15,7 +15,9 @@ from ...engine import Engine
 from ...errors import FunicularWarning, SceneError, UnknownResultError, near
 from ...model.build import build
 from ...model.model import BodyModel, Model
+from ...model.rope_states import rope_motion
 from ...model.states import body_state, modal_state, spatial
+from ...parts.rope import rough_sheaves
 from ...parts.scene_data import SceneData
 from ...parts.settings import EquilibriumSettings
 from ..linear.condensation import condensed, fastest
@@ -52,7 +54,9 @@ class Modes(NamedArrays):
     mode that vibrates. uncertainty (n,) in rad/s: the change of an angular frequency by rounding of the stiffness; one
     that is not larger is given as 0. Shapes by name, largest displacement 1 m: ``modes["wire.nodal_vectors"]`` (n,
     node, vector, 3), ``modes["A.displacement"]``, ``modes["A.rotation"]`` (n, 3), about body axes; of a modal body
-    these are the frame's, and ``modes["link.nodes"]`` (n, node, 3) the displacements of its nodes. messages: what was
+    these are the frame's, and ``modes["link.nodes"]`` (n, node, 3) the displacements of its nodes. Of a rope
+    ``modes["rope.displacement"]`` (n, point, 3) are those of its points, ``modes["rope.s"]`` (n, point) the lengths of
+    material that pass them, and ``modes["top.angle"]`` (n,) the rotation of a sheave. messages: what was
     left out, and what is uncertain.
     """
 
@@ -161,7 +165,8 @@ def _fewer(model: Model) -> str:
 
 def _without_friction(scene: SceneData) -> list[str]:
     slides = [f'"{slide.name}"' for slide in scene.slides.values() if slide.friction and not slide.is_driven]
-    return [f"modes leave out the friction of slide{'s' * (len(slides) > 1)} {', '.join(slides)}"] if slides else []
+    return [f"modes leave out the friction of {what}{'s' * (len(names) > 1)} {', '.join(names)}"
+            for what, names in (("slide", slides), ("sheave", rough_sheaves(scene.ropes.values()))) if names]
 
 
 def _rounded_shape(engine: Engine, model: Model, K: csc_array) -> csc_array:
@@ -295,7 +300,8 @@ def _named(model: Model, q: np.ndarray, squares: np.ndarray, dofs: np.ndarray, e
     for k, mode in enumerate(dofs):
         largest = max([np.abs(mode[list(node.dofs("r"))]).max() for nodes in model.nodes.values() for node in nodes]
                       + [np.abs(mode[b.dof : b.dof + model.dim]).max() for b in model.bodies]
-                      + [np.abs(_nodes(model, body, q, mode[None])).max() for body in modal])
+                      + [np.abs(_nodes(model, body, q, mode[None])).max() for body in modal]
+                      + [np.abs(mode[rope.lengths]).max() for rope in model.ropes], default=0.0)
         dofs[k] = mode / (largest or np.abs(mode).max() or 1.0)
     for cable in model.cables:
         vectors = spatial(cable.nodal(dofs))
@@ -307,6 +313,10 @@ def _named(model: Model, q: np.ndarray, squares: np.ndarray, dofs: np.ndarray, e
         shapes[f"{body.name}.rotation"] = turn if model.dim == 3 else np.pad(turn, ((0, 0), (2, 0)))
     for body in modal:
         shapes[f"{body.name}.nodes"] = _nodes(model, body, q, dofs)
+    for rope in model.ropes:
+        shapes |= {f"{rope.part.name}.{key}": value for key, value in rope_motion(model, rope, q, dofs).items()}
+        shapes |= {f"{item.name}.angle": dofs[:, at.turn] if at.turn >= 0 else np.zeros(len(dofs))
+                   for item, at in zip(rope.part.sheaves, rope.sheaves, strict=True)}
     if (axes := model.plane_axes) is not None:
         for name, values in shapes.items():
             part, _, quantity = name.rpartition(".")

@@ -13,6 +13,7 @@ from ...checks.placement import AXES
 from ...errors import SceneError, near
 from ...model.middle_strain import middle_strain
 from ...model.model import Model
+from ...model.rope_states import rope_state
 from ...model.states import body_rates, body_state, spatial
 from ...parts.event import Event
 from ...parts.scene_data import SceneData
@@ -69,7 +70,8 @@ class State:
 
     def __getitem__(self, name: str) -> np.ndarray | float:
         """Return position, orientation, velocity, angular_velocity of a body (3 or 4,); nodal_vectors, nodal_velocity
-        of a cable (nodes, vectors, 3); s of a slide, along the ground's axes. Raises KeyError.
+        of a cable (nodes, vectors, 3); s of a slide; position (points, 3) and s (points,) of a rope, along the ground's
+        axes. Raises KeyError.
         """
         of, _, quantity = name.partition(".")
         found = self._model.results(of, self._all(of))
@@ -79,10 +81,10 @@ class State:
         return found[quantity]
 
     def names(self) -> list[str]:
-        """Return the bodies, cables and slides with quantities in the state."""
+        """Return the bodies, cables, ropes and slides with quantities in the state."""
         model = self._model
         return [*(body.name for body in model.bodies), *(cable.name for cable in model.cables),
-                *(slide.name for slide in model.slides)]
+                *(rope.part.name for rope in model.ropes), *(slide.name for slide in model.slides)]
 
     def _all(self, name: str) -> dict[str, Any]:
         model = self._model
@@ -95,6 +97,9 @@ class State:
             if cable.name == name:
                 return {"nodal_vectors": spatial(cable.nodal(self._q)),
                         "nodal_velocity": spatial(cable.nodal(self._v))}
+        for rope in model.ropes:
+            if rope.part.name == name:
+                return {key: values[0] for key, values in rope_state(model, rope, self._q[None]).items()}
         slides = [slide.name for slide in model.slides]
         return {"s": float(self._s[slides.index(name)])} if name in slides else {}
 

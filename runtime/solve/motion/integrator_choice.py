@@ -9,6 +9,7 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+from scipy.sparse import block_array, csc_array
 from scipy.sparse.linalg import splu
 
 from ...engine import Engine
@@ -16,6 +17,7 @@ from ...errors import SceneError
 from ...integrators import AUTO, INTEGRATORS, Demands, Explicit, Integrator, Radau, stable_at
 from ...kernels.libraries import of_library
 from ...model.model import Model
+from ...parts.rope import rough_sheaves
 from ...parts.scene_data import SceneData
 from ...parts.settings import RunSettings
 from ...parts.slide import Slide
@@ -181,7 +183,8 @@ def demands_of(settings: RunSettings, scene: SceneData, model: Model, engine: En
     frequency, decay = fastest_rates(model, engine)
     decay = max(decay, *(regularised_decay(scene, slide) for slide in scene.slides.values()), 0.0)
     friction = any(slide.friction is not None and slide.friction.sliding for slide in scene.slides.values()) or any(
-        contact.is_hard and contact.friction_coefficient for contact in scene.contacts.values())
+        contact.is_hard and contact.friction_coefficient for contact in scene.contacts.values()) or any(
+        rough_sheaves(scene.ropes.values()))
     return Demands(frequency, decay, slowest_rate(scene, model, settings.duration), friction, settings.tol)
 
 
@@ -257,6 +260,7 @@ def slowest_rate(scene: SceneData, model: Model, duration: float) -> float:
     """
     points = [node.vector("r") for nodes in model.nodes.values() for node in nodes]
     points += [model.q[b.configuration : b.configuration + model.dim] for b in model.bodies]
+    points += [place for rope in model.ropes for span in rope.spans for place in span.places(model.q)]
     size = float(np.max(np.ptp(points, axis=0)))
     if size == 0.0:
         return 1.0 / duration
@@ -265,22 +269,40 @@ def slowest_rate(scene: SceneData, model: Model, duration: float) -> float:
 
 
 def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:
-    """Return the highest frequency in rad/s and rate of decay in 1/s of the state at the start, without slides, whose
-    constraints only lower them.
+    """Return the highest frequency in rad/s and rate of decay in 1/s of the state at the start, without slides and
+    joints, whose constraints only lower them.
     """
     engine.set_state(0.0)
     n = model.n_band + model.n_border_dof
     if n == 0:
         return 0.0, 0.0
     matrix: Callable[[float, float, float], Any] = engine.dense_matrix if n <= MAX_DENSE_UNKNOWNS else engine.matrix
+    by_mass: Callable[[np.ndarray], np.ndarray]
     mass = matrix(1.0, 0.0, 0.0)[:n, :n]
-    by_mass = np.linalg.inv(mass).dot if n <= MAX_DENSE_UNKNOWNS else splu(mass.tocsc(), permc_spec="NATURAL").solve
-    stiffness = without_forces(matrix(0.0, 0.0, 1.0), slice(n), model)
+    full = matrix(0.0, 0.0, 1.0)
+    if model.sheaves:
+        at_sheaves = [n + k for sheave in model.sheaves for k in sheave.force_unknowns]
+        by_mass = _on_sheaves(csc_array(mass), csc_array(full[at_sheaves][:, :n]))
+    elif n <= MAX_DENSE_UNKNOWNS:
+        by_mass = np.linalg.inv(mass).dot
+    else:
+        by_mass = splu(mass.tocsc(), permc_spec="NATURAL").solve
+    stiffness = without_forces(full, slice(n), model)
     decay = 0.0
     if model.is_damped:
         damping = without_forces(matrix(0.0, 1.0, 1.0), slice(n), model) - stiffness
         decay = _largest(damping, mass, by_mass)
     return math.sqrt(_largest(stiffness, mass, by_mass)), decay
+
+
+def _on_sheaves(mass: csc_array, rows: csc_array) -> Callable[[np.ndarray], np.ndarray]:
+    """Return the product with the inverse of a mass (n, n) on the constraints rows x = 0 (k, n) of tangent points.
+
+    Without these a straight span may flow along its nodes, and has no mass then.
+    """
+    k, n = rows.shape
+    solve = splu(csc_array(block_array([[mass, rows.T], [rows, None]]))).solve
+    return lambda x: solve(np.append(x, np.zeros(k)))[:n]
 
 
 def _largest(matrix: Any, mass: Any, by_mass: Callable[[np.ndarray], np.ndarray]) -> float:

@@ -9,6 +9,7 @@ from ...integrators import INTEGRATORS, stable_at
 from ...model.contacts import HardContactModel
 from ...model.model import CableModel, Model, SlideModel
 from ...model.redundant_constraints import redundant
+from ...parts.rope_route import MIN_WRAP
 from ...parts.scene_data import SceneData
 from ...parts.settings import RunSettings
 from .folds import FOLDED_CHORD
@@ -118,6 +119,17 @@ def _self_locking(model: Model, coupling: int | None, where: str) -> str:
     return f"friction is self-locking at {where}: friction increases the normal force of the rider on the cable"
 
 
+def rope_left(model: Model, number: int, reason: int) -> str:
+    """Return in words why a run with a rope ended, by the number of a coupling and a reason (engine/events/rope.c)."""
+    coupling = model.couplings[number]
+    if reason == 0:
+        return f'a rope leaves sheave "{coupling.name}", as its wrap angle reaches {MIN_WRAP:g} rad,'
+    if reason == 1:
+        return (f'a rope lifts off sheave "{coupling.name}", as its tension is not above rho v² for the mass rho of a '
+                "length at the speed v,")
+    return f'a span of rope "{coupling.name}" becomes too short to be modelled'
+
+
 def describe_dof(model: Model, dof: int, coupling: int | None = None) -> str:
     """Return the part and place of a dof, or the coupling with this number."""
     if coupling is not None:
@@ -128,6 +140,9 @@ def describe_dof(model: Model, dof: int, coupling: int | None = None) -> str:
     if (found := _node(model, dof)) is not None:
         cable, node = found
         return f'cable "{cable.name}" at s = {cable.mesh.node_s[node]:.6g} m'
+    for rope in model.ropes:
+        if rope.coordinates.start <= dof < rope.coordinates.stop:
+            return f'rope "{rope.part.name}"'
     return [f'body "{body.name}"' for body in model.bodies if body.dof <= dof][-1]
 
 

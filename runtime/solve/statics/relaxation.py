@@ -317,6 +317,9 @@ class _Search(Generic[S]):
         """Return a state of rest to the tolerance: with friction, or one that Newton's method does not find."""
         self._go_to(here)
         found = stability(self.problem)
+        if off := self.problem.off_sheaves():
+            raise EquilibriumError(f"the scene came to rest where {off}; the state is kept in .state",
+                                   self.made.of(self.problem, found), 1.0)
         if self.sticking:
             message = (f"friction of {' and '.join(self.sticking)} has part in this state, which is one of many: where "
                        "it stops depends on how the motion is damped")

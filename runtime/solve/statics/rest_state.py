@@ -17,6 +17,7 @@ from ...parts.joint import Joint
 from ...parts.part import Part
 from ...parts.paths import path_of, value_at
 from ...parts.plane import called
+from ...parts.rope import Rope
 from ...parts.scene_data import SceneData
 from ...parts.validation import show
 from .stability import Stability
@@ -47,9 +48,13 @@ def layout(scene: SceneData) -> dict[str, list[Any]]:
     return found
 
 
-def _without_ends(part: Part) -> str | tuple[str, str]:
-    """Return the name of a part, of a joint with its kind, which determines the number of its unknowns."""
+def _without_ends(part: Part) -> Any:
+    """Return the name of a part, with what determines the number of its unknowns: the kind of a joint, the elements and
+    zones of a rope.
+    """
     name = part.given_name or part.kind
+    if isinstance(part, Rope):
+        return name, part.elements_of_spans, [(each.name, each.n_zones, each.turns_round) for each in part.sheaves]
     return (name, part.joint_kind) if isinstance(part, Joint) else name
 
 
@@ -257,6 +262,12 @@ class RestState(NamedArrays):
             if moved > POSITION_TOLERANCE * size:
                 raise SceneError("scene", f'the state to start from has an end of the joint "{joint.name}" '
                                  f"{moved:.3g} m from where it is here", "take an equilibrium of this scene")
+        for rope in model.ropes:
+            ends = np.arange(rope.coordinates.start, rope.coordinates.stop)[rope.fixed]
+            if (moved := float(np.abs(q[0] - model.q)[ends].max(initial=0.0))) > POSITION_TOLERANCE * size:
+                raise SceneError("scene", f'the state to start from has an end of rope "{rope.part.name}", or the '
+                                 f"stress-free length there, {moved:.3g} m from where it is here",
+                                 "take an equilibrium of this scene")
         if model.cables:
             own = slice(0, model.cables[-1].coordinates.stop)
             fixed = model.unknown_of_dof[own] == -1
@@ -275,8 +286,8 @@ class RestState(NamedArrays):
                                  f'start from has {show(self.turned[label], "rad")}', SIGNAL_START_REMEDY)
         moved = {dof: abs(value - self.static_state["q"][dof]) * model.weight[dof]
                  for dof, value in model.prescribed_at(0.0).items()}
-        if moved and (most := max(moved.values())) > POSITION_TOLERANCE * max(
-                cable.mesh.total for cable in model.cables):
+        lengths = [*(cable.mesh.total for cable in model.cables), *(rope.route.length for rope in model.ropes)]
+        if moved and (most := max(moved.values())) > POSITION_TOLERANCE * max(lengths):
             raise SceneError("scene", f"a motion begins {show(most, 'm')} from where the state to start from has it",
                              SIGNAL_START_REMEDY)
 

@@ -20,7 +20,7 @@ def with_moved_supports(model: Model, begin: dict[str, np.ndarray]) -> dict[str,
     A prescribed node that passes its free neighbour would turn the element between them back on itself, where Newton's
     method may leave it.
     """
-    if not model.motions:
+    if not model.motions or not model.cables:
         return begin
     q = begin["q"].copy()
     free = model.unknown_of_dof[: model.cables[-1].coordinates.stop] != -1
@@ -38,10 +38,14 @@ def fitted(kept: dict[str, np.ndarray], model: Model) -> dict[str, np.ndarray]:
     """Return a static state with the supports of a model, which may be drawn elsewhere: fixed coordinates are as drawn,
     tied ones follow, and free ones stay to the bit.
     """
+    q = kept["q"].copy()
+    for rope in model.ropes:
+        ends = np.arange(rope.coordinates.start, rope.coordinates.stop)[rope.fixed]
+        q[ends] = model.q[ends]
     if not model.cables:
-        return kept
+        return kept | {"q": q}
     own = slice(0, model.cables[-1].coordinates.stop)
-    q, drawn = kept["q"].copy(), model.q[own]
+    drawn = model.q[own]
     change = q[own] - drawn
     left = as_supports_leave(change, model.unknown_of_dof[own], model.combinations)
     q[own] = np.where(np.abs(left - change) > COORDINATE_ROUNDING * (1 + np.abs(q[own])), drawn + left, q[own])

@@ -13,6 +13,7 @@ from typing import Generic, TypeVar
 from ...checks.plausibility import implausible
 from ...errors import EquilibriumError, FunicularWarning
 from ...model.drag_forces import outside_tables
+from ...parts.rope import rough_sheaves
 from ...parts.scene_data import SceneData
 from ...parts.settings import EquilibriumSettings
 from ..notes.row_notes import rest_notes
@@ -62,6 +63,11 @@ def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestStat
         raise EquilibriumError(
             f"no equilibrium was reached: the path from the drawn state ends at {100 * reached:.4g} % of the load"
             f"{remedy}{problem.cause()}; the state there is kept in .state", state, reached)
+    if scene.ropes:
+        problem.restore(state.static_state)
+        if off := problem.off_sheaves():
+            raise EquilibriumError(f"the state found is not one of rest: {off}; the state is kept in .state", state,
+                                   reached)
     if settings.seek_stable and settings.method == "newton" and state.unstable_directions:
         problem.restore(state.static_state)
         state.check_stable(problem.cause() or spinning(problem))
@@ -73,7 +79,8 @@ def note(problem: StaticProblem, state: RestState) -> None:
     scene = problem.scene
     for parts, what in (([f'"{name}"' for name, slide in scene.slides.items() if slide.friction is not None], "slides"),
                         ([contact.where for contact in scene.contacts.values()
-                          if contact.is_hard and contact.friction_coefficient], "contacts")):
+                          if contact.is_hard and contact.friction_coefficient], "contacts"),
+                        (rough_sheaves(scene.ropes.values()), "ropes")):
         if parts:
             problem.messages.append(f"friction of {' and '.join(parts)} is left out: at rest {what} move freely")
     problem.messages += rest_notes(problem.scene, problem.model, problem.engine, state.static_state, state.couplings)

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 
-from ...engine import Engine
+from ...engine import Engine, outputs_by_name
 from ...model.build import build
 from ...model.model import Model
 from ...model.redundant_constraints import drop_redundant_rows
@@ -116,7 +116,7 @@ class StaticProblem(StaticState):
     def _extent(self) -> float:
         """Return the scene's size in m."""
         model = self.model
-        lengths = [cable.mesh.total for cable in model.cables]
+        lengths = [cable.mesh.total for cable in model.cables] + [rope.route.length for rope in model.ropes]
         lengths += [float(np.linalg.norm(model.q[b.configuration : b.configuration + model.dim])) for b in model.bodies]
         gaps = [np.subtract(*(attachment_points(model, end, model.q[None]) for end in force.attachments))
                 for force in model.point_forces]
@@ -174,11 +174,13 @@ class StaticProblem(StaticState):
             least = min(least, size)
             self.move(change)
             if size <= self.settings.tolerance * self.size:
-                return self.on_cables()
+                return self.on_cables() and not (self.fraction == 1.0 and self.off_sheaves())
         return False
 
     def cause(self) -> str:
         """Return why no stable state may be found, as the end of a message; empty where the cause is unknown."""
+        if left := self.off_sheaves():
+            return f"; {left}"
         if not self.slack:
             return ""
         name, part = max(self.slack.items(), key=lambda item: item[1])
@@ -192,6 +194,26 @@ class StaticProblem(StaticState):
         s = self.engine.state()["s"]
         past = np.maximum(-s, s - ends)
         return bool(np.all(past <= self.settings.tolerance * self.size))
+
+
+    def off_sheaves(self) -> str:
+        """Return where a rope of the state has left a sheave or a span has no length, in words, else ""."""
+        model = self.model
+        if not model.ropes:
+            return ""
+        q, numbers = self.engine.state()["q"], outputs_by_name("sheave", self.engine.static_outputs("sheave"))
+        for k, sheave in enumerate(model.sheaves):
+            centre = attachment_points(model, sheave.attachments[0], q[None])[0, : model.dim]
+            folded = any(sheave.sense * np.linalg.det([q[at : at + 2] - centre, q[at + 2 : at + 4]]) <= 0
+                         for at in sheave.nodes)  # its slope is tangent, but against the sense of travel
+            if folded or numbers["wrap_angle"][k] < sheave.least_wrap:
+                return f'the rope leaves sheave "{sheave.name}"'
+            if numbers["normal_force"][k] < 0.0:
+                return f'the rope lifts off sheave "{sheave.name}": it has no tension there'
+        for span in model.spans:
+            if q[span.s[1]] - q[span.s[0]] < span.least_length:
+                return f'a span of rope "{span.name}" becomes too short to be modelled'
+        return ""
 
 
 def static_model(scene: SceneData) -> Model:
@@ -222,6 +244,8 @@ def units_of(weight: np.ndarray, model: Model) -> np.ndarray:
 def _point_entries(model: Model) -> np.ndarray:
     """Return the entries of the configuration that are coordinates of points."""
     nodes = [node.dofs("r") for cable in model.nodes.values() for node in cable]
+    nodes += [range(node.start, node.start + model.dim) for rope in model.ropes for span in rope.spans
+              for node in map(span.node, range(span.n_elements + 1))]
     bodies = [range(body.configuration, body.configuration + model.dim) for body in model.bodies]
     return np.array([entry for part in (*nodes, *bodies) for entry in part], dtype=int)
 

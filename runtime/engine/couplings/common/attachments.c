@@ -97,6 +97,10 @@ int fu_attachment_coordinates(const fu_model *model, const fu_attachment *on, co
         for (int i = 0; i < n; ++i) at[i] = body->dof + i;
         return n;
     }
+    if (on->node >= 0) {
+        for (int d = 0; d < model->dim; ++d) at[d] = on->node + d;
+        return model->dim;
+    }
     if (on->cable < 0) return 0;
     const fu_cable *cable = &model->cables[on->cable];
     const int element = on->slide >= 0 ? state->segment[on->slide] : on->element, n = cable->coordinates;
@@ -120,6 +124,11 @@ static void point_of(const fu_model *model, const fu_attachment *on, const fu_st
         return;
     }
     memset(out->P, 0, sizeof(double) * (size_t)(dim * n));
+    for (int d = 0; on->node >= 0 && d < dim; ++d) {
+        out->P[d * n + d] = 1.0;
+        out->p[d] = state->q[on->node + d];
+        out->v[d] = state->v[on->node + d];
+    }
     if (on->cable >= 0 && on->slide < 0) {
         const fu_cable *cable = &model->cables[on->cable];
         const int first = cable->first + on->element * cable->per_node;

@@ -5,11 +5,12 @@
 
 #include "bodies/bodies.h"
 
-/* An attachment: a point with axes of the ground (cable and body -1), of a cable's element, of a body; or axes alone,
- * of the cable at a slide. */
+/* An attachment: a point with axes of the ground (cable, body and node -1), of a cable's element, of a body; a node of
+ * a rope, without axes; or axes alone, of the cable at a slide. */
 enum { FU_UP = -1, FU_CARRIED = -2 };
 typedef struct {
     int cable, body, element, slide; /* -1 if it is not on one */
+    int node;                        /* first dof of a node of a rope, -1 if it is not on one */
     double u[3];                     /* the point: of the ground; of the body in its axes */
     double N[FU_MAX_COORDINATES];    /* shape functions at the point of the element */
     const fu_frame_kernels *frame;   /* of a cable; null without axes */

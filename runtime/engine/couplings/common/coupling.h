@@ -71,6 +71,8 @@ typedef struct {
      * past_fluid is zero. */
     double (*kinetic_energy)(const fu_model *model, const fu_coupling *coupling, double t, const double *q,
                              const double *v, int past_fluid);
+    /* Returns the energy of gravity, J. Null: none. */
+    double (*potential_energy)(const fu_model *model, const fu_coupling *coupling, const double *q);
 } fu_inertia_operations;
 
 /* A lower bound of the distance at which a coupling acts. Operations may be skipped until motions have exceeded it

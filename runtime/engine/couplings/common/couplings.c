@@ -118,6 +118,15 @@ double fu_coupling_kinetic_energy(const fu_model *model, double t, const double 
     return total;
 }
 
+double fu_coupling_potential_energy(const fu_model *model, const double *q)
+{
+    double total = 0.0;
+    FU_EACH_COUPLING(c, model->always_active, model->n_inertial ? model->n_always_active : 0)
+        if (c->has_inertia && c->type->inertia->potential_energy)
+            total += c->type->inertia->potential_energy(model, c, q);
+    return total;
+}
+
 void fu_coupling_forces(const fu_model *model, const fu_state *state, double *f)
 {
     const fu_couplings near = fu_acting(model, state);

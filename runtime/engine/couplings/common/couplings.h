@@ -26,6 +26,7 @@ void fu_coupling_step_tangents(const fu_model *model, const fu_equations *at, fu
 void fu_coupling_inertia(const fu_model *model, const double *q, const double *a, double *f);
 void fu_coupling_masses(const fu_model *model, const double *q, double scale, fu_system *system);
 double fu_coupling_kinetic_energy(const fu_model *model, double t, const double *q, const double *v, int past_fluid);
+double fu_coupling_potential_energy(const fu_model *model, const double *q);
 void fu_coupling_forces(const fu_model *model, const fu_state *state, double *f);
 void fu_coupling_external_forces(const fu_model *model, double t, const double *q, double *f);
 double fu_coupling_external_power(const fu_model *model, const fu_state *state);

@@ -134,8 +134,9 @@ int fu_ties_a_frame(const fu_model *model, int which)
     return 0;
 }
 
+static const char *const role[] = {"joint", 0};
 static const fu_field fields[] = {
-    FU_FIELD(fu_joint, kernel, FU_KERNELS, 0),          FU_FIELD_ARRAY(fu_joint, attachments, FU_ATTACHMENT),
+    FU_FIELD(fu_joint, kernel, FU_KERNELS, role),       FU_FIELD_ARRAY(fu_joint, attachments, FU_ATTACHMENT),
     FU_FIELD_AS("drive", fu_joint, signal, FU_INTEGER), FU_FIELD(fu_joint, of_points, FU_INTEGER, 0),
     FU_FIELD_AS("base", fu_joint, c0, FU_REAL),         {0},
 };
@@ -149,16 +150,20 @@ static const fu_output output_fields[] = {
 
 static const fu_start_operations start = {.may_be_open = may_be_open};
 
-const fu_coupling_type fu_joint_type = {
-    .name = "joint",
-    .size = sizeof(fu_joint),
-    .fields = fields,
-    .output_fields = output_fields,
-    .residual = residual,
-    .tangent = tangent,
-    .rows = fu_joint_rows,
-    .take_forces = take_forces,
-    .outputs = outputs,
-    .gaps = gaps,
-    .start = &start,
-};
+#define TYPE(kind)                                                                                                     \
+    {                                                                                                                  \
+        .name = kind,                                                                                                  \
+        .size = sizeof(fu_joint),                                                                                      \
+        .fields = fields,                                                                                              \
+        .output_fields = output_fields,                                                                                \
+        .residual = residual,                                                                                          \
+        .tangent = tangent,                                                                                            \
+        .rows = fu_joint_rows,                                                                                         \
+        .take_forces = take_forces,                                                                                    \
+        .outputs = outputs,                                                                                            \
+        .gaps = gaps,                                                                                                  \
+        .start = &start,                                                                                               \
+    }
+
+const fu_coupling_type fu_joint_type = TYPE("joint");
+const fu_coupling_type fu_anchor_type = TYPE("anchor"); /* between the end of a rope and a body */

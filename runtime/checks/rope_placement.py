@@ -1,0 +1,105 @@
+"""Checks of ropes against their scene, and notes on their bending at sheaves."""
+
+from __future__ import annotations
+
+from math import pi
+
+from ..errors import SceneError, near
+from ..parts.attachment import Attachment
+from ..parts.cable import Cable
+from ..parts.event import Event
+from ..parts.part import Part
+from ..parts.plane import called
+from ..parts.rope import Rope
+from ..parts.rope_route import MAX_LAYER
+from ..parts.scene_data import SceneData
+from ..parts.validation import show
+from .placement import placed_attachment, report
+from .whole_scene import check_plane
+
+MIN_RADIUS_RATIO = 10.0
+"""Radius of a sheave over the diameter of its rope below which the bending stress is reported."""
+MAX_PLAUSIBLE_WRAP = 1.5 * pi
+"""Wrap angle without whole turns, in rad, above which the side of a sheave may be wrong."""
+
+
+def placed_rope(scene: SceneData, rope: Rope) -> Rope:
+    """Return the rope with complete attachments, checked to lie in the plane and to have a possible route."""
+    for cable in scene.cables.values():
+        _check_pair(rope.where, rope, cable)
+    held = [item.held_at(_held(scene, rope, k, item.end)) for k, item in enumerate(rope.route)]
+    rope = rope.model_copy(update={"route": tuple(held)})
+    others = scene.copied()
+    others.put(rope)
+    check_plane(others)
+    for message in _notes(scene, rope):
+        report(scene, message)
+    return rope
+
+
+def check_apart_from_ropes(scene: SceneData, part: Part) -> None:
+    """Raise SceneError for a part that names a rope or a sheave, on which nothing can act or be measured yet."""
+    if not scene.ropes:
+        return
+    for name in part.refers_to():
+        rope = next((rope for rope in scene.ropes.values()
+                     if name == rope.name or any(name == sheave.name for sheave in rope.sheaves)), None)
+        if rope is None:
+            continue
+        what = "a rope" if name == rope.name else f'a sheave of rope "{rope.name}"'
+        if isinstance(part, Event):
+            raise SceneError(part.where, f'"{name}" is {what}, whose results cannot be watched',
+                             f"""watch a body, or give function=, which gets state["{rope.name}.position"]""")
+        raise SceneError(part.where, f'"{name}" is {what}, to which no other part can be connected',
+                         "take a body that an end or a sheave of the rope is on")
+
+
+def check_beside_ropes(scene: SceneData, cable: Cable) -> None:
+    """Raise SceneError for a cable in space, or in another plane, beside ropes."""
+    for rope in scene.ropes.values():
+        _check_pair(cable.where, rope, cable)
+
+
+def _check_pair(where: str, rope: Rope, cable: Cable) -> None:
+    """Raise SceneError unless a cable lies in the plane of a rope."""
+    if cable.dim != rope.dim:
+        raise SceneError(where, f'rope "{rope.name}" is planar, but the elements of cable "{cable.name}" '
+                         f"({cable.element}) are spatial",
+                         "take planar elements for all cables: ropes in space are not possible yet")
+    if cable.plane is not None:
+        raise SceneError(where, f'rope "{rope.name}" lies in {called(None)}, but cable "{cable.name}" in '
+                         f"{called(cable.plane)}", f"draw the scene in {called(None)}")
+
+
+def _held(scene: SceneData, rope: Rope, k: int, end: Attachment) -> Attachment:
+    """Return the complete attachment of an item of a route to a body or to the ground."""
+    if end.on in scene.cables:
+        raise SceneError(rope.where, f'route.{k} is held by cable "{end.on}"', "take a body or a point of the ground")
+    if end.on is not None and end.on not in scene.bodies:
+        raise SceneError(rope.where, f'route.{k}: there is no body "{end.on}"', near(end.on, scene.bodies))
+    return placed_attachment(scene, end, rope.where, f"route.{k}: ")
+
+
+def _notes(scene: SceneData, rope: Rope) -> list[str]:
+    """Return notes on a rope as drawn. Raises SceneError for an impossible route."""
+    try:
+        route = rope.drawn(scene.bodies)
+    except ValueError as error:
+        raise SceneError(rope.where, *error.args) from None
+    EA, EI = rope.stiffness
+    tension, diameter, notes = EA * (route.stretch - 1), 2 * rope.radius, []
+    for item, arc in zip(rope.sheaves, route.sheaves, strict=True):
+        sheave = f"{rope.where}: {item.where}"
+        if EI > tension * (MAX_LAYER * arc.radius)**2:
+            notes.append(f"{sheave}: at a tension of {show(tension, 'N')} the rope's bending reaches further than "
+                         f"{MAX_LAYER:g} of the radius {show(arc.radius, 'm')} along the span: sqrt(EI / T) is "
+                         f"{show((EI / tension)**0.5, 'm') if tension else 'infinite'}, so that its tangent points are "
+                         "inaccurate; take a thinner rope, a larger sheave, or more tension")
+        if arc.radius < MIN_RADIUS_RATIO * diameter:
+            stress = rope.material.youngs_modulus * rope.radius / arc.radius
+            notes.append(f"{sheave}: its radius {show(arc.radius, 'm')} is below {MIN_RADIUS_RATIO:g} diameters of the "
+                         f"rope, {show(diameter, 'm')}: a bending stress of {stress:.3g} Pa, E d / (2 R)")
+        if arc.wrap > MAX_PLAUSIBLE_WRAP and not item.turns:
+            notes.append(f"{sheave}: the rope runs around it by {show(arc.wrap, 'rad')} and crosses itself; give the "
+                         "other side if that is not meant")
+    return notes

@@ -1,0 +1,63 @@
+/* Ropes that leave what they run over: a run ends there, as the equations do not hold beyond. The reasons are the wrap
+ * angle, the normal force, and the length of a span. */
+#include "couplings/common/coupling_events.h"
+#include "couplings/rope/rope.h"
+#include "equations/run.h"
+
+enum { WRAP, PRESSURE, N_FUNCTIONS };
+
+static int functions(const fu_coupling *coupling, fu_event_function *out)
+{
+    (void)coupling;
+    for (int k = 0; out && k < N_FUNCTIONS; ++k) out[k] = (fu_event_function){.which = k, .direction = -1};
+    return N_FUNCTIONS;
+}
+
+static double value(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
+{
+    return which == WRAP ? fu_wrap_margin(run->model, coupling, state) : fu_wrap_pressure(run->model, coupling, state);
+}
+
+/* Ends the run; returns its status. */
+static int leave(fu_run *run, const fu_coupling *coupling, int reason)
+{
+    run->left = coupling->number;
+    run->left_by = reason;
+    return FU_ROPE_LEFT;
+}
+
+static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
+{
+    (void)side;
+    *what = which == WRAP ? "left the sheave" : "lifted off";
+    return leave(run, coupling, which);
+}
+
+static int begin(fu_run *run, const fu_coupling *coupling)
+{
+    for (int which = 0; which < N_FUNCTIONS; ++which)
+        if (value(run, coupling, &run->now, which) < 0.0) return leave(run, coupling, which);
+    return FU_RUNNING;
+}
+
+const fu_coupling_events fu_sheave_events = {.functions = functions, .value = value, .act = act, .begin = begin};
+
+static double margin(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
+{
+    (void)which;
+    return fu_span_margin(run->model, coupling, state);
+}
+
+static int vanish(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
+{
+    (void)side, (void)which;
+    *what = "became too short";
+    return leave(run, coupling, N_FUNCTIONS);
+}
+
+static int begin_span(fu_run *run, const fu_coupling *coupling)
+{
+    return margin(run, coupling, &run->now, 0) < 0.0 ? leave(run, coupling, N_FUNCTIONS) : FU_RUNNING;
+}
+
+const fu_coupling_events fu_span_events = {.direction = -1, .value = margin, .act = vanish, .begin = begin_span};

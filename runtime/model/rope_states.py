@@ -1,0 +1,152 @@
+"""Results of ropes in states of a model."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..parts.rope import Rope
+from ..parts.rope_route import DrawnArc, DrawnRoute
+from .model import Model
+from .ropes import PER_NODE, AnchorModel, RopeModel, SheaveModel, SpanCoordinates
+from .states import attachment_points, spatial
+
+POINTS_OF_ELEMENT = 4
+"""Points of an element beside its last one at which results have the rope's position."""
+MOTION_STEP = 1e-5
+"""Fraction of a motion by which it is differenced."""
+WRAP_STEP = np.pi / 18
+"""Largest angle between points of a wrap as drawn, rad."""
+
+
+def rope_state(model: Model, rope: RopeModel, q: np.ndarray) -> dict[str, np.ndarray]:
+    """Return points along a rope in configurations (T, n_q): position (T, points, 3) in m, and their stress-free
+    arc-length s (T, points) in m.
+    """
+    sheaves = {sheave.before.first: sheave for sheave in model.sheaves}
+    offset = len(rope.route.sheaves) - len(rope.spans) + 1
+    places: list[np.ndarray] = []
+    lengths: list[np.ndarray] = []
+    for k, span in enumerate(rope.spans):
+        position, s = _span_points(span, q)
+        places.append(position)
+        lengths.append(s)
+        if span.first in sheaves:
+            number = (k + offset) % len(rope.route.sheaves)
+            n = _wrap_count(rope.route.sheaves[number])
+            on = _wrap_points(model, sheaves[span.first], q, n)
+            zones = q[:, rope.sheaves[number].s]
+            zones[:, -1] += sheaves[span.first].closing
+            places.append(on)
+            lengths.append(np.stack([np.interp(np.linspace(0, 1, n)[1:-1], np.linspace(0, 1, zones.shape[1]), each)
+                                     for each in zones]))
+    return {"position": spatial(np.concatenate(places, axis=1)), "s": np.concatenate(lengths, axis=1)}
+
+
+def rope_motion(model: Model, rope: RopeModel, q: np.ndarray, dofs: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the displacement (n, points, 3) of points along a rope, and the changes (n, points) of s there, in small
+    motions dofs (n, n_dof) about q: by central differences, with errors of `MOTION_STEP` squared.
+    """
+    one, other = (rope_state(model, rope, _moved(model, q, sign * MOTION_STEP * dofs)) for sign in (-1, 1))
+    changes = {key: (other[key] - one[key]) / (2 * MOTION_STEP) for key in one}
+    return {"displacement": changes["position"], "s": changes["s"]}
+
+
+def _moved(model: Model, q: np.ndarray, dofs: np.ndarray) -> np.ndarray:
+    """Return the configurations (n, n_q) of flexible parts and bodies of a planar model moved by small dofs."""
+    found = np.tile(q, (len(dofs), 1))
+    n = min((body.dof for body in model.bodies), default=min(len(q), dofs.shape[1]))
+    found[:, :n] += dofs[:, :n]
+    for body in model.bodies:
+        b, d, turn = body.configuration, body.dof, dofs[:, body.dof + model.dim]
+        found[:, b : b + model.dim] += dofs[:, d : d + model.dim]
+        found[:, b + 2] -= q[b + 3] * turn  # cosine and sine
+        found[:, b + 3] += q[b + 2] * turn
+        found[:, b + 4 : b + 4 + body.modes] += dofs[:, d + 3 : d + 3 + body.modes]
+    return found
+
+
+def _wrap_count(arc: DrawnArc) -> int:
+    """Return the number of points of a wrap, with both tangent points."""
+    return max(2, int(np.ceil(arc.wrap / WRAP_STEP)) + 1)
+
+
+def points_of_spans(rope: Rope, route: DrawnRoute) -> list[tuple[slice, tuple[int, slice] | None]]:
+    """Return the points of each span among those of its rope, and of the wrap after it the number of its sheave and its
+    points, with both tangent points; the last one of a closed rope is its first point again.
+    """
+    offset, at, found = len(route.sheaves) - len(route.spans) + 1, 0, []
+    for k, elements in enumerate(rope.elements_of_spans):
+        span = slice(at, at + POINTS_OF_ELEMENT * elements + 1)
+        at, wrap = span.stop, None
+        if rope.closed or k + 1 < len(route.spans):
+            number = (k + offset) % len(route.sheaves)
+            wrap = number, slice(span.stop - 1, span.stop - 1 + _wrap_count(route.sheaves[number]))
+            at = wrap[1].stop - 1
+        found.append((span, wrap))
+    return found
+
+
+def as_drawn(rope: Rope, route: DrawnRoute) -> dict[str, np.ndarray]:
+    """Return position (points, 3) and s (points,) of `rope_state` for a rope as drawn, in m."""
+    places, lengths, s = [], [], 0.0
+    for k, (span, wrap) in enumerate(points_of_spans(rope, route)):
+        drawn, share = route.spans[k], np.linspace(0, 1, span.stop - span.start)
+        places.append(drawn.start + share[:, None] * (drawn.end - drawn.start))
+        lengths.append(s + share * drawn.length / route.stretch)
+        s += drawn.length / route.stretch
+        if wrap is not None:
+            arc, share = route.sheaves[wrap[0]], np.linspace(0, 1, wrap[1].stop - wrap[1].start)[1:-1]
+            angle = arc.angle_on + share * (arc.angle_off - arc.angle_on)
+            places.append(arc.centre + arc.radius * np.stack([np.cos(angle), np.sin(angle)], axis=1))
+            lengths.append(s + share * arc.length / route.stretch)
+            s += arc.length / route.stretch
+    return {"position": np.pad(np.concatenate(places), ((0, 0), (0, 1))), "s": np.concatenate(lengths)}
+
+
+def coordinates(rope: RopeModel, q: np.ndarray, v: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the coordinates of a rope and their rates, (T, n), in configurations q and rates v of a model."""
+    return {"coordinates": q[:, rope.coordinates], "coordinate_rates": v[:, rope.coordinates]}
+
+
+def _span_points(span: SpanCoordinates, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return position (T, points, dim) and s (T, points) of points of a span: cubics between the nodes."""
+    nodal = q[:, span.nodes].reshape(len(q), -1, PER_NODE, span.dim)
+    ends = q[:, list(span.s)]
+    s = ends[:, :1] + span.share * (ends[:, 1:] - ends[:, :1])
+    x = np.arange(POINTS_OF_ELEMENT) / POINTS_OF_ELEMENT
+    values = np.stack([1 - 3 * x**2 + 2 * x**3, 3 * x**2 - 2 * x**3])
+    slopes = np.stack([x - 2 * x**2 + x**3, x**3 - x**2])
+    length = np.diff(s)[..., None, None]
+    inside = sum(values[e][:, None] * nodal[:, e : e + span.n_elements, None, 0]
+                 + length * slopes[e][:, None] * nodal[:, e : e + span.n_elements, None, 1] for e in range(2))
+    at = s[:, :-1, None] + np.diff(s)[..., None] * x
+    return (np.concatenate([inside.reshape(len(q), -1, span.dim), nodal[:, -1:, 0]], axis=1),
+            np.concatenate([at.reshape(len(q), -1), s[:, -1:]], axis=1))
+
+
+def _wrap_points(model: Model, sheave: SheaveModel, q: np.ndarray, n: int) -> np.ndarray:
+    """Return the inner ones of n points (T, n - 2, dim) at equal angles along a wrap."""
+    centre = attachment_points(model, sheave.attachments[0], q)[:, : model.dim]
+    on, off = (q[:, node : node + model.dim] - centre for node in sheave.nodes)
+    length = q[:, sheave.s[-1]] - q[:, sheave.s[0]] + sheave.closing
+    part = sheave.sense * np.arctan2(on[:, 0] * off[:, 1] - on[:, 1] * off[:, 0], np.sum(on * off, axis=1))
+    wrap = part + 2 * np.pi * np.round((length / sheave.radius - part) / (2 * np.pi))
+    angle = (np.arctan2(on[:, 1], on[:, 0])[:, None]
+             + sheave.sense * wrap[:, None] * np.linspace(0.0, 1.0, n)[1:-1])
+    return centre[:, None] + sheave.radius * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+
+
+def end_forces(model: Model, rope: RopeModel, reaction: np.ndarray, of_anchors: dict[int, np.ndarray],
+               anchors: list[AnchorModel]) -> dict[str, np.ndarray]:
+    """Return the force of a rope on what holds its start and its end, (T, 3) in N.
+
+    reaction (T, n_dof): on fixed dofs; of_anchors: by number among the anchors their force on the body.
+    """
+    found = {}
+    if rope.part.closed:
+        return {"start_force": np.zeros((len(reaction), 3)), "end_force": np.zeros((len(reaction), 3))}
+    for name, span, node in (("start_force", rope.spans[0], 0), ("end_force", rope.spans[-1], -1)):
+        first = span.node(node).start
+        held = next((k for k, anchor in enumerate(anchors) if anchor.attachments[0].node == first), None)
+        found[name] = of_anchors[held] if held is not None else -spatial(reaction[:, first : first + model.dim])
+    return found

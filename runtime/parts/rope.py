@@ -1,0 +1,250 @@
+"""Ropes that run over sheaves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+from itertools import chain
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
+from pydantic import BeforeValidator, Field, model_validator
+
+from .attachment import Attachment
+from .material import Material
+from .modal_body import ModalBody
+from .part import Part
+from .quantity import Quantity, vector_of_time
+from .rigid_body import RigidBody
+from .rope_items import ROUTE_ITEMS, SIDES, Anchor, RouteItem, Sheave
+from .rope_route import MAX_LAYER, DrawnRoute, RoutePoint, default_senses, drawn_route
+from .schemas import POINT, checked
+from .section import AnySection, Rectangle, outer_radius_of
+from .section_stiffness import law_of_measures, section_stiffness
+from .validation import LENGTH_TOLERANCE, MAX_COUNT, Flag, Name, items, one_of, positive, show, shown, whole_number
+
+ELEMENTS = ("cable8p",)
+"""Elements of spans, whose material points move along them."""
+LAW = law_of_measures("engineering", "exact", "full")
+"""The law of the stiffness: tension is EA (stretch - 1)."""
+ORDER = "give an Anchor, then one Sheave or more, then an Anchor; or closed=True"
+
+
+def _listed(value: Any) -> list[Any]:
+    if (given := items(value, 2)) is None:
+        raise ValueError(f"must be a list of 2 items or more, got {shown(value)}", ORDER)
+    return given
+
+
+def _elements(value: Any) -> int | tuple[int, ...]:
+    if (given := items(value, 1)) is not None:
+        return tuple(map(whole_number, given))
+    return whole_number(value)
+
+
+COUNT = {"type": "integer", "minimum": 1, "maximum": MAX_COUNT}
+Route = Annotated[tuple[Annotated[RouteItem, ROUTE_ITEMS.checked()], ...], Field(json_schema_extra={"minItems": 2}),
+                  BeforeValidator(_listed)]
+ElementsOfSpans = Annotated[int | tuple[int, ...], checked(_elements, {
+    "anyOf": [COUNT, {"type": "array", "items": COUNT, "minItems": 1}]})]
+
+
+class Rope(Part):
+    """A rope that runs over sheaves in the plane z = 0: it stretches, bends, has mass and slides.
+
+    It ends at two anchors, and is straight and tangent to the sheaves as drawn. A span is what is between two tangent
+    points, or a tangent point and an anchor; its elements are equal, and the material moves through them. Sheaves have
+    no mass but that of the body they are on. On a sheave the rope bends to its radius; the layer sqrt(EI / T) in which
+    the curvature begins is not resolved but moves the span away from the sheave by EI / (2 T R).
+
+    Given is the ``tension`` or the ``length``; gravity acts from the start.
+
+    route: an `Anchor`, one `Sheave` or more, an `Anchor`, in the rope's order; of a closed rope two sheaves or more
+    closed: whether the last sheave leads to the first one, as of a belt
+    elements: number of elements of each span, or a list of one number for each span
+    tension: at the route's first point, uniform as drawn, N
+    length: stress-free length of the whole rope, m, at most the drawn length; the stretch is uniform as drawn
+    element: name of the element
+    section: cross-section, whose height is in the plane
+    material: material, with the damping of the rope
+    """
+
+    kind = "rope"
+    group = "ropes"
+    parts_within = (Sheave,)
+    results: ClassVar[dict[str, Quantity]] = {
+        "position": Quantity(("time", "{part}.point", "xyz"), "m", "points along the rope", POINT),
+        "s": Quantity(("time", "{part}.point"), "m", "stress-free arc-length of these points from the first anchor"),
+        "start_force": vector_of_time("N", "force on what holds the first anchor"),
+        "end_force": vector_of_time("N", "force on what holds the last anchor"),
+        "coordinates": Quantity(("time", "{part}.coordinate"), "m or 1", "places and slopes of nodes in the plane, "
+                                "stress-free arc-lengths of ends of spans and zones, rotations of sheaves"),
+        "coordinate_rates": Quantity(("time", "{part}.coordinate"), "m/s or 1/s", "rates of the coordinates"),
+    }
+    name: Name
+    route: Route
+    closed: Flag = False
+    section: AnySection
+    material: Material
+    elements: ElementsOfSpans = 4
+    tension: Annotated[float, positive("N")] | None = None
+    length: Annotated[float, positive("m")] | None = None
+    element: Annotated[str, one_of(ELEMENTS)] = ELEMENTS[0]
+
+    @model_validator(mode="after")
+    def _has_a_route(self) -> Rope:
+        if self.closed and len(self.sheaves) < max(2, len(self.route)):
+            raise ValueError("is closed, and its route has an Anchor" if len(self.sheaves) < len(self.route) else
+                             "is closed around one sheave", "give two sheaves or more, without anchors")
+        for end, item in () if self.closed else (("first", self.route[0]), ("last", self.route[-1])):
+            if not isinstance(item, Anchor):
+                raise ValueError(f"route must begin and end with an Anchor, its {end} item is the {item.where}", ORDER)
+        if any(isinstance(item, Anchor) for item in self.route[1:-1]):
+            raise ValueError("route has an Anchor between its ends", "let two ropes end there")
+        if not self.sheaves:
+            raise ValueError("route has no sheave", "take scene.cable() between two points")
+        names = [sheave.name for sheave in self.sheaves]
+        if self.name in names:
+            raise ValueError(f'route has a sheave "{self.name}", the name of the rope', "give each its own name")
+        if twice := next((name for k, name in enumerate(names) if name in names[:k]), None):
+            raise ValueError(f'route has two items named "{twice}"', "give each its own name")
+        return self
+
+    @model_validator(mode="after")
+    def _is_of_one_length(self) -> Rope:
+        if (self.tension is None) == (self.length is None):
+            have = "neither tension nor length" if self.tension is None else "tension and length"
+            raise ValueError(f"has {have}", "give one of them")
+        spans = self.n_spans
+        if isinstance(self.elements, tuple) and len(self.elements) != spans:
+            raise ValueError(f"elements must be one number or {spans}, one for each span, got {len(self.elements)}")
+        return self
+
+    @model_validator(mode="after")
+    def _fits_its_sheaves(self) -> Rope:
+        for sheave in self.sheaves:
+            if sheave.radius <= self.radius:
+                raise ValueError(f'radius of sheave "{sheave.name}" must be above that of the rope, '
+                                 f"{show(self.radius, 'm')}, got {show(sheave.radius, 'm')}",
+                                 "radius is that of the groove plus that of the rope")
+        return self
+
+    @model_validator(mode="after")
+    def _is_of_a_modelled_material(self) -> Rope:
+        if self.material.mass_damping:
+            raise ValueError("its material has mass_damping, which ropes do not have",
+                             "give damping_time, or the drag of the bodies on it")
+        return self
+
+    @property
+    def dim(self) -> int:
+        """Return 2: ropes are planar."""
+        return 2
+
+    @property
+    def sheaves(self) -> tuple[Sheave, ...]:
+        """Return its sheaves in their order."""
+        return tuple(item for item in self.route if isinstance(item, Sheave))
+
+    @property
+    def n_spans(self) -> int:
+        """Return the number of its spans."""
+        return len(self.route) - (not self.closed)
+
+    @property
+    def elements_of_spans(self) -> tuple[int, ...]:
+        """Return the number of elements of each span."""
+        return self.elements if isinstance(self.elements, tuple) else (self.elements,) * self.n_spans
+
+    @property
+    def radius(self) -> float:
+        """Return half the height of its section in m, 0 where that is not told."""
+        if isinstance(self.section, Rectangle):
+            return self.section.height / 2
+        return outer_radius_of(self.section) or 0.0
+
+    @property
+    def stiffness(self) -> tuple[float, float]:
+        """Return EA in N and EI in N m²."""
+        EA, EI = section_stiffness(LAW, self.section, self.material, self.dim).tolist()
+        return EA, EI
+
+    def named_within(self) -> Iterator[Part]:
+        """Yield its sheaves in their order."""
+        return iter(self.sheaves)
+
+    def refers_to(self) -> Iterator[str]:
+        """Yield the names of the bodies that hold its ends and sheaves."""
+        return chain.from_iterable(item.refers_to() for item in self.route)
+
+    def off_plane(self) -> Iterator[str]:
+        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
+        for k, item in enumerate(self.route):
+            yield from (f"route.{k} {quantity}" for quantity in item.off_plane())
+
+    def entries_with(self, changes: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the entries of a rope with changes; tension replaces length, and length tension."""
+        other = {"tension": "length", "length": "tension"}
+        left = {other[name]: None for name in other if changes.get(name) is not None}
+        return super().entries_with(left | {**changes})
+
+    def refined(self) -> Rope:
+        """Return the rope with elements of half the length, and twice the zones of wraps, as far as possible."""
+        route = [item.refined() if isinstance(item, Sheave) else item for item in self.route]
+        return self.remade({"elements": tuple(2 * n for n in self.elements_of_spans), "route": route})
+
+    def drawn(self, bodies: Mapping[str, RigidBody | ModalBody]) -> DrawnRoute:
+        """Return its route as drawn among the bodies of its scene, in the plane.
+
+        Its attachments must be complete, as in a scene. Raises ValueError(cause, remedy) for an impossible route and
+        for a rope that is not taut.
+        """
+        centres = np.array([_place(item.end, bodies)[:2] for item in self.route])
+        senses = (default_senses(np.concatenate([centres[-1:], centres, centres[:1]])) if self.closed
+                  else [0, *default_senses(centres), 0])
+        points = [self._point(k, centres[k], senses[k]) for k in range(len(centres))]
+        route = drawn_route(points, self.radius, self.closed)
+        if offsets := self._offsets(self._stretch(route.length)):
+            points = [replace(point, offset=offsets.get(point.name, 0.0)) for point in points]
+            route = drawn_route(points, self.radius, self.closed)
+        return replace(route, stretch=self._stretch(route.length))
+
+    def _offsets(self, stretch: float) -> dict[str, float]:
+        """Return the distances by which bending moves the tangent points away from sheaves, m, by name; none without
+        tension, where they are not known. At low tension they are those of the longest layer for which they hold.
+        """
+        EA, EI = self.stiffness
+        tension = EA * (stretch - 1)
+        if tension <= 0:
+            return {}
+        return {sheave.name: min(EI / tension, (MAX_LAYER * sheave.radius)**2) / (2 * sheave.radius)
+                for sheave in self.sheaves}
+
+    def _point(self, k: int, centre: np.ndarray, sense: int) -> RoutePoint:
+        """Return a point of the route; sense: that of a sheave without a side."""
+        item = self.route[k]
+        if not isinstance(item, Sheave):
+            return RoutePoint(f"the {'last' if k else 'first'} anchor", centre)
+        sense = SIDES[item.side] if item.side else sense
+        return RoutePoint(item.where, centre, item.radius, sense, item.turns, item.name)
+
+    def _stretch(self, drawn: float) -> float:
+        """Return drawn over stress-free length; drawn: the length as drawn, m."""
+        if self.length is None:
+            assert self.tension is not None, f"{self.where} has neither tension nor length"
+            return 1 + self.tension / self.stiffness[0]
+        if self.length > (1 + LENGTH_TOLERANCE) * drawn:
+            raise ValueError(f"is never taut: its length {show(self.length, 'm')} exceeds that of its route as drawn, "
+                             f"{show(drawn, 'm')}, by {show(self.length - drawn, 'm')}",
+                             "give a smaller length, or tension")
+        return max(1.0, drawn / self.length)
+
+
+def _place(end: Attachment, bodies: Mapping[str, RigidBody | ModalBody]) -> np.ndarray:
+    """Return (3,): the place as drawn of a complete attachment to a body or to the ground, in m."""
+    return np.array(end.point) if end.on is None else bodies[end.on].point(end.point)
+
+
+def rough_sheaves(ropes: Iterable[Rope]) -> list[str]:
+    """Return the names in quotes of the sheaves on which ropes have friction."""
+    return [f'"{sheave.name}"' for rope in ropes for sheave in rope.sheaves if sheave.coefficient > 0]

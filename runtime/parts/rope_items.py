@@ -1,0 +1,199 @@
+"""The items of a rope's route: anchors, where it ends, and sheaves, which it runs over."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from numbers import Integral as WholeNumber
+from typing import Annotated, Any
+
+from pydantic import model_validator
+
+from .attachment import AnyAttachment, Attachment
+from .friction import AnyFriction, Friction
+from .part import Family, Part
+from .quantity import all_of_engine
+from .schemas import checked
+from .signal import AnySignal, Integral, Signal
+from .validation import NAMES_A_PART, Name, Vector, not_negative, one_of, positive, shown, xyz
+
+MAX_TURNS = 1000
+MAX_ZONES = 16
+"""Zones of a wrap for which the engine has room."""
+SIDES = {"left": 1, "right": -1}
+"""The senses in which the rope runs around a sheave on a side of it: 1 counter-clockwise."""
+
+
+class RouteItem(Part):
+    """Base of the items of a route."""
+
+    tag = "kind"
+
+    @property
+    def end(self) -> Attachment:
+        """Return the point that holds it; of a sheave its centre."""
+        raise NotImplementedError
+
+    def held_at(self, end: Attachment) -> RouteItem:
+        """Return the item at a complete attachment."""
+        raise NotImplementedError
+
+    def off_plane(self) -> Iterator[str]:
+        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
+        yield from self.end.off_plane()
+
+
+def _body(value: Any) -> str | None:
+    name = getattr(value, "name", value)
+    if name is not None and not isinstance(name, str):
+        raise ValueError(f"must be a body or its name, got {shown(value)}",
+                         "give a point of the ground as at=(x, y, z)")
+    return name
+
+
+class Anchor(RouteItem):
+    """An end of a rope, held at a point of a body or of the ground; the direction of the rope is free.
+
+    on: the body; by default the ground
+    at: point in the body's axes, by default its origin, or of the ground, m
+    """
+
+    kind = "anchor"
+    positional = ("on", "at")
+    on: Annotated[str | None, checked(_body, {"type": "string"}), NAMES_A_PART] = None
+    at: Annotated[Vector, xyz("m", of="on")] | None = None
+
+    @model_validator(mode="after")
+    def _is_somewhere(self) -> Anchor:
+        if self.on is None and self.at is None:
+            raise ValueError("has neither on nor at", "name a body, or give a point at=(x, y, z) of the ground")
+        return self
+
+    @property
+    def end(self) -> Attachment:
+        """Return the point that holds it."""
+        return Attachment.model_construct(on=self.on, at=self.at)
+
+    def held_at(self, end: Attachment) -> Anchor:
+        """Return the anchor at a complete attachment."""
+        return self.model_copy(update={"at": end.point})
+
+
+def _turns(value: Any) -> int:
+    if isinstance(value, bool) or not isinstance(value, WholeNumber) or not 0 <= int(value) <= MAX_TURNS:
+        raise ValueError(f"must be a whole number from 0 to {MAX_TURNS}, got {shown(value)}")
+    return int(value)
+
+
+def _zones(value: Any) -> int:
+    if isinstance(value, bool) or not isinstance(value, WholeNumber) or not 1 <= int(value) <= MAX_ZONES:
+        raise ValueError(f"must be a whole number from 1 to {MAX_ZONES}, got {shown(value)}")
+    return int(value)
+
+
+class Sheave(RouteItem):
+    """A sheave that a rope runs over, with friction or without.
+
+    at: its centre, a point of the ground, a body, or a point in the axes of a body
+    radius: from its centre to the axis of the rope, that of the groove plus that of the rope, m
+    side: "left" or "right": where it lies, looking along the route. A rope with the sheave on its left runs
+        counter-clockwise around it. By default the side to which the line through the centres of the route turns here
+    inertia: about its axis, kg m²; it rotates where this is above 0 or its motion is prescribed, else it is held
+    torque: of a motor or a brake on it, over time, N m; it turns about z, counter-clockwise
+    angle, velocity: of its rotation over time, prescribed, rad or rad/s
+    damping: of its bearing, N m s
+    friction: between rope and groove, a coefficient or a `Friction`, "regularised"; by default none
+    zones: number of parts of the wrap between which friction acts, and over each of which the tension is constant
+    turns: whole turns of the rope around it, in addition to the wrap angle between both spans
+    """
+
+    kind = "sheave"
+    positional = ("name", "at")
+    results = all_of_engine(
+        "sheave",
+        tension_on="tension of the rope where it runs on, in the rope's order",
+        tension_off="tension where it runs off",
+        wrap_angle="angle of the arc on the sheave",
+        force="force of the rope on what holds the sheave",
+        material_speed="stress-free length that passes in the rope's order, a second",
+        slip="largest speed of the rope on the sheave, in the rope's order",
+        normal_force="least of T - rho v² over the zones, the normal force times the radius on an angle",
+        torque="of the rope on the sheave, by friction",
+        angle="by which the sheave has turned",
+        residual="largest distance of the rope from its tangent points",
+    )
+    name: Name
+    at: AnyAttachment
+    radius: Annotated[float, positive("m")]
+    side: Annotated[str | None, one_of(SIDES, optional=True)] = None
+    inertia: Annotated[float, not_negative("kg m²")] = 0.0
+    friction: AnyFriction | None = None
+    torque: AnySignal | None = None
+    angle: AnySignal | None = None
+    velocity: AnySignal | None = None
+    damping: Annotated[float, not_negative("N m s")] = 0.0
+    zones: Annotated[int, checked(_zones, {"type": "integer", "minimum": 1, "maximum": MAX_ZONES})] = 8
+    turns: Annotated[int, checked(_turns, {"type": "integer", "minimum": 0, "maximum": MAX_TURNS})] = 0
+
+    @property
+    def coefficient(self) -> float:
+        """Return the coefficient of friction of the rope on it."""
+        return 0.0 if self.friction is None else self.friction.coefficient
+
+    @property
+    def slip_velocity(self) -> float:
+        """Return the speed at which friction is 0.7 of its limit, m/s."""
+        return Friction().velocity if self.friction is None else self.friction.velocity
+
+    @property
+    def n_zones(self) -> int:
+        """Return the number of zones of its wrap: without friction the tension is the same all over it."""
+        return self.zones if self.coefficient > 0 else 1
+
+    @property
+    def turns_round(self) -> bool:
+        """Return whether it rotates."""
+        return self.inertia > 0 or self.prescribed is not None
+
+    @property
+    def prescribed(self) -> Signal | None:
+        """Return its prescribed angle over time, rad; None where it turns freely."""
+        return self.angle if self.velocity is None else Integral(rate=self.velocity)
+
+    @model_validator(mode="after")
+    def _is_driven_once(self) -> Sheave:
+        drives = [name for name in ("torque", "angle", "velocity") if getattr(self, name) is not None]
+        if len(drives) > 1:
+            raise ValueError(f"has two drives, {drives[0]} and {drives[1]}", "give one of them")
+        if (drives or self.damping) and not self.turns_round:
+            raise ValueError(f"has {drives[0] if drives else 'damping'}, but no inertia", "give its inertia in kg m²")
+        if (drives or self.damping) and self.at.on is not None:
+            raise ValueError(f"has {drives[0] if drives else 'damping'} and is on a body, which would take the "
+                             "reaction", "hold it at the ground: drives of sheaves on bodies are not possible yet")
+        if self.friction is not None:
+            self.friction.check_coulomb()
+            if self.friction.sticks:
+                raise ValueError("has friction that sticks", 'give model="regularised", with a small velocity')
+        if self.coefficient > 0 and not self.turns_round and self.at.on is not None:
+            raise ValueError("has friction, but no inertia, and is on a body, which would take the moment of friction",
+                             "give its inertia in kg m², with which it turns, or hold it at the ground")
+        if self.inertia > 0 and not self.coefficient:
+            raise ValueError("has inertia, but no friction with the rope, which then never turns it",
+                             "give its friction, or leave the inertia out")
+        return self
+
+    @property
+    def end(self) -> Attachment:
+        """Return the point that holds its centre."""
+        return self.at
+
+    def refined(self) -> Sheave:
+        """Return the sheave with twice the zones, at most `MAX_ZONES`."""
+        return self.model_copy(update={"zones": min(2 * self.zones, MAX_ZONES)})
+
+    def held_at(self, end: Attachment) -> Sheave:
+        """Return the sheave at a complete attachment."""
+        return self.model_copy(update={"at": end})
+
+
+ROUTE_ITEMS = Family("route_item", 'an item such as Anchor("A") or Sheave("top", at=(0, 9, 0), radius=0.3)',
+                     (Anchor, Sheave))

@@ -1,0 +1,212 @@
+"""The route of a rope as drawn, in the plane: straight spans between sheaves, tangent to them, and the arcs on them.
+
+With u the direction of a span (unit) and n = u turned to the left by 90 degrees, the rope leaves a sheave of centre c,
+radius R and sense s at c - s R n. The centres of two neighbours are thus d = l u + (s2 R2 - s1 R1) n apart, which gives
+the length l and u. An end of the rope is a sheave of radius 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from math import atan2, hypot, tau
+
+import numpy as np
+
+from .validation import show
+
+MIN_WRAP = 1e-3
+"""Least wrap angle in rad: a smaller one is a sheave that the rope does not touch."""
+MIN_SPAN_RATIO = 0.05
+"""Least length of a span over the radii of the sheaves at its ends."""
+MAX_LAYER = 0.2
+"""Largest length sqrt(EI / T) of the layer of bending beside a sheave over its radius for which the shift EI / (2 T R)
+is a good approximation."""
+TOUCH_TOLERANCE = 1e-9
+"""Depth of a span in the circle of another sheave over its radius; sheaves side by side on one axle may have spans that
+coincide in the plane."""
+ANGLE_ROUNDING = 1e-9
+"""Of a wrap angle, in rad: this much below a whole turn is zero."""
+
+
+@dataclass(frozen=True, eq=False)
+class RoutePoint:
+    """An end of a rope or a sheave, as drawn.
+
+    label: its name in messages; centre: (2,) in m; radius: to the axis of the rope, m, 0 at an end; sense: 1 where the
+    rope runs counter-clockwise around it, -1 clockwise, 0 at an end or where that is not known; turns: whole turns
+    beside the wrap angle of the tangents; name: of the sheave; offset: of the tangent points beyond the radius, m.
+    """
+
+    label: str
+    centre: np.ndarray
+    radius: float = 0.0
+    sense: int = 0
+    turns: int = 0
+    name: str = ""
+    offset: float = 0.0
+
+    @property
+    def reach(self) -> float:
+        """Return the radius of the tangent points, m."""
+        return self.radius + self.offset
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnSpan:
+    """A straight span: start (2,) and end (2,) in m, length in m."""
+
+    start: np.ndarray
+    end: np.ndarray
+    length: float
+
+    @property
+    def direction(self) -> np.ndarray:
+        """Return (2,): the unit vector along the span."""
+        made: np.ndarray = (self.end - self.start) / self.length
+        return made
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnArc:
+    """The rope on the sheave ``name``: centre (2,) in m, radius of the rope's axis in m, sense as in `RoutePoint`.
+
+    tangent_radius: of the tangent points, m, above the radius for a rope that bends. angle_on, angle_off: of the two
+    tangent points from the centre, in rad, so that angle_off - angle_on is the sense times the wrap angle, whole turns
+    included.
+    """
+
+    name: str
+    centre: np.ndarray
+    radius: float
+    sense: int
+    angle_on: float
+    angle_off: float
+    tangent_radius: float
+
+    @property
+    def wrap(self) -> float:
+        """Return the wrap angle in rad, positive."""
+        return self.sense * (self.angle_off - self.angle_on)
+
+    @property
+    def length(self) -> float:
+        """Return the length of the rope on the sheave, m."""
+        return self.radius * self.wrap
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnRoute:
+    """A route as drawn, in the rope's order: one span more than sheaves, or of a closed one as many, the first from the
+    first sheave to the next.
+
+    stretch: drawn length over stress-free length, the same everywhere.
+    """
+
+    spans: tuple[DrawnSpan, ...]
+    sheaves: tuple[DrawnArc, ...]
+    stretch: float = 1.0
+
+    @property
+    def length(self) -> float:
+        """Return the drawn length of the whole rope, m."""
+        return sum(span.length for span in self.spans) + sum(arc.length for arc in self.sheaves)
+
+    @property
+    def free_length(self) -> float:
+        """Return the stress-free length of the whole rope, m."""
+        return self.length / self.stretch
+
+
+def default_senses(centres: np.ndarray) -> list[int]:
+    """Return the sides to which the polygon through all centres (n, 2) turns at the inner ones, as senses (n - 2).
+
+    0: the three centres lie on a line to rounding, or two of them coincide.
+    """
+    before, after = centres[1:-1] - centres[:-2], centres[2:] - centres[1:-1]
+    turn = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    size = np.hypot(*before.T) * np.hypot(*after.T)
+    return [int(sign) for sign in np.where(np.abs(turn) <= ANGLE_ROUNDING * size, 0, np.sign(turn))]
+
+
+def drawn_route(points: list[RoutePoint], rope_radius: float = 0.0, closed: bool = False) -> DrawnRoute:
+    """Return the route along the ends and sheaves of a rope, as drawn.
+
+    rope_radius: a lower bound of the lengths of spans, m; closed: all points are sheaves, and the last one leads to the
+    first. Raises ValueError(cause, remedy) for an impossible route.
+    """
+    ends = [*pairwise(points), (points[-1], points[0])] if closed else [*pairwise(points)]
+    spans = [_span(one, other, rope_radius) for one, other in ends]
+    before = [spans[-1], *spans[:-1]] if closed else spans
+    after = spans if closed else spans[1:]
+    sheaves = [_arc(point, *beside) for point, *beside in zip(points if closed else points[1:-1], before, after,
+                                                              strict=False)]
+    for span, both in zip(spans, ends, strict=True):
+        for point in points:
+            if point.radius and point not in both:
+                _check_clear(span, *both, point)
+    return DrawnRoute(tuple(spans), tuple(sheaves))
+
+
+def _span(one: RoutePoint, other: RoutePoint, rope_radius: float) -> DrawnSpan:
+    """Return the tangent from a point of a route to the next one. Raises ValueError where there is none."""
+    x, y = (other.centre - one.centre).tolist()
+    apart, across = hypot(x, y), other.sense * other.reach - one.sense * one.reach
+    least = max(MIN_SPAN_RATIO * max(one.radius, other.radius), rope_radius)
+    if apart <= abs(across):
+        raise ValueError(*_without_tangent(one, other, apart))
+    length = ((apart - across) * (apart + across)) ** 0.5
+    if length < least:
+        raise ValueError(f"the span from {one.label} to {other.label} must be {show(least, 'm')} or longer, "
+                         f"{MIN_SPAN_RATIO:g} of a sheave's radius and the rope's radius, got {show(length, 'm')}",
+                         "move them apart")
+    u = np.array([length * x + across * y, length * y - across * x]) / apart**2
+    n = np.array([-u[1], u[0]])
+    return DrawnSpan(one.centre - one.sense * one.reach * n, other.centre - other.sense * other.reach * n, length)
+
+
+def _without_tangent(one: RoutePoint, other: RoutePoint, apart: float) -> tuple[str, str]:
+    """Return cause and remedy for two points of a route without a tangent."""
+    large, small = (one, other) if one.radius >= other.radius else (other, one)
+    remedy = "move them apart, or take smaller radii"
+    if not small.radius:
+        return (f"{large.label} contains {small.label}: {show(apart, 'm')} from its centre, and its radius is "
+                f"{show(large.radius, 'm')}", remedy)
+    if one.sense == other.sense:
+        return f"{large.label} contains {small.label}: {_apart(one, other, apart)}", remedy
+    return (f"{one.label} and {other.label} overlap, so that the rope cannot pass between them: "
+            f"{_apart(one, other, apart)}", f"{remedy}, or lead the rope along one side of both")
+
+
+def _apart(one: RoutePoint, other: RoutePoint, apart: float) -> str:
+    """Return the distance and the radii of two sheaves as text."""
+    return (f"their centres are {show(apart, 'm')} apart, and their radii {show(one.radius, 'm')} and "
+            f"{show(other.radius, 'm')}")
+
+
+def _arc(point: RoutePoint, before: DrawnSpan, after: DrawnSpan) -> DrawnArc:
+    """Return the rope on a sheave between two spans. Raises ValueError where the rope does not touch it."""
+    if not point.sense:
+        raise ValueError(f"the route runs straight through the centre of {point.label}, which does not tell its side",
+                         'give side="left" or "right"')
+    one, other = before.direction, after.direction
+    turn = point.sense * atan2(one[0] * other[1] - one[1] * other[0], one @ other) + 0.0  # no -0
+    if abs(turn) < MIN_WRAP and not point.turns:
+        raise ValueError(f"the rope does not touch {point.label}: its wrap angle must be {show(MIN_WRAP, 'rad')} or "
+                         f"more, got {show(turn, 'rad')}", "leave it out, or move it into the way of the rope")
+    wrap = (turn if turn > -ANGLE_ROUNDING else turn + tau) + tau * point.turns
+    x, y = (before.end - point.centre).tolist()
+    on = atan2(y, x)
+    return DrawnArc(point.name, point.centre, point.radius, point.sense, on, on + point.sense * wrap,
+                    point.radius + point.offset)
+
+
+def _check_clear(span: DrawnSpan, one: RoutePoint, other: RoutePoint, sheave: RoutePoint) -> None:
+    """Raise ValueError where a span between two points crosses another sheave of the route."""
+    along = span.direction
+    s = min(max(float((sheave.centre - span.start) @ along), 0.0), span.length)
+    distance = float(np.linalg.norm(sheave.centre - span.start - s * along))
+    if distance < (1 - TOUCH_TOLERANCE) * sheave.radius:
+        raise ValueError(f"the span from {one.label} to {other.label} crosses {sheave.label}: it passes its centre at "
+                         f"{show(distance, 'm')}, within its radius {show(sheave.radius, 'm')}",
+                         "move the sheave, or give side= of the sheaves")
