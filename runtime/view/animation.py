@@ -13,6 +13,9 @@ from typing import Annotated, Any, Literal, TypeVar, get_origin, get_type_hints
 
 import numpy as np
 
+MARK_ROUNDING = 1e-9
+"""Of the place of a mark over the spacing: a mark at the end of a cable is drawn."""
+
 
 @dataclass(frozen=True)
 class Quantity:
@@ -30,7 +33,9 @@ class CableShape:
 
     section: ``{"shape": "circle", "diameter": d}``, ``{"shape": "tube", "diameter": d, "thickness": t}``,
     ``{"shape": "rectangle", "height": h, "width": w}``, or ``{"shape": "unknown", "size": d}``, the diameter of a
-    circle of plausible size.
+    circle of plausible size. material_s: the arc-length of the undeformed cable at the stations where its material runs
+    through them, as of a rope over sheaves; it rises along the stations, and s is that of the scene as drawn.
+    spacing: of marks on the material, by which one sees it run, in m of that arc-length.
     """
 
     name: str
@@ -40,6 +45,8 @@ class CableShape:
     section: Mapping[str, object]
     reference: Annotated[np.ndarray, "T", "P", 3]  # (P, 3) origin of exaggerated displacements
     quantities: tuple[Quantity, ...] = ()
+    material_s: Annotated[np.ndarray | None, "T", "P"] = None  # None: s of all frames
+    spacing: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -47,8 +54,9 @@ class BodyShape:
     """A body: its frame over time, and the shape in it.
 
     shape: ``{"kind": "box", "size": [x, y, z]}``, ``{"kind": "sphere", "radius": r}``, ``{"kind": "cylinder",
-    "radius": r, "length": l, "axis": [x, y, z]}``, or ``{"kind": "mesh", "vertices": (V, 3) array, "triangles": (F, 3)
-    array}``, each with ``"offset": [x, y, z]``, its centre in axes of the body.
+    "radius": r, "length": l, "axis": [x, y, z]}``, ``{"kind": "wheel", "radius": r, "width": w}`` about z, with one
+    wide spoke along x, or ``{"kind": "mesh", "vertices": (V, 3) array, "triangles": (F, 3) array}``, each with
+    ``"offset": [x, y, z]``, its centre in axes of the body.
     """
 
     name: str
@@ -184,6 +192,16 @@ def section_sides(section: Mapping[str, Any]) -> tuple[float, float]:
         return float(section["height"]), float(section["width"])
     diameter = float(section["size" if section["shape"] == "unknown" else "diameter"])
     return diameter, diameter
+
+
+def material_marks(cable: CableShape, frame: int) -> np.ndarray:
+    """Return the marks (n, 3) on the material of a cable at a frame, n = 0 for a cable without."""
+    if cable.material_s is None or not cable.spacing > 0:
+        return np.zeros((0, 3))
+    s = at_frame(cable.material_s, frame)
+    first, last = s[[0, -1]] / cable.spacing
+    at = cable.spacing * np.arange(np.ceil(first - MARK_ROUNDING), np.floor(last + MARK_ROUNDING) + 1)
+    return np.stack([np.interp(at, s, x) for x in at_frame(cable.position, frame).T], axis=1)
 
 
 def at_frame(values: np.ndarray, frame: int) -> np.ndarray:

@@ -70,6 +70,7 @@ def _with_fewer_stations(cable: CableShape, size: float) -> tuple[CableShape, fl
     chord = CHORD_ERROR * min(pixel, max(min(section_sides(cable.section)), pixel / ZOOM))
     columns = [cable.position / chord]
     columns += [] if cable.section_y is None else [cable.section_y / SECTION_TURN]
+    columns += [] if cable.material_s is None else [cable.material_s[..., None] / chord]
     for quantity in cable.quantities:
         finite = quantity.values[np.isfinite(quantity.values)]
         span = np.ptp(finite) if len(finite) else 0.0

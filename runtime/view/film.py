@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import FunicularError, near
-from .animation import Animation, Clip, Quantity, at_frame, period
+from .animation import Animation, Clip, Quantity, at_frame, material_marks, period
 from .plot import CLIP_COLOURS, MARKERS, SEGMENTS, SIZES, PlanePanel, colour_scale
 from .projections import Directions, Projection, all_points, directions
 from .surfaces import body_reach
@@ -111,7 +111,8 @@ class Film:
         from matplotlib.colors import to_rgba
 
         for body in clip.bodies:
-            self.panel.line(body.position[: frame + 1], color="0.6", linewidth=0.7, zorder=1)
+            if body.shape["kind"] != "wheel":
+                self.panel.line(body.position[: frame + 1], color="0.6", linewidth=0.7, zorder=1)
             self.panel.body(body, frame, to_rgba(colour))
         for cable in clip.cables:
             points = self.view.of(cable.position[frame])
@@ -122,6 +123,8 @@ class Film:
                     values = quantity.values[frame]
                     lines.set_color(list(map(tuple, self.scale.to_rgba((values[:-1] + values[1:]) / 2))))
             self.axes.add_collection(lines, autolim=False)
+            if len(marked := material_marks(cable, frame)):
+                self.panel.line(marked, linestyle="", marker=".", markersize=4, color="0.1", zorder=3)
         for segment in clip.segments:
             start, end = at_frame(segment.start, frame), at_frame(segment.end, frame)
             if segment.kind == "load":

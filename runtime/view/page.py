@@ -23,7 +23,7 @@ from ..base.written_files import write_text
 from .animation import Animation, BodyShape, CableShape, Clip, Mark, Segment, arrays, period
 from .decimation import decimated
 from .page_arrays import FLOAT_BITS, Packer, power_of_two
-from .surfaces import body_reach
+from .surfaces import body_reach, surface
 
 FORMAT = 1
 POSITION_STEPS = 2**19  # steps of positions across the picture
@@ -167,12 +167,17 @@ class _ScenePacker(Packer):
             "name": cable.name, "s": self.fine(cable.s), "section": _plain(cable.section),
             "position": self.points(cable.position), "reference": self.points(cable.reference),
             "section_y": None if cable.section_y is None else self.fixed(cable.section_y, 1 / TURN_STEPS),
+            "material_s": None if cable.material_s is None else self.fixed(cable.material_s, self.step),
+            "spacing": cable.spacing,
             "quantities": [{"key": q.key, "label": q.label, "unit": q.unit, "values": self.values(q.values)}
                            for q in cable.quantities],
         }
 
     def _body(self, body: BodyShape, frames: int) -> dict[str, Any]:
         shape: dict[str, Any] = dict(body.shape)
+        if shape["kind"] == "wheel":
+            vertices, triangles = surface(shape)
+            shape = {"kind": "mesh", "vertices": vertices, "triangles": triangles, "offset": (0.0, 0.0, 0.0)}
         if shape["kind"] == "mesh":
             shape["vertices"] = self.floats(shape["vertices"])
             shape["triangles"] = self.integers(shape["triangles"])
@@ -206,11 +211,14 @@ def _start(position: np.ndarray, clip: Clip) -> np.ndarray:
 def is_exaggerable(clip: Clip) -> bool:
     """Return whether a picture with exaggerated displacements is consistent.
 
-    A slide would leave its cable if its motion along it were exaggerated, too: it needs a reference that slides.
+    A slide would leave its cable if its motion along it were exaggerated, too: it needs a reference that slides. A rope
+    that runs would leave its sheaves.
     """
     sliding = (mark for mark in clip.marks if mark.kind == "slide"
                and (len(clip.time) == 1 or np.ptp(mark.position, axis=0).any()))
-    return clip.periodic or all(mark.reference is not None and mark.reference.ndim == 2 for mark in sliding)
+    runs = any(cable.material_s is not None for cable in clip.cables)
+    return clip.periodic or (not runs and all(mark.reference is not None and mark.reference.ndim == 2
+                                              for mark in sliding))
 
 
 def _plain(mapping: Mapping[str, Any]) -> dict[str, Any]:

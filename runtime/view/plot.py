@@ -9,7 +9,7 @@ import numpy as np
 
 from .animation import Animation, BodyShape, Clip, at_frame
 from .projections import Directions, Projection, all_points, directions
-from .surfaces import outline, placed_surface
+from .surfaces import outline, placed_surface, spoke
 
 if TYPE_CHECKING:
     from matplotlib.cm import ScalarMappable
@@ -137,13 +137,17 @@ class PlanePanel(Panel):
                            arrowprops={"arrowstyle": "-|>", "color": LOAD_COLOUR, "shrinkA": 0, "shrinkB": 0})
 
     def body(self, body: BodyShape, frame: int, colour: Any) -> None:
-        """Draw the outline of a body's shape, or a dot."""
+        """Draw the outline of a body's shape, of a wheel with its wide spoke, or a dot."""
         if self.stretch > 1:
             self.dots(body.position[frame : frame + 1], color=colour, marker="h", s=48, edgecolors="0.1",
                       linewidths=0.7, zorder=4)
             return
         corners = outline(self.projection.of(placed_surface(body, frame)[0]))
-        self.axes.fill(*corners.T, facecolor=(*colour[:3], 0.25), edgecolor=colour, linewidth=0.8, zorder=3)
+        is_wheel = body.shape["kind"] == "wheel"
+        self.axes.fill(*corners.T, facecolor=(*colour[:3], 0.0 if is_wheel else 0.25), edgecolor=colour, linewidth=0.8,
+                       zorder=3)
+        if is_wheel:
+            self.line(spoke(body, frame), color=colour, linewidth=1.8, zorder=3)
 
     def finish(self) -> None:
         """Set equal scales, or a vertical one exaggerated by the factor in its label."""
@@ -257,7 +261,7 @@ def draw_clip(panel: Panel, clip: Clip, frames: np.ndarray, colours: list[Any], 
             label = None
     for number, body in enumerate(clip.bodies):
         called = body.name if named and number < MAX_IN_LEGEND else None
-        if len(frames) > 2:
+        if len(frames) > 2 and body.shape["kind"] != "wheel":  # which is held
             panel.line(body.position, color="0.25", linewidth=0.9, linestyle=PATHS[number % len(PATHS)], zorder=3,
                        label=called and f"path of {called}")
         for frame, colour in zip(frames, colours, strict=True):

@@ -12,6 +12,11 @@ from .animation import BodyShape
 
 CIRCLE_POINTS = 24
 """Corners of the polygon that approximates a circle."""
+WHEEL_POINTS = 72
+"""Corners of the rim of a wheel, on which a rope lies."""
+SPOKES = 5
+RIM, HUB, SPOKE, WIDE_SPOKE = 0.14, 0.16, 0.07, 0.2
+"""Depth of the rim of a wheel, radius of its hub, widths of its spokes, over its radius."""
 
 Surface = tuple[np.ndarray, np.ndarray]
 """Vertices (V, 3) in m and triangles (F, 3), numbers of vertices, counterclockwise seen from outside."""
@@ -44,6 +49,36 @@ def _turned_profile(radii: np.ndarray, heights: np.ndarray) -> Surface:
     top = 1 + (len(rings) - 1) * CIRCLE_POINTS
     triangles.append(np.stack([top + here, top + on, np.full(CIRCLE_POINTS, last)], axis=1))
     return vertices, np.concatenate(triangles)
+
+
+def _ring(inner: float, outer: float, width: float, corners: int) -> Surface:
+    """Return a ring of rectangular section about z."""
+    angle = 2 * np.pi * np.arange(corners) / corners
+    profile = [(inner, -width / 2), (outer, -width / 2), (outer, width / 2), (inner, width / 2)]
+    vertices = np.stack([np.stack([r * np.cos(angle), r * np.sin(angle), np.full(corners, z)], axis=1)
+                         for r, z in profile])
+    here = np.arange(corners)
+    on = np.roll(here, -1)
+    triangles = []
+    for k in range(4):
+        low, high = k * corners, (k + 1) % 4 * corners
+        triangles += [np.stack([low + here, low + on, high + on], axis=1),
+                      np.stack([low + here, high + on, high + here], axis=1)]
+    return vertices.reshape(-1, 3), np.concatenate(triangles)
+
+
+def wheel(radius: float, width: float) -> Surface:
+    """Return a wheel about z: rim, hub and spokes, of which the one along x is wide and shows the angle."""
+    hub, inner = HUB * radius, (1 - RIM) * radius
+    parts = [_ring(inner, radius, width, WHEEL_POINTS), _ring(0.4 * hub, hub, width, CIRCLE_POINTS)]
+    for k in range(SPOKES):
+        across = (SPOKE if k else WIDE_SPOKE) * radius
+        length = inner - 0.8 * hub + 0.3 * RIM * radius
+        bar = BOX[0] * [length, across, 0.6 * width] + [0.8 * hub + length / 2, 0, 0]
+        turn = 2 * np.pi * k / SPOKES
+        x, y = np.array([np.cos(turn), np.sin(turn), 0]), np.array([-np.sin(turn), np.cos(turn), 0])
+        parts.append((bar @ np.stack([x, y, [0, 0, 1]]), BOX[1]))
+    return joined(parts)
 
 
 def square_to(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -83,10 +118,12 @@ def surface(shape: Mapping[str, Any]) -> Surface:
             axis = np.asarray(shape["axis"], dtype=float)
             axis = axis / np.linalg.norm(axis)
             vertices = vertices @ np.stack([*square_to(axis)[::-1], axis])
+        case "wheel":
+            vertices, triangles = wheel(shape["radius"], shape["width"])
         case "mesh":
             vertices, triangles = np.asarray(shape["vertices"], dtype=float), np.asarray(shape["triangles"])
         case unknown:
-            raise ValueError(f'a body has no shape "{unknown}": box, sphere, cylinder and mesh are known')
+            raise ValueError(f'a body has no shape "{unknown}": box, sphere, cylinder, wheel and mesh are known')
     return vertices + np.asarray(shape.get("offset", (0, 0, 0)), dtype=float), triangles
 
 
@@ -99,6 +136,12 @@ def placed_surface(body: BodyShape, frame: int) -> Surface:
     """Return the surface of a body at a frame: vertices (V, 3) in m along the ground's axes, and triangles."""
     vertices, triangles = surface(body.shape)
     return body.position[frame] + rotate(body.orientation[frame], vertices), triangles
+
+
+def spoke(body: BodyShape, frame: int) -> np.ndarray:
+    """Return the ends (2, 3) in m of the wide spoke of a wheel at a frame."""
+    ends = np.multiply.outer([0.0, float(body.shape["radius"])], [1.0, 0.0, 0.0])  # type: ignore[arg-type]
+    return np.asarray(body.position[frame] + rotate(body.orientation[frame], ends))
 
 
 def outline(points: np.ndarray) -> np.ndarray:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..base.written_files import write_text, write_whole
 from ..errors import FunicularError
-from .animation import Animation, Clip, section_sides
+from .animation import Animation, Clip, at_frame, section_sides
 from .files import PICTURES, extra, folder_for_pictures
 from .surfaces import placed_surface
 
@@ -62,7 +62,7 @@ def _point_data(clip: Clip, frame: int, count: int) -> dict[str, np.ndarray]:
 
     first = 0
     for cable in clip.cables:
-        put("s", first, cable.s)
+        put("s", first, cable.s if cable.material_s is None else at_frame(cable.material_s, frame))
         height, width = section_sides(cable.section)
         of_area = np.sqrt(height * width * 4 / np.pi)
         put("diameter", first, np.full(len(cable.s), of_area if cable.section["shape"] == "rectangle" else height))

@@ -66,7 +66,8 @@ def _groups(schema: dict[str, Any]) -> Iterator[tuple[str, list[type[Part]]]]:
 
 
 TITLES = {"section": "Sections", "signal": "Signals", "stop": "Ends of cables", "solid": "Shapes of bodies",
-          "profile": "Profiles of a flow", "surface_shape": "Shapes of surfaces alone"}
+          "route_item": "Items of a rope's route", "profile": "Profiles of a flow",
+          "surface_shape": "Shapes of surfaces alone"}
 """Of the families of tables, in this order."""
 
 
@@ -171,6 +172,7 @@ def _words(field: dict[str, Any]) -> str:
         of = field.get("items", {})
         unit = of.get("description", "") if not note else ""
         of_what = "lists" if of.get("type") == "array" else "numbers" if of else "entries"
+        of_what = _words(of) if "$ref" in of else of_what
         return f"list{count} {of_what}{note}{' ' * bool(unit)}{unit}"
     bounds = [f"{sign} {field[key]:,}" for key, sign in BOUNDS.items() if key in field]
     bounds += [f"at most {field['maxLength']} characters"] if "maxLength" in field else []

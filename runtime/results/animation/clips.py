@@ -23,6 +23,7 @@ from .curves import curves, events, thinned
 from .frames import Frames, no_forces
 from .marks import arrow_length, marks, segments
 from .references import references
+from .ropes import rope_shape, stations_of, wheel_shape
 from .surfaces import level_shapes, surface_shape
 
 MAX_FRAMES = 600
@@ -34,7 +35,7 @@ PERIOD_FRAMES = 48
 MODE_DISPLACEMENT = 0.08
 """Largest displacement of a mode in its picture, over the size of the scene."""
 MODE_ROTATION = 0.6
-"""Largest rotation of a body in the picture of a mode, rad."""
+"""Largest rotation of a body or a sheave in the picture of a mode, rad."""
 MIN_AMPLITUDE = 1e-6
 """Smallest displacement over `MODE_DISPLACEMENT`, and rotation in rad, that is reported."""
 MAX_NODES = 200
@@ -49,7 +50,8 @@ def of_run(run: Recorded, title: str, frames: int = MAX_FRAMES, with_results: bo
     if not len(run.time):
         raise FunicularError("the run has no output times to show")
     notes = list(run.report["messages"])
-    points = sum(len(stations(cable)) for cable in run.scene.cables.values())
+    points = (sum(len(stations(cable)) for cable in run.scene.cables.values())
+              + sum(map(stations_of, run.scene.ropes.values())))
     chosen = thinned(len(run.time), max(2, min(frames, MAX_POINTS // max(1, points))))
     if len(chosen) < len(run.time):
         notes.append(f"{len(chosen)} of the run's {len(run.time)} output times are drawn")
@@ -59,6 +61,8 @@ def of_run(run: Recorded, title: str, frames: int = MAX_FRAMES, with_results: bo
     notes += [_by_law(name, "the run is large") for name, cable in run.scene.cables.items()
               if not sources.is_balanced(len(chosen), len(stations(cable)))]
     notes += _out_of_balance(run.scene, run.model, is_rest=False)
+    notes += [f'tension along "{name}" is that of the elastic law, without damping'
+              for name, rope in run.scene.ropes.items() if rope.material.damping_time > 0]
     clip = _clip(sources.of_run(run, chosen), title, notes)
     clip = replace(clip, curves=tuple(curves(run, notes)), events=tuple(events(run)), details=dict(run.summary_rows()))
     return _animation(run.scene, title, [clip], notes)
@@ -130,6 +134,7 @@ def of_modes(modes: Modes, scene: SceneData, about: Mapping[str, np.ndarray], ti
         frequency, growth = float(modes.frequency[k]), float(modes.growth_rate[k])
         what = f"{frequency:.4g} Hz" if frequency > 0 or growth == 0 else f"grows by {growth:.4g} 1/s"
         turns = [float(np.linalg.norm(modes[f"{name}.rotation"][k])) for name in scene.bodies]
+        turns += [abs(float(modes[f"{name}.angle"][k])) for name in _sheaves(scene)]
         largest = min(swing, MODE_ROTATION / max([*turns, 1e-300]))
         clip = _clip(sources.of_mode(modes, k, scene, about, largest, phase), f"mode {k + 1}: {what}",
                      [] if k else notes)
@@ -140,6 +145,11 @@ def of_modes(modes: Modes, scene: SceneData, about: Mapping[str, np.ndarray], ti
     notes.append(f"modes have no size of their own: they are drawn with displacements of at most {swing:.3g} m "
                  f"and turns of at most {MODE_ROTATION:g} rad")
     return replace(_animation(scene, title, clips, notes), arrangement="menu")
+
+
+def _sheaves(scene: SceneData) -> list[str]:
+    """Return the names of all sheaves."""
+    return [sheave.name for rope in scene.ropes.values() for sheave in rope.sheaves]
 
 
 def _amplitude(moved: float, turned: float) -> str:
@@ -186,12 +196,13 @@ def _is_planar(clips: list[Clip]) -> bool:
 
 
 def scene_size(frames: Frames) -> float:
-    """Return the diagonal in m of the bounding box of cables and bodies over all frames; 1 m of a single point."""
+    """Return the diagonal in m of the bounding box of cables, ropes and bodies over all frames; 1 m of a single point.
+    """
     return float(np.linalg.norm(_extents(frames))) or 1.0
 
 
 def _extents(frames: Frames) -> np.ndarray:
-    """Return the extents (3,) in m of the bounding box of cables and bodies over all frames."""
+    """Return the extents (3,) in m of the bounding box of cables, ropes and bodies over all frames."""
     points = _positions(frames)
     points += [frames.value(f"{name}.nodes") for name, body in frames.scene.bodies.items()
                if isinstance(body, ModalBody)]
@@ -199,10 +210,10 @@ def _extents(frames: Frames) -> np.ndarray:
 
 
 def _positions(frames: Frames) -> list[np.ndarray]:
-    """Return the positions (T, nodes, 3) of the nodes of each cable and (T, 3) of each body, in m."""
+    """Return the positions (T, n, 3) of the nodes of each cable and points of each rope, (T, 3) of each body, in m."""
     return [frames.value(f"{name}.nodal_vectors")[:, :, cable.kind_of_element.nodal_vectors.index("r")]
             for name, cable in frames.scene.cables.items()
-            ] + [frames.value(f"{name}.position") for name in frames.scene.bodies]
+            ] + [frames.value(f"{name}.position") for name in (*frames.scene.ropes, *frames.scene.bodies)]
 
 
 def _centre(frames: Frames) -> np.ndarray:
@@ -215,6 +226,7 @@ def _clip(frames: Frames, label: str, notes: list[str]) -> Clip:
     """Return the clip of frames; notes: receives failures."""
     size, refs = scene_size(frames), references(frames)
     cables: list[CableShape] = [cable_shape(frames, name, notes) for name in frames.scene.cables]
+    cables += [rope_shape(frames, name) for name in frames.scene.ropes]
     bodies: list[BodyShape] = []
     points: list[Mark] = []
     for name, body in frames.scene.bodies.items():
@@ -225,6 +237,8 @@ def _clip(frames: Frames, label: str, notes: list[str]) -> Clip:
         else:
             points += _cloud(frames, name)
     centre = _centre(frames)
+    bodies += [wheel_shape(frames, refs, rope, sheave) for rope in frames.scene.ropes.values()
+               for sheave in rope.sheaves]
     bodies += [surface_shape(frames, name, centre, size) for name in frames.scene.surfaces]
     bodies += level_shapes(frames, centre, size)
     return Clip(label, frames.time, tuple(cables), tuple(bodies), (*marks(frames, refs, size), *points),

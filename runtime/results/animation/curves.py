@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...errors import FunicularError
+from ...parts.rope import Rope
 from ...view.animation import Curve, EventMark
 from ..quantities import ENERGIES, Variable
 from ..recorded import Recorded
@@ -20,6 +21,8 @@ MAX_NUMBERS = 150_000
 CURVES = (("time",), ("time", "xyz"), ("time", "normal"))
 """Dimensions of results with a curve."""
 UNITS = {"m/s2": "m/s²", "rad/s2": "rad/s²"}
+AT_SHEAVES = ("tension_on", "tension_off", "wrap_angle")
+"""Results of sheaves in the charts of their rope."""
 MAX_TENSIONS = 1000
 """Largest number of times at which the tension at a slide is computed."""
 
@@ -43,8 +46,12 @@ def curves(run: Recorded, notes: list[str]) -> Iterator[Curve]:
     yield from _energies(run, chosen)
     for name in run.scene.slides:
         yield from _tension_at(run, name, notes)
+    for rope in run.scene.ropes.values():
+        yield from _at_sheaves(run, rope, chosen)
+    together = {f"{sheave.name}.{key}" for rope in run.scene.ropes.values() for sheave in rope.sheaves
+                for key in AT_SHEAVES}
     for name, variable in shown.items():
-        if not name.startswith("energy."):
+        if not name.startswith("energy.") and name not in together:
             label = f"{name.rpartition('.')[0]}: {variable.long_name}"
             yield Curve(name, label, UNITS.get(variable.units, variable.units),
                         _columns(run, variable), time, variable.values[chosen])
@@ -68,6 +75,17 @@ def _energies(run: Recorded, chosen: np.ndarray) -> Iterator[Curve]:
     yield Curve("energy", "energy", "J", tuple(known), time, energies)
     balance = run.energy_balance()
     yield Curve("energy.balance", "energy balance: residual", "J", (), time, balance.residual[chosen])
+
+
+def _at_sheaves(run: Recorded, rope: Rope, chosen: np.ndarray) -> Iterator[Curve]:
+    """Yield the tensions of a rope at its sheaves in one chart, and the wrap angles in another."""
+    names, time = [sheave.name for sheave in rope.sheaves], run.time[chosen]
+    sides = {f"{name} {side}": f"{name}.tension_{side}" for name in names for side in ("on", "off")}
+    angles = {name: f"{name}.wrap_angle" for name in names}
+    for key, label, unit, columns in (("tension", "tension at sheaves", "N", sides),
+                                      ("wraps", "wrap angles", "rad", angles)):
+        yield Curve(f"{rope.name}.{key}", f"{rope.name}: {label}", unit, tuple(columns), time,
+                    np.stack([run[name][chosen] for name in columns.values()], axis=1))
 
 
 def _tension_at(run: Recorded, slide: str, notes: list[str]) -> Iterator[Curve]:

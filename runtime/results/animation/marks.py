@@ -16,6 +16,8 @@ from ...parts.load import DistributedForce, Force, Load, Moment
 from ...parts.locations import ends_of, node_of
 from ...parts.modal_body import ModalBody
 from ...parts.part import Part
+from ...parts.rope import Rope
+from ...parts.rope_items import Sheave
 from ...parts.scene_data import SceneData
 from ...parts.support import Clamp, Motion, Support
 from ...parts.validation import Vector, show, vector3
@@ -45,6 +47,14 @@ def _node(frames: Frames, cable: str, node: int) -> np.ndarray:
     return frames.value(f"{cable}.nodal_vectors")[:, node, part.kind_of_element.nodal_vectors.index("r")]
 
 
+def held_points(scene: SceneData) -> Iterator[tuple[str, str, Attachment]]:
+    """Yield the points that hold ropes, ends and axles of sheaves, with name and description."""
+    for name, rope in scene.ropes.items():
+        for item in rope.route:
+            is_sheave = isinstance(item, Sheave)
+            yield item.given_name or name, f'axle of "{item.given_name}"' if is_sheave else f'end of "{name}"', item.end
+
+
 def marks(frames: Frames, refs: Frames, size: float) -> Iterator[Mark]:
     """Yield the marked points; refs: see `references`; size: of the scene, in m."""
     scene = frames.scene
@@ -69,11 +79,14 @@ def marks(frames: Frames, refs: Frames, size: float) -> Iterator[Mark]:
                    f'slide of {_on(slide.rider)} along "{slide.along}"', slide_reference(frames, name))
     for part in coupling_parts(scene):
         name = part.given_name or part.kind
-        if "position" in part.results and frames.has(f"{name}.position"):
+        if "position" in part.results and not isinstance(part, Rope) and frames.has(f"{name}.position"):
             yield Mark(name, "point", still(frames.value(f"{name}.position")), _point_description(part))
     for part, end in _attachments(scene):
         if end.on is None:
             yield Mark(part.given_name or part.kind, "ground", place(frames, end), f"ground end of {part.where}")
+    for name, what, end in held_points(scene):
+        yield Mark(name, "ground" if end.on is None else "joint", place(frames, end), f"{what} on {_on(end)}",
+                   one_or_all(place(refs, end)))
     for name, load in scene.loads.items():
         if isinstance(load, Moment):
             end = _loaded(frames, load)
@@ -176,6 +189,7 @@ def levers(frames: Frames, refs: Frames, size: float) -> Iterator[Segment]:
     scene = frames.scene
     ends = [(name, slide.rider) for name, slide in scene.slides.items()]
     ends += [(part.given_name or part.kind, end) for part, end in _attachments(scene)]
+    ends += [(name, end) for name, _, end in held_points(scene)]
     for name, end in ends:
         body = None if end.on is None else scene.bodies.get(end.on)
         if body is None or isinstance(body, ModalBody):

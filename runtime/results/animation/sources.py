@@ -22,6 +22,7 @@ from ..section_forces.components import components
 from ..section_forces.forces import constitutive, of_equilibrium
 from ..section_forces.forces import of_run as forces_of_run
 from .frames import Frames, SectionForces, no_forces
+from .ropes import ropes_as_drawn
 
 MAX_BALANCED = 400_000
 """Sections over all instants; with more, forces are those of the elastic law."""
@@ -33,7 +34,7 @@ def is_balanced(instants: int, sections: int) -> bool:
 
 
 def drawn(scene: SceneData) -> dict[str, np.ndarray]:
-    """Return nodal vectors of cables and positions of bodies and slides by name, as the scene is drawn."""
+    """Return nodal vectors of cables, lines of ropes, positions of bodies and slides by name, as the scene is drawn."""
     found: dict[str, np.ndarray] = {f"{name}.nodal_vectors": cable.nodal_vectors
                                     for name, cable in scene.cables.items()}
     for name, body in scene.bodies.items():
@@ -42,6 +43,7 @@ def drawn(scene: SceneData) -> dict[str, np.ndarray]:
         if isinstance(body, ModalBody):
             found |= {f"{name}.modal_coordinates": np.zeros(body.shape.n),
                       f"{name}.nodes": position + rotate(orientation, body.shape.nodes)}
+    found |= ropes_as_drawn(scene)
     return found | {f"{name}.s": np.array(slide.arc_length) for name, slide in scene.slides.items()}
 
 
@@ -101,13 +103,19 @@ def of_mode(modes: Modes, number: int, scene: SceneData, about: Mapping[str, np.
     """Return the frames of a mode at phases (T,) in rad, its largest displacement ``amplitude`` in m.
 
     about: the state of equilibrium, by name. Rigid bodies rotate by finite angles, which keeps their shape; nodes of
-    cables and modal bodies move along straight lines.
+    cables and modal bodies, and spans of ropes, move along straight lines.
     """
     factor = amplitude * np.cos(phase)
     found: dict[str, np.ndarray] = {}
     for name in scene.cables:
         key = f"{name}.nodal_vectors"
         found[key] = about[key] + np.multiply.outer(factor, modes[key][number])
+    for name, rope in scene.ropes.items():
+        moved = {f"{name}.position": f"{name}.displacement", f"{name}.s": f"{name}.s"}
+        moved |= {f"{sheave.name}.angle": f"{sheave.name}.angle" for sheave in rope.sheaves}
+        found |= {key: about[key] + np.multiply.outer(factor, modes[shape][number]) for key, shape in moved.items()}
+        found |= {f"{sheave.name}.wrap_angle": np.broadcast_to(about[f"{sheave.name}.wrap_angle"], len(phase))
+                  for sheave in rope.sheaves}
     for name, body in scene.bodies.items():
         found |= {f"{name}.{key}": value
                   for key, value in _vibrating(modes, number, name, body, about, factor).items()}

@@ -26,6 +26,7 @@ const MIN_PIXELS = 3; // smallest width on the screen
 const COARSE = { corners: 6, pixels: 8 }; // corners of a circle up to this size on the screen
 const FINE = 20;
 const NO_VALUE = -1e30;
+const MARK = 0.25; // length of a mark on the material over their spacing
 
 const VERTEX = `
   precision highp sampler2D;
@@ -39,6 +40,7 @@ const VERTEX = `
   varying vec3 vNormal;
   varying float vValue;
   varying float vStripe;
+  varying float vMark;
 
   vec4 texel(int k) {
     int i = 3 * int(station + 0.5) + k;
@@ -47,7 +49,9 @@ const VERTEX = `
 
   void main() {
     vec4 centre = texel(0);
-    vec3 y = texel(1).xyz;
+    vec4 second = texel(1);
+    vec3 y = second.xyz;
+    vMark = second.w;
     vec3 tangent = texel(2).xyz;
     vec3 z = cross(tangent, y);
     float depth = projectionMatrix[3][3] == 1.0 ? 1.0 : -(modelViewMatrix * vec4(centre.xyz, 1.0)).z;
@@ -68,9 +72,11 @@ const FRAGMENT = `
   uniform vec2 range;
   uniform bool coloured;
   uniform bool striped;
+  uniform bool marked;
   varying vec3 vNormal;
   varying float vValue;
   varying float vStripe;
+  varying float vMark;
   ${SHADE}
 
   void main() {
@@ -81,6 +87,7 @@ const FRAGMENT = `
         : texture2D(colours, vec2((clamp(at, 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5)).rgb;
     }
     if (striped && vStripe > 0.97) colour *= 0.45;
+    if (marked && abs(fract(vMark + 0.5) - 0.5) < ${(MARK / 2).toFixed(3)}) colour *= 0.3;
     gl_FragColor = vec4(shaded(colour, vNormal), 1.0);
   }
 `;
@@ -124,15 +131,17 @@ export class CableView {
     this.centres = new Float32Array(3 * this.count);
     this.axes = new Float32Array(3 * this.count);
     this.values = new Float32Array(this.count);
+    this.marked = cable.material_s !== null && cable.spacing > 0; // marks show how the material runs
+    this.material = this.marked ? new Float32Array(this.count) : null;
     this.quantity = null;
     // a round section does not show its twist
     const striped = cable.section_y !== null && cable.section.shape !== "rectangle";
-    this.mesh = new Mesh(this.fine, this.material(striped));
+    this.mesh = new Mesh(this.fine, this.shader(striped));
     this.mesh.frustumCulled = false; // the shader moves it
     this.mesh.name = cable.name;
   }
 
-  material(striped) {
+  shader(striped) {
     return new ShaderMaterial({
       vertexShader: VERTEX,
       fragmentShader: FRAGMENT,
@@ -148,6 +157,7 @@ export class CableView {
         rim: { value: 0 },
         coloured: { value: false },
         striped: { value: striped },
+        marked: { value: this.marked },
       },
     });
   }
@@ -169,7 +179,7 @@ export class CableView {
 
   /** Move the cable to a sample of time, displacements drawn `factor` times as large. */
   update(sample, factor, up) {
-    const { centres, axes, cable, count, texels, values } = this;
+    const { centres, axes, cable, count, texels, values, material } = this;
     frameAt(cable.position, sample, centres);
     if (factor !== 1) {
       const from = cable.reference.values;
@@ -177,6 +187,7 @@ export class CableView {
     }
     if (cable.section_y) frameAt(cable.section_y, sample, axes);
     if (this.quantity) frameAt(this.quantity.values, sample, values);
+    if (material) frameAt(cable.material_s, sample, material);
     const tangent = [0, 0, 0];
     const y = [...up];
     for (let p = 0; p < count; p++) {
@@ -189,6 +200,7 @@ export class CableView {
         texels[at + 4 + k] = y[k];
         texels[at + 8 + k] = tangent[k];
       }
+      if (material) texels[at + 7] = material[p] / cable.spacing;
       texels[at + 3] = Number.isNaN(values[p]) ? NO_VALUE : values[p];
     }
     this.texture.needsUpdate = true;

@@ -17,7 +17,7 @@ export function curvesOf(clip) {
     unit: curve.unit,
     columns: columnsOf(curve.values, curve.columns, curve.time),
   }));
-  for (const body of clip.bodies) {
+  for (const body of clip.time.length > 1 ? clip.bodies : []) {
     for (const { label, unit, values } of body.quantities) {
       single.push({
         key: `body:${body.name}:${label}`,

@@ -60,7 +60,7 @@ function resolve(clip, arrays) {
   take(clip, "time");
   clip.time = clip.time.values;
   for (const cable of clip.cables) {
-    take(cable, "s", "position", "reference", "section_y");
+    take(cable, "s", "position", "reference", "section_y", "material_s");
     cable.quantities.forEach((quantity) => take(quantity, "values"));
   }
   for (const body of clip.bodies) {

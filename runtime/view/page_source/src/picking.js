@@ -140,8 +140,10 @@ function nearestStation({ centres, count }, distance) {
 function along(stage, { clip, item }, { p, w }, but = new Set()) {
   const { cable, centres } = item;
   const between = (array) => array[p] + w * (array[p + 1] - array[p]);
-  const s = between(cable.s.values);
   const sample = stage.sample(clip);
+  const s = between(
+    cable.material_s ? frameAt(cable.material_s, sample, new Float32Array(cable.s.values.length)) : cable.s.values,
+  );
   const values = {};
   const lines = [`s = ${withUnit(s, "m")}`];
   for (const quantity of cable.quantities.filter(({ key }) => !but.has(key))) {
