@@ -116,8 +116,8 @@ def reference(name: str, cache: Path = CACHE) -> tuple[np.ndarray, float, str]:
         exact, converged, label = _reference(name)
         cache.mkdir(parents=True, exist_ok=True)
         np.savez_compressed(path, motion=exact, converged=converged, model=label)
-    held = np.load(path)
-    return held["motion"], float(held["converged"]), str(held["model"])
+    with np.load(path) as held:
+        return held["motion"], float(held["converged"]), str(held["model"])
 
 
 def _reference(name: str) -> tuple[np.ndarray, float, str]:

@@ -60,7 +60,7 @@ def deepest(seed: int) -> float:
     try:
         run = scene.run(1.0, step=5e-4, output_step=5e-4, integrator="genalpha", progress=False)
     except fu.ConvergenceError as error:
-        assert "moves round an end" in str(error)
+        assert "moves around an end" in str(error)
         return -1.0
     within = np.ones(len(run.time), dtype=bool)
     for arc, name in (("s", "a"), ("s_b", "b")):

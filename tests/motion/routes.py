@@ -190,12 +190,12 @@ def planes_as_boxes(scene: fu.Scene) -> Route | None:
 
 def in_space_or_plane(scene: fu.Scene) -> Route | None:
     """Return the route with spatial elements in place of planar ones, or the reverse for a planar motion. None for
-    rigidly tied planar cables, whose sections have no spatial form.
+    ropes, which are planar, and for rigidly tied planar cables, whose sections have no spatial form.
     """
     if scene.dim == 3:
         planar = planar_of(scene).scene
         return None if planar is None else Route(planar)
-    if any(tie.rotation == "rigid" for tie in scene.ties.values()):
+    if scene.ropes or any(tie.rotation == "rigid" for tie in scene.ties.values()):
         return None
     return Route(scene.with_parts(_in_space(part.as_made(), scene) for part in scene.parts()))
 
