@@ -1274,44 +1274,83 @@ typedef void fu_sheave_damping_tangent_kernel(const fu_real *A, fu_real tau, fu_
 /* A 2, phi 2, phi_rate 2, s_rate 2, D 4x4, K 4x3 */
 fu_sheave_damping_tangent_kernel planar_sheave_damping_tangent;
 
-typedef void fu_sheave_friction_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, fu_real mu, fu_real v0, const fu_real *angles3, const fu_real *lengths2, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *F, fu_real *numbers, fu_real *power);
-/* friction at a point between a zone and a zone: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; mu [1]; v0 [m/s];
- * angles3 [rad]; lengths2 [m]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> F [N m, N]; numbers [m/s, N, N];
- * power [W] */
-/* A 2, angles3 3, lengths2 2, F 3, numbers 3, power 1 */
+typedef void fu_sheave_friction_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, fu_real v0, const fu_real *angles3, const fu_real *lengths2, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *F, fu_real *numbers, fu_real *power);
+/* friction at a point between a zone and a zone: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2]; mu [1]; v0
+ * [m/s]; angles3 [rad]; lengths2 [m]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> F [N m, N]; numbers [m/s, N,
+ * N]; power [W] */
+/* A 2, g 2, angles3 3, lengths2 2, F 3, numbers 3, power 1 */
 fu_sheave_friction_kernel planar_sheave_friction;
 
-typedef void fu_sheave_friction_tangent_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, fu_real mu, fu_real v0, const fu_real *angles3, const fu_real *lengths2, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *K, fu_real *D);
-/* derivatives of friction between a zone and a zone: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; mu [1]; v0 [m/s];
- * angles3 [rad]; lengths2 [m]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> K [SI]; D [SI] */
-/* A 2, angles3 3, lengths2 2, K 3x5, D 3x3 */
+typedef void fu_sheave_friction_tangent_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, fu_real v0, const fu_real *angles3, const fu_real *lengths2, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *K, fu_real *D);
+/* derivatives of friction between a zone and a zone: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2]; mu [1];
+ * v0 [m/s]; angles3 [rad]; lengths2 [m]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> K [SI]; D [SI] */
+/* A 2, g 2, angles3 3, lengths2 2, K 3x5, D 3x3 */
 fu_sheave_friction_tangent_kernel planar_sheave_friction_tangent;
 
-typedef void fu_sheave_friction_on_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *F, fu_real *numbers, fu_real *power);
-/* friction at a point between a span and a zone: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; mu [1]; v0 [m/s];
- * angles2 [rad]; lengths1 [m]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> F [N m, N]; numbers
- * [m/s, N, N]; power [W] */
-/* A 2, angles2 2, lengths1 1, span_slope 2, F 3, numbers 3, power 1 */
+typedef void fu_sheave_friction_on_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *F, fu_real *numbers, fu_real *power);
+/* friction at a point between a span and a zone: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2]; mu [1]; v0
+ * [m/s]; angles2 [rad]; lengths1 [m]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> F [N m, N];
+ * numbers [m/s, N, N]; power [W] */
+/* A 2, g 2, angles2 2, lengths1 1, span_slope 2, F 3, numbers 3, power 1 */
 fu_sheave_friction_on_kernel planar_sheave_friction_on;
 
-typedef void fu_sheave_friction_on_tangent_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *K, fu_real *D);
-/* derivatives of friction between a span and a zone: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; mu [1]; v0 [m/s];
- * angles2 [rad]; lengths1 [m]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> K [SI]; D [SI] */
-/* A 2, angles2 2, lengths1 1, span_slope 2, K 3x5, D 3x3 */
+typedef void fu_sheave_friction_on_tangent_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *K, fu_real *D);
+/* derivatives of friction between a span and a zone: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2]; mu [1];
+ * v0 [m/s]; angles2 [rad]; lengths1 [m]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> K [SI]; D
+ * [SI] */
+/* A 2, g 2, angles2 2, lengths1 1, span_slope 2, K 3x5, D 3x3 */
 fu_sheave_friction_on_tangent_kernel planar_sheave_friction_on_tangent;
 
-typedef void fu_sheave_friction_off_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *F, fu_real *numbers, fu_real *power);
-/* friction at a point between a zone and a span: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; mu [1]; v0 [m/s];
- * angles2 [rad]; lengths1 [m]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> F [N m, N]; numbers
- * [m/s, N, N]; power [W] */
-/* A 2, angles2 2, lengths1 1, span_slope 2, F 3, numbers 3, power 1 */
+typedef void fu_sheave_friction_off_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *F, fu_real *numbers, fu_real *power);
+/* friction at a point between a zone and a span: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2]; mu [1]; v0
+ * [m/s]; angles2 [rad]; lengths1 [m]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> F [N m, N];
+ * numbers [m/s, N, N]; power [W] */
+/* A 2, g 2, angles2 2, lengths1 1, span_slope 2, F 3, numbers 3, power 1 */
 fu_sheave_friction_off_kernel planar_sheave_friction_off;
 
-typedef void fu_sheave_friction_off_tangent_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *K, fu_real *D);
-/* derivatives of friction between a zone and a span: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; mu [1]; v0 [m/s];
- * angles2 [rad]; lengths1 [m]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> K [SI]; D [SI] */
-/* A 2, angles2 2, lengths1 1, span_slope 2, K 3x5, D 3x3 */
+typedef void fu_sheave_friction_off_tangent_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *K, fu_real *D);
+/* derivatives of friction between a zone and a span: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2]; mu [1];
+ * v0 [m/s]; angles2 [rad]; lengths1 [m]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> K [SI]; D
+ * [SI] */
+/* A 2, g 2, angles2 2, lengths1 1, span_slope 2, K 3x5, D 3x3 */
 fu_sheave_friction_off_tangent_kernel planar_sheave_friction_off_tangent;
+
+typedef void fu_sheave_winding_kernel(fu_real sense, fu_real R, const fu_real *x, const fu_real *slope, fu_real winds, fu_real wound, fu_real tension, fu_real *J, fu_real *K);
+/* rates of the condition of winding, and its force: sense [1]; R [m]; x [m]; slope [1]; winds [1]; wound [1];
+ * tension [N] -> J [1, m, 1]; K [N/m, N] */
+/* x 2, slope 2, J 4, K 3x4 */
+fu_sheave_winding_kernel planar_sheave_winding;
+
+typedef void fu_sheave_winding_motion_kernel(fu_real sense, fu_real R, const fu_real *x, const fu_real *slope, fu_real winds, fu_real wound, const fu_real *x_rate, const fu_real *slope_rate, fu_real u_rate, fu_real *Q_d);
+/* rate of the condition of winding at zero accelerations: sense [1]; R [m]; x [m]; slope [1]; winds [1]; wound [1];
+ * x_rate [m/s]; slope_rate [1/s]; u_rate [m/s] -> Q_d [m/s^2] */
+/* x 2, slope 2, x_rate 2, slope_rate 2, Q_d 1 */
+fu_sheave_winding_motion_kernel planar_sheave_winding_motion;
+
+typedef void fu_sheave_store_kernel(const fu_real *A, fu_real rho, fu_real R, const fu_real *g, fu_real u, const fu_real *c, fu_real spin, const fu_real *c_rate, fu_real u_rate, fu_real spin_acc, const fu_real *c_acc, const fu_real *slope, fu_real winds, fu_real wound, fu_real *F);
+/* forces of the wound rope: A [N, N m^2]; rho [kg/m]; R [m]; g [m/s^2]; u [m]; c [m]; spin [rad/s]; c_rate [m/s];
+ * u_rate [m/s]; spin_acc [rad/s^2]; c_acc [m/s^2]; slope [1]; winds [1]; wound [1] -> F [N m, N, N] */
+/* A 2, g 2, c 2, c_rate 2, c_acc 2, slope 2, F 4 */
+fu_sheave_store_kernel planar_sheave_store;
+
+typedef void fu_sheave_store_tangent_kernel(const fu_real *A, fu_real rho, fu_real R, const fu_real *g, fu_real u, const fu_real *c, fu_real spin, const fu_real *c_rate, fu_real u_rate, fu_real spin_acc, const fu_real *c_acc, const fu_real *slope, fu_real winds, fu_real wound, fu_real *M, fu_real *D, fu_real *K);
+/* derivatives of the forces of the wound rope: A [N, N m^2]; rho [kg/m]; R [m]; g [m/s^2]; u [m]; c [m]; spin
+ * [rad/s]; c_rate [m/s]; u_rate [m/s]; spin_acc [rad/s^2]; c_acc [m/s^2]; slope [1]; winds [1]; wound [1] -> M [kg];
+ * D [kg/s]; K [N/m] */
+/* A 2, g 2, c 2, c_rate 2, c_acc 2, slope 2, M 4x3, D 4x4, K 4x5 */
+fu_sheave_store_tangent_kernel planar_sheave_store_tangent;
+
+typedef void fu_sheave_store_energy_kernel(fu_real rho, fu_real R, const fu_real *g, fu_real u, const fu_real *c, fu_real spin, const fu_real *c_rate, fu_real *T, fu_real *V);
+/* kinetic energy of the wound rope, and its energy of gravity: rho [kg/m]; R [m]; g [m/s^2]; u [m]; c [m]; spin
+ * [rad/s]; c_rate [m/s] -> T [J]; V [J] */
+/* g 2, c 2, c_rate 2, T 1, V 1 */
+fu_sheave_store_energy_kernel planar_sheave_store_energy;
+
+typedef void fu_sheave_creep_kernel(const fu_real *A, fu_real R, fu_real wound, fu_real span_stretch, fu_real *W, fu_real *loss);
+/* elastic energy of a wound length, and the part that is dissipated as it passes: A [N, N m^2]; R [m]; wound [1];
+ * span_stretch [1] -> W [J/m]; loss [J/m] */
+/* A 2, W 1, loss 1 */
+fu_sheave_creep_kernel planar_sheave_creep;
 
 typedef void fu_span_point_kernel(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real xi, fu_real *r, fu_real *r_S, fu_real *velocity);
 /* place, slope and velocity of a material point: l [m]; e [m, 1]; v [m/s, 1/s]; s_rate [m/s]; xi [1] -> r [m]; r_S
@@ -1786,6 +1825,12 @@ typedef struct {
     fu_sheave_friction_on_tangent_kernel *friction_on_tangent;
     fu_sheave_friction_off_kernel *friction_off;
     fu_sheave_friction_off_tangent_kernel *friction_off_tangent;
+    fu_sheave_winding_kernel *winding;
+    fu_sheave_winding_motion_kernel *winding_motion;
+    fu_sheave_store_kernel *store;
+    fu_sheave_store_tangent_kernel *store_tangent;
+    fu_sheave_store_energy_kernel *store_energy;
+    fu_sheave_creep_kernel *creep;
 } fu_sheave_kernels;
 
 /* What the engine needs of a span. */

@@ -8,7 +8,7 @@
 #define PLANAR_SHEAVE_PART_OF_DERIVATIVES \
     const fu_real \
         d_angle_rate_groove = R*sense, \
-        d_angle_rate_P = -(4.0*d_angle_rate_groove*rho*speed), \
+        d_angle_rate_P = -(2.0*d_angle_rate_groove*drawn_mass*speed), \
         d_angle_rate_len_w = d_angle_rate_groove*inv_w*w, \
         d_angle_rate_inv_w = -(d_angle_rate_len_w*inv_w*inv_w), \
         d_angle_rate_smooth = d_angle_rate_groove*inv_w + d_angle_rate_inv_w*w, \
@@ -25,7 +25,7 @@
         d_spin_on_psi = -(R*d_spin_f*sense), \
         d_spin_on_s = -(d_spin_f*mean_stretch), \
         d_flow_speed = -mean_stretch, \
-        d_flow_P = -(4.0*d_flow_speed*rho*speed), \
+        d_flow_P = -(2.0*d_flow_speed*drawn_mass*speed), \
         d_flow_w = -source, \
         d_flow_len_w = d_flow_w*inv_w*w, \
         d_flow_inv_w = -(d_flow_len_w*inv_w*inv_w), \
@@ -122,6 +122,18 @@
         k_t_x = k_angle_x*spread + k_middle_x*turn + m01_x*spread_t + m10_x*turn_t, \
         k_t_y = k_angle_y*spread + k_middle_y*turn + m01_y*spread_t + m10_y*turn_t;
 
+/* limit: of planar_sheave_friction and 1 more */
+#define PLANAR_SHEAVE_LIMIT \
+    const fu_real \
+        outwards = R*(g[0]*FU_COS(angles3[1]) + g[1]*FU_SIN(angles3[1])), \
+        inv_mean_stretch = 1.0/mean_stretch, \
+        drawn_mass = 2.0*inv_mean_stretch*rho, \
+        P = T_before + T_behind - drawn_mass*(outwards + speed*speed), \
+        decay = FU_EXP(-(0.5*mu*sense*(-angles3[0] + angles3[2]))), \
+        one_more = decay + 1.0, \
+        inv_share = 1.0/one_more, \
+        share = inv_share*(-decay + 1.0);
+
 /* both sides: of planar_sheave_friction_on and 1 more */
 #define PLANAR_SHEAVE_BOTH_SIDES \
     const fu_real \
@@ -130,6 +142,18 @@
         T_before = A[0]*(stretch_before - 1.0), \
         T_behind = A[0]*(stretch_behind - 1.0), \
         mean_stretch = 0.5*stretch_before + 0.5*stretch_behind;
+
+/* limit: of planar_sheave_friction_on and 1 more */
+#define PLANAR_SHEAVE_LIMIT_2 \
+    const fu_real \
+        outwards = R*(g[0]*FU_COS(angles2[0]) + g[1]*FU_SIN(angles2[0])), \
+        inv_mean_stretch = 1.0/mean_stretch, \
+        drawn_mass = 2.0*inv_mean_stretch*rho, \
+        P = T_before + T_behind - drawn_mass*(outwards + speed*speed), \
+        decay = FU_EXP(-(0.5*mu*sense*(-angles2[0] + angles2[1]))), \
+        one_more = decay + 1.0, \
+        inv_share = 1.0/one_more, \
+        share = inv_share*(-decay + 1.0);
 
 /* outputs: of planar_sheave_friction_on_tangent and 1 more */
 #define PLANAR_SHEAVE_OUTPUTS \
@@ -166,6 +190,18 @@
         T_before = A[0]*(stretch_before - 1.0), \
         T_behind = A[0]*(stretch_behind - 1.0), \
         mean_stretch = 0.5*stretch_before + 0.5*stretch_behind;
+
+/* limit: of planar_sheave_friction_off and 1 more */
+#define PLANAR_SHEAVE_LIMIT_3 \
+    const fu_real \
+        outwards = R*(g[0]*FU_COS(angles2[1]) + g[1]*FU_SIN(angles2[1])), \
+        inv_mean_stretch = 1.0/mean_stretch, \
+        drawn_mass = 2.0*inv_mean_stretch*rho, \
+        P = T_before + T_behind - drawn_mass*(outwards + speed*speed), \
+        decay = FU_EXP(-(0.5*mu*sense*(-angles2[0] + angles2[1]))), \
+        one_more = decay + 1.0, \
+        inv_share = 1.0/one_more, \
+        share = inv_share*(-decay + 1.0);
 
 /* conditions of a tangent point, and their derivatives; 5 add, 20 mul, 1 div, 1 sqrt */
 void planar_sheave_tangent_point(const fu_real *x, const fu_real *slope, fu_real R, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K)
@@ -1223,8 +1259,8 @@ void planar_sheave_damping_tangent(const fu_real *A, fu_real tau, fu_real R, con
     K[11] = d_l_pull;
 }
 
-/* friction at a point between a zone and a zone (Euler's belt equation); 16 add, 34 mul, 4 div, 1 sqrt, 1 exp */
-void planar_sheave_friction(const fu_real *A, fu_real sense, fu_real rho, fu_real R, fu_real mu, fu_real v0, const fu_real *angles3, const fu_real *lengths2, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *F, fu_real *numbers, fu_real *power)
+/* friction at a point between a zone and a zone (Euler's belt equation); 18 add, 38 mul, 5 div, 1 sqrt, 1 cos, 1 sin, 1 exp */
+void planar_sheave_friction(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, fu_real v0, const fu_real *angles3, const fu_real *lengths2, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *F, fu_real *numbers, fu_real *power)
 {
     /* both sides */
     const fu_real
@@ -1242,13 +1278,7 @@ void planar_sheave_friction(const fu_real *A, fu_real sense, fu_real rho, fu_rea
         len_w = FU_SQRT(v0*v0 + w*w),
         inv_w = 1.0/len_w,
         smooth = inv_w*w;
-    /* limit */
-    const fu_real
-        P = T_before + T_behind - 2.0*rho*speed*speed,
-        decay = FU_EXP(-(0.5*mu*sense*(-angles3[0] + angles3[2]))),
-        one_more = decay + 1.0,
-        inv_share = 1.0/one_more,
-        share = inv_share*(-decay + 1.0);
+    PLANAR_SHEAVE_LIMIT
     /* force */
     const fu_real
         f = share*smooth*(FU_REAL(P) < 0.0 ? 0.0 : P),
@@ -1265,8 +1295,8 @@ void planar_sheave_friction(const fu_real *A, fu_real sense, fu_real rho, fu_rea
     power[0] = angle_rate*on_phi + flow*on_s + on_psi*spin;
 }
 
-/* derivatives of friction between a zone and a zone (Euler's belt equation); 52 add, 241 mul, 10 div, 1 sqrt, 3 exp */
-void planar_sheave_friction_tangent(const fu_real *A, fu_real sense, fu_real rho, fu_real R, fu_real mu, fu_real v0, const fu_real *angles3, const fu_real *lengths2, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *K, fu_real *D)
+/* derivatives of friction between a zone and a zone (Euler's belt equation); 66 add, 279 mul, 11 div, 1 sqrt, 2 cos, 2 sin, 3 exp */
+void planar_sheave_friction_tangent(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, fu_real v0, const fu_real *angles3, const fu_real *lengths2, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *K, fu_real *D)
 {
     /* both sides */
     const fu_real
@@ -1284,13 +1314,7 @@ void planar_sheave_friction_tangent(const fu_real *A, fu_real sense, fu_real rho
         len_w = FU_SQRT(v0*v0 + w*w),
         inv_w = 1.0/len_w,
         smooth = inv_w*w;
-    /* limit */
-    const fu_real
-        P = T_before + T_behind - 2.0*rho*speed*speed,
-        decay = FU_EXP(-(0.5*mu*sense*(-angles3[0] + angles3[2]))),
-        one_more = decay + 1.0,
-        inv_share = 1.0/one_more,
-        share = inv_share*(-decay + 1.0);
+    PLANAR_SHEAVE_LIMIT
     /* force */
     const fu_real f = share*smooth*(FU_REAL(P) < 0.0 ? 0.0 : P);
     /* derivatives */
@@ -1298,8 +1322,10 @@ void planar_sheave_friction_tangent(const fu_real *A, fu_real sense, fu_real rho
         d_angles30_stretch_before = -(R*sense/lengths2[0]),
         d_angles30_T_before = A[0]*d_angles30_stretch_before,
         d_angles30_mean_stretch = 0.5*d_angles30_stretch_before,
+        d_angles30_inv_mean_stretch = -(d_angles30_mean_stretch*inv_mean_stretch*inv_mean_stretch),
+        d_angles30_drawn_mass = 2.0*d_angles30_inv_mean_stretch*rho,
         d_angles30_speed = -(d_angles30_mean_stretch*flow),
-        d_angles30_P = d_angles30_T_before - 4.0*d_angles30_speed*rho*speed,
+        d_angles30_P = d_angles30_T_before + d_angles30_drawn_mass*(-outwards - speed*speed) - 2.0*d_angles30_speed*drawn_mass*speed,
         d_angles30_decay = 0.5*mu*sense*FU_EXP(-(0.5*mu*sense*(-angles3[0] + angles3[2]))),
         d_angles30_inv_share = -(d_angles30_decay*inv_share*inv_share),
         d_angles30_share = -d_angles30_decay*inv_share + d_angles30_inv_share*(-decay + 1.0),
@@ -1317,8 +1343,11 @@ void planar_sheave_friction_tangent(const fu_real *A, fu_real sense, fu_real rho
         d_angles31_stretch_behind = -(R*sense/lengths2[1]),
         d_angles31_T_behind = A[0]*d_angles31_stretch_behind,
         d_angles31_mean_stretch = 0.5*d_angles31_stretch_before + 0.5*d_angles31_stretch_behind,
+        d_angles31_inv_mean_stretch = -(d_angles31_mean_stretch*inv_mean_stretch*inv_mean_stretch),
+        d_angles31_drawn_mass = 2.0*d_angles31_inv_mean_stretch*rho,
+        d_angles31_outwards = R*(-g[0]*FU_SIN(angles3[1]) + g[1]*FU_COS(angles3[1])),
         d_angles31_speed = -(d_angles31_mean_stretch*flow),
-        d_angles31_P = d_angles31_T_before + d_angles31_T_behind - 4.0*d_angles31_speed*rho*speed,
+        d_angles31_P = d_angles31_T_before + d_angles31_T_behind + d_angles31_drawn_mass*(-outwards - speed*speed) - d_angles31_outwards*drawn_mass - 2.0*d_angles31_speed*drawn_mass*speed,
         d_angles31_source = d_angles31_stretch_before*(FU_REAL(flow) < 0.0 ? 1.0 : 0.0) + d_angles31_stretch_behind*(FU_REAL(flow) < 0.0 ? 0.0 : 1.0),
         d_angles31_w = -(d_angles31_source*flow),
         d_angles31_len_w = d_angles31_w*inv_w*w,
@@ -1331,8 +1360,10 @@ void planar_sheave_friction_tangent(const fu_real *A, fu_real sense, fu_real rho
         d_angles32_stretch_behind = R*sense/lengths2[1],
         d_angles32_T_behind = A[0]*d_angles32_stretch_behind,
         d_angles32_mean_stretch = 0.5*d_angles32_stretch_behind,
+        d_angles32_inv_mean_stretch = -(d_angles32_mean_stretch*inv_mean_stretch*inv_mean_stretch),
+        d_angles32_drawn_mass = 2.0*d_angles32_inv_mean_stretch*rho,
         d_angles32_speed = -(d_angles32_mean_stretch*flow),
-        d_angles32_P = d_angles32_T_behind - 4.0*d_angles32_speed*rho*speed,
+        d_angles32_P = d_angles32_T_behind + d_angles32_drawn_mass*(-outwards - speed*speed) - 2.0*d_angles32_speed*drawn_mass*speed,
         d_angles32_decay = -(0.5*mu*sense*FU_EXP(-(0.5*mu*sense*(-angles3[0] + angles3[2])))),
         d_angles32_inv_share = -(d_angles32_decay*inv_share*inv_share),
         d_angles32_share = -d_angles32_decay*inv_share + d_angles32_inv_share*(-decay + 1.0),
@@ -1348,8 +1379,10 @@ void planar_sheave_friction_tangent(const fu_real *A, fu_real sense, fu_real rho
         d_lengths20_stretch_before = -(R*sense*(-angles3[0] + angles3[1])/(lengths2[0]*lengths2[0])),
         d_lengths20_T_before = A[0]*d_lengths20_stretch_before,
         d_lengths20_mean_stretch = 0.5*d_lengths20_stretch_before,
+        d_lengths20_inv_mean_stretch = -(d_lengths20_mean_stretch*inv_mean_stretch*inv_mean_stretch),
+        d_lengths20_drawn_mass = 2.0*d_lengths20_inv_mean_stretch*rho,
         d_lengths20_speed = -(d_lengths20_mean_stretch*flow),
-        d_lengths20_P = d_lengths20_T_before - 4.0*d_lengths20_speed*rho*speed,
+        d_lengths20_P = d_lengths20_T_before + d_lengths20_drawn_mass*(-outwards - speed*speed) - 2.0*d_lengths20_speed*drawn_mass*speed,
         d_lengths20_source = d_lengths20_stretch_before*(FU_REAL(flow) < 0.0 ? 1.0 : 0.0),
         d_lengths20_w = -(d_lengths20_source*flow),
         d_lengths20_len_w = d_lengths20_w*inv_w*w,
@@ -1362,8 +1395,10 @@ void planar_sheave_friction_tangent(const fu_real *A, fu_real sense, fu_real rho
         d_lengths21_stretch_behind = -(R*sense*(-angles3[1] + angles3[2])/(lengths2[1]*lengths2[1])),
         d_lengths21_T_behind = A[0]*d_lengths21_stretch_behind,
         d_lengths21_mean_stretch = 0.5*d_lengths21_stretch_behind,
+        d_lengths21_inv_mean_stretch = -(d_lengths21_mean_stretch*inv_mean_stretch*inv_mean_stretch),
+        d_lengths21_drawn_mass = 2.0*d_lengths21_inv_mean_stretch*rho,
         d_lengths21_speed = -(d_lengths21_mean_stretch*flow),
-        d_lengths21_P = d_lengths21_T_behind - 4.0*d_lengths21_speed*rho*speed,
+        d_lengths21_P = d_lengths21_T_behind + d_lengths21_drawn_mass*(-outwards - speed*speed) - 2.0*d_lengths21_speed*drawn_mass*speed,
         d_lengths21_source = d_lengths21_stretch_behind*(FU_REAL(flow) < 0.0 ? 0.0 : 1.0),
         d_lengths21_w = -(d_lengths21_source*flow),
         d_lengths21_len_w = d_lengths21_w*inv_w*w,
@@ -1401,8 +1436,8 @@ void planar_sheave_friction_tangent(const fu_real *A, fu_real sense, fu_real rho
     D[8] = d_flow_on_s;
 }
 
-/* friction at a point between a span and a zone (Euler's belt equation); 16 add, 34 mul, 3 div, 2 sqrt, 1 exp */
-void planar_sheave_friction_on(const fu_real *A, fu_real sense, fu_real rho, fu_real R, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *F, fu_real *numbers, fu_real *power)
+/* friction at a point between a span and a zone (Euler's belt equation); 18 add, 38 mul, 4 div, 2 sqrt, 1 cos, 1 sin, 1 exp */
+void planar_sheave_friction_on(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *F, fu_real *numbers, fu_real *power)
 {
     PLANAR_SHEAVE_BOTH_SIDES
     /* sliding */
@@ -1414,13 +1449,7 @@ void planar_sheave_friction_on(const fu_real *A, fu_real sense, fu_real rho, fu_
         len_w = FU_SQRT(v0*v0 + w*w),
         inv_w = 1.0/len_w,
         smooth = inv_w*w;
-    /* limit */
-    const fu_real
-        P = T_before + T_behind - 2.0*rho*speed*speed,
-        decay = FU_EXP(-(0.5*mu*sense*(-angles2[0] + angles2[1]))),
-        one_more = decay + 1.0,
-        inv_share = 1.0/one_more,
-        share = inv_share*(-decay + 1.0);
+    PLANAR_SHEAVE_LIMIT_2
     /* force */
     const fu_real
         f = share*smooth*(FU_REAL(P) < 0.0 ? 0.0 : P),
@@ -1437,8 +1466,8 @@ void planar_sheave_friction_on(const fu_real *A, fu_real sense, fu_real rho, fu_
     power[0] = angle_rate*on_phi + flow*on_s + on_psi*spin;
 }
 
-/* derivatives of friction between a span and a zone (Euler's belt equation); 48 add, 233 mul, 8 div, 2 sqrt, 3 exp */
-void planar_sheave_friction_on_tangent(const fu_real *A, fu_real sense, fu_real rho, fu_real R, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *K, fu_real *D)
+/* derivatives of friction between a span and a zone (Euler's belt equation); 62 add, 271 mul, 9 div, 2 sqrt, 2 cos, 2 sin, 3 exp */
+void planar_sheave_friction_on_tangent(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *K, fu_real *D)
 {
     PLANAR_SHEAVE_BOTH_SIDES
     /* sliding */
@@ -1450,26 +1479,23 @@ void planar_sheave_friction_on_tangent(const fu_real *A, fu_real sense, fu_real 
         len_w = FU_SQRT(v0*v0 + w*w),
         inv_w = 1.0/len_w,
         smooth = inv_w*w;
-    /* limit */
-    const fu_real
-        P = T_before + T_behind - 2.0*rho*speed*speed,
-        decay = FU_EXP(-(0.5*mu*sense*(-angles2[0] + angles2[1]))),
-        one_more = decay + 1.0,
-        inv_share = 1.0/one_more,
-        share = inv_share*(-decay + 1.0);
+    PLANAR_SHEAVE_LIMIT_2
     /* force */
     const fu_real f = share*smooth*(FU_REAL(P) < 0.0 ? 0.0 : P);
     /* derivatives */
     fu_real d_span_slope_stretch_before[2], d_span_slope_T_before[2], d_span_slope_mean_stretch[2],
-        d_span_slope_speed[2], d_span_slope_P[2], d_span_slope_source[2], d_span_slope_w[2], d_span_slope_len_w[2],
-        d_span_slope_inv_w[2], d_span_slope_smooth[2], d_span_slope_f[2], d_span_slope_on_phi[2],
-        d_span_slope_on_psi[2], d_span_slope_on_s[2];
+        d_span_slope_inv_mean_stretch[2], d_span_slope_drawn_mass[2], d_span_slope_speed[2], d_span_slope_P[2],
+        d_span_slope_source[2], d_span_slope_w[2], d_span_slope_len_w[2], d_span_slope_inv_w[2], d_span_slope_smooth[2],
+        d_span_slope_f[2], d_span_slope_on_phi[2], d_span_slope_on_psi[2], d_span_slope_on_s[2];
     const fu_real
         d_angles20_stretch_behind = -(R*sense/lengths1[0]),
         d_angles20_T_behind = A[0]*d_angles20_stretch_behind,
         d_angles20_mean_stretch = 0.5*d_angles20_stretch_behind,
+        d_angles20_inv_mean_stretch = -(d_angles20_mean_stretch*inv_mean_stretch*inv_mean_stretch),
+        d_angles20_drawn_mass = 2.0*d_angles20_inv_mean_stretch*rho,
+        d_angles20_outwards = R*(-g[0]*FU_SIN(angles2[0]) + g[1]*FU_COS(angles2[0])),
         d_angles20_speed = -(d_angles20_mean_stretch*flow),
-        d_angles20_P = d_angles20_T_behind - 4.0*d_angles20_speed*rho*speed,
+        d_angles20_P = d_angles20_T_behind + d_angles20_drawn_mass*(-outwards - speed*speed) - d_angles20_outwards*drawn_mass - 2.0*d_angles20_speed*drawn_mass*speed,
         d_angles20_decay = 0.5*mu*sense*FU_EXP(-(0.5*mu*sense*(-angles2[0] + angles2[1]))),
         d_angles20_inv_share = -(d_angles20_decay*inv_share*inv_share),
         d_angles20_share = -d_angles20_decay*inv_share + d_angles20_inv_share*(-decay + 1.0),
@@ -1479,8 +1505,10 @@ void planar_sheave_friction_on_tangent(const fu_real *A, fu_real sense, fu_real 
         d_angles21_stretch_behind = R*sense/lengths1[0],
         d_angles21_T_behind = A[0]*d_angles21_stretch_behind,
         d_angles21_mean_stretch = 0.5*d_angles21_stretch_behind,
+        d_angles21_inv_mean_stretch = -(d_angles21_mean_stretch*inv_mean_stretch*inv_mean_stretch),
+        d_angles21_drawn_mass = 2.0*d_angles21_inv_mean_stretch*rho,
         d_angles21_speed = -(d_angles21_mean_stretch*flow),
-        d_angles21_P = d_angles21_T_behind - 4.0*d_angles21_speed*rho*speed,
+        d_angles21_P = d_angles21_T_behind + d_angles21_drawn_mass*(-outwards - speed*speed) - 2.0*d_angles21_speed*drawn_mass*speed,
         d_angles21_decay = -(0.5*mu*sense*FU_EXP(-(0.5*mu*sense*(-angles2[0] + angles2[1])))),
         d_angles21_inv_share = -(d_angles21_decay*inv_share*inv_share),
         d_angles21_share = -d_angles21_decay*inv_share + d_angles21_inv_share*(-decay + 1.0),
@@ -1490,31 +1518,35 @@ void planar_sheave_friction_on_tangent(const fu_real *A, fu_real sense, fu_real 
         d_lengths10_stretch_behind = -(R*sense*(-angles2[0] + angles2[1])/(lengths1[0]*lengths1[0])),
         d_lengths10_T_behind = A[0]*d_lengths10_stretch_behind,
         d_lengths10_mean_stretch = 0.5*d_lengths10_stretch_behind,
+        d_lengths10_inv_mean_stretch = -(d_lengths10_mean_stretch*inv_mean_stretch*inv_mean_stretch),
+        d_lengths10_drawn_mass = 2.0*d_lengths10_inv_mean_stretch*rho,
         d_lengths10_speed = -(d_lengths10_mean_stretch*flow),
-        d_lengths10_P = d_lengths10_T_behind - 4.0*d_lengths10_speed*rho*speed,
+        d_lengths10_P = d_lengths10_T_behind + d_lengths10_drawn_mass*(-outwards - speed*speed) - 2.0*d_lengths10_speed*drawn_mass*speed,
         d_lengths10_source = d_lengths10_stretch_behind*(FU_REAL(flow) < 0.0 ? 0.0 : 1.0);
     PLANAR_SHEAVE_PART_OF_DERIVATIVES_4
-    FU_EACH(g, 2,
-        d_span_slope_stretch_before[g] = span_slope[g]/stretch_before;
-        d_span_slope_T_before[g] = A[0]*d_span_slope_stretch_before[g];
-        d_span_slope_mean_stretch[g] = 0.5*d_span_slope_stretch_before[g];
-        d_span_slope_speed[g] = -(d_span_slope_mean_stretch[g]*flow);
-        d_span_slope_P[g] = d_span_slope_T_before[g] - 4.0*d_span_slope_speed[g]*rho*speed;
-        d_span_slope_source[g] = d_span_slope_stretch_before[g]*(FU_REAL(flow) < 0.0 ? 1.0 : 0.0);
-        d_span_slope_w[g] = -(d_span_slope_source[g]*flow);
-        d_span_slope_len_w[g] = d_span_slope_w[g]*inv_w*w;
-        d_span_slope_inv_w[g] = -(d_span_slope_len_w[g]*inv_w*inv_w);
-        d_span_slope_smooth[g] = d_span_slope_inv_w[g]*w + d_span_slope_w[g]*inv_w;
-        d_span_slope_f[g] = d_span_slope_P[g]*share*smooth*(FU_REAL(P) < 0.0 ? 0.0 : 1.0) + d_span_slope_smooth[g]*share*(FU_REAL(P) < 0.0 ? 0.0 : P);
-        d_span_slope_on_phi[g] = R*d_span_slope_f[g]*sense;
-        d_span_slope_on_psi[g] = -(R*d_span_slope_f[g]*sense);
-        d_span_slope_on_s[g] = -d_span_slope_f[g]*mean_stretch - d_span_slope_mean_stretch[g]*f;)
+    FU_EACH(point, 2,
+        d_span_slope_stretch_before[point] = span_slope[point]/stretch_before;
+        d_span_slope_T_before[point] = A[0]*d_span_slope_stretch_before[point];
+        d_span_slope_mean_stretch[point] = 0.5*d_span_slope_stretch_before[point];
+        d_span_slope_inv_mean_stretch[point] = -(d_span_slope_mean_stretch[point]*inv_mean_stretch*inv_mean_stretch);
+        d_span_slope_drawn_mass[point] = 2.0*d_span_slope_inv_mean_stretch[point]*rho;
+        d_span_slope_speed[point] = -(d_span_slope_mean_stretch[point]*flow);
+        d_span_slope_P[point] = d_span_slope_T_before[point] + d_span_slope_drawn_mass[point]*(-outwards - speed*speed) - 2.0*d_span_slope_speed[point]*drawn_mass*speed;
+        d_span_slope_source[point] = d_span_slope_stretch_before[point]*(FU_REAL(flow) < 0.0 ? 1.0 : 0.0);
+        d_span_slope_w[point] = -(d_span_slope_source[point]*flow);
+        d_span_slope_len_w[point] = d_span_slope_w[point]*inv_w*w;
+        d_span_slope_inv_w[point] = -(d_span_slope_len_w[point]*inv_w*inv_w);
+        d_span_slope_smooth[point] = d_span_slope_inv_w[point]*w + d_span_slope_w[point]*inv_w;
+        d_span_slope_f[point] = d_span_slope_P[point]*share*smooth*(FU_REAL(P) < 0.0 ? 0.0 : 1.0) + d_span_slope_smooth[point]*share*(FU_REAL(P) < 0.0 ? 0.0 : P);
+        d_span_slope_on_phi[point] = R*d_span_slope_f[point]*sense;
+        d_span_slope_on_psi[point] = -(R*d_span_slope_f[point]*sense);
+        d_span_slope_on_s[point] = -d_span_slope_f[point]*mean_stretch - d_span_slope_mean_stretch[point]*f;)
     PLANAR_SHEAVE_PART_OF_DERIVATIVES
     PLANAR_SHEAVE_OUTPUTS
 }
 
-/* friction at a point between a zone and a span (Euler's belt equation); 16 add, 34 mul, 3 div, 2 sqrt, 1 exp */
-void planar_sheave_friction_off(const fu_real *A, fu_real sense, fu_real rho, fu_real R, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *F, fu_real *numbers, fu_real *power)
+/* friction at a point between a zone and a span (Euler's belt equation); 18 add, 38 mul, 4 div, 2 sqrt, 1 cos, 1 sin, 1 exp */
+void planar_sheave_friction_off(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *F, fu_real *numbers, fu_real *power)
 {
     PLANAR_SHEAVE_BOTH_SIDES_2
     /* sliding */
@@ -1526,13 +1558,7 @@ void planar_sheave_friction_off(const fu_real *A, fu_real sense, fu_real rho, fu
         len_w = FU_SQRT(v0*v0 + w*w),
         inv_w = 1.0/len_w,
         smooth = inv_w*w;
-    /* limit */
-    const fu_real
-        P = T_before + T_behind - 2.0*rho*speed*speed,
-        decay = FU_EXP(-(0.5*mu*sense*(-angles2[0] + angles2[1]))),
-        one_more = decay + 1.0,
-        inv_share = 1.0/one_more,
-        share = inv_share*(-decay + 1.0);
+    PLANAR_SHEAVE_LIMIT_3
     /* force */
     const fu_real
         f = share*smooth*(FU_REAL(P) < 0.0 ? 0.0 : P),
@@ -1549,8 +1575,8 @@ void planar_sheave_friction_off(const fu_real *A, fu_real sense, fu_real rho, fu
     power[0] = angle_rate*on_phi + flow*on_s + on_psi*spin;
 }
 
-/* derivatives of friction between a zone and a span (Euler's belt equation); 48 add, 233 mul, 8 div, 2 sqrt, 3 exp */
-void planar_sheave_friction_off_tangent(const fu_real *A, fu_real sense, fu_real rho, fu_real R, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *K, fu_real *D)
+/* derivatives of friction between a zone and a span (Euler's belt equation); 62 add, 271 mul, 9 div, 2 sqrt, 2 cos, 2 sin, 3 exp */
+void planar_sheave_friction_off_tangent(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *K, fu_real *D)
 {
     PLANAR_SHEAVE_BOTH_SIDES_2
     /* sliding */
@@ -1562,26 +1588,22 @@ void planar_sheave_friction_off_tangent(const fu_real *A, fu_real sense, fu_real
         len_w = FU_SQRT(v0*v0 + w*w),
         inv_w = 1.0/len_w,
         smooth = inv_w*w;
-    /* limit */
-    const fu_real
-        P = T_before + T_behind - 2.0*rho*speed*speed,
-        decay = FU_EXP(-(0.5*mu*sense*(-angles2[0] + angles2[1]))),
-        one_more = decay + 1.0,
-        inv_share = 1.0/one_more,
-        share = inv_share*(-decay + 1.0);
+    PLANAR_SHEAVE_LIMIT_3
     /* force */
     const fu_real f = share*smooth*(FU_REAL(P) < 0.0 ? 0.0 : P);
     /* derivatives */
     fu_real d_span_slope_stretch_behind[2], d_span_slope_T_behind[2], d_span_slope_mean_stretch[2],
-        d_span_slope_speed[2], d_span_slope_P[2], d_span_slope_source[2], d_span_slope_w[2], d_span_slope_len_w[2],
-        d_span_slope_inv_w[2], d_span_slope_smooth[2], d_span_slope_f[2], d_span_slope_on_phi[2],
-        d_span_slope_on_psi[2], d_span_slope_on_s[2];
+        d_span_slope_inv_mean_stretch[2], d_span_slope_drawn_mass[2], d_span_slope_speed[2], d_span_slope_P[2],
+        d_span_slope_source[2], d_span_slope_w[2], d_span_slope_len_w[2], d_span_slope_inv_w[2], d_span_slope_smooth[2],
+        d_span_slope_f[2], d_span_slope_on_phi[2], d_span_slope_on_psi[2], d_span_slope_on_s[2];
     const fu_real
         d_angles20_stretch_before = -(R*sense/lengths1[0]),
         d_angles20_T_before = A[0]*d_angles20_stretch_before,
         d_angles20_mean_stretch = 0.5*d_angles20_stretch_before,
+        d_angles20_inv_mean_stretch = -(d_angles20_mean_stretch*inv_mean_stretch*inv_mean_stretch),
+        d_angles20_drawn_mass = 2.0*d_angles20_inv_mean_stretch*rho,
         d_angles20_speed = -(d_angles20_mean_stretch*flow),
-        d_angles20_P = d_angles20_T_before - 4.0*d_angles20_speed*rho*speed,
+        d_angles20_P = d_angles20_T_before + d_angles20_drawn_mass*(-outwards - speed*speed) - 2.0*d_angles20_speed*drawn_mass*speed,
         d_angles20_decay = 0.5*mu*sense*FU_EXP(-(0.5*mu*sense*(-angles2[0] + angles2[1]))),
         d_angles20_inv_share = -(d_angles20_decay*inv_share*inv_share),
         d_angles20_share = -d_angles20_decay*inv_share + d_angles20_inv_share*(-decay + 1.0),
@@ -1591,8 +1613,11 @@ void planar_sheave_friction_off_tangent(const fu_real *A, fu_real sense, fu_real
         d_angles21_stretch_before = R*sense/lengths1[0],
         d_angles21_T_before = A[0]*d_angles21_stretch_before,
         d_angles21_mean_stretch = 0.5*d_angles21_stretch_before,
+        d_angles21_inv_mean_stretch = -(d_angles21_mean_stretch*inv_mean_stretch*inv_mean_stretch),
+        d_angles21_drawn_mass = 2.0*d_angles21_inv_mean_stretch*rho,
+        d_angles21_outwards = R*(-g[0]*FU_SIN(angles2[1]) + g[1]*FU_COS(angles2[1])),
         d_angles21_speed = -(d_angles21_mean_stretch*flow),
-        d_angles21_P = d_angles21_T_before - 4.0*d_angles21_speed*rho*speed,
+        d_angles21_P = d_angles21_T_before + d_angles21_drawn_mass*(-outwards - speed*speed) - d_angles21_outwards*drawn_mass - 2.0*d_angles21_speed*drawn_mass*speed,
         d_angles21_decay = -(0.5*mu*sense*FU_EXP(-(0.5*mu*sense*(-angles2[0] + angles2[1])))),
         d_angles21_inv_share = -(d_angles21_decay*inv_share*inv_share),
         d_angles21_share = -d_angles21_decay*inv_share + d_angles21_inv_share*(-decay + 1.0),
@@ -1602,25 +1627,215 @@ void planar_sheave_friction_off_tangent(const fu_real *A, fu_real sense, fu_real
         d_lengths10_stretch_before = -(R*sense*(-angles2[0] + angles2[1])/(lengths1[0]*lengths1[0])),
         d_lengths10_T_before = A[0]*d_lengths10_stretch_before,
         d_lengths10_mean_stretch = 0.5*d_lengths10_stretch_before,
+        d_lengths10_inv_mean_stretch = -(d_lengths10_mean_stretch*inv_mean_stretch*inv_mean_stretch),
+        d_lengths10_drawn_mass = 2.0*d_lengths10_inv_mean_stretch*rho,
         d_lengths10_speed = -(d_lengths10_mean_stretch*flow),
-        d_lengths10_P = d_lengths10_T_before - 4.0*d_lengths10_speed*rho*speed,
+        d_lengths10_P = d_lengths10_T_before + d_lengths10_drawn_mass*(-outwards - speed*speed) - 2.0*d_lengths10_speed*drawn_mass*speed,
         d_lengths10_source = d_lengths10_stretch_before*(FU_REAL(flow) < 0.0 ? 1.0 : 0.0);
     PLANAR_SHEAVE_PART_OF_DERIVATIVES_4
-    FU_EACH(g, 2,
-        d_span_slope_stretch_behind[g] = span_slope[g]/stretch_behind;
-        d_span_slope_T_behind[g] = A[0]*d_span_slope_stretch_behind[g];
-        d_span_slope_mean_stretch[g] = 0.5*d_span_slope_stretch_behind[g];
-        d_span_slope_speed[g] = -(d_span_slope_mean_stretch[g]*flow);
-        d_span_slope_P[g] = d_span_slope_T_behind[g] - 4.0*d_span_slope_speed[g]*rho*speed;
-        d_span_slope_source[g] = d_span_slope_stretch_behind[g]*(FU_REAL(flow) < 0.0 ? 0.0 : 1.0);
-        d_span_slope_w[g] = -(d_span_slope_source[g]*flow);
-        d_span_slope_len_w[g] = d_span_slope_w[g]*inv_w*w;
-        d_span_slope_inv_w[g] = -(d_span_slope_len_w[g]*inv_w*inv_w);
-        d_span_slope_smooth[g] = d_span_slope_inv_w[g]*w + d_span_slope_w[g]*inv_w;
-        d_span_slope_f[g] = d_span_slope_P[g]*share*smooth*(FU_REAL(P) < 0.0 ? 0.0 : 1.0) + d_span_slope_smooth[g]*share*(FU_REAL(P) < 0.0 ? 0.0 : P);
-        d_span_slope_on_phi[g] = R*d_span_slope_f[g]*sense;
-        d_span_slope_on_psi[g] = -(R*d_span_slope_f[g]*sense);
-        d_span_slope_on_s[g] = -d_span_slope_f[g]*mean_stretch - d_span_slope_mean_stretch[g]*f;)
+    FU_EACH(point, 2,
+        d_span_slope_stretch_behind[point] = span_slope[point]/stretch_behind;
+        d_span_slope_T_behind[point] = A[0]*d_span_slope_stretch_behind[point];
+        d_span_slope_mean_stretch[point] = 0.5*d_span_slope_stretch_behind[point];
+        d_span_slope_inv_mean_stretch[point] = -(d_span_slope_mean_stretch[point]*inv_mean_stretch*inv_mean_stretch);
+        d_span_slope_drawn_mass[point] = 2.0*d_span_slope_inv_mean_stretch[point]*rho;
+        d_span_slope_speed[point] = -(d_span_slope_mean_stretch[point]*flow);
+        d_span_slope_P[point] = d_span_slope_T_behind[point] + d_span_slope_drawn_mass[point]*(-outwards - speed*speed) - 2.0*d_span_slope_speed[point]*drawn_mass*speed;
+        d_span_slope_source[point] = d_span_slope_stretch_behind[point]*(FU_REAL(flow) < 0.0 ? 0.0 : 1.0);
+        d_span_slope_w[point] = -(d_span_slope_source[point]*flow);
+        d_span_slope_len_w[point] = d_span_slope_w[point]*inv_w*w;
+        d_span_slope_inv_w[point] = -(d_span_slope_len_w[point]*inv_w*inv_w);
+        d_span_slope_smooth[point] = d_span_slope_inv_w[point]*w + d_span_slope_w[point]*inv_w;
+        d_span_slope_f[point] = d_span_slope_P[point]*share*smooth*(FU_REAL(P) < 0.0 ? 0.0 : 1.0) + d_span_slope_smooth[point]*share*(FU_REAL(P) < 0.0 ? 0.0 : P);
+        d_span_slope_on_phi[point] = R*d_span_slope_f[point]*sense;
+        d_span_slope_on_psi[point] = -(R*d_span_slope_f[point]*sense);
+        d_span_slope_on_s[point] = -d_span_slope_f[point]*mean_stretch - d_span_slope_mean_stretch[point]*f;)
     PLANAR_SHEAVE_PART_OF_DERIVATIVES
     PLANAR_SHEAVE_OUTPUTS
+}
+
+/* rates of the condition of winding, and its force (Lagrange's equations of a rope that is wound on a drum); 6 add, 37 mul, 2 div, 1 sqrt */
+void planar_sheave_winding(fu_real sense, fu_real R, const fu_real *x, const fu_real *slope, fu_real winds, fu_real wound, fu_real tension, fu_real *J, fu_real *K)
+{
+    /* stretches */
+    const fu_real
+        span_stretch = FU_SQRT(slope[0]*slope[0] + slope[1]*slope[1]),
+        inv_span_stretch = 1.0/span_stretch,
+        passing = span_stretch*winds + wound*(-winds + 1.0),
+        arm = R*sense;
+    /* condition */
+    const fu_real
+        square = x[0]*x[0] + x[1]*x[1],
+        inv_square = 1.0/square,
+        by_x_x = -(arm*inv_square*x[1]),
+        by_x_y = arm*inv_square*x[0];
+    /* derivatives */
+    const fu_real
+        d_x0_square = 2.0*x[0],
+        d_x0_inv_square = -(d_x0_square*inv_square*inv_square),
+        d_x0_by_x_x = -(arm*d_x0_inv_square*x[1]),
+        d_x0_by_x_y = arm*d_x0_inv_square*x[0] + arm*inv_square,
+        d_x1_square = 2.0*x[1],
+        d_x1_inv_square = -(d_x1_square*inv_square*inv_square),
+        d_x1_by_x_x = -arm*d_x1_inv_square*x[1] - arm*inv_square,
+        d_x1_by_x_y = arm*d_x1_inv_square*x[0],
+        d_slope0_span_stretch = inv_span_stretch*slope[0],
+        d_slope0_passing = d_slope0_span_stretch*winds,
+        d_slope1_span_stretch = inv_span_stretch*slope[1],
+        d_slope1_passing = d_slope1_span_stretch*winds;
+    /* outputs */
+    J[0] = by_x_x;
+    J[1] = by_x_y;
+    J[2] = -arm;
+    J[3] = -passing;
+    K[0] = d_x0_by_x_x*tension;
+    K[1] = d_x1_by_x_x*tension;
+    K[2] = 0.0;
+    K[3] = 0.0;
+    K[4] = d_x0_by_x_y*tension;
+    K[5] = d_x1_by_x_y*tension;
+    FU_EACH(g, 4,
+        K[g + 6] = 0.0;)
+    K[10] = -(d_slope0_passing*tension);
+    K[11] = -(d_slope1_passing*tension);
+}
+
+/* rate of the condition of winding at zero accelerations (Lagrange's equations of a rope that is wound on a drum); 6 add, 20 mul, 2 div, 1 sqrt */
+void planar_sheave_winding_motion(fu_real sense, fu_real R, const fu_real *x, const fu_real *slope, fu_real winds, fu_real wound, const fu_real *x_rate, const fu_real *slope_rate, fu_real u_rate, fu_real *Q_d)
+{
+    (void)wound;
+    /* stretches */
+    const fu_real
+        span_stretch = FU_SQRT(slope[0]*slope[0] + slope[1]*slope[1]),
+        inv_span_stretch = 1.0/span_stretch,
+        arm = R*sense;
+    /* rates */
+    const fu_real
+        square = x[0]*x[0] + x[1]*x[1],
+        inv_square = 1.0/square,
+        dt_square = 2.0*x[0]*x_rate[0] + 2.0*x[1]*x_rate[1],
+        dt_inv_square = -(dt_square*inv_square*inv_square),
+        dt_span_stretch = inv_span_stretch*(slope[0]*slope_rate[0] + slope[1]*slope_rate[1]),
+        dt_passing = dt_span_stretch*winds,
+        dt_w = arm*dt_inv_square*(x[0]*x_rate[1] - x[1]*x_rate[0]) - dt_passing*u_rate;
+    /* outputs */
+    Q_d[0] = dt_w;
+}
+
+/* forces of the wound rope (Lagrange's equations of a rope that is wound on a drum); 19 add, 47 mul, 2 div, 1 sqrt */
+void planar_sheave_store(const fu_real *A, fu_real rho, fu_real R, const fu_real *g, fu_real u, const fu_real *c, fu_real spin, const fu_real *c_rate, fu_real u_rate, fu_real spin_acc, const fu_real *c_acc, const fu_real *slope, fu_real winds, fu_real wound, fu_real *F)
+{
+    /* stretches */
+    const fu_real
+        span_stretch = FU_SQRT(slope[0]*slope[0] + slope[1]*slope[1]),
+        passing = span_stretch*winds + wound*(-winds + 1.0);
+    /* elastic force on the length */
+    const fu_real elastic = 0.5*A[0]*(span_stretch - 1.0)*(span_stretch - 1.0) + 0.5*A[1]*span_stretch*span_stretch/(R*R) + (passing - span_stretch)*(0.5*A[0]*(2.0*span_stretch - 2.0) + A[1]*span_stretch/(R*R));
+    /* forces */
+    const fu_real
+        F1 = R*R*rho*spin*u_rate + R*R*rho*spin_acc*u,
+        F2 = c_acc[0]*rho*u + c_rate[0]*rho*u_rate - g[0]*rho*u,
+        F3 = c_acc[1]*rho*u + c_rate[1]*rho*u_rate - g[1]*rho*u,
+        F4 = elastic - rho*(c[0]*g[0] + c[1]*g[1]) - 0.5*rho*(R*R*spin*spin + c_rate[0]*c_rate[0] + c_rate[1]*c_rate[1]);
+    /* outputs */
+    F[0] = F1;
+    F[1] = F2;
+    F[2] = F3;
+    F[3] = F4;
+}
+
+/* derivatives of the forces of the wound rope (Lagrange's equations of a rope that is wound on a drum); 15 add, 55 mul, 5 div, 1 sqrt */
+void planar_sheave_store_tangent(const fu_real *A, fu_real rho, fu_real R, const fu_real *g, fu_real u, const fu_real *c, fu_real spin, const fu_real *c_rate, fu_real u_rate, fu_real spin_acc, const fu_real *c_acc, const fu_real *slope, fu_real winds, fu_real wound, fu_real *M, fu_real *D, fu_real *K)
+{
+    (void)c;
+    /* stretches */
+    const fu_real
+        span_stretch = FU_SQRT(slope[0]*slope[0] + slope[1]*slope[1]),
+        inv_span_stretch = 1.0/span_stretch,
+        passing = span_stretch*winds + wound*(-winds + 1.0);
+    /* derivatives */
+    fu_real d_slope_span_stretch[2], d_slope_passing[2], d_slope_elastic[2];
+    const fu_real
+        d_spin_acc_F1 = R*R*rho*u,
+        d_c_acc0_F2 = rho*u,
+        d_c_acc1_F3 = rho*u,
+        d_spin_F1 = R*R*rho*u_rate,
+        d_spin_F4 = -(R*R*rho*spin),
+        d_c_rate0_F2 = rho*u_rate,
+        d_c_rate0_F4 = -(c_rate[0]*rho),
+        d_c_rate1_F3 = rho*u_rate,
+        d_c_rate1_F4 = -(c_rate[1]*rho),
+        d_u_rate_F1 = R*R*rho*spin,
+        d_u_rate_F2 = c_rate[0]*rho,
+        d_u_rate_F3 = c_rate[1]*rho,
+        d_c0_F4 = -(g[0]*rho),
+        d_c1_F4 = -(g[1]*rho),
+        d_u_F1 = R*R*rho*spin_acc,
+        d_u_F2 = c_acc[0]*rho - g[0]*rho,
+        d_u_F3 = c_acc[1]*rho - g[1]*rho;
+    FU_EACH(point, 2,
+        d_slope_span_stretch[point] = inv_span_stretch*slope[point];
+        d_slope_passing[point] = d_slope_span_stretch[point]*winds;
+        d_slope_elastic[point] = d_slope_passing[point]*(0.5*A[0]*(2.0*span_stretch - 2.0) + A[1]*span_stretch/(R*R)) + d_slope_span_stretch[point]*(A[0] + A[1]/(R*R))*(passing - span_stretch);)
+    /* outputs */
+    M[0] = d_spin_acc_F1;
+    M[1] = 0.0;
+    M[2] = 0.0;
+    M[3] = 0.0;
+    M[4] = d_c_acc0_F2;
+    M[5] = 0.0;
+    M[6] = 0.0;
+    M[7] = 0.0;
+    M[8] = d_c_acc1_F3;
+    M[9] = 0.0;
+    M[10] = 0.0;
+    M[11] = 0.0;
+    D[0] = d_spin_F1;
+    D[1] = 0.0;
+    D[2] = 0.0;
+    D[3] = d_u_rate_F1;
+    D[4] = 0.0;
+    D[5] = d_c_rate0_F2;
+    D[6] = 0.0;
+    D[7] = d_u_rate_F2;
+    D[8] = 0.0;
+    D[9] = 0.0;
+    D[10] = d_c_rate1_F3;
+    D[11] = d_u_rate_F3;
+    D[12] = d_spin_F4;
+    D[13] = d_c_rate0_F4;
+    D[14] = d_c_rate1_F4;
+    D[15] = 0.0;
+    K[0] = 0.0;
+    K[1] = 0.0;
+    K[2] = d_u_F1;
+    FU_EACH(point, 4,
+        K[point + 3] = 0.0;)
+    K[7] = d_u_F2;
+    FU_EACH(point, 4,
+        K[point + 8] = 0.0;)
+    K[12] = d_u_F3;
+    K[13] = 0.0;
+    K[14] = 0.0;
+    K[15] = d_c0_F4;
+    K[16] = d_c1_F4;
+    K[17] = 0.0;
+    K[18] = d_slope_elastic[0];
+    K[19] = d_slope_elastic[1];
+}
+
+/* kinetic energy of the wound rope, and its energy of gravity (Lagrange's equations of a rope that is wound on a drum); 3 add, 12 mul */
+void planar_sheave_store_energy(fu_real rho, fu_real R, const fu_real *g, fu_real u, const fu_real *c, fu_real spin, const fu_real *c_rate, fu_real *T, fu_real *V)
+{
+    /* outputs */
+    T[0] = 0.5*rho*u*(R*R*spin*spin + c_rate[0]*c_rate[0] + c_rate[1]*c_rate[1]);
+    V[0] = -(rho*u*(c[0]*g[0] + c[1]*g[1]));
+}
+
+/* elastic energy of a wound length, and the part that is dissipated as it passes (Lagrange's equations of a rope that is wound on a drum); 4 add, 11 mul, 2 div */
+void planar_sheave_creep(const fu_real *A, fu_real R, fu_real wound, fu_real span_stretch, fu_real *W, fu_real *loss)
+{
+    /* outputs */
+    W[0] = 0.5*A[0]*(wound - 1.0)*(wound - 1.0) + 0.5*A[1]*wound*wound/(R*R);
+    loss[0] = 0.5*(A[0] + A[1]/(R*R))*(-span_stretch + wound)*(-span_stretch + wound);
 }

@@ -272,7 +272,8 @@ static const fu_sheave_kernels sheaves[] = {
      planar_sheave_kinetic_energy, planar_sheave_inertia, planar_sheave_inertia_tangent, planar_sheave_dissipation,
      planar_sheave_damping_force, planar_sheave_damping_tangent, planar_sheave_friction, planar_sheave_friction_tangent,
      planar_sheave_friction_on, planar_sheave_friction_on_tangent, planar_sheave_friction_off,
-     planar_sheave_friction_off_tangent},
+     planar_sheave_friction_off_tangent, planar_sheave_winding, planar_sheave_winding_motion, planar_sheave_store,
+     planar_sheave_store_tangent, planar_sheave_store_energy, planar_sheave_creep},
 };
 
 static const fu_span_kernels spans[] = {
@@ -358,10 +359,16 @@ static const fu_surface_kernels surfaces[] = {
 #define FU_ARGUMENTS_ssvsvvvvvv_3 *a[0], *a[1], a[2], *a[3], a[4], a[5], a[6], a[7], a[8], a[9], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vssvsvv_1 a[0], *a[1], *a[2], a[3], *a[4], a[5], a[6], out[0]
 #define FU_ARGUMENTS_vssvsvv_2 a[0], *a[1], *a[2], a[3], *a[4], a[5], a[6], out[0], out[1]
-#define FU_ARGUMENTS_vsssssvvsss_3 a[0], *a[1], *a[2], *a[3], *a[4], *a[5], a[6], a[7], *a[8], *a[9], *a[10], out[0], out[1], out[2]
-#define FU_ARGUMENTS_vsssssvvsss_2 a[0], *a[1], *a[2], *a[3], *a[4], *a[5], a[6], a[7], *a[8], *a[9], *a[10], out[0], out[1]
-#define FU_ARGUMENTS_vsssssvvvsss_3 a[0], *a[1], *a[2], *a[3], *a[4], *a[5], a[6], a[7], a[8], *a[9], *a[10], *a[11], out[0], out[1], out[2]
-#define FU_ARGUMENTS_vsssssvvvsss_2 a[0], *a[1], *a[2], *a[3], *a[4], *a[5], a[6], a[7], a[8], *a[9], *a[10], *a[11], out[0], out[1]
+#define FU_ARGUMENTS_vsssvssvvsss_3 a[0], *a[1], *a[2], *a[3], a[4], *a[5], *a[6], a[7], a[8], *a[9], *a[10], *a[11], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vsssvssvvsss_2 a[0], *a[1], *a[2], *a[3], a[4], *a[5], *a[6], a[7], a[8], *a[9], *a[10], *a[11], out[0], out[1]
+#define FU_ARGUMENTS_vsssvssvvvsss_3 a[0], *a[1], *a[2], *a[3], a[4], *a[5], *a[6], a[7], a[8], a[9], *a[10], *a[11], *a[12], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vsssvssvvvsss_2 a[0], *a[1], *a[2], *a[3], a[4], *a[5], *a[6], a[7], a[8], a[9], *a[10], *a[11], *a[12], out[0], out[1]
+#define FU_ARGUMENTS_ssvvsss_2 *a[0], *a[1], a[2], a[3], *a[4], *a[5], *a[6], out[0], out[1]
+#define FU_ARGUMENTS_ssvvssvvs_1 *a[0], *a[1], a[2], a[3], *a[4], *a[5], a[6], a[7], *a[8], out[0]
+#define FU_ARGUMENTS_vssvsvsvssvvss_1 a[0], *a[1], *a[2], a[3], *a[4], a[5], *a[6], a[7], *a[8], *a[9], a[10], a[11], *a[12], *a[13], out[0]
+#define FU_ARGUMENTS_vssvsvsvssvvss_3 a[0], *a[1], *a[2], a[3], *a[4], a[5], *a[6], a[7], *a[8], *a[9], a[10], a[11], *a[12], *a[13], out[0], out[1], out[2]
+#define FU_ARGUMENTS_ssvsvsv_2 *a[0], *a[1], a[2], *a[3], a[4], *a[5], a[6], out[0], out[1]
+#define FU_ARGUMENTS_vsss_2 a[0], *a[1], *a[2], *a[3], out[0], out[1]
 #define FU_ARGUMENTS_svvvs_3 *a[0], a[1], a[2], a[3], *a[4], out[0], out[1], out[2]
 #define FU_ARGUMENTS_ssvvv_1 *a[0], *a[1], a[2], a[3], a[4], out[0]
 #define FU_ARGUMENTS_ssvvvvv_2 *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1]
@@ -905,12 +912,18 @@ static const fu_surface_kernels surfaces[] = {
     X(planar_sheave_dissipation, vssvsvv_1) \
     X(planar_sheave_damping_force, vssvsvv_1) \
     X(planar_sheave_damping_tangent, vssvsvv_2) \
-    X(planar_sheave_friction, vsssssvvsss_3) \
-    X(planar_sheave_friction_tangent, vsssssvvsss_2) \
-    X(planar_sheave_friction_on, vsssssvvvsss_3) \
-    X(planar_sheave_friction_on_tangent, vsssssvvvsss_2) \
-    X(planar_sheave_friction_off, vsssssvvvsss_3) \
-    X(planar_sheave_friction_off_tangent, vsssssvvvsss_2) \
+    X(planar_sheave_friction, vsssvssvvsss_3) \
+    X(planar_sheave_friction_tangent, vsssvssvvsss_2) \
+    X(planar_sheave_friction_on, vsssvssvvvsss_3) \
+    X(planar_sheave_friction_on_tangent, vsssvssvvvsss_2) \
+    X(planar_sheave_friction_off, vsssvssvvvsss_3) \
+    X(planar_sheave_friction_off_tangent, vsssvssvvvsss_2) \
+    X(planar_sheave_winding, ssvvsss_2) \
+    X(planar_sheave_winding_motion, ssvvssvvs_1) \
+    X(planar_sheave_store, vssvsvsvssvvss_1) \
+    X(planar_sheave_store_tangent, vssvsvsvssvvss_3) \
+    X(planar_sheave_store_energy, ssvsvsv_2) \
+    X(planar_sheave_creep, vsss_2) \
     X(span_cable8p_point, svvvs_3) \
     X(span_cable8p_kinetic_energy, ssvvv_1) \
     X(span_cable8p_inertia, ssvvvvv_2) \

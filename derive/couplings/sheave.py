@@ -14,7 +14,7 @@ import sympy as sp
 
 from ..codegen.family import CouplingFamily
 from ..codegen.program import DirectionalDerivative, Program, jacobian
-from . import sheave_friction, sheave_zone
+from . import drum, sheave_friction, sheave_zone
 from .sheave_zone import DIM, program
 
 
@@ -25,7 +25,8 @@ def families() -> list[CouplingFamily]:
 
 def build(dim: int) -> list[Program]:
     """Return the kernels of a sheave."""
-    return [tangent_point(), tangent_point_motion(), angle(), *sheave_zone.kernels(), *sheave_friction.kernels()]
+    return [tangent_point(), tangent_point_motion(), angle(), *sheave_zone.kernels(), *sheave_friction.kernels(),
+            *drum.kernels()]
 
 
 def _conditions(p: Program, x: np.ndarray, slope: np.ndarray) -> np.ndarray:

@@ -3,8 +3,9 @@
 The rope slides on the sheave, turned by psi, at w = sigma R (phi' - psi') - lambda s' with the stretch lambda of the
 side from which the material comes. The force f is sigma R f on phi, its opposite on psi, and -f times the mean stretch
 of both sides on s, so that it is the jump of the tension. Of a point with the share theta of the wrap |f| is at most
-tanh(mu theta/2) (P- + P+), P = T - rho v^2, with which the tensions of both sides differ by exp(mu theta) (Euler's belt
-equation). Beside a tangent point the stretch of the span is that of its slope.
+tanh(mu theta/2) (P- + P+), with which the normal forces on an angle of both sides differ by exp(mu theta) (Euler's belt
+equation). P = T - rho/lambda (v^2 + R g . n), n from the centre to the point: the inertia of the turn and the weight
+are those of the stretched rope. Beside a tangent point the stretch of the span is that of its slope.
 """
 
 from __future__ import annotations
@@ -43,6 +44,7 @@ def _friction(p: Program, beside: Beside) -> tuple[list[sp.Symbol], list[sp.Symb
     A = p.input("A", 2, "N, N m^2", "axial and bending stiffness EA, EI")
     sense = p.input("sense", (), "1", "1 for travel towards greater angles, else -1")
     rho, R = p.input("rho", (), "kg/m", "mass of a length"), p.input("R", (), "m", "radius to the axis of the rope")
+    g = p.input("g", DIM, "m/s^2", "gravity")
     mu = p.input("mu", (), "1", "coefficient of friction")
     v0 = p.input("v0", (), "m/s", "speed at which friction is 0.7 of its limit")
     zones = (beside.before, beside.behind).count("zone")
@@ -66,7 +68,10 @@ def _friction(p: Program, beside: Beside) -> tuple[list[sp.Symbol], list[sp.Symb
     speed = p.define("speed", groove - mean * s_rate)
     smooth = p.define("smooth", w * p.define("inv_w", 1 / p.define("len_w", sp.sqrt(w * w + v0 * v0))))
     p.stage("limit")
-    both = p.define("P", tension[0] + tension[1] - 2 * rho * speed**2)
+    here = phi[1] if beside.before == "zone" else phi[0]
+    outwards = p.define("outwards", R * (g[0] * sp.cos(here) + g[1] * sp.sin(here)))
+    mass = p.define("drawn_mass", 2 * rho * p.define("inv_mean_stretch", 1 / mean))
+    both = p.define("P", tension[0] + tension[1] - mass * (speed**2 + outwards))
     decay = p.define("decay", sp.exp(-mu * sense * (phi[zones] - phi[0]) / 2))
     share = p.define("share", (1 - decay) * p.define("inv_share", 1 / p.define("one_more", 1 + decay)))
     p.stage("force")

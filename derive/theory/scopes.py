@@ -422,7 +422,7 @@ def _of_span(scope: Scope, state: State) -> dict[str, Any]:
 
 
 def sheave_scope(name: str) -> Scope:
-    """Return the scope of a rope on a sheave."""
+    """Return the scope of a rope on a sheave or a drum."""
     vectors = [Symbol(latex, argument, column) for latex, argument in (
         (r"\mathbf{x}", "x"), (r"\dot{\mathbf{x}}", "x_rate"), (r"\ddot{\mathbf{x}}", "x_acc"),
         (r"\mathbf{t}", "slope"), (r"\dot{\mathbf{t}}", "slope_rate"), (r"\boldsymbol{\lambda}", "f"),
@@ -431,7 +431,9 @@ def sheave_scope(name: str) -> Scope:
         (r"\phi", "phi"), (r"\dot{\phi}", "phi_rate"), (r"\ddot{\phi}", "phi_acc"), (r"\dot{s}", "s_rate"),
         (r"\ddot{s}", "s_acc")) for k in range(2)]
     numbers = [Symbol(latex, argument, number) for latex, argument in (
-        ("R", "R"), ("l", "l"), (r"\sigma", "sense"), (r"\rho", "rho"), (r"\tau", "tau"))]
+        ("R", "R"), ("l", "l"), (r"\sigma", "sense"), (r"\rho", "rho"), (r"\tau", "tau"), ("f", "tension"),
+        (r"\dot{\psi}", "spin"), (r"\ddot{\psi}", "spin_acc"), ("u", "u"), (r"\dot{u}", "u_rate"), ("w", "winds"),
+        (r"\lambda_{w}", "wound"), (r"\lambda_{s}", "span_stretch"))]
     return Scope(families()[name], (*vectors, *ends, *numbers, Symbol(r"\mathrm{EA}", "A", entry(0)),
                                     Symbol(r"\mathrm{EI}", "A", entry(1))))
 

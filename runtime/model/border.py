@@ -88,6 +88,8 @@ class _Border:
                     self._group(unknowns)
             for sheave in rope.sheaves:
                 self._group(self._unknowns(np.r_[sheave.s[1:-1], [sheave.turn] * (sheave.turn >= 0)].astype(int)))
+            for drum in rope.drums:
+                self._group(self._unknowns(np.array([drum.turn] * (drum.turn >= 0), dtype=int)))
 
     def _group(self, unknowns: np.ndarray) -> None:
         """Add a group of unknowns, if there are any."""

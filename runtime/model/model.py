@@ -26,7 +26,7 @@ from .elimination import Elimination
 from .joints import JointModel
 from .loads import DeadLoadModel, LoadModel
 from .point_forces import PointForceModel
-from .ropes import RopeModel, SheaveModel, SpanModel
+from .ropes import DrumModel, RopeModel, SheaveModel, SpanModel
 from .signals import SignalModel
 from .unknowns import Node
 
@@ -236,6 +236,7 @@ class Model:
     crossings = _couplings_of(CrossingModel)
     spans = _couplings_of(SpanModel)
     sheaves = _couplings_of(SheaveModel)
+    drums = _couplings_of(DrumModel)
     contacts = _couplings_of(ContactModel)
     hard_contacts = _couplings_of(HardContactModel)
 

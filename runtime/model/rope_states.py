@@ -88,7 +88,7 @@ def points_of_spans(rope: Rope, route: DrawnRoute) -> list[tuple[slice, tuple[in
 
 def as_drawn(rope: Rope, route: DrawnRoute) -> dict[str, np.ndarray]:
     """Return position (points, 3) and s (points,) of `rope_state` for a rope as drawn, in m."""
-    places, lengths, s = [], [], 0.0
+    places, lengths, s = [], [], rope.drums[0].length_in_store if 0 in rope.drums else 0.0
     for k, (span, wrap) in enumerate(points_of_spans(rope, route)):
         drawn, share = route.spans[k], np.linspace(0, 1, span.stop - span.start)
         places.append(drawn.start + share[:, None] * (drawn.end - drawn.start))
@@ -128,7 +128,9 @@ def _wrap_points(model: Model, sheave: SheaveModel, q: np.ndarray, n: int) -> np
     """Return the inner ones of n points (T, n - 2, dim) at equal angles along a wrap."""
     centre = attachment_points(model, sheave.attachments[0], q)[:, : model.dim]
     on, off = (q[:, node : node + model.dim] - centre for node in sheave.nodes)
-    length = q[:, sheave.s[-1]] - q[:, sheave.s[0]] + sheave.closing
+    slopes = (q[:, node + model.dim : node + 2 * model.dim] for node in sheave.nodes)
+    stretch = np.mean([np.linalg.norm(slope, axis=1) for slope in slopes], axis=0)
+    length = stretch * (q[:, sheave.s[-1]] - q[:, sheave.s[0]] + sheave.closing)
     part = sheave.sense * np.arctan2(on[:, 0] * off[:, 1] - on[:, 1] * off[:, 0], np.sum(on * off, axis=1))
     wrap = part + 2 * np.pi * np.round((length / sheave.radius - part) / (2 * np.pi))
     angle = (np.arctan2(on[:, 1], on[:, 0])[:, None]

@@ -1,4 +1,4 @@
-"""Models of ropes: their coordinates, spans, sheaves, and ends on bodies."""
+"""Models of ropes: their coordinates, spans, sheaves, drums, and ends on bodies."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..parts.rope import Rope
-from ..parts.rope_items import RouteItem, Sheave
+from ..parts.rope_items import SIDES, Anchor, RouteItem, Sheave, Wheel
 from ..parts.rope_route import MIN_SPAN_RATIO, MIN_WRAP, DrawnRoute
 from ..parts.scene_data import SceneData
 from ..parts.section_stiffness import section_stiffness
@@ -62,11 +62,30 @@ class SheaveCoordinates:
 
 
 @dataclass
+class DrumCoordinates:
+    """The dofs of a drum: the end of the rope there, 0 or -1, its span, and the rotation, -1 for none."""
+
+    end: int
+    span: SpanCoordinates
+    turn: int
+
+    @property
+    def node(self) -> slice:
+        """Return the dofs of the node at its tangent point."""
+        return self.span.node(self.end)
+
+    @property
+    def s(self) -> int:
+        """Return the dof of the material coordinate there."""
+        return self.span.s[self.end]
+
+
+@dataclass
 class RopeModel:
     """The coordinates of a rope, with their values as drawn.
 
-    part, route: as drawn; spans, sheaves: in its order; q (n,), weight (n,): of its coordinates from `first` on; fixed:
-    those of ends at the ground.
+    part, route: as drawn; spans, sheaves, drums: in its order; q (n,), weight (n,): of its coordinates from `first` on;
+    fixed: those of ends at the ground.
     """
 
     part: Rope
@@ -74,6 +93,7 @@ class RopeModel:
     first: int
     spans: list[SpanCoordinates]
     sheaves: list[SheaveCoordinates]
+    drums: list[DrumCoordinates]
     q: np.ndarray
     weight: np.ndarray
     fixed: np.ndarray
@@ -90,6 +110,18 @@ class RopeModel:
                   for node in map(span.node, range(span.n_elements + 1))]
         return np.concatenate([*places, *(span.s for span in self.spans), *(sheave.s for sheave in self.sheaves)]
                               ).astype(int)
+
+    @property
+    def turns(self) -> list[tuple[Wheel, int]]:
+        """Return its sheaves and drums with the dofs of their rotations, -1 for none."""
+        sheaves: list[tuple[Wheel, int]] = [(item, at.turn) for item, at in
+                                            zip(self.part.sheaves, self.sheaves, strict=True)]
+        return sheaves + [(self.part.drums[drum.end], drum.turn) for drum in self.drums]
+
+    @property
+    def free_length(self) -> float:
+        """Return its stress-free length with what is on drums, m."""
+        return self.route.free_length + self.part.length_in_store
 
     @property
     def rho(self) -> float:
@@ -112,7 +144,8 @@ def rope_models(scene: SceneData, at: int) -> list[RopeModel]:
 
 
 def _rope(rope: Rope, route: DrawnRoute, first: int) -> RopeModel:
-    dim, s, at = rope.dim, 0.0, first
+    dim, at = rope.dim, first
+    s = rope.drums[0].length_in_store if 0 in rope.drums else 0.0
     spans: list[SpanCoordinates] = []
     values: list[np.ndarray] = []
     weight: list[np.ndarray] = []
@@ -131,8 +164,8 @@ def _rope(rope: Rope, route: DrawnRoute, first: int) -> RopeModel:
         at += nodes.size
         of_s += [s, s + span.length / route.stretch]
         s = of_s[-1] + (route.sheaves[k + offset].length / route.stretch if k + offset < len(route.sheaves) else 0.0)
-    for k, made in enumerate(spans):
-        made.s = (at + 2 * k, at + 2 * k + 1)
+    for k, each in enumerate(spans):
+        each.s = (at + 2 * k, at + 2 * k + 1)
     at += len(of_s)
     sheaves: list[SheaveCoordinates] = []
     for k, item in enumerate(rope.sheaves):
@@ -146,30 +179,36 @@ def _rope(rope: Rope, route: DrawnRoute, first: int) -> RopeModel:
         values_of_sheave = np.r_[np.linspace(ends[0], ends[1], item.n_zones + 1)[1:-1], np.zeros(int(item.turns_round))]
         of_sheaves.append(values_of_sheave)
         weight_of_sheaves.append(np.r_[np.ones(len(inner)), np.full(int(item.turns_round), item.radius)])
+    drums: list[DrumCoordinates] = []
+    for end, drum in rope.drums.items():
+        drums.append(DrumCoordinates(end, spans[end], at if drum.turns_round else -1))
+        at += drum.turns_round
+        of_sheaves.append(np.zeros(int(drum.turns_round)))
+        weight_of_sheaves.append(np.full(int(drum.turns_round), drum.radius))
     q = np.concatenate([*values, of_s, *of_sheaves])
-    fixed = np.zeros(len(q), dtype=bool)
-    if not rope.closed:
-        fixed[[spans[0].s[0] - first, spans[-1].s[1] - first]] = True
-    for item, sheave in zip(rope.sheaves, sheaves, strict=True):
-        if item.prescribed is not None:
-            fixed[sheave.turn - first] = True
-    for made, node, anchor in _ends(rope, spans):
+    made = RopeModel(rope, route, first, spans, sheaves, drums, q,
+                     np.concatenate([*weight, np.ones(len(of_s)), *weight_of_sheaves]), np.zeros(len(q), dtype=bool))
+    for wheel, turn in made.turns:
+        if wheel.prescribed is not None:
+            made.fixed[turn - first] = True
+    for span, end, anchor in anchored_ends(made):
+        made.fixed[span.s[end] - first] = True
         if anchor.end.on is None:
-            place = made.node(node).start - first
-            fixed[place : place + dim] = True
-    return RopeModel(rope, route, first, spans, sheaves, q,
-                     np.concatenate([*weight, np.ones(len(of_s)), *weight_of_sheaves]), fixed)
+            place = span.node(end).start - first
+            made.fixed[place : place + dim] = True
+    return made
 
 
-def _ends(rope: Rope, spans: list[SpanCoordinates]) -> list[tuple[SpanCoordinates, int, RouteItem]]:
-    """Return the spans at the ends of a rope, the numbers of the nodes there, and the anchors."""
-    return [] if rope.closed else [(spans[0], 0, rope.route[0]), (spans[-1], -1, rope.route[-1])]
+def anchored_ends(rope: RopeModel) -> list[tuple[SpanCoordinates, int, RouteItem]]:
+    """Return the spans at the anchors of a rope, 0 for its first end or -1 for its last, and the anchors."""
+    return [(rope.spans[end], end, rope.part.route[end]) for end in (0, -1)
+            if isinstance(rope.part.route[end], Anchor)]
 
 
 def turn_motions(ropes: list[RopeModel], signals: Signals) -> list[tuple[int, int]]:
-    """Return the dof and the signal of sheaves whose rotation is prescribed."""
-    return [(sheave.turn, signals.add(item.prescribed)) for rope in ropes
-            for item, sheave in zip(rope.part.sheaves, rope.sheaves, strict=True) if item.prescribed is not None]
+    """Return the dof and the signal of sheaves and drums whose rotation is prescribed."""
+    return [(turn, signals.add(wheel.prescribed)) for rope in ropes for wheel, turn in rope.turns
+            if wheel.prescribed is not None]
 
 
 @dataclass(kw_only=True)
@@ -267,8 +306,8 @@ def span_models(builder: ModelBuilder) -> Iterator[SpanModel]:
     """Yield the spans of all ropes."""
     gravity = np.array(builder.scene.gravity)
     for rope in builder.ropes:
-        radii = [sheave.radius for sheave in rope.part.sheaves]
-        radii = [*radii, radii[0]] if rope.part.closed else [0.0, *radii, 0.0]
+        radii = [getattr(item, "radius", 0.0) for item in rope.part.route]
+        radii += radii[: rope.part.closed]
         for k, span in enumerate(rope.spans):
             least = max(MIN_SPAN_RATIO * max(radii[k : k + 2]), rope.part.radius)
             yield SpanModel(type="span", name=rope.part.name, kernel=f"span_{rope.part.element}", coordinates=span,
@@ -300,6 +339,74 @@ def sheave_models(builder: ModelBuilder) -> Iterator[SheaveModel]:
                               is_damped=rope.part.material.damping_time > 0 or item.coefficient > 0 or item.damping > 0)
 
 
+CELLS = 256
+"""Parts of a rope over each of which what is wound on a drum has one stretch."""
+
+
+@dataclass(kw_only=True)
+class DrumModel(CouplingModel):
+    """A drum at an end of a rope: fu_drum of the engine."""
+
+    kernel: str
+    attachments: tuple[AttachmentModel]
+    coordinates: DrumCoordinates
+    cell: float
+    direction: float
+    end: float
+    radius: float
+    tangent_radius: float
+    sense: float
+    rho: float
+    g: np.ndarray
+    A: np.ndarray
+    inertia: float
+    damping: float
+    torque_signal: int
+    torque: float
+    n_cells: int = CELLS
+    n_numbers: int = CELLS + 1
+
+    @property
+    def node(self) -> int:
+        """Return the first dof of the node at its tangent point."""
+        return self.coordinates.node.start
+
+    @property
+    def s(self) -> int:
+        """Return the dof of the material coordinate there."""
+        return self.coordinates.s
+
+    @property
+    def turn(self) -> int:
+        """Return the dof of its rotation, -1 for none."""
+        return self.coordinates.turn
+
+    @property
+    def adjacent(self) -> list[np.ndarray]:
+        """Return its dofs, beside those of its centre."""
+        turn = [] if self.turn < 0 else [self.turn]
+        return [np.r_[self.coordinates.node, self.s, turn].astype(int)]
+
+
+def drum_models(builder: ModelBuilder) -> Iterator[DrumModel]:
+    """Yield the drums of all ropes."""
+    gravity = np.array(builder.scene.gravity)
+    for rope in builder.ropes:
+        for at in rope.drums:
+            item = rope.part.drums[at.end]
+            direction = 1.0 if at.end == 0 else -1.0
+            mass = rope.rho * rope.route.spans[at.end].length / rope.part.elements_of_spans[at.end]
+            number, factor = (-1, 0.0) if item.torque is None else builder.signals.scale(item.torque)
+            yield DrumModel(type="drum", name=item.name, kernel="planar_sheave",
+                            attachments=(builder.attachment(item.end, np.eye(3)),), coordinates=at,
+                            cell=rope.free_length / CELLS, direction=direction,
+                            end=0.0 if at.end == 0 else rope.free_length, radius=item.radius,
+                            tangent_radius=rope.route.reach[at.end], sense=float(SIDES[item.side]), rho=rope.rho,
+                            g=gravity, A=rope.stiffness[:2], inertia=item.inertia, damping=item.damping,
+                            torque_signal=number, torque=factor, scale=[mass] * 3, n_multipliers=3, has_inertia=True,
+                            is_damped=True)
+
+
 @dataclass(kw_only=True)
 class AnchorModel(CouplingModel):
     """An end of a rope on a body: a spherical joint, fu_joint of the engine."""
@@ -313,7 +420,7 @@ class AnchorModel(CouplingModel):
 def anchor_models(builder: ModelBuilder) -> Iterator[AnchorModel]:
     """Yield the ends of ropes on bodies; those at the ground are fixed dofs."""
     for rope in builder.ropes:
-        for span, node, item in _ends(rope.part, rope.spans):
+        for span, node, item in anchored_ends(rope):
             if item.end.on is None:
                 continue
             body = builder.attachment(item.end)
@@ -323,4 +430,4 @@ def anchor_models(builder: ModelBuilder) -> Iterator[AnchorModel]:
 
 
 KINDS = (CouplingKind("anchor", Rope.group, anchor_models), CouplingKind("span", Rope.group, span_models),
-         CouplingKind("sheave", Rope.group, sheave_models))
+         CouplingKind("sheave", Rope.group, sheave_models), CouplingKind("drum", Rope.group, drum_models))

@@ -16,7 +16,7 @@ from .modal_body import ModalBody
 from .part import Part
 from .quantity import Quantity, vector_of_time
 from .rigid_body import RigidBody
-from .rope_items import ROUTE_ITEMS, SIDES, Anchor, RouteItem, Sheave
+from .rope_items import ROUTE_ITEMS, SIDES, Anchor, Drum, RouteItem, Sheave
 from .rope_route import MAX_LAYER, DrawnRoute, RoutePoint, default_senses, drawn_route
 from .schemas import POINT, checked
 from .section import AnySection, Rectangle, outer_radius_of
@@ -27,7 +27,7 @@ ELEMENTS = ("cable8p",)
 """Elements of spans, whose material points move along them."""
 LAW = law_of_measures("engineering", "exact", "full")
 """The law of the stiffness: tension is EA (stretch - 1)."""
-ORDER = "give an Anchor, then one Sheave or more, then an Anchor; or closed=True"
+ORDER = "give an Anchor or a Drum, then the sheaves, then an Anchor or a Drum; or closed=True"
 
 
 def _listed(value: Any) -> list[Any]:
@@ -52,18 +52,21 @@ ElementsOfSpans = Annotated[int | tuple[int, ...], checked(_elements, {
 class Rope(Part):
     """A rope that runs over sheaves in the plane z = 0: it stretches, bends, has mass and slides.
 
-    It ends at two anchors, and is straight and tangent to the sheaves as drawn. A span is what is between two tangent
-    points, or a tangent point and an anchor; its elements are equal, and the material moves through them. Sheaves have
+    It ends at anchors or drums, and is straight and tangent to the sheaves and drums as drawn. A span is what is
+    between two tangent points, or a tangent point and an anchor; its elements are equal, and the material moves through
+    them. Sheaves have
     no mass but that of the body they are on. On a sheave the rope bends to its radius; the layer sqrt(EI / T) in which
     the curvature begins is not resolved but moves the span away from the sheave by EI / (2 T R).
 
     Given is the ``tension`` or the ``length``; gravity acts from the start.
 
-    route: an `Anchor`, one `Sheave` or more, an `Anchor`, in the rope's order; of a closed rope two sheaves or more
+    route: an `Anchor` or a `Drum`, sheaves, and again an `Anchor` or a `Drum`, in the rope's order; of a closed rope
+        two sheaves or more
     closed: whether the last sheave leads to the first one, as of a belt
     elements: number of elements of each span, or a list of one number for each span
     tension: at the route's first point, uniform as drawn, N
-    length: stress-free length of the whole rope, m, at most the drawn length; the stretch is uniform as drawn
+    length: stress-free length of the whole rope with what is wound on drums, m; without this at most the drawn length.
+        The stretch is uniform as drawn
     element: name of the element
     section: cross-section, whose height is in the plane
     material: material, with the damping of the rope
@@ -71,7 +74,7 @@ class Rope(Part):
 
     kind = "rope"
     group = "ropes"
-    parts_within = (Sheave,)
+    parts_within = (Sheave, Drum)
     results: ClassVar[dict[str, Quantity]] = {
         "position": Quantity(("time", "{part}.point", "xyz"), "m", "points along the rope", POINT),
         "s": Quantity(("time", "{part}.point"), "m", "stress-free arc-length of these points from the first anchor"),
@@ -97,13 +100,16 @@ class Rope(Part):
             raise ValueError("is closed, and its route has an Anchor" if len(self.sheaves) < len(self.route) else
                              "is closed around one sheave", "give two sheaves or more, without anchors")
         for end, item in () if self.closed else (("first", self.route[0]), ("last", self.route[-1])):
-            if not isinstance(item, Anchor):
-                raise ValueError(f"route must begin and end with an Anchor, its {end} item is the {item.where}", ORDER)
-        if any(isinstance(item, Anchor) for item in self.route[1:-1]):
-            raise ValueError("route has an Anchor between its ends", "let two ropes end there")
-        if not self.sheaves:
-            raise ValueError("route has no sheave", "take scene.cable() between two points")
-        names = [sheave.name for sheave in self.sheaves]
+            if not isinstance(item, Anchor | Drum):
+                raise ValueError(f"route must begin and end with an Anchor or a Drum, its {end} item is the "
+                                 f"{item.where}", ORDER)
+        for item in self.route if self.closed else self.route[1:-1]:
+            if not isinstance(item, Sheave):
+                what = "an Anchor" if isinstance(item, Anchor) else f"the {item.where}"
+                raise ValueError(f"route has {what} between its ends", "let two ropes end there")
+        if not self.wheels:
+            raise ValueError("route has no sheave and no drum", "take scene.cable() between two points")
+        names = [wheel.name for wheel in self.wheels]
         if self.name in names:
             raise ValueError(f'route has a sheave "{self.name}", the name of the rope', "give each its own name")
         if twice := next((name for k, name in enumerate(names) if name in names[:k]), None):
@@ -122,10 +128,10 @@ class Rope(Part):
 
     @model_validator(mode="after")
     def _fits_its_sheaves(self) -> Rope:
-        for sheave in self.sheaves:
-            if sheave.radius <= self.radius:
-                raise ValueError(f'radius of sheave "{sheave.name}" must be above that of the rope, '
-                                 f"{show(self.radius, 'm')}, got {show(sheave.radius, 'm')}",
+        for wheel in self.wheels:
+            if wheel.radius <= self.radius:
+                raise ValueError(f'radius of {wheel.where} must be above that of the rope, '
+                                 f"{show(self.radius, 'm')}, got {show(wheel.radius, 'm')}",
                                  "radius is that of the groove plus that of the rope")
         return self
 
@@ -145,6 +151,21 @@ class Rope(Part):
     def sheaves(self) -> tuple[Sheave, ...]:
         """Return its sheaves in their order."""
         return tuple(item for item in self.route if isinstance(item, Sheave))
+
+    @property
+    def drums(self) -> dict[int, Drum]:
+        """Return the drums at its ends, by 0 for the first end and -1 for the last."""
+        return {end: item for end in (0, -1) if isinstance(item := self.route[end], Drum)}
+
+    @property
+    def wheels(self) -> tuple[Sheave | Drum, ...]:
+        """Return its sheaves and drums in their order."""
+        return tuple(item for item in self.route if isinstance(item, Sheave | Drum))
+
+    @property
+    def length_in_store(self) -> float:
+        """Return the stress-free length that is wound on its drums at the start, m."""
+        return sum(drum.length_in_store for drum in self.drums.values())
 
     @property
     def n_spans(self) -> int:
@@ -170,11 +191,11 @@ class Rope(Part):
         return EA, EI
 
     def named_within(self) -> Iterator[Part]:
-        """Yield its sheaves in their order."""
-        return iter(self.sheaves)
+        """Yield its sheaves and drums in their order."""
+        return iter(self.wheels)
 
     def refers_to(self) -> Iterator[str]:
-        """Yield the names of the bodies that hold its ends and sheaves."""
+        """Yield the names of the bodies that hold its ends, sheaves and drums."""
         return chain.from_iterable(item.refers_to() for item in self.route)
 
     def off_plane(self) -> Iterator[str]:
@@ -217,27 +238,33 @@ class Rope(Part):
         tension = EA * (stretch - 1)
         if tension <= 0:
             return {}
-        return {sheave.name: min(EI / tension, (MAX_LAYER * sheave.radius)**2) / (2 * sheave.radius)
-                for sheave in self.sheaves}
+        return {wheel.name: min(EI / tension, (MAX_LAYER * wheel.radius)**2) / (2 * wheel.radius)
+                for wheel in self.wheels}
 
     def _point(self, k: int, centre: np.ndarray, sense: int) -> RoutePoint:
         """Return a point of the route; sense: that of a sheave without a side."""
         item = self.route[k]
-        if not isinstance(item, Sheave):
+        if not isinstance(item, Sheave | Drum):
             return RoutePoint(f"the {'last' if k else 'first'} anchor", centre)
         sense = SIDES[item.side] if item.side else sense
-        return RoutePoint(item.where, centre, item.radius, sense, item.turns, item.name)
+        return RoutePoint(item.where, centre, item.radius, sense, getattr(item, "turns", 0), item.name)
 
     def _stretch(self, drawn: float) -> float:
         """Return drawn over stress-free length; drawn: the length as drawn, m."""
         if self.length is None:
             assert self.tension is not None, f"{self.where} has neither tension nor length"
             return 1 + self.tension / self.stiffness[0]
-        if self.length > (1 + LENGTH_TOLERANCE) * drawn:
-            raise ValueError(f"is never taut: its length {show(self.length, 'm')} exceeds that of its route as drawn, "
-                             f"{show(drawn, 'm')}, by {show(self.length - drawn, 'm')}",
+        out = self.length - self.length_in_store
+        if out <= 0:
+            raise ValueError(f"is too short: its length {show(self.length, 'm')} is that of the whole rope, and its "
+                             f"drums have {show(self.length_in_store, 'm')} in store",
+                             "give a greater length, or tension")
+        if out > (1 + LENGTH_TOLERANCE) * drawn:
+            wound = f" without {show(self.length_in_store, 'm')} in store" if self.drums else ""
+            raise ValueError(f"is never taut: its length {show(self.length, 'm')}{wound} exceeds that of its route as "
+                             f"drawn, {show(drawn, 'm')}, by {show(out - drawn, 'm')}",
                              "give a smaller length, or tension")
-        return max(1.0, drawn / self.length)
+        return max(1.0, drawn / out)
 
 
 def _place(end: Attachment, bodies: Mapping[str, RigidBody | ModalBody]) -> np.ndarray:

@@ -1,10 +1,10 @@
-"""The items of a rope's route: anchors, where it ends, and sheaves, which it runs over."""
+"""The items of a rope's route: anchors and drums, where it ends, and sheaves, which it runs over."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from numbers import Integral as WholeNumber
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 from pydantic import model_validator
 
@@ -90,7 +90,49 @@ def _zones(value: Any) -> int:
     return int(value)
 
 
-class Sheave(RouteItem):
+class Wheel(RouteItem):
+    """Base of the items that a rope runs on: at, radius, side, inertia, torque, angle, velocity and damping."""
+
+    positional = ("name", "at")
+    at: AnyAttachment
+    radius: Annotated[float, positive("m")]
+    side: Annotated[str | None, one_of(SIDES, optional=True)] = None
+    inertia: Annotated[float, not_negative("kg m²")] = 0.0
+    torque: AnySignal | None = None
+    angle: AnySignal | None = None
+    velocity: AnySignal | None = None
+    damping: Annotated[float, not_negative("N m s")] = 0.0
+
+    @property
+    def turns_round(self) -> bool:
+        """Return whether it rotates."""
+        return self.inertia > 0 or self.prescribed is not None
+
+    @property
+    def prescribed(self) -> Signal | None:
+        """Return its prescribed angle over time, rad; None where it turns freely."""
+        return self.angle if self.velocity is None else Integral(rate=self.velocity)
+
+    @property
+    def end(self) -> Attachment:
+        """Return the point that holds its centre."""
+        return self.at
+
+    def held_at(self, end: Attachment) -> Self:
+        """Return it at a complete attachment."""
+        return self.model_copy(update={"at": end})
+
+    @model_validator(mode="after")
+    def _is_driven_once(self) -> Self:
+        drives = [name for name in ("torque", "angle", "velocity") if getattr(self, name) is not None]
+        if len(drives) > 1:
+            raise ValueError(f"has two drives, {drives[0]} and {drives[1]}", "give one of them")
+        if (drives or self.damping) and not self.turns_round:
+            raise ValueError(f"has {drives[0] if drives else 'damping'}, but no inertia", "give its inertia in kg m²")
+        return self
+
+
+class Sheave(Wheel):
     """A sheave that a rope runs over, with friction or without.
 
     at: its centre, a point of the ground, a body, or a point in the axes of a body
@@ -98,8 +140,8 @@ class Sheave(RouteItem):
     side: "left" or "right": where it lies, looking along the route. A rope with the sheave on its left runs
         counter-clockwise around it. By default the side to which the line through the centres of the route turns here
     inertia: about its axis, kg m²; it rotates where this is above 0 or its motion is prescribed, else it is held
-    torque: of a motor or a brake on it, over time, N m; it turns about z, counter-clockwise
-    angle, velocity: of its rotation over time, prescribed, rad or rad/s
+    torque: of a motor or a brake between it and what holds it, over time, N m; it turns about z, counter-clockwise
+    angle, velocity: of its rotation over time, prescribed, rad or rad/s, relative to the body that it is on
     damping: of its bearing, N m s
     friction: between rope and groove, a coefficient or a `Friction`, "regularised"; by default none
     zones: number of parts of the wrap between which friction acts, and over each of which the tension is constant
@@ -107,7 +149,6 @@ class Sheave(RouteItem):
     """
 
     kind = "sheave"
-    positional = ("name", "at")
     results = all_of_engine(
         "sheave",
         tension_on="tension of the rope where it runs on, in the rope's order",
@@ -116,21 +157,13 @@ class Sheave(RouteItem):
         force="force of the rope on what holds the sheave",
         material_speed="stress-free length that passes in the rope's order, a second",
         slip="largest speed of the rope on the sheave, in the rope's order",
-        normal_force="least of T - rho v² over the zones, the normal force times the radius on an angle",
+        normal_force="least normal force of the groove on an angle of the wrap",
         torque="of the rope on the sheave, by friction",
-        angle="by which the sheave has turned",
+        angle="by which the sheave has turned, relative to the body that it is on",
         residual="largest distance of the rope from its tangent points",
     )
     name: Name
-    at: AnyAttachment
-    radius: Annotated[float, positive("m")]
-    side: Annotated[str | None, one_of(SIDES, optional=True)] = None
-    inertia: Annotated[float, not_negative("kg m²")] = 0.0
     friction: AnyFriction | None = None
-    torque: AnySignal | None = None
-    angle: AnySignal | None = None
-    velocity: AnySignal | None = None
-    damping: Annotated[float, not_negative("N m s")] = 0.0
     zones: Annotated[int, checked(_zones, {"type": "integer", "minimum": 1, "maximum": MAX_ZONES})] = 8
     turns: Annotated[int, checked(_turns, {"type": "integer", "minimum": 0, "maximum": MAX_TURNS})] = 0
 
@@ -149,51 +182,56 @@ class Sheave(RouteItem):
         """Return the number of zones of its wrap: without friction the tension is the same all over it."""
         return self.zones if self.coefficient > 0 else 1
 
-    @property
-    def turns_round(self) -> bool:
-        """Return whether it rotates."""
-        return self.inertia > 0 or self.prescribed is not None
-
-    @property
-    def prescribed(self) -> Signal | None:
-        """Return its prescribed angle over time, rad; None where it turns freely."""
-        return self.angle if self.velocity is None else Integral(rate=self.velocity)
-
     @model_validator(mode="after")
-    def _is_driven_once(self) -> Sheave:
-        drives = [name for name in ("torque", "angle", "velocity") if getattr(self, name) is not None]
-        if len(drives) > 1:
-            raise ValueError(f"has two drives, {drives[0]} and {drives[1]}", "give one of them")
-        if (drives or self.damping) and not self.turns_round:
-            raise ValueError(f"has {drives[0] if drives else 'damping'}, but no inertia", "give its inertia in kg m²")
-        if (drives or self.damping) and self.at.on is not None:
-            raise ValueError(f"has {drives[0] if drives else 'damping'} and is on a body, which would take the "
-                             "reaction", "hold it at the ground: drives of sheaves on bodies are not possible yet")
+    def _has_modelled_friction(self) -> Sheave:
         if self.friction is not None:
             self.friction.check_coulomb()
             if self.friction.sticks:
                 raise ValueError("has friction that sticks", 'give model="regularised", with a small velocity')
-        if self.coefficient > 0 and not self.turns_round and self.at.on is not None:
-            raise ValueError("has friction, but no inertia, and is on a body, which would take the moment of friction",
-                             "give its inertia in kg m², with which it turns, or hold it at the ground")
         if self.inertia > 0 and not self.coefficient:
             raise ValueError("has inertia, but no friction with the rope, which then never turns it",
                              "give its friction, or leave the inertia out")
         return self
 
-    @property
-    def end(self) -> Attachment:
-        """Return the point that holds its centre."""
-        return self.at
-
     def refined(self) -> Sheave:
         """Return the sheave with twice the zones, at most `MAX_ZONES`."""
         return self.model_copy(update={"zones": min(2 * self.zones, MAX_ZONES)})
 
-    def held_at(self, end: Attachment) -> Sheave:
-        """Return the sheave at a complete attachment."""
-        return self.model_copy(update={"at": end})
+
+class Drum(Wheel):
+    """A drum at an end of a rope, which winds the rope and pays it out.
+
+    The rope sticks to the drum where it runs on, and keeps there the stretch with which it was wound. What is wound has
+    the radius of the drum, turns with it, and adds to its inertia and weight.
+
+    at: its centre, a point of the ground, a body, or a point in the axes of a body
+    radius: from its centre to the axis of the rope, m
+    side: "left" or "right": where it lies, looking along the route, from the first to the last item. A rope with the
+        drum on its left runs counter-clockwise around it
+    length_in_store: stress-free length of the rope that is wound at the start, m
+    inertia: about its axis, without the wound rope, kg m²; a drum with neither inertia nor prescribed motion is held
+    torque: of a motor or a brake between it and what holds it, over time, N m; it turns about z, counter-clockwise
+    angle, velocity: of its rotation over time, prescribed, rad or rad/s, relative to the body that it is on
+    damping: of its bearing, N m s
+    """
+
+    kind = "drum"
+    results = all_of_engine(
+        "drum",
+        tension="tension of the rope where it leaves the drum",
+        force="force of the rope on what holds the drum",
+        torque="of the motor or the brake on the drum, or of what holds it",
+        power="of the motor or the brake",
+        length_in_store="stress-free length of the wound rope",
+        material_speed="stress-free length that passes in the rope's order, a second",
+        normal_force="of the drum on an angle, where the rope leaves it",
+        angle="by which the drum has turned, relative to the body that it is on",
+        residual="largest distance of the rope from its tangent point",
+    )
+    name: Name
+    side: Annotated[str, one_of(SIDES)]
+    length_in_store: Annotated[float, positive("m")]
 
 
 ROUTE_ITEMS = Family("route_item", 'an item such as Anchor("A") or Sheave("top", at=(0, 9, 0), radius=0.3)',
-                     (Anchor, Sheave))
+                     (Anchor, Sheave, Drum))

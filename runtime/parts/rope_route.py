@@ -100,21 +100,23 @@ class DrawnRoute:
     """A route as drawn, in the rope's order: one span more than sheaves, or of a closed one as many, the first from the
     first sheave to the next.
 
-    stretch: drawn length over stress-free length, the same everywhere.
+    reach: radii of the tangent points of both ends, m, 0 at an anchor. stretch: drawn length over stress-free length,
+    the same everywhere.
     """
 
     spans: tuple[DrawnSpan, ...]
     sheaves: tuple[DrawnArc, ...]
+    reach: tuple[float, float]
     stretch: float = 1.0
 
     @property
     def length(self) -> float:
-        """Return the drawn length of the whole rope, m."""
+        """Return the drawn length of the rope, without what is wound on drums, m."""
         return sum(span.length for span in self.spans) + sum(arc.length for arc in self.sheaves)
 
     @property
     def free_length(self) -> float:
-        """Return the stress-free length of the whole rope, m."""
+        """Return its stress-free length, m."""
         return self.length / self.stretch
 
 
@@ -145,7 +147,7 @@ def drawn_route(points: list[RoutePoint], rope_radius: float = 0.0, closed: bool
         for point in points:
             if point.radius and point not in both:
                 _check_clear(span, *both, point)
-    return DrawnRoute(tuple(spans), tuple(sheaves))
+    return DrawnRoute(tuple(spans), tuple(sheaves), (points[0].reach, points[-1].reach))
 
 
 def _span(one: RoutePoint, other: RoutePoint, rope_radius: float) -> DrawnSpan:

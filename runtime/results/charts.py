@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..parts.rope_items import Drum
 from ..view.plot import colour_scale, snapshots
 from ..view.projections import axis_name
 from .animation.clips import upward
@@ -61,21 +62,27 @@ def slide(run: Recorded, figure: Figure) -> bool:
 
 
 def rope(run: Recorded, figure: Figure) -> bool:
-    """Draw the tensions of ropes on both sides of sheaves, and the wrap angles, over time; False without a rope."""
-    sheaves = [sheave.name for each in run.scene.ropes.values() for sheave in each.sheaves]
-    if not sheaves:
+    """Draw over time the tensions of ropes on both sides of sheaves and at drums, the wrap angles, and the lengths in
+    store; False without a rope.
+    """
+    wheels = [wheel for each in run.scene.ropes.values() for wheel in each.wheels]
+    if not wheels:
         return False
-    figure.set_size_inches(7, 4.6)
-    tension, wrap = figure.subplots(2, sharex=True)
-    for number, name in enumerate(sheaves):
-        for side, style in (("on", "-"), ("off", (0, (4, 2)))):
-            tension.plot(run.time, run[f"{name}.tension_{side}"], color=f"C{number % 10}", linestyle=style,
-                         label=f"{name}, {side}")
-        wrap.plot(run.time, run[f"{name}.wrap_angle"], color=f"C{number % 10}")
-    tension.set_ylabel("tension / N")
-    tension.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
-    wrap.set_ylabel("wrap angle / rad")
-    wrap.set_xlabel("time / s")
+    drums = [wheel for wheel in wheels if isinstance(wheel, Drum)]
+    shown = ["tension / N", *["wrap angle / rad"] * (len(drums) < len(wheels)), *["length in store / m"] * bool(drums)]
+    figure.set_size_inches(7, 2.3 * len(shown))
+    axes = dict(zip(shown, figure.subplots(len(shown), sharex=True), strict=True))
+    for number, wheel in enumerate(wheels):
+        name, colour, is_drum = wheel.name, f"C{number % 10}", isinstance(wheel, Drum)
+        for side, style in {"": "-"}.items() if is_drum else {"_on": "-", "_off": (0, (4, 2))}.items():
+            axes["tension / N"].plot(run.time, run[f"{name}.tension{side}"], color=colour, linestyle=style,
+                                     label=name + side.replace("_", ", "))
+        label, key = ("length in store / m", "length_in_store") if is_drum else ("wrap angle / rad", "wrap_angle")
+        axes[label].plot(run.time, run[f"{name}.{key}"], color=colour)
+    for label, ax in axes.items():
+        ax.set_ylabel(label)
+    axes["tension / N"].legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
+    ax.set_xlabel("time / s")
     return True
 
 

@@ -24,13 +24,13 @@ ROUNDING_OF_POSITION = 1e-14
 def default_outputs(scene: SceneData) -> list[str]:
     """Return the positions of bodies, slides and cable ends; of a supported end the middle of the cable.
 
-    Without any, the speeds of ropes at their sheaves.
+    Without any, the speeds of ropes at their sheaves and drums.
     """
     supported = {node_of(scene, support) for support in scene.supports}
     places = [f"{name}.{'middle' if (name, cable.elements) in supported else 'tip'}"
               for name, cable in scene.cables.items()]
     found = [f"{name}.position" for name in scene.bodies] + [f"{name}.s" for name in scene.slides] + places
-    return found or [f"{sheave.name}.material_speed" for rope in scene.ropes.values() for sheave in rope.sheaves]
+    return found or [f"{wheel.name}.material_speed" for rope in scene.ropes.values() for wheel in rope.wheels]
 
 
 def check_output(scene: SceneData, name: str) -> None:
@@ -48,7 +48,7 @@ def known_outputs(scene: SceneData) -> list[str]:
     results = [f"{name}.{quantity}" for group, named in parts.items() for name in named
                for quantity in QUANTITIES[group] if quantity not in ("orientation", "multiplier")]
     ropes = {rope.name: rope.results for rope in scene.ropes.values()}
-    ropes |= {sheave.name: sheave.results for rope in scene.ropes.values() for sheave in rope.sheaves}
+    ropes |= {wheel.name: wheel.results for rope in scene.ropes.values() for wheel in rope.wheels}
     results += [f"{name}.{key}" for name, of in ropes.items() for key, each in of.items() if each.dims in TRAJECTORIES]
     return results + [f"{name}.{place}" for name in scene.cables for place in PLACES] + list(ENERGIES)
 

@@ -260,6 +260,7 @@ CEILINGS = {
         "tangent": 204, "kinetic_energy": 60, "inertia": 213, "inertia_tangent": 1209, "dissipation": 15,
         "damping_force": 16, "damping_tangent": 50,
         "friction": 56, "friction_tangent": 307, "friction_on": 56, "friction_on_tangent": 294, "friction_off": 56,
-        "friction_off_tangent": 294
+        "friction_off_tangent": 294,
+        "winding": 46, "winding_motion": 29, "store": 69, "store_tangent": 76, "store_energy": 15, "creep": 17
     },
 }

@@ -105,8 +105,6 @@ def momenta(scene, run, k):
             rigid[0, node] = rigid[1, node + 1] = 1
             for at in (node, node + 2):
                 rigid[2, at : at + 2] = -q[at + 1], q[at]
-        for each in rope.sheaves:
-            rigid[2, each.turn] += each.turn >= 0
     p = engine.dense_matrix(1.0, 0.0, 0.0)[:n, :n] @ over(model.v)
     return np.array([over(each) @ p for each in rigid])
 

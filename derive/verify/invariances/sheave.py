@@ -9,6 +9,7 @@ import numpy as np
 from ...codegen.family import CouplingFamily
 from ..numbers import EPS, Numbers, State
 from ..samples.shapes import rotation
+from .drum import Scene, drum
 from .measures import Invariance, relative
 
 VECTORS = ("g", "c", "c_rate", "c_acc", "x", "slope", "x_rate", "slope_rate", "x_acc")
@@ -19,11 +20,12 @@ CENTRE = slice(2, 4)
 
 
 def sheave(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]:
-    """Yield signs, symmetries, turned and mirrored scenes, steady flow around a sheave, and a rope at rest on it."""
+    """Yield signs, symmetries, turned and mirrored scenes, steady flow around a sheave, a rope at rest on it; drums."""
     yield from _signs(k, s)
     yield from _frame(k, s)
     yield from _steady(k, s)
     yield from _resting(k, s)
+    yield from drum(k, s, _scenes(s))
 
 
 def _signs(k: Numbers, s: State) -> Iterator[Invariance]:
@@ -40,15 +42,20 @@ def _signs(k: Numbers, s: State) -> Iterator[Invariance]:
         yield f"{name} symmetric", relative(matrix - matrix.T, matrix), 64 * EPS
 
 
-def _frame(k: Numbers, s: State) -> Iterator[Invariance]:
-    """Yield the changes by a turn of the whole scene, by a full turn of the angles, and by a reflection."""
+def _scenes(s: State) -> list[Scene]:
+    """Return the scene turned as a whole, and reflected."""
     turn = 0.7
     Q = rotation(np.random.default_rng(3), 2, angle=turn)
     turned = s | {name: s[name] @ Q.T for name in VECTORS} | {"phi": s["phi"] + turn}
     mirror = np.diag([1.0, -1.0])
     mirrored = s | {name: s[name] @ mirror for name in VECTORS} | {
         "phi": -s["phi"], "sense": -s["sense"], "phi_rate": -s["phi_rate"], "phi_acc": -s["phi_acc"]}
-    for text, other, about, sign in (("turned", turned, Q, 1.0), ("mirrored", mirrored, mirror, -1.0)):
+    return [("turned", turned, Q, 1.0), ("mirrored", mirrored, mirror, -1.0)]
+
+
+def _frame(k: Numbers, s: State) -> Iterator[Invariance]:
+    """Yield the changes by a turn of the whole scene, by a full turn of the angles, and by a reflection."""
+    for text, other, about, sign in _scenes(s):
         for kernel, output in SCALARS:
             value = k(kernel, s)[output]
             expected = sign * value if kernel == "angle" else value

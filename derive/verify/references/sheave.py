@@ -89,9 +89,11 @@ def friction(k: Any, kernel: str, s: Any) -> list[Any]:
     sense, R, rate, spin, flow = (s[name].item() for name in ("sense", "R", "angle_rate", "spin", "flow"))
     EA, rho = s["A"][0], s["rho"].item()
     speed = sense * R * rate - (before + behind) / 2 * flow
-    pressure = EA * (before + behind - 2) - 2 * rho * speed * speed
-    sliding = sense * R * (rate - spin) - (before if flow < 0 else behind) * flow
     angles = s["angles3" if kernel == "friction" else "angles2"]
+    here = angles[0 if kernel == "friction_on" else 1]
+    outwards = s["R"].item() * s["g"].dot(np.array([mp.cos(here), mp.sin(here)]))
+    pressure = EA * (before + behind - 2) - 4 * rho / (before + behind) * (speed * speed + outwards)
+    sliding = sense * R * (rate - spin) - (before if flow < 0 else behind) * flow
     half = s["mu"].item() * abs(angles[-1] - angles[0]) / 4
     up, down = mpmath.exp(half), mpmath.exp(-half)
     v0 = s["v0"].item()

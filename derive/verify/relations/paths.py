@@ -27,6 +27,22 @@ def entry(name: str) -> Callable[..., Any]:
     return lambda s, j: unit(s[name], j)
 
 
+def along(path: Callable[..., Any], names: tuple[tuple[str, int], ...]) -> Callable[..., Any]:
+    """Return the path of path(k, state) along entry j of several inputs side by side."""
+    places = [(name, k) for name, size in names for k in range(size)]
+
+    def moved(k, s, t, j):
+        name, at = places[j]
+        return path(k, s | {name: s[name] + (t * unit(s[name], at) if s[name].ndim else t)})
+
+    return moved
+
+
+def of(kernel: str, output: str) -> Callable[..., Any]:
+    """Return the function of a state that is an output of a kernel."""
+    return lambda k, s: k(kernel, s)[output]
+
+
 def root(function: Callable[..., Any], *about) -> Callable[..., Any]:
     """Return a path of order 0: function(*about, state), which shares nothing with the derivation."""
     return lambda k, s, t, j: function(*about, s)

@@ -1,4 +1,4 @@
-"""Relations of the kernels of sheaves: a tangent point, its angle, and the zone of the wrap."""
+"""Relations of the kernels of sheaves: a tangent point, its angle, and the zone of the wrap; of drums see drum.py."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from ...codegen.family import CouplingFamily
 from ..methods import Relation
 from ..numbers import Numbers, State
 from ..references import sheave as reference
-from .paths import entry, from_kernel, half, root, unit
+from .drum import drum
+from .paths import along, entry, from_kernel, half, of, root, unit
 
 COORDINATES = (("phi", 2), ("c", 2), ("l", 1))
 """Names and sizes of the coordinates of a zone; those of its rates and of its accelerations follow."""
@@ -28,23 +29,7 @@ SLIDING = (("angle_rate", 1), ("spin", 1), ("flow", 1))
 def sheave(family: CouplingFamily) -> list[Relation]:
     """Return the relations of a sheave's kernels."""
     return [*_of_tangent_point(), *_of_angle(), *_of_energies(), *_of_inertia(), *_of_damping(),
-            *(each for kernel in FRICTION for each in _of_friction(kernel))]
-
-
-def along(path: Callable[..., Any], names: tuple[tuple[str, int], ...]) -> Callable[..., Any]:
-    """Return the path of path(k, state) along entry j of several inputs side by side."""
-    places = [(name, k) for name, size in names for k in range(size)]
-
-    def moved(k, s, t, j):
-        name, at = places[j]
-        return path(k, s | {name: s[name] + (t * unit(s[name], at) if s[name].ndim else t)})
-
-    return moved
-
-
-def of(kernel: str, output: str) -> Callable[..., Any]:
-    """Return the function of a state that is an output of a kernel."""
-    return lambda k, s: k(kernel, s)[output]
+            *(each for kernel in FRICTION for each in _of_friction(kernel)), *drum()]
 
 
 def without(names: tuple[tuple[str, int], ...], one: str) -> tuple[tuple[str, int], ...]:

@@ -1,4 +1,4 @@
-"""Samples of a rope on a sheave."""
+"""Samples of a rope on a sheave or a drum."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from ..numbers import Numbers, State
 
 
 def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) -> State:
-    """Return a tangent point not far from the groove, and a zone of the wrap, stretched and moving, after a turn."""
+    """Return a tangent point not far from the groove, a zone of the wrap after a turn, and a wound rope: all stretched
+    and moving.
+    """
     vectors = ("slope", "slope_rate", "g", "c", "c_rate", "c_acc", "phi_rate", "phi_acc", "s_rate", "s_acc", "f")
     found: State = {name: random.normal(size=2) for name in vectors}
     # off the axes, rates both along and across x, and none that cancel: entries that nearly vanish have few digits
@@ -25,6 +27,10 @@ def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) 
               "angle_rate": np.float64(random.uniform(0.02, 0.1)), "spin": np.float64(random.uniform(0.2, 0.4)),
               "flow": np.float64(random.choice([-1, 1]) * random.uniform(0.05, 0.1)), "mu": np.float64(0.3),
               "v0": np.float64(0.2)}
-    return found | {"R": np.float64(R), "phi": np.array([phi_a, phi_a + angle]), "sense": np.float64(sense),
-                    "l": np.float64(abs(angle) * R * random.uniform(0.8, 0.9)), "A": random.uniform(2, 5, 2),
-                    "rho": np.float64(1.3), "tau": np.float64(0.37)}
+    found |= {"R": np.float64(R), "phi": np.array([phi_a, phi_a + angle]), "sense": np.float64(sense),
+              "l": np.float64(abs(angle) * R * random.uniform(0.8, 0.9)), "A": random.uniform(2, 5, 2),
+              "rho": np.float64(1.3), "tau": np.float64(0.37)}
+    # winds is 0 or 1 in a run; between these both stretches count
+    return found | {name: np.float64(random.uniform(*limits)) for name, limits in {
+        "tension": (2, 4), "winds": (0.3, 0.7), "wound": (1.1, 1.3), "span_stretch": (1.4, 1.6), "u": (2, 4),
+        "u_rate": (0.5, 1), "spin_acc": (0.5, 1)}.items()}

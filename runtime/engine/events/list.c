@@ -11,6 +11,7 @@
     ALONE(anchor)                                                                                                      \
     WITH_EVENTS(span)                                                                                                  \
     WITH_EVENTS(sheave)                                                                                                \
+    WITH_EVENTS(drum)                                                                                                  \
     WITH_EVENTS(point_force)                                                                                           \
     WITH_EVENTS(drag)                                                                                                  \
     WITH_EVENTS(crossing)                                                                                              \

@@ -1,10 +1,10 @@
 /* Ropes that leave what they run over: a run ends there, as the equations do not hold beyond. The reasons are the wrap
- * angle, the normal force, and the length of a span. */
+ * angle, the normal force, the length of a span, and that of the rope on a drum. */
 #include "couplings/common/coupling_events.h"
 #include "couplings/rope/rope.h"
 #include "equations/run.h"
 
-enum { WRAP, PRESSURE, N_FUNCTIONS };
+enum { WRAP, PRESSURE, N_FUNCTIONS, SPAN = N_FUNCTIONS, EMPTY };
 
 static int functions(const fu_coupling *coupling, fu_event_function *out)
 {
@@ -52,12 +52,35 @@ static int vanish(fu_run *run, const fu_coupling *coupling, int which, int side,
 {
     (void)side, (void)which;
     *what = "became too short";
-    return leave(run, coupling, N_FUNCTIONS);
+    return leave(run, coupling, SPAN);
 }
 
 static int begin_span(fu_run *run, const fu_coupling *coupling)
 {
-    return margin(run, coupling, &run->now, 0) < 0.0 ? leave(run, coupling, N_FUNCTIONS) : FU_RUNNING;
+    return margin(run, coupling, &run->now, 0) < 0.0 ? leave(run, coupling, SPAN) : FU_RUNNING;
 }
 
 const fu_coupling_events fu_span_events = {.direction = -1, .value = margin, .act = vanish, .begin = begin_span};
+
+static double value_of_drum(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
+{
+    return which == WRAP ? fu_drum_margin(run->model, coupling, state) : fu_drum_pressure(run->model, coupling, state);
+}
+
+static int act_of_drum(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
+{
+    (void)side;
+    *what = which == WRAP ? "ran empty" : "lifted off";
+    return leave(run, coupling, which == WRAP ? EMPTY : which);
+}
+
+static int begin_drum(fu_run *run, const fu_coupling *coupling)
+{
+    for (int which = 0; which < N_FUNCTIONS; ++which)
+        if (value_of_drum(run, coupling, &run->now, which) < 0.0)
+            return leave(run, coupling, which == WRAP ? EMPTY : which);
+    return FU_RUNNING;
+}
+
+const fu_coupling_events fu_drum_events = {
+    .functions = functions, .value = value_of_drum, .act = act_of_drum, .begin = begin_drum};

@@ -134,7 +134,7 @@ def of_modes(modes: Modes, scene: SceneData, about: Mapping[str, np.ndarray], ti
         frequency, growth = float(modes.frequency[k]), float(modes.growth_rate[k])
         what = f"{frequency:.4g} Hz" if frequency > 0 or growth == 0 else f"grows by {growth:.4g} 1/s"
         turns = [float(np.linalg.norm(modes[f"{name}.rotation"][k])) for name in scene.bodies]
-        turns += [abs(float(modes[f"{name}.angle"][k])) for name in _sheaves(scene)]
+        turns += [abs(float(modes[f"{name}.angle"][k])) for name in _wheels(scene)]
         largest = min(swing, MODE_ROTATION / max([*turns, 1e-300]))
         clip = _clip(sources.of_mode(modes, k, scene, about, largest, phase), f"mode {k + 1}: {what}",
                      [] if k else notes)
@@ -147,9 +147,9 @@ def of_modes(modes: Modes, scene: SceneData, about: Mapping[str, np.ndarray], ti
     return replace(_animation(scene, title, clips, notes), arrangement="menu")
 
 
-def _sheaves(scene: SceneData) -> list[str]:
-    """Return the names of all sheaves."""
-    return [sheave.name for rope in scene.ropes.values() for sheave in rope.sheaves]
+def _wheels(scene: SceneData) -> list[str]:
+    """Return the names of all sheaves and drums."""
+    return [wheel.name for rope in scene.ropes.values() for wheel in rope.wheels]
 
 
 def _amplitude(moved: float, turned: float) -> str:
@@ -237,8 +237,7 @@ def _clip(frames: Frames, label: str, notes: list[str]) -> Clip:
         else:
             points += _cloud(frames, name)
     centre = _centre(frames)
-    bodies += [wheel_shape(frames, refs, rope, sheave) for rope in frames.scene.ropes.values()
-               for sheave in rope.sheaves]
+    bodies += [wheel_shape(frames, refs, rope, wheel) for rope in frames.scene.ropes.values() for wheel in rope.wheels]
     bodies += [surface_shape(frames, name, centre, size) for name in frames.scene.surfaces]
     bodies += level_shapes(frames, centre, size)
     return Clip(label, frames.time, tuple(cables), tuple(bodies), (*marks(frames, refs, size), *points),

@@ -21,8 +21,8 @@ MAX_NUMBERS = 150_000
 CURVES = (("time",), ("time", "xyz"), ("time", "normal"))
 """Dimensions of results with a curve."""
 UNITS = {"m/s2": "m/s²", "rad/s2": "rad/s²"}
-AT_SHEAVES = ("tension_on", "tension_off", "wrap_angle")
-"""Results of sheaves in the charts of their rope."""
+AT_WHEELS = ("tension_on", "tension_off", "wrap_angle", "tension", "length_in_store")
+"""Results of sheaves and drums in the charts of their rope."""
 MAX_TENSIONS = 1000
 """Largest number of times at which the tension at a slide is computed."""
 
@@ -47,9 +47,9 @@ def curves(run: Recorded, notes: list[str]) -> Iterator[Curve]:
     for name in run.scene.slides:
         yield from _tension_at(run, name, notes)
     for rope in run.scene.ropes.values():
-        yield from _at_sheaves(run, rope, chosen)
-    together = {f"{sheave.name}.{key}" for rope in run.scene.ropes.values() for sheave in rope.sheaves
-                for key in AT_SHEAVES}
+        yield from _at_wheels(run, rope, chosen)
+    together = {f"{wheel.name}.{key}" for rope in run.scene.ropes.values() for wheel in rope.wheels
+                for key in AT_WHEELS}
     for name, variable in shown.items():
         if not name.startswith("energy.") and name not in together:
             label = f"{name.rpartition('.')[0]}: {variable.long_name}"
@@ -77,13 +77,19 @@ def _energies(run: Recorded, chosen: np.ndarray) -> Iterator[Curve]:
     yield Curve("energy.balance", "energy balance: residual", "J", (), time, balance.residual[chosen])
 
 
-def _at_sheaves(run: Recorded, rope: Rope, chosen: np.ndarray) -> Iterator[Curve]:
-    """Yield the tensions of a rope at its sheaves in one chart, and the wrap angles in another."""
+def _at_wheels(run: Recorded, rope: Rope, chosen: np.ndarray) -> Iterator[Curve]:
+    """Yield charts of a rope: the tensions at its sheaves and drums, the wrap angles, and the lengths in store."""
     names, time = [sheave.name for sheave in rope.sheaves], run.time[chosen]
+    drums = [drum.name for drum in rope.drums.values()]
     sides = {f"{name} {side}": f"{name}.tension_{side}" for name in names for side in ("on", "off")}
+    sides |= {name: f"{name}.tension" for name in drums}
     angles = {name: f"{name}.wrap_angle" for name in names}
-    for key, label, unit, columns in (("tension", "tension at sheaves", "N", sides),
-                                      ("wraps", "wrap angles", "rad", angles)):
+    stores = {name: f"{name}.length_in_store" for name in drums}
+    for key, label, unit, columns in (("tension", "tension at sheaves and drums", "N", sides),
+                                      ("wraps", "wrap angles", "rad", angles),
+                                      ("stores", "lengths in store", "m", stores)):
+        if not columns:
+            continue
         yield Curve(f"{rope.name}.{key}", f"{rope.name}: {label}", unit, tuple(columns), time,
                     np.stack([run[name][chosen] for name in columns.values()], axis=1))
 

@@ -17,7 +17,7 @@ from ...parts.locations import ends_of, node_of
 from ...parts.modal_body import ModalBody
 from ...parts.part import Part
 from ...parts.rope import Rope
-from ...parts.rope_items import Sheave
+from ...parts.rope_items import Wheel
 from ...parts.scene_data import SceneData
 from ...parts.support import Clamp, Motion, Support
 from ...parts.validation import Vector, show, vector3
@@ -48,11 +48,11 @@ def _node(frames: Frames, cable: str, node: int) -> np.ndarray:
 
 
 def held_points(scene: SceneData) -> Iterator[tuple[str, str, Attachment]]:
-    """Yield the points that hold ropes, ends and axles of sheaves, with name and description."""
+    """Yield the points that hold ropes, ends and axles of sheaves and drums, with name and description."""
     for name, rope in scene.ropes.items():
         for item in rope.route:
-            is_sheave = isinstance(item, Sheave)
-            yield item.given_name or name, f'axle of "{item.given_name}"' if is_sheave else f'end of "{name}"', item.end
+            is_wheel = isinstance(item, Wheel)
+            yield item.given_name or name, f'axle of "{item.given_name}"' if is_wheel else f'end of "{name}"', item.end
 
 
 def marks(frames: Frames, refs: Frames, size: float) -> Iterator[Mark]:

@@ -9,10 +9,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...base.rotations import turned_by
+from ...base.rotations import product, turned_by
 from ...model.rope_states import POINTS_OF_ELEMENT, as_drawn, points_of_spans
 from ...parts.rope import Rope
-from ...parts.rope_items import Sheave
+from ...parts.rope_items import Drum, Sheave
 from ...parts.scene_data import SceneData
 from ...parts.section import Rectangle
 from ...view.animation import BodyShape, CableShape, Quantity, section_sides
@@ -30,19 +30,21 @@ ROPES_IN_WIDTH = 1.5
 """Width of a wheel over that of its rope, at least."""
 LAW_POINTS = 5
 """Points of Gauss by which the strain of an element is found."""
-SHEAVE_RESULTS = {"tension_on": ("tension on", "N"), "tension_off": ("tension off", "N"),
-                  "wrap_angle": ("wrap angle", "rad"), "slip": ("slip", "m/s")}
-"""Results of sheaves under the pointer, with their labels and units."""
+WHEEL_RESULTS = {"tension_on": ("tension on", "N"), "tension_off": ("tension off", "N"),
+                 "wrap_angle": ("wrap angle", "rad"), "slip": ("slip", "m/s"), "tension": ("tension", "N"),
+                 "length_in_store": ("length in store", "m"), "power": ("power", "W")}
+"""Results of sheaves and drums under the pointer, with their labels and units."""
 
 
 def ropes_as_drawn(scene: SceneData) -> dict[str, np.ndarray]:
-    """Return the results of ropes and sheaves by name as the scene is drawn, of those that pictures need."""
+    """Return the results of ropes, sheaves and drums by name as the scene is drawn, of those that pictures need."""
     found: dict[str, np.ndarray] = {}
     for name, rope in scene.ropes.items():
         route = rope.drawn(scene.bodies)
         found |= {f"{name}.{key}": value for key, value in as_drawn(rope, route).items()}
         for arc in route.sheaves:
-            found |= {f"{arc.name}.wrap_angle": np.array(arc.wrap), f"{arc.name}.angle": np.array(0.0)}
+            found[f"{arc.name}.wrap_angle"] = np.array(arc.wrap)
+        found |= {f"{wheel.name}.angle": np.array(0.0) for wheel in rope.wheels}
     return found
 
 
@@ -163,22 +165,21 @@ def _wrap(frames: Frames, sheave: Sheave, sense: int, points: np.ndarray, s: np.
     return centre[:, None] + sheave.radius * around, between(s), between(middle)
 
 
-def wheel_shape(frames: Frames, refs: Frames, rope: Rope, sheave: Sheave) -> BodyShape:
-    """Return a sheave as a wheel below the rope; refs: see `references`.
+def wheel_shape(frames: Frames, refs: Frames, rope: Rope, sheave: Sheave | Drum) -> BodyShape:
+    """Return a sheave or a drum as a wheel below the rope; refs: see `references`.
 
-    A sheave without rotation keeps the axes of its carrier.
+    One without rotation keeps the axes of its carrier.
     """
     height, width = section_sides(section_data(rope.section))
     shape = {"kind": "wheel", "radius": max(sheave.radius - height / 2, sheave.radius / 2),
              "width": max(MIN_WIDTH * sheave.radius, ROPES_IN_WIDTH * width), "offset": [0.0, 0.0, 0.0]}
     times = len(frames.time)
     position = np.broadcast_to(place(frames, sheave.end), (times, 3))
-    if sheave.turns_round or sheave.end.on is None:
-        turn = np.zeros((times, 3))
-        turn[:, 2] = frames.value(f"{sheave.name}.angle")
-        orientation = turned_by(turn)
-    else:
-        orientation = frames.value(f"{sheave.end.on}.orientation")
-    found = {label: (unit, frames.value(f"{sheave.name}.{key}")) for key, (label, unit) in SHEAVE_RESULTS.items()
+    turn = np.zeros((times, 3))
+    turn[:, 2] = frames.value(f"{sheave.name}.angle")
+    orientation = turned_by(turn)
+    if sheave.end.on is not None:
+        orientation = product(frames.value(f"{sheave.end.on}.orientation"), orientation)
+    found = {label: (unit, frames.value(f"{sheave.name}.{key}")) for key, (label, unit) in WHEEL_RESULTS.items()
              if frames.has(f"{sheave.name}.{key}") and frames.section_forces is not no_forces}
     return BodyShape(sheave.name, position, orientation, shape, one_or_all(place(refs, sheave.end)), found)

@@ -112,7 +112,7 @@ def of_mode(modes: Modes, number: int, scene: SceneData, about: Mapping[str, np.
         found[key] = about[key] + np.multiply.outer(factor, modes[key][number])
     for name, rope in scene.ropes.items():
         moved = {f"{name}.position": f"{name}.displacement", f"{name}.s": f"{name}.s"}
-        moved |= {f"{sheave.name}.angle": f"{sheave.name}.angle" for sheave in rope.sheaves}
+        moved |= {f"{wheel.name}.angle": f"{wheel.name}.angle" for wheel in rope.wheels}
         found |= {key: about[key] + np.multiply.outer(factor, modes[shape][number]) for key, shape in moved.items()}
         found |= {f"{sheave.name}.wrap_angle": np.broadcast_to(about[f"{sheave.name}.wrap_angle"], len(phase))
                   for sheave in rope.sheaves}

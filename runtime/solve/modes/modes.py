@@ -315,8 +315,8 @@ def _named(model: Model, q: np.ndarray, squares: np.ndarray, dofs: np.ndarray, e
         shapes[f"{body.name}.nodes"] = _nodes(model, body, q, dofs)
     for rope in model.ropes:
         shapes |= {f"{rope.part.name}.{key}": value for key, value in rope_motion(model, rope, q, dofs).items()}
-        shapes |= {f"{item.name}.angle": dofs[:, at.turn] if at.turn >= 0 else np.zeros(len(dofs))
-                   for item, at in zip(rope.part.sheaves, rope.sheaves, strict=True)}
+        shapes |= {f"{wheel.name}.angle": dofs[:, turn] if turn >= 0 else np.zeros(len(dofs))
+                   for wheel, turn in rope.turns}
     if (axes := model.plane_axes) is not None:
         for name, values in shapes.items():
             part, _, quantity = name.rpartition(".")

@@ -280,9 +280,9 @@ def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:
     by_mass: Callable[[np.ndarray], np.ndarray]
     mass = matrix(1.0, 0.0, 0.0)[:n, :n]
     full = matrix(0.0, 0.0, 1.0)
-    if model.sheaves:
-        at_sheaves = [n + k for sheave in model.sheaves for k in sheave.force_unknowns]
-        by_mass = _on_sheaves(csc_array(mass), csc_array(full[at_sheaves][:, :n]))
+    if wheels := [*model.sheaves, *model.drums]:
+        on_wheels = [n + k for wheel in wheels for k in wheel.force_unknowns]
+        by_mass = _on_wheels(csc_array(mass), csc_array(full[on_wheels][:, :n]))
     elif n <= MAX_DENSE_UNKNOWNS:
         by_mass = np.linalg.inv(mass).dot
     else:
@@ -295,7 +295,7 @@ def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:
     return math.sqrt(_largest(stiffness, mass, by_mass)), decay
 
 
-def _on_sheaves(mass: csc_array, rows: csc_array) -> Callable[[np.ndarray], np.ndarray]:
+def _on_wheels(mass: csc_array, rows: csc_array) -> Callable[[np.ndarray], np.ndarray]:
     """Return the product with the inverse of a mass (n, n) on the constraints rows x = 0 (k, n) of tangent points.
 
     Without these a straight span may flow along its nodes, and has no mass then.

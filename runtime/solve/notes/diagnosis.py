@@ -125,8 +125,10 @@ def rope_left(model: Model, number: int, reason: int) -> str:
     if reason == 0:
         return f'a rope leaves sheave "{coupling.name}", as its wrap angle reaches {MIN_WRAP:g} rad,'
     if reason == 1:
-        return (f'a rope lifts off sheave "{coupling.name}", as its tension is not above rho v² for the mass rho of a '
-                "length at the speed v,")
+        return (f'a rope lifts off {coupling.type} "{coupling.name}", as its tension is not above rho v² and its weight '
+                "there, for the mass rho of a length at the speed v,")
+    if reason == 3:
+        return f'drum "{coupling.name}" has run empty'
     return f'a span of rope "{coupling.name}" becomes too short to be modelled'
 
 

@@ -54,7 +54,8 @@ def _without_ends(part: Part) -> Any:
     """
     name = part.given_name or part.kind
     if isinstance(part, Rope):
-        return name, part.elements_of_spans, [(each.name, each.n_zones, each.turns_round) for each in part.sheaves]
+        return name, part.elements_of_spans, [(each.name, getattr(each, "n_zones", 0), each.turns_round)
+                                              for each in part.wheels]
     return (name, part.joint_kind) if isinstance(part, Joint) else name
 
 

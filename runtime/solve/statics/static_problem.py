@@ -201,7 +201,8 @@ class StaticProblem(StaticState):
         model = self.model
         if not model.ropes:
             return ""
-        q, numbers = self.engine.state()["q"], outputs_by_name("sheave", self.engine.static_outputs("sheave"))
+        q = self.engine.state()["q"]
+        numbers = outputs_by_name("sheave", self.engine.static_outputs("sheave")) if model.sheaves else {}
         for k, sheave in enumerate(model.sheaves):
             centre = attachment_points(model, sheave.attachments[0], q[None])[0, : model.dim]
             folded = any(sheave.sense * np.linalg.det([q[at : at + 2] - centre, q[at + 2 : at + 4]]) <= 0
@@ -210,6 +211,12 @@ class StaticProblem(StaticState):
                 return f'the rope leaves sheave "{sheave.name}"'
             if numbers["normal_force"][k] < 0.0:
                 return f'the rope lifts off sheave "{sheave.name}": it has no tension there'
+        numbers = outputs_by_name("drum", self.engine.static_outputs("drum")) if model.drums else {}
+        for k, drum in enumerate(model.drums):
+            if numbers["length_in_store"][k] < 0.0:
+                return f'drum "{drum.name}" is empty'
+            if numbers["normal_force"][k] < 0.0:
+                return f'the rope lifts off drum "{drum.name}": it has no tension there'
         for span in model.spans:
             if q[span.s[1]] - q[span.s[0]] < span.least_length:
                 return f'a span of rope "{span.name}" becomes too short to be modelled'

@@ -1,4 +1,4 @@
-/* Ropes: spans with moving material coordinates, and sheaves between spans. */
+/* Ropes: spans with moving material coordinates, sheaves between spans, and drums at ends. */
 #ifndef FUNICULAR_COUPLINGS_ROPE_ROPE_H
 #define FUNICULAR_COUPLINGS_ROPE_ROPE_H
 
@@ -42,10 +42,28 @@ typedef struct {
     double least_wrap;                       /* rad: of a wrap that can be modelled */
 } fu_sheave;
 
+/* A drum at an end of a rope (derive/couplings/drum.py): a tangent point, and the rope that is wound. Its wound length
+ * is direction (s - end). Its history is the drawn length over the wound one, in cells. */
+typedef struct {
+    fu_coupling base;
+    const fu_sheave_kernels *kernel;
+    fu_attachment attachments[1]; /* the centre */
+    int node, s, turn;            /* dofs: the first of the node; its material coordinate; the rotation, -1 for none */
+    int n_cells;
+    double cell, direction, end; /* m: stress-free length of a cell; 1 at the first end of the rope, else -1; m */
+    double radius, tangent_radius, sense, rho, g[3], A[2];
+    double inertia, damping; /* kg m^2, N m s */
+    int torque_signal;       /* of the torque on the drum, -1 for a constant one */
+    double torque;           /* N m: the factor of the signal */
+} fu_drum;
+
 /* Return how far a rope is from leaving: its wrap above the least one, rad; the least normal force, times the radius on
  * an angle, N; the length of a span above the least one, m. */
 double fu_wrap_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 double fu_wrap_pressure(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 double fu_span_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+/* Return the wound length of a drum, m; the normal force as above, N. */
+double fu_drum_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+double fu_drum_pressure(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 
 #endif

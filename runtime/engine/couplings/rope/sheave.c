@@ -31,7 +31,7 @@ typedef struct {
 /* A sheave at a state: the centre, both tangent points, and the angles with their rates. */
 typedef struct {
     fu_attachment_state centre;
-    double c_rate[DIM], c_acc[DIM], turn_rate, turn_acc;
+    double c_rate[DIM], c_acc[DIM], own_rate, turn_rate, turn_acc; /* own: relative to the carrier */
     double s[MAX_ZONES + 1], s_rate[MAX_ZONES + 1], s_acc[MAX_ZONES + 1];
     double x[ENDS][DIM], slope[ENDS][DIM], x_rate[ENDS][DIM], slope_rate[ENDS][DIM];
     double phi[ENDS], phi_rate[ENDS], phi_acc[ENDS];
@@ -48,10 +48,16 @@ static int columns(const fu_sheave *sheave)
     return Z_MATERIAL + sheave->n_zones + 1;
 }
 
-/* Computes the angles of both tangent points: the wrap counts the turns by which its stretch is nearest to one. */
+static double stretch_at(const view *at, int k)
+{
+    return sqrt(fu_dot(DIM, at->slope[k], at->slope[k]));
+}
+
+/* Computes the angles of both tangent points: the wrap counts the turns by which its stretch is nearest to the mean of
+ * both spans. */
 static void find_angles(const fu_sheave *sheave, view *at)
 {
-    const double length = at->s[sheave->n_zones] - at->s[0];
+    const double length = 0.5 * (stretch_at(at, 0) + stretch_at(at, 1)) * (at->s[sheave->n_zones] - at->s[0]);
     const double *a = at->x[0], *b = at->x[1], turn = 2.0 * acos(-1.0);
     const double part = sheave->sense * atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
     const double wrap = part + turn * round((length / sheave->radius - part) / turn);
@@ -64,9 +70,10 @@ static void look(const fu_model *model, const fu_coupling *coupling, const fu_st
 {
     const fu_sheave *sheave = sheave_of(coupling);
     const double *v = state->v ? state->v : model->zero;
+    const fu_state moving = {.t = state->t, .q = state->q, .v = (double *)v};
     fu_attachment_state *centre = &out->centre;
     if (!a) a = model->zero;
-    fu_attachment_at(model, &sheave->attachments[0], state, 0.0, FU_POINT, centre);
+    fu_attachment_at(model, &sheave->attachments[0], &moving, 0.0, FU_POINT | FU_AXES, centre);
     for (int d = 0; d < DIM; ++d) {
         out->c_rate[d] = centre->v[d];
         out->c_acc[d] = centre->bias[d];
@@ -91,8 +98,10 @@ static void look(const fu_model *model, const fu_coupling *coupling, const fu_st
         out->s_acc[j] = a[sheave->s[j]];
     }
     out->s[sheave->n_zones] += sheave->closing;
-    out->turn_rate = sheave->turn < 0 ? 0.0 : v[sheave->turn];
+    out->own_rate = sheave->turn < 0 ? 0.0 : v[sheave->turn];
+    out->turn_rate = out->own_rate + centre->omega[0];
     out->turn_acc = sheave->turn < 0 ? 0.0 : a[sheave->turn];
+    for (int i = 0; i < centre->n; ++i) out->turn_acc += centre->T[i] * a[centre->at[i]];
     find_angles(sheave, out);
 }
 
@@ -224,12 +233,12 @@ static void friction_at(const fu_sheave *sheave, const view *at, int j, double *
     const friction_point p = point_of(sheave, at, j);
     const fu_sheave_kernels *kernel = sheave->kernel;
     if (p.foot < 0)
-        kernel->friction(sheave->A, sheave->sense, sheave->rho, sheave->radius, sheave->friction, sheave->slip_velocity,
-                         p.phi, p.l, p.phi_rate, at->turn_rate, p.s_rate, F, numbers, power);
+        kernel->friction(sheave->A, sheave->sense, sheave->rho, sheave->radius, sheave->g, sheave->friction,
+                         sheave->slip_velocity, p.phi, p.l, p.phi_rate, at->turn_rate, p.s_rate, F, numbers, power);
     else
         (p.foot ? kernel->friction_off : kernel->friction_on)(
-            sheave->A, sheave->sense, sheave->rho, sheave->radius, sheave->friction, sheave->slip_velocity, p.phi, p.l,
-            at->slope[p.foot], p.phi_rate, at->turn_rate, p.s_rate, F, numbers, power);
+            sheave->A, sheave->sense, sheave->rho, sheave->radius, sheave->g, sheave->friction, sheave->slip_velocity,
+            p.phi, p.l, at->slope[p.foot], p.phi_rate, at->turn_rate, p.s_rate, F, numbers, power);
 }
 
 /* Adds all forces by z but those of inertia: of both energies, of damping and friction. */
@@ -249,7 +258,6 @@ static void add_static_forces(const fu_sheave *sheave, const view *at, double *z
                                       damping);
         add_zone(&of, 4, damped, damping, z);
     }
-    z[Z_TURN] += sheave->damping * at->turn_rate;
     for (int j = 0; has_friction(sheave) && j <= sheave->n_zones; ++j) {
         double F[3], numbers[3], power;
         const double share = (double)j / sheave->n_zones;
@@ -292,7 +300,13 @@ static void scatter(const fu_sheave *sheave, const view *at, const double *y, do
         for (int i = 0; i < NODE; ++i) f[sheave->nodes[k] + i] += y[k * NODE + i];
     for (int j = 0; j <= sheave->n_zones; ++j) f[sheave->s[j]] += y[MATERIAL + j];
     if (sheave->turn >= 0) f[sheave->turn] += y[TURN];
-    fu_add_wrench(DIM, &at->centre, y + CENTRE, 0, 1.0, f);
+    fu_add_wrench(DIM, &at->centre, y + CENTRE, y + TURN, 1.0, f);
+}
+
+/* Adds the moment of the bearing, between the sheave and its carrier. */
+static void add_bearing(const fu_sheave *sheave, const view *at, double *f)
+{
+    if (sheave->turn >= 0) f[sheave->turn] += sheave->damping * at->own_rate;
 }
 
 static void inertial_force(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a,
@@ -386,13 +400,13 @@ static void add_friction_matrices(const fu_sheave *sheave, const view *at, int j
     const int row[3] = {0, Z_TURN, Z_MATERIAL + j}, places = 2 * p.zones + 1 + (p.foot < 0 ? 0 : DIM);
     double of_place[3 * (3 + SIDES + DIM)], of_rate[3 * 3];
     if (p.foot < 0)
-        kernel->friction_tangent(sheave->A, sheave->sense, sheave->rho, sheave->radius, sheave->friction,
+        kernel->friction_tangent(sheave->A, sheave->sense, sheave->rho, sheave->radius, sheave->g, sheave->friction,
                                  sheave->slip_velocity, p.phi, p.l, p.phi_rate, at->turn_rate, p.s_rate, of_place,
                                  of_rate);
     else
         (p.foot ? kernel->friction_off_tangent : kernel->friction_on_tangent)(
-            sheave->A, sheave->sense, sheave->rho, sheave->radius, sheave->friction, sheave->slip_velocity, p.phi, p.l,
-            at->slope[p.foot], p.phi_rate, at->turn_rate, p.s_rate, of_place, of_rate);
+            sheave->A, sheave->sense, sheave->rho, sheave->radius, sheave->g, sheave->friction, sheave->slip_velocity,
+            p.phi, p.l, at->slope[p.foot], p.phi_rate, at->turn_rate, p.s_rate, of_place, of_rate);
     for (int i = 0; i < 3; ++i)
         for (int e = 0; e < (i ? 1 : ENDS); ++e) { /* a force on the angle is one on those of both tangent points */
             double *to_K = K[i ? row[i] : e], *to_D = D[i ? row[i] : e];
@@ -417,7 +431,6 @@ static void add_friction_matrices(const fu_sheave *sheave, const view *at, int j
 /* Adds the derivatives of the other forces by rates and places. */
 static void add_static_matrices(const fu_sheave *sheave, const view *at, double factor, double (*D)[Z], double (*K)[Z])
 {
-    D[Z_TURN][Z_TURN] += factor * sheave->damping;
     for (int j = 0; j < sheave->n_zones; ++j) {
         const zone of = zone_of(sheave, at, j);
         double K_u[5 * 5], D_4[4 * 4], K_4[4 * 3];
@@ -456,6 +469,7 @@ static int columns_of(const fu_sheave *sheave, const view *at, const double *of_
     for (int i = 0; i < at->centre.n; ++i, ++n) {
         dofs[n] = at->centre.at[i];
         for (int d = 0; d < DIM; ++d) by[CENTRE + d][n] = of_centre[d * at->centre.n + i];
+        by[TURN][n] = at->centre.T[i];
     }
     return n;
 }
@@ -554,6 +568,7 @@ static void force(const fu_model *model, const fu_coupling *coupling, const fu_s
     look(model, coupling, state, 0, &at);
     forces_by_y(sheave_of(coupling), &at, y);
     scatter(sheave_of(coupling), &at, y, f);
+    add_bearing(sheave_of(coupling), &at, f);
 }
 
 static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, double *f,
@@ -566,6 +581,7 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
     forces_by_y(sheave, &at, y);
     add_multipliers(sheave, &at, equations->next->forces + coupling->force, phi, y);
     scatter(sheave, &at, y, f);
+    add_bearing(sheave, &at, f);
     for (int r = 0; r < CONDITIONS; ++r)
         internal[coupling->unknown + r] = -fu_row_unit(equations->weights.inertia, coupling->scale[r]) * phi[r];
 }
@@ -605,14 +621,15 @@ static void add_conditions(const fu_model *model, const fu_coupling *coupling, c
     }
 }
 
-/* Adds the change of P' f, of the force of the sheave on the centre, at a fixed force f. */
+/* Adds the change of the force and the moment on the carrier with its motion, at fixed ones. */
 static void add_centre(const fu_model *model, const fu_sheave *sheave, const view *at, const fu_equations *equations,
-                       const double *f, fu_system *system)
+                       const double *y, fu_system *system)
 {
     const int n = at->centre.n;
+    const double moment[3] = {y[TURN], 0.0, 0.0};
     double K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
     if (!n) return;
-    fu_wrench_derivatives(model, &sheave->attachments[0], equations->next, f, 0, n, K, 0, 0);
+    fu_wrench_derivatives(model, &sheave->attachments[0], equations->next, y + CENTRE, moment, n, K, 0, 0);
     fu_turn_attachment(model, &sheave->attachments[0], equations->psi, K, n, n, 0);
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j)
@@ -663,9 +680,11 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     for (int i = 0; i < Y; ++i)
         for (int j = 0; j < Y; ++j) D[i][j] *= w.rate;
     if (w.rate != 0.0) add_matrix(model, sheave, &at, at.centre.P, D, system);
+    if (sheave->turn >= 0 && sheave->damping != 0.0)
+        fu_add(model, system, sheave->turn, sheave->turn, w.stiffness * w.rate * sheave->damping);
     forces_by_y(sheave, &at, y);
     add_multipliers(sheave, &at, next->forces + coupling->force, phi, y);
-    add_centre(model, sheave, &at, equations, y + CENTRE, system);
+    add_centre(model, sheave, &at, equations, y, system);
 }
 
 static void rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work)
@@ -735,7 +754,7 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
     (void)work;
     if (!coupling->is_damped) return 0.0;
     look(model, coupling, state, 0, &at);
-    total += sheave->damping * at.turn_rate * at.turn_rate;
+    total += sheave->damping * at.own_rate * at.own_rate;
     for (int j = 0; sheave->tau > 0.0 && j < sheave->n_zones; ++j) {
         const zone of = zone_of(sheave, &at, j);
         sheave->kernel->dissipation(sheave->A, sheave->tau, sheave->radius, of.phi, of.l, of.phi_rate, of.s_rate,
@@ -785,21 +804,46 @@ static void tensions(const fu_sheave *sheave, const view *at, const double *mult
     }
 }
 
-/* Returns the least T - rho v^2, N, the normal force times the radius on an angle: of the zones, and of both tangent
- * points with these tensions. */
+/* Returns the part of gravity, and of the acceleration of the centre, outwards at an angle. */
+static double outwards(const fu_sheave *sheave, const view *at, double phi)
+{
+    return (sheave->g[0] - at->c_acc[0]) * cos(phi) + (sheave->g[1] - at->c_acc[1]) * sin(phi);
+}
+
+/* Returns the normal force on an angle: of a tension at a speed and a stretch of the rope. */
+static double pressure(const fu_sheave *sheave, const view *at, double phi, double tension, double speed,
+                       double stretch)
+{
+    return tension - sheave->rho / stretch * (speed * speed + sheave->radius * outwards(sheave, at, phi));
+}
+
+/* Returns the tension at an angle of a zone with this mean: it grows with the height, as on a smooth groove. */
+static double tension_in(const fu_sheave *sheave, const view *at, const zone *of, double phi, double mean)
+{
+    const double half = 0.5 * (of->phi[1] - of->phi[0]), middle = 0.5 * (of->phi[0] + of->phi[1]);
+    const double below = outwards(sheave, at, phi) - sin(half) / half * outwards(sheave, at, middle);
+    return mean - sheave->rho * sheave->radius * below;
+}
+
+/* Returns the least normal force on an angle, N: of the zones at ends and middle, and of both tangent points with these
+ * tensions. */
 static double least_pressure(const fu_sheave *sheave, const view *at, const double tension[ENDS],
                              const double speeds[ENDS])
 {
     double least = INFINITY;
+    for (int k = 0; k < ENDS; ++k)
+        least = fmin(least, pressure(sheave, at, at->phi[k], tension[k], speeds[k], stretch_at(at, k)));
     for (int j = 0; j < sheave->n_zones; ++j) {
         const zone of = zone_of(sheave, at, j);
         const double stretch = sheave->sense * sheave->radius * (of.phi[1] - of.phi[0]) / of.l;
         const double inside = sheave->A[0] * (stretch - 1.0);
-        for (int e = 0; e < ENDS; ++e) {
-            const int k = j + e == 0 ? 0 : j + e == sheave->n_zones ? 1 : -1;
-            const double speed =
-                k < 0 ? sheave->sense * sheave->radius * of.phi_rate[e] - stretch * of.s_rate[e] : speeds[k];
-            least = fmin(least, (k < 0 ? inside : tension[k]) - sheave->rho * speed * speed);
+        for (int part = j ? 0 : 1; part < (j + 1 < sheave->n_zones ? 3 : 2); ++part) { /* its inner end, the middle */
+            const double x = 0.5 * part, rate = (1.0 - x) * of.phi_rate[0] + x * of.phi_rate[1];
+            const double flow = (1.0 - x) * of.s_rate[0] + x * of.s_rate[1];
+            const double speed = sheave->sense * sheave->radius * rate - stretch * flow;
+            const double phi = (1.0 - x) * of.phi[0] + x * of.phi[1];
+            const double tension = tension_in(sheave, at, &of, phi, inside);
+            least = fmin(least, pressure(sheave, at, phi, tension, speed, stretch));
         }
     }
     return least;
@@ -826,16 +870,20 @@ static void elastic_tensions(const fu_sheave *sheave, const view *at, double ten
 
 /* Without friction the tension at the tangent points is from the balance of the arc alone: multipliers of short steps
  * have little accuracy. With friction it is elastic: friction on a light rope accelerates its nodes at once. */
-double fu_wrap_pressure(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+static double wrap_pressure(const fu_sheave *sheave, const view *at)
 {
-    const fu_sheave *sheave = sheave_of(coupling);
     const double none[CONDITIONS] = {0.0};
     double tension[ENDS], speed[ENDS], phi[CONDITIONS], y[Y];
+    if (has_friction(sheave)) elastic_tensions(sheave, at, tension, speed);
+    else tensions(sheave, at, none, tension, speed, phi, y);
+    return least_pressure(sheave, at, tension, speed);
+}
+
+double fu_wrap_pressure(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
     view at;
     look(model, coupling, state, state->acceleration, &at);
-    if (has_friction(sheave)) elastic_tensions(sheave, &at, tension, speed);
-    else tensions(sheave, &at, none, tension, speed, phi, y);
-    return least_pressure(sheave, &at, tension, speed);
+    return wrap_pressure(sheave_of(coupling), &at);
 }
 
 /* Returns in words what exceeds the limits of the engine. */
@@ -858,7 +906,7 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     numbers->wrap_angle = sheave->sense * (at.phi[1] - at.phi[0]);
     for (int d = 0; d < DIM; ++d) numbers->force[d] = -y[CENTRE + d];
     numbers->material_speed = -0.5 * (at.s_rate[0] + at.s_rate[sheave->n_zones]);
-    numbers->normal_force = least_pressure(sheave, &at, tension, speed);
+    numbers->normal_force = wrap_pressure(sheave, &at);
     numbers->angle = sheave->turn < 0 ? 0.0 : state->q[sheave->turn];
     for (int j = 0; has_friction(sheave) && j <= sheave->n_zones; ++j) {
         double F[3], of[3], power;
