@@ -147,7 +147,7 @@ def _stiffness(p: Program) -> np.ndarray:
 
 
 def _elastic(p: Program, zone: Zone, A: np.ndarray) -> sp.Expr:
-    """Stage: elastic energy, J; the stretch is (angle R w)^2, without the sense of travel."""
+    """Stage: elastic energy, J; the stretch is sense R angle/l, the curvature a stress-free length sense angle/l."""
     p.stage("elastic energy")
     bend = p.define("bend", sp.Symbol("sense") * zone.angle * zone.w)
     strain = p.define("strain", zone.R * bend - 1)

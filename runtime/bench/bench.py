@@ -19,6 +19,7 @@ import numpy as np
 from ..errors import FunicularError, FunicularWarning, SceneError, near
 from ..integrators import AUTO, INTEGRATORS
 from ..parts.cable import Cable
+from ..parts.rope import Rope
 from ..parts.settings import RunSettings
 from ..parts.validation import MAX_COUNT
 from ..results.run import Run
@@ -41,7 +42,7 @@ COUNTS = ("steps", "rejected_steps", "newton_iterations", "factorisations")
 
 @dataclass(frozen=True)
 class Mesh:
-    """``count`` times the scene's elements in each cable, or that number of elements in each."""
+    """``count`` times the scene's elements in each cable and span of a rope, or that number of elements in each."""
 
     count: float
     factor: bool
@@ -65,9 +66,21 @@ class Mesh:
 
     def elements(self, cable: Cable) -> int:
         """Return the number of elements of this mesh in ``cable``."""
-        count = self.count * cable.elements if self.factor else self.count
+        return self._of(cable.where, cable.elements)
+
+    def elements_of_spans(self, rope: Rope) -> tuple[int, ...]:
+        """Return the numbers of elements of this mesh in the spans of ``rope``."""
+        return tuple(self._of(rope.where, given) for given in rope.elements_of_spans)
+
+    def total(self, scene: Scene) -> int:
+        """Return the number of elements of this mesh in a scene."""
+        return (sum(map(self.elements, scene.cables.values()))
+                + sum(sum(self.elements_of_spans(rope)) for rope in scene.ropes.values()))
+
+    def _of(self, where: str, given: int) -> int:
+        count = self.count * given if self.factor else self.count
         if count % 1:
-            raise SceneError(cable.where, f"{self} of its {cable.elements} elements is {count:g}",
+            raise SceneError(where, f"{self} of its {given} elements is {count:g}",
                              "take a factor that leaves a whole number")
         return int(count)
 
@@ -77,7 +90,7 @@ class Mesh:
 
     def scene(self, scene: Scene) -> Scene:
         """Return the scene on this mesh. Raises SceneError, also where a support then stands on no node."""
-        made = scene.remeshed(self.elements)
+        made = scene.remeshed(self.elements, self.elements_of_spans)
         made.run_settings = {name: value for name, value in scene.run_settings.items() if name not in GRID_SETTINGS}
         return made
 
@@ -225,9 +238,9 @@ def _reference(scene: Scene, mesh: Mesh, grid: Grid) -> Reference:
 
 def _compare_meshes(result: Bench, tell: Callable[[str], None]) -> None:
     """Add the errors of the meshes, from a mesh with every element of the finest one halved."""
-    if not result.references or not result.scene.cables:
+    if not result.references or not (result.scene.cables or result.scene.ropes):
         return
-    mesh = max(result.references, key=lambda mesh: sum(map(mesh.elements, result.scene.cables.values()))).twice()
+    mesh = max(result.references, key=lambda mesh: mesh.total(result.scene)).twice()
     tell(f"reference of all meshes, {mesh} elements")
     try:
         tol = min(result.grid.tols) * REFERENCE_TOL_RATIOS[0]
@@ -248,7 +261,8 @@ def _measure(result: Bench, row: Row, scene: Scene) -> None:
         return
     row.cpu.append(run.report["time_s"]["solve_cpu"])
     row.set_up.append(run.report["time_s"]["set_up"])
-    row.elements = sum(cable.elements for cable in scene.cables.values())
+    row.elements = (sum(cable.elements for cable in scene.cables.values())
+                    + sum(rope.n_elements for rope in scene.ropes.values()))
     row.counts = {name: run.report[name] for name in COUNTS if name in run.report}
     row.time_error = relative(scene, motion, exact)
     row.errors = {name: distance(motion[name], exact[name]) for name in exact}

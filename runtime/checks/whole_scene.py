@@ -85,13 +85,10 @@ def check_comes_to_rest(scene: SceneData) -> None:
         if slide.friction is not None and not slide.friction.sticks and slide.friction.sliding > 0:
             raise SceneError(slide.where, "its friction is regularised, so that a rider creeps and never comes to rest",
                              'take model="stick", which holds it, or leave friction out')
-
-
     for rope in scene.ropes.values():
-        for sheave in rope.sheaves:
-            if sheave.coefficient > 0:
-                raise SceneError(f"{rope.where}: {sheave.where}", "its friction is regularised, so that the rope "
-                                 "creeps and never comes to rest", "leave friction out")
+        for sheave in rope.rough_sheaves:
+            raise SceneError(f"{rope.where}: {sheave.where}", "its friction is regularised, so that the rope creeps "
+                             "and never comes to rest", "leave friction out")
 
 
 def _given(part: Part) -> Iterator[tuple[str, Signal]]:

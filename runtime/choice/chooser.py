@@ -13,7 +13,8 @@ leave out), that of the mesh, and that of time, which the integrator bounds by i
 3. With more than one cable, each is run on half of its elements, the others as they are, for its part of the error.
 4. The error of cable elements is estimated on the second mesh, from the energy of shear and the influence of the
    bending stiffness on the motion (`indicators`).
-5. Of the models whose estimated error keeps the tolerance the one with the least work is taken (`estimate`).
+5. Ropes keep their meshes: the error of these is the change of the finest probe with finer ropes.
+6. Of the models whose estimated error keeps the tolerance the one with the least work is taken (`estimate`).
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ from .indicators import BENDING_RATIO, deformation, elements_for_waves, shear_co
 from .mesh_error import MeshError, mesh_error
 from .motion import motion
 from .probes import Key, Probe, Prober, Runner
-from .remeshing import CableModel, S, remade
+from .remeshing import CableModel, S, remade, with_finer_ropes
 from .time_error import ASSUMED_ERROR, DAMPING, FINEST_TOL_RATIO, InTime, compared
 
 SHEAR_SAFETY = 2.0
@@ -274,7 +275,8 @@ class Chooser(Generic[S]):
 
     def _result(self, estimate: Estimate, models: dict[str, CableModel], seconds: float) -> Choice[S]:
         """Return the choice, with estimated errors and costs of it and of its alternatives."""
-        error, mesh = estimate.error(models), estimate.mesh
+        of_ropes = self._error_of_ropes(estimate.probes[-1])
+        error, mesh = estimate.error(models) + of_ropes, estimate.mesh
         kept = bool(error <= self.tol * (1 + TOLERANCE_EXCESS))
         if self.base:
             self.reasons.append(f"the error of {mesh.level} times the coarsest meshes is about {mesh.error:.1e}, of "
@@ -282,7 +284,9 @@ class Chooser(Generic[S]):
         stiff = [each.cable.where for each in self.free if self._is_stiff(each.cable, estimate.probes[-1])]
         if stiff:
             self.reasons.append(f"{', '.join(stiff)}: deforms by less than tol; a rigid or a modal body may do")
-        if not kept:
+        if not kept and estimate.error(models) <= self.tol * (1 + TOLERANCE_EXCESS):
+            self.reasons.append(f"the meshes of ropes do not keep tol = {self.tol:g}: give their spans more elements")
+        elif not kept:
             self.reasons.append(f"no model at hand keeps tol = {self.tol:g}: the finest is taken, which may err by "
                                 f"{error:.1e}")
         unchanged = estimate.probes[-1].unchanged
@@ -295,8 +299,27 @@ class Chooser(Generic[S]):
                       kept and not self.unresolved, self.reasons, estimate.alternatives(models, self.tol),
                       len(self.prober.made), seconds,
                       [each.cable.name for each in self.free if each.fixed is not None or each.keeps],
-                      mesh_error=estimate.mesh_error(models), unchanged=unchanged, unresolved=self.unresolved,
-                      rest=self.prober.last_rest)
+                      mesh_error=estimate.mesh_error(models) + of_ropes, unchanged=unchanged,
+                      unresolved=self.unresolved, rest=self.prober.last_rest)
+
+    def _error_of_ropes(self, probe: Probe[S]) -> float:
+        """Return the error of the meshes of ropes, which stay as given, from a run of `Rope.refined`."""
+        if not self.scene.ropes:
+            return 0.0
+        finer = self.prober.probe(probe.models, self.time.probe_tol, self.time.probed, with_finer_ropes, "finer ropes")
+        apart = self.prober.difference(probe, finer)
+        names = ", ".join(self.scene.ropes)
+        if not np.isfinite(apart):
+            self.unresolved.append(f"the error of the meshes of {names} is not estimated: with twice the elements "
+                                   f"{finer.failed or 'the run ends at another time'}")
+            return 0.0
+        counts = "; ".join(f"{rope.name}: {', '.join(map(str, rope.elements_of_spans))}"
+                           for rope in self.scene.ropes.values())
+        halved = [name for rope in self.scene.ropes.values() for name in rope.zones_halved]
+        self.reasons.append(f"elements of the spans of ropes as given ({counts}): with elements of half the length and "
+                            f"twice the zones{', half of them on ' * bool(halved)}{', '.join(halved)} the result "
+                            f"changes by {apart:.1e}")
+        return apart
 
     def _is_stiff(self, cable: Cable, probe: Probe[S]) -> bool:
         """Return whether a cable moves as a rigid body, within a part of the tolerance."""

@@ -7,8 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..errors import SceneError, near
+from ..model.rope_states import POINTS_OF_ELEMENT, points_of_spans
 from ..parts.cable import Cable
 from ..parts.paths import COMPONENTS
+from ..parts.rope import Rope
 from ..parts.scene_data import SceneData
 from ..results.run import Run
 from ..results.shape_functions import on_axis
@@ -21,6 +23,9 @@ MOTION = "motion"
 
 NODAL_RESULTS = (".nodal_vectors", ".nodal_velocity", ".position", ".velocity")
 """Ends of the names of a cable's results that depend on its mesh: they are compared at the stations."""
+
+POINTS, OF_ROPE_MESH = {"{part}.point"}, ("coordinates", "coordinate_rates")
+"""Dimension of the results of a rope at points along it, and results that are no quantities of points."""
 
 
 def samples(scene: SceneData, run: Run, quantities: Sequence[str]) -> dict[str, np.ndarray]:
@@ -45,17 +50,37 @@ def samples(scene: SceneData, run: Run, quantities: Sequence[str]) -> dict[str, 
 
 def _whole(scene: SceneData, run: Run, name: str) -> np.ndarray | None:
     """Return (time, point, components) of a result with all its components; None where the run does not have it."""
-    cable = scene.cables.get(name.rpartition(".")[0])
-    if cable is not None and name.endswith(NODAL_RESULTS):
-        return along(cable, run[f"{cable.name}.nodal_vectors"])
+    part, _, quantity = name.rpartition(".")
+    if part in scene.cables and name.endswith(NODAL_RESULTS):
+        return along(scene.cables[part], run[f"{part}.nodal_vectors"])
+    if part in scene.ropes and quantity in Rope.results and POINTS <= set(Rope.results[quantity].dims):
+        return along_rope(scene, scene.ropes[part], run[name])
+    if part in scene.ropes and quantity in OF_ROPE_MESH:
+        raise SceneError("choose", f'"{name}" depends on the mesh of the rope', f'take "{part}.position"')
     return run[name].reshape(len(run.time), 1, -1) if name in run else None
 
 
 def motion(scene: SceneData, run: Run) -> np.ndarray:
-    """Return (time, point, 3): the stations of all cables and the origins of all bodies, in m, in the scene's order."""
+    """Return (time, point, 3): the stations of all cables, the origins of all bodies, the stations of ropes, and, along
+    x, the ways of the rims of sheaves and drums that turn; in m, in the scene's order.
+    """
     points = [along(cable, run[f"{cable.name}.nodal_vectors"]) for cable in scene.cables.values()]
     points += [run[f"{name}.position"][:, None] for name in scene.bodies]
+    for rope in scene.ropes.values():
+        points.append(along_rope(scene, rope, run[f"{rope.name}.position"]))
+        points += [(wheel.radius * run[f"{wheel.name}.angle"])[:, None, None] * np.eye(3)[0] for wheel in rope.wheels
+                   if wheel.turns_round]
     return np.concatenate(points, axis=1)
+
+
+def along_rope(scene: SceneData, rope: Rope, values: np.ndarray) -> np.ndarray:
+    """Return (time, points, components): results of a rope (time, rope point, ...) at five equal distances along each
+    span, which are points of results on any mesh.
+    """
+    spans = points_of_spans(rope, rope.drawn(scene.bodies))
+    at = np.concatenate([np.linspace(span.start, span.stop - 1, POINTS_OF_ELEMENT + 1) for span, _ in spans])
+    found: np.ndarray = values[:, np.rint(at).astype(int)].reshape(len(values), len(at), -1)
+    return found
 
 
 def along(cable: Cable, nodal_vectors: np.ndarray, parts: int = STATIONS, derivative: int = 0) -> np.ndarray:

@@ -15,6 +15,7 @@ from ..errors import FunicularWarning
 from ..kernels.elements import built_in
 from ..parts.cable import Cable
 from ..parts.load import Force, Moment
+from ..parts.rope import Rope
 from ..parts.scene_data import SceneData
 from ..parts.scene_methods import SceneMethods
 from ..parts.validation import LENGTH_TOLERANCE
@@ -74,6 +75,13 @@ def remade(scene: S, models: Mapping[str, CableModel]) -> S:
         warnings.simplefilter("ignore", FunicularWarning)  # the scene itself reported its adjustments
         return scene.with_parts(with_model(part, models[part.name]) if isinstance(part, Cable) and part.name in models
                                 else part for part in scene.parts())
+
+
+def with_finer_ropes(scene: S) -> S:
+    """Return the scene with ropes of elements of half the length, see `Rope.refined`. Raises SceneError."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", FunicularWarning)
+        return scene.with_parts(part.refined() if isinstance(part, Rope) else part for part in scene.parts())
 
 
 def with_model(cable: Cable, model: CableModel) -> Cable:

@@ -14,6 +14,7 @@ from .coupling import number
 from .cutting import attached
 from .kinds import COUPLINGS
 from .model import CableModel, Model, MotionModel
+from .rope_rates import follow
 from .ropes import rope_models, turn_motions
 from .unknowns import Node, supports
 
@@ -70,6 +71,8 @@ def build(scene: SceneData) -> Model:
         tables=[tables_of(name) for name in scene.libraries],
         plane_axes=scene.plane_axes,
     )
+    for rope in ropes:
+        follow(model, rope)
     model.newton, model.accelerations = elimination(model, NEWTON), elimination(model, ACCELERATIONS)
     return model
 

@@ -17,6 +17,7 @@ from ..parts.scene_data import SceneData
 from ..parts.validation import LENGTH_TOLERANCE, show, shown
 from .bodies import configuration_of, velocity_of
 from .model import BodyModel, CableModel, Model
+from .rope_rates import follow
 from .ropes import RopeModel
 from .unknowns import as_supports_leave
 
@@ -38,7 +39,7 @@ class InitialState(Mapping[str, np.ndarray]):
     ``state["wire.position"]`` and ``state["wire.velocity"]`` (node, 3): slopes are then those of the cubic spline
     through the nodes over the undeformed arc-length. Of bodies position, orientation, velocity, angular_velocity,
     modal_coordinates, modal_velocities; of slides s; of ropes coordinates and coordinate_rates. Units are those of the
-    results. Other quantities are as drawn.
+    results. Other quantities are as drawn; rates of ropes that are not given follow from those of bodies.
     """
 
     def __init__(self, arrays: Mapping[str, Any], time: float | None = None, unstretched: Sequence[str] = ()):
@@ -111,6 +112,9 @@ class InitialState(Mapping[str, np.ndarray]):
             self._place_rope(model, rope)
         for body in model.bodies:
             self._place_body(model, body, scene.bodies[body.name])
+        for rope in model.ropes:
+            if f"{rope.part.name}.{ROPE[1]}" not in self:
+                follow(model, rope)
         _check_supports(model, model.q - drawn, "places", "m")
         _check_supports(model, model.v - moving, "moves", "m/s")
         for slide in model.slides:
@@ -136,10 +140,10 @@ class InitialState(Mapping[str, np.ndarray]):
             if name not in self:
                 continue
             values, at = _of_shape(self[name], rope.q.shape, name), rope.coordinates
-            off = np.abs(values - into[at])[rope.fixed]
+            off = np.abs(values - into[at])[rope.held - rope.first]  # a prescribed rotation follows its signal
             if np.any(off > LENGTH_TOLERANCE * rope.route.length):
-                raise SceneError("initial", f'"{name}" has an end or the arc-length of an end of the rope by '
-                                 f"{show(float(off.max()), unit)} from where its anchor on the ground keeps it",
+                raise SceneError("initial", f'"{name}" has an end of the rope, or the arc-length there, '
+                                 f"{show(float(off.max()), unit)} off the value as drawn, which an anchor keeps",
                                  "give a state that fits, or draw the anchors elsewhere")
             into[at] = np.where(rope.fixed, into[at], values)
 

@@ -23,15 +23,13 @@ def rope_state(model: Model, rope: RopeModel, q: np.ndarray) -> dict[str, np.nda
     arc-length s (T, points) in m.
     """
     sheaves = {sheave.before.first: sheave for sheave in model.sheaves}
-    offset = len(rope.route.sheaves) - len(rope.spans) + 1
     places: list[np.ndarray] = []
     lengths: list[np.ndarray] = []
-    for k, span in enumerate(rope.spans):
+    for (_, number, _), span in zip(rope.route.sequence(), rope.spans, strict=True):
         position, s = _span_points(span, q)
         places.append(position)
         lengths.append(s)
-        if span.first in sheaves:
-            number = (k + offset) % len(rope.route.sheaves)
+        if number is not None:
             n = _wrap_count(rope.route.sheaves[number])
             on = _wrap_points(model, sheaves[span.first], q, n)
             zones = q[:, rope.sheaves[number].s]
@@ -74,12 +72,11 @@ def points_of_spans(rope: Rope, route: DrawnRoute) -> list[tuple[slice, tuple[in
     """Return the points of each span among those of its rope, and of the wrap after it the number of its sheave and its
     points, with both tangent points; the last one of a closed rope is its first point again.
     """
-    offset, at, found = len(route.sheaves) - len(route.spans) + 1, 0, []
-    for k, elements in enumerate(rope.elements_of_spans):
+    at, found = 0, []
+    for (_, number, _), elements in zip(route.sequence(), rope.elements_of_spans, strict=True):
         span = slice(at, at + POINTS_OF_ELEMENT * elements + 1)
         at, wrap = span.stop, None
-        if rope.closed or k + 1 < len(route.spans):
-            number = (k + offset) % len(route.sheaves)
+        if number is not None:
             wrap = number, slice(span.stop - 1, span.stop - 1 + _wrap_count(route.sheaves[number]))
             at = wrap[1].stop - 1
         found.append((span, wrap))

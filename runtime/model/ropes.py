@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..parts.rope import Rope
-from ..parts.rope_items import SIDES, Anchor, RouteItem, Sheave, Wheel
+from ..parts.rope_items import SIDES, Anchor, Drum, RouteItem, Sheave
 from ..parts.rope_route import MIN_SPAN_RATIO, MIN_WRAP, DrawnRoute
 from ..parts.scene_data import SceneData
 from ..parts.section_stiffness import section_stiffness
@@ -85,7 +85,7 @@ class RopeModel:
     """The coordinates of a rope, with their values as drawn.
 
     part, route: as drawn; spans, sheaves, drums: in its order; q (n,), weight (n,): of its coordinates from `first` on;
-    fixed: those of ends at the ground.
+    fixed: those of ends at the ground, material coordinates at anchors, and prescribed rotations.
     """
 
     part: Rope
@@ -112,11 +112,17 @@ class RopeModel:
                               ).astype(int)
 
     @property
-    def turns(self) -> list[tuple[Wheel, int]]:
+    def turns(self) -> list[tuple[Sheave | Drum, int]]:
         """Return its sheaves and drums with the dofs of their rotations, -1 for none."""
-        sheaves: list[tuple[Wheel, int]] = [(item, at.turn) for item, at in
-                                            zip(self.part.sheaves, self.sheaves, strict=True)]
+        sheaves: list[tuple[Sheave | Drum, int]] = [
+            (item, at.turn) for item, at in zip(self.part.sheaves, self.sheaves, strict=True)]
         return sheaves + [(self.part.drums[drum.end], drum.turn) for drum in self.drums]
+
+    @property
+    def held(self) -> np.ndarray:
+        """Return its dofs that stay as drawn: of anchors at the ground, and the material coordinates at anchors."""
+        turning = {turn for _, turn in self.turns}
+        return np.array([dof for dof in self.first + np.flatnonzero(self.fixed) if dof not in turning], dtype=int)
 
     @property
     def free_length(self) -> float:
@@ -152,8 +158,7 @@ def _rope(rope: Rope, route: DrawnRoute, first: int) -> RopeModel:
     of_s: list[float] = []
     of_sheaves: list[np.ndarray] = []
     weight_of_sheaves: list[np.ndarray] = []
-    offset = len(route.sheaves) - len(route.spans) + 1  # 1 where the first sheave is before the first span
-    for k, (span, n) in enumerate(zip(route.spans, rope.elements_of_spans, strict=True)):
+    for (_, number, _), span, n in zip(route.sequence(), route.spans, rope.elements_of_spans, strict=True):
         share = np.linspace(0.0, 1.0, n + 1)
         nodes = np.empty((n + 1, PER_NODE, dim))
         nodes[:, 0] = span.start + share[:, None] * (span.end - span.start)
@@ -163,13 +168,13 @@ def _rope(rope: Rope, route: DrawnRoute, first: int) -> RopeModel:
         weight.append(np.tile(np.repeat([1.0, span.length / n], dim), n + 1))
         at += nodes.size
         of_s += [s, s + span.length / route.stretch]
-        s = of_s[-1] + (route.sheaves[k + offset].length / route.stretch if k + offset < len(route.sheaves) else 0.0)
+        s = of_s[-1] + (0.0 if number is None else route.sheaves[number].length / route.stretch)
     for k, each in enumerate(spans):
         each.s = (at + 2 * k, at + 2 * k + 1)
     at += len(of_s)
     sheaves: list[SheaveCoordinates] = []
-    for k, item in enumerate(rope.sheaves):
-        before, after = spans[k - offset], spans[k - offset + 1]
+    for k, (item, beside) in enumerate(zip(rope.sheaves, route.beside_sheaves, strict=True)):
+        before, after = (spans[each] for each in beside)
         inner = at + np.arange(item.n_zones - 1)
         ends = np.array([of_s[before.s[1] - spans[0].s[0]], of_s[after.s[0] - spans[0].s[0]]])
         ends[1] += route.free_length * (rope.closed and k == 0)
@@ -191,10 +196,10 @@ def _rope(rope: Rope, route: DrawnRoute, first: int) -> RopeModel:
     for wheel, turn in made.turns:
         if wheel.prescribed is not None:
             made.fixed[turn - first] = True
-    for span, end, anchor in anchored_ends(made):
-        made.fixed[span.s[end] - first] = True
+    for of_end, end, anchor in anchored_ends(made):
+        made.fixed[of_end.s[end] - first] = True
         if anchor.end.on is None:
-            place = span.node(end).start - first
+            place = of_end.node(end).start - first
             made.fixed[place : place + dim] = True
     return made
 
@@ -319,12 +324,11 @@ def sheave_models(builder: ModelBuilder) -> Iterator[SheaveModel]:
     """Yield the sheaves of all ropes."""
     gravity = np.array(builder.scene.gravity)
     for rope in builder.ropes:
-        sheaves = [item for item in rope.part.route if isinstance(item, Sheave)]
-        for k, (item, arc) in enumerate(zip(sheaves, rope.route.sheaves, strict=True)):
-            one, other = (k - 1, k) if rope.part.closed else (k, k + 1)
-            before, after = rope.spans[one], rope.spans[other]
+        of_sheaves = zip(rope.part.sheaves, rope.route.sheaves, rope.route.beside_sheaves, strict=True)
+        for k, (item, arc, beside) in enumerate(of_sheaves):
+            before, after = (rope.spans[each] for each in beside)
             scale = [rope.rho * rope.route.spans[each].length / rope.part.elements_of_spans[each]
-                     for each in (one, other) for _ in range(2)]
+                     for each in beside for _ in range(2)]
             centre = builder.attachment(item.end)
             number, factor = (-1, 0.0) if item.torque is None else builder.signals.scale(item.torque)
             yield SheaveModel(type="sheave", name=item.name, kernel="planar_sheave", attachments=(centre,),
@@ -369,7 +373,8 @@ class DrumModel(CouplingModel):
     @property
     def node(self) -> int:
         """Return the first dof of the node at its tangent point."""
-        return self.coordinates.node.start
+        first: int = self.coordinates.node.start
+        return first
 
     @property
     def s(self) -> int:

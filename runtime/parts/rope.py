@@ -54,11 +54,13 @@ class Rope(Part):
 
     It ends at anchors or drums, and is straight and tangent to the sheaves and drums as drawn. A span is what is
     between two tangent points, or a tangent point and an anchor; its elements are equal, and the material moves through
-    them. Sheaves have
-    no mass but that of the body they are on. On a sheave the rope bends to its radius; the layer sqrt(EI / T) in which
-    the curvature begins is not resolved but moves the span away from the sheave by EI / (2 T R).
+    them. Sheaves have no mass but that of the body they are on. On a sheave the rope bends to its radius; the layer
+    sqrt(EI / T) in which the curvature begins is not resolved but moves the span away from the sheave by EI / (2 T R),
+    with the tension T as drawn all through the run.
 
-    Given is the ``tension`` or the ``length``; gravity acts from the start.
+    Given is the ``tension`` or the ``length``; gravity acts from the start. The rope starts with the velocities of the
+    bodies that hold it, straight and evenly stretched; sheaves and drums start without rotation on what carries them,
+    unless it is prescribed.
 
     route: an `Anchor` or a `Drum`, sheaves, and again an `Anchor` or a `Drum`, in the rope's order; of a closed rope
         two sheaves or more
@@ -76,8 +78,10 @@ class Rope(Part):
     group = "ropes"
     parts_within = (Sheave, Drum)
     results: ClassVar[dict[str, Quantity]] = {
-        "position": Quantity(("time", "{part}.point", "xyz"), "m", "points along the rope", POINT),
-        "s": Quantity(("time", "{part}.point"), "m", "stress-free arc-length of these points from the first anchor"),
+        "position": Quantity(("time", "{part}.point", "xyz"), "m", "points along the rope: of a wrap as many as "
+                             "for its angle as drawn, so that chords between them cut a wrap that grows", POINT),
+        "s": Quantity(("time", "{part}.point"), "m", "stress-free arc-length of these points from the first end, what "
+                      "is on a drum there included; of a closed rope from where it leaves its first sheave as drawn"),
         "start_force": vector_of_time("N", "force on what holds the first anchor"),
         "end_force": vector_of_time("N", "force on what holds the last anchor"),
         "coordinates": Quantity(("time", "{part}.coordinate"), "m or 1", "places and slopes of nodes in the plane, "
@@ -153,6 +157,11 @@ class Rope(Part):
         return tuple(item for item in self.route if isinstance(item, Sheave))
 
     @property
+    def rough_sheaves(self) -> list[Sheave]:
+        """Return its sheaves with friction."""
+        return [sheave for sheave in self.sheaves if sheave.coefficient > 0]
+
+    @property
     def drums(self) -> dict[int, Drum]:
         """Return the drums at its ends, by 0 for the first end and -1 for the last."""
         return {end: item for end in (0, -1) if isinstance(item := self.route[end], Drum)}
@@ -176,6 +185,11 @@ class Rope(Part):
     def elements_of_spans(self) -> tuple[int, ...]:
         """Return the number of elements of each span."""
         return self.elements if isinstance(self.elements, tuple) else (self.elements,) * self.n_spans
+
+    @property
+    def n_elements(self) -> int:
+        """Return the number of elements of all spans."""
+        return sum(self.elements_of_spans)
 
     @property
     def radius(self) -> float:
@@ -210,9 +224,14 @@ class Rope(Part):
         return super().entries_with(left | {**changes})
 
     def refined(self) -> Rope:
-        """Return the rope with elements of half the length, and twice the zones of wraps, as far as possible."""
+        """Return the rope with elements of half the length, and twice the zones of wraps, see `Sheave.refined`."""
         route = [item.refined() if isinstance(item, Sheave) else item for item in self.route]
         return self.remade({"elements": tuple(2 * n for n in self.elements_of_spans), "route": route})
+
+    @property
+    def zones_halved(self) -> list[str]:
+        """Return the sheaves with friction that `refined` gives half of their zones, as messages name them."""
+        return [sheave.where for sheave in self.rough_sheaves if sheave.has_most_zones]
 
     def drawn(self, bodies: Mapping[str, RigidBody | ModalBody]) -> DrawnRoute:
         """Return its route as drawn among the bodies of its scene, in the plane.
@@ -272,6 +291,12 @@ def _place(end: Attachment, bodies: Mapping[str, RigidBody | ModalBody]) -> np.n
     return np.array(end.point) if end.on is None else bodies[end.on].point(end.point)
 
 
+def driven_freely(ropes: Iterable[Rope]) -> list[str]:
+    """Return the names in quotes of the sheaves that turn freely under a torque, at t = 0, without friction."""
+    return [f'"{sheave.name}"' for rope in ropes for sheave in rope.sheaves
+            if sheave.prescribed is None and sheave.torque is not None and sheave.torque.value(0.0)]
+
+
 def rough_sheaves(ropes: Iterable[Rope]) -> list[str]:
     """Return the names in quotes of the sheaves on which ropes have friction."""
-    return [f'"{sheave.name}"' for rope in ropes for sheave in rope.sheaves if sheave.coefficient > 0]
+    return [f'"{sheave.name}"' for rope in ropes for sheave in rope.rough_sheaves]

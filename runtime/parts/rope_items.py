@@ -78,16 +78,14 @@ class Anchor(RouteItem):
         return self.model_copy(update={"at": end.point})
 
 
-def _turns(value: Any) -> int:
-    if isinstance(value, bool) or not isinstance(value, WholeNumber) or not 0 <= int(value) <= MAX_TURNS:
-        raise ValueError(f"must be a whole number from 0 to {MAX_TURNS}, got {shown(value)}")
-    return int(value)
+def _whole_number_between(least: int, most: int) -> Any:
+    """Return the check of a whole number from least to most."""
+    def check(value: Any) -> int:
+        if isinstance(value, bool) or not isinstance(value, WholeNumber) or not least <= int(value) <= most:
+            raise ValueError(f"must be a whole number from {least} to {most}, got {shown(value)}")
+        return int(value)
 
-
-def _zones(value: Any) -> int:
-    if isinstance(value, bool) or not isinstance(value, WholeNumber) or not 1 <= int(value) <= MAX_ZONES:
-        raise ValueError(f"must be a whole number from 1 to {MAX_ZONES}, got {shown(value)}")
-    return int(value)
+    return checked(check, {"type": "integer", "minimum": least, "maximum": most})
 
 
 class Wheel(RouteItem):
@@ -164,8 +162,8 @@ class Sheave(Wheel):
     )
     name: Name
     friction: AnyFriction | None = None
-    zones: Annotated[int, checked(_zones, {"type": "integer", "minimum": 1, "maximum": MAX_ZONES})] = 8
-    turns: Annotated[int, checked(_turns, {"type": "integer", "minimum": 0, "maximum": MAX_TURNS})] = 0
+    zones: Annotated[int, _whole_number_between(1, MAX_ZONES)] = 8
+    turns: Annotated[int, _whole_number_between(0, MAX_TURNS)] = 0
 
     @property
     def coefficient(self) -> float:
@@ -182,20 +180,29 @@ class Sheave(Wheel):
         """Return the number of zones of its wrap: without friction the tension is the same all over it."""
         return self.zones if self.coefficient > 0 else 1
 
+    @property
+    def has_most_zones(self) -> bool:
+        """Return whether twice its zones are more than the engine has room for."""
+        return 2 * self.zones > MAX_ZONES
+
     @model_validator(mode="after")
     def _has_modelled_friction(self) -> Sheave:
         if self.friction is not None:
             self.friction.check_coulomb()
             if self.friction.sticks:
                 raise ValueError("has friction that sticks", 'give model="regularised", with a small velocity')
+        drive = next((name for name in ("torque", "angle", "velocity") if getattr(self, name) is not None), None)
+        if drive is not None and not self.coefficient:
+            raise ValueError(f"has {drive}, but no friction with the rope, which it then never moves",
+                             f"give its friction, or leave {drive} out")
         if self.inertia > 0 and not self.coefficient:
             raise ValueError("has inertia, but no friction with the rope, which then never turns it",
                              "give its friction, or leave the inertia out")
         return self
 
     def refined(self) -> Sheave:
-        """Return the sheave with twice the zones, at most `MAX_ZONES`."""
-        return self.model_copy(update={"zones": min(2 * self.zones, MAX_ZONES)})
+        """Return the sheave with twice the zones, or with half of them where twice exceeds `MAX_ZONES`."""
+        return self.model_copy(update={"zones": self.zones // 2 if self.has_most_zones else 2 * self.zones})
 
 
 class Drum(Wheel):

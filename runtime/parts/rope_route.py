@@ -7,6 +7,7 @@ the length l and u. An end of the rope is a sheave of radius 0.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 from math import atan2, hypot, tau
@@ -118,6 +119,22 @@ class DrawnRoute:
     def free_length(self) -> float:
         """Return its stress-free length, m."""
         return self.length / self.stretch
+
+    def sequence(self) -> Iterator[tuple[int, int | None, int]]:
+        """Yield along the rope the number of each span, that of the sheave after it, and that of the next span.
+
+        The last end of an open rope has no sheave, None; there the next span is the first one.
+        """
+        n, closed = len(self.spans), len(self.sheaves) == len(self.spans)
+        for k in range(n):
+            after = (k + 1) % n
+            yield k, after if closed else k if after else None, after
+
+    @property
+    def beside_sheaves(self) -> list[tuple[int, int]]:
+        """Return the numbers of the spans before and after each sheave."""
+        found = {number: (k, after) for k, number, after in self.sequence() if number is not None}
+        return [found[number] for number in range(len(found))]
 
 
 def default_senses(centres: np.ndarray) -> list[int]:

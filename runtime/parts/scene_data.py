@@ -259,10 +259,16 @@ class SceneData:
         return self.with_parts((each.remade(values[id(each)]) if id(each) in values else each
                                 for each in self.parts()), gravity)
 
-    def remeshed(self, elements: Callable[[Cable], int]) -> Self:
-        """Return a checked scene with other numbers of elements, see `Cable.mesh_entries`. Raises SceneError."""
-        return self.with_parts(part.remade(part.mesh_entries(elements(part))) if isinstance(part, Cable) else part
-                               for part in self.parts())
+    def remeshed(self, elements: Callable[[Cable], int], of_spans: Callable[[Rope], tuple[int, ...]]) -> Self:
+        """Return a checked scene with other numbers of elements of cables, see `Cable.mesh_entries`, and of spans of
+        ropes. Raises SceneError.
+        """
+        def made(part: Part) -> Part:
+            if isinstance(part, Cable):
+                return part.remade(part.mesh_entries(elements(part)))
+            return part.remade({"elements": of_spans(part)}) if isinstance(part, Rope) else part
+
+        return self.with_parts(map(made, self.parts()))
 
     def copied(self) -> Self:
         """Return a scene of the same parts, to which parts can be added independently."""

@@ -2,7 +2,8 @@
 
 The first one has smaller steps: its distance from the run is the error of the steps. The second one has these steps and
 elements of half the length, and wraps of ropes with friction twice the zones: its distance from the first is the error
-of the mesh, less the error of the finer mesh, which is a half of it at order 1 and a sixteenth at order 4.
+of the mesh, less the error of the finer mesh, which is a half of it at order 1 and a sixteenth at order 4. Wraps that
+cannot have twice the zones have half of them, whose error is the larger one.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from ..errors import FunicularError, FunicularWarning
 from ..parts.cable import Cable
 from ..parts.part import Part
 from ..parts.rope import Rope
+from ..parts.rope_items import MAX_ZONES
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
 from .run import Run
@@ -83,6 +85,9 @@ def error_estimate(scene: S, run: Run, settings: RunSettings, from_a_state: bool
                      lambda other: again(other, steps))
         if finer is not None:
             found.mesh, found.both = relative(scene, tight, finer), relative(scene, motion, finer)
+            if halved := [name for rope in scene.ropes.values() for name in rope.zones_halved]:
+                found.messages.append(f"the error of the zones of {', '.join(halved)} is estimated by half of them, as "
+                                      f"twice exceeds {MAX_ZONES}: it is that of the half, and too large")
     for what in ("time", "mesh", "both"):
         if np.isinf(getattr(found, what)):
             setattr(found, what, np.nan)
@@ -92,7 +97,7 @@ def error_estimate(scene: S, run: Run, settings: RunSettings, from_a_state: bool
 
 
 def _finer(part: Part) -> Part:
-    """Return a cable or a rope with elements of half the length, and twice the zones as far as possible."""
+    """Return a cable or a rope with elements of half the length, and other zones, see `Rope.refined`."""
     if isinstance(part, Cable):
         return part.remade(part.mesh_entries(2 * part.elements))
     return part.refined() if isinstance(part, Rope) else part

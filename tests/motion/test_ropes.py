@@ -373,17 +373,6 @@ def test_a_rope_without_tension_as_drawn():
     assert (run["top.normal_force"] >= -1e-9).all()
 
 
-def test_faster_than_waves():
-    """rho v² above T on a held rope that runs: a start above the speed is refused at once."""
-    scene = fu.Scene(gravity=(0, 0, 0))
-    body(scene, "A", -0.2, -3, velocity=(0, 40.0, 0))
-    body(scene, "B", 0.2, -1, velocity=(0, -40.0, 0))
-    scene.rope("hoist", route=[fu.Anchor("A"), fu.Sheave("top", at=(0, 0, 0), radius=0.2), fu.Anchor("B")],
-               tension=20.0, **THIN)  # the square root of T/rho is 30 m/s
-    with pytest.raises(fu.RopeLeftError, match="rho v² for the mass rho of a length"):
-        scene.run(0.01)
-
-
 def test_refused_materials():
     with refused('rope "hoist": its material has mass_damping, which ropes do not have; give damping_time, or the drag '
                  "of the bodies on it"):

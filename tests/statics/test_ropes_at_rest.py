@@ -110,6 +110,15 @@ def test_friction_is_left_out_and_said():
         scene.relax()
 
 
+@pytest.mark.parametrize("settings", [{}, {"method": "arc_length"}])
+def test_a_torque_that_turns_a_sheave_freely_is_the_cause(settings):
+    driven = hung(friction=0.2, inertia=0.1, torque=2.0)
+    with pytest.raises(fu.EquilibriumError, match="friction of ropes is left out at rest, so that sheave \"top\" turns "
+                       "freely under its torque; prescribe its angle, or leave the torque out"):
+        driven.equilibrium(**settings)
+    assert hung(friction=0.2, inertia=0.1, torque=0.0).equilibrium().neutral_directions > 0
+
+
 @pytest.mark.parametrize(("path", "start", "target"), [
     ("rope.tension", {}, {"top.tension_on": 60.0}), ("rope.material.density", {}, {"top.tension_on": 50.5})])
 def test_adjusted(path, start, target):

@@ -82,7 +82,9 @@ int fu_start(fu_run *run)
     if (fu_couplings_can_act(model)) {
         memcpy(run->psi, run->before,
                sizeof(double) * (size_t)model->n_dof); /* velocity change of the start, for the caller */
-        if (fu_begin_couplings(run) || fu_start_scheme(run, 0)) return FU_SINGULAR;
+        const int begun = fu_begin_couplings(run);
+        if (begun == FU_ROPE_LEFT && fu_record_row(run) == FU_RUNNING) return begun;
+        if (begun || fu_start_scheme(run, 0)) return FU_SINGULAR;
         memcpy(run->before, run->psi, sizeof(double) * (size_t)model->n_dof);
     }
     fu_begin_slackness(run);

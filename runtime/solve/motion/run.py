@@ -281,13 +281,8 @@ def _divided_step(settings: RunSettings) -> list[str]:
 
 
 def _broken_velocities(model: Model, change: np.ndarray) -> list[str]:
-    """Return a message where the start changed velocities (n_dof,), which broke a joint. A rope without given rates
-    follows what holds it.
-    """
-    counted = model.weight.copy()  # rates of slopes and turns as those of points
-    for rope in model.ropes:
-        counted[rope.coordinates] *= np.any(model.v[rope.coordinates])
-    largest = float(np.max(np.abs(change) * counted, initial=0.0))
+    """Return a message where the start changed velocities (n_dof,), which broke a joint."""
+    largest = float(np.max(np.abs(change) * model.weight, initial=0.0))  # rates of slopes and turns as those of points
     if largest <= 1e-9 * (1.0 + np.max(np.abs(model.v) * model.weight, initial=0.0)):
         return []
     return [f"initial velocities broke a joint: changed by up to {largest:.3g} m/s to keep it"]

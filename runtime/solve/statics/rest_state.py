@@ -12,6 +12,7 @@ from ...errors import EquilibriumError, SceneError, UnknownResultError, near
 from ...model.kinds import COUPLINGS
 from ...model.model import Model
 from ...model.part_states import States, numbers_at_rest, part_states
+from ...model.rope_rates import follow
 from ...model.states import attachment_points
 from ...parts.joint import Joint
 from ...parts.part import Part
@@ -264,8 +265,7 @@ class RestState(NamedArrays):
                 raise SceneError("scene", f'the state to start from has an end of the joint "{joint.name}" '
                                  f"{moved:.3g} m from where it is here", "take an equilibrium of this scene")
         for rope in model.ropes:
-            ends = np.arange(rope.coordinates.start, rope.coordinates.stop)[rope.fixed]
-            if (moved := float(np.abs(q[0] - model.q)[ends].max(initial=0.0))) > POSITION_TOLERANCE * size:
+            if (moved := float(np.abs(q[0] - model.q)[rope.held].max(initial=0.0))) > POSITION_TOLERANCE * size:
                 raise SceneError("scene", f'the state to start from has an end of rope "{rope.part.name}", or the '
                                  f"stress-free length there, {moved:.3g} m from where it is here",
                                  "take an equilibrium of this scene")
@@ -285,8 +285,9 @@ class RestState(NamedArrays):
             if abs(angle - self.turned.get(label, angle)) > POSITION_TOLERANCE * (1 + abs(angle)):
                 raise SceneError("scene", f'the angle of "{label}" is {show(angle, "rad")} at t = 0, but the state to '
                                  f'start from has {show(self.turned[label], "rad")}', SIGNAL_START_REMEDY)
+        turning = {turn for rope in model.ropes for _, turn in rope.turns}  # their rates alone matter
         moved = {dof: abs(value - self.static_state["q"][dof]) * model.weight[dof]
-                 for dof, value in model.prescribed_at(0.0).items()}
+                 for dof, value in model.prescribed_at(0.0).items() if dof not in turning}
         lengths = [*(cable.mesh.total for cable in model.cables), *(rope.route.length for rope in model.ropes)]
         if moved and (most := max(moved.values())) > POSITION_TOLERANCE * max(lengths):
             raise SceneError("scene", f"a motion begins {show(most, 'm')} from where the state to start from has it",
@@ -297,6 +298,8 @@ class RestState(NamedArrays):
         self.check_supports(model, scene)
         model.q = self.static_state["q"].copy()
         model.place_slides(self.static_state["s"])
+        for rope in model.ropes:
+            follow(model, rope)
 
     def _quantities(self) -> dict[str, np.ndarray]:
         kept = self.static_state

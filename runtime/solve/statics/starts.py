@@ -40,8 +40,7 @@ def fitted(kept: dict[str, np.ndarray], model: Model) -> dict[str, np.ndarray]:
     """
     q = kept["q"].copy()
     for rope in model.ropes:
-        ends = np.arange(rope.coordinates.start, rope.coordinates.stop)[rope.fixed]
-        q[ends] = model.q[ends]
+        q[rope.held] = model.q[rope.held]
     if not model.cables:
         return kept | {"q": q}
     own = slice(0, model.cables[-1].coordinates.stop)

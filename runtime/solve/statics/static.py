@@ -13,7 +13,7 @@ from typing import Generic, TypeVar
 from ...checks.plausibility import implausible
 from ...errors import EquilibriumError, FunicularWarning
 from ...model.drag_forces import outside_tables
-from ...parts.rope import rough_sheaves
+from ...parts.rope import driven_freely, rough_sheaves
 from ...parts.scene_data import SceneData
 from ...parts.settings import EquilibriumSettings
 from ..notes.row_notes import rest_notes
@@ -58,6 +58,9 @@ def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestStat
                   'limit point, which method="arc_length" passes; or take more load_steps or max_iterations')
         if problem.turns.fraction < 1.0:
             remedy = f"; {problem.turns}" + (f"; {problem.turns.lost}" if problem.turns.lost else remedy)
+        if driven := driven_freely(scene.ropes.values()):
+            remedy = (f"; friction of ropes is left out at rest, so that sheave {' and '.join(driven)} turns freely "
+                      "under its torque; prescribe its angle, or leave the torque out")
         if slides := not_held(problem, lying(problem.scene, problem.model, problem.model.q)):
             remedy = f"; {slides}{remedy}"
         raise EquilibriumError(

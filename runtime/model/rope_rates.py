@@ -1,0 +1,159 @@
+"""Initial rates of ropes whose rates are not given: a rope follows the bodies that hold its ends, sheaves and drums.
+
+Its spans stay straight between their tangent points, it stays evenly stretched, and its stress-free length is kept.
+With u and n along a span and to the left of it, of length l between centres c_1 and c_2 and radii R_1 and R_2 with the
+senses of travel as signs,
+
+    l w = (c_2' - c_1').n,   l' = (c_2' - c_1').u + w (R_2 - R_1),
+
+where w is the rate of its direction. Its tangent points move by c' + w R u, and a wrap grows by R times the difference
+of w of the spans beside it. A drum at the first end takes up sigma R (w - psi') = lambda u' (derive/couplings/drum.py),
+at the last end the opposite.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..base.rotations import rotate
+from .attachments import AttachmentModel
+from .model import Model
+from .ropes import AnchorModel, DrumCoordinates, DrumModel, RopeModel, SheaveModel, SpanCoordinates
+from .states import attachment_points, body_state, spatial
+
+
+def follow(model: Model, rope: RopeModel) -> None:
+    """Set the rates of a rope in a model, in its state, to those that follow from the velocities of bodies.
+
+    Sheaves and drums turn relative to the body that they are on only where this is prescribed. A closed rope does not
+    run around: the mean rate of its arc-lengths is zero.
+    """
+    q, v = model.q, model.v
+    _set_turns(model, rope)
+    holders = list(_holders(model, rope))
+    spans = [_SpanRates.of(q, span, holders[k], holders[(k + 1) % len(holders)]) for k, span in enumerate(rope.spans)]
+    stretch = sum(span.length for span in spans) / sum(span.free for span in spans)
+    pieces: list[tuple[float, float]] = []  # growth and stress-free length of spans, and of the wraps after them
+    for k, number, after in rope.route.sequence():
+        pieces.append((spans[k].growth, spans[k].free))
+        if number is not None:
+            at = rope.sheaves[number].s
+            closing = rope.route.free_length * (rope.part.closed and number == 0)
+            pieces.append((holders[(k + 1) % len(holders)].radius * (spans[after].turning - spans[k].turning),
+                           float(q[at[-1]] - q[at[0]]) + closing))
+    growth, free = np.array(pieces).T
+    wound = {drum.end: _wound(q, drum, holders[drum.end], spans[drum.end].turning) for drum in rope.drums}
+    rate = (growth.sum() + stretch * sum(wound.values())) / free.sum()  # of the stretch
+    for_ends = wound.get(0, 0.0) + np.cumsum(np.append(0.0, (growth - free * rate) / stretch))
+    if rope.part.closed:
+        for_ends -= np.sum((for_ends[1:] + for_ends[:-1]) * free) / (2 * free.sum())
+    for k, span in enumerate(rope.spans):
+        v[list(span.s)] = for_ends[2 * k : 2 * k + 2]
+        spans[k].set(q, v, span, rate)
+    for sheave in rope.sheaves:
+        v[sheave.s] = np.linspace(v[sheave.s[0]], v[sheave.s[-1]], len(sheave.s))
+    v[rope.held] = 0.0
+
+
+def _set_turns(model: Model, rope: RopeModel) -> None:
+    """Set the rates of rotations, zero where they are not prescribed."""
+    motions = {motion.dof: motion for motion in model.motions}
+    for _, turn in rope.turns:
+        if turn >= 0:
+            motion = motions.get(turn)
+            model.v[turn] = 0.0 if motion is None else motion.linear * float(
+                model.signals[motion.signal].value(np.zeros(()), 1))
+
+
+@dataclass
+class _Holder:
+    """What holds an item of a route: velocity (dim,) in m/s, angular velocity of the item in rad/s, and radii in m to
+    the axis of the rope and to its tangent points, with the sense of travel as sign; 0 at an anchor.
+    """
+
+    velocity: np.ndarray
+    spin: float = 0.0
+    radius: float = 0.0
+    reach: float = 0.0
+
+
+def _holders(model: Model, rope: RopeModel) -> Iterator[_Holder]:
+    """Yield what holds the items of the route."""
+    wheels: dict[str, SheaveModel | DrumModel] = {sheave.name: sheave for sheave in model.sheaves}
+    wheels |= {drum.name: drum for drum in model.drums}
+    anchors = {anchor.attachments[0].node: anchor.attachments[1] for anchor in model.of(AnchorModel)}
+    turns = {wheel.name: turn for wheel, turn in rope.turns}
+    ends = {0: rope.spans[0].node(0).start, len(rope.part.route) - 1: rope.spans[-1].node(-1).start}
+    for k, item in enumerate(rope.part.route):
+        if (name := getattr(item, "name", None)) is None:
+            held = anchors.get(ends[k])
+            yield _Holder(np.zeros(model.dim) if held is None else _motion(model, held)[0])
+            continue
+        wheel = wheels[name]
+        velocity, spin = _motion(model, wheel.attachments[0])
+        reach = float(np.max(wheel.tangent_radius))
+        yield _Holder(velocity, spin + (model.v[turns[name]] if turns[name] >= 0 else 0.0),
+                      wheel.sense * wheel.radius, wheel.sense * reach)
+
+
+def _motion(model: Model, attachment: AttachmentModel) -> tuple[np.ndarray, float]:
+    """Return the velocity (dim,) of an attachment to a body or the ground in m/s, and its angular velocity in rad/s."""
+    if attachment.body < 0:
+        return np.zeros(model.dim), 0.0
+    body, dim = model.bodies[attachment.body], model.dim
+    velocity, spin = model.v[body.dof : body.dof + dim].copy(), float(model.v[body.dof + dim])
+    x, y = (attachment_points(model, attachment, model.q[None])[0, :dim]
+            - model.q[body.configuration : body.configuration + dim])
+    velocity += spin * np.array([-y, x])
+    if attachment.modal is not None:
+        rates = model.v[body.dof + dim + 1 : body.dof + dim + 1 + body.modes]
+        orientation = body_state(model, body, model.q[None])["orientation"][0]
+        velocity += rotate(orientation, spatial(rates @ attachment.modal[1]))[:dim]
+        spin += float(np.sum(rates @ attachment.modal[2]))
+    return velocity, spin
+
+
+@dataclass
+class _SpanRates:
+    """A span: what holds its ends, length and stress-free length in m, and the rates of its length and direction."""
+
+    holders: tuple[_Holder, _Holder]
+    length: float
+    free: float
+    growth: float
+    turning: float
+
+    @classmethod
+    def of(cls, q: np.ndarray, span: SpanCoordinates, one: _Holder, other: _Holder) -> _SpanRates:
+        """Return the rates of a span in a configuration."""
+        along = (q[span.node(-1)] - q[span.node(0)])[: span.dim]
+        length = float(np.linalg.norm(along))
+        along = along / length
+        apart = other.velocity - one.velocity
+        turning = float(apart @ _left(along)) / length
+        return cls((one, other), length, float(q[span.s[1]] - q[span.s[0]]),
+                   float(apart @ along) + turning * (other.reach - one.reach), turning)
+
+    def set(self, q: np.ndarray, v: np.ndarray, span: SpanCoordinates, stretching: float) -> None:
+        """Set the rates of its nodes; stretching: the rate of its stretch."""
+        slopes = q[span.nodes].reshape(-1, 2, span.dim)[:, 1]
+        along = slopes / np.linalg.norm(slopes, axis=1, keepdims=True)
+        ends = [holder.velocity + self.turning * holder.reach * along[k]
+                for k, holder in zip((0, -1), self.holders, strict=True)]
+        share = span.share[:, None]
+        places, turned = (1 - share) * ends[0] + share * ends[1], stretching * along + self.turning * _left(slopes)
+        v[span.nodes] = np.stack([places, turned], axis=1).ravel()
+
+
+def _wound(q: np.ndarray, drum: DrumCoordinates, holder: _Holder, turning: float) -> float:
+    """Return the stress-free length a second that a drum winds; turning: the rate of the direction of its span."""
+    way = holder.radius * (turning - holder.spin) * (1 if drum.end == 0 else -1)
+    return way / float(np.linalg.norm(q[drum.node][drum.span.dim :]))
+
+
+def _left(vectors: np.ndarray) -> np.ndarray:
+    """Return vectors (..., 2) turned to the left by 90 degrees."""
+    return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)

@@ -1,0 +1,19 @@
+"""Numbers in the headers of bundled scenes of ropes are those that the scenes give."""
+
+import re
+from pathlib import Path
+
+import funicular as fu
+import pytest
+
+HEADER = r"rises by ([\d.]+) m/s².*?are ([\d.]+) N in the haul, ([\d.]+) N in the fall .*?, and ([\d.]+) N in the"
+
+
+def test_block_and_tackle():
+    """The header gave the ones of a rope without mass: 0.43672 m/s², and tensions that were 2 N lower."""
+    text = (Path(fu.__file__).parent / "scenes" / "block_and_tackle.toml").read_text(encoding="utf-8")
+    said = re.search(HEADER, text.replace("\n#", ""), re.DOTALL)
+    run = fu.load_scene("block_and_tackle").run(progress=False)
+    found = [2 * (run["block.position"][-1, 1] + 10) / run.time[-1] ** 2,
+             *(run[name][-1] for name in ("upper.tension_off", "upper.tension_on", "lower.tension_on"))]
+    assert [float(number) for number in said.groups()] == pytest.approx(found, rel=1e-4)
