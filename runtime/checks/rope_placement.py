@@ -19,6 +19,9 @@ from .whole_scene import check_plane
 
 MIN_RADIUS_RATIO = 10.0
 """Radius of a sheave over the diameter of its rope below which the bending stress is reported."""
+MAX_RADIUS_OF_ELEMENTS = 20.0
+"""Radius of a sheave over the length of an element beside it above which steps may not converge: the place of the
+tangent point on an almost straight rope then has little inertia."""
 MAX_PLAUSIBLE_WRAP = 1.5 * pi
 """Wrap angle without whole turns, in rad, above which the side of a sheave may be wrong."""
 
@@ -88,8 +91,14 @@ def _notes(scene: SceneData, rope: Rope) -> list[str]:
         raise SceneError(rope.where, *error.args) from None
     EA, EI = rope.stiffness
     tension, diameter, notes = EA * (route.stretch - 1), 2 * rope.radius, []
-    for item, arc in zip(rope.sheaves, route.sheaves, strict=True):
+    elements = [span.length / n for span, n in zip(route.spans, rope.elements_of_spans, strict=True)]
+    for k, (item, arc) in enumerate(zip(rope.sheaves, route.sheaves, strict=True)):
         sheave = f"{rope.where}: {item.where}"
+        beside = min(elements[k - 1 if rope.closed else k], elements[k if rope.closed else k + 1])
+        if arc.radius > MAX_RADIUS_OF_ELEMENTS * beside:
+            notes.append(f"{sheave}: its radius {show(arc.radius, 'm')} is above {MAX_RADIUS_OF_ELEMENTS:g} lengths of "
+                         f"the elements beside it, {show(beside, 'm')}: steps may be very short or not converge; take "
+                         "fewer elements")
         if EI > tension * (MAX_LAYER * arc.radius)**2:
             notes.append(f"{sheave}: at a tension of {show(tension, 'N')} the rope's bending reaches further than "
                          f"{MAX_LAYER:g} of the radius {show(arc.radius, 'm')} along the span: sqrt(EI / T) is "

@@ -35,8 +35,9 @@ def rope_state(model: Model, rope: RopeModel, q: np.ndarray) -> dict[str, np.nda
             zones = q[:, rope.sheaves[number].s]
             zones[:, -1] += sheaves[span.first].closing
             places.append(on)
-            lengths.append(np.stack([np.interp(np.linspace(0, 1, n)[1:-1], np.linspace(0, 1, zones.shape[1]), each)
-                                     for each in zones]))
+            at = np.linspace(0, zones.shape[1] - 1, n)[1:-1]
+            zone = at.astype(int)
+            lengths.append(zones[:, zone] + (at - zone) * (zones[:, zone + 1] - zones[:, zone]))
     return {"position": spatial(np.concatenate(places, axis=1)), "s": np.concatenate(lengths, axis=1)}
 
 
@@ -44,12 +45,12 @@ def rope_motion(model: Model, rope: RopeModel, q: np.ndarray, dofs: np.ndarray) 
     """Return the displacement (n, points, 3) of points along a rope, and the changes (n, points) of s there, in small
     motions dofs (n, n_dof) about q: by central differences, with errors of `MOTION_STEP` squared.
     """
-    one, other = (rope_state(model, rope, _moved(model, q, sign * MOTION_STEP * dofs)) for sign in (-1, 1))
+    one, other = (rope_state(model, rope, moved(model, q, sign * MOTION_STEP * dofs)) for sign in (-1, 1))
     changes = {key: (other[key] - one[key]) / (2 * MOTION_STEP) for key in one}
     return {"displacement": changes["position"], "s": changes["s"]}
 
 
-def _moved(model: Model, q: np.ndarray, dofs: np.ndarray) -> np.ndarray:
+def moved(model: Model, q: np.ndarray, dofs: np.ndarray) -> np.ndarray:
     """Return the configurations (n, n_q) of flexible parts and bodies of a planar model moved by small dofs."""
     found = np.tile(q, (len(dofs), 1))
     n = min((body.dof for body in model.bodies), default=min(len(q), dofs.shape[1]))
@@ -107,7 +108,7 @@ def coordinates(rope: RopeModel, q: np.ndarray, v: np.ndarray) -> dict[str, np.n
 
 def _span_points(span: SpanCoordinates, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return position (T, points, dim) and s (T, points) of points of a span: cubics between the nodes."""
-    nodal = q[:, span.nodes].reshape(len(q), -1, PER_NODE, span.dim)
+    nodal = q[:, span.nodes].reshape(len(q), span.n_elements + 1, PER_NODE, span.dim)
     ends = q[:, list(span.s)]
     s = ends[:, :1] + span.share * (ends[:, 1:] - ends[:, :1])
     x = np.arange(POINTS_OF_ELEMENT) / POINTS_OF_ELEMENT
@@ -117,8 +118,9 @@ def _span_points(span: SpanCoordinates, q: np.ndarray) -> tuple[np.ndarray, np.n
     inside = sum(values[e][:, None] * nodal[:, e : e + span.n_elements, None, 0]
                  + length * slopes[e][:, None] * nodal[:, e : e + span.n_elements, None, 1] for e in range(2))
     at = s[:, :-1, None] + np.diff(s)[..., None] * x
-    return (np.concatenate([inside.reshape(len(q), -1, span.dim), nodal[:, -1:, 0]], axis=1),
-            np.concatenate([at.reshape(len(q), -1), s[:, -1:]], axis=1))
+    count = span.n_elements * POINTS_OF_ELEMENT
+    return (np.concatenate([inside.reshape(len(q), count, span.dim), nodal[:, -1:, 0]], axis=1),
+            np.concatenate([at.reshape(len(q), count), s[:, -1:]], axis=1))
 
 
 def _wrap_points(model: Model, sheave: SheaveModel, q: np.ndarray, n: int) -> np.ndarray:

@@ -92,6 +92,7 @@ class Wheel(RouteItem):
     """Base of the items that a rope runs on: at, radius, side, inertia, torque, angle, velocity and damping."""
 
     positional = ("name", "at")
+    name: Name
     at: AnyAttachment
     radius: Annotated[float, positive("m")]
     side: Annotated[str | None, one_of(SIDES, optional=True)] = None
@@ -160,7 +161,6 @@ class Sheave(Wheel):
         angle="by which the sheave has turned, relative to the body that it is on",
         residual="largest distance of the rope from its tangent points",
     )
-    name: Name
     friction: AnyFriction | None = None
     zones: Annotated[int, _whole_number_between(1, MAX_ZONES)] = 8
     turns: Annotated[int, _whole_number_between(0, MAX_TURNS)] = 0
@@ -235,7 +235,6 @@ class Drum(Wheel):
         angle="by which the drum has turned, relative to the body that it is on",
         residual="largest distance of the rope from its tangent point",
     )
-    name: Name
     side: Annotated[str, one_of(SIDES)]
     length_in_store: Annotated[float, positive("m")]
 

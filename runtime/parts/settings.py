@@ -211,7 +211,8 @@ class RelaxationSettings(Part):
 
 
 class ModeSettings(Part):
-    """The number of modes."""
+    """The number of modes, and whether ropes "slip" or "stick" on the sheaves on which they have friction."""
 
     kind = "modes"
     n: Count
+    wraps: Annotated[str, one_of(("slip", "stick"))] = "slip"

@@ -110,7 +110,8 @@ def _message(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
             end = "end" if engine.stopped_s > 0.5 * cable.mesh.total else "start"
             return (f'slide "{slide.name}": ran off the {end} of cable "{cable.name}" at {when}; {RESULTS_KEPT}')
         case "rope_left":
-            return f"{rope_left(model, *engine.left)} at {when}; {RESULTS_KEPT}"
+            cause, remedy = rope_left(model, *engine.left)
+            return f"{cause} at {when}; {RESULTS_KEPT}; {remedy}"
         case _ if status in FAILED_STATUSES:
             now, q, *_ = engine.now()
             points = CoincidentPoints(scene, model)

@@ -330,15 +330,16 @@ class Scene(Viewable, DescribedScene):
         with uninterrupted(), one_blas_thread, enough_memory(), interruptible():
             return relax(in_plane(self), settings, Equilibrium)
 
-    def modes(self, n: int, about: Equilibrium | None = None, *, as_drawn: bool = False) -> Modes:
+    def modes(self, n: int, about: Equilibrium | None = None, *, as_drawn: bool = False, wraps: str = "slip") -> Modes:
         """Return the ``n`` lowest natural frequencies and shapes, about a state of `equilibrium`, or about the drawn
         state if forces balance there.
 
         as_drawn: also without balance; then joints and slides bear no forces, and a pendulum has 0 Hz. Damping and
-        friction are omitted; frequencies below rounding and unstable states are reported, as in `Modes`. Raises
-        SceneError, which names the residual force.
+        friction are omitted; frequencies below rounding and unstable states are reported, as in `Modes`. wraps: whether
+        ropes "slip" without friction on their sheaves, or "stick" to those on which they have friction, which then turn
+        with them. Raises SceneError, which names the residual force.
         """
-        settings = ModeSettings(n=n)
+        settings = ModeSettings(n=n, wraps=wraps)
         state = None if about is None else _equilibrium_state(self, about)
         self.check()
 
@@ -346,7 +347,7 @@ class Scene(Viewable, DescribedScene):
         from ..solve.modes.modes import modes
 
         with uninterrupted(), one_blas_thread, enough_memory(), interruptible():
-            return Modes.of(modes(in_plane(self), settings.n, state, as_drawn), self, state)
+            return Modes.of(modes(in_plane(self), settings.n, state, as_drawn, settings.wraps == "stick"), self, state)
 
     def animation(self, title: str | None = None) -> Animation:
         """Return pictures of the scene as drawn; see `Viewable.animation`."""

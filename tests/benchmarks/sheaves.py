@@ -1,5 +1,8 @@
 """Runs of ropes over sheaves against independent solutions (ropes/): errors with their bars, CPU time of a run.
 
+A second table has the errors of refined meshes, zones and steps, with the order between two of them; a third one what
+a reference leaves out: the bending of the belt, the wraps of the elevator.
+
     python tests/benchmarks/sheaves.py [--out FILE.csv]
 """
 
@@ -7,8 +10,10 @@ import time
 import warnings
 
 from ropes import CASES
+from ropes.belts import EI
 from ropes.case import Case
-from ropes.runs import RUNS
+from ropes.refinements import SERIES
+from ropes.runs import RUNS, belt
 from table import arguments, few, show
 
 
@@ -27,12 +32,27 @@ def rows_of(case: Case) -> list[dict]:
     return rows
 
 
+def shares_left_out() -> list[dict]:
+    """Run the belt and the elevator without and with what the references leave out; return their differences."""
+    pairs = (("belt, bending", belt(), belt(EI)),
+             ("elevator, wraps", RUNS["elevator"](), RUNS["elevator with wraps"]()))
+    return [{"case": case, "quantity": name, "without": f"{without[name]:.7g}", "with": f"{found[name]:.7g}",
+             "share": found[name] / without[name] - 1}
+            for case, without, found in pairs for name in found]
+
+
 def main() -> None:
     """Measure and print."""
     options = arguments(__doc__)
     warnings.simplefilter("ignore")
     cases = sorted((case for case in CASES if case.key in RUNS), key=lambda case: case.key != "run-on with bending")
     show([row for case in few(cases) for row in rows_of(case)], options.out)
+    print()
+    show([row for series in (SERIES[1:2] if options.smallest else SERIES) for row in series.rows()],
+         table="refinements")
+    if not options.smallest:
+        print()
+        show(shares_left_out(), table="left out")
 
 
 if __name__ == "__main__":

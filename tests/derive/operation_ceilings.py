@@ -259,8 +259,8 @@ CEILINGS = {
         "tangent_point": 27, "tangent_point_motion": 26, "angle": 121, "energy": 13, "weight": 21, "force": 85,
         "tangent": 204, "kinetic_energy": 60, "inertia": 213, "inertia_tangent": 1209, "dissipation": 15,
         "damping_force": 16, "damping_tangent": 50,
-        "friction": 56, "friction_tangent": 307, "friction_on": 56, "friction_on_tangent": 294, "friction_off": 56,
-        "friction_off_tangent": 294,
+        "friction": 66, "friction_tangent": 367, "friction_on": 65, "friction_on_tangent": 351, "friction_off": 65,
+        "friction_off_tangent": 351,
         "winding": 46, "winding_motion": 29, "store": 69, "store_tangent": 76, "store_energy": 15, "creep": 17
     },
 }

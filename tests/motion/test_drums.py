@@ -3,6 +3,8 @@
 import funicular as fu
 import numpy as np
 import pytest
+from funicular.model.build import build
+from funicular.model.rope_states import rope_state
 from funicular.results import streaming
 from interrupted_runs import Killed, failing
 from test_ropes import INTEGRATORS, THIN, body, momenta, near
@@ -115,6 +117,13 @@ def test_resumed_bit_for_bit(tmp_path, integrator):
             scene.run(**settings, save=tmp_path / "run.nc", progress=False)
     resumed = scene.run(**settings, save=tmp_path / "run.nc", resume=True, progress=False)
     assert all(np.array_equal(whole[name], resumed[name]) for name in whole)
+
+
+def test_states_of_no_instant():
+    """A file of a run that stopped before its first row has no states."""
+    model = build(hoist())
+    state = rope_state(model, model.ropes[0], np.empty((0, len(model.q))))
+    assert state["position"].shape[0] == 0 and state["position"].shape[1] == state["s"].shape[1] > 0
 
 
 def test_a_scene_file():

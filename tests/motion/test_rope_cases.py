@@ -5,7 +5,8 @@ from ropes import CASES
 from ropes.runs import RUNS
 
 BY_KEY = {case.key: case for case in CASES}
-QUICK = ("heavy rope", "free rope", "run-on with bending", "capstan")
+QUICK = ("heavy rope", "free rope", "run-on with bending", "capstan", "elevator", "elevator with wraps", "ropeway",
+         "held cylinder", "wave")
 SLOW = sorted(set(RUNS) - set(QUICK))
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.linalg import eig, eigh, null_space
-from scipy.sparse import csc_array, diags_array
+from scipy.sparse import csc_array, diags_array, vstack
 
 from ...base.named_arrays import NamedArrays
 from ...base.rotations import rotate
@@ -27,6 +27,7 @@ from ..statics.rest_state import RestState
 from ..statics.stability import count
 from ..statics.static_problem import StaticState, units_of
 from .contact_edges import resolve_contact_edges
+from .stuck_wraps import stuck_wraps
 
 ASYMMETRY_ROUNDING, MIN_ASYMMETRY = 1e-9, 1e-13
 """Asymmetry due to rounding, as a fraction of the stiffness of two coordinates, and of the largest; loads that turn
@@ -86,11 +87,13 @@ class Modes(NamedArrays):
         return len(self.angular_frequency)
 
 
-def modes(scene: SceneData, n: int, about: RestState | None = None, as_drawn: bool = False) -> Modes:
+def modes(scene: SceneData, n: int, about: RestState | None = None, as_drawn: bool = False,
+          stick: bool = False) -> Modes:
     """Return the n lowest modes about a state, as drawn if none is given; damping and friction are left out.
 
-    as_drawn: also where forces do not balance as drawn, which is refused otherwise. ``messages`` and a FunicularWarning
-    report what is left out or uncertain. Raises SceneError.
+    as_drawn: also where forces do not balance as drawn, which is refused otherwise. stick: whether ropes stick to the
+    sheaves on which they have friction. ``messages`` and a FunicularWarning report what is left out or uncertain.
+    Raises SceneError.
     """
     model = build(scene)
     if about is not None:
@@ -100,6 +103,8 @@ def modes(scene: SceneData, n: int, about: RestState | None = None, as_drawn: bo
     notes = _begin(static, about, as_drawn)
     K, constraints = condensed(engine.matrix(0.0, 0.0, 1.0), model)
     size = K.shape[0]
+    if stick and rough_sheaves(scene.ropes.values()):
+        constraints = vstack([constraints, stuck_wraps(model, engine.state()["q"], size)], format="csc")
     M = engine.matrix(1.0, 0.0, 0.0)[:size, :size]
     possible = size - constraints.shape[0]
     if n > possible:
@@ -115,7 +120,7 @@ def modes(scene: SceneData, n: int, about: RestState | None = None, as_drawn: bo
                      for x in vectors.T])
     found = _named(model, engine.state()["q"], np.where(np.abs(squares) <= error, 0.0, squares), dofs, error)
     found.messages += notes + _unstable(found, about, K, constraints, static)
-    found.messages += _without_friction(scene) + _uncertain(found, np.sqrt(max(after, 0.0)), _fewer(model))
+    found.messages += _without_friction(scene, stick) + _uncertain(found, np.sqrt(max(after, 0.0)), _fewer(model))
     for message in found.messages:
         warnings.warn(message, FunicularWarning, stacklevel=3)
     return found
@@ -163,10 +168,14 @@ def _fewer(model: Model) -> str:
     return "take fewer elements, or " if model.cables else ""
 
 
-def _without_friction(scene: SceneData) -> list[str]:
+def _without_friction(scene: SceneData, stick: bool) -> list[str]:
+    """Return messages on friction that is left out, and on sheaves to which ropes stick."""
     slides = [f'"{slide.name}"' for slide in scene.slides.values() if slide.friction and not slide.is_driven]
-    return [f"modes leave out the friction of {what}{'s' * (len(names) > 1)} {', '.join(names)}"
-            for what, names in (("slide", slides), ("sheave", rough_sheaves(scene.ropes.values()))) if names]
+    wraps = rough_sheaves(scene.ropes.values())
+    return [f"modes {do} {what}{'s' * (len(names) > 1)} {', '.join(names)}"
+            for do, what, names in (("leave out the friction of", "slide", slides),
+                                    ("have ropes that stick to" if stick else "leave out the friction of", "sheave",
+                                     wraps)) if names]
 
 
 def _rounded_shape(engine: Engine, model: Model, K: csc_array) -> csc_array:

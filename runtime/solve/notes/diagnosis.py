@@ -16,6 +16,15 @@ from .folds import FOLDED_CHORD
 from .note import FIXED_STEP_ERROR_LIMIT
 
 RESULTS_KEPT = "results up to that time are kept"
+ROPE_LEFT = (
+    ('a rope leaves sheave "{name}", as its wrap angle reaches {wrap:g} rad,',
+     "move the sheave into the way of the rope, leave it out, or stop before by an event"),
+    ('a rope lifts off {kind} "{name}", as its tension is not above rho v² and its weight there, for the mass rho of a '
+     "length at the speed v,", "take a higher tension or a lower speed, or stop before by an event"),
+    ('a span of rope "{name}" becomes too short to be modelled',
+     "keep what is at the ends of the span apart, or stop before by an event"),
+    ('drum "{name}" has run empty', "give a greater length_in_store, or stop before by an event"))
+"""Why a run with a rope ended, and what helps, by the reasons of engine/events/rope.c."""
 
 MAX_PLAUSIBLE_STRETCH = 3.0
 """Messages name elements that are longer than this multiple of their undeformed length."""
@@ -119,17 +128,11 @@ def _self_locking(model: Model, coupling: int | None, where: str) -> str:
     return f"friction is self-locking at {where}: friction increases the normal force of the rider on the cable"
 
 
-def rope_left(model: Model, number: int, reason: int) -> str:
-    """Return in words why a run with a rope ended, by the number of a coupling and a reason (engine/events/rope.c)."""
+def rope_left(model: Model, number: int, reason: int) -> tuple[str, str]:
+    """Return in words why a run with a rope ended, and what helps, by the number of a coupling and a reason."""
     coupling = model.couplings[number]
-    if reason == 0:
-        return f'a rope leaves sheave "{coupling.name}", as its wrap angle reaches {MIN_WRAP:g} rad,'
-    if reason == 1:
-        return (f'a rope lifts off {coupling.type} "{coupling.name}", as its tension is not above rho v² and its weight '
-                "there, for the mass rho of a length at the speed v,")
-    if reason == 3:
-        return f'drum "{coupling.name}" has run empty'
-    return f'a span of rope "{coupling.name}" becomes too short to be modelled'
+    cause, remedy = ROPE_LEFT[reason]
+    return cause.format(name=coupling.name, kind=coupling.type, wrap=MIN_WRAP), remedy
 
 
 def describe_dof(model: Model, dof: int, coupling: int | None = None) -> str:

@@ -4,10 +4,10 @@ Each case has published numbers, the bar that a run of a rope is to keep, and an
 refined: `Case.reference`. motion/test_rope_references.py compares the two.
 """
 
-from . import belts, capstans, chains, drums, elevators, swings, weights
+from . import belts, capstans, chains, drums, elevators, swings, waves, weights
 from .case import Case, Quantity
 
 CASES: list[Case] = [*weights.CASES, *swings.CASES, *chains.CASES, *capstans.CASES, *drums.CASES,
-                     *belts.CASES, *elevators.CASES]
+                     *belts.CASES, *elevators.CASES, *waves.CASES]
 
 __all__ = ["CASES", "Case", "Quantity"]

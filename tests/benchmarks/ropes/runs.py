@@ -7,42 +7,14 @@ here a mass and a stretch so small that their influence is below the bar.
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import cos, degrees, pi, sin
+from math import degrees, log, pi
 
 import funicular as fu
 import numpy as np
 
-GRAVITY = 9.81
-Found = dict[str, float]
-
-
-def rope_of(EA: float, rho: float, EI: float, damping_time: float = 0.0) -> dict[str, object]:
-    """Return section and material of a rope with these stiffnesses in N and N m² and this mass in kg/m."""
-    radius = 2 * (EI / EA) ** 0.5 if EI else 1e-6
-    area = pi * radius**2
-    return {"section": fu.Circle(radius=radius),
-            "material": fu.Material(youngs_modulus=EA / area, density=rho / area, poisson_ratio=0.3,
-                                    damping_time=damping_time)}
-
-
-def weight(scene: fu.Scene, name: str, mass: float, x: float, y: float) -> None:
-    """Add a weight, a point of a mass."""
-    scene.rigid_body(name, mass=mass, inertia=(mass,) * 3, position=(x, y, 0))
-
-
-def swing(mass: float, load: float, R: float, side: float, free: float, angle: float) -> fu.Scene:
-    """Return a scene with a counterweight at (-R, -side) and a load at the free length on a tangent at an angle."""
-    scene = fu.Scene(gravity=(0, -GRAVITY, 0))
-    weight(scene, "counterweight", mass, -R, -side)
-    weight(scene, "load", load, R * cos(angle) + free * sin(angle), R * sin(angle) - free * cos(angle))
-    return scene
-
-
-def over_one(scene: fu.Scene, R: float, ends: tuple[str, str], *, elements: int = 2, tension: float,
-             given: dict[str, object], **sheave: object) -> None:
-    """Add a rope from one body to another over a sheave at the origin."""
-    scene.rope("rope", route=[fu.Anchor(ends[0]), fu.Sheave("top", at=(0, 0, 0), radius=R, side="right", **sheave),
-                              fu.Anchor(ends[1])], elements=elements, tension=tension, **given)
+from .loop_runs import elevator, elevator_with_wraps, ropeway, wave
+from .scenes import GRAVITY, Found, over_one, rope_of, swing, weight
+from .sliding_runs import held_cylinder, moving_capstan
 
 
 def two_weights() -> Found:
@@ -57,7 +29,8 @@ def two_weights() -> Found:
         way = -run["load.position"][:, 1]
         found[name] = way[4] - 2 * way[2] + way[0]
         if friction:
-            found |= {"light side": run["top.tension_on"][-1], "heavy side": run["top.tension_off"][-1]}
+            light, heavy = run["top.tension_on"][-1], run["top.tension_off"][-1]
+            found |= {"light side": light, "heavy side": heavy, "least friction": log(heavy / light) / pi}
     return found
 
 
@@ -81,7 +54,10 @@ def free_rope() -> Found:
         scene.run(2.0, output_step=0.5, tol=1e-5, integrator="radau", progress=False)
     except fu.RopeLeftError as error:
         run = error.run
-        return {"wrap lost at": run.time[-1], "way": -side - run["load.position"][-1, 1]}
+        way = -side - run["load.position"][:, 1]
+        light = run["top.tension_on"][-1] < run["top.tension_off"][-1]
+        return {"wrap lost at": run.time[-1], "way": way[-1], "side": -1.0 if light else 1.0,
+                "rate": float(np.arccosh(way[1] / way[0]) / run.time[1])}
     raise AssertionError("the rope stays on its sheave")
 
 
@@ -136,6 +112,21 @@ def heavy_atwood() -> Found:
     return _swings(scene.run(1.5, output_step=0.5, tol=1e-5, integrator="radau", progress=False), ".5 1 1.5")
 
 
+def bent_atwood() -> Found:
+    """The same with bending, 2 elements a span, let go from the state of rest with both ends held."""
+    R, angle, free = 0.3, 0.6, 2.0
+    given = {"length": (2 * free + R * (pi - angle)) / 1.001, **rope_of(5e4 * 1.001, 0.3 * 1.001, 0.09, 1e-4)}
+    free_scene, held = (swing(5.5, 5.0, R, free, free, angle) for _ in range(2))
+    for scene in (free_scene, held):
+        over_one(scene, R, ("counterweight", "load"), given=given)
+    for name, body in held.bodies.items():
+        held.joint("weld", body.position, name)
+    rest = held.equilibrium()
+    start = {name: rest[name] for name in ("rope.coordinates", "counterweight.position", "load.position")}
+    return _swings(free_scene.run(1.0, output_step=0.25, tol=1e-5, integrator="radau", progress=False, initial=start),
+                   ".25 .5 .75 1")
+
+
 def run_on() -> Found:
     """A rope with bending, both ends pulled down by 100 N: the wrap ends where contact does."""
     R, T, EI = 0.3, 100.0, 0.09
@@ -165,8 +156,8 @@ def capstan() -> Found:
     return found
 
 
-def belt() -> Found:
-    """A belt that drives a loaded pulley, with 8 zones a wrap."""
+def belt(EI: float = 0.0) -> Found:
+    """A belt that drives a loaded pulley, with 8 zones a wrap; EI: its bending, which the reference leaves out."""
     time = np.linspace(0, 2.5, 501)
     x = np.clip((time - 1) / 0.5, 0, 1)
     friction = fu.Friction(coefficient=0.5, velocity=1e-4)
@@ -177,14 +168,20 @@ def belt() -> Found:
                                                                   interpolation="linear"), **pulley),
         fu.Sheave("driven", at=(0.1 * pi, 0, 0), damping=2.0,
                   torque=fu.TableSignal(time=time, value=-25 * x * x * (3 - 2 * x)), **pulley)],
-        **rope_of(7600.0, 0.872421, 0, 1e-3))
+        **rope_of(7600.0, 0.872421, EI, 1e-3))
     run = scene.run(2.45, output_step=0.05, tol=1e-3, integrator="radau", progress=False)
     turn = run["driven.angle"]
-    return {"tight": run["driver.tension_on"][-1], "slack": run["driver.tension_off"][-1],
-            "driven": (turn[-1] - turn[-5]) / (run.time[-1] - run.time[-5]), "torque": run["driven.torque"][-1]}
+    tight, slack = run["driver.tension_on"][-1], run["driver.tension_off"][-1]
+    inertia = 0.872421 * run["driver.material_speed"][-1] ** 2
+    presses = [T - inertia * (1 + T / 7600.0) for T in (tight, slack)]
+    return {"tight": tight, "slack": slack, "torque": run["driven.torque"][-1],
+            "driven": (turn[-1] - turn[-5]) / (run.time[-1] - run.time[-5]),
+            "slip arc": degrees(log(presses[0] / presses[1]) / 0.5)}  # over which friction is full
 
 
 RUNS: dict[str, Callable[[], Found]] = {
     "two weights": two_weights, "heavy rope": heavy_rope, "free rope": free_rope, "tackle": tackle,
-    "swinging Atwood": swinging_atwood, "heavy swinging Atwood": heavy_atwood,
-    "run-on with bending": run_on, "capstan": capstan, "belt": belt}
+    "swinging Atwood": swinging_atwood, "heavy swinging Atwood": heavy_atwood, "bending in motion": bent_atwood,
+    "run-on with bending": run_on, "capstan": capstan, "moving capstan": moving_capstan,
+    "held cylinder": held_cylinder, "belt": belt, "elevator": elevator, "elevator with wraps": elevator_with_wraps,
+    "ropeway": ropeway, "wave": wave}

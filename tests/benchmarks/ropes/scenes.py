@@ -1,0 +1,39 @@
+"""Scenes of the runs of ropes against reference solutions."""
+
+from __future__ import annotations
+
+from math import cos, pi, sin
+
+import funicular as fu
+
+GRAVITY = 9.81
+Found = dict[str, float]
+
+
+def rope_of(EA: float, rho: float, EI: float, damping_time: float = 0.0) -> dict[str, object]:
+    """Return section and material of a rope with these stiffnesses in N and N m² and this mass in kg/m."""
+    radius = 2 * (EI / EA) ** 0.5 if EI else 1e-6
+    area = pi * radius**2
+    return {"section": fu.Circle(radius=radius),
+            "material": fu.Material(youngs_modulus=EA / area, density=rho / area, poisson_ratio=0.3,
+                                    damping_time=damping_time)}
+
+
+def weight(scene: fu.Scene, name: str, mass: float, x: float, y: float) -> None:
+    """Add a weight, a point of a mass."""
+    scene.rigid_body(name, mass=mass, inertia=(mass,) * 3, position=(x, y, 0))
+
+
+def swing(mass: float, load: float, R: float, side: float, free: float, angle: float) -> fu.Scene:
+    """Return a scene with a counterweight at (-R, -side) and a load at the free length on a tangent at an angle."""
+    scene = fu.Scene(gravity=(0, -GRAVITY, 0))
+    weight(scene, "counterweight", mass, -R, -side)
+    weight(scene, "load", load, R * cos(angle) + free * sin(angle), R * sin(angle) - free * cos(angle))
+    return scene
+
+
+def over_one(scene: fu.Scene, R: float, ends: tuple[str, str], *, elements: int = 2,
+             tension: float | None = None, given: dict[str, object], **sheave: object) -> None:
+    """Add a rope from one body to another over a sheave at the origin; given: `rope_of`, and a length."""
+    scene.rope("rope", route=[fu.Anchor(ends[0]), fu.Sheave("top", at=(0, 0, 0), radius=R, side="right", **sheave),
+                              fu.Anchor(ends[1])], elements=elements, tension=tension, **given)
