@@ -1,9 +1,9 @@
 """
-Ropes over sheaves: hoists, capstans, belts
-===========================================
+Ropes over sheaves and drums: hoists, capstans, belts, cranes
+=============================================================
 
-A rope runs over sheaves: its elements stay between the tangent points, and the material moves through them. The guide
-hoists a weight over a sheave that friction turns, lets a load swing, and drives a belt, with closed forms beside.
+A rope runs over sheaves: its elements stay between the tangent points, and the material moves through them. Results
+stand beside closed forms.
 """
 
 # %%
@@ -95,4 +95,23 @@ for name in ("tension_on", "tension_off"):
     ax.plot(run.time, run[f"driver.{name}"], label=name)
 ax.set(xlabel="time (s)", ylabel="tension at the driver (N)")
 ax.legend()
+# %%
+# A crane
+# -------
+#
+# A `Drum` at an end of the route winds the rope and pays it out. The installed scene ``tower_crane`` has a winch on the
+# ground, and sheaves on a trolley and on the load.
+
+run = fu.load_scene("tower_crane").run(progress=False)
+wound = run["winch.length_in_store"]
+print(f"wound {wound[-1] - wound[0]:.2f} m, load lifted by {np.ptp(run['load.position'][:, 1]):.2f} m; "
+      f"winch at most {run['winch.power'].max() / 1e3:.1f} kW")
+assert abs((wound[-1] - wound[0]) / np.ptp(run["load.position"][:, 1]) - 2) < 0.02
+
+fig, (path, power) = plt.subplots(1, 2, figsize=(8, 3.4))
+path.plot(run["load.position"][:, 0], run["load.position"][:, 1])
+path.set(xlabel="x of the load (m)", ylabel="y (m)", aspect="equal")
+power.plot(run.time, run["winch.power"] / 1e3)
+power.set(xlabel="time (s)", ylabel="power of the winch (kW)")
+fig.tight_layout()
 plt.show()

@@ -259,14 +259,15 @@ class SceneData:
         return self.with_parts((each.remade(values[id(each)]) if id(each) in values else each
                                 for each in self.parts()), gravity)
 
-    def remeshed(self, elements: Callable[[Cable], int], of_spans: Callable[[Rope], tuple[int, ...]]) -> Self:
+    def remeshed(self, elements: Callable[[Cable], int],
+                 of_spans: Callable[[Rope], tuple[int, ...]] | None = None) -> Self:
         """Return a checked scene with other numbers of elements of cables, see `Cable.mesh_entries`, and of spans of
-        ropes. Raises SceneError.
+        ropes, by default as they are. Raises SceneError.
         """
         def made(part: Part) -> Part:
             if isinstance(part, Cable):
                 return part.remade(part.mesh_entries(elements(part)))
-            return part.remade({"elements": of_spans(part)}) if isinstance(part, Rope) else part
+            return part.remade({"elements": of_spans(part)}) if of_spans and isinstance(part, Rope) else part
 
         return self.with_parts(map(made, self.parts()))
 

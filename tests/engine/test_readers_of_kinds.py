@@ -35,7 +35,8 @@ PLACES = {
     "derivatives of a state of rest by what a part is given; others are differenced": [
         "solve/adjustment/length_changes.py", "solve/adjustment/load_changes.py",
         "solve/adjustment/parameter_search.py"],
-    "ropes: their points on sheaves, and the constraints there": ["model/rope_states.py",
+    "ropes: their points on sheaves, and the constraints there": [
+        "model/rope_rates.py", "model/rope_states.py", "solve/modes/stuck_wraps.py",
         "solve/motion/integrator_choice.py"],
     "points that must not coincide, as a force or a distance has no direction there": [
         "solve/notes/coincident_points.py"],
@@ -65,7 +66,7 @@ SCENE_PLACES = {
         "solve/statics/lying.py", "solve/statics/string_start.py"],
     "pictures of each kind": ["results/animation/marks.py"],
     "ropes: their pictures, their meshes": [
-        "results/animation/clips.py", "results/animation/ropes.py", "results/error_estimate.py", "results/pictures.py"],
+        "choice/motion.py", "results/animation/clips.py", "results/animation/ropes.py", "results/error_estimate.py", "results/pictures.py"],
     "parameters that are adjusted": [
         "solve/adjustment/adjustment.py", "solve/adjustment/length_changes.py",
         "solve/adjustment/parameter_changes.py", "solve/adjustment/parameter_search.py",

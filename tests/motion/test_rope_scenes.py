@@ -17,3 +17,17 @@ def test_block_and_tackle():
     found = [2 * (run["block.position"][-1, 1] + 10) / run.time[-1] ** 2,
              *(run[name][-1] for name in ("upper.tension_off", "upper.tension_on", "lower.tension_on"))]
     assert [float(number) for number in said.groups()] == pytest.approx(found, rel=1e-4)
+
+
+def test_tower_crane():
+    """At the tolerance of the scene the load is within 5e-5 m of a run at a hundredth of it."""
+    text = (Path(fu.__file__).parent / "scenes" / "tower_crane.toml").read_text(encoding="utf-8").replace("\n#", "")
+    run = fu.load_scene("tower_crane").run(progress=False)
+    swings = run["load.position"][370:, 0] - run["trolley.position"][370:, 0]
+    wound, tension = run["winch.length_in_store"], run["winch.tension"]
+    said = re.search(r"takes ([\d.]+) kW at most and winds ([\d.]+) m .*? is ([\d.]+) to ([\d.]+) kN.*?by ([\d.]+) m", text)
+    assert [float(number) for number in said.groups()] == pytest.approx([
+        run["winch.power"].max() / 1e3, wound[-1] - wound[0], tension.min() / 1e3, tension.max() / 1e3,
+        abs(swings).max()], rel=3e-3)
+    assert abs(run.energy_balance().relative).max() < 1e-5
+    assert not run.report["messages"]

@@ -28,8 +28,8 @@ def interval(scene: fu.Scene) -> float:
 
 
 def first(scene: fu.Scene) -> str:
-    """Return a quantity of every scene: the height of its first cable."""
-    return f"{next(iter(scene.cables))}.position.y"
+    """Return a quantity of every scene: the height of its first cable or rope."""
+    return f"{next(iter([*scene.cables, *scene.ropes]))}.position.y"
 
 
 VALUES = {

@@ -50,7 +50,7 @@ def _of_winding() -> list[Relation]:
         J = k("winding", s)["J"]
         return np.array([J[0], J[1], J[3]]) * s["tension"]
 
-    return [Relation("winding", "J", "d(way on the rim - drawn length) by x, the rotation and the length", 1, condition,
+    return [Relation("winding", "J", "d(way on the rim - drawn length) by x, turn and length", 1, condition,
                      4),
             Relation("winding", "J", "rates: those of the way on the rim less the drawn length", 0,
                      root(reference.winding), of=rate),
@@ -86,7 +86,7 @@ def _of_energies() -> list[Relation]:
             Relation("creep", "W", "(EA strain² + EI curvature²)/2 of rope on the rim", 0, root(elastic_energy)),
             Relation("creep", "loss", "∫ W' - W'(span) from the span's stretch to the wound one", 0,
                      root(reference.loss)),
-            Relation("creep", "loss", "d(V - T + W u) by u less the force on it, as the rope is paid out", 1, paid_out)]
+            Relation("creep", "loss", "d(V - T + W u) by u less its force, as rope is paid out", 1, paid_out)]
 
 
 def _total(k: Numbers, s: State, changes: State) -> Any:

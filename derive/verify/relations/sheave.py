@@ -145,7 +145,7 @@ def _of_damping() -> list[Relation]:
     def work(k, s):
         return force(k, s).dot(np.concatenate([s[name] for name, _ in rates]))
 
-    return [Relation("dissipation", "P", "tau ∫ EA strain'² + EI curvature'² dS by quadrature, at material points", 0,
+    return [Relation("dissipation", "P", "tau ∫ EA strain'² + EI curvature'² dS by quadrature", 0,
                      root(reference.dissipation)),
             Relation("damping_force", "f", "d(P/2) by rates of the angles and ends", 1, half(along(power, rates)), 4),
             Relation("damping_force", "f", "power P", 0, lambda k, s, t, j: power(k, s), of=work),

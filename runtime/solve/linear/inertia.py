@@ -65,6 +65,8 @@ def inertia(K: Any, C: Any = None, units: np.ndarray | None = None, zero: float 
     K = csc_array(K, dtype=float)
     n = K.shape[0]
     _check(K)
+    if not n:
+        return Inertia(0, 0, 0)
     if _is_definite(K, np.ones(n) if units is None else np.asarray(units, dtype=float), zero):
         return Inertia(0, 0, n - (0 if C is None else _independent(csr_array(C, dtype=float)).shape[0]))
     K, C, _ = scaled((K + K.T) / 2, C, units)

@@ -12,6 +12,7 @@ from math import degrees, log, pi
 import funicular as fu
 import numpy as np
 
+from .drum_runs import drum, hauled
 from .loop_runs import elevator, elevator_with_wraps, ropeway, wave
 from .scenes import GRAVITY, Found, over_one, rope_of, swing, weight
 from .sliding_runs import held_cylinder, moving_capstan
@@ -184,4 +185,4 @@ RUNS: dict[str, Callable[[], Found]] = {
     "swinging Atwood": swinging_atwood, "heavy swinging Atwood": heavy_atwood, "bending in motion": bent_atwood,
     "run-on with bending": run_on, "capstan": capstan, "moving capstan": moving_capstan,
     "held cylinder": held_cylinder, "belt": belt, "elevator": elevator, "elevator with wraps": elevator_with_wraps,
-    "ropeway": ropeway, "wave": wave}
+    "ropeway": ropeway, "wave": wave, "drum": drum, "pendulum hauled in": hauled}
