@@ -95,8 +95,10 @@ SOURCES = (
     "planar_resistance.c",
     "planar_sheave.c",
     "span_cable8p.c",
+    "span_cable12.c",
     "surface.c",
     "planar_surface.c",
+    "tangent_point.c",
     "registry.c",
 )
 """C files of the kernels; each can be compiled without the others but for registry.c, which has tables of all."""

@@ -1357,61 +1357,83 @@ typedef void fu_span_point_kernel(fu_real l, const fu_real *e, const fu_real *v,
  * [1]; velocity [m/s] */
 /* e 4x2, v 4x2, s_rate 2, r 2, r_S 2, velocity 2 */
 fu_span_point_kernel span_cable8p_point;
+/* e 4x3, v 4x3, s_rate 2, r 3, r_S 3, velocity 3 */
+fu_span_point_kernel span_cable12_point;
 
 typedef void fu_span_kinetic_energy_kernel(fu_real rho, fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real *T);
 /* kinetic energy: rho [kg/m]; l [m]; e [m, 1]; v [m/s, 1/s]; s_rate [m/s] -> T [J] */
 /* e 4x2, v 4x2, s_rate 2, T 1 */
 fu_span_kinetic_energy_kernel span_cable8p_kinetic_energy;
+/* e 4x3, v 4x3, s_rate 2, T 1 */
+fu_span_kinetic_energy_kernel span_cable12_kinetic_energy;
 
 typedef void fu_span_inertia_kernel(fu_real rho, fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, const fu_real *a, const fu_real *s_acc, fu_real *f, fu_real *f_s);
 /* inertial forces d/dt dT/dv - dT/dq: rho [kg/m]; l [m]; e [m, 1]; v [m/s, 1/s]; s_rate [m/s]; a [m/s^2, 1/s^2];
  * s_acc [m/s^2] -> f [N, N m]; f_s [N] */
 /* e 4x2, v 4x2, s_rate 2, a 4x2, s_acc 2, f 4x2, f_s 2 */
 fu_span_inertia_kernel span_cable8p_inertia;
+/* e 4x3, v 4x3, s_rate 2, a 4x3, s_acc 2, f 4x3, f_s 2 */
+fu_span_inertia_kernel span_cable12_inertia;
 
 typedef void fu_span_inertia_tangent_kernel(fu_real rho, fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, const fu_real *a, const fu_real *s_acc, fu_real *M, fu_real *D, fu_real *K);
 /* derivatives of the inertial forces: rho [kg/m]; l [m]; e [m, 1]; v [m/s, 1/s]; s_rate [m/s]; a [m/s^2, 1/s^2];
  * s_acc [m/s^2] -> M [SI]; D [SI]; K [SI] */
 /* e 4x2, v 4x2, s_rate 2, a 4x2, s_acc 2, M 10x10, D 10x10, K 10x9 */
 fu_span_inertia_tangent_kernel span_cable8p_inertia_tangent;
+/* e 4x3, v 4x3, s_rate 2, a 4x3, s_acc 2, M 14x14, D 14x14, K 14x13 */
+fu_span_inertia_tangent_kernel span_cable12_inertia_tangent;
 
 typedef void fu_span_weight_kernel(fu_real rho, fu_real l, const fu_real *e, const fu_real *g, fu_real *V, fu_real *f, fu_real *f_l, fu_real *K_l, fu_real *K_ll);
 /* energy of gravity, and its derivatives: rho [kg/m]; l [m]; e [m, 1]; g [m/s^2] -> V [J]; f [N, N m]; f_l [N]; K_l
  * [N/m, N]; K_ll [N/m] */
 /* e 4x2, g 2, V 1, f 4x2, f_l 1, K_l 4x2, K_ll 1 */
 fu_span_weight_kernel span_cable8p_weight;
+/* e 4x3, g 3, V 1, f 4x3, f_l 1, K_l 4x3, K_ll 1 */
+fu_span_weight_kernel span_cable12_weight;
 
 typedef void fu_span_energy_kernel(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 /* elastic energy: l [m]; e [m, 1]; A [N, N m^2, N] -> U [J] */
 /* e 4x2, A 3, U 1 */
 fu_span_energy_kernel span_cable8p_energy;
+/* e 4x3, A 3, U 1 */
+fu_span_energy_kernel span_cable12_energy;
 
 typedef void fu_span_elastic_force_kernel(fu_real l, const fu_real *e, const fu_real *A, fu_real *f, fu_real *f_l);
 /* derivatives of the elastic energy: l [m]; e [m, 1]; A [N, N m^2, N] -> f [N, N m]; f_l [N] */
 /* e 4x2, A 3, f 4x2, f_l 1 */
 fu_span_elastic_force_kernel span_cable8p_elastic_force;
+/* e 4x3, A 3, f 4x3, f_l 1 */
+fu_span_elastic_force_kernel span_cable12_elastic_force;
 
 typedef void fu_span_elastic_tangent_kernel(fu_real l, const fu_real *e, const fu_real *A, fu_real *K, fu_real *K_l, fu_real *K_ll);
 /* second derivatives of the elastic energy: l [m]; e [m, 1]; A [N, N m^2, N] -> K [N/m, N, N m]; K_l [N/m, N]; K_ll
  * [N/m] */
 /* e 4x2, A 3, K 8x8, K_l 4x2, K_ll 1 */
 fu_span_elastic_tangent_kernel span_cable8p_elastic_tangent;
+/* e 4x3, A 3, K 12x12, K_l 4x3, K_ll 1 */
+fu_span_elastic_tangent_kernel span_cable12_elastic_tangent;
 
 typedef void fu_span_dissipation_kernel(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, const fu_real *A, fu_real tau, fu_real *P);
 /* power dissipated by damping: l [m]; e [m, 1]; v [m/s, 1/s]; s_rate [m/s]; A [N, N m^2, N]; tau [s] -> P [W] */
 /* e 4x2, v 4x2, s_rate 2, A 3, P 1 */
 fu_span_dissipation_kernel span_cable8p_dissipation;
+/* e 4x3, v 4x3, s_rate 2, A 3, P 1 */
+fu_span_dissipation_kernel span_cable12_dissipation;
 
 typedef void fu_span_damping_force_kernel(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, const fu_real *A, fu_real tau, fu_real *f, fu_real *f_s);
 /* forces of damping: l [m]; e [m, 1]; v [m/s, 1/s]; s_rate [m/s]; A [N, N m^2, N]; tau [s] -> f [N, N m]; f_s [N] */
 /* e 4x2, v 4x2, s_rate 2, A 3, f 4x2, f_s 2 */
 fu_span_damping_force_kernel span_cable8p_damping_force;
+/* e 4x3, v 4x3, s_rate 2, A 3, f 4x3, f_s 2 */
+fu_span_damping_force_kernel span_cable12_damping_force;
 
 typedef void fu_span_damping_tangent_kernel(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, const fu_real *A, fu_real tau, fu_real *D, fu_real *K);
 /* derivatives of the forces of damping: l [m]; e [m, 1]; v [m/s, 1/s]; s_rate [m/s]; A [N, N m^2, N]; tau [s] -> D
  * [SI]; K [SI] */
 /* e 4x2, v 4x2, s_rate 2, A 3, D 10x10, K 10x9 */
 fu_span_damping_tangent_kernel span_cable8p_damping_tangent;
+/* e 4x3, v 4x3, s_rate 2, A 3, D 14x14, K 14x13 */
+fu_span_damping_tangent_kernel span_cable12_damping_tangent;
 
 typedef void fu_surface_flat_kernel(const fu_real *y, const fu_real *normal, fu_real *g, fu_real *g_y);
 /* distance from a plane, and its gradient: y [m]; normal [1] -> g [m]; g_y [1] */
@@ -1501,6 +1523,30 @@ typedef void fu_surface_slip_kernel(const fu_real *n, const fu_real *H, const fu
 fu_surface_slip_kernel surface_slip;
 /* n 2, H 2x2, r 2, v 2, a 2, r_o 2, v_o 2, a_o 2, omega_o 1, alpha_o 1, omega 1, alpha 1, w 2, w_t 2 */
 fu_surface_slip_kernel planar_surface_slip;
+
+typedef void fu_tangent_point_conditions_kernel(const fu_real *x, const fu_real *chord, fu_real b, const fu_real *axis, const fu_real *weight, fu_real EA, fu_real limit, fu_real R, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+/* conditions of a tangent point, and their derivatives: x [m]; chord [m]; b [m]; axis [1]; weight [N/m]; EA [N];
+ * limit [N/m]; R [m]; f [N] -> phi [m]; J [1]; K [N/m] */
+/* x 3, chord 3, axis 3, weight 3, f 3, phi 3, J 3x7, K 7x7 */
+fu_tangent_point_conditions_kernel tangent_point_conditions;
+
+typedef void fu_tangent_point_motion_kernel(const fu_real *x, const fu_real *chord, fu_real b, const fu_real *axis, const fu_real *weight, fu_real EA, fu_real limit, const fu_real *x_rate, const fu_real *chord_rate, fu_real b_rate, fu_real *Q_d);
+/* second rates of the conditions at zero accelerations: x [m]; chord [m]; b [m]; axis [1]; weight [N/m]; EA [N];
+ * limit [N/m]; x_rate [m/s]; chord_rate [m/s]; b_rate [m/s] -> Q_d [m/s^2] */
+/* x 3, chord 3, axis 3, weight 3, x_rate 3, chord_rate 3, Q_d 3 */
+fu_tangent_point_motion_kernel tangent_point_motion;
+
+typedef void fu_tangent_point_chord_kernel(const fu_real *e, fu_real l, fu_real s, const fu_real *by_L, fu_real *N, fu_real *N_L, fu_real *r, fu_real *r_L, fu_real *r_LL);
+/* point of an element of a span, and its derivatives by the length of the span: e [m, 1]; l [m]; s [m]; by_L [1] ->
+ * N [1, m]; N_L [1/m, 1]; r [m]; r_L [1]; r_LL [1/m] */
+/* e 4x3, by_L 2, N 4, N_L 4, r 3, r_L 3, r_LL 3 */
+fu_tangent_point_chord_kernel tangent_point_chord;
+
+typedef void fu_tangent_point_across_kernel(fu_real rho, fu_real l, fu_real w, fu_real g, fu_real w_rate, fu_real w_acc, const fu_real *s_rate, fu_real *T, fu_real *V, fu_real *f, fu_real *M, fu_real *D, fu_real *K);
+/* inertia and weight of a wrap along the axis of its sheave: rho [kg/m]; l [m]; w [m]; g [m/s^2]; w_rate [m/s];
+ * w_acc [m/s^2]; s_rate [m/s] -> T [J]; V [J]; f [N]; M [kg]; D [N s/m]; K [N/m] */
+/* s_rate 2, T 1, V 1, f 3, M 3x1, D 3x3, K 3x2 */
+fu_tangent_point_across_kernel tangent_point_across;
 
 /* constants of the law from the stiffness of the section: l [m]; S [N, N m^2, N m^2, N m^4, N m^4, N m^4] -> A [N m] */
 /* S 9x6, A 61 */
@@ -1868,6 +1914,16 @@ typedef struct {
     fu_surface_slip_kernel *slip;
 } fu_surface_kernels;
 
+/* What the engine needs of a tangent_point. */
+typedef struct {
+    const char *name;
+    int dim;
+    fu_tangent_point_conditions_kernel *conditions;
+    fu_tangent_point_motion_kernel *motion;
+    fu_tangent_point_chord_kernel *chord;
+    fu_tangent_point_across_kernel *across;
+} fu_tangent_point_kernels;
+
 /* Every table, one entry a family. */
 typedef struct {
     int n_elements;
@@ -1898,6 +1954,8 @@ typedef struct {
     const fu_span_kernels *spans;
     int n_surfaces;
     const fu_surface_kernels *surfaces;
+    int n_tangent_points;
+    const fu_tangent_point_kernels *tangent_points;
 } fu_tables;
 extern const fu_tables fu_all;
 
@@ -1932,6 +1990,8 @@ static inline const void *fu_find(const fu_tables *tables, const char *role, con
         if (!strcmp(tables->spans[i].name, name)) return &tables->spans[i];
     for (int i = 0; i < tables->n_surfaces && !strcmp(role, "surface"); ++i)
         if (!strcmp(tables->surfaces[i].name, name)) return &tables->surfaces[i];
+    for (int i = 0; i < tables->n_tangent_points && !strcmp(role, "tangent_point"); ++i)
+        if (!strcmp(tables->tangent_points[i].name, name)) return &tables->tangent_points[i];
     return 0;
 }
 

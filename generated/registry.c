@@ -280,6 +280,9 @@ static const fu_span_kernels spans[] = {
     {"span_cable8p", 2, 8, span_cable8p_point, span_cable8p_kinetic_energy, span_cable8p_inertia,
      span_cable8p_inertia_tangent, span_cable8p_weight, span_cable8p_energy, span_cable8p_elastic_force,
      span_cable8p_elastic_tangent, span_cable8p_dissipation, span_cable8p_damping_force, span_cable8p_damping_tangent},
+    {"span_cable12", 3, 12, span_cable12_point, span_cable12_kinetic_energy, span_cable12_inertia,
+     span_cable12_inertia_tangent, span_cable12_weight, span_cable12_energy, span_cable12_elastic_force,
+     span_cable12_elastic_tangent, span_cable12_dissipation, span_cable12_damping_force, span_cable12_damping_tangent},
 };
 
 static const fu_surface_kernels surfaces[] = {
@@ -288,6 +291,10 @@ static const fu_surface_kernels surfaces[] = {
     {"planar_surface", 2, planar_surface_flat, planar_surface_rounded, planar_surface_terrain, planar_surface_push,
      planar_surface_push_hertz, planar_surface_frictionless, planar_surface_sticking, planar_surface_sliding,
      planar_surface_reaction, planar_surface_motion, planar_surface_slip},
+};
+
+static const fu_tangent_point_kernels tangent_points[] = {
+    {"tangent_point", 3, tangent_point_conditions, tangent_point_motion, tangent_point_chord, tangent_point_across},
 };
 
 /* Arguments from arrays of pointers, to inputs `a` and outputs `out`: s a number, v an array, then how many outputs. */
@@ -386,6 +393,10 @@ static const fu_surface_kernels surfaces[] = {
 #define FU_ARGUMENTS_vvvvvvvvsvvvsvvvvv_3 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], *a[8], a[9], a[10], a[11], *a[12], a[13], a[14], a[15], a[16], a[17], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vvvvvvvvvv_2 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], out[0], out[1]
 #define FU_ARGUMENTS_vvvvvvvvvvsvv_2 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], *a[10], a[11], a[12], out[0], out[1]
+#define FU_ARGUMENTS_vvsvvsssv_3 a[0], a[1], *a[2], a[3], a[4], *a[5], *a[6], *a[7], a[8], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vvsvvssvvs_1 a[0], a[1], *a[2], a[3], a[4], *a[5], *a[6], a[7], a[8], *a[9], out[0]
+#define FU_ARGUMENTS_vssv_5 a[0], *a[1], *a[2], a[3], out[0], out[1], out[2], out[3], out[4]
+#define FU_ARGUMENTS_ssssssv_6 *a[0], *a[1], *a[2], *a[3], *a[4], *a[5], a[6], out[0], out[1], out[2], out[3], out[4], out[5]
 
 /* X(name, form of its arguments) for every kernel */
 #define FU_EVERY(X) \
@@ -935,6 +946,17 @@ static const fu_surface_kernels surfaces[] = {
     X(span_cable8p_dissipation, svvvvs_1) \
     X(span_cable8p_damping_force, svvvvs_2) \
     X(span_cable8p_damping_tangent, svvvvs_2) \
+    X(span_cable12_point, svvvs_3) \
+    X(span_cable12_kinetic_energy, ssvvv_1) \
+    X(span_cable12_inertia, ssvvvvv_2) \
+    X(span_cable12_inertia_tangent, ssvvvvv_3) \
+    X(span_cable12_weight, ssvv_5) \
+    X(span_cable12_energy, svv_1) \
+    X(span_cable12_elastic_force, svv_2) \
+    X(span_cable12_elastic_tangent, svv_3) \
+    X(span_cable12_dissipation, svvvvs_1) \
+    X(span_cable12_damping_force, svvvvs_2) \
+    X(span_cable12_damping_tangent, svvvvs_2) \
     X(surface_flat, vv_2) \
     X(surface_rounded, vvs_3) \
     X(surface_terrain, vv_3) \
@@ -957,6 +979,10 @@ static const fu_surface_kernels surfaces[] = {
     X(planar_surface_reaction, vvvvvvvvsvvvsvvvvv_3) \
     X(planar_surface_motion, vvvvvvvvvv_2) \
     X(planar_surface_slip, vvvvvvvvvvsvv_2) \
+    X(tangent_point_conditions, vvsvvsssv_3) \
+    X(tangent_point_motion, vvsvvssvvs_1) \
+    X(tangent_point_chord, vssv_5) \
+    X(tangent_point_across, ssssssv_6) \
 
 #define FU_CALL(name, form) \
     static void call_##name(const fu_real *const *a, fu_real *const *out) { name(FU_ARGUMENTS_##form); }
@@ -981,6 +1007,7 @@ const fu_tables fu_all = {
     6, point_laws,
     2, resistances,
     1, sheaves,
-    1, spans,
-    2, surfaces
+    2, spans,
+    2, surfaces,
+    1, tangent_points
 };

@@ -24,7 +24,7 @@ from ..laws.cable.blocks import named_block
 from ..spec import Element, x
 from .span_inertia import Flow, FlowingElement
 
-SPANS = {"cable8p": "engineering_exact_assumed"}
+SPANS = {"cable8p": "engineering_exact_assumed", "cable12": "engineering_exact_assumed"}
 """Elements that spans have, and their law."""
 
 

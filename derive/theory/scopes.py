@@ -438,6 +438,19 @@ def sheave_scope(name: str) -> Scope:
                                     Symbol(r"\mathrm{EI}", "A", entry(1))))
 
 
+def tangent_point_scope(name: str) -> Scope:
+    """Return the scope of the tangent point of a rope on a sheave in space."""
+    vectors = [Symbol(latex, argument, column) for latex, argument in (
+        (r"\mathbf{x}", "x"), (r"\dot{\mathbf{x}}", "x_rate"), (r"\mathbf{d}", "chord"),
+        (r"\dot{\mathbf{d}}", "chord_rate"), (r"\mathbf{w}", "weight"), (r"\mathbf{a}", "axis"),
+        (r"\boldsymbol{\lambda}", "f"))]
+    numbers = [Symbol(latex, argument, number) for latex, argument in (
+        ("R", "R"), ("l", "l"), (r"\rho", "rho"), ("w", "w"), (r"\dot{w}", "w_rate"), (r"\ddot{w}", "w_acc"),
+        ("g", "g"), ("b", "b"), (r"\dot{b}", "b_rate"), (r"\mathrm{EA}", "EA"), ("N_{0}", "limit"))]
+    ends = [Symbol(rf"\dot{{s}}_{{{k + 1}}}", "s_rate", entry(k)) for k in range(2)]
+    return Scope(families()[name], (*vectors, *numbers, *ends))
+
+
 def scope(role: str, name: str) -> Scope:
     """Return the scope of a family: the function of this module called as its role makes it."""
     found: Scope = globals()[f"{role}_scope"](name)

@@ -11,7 +11,8 @@ from ..parts.event import Event
 from ..parts.part import Part
 from ..parts.plane import called
 from ..parts.rope import Rope
-from ..parts.rope_route import MAX_LAYER
+from ..parts.rope_route import MAX_LAYER, DrawnRoute
+from ..parts.rope_route_space import fleet_angles
 from ..parts.scene_data import SceneData
 from ..parts.validation import show
 from .placement import placed_attachment, report
@@ -30,6 +31,9 @@ def placed_rope(scene: SceneData, rope: Rope) -> Rope:
     """Return the rope with complete attachments, checked to lie in the plane and to have a possible route."""
     for cable in scene.cables.values():
         _check_pair(rope.where, rope, cable)
+    if other := next((each for each in scene.ropes.values() if each.dim != rope.dim), None):
+        raise SceneError(rope.where, f'its element is "{rope.element}", but that of rope "{other.name}" is '
+                         f'"{other.element}"', "take the same element for all ropes")
     held = [item.held_at(_held(scene, rope, k, item.end)) for k, item in enumerate(rope.route)]
     rope = rope.model_copy(update={"route": tuple(held)})
     others = scene.copied()
@@ -64,12 +68,13 @@ def check_beside_ropes(scene: SceneData, cable: Cable) -> None:
 
 
 def _check_pair(where: str, rope: Rope, cable: Cable) -> None:
-    """Raise SceneError unless a cable lies in the plane of a rope."""
+    """Raise SceneError unless a cable is in the plane of a planar rope, or in space as the rope."""
     if cable.dim != rope.dim:
-        raise SceneError(where, f'rope "{rope.name}" is planar, but the elements of cable "{cable.name}" '
-                         f"({cable.element}) are spatial",
-                         "take planar elements for all cables: ropes in space are not possible yet")
-    if cable.plane is not None:
+        kinds = {2: "planar", 3: "spatial"}
+        raise SceneError(where, f'rope "{rope.name}" is {kinds[rope.dim]}, but the elements of cable "{cable.name}" '
+                         f"({cable.element}) are {kinds[cable.dim]}",
+                         'take planar elements for all of them, or spatial ones: element="cable12" for ropes')
+    if rope.dim == 2 and cable.plane is not None:
         raise SceneError(where, f'rope "{rope.name}" lies in {called(None)}, but cable "{cable.name}" in '
                          f"{called(cable.plane)}", f"draw the scene in {called(None)}")
 
@@ -111,4 +116,15 @@ def _notes(scene: SceneData, rope: Rope) -> list[str]:
         if arc.wrap > MAX_PLAUSIBLE_WRAP and not item.turns:
             notes.append(f"{sheave}: the rope runs around it by {show(arc.wrap, 'rad')} and crosses itself; give the "
                          "other side if that is not meant")
-    return notes
+    return notes + (_notes_in_space(rope, route) if rope.dim == 3 else [])
+
+
+def _notes_in_space(rope: Rope, route: DrawnRoute) -> list[str]:
+    """Return notes on the fleet angles of a rope as drawn."""
+    found = []
+    for item, angles in zip(rope.sheaves, fleet_angles(route), strict=True):
+        if (largest := max(angles)) > item.max_fleet_angle:
+            found.append(f"{rope.where}: {item.where}: the fleet angle {show(largest, 'rad')} exceeds max_fleet_angle, "
+                         f"{show(item.max_fleet_angle, 'rad')}: a rope may leave its groove; turn the axis, or move it "
+                         "away")
+    return found

@@ -18,6 +18,7 @@ from ..parts.scene_data import SceneData
 from ..parts.signal import Signal, signals_of
 from ..parts.validation import LENGTH_TOLERANCE, show
 from .joint_placement import check_drive, check_joint
+from .rope_carriers import check_carriers
 from .slide_placement import check_on_cable
 
 
@@ -33,6 +34,8 @@ def check_plane(scene: SceneData, part: Part | None = None) -> None:
     if not scene.ropes:
         spatial = ", ".join(f'"{name}"' for name, kind in built_in().items() if kind.dim == 3)
         remedy += f", or take spatial elements: {spatial}"
+    elif isinstance(planar, Rope):
+        remedy += ', or take element="cable12" for the rope'
     plane = f'leaves {called(own)} of the {planar.element} {planar.kind} "{planar.name}"'
     gravity = scene.gravity if own is None else aligned(own.into(np.array(scene.gravity)))
     if part is None and gravity[2]:
@@ -48,6 +51,7 @@ def check_scene(scene: SceneData) -> None:
     if not scene.cables and not scene.bodies and not scene.ropes:
         raise SceneError("scene", "is empty: there is nothing to simulate", "add a cable or a rigid body")
     check_plane(scene)
+    check_carriers(scene)
     for joint in scene.joints.values():
         check_joint(scene, joint)
     for body in scene.bodies.values():

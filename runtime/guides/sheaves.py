@@ -78,6 +78,30 @@ ax.set(xlabel="x (m)", ylabel="y (m)", aspect="equal")
 ax.legend()
 
 # %%
+# In space
+# --------
+#
+# With ``element="cable12"`` the rope leaves the plane, and each sheave has an ``axis``. The load below swings out of
+# the plane of the groove. A sheave is on the ground, or on a body that a prismatic joint guides.
+
+scene = fu.Scene()
+scene.rigid_body("weight", mass=5.5, inertia=(1, 1, 1), position=(-0.3, -3, 0), velocity=(0, 0.0131, 0))
+scene.rigid_body("load", mass=5, inertia=(1, 1, 1), position=(1.8, -3.2, 0.12), velocity=(0, 0, 0.4))
+top = fu.Sheave("top", at=(0, 0, 0), axis=(0, 0, 1), radius=0.3, side="right")
+scene.rope("rope", element="cable12", route=[fu.Anchor("weight"), top, fu.Anchor("load")], tension=45, elements=1,
+           **ROPE)
+run = scene.run(2.0, output_step=0.02, tol=1e-4, integrator="radau", progress=False)
+at = run["load.position"][-1]
+print(f"load after 2 s at ({at[0]:.3f}, {at[1]:.3f}, {at[2]:.3f}) m; on a massless rope at (-1.047, -2.777, -0.214) m")
+assert np.linalg.norm(at - [-1.047408, -2.777202, -0.214354]) < 1e-2
+
+fig, ax = plt.subplots(figsize=(5, 3))
+for name in ("fleet_angle_on", "fleet_angle_off"):
+    ax.plot(run.time, np.degrees(run[f"top.{name}"]), label=name)
+ax.set(xlabel="time (s)", ylabel="fleet angle (degrees)")
+ax.legend()
+
+# %%
 # A belt
 # ------
 #

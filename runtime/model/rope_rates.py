@@ -1,8 +1,8 @@
 """Initial rates of ropes whose rates are not given: a rope follows the bodies that hold its ends, sheaves and drums.
 
-Its spans stay straight between their tangent points, it stays evenly stretched, and its stress-free length is kept.
-With u and n along a span and to the left of it, of length l between centres c_1 and c_2 and radii R_1 and R_2 with the
-senses of travel as signs,
+Its spans stay straight between their tangent points, it stays evenly stretched, and its stress-free length is kept. In
+space its rates are differences of the route drawn a moment later and before. In the plane, with u and n along a span
+and to the left of it, of length l between centres c_1 and c_2 and radii R_1 and R_2 with the senses of travel as signs,
 
     l w = (c_2' - c_1').n,   l' = (c_2' - c_1').u + w (R_2 - R_1),
 
@@ -19,10 +19,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.rotations import rotate
+from ..errors import SceneError
 from .attachments import AttachmentModel
 from .model import Model
-from .ropes import AnchorModel, DrumCoordinates, DrumModel, RopeModel, SheaveModel, SpanCoordinates
+from .rope_states import moved
+from .ropes import AnchorModel, DrumCoordinates, DrumModel, RopeModel, SheaveModel, SpanCoordinates, rope_model
 from .states import attachment_points, body_state, spatial
+
+RATE_STEP = 1e-5
+"""Time by which a moving route in space is differenced, s."""
 
 
 def follow(model: Model, rope: RopeModel) -> None:
@@ -31,8 +36,31 @@ def follow(model: Model, rope: RopeModel) -> None:
     Sheaves and drums turn relative to the body that they are on only where this is prescribed. A closed rope does not
     run around: the mean rate of its arc-lengths is zero.
     """
-    q, v = model.q, model.v
     _set_turns(model, rope)
+    (_follow_in_plane if rope.part.dim == 2 else _follow_in_space)(model, rope)
+    model.v[rope.held] = 0.0
+
+
+def _follow_in_space(model: Model, rope: RopeModel) -> None:
+    """Set the rates of a rope in space but those of rotations, by central differences."""
+    steps = RATE_STEP * np.array([-1.0, 1.0])[:, None] * model.v
+    held = [attachment if attachment is not None else AttachmentModel(node=node)
+            for _, attachment, node in _items(model, rope)]
+    places = [attachment_points(model, each, moved(model, model.q, steps)) for each in held]
+    try:
+        before, after = (rope_model(rope.part, rope.part.drawn_anew(rope.route, centres), rope.first).q
+                         for centres in np.stack(places, axis=1))
+    except ValueError as error:
+        raise SceneError(rope.part.where, f"the rates with which it starts are not known: {error.args[0]}",
+                         f'give "{rope.part.name}.coordinate_rates" in the state to start from') from None
+    rates = (after - before) / (2 * RATE_STEP)
+    turning = np.isin(np.arange(len(rates)), [turn - rope.first for _, turn in rope.turns])
+    model.v[rope.coordinates] = np.where(turning, model.v[rope.coordinates], rates)
+
+
+def _follow_in_plane(model: Model, rope: RopeModel) -> None:
+    """Set the rates of a planar rope but those of rotations."""
+    q, v = model.q, model.v
     holders = list(_holders(model, rope))
     spans = [_SpanRates.of(q, span, holders[k], holders[(k + 1) % len(holders)]) for k, span in enumerate(rope.spans)]
     stretch = sum(span.length for span in spans) / sum(span.free for span in spans)
@@ -55,7 +83,6 @@ def follow(model: Model, rope: RopeModel) -> None:
         spans[k].set(q, v, span, rate)
     for sheave in rope.sheaves:
         v[sheave.s] = np.linspace(v[sheave.s[0]], v[sheave.s[-1]], len(sheave.s))
-    v[rope.held] = 0.0
 
 
 def _set_turns(model: Model, rope: RopeModel) -> None:
@@ -80,23 +107,34 @@ class _Holder:
     reach: float = 0.0
 
 
-def _holders(model: Model, rope: RopeModel) -> Iterator[_Holder]:
-    """Yield what holds the items of the route."""
+def _items(model: Model, rope: RopeModel
+           ) -> Iterator[tuple[SheaveModel | DrumModel | None, AttachmentModel | None, int]]:
+    """Yield of the items of the route the sheave or drum, none of an anchor; what holds it, none of an anchor at the
+    ground; and the node of an anchor, -1 of others.
+    """
     wheels: dict[str, SheaveModel | DrumModel] = {sheave.name: sheave for sheave in model.sheaves}
     wheels |= {drum.name: drum for drum in model.drums}
     anchors = {anchor.attachments[0].node: anchor.attachments[1] for anchor in model.of(AnchorModel)}
-    turns = {wheel.name: turn for wheel, turn in rope.turns}
     ends = {0: rope.spans[0].node(0).start, len(rope.part.route) - 1: rope.spans[-1].node(-1).start}
     for k, item in enumerate(rope.part.route):
         if (name := getattr(item, "name", None)) is None:
-            held = anchors.get(ends[k])
+            yield None, anchors.get(ends[k]), ends[k]
+        else:
+            yield wheels[name], wheels[name].attachments[0], -1
+
+
+def _holders(model: Model, rope: RopeModel) -> Iterator[_Holder]:
+    """Yield what holds the items of the route."""
+    turns = {wheel.name: turn for wheel, turn in rope.turns}
+    for wheel, held, _ in _items(model, rope):
+        if wheel is None or held is None:
             yield _Holder(np.zeros(model.dim) if held is None else _motion(model, held)[0])
             continue
-        wheel = wheels[name]
-        velocity, spin = _motion(model, wheel.attachments[0])
+        velocity, spin = _motion(model, held)
+        turn = turns[wheel.name]
         reach = float(np.max(wheel.tangent_radius))
-        yield _Holder(velocity, spin + (model.v[turns[name]] if turns[name] >= 0 else 0.0),
-                      wheel.sense * wheel.radius, wheel.sense * reach)
+        yield _Holder(velocity, spin + (model.v[turn] if turn >= 0 else 0.0), wheel.sense * wheel.radius,
+                      wheel.sense * reach)
 
 
 def _motion(model: Model, attachment: AttachmentModel) -> tuple[np.ndarray, float]:

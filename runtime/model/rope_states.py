@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..base.rotations import product, turned_by
 from ..parts.rope import Rope
 from ..parts.rope_route import DrawnArc, DrawnRoute
 from .model import Model
@@ -51,13 +52,17 @@ def rope_motion(model: Model, rope: RopeModel, q: np.ndarray, dofs: np.ndarray) 
 
 
 def moved(model: Model, q: np.ndarray, dofs: np.ndarray) -> np.ndarray:
-    """Return the configurations (n, n_q) of flexible parts and bodies of a planar model moved by small dofs."""
+    """Return the configurations (n, n_q) of flexible parts and bodies of a model moved by small dofs."""
     found = np.tile(q, (len(dofs), 1))
     n = min((body.dof for body in model.bodies), default=min(len(q), dofs.shape[1]))
     found[:, :n] += dofs[:, :n]
     for body in model.bodies:
         b, d, turn = body.configuration, body.dof, dofs[:, body.dof + model.dim]
         found[:, b : b + model.dim] += dofs[:, d : d + model.dim]
+        if model.dim == 3:
+            found[:, b + 3 : b + 7] = product(q[b + 3 : b + 7], turned_by(dofs[:, d + 3 : d + 6]))
+            found[:, b + 7 : b + 7 + body.modes] += dofs[:, d + 6 : d + 6 + body.modes]
+            continue
         found[:, b + 2] -= q[b + 3] * turn  # cosine and sine
         found[:, b + 3] += q[b + 2] * turn
         found[:, b + 4 : b + 4 + body.modes] += dofs[:, d + 3 : d + 3 + body.modes]
@@ -95,10 +100,10 @@ def as_drawn(rope: Rope, route: DrawnRoute) -> dict[str, np.ndarray]:
         if wrap is not None:
             arc, share = route.sheaves[wrap[0]], np.linspace(0, 1, wrap[1].stop - wrap[1].start)[1:-1]
             angle = arc.angle_on + share * (arc.angle_off - arc.angle_on)
-            places.append(arc.centre + arc.radius * np.stack([np.cos(angle), np.sin(angle)], axis=1))
+            places.append(arc.centre + arc.radius * np.stack([np.cos(angle), np.sin(angle)], axis=1) @ arc.groove.T)
             lengths.append(s + share * arc.length / route.stretch)
             s += arc.length / route.stretch
-    return {"position": np.pad(np.concatenate(places), ((0, 0), (0, 1))), "s": np.concatenate(lengths)}
+    return {"position": spatial(np.concatenate(places)), "s": np.concatenate(lengths)}
 
 
 def coordinates(rope: RopeModel, q: np.ndarray, v: np.ndarray) -> dict[str, np.ndarray]:
@@ -126,7 +131,7 @@ def _span_points(span: SpanCoordinates, q: np.ndarray) -> tuple[np.ndarray, np.n
 def _wrap_points(model: Model, sheave: SheaveModel, q: np.ndarray, n: int) -> np.ndarray:
     """Return the inner ones of n points (T, n - 2, dim) at equal angles along a wrap."""
     centre = attachment_points(model, sheave.attachments[0], q)[:, : model.dim]
-    on, off = (q[:, node : node + model.dim] - centre for node in sheave.nodes)
+    on, off = ((q[:, node : node + model.dim] - centre) @ sheave.plane for node in sheave.nodes)
     slopes = (q[:, node + model.dim : node + 2 * model.dim] for node in sheave.nodes)
     stretch = np.mean([np.linalg.norm(slope, axis=1) for slope in slopes], axis=0)
     length = stretch * (q[:, sheave.s[-1]] - q[:, sheave.s[0]] + sheave.closing)
@@ -134,7 +139,9 @@ def _wrap_points(model: Model, sheave: SheaveModel, q: np.ndarray, n: int) -> np
     wrap = part + 2 * np.pi * np.round((length / sheave.radius - part) / (2 * np.pi))
     angle = (np.arctan2(on[:, 1], on[:, 0])[:, None]
              + sheave.sense * wrap[:, None] * np.linspace(0.0, 1.0, n)[1:-1])
-    return centre[:, None] + sheave.radius * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    found: np.ndarray = centre[:, None] + sheave.radius * (
+        np.stack([np.cos(angle), np.sin(angle)], axis=-1) @ sheave.plane.T)
+    return found
 
 
 def end_forces(model: Model, rope: RopeModel, reaction: np.ndarray, of_anchors: dict[int, np.ndarray],

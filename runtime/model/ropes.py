@@ -9,7 +9,7 @@ import numpy as np
 
 from ..parts.rope import Rope
 from ..parts.rope_items import SIDES, Anchor, Drum, RouteItem, Sheave
-from ..parts.rope_route import MIN_SPAN_RATIO, MIN_WRAP, DrawnRoute
+from ..parts.rope_route import MIN_SPAN_RATIO, MIN_WRAP, DrawnArc, DrawnRoute
 from ..parts.scene_data import SceneData
 from ..parts.section_stiffness import section_stiffness
 from .attachments import AttachmentModel, ModelBuilder
@@ -18,6 +18,14 @@ from .signals import Signals
 
 LAW = "engineering_exact_assumed"
 """The law of the kernels of spans (derive/couplings/span.py)."""
+JOINTS = {2: "joint_planar_spherical", 3: "joint_spherical"}
+"""The kernel of an end on a body."""
+MAX_SAG = 0.1
+"""Limit of the sag of a chord, rad, up to which it is that of a parabola."""
+LEAST_REACH = 8
+"""Elements of a span in which a chord may end, at least."""
+NO_TENSION = 1e-12
+"""Strain below which a tension is none; over 1 m."""
 PER_NODE = 2
 """Vectors of a node: its place, and its slope by the stress-free arc-length."""
 
@@ -144,12 +152,13 @@ def rope_models(scene: SceneData, at: int) -> list[RopeModel]:
     """Return the ropes in the scene's order, with coordinates from `at` on."""
     made = []
     for rope in scene.ropes.values():
-        made.append(_rope(rope, rope.drawn(scene.bodies), at))
+        made.append(rope_model(rope, rope.drawn(scene.bodies), at))
         at = made[-1].coordinates.stop
     return made
 
 
-def _rope(rope: Rope, route: DrawnRoute, first: int) -> RopeModel:
+def rope_model(rope: Rope, route: DrawnRoute, first: int) -> RopeModel:
+    """Return a rope along a drawn route, with coordinates from `first` on."""
     dim, at = rope.dim, first
     s = rope.drums[0].length_in_store if 0 in rope.drums else 0.0
     spans: list[SpanCoordinates] = []
@@ -257,7 +266,12 @@ class SpanModel(CouplingModel):
 
 @dataclass(kw_only=True)
 class SheaveModel(CouplingModel):
-    """A sheave between two spans: fu_sheave of the engine."""
+    """A sheave between two spans: fu_sheave of the engine.
+
+    plane: (dim, 2), unit vectors of the plane of the groove; foot: in space the kernel of tangent points; weight:
+    half that of a length, N/m, by which chords sag; limit: tension over the length of a chord below which the sag has
+    its limit, N/m.
+    """
 
     kernel: str
     attachments: tuple[AttachmentModel]
@@ -278,6 +292,10 @@ class SheaveModel(CouplingModel):
     damping: float
     torque_signal: int
     torque: float
+    plane: np.ndarray
+    weight: np.ndarray
+    limit: float
+    span_reach: tuple[int, int]
     least_wrap: float = MIN_WRAP
 
     @property
@@ -304,7 +322,64 @@ class SheaveModel(CouplingModel):
     def adjacent(self) -> list[np.ndarray]:
         """Return its dofs, beside those of its centre."""
         turn = [] if self.turn < 0 else [self.turn]
-        return [np.r_[self.before.node(-1), self.after.node(0), self.s, turn].astype(int)]
+        found = [np.r_[self.before.node(-1), self.after.node(0), self.s, turn].astype(int)]
+        if self.foot:
+            (one, other), n = self.span_reach, self.before.n_elements
+            found += [np.r_[self.before.node(k), self.before.s] for k in range(n - one, n)]
+            found += [np.r_[self.after.node(k), self.after.s] for k in range(1, other + 1)]
+        return found
+
+    @property
+    def kernel_families(self) -> list[str]:
+        """Return the names of the kernel families that it uses."""
+        return [self.kernel, *([self.foot] if self.foot else [])]
+
+    # --- in space -------------------------------------------------------------------------------------------------
+
+    @property
+    def foot(self) -> str:
+        """Return the kernel of its tangent points, none in the plane."""
+        return "tangent_point" if self.before.dim == 3 else ""
+
+    @property
+    def groove(self) -> list[float]:
+        """Return the plane of the groove."""
+        return np.ravel(self.plane).tolist()
+
+    @property
+    def axis(self) -> list[float]:
+        """Return its axis in space."""
+        return np.cross(*self.plane.T).tolist() if self.foot else []
+
+    @property
+    def chord(self) -> tuple[float, float]:
+        """Return the stress-free length of the chords at both tangent points, m."""
+        return self.radius, self.radius
+
+    @property
+    def span_first(self) -> tuple[int, int]:
+        """Return the first dofs of both spans."""
+        return self.before.first, self.after.first
+
+    @property
+    def span_elements(self) -> tuple[int, int]:
+        """Return the number of elements of both spans."""
+        return self.before.n_elements, self.after.n_elements
+
+    @property
+    def span_s(self) -> list[int]:
+        """Return the dofs of the material coordinates of the ends of both spans."""
+        return [*self.before.s, *self.after.s]
+
+    @property
+    def share_before(self) -> np.ndarray:
+        """Return the shares of the nodes of the span before it."""
+        return self.before.share
+
+    @property
+    def share_after(self) -> np.ndarray:
+        """Return the shares of the nodes of the span after it."""
+        return self.after.share
 
 
 def span_models(builder: ModelBuilder) -> Iterator[SpanModel]:
@@ -328,19 +403,35 @@ def sheave_models(builder: ModelBuilder) -> Iterator[SheaveModel]:
         for k, (item, arc, beside) in enumerate(of_sheaves):
             before, after = (rope.spans[each] for each in beside)
             scale = [rope.rho * rope.route.spans[each].length / rope.part.elements_of_spans[each]
-                     for each in beside for _ in range(2)]
-            centre = builder.attachment(item.end)
+                     for each in beside for _ in range(rope.part.dim)]
+            centre, weight = builder.attachment(item.end), rope.rho * gravity / 2
             number, factor = (-1, 0.0) if item.torque is None else builder.signals.scale(item.torque)
             yield SheaveModel(type="sheave", name=item.name, kernel="planar_sheave", attachments=(centre,),
                               before=before, after=after, coordinates=rope.sheaves[k], radius=arc.radius,
                               tangent_radius=(arc.tangent_radius,) * 2,
-                              sense=float(arc.sense), rho=rope.rho, tau=rope.part.material.damping_time, g=gravity,
-                              A=rope.stiffness[:2], scale=scale,
+                              sense=float(arc.sense), rho=rope.rho, tau=rope.part.material.damping_time,
+                              g=_in_groove(arc.groove, gravity), A=rope.stiffness[:2], scale=scale,
+                              plane=arc.groove, weight=weight[: 3 * (rope.part.dim == 3)],
+                              limit=float(np.linalg.norm(weight)) / MAX_SAG + NO_TENSION * rope.stiffness[0],
+                              span_reach=(_reach(rope, beside[0], arc), _reach(rope, beside[1], arc)),
                               n_multipliers=len(scale), has_inertia=True, inertia=item.inertia,
                               friction=item.coefficient, slip_velocity=item.slip_velocity,
                               closing=rope.route.free_length * (rope.part.closed and k == 0), damping=item.damping,
                               torque_signal=number, torque=factor,
                               is_damped=rope.part.material.damping_time > 0 or item.coefficient > 0 or item.damping > 0)
+
+
+def _in_groove(plane: np.ndarray, vector: np.ndarray) -> np.ndarray:
+    """Return a vector in the plane of a groove, and along its axis; in the plane itself."""
+    return vector if len(plane) == 2 else np.array([*(vector @ plane), vector @ np.cross(*plane.T)])
+
+
+def _reach(rope: RopeModel, k: int, arc: DrawnArc) -> int:
+    """Return the number of elements of a span in which a chord may end: twice those of its length as drawn, and
+    `LEAST_REACH` of a span that becomes short.
+    """
+    n, span = rope.spans[k].n_elements, rope.route.spans[k]
+    return min(n, max(LEAST_REACH, int(np.ceil(2 * arc.radius * rope.route.stretch * n / span.length))))
 
 
 CELLS = 256
@@ -429,7 +520,7 @@ def anchor_models(builder: ModelBuilder) -> Iterator[AnchorModel]:
             if item.end.on is None:
                 continue
             body = builder.attachment(item.end)
-            yield AnchorModel(type="anchor", name=rope.part.name, kernel="joint_planar_spherical",
+            yield AnchorModel(type="anchor", name=rope.part.name, kernel=JOINTS[rope.part.dim],
                               attachments=(AttachmentModel(node=span.node(node).start), body),
                               scale=[body.mass] * rope.part.dim, n_multipliers=rope.part.dim)
 

@@ -18,13 +18,15 @@ from .quantity import Quantity, vector_of_time
 from .rigid_body import RigidBody
 from .rope_items import ROUTE_ITEMS, SIDES, Anchor, Drum, RouteItem, Sheave
 from .rope_route import MAX_LAYER, DrawnRoute, RoutePoint, default_senses, drawn_route
+from .rope_route_space import groove_of, senses_in_space, span_in_space
 from .schemas import POINT, checked
 from .section import AnySection, Rectangle, outer_radius_of
 from .section_stiffness import law_of_measures, section_stiffness
 from .validation import LENGTH_TOLERANCE, MAX_COUNT, Flag, Name, items, one_of, positive, show, shown, whole_number
 
-ELEMENTS = ("cable8p",)
-"""Elements of spans, whose material points move along them."""
+PLANAR, SPATIAL = "cable8p", "cable12"
+ELEMENTS = {PLANAR: 2, SPATIAL: 3}
+"""Elements of spans, whose material points move along them, with the dimension of space."""
 LAW = law_of_measures("engineering", "exact", "full")
 """The law of the stiffness: tension is EA (stretch - 1)."""
 ORDER = "give an Anchor or a Drum, then the sheaves, then an Anchor or a Drum; or closed=True"
@@ -50,7 +52,7 @@ ElementsOfSpans = Annotated[int | tuple[int, ...], checked(_elements, {
 
 
 class Rope(Part):
-    """A rope that runs over sheaves in the plane z = 0: it stretches, bends, has mass and slides.
+    """A rope that runs over sheaves, in the plane z = 0 or in space: it stretches, bends, has mass and slides.
 
     It ends at anchors or drums, and is straight and tangent to the sheaves and drums as drawn. A span is what is
     between two tangent points, or a tangent point and an anchor; its elements are equal, and the material moves through
@@ -69,7 +71,8 @@ class Rope(Part):
     tension: at the route's first point, uniform as drawn, N
     length: stress-free length of the whole rope with what is wound on drums, m; without this at most the drawn length.
         The stretch is uniform as drawn
-    element: name of the element
+    element: "cable8p" in the plane z = 0; "cable12" in space, with axes of sheaves in any direction. There a body with
+        a sheave must not rotate: a prismatic joint guides it; and drums are not possible yet
     section: cross-section, whose height is in the plane
     material: material, with the damping of the rope
     """
@@ -84,7 +87,7 @@ class Rope(Part):
                       "is on a drum there included; of a closed rope from where it leaves its first sheave as drawn"),
         "start_force": vector_of_time("N", "force on what holds the first anchor"),
         "end_force": vector_of_time("N", "force on what holds the last anchor"),
-        "coordinates": Quantity(("time", "{part}.coordinate"), "m or 1", "places and slopes of nodes in the plane, "
+        "coordinates": Quantity(("time", "{part}.coordinate"), "m or 1", "places and slopes of nodes, "
                                 "stress-free arc-lengths of ends of spans and zones, rotations of sheaves"),
         "coordinate_rates": Quantity(("time", "{part}.coordinate"), "m/s or 1/s", "rates of the coordinates"),
     }
@@ -96,7 +99,7 @@ class Rope(Part):
     elements: ElementsOfSpans = 4
     tension: Annotated[float, positive("N")] | None = None
     length: Annotated[float, positive("m")] | None = None
-    element: Annotated[str, one_of(ELEMENTS)] = ELEMENTS[0]
+    element: Annotated[str, one_of(ELEMENTS)] = PLANAR
 
     @model_validator(mode="after")
     def _has_a_route(self) -> Rope:
@@ -113,6 +116,11 @@ class Rope(Part):
                 raise ValueError(f"route has {what} between its ends", "let two ropes end there")
         if not self.wheels:
             raise ValueError("route has no sheave and no drum", "take scene.cable() between two points")
+        if self.drums and self.dim == 3:
+            drum = next(iter(self.drums.values()))
+            raise ValueError(f'{drum.where} winds it in the plane z = 0, but its element is "{self.element}", of ropes '
+                             "in space", f'take element="{PLANAR}", or an Anchor in the place of the drum: drums in '
+                             "space are not possible yet")
         names = [wheel.name for wheel in self.wheels]
         if self.name in names:
             raise ValueError(f'route has a sheave "{self.name}", the name of the rope', "give each its own name")
@@ -148,8 +156,8 @@ class Rope(Part):
 
     @property
     def dim(self) -> int:
-        """Return 2: ropes are planar."""
-        return 2
+        """Return the dimension of space, 2 or 3."""
+        return ELEMENTS[self.element]
 
     @property
     def sheaves(self) -> tuple[Sheave, ...]:
@@ -234,20 +242,40 @@ class Rope(Part):
         return [sheave.where for sheave in self.rough_sheaves if sheave.has_most_zones]
 
     def drawn(self, bodies: Mapping[str, RigidBody | ModalBody]) -> DrawnRoute:
-        """Return its route as drawn among the bodies of its scene, in the plane.
+        """Return its route as drawn among the bodies of its scene.
 
         Its attachments must be complete, as in a scene. Raises ValueError(cause, remedy) for an impossible route and
         for a rope that is not taut.
         """
-        centres = np.array([_place(item.end, bodies)[:2] for item in self.route])
-        senses = (default_senses(np.concatenate([centres[-1:], centres, centres[:1]])) if self.closed
-                  else [0, *default_senses(centres), 0])
-        points = [self._point(k, centres[k], senses[k]) for k in range(len(centres))]
-        route = drawn_route(points, self.radius, self.closed)
+        points = self._points(np.array([_place(item.end, bodies)[:self.dim] for item in self.route]))
+        route = self._along(points)
         if offsets := self._offsets(self._stretch(route.length)):
-            points = [replace(point, offset=offsets.get(point.name, 0.0)) for point in points]
-            route = drawn_route(points, self.radius, self.closed)
+            route = self._along([replace(point, offset=offsets.get(point.name, 0.0)) for point in points])
         return replace(route, stretch=self._stretch(route.length))
+
+    def drawn_anew(self, route: DrawnRoute, centres: np.ndarray) -> DrawnRoute:
+        """Return a drawn route of the rope with its items at other places (n, dim), m: the sides of sheaves, distances
+        of tangent points and stress-free length are kept. Raises ValueError(cause, remedy) for an impossible one.
+        """
+        arcs = {arc.name: arc for arc in route.sheaves}
+        points = [replace(point, sense=arcs[point.name].sense, offset=arcs[point.name].tangent_radius - point.radius)
+                  if point.name in arcs else point for point in self._points(centres)]
+        found = self._along(points)
+        return replace(found, stretch=found.length / route.free_length)
+
+    def _along(self, points: list[RoutePoint]) -> DrawnRoute:
+        return drawn_route(points, self.radius, self.closed, span_in_space if self.dim == 3 else None)
+
+    def _points(self, centres: np.ndarray) -> list[RoutePoint]:
+        """Return the points of the route at these centres (n, dim)."""
+        if self.dim == 2:
+            senses = (default_senses(np.concatenate([centres[-1:], centres, centres[:1]])) if self.closed
+                      else [0, *default_senses(centres), 0])
+            return [self._point(k, centres[k], senses[k]) for k in range(len(centres))]
+        points = [replace(self._point(k, centre, 0), groove=groove_of(getattr(self.route[k], "axis", (0, 0, 1))))
+                  for k, centre in enumerate(centres)]
+        return [replace(point, sense=point.sense or sense)
+                for point, sense in zip(points, senses_in_space(points, self.closed), strict=True)]
 
     def _offsets(self, stretch: float) -> dict[str, float]:
         """Return the distances by which bending moves the tangent points away from sheaves, m, by name; none without

@@ -12,13 +12,15 @@ from .attachment import AnyAttachment, Attachment
 from .friction import AnyFriction, Friction
 from .part import Family, Part
 from .quantity import all_of_engine
-from .schemas import checked
+from .schemas import AXIS, checked
 from .signal import AnySignal, Integral, Signal
-from .validation import NAMES_A_PART, Name, Vector, not_negative, one_of, positive, shown, xyz
+from .validation import NAMES_A_PART, Name, Vector, direction, not_negative, one_of, positive, show, shown, xyz
 
 MAX_TURNS = 1000
 MAX_ZONES = 16
 """Zones of a wrap for which the engine has room."""
+MAX_FLEET_ANGLE = 0.07
+"""Fleet angle in rad, 4 degrees, that rules for cranes allow."""
 SIDES = {"left": 1, "right": -1}
 """The senses in which the rope runs around a sheave on a side of it: 1 counter-clockwise."""
 
@@ -136,15 +138,19 @@ class Sheave(Wheel):
 
     at: its centre, a point of the ground, a body, or a point in the axes of a body
     radius: from its centre to the axis of the rope, that of the groove plus that of the rope, m
-    side: "left" or "right": where it lies, looking along the route. A rope with the sheave on its left runs
-        counter-clockwise around it. By default the side to which the line through the centres of the route turns here
+    side: "left" or "right": where it lies, looking along the route with the axis up. A rope with the sheave on its
+        left runs counter-clockwise around it. By default the side to which the line through the centres of the route
+        turns here
     inertia: about its axis, kg m²; it rotates where this is above 0 or its motion is prescribed, else it is held
-    torque: of a motor or a brake between it and what holds it, over time, N m; it turns about z, counter-clockwise
+    torque: of a motor or a brake between it and what holds it, over time, N m; it turns about its axis,
+        counter-clockwise
     angle, velocity: of its rotation over time, prescribed, rad or rad/s, relative to the body that it is on
     damping: of its bearing, N m s
+    axis: its direction, of a rope in space; by default z
     friction: between rope and groove, a coefficient or a `Friction`, "regularised"; by default none
     zones: number of parts of the wrap between which friction acts, and over each of which the tension is constant
     turns: whole turns of the rope around it, in addition to the wrap angle between both spans
+    max_fleet_angle: between the plane of the groove and the rope as drawn, in space, rad; a larger one is reported
     """
 
     kind = "sheave"
@@ -160,10 +166,14 @@ class Sheave(Wheel):
         torque="of the rope on the sheave, by friction",
         angle="by which the sheave has turned, relative to the body that it is on",
         residual="largest distance of the rope from its tangent points",
+        fleet_angle_on="from the plane of the groove to the rope where it runs on, towards its axis",
+        fleet_angle_off="from the plane of the groove to the rope where it runs off, towards its axis",
     )
+    axis: Annotated[Vector, direction(turns=AXIS)] = (0.0, 0.0, 1.0)
     friction: AnyFriction | None = None
     zones: Annotated[int, _whole_number_between(1, MAX_ZONES)] = 8
     turns: Annotated[int, _whole_number_between(0, MAX_TURNS)] = 0
+    max_fleet_angle: Annotated[float, positive("rad")] = MAX_FLEET_ANGLE
 
     @property
     def coefficient(self) -> float:
@@ -199,6 +209,12 @@ class Sheave(Wheel):
             raise ValueError("has inertia, but no friction with the rope, which then never turns it",
                              "give its friction, or leave the inertia out")
         return self
+
+    def off_plane(self) -> Iterator[str]:
+        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
+        yield from super().off_plane()
+        if any(self.axis[:2]) or self.axis[2] < 0:
+            yield f"axis {show(self.axis)}"
 
     def refined(self) -> Sheave:
         """Return the sheave with twice the zones, or with half of them where twice exceeds `MAX_ZONES`."""

@@ -7,8 +7,8 @@ the length l and u. An end of the rope is a sheave of radius 0.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
 from itertools import pairwise
 from math import atan2, hypot, tau
 
@@ -37,6 +37,8 @@ class RoutePoint:
     label: its name in messages; centre: (2,) in m; radius: to the axis of the rope, m, 0 at an end; sense: 1 where the
     rope runs counter-clockwise around it, -1 clockwise, 0 at an end or where that is not known; turns: whole turns
     beside the wrap angle of the tangents; name: of the sheave; offset: of the tangent points beyond the radius, m.
+    groove: (dim, 2), unit vectors of the plane of the groove. In space the centre is (3,), and the sense is about the
+    axis, to the right of which the second vector follows from the first.
     """
 
     label: str
@@ -46,6 +48,7 @@ class RoutePoint:
     turns: int = 0
     name: str = ""
     offset: float = 0.0
+    groove: np.ndarray = field(default_factory=lambda: np.eye(2))
 
     @property
     def reach(self) -> float:
@@ -55,7 +58,7 @@ class RoutePoint:
 
 @dataclass(frozen=True, eq=False)
 class DrawnSpan:
-    """A straight span: start (2,) and end (2,) in m, length in m."""
+    """A straight span: start (dim,) and end (dim,) in m, length in m."""
 
     start: np.ndarray
     end: np.ndarray
@@ -63,18 +66,22 @@ class DrawnSpan:
 
     @property
     def direction(self) -> np.ndarray:
-        """Return (2,): the unit vector along the span."""
+        """Return (dim,): the unit vector along the span."""
         made: np.ndarray = (self.end - self.start) / self.length
         return made
 
 
+SpanBetween = Callable[[RoutePoint, RoutePoint, float], DrawnSpan]
+
+
 @dataclass(frozen=True, eq=False)
 class DrawnArc:
-    """The rope on the sheave ``name``: centre (2,) in m, radius of the rope's axis in m, sense as in `RoutePoint`.
+    """The rope on the sheave ``name``: centre (dim,) in m, radius of the rope's axis in m, sense and groove as in
+    `RoutePoint`.
 
-    tangent_radius: of the tangent points, m, above the radius for a rope that bends. angle_on, angle_off: of the two
-    tangent points from the centre, in rad, so that angle_off - angle_on is the sense times the wrap angle, whole turns
-    included.
+    tangent_radius: of the tangent points, m, above the radius for a rope that bends; in space the arm of the tension
+    about the axis. angle_on, angle_off: of the two tangent points from the centre, in rad, so that angle_off - angle_on
+    is the sense times the wrap angle, whole turns included.
     """
 
     name: str
@@ -84,6 +91,7 @@ class DrawnArc:
     angle_on: float
     angle_off: float
     tangent_radius: float
+    groove: np.ndarray = field(default_factory=lambda: np.eye(2))
 
     @property
     def wrap(self) -> float:
@@ -148,14 +156,16 @@ def default_senses(centres: np.ndarray) -> list[int]:
     return [int(sign) for sign in np.where(np.abs(turn) <= ANGLE_ROUNDING * size, 0, np.sign(turn))]
 
 
-def drawn_route(points: list[RoutePoint], rope_radius: float = 0.0, closed: bool = False) -> DrawnRoute:
+def drawn_route(points: list[RoutePoint], rope_radius: float = 0.0, closed: bool = False,
+                span_between: SpanBetween | None = None) -> DrawnRoute:
     """Return the route along the ends and sheaves of a rope, as drawn.
 
     rope_radius: a lower bound of the lengths of spans, m; closed: all points are sheaves, and the last one leads to the
-    first. Raises ValueError(cause, remedy) for an impossible route.
+    first; span_between: the span from one point to the next, by default that in the plane. Raises ValueError(cause,
+    remedy) for an impossible route.
     """
     ends = [*pairwise(points), (points[-1], points[0])] if closed else [*pairwise(points)]
-    spans = [_span(one, other, rope_radius) for one, other in ends]
+    spans = [(span_between or _span)(one, other, rope_radius) for one, other in ends]
     before = [spans[-1], *spans[:-1]] if closed else spans
     after = spans if closed else spans[1:]
     sheaves = [_arc(point, *beside) for point, *beside in zip(points if closed else points[1:-1], before, after,
@@ -171,20 +181,25 @@ def _span(one: RoutePoint, other: RoutePoint, rope_radius: float) -> DrawnSpan:
     """Return the tangent from a point of a route to the next one. Raises ValueError where there is none."""
     x, y = (other.centre - one.centre).tolist()
     apart, across = hypot(x, y), other.sense * other.reach - one.sense * one.reach
-    least = max(MIN_SPAN_RATIO * max(one.radius, other.radius), rope_radius)
     if apart <= abs(across):
-        raise ValueError(*_without_tangent(one, other, apart))
+        raise ValueError(*without_tangent(one, other, apart))
     length = ((apart - across) * (apart + across)) ** 0.5
-    if length < least:
-        raise ValueError(f"the span from {one.label} to {other.label} must be {show(least, 'm')} or longer, "
-                         f"{MIN_SPAN_RATIO:g} of a sheave's radius and the rope's radius, got {show(length, 'm')}",
-                         "move them apart")
+    check_length(one, other, length, rope_radius)
     u = np.array([length * x + across * y, length * y - across * x]) / apart**2
     n = np.array([-u[1], u[0]])
     return DrawnSpan(one.centre - one.sense * one.reach * n, other.centre - other.sense * other.reach * n, length)
 
 
-def _without_tangent(one: RoutePoint, other: RoutePoint, apart: float) -> tuple[str, str]:
+def check_length(one: RoutePoint, other: RoutePoint, length: float, rope_radius: float) -> None:
+    """Raise ValueError for a span between two points that is too short to be modelled."""
+    least = max(MIN_SPAN_RATIO * max(one.radius, other.radius), rope_radius)
+    if length < least:
+        raise ValueError(f"the span from {one.label} to {other.label} must be {show(least, 'm')} or longer, "
+                         f"{MIN_SPAN_RATIO:g} of a sheave's radius and the rope's radius, got {show(length, 'm')}",
+                         "move them apart")
+
+
+def without_tangent(one: RoutePoint, other: RoutePoint, apart: float) -> tuple[str, str]:
     """Return cause and remedy for two points of a route without a tangent."""
     large, small = (one, other) if one.radius >= other.radius else (other, one)
     remedy = "move them apart, or take smaller radii"
@@ -208,23 +223,26 @@ def _arc(point: RoutePoint, before: DrawnSpan, after: DrawnSpan) -> DrawnArc:
     if not point.sense:
         raise ValueError(f"the route runs straight through the centre of {point.label}, which does not tell its side",
                          'give side="left" or "right"')
-    one, other = before.direction, after.direction
+    one, other = before.direction @ point.groove, after.direction @ point.groove
     turn = point.sense * atan2(one[0] * other[1] - one[1] * other[0], one @ other) + 0.0  # no -0
     if abs(turn) < MIN_WRAP and not point.turns:
         raise ValueError(f"the rope does not touch {point.label}: its wrap angle must be {show(MIN_WRAP, 'rad')} or "
                          f"more, got {show(turn, 'rad')}", "leave it out, or move it into the way of the rope")
     wrap = (turn if turn > -ANGLE_ROUNDING else turn + tau) + tau * point.turns
-    x, y = (before.end - point.centre).tolist()
+    x, y = ((before.end - point.centre) @ point.groove).tolist()
     on = atan2(y, x)
     return DrawnArc(point.name, point.centre, point.radius, point.sense, on, on + point.sense * wrap,
-                    point.radius + point.offset)
+                    point.radius + point.offset, point.groove)
 
 
 def _check_clear(span: DrawnSpan, one: RoutePoint, other: RoutePoint, sheave: RoutePoint) -> None:
     """Raise ValueError where a span between two points crosses another sheave of the route."""
-    along = span.direction
-    s = min(max(float((sheave.centre - span.start) @ along), 0.0), span.length)
-    distance = float(np.linalg.norm(sheave.centre - span.start - s * along))
+    start, along = (sheave.centre - span.start) @ sheave.groove, span.direction @ sheave.groove
+    s = min(max(float(start @ along) / max(float(along @ along), ANGLE_ROUNDING), 0.0), span.length)
+    distance = float(np.linalg.norm(start - s * along))
+    aside = float(np.linalg.norm(sheave.centre - span.start - s * span.direction - sheave.groove @ (start - s * along)))
+    if aside > TOUCH_TOLERANCE * sheave.radius:
+        return  # in space it passes beside the groove
     if distance < (1 - TOUCH_TOLERANCE) * sheave.radius:
         raise ValueError(f"the span from {one.label} to {other.label} crosses {sheave.label}: it passes its centre at "
                          f"{show(distance, 'm')}, within its radius {show(sheave.radius, 'm')}",

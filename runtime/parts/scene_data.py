@@ -157,8 +157,9 @@ class SceneData:
 
     @property
     def dim(self) -> int:
-        """Return 2 if its cables are planar or it has ropes, which are, else 3."""
-        return 2 if self.ropes else min((cable.dim for cable in self.cables.values()), default=3)
+        """Return 2 if its cables or its ropes are planar, else 3."""
+        return min([*(cable.dim for cable in self.cables.values()), *(rope.dim for rope in self.ropes.values())],
+                   default=3)
 
     @property
     def plane(self) -> Plane | None:

@@ -255,6 +255,12 @@ CEILINGS = {
         "elastic_force": 439, "elastic_tangent": 1551, "dissipation": 267, "damping_force": 365,
         "damping_tangent": 2171
     },
+    "span_cable12": {
+        "point": 148, "kinetic_energy": 199, "inertia": 373, "inertia_tangent": 1690, "weight": 79, "energy": 295,
+        "elastic_force": 561, "elastic_tangent": 2582, "dissipation": 391, "damping_force": 538,
+        "damping_tangent": 4371
+    },
+    "tangent_point": {"conditions": 1678, "motion": 310, "chord": 202, "across": 27},
     "planar_sheave": {
         "tangent_point": 27, "tangent_point_motion": 26, "angle": 121, "energy": 13, "weight": 21, "force": 85,
         "tangent": 204, "kinetic_energy": 60, "inertia": 213, "inertia_tangent": 1209, "dissipation": 15,

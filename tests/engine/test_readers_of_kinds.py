@@ -40,6 +40,7 @@ PLACES = {
         "solve/motion/integrator_choice.py"],
     "points that must not coincide, as a force or a distance has no direction there": [
         "solve/notes/coincident_points.py"],
+    "fleet angles, against what sheaves in space take": ["solve/notes/fleet_angles.py"],
     "results that are more than the outputs, and how a kind acts on a cable": [
         "model/part_states.py", "results/section_forces/cable_loads.py"],
     "what the integrator \"energy\" cannot do beside couplings without step equations": [
@@ -66,7 +67,8 @@ SCENE_PLACES = {
         "solve/statics/lying.py", "solve/statics/string_start.py"],
     "pictures of each kind": ["results/animation/marks.py"],
     "ropes: their pictures, their meshes": [
-        "choice/motion.py", "results/animation/clips.py", "results/animation/ropes.py", "results/error_estimate.py", "results/pictures.py"],
+        "choice/motion.py", "results/animation/clips.py", "results/animation/ropes.py", "results/error_estimate.py",
+        "results/pictures.py"],
     "parameters that are adjusted": [
         "solve/adjustment/adjustment.py", "solve/adjustment/length_changes.py",
         "solve/adjustment/parameter_changes.py", "solve/adjustment/parameter_search.py",

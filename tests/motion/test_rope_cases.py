@@ -6,7 +6,7 @@ from ropes.runs import RUNS
 
 BY_KEY = {case.key: case for case in CASES}
 QUICK = ("heavy rope", "free rope", "run-on with bending", "capstan", "elevator", "elevator with wraps", "ropeway",
-         "held cylinder", "wave", "drum", "pendulum hauled in")
+         "held cylinder", "wave", "fleet angle at rest", "fleet angle with mass", "drum", "pendulum hauled in")
 SLOW = sorted(set(RUNS) - set(QUICK))
 
 

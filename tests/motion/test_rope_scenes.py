@@ -25,7 +25,8 @@ def test_tower_crane():
     run = fu.load_scene("tower_crane").run(progress=False)
     swings = run["load.position"][370:, 0] - run["trolley.position"][370:, 0]
     wound, tension = run["winch.length_in_store"], run["winch.tension"]
-    said = re.search(r"takes ([\d.]+) kW at most and winds ([\d.]+) m .*? is ([\d.]+) to ([\d.]+) kN.*?by ([\d.]+) m", text)
+    said = re.search(r"takes ([\d.]+) kW at most and winds ([\d.]+) m .*? is ([\d.]+) to ([\d.]+) kN.*?by ([\d.]+) m",
+                     text)
     assert [float(number) for number in said.groups()] == pytest.approx([
         run["winch.power"].max() / 1e3, wound[-1] - wound[0], tension.min() / 1e3, tension.max() / 1e3,
         abs(swings).max()], rel=3e-3)

@@ -476,7 +476,7 @@ def test_items_are_checked(make, complaint):
     ({"kind": "sheave", "name": "top", "at": (0, 3, 0)}, "route.1.radius is missing"),
     ({"kind": "sheave", "name": "top", "at": (0, 3, 0), "radius": 1, "mass": 1},
      'route.1 "mass" is not known here; known: name, at, radius, side, inertia, torque, angle, velocity, damping, '
-     "friction, zones, turns"),
+     "axis, friction, zones, turns, max_fleet_angle"),
     ({"kind": "sheave", "name": "top", "at": (0, 3, 0), "radius": 1, "inertia": 1},
      "route.1 has inertia, but no friction with the rope, which then never turns it; give its friction, or leave the "
      "inertia out"),
@@ -528,7 +528,7 @@ IN_XZ = SPATIAL | {"element": "cable8p", "up": (0, 0, 1)}
 def test_it_is_planar():
     route = ENDS[0], TOP, ENDS[1]
     spatial = ('rope "hoist" is planar, but the elements of cable "wire" (cable12) are spatial; take planar elements '
-               "for all cables: ropes in space are not possible yet")
+               'for all of them, or spatial ones: element="cable12" for ropes')
     across = ('rope "hoist" lies in the plane z = 0, but cable "wire" in the plane y = 0; draw the scene in the plane '
               "z = 0")
     for cable, complaint, gravity in ((SPATIAL, spatial, (0, -9.81, 0)), (IN_XZ, across, (0, 0, -9.81))):
@@ -545,7 +545,8 @@ def test_it_is_planar():
 
 
 def test_all_parts_stay_in_its_plane():
-    leaves = 'leaves the plane z = 0 of the cable8p rope "hoist"; let it stay in the plane'
+    leaves = ('leaves the plane z = 0 of the cable8p rope "hoist"; let it stay in the plane, or take '
+              'element="cable12" for the rope')
     with refused(f'rope "hoist": route.2 (1, 0, 0.5) m {leaves}'):
         rope_of(ENDS[0], TOP, fu.Anchor(at=(1, 0, 0.5)))
     with refused(f'rope "hoist": route.1 (0, 3, 1) m {leaves}'):

@@ -3,6 +3,8 @@
 import funicular as fu
 import numpy as np
 import pytest
+from funicular.model.build import build
+from funicular.solve.modes.stuck_wraps import stuck_wraps
 
 G, R, EA, MASS, INERTIA, LENGTH = 9.81, 0.25, 2e4, 5.0, 0.2, 2.0
 THIN = {"section": fu.Circle(radius=1e-3),
@@ -47,6 +49,31 @@ def test_a_pendulum_rolls_on_a_held_sheave():
     swings = scene.modes(8, about=scene.equilibrium(seek_stable=False), wraps="stick")
     across = np.abs(swings["A.displacement"][:, 0]) > 0.5
     assert swings.angular_frequency[across][0] == pytest.approx(np.sqrt(G / LENGTH), rel=1e-3)
+
+
+@pytest.mark.parametrize("inertia", [0.0, INERTIA])
+def test_a_scene_that_turns_as_a_whole_does_not_slide(inertia):
+    """Sheaves turn with their carrier, relative to which their rotation counts."""
+    scene = fu.Scene(gravity=(0, 0, 0))
+    for name, place in (("A", (-R, -LENGTH, 0)), ("B", (R, -1.0, 0)), ("S", (0.1, 0.2, 0))):
+        scene.rigid_body(name, mass=MASS, inertia=(1, 1, 1), position=place)
+    top = fu.Sheave("top", at=("S", (-0.1, -0.2, 0)), radius=R, friction=0.3, zones=3, inertia=inertia)
+    scene.rope("rope", route=[fu.Anchor("A"), top, fu.Anchor("B")], tension=50.0, elements=1, **THIN)
+    model = build(scene)
+    rates = np.zeros(model.n_dof)
+    for node in (span.node(k) for span in model.ropes[0].spans for k in range(2)):
+        vectors = model.q[node].reshape(2, 2)
+        rates[node] = np.stack([-vectors[:, 1], vectors[:, 0]], axis=1).ravel()
+    for body in model.bodies:
+        x, y = model.q[body.configuration : body.configuration + 2]
+        rates[body.dof : body.dof + 3] = -y, x, 1.0
+    free = model.unknown_of_dof >= 0
+    size = model.unknown_of_dof.max() + 1
+    motion = np.zeros(size)
+    motion[model.unknown_of_dof[free]] = rates[free]
+    rows = stuck_wraps(model, model.q, size)
+    assert rows.shape[0] == 4 and np.abs(rows.toarray()).max(axis=1).min() > 0.9
+    assert np.abs(rows @ motion).max() < 1e-8
 
 
 def test_other_words_are_refused():

@@ -269,3 +269,29 @@ def test_outputs_of_ropes_do_not_depend_on_the_mesh():
     check_output(scene, "top.angle")
     with pytest.raises(SceneError, match=r'there is no output "rope\.position"'):
         check_output(scene, "rope.position")
+
+
+def test_a_rope_in_space_and_its_wheels():
+    """Wraps stay in the planes of the grooves, and wheels have the axes of the sheaves."""
+    scene = fu.Scene()
+    scene.rigid_body("load", mass=2.0, inertia=(1, 1, 1), position=(-0.2, -1.5, 0.02))
+    axes = {"a": (0, 0, 1), "b": (0, 1, 0), "c": (1, 0, 0)}
+    scene.rope("rope", element="cable12", elements=2, tension=20.0, route=[
+        fu.Anchor("load"), fu.Sheave("a", at=(0, 0, 0), axis=axes["a"], radius=0.2, side="right"),
+        fu.Sheave("b", at=(2, 0.2, 0.2), axis=axes["b"], radius=0.15),
+        fu.Sheave("c", at=(2.15, 0, 1.5), axis=axes["c"], radius=0.2), fu.Anchor(at=(2.15, -1.2, 1.7))],
+        section=fu.Circle(radius=1e-3), material=fu.Material(youngs_modulus=6e8, poisson_ratio=0.3, density=7000))
+    clip = scene.animation().clips[0]
+    rope, route = part(clip.cables, "rope"), scene.ropes["rope"].drawn(scene.bodies)
+    line, s, at = rope.position[0], rope.material_s[0], 0.0
+    for span, arc in zip(route.spans, route.sheaves, strict=False):
+        at += span.length / route.stretch
+        on = (s > at + 1e-9) & (s < at + arc.length / route.stretch - 1e-9)
+        at += arc.length / route.stretch
+        assert on.sum() > 5
+        away = line[on] - arc.centre
+        assert_allclose(np.linalg.norm(away, axis=1), arc.radius, rtol=1e-12)
+        assert_allclose(away @ np.array(axes[arc.name]), 0, atol=1e-12)
+        w, x, y, z = part(clip.bodies, arc.name).orientation[0]
+        turned = (2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y))  # of the z axis
+        assert_allclose(turned, axes[arc.name], atol=1e-12)

@@ -112,7 +112,7 @@ def _damping(family: LawFamily, k: Numbers, s: State) -> Iterator[Invariance]:
         v = relative_e @ spin.T + np.outer(positions, s["g"])
         f_rigid, P = k("damping_force", s, v=v)["f"], k("dissipation", s, v=v)["P"]
         if twisted:
-            left = float(P[0]) - _spun(spec, s, spin)
+            left = float(P[0]) - spun(spec, s, spin)
             yield "rigid velocity is damped by the spin about the tangent alone", relative(left, scale), 64 * EPS
         else:
             yield "rigid velocity is not damped", max(relative(f_rigid, scale), relative(P, scale)), 64 * EPS
@@ -129,7 +129,7 @@ def _damping(family: LawFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     yield "damping takes energy out: P = v . f > 0", mismatch, 32 * EPS
 
 
-def _spun(spec: Element, s: State, spin: np.ndarray) -> float:
+def spun(spec: Element, s: State, spin: np.ndarray) -> float:
     """Return the power on a bent cable whose sections do not follow its turn about the tangent i: EI tau (w.i)^2 |i x
     r''|^2.
     """

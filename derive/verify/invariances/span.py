@@ -9,6 +9,7 @@ import numpy as np
 from ...codegen.family import ElementFamily
 from ..numbers import EPS, Numbers, State
 from ..samples.shapes import reference, rotation
+from .law import spun
 from .measures import ORIGIN_SHIFT, Invariance, quantised, relative, spins
 
 KERNELS = ("kinetic_energy", "inertia", "inertia_tangent", "energy", "elastic_force", "elastic_tangent", "dissipation",
@@ -86,9 +87,14 @@ def _deformed(family: ElementFamily, k: Numbers, s: State) -> Iterator[Invarianc
     yield "no net damping force", relative(positions @ damped, damped), 64 * EPS
     for spin in spins(spec.dim):
         rigid = s | {"v": arms @ spin.T + np.outer(positions, s["g"]), "s_rate": 0 * s["s_rate"]}
-        yield "rigid velocity is not damped", max(
-            relative(k("dissipation", rigid)["P"], scale * s["tau"]),
-            relative(k("damping_force", rigid)["f_s"], scale * s["tau"])), 64 * EPS
+        P, f_s = k("dissipation", rigid)["P"], k("damping_force", rigid)["f_s"]
+        if spec.dim == 3:
+            left = P - spun(spec, s, spin)
+            yield "rigid velocity is damped by the spin about the tangent alone", relative(left, scale * s["tau"]), \
+                64 * EPS
+        else:
+            yield "rigid velocity is not damped", max(relative(P, scale * s["tau"]),
+                                                      relative(f_s, scale * s["tau"])), 64 * EPS
 
 
 def _straight_flow(family: ElementFamily, k: Numbers, s: State) -> Iterator[Invariance]:

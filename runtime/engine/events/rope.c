@@ -1,20 +1,26 @@
 /* Ropes that leave what they run over: a run ends there, as the equations do not hold beyond. The reasons are the wrap
- * angle, the normal force, the length of a span, and that of the rope on a drum. */
+ * angle, the normal force, in space the fleet angle of a short span, the length of a span, and that of the rope on a
+ * drum. */
 #include "couplings/common/coupling_events.h"
 #include "couplings/rope/rope.h"
 #include "equations/run.h"
 
-enum { WRAP, PRESSURE, N_FUNCTIONS, SPAN = N_FUNCTIONS, EMPTY };
+enum { WRAP, PRESSURE, FLEET, SPAN, EMPTY };
+
+static int list(int n, fu_event_function *out)
+{
+    for (int k = 0; out && k < n; ++k) out[k] = (fu_event_function){.which = k, .direction = -1};
+    return n;
+}
 
 static int functions(const fu_coupling *coupling, fu_event_function *out)
 {
-    (void)coupling;
-    for (int k = 0; out && k < N_FUNCTIONS; ++k) out[k] = (fu_event_function){.which = k, .direction = -1};
-    return N_FUNCTIONS;
+    return list(fu_is_in_space(coupling) ? FLEET + 1 : FLEET, out);
 }
 
 static double value(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {
+    if (which == FLEET) return fu_fleet_margin(run->model, coupling, state);
     return which == WRAP ? fu_wrap_margin(run->model, coupling, state) : fu_wrap_pressure(run->model, coupling, state);
 }
 
@@ -29,13 +35,14 @@ static int leave(fu_run *run, const fu_coupling *coupling, int reason)
 static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
 {
     (void)side;
-    *what = which == WRAP ? "left the sheave" : "lifted off";
+    *what = which == WRAP ? "left the sheave" : which == PRESSURE ? "lifted off" : "left the groove";
     return leave(run, coupling, which);
 }
 
 static int begin(fu_run *run, const fu_coupling *coupling)
 {
-    for (int which = 0; which < N_FUNCTIONS; ++which)
+    const int n = functions(coupling, 0);
+    for (int which = 0; which < n; ++which)
         if (value(run, coupling, &run->now, which) < 0.0) return leave(run, coupling, which);
     return FU_RUNNING;
 }
@@ -67,6 +74,12 @@ static double value_of_drum(const fu_run *run, const fu_coupling *coupling, cons
     return which == WRAP ? fu_drum_margin(run->model, coupling, state) : fu_drum_pressure(run->model, coupling, state);
 }
 
+static int functions_of_drum(const fu_coupling *coupling, fu_event_function *out)
+{
+    (void)coupling;
+    return list(PRESSURE + 1, out);
+}
+
 static int act_of_drum(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
 {
     (void)side;
@@ -76,11 +89,11 @@ static int act_of_drum(fu_run *run, const fu_coupling *coupling, int which, int 
 
 static int begin_drum(fu_run *run, const fu_coupling *coupling)
 {
-    for (int which = 0; which < N_FUNCTIONS; ++which)
+    for (int which = 0; which <= PRESSURE; ++which)
         if (value_of_drum(run, coupling, &run->now, which) < 0.0)
             return leave(run, coupling, which == WRAP ? EMPTY : which);
     return FU_RUNNING;
 }
 
 const fu_coupling_events fu_drum_events = {
-    .functions = functions, .value = value_of_drum, .act = act_of_drum, .begin = begin_drum};
+    .functions = functions_of_drum, .value = value_of_drum, .act = act_of_drum, .begin = begin_drum};

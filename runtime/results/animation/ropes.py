@@ -9,10 +9,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...base.rotations import product, turned_by
+from ...base.rotations import product, quaternion, turned_by
 from ...model.rope_states import POINTS_OF_ELEMENT, as_drawn, points_of_spans
 from ...parts.rope import Rope
 from ...parts.rope_items import Drum, Sheave
+from ...parts.rope_route import DrawnArc
+from ...parts.rope_route_space import groove_of
 from ...parts.scene_data import SceneData
 from ...parts.section import Rectangle
 from ...view.animation import BodyShape, CableShape, Quantity, section_sides
@@ -102,16 +104,20 @@ class _Line:
             parts.append(_span(points[:, span], s[:, span], rope.elements_of_spans[k], _divisions(rope)))
             if wrap is not None:
                 number, on = wrap
-                parts.append(_wrap(frames, rope.sheaves[number], route.sheaves[number].sense, points[:, on], s[:, on],
+                parts.append(_wrap(frames, rope.sheaves[number], route.sheaves[number], points[:, on], s[:, on],
                                    counts[number]))
         if rope.closed:
             parts.append((points[:, -1:], s[:, -1:], parts[0][2][:, :1]))
         self.position, self.s, self.strain = (np.concatenate(each, axis=1) for each in zip(*parts, strict=True))
 
     def height(self) -> np.ndarray:
-        """Return the unit vectors (T, P, 3) of the section's height, which lies in the plane."""
-        along = np.gradient(self.position, axis=1)
-        across = np.cross((0.0, 0.0, 1.0), along)
+        """Return the unit vectors (T, P, 3) of the section's height, which lies in the plane; in space across the
+        direction in which the rope extends least.
+        """
+        along, side = np.gradient(self.position, axis=1), np.array([0.0, 0.0, 1.0])
+        if self.rope.dim == 3:
+            side = np.linalg.svd(self.position[0] - self.position[0].mean(axis=0))[2][-1]
+        across = np.cross(side, along)
         return np.asarray(across / np.linalg.norm(across, axis=-1, keepdims=True))
 
     def quantities(self) -> tuple[Quantity, ...]:
@@ -145,16 +151,17 @@ def _span(points: np.ndarray, s: np.ndarray, elements: int, divisions: int) -> t
         (inside, points[:, -1:]), (at, s[:, -1:]), (along, (mean + tilt)[:, -1:])))
 
 
-def _wrap(frames: Frames, sheave: Sheave, sense: int, points: np.ndarray, s: np.ndarray, count: int
+def _wrap(frames: Frames, sheave: Sheave, arc: DrawnArc, points: np.ndarray, s: np.ndarray, count: int
           ) -> tuple[np.ndarray, ...]:
     """Return the stations of a wrap, without its tangent points; arguments and results as of `_span`."""
     centre = place(frames, sheave.end)
-    on, off = points[:, 0] - centre, points[:, -1] - centre
-    part = sense * np.arctan2(np.cross(on, off)[:, 2], np.sum(on * off, axis=1))
+    groove, sense = np.eye(3)[:, :2] if len(arc.groove) == 2 else arc.groove, arc.sense
+    on, off = (points[:, 0] - centre) @ groove, (points[:, -1] - centre) @ groove
+    part = sense * np.arctan2(on[:, 0] * off[:, 1] - on[:, 1] * off[:, 0], np.sum(on * off, axis=1))
     wrap = part + 2 * np.pi * np.round((frames.value(f"{sheave.name}.wrap_angle") - part) / (2 * np.pi))
     share = np.linspace(0, 1, count)[1:-1]
     angle = np.arctan2(on[:, 1], on[:, 0])[:, None] + sense * wrap[:, None] * share
-    around = np.stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)], axis=-1)
+    around = np.stack([np.cos(angle), np.sin(angle)], axis=-1) @ groove.T
     given = np.linspace(0, 1, s.shape[1])
     strain = sheave.radius * wrap[:, None] * np.diff(given) / np.diff(s) - 1
     middle = np.concatenate([strain[:, :1], (strain[:, :-1] + strain[:, 1:]) / 2, strain[:, -1:]], axis=1)
@@ -178,7 +185,10 @@ def wheel_shape(frames: Frames, refs: Frames, rope: Rope, sheave: Sheave | Drum)
     turn = np.zeros((times, 3))
     turn[:, 2] = frames.value(f"{sheave.name}.angle")
     orientation = turned_by(turn)
-    if sheave.end.on is not None:
+    if rope.dim == 3 and isinstance(sheave, Sheave):  # there carriers do not rotate
+        groove = groove_of(sheave.axis)
+        orientation = product(quaternion(np.column_stack([groove, np.cross(*groove.T)])), orientation)
+    elif sheave.end.on is not None:
         orientation = product(frames.value(f"{sheave.end.on}.orientation"), orientation)
     found = {label: (unit, frames.value(f"{sheave.name}.{key}")) for key, (label, unit) in WHEEL_RESULTS.items()
              if frames.has(f"{sheave.name}.{key}") and frames.section_forces is not no_forces}

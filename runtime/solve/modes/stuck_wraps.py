@@ -13,13 +13,16 @@ from ...model.states import attachment_points
 MOTION_STEP = 1e-6
 """Small motion, in units of the dofs, by which angles are differenced: their errors are of its square."""
 
+TURNS = {2: 1, 3: 3}
+"""Rotations of a body by the dimension of space."""
+
 
 def stuck_wraps(model: Model, q: np.ndarray, size: int) -> csc_array:
     """Return the rows (rows, size) over the first unknowns of a model by which the rope does not slide on sheaves.
 
     The rows of a sheave are w = sigma R (d phi - d psi) - lambda ds = 0 at the ends of the zones of its wrap, in m:
-    phi the angle of such a point, psi the rotation of the sheave, lambda the stretch of the wrap, s the material
-    coordinate there. q (n_q,): the configuration about which the motions are.
+    phi the angle of such a point, psi the rotation of the sheave with its carrier, lambda the stretch of the wrap, s
+    the material coordinate there. q (n_q,): the configuration about which the motions are.
     """
     blocks = [_rows(model, sheave, q) for sheave in model.sheaves if sheave.friction > 0]
     rows = lil_array((sum(len(values) for _, values in blocks), size))
@@ -37,9 +40,16 @@ def stuck_wraps(model: Model, q: np.ndarray, size: int) -> csc_array:
 def _rows(model: Model, sheave: SheaveModel, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the dofs of a sheave and of the body that carries it, and the rows (points, dofs)."""
     dofs = sheave.adjacent[0]
-    if (number := sheave.attachments[0].body) >= 0:
-        body = model.bodies[number]
-        dofs = np.r_[dofs, body.dof : body.dof + model.dim + 1 + body.modes]
+    carrier = sheave.attachments[0]
+    of_carrier: dict[int, float] = {}  # its angular velocity about the axis, by rates of dofs; in space it has none
+    if carrier.body >= 0:
+        body = model.bodies[carrier.body]
+        rotation = body.dof + model.dim
+        dofs = np.r_[dofs, body.dof : rotation + TURNS[model.dim] + body.modes]
+        if model.dim == 2:
+            of_carrier[rotation] = 1.0
+            if carrier.modal is not None:
+                of_carrier |= enumerate(np.sum(carrier.modal[2], axis=1).tolist(), start=rotation + 1)
     dofs = np.unique(dofs.astype(int))
     steps = np.zeros((len(dofs), model.n_dof))
     steps[np.arange(len(dofs)), dofs] = MOTION_STEP
@@ -47,8 +57,8 @@ def _rows(model: Model, sheave: SheaveModel, q: np.ndarray) -> tuple[np.ndarray,
     of_feet = (np.arctan2(np.sin(change), np.cos(change)) / (2 * MOTION_STEP)).T
     share = np.linspace(0.0, 1.0, sheave.n_zones + 1)[:, None]
     rows = sheave.sense * sheave.radius * ((1 - share) * of_feet[0] + share * of_feet[1])
-    if sheave.turn >= 0:
-        rows[:, dofs == sheave.turn] -= sheave.sense * sheave.radius
+    for dof, rate in ({sheave.turn: 1.0} | of_carrier).items():
+        rows[:, dofs == dof] -= sheave.sense * sheave.radius * rate
     length = q[sheave.s[-1]] - q[sheave.s[0]] + sheave.closing
     on, off = _angles(model, sheave, q[None])[0]
     turns = np.round((length / sheave.radius - sheave.sense * (off - on)) / (2 * np.pi))
@@ -60,6 +70,6 @@ def _rows(model: Model, sheave: SheaveModel, q: np.ndarray) -> tuple[np.ndarray,
 
 def _angles(model: Model, sheave: SheaveModel, q: np.ndarray) -> np.ndarray:
     """Return the angles (n, 2) of both tangent points about the centre in configurations (n, n_q), rad."""
-    centre = attachment_points(model, sheave.attachments[0], q)
-    return np.stack([np.arctan2(q[:, node + 1] - centre[:, 1], q[:, node] - centre[:, 0]) for node in sheave.nodes],
-                    axis=1)
+    centre = attachment_points(model, sheave.attachments[0], q)[:, : model.dim]
+    places = [(q[:, node : node + model.dim] - centre) @ sheave.plane for node in sheave.nodes]
+    return np.stack([np.arctan2(place[:, 1], place[:, 0]) for place in places], axis=1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import time
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, NamedTuple, Protocol
@@ -121,7 +121,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: ProgressDispl
         elif stream is not None:
             stream.settled()
     given = initial if isinstance(initial, InitialState) else ()  # a state of rest starts at the scene's velocities
-    messages += run.gaps + _warned([*_broken_velocities(run.model, run.change),
+    messages += run.gaps + _warned([*_broken_velocities(run.model, run.change, given),
                                     *velocity_jumps(scene.as_drawn, settings.duration, given),
                                     *unresolved(scene.as_drawn, settings)])
     started = run.began - begin - set_up
@@ -280,10 +280,18 @@ def _divided_step(settings: RunSettings) -> list[str]:
     return [f"step {settings.step:.6g} s was made {step:.6g} s, so that steps end on output times"]
 
 
-def _broken_velocities(model: Model, change: np.ndarray) -> list[str]:
-    """Return a message where the start changed velocities (n_dof,), which broke a joint."""
-    largest = float(np.max(np.abs(change) * model.weight, initial=0.0))  # rates of slopes and turns as those of points
-    if largest <= 1e-9 * (1.0 + np.max(np.abs(model.v) * model.weight, initial=0.0)):
+def _broken_velocities(model: Model, change: np.ndarray, given: Container[str]) -> list[str]:
+    """Return a message where the start changed velocities (n_dof,), which broke a joint.
+
+    given: names of a state to start from. A rope in space whose rates are not among them starts with those of a rope
+    without sag: the start changes them, and those of its bodies a little.
+    """
+    counted, tolerance = model.weight.copy(), 1e-9  # rates of slopes and turns as those of points
+    for rope in model.ropes:
+        if rope.part.dim == 3 and f"{rope.part.name}.coordinate_rates" not in given:
+            counted[rope.coordinates], tolerance = 0.0, 1e-6
+    largest = float(np.max(np.abs(change) * counted, initial=0.0))
+    if largest <= tolerance * (1.0 + np.max(np.abs(model.v) * model.weight, initial=0.0)):
         return []
     return [f"initial velocities broke a joint: changed by up to {largest:.3g} m/s to keep it"]
 

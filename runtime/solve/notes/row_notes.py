@@ -15,6 +15,7 @@ from .coarse_meshes import CoarseMeshes
 from .coarse_slides import CoarseSlides
 from .coincident_points import CoincidentPoints
 from .fast_turns import FastTurns
+from .fleet_angles import FleetAngles
 from .folds import Folds
 from .note import Note
 from .penetrations import Penetrations
@@ -29,7 +30,8 @@ from .uncontrolled_errors import NormalForces
 
 NOTES: tuple[type[Note], ...] = (
     StraightStruts, Folds, ReducedStrain, CoarseMeshes, CoarseSlides, Straightened, Sensitivity, SlackMotion,
-    CoincidentPoints, FastTurns, NormalForces, SpinningSections, Penetrations, SurfaceEnds, CoarseContact)
+    CoincidentPoints, FastTurns, NormalForces, SpinningSections, Penetrations, SurfaceEnds, CoarseContact,
+    FleetAngles)
 
 N = TypeVar("N", bound=Note)
 

@@ -205,7 +205,9 @@ class StaticProblem(StaticState):
         numbers = outputs_by_name("sheave", self.engine.static_outputs("sheave")) if model.sheaves else {}
         for k, sheave in enumerate(model.sheaves):
             centre = attachment_points(model, sheave.attachments[0], q[None])[0, : model.dim]
-            folded = any(sheave.sense * np.linalg.det([q[at : at + 2] - centre, q[at + 2 : at + 4]]) <= 0
+            dim = model.dim
+            folded = any(sheave.sense * np.linalg.det([(q[at : at + dim] - centre) @ sheave.plane,
+                                                       q[at + dim : at + 2 * dim] @ sheave.plane]) <= 0
                          for at in sheave.nodes)  # its slope is tangent, but against the sense of travel
             if folded or numbers["wrap_angle"][k] < sheave.least_wrap:
                 return f'the rope leaves sheave "{sheave.name}"'

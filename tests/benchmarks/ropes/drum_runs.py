@@ -45,5 +45,6 @@ def hauled() -> Found:
     for time in (2, 4, 5):
         foot, load = (np.array(run[name][2 * time])[..., :2] for name in ("rope.position", "load.position"))
         along = load - foot[0]
-        found |= {f"angle at {time} s": atan2(along[0], -along[1]), f"tension at {time} s": run["winch.tension"][2 * time]}
+        found |= {f"angle at {time} s": atan2(along[0], -along[1]),
+                  f"tension at {time} s": run["winch.tension"][2 * time]}
     return found

@@ -16,6 +16,7 @@ from .drum_runs import drum, hauled
 from .loop_runs import elevator, elevator_with_wraps, ropeway, wave
 from .scenes import GRAVITY, Found, over_one, rope_of, swing, weight
 from .sliding_runs import held_cylinder, moving_capstan
+from .space_runs import fleet, fleet_at_rest
 
 
 def two_weights() -> Found:
@@ -183,6 +184,8 @@ def belt(EI: float = 0.0) -> Found:
 RUNS: dict[str, Callable[[], Found]] = {
     "two weights": two_weights, "heavy rope": heavy_rope, "free rope": free_rope, "tackle": tackle,
     "swinging Atwood": swinging_atwood, "heavy swinging Atwood": heavy_atwood, "bending in motion": bent_atwood,
-    "run-on with bending": run_on, "capstan": capstan, "moving capstan": moving_capstan,
-    "held cylinder": held_cylinder, "belt": belt, "elevator": elevator, "elevator with wraps": elevator_with_wraps,
-    "ropeway": ropeway, "wave": wave, "drum": drum, "pendulum hauled in": hauled}
+    "fleet angle": lambda: fleet(1e-5, 1e-5), "fleet angle with mass": lambda: fleet(1e-3, 1e-5),
+    "fleet angle at rest": fleet_at_rest, "run-on with bending": run_on, "capstan": capstan,
+    "moving capstan": moving_capstan, "held cylinder": held_cylinder, "belt": belt, "elevator": elevator,
+    "elevator with wraps": elevator_with_wraps, "ropeway": ropeway, "wave": wave, "drum": drum,
+    "pendulum hauled in": hauled}

@@ -153,18 +153,22 @@ def peg() -> tuple[float, ...]:
     return (*events[:3], *(x for at in times for x in found[at]))
 
 
+FLEET_PLACES = ("x at .5 s, y at .5 s, z at .5 s, x at 1 s, y at 1 s, z at 1 s, x at 1.5 s, y at 1.5 s, z at 1.5 s, "
+                "x at 2 s, y at 2 s, z at 2 s", "m",
+                "1.307986 -3.284786 0.258888 0.113846 -3.295445 0.214013 -0.928685 -3.010472 0.001239 "
+                "-1.047408 -2.777202 -0.214354")
+FLEET_WRAPS = numbers("wrap at .5 s, wrap at 1 s, wrap at 1.5 s, wrap at 2 s", "deg",
+                      "163.1684 183.2525 202.6084 206.4800", 0.01, absolute=True)
+
 CASES = [
     Case("swinging Atwood", "a load swings on a massless rope, counterweight straight down, frictionless",
          (*numbers("x at 1 s, y at 1 s, x at 2 s, y at 2 s, x at 3 s, y at 3 s", "m",
                    ".205949 -3.591360 -1.487701 -3.054866 .909086 -2.996471", 1e-4, absolute=True),
           *numbers("wrap at 1 s, wrap at 2 s, wrap at 3 s", "deg", "181.5 211.0 168.6", 1e-4)), atwood),
     Case("fleet angle", "the same out of the groove's plane",
-         (*numbers("x at .5 s, y at .5 s, z at .5 s, x at 1 s, y at 1 s, z at 1 s, x at 1.5 s, y at 1.5 s, z at 1.5 s, "
-                   "x at 2 s, y at 2 s, z at 2 s", "m",
-                   "1.307986 -3.284786 0.258888 0.113846 -3.295445 0.214013 -0.928685 -3.010472 0.001239 "
-                   "-1.047408 -2.777202 -0.214354", 1e-4, absolute=True),
-          *numbers("wrap at .5 s, wrap at 1 s, wrap at 1.5 s, wrap at 2 s", "deg",
-                   "163.1684 183.2525 202.6084 206.4800", 0.01, absolute=True)), fleet),
+         (*numbers(*FLEET_PLACES, 1e-4, absolute=True), *FLEET_WRAPS), fleet),
+    Case("fleet angle with mass", "the same, of a rope of 1 g/m",
+         (*numbers(*FLEET_PLACES, 1e-3, absolute=True), *FLEET_WRAPS), fleet),
     Case("fleet angle at rest", "a rope off the groove's plane, at rest",
          (*numbers("foot", "deg", "39.918838", 1e-8, uncertainty=6e-5),
           *numbers("foot from the axis", "m", ".302955", 1e-8), *numbers("fleet angle", "deg", "8.0087", 1e-8),

@@ -1,6 +1,9 @@
 /* Sheaves: two tangent points, and the wrap between them, as one coupling. Derivatives are first by the places and
  * slopes of both nodes, the centre, and the material coordinates (y); the angles of the wrap follow from the places
- * (z). */
+ * (z).
+ *
+ * In space the wrap lies in the plane of the groove, to which all vectors here belong; in the place of the slope of a
+ * node is its length, which alone friction needs. The conditions of tangent points are those of tangent_point.c. */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
@@ -9,10 +12,16 @@
 #include <math.h>
 #include <string.h>
 
-enum { DIM = 2, ENDS = 2, CONDITIONS = 4, MAX_ZONES = 16 };
-/* y: of each node the place and the slope; the centre; the rotation of the sheave; s of the ends of the zones */
+enum { DIM = 2, ENDS = 2, MAX_CONDITIONS = ENDS * FU_FOOT_CONDITIONS, MAX_ZONES = 16, SPACE = 3 };
+/* y: of each node the place and the slope; the centre; the rotation of the sheave; s of the ends of the zones; in space
+ * the place of the centre along the axis */
 enum { NODE = 2 * DIM, SLOPE = DIM, CENTRE = ENDS * NODE, TURN = CENTRE + DIM, MATERIAL = TURN + 1 };
-enum { Y = MATERIAL + MAX_ZONES + 1, COLUMNS = Y - DIM + FU_ATTACHMENT_COORDINATES };
+enum {
+    ACROSS = MATERIAL + MAX_ZONES + 1,
+    Y = ACROSS + 1,
+    IN_SPACE = ENDS * 2,
+    COLUMNS = Y - DIM + IN_SPACE + FU_ATTACHMENT_COORDINATES
+};
 /* z: the same with the angles of both tangent points in the place of those of the nodes */
 enum {
     Z_SLOPE = ENDS,
@@ -25,13 +34,17 @@ enum {
 enum { U_CENTRE = ENDS, U_MATERIAL = U_CENTRE + DIM, U = U_MATERIAL + ENDS };
 
 typedef struct {
-    double tension_on, tension_off, wrap_angle, force[3], material_speed, slip, normal_force, torque, angle, residual;
+    double tension_on, tension_off, wrap_angle, force[3], material_speed, slip, normal_force, torque, angle, residual,
+        fleet_angle_on, fleet_angle_off;
 } sheave_output;
 
 /* A sheave at a state: the centre, both tangent points, and the angles with their rates. */
 typedef struct {
+    const double *q;
     fu_attachment_state centre;
-    double c_rate[DIM], c_acc[DIM], own_rate, turn_rate, turn_acc; /* own: relative to the carrier */
+    double c[DIM], c_rate[DIM], c_acc[DIM], across, across_rate, across_acc, centre_acc[SPACE];
+    double own_rate, turn_rate, turn_acc; /* own: relative to the carrier */
+    double stretch[ENDS][SPACE];          /* in space: direction of the slope */
     double s[MAX_ZONES + 1], s_rate[MAX_ZONES + 1], s_acc[MAX_ZONES + 1];
     double x[ENDS][DIM], slope[ENDS][DIM], x_rate[ENDS][DIM], slope_rate[ENDS][DIM];
     double phi[ENDS], phi_rate[ENDS], phi_acc[ENDS];
@@ -41,6 +54,12 @@ typedef struct {
 static const fu_sheave *sheave_of(const fu_coupling *coupling)
 {
     return (const fu_sheave *)coupling;
+}
+
+/* Returns the number of conditions of a tangent point. */
+static int conditions_of(const fu_sheave *sheave)
+{
+    return sheave->foot ? FU_FOOT_CONDITIONS : DIM;
 }
 
 static int columns(const fu_sheave *sheave)
@@ -65,6 +84,80 @@ static void find_angles(const fu_sheave *sheave, view *at)
     at->phi[1] = at->phi[0] + sheave->sense * wrap;
 }
 
+/* Computes the parts of a vector in the plane of the groove. */
+static void into_groove(const fu_sheave *sheave, const double *vector, double out[DIM])
+{
+    for (int i = 0; i < DIM; ++i) {
+        out[i] = 0.0;
+        for (int d = 0; d < SPACE; ++d) out[i] += sheave->groove[d * DIM + i] * vector[d];
+    }
+}
+
+/* Returns the part about the axis of a rotation, of whose parts in space each is `stride` after the last one. */
+static double about_axis(const fu_sheave *sheave, const double *turn, int stride)
+{
+    double sum = 0.0;
+    if (!sheave->foot) return turn[0];
+    for (int d = 0; d < SPACE; ++d) sum += sheave->axis[d] * turn[d * stride];
+    return sum;
+}
+
+/* Computes the motion of a node from the centre, with the acceleration x_acc, in space. */
+static void look_in_space(const fu_sheave *sheave, const fu_state *state, const double *v, const double *a, int k,
+                          view *out, double x_acc[DIM])
+{
+    const int r = sheave->nodes[k];
+    const double *slope = state->q + r + SPACE, size = sqrt(fu_dot(SPACE, slope, slope));
+    double x[SPACE], rate[SPACE], acc[SPACE];
+    for (int d = 0; d < SPACE; ++d) {
+        x[d] = state->q[r + d] - out->centre.p[d];
+        rate[d] = v[r + d] - out->centre.v[d];
+        acc[d] = a[r + d] - out->centre_acc[d];
+        out->stretch[k][d] = slope[d] / size;
+    }
+    into_groove(sheave, x, out->x[k]);
+    into_groove(sheave, rate, out->x_rate[k]);
+    into_groove(sheave, acc, x_acc);
+    out->slope[k][0] = size;
+    out->slope[k][1] = out->slope_rate[k][0] = out->slope_rate[k][1] = 0.0;
+}
+
+/* Computes the motion of a node from the centre, with the acceleration x_acc, in the plane. */
+static void look_in_plane(const fu_sheave *sheave, const fu_state *state, const double *v, const double *a, int k,
+                          view *out, double x_acc[DIM])
+{
+    const int r = sheave->nodes[k], slope = r + SLOPE;
+    for (int d = 0; d < DIM; ++d) {
+        out->x[k][d] = state->q[r + d] - out->centre.p[d];
+        out->slope[k][d] = state->q[slope + d];
+        out->x_rate[k][d] = v[r + d] - out->centre.v[d];
+        out->slope_rate[k][d] = v[slope + d];
+        x_acc[d] = a[r + d] - out->c_acc[d];
+    }
+}
+
+/* Computes the motion of the centre, with these accelerations of the dofs. */
+static void look_at_centre(const fu_sheave *sheave, const double *a, view *out)
+{
+    const fu_attachment_state *centre = &out->centre;
+    for (int d = 0; d < (sheave->foot ? SPACE : DIM); ++d) {
+        out->centre_acc[d] = centre->bias[d];
+        for (int i = 0; i < centre->n; ++i) out->centre_acc[d] += centre->P[d * centre->n + i] * a[centre->at[i]];
+    }
+    if (sheave->foot) {
+        into_groove(sheave, centre->p, out->c);
+        into_groove(sheave, centre->v, out->c_rate);
+        into_groove(sheave, out->centre_acc, out->c_acc);
+        out->across = fu_dot(SPACE, sheave->axis, centre->p);
+        out->across_rate = fu_dot(SPACE, sheave->axis, centre->v);
+        out->across_acc = fu_dot(SPACE, sheave->axis, out->centre_acc);
+        return;
+    }
+    memcpy(out->c, centre->p, sizeof out->c);
+    memcpy(out->c_rate, centre->v, sizeof out->c_rate);
+    memcpy(out->c_acc, out->centre_acc, sizeof out->c_acc);
+}
+
 /* Computes a sheave at a state, with these accelerations of the dofs (null: zero). */
 static void look(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *a, view *out)
 {
@@ -73,22 +166,12 @@ static void look(const fu_model *model, const fu_coupling *coupling, const fu_st
     const fu_state moving = {.t = state->t, .q = state->q, .v = (double *)v};
     fu_attachment_state *centre = &out->centre;
     if (!a) a = model->zero;
+    out->q = state->q;
     fu_attachment_at(model, &sheave->attachments[0], &moving, 0.0, FU_POINT | FU_AXES, centre);
-    for (int d = 0; d < DIM; ++d) {
-        out->c_rate[d] = centre->v[d];
-        out->c_acc[d] = centre->bias[d];
-        for (int i = 0; i < centre->n; ++i) out->c_acc[d] += centre->P[d * centre->n + i] * a[centre->at[i]];
-    }
+    look_at_centre(sheave, a, out);
     for (int k = 0; k < ENDS; ++k) {
-        const int r = sheave->nodes[k], slope = r + SLOPE;
         double x_acc[DIM];
-        for (int d = 0; d < DIM; ++d) {
-            out->x[k][d] = state->q[r + d] - centre->p[d];
-            out->slope[k][d] = state->q[slope + d];
-            out->x_rate[k][d] = v[r + d] - centre->v[d];
-            out->slope_rate[k][d] = v[slope + d];
-            x_acc[d] = a[r + d] - out->c_acc[d];
-        }
+        (sheave->foot ? look_in_space : look_in_plane)(sheave, state, v, a, k, out, x_acc);
         sheave->kernel->angle(out->x[k], out->x_rate[k], x_acc, &out->phi_rate[k], &out->phi_acc[k], out->phi_x[k],
                               out->phi_xx[k], out->rate_x[k], out->acc_x[k], out->acc_v[k]);
     }
@@ -99,9 +182,10 @@ static void look(const fu_model *model, const fu_coupling *coupling, const fu_st
     }
     out->s[sheave->n_zones] += sheave->closing;
     out->own_rate = sheave->turn < 0 ? 0.0 : v[sheave->turn];
-    out->turn_rate = out->own_rate + centre->omega[0];
+    out->turn_rate = out->own_rate + about_axis(sheave, centre->omega, 1);
     out->turn_acc = sheave->turn < 0 ? 0.0 : a[sheave->turn];
-    for (int i = 0; i < centre->n; ++i) out->turn_acc += centre->T[i] * a[centre->at[i]];
+    for (int i = 0; i < centre->n; ++i)
+        out->turn_acc += about_axis(sheave, centre->T + i, centre->n) * a[centre->at[i]];
     find_angles(sheave, out);
 }
 
@@ -241,14 +325,60 @@ static void friction_at(const fu_sheave *sheave, const view *at, int j, double *
             p.phi, p.l, at->slope[p.foot], p.phi_rate, at->turn_rate, p.s_rate, F, numbers, power);
 }
 
+/* Inertia and weight of the wrap along the axis, in space, with this gravity along it. */
+typedef struct {
+    double T, V, f[SPACE], M[SPACE], D[SPACE * SPACE], K[SPACE * DIM];
+} motion_across;
+
+enum { OF_ACROSS = 3 };
+
+/* Computes the places among y of w, s_a and s_b of the kernel. */
+static void places_across(const fu_sheave *sheave, int at[OF_ACROSS])
+{
+    at[0] = ACROSS;
+    at[1] = MATERIAL;
+    at[2] = MATERIAL + sheave->n_zones;
+}
+
+static motion_across across_of(const fu_sheave *sheave, const view *at, double gravity)
+{
+    const int n = sheave->n_zones;
+    const double s_rate[ENDS] = {at->s_rate[0], at->s_rate[n]};
+    motion_across out;
+    sheave->foot->across(sheave->rho, at->s[n] - at->s[0], at->across, gravity, at->across_rate, at->across_acc, s_rate,
+                         &out.T, &out.V, out.f, out.M, out.D, out.K);
+    return out;
+}
+
+/* Adds its forces by y. */
+static void add_across(const fu_sheave *sheave, const view *at, double gravity, double *y)
+{
+    const motion_across motion = across_of(sheave, at, gravity);
+    int place[OF_ACROSS];
+    places_across(sheave, place);
+    for (int i = 0; i < OF_ACROSS; ++i) y[place[i]] += motion.f[i];
+}
+
+/* Adds its derivatives by y: D by rates, K by places. */
+static void add_across_matrices(const fu_sheave *sheave, const view *at, double factor, double (*D)[Y], double (*K)[Y])
+{
+    const motion_across motion = across_of(sheave, at, sheave->g[DIM]);
+    int place[OF_ACROSS];
+    places_across(sheave, place);
+    for (int i = 0; i < OF_ACROSS; ++i) {
+        for (int j = 0; j < OF_ACROSS; ++j) D[place[i]][place[j]] += factor * motion.D[i * OF_ACROSS + j];
+        K[place[i]][ACROSS] += factor * motion.K[i * DIM];
+        for (int e = 0; e < ENDS; ++e) K[place[i]][place[1 + e]] += (e ? factor : -factor) * motion.K[i * DIM + 1];
+    }
+}
+
 /* Adds all forces by z but those of inertia: of both energies, of damping and friction. */
 static void add_static_forces(const fu_sheave *sheave, const view *at, double *z)
 {
     for (int j = 0; j < sheave->n_zones; ++j) {
         const zone of = zone_of(sheave, at, j);
         double f[U_MATERIAL + 1], u[U], damping[4];
-        sheave->kernel->force(sheave->A, sheave->sense, sheave->rho, sheave->g, sheave->radius, of.phi, at->centre.p,
-                              of.l, f);
+        sheave->kernel->force(sheave->A, sheave->sense, sheave->rho, sheave->g, sheave->radius, of.phi, at->c, of.l, f);
         memcpy(u, f, sizeof(double) * U_MATERIAL);
         u[U_MATERIAL] = -f[U_MATERIAL];
         u[U_MATERIAL + 1] = f[U_MATERIAL];
@@ -279,6 +409,41 @@ static void conditions(const fu_sheave *sheave, const view *at, const double *mu
                                       phi + DIM * k, J[k], K[k]);
 }
 
+/* Adds the forces of the tangent points on the dofs, in space. */
+static void add_multipliers_in_space(const fu_sheave *sheave, const view *at, const double *multipliers, double *phi,
+                                     double *f)
+{
+    for (int k = 0; k < ENDS; ++k, multipliers += FU_FOOT_CONDITIONS, phi += FU_FOOT_CONDITIONS) {
+        double rows[FU_FOOT_CONDITIONS * FU_FOOT_DOFS];
+        fu_tangent_point foot;
+        fu_tangent_point_at(sheave, k, &at->centre, at->q, multipliers, &foot);
+        fu_tangent_point_rows(&foot, rows);
+        memcpy(phi, foot.phi, sizeof foot.phi);
+        for (int r = 0; r < FU_FOOT_CONDITIONS; ++r)
+            for (int j = 0; j < foot.n; ++j) f[foot.dofs[j]] += rows[r * foot.n + j] * multipliers[r];
+    }
+}
+
+/* The same by y, without the forces on the chords: those on the nodes, and their opposites on the centre. */
+static void add_multipliers_on_nodes(const fu_sheave *sheave, const view *at, const double *multipliers, double *phi,
+                                     double *y)
+{
+    for (int k = 0; k < ENDS; ++k, multipliers += FU_FOOT_CONDITIONS, phi += FU_FOOT_CONDITIONS) {
+        double on_node[SPACE] = {0.0}, in_groove[DIM];
+        fu_tangent_point foot;
+        fu_tangent_point_at(sheave, k, &at->centre, at->q, multipliers, &foot);
+        memcpy(phi, foot.phi, sizeof foot.phi);
+        for (int r = 0; r < FU_FOOT_CONDITIONS; ++r)
+            for (int d = 0; d < SPACE; ++d) on_node[d] += foot.J[r * FU_FOOT_VECTORS + d] * multipliers[r];
+        into_groove(sheave, on_node, in_groove);
+        y[ACROSS] -= fu_dot(SPACE, sheave->axis, on_node);
+        for (int d = 0; d < DIM; ++d) {
+            y[k * NODE + d] += in_groove[d];
+            y[CENTRE + d] -= in_groove[d];
+        }
+    }
+}
+
 /* Adds the forces of the tangent points by y. */
 static void add_multipliers(const fu_sheave *sheave, const view *at, const double *multipliers, double *phi, double *y)
 {
@@ -293,14 +458,34 @@ static void add_multipliers(const fu_sheave *sheave, const view *at, const doubl
             }
 }
 
-/* Adds forces by y to those on the dofs. */
+/* Computes the force on the centre from forces by y. */
+static void force_on_centre(const fu_sheave *sheave, const double *y, double out[SPACE])
+{
+    out[DIM] = 0.0;
+    for (int d = 0; d < (sheave->foot ? SPACE : DIM); ++d)
+        out[d] = sheave->foot ? fu_dot(DIM, sheave->groove + d * DIM, y + CENTRE) + sheave->axis[d] * y[ACROSS]
+                              : y[CENTRE + d];
+}
+
+/* Computes the moment on the carrier from forces by y. */
+static void moment_on_carrier(const fu_sheave *sheave, const double *y, double out[SPACE])
+{
+    for (int d = 0; d < SPACE; ++d) out[d] = sheave->foot ? sheave->axis[d] * y[TURN] : d ? 0.0 : y[TURN];
+}
+
+/* Adds forces by y to those on the dofs; in space there are none on the slopes. */
 static void scatter(const fu_sheave *sheave, const view *at, const double *y, double *f)
 {
-    for (int k = 0; k < ENDS; ++k)
+    for (int k = 0; k < ENDS && !sheave->foot; ++k)
         for (int i = 0; i < NODE; ++i) f[sheave->nodes[k] + i] += y[k * NODE + i];
+    for (int k = 0; k < ENDS && sheave->foot; ++k)
+        for (int d = 0; d < SPACE; ++d) f[sheave->nodes[k] + d] += fu_dot(DIM, sheave->groove + d * DIM, y + k * NODE);
     for (int j = 0; j <= sheave->n_zones; ++j) f[sheave->s[j]] += y[MATERIAL + j];
     if (sheave->turn >= 0) f[sheave->turn] += y[TURN];
-    fu_add_wrench(DIM, &at->centre, y + CENTRE, y + TURN, 1.0, f);
+    double on_centre[SPACE], moment[SPACE];
+    force_on_centre(sheave, y, on_centre);
+    moment_on_carrier(sheave, y, moment);
+    fu_add_wrench(sheave->foot ? SPACE : DIM, &at->centre, on_centre, moment, 1.0, f);
 }
 
 /* Adds the moment of the bearing, between the sheave and its carrier. */
@@ -319,6 +504,7 @@ static void inertial_force(const fu_model *model, const fu_coupling *coupling, c
     look(model, coupling, &state, a, &at);
     add_inertia(sheave, &at, z);
     add_by_angles(sheave, &at, z, y);
+    if (sheave->foot) add_across(sheave, &at, 0.0, y);
     scatter(sheave, &at, y, f);
 }
 
@@ -434,8 +620,8 @@ static void add_static_matrices(const fu_sheave *sheave, const view *at, double 
     for (int j = 0; j < sheave->n_zones; ++j) {
         const zone of = zone_of(sheave, at, j);
         double K_u[5 * 5], D_4[4 * 4], K_4[4 * 3];
-        sheave->kernel->tangent(sheave->A, sheave->sense, sheave->rho, sheave->g, sheave->radius, of.phi, at->centre.p,
-                                of.l, K_u);
+        sheave->kernel->tangent(sheave->A, sheave->sense, sheave->rho, sheave->g, sheave->radius, of.phi, at->c, of.l,
+                                K_u);
         add_zone_matrix(&of, 5, with_length, 5, with_length, factor, K_u, K);
         if (sheave->tau == 0.0) continue;
         sheave->kernel->damping_tangent(sheave->A, sheave->tau, sheave->radius, of.phi, of.l, of.phi_rate, of.s_rate,
@@ -453,10 +639,16 @@ static int columns_of(const fu_sheave *sheave, const view *at, const double *of_
 {
     int n = 0;
     memset(by, 0, sizeof(double) * Y * COLUMNS);
-    for (int k = 0; k < ENDS; ++k)
+    for (int k = 0; k < ENDS && !sheave->foot; ++k)
         for (int i = 0; i < NODE; ++i, ++n) {
             dofs[n] = sheave->nodes[k] + i;
             by[k * NODE + i][n] = 1.0;
+        }
+    for (int k = 0; k < ENDS && sheave->foot; ++k)
+        for (int i = 0; i < 2 * SPACE; ++i, ++n) {
+            dofs[n] = sheave->nodes[k] + i;
+            if (i >= SPACE) by[k * NODE + SLOPE][n] = at->stretch[k][i - SPACE];
+            for (int j = 0; i < SPACE && j < DIM; ++j) by[k * NODE + j][n] = sheave->groove[i * DIM + j];
         }
     for (int j = 0; j <= sheave->n_zones; ++j, ++n) {
         dofs[n] = sheave->s[j];
@@ -468,8 +660,13 @@ static int columns_of(const fu_sheave *sheave, const view *at, const double *of_
     }
     for (int i = 0; i < at->centre.n; ++i, ++n) {
         dofs[n] = at->centre.at[i];
-        for (int d = 0; d < DIM; ++d) by[CENTRE + d][n] = of_centre[d * at->centre.n + i];
-        by[TURN][n] = at->centre.T[i];
+        for (int d = 0; d < DIM && !sheave->foot; ++d) by[CENTRE + d][n] = of_centre[d * at->centre.n + i];
+        for (int d = 0; d < SPACE && sheave->foot; ++d) {
+            const double change = of_centre[d * at->centre.n + i];
+            for (int j = 0; j < DIM; ++j) by[CENTRE + j][n] += sheave->groove[d * DIM + j] * change;
+            by[ACROSS][n] += sheave->axis[d] * change;
+        }
+        by[TURN][n] = about_axis(sheave, at->centre.T + i, at->centre.n);
     }
     return n;
 }
@@ -511,6 +708,7 @@ static void mass_matrix(const fu_model *model, const fu_coupling *coupling, cons
     add_inertia_matrices(sheave, &at, scale, M, 0, 0);
     of_angles(at.phi_x, J);
     add_product(sheave, J, M, J, 1, K);
+    if (sheave->foot) K[ACROSS][ACROSS] += scale * across_of(sheave, &at, 0.0).M[0];
     add_matrix(model, sheave, &at, at.centre.P, K, system);
 }
 
@@ -523,6 +721,7 @@ static double kinetic_energy(const fu_model *model, const fu_coupling *coupling,
     (void)t, (void)past_fluid;
     look(model, coupling, &state, 0, &at);
     double total = 0.5 * sheave->inertia * at.turn_rate * at.turn_rate;
+    if (sheave->foot) total += across_of(sheave, &at, 0.0).T;
     for (int j = 0; j < sheave->n_zones; ++j) {
         const zone of = zone_of(sheave, &at, j);
         double T;
@@ -543,9 +742,10 @@ static double potential_energy(const fu_model *model, const fu_coupling *couplin
     for (int j = 0; j < sheave->n_zones; ++j) {
         const zone of = zone_of(sheave, &at, j);
         double V;
-        sheave->kernel->weight(sheave->rho, sheave->g, sheave->radius, of.phi, at.centre.p, of.l, &V);
+        sheave->kernel->weight(sheave->rho, sheave->g, sheave->radius, of.phi, at.c, of.l, &V);
         total += V;
     }
+    if (sheave->foot) total += across_of(sheave, &at, sheave->g[DIM]).V;
     return total;
 }
 
@@ -559,6 +759,7 @@ static void forces_by_y(const fu_sheave *sheave, const view *at, double *y)
     add_inertia(sheave, at, z);
     add_static_forces(sheave, at, z);
     add_by_angles(sheave, at, z, y);
+    if (sheave->foot) add_across(sheave, at, sheave->g[DIM], y);
 }
 
 static void force(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f)
@@ -576,23 +777,61 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
 {
     const fu_sheave *sheave = sheave_of(coupling);
     view at;
-    double y[Y], phi[CONDITIONS];
+    double y[Y], phi[MAX_CONDITIONS];
     look(model, coupling, equations->next, 0, &at);
     forces_by_y(sheave, &at, y);
-    add_multipliers(sheave, &at, equations->next->forces + coupling->force, phi, y);
+    (sheave->foot ? add_multipliers_in_space : add_multipliers)(sheave, &at, equations->next->forces + coupling->force,
+                                                                phi, sheave->foot ? f : y);
     scatter(sheave, &at, y, f);
     add_bearing(sheave, &at, f);
-    for (int r = 0; r < CONDITIONS; ++r)
+    for (int r = 0; r < ENDS * conditions_of(sheave); ++r)
         internal[coupling->unknown + r] = -fu_row_unit(equations->weights.inertia, coupling->scale[r]) * phi[r];
 }
 
-/* Adds the derivatives of the conditions, and of their forces. */
+/* Adds the derivatives of the conditions of a tangent point, and of their forces, in space. */
+static void add_foot(const fu_model *model, const fu_coupling *coupling, const fu_tangent_point *foot, int first,
+                     const double *by_psi, const fu_equations *equations, fu_system *system)
+{
+    const int own = fu_extra(model, coupling->unknown) + first, n = foot->n;
+    const double *multipliers = equations->next->forces + coupling->force + first;
+    double rows[FU_FOOT_CONDITIONS * FU_FOOT_DOFS], columns[FU_FOOT_CONDITIONS * FU_FOOT_DOFS],
+        K[FU_FOOT_DOFS * FU_FOOT_DOFS];
+    fu_tangent_point turned = *foot;
+    fu_tangent_point_turn(by_psi, &turned);
+    fu_tangent_point_rows(&turned, rows);
+    fu_tangent_point_rows(foot, columns);
+    fu_tangent_point_stiffness(foot, &turned, multipliers, K);
+    for (int j = 0; j < n; ++j) {
+        for (int r = 0; r < FU_FOOT_CONDITIONS; ++r) {
+            const double unit = fu_row_unit(equations->weights.inertia, coupling->scale[first + r]);
+            if (rows[r * n + j] != 0.0) fu_add(model, system, own + r, foot->dofs[j], unit * rows[r * n + j]);
+            if (columns[r * n + j] != 0.0) fu_add(model, system, foot->dofs[j], own + r, unit * columns[r * n + j]);
+        }
+        for (int i = 0; i < n; ++i)
+            if (K[i * n + j] != 0.0)
+                fu_add(model, system, foot->dofs[i], foot->dofs[j], equations->weights.stiffness * K[i * n + j]);
+    }
+}
+
+static void add_conditions_in_space(const fu_model *model, const fu_coupling *coupling, const view *at,
+                                    const fu_equations *equations, const double *by_psi, fu_system *system)
+{
+    for (int k = 0; k < ENDS; ++k) {
+        const int first = FU_FOOT_CONDITIONS * k;
+        fu_tangent_point foot;
+        fu_tangent_point_at(sheave_of(coupling), k, &at->centre, at->q,
+                            equations->next->forces + coupling->force + first, &foot);
+        add_foot(model, coupling, &foot, first, by_psi, equations, system);
+    }
+}
+
+/* Adds the derivatives of the conditions, and of their forces, in the plane. */
 static void add_conditions(const fu_model *model, const fu_coupling *coupling, const view *at,
                            const fu_equations *equations, const double *by_psi, double (*K_y)[Y], fu_system *system)
 {
     const fu_sheave *sheave = sheave_of(coupling);
     const int own = fu_extra(model, coupling->unknown);
-    double phi[CONDITIONS], J[ENDS][DIM * NODE], K[ENDS][NODE * NODE], by[Y][COLUMNS], by_column[Y][COLUMNS];
+    double phi[MAX_CONDITIONS], J[ENDS][DIM * NODE], K[ENDS][NODE * NODE], by[Y][COLUMNS], by_column[Y][COLUMNS];
     int dofs[COLUMNS];
     conditions(sheave, at, equations->next->forces + coupling->force, phi, J, K);
     const int n = columns_of(sheave, at, at->centre.P, dofs, by);
@@ -626,10 +865,11 @@ static void add_centre(const fu_model *model, const fu_sheave *sheave, const vie
                        const double *y, fu_system *system)
 {
     const int n = at->centre.n;
-    const double moment[3] = {y[TURN], 0.0, 0.0};
-    double K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
+    double on_centre[SPACE], moment[SPACE], K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
     if (!n) return;
-    fu_wrench_derivatives(model, &sheave->attachments[0], equations->next, y + CENTRE, moment, n, K, 0, 0);
+    force_on_centre(sheave, y, on_centre);
+    moment_on_carrier(sheave, y, moment);
+    fu_wrench_derivatives(model, &sheave->attachments[0], equations->next, on_centre, moment, n, K, 0, 0);
     fu_turn_attachment(model, &sheave->attachments[0], equations->psi, K, n, n, 0);
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j)
@@ -658,6 +898,7 @@ static void add_derivatives(const fu_sheave *sheave, view *at, fu_weights w, dou
     add_inertia(sheave, at, z);
     add_static_forces(sheave, at, z);
     add_turning(at, w.stiffness, z, K);
+    if (sheave->foot) add_across_matrices(sheave, at, w.stiffness, D, K);
 }
 
 /* Adds the tangent; derivatives of the acceleration of the centre by rotations of its body are neglected. */
@@ -667,15 +908,16 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     const fu_sheave *sheave = sheave_of(coupling);
     const fu_weights w = equations->weights;
     const fu_state *next = equations->next;
-    double K[Y][Y], D[Y][Y], y[Y], phi[CONDITIONS], by_psi[DIM * FU_ATTACHMENT_COORDINATES];
+    double K[Y][Y], D[Y][Y], y[Y], phi[MAX_CONDITIONS], by_psi[SPACE * FU_ATTACHMENT_COORDINATES];
     view at;
     look(model, coupling, next, next->acceleration, &at);
     memset(K, 0, sizeof K);
     memset(D, 0, sizeof D);
     add_derivatives(sheave, &at, w, D, K);
-    memcpy(by_psi, at.centre.P, sizeof(double) * (size_t)(DIM * at.centre.n));
-    fu_turn_attachment(model, &sheave->attachments[0], equations->psi, by_psi, DIM, at.centre.n, 0);
-    add_conditions(model, coupling, &at, equations, by_psi, K, system);
+    memcpy(by_psi, at.centre.P, sizeof(double) * (size_t)(model->dim * at.centre.n));
+    fu_turn_attachment(model, &sheave->attachments[0], equations->psi, by_psi, model->dim, at.centre.n, 0);
+    if (sheave->foot) add_conditions_in_space(model, coupling, &at, equations, by_psi, system);
+    else add_conditions(model, coupling, &at, equations, by_psi, K, system);
     add_matrix(model, sheave, &at, by_psi, K, system);
     for (int i = 0; i < Y; ++i)
         for (int j = 0; j < Y; ++j) D[i][j] *= w.rate;
@@ -683,15 +925,44 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     if (sheave->turn >= 0 && sheave->damping != 0.0)
         fu_add(model, system, sheave->turn, sheave->turn, w.stiffness * w.rate * sheave->damping);
     forces_by_y(sheave, &at, y);
-    add_multipliers(sheave, &at, next->forces + coupling->force, phi, y);
+    (sheave->foot ? add_multipliers_on_nodes : add_multipliers)(sheave, &at, next->forces + coupling->force, phi, y);
     add_centre(model, sheave, &at, equations, y, system);
+}
+
+static void rows_in_space(const fu_model *model, const fu_sheave *sheave, const fu_state *state, fu_rows *out)
+{
+    const double none[FU_FOOT_CONDITIONS] = {0.0};
+    fu_attachment_state centre;
+    fu_attachment_at(model, &sheave->attachments[0], state, 0.0, FU_POINT, &centre);
+    for (int k = 0; k < ENDS; ++k) {
+        double rows[FU_FOOT_CONDITIONS * FU_FOOT_DOFS], bias[FU_FOOT_CONDITIONS];
+        fu_tangent_point foot;
+        fu_tangent_point_at(sheave, k, &centre, state->q, none, &foot);
+        fu_tangent_point_rows(&foot, rows);
+        fu_tangent_point_bias(sheave, k, &foot, &centre, state->q, state->v, bias);
+        out->n = ENDS * foot.n;
+        memcpy(out->at + k * foot.n, foot.dofs, sizeof(int) * (size_t)foot.n);
+        for (int r = 0; r < FU_FOOT_CONDITIONS; ++r) {
+            const int row = FU_FOOT_CONDITIONS * k + r;
+            double *H = out->H + row * out->n;
+            out->C[row] = foot.phi[r];
+            out->rate[row] = 0.0;
+            out->W[row] = -bias[r];
+            memset(H, 0, sizeof(double) * (size_t)out->n);
+            memcpy(H + k * foot.n, rows + r * foot.n, sizeof(double) * (size_t)foot.n);
+        }
+    }
 }
 
 static void rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work)
 {
     const fu_sheave *sheave = sheave_of(coupling);
-    const double none[CONDITIONS] = {0.0};
+    const double none[MAX_CONDITIONS] = {0.0};
     fu_rows *out = &work->rows[coupling->row];
+    if (sheave->foot) {
+        rows_in_space(model, sheave, state, out);
+        return;
+    }
     double J[ENDS][DIM * NODE], K[ENDS][NODE * NODE], by[Y][COLUMNS];
     view at;
     look(model, coupling, state, 0, &at);
@@ -719,7 +990,8 @@ static void rows(const fu_model *model, const fu_coupling *coupling, const fu_st
 static void take_forces(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state)
 {
     (void)model;
-    memcpy(state->forces + coupling->force, work->multipliers + coupling->multiplier, sizeof(double) * CONDITIONS);
+    memcpy(state->forces + coupling->force, work->multipliers + coupling->multiplier,
+           sizeof(double) * (size_t)(ENDS * conditions_of(sheave_of(coupling))));
 }
 
 static void gaps(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *phi)
@@ -727,6 +999,11 @@ static void gaps(const fu_model *model, const fu_coupling *coupling, const fu_st
     double J[ENDS][DIM * NODE], K[ENDS][NODE * NODE];
     view at;
     look(model, coupling, state, 0, &at);
+    if (sheave_of(coupling)->foot) {
+        double y[Y] = {0.0};
+        add_multipliers_on_nodes(sheave_of(coupling), &at, state->forces + coupling->force, phi, y);
+        return;
+    }
     conditions(sheave_of(coupling), &at, state->forces + coupling->force, phi, J, K);
 }
 
@@ -786,19 +1063,31 @@ static int may_be_open(const fu_model *model, const fu_coupling *coupling, const
     return 1;
 }
 
+/* Returns the stretch of the span at a tangent point, in the plane along the groove. */
+static double stretch_along(const fu_sheave *sheave, const view *at, int k, const double t[DIM])
+{
+    return sheave->foot ? at->slope[k][0] : fu_dot(DIM, t, at->slope[k]);
+}
+
+/* Returns the arm of a force along the groove over that of the tension, which in space leaves it at a fleet angle. */
+static double arm_over_radius(const fu_sheave *sheave, const view *at, int k)
+{
+    return sheave->foot ? sqrt(fu_dot(DIM, at->x[k], at->x[k])) / sheave->tangent_radius[k] : 1.0;
+}
+
 /* Computes the tension at both tangent points from the balance of momentum at the nodes, through which material passes,
  * along the groove in the sense of travel, with the accelerations of `at`; the speed of the material past the centre;
  * and all forces by y. */
 static void tensions(const fu_sheave *sheave, const view *at, const double *multipliers, double tension[ENDS],
-                     double speed[ENDS], double phi[CONDITIONS], double y[Y])
+                     double speed[ENDS], double phi[MAX_CONDITIONS], double y[Y])
 {
     forces_by_y(sheave, at, y);
-    add_multipliers(sheave, at, multipliers, phi, y);
+    (sheave->foot ? add_multipliers_on_nodes : add_multipliers)(sheave, at, multipliers, phi, y);
     for (int k = 0; k < ENDS; ++k) {
         const double s_rate = at->s_rate[k ? sheave->n_zones : 0];
         const double t[DIM] = {-sheave->sense * sin(at->phi[k]), sheave->sense * cos(at->phi[k])};
-        const double along = fu_dot(DIM, t, y + k * NODE);
-        speed[k] = fu_dot(DIM, t, at->x_rate[k]) - fu_dot(DIM, t, at->slope[k]) * s_rate;
+        const double along = arm_over_radius(sheave, at, k) * fu_dot(DIM, t, y + k * NODE);
+        speed[k] = fu_dot(DIM, t, at->x_rate[k]) - stretch_along(sheave, at, k, t) * s_rate;
         const double velocity = speed[k] + fu_dot(DIM, t, at->c_rate);
         tension[k] = (k ? along : -along) - sheave->rho * s_rate * velocity;
     }
@@ -857,12 +1146,28 @@ double fu_wrap_margin(const fu_model *model, const fu_coupling *coupling, const 
     return sheave->sense * (at.phi[1] - at.phi[0]) - sheave->least_wrap;
 }
 
+/* A span is a minimum of the energy R phi + l while its length along the groove is above R tan f: else the tangent
+ * point runs away along the groove. The margin has a reserve. */
+double fu_fleet_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    const fu_sheave *sheave = sheave_of(coupling);
+    const double reserve = 3.0;
+    double least = INFINITY;
+    (void)model;
+    for (int k = 0; k < ENDS; ++k) {
+        const double fleet = fu_fleet_angle(sheave, k, state->q);
+        const double length = state->q[sheave->span_s[ENDS * k + 1]] - state->q[sheave->span_s[ENDS * k]];
+        least = fmin(least, length * cos(fleet) - reserve * sheave->radius * tan(fabs(fleet)));
+    }
+    return least;
+}
+
 /* Computes the tensions at both tangent points from the stretch of the spans there, and the speeds of the material. */
 static void elastic_tensions(const fu_sheave *sheave, const view *at, double tension[ENDS], double speed[ENDS])
 {
     for (int k = 0; k < ENDS; ++k) {
         const double t[DIM] = {-sheave->sense * sin(at->phi[k]), sheave->sense * cos(at->phi[k])};
-        const double stretch = fu_dot(DIM, t, at->slope[k]);
+        const double stretch = stretch_along(sheave, at, k, t);
         speed[k] = fu_dot(DIM, t, at->x_rate[k]) - stretch * at->s_rate[k ? sheave->n_zones : 0];
         tension[k] = sheave->A[0] * (stretch - 1.0);
     }
@@ -872,8 +1177,8 @@ static void elastic_tensions(const fu_sheave *sheave, const view *at, double ten
  * have little accuracy. With friction it is elastic: friction on a light rope accelerates its nodes at once. */
 static double wrap_pressure(const fu_sheave *sheave, const view *at)
 {
-    const double none[CONDITIONS] = {0.0};
-    double tension[ENDS], speed[ENDS], phi[CONDITIONS], y[Y];
+    const double none[MAX_CONDITIONS] = {0.0};
+    double tension[ENDS], speed[ENDS], phi[MAX_CONDITIONS], y[Y];
     if (has_friction(sheave)) elastic_tensions(sheave, at, tension, speed);
     else tensions(sheave, at, none, tension, speed, phi, y);
     return least_pressure(sheave, at, tension, speed);
@@ -899,12 +1204,15 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     const double *multipliers = work ? work->multipliers + coupling->multiplier : state->forces + coupling->force;
     sheave_output *numbers = (sheave_output *)out;
     view at;
-    double y[Y], phi[CONDITIONS], tension[ENDS], speed[ENDS];
+    double y[Y], phi[MAX_CONDITIONS], tension[ENDS], speed[ENDS], on_centre[SPACE];
     look(model, coupling, state, acceleration, &at);
     tensions(sheave, &at, multipliers, tension, speed, phi, y);
     *numbers = (sheave_output){.tension_on = tension[0], .tension_off = tension[1]};
     numbers->wrap_angle = sheave->sense * (at.phi[1] - at.phi[0]);
-    for (int d = 0; d < DIM; ++d) numbers->force[d] = -y[CENTRE + d];
+    force_on_centre(sheave, y, on_centre);
+    for (int d = 0; d < SPACE; ++d) numbers->force[d] = -on_centre[d] + 0.0; /* no -0 */
+    numbers->fleet_angle_on = sheave->foot ? fu_fleet_angle(sheave, 0, state->q) : 0.0;
+    numbers->fleet_angle_off = sheave->foot ? fu_fleet_angle(sheave, 1, state->q) : 0.0;
     numbers->material_speed = -0.5 * (at.s_rate[0] + at.s_rate[sheave->n_zones]);
     numbers->normal_force = wrap_pressure(sheave, &at);
     numbers->angle = sheave->turn < 0 ? 0.0 : state->q[sheave->turn];
@@ -914,11 +1222,25 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
         if (fabs(of[0]) > fabs(numbers->slip)) numbers->slip = of[0];
         numbers->torque -= F[1];
     }
-    for (int r = 0; r < CONDITIONS; ++r) numbers->residual = fmax(numbers->residual, fabs(phi[r]));
+    for (int r = 0; r < ENDS * conditions_of(sheave); ++r) numbers->residual = fmax(numbers->residual, fabs(phi[r]));
 }
+
+static const char *const foot_role[] = {"tangent_point", 0};
 
 static const fu_field fields[] = {
     FU_FIELD(fu_sheave, kernel, FU_KERNELS, 0),
+    FU_FIELD(fu_sheave, foot, FU_KERNELS, foot_role),
+    FU_FIELD_ARRAY(fu_sheave, groove, FU_REAL),
+    FU_FIELD_ARRAY(fu_sheave, axis, FU_REAL),
+    FU_FIELD_ARRAY(fu_sheave, weight, FU_REAL),
+    FU_FIELD(fu_sheave, limit, FU_REAL, 0),
+    FU_FIELD_ARRAY(fu_sheave, chord, FU_REAL),
+    FU_FIELD_ARRAY(fu_sheave, span_first, FU_INTEGER),
+    FU_FIELD_ARRAY(fu_sheave, span_elements, FU_INTEGER),
+    FU_FIELD_ARRAY(fu_sheave, span_reach, FU_INTEGER),
+    FU_FIELD_ARRAY(fu_sheave, span_s, FU_INTEGER),
+    FU_FIELD(fu_sheave, share_before, FU_REALS, 0),
+    FU_FIELD(fu_sheave, share_after, FU_REALS, 0),
     FU_FIELD_ARRAY(fu_sheave, attachments, FU_ATTACHMENT),
     FU_FIELD_ARRAY(fu_sheave, nodes, FU_INTEGER),
     FU_FIELD(fu_sheave, s, FU_INTEGERS, 0),
@@ -953,6 +1275,8 @@ static const fu_output output_fields[] = {
     FU_OUTPUT(sheave_output, torque, "N m", NULL),
     FU_OUTPUT(sheave_output, angle, "rad", NULL),
     FU_OUTPUT(sheave_output, residual, "m", NULL),
+    FU_OUTPUT(sheave_output, fleet_angle_on, "rad", NULL),
+    FU_OUTPUT(sheave_output, fleet_angle_off, "rad", NULL),
     FU_LAST_OUTPUT(sheave_output),
 };
 

@@ -1,0 +1,29 @@
+"""Samples of tangent points of ropes on sheaves in space."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...codegen.family import CouplingFamily
+from ...elements import ELEMENTS
+from ..numbers import Numbers, State
+from .element import element_state
+from .shapes import rotation
+
+
+def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) -> State:
+    """Return a tangent point not far from the groove, with a fleet angle, and a point of a bent element."""
+    found: State = {name: random.normal(size=3) for name in ("x_rate", "chord_rate", "f")}
+    Q = rotation(random, 3)  # columns: from the centre, along the groove, along the axis
+    R, length = random.uniform(0.6, 0.9), random.uniform(0.7, 1.1)
+    direction = Q @ np.array([random.uniform(0.1, 0.2), 1.0, random.uniform(0.2, 0.4)])
+    found |= {"axis": Q[:, 2], "x": Q @ [R + 0.1 * random.normal(), *random.uniform(0.1, 0.2, 2)], "R": np.float64(R),
+              "b": np.float64(length * random.uniform(0.85, 0.95)), "weight": random.uniform(-0.2, 0.2, 3),
+              "EA": np.float64(random.uniform(7, 12)), "limit": np.float64(random.uniform(0.2, 0.4)),
+              "b_rate": np.float64(random.uniform(0.2, 0.5)), "chord": length * direction / np.linalg.norm(direction)}
+    element = element_state(ELEMENTS["cable12"], random)
+    return found | {"e": element["e"], "l": element["l"], "s": element["l"] * random.uniform(0.2, 0.8),
+                    "rho": np.float64(1.3), "w": np.float64(random.normal()),
+                    "g": np.float64(random.normal()), "w_rate": np.float64(random.normal()),
+                    "w_acc": np.float64(random.normal()), "s_rate": random.normal(size=2),
+                    "by_L": np.array([random.uniform(-0.9, -0.5), random.uniform(0.3, 0.6)])}
