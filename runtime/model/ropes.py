@@ -440,7 +440,10 @@ CELLS = 256
 
 @dataclass(kw_only=True)
 class DrumModel(CouplingModel):
-    """A drum at an end of a rope: fu_drum of the engine."""
+    """A drum at an end of a rope: fu_drum of the engine.
+
+    ends_run_by: "error" or "stop", where it has run empty.
+    """
 
     kernel: str
     attachments: tuple[AttachmentModel]
@@ -458,6 +461,7 @@ class DrumModel(CouplingModel):
     damping: float
     torque_signal: int
     torque: float
+    ends_run_by: str
     n_cells: int = CELLS
     n_numbers: int = CELLS + 1
 
@@ -499,8 +503,8 @@ def drum_models(builder: ModelBuilder) -> Iterator[DrumModel]:
                             end=0.0 if at.end == 0 else rope.free_length, radius=item.radius,
                             tangent_radius=rope.route.reach[at.end], sense=float(SIDES[item.side]), rho=rope.rho,
                             g=gravity, A=rope.stiffness[:2], inertia=item.inertia, damping=item.damping,
-                            torque_signal=number, torque=factor, scale=[mass] * 3, n_multipliers=3, has_inertia=True,
-                            is_damped=True)
+                            torque_signal=number, torque=factor, ends_run_by=item.at_end, scale=[mass] * 3,
+                            n_multipliers=3, has_inertia=True, is_damped=True)
 
 
 @dataclass(kw_only=True)

@@ -21,6 +21,8 @@ MAX_ZONES = 16
 """Zones of a wrap for which the engine has room."""
 MAX_FLEET_ANGLE = 0.07
 """Fleet angle in rad, 4 degrees, that rules for cranes allow."""
+AT_END = ("error", "stop")
+"""What a drum does that has run empty."""
 SIDES = {"left": 1, "right": -1}
 """The senses in which the rope runs around a sheave on a side of it: 1 counter-clockwise."""
 
@@ -236,6 +238,7 @@ class Drum(Wheel):
     torque: of a motor or a brake between it and what holds it, over time, N m; it turns about z, counter-clockwise
     angle, velocity: of its rotation over time, prescribed, rad or rad/s, relative to the body that it is on
     damping: of its bearing, N m s
+    at_end: where it has run empty, "error" ends the run with a RopeLeftError, "stop" as an event does
     """
 
     kind = "drum"
@@ -253,6 +256,7 @@ class Drum(Wheel):
     )
     side: Annotated[str, one_of(SIDES)]
     length_in_store: Annotated[float, positive("m")]
+    at_end: Annotated[str, one_of(AT_END)] = "error"
 
 
 ROUTE_ITEMS = Family("route_item", 'an item such as Anchor("A") or Sheave("top", at=(0, 9, 0), radius=0.3)',

@@ -119,7 +119,7 @@ def _message(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
             jumps = [each for each in velocity_jumps(scene.as_drawn, settings.duration) if each in simulation.messages]
             return "; ".join([*points.notes(), stopped(model, engine, status, settings), *jumps])
         case "event":
-            return f'stopped by event "{simulation.event_handler.stopped_by}" at {when}'
+            return f"stopped by {simulation.event_handler.stopped_by} at {when}"
         case "interrupted":
             remedy = "" if settings.save is None else ", and resume continues the run"
             return f"interrupted at {when}; {RESULTS_KEPT}{remedy}"

@@ -103,6 +103,9 @@ def test_an_empty_drum_ends_the_run():
         hoist(store=0.05, velocity=paying).run(0.5, output_step=0.1)
     assert caught.value.run["winch.length_in_store"][-1] == pytest.approx(0.0, abs=1e-6)
     assert 0.1 < caught.value.run.time[-1] < 0.3
+    stopped = hoist(store=0.05, velocity=paying, at_end="stop").run(0.5, output_step=0.1)
+    assert stopped.status == "event" and 'drum "winch", which has run empty,' in stopped.report["message"]
+    assert stopped.time[-1] == caught.value.run.time[-1]
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)

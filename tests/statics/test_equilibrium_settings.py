@@ -36,8 +36,9 @@ def solvers(monkeypatch):
         calls.static.append(settings)
         return State()
 
-    def modes(scene, n, about, as_drawn):
+    def modes(scene, n, about, as_drawn, stick):
         calls.modal.append((n, about, as_drawn))
+        assert not stick
         return "modes"
 
     def simulate(scene, settings, on_progress, **start):

@@ -13,6 +13,7 @@ from ...checks.placement import AXES
 from ...errors import SceneError, near
 from ...model.middle_strain import middle_strain
 from ...model.model import Model
+from ...model.ropes import DrumModel
 from ...model.rope_states import rope_state
 from ...model.states import body_rates, body_state, spatial
 from ...parts.event import Event
@@ -168,6 +169,14 @@ class EventHandler:
         return [f'drag "{name}" leaves the table of its fluid at t = {time:.6g} s: beyond the edges the velocity stays '
                 "as it is there; take a larger table" for name, time in first.items()]
 
+    def stops_empty(self, number: int) -> bool:
+        """Return whether a rope's coupling with this number is a drum whose end stops the run; record that it did."""
+        drum = self.model.couplings[number]
+        if not isinstance(drum, DrumModel) or drum.ends_run_by != "stop":
+            return False
+        self.stopped_by = f'drum "{drum.name}", which has run empty,'
+        return True
+
     def happens(self, which: int, time: float, q: np.ndarray, v: np.ndarray, s: np.ndarray) -> bool:
         """Record an event; return whether the run continues."""
         event, state = self.event_functions[which].event, State(self.model, q, v, s)
@@ -176,5 +185,5 @@ class EventHandler:
         at |= {f"{slide.name}.s": state[f"{slide.name}.s"] for slide in self.model.slides}
         self._note({"name": event.name, "time": time, "state": at})
         if event.action == "stop":
-            self.stopped_by = event.name
+            self.stopped_by = f'event "{event.name}"'
         return event.action != "stop"

@@ -27,7 +27,7 @@ from ...model.redundant_constraints import drop_redundant_rows
 from ...parts.scene_data import SceneData
 from ...parts.settings import RunSettings
 from ..linear.threads import share_elements
-from ..notes.diagnosis import notes, trapped
+from ..notes.diagnosis import EMPTY, notes, trapped
 from ..notes.fast_turns import FastTurns
 from ..notes.row_notes import RowNotes
 from ..notes.sensitivity import Sensitivity, sensitive
@@ -127,6 +127,8 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: ProgressDispl
     started = run.began - begin - set_up
     if status in (None, "running"):
         status = run.engine.advance(run.observer, blocks.every, stream)
+    if status == "rope_left" and run.engine.left[1] == EMPTY and run.event_handler.stops_empty(run.engine.left[0]):
+        status = "event"
     if status == "interrupted" and stream is not None and not stream.has_begun:  # write a checkpoint to resume from
         run = _begun(scene, settings, _prepared(scene, settings, initial), method, blocks, on_progress, stream)
     messages += run.observer.notes() + _warned(run.event_handler.notes())

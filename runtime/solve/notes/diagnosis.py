@@ -27,6 +27,8 @@ ROPE_LEFT = (
      "keep what is at the ends of the span apart, or stop before by an event"),
     ('drum "{name}" has run empty', "give a greater length_in_store, or stop before by an event"))
 """Why a run with a rope ended, and what helps, by the reasons of engine/events/rope.c."""
+EMPTY = len(ROPE_LEFT) - 1
+"""The reason of a drum."""
 
 MAX_PLAUSIBLE_STRETCH = 3.0
 """Messages name elements that are longer than this multiple of their undeformed length."""
