@@ -24,6 +24,7 @@ from .parts.listed import *  # noqa: F403  the kinds of parts
 from .parts.material import Material as Material
 from .parts.polar import Polar as Polar
 from .parts.rope_items import Anchor as Anchor
+from .parts.rope_items import Block as Block
 from .parts.rope_items import Drum as Drum
 from .parts.rope_items import Sheave as Sheave
 from .parts.section import Circle as Circle

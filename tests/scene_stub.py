@@ -17,7 +17,7 @@ from funicular.parts.kinds import KINDS
 from funicular.parts.material import Material
 from funicular.parts.part import Part
 from funicular.parts.polar import Polar
-from funicular.parts.rope_items import Anchor, Drum, Sheave
+from funicular.parts.rope_items import Anchor, Block, Drum, Sheave
 from funicular.parts.scene_data import SceneData
 from funicular.parts.scene_methods import signature
 from funicular.parts.section import Section
@@ -50,8 +50,8 @@ def signature(kind: type[Part]) -> Signature: ...
 class SceneMethods(SceneData):
 '''
 
-OTHERS = (Anchor, Drum, Sheave, Stop, ForceTable, Friction, Material, SceneData, Section, Signal, Solid, Polar, Profile,
-          VelocityTable, Part)
+OTHERS = (Anchor, Block, Drum, Sheave, Stop, ForceTable, Friction, Material, SceneData, Section, Signal, Solid, Polar,
+          Profile, VelocityTable, Part)
 """What signatures need beside the kinds of parts."""
 
 TYPES = {
@@ -62,7 +62,7 @@ TYPES = {
     "added_mass": "float | Numbers | Points",
     "ForceTable": "ForceTable | dict[str, Numbers]",
     "Displacement": "Sequence[Scale | str | None]", "Rotation": "tuple[Numbers, Scale]",
-    "Listed": "Named | Sequence[Named]", "Route": "Sequence[Anchor | Drum | Sheave | dict[str, Any]]",
+    "Listed": "Named | Sequence[Named]", "Route": "Sequence[Anchor | Block | Drum | Sheave | dict[str, Any]]",
     "ElementsOfSpans": "int | Sequence[int]",
     "Name": "str", "Count": "int", "Flag": "bool", "Exponent": "float",
     "Material": "Material", "AnyFriction": "Friction | float",

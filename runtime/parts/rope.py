@@ -8,7 +8,7 @@ from itertools import chain
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from .attachment import Attachment
 from .material import Material
@@ -16,7 +16,7 @@ from .modal_body import ModalBody
 from .part import Part
 from .quantity import Quantity, vector_of_time
 from .rigid_body import RigidBody
-from .rope_items import ROUTE_ITEMS, SIDES, Anchor, Drum, RouteItem, Sheave
+from .rope_items import ROUTE_ITEMS, SIDES, Anchor, Block, Drum, RouteItem, Sheave
 from .rope_route import MAX_LAYER, DrawnRoute, RoutePoint, default_senses, drawn_route
 from .rope_route_space import groove_of, senses_in_space, span_in_space
 from .schemas import POINT, checked
@@ -38,6 +38,11 @@ def _listed(value: Any) -> list[Any]:
     return given
 
 
+def _without_blocks(route: tuple[RouteItem, ...]) -> tuple[RouteItem, ...]:
+    """Return a route with the sheaves of its blocks in their place."""
+    return tuple(chain.from_iterable(item.sheaves if isinstance(item, Block) else (item,) for item in route))
+
+
 def _elements(value: Any) -> int | tuple[int, ...]:
     if (given := items(value, 1)) is not None:
         return tuple(map(whole_number, given))
@@ -46,7 +51,7 @@ def _elements(value: Any) -> int | tuple[int, ...]:
 
 COUNT = {"type": "integer", "minimum": 1, "maximum": MAX_COUNT}
 Route = Annotated[tuple[Annotated[RouteItem, ROUTE_ITEMS.checked()], ...], Field(json_schema_extra={"minItems": 2}),
-                  BeforeValidator(_listed)]
+                  BeforeValidator(_listed), AfterValidator(_without_blocks)]
 ElementsOfSpans = Annotated[int | tuple[int, ...], checked(_elements, {
     "anyOf": [COUNT, {"type": "array", "items": COUNT, "minItems": 1}]})]
 
@@ -65,7 +70,7 @@ class Rope(Part):
     unless it is prescribed.
 
     route: an `Anchor` or a `Drum`, sheaves, and again an `Anchor` or a `Drum`, in the rope's order; of a closed rope
-        two sheaves or more
+        two sheaves or more. A `Block` stands for its sheaves
     closed: whether the last sheave leads to the first one, as of a belt
     elements: number of elements of each span, or a list of one number for each span
     tension: at the route's first point, uniform as drawn, N

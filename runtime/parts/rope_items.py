@@ -21,6 +21,7 @@ MAX_ZONES = 16
 """Zones of a wrap for which the engine has room."""
 MAX_FLEET_ANGLE = 0.07
 """Fleet angle in rad, 4 degrees, that rules for cranes allow."""
+MAX_FALLS = 100
 AT_END = ("error", "stop")
 """What a drum does that has run empty."""
 SIDES = {"left": 1, "right": -1}
@@ -259,5 +260,43 @@ class Drum(Wheel):
     at_end: Annotated[str, one_of(AT_END)] = "error"
 
 
+class Block(RouteItem):
+    """The sheaves of a tackle: falls of rope side by side between a lower and an upper axle.
+
+    A route has in its place the sheaves in the order in which the rope passes them, first one on the lower axle,
+    "hook_1" of a block "hook", then "hook_2" on the upper one. After an even number of falls the rope leaves upwards,
+    after an odd one downwards, so that its end is at the lower axle.
+
+    at: lower axle, a body, or a point in the axes of a body
+    upper: upper axle, a point of the ground, a body, or a point in the axes of a body
+    falls: number of parts of the rope that hold the lower axle; there is one sheave less
+    radius, side, inertia, friction, zones: of each sheave, see `Sheave`
+    """
+
+    kind = "block"
+    positional = ("name",)
+    name: Name
+    at: AnyAttachment
+    upper: AnyAttachment
+    falls: Annotated[int, _whole_number_between(2, MAX_FALLS)]
+    radius: Annotated[float, positive("m")]
+    side: Annotated[str, one_of(SIDES)] = "left"
+    inertia: Annotated[float, not_negative("kg m²")] = 0.0
+    friction: AnyFriction | None = None
+    zones: Annotated[int, _whole_number_between(1, MAX_ZONES)] = 8
+
+    @property
+    def end(self) -> Attachment:
+        """Return its lower axle."""
+        return self.at
+
+    @property
+    def sheaves(self) -> tuple[Sheave, ...]:
+        """Return its sheaves in the rope's order."""
+        shared = {name: getattr(self, name) for name in ("radius", "side", "inertia", "friction", "zones")}
+        return tuple(Sheave(name=f"{self.name}_{k + 1}", at=self.upper if k % 2 else self.at, **shared)
+                     for k in range(self.falls - 1))
+
+
 ROUTE_ITEMS = Family("route_item", 'an item such as Anchor("A") or Sheave("top", at=(0, 9, 0), radius=0.3)',
-                     (Anchor, Sheave, Drum))
+                     (Anchor, Sheave, Drum, Block))

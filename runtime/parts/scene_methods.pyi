@@ -25,7 +25,7 @@ from .part import Part
 from .polar import Polar
 from .rigid_body import RigidBody
 from .rope import Rope
-from .rope_items import Anchor, Drum, Sheave
+from .rope_items import Anchor, Block, Drum, Sheave
 from .scene_data import SceneData
 from .section import Section
 from .signal import Signal
@@ -154,7 +154,7 @@ class SceneMethods(SceneData):
         self,
         name: str,
         *,
-        route: Sequence[Anchor | Drum | Sheave | dict[str, Any]],
+        route: Sequence[Anchor | Block | Drum | Sheave | dict[str, Any]],
         section: Section,
         material: Material,
         closed: bool = False,

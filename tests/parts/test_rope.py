@@ -470,8 +470,8 @@ def test_items_are_checked(make, complaint):
 
 @pytest.mark.parametrize(("item", "complaint"), [
     (3, 'route.1 must be an item such as Anchor("A") or Sheave("top", at=(0, 9, 0), radius=0.3), got 3'),
-    ({"name": "top"}, "route.1 has no kind; known: anchor, sheave, drum"),
-    ({"kind": "pulley"}, 'route.1 has the unknown kind "pulley"; known: anchor, sheave, drum'),
+    ({"name": "top"}, "route.1 has no kind; known: anchor, sheave, drum, block"),
+    ({"kind": "pulley"}, 'route.1 has the unknown kind "pulley"; known: anchor, sheave, drum, block'),
     ({"kind": "sheave", "name": "top", "at": (0, 3, 0), "radius": 0}, "route.1.radius must be positive, got 0 m"),
     ({"kind": "sheave", "name": "top", "at": (0, 3, 0)}, "route.1.radius is missing"),
     ({"kind": "sheave", "name": "top", "at": (0, 3, 0), "radius": 1, "mass": 1},

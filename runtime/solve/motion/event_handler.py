@@ -13,8 +13,8 @@ from ...checks.placement import AXES
 from ...errors import SceneError, near
 from ...model.middle_strain import middle_strain
 from ...model.model import Model
-from ...model.ropes import DrumModel
 from ...model.rope_states import rope_state
+from ...model.ropes import DrumModel
 from ...model.states import body_rates, body_state, spatial
 from ...parts.event import Event
 from ...parts.scene_data import SceneData
