@@ -20,6 +20,7 @@ import numpy as np
 
 from ..base.rotations import rotate
 from ..errors import SceneError
+from ..parts.rope_drawing import drawn_anew
 from .attachments import AttachmentModel
 from .model import Model
 from .rope_states import moved
@@ -48,7 +49,7 @@ def _follow_in_space(model: Model, rope: RopeModel) -> None:
             for _, attachment, node in _items(model, rope)]
     places = [attachment_points(model, each, moved(model, model.q, steps)) for each in held]
     try:
-        before, after = (rope_model(rope.part, rope.part.drawn_anew(rope.route, centres), rope.first).q
+        before, after = (rope_model(rope.part, drawn_anew(rope.part, rope.route, centres), rope.first).q
                          for centres in np.stack(places, axis=1))
     except ValueError as error:
         raise SceneError(rope.part.where, f"the rates with which it starts are not known: {error.args[0]}",

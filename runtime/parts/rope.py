@@ -3,26 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
 from itertools import chain
-from typing import Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
-import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
-from .attachment import Attachment
 from .material import Material
 from .modal_body import ModalBody
 from .part import Part
 from .quantity import Quantity, vector_of_time
 from .rigid_body import RigidBody
-from .rope_items import ROUTE_ITEMS, SIDES, Anchor, Block, Drum, RouteItem, Sheave
-from .rope_route import MAX_LAYER, DrawnRoute, RoutePoint, default_senses, drawn_route
-from .rope_route_space import groove_of, senses_in_space, span_in_space
+from .rope_items import ROUTE_ITEMS, Anchor, Block, Drum, RouteItem, Sheave
 from .schemas import POINT, checked
 from .section import AnySection, Rectangle, outer_radius_of
 from .section_stiffness import law_of_measures, section_stiffness
-from .validation import LENGTH_TOLERANCE, MAX_COUNT, Flag, Name, items, one_of, positive, show, shown, whole_number
+from .validation import MAX_COUNT, Flag, Name, items, one_of, positive, show, shown, whole_number
+
+if TYPE_CHECKING:
+    from .rope_route import DrawnRoute
 
 PLANAR, SPATIAL = "cable8p", "cable12"
 ELEMENTS = {PLANAR: 2, SPATIAL: 3}
@@ -252,76 +250,9 @@ class Rope(Part):
         Its attachments must be complete, as in a scene. Raises ValueError(cause, remedy) for an impossible route and
         for a rope that is not taut.
         """
-        points = self._points(np.array([_place(item.end, bodies)[:self.dim] for item in self.route]))
-        route = self._along(points)
-        if offsets := self._offsets(self._stretch(route.length)):
-            route = self._along([replace(point, offset=offsets.get(point.name, 0.0)) for point in points])
-        return replace(route, stretch=self._stretch(route.length))
+        from .rope_drawing import drawn  # where a rope is drawn: the import of the package stays quick
 
-    def drawn_anew(self, route: DrawnRoute, centres: np.ndarray) -> DrawnRoute:
-        """Return a drawn route of the rope with its items at other places (n, dim), m: the sides of sheaves, distances
-        of tangent points and stress-free length are kept. Raises ValueError(cause, remedy) for an impossible one.
-        """
-        arcs = {arc.name: arc for arc in route.sheaves}
-        points = [replace(point, sense=arcs[point.name].sense, offset=arcs[point.name].tangent_radius - point.radius)
-                  if point.name in arcs else point for point in self._points(centres)]
-        found = self._along(points)
-        return replace(found, stretch=found.length / route.free_length)
-
-    def _along(self, points: list[RoutePoint]) -> DrawnRoute:
-        return drawn_route(points, self.radius, self.closed, span_in_space if self.dim == 3 else None)
-
-    def _points(self, centres: np.ndarray) -> list[RoutePoint]:
-        """Return the points of the route at these centres (n, dim)."""
-        if self.dim == 2:
-            senses = (default_senses(np.concatenate([centres[-1:], centres, centres[:1]])) if self.closed
-                      else [0, *default_senses(centres), 0])
-            return [self._point(k, centres[k], senses[k]) for k in range(len(centres))]
-        points = [replace(self._point(k, centre, 0), groove=groove_of(getattr(self.route[k], "axis", (0, 0, 1))))
-                  for k, centre in enumerate(centres)]
-        return [replace(point, sense=point.sense or sense)
-                for point, sense in zip(points, senses_in_space(points, self.closed), strict=True)]
-
-    def _offsets(self, stretch: float) -> dict[str, float]:
-        """Return the distances by which bending moves the tangent points away from sheaves, m, by name; none without
-        tension, where they are not known. At low tension they are those of the longest layer for which they hold.
-        """
-        EA, EI = self.stiffness
-        tension = EA * (stretch - 1)
-        if tension <= 0:
-            return {}
-        return {wheel.name: min(EI / tension, (MAX_LAYER * wheel.radius)**2) / (2 * wheel.radius)
-                for wheel in self.wheels}
-
-    def _point(self, k: int, centre: np.ndarray, sense: int) -> RoutePoint:
-        """Return a point of the route; sense: that of a sheave without a side."""
-        item = self.route[k]
-        if not isinstance(item, Sheave | Drum):
-            return RoutePoint(f"the {'last' if k else 'first'} anchor", centre)
-        sense = SIDES[item.side] if item.side else sense
-        return RoutePoint(item.where, centre, item.radius, sense, getattr(item, "turns", 0), item.name)
-
-    def _stretch(self, drawn: float) -> float:
-        """Return drawn over stress-free length; drawn: the length as drawn, m."""
-        if self.length is None:
-            assert self.tension is not None, f"{self.where} has neither tension nor length"
-            return 1 + self.tension / self.stiffness[0]
-        out = self.length - self.length_in_store
-        if out <= 0:
-            raise ValueError(f"is too short: its length {show(self.length, 'm')} is that of the whole rope, and its "
-                             f"drums have {show(self.length_in_store, 'm')} in store",
-                             "give a greater length, or tension")
-        if out > (1 + LENGTH_TOLERANCE) * drawn:
-            wound = f" without {show(self.length_in_store, 'm')} in store" if self.drums else ""
-            raise ValueError(f"is never taut: its length {show(self.length, 'm')}{wound} exceeds that of its route as "
-                             f"drawn, {show(drawn, 'm')}, by {show(out - drawn, 'm')}",
-                             "give a smaller length, or tension")
-        return max(1.0, drawn / out)
-
-
-def _place(end: Attachment, bodies: Mapping[str, RigidBody | ModalBody]) -> np.ndarray:
-    """Return (3,): the place as drawn of a complete attachment to a body or to the ground, in m."""
-    return np.array(end.point) if end.on is None else bodies[end.on].point(end.point)
+        return drawn(self, bodies)
 
 
 def driven_freely(ropes: Iterable[Rope]) -> list[str]:

@@ -125,10 +125,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: ProgressDispl
                                     *velocity_jumps(scene.as_drawn, settings.duration, given),
                                     *unresolved(scene.as_drawn, settings)])
     started = run.began - begin - set_up
-    if status in (None, "running"):
-        status = run.engine.advance(run.observer, blocks.every, stream)
-    if status == "rope_left" and run.engine.left[1] == EMPTY and run.event_handler.stops_empty(run.engine.left[0]):
-        status = "event"
+    status = _ended(run, blocks.every, stream) if status in (None, "running") else status
     if status == "interrupted" and stream is not None and not stream.has_begun:  # write a checkpoint to resume from
         run = _begun(scene, settings, _prepared(scene, settings, initial), method, blocks, on_progress, stream)
     messages += run.observer.notes() + _warned(run.event_handler.notes())
@@ -280,6 +277,14 @@ def _divided_step(settings: RunSettings) -> list[str]:
     if settings.step is None or step is None or step >= settings.step * (1 - 1e-6):
         return []
     return [f"step {settings.step:.6g} s was made {step:.6g} s, so that steps end on output times"]
+
+
+def _ended(run: _Begun, every: int, stream: RowStream | None) -> str:
+    """Return the status where a run ends; a drum that has run empty may stop it as an event does."""
+    status = run.engine.advance(run.observer, every, stream)
+    if status == "rope_left" and run.engine.left[1] == EMPTY and run.event_handler.stops_empty(run.engine.left[0]):
+        return "event"
+    return str(status)
 
 
 def _broken_velocities(model: Model, change: np.ndarray, given: Container[str]) -> list[str]:

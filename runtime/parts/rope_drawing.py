@@ -1,0 +1,135 @@
+"""The route of a rope as drawn among the bodies of its scene: its points, and the stretch."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Protocol
+
+import numpy as np
+
+from .attachment import Attachment
+from .modal_body import ModalBody
+from .rigid_body import RigidBody
+from .rope_items import SIDES, Drum, RouteItem, Sheave
+from .rope_route import MAX_LAYER, DrawnRoute, RoutePoint, default_senses, drawn_route
+from .rope_route_space import groove_of, senses_in_space, span_in_space
+from .validation import LENGTH_TOLERANCE, show
+
+
+class Roped(Protocol):
+    """What the drawing of a rope needs of it, see `Rope`."""
+
+    route: tuple[RouteItem, ...]
+    closed: bool
+    tension: float | None
+    length: float | None
+
+    @property
+    def where(self) -> str:
+        """Return its name in messages."""
+        ...
+
+    @property
+    def dim(self) -> int:
+        """Return the dimension of space."""
+        ...
+
+    @property
+    def radius(self) -> float:
+        """Return half the height of its section, m."""
+        ...
+
+    @property
+    def stiffness(self) -> tuple[float, float]:
+        """Return EA in N and EI in N m²."""
+        ...
+
+    @property
+    def length_in_store(self) -> float:
+        """Return the stress-free length on its drums, m."""
+        ...
+
+    @property
+    def wheels(self) -> tuple[Sheave | Drum, ...]:
+        """Return its sheaves and drums."""
+        ...
+
+
+def drawn(rope: Roped, bodies: Mapping[str, RigidBody | ModalBody]) -> DrawnRoute:
+    """Return the route of a rope, see `Rope.drawn`."""
+    points = _points(rope, np.array([_place(item.end, bodies)[:rope.dim] for item in rope.route]))
+    route = _along(rope, points)
+    if offsets := _offsets(rope, _stretch(rope, route.length)):
+        route = _along(rope, [replace(point, offset=offsets.get(point.name, 0.0)) for point in points])
+    return replace(route, stretch=_stretch(rope, route.length))
+
+
+def drawn_anew(rope: Roped, route: DrawnRoute, centres: np.ndarray) -> DrawnRoute:
+    """Return a drawn route of a rope with its items at other places (n, dim), m: the sides of sheaves, distances of
+    tangent points and stress-free length are kept. Raises ValueError(cause, remedy) for an impossible one.
+    """
+    arcs = {arc.name: arc for arc in route.sheaves}
+    points = [replace(point, sense=arcs[point.name].sense, offset=arcs[point.name].tangent_radius - point.radius)
+              if point.name in arcs else point for point in _points(rope, centres)]
+    found = _along(rope, points)
+    return replace(found, stretch=found.length / route.free_length)
+
+
+def _along(rope: Roped, points: list[RoutePoint]) -> DrawnRoute:
+    return drawn_route(points, rope.radius, rope.closed, span_in_space if rope.dim == 3 else None)
+
+
+def _points(rope: Roped, centres: np.ndarray) -> list[RoutePoint]:
+    """Return the points of the route at these centres (n, dim)."""
+    if rope.dim == 2:
+        senses = (default_senses(np.concatenate([centres[-1:], centres, centres[:1]])) if rope.closed
+                  else [0, *default_senses(centres), 0])
+        return [_point(rope, k, centres[k], senses[k]) for k in range(len(centres))]
+    points = [replace(_point(rope, k, centre, 0), groove=groove_of(getattr(rope.route[k], "axis", (0, 0, 1))))
+              for k, centre in enumerate(centres)]
+    return [replace(point, sense=point.sense or sense)
+            for point, sense in zip(points, senses_in_space(points, rope.closed), strict=True)]
+
+
+def _offsets(rope: Roped, stretch: float) -> dict[str, float]:
+    """Return the distances by which bending moves the tangent points away from sheaves, m, by name; none without
+    tension, where they are not known. At low tension they are those of the longest layer for which they hold.
+    """
+    EA, EI = rope.stiffness
+    tension = EA * (stretch - 1)
+    if tension <= 0:
+        return {}
+    return {wheel.name: min(EI / tension, (MAX_LAYER * wheel.radius)**2) / (2 * wheel.radius) for wheel in rope.wheels}
+
+
+def _point(rope: Roped, k: int, centre: np.ndarray, sense: int) -> RoutePoint:
+    """Return a point of the route; sense: that of a sheave without a side."""
+    item = rope.route[k]
+    if not isinstance(item, Sheave | Drum):
+        return RoutePoint(f"the {'last' if k else 'first'} anchor", centre)
+    sense = SIDES[item.side] if item.side else sense
+    return RoutePoint(item.where, centre, item.radius, sense, getattr(item, "turns", 0), item.name)
+
+
+def _stretch(rope: Roped, drawn: float) -> float:
+    """Return drawn over stress-free length; drawn: the length as drawn, m."""
+    if rope.length is None:
+        assert rope.tension is not None, f"{rope.where} has neither tension nor length"
+        return 1 + rope.tension / rope.stiffness[0]
+    out = rope.length - rope.length_in_store
+    if out <= 0:
+        raise ValueError(f"is too short: its length {show(rope.length, 'm')} is that of the whole rope, and its "
+                         f"drums have {show(rope.length_in_store, 'm')} in store",
+                         "give a greater length, or tension")
+    if out > (1 + LENGTH_TOLERANCE) * drawn:
+        wound = f" without {show(rope.length_in_store, 'm')} in store" if rope.length_in_store else ""
+        raise ValueError(f"is never taut: its length {show(rope.length, 'm')}{wound} exceeds that of its route as "
+                         f"drawn, {show(drawn, 'm')}, by {show(out - drawn, 'm')}",
+                         "give a smaller length, or tension")
+    return max(1.0, drawn / out)
+
+
+def _place(end: Attachment, bodies: Mapping[str, RigidBody | ModalBody]) -> np.ndarray:
+    """Return (3,): the place as drawn of a complete attachment to a body or to the ground, in m."""
+    return np.array(end.point) if end.on is None else bodies[end.on].point(end.point)
