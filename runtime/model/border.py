@@ -87,9 +87,9 @@ class _Border:
                     unknowns = self._unknowns(dofs)
                     self._group(unknowns)
             for sheave in rope.sheaves:
-                self._group(self._unknowns(np.r_[sheave.s[1:-1], [sheave.turn] * (sheave.turn >= 0)].astype(int)))
+                self._group(self._unknowns(np.r_[sheave.s[1:-1], sheave.turns].astype(int)))
             for drum in rope.drums:
-                self._group(self._unknowns(np.array([drum.turn] * (drum.turn >= 0), dtype=int)))
+                self._group(self._unknowns(np.array(drum.turns, dtype=int)))
 
     def _group(self, unknowns: np.ndarray) -> None:
         """Add a group of unknowns, if there are any."""

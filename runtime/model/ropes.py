@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -61,8 +62,19 @@ class SpanCoordinates:
         return slice(self.first, self.first + PER_NODE * self.dim * len(self.share))
 
 
+class Turning:
+    """What has a rotation, the dof ``turn``, -1 for none."""
+
+    turn: int
+
+    @property
+    def turns(self) -> list[int]:
+        """Return the dof of the rotation in a list, which is empty without one."""
+        return [] if self.turn < 0 else [self.turn]
+
+
 @dataclass
-class SheaveCoordinates:
+class SheaveCoordinates(Turning):
     """The dofs of a sheave: material coordinates of the ends of its zones; its rotation, -1 for none."""
 
     s: np.ndarray
@@ -70,7 +82,7 @@ class SheaveCoordinates:
 
 
 @dataclass
-class DrumCoordinates:
+class DrumCoordinates(Turning):
     """The dofs of a drum: the end of the rope there, 0 or -1, its span, and the rotation, -1 for none."""
 
     end: int
@@ -141,6 +153,10 @@ class RopeModel:
     def rho(self) -> float:
         """Return its mass per stress-free length, kg/m."""
         return float(self.part.material.density * self.part.section.mass_moments()[0])
+
+    def mass_of_element(self, span: int) -> float:
+        """Return the mass of an element of a span by its length as drawn, kg."""
+        return self.rho * self.route.spans[span].length / self.part.elements_of_spans[span]
 
     @property
     def stiffness(self) -> np.ndarray:
@@ -321,8 +337,7 @@ class SheaveModel(CouplingModel):
     @property
     def adjacent(self) -> list[np.ndarray]:
         """Return its dofs, beside those of its centre."""
-        turn = [] if self.turn < 0 else [self.turn]
-        found = [np.r_[self.before.node(-1), self.after.node(0), self.s, turn].astype(int)]
+        found = [np.r_[self.before.node(-1), self.after.node(0), self.s, self.coordinates.turns].astype(int)]
         if self.foot:
             (one, other), n = self.span_reach, self.before.n_elements
             found += [np.r_[self.before.node(k), self.before.s] for k in range(n - one, n)]
@@ -402,10 +417,8 @@ def sheave_models(builder: ModelBuilder) -> Iterator[SheaveModel]:
         of_sheaves = zip(rope.part.sheaves, rope.route.sheaves, rope.route.beside_sheaves, strict=True)
         for k, (item, arc, beside) in enumerate(of_sheaves):
             before, after = (rope.spans[each] for each in beside)
-            scale = [rope.rho * rope.route.spans[each].length / rope.part.elements_of_spans[each]
-                     for each in beside for _ in range(rope.part.dim)]
+            scale = [rope.mass_of_element(each) for each in beside for _ in range(rope.part.dim)]
             centre, weight = builder.attachment(item.end), rope.rho * gravity / 2
-            number, factor = (-1, 0.0) if item.torque is None else builder.signals.scale(item.torque)
             yield SheaveModel(type="sheave", name=item.name, kernel="planar_sheave", attachments=(centre,),
                               before=before, after=after, coordinates=rope.sheaves[k], radius=arc.radius,
                               tangent_radius=(arc.tangent_radius,) * 2,
@@ -414,11 +427,16 @@ def sheave_models(builder: ModelBuilder) -> Iterator[SheaveModel]:
                               plane=arc.groove, weight=weight[: 3 * (rope.part.dim == 3)],
                               limit=float(np.linalg.norm(weight)) / MAX_SAG + NO_TENSION * rope.stiffness[0],
                               span_reach=(_reach(rope, beside[0], arc), _reach(rope, beside[1], arc)),
-                              n_multipliers=len(scale), has_inertia=True, inertia=item.inertia,
+                              n_multipliers=len(scale), has_inertia=True, **_motion_of(builder, item),
                               friction=item.coefficient, slip_velocity=item.slip_velocity,
-                              closing=rope.route.free_length * (rope.part.closed and k == 0), damping=item.damping,
-                              torque_signal=number, torque=factor,
+                              closing=rope.route.free_length * (rope.part.closed and k == 0),
                               is_damped=rope.part.material.damping_time > 0 or item.coefficient > 0 or item.damping > 0)
+
+
+def _motion_of(builder: ModelBuilder, wheel: Sheave | Drum) -> dict[str, Any]:
+    """Return the entries of a sheave or a drum about its axis: inertia, bearing, and the torque of its drive."""
+    number, factor = (-1, 0.0) if wheel.torque is None else builder.signals.scale(wheel.torque)
+    return {"inertia": wheel.inertia, "damping": wheel.damping, "torque_signal": number, "torque": factor}
 
 
 def _in_groove(plane: np.ndarray, vector: np.ndarray) -> np.ndarray:
@@ -484,8 +502,7 @@ class DrumModel(CouplingModel):
     @property
     def adjacent(self) -> list[np.ndarray]:
         """Return its dofs, beside those of its centre."""
-        turn = [] if self.turn < 0 else [self.turn]
-        return [np.r_[self.coordinates.node, self.s, turn].astype(int)]
+        return [np.r_[self.coordinates.node, self.s, self.coordinates.turns].astype(int)]
 
 
 def drum_models(builder: ModelBuilder) -> Iterator[DrumModel]:
@@ -495,16 +512,13 @@ def drum_models(builder: ModelBuilder) -> Iterator[DrumModel]:
         for at in rope.drums:
             item = rope.part.drums[at.end]
             direction = 1.0 if at.end == 0 else -1.0
-            mass = rope.rho * rope.route.spans[at.end].length / rope.part.elements_of_spans[at.end]
-            number, factor = (-1, 0.0) if item.torque is None else builder.signals.scale(item.torque)
             yield DrumModel(type="drum", name=item.name, kernel="planar_sheave",
                             attachments=(builder.attachment(item.end, np.eye(3)),), coordinates=at,
                             cell=rope.free_length / CELLS, direction=direction,
                             end=0.0 if at.end == 0 else rope.free_length, radius=item.radius,
                             tangent_radius=rope.route.reach[at.end], sense=float(SIDES[item.side]), rho=rope.rho,
-                            g=gravity, A=rope.stiffness[:2], inertia=item.inertia, damping=item.damping,
-                            torque_signal=number, torque=factor, ends_run_by=item.at_end, scale=[mass] * 3,
-                            n_multipliers=3, has_inertia=True, is_damped=True)
+                            g=gravity, A=rope.stiffness[:2], **_motion_of(builder, item), ends_run_by=item.at_end,
+                            scale=[rope.mass_of_element(at.end)] * 3, n_multipliers=3, has_inertia=True, is_damped=True)
 
 
 @dataclass(kw_only=True)

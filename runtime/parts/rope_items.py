@@ -22,6 +22,7 @@ MAX_ZONES = 16
 MAX_FLEET_ANGLE = 0.07
 """Fleet angle in rad, 4 degrees, that rules for cranes allow."""
 MAX_FALLS = 100
+"""Falls of a tackle, at most."""
 AT_END = ("error", "stop")
 """What a drum does that has run empty."""
 SIDES = {"left": 1, "right": -1}

@@ -39,11 +39,14 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
     return leave(run, coupling, which);
 }
 
+/* Ends a run at its start where the event has happened before; of sheaves, spans and drums. */
 static int begin(fu_run *run, const fu_coupling *coupling)
 {
-    const int n = functions(coupling, 0);
+    const fu_coupling_events *events = coupling->events;
+    const int n = events->functions ? events->functions(coupling, 0) : 1;
+    const char *what;
     for (int which = 0; which < n; ++which)
-        if (value(run, coupling, &run->now, which) < 0.0) return leave(run, coupling, which);
+        if (events->value(run, coupling, &run->now, which) < 0.0) return events->act(run, coupling, which, -1, &what);
     return FU_RUNNING;
 }
 
@@ -62,12 +65,7 @@ static int vanish(fu_run *run, const fu_coupling *coupling, int which, int side,
     return leave(run, coupling, SPAN);
 }
 
-static int begin_span(fu_run *run, const fu_coupling *coupling)
-{
-    return margin(run, coupling, &run->now, 0) < 0.0 ? leave(run, coupling, SPAN) : FU_RUNNING;
-}
-
-const fu_coupling_events fu_span_events = {.direction = -1, .value = margin, .act = vanish, .begin = begin_span};
+const fu_coupling_events fu_span_events = {.direction = -1, .value = margin, .act = vanish, .begin = begin};
 
 static double value_of_drum(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {
@@ -87,13 +85,5 @@ static int act_of_drum(fu_run *run, const fu_coupling *coupling, int which, int 
     return leave(run, coupling, which == WRAP ? EMPTY : which);
 }
 
-static int begin_drum(fu_run *run, const fu_coupling *coupling)
-{
-    for (int which = 0; which <= PRESSURE; ++which)
-        if (value_of_drum(run, coupling, &run->now, which) < 0.0)
-            return leave(run, coupling, which == WRAP ? EMPTY : which);
-    return FU_RUNNING;
-}
-
 const fu_coupling_events fu_drum_events = {
-    .functions = functions_of_drum, .value = value_of_drum, .act = act_of_drum, .begin = begin_drum};
+    .functions = functions_of_drum, .value = value_of_drum, .act = act_of_drum, .begin = begin};
