@@ -1,7 +1,5 @@
 """Attachments: points of cables, bodies and the ground."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Annotated, Any
 

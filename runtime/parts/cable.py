@@ -1,7 +1,5 @@
 """Cables, and the checks of their shape, mesh, law and section."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
@@ -100,7 +98,7 @@ class Cable(DrawnCable, CableFields):
         return data
 
     @model_validator(mode="after")
-    def _is_drawn(self) -> Cable:
+    def _is_drawn(self) -> "Cable":
         ends = self.start is not None, self.end is not None
         if self.points is not None and any(ends):
             raise ValueError("has points and start or end", "give the points alone, the first is the start")
@@ -134,7 +132,7 @@ class Cable(DrawnCable, CableFields):
         if not self.is_open:
             cable_drawing.check_elements(self._shape, self.node_s * self.stretch)
 
-    def hanging_under(self, gravity: tuple[float, ...]) -> Cable:
+    def hanging_under(self, gravity: tuple[float, ...]) -> "Cable":
         """Return a hanging cable drawn along its catenary under gravity (m/s²), another as it is. Raises SceneError."""
         if self.shape != "hanging":
             return self
@@ -149,14 +147,14 @@ class Cable(DrawnCable, CableFields):
             raise SceneError(self.where, *error.args) from None
         return made
 
-    def hanging_through(self, points: Iterable[tuple[float, ...]]) -> Cable:
+    def hanging_through(self, points: Iterable[tuple[float, ...]]) -> "Cable":
         """Return the cable drawn through points of its catenary, in m, without checks."""
         made = self.model_copy()
         made._hanging = tuple(points)
         return made
 
     @model_validator(mode="after")
-    def _law_suits(self) -> Cable:
+    def _law_suits(self) -> "Cable":
         """Check that the law suits the shape, the section and the material. Raises ValueError(cause, remedy)."""
         if self.is_open and "element" not in self.model_fields_set:
             return self

@@ -1,7 +1,5 @@
 """The fields of a cable, and the properties that do not depend on its shape."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable
 from typing import Annotated, Any

@@ -1,7 +1,5 @@
 """Contact of cables and bodies with surfaces."""
 
-from __future__ import annotations
-
 from typing import Annotated, Any
 
 from pydantic import model_validator
@@ -106,7 +104,7 @@ class Contact(Part):
         return not self.is_hard and self.friction_coefficient > 0
 
     @model_validator(mode="after")
-    def _has_friction_that_sticks(self) -> Contact:
+    def _has_friction_that_sticks(self) -> "Contact":
         if self.friction is not None:
             self.friction.check_coulomb()
             if self.friction.model == "regularised":
@@ -114,7 +112,7 @@ class Contact(Part):
         return self
 
     @model_validator(mode="after")
-    def _has_one_law(self) -> Contact:
+    def _has_one_law(self) -> "Contact":
         given = [name for name in ("stiffness", "exponent", "damping", "tangential_stiffness")
                  if getattr(self, name) != type(self).model_fields[name].default]
         if self.is_hard and given:

@@ -1,7 +1,5 @@
 """Contact of two lines at their closest points: of a cable with a bar or with another cable."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Annotated
 
@@ -74,7 +72,7 @@ class Crossing(Part):
         return self.friction is not None and self.friction.sticks
 
     @model_validator(mode="after")
-    def _is_of_two_lines(self) -> Crossing:
+    def _is_of_two_lines(self) -> "Crossing":
         if self.a == self.b:
             raise ValueError(f'has the cable "{self.a}" on both sides', "name two cables, or a cable and a body")
         if self.friction is not None:

@@ -1,7 +1,5 @@
 """Forces of a fluid on a cable or a body: drag, lift, buoyancy and added mass."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from numbers import Real

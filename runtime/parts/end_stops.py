@@ -1,7 +1,5 @@
 """The ends of cables for slides: stops, and what else happens there."""
 
-from __future__ import annotations
-
 from typing import Annotated, Any, ClassVar
 
 from pydantic import model_validator
@@ -48,7 +46,7 @@ class Buffer(Stop):
     damping: Annotated[float, not_negative("N s/m")] = 0.0
 
     @model_validator(mode="after")
-    def _acts(self) -> Buffer:
+    def _acts(self) -> "Buffer":
         if self.stiffness == 0 and self.damping == 0:
             raise ValueError("has neither stiffness nor damping", "give one of them, or both")
         return self

@@ -1,7 +1,5 @@
 """Events: instants at which a quantity passes a value, or a function changes sign."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Annotated, Any
 
@@ -59,7 +57,7 @@ class Event(Part):
             yield self.watched
 
     @model_validator(mode="after")
-    def _watches_one_thing(self) -> Event:
+    def _watches_one_thing(self) -> "Event":
         if (self.quantity is None) == (self.function is None):
             raise ValueError("must have either a quantity or a function", 'give quantity="A.position.y" or function=f')
         if self.function is not None and (self.value or self.s is not None):

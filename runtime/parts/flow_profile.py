@@ -1,7 +1,5 @@
 """The velocity of a fluid over height: a power of it, or a table."""
 
-from __future__ import annotations
-
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -59,7 +57,7 @@ class TableProfile(Profile):
     interpolation: Annotated[str, one_of(("linear", "cubic"))] = "linear"
 
     @model_validator(mode="after")
-    def _is_a_function(self) -> TableProfile:
+    def _is_a_function(self) -> "TableProfile":
         check_function(self.height, "height", "m", self.factors, "factors")
         return self
 

@@ -1,7 +1,5 @@
 """Fluids that act on cables and bodies: wind and water."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Annotated
 
@@ -43,7 +41,7 @@ class Fluid(Part):
     table: VelocityTable | None = None
 
     @model_validator(mode="after")
-    def _has_one_velocity(self) -> Fluid:
+    def _has_one_velocity(self) -> "Fluid":
         if self.table is not None and (self.profile is not None or any(self.velocity)):
             raise ValueError(f"has a table and a {'velocity' if any(self.velocity) else 'profile'}",
                              "leave one of them out: the table is all of the velocity")
@@ -59,11 +57,11 @@ class Fluid(Part):
         """Return the upper height of the fluid in m, `NO_SURFACE` without a surface."""
         return NO_SURFACE if self.surface is None else self.surface
 
-    def bottom(self, fluids: Iterable[Fluid]) -> float:
+    def bottom(self, fluids: "Iterable[Fluid]") -> float:
         """Return the lower height of the fluid in m among the fluids of its scene, else -`NO_SURFACE`."""
         return max((other.top for other in fluids if other.top < self.top), default=-NO_SURFACE)
 
-    def nearest(self, places: np.ndarray, up: np.ndarray, fluids: Iterable[Fluid]) -> np.ndarray:
+    def nearest(self, places: np.ndarray, up: np.ndarray, fluids: "Iterable[Fluid]") -> np.ndarray:
         """Return the places (..., 3) in the fluid vertically nearest to other places, in m."""
         height = places @ up
         return places + (np.clip(height, self.bottom(fluids), self.top) - height)[..., None] * up

@@ -1,7 +1,5 @@
 """Springs with piecewise linear tension: tension only, free play, tables."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated
@@ -31,7 +29,7 @@ class ForceTable(Part):
     tension: Annotated[tuple[float, ...], list_of("N", least=2)]
 
     @model_validator(mode="after")
-    def _is_a_function(self) -> ForceTable:
+    def _is_a_function(self) -> "ForceTable":
         check_function(self.extension, "extension", "m", self.tension, "tension")
         steps = np.diff(self.extension)
         if not steps.min() > 1e-12 * (1 + np.abs(self.extension).max()):

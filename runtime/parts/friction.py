@@ -1,7 +1,5 @@
 """Friction of slides, contacts and crossings: Coulomb friction, of slides also viscous and rolling friction."""
 
-from __future__ import annotations
-
 from numbers import Real
 from typing import Annotated, Any
 
@@ -37,7 +35,7 @@ class Friction(Part):
     velocity: Annotated[float, positive("m/s")] = 1e-3
 
     @model_validator(mode="after")
-    def _sticks_at_least_as_it_slides(self) -> Friction:
+    def _sticks_at_least_as_it_slides(self) -> "Friction":
         if self.static < self.coefficient:
             raise ValueError(f"static_coefficient must not be below the coefficient of sliding "
                              f"{show(self.coefficient)}, got {show(self.static)}", "leave it out where they are equal")

@@ -1,7 +1,5 @@
 """Joints between bodies, points of cables and the ground."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Annotated
 
@@ -76,7 +74,7 @@ class Joint(Part):
     length: Annotated[float, positive("m")] | None = None
 
     @model_validator(mode="after")
-    def _has_what_it_needs(self) -> Joint:
+    def _has_what_it_needs(self) -> "Joint":
         if self.a.on is None and self.b.on is None:
             raise ValueError("has both ends on the ground", "put one of them on a cable or a body")
         with_axis = {"axis": (*LINE_KINDS, "revolute", "universal"), "second_axis": ("universal",)}
@@ -91,7 +89,7 @@ class Joint(Part):
         return self
 
     @model_validator(mode="after")
-    def _has_axes_square_to_each_other(self) -> Joint:
+    def _has_axes_square_to_each_other(self) -> "Joint":
         if self.joint_kind == "universal" and self.axis is not None and self.second_axis is not None:
             cosine = np.dot(self.axis, self.second_axis) / np.linalg.norm(self.axis) / np.linalg.norm(self.second_axis)
             if abs(cosine) > 1e-6:
@@ -100,7 +98,7 @@ class Joint(Part):
         return self
 
     @model_validator(mode="after")
-    def _is_driven_once(self) -> Joint:
+    def _is_driven_once(self) -> "Joint":
         given = [name for name in ("angle", "distance", "velocity") if getattr(self, name) is not None]
         if len(given) > 1:
             raise ValueError(f"{' and '.join(given)} are given", "give one of them")

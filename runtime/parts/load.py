@@ -1,7 +1,5 @@
 """Loads: forces, distributed forces and moments, each a value times a signal of time."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 from pydantic import model_validator
@@ -70,7 +68,7 @@ class DistributedForce(Load):
         return self.cable if self.follower else None
 
     @model_validator(mode="after")
-    def _has_a_length(self) -> DistributedForce:
+    def _has_a_length(self) -> "DistributedForce":
         if self.start is not None and self.stop is not None and not self.start < self.stop:
             raise ValueError(f"stop must be beyond start {show(self.start, 'm')}, got {show(self.stop, 'm')}")
         return self

@@ -1,7 +1,5 @@
 """Materials: isotropic elastic constants, density and damping."""
 
-from __future__ import annotations
-
 from math import inf, isclose
 from typing import Annotated, cast
 
@@ -39,7 +37,7 @@ class Material(Part):
     mass_damping: Annotated[float, not_negative("1/s")] = 0.0
 
     @model_validator(mode="after")
-    def _shear_is_settled(self) -> Material:
+    def _shear_is_settled(self) -> "Material":
         E, nu, G = self.youngs_modulus, self.poisson_ratio, self.shear_modulus
         if nu is None and G is None:
             raise ValueError("poisson_ratio or shear_modulus is missing", "give one of the two")

@@ -1,7 +1,5 @@
 """Modal bodies: a floating frame and a few modes of small deformation."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterator
 from functools import cached_property
@@ -61,7 +59,7 @@ class ModalBody(Part):
     angular_velocity: in body axes, rad/s
     """
 
-    _of_mesh: Callable[[ModalBody], Any] | None = PrivateAttr(None)
+    _of_mesh: "Callable[[ModalBody], Any] | None" = PrivateAttr(None)
 
     kind = "modal_body"
     group = "bodies"
@@ -86,7 +84,7 @@ class ModalBody(Part):
     angular_velocity: Annotated[Vector, xyz("rad/s", of="name")] = (0.0, 0.0, 0.0)
 
     @model_validator(mode="after")
-    def _is_described(self) -> ModalBody:
+    def _is_described(self) -> "ModalBody":
         drawn = {name: getattr(self, name) for name in ("start", "end", "section", "material")}
         if self.data is not None:
             if given := [name for name, value in drawn.items() if value is not None]:
@@ -120,7 +118,7 @@ class ModalBody(Part):
         return 0.0 if self.boundary == "attached" else self._drawn.length / 2
 
     @cached_property
-    def shape(self) -> Shape:
+    def shape(self) -> "Shape":
         """Return its modes and inertia, of its file, or of its mesh by way of its scene.
 
         Raises SceneError for the mesh of a body without scene.
@@ -134,7 +132,7 @@ class ModalBody(Part):
                              "add it to a scene, and take what `Scene.add` returns")
         return self._of_mesh(self)
 
-    def with_modes_by(self, of_mesh: Callable[[ModalBody], Shape]) -> Self:
+    def with_modes_by(self, of_mesh: "Callable[[ModalBody], Shape]") -> Self:
         """Return a copy whose modes ``of_mesh`` computes on the first access."""
         copy = self.model_copy()
         copy._of_mesh = of_mesh

@@ -82,7 +82,7 @@ class _TranslatingType(ModelMetaclass):
 class Part(BaseModel, metaclass=_TranslatingType):
     """Base of the parts of a scene: frozen, and strict about names."""
 
-    model_config = ConfigDict(frozen=True, defer_build=True)  # built when first used: the import stays quick
+    model_config = ConfigDict(frozen=True, defer_build=True, protected_namespaces=())  # built when first used
 
     kind: ClassVar[str] = ""
     """Its name in messages and scene files; the class name where this is empty."""

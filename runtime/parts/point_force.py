@@ -1,7 +1,5 @@
 """Forces between two points, such as springs."""
 
-from __future__ import annotations
-
 from typing import ClassVar, Self
 
 from pydantic import model_validator

@@ -1,7 +1,5 @@
 """Coefficients of drag and lift by the angle of attack."""
 
-from __future__ import annotations
-
 from math import pi
 from typing import Annotated
 
@@ -42,7 +40,7 @@ class Polar(Part):
     interpolation: Annotated[str, one_of(("linear", "cubic"))] = "linear"
 
     @model_validator(mode="after")
-    def _is_a_turn(self) -> Polar:
+    def _is_a_turn(self) -> "Polar":
         for name in ("drag", "lift", "moment"):
             values = getattr(self, name)
             if values is None:

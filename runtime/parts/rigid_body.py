@@ -1,7 +1,5 @@
 """Rigid bodies: mass, inertia, initial position and orientation."""
 
-from __future__ import annotations
-
 import math
 from typing import Annotated, Any, ClassVar
 

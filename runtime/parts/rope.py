@@ -1,7 +1,5 @@
 """Ropes that run over sheaves."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
@@ -105,7 +103,7 @@ class Rope(Part):
     element: Annotated[str, one_of(ELEMENTS)] = PLANAR
 
     @model_validator(mode="after")
-    def _has_a_route(self) -> Rope:
+    def _has_a_route(self) -> "Rope":
         if self.closed and len(self.sheaves) < max(2, len(self.route)):
             raise ValueError("is closed, and its route has an Anchor" if len(self.sheaves) < len(self.route) else
                              "is closed around one sheave", "give two sheaves or more, without anchors")
@@ -132,7 +130,7 @@ class Rope(Part):
         return self
 
     @model_validator(mode="after")
-    def _is_of_one_length(self) -> Rope:
+    def _is_of_one_length(self) -> "Rope":
         if (self.tension is None) == (self.length is None):
             have = "neither tension nor length" if self.tension is None else "tension and length"
             raise ValueError(f"has {have}", "give one of them")
@@ -142,7 +140,7 @@ class Rope(Part):
         return self
 
     @model_validator(mode="after")
-    def _fits_its_sheaves(self) -> Rope:
+    def _fits_its_sheaves(self) -> "Rope":
         for wheel in self.wheels:
             if wheel.radius <= self.radius:
                 raise ValueError(f'radius of {wheel.where} must be above that of the rope, '
@@ -151,7 +149,7 @@ class Rope(Part):
         return self
 
     @model_validator(mode="after")
-    def _is_of_a_modelled_material(self) -> Rope:
+    def _is_of_a_modelled_material(self) -> "Rope":
         if self.material.mass_damping:
             raise ValueError("its material has mass_damping, which ropes do not have",
                              "give damping_time, or the drag of the bodies on it")
@@ -234,7 +232,7 @@ class Rope(Part):
         left = {other[name]: None for name in other if changes.get(name) is not None}
         return super().entries_with(left | {**changes})
 
-    def refined(self) -> Rope:
+    def refined(self) -> "Rope":
         """Return the rope with elements of half the length, and twice the zones of wraps, see `Sheave.refined`."""
         route = [item.refined() if isinstance(item, Sheave) else item for item in self.route]
         return self.remade({"elements": tuple(2 * n for n in self.elements_of_spans), "route": route})
@@ -244,7 +242,7 @@ class Rope(Part):
         """Return the sheaves with friction that `refined` gives half of their zones, as messages name them."""
         return [sheave.where for sheave in self.rough_sheaves if sheave.has_most_zones]
 
-    def drawn(self, bodies: Mapping[str, RigidBody | ModalBody]) -> DrawnRoute:
+    def drawn(self, bodies: Mapping[str, RigidBody | ModalBody]) -> "DrawnRoute":
         """Return its route as drawn among the bodies of its scene.
 
         Its attachments must be complete, as in a scene. Raises ValueError(cause, remedy) for an impossible route and

@@ -1,7 +1,5 @@
 """The items of a rope's route: anchors and drums, where it ends, and sheaves, which it runs over."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from numbers import Integral as WholeNumber
 from typing import Annotated, Any, Self
@@ -39,7 +37,7 @@ class RouteItem(Part):
         """Return the point that holds it; of a sheave its centre."""
         raise NotImplementedError
 
-    def held_at(self, end: Attachment) -> RouteItem:
+    def held_at(self, end: Attachment) -> "RouteItem":
         """Return the item at a complete attachment."""
         raise NotImplementedError
 
@@ -69,7 +67,7 @@ class Anchor(RouteItem):
     at: Annotated[Vector, xyz("m", of="on")] | None = None
 
     @model_validator(mode="after")
-    def _is_somewhere(self) -> Anchor:
+    def _is_somewhere(self) -> "Anchor":
         if self.on is None and self.at is None:
             raise ValueError("has neither on nor at", "name a body, or give a point at=(x, y, z) of the ground")
         return self
@@ -79,7 +77,7 @@ class Anchor(RouteItem):
         """Return the point that holds it."""
         return Attachment.model_construct(on=self.on, at=self.at)
 
-    def held_at(self, end: Attachment) -> Anchor:
+    def held_at(self, end: Attachment) -> "Anchor":
         """Return the anchor at a complete attachment."""
         return self.model_copy(update={"at": end.point})
 
@@ -200,7 +198,7 @@ class Sheave(Wheel):
         return 2 * self.zones > MAX_ZONES
 
     @model_validator(mode="after")
-    def _has_modelled_friction(self) -> Sheave:
+    def _has_modelled_friction(self) -> "Sheave":
         if self.friction is not None:
             self.friction.check_coulomb()
             if self.friction.sticks:
@@ -220,7 +218,7 @@ class Sheave(Wheel):
         if any(self.axis[:2]) or self.axis[2] < 0:
             yield f"axis {show(self.axis)}"
 
-    def refined(self) -> Sheave:
+    def refined(self) -> "Sheave":
         """Return the sheave with twice the zones, or with half of them where twice exceeds `MAX_ZONES`."""
         return self.model_copy(update={"zones": self.zones // 2 if self.has_most_zones else 2 * self.zones})
 

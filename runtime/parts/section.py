@@ -3,8 +3,6 @@
 A further section is one class with ``moments``, its torsion constant and shear factors, and one entry in `SECTIONS`.
 """
 
-from __future__ import annotations
-
 from math import exp, nan, pi
 from typing import Annotated, Any, ClassVar
 
@@ -166,7 +164,7 @@ class Tube(_Round):
     inner_radius: Length
 
     @model_validator(mode="after")
-    def _has_a_wall(self) -> Tube:
+    def _has_a_wall(self) -> "Tube":
         outer, wall = self.outer_radius, self.outer_radius - self.inner_radius
         if wall <= 0:
             raise ValueError(f"inner_radius must be smaller than outer_radius ({outer:g} m), got "
@@ -214,7 +212,7 @@ class GeneralSection(Section):
     rotary_about_y: Annotated[float, positive("m⁴")] | None = Field(None, alias="rotary_moment_about_y")
 
     @model_validator(mode="after")
-    def _twists_less_than_a_disc(self) -> GeneralSection:
+    def _twists_less_than_a_disc(self) -> "GeneralSection":
         """Check that J does not exceed the polar moment, which warping reduces. Raises ValueError."""
         constant, polar = self.given_torsion_constant, self.about_z + self.about_y
         if constant is not None and constant > polar * (1 + 1e-9):

@@ -1,7 +1,5 @@
 """The settings of runs, of equilibria and relaxations, and of modes."""
 
-from __future__ import annotations
-
 import math
 import os
 from collections.abc import Mapping
@@ -89,7 +87,7 @@ class RunSettings(Part):
     estimate: Flag = False
 
     @model_validator(mode="after")
-    def _steps_fit(self) -> RunSettings:
+    def _steps_fit(self) -> "RunSettings":
         for name in ("step", "output_step"):
             value = getattr(self, name)
             if value is not None and value > self.duration:
@@ -187,7 +185,7 @@ class EquilibriumSettings(Part):
     to: Annotated[dict[str, float] | None, checked(_to, _TO)] = None
 
     @model_validator(mode="after")
-    def _adjusts_for_something(self) -> EquilibriumSettings:
+    def _adjusts_for_something(self) -> "EquilibriumSettings":
         if self.adjust is not None and self.to is None:
             raise ValueError("has parameters to adjust, but no values to adjust them for", "give to={...}")
         if self.to is not None and self.adjust is None:

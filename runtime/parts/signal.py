@@ -5,8 +5,6 @@ f(t) = Σ_k coefficients[piece, k] (t - breaks[piece])^k + amplitude sin(angular
 A further form is one class with ``pieces`` and one entry in `SIGNALS`.
 """
 
-from __future__ import annotations
-
 import cmath
 import itertools
 from collections.abc import Iterable, Iterator, Sequence
@@ -64,12 +62,12 @@ class Signal(Part):
         """Return the sine that is added to the polynomials."""
         return Sine()
 
-    def value(self, time: ArrayLike, derivative: int = 0) -> np.ndarray:
+    def value(self, time: "ArrayLike", derivative: int = 0) -> np.ndarray:
         """Return the signal, or a derivative of it, at times of any shape, in s."""
         return value_at(self.sine, *self.pieces(), time, derivative)
 
 
-def value_at(sine: Sine, breaks: np.ndarray, coefficients: np.ndarray, time: ArrayLike,
+def value_at(sine: Sine, breaks: np.ndarray, coefficients: np.ndarray, time: "ArrayLike",
              derivative: int = 0) -> np.ndarray:
     """Return a derivative of a piecewise polynomial plus a sine at times of any shape."""
     time = np.asarray(time, dtype=float)
@@ -127,7 +125,7 @@ class TableSignal(Signal):
     interpolation: Annotated[str, one_of(("cubic", "linear"))] = "cubic"
 
     @model_validator(mode="after")
-    def _is_a_function(self) -> TableSignal:
+    def _is_a_function(self) -> "TableSignal":
         check_function(self.time, "time", "s", self.values, "value")
         _check_apart(self.time)
         return self
@@ -261,7 +259,7 @@ class Integral(Signal):
     start: Value = 0.0
 
     @model_validator(mode="after")
-    def _fits(self) -> Integral:
+    def _fits(self) -> "Integral":
         if isinstance(self.rate, Integral):
             raise ValueError("rate is an integral: the degree of its integral is too high")
         return self

@@ -1,7 +1,5 @@
 """Slides: joints between a cable and a point on its centreline."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar
 
@@ -85,7 +83,7 @@ class Slide(Part):
         return data
 
     @model_validator(mode="after")
-    def _is_of_one_mind(self) -> Slide:
+    def _is_of_one_mind(self) -> "Slide":
         if self.body_s is not None and any(self.at):
             raise ValueError("at is a point in body axes, but body_s one on a cable", "give one of the two")
         if self.roll == "fixed" and self.frame != "tangent":

@@ -3,8 +3,6 @@
 A further shape is one class and one entry in `SOLIDS`.
 """
 
-from __future__ import annotations
-
 import os
 from pathlib import PurePath
 from typing import Annotated, Any
@@ -62,7 +60,7 @@ class Box(Solid):
     up: Annotated[Vector, direction(HOLDER)] = (0.0, 1.0, 0.0)
 
     @model_validator(mode="after")
-    def _has_square_axes(self) -> Box:
+    def _has_square_axes(self) -> "Box":
         check_square("along", self.along, "up", self.up)
         return self
 

@@ -1,7 +1,5 @@
 """Springs with dampers between two attachments."""
 
-from __future__ import annotations
-
 from typing import Annotated, Self
 
 from pydantic import model_validator

@@ -1,7 +1,5 @@
 """Supports and ties of the nodes of cables: pins, clamps, prescribed motions."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar
@@ -153,7 +151,7 @@ class Motion(Support):
     rotation: Annotated[Rotation | None, checked(_rotation, some(2))] = None
 
     @model_validator(mode="after")
-    def _moves_something(self) -> Motion:
+    def _moves_something(self) -> "Motion":
         if self.displacement is None and self.rotation is None:
             raise ValueError("has neither displacement nor rotation", "give one of them, or both")
         return self

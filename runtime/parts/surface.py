@@ -1,7 +1,5 @@
 """Surfaces of the ground or of a body for contact with cables and bodies."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import Annotated, Any
@@ -38,7 +36,7 @@ class Surface(Part):
     inside: Flag = False
 
     @model_validator(mode="after")
-    def _has_an_inside(self) -> Surface:
+    def _has_an_inside(self) -> "Surface":
         if self.inside and not np.isfinite(geometry(self.shape).inner_radius):
             raise ValueError(f"a {self.shape.kind} has no inside",
                              "leave inside out; things are on the side of its normal, or of up")

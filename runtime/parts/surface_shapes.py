@@ -4,8 +4,6 @@
 `SURFACE_SHAPES`, and its case in `geometry`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
@@ -101,14 +99,14 @@ class HeightField(SurfaceShape):
     up: Annotated[Vector, direction(HOLDER)] = (0.0, 1.0, 0.0)
 
     @classmethod
-    def of(cls, function: Callable[..., Any], x: Any, across: Any = None, **directions: Any) -> HeightField:
+    def of(cls, function: Callable[..., Any], x: Any, across: Any = None, **directions: Any) -> "HeightField":
         """Return the height field of the values of function(x) or function(x, across), in m, at places in m."""
         table = [float(function(a)) if across is None else [float(function(a, b)) for b in across] for a in x]
         given = {} if across is None else {"across": [float(b) for b in across]}
         return cls(x=[float(a) for a in x], heights=table, **given, **directions)
 
     @model_validator(mode="after")
-    def _is_a_table(self) -> HeightField:
+    def _is_a_table(self) -> "HeightField":
         check_function(self.x, "x", "m", self.heights, "heights")
         rows = isinstance(self.heights[0], tuple)
         if rows != (self.across is not None):
@@ -164,11 +162,11 @@ class Geometry:
     bend: float = 0.0
     inside: bool = False
 
-    def moved(self, by: Any) -> Geometry:
+    def moved(self, by: Any) -> "Geometry":
         """Return it translated by (3,), in m."""
         return replace(self, origin=self.origin + np.array(by))
 
-    def in_plane(self, normal: np.ndarray) -> Geometry:
+    def in_plane(self, normal: np.ndarray) -> "Geometry":
         """Return it for planes across a unit vector (3,), along which a box has no end."""
         across = np.abs(normal @ self.axes) > 1 - PLANE_ROUNDING
         return replace(self, half_size=np.where(across, np.inf, self.half_size))
@@ -190,7 +188,7 @@ class Geometry:
         lengths = [*self.origin, self.radius, self.half_length, *self.half_size, self.highest]
         return float(max(abs(length) for length in lengths if np.isfinite(length)))
 
-    def walls(self, dim: int) -> list[Geometry]:
+    def walls(self, dim: int) -> "list[Geometry]":
         """Return the inner planes of a hollow box in a scene of dim dimensions, or itself for other surfaces."""
         if not (self.inside and self.word == "box"):
             return [self]

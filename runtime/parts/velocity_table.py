@@ -1,7 +1,5 @@
 """The velocity of a fluid on a grid in time and space, from numbers or a file."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -88,7 +86,7 @@ class VelocityTable(Part):
     interpolation: Annotated[str, one_of(tuple(DEGREES))] = "cubic"
 
     @classmethod
-    def of(cls, data: xarray.Dataset, interpolation: str = "cubic") -> VelocityTable:
+    def of(cls, data: "xarray.Dataset", interpolation: str = "cubic") -> "VelocityTable":
         """Return the table of an xarray.Dataset with the names that a file has. Raises SceneError."""
         grid = _grid(FileArrays.of(data), "the dataset")
         given = {name: values.tolist() for name, values in grid.axes.items()}
@@ -96,7 +94,7 @@ class VelocityTable(Part):
         return cls(**given, velocity=grid.velocity.reshape(*shape, 3).tolist(), interpolation=interpolation)
 
     @model_validator(mode="after")
-    def _is_a_grid(self) -> VelocityTable:
+    def _is_a_grid(self) -> "VelocityTable":
         given = [name for name in (*AXES, "velocity") if getattr(self, name) is not None]
         if self.file is not None and given:
             raise ValueError(f"has file and {given[0]}", "give the file, or the numbers")
@@ -118,7 +116,7 @@ class VelocityTable(Part):
         given = {name: getattr(self, name) for name in (*AXES, "velocity")}
         return _grid(FileArrays({name: np.array(each) for name, each in given.items() if each is not None}), "it")
 
-    def turned(self, axes: np.ndarray) -> VelocityTable:
+    def turned(self, axes: np.ndarray) -> "VelocityTable":
         """Return the table with velocities along other axes, the columns of ``axes`` (3, 3); the grid stays."""
         made = self.model_copy()
         made.__dict__.pop("_splines", None)  # the copy has the splines of its original
