@@ -6,7 +6,10 @@ fields.
 
 from __future__ import annotations
 
+import ast
+import functools
 import inspect
+import textwrap
 from pathlib import Path
 
 from funicular.parts.end_stops import Stop
@@ -77,11 +80,19 @@ BY_NAME = {"inertia": "inertia", "added_mass": "added_mass",
 PATHS = {"path": "str | os.PathLike[str]", "rider": "Named | tuple[Named, float] | Numbers"}
 
 
+@functools.cache
+def annotations(kind: type) -> dict[str, str]:
+    """Return the annotations of a class's own fields as they are written."""
+    if not issubclass(kind, Part):
+        return {}
+    (written,) = ast.parse(textwrap.dedent(inspect.getsource(kind))).body
+    return {line.target.id: ast.unparse(line.annotation) for line in written.body if isinstance(line, ast.AnnAssign)}
+
+
 def given_type(kind: type[Part], keyword: str, optional: bool) -> str:
     """Return the type of a keyword's values in the stub."""
     field = kind.keywords()[keyword]
-    written = next(vars(base)["__annotations__"][field] for base in kind.__mro__
-                   if field in vars(base).get("__annotations__", ()))
+    written = next(of_class[field] for of_class in map(annotations, kind.__mro__) if field in of_class)
     if (special := BY_NAME.get(keyword)) is not None:
         found = PATHS.get(special) or TYPES[special]
     else:
