@@ -4,17 +4,28 @@
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
 #include "couplings/rope/rope.h"
+#include "couplings/wheel/wheel.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { DIM = 2, NODE = 2 * DIM, CONDITIONS = DIM + 1, WINDING = DIM };
-/* y, and its columns by the dofs: node, wound length, rotation, coordinates of the centre */
-enum { SLOPE = DIM, CENTRE = NODE, TURN = CENTRE + DIM, LENGTH = TURN + 1, Y = LENGTH + 1 };
+enum { DIM = FU_GROOVE, NODE = 2 * DIM, CONDITIONS = DIM + 1, WINDING = DIM };
+/* y: node; centre, rotation and place along the axis of the wheel, which does not change in the plane; wound length */
+enum { SLOPE = DIM, CENTRE = NODE, TURN = CENTRE + FU_WHEEL_TURN, LENGTH = CENTRE + FU_WHEEL_FORCES, Y = LENGTH + 1 };
 enum { COLUMNS = NODE + 2 + FU_ATTACHMENT_COORDINATES };
 /* of the forces of the wound rope: on the rotation, the centre, the length */
 enum { STORE = 2 + DIM };
 static const int of_store[STORE] = {TURN, CENTRE, CENTRE + 1, LENGTH};
+
+/* A drum at an end of a rope (derive/couplings/drum.py): a tangent point, and the rope that is wound. Its wound length
+ * is direction (s - end). Its history is the drawn length over the wound one, in cells. */
+typedef struct {
+    fu_wheel wheel;
+    int node, s; /* dofs: the first of the node; its material coordinate */
+    int n_cells;
+    double cell, direction, end; /* m: stress-free length of a cell; 1 at the first end of the rope, else -1; m */
+    double tangent_radius;
+} fu_drum;
 
 typedef struct {
     double tension, force[3], torque, power, length_in_store, material_speed, normal_force, angle, residual;
@@ -28,9 +39,9 @@ enum { HISTORY = 7 };
 
 /* A drum at a state; u: wound length. */
 typedef struct {
-    fu_attachment_state centre;
-    double x[DIM], slope[DIM], x_rate[DIM], slope_rate[DIM], c_acc[DIM];
-    double u, u_rate, turn, carrier, spin, spin_acc, own_rate, phi, span_stretch, wound, winds;
+    fu_wheel_state wheel;
+    double x[DIM], slope[DIM], x_rate[DIM], slope_rate[DIM];
+    double u, u_rate, turn, carrier, phi, span_stretch, wound, winds;
 } view;
 
 static const fu_drum *drum_of(const fu_coupling *coupling)
@@ -40,7 +51,7 @@ static const fu_drum *drum_of(const fu_coupling *coupling)
 
 static history *history_of(const fu_drum *drum, const fu_state *state)
 {
-    return (history *)(state->numbers + drum->base.numbers);
+    return (history *)(state->numbers + drum->wheel.base.numbers);
 }
 
 /* --- the wound rope --------------------------------------------------------------------------------------------- */
@@ -77,13 +88,13 @@ static double turned(double from, double to)
  * at the first end, or its opposite. */
 static double winding_sense(const fu_drum *drum)
 {
-    return drum->direction * drum->sense;
+    return drum->direction * drum->wheel.sense;
 }
 
 /* Returns the way of the tangent point on the rim since the last accepted state, m. */
 static double way_of(const fu_drum *drum, const history *past, const view *at)
 {
-    return winding_sense(drum) * drum->radius *
+    return winding_sense(drum) * drum->wheel.radius *
            (turned(past->phi, at->phi) - turned(past->carrier, at->carrier) - (at->turn - past->turn));
 }
 
@@ -100,17 +111,9 @@ static void look(const fu_model *model, const fu_coupling *coupling, const fu_st
     const fu_drum *drum = drum_of(coupling);
     const double *v = state->v ? state->v : model->zero;
     const fu_state moving = {.t = state->t, .q = state->q, .v = (double *)v};
-    fu_attachment_state *centre = &out->centre;
+    const fu_attachment_state *centre = &out->wheel.centre;
     if (!a) a = model->zero;
-    fu_attachment_at(model, &drum->attachments[0], &moving, 0.0, FU_POINT | FU_AXES, centre);
-    memcpy(out->c_acc, centre->bias, sizeof out->c_acc);
-    out->own_rate = drum->turn < 0 ? 0.0 : v[drum->turn];
-    out->spin = out->own_rate + centre->omega[0];
-    out->spin_acc = drum->turn < 0 ? 0.0 : a[drum->turn];
-    for (int i = 0; i < centre->n; ++i) {
-        for (int d = 0; d < DIM; ++d) out->c_acc[d] += centre->P[d * centre->n + i] * a[centre->at[i]];
-        out->spin_acc += centre->T[i] * a[centre->at[i]];
-    }
+    fu_wheel_at(model, &drum->wheel, &moving, a, &out->wheel);
     for (int d = 0; d < DIM; ++d) {
         out->x[d] = state->q[drum->node + d] - centre->p[d];
         out->slope[d] = state->q[drum->node + SLOPE + d];
@@ -119,7 +122,7 @@ static void look(const fu_model *model, const fu_coupling *coupling, const fu_st
     }
     out->u = drum->direction * (state->q[drum->s] - drum->end);
     out->u_rate = drum->direction * v[drum->s];
-    out->turn = drum->turn < 0 ? 0.0 : state->q[drum->turn];
+    out->turn = drum->wheel.turn < 0 ? 0.0 : state->q[drum->wheel.turn];
     out->carrier = atan2(centre->A[DIM], centre->A[0]);
     out->phi = atan2(out->x[1], out->x[0]);
     out->span_stretch = sqrt(fu_dot(DIM, out->slope, out->slope));
@@ -134,28 +137,13 @@ static void look(const fu_model *model, const fu_coupling *coupling, const fu_st
 
 /* --- forces by y ------------------------------------------------------------------------------------------------ */
 
-/* The dofs of a drum and the change of y by them (Y x n), in `by`. */
-static int columns_of(const fu_drum *drum, const view *at, const double *P, int *dofs, double (*by)[COLUMNS])
+/* Computes the dofs of a drum and the changes of y by them, with these of the centre; returns their number. */
+static int columns_of(const fu_drum *drum, const view *at, const double *of_centre, fu_wheel_column *out)
 {
-    const int n_centre = at->centre.n;
     int n = 0;
-    memset(by, 0, sizeof(double) * Y * COLUMNS);
-    for (; n < NODE; ++n) {
-        dofs[n] = drum->node + n;
-        by[n][n] = 1.0;
-    }
-    dofs[n] = drum->s;
-    by[LENGTH][n++] = drum->direction;
-    if (drum->turn >= 0) {
-        dofs[n] = drum->turn;
-        by[TURN][n++] = 1.0;
-    }
-    for (int i = 0; i < n_centre; ++i, ++n) {
-        dofs[n] = at->centre.at[i];
-        for (int d = 0; d < DIM; ++d) by[CENTRE + d][n] = P[d * n_centre + i];
-        by[TURN][n] = at->centre.T[i];
-    }
-    return n;
+    for (; n < NODE; ++n) out[n] = (fu_wheel_column){drum->node + n, n, 1, {1.0}};
+    out[n++] = (fu_wheel_column){drum->s, LENGTH, 1, {drum->direction}};
+    return n + fu_wheel_columns(&drum->wheel, &at->wheel, of_centre, CENTRE, out + n);
 }
 
 /* Adds forces by y to those on the dofs. */
@@ -163,20 +151,23 @@ static void scatter(const fu_drum *drum, const view *at, const double *y, double
 {
     for (int i = 0; i < NODE; ++i) f[drum->node + i] += y[i];
     f[drum->s] += drum->direction * y[LENGTH];
-    if (drum->turn >= 0) f[drum->turn] += y[TURN];
-    fu_add_wrench(DIM, &at->centre, y + CENTRE, y + TURN, 1.0, f);
+    fu_wheel_add_forces(&drum->wheel, &at->wheel, y + CENTRE, f);
 }
 
 static void store_forces(const fu_drum *drum, const view *at, double F[STORE])
 {
-    drum->kernel->store(drum->A, drum->rho, drum->radius, drum->g, at->u, at->centre.p, at->spin, at->centre.v,
-                        at->u_rate, at->spin_acc, at->c_acc, at->slope, at->winds, at->wound, F);
+    const fu_wheel *wheel = &drum->wheel;
+    wheel->kernel->store(wheel->A, wheel->rho, wheel->radius, wheel->g, at->u, at->wheel.centre.p, at->wheel.turn_rate,
+                         at->wheel.centre.v, at->u_rate, at->wheel.turn_acc, at->wheel.c_acc, at->slope, at->winds,
+                         at->wound, F);
 }
 
 static void store_derivatives(const fu_drum *drum, const view *at, double *M, double *D, double *K)
 {
-    drum->kernel->store_tangent(drum->A, drum->rho, drum->radius, drum->g, at->u, at->centre.p, at->spin, at->centre.v,
-                                at->u_rate, at->spin_acc, at->c_acc, at->slope, at->winds, at->wound, M, D, K);
+    const fu_wheel *wheel = &drum->wheel;
+    wheel->kernel->store_tangent(wheel->A, wheel->rho, wheel->radius, wheel->g, at->u, at->wheel.centre.p,
+                                 at->wheel.turn_rate, at->wheel.centre.v, at->u_rate, at->wheel.turn_acc,
+                                 at->wheel.c_acc, at->slope, at->winds, at->wound, M, D, K);
 }
 
 /* Computes all forces by y but those of the conditions; the bearing's is on the drum alone. */
@@ -186,7 +177,7 @@ static void forces_by_y(const fu_drum *drum, const view *at, double y[Y])
     memset(y, 0, sizeof(double) * Y);
     store_forces(drum, at, F);
     for (int k = 0; k < STORE; ++k) y[of_store[k]] += F[k];
-    y[TURN] += drum->inertia * at->spin_acc;
+    y[TURN] += drum->wheel.inertia * at->wheel.turn_acc;
 }
 
 /* The conditions of a drum: their derivatives by y, and those of J' multipliers. */
@@ -202,11 +193,12 @@ static void add_of_x(const double *of, double factor, double *row)
 
 static void conditions_of(const fu_drum *drum, const view *at, const double *multipliers, conditions *out)
 {
+    const fu_wheel *wheel = &drum->wheel;
     double J[DIM * NODE], K[NODE * NODE], of_winding[NODE], K_winding[(DIM + 1) * NODE];
     memset(out, 0, sizeof *out);
-    drum->kernel->tangent_point(at->x, at->slope, drum->tangent_radius, multipliers, out->phi, J, K);
-    drum->kernel->winding(winding_sense(drum), drum->radius, at->x, at->slope, at->winds, at->wound,
-                          multipliers[WINDING], of_winding, K_winding);
+    wheel->kernel->tangent_point(at->x, at->slope, drum->tangent_radius, multipliers, out->phi, J, K);
+    wheel->kernel->winding(winding_sense(drum), wheel->radius, at->x, at->slope, at->winds, at->wound,
+                           multipliers[WINDING], of_winding, K_winding);
     for (int r = 0; r < DIM; ++r) add_of_x(J + r * NODE, 1.0, out->J[r]);
     for (int d = 0; d < DIM; ++d) {
         out->J[WINDING][d] = of_winding[d];
@@ -251,24 +243,7 @@ static void mass_by_y(const fu_drum *drum, const view *at, double factor, double
     store_derivatives(drum, at, M, D, K);
     for (int i = 0; i < STORE; ++i)
         for (int j = 0; j <= DIM; ++j) out[of_store[i]][of_store[j]] = factor * M[i * (DIM + 1) + j];
-    out[TURN][TURN] += factor * drum->inertia;
-}
-
-/* Adds by' K by_column of K (Y x Y) to a system. */
-static void add_matrix(const fu_model *model, const fu_drum *drum, const view *at, const double *P_column,
-                       double (*K)[Y], fu_system *system)
-{
-    double by[Y][COLUMNS], by_column[Y][COLUMNS];
-    int dofs[COLUMNS];
-    const int n = columns_of(drum, at, at->centre.P, dofs, by);
-    columns_of(drum, at, P_column, dofs, by_column);
-    for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j) {
-            double sum = 0.0;
-            for (int k = 0; k < Y; ++k)
-                for (int l = 0; by[k][i] != 0.0 && l < Y; ++l) sum += by[k][i] * K[k][l] * by_column[l][j];
-            if (sum != 0.0) fu_add(model, system, dofs[i], dofs[j], sum);
-        }
+    out[TURN][TURN] += factor * drum->wheel.inertia;
 }
 
 static void inertial_force(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a,
@@ -276,13 +251,14 @@ static void inertial_force(const fu_model *model, const fu_coupling *coupling, c
 {
     const fu_drum *drum = drum_of(coupling);
     const fu_state state = {.q = (double *)q};
-    double M[Y][Y], by[Y][COLUMNS], acceleration[Y] = {0.0}, y[Y] = {0.0};
-    int dofs[COLUMNS];
+    double M[Y][Y], acceleration[Y] = {0.0}, y[Y] = {0.0};
+    fu_wheel_column columns[COLUMNS];
     view at;
     look(model, coupling, &state, 0, &at);
-    const int n = columns_of(drum, &at, at.centre.P, dofs, by);
-    for (int i = 0; i < Y; ++i)
-        for (int j = 0; j < n; ++j) acceleration[i] += by[i][j] * a[dofs[j]];
+    const int n = columns_of(drum, &at, at.wheel.centre.P, columns);
+    for (int j = 0; j < n; ++j)
+        for (int k = 0; k < columns[j].n; ++k)
+            acceleration[columns[j].row + k] += columns[j].value[k] * a[columns[j].dof];
     mass_by_y(drum, &at, 1.0, M);
     for (int i = 0; i < Y; ++i) y[i] = fu_dot(Y, M[i], acceleration);
     scatter(drum, &at, y, f);
@@ -293,10 +269,12 @@ static void mass_matrix(const fu_model *model, const fu_coupling *coupling, cons
 {
     const fu_state state = {.q = (double *)q};
     double M[Y][Y];
+    fu_wheel_column columns[COLUMNS];
     view at;
     look(model, coupling, &state, 0, &at);
     mass_by_y(drum_of(coupling), &at, scale, M);
-    add_matrix(model, drum_of(coupling), &at, at.centre.P, M, system);
+    const int n = columns_of(drum_of(coupling), &at, at.wheel.centre.P, columns);
+    fu_wheel_add_matrix(model, n, columns, columns, Y, M[0], system);
 }
 
 /* Computes the kinetic energy and that of gravity at a state. */
@@ -304,11 +282,13 @@ static void energies(const fu_model *model, const fu_coupling *coupling, const d
                      double *V)
 {
     const fu_drum *drum = drum_of(coupling);
+    const fu_wheel *wheel = &drum->wheel;
     const fu_state state = {.q = (double *)q, .v = (double *)v};
     view at;
     look(model, coupling, &state, 0, &at);
-    drum->kernel->store_energy(drum->rho, drum->radius, drum->g, at.u, at.centre.p, at.spin, at.centre.v, T, V);
-    *T += 0.5 * drum->inertia * at.spin * at.spin;
+    wheel->kernel->store_energy(wheel->rho, wheel->radius, wheel->g, at.u, at.wheel.centre.p, at.wheel.turn_rate,
+                                at.wheel.centre.v, T, V);
+    *T += 0.5 * wheel->inertia * at.wheel.turn_rate * at.wheel.turn_rate;
 }
 
 static double kinetic_energy(const fu_model *model, const fu_coupling *coupling, double t, const double *q,
@@ -329,11 +309,6 @@ static double potential_energy(const fu_model *model, const fu_coupling *couplin
 
 /* --- the coupling ----------------------------------------------------------------------------------------------- */
 
-static void add_bearing(const fu_drum *drum, const view *at, double *f)
-{
-    if (drum->turn >= 0) f[drum->turn] += drum->damping * at->own_rate;
-}
-
 static void force(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f)
 {
     view at;
@@ -341,7 +316,7 @@ static void force(const fu_model *model, const fu_coupling *coupling, const fu_s
     look(model, coupling, state, 0, &at);
     forces_by_y(drum_of(coupling), &at, y);
     scatter(drum_of(coupling), &at, y, f);
-    add_bearing(drum_of(coupling), &at, f);
+    fu_wheel_add_bearing(&drum_of(coupling)->wheel, &at.wheel, f);
 }
 
 static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, double *f,
@@ -358,47 +333,23 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
     forces_by_y(drum, &at, y);
     add_multipliers(&of, multipliers, y);
     scatter(drum, &at, y, f);
-    add_bearing(drum, &at, f);
+    fu_wheel_add_bearing(&drum->wheel, &at.wheel, f);
     for (int r = 0; r < CONDITIONS; ++r)
         internal[coupling->unknown + r] = -fu_row_unit(equations->weights.inertia, coupling->scale[r]) * phi[r];
 }
 
 /* Adds the rows of the conditions, and the columns of their forces. */
-static void add_rows(const fu_model *model, const fu_coupling *coupling, const view *at, const conditions *of,
-                     const double *by_psi, double inertia, fu_system *system)
+static void add_rows(const fu_model *model, const fu_coupling *coupling, const conditions *of, int n,
+                     const fu_wheel_column *rows, const fu_wheel_column *columns, double inertia, fu_system *system)
 {
     const int own = fu_extra(model, coupling->unknown);
-    double by[Y][COLUMNS], by_column[Y][COLUMNS];
-    int dofs[COLUMNS];
-    const int n = columns_of(drum_of(coupling), at, at->centre.P, dofs, by);
-    columns_of(drum_of(coupling), at, by_psi, dofs, by_column);
     for (int r = 0; r < CONDITIONS; ++r)
         for (int j = 0; j < n; ++j) {
             const double unit = fu_row_unit(inertia, coupling->scale[r]);
-            double row = 0.0, column = 0.0;
-            for (int i = 0; i < Y; ++i) {
-                row += of->J[r][i] * by_column[i][j];
-                column += of->J[r][i] * by[i][j];
-            }
-            if (row != 0.0) fu_add(model, system, own + r, dofs[j], unit * row);
-            if (column != 0.0) fu_add(model, system, dofs[j], own + r, unit * column);
+            const double row = fu_by_column(&columns[j], of->J[r]), column = fu_by_column(&rows[j], of->J[r]);
+            if (row != 0.0) fu_add(model, system, own + r, columns[j].dof, unit * row);
+            if (column != 0.0) fu_add(model, system, rows[j].dof, own + r, unit * column);
         }
-}
-
-/* Adds the change of the force and the moment on the centre with its body, at fixed ones. */
-static void add_centre(const fu_model *model, const fu_drum *drum, const view *at, const fu_equations *equations,
-                       const double *y, fu_system *system)
-{
-    const int n = at->centre.n;
-    const double moment[3] = {y[TURN], 0.0, 0.0};
-    double K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
-    if (!n) return;
-    fu_wrench_derivatives(model, &drum->attachments[0], equations->next, y + CENTRE, moment, n, K, 0, 0);
-    fu_turn_attachment(model, &drum->attachments[0], equations->psi, K, n, n, 0);
-    for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j)
-            if (K[i * n + j] != 0.0)
-                fu_add(model, system, at->centre.at[i], at->centre.at[j], equations->weights.stiffness * K[i * n + j]);
 }
 
 /* Adds the tangent; derivatives of the acceleration of the centre by rotations of its body are neglected. */
@@ -411,6 +362,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     const double *multipliers = equations->next->forces + coupling->force;
     double M[STORE * (DIM + 1)], D[STORE * STORE], K[STORE * (DIM + 1 + DIM)], D_y[Y][Y], K_y[Y][Y], y[Y],
         by_psi[DIM * FU_ATTACHMENT_COORDINATES];
+    fu_wheel_column columns[COLUMNS], turned[COLUMNS];
     view at;
     conditions of;
     look(model, coupling, equations->next, equations->next->acceleration, &at);
@@ -425,44 +377,42 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
         for (int j = 0; j < DIM + 1 + DIM; ++j)
             K_y[of_store[i]][of_place[j]] += w.stiffness * K[i * (DIM + 1 + DIM) + j];
     }
-    memcpy(by_psi, at.centre.P, sizeof(double) * (size_t)(DIM * at.centre.n));
-    fu_turn_attachment(model, &drum->attachments[0], equations->psi, by_psi, DIM, at.centre.n, 0);
-    add_rows(model, coupling, &at, &of, by_psi, w.inertia, system);
-    add_matrix(model, drum, &at, by_psi, K_y, system);
-    if (w.rate != 0.0) add_matrix(model, drum, &at, at.centre.P, D_y, system);
-    if (drum->turn >= 0 && drum->damping != 0.0)
-        fu_add(model, system, drum->turn, drum->turn, w.stiffness * w.rate * drum->damping);
+    fu_wheel_by_psi(model, &drum->wheel, &at.wheel, equations->psi, by_psi);
+    const int n = columns_of(drum, &at, at.wheel.centre.P, columns);
+    columns_of(drum, &at, by_psi, turned);
+    add_rows(model, coupling, &of, n, columns, turned, w.inertia, system);
+    fu_wheel_add_matrix(model, n, columns, turned, Y, K_y[0], system);
+    if (w.rate != 0.0) fu_wheel_add_matrix(model, n, columns, columns, Y, D_y[0], system);
     forces_by_y(drum, &at, y);
     add_multipliers(&of, multipliers, y);
-    add_centre(model, drum, &at, equations, y, system);
+    fu_wheel_add_tangent(model, &drum->wheel, &at.wheel, equations, y + CENTRE, system);
 }
 
 /* Of winding the rates are the condition; a residual of places is corrected where the rope keeps its stretch. */
 static void rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work)
 {
     const fu_drum *drum = drum_of(coupling);
+    const fu_wheel *wheel = &drum->wheel;
     const double none[CONDITIONS] = {0.0};
     fu_rows *out = &work->rows[coupling->row];
-    double by[Y][COLUMNS], bias[CONDITIONS];
+    double bias[CONDITIONS];
+    fu_wheel_column columns[COLUMNS];
     view at;
     conditions of;
     look(model, coupling, state, 0, &at);
     conditions_of(drum, &at, none, &of);
     residuals(drum, state, &at, &of, out->C);
     if (at.winds != 0.0) out->C[WINDING] = 0.0;
-    drum->kernel->tangent_point_motion(at.x, at.x_rate, at.slope_rate, bias);
-    drum->kernel->winding_motion(winding_sense(drum), drum->radius, at.x, at.slope, at.winds, at.wound, at.x_rate,
-                                 at.slope_rate, at.u_rate, bias + WINDING);
-    out->n = columns_of(drum, &at, at.centre.P, out->at, by);
+    wheel->kernel->tangent_point_motion(at.x, at.x_rate, at.slope_rate, bias);
+    wheel->kernel->winding_motion(winding_sense(drum), wheel->radius, at.x, at.slope, at.winds, at.wound, at.x_rate,
+                                  at.slope_rate, at.u_rate, bias + WINDING);
+    out->n = columns_of(drum, &at, at.wheel.centre.P, columns);
+    for (int j = 0; j < out->n; ++j) out->at[j] = columns[j].dof;
     for (int r = 0; r < CONDITIONS; ++r) {
         out->rate[r] = 0.0;
         out->W[r] = -bias[r];
-        for (int d = 0; d < DIM; ++d) out->W[r] -= of.J[r][CENTRE + d] * at.centre.bias[d];
-        for (int j = 0; j < out->n; ++j) {
-            double value = 0.0;
-            for (int i = 0; i < Y; ++i) value += of.J[r][i] * by[i][j];
-            out->H[r * out->n + j] = value;
-        }
+        for (int d = 0; d < DIM; ++d) out->W[r] -= of.J[r][CENTRE + d] * at.wheel.centre.bias[d];
+        for (int j = 0; j < out->n; ++j) out->H[r * out->n + j] = fu_by_column(&columns[j], of.J[r]);
     }
 }
 
@@ -486,6 +436,7 @@ static void gaps(const fu_model *model, const fu_coupling *coupling, const fu_st
 static double energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     const fu_drum *drum = drum_of(coupling);
+    const fu_wheel *wheel = &drum->wheel;
     const history *past = history_of(drum, state);
     double total = 0.0, W, loss;
     view at;
@@ -494,10 +445,10 @@ static double energy(const fu_model *model, const fu_coupling *coupling, const f
     const int last = cell_of(drum, known);
     for (int cell = 0; known > 0.0 && cell <= last; ++cell) {
         const double length = cell < last ? drum->cell : known - cell * drum->cell;
-        drum->kernel->creep(drum->A, drum->radius, stretch_of(drum, past, cell), 1.0, &W, &loss);
+        wheel->kernel->creep(wheel->A, wheel->radius, stretch_of(drum, past, cell), 1.0, &W, &loss);
         total += length * W;
     }
-    drum->kernel->creep(drum->A, drum->radius, at.span_stretch, 1.0, &W, &loss);
+    wheel->kernel->creep(wheel->A, wheel->radius, at.span_stretch, 1.0, &W, &loss);
     return total + (at.u - known) * W;
 }
 
@@ -505,29 +456,13 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
                           const fu_accelerator *work)
 {
     const fu_drum *drum = drum_of(coupling);
+    const fu_wheel *wheel = &drum->wheel;
     double W, loss;
     view at;
     (void)work;
     look(model, coupling, state, 0, &at);
-    drum->kernel->creep(drum->A, drum->radius, at.wound, at.span_stretch, &W, &loss);
-    return drum->damping * at.own_rate * at.own_rate + loss * fabs(at.u_rate);
-}
-
-/* Subtracts the torque of the drive. */
-static void drive(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f)
-{
-    const fu_drum *drum = drum_of(coupling);
-    const int signal = drum->torque_signal;
-    (void)q;
-    if (drum->turn < 0 || drum->torque == 0.0) return;
-    f[drum->turn] -=
-        model->load_fraction * drum->torque * (signal < 0 ? 1.0 : fu_signal_at(&model->signals[signal], t, 0, 0));
-}
-
-static int may_be_open(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
-{
-    (void)model, (void)coupling, (void)state;
-    return 1;
+    wheel->kernel->creep(wheel->A, wheel->radius, at.wound, at.span_stretch, &W, &loss);
+    return wheel->damping * at.wheel.own_rate * at.wheel.own_rate + loss * fabs(at.u_rate);
 }
 
 /* Updates the profile of the wound rope: what is wound has the mean stretch of its way on the rim. */
@@ -565,8 +500,9 @@ double fu_drum_margin(const fu_model *model, const fu_coupling *coupling, const 
 /* Computes the speed of the material on the tangent of the groove, past the centre. */
 static double speed_of(const fu_drum *drum, const view *at, double t[DIM])
 {
-    t[0] = -drum->sense * sin(at->phi);
-    t[1] = drum->sense * cos(at->phi);
+    const fu_wheel *wheel = &drum->wheel;
+    t[0] = -wheel->sense * sin(at->phi);
+    t[1] = wheel->sense * cos(at->phi);
     return fu_dot(DIM, t, at->x_rate) - fu_dot(DIM, t, at->slope) * drum->direction * at->u_rate;
 }
 
@@ -574,9 +510,8 @@ static double speed_of(const fu_drum *drum, const view *at, double t[DIM])
 static double pressure(const fu_drum *drum, const view *at)
 {
     double t[DIM];
-    const double speed = speed_of(drum, at, t), tension = drum->A[0] * (fu_dot(DIM, t, at->slope) - 1.0);
-    const double outwards = (drum->g[0] - at->c_acc[0]) * cos(at->phi) + (drum->g[1] - at->c_acc[1]) * sin(at->phi);
-    return tension - drum->rho / at->span_stretch * (speed * speed + drum->radius * outwards);
+    const double speed = speed_of(drum, at, t), tension = drum->wheel.A[0] * (fu_dot(DIM, t, at->slope) - 1.0);
+    return fu_wheel_pressure(&drum->wheel, &at->wheel, at->phi, tension, speed, at->span_stretch);
 }
 
 double fu_drum_pressure(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
@@ -586,11 +521,12 @@ double fu_drum_pressure(const fu_model *model, const fu_coupling *coupling, cons
     return pressure(drum_of(coupling), &at);
 }
 
-/* The tension is that at the node by the balance of its momentum, see sheave.c. */
+/* The tension is that at the node by the balance of its momentum, see sheave_output.c. */
 static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                     const double *acceleration, const fu_accelerator *work, double *out)
 {
     const fu_drum *drum = drum_of(coupling);
+    const fu_wheel *wheel = &drum->wheel;
     const double *multipliers = work ? work->multipliers + coupling->multiplier : state->forces + coupling->force;
     drum_output *numbers = (drum_output *)out;
     double y[Y], t[DIM], phi[CONDITIONS];
@@ -602,12 +538,12 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     forces_by_y(drum, &at, y);
     add_multipliers(&of, multipliers, y);
     const double speed = speed_of(drum, &at, t), s_rate = drum->direction * at.u_rate;
-    const double velocity = speed + fu_dot(DIM, t, at.centre.v);
+    const double velocity = speed + fu_dot(DIM, t, at.wheel.centre.v);
     *numbers = (drum_output){.length_in_store = at.u, .material_speed = -s_rate, .angle = at.turn};
-    numbers->tension = drum->direction * fu_dot(DIM, t, y) - drum->rho * s_rate * velocity;
+    numbers->tension = drum->direction * fu_dot(DIM, t, y) - wheel->rho * s_rate * velocity;
     numbers->normal_force = pressure(drum, &at);
-    numbers->torque = y[TURN] + drum->damping * at.own_rate;
-    numbers->power = numbers->torque * at.own_rate;
+    numbers->torque = y[TURN] + wheel->damping * at.wheel.own_rate;
+    numbers->power = numbers->torque * at.wheel.own_rate;
     for (int d = 0; d < DIM; ++d) numbers->force[d] = -y[CENTRE + d];
     for (int r = 0; r < DIM; ++r) numbers->residual = fmax(numbers->residual, fabs(phi[r]));
 }
@@ -615,26 +551,11 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
 static const char *const role[] = {"sheave", 0};
 
 static const fu_field fields[] = {
-    FU_FIELD(fu_drum, kernel, FU_KERNELS, role),
-    FU_FIELD_ARRAY(fu_drum, attachments, FU_ATTACHMENT),
-    FU_FIELD(fu_drum, node, FU_INTEGER, 0),
-    FU_FIELD(fu_drum, s, FU_INTEGER, 0),
-    FU_FIELD(fu_drum, turn, FU_INTEGER, 0),
-    FU_FIELD(fu_drum, n_cells, FU_INTEGER, 0),
-    FU_FIELD(fu_drum, cell, FU_REAL, 0),
-    FU_FIELD(fu_drum, direction, FU_REAL, 0),
-    FU_FIELD(fu_drum, end, FU_REAL, 0),
-    FU_FIELD(fu_drum, inertia, FU_REAL, 0),
-    FU_FIELD(fu_drum, torque_signal, FU_INTEGER, 0),
-    FU_FIELD(fu_drum, torque, FU_REAL, 0),
-    FU_FIELD(fu_drum, damping, FU_REAL, 0),
-    FU_FIELD(fu_drum, radius, FU_REAL, 0),
-    FU_FIELD(fu_drum, tangent_radius, FU_REAL, 0),
-    FU_FIELD(fu_drum, sense, FU_REAL, 0),
-    FU_FIELD(fu_drum, rho, FU_REAL, 0),
-    FU_FIELD_ARRAY(fu_drum, g, FU_REAL),
-    FU_FIELD_ARRAY(fu_drum, A, FU_REAL),
-    {0},
+    FU_FIELD(fu_wheel, kernel, FU_KERNELS, role),  FU_WHEEL_FIELDS,
+    FU_FIELD(fu_drum, node, FU_INTEGER, 0),        FU_FIELD(fu_drum, s, FU_INTEGER, 0),
+    FU_FIELD(fu_drum, n_cells, FU_INTEGER, 0),     FU_FIELD(fu_drum, cell, FU_REAL, 0),
+    FU_FIELD(fu_drum, direction, FU_REAL, 0),      FU_FIELD(fu_drum, end, FU_REAL, 0),
+    FU_FIELD(fu_drum, tangent_radius, FU_REAL, 0), {0},
 };
 
 static const fu_output output_fields[] = {
@@ -646,8 +567,7 @@ static const fu_output output_fields[] = {
 };
 
 static const fu_inertia_operations inertia = {inertial_force, mass_matrix, kinetic_energy, potential_energy};
-static const fu_supply_operations supply = {.force = drive};
-static const fu_start_operations start = {.may_be_open = may_be_open};
+static const fu_start_operations start = {.may_be_open = fu_wheel_may_be_open};
 static const fu_history_operations of_history = {.update = update_history};
 
 const fu_coupling_type fu_drum_type = {
@@ -657,7 +577,7 @@ const fu_coupling_type fu_drum_type = {
     .output_fields = output_fields,
     .n_numbers = HISTORY,
     .inertia = &inertia,
-    .supply = &supply,
+    .supply = &fu_wheel_supply,
     .start = &start,
     .history = &of_history,
     .residual = residual,

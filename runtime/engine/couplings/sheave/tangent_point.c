@@ -1,12 +1,12 @@
 /* Tangent points in space: the conditions of a node at the end of a span, with the chord over a fixed stress-free
  * length of the span. */
-#include "couplings/rope/rope.h"
+#include "couplings/sheave/sheave.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { DIM = 3, NODE = 2 * DIM, VECTORS = 4, S = NODE + FU_FOOT_ELEMENT };
-enum { CHORD = DIM, LENGTH = 2 * DIM };
+enum { NODE_IN_SPACE = 2 * SPACE, VECTORS = 4, S = NODE_IN_SPACE + FU_FOOT_ELEMENT };
+enum { CHORD = SPACE, LENGTH = 2 * SPACE };
 
 static double derivative(const fu_tangent_point *at, int row, int of)
 {
@@ -69,21 +69,22 @@ static void find_chord(const fu_sheave *sheave, int k, const double *q, fu_tange
     const adjoining_span span = span_beside(sheave, k);
     const double L = q[span.s[1]] - q[span.s[0]], *foot = q + sheave->nodes[k];
     const chord_end end = k ? after_start(&span, L) : before_end(&span, L);
-    const int first = span.first + end.element * NODE;
-    double N[VECTORS], r[DIM];
-    sheave->foot->chord(q + first, end.length, end.distance, end.by_L, N, out->N_L, r, out->chord_L, out->chord_LL);
+    const int first = span.first + end.element * NODE_IN_SPACE;
+    double N[VECTORS], r[SPACE];
+    sheave->wheel.foot->chord(q + first, end.length, end.distance, end.by_L, N, out->N_L, r, out->chord_L,
+                              out->chord_LL);
     memset(out->by, 0, sizeof out->by);
-    for (int i = 0; i < NODE; ++i) out->dofs[i] = sheave->nodes[k] + i;
+    for (int i = 0; i < NODE_IN_SPACE; ++i) out->dofs[i] = sheave->nodes[k] + i;
     for (int i = 0; i < FU_FOOT_ELEMENT; ++i) {
-        out->dofs[NODE + i] = first + i;
-        out->by[CHORD + i % DIM][NODE + i] = N[i / DIM];
+        out->dofs[NODE_IN_SPACE + i] = first + i;
+        out->by[CHORD + i % SPACE][NODE_IN_SPACE + i] = N[i / SPACE];
     }
     out->b = end.b;
     for (int e = 0; e < 2; ++e) {
         out->dofs[S + e] = span.s[e];
         out->by[LENGTH][S + e] = e ? end.b_L : -end.b_L;
     }
-    for (int d = 0; d < DIM; ++d) {
+    for (int d = 0; d < SPACE; ++d) {
         out->chord[d] = r[d] - foot[d];
         out->by[d][d] = 1.0;
         out->by[CHORD + d][d] = -1.0;
@@ -95,7 +96,7 @@ static void find_chord(const fu_sheave *sheave, int k, const double *q, fu_tange
 void fu_tangent_point_turn(const double *of_centre, fu_tangent_point *at)
 {
     const int n = at->n - FU_FOOT_CENTRE;
-    for (int d = 0; d < DIM; ++d)
+    for (int d = 0; d < SPACE; ++d)
         for (int i = 0; i < n; ++i) at->by[d][FU_FOOT_CENTRE + i] = -of_centre[d * n + i];
 }
 
@@ -103,14 +104,14 @@ void fu_tangent_point_at(const fu_sheave *sheave, int k, const fu_attachment_sta
                          const double *multipliers, fu_tangent_point *out)
 {
     const double *foot = q + sheave->nodes[k];
-    double x[DIM];
+    double x[SPACE];
     find_chord(sheave, k, q, out);
     out->n = FU_FOOT_CENTRE + centre->n;
     memcpy(out->dofs + FU_FOOT_CENTRE, centre->at, sizeof(int) * (size_t)centre->n);
     fu_tangent_point_turn(centre->P, out);
-    for (int d = 0; d < DIM; ++d) x[d] = foot[d] - centre->p[d];
-    sheave->foot->conditions(x, out->chord, out->b, sheave->axis, sheave->weight, sheave->A[0], sheave->limit,
-                             sheave->tangent_radius[k], multipliers, out->phi, out->J, out->K);
+    for (int d = 0; d < SPACE; ++d) x[d] = foot[d] - centre->p[d];
+    sheave->wheel.foot->conditions(x, out->chord, out->b, sheave->wheel.axis, sheave->weight, sheave->wheel.A[0],
+                                   sheave->limit, sheave->tangent_radius[k], multipliers, out->phi, out->J, out->K);
 }
 
 void fu_tangent_point_rows(const fu_tangent_point *at, double *rows)
@@ -124,24 +125,25 @@ void fu_tangent_point_rows(const fu_tangent_point *at, double *rows)
 }
 
 /* Adds the second derivatives of the chord, times a force on it: it is not linear in the length of the span. */
-static void add_bending_of_chord(const fu_tangent_point *at, const double force[DIM], double *K)
+static void add_bending_of_chord(const fu_tangent_point *at, const double force[SPACE], double *K)
 {
     const int n = at->n;
     for (int e = 0; e < 2; ++e) {
         const double sign = e ? 1.0 : -1.0;
         for (int i = 0; i < FU_FOOT_ELEMENT; ++i) {
-            const double value = sign * at->N_L[i / DIM] * force[i % DIM];
-            K[(NODE + i) * n + S + e] += value;
-            K[(S + e) * n + NODE + i] += value;
+            const double value = sign * at->N_L[i / SPACE] * force[i % SPACE];
+            K[(NODE_IN_SPACE + i) * n + S + e] += value;
+            K[(S + e) * n + NODE_IN_SPACE + i] += value;
         }
-        for (int f = 0; f < 2; ++f) K[(S + e) * n + S + f] += (e == f ? 1.0 : -1.0) * fu_dot(DIM, at->chord_LL, force);
+        for (int f = 0; f < 2; ++f)
+            K[(S + e) * n + S + f] += (e == f ? 1.0 : -1.0) * fu_dot(SPACE, at->chord_LL, force);
     }
 }
 
 void fu_tangent_point_stiffness(const fu_tangent_point *at, const fu_tangent_point *columns, const double *multipliers,
                                 double *K)
 {
-    double force[DIM] = {0.0};
+    double force[SPACE] = {0.0};
     for (int j = 0; j < at->n; ++j) {
         double column[FU_FOOT_VECTORS] = {0.0};
         for (int i = 0; i < FU_FOOT_VECTORS; ++i)
@@ -153,7 +155,7 @@ void fu_tangent_point_stiffness(const fu_tangent_point *at, const fu_tangent_poi
         }
     }
     for (int r = 0; r < FU_FOOT_CONDITIONS; ++r)
-        for (int d = 0; d < DIM; ++d) force[d] += multipliers[r] * derivative(at, r, CHORD + d);
+        for (int d = 0; d < SPACE; ++d) force[d] += multipliers[r] * derivative(at, r, CHORD + d);
     add_bending_of_chord(at, force, K);
 }
 
@@ -162,8 +164,8 @@ void fu_tangent_point_bias(const fu_sheave *sheave, int k, const fu_tangent_poin
                            double bias[FU_FOOT_CONDITIONS])
 {
     const double *foot = q + sheave->nodes[k], L_rate = v[at->dofs[S + 1]] - v[at->dofs[S]];
-    double x[DIM], rate[FU_FOOT_VECTORS] = {0.0}, second[FU_FOOT_VECTORS] = {0.0};
-    for (int d = 0; d < DIM; ++d) {
+    double x[SPACE], rate[FU_FOOT_VECTORS] = {0.0}, second[FU_FOOT_VECTORS] = {0.0};
+    for (int d = 0; d < SPACE; ++d) {
         x[d] = foot[d] - centre->p[d];
         second[d] = -centre->bias[d];
         second[CHORD + d] = at->chord_LL[d] * L_rate * L_rate;
@@ -171,9 +173,9 @@ void fu_tangent_point_bias(const fu_sheave *sheave, int k, const fu_tangent_poin
     for (int j = 0; j < at->n; ++j)
         for (int i = 0; i < FU_FOOT_VECTORS; ++i) rate[i] += at->by[i][j] * v[at->dofs[j]];
     for (int i = 0; i < FU_FOOT_ELEMENT; ++i)
-        second[CHORD + i % DIM] += 2.0 * L_rate * at->N_L[i / DIM] * v[at->dofs[NODE + i]];
-    sheave->foot->motion(x, at->chord, at->b, sheave->axis, sheave->weight, sheave->A[0], sheave->limit, rate,
-                         rate + CHORD, rate[LENGTH], bias);
+        second[CHORD + i % SPACE] += 2.0 * L_rate * at->N_L[i / SPACE] * v[at->dofs[NODE_IN_SPACE + i]];
+    sheave->wheel.foot->motion(x, at->chord, at->b, sheave->wheel.axis, sheave->weight, sheave->wheel.A[0],
+                               sheave->limit, rate, rate + CHORD, rate[LENGTH], bias);
     for (int r = 0; r < FU_FOOT_CONDITIONS; ++r)
         for (int i = 0; i < FU_FOOT_VECTORS; ++i) bias[r] += derivative(at, r, i) * second[i];
 }
@@ -182,5 +184,5 @@ double fu_fleet_angle(const fu_sheave *sheave, int k, const double *q)
 {
     fu_tangent_point at;
     find_chord(sheave, k, q, &at);
-    return asin(fu_dot(DIM, sheave->axis, at.chord) / sqrt(fu_dot(DIM, at.chord, at.chord)));
+    return asin(fu_dot(SPACE, sheave->wheel.axis, at.chord) / sqrt(fu_dot(SPACE, at.chord, at.chord)));
 }

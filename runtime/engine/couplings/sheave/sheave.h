@@ -1,0 +1,205 @@
+/* Sheaves (couplings/sheave/): the coupling in sheave.c, its state in sheave_state.c, its wrap in wrap.c and
+ * wrap_friction.c, its forces in sheave_forces.c, the conditions of its tangent points in sheave_conditions.c and
+ * tangent_point.c, and its results in sheave_output.c.
+ *
+ * Derivatives are first by the places and slopes of both nodes, the wheel, and the material coordinates (y); the angles
+ * of the wrap follow from the places (z).
+ *
+ * In space the wrap lies in the plane of the groove, to which all vectors of y and z belong; in the place of the slope
+ * of a node is its length, which alone friction needs. */
+#ifndef FUNICULAR_COUPLINGS_SHEAVE_SHEAVE_H
+#define FUNICULAR_COUPLINGS_SHEAVE_SHEAVE_H
+
+#include "couplings/common/accelerator.h"
+#include "couplings/wheel/wheel.h"
+
+/* A sheave between the last node of a span and the first of the next (derive/couplings/sheave.py): two tangent points,
+ * and the wrap in zones of equal angles. Of a node the place comes first, then the slope. */
+typedef struct {
+    fu_wheel wheel;
+    int nodes[2]; /* dofs: the first of each node */
+    int n_zones;
+    const int *s; /* dofs: material coordinates of the ends of the zones */
+    double tangent_radius[2], tau;
+    double friction, slip_velocity; /* coefficient; m/s, see the kernel of friction */
+    double closing;                 /* m: between the last and the first s of a closed rope */
+    double least_wrap;              /* rad: of a wrap that can be modelled */
+    /* in space: of the spans before and after: the first dof, elements in all and within reach of a chord, s of their
+     * ends, m: the stress-free length of a chord */
+    double weight[3], limit, chord[2];
+    int span_first[2], span_elements[2], span_reach[2], span_s[4];
+    const double *share_before, *share_after; /* of their nodes */
+} fu_sheave;
+
+/* --- the tangent point of a rope on a sheave in space (derive/couplings/tangent_point.py) --- */
+
+enum {
+    FU_FOOT_CONDITIONS = 3,
+    FU_FOOT_VECTORS = 7, /* x, chord, its stress-free length b */
+    FU_FOOT_ELEMENT = 12,
+    FU_FOOT_CENTRE = 6 + FU_FOOT_ELEMENT + 2, /* where the coordinates of the centre are among the dofs */
+    FU_FOOT_DOFS = FU_FOOT_CENTRE + FU_ATTACHMENT_COORDINATES
+};
+
+/* A tangent point at a state: its n dofs, those of the node, of the element in which the chord ends, s of both ends of
+ * the span, and the coordinates of the centre, some of them twice; the conditions and their derivatives by x, the chord
+ * and b (J, K), and the changes of these by the dofs. K: of J' multipliers. */
+typedef struct {
+    int n, dofs[FU_FOOT_DOFS];
+    double phi[FU_FOOT_CONDITIONS], J[FU_FOOT_CONDITIONS * FU_FOOT_VECTORS], K[FU_FOOT_VECTORS * FU_FOOT_VECTORS];
+    double by[FU_FOOT_VECTORS][FU_FOOT_DOFS], N_L[4], chord[3], chord_L[3], chord_LL[3], b;
+} fu_tangent_point;
+
+/* Computes the tangent point where the rope runs on (k = 0) or off (1), with these multipliers. */
+void fu_tangent_point_at(const fu_sheave *sheave, int k, const fu_attachment_state *centre, const double *q,
+                         const double *multipliers, fu_tangent_point *out);
+/* Computes the changes of x by the coordinates of the centre anew, from those of the centre (3 x coordinates). */
+void fu_tangent_point_turn(const double *of_centre, fu_tangent_point *at);
+/* Computes the derivatives of the conditions by the dofs (conditions x n). */
+void fu_tangent_point_rows(const fu_tangent_point *at, double *rows);
+/* Computes the derivatives of the forces J' multipliers on the dofs (n x n) by those of `columns`. */
+void fu_tangent_point_stiffness(const fu_tangent_point *at, const fu_tangent_point *columns, const double *multipliers,
+                                double *K);
+/* Computes the second rates of the conditions at zero accelerations of the dofs. */
+void fu_tangent_point_bias(const fu_sheave *sheave, int k, const fu_tangent_point *at,
+                           const fu_attachment_state *centre, const double *q, const double *v,
+                           double bias[FU_FOOT_CONDITIONS]);
+/* Returns the fleet angle of the chord there, rad: positive where the span leaves the groove along the axis. */
+double fu_fleet_angle(const fu_sheave *sheave, int k, const double *q);
+
+/* --- variables and state --- */
+
+enum { DIM = FU_GROOVE, SPACE = 3, ENDS = 2, MAX_CONDITIONS = ENDS * FU_FOOT_CONDITIONS, MAX_ZONES = 16 };
+/* y: of each node the place and the slope; of the wheel the centre, the rotation, the place along the axis; s of the
+ * ends of the zones */
+enum { NODE = 2 * DIM, SLOPE = DIM, CENTRE = ENDS * NODE, TURN = CENTRE + FU_WHEEL_TURN };
+enum { ACROSS = CENTRE + FU_WHEEL_ACROSS, MATERIAL = CENTRE + FU_WHEEL_FORCES, Y = MATERIAL + MAX_ZONES + 1 };
+enum { COLUMNS = ENDS * 2 * SPACE + MAX_ZONES + 2 + FU_ATTACHMENT_COORDINATES };
+/* z: the same with the angles of both tangent points in the place of those of the nodes, in the plane of the groove */
+enum {
+    Z_SLOPE = ENDS,
+    Z_CENTRE = Z_SLOPE + ENDS * DIM,
+    Z_TURN = Z_CENTRE + DIM,
+    Z_MATERIAL = Z_TURN + 1,
+    Z = Z_MATERIAL + MAX_ZONES + 1
+};
+
+/* A sheave at a state: both tangent points, the angles with their rates and derivatives, and the material. */
+typedef struct {
+    const double *q;
+    fu_wheel_state wheel;
+    double stretch[ENDS][SPACE]; /* in space: direction of the slope */
+    double s[MAX_ZONES + 1], s_rate[MAX_ZONES + 1], s_acc[MAX_ZONES + 1];
+    double x[ENDS][DIM], slope[ENDS][DIM], x_rate[ENDS][DIM], slope_rate[ENDS][DIM];
+    double phi[ENDS], phi_rate[ENDS], phi_acc[ENDS];
+    double phi_x[ENDS][DIM], phi_xx[ENDS][DIM * DIM], rate_x[ENDS][DIM], acc_x[ENDS][DIM], acc_v[ENDS][DIM];
+} fu_sheave_state;
+
+static inline const fu_sheave *sheave_of(const fu_coupling *coupling)
+{
+    return (const fu_sheave *)coupling;
+}
+
+static inline int is_in_space(const fu_sheave *sheave)
+{
+    return sheave->wheel.foot != 0;
+}
+
+static inline int has_friction(const fu_sheave *sheave)
+{
+    return sheave->friction > 0.0;
+}
+
+/* Returns the number of conditions of a tangent point. */
+static inline int conditions_of(const fu_sheave *sheave)
+{
+    return is_in_space(sheave) ? FU_FOOT_CONDITIONS : DIM;
+}
+
+/* Returns the number of variables z of a sheave. */
+static inline int size_of_z(const fu_sheave *sheave)
+{
+    return Z_MATERIAL + sheave->n_zones + 1;
+}
+
+/* --- sheave_state.c --- */
+
+/* Computes a sheave at a state, with these accelerations of the dofs (null: zero). */
+void fu_sheave_at(const fu_model *model, const fu_sheave *sheave, const fu_state *state, const double *a,
+                  fu_sheave_state *out);
+/* Returns the stretch of the span at a tangent point. */
+double fu_stretch_at(const fu_sheave_state *at, int k);
+
+/* --- wrap.c: zones, by z --- */
+
+/* A zone of the wrap: angles of its ends, which are shares of those of the tangent points, and its length; `first` of
+ * the ends of all zones. */
+typedef struct {
+    double share[ENDS], phi[ENDS], phi_rate[ENDS], phi_acc[ENDS], l;
+    const double *s_rate, *s_acc;
+    int first;
+} fu_zone;
+
+fu_zone fu_zone_at(const fu_sheave *sheave, const fu_sheave_state *at, int j);
+/* Adds the inertial forces. */
+void fu_wrap_add_inertia(const fu_sheave *sheave, const fu_sheave_state *at, double *z);
+/* Adds all other forces: of both energies, of damping and friction. */
+void fu_wrap_add_forces(const fu_sheave *sheave, const fu_sheave_state *at, double *z);
+/* Adds the mass matrix, and the derivatives of the inertial forces by rates and places, each null where not needed. */
+void fu_wrap_add_inertia_matrices(const fu_sheave *sheave, const fu_sheave_state *at, double factor, double (*M)[Z],
+                                  double (*D)[Z], double (*K)[Z]);
+/* Adds the derivatives of the other forces by rates and places. */
+void fu_wrap_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at, double factor, double (*D)[Z],
+                          double (*K)[Z]);
+
+/* --- wrap_friction.c: points between zones, by z --- */
+
+/* Computes the forces of the j-th point on its angle, the rotation and its s; its slip and limit; and its power. */
+void fu_friction_at(const fu_sheave *sheave, const fu_sheave_state *at, int j, double *F, double numbers[3],
+                    double *power);
+/* Adds the derivatives of friction at the j-th point. */
+void fu_friction_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at, int j, double factor, double (*D)[Z],
+                              double (*K)[Z]);
+
+/* --- sheave_forces.c: by y --- */
+
+/* Computes the dofs of a sheave and the changes of y by them, with these of the centre; returns their number. */
+int fu_sheave_columns(const fu_sheave *sheave, const fu_sheave_state *at, const double *of_centre,
+                      fu_wheel_column *out);
+/* Computes all forces but those of the tangent points, or the inertial ones alone. */
+void fu_sheave_forces(const fu_sheave *sheave, const fu_sheave_state *at, double y[Y]);
+void fu_sheave_inertial_forces(const fu_sheave *sheave, const fu_sheave_state *at, double y[Y]);
+/* Adds forces by y to those on the dofs; in space there are none on the slopes. */
+void fu_sheave_scatter(const fu_sheave *sheave, const fu_sheave_state *at, const double *y, double *f);
+/* Adds the mass matrix. */
+void fu_sheave_add_mass(const fu_sheave *sheave, const fu_sheave_state *at, double factor, double (*K)[Y]);
+/* Adds the derivatives of all forces but those of the tangent points: D by rates, K by places. */
+void fu_sheave_add_derivatives(const fu_sheave *sheave, const fu_sheave_state *at, fu_weights w, double (*D)[Y],
+                               double (*K)[Y]);
+/* Compute the kinetic energy and that of gravity, J, along the axis, in space. */
+void fu_sheave_energies_across(const fu_sheave *sheave, const fu_sheave_state *at, double *T, double *V);
+
+/* --- sheave_conditions.c: tangent points --- */
+
+/* Adds the forces of the tangent points by y, in space without those on the chords; computes the residuals phi. */
+void fu_sheave_add_multipliers(const fu_sheave *sheave, const fu_sheave_state *at, const double *multipliers,
+                               double *phi, double *y);
+/* Adds all these forces: in the plane by y, in space to those on the dofs. */
+void fu_sheave_add_all_multipliers(const fu_sheave *sheave, const fu_sheave_state *at, const double *multipliers,
+                                   double *phi, double *y, double *f);
+/* Adds the derivatives of the conditions, and of their forces, to a system, and in the plane to K_y. `rows` and
+ * `columns`: of the n dofs; by_psi: changes of the centre in the latter. */
+void fu_sheave_add_conditions(const fu_model *model, const fu_coupling *coupling, const fu_sheave_state *at,
+                              const fu_equations *equations, int n, const fu_wheel_column *rows,
+                              const fu_wheel_column *columns, const double *by_psi, double (*K_y)[Y],
+                              fu_system *system);
+/* Operations of the coupling. */
+void fu_sheave_rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work);
+
+/* --- sheave_output.c --- */
+
+extern const fu_output fu_sheave_output_fields[];
+void fu_sheave_outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                       const double *acceleration, const fu_accelerator *work, double *out);
+
+#endif

@@ -1,0 +1,177 @@
+/* Tensions of a rope at a sheave, its normal forces and margins, and numbers of results. */
+#include "bodies/model.h"
+#include "couplings/rope/rope.h"
+#include "couplings/sheave/sheave.h"
+
+#include <math.h>
+
+typedef struct {
+    double tension_on, tension_off, wrap_angle, force[3], material_speed, slip, normal_force, torque, angle, residual,
+        fleet_angle_on, fleet_angle_off;
+} sheave_output;
+
+/* Returns the stretch of the span at a tangent point, in the plane along the groove. */
+static double stretch_along(const fu_sheave *sheave, const fu_sheave_state *at, int k, const double t[DIM])
+{
+    return is_in_space(sheave) ? at->slope[k][0] : fu_dot(DIM, t, at->slope[k]);
+}
+
+/* Returns the arm of a force along the groove over that of the tension, which in space leaves it at a fleet angle. */
+static double arm_over_radius(const fu_sheave *sheave, const fu_sheave_state *at, int k)
+{
+    return is_in_space(sheave) ? sqrt(fu_dot(DIM, at->x[k], at->x[k])) / sheave->tangent_radius[k] : 1.0;
+}
+
+/* Computes the tension at both tangent points from the balance of momentum at the nodes, through which material passes,
+ * along the groove in the sense of travel, with the accelerations of `at`; the speed of the material past the centre;
+ * and all forces by y. */
+static void tensions(const fu_sheave *sheave, const fu_sheave_state *at, const double *multipliers,
+                     double tension[ENDS], double speed[ENDS], double phi[MAX_CONDITIONS], double y[Y])
+{
+    const fu_wheel *wheel = &sheave->wheel;
+    fu_sheave_forces(sheave, at, y);
+    fu_sheave_add_multipliers(sheave, at, multipliers, phi, y);
+    for (int k = 0; k < ENDS; ++k) {
+        const double s_rate = at->s_rate[k ? sheave->n_zones : 0];
+        const double t[DIM] = {-wheel->sense * sin(at->phi[k]), wheel->sense * cos(at->phi[k])};
+        const double along = arm_over_radius(sheave, at, k) * fu_dot(DIM, t, y + k * NODE);
+        speed[k] = fu_dot(DIM, t, at->x_rate[k]) - stretch_along(sheave, at, k, t) * s_rate;
+        const double velocity = speed[k] + fu_dot(DIM, t, at->wheel.c_rate);
+        tension[k] = (k ? along : -along) - wheel->rho * s_rate * velocity;
+    }
+}
+
+/* Returns the tension at an angle of a zone with this mean: it grows with the height, as on a smooth groove. */
+static double tension_in(const fu_sheave *sheave, const fu_sheave_state *at, const fu_zone *of, double phi, double mean)
+{
+    const double half = 0.5 * (of->phi[1] - of->phi[0]), middle = 0.5 * (of->phi[0] + of->phi[1]);
+    const double below = fu_wheel_outwards(&sheave->wheel, &at->wheel, phi) -
+                         sin(half) / half * fu_wheel_outwards(&sheave->wheel, &at->wheel, middle);
+    return mean - sheave->wheel.rho * sheave->wheel.radius * below;
+}
+
+/* Returns the least normal force on an angle, N: of the zones at ends and middle, and of both tangent points with these
+ * tensions. */
+static double least_pressure(const fu_sheave *sheave, const fu_sheave_state *at, const double tension[ENDS],
+                             const double speeds[ENDS])
+{
+    const fu_wheel *wheel = &sheave->wheel;
+    double least = INFINITY;
+    for (int k = 0; k < ENDS; ++k)
+        least =
+            fmin(least, fu_wheel_pressure(wheel, &at->wheel, at->phi[k], tension[k], speeds[k], fu_stretch_at(at, k)));
+    for (int j = 0; j < sheave->n_zones; ++j) {
+        const fu_zone of = fu_zone_at(sheave, at, j);
+        const double stretch = wheel->sense * wheel->radius * (of.phi[1] - of.phi[0]) / of.l;
+        const double inside = wheel->A[0] * (stretch - 1.0);
+        for (int part = j ? 0 : 1; part < (j + 1 < sheave->n_zones ? 3 : 2); ++part) { /* its inner end, the middle */
+            const double x = 0.5 * part, rate = (1.0 - x) * of.phi_rate[0] + x * of.phi_rate[1];
+            const double flow = (1.0 - x) * of.s_rate[0] + x * of.s_rate[1];
+            const double speed = wheel->sense * wheel->radius * rate - stretch * flow;
+            const double phi = (1.0 - x) * of.phi[0] + x * of.phi[1];
+            const double tension = tension_in(sheave, at, &of, phi, inside);
+            least = fmin(least, fu_wheel_pressure(wheel, &at->wheel, phi, tension, speed, stretch));
+        }
+    }
+    return least;
+}
+
+double fu_wrap_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    const fu_sheave *sheave = sheave_of(coupling);
+    fu_sheave_state at;
+    fu_sheave_at(model, sheave, state, 0, &at);
+    return sheave->wheel.sense * (at.phi[1] - at.phi[0]) - sheave->least_wrap;
+}
+
+/* A span is a minimum of the energy R phi + l while its length along the groove is above R tan f: else the tangent
+ * point runs away along the groove. The margin has a reserve. */
+double fu_fleet_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    const fu_sheave *sheave = sheave_of(coupling);
+    const double reserve = 3.0;
+    double least = INFINITY;
+    (void)model;
+    for (int k = 0; k < ENDS; ++k) {
+        const double fleet = fu_fleet_angle(sheave, k, state->q);
+        const double length = state->q[sheave->span_s[ENDS * k + 1]] - state->q[sheave->span_s[ENDS * k]];
+        least = fmin(least, length * cos(fleet) - reserve * sheave->wheel.radius * tan(fabs(fleet)));
+    }
+    return least;
+}
+
+/* Computes the tensions at both tangent points from the stretch of the spans there, and the speeds of the material. */
+static void elastic_tensions(const fu_sheave *sheave, const fu_sheave_state *at, double tension[ENDS],
+                             double speed[ENDS])
+{
+    const fu_wheel *wheel = &sheave->wheel;
+    for (int k = 0; k < ENDS; ++k) {
+        const double t[DIM] = {-wheel->sense * sin(at->phi[k]), wheel->sense * cos(at->phi[k])};
+        const double stretch = stretch_along(sheave, at, k, t);
+        speed[k] = fu_dot(DIM, t, at->x_rate[k]) - stretch * at->s_rate[k ? sheave->n_zones : 0];
+        tension[k] = wheel->A[0] * (stretch - 1.0);
+    }
+}
+
+/* Without friction the tension at the tangent points is from the balance of the arc alone: multipliers of short steps
+ * have little accuracy. With friction it is elastic: friction on a light rope accelerates its nodes at once. */
+static double wrap_pressure(const fu_sheave *sheave, const fu_sheave_state *at)
+{
+    const double none[MAX_CONDITIONS] = {0.0};
+    double tension[ENDS], speed[ENDS], phi[MAX_CONDITIONS], y[Y];
+    if (has_friction(sheave)) elastic_tensions(sheave, at, tension, speed);
+    else tensions(sheave, at, none, tension, speed, phi, y);
+    return least_pressure(sheave, at, tension, speed);
+}
+
+double fu_wrap_pressure(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    const fu_sheave *sheave = sheave_of(coupling);
+    fu_sheave_state at;
+    fu_sheave_at(model, sheave, state, state->acceleration, &at);
+    return wrap_pressure(sheave, &at);
+}
+
+void fu_sheave_outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                       const double *acceleration, const fu_accelerator *work, double *out)
+{
+    const fu_sheave *sheave = sheave_of(coupling);
+    const double *multipliers = work ? work->multipliers + coupling->multiplier : state->forces + coupling->force;
+    sheave_output *numbers = (sheave_output *)out;
+    fu_sheave_state at;
+    double y[Y], phi[MAX_CONDITIONS], tension[ENDS], speed[ENDS], on_centre[SPACE];
+    fu_sheave_at(model, sheave, state, acceleration, &at);
+    tensions(sheave, &at, multipliers, tension, speed, phi, y);
+    *numbers = (sheave_output){.tension_on = tension[0], .tension_off = tension[1]};
+    numbers->wrap_angle = sheave->wheel.sense * (at.phi[1] - at.phi[0]);
+    fu_wheel_force(&sheave->wheel, y + CENTRE, on_centre);
+    for (int d = 0; d < SPACE; ++d) numbers->force[d] = -on_centre[d] + 0.0; /* no -0 */
+    numbers->fleet_angle_on = is_in_space(sheave) ? fu_fleet_angle(sheave, 0, state->q) : 0.0;
+    numbers->fleet_angle_off = is_in_space(sheave) ? fu_fleet_angle(sheave, 1, state->q) : 0.0;
+    numbers->material_speed = -0.5 * (at.s_rate[0] + at.s_rate[sheave->n_zones]);
+    numbers->normal_force = wrap_pressure(sheave, &at);
+    numbers->angle = sheave->wheel.turn < 0 ? 0.0 : state->q[sheave->wheel.turn];
+    for (int j = 0; has_friction(sheave) && j <= sheave->n_zones; ++j) {
+        double F[3], of[3], power;
+        fu_friction_at(sheave, &at, j, F, of, &power);
+        if (fabs(of[0]) > fabs(numbers->slip)) numbers->slip = of[0];
+        numbers->torque -= F[1];
+    }
+    for (int r = 0; r < ENDS * conditions_of(sheave); ++r) numbers->residual = fmax(numbers->residual, fabs(phi[r]));
+}
+
+const fu_output fu_sheave_output_fields[] = {
+    FU_OUTPUT(sheave_output, tension_on, "N", NULL),
+    FU_OUTPUT(sheave_output, tension_off, "N", NULL),
+    FU_OUTPUT(sheave_output, wrap_angle, "rad", NULL),
+    FU_OUTPUT(sheave_output, force, "N", "direction"),
+    FU_OUTPUT(sheave_output, material_speed, "m/s", NULL),
+    FU_OUTPUT(sheave_output, slip, "m/s", NULL),
+    FU_OUTPUT(sheave_output, normal_force, "N", NULL),
+    FU_OUTPUT(sheave_output, torque, "N m", NULL),
+    FU_OUTPUT(sheave_output, angle, "rad", NULL),
+    FU_OUTPUT(sheave_output, residual, "m", NULL),
+    FU_OUTPUT(sheave_output, fleet_angle_on, "rad", NULL),
+    FU_OUTPUT(sheave_output, fleet_angle_off, "rad", NULL),
+    FU_LAST_OUTPUT(sheave_output),
+};

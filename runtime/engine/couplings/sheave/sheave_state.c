@@ -1,0 +1,79 @@
+/* Sheaves at a state: angles of both tangent points, and the material that passes. */
+#include "bodies/model.h"
+#include "couplings/sheave/sheave.h"
+
+#include <math.h>
+
+double fu_stretch_at(const fu_sheave_state *at, int k)
+{
+    return sqrt(fu_dot(DIM, at->slope[k], at->slope[k]));
+}
+
+/* Computes the angles of both tangent points: the wrap counts the turns by which its stretch is nearest to the mean of
+ * both spans. */
+static void find_angles(const fu_sheave *sheave, fu_sheave_state *at)
+{
+    const double length = 0.5 * (fu_stretch_at(at, 0) + fu_stretch_at(at, 1)) * (at->s[sheave->n_zones] - at->s[0]);
+    const double *a = at->x[0], *b = at->x[1], turn = 2.0 * acos(-1.0), sense = sheave->wheel.sense;
+    const double part = sense * atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
+    const double wrap = part + turn * round((length / sheave->wheel.radius - part) / turn);
+    at->phi[0] = atan2(a[1], a[0]);
+    at->phi[1] = at->phi[0] + sense * wrap;
+}
+
+/* Computes the motion of a node from the centre, with the acceleration x_acc, in space. */
+static void find_node_in_space(const fu_sheave *sheave, const double *q, const double *v, const double *a, int k,
+                               fu_sheave_state *out, double x_acc[DIM])
+{
+    const int r = sheave->nodes[k];
+    const double *slope = q + r + SPACE, size = sqrt(fu_dot(SPACE, slope, slope));
+    double x[SPACE], rate[SPACE], acc[SPACE];
+    for (int d = 0; d < SPACE; ++d) {
+        x[d] = q[r + d] - out->wheel.centre.p[d];
+        rate[d] = v[r + d] - out->wheel.centre.v[d];
+        acc[d] = a[r + d] - out->wheel.acc[d];
+        out->stretch[k][d] = slope[d] / size;
+    }
+    fu_into_groove(&sheave->wheel, x, out->x[k]);
+    fu_into_groove(&sheave->wheel, rate, out->x_rate[k]);
+    fu_into_groove(&sheave->wheel, acc, x_acc);
+    out->slope[k][0] = size;
+    out->slope[k][1] = out->slope_rate[k][0] = out->slope_rate[k][1] = 0.0;
+}
+
+/* Computes the motion of a node from the centre, with the acceleration x_acc, in the plane. */
+static void find_node_in_plane(const fu_sheave *sheave, const double *q, const double *v, const double *a, int k,
+                               fu_sheave_state *out, double x_acc[DIM])
+{
+    const int r = sheave->nodes[k], slope = r + SLOPE;
+    for (int d = 0; d < DIM; ++d) {
+        out->x[k][d] = q[r + d] - out->wheel.centre.p[d];
+        out->slope[k][d] = q[slope + d];
+        out->x_rate[k][d] = v[r + d] - out->wheel.centre.v[d];
+        out->slope_rate[k][d] = v[slope + d];
+        x_acc[d] = a[r + d] - out->wheel.c_acc[d];
+    }
+}
+
+void fu_sheave_at(const fu_model *model, const fu_sheave *sheave, const fu_state *state, const double *a,
+                  fu_sheave_state *out)
+{
+    const double *v = state->v ? state->v : model->zero;
+    const fu_state moving = {.t = state->t, .q = state->q, .v = (double *)v};
+    if (!a) a = model->zero;
+    out->q = state->q;
+    fu_wheel_at(model, &sheave->wheel, &moving, a, &out->wheel);
+    for (int k = 0; k < ENDS; ++k) {
+        double x_acc[DIM];
+        (is_in_space(sheave) ? find_node_in_space : find_node_in_plane)(sheave, state->q, v, a, k, out, x_acc);
+        sheave->wheel.kernel->angle(out->x[k], out->x_rate[k], x_acc, &out->phi_rate[k], &out->phi_acc[k],
+                                    out->phi_x[k], out->phi_xx[k], out->rate_x[k], out->acc_x[k], out->acc_v[k]);
+    }
+    for (int j = 0; j <= sheave->n_zones; ++j) {
+        out->s[j] = state->q[sheave->s[j]];
+        out->s_rate[j] = v[sheave->s[j]];
+        out->s_acc[j] = a[sheave->s[j]];
+    }
+    out->s[sheave->n_zones] += sheave->closing;
+    find_angles(sheave, out);
+}

@@ -1,0 +1,141 @@
+/* The wrap of a rope on a sheave: sums over zones of equal angles, by the angles of both tangent points (z). */
+#include "couplings/sheave/sheave.h"
+
+#include <string.h>
+
+/* Variables of a zone: angles of its ends, centre, s of its ends. */
+enum { U_CENTRE = ENDS, U_MATERIAL = U_CENTRE + DIM, U = U_MATERIAL + ENDS };
+
+fu_zone fu_zone_at(const fu_sheave *sheave, const fu_sheave_state *at, int j)
+{
+    fu_zone out = {.s_rate = at->s_rate + j, .s_acc = at->s_acc + j, .first = j, .l = at->s[j + 1] - at->s[j]};
+    for (int e = 0; e < ENDS; ++e) {
+        const double share = (double)(j + e) / sheave->n_zones;
+        out.share[e] = share;
+        out.phi[e] = at->phi[0] + share * (at->phi[1] - at->phi[0]);
+        out.phi_rate[e] = at->phi_rate[0] + share * (at->phi_rate[1] - at->phi_rate[0]);
+        out.phi_acc[e] = at->phi_acc[0] + share * (at->phi_acc[1] - at->phi_acc[0]);
+    }
+    return out;
+}
+
+/* The change of a number of a zone by z: n entries. */
+typedef struct {
+    int n, at[ENDS];
+    double value[ENDS];
+} entry;
+
+static entry entry_of(const fu_zone *of, int k)
+{
+    if (k < ENDS) return (entry){2, {0, 1}, {1.0 - of->share[k], of->share[k]}};
+    if (k < U_MATERIAL) return (entry){1, {Z_CENTRE + k - U_CENTRE}, {1.0}};
+    return (entry){1, {Z_MATERIAL + of->first + k - U_MATERIAL}, {1.0}};
+}
+
+/* Adds n numbers of a zone, the k-th of which is number which[k], to those of z. */
+static void add_zone(const fu_zone *of, int n, const int *which, const double *u, double *z)
+{
+    for (int k = 0; k < n; ++k) {
+        const entry to = entry_of(of, which[k]);
+        for (int i = 0; i < to.n; ++i) z[to.at[i]] += to.value[i] * u[k];
+    }
+}
+
+/* Adds a matrix of a zone (rows x columns) times a factor to one of z; a row or column LENGTH is that of the length. */
+enum { LENGTH = -1 };
+static void add_zone_matrix(const fu_zone *of, int n_rows, const int *rows, int n_columns, const int *which,
+                            double factor, const double *from, double (*A)[Z])
+{
+    for (int i = 0; i < n_rows; ++i)
+        for (int j = 0; j < n_columns; ++j)
+            for (int r = 0; r < (rows[i] == LENGTH ? ENDS : 1); ++r)
+                for (int c = 0; c < (which[j] == LENGTH ? ENDS : 1); ++c) {
+                    const entry row = entry_of(of, rows[i] == LENGTH ? U_MATERIAL + r : rows[i]);
+                    const entry column = entry_of(of, which[j] == LENGTH ? U_MATERIAL + c : which[j]);
+                    const double sign =
+                        (rows[i] == LENGTH && !r ? -1.0 : 1.0) * (which[j] == LENGTH && !c ? -1.0 : 1.0);
+                    for (int a = 0; a < row.n; ++a)
+                        for (int b = 0; b < column.n; ++b)
+                            A[row.at[a]][column.at[b]] +=
+                                factor * sign * row.value[a] * column.value[b] * from[i * n_columns + j];
+                }
+}
+
+static const int every[U] = {0, 1, 2, 3, 4, 5}, with_length[5] = {0, 1, 2, 3, LENGTH}, of_zone[3] = {0, 1, LENGTH},
+                 damped[4] = {0, 1, U_MATERIAL, U_MATERIAL + 1};
+
+void fu_wrap_add_inertia(const fu_sheave *sheave, const fu_sheave_state *at, double *z)
+{
+    const fu_wheel *wheel = &sheave->wheel;
+    z[Z_TURN] += wheel->inertia * at->wheel.turn_acc;
+    for (int j = 0; j < sheave->n_zones; ++j) {
+        const fu_zone of = fu_zone_at(sheave, at, j);
+        double u[U];
+        wheel->kernel->inertia(wheel->rho, wheel->radius, of.phi, of.l, of.phi_rate, at->wheel.c_rate, of.s_rate,
+                               of.phi_acc, at->wheel.c_acc, of.s_acc, u);
+        add_zone(&of, U, every, u, z);
+    }
+}
+
+void fu_wrap_add_forces(const fu_sheave *sheave, const fu_sheave_state *at, double *z)
+{
+    const fu_wheel *wheel = &sheave->wheel;
+    for (int j = 0; j < sheave->n_zones; ++j) {
+        const fu_zone of = fu_zone_at(sheave, at, j);
+        double f[U_MATERIAL + 1], u[U], damping[4];
+        wheel->kernel->force(wheel->A, wheel->sense, wheel->rho, wheel->g, wheel->radius, of.phi, at->wheel.c, of.l, f);
+        memcpy(u, f, sizeof(double) * U_MATERIAL);
+        u[U_MATERIAL] = -f[U_MATERIAL];
+        u[U_MATERIAL + 1] = f[U_MATERIAL];
+        add_zone(&of, U, every, u, z);
+        if (sheave->tau == 0.0) continue;
+        wheel->kernel->damping_force(wheel->A, sheave->tau, wheel->radius, of.phi, of.l, of.phi_rate, of.s_rate,
+                                     damping);
+        add_zone(&of, 4, damped, damping, z);
+    }
+    for (int j = 0; has_friction(sheave) && j <= sheave->n_zones; ++j) {
+        double F[3], numbers[3], power;
+        const double share = (double)j / sheave->n_zones;
+        fu_friction_at(sheave, at, j, F, numbers, &power);
+        z[0] += (1.0 - share) * F[0];
+        z[1] += share * F[0];
+        z[Z_TURN] += F[1];
+        z[Z_MATERIAL + j] += F[2];
+    }
+}
+
+void fu_wrap_add_inertia_matrices(const fu_sheave *sheave, const fu_sheave_state *at, double factor, double (*M)[Z],
+                                  double (*D)[Z], double (*K)[Z])
+{
+    const fu_wheel *wheel = &sheave->wheel;
+    if (M) M[Z_TURN][Z_TURN] += factor * wheel->inertia;
+    for (int j = 0; j < sheave->n_zones; ++j) {
+        const fu_zone of = fu_zone_at(sheave, at, j);
+        double M_u[U * U], D_u[U * U], K_u[U * 3];
+        wheel->kernel->inertia_tangent(wheel->rho, wheel->radius, of.phi, of.l, of.phi_rate, at->wheel.c_rate,
+                                       of.s_rate, of.phi_acc, at->wheel.c_acc, of.s_acc, M_u, D_u, K_u);
+        if (M) add_zone_matrix(&of, U, every, U, every, factor, M_u, M);
+        if (D) add_zone_matrix(&of, U, every, U, every, factor, D_u, D);
+        if (K) add_zone_matrix(&of, U, every, 3, of_zone, factor, K_u, K);
+    }
+}
+
+void fu_wrap_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at, double factor, double (*D)[Z],
+                          double (*K)[Z])
+{
+    const fu_wheel *wheel = &sheave->wheel;
+    for (int j = 0; j < sheave->n_zones; ++j) {
+        const fu_zone of = fu_zone_at(sheave, at, j);
+        double K_u[5 * 5], D_4[4 * 4], K_4[4 * 3];
+        wheel->kernel->tangent(wheel->A, wheel->sense, wheel->rho, wheel->g, wheel->radius, of.phi, at->wheel.c, of.l,
+                               K_u);
+        add_zone_matrix(&of, 5, with_length, 5, with_length, factor, K_u, K);
+        if (sheave->tau == 0.0) continue;
+        wheel->kernel->damping_tangent(wheel->A, sheave->tau, wheel->radius, of.phi, of.l, of.phi_rate, of.s_rate, D_4,
+                                       K_4);
+        add_zone_matrix(&of, 4, damped, 3, of_zone, factor, K_4, K);
+        add_zone_matrix(&of, 4, damped, 4, damped, factor, D_4, D);
+    }
+    for (int j = 0; has_friction(sheave) && j <= sheave->n_zones; ++j)
+        fu_friction_add_matrices(sheave, at, j, factor, D, K);
+}

@@ -1,0 +1,78 @@
+/* Friction of a rope on a sheave, at the ends of the zones of its wrap. */
+#include "couplings/sheave/sheave.h"
+
+/* A point of friction at an end of a zone: its zones with their angles and lengths, its rates, and the tangent point
+ * that it is, -1 for none. The k-th angle is that of the end of zone first + k. */
+typedef struct {
+    int first, zones, foot;
+    double phi[3], share[3], l[2], phi_rate, s_rate;
+} friction_point;
+
+enum { SIDES = 2 };
+
+static friction_point point_of(const fu_sheave *sheave, const fu_sheave_state *at, int j)
+{
+    const int n = sheave->n_zones, first = j > 0 ? j - 1 : 0, last = j < n ? j + 1 : n;
+    friction_point out = {first, last - first, j == 0 ? 0 : j == n ? 1 : -1, .s_rate = at->s_rate[j]};
+    for (int k = 0; k <= out.zones; ++k) {
+        out.share[k] = (double)(first + k) / n;
+        out.phi[k] = at->phi[0] + out.share[k] * (at->phi[1] - at->phi[0]);
+        if (k < out.zones) out.l[k] = at->s[first + k + 1] - at->s[first + k];
+    }
+    out.phi_rate = at->phi_rate[0] + (double)j / n * (at->phi_rate[1] - at->phi_rate[0]);
+    return out;
+}
+
+void fu_friction_at(const fu_sheave *sheave, const fu_sheave_state *at, int j, double *F, double numbers[3],
+                    double *power)
+{
+    const friction_point p = point_of(sheave, at, j);
+    const fu_wheel *wheel = &sheave->wheel;
+    const fu_sheave_kernels *kernel = wheel->kernel;
+    if (p.foot < 0)
+        kernel->friction(wheel->A, wheel->sense, wheel->rho, wheel->radius, wheel->g, sheave->friction,
+                         sheave->slip_velocity, p.phi, p.l, p.phi_rate, at->wheel.turn_rate, p.s_rate, F, numbers,
+                         power);
+    else
+        (p.foot ? kernel->friction_off : kernel->friction_on)(
+            wheel->A, wheel->sense, wheel->rho, wheel->radius, wheel->g, sheave->friction, sheave->slip_velocity, p.phi,
+            p.l, at->slope[p.foot], p.phi_rate, at->wheel.turn_rate, p.s_rate, F, numbers, power);
+}
+
+void fu_friction_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at, int j, double factor, double (*D)[Z],
+                              double (*K)[Z])
+{
+    const friction_point p = point_of(sheave, at, j);
+    const fu_wheel *wheel = &sheave->wheel;
+    const fu_sheave_kernels *kernel = wheel->kernel;
+    const double share = (double)j / sheave->n_zones;
+    const int row[3] = {0, Z_TURN, Z_MATERIAL + j}, places = 2 * p.zones + 1 + (p.foot < 0 ? 0 : DIM);
+    double of_place[3 * (3 + SIDES + DIM)], of_rate[3 * 3];
+    if (p.foot < 0)
+        kernel->friction_tangent(wheel->A, wheel->sense, wheel->rho, wheel->radius, wheel->g, sheave->friction,
+                                 sheave->slip_velocity, p.phi, p.l, p.phi_rate, at->wheel.turn_rate, p.s_rate, of_place,
+                                 of_rate);
+    else
+        (p.foot ? kernel->friction_off_tangent : kernel->friction_on_tangent)(
+            wheel->A, wheel->sense, wheel->rho, wheel->radius, wheel->g, sheave->friction, sheave->slip_velocity, p.phi,
+            p.l, at->slope[p.foot], p.phi_rate, at->wheel.turn_rate, p.s_rate, of_place, of_rate);
+    for (int i = 0; i < 3; ++i)
+        for (int e = 0; e < (i ? 1 : ENDS); ++e) { /* a force on the angle is one on those of both tangent points */
+            double *to_K = K[i ? row[i] : e], *to_D = D[i ? row[i] : e];
+            const double part = factor * (i ? 1.0 : e ? share : 1.0 - share), *of = of_place + i * places;
+            for (int k = 0; k <= p.zones; ++k) {
+                to_K[0] += part * (1.0 - p.share[k]) * of[k];
+                to_K[1] += part * p.share[k] * of[k];
+            }
+            for (int k = 0; k < p.zones; ++k) {
+                to_K[Z_MATERIAL + p.first + k + 1] += part * of[p.zones + 1 + k];
+                to_K[Z_MATERIAL + p.first + k] -= part * of[p.zones + 1 + k];
+            }
+            for (int d = 0; p.foot >= 0 && d < DIM; ++d)
+                to_K[Z_SLOPE + p.foot * DIM + d] += part * of[2 * p.zones + 1 + d];
+            to_D[0] += part * (1.0 - share) * of_rate[i * 3];
+            to_D[1] += part * share * of_rate[i * 3];
+            to_D[Z_TURN] += part * of_rate[i * 3 + 1];
+            to_D[Z_MATERIAL + j] += part * of_rate[i * 3 + 2];
+        }
+}

@@ -1,0 +1,181 @@
+/* Wheels: centre and rotation, bearing and drive of sheaves and drums. */
+#include "couplings/wheel/wheel.h"
+#include "bodies/model.h"
+#include "bodies/unknowns.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { DIM = FU_GROOVE, SPACE = 3 };
+
+void fu_into_groove(const fu_wheel *wheel, const double *vector, double out[DIM])
+{
+    for (int i = 0; i < DIM; ++i) {
+        out[i] = 0.0;
+        for (int d = 0; d < SPACE; ++d) out[i] += wheel->groove[d * DIM + i] * vector[d];
+    }
+}
+
+/* Returns the part about the axis of a rotation, of whose parts in space each is `stride` after the last one. */
+static double about_axis(const fu_wheel *wheel, const double *turn, int stride)
+{
+    double sum = 0.0;
+    if (!wheel->foot) return turn[0];
+    for (int d = 0; d < SPACE; ++d) sum += wheel->axis[d] * turn[d * stride];
+    return sum;
+}
+
+/* Computes the motion of the centre, with these accelerations of the dofs. */
+static void find_centre(const fu_wheel *wheel, const double *a, fu_wheel_state *out)
+{
+    const fu_attachment_state *centre = &out->centre;
+    for (int d = 0; d < (wheel->foot ? SPACE : DIM); ++d) {
+        out->acc[d] = centre->bias[d];
+        for (int i = 0; i < centre->n; ++i) out->acc[d] += centre->P[d * centre->n + i] * a[centre->at[i]];
+    }
+    if (wheel->foot) {
+        fu_into_groove(wheel, centre->p, out->c);
+        fu_into_groove(wheel, centre->v, out->c_rate);
+        fu_into_groove(wheel, out->acc, out->c_acc);
+        out->across = fu_dot(SPACE, wheel->axis, centre->p);
+        out->across_rate = fu_dot(SPACE, wheel->axis, centre->v);
+        out->across_acc = fu_dot(SPACE, wheel->axis, out->acc);
+        return;
+    }
+    memcpy(out->c, centre->p, sizeof out->c);
+    memcpy(out->c_rate, centre->v, sizeof out->c_rate);
+    memcpy(out->c_acc, out->acc, sizeof out->c_acc);
+}
+
+void fu_wheel_at(const fu_model *model, const fu_wheel *wheel, const fu_state *state, const double *a,
+                 fu_wheel_state *out)
+{
+    const fu_attachment_state *centre = &out->centre;
+    fu_attachment_at(model, &wheel->attachments[0], state, 0.0, FU_POINT | FU_AXES, &out->centre);
+    find_centre(wheel, a, out);
+    out->own_rate = wheel->turn < 0 ? 0.0 : state->v[wheel->turn];
+    out->turn_rate = out->own_rate + about_axis(wheel, centre->omega, 1);
+    out->turn_acc = wheel->turn < 0 ? 0.0 : a[wheel->turn];
+    for (int i = 0; i < centre->n; ++i) out->turn_acc += about_axis(wheel, centre->T + i, centre->n) * a[centre->at[i]];
+}
+
+/* --- forces ----------------------------------------------------------------------------------------------------- */
+
+void fu_wheel_force(const fu_wheel *wheel, const double *forces, double out[SPACE])
+{
+    out[DIM] = 0.0;
+    for (int d = 0; d < (wheel->foot ? SPACE : DIM); ++d)
+        out[d] = wheel->foot ? fu_dot(DIM, wheel->groove + d * DIM, forces) + wheel->axis[d] * forces[FU_WHEEL_ACROSS]
+                             : forces[d];
+}
+
+/* Computes the force and the moment on the carrier from forces on a wheel. */
+static void wrench_of(const fu_wheel *wheel, const double *forces, double force[SPACE], double moment[SPACE])
+{
+    const double turning = forces[FU_WHEEL_TURN];
+    fu_wheel_force(wheel, forces, force);
+    for (int d = 0; d < SPACE; ++d) moment[d] = wheel->foot ? wheel->axis[d] * turning : d ? 0.0 : turning;
+}
+
+void fu_wheel_add_forces(const fu_wheel *wheel, const fu_wheel_state *at, const double *forces, double *f)
+{
+    double force[SPACE], moment[SPACE];
+    if (wheel->turn >= 0) f[wheel->turn] += forces[FU_WHEEL_TURN];
+    wrench_of(wheel, forces, force, moment);
+    fu_add_wrench(wheel->foot ? SPACE : DIM, &at->centre, force, moment, 1.0, f);
+}
+
+void fu_wheel_add_bearing(const fu_wheel *wheel, const fu_wheel_state *at, double *f)
+{
+    if (wheel->turn >= 0) f[wheel->turn] += wheel->damping * at->own_rate;
+}
+
+/* Subtracts the torque of the drive. */
+static void drive(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f)
+{
+    const fu_wheel *wheel = (const fu_wheel *)coupling;
+    const int signal = wheel->torque_signal;
+    (void)q;
+    if (wheel->turn < 0 || wheel->torque == 0.0) return;
+    f[wheel->turn] -=
+        model->load_fraction * wheel->torque * (signal < 0 ? 1.0 : fu_signal_at(&model->signals[signal], t, 0, 0));
+}
+
+const fu_supply_operations fu_wheel_supply = {.force = drive};
+
+int fu_wheel_may_be_open(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    (void)model, (void)coupling, (void)state;
+    return 1;
+}
+
+/* --- derivatives ------------------------------------------------------------------------------------------------ */
+
+void fu_wheel_by_psi(const fu_model *model, const fu_wheel *wheel, const fu_wheel_state *at, const double *psi,
+                     double *out)
+{
+    memcpy(out, at->centre.P, sizeof(double) * (size_t)(model->dim * at->centre.n));
+    fu_turn_attachment(model, &wheel->attachments[0], psi, out, model->dim, at->centre.n, 0);
+}
+
+int fu_wheel_columns(const fu_wheel *wheel, const fu_wheel_state *at, const double *of_centre, int first,
+                     fu_wheel_column *out)
+{
+    const int n_centre = at->centre.n;
+    int n = 0;
+    if (wheel->turn >= 0) out[n++] = (fu_wheel_column){wheel->turn, first + FU_WHEEL_TURN, 1, {1.0}};
+    for (int i = 0; i < n_centre; ++i, ++n) {
+        out[n] = (fu_wheel_column){at->centre.at[i], first, FU_WHEEL_FORCES, {0.0}};
+        for (int d = 0; d < DIM && !wheel->foot; ++d) out[n].value[d] = of_centre[d * n_centre + i];
+        for (int d = 0; d < SPACE && wheel->foot; ++d) {
+            const double change = of_centre[d * n_centre + i];
+            for (int j = 0; j < DIM; ++j) out[n].value[j] += wheel->groove[d * DIM + j] * change;
+            out[n].value[FU_WHEEL_ACROSS] += wheel->axis[d] * change;
+        }
+        out[n].value[FU_WHEEL_TURN] = about_axis(wheel, at->centre.T + i, n_centre);
+    }
+    return n;
+}
+
+void fu_wheel_add_matrix(const fu_model *model, int n, const fu_wheel_column *rows, const fu_wheel_column *columns,
+                         int n_variables, const double *K, fu_system *system)
+{
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i) {
+            double sum = 0.0;
+            for (int k = 0; k < rows[i].n; ++k)
+                sum += rows[i].value[k] * fu_by_column(&columns[j], K + (rows[i].row + k) * n_variables);
+            if (sum != 0.0) fu_add(model, system, rows[i].dof, columns[j].dof, sum);
+        }
+}
+
+void fu_wheel_add_tangent(const fu_model *model, const fu_wheel *wheel, const fu_wheel_state *at,
+                          const fu_equations *equations, const double *forces, fu_system *system)
+{
+    const fu_weights w = equations->weights;
+    const int n = at->centre.n;
+    double force[SPACE], moment[SPACE], K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
+    if (wheel->turn >= 0 && wheel->damping != 0.0)
+        fu_add(model, system, wheel->turn, wheel->turn, w.stiffness * w.rate * wheel->damping);
+    if (!n) return;
+    wrench_of(wheel, forces, force, moment);
+    fu_wrench_derivatives(model, &wheel->attachments[0], equations->next, force, moment, n, K, 0, 0);
+    fu_turn_attachment(model, &wheel->attachments[0], equations->psi, K, n, n, 0);
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j)
+            if (K[i * n + j] != 0.0)
+                fu_add(model, system, at->centre.at[i], at->centre.at[j], w.stiffness * K[i * n + j]);
+}
+
+/* --- the rope that presses on the groove ------------------------------------------------------------------------ */
+
+double fu_wheel_outwards(const fu_wheel *wheel, const fu_wheel_state *at, double phi)
+{
+    return (wheel->g[0] - at->c_acc[0]) * cos(phi) + (wheel->g[1] - at->c_acc[1]) * sin(phi);
+}
+
+double fu_wheel_pressure(const fu_wheel *wheel, const fu_wheel_state *at, double phi, double tension, double speed,
+                         double stretch)
+{
+    return tension - wheel->rho / stretch * (speed * speed + wheel->radius * fu_wheel_outwards(wheel, at, phi));
+}

@@ -1,0 +1,93 @@
+/* Wheels: what sheaves and drums share. A wheel has a centre at an attachment, a rotation with inertia about its axis,
+ * a bearing on its carrier, and a drive. */
+#ifndef FUNICULAR_COUPLINGS_WHEEL_WHEEL_H
+#define FUNICULAR_COUPLINGS_WHEEL_WHEEL_H
+
+#include "couplings/common/attachments.h"
+#include "couplings/common/coupling.h"
+
+enum { FU_GROOVE = 2 }; /* dimension of the plane of the groove */
+
+/* First member of a sheave and of a drum. In space: kernels of tangent points (null in the plane); vectors of the plane
+ * of the groove (3 x 2); the axis. */
+typedef struct {
+    fu_coupling base;
+    const fu_sheave_kernels *kernel;
+    fu_attachment attachments[1];          /* the centre */
+    int turn;                              /* dof: the rotation, -1 for none */
+    double radius, sense, rho, g[3], A[2]; /* to the axis of the rope; and of the rope itself */
+    double inertia, damping;               /* kg m^2, N m s */
+    int torque_signal;                     /* of the torque on the wheel, -1 for a constant one */
+    double torque;                         /* N m: the factor of the signal */
+    const fu_tangent_point_kernels *foot;
+    double groove[6], axis[3];
+} fu_wheel;
+
+/* The fields of a wheel in the plane. */
+#define FU_WHEEL_FIELDS                                                                                                \
+    FU_FIELD_ARRAY(fu_wheel, attachments, FU_ATTACHMENT), FU_FIELD(fu_wheel, turn, FU_INTEGER, 0),                     \
+        FU_FIELD(fu_wheel, radius, FU_REAL, 0), FU_FIELD(fu_wheel, sense, FU_REAL, 0),                                 \
+        FU_FIELD(fu_wheel, rho, FU_REAL, 0), FU_FIELD_ARRAY(fu_wheel, g, FU_REAL),                                     \
+        FU_FIELD_ARRAY(fu_wheel, A, FU_REAL), FU_FIELD(fu_wheel, inertia, FU_REAL, 0),                                 \
+        FU_FIELD(fu_wheel, damping, FU_REAL, 0), FU_FIELD(fu_wheel, torque_signal, FU_INTEGER, 0),                     \
+        FU_FIELD(fu_wheel, torque, FU_REAL, 0)
+
+/* A wheel at a state: its centre in the plane of the groove (c) and along the axis (across), and its rotation; own: in
+ * the bearing. */
+typedef struct {
+    fu_attachment_state centre;
+    double c[FU_GROOVE], c_rate[FU_GROOVE], c_acc[FU_GROOVE], across, across_rate, across_acc, acc[3];
+    double own_rate, turn_rate, turn_acc;
+} fu_wheel_state;
+
+/* Forces on a wheel: on the centre in the plane of the groove, about the axis, on the centre along the axis. */
+enum { FU_WHEEL_TURN = FU_GROOVE, FU_WHEEL_ACROSS, FU_WHEEL_FORCES };
+
+/* The change by a dof of the variables of a wheel and its rope: n of them from number `row` on. */
+typedef struct {
+    int dof, row, n;
+    double value[FU_WHEEL_FORCES];
+} fu_wheel_column;
+
+/* Computes a wheel at a state, with these accelerations of the dofs. */
+void fu_wheel_at(const fu_model *model, const fu_wheel *wheel, const fu_state *state, const double *a,
+                 fu_wheel_state *out);
+/* Computes the parts of a vector in the plane of the groove, in space. */
+void fu_into_groove(const fu_wheel *wheel, const double *vector, double out[FU_GROOVE]);
+/* Computes the force on the centre from forces on a wheel. */
+void fu_wheel_force(const fu_wheel *wheel, const double *forces, double out[3]);
+/* Adds forces on a wheel to those on the dofs. */
+void fu_wheel_add_forces(const fu_wheel *wheel, const fu_wheel_state *at, const double *forces, double *f);
+/* Adds the moment of the bearing, between the wheel and its carrier. */
+void fu_wheel_add_bearing(const fu_wheel *wheel, const fu_wheel_state *at, double *f);
+/* Computes the changes of the centre by the unknowns of its attachment (dim x coordinates). */
+void fu_wheel_by_psi(const fu_model *model, const fu_wheel *wheel, const fu_wheel_state *at, const double *psi,
+                     double *out);
+/* Computes the columns of the rotation and of the centre with these changes; first: number of the first force among the
+ * variables. Returns their number. */
+int fu_wheel_columns(const fu_wheel *wheel, const fu_wheel_state *at, const double *of_centre, int first,
+                     fu_wheel_column *out);
+/* Returns the product of a column and a row of derivatives by the variables. */
+static inline double fu_by_column(const fu_wheel_column *column, const double *row)
+{
+    double sum = 0.0;
+    for (int k = 0; k < column->n; ++k) sum += column->value[k] * row[column->row + k];
+    return sum;
+}
+/* Adds rows' K columns of K (n_variables x n_variables) to a system; n columns each. */
+void fu_wheel_add_matrix(const fu_model *model, int n, const fu_wheel_column *rows, const fu_wheel_column *columns,
+                         int n_variables, const double *K, fu_system *system);
+/* Adds the derivatives of the bearing's moment, and of forces on the wheel with the motion of its carrier, at fixed
+ * ones. */
+void fu_wheel_add_tangent(const fu_model *model, const fu_wheel *wheel, const fu_wheel_state *at,
+                          const fu_equations *equations, const double *forces, fu_system *system);
+/* Returns the normal force on an angle, N: of a tension at an angle, a speed and a stretch of the rope. */
+double fu_wheel_pressure(const fu_wheel *wheel, const fu_wheel_state *at, double phi, double tension, double speed,
+                         double stretch);
+/* Returns the part of gravity, and of the acceleration of the centre, outwards at an angle, m/s^2. */
+double fu_wheel_outwards(const fu_wheel *wheel, const fu_wheel_state *at, double phi);
+
+extern const fu_supply_operations fu_wheel_supply;
+int fu_wheel_may_be_open(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+
+#endif
