@@ -1315,6 +1315,18 @@ typedef void fu_sheave_friction_off_tangent_kernel(const fu_real *A, fu_real sen
 /* A 2, g 2, angles2 2, lengths1 1, span_slope 2, K 3x5, D 3x3 */
 fu_sheave_friction_off_tangent_kernel planar_sheave_friction_off_tangent;
 
+typedef void fu_sheave_short_wrap_kernel(const fu_real *A, fu_real sense, fu_real R, const fu_real *phi, const fu_real *slope, const fu_real *span_slope, fu_real l, fu_real tension, fu_real *h, fu_real *U, fu_real *J, fu_real *F, fu_real *K);
+/* condition and elastic energy of a short wrap, and their derivatives: A [N, N m^2]; sense [1]; R [m]; phi [rad];
+ * slope [1]; span_slope [1]; l [m]; tension [N] -> h [m]; U [J]; J [m, m, 1]; F [N m, N]; K [N m, N] */
+/* A 2, phi 2, slope 2, span_slope 2, h 1, U 1, J 7, F 7, K 7x7 */
+fu_sheave_short_wrap_kernel planar_sheave_short_wrap;
+
+typedef void fu_sheave_short_wrap_motion_kernel(const fu_real *slope, const fu_real *span_slope, fu_real l, const fu_real *slope_rate, const fu_real *span_slope_rate, fu_real l_rate, fu_real *Q_d);
+/* second rate of the condition of a short wrap at zero accelerations: slope [1]; span_slope [1]; l [m]; slope_rate
+ * [1/s]; span_slope_rate [1/s]; l_rate [m/s] -> Q_d [m/s^2] */
+/* slope 2, span_slope 2, slope_rate 2, span_slope_rate 2, Q_d 1 */
+fu_sheave_short_wrap_motion_kernel planar_sheave_short_wrap_motion;
+
 typedef void fu_sheave_winding_kernel(fu_real sense, fu_real R, const fu_real *x, const fu_real *slope, fu_real winds, fu_real wound, fu_real tension, fu_real *J, fu_real *K);
 /* rates of the condition of winding, and its force: sense [1]; R [m]; x [m]; slope [1]; winds [1]; wound [1];
  * tension [N] -> J [1, m, 1]; K [N/m, N] */
@@ -1871,6 +1883,8 @@ typedef struct {
     fu_sheave_friction_on_tangent_kernel *friction_on_tangent;
     fu_sheave_friction_off_kernel *friction_off;
     fu_sheave_friction_off_tangent_kernel *friction_off_tangent;
+    fu_sheave_short_wrap_kernel *short_wrap;
+    fu_sheave_short_wrap_motion_kernel *short_wrap_motion;
     fu_sheave_winding_kernel *winding;
     fu_sheave_winding_motion_kernel *winding_motion;
     fu_sheave_store_kernel *store;

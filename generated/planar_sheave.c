@@ -1654,6 +1654,225 @@ void planar_sheave_friction_off_tangent(const fu_real *A, fu_real sense, fu_real
     PLANAR_SHEAVE_OUTPUTS
 }
 
+/* condition and elastic energy of a short wrap, and their derivatives; 87 add, 275 mul, 35 div, 2 sqrt */
+void planar_sheave_short_wrap(const fu_real *A, fu_real sense, fu_real R, const fu_real *phi, const fu_real *slope, const fu_real *span_slope, fu_real l, fu_real tension, fu_real *h, fu_real *U, fu_real *J, fu_real *F, fu_real *K)
+{
+    /* stretch */
+    const fu_real
+        size_1 = FU_SQRT(slope[0]*slope[0] + slope[1]*slope[1]),
+        size_2 = FU_SQRT(span_slope[0]*span_slope[0] + span_slope[1]*span_slope[1]),
+        inv_size_1 = 1.0/size_1,
+        inv_size_2 = 1.0/size_2,
+        stretch = 0.5*size_1 + 0.5*size_2;
+    /* condition and energy */
+    const fu_real
+        length_energy = 0.5*A[0]*(stretch - 1.0)*(stretch - 1.0) + 0.5*A[1]*stretch*stretch/(R*R),
+        stored = l*length_energy,
+        condition = R*sense*(-phi[0] + phi[1]) - l*stretch;
+    /* derivatives */
+    fu_real d_slope_size_1[2], d_slope_stretch[2], d_slope_condition[2], d_span_slope_size_2[2],
+        d_span_slope_stretch[2], d_span_slope_condition[2], d_slope_size_1_2[2], d_slope_stretch_2[2],
+        d_slope_length_energy[2], d_slope_stored[2], d_span_slope_size_2_2[2], d_span_slope_stretch_2[2],
+        d_span_slope_length_energy[2], d_span_slope_stored[2];
+    const fu_real
+        d_phi0_condition = -(R*sense),
+        d_phi1_condition = R*sense;
+    FU_EACH(g, 2,
+        d_slope_size_1[g] = inv_size_1*slope[g];
+        d_slope_stretch[g] = 0.5*d_slope_size_1[g];
+        d_slope_condition[g] = -(d_slope_stretch[g]*l);)
+    FU_EACH(g, 2,
+        d_span_slope_size_2[g] = inv_size_2*span_slope[g];
+        d_span_slope_stretch[g] = 0.5*d_span_slope_size_2[g];
+        d_span_slope_condition[g] = -(d_span_slope_stretch[g]*l);)
+    const fu_real d_l_condition = -stretch;
+    FU_EACH(g, 2,
+        d_slope_size_1_2[g] = inv_size_1*slope[g];
+        d_slope_stretch_2[g] = 0.5*d_slope_size_1_2[g];
+        d_slope_length_energy[g] = d_slope_stretch_2[g]*(0.5*A[0]*(2.0*stretch - 2.0) + A[1]*stretch/(R*R));
+        d_slope_stored[g] = d_slope_length_energy[g]*l;)
+    FU_EACH(g, 2,
+        d_span_slope_size_2_2[g] = inv_size_2*span_slope[g];
+        d_span_slope_stretch_2[g] = 0.5*d_span_slope_size_2_2[g];
+        d_span_slope_length_energy[g] = d_span_slope_stretch_2[g]*(0.5*A[0]*(2.0*stretch - 2.0) + A[1]*stretch/(R*R));
+        d_span_slope_stored[g] = d_span_slope_length_energy[g]*l;)
+    const fu_real
+        d_slope0_size_1_3 = inv_size_1*slope[0],
+        d_slope0_inv_size_1 = -(d_slope0_size_1_3*inv_size_1*inv_size_1),
+        d_slope0_d_slope0_size_1 = d_slope0_inv_size_1*slope[0] + inv_size_1,
+        d_slope0_d_slope0_stretch = 0.5*d_slope0_d_slope0_size_1,
+        d_slope0_d_slope0_condition = -(d_slope0_d_slope0_stretch*l),
+        d_slope0_d_slope0_size_1_2 = d_slope0_inv_size_1*slope[0] + inv_size_1,
+        d_slope0_d_slope0_stretch_2 = 0.5*d_slope0_d_slope0_size_1_2,
+        d_slope0_stretch_3 = 0.5*d_slope0_size_1_3,
+        d_slope0_d_slope0_length_energy = d_slope0_d_slope0_stretch_2*(0.5*A[0]*(2.0*stretch - 2.0) + A[1]*stretch/(R*R)) + d_slope_stretch_2[0]*d_slope0_stretch_3*(A[0] + A[1]/(R*R)),
+        d_slope0_d_slope0_stored = d_slope0_d_slope0_length_energy*l,
+        d_slope0_d_slope1_size_1 = d_slope0_inv_size_1*slope[1],
+        d_slope0_d_slope1_stretch = 0.5*d_slope0_d_slope1_size_1,
+        d_slope0_d_slope1_condition = -(d_slope0_d_slope1_stretch*l),
+        d_slope0_d_slope1_size_1_2 = d_slope0_inv_size_1*slope[1],
+        d_slope0_d_slope1_stretch_2 = 0.5*d_slope0_d_slope1_size_1_2,
+        d_slope0_d_slope1_length_energy = d_slope0_d_slope1_stretch_2*(0.5*A[0]*(2.0*stretch - 2.0) + A[1]*stretch/(R*R)) + d_slope0_stretch_3*d_slope_stretch_2[1]*(A[0] + A[1]/(R*R)),
+        d_slope0_d_slope1_stored = d_slope0_d_slope1_length_energy*l,
+        d_slope0_d_span_slope0_length_energy = d_slope0_stretch_3*d_span_slope_stretch_2[0]*(A[0] + A[1]/(R*R)),
+        d_slope0_d_span_slope0_stored = d_slope0_d_span_slope0_length_energy*l,
+        d_slope0_d_span_slope1_length_energy = d_slope0_stretch_3*d_span_slope_stretch_2[1]*(A[0] + A[1]/(R*R)),
+        d_slope0_d_span_slope1_stored = d_slope0_d_span_slope1_length_energy*l,
+        d_slope0_d_l_condition = -d_slope0_stretch_3,
+        d_slope0_length_energy_2 = d_slope0_stretch_3*(0.5*A[0]*(2.0*stretch - 2.0) + A[1]*stretch/(R*R)),
+        d_slope1_size_1_3 = inv_size_1*slope[1],
+        d_slope1_inv_size_1 = -(d_slope1_size_1_3*inv_size_1*inv_size_1),
+        d_slope1_d_slope0_size_1 = d_slope1_inv_size_1*slope[0],
+        d_slope1_d_slope0_stretch = 0.5*d_slope1_d_slope0_size_1,
+        d_slope1_d_slope0_condition = -(d_slope1_d_slope0_stretch*l),
+        d_slope1_d_slope0_size_1_2 = d_slope1_inv_size_1*slope[0],
+        d_slope1_d_slope0_stretch_2 = 0.5*d_slope1_d_slope0_size_1_2,
+        d_slope1_stretch_3 = 0.5*d_slope1_size_1_3,
+        d_slope1_d_slope0_length_energy = d_slope_stretch_2[0]*d_slope1_stretch_3*(A[0] + A[1]/(R*R)) + d_slope1_d_slope0_stretch_2*(0.5*A[0]*(2.0*stretch - 2.0) + A[1]*stretch/(R*R)),
+        d_slope1_d_slope0_stored = d_slope1_d_slope0_length_energy*l,
+        d_slope1_d_slope1_size_1 = d_slope1_inv_size_1*slope[1] + inv_size_1,
+        d_slope1_d_slope1_stretch = 0.5*d_slope1_d_slope1_size_1,
+        d_slope1_d_slope1_condition = -(d_slope1_d_slope1_stretch*l),
+        d_slope1_d_slope1_size_1_2 = d_slope1_inv_size_1*slope[1] + inv_size_1,
+        d_slope1_d_slope1_stretch_2 = 0.5*d_slope1_d_slope1_size_1_2,
+        d_slope1_d_slope1_length_energy = d_slope1_d_slope1_stretch_2*(0.5*A[0]*(2.0*stretch - 2.0) + A[1]*stretch/(R*R)) + d_slope_stretch_2[1]*d_slope1_stretch_3*(A[0] + A[1]/(R*R)),
+        d_slope1_d_slope1_stored = d_slope1_d_slope1_length_energy*l,
+        d_slope1_d_span_slope0_length_energy = d_slope1_stretch_3*d_span_slope_stretch_2[0]*(A[0] + A[1]/(R*R)),
+        d_slope1_d_span_slope0_stored = d_slope1_d_span_slope0_length_energy*l,
+        d_slope1_d_span_slope1_length_energy = d_slope1_stretch_3*d_span_slope_stretch_2[1]*(A[0] + A[1]/(R*R)),
+        d_slope1_d_span_slope1_stored = d_slope1_d_span_slope1_length_energy*l,
+        d_slope1_d_l_condition = -d_slope1_stretch_3,
+        d_slope1_length_energy_2 = d_slope1_stretch_3*(0.5*A[0]*(2.0*stretch - 2.0) + A[1]*stretch/(R*R)),
+        d_span_slope0_size_2_3 = inv_size_2*span_slope[0],
+        d_span_slope0_stretch_3 = 0.5*d_span_slope0_size_2_3,
+        d_span_slope0_d_slope0_length_energy = d_slope_stretch_2[0]*d_span_slope0_stretch_3*(A[0] + A[1]/(R*R)),
+        d_span_slope0_d_slope0_stored = d_span_slope0_d_slope0_length_energy*l,
+        d_span_slope0_d_slope1_length_energy = d_slope_stretch_2[1]*d_span_slope0_stretch_3*(A[0] + A[1]/(R*R)),
+        d_span_slope0_d_slope1_stored = d_span_slope0_d_slope1_length_energy*l,
+        d_span_slope0_inv_size_2 = -(d_span_slope0_size_2_3*inv_size_2*inv_size_2),
+        d_span_slope0_d_span_slope0_size_2 = d_span_slope0_inv_size_2*span_slope[0] + inv_size_2,
+        d_span_slope0_d_span_slope0_stretch = 0.5*d_span_slope0_d_span_slope0_size_2,
+        d_span_slope0_d_span_slope0_condition = -(d_span_slope0_d_span_slope0_stretch*l),
+        d_span_slope0_d_span_slope0_size_2_2 = d_span_slope0_inv_size_2*span_slope[0] + inv_size_2,
+        d_span_slope0_d_span_slope0_stretch_2 = 0.5*d_span_slope0_d_span_slope0_size_2_2,
+        d_span_slope0_d_span_slope0_length_energy = d_span_slope0_d_span_slope0_stretch_2*(0.5*A[0]*(2.0*stretch - 2.0) + A[1]*stretch/(R*R)) + d_span_slope_stretch_2[0]*d_span_slope0_stretch_3*(A[0] + A[1]/(R*R)),
+        d_span_slope0_d_span_slope0_stored = d_span_slope0_d_span_slope0_length_energy*l,
+        d_span_slope0_d_span_slope1_size_2 = d_span_slope0_inv_size_2*span_slope[1],
+        d_span_slope0_d_span_slope1_stretch = 0.5*d_span_slope0_d_span_slope1_size_2,
+        d_span_slope0_d_span_slope1_condition = -(d_span_slope0_d_span_slope1_stretch*l),
+        d_span_slope0_d_span_slope1_size_2_2 = d_span_slope0_inv_size_2*span_slope[1],
+        d_span_slope0_d_span_slope1_stretch_2 = 0.5*d_span_slope0_d_span_slope1_size_2_2,
+        d_span_slope0_d_span_slope1_length_energy = d_span_slope0_d_span_slope1_stretch_2*(0.5*A[0]*(2.0*stretch - 2.0) + A[1]*stretch/(R*R)) + d_span_slope0_stretch_3*d_span_slope_stretch_2[1]*(A[0] + A[1]/(R*R)),
+        d_span_slope0_d_span_slope1_stored = d_span_slope0_d_span_slope1_length_energy*l,
+        d_span_slope0_d_l_condition = -d_span_slope0_stretch_3,
+        d_span_slope0_length_energy_2 = d_span_slope0_stretch_3*(0.5*A[0]*(2.0*stretch - 2.0) + A[1]*stretch/(R*R)),
+        d_span_slope1_size_2_3 = inv_size_2*span_slope[1],
+        d_span_slope1_stretch_3 = 0.5*d_span_slope1_size_2_3,
+        d_span_slope1_d_slope0_length_energy = d_slope_stretch_2[0]*d_span_slope1_stretch_3*(A[0] + A[1]/(R*R)),
+        d_span_slope1_d_slope0_stored = d_span_slope1_d_slope0_length_energy*l,
+        d_span_slope1_d_slope1_length_energy = d_slope_stretch_2[1]*d_span_slope1_stretch_3*(A[0] + A[1]/(R*R)),
+        d_span_slope1_d_slope1_stored = d_span_slope1_d_slope1_length_energy*l,
+        d_span_slope1_inv_size_2 = -(d_span_slope1_size_2_3*inv_size_2*inv_size_2),
+        d_span_slope1_d_span_slope0_size_2 = d_span_slope1_inv_size_2*span_slope[0],
+        d_span_slope1_d_span_slope0_stretch = 0.5*d_span_slope1_d_span_slope0_size_2,
+        d_span_slope1_d_span_slope0_condition = -(d_span_slope1_d_span_slope0_stretch*l),
+        d_span_slope1_d_span_slope0_size_2_2 = d_span_slope1_inv_size_2*span_slope[0],
+        d_span_slope1_d_span_slope0_stretch_2 = 0.5*d_span_slope1_d_span_slope0_size_2_2,
+        d_span_slope1_d_span_slope0_length_energy = d_span_slope_stretch_2[0]*d_span_slope1_stretch_3*(A[0] + A[1]/(R*R)) + d_span_slope1_d_span_slope0_stretch_2*(0.5*A[0]*(2.0*stretch - 2.0) + A[1]*stretch/(R*R)),
+        d_span_slope1_d_span_slope0_stored = d_span_slope1_d_span_slope0_length_energy*l,
+        d_span_slope1_d_span_slope1_size_2 = d_span_slope1_inv_size_2*span_slope[1] + inv_size_2,
+        d_span_slope1_d_span_slope1_stretch = 0.5*d_span_slope1_d_span_slope1_size_2,
+        d_span_slope1_d_span_slope1_condition = -(d_span_slope1_d_span_slope1_stretch*l),
+        d_span_slope1_d_span_slope1_size_2_2 = d_span_slope1_inv_size_2*span_slope[1] + inv_size_2,
+        d_span_slope1_d_span_slope1_stretch_2 = 0.5*d_span_slope1_d_span_slope1_size_2_2,
+        d_span_slope1_d_span_slope1_length_energy = d_span_slope1_d_span_slope1_stretch_2*(0.5*A[0]*(2.0*stretch - 2.0) + A[1]*stretch/(R*R)) + d_span_slope_stretch_2[1]*d_span_slope1_stretch_3*(A[0] + A[1]/(R*R)),
+        d_span_slope1_d_span_slope1_stored = d_span_slope1_d_span_slope1_length_energy*l,
+        d_span_slope1_d_l_condition = -d_span_slope1_stretch_3,
+        d_span_slope1_length_energy_2 = d_span_slope1_stretch_3*(0.5*A[0]*(2.0*stretch - 2.0) + A[1]*stretch/(R*R)),
+        d_l_d_slope0_condition = -d_slope_stretch[0],
+        d_l_d_slope1_condition = -d_slope_stretch[1],
+        d_l_d_span_slope0_condition = -d_span_slope_stretch[0],
+        d_l_d_span_slope1_condition = -d_span_slope_stretch[1];
+    /* outputs */
+    h[0] = condition;
+    U[0] = stored;
+    J[0] = d_phi0_condition;
+    J[1] = d_phi1_condition;
+    J[2] = d_slope_condition[0];
+    J[3] = d_slope_condition[1];
+    J[4] = d_span_slope_condition[0];
+    J[5] = d_span_slope_condition[1];
+    J[6] = d_l_condition;
+    F[0] = 0.0;
+    F[1] = 0.0;
+    F[2] = d_slope_stored[0];
+    F[3] = d_slope_stored[1];
+    F[4] = d_span_slope_stored[0];
+    F[5] = d_span_slope_stored[1];
+    F[6] = length_energy;
+    FU_EACH(g, 12,
+        K[g] = 0.0;)
+    FU_EACH(g, 4,
+        K[g + 12] = 0.0;)
+    K[16] = d_slope0_d_slope0_condition*tension + d_slope0_d_slope0_stored;
+    K[17] = d_slope1_d_slope0_condition*tension + d_slope1_d_slope0_stored;
+    K[18] = d_span_slope0_d_slope0_stored;
+    K[19] = d_span_slope1_d_slope0_stored;
+    K[20] = d_l_d_slope0_condition*tension + d_slope_length_energy[0];
+    K[21] = 0.0;
+    K[22] = 0.0;
+    K[23] = d_slope0_d_slope1_condition*tension + d_slope0_d_slope1_stored;
+    K[24] = d_slope1_d_slope1_condition*tension + d_slope1_d_slope1_stored;
+    K[25] = d_span_slope0_d_slope1_stored;
+    K[26] = d_span_slope1_d_slope1_stored;
+    K[27] = d_l_d_slope1_condition*tension + d_slope_length_energy[1];
+    K[28] = 0.0;
+    K[29] = 0.0;
+    K[30] = d_slope0_d_span_slope0_stored;
+    K[31] = d_slope1_d_span_slope0_stored;
+    K[32] = d_span_slope0_d_span_slope0_condition*tension + d_span_slope0_d_span_slope0_stored;
+    K[33] = d_span_slope1_d_span_slope0_condition*tension + d_span_slope1_d_span_slope0_stored;
+    K[34] = d_l_d_span_slope0_condition*tension + d_span_slope_length_energy[0];
+    K[35] = 0.0;
+    K[36] = 0.0;
+    K[37] = d_slope0_d_span_slope1_stored;
+    K[38] = d_slope1_d_span_slope1_stored;
+    K[39] = d_span_slope0_d_span_slope1_condition*tension + d_span_slope0_d_span_slope1_stored;
+    K[40] = d_span_slope1_d_span_slope1_condition*tension + d_span_slope1_d_span_slope1_stored;
+    K[41] = d_l_d_span_slope1_condition*tension + d_span_slope_length_energy[1];
+    K[42] = 0.0;
+    K[43] = 0.0;
+    K[44] = d_slope0_d_l_condition*tension + d_slope0_length_energy_2;
+    K[45] = d_slope1_d_l_condition*tension + d_slope1_length_energy_2;
+    K[46] = d_span_slope0_d_l_condition*tension + d_span_slope0_length_energy_2;
+    K[47] = d_span_slope1_d_l_condition*tension + d_span_slope1_length_energy_2;
+    K[48] = 0.0;
+}
+
+/* second rate of the condition of a short wrap at zero accelerations; 13 add, 35 mul, 2 div, 2 sqrt */
+void planar_sheave_short_wrap_motion(const fu_real *slope, const fu_real *span_slope, fu_real l, const fu_real *slope_rate, const fu_real *span_slope_rate, fu_real l_rate, fu_real *Q_d)
+{
+    /* stretch */
+    const fu_real
+        size_1 = FU_SQRT(slope[0]*slope[0] + slope[1]*slope[1]),
+        size_2 = FU_SQRT(span_slope[0]*span_slope[0] + span_slope[1]*span_slope[1]),
+        inv_size_1 = 1.0/size_1,
+        inv_size_2 = 1.0/size_2;
+    /* rates */
+    const fu_real
+        dt_size_1 = inv_size_1*(slope[0]*slope_rate[0] + slope[1]*slope_rate[1]),
+        dt_size_2 = inv_size_2*(span_slope[0]*span_slope_rate[0] + span_slope[1]*span_slope_rate[1]),
+        dt_stretch = 0.5*dt_size_1 + 0.5*dt_size_2,
+        dt_inv_size_1 = -(dt_size_1*inv_size_1*inv_size_1),
+        dt_dt_size_1 = dt_inv_size_1*(slope[0]*slope_rate[0] + slope[1]*slope_rate[1]) + inv_size_1*slope_rate[0]*slope_rate[0] + inv_size_1*slope_rate[1]*slope_rate[1],
+        dt_inv_size_2 = -(dt_size_2*inv_size_2*inv_size_2),
+        dt_dt_size_2 = dt_inv_size_2*(span_slope[0]*span_slope_rate[0] + span_slope[1]*span_slope_rate[1]) + inv_size_2*span_slope_rate[0]*span_slope_rate[0] + inv_size_2*span_slope_rate[1]*span_slope_rate[1],
+        dt_dt_stretch = 0.5*dt_dt_size_1 + 0.5*dt_dt_size_2,
+        dt_rate = dt_dt_stretch*l + 2.0*dt_stretch*l_rate;
+    /* outputs */
+    Q_d[0] = -dt_rate;
+}
+
 /* rates of the condition of winding, and its force (Lagrange's equations of a rope that is wound on a drum); 6 add, 37 mul, 2 div, 1 sqrt */
 void planar_sheave_winding(fu_real sense, fu_real R, const fu_real *x, const fu_real *slope, fu_real winds, fu_real wound, fu_real tension, fu_real *J, fu_real *K)
 {

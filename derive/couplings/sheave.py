@@ -4,7 +4,7 @@ At a tangent point the end r of a span lies on a circle of radius R about c, and
 x = r - c, |x| = R and r_S . x = 0. Its angle phi is that of x, counted over turns: dphi = x x dx/|x|^2.
 
 Between the tangent points lies the wrap, in zones (sheave_zone.py), whose angles are linear in those of the two tangent
-points. Friction acts between these (sheave_friction.py).
+points. Friction acts between these (sheave_friction.py). A short wrap has a condition in its place (short_wrap.py).
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import sympy as sp
 
 from ..codegen.family import CouplingFamily
 from ..codegen.program import DirectionalDerivative, Program, jacobian
-from . import drum, sheave_friction, sheave_zone
+from . import drum, sheave_friction, sheave_zone, short_wrap
 from .sheave_zone import DIM, program
 
 
@@ -26,7 +26,7 @@ def families() -> list[CouplingFamily]:
 def build(dim: int) -> list[Program]:
     """Return the kernels of a sheave."""
     return [tangent_point(), tangent_point_motion(), angle(), *sheave_zone.kernels(), *sheave_friction.kernels(),
-            *drum.kernels()]
+            *short_wrap.kernels(), *drum.kernels()]
 
 
 def _conditions(p: Program, x: np.ndarray, slope: np.ndarray) -> np.ndarray:

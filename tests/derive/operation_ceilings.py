@@ -267,6 +267,7 @@ CEILINGS = {
         "damping_force": 16, "damping_tangent": 50,
         "friction": 66, "friction_tangent": 367, "friction_on": 65, "friction_on_tangent": 351, "friction_off": 65,
         "friction_off_tangent": 351,
+        "short_wrap": 399, "short_wrap_motion": 52,
         "winding": 46, "winding_motion": 29, "store": 69, "store_tangent": 76, "store_energy": 15, "creep": 17
     },
 }

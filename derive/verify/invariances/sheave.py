@@ -12,9 +12,11 @@ from ..samples.shapes import rotation
 from .drum import Scene, drum
 from .measures import Invariance, relative
 
-VECTORS = ("g", "c", "c_rate", "c_acc", "x", "slope", "x_rate", "slope_rate", "x_acc")
+VECTORS = ("g", "c", "c_rate", "c_acc", "x", "slope", "x_rate", "slope_rate", "x_acc", "span_slope",
+           "span_slope_rate")
 SCALARS = (("energy", "U"), ("weight", "V"), ("kinetic_energy", "T"), ("dissipation", "P"), ("angle", "rate"),
-           ("angle", "acc"), ("tangent_point_motion", "Q_d"))
+           ("angle", "acc"), ("tangent_point_motion", "Q_d"), ("short_wrap", "h"), ("short_wrap", "U"),
+           ("short_wrap_motion", "Q_d"))
 CENTRE = slice(2, 4)
 """Where the centre of the sheave is among the coordinates of a zone."""
 

@@ -105,3 +105,29 @@ def friction_forces(k: Any, kernel: str, s: Any) -> list[Any]:
     jump = friction(k, kernel, s)[2]
     arm = s["sense"].item() * s["R"].item() * jump
     return [arm, -arm, -jump * sum(_stretches(kernel, s)) / 2]
+
+
+# --- a short wrap -------------------------------------------------------------------------------------------------
+
+def short_wrap(s: Any) -> list[Any]:
+    """Return how much longer the arc is than the drawn length of a short wrap."""
+    return [s["sense"].item() * s["R"].item() * (s["phi"][1] - s["phi"][0]) - mean_stretch(s, 0) * s["l"].item()]
+
+
+def short_wrap_energy(s: Any) -> Any:
+    """Return its elastic energy: that of a zone with the arc of the drawn length."""
+    angle = mean_stretch(s, 0) * s["l"].item() / s["R"].item()
+    return energy({**s, "phi": np.array([mp.mpf(0), angle])})
+
+
+def short_wrap_motion(s: Any) -> Any:
+    """Return the second rate of the condition where the angles, slopes and the length move evenly."""
+    def drawn(t: Any) -> Any:
+        return mean_stretch(s, t) * (s["l"].item() + t * s["l_rate"].item())
+    return -(drawn(STEP) - 2 * drawn(0) + drawn(-STEP)) / STEP**2
+
+
+def mean_stretch(s: Any, t: Any) -> Any:
+    """Return the mean length of the slopes of both spans beside it, at the time t."""
+    slopes = [s[name] + t * s[f"{name}_rate"] for name in ("slope", "span_slope")]
+    return sum(mp.sqrt(slope.dot(slope)) for slope in slopes) / 2

@@ -29,7 +29,7 @@ SLIDING = (("angle_rate", 1), ("spin", 1), ("flow", 1))
 def sheave(family: CouplingFamily) -> list[Relation]:
     """Return the relations of a sheave's kernels."""
     return [*_of_tangent_point(), *_of_angle(), *_of_energies(), *_of_inertia(), *_of_damping(),
-            *(each for kernel in FRICTION for each in _of_friction(kernel)), *drum()]
+            *(each for kernel in FRICTION for each in _of_friction(kernel)), *_of_short_wrap(), *drum()]
 
 
 def without(names: tuple[tuple[str, int], ...], one: str) -> tuple[tuple[str, int], ...]:
@@ -173,3 +173,26 @@ def _of_friction(kernel: str) -> list[Relation]:
                      sum(size for _, size in places)),
             Relation(f"{kernel}_tangent", "D", "dF by rates of the angle, of the sheave, and of s", 1,
                      along(of(kernel, "F"), SLIDING), 3)]
+
+
+def _of_short_wrap() -> list[Relation]:
+    inputs = (("phi", 2), ("slope", 2), ("span_slope", 2), ("l", 1))
+
+    def forces(k, s):
+        out = k("short_wrap", s)
+        return out["F"] + out["J"] * s["tension"]
+
+    def condition(k, s, t, j):
+        moved = {name: s[name] + t * s[f"{name}_rate"] for name in ("slope", "span_slope", "l")}
+        return k("short_wrap", s, **moved)["h"]
+
+    return [Relation("short_wrap", "h", "arc less the drawn length", 0, root(reference.short_wrap)),
+            Relation("short_wrap", "U", "elastic energy of an arc of the drawn length", 0,
+                     root(reference.short_wrap_energy)),
+            Relation("short_wrap", "J", "dh by the angles, both slopes and the length", 1,
+                     along(of("short_wrap", "h"), inputs), 7),
+            Relation("short_wrap", "F", "dU by these", 1, along(of("short_wrap", "U"), inputs), 7),
+            Relation("short_wrap", "K", "d(F + J' tension) by these", 1, along(forces, inputs), 7),
+            Relation("short_wrap_motion", "Q_d", "d²h/dt² at zero accelerations", 2, condition),
+            Relation("short_wrap_motion", "Q_d", "that of the arc less the drawn length", 0,
+                     root(reference.short_wrap_motion))]

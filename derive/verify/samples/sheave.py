@@ -30,7 +30,8 @@ def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) 
     found |= {"R": np.float64(R), "phi": np.array([phi_a, phi_a + angle]), "sense": np.float64(sense),
               "l": np.float64(abs(angle) * R * random.uniform(0.8, 0.9)), "A": random.uniform(2, 5, 2),
               "rho": np.float64(1.3), "tau": np.float64(0.37)}
+    found["span_slope_rate"] = random.normal(size=2)
     # winds is 0 or 1 in a run; between these both stretches count
     return found | {name: np.float64(random.uniform(*limits)) for name, limits in {
         "tension": (2, 4), "winds": (0.3, 0.7), "wound": (1.1, 1.3), "span_stretch": (1.4, 1.6), "u": (2, 4),
-        "u_rate": (0.5, 1), "spin_acc": (0.5, 1)}.items()}
+        "u_rate": (0.5, 1), "spin_acc": (0.5, 1), "l_rate": (0.5, 1)}.items()}
