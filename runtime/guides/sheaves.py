@@ -78,6 +78,29 @@ ax.set(xlabel="x (m)", ylabel="y (m)", aspect="equal")
 ax.legend()
 
 # %%
+# A pendulum meets a peg
+# ----------------------
+#
+# Without friction the rope may leave a sheave and touch it again; ``contact=False`` says that it begins apart from it.
+
+scene = fu.Scene()
+scene.rigid_body("bob", mass=1, inertia=(1, 1, 1), position=(2 * np.sin(-0.7), -2 * np.cos(0.7), 0))
+scene.rope("rope", route=[fu.Anchor(at=(0, 0, 0)),
+                          fu.Sheave("peg", at=(0.3, -1, 0), radius=0.1, side="left", contact=False), fu.Anchor("bob")],
+           tension=7.5, elements=1, **ROPE)
+run = scene.run(2.0, output_step=0.02, tol=1e-4, integrator="radau", progress=False)
+for event, expected in zip(run.events, (0.862144, 1.773524), strict=True):
+    print(f"the rope {event['what']} at {event['time']:.4f} s; a massless one at {expected:.4f} s")
+    assert abs(event["time"] - expected) < 1e-2
+
+fig, ax = plt.subplots(figsize=(5, 3))
+ax.plot(run["bob.position"][:, 0], run["bob.position"][:, 1], label="bob")
+for k in (0, 43, 65):
+    ax.plot(run["rope.position"][k, :, 0], run["rope.position"][k, :, 1], color="gray")
+ax.set(xlabel="x (m)", ylabel="y (m)", aspect="equal")
+ax.legend()
+
+# %%
 # In space
 # --------
 #

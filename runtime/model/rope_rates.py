@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -62,7 +63,7 @@ def _follow_in_space(model: Model, rope: RopeModel) -> None:
 def _follow_in_plane(model: Model, rope: RopeModel) -> None:
     """Set the rates of a planar rope but those of rotations."""
     q, v = model.q, model.v
-    holders = list(_holders(model, rope))
+    holders = _joined(q, rope, list(_holders(model, rope)))
     spans = [_SpanRates.of(q, span, holders[k], holders[(k + 1) % len(holders)]) for k, span in enumerate(rope.spans)]
     stretch = sum(span.length for span in spans) / sum(span.free for span in spans)
     pieces: list[tuple[float, float]] = []  # growth and stress-free length of spans, and of the wraps after them
@@ -99,13 +100,15 @@ def _set_turns(model: Model, rope: RopeModel) -> None:
 @dataclass
 class _Holder:
     """What holds an item of a route: velocity (dim,) in m/s, angular velocity of the item in rad/s, and radii in m to
-    the axis of the rope and to its tangent points, with the sense of travel as sign; 0 at an anchor.
+    the axis of the rope and to its tangent points, with the sense of travel as sign; 0 at an anchor. contact: whether
+    the rope is held there.
     """
 
     velocity: np.ndarray
     spin: float = 0.0
     radius: float = 0.0
     reach: float = 0.0
+    contact: bool = True
 
 
 def _items(model: Model, rope: RopeModel
@@ -135,7 +138,26 @@ def _holders(model: Model, rope: RopeModel) -> Iterator[_Holder]:
         turn = turns[wheel.name]
         reach = float(np.max(wheel.tangent_radius))
         yield _Holder(velocity, spin + (model.v[turn] if turn >= 0 else 0.0), wheel.sense * wheel.radius,
-                      wheel.sense * reach)
+                      wheel.sense * reach, not isinstance(wheel, SheaveModel) or wheel.has_contact(model.q))
+
+
+def _joined(q: np.ndarray, rope: RopeModel, holders: list[_Holder]) -> list[_Holder]:
+    """Return what holds the items, where points of a straight line stand for sheaves without contact beside it."""
+    found = list(holders)
+    for i, j in pairwise(k for k, holder in enumerate(holders) if holder.contact):
+        if j - i == 1:
+            continue
+        places = np.array([q[span.node(0)][: span.dim] for span in rope.spans[i:j]]
+                          + [q[rope.spans[j - 1].node(-1)][: rope.part.dim]])
+        way, one, other = places[-1] - places[0], holders[i], holders[j]
+        length = float(np.linalg.norm(way))
+        along = way / length
+        turning = float((other.velocity - one.velocity) @ _left(along)) / length
+        ends = [holder.velocity + turning * holder.reach * along for holder in (one, other)]
+        for k in range(i + 1, j):
+            share = float((places[k - i] - places[0]) @ along) / length
+            found[k] = _Holder((1 - share) * ends[0] + share * ends[1], contact=False)
+    return found
 
 
 def _motion(model: Model, attachment: AttachmentModel) -> tuple[np.ndarray, float]:

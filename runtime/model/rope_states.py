@@ -139,7 +139,8 @@ def _wrap_points(model: Model, sheave: SheaveModel, q: np.ndarray, n: int) -> np
     wrap = part + 2 * np.pi * np.round((length / sheave.radius - part) / (2 * np.pi))
     angle = (np.arctan2(on[:, 1], on[:, 0])[:, None]
              + sheave.sense * wrap[:, None] * np.linspace(0.0, 1.0, n)[1:-1])
-    found: np.ndarray = centre[:, None] + sheave.radius * (
+    radius = np.where(length > stretch * sheave.no_length, sheave.radius, np.linalg.norm(on, axis=1))  # or it has left
+    found: np.ndarray = centre[:, None] + radius[:, None, None] * (
         np.stack([np.cos(angle), np.sin(angle)], axis=-1) @ sheave.plane.T)
     return found
 

@@ -25,6 +25,10 @@ MAX_SAG = 0.1
 """Limit of the sag of a chord, rad, up to which it is that of a parabola."""
 LEAST_REACH = 8
 """Elements of a span in which a chord may end, at least."""
+NO_WRAP = 1e-9
+"""Length of the wrap of a rope that has left a sheave, over its radius, at most."""
+CONDITIONS_BESIDE = 2
+"""Conditions of a rope that has left a sheave beyond those of its tangent points."""
 NO_TENSION = 1e-12
 """Strain below which a tension is none; over 1 m."""
 PER_NODE = 2
@@ -315,6 +319,15 @@ class SheaveModel(CouplingModel):
     least_wrap: float = MIN_WRAP
 
     @property
+    def no_length(self) -> float:
+        """Return the length of its wrap up to which the rope has left it, m."""
+        return NO_WRAP * self.radius
+
+    def has_contact(self, q: np.ndarray) -> bool:
+        """Return whether the rope lies on it in a configuration of the model."""
+        return float(q[self.s[-1]] - q[self.s[0]]) + self.closing > self.no_length
+
+    @property
     def nodes(self) -> tuple[int, int]:
         """Return the first dofs of the nodes at its tangent points."""
         return self.before.node(-1).start, self.after.node(0).start
@@ -419,6 +432,8 @@ def sheave_models(builder: ModelBuilder) -> Iterator[SheaveModel]:
             before, after = (rope.spans[each] for each in beside)
             scale = [rope.mass_of_element(each) for each in beside for _ in range(rope.part.dim)]
             centre, weight = builder.attachment(item.end), rope.rho * gravity / 2
+            if rope.part.may_leave(item):
+                scale += scale[:1] * CONDITIONS_BESIDE
             yield SheaveModel(type="sheave", name=item.name, kernel="planar_sheave", attachments=(centre,),
                               before=before, after=after, coordinates=rope.sheaves[k], radius=arc.radius,
                               tangent_radius=(arc.tangent_radius,) * 2,

@@ -122,6 +122,10 @@ class Rope(Part):
             raise ValueError(f'{drum.where} winds it in the plane z = 0, but its element is "{self.element}", of ropes '
                              "in space", f'take element="{PLANAR}", or an Anchor in the place of the drum: drums in '
                              "space are not possible yet")
+        for sheave in self.sheaves:
+            if not (sheave.contact or self.may_leave(sheave)):
+                what = "is on a closed rope" if self.closed else "is on a rope in space"
+                raise ValueError(f"{sheave.where} {what}, and has contact=False", "leave contact=False out")
         names = [wheel.name for wheel in self.wheels]
         if self.name in names:
             raise ValueError(f'route has a sheave "{self.name}", the name of the rope', "give each its own name")
@@ -169,6 +173,10 @@ class Rope(Part):
     def rough_sheaves(self) -> list[Sheave]:
         """Return its sheaves with friction."""
         return [sheave for sheave in self.sheaves if sheave.coefficient > 0]
+
+    def may_leave(self, sheave: Sheave) -> bool:
+        """Return whether the rope may leave one of its sheaves in a run, and touch it again."""
+        return self.dim == 2 and not self.closed and not sheave.coefficient
 
     @property
     def drums(self) -> dict[int, Drum]:

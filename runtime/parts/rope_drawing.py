@@ -109,7 +109,8 @@ def _point(rope: Roped, k: int, centre: np.ndarray, sense: int) -> RoutePoint:
     if not isinstance(item, Sheave | Drum):
         return RoutePoint(f"the {'last' if k else 'first'} anchor", centre)
     sense = SIDES[item.side] if item.side else sense
-    return RoutePoint(item.where, centre, item.radius, sense, getattr(item, "turns", 0), item.name)
+    return RoutePoint(item.where, centre, item.radius, sense, getattr(item, "turns", 0), item.name,
+                      contact=getattr(item, "contact", True))
 
 
 def _stretch(rope: Roped, drawn: float) -> float:

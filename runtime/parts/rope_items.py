@@ -12,7 +12,7 @@ from .part import Family, Part
 from .quantity import all_of_engine
 from .schemas import AXIS, checked
 from .signal import AnySignal, Integral, Signal
-from .validation import NAMES_A_PART, Name, Vector, direction, not_negative, one_of, positive, show, shown, xyz
+from .validation import NAMES_A_PART, Flag, Name, Vector, direction, not_negative, one_of, positive, show, shown, xyz
 
 MAX_TURNS = 1000
 MAX_ZONES = 16
@@ -152,6 +152,8 @@ class Sheave(Wheel):
     friction: between rope and groove, a coefficient or a `Friction`, "regularised"; by default none
     zones: number of parts of the wrap between which friction acts, and over each of which the tension is constant
     turns: whole turns of the rope around it, in addition to the wrap angle between both spans
+    contact: whether the rope lies on it at the start. In the plane and without friction the rope may leave it and touch
+        it again
     max_fleet_angle: between the plane of the groove and the rope as drawn, in space, rad; a larger one is reported
     """
 
@@ -170,11 +172,13 @@ class Sheave(Wheel):
         residual="largest distance of the rope from its tangent points",
         fleet_angle_on="from the plane of the groove to the rope where it runs on, towards its axis",
         fleet_angle_off="from the plane of the groove to the rope where it runs off, towards its axis",
+        gap="of a rope that has left the sheave to the groove",
     )
     axis: Annotated[Vector, direction(turns=AXIS)] = (0.0, 0.0, 1.0)
     friction: AnyFriction | None = None
     zones: Annotated[int, _whole_number_between(1, MAX_ZONES)] = 8
     turns: Annotated[int, _whole_number_between(0, MAX_TURNS)] = 0
+    contact: Flag = True
     max_fleet_angle: Annotated[float, positive("rad")] = MAX_FLEET_ANGLE
 
     @property
@@ -210,6 +214,20 @@ class Sheave(Wheel):
         if self.inertia > 0 and not self.coefficient:
             raise ValueError("has inertia, but no friction with the rope, which then never turns it",
                              "give its friction, or leave the inertia out")
+        return self
+
+    @model_validator(mode="after")
+    def _may_be_without_contact(self) -> "Sheave":
+        if self.contact:
+            return self
+        if self.coefficient:
+            raise ValueError("has friction and contact=False: only sheaves without friction are left and touched again",
+                             "leave friction out")
+        if self.turns:
+            raise ValueError("has turns and contact=False", "give one of them")
+        if self.side is None:
+            raise ValueError("has contact=False, but no side", 'give side="left" or "right": where it lies, looking '
+                             "along the route")
         return self
 
     def off_plane(self) -> Iterator[str]:

@@ -36,7 +36,8 @@ class RoutePoint:
 
     label: its name in messages; centre: (2,) in m; radius: to the axis of the rope, m, 0 at an end; sense: 1 where the
     rope runs counter-clockwise around it, -1 clockwise, 0 at an end or where that is not known; turns: whole turns
-    beside the wrap angle of the tangents; name: of the sheave; offset: of the tangent points beyond the radius, m.
+    beside the wrap angle of the tangents; name: of the sheave; offset: of the tangent points beyond the radius, m;
+    contact: whether the rope lies on it.
     groove: (dim, 2), unit vectors of the plane of the groove. In space the centre is (3,), and the sense is about the
     axis, to the right of which the second vector follows from the first.
     """
@@ -49,6 +50,7 @@ class RoutePoint:
     name: str = ""
     offset: float = 0.0
     groove: np.ndarray = field(default_factory=lambda: np.eye(2))
+    contact: bool = True
 
     @property
     def reach(self) -> float:
@@ -95,7 +97,7 @@ class DrawnArc:
 
     @property
     def wrap(self) -> float:
-        """Return the wrap angle in rad, positive."""
+        """Return the wrap angle in rad, positive, or 0 without contact."""
         return self.sense * (self.angle_off - self.angle_on)
 
     @property
@@ -164,8 +166,11 @@ def drawn_route(points: list[RoutePoint], rope_radius: float = 0.0, closed: bool
     first; span_between: the span from one point to the next, by default that in the plane. Raises ValueError(cause,
     remedy) for an impossible route.
     """
-    ends = [*pairwise(points), (points[-1], points[0])] if closed else [*pairwise(points)]
+    touched = [point for point in points if point.contact]
+    ends = [*pairwise(touched), (touched[-1], touched[0])] if closed else [*pairwise(touched)]
     spans = [(span_between or _span)(one, other, rope_radius) for one, other in ends]
+    if len(touched) < len(points):
+        spans, ends = _split(points, spans, rope_radius)
     before = [spans[-1], *spans[:-1]] if closed else spans
     after = spans if closed else spans[1:]
     sheaves = [_arc(point, *beside) for point, *beside in zip(points if closed else points[1:-1], before, after,
@@ -188,6 +193,39 @@ def _span(one: RoutePoint, other: RoutePoint, rope_radius: float) -> DrawnSpan:
     u = np.array([length * x + across * y, length * y - across * x]) / apart**2
     n = np.array([-u[1], u[0]])
     return DrawnSpan(one.centre - one.sense * one.reach * n, other.centre - other.sense * other.reach * n, length)
+
+
+def _split(points: list[RoutePoint], spans: list[DrawnSpan], rope_radius: float
+           ) -> tuple[list[DrawnSpan], list[tuple[RoutePoint, RoutePoint]]]:
+    """Return the spans of an open route, split beside sheaves without contact, and their ends.
+
+    spans: between the points with contact. Raises ValueError where a sheave is in the way, or not beside its span.
+    """
+    found: list[DrawnSpan] = []
+    whole = iter(spans)
+    for one, other in pairwise(points):
+        if one.contact:
+            span = next(whole)
+            start = span.start
+        end = span.end if other.contact else _foot(span, other)
+        length = float((end - start) @ span.direction)
+        check_length(one, other, length, rope_radius)
+        found.append(DrawnSpan(start, end, length))
+        start = end
+    return found, [*pairwise(points)]
+
+
+def _foot(span: DrawnSpan, sheave: RoutePoint) -> np.ndarray:
+    """Return the point of a span next to the centre of a sheave without contact. Raises ValueError for contact."""
+    x, y = (sheave.centre - span.start).tolist()
+    ux, uy = span.direction.tolist()
+    away = sheave.sense * (ux * y - uy * x)
+    if away < sheave.reach:
+        raise ValueError(f"the rope touches {sheave.label}, which has contact=False: it passes its centre at "
+                         f"{show(away, 'm')} on its side, and its radius is {show(sheave.reach, 'm')}",
+                         "leave contact=False out, move the sheave, or give the other side")
+    foot: np.ndarray = span.start + (x * ux + y * uy) * span.direction
+    return foot
 
 
 def check_length(one: RoutePoint, other: RoutePoint, length: float, rope_radius: float) -> None:
@@ -220,6 +258,10 @@ def _apart(one: RoutePoint, other: RoutePoint, apart: float) -> str:
 
 def _arc(point: RoutePoint, before: DrawnSpan, after: DrawnSpan) -> DrawnArc:
     """Return the rope on a sheave between two spans. Raises ValueError where the rope does not touch it."""
+    if not point.contact:
+        x, y = (before.end - point.centre).tolist()
+        at = atan2(y, x)
+        return DrawnArc(point.name, point.centre, point.radius, point.sense, at, at, point.radius + point.offset)
     if not point.sense:
         raise ValueError(f"the route runs straight through the centre of {point.label}, which does not tell its side",
                          'give side="left" or "right"')
@@ -227,7 +269,8 @@ def _arc(point: RoutePoint, before: DrawnSpan, after: DrawnSpan) -> DrawnArc:
     turn = point.sense * atan2(one[0] * other[1] - one[1] * other[0], one @ other) + 0.0  # no -0
     if abs(turn) < MIN_WRAP and not point.turns:
         raise ValueError(f"the rope does not touch {point.label}: its wrap angle must be {show(MIN_WRAP, 'rad')} or "
-                         f"more, got {show(turn, 'rad')}", "leave it out, or move it into the way of the rope")
+                         f"more, got {show(turn, 'rad')}", "leave it out, move it into the way of the "
+                         "rope, or give contact=False")
     wrap = (turn if turn > -ANGLE_ROUNDING else turn + tau) + tau * point.turns
     x, y = ((before.end - point.centre) @ point.groove).tolist()
     on = atan2(y, x)

@@ -352,14 +352,28 @@ def test_a_rope_goes_slack(integrator):
     ends(swing().replace("L", velocity=(0, 3.0, 0)), 'lifts off sheave "top"', integrator=integrator)
 
 
-@pytest.mark.parametrize("integrator", INTEGRATORS)
-def test_a_wrap_is_lost(integrator):
+def pulled_off(**sheave: object) -> fu.Scene:
+    """Return a load that pulls its rope off a sheave."""
     scene = fu.Scene(gravity=(0, 0, 0))
     body(scene, "L", 1.5, -0.05, 1.0, velocity=(0, 1.0, 0))
-    scene.rope("hoist", route=[fu.Anchor(at=(-1, 0, 0)), fu.Sheave("top", at=(0, -0.2, 0), radius=0.2, side="right"),
+    scene.rope("hoist", route=[fu.Anchor(at=(-1, 0, 0)),
+                               fu.Sheave("top", at=(0, -0.2, 0), radius=0.2, side="right", **sheave),
                                fu.Anchor("L")], tension=30.0, **THIN)
     scene.force("L", value=(30, 0, 0))
-    ends(scene, '(leaves|lifts off) sheave "top"', integrator=integrator, output_step=0.005)
+    return scene
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_a_wrap_with_friction_is_lost(integrator):
+    ends(pulled_off(friction=0.1), '(leaves|lifts off) sheave "top"', integrator=integrator, output_step=0.005)
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_a_rope_leaves_a_sheave_without_friction(integrator):
+    run = pulled_off().run(0.5, output_step=0.005, integrator=integrator, tol=1e-5, progress=False)
+    assert [event["what"] for event in run.events] == ["left the sheave"]
+    assert run["top.gap"][-1] > 0.1
+    assert np.abs(run.energy_balance().relative).max() < 1e-4
 
 
 def test_a_rope_without_tension_as_drawn():

@@ -242,8 +242,8 @@ def test_order_of_items(route, complaint):
      'the span from sheave "back" to the last anchor crosses sheave "top": it passes its centre at 0.3 m, within its '
      "radius 0.4 m; move the sheave, or give side= of the sheaves"),
     ([at(-1, 3.3), sheave(0, 3, 0.3, "right"), at(1, 3.3)],
-     'the rope does not touch sheave "top": its wrap angle must be 0.001 rad or more, got 0 rad; leave it out, or move '
-     "it into the way of the rope"),
+     'the rope does not touch sheave "top": its wrap angle must be 0.001 rad or more, got 0 rad; leave it out, move '
+     "it into the way of the rope, or give contact=False"),
     ([at(0, 0), TOP, at(0, -1)], 'the route runs straight through the centre of sheave "top", which does not tell its '
                                  'side; give side="left" or "right"'),
 ])
@@ -272,7 +272,7 @@ def test_the_least_wrap(wrap):
         assert drawn(*route).sheaves[0].wrap == pytest.approx(wrap * MIN_WRAP, rel=1e-10)
     else:
         with refused('rope "hoist": the rope does not touch sheave "top": its wrap angle must be 0.001 rad or more, '
-                     "got 0.0005 rad; leave it out, or move it into the way of the rope"):
+                     "got 0.0005 rad; leave it out, move it into the way of the rope, or give contact=False"):
             rope_of(*route)
 
 
@@ -476,7 +476,7 @@ def test_items_are_checked(make, complaint):
     ({"kind": "sheave", "name": "top", "at": (0, 3, 0)}, "route.1.radius is missing"),
     ({"kind": "sheave", "name": "top", "at": (0, 3, 0), "radius": 1, "mass": 1},
      'route.1 "mass" is not known here; known: name, at, radius, side, inertia, torque, angle, velocity, damping, '
-     "axis, friction, zones, turns, max_fleet_angle"),
+     "axis, friction, zones, turns, contact, max_fleet_angle"),
     ({"kind": "sheave", "name": "top", "at": (0, 3, 0), "radius": 1, "inertia": 1},
      "route.1 has inertia, but no friction with the rope, which then never turns it; give its friction, or leave the "
      "inertia out"),

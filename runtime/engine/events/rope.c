@@ -1,11 +1,12 @@
-/* Ropes that leave what they run over: a run ends there, as the equations do not hold beyond. The reasons are the wrap
- * angle, the normal force, in space the fleet angle of a short span, the length of a span, and that of the rope on a
- * drum. */
+/* Ropes that leave what they run over: a run ends there, as the equations do not hold beyond, but where a rope may
+ * leave a sheave and touch it again. The reasons are the wrap angle, the normal force, in space the fleet angle of a
+ * short span, the length of a span, and that of the rope on a drum. */
 #include "couplings/common/coupling_events.h"
 #include "couplings/rope/rope.h"
+#include "equations/equations.h"
 #include "equations/run.h"
 
-enum { WRAP, PRESSURE, FLEET, SPAN, EMPTY };
+enum { WRAP, PRESSURE, FLEET, SPAN, SLACK, EMPTY, GROWTH = FLEET };
 
 static int list(int n, fu_event_function *out)
 {
@@ -15,12 +16,13 @@ static int list(int n, fu_event_function *out)
 
 static int functions(const fu_coupling *coupling, fu_event_function *out)
 {
-    return list(fu_is_in_space(coupling) ? FLEET + 1 : FLEET, out);
+    return list(fu_is_in_space(coupling) || fu_wrap_may_leave(coupling) ? FLEET + 1 : FLEET, out);
 }
 
 static double value(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {
-    if (which == FLEET) return fu_fleet_margin(run->model, coupling, state);
+    if (which == FLEET)
+        return (fu_wrap_may_leave(coupling) ? fu_wrap_growth_margin : fu_fleet_margin)(run->model, coupling, state);
     return which == WRAP ? fu_wrap_margin(run->model, coupling, state) : fu_wrap_pressure(run->model, coupling, state);
 }
 
@@ -32,11 +34,40 @@ static int leave(fu_run *run, const fu_coupling *coupling, int reason)
     return FU_ROPE_LEFT;
 }
 
+/* Changes the conditions of a sheave that a rope leaves or touches. The error of the step is projected away before.
+ * What the rope then loses is the kinetic energy of the jump of its velocities: waves shorter than its elements. */
+static int pass(fu_run *run, const fu_coupling *coupling, int grows, const char **what)
+{
+    const fu_model *model = run->model;
+    fu_state *now = &run->now;
+    const int had_left = fu_wrap_has_left(coupling, now);
+    if (fu_project_velocities(model, now, &run->accelerator, run->work)) return FU_SINGULAR;
+    for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->work[i];
+    const int has_left = fu_wrap_change(coupling, now, grows);
+    *what = has_left ? "left the sheave" : had_left ? "touched the sheave" : "";
+    if (fu_close(run)) return FU_NO_CONVERGENCE;
+    if (fu_project_velocities(model, now, &run->accelerator, run->work)) return FU_SINGULAR;
+    fu_impact(run, run->work, 0.0);
+    return FU_RUNNING;
+}
+
 static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
 {
     (void)side;
+    if (which != PRESSURE && fu_wrap_may_leave(coupling)) return pass(run, coupling, which == GROWTH, what);
+    if (which == PRESSURE && fu_wrap_has_left(coupling, &run->now)) {
+        *what = "went slack";
+        return leave(run, coupling, SLACK);
+    }
     *what = which == WRAP ? "left the sheave" : which == PRESSURE ? "lifted off" : "left the groove";
     return leave(run, coupling, which);
+}
+
+/* Margins are positive again after a change of the sheave's conditions. */
+static int sign(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which)
+{
+    (void)model, (void)coupling, (void)state, (void)which;
+    return 1;
 }
 
 /* Ends a run at its start where the event has happened before; of sheaves, spans and drums. */
@@ -50,7 +81,8 @@ static int begin(fu_run *run, const fu_coupling *coupling)
     return FU_RUNNING;
 }
 
-const fu_coupling_events fu_sheave_events = {.functions = functions, .value = value, .act = act, .begin = begin};
+const fu_coupling_events fu_sheave_events = {
+    .functions = functions, .value = value, .sign = sign, .act = act, .begin = begin};
 
 static double margin(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {

@@ -9,7 +9,7 @@
 #define MAX_ACTS 100   /* changes of couplings at one instant: more is no motion */
 
 /* Restarts the scheme after a coupling has changed, as `what` says, a time ago, s; returns FU_EVENT to inform the
- * caller, or the status of a run that cannot continue. */
+ * caller, unless `what` is empty, or the status of a run that cannot continue. */
 static int acted(fu_run *run, const fu_coupling *coupling, const char *what, double since)
 {
     const int status = fu_start_scheme(run, 1);
@@ -20,9 +20,10 @@ static int acted(fu_run *run, const fu_coupling *coupling, const char *what, dou
         return FU_NO_CONVERGENCE;
     }
     fu_restart_event_functions(run, coupling->number);
+    if (status || !*what) return status;
     run->event = (fu_event){FU_ACTED, coupling->number, 0, what};
     run->event_time = run->now.t - since;
-    return status ? status : FU_EVENT;
+    return FU_EVENT;
 }
 
 /* Moves a coupling on a boundary to the next path segment, or to the end of its path; returns a status. Accelerations

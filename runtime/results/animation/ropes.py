@@ -163,13 +163,16 @@ def _wrap(frames: Frames, sheave: Sheave, arc: DrawnArc, points: np.ndarray, s: 
     angle = np.arctan2(on[:, 1], on[:, 0])[:, None] + sense * wrap[:, None] * share
     around = np.stack([np.cos(angle), np.sin(angle)], axis=-1) @ groove.T
     given = np.linspace(0, 1, s.shape[1])
-    strain = sheave.radius * wrap[:, None] * np.diff(given) / np.diff(s) - 1
+    touches = frames.value(f"{sheave.name}.wrap_angle") > 0
+    length = np.where(touches[:, None], np.diff(s), 1.0)  # a wrap without contact has neither length nor strain
+    strain = np.where(touches[:, None], sheave.radius * wrap[:, None] * np.diff(given) / length - 1, 0.0)
     middle = np.concatenate([strain[:, :1], (strain[:, :-1] + strain[:, 1:]) / 2, strain[:, -1:]], axis=1)
 
     def between(values: np.ndarray) -> np.ndarray:
         return values @ np.stack([np.interp(share, given, one) for one in np.eye(len(given))])
 
-    return centre[:, None] + sheave.radius * around, between(s), between(middle)
+    radius = np.where(touches, sheave.radius, np.linalg.norm(on, axis=1))
+    return centre[:, None] + radius[:, None, None] * around, between(s), between(middle)
 
 
 def wheel_shape(frames: Frames, refs: Frames, rope: Rope, sheave: Sheave | Drum) -> BodyShape:

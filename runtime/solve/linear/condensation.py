@@ -35,6 +35,11 @@ def condensed(full: csc_array, model: Model) -> tuple[csc_array, csc_array]:
                                    [row for row, k in enumerate(forces) if k in of_contacts]).tocsc()
 
 
+def with_entries(rows: csr_array) -> csr_array:
+    """Return rows without empty ones, of constraints that do not hold in a state."""
+    return rows[np.flatnonzero(abs(rows).sum(axis=1))]
+
+
 def _independent(rows: csr_array, of_contacts: list[int]) -> csr_array:
     """Return the constraints without empty ones, such as of a slide between two supported nodes, and without those of
     contacts that others imply.

@@ -9,7 +9,7 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from scipy.sparse import block_array, csc_array
+from scipy.sparse import block_array, csc_array, csr_array
 from scipy.sparse.linalg import splu
 
 from ...engine import Engine
@@ -21,7 +21,7 @@ from ...parts.rope import rough_sheaves
 from ...parts.scene_data import SceneData
 from ...parts.settings import RunSettings
 from ...parts.slide import Slide
-from ..linear.condensation import without_forces
+from ..linear.condensation import with_entries, without_forces
 from ..notes.supersonic_loads import outrunning
 
 POWER_ITERATIONS = 20
@@ -282,7 +282,7 @@ def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:
     full = matrix(0.0, 0.0, 1.0)
     if wheels := [*model.sheaves, *model.drums]:
         on_wheels = [n + k for wheel in wheels for k in wheel.force_unknowns]
-        by_mass = _on_wheels(csc_array(mass), csc_array(full[on_wheels][:, :n]))
+        by_mass = _on_wheels(csc_array(mass), with_entries(csr_array(full[on_wheels][:, :n])).tocsc())
     elif n <= MAX_DENSE_UNKNOWNS:
         by_mass = np.linalg.inv(mass).dot
     else:

@@ -25,6 +25,8 @@ ROPE_LEFT = (
      "turn the axis, keep what is at the ends of the span apart, or stop before by an event"),
     ('a span of rope "{name}" becomes too short to be modelled',
      "keep what is at the ends of the span apart, or stop before by an event"),
+    ('a rope that has left sheave "{name}" becomes slack, which is not modelled',
+     "take a higher tension or more damping, or stop before by an event"),
     ('drum "{name}" has run empty', "give a greater length_in_store, or stop before by an event"))
 """Why a run with a rope ended, and what helps, by the reasons of engine/events/rope.c."""
 EMPTY = len(ROPE_LEFT) - 1

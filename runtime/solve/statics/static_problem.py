@@ -204,6 +204,10 @@ class StaticProblem(StaticState):
         q = self.engine.state()["q"]
         numbers = outputs_by_name("sheave", self.engine.static_outputs("sheave")) if model.sheaves else {}
         for k, sheave in enumerate(model.sheaves):
+            if not sheave.has_contact(q):
+                if numbers["gap"][k] < 0.0:
+                    return f'the rope touches sheave "{sheave.name}", which has contact=False'
+                continue
             centre = attachment_points(model, sheave.attachments[0], q[None])[0, : model.dim]
             dim = model.dim
             folded = any(sheave.sense * np.linalg.det([(q[at : at + dim] - centre) @ sheave.plane,

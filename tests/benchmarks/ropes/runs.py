@@ -14,7 +14,7 @@ import numpy as np
 
 from .drum_runs import drum, hauled
 from .loop_runs import elevator, elevator_with_wraps, ropeway, wave
-from .scenes import GRAVITY, Found, over_one, rope_of, swing, weight
+from .scenes import GRAVITY, Found, over_a_peg, over_one, rope_of, swing, weight
 from .sliding_runs import held_cylinder, moving_capstan
 from .space_runs import fleet, fleet_at_rest
 
@@ -181,6 +181,18 @@ def belt(EI: float = 0.0) -> Found:
             "slip arc": degrees(log(presses[0] / presses[1]) / 0.5)}  # over which friction is full
 
 
+def peg() -> Found:
+    """A pendulum on a rope of .05 g/m that meets a peg, leaves it, and meets it again."""
+    scene = over_a_peg(5e-5, 1e6, 1e-3)
+    run = scene.run(6.0, output_step=0.5, tol=1e-5, integrator="radau", progress=False)
+    times = [event["time"] for event in run.events]
+    found = dict(zip(("wrap returns", "wrap is lost", "wrap returns again"), times, strict=False))
+    for k in (2, 4, 8, 12):
+        for axis, value in zip("xy", run["load.position"][k], strict=False):
+            found[f"{axis} at {k // 2} s"] = float(value)
+    return found
+
+
 RUNS: dict[str, Callable[[], Found]] = {
     "two weights": two_weights, "heavy rope": heavy_rope, "free rope": free_rope, "tackle": tackle,
     "swinging Atwood": swinging_atwood, "heavy swinging Atwood": heavy_atwood, "bending in motion": bent_atwood,
@@ -188,4 +200,4 @@ RUNS: dict[str, Callable[[], Found]] = {
     "fleet angle at rest": fleet_at_rest, "run-on with bending": run_on, "capstan": capstan,
     "moving capstan": moving_capstan, "held cylinder": held_cylinder, "belt": belt, "elevator": elevator,
     "elevator with wraps": elevator_with_wraps, "ropeway": ropeway, "wave": wave, "drum": drum,
-    "pendulum hauled in": hauled}
+    "pendulum hauled in": hauled, "peg": peg}

@@ -37,3 +37,18 @@ def over_one(scene: fu.Scene, R: float, ends: tuple[str, str], *, elements: int 
     """Add a rope from one body to another over a sheave at the origin; given: `rope_of`, and a length."""
     scene.rope("rope", route=[fu.Anchor(ends[0]), fu.Sheave("top", at=(0, 0, 0), radius=R, side="right", **sheave),
                               fu.Anchor(ends[1])], elements=elements, tension=tension, **given)
+
+
+def over_a_peg(rho: float, EA: float, damping_time: float, elements: int = 1, *, start: float = -0.7,
+               pegs: tuple[fu.Sheave, ...] = (), mirrored: bool = False) -> fu.Scene:
+    """Return a pendulum of 1 kg on a rope of 2 m from the origin, let go at an angle, and a peg on its way, or others.
+
+    mirrored: about the y axis.
+    """
+    length, mass, sign = 2.0, 1.0, -1 if mirrored else 1
+    scene = fu.Scene(gravity=(0, -GRAVITY, 0))
+    weight(scene, "load", mass, sign * length * sin(start), -length * cos(start))
+    peg = fu.Sheave("peg", at=(sign * 0.3, -1, 0), radius=0.1, side="right" if mirrored else "left", contact=False)
+    scene.rope("rope", route=[fu.Anchor(at=(0, 0, 0)), *(pegs or (peg,)), fu.Anchor("load")], elements=elements,
+               length=length / (1 + mass * GRAVITY * cos(start) / EA), **rope_of(EA, rho, 0, damping_time))
+    return scene

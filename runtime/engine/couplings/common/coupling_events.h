@@ -81,7 +81,7 @@ struct fu_coupling_events {
     /* Returns the sign, 1 or -1, of an event function after its zero and the change of the coupling. Null: -1. */
     int (*sign)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which);
     /* Executes the action of an event function that has passed zero to this side; returns a status. *what describes the
-     * change in words, and is null if there is none. */
+     * change in words, is empty for one that is not reported, and null if there is none. */
     int (*act)(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what);
 
     /* Whether the coupling can change its state (null: it can): `begin` then determines its state at the start; returns

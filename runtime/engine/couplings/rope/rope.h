@@ -25,10 +25,17 @@ static inline const double *fu_span_node(const fu_span_coupling *span, int k, co
     return q + span->first + k * (span->kernel->coordinates / 2);
 }
 
-/* Return how far a rope is from leaving: its wrap above the least one, rad; the least normal force, times the radius on
- * an angle, N; the length of a span above the least one, m; in space that of both spans beside a sheave above the one
- * at which a rope with their fleet angles slides out of the groove, m. */
+/* Return how far a rope is from leaving: its wrap above the least one, rad, of a short wrap above zero, or of a rope
+ * that has left its distance from touching, m; the least normal force, times the radius on an angle, or the tension of one
+ * that has left, N; the length of a span above the least one, m; in space that of both spans beside a sheave above the one at which a rope with their
+ * fleet angles slides out of the groove, m. Growth: how far a short wrap is from one that stretches, rad. */
 double fu_wrap_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+double fu_wrap_growth_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+/* Return whether a rope may leave a sheave and touch it again; whether it has left; and whether it has after the change
+ * of the sheave's mode where its wrap margin, or the one of growth, has reached zero. */
+int fu_wrap_may_leave(const fu_coupling *coupling);
+int fu_wrap_has_left(const fu_coupling *coupling, const fu_state *state);
+int fu_wrap_change(const fu_coupling *coupling, fu_state *now, int grows);
 double fu_wrap_pressure(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 double fu_fleet_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 double fu_span_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state);

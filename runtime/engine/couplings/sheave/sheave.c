@@ -91,6 +91,12 @@ static void force(const fu_model *model, const fu_coupling *coupling, const fu_s
     fu_wheel_add_bearing(&sheave->wheel, &at.wheel, f);
 }
 
+/* Returns the multiplier of the condition of a short wrap. */
+static double multiplier_of_short(const fu_sheave *sheave, const fu_state *state)
+{
+    return fu_may_leave(sheave) ? state->forces[sheave->wheel.base.force + SHORT_ROW] : 0.0;
+}
+
 static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, double *f,
                      double *internal)
 {
@@ -98,12 +104,16 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
     fu_sheave_state at;
     double y[Y], phi[MAX_CONDITIONS];
     fu_sheave_at(model, sheave, equations->next, 0, &at);
+    at.tension = multiplier_of_short(sheave, equations->next);
     fu_sheave_forces(sheave, &at, y);
     fu_sheave_add_all_multipliers(sheave, &at, equations->next->forces + coupling->force, phi, y, f);
     fu_sheave_scatter(sheave, &at, y, f);
     fu_wheel_add_bearing(&sheave->wheel, &at.wheel, f);
-    for (int r = 0; r < ENDS * conditions_of(sheave); ++r)
+    const int n = fu_sheave_conditions(sheave, &at);
+    for (int r = 0; r < n; ++r)
         internal[coupling->unknown + r] = -fu_row_unit(equations->weights.inertia, coupling->scale[r]) * phi[r];
+    for (int r = n; r < coupling->n_forces; ++r)
+        internal[coupling->unknown + r] = -equations->weights.stiffness * equations->next->forces[coupling->force + r];
 }
 
 /* Adds the tangent; derivatives of the acceleration of the centre by rotations of its body are neglected. */
@@ -117,6 +127,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     fu_wheel_column columns[COLUMNS], turned[COLUMNS];
     fu_sheave_state at;
     fu_sheave_at(model, sheave, next, next->acceleration, &at);
+    at.tension = multiplier_of_short(sheave, next);
     memset(K, 0, sizeof K);
     memset(D, 0, sizeof D);
     fu_sheave_add_derivatives(sheave, &at, w, D, K);
@@ -135,9 +146,11 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
 
 static void take_forces(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state)
 {
-    (void)model;
-    memcpy(state->forces + coupling->force, work->multipliers + coupling->multiplier,
-           sizeof(double) * (size_t)(ENDS * conditions_of(sheave_of(coupling))));
+    fu_sheave_state at;
+    fu_sheave_at(model, sheave_of(coupling), state, 0, &at);
+    const int n = fu_sheave_conditions(sheave_of(coupling), &at);
+    for (int r = 0; r < coupling->n_forces; ++r)
+        state->forces[coupling->force + r] = r < n ? work->multipliers[coupling->multiplier + r] : 0.0;
 }
 
 static void gaps(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *phi)
@@ -156,6 +169,7 @@ static double energy(const fu_model *model, const fu_coupling *coupling, const f
     double total = 0.0;
     fu_sheave_state at;
     fu_sheave_at(model, sheave, state, 0, &at);
+    if (at.mode != FU_WRAPPED) return at.mode == FU_SHORT ? fu_short_wrap_energy(sheave, &at) : 0.0;
     for (int j = 0; j < sheave->n_zones; ++j) {
         const fu_zone of = fu_zone_at(sheave, &at, j);
         double stored;
@@ -176,7 +190,7 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
     if (!coupling->is_damped) return 0.0;
     fu_sheave_at(model, sheave, state, 0, &at);
     total += wheel->damping * at.wheel.own_rate * at.wheel.own_rate;
-    for (int j = 0; sheave->tau > 0.0 && j < sheave->n_zones; ++j) {
+    for (int j = 0; sheave->tau > 0.0 && at.mode == FU_WRAPPED && j < sheave->n_zones; ++j) {
         const fu_zone of = fu_zone_at(sheave, &at, j);
         wheel->kernel->dissipation(wheel->A, sheave->tau, wheel->radius, of.phi, of.l, of.phi_rate, of.s_rate, &power);
         total += power;
@@ -198,6 +212,23 @@ int fu_is_in_space(const fu_coupling *sheave)
 static const char *excess(const fu_coupling *coupling)
 {
     return sheave_of(coupling)->n_zones > MAX_ZONES ? "zones" : 0;
+}
+
+/* Determines the mode where it is not known yet. */
+static void update_mode(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+{
+    const fu_sheave *sheave = sheave_of(coupling);
+    fu_sheave_state at;
+    if (!fu_may_leave(sheave) || *fu_wrap_flag(sheave, state)) return;
+    fu_sheave_at(model, sheave, state, 0, &at);
+    *fu_wrap_flag(sheave, state) = at.mode;
+}
+
+static int is_possible(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    (void)model;
+    const int mode = *fu_wrap_flag(sheave_of(coupling), state);
+    return mode >= 0 && mode <= FU_WRAPPED;
 }
 
 static const char *const foot_role[] = {"tangent_point", 0};
@@ -223,6 +254,7 @@ static const fu_field fields[] = {
     FU_FIELD(fu_sheave, friction, FU_REAL, 0),
     FU_FIELD(fu_sheave, slip_velocity, FU_REAL, 0),
     FU_FIELD(fu_sheave, least_wrap, FU_REAL, 0),
+    FU_FIELD(fu_sheave, no_length, FU_REAL, 0),
     FU_FIELD(fu_sheave, closing, FU_REAL, 0),
     FU_FIELD_ARRAY(fu_sheave, tangent_radius, FU_REAL),
     FU_FIELD(fu_sheave, tau, FU_REAL, 0),
@@ -230,13 +262,17 @@ static const fu_field fields[] = {
 };
 
 static const fu_inertia_operations inertia = {inertial_force, mass_matrix, kinetic_energy, potential_energy};
-static const fu_start_operations start = {.excess = excess, .may_be_open = fu_wheel_may_be_open};
+static const fu_start_operations start = {
+    .excess = excess, .may_be_open = fu_wheel_may_be_open, .is_possible = is_possible};
+static const fu_history_operations history = {.update = update_mode};
 
 const fu_coupling_type fu_sheave_type = {
     .name = "sheave",
     .size = sizeof(fu_sheave),
     .fields = fields,
     .output_fields = fu_sheave_output_fields,
+    .n_flags = 1,
+    .history = &history,
     .inertia = &inertia,
     .supply = &fu_wheel_supply,
     .start = &start,

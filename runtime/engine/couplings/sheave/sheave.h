@@ -23,7 +23,7 @@ typedef struct {
     double tangent_radius[2], tau;
     double friction, slip_velocity; /* coefficient; m/s, see the kernel of friction */
     double closing;                 /* m: between the last and the first s of a closed rope */
-    double least_wrap;              /* rad: of a wrap that can be modelled */
+    double least_wrap, no_length;   /* rad: of a wrap that stretches; m: of that of a rope that has left */
     /* in space: of the spans before and after: the first dof, elements in all and within reach of a chord, s of their
      * ends, m: the stress-free length of a chord */
     double weight[3], limit, chord[2];
@@ -84,9 +84,19 @@ enum {
     Z = Z_MATERIAL + MAX_ZONES + 1
 };
 
-/* A sheave at a state: both tangent points, the angles with their rates and derivatives, and the material. */
+/* Modes of a sheave that a rope may leave (short_wrap.c): the rope has left it; has a short wrap; or a wrap that
+ * stretches. Zero: not known yet. */
+enum { FU_LIFTED = 1, FU_SHORT, FU_WRAPPED };
+/* The condition of a short wrap, after those of the tangent points; of a rope that has left, that of its point next to
+ * the centre, and that of its length on the sheave. */
+enum { SHORT_ROW = ENDS * DIM, NEXT_ROW = SHORT_ROW, LENGTH_ROW };
+
+/* A sheave at a state: both tangent points, the angles with their rates and derivatives, and the material. tension: the
+ * multiplier of a short wrap, as its user sets it. */
 typedef struct {
     const double *q;
+    int mode;
+    double tension;
     fu_wheel_state wheel;
     double stretch[ENDS][SPACE]; /* in space: direction of the slope */
     double s[MAX_ZONES + 1], s_rate[MAX_ZONES + 1], s_acc[MAX_ZONES + 1];
@@ -108,6 +118,17 @@ static inline int is_in_space(const fu_sheave *sheave)
 static inline int has_friction(const fu_sheave *sheave)
 {
     return sheave->friction > 0.0;
+}
+
+static inline int fu_may_leave(const fu_sheave *sheave)
+{
+    return sheave->wheel.base.n_forces > SHORT_ROW && !is_in_space(sheave);
+}
+
+/* Returns the mode in a state. */
+static inline int *fu_wrap_flag(const fu_sheave *sheave, const fu_state *state)
+{
+    return state->flags + sheave->wheel.base.flags;
 }
 
 /* Returns the number of conditions of a tangent point. */
@@ -152,6 +173,22 @@ void fu_wrap_add_inertia_matrices(const fu_sheave *sheave, const fu_sheave_state
 void fu_wrap_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at, double factor, double (*D)[Z],
                           double (*K)[Z]);
 
+/* --- short_wrap.c --- */
+
+/* Returns the mode of a sheave in a state, where it is not known by the angles and the length of its wrap. */
+int fu_wrap_mode(const fu_sheave *sheave, const fu_sheave_state *at, const fu_state *state);
+/* Returns the least length of a zone, m, at which its inertia and weight are computed. */
+double fu_least_zone(const fu_sheave *sheave);
+/* Adds the forces of a short wrap by z, that of its condition included, and their derivatives; returns its energy. */
+void fu_short_wrap_add_forces(const fu_sheave *sheave, const fu_sheave_state *at, double *z);
+void fu_short_wrap_add_matrix(const fu_sheave *sheave, const fu_sheave_state *at, double factor, double (*K)[Z]);
+double fu_short_wrap_energy(const fu_sheave *sheave, const fu_sheave_state *at);
+/* Compute the residual of its condition and the derivatives J by y; its second rate at zero accelerations. */
+double fu_short_wrap_row(const fu_sheave *sheave, const fu_sheave_state *at, double J[Y]);
+double fu_short_wrap_drift(const fu_sheave *sheave, const fu_sheave_state *at);
+/* Computes the residual of a condition that joins both spans, and the derivatives J by y. */
+void fu_join_row(const fu_sheave_state *at, int r, double *phi, double J[Y]);
+
 /* --- wrap_friction.c: points between zones, by z --- */
 
 /* Computes the forces of the j-th point on its angle, the rotation and its s; its slip and limit; and its power. */
@@ -181,6 +218,8 @@ void fu_sheave_energies_across(const fu_sheave *sheave, const fu_sheave_state *a
 
 /* --- sheave_conditions.c: tangent points --- */
 
+/* Returns the number of conditions at a state; others of the coupling are left out. */
+int fu_sheave_conditions(const fu_sheave *sheave, const fu_sheave_state *at);
 /* Adds the forces of the tangent points by y, in space without those on the chords; computes the residuals phi. */
 void fu_sheave_add_multipliers(const fu_sheave *sheave, const fu_sheave_state *at, const double *multipliers,
                                double *phi, double *y);

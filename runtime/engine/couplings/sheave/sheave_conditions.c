@@ -6,14 +6,54 @@
 
 #include <string.h>
 
-/* Computes the conditions of both tangent points, their derivatives by x and slope (2 x 4 each), and those of J'
- * multipliers (4 x 4 each). */
-static void conditions(const fu_sheave *sheave, const fu_sheave_state *at, const double *multipliers, double *phi,
-                       double (*J)[DIM * NODE], double (*K)[NODE * NODE])
+/* Conditions in the plane: the residuals, their derivatives by y, and the derivatives by x and the slope of the forces
+ * of both tangent points (4 x 4 each). */
+typedef struct {
+    int n;
+    double phi[MAX_CONDITIONS], J[MAX_CONDITIONS][Y], K[ENDS][NODE * NODE];
+} conditions;
+
+int fu_sheave_conditions(const fu_sheave *sheave, const fu_sheave_state *at)
 {
-    for (int k = 0; k < ENDS; ++k)
+    return at->mode == FU_LIFTED ? LENGTH_ROW + 1 : ENDS * conditions_of(sheave) + (at->mode == FU_SHORT);
+}
+
+/* Computes derivatives by y from those of a tangent point by x and the slope. */
+static void by_y(int k, const double of[NODE], double y[Y])
+{
+    memset(y, 0, sizeof(double) * Y);
+    memcpy(y + k * NODE, of, sizeof(double) * NODE);
+    for (int d = 0; d < DIM; ++d) y[CENTRE + d] = -of[d];
+}
+
+/* Computes those of a rope that has left: both spans are joined where the slope is across the direction to the
+ * centre, the second condition of a tangent point. */
+static void join(const fu_sheave *sheave, const fu_sheave_state *at, const double *multipliers, conditions *out)
+{
+    const double next[DIM] = {0.0, multipliers[NEXT_ROW]};
+    double phi[DIM], J[DIM * NODE];
+    memset(out->K, 0, sizeof out->K);
+    for (int r = 0; r <= LENGTH_ROW; ++r) fu_join_row(at, r, &out->phi[r], out->J[r]);
+    sheave->wheel.kernel->tangent_point(at->x[0], at->slope[0], sheave->tangent_radius[0], next, phi, J, out->K[0]);
+    out->phi[NEXT_ROW] = phi[1];
+    by_y(0, J + NODE, out->J[NEXT_ROW]);
+}
+
+static void find_conditions(const fu_sheave *sheave, const fu_sheave_state *at, const double *multipliers,
+                            conditions *out)
+{
+    out->n = fu_sheave_conditions(sheave, at);
+    if (at->mode == FU_LIFTED) {
+        join(sheave, at, multipliers, out);
+        return;
+    }
+    for (int k = 0; k < ENDS; ++k) {
+        double J[DIM * NODE];
         sheave->wheel.kernel->tangent_point(at->x[k], at->slope[k], sheave->tangent_radius[k], multipliers + DIM * k,
-                                            phi + DIM * k, J[k], K[k]);
+                                            out->phi + DIM * k, J, out->K[k]);
+        for (int r = 0; r < DIM; ++r) by_y(k, J + r * NODE, out->J[DIM * k + r]);
+    }
+    if (at->mode == FU_SHORT) out->phi[SHORT_ROW] = fu_short_wrap_row(sheave, at, out->J[SHORT_ROW]);
 }
 
 /* Adds the forces of the tangent points on the dofs, in space. */
@@ -51,19 +91,17 @@ static void add_multipliers_on_nodes(const fu_sheave *sheave, const fu_sheave_st
     }
 }
 
-/* Adds the forces of the tangent points by y, in the plane. */
+/* Adds the forces of the conditions by y, in the plane; that of a short wrap is among those of its wrap. */
 static void add_multipliers_in_plane(const fu_sheave *sheave, const fu_sheave_state *at, const double *multipliers,
                                      double *phi, double *y)
 {
-    double J[ENDS][DIM * NODE], K[ENDS][NODE * NODE];
-    conditions(sheave, at, multipliers, phi, J, K);
-    for (int k = 0; k < ENDS; ++k)
-        for (int r = 0; r < DIM; ++r)
-            for (int i = 0; i < NODE; ++i) {
-                const double force = J[k][r * NODE + i] * multipliers[DIM * k + r];
-                y[k * NODE + i] += force;
-                if (i < DIM) y[CENTRE + i] -= force;
-            }
+    conditions of;
+    find_conditions(sheave, at, multipliers, &of);
+    memset(phi, 0, sizeof(double) * MAX_CONDITIONS);
+    memcpy(phi, of.phi, sizeof(double) * (size_t)of.n);
+    for (int r = 0; r < of.n; ++r)
+        for (int i = 0; i < MATERIAL + ENDS && (r != SHORT_ROW || at->mode != FU_SHORT); ++i)
+            y[i] += of.J[r][i] * multipliers[r];
 }
 
 void fu_sheave_add_multipliers(const fu_sheave *sheave, const fu_sheave_state *at, const double *multipliers,
@@ -118,14 +156,6 @@ static void add_conditions_in_space(const fu_model *model, const fu_coupling *co
     }
 }
 
-/* Computes derivatives by y from those of a tangent point by x and the slope. */
-static void by_y(int k, const double of[NODE], double y[Y])
-{
-    memset(y, 0, sizeof(double) * Y);
-    memcpy(y + k * NODE, of, sizeof(double) * NODE);
-    for (int d = 0; d < DIM; ++d) y[CENTRE + d] = -of[d];
-}
-
 /* Adds the derivatives of the forces of a tangent point by y. */
 static void add_stiffness_of_foot(int k, double factor, const double K[NODE * NODE], double (*K_y)[Y])
 {
@@ -145,24 +175,23 @@ void fu_sheave_add_conditions(const fu_model *model, const fu_coupling *coupling
 {
     const fu_sheave *sheave = sheave_of(coupling);
     const int own = fu_extra(model, coupling->unknown);
-    double phi[MAX_CONDITIONS], J[ENDS][DIM * NODE], K[ENDS][NODE * NODE], of[Y];
+    conditions of;
     if (is_in_space(sheave)) {
         add_conditions_in_space(model, coupling, at, equations, by_psi, system);
         return;
     }
-    conditions(sheave, at, equations->next->forces + coupling->force, phi, J, K);
-    for (int k = 0; k < ENDS; ++k) {
-        add_stiffness_of_foot(k, equations->weights.stiffness, K[k], K_y);
-        for (int r = 0; r < DIM; ++r) {
-            const double unit = fu_row_unit(equations->weights.inertia, coupling->scale[DIM * k + r]);
-            by_y(k, J[k] + r * NODE, of);
-            for (int j = 0; j < n; ++j) {
-                const double row = fu_by_column(&columns[j], of), column = fu_by_column(&rows[j], of);
-                if (row != 0.0) fu_add(model, system, own + DIM * k + r, columns[j].dof, unit * row);
-                if (column != 0.0) fu_add(model, system, rows[j].dof, own + DIM * k + r, unit * column);
-            }
+    find_conditions(sheave, at, equations->next->forces + coupling->force, &of);
+    for (int k = 0; k < ENDS; ++k) add_stiffness_of_foot(k, equations->weights.stiffness, of.K[k], K_y);
+    for (int r = 0; r < of.n; ++r) {
+        const double unit = fu_row_unit(equations->weights.inertia, coupling->scale[r]);
+        for (int j = 0; j < n; ++j) {
+            const double row = fu_by_column(&columns[j], of.J[r]), column = fu_by_column(&rows[j], of.J[r]);
+            if (row != 0.0) fu_add(model, system, own + r, columns[j].dof, unit * row);
+            if (column != 0.0) fu_add(model, system, rows[j].dof, own + r, unit * column);
         }
     }
+    for (int r = of.n; r < coupling->n_forces; ++r) /* left out: the multiplier is zero */
+        fu_add(model, system, own + r, own + r, fu_row_unit(equations->weights.inertia, coupling->scale[r]));
 }
 
 /* --- eq 38 ------------------------------------------------------------------------------------------------------ */
@@ -192,27 +221,39 @@ static void rows_in_space(const fu_model *model, const fu_sheave *sheave, const 
     }
 }
 
+/* Computes the second rates of the conditions at zero accelerations of the dofs, in the plane. */
+static void find_drift(const fu_sheave *sheave, const fu_sheave_state *at, const conditions *of, double *drift)
+{
+    memset(drift, 0, sizeof(double) * MAX_CONDITIONS);
+    for (int k = 0; k < ENDS; ++k) {
+        double foot[DIM];
+        sheave->wheel.kernel->tangent_point_motion(at->x[k], at->x_rate[k], at->slope_rate[k], foot);
+        if (at->mode == FU_LIFTED) drift[NEXT_ROW] = k ? drift[NEXT_ROW] : foot[1];
+        else memcpy(drift + DIM * k, foot, sizeof foot);
+    }
+    for (int r = 0; r < of->n; ++r)
+        for (int d = 0; d < DIM; ++d) drift[r] += of->J[r][CENTRE + d] * at->wheel.centre.bias[d];
+    if (at->mode == FU_SHORT) drift[SHORT_ROW] = fu_short_wrap_drift(sheave, at);
+}
+
 static void rows_in_plane(const fu_model *model, const fu_sheave *sheave, const fu_state *state, fu_rows *out)
 {
     const double none[MAX_CONDITIONS] = {0.0};
-    double J[ENDS][DIM * NODE], K[ENDS][NODE * NODE], of[Y];
+    double drift[MAX_CONDITIONS];
+    conditions of;
     fu_wheel_column columns[COLUMNS];
     fu_sheave_state at;
     fu_sheave_at(model, sheave, state, 0, &at);
-    conditions(sheave, &at, none, out->C, J, K);
+    find_conditions(sheave, &at, none, &of);
+    find_drift(sheave, &at, &of, drift);
+    out->rows = of.n;
     out->n = fu_sheave_columns(sheave, &at, at.wheel.centre.P, columns);
     for (int j = 0; j < out->n; ++j) out->at[j] = columns[j].dof;
-    for (int k = 0; k < ENDS; ++k) {
-        double bias[DIM];
-        sheave->wheel.kernel->tangent_point_motion(at.x[k], at.x_rate[k], at.slope_rate[k], bias);
-        for (int r = 0; r < DIM; ++r) {
-            const int row = DIM * k + r;
-            by_y(k, J[k] + r * NODE, of);
-            out->rate[row] = 0.0;
-            out->W[row] = -bias[r];
-            for (int d = 0; d < DIM; ++d) out->W[row] += of[k * NODE + d] * at.wheel.centre.bias[d];
-            for (int j = 0; j < out->n; ++j) out->H[row * out->n + j] = fu_by_column(&columns[j], of);
-        }
+    for (int r = 0; r < of.n; ++r) {
+        out->C[r] = of.phi[r];
+        out->rate[r] = 0.0;
+        out->W[r] = -drift[r];
+        for (int j = 0; j < out->n; ++j) out->H[r * out->n + j] = fu_by_column(&columns[j], of.J[r]);
     }
 }
 

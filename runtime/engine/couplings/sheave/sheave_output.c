@@ -7,7 +7,7 @@
 
 typedef struct {
     double tension_on, tension_off, wrap_angle, force[3], material_speed, slip, normal_force, torque, angle, residual,
-        fleet_angle_on, fleet_angle_off;
+        fleet_angle_on, fleet_angle_off, gap;
 } sheave_output;
 
 /* Returns the stretch of the span at a tangent point, in the plane along the groove. */
@@ -60,7 +60,7 @@ static double least_pressure(const fu_sheave *sheave, const fu_sheave_state *at,
     for (int k = 0; k < ENDS; ++k)
         least =
             fmin(least, fu_wheel_pressure(wheel, &at->wheel, at->phi[k], tension[k], speeds[k], fu_stretch_at(at, k)));
-    for (int j = 0; j < sheave->n_zones; ++j) {
+    for (int j = 0; at->mode == FU_WRAPPED && j < sheave->n_zones; ++j) {
         const fu_zone of = fu_zone_at(sheave, at, j);
         const double stretch = wheel->sense * wheel->radius * (of.phi[1] - of.phi[0]) / of.l;
         const double inside = wheel->A[0] * (stretch - 1.0);
@@ -76,12 +76,45 @@ static double least_pressure(const fu_sheave *sheave, const fu_sheave_state *at,
     return least;
 }
 
+/* Returns the distance of the axis of a rope that has left from that of one in the groove, m. */
+static double gap_of(const fu_sheave *sheave, const fu_sheave_state *at)
+{
+    return sqrt(fu_dot(DIM, at->x[0], at->x[0])) - sheave->tangent_radius[0];
+}
+
 double fu_wrap_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     const fu_sheave *sheave = sheave_of(coupling);
     fu_sheave_state at;
     fu_sheave_at(model, sheave, state, 0, &at);
-    return sheave->wheel.sense * (at.phi[1] - at.phi[0]) - sheave->least_wrap;
+    const double wrap = sheave->wheel.sense * (at.phi[1] - at.phi[0]);
+    return at.mode == FU_LIFTED ? gap_of(sheave, &at) : at.mode == FU_SHORT ? wrap : wrap - sheave->least_wrap;
+}
+
+double fu_wrap_growth_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    const fu_sheave *sheave = sheave_of(coupling);
+    const double reserve = 2.0;
+    fu_sheave_state at;
+    fu_sheave_at(model, sheave, state, 0, &at);
+    return at.mode == FU_SHORT ? reserve * sheave->least_wrap - sheave->wheel.sense * (at.phi[1] - at.phi[0]) : 1.0;
+}
+
+int fu_wrap_may_leave(const fu_coupling *coupling)
+{
+    return fu_may_leave(sheave_of(coupling));
+}
+
+int fu_wrap_has_left(const fu_coupling *coupling, const fu_state *state)
+{
+    return *fu_wrap_flag(sheave_of(coupling), state) == FU_LIFTED;
+}
+
+int fu_wrap_change(const fu_coupling *coupling, fu_state *now, int grows)
+{
+    int *mode = fu_wrap_flag(sheave_of(coupling), now);
+    *mode = *mode != FU_SHORT ? FU_SHORT : grows ? FU_WRAPPED : FU_LIFTED;
+    return *mode == FU_LIFTED;
 }
 
 /* A span is a minimum of the energy R phi + l while its length along the groove is above R tan f: else the tangent
@@ -119,7 +152,8 @@ static double wrap_pressure(const fu_sheave *sheave, const fu_sheave_state *at)
 {
     const double none[MAX_CONDITIONS] = {0.0};
     double tension[ENDS], speed[ENDS], phi[MAX_CONDITIONS], y[Y];
-    if (has_friction(sheave)) elastic_tensions(sheave, at, tension, speed);
+    if (at->mode == FU_LIFTED) return 0.0;
+    if (has_friction(sheave) || at->mode == FU_SHORT) elastic_tensions(sheave, at, tension, speed);
     else tensions(sheave, at, none, tension, speed, phi, y);
     return least_pressure(sheave, at, tension, speed);
 }
@@ -129,6 +163,11 @@ double fu_wrap_pressure(const fu_model *model, const fu_coupling *coupling, cons
     const fu_sheave *sheave = sheave_of(coupling);
     fu_sheave_state at;
     fu_sheave_at(model, sheave, state, state->acceleration, &at);
+    if (at.mode == FU_LIFTED) {
+        double tension[ENDS], speed[ENDS];
+        elastic_tensions(sheave, &at, tension, speed);
+        return tension[0];
+    }
     return wrap_pressure(sheave, &at);
 }
 
@@ -141,9 +180,12 @@ void fu_sheave_outputs(const fu_model *model, const fu_coupling *coupling, const
     fu_sheave_state at;
     double y[Y], phi[MAX_CONDITIONS], tension[ENDS], speed[ENDS], on_centre[SPACE];
     fu_sheave_at(model, sheave, state, acceleration, &at);
+    if (at.mode == FU_SHORT) at.tension = multipliers[SHORT_ROW];
     tensions(sheave, &at, multipliers, tension, speed, phi, y);
+    if (at.mode == FU_LIFTED) elastic_tensions(sheave, &at, tension, speed);
     *numbers = (sheave_output){.tension_on = tension[0], .tension_off = tension[1]};
-    numbers->wrap_angle = sheave->wheel.sense * (at.phi[1] - at.phi[0]);
+    numbers->wrap_angle = at.mode == FU_LIFTED ? 0.0 : sheave->wheel.sense * (at.phi[1] - at.phi[0]);
+    numbers->gap = at.mode == FU_LIFTED ? gap_of(sheave, &at) : 0.0;
     fu_wheel_force(&sheave->wheel, y + CENTRE, on_centre);
     for (int d = 0; d < SPACE; ++d) numbers->force[d] = -on_centre[d] + 0.0; /* no -0 */
     numbers->fleet_angle_on = is_in_space(sheave) ? fu_fleet_angle(sheave, 0, state->q) : 0.0;
@@ -157,7 +199,8 @@ void fu_sheave_outputs(const fu_model *model, const fu_coupling *coupling, const
         if (fabs(of[0]) > fabs(numbers->slip)) numbers->slip = of[0];
         numbers->torque -= F[1];
     }
-    for (int r = 0; r < ENDS * conditions_of(sheave); ++r) numbers->residual = fmax(numbers->residual, fabs(phi[r]));
+    for (int r = 0; r < fu_sheave_conditions(sheave, &at); ++r)
+        numbers->residual = fmax(numbers->residual, fabs(phi[r]));
 }
 
 const fu_output fu_sheave_output_fields[] = {
@@ -173,5 +216,6 @@ const fu_output fu_sheave_output_fields[] = {
     FU_OUTPUT(sheave_output, residual, "m", NULL),
     FU_OUTPUT(sheave_output, fleet_angle_on, "rad", NULL),
     FU_OUTPUT(sheave_output, fleet_angle_off, "rad", NULL),
+    FU_OUTPUT(sheave_output, gap, "m", NULL),
     FU_LAST_OUTPUT(sheave_output),
 };

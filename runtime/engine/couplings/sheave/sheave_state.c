@@ -76,4 +76,6 @@ void fu_sheave_at(const fu_model *model, const fu_sheave *sheave, const fu_state
     }
     out->s[sheave->n_zones] += sheave->closing;
     find_angles(sheave, out);
+    out->mode = fu_wrap_mode(sheave, out, state);
+    out->tension = 0.0;
 }

@@ -6,6 +6,17 @@
 /* Variables of a zone: angles of its ends, centre, s of its ends. */
 enum { U_CENTRE = ENDS, U_MATERIAL = U_CENTRE + DIM, U = U_MATERIAL + ENDS };
 
+/* Extends a zone without length to the least one, at the stretch of the spans. */
+static void extend(const fu_sheave *sheave, const fu_sheave_state *at, fu_zone *zone)
+{
+    const double middle = 0.5 * (zone->phi[0] + zone->phi[1]);
+    zone->l = fu_least_zone(sheave);
+    const double half =
+        0.25 * sheave->wheel.sense * (fu_stretch_at(at, 0) + fu_stretch_at(at, 1)) * zone->l / sheave->wheel.radius;
+    zone->phi[0] = middle - half;
+    zone->phi[1] = middle + half;
+}
+
 fu_zone fu_zone_at(const fu_sheave *sheave, const fu_sheave_state *at, int j)
 {
     fu_zone out = {.s_rate = at->s_rate + j, .s_acc = at->s_acc + j, .first = j, .l = at->s[j + 1] - at->s[j]};
@@ -16,6 +27,7 @@ fu_zone fu_zone_at(const fu_sheave *sheave, const fu_sheave_state *at, int j)
         out.phi_rate[e] = at->phi_rate[0] + share * (at->phi_rate[1] - at->phi_rate[0]);
         out.phi_acc[e] = at->phi_acc[0] + share * (at->phi_acc[1] - at->phi_acc[0]);
     }
+    if (out.l < fu_least_zone(sheave)) extend(sheave, at, &out);
     return out;
 }
 
@@ -77,18 +89,27 @@ void fu_wrap_add_inertia(const fu_sheave *sheave, const fu_sheave_state *at, dou
     }
 }
 
+/* Returns the stiffness of zones: none in a short wrap, which has an energy of its own. */
+static const double *stiffness_in(const fu_sheave *sheave, const fu_sheave_state *at)
+{
+    static const double none[2] = {0.0};
+    return at->mode == FU_SHORT ? none : sheave->wheel.A;
+}
+
 void fu_wrap_add_forces(const fu_sheave *sheave, const fu_sheave_state *at, double *z)
 {
     const fu_wheel *wheel = &sheave->wheel;
-    for (int j = 0; j < sheave->n_zones; ++j) {
+    const double *A = stiffness_in(sheave, at);
+    if (at->mode == FU_SHORT) fu_short_wrap_add_forces(sheave, at, z);
+    for (int j = 0; at->mode != FU_LIFTED && j < sheave->n_zones; ++j) {
         const fu_zone of = fu_zone_at(sheave, at, j);
         double f[U_MATERIAL + 1], u[U], damping[4];
-        wheel->kernel->force(wheel->A, wheel->sense, wheel->rho, wheel->g, wheel->radius, of.phi, at->wheel.c, of.l, f);
+        wheel->kernel->force(A, wheel->sense, wheel->rho, wheel->g, wheel->radius, of.phi, at->wheel.c, of.l, f);
         memcpy(u, f, sizeof(double) * U_MATERIAL);
         u[U_MATERIAL] = -f[U_MATERIAL];
         u[U_MATERIAL + 1] = f[U_MATERIAL];
         add_zone(&of, U, every, u, z);
-        if (sheave->tau == 0.0) continue;
+        if (sheave->tau == 0.0 || at->mode == FU_SHORT) continue;
         wheel->kernel->damping_force(wheel->A, sheave->tau, wheel->radius, of.phi, of.l, of.phi_rate, of.s_rate,
                                      damping);
         add_zone(&of, 4, damped, damping, z);
@@ -124,13 +145,14 @@ void fu_wrap_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at, do
                           double (*K)[Z])
 {
     const fu_wheel *wheel = &sheave->wheel;
-    for (int j = 0; j < sheave->n_zones; ++j) {
+    const double *A = stiffness_in(sheave, at);
+    if (at->mode == FU_SHORT) fu_short_wrap_add_matrix(sheave, at, factor, K);
+    for (int j = 0; at->mode != FU_LIFTED && j < sheave->n_zones; ++j) {
         const fu_zone of = fu_zone_at(sheave, at, j);
         double K_u[5 * 5], D_4[4 * 4], K_4[4 * 3];
-        wheel->kernel->tangent(wheel->A, wheel->sense, wheel->rho, wheel->g, wheel->radius, of.phi, at->wheel.c, of.l,
-                               K_u);
+        wheel->kernel->tangent(A, wheel->sense, wheel->rho, wheel->g, wheel->radius, of.phi, at->wheel.c, of.l, K_u);
         add_zone_matrix(&of, 5, with_length, 5, with_length, factor, K_u, K);
-        if (sheave->tau == 0.0) continue;
+        if (sheave->tau == 0.0 || at->mode == FU_SHORT) continue;
         wheel->kernel->damping_tangent(wheel->A, sheave->tau, wheel->radius, of.phi, of.l, of.phi_rate, of.s_rate, D_4,
                                        K_4);
         add_zone_matrix(&of, 4, damped, 3, of_zone, factor, K_4, K);
