@@ -1250,10 +1250,15 @@ typedef void fu_sheave_inertia_kernel(fu_real rho, fu_real R, const fu_real *phi
 /* phi 2, phi_rate 2, c_rate 2, s_rate 2, phi_acc 2, c_acc 2, s_acc 2, f 6 */
 fu_sheave_inertia_kernel planar_sheave_inertia;
 
-typedef void fu_sheave_inertia_tangent_kernel(fu_real rho, fu_real R, const fu_real *phi, fu_real l, const fu_real *phi_rate, const fu_real *c_rate, const fu_real *s_rate, const fu_real *phi_acc, const fu_real *c_acc, const fu_real *s_acc, fu_real *M, fu_real *D, fu_real *K);
-/* derivatives of the inertial forces of a zone: rho [kg/m]; R [m]; phi [rad]; l [m]; phi_rate [rad/s]; c_rate [m/s];
- * s_rate [m/s]; phi_acc [rad/s^2]; c_acc [m/s^2]; s_acc [m/s^2] -> M [kg]; D [kg/s]; K [SI] */
-/* phi 2, phi_rate 2, c_rate 2, s_rate 2, phi_acc 2, c_acc 2, s_acc 2, M 6x6, D 6x6, K 6x3 */
+typedef void fu_sheave_mass_matrix_kernel(fu_real rho, fu_real R, const fu_real *phi, fu_real l, fu_real *M);
+/* mass matrix of a zone: rho [kg/m]; R [m]; phi [rad]; l [m] -> M [kg] */
+/* phi 2, M 6x6 */
+fu_sheave_mass_matrix_kernel planar_sheave_mass_matrix;
+
+typedef void fu_sheave_inertia_tangent_kernel(fu_real rho, fu_real R, const fu_real *phi, fu_real l, const fu_real *phi_rate, const fu_real *c_rate, const fu_real *s_rate, const fu_real *phi_acc, const fu_real *c_acc, const fu_real *s_acc, fu_real *D, fu_real *K);
+/* derivatives of the inertial forces of a zone by rates and places: rho [kg/m]; R [m]; phi [rad]; l [m]; phi_rate
+ * [rad/s]; c_rate [m/s]; s_rate [m/s]; phi_acc [rad/s^2]; c_acc [m/s^2]; s_acc [m/s^2] -> D [kg/s]; K [SI] */
+/* phi 2, phi_rate 2, c_rate 2, s_rate 2, phi_acc 2, c_acc 2, s_acc 2, D 6x6, K 6x3 */
 fu_sheave_inertia_tangent_kernel planar_sheave_inertia_tangent;
 
 typedef void fu_sheave_dissipation_kernel(const fu_real *A, fu_real tau, fu_real R, const fu_real *phi, fu_real l, const fu_real *phi_rate, const fu_real *s_rate, fu_real *P);
@@ -1345,11 +1350,16 @@ typedef void fu_sheave_store_kernel(const fu_real *A, fu_real rho, fu_real R, co
 /* A 2, g 2, c 2, c_rate 2, c_acc 2, slope 2, F 4 */
 fu_sheave_store_kernel planar_sheave_store;
 
-typedef void fu_sheave_store_tangent_kernel(const fu_real *A, fu_real rho, fu_real R, const fu_real *g, fu_real u, const fu_real *c, fu_real spin, const fu_real *c_rate, fu_real u_rate, fu_real spin_acc, const fu_real *c_acc, const fu_real *slope, fu_real winds, fu_real wound, fu_real *M, fu_real *D, fu_real *K);
-/* derivatives of the forces of the wound rope: A [N, N m^2]; rho [kg/m]; R [m]; g [m/s^2]; u [m]; c [m]; spin
- * [rad/s]; c_rate [m/s]; u_rate [m/s]; spin_acc [rad/s^2]; c_acc [m/s^2]; slope [1]; winds [1]; wound [1] -> M [kg];
- * D [kg/s]; K [N/m] */
-/* A 2, g 2, c 2, c_rate 2, c_acc 2, slope 2, M 4x3, D 4x4, K 4x5 */
+typedef void fu_sheave_store_mass_kernel(fu_real rho, fu_real R, fu_real u, fu_real *M);
+/* mass matrix of the wound rope: rho [kg/m]; R [m]; u [m] -> M [kg] */
+/* M 3x3 */
+fu_sheave_store_mass_kernel planar_sheave_store_mass;
+
+typedef void fu_sheave_store_tangent_kernel(const fu_real *A, fu_real rho, fu_real R, const fu_real *g, fu_real u, const fu_real *c, fu_real spin, const fu_real *c_rate, fu_real u_rate, fu_real spin_acc, const fu_real *c_acc, const fu_real *slope, fu_real winds, fu_real wound, fu_real *D, fu_real *K);
+/* derivatives of the forces of the wound rope by rates and places: A [N, N m^2]; rho [kg/m]; R [m]; g [m/s^2]; u
+ * [m]; c [m]; spin [rad/s]; c_rate [m/s]; u_rate [m/s]; spin_acc [rad/s^2]; c_acc [m/s^2]; slope [1]; winds [1];
+ * wound [1] -> D [kg/s]; K [N/m] */
+/* A 2, g 2, c 2, c_rate 2, c_acc 2, slope 2, D 4x4, K 4x5 */
 fu_sheave_store_tangent_kernel planar_sheave_store_tangent;
 
 typedef void fu_sheave_store_energy_kernel(fu_real rho, fu_real R, const fu_real *g, fu_real u, const fu_real *c, fu_real spin, const fu_real *c_rate, fu_real *T, fu_real *V);
@@ -1387,12 +1397,19 @@ fu_span_inertia_kernel span_cable8p_inertia;
 /* e 4x3, v 4x3, s_rate 2, a 4x3, s_acc 2, f 4x3, f_s 2 */
 fu_span_inertia_kernel span_cable12_inertia;
 
-typedef void fu_span_inertia_tangent_kernel(fu_real rho, fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, const fu_real *a, const fu_real *s_acc, fu_real *M, fu_real *D, fu_real *K);
-/* derivatives of the inertial forces: rho [kg/m]; l [m]; e [m, 1]; v [m/s, 1/s]; s_rate [m/s]; a [m/s^2, 1/s^2];
- * s_acc [m/s^2] -> M [SI]; D [SI]; K [SI] */
-/* e 4x2, v 4x2, s_rate 2, a 4x2, s_acc 2, M 10x10, D 10x10, K 10x9 */
+typedef void fu_span_mass_matrix_kernel(fu_real rho, fu_real l, const fu_real *e, fu_real *M);
+/* mass matrix: rho [kg/m]; l [m]; e [m, 1] -> M [SI] */
+/* e 4x2, M 10x10 */
+fu_span_mass_matrix_kernel span_cable8p_mass_matrix;
+/* e 4x3, M 14x14 */
+fu_span_mass_matrix_kernel span_cable12_mass_matrix;
+
+typedef void fu_span_inertia_tangent_kernel(fu_real rho, fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, const fu_real *a, const fu_real *s_acc, fu_real *D, fu_real *K);
+/* derivatives of the inertial forces by rates and configuration: rho [kg/m]; l [m]; e [m, 1]; v [m/s, 1/s]; s_rate
+ * [m/s]; a [m/s^2, 1/s^2]; s_acc [m/s^2] -> D [SI]; K [SI] */
+/* e 4x2, v 4x2, s_rate 2, a 4x2, s_acc 2, D 10x10, K 10x9 */
 fu_span_inertia_tangent_kernel span_cable8p_inertia_tangent;
-/* e 4x3, v 4x3, s_rate 2, a 4x3, s_acc 2, M 14x14, D 14x14, K 14x13 */
+/* e 4x3, v 4x3, s_rate 2, a 4x3, s_acc 2, D 14x14, K 14x13 */
 fu_span_inertia_tangent_kernel span_cable12_inertia_tangent;
 
 typedef void fu_span_weight_kernel(fu_real rho, fu_real l, const fu_real *e, const fu_real *g, fu_real *V, fu_real *f, fu_real *f_l, fu_real *K_l, fu_real *K_ll);
@@ -1873,6 +1890,7 @@ typedef struct {
     fu_sheave_tangent_kernel *tangent;
     fu_sheave_kinetic_energy_kernel *kinetic_energy;
     fu_sheave_inertia_kernel *inertia;
+    fu_sheave_mass_matrix_kernel *mass_matrix;
     fu_sheave_inertia_tangent_kernel *inertia_tangent;
     fu_sheave_dissipation_kernel *dissipation;
     fu_sheave_damping_force_kernel *damping_force;
@@ -1888,6 +1906,7 @@ typedef struct {
     fu_sheave_winding_kernel *winding;
     fu_sheave_winding_motion_kernel *winding_motion;
     fu_sheave_store_kernel *store;
+    fu_sheave_store_mass_kernel *store_mass;
     fu_sheave_store_tangent_kernel *store_tangent;
     fu_sheave_store_energy_kernel *store_energy;
     fu_sheave_creep_kernel *creep;
@@ -1901,6 +1920,7 @@ typedef struct {
     fu_span_point_kernel *point;
     fu_span_kinetic_energy_kernel *kinetic_energy;
     fu_span_inertia_kernel *inertia;
+    fu_span_mass_matrix_kernel *mass_matrix;
     fu_span_inertia_tangent_kernel *inertia_tangent;
     fu_span_weight_kernel *weight;
     fu_span_energy_kernel *energy;

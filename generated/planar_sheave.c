@@ -600,8 +600,138 @@ void planar_sheave_inertia(fu_real rho, fu_real R, const fu_real *phi, fu_real l
     f[5] = F6 + half_F4;
 }
 
-/* derivatives of the inertial forces of a zone; 460 add, 743 mul, 2 div, 2 cos, 2 sin */
-void planar_sheave_inertia_tangent(fu_real rho, fu_real R, const fu_real *phi, fu_real l, const fu_real *phi_rate, const fu_real *c_rate, const fu_real *s_rate, const fu_real *phi_acc, const fu_real *c_acc, const fu_real *s_acc, fu_real *M, fu_real *D, fu_real *K)
+/* mass matrix of a zone; 35 add, 121 mul, 2 div, 2 cos, 2 sin */
+void planar_sheave_mass_matrix(fu_real rho, fu_real R, const fu_real *phi, fu_real l, fu_real *M)
+{
+    /* zone */
+    const fu_real
+        middle = 0.5*phi[0] + 0.5*phi[1],
+        angle = -phi[0] + phi[1],
+        w = 1.0/l;
+    /* rates of the angles of material points */
+    const fu_real per_length = angle*w;
+    /* mean place of the zone */
+    const fu_real
+        n_x = FU_COS(middle),
+        n_y = FU_SIN(middle),
+        half = 0.5*angle,
+        inv_angle = 1.0/angle,
+        C = 2.0*R*inv_angle*FU_SIN(half),
+        C1 = -C*inv_angle + R*inv_angle*FU_COS(half),
+        m10_x = -(C*n_y),
+        m10_y = C*n_x,
+        m01_x = C1*n_x,
+        m01_y = C1*n_y;
+    /* kinetic energy of a mass */
+    const fu_real R2 = R*R;
+    /* momenta and their derivatives */
+    const fu_real
+        d_flow_rate_turn = -per_length,
+        d_flow_rate_k_x = d_flow_rate_turn*m10_x,
+        d_flow_rate_k_y = d_flow_rate_turn*m10_y,
+        d_l_rate_spread = -per_length,
+        d_l_rate_k_x = d_l_rate_spread*m01_x,
+        d_l_rate_k_y = d_l_rate_spread*m01_y,
+        d_middle_rate_d_flow_rate_tau_k = R2*d_flow_rate_turn,
+        d_angle_rate_d_angle_rate_tau_k = (1.0/12.0)*R2,
+        d_angle_rate_d_l_rate_tau_k = (1.0/12.0)*R2*d_l_rate_spread,
+        d_flow_rate_turn_2 = -per_length,
+        d_flow_rate_d_middle_rate_tau_k = R2*d_flow_rate_turn_2,
+        d_flow_rate_k_x_2 = d_flow_rate_turn_2*m10_x,
+        d_flow_rate_k_y_2 = d_flow_rate_turn_2*m10_y,
+        d_flow_rate_d_flow_rate_tau_k = R2*d_flow_rate_turn*d_flow_rate_turn_2,
+        d_l_rate_spread_2 = -per_length,
+        d_l_rate_d_angle_rate_tau_k = (1.0/12.0)*R2*d_l_rate_spread_2,
+        d_l_rate_k_x_2 = d_l_rate_spread_2*m01_x,
+        d_l_rate_k_y_2 = d_l_rate_spread_2*m01_y,
+        d_l_rate_d_l_rate_tau_k = (1.0/12.0)*R2*d_l_rate_spread*d_l_rate_spread_2,
+        half_M_0 = 0.5*R2*l*rho,
+        half_M_0_2 = 0.5*l*m10_x*rho,
+        half_M_0_3 = 0.5*l*m10_y*rho,
+        half_M_0_4 = 0.5*d_middle_rate_d_flow_rate_tau_k*l*rho,
+        half_M_4 = 0.5*d_flow_rate_d_middle_rate_tau_k*l*rho,
+        half_M_4_2 = 0.5*d_flow_rate_k_x_2*l*rho,
+        half_M_4_3 = 0.5*d_flow_rate_k_y_2*l*rho,
+        half_M_4_4 = 0.5*d_flow_rate_d_flow_rate_tau_k*l*rho,
+        M13 = l*m10_x*rho,
+        M14 = l*m10_y*rho,
+        M21 = -(d_angle_rate_d_angle_rate_tau_k*l*rho),
+        M22 = d_angle_rate_d_angle_rate_tau_k*l*rho,
+        M23 = l*m01_x*rho,
+        M24 = l*m01_y*rho,
+        M25 = -(d_l_rate_d_angle_rate_tau_k*l*rho),
+        M26 = d_l_rate_d_angle_rate_tau_k*l*rho,
+        M31 = half_M_0_2 - l*m01_x*rho,
+        M32 = half_M_0_2 + l*m01_x*rho,
+        M33 = l*rho,
+        M35 = -d_l_rate_k_x_2*l*rho + half_M_4_2,
+        M36 = d_l_rate_k_x_2*l*rho + half_M_4_2,
+        M41 = half_M_0_3 - l*m01_y*rho,
+        M42 = half_M_0_3 + l*m01_y*rho,
+        M44 = l*rho,
+        M45 = -d_l_rate_k_y_2*l*rho + half_M_4_3,
+        M46 = d_l_rate_k_y_2*l*rho + half_M_4_3,
+        M53 = d_flow_rate_k_x*l*rho,
+        M54 = d_flow_rate_k_y*l*rho,
+        M61 = -(d_angle_rate_d_l_rate_tau_k*l*rho),
+        M62 = d_angle_rate_d_l_rate_tau_k*l*rho,
+        M63 = d_l_rate_k_x*l*rho,
+        M64 = d_l_rate_k_y*l*rho,
+        M65 = -(d_l_rate_d_l_rate_tau_k*l*rho),
+        M66 = d_l_rate_d_l_rate_tau_k*l*rho,
+        half_M0 = 0.5*half_M_0,
+        half_M0_2 = 0.5*half_M_0,
+        half_M0_3 = 0.5*M13,
+        half_M0_4 = 0.5*M14,
+        half_M0_5 = 0.5*half_M_4,
+        half_M0_6 = 0.5*half_M_4,
+        half_M4 = 0.5*half_M_0_4,
+        half_M4_2 = 0.5*half_M_0_4,
+        half_M4_3 = 0.5*M53,
+        half_M4_4 = 0.5*M54,
+        half_M4_5 = 0.5*half_M_4_4,
+        half_M4_6 = 0.5*half_M_4_4;
+    /* outputs */
+    M[0] = -M21 + half_M0;
+    M[1] = -M22 + half_M0_2;
+    M[2] = -M23 + half_M0_3;
+    M[3] = -M24 + half_M0_4;
+    M[4] = -M25 + half_M0_5;
+    M[5] = -M26 + half_M0_6;
+    M[6] = M21 + half_M0;
+    M[7] = M22 + half_M0_2;
+    M[8] = M23 + half_M0_3;
+    M[9] = M24 + half_M0_4;
+    M[10] = M25 + half_M0_5;
+    M[11] = M26 + half_M0_6;
+    M[12] = M31;
+    M[13] = M32;
+    M[14] = M33;
+    M[15] = 0.0;
+    M[16] = M35;
+    M[17] = M36;
+    M[18] = M41;
+    M[19] = M42;
+    M[20] = 0.0;
+    M[21] = M44;
+    M[22] = M45;
+    M[23] = M46;
+    M[24] = -M61 + half_M4;
+    M[25] = -M62 + half_M4_2;
+    M[26] = -M63 + half_M4_3;
+    M[27] = -M64 + half_M4_4;
+    M[28] = -M65 + half_M4_5;
+    M[29] = -M66 + half_M4_6;
+    M[30] = M61 + half_M4;
+    M[31] = M62 + half_M4_2;
+    M[32] = M63 + half_M4_3;
+    M[33] = M64 + half_M4_4;
+    M[34] = M65 + half_M4_5;
+    M[35] = M66 + half_M4_6;
+}
+
+/* derivatives of the inertial forces of a zone by rates and places; 428 add, 665 mul, 2 div, 2 cos, 2 sin */
+void planar_sheave_inertia_tangent(fu_real rho, fu_real R, const fu_real *phi, fu_real l, const fu_real *phi_rate, const fu_real *c_rate, const fu_real *s_rate, const fu_real *phi_acc, const fu_real *c_acc, const fu_real *s_acc, fu_real *D, fu_real *K)
 {
     PLANAR_SHEAVE_ZONE
     /* rates of the angles of material points */
@@ -660,94 +790,6 @@ void planar_sheave_inertia_tangent(fu_real rho, fu_real R, const fu_real *phi, f
     /* derivatives */
     fu_real d_middle_rate_F[5], d_flow_rate_F[5], half_D_0_at[5], half_D_4_at[5], d_middle_F[5], half_K_0_at[5];
     const fu_real
-        d_middle_acc_f_middle = R2*l,
-        d_middle_acc_F1 = d_middle_acc_f_middle*rho,
-        d_middle_acc_f_c_x = l*m10_x,
-        d_middle_acc_F3 = d_middle_acc_f_c_x*rho,
-        d_middle_acc_f_c_y = l*m10_y,
-        d_middle_acc_F4 = d_middle_acc_f_c_y*rho,
-        d_middle_acc_f_flow = -(d_middle_acc_f_middle*per_length),
-        d_middle_acc_F5 = d_middle_acc_f_flow*rho,
-        d_angle_acc_f_angle = (1.0/12.0)*R2*l,
-        d_angle_acc_F2 = d_angle_acc_f_angle*rho,
-        d_angle_acc_f_c_x = l*m01_x,
-        d_angle_acc_F3 = d_angle_acc_f_c_x*rho,
-        d_angle_acc_f_c_y = l*m01_y,
-        d_angle_acc_F4 = d_angle_acc_f_c_y*rho,
-        d_angle_acc_f_l = -(d_angle_acc_f_angle*per_length),
-        d_angle_acc_F6 = d_angle_acc_f_l*rho,
-        d_c_acc0_f_middle = l*m10_x,
-        d_c_acc0_F1 = d_c_acc0_f_middle*rho,
-        d_c_acc0_f_angle = l*m01_x,
-        d_c_acc0_F2 = d_c_acc0_f_angle*rho,
-        d_c_acc0_F3 = l*rho,
-        d_c_acc0_f_flow = -(d_c_acc0_f_middle*per_length),
-        d_c_acc0_F5 = d_c_acc0_f_flow*rho,
-        d_c_acc0_f_l = -(d_c_acc0_f_angle*per_length),
-        d_c_acc0_F6 = d_c_acc0_f_l*rho,
-        d_c_acc1_f_middle = l*m10_y,
-        d_c_acc1_F1 = d_c_acc1_f_middle*rho,
-        d_c_acc1_f_angle = l*m01_y,
-        d_c_acc1_F2 = d_c_acc1_f_angle*rho,
-        d_c_acc1_F4 = l*rho,
-        d_c_acc1_f_flow = -(d_c_acc1_f_middle*per_length),
-        d_c_acc1_F5 = d_c_acc1_f_flow*rho,
-        d_c_acc1_f_l = -(d_c_acc1_f_angle*per_length),
-        d_c_acc1_F6 = d_c_acc1_f_l*rho,
-        d_flow_acc_turn_t = -per_length,
-        d_flow_acc_f_middle = R2*d_flow_acc_turn_t*l,
-        d_flow_acc_F1 = d_flow_acc_f_middle*rho,
-        d_flow_acc_k_t_x = d_flow_acc_turn_t*m10_x,
-        d_flow_acc_f_c_x = d_flow_acc_k_t_x*l,
-        d_flow_acc_F3 = d_flow_acc_f_c_x*rho,
-        d_flow_acc_k_t_y = d_flow_acc_turn_t*m10_y,
-        d_flow_acc_f_c_y = d_flow_acc_k_t_y*l,
-        d_flow_acc_F4 = d_flow_acc_f_c_y*rho,
-        d_flow_acc_f_flow = -(d_flow_acc_f_middle*per_length),
-        d_flow_acc_F5 = d_flow_acc_f_flow*rho,
-        d_l_acc_spread_t = -per_length,
-        d_l_acc_f_angle = (1.0/12.0)*R2*d_l_acc_spread_t*l,
-        d_l_acc_F2 = d_l_acc_f_angle*rho,
-        d_l_acc_k_t_x = d_l_acc_spread_t*m01_x,
-        d_l_acc_f_c_x = d_l_acc_k_t_x*l,
-        d_l_acc_F3 = d_l_acc_f_c_x*rho,
-        d_l_acc_k_t_y = d_l_acc_spread_t*m01_y,
-        d_l_acc_f_c_y = d_l_acc_k_t_y*l,
-        d_l_acc_F4 = d_l_acc_f_c_y*rho,
-        d_l_acc_f_l = -(d_l_acc_f_angle*per_length),
-        d_l_acc_F6 = d_l_acc_f_l*rho,
-        half_M_0 = 0.5*d_middle_acc_F1,
-        half_M_0_2 = 0.5*d_middle_acc_F3,
-        half_M_0_3 = 0.5*d_middle_acc_F4,
-        half_M_0_4 = 0.5*d_middle_acc_F5,
-        half_M_4 = 0.5*d_flow_acc_F1,
-        half_M_4_2 = 0.5*d_flow_acc_F3,
-        half_M_4_3 = 0.5*d_flow_acc_F4,
-        half_M_4_4 = 0.5*d_flow_acc_F5,
-        M21 = -d_angle_acc_F2,
-        M25 = -d_l_acc_F2,
-        M31 = -d_angle_acc_F3 + half_M_0_2,
-        M32 = d_angle_acc_F3 + half_M_0_2,
-        M35 = -d_l_acc_F3 + half_M_4_2,
-        M36 = d_l_acc_F3 + half_M_4_2,
-        M41 = -d_angle_acc_F4 + half_M_0_3,
-        M42 = d_angle_acc_F4 + half_M_0_3,
-        M45 = -d_l_acc_F4 + half_M_4_3,
-        M46 = d_l_acc_F4 + half_M_4_3,
-        M61 = -d_angle_acc_F6,
-        M65 = -d_l_acc_F6,
-        half_M0 = 0.5*half_M_0,
-        half_M0_2 = 0.5*half_M_0,
-        half_M0_3 = 0.5*d_c_acc0_F1,
-        half_M0_4 = 0.5*d_c_acc1_F1,
-        half_M0_5 = 0.5*half_M_4,
-        half_M0_6 = 0.5*half_M_4,
-        half_M4 = 0.5*half_M_0_4,
-        half_M4_2 = 0.5*half_M_0_4,
-        half_M4_3 = 0.5*d_c_acc0_F5,
-        half_M4_4 = 0.5*d_c_acc1_F5,
-        half_M4_5 = 0.5*half_M_4_4,
-        half_M4_6 = 0.5*half_M_4_4,
         d_middle_rate_f_middle = R2*l_rate,
         d_middle_rate_F1 = d_middle_rate_f_middle*rho,
         d_middle_rate_f_angle = R2*flow_rate;
@@ -1043,42 +1085,6 @@ void planar_sheave_inertia_tangent(fu_real rho, fu_real R, const fu_real *phi, f
         half_K4_2 = 0.5*K52,
         half_K4_3 = 0.5*d_l_F5;
     /* outputs */
-    M[0] = -M21 + half_M0;
-    M[1] = -d_angle_acc_F2 + half_M0_2;
-    M[2] = -d_c_acc0_F2 + half_M0_3;
-    M[3] = -d_c_acc1_F2 + half_M0_4;
-    M[4] = -M25 + half_M0_5;
-    M[5] = -d_l_acc_F2 + half_M0_6;
-    M[6] = M21 + half_M0;
-    M[7] = d_angle_acc_F2 + half_M0_2;
-    M[8] = d_c_acc0_F2 + half_M0_3;
-    M[9] = d_c_acc1_F2 + half_M0_4;
-    M[10] = M25 + half_M0_5;
-    M[11] = d_l_acc_F2 + half_M0_6;
-    M[12] = M31;
-    M[13] = M32;
-    M[14] = d_c_acc0_F3;
-    M[15] = 0.0;
-    M[16] = M35;
-    M[17] = M36;
-    M[18] = M41;
-    M[19] = M42;
-    M[20] = 0.0;
-    M[21] = d_c_acc1_F4;
-    M[22] = M45;
-    M[23] = M46;
-    M[24] = -M61 + half_M4;
-    M[25] = -d_angle_acc_F6 + half_M4_2;
-    M[26] = -d_c_acc0_F6 + half_M4_3;
-    M[27] = -d_c_acc1_F6 + half_M4_4;
-    M[28] = -M65 + half_M4_5;
-    M[29] = -d_l_acc_F6 + half_M4_6;
-    M[30] = M61 + half_M4;
-    M[31] = d_angle_acc_F6 + half_M4_2;
-    M[32] = d_c_acc0_F6 + half_M4_3;
-    M[33] = d_c_acc1_F6 + half_M4_4;
-    M[34] = M65 + half_M4_5;
-    M[35] = d_l_acc_F6 + half_M4_6;
     D[0] = -D21 + half_D0;
     D[1] = -D22 + half_D0_2;
     D[2] = -d_c_rate0_F2 + half_D0_3;
@@ -1963,9 +1969,22 @@ void planar_sheave_store(const fu_real *A, fu_real rho, fu_real R, const fu_real
     F[3] = F4;
 }
 
-/* derivatives of the forces of the wound rope (Lagrange's equations of a rope that is wound on a drum); 15 add, 55 mul, 5 div, 1 sqrt */
-void planar_sheave_store_tangent(const fu_real *A, fu_real rho, fu_real R, const fu_real *g, fu_real u, const fu_real *c, fu_real spin, const fu_real *c_rate, fu_real u_rate, fu_real spin_acc, const fu_real *c_acc, const fu_real *slope, fu_real winds, fu_real wound, fu_real *M, fu_real *D, fu_real *K)
+/* mass matrix of the wound rope (Lagrange's equations of a rope that is wound on a drum); 5 mul */
+void planar_sheave_store_mass(fu_real rho, fu_real R, fu_real u, fu_real *M)
 {
+    /* outputs */
+    M[0] = R*R*rho*u;
+    FU_EACH(g, 2,
+        M[4*g + 1] = 0.0;
+        M[4*g + 2] = 0.0;
+        M[4*g + 3] = 0.0;
+        M[4*g + 4] = rho*u;)
+}
+
+/* derivatives of the forces of the wound rope by rates and places (Lagrange's equations of a rope that is wound on a drum); 15 add, 50 mul, 5 div, 1 sqrt */
+void planar_sheave_store_tangent(const fu_real *A, fu_real rho, fu_real R, const fu_real *g, fu_real u, const fu_real *c, fu_real spin, const fu_real *c_rate, fu_real u_rate, fu_real spin_acc, const fu_real *c_acc, const fu_real *slope, fu_real winds, fu_real wound, fu_real *D, fu_real *K)
+{
+    (void)u;
     (void)c;
     /* stretches */
     const fu_real
@@ -1975,9 +1994,6 @@ void planar_sheave_store_tangent(const fu_real *A, fu_real rho, fu_real R, const
     /* derivatives */
     fu_real d_slope_span_stretch[2], d_slope_passing[2], d_slope_elastic[2];
     const fu_real
-        d_spin_acc_F1 = R*R*rho*u,
-        d_c_acc0_F2 = rho*u,
-        d_c_acc1_F3 = rho*u,
         d_spin_F1 = R*R*rho*u_rate,
         d_spin_F4 = -(R*R*rho*spin),
         d_c_rate0_F2 = rho*u_rate,
@@ -1997,18 +2013,6 @@ void planar_sheave_store_tangent(const fu_real *A, fu_real rho, fu_real R, const
         d_slope_passing[point] = d_slope_span_stretch[point]*winds;
         d_slope_elastic[point] = d_slope_passing[point]*(0.5*A[0]*(2.0*span_stretch - 2.0) + A[1]*span_stretch/(R*R)) + d_slope_span_stretch[point]*(A[0] + A[1]/(R*R))*(passing - span_stretch);)
     /* outputs */
-    M[0] = d_spin_acc_F1;
-    M[1] = 0.0;
-    M[2] = 0.0;
-    M[3] = 0.0;
-    M[4] = d_c_acc0_F2;
-    M[5] = 0.0;
-    M[6] = 0.0;
-    M[7] = 0.0;
-    M[8] = d_c_acc1_F3;
-    M[9] = 0.0;
-    M[10] = 0.0;
-    M[11] = 0.0;
     D[0] = d_spin_F1;
     D[1] = 0.0;
     D[2] = 0.0;

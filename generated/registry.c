@@ -269,21 +269,23 @@ static const fu_resistance_kernels resistances[] = {
 static const fu_sheave_kernels sheaves[] = {
     {"planar_sheave", 2, planar_sheave_tangent_point, planar_sheave_tangent_point_motion, planar_sheave_angle,
      planar_sheave_energy, planar_sheave_weight, planar_sheave_force, planar_sheave_tangent,
-     planar_sheave_kinetic_energy, planar_sheave_inertia, planar_sheave_inertia_tangent, planar_sheave_dissipation,
-     planar_sheave_damping_force, planar_sheave_damping_tangent, planar_sheave_friction, planar_sheave_friction_tangent,
-     planar_sheave_friction_on, planar_sheave_friction_on_tangent, planar_sheave_friction_off,
-     planar_sheave_friction_off_tangent, planar_sheave_short_wrap, planar_sheave_short_wrap_motion,
-     planar_sheave_winding, planar_sheave_winding_motion, planar_sheave_store, planar_sheave_store_tangent,
-     planar_sheave_store_energy, planar_sheave_creep},
+     planar_sheave_kinetic_energy, planar_sheave_inertia, planar_sheave_mass_matrix, planar_sheave_inertia_tangent,
+     planar_sheave_dissipation, planar_sheave_damping_force, planar_sheave_damping_tangent, planar_sheave_friction,
+     planar_sheave_friction_tangent, planar_sheave_friction_on, planar_sheave_friction_on_tangent,
+     planar_sheave_friction_off, planar_sheave_friction_off_tangent, planar_sheave_short_wrap,
+     planar_sheave_short_wrap_motion, planar_sheave_winding, planar_sheave_winding_motion, planar_sheave_store,
+     planar_sheave_store_mass, planar_sheave_store_tangent, planar_sheave_store_energy, planar_sheave_creep},
 };
 
 static const fu_span_kernels spans[] = {
     {"span_cable8p", 2, 8, span_cable8p_point, span_cable8p_kinetic_energy, span_cable8p_inertia,
-     span_cable8p_inertia_tangent, span_cable8p_weight, span_cable8p_energy, span_cable8p_elastic_force,
-     span_cable8p_elastic_tangent, span_cable8p_dissipation, span_cable8p_damping_force, span_cable8p_damping_tangent},
+     span_cable8p_mass_matrix, span_cable8p_inertia_tangent, span_cable8p_weight, span_cable8p_energy,
+     span_cable8p_elastic_force, span_cable8p_elastic_tangent, span_cable8p_dissipation, span_cable8p_damping_force,
+     span_cable8p_damping_tangent},
     {"span_cable12", 3, 12, span_cable12_point, span_cable12_kinetic_energy, span_cable12_inertia,
-     span_cable12_inertia_tangent, span_cable12_weight, span_cable12_energy, span_cable12_elastic_force,
-     span_cable12_elastic_tangent, span_cable12_dissipation, span_cable12_damping_force, span_cable12_damping_tangent},
+     span_cable12_mass_matrix, span_cable12_inertia_tangent, span_cable12_weight, span_cable12_energy,
+     span_cable12_elastic_force, span_cable12_elastic_tangent, span_cable12_dissipation, span_cable12_damping_force,
+     span_cable12_damping_tangent},
 };
 
 static const fu_surface_kernels surfaces[] = {
@@ -364,7 +366,8 @@ static const fu_tangent_point_kernels tangent_points[] = {
 #define FU_ARGUMENTS_vssvsvvs_1 a[0], *a[1], *a[2], a[3], *a[4], a[5], a[6], *a[7], out[0]
 #define FU_ARGUMENTS_ssvsvvv_1 *a[0], *a[1], a[2], *a[3], a[4], a[5], a[6], out[0]
 #define FU_ARGUMENTS_ssvsvvvvvv_1 *a[0], *a[1], a[2], *a[3], a[4], a[5], a[6], a[7], a[8], a[9], out[0]
-#define FU_ARGUMENTS_ssvsvvvvvv_3 *a[0], *a[1], a[2], *a[3], a[4], a[5], a[6], a[7], a[8], a[9], out[0], out[1], out[2]
+#define FU_ARGUMENTS_ssvs_1 *a[0], *a[1], a[2], *a[3], out[0]
+#define FU_ARGUMENTS_ssvsvvvvvv_2 *a[0], *a[1], a[2], *a[3], a[4], a[5], a[6], a[7], a[8], a[9], out[0], out[1]
 #define FU_ARGUMENTS_vssvsvv_1 a[0], *a[1], *a[2], a[3], *a[4], a[5], a[6], out[0]
 #define FU_ARGUMENTS_vssvsvv_2 a[0], *a[1], *a[2], a[3], *a[4], a[5], a[6], out[0], out[1]
 #define FU_ARGUMENTS_vsssvssvvsss_3 a[0], *a[1], *a[2], *a[3], a[4], *a[5], *a[6], a[7], a[8], *a[9], *a[10], *a[11], out[0], out[1], out[2]
@@ -376,13 +379,13 @@ static const fu_tangent_point_kernels tangent_points[] = {
 #define FU_ARGUMENTS_ssvvsss_2 *a[0], *a[1], a[2], a[3], *a[4], *a[5], *a[6], out[0], out[1]
 #define FU_ARGUMENTS_ssvvssvvs_1 *a[0], *a[1], a[2], a[3], *a[4], *a[5], a[6], a[7], *a[8], out[0]
 #define FU_ARGUMENTS_vssvsvsvssvvss_1 a[0], *a[1], *a[2], a[3], *a[4], a[5], *a[6], a[7], *a[8], *a[9], a[10], a[11], *a[12], *a[13], out[0]
-#define FU_ARGUMENTS_vssvsvsvssvvss_3 a[0], *a[1], *a[2], a[3], *a[4], a[5], *a[6], a[7], *a[8], *a[9], a[10], a[11], *a[12], *a[13], out[0], out[1], out[2]
+#define FU_ARGUMENTS_sss_1 *a[0], *a[1], *a[2], out[0]
+#define FU_ARGUMENTS_vssvsvsvssvvss_2 a[0], *a[1], *a[2], a[3], *a[4], a[5], *a[6], a[7], *a[8], *a[9], a[10], a[11], *a[12], *a[13], out[0], out[1]
 #define FU_ARGUMENTS_ssvsvsv_2 *a[0], *a[1], a[2], *a[3], a[4], *a[5], a[6], out[0], out[1]
 #define FU_ARGUMENTS_vsss_2 a[0], *a[1], *a[2], *a[3], out[0], out[1]
 #define FU_ARGUMENTS_svvvs_3 *a[0], a[1], a[2], a[3], *a[4], out[0], out[1], out[2]
 #define FU_ARGUMENTS_ssvvv_1 *a[0], *a[1], a[2], a[3], a[4], out[0]
 #define FU_ARGUMENTS_ssvvvvv_2 *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1]
-#define FU_ARGUMENTS_ssvvvvv_3 *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1], out[2]
 #define FU_ARGUMENTS_ssvv_5 *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3], out[4]
 #define FU_ARGUMENTS_svv_3 *a[0], a[1], a[2], out[0], out[1], out[2]
 #define FU_ARGUMENTS_svvvvs_1 *a[0], a[1], a[2], a[3], a[4], *a[5], out[0]
@@ -922,7 +925,8 @@ static const fu_tangent_point_kernels tangent_points[] = {
     X(planar_sheave_tangent, vssvsvvs_1) \
     X(planar_sheave_kinetic_energy, ssvsvvv_1) \
     X(planar_sheave_inertia, ssvsvvvvvv_1) \
-    X(planar_sheave_inertia_tangent, ssvsvvvvvv_3) \
+    X(planar_sheave_mass_matrix, ssvs_1) \
+    X(planar_sheave_inertia_tangent, ssvsvvvvvv_2) \
     X(planar_sheave_dissipation, vssvsvv_1) \
     X(planar_sheave_damping_force, vssvsvv_1) \
     X(planar_sheave_damping_tangent, vssvsvv_2) \
@@ -937,13 +941,15 @@ static const fu_tangent_point_kernels tangent_points[] = {
     X(planar_sheave_winding, ssvvsss_2) \
     X(planar_sheave_winding_motion, ssvvssvvs_1) \
     X(planar_sheave_store, vssvsvsvssvvss_1) \
-    X(planar_sheave_store_tangent, vssvsvsvssvvss_3) \
+    X(planar_sheave_store_mass, sss_1) \
+    X(planar_sheave_store_tangent, vssvsvsvssvvss_2) \
     X(planar_sheave_store_energy, ssvsvsv_2) \
     X(planar_sheave_creep, vsss_2) \
     X(span_cable8p_point, svvvs_3) \
     X(span_cable8p_kinetic_energy, ssvvv_1) \
     X(span_cable8p_inertia, ssvvvvv_2) \
-    X(span_cable8p_inertia_tangent, ssvvvvv_3) \
+    X(span_cable8p_mass_matrix, ssv_1) \
+    X(span_cable8p_inertia_tangent, ssvvvvv_2) \
     X(span_cable8p_weight, ssvv_5) \
     X(span_cable8p_energy, svv_1) \
     X(span_cable8p_elastic_force, svv_2) \
@@ -954,7 +960,8 @@ static const fu_tangent_point_kernels tangent_points[] = {
     X(span_cable12_point, svvvs_3) \
     X(span_cable12_kinetic_energy, ssvvv_1) \
     X(span_cable12_inertia, ssvvvvv_2) \
-    X(span_cable12_inertia_tangent, ssvvvvv_3) \
+    X(span_cable12_mass_matrix, ssv_1) \
+    X(span_cable12_inertia_tangent, ssvvvvv_2) \
     X(span_cable12_weight, ssvv_5) \
     X(span_cable12_energy, svv_1) \
     X(span_cable12_elastic_force, svv_2) \

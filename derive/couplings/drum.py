@@ -26,7 +26,7 @@ DIM = 2
 
 def kernels() -> list[Program]:
     """Return the kernels of a drum."""
-    return [winding(), winding_motion(), store(), store_tangent(), store_energy(), creep()]
+    return [winding(), winding_motion(), store(), store_mass(), store_tangent(), store_energy(), creep()]
 
 
 def _program(kernel: str, doc: str) -> Program:
@@ -105,12 +105,18 @@ class Store:
             self.c_acc = p.input("c_acc", DIM, "m/s^2", "acceleration of the centre")
             self.slope, self.span, self.passing = _stretches(p)
         p.stage("energies")
-        self.T = self.rho * self.u * (self.c_rate.dot(self.c_rate) + self.R**2 * self.spin**2) / 2
+        self.T = _kinetic(self.rho, self.R, self.u, self.spin, self.c_rate)
         self.V = -self.rho * self.u * self.g.dot(self.c)
 
     def stored(self, stretch: sp.Expr) -> sp.Expr:
         """Return the elastic energy a stress-free length, J/m."""
         return _elastic(self.A, self.R, stretch)
+
+
+def _kinetic(rho: sp.Symbol, R: sp.Symbol, u: sp.Symbol, spin: sp.Symbol, c_rate: np.ndarray) -> sp.Expr:
+    """Return the kinetic energy, J."""
+    moving: sp.Expr = rho * u * (c_rate.dot(c_rate) + R**2 * spin**2) / 2
+    return moving
 
 
 def _elastic(A: np.ndarray, R: sp.Symbol, stretch: sp.Expr) -> sp.Expr:
@@ -140,12 +146,21 @@ def store() -> Program:
     return p
 
 
+def store_mass() -> Program:
+    """Return the kernel of the mass matrix of the wound rope. No force on the length has accelerations."""
+    p = _program("store_mass", "mass matrix of the wound rope")
+    rho, R, u = p.input("rho", (), "kg/m", "mass of a length"), _radius(p), p.input("u", (), "m", "wound length")
+    rates = np.array(sp.symbols(f"spin c_rate:{DIM}"))
+    M = sp.hessian(_kinetic(rho, R, u, rates[0], rates[1:]), rates)
+    p.output("M", np.array(M), "kg", "derivatives of momenta by rates of the rotation and the centre")
+    return p
+
+
 def store_tangent() -> Program:
-    """Return the kernel of the derivatives of these forces."""
-    p = _program("store_tangent", "derivatives of the forces of the wound rope")
+    """Return the kernel of the derivatives of these forces by rates and places."""
+    p = _program("store_tangent", "derivatives of the forces of the wound rope by rates and places")
     of, force = _forces(p)
     p.stage("derivatives")
-    p.output("M", jacobian(p, force, [of.spin_acc, *of.c_acc]), "kg", "derivatives of F by accelerations of both")
     p.output("D", jacobian(p, force, [of.spin, *of.c_rate, of.u_rate]), "kg/s",
              "derivatives of F by rates of the rotation, the centre, the length")
     p.output("K", jacobian(p, force, [*of.c, of.u, *of.slope]), "N/m", "derivatives of F by the centre, length, slope")

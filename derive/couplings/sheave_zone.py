@@ -34,8 +34,8 @@ ANGLES, OF_MOTION, OF_DAMPING = ((0, 1),), ((0, 1), (4, 5)), ((0, 1), (2, 3))
 
 def kernels() -> list[Program]:
     """Return the kernels of a zone."""
-    return [energy(), weight(), force(), tangent(), kinetic_energy(), inertia(), inertia_tangent(), dissipation(),
-            damping_force(), damping_tangent()]
+    return [energy(), weight(), force(), tangent(), kinetic_energy(), inertia(), mass_matrix(), inertia_tangent(),
+            dissipation(), damping_force(), damping_tangent()]
 
 
 def program(kernel: str, doc: str) -> Program:
@@ -49,19 +49,23 @@ class Zone:
     coordinates   middle, angle, centre, l: energies depend on no others
     motion        first and second rates of the middle, the angle, the centre, the mean of s_a and s_b ("flow"), and l
     m             derivatives of m by the middle (first index) and the angle (second)
+
+    at_rest: the rates are symbols by which the program differentiates, and no inputs.
     """
 
-    def __init__(self, program: Program, order: int = 0, has_place: bool = False, centre_moves: bool = False):
+    def __init__(self, program: Program, order: int = 0, has_place: bool = False, centre_moves: bool = False,
+                 at_rest: bool = False):
         p = self.program = program
+        rate = _symbols if at_rest else p.input
         self.R = p.input("R", (), "m", "radius to the axis of the rope")
         phi = p.input("phi", 2, "rad", "angles phi_a, phi_b of the ends of the zone, over turns")
         self.c: Any = p.input("c", DIM, "m", "centre of the sheave") if has_place else []
         self.l = p.input("l", (), "m", "length s_b - s_a of the zone")
         given: list[tuple[Any, ...]] = []
         if order:
-            given.append((p.input("phi_rate", 2, "rad/s", "rates of the angles"),
-                          p.input("c_rate", DIM, "m/s", "velocity of the centre") if centre_moves else [],
-                          p.input("s_rate", 2, "m/s", "rates of s_a and s_b")))
+            given.append((rate("phi_rate", 2, "rad/s", "rates of the angles"),
+                          rate("c_rate", DIM, "m/s", "velocity of the centre") if centre_moves else [],
+                          rate("s_rate", 2, "m/s", "rates of s_a and s_b")))
         if order > 1:
             given.append((p.input("phi_acc", 2, "rad/s^2", "second rates of the angles"),
                           p.input("c_acc", DIM, "m/s^2", "acceleration of the centre"),
@@ -118,6 +122,10 @@ class Zone:
             tag = f"d_{one.name}".replace("[", "").replace("]", "")
             columns.append(DirectionalDerivative(self.program, tag, on | {one: 1}).array(values))
         return np.stack(columns, axis=-1)
+
+
+def _symbols(name: str, shape: int, *_: str) -> np.ndarray:
+    return np.array([sp.Symbol(f"{name}[{k}]") for k in range(shape)], dtype=object)
 
 
 def _at_ends(p: Program, name: str, values: np.ndarray, *pairs: tuple[int, int]) -> np.ndarray:
@@ -287,14 +295,27 @@ def inertia() -> Program:
     return p
 
 
+def mass_matrix() -> Program:
+    """Return the kernel of the mass matrix: second derivatives of the kinetic energy by the rates."""
+    p = program("mass_matrix", "mass matrix of a zone")
+    rho = p.input("rho", (), "kg/m", "mass of a length")
+    zone = Zone(p, 1, centre_moves=True, at_rest=True)
+    _, tau = _kinetic(p, zone)
+    p.stage("momenta and their derivatives")
+    (rates,) = zone.motion
+    momenta = zone.jacobian(np.array([rho * zone.l * tau]), rates)[0]
+    M = _between_ends(p, "M", zone.jacobian(momenta, rates), OF_MOTION, OF_MOTION)
+    p.output("M", M, "kg", "derivatives of momenta by rates of phi_a, phi_b, c, s_a, s_b")
+    return p
+
+
 def inertia_tangent() -> Program:
-    """Return the kernel of the derivatives of the inertial forces."""
-    p = program("inertia_tangent", "derivatives of the inertial forces of a zone")
+    """Return the kernel of the derivatives of the inertial forces by rates and places."""
+    p = program("inertia_tangent", "derivatives of the inertial forces of a zone by rates and places")
     zone, force = _inertia(p, 3)
-    rates, seconds = zone.motion
+    rates, _ = zone.motion
     p.stage("derivatives")
     for name, symbols, pairs, unit, doc in (
-            ("M", seconds, OF_MOTION, "kg", "second rates of phi_a, phi_b, c, s_a, s_b"),
             ("D", rates, OF_MOTION, "kg/s", "rates of phi_a, phi_b, c, s_a, s_b"),
             ("K", [zone.middle, zone.angle, zone.l], ANGLES, "SI", "phi_a, phi_b, l")):
         value = _between_ends(p, name, zone.jacobian(force, symbols), OF_MOTION, pairs)

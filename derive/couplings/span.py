@@ -40,9 +40,9 @@ def families() -> list[ElementFamily]:
 def build(element: Element, law: str) -> list[Program]:
     """Return the kernels of the spans of an element with a law."""
     span = Span(element, law)
-    return [span.point(), span.kinetic_energy(), span.inertia(), span.inertia_tangent(), span.weight(), span.energy(),
-            span.elastic_force(), span.elastic_tangent(), span.dissipation(), span.damping_force(),
-            span.damping_tangent()]
+    return [span.point(), span.kinetic_energy(), span.inertia(), span.mass_matrix(), span.inertia_tangent(),
+            span.weight(), span.energy(), span.elastic_force(), span.elastic_tangent(), span.dissipation(),
+            span.damping_force(), span.damping_tangent()]
 
 
 class Span(FlowingElement):

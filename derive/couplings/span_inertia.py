@@ -36,24 +36,31 @@ SOURCE = "Lagrange's equations with moving nodes; Vetyukov, Int. J. Solids Struc
 class Flow:
     """Inputs and stages of the motion of material points: nodal vectors of slope, velocity and acceleration."""
 
-    def __init__(self, program: Program, span: FlowingElement, accelerates: bool = False):
+    def __init__(self, program: Program, span: FlowingElement, moves: bool = True, accelerates: bool = False):
         p = program
         self.program, self.span = program, span
         self.l = p.input("l", (), "m", "length s2 - s1 of the element")
         self.e = span.coordinates(p)
+        if not moves:
+            return
         self.v = span.coordinates(p, "v", "m/s, 1/s", "rates of the nodal vectors")
         self.s_rate = p.input("s_rate", 2, "m/s", "rates of the material coordinates s1, s2")
         if accelerates:
             self.a = span.coordinates(p, "a", "m/s^2, 1/s^2", "accelerations of the nodal vectors")
             self.s_acc = p.input("s_acc", 2, "m/s^2", "second rates of s1, s2")
 
-    def velocities(self) -> None:
-        """Stage: w = 1/l, e_S, and u."""
-        p, span = self.program, self.span
+    def along(self) -> None:
+        """Stage: w = 1/l and e_S."""
+        p = self.program
         p.stage("slopes and curvatures at the nodes")
         self.w = p.define("w", 1 / self.l)
+        self.e_S, self.e_Sl = self.span.along(p, "e", self.e, self.w)
+
+    def velocities(self) -> None:
+        """Stage: w, e_S, and u."""
+        p, span = self.program, self.span
+        self.along()
         self.l_rate = p.define("l_rate", self.s_rate[1] - self.s_rate[0])
-        self.e_S, self.e_Sl = span.along(p, "e", self.e, self.w)
         p.stage("velocities of material points at the nodes")
         self.u = np.array([p.vector(f"u{k + 1}", self.v[k] - self.s_rate[i] * self.e_S[k])
                            for k, i in enumerate(span.node_of)])
@@ -206,20 +213,33 @@ class FlowingElement:
         p.output("f_s", on_s, "N", "forces on s1, s2")
         return p
 
+    def mass_matrix(self) -> Program:
+        """Return the kernel of the mass matrix: derivatives of the inertial forces by accelerations."""
+        p = self.program("mass_matrix", "mass matrix")
+        rho = p.input("rho", (), "kg/m", "mass of a length")
+        flow = Flow(p, self, moves=False)
+        flow.along()
+        m = flow.mass(rho)
+        p.stage("derivatives of the forces on s1 and s2")
+        M_s = self._on_s_by_vectors(p, flow, "M", m)
+        M_ss = [[-sum(flow.e_S[k].dot(row[k]) for k in nodal) for nodal in self.vectors_of] for row in M_s]
+        p.output("M", self._over_all(m, M_s, np.vstack([M_s.reshape(len(M_s), -1).T, M_ss])), "SI",
+                 "derivatives of f and f_s by accelerations of e, s1, s2")
+        return p
+
     def inertia_tangent(self) -> Program:
-        """Return the kernel of the derivatives of the inertial forces.
+        """Return the kernel of the derivatives of the inertial forces by rates and configuration.
 
         Accelerations and nodal vectors have scalars as derivatives, alike in all directions; those of the forces by
         s', s'' and l are vectors.
         """
-        p = self.program("inertia_tangent", "derivatives of the inertial forces")
+        p = self.program("inertia_tangent", "derivatives of the inertial forces by rates and configuration")
         flow, rho, m, F = self._inertia(p)
         streams, f, on_s = self._forces(p, flow, rho, F)
         S, by_v, by_e = self._acceleration_by_vectors(p, flow)
         p.stage("derivatives by the nodal vectors")
         D, K = self._named(p, "D", m.dot(by_v)), self._named(p, "K", m.dot(by_e))
-        M_s, D_s, K_s = (self._on_s_by_vectors(p, flow, name, matrix) for name, matrix in
-                         (("M", m), ("D", D), ("K", K)))
+        D_s, K_s = (self._on_s_by_vectors(p, flow, name, matrix) for name, matrix in (("D", D), ("K", K)))
         for i, (sign, rate, nodal) in enumerate(zip(SIGN, flow.s_rate, self.vectors_of, strict=True)):
             at, slope = nodal[:2]
             D[at, at] += streams[i]
@@ -229,17 +249,18 @@ class FlowingElement:
             K_s[i] -= sum(np.outer(S[k], F[k]) for k in nodal)
         p.stage("derivatives by s1, s2 and l")
         values = np.concatenate([f.ravel(), on_s])
-        M_ss = [[-sum(flow.e_S[k].dot(row[k]) for k in nodal) for nodal in self.vectors_of] for row in M_s]
         of_slopes = dict(zip(flow.e_S.ravel(), flow.e_Sl.ravel(), strict=True))
         by_l = DirectionalDerivative(p, "dl", {flow.l: 1, **of_slopes})
-        by_accelerations = np.vstack([M_s.reshape(len(M_s), -1).T, M_ss])
         for name, over_e, on_ends, others, doc in (
-                ("M", m, M_s, by_accelerations, "accelerations of e, s1, s2"),
                 ("D", D, D_s, jacobian(p, values, flow.s_rate), "rates of e, s1, s2"),
                 ("K", K, K_s, by_l.array(values)[:, None], "e and l")):
-            rows = np.vstack([np.kron(over_e, np.eye(self.element.dim, dtype=int)), on_ends.reshape(len(on_ends), -1)])
-            p.output(name, np.hstack([rows, others]), "SI", f"derivatives of f and f_s by {doc}")
+            p.output(name, self._over_all(over_e, on_ends, others), "SI", f"derivatives of f and f_s by {doc}")
         return p
+
+    def _over_all(self, over_e: np.ndarray, on_ends: np.ndarray, others: np.ndarray) -> np.ndarray:
+        """Return a matrix of f and f_s: its scalars over the nodal vectors, its rows of both ends, other columns."""
+        rows = np.vstack([np.kron(over_e, np.eye(self.element.dim, dtype=int)), on_ends.reshape(len(on_ends), -1)])
+        return np.hstack([rows, others])
 
     def _acceleration_by_vectors(self, p: Program, flow: Flow) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Stage: S with e_S = S e, da/de' = -2 s' S and da/de = -s'' S - s' (l' dS/dl - S s' S), s' of the nodes."""

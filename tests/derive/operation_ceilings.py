@@ -251,23 +251,24 @@ CEILINGS = {
     "planar_surface": {"flat": 3, "rounded": 33, "terrain": 35, "push": 12, "push_hertz": 29, "frictionless": 40,
                        "sticking": 89, "sliding": 170, "reaction": 85, "motion": 40, "slip": 48},
     "span_cable8p": {
-        "point": 105, "kinetic_energy": 137, "inertia": 257, "inertia_tangent": 1214, "weight": 63, "energy": 238,
-        "elastic_force": 439, "elastic_tangent": 1551, "dissipation": 267, "damping_force": 365,
+        "point": 105, "kinetic_energy": 137, "inertia": 257, "mass_matrix": 118, "inertia_tangent": 1138, "weight": 63,
+        "energy": 238, "elastic_force": 439, "elastic_tangent": 1551, "dissipation": 267, "damping_force": 365,
         "damping_tangent": 2171
     },
     "span_cable12": {
-        "point": 148, "kinetic_energy": 199, "inertia": 373, "inertia_tangent": 1690, "weight": 79, "energy": 295,
-        "elastic_force": 561, "elastic_tangent": 2582, "dissipation": 391, "damping_force": 538,
+        "point": 148, "kinetic_energy": 199, "inertia": 373, "mass_matrix": 172, "inertia_tangent": 1574, "weight": 79,
+        "energy": 295, "elastic_force": 561, "elastic_tangent": 2582, "dissipation": 391, "damping_force": 538,
         "damping_tangent": 4371
     },
     "tangent_point": {"conditions": 1678, "motion": 310, "chord": 202, "across": 27},
     "planar_sheave": {
         "tangent_point": 27, "tangent_point_motion": 26, "angle": 121, "energy": 13, "weight": 21, "force": 85,
-        "tangent": 204, "kinetic_energy": 60, "inertia": 213, "inertia_tangent": 1209, "dissipation": 15,
-        "damping_force": 16, "damping_tangent": 50,
+        "tangent": 204, "kinetic_energy": 60, "inertia": 213, "mass_matrix": 162, "inertia_tangent": 1099,
+        "dissipation": 15, "damping_force": 16, "damping_tangent": 50,
         "friction": 66, "friction_tangent": 367, "friction_on": 65, "friction_on_tangent": 351, "friction_off": 65,
         "friction_off_tangent": 351,
         "short_wrap": 399, "short_wrap_motion": 52,
-        "winding": 46, "winding_motion": 29, "store": 69, "store_tangent": 76, "store_energy": 15, "creep": 17
+        "winding": 46, "winding_motion": 29, "store": 69, "store_mass": 5, "store_tangent": 71, "store_energy": 15,
+        "creep": 17
     },
 }

@@ -33,7 +33,7 @@ def sheave(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]
 def _signs(k: Numbers, s: State) -> Iterator[Invariance]:
     rates = np.concatenate([s["phi_rate"], s["c_rate"], s["s_rate"]])
     T, P = k("kinetic_energy", s)["T"], k("dissipation", s)["P"]
-    M, D = k("inertia_tangent", s)["M"], k("damping_tangent", s)["D"]
+    M, D = k("mass_matrix", s)["M"], k("damping_tangent", s)["D"]
     yield "T > 0 and P > 0", float(not (T[0] > 0 and P[0] > 0)), 0.0
     yield "v . M v = 2 T", relative(rates @ M @ rates - 2 * T, 2 * T), 256 * EPS
     yield "M has no negative eigenvalue", max(0.0, -np.linalg.eigvalsh(M)[0] / relative(M, 1)), 64 * EPS

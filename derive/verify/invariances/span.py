@@ -12,8 +12,8 @@ from ..samples.shapes import reference, rotation
 from .law import spun
 from .measures import ORIGIN_SHIFT, Invariance, quantised, relative, spins
 
-KERNELS = ("kinetic_energy", "inertia", "inertia_tangent", "energy", "elastic_force", "elastic_tangent", "dissipation",
-           "damping_force", "damping_tangent")
+KERNELS = ("kinetic_energy", "inertia", "mass_matrix", "inertia_tangent", "energy", "elastic_force", "elastic_tangent",
+           "dissipation", "damping_force", "damping_tangent")
 """Kernels that do not depend on the origin."""
 
 
@@ -28,7 +28,7 @@ def span(family: ElementFamily, k: Numbers, s: State) -> Iterator[Invariance]:
 def _signs(k: Numbers, s: State) -> Iterator[Invariance]:
     rates = np.concatenate([s["v"].ravel(), s["s_rate"]])
     T, P, M = (k(kernel, s)[output] for kernel, output in (("kinetic_energy", "T"), ("dissipation", "P"),
-                                                           ("inertia_tangent", "M")))
+                                                           ("mass_matrix", "M")))
     yield "T > 0 and P > 0", float(not (T[0] > 0 and P[0] > 0)), 0.0
     yield "M symmetric", relative(M - M.T, M), 8 * EPS
     yield "v . M v = 2 T", relative(rates @ M @ rates - 2 * T, 2 * T), 64 * EPS

@@ -139,7 +139,11 @@ def _of_forces() -> list[Relation]:
 
 def _of_tangent() -> list[Relation]:
     force = of("store", "F")
-    return [Relation("store_tangent", "M", "dF by accelerations", 1, along(force, SECOND_RATES), 3),
+
+    def on_both(k, s):
+        return force(k, s)[:LENGTH]
+
+    return [Relation("store_mass", "M", "dF by accelerations", 1, along(on_both, SECOND_RATES), 3),
             Relation("store_tangent", "D", "dF by rates", 1, along(force, (*RATES, ("u_rate", 1))), N),
             Relation("store_tangent", "K", "dF by the centre, the length and the slope", 1,
                      along(force, (*COORDINATES, ("slope", 2))), 5)]

@@ -133,7 +133,7 @@ def _of_inertia() -> list[Relation]:
                      root(reference.kinetic_energy)),
             Relation("inertia", "f", "d/dt dT/dv - dT/dq", 1, lagrange, N),
             Relation("inertia", "f", "power: dT/dt", 1, lambda k, s, t, j: energy(k, s, **moved(s, t)), of=power),
-            Relation("inertia_tangent", "M", "df by accelerations", 1, along(inertia, SECOND_RATES), N),
+            Relation("mass_matrix", "M", "df by accelerations", 1, along(inertia, SECOND_RATES), N),
             Relation("inertia_tangent", "D", "df by rates", 1, along(inertia, RATES), N),
             Relation("inertia_tangent", "K", "df by the angles and l", 1,
                      along(inertia, without(COORDINATES, "c")), 3)]

@@ -137,11 +137,11 @@ def _of_inertia_tangent(spec: Element) -> list[Relation]:
         return both("inertia")(k, s | {name: s[name] + t * unit(s[name], at)})
 
     def mass_block(k, s):
-        return k("inertia_tangent", s)["M"][:n, :n]
+        return k("mass_matrix", s)["M"][:n, :n]
 
     return [
-        Relation("inertia_tangent", "M", "df by accelerations", 1, by_acceleration, every),
-        Relation("inertia_tangent", "M", "m ⊗ I over e", 0,
+        Relation("mass_matrix", "M", "df by accelerations", 1, by_acceleration, every),
+        Relation("mass_matrix", "M", "m ⊗ I over e", 0,
                  root(lambda s: np.kron(of_element.mass(spec, s), np.eye(spec.dim, dtype=int))), of=mass_block),
         Relation("inertia_tangent", "D", "df by rates", 1, by_rate(both("inertia"), n), every),
         Relation("inertia_tangent", "K", "df by e and l", 1, by_configuration(both("inertia"), n), n + 1)]

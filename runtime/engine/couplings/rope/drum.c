@@ -162,12 +162,12 @@ static void store_forces(const fu_drum *drum, const view *at, double F[STORE])
                          at->wound, F);
 }
 
-static void store_derivatives(const fu_drum *drum, const view *at, double *M, double *D, double *K)
+static void store_derivatives(const fu_drum *drum, const view *at, double *D, double *K)
 {
     const fu_wheel *wheel = &drum->wheel;
     wheel->kernel->store_tangent(wheel->A, wheel->rho, wheel->radius, wheel->g, at->u, at->wheel.centre.p,
                                  at->wheel.turn_rate, at->wheel.centre.v, at->u_rate, at->wheel.turn_acc,
-                                 at->wheel.c_acc, at->slope, at->winds, at->wound, M, D, K);
+                                 at->wheel.c_acc, at->slope, at->winds, at->wound, D, K);
 }
 
 /* Computes all forces by y but those of the conditions; the bearing's is on the drum alone. */
@@ -238,10 +238,10 @@ static void residuals(const fu_drum *drum, const fu_state *state, const view *at
 /* Computes the mass matrix by y. */
 static void mass_by_y(const fu_drum *drum, const view *at, double factor, double (*out)[Y])
 {
-    double M[STORE * (DIM + 1)], D[STORE * STORE], K[STORE * (DIM + 1 + DIM)];
+    double M[(DIM + 1) * (DIM + 1)];
     memset(out, 0, sizeof(double) * Y * Y);
-    store_derivatives(drum, at, M, D, K);
-    for (int i = 0; i < STORE; ++i)
+    drum->wheel.kernel->store_mass(drum->wheel.rho, drum->wheel.radius, at->u, M);
+    for (int i = 0; i <= DIM; ++i)
         for (int j = 0; j <= DIM; ++j) out[of_store[i]][of_store[j]] = factor * M[i * (DIM + 1) + j];
     out[TURN][TURN] += factor * drum->wheel.inertia;
 }
@@ -360,14 +360,14 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     const fu_drum *drum = drum_of(coupling);
     const fu_weights w = equations->weights;
     const double *multipliers = equations->next->forces + coupling->force;
-    double M[STORE * (DIM + 1)], D[STORE * STORE], K[STORE * (DIM + 1 + DIM)], D_y[Y][Y], K_y[Y][Y], y[Y],
+    double D[STORE * STORE], K[STORE * (DIM + 1 + DIM)], D_y[Y][Y], K_y[Y][Y], y[Y],
         by_psi[DIM * FU_ATTACHMENT_COORDINATES];
     fu_wheel_column columns[COLUMNS], turned[COLUMNS];
     view at;
     conditions of;
     look(model, coupling, equations->next, equations->next->acceleration, &at);
     conditions_of(drum, &at, multipliers, &of);
-    store_derivatives(drum, &at, M, D, K);
+    store_derivatives(drum, &at, D, K);
     memset(D_y, 0, sizeof D_y);
     memset(K_y, 0, sizeof K_y);
     for (int i = 0; i < Y; ++i)

@@ -99,10 +99,10 @@ static void mass_matrix(const fu_model *model, const fu_coupling *coupling, cons
 {
     const fu_span_coupling *span = span_of(coupling);
     const int n = span->kernel->coordinates, all = n + ENDS;
-    double M[LOCAL * LOCAL], D[LOCAL * LOCAL], K[LOCAL * LOCAL], local[LOCAL][LOCAL];
+    double M[LOCAL * LOCAL], local[LOCAL][LOCAL];
     for (int k = 0; k < span->n_elements; ++k) {
         const element it = element_of(model, span, k, q, 0, 0);
-        span->kernel->inertia_tangent(span->rho, it.l, it.e, it.v, it.s_rate, it.a, it.s_acc, M, D, K);
+        span->kernel->mass_matrix(span->rho, it.l, it.e, M);
         for (int i = 0; i < all; ++i)
             for (int j = 0; j < all; ++j) local[i][j] = scale * M[i * all + j];
         add_matrix(model, span, k, it.at, local, system);
@@ -200,7 +200,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     const fu_state *state = at->next;
     const fu_weights w = at->weights;
     const int n = span->kernel->coordinates, all = n + ENDS;
-    double M[LOCAL * LOCAL], D[LOCAL * LOCAL], K[LOCAL * LOCAL], local[LOCAL][LOCAL], K_l[FU_MAX_COORDINATES], K_ll,
+    double D[LOCAL * LOCAL], K[LOCAL * LOCAL], local[LOCAL][LOCAL], K_l[FU_MAX_COORDINATES], K_ll,
         f[FU_MAX_COORDINATES], f_l, V;
     for (int k = 0; k < span->n_elements; ++k) {
         const element it = element_of(model, span, k, state->q, state->v, state->acceleration);
@@ -210,7 +210,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
         span->kernel->weight(span->rho, it.l, it.e, span->g, &V, f, &f_l, K_l, &K_ll);
         add_energy(n, w.stiffness, 0, K_l, K_ll, local);
         if (w.inertia != 0.0 || w.rate != 0.0) {
-            span->kernel->inertia_tangent(span->rho, it.l, it.e, it.v, it.s_rate, it.a, it.s_acc, M, D, K);
+            span->kernel->inertia_tangent(span->rho, it.l, it.e, it.v, it.s_rate, it.a, it.s_acc, D, K);
             add_by_length(all, n, w.stiffness, K, local);
             add_rates(all, w.stiffness * w.rate, D, local);
         }

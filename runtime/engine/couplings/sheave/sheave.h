@@ -166,9 +166,11 @@ fu_zone fu_zone_at(const fu_sheave *sheave, const fu_sheave_state *at, int j);
 void fu_wrap_add_inertia(const fu_sheave *sheave, const fu_sheave_state *at, double *z);
 /* Adds all other forces: of both energies, of damping and friction. */
 void fu_wrap_add_forces(const fu_sheave *sheave, const fu_sheave_state *at, double *z);
-/* Adds the mass matrix, and the derivatives of the inertial forces by rates and places, each null where not needed. */
-void fu_wrap_add_inertia_matrices(const fu_sheave *sheave, const fu_sheave_state *at, double factor, double (*M)[Z],
-                                  double (*D)[Z], double (*K)[Z]);
+/* Adds the mass matrix. */
+void fu_wrap_add_mass(const fu_sheave *sheave, const fu_sheave_state *at, double factor, double (*M)[Z]);
+/* Adds the derivatives of the inertial forces by rates and places. */
+void fu_wrap_add_inertia_matrices(const fu_sheave *sheave, const fu_sheave_state *at, double factor, double (*D)[Z],
+                                  double (*K)[Z]);
 /* Adds the derivatives of the other forces by rates and places. */
 void fu_wrap_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at, double factor, double (*D)[Z],
                           double (*K)[Z]);

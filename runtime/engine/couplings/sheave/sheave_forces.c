@@ -171,7 +171,7 @@ void fu_sheave_add_mass(const fu_sheave *sheave, const fu_sheave_state *at, doub
 {
     double M[Z][Z], J[ENDS][Y];
     memset(M, 0, sizeof M);
-    fu_wrap_add_inertia_matrices(sheave, at, factor, M, 0, 0);
+    fu_wrap_add_mass(sheave, at, factor, M);
     of_angles(at->phi_x, J);
     add_product(sheave, J, M, J, 1, K);
     if (is_in_space(sheave)) K[ACROSS][ACROSS] += factor * across_of(sheave, at, 0.0).M[0];
@@ -184,7 +184,10 @@ void fu_sheave_add_derivatives(const fu_sheave *sheave, const fu_sheave_state *a
     memset(M_z, 0, sizeof M_z);
     memset(D_z, 0, sizeof D_z);
     memset(K_z, 0, sizeof K_z);
-    if (w.inertia != 0.0 || w.rate != 0.0) fu_wrap_add_inertia_matrices(sheave, at, w.stiffness, M_z, D_z, K_z);
+    if (w.inertia != 0.0 || w.rate != 0.0) {
+        fu_wrap_add_mass(sheave, at, w.stiffness, M_z);
+        fu_wrap_add_inertia_matrices(sheave, at, w.stiffness, D_z, K_z);
+    }
     fu_wrap_add_matrices(sheave, at, w.stiffness, D_z, K_z);
     of_angles(at->phi_x, J);
     add_product(sheave, J, K_z, J, 1, K);

@@ -125,19 +125,29 @@ void fu_wrap_add_forces(const fu_sheave *sheave, const fu_sheave_state *at, doub
     }
 }
 
-void fu_wrap_add_inertia_matrices(const fu_sheave *sheave, const fu_sheave_state *at, double factor, double (*M)[Z],
-                                  double (*D)[Z], double (*K)[Z])
+void fu_wrap_add_mass(const fu_sheave *sheave, const fu_sheave_state *at, double factor, double (*M)[Z])
 {
     const fu_wheel *wheel = &sheave->wheel;
-    if (M) M[Z_TURN][Z_TURN] += factor * wheel->inertia;
+    M[Z_TURN][Z_TURN] += factor * wheel->inertia;
     for (int j = 0; j < sheave->n_zones; ++j) {
         const fu_zone of = fu_zone_at(sheave, at, j);
-        double M_u[U * U], D_u[U * U], K_u[U * 3];
+        double M_u[U * U];
+        wheel->kernel->mass_matrix(wheel->rho, wheel->radius, of.phi, of.l, M_u);
+        add_zone_matrix(&of, U, every, U, every, factor, M_u, M);
+    }
+}
+
+void fu_wrap_add_inertia_matrices(const fu_sheave *sheave, const fu_sheave_state *at, double factor, double (*D)[Z],
+                                  double (*K)[Z])
+{
+    const fu_wheel *wheel = &sheave->wheel;
+    for (int j = 0; j < sheave->n_zones; ++j) {
+        const fu_zone of = fu_zone_at(sheave, at, j);
+        double D_u[U * U], K_u[U * 3];
         wheel->kernel->inertia_tangent(wheel->rho, wheel->radius, of.phi, of.l, of.phi_rate, at->wheel.c_rate,
-                                       of.s_rate, of.phi_acc, at->wheel.c_acc, of.s_acc, M_u, D_u, K_u);
-        if (M) add_zone_matrix(&of, U, every, U, every, factor, M_u, M);
-        if (D) add_zone_matrix(&of, U, every, U, every, factor, D_u, D);
-        if (K) add_zone_matrix(&of, U, every, 3, of_zone, factor, K_u, K);
+                                       of.s_rate, of.phi_acc, at->wheel.c_acc, of.s_acc, D_u, K_u);
+        add_zone_matrix(&of, U, every, U, every, factor, D_u, D);
+        add_zone_matrix(&of, U, every, 3, of_zone, factor, K_u, K);
     }
 }
 
