@@ -6,10 +6,9 @@ from ropes.runs import RUNS
 
 BY_KEY = {case.key: case for case in CASES}
 QUICK = ("heavy rope", "free rope", "run-on with bending", "capstan", "elevator", "elevator with wraps", "ropeway",
-         "held cylinder", "wave", "fleet angle at rest", "fleet angle with mass", "drum", "pendulum hauled in")
-BENCHMARK = ("tackle", "two weights")
-"""Ropes of milligrams whose friction is stiff: minutes each, printed by tests/benchmarks/sheaves.py."""
-SLOW = sorted(set(RUNS) - {*QUICK, *BENCHMARK})
+         "held cylinder", "wave", "fleet angle at rest", "fleet angle with mass", "drum", "pendulum hauled in",
+         "tackle", "two weights")
+SLOW = sorted(set(RUNS) - set(QUICK))
 
 
 def beyond_bars(key: str) -> list[str]:

@@ -59,13 +59,13 @@ static long n_scratch(const fu_run *run)
     return lay_out(run, NULL);
 }
 
-/* Newton's method from the prediction with the current matrix; returns 0 on convergence. */
-static int iterate(fu_run *run, fu_radau_workspace *w, double h)
+/* Newton's method from a prediction with the current matrix; returns 0 on convergence. */
+static int iterate(fu_run *run, fu_radau_workspace *w, double h, fu_radau_prediction prediction)
 {
     double last = 0.0, before = 0.0;
     const double enough =
         fmax(run->fixed_step > 0.0 ? run->newton_tolerance : NEWTON_SHARE * run->allowed, run->round_off);
-    fu_radau_predict(run, w, h);
+    fu_radau_predict(run, w, h, prediction);
     for (int i = 0; i < MAX_ITERATIONS; ++i) {
         if (fu_radau_evaluate(run, w, h)) return 1;
         const double size = fu_radau_correct(run, w, h);
@@ -112,25 +112,40 @@ static void begin_step(fu_run *run)
     memcpy(run->next.acceleration, run->now.acceleration, dofs);
 }
 
+/* Solves for the stages with a fresh matrix; returns 0 on success. Accelerations of light ropes are inaccurate: a small
+ * error of a strain is a large one of them. Where the prediction by accelerations fails, that by velocities may not. */
+static int solve_afresh(fu_run *run, fu_radau_workspace *w, double h)
+{
+    begin_step(run);
+    if (fu_radau_factor(run, h)) return 1;
+    run->contraction = FIRST_CONTRACTION;
+    int failed = iterate(run, w, h, w->h_last > 0.0 ? FU_BY_LAST_STEP : FU_BY_ACCELERATION);
+    if (failed && run->model->n_inertial) {
+        begin_step(run);
+        run->contraction = FIRST_CONTRACTION;
+        failed = iterate(run, w, h, FU_BY_VELOCITY);
+    }
+    if (!failed) return 0;
+    ++run->statistics.newton_failures;
+    run->factored = 0;
+    w->h_last = 0.0;
+    return 1;
+}
+
+/* Solves for the stages with the last matrix; returns 0 on success. */
+static int solve_again(fu_run *run, fu_radau_workspace *w, double h)
+{
+    begin_step(run);
+    if (!iterate(run, w, h, w->h_last > 0.0 ? FU_BY_LAST_STEP : FU_BY_ACCELERATION)) return 0;
+    w->h_last = 0.0;
+    return 1;
+}
+
 static int step(fu_run *run, double h)
 {
     fu_radau_workspace *w = fu_radau_space(run);
     if (fabs(h - run->h_factored) > FU_SAME_STEP * h) run->factored = 0;
-    for (int fresh = !run->factored;; fresh = 1) {
-        begin_step(run);
-        if (fresh) {
-            if (fu_radau_factor(run, h)) return 1;
-            run->contraction = FIRST_CONTRACTION;
-        }
-        const int failed = iterate(run, w, h);
-        if (!failed) break;
-        run->factored = 0;
-        w->h_last = 0.0;
-        if (fresh) {
-            ++run->statistics.newton_failures;
-            return 1;
-        }
-    }
+    if ((!run->factored || solve_again(run, w, h)) && solve_afresh(run, w, h)) return 1;
     fu_radau_configure(run, w, h);
     fu_radau_add_internal_dissipation(run, w, h);
     if (fu_radau_place_stage(run, w, STAGES - 1, h) || fu_return_to_joints(run, &run->next)) return 1;

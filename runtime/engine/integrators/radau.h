@@ -45,8 +45,10 @@ static inline fu_radau_workspace *fu_radau_space(const fu_run *run)
     return (fu_radau_workspace *)run->scratch;
 }
 
-/* radau_stages.c. Stages from the last step's polynomial, else from the present acceleration. */
-void fu_radau_predict(fu_run *run, fu_radau_workspace *w, double h);
+/* radau_stages.c. Predicts the stages by the last step's polynomial, by the present acceleration, or by the present
+ * velocity. */
+typedef enum { FU_BY_LAST_STEP, FU_BY_ACCELERATION, FU_BY_VELOCITY } fu_radau_prediction;
+void fu_radau_predict(fu_run *run, fu_radau_workspace *w, double h, fu_radau_prediction prediction);
 /* Moves the dofs of all stages by the quadrature of velocities. */
 void fu_radau_configure(fu_run *run, fu_radau_workspace *w, double h);
 /* Computes `next` as stage k, without accelerations; returns 0 if its slides converged. */

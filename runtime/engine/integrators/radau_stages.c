@@ -112,8 +112,7 @@ int fu_radau_evaluate(fu_run *run, fu_radau_workspace *w, double h)
     return 0;
 }
 
-/* Predicts the stages from the last step's polynomial, else from the present acceleration. */
-void fu_radau_predict(fu_run *run, fu_radau_workspace *w, double h)
+void fu_radau_predict(fu_run *run, fu_radau_workspace *w, double h, fu_radau_prediction prediction)
 {
     const fu_model *model = run->model;
     const fu_radau_parameters *method = fu_radau_method(run);
@@ -121,16 +120,18 @@ void fu_radau_predict(fu_run *run, fu_radau_workspace *w, double h)
     const double *c = method->c;
     for (int k = 0; k < STAGES; ++k) {
         double weight[STAGES];
-        const double x = w->h_last > 0.0 ? 1.0 + c[k] * h / w->h_last : 0.0;
+        const double x = prediction == FU_BY_LAST_STEP ? 1.0 + c[k] * h / w->h_last : 0.0;
+        const double change = prediction == FU_BY_VELOCITY ? 0.0 : c[k] * h;
         for (int j = 0; j < STAGES; ++j) { /* Lagrange on 0 and the nodes */
             weight[j] = x / c[j];
             for (int m = 0; m < STAGES; ++m)
                 if (m != j) weight[j] *= (x - c[m]) / (c[j] - c[m]);
         }
         for (int i = 0; i < n; ++i)
-            w->Z[(long)k * n + i] = w->h_last > 0.0 ? weight[0] * w->last[i] + weight[1] * w->last[n + i] +
-                                                          weight[2] * w->last[2 * n + i] - w->last[2 * n + i]
-                                                    : c[k] * h * run->now.acceleration[i];
+            w->Z[(long)k * n + i] = prediction == FU_BY_LAST_STEP
+                                        ? weight[0] * w->last[i] + weight[1] * w->last[n + i] +
+                                              weight[2] * w->last[2 * n + i] - w->last[2 * n + i]
+                                        : change * run->now.acceleration[i];
         memcpy(w->q + (long)k * model->n_q, run->now.q, sizeof(double) * (size_t)model->n_q);
     }
 }

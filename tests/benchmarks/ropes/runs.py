@@ -19,13 +19,26 @@ from .sliding_runs import held_cylinder, moving_capstan
 from .space_runs import fleet, fleet_at_rest
 
 
+def without_mass(found: Callable[[float], Found], rho: float) -> Found:
+    """Return results extrapolated to a rope without mass, from those with a mass of a length and with half of it.
+
+    A lighter rope is no substitute: its transverse vibrations, which nothing damps, are faster.
+    """
+    heavy, light = found(rho), found(rho / 2)
+    return {name: 2 * light[name] - heavy[name] for name in light}
+
+
 def two_weights() -> Found:
     """Two weights that start from rest: acceleration by the way, with friction above the least one."""
+    return without_mass(_two_weights, 1e-3)
+
+
+def _two_weights(rho: float) -> Found:
     found = {}
     for friction, name in ((0.1, "acceleration"), (0.0, "acceleration without friction")):
         scene = swing(1.0, 1.2, 0.22, 2.0, 2.0, 0.0)
         turning = {"inertia": 0.90, "friction": fu.Friction(coefficient=friction, velocity=1e-6)} if friction else {}
-        over_one(scene, 0.22, ("counterweight", "load"), elements=1, tension=10.7, given=rope_of(1e7, 1e-6, 0, 1e-3),
+        over_one(scene, 0.22, ("counterweight", "load"), elements=1, tension=10.7, given=rope_of(1e7, rho, 0, 1e-3),
                  **turning)
         run = scene.run(2.0, output_step=0.5, tol=1e-6, integrator="radau", progress=False)
         way = -run["load.position"][:, 1]
@@ -64,9 +77,8 @@ def free_rope() -> Found:
 
 
 def tackle() -> Found:
-    """A load on a block between two falls, and a weight on the haul: ropes of two masses, extrapolated to none."""
-    heavy, light = (_tackle(rho) for rho in (2e-4, 1e-4))
-    return {name: 2 * light[name] - heavy[name] for name in light}
+    """A load on a block between two falls, and a weight on the haul."""
+    return without_mass(_tackle, 2e-4)
 
 
 def _tackle(rho: float) -> Found:
