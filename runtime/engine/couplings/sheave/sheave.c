@@ -50,7 +50,7 @@ static double kinetic_energy(const fu_model *model, const fu_coupling *coupling,
         total += T;
     }
     for (int j = 0; j < sheave->n_zones; ++j) {
-        const fu_zone of = fu_zone_at(sheave, &at, j);
+        const fu_zone of = fu_zone_at(&at, j);
         wheel->kernel->kinetic_energy(wheel->rho, wheel->radius, of.phi, of.l, of.phi_rate, at.wheel.c_rate, of.s_rate,
                                       &T);
         total += T;
@@ -67,7 +67,7 @@ static double potential_energy(const fu_model *model, const fu_coupling *couplin
     double total = 0.0, T, V;
     fu_sheave_at(model, sheave, &state, 0, &at);
     for (int j = 0; j < sheave->n_zones; ++j) {
-        const fu_zone of = fu_zone_at(sheave, &at, j);
+        const fu_zone of = fu_zone_at(&at, j);
         wheel->kernel->weight(wheel->rho, wheel->g, wheel->radius, of.phi, at.wheel.c, of.l, &V);
         total += V;
     }
@@ -171,7 +171,7 @@ static double energy(const fu_model *model, const fu_coupling *coupling, const f
     fu_sheave_at(model, sheave, state, 0, &at);
     if (at.mode != FU_WRAPPED) return at.mode == FU_SHORT ? fu_short_wrap_energy(sheave, &at) : 0.0;
     for (int j = 0; j < sheave->n_zones; ++j) {
-        const fu_zone of = fu_zone_at(sheave, &at, j);
+        const fu_zone of = fu_zone_at(&at, j);
         double stored;
         wheel->kernel->energy(wheel->A, wheel->sense, wheel->radius, of.phi, of.l, &stored);
         total += stored;
@@ -191,7 +191,7 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
     fu_sheave_at(model, sheave, state, 0, &at);
     total += wheel->damping * at.wheel.own_rate * at.wheel.own_rate;
     for (int j = 0; sheave->tau > 0.0 && at.mode == FU_WRAPPED && j < sheave->n_zones; ++j) {
-        const fu_zone of = fu_zone_at(sheave, &at, j);
+        const fu_zone of = fu_zone_at(&at, j);
         wheel->kernel->dissipation(wheel->A, sheave->tau, wheel->radius, of.phi, of.l, of.phi_rate, of.s_rate, &power);
         total += power;
     }

@@ -102,6 +102,9 @@ typedef struct {
     double s[MAX_ZONES + 1], s_rate[MAX_ZONES + 1], s_acc[MAX_ZONES + 1];
     double x[ENDS][DIM], slope[ENDS][DIM], x_rate[ENDS][DIM], slope_rate[ENDS][DIM];
     double phi[ENDS], phi_rate[ENDS], phi_acc[ENDS];
+    /* of the ends of the zones: their shares of the wrap, and their angles */
+    double share[MAX_ZONES + 1], angle[MAX_ZONES + 1], angle_rate[MAX_ZONES + 1], angle_acc[MAX_ZONES + 1],
+        length[MAX_ZONES];
     double phi_x[ENDS][DIM], phi_xx[ENDS][DIM * DIM], rate_x[ENDS][DIM], acc_x[ENDS][DIM], acc_v[ENDS][DIM];
 } fu_sheave_state;
 
@@ -153,15 +156,20 @@ double fu_stretch_at(const fu_sheave_state *at, int k);
 
 /* --- wrap.c: zones, by z --- */
 
-/* A zone of the wrap: angles of its ends, which are shares of those of the tangent points, and its length; `first` of
- * the ends of all zones. */
+/* A zone of the wrap: of both ends the shares of the wrap and the angles; its length; `first` of the ends of all
+ * zones. */
 typedef struct {
-    double share[ENDS], phi[ENDS], phi_rate[ENDS], phi_acc[ENDS], l;
-    const double *s_rate, *s_acc;
+    const double *share, *phi, *phi_rate, *phi_acc, *s_rate, *s_acc;
+    double l;
     int first;
 } fu_zone;
 
-fu_zone fu_zone_at(const fu_sheave *sheave, const fu_sheave_state *at, int j);
+static inline fu_zone fu_zone_at(const fu_sheave_state *at, int j)
+{
+    return (fu_zone){at->share + j,  at->angle + j, at->angle_rate + j, at->angle_acc + j,
+                     at->s_rate + j, at->s_acc + j, at->length[j],      j};
+}
+
 /* Adds the inertial forces. */
 void fu_wrap_add_inertia(const fu_sheave *sheave, const fu_sheave_state *at, double *z);
 /* Adds all other forces: of both energies, of damping and friction. */

@@ -61,7 +61,7 @@ static double least_pressure(const fu_sheave *sheave, const fu_sheave_state *at,
         least =
             fmin(least, fu_wheel_pressure(wheel, &at->wheel, at->phi[k], tension[k], speeds[k], fu_stretch_at(at, k)));
     for (int j = 0; at->mode == FU_WRAPPED && j < sheave->n_zones; ++j) {
-        const fu_zone of = fu_zone_at(sheave, at, j);
+        const fu_zone of = fu_zone_at(at, j);
         const double stretch = wheel->sense * wheel->radius * (of.phi[1] - of.phi[0]) / of.l;
         const double inside = wheel->A[0] * (stretch - 1.0);
         for (int part = j ? 0 : 1; part < (j + 1 < sheave->n_zones ? 3 : 2); ++part) { /* its inner end, the middle */

@@ -21,6 +21,31 @@ static void find_angles(const fu_sheave *sheave, fu_sheave_state *at)
     at->phi[1] = at->phi[0] + sense * wrap;
 }
 
+/* Extends a wrap of one zone without length to the least one, at the stretch of the spans. */
+static void extend(const fu_sheave *sheave, fu_sheave_state *at)
+{
+    const double middle = 0.5 * (at->phi[0] + at->phi[1]), length = fu_least_zone(sheave);
+    const double half =
+        0.25 * sheave->wheel.sense * (fu_stretch_at(at, 0) + fu_stretch_at(at, 1)) * length / sheave->wheel.radius;
+    at->length[0] = length;
+    at->angle[0] = middle - half;
+    at->angle[1] = middle + half;
+}
+
+/* Computes the angles of the ends of the zones, and their lengths. */
+static void find_zones(const fu_sheave *sheave, fu_sheave_state *at)
+{
+    for (int j = 0; j < sheave->n_zones; ++j) at->length[j] = at->s[j + 1] - at->s[j];
+    for (int j = 0; j <= sheave->n_zones; ++j) {
+        const double share = (double)j / sheave->n_zones;
+        at->share[j] = share;
+        at->angle[j] = at->phi[0] + share * (at->phi[1] - at->phi[0]);
+        at->angle_rate[j] = at->phi_rate[0] + share * (at->phi_rate[1] - at->phi_rate[0]);
+        at->angle_acc[j] = at->phi_acc[0] + share * (at->phi_acc[1] - at->phi_acc[0]);
+    }
+    if (fu_may_leave(sheave) && at->length[0] < fu_least_zone(sheave)) extend(sheave, at);
+}
+
 /* Computes the motion of a node from the centre, with the acceleration x_acc, in space. */
 static void find_node_in_space(const fu_sheave *sheave, const double *q, const double *v, const double *a, int k,
                                fu_sheave_state *out, double x_acc[DIM])
@@ -76,6 +101,7 @@ void fu_sheave_at(const fu_model *model, const fu_sheave *sheave, const fu_state
     }
     out->s[sheave->n_zones] += sheave->closing;
     find_angles(sheave, out);
+    find_zones(sheave, out);
     out->mode = fu_wrap_mode(sheave, out, state);
     out->tension = 0.0;
 }

@@ -6,31 +6,6 @@
 /* Variables of a zone: angles of its ends, centre, s of its ends. */
 enum { U_CENTRE = ENDS, U_MATERIAL = U_CENTRE + DIM, U = U_MATERIAL + ENDS };
 
-/* Extends a zone without length to the least one, at the stretch of the spans. */
-static void extend(const fu_sheave *sheave, const fu_sheave_state *at, fu_zone *zone)
-{
-    const double middle = 0.5 * (zone->phi[0] + zone->phi[1]);
-    zone->l = fu_least_zone(sheave);
-    const double half =
-        0.25 * sheave->wheel.sense * (fu_stretch_at(at, 0) + fu_stretch_at(at, 1)) * zone->l / sheave->wheel.radius;
-    zone->phi[0] = middle - half;
-    zone->phi[1] = middle + half;
-}
-
-fu_zone fu_zone_at(const fu_sheave *sheave, const fu_sheave_state *at, int j)
-{
-    fu_zone out = {.s_rate = at->s_rate + j, .s_acc = at->s_acc + j, .first = j, .l = at->s[j + 1] - at->s[j]};
-    for (int e = 0; e < ENDS; ++e) {
-        const double share = (double)(j + e) / sheave->n_zones;
-        out.share[e] = share;
-        out.phi[e] = at->phi[0] + share * (at->phi[1] - at->phi[0]);
-        out.phi_rate[e] = at->phi_rate[0] + share * (at->phi_rate[1] - at->phi_rate[0]);
-        out.phi_acc[e] = at->phi_acc[0] + share * (at->phi_acc[1] - at->phi_acc[0]);
-    }
-    if (out.l < fu_least_zone(sheave)) extend(sheave, at, &out);
-    return out;
-}
-
 /* The change of a number of a zone by z: n entries. */
 typedef struct {
     int n, at[ENDS];
@@ -53,24 +28,32 @@ static void add_zone(const fu_zone *of, int n, const int *which, const double *u
     }
 }
 
-/* Adds a matrix of a zone (rows x columns) times a factor to one of z; a row or column LENGTH is that of the length. */
-enum { LENGTH = -1 };
+/* Number of the length of a zone among its variables. */
+enum { LENGTH = U };
+
+/* Computes the changes of n numbers of a zone. */
+static void entries_of(const fu_zone *of, int n, const int *which, entry *out)
+{
+    const int s = Z_MATERIAL + of->first;
+    for (int k = 0; k < n; ++k)
+        out[k] = which[k] == LENGTH ? (entry){2, {s, s + 1}, {-1.0, 1.0}} : entry_of(of, which[k]);
+}
+
+/* Adds a matrix of a zone (rows x columns) times a factor to one of z. */
 static void add_zone_matrix(const fu_zone *of, int n_rows, const int *rows, int n_columns, const int *which,
                             double factor, const double *from, double (*A)[Z])
 {
+    entry row[U], column[U];
+    entries_of(of, n_rows, rows, row);
+    entries_of(of, n_columns, which, column);
     for (int i = 0; i < n_rows; ++i)
-        for (int j = 0; j < n_columns; ++j)
-            for (int r = 0; r < (rows[i] == LENGTH ? ENDS : 1); ++r)
-                for (int c = 0; c < (which[j] == LENGTH ? ENDS : 1); ++c) {
-                    const entry row = entry_of(of, rows[i] == LENGTH ? U_MATERIAL + r : rows[i]);
-                    const entry column = entry_of(of, which[j] == LENGTH ? U_MATERIAL + c : which[j]);
-                    const double sign =
-                        (rows[i] == LENGTH && !r ? -1.0 : 1.0) * (which[j] == LENGTH && !c ? -1.0 : 1.0);
-                    for (int a = 0; a < row.n; ++a)
-                        for (int b = 0; b < column.n; ++b)
-                            A[row.at[a]][column.at[b]] +=
-                                factor * sign * row.value[a] * column.value[b] * from[i * n_columns + j];
-                }
+        for (int a = 0; a < row[i].n; ++a) {
+            const double part = factor * row[i].value[a];
+            double *to = A[row[i].at[a]];
+            for (int j = 0; j < n_columns; ++j)
+                for (int b = 0; b < column[j].n; ++b)
+                    to[column[j].at[b]] += part * column[j].value[b] * from[i * n_columns + j];
+        }
 }
 
 static const int every[U] = {0, 1, 2, 3, 4, 5}, with_length[5] = {0, 1, 2, 3, LENGTH}, of_zone[3] = {0, 1, LENGTH},
@@ -81,7 +64,7 @@ void fu_wrap_add_inertia(const fu_sheave *sheave, const fu_sheave_state *at, dou
     const fu_wheel *wheel = &sheave->wheel;
     z[Z_TURN] += wheel->inertia * at->wheel.turn_acc;
     for (int j = 0; j < sheave->n_zones; ++j) {
-        const fu_zone of = fu_zone_at(sheave, at, j);
+        const fu_zone of = fu_zone_at(at, j);
         double u[U];
         wheel->kernel->inertia(wheel->rho, wheel->radius, of.phi, of.l, of.phi_rate, at->wheel.c_rate, of.s_rate,
                                of.phi_acc, at->wheel.c_acc, of.s_acc, u);
@@ -102,7 +85,7 @@ void fu_wrap_add_forces(const fu_sheave *sheave, const fu_sheave_state *at, doub
     const double *A = stiffness_in(sheave, at);
     if (at->mode == FU_SHORT) fu_short_wrap_add_forces(sheave, at, z);
     for (int j = 0; at->mode != FU_LIFTED && j < sheave->n_zones; ++j) {
-        const fu_zone of = fu_zone_at(sheave, at, j);
+        const fu_zone of = fu_zone_at(at, j);
         double f[U_MATERIAL + 1], u[U], damping[4];
         wheel->kernel->force(A, wheel->sense, wheel->rho, wheel->g, wheel->radius, of.phi, at->wheel.c, of.l, f);
         memcpy(u, f, sizeof(double) * U_MATERIAL);
@@ -130,7 +113,7 @@ void fu_wrap_add_mass(const fu_sheave *sheave, const fu_sheave_state *at, double
     const fu_wheel *wheel = &sheave->wheel;
     M[Z_TURN][Z_TURN] += factor * wheel->inertia;
     for (int j = 0; j < sheave->n_zones; ++j) {
-        const fu_zone of = fu_zone_at(sheave, at, j);
+        const fu_zone of = fu_zone_at(at, j);
         double M_u[U * U];
         wheel->kernel->mass_matrix(wheel->rho, wheel->radius, of.phi, of.l, M_u);
         add_zone_matrix(&of, U, every, U, every, factor, M_u, M);
@@ -142,7 +125,7 @@ void fu_wrap_add_inertia_matrices(const fu_sheave *sheave, const fu_sheave_state
 {
     const fu_wheel *wheel = &sheave->wheel;
     for (int j = 0; j < sheave->n_zones; ++j) {
-        const fu_zone of = fu_zone_at(sheave, at, j);
+        const fu_zone of = fu_zone_at(at, j);
         double D_u[U * U], K_u[U * 3];
         wheel->kernel->inertia_tangent(wheel->rho, wheel->radius, of.phi, of.l, of.phi_rate, at->wheel.c_rate,
                                        of.s_rate, of.phi_acc, at->wheel.c_acc, of.s_acc, D_u, K_u);
@@ -158,7 +141,7 @@ void fu_wrap_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at, do
     const double *A = stiffness_in(sheave, at);
     if (at->mode == FU_SHORT) fu_short_wrap_add_matrix(sheave, at, factor, K);
     for (int j = 0; at->mode != FU_LIFTED && j < sheave->n_zones; ++j) {
-        const fu_zone of = fu_zone_at(sheave, at, j);
+        const fu_zone of = fu_zone_at(at, j);
         double K_u[5 * 5], D_4[4 * 4], K_4[4 * 3];
         wheel->kernel->tangent(A, wheel->sense, wheel->rho, wheel->g, wheel->radius, of.phi, at->wheel.c, of.l, K_u);
         add_zone_matrix(&of, 5, with_length, 5, with_length, factor, K_u, K);

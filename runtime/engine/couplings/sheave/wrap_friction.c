@@ -1,11 +1,12 @@
 /* Friction of a rope on a sheave, at the ends of the zones of its wrap. */
 #include "couplings/sheave/sheave.h"
 
-/* A point of friction at an end of a zone: its zones with their angles and lengths, its rates, and the tangent point
- * that it is, -1 for none. The k-th angle is that of the end of zone first + k. */
+/* A point of friction at an end of a zone: its zones with their angles and lengths, and the tangent point that it is,
+ * -1 for none. The k-th angle is that of the end of zone first + k. */
 typedef struct {
     int first, zones, foot;
-    double phi[3], share[3], l[2], phi_rate, s_rate;
+    const double *phi, *share;
+    double l[2], phi_rate, s_rate;
 } friction_point;
 
 enum { SIDES = 2 };
@@ -13,13 +14,12 @@ enum { SIDES = 2 };
 static friction_point point_of(const fu_sheave *sheave, const fu_sheave_state *at, int j)
 {
     const int n = sheave->n_zones, first = j > 0 ? j - 1 : 0, last = j < n ? j + 1 : n;
-    friction_point out = {first, last - first, j == 0 ? 0 : j == n ? 1 : -1, .s_rate = at->s_rate[j]};
-    for (int k = 0; k <= out.zones; ++k) {
-        out.share[k] = (double)(first + k) / n;
-        out.phi[k] = at->phi[0] + out.share[k] * (at->phi[1] - at->phi[0]);
-        if (k < out.zones) out.l[k] = at->s[first + k + 1] - at->s[first + k];
-    }
-    out.phi_rate = at->phi_rate[0] + (double)j / n * (at->phi_rate[1] - at->phi_rate[0]);
+    friction_point out = {.first = first, .zones = last - first, .foot = j == 0 ? 0 : j == n ? 1 : -1};
+    out.phi = at->angle + first;
+    out.share = at->share + first;
+    out.phi_rate = at->angle_rate[j];
+    out.s_rate = at->s_rate[j];
+    for (int k = 0; k < out.zones; ++k) out.l[k] = at->s[first + k + 1] - at->s[first + k];
     return out;
 }
 

@@ -137,15 +137,23 @@ int fu_wheel_columns(const fu_wheel *wheel, const fu_wheel_state *at, const doub
     return n;
 }
 
+/* Returns the entry of rows' K columns of one row and one column; most have one variable each. */
+static double entry_of(const fu_wheel_column *row, const fu_wheel_column *column, int n_variables, const double *K)
+{
+    const double *first = K + row->row * n_variables;
+    double sum = 0.0;
+    if (row->n == 1 && column->n == 1) return row->value[0] * (column->value[0] * first[column->row]);
+    for (int k = 0; k < row->n; ++k) sum += row->value[k] * fu_by_column(column, first + k * n_variables);
+    return sum;
+}
+
 void fu_wheel_add_matrix(const fu_model *model, int n, const fu_wheel_column *rows, const fu_wheel_column *columns,
                          int n_variables, const double *K, fu_system *system)
 {
     for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i) {
-            double sum = 0.0;
-            for (int k = 0; k < rows[i].n; ++k)
-                sum += rows[i].value[k] * fu_by_column(&columns[j], K + (rows[i].row + k) * n_variables);
-            if (sum != 0.0) fu_add(model, system, rows[i].dof, columns[j].dof, sum);
+            const double value = entry_of(&rows[i], &columns[j], n_variables, K);
+            if (value != 0.0) fu_add(model, system, rows[i].dof, columns[j].dof, value);
         }
 }
 
