@@ -95,6 +95,20 @@ def check_comes_to_rest(scene: SceneData) -> None:
                              "and never comes to rest", "leave friction out")
 
 
+def check_impending(scene: SceneData, motion: str) -> None:
+    """Raise SceneError where no rope can be about to slide in this motion, "hoisting" or "lowering", or a closed one
+    would: all around it the tension cannot rise.
+    """
+    if not any(rope.holding_sheaves for rope in scene.ropes.values()):
+        raise SceneError("equilibrium", f'impending="{motion}" needs a rope with friction on a sheave that is held or '
+                         "whose rotation is prescribed", "give the friction of a sheave, or leave impending out")
+    for rope in scene.ropes.values():
+        if rope.closed and rope.holding_sheaves:
+            raise SceneError(f"{rope.where}: {rope.holding_sheaves[0].where}", f'impending="{motion}" lets the tension '
+                             "change in one sense all around a closed rope, which is at rest with none",
+                             "leave the friction out, or impending")
+
+
 def _given(part: Part) -> Iterator[tuple[str, Signal]]:
     """Yield all signals of a part with their names, the integral of a rate included."""
     yield from signals_of(part)

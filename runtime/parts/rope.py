@@ -1,7 +1,7 @@
 """Ropes that run over sheaves."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from itertools import chain
+from itertools import chain, pairwise
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
@@ -179,6 +179,12 @@ class Rope(Part):
         return self.dim == 2 and not self.closed and not sheave.coefficient
 
     @property
+    def holding_sheaves(self) -> list[Sheave]:
+        """Return its sheaves with friction that do not turn freely, so that the tension may differ beside them at rest.
+        """
+        return [sheave for sheave in self.rough_sheaves if not sheave.turns_freely]
+
+    @property
     def drums(self) -> dict[int, Drum]:
         """Return the drums at its ends, by 0 for the first end and -1 for the last."""
         return {end: item for end in (0, -1) if isinstance(item := self.route[end], Drum)}
@@ -197,6 +203,11 @@ class Rope(Part):
     def n_spans(self) -> int:
         """Return the number of its spans."""
         return len(self.route) - (not self.closed)
+
+    @property
+    def ends_of_spans(self) -> list[tuple[RouteItem, RouteItem]]:
+        """Return the items of the route at both ends of each span."""
+        return [*pairwise(self.route), *([(self.route[-1], self.route[0])] if self.closed else [])]
 
     @property
     def elements_of_spans(self) -> tuple[int, ...]:

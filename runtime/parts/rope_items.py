@@ -112,6 +112,11 @@ class Wheel(RouteItem):
         return self.inertia > 0 or self.prescribed is not None
 
     @property
+    def turns_freely(self) -> bool:
+        """Return whether its inertia and the moments on it decide on its rotation."""
+        return self.turns_round and self.prescribed is None
+
+    @property
     def prescribed(self) -> Signal | None:
         """Return its prescribed angle over time, rad; None where it turns freely."""
         return self.angle if self.velocity is None else Integral(rate=self.velocity)

@@ -154,6 +154,10 @@ _ADJUST = {"anyOf": [{"type": "array", "items": {"type": "string"}, "minItems": 
 _TO = {"type": "object", "additionalProperties": {"type": "number"}, "minProperties": 1}
 
 
+IMPENDING = {"hoisting": -1.0, "lowering": 1.0}
+"""The motions that ropes are about to begin, with their sense in the order of their routes."""
+
+
 class EquilibriumSettings(Part):
     """The settings of a static equilibrium.
 
@@ -168,6 +172,9 @@ class EquilibriumSettings(Part):
     seek_stable: whether "newton" continues from an unstable state, with an error if it finds no stable one; else the
         result is the unstable state with its label
     scale_gravity: whether load fractions also apply to gravity; else gravity acts in full from the start
+    impending: "hoisting" or "lowering", where ropes are about to slide towards their first or their last items: their
+        friction is at its limit on all sheaves that are held or whose rotation is prescribed; on a sheave that turns
+        freely there is none. By default ropes have no friction
     adjust: parameters of the scene, by paths as in sweeps, such as "dropper.length", with limits (low, high) or "free",
         that are adjusted until the state has the values ``to``
     to: values of the state by name, such as "A.position.y" or "wire@12.5.tension"
@@ -181,6 +188,7 @@ class EquilibriumSettings(Part):
     largest_step: Annotated[float, within(0, 1, ends=False)] = 0.1
     seek_stable: Flag = True
     scale_gravity: Flag = True
+    impending: Annotated[str | None, one_of(IMPENDING, optional=True)] = None
     adjust: Annotated[dict[str, Limits] | None, checked(_adjust, _ADJUST)] = None
     to: Annotated[dict[str, float] | None, checked(_to, _TO)] = None
 
@@ -192,6 +200,8 @@ class EquilibriumSettings(Part):
             raise ValueError("has values to reach, but no parameters to adjust", "give adjust={...}")
         if self.adjust is not None and self.method != "newton":
             raise ValueError("adjusts parameters along no path of equilibria", 'take method="newton"')
+        if self.impending is not None and self.method != "newton":
+            raise ValueError("has friction of ropes at its limit along no path of equilibria", 'take method="newton"')
         return self
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ..parts.cable import Cable
+from ..parts.rope import Rope
 from ..parts.slide import Slide
 from ..solve.statics.rest_state import CriticalPoint, RestState
 from .section_forces.forces import dataset
@@ -34,6 +35,18 @@ class Equilibrium(Viewable, RestState):
     def slack_elements(self, cable: Cable | str) -> xarray.DataArray:
         """Return which elements of ``cable`` are slack, (element,): shorter in the middle than at rest."""
         return slack_elements(self, cable)
+
+    def rope_tensions(self, rope: Rope | str) -> xarray.DataArray:
+        """Return the range of the tensions of ``rope`` at rest in N, (span, end, limit): at the start and the end of
+        each span, at both limits of the friction on the sheaves that do not turn freely.
+
+        At the limit "hoisting" ropes are about to move towards their first items, at "lowering" towards their last
+        ones: two more equilibria, see ``impending`` of `EquilibriumSettings`. Raises SceneError without such friction;
+        EquilibriumError where a limit has no state of rest.
+        """
+        from .rope_tensions import rope_tensions  # searches for rest
+
+        return rope_tensions(self, rope)
 
     def animation(self, title: str | None = None) -> Animation:
         """Return the animation of the state; see `Viewable.animation`."""

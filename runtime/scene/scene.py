@@ -265,6 +265,7 @@ class Scene(Viewable, DescribedScene):
         largest_step: float | None = None,
         seek_stable: bool | None = None,
         scale_gravity: bool | None = None,
+        impending: str | None = None,
         adjust: Mapping[str, tuple[float, float] | str | None] | Sequence[str] | None = None,
         to: Mapping[str, float] | None = None,
         start: Equilibrium | None = None,
@@ -278,6 +279,9 @@ class Scene(Viewable, DescribedScene):
         search begins instead of the drawn state; method "arc_length" continues from its load_fraction in its direction,
         or, from a state under all loads, starts anew from rest without loads, and needs the same mesh.
 
+        Ropes have no friction, but with ``impending``: of ropes that are about to move towards their first items,
+        "hoisting", or towards their last ones, "lowering".
+
         adjust, to: parameters, by path with limits or "free", that are changed until the state has given values, by
         name: ``adjust={"dropper.length": "free"}, to={"wire@20.position.y": 5.3}``. The state's ``scene`` is the
         adjusted one, for runs; ``adjusted`` has the values found, ``adjustment`` details. With more parameters than
@@ -288,7 +292,7 @@ class Scene(Viewable, DescribedScene):
         _refuse_unknown("equilibrium", unknown, (*EquilibriumSettings.keywords(), "start"))
         given = {"load_steps": load_steps, "tolerance": tolerance, "max_iterations": max_iterations, "method": method,
                  "largest_step": largest_step, "seek_stable": seek_stable, "scale_gravity": scale_gravity,
-                 "adjust": adjust, "to": to}
+                 "impending": impending, "adjust": adjust, "to": to}
         settings = EquilibriumSettings(**self.equilibrium_settings | {k: v for k, v in given.items() if v is not None})
         any_mesh = settings.method != "arc_length"  # which needs the direction of its path
         begin = None if start is None else _equilibrium_state(self, start, anew=True, any_mesh=any_mesh)

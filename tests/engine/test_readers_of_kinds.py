@@ -50,7 +50,7 @@ PLACES = {
 
 SCENE_PLACES = {
     "friction": [
-        "choice/indicators.py", "solve/modes/modes.py", "solve/motion/integrator_choice.py",
+        "choice/indicators.py", "results/rope_tensions.py", "solve/modes/modes.py", "solve/motion/integrator_choice.py",
         "solve/notes/uncontrolled_errors.py", "solve/statics/relaxation.py", "solve/statics/static.py"],
     "points that move along a cable: slides and crossings": [
         "choice/chooser.py", "results/animation/curves.py", "results/animation/references.py",

@@ -49,7 +49,7 @@ NOT_ASKED = {
     "touching", "with_parts",  # what the methods above are made of
     "from_recording", "items", "model", "of", "sketch", "view",
     "adjustment", "check_adjusted", "check_fits", "check_supports", "heading", "neutral_directions", "relaxation",
-    "stable", "unstable_directions", "about"}
+    "rope_tensions", "stable", "unstable_directions", "about"}
 """Methods of scenes and results that no question calls by name: parts of those that are called, or plain data."""
 
 NOT_SIMULATED = {"rope"}

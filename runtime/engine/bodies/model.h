@@ -47,6 +47,8 @@ struct fu_model {
     const double *gravity; /* generalised force on each dof */
     const double *zero;    /* n_dof zeros: a velocity at rest */
     double load_fraction;  /* share of all loads but gravity: 1, or less on a load path of statics */
+    /* in statics, of ropes that are about to slide on their sheaves: the speed in their order over the slip velocity */
+    double impending;
     const fu_lapack *lapack;
     fu_threads *threads; /* null for one thread, which needs nothing of the following */
     /* n_coordinates^2 for each element of the longest cable: contributions of threads that are added afterwards */

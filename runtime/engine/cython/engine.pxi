@@ -201,7 +201,7 @@ cdef extern from * nogil:
         int n_coordinates, n_forces, n_rows, n_outputs, n_scratch, n_inertial
         const int *unknown_of_dof, *combination_start, *combination_unknown
         const double *combination_value, *weight, *gravity, *zero
-        double load_fraction
+        double load_fraction, impending
         const fu_lapack *lapack
         fu_threads *threads
         double *thread_work

@@ -136,6 +136,10 @@ cdef class Statics(Translation):
             for k in range(3):
                 self.shapes[i].g[k] = weight * self.weight["shapes"][i][k]
 
+    def impend(self, double slip):
+        """Let ropes be about to slide on their sheaves in static states: speed in their order over the slip velocity."""
+        self.model.impending = slip
+
     def hold(self, int signal, value):
         """Fix the value of a signal; None restores that of the model."""
         cdef fu_signal *g = &self.signals[signal]

@@ -11,6 +11,7 @@ import warnings
 from typing import Generic, TypeVar
 
 from ...checks.plausibility import implausible
+from ...checks.whole_scene import check_impending
 from ...errors import EquilibriumError, FunicularWarning
 from ...model.drag_forces import outside_tables
 from ...parts.rope import driven_freely, rough_sheaves
@@ -30,6 +31,8 @@ LOG = logging.getLogger(__name__)
 
 S = TypeVar("S", bound=RestState)
 
+MIN_FRICTION_STEP = 1e-2
+"""Steps of the friction of ropes below this fraction of its limit are not taken."""
 MIN_LOAD_STEP = 1e-3
 """The search ends if load steps of this fraction do not converge."""
 POSITIONING_LOAD = 1e-3
@@ -44,12 +47,10 @@ def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestStat
     start: a state to begin from, also of another mesh, else as drawn; made: the class of the states. Raises SceneError,
     EquilibriumError.
     """
-    problem = StaticProblem(scene, settings, {} if start is None else start.turned)
-    if start is not None:
-        problem.restore(fitted(on_mesh(start.static_state, start.model, problem.model, problem.keep()), problem.model))
-    search = _Search(problem, made)
-    reached = search.along_path(start) if settings.method == "arc_length" else search.in_steps()
-    state = search.found
+    if settings.impending is not None:
+        check_impending(scene, settings.impending)
+    search, reached = _searched(scene, settings, start, made)
+    problem, state = search.problem, search.found
     note(problem, state)
     if reached < 1.0:
         remedy = ('; take method="newton", which goes on to any stable state, or draw the scene nearer to its rest'
@@ -77,13 +78,59 @@ def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestStat
     return state
 
 
+def _searched(scene: SceneData, settings: EquilibriumSettings, start: RestState | None, made: type[S]
+              ) -> tuple[_Search[S], float]:
+    """Return the search and the fraction of the load that it reached.
+
+    The state with friction of ropes at its limit is sought from that without friction, then from the drawn state.
+    """
+    search = _Search(_begun(scene, settings, start), made)
+    if settings.method == "arc_length":
+        return search, search.along_path(start)
+    if settings.impending is None:
+        return search, search.in_steps()
+    search.problem.impend(0.0)
+    if search.in_steps() == 1.0 and slide_to_limit(search.problem):
+        search.path = []
+        search.remember(made.of(search.problem, stability(search.problem)))
+        return search, 1.0
+    search = _Search(_begun(scene, settings, start), made)
+    return search, search.in_steps()
+
+
+def _begun(scene: SceneData, settings: EquilibriumSettings, start: RestState | None) -> StaticProblem:
+    """Return the problem at the state to begin from."""
+    problem = StaticProblem(scene, settings, {} if start is None else start.turned)
+    if start is not None:
+        problem.restore(fitted(on_mesh(start.static_state, start.model, problem.model, problem.keep()), problem.model))
+    return problem
+
+
+def slide_to_limit(problem: StaticProblem) -> bool:
+    """Raise the friction of ropes from none to its limit, in steps from state to state; return whether that was
+    reached.
+    """
+    reached, step = 0.0, 1.0
+    while reached < 1.0:
+        kept, target = problem.keep(), min(1.0, reached + step)
+        problem.impend(target)
+        if problem.newton():
+            reached, step = target, 2 * step
+            continue
+        problem.restore(kept)
+        step = 0.5 * (target - reached)
+        if step < MIN_FRICTION_STEP:
+            return False
+    return True
+
+
 def note(problem: StaticProblem, state: RestState) -> None:
     """Complete a state's messages; what a user must know is a warning, too."""
     scene = problem.scene
     for parts, what in (([f'"{name}"' for name, slide in scene.slides.items() if slide.friction is not None], "slides"),
                         ([contact.where for contact in scene.contacts.values()
                           if contact.is_hard and contact.friction_coefficient], "contacts"),
-                        (rough_sheaves(scene.ropes.values()), "ropes")):
+                        ([] if problem.settings.impending else rough_sheaves(scene.ropes.values()), "ropes")):
         if parts:
             problem.messages.append(f"friction of {' and '.join(parts)} is left out: at rest {what} move freely")
     problem.messages += rest_notes(problem.scene, problem.model, problem.engine, state.static_state, state.couplings)

@@ -18,13 +18,15 @@ from ...model.model import Model
 from ...model.redundant_constraints import drop_redundant_rows
 from ...model.states import attachment_points
 from ...parts.scene_data import SceneData
-from ...parts.settings import EquilibriumSettings
+from ...parts.settings import IMPENDING, EquilibriumSettings
 from ..linear.condensation import condensed, fastest
 from .starts import with_moved_supports
 from .turns import Turns
 
 MAX_CORRECTION_GROWTH = 1e3
 """Ratio of a correction to the smallest one before above which Newton's method diverges."""
+LIMIT_OF_FRICTION = 1e-18
+"""Square of the share of the limit by which friction of ropes about to slide is below it, at least."""
 ZERO_STIFFNESS_RATIO = 1e-14
 """Stiffnesses below this fraction of the fastest vibration's square count as zero."""
 
@@ -42,6 +44,7 @@ class StaticState:
         self.turns = Turns(scene, self.model, self.engine, turned)
         self.engine.set_state(0.0)
         self.load(1.0)
+        self.impend(1.0)
         unknown = self.model.unknown_of_dof
         free = unknown >= 0
         self.weight = np.zeros(self.engine.unknowns)  # forces and arc-lengths do not count in the size of a correction
@@ -52,6 +55,15 @@ class StaticState:
         """Apply this fraction of all loads, and of gravity unless the settings keep it whole."""
         self.fraction = fraction
         self.engine.load(fraction, self.settings.scale_gravity)
+
+    def impend(self, fraction: float) -> None:
+        """Apply this fraction of the limit of friction of ropes, in the motion of the settings; without one, none.
+
+        Regularised friction is this fraction where the rope slides at this multiple of the slip velocity.
+        """
+        if self.settings.impending is not None:
+            slip = fraction / max(1.0 - fraction * fraction, LIMIT_OF_FRICTION) ** 0.5
+            self.engine.impend(IMPENDING[self.settings.impending] * slip)
 
     def residual(self) -> np.ndarray:
         """Return R at the static state under the present load: internal less external forces, and constraints."""
@@ -215,7 +227,7 @@ class StaticProblem(StaticState):
                          for at in sheave.nodes)  # its slope is tangent, but against the sense of travel
             if folded or numbers["wrap_angle"][k] < sheave.least_wrap:
                 return f'the rope leaves sheave "{sheave.name}"'
-            if numbers["normal_force"][k] < 0.0:
+            if min(numbers[name][k] for name in ("normal_force", "tension_on", "tension_off")) < 0.0:
                 return f'the rope lifts off sheave "{sheave.name}": it has no tension there'
         numbers = outputs_by_name("drum", self.engine.static_outputs("drum")) if model.drums else {}
         for k, drum in enumerate(model.drums):

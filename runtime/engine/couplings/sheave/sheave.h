@@ -98,6 +98,7 @@ typedef struct {
     int mode;
     double tension;
     fu_wheel_state wheel;
+    double spin_below;           /* angular velocity of the sheave as friction has it, see `fu_model.impending` */
     double stretch[ENDS][SPACE]; /* in space: direction of the slope */
     double s[MAX_ZONES + 1], s_rate[MAX_ZONES + 1], s_acc[MAX_ZONES + 1];
     double x[ENDS][DIM], slope[ENDS][DIM], x_rate[ENDS][DIM], slope_rate[ENDS][DIM];

@@ -196,7 +196,7 @@ void fu_sheave_outputs(const fu_model *model, const fu_coupling *coupling, const
     for (int j = 0; has_friction(sheave) && j <= sheave->n_zones; ++j) {
         double F[3], of[3], power;
         fu_friction_at(sheave, &at, j, F, of, &power);
-        if (fabs(of[0]) > fabs(numbers->slip)) numbers->slip = of[0];
+        if (at.spin_below == at.wheel.turn_rate && fabs(of[0]) > fabs(numbers->slip)) numbers->slip = of[0];
         numbers->torque -= F[1];
     }
     for (int r = 0; r < fu_sheave_conditions(sheave, &at); ++r)

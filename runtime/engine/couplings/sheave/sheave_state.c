@@ -80,6 +80,15 @@ static void find_node_in_plane(const fu_sheave *sheave, const double *q, const d
     }
 }
 
+/* Returns the angular velocity of the sheave as friction has it. In statics the rope is about to slide where the sheave
+ * is held or its rotation is prescribed; a sheave that turns freely has no friction at rest. */
+static double spin_below(const fu_model *model, const fu_sheave *sheave, double turn_rate)
+{
+    const fu_wheel *wheel = &sheave->wheel;
+    if (wheel->turn >= 0 && model->unknown_of_dof[wheel->turn] >= 0) return turn_rate;
+    return turn_rate - wheel->sense * model->impending * sheave->slip_velocity / wheel->radius;
+}
+
 void fu_sheave_at(const fu_model *model, const fu_sheave *sheave, const fu_state *state, const double *a,
                   fu_sheave_state *out)
 {
@@ -88,6 +97,7 @@ void fu_sheave_at(const fu_model *model, const fu_sheave *sheave, const fu_state
     if (!a) a = model->zero;
     out->q = state->q;
     fu_wheel_at(model, &sheave->wheel, &moving, a, &out->wheel);
+    out->spin_below = spin_below(model, sheave, out->wheel.turn_rate);
     for (int k = 0; k < ENDS; ++k) {
         double x_acc[DIM];
         (is_in_space(sheave) ? find_node_in_space : find_node_in_plane)(sheave, state->q, v, a, k, out, x_acc);

@@ -31,12 +31,11 @@ void fu_friction_at(const fu_sheave *sheave, const fu_sheave_state *at, int j, d
     const fu_sheave_kernels *kernel = wheel->kernel;
     if (p.foot < 0)
         kernel->friction(wheel->A, wheel->sense, wheel->rho, wheel->radius, wheel->g, sheave->friction,
-                         sheave->slip_velocity, p.phi, p.l, p.phi_rate, at->wheel.turn_rate, p.s_rate, F, numbers,
-                         power);
+                         sheave->slip_velocity, p.phi, p.l, p.phi_rate, at->spin_below, p.s_rate, F, numbers, power);
     else
         (p.foot ? kernel->friction_off : kernel->friction_on)(
             wheel->A, wheel->sense, wheel->rho, wheel->radius, wheel->g, sheave->friction, sheave->slip_velocity, p.phi,
-            p.l, at->slope[p.foot], p.phi_rate, at->wheel.turn_rate, p.s_rate, F, numbers, power);
+            p.l, at->slope[p.foot], p.phi_rate, at->spin_below, p.s_rate, F, numbers, power);
 }
 
 void fu_friction_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at, int j, double factor, double (*D)[Z],
@@ -50,12 +49,12 @@ void fu_friction_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at
     double of_place[3 * (3 + SIDES + DIM)], of_rate[3 * 3];
     if (p.foot < 0)
         kernel->friction_tangent(wheel->A, wheel->sense, wheel->rho, wheel->radius, wheel->g, sheave->friction,
-                                 sheave->slip_velocity, p.phi, p.l, p.phi_rate, at->wheel.turn_rate, p.s_rate, of_place,
+                                 sheave->slip_velocity, p.phi, p.l, p.phi_rate, at->spin_below, p.s_rate, of_place,
                                  of_rate);
     else
         (p.foot ? kernel->friction_off_tangent : kernel->friction_on_tangent)(
             wheel->A, wheel->sense, wheel->rho, wheel->radius, wheel->g, sheave->friction, sheave->slip_velocity, p.phi,
-            p.l, at->slope[p.foot], p.phi_rate, at->wheel.turn_rate, p.s_rate, of_place, of_rate);
+            p.l, at->slope[p.foot], p.phi_rate, at->spin_below, p.s_rate, of_place, of_rate);
     for (int i = 0; i < 3; ++i)
         for (int e = 0; e < (i ? 1 : ENDS); ++e) { /* a force on the angle is one on those of both tangent points */
             double *to_K = K[i ? row[i] : e], *to_D = D[i ? row[i] : e];
