@@ -19,10 +19,11 @@ from .ropes import rope_models, turn_motions
 from .unknowns import Node, supports
 
 
-def build(scene: SceneData) -> Model:
+def build(scene: SceneData, supplied: bool = False) -> Model:
     """Number the coordinates of a scene and evaluate the constants of its elements. Raises SceneError.
 
-    A scene of planar elements lies in the plane z = 0 (see parts/in_plane.py).
+    A scene of planar elements lies in the plane z = 0 (see parts/in_plane.py). supplied: whether the stress-free length
+    of ropes is free, see `RopeModel.supply`.
     """
     assert scene.plane is None, "a scene in another plane is laid into z = 0 first"
     dim, gravity = scene.dim, np.array(scene.gravity)[: scene.dim]
@@ -32,7 +33,7 @@ def build(scene: SceneData) -> Model:
     for cable in drawn:
         cables.append(cable_model(cable, n_flexible))
         n_flexible = cables[-1].coordinates.stop
-    ropes = rope_models(scene, n_flexible)
+    ropes = rope_models(scene, n_flexible, supplied)
     bodies = body_models(scene, ropes[-1].coordinates.stop if ropes else n_flexible)
     nodal = [cable.nodal_vectors[..., :dim] for cable in drawn]
     level_tied_slopes(scene, nodal)

@@ -140,12 +140,16 @@ class InitialState(Mapping[str, np.ndarray]):
             if name not in self:
                 continue
             values, at = _of_shape(self[name], rope.q.shape, name), rope.coordinates
-            off = np.abs(values - into[at])[rope.held - rope.first]  # a prescribed rotation follows its signal
+            fixed = rope.fixed.copy()
+            if rope.supply >= 0 and quantity == ROPE[0]:
+                fixed[rope.supply - rope.first] = False  # no length is given
+            held = rope.held - rope.first  # a prescribed rotation follows its signal
+            off = np.abs(values - into[at])[held[fixed[held]]]
             if np.any(off > LENGTH_TOLERANCE * rope.route.length):
                 raise SceneError("initial", f'"{name}" has an end of the rope, or the arc-length there, '
                                  f"{show(float(off.max()), unit)} off the value as drawn, which an anchor keeps",
                                  "give a state that fits, or draw the anchors elsewhere")
-            into[at] = np.where(rope.fixed, into[at], values)
+            into[at] = np.where(fixed, into[at], values)
 
     def _place_body(self, model: Model, body: BodyModel, drawn: RigidBody | ModalBody) -> None:
         given = {name: self[f"{body.name}.{name}"] for name in BODY if f"{body.name}.{name}" in self}

@@ -149,6 +149,14 @@ class RopeModel:
         return np.array([dof for dof in self.first + np.flatnonzero(self.fixed) if dof not in turning], dtype=int)
 
     @property
+    def supply(self) -> int:
+        """Return the dof of the stress-free length at the last anchor, which follows from a given tension; -1 of ropes
+        with a given length, closed ones, and those that end on a drum.
+        """
+        ends_there = not self.part.closed and isinstance(self.part.route[-1], Anchor)
+        return self.spans[-1].s[1] if ends_there and self.part.tension is not None else -1
+
+    @property
     def free_length(self) -> float:
         """Return its stress-free length with what is on drums, m."""
         return self.route.free_length + self.part.length_in_store
@@ -168,11 +176,13 @@ class RopeModel:
         return section_stiffness(LAW, self.part.section, self.part.material, self.part.dim)
 
 
-def rope_models(scene: SceneData, at: int) -> list[RopeModel]:
-    """Return the ropes in the scene's order, with coordinates from `at` on."""
+def rope_models(scene: SceneData, at: int, supplied: bool = False) -> list[RopeModel]:
+    """Return the ropes in the scene's order, with coordinates from `at` on; supplied: their `supply` is free."""
     made = []
     for rope in scene.ropes.values():
         made.append(rope_model(rope, rope.drawn(scene.bodies), at))
+        if supplied and made[-1].supply >= 0:
+            made[-1].fixed[made[-1].supply - at] = False
         at = made[-1].coordinates.stop
     return made
 

@@ -37,7 +37,7 @@ PLACES = {
         "solve/adjustment/parameter_search.py"],
     "ropes: their points on sheaves, and the constraints there": [
         "model/rope_rates.py", "model/rope_states.py", "solve/modes/stuck_wraps.py",
-        "solve/motion/integrator_choice.py"],
+        "solve/motion/integrator_choice.py", "solve/statics/ropes_at_rest.py"],
     "points that must not coincide, as a force or a distance has no direction there": [
         "solve/notes/coincident_points.py"],
     "fleet angles, against what sheaves in space take": ["solve/notes/fleet_angles.py"],

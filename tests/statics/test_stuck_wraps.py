@@ -47,7 +47,7 @@ def test_a_pendulum_rolls_on_a_held_sheave():
     assert not found.growth_rate.any()
     scene = pair()
     swings = scene.modes(8, about=scene.equilibrium(seek_stable=False), wraps="stick")
-    across = np.abs(swings["A.displacement"][:, 0]) > 0.5
+    across = (np.abs(swings["A.displacement"][:, 0]) > 0.5) & (swings.angular_frequency > 1)
     assert swings.angular_frequency[across][0] == pytest.approx(np.sqrt(G / LENGTH), rel=1e-3)
 
 

@@ -13,8 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import block_array
 
+from ..linear.solver import solver
 from .stability import Stability, stability
-from .static_problem import StaticProblem, solver
+from .static_problem import StaticProblem
 
 MAX_STATES = 1000
 MAX_CORRECTIONS = 12

@@ -13,6 +13,7 @@ from ...model.kinds import COUPLINGS
 from ...model.model import Model
 from ...model.part_states import States, numbers_at_rest, part_states
 from ...model.rope_rates import follow
+from ...model.ropes import RopeModel
 from ...model.states import attachment_points
 from ...parts.joint import Joint
 from ...parts.part import Part
@@ -21,6 +22,7 @@ from ...parts.plane import called
 from ...parts.rope import Rope
 from ...parts.scene_data import SceneData
 from ...parts.validation import show
+from .ropes_at_rest import with_ropes_at_rest
 from .stability import Stability
 from .static_problem import StaticState
 from .turns import prescribed_angles
@@ -264,11 +266,8 @@ class RestState(NamedArrays):
             if moved > POSITION_TOLERANCE * size:
                 raise SceneError("scene", f'the state to start from has an end of the joint "{joint.name}" '
                                  f"{moved:.3g} m from where it is here", "take an equilibrium of this scene")
-        for rope in model.ropes:
-            if (moved := float(np.abs(q[0] - model.q)[rope.held].max(initial=0.0))) > POSITION_TOLERANCE * size:
-                raise SceneError("scene", f'the state to start from has an end of rope "{rope.part.name}", or the '
-                                 f"stress-free length there, {moved:.3g} m from where it is here",
-                                 "take an equilibrium of this scene")
+        if model.ropes:
+            self._check_ropes(with_ropes_at_rest(model, scene), model.ropes, size)
         if model.cables:
             own = slice(0, model.cables[-1].coordinates.stop)
             fixed = model.unknown_of_dof[own] == -1
@@ -278,6 +277,15 @@ class RestState(NamedArrays):
                 raise SceneError("scene", f"the state to start from has a support {np.max(moved):.3g} m from where it "
                                  "is here", "take an equilibrium of this scene")
         self._check_prescribed(model, scene)
+
+    def _check_ropes(self, drawn: np.ndarray, ropes: list[RopeModel], size: float) -> None:
+        """Raise SceneError where ends of ropes, or their stress-free lengths, are others in this scene."""
+        for rope in ropes:
+            moved = float(np.abs(self.static_state["q"] - drawn)[rope.held].max(initial=0.0))
+            if moved > POSITION_TOLERANCE * size:
+                raise SceneError("scene", f'the state to start from has an end of rope "{rope.part.name}", or the '
+                                 f"stress-free length there, {moved:.3g} m from where it is here",
+                                 "take an equilibrium of this scene")
 
     def _check_prescribed(self, model: Model, scene: SceneData) -> None:
         """Raise SceneError where motions or angles of joints prescribe other values at t = 0 than the state has."""

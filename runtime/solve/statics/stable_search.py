@@ -148,6 +148,7 @@ def relax(problem: StaticProblem, longest: float = np.inf, most: int = MAX_RELAX
         mass *= 10.0
         if near < 1e-10:
             return None
+    problem.leaves_route()
     return None
 
 

@@ -10,9 +10,8 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 from scipy.sparse import csc_array
-from scipy.sparse.linalg import splu
 
-from ...engine import Engine, outputs_by_name
+from ...engine import Engine
 from ...model.build import build
 from ...model.model import Model
 from ...model.redundant_constraints import drop_redundant_rows
@@ -20,6 +19,8 @@ from ...model.states import attachment_points
 from ...parts.scene_data import SceneData
 from ...parts.settings import IMPENDING, EquilibriumSettings
 from ..linear.condensation import condensed, fastest
+from ..linear.solver import solver
+from .ropes_at_rest import off_sheaves, with_ropes_at_rest
 from .starts import with_moved_supports
 from .turns import Turns
 
@@ -118,6 +119,7 @@ class StaticProblem(StaticState):
         self.slack: dict[str, float] = {}  # slack fractions of cables as strings
         self.held = False  # whether short steps have held cables on surfaces
         self.pushed = False  # whether a push off an unstable branch had no preferred direction
+        self.left_route = ""  # where a rope left its route in the states that the search tried, in words
         self.messages: list[str] = []
 
     def _falls(self, drawn: np.ndarray, points: np.ndarray) -> float:
@@ -186,12 +188,12 @@ class StaticProblem(StaticState):
             least = min(least, size)
             self.move(change)
             if size <= self.settings.tolerance * self.size:
-                return self.on_cables() and not (self.fraction == 1.0 and self.off_sheaves())
+                return self.on_cables() and not (self.fraction == 1.0 and self.leaves_route())
         return False
 
     def cause(self) -> str:
         """Return why no stable state may be found, as the end of a message; empty where the cause is unknown."""
-        if left := self.off_sheaves():
+        if left := self.off_sheaves() or self.left_route:
             return f"; {left}"
         if not self.slack:
             return ""
@@ -199,6 +201,16 @@ class StaticProblem(StaticState):
         return (f'; cable "{name}" is so long that {100 * part:.2g} % of it would have no tension as a string: its '
                 "bending stiffness alone decides on the shape there; a shorter rest_length, or other supports, put it "
                 "in tension")
+
+    def off_sheaves(self) -> str:
+        """Return where a rope of the state has left its route, see `off_sheaves`."""
+        return off_sheaves(self.model, self.engine)
+
+    def leaves_route(self) -> bool:
+        """Return whether a rope of the state has left its route, and note where."""
+        left = self.off_sheaves()
+        self.left_route = left or self.left_route
+        return bool(left)
 
     def on_cables(self) -> bool:
         """Return whether no slide is past an end of its cable, where the last element would continue without end."""
@@ -208,41 +220,9 @@ class StaticProblem(StaticState):
         return bool(np.all(past <= self.settings.tolerance * self.size))
 
 
-    def off_sheaves(self) -> str:
-        """Return where a rope of the state has left a sheave or a span has no length, in words, else ""."""
-        model = self.model
-        if not model.ropes:
-            return ""
-        q = self.engine.state()["q"]
-        numbers = outputs_by_name("sheave", self.engine.static_outputs("sheave")) if model.sheaves else {}
-        for k, sheave in enumerate(model.sheaves):
-            if not sheave.has_contact(q):
-                if numbers["gap"][k] < 0.0:
-                    return f'the rope touches sheave "{sheave.name}", which has contact=False'
-                continue
-            centre = attachment_points(model, sheave.attachments[0], q[None])[0, : model.dim]
-            dim = model.dim
-            folded = any(sheave.sense * np.linalg.det([(q[at : at + dim] - centre) @ sheave.plane,
-                                                       q[at + dim : at + 2 * dim] @ sheave.plane]) <= 0
-                         for at in sheave.nodes)  # its slope is tangent, but against the sense of travel
-            if folded or numbers["wrap_angle"][k] < sheave.least_wrap:
-                return f'the rope leaves sheave "{sheave.name}"'
-            if min(numbers[name][k] for name in ("normal_force", "tension_on", "tension_off")) < 0.0:
-                return f'the rope lifts off sheave "{sheave.name}": it has no tension there'
-        numbers = outputs_by_name("drum", self.engine.static_outputs("drum")) if model.drums else {}
-        for k, drum in enumerate(model.drums):
-            if numbers["length_in_store"][k] < 0.0:
-                return f'drum "{drum.name}" is empty'
-            if numbers["normal_force"][k] < 0.0:
-                return f'the rope lifts off drum "{drum.name}": it has no tension there'
-        for span in model.spans:
-            if q[span.s[1]] - q[span.s[0]] < span.least_length:
-                return f'a span of rope "{span.name}" becomes too short to be modelled'
-        return ""
-
-
 def static_model(scene: SceneData) -> Model:
-    """Return the model of a scene for statics: without the added mass of still fluids, which does not act at rest.
+    """Return the model of a scene for statics: with ropes at rest among the bodies as drawn, see `with_ropes_at_rest`,
+    and without the added mass of still fluids, which does not act at rest.
 
     The inertia of a flowing fluid acts at rest, too: by its acceleration, and by a lift where its velocity depends on
     the height.
@@ -250,6 +230,7 @@ def static_model(scene: SceneData) -> Model:
     model = build(scene)
     for drag in model.drags:
         drag.has_inertia = drag.has_inertia and drag.fluid.moves
+    model.q = with_ropes_at_rest(model, scene)
     return model
 
 
@@ -273,11 +254,3 @@ def _point_entries(model: Model) -> np.ndarray:
               for node in map(span.node, range(span.n_elements + 1))]
     bodies = [range(body.configuration, body.configuration + model.dim) for body in model.bodies]
     return np.array([entry for part in (*nodes, *bodies) for entry in part], dtype=int)
-
-
-def solver(matrix: csc_array) -> Callable[[np.ndarray], np.ndarray]:
-    """Return the solver of a sparse matrix. Raises RuntimeError where it is exactly singular."""
-    if not matrix.shape[0]:
-        return lambda right: right
-    factor = splu(matrix.tocsc(), permc_spec="COLAMD")
-    return lambda right: np.asarray(factor.solve(right))
