@@ -118,12 +118,11 @@ class _Supplied:
         """Find rest at the given tension, or from greater ones on. Raises SceneError."""
         assert self.part.tension is not None, "the tension decides on the supply"
         given, ratio, tension = self.part.tension, 2.0, self.part.tension
-        drawn = self.engine.state()
         while not self._rests(tension):
-            self.engine.set_state(0.0, **drawn, prescribe=True)
             tension *= ratio
+            self._draw(tension)
             if tension > MAX_TENSION_RATIO * given:
-                raise self._refused(drawn, given)
+                raise self._refused(self.engine.state(), tension)
         while tension > given:
             kept, lower = self.engine.state(), max(given, tension / ratio)
             if self._rests(lower):
@@ -133,6 +132,16 @@ class _Supplied:
             ratio = ratio**0.5
             if ratio < MIN_TENSION_RATIO:
                 raise self._refused(kept, tension)
+
+    def _draw(self, tension: float) -> None:
+        """Go to the state as drawn, with the stretch of another tension."""
+        longer = self.rope.route.stretch / (1 + tension / self.EA)
+        q, spans = self.model.q.copy(), self.rope.spans
+        s = np.unique(np.concatenate([*(span.s for span in spans), *(sheave.s for sheave in self.rope.sheaves)]))
+        q[s] = q[spans[0].s[0]] + longer * (q[s] - q[spans[0].s[0]])
+        for span in spans:
+            q[span.nodes].reshape(-1, 2, span.dim)[:, 1] /= longer
+        self.engine.set_state(0.0, q)
 
     def _rests(self, tension: float) -> bool:
         """Come to rest with a tension at the first point; return whether that was found, on the route."""
@@ -184,9 +193,9 @@ class _Supplied:
                 self.cause = f'the rope leaves sheave "{self.model.sheaves[int(np.argmin(wraps))].name}"'
         assert self.part.tension is not None, "as above"
         return SceneError(self.part.where, f"has no state of rest with the tension {show(self.part.tension, 'N')} at "
-                          f"its first point among the bodies as drawn: from {show(tension, 'N')} on "
-                          + (self.cause or "Newton's method finds none"),
-                          "give more tension, or the length; or leave such a sheave out")
+                          f"its first point among the bodies as drawn: at less than {tension:.4g} N "
+                          + (self.cause or "none was found"),
+                          "give more tension, or the length" + "; or leave the sheave out" * bool(self.cause))
 
 
 def _still(item: RouteItem, bodies: dict[str, RigidBody | ModalBody]) -> RouteItem:
