@@ -171,6 +171,7 @@ class Sheave(Wheel):
         force="force of the rope on what holds the sheave",
         material_speed="stress-free length that passes in the rope's order, a second",
         slip="largest speed of the rope on the sheave, in the rope's order",
+        slip_angle="part of the wrap angle over which the rope slides, with friction at its limit",
         normal_force="least normal force of the groove on an angle of the wrap",
         torque="of the rope on the sheave, by friction",
         angle="by which the sheave has turned, relative to the body that it is on",

@@ -33,8 +33,8 @@ ROPES_IN_WIDTH = 1.5
 LAW_POINTS = 5
 """Points of Gauss by which the strain of an element is found."""
 WHEEL_RESULTS = {"tension_on": ("tension on", "N"), "tension_off": ("tension off", "N"),
-                 "wrap_angle": ("wrap angle", "rad"), "slip": ("slip", "m/s"), "tension": ("tension", "N"),
-                 "length_in_store": ("length in store", "m"), "power": ("power", "W")}
+                 "wrap_angle": ("wrap angle", "rad"), "slip": ("slip", "m/s"), "slip_angle": ("slip angle", "rad"),
+                 "tension": ("tension", "N"), "length_in_store": ("length in store", "m"), "power": ("power", "W")}
 """Results of sheaves and drums under the pointer, with their labels and units."""
 
 

@@ -6,8 +6,8 @@
 #include <math.h>
 
 typedef struct {
-    double tension_on, tension_off, wrap_angle, force[3], material_speed, slip, normal_force, torque, angle, residual,
-        fleet_angle_on, fleet_angle_off, gap;
+    double tension_on, tension_off, wrap_angle, force[3], material_speed, slip, slip_angle, normal_force, torque, angle,
+        residual, fleet_angle_on, fleet_angle_off, gap;
 } sheave_output;
 
 /* Returns the stretch of the span at a tangent point, in the plane along the groove. */
@@ -171,6 +171,13 @@ double fu_wrap_pressure(const fu_model *model, const fu_coupling *coupling, cons
     return wrap_pressure(sheave, &at);
 }
 
+/* Returns the angle over which friction at its limit changes the tension as a point of the wrap does, of whose numbers
+ * the limit is P- + P+ and the friction f: the share of the point where it slides. */
+static double slipping(const fu_sheave *sheave, const double numbers[3])
+{
+    return numbers[1] > 0.0 ? 2.0 / sheave->friction * atanh(fabs(numbers[2]) / numbers[1]) : 0.0;
+}
+
 void fu_sheave_outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                        const double *acceleration, const fu_accelerator *work, double *out)
 {
@@ -197,6 +204,7 @@ void fu_sheave_outputs(const fu_model *model, const fu_coupling *coupling, const
         double F[3], of[3], power;
         fu_friction_at(sheave, &at, j, F, of, &power);
         if (at.spin_below == at.wheel.turn_rate && fabs(of[0]) > fabs(numbers->slip)) numbers->slip = of[0];
+        numbers->slip_angle += slipping(sheave, of);
         numbers->torque -= F[1];
     }
     for (int r = 0; r < fu_sheave_conditions(sheave, &at); ++r)
@@ -210,6 +218,7 @@ const fu_output fu_sheave_output_fields[] = {
     FU_OUTPUT(sheave_output, force, "N", "direction"),
     FU_OUTPUT(sheave_output, material_speed, "m/s", NULL),
     FU_OUTPUT(sheave_output, slip, "m/s", NULL),
+    FU_OUTPUT(sheave_output, slip_angle, "rad", NULL),
     FU_OUTPUT(sheave_output, normal_force, "N", NULL),
     FU_OUTPUT(sheave_output, torque, "N m", NULL),
     FU_OUTPUT(sheave_output, angle, "rad", NULL),
