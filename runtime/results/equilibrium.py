@@ -8,7 +8,7 @@ from ..parts.cable import Cable
 from ..parts.rope import Rope
 from ..parts.slide import Slide
 from ..solve.statics.rest_state import CriticalPoint, RestState
-from .section_forces.forces import dataset
+from .section_forces.ropes import section_forces
 from .slack import slack_elements
 from .viewable import Viewable, titled
 
@@ -24,13 +24,13 @@ __all__ = ["CriticalPoint", "Equilibrium"]
 class Equilibrium(Viewable, RestState):
     """A state of rest of a scene, see `RestState`, with the section forces of its cables."""
 
-    def section_forces(self, cable: Cable | str, s: ArrayLike | Slide | None = None, *, method: str = "balance",
+    def section_forces(self, cable: Cable | Rope | str, s: ArrayLike | Slide | None = None, *, method: str = "balance",
                        side: str = "after") -> xarray.Dataset:
         """Return the forces and moments in sections of ``cable`` like `Run.section_forces`, over s alone.
 
         The default places include both sides of riders.
         """
-        return dataset(self, cable, s, method=method, side=side)
+        return section_forces(self, cable, s, method=method, side=side)
 
     def slack_elements(self, cable: Cable | str) -> xarray.DataArray:
         """Return which elements of ``cable`` are slack, (element,): shorter in the middle than at rest."""

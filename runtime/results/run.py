@@ -19,6 +19,7 @@ from ..base.written_files import write_whole
 from ..errors import FunicularWarning, UnknownResultError, near
 from ..parts.cable import Cable
 from ..parts.in_plane import in_plane
+from ..parts.rope import Rope
 from ..parts.scene_data import OfDrawing, SceneData
 from ..parts.scene_text import dumps
 from ..parts.settings import RunSettings
@@ -296,7 +297,7 @@ class Run(Viewable, NamedArrays):
 
         return slack_elements(self, cable)
 
-    def section_forces(self, cable: Cable | str, s: ArrayLike | Slide | None = None, *, method: str = "balance",
+    def section_forces(self, cable: Cable | Rope | str, s: ArrayLike | Slide | None = None, *, method: str = "balance",
                        side: str = "after") -> xarray.Dataset:
         """Return the forces and moments in sections of ``cable``.
 
@@ -314,10 +315,14 @@ class Run(Viewable, NamedArrays):
         are those of the mesh. A taut cable bends beside a point force within sqrt(E I / N) only. For longer elements,
         tension is the size of the force, shear excludes this length, and moment is that of an elastica along the line
         of the force, not of the mesh. Raises UnknownResultError; FunicularError for s off the cable.
-        """
-        from .section_forces.forces import dataset
 
-        return dataset(self, cable, s, method=method, side=side)
+        Of a rope: of its spans, over (time, point) with s of each point, and the number of its span; at given s not a
+        number while that part of the rope is on a sheave or a drum. In motion by the elastic law alone; "balance" at
+        rest.
+        """
+        from .section_forces.ropes import section_forces
+
+        return section_forces(self, cable, s, method=method, side=side)
 
     def animation(self, title: str | None = None) -> Animation:
         """Return the animation of the motion; see `Viewable.animation`. Raises FunicularError without results."""

@@ -37,7 +37,7 @@ PLACES = {
         "solve/adjustment/parameter_search.py"],
     "ropes: their points on sheaves, and the constraints there": [
         "model/rope_rates.py", "model/rope_states.py", "solve/modes/stuck_wraps.py",
-        "solve/motion/integrator_choice.py", "solve/statics/ropes_at_rest.py"],
+        "results/section_forces/ropes.py", "solve/motion/integrator_choice.py", "solve/statics/ropes_at_rest.py"],
     "points that must not coincide, as a force or a distance has no direction there": [
         "solve/notes/coincident_points.py"],
     "fleet angles, against what sheaves in space take": ["solve/notes/fleet_angles.py"],
@@ -66,9 +66,9 @@ SCENE_PLACES = {
         "solve/notes/penetrations.py", "solve/notes/surface_ends.py", "solve/notes/coarse_contact.py",
         "solve/statics/lying.py", "solve/statics/string_start.py"],
     "pictures of each kind": ["results/animation/marks.py"],
-    "ropes: their pictures, their meshes": [
+    "ropes: their pictures, their meshes, forces in their sections": [
         "choice/motion.py", "results/animation/clips.py", "results/animation/ropes.py", "results/error_estimate.py",
-        "results/pictures.py"],
+        "results/pictures.py", "results/section_forces/ropes.py"],
     "parameters that are adjusted": [
         "solve/adjustment/adjustment.py", "solve/adjustment/length_changes.py",
         "solve/adjustment/parameter_changes.py", "solve/adjustment/parameter_search.py",

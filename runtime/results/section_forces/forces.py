@@ -170,6 +170,14 @@ def no_cable(scene: SceneData, name: Any) -> UnknownResultError:
     return UnknownResultError(f'there is no cable "{name}"; {near(name, scene.cables)}')
 
 
+def check_words(name: str, method: str, side: str) -> None:
+    """Raise FunicularError for unknown words of section forces."""
+    for word, value, known in (("method", method, METHODS), ("side", side, SIDES)):
+        if value not in known:
+            raise FunicularError(f'section forces of "{name}": {word} must be '
+                                 + " or ".join(f'"{each}"' for each in known) + f", got {value!r}")
+
+
 def dataset(state: Recorded | RestState, cable: Cable | str, s: ArrayLike | Slide | None = None, *,
             method: str = "balance", side: str = "after") -> xarray.Dataset:
     """See `Run.section_forces`; of an equilibrium without the time."""
@@ -178,10 +186,7 @@ def dataset(state: Recorded | RestState, cable: Cable | str, s: ArrayLike | Slid
     scene, name = state.scene, cable.name if isinstance(cable, Cable) else cable
     if name not in scene.cables:
         raise no_cable(scene, name)
-    for word, value, known in (("method", method, METHODS), ("side", side, SIDES)):
-        if value not in known:
-            raise FunicularError(f'section forces of "{name}": {word} must be '
-                                 + " or ".join(f'"{each}"' for each in known) + f", got {value!r}")
+    check_words(name, method, side)
     drawn, over_time = scene.cables[name], not isinstance(state, RestState)
     s, follows = _places(state, drawn, s, over_time)
     compute: Callable[..., dict[str, np.ndarray]] = of_run if over_time else of_equilibrium
