@@ -54,6 +54,18 @@ print(f"tensions {ratio:.4f}, exp(mu phi) {np.exp(0.3 * run['top.wrap_angle'][-1
 assert abs(ratio / np.exp(0.3 * np.pi) - 1) < 5e-3
 
 # %%
+# At rest friction holds a load between two limits, those of ``scene.equilibrium(impending=...)``.
+
+scene = fu.Scene()
+scene.rigid_body("load", mass=10, inertia=(1, 1, 1), position=(R, -2, 0))
+scene.rope("rope", route=[fu.Anchor(at=(-R, -2, 0)), fu.Sheave("held", at=(0, 0, 0), radius=R, side="right",
+                                                               friction=0.3), fu.Anchor("load")],
+           tension=10 * G, elements=1, **ROPE)
+limits = scene.equilibrium().rope_tensions("rope").sel(span="ground to held", end="start")
+print(f"10 kg hang on {float(limits.min()):.1f} to {float(limits.max()):.1f} N")
+assert abs(limits.sel(limit="hoisting") / (10 * G * np.exp(0.3 * np.pi)) - 1) < 5e-3
+
+# %%
 # A load that swings
 # ------------------
 #

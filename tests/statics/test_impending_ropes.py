@@ -151,6 +151,14 @@ def test_refused(scene, settings, words):
         scene.equilibrium(**settings)
 
 
+def test_modes_about_a_limit_are_refused():
+    scene = loaded(capstan(0.1))
+    rest = scene.equilibrium(impending="hoisting")
+    assert rest.impending == "hoisting" and scene.equilibrium().impending is None
+    with pytest.raises(fu.SceneError, match="has ropes at the limit of friction"):
+        scene.modes(1, about=rest, wraps="stick")
+
+
 def test_a_closed_rope_has_no_limit():
     scene = fu.Scene(gravity=(0, 0, 0))
     rough = {"radius": 0.1, "side": "left", "friction": 0.3}

@@ -129,6 +129,9 @@ def modes(scene: SceneData, n: int, about: RestState | None = None, as_drawn: bo
 def _begin(static: StaticState, about: RestState | None, as_drawn: bool) -> list[str]:
     """Go to the state of the modes; return the messages on it. Raises SceneError, see `modes`."""
     if about is not None:
+        if about.impending is not None:
+            raise SceneError("modes", f'the state that modes are about has ropes at the limit of friction, "'
+                             f'{about.impending}", which modes do not have', "take an equilibrium without impending")
         about.check_supports(static.model, static.scene)
         own = static.keep()
         if any(values.shape != own[name].shape for name, values in about.static_state.items()):

@@ -138,7 +138,8 @@ class RestState(NamedArrays):
     that path; gravity_fraction: applied fraction of gravity, 1 where scale_gravity is off; messages: what the search
     passed, adjusted or left out; relaxation: the motion by which `Scene.relax` found the state, else None; turned: the
     angles of motions and driven joints in rad by label, with whole turns; adjustment: the parameters found for given
-    values of the state, else None; ``scene`` then has these values.
+    values of the state, else None; ``scene`` then has these values; impending: the motion that ropes are about to
+    begin, "hoisting" or "lowering", with their friction at its limit, else None.
     """
 
     scene: SceneData
@@ -159,6 +160,7 @@ class RestState(NamedArrays):
     layout: dict[str, list[Any]] = field(default_factory=dict, repr=False)
     turned: dict[str, float] = field(default_factory=dict, repr=False)
     relaxation: Relaxation | None = None
+    impending: str | None = None
     adjustment: Adjustment | None = None
 
     @classmethod
@@ -174,6 +176,7 @@ class RestState(NamedArrays):
                     numbers_at_rest(engine), heading)
         state.quantities = state._quantities()
         state.path, state.layout, state.turned = [state], layout(scene), problem.turns.reached
+        state.impending = problem.settings.impending
         return state
 
     def __repr__(self) -> str:
