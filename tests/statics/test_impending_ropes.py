@@ -151,6 +151,18 @@ def test_refused(scene, settings, words):
         scene.equilibrium(**settings)
 
 
+def test_no_state_at_the_limit_is_said():
+    """Two weights on a held sheave balance without friction alone: at its limit their ratio is another one."""
+    scene = fu.Scene(gravity=(0, -GRAVITY, 0))
+    for name, x in (("a", -0.1), ("b", 0.1)):
+        weight(scene, name, 3.0, x, -2)
+    scene.rope("rope", route=[fu.Anchor("a"), capstan(0.3), fu.Anchor("b")], elements=1, tension=3 * GRAVITY,
+               **rope_of(1e5, 1e-3, 0))
+    with pytest.raises(fu.EquilibriumError, match=r'no equilibrium was reached with ropes at the limit of friction, '
+                       r'"hoisting": .*; from the state without friction this was raised to [0-9.]+ % of its limit'):
+        scene.equilibrium(impending="hoisting", seek_stable=False)
+
+
 def test_modes_about_a_limit_are_refused():
     scene = loaded(capstan(0.1))
     rest = scene.equilibrium(impending="hoisting")

@@ -64,9 +64,13 @@ def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestStat
                       "under its torque; prescribe its angle, or leave the torque out")
         if slides := not_held(problem, lying(problem.scene, problem.model, problem.model.q)):
             remedy = f"; {slides}{remedy}"
+        at_limit = "" if settings.impending is None else f' with ropes at the limit of friction, "{settings.impending}"'
+        if search.slid is not None:
+            remedy = (f"; from the state without friction this was raised to {100 * search.slid:.3g} % of its limit"
+                      f"{remedy}")
         raise EquilibriumError(
-            f"no equilibrium was reached: the path from the drawn state ends at {100 * reached:.4g} % of the load"
-            f"{remedy}{problem.cause()}; the state there is kept in .state", state, reached)
+            f"no equilibrium was reached{at_limit}: the path from the drawn state ends at {100 * reached:.4g} % of the "
+            f"load{remedy}{problem.cause()}; the state there is kept in .state", state, reached)
     if scene.ropes:
         problem.restore(state.static_state)
         if off := problem.off_sheaves():
@@ -90,11 +94,13 @@ def _searched(scene: SceneData, settings: EquilibriumSettings, start: RestState 
     if settings.impending is None:
         return search, search.in_steps()
     search.problem.impend(0.0)
-    if search.in_steps() == 1.0 and slide_to_limit(search.problem):
+    slid = slide_to_limit(search.problem) if search.in_steps() == 1.0 else None
+    if slid == 1.0:
         search.path = []
         search.remember(made.of(search.problem, stability(search.problem)))
         return search, 1.0
     search = _Search(_begun(scene, settings, start), made)
+    search.slid = slid
     return search, search.in_steps()
 
 
@@ -106,10 +112,8 @@ def _begun(scene: SceneData, settings: EquilibriumSettings, start: RestState | N
     return problem
 
 
-def slide_to_limit(problem: StaticProblem) -> bool:
-    """Raise the friction of ropes from none to its limit, in steps from state to state; return whether that was
-    reached.
-    """
+def slide_to_limit(problem: StaticProblem) -> float:
+    """Raise the friction of ropes from none to its limit, in steps from state to state; return the fraction reached."""
     reached, step = 0.0, 1.0
     while reached < 1.0:
         kept, target = problem.keep(), min(1.0, reached + step)
@@ -120,8 +124,8 @@ def slide_to_limit(problem: StaticProblem) -> bool:
         problem.restore(kept)
         step = 0.5 * (target - reached)
         if step < MIN_FRICTION_STEP:
-            return False
-    return True
+            break
+    return reached
 
 
 def note(problem: StaticProblem, state: RestState) -> None:
@@ -155,6 +159,7 @@ class _Search(Generic[S]):
         self.state: S | None = None
         self.path: list[S] = []
         self.critical: list[CriticalPoint] = []
+        self.slid: float | None = None  # the fraction of the friction of ropes reached before, None without any
 
     @property
     def found(self) -> S:
