@@ -39,7 +39,8 @@ def rope_state(model: Model, rope: RopeModel, q: np.ndarray) -> dict[str, np.nda
             at = np.linspace(0, zones.shape[1] - 1, n)[1:-1]
             zone = at.astype(int)
             lengths.append(zones[:, zone] + (at - zone) * (zones[:, zone + 1] - zones[:, zone]))
-    return {"position": spatial(np.concatenate(places, axis=1)), "s": np.concatenate(lengths, axis=1)}
+    return {"position": spatial(np.concatenate(places, axis=1)),
+            "s": np.concatenate(lengths, axis=1) - np.reshape(rope.origin(q), (-1, 1))}
 
 
 def rope_motion(model: Model, rope: RopeModel, q: np.ndarray, dofs: np.ndarray) -> dict[str, np.ndarray]:

@@ -150,11 +150,17 @@ class RopeModel:
 
     @property
     def supply(self) -> int:
-        """Return the dof of the stress-free length at the last anchor, which follows from a given tension; -1 of ropes
-        with a given length, closed ones, and those that end on a drum.
+        """Return the dof of the stress-free length at an anchor, of both at the last one, which follows from a given
+        tension; -1 of ropes with a given length, closed ones, and those between drums.
         """
-        ends_there = not self.part.closed and isinstance(self.part.route[-1], Anchor)
-        return self.spans[-1].s[1] if ends_there and self.part.tension is not None else -1
+        if self.part.closed or self.part.tension is None:
+            return -1
+        return next((self.spans[end].s[end] for end in (-1, 0) if isinstance(self.part.route[end], Anchor)), -1)
+
+    def origin(self, q: np.ndarray) -> np.ndarray | float:
+        """Return the material coordinate of the rope's first end in configurations (..., n_q): at an anchor (...)."""
+        found: np.ndarray | float = q[..., self.spans[0].s[0]] if isinstance(self.part.route[0], Anchor) else 0.0
+        return found
 
     @property
     def free_length(self) -> float:

@@ -69,8 +69,8 @@ class Rope(Part):
         two sheaves or more. A `Block` stands for its sheaves
     closed: whether the last sheave leads to the first one, as of a belt
     elements: number of elements of each span, or a list of one number for each span
-    tension: at the route's first point, N: uniform as drawn; `equilibrium` finds the stress-free length of a rope whose
-        last item is an anchor with which it is that tension at rest, without friction, among the bodies as drawn
+    tension: at the route's first point, N: uniform as drawn; `equilibrium` finds the stress-free length of a rope with
+        an anchor with which it is that tension at rest, without friction, among the bodies as drawn
     length: stress-free length of the whole rope with what is wound on drums, m; without this at most the drawn length.
         The stretch is uniform as drawn
     element: "cable8p" in the plane z = 0; "cable12" in space, with axes of sheaves in any direction. There a body with

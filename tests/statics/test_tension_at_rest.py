@@ -79,14 +79,36 @@ def test_bending_space_and_coarse_meshes_keep_it(given):
     assert first_tension(rest) == pytest.approx(given.get("tension", 400.0), rel=1e-8)
 
 
-def test_a_drum_at_the_first_end():
+def winch(last: bool, tension: float = 300.0) -> fu.Scene:
+    """Return a rope from a drum over a sheave to an anchor, or the other way."""
     scene = fu.Scene(gravity=(0, -GRAVITY, 0))
-    scene.rope("rope", tension=300.0, elements=4, **rope_of(EA, RHO, 0), route=[
-        fu.Drum("winch", at=(0, 0, 0), radius=0.3, side="right", length_in_store=20.0, velocity=1.0),
-        fu.Sheave("one", at=(10, 2, 0), radius=0.3, side="right"), fu.Anchor(at=(25, -1, 0))])
-    rest = scene.equilibrium()
+    drum = fu.Drum("winch", at=(0, 0, 0), radius=0.3, side="left" if last else "right", length_in_store=20.0,
+                   velocity=1.0)
+    route = [drum, fu.Sheave("one", at=(10, 2, 0), radius=0.3, side="left" if last else "right"),
+             fu.Anchor(at=(25, -1, 0))]
+    scene.rope("rope", tension=tension, elements=4, **rope_of(EA, RHO, 0), route=route[::-1] if last else route)
+    return scene
+
+
+def test_a_drum_at_the_first_end():
+    rest = winch(last=False).equilibrium()
     assert rest["winch.tension"] == pytest.approx(300.0, rel=1e-8)
     assert rest["winch.length_in_store"] == pytest.approx(20.0, abs=0.1)  # the foot moves
+
+
+def test_a_drum_at_the_last_end_is_its_mirror():
+    """Drawn with the tension that its mirror has at the anchor it has the same state; its s begin at the anchor."""
+    first = winch(last=False).equilibrium()
+    last = winch(last=True, tension=np.linalg.norm(first["rope.end_force"])).equilibrium()
+    assert last["winch.tension"] == pytest.approx(300.0, rel=1e-6)
+    assert last["one.wrap_angle"] == pytest.approx(first["one.wrap_angle"], rel=1e-6)
+    assert last["rope.s"][0] == 0.0
+    free = first["rope.s"][-1] - first["winch.length_in_store"]
+    assert last["rope.s"][-1] == pytest.approx(free, rel=1e-8)
+    run = last.scene.run(0.1, output_step=0.1, initial=last)
+    assert run["winch.length_in_store"][0] == pytest.approx(last["winch.length_in_store"], abs=1e-12)
+    assert run["rope.s"][0] == pytest.approx(last["rope.s"], abs=1e-12)
+    assert last.section_forces("rope").s.values[0] == 0.0
 
 
 def test_among_bodies_as_drawn():

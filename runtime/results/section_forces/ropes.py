@@ -109,7 +109,7 @@ class _Span:
     def __init__(self, rope: RopeModel, span: SpanCoordinates, q: np.ndarray):
         self.rope = rope
         self.vectors = q[:, span.nodes].reshape(len(q), -1, PER_NODE, span.dim)
-        ends = q[:, list(span.s)]
+        ends = q[:, list(span.s)] - np.reshape(rope.origin(q), (-1, 1))
         self.s = ends[:, :1] + span.share * np.diff(ends)
 
     def divided(self) -> np.ndarray:

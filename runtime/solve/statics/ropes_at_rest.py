@@ -1,7 +1,7 @@
 """Ropes of a given tension at rest among the bodies as drawn, which gives their stress-free lengths.
 
 Without friction W - T lambda - rho g . r is the same all along a rope at rest, with the energy W of a stress-free
-length, the tension T and the stretch lambda. This is the force on the arc-length at the last anchor where more rope is
+length, the tension T and the stretch lambda. This is the force on the arc-length at an anchor where more rope is
 supplied there. With this force of the given tension at the first point, that arc-length is an unknown; afterwards it is
 held. The mesh makes a small difference between the force and the tension at the first point, which a few corrections
 remove.
@@ -91,7 +91,10 @@ def off_sheaves(model: Model, engine: Engine) -> str:
 
 
 class _Supplied:
-    """A rope alone, held at the places as drawn, with a supply at its last anchor."""
+    """A rope alone, held at the places as drawn, with a supply at an anchor.
+
+    sign: 1 where this is the last item of the route, else -1; kept: the material coordinate at the other end.
+    """
 
     def __init__(self, scene: SceneData, part: Rope):
         alone = SceneData(scene.gravity)
@@ -100,7 +103,9 @@ class _Supplied:
         self.rope, = self.model.ropes
         self.engine = Engine(self.model)
         self.engine.set_state(0.0)
-        self.at = self.model.unknown_of_dof[self.rope.supply]
+        ends = self.rope.spans[0].s[0], self.rope.spans[-1].s[1]
+        self.sign = 1.0 if self.rope.supply == ends[1] else -1.0
+        self.at, self.kept = self.model.unknown_of_dof[self.rope.supply], ends[0 if self.sign > 0 else 1]
         free = self.model.unknown_of_dof >= 0
         self.weight = np.zeros(self.engine.unknowns)
         self.weight[self.model.unknown_of_dof[free]] = self.model.weight[free]
@@ -138,7 +143,7 @@ class _Supplied:
         longer = self.rope.route.stretch / (1 + tension / self.EA)
         q, spans = self.model.q.copy(), self.rope.spans
         s = np.unique(np.concatenate([*(span.s for span in spans), *(sheave.s for sheave in self.rope.sheaves)]))
-        q[s] = q[spans[0].s[0]] + longer * (q[s] - q[spans[0].s[0]])
+        q[s] = q[self.kept] + longer * (q[s] - q[self.kept])
         for span in spans:
             q[span.nodes].reshape(-1, 2, span.dim)[:, 1] /= longer
         self.engine.set_state(0.0, q)
@@ -163,7 +168,7 @@ class _Supplied:
         least, size = np.inf, self.rope.route.length
         for _ in range(MAX_ITERATIONS):
             residual = self.engine.static_residual()
-            residual[self.at] -= force
+            residual[self.at] -= self.sign * force
             try:
                 change = solver(self.engine.matrix(0.0, 0.0, 1.0))(-residual)
             except RuntimeError:
