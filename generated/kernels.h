@@ -1368,6 +1368,12 @@ typedef void fu_sheave_store_energy_kernel(fu_real rho, fu_real R, const fu_real
 /* g 2, c 2, c_rate 2, T 1, V 1 */
 fu_sheave_store_energy_kernel planar_sheave_store_energy;
 
+typedef void fu_sheave_laying_kernel(fu_real rho, const fu_real *g, fu_real sense, fu_real R, fu_real wound, const fu_real *x, fu_real *V, fu_real *F);
+/* energy of gravity of the tangent point, as the rope is laid on there, and its force: rho [kg/m]; g [m/s^2]; sense
+ * [1]; R [m]; wound [1]; x [m] -> V [J]; F [N] */
+/* g 2, x 2, V 1, F 2 */
+fu_sheave_laying_kernel planar_sheave_laying;
+
 typedef void fu_sheave_creep_kernel(const fu_real *A, fu_real R, fu_real wound, fu_real span_stretch, fu_real *W, fu_real *loss);
 /* elastic energy of a wound length, and the part that is dissipated as it passes: A [N, N m^2]; R [m]; wound [1];
  * span_stretch [1] -> W [J/m]; loss [J/m] */
@@ -1909,6 +1915,7 @@ typedef struct {
     fu_sheave_store_mass_kernel *store_mass;
     fu_sheave_store_tangent_kernel *store_tangent;
     fu_sheave_store_energy_kernel *store_energy;
+    fu_sheave_laying_kernel *laying;
     fu_sheave_creep_kernel *creep;
 } fu_sheave_kernels;
 

@@ -2055,6 +2055,21 @@ void planar_sheave_store_energy(fu_real rho, fu_real R, const fu_real *g, fu_rea
     V[0] = -(rho*u*(c[0]*g[0] + c[1]*g[1]));
 }
 
+/* energy of gravity of the tangent point, as the rope is laid on there, and its force (Lagrange's equations of a rope that is wound on a drum); 1 add, 7 mul, 1 div */
+void planar_sheave_laying(fu_real rho, const fu_real *g, fu_real sense, fu_real R, fu_real wound, const fu_real *x, fu_real *V, fu_real *F)
+{
+    /* energy of gravity */
+    const fu_real
+        weight = R*rho*sense/wound,
+        height = weight*(-g[0]*x[1] + g[1]*x[0]),
+        d_x0_height = g[1]*weight,
+        d_x1_height = -(g[0]*weight);
+    /* outputs */
+    V[0] = height;
+    F[0] = d_x0_height;
+    F[1] = d_x1_height;
+}
+
 /* elastic energy of a wound length, and the part that is dissipated as it passes (Lagrange's equations of a rope that is wound on a drum); 4 add, 11 mul, 2 div */
 void planar_sheave_creep(const fu_real *A, fu_real R, fu_real wound, fu_real span_stretch, fu_real *W, fu_real *loss)
 {

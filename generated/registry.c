@@ -274,7 +274,8 @@ static const fu_sheave_kernels sheaves[] = {
      planar_sheave_friction_tangent, planar_sheave_friction_on, planar_sheave_friction_on_tangent,
      planar_sheave_friction_off, planar_sheave_friction_off_tangent, planar_sheave_short_wrap,
      planar_sheave_short_wrap_motion, planar_sheave_winding, planar_sheave_winding_motion, planar_sheave_store,
-     planar_sheave_store_mass, planar_sheave_store_tangent, planar_sheave_store_energy, planar_sheave_creep},
+     planar_sheave_store_mass, planar_sheave_store_tangent, planar_sheave_store_energy, planar_sheave_laying,
+     planar_sheave_creep},
 };
 
 static const fu_span_kernels spans[] = {
@@ -382,6 +383,7 @@ static const fu_tangent_point_kernels tangent_points[] = {
 #define FU_ARGUMENTS_sss_1 *a[0], *a[1], *a[2], out[0]
 #define FU_ARGUMENTS_vssvsvsvssvvss_2 a[0], *a[1], *a[2], a[3], *a[4], a[5], *a[6], a[7], *a[8], *a[9], a[10], a[11], *a[12], *a[13], out[0], out[1]
 #define FU_ARGUMENTS_ssvsvsv_2 *a[0], *a[1], a[2], *a[3], a[4], *a[5], a[6], out[0], out[1]
+#define FU_ARGUMENTS_svsssv_2 *a[0], a[1], *a[2], *a[3], *a[4], a[5], out[0], out[1]
 #define FU_ARGUMENTS_vsss_2 a[0], *a[1], *a[2], *a[3], out[0], out[1]
 #define FU_ARGUMENTS_svvvs_3 *a[0], a[1], a[2], a[3], *a[4], out[0], out[1], out[2]
 #define FU_ARGUMENTS_ssvvv_1 *a[0], *a[1], a[2], a[3], a[4], out[0]
@@ -944,6 +946,7 @@ static const fu_tangent_point_kernels tangent_points[] = {
     X(planar_sheave_store_mass, sss_1) \
     X(planar_sheave_store_tangent, vssvsvsvssvvss_2) \
     X(planar_sheave_store_energy, ssvsvsv_2) \
+    X(planar_sheave_laying, svsssv_2) \
     X(planar_sheave_creep, vsss_2) \
     X(span_cable8p_point, svvvs_3) \
     X(span_cable8p_kinetic_energy, ssvvv_1) \

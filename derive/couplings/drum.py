@@ -7,8 +7,9 @@ At the tangent point (sheave.py) the rope runs on as the drum, turned by psi, ta
 
 sigma the sense in which the point passes over the rim as the rope is wound. Winding, lambda is that of the span's
 slope; paying out, that of the wound rope, which keeps its stretch. The wound rope turns with the drum, and its mean
-place is the centre. Its kinetic energy and its height give forces on psi, on the centre and on u. Its elastic energy
-grows by W(lambda) du. Of what is paid out with another stretch lambda_w than that of the span, lambda_s, the difference
+place is the centre. Its kinetic energy and its height give forces on psi, on the centre and on u. The rope is laid
+on at the height of the tangent point, from where the drum takes it to the mean place. Its elastic energy grows by
+W(lambda) du. Of what is paid out with another stretch lambda_w than that of the span, lambda_s, the difference
 W(lambda_w) - W(lambda_s) - W'(lambda_s) (lambda_w - lambda_s) a length is dissipated, so that the span pulls on the rim
 with its own tension.
 """
@@ -26,7 +27,8 @@ DIM = 2
 
 def kernels() -> list[Program]:
     """Return the kernels of a drum."""
-    return [winding(), winding_motion(), store(), store_mass(), store_tangent(), store_energy(), creep()]
+    return [winding(), winding_motion(), store(), store_mass(), store_tangent(), store_energy(), laying(),
+            creep()]
 
 
 def _program(kernel: str, doc: str) -> Program:
@@ -173,6 +175,26 @@ def store_energy() -> Program:
     of = Store(p, 0)
     p.output("T", [of.T], "J", "kinetic energy")
     p.output("V", [of.V], "J", "energy of gravity")
+    return p
+
+
+def laying() -> Program:
+    """Return the kernel of the height at which the rope is laid on, beside that of the centre.
+
+    With lambda du = sigma R dphi where the drum is still, the energy -rho sigma R^2/lambda g . m of the angle phi of
+    the tangent point, m' = n, grows by -rho g . x du, x = R n. m is x turned to the right by 90 degrees, over R. A
+    constant stretch lambda leaves it a function of the place.
+    """
+    p = _program("laying", "energy of gravity of the tangent point, as the rope is laid on there, and its force")
+    rho, g = p.input("rho", (), "kg/m", "mass of a length"), p.input("g", DIM, "m/s^2", "gravity")
+    sense, R = p.input("sense", (), "1", "1 where the point passes to greater angles as it winds, else -1"), _radius(p)
+    stretch = p.input("wound", (), "1", "stretch of the wound rope, constant")
+    x = p.input("x", DIM, "m", "end of the span less the centre of the drum")
+    p.stage("energy of gravity")
+    weight = p.define("weight", rho * sense * R / stretch)
+    height = p.define("height", weight * (g[1] * x[0] - g[0] * x[1]))
+    p.output("V", [height], "J", "energy of gravity")
+    p.output("F", jacobian(p, np.array([height]), x)[0], "N", "derivatives of V by x")
     return p
 
 

@@ -502,6 +502,7 @@ class DrumModel(CouplingModel):
     end: float
     radius: float
     tangent_radius: float
+    stretch: float
     sense: float
     rho: float
     g: np.ndarray
@@ -547,7 +548,8 @@ def drum_models(builder: ModelBuilder) -> Iterator[DrumModel]:
                             attachments=(builder.attachment(item.end, np.eye(3)),), coordinates=at,
                             cell=rope.free_length / CELLS, direction=direction,
                             end=0.0 if at.end == 0 else rope.free_length, radius=item.radius,
-                            tangent_radius=rope.route.reach[at.end], sense=float(SIDES[item.side]), rho=rope.rho,
+                            tangent_radius=rope.route.reach[at.end], stretch=rope.route.stretch,
+                            sense=float(SIDES[item.side]), rho=rope.rho,
                             g=gravity, A=rope.stiffness[:2], **_motion_of(builder, item), ends_run_by=item.at_end,
                             scale=[rope.mass_of_element(at.end)] * 3, n_multipliers=3, has_inertia=True, is_damped=True)
 

@@ -269,6 +269,7 @@ CEILINGS = {
         "friction_off_tangent": 351,
         "short_wrap": 399, "short_wrap_motion": 52,
         "winding": 46, "winding_motion": 29, "store": 69, "store_mass": 5, "store_tangent": 71, "store_energy": 15,
+        "laying": 9,
         "creep": 17
     },
 }

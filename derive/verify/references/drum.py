@@ -53,6 +53,16 @@ def kinetic_energy(s: Any) -> Any:
     return s["rho"].item() * s["u"].item() * _mean(lambda angle: _square(_velocity(s, angle, 0))) / 2
 
 
+def laying(s: Any) -> Any:
+    """Return half the weight of a length times the way over the half turn before the tangent point: the rope is laid on
+    at its height there, and the energy is zero on the average of a turn.
+    """
+    x, g = s["x"], s["g"]
+    size, end = mp.sqrt(x.dot(x)), mp.atan2(x[1], x[0])
+    along = mp.quad(lambda angle: size * (g[0] * mp.cos(angle) + g[1] * mp.sin(angle)), [end - mp.pi, end])
+    return -s["rho"].item() * s["sense"].item() * s["R"].item() / s["wound"].item() * along / 2
+
+
 def gravity(s: Any) -> Any:
     """Return the energy of gravity of the wound rope."""
     return -s["rho"].item() * s["u"].item() * _mean(lambda angle: s["g"].dot(_place(s, angle, 0)))

@@ -23,8 +23,8 @@ typedef struct {
     fu_wheel wheel;
     int node, s; /* dofs: the first of the node; its material coordinate */
     int n_cells;
-    double cell, direction, end; /* m: stress-free length of a cell; 1 at the first end of the rope, else -1; m */
-    double tangent_radius;
+    double cell, direction, end;    /* m: stress-free length of a cell; 1 at the first end of the rope, else -1; m */
+    double tangent_radius, stretch; /* m; of the rope as drawn */
 } fu_drum;
 
 typedef struct {
@@ -170,13 +170,29 @@ static void store_derivatives(const fu_drum *drum, const view *at, double *D, do
                                  at->wheel.c_acc, at->slope, at->winds, at->wound, D, K);
 }
 
+/* Computes the force on the tangent point, from the centre, of the height at which the rope is laid on; returns its
+ * energy. */
+static double laying(const fu_drum *drum, const view *at, double F[DIM])
+{
+    const fu_wheel *wheel = &drum->wheel;
+    double V;
+    wheel->kernel->laying(wheel->rho, wheel->g, winding_sense(drum), wheel->radius, drum->stretch, at->x, &V, F);
+    return V;
+}
+
 /* Computes all forces by y but those of the conditions; the bearing's is on the drum alone. */
 static void forces_by_y(const fu_drum *drum, const view *at, double y[Y])
 {
     double F[STORE];
+    double laid[DIM];
     memset(y, 0, sizeof(double) * Y);
     store_forces(drum, at, F);
     for (int k = 0; k < STORE; ++k) y[of_store[k]] += F[k];
+    laying(drum, at, laid);
+    for (int d = 0; d < DIM; ++d) {
+        y[d] += laid[d];
+        y[CENTRE + d] -= laid[d];
+    }
     y[TURN] += drum->wheel.inertia * at->wheel.turn_acc;
 }
 
@@ -284,10 +300,12 @@ static void energies(const fu_model *model, const fu_coupling *coupling, const d
     const fu_drum *drum = drum_of(coupling);
     const fu_wheel *wheel = &drum->wheel;
     const fu_state state = {.q = (double *)q, .v = (double *)v};
+    double laid[DIM];
     view at;
     look(model, coupling, &state, 0, &at);
     wheel->kernel->store_energy(wheel->rho, wheel->radius, wheel->g, at.u, at.wheel.centre.p, at.wheel.turn_rate,
                                 at.wheel.centre.v, T, V);
+    *V += laying(drum, &at, laid);
     *T += 0.5 * wheel->inertia * at.wheel.turn_rate * at.wheel.turn_rate;
 }
 
@@ -551,11 +569,17 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
 static const char *const role[] = {"sheave", 0};
 
 static const fu_field fields[] = {
-    FU_FIELD(fu_wheel, kernel, FU_KERNELS, role),  FU_WHEEL_FIELDS,
-    FU_FIELD(fu_drum, node, FU_INTEGER, 0),        FU_FIELD(fu_drum, s, FU_INTEGER, 0),
-    FU_FIELD(fu_drum, n_cells, FU_INTEGER, 0),     FU_FIELD(fu_drum, cell, FU_REAL, 0),
-    FU_FIELD(fu_drum, direction, FU_REAL, 0),      FU_FIELD(fu_drum, end, FU_REAL, 0),
-    FU_FIELD(fu_drum, tangent_radius, FU_REAL, 0), {0},
+    FU_FIELD(fu_wheel, kernel, FU_KERNELS, role),
+    FU_WHEEL_FIELDS,
+    FU_FIELD(fu_drum, node, FU_INTEGER, 0),
+    FU_FIELD(fu_drum, s, FU_INTEGER, 0),
+    FU_FIELD(fu_drum, n_cells, FU_INTEGER, 0),
+    FU_FIELD(fu_drum, cell, FU_REAL, 0),
+    FU_FIELD(fu_drum, direction, FU_REAL, 0),
+    FU_FIELD(fu_drum, end, FU_REAL, 0),
+    FU_FIELD(fu_drum, tangent_radius, FU_REAL, 0),
+    FU_FIELD(fu_drum, stretch, FU_REAL, 0),
+    {0},
 };
 
 static const fu_output output_fields[] = {
