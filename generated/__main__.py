@@ -93,6 +93,8 @@ SOURCES = (
     "planar_zero_length_spring.c",
     "resistance.c",
     "planar_resistance.c",
+    "planar_rope_point.c",
+    "rope_point.c",
     "planar_sheave.c",
     "span_cable8p.c",
     "span_cable12.c",

@@ -1199,6 +1199,22 @@ fu_resistance_force_kernel resistance_force;
 /* t 2, u 2, f 2, friction 5, buffer 4, R 1, R_t 2, R_u 2, R_f 2, R_x 1 */
 fu_resistance_force_kernel planar_resistance_force;
 
+typedef void fu_rope_point_point_kernel(const fu_real *e, const fu_real *v, const fu_real *s, const fu_real *s_rate, const fu_real *share, fu_real S, fu_real *p, fu_real *P, fu_real *velocity, fu_real *bias);
+/* place, derivatives and motion of a material point: e [m, 1]; v [m/s, 1/s]; s [m]; s_rate [m/s]; share [1]; S [m]
+ * -> p [m]; P [1, m]; velocity [m/s]; bias [m/s^2] */
+/* e 4x2, v 4x2, s 2, s_rate 2, share 2, p 2, P 2x10, velocity 2, bias 2 */
+fu_rope_point_point_kernel planar_rope_point_point;
+/* e 4x3, v 4x3, s 2, s_rate 2, share 2, p 3, P 3x14, velocity 3, bias 3 */
+fu_rope_point_point_kernel rope_point_point;
+
+typedef void fu_rope_point_wrench_kernel(const fu_real *e, const fu_real *v, const fu_real *s, const fu_real *s_rate, const fu_real *share, fu_real S, const fu_real *f, fu_real *K, fu_real *v_q);
+/* derivatives of the generalised force of a force on the point, and of its velocity: e [m, 1]; v [m/s, 1/s]; s [m];
+ * s_rate [m/s]; share [1]; S [m]; f [N] -> K [N, N/m]; v_q [1/s, m/s] */
+/* e 4x2, v 4x2, s 2, s_rate 2, share 2, f 2, K 10x10, v_q 2x10 */
+fu_rope_point_wrench_kernel planar_rope_point_wrench;
+/* e 4x3, v 4x3, s 2, s_rate 2, share 2, f 3, K 14x14, v_q 3x14 */
+fu_rope_point_wrench_kernel rope_point_wrench;
+
 typedef void fu_sheave_tangent_point_kernel(const fu_real *x, const fu_real *slope, fu_real R, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
 /* conditions of a tangent point, and their derivatives: x [m]; slope [1]; R [m]; f [N] -> phi [m]; J [1, m]; K [N/m,
  * N] */
@@ -1883,6 +1899,14 @@ typedef struct {
     fu_resistance_force_kernel *force;
 } fu_resistance_kernels;
 
+/* What the engine needs of a rope_point. */
+typedef struct {
+    const char *name;
+    int dim;
+    fu_rope_point_point_kernel *point;
+    fu_rope_point_wrench_kernel *wrench;
+} fu_rope_point_kernels;
+
 /* What the engine needs of a sheave. */
 typedef struct {
     const char *name;
@@ -1989,6 +2013,8 @@ typedef struct {
     const fu_point_law_kernels *point_laws;
     int n_resistances;
     const fu_resistance_kernels *resistances;
+    int n_rope_points;
+    const fu_rope_point_kernels *rope_points;
     int n_sheaves;
     const fu_sheave_kernels *sheaves;
     int n_spans;
@@ -2025,6 +2051,8 @@ static inline const void *fu_find(const fu_tables *tables, const char *role, con
         if (!strcmp(tables->point_laws[i].name, name)) return &tables->point_laws[i];
     for (int i = 0; i < tables->n_resistances && !strcmp(role, "resistance"); ++i)
         if (!strcmp(tables->resistances[i].name, name)) return &tables->resistances[i];
+    for (int i = 0; i < tables->n_rope_points && !strcmp(role, "rope_point"); ++i)
+        if (!strcmp(tables->rope_points[i].name, name)) return &tables->rope_points[i];
     for (int i = 0; i < tables->n_sheaves && !strcmp(role, "sheave"); ++i)
         if (!strcmp(tables->sheaves[i].name, name)) return &tables->sheaves[i];
     for (int i = 0; i < tables->n_spans && !strcmp(role, "span"); ++i)

@@ -266,6 +266,11 @@ static const fu_resistance_kernels resistances[] = {
     {"planar_resistance", 2, planar_resistance_force},
 };
 
+static const fu_rope_point_kernels rope_points[] = {
+    {"planar_rope_point", 2, planar_rope_point_point, planar_rope_point_wrench},
+    {"rope_point", 3, rope_point_point, rope_point_wrench},
+};
+
 static const fu_sheave_kernels sheaves[] = {
     {"planar_sheave", 2, planar_sheave_tangent_point, planar_sheave_tangent_point_motion, planar_sheave_angle,
      planar_sheave_energy, planar_sheave_weight, planar_sheave_force, planar_sheave_tangent,
@@ -360,6 +365,8 @@ static const fu_tangent_point_kernels tangent_points[] = {
 #define FU_ARGUMENTS_vvvvvvvv_2 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]
 #define FU_ARGUMENTS_vsvv_2 a[0], *a[1], a[2], a[3], out[0], out[1]
 #define FU_ARGUMENTS_vvvvv_5 a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]
+#define FU_ARGUMENTS_vvvvvs_4 a[0], a[1], a[2], a[3], a[4], *a[5], out[0], out[1], out[2], out[3]
+#define FU_ARGUMENTS_vvvvvsv_2 a[0], a[1], a[2], a[3], a[4], *a[5], a[6], out[0], out[1]
 #define FU_ARGUMENTS_vvsv_3 a[0], a[1], *a[2], a[3], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vvv_7 a[0], a[1], a[2], out[0], out[1], out[2], out[3], out[4], out[5], out[6]
 #define FU_ARGUMENTS_vssvs_1 a[0], *a[1], *a[2], a[3], *a[4], out[0]
@@ -397,7 +404,6 @@ static const fu_tangent_point_kernels tangent_points[] = {
 #define FU_ARGUMENTS_ssvs_6 *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]
 #define FU_ARGUMENTS_vvvv_3 a[0], a[1], a[2], a[3], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vvvs_4 a[0], a[1], a[2], *a[3], out[0], out[1], out[2], out[3]
-#define FU_ARGUMENTS_vvvvvs_4 a[0], a[1], a[2], a[3], a[4], *a[5], out[0], out[1], out[2], out[3]
 #define FU_ARGUMENTS_vvvvvvvvsvvvsvvvvv_3 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], *a[8], a[9], a[10], a[11], *a[12], a[13], a[14], a[15], a[16], a[17], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vvvvvvvvvv_2 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], out[0], out[1]
 #define FU_ARGUMENTS_vvvvvvvvvvsvv_2 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], *a[10], a[11], a[12], out[0], out[1]
@@ -918,6 +924,10 @@ static const fu_tangent_point_kernels tangent_points[] = {
     X(planar_zero_length_spring_discrete_force, vsvv_2) \
     X(resistance_force, vvvvv_5) \
     X(planar_resistance_force, vvvvv_5) \
+    X(planar_rope_point_point, vvvvvs_4) \
+    X(planar_rope_point_wrench, vvvvvsv_2) \
+    X(rope_point_point, vvvvvs_4) \
+    X(rope_point_wrench, vvvvvsv_2) \
     X(planar_sheave_tangent_point, vvsv_3) \
     X(planar_sheave_tangent_point_motion, vvv_1) \
     X(planar_sheave_angle, vvv_7) \
@@ -1021,6 +1031,7 @@ const fu_tables fu_all = {
     20, joints,
     6, point_laws,
     2, resistances,
+    2, rope_points,
     1, sheaves,
     2, spans,
     2, surfaces,

@@ -451,6 +451,18 @@ def tangent_point_scope(name: str) -> Scope:
     return Scope(families()[name], (*vectors, *numbers, *ends))
 
 
+def rope_point_scope(name: str) -> Scope:
+    """Return the scope of a material point of a rope."""
+    nodes = [Symbol(rf"{accent.format(letter)}_{{{node + 1}}}", argument, row(2 * node + k))
+             for accent, argument in ((r"\mathbf{{{}}}", "e"), (r"\dot{{\mathbf{{{}}}}}", "v"))
+             for node in range(2) for k, letter in enumerate("rt")]
+    ends = [Symbol(rf"{letter}_{{{k + 1}}}", argument, entry(k))
+            for letter, argument in (("s", "s"), (r"\dot{s}", "s_rate")) for k in range(2)]
+    shares = [Symbol(letter, "share", entry(k)) for k, letter in enumerate("ab")]
+    return Scope(families()[name], (*nodes, *ends, *shares, Symbol("S", "S", number),
+                                    Symbol(r"\mathbf{f}", "f", column)))
+
+
 def scope(role: str, name: str) -> Scope:
     """Return the scope of a family: the function of this module called as its role makes it."""
     found: Scope = globals()[f"{role}_scope"](name)

@@ -260,6 +260,8 @@ CEILINGS = {
         "energy": 295, "elastic_force": 561, "elastic_tangent": 2582, "dissipation": 391, "damping_force": 538,
         "damping_tangent": 4371
     },
+    "planar_rope_point": {"point": 357, "wrench": 776},
+    "rope_point": {"point": 402, "wrench": 844},
     "tangent_point": {"conditions": 1678, "motion": 310, "chord": 202, "across": 27},
     "planar_sheave": {
         "tangent_point": 27, "tangent_point_motion": 26, "angle": 121, "energy": 13, "weight": 21, "force": 85,

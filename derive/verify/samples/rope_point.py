@@ -1,0 +1,23 @@
+"""Samples of material points of ropes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...codegen.family import CouplingFamily
+from ...couplings.rope_point import ELEMENT
+from ...elements import ELEMENTS
+from ..numbers import Numbers, State
+from .element import element_state
+
+
+def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) -> State:
+    """Return a bent element within a span, rates of its nodal vectors and of both ends of the span, and a force."""
+    spec = ELEMENTS[ELEMENT[family.dim]]
+    element = element_state(spec, random)
+    share = np.array([random.uniform(0.1, 0.3), random.uniform(0.6, 0.9)])
+    length = float(element["l"]) / (share[1] - share[0])  # of the span
+    start = random.normal()
+    S = start + length * (share[0] + random.uniform(0.2, 0.8) * (share[1] - share[0]))
+    return {"e": element["e"], "v": random.normal(size=element["e"].shape), "s": np.array([start, start + length]),
+            "s_rate": random.normal(size=2), "share": share, "S": np.float64(S), "f": random.normal(size=family.dim)}
