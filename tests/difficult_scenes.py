@@ -252,5 +252,23 @@ def reeved(*, held: str | None = None) -> Scene:
     return scene
 
 
-SCENES = {f.__name__: f for f in (reeved, rider, loaded, planar, frame, star, jointed, jointed_plane, tied, modal,
-                                 modal_in_the_plane, modal_in_joints, modal_in_planar_joints, resisted)}
+def gripped() -> Scene:
+    """Return a rope over sheaves with a body that grips it, and one that a spring with a damper holds to it."""
+    scene = reeved()
+    rope = scene.ropes["hoist"]
+    first, *_, last = rope.drawn(scene.bodies).arc_lengths(0.0)
+    for name, (start, end), below in (("C", first, 0.0), ("D", last, 0.4)):
+        s = start + 0.6 * (end - start)
+        x, y, _ = rope.point(scene.bodies, s)
+        scene.rigid_body(name, mass=0.7, inertia=(1, 1, 0.03), position=(x - 0.1, y - 0.05 - below, 0),
+                         velocity=(0.2, 0.1, 0), angular_velocity=(0, 0, 2))
+        held = (("hoist", s), (name, (0.1, 0.05, 0)))
+        if below:
+            scene.spring(*held, stiffness=300.0, damping=4.0, length=0.3)
+        else:
+            scene.joint("spherical", *held)
+    return scene
+
+
+SCENES = {f.__name__: f for f in (reeved, gripped, rider, loaded, planar, frame, star, jointed, jointed_plane, tied,
+                                 modal, modal_in_the_plane, modal_in_joints, modal_in_planar_joints, resisted)}

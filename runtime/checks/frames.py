@@ -71,6 +71,8 @@ def end_frame(scene: SceneData, end: Attachment, up: Sequence[float] | None = No
         return np.eye(3)
     if end.on in scene.bodies:
         return scene.bodies[end.on].axes
+    if end.on in scene.ropes:
+        return np.eye(3)  # a rope has no axes, and joints that need some are refused
     cable = scene.cables[end.on]
     return section_frame(cable, end.arc_length) if draws_section(cable) else cable_frame(cable, end.arc_length, up)
 

@@ -28,7 +28,8 @@ def placed_joint(scene: SceneData, joint: Joint) -> Joint:
     """Return the joint complete and checked; a gap is reported. Raises SceneError."""
     joint = placed_between(scene, joint)
     if move_as_one(scene, joint.a, joint.b):
-        raise SceneError(joint.where, f"joins {called(joint.a)} to itself", "give it two ends")
+        raise SceneError(joint.where, f"joins {called(scene, joint.a)} to itself", "give it two ends")
+    _check_on_ropes(scene, joint)
     joint = joint.completed(_completed(scene, joint))
     _check_frames(scene, joint)
     check_other_joints(scene, joint, lambda: LENGTH_TOLERANCE * scene_size(scene, joint))
@@ -36,6 +37,17 @@ def placed_joint(scene: SceneData, joint: Joint) -> Joint:
     if _is_beyond(scene, joint, gap := _gap(scene, joint), LENGTH_TOLERANCE):
         report(scene, f"{joint.where}: {_apart(scene, joint, gap)}; they are brought together")
     return joint
+
+
+def _check_on_ropes(scene: SceneData, joint: Joint) -> None:
+    """Raise SceneError for a joint that would hold the direction of a rope."""
+    held = next((scene.ropes[end.on] for end in (joint.a, joint.b) if end.on in scene.ropes), None)
+    if held is None or joint.joint_kind in ("spherical", "distance"):
+        return
+    if joint.joint_kind != "revolute" or held.dim == 3 or joint.is_driven:
+        driven = "driven " * joint.is_driven
+        raise SceneError(joint.where, f'a {driven}{joint.joint_kind} joint needs axes, and rope "{held.name}" has none',
+                         'take kind="spherical" or "distance"')
 
 
 def check_joint(scene: SceneData, joint: Joint) -> None:
@@ -81,7 +93,9 @@ def scene_size(scene: SceneData, joint: Joint) -> float:
     """Return the largest extent of the scene, m."""
     points = [point_of(scene, joint.a), point_of(scene, joint.b)]
     points += [body.frame[0] for body in scene.bodies.values()]
-    return max(_extent(points), *(cable.length for cable in scene.cables.values()), 0.0)
+    lengths = [cable.length for cable in scene.cables.values()]
+    lengths += [scene.ropes[end.on].drawn(scene.bodies).length for end in (joint.a, joint.b) if end.on in scene.ropes]
+    return max(_extent(points), *lengths, 0.0)
 
 
 def _is_beyond(scene: SceneData, joint: Joint, gap: float, part: float) -> bool:
@@ -167,11 +181,11 @@ def check_supports(scene: SceneData, joint: Joint) -> None:
             continue
         support = support_of(scene, node)
         if other.on is None and support is not None and _fixes_position(support):
-            raise SceneError(joint.where, f"fixes {called(end)} to the ground, but it is {SUPPORTED[support.kind]} "
-                             "already", "leave one of them out")
+            raise SceneError(joint.where, f"fixes {called(scene, end)} to the ground, but it is "
+                             f"{SUPPORTED[support.kind]} already", "leave one of them out")
         if _node(scene, other) in joined(scene, node):
-            raise SceneError(joint.where, f"joins {called(end)} to {called(other)}, but their nodes are joined "
-                             "already", "leave one of them out")
+            raise SceneError(joint.where, f"joins {called(scene, end)} to {called(scene, other)}, but their nodes are "
+                             "joined already", "leave one of them out")
 
 
 def _fixes_position(support: Support) -> bool:
@@ -204,7 +218,7 @@ def check_other_joints(scene: SceneData, joint: Joint, near: Callable[[], float]
 def _clash(scene: SceneData, joint: Joint, other: Joint, ends: tuple[Attachment, Attachment],
            near: float) -> str | None:
     """Return the conflict of two joints between the same bodies; ``ends`` of the other one, in the order of joint's."""
-    between = f"{called(joint.a)} and {called(joint.b)}"
+    between = f"{called(scene, joint.a)} and {called(scene, joint.b)}"
     if "weld" in (joint.joint_kind, other.joint_kind):
         verbs = ["welds" if each.joint_kind == "weld" else f"is a {each.joint_kind} joint between"
                  for each in (joint, other)]
@@ -223,14 +237,17 @@ def _clash(scene: SceneData, joint: Joint, other: Joint, ends: tuple[Attachment,
 
 def move_as_one(scene: SceneData, one: Attachment, other: Attachment) -> bool:
     """Return whether two ends are on one body, both on the ground, or at one place of a cable."""
+    if one.on in scene.ropes:
+        return one.on == other.on and one.s == other.s
     if one.on not in scene.cables:
         return one.on == other.on
     tolerance = LENGTH_TOLERANCE * scene.cables[one.on].length
     return one.on == other.on and abs(one.arc_length - other.arc_length) <= tolerance
 
 
-def called(end: Attachment) -> str:
-    """Return the name of the body, cable or ground of an end in messages."""
+def called(scene: SceneData, end: Attachment) -> str:
+    """Return the name of the body, cable, rope or ground of an end in messages."""
     if end.on is None:
         return "the ground"
-    return f'body "{end.on}"' if end.s is None else f'cable "{end.on}" at s = {show(end.s, "m")}'
+    line = "rope" if end.on in scene.ropes else "cable"
+    return f'body "{end.on}"' if end.s is None else f'{line} "{end.on}" at s = {show(end.s, "m")}'

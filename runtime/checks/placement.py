@@ -13,7 +13,7 @@ from ..parts.attachment import Attachment
 from ..parts.cable import Cable
 from ..parts.event import Event
 from ..parts.load import DistributedForce, Force, Moment
-from ..parts.locations import Node, joined, node_of, point_of, support_of
+from ..parts.locations import Node, grips, joined, node_of, point_of, support_of
 from ..parts.modal_body import ModalBody
 from ..parts.part import Part
 from ..parts.point_force import PointForce
@@ -184,8 +184,31 @@ def placed_attachment(scene: SceneData, end: Attachment, where: str, prefix: str
             raise SceneError(where, f'{prefix}acts on body "{end.on}" and takes no arc-length s',
                              "give a point in body axes, or nothing for its origin")
         return end.model_copy(update={"at": end.at or (0.0, 0.0, 0.0)})
+    if end.on in scene.ropes:
+        return _placed_on_rope(scene, end, where, prefix)
     known = [*scene.cables, *scene.bodies]
     raise SceneError(where, f'{prefix}there is no cable or body "{end.on}"', near(end.on, known))
+
+
+def _placed_on_rope(scene: SceneData, end: Attachment, where: str, prefix: str) -> Attachment:
+    """Return an attachment to a rope, checked to lie in one of its spans as drawn. Raises SceneError."""
+    assert end.on is not None
+    if end.s is None or end.at is not None:
+        raise SceneError(where, f'{prefix}acts on rope "{end.on}" and needs the stress-free arc-length s there'
+                         + (", not a point at" if end.at else ""))
+    rope = scene.ropes[end.on]
+    try:
+        rope.span_at(rope.drawn(scene.bodies), end.s)
+    except ValueError as error:
+        cause, *remedy = error.args
+        raise SceneError(where, f'{prefix}s of rope "{rope.name}" {cause}', *remedy) from None
+    return end
+
+
+def check_grips(scene: SceneData) -> None:
+    """Raise SceneError for joints and springs whose place on a rope is no longer in a span."""
+    for part, name, end in grips(scene):
+        _placed_on_rope(scene, end, part.where, f"{name}: ")
 
 
 def placed_between(scene: SceneData, part: P) -> P:

@@ -8,8 +8,10 @@ from ..errors import SceneError, near
 from ..parts.attachment import Attachment
 from ..parts.cable import Cable
 from ..parts.event import Event
+from ..parts.joint import Joint
 from ..parts.part import Part
 from ..parts.plane import called
+from ..parts.point_force import PointForce
 from ..parts.rope import Rope
 from ..parts.rope_route import MAX_LAYER, DrawnRoute
 from ..parts.rope_route_space import fleet_angles
@@ -45,20 +47,25 @@ def placed_rope(scene: SceneData, rope: Rope) -> Rope:
 
 
 def check_apart_from_ropes(scene: SceneData, part: Part) -> None:
-    """Raise SceneError for a part that names a rope or a sheave, on which nothing can act or be measured yet."""
+    """Raise SceneError for a part that names a rope or a sheave, on which nothing can act or be measured, but for the
+    joints and springs that hold to a point of a rope.
+    """
     if not scene.ropes:
         return
     for name in part.refers_to():
         rope = next((rope for rope in scene.ropes.values()
-                     if name == rope.name or any(name == sheave.name for sheave in rope.sheaves)), None)
-        if rope is None:
+                     if name == rope.name or any(name == wheel.name for wheel in rope.wheels)), None)
+        if rope is None or (name == rope.name and isinstance(part, Joint | PointForce)):
             continue
-        what = "a rope" if name == rope.name else f'a sheave of rope "{rope.name}"'
+        wheel = next((f'a {wheel.kind} of rope "{rope.name}"' for wheel in rope.wheels if wheel.name == name), "")
+        what = wheel or "a rope"
         if isinstance(part, Event):
             raise SceneError(part.where, f'"{name}" is {what}, whose results cannot be watched',
                              f"""watch a body, or give function=, which gets state["{rope.name}.position"]""")
-        raise SceneError(part.where, f'"{name}" is {what}, to which no other part can be connected',
-                         "take a body that an end or a sheave of the rope is on")
+        connects = "no other part" if wheel else "only joints and springs"
+        raise SceneError(part.where, f'"{name}" is {what}, to which {connects} can be connected',
+                         "take a body that an end or a sheave of the rope is on"
+                         + ("" if wheel else f', or that a joint to ("{rope.name}", s) holds'))
 
 
 def check_beside_ropes(scene: SceneData, cable: Cable) -> None:

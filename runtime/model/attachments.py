@@ -17,6 +17,7 @@ from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
 from .hulls import Hull, hull_of
 from .signals import Signals
+from .span_coordinates import SpanCoordinates
 
 UP, CARRIED = -1, -2
 """Second vector of the frame of a tangent, as in couplings/common/attachments.h: a direction of the ground, or the
@@ -26,6 +27,8 @@ T = TypeVar("T")
 Modes = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 FRAMES = {2: "planar_frame", 3: "frame"}
+ROPE_POINTS = {2: "planar_rope_point", 3: "rope_point"}
+"""Kernels of frames of cables, and of material points of ropes."""
 
 SECTIONS = {2: np.array([[0.0, 1.0], [-1.0, 0.0]]), 3: np.eye(3)[:, [2, 0, 1]]}
 """Axes of `frames.section_frame` in the frame of r_y and r_z."""
@@ -35,7 +38,8 @@ SECTIONS = {2: np.array([[0.0, 1.0], [-1.0, 0.0]]), 3: np.eye(3)[:, [2, 0, 1]]}
 class AttachmentModel:
     """fu_attachment of the engine; cable, body, slide: -1 where it is on none; mass and length: its scales, kg and m.
 
-    node: first dof of a node of a rope, -1 where it is on none.
+    node: first dof of a node of a rope, -1 where it is on none. span, material: the span of a material point of a rope,
+    None where it is on none, and the material coordinate, m; rope_point: its kernels.
 
     modal: of a node of a modal body, its undeformed place, and its displacements and rotations by modes.
     """
@@ -45,6 +49,9 @@ class AttachmentModel:
     element: int = 0
     slide: int = -1
     node: int = -1
+    span: SpanCoordinates | None = None
+    material: float = 0.0
+    rope_point: str = ""
     u: tuple[float, ...] = (0.0,) * 3
     N: np.ndarray = field(default_factory=lambda: np.zeros(0))
     S: np.ndarray = field(default_factory=lambda: np.zeros(0))
@@ -109,6 +116,8 @@ class ModelBuilder:
             else:
                 found.u = part.arm(attachment.point)
             return found
+        if attachment.on in self.scene.ropes:
+            return self._on_rope(attachment.on, attachment.arc_length)
         found = self._on_cable(attachment.on, attachment.arc_length, axes, up,
                                draws_section(self.scene.cables[attachment.on]))
         found.element, x = self.element(attachment.on, attachment.arc_length)
@@ -119,6 +128,15 @@ class ModelBuilder:
             slopes = model.kernel("slopes")(length, x)
             found.S = np.array([slopes[k, 0] if k >= 0 else 0 * found.N for k in found.slopes])
         return found
+
+    def _on_rope(self, name: str, s: float) -> AttachmentModel:
+        """Return an attachment to a material point of a rope."""
+        rope = next(each for each in self.ropes if each.part.name == name)
+        number = rope.part.span_at(rope.route, s)
+        span = rope.spans[number]
+        return AttachmentModel(span=span, material=s, rope_point=ROPE_POINTS[span.dim],
+                               mass=rope.mass_of_element(number),
+                               length=rope.route.spans[number].length / span.n_elements)
 
     def on_slide(self, slide: Slide, number: int, axes: np.ndarray) -> AttachmentModel:
         """Return an attachment to the frame of the cable at a slide of that number."""

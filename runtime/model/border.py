@@ -150,7 +150,7 @@ class _Border:
 
     def _bodies_of(self, end: AttachmentModel) -> set[int]:
         """Return the groups of the body of an attachment, on a slide those of the rider."""
-        if end.node >= 0:
+        if end.node >= 0 or end.span is not None:
             return self._end(end).groups
         body = self.model.slides[end.slide].rider.body if end.slide >= 0 else end.body
         return {self.bodies[body]} if body >= 0 else set()
@@ -163,6 +163,8 @@ class _Border:
             return along | (_Place({self.slides[end.slide]}) if self.system == NEWTON else self._end(slide.rider))
         if end.body >= 0:
             return _Place({self.bodies[end.body]})
+        if end.span is not None:  # the point may pass from element to element
+            return self._of_unknowns(self._unknowns(np.r_[end.span.nodes, end.span.s]))
         if end.node >= 0:
             return self._of_unknowns(self._unknowns(slice(end.node, end.node + self.model.dim)))
         if end.cable < 0:

@@ -53,7 +53,8 @@ class CouplingModel:
     @property
     def kernel_families(self) -> list[str]:
         """Return the names of the kernel families that it uses."""
-        return [self.kernel] if hasattr(self, "kernel") else []
+        of_points = {end.rope_point for end in self.ends if end.rope_point}
+        return [*([self.kernel] if hasattr(self, "kernel") else []), *sorted(of_points)]
 
     @property
     def ends(self) -> Sequence[AttachmentModel]:

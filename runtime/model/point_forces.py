@@ -75,7 +75,7 @@ class PointForceModel(CouplingModel, ForceLaw):
     @property
     def kernel_families(self) -> list[str]:
         """Return the name of the kernels of its law."""
-        return [self.law]
+        return [self.law, *super().kernel_families]
 
 
 def point_force_models(builder: ModelBuilder) -> Iterator[PointForceModel]:

@@ -25,7 +25,8 @@ from ..parts.rope_drawing import drawn_anew
 from .attachments import AttachmentModel
 from .model import Model
 from .rope_states import moved
-from .ropes import AnchorModel, DrumCoordinates, DrumModel, RopeModel, SheaveModel, SpanCoordinates, rope_model
+from .ropes import AnchorModel, DrumCoordinates, DrumModel, RopeModel, SheaveModel, rope_model
+from .span_coordinates import SpanCoordinates
 from .states import attachment_points, body_state, spatial
 
 RATE_STEP = 1e-5

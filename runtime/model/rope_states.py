@@ -8,7 +8,8 @@ from ..base.rotations import product, turned_by
 from ..parts.rope import Rope
 from ..parts.rope_route import DrawnArc, DrawnRoute
 from .model import Model
-from .ropes import PER_NODE, AnchorModel, RopeModel, SheaveModel, SpanCoordinates
+from .ropes import AnchorModel, RopeModel, SheaveModel
+from .span_coordinates import PER_NODE, SpanCoordinates, cubic_shapes
 from .states import attachment_points, spatial
 
 POINTS_OF_ELEMENT = 4
@@ -92,7 +93,7 @@ def points_of_spans(rope: Rope, route: DrawnRoute) -> list[tuple[slice, tuple[in
 
 def as_drawn(rope: Rope, route: DrawnRoute) -> dict[str, np.ndarray]:
     """Return position (points, 3) and s (points,) of `rope_state` for a rope as drawn, in m."""
-    places, lengths, s = [], [], rope.drums[0].length_in_store if 0 in rope.drums else 0.0
+    places, lengths, s = [], [], rope.first_arc_length
     for k, (span, wrap) in enumerate(points_of_spans(rope, route)):
         drawn, share = route.spans[k], np.linspace(0, 1, span.stop - span.start)
         places.append(drawn.start + share[:, None] * (drawn.end - drawn.start))
@@ -118,8 +119,7 @@ def _span_points(span: SpanCoordinates, q: np.ndarray) -> tuple[np.ndarray, np.n
     ends = q[:, list(span.s)]
     s = ends[:, :1] + span.share * (ends[:, 1:] - ends[:, :1])
     x = np.arange(POINTS_OF_ELEMENT) / POINTS_OF_ELEMENT
-    values = np.stack([1 - 3 * x**2 + 2 * x**3, 3 * x**2 - 2 * x**3])
-    slopes = np.stack([x - 2 * x**2 + x**3, x**3 - x**2])
+    values, slopes = cubic_shapes(x)
     length = np.diff(s)[..., None, None]
     inside = sum(values[e][:, None] * nodal[:, e : e + span.n_elements, None, 0]
                  + length * slopes[e][:, None] * nodal[:, e : e + span.n_elements, None, 1] for e in range(2))

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
+from ..parts.locations import grips
 from ..parts.rope import Rope
 from ..parts.rope_items import SIDES, Anchor, Drum, RouteItem, Sheave
 from ..parts.rope_route import MIN_SPAN_RATIO, MIN_WRAP, DrawnArc, DrawnRoute
@@ -16,6 +17,7 @@ from ..parts.section_stiffness import section_stiffness
 from .attachments import AttachmentModel, ModelBuilder
 from .coupling import CouplingKind, CouplingModel
 from .signals import Signals
+from .span_coordinates import PER_NODE, SpanCoordinates
 
 LAW = "engineering_exact_assumed"
 """The law of the kernels of spans (derive/couplings/span.py)."""
@@ -31,39 +33,6 @@ CONDITIONS_BESIDE = 2
 """Conditions of a rope that has left a sheave beyond those of its tangent points."""
 NO_TENSION = 1e-12
 """Strain below which a tension is none; over 1 m."""
-PER_NODE = 2
-"""Vectors of a node: its place, and its slope by the stress-free arc-length."""
-
-
-@dataclass
-class SpanCoordinates:
-    """The dofs of a span: first of its nodes, shares of these in its length, and the two material coordinates."""
-
-    first: int
-    share: np.ndarray
-    s: tuple[int, int]
-    dim: int
-
-    @property
-    def n_elements(self) -> int:
-        """Return the number of its elements."""
-        return len(self.share) - 1
-
-    def node(self, k: int) -> slice:
-        """Return the dofs of node k, from the end where k is negative."""
-        size = PER_NODE * self.dim
-        first = self.first + size * (k % len(self.share))
-        return slice(first, first + size)
-
-    def places(self, q: np.ndarray) -> np.ndarray:
-        """Return (nodes, dim): the places of its nodes in a configuration, m."""
-        found: np.ndarray = q[self.nodes].reshape(len(self.share), PER_NODE, self.dim)[:, 0]
-        return found
-
-    @property
-    def nodes(self) -> slice:
-        """Return the dofs of all nodes."""
-        return slice(self.first, self.first + PER_NODE * self.dim * len(self.share))
 
 
 class Turning:
@@ -196,14 +165,13 @@ def rope_models(scene: SceneData, at: int, supplied: bool = False) -> list[RopeM
 def rope_model(rope: Rope, route: DrawnRoute, first: int) -> RopeModel:
     """Return a rope along a drawn route, with coordinates from `first` on."""
     dim, at = rope.dim, first
-    s = rope.drums[0].length_in_store if 0 in rope.drums else 0.0
+    of_s = [s for ends in route.arc_lengths(rope.first_arc_length) for s in ends]
     spans: list[SpanCoordinates] = []
     values: list[np.ndarray] = []
     weight: list[np.ndarray] = []
-    of_s: list[float] = []
     of_sheaves: list[np.ndarray] = []
     weight_of_sheaves: list[np.ndarray] = []
-    for (_, number, _), span, n in zip(route.sequence(), route.spans, rope.elements_of_spans, strict=True):
+    for span, n in zip(route.spans, rope.elements_of_spans, strict=True):
         share = np.linspace(0.0, 1.0, n + 1)
         nodes = np.empty((n + 1, PER_NODE, dim))
         nodes[:, 0] = span.start + share[:, None] * (span.end - span.start)
@@ -212,8 +180,6 @@ def rope_model(rope: Rope, route: DrawnRoute, first: int) -> RopeModel:
         values.append(nodes.ravel())
         weight.append(np.tile(np.repeat([1.0, span.length / n], dim), n + 1))
         at += nodes.size
-        of_s += [s, s + span.length / route.stretch]
-        s = of_s[-1] + (0.0 if number is None else route.sheaves[number].length / route.stretch)
     for k, each in enumerate(spans):
         each.s = (at + 2 * k, at + 2 * k + 1)
     at += len(of_s)
@@ -263,7 +229,11 @@ def turn_motions(ropes: list[RopeModel], signals: Signals) -> list[tuple[int, in
 
 @dataclass(kw_only=True)
 class SpanModel(CouplingModel):
-    """A span between two tangent points or ends: fu_span_coupling of the engine."""
+    """A span between two tangent points or ends: fu_span_coupling of the engine.
+
+    held: material coordinates in m to which parts hold, increasing, with these parts as messages name them; beside:
+    what the rope meets at both ends of the span.
+    """
 
     kernel: str
     coordinates: SpanCoordinates
@@ -272,6 +242,23 @@ class SpanModel(CouplingModel):
     g: np.ndarray
     A: np.ndarray
     least_length: float
+    held: list[tuple[float, str]] = field(default_factory=list)
+    beside: tuple[str, str] = ("", "")
+
+    @property
+    def is_gripped(self) -> int:
+        """Return whether anything holds to material points of it."""
+        return int(bool(self.held))
+
+    @property
+    def grips(self) -> list[float]:
+        """Return the first and the last material coordinate of these, m."""
+        return [self.held[0][0], self.held[-1][0]] if self.held else []
+
+    @property
+    def gripped(self) -> list[str]:
+        """Return the parts that hold to both, as messages name them."""
+        return [self.held[0][1], self.held[-1][1]] if self.held else []
 
     @property
     def n_elements(self) -> int:
@@ -430,13 +417,30 @@ def span_models(builder: ModelBuilder) -> Iterator[SpanModel]:
     """Yield the spans of all ropes."""
     gravity = np.array(builder.scene.gravity)
     for rope in builder.ropes:
+        held, labels = grips_of(builder.scene, rope), [_called(item) for item in rope.part.route]
         radii = [getattr(item, "radius", 0.0) for item in rope.part.route]
         radii += radii[: rope.part.closed]
+        labels += labels[: rope.part.closed]
         for k, span in enumerate(rope.spans):
             least = max(MIN_SPAN_RATIO * max(radii[k : k + 2]), rope.part.radius)
             yield SpanModel(type="span", name=rope.part.name, kernel=f"span_{rope.part.element}", coordinates=span,
                             rho=rope.rho, tau=rope.part.material.damping_time, g=gravity, A=rope.stiffness,
-                            least_length=least, has_inertia=True, is_damped=rope.part.material.damping_time > 0)
+                            least_length=least, has_inertia=True, is_damped=rope.part.material.damping_time > 0,
+                            held=held[k], beside=(labels[k], labels[k + 1]))
+
+
+def grips_of(scene: SceneData, rope: RopeModel) -> list[list[tuple[float, str]]]:
+    """Return for each span of a rope the arc-lengths at which parts of the scene hold it, m, and these parts."""
+    found: list[list[tuple[float, str]]] = [[] for _ in rope.spans]
+    for part, _, end in grips(scene):
+        if end.on == rope.part.name:
+            found[rope.part.span_at(rope.route, end.arc_length)].append((end.arc_length, part.where))
+    return [sorted(each) for each in found]
+
+
+def _called(item: RouteItem) -> str:
+    """Return an item of a route as messages name it."""
+    return "an anchor" if isinstance(item, Anchor) else item.where
 
 
 def sheave_models(builder: ModelBuilder) -> Iterator[SheaveModel]:

@@ -143,6 +143,8 @@ def attachment_points(model: Model, attachment: AttachmentModel, q: np.ndarray) 
             eta = modal_state(model, body, state, q)["modal_coordinates"]
             arm = spatial(attachment.modal[0] + eta @ attachment.modal[1])
         return np.asarray(state["position"] + rotate(state["orientation"], arm))
+    if attachment.span is not None:
+        return spatial(attachment.span.point(q, attachment.material))
     if attachment.node >= 0:
         return spatial(q[:, attachment.node : attachment.node + model.dim])
     return np.broadcast_to(np.array(attachment.u), (len(q), 3))

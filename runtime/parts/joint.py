@@ -40,8 +40,9 @@ class Joint(Part):
 
     kind: see the table
     a, b: attachments: ("A", (x, y, z)), a point in body axes; "A", the origin of a body; ("wire", s), the place of a
-        cable with its section, or its tangent where the elements have no sections; or a point (x, y, z) of the ground,
-        m
+        cable with its section, or its tangent where the elements have no sections; ("haul", s), a point of a rope's
+        material, for spherical and distance joints, and revolute ones in the plane; or a point (x, y, z) of the
+        ground, m
     axis, second_axis: directions of the ground, at the start
     up: where an element has no section axes, a direction fixed in the ground that completes the frame of its tangent,
         and against which the joint holds the rotation about the tangent

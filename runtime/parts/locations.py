@@ -61,7 +61,18 @@ def point_of(scene: SceneData, end: Attachment) -> np.ndarray:
         return np.array(end.at)
     if end.on in scene.bodies:
         return scene.bodies[end.on].point(end.point)
+    if end.on in scene.ropes:
+        return scene.ropes[end.on].point(scene.bodies, end.arc_length)
     return scene.cables[end.on].point(end.arc_length)
+
+
+def grips(scene: SceneData) -> Iterator[tuple[Part, str, Attachment]]:
+    """Yield the attachments to points of ropes, with their parts and keywords."""
+    if not scene.ropes:
+        return
+    for part in scene.parts():
+        yield from ((part, name, value) for name, value in part
+                    if isinstance(value, Attachment) and value.on in scene.ropes)
 
 
 def velocity_of(scene: SceneData, end: Attachment) -> np.ndarray:

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain, pairwise
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
+import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from .material import Material
@@ -64,6 +65,11 @@ class Rope(Part):
     Given is the ``tension`` or the ``length``; gravity acts from the start. The rope starts with the velocities of the
     bodies that hold it, straight and evenly stretched; sheaves and drums start without rotation on what carries them,
     unless it is prescribed.
+
+    A joint or a spring grips the rope by an end ("haul", s): s in m is stress-free, from the first end, with what is on
+    a drum there. The grip moves with the material, past ends of elements; where it reaches a sheave, a drum or an
+    anchor, the run ends with a RopeLeftError. A load that kinks the rope there has an error in proportion to the length
+    of elements, which two ropes that end at the body do not have.
 
     route: an `Anchor` or a `Drum`, sheaves, and again an `Anchor` or a `Drum`, in the rope's order; of a closed rope
         two sheaves or more. A `Block` stands for its sheaves
@@ -201,6 +207,11 @@ class Rope(Part):
         return sum(drum.length_in_store for drum in self.drums.values())
 
     @property
+    def first_arc_length(self) -> float:
+        """Return the stress-free arc-length at the start of its first span, m: of a first drum what is wound on it."""
+        return self.drums[0].length_in_store if 0 in self.drums else 0.0
+
+    @property
     def n_spans(self) -> int:
         """Return the number of its spans."""
         return len(self.route) - (not self.closed)
@@ -261,6 +272,25 @@ class Rope(Part):
     def zones_halved(self) -> list[str]:
         """Return the sheaves with friction that `refined` gives half of their zones, as messages name them."""
         return [sheave.where for sheave in self.rough_sheaves if sheave.has_most_zones]
+
+    def span_at(self, route: "DrawnRoute", s: float) -> int:
+        """Return the number of the span that has the stress-free arc-length s, m, inside, along its route as drawn.
+
+        Raises ValueError(cause, remedy) for one off the rope, at its ends, or on a sheave or a drum.
+        """
+        from .rope_drawing import span_at  # likewise
+
+        return span_at(self, route, s)
+
+    def point(self, bodies: Mapping[str, RigidBody | ModalBody], s: float) -> np.ndarray:
+        """Return (3,): the place as drawn of the stress-free arc-length s, m, in a span, in m. Raises ValueError."""
+        route = self.drawn(bodies)
+        span = self.span_at(route, s)
+        start, end = route.arc_lengths(self.first_arc_length)[span]
+        drawn = route.spans[span]
+        found = np.zeros(3)
+        found[: self.dim] = drawn.start + (s - start) / (end - start) * (drawn.end - drawn.start)
+        return found
 
     def drawn(self, bodies: Mapping[str, RigidBody | ModalBody]) -> "DrawnRoute":
         """Return its route as drawn among the bodies of its scene.

@@ -51,6 +51,11 @@ class Roped(Protocol):
         ...
 
     @property
+    def first_arc_length(self) -> float:
+        """Return the stress-free arc-length at the start of its first span, m."""
+        ...
+
+    @property
     def wheels(self) -> tuple[Sheave | Drum, ...]:
         """Return its sheaves and drums."""
         ...
@@ -63,6 +68,23 @@ def drawn(rope: Roped, bodies: Mapping[str, RigidBody | ModalBody]) -> DrawnRout
     if offsets := _offsets(rope, _stretch(rope, route.length)):
         route = _along(rope, [replace(point, offset=offsets.get(point.name, 0.0)) for point in points])
     return replace(route, stretch=_stretch(rope, route.length))
+
+
+def span_at(rope: Roped, route: DrawnRoute, s: float) -> int:
+    """Return the number of the span with an arc-length, see `Rope.span_at`."""
+    ends = route.arc_lengths(rope.first_arc_length)
+    for k, (start, end) in enumerate(ends):
+        if start < s < end:
+            return k
+    spans = ", ".join(f"{show(start)} to {show(end, 'm')}" for start, end in ends)
+    remedy = f"as drawn its spans have {spans}"
+    after = rope.route[1:] + (rope.route[:1] if rope.closed else ())
+    for k, (item, (_, start)) in enumerate(zip(after, ends, strict=True)):
+        until = ends[k + 1][0] if k + 1 < len(ends) else rope.first_arc_length + route.free_length
+        if isinstance(item, Sheave) and start <= s <= until:
+            raise ValueError(f"lies on {item.where} as drawn, which has {show(start)} to {show(until, 'm')}, got "
+                             f"{show(s, 'm')}", remedy)
+    raise ValueError(f"must lie within a span, off the ends and what is wound, got {show(s, 'm')}", remedy)
 
 
 def drawn_anew(rope: Roped, route: DrawnRoute, centres: np.ndarray) -> DrawnRoute:

@@ -130,6 +130,14 @@ class DrawnRoute:
         """Return its stress-free length, m."""
         return self.length / self.stretch
 
+    def arc_lengths(self, start: float) -> list[tuple[float, float]]:
+        """Return the stress-free arc-lengths of both ends of each span, m; start: that of the first point."""
+        found: list[tuple[float, float]] = []
+        for k, number, _ in self.sequence():
+            found.append((start, start + self.spans[k].length / self.stretch))
+            start = found[-1][1] + (0.0 if number is None else self.sheaves[number].length / self.stretch)
+        return found
+
     def sequence(self) -> Iterator[tuple[int, int | None, int]]:
         """Yield along the rope the number of each span, that of the sheave after it, and that of the next span.
 

@@ -10,10 +10,10 @@ from .validation import Flag, not_negative
 
 
 class Spring(PointForce):
-    """A spring with a damper between two points of cables, bodies or the ground.
+    """A spring with a damper between two points of cables, ropes, bodies or the ground.
 
-    a, b: ends: ("wire", s), ("A", (x, y, z)) in body axes, "A" for the origin of a body, or a point (x, y, z) of the
-        ground, m
+    a, b: ends: ("wire", s), ("haul", s) of the material of a rope, ("A", (x, y, z)) in body axes, "A" for the origin of
+        a body, or a point (x, y, z) of the ground, m
     stiffness: N/m
     damping: N s/m
     length: free of force, m; by default the distance at the start

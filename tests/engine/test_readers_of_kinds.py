@@ -66,9 +66,10 @@ SCENE_PLACES = {
         "solve/notes/penetrations.py", "solve/notes/surface_ends.py", "solve/notes/coarse_contact.py",
         "solve/statics/lying.py", "solve/statics/string_start.py"],
     "pictures of each kind": ["results/animation/marks.py"],
-    "ropes: their pictures, their meshes, forces in their sections": [
-        "choice/motion.py", "results/animation/clips.py", "results/animation/ropes.py", "results/error_estimate.py",
-        "results/pictures.py", "results/section_forces/ropes.py"],
+    "ropes: their pictures, their meshes, places on them, forces in their sections": [
+        "choice/motion.py", "parts/locations.py", "results/animation/clips.py", "results/animation/frames.py",
+        "results/animation/ropes.py", "results/error_estimate.py", "results/pictures.py",
+        "results/section_forces/ropes.py"],
     "parameters that are adjusted": [
         "solve/adjustment/adjustment.py", "solve/adjustment/length_changes.py",
         "solve/adjustment/parameter_changes.py", "solve/adjustment/parameter_search.py",

@@ -15,6 +15,8 @@ cdef extern from "kernels.h" nogil:
         void *algorithmic_force
     ctypedef struct fu_frame_kernels:
         const char *name
+    ctypedef struct fu_rope_point_kernels:
+        const char *name
     ctypedef struct fu_tables:
         pass
     const void *fu_find(const fu_tables *tables, const char *role, const char *name)
@@ -79,6 +81,11 @@ cdef extern from * nogil:
         const double *x, *phi, *psi
     ctypedef struct fu_attachment:
         int cable, body, element, slide, node
+        const fu_rope_point_kernels *rope
+        int span_s[2]
+        int span_elements
+        const double *share
+        double material
         double u[3]
         double N[32]
         const fu_frame_kernels *frame

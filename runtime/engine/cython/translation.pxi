@@ -149,7 +149,13 @@ cdef class Translation(Arrays):
     cdef int _end(self, fu_attachment *to, end, list tables) except -1:
         cdef int k
         to.cable, to.body, to.element, to.slide, to.node = end.cable, end.body, end.element, end.slide, end.node
-        to.frame = NULL
+        to.frame, to.rope = NULL, NULL
+        if end.span is not None:
+            to.rope = <const fu_rope_point_kernels *>_found(tables, "rope_point", end.rope_point)
+            to.node, to.span_elements, to.material = end.span.first, end.span.n_elements, end.material
+            to.share = self._doubles(end.span.share)
+            for k in range(2):
+                to.span_s[k] = end.span.s[k]
         for k in range(len(end.u)):
             to.u[k] = end.u[k]
         for k in range(len(end.N)):

@@ -1,12 +1,13 @@
 /* Ropes that leave what they run over: a run ends there, as the equations do not hold beyond, but where a rope may
  * leave a sheave and touch it again. The reasons are the wrap angle, the normal force, in space the fleet angle of a
- * short span, the length of a span, and that of the rope on a drum. */
+ * short span, the length of a span, a material point of a span that something holds to and that reaches its first or its
+ * last end, and the length of the rope on a drum. */
 #include "couplings/common/coupling_events.h"
 #include "couplings/rope/rope.h"
 #include "equations/equations.h"
 #include "equations/run.h"
 
-enum { WRAP, PRESSURE, FLEET, SPAN, SLACK, EMPTY, GROWTH = FLEET };
+enum { WRAP, PRESSURE, FLEET, SPAN, GRIP, EMPTY = GRIP + 2, GROWTH = FLEET };
 
 static int list(int n, fu_event_function *out)
 {
@@ -55,10 +56,6 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
 {
     (void)side;
     if (which != PRESSURE && fu_wrap_may_leave(coupling)) return pass(run, coupling, which == GROWTH, what);
-    if (which == PRESSURE && fu_wrap_has_left(coupling, &run->now)) {
-        *what = "went slack";
-        return leave(run, coupling, SLACK);
-    }
     *what = which == WRAP ? "left the sheave" : which == PRESSURE ? "lifted off" : "left the groove";
     return leave(run, coupling, which);
 }
@@ -86,18 +83,23 @@ const fu_coupling_events fu_sheave_events = {
 
 static double margin(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {
-    (void)which;
-    return fu_span_margin(run->model, coupling, state);
+    return which ? fu_grip_margin(coupling, state, which - 1) : fu_span_margin(run->model, coupling, state);
 }
 
 static int vanish(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
 {
-    (void)side, (void)which;
-    *what = "became too short";
-    return leave(run, coupling, SPAN);
+    (void)side;
+    *what = which ? "brought what holds to it to an end" : "became too short";
+    return leave(run, coupling, which ? GRIP + which - 1 : SPAN);
 }
 
-const fu_coupling_events fu_span_events = {.direction = -1, .value = margin, .act = vanish, .begin = begin};
+static int functions_of_span(const fu_coupling *coupling, fu_event_function *out)
+{
+    return list(fu_is_gripped(coupling) ? 3 : 1, out);
+}
+
+const fu_coupling_events fu_span_events = {
+    .functions = functions_of_span, .value = margin, .act = vanish, .begin = begin};
 
 static double value_of_drum(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {

@@ -84,6 +84,9 @@ def place(frames: Frames, attachment: Attachment) -> np.ndarray:
     if attachment.on in frames.scene.cables:
         s = np.array([attachment.arc_length])
         return along(frames.scene.cables[attachment.on], s, frames.value(f"{attachment.on}.nodal_vectors"))[:, 0]
+    if attachment.on in frames.scene.ropes:
+        return _on_line(frames.value(f"{attachment.on}.position"), frames.value(f"{attachment.on}.s"),
+                        attachment.arc_length)
     body = frames.scene.bodies[attachment.on]
     orientation, position = (frames.value(f"{attachment.on}.{what}") for what in ("orientation", "position"))
     if isinstance(body, ModalBody):  # the point is fixed to the section at the nearest node
@@ -94,6 +97,16 @@ def place(frames: Frames, attachment: Attachment) -> np.ndarray:
     else:
         arm = np.array(attachment.point)
     return np.asarray(position + rotate(orientation, arm))
+
+
+def _on_line(position: np.ndarray, s: np.ndarray, at: float) -> np.ndarray:
+    """Return the points (T, 3) at an arc-length of lines (T, points, 3) that are drawn through arc-lengths (T, points).
+    """
+    last = s.shape[1] - 2
+    k = np.clip(np.sum(s <= at, axis=1) - 1, 0, last)
+    rows = np.arange(len(s))
+    share = ((at - s[rows, k]) / (s[rows, k + 1] - s[rows, k]))[:, None]
+    return np.asarray(position[rows, k] + share * (position[rows, k + 1] - position[rows, k]))
 
 
 def one_or_all(position: np.ndarray) -> np.ndarray:

@@ -9,6 +9,7 @@ from ...integrators import INTEGRATORS, stable_at
 from ...model.contacts import HardContactModel
 from ...model.model import CableModel, Model, SlideModel
 from ...model.redundant_constraints import redundant
+from ...model.ropes import SpanModel
 from ...parts.rope_route import MIN_WRAP
 from ...parts.scene_data import SceneData
 from ...parts.settings import RunSettings
@@ -25,12 +26,14 @@ ROPE_LEFT = (
      "turn the axis, keep what is at the ends of the span apart, or stop before by an event"),
     ('a span of rope "{name}" becomes too short to be modelled',
      "keep what is at the ends of the span apart, or stop before by an event"),
-    ('a rope that has left sheave "{name}" becomes slack, which is not modelled',
-     "take a higher tension or more damping, or stop before by an event"),
+    *(('{grip} holds rope "{name}" at s = {s:.9g} m, which reaches {end},',
+       "give the rope less way, let the joint hold it farther away, or stop before by an event"),) * 2,
     ('drum "{name}" has run empty', "give a greater length_in_store, or stop before by an event"))
 """Why a run with a rope ended, and what helps, by the reasons of engine/events/rope.c."""
 EMPTY = len(ROPE_LEFT) - 1
 """The reason of a drum."""
+GRIP = EMPTY - 2
+"""The reason of a span at whose first end a point arrives that a joint or a spring holds; at its last end one more."""
 
 MAX_PLAUSIBLE_STRETCH = 3.0
 """Messages name elements that are longer than this multiple of their undeformed length."""
@@ -138,7 +141,12 @@ def rope_left(model: Model, number: int, reason: int) -> tuple[str, str]:
     """Return in words why a run with a rope ended, and what helps, by the number of a coupling and a reason."""
     coupling = model.couplings[number]
     cause, remedy = ROPE_LEFT[reason]
-    return cause.format(name=coupling.name, kind=coupling.type, wrap=MIN_WRAP), remedy
+    held: dict[str, object] = {}
+    if reason in (GRIP, GRIP + 1):
+        assert isinstance(coupling, SpanModel)
+        held = {"grip": coupling.gripped[reason - GRIP], "s": coupling.grips[reason - GRIP],
+                "end": coupling.beside[reason - GRIP]}
+    return cause.format(name=coupling.name, kind=coupling.type, wrap=MIN_WRAP, **held), remedy
 
 
 def describe_dof(model: Model, dof: int, coupling: int | None = None) -> str:

@@ -87,8 +87,32 @@ static void vectors_of(const fu_model *model, const fu_attachment *on, const fu_
     }
 }
 
+enum { ROPE_NODE = 2, ROPE_ELEMENT = 2 * ROPE_NODE, SPAN_ENDS = 2 }; /* vectors of a node and of an element; s1, s2 */
+
+/* A material point of a rope at a configuration: the first dof of its element, the shares of its nodes, s1 and s2. */
+typedef struct {
+    int first;
+    const double *share;
+    double s[SPAN_ENDS], s_rate[SPAN_ENDS];
+} rope_place;
+
+static rope_place place_on_rope(int dim, const fu_attachment *on, const fu_state *state)
+{
+    rope_place at;
+    int element = 0;
+    for (int i = 0; i < SPAN_ENDS; ++i) {
+        at.s[i] = state->q[on->span_s[i]];
+        at.s_rate[i] = state->v[on->span_s[i]];
+    }
+    const double beyond = on->material - at.s[0], length = at.s[1] - at.s[0];
+    while (element < on->span_elements - 1 && on->share[element + 1] * length < beyond) ++element;
+    at.first = on->node + element * ROPE_NODE * dim;
+    at.share = on->share + element;
+    return at;
+}
+
 /* Returns the number of coordinates of an attachment, and their numbers for fu_add; on a slide the last of them is
- * s. */
+ * s, at a material point of a rope the last two are s1 and s2. */
 int fu_attachment_coordinates(const fu_model *model, const fu_attachment *on, const fu_state *state, int *at)
 {
     if (on->body >= 0) {
@@ -96,6 +120,12 @@ int fu_attachment_coordinates(const fu_model *model, const fu_attachment *on, co
         const int n = fu_body_dofs(body);
         for (int i = 0; i < n; ++i) at[i] = body->dof + i;
         return n;
+    }
+    if (on->rope) {
+        const int n = ROPE_ELEMENT * model->dim, first = place_on_rope(model->dim, on, state).first;
+        for (int i = 0; i < n; ++i) at[i] = first + i;
+        for (int i = 0; i < SPAN_ENDS; ++i) at[n + i] = on->span_s[i];
+        return n + SPAN_ENDS;
     }
     if (on->node >= 0) {
         for (int d = 0; d < model->dim; ++d) at[d] = on->node + d;
@@ -121,6 +151,12 @@ static void point_of(const fu_model *model, const fu_attachment *on, const fu_st
         const double *b = state->q + body->configuration;
         if (rates) body->kernel->point(b, on->u, state->v + body->dof, out->p, out->P, out->v, out->bias);
         else body->kernel->place(b, on->u, out->p, out->P);
+        return;
+    }
+    if (on->rope) {
+        const rope_place at = place_on_rope(dim, on, state);
+        on->rope->point(state->q + at.first, state->v + at.first, at.s, at.s_rate, at.share, on->material, out->p,
+                        out->P, out->v, out->bias);
         return;
     }
     memset(out->P, 0, sizeof(double) * (size_t)(dim * n));
@@ -225,6 +261,17 @@ static void derivatives_on_body(const fu_model *model, const fu_attachment *on, 
     else body->kernel->wrench(b, on->u, w, f, m, K, v_q, omega_q);
 }
 
+/* fu_wrench_derivatives for a material point of a rope, on which no moment acts. */
+static void derivatives_on_rope(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *f,
+                                double *K, double *v_q)
+{
+    const rope_place at = place_on_rope(model->dim, on, state);
+    const double none[3] = {0.0};
+    double unused[3 * FU_ATTACHMENT_COORDINATES];
+    on->rope->wrench(state->q + at.first, state->v + at.first, at.s, at.s_rate, at.share, on->material, f ? f : none, K,
+                     v_q ? v_q : unused);
+}
+
 /* Adds the terms with s of the frame at a slide; g: derivatives of the moment's work by the frame's two vectors. */
 static void add_stiffness_of_s(const fu_model *model, const fu_attachment *on, const fu_state *state,
                                const frame_vectors *w, const double *g, int n, double *K)
@@ -251,6 +298,10 @@ void fu_wrench_derivatives(const fu_model *model, const fu_attachment *on, const
     double g[6], of_frame[36], half[6 * FU_ATTACHMENT_COORDINATES];
     if (on->body >= 0) {
         derivatives_on_body(model, on, state, f, m, K, v_q, omega_q);
+        return;
+    }
+    if (on->rope) {
+        derivatives_on_rope(model, on, state, f, K, v_q);
         return;
     }
     memset(K, 0, sizeof(double) * (size_t)(n * n));

@@ -5,16 +5,21 @@
 
 #include "bodies/bodies.h"
 
-/* An attachment: a point with axes of the ground (cable, body and node -1), of a cable's element, of a body; a node of
- * a rope, without axes; or axes alone, of the cable at a slide. */
+/* An attachment: a point with axes of the ground (cable, body and node -1), of a cable's element, of a body; a node or
+ * a material point of a rope, without axes; or axes alone, of the cable at a slide. */
 enum { FU_UP = -1, FU_CARRIED = -2 };
 typedef struct {
     int cable, body, element, slide; /* -1 if it is not on one */
-    int node;                        /* first dof of a node of a rope, -1 if it is not on one */
-    double u[3];                     /* the point: of the ground; of the body in its axes */
-    double N[FU_MAX_COORDINATES];    /* shape functions at the point of the element */
-    const fu_frame_kernels *frame;   /* of a cable; null without axes */
-    int slopes[2]; /* its vectors: 0 1 2 for r_x r_y r_z; FU_UP; FU_CARRIED for the slide's director */
+    int node;                        /* first dof of a node of a rope, or of the nodes of a span; -1 if on none */
+    /* of a material point in a span of a rope, else null: derive/couplings/rope_point.py */
+    const fu_rope_point_kernels *rope;
+    int span_s[2], span_elements;  /* dofs of s1, s2 */
+    const double *share;           /* of the nodes in the length of the span */
+    double material;               /* m: the material coordinate of the point */
+    double u[3];                   /* the point: of the ground; of the body in its axes */
+    double N[FU_MAX_COORDINATES];  /* shape functions at the point of the element */
+    const fu_frame_kernels *frame; /* of a cable; null without axes */
+    int slopes[2];                 /* its vectors: 0 1 2 for r_x r_y r_z; FU_UP; FU_CARRIED for the slide's director */
     double S[2 * FU_MAX_COORDINATES]; /* derivatives of the shape functions for both, unless on a slide */
     double up[3];
     double axes[9];            /* along those of its carrier, by columns */
@@ -48,8 +53,8 @@ void fu_attachment_at(const fu_model *model, const fu_attachment *on, const fu_s
 void fu_discrete_point(const fu_model *model, const fu_attachment *on, const fu_state *now, const fu_state *next,
                        double *P);
 /* Computes K (n x n), the derivative by the attachment's coordinates of P' f + T' m at a fixed force f and moment m,
- * and those of velocity and angular velocity at fixed rates, where these are known: on a body. All but K may be null.
- */
+ * and those of velocity and angular velocity at fixed rates, where these are known: on a body, and of the velocity on a
+ * rope. All but K may be null. */
 void fu_wrench_derivatives(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *f,
                            const double *m, int n, double *K, double *v_q, double *omega_q);
 /* Converts derivatives by an attachment's coordinates, the first of them in column `first`, to those by psi of the

@@ -56,7 +56,7 @@ void fu_point_motion_at(const fu_model *model, const fu_attachment *on, const fu
     const int n = out->at.n, places = model->dim * n, turns = what & FU_AXES ? fu_turns(model->dim) * n : 0;
     double *velocity = out->by + places, *turn = velocity + places, *omega = turn + turns;
     out->rows = 2 * model->dim + (turns ? 2 * fu_turns(model->dim) : 0);
-    out->is_stiff = on->body >= 0 || m;
+    out->is_stiff = on->body >= 0 || on->rope || m;
     memcpy(out->by, out->at.P, sizeof(double) * (size_t)places);
     memcpy(turn, out->at.T, sizeof(double) * (size_t)turns);
     if (on->body < 0) {

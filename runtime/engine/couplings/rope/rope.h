@@ -16,6 +16,8 @@ typedef struct {
     const double *share;         /* of the nodes */
     double rho, tau, g[3], A[FU_ROPE_CONSTANTS];
     double least_length; /* m: stress-free, of a span that can be modelled */
+    int is_gripped;      /* whether joints or springs hold to material points within it */
+    double grips[2];     /* m: the first and the last material coordinate of these */
 } fu_span_coupling;
 extern const fu_coupling_type fu_span_type;
 
@@ -26,8 +28,8 @@ static inline const double *fu_span_node(const fu_span_coupling *span, int k, co
 }
 
 /* Return how far a rope is from leaving: its wrap above the least one, rad, of a short wrap above zero, or of a rope
- * that has left its distance from touching, m; the least normal force, times the radius on an angle, or the tension of one
- * that has left, N; the length of a span above the least one, m; in space that of both spans beside a sheave above the one at which a rope with their
+ * that has left its distance from touching, m; the least normal force, times the radius on an angle, N; the length of a
+ * span above the least one, m; in space that of both spans beside a sheave above the one at which a rope with their
  * fleet angles slides out of the groove, m. Growth: how far a short wrap is from one that stretches, rad. */
 double fu_wrap_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 double fu_wrap_growth_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
@@ -39,9 +41,18 @@ int fu_wrap_change(const fu_coupling *coupling, fu_state *now, int grows);
 double fu_wrap_pressure(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 double fu_fleet_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 double fu_span_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+/* Returns the stress-free length between an end of a span, 0 or 1, and the next material point that something holds to,
+ * m. */
+double fu_grip_margin(const fu_coupling *coupling, const fu_state *state, int end);
 /* Return the wound length of a drum, m; the normal force as above, N. */
 double fu_drum_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 double fu_drum_pressure(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+
+/* Returns whether anything holds to material points of a span. */
+static inline int fu_is_gripped(const fu_coupling *span)
+{
+    return ((const fu_span_coupling *)span)->is_gripped;
+}
 
 /* Returns whether a sheave is one in space. */
 int fu_is_in_space(const fu_coupling *sheave);

@@ -256,6 +256,13 @@ double fu_span_margin(const fu_model *model, const fu_coupling *coupling, const 
     return state->q[span->s[1]] - state->q[span->s[0]] - span->least_length;
 }
 
+double fu_grip_margin(const fu_coupling *coupling, const fu_state *state, int end)
+{
+    const fu_span_coupling *span = span_of(coupling);
+    const double apart = span->grips[end] - state->q[span->s[end]];
+    return end ? -apart : apart;
+}
+
 static const fu_field fields[] = {
     FU_FIELD(fu_span_coupling, kernel, FU_KERNELS, 0),
     FU_FIELD(fu_span_coupling, n_elements, FU_INTEGER, 0),
@@ -267,6 +274,8 @@ static const fu_field fields[] = {
     FU_FIELD_ARRAY(fu_span_coupling, g, FU_REAL),
     FU_FIELD_ARRAY(fu_span_coupling, A, FU_REAL),
     FU_FIELD(fu_span_coupling, least_length, FU_REAL, 0),
+    FU_FIELD(fu_span_coupling, is_gripped, FU_INTEGER, 0),
+    FU_FIELD_ARRAY(fu_span_coupling, grips, FU_REAL),
     {0},
 };
 

@@ -163,12 +163,7 @@ double fu_wrap_pressure(const fu_model *model, const fu_coupling *coupling, cons
     const fu_sheave *sheave = sheave_of(coupling);
     fu_sheave_state at;
     fu_sheave_at(model, sheave, state, state->acceleration, &at);
-    if (at.mode == FU_LIFTED) {
-        double tension[ENDS], speed[ENDS];
-        elastic_tensions(sheave, &at, tension, speed);
-        return tension[0];
-    }
-    return wrap_pressure(sheave, &at);
+    return at.mode == FU_LIFTED ? 1.0 : wrap_pressure(sheave, &at);
 }
 
 /* Returns the angle over which friction at its limit changes the tension as a point of the wrap does, of whose numbers

@@ -1,0 +1,66 @@
+"""The coordinates of spans of ropes, and places of material points in them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+PER_NODE = 2
+"""Vectors of a node: its place, and its slope by the stress-free arc-length."""
+
+
+@dataclass
+class SpanCoordinates:
+    """The dofs of a span: first of its nodes, shares of these in its length, and the two material coordinates."""
+
+    first: int
+    share: np.ndarray
+    s: tuple[int, int]
+    dim: int
+
+    @property
+    def n_elements(self) -> int:
+        """Return the number of its elements."""
+        return len(self.share) - 1
+
+    def node(self, k: int) -> slice:
+        """Return the dofs of node k, from the end where k is negative."""
+        size = PER_NODE * self.dim
+        first = self.first + size * (k % len(self.share))
+        return slice(first, first + size)
+
+    def places(self, q: np.ndarray) -> np.ndarray:
+        """Return (nodes, dim): the places of its nodes in a configuration, m."""
+        found: np.ndarray = q[self.nodes].reshape(len(self.share), PER_NODE, self.dim)[:, 0]
+        return found
+
+    def element_at(self, q: np.ndarray, s: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return the elements (T,) that hold the material coordinate s, m, in configurations q (T, n), and the material
+        coordinates (T, 2) of their nodes.
+        """
+        first, last = q[:, self.s[0]], q[:, self.s[1]]
+        element = np.clip(np.searchsorted(self.share, (s - first) / (last - first)) - 1, 0, self.n_elements - 1)
+        return element, first[:, None] + np.stack([self.share[element], self.share[element + 1]], axis=1) * (
+            last - first)[:, None]
+
+    def point(self, q: np.ndarray, s: float) -> np.ndarray:
+        """Return (T, dim): places of the material coordinate s, m, in configurations q (T, n)."""
+        element, ends = self.element_at(q, s)
+        nodal = q[:, self.nodes].reshape(len(q), len(self.share), PER_NODE, self.dim)
+        length, rows = np.diff(ends), np.arange(len(q))
+        values, slopes = cubic_shapes((s - ends[:, 0]) / length[:, 0])
+        found: np.ndarray = sum((values[k][:, None] * nodal[rows, element + k, 0]
+                                 + length * slopes[k][:, None] * nodal[rows, element + k, 1] for k in range(PER_NODE)),
+                                np.zeros((len(q), self.dim)))
+        return found
+
+    @property
+    def nodes(self) -> slice:
+        """Return the dofs of all nodes."""
+        return slice(self.first, self.first + PER_NODE * self.dim * len(self.share))
+
+
+def cubic_shapes(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return shape functions of an element of unit length at x (n,), (2, n) each: of the places and slopes of nodes."""
+    return (np.stack([1 - 3 * x**2 + 2 * x**3, 3 * x**2 - 2 * x**3]), np.stack([x - 2 * x**2 + x**3, x**3 - x**2]))
