@@ -51,3 +51,23 @@ def test_elevator():
     assert run["lower.tension_on"].min() > 2e3
     assert abs(run.energy_balance().relative).max() < 2e-5
     assert not run.report["messages"]
+
+
+def test_aerial_tramway():
+    """At its tolerance bodies are within 1e-2 m of a run on elements of a third and a quarter of the length."""
+    text = (Path(fu.__file__).parent / "scenes" / "aerial_tramway.toml").read_text(encoding="utf-8").replace("\n#", "")
+    with pytest.warns(fu.FunicularWarning, match='friction of "driver" is left out'):
+        run = fu.load_scene("aerial_tramway").run(progress=False)
+    on, off = run["driver.tension_on"], run["driver.tension_off"]
+    power = run["driver.torque"] * np.gradient(run["driver.angle"], run.time)
+    turn = 2 * np.degrees(np.arctan2(run["cabin.orientation"][:, 3], run["cabin.orientation"][:, 0]))
+    said = re.search(r"at most ([\d.]+) kW, and the grip at most ([\d.]+) kN.*?at most ([\d.]+) kN and ([\d.]+) kN, "
+                     r"in a ratio of at most ([\d.]+); friction holds ([\d.]+)\..*?up to ([\d.]+) degrees", text)
+    assert [float(number) for number in said.groups()] == pytest.approx([
+        -power.min() / 1e3, np.linalg.norm(run["grip.force"], axis=1).max() / 1e3, off.max() / 1e3, on.max() / 1e3,
+        (off / on).max(), np.exp(0.25 * run["driver.wrap_angle"].min()), np.abs(turn).max()], rel=5e-3)
+    moved = (run["carriage.position"] - run["carriage.position"][0]) @ [0.96, 0.28, 0]
+    assert moved[-1] == pytest.approx(100.0, abs=0.1)
+    assert np.ptp(run["haul.s"][:, 0]) == pytest.approx(100.0, abs=0.3)  # the material flows past the nodes
+    assert run["grip.residual"].max() < 1e-9
+    assert abs(run.energy_balance().relative).max() < 2e-5
