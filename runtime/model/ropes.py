@@ -255,10 +255,15 @@ class SpanModel(CouplingModel):
         """Return the first and the last material coordinate of these, m."""
         return [self.held[0][0], self.held[-1][0]] if self.held else []
 
-    @property
-    def gripped(self) -> list[str]:
-        """Return the parts that hold to both, as messages name them."""
-        return [self.held[0][1], self.held[-1][1]] if self.held else []
+    def reached(self, end: int) -> str:
+        """Return in words that what holds to it has come to its first end, 0, or to its last one, 1."""
+        s, part = self.held[-end]
+        return f'{part} holds rope "{self.name}" at s = {s:.9g} m, which reaches {self.beside[end]}'
+
+    def end_of_grips(self, q: np.ndarray) -> int | None:
+        """Return the end, 0 or 1, that a material point to which a part holds has passed in a configuration q (n,)."""
+        passed = [self.is_gripped and (2 * end - 1) * (self.grips[end] - q[self.s[end]]) > 0 for end in range(2)]
+        return passed.index(True) if any(passed) else None
 
     @property
     def n_elements(self) -> int:

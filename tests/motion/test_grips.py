@@ -92,7 +92,7 @@ def test_a_gripped_mass_agrees_with_one_on_a_cable(end):
 
 @pytest.mark.parametrize(("integrator", "bound"), [("radau", 1e-6), ("genalpha", 1e-6)])
 def test_passing_ends_of_elements_keeps_energy(integrator, bound):
-    """A carriage passes two ends of elements of 1.25 m. The joint holds, and energy is explained."""
+    """A carriage passes several ends of elements of 1.25 m. The joint holds, and energy is explained."""
     run = hauled(elements=16).run(5.0, **SETTINGS | {"integrator": integrator})
     reference = hauled(elements=16).run(5.0, **SETTINGS | {"tol": 1e-6})
     assert np.abs(run["carriage.position"] - reference["carriage.position"]).max() < 5e-5
@@ -163,6 +163,20 @@ def test_at_rest():
     assert rest["carriage.position"][1] < -0.8
     run = scene.run(1.0, **SETTINGS, initial=rest)
     assert np.abs(run["carriage.position"] - rest["carriage.position"]).max() < 1e-9
+
+
+def test_at_rest_on_a_sheave_is_refused():
+    """The rope as drawn has too little tension, so that 7 cm of it run over the sheave, and with them the grip."""
+    scene = fu.Scene()
+    scene.rigid_body("weight", mass=300, inertia=(1, 1, 1), position=(20.3, -10, 0))
+    scene.rigid_body("load", mass=1, inertia=(1, 1, 1), position=(19.9, -1, 0))
+    rope = scene.rope("haul", route=[fu.Anchor(at=(0, 0, 0)), fu.Sheave("top", at=(20, -0.3, 0), radius=0.3),
+                                     fu.Anchor("weight")], tension=100.0, elements=2, **ROPE)
+    end = rope.drawn(scene.bodies).arc_lengths(0.0)[0][1]
+    scene.spring(("haul", end - 0.03), "load", stiffness=100.0, name="hanger")
+    with pytest.raises(fu.EquilibriumError, match=r'under all loads spring "hanger" holds rope "haul" at s = .*, which '
+                       'reaches sheave "top"'):
+        scene.equilibrium()
 
 
 def test_modes_are_those_of_small_vibrations():

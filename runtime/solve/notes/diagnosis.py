@@ -26,7 +26,7 @@ ROPE_LEFT = (
      "turn the axis, keep what is at the ends of the span apart, or stop before by an event"),
     ('a span of rope "{name}" becomes too short to be modelled',
      "keep what is at the ends of the span apart, or stop before by an event"),
-    *(('{grip} holds rope "{name}" at s = {s:.9g} m, which reaches {end},',
+    *(("{reached},",
        "give the rope less way, let the joint hold it farther away, or stop before by an event"),) * 2,
     ('drum "{name}" has run empty', "give a greater length_in_store, or stop before by an event"))
 """Why a run with a rope ended, and what helps, by the reasons of engine/events/rope.c."""
@@ -141,11 +141,10 @@ def rope_left(model: Model, number: int, reason: int) -> tuple[str, str]:
     """Return in words why a run with a rope ended, and what helps, by the number of a coupling and a reason."""
     coupling = model.couplings[number]
     cause, remedy = ROPE_LEFT[reason]
-    held: dict[str, object] = {}
+    held: dict[str, str] = {}
     if reason in (GRIP, GRIP + 1):
         assert isinstance(coupling, SpanModel)
-        held = {"grip": coupling.gripped[reason - GRIP], "s": coupling.grips[reason - GRIP],
-                "end": coupling.beside[reason - GRIP]}
+        held = {"reached": coupling.reached(reason - GRIP)}
     return cause.format(name=coupling.name, kind=coupling.type, wrap=MIN_WRAP, **held), remedy
 
 

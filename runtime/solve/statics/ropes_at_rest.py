@@ -59,7 +59,9 @@ def with_ropes_at_rest(model: Model, scene: SceneData) -> np.ndarray:
 
 
 def off_sheaves(model: Model, engine: Engine) -> str:
-    """Return where a rope of a static state has left a sheave or a span has no length, in words, else ""."""
+    """Return where a rope of a static state has left a sheave, a span has no length, or something that holds to a rope
+    has come to the end of a span, in words, else "".
+    """
     if not model.ropes:
         return ""
     q = engine.state()["q"]
@@ -87,6 +89,8 @@ def off_sheaves(model: Model, engine: Engine) -> str:
     for span in model.spans:
         if q[span.s[1]] - q[span.s[0]] < span.least_length:
             return f'a span of rope "{span.name}" becomes too short to be modelled'
+        if (end := span.end_of_grips(q)) is not None:
+            return span.reached(end)
     return ""
 
 
