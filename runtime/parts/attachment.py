@@ -11,7 +11,7 @@ from .validation import NAMES_A_PART, Vector, items, number, place_on, show, sho
 
 
 class Attachment(Part):
-    """A point: ``s`` (m) of the cable ``on``, or ``at`` (m) of the body ``on`` or of the ground (on None).
+    """A point: ``s`` (m) of the cable or rope ``on``, or ``at`` (m) of the body ``on`` or of the ground (on None).
 
     Before its part is added to a scene, the name of a cable or body alone has neither s nor at.
     """

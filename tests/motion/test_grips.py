@@ -4,6 +4,8 @@ import funicular as fu
 import numpy as np
 import pytest
 from funicular.results import streaming
+from funicular.results.animation.frames import place
+from funicular.results.animation.sources import of_run, of_scene
 from interrupted_runs import Killed, failing
 from ropes.scenes import rope_of
 from scipy.interpolate import CubicSpline
@@ -122,9 +124,9 @@ def test_integrators_agree(kind):
 def test_momentum_is_kept():
     """A rope over a sheave on a free body, with bodies at its ends and one that grips it, under constant forces."""
     scene, free = fu.Scene(gravity=(0, 0, 0)), {}
-    for name, mass, place, force in (("A", 2.0, (-0.2, -1.5, 0), (0, -50, 0)), ("B", 2.5, (0.2, -1.5, 0), (0, -50, 0)),
+    for name, mass, start, force in (("A", 2.0, (-0.2, -1.5, 0), (0, -50, 0)), ("B", 2.5, (0.2, -1.5, 0), (0, -50, 0)),
                                      ("C", 3.0, (0, 0, 0), (0, 105, 0)), ("D", 1.0, (0.7, -0.8, 0), (15, 0, 0))):
-        scene.rigid_body(name, mass=mass, inertia=(1, 1, 0.1), position=place, velocity=(0.3, -0.2, 0))
+        scene.rigid_body(name, mass=mass, inertia=(1, 1, 0.1), position=start, velocity=(0.3, -0.2, 0))
         scene.force(name, value=force)
         free[name] = mass, np.array(force)
     rope = scene.rope("rope", route=[fu.Anchor("A"), fu.Sheave("top", at="C", radius=0.2, side="right"),
@@ -260,3 +262,15 @@ def test_refused_where_a_change_moves_a_sheave_over_the_grip():
     scene.spring(("line", end - 1e-3), "load", stiffness=10.0)
     with pytest.raises(fu.SceneError, match='spring "spring_1": a: s of rope "line" lies on sheave "top"'):
         scene.replace("line", tension=2e4)
+
+
+def test_drawn_where_it_holds():
+    """In pictures the grip is on the line of the rope, which is drawn through points of it, at the carriage."""
+    run = hauled().run(3.0, **SETTINGS)
+    frames = of_run(run, np.arange(len(run.time)))
+    grip = run.scene.joints["grip"]
+    on_rope, on_body = place(frames, grip.a), place(frames, grip.b)
+    assert np.ptp(on_rope[:, 0]) > 2
+    assert np.abs(on_rope - on_body).max() < 0.02  # chords of 1.25 m
+    drawn = place(of_scene(run.scene), grip.a)[0]
+    assert drawn == pytest.approx(run.scene.ropes["haul"].point(run.scene.bodies, S), abs=1e-12)
