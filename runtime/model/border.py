@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from itertools import pairwise, permutations
+from itertools import chain, pairwise, permutations, product
 
 import numpy as np
 
@@ -130,13 +130,14 @@ class _Border:
             self._couple(place.groups, place)
         if not count and not ties and not adjacent:
             return
-        places = [*(self._end(end) for end in coupling.ends), *adjacent]
+        sides = [*(self._elements_of(end) for end in coupling.ends), *([place] for place in adjacent)]
         if count:
             first += self.model.n_border_dof
-            self._add_internal(coupling, range(first, first + count), places)
-        if ties or adjacent:
-            for one, other in permutations([*places, *(self.cables[k] for k in coupling.along)], 2):
-                self._couple(one.groups, other)
+            self._add_internal(coupling, range(first, first + count), [*chain.from_iterable(sides)])
+        if ties or (adjacent and coupling.ends):
+            for one, other in permutations([*sides, *([self.cables[k]] for k in coupling.along)], 2):
+                for place, across in product(one, other):
+                    self._couple(place.groups, across)
 
     def _add_internal(self, coupling: CouplingModel, unknowns: range, places: list[_Place]) -> None:
         """Add the internal unknowns of a coupling, adjacent to all its places."""
@@ -155,6 +156,13 @@ class _Border:
         body = self.model.slides[end.slide].rider.body if end.slide >= 0 else end.body
         return {self.bodies[body]} if body >= 0 else set()
 
+    def _elements_of(self, end: AttachmentModel) -> list[_Place]:
+        """Return the place of an attachment; on a rope one for each element, of which one at a time has entries."""
+        if end.span is None:
+            return [self._end(end)]
+        nodes = [end.span.node(k) for k in range(end.span.n_elements + 1)]
+        return [self._of_unknowns(self._unknowns(np.r_[one, other, end.span.s])) for one, other in pairwise(nodes)]
+
     def _end(self, end: AttachmentModel) -> _Place:
         """Return the place for which the equations of an attachment have entries."""
         if end.slide >= 0:
@@ -163,7 +171,7 @@ class _Border:
             return along | (_Place({self.slides[end.slide]}) if self.system == NEWTON else self._end(slide.rider))
         if end.body >= 0:
             return _Place({self.bodies[end.body]})
-        if end.span is not None:  # the point may pass from element to element
+        if end.span is not None:
             return self._of_unknowns(self._unknowns(np.r_[end.span.nodes, end.span.s]))
         if end.node >= 0:
             return self._of_unknowns(self._unknowns(slice(end.node, end.node + self.model.dim)))
