@@ -101,6 +101,7 @@ SOURCES = (
     "surface.c",
     "planar_surface.c",
     "tangent_point.c",
+    "planar_taut_rope.c",
     "registry.c",
 )
 """C files of the kernels; each can be compiled without the others but for registry.c, which has tables of all."""

@@ -1599,6 +1599,37 @@ typedef void fu_tangent_point_across_kernel(fu_real rho, fu_real l, fu_real w, f
 /* s_rate 2, T 1, V 1, f 3, M 3x1, D 3x3, K 3x2 */
 fu_tangent_point_across_kernel tangent_point_across;
 
+typedef void fu_taut_rope_straight_kernel(const fu_real *d, fu_real rise, fu_real *l, fu_real *u, fu_real *l_d, fu_real *b_d);
+/* straight part of a rope without mass: d [m]; rise [m] -> l [m]; u [1]; l_d [1]; b_d [1/m] */
+/* d 2, l 1, u 2, l_d 2, b_d 2 */
+fu_taut_rope_straight_kernel planar_taut_rope_straight;
+
+typedef void fu_taut_rope_straight_tangent_kernel(const fu_real *w, const fu_real *d, fu_real rise, fu_real *K);
+/* second derivatives of a straight part: w [N, N m]; d [m]; rise [m] -> K [N/m] */
+/* w 2, d 2, K 2x2 */
+fu_taut_rope_straight_tangent_kernel planar_taut_rope_straight_tangent;
+
+typedef void fu_taut_rope_energy_kernel(fu_real EA, const fu_real *lengths, fu_real *U);
+/* elastic energy of a rope without mass: EA [N]; lengths [m] -> U [J] */
+/* lengths 2, U 1 */
+fu_taut_rope_energy_kernel planar_taut_rope_energy;
+
+typedef void fu_taut_rope_tension_kernel(fu_real EA, fu_real tau, const fu_real *lengths, const fu_real *rates, fu_real kept, fu_real *f);
+/* forces on the lengths of a rope without mass: EA [N]; tau [s]; lengths [m]; rates [m/s]; kept [N] -> f [N] */
+/* lengths 2, rates 2, f 2 */
+fu_taut_rope_tension_kernel planar_taut_rope_tension;
+
+typedef void fu_taut_rope_tension_tangent_kernel(fu_real EA, fu_real tau, const fu_real *lengths, const fu_real *rates, fu_real kept, fu_real *f, fu_real *K, fu_real *D);
+/* forces on the lengths of a rope without mass, and their derivatives: EA [N]; tau [s]; lengths [m]; rates [m/s];
+ * kept [N] -> f [N]; K [N/m]; D [N s/m] */
+/* lengths 2, rates 2, f 2, K 2x2, D 2x2 */
+fu_taut_rope_tension_tangent_kernel planar_taut_rope_tension_tangent;
+
+typedef void fu_taut_rope_dissipation_kernel(fu_real EA, fu_real tau, const fu_real *lengths, const fu_real *rates, fu_real *P);
+/* power that a rope without mass dissipates: EA [N]; tau [s]; lengths [m]; rates [m/s] -> P [W] */
+/* lengths 2, rates 2, P 1 */
+fu_taut_rope_dissipation_kernel planar_taut_rope_dissipation;
+
 /* constants of the law from the stiffness of the section: l [m]; S [N, N m^2, N m^2, N m^4, N m^4, N m^4] -> A [N m] */
 /* S 9x6, A 61 */
 void beam24_continuum_stiffness(fu_real l, const fu_real *S, fu_real *A);
@@ -1989,6 +2020,18 @@ typedef struct {
     fu_tangent_point_across_kernel *across;
 } fu_tangent_point_kernels;
 
+/* What the engine needs of a taut_rope. */
+typedef struct {
+    const char *name;
+    int dim;
+    fu_taut_rope_straight_kernel *straight;
+    fu_taut_rope_straight_tangent_kernel *straight_tangent;
+    fu_taut_rope_energy_kernel *energy;
+    fu_taut_rope_tension_kernel *tension;
+    fu_taut_rope_tension_tangent_kernel *tension_tangent;
+    fu_taut_rope_dissipation_kernel *dissipation;
+} fu_taut_rope_kernels;
+
 /* Every table, one entry a family. */
 typedef struct {
     int n_elements;
@@ -2023,6 +2066,8 @@ typedef struct {
     const fu_surface_kernels *surfaces;
     int n_tangent_points;
     const fu_tangent_point_kernels *tangent_points;
+    int n_taut_ropes;
+    const fu_taut_rope_kernels *taut_ropes;
 } fu_tables;
 extern const fu_tables fu_all;
 
@@ -2061,6 +2106,8 @@ static inline const void *fu_find(const fu_tables *tables, const char *role, con
         if (!strcmp(tables->surfaces[i].name, name)) return &tables->surfaces[i];
     for (int i = 0; i < tables->n_tangent_points && !strcmp(role, "tangent_point"); ++i)
         if (!strcmp(tables->tangent_points[i].name, name)) return &tables->tangent_points[i];
+    for (int i = 0; i < tables->n_taut_ropes && !strcmp(role, "taut_rope"); ++i)
+        if (!strcmp(tables->taut_ropes[i].name, name)) return &tables->taut_ropes[i];
     return 0;
 }
 

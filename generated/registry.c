@@ -306,6 +306,11 @@ static const fu_tangent_point_kernels tangent_points[] = {
     {"tangent_point", 3, tangent_point_conditions, tangent_point_motion, tangent_point_chord, tangent_point_across},
 };
 
+static const fu_taut_rope_kernels taut_ropes[] = {
+    {"planar_taut_rope", 2, planar_taut_rope_straight, planar_taut_rope_straight_tangent, planar_taut_rope_energy,
+     planar_taut_rope_tension, planar_taut_rope_tension_tangent, planar_taut_rope_dissipation},
+};
+
 /* Arguments from arrays of pointers, to inputs `a` and outputs `out`: s a number, v an array, then how many outputs. */
 #define FU_ARGUMENTS_ssv_1 *a[0], *a[1], a[2], out[0]
 #define FU_ARGUMENTS_ssvv_1 *a[0], *a[1], a[2], a[3], out[0]
@@ -411,6 +416,10 @@ static const fu_tangent_point_kernels tangent_points[] = {
 #define FU_ARGUMENTS_vvsvvssvvs_1 a[0], a[1], *a[2], a[3], a[4], *a[5], *a[6], a[7], a[8], *a[9], out[0]
 #define FU_ARGUMENTS_vssv_5 a[0], *a[1], *a[2], a[3], out[0], out[1], out[2], out[3], out[4]
 #define FU_ARGUMENTS_ssssssv_6 *a[0], *a[1], *a[2], *a[3], *a[4], *a[5], a[6], out[0], out[1], out[2], out[3], out[4], out[5]
+#define FU_ARGUMENTS_vs_4 a[0], *a[1], out[0], out[1], out[2], out[3]
+#define FU_ARGUMENTS_vvs_1 a[0], a[1], *a[2], out[0]
+#define FU_ARGUMENTS_ssvvs_1 *a[0], *a[1], a[2], a[3], *a[4], out[0]
+#define FU_ARGUMENTS_ssvvs_3 *a[0], *a[1], a[2], a[3], *a[4], out[0], out[1], out[2]
 
 /* X(name, form of its arguments) for every kernel */
 #define FU_EVERY(X) \
@@ -1008,6 +1017,12 @@ static const fu_tangent_point_kernels tangent_points[] = {
     X(tangent_point_motion, vvsvvssvvs_1) \
     X(tangent_point_chord, vssv_5) \
     X(tangent_point_across, ssssssv_6) \
+    X(planar_taut_rope_straight, vs_4) \
+    X(planar_taut_rope_straight_tangent, vvs_1) \
+    X(planar_taut_rope_energy, sv_1) \
+    X(planar_taut_rope_tension, ssvvs_1) \
+    X(planar_taut_rope_tension_tangent, ssvvs_3) \
+    X(planar_taut_rope_dissipation, ssvv_1) \
 
 #define FU_CALL(name, form) \
     static void call_##name(const fu_real *const *a, fu_real *const *out) { name(FU_ARGUMENTS_##form); }
@@ -1035,5 +1050,6 @@ const fu_tables fu_all = {
     1, sheaves,
     2, spans,
     2, surfaces,
-    1, tangent_points
+    1, tangent_points,
+    1, taut_ropes
 };

@@ -13,7 +13,8 @@ LEAD = ("Formulas are printed from the specs and programs that make the kernels,
         "Equation numbers are those of the paper: J.-H. Seo, I.-H. Jung, T.-W. Park, H. Sugiyama, A. A. Shabana, The "
         "Development of a Sliding Joint for Very Flexible Multibody Dynamics, 2005 (in Korean).")
 MAIN = {"element": "beam24", "law": "beam24_continuum", "slide": "slide_beam24_rigid", "body": "rigid",
-        "point_law": "spring", "joint": "joint_spherical", "span": "span_cable8p", "sheave": "planar_sheave"}
+        "point_law": "spring", "joint": "joint_spherical", "span": "span_cable8p", "sheave": "planar_sheave",
+        "taut_rope": "planar_taut_rope"}
 """The families of the theory: the element and the rider of the paper; of other roles the family called as the role."""
 
 THEORY: dict[str, dict[str, str]] = {
@@ -23,7 +24,8 @@ THEORY: dict[str, dict[str, str]] = {
     "algebra/tangent_frame": {}, "couplings/frame": {}, "couplings/slide": {}, "couplings/resistance": {},
     "couplings/drag": {}, "couplings/added_mass": {}, "couplings/wetness": {}, "couplings/surface": {},
     "couplings/hard_contact": {}, "couplings/span": {}, "couplings/sheave": {}, "couplings/tangent_point": {},
-    "couplings/drum": {}, "couplings/rope_point": {}, "couplings/crossing": {}, "theory/catenary": {}}
+    "couplings/drum": {}, "couplings/rope_point": {}, "couplings/taut_rope": {}, "couplings/crossing": {},
+    "theory/catenary": {}}
 """The chapters of the theory in order, with families that differ from `MAIN`. Those of other roles follow."""
 
 

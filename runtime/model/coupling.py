@@ -26,7 +26,8 @@ class CouplingModel:
     these multipliers, on velocities. has_inertia: whether it adds mass. drive: number of the signal that prescribes a
     motion, or -1. follows_law: whether a law gives the internal forces, and not constraints. redundant_rows:
     constraints that follow from others, without forces (redundant_constraints.py). unknown, multiplier: the first of
-    each, of unknowns beyond the dofs, as `number` counts them. entries: fields that the engine alone reads.
+    each, of unknowns beyond the dofs, as `number` counts them; number: its place among all couplings. entries: fields
+    that the engine alone reads.
 
     keeps_forces: whether a search for rest continues from the internal forces of the last state, which else start at
     zero; reports_cost: whether the report of a run has its computing time.
@@ -48,6 +49,7 @@ class CouplingModel:
     redundant_rows: set[int] = field(default_factory=set)
     unknown: int = -1
     multiplier: int = -1
+    number: int = -1
     entries: dict[str, Any] = field(default_factory=dict)
 
     @property
@@ -100,8 +102,8 @@ class CouplingModel:
 def number(couplings: Iterable[CouplingModel]) -> tuple[int, int]:
     """Number the unknowns and the multipliers of couplings in their order; return the numbers of both."""
     n_unknowns = n_multipliers = 0
-    for coupling in couplings:
-        coupling.unknown, coupling.multiplier = n_unknowns, n_multipliers
+    for k, coupling in enumerate(couplings):
+        coupling.number, coupling.unknown, coupling.multiplier = k, n_unknowns, n_multipliers
         n_unknowns += coupling.n_coordinates + coupling.n_forces
         n_multipliers += coupling.n_multipliers
     return n_unknowns, n_multipliers

@@ -28,6 +28,8 @@ from .states import (
     support_reaction,
     tie_force,
 )
+from .taut_rope_states import taut_rope_state
+from .taut_ropes import TautPointModel, wheel_results
 
 
 @dataclass(frozen=True)
@@ -202,11 +204,23 @@ def _ropes(model: Model, at: States, kind: str, asked: Asked) -> Values:
     """Return points along ropes, and the forces at their ends."""
     anchors = model.of(AnchorModel)
     forces = {k: at.outputs(kind, k)["force"] for k in range(len(anchors))}
-    return {rope.part.name: rope_state(model, rope, at.q) | end_forces(model, rope, at.reaction, forces, anchors)
+    return {rope.part.name: (rope_state(model, rope, at.q) | end_forces(model, rope, at.reaction, forces, anchors)
+                             if rope.part.mass else taut_rope_state(model, rope, at.q, at.outputs))
             | coordinates(rope, at.q, at.v)
             for rope in model.ropes if asked(rope.part.name)}
 
 
+def _taut_points(model: Model, at: States, kind: str, asked: Asked) -> Values:
+    """Return the results of sheaves and drums of ropes without mass."""
+    return {point.name: wheel_results(at.outputs(kind, k), point) for k, point in enumerate(model.of(TautPointModel))
+            if point.radius and asked(point.name)}
+
+
+def _none(model: Model, at: States, kind: str, asked: Asked) -> Values:
+    """Return no results: those of others contain them."""
+    return {}
+
+
 RESULTS = {"slide": _slides, "anchor": _ropes, "joint": _joints, "point_force": _point_forces, "drag": _drags,
-           "contact": _contacts, "hard_contact": _hard_contacts}
+           "contact": _contacts, "hard_contact": _hard_contacts, "taut_point": _taut_points, "taut_rope": _none}
 """Functions from outputs to results, of the kinds of couplings whose results are not the outputs themselves."""

@@ -40,6 +40,8 @@ def follow(model: Model, rope: RopeModel) -> None:
     run around: the mean rate of its arc-lengths is zero.
     """
     _set_turns(model, rope)
+    if not rope.part.mass:
+        return
     (_follow_in_plane if rope.part.dim == 2 else _follow_in_space)(model, rope)
     model.v[rope.held] = 0.0
 

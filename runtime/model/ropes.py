@@ -18,6 +18,7 @@ from .attachments import AttachmentModel, ModelBuilder
 from .coupling import CouplingKind, CouplingModel
 from .signals import Signals
 from .span_coordinates import PER_NODE, SpanCoordinates
+from .taut_ropes import taut_points, taut_ropes
 
 LAW = "engineering_exact_assumed"
 """The law of the kernels of spans (derive/couplings/span.py)."""
@@ -101,7 +102,7 @@ class RopeModel:
         """Return its dofs that are lengths: places of nodes, and material coordinates."""
         places = [np.r_[node.start : node.start + span.dim] for span in self.spans
                   for node in map(span.node, range(span.n_elements + 1))]
-        return np.concatenate([*places, *(span.s for span in self.spans), *(sheave.s for sheave in self.sheaves)]
+        return np.concatenate([*places, *(span.s for span in self.spans), *(sheave.s for sheave in self.sheaves), []]
                               ).astype(int)
 
     @property
@@ -164,6 +165,8 @@ def rope_models(scene: SceneData, at: int, supplied: bool = False) -> list[RopeM
 
 def rope_model(rope: Rope, route: DrawnRoute, first: int) -> RopeModel:
     """Return a rope along a drawn route, with coordinates from `first` on."""
+    if not rope.mass:
+        return _without_mass(rope, route, first)
     dim, at = rope.dim, first
     of_s = [s for ends in route.arc_lengths(rope.first_arc_length) for s in ends]
     spans: list[SpanCoordinates] = []
@@ -215,10 +218,22 @@ def rope_model(rope: Rope, route: DrawnRoute, first: int) -> RopeModel:
     return made
 
 
+def _without_mass(rope: Rope, route: DrawnRoute, first: int) -> RopeModel:
+    """Return a rope without mass, whose coordinates are the rotations of its wheels alone."""
+    nowhere, turning = SpanCoordinates(first, np.zeros(1), (first, first), rope.dim), [w for w in rope.wheels
+                                                                                        if w.turns_round]
+    turns = {wheel.name: first + k for k, wheel in enumerate(turning)}
+    sheaves = [SheaveCoordinates(np.zeros(0, dtype=int), turns.get(sheave.name, -1)) for sheave in rope.sheaves]
+    drums = [DrumCoordinates(end, nowhere, turns.get(drum.name, -1)) for end, drum in rope.drums.items()]
+    return RopeModel(rope, route, first, [], sheaves, drums, np.zeros(len(turning)),
+                     np.array([wheel.radius for wheel in turning]),
+                     np.array([wheel.prescribed is not None for wheel in turning], dtype=bool))
+
+
 def anchored_ends(rope: RopeModel) -> list[tuple[SpanCoordinates, int, RouteItem]]:
     """Return the spans at the anchors of a rope, 0 for its first end or -1 for its last, and the anchors."""
     return [(rope.spans[end], end, rope.part.route[end]) for end in (0, -1)
-            if isinstance(rope.part.route[end], Anchor)]
+            if isinstance(rope.part.route[end], Anchor) and rope.spans]
 
 
 def turn_motions(ropes: list[RopeModel], signals: Signals) -> list[tuple[int, int]]:
@@ -452,6 +467,8 @@ def sheave_models(builder: ModelBuilder) -> Iterator[SheaveModel]:
     """Yield the sheaves of all ropes."""
     gravity = np.array(builder.scene.gravity)
     for rope in builder.ropes:
+        if not rope.part.mass:
+            continue
         of_sheaves = zip(rope.part.sheaves, rope.route.sheaves, rope.route.beside_sheaves, strict=True)
         for k, (item, arc, beside) in enumerate(of_sheaves):
             before, after = (rope.spans[each] for each in beside)
@@ -550,7 +567,7 @@ def drum_models(builder: ModelBuilder) -> Iterator[DrumModel]:
     """Yield the drums of all ropes."""
     gravity = np.array(builder.scene.gravity)
     for rope in builder.ropes:
-        for at in rope.drums:
+        for at in rope.drums if rope.part.mass else ():
             item = rope.part.drums[at.end]
             direction = 1.0 if at.end == 0 else -1.0
             yield DrumModel(type="drum", name=item.name, kernel="planar_sheave",
@@ -586,4 +603,5 @@ def anchor_models(builder: ModelBuilder) -> Iterator[AnchorModel]:
 
 
 KINDS = (CouplingKind("anchor", Rope.group, anchor_models), CouplingKind("span", Rope.group, span_models),
-         CouplingKind("sheave", Rope.group, sheave_models), CouplingKind("drum", Rope.group, drum_models))
+         CouplingKind("sheave", Rope.group, sheave_models), CouplingKind("drum", Rope.group, drum_models),
+         CouplingKind("taut_point", Rope.group, taut_points), CouplingKind("taut_rope", Rope.group, taut_ropes))

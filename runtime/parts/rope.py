@@ -81,6 +81,11 @@ class Rope(Part):
         The stretch is uniform as drawn
     element: "cable8p" in the plane z = 0; "cable12" in space, with axes of sheaves in any direction. There a body with
         a sheave must not rotate: a prismatic joint guides it; and drums are not possible yet
+    mass: False for a rope without mass and bending stiffness, in the plane: straight between the sheaves, with one
+        tension from one end, drum or sheave with friction to the next, and slack where it would push. Sheaves with
+        friction hold the rope up to the limit e^(mu theta), where the run ends with a RopeLeftError. What drums and
+        these sheaves hold keeps the stretch as drawn: the lengths that they pass are off by the change of strain. The
+        wrap of a sheave without friction may vanish and return; with side given it may be absent as drawn
     section: cross-section, whose height is in the plane
     material: material, with the damping of the rope
     """
@@ -108,6 +113,7 @@ class Rope(Part):
     tension: Annotated[float, positive("N")] | None = None
     length: Annotated[float, positive("m")] | None = None
     element: Annotated[str, one_of(ELEMENTS)] = PLANAR
+    mass: Flag = True
 
     @model_validator(mode="after")
     def _has_a_route(self) -> "Rope":
@@ -151,6 +157,18 @@ class Rope(Part):
         return self
 
     @model_validator(mode="after")
+    def _is_possible_without_mass(self) -> "Rope":
+        if self.mass:
+            return self
+        if self.dim == 3:
+            raise ValueError(f'has no mass, and its element "{self.element}" is that of ropes in space',
+                             f'take element="{PLANAR}", or a small mass: ropes without mass are planar')
+        if self.closed and not self.holding_sheaves:
+            raise ValueError("has no mass, is closed, and no sheave holds it: how far it has run is then not known",
+                             "give friction of a sheave")
+        return self
+
+    @model_validator(mode="after")
     def _fits_its_sheaves(self) -> "Rope":
         for wheel in self.wheels:
             if wheel.radius <= self.radius:
@@ -178,8 +196,13 @@ class Rope(Part):
 
     @property
     def rough_sheaves(self) -> list[Sheave]:
-        """Return its sheaves with friction."""
-        return [sheave for sheave in self.sheaves if sheave.coefficient > 0]
+        """Return its sheaves with friction on which it slides: none without mass."""
+        return [sheave for sheave in self.sheaves if sheave.coefficient > 0 and self.mass]
+
+    @property
+    def holding_sheaves(self) -> list[Sheave]:
+        """Return its sheaves whose friction holds it: those with friction, without mass."""
+        return [sheave for sheave in self.sheaves if sheave.coefficient > 0 and not self.mass]
 
     def may_leave(self, sheave: Sheave) -> bool:
         """Return whether the rope may leave one of its sheaves in a run, and touch it again."""
@@ -224,6 +247,8 @@ class Rope(Part):
     @property
     def elements_of_spans(self) -> tuple[int, ...]:
         """Return the number of elements of each span."""
+        if not self.mass:
+            return (1,) * self.n_spans
         return self.elements if isinstance(self.elements, tuple) else (self.elements,) * self.n_spans
 
     @property
@@ -240,9 +265,9 @@ class Rope(Part):
 
     @property
     def stiffness(self) -> tuple[float, float]:
-        """Return EA in N and EI in N m²."""
+        """Return EA in N and EI in N m², which is 0 without mass."""
         EA, EI = section_stiffness(LAW, self.section, self.material, self.dim).tolist()
-        return EA, EI
+        return EA, EI if self.mass else 0.0
 
     def named_within(self) -> Iterator[Part]:
         """Yield its sheaves and drums in their order."""

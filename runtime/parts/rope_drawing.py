@@ -12,7 +12,7 @@ from .attachment import Attachment
 from .modal_body import ModalBody
 from .rigid_body import RigidBody
 from .rope_items import SIDES, Drum, RouteItem, Sheave
-from .rope_route import MAX_LAYER, DrawnRoute, RoutePoint, default_senses, drawn_route
+from .rope_route import MAX_LAYER, DrawnRoute, RoutePoint, default_senses, drawn_route, without_wraps
 from .rope_route_space import groove_of, senses_in_space, span_in_space
 from .validation import LENGTH_TOLERANCE, show
 
@@ -22,6 +22,7 @@ class Roped(Protocol):
 
     route: tuple[RouteItem, ...]
     closed: bool
+    mass: bool
     tension: float | None
     length: float | None
 
@@ -64,6 +65,9 @@ class Roped(Protocol):
 def drawn(rope: Roped, bodies: Mapping[str, RigidBody | ModalBody]) -> DrawnRoute:
     """Return the route of a rope, see `Rope.drawn`."""
     points = _points(rope, np.array([_place(item.end, bodies)[:rope.dim] for item in rope.route]))
+    if not rope.mass:
+        route = without_wraps(points, [_may_be_absent(item) for item in rope.route], rope.radius, rope.closed)
+        return replace(route, stretch=_stretch(rope, route.length))
     route = _along(rope, points)
     if offsets := _offsets(rope, _stretch(rope, route.length)):
         route = _along(rope, [replace(point, offset=offsets.get(point.name, 0.0)) for point in points])
@@ -96,6 +100,11 @@ def drawn_anew(rope: Roped, route: DrawnRoute, centres: np.ndarray) -> DrawnRout
               if point.name in arcs else point for point in _points(rope, centres)]
     found = _along(rope, points)
     return replace(found, stretch=found.length / route.free_length)
+
+
+def _may_be_absent(item: RouteItem) -> bool:
+    """Return whether a rope without mass need not touch an item as drawn."""
+    return isinstance(item, Sheave) and item.side is not None and not item.coefficient and not item.turns
 
 
 def _along(rope: Roped, points: list[RoutePoint]) -> DrawnRoute:

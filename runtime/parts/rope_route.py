@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from itertools import pairwise
-from math import atan2, hypot, tau
+from math import atan2, hypot, pi, tau
 
 import numpy as np
 
@@ -188,6 +188,45 @@ def drawn_route(points: list[RoutePoint], rope_radius: float = 0.0, closed: bool
             if point.radius and point not in both:
                 _check_clear(span, *both, point)
     return DrawnRoute(tuple(spans), tuple(sheaves), (points[0].reach, points[-1].reach))
+
+
+def without_wraps(points: list[RoutePoint], may_be_absent: list[bool], rope_radius: float,
+                  closed: bool) -> DrawnRoute:
+    """Return the route along points, some of which the rope may pass without a wrap: there it has an arc of no angle,
+    where it is nearest to the centre.
+
+    Raises ValueError(cause, remedy) for an impossible route.
+    """
+    kept = list(range(len(points)))
+    gone: int | None = -1
+    while gone is not None:
+        gone = next((k for k in kept if may_be_absent[k] and _turn(points, kept, k) < 0), None)
+        kept = [k for k in kept if k != gone]
+    route = drawn_route([points[k] for k in kept], rope_radius, closed)
+    if len(kept) == len(points):
+        return route
+    arcs, spans, n = {arc.name: arc for arc in route.sheaves}, [], len(points)
+    for number, k in enumerate(kept if closed else kept[:-1]):
+        span, after = route.spans[number], kept[(number + 1) % len(kept)]
+        between = range(k + 1, after if after > k else after + n)
+        at = span.start
+        for point in (points[j % n] for j in between):
+            along = float((point.centre - span.start) @ span.direction)
+            foot = span.start + min(max(along, 0.0), span.length) * span.direction
+            spans.append(DrawnSpan(at, foot, float(np.linalg.norm(foot - at))))
+            angle = atan2(span.direction[1], span.direction[0]) - point.sense * pi / 2
+            arcs[point.name] = DrawnArc(point.name, point.centre, point.radius, point.sense, angle, angle, point.radius)
+            at = foot
+        spans.append(DrawnSpan(at, span.end, float(np.linalg.norm(span.end - at))))
+    return DrawnRoute(tuple(spans), tuple(arcs[point.name] for point in points if point.name in arcs), route.reach)
+
+
+def _turn(points: list[RoutePoint], kept: list[int], k: int) -> float:
+    """Return the angle by which a rope along some points turns at one of these, to its side, rad."""
+    at = kept.index(k)
+    before, point, after = (points[kept[(at + j) % len(kept)]] for j in (-1, 0, 1))
+    one, other = (_span(*ends, 0.0).direction for ends in ((before, point), (point, after)))
+    return point.sense * atan2(one[0] * other[1] - one[1] * other[0], one @ other)
 
 
 def _span(one: RoutePoint, other: RoutePoint, rope_radius: float) -> DrawnSpan:

@@ -162,6 +162,7 @@ class SceneMethods(SceneData):
         tension: float | None = None,
         length: float | None = None,
         element: str = "cable8p",
+        mass: bool = True,
     ) -> Rope:
         """Add a Rope, which see."""
 

@@ -262,6 +262,9 @@ CEILINGS = {
     },
     "planar_rope_point": {"point": 357, "wrench": 776},
     "rope_point": {"point": 402, "wrench": 844},
+    "planar_taut_rope": {
+        "straight": 43, "straight_tangent": 135, "energy": 7, "tension": 33, "tension_tangent": 150, "dissipation": 9
+    },
     "tangent_point": {"conditions": 1678, "motion": 310, "chord": 202, "across": 27},
     "planar_sheave": {
         "tangent_point": 27, "tangent_point_motion": 26, "angle": 121, "energy": 13, "weight": 21, "force": 85,

@@ -12,6 +12,8 @@
     WITH_EVENTS(span)                                                                                                  \
     WITH_EVENTS(sheave)                                                                                                \
     WITH_EVENTS(drum)                                                                                                  \
+    WITH_EVENTS(taut_point)                                                                                            \
+    WITH_EVENTS(taut_rope)                                                                                             \
     WITH_EVENTS(point_force)                                                                                           \
     WITH_EVENTS(drag)                                                                                                  \
     WITH_EVENTS(crossing)                                                                                              \

@@ -16,6 +16,7 @@ from ...model.model import Model
 from ...model.rope_states import rope_state
 from ...model.ropes import DrumModel
 from ...model.states import body_rates, body_state, spatial
+from ...model.taut_ropes import TautPointModel
 from ...parts.event import Event
 from ...parts.scene_data import SceneData
 
@@ -85,7 +86,7 @@ class State:
         """Return the bodies, cables, ropes and slides with quantities in the state."""
         model = self._model
         return [*(body.name for body in model.bodies), *(cable.name for cable in model.cables),
-                *(rope.part.name for rope in model.ropes), *(slide.name for slide in model.slides)]
+                *(rope.part.name for rope in model.ropes if rope.part.mass), *(slide.name for slide in model.slides)]
 
     def _all(self, name: str) -> dict[str, Any]:
         model = self._model
@@ -99,7 +100,7 @@ class State:
                 return {"nodal_vectors": spatial(cable.nodal(self._q)),
                         "nodal_velocity": spatial(cable.nodal(self._v))}
         for rope in model.ropes:
-            if rope.part.name == name:
+            if rope.part.name == name and rope.part.mass:
                 return {key: values[0] for key, values in rope_state(model, rope, self._q[None]).items()}
         slides = [slide.name for slide in model.slides]
         return {"s": float(self._s[slides.index(name)])} if name in slides else {}
@@ -172,7 +173,7 @@ class EventHandler:
     def stops_empty(self, number: int) -> bool:
         """Return whether a rope's coupling with this number is a drum whose end stops the run; record that it did."""
         drum = self.model.couplings[number]
-        if not isinstance(drum, DrumModel) or drum.ends_run_by != "stop":
+        if not isinstance(drum, DrumModel | TautPointModel) or drum.ends_run_by != "stop":
             return False
         self.stopped_by = f'drum "{drum.name}", which has run empty,'
         return True

@@ -10,6 +10,7 @@ from ...model.contacts import HardContactModel
 from ...model.model import CableModel, Model, SlideModel
 from ...model.redundant_constraints import redundant
 from ...model.ropes import SpanModel
+from ...model.taut_ropes import TautPointModel
 from ...parts.rope_route import MIN_WRAP
 from ...parts.scene_data import SceneData
 from ...parts.settings import RunSettings
@@ -28,9 +29,13 @@ ROPE_LEFT = (
      "keep what is at the ends of the span apart, or stop before by an event"),
     *(("{reached},",
        "give the rope less way, let the joint hold it farther away, or stop before by an event"),) * 2,
-    ('drum "{name}" has run empty', "give a greater length_in_store, or stop before by an event"))
+    ('drum "{name}" has run empty', "give a greater length_in_store, or stop before by an event"),
+    ('a rope without mass slips on sheave "{name}", as its tensions differ by more than friction holds,',
+     "give a greater coefficient, or a rope with mass, which may slide; or stop before by an event"),
+    ('a rope without mass meets sheave "{name}" from its other side',
+     "give a sheave on that side, or stop before by an event"))
 """Why a run with a rope ended, and what helps, by the reasons of engine/events/rope.c."""
-EMPTY = len(ROPE_LEFT) - 1
+EMPTY = 6
 """The reason of a drum."""
 GRIP = EMPTY - 2
 """The reason of a span at whose first end a point arrives that a joint or a spring holds; at its last end one more."""
@@ -145,7 +150,8 @@ def rope_left(model: Model, number: int, reason: int) -> tuple[str, str]:
     if reason in (GRIP, GRIP + 1):
         assert isinstance(coupling, SpanModel)
         held = {"reached": coupling.reached(reason - GRIP)}
-    return cause.format(name=coupling.name, kind=coupling.type, wrap=MIN_WRAP, **held), remedy
+    wrap = 0.0 if isinstance(coupling, TautPointModel) else MIN_WRAP
+    return cause.format(name=coupling.name, kind=coupling.type, wrap=wrap, **held), remedy
 
 
 def describe_dof(model: Model, dof: int, coupling: int | None = None) -> str:

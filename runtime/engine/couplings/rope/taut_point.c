@@ -1,0 +1,333 @@
+/* Points of ropes without mass: what turns at them, and how the rope beside them is. */
+#include "bodies/model.h"
+#include "bodies/unknowns.h"
+#include "couplings/common/couplings.h"
+#include "couplings/rope/taut_rope.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { DIM = 2, SIDES = 2 };
+
+static const fu_taut_point *point_of(const fu_coupling *coupling)
+{
+    return (const fu_taut_point *)coupling;
+}
+
+static double sense_of(const fu_taut_point *point)
+{
+    return point->radius < 0.0 ? -1.0 : 1.0;
+}
+
+/* A point with the straight parts and the ropes beside it: `has` those before and after it. */
+typedef struct {
+    int has[SIDES], touches;
+    const fu_taut_rope *rope[SIDES];
+    fu_taut_part part[SIDES];
+    fu_taut_lengths lengths[SIDES];
+} surroundings;
+
+static const fu_taut_rope *rope_beside(const fu_model *model, const fu_taut_point *point, int side)
+{
+    return point->ropes[side] < 0 ? 0 : (const fu_taut_rope *)model->couplings[point->ropes[side]];
+}
+
+/* Computes the straight parts beside a point; of one that the rope does not touch, both are the one that passes it. */
+static void find_parts(const fu_model *model, const fu_taut_point *point, const fu_state *state, surroundings *out)
+{
+    out->touches = fu_touches(point, state);
+    for (int side = 0; side < SIDES; ++side) {
+        const fu_taut_rope *rope = out->rope[side] = rope_beside(model, point, side);
+        const int place = point->places[side];
+        out->has[side] = rope != 0;
+        if (!rope) continue;
+        const int from = side && out->touches ? place : fu_touched_before(model, rope, state, place);
+        fu_taut_part_at(model, rope, state, from, fu_next_touched(model, rope, state, from), &out->part[side]);
+    }
+}
+
+static void look(const fu_model *model, const fu_taut_point *point, const fu_state *state, surroundings *out)
+{
+    find_parts(model, point, state, out);
+    for (int side = 0; side < SIDES; ++side)
+        if (out->has[side]) fu_taut_lengths_at(model, out->rope[side], state, &out->lengths[side]);
+}
+
+/* Returns the wrap angle, rad. */
+static double wrap_of(const fu_taut_point *point, const surroundings *at)
+{
+    return at->touches && at->has[0] && at->has[1]
+               ? sense_of(point) * (at->part[1].angle - at->part[0].angle + point->closing)
+               : 0.0;
+}
+
+double fu_taut_wrap(const fu_model *model, const fu_taut_point *point, const fu_state *state)
+{
+    surroundings at;
+    find_parts(model, point, state, &at);
+    return -wrap_of(point, &at);
+}
+
+double fu_taut_depth(const fu_model *model, const fu_taut_point *point, const fu_state *state, int *side)
+{
+    const fu_taut_rope *rope = rope_beside(model, point, 0);
+    surroundings at;
+    fu_attachment_state centre, start;
+    find_parts(model, point, state, &at);
+    const fu_taut_part *part = &at.part[0];
+    const fu_taut_point *first = fu_taut_point_of(model, rope, part->from);
+    fu_taut_centre(model, point, state, &centre);
+    fu_taut_centre(model, first, state, &start);
+    /* the part begins to the right of its first centre by the radius there, with its sense */
+    const double x = centre.p[0] - start.p[0] - first->radius * part->u[1];
+    const double y = centre.p[1] - start.p[1] + first->radius * part->u[0];
+    const double along = part->u[0] * x + part->u[1] * y, across = part->u[0] * y - part->u[1] * x;
+    const double beyond = along < 0.0 ? along : along > part->l ? along - part->l : 0.0;
+    *side = across * sense_of(point) < 0.0 ? -1 : 1;
+    return fabs(point->radius) - hypot(across, beyond);
+}
+
+double fu_taut_grip(const fu_model *model, const fu_taut_point *point, const fu_state *state)
+{
+    surroundings at;
+    look(model, point, state, &at);
+    const double before = at.lengths[0].f[FU_DRAWN], after = at.lengths[1].f[FU_DRAWN];
+    const double rounding = 1e-12 * (at.rope[0]->EA + at.rope[1]->EA); /* a slack rope needs no friction */
+    return fabs(after - before) - tanh(0.5 * point->friction * wrap_of(point, &at)) * (after + before) - rounding;
+}
+
+double fu_taut_store(const fu_model *model, const fu_taut_point *point, const fu_state *state)
+{
+    const int side = point->ropes[1] >= 0 ? 1 : 0;
+    double rate;
+    return point->store + fu_taut_held(model, rope_beside(model, point, side), state, !side, &rate);
+}
+
+/* --- what turns ------------------------------------------------------------------------------------------------- */
+
+static void inertial_force(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a,
+                           double *f)
+{
+    const fu_taut_point *point = point_of(coupling);
+    const fu_state state = {.q = (double *)q};
+    fu_attachment_state at;
+    fu_taut_centre(model, point, &state, &at);
+    double acceleration = a[point->turn];
+    for (int i = 0; i < at.n; ++i) acceleration += at.T[i] * a[at.at[i]];
+    f[point->turn] += point->inertia * acceleration;
+    for (int i = 0; i < at.n; ++i) f[at.at[i]] += point->inertia * at.T[i] * acceleration;
+}
+
+static void mass_matrix(const fu_model *model, const fu_coupling *coupling, const double *q, double scale,
+                        fu_system *system)
+{
+    const fu_taut_point *point = point_of(coupling);
+    const fu_state state = {.q = (double *)q};
+    const double mass = scale * point->inertia;
+    fu_attachment_state at;
+    fu_taut_centre(model, point, &state, &at);
+    fu_add(model, system, point->turn, point->turn, mass);
+    for (int i = 0; i < at.n; ++i) {
+        if (at.T[i] == 0.0) continue;
+        fu_add(model, system, point->turn, at.at[i], mass * at.T[i]);
+        fu_add(model, system, at.at[i], point->turn, mass * at.T[i]);
+        for (int j = 0; j < at.n; ++j)
+            if (at.T[j] != 0.0) fu_add(model, system, at.at[i], at.at[j], mass * at.T[i] * at.T[j]);
+    }
+}
+
+static double kinetic_energy(const fu_model *model, const fu_coupling *coupling, double t, const double *q,
+                             const double *v, int past_fluid)
+{
+    const fu_taut_point *point = point_of(coupling);
+    const fu_state state = {.q = (double *)q, .v = (double *)v};
+    fu_attachment_state at;
+    (void)t, (void)past_fluid;
+    fu_taut_centre(model, point, &state, &at);
+    const double spin = fu_taut_spin(model, point, &state, &at);
+    return 0.5 * point->inertia * spin * spin;
+}
+
+/* Adds the moment of the bearing, between a wheel and its carrier. */
+static void force(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f)
+{
+    const fu_taut_point *point = point_of(coupling);
+    (void)model;
+    if (point->turn >= 0 && state->v) f[point->turn] += point->damping * state->v[point->turn];
+}
+
+static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, double *f,
+                     double *internal)
+{
+    (void)internal;
+    force(model, coupling, equations->next, f);
+}
+
+static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations,
+                    fu_system *system)
+{
+    const fu_taut_point *point = point_of(coupling);
+    const fu_weights w = equations->weights;
+    if (point->turn >= 0 && point->damping != 0.0)
+        fu_add(model, system, point->turn, point->turn, w.stiffness * w.rate * point->damping);
+}
+
+static double dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                          const fu_accelerator *work)
+{
+    const fu_taut_point *point = point_of(coupling);
+    (void)model, (void)work;
+    return point->turn < 0 ? 0.0 : point->damping * state->v[point->turn] * state->v[point->turn];
+}
+
+static double drive_torque(const fu_model *model, const fu_taut_point *point, double t)
+{
+    const int signal = point->torque_signal;
+    return point->torque * (signal < 0 ? 1.0 : fu_signal_at(&model->signals[signal], t, 0, 0));
+}
+
+/* Subtracts the torque of the drive. */
+static void drive(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f)
+{
+    const fu_taut_point *point = point_of(coupling);
+    (void)q;
+    if (point->turn >= 0 && point->torque != 0.0)
+        f[point->turn] -= model->load_fraction * drive_torque(model, point, t);
+}
+
+/* --- the coupling ----------------------------------------------------------------------------------------------- */
+
+typedef struct {
+    double tension_on, tension_off, wrap_angle, force[3], material_speed, normal_force, torque, drive, power,
+        length_in_store, angle, angle_on, angle_off, touches;
+} point_output;
+
+/* Returns the stress-free length a second that passes a point in the rope's order: of a wheel that holds the rope, the
+ * mean of both sides. */
+static double speed_of(const fu_model *model, const fu_taut_point *point, const fu_state *state, const surroundings *at)
+{
+    double speed = 0.0, rate;
+    if (at->rope[0] != at->rope[1] || point->places[0] != point->places[1]) {
+        for (int side = 0; side < SIDES; ++side) {
+            if (!at->has[side]) continue;
+            fu_taut_held(model, at->rope[side], state, !side, &rate);
+            speed += side ? -rate : rate;
+        }
+        return at->has[0] && at->has[1] ? 0.5 * speed : speed;
+    }
+    const fu_taut_lengths *now = &at->lengths[0];
+    const double stretch = now->length[FU_DRAWN] / now->length[FU_FREE];
+    const double growth = (now->rate[FU_DRAWN] - stretch * now->rate[FU_FREE]) / now->length[FU_FREE];
+    const double length = fu_taut_length_to(model, at->rope[0], state, point->places[0], &rate);
+    double held;
+    fu_taut_held(model, at->rope[0], state, 0, &held);
+    return length * growth / (stretch * stretch) - rate / stretch - held;
+}
+
+static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                    const double *acceleration, const fu_accelerator *work, double *out)
+{
+    const fu_taut_point *point = point_of(coupling);
+    const double *a = acceleration ? acceleration : model->zero;
+    point_output *numbers = (point_output *)out;
+    surroundings at;
+    double on_wheel = 0.0;
+    (void)work;
+    look(model, point, state, &at);
+    *numbers = (point_output){.touches = at.touches, .wrap_angle = wrap_of(point, &at)};
+    for (int side = 0; side < SIDES; ++side) {
+        if (!at.has[side]) continue;
+        const double *f = at.lengths[side].f;
+        double pull[DIM];
+        *(side ? &numbers->tension_off : &numbers->tension_on) = f[FU_DRAWN];
+        *(side ? &numbers->angle_off : &numbers->angle_on) = at.part[side].angle;
+        if (at.has[!side] && !at.touches) continue;
+        fu_taut_pull(&at.part[side], f, pull);
+        for (int d = 0; d < DIM; ++d) numbers->force[d] += side ? pull[d] : -pull[d];
+        const int holds = side ? point->places[1] == 0 : point->places[0] == at.rope[0]->n_points - 1;
+        if (holds) on_wheel += (side ? -1.0 : 1.0) * point->radius / at.rope[side]->stretch * f[FU_FREE];
+    }
+    numbers->normal_force = !at.touches              ? 0.0
+                            : at.has[0] && at.has[1] ? fmin(numbers->tension_on, numbers->tension_off)
+                                                     : numbers->tension_on + numbers->tension_off;
+    numbers->material_speed = speed_of(model, point, state, &at);
+    numbers->torque = on_wheel;
+    if (point->radius != 0.0 && !(at.has[0] && at.has[1]))
+        numbers->length_in_store = fu_taut_store(model, point, state);
+    numbers->drive = -on_wheel;
+    if (point->turn < 0) return;
+    fu_attachment_state centre;
+    fu_taut_centre(model, point, state, &centre);
+    const double rate = state->v ? state->v[point->turn] : 0.0;
+    double turning = a[point->turn];
+    for (int i = 0; i < centre.n; ++i) turning += centre.T[i] * a[centre.at[i]];
+    numbers->drive += point->inertia * turning + point->damping * rate;
+    numbers->power = numbers->drive * rate;
+    numbers->angle = state->q[point->turn];
+}
+
+static void reset(const fu_coupling *coupling, fu_state *state)
+{
+    const fu_taut_point *point = point_of(coupling);
+    state->numbers[coupling->numbers] = point->angle;
+    state->numbers[coupling->numbers + 1] = point->carrier;
+    state->flags[coupling->flags] = point->touches;
+}
+
+static const fu_field fields[] = {
+    FU_FIELD_ARRAY(fu_taut_point, attachments, FU_ATTACHMENT),
+    FU_FIELD(fu_taut_point, turn, FU_INTEGER, 0),
+    FU_FIELD(fu_taut_point, radius, FU_REAL, 0),
+    FU_FIELD(fu_taut_point, inertia, FU_REAL, 0),
+    FU_FIELD(fu_taut_point, damping, FU_REAL, 0),
+    FU_FIELD(fu_taut_point, torque_signal, FU_INTEGER, 0),
+    FU_FIELD(fu_taut_point, torque, FU_REAL, 0),
+    FU_FIELD(fu_taut_point, friction, FU_REAL, 0),
+    FU_FIELD(fu_taut_point, store, FU_REAL, 0),
+    FU_FIELD_ARRAY(fu_taut_point, ropes, FU_INTEGER),
+    FU_FIELD_ARRAY(fu_taut_point, places, FU_INTEGER),
+    FU_FIELD(fu_taut_point, angle, FU_REAL, 0),
+    FU_FIELD(fu_taut_point, carrier, FU_REAL, 0),
+    FU_FIELD(fu_taut_point, closing, FU_REAL, 0),
+    FU_FIELD(fu_taut_point, touches, FU_INTEGER, 0),
+    {0},
+};
+
+static const fu_output output_fields[] = {
+    FU_OUTPUT(point_output, tension_on, "N", NULL),
+    FU_OUTPUT(point_output, tension_off, "N", NULL),
+    FU_OUTPUT(point_output, wrap_angle, "rad", NULL),
+    FU_OUTPUT(point_output, force, "N", "direction"),
+    FU_OUTPUT(point_output, material_speed, "m/s", NULL),
+    FU_OUTPUT(point_output, normal_force, "N", NULL),
+    FU_OUTPUT(point_output, torque, "N m", NULL),
+    FU_OUTPUT(point_output, drive, "N m", NULL),
+    FU_OUTPUT(point_output, power, "W", NULL),
+    FU_OUTPUT(point_output, length_in_store, "m", NULL),
+    FU_OUTPUT(point_output, angle, "rad", NULL),
+    FU_OUTPUT(point_output, angle_on, "rad", NULL),
+    FU_OUTPUT(point_output, angle_off, "rad", NULL),
+    FU_OUTPUT(point_output, touches, "1", NULL),
+    FU_LAST_OUTPUT(point_output),
+};
+
+static const fu_inertia_operations inertia = {inertial_force, mass_matrix, kinetic_energy, 0};
+static const fu_supply_operations supply = {.force = drive};
+static const fu_start_operations start = {.reset = reset};
+
+const fu_coupling_type fu_taut_point_type = {
+    .name = "taut_point",
+    .size = sizeof(fu_taut_point),
+    .fields = fields,
+    .output_fields = output_fields,
+    .n_numbers = 2,
+    .n_flags = 1,
+    .inertia = &inertia,
+    .supply = &supply,
+    .start = &start,
+    .residual = residual,
+    .tangent = tangent,
+    .force = force,
+    .outputs = outputs,
+    .dissipation = dissipation,
+};

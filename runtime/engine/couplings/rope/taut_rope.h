@@ -1,0 +1,94 @@
+/* Ropes without mass (derive/couplings/taut_rope.py). The items of a rope's route are points, couplings of their own:
+ * anchors, sheaves and drums. A rope with one tension leads from an end or a wheel that holds it, a drum or a sheave
+ * with friction, to the next one, over the frictionless sheaves between these. */
+#ifndef FUNICULAR_COUPLINGS_ROPE_TAUT_ROPE_H
+#define FUNICULAR_COUPLINGS_ROPE_TAUT_ROPE_H
+
+#include "couplings/common/attachments.h"
+#include "couplings/common/coupling.h"
+
+enum { FU_DRAWN, FU_FREE, FU_LENGTHS }; /* of a rope: its drawn and its stress-free length, and forces on these */
+
+/* A point. Its numbers in a state are the angles of the straight part after it and of what carries it, counted over
+ * turns; its flag is whether the rope touches it. */
+typedef struct {
+    fu_coupling base;
+    fu_attachment attachments[1]; /* the centre */
+    int turn;                     /* dof: its rotation, -1 for none */
+    double radius;                /* m: with the sense of travel as sign, 0 of an anchor */
+    double inertia, damping;      /* kg m^2, N m s */
+    int torque_signal;            /* of the torque on it, -1 for a constant one */
+    double torque;                /* N m: the factor of the signal */
+    double friction;              /* coefficient */
+    double store;                 /* m: stress-free length that a drum holds as drawn */
+    int ropes[2], places[2];      /* before and after it: numbers of the ropes, -1 for none; its places in them */
+    double angle, carrier;        /* rad: as drawn */
+    double closing;               /* rad: by which the angles of parts grow along a closed rope, at its first point */
+    int touches;                  /* as drawn */
+} fu_taut_point;
+
+/* A rope with one tension. */
+typedef struct {
+    fu_coupling base;
+    const fu_taut_rope_kernels *kernel;
+    int n_points;
+    const int *points; /* numbers of the couplings */
+    double EA, tau;
+    double free_length, angles[2], carriers[2]; /* as drawn: m; rad: of the first and last straight part and point */
+    double stretch, kept, held; /* of what wheels hold: stretch; N: energy of a length; m: its length at both ends */
+    double least_length;        /* m: of a straight part */
+} fu_taut_rope;
+
+extern const fu_coupling_type fu_taut_point_type, fu_taut_rope_type;
+
+/* A straight part between two points of a rope, by their places in it: change of the centres and its rate, length,
+ * direction with its angle, derivatives of length and angle by d; the shares of its angle in both lengths. */
+typedef struct {
+    int from, to;
+    double rise, d[2], d_rate[2], l, u[2], l_d[2], b_d[2], angle, share[FU_LENGTHS];
+} fu_taut_part;
+
+/* Lengths of a rope and their rates; the forces on them, those of a slack rope where it is slack. */
+typedef struct {
+    double length[FU_LENGTHS], rate[FU_LENGTHS], f[FU_LENGTHS];
+} fu_taut_lengths;
+
+const fu_taut_point *fu_taut_point_of(const fu_model *model, const fu_taut_rope *rope, int place);
+/* Returns whether a rope touches a point. */
+int fu_touches(const fu_taut_point *point, const fu_state *state);
+/* Returns the place of the next point that a rope touches, or of the one before. */
+int fu_next_touched(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, int place);
+int fu_touched_before(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, int place);
+/* Computes the straight part between two places of a rope. */
+void fu_taut_part_at(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, int from, int to,
+                     fu_taut_part *out);
+/* Computes lengths and forces of a rope. */
+void fu_taut_lengths_at(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_lengths *out);
+/* Computes the force of a part on its second point, by the forces on both lengths; its opposite acts on the first. */
+void fu_taut_pull(const fu_taut_part *part, const double f[FU_LENGTHS], double pull[2]);
+/* Returns the rotation of a point with what carries it, and its rate; at: with its axes. */
+double fu_taut_turn(const fu_taut_point *point, const fu_state *state, const fu_attachment_state *at);
+double fu_taut_spin(const fu_model *model, const fu_taut_point *point, const fu_state *state,
+                    const fu_attachment_state *at);
+/* Computes the state of a point's centre with its axes; velocities are zero where the state has none. */
+void fu_taut_centre(const fu_model *model, const fu_taut_point *point, const fu_state *state, fu_attachment_state *out);
+/* Returns the drawn length of a rope from its first tangent point to the middle of the wrap at a place, m, and its
+ * rate. */
+double fu_taut_length_to(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, int place,
+                         double *rate);
+/* Returns the stress-free length that a wheel at an end of a rope holds beyond that as drawn, m, and its rate; end: 0
+ * at the rope's start, 1 at its end. */
+double fu_taut_held(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, int end, double *rate);
+
+/* Event functions (events/taut_rope.c): of a point, the angle of its wrap, rad, positive beyond its end; the depth of a
+ * straight rope in a sheave that it does not touch, m; of friction, the difference of both tensions less the limit, N;
+ * of a drum, the length in store, m. Of a rope, by how far it is slack, and the length of its shortest part above the
+ * least one, m. */
+double fu_taut_wrap(const fu_model *model, const fu_taut_point *point, const fu_state *state);
+double fu_taut_depth(const fu_model *model, const fu_taut_point *point, const fu_state *state, int *side);
+double fu_taut_grip(const fu_model *model, const fu_taut_point *point, const fu_state *state);
+double fu_taut_store(const fu_model *model, const fu_taut_point *point, const fu_state *state);
+double fu_taut_slack(const fu_model *model, const fu_taut_rope *rope, const fu_state *state);
+double fu_taut_margin(const fu_model *model, const fu_taut_rope *rope, const fu_state *state);
+
+#endif

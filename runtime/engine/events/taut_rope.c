@@ -1,0 +1,145 @@
+/* Ropes without mass: a rope becomes slack or taut; a wrap leaves and returns, which changes its geometry alone. A run
+ * ends where a rope slips on a sheave, leaves one that holds it, meets one from the other side, has run off a drum, or
+ * where a straight part becomes too short. */
+#include "couplings/common/coupling_events.h"
+#include "couplings/rope/taut_rope.h"
+#include "equations/run.h"
+
+/* the reasons of ropes (events/rope.c), and those of ropes without mass after them */
+enum { WRAP, TOO_SHORT = 3, EMPTY = 6, SLIPS = 7, OTHER_SIDE = 8 };
+enum { OF_WRAP, OF_GRIP };
+enum { OF_TENSION, OF_PARTS };
+
+static const fu_taut_point *point_of(const fu_coupling *coupling)
+{
+    return (const fu_taut_point *)coupling;
+}
+
+static const fu_taut_rope *rope_of(const fu_coupling *coupling)
+{
+    return (const fu_taut_rope *)coupling;
+}
+
+static int list(int n, int direction, fu_event_function *out)
+{
+    for (int k = 0; out && k < n; ++k) out[k] = (fu_event_function){.which = k, .direction = direction};
+    return n;
+}
+
+/* Ends the run; returns its status. */
+static int leave(fu_run *run, const fu_coupling *coupling, int reason)
+{
+    run->left = coupling->number;
+    run->left_by = reason;
+    return FU_ROPE_LEFT;
+}
+
+/* --- points ----------------------------------------------------------------------------------------------------- */
+
+static int is_sheave(const fu_taut_point *point)
+{
+    return point->radius != 0.0 && point->ropes[0] >= 0 && point->ropes[1] >= 0;
+}
+
+static int holds(const fu_taut_point *point)
+{
+    return point->friction > 0.0;
+}
+
+static int can_act(const fu_coupling *coupling)
+{
+    return point_of(coupling)->radius != 0.0;
+}
+
+static int functions_of_point(const fu_coupling *coupling, fu_event_function *out)
+{
+    const fu_taut_point *point = point_of(coupling);
+    if (!can_act(coupling)) return 0;
+    return list(is_sheave(point) && holds(point) ? OF_GRIP + 1 : OF_WRAP + 1, 1, out);
+}
+
+static double value_of_point(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
+{
+    const fu_taut_point *point = point_of(coupling);
+    int side;
+    if (which == OF_GRIP) return fu_taut_grip(run->model, point, state);
+    if (!is_sheave(point)) return -fu_taut_store(run->model, point, state);
+    return fu_touches(point, state) ? fu_taut_wrap(run->model, point, state)
+                                    : fu_taut_depth(run->model, point, state, &side);
+}
+
+static int act_of_point(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
+{
+    const fu_taut_point *point = point_of(coupling);
+    int *touches = run->now.flags + coupling->flags, from_side = 1;
+    (void)side;
+    *what = which == OF_GRIP ? "slips" : !is_sheave(point) ? "ran empty" : *touches ? "left the sheave" : "returned";
+    if (which == OF_GRIP) return leave(run, coupling, SLIPS);
+    if (!is_sheave(point)) return leave(run, coupling, EMPTY);
+    if (*touches && holds(point)) return leave(run, coupling, WRAP);
+    if (!*touches) fu_taut_depth(run->model, point, &run->now, &from_side);
+    if (from_side < 0) return leave(run, coupling, OTHER_SIDE);
+    *touches = !*touches;
+    if (*touches) { /* its angle is that of the straight part which met it */
+        const fu_taut_rope *rope = (const fu_taut_rope *)run->model->couplings[point->ropes[0]];
+        const int before = fu_touched_before(run->model, rope, &run->now, point->places[0]);
+        run->now.numbers[coupling->numbers] =
+            run->now.numbers[fu_taut_point_of(run->model, rope, before)->base.numbers];
+    }
+    return FU_RUNNING;
+}
+
+static int begin_point(fu_run *run, const fu_coupling *coupling)
+{
+    const char *what;
+    const int n = functions_of_point(coupling, 0);
+    for (int which = 0; which < n; ++which) {
+        if (value_of_point(run, coupling, &run->now, which) <= 0.0) continue;
+        const int status = act_of_point(run, coupling, which, 1, &what);
+        if (status != FU_RUNNING) return status;
+    }
+    return FU_RUNNING;
+}
+
+const fu_coupling_events fu_taut_point_events = {.functions = functions_of_point,
+                                                 .value = value_of_point,
+                                                 .act = act_of_point,
+                                                 .can_act = can_act,
+                                                 .begin = begin_point};
+
+/* --- ropes ------------------------------------------------------------------------------------------------------ */
+
+static int functions_of_rope(const fu_coupling *coupling, fu_event_function *out)
+{
+    (void)coupling;
+    return list(OF_PARTS + 1, 1, out);
+}
+
+static double value_of_rope(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
+{
+    if (which == OF_PARTS) return -fu_taut_margin(run->model, rope_of(coupling), state);
+    const double slack = fu_taut_slack(run->model, rope_of(coupling), state);
+    return state->flags[coupling->flags] ? slack : -slack;
+}
+
+static int act_of_rope(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
+{
+    int *taut = run->now.flags + coupling->flags;
+    (void)side;
+    *what = which == OF_PARTS ? "became too short" : *taut ? "became slack" : "taut again";
+    if (which == OF_PARTS) return leave(run, coupling, TOO_SHORT);
+    *taut = !*taut;
+    return FU_RUNNING;
+}
+
+/* A rope without strain at the start is taut, to rounding. */
+static int begin_rope(fu_run *run, const fu_coupling *coupling)
+{
+    const fu_taut_rope *rope = rope_of(coupling);
+    const double rounding = 1e-12;
+    run->now.flags[coupling->flags] = fu_taut_slack(run->model, rope, &run->now) <= rounding * rope->free_length;
+    return fu_taut_margin(run->model, rope, &run->now) < 0.0 ? leave(run, coupling, TOO_SHORT) : FU_RUNNING;
+}
+
+const fu_coupling_events fu_taut_rope_events = {
+    .functions = functions_of_rope, .value = value_of_rope, .act = act_of_rope, .begin = begin_rope};
