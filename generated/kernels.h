@@ -1609,26 +1609,27 @@ typedef void fu_taut_rope_straight_tangent_kernel(const fu_real *w, const fu_rea
 /* w 2, d 2, K 2x2 */
 fu_taut_rope_straight_tangent_kernel planar_taut_rope_straight_tangent;
 
-typedef void fu_taut_rope_energy_kernel(fu_real EA, const fu_real *lengths, fu_real *U);
-/* elastic energy of a rope without mass: EA [N]; lengths [m] -> U [J] */
-/* lengths 2, U 1 */
-fu_taut_rope_energy_kernel planar_taut_rope_energy;
+typedef void fu_taut_rope_free_length_kernel(const fu_real *lengths, const fu_real *past, fu_real *L0, fu_real *slack);
+/* stress-free length of a rope whose ends run onto wheels: lengths [m]; past [m] -> L0 [m]; slack [m] */
+/* lengths 2, past 2, L0 1, slack 1 */
+fu_taut_rope_free_length_kernel planar_taut_rope_free_length;
 
-typedef void fu_taut_rope_tension_kernel(fu_real EA, fu_real tau, const fu_real *lengths, const fu_real *rates, fu_real kept, fu_real *f);
-/* forces on the lengths of a rope without mass: EA [N]; tau [s]; lengths [m]; rates [m/s]; kept [N] -> f [N] */
-/* lengths 2, rates 2, f 2 */
+typedef void fu_taut_rope_tension_kernel(const fu_real *lengths, const fu_real *past, fu_real EA, fu_real tau, const fu_real *rates, fu_real *T);
+/* tension of a rope without mass: lengths [m]; past [m]; EA [N]; tau [s]; rates [m/s] -> T [N] */
+/* lengths 2, past 2, rates 2, T 1 */
 fu_taut_rope_tension_kernel planar_taut_rope_tension;
 
-typedef void fu_taut_rope_tension_tangent_kernel(fu_real EA, fu_real tau, const fu_real *lengths, const fu_real *rates, fu_real kept, fu_real *f, fu_real *K, fu_real *D);
-/* forces on the lengths of a rope without mass, and their derivatives: EA [N]; tau [s]; lengths [m]; rates [m/s];
- * kept [N] -> f [N]; K [N/m]; D [N s/m] */
-/* lengths 2, rates 2, f 2, K 2x2, D 2x2 */
+typedef void fu_taut_rope_tension_tangent_kernel(const fu_real *lengths, const fu_real *past, fu_real EA, fu_real tau, const fu_real *rates, fu_real *T, fu_real *K, fu_real *D);
+/* tension of a rope without mass, and its derivatives: lengths [m]; past [m]; EA [N]; tau [s]; rates [m/s] -> T [N];
+ * K [N/m]; D [N s/m] */
+/* lengths 2, past 2, rates 2, T 1, K 2, D 2 */
 fu_taut_rope_tension_tangent_kernel planar_taut_rope_tension_tangent;
 
-typedef void fu_taut_rope_dissipation_kernel(fu_real EA, fu_real tau, const fu_real *lengths, const fu_real *rates, fu_real *P);
-/* power that a rope without mass dissipates: EA [N]; tau [s]; lengths [m]; rates [m/s] -> P [W] */
-/* lengths 2, rates 2, P 1 */
-fu_taut_rope_dissipation_kernel planar_taut_rope_dissipation;
+typedef void fu_taut_rope_energy_kernel(fu_real EA, fu_real tau, fu_real L, fu_real L0, fu_real growth, fu_real *U, fu_real *W, fu_real *P);
+/* elastic energy of a rope without mass, and dissipated power: EA [N]; tau [s]; L [m]; L0 [m]; growth [m/s] -> U
+ * [J]; W [N]; P [W] */
+/* U 1, W 1, P 1 */
+fu_taut_rope_energy_kernel planar_taut_rope_energy;
 
 /* constants of the law from the stiffness of the section: l [m]; S [N, N m^2, N m^2, N m^4, N m^4, N m^4] -> A [N m] */
 /* S 9x6, A 61 */
@@ -2026,10 +2027,10 @@ typedef struct {
     int dim;
     fu_taut_rope_straight_kernel *straight;
     fu_taut_rope_straight_tangent_kernel *straight_tangent;
-    fu_taut_rope_energy_kernel *energy;
+    fu_taut_rope_free_length_kernel *free_length;
     fu_taut_rope_tension_kernel *tension;
     fu_taut_rope_tension_tangent_kernel *tension_tangent;
-    fu_taut_rope_dissipation_kernel *dissipation;
+    fu_taut_rope_energy_kernel *energy;
 } fu_taut_rope_kernels;
 
 /* Every table, one entry a family. */

@@ -4,19 +4,6 @@
  */
 #include "kernels.h"
 
-/* forces: of planar_taut_rope_tension and 1 more */
-#define PLANAR_TAUT_ROPE_FORCES \
-    const fu_real \
-        d_lengths0_U = EA*inv_free*lengths[1]*strain, \
-        d_lengths1_inv_free = -inv_free*inv_free, \
-        d_lengths1_strain = d_lengths1_inv_free*(lengths[0] - lengths[1]) - inv_free, \
-        d_lengths1_U = EA*d_lengths1_strain*lengths[1]*strain + 0.5*EA*strain*strain, \
-        d_rates0_half_P = EA*growth*inv_free*lengths[1]*tau, \
-        d_rates1_growth = -(inv_free*stretch), \
-        d_rates1_half_P = EA*d_rates1_growth*growth*lengths[1]*tau, \
-        force_1 = d_lengths0_U + d_rates0_half_P, \
-        force_2 = d_lengths1_U + d_rates1_half_P - kept;
-
 /* straight part of a rope without mass; 6 add, 32 mul, 3 div, 2 sqrt */
 void planar_taut_rope_straight(const fu_real *d, fu_real rise, fu_real *l, fu_real *u, fu_real *l_d, fu_real *b_d)
 {
@@ -123,91 +110,71 @@ void planar_taut_rope_straight_tangent(const fu_real *w, const fu_real *d, fu_re
     K[3] = d_d1_force_y;
 }
 
-/* elastic energy of a rope without mass; 1 add, 5 mul, 1 div */
-void planar_taut_rope_energy(fu_real EA, const fu_real *lengths, fu_real *U)
+/* stress-free length of a rope whose ends run onto wheels; 3 add, 5 mul, 3 div */
+void planar_taut_rope_free_length(const fu_real *lengths, const fu_real *past, fu_real *L0, fu_real *slack)
 {
-    /* stretch */
+    /* stress-free length */
     const fu_real
-        inv_free = 1.0/lengths[1],
-        strain = inv_free*(lengths[0] - lengths[1]);
+        left = past[0]*(-0.5*lengths[1]/past[1] + 1.0),
+        inv_length = 1.0/lengths[0],
+        free = left/((0.5*inv_length*lengths[1] + 1.0));
     /* outputs */
-    U[0] = 0.5*EA*lengths[1]*strain*strain;
+    L0[0] = free;
+    slack[0] = left - 0.5*lengths[1];
 }
 
-/* forces on the lengths of a rope without mass; 8 add, 24 mul, 1 div */
-void planar_taut_rope_tension(fu_real EA, fu_real tau, const fu_real *lengths, const fu_real *rates, fu_real kept, fu_real *f)
+/* tension of a rope without mass; 5 add, 7 mul, 4 div */
+void planar_taut_rope_tension(const fu_real *lengths, const fu_real *past, fu_real EA, fu_real tau, const fu_real *rates, fu_real *T)
 {
-    /* stretch */
+    /* stress-free length */
     const fu_real
-        inv_free = 1.0/lengths[1],
-        stretch = inv_free*lengths[0],
-        strain = inv_free*(lengths[0] - lengths[1]),
-        growth = inv_free*(rates[0] - rates[1]*stretch);
-    PLANAR_TAUT_ROPE_FORCES
+        left = past[0]*(-0.5*lengths[1]/past[1] + 1.0),
+        inv_length = 1.0/lengths[0],
+        free = left/((0.5*inv_length*lengths[1] + 1.0));
+    /* tension */
+    const fu_real tension_all = -(EA*(free - lengths[0] - rates[0]*tau - rates[1]*tau)/free);
     /* outputs */
-    f[0] = force_1;
-    f[1] = force_2;
+    T[0] = tension_all;
 }
 
-/* forces on the lengths of a rope without mass, and their derivatives; 32 add, 117 mul, 1 div */
-void planar_taut_rope_tension_tangent(fu_real EA, fu_real tau, const fu_real *lengths, const fu_real *rates, fu_real kept, fu_real *f, fu_real *K, fu_real *D)
+/* tension of a rope without mass, and its derivatives; 18 add, 34 mul, 15 div */
+void planar_taut_rope_tension_tangent(const fu_real *lengths, const fu_real *past, fu_real EA, fu_real tau, const fu_real *rates, fu_real *T, fu_real *K, fu_real *D)
 {
-    /* stretch */
+    /* stress-free length */
     const fu_real
-        inv_free = 1.0/lengths[1],
-        stretch = inv_free*lengths[0],
-        strain = inv_free*(lengths[0] - lengths[1]),
-        growth = inv_free*(rates[0] - rates[1]*stretch);
-    PLANAR_TAUT_ROPE_FORCES
+        left = past[0]*(-0.5*lengths[1]/past[1] + 1.0),
+        inv_length = 1.0/lengths[0],
+        free = left/((0.5*inv_length*lengths[1] + 1.0));
+    /* tension */
+    const fu_real tension_all = -(EA*(free - lengths[0] - rates[0]*tau - rates[1]*tau)/free);
     /* derivatives */
     const fu_real
-        d_lengths0_d_lengths0_U = EA*inv_free*inv_free*lengths[1],
-        d_lengths0_growth = -(inv_free*inv_free*rates[1]),
-        d_lengths0_d_rates0_half_P = EA*d_lengths0_growth*inv_free*lengths[1]*tau,
-        d_lengths0_force_1 = d_lengths0_d_lengths0_U + d_lengths0_d_rates0_half_P,
-        d_lengths0_d_lengths1_U = EA*d_lengths1_inv_free*lengths[1]*strain + inv_free*(EA*d_lengths1_strain*lengths[1] + EA*strain),
-        d_lengths0_d_rates1_growth = -inv_free*inv_free,
-        d_lengths0_d_rates1_half_P = EA*d_lengths0_d_rates1_growth*growth*lengths[1]*tau + EA*d_lengths0_growth*d_rates1_growth*lengths[1]*tau,
-        d_lengths0_force_2 = d_lengths0_d_lengths1_U + d_lengths0_d_rates1_half_P,
-        d_lengths1_inv_free_2 = -inv_free*inv_free,
-        d_lengths1_strain_2 = d_lengths1_inv_free_2*(lengths[0] - lengths[1]) - inv_free,
-        d_lengths1_d_lengths0_U = EA*d_lengths1_inv_free_2*lengths[1]*strain + EA*d_lengths1_strain_2*inv_free*lengths[1] + EA*inv_free*strain,
-        d_lengths1_stretch = d_lengths1_inv_free_2*lengths[0],
-        d_lengths1_growth = d_lengths1_inv_free_2*(rates[0] - rates[1]*stretch) - d_lengths1_stretch*inv_free*rates[1],
-        d_lengths1_d_rates0_half_P = EA*d_lengths1_growth*inv_free*lengths[1]*tau + EA*d_lengths1_inv_free_2*growth*lengths[1]*tau + EA*growth*inv_free*tau,
-        d_lengths1_force_1 = d_lengths1_d_lengths0_U + d_lengths1_d_rates0_half_P,
-        d_lengths1_d_lengths1_inv_free = -(2.0*d_lengths1_inv_free_2*inv_free),
-        d_lengths1_d_lengths1_strain = d_lengths1_d_lengths1_inv_free*(lengths[0] - lengths[1]) - d_lengths1_inv_free - d_lengths1_inv_free_2,
-        d_lengths1_d_lengths1_U = EA*d_lengths1_d_lengths1_strain*lengths[1]*strain + EA*d_lengths1_strain*strain + d_lengths1_strain_2*(EA*d_lengths1_strain*lengths[1] + EA*strain),
-        d_lengths1_d_rates1_growth = -d_lengths1_inv_free_2*stretch - d_lengths1_stretch*inv_free,
-        d_lengths1_d_rates1_half_P = EA*d_lengths1_d_rates1_growth*growth*lengths[1]*tau + EA*d_lengths1_growth*d_rates1_growth*lengths[1]*tau + EA*d_rates1_growth*growth*tau,
-        d_lengths1_force_2 = d_lengths1_d_lengths1_U + d_lengths1_d_rates1_half_P,
-        d_rates0_d_rates0_half_P = EA*inv_free*inv_free*lengths[1]*tau,
-        d_rates0_d_rates1_half_P = EA*d_rates1_growth*inv_free*lengths[1]*tau,
-        d_rates1_growth_2 = -(inv_free*stretch),
-        d_rates1_d_rates0_half_P = EA*d_rates1_growth_2*inv_free*lengths[1]*tau,
-        d_rates1_d_rates1_half_P = EA*d_rates1_growth*d_rates1_growth_2*lengths[1]*tau;
+        d_lengths0_inv_length = -inv_length*inv_length,
+        d_lengths0_free = -(0.5*d_lengths0_inv_length*left*lengths[1]/((0.5*inv_length*lengths[1] + 1.0)*(0.5*inv_length*lengths[1] + 1.0))),
+        d_lengths0_tension_all = EA/free + d_lengths0_free*(-EA/free + EA*(free - lengths[0] - rates[0]*tau - rates[1]*tau)/(free*free)),
+        d_lengths1_left = -(0.5*past[0]/past[1]),
+        d_lengths1_free = d_lengths1_left/((0.5*inv_length*lengths[1] + 1.0)) - 0.5*inv_length*left/((0.5*inv_length*lengths[1] + 1.0)*(0.5*inv_length*lengths[1] + 1.0)),
+        d_lengths1_tension_all = d_lengths1_free*(-EA/free + EA*(free - lengths[0] - rates[0]*tau - rates[1]*tau)/(free*free)),
+        d_rates0_tension_all = EA*tau/free,
+        d_rates1_tension_all = EA*tau/free;
     /* outputs */
-    f[0] = force_1;
-    f[1] = force_2;
-    K[0] = d_lengths0_force_1;
-    K[1] = d_lengths1_force_1;
-    K[2] = d_lengths0_force_2;
-    K[3] = d_lengths1_force_2;
-    D[0] = d_rates0_d_rates0_half_P;
-    D[1] = d_rates1_d_rates0_half_P;
-    D[2] = d_rates0_d_rates1_half_P;
-    D[3] = d_rates1_d_rates1_half_P;
+    T[0] = tension_all;
+    K[0] = d_lengths0_tension_all;
+    K[1] = d_lengths1_tension_all;
+    D[0] = d_rates0_tension_all;
+    D[1] = d_rates1_tension_all;
 }
 
-/* power that a rope without mass dissipates; 1 add, 7 mul, 1 div */
-void planar_taut_rope_dissipation(fu_real EA, fu_real tau, const fu_real *lengths, const fu_real *rates, fu_real *P)
+/* elastic energy of a rope without mass, and dissipated power; 1 add, 9 mul, 1 div */
+void planar_taut_rope_energy(fu_real EA, fu_real tau, fu_real L, fu_real L0, fu_real growth, fu_real *U, fu_real *W, fu_real *P)
 {
-    /* stretch */
+    /* strain */
     const fu_real
-        inv_free = 1.0/lengths[1],
-        stretch = inv_free*lengths[0],
-        growth = inv_free*(rates[0] - rates[1]*stretch);
+        inv_free = 1.0/L0,
+        strain = inv_free*(L - L0),
+        W_all = 0.5*EA*strain*strain;
     /* outputs */
-    P[0] = EA*growth*growth*lengths[1]*tau;
+    U[0] = L0*W_all;
+    W[0] = W_all;
+    P[0] = EA*growth*growth*inv_free*tau;
 }

@@ -307,8 +307,8 @@ static const fu_tangent_point_kernels tangent_points[] = {
 };
 
 static const fu_taut_rope_kernels taut_ropes[] = {
-    {"planar_taut_rope", 2, planar_taut_rope_straight, planar_taut_rope_straight_tangent, planar_taut_rope_energy,
-     planar_taut_rope_tension, planar_taut_rope_tension_tangent, planar_taut_rope_dissipation},
+    {"planar_taut_rope", 2, planar_taut_rope_straight, planar_taut_rope_straight_tangent, planar_taut_rope_free_length,
+     planar_taut_rope_tension, planar_taut_rope_tension_tangent, planar_taut_rope_energy},
 };
 
 /* Arguments from arrays of pointers, to inputs `a` and outputs `out`: s a number, v an array, then how many outputs. */
@@ -418,8 +418,9 @@ static const fu_taut_rope_kernels taut_ropes[] = {
 #define FU_ARGUMENTS_ssssssv_6 *a[0], *a[1], *a[2], *a[3], *a[4], *a[5], a[6], out[0], out[1], out[2], out[3], out[4], out[5]
 #define FU_ARGUMENTS_vs_4 a[0], *a[1], out[0], out[1], out[2], out[3]
 #define FU_ARGUMENTS_vvs_1 a[0], a[1], *a[2], out[0]
-#define FU_ARGUMENTS_ssvvs_1 *a[0], *a[1], a[2], a[3], *a[4], out[0]
-#define FU_ARGUMENTS_ssvvs_3 *a[0], *a[1], a[2], a[3], *a[4], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vvssv_1 a[0], a[1], *a[2], *a[3], a[4], out[0]
+#define FU_ARGUMENTS_vvssv_3 a[0], a[1], *a[2], *a[3], a[4], out[0], out[1], out[2]
+#define FU_ARGUMENTS_sssss_3 *a[0], *a[1], *a[2], *a[3], *a[4], out[0], out[1], out[2]
 
 /* X(name, form of its arguments) for every kernel */
 #define FU_EVERY(X) \
@@ -1019,10 +1020,10 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(tangent_point_across, ssssssv_6) \
     X(planar_taut_rope_straight, vs_4) \
     X(planar_taut_rope_straight_tangent, vvs_1) \
-    X(planar_taut_rope_energy, sv_1) \
-    X(planar_taut_rope_tension, ssvvs_1) \
-    X(planar_taut_rope_tension_tangent, ssvvs_3) \
-    X(planar_taut_rope_dissipation, ssvv_1) \
+    X(planar_taut_rope_free_length, vv_2) \
+    X(planar_taut_rope_tension, vvssv_1) \
+    X(planar_taut_rope_tension_tangent, vvssv_3) \
+    X(planar_taut_rope_energy, sssss_3) \
 
 #define FU_CALL(name, form) \
     static void call_##name(const fu_real *const *a, fu_real *const *out) { name(FU_ARGUMENTS_##form); }

@@ -6,7 +6,8 @@ as signs, and are 0 at an anchor. With d = c_2 - c_1, u along the part and n to 
     d = l u + (R_2 - R_1) n,
 
 which gives its length l and the angle of u. The drawn length L of the rope is the sum of the l and of arcs, which are
-linear in the angles; its stress-free length L0 depends on these where the rope is wound on a wheel at its end.
+linear in the angles. Where the rope runs by a way w onto wheels at its ends, which do not slip, it leaves with its own
+stretch: L0' = -w' L0/L. The trapezoidal rule over a step gives L0 as a function of L and w.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ def families() -> list[CouplingFamily]:
 
 def build(dim: int) -> list[Program]:
     """Return the kernels of a rope without mass."""
-    return [straight(), straight_tangent(), energy(), tension(), tension_tangent(), dissipation()]
+    return [straight(), straight_tangent(), free_length(), tension(), tension_tangent(), energy()]
 
 
 def _program(kernel: str, doc: str) -> Program:
@@ -79,69 +80,71 @@ def straight_tangent() -> Program:
 
 
 class _Rope:
-    """Inputs and stages of a rope: lengths L, L0 and their rates."""
+    """Inputs and stages of a rope: L, the way w of its ends onto wheels since the last step, and its strain."""
 
-    def __init__(self, p: Program, rates: bool = True):
+    def __init__(self, p: Program):
         self.p = p
-        self.EA = p.input("EA", (), "N", "axial stiffness, 0 of a slack rope")
-        self.tau = p.input("tau", (), "s", "retardation time of the Kelvin-Voigt law") if rates else sp.S.Zero
-        self.lengths = p.input("lengths", 2, "m", "drawn and stress-free length")
-        self.rates = p.input("rates", 2, "m/s", "their rates") if rates else np.zeros(2, dtype=int)
-        p.stage("stretch")
-        inverse = p.define("inv_free", 1 / self.lengths[1])
-        self.stretch = p.define("stretch", self.lengths[0] * inverse)
-        self.strain = p.define("strain", (self.lengths[0] - self.lengths[1]) * inverse)
-        if rates:
-            self.growth = p.define("growth", (self.rates[0] - self.stretch * self.rates[1]) * inverse)
+        self.lengths = p.input("lengths", 2, "m", "drawn length, and way onto wheels since the last step")
+        past = p.input("past", 2, "m", "stress-free and drawn length after the last step")
+        p.stage("stress-free length")
+        left = p.define("left", past[0] * (1 - self.lengths[1] / (2 * past[1])))
+        inverse = p.define("inv_length", 1 / self.lengths[0])
+        self.free = p.define("free", left / (1 + self.lengths[1] * inverse / 2))
+        self.slack = left - self.lengths[1] / 2  # with L0 in the place of L
 
-    def energy(self) -> sp.Expr:
-        """Return the elastic energy."""
-        return self.EA * self.lengths[1] * self.strain**2 / 2
-
-    def power(self) -> sp.Expr:
-        """Return the power of damping."""
-        return self.tau * self.EA * self.lengths[1] * self.growth**2
-
-    def forces(self) -> np.ndarray:
-        """Stage: the forces on both lengths, of the energy less `kept` for each length that leaves, and of damping."""
+    def tension(self) -> tuple[sp.Expr, np.ndarray]:
+        """Stage: the tension, and the rates of the lengths: dU/dL + d(P/2)/dL' at a given stress-free length."""
         p = self.p
-        kept = p.input("kept", (), "N", "energy of a length of what wheels hold")
-        p.stage("forces")
-        U = p.define("U", self.energy())
-        P = p.define("half_P", self.power() / 2)
-        elastic = jacobian(p, np.array([U]), self.lengths)[0]
-        damping = jacobian(p, np.array([P]), self.rates)[0]
-        return np.array([p.define(f"force_{k + 1}", elastic[k] + damping[k] - (kept if k else 0)) for k in range(2)])
+        EA = p.input("EA", (), "N", "axial stiffness, 0 of a slack rope")
+        tau = p.input("tau", (), "s", "retardation time of the Kelvin-Voigt law")
+        rates = p.input("rates", 2, "m/s", "rates of both")
+        L, free = self.lengths[0], sp.Symbol("L0")
+        p.stage("tension")
+        elastic = sp.diff(EA * (L - free) ** 2 / (2 * free), L)
+        damping = sp.diff(tau * EA * sum(rates) ** 2 / free / 2, rates[0])
+        return p.define("tension_all", sp.factor(elastic + damping).subs(free, self.free)), rates
 
 
-def energy() -> Program:
-    """Return the kernel of the elastic energy."""
-    p = _program("energy", "elastic energy of a rope without mass")
-    p.output("U", [_Rope(p, rates=False).energy()], "J", "elastic energy")
+def free_length() -> Program:
+    """Return the kernel of the stress-free length."""
+    p = _program("free_length", "stress-free length of a rope whose ends run onto wheels")
+    rope = _Rope(p)
+    p.output("L0", [rope.free], "m", "stress-free length")
+    p.output("slack", [rope.slack], "m", "that of a rope which is slack: without stretch it runs onto wheels")
     return p
 
 
 def tension() -> Program:
-    """Return the kernel of the tension and of the force on the stress-free length."""
-    p = _program("tension", "forces on the lengths of a rope without mass")
-    p.output("f", _Rope(p).forces(), "N", "on the drawn and the stress-free length")
+    """Return the kernel of the tension."""
+    p = _program("tension", "tension of a rope without mass")
+    T, _ = _Rope(p).tension()
+    p.output("T", [T], "N", "tension")
     return p
 
 
 def tension_tangent() -> Program:
-    """Return the kernel of the derivatives of these forces."""
-    p = _program("tension_tangent", "forces on the lengths of a rope without mass, and their derivatives")
+    """Return the kernel of the tension and its derivatives."""
+    p = _program("tension_tangent", "tension of a rope without mass, and its derivatives")
     rope = _Rope(p)
-    f = rope.forces()
+    T, rates = rope.tension()
     p.stage("derivatives")
-    p.output("f", f, "N", "on the drawn and the stress-free length")
-    p.output("K", jacobian(p, f, rope.lengths), "N/m", "derivatives of f by the lengths")
-    p.output("D", jacobian(p, f, rope.rates), "N s/m", "derivatives of f by the rates of the lengths")
+    p.output("T", [T], "N", "tension")
+    p.output("K", jacobian(p, np.array([T]), rope.lengths)[0], "N/m", "derivatives by the lengths")
+    p.output("D", jacobian(p, np.array([T]), rates)[0], "N s/m", "derivatives by their rates")
     return p
 
 
-def dissipation() -> Program:
-    """Return the kernel of the power of damping."""
-    p = _program("dissipation", "power that a rope without mass dissipates")
-    p.output("P", [_Rope(p).power()], "W", "dissipated power")
+def energy() -> Program:
+    """Return the kernel of the elastic energy and of that of a length, and of the power of damping."""
+    p = _program("energy", "elastic energy of a rope without mass, and dissipated power")
+    EA, tau = p.input("EA", (), "N", "axial stiffness"), p.input("tau", (), "s", "retardation time")
+    L, free = p.input("L", (), "m", "drawn length"), p.input("L0", (), "m", "stress-free length")
+    growth = p.input("growth", (), "m/s", "rate of the drawn length and of the way onto wheels")
+    p.stage("strain")
+    inverse = p.define("inv_free", 1 / free)
+    strain = p.define("strain", (L - free) * inverse)
+    W = p.define("W_all", EA * strain**2 / 2)
+    p.output("U", [free * W], "J", "elastic energy")
+    p.output("W", [W], "N", "that of a stress-free length")
+    p.output("P", [tau * EA * inverse * growth**2], "W", "dissipated power")
     return p

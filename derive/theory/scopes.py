@@ -466,10 +466,11 @@ def rope_point_scope(name: str) -> Scope:
 def taut_rope_scope(name: str) -> Scope:
     """Return the scope of a rope without mass."""
     numbers = [Symbol(latex, argument, number) for latex, argument in (
-        ("h", "rise"), (r"\mathrm{EA}", "EA"), (r"\tau", "tau"), ("W_{0}", "kept"))]
+        ("h", "rise"), (r"\mathrm{EA}", "EA"), (r"\tau", "tau"))]
     ends = [Symbol(latex, argument, entry(k)) for latex, argument, k in (
         ("d_{1}", "d", 0), ("d_{2}", "d", 1), ("w_{1}", "w", 0), ("w_{2}", "w", 1), ("L", "lengths", 0),
-        ("L_{0}", "lengths", 1), (r"\dot{L}", "rates", 0), (r"\dot{L}_{0}", "rates", 1))]
+        ("w", "lengths", 1), (r"\dot{L}", "rates", 0), (r"\dot{w}", "rates", 1), ("L_{0p}", "past", 0),
+        ("L_{p}", "past", 1))]
     return Scope(families()[name], (Symbol(r"\mathbf{d}", "d", column), *numbers, *ends))
 
 

@@ -6,11 +6,13 @@ import numpy as np
 
 from ..base.rotations import product, turned_by
 from ..parts.rope import Rope
+from ..parts.rope_drawing import drawn_anew
 from ..parts.rope_route import DrawnArc, DrawnRoute
 from .model import Model
 from .ropes import AnchorModel, RopeModel, SheaveModel
 from .span_coordinates import PER_NODE, SpanCoordinates, cubic_shapes
 from .states import attachment_points, spatial
+from .taut_ropes import TautPointModel, points_of_rope
 
 POINTS_OF_ELEMENT = 4
 """Points of an element beside its last one at which results have the rope's position."""
@@ -18,6 +20,8 @@ MOTION_STEP = 1e-5
 """Fraction of a motion by which it is differenced."""
 WRAP_STEP = np.pi / 18
 """Largest angle between points of a wrap as drawn, rad."""
+MIN_WRAP_POINTS = 19
+"""Points of a wrap of a rope without mass, at least: for half a turn."""
 
 
 def rope_state(model: Model, rope: RopeModel, q: np.ndarray) -> dict[str, np.ndarray]:
@@ -46,11 +50,26 @@ def rope_state(model: Model, rope: RopeModel, q: np.ndarray) -> dict[str, np.nda
 
 def rope_motion(model: Model, rope: RopeModel, q: np.ndarray, dofs: np.ndarray) -> dict[str, np.ndarray]:
     """Return the displacement (n, points, 3) of points along a rope, and the changes (n, points) of s there, in small
-    motions dofs (n, n_dof) about q: by central differences, with errors of `MOTION_STEP` squared.
+    motions dofs (n, n_dof) about q: by central differences, with errors of `MOTION_STEP` squared. Without mass the
+    displacement alone.
     """
+    if not rope.part.mass:
+        return _motion_without_mass(model, rope, q, dofs)
     one, other = (rope_state(model, rope, moved(model, q, sign * MOTION_STEP * dofs)) for sign in (-1, 1))
     changes = {key: (other[key] - one[key]) / (2 * MOTION_STEP) for key in one}
     return {"displacement": changes["position"], "s": changes["s"]}
+
+
+def _motion_without_mass(model: Model, rope: RopeModel, q: np.ndarray, dofs: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the displacement (n, points, 3) of points along a rope without mass, see `rope_motion`."""
+    held = [point.attachments[0] for point in points_of_rope(model.of(TautPointModel), rope.part.name)]
+    counts, places = points_of_spans(rope.part, rope.route), []
+    for sign in (-1, 1):
+        centres = np.stack([attachment_points(model, each, moved(model, q, sign * MOTION_STEP * dofs))
+                            for each in held], axis=1)
+        places.append(np.array([as_drawn(rope.part, drawn_anew(rope.part, rope.route, each), counts)["position"]
+                                for each in centres[..., : model.dim]]))
+    return {"displacement": (places[1] - places[0]) / (2 * MOTION_STEP)}
 
 
 def moved(model: Model, q: np.ndarray, dofs: np.ndarray) -> np.ndarray:
@@ -71,9 +90,9 @@ def moved(model: Model, q: np.ndarray, dofs: np.ndarray) -> np.ndarray:
     return found
 
 
-def _wrap_count(arc: DrawnArc) -> int:
+def _wrap_count(arc: DrawnArc, least: int = 2) -> int:
     """Return the number of points of a wrap, with both tangent points."""
-    return max(2, int(np.ceil(arc.wrap / WRAP_STEP)) + 1)
+    return max(least, int(np.ceil(arc.wrap / WRAP_STEP)) + 1)
 
 
 def points_of_spans(rope: Rope, route: DrawnRoute) -> list[tuple[slice, tuple[int, slice] | None]]:
@@ -85,16 +104,20 @@ def points_of_spans(rope: Rope, route: DrawnRoute) -> list[tuple[slice, tuple[in
         span = slice(at, at + POINTS_OF_ELEMENT * elements + 1)
         at, wrap = span.stop, None
         if number is not None:
-            wrap = number, slice(span.stop - 1, span.stop - 1 + _wrap_count(route.sheaves[number]))
+            least = 2 if rope.mass else MIN_WRAP_POINTS  # a wrap without mass may be absent as drawn
+            wrap = number, slice(span.stop - 1, span.stop - 1 + _wrap_count(route.sheaves[number], least))
             at = wrap[1].stop - 1
         found.append((span, wrap))
     return found
 
 
-def as_drawn(rope: Rope, route: DrawnRoute) -> dict[str, np.ndarray]:
-    """Return position (points, 3) and s (points,) of `rope_state` for a rope as drawn, in m."""
+def as_drawn(rope: Rope, route: DrawnRoute, points: list[tuple[slice, tuple[int, slice] | None]] | None = None
+             ) -> dict[str, np.ndarray]:
+    """Return position (points, 3) and s (points,) of `rope_state` for a rope as drawn, in m; points: by default those
+    of `points_of_spans` for this route.
+    """
     places, lengths, s = [], [], rope.first_arc_length
-    for k, (span, wrap) in enumerate(points_of_spans(rope, route)):
+    for k, (span, wrap) in enumerate(points or points_of_spans(rope, route)):
         drawn, share = route.spans[k], np.linspace(0, 1, span.stop - span.start)
         places.append(drawn.start + share[:, None] * (drawn.end - drawn.start))
         lengths.append(s + share * drawn.length / route.stretch)

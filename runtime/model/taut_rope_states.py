@@ -11,7 +11,7 @@ from .model import Model
 from .rope_states import points_of_spans
 from .ropes import RopeModel
 from .states import attachment_points, spatial
-from .taut_ropes import TautPointModel, TautRopeModel
+from .taut_ropes import TautPointModel, TautRopeModel, points_of_rope
 
 Outputs = Callable[[str, int], dict[str, np.ndarray]]
 """Returns the outputs of a coupling by its kind and its number among those of the kind."""
@@ -43,7 +43,7 @@ def taut_rope_state(model: Model, rope: RopeModel, q: np.ndarray, outputs: Outpu
     stress-free arc-length s (T, points) in m; and the forces on what holds its ends (T, 3) in N.
     """
     models, pieces = model.of(TautPointModel), model.of(TautRopeModel)
-    own = [point for point in models if any(point in piece.of for piece in pieces if piece.name == rope.part.name)]
+    own = points_of_rope(models, rope.part.name)
     points = [_point(model, point, q, outputs("taut_point", models.index(point))) for point in own]
     n = len(points)
     _find_feet(points)
@@ -63,8 +63,8 @@ def taut_rope_state(model: Model, rope: RopeModel, q: np.ndarray, outputs: Outpu
             places.append(np.where(other.touches[:, None], on_arc, other.on)[:, None])
             lengths.append((s[k][1] + part * (s[k][2] - s[k][1]))[:, None])
     none = np.zeros((len(q), 3))
-    ends = {"start_force": none, "end_force": none} if rope.part.closed else {
-        "start_force": points[0].outputs["force"], "end_force": points[-1].outputs["force"]}
+    ends = {name: none if own[k].radius else points[k].outputs["force"] for name, k in (("start_force", 0),
+                                                                                         ("end_force", -1))}
     return {"position": spatial(np.concatenate(places, axis=1)), "s": np.concatenate(lengths, axis=1)} | ends
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 from math import atan2
@@ -85,10 +85,9 @@ class TautRopeModel(CouplingModel):
     of: list[TautPointModel]
     EA: float
     tau: float
+    drawn_length: float
     free_length: float
     angles: tuple[float, float]
-    stretch: float
-    kept: float
     held: float
     least_length: float
 
@@ -195,27 +194,32 @@ def _carrier(builder: ModelBuilder, item: RouteItem) -> float:
 def _pieces(rope: TurningRope, points: list[TautPointModel]) -> Iterator[TautRopeModel]:
     """Yield the ropes of one tension between points that hold the rope, and set them at the points."""
     part, route, n = rope.part, rope.route, len(points)
-    EA, strain = part.stiffness[0], route.stretch - 1
     starts = [k for k, point in enumerate(points) if point.holds]
     arcs = iter(route.sheaves)
-    wraps = [next(arcs).length / route.stretch if isinstance(item, Sheave) else 0.0 for item in part.route]
+    wraps = [next(arcs).length if isinstance(item, Sheave) else 0.0 for item in part.route]
     for start, end in pairwise([*starts, starts[0] + n] if part.closed else starts):
         at = [k % n for k in range(start, end + 1)]
-        first, last = points[at[0]], points[at[-1]]
+        first = points[at[0]]
+        length = sum(route.spans[k].length for k in at[:-1]) + sum(wraps[k] for k in at[1:-1])
         mass = max(point.attachments[0].mass for point in points) or 1.0
         made = TautRopeModel(
-            type="taut_rope", name=part.name, of=[points[k] for k in at], EA=EA, tau=part.material.damping_time,
-            free_length=sum(route.spans[k].length / route.stretch for k in at[:-1]) + sum(wraps[k] for k in at[1:-1]),
-            angles=(first.angle, points[at[-2]].angle), stretch=route.stretch, kept=EA / 2 * strain**2,
-            held=sum(points[k].store + wraps[k] / 2 for k in (at[0], at[-1])), follows_law=True,
+            type="taut_rope", name=part.name, of=[points[k] for k in at], EA=part.stiffness[0],
+            tau=part.material.damping_time, drawn_length=length, free_length=length / route.stretch,
+            angles=(first.angle, points[at[-2]].angle),
+            held=sum(points[k].store + wraps[k] / (2 * route.stretch) for k in (at[0], at[-1])), follows_law=True,
             least_length=max(MIN_SPAN_RATIO * max(abs(points[k].radius) for k in at), part.radius),
-            is_damped=part.material.damping_time > 0, scale=[mass] * (2 if first.radius or last.radius else 1))
+            is_damped=part.material.damping_time > 0, scale=[mass])
         for place, k in enumerate(at):
             if place:
                 points[k].before = made, place
             if place < len(at) - 1:
                 points[k].after = made, place
         yield made
+
+
+def points_of_rope(points: Iterable[TautPointModel], rope: str) -> list[TautPointModel]:
+    """Return the points of a rope among those of a model, in its order."""
+    return [point for point in points if rope in {side[0].name for side in (point.before, point.after) if side}]
 
 
 # --- results --------------------------------------------------------------------------------------------------------

@@ -82,10 +82,10 @@ class Rope(Part):
     element: "cable8p" in the plane z = 0; "cable12" in space, with axes of sheaves in any direction. There a body with
         a sheave must not rotate: a prismatic joint guides it; and drums are not possible yet
     mass: False for a rope without mass and bending stiffness, in the plane: straight between the sheaves, with one
-        tension from one end, drum or sheave with friction to the next, and slack where it would push. Sheaves with
-        friction hold the rope up to the limit e^(mu theta), where the run ends with a RopeLeftError. What drums and
-        these sheaves hold keeps the stretch as drawn: the lengths that they pass are off by the change of strain. The
-        wrap of a sheave without friction may vanish and return; with side given it may be absent as drawn
+        tension from one end, drum or sheave with friction to the next, and slack where it would push. A sheave with
+        friction holds the rope up to the limit e^(mu theta), where the run ends with a RopeLeftError; there and on
+        drums the rope does not creep, but leaves with the stretch that it has. The wrap of a sheave without friction
+        may vanish and return; with side given it may be absent as drawn
     section: cross-section, whose height is in the plane
     material: material, with the damping of the rope
     """

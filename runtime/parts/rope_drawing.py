@@ -66,7 +66,7 @@ def drawn(rope: Roped, bodies: Mapping[str, RigidBody | ModalBody]) -> DrawnRout
     """Return the route of a rope, see `Rope.drawn`."""
     points = _points(rope, np.array([_place(item.end, bodies)[:rope.dim] for item in rope.route]))
     if not rope.mass:
-        route = without_wraps(points, [_may_be_absent(item) for item in rope.route], rope.radius, rope.closed)
+        route = _without_mass(rope, points)
         return replace(route, stretch=_stretch(rope, route.length))
     route = _along(rope, points)
     if offsets := _offsets(rope, _stretch(rope, route.length)):
@@ -98,13 +98,17 @@ def drawn_anew(rope: Roped, route: DrawnRoute, centres: np.ndarray) -> DrawnRout
     arcs = {arc.name: arc for arc in route.sheaves}
     points = [replace(point, sense=arcs[point.name].sense, offset=arcs[point.name].tangent_radius - point.radius)
               if point.name in arcs else point for point in _points(rope, centres)]
-    found = _along(rope, points)
+    found = _along(rope, points) if rope.mass else _without_mass(rope, points)
     return replace(found, stretch=found.length / route.free_length)
 
 
 def _may_be_absent(item: RouteItem) -> bool:
     """Return whether a rope without mass need not touch an item as drawn."""
     return isinstance(item, Sheave) and item.side is not None and not item.coefficient and not item.turns
+
+
+def _without_mass(rope: Roped, points: list[RoutePoint]) -> DrawnRoute:
+    return without_wraps(points, [_may_be_absent(item) for item in rope.route], rope.radius, rope.closed)
 
 
 def _along(rope: Roped, points: list[RoutePoint]) -> DrawnRoute:

@@ -200,7 +200,7 @@ def without_wraps(points: list[RoutePoint], may_be_absent: list[bool], rope_radi
     kept = list(range(len(points)))
     gone: int | None = -1
     while gone is not None:
-        gone = next((k for k in kept if may_be_absent[k] and _turn(points, kept, k) < 0), None)
+        gone = next((k for k in kept if may_be_absent[k] and _turn(points, kept, k) < MIN_WRAP), None)
         kept = [k for k in kept if k != gone]
     route = drawn_route([points[k] for k in kept], rope_radius, closed)
     if len(kept) == len(points):

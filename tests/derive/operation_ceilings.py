@@ -263,7 +263,7 @@ CEILINGS = {
     "planar_rope_point": {"point": 357, "wrench": 776},
     "rope_point": {"point": 402, "wrench": 844},
     "planar_taut_rope": {
-        "straight": 43, "straight_tangent": 135, "energy": 7, "tension": 33, "tension_tangent": 150, "dissipation": 9
+        "straight": 43, "straight_tangent": 135, "free_length": 12, "tension": 24, "tension_tangent": 70, "energy": 13
     },
     "tangent_point": {"conditions": 1678, "motion": 310, "chord": 202, "across": 27},
     "planar_sheave": {

@@ -13,7 +13,7 @@ from .measures import Invariance, relative
 
 
 def taut_rope(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]:
-    """Yield the tangent to both circles, the gradient of the drawn length, symmetry, a turned scene, and rest."""
+    """Yield the tangent to both circles, the gradient of the drawn length, a turned scene, and known states."""
     at = k("straight", s)
     u, rise = at["u"], float(s["rise"])
     n = np.array([-u[1], u[0]])
@@ -26,14 +26,16 @@ def taut_rope(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invarian
     turned = k("straight", s, d=Q @ s["d"])
     for name in ("u", "l_d", "b_d"):
         yield f"turned scene: {name}", relative(turned[name] - Q @ at[name], at[name]), 256 * EPS
-    T, X = k("tension", s)["f"]
-    stretch = s["lengths"][0] / s["lengths"][1]
-    still = k("tension", s, rates=np.zeros(2))["f"]
-    yield "damping: on L0 it is -stretch times that on L", abs((X - still[1]) + stretch * (T - still[0])), 64 * EPS
-    slack = k("tension", s, EA=0.0)["f"]
-    yield "slack: no tension, and what wheels hold", relative(slack - [0, -s["kept"]], s["kept"]), 4 * EPS
-    held = s["EA"] / 2 * (stretch - 1) ** 2
-    equal = k("tension", s, rates=np.zeros(2), kept=held)["f"]
-    yield "at the stretch of what a wheel holds: -T stretch", relative(equal[1] + stretch * equal[0], equal), 64 * EPS
-    K = k("tension_tangent", s, rates=np.zeros(2))["K"]
-    yield "K of the lengths symmetric", relative(K - K.T, K), 64 * EPS
+    (L, w), (free, length) = s["lengths"], s["past"]
+    inextensible = s | {"past": np.array([length, length]), "lengths": np.array([length - w, w])}
+    yield "without stretch: L0 is less by the way", relative(
+        k("free_length", inextensible)["L0"] - (length - w), length), 16 * EPS
+    there = k("free_length", s)["L0"][0]
+    back = k("free_length", s | {"past": np.array([there, L]), "lengths": np.array([length, -w])})["L0"]
+    yield "there and back: the same L0", relative(back - free, free), 16 * EPS
+    slack = k("tension", s, EA=0.0)["T"]
+    yield "slack: no tension", float(abs(slack[0])), 0.0
+    still = k("tension", s, rates=np.zeros(2), lengths=np.array([free, 0.0]), past=np.array([free, free]))["T"]
+    yield "without stretch: no tension", float(abs(still[0])), 0.0
+    D = k("tension_tangent", s)["D"]
+    yield "damping: of L' + w'", relative(D[0] - D[1], D), 4 * EPS

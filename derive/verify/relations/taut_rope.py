@@ -5,12 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import mpmath
-import numpy as np
 
 from ...codegen.family import CouplingFamily
 from ..methods import Relation
 from ..numbers import State
-from .paths import along, half, of, root
+from .paths import along, of, root
 
 D, LENGTHS, RATES = (("d", 2),), (("lengths", 2),), (("rates", 2),)
 
@@ -45,24 +44,32 @@ def _of_straight() -> list[Relation]:
 
 
 def _of_tension() -> list[Relation]:
+    def trapezoid(s: State) -> Any:
+        """Return the root of L0p - L0 = w (L0p/Lp + L0/L)/2 by bisection over what is left of the length."""
+        (L, w), (free, length) = s["lengths"], s["past"]
+        return [mpmath.findroot(lambda x: free - x - w * (free / length + x / L) / 2, free)]
+
+    def slack(s: State) -> Any:
+        (free, length), w = s["past"], s["lengths"][1]
+        return [free - w * (free / length + 1) / 2]
+
     def energy(s: State) -> Any:
-        L, free = s["lengths"]
-        return [s["EA"] * (L - free) ** 2 / (2 * free)]
+        return [s["EA"] * (s["L"] - s["L0"]) ** 2 / (2 * s["L0"])]
 
-    def power(s: State) -> Any:
-        """Return tau EA L0 times the square of the rate of the stretch."""
-        (L, free), (grows, frees) = s["lengths"], s["rates"]
-        return [s["tau"] * s["EA"] * free * (grows / free - L * frees / free**2) ** 2]
+    def by_length(k, s, t, j):
+        """Return the path of U and of P/2 along L and its rate, at the stress-free length of the state."""
+        free = k("free_length", s)["L0"][0]
+        of_rope = {"L": s["lengths"][0] + t, "L0": free, "growth": s["rates"][0] + s["rates"][1] + t}
+        found = k("energy", s | of_rope)
+        return found["U"] + found["P"] / 2
 
-    def both(k, s, t, j):
-        """Return U + the half of P along a length and its rate: their derivatives are the forces, `kept` beside."""
-        unit = np.array([1 - j, j])
-        moved = k("energy", s, lengths=s["lengths"] + t * unit)["U"] - (s["kept"] * t if j else 0 * t)
-        return moved + half(along(of("dissipation", "P"), RATES))(k, s, t, j)
-
-    return [Relation("energy", "U", "EA (L - L0)²/(2 L0)", 0, root(energy)),
-            Relation("dissipation", "P", "tau EA L0 (d(L/L0)/dt)²", 0, root(power)),
-            Relation("tension", "f", "dU by the lengths, dP/2 by their rates, less what wheels hold", 1, both, 2),
-            Relation("tension_tangent", "f", "dU by the lengths, dP/2 by their rates", 1, both, 2),
-            Relation("tension_tangent", "K", "df by the lengths", 1, along(of("tension", "f"), LENGTHS), 2),
-            Relation("tension_tangent", "D", "df by the rates", 1, along(of("tension", "f"), RATES), 2)]
+    return [Relation("free_length", "L0", "the trapezoidal rule solved for it", 0, root(trapezoid)),
+            Relation("free_length", "slack", "the same without stretch at the end", 0, root(slack)),
+            Relation("energy", "U", "EA (L - L0)²/(2 L0)", 0, root(energy)),
+            Relation("energy", "W", "U over L0", 0, root(lambda s: [energy(s)[0] / s["L0"]])),
+            Relation("energy", "P", "tau EA (L' + w')²/L0", 0,
+                     root(lambda s: [s["tau"] * s["EA"] * s["growth"] ** 2 / s["L0"]])),
+            Relation("tension", "T", "dU/dL + d(P/2)/dL'", 1, by_length),
+            Relation("tension_tangent", "T", "dU/dL + d(P/2)/dL'", 1, by_length),
+            Relation("tension_tangent", "K", "dT by L and w", 1, along(of("tension", "T"), LENGTHS), 2),
+            Relation("tension_tangent", "D", "dT by their rates", 1, along(of("tension", "T"), RATES), 2)]

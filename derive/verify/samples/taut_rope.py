@@ -15,6 +15,7 @@ def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) 
     return {"d": size * np.array([np.cos(angle), np.sin(angle)]),
             "rise": np.float64(random.choice([-1, 1]) * random.uniform(0.3, 0.6)), "w": random.uniform(0.7, 1.4, 2),
             "EA": np.float64(random.uniform(3, 5)), "tau": np.float64(0.37),
-            "kept": np.float64(random.uniform(0.1, 0.3)),
-            "lengths": free * np.array([random.uniform(1.2, 1.4), 1.0]),
+            "past": free * np.array([1.0, random.uniform(1.1, 1.2)]), "L": np.float64(free * random.uniform(1.2, 1.4)),
+            "lengths": free * np.array([random.uniform(1.2, 1.4), random.choice([-1, 1]) * random.uniform(0.1, 0.2)]),
+            "L0": np.float64(free), "growth": np.float64(random.uniform(0.6, 1.0)),
             "rates": np.array([random.uniform(0.6, 1.0), -random.uniform(0.2, 0.5)])}

@@ -1,6 +1,7 @@
 /* Lengths of a scene that scale errors and rounding. */
 #include "couplings/common/attachments.h"
 #include "couplings/rope/rope.h"
+#include "couplings/rope/taut_rope.h"
 #include "equations/run.h"
 #include "equations/scene_size.h"
 
@@ -121,6 +122,8 @@ double fu_scene_size(const fu_model *model, const double *origin, const double *
     FU_EACH_COUPLING(c, model->couplings, model->n_couplings) {
         const int nodes = c->type == &fu_span_type ? ((const fu_span_coupling *)c)->n_elements + 1 : 0;
         for (int k = 0; k < nodes; ++k) widen(model->dim, fu_span_node((const fu_span_coupling *)c, k, q), low, high);
+        const fu_attachment *on = c->type == &fu_taut_point_type ? ((const fu_taut_point *)c)->attachments : 0;
+        if (on && on->body < 0) widen(model->dim, on->u, low, high);
     }
     FU_EACH_BODY(body, model) widen(model->dim, q + body->configuration, low, high);
     for (int d = 0; d < model->dim; ++d) largest = fmax(largest, high[d] - low[d]);

@@ -5,8 +5,10 @@
 #include "couplings/rope/taut_rope.h"
 #include "equations/run.h"
 
+#include <math.h>
+
 /* the reasons of ropes (events/rope.c), and those of ropes without mass after them */
-enum { WRAP, TOO_SHORT = 3, EMPTY = 6, SLIPS = 7, OTHER_SIDE = 8 };
+enum { WRAP, TOO_SHORT = 3, EMPTY = 6, SLIPS = 7, OTHER_SIDE = 8, UNKNOWN_TURNS = 9 };
 enum { OF_WRAP, OF_GRIP };
 enum { OF_TENSION, OF_PARTS };
 
@@ -132,11 +134,27 @@ static int act_of_rope(fu_run *run, const fu_coupling *coupling, int which, int 
     return FU_RUNNING;
 }
 
+/* Returns whether a rope may start with other turns on a wheel than as drawn: it is longer or shorter by more than half
+ * a turn around the smallest one. */
+static int may_have_other_turns(const fu_run *run, const fu_taut_rope *rope)
+{
+    fu_taut_lengths now;
+    double radius = INFINITY;
+    for (int place = 0; place < rope->n_points; ++place) {
+        const double here = fabs(fu_taut_point_of(run->model, rope, place)->radius);
+        if (here > 0.0) radius = fmin(radius, here);
+    }
+    fu_taut_lengths_at(run->model, rope, &run->now, &now);
+    const double change = now.length[FU_DRAWN] - now.free - (rope->drawn_length - rope->free_length);
+    return fabs(change) > acos(-1.0) * radius;
+}
+
 /* A rope without strain at the start is taut, to rounding. */
 static int begin_rope(fu_run *run, const fu_coupling *coupling)
 {
     const fu_taut_rope *rope = rope_of(coupling);
     const double rounding = 1e-12;
+    if (may_have_other_turns(run, rope)) return leave(run, coupling, UNKNOWN_TURNS);
     run->now.flags[coupling->flags] = fu_taut_slack(run->model, rope, &run->now) <= rounding * rope->free_length;
     return fu_taut_margin(run->model, rope, &run->now) < 0.0 ? leave(run, coupling, TOO_SHORT) : FU_RUNNING;
 }

@@ -313,7 +313,7 @@ def _named(model: Model, q: np.ndarray, squares: np.ndarray, dofs: np.ndarray, e
         largest = max([np.abs(mode[list(node.dofs("r"))]).max() for nodes in model.nodes.values() for node in nodes]
                       + [np.abs(mode[b.dof : b.dof + model.dim]).max() for b in model.bodies]
                       + [np.abs(_nodes(model, body, q, mode[None])).max() for body in modal]
-                      + [np.abs(mode[rope.lengths]).max() for rope in model.ropes], default=0.0)
+                      + [np.abs(mode[rope.lengths]).max(initial=0.0) for rope in model.ropes], default=0.0)
         dofs[k] = mode / (largest or np.abs(mode).max() or 1.0)
     for cable in model.cables:
         vectors = spatial(cable.nodal(dofs))

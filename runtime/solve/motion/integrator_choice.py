@@ -17,6 +17,7 @@ from ...errors import SceneError
 from ...integrators import AUTO, INTEGRATORS, Demands, Explicit, Integrator, Radau, stable_at
 from ...kernels.libraries import of_library
 from ...model.model import Model
+from ...model.taut_ropes import TautPointModel
 from ...parts.rope import rough_sheaves
 from ...parts.scene_data import SceneData
 from ...parts.settings import RunSettings
@@ -261,6 +262,8 @@ def slowest_rate(scene: SceneData, model: Model, duration: float) -> float:
     points = [node.vector("r") for nodes in model.nodes.values() for node in nodes]
     points += [model.q[b.configuration : b.configuration + model.dim] for b in model.bodies]
     points += [place for rope in model.ropes for span in rope.spans for place in span.places(model.q)]
+    points += [np.array(point.attachments[0].u[: model.dim]) for point in model.of(TautPointModel)
+               if point.attachments[0].body < 0]
     size = float(np.max(np.ptp(points, axis=0)))
     if size == 0.0:
         return 1.0 / duration

@@ -33,7 +33,9 @@ ROPE_LEFT = (
     ('a rope without mass slips on sheave "{name}", as its tensions differ by more than friction holds,',
      "give a greater coefficient, or a rope with mass, which may slide; or stop before by an event"),
     ('a rope without mass meets sheave "{name}" from its other side',
-     "give a sheave on that side, or stop before by an event"))
+     "give a sheave on that side, or stop before by an event"),
+    ('the length of rope "{name}" at the start differs from that as drawn by more than half a turn around a wheel, so '
+     "that its turns are not known,", "draw the scene nearer to this start, or resume the run that it is from"))
 """Why a run with a rope ended, and what helps, by the reasons of engine/events/rope.c."""
 EMPTY = 6
 """The reason of a drum."""

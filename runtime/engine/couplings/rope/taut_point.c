@@ -91,7 +91,7 @@ double fu_taut_grip(const fu_model *model, const fu_taut_point *point, const fu_
 {
     surroundings at;
     look(model, point, state, &at);
-    const double before = at.lengths[0].f[FU_DRAWN], after = at.lengths[1].f[FU_DRAWN];
+    const double before = at.lengths[0].tension, after = at.lengths[1].tension;
     const double rounding = 1e-12 * (at.rope[0]->EA + at.rope[1]->EA); /* a slack rope needs no friction */
     return fabs(after - before) - tanh(0.5 * point->friction * wrap_of(point, &at)) * (after + before) - rounding;
 }
@@ -99,8 +99,11 @@ double fu_taut_grip(const fu_model *model, const fu_taut_point *point, const fu_
 double fu_taut_store(const fu_model *model, const fu_taut_point *point, const fu_state *state)
 {
     const int side = point->ropes[1] >= 0 ? 1 : 0;
+    const fu_taut_rope *rope = rope_beside(model, point, side);
+    fu_taut_lengths now;
     double rate;
-    return point->store + fu_taut_held(model, rope_beside(model, point, side), state, !side, &rate);
+    fu_taut_lengths_at(model, rope, state, &now);
+    return point->store + fu_taut_held(rope, state, &now, !side, &rate);
 }
 
 /* --- what turns ------------------------------------------------------------------------------------------------- */
@@ -210,17 +213,17 @@ static double speed_of(const fu_model *model, const fu_taut_point *point, const 
     if (at->rope[0] != at->rope[1] || point->places[0] != point->places[1]) {
         for (int side = 0; side < SIDES; ++side) {
             if (!at->has[side]) continue;
-            fu_taut_held(model, at->rope[side], state, !side, &rate);
+            fu_taut_held(at->rope[side], state, &at->lengths[side], !side, &rate);
             speed += side ? -rate : rate;
         }
         return at->has[0] && at->has[1] ? 0.5 * speed : speed;
     }
     const fu_taut_lengths *now = &at->lengths[0];
-    const double stretch = now->length[FU_DRAWN] / now->length[FU_FREE];
-    const double growth = (now->rate[FU_DRAWN] - stretch * now->rate[FU_FREE]) / now->length[FU_FREE];
+    const double stretch = now->length[FU_DRAWN] / now->free,
+                 growth = (now->rate[FU_DRAWN] + now->rate[FU_WAY]) / now->free;
     const double length = fu_taut_length_to(model, at->rope[0], state, point->places[0], &rate);
     double held;
-    fu_taut_held(model, at->rope[0], state, 0, &held);
+    fu_taut_held(at->rope[0], state, now, 0, &held);
     return length * growth / (stretch * stretch) - rate / stretch - held;
 }
 
@@ -237,22 +240,22 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     *numbers = (point_output){.touches = at.touches, .wrap_angle = wrap_of(point, &at)};
     for (int side = 0; side < SIDES; ++side) {
         if (!at.has[side]) continue;
-        const double *f = at.lengths[side].f;
+        const double tension = at.lengths[side].tension + 0.0; /* no -0 */
         double pull[DIM];
-        *(side ? &numbers->tension_off : &numbers->tension_on) = f[FU_DRAWN];
+        *(side ? &numbers->tension_off : &numbers->tension_on) = tension;
         *(side ? &numbers->angle_off : &numbers->angle_on) = at.part[side].angle;
         if (at.has[!side] && !at.touches) continue;
-        fu_taut_pull(&at.part[side], f, pull);
-        for (int d = 0; d < DIM; ++d) numbers->force[d] += side ? pull[d] : -pull[d];
+        fu_taut_pull(&at.part[side], pull);
+        for (int d = 0; d < DIM; ++d) numbers->force[d] += (side ? tension : -tension) * pull[d];
         const int holds = side ? point->places[1] == 0 : point->places[0] == at.rope[0]->n_points - 1;
-        if (holds) on_wheel += (side ? -1.0 : 1.0) * point->radius / at.rope[side]->stretch * f[FU_FREE];
+        if (holds) on_wheel += (side ? tension : -tension) * point->radius;
     }
     numbers->normal_force = !at.touches              ? 0.0
                             : at.has[0] && at.has[1] ? fmin(numbers->tension_on, numbers->tension_off)
                                                      : numbers->tension_on + numbers->tension_off;
     numbers->material_speed = speed_of(model, point, state, &at);
     numbers->torque = on_wheel;
-    if (point->radius != 0.0 && !(at.has[0] && at.has[1]))
+    if (point->radius != 0.0 && (point->places[1] == 0 || point->ropes[1] < 0))
         numbers->length_in_store = fu_taut_store(model, point, state);
     numbers->drive = -on_wheel;
     if (point->turn < 0) return;

@@ -1,5 +1,5 @@
-/* Ropes without mass: straight parts between points, with one tension. In a Newton system the forces on both lengths
- * are internal unknowns: the tension, and where wheels hold the rope, that on the stress-free length. */
+/* Ropes without mass: straight parts between points, with one tension, which is an internal unknown in a Newton
+ * system. */
 #include "couplings/rope/taut_rope.h"
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
@@ -77,12 +77,16 @@ double fu_taut_spin(const fu_model *model, const fu_taut_point *point, const fu_
 
 /* --- geometry --------------------------------------------------------------------------------------------------- */
 
-/* Returns the change of the stress-free length by the angle of the first straight part, or of the last one: the wheel
- * there holds more, or less. */
+static fu_taut_history *history_of(const fu_taut_rope *rope, const fu_state *state)
+{
+    return (fu_taut_history *)(state->numbers + rope->base.numbers);
+}
+
+/* Returns the change of the way by the angle of the first straight part, or of the last one. */
 static double share_of_end(const fu_model *model, const fu_taut_rope *rope, int end)
 {
     const double radius = fu_taut_point_of(model, rope, end ? rope->n_points - 1 : 0)->radius;
-    return (end ? radius : -radius) / rope->stretch;
+    return end ? -radius : radius;
 }
 
 /* Computes the straight part between two points at these places and velocities. */
@@ -101,7 +105,7 @@ static void find_part(const fu_model *model, const fu_taut_rope *rope, const fu_
     rope->kernel->straight(out->d, out->rise, &out->l, out->u, out->l_d, out->b_d);
     out->angle = near_angle(atan2(out->u[1], out->u[0]), state->numbers[start->base.numbers]);
     out->share[FU_DRAWN] = (first ? 0.0 : start->radius) - (last ? 0.0 : end->radius);
-    out->share[FU_FREE] = (first ? share_of_end(model, rope, 0) : 0.0) + (last ? share_of_end(model, rope, 1) : 0.0);
+    out->share[FU_WAY] = (first ? share_of_end(model, rope, 0) : 0.0) + (last ? share_of_end(model, rope, 1) : 0.0);
 }
 
 void fu_taut_part_at(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, int from, int to,
@@ -113,26 +117,33 @@ void fu_taut_part_at(const fu_model *model, const fu_taut_rope *rope, const fu_s
     find_part(model, rope, state, from, to, &one, &other, out);
 }
 
-/* Adds the rotation of a wheel at an end to the stress-free length and its rate. */
-static void add_turn(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, int end,
-                     const fu_attachment_state *at, fu_taut_lengths *out)
+/* Adds the way of an end onto its wheel by an angle of the straight part there, or by a rotation of the wheel. */
+static void add_way(int end, double share, double angle, double rate, fu_taut_lengths *out)
+{
+    out->way[end] += share * angle;
+    out->way_rate[end] += share * rate;
+}
+
+/* Subtracts the rotation of the wheel at an end. */
+static void subtract_turn(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, int end,
+                          const fu_attachment_state *at, fu_taut_lengths *out)
 {
     const fu_taut_point *point = fu_taut_point_of(model, rope, end ? rope->n_points - 1 : 0);
     const double share = share_of_end(model, rope, end);
-    if (share == 0.0) return;
-    out->length[FU_FREE] -= share * (fu_taut_turn(point, state, at) - rope->carriers[end]);
-    out->rate[FU_FREE] -= share * fu_taut_spin(model, point, state, at);
+    if (share != 0.0)
+        add_way(end, -share, fu_taut_turn(point, state, at) - rope->carriers[end],
+                fu_taut_spin(model, point, state, at), out);
 }
 
-/* Computes the lengths and their rates. */
+/* Computes all but the tension. */
 static void find_lengths(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_lengths *out)
 {
     const int last = rope->n_points - 1;
+    const fu_taut_history *past = history_of(rope, state);
     fu_attachment_state one, other, *before = &one, *after = &other;
     memset(out, 0, sizeof *out);
     fu_taut_centre(model, fu_taut_point_of(model, rope, 0), state, before);
-    add_turn(model, rope, state, 0, before, out);
-    out->length[FU_FREE] += rope->free_length;
+    subtract_turn(model, rope, state, 0, before, out);
     for (int from = 0, to; from < last; from = to) {
         fu_taut_part part;
         to = fu_next_touched(model, rope, state, from);
@@ -143,26 +154,37 @@ static void find_lengths(const fu_model *model, const fu_taut_rope *rope, const 
         out->rate[FU_DRAWN] += fu_dot(DIM, part.l_d, part.d_rate) + part.share[FU_DRAWN] * turning;
         for (int end = 0; end < SIDES; ++end)
             if (end ? to == last : from == 0)
-                out->length[FU_FREE] += share_of_end(model, rope, end) * (part.angle - rope->angles[end]);
-        out->rate[FU_FREE] += part.share[FU_FREE] * turning;
+                add_way(end, share_of_end(model, rope, end), part.angle - rope->angles[end], turning, out);
         fu_attachment_state *passed = before;
         before = after;
         after = passed;
     }
-    add_turn(model, rope, state, 1, before, out);
+    subtract_turn(model, rope, state, 1, before, out);
+    for (int end = 0; end < SIDES; ++end) {
+        out->length[FU_WAY] += out->way[end] - past->way[end];
+        out->rate[FU_WAY] += out->way_rate[end];
+    }
+    out->past[0] = past->free;
+    out->past[1] = past->drawn;
+    double slack;
+    rope->kernel->free_length(out->length, out->past, &out->free, &slack);
+    out->per_way = out->free / out->length[FU_DRAWN];
+    if (is_taut(&rope->base, state)) return;
+    out->free = slack;
+    out->per_way = 1.0;
 }
 
 void fu_taut_lengths_at(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_lengths *out)
 {
     find_lengths(model, rope, state, out);
-    rope->kernel->tension(is_taut(&rope->base, state) ? rope->EA : 0.0, rope->tau, out->length, out->rate, rope->kept,
-                          out->f);
+    rope->kernel->tension(out->length, out->past, is_taut(&rope->base, state) ? rope->EA : 0.0, rope->tau, out->rate,
+                          &out->tension);
 }
 
-void fu_taut_pull(const fu_taut_part *part, const double f[FU_LENGTHS], double pull[2])
+void fu_taut_pull(const fu_taut_part *part, double pull[2])
 {
-    const double on_angle = fu_dot(FU_LENGTHS, part->share, f);
-    for (int d = 0; d < DIM; ++d) pull[d] = f[FU_DRAWN] * part->l_d[d] + on_angle * part->b_d[d];
+    const double on_angle = part->share[FU_DRAWN] + part->share[FU_WAY];
+    for (int d = 0; d < DIM; ++d) pull[d] = part->l_d[d] + on_angle * part->b_d[d];
 }
 
 double fu_taut_length_to(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, int place,
@@ -203,27 +225,24 @@ double fu_taut_length_to(const fu_model *model, const fu_taut_rope *rope, const 
     return length;
 }
 
-double fu_taut_held(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, int end, double *rate)
+/* The stress-free length per length of way: the mean over the step, and now. */
+static double free_per_way(const fu_taut_lengths *now)
 {
-    const int last = rope->n_points - 1, place = end ? last : 0;
-    const fu_taut_point *point = fu_taut_point_of(model, rope, place);
-    const double share = -share_of_end(model, rope, end);
-    fu_attachment_state at;
-    fu_taut_part part;
-    *rate = 0.0;
-    if (share == 0.0) return 0.0;
-    if (end) fu_taut_part_at(model, rope, state, fu_touched_before(model, rope, state, last), last, &part);
-    else fu_taut_part_at(model, rope, state, 0, fu_next_touched(model, rope, state, 0), &part);
-    fu_taut_centre(model, point, state, &at);
-    *rate = share * (fu_dot(DIM, part.b_d, part.d_rate) - fu_taut_spin(model, point, state, &at));
-    return share * (part.angle - rope->angles[end] - fu_taut_turn(point, state, &at) + rope->carriers[end]);
+    return 0.5 * (now->past[0] / now->past[1] + now->per_way);
+}
+
+double fu_taut_held(const fu_taut_rope *rope, const fu_state *state, const fu_taut_lengths *now, int end, double *rate)
+{
+    const fu_taut_history *past = history_of(rope, state);
+    *rate = now->way_rate[end] * now->per_way;
+    return past->held[end] + (now->way[end] - past->way[end]) * free_per_way(now);
 }
 
 /* --- forces ----------------------------------------------------------------------------------------------------- */
 
-/* Adds forces on the lengths to those on the dofs. */
-static void add_forces(const fu_model *model, const fu_taut_rope *rope, const fu_state *state,
-                       const double f[FU_LENGTHS], double *out)
+/* Adds the forces of a tension to those on the dofs. */
+static void add_forces(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, double tension,
+                       double *out)
 {
     const int last = rope->n_points - 1;
     fu_attachment_state one, other, *before = &one, *after = &other;
@@ -234,12 +253,12 @@ static void add_forces(const fu_model *model, const fu_taut_rope *rope, const fu
         to = fu_next_touched(model, rope, state, from);
         fu_taut_centre(model, fu_taut_point_of(model, rope, to), state, after);
         find_part(model, rope, state, from, to, before, after, &part);
-        fu_taut_pull(&part, f, pull);
+        fu_taut_pull(&part, pull);
         for (int end = 0; end < SIDES; ++end) {
             const fu_taut_point *point = fu_taut_point_of(model, rope, end ? to : from);
             const int holds = end ? to == last : from == 0;
-            const double moment = holds ? -share_of_end(model, rope, end) * f[FU_FREE] : 0.0, sign = end ? 1.0 : -1.0;
-            const double force[DIM] = {sign * pull[0], sign * pull[1]};
+            const double moment = holds ? -share_of_end(model, rope, end) * tension : 0.0;
+            const double along = end ? tension : -tension, force[DIM] = {along * pull[0], along * pull[1]};
             fu_add_wrench(DIM, end ? after : before, force, moment != 0.0 ? &moment : 0, 1.0, out);
             if (moment != 0.0 && point->turn >= 0) out[point->turn] += moment;
         }
@@ -249,84 +268,62 @@ static void add_forces(const fu_model *model, const fu_taut_rope *rope, const fu
     }
 }
 
-/* Computes the forces on the lengths that are internal unknowns; that on the stress-free length has no effect without
- * wheels that hold the rope. */
-static void internal_forces(const fu_coupling *coupling, const fu_state *state, double f[FU_LENGTHS])
-{
-    f[FU_FREE] = 0.0;
-    memcpy(f, state->forces + coupling->force, sizeof(double) * (size_t)coupling->n_forces);
-}
-
 static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
                      double *internal)
 {
-    const fu_taut_rope *rope = rope_of(coupling);
+    const double unknown = at->next->forces[coupling->force];
     fu_taut_lengths now;
-    double unknown[FU_LENGTHS];
-    internal_forces(coupling, at->next, unknown);
-    add_forces(model, rope, at->next, unknown, f);
-    fu_taut_lengths_at(model, rope, at->next, &now);
-    for (int r = 0; r < coupling->n_forces; ++r)
-        internal[coupling->unknown + r] = -at->weights.stiffness * (unknown[r] - now.f[r]);
+    add_forces(model, rope_of(coupling), at->next, unknown, f);
+    fu_taut_lengths_at(model, rope_of(coupling), at->next, &now);
+    internal[coupling->unknown] = -at->weights.stiffness * (unknown - now.tension);
 }
 
 static void force(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f)
 {
     fu_taut_lengths now;
     fu_taut_lengths_at(model, rope_of(coupling), state, &now);
-    add_forces(model, rope_of(coupling), state, now.f, f);
+    add_forces(model, rope_of(coupling), state, now.tension, f);
 }
 
 /* A side of a straight part in a Newton system: its point, and the sign of its place in d. */
 typedef struct {
     const fu_taut_point *point;
     fu_point_motion motion;
-    double sign, turn_share; /* of its rotation in the stress-free length, 0 where it does not hold the rope */
+    double sign, turn_share; /* of its rotation in the way, 0 where it does not hold the rope */
 } side;
 
-/* The changes of the forces on the lengths by the lengths and their rates. */
+/* The changes of the tension by drawn length and way, and by their rates. */
 typedef struct {
-    double K[FU_LENGTHS * FU_LENGTHS], D[FU_LENGTHS * FU_LENGTHS];
+    double K[FU_LENGTHS], D[FU_LENGTHS];
 } law_changes;
 
-/* Adds the entries of one side with the internal unknowns: rows of the law, columns of the forces. */
-static void add_internal(const fu_model *model, const fu_coupling *coupling, const fu_taut_part *part,
-                         const law_changes *law, double (*by_rate)[DIM], const side *of, fu_weights weights,
-                         fu_system *system)
+/* Adds the entries of one side with the tension: its row of the law, its column of the forces. */
+static void add_tension(const fu_model *model, const fu_coupling *coupling, const fu_taut_part *part,
+                        const law_changes *law, double (*by_rate)[DIM], const side *of, fu_weights weights,
+                        fu_system *system)
 {
     const int row = fu_extra(model, coupling->unknown), n = of->motion.at.n;
-    const double unit = fu_row_unit(weights.inertia, coupling->scale[0]);
-    double by[FU_LENGTHS * ROWS], changes[FU_LENGTHS * FU_ATTACHMENT_COORDINATES];
-    memset(by, 0, sizeof by);
-    for (int r = 0; r < coupling->n_forces; ++r)
-        for (int i = 0; i < FU_LENGTHS; ++i) {
-            const double K = law->K[r * FU_LENGTHS + i], D = law->D[r * FU_LENGTHS + i];
-            for (int d = 0; d < DIM; ++d) {
-                const double change = of->sign * ((i == FU_DRAWN ? part->l_d[d] : 0.0) + part->share[i] * part->b_d[d]);
-                by[r * ROWS + d] += K * change + D * of->sign * by_rate[i][d];
-                by[r * ROWS + VELOCITY + d] += D * change;
-            }
-            if (i != FU_FREE) continue;
-            by[r * ROWS + TURN] = K * of->turn_share;
-            by[r * ROWS + SPIN] = D * of->turn_share;
+    const double unit = fu_row_unit(weights.inertia, coupling->scale[0]), moment = of->turn_share;
+    double by[ROWS] = {0.0}, changes[FU_ATTACHMENT_COORDINATES], on_point[FU_ATTACHMENT_COORDINATES], pull[DIM];
+    for (int i = 0; i < FU_LENGTHS; ++i)
+        for (int d = 0; d < DIM; ++d) {
+            const double change = of->sign * ((i == FU_DRAWN ? part->l_d[d] : 0.0) + part->share[i] * part->b_d[d]);
+            by[d] += law->K[i] * change + law->D[i] * of->sign * by_rate[i][d];
+            by[VELOCITY + d] += law->D[i] * change;
         }
-    fu_changes(&of->motion, coupling->n_forces, by, changes);
-    for (int r = 0; r < coupling->n_forces; ++r) {
-        double force[DIM];
-        const double moment = r == FU_FREE ? of->turn_share : 0.0;
-        for (int d = 0; d < DIM; ++d)
-            force[d] = of->sign * ((r == FU_DRAWN ? part->l_d[d] : 0.0) + part->share[r] * part->b_d[d]);
-        double on_point[FU_ATTACHMENT_COORDINATES];
-        fu_wrench_force(DIM, &of->motion.at, force, moment != 0.0 ? &moment : 0, 1.0, on_point);
-        for (int i = 0; i < n; ++i) {
-            fu_add(model, system, row + r, of->motion.at.at[i], -weights.stiffness * changes[r * n + i]);
-            fu_add(model, system, of->motion.at.at[i], row + r, unit * on_point[i]);
-        }
-        if (of->turn_share == 0.0 || of->point->turn < 0) continue;
-        fu_add(model, system, row + r, of->point->turn,
-               -weights.stiffness * (by[r * ROWS + TURN] + weights.rate * by[r * ROWS + SPIN]));
-        if (moment != 0.0) fu_add(model, system, of->point->turn, row + r, unit * moment);
+    by[TURN] = law->K[FU_WAY] * of->turn_share;
+    by[SPIN] = law->D[FU_WAY] * of->turn_share;
+    fu_changes(&of->motion, 1, by, changes);
+    fu_taut_pull(part, pull);
+    for (int d = 0; d < DIM; ++d) pull[d] *= of->sign;
+    fu_wrench_force(DIM, &of->motion.at, pull, moment != 0.0 ? &moment : 0, 1.0, on_point);
+    for (int i = 0; i < n; ++i) {
+        fu_add(model, system, row, of->motion.at.at[i], -weights.stiffness * changes[i]);
+        fu_add(model, system, of->motion.at.at[i], row, unit * on_point[i]);
     }
+    if (moment == 0.0 || of->point->turn < 0) return;
+    fu_add(model, system, row, of->point->turn, -weights.stiffness * (by[TURN] + weights.rate * by[SPIN]));
+    fu_add(model, system, of->point->turn, row, unit * moment);
 }
 
 /* Adds the changes of the force of a part on one side by the other one, or by itself. */
@@ -344,14 +341,13 @@ static void add_stiffness(const fu_model *model, const double *K, const side *of
 
 /* Adds the derivatives of a straight part. */
 static void add_part(const fu_model *model, const fu_coupling *coupling, const fu_taut_part *part,
-                     const law_changes *law, const double unknown[FU_LENGTHS], const fu_equations *equations,
-                     fu_system *system)
+                     const law_changes *law, double unknown, const fu_equations *equations, fu_system *system)
 {
     const fu_taut_rope *rope = rope_of(coupling);
-    const double on_part[2] = {unknown[FU_DRAWN], fu_dot(FU_LENGTHS, part->share, unknown)};
+    const double on_part[2] = {unknown, (part->share[FU_DRAWN] + part->share[FU_WAY]) * unknown};
     double pull[DIM], K[DIM * DIM], by_rate[FU_LENGTHS][DIM];
     side sides[SIDES];
-    fu_taut_pull(part, unknown, pull);
+    fu_taut_pull(part, pull);
     for (int i = 0; i < FU_LENGTHS; ++i) {
         const double on_length[2] = {i == FU_DRAWN ? 1.0 : 0.0, part->share[i]};
         rope->kernel->straight_tangent(on_length, part->d, part->rise, K);
@@ -364,10 +360,11 @@ static void add_part(const fu_model *model, const fu_coupling *coupling, const f
         of->point = fu_taut_point_of(model, rope, end ? part->to : part->from);
         of->sign = end ? 1.0 : -1.0;
         of->turn_share = holds ? -share_of_end(model, rope, end) : 0.0;
-        const double moment = of->turn_share * unknown[FU_FREE], force[DIM] = {of->sign * pull[0], of->sign * pull[1]};
+        const double moment = of->turn_share * unknown, along = of->sign * unknown;
+        const double force[DIM] = {along * pull[0], along * pull[1]};
         fu_point_motion_at(model, &of->point->attachments[0], equations->next, FU_POINT | FU_AXES, force, &moment,
                            equations->psi, equations->weights.rate, &of->motion);
-        add_internal(model, coupling, part, law, by_rate, of, equations->weights, system);
+        add_tension(model, coupling, part, law, by_rate, of, equations->weights, system);
     }
     for (int end = 0; end < SIDES; ++end)
         for (int by = 0; by < SIDES; ++by)
@@ -382,18 +379,15 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     const int row = fu_extra(model, coupling->unknown);
     fu_taut_lengths now;
     law_changes law;
-    double unknown[FU_LENGTHS];
     find_lengths(model, rope, next, &now);
-    rope->kernel->tension_tangent(is_taut(coupling, next) ? rope->EA : 0.0, rope->tau, now.length, now.rate, rope->kept,
-                                  now.f, law.K, law.D);
-    internal_forces(coupling, next, unknown);
-    for (int r = 0; r < coupling->n_forces; ++r)
-        fu_add(model, system, row + r, row + r, fu_row_unit(equations->weights.inertia, coupling->scale[0]));
+    rope->kernel->tension_tangent(now.length, now.past, is_taut(coupling, next) ? rope->EA : 0.0, rope->tau, now.rate,
+                                  &now.tension, law.K, law.D);
+    fu_add(model, system, row, row, fu_row_unit(equations->weights.inertia, coupling->scale[0]));
     for (int from = 0, to; from < rope->n_points - 1; from = to) {
         fu_taut_part part;
         to = fu_next_touched(model, rope, next, from);
         fu_taut_part_at(model, rope, next, from, to, &part);
-        add_part(model, coupling, &part, &law, unknown, equations, system);
+        add_part(model, coupling, &part, &law, next->forces[coupling->force], equations, system);
     }
 }
 
@@ -409,7 +403,7 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     fu_taut_lengths now;
     (void)acceleration, (void)work;
     fu_taut_lengths_at(model, rope_of(coupling), state, &now);
-    *(rope_output *)out = (rope_output){now.f[FU_DRAWN], now.length[FU_DRAWN], now.length[FU_FREE]};
+    *(rope_output *)out = (rope_output){now.tension + 0.0, now.length[FU_DRAWN], now.free}; /* no -0 */
 }
 
 static void take_forces(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state)
@@ -417,15 +411,31 @@ static void take_forces(const fu_model *model, const fu_coupling *coupling, cons
     fu_taut_lengths now;
     (void)work;
     fu_taut_lengths_at(model, rope_of(coupling), state, &now);
-    memcpy(state->forces + coupling->force, now.f, sizeof(double) * (size_t)coupling->n_forces);
+    state->forces[coupling->force] = now.tension;
 }
 
-/* Returns the elastic energy of a rope of these lengths, J. */
-static double stored(const fu_taut_rope *rope, const fu_taut_lengths *now)
+/* The elastic energy of a rope, J, that of a length, N, and the power of damping, W. */
+typedef struct {
+    double U, W, P;
+} energies;
+
+static energies energies_of(const fu_taut_rope *rope, double drawn, double free, double growth)
 {
-    double U;
-    rope->kernel->energy(now->length[FU_DRAWN] > now->length[FU_FREE] ? rope->EA : 0.0, now->length, &U);
-    return U;
+    energies out;
+    rope->kernel->energy(drawn > free ? rope->EA : 0.0, rope->tau, drawn, free, growth, &out.U, &out.W, &out.P);
+    return out;
+}
+
+static energies energies_at(const fu_taut_rope *rope, const fu_taut_lengths *now)
+{
+    return energies_of(rope, now->length[FU_DRAWN], now->free, now->rate[FU_DRAWN] + now->rate[FU_WAY]);
+}
+
+/* Returns the energy of what wheels hold, J: what they have taken up in the step has the mean energy over it. */
+static double energy_held(const fu_taut_rope *rope, const fu_state *state, const fu_taut_lengths *now, double W)
+{
+    const double before = energies_of(rope, now->past[1], now->past[0], 0.0).W;
+    return history_of(rope, state)->energy + 0.5 * (W + before) * (now->past[0] - now->free);
 }
 
 /* Returns the elastic energy, with that of what wheels hold, J. */
@@ -434,20 +444,22 @@ static double energy(const fu_model *model, const fu_coupling *coupling, const f
     const fu_taut_rope *rope = rope_of(coupling);
     fu_taut_lengths now;
     find_lengths(model, rope, state, &now);
-    return stored(rope, &now) + rope->kept * (rope->held + rope->free_length - now.length[FU_FREE]);
+    const energies of = energies_at(rope, &now);
+    return of.U + energy_held(rope, state, &now, of.W);
 }
 
 static double dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                           const fu_accelerator *work)
 {
-    const fu_taut_rope *rope = rope_of(coupling);
     fu_taut_lengths now;
-    double power;
     (void)work;
     if (!coupling->is_damped || !is_taut(coupling, state)) return 0.0;
-    find_lengths(model, rope, state, &now);
-    rope->kernel->dissipation(rope->EA, rope->tau, now.length, now.rate, &power);
-    return power;
+    find_lengths(model, rope_of(coupling), state, &now);
+    const fu_taut_rope *rope = rope_of(coupling);
+    double U, W, P;
+    rope->kernel->energy(rope->EA, rope->tau, now.length[FU_DRAWN], now.free, now.rate[FU_DRAWN] + now.rate[FU_WAY], &U,
+                         &W, &P);
+    return P;
 }
 
 /* Returns the stored energy that is dissipated, J: of a rope whose damping would push, so that it is slack. */
@@ -456,7 +468,7 @@ static double energy_without_force(const fu_model *model, const fu_coupling *cou
     fu_taut_lengths now;
     if (is_taut(coupling, state)) return 0.0;
     find_lengths(model, rope_of(coupling), state, &now);
-    return stored(rope_of(coupling), &now);
+    return energies_at(rope_of(coupling), &now).U;
 }
 
 static double lost_in_step(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to,
@@ -468,16 +480,14 @@ static double lost_in_step(const fu_model *model, const fu_coupling *coupling, c
 }
 
 /* Stores the angles of parts and of what carries the points, from which later ones are counted. */
-static void update_history(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+static void update_angles(const fu_model *model, const fu_taut_rope *rope, fu_state *state)
 {
-    const fu_taut_rope *rope = rope_of(coupling);
     for (int from = 0, to; from < rope->n_points; from = to) {
         const fu_taut_point *point = fu_taut_point_of(model, rope, from);
         double *numbers = state->numbers + point->base.numbers;
         fu_attachment_state at;
         fu_taut_centre(model, point, state, &at);
         numbers[1] = carrier_angle(point, state, &at);
-        to = from + 1;
         if (from == rope->n_points - 1) return;
         fu_taut_part part;
         to = fu_next_touched(model, rope, state, from);
@@ -486,18 +496,60 @@ static void update_history(const fu_model *model, const fu_coupling *coupling, f
     }
 }
 
+static void update_history(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+{
+    const fu_taut_rope *rope = rope_of(coupling);
+    fu_taut_history *past = history_of(rope, state);
+    fu_taut_lengths now;
+    double rate;
+    update_angles(model, rope, state);
+    find_lengths(model, rope, state, &now);
+    const double held[SIDES] = {fu_taut_held(rope, state, &now, 0, &rate), fu_taut_held(rope, state, &now, 1, &rate)};
+    past->energy = energy_held(rope, state, &now, energies_at(rope, &now).W);
+    past->free = now.free;
+    past->drawn = is_taut(coupling, state) ? now.length[FU_DRAWN] : now.free;
+    for (int end = 0; end < SIDES; ++end) {
+        past->held[end] = held[end];
+        past->way[end] = now.way[end];
+    }
+}
+
 static void reset(const fu_coupling *coupling, fu_state *state)
 {
+    const fu_taut_rope *rope = rope_of(coupling);
     state->flags[coupling->flags] = 1;
+    *history_of(rope, state) =
+        (fu_taut_history){.free = rope->free_length,
+                          .drawn = rope->drawn_length,
+                          .energy = rope->held * energies_of(rope, rope->drawn_length, rope->free_length, 0.0).W};
+}
+
+/* In statics the positions determine which sheaves without friction the rope touches, and whether it is taut. */
+static void detect(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+{
+    const fu_taut_rope *rope = rope_of(coupling);
+    fu_taut_lengths now;
+    for (int place = 1; place < rope->n_points - 1; ++place) {
+        const fu_taut_point *point = fu_taut_point_of(model, rope, place);
+        int *touches = state->flags + point->base.flags, side = 1;
+        if (*touches) *touches = fu_taut_wrap(model, point, state) <= 0.0;
+        else if (fu_taut_depth(model, point, state, &side) > 0.0) {
+            const int before = fu_touched_before(model, rope, state, place);
+            state->numbers[point->base.numbers] = state->numbers[fu_taut_point_of(model, rope, before)->base.numbers];
+            *touches = side > 0;
+        }
+    }
+    find_lengths(model, rope, state, &now);
+    state->flags[coupling->flags] = now.length[FU_DRAWN] >= now.free;
+    update_angles(model, rope, state);
 }
 
 double fu_taut_slack(const fu_model *model, const fu_taut_rope *rope, const fu_state *state)
 {
     fu_taut_lengths now;
     find_lengths(model, rope, state, &now);
-    const double stretch = now.length[FU_DRAWN] / now.length[FU_FREE];
-    const double growth = (now.rate[FU_DRAWN] - stretch * now.rate[FU_FREE]) * rope->tau;
-    return -fmin(0.0, growth) - (now.length[FU_DRAWN] - now.length[FU_FREE]);
+    const double growth = (now.rate[FU_DRAWN] + now.rate[FU_WAY]) * rope->tau;
+    return -fmin(0.0, growth) - (now.length[FU_DRAWN] - now.free);
 }
 
 double fu_taut_margin(const fu_model *model, const fu_taut_rope *rope, const fu_state *state)
@@ -515,19 +567,12 @@ double fu_taut_margin(const fu_model *model, const fu_taut_rope *rope, const fu_
 static const char *const role[] = {"taut_rope", 0};
 
 static const fu_field fields[] = {
-    FU_FIELD(fu_taut_rope, kernel, FU_KERNELS, role),
-    FU_FIELD(fu_taut_rope, n_points, FU_INTEGER, 0),
-    FU_FIELD(fu_taut_rope, points, FU_INTEGERS, 0),
-    FU_FIELD(fu_taut_rope, EA, FU_REAL, 0),
-    FU_FIELD(fu_taut_rope, tau, FU_REAL, 0),
-    FU_FIELD(fu_taut_rope, free_length, FU_REAL, 0),
-    FU_FIELD_ARRAY(fu_taut_rope, angles, FU_REAL),
-    FU_FIELD_ARRAY(fu_taut_rope, carriers, FU_REAL),
-    FU_FIELD(fu_taut_rope, stretch, FU_REAL, 0),
-    FU_FIELD(fu_taut_rope, kept, FU_REAL, 0),
-    FU_FIELD(fu_taut_rope, held, FU_REAL, 0),
-    FU_FIELD(fu_taut_rope, least_length, FU_REAL, 0),
-    {0},
+    FU_FIELD(fu_taut_rope, kernel, FU_KERNELS, role), FU_FIELD(fu_taut_rope, n_points, FU_INTEGER, 0),
+    FU_FIELD(fu_taut_rope, points, FU_INTEGERS, 0),   FU_FIELD(fu_taut_rope, EA, FU_REAL, 0),
+    FU_FIELD(fu_taut_rope, tau, FU_REAL, 0),          FU_FIELD(fu_taut_rope, drawn_length, FU_REAL, 0),
+    FU_FIELD(fu_taut_rope, free_length, FU_REAL, 0),  FU_FIELD_ARRAY(fu_taut_rope, angles, FU_REAL),
+    FU_FIELD_ARRAY(fu_taut_rope, carriers, FU_REAL),  FU_FIELD(fu_taut_rope, held, FU_REAL, 0),
+    FU_FIELD(fu_taut_rope, least_length, FU_REAL, 0), {0},
 };
 
 static const fu_output output_fields[] = {
@@ -545,6 +590,7 @@ const fu_coupling_type fu_taut_rope_type = {
     .size = sizeof(fu_taut_rope),
     .fields = fields,
     .output_fields = output_fields,
+    .n_numbers = sizeof(fu_taut_history) / sizeof(double),
     .n_flags = 1,
     .start = &start,
     .history = &of_history,
@@ -556,4 +602,5 @@ const fu_coupling_type fu_taut_rope_type = {
     .energy = energy,
     .dissipation = dissipation,
     .lost_in_step = lost_in_step,
+    .detect = detect,
 };

@@ -7,7 +7,7 @@
 #include "couplings/common/attachments.h"
 #include "couplings/common/coupling.h"
 
-enum { FU_DRAWN, FU_FREE, FU_LENGTHS }; /* of a rope: its drawn and its stress-free length, and forces on these */
+enum { FU_DRAWN, FU_WAY, FU_LENGTHS }; /* of a rope: its drawn length, and the way of its ends onto wheels */
 
 /* A point. Its numbers in a state are the angles of the straight part after it and of what carries it, counted over
  * turns; its flag is whether the rope touches it. */
@@ -34,23 +34,31 @@ typedef struct {
     int n_points;
     const int *points; /* numbers of the couplings */
     double EA, tau;
-    double free_length, angles[2], carriers[2]; /* as drawn: m; rad: of the first and last straight part and point */
-    double stretch, kept, held; /* of what wheels hold: stretch; N: energy of a length; m: its length at both ends */
-    double least_length;        /* m: of a straight part */
+    double drawn_length, free_length, angles[2], carriers[2]; /* as drawn: m; rad: of both end parts and end points */
+    double held;         /* m: stress-free length that wheels at its ends hold as drawn */
+    double least_length; /* m: of a straight part */
 } fu_taut_rope;
+
+/* Numbers of a rope in a state: its stress-free and drawn length, this without slack, after the last step, the ways of
+ * its ends onto wheels until then and the stress-free length taken up, since the start, and the energy of that. */
+typedef struct {
+    double free, drawn, way[2], held[2], energy;
+} fu_taut_history;
 
 extern const fu_coupling_type fu_taut_point_type, fu_taut_rope_type;
 
 /* A straight part between two points of a rope, by their places in it: change of the centres and its rate, length,
- * direction with its angle, derivatives of length and angle by d; the shares of its angle in both lengths. */
+ * direction with its angle, derivatives of length and angle by d; the shares of its angle in drawn length and way. */
 typedef struct {
     int from, to;
     double rise, d[2], d_rate[2], l, u[2], l_d[2], b_d[2], angle, share[FU_LENGTHS];
 } fu_taut_part;
 
-/* Lengths of a rope and their rates; the forces on them, those of a slack rope where it is slack. */
+/* A rope at a state: drawn length, and way since the last step, with their rates; ways of both ends since the start,
+ * with their rates; stress-free and drawn length after the last step; the stress-free length now, and that of a length
+ * of way; the tension. */
 typedef struct {
-    double length[FU_LENGTHS], rate[FU_LENGTHS], f[FU_LENGTHS];
+    double length[FU_LENGTHS], rate[FU_LENGTHS], way[2], way_rate[2], past[2], free, per_way, tension;
 } fu_taut_lengths;
 
 const fu_taut_point *fu_taut_point_of(const fu_model *model, const fu_taut_rope *rope, int place);
@@ -62,10 +70,10 @@ int fu_touched_before(const fu_model *model, const fu_taut_rope *rope, const fu_
 /* Computes the straight part between two places of a rope. */
 void fu_taut_part_at(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, int from, int to,
                      fu_taut_part *out);
-/* Computes lengths and forces of a rope. */
+/* Computes lengths and tension of a rope, none where it is slack. */
 void fu_taut_lengths_at(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_lengths *out);
-/* Computes the force of a part on its second point, by the forces on both lengths; its opposite acts on the first. */
-void fu_taut_pull(const fu_taut_part *part, const double f[FU_LENGTHS], double pull[2]);
+/* Computes the force of a part on its second point, of a unit of tension; its opposite acts on the first. */
+void fu_taut_pull(const fu_taut_part *part, double pull[2]);
 /* Returns the rotation of a point with what carries it, and its rate; at: with its axes. */
 double fu_taut_turn(const fu_taut_point *point, const fu_state *state, const fu_attachment_state *at);
 double fu_taut_spin(const fu_model *model, const fu_taut_point *point, const fu_state *state,
@@ -78,7 +86,7 @@ double fu_taut_length_to(const fu_model *model, const fu_taut_rope *rope, const 
                          double *rate);
 /* Returns the stress-free length that a wheel at an end of a rope holds beyond that as drawn, m, and its rate; end: 0
  * at the rope's start, 1 at its end. */
-double fu_taut_held(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, int end, double *rate);
+double fu_taut_held(const fu_taut_rope *rope, const fu_state *state, const fu_taut_lengths *now, int end, double *rate);
 
 /* Event functions (events/taut_rope.c): of a point, the angle of its wrap, rad, positive beyond its end; the depth of a
  * straight rope in a sheave that it does not touch, m; of friction, the difference of both tensions less the limit, N;

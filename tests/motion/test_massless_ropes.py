@@ -1,0 +1,381 @@
+"""Ropes without mass in motion: references, wraps that vanish and return, slackness, drums and sheaves that hold them,
+energy and momentum, agreement with ropes with mass, files, and how runs end.
+"""
+
+import re
+from math import cos, exp, pi, sin, sqrt
+
+import funicular as fu
+import numpy as np
+import pytest
+from expectations import refused
+from funicular.results import streaming
+from interrupted_runs import Killed, failing
+from ropes import CASES
+from ropes.massless_runs import RUNS
+from ropes.scenes import GRAVITY, over_one, rope_of, swing, weight
+
+BY_KEY = {case.key: case for case in CASES}
+STIFF = rope_of(1e7, 1e-5, 0, 1e-3) | {"mass": False}
+SOFT = rope_of(6e4, 1e-5, 0, 1e-3) | {"mass": False}
+HOLDS = fu.Friction(coefficient=0.5)
+BRIEF = {"tol": 1e-7, "progress": False}
+
+
+@pytest.mark.parametrize("key", RUNS)
+def test_a_run_keeps_the_bars(key):
+    case, found = BY_KEY[key], RUNS[key]()
+    checked = [(quantity, found[quantity.name], reference) for quantity, reference
+               in zip(case.quantities, case.reference(), strict=True) if quantity.name in found]
+    assert len(checked) == len(found)
+    errors = {quantity.name: abs(value - reference) / (1.0 if quantity.absolute else abs(reference)) / quantity.bar
+              for quantity, value, reference in checked}
+    assert {name: error for name, error in errors.items() if error > 1} == {}
+
+
+def near(one, other, bound, *names):
+    for name in names:
+        assert np.abs(one[name] - other[name]).max() < bound, name
+
+
+# ---- wraps
+
+def circling(turns: float) -> fu.Run:
+    """Return a load that circles a peg, without gravity, and winds its rope up by some turns."""
+    R, free, v = 0.1, 3.0, 2.0
+    scene = fu.Scene(gravity=(0, 0, 0))
+    scene.rigid_body("load", mass=2.0, inertia=(1, 1, 1), position=(R, free, 0), velocity=(-v, 0, 0))
+    scene.rope("rope", route=[fu.Anchor(at=(R, -1, 0)), fu.Sheave("peg", at=(0, 0, 0), radius=R, side="left"),
+                              fu.Anchor("load")], tension=2.0 * v**2 / free, **STIFF)
+    # l l' = -R v: the free length of an involute is sqrt(free² - 2 R v t), and the wrap (free - l)/R
+    last = free - 2 * pi * R * turns
+    return scene.run((free**2 - last**2) / (2 * R * v), output_step=0.1, integrator="radau", **BRIEF)
+
+
+def test_a_wrap_grows_beyond_turns():
+    """The free length of an involute; the wrap passes 180, 360 and 720 deg."""
+    run = circling(3.5)
+    free = np.sqrt(9.0 - 2 * 0.1 * 2.0 * run.time)
+    assert np.abs(run["peg.wrap_angle"] - (3.0 - free) / 0.1).max() < 1e-4
+    assert run["peg.wrap_angle"][-1] > 6.9 * pi
+    assert np.abs(np.linalg.norm(run["load.velocity"], axis=1) - 2.0).max() < 1e-5
+
+
+def test_a_wrap_that_vanishes_and_returns_is_an_event():
+    """Energy is kept over both, and the states are those of a rope that swings freely between."""
+    scene = fu.Scene(gravity=(0, -GRAVITY, 0))
+    weight(scene, "load", 1.0, -2 * sin(0.7), -2 * cos(0.7))
+    peg = fu.Sheave("peg", at=(0.3, -1, 0), radius=0.1, side="left")
+    scene.rope("rope", route=[fu.Anchor(at=(0, 0, 0)), peg, fu.Anchor("load")], tension=5.0, **STIFF)
+    run = scene.run(4.5, output_step=0.1, **BRIEF)
+    assert [each["what"] for each in run.report["events"]] == ["returned", "left the sheave"] * 2
+    first, lost = (each["time"] for each in run.report["events"][:2])
+    wrapped = (run.time > first) & (run.time < lost)
+    assert (run["peg.wrap_angle"][wrapped] > 0).all() and np.abs(run["peg.wrap_angle"][run.time < first]).max() == 0
+    assert (run["peg.normal_force"][wrapped] > 0).all() and np.abs(run["peg.force"][run.time < first]).max() == 0
+    assert np.abs(run.energy_balance().relative).max() < 1e-8
+    # the results show the rope from the anchor to the load, over the peg
+    places = run["rope.position"]
+    assert np.abs(places[:, 0]).max() < 1e-14 and np.abs(places[:, -1] - run["load.position"]).max() < 1e-14
+    lengths = np.linalg.norm(np.diff(places, axis=1), axis=2).sum(axis=1)
+    assert np.abs(lengths - 2.0).max() < 2e-4  # chords in the place of the arc
+    assert np.abs(run["rope.s"][:, -1] - run["rope.s"][0, -1]).max() < 1e-12
+
+
+def test_a_sheave_is_met_from_its_other_side():
+    """A rope whose end passes above a peg, and which is then paid out, meets the peg from behind as it swings back."""
+    scene = fu.Scene(gravity=(0, -GRAVITY, 0))
+    weight(scene, "load", 1.0, 0.1 - 0.9 * sin(0.7), -0.9 * cos(0.7))
+    pays = fu.TableSignal(time=[0, 0.6, 0.7, 1.4, 1.5, 9], value=[0, 0, -12, -12, 0, 0], interpolation="linear")
+    winch = fu.Drum("winch", at=(0, 0, 0), radius=0.1, side="right", length_in_store=4, velocity=pays)
+    scene.rope("rope", route=[winch, fu.Sheave("peg", at=(0.3, -1.1, 0), radius=0.1, side="left"), fu.Anchor("load")],
+               tension=5.0, **STIFF)
+    with pytest.raises(fu.RopeLeftError, match='meets sheave "peg" from its other side'):
+        scene.run(4.0, output_step=0.1, **BRIEF)
+
+
+def test_a_sheave_with_friction_must_be_touched():
+    with pytest.raises(fu.SceneError, match='the rope does not touch sheave "peg"'):
+        fu.Scene().rope("rope", tension=5.0, **STIFF, route=[
+            fu.Anchor(at=(0, 0, 0)), fu.Sheave("peg", at=(1, -0.1, 0), radius=0.1, side="right", friction=0.3),
+            fu.Anchor(at=(2, 0, 0))])
+
+
+# ---- slackness
+
+def test_a_rope_becomes_slack_and_taut_again():
+    """A load thrown up flies freely; the instants are those of its parabola. Energy that damping kept is lost."""
+    scene = fu.Scene(gravity=(0, -GRAVITY, 0))
+    scene.rigid_body("load", mass=5.0, inertia=(5, 5, 5), position=(0.3, -3, 0), velocity=(0, 3, 0))
+    scene.rope("rope", route=[fu.Anchor(at=(-0.3, -2, 0)), fu.Sheave("top", at=(0, 0, 0), radius=0.3, side="right"),
+                              fu.Anchor("load")], tension=1.0, **SOFT)
+    run = scene.run(1.0, output_step=0.05, **BRIEF)
+    first, after = run.report["events"][:2]
+    assert (first["what"], after["what"]) == ("taut again", "became slack")
+    length = 5 + 0.3 * pi
+    drop = length - length / (1 + 1.0 / 6e4)  # below the place at which the rope has no stretch
+    assert 3 * first["time"] - GRAVITY / 2 * first["time"] ** 2 == pytest.approx(drop, abs=1e-8)
+    slack = run.time < first["time"]
+    assert not run["top.tension_on"][slack].any() and not run["top.force"][slack].any()
+    assert np.abs(run.energy_balance().relative).max() < 1e-7
+    assert run["energy.dissipated"][-1] > 0.1
+
+
+# ---- wheels that hold the rope
+
+def on_a_held_sheave(friction: float, loads: tuple[float, float], **sheave) -> fu.Scene:
+    """Return two weights on a sheave that is held."""
+    scene = swing(*loads, 0.2, 2.0, 2.0, 0.0)
+    over_one(scene, 0.2, ("counterweight", "load"), tension=GRAVITY * max(loads), given=SOFT, friction=friction,
+             **sheave)
+    return scene
+
+
+@pytest.mark.parametrize(("coefficient", "turns"), [(0.1, 0), (0.3, 0), (0.3, 1)])
+def test_a_capstan_holds_up_to_its_limit(coefficient, turns):
+    """At rest the ratio of both tensions is that of the weights; e^(mu theta) is the limit, 1e-5 to either side."""
+    limit = exp(coefficient * pi * (1 + 2 * turns))
+    rests = [on_a_held_sheave(coefficient, (1.0, limit * factor), turns=turns) for factor in (1 - 1e-5, 1 + 1e-5)]
+    held = rests[0].run(0.5, output_step=0.1, initial="equilibrium", **BRIEF)
+    assert held["top.tension_off"] / held["top.tension_on"] == pytest.approx(limit * (1 - 1e-5), rel=1e-7)
+    with pytest.raises(fu.RopeLeftError, match=re.escape('slips on sheave "top", as its tensions differ by more than '
+                                                         "friction holds, at t = 0")):
+        rests[1].run(0.5, output_step=0.1, initial="equilibrium", **BRIEF)
+
+
+def test_a_held_sheave_takes_the_difference_of_tensions():
+    scene = on_a_held_sheave(5.0, (2.0, 1.0)).replace("load", velocity=(0.2, 0, 0))
+    run = scene.run(1.0, output_step=0.1, initial="equilibrium", **BRIEF)
+    difference = run["top.tension_off"] - run["top.tension_on"]
+    assert run["top.torque"] == pytest.approx(-0.2 * difference, rel=1e-12)  # side="right": clockwise in its order
+    assert run["top.tension_on"] == pytest.approx(np.full(11, 2 * GRAVITY), rel=1e-6)
+    assert np.ptp(run["load.position"][:, 0]) > 0.05 and np.ptp(run["counterweight.position"]) < 3
+    assert np.abs(run.energy_balance().relative).max() < 1e-7
+
+
+FORCES = {"A": -300.0, "B": -300.0, "S": 600.0}
+
+
+def carried(**sheave) -> fu.Scene:
+    """Return a rope over a body that moves and turns, between two bodies; the sum of all loads is zero."""
+    scene = fu.Scene(gravity=(0, 0, 0))
+    for name, mass, at, motion in (("A", 2.0, (-0.2, -1, 0), {"velocity": (0, -0.1, 0)}),
+                                   ("B", 3.0, (0.3, -1.2, 0), {"velocity": (0.2, -0.1, 0)}),
+                                   ("S", 5.0, (0, 0.1, 0), {"velocity": (0, 0.1, 0), "angular_velocity": (0, 0, 0.1)})):
+        scene.rigid_body(name, mass=mass, inertia=(1, 1, 0.1), position=at, **motion)
+    scene.rope("hoist", route=[fu.Anchor("A", at=(0, 0.1, 0)),
+                               fu.Sheave("top", at=("S", (0.02, -0.05, 0)), radius=0.2, **sheave), fu.Anchor("B")],
+               tension=300.0, **SOFT)
+    for name, force in FORCES.items():
+        scene.force(name, value=(0, force, 0))
+    return scene
+
+
+WHEELS = {"smooth": {}, "held": {"friction": 2.0}, "turning": {"friction": 2.0, "inertia": 0.02},
+          "driven": {"friction": 2.0, "inertia": 0.02, "torque": 0.7, "damping": 0.1}}
+
+
+@pytest.mark.parametrize("wheel", WHEELS)
+def test_momentum_and_energy_with_a_sheave_on_a_body(wheel):
+    """Momentum is kept, and its moment changes by that of loads: a body with a sheave takes the moment of a rope that
+    it holds.
+    """
+    run = carried(**WHEELS[wheel]).run(0.2, output_step=2e-4, integrator="radau", **BRIEF | {"tol": 1e-10})
+    masses = {"A": 2.0, "B": 3.0, "S": 5.0}
+    momentum = sum(mass * run[f"{name}.velocity"] for name, mass in masses.items())
+    moment = sum(mass * np.cross(run[f"{name}.position"], run[f"{name}.velocity"])[:, 2]
+                 + 0.1 * run[f"{name}.angular_velocity"][:, 2] for name, mass in masses.items())
+    if wheel in ("turning", "driven"):
+        spin = np.gradient(run["top.angle"], run.time, edge_order=2) + run["S.angular_velocity"][:, 2]
+        moment += 0.02 * spin
+    loads = sum(run[f"{name}.position"][:, 0] * force for name, force in FORCES.items())
+    by_loads = np.append(0, np.cumsum((loads[1:] + loads[:-1]) * 1e-4))
+    assert np.abs(momentum - momentum[0]).max() < 1e-9
+    assert np.abs(moment - moment[0] - by_loads)[2:-2].max() < (1e-5 if wheel in ("smooth", "held") else 1e-3)
+    assert np.abs(run.energy_balance().relative).max() < 1e-8
+    assert np.ptp(run["S.angular_velocity"][:, 2]) > 0.01
+
+
+@pytest.mark.parametrize("wheel", WHEELS)
+def test_integrators_agree(wheel):
+    runs = [carried(**WHEELS[wheel]).run(0.2, output_step=0.05, integrator=each, **BRIEF)
+            for each in ("radau", "genalpha", "explicit")]
+    for run in runs:
+        near(run, runs[-1], 2e-6, "A.position", "B.position", "S.position", "hoist.position")
+        assert np.abs(run.energy_balance().relative).max() < 1e-5
+
+
+def test_the_energy_scheme_is_refused():
+    with refused('rope "hoist": integrator "energy" has no discrete gradient of it; take another integrator'):
+        carried().run(0.1, integrator="energy", progress=False)
+
+
+def test_a_drum_under_a_torque_lifts_a_load():
+    """The drum's inertia and the load: I w' = M - T R, m (g + R w') = T, stretch aside."""
+    R, inertia, m, torque = 0.25, 0.8, 20.0, 60.0
+    scene = swing(1.0, m, R, 1.0, 8.0, 0.0).without("counterweight")
+    winch = fu.Drum("winch", at=(0, 0, 0), radius=R, side="right", length_in_store=3.0, inertia=inertia, torque=torque)
+    scene.rope("rope", route=[winch, fu.Anchor("load")], tension=m * GRAVITY, **STIFF)
+    run = scene.run(1.0, output_step=0.25, integrator="radau", **BRIEF)
+    rate = (torque - m * GRAVITY * R) / (inertia + m * R**2)
+    assert run["winch.angle"][-1] == pytest.approx(rate / 2, rel=1e-4)
+    assert run["winch.tension"][-1] == pytest.approx(m * (GRAVITY + R * rate), rel=1e-4)
+    assert run["winch.torque"] == pytest.approx(torque, rel=1e-6)
+    assert run["winch.power"][-1] == pytest.approx(torque * rate, rel=1e-4)
+    assert run["winch.length_in_store"][-1] == pytest.approx(3 + R * rate / 2, rel=1e-4)
+    assert run["winch.material_speed"][-1] == pytest.approx(-R * rate, rel=1e-4)
+    assert np.abs(run.energy_balance().relative).max() < 1e-7
+
+
+def test_a_drum_runs_empty():
+    scene = swing(1.0, 20.0, 0.25, 1.0, 2.0, 0.0).without("counterweight")
+    given = {"at": (0, 0, 0), "radius": 0.25, "side": "right", "length_in_store": 0.5, "velocity": -2.0}
+    scene.rope("rope", route=[fu.Drum("winch", **given), fu.Anchor("load")], tension=200.0, **STIFF)
+    with pytest.raises(fu.RopeLeftError, match='drum "winch" has run empty') as caught:
+        scene.run(2.0, output_step=0.1, **BRIEF)
+    assert caught.value.run["winch.length_in_store"][-1] == pytest.approx(0.0, abs=1e-9)
+    stopped = scene.replace("rope", route=[fu.Drum("winch", at_end="stop", **given), fu.Anchor("load")])
+    assert stopped.run(2.0, output_step=0.1, **BRIEF).time[-1] == pytest.approx(1.0, rel=1e-4)
+
+
+def test_a_belt_that_does_not_slip():
+    """A driven pulley turns the other one by a closed rope; both angles are equal but for the stretch."""
+    scene, R = fu.Scene(gravity=(0, 0, 0)), 0.1
+    pulley = {"radius": R, "inertia": 0.05, "friction": 3.0, "side": "left"}
+    scene.rope("belt", closed=True, tension=500.0, **rope_of(1e5, 1e-5, 0, 1e-3) | {"mass": False}, route=[
+        fu.Sheave("driver", at=(0, 0, 0), **pulley | {"inertia": 0.0}, velocity=fu.Ramp(start=0, end=0.5, after=10.0)),
+        fu.Sheave("driven", at=(1.0, 0, 0), **pulley)])
+    run = scene.run(2.0, output_step=0.1, integrator="radau", **BRIEF)
+    assert run["driven.angle"][-1] == pytest.approx(run["driver.angle"][-1], rel=1e-4)
+    assert run["driver.wrap_angle"] == pytest.approx(np.full(len(run.time), pi))
+    assert run["driver.material_speed"][-1] == pytest.approx(R * 10 / (1 + 500 / 1e5), rel=1e-4)
+    assert (run["belt.s"][-1] - run["belt.s"][0])[:5] == pytest.approx(
+        np.full(5, -R * run["driver.angle"][-1] / (1 + 500 / 1e5)), rel=1e-3)
+    assert np.abs(run.energy_balance().relative).max() < 2e-6
+
+
+# ---- beside ropes with mass
+
+@pytest.mark.parametrize("kind", ["smooth", "drum"])
+def test_a_rope_of_little_mass_tends_to_none(kind):
+    """Ropes of 1e-5 kg/m over a sheave without friction, and hauled in by a drum."""
+    def run(mass):
+        scene = swing(5.5, 5.0, 0.3, 3.0, 4.0, 0.5)
+        given = rope_of(1e5, 1e-5, 0, 1e-3) | {"mass": mass, "elements": 1}
+        if kind == "smooth":
+            scene.rope("rope", tension=50.0, **given, route=[
+                fu.Anchor("counterweight"), fu.Sheave("top", at=(0, 0, 0), radius=0.3, side="right"),
+                fu.Anchor("load")])
+        else:
+            haul = fu.Ramp(start=0, end=0.2, after=1.0)
+            scene = scene.without("counterweight")
+            scene.rope("rope", tension=50.0, **given, route=[
+                fu.Drum("top", at=(0, 0, 0), radius=0.3, side="right", length_in_store=2.0, velocity=haul),
+                fu.Anchor("load")])
+        return scene.run(0.5, output_step=0.1, tol=1e-7, integrator="radau", progress=False)
+
+    without, light = run(False), run(True)
+    near(without, light, 2e-5, "load.position")
+    assert np.abs(without["top.force"] - light["top.force"])[2:].max() < 0.05  # waves of the light rope have gone
+    assert np.abs(without["rope.end_force"] - light["rope.end_force"])[2:].max() < 0.05
+    assert np.abs(without["top.material_speed"] - light["top.material_speed"])[2:].max() < 2e-3
+
+
+# ---- statics, modes
+
+def hanging() -> fu.Scene:
+    """Return a load that hangs on a rope from an anchor over a smooth sheave."""
+    scene = fu.Scene(gravity=(0, -GRAVITY, 0))
+    weight(scene, "load", 5.0, 0.3, -3)
+    scene.rope("rope", route=[fu.Anchor(at=(-0.3, -2, 0)), fu.Sheave("top", at=(0, 0, 0), radius=0.3, side="right"),
+                              fu.Anchor("load")], tension=40.0, **SOFT)
+    return scene
+
+
+def test_rest_and_modes():
+    """A pendulum whose foot moves along the sheave, and a load on a spring of the whole rope."""
+    scene = hanging()
+    rest = scene.equilibrium()
+    assert rest["top.tension_on"] == pytest.approx(5 * GRAVITY, rel=1e-9)
+    free = (5 + 0.3 * pi) / (1 + 40 / 6e4)
+    drop = free * (1 + 5 * GRAVITY / 6e4) - 5 - 0.3 * pi
+    assert rest["load.position"] == pytest.approx([0.3, -3 - drop, 0], abs=1e-8)
+    modes = scene.modes(3, about=rest)
+    assert modes.frequency[1] == pytest.approx(sqrt(GRAVITY / (3 + drop)) / (2 * pi), rel=1e-6)
+    assert modes.frequency[2] == pytest.approx(sqrt(6e4 / free / 5) / (2 * pi), rel=1e-6)
+    moved = modes["rope.displacement"]
+    assert moved[:, -1] == pytest.approx(modes["load.displacement"], abs=1e-6)
+    assert np.abs(moved[:, 0]).max() < 1e-9
+    run = scene.run(0.5, output_step=0.1, initial=rest, **BRIEF)
+    assert np.abs(run["load.position"] - rest["load.position"]).max() < 1e-9
+
+
+# ---- files
+
+def test_files(tmp_path):
+    scene = carried(**WHEELS["turning"])
+    run = scene.run(0.1, output_step=0.05, **BRIEF)
+    run.save(tmp_path / "run.nc")
+    copy = fu.Scene.from_toml(scene.to_toml())
+    for other in (fu.load_run(tmp_path / "run.nc"), copy.run(0.1, output_step=0.05, **BRIEF)):
+        assert all(np.array_equal(run[name], other[name]) for name in run)
+
+
+@pytest.mark.parametrize("integrator", ["genalpha", "radau", "explicit"])
+def test_resumed_bit_for_bit(tmp_path, integrator):
+    """The peg is met before the run is interrupted and left after it."""
+    def scene():
+        made = fu.Scene(gravity=(0, -GRAVITY, 0))
+        weight(made, "load", 1.0, -2 * sin(0.7), -2 * cos(0.7))
+        winch = fu.Drum("winch", at=(0, 0, 0), radius=0.01, side="right", length_in_store=1.0, velocity=0.1)
+        made.rope("rope", route=[winch, fu.Sheave("peg", at=(0.3, -1, 0), radius=0.1, side="left"), fu.Anchor("load")],
+                  tension=5.0, **SOFT)
+        return made
+
+    settings = {"duration": 2.0, "output_step": 0.05, "tol": 1e-5, "integrator": integrator}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
+        failing(patch, 25, Killed())
+        with pytest.raises(Killed):
+            scene().run(**settings, save=tmp_path / "run.nc", progress=False)
+    resumed = scene().run(**settings, save=tmp_path / "run.nc", resume=True, progress=False)
+    whole = scene().run(**settings, progress=False)
+    assert {each["what"] for each in whole.report["events"]} == {"returned", "left the sheave"}
+    assert all(np.array_equal(whole[name], resumed[name]) for name in whole)
+
+
+def test_a_run_from_a_state_of_another():
+    scene = hanging().replace("load", velocity=(0.3, 0, 0))
+    run = scene.run(0.4, output_step=0.1, **BRIEF)
+    later = scene.run(0.2, output_step=0.1, initial=run.at(0.2), **BRIEF)
+    assert np.abs(later["load.position"][-1] - run["load.position"][-1]).max() < 1e-7
+    wound = circling(1.0)
+    with pytest.raises(fu.RopeLeftError, match="so that its turns are not known"):
+        wound.scene.run(0.1, initial=wound.at(wound.time[-1]), **BRIEF)
+
+
+# ---- refusals
+
+ROUTE = {"route": [fu.Anchor(at=(0, 0, 0)), fu.Sheave("top", at=(1, 1, 0), radius=0.1), fu.Anchor(at=(2, 0, 0))],
+         "tension": 10.0}
+
+
+@pytest.mark.parametrize(("given", "message"), [
+    (ROUTE | {"element": "cable12"}, 'rope "rope": has no mass, and its element "cable12" is that of ropes in space; '
+     'take element="cable8p", or a small mass: ropes without mass are planar'),
+    ({"route": [fu.Sheave("a", at=(0, 0, 0), radius=0.1, side="left"), fu.Sheave("b", at=(1, 0, 0), radius=0.1,
+                                                                                 side="left")],
+      "closed": True, "tension": 10.0}, 'rope "rope": has no mass, is closed, and no sheave holds it: how far it has '
+     "run is then not known; give friction of a sheave")])
+def test_refusals(given, message):
+    with refused(message):
+        fu.Scene().rope("rope", **STIFF | given)
+
+
+def test_a_straight_part_becomes_too_short():
+    scene = fu.Scene(gravity=(0, 0, 0))
+    scene.rigid_body("load", mass=1.0, inertia=(1, 1, 1), position=(1, 0, 0), velocity=(-1, 0, 0))
+    scene.rope("rope", route=[fu.Anchor(at=(-1, -1, 0)), fu.Sheave("top", at=(0, -0.1, 0), radius=0.1, side="right"),
+                              fu.Anchor("load")], tension=1e-3, **SOFT)
+    with pytest.raises(fu.RopeLeftError, match='a span of rope "rope" becomes too short to be modelled'):
+        scene.run(2.0, output_step=0.1, **BRIEF)
