@@ -50,8 +50,8 @@ def rope_state(model: Model, rope: RopeModel, q: np.ndarray) -> dict[str, np.nda
 
 def rope_motion(model: Model, rope: RopeModel, q: np.ndarray, dofs: np.ndarray) -> dict[str, np.ndarray]:
     """Return the displacement (n, points, 3) of points along a rope, and the changes (n, points) of s there, in small
-    motions dofs (n, n_dof) about q: by central differences, with errors of `MOTION_STEP` squared. Without mass the
-    displacement alone.
+    motions dofs (n, n_dof) about q: by central differences, with errors of `MOTION_STEP` squared. The
+    displacement alone of a rope without mass that wheels hold: how the rope runs onto them is not a place of bodies.
     """
     if not rope.part.mass:
         return _motion_without_mass(model, rope, q, dofs)
@@ -63,13 +63,16 @@ def rope_motion(model: Model, rope: RopeModel, q: np.ndarray, dofs: np.ndarray) 
 def _motion_without_mass(model: Model, rope: RopeModel, q: np.ndarray, dofs: np.ndarray) -> dict[str, np.ndarray]:
     """Return the displacement (n, points, 3) of points along a rope without mass, see `rope_motion`."""
     held = [point.attachments[0] for point in points_of_rope(model.of(TautPointModel), rope.part.name)]
-    counts, places = points_of_spans(rope.part, rope.route), []
+    counts, found = points_of_spans(rope.part, rope.route), []
     for sign in (-1, 1):
         centres = np.stack([attachment_points(model, each, moved(model, q, sign * MOTION_STEP * dofs))
                             for each in held], axis=1)
-        places.append(np.array([as_drawn(rope.part, drawn_anew(rope.part, rope.route, each), counts)["position"]
-                                for each in centres[..., : model.dim]]))
-    return {"displacement": (places[1] - places[0]) / (2 * MOTION_STEP)}
+        found.append([as_drawn(rope.part, drawn_anew(rope.part, rope.route, each), counts)
+                      for each in centres[..., : model.dim]])
+    changes = {key: np.array([other[key] - one[key] for one, other in zip(*found, strict=True)]) / (2 * MOTION_STEP)
+               for key in ("position", "s")}
+    alone = {"displacement": changes["position"]}
+    return alone if rope.part.holding_sheaves or rope.part.drums else alone | {"s": changes["s"]}
 
 
 def moved(model: Model, q: np.ndarray, dofs: np.ndarray) -> np.ndarray:

@@ -113,7 +113,8 @@ def of_mode(modes: Modes, number: int, scene: SceneData, about: Mapping[str, np.
     for name, rope in scene.ropes.items():
         moved = {f"{name}.position": f"{name}.displacement", f"{name}.s": f"{name}.s"}
         moved |= {f"{wheel.name}.angle": f"{wheel.name}.angle" for wheel in rope.wheels}
-        found |= {key: about[key] + np.multiply.outer(factor, modes[shape][number]) for key, shape in moved.items()}
+        found |= {key: about[key] + np.multiply.outer(factor, modes[shape][number] if shape in modes else 0 * at)
+                  for key, shape in moved.items() if (at := about[key]) is not None}
         found |= {f"{sheave.name}.wrap_angle": np.broadcast_to(about[f"{sheave.name}.wrap_angle"], len(phase))
                   for sheave in rope.sheaves}
     for name, body in scene.bodies.items():

@@ -135,8 +135,33 @@ static void subtract_turn(const fu_model *model, const fu_taut_rope *rope, const
                 fu_taut_spin(model, point, state, at), out);
 }
 
-/* Computes all but the tension. */
-static void find_lengths(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_lengths *out)
+void fu_taut_pull(const fu_taut_part *part, double pull[2])
+{
+    const double on_angle = part->share[FU_DRAWN] + part->share[FU_WAY];
+    for (int d = 0; d < DIM; ++d) pull[d] = part->l_d[d] + on_angle * part->b_d[d];
+}
+
+/* Adds the forces of a part under a tension to those on the dofs, from the states of its points. */
+static void add_forces_of_part(const fu_model *model, const fu_taut_rope *rope, const fu_taut_part *part,
+                               const fu_attachment_state *before, const fu_attachment_state *after, double tension,
+                               double *f)
+{
+    const int last = rope->n_points - 1;
+    double pull[DIM];
+    fu_taut_pull(part, pull);
+    for (int end = 0; end < SIDES; ++end) {
+        const fu_taut_point *point = fu_taut_point_of(model, rope, end ? part->to : part->from);
+        const int holds = end ? part->to == last : part->from == 0;
+        const double moment = holds ? -share_of_end(model, rope, end) * tension : 0.0;
+        const double along = end ? tension : -tension, force[DIM] = {along * pull[0], along * pull[1]};
+        fu_add_wrench(DIM, end ? after : before, force, moment != 0.0 ? &moment : 0, 1.0, f);
+        if (moment != 0.0 && point->turn >= 0) f[point->turn] += moment;
+    }
+}
+
+/* Computes all but the tension; adds the forces of this tension to f, unless that is null. */
+static void walk(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_lengths *out,
+                 double tension, double *f)
 {
     const int last = rope->n_points - 1;
     const fu_taut_history *past = history_of(rope, state);
@@ -155,6 +180,7 @@ static void find_lengths(const fu_model *model, const fu_taut_rope *rope, const 
         for (int end = 0; end < SIDES; ++end)
             if (end ? to == last : from == 0)
                 add_way(end, share_of_end(model, rope, end), part.angle - rope->angles[end], turning, out);
+        if (f) add_forces_of_part(model, rope, &part, before, after, tension, f);
         fu_attachment_state *passed = before;
         before = after;
         after = passed;
@@ -174,17 +200,22 @@ static void find_lengths(const fu_model *model, const fu_taut_rope *rope, const 
     out->per_way = 1.0;
 }
 
+static void find_lengths(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_lengths *out)
+{
+    walk(model, rope, state, out, 0.0, 0);
+}
+
+/* Computes the tension of a rope of these lengths. */
+static void find_tension(const fu_taut_rope *rope, const fu_state *state, fu_taut_lengths *now)
+{
+    rope->kernel->tension(now->length, now->past, is_taut(&rope->base, state) ? rope->EA : 0.0, rope->tau, now->rate,
+                          &now->tension);
+}
+
 void fu_taut_lengths_at(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_lengths *out)
 {
     find_lengths(model, rope, state, out);
-    rope->kernel->tension(out->length, out->past, is_taut(&rope->base, state) ? rope->EA : 0.0, rope->tau, out->rate,
-                          &out->tension);
-}
-
-void fu_taut_pull(const fu_taut_part *part, double pull[2])
-{
-    const double on_angle = part->share[FU_DRAWN] + part->share[FU_WAY];
-    for (int d = 0; d < DIM; ++d) pull[d] = part->l_d[d] + on_angle * part->b_d[d];
+    find_tension(rope, state, out);
 }
 
 double fu_taut_length_to(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, int place,
@@ -240,41 +271,13 @@ double fu_taut_held(const fu_taut_rope *rope, const fu_state *state, const fu_ta
 
 /* --- forces ----------------------------------------------------------------------------------------------------- */
 
-/* Adds the forces of a tension to those on the dofs. */
-static void add_forces(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, double tension,
-                       double *out)
-{
-    const int last = rope->n_points - 1;
-    fu_attachment_state one, other, *before = &one, *after = &other;
-    fu_taut_centre(model, fu_taut_point_of(model, rope, 0), state, before);
-    for (int from = 0, to; from < last; from = to) {
-        fu_taut_part part;
-        double pull[DIM];
-        to = fu_next_touched(model, rope, state, from);
-        fu_taut_centre(model, fu_taut_point_of(model, rope, to), state, after);
-        find_part(model, rope, state, from, to, before, after, &part);
-        fu_taut_pull(&part, pull);
-        for (int end = 0; end < SIDES; ++end) {
-            const fu_taut_point *point = fu_taut_point_of(model, rope, end ? to : from);
-            const int holds = end ? to == last : from == 0;
-            const double moment = holds ? -share_of_end(model, rope, end) * tension : 0.0;
-            const double along = end ? tension : -tension, force[DIM] = {along * pull[0], along * pull[1]};
-            fu_add_wrench(DIM, end ? after : before, force, moment != 0.0 ? &moment : 0, 1.0, out);
-            if (moment != 0.0 && point->turn >= 0) out[point->turn] += moment;
-        }
-        fu_attachment_state *passed = before;
-        before = after;
-        after = passed;
-    }
-}
-
 static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
                      double *internal)
 {
     const double unknown = at->next->forces[coupling->force];
     fu_taut_lengths now;
-    add_forces(model, rope_of(coupling), at->next, unknown, f);
-    fu_taut_lengths_at(model, rope_of(coupling), at->next, &now);
+    walk(model, rope_of(coupling), at->next, &now, unknown, f);
+    find_tension(rope_of(coupling), at->next, &now);
     internal[coupling->unknown] = -at->weights.stiffness * (unknown - now.tension);
 }
 
@@ -282,7 +285,7 @@ static void force(const fu_model *model, const fu_coupling *coupling, const fu_s
 {
     fu_taut_lengths now;
     fu_taut_lengths_at(model, rope_of(coupling), state, &now);
-    add_forces(model, rope_of(coupling), state, now.tension, f);
+    walk(model, rope_of(coupling), state, &now, now.tension, f);
 }
 
 /* A side of a straight part in a Newton system: its point, and the sign of its place in d. */
