@@ -254,6 +254,32 @@ def test_a_belt_that_does_not_slip():
     assert np.abs(run.energy_balance().relative).max() < 2e-6
 
 
+def test_energy_of_a_drum_that_winds_a_rope_whose_strain_changes():
+    """The store takes up the energy of what is wound: the work of the drive is explained, at a strain of 1 %."""
+    scene = swing(1.0, 50.0, 0.25, 1.0, 8.0, 0.5).without("counterweight")
+    haul = fu.TableSignal(time=[0, 0.5, 1.5, 2, 9], value=[0, 8, 8, -8, -8], interpolation="linear")
+    winch = fu.Drum("winch", at=(0, 0, 0), radius=0.25, side="right", length_in_store=3.0, velocity=haul)
+    scene.rope("rope", route=[winch, fu.Anchor("load")], tension=430.0, **SOFT)
+    run = scene.run(3.0, output_step=0.1, integrator="radau", **BRIEF)
+    assert np.ptp(run["winch.tension"]) > 300 and np.ptp(run["winch.length_in_store"]) > 1.5
+    assert np.abs(run.energy_balance().relative).max() < 1e-5
+
+
+def test_forty_one_sheaves():
+    """The wraps and the tension of a row of sheaves, which the rope passes above and below."""
+    scene, n = fu.Scene(gravity=(0, -GRAVITY, 0)), 41
+    weight(scene, "A", 2.0, -0.2, -1)
+    weight(scene, "B", 2.2, n - 0.8, -1)
+    sheaves = [fu.Sheave(f"s{k}", at=(k, -0.5 * (k % 2), 0), radius=0.2, side=("right", "left")[k % 2])
+               for k in range(n)]
+    scene.rope("hoist", route=[fu.Anchor("A"), *sheaves, fu.Anchor("B")], tension=20.0, **STIFF)
+    runs = [scene.run(0.2, output_step=0.1, integrator=each, **BRIEF) for each in ("radau", "genalpha")]
+    near(*runs, 1e-6, "A.position", "B.position")
+    for sheave in sheaves:
+        assert runs[0][f"{sheave.name}.tension_on"] == pytest.approx(runs[0]["s0.tension_off"], rel=1e-12)
+    assert runs[0]["s0.tension_on"][-1] == pytest.approx(2 * 2.0 * 2.2 * GRAVITY / 4.2, rel=1e-2)
+
+
 # ---- beside ropes with mass
 
 @pytest.mark.parametrize("kind", ["smooth", "drum"])

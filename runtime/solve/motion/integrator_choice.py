@@ -262,8 +262,9 @@ def slowest_rate(scene: SceneData, model: Model, duration: float) -> float:
     points = [node.vector("r") for nodes in model.nodes.values() for node in nodes]
     points += [model.q[b.configuration : b.configuration + model.dim] for b in model.bodies]
     points += [place for rope in model.ropes for span in rope.spans for place in span.places(model.q)]
-    points += [np.array(point.attachments[0].u[: model.dim]) for point in model.of(TautPointModel)
-               if point.attachments[0].body < 0]
+    if model.ropes:
+        points += [np.array(point.attachments[0].u[: model.dim]) for point in model.of(TautPointModel)
+                   if point.attachments[0].body < 0]
     size = float(np.max(np.ptp(points, axis=0)))
     if size == 0.0:
         return 1.0 / duration
