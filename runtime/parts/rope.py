@@ -85,7 +85,8 @@ class Rope(Part):
         tension from one end, drum or sheave with friction to the next, and slack where it would push. A sheave with
         friction holds the rope up to the limit e^(mu theta), where the run ends with a RopeLeftError; there and on
         drums the rope does not creep, but leaves with the stretch that it has. The wrap of a sheave without friction
-        may vanish and return; with side given it may be absent as drawn
+        may vanish and return; with side given it may be absent as drawn. Then the density, the bending stiffness,
+        ``elements``, zones of sheaves and the velocity of their friction have no effect
     section: cross-section, whose height is in the plane
     material: material, with the damping of the rope
     """

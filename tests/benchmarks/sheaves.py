@@ -1,5 +1,7 @@
 """Runs of ropes over sheaves against independent solutions (ropes/): errors with their bars, CPU time of a run.
 
+Rows of ropes without mass follow those of ropes with mass.
+
 A second table has the errors of refined meshes, zones and steps, with the order between two of them; a third one what
 a reference leaves out: the bending of the belt, the wraps of the elevator.
 
@@ -8,25 +10,28 @@ a reference leaves out: the bending of the belt, the wraps of the elevator.
 
 import time
 import warnings
+from collections.abc import Callable
 
 from ropes import CASES
 from ropes.belts import EI
 from ropes.case import Case
+from ropes.massless_runs import RUNS as WITHOUT_MASS
 from ropes.refinements import SERIES
 from ropes.runs import RUNS, belt
+from ropes.scenes import Found
 from table import arguments, few, show
 
 
-def rows_of(case: Case) -> list[dict]:
+def rows_of(case: Case, runs: dict[str, Callable[[], Found]] = RUNS, suffix: str = "") -> list[dict]:
     """Run a case and return a row for each of its quantities."""
     begin = time.process_time()
-    found = RUNS[case.key]()
+    found = runs[case.key]()
     seconds = time.process_time() - begin
     rows = []
     for quantity, reference in zip(case.quantities, case.reference(), strict=True):
         if quantity.name in found:
             error = abs(found[quantity.name] - reference) / (1.0 if quantity.absolute else abs(reference))
-            rows.append({"case": case.key, "quantity": f"{quantity.name}, {quantity.unit}",
+            rows.append({"case": case.key + suffix, "quantity": f"{quantity.name}, {quantity.unit}",
                          "run": f"{found[quantity.name]:.7g}", "reference": f"{reference:.7g}", "error": error,
                          "bar": quantity.bar, "CPU s": seconds})
     return rows
@@ -46,7 +51,9 @@ def main() -> None:
     options = arguments(__doc__)
     warnings.simplefilter("ignore")
     cases = sorted((case for case in CASES if case.key in RUNS), key=lambda case: case.key != "run-on with bending")
-    show([row for case in few(cases) for row in rows_of(case)], options.out)
+    without = [] if options.smallest else [row for case in CASES if case.key in WITHOUT_MASS
+                                           for row in rows_of(case, WITHOUT_MASS, ", no mass")]
+    show([row for case in few(cases) for row in rows_of(case)] + without, options.out)
     print()
     show([row for series in (SERIES[1:2] if options.smallest else SERIES) for row in series.rows()],
          table="refinements")

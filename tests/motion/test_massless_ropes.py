@@ -227,6 +227,25 @@ def test_a_drum_under_a_torque_lifts_a_load():
     assert np.abs(run.energy_balance().relative).max() < 1e-7
 
 
+def test_a_drum_on_a_body_that_turns():
+    """A drum that is held on a hub turns with it, by more than a turn: the same as one with the hub's inertia."""
+    R, inertia, m, torque = 0.1, 0.8, 20.0, 60.0
+    scene = swing(1.0, m, R, 1.0, 8.0, 0.0).without("counterweight")
+    scene.rigid_body("hub", mass=3.0, inertia=(1, 1, inertia), position=(0, 0, 0))
+    scene.joint("revolute", "hub", (0, 0, 0), axis=(0, 0, 1), name="bearing")
+    scene.moment("hub", value=(0, 0, torque))
+    winch = fu.Drum("winch", at="hub", radius=R, side="right", length_in_store=3.0)
+    scene.rope("rope", route=[winch, fu.Anchor("load")], tension=m * GRAVITY, **STIFF)
+    run = scene.run(0.8, output_step=0.2, integrator="radau", **BRIEF)
+    rate = (torque - m * GRAVITY * R) / (inertia + m * R**2)
+    assert rate * 0.8**2 / 2 > 2 * pi
+    assert run["hub.angular_velocity"][-1, 2] == pytest.approx(0.8 * rate, rel=1e-4)
+    assert run["winch.length_in_store"][-1] == pytest.approx(3 + R * rate * 0.8**2 / 2, rel=1e-4)
+    assert run["load.position"][-1, 1] == pytest.approx(-8 + R * rate * 0.8**2 / 2, rel=1e-4)
+    assert run["winch.torque"][-1] == pytest.approx(m * (GRAVITY + R * rate) * R, rel=1e-4)
+    assert np.abs(run.energy_balance().relative).max() < 1e-6
+
+
 def test_a_drum_runs_empty():
     scene = swing(1.0, 20.0, 0.25, 1.0, 2.0, 0.0).without("counterweight")
     given = {"at": (0, 0, 0), "radius": 0.25, "side": "right", "length_in_store": 0.5, "velocity": -2.0}
