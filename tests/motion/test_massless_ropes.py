@@ -355,6 +355,20 @@ def test_rest_and_modes():
     assert np.abs(run["load.position"] - rest["load.position"]).max() < 1e-9
 
 
+def test_rest_finds_which_pegs_a_rope_touches():
+    """A load drawn aside hangs over a peg that its rope does not touch as drawn; its angle balances the tension."""
+    scene = fu.Scene(gravity=(0, -GRAVITY, 0))
+    weight(scene, "load", 5.0, -1.0, -2)
+    peg = fu.Sheave("peg", at=(0.05, -1, 0), radius=0.1, side="left")
+    scene.rope("rope", route=[fu.Anchor(at=(0, 0, 0)), peg, fu.Anchor("load")], tension=49.0, **SOFT)
+    assert not scene.run(1e-3, output_step=1e-3, **BRIEF)["peg.wrap_angle"][0]
+    rest = scene.equilibrium()
+    assert rest["load.position"][0] == pytest.approx(-0.05, abs=1e-9)  # straight down from the left of the peg
+    leaning = np.arcsin(0.05 / np.hypot(0.05, 1)) + np.arcsin(-0.1 / np.hypot(0.05, 1))
+    assert rest["peg.wrap_angle"] == pytest.approx(-leaning, abs=1e-9)
+    assert rest["peg.force"][0] == pytest.approx(5 * GRAVITY * sin(-leaning), rel=1e-6)
+
+
 # ---- files
 
 def test_files(tmp_path):

@@ -1,7 +1,7 @@
 /* Lengths of a scene that scale errors and rounding. */
 #include "couplings/common/attachments.h"
 #include "couplings/rope/rope.h"
-#include "couplings/rope/taut_rope.h"
+#include "couplings/taut_rope/taut_rope.h"
 #include "equations/run.h"
 #include "equations/scene_size.h"
 

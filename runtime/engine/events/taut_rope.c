@@ -2,7 +2,7 @@
  * ends where a rope slips on a sheave, leaves one that holds it, meets one from the other side, has run off a drum, or
  * where a straight part becomes too short. */
 #include "couplings/common/coupling_events.h"
-#include "couplings/rope/taut_rope.h"
+#include "couplings/taut_rope/taut_rope.h"
 #include "equations/run.h"
 
 #include <math.h>

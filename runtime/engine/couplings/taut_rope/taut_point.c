@@ -2,7 +2,7 @@
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
-#include "couplings/rope/taut_rope.h"
+#include "couplings/taut_rope/taut_rope.h"
 
 #include <math.h>
 #include <string.h>
@@ -269,6 +269,21 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     numbers->angle = state->q[point->turn];
 }
 
+/* In statics the positions determine which sheaves without friction a rope touches. */
+static void detect(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+{
+    const fu_taut_point *point = point_of(coupling);
+    const fu_taut_rope *rope = rope_beside(model, point, 0);
+    int *touches = state->flags + coupling->flags, side = 1;
+    if (!rope || point->places[0] == rope->n_points - 1) return;
+    if (*touches) *touches = fu_taut_wrap(model, point, state) <= 0.0;
+    else if (fu_taut_depth(model, point, state, &side) > 0.0) {
+        const int before = fu_touched_before(model, rope, state, point->places[0]);
+        state->numbers[coupling->numbers] = state->numbers[fu_taut_point_of(model, rope, before)->base.numbers];
+        *touches = side > 0;
+    }
+}
+
 static void reset(const fu_coupling *coupling, fu_state *state)
 {
     const fu_taut_point *point = point_of(coupling);
@@ -333,4 +348,5 @@ const fu_coupling_type fu_taut_point_type = {
     .force = force,
     .outputs = outputs,
     .dissipation = dissipation,
+    .detect = detect,
 };

@@ -1,6 +1,6 @@
 /* Ropes without mass: straight parts between points, with one tension, which is an internal unknown in a Newton
  * system. */
-#include "couplings/rope/taut_rope.h"
+#include "couplings/taut_rope/taut_rope.h"
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
@@ -527,21 +527,11 @@ static void reset(const fu_coupling *coupling, fu_state *state)
                           .energy = rope->held * energies_of(rope, rope->drawn_length, rope->free_length, 0.0).W};
 }
 
-/* In statics the positions determine which sheaves without friction the rope touches, and whether it is taut. */
+/* In statics the positions determine whether a rope is taut. */
 static void detect(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     const fu_taut_rope *rope = rope_of(coupling);
     fu_taut_lengths now;
-    for (int place = 1; place < rope->n_points - 1; ++place) {
-        const fu_taut_point *point = fu_taut_point_of(model, rope, place);
-        int *touches = state->flags + point->base.flags, side = 1;
-        if (*touches) *touches = fu_taut_wrap(model, point, state) <= 0.0;
-        else if (fu_taut_depth(model, point, state, &side) > 0.0) {
-            const int before = fu_touched_before(model, rope, state, place);
-            state->numbers[point->base.numbers] = state->numbers[fu_taut_point_of(model, rope, before)->base.numbers];
-            *touches = side > 0;
-        }
-    }
     find_lengths(model, rope, state, &now);
     state->flags[coupling->flags] = now.length[FU_DRAWN] >= now.free;
     update_angles(model, rope, state);
