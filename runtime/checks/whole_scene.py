@@ -101,12 +101,12 @@ def check_impending(scene: SceneData, motion: str) -> None:
     """Raise SceneError where no rope can be about to slide in this motion, "hoisting" or "lowering", or a closed one
     would: all around it the tension cannot rise.
     """
-    if not any(rope.holding_sheaves for rope in scene.ropes.values()):
+    if not any(rope.differing_sheaves for rope in scene.ropes.values()):
         raise SceneError("equilibrium", f'impending="{motion}" needs a rope with friction on a sheave that is held or '
                          "whose rotation is prescribed", "give the friction of a sheave, or leave impending out")
     for rope in scene.ropes.values():
-        if rope.closed and rope.holding_sheaves:
-            raise SceneError(f"{rope.where}: {rope.holding_sheaves[0].where}", f'impending="{motion}" lets the tension '
+        if rope.closed and rope.differing_sheaves:
+            raise SceneError(f"{rope.where}: {rope.differing_sheaves[0].where}", f'impending="{motion}" lets the tension '
                              "change in one sense all around a closed rope, which is at rest with none",
                              "leave the friction out, or impending")
 

@@ -138,8 +138,9 @@ class Rope(Part):
                              "space are not possible yet")
         for sheave in self.sheaves:
             if not (sheave.contact or self.may_leave(sheave)):
-                what = "is on a closed rope" if self.closed else "is on a rope in space"
-                raise ValueError(f"{sheave.where} {what}, and has contact=False", "leave contact=False out")
+                what = ("is on a rope without mass, whose contact follows from its place," if not self.mass else
+                        "is on a closed rope," if self.closed else "is on a rope in space,")
+                raise ValueError(f"{sheave.where} {what} and has contact=False", "leave contact=False out")
         names = [wheel.name for wheel in self.wheels]
         if self.name in names:
             raise ValueError(f'route has a sheave "{self.name}", the name of the rope', "give each its own name")
@@ -207,10 +208,10 @@ class Rope(Part):
 
     def may_leave(self, sheave: Sheave) -> bool:
         """Return whether the rope may leave one of its sheaves in a run, and touch it again."""
-        return self.dim == 2 and not self.closed and not sheave.coefficient
+        return self.mass and self.dim == 2 and not self.closed and not sheave.coefficient
 
     @property
-    def holding_sheaves(self) -> list[Sheave]:
+    def differing_sheaves(self) -> list[Sheave]:
         """Return its sheaves with friction that do not turn freely, so that the tension may differ beside them at rest.
         """
         return [sheave for sheave in self.rough_sheaves if not sheave.turns_freely]

@@ -1,7 +1,7 @@
 /* Ropes that leave what they run over: a run ends there, as the equations do not hold beyond, but where a rope may
  * leave a sheave and touch it again. The reasons are the wrap angle, the normal force, in space the fleet angle of a
- * short span, the length of a span, a material point of a span that something holds to and that reaches its first or its
- * last end, and the length of the rope on a drum. */
+ * short span, the length of a span, a material point of a span that something holds to and that reaches its first or
+ * its last end, and the length of the rope on a drum. */
 #include "couplings/common/coupling_events.h"
 #include "couplings/rope/rope.h"
 #include "equations/equations.h"

@@ -22,6 +22,7 @@ from .penetrations import Penetrations
 from .reduced_strain import ReducedStrain
 from .sensitivity import Sensitivity
 from .slack_growth import SlackMotion
+from .slack_ropes import SlackRopes
 from .spinning_sections import SpinningSections
 from .straight_struts import StraightStruts
 from .straightened import Straightened
@@ -31,7 +32,7 @@ from .uncontrolled_errors import NormalForces
 NOTES: tuple[type[Note], ...] = (
     StraightStruts, Folds, ReducedStrain, CoarseMeshes, CoarseSlides, Straightened, Sensitivity, SlackMotion,
     CoincidentPoints, FastTurns, NormalForces, SpinningSections, Penetrations, SurfaceEnds, CoarseContact,
-    FleetAngles)
+    FleetAngles, SlackRopes)
 
 N = TypeVar("N", bound=Note)
 
