@@ -106,8 +106,8 @@ def check_impending(scene: SceneData, motion: str) -> None:
                          "whose rotation is prescribed", "give the friction of a sheave, or leave impending out")
     for rope in scene.ropes.values():
         if rope.closed and rope.differing_sheaves:
-            raise SceneError(f"{rope.where}: {rope.differing_sheaves[0].where}", f'impending="{motion}" lets the tension '
-                             "change in one sense all around a closed rope, which is at rest with none",
+            raise SceneError(f"{rope.where}: {rope.differing_sheaves[0].where}", f'impending="{motion}" lets the '
+                             "tension change in one sense all around a closed rope, which is at rest with none",
                              "leave the friction out, or impending")
 
 

@@ -154,7 +154,7 @@ cdef class Report(Statics):
 
     @property
     def left(self):
-        """Number of the coupling of a rope that has left a sheave, and the reason (events/rope.c)."""
+        """Number of the coupling of a rope that has left a sheave, and the reason (equations/run.h)."""
         return self.run.left, self.run.left_by
 
     @property

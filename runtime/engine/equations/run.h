@@ -35,6 +35,22 @@ enum {
 #define FU_AT_ONCE 1e-12 /* of the duration: largest distance of simultaneous instants (model/knots.py) */
 
 /* A run, in sections by subject, with the files that write them. */
+/* Why a rope has left what it runs over: its wrap angle; its normal force; in space the fleet angle of a short span;
+ * the length of a span; something that holds to a span and reaches its first or its last end; a drum that has run
+ * empty; without mass: it slips, meets a sheave from its other side, or starts with unknown turns. */
+enum {
+    FU_LEFT_BY_WRAP,
+    FU_LEFT_BY_PRESSURE,
+    FU_LEFT_BY_FLEET,
+    FU_LEFT_BY_SPAN,
+    FU_LEFT_BY_GRIP,
+    FU_LEFT_BY_LAST_GRIP,
+    FU_LEFT_BY_EMPTY,
+    FU_LEFT_BY_SLIP,
+    FU_LEFT_BY_SIDE,
+    FU_LEFT_BY_TURNS
+};
+
 struct fu_run {
     /* Problem: written by the caller before fu_prepare; absolute_tol, lever and first by run/start.c. */
     const fu_model *model;
@@ -124,7 +140,7 @@ struct fu_run {
     /* Events: written by run/event_handling.c, run/steps.c and events/. */
     double acted; /* s: last change of state of a coupling */
     int acts, stopped_slide;
-    int left, left_by;       /* number of the coupling of a rope that has left a sheave, and why (events/rope.c) */
+    int left, left_by;       /* number of the coupling of a rope that has left a sheave, and why (FU_LEFT_BY_WRAP...) */
     int last_event_deferred; /* the last event to which a step led was deferred */
     int max_deferred;        /* of any stage of a step, or of its end for other integrators */
     int keep_forces;         /* couplings have no deferred event in a step, which ends at one */

@@ -7,7 +7,8 @@
 #include "equations/equations.h"
 #include "equations/run.h"
 
-enum { WRAP, PRESSURE, FLEET, SPAN, GRIP, EMPTY = GRIP + 2, GROWTH = FLEET };
+/* Event functions, the first of which have the numbers of their reasons. */
+enum { WRAP = FU_LEFT_BY_WRAP, PRESSURE = FU_LEFT_BY_PRESSURE, FLEET = FU_LEFT_BY_FLEET, GROWTH = FLEET };
 
 static int list(int n, fu_event_function *out)
 {
@@ -90,7 +91,7 @@ static int vanish(fu_run *run, const fu_coupling *coupling, int which, int side,
 {
     (void)side;
     *what = which ? "brought what holds to it to an end" : "became too short";
-    return leave(run, coupling, which ? GRIP + which - 1 : SPAN);
+    return leave(run, coupling, which ? FU_LEFT_BY_GRIP + which - 1 : FU_LEFT_BY_SPAN);
 }
 
 static int functions_of_span(const fu_coupling *coupling, fu_event_function *out)
@@ -116,7 +117,7 @@ static int act_of_drum(fu_run *run, const fu_coupling *coupling, int which, int 
 {
     (void)side;
     *what = which == WRAP ? "ran empty" : "lifted off";
-    return leave(run, coupling, which == WRAP ? EMPTY : which);
+    return leave(run, coupling, which == WRAP ? FU_LEFT_BY_EMPTY : which);
 }
 
 const fu_coupling_events fu_drum_events = {

@@ -36,7 +36,7 @@ ROPE_LEFT = (
      "give a sheave on that side, or stop before by an event"),
     ('the length of rope "{name}" at the start differs from that as drawn by more than half a turn around a wheel, so '
      "that its turns are not known,", "draw the scene nearer to this start, or resume the run that it is from"))
-"""Why a run with a rope ended, and what helps, by the reasons of engine/events/rope.c."""
+"""Why a run with a rope ended, and what helps, by the reasons of engine/equations/run.h."""
 EMPTY = 6
 """The reason of a drum."""
 GRIP = EMPTY - 2
