@@ -70,7 +70,6 @@ assert abs(limits.sel(limit="hoisting") / (10 * G * np.exp(0.3 * np.pi)) - 1) < 
 # ------------------
 #
 # Without friction a load of 5 kg swings, and a weight of 5.5 kg rises and falls. The wrap passes half a turn.
-# ``tension`` is that of the straight rope as drawn; ``length`` would give its stress-free length instead.
 
 scene = fu.Scene()
 scene.rigid_body("weight", mass=5.5, inertia=(1, 1, 1), position=(-0.3, -3, 0))
@@ -93,7 +92,7 @@ ax.legend()
 # A pendulum meets a peg
 # ----------------------
 #
-# Without friction the rope may leave a sheave and touch it again; ``contact=False`` says that it begins apart from it.
+# Without friction a rope leaves a sheave and touches it again. ``contact=False``: it begins apart.
 
 scene = fu.Scene()
 scene.rigid_body("bob", mass=1, inertia=(1, 1, 1), position=(2 * np.sin(-0.7), -2 * np.cos(0.7), 0))

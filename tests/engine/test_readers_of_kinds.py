@@ -41,6 +41,7 @@ PLACES = {
     "points that must not coincide, as a force or a distance has no direction there": [
         "solve/notes/coincident_points.py"],
     "fleet angles, against what sheaves in space take": ["solve/notes/fleet_angles.py"],
+    "compression of ropes beside sheaves that they have left": ["solve/notes/slack_ropes.py"],
     "results that are more than the outputs, and how a kind acts on a cable": [
         "model/part_states.py", "results/section_forces/cable_loads.py"],
     "what the integrator \"energy\" cannot do beside couplings without step equations": [
