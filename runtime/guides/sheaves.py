@@ -104,10 +104,11 @@ for event, expected in zip(run.events, (0.862144, 1.773524), strict=True):
     print(f"the rope {event['what']} at {event['time']:.4f} s; a massless one at {expected:.4f} s")
     assert abs(event["time"] - expected) < 1e-2
 
-fig, ax = plt.subplots(figsize=(5, 3))
+fig, ax = plt.subplots(figsize=(5, 4))
 ax.plot(run["bob.position"][:, 0], run["bob.position"][:, 1], label="bob")
 for k in (0, 43, 65):
     ax.plot(run["rope.position"][k, :, 0], run["rope.position"][k, :, 1], color="gray")
+ax.add_patch(plt.Circle((0.3, -1), 0.1, fill=False))
 ax.set(xlabel="x (m)", ylabel="y (m)", aspect="equal")
 ax.legend()
 
