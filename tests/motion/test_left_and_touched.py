@@ -122,6 +122,7 @@ def test_files_have_the_contact(tmp_path, swing):
     assert np.array_equal(fu.load_run(tmp_path / "swing.nc")["peg.gap"], swing["peg.gap"])
 
 
+@pytest.mark.slow
 def test_meshes_converge_where_waves_cross_the_peg():
     """A rope of 10 % of the load's mass: the kink of touching runs along it."""
     runs = [over_a_peg(0.05, 1e5, 1e-3, elements).run(1.2, output_step=0.1, tol=1e-6, integrator="radau",
@@ -135,6 +136,7 @@ CHAIN = {0.75: (0.073550, -1.999333), 1.0: (0.745784, -1.809459)}
 .05 kg/m, EA 2e4 N and a damping time of 1e-5 s; 51 masses differ by 9e-5 m."""
 
 
+@pytest.mark.slow
 def test_a_heavy_rope_touches_as_a_chain_does():
     with pytest.raises(fu.RopeLeftError, match="lifts off"):  # its tension falls to zero as the load bounces on it
         over_a_peg(0.05, 2e4, 1e-5, 6).run(2.0, output_step=0.25, tol=1e-5, integrator="radau", progress=False)
@@ -143,6 +145,7 @@ def test_a_heavy_rope_touches_as_a_chain_does():
         assert run["load.position"][round(4 * t), :2] == pytest.approx(place, abs=2e-4)
 
 
+@pytest.mark.slow
 def test_a_line_that_passes_beside_the_peg():
     """Swings too small to reach a peg are the same beside another: the rope is one, split where it is next to it."""
     given = {"duration": 2.0, "output_step": 0.1, "tol": 1e-6, "integrator": "radau", "progress": False}
@@ -228,6 +231,7 @@ def test_refused_ropes():
         fu.Scene().rope("rope", route=[ends[0], peg, ends[1]], tension=10.0, mass=False, **rope_of(1e5, 0.01, 0))
 
 
+@pytest.mark.slow
 def test_two_pegs_in_a_row():
     """The line meets one of two pegs after the other, and leaves both."""
     pegs = tuple(fu.Sheave(name, at=at, radius=radius, side="left", contact=False)
