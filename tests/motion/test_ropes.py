@@ -363,7 +363,7 @@ def pulled_off(**sheave: object) -> fu.Scene:
     return scene
 
 
-@pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.parametrize("integrator", ["genalpha", "radau"])  # of 8 short zones explicit steps are tiny
 def test_a_wrap_with_friction_is_lost(integrator):
     ends(pulled_off(friction=0.1), '(leaves|lifts off) sheave "top"', integrator=integrator, output_step=0.005)
 
