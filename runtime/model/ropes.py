@@ -125,7 +125,8 @@ class RopeModel:
         """
         if self.part.closed or self.part.tension is None:
             return -1
-        return next((self.spans[end].s[end] for end in (-1, 0) if isinstance(self.part.route[end], Anchor)), -1)
+        return next((self.spans[end].s[end] for end in (-1, 0) if self.spans and isinstance(self.part.route[end],
+                                                                                            Anchor)), -1)
 
     def origin(self, q: np.ndarray) -> np.ndarray | float:
         """Return the material coordinate of the rope's first end in configurations (..., n_q): at an anchor (...)."""
@@ -348,7 +349,7 @@ class SheaveModel(CouplingModel):
 
     def has_contact(self, q: np.ndarray) -> bool:
         """Return whether the rope lies on it in a configuration of the model."""
-        return float(q[self.s[-1]] - q[self.s[0]]) + self.closing > self.no_length
+        return abs(float(q[self.s[-1]] - q[self.s[0]]) + self.closing) > self.no_length
 
     @property
     def nodes(self) -> tuple[int, int]:

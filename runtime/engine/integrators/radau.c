@@ -15,6 +15,7 @@
 #include <math.h>
 #include <string.h>
 
+#define SHORT_STEP 1e-4       /* of the output step: shorter steps are tried with constant velocities, too */
 #define MAX_ITERATIONS 10     /* of Newton's method in a step before it fails */
 #define FIRST_CONTRACTION 0.5 /* ratio of increments assumed before the second one */
 /* contraction above which the matrix is renewed for the next step */
@@ -113,14 +114,15 @@ static void begin_step(fu_run *run)
 }
 
 /* Solves for the stages with a fresh matrix; returns 0 on success. Accelerations of light ropes are inaccurate: a small
- * error of a strain is a large one of them. Where the prediction by accelerations fails, that by velocities may not. */
+ * error of a strain is a large one of them. Where the prediction by accelerations fails, that by velocities may not: it
+ * is tried in short steps alone, since in a long one friction may come to slide that sticks. */
 static int solve_afresh(fu_run *run, fu_radau_workspace *w, double h)
 {
     begin_step(run);
     if (fu_radau_factor(run, h)) return 1;
     run->contraction = FIRST_CONTRACTION;
     int failed = iterate(run, w, h, w->h_last > 0.0 ? FU_BY_LAST_STEP : FU_BY_ACCELERATION);
-    if (failed && run->model->n_inertial) {
+    if (failed && run->model->n_inertial && h < SHORT_STEP * run->output_step) {
         begin_step(run);
         run->contraction = FIRST_CONTRACTION;
         failed = iterate(run, w, h, FU_BY_VELOCITY);

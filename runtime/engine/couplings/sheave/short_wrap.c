@@ -19,7 +19,7 @@ int fu_wrap_mode(const fu_sheave *sheave, const fu_sheave_state *at, const fu_st
     if (!fu_may_leave(sheave)) return FU_WRAPPED;
     if (state->flags && *fu_wrap_flag(sheave, state)) return *fu_wrap_flag(sheave, state);
     const double wrap = sheave->wheel.sense * (at->phi[1] - at->phi[0]);
-    if (at->s[1] - at->s[0] <= sheave->no_length) return FU_LIFTED;
+    if (fabs(at->s[1] - at->s[0]) <= sheave->no_length) return FU_LIFTED;
     return wrap < sheave->least_wrap ? FU_SHORT : FU_WRAPPED;
 }
 
