@@ -1,4 +1,4 @@
-"""Error against time of a load that swings on a rope without mass, and of Exudyn's reeving springs where installed.
+"""Error against time of a load on a rope without mass, beside Exudyn's reeving springs.
 
 The swinging Atwood of ropes/swings.py: the error is that of the load at 3 s against the inextensible solution, so that
 the stretch of the axial stiffness is in it. CPU seconds are the least of alternating repetitions: of the solver, and of
