@@ -426,6 +426,7 @@ def sheave_scope(name: str) -> Scope:
     vectors = [Symbol(latex, argument, column) for latex, argument in (
         (r"\mathbf{x}", "x"), (r"\dot{\mathbf{x}}", "x_rate"), (r"\ddot{\mathbf{x}}", "x_acc"),
         (r"\mathbf{t}", "slope"), (r"\dot{\mathbf{t}}", "slope_rate"), (r"\boldsymbol{\lambda}", "f"),
+        (r"\mathbf{t}_{1}", "slope"), (r"\mathbf{t}_{2}", "span_slope"),
         (r"\mathbf{c}", "c"), (r"\dot{\mathbf{c}}", "c_rate"), (r"\ddot{\mathbf{c}}", "c_acc"), (r"\mathbf{g}", "g"))]
     ends = [Symbol(f"{latex}_{{{k + 1}}}", argument, entry(k)) for latex, argument in (
         (r"\phi", "phi"), (r"\dot{\phi}", "phi_rate"), (r"\ddot{\phi}", "phi_acc"), (r"\dot{s}", "s_rate"),
