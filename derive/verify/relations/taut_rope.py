@@ -45,7 +45,7 @@ def _of_straight() -> list[Relation]:
 
 def _of_tension() -> list[Relation]:
     def trapezoid(s: State) -> Any:
-        """Return the root of L0p - L0 = w (L0p/Lp + L0/L)/2 by bisection over what is left of the length."""
+        """Return the stress-free length L0 that solves L0p - L0 = w (L0p/Lp + L0/L)/2, by iteration."""
         (L, w), (free, length) = s["lengths"], s["past"]
         return [mpmath.findroot(lambda x: free - x - w * (free / length + x / L) / 2, free)]
 

@@ -164,4 +164,12 @@ static inline const fu_coupling *fu_event_coupling(const fu_run *run, int functi
                : 0;
 }
 
+/* Ends a run as a rope has left what it runs over, for a reason FU_LEFT_BY_...; returns its status. */
+static inline int fu_leave(fu_run *run, const fu_coupling *coupling, int reason)
+{
+    run->left = coupling->number;
+    run->left_by = reason;
+    return FU_ROPE_LEFT;
+}
+
 #endif

@@ -28,14 +28,6 @@ static double value(const fu_run *run, const fu_coupling *coupling, const fu_sta
     return which == WRAP ? fu_wrap_margin(run->model, coupling, state) : fu_wrap_pressure(run->model, coupling, state);
 }
 
-/* Ends the run; returns its status. */
-static int leave(fu_run *run, const fu_coupling *coupling, int reason)
-{
-    run->left = coupling->number;
-    run->left_by = reason;
-    return FU_ROPE_LEFT;
-}
-
 /* Changes the conditions of a sheave that a rope leaves or touches. The error of the step is projected away before.
  * What the rope then loses is the kinetic energy of the jump of its velocities: waves shorter than its elements. */
 static int pass(fu_run *run, const fu_coupling *coupling, int grows, const char **what)
@@ -58,7 +50,7 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
     (void)side;
     if (which != PRESSURE && fu_wrap_may_leave(coupling)) return pass(run, coupling, which == GROWTH, what);
     *what = which == WRAP ? "left the sheave" : which == PRESSURE ? "lifted off" : "left the groove";
-    return leave(run, coupling, which);
+    return fu_leave(run, coupling, which);
 }
 
 /* Margins are positive again after a change of the sheave's conditions. */
@@ -91,7 +83,7 @@ static int vanish(fu_run *run, const fu_coupling *coupling, int which, int side,
 {
     (void)side;
     *what = which ? "brought what holds to it to an end" : "became too short";
-    return leave(run, coupling, which ? FU_LEFT_BY_GRIP + which - 1 : FU_LEFT_BY_SPAN);
+    return fu_leave(run, coupling, which ? FU_LEFT_BY_GRIP + which - 1 : FU_LEFT_BY_SPAN);
 }
 
 static int functions_of_span(const fu_coupling *coupling, fu_event_function *out)
@@ -117,7 +109,7 @@ static int act_of_drum(fu_run *run, const fu_coupling *coupling, int which, int 
 {
     (void)side;
     *what = which == WRAP ? "ran empty" : "lifted off";
-    return leave(run, coupling, which == WRAP ? FU_LEFT_BY_EMPTY : which);
+    return fu_leave(run, coupling, which == WRAP ? FU_LEFT_BY_EMPTY : which);
 }
 
 const fu_coupling_events fu_drum_events = {

@@ -26,14 +26,6 @@ static int list(int n, int direction, fu_event_function *out)
     return n;
 }
 
-/* Ends the run; returns its status. */
-static int leave(fu_run *run, const fu_coupling *coupling, int reason)
-{
-    run->left = coupling->number;
-    run->left_by = reason;
-    return FU_ROPE_LEFT;
-}
-
 /* --- points ----------------------------------------------------------------------------------------------------- */
 
 static int is_sheave(const fu_taut_point *point)
@@ -74,11 +66,11 @@ static int act_of_point(fu_run *run, const fu_coupling *coupling, int which, int
     int *touches = run->now.flags + coupling->flags, from_side = 1;
     (void)side;
     *what = which == OF_GRIP ? "slips" : !is_sheave(point) ? "ran empty" : *touches ? "left the sheave" : "returned";
-    if (which == OF_GRIP) return leave(run, coupling, FU_LEFT_BY_SLIP);
-    if (!is_sheave(point)) return leave(run, coupling, FU_LEFT_BY_EMPTY);
-    if (*touches && holds(point)) return leave(run, coupling, FU_LEFT_BY_WRAP);
+    if (which == OF_GRIP) return fu_leave(run, coupling, FU_LEFT_BY_SLIP);
+    if (!is_sheave(point)) return fu_leave(run, coupling, FU_LEFT_BY_EMPTY);
+    if (*touches && holds(point)) return fu_leave(run, coupling, FU_LEFT_BY_WRAP);
     if (!*touches) fu_taut_depth(run->model, point, &run->now, &from_side);
-    if (from_side < 0) return leave(run, coupling, FU_LEFT_BY_SIDE);
+    if (from_side < 0) return fu_leave(run, coupling, FU_LEFT_BY_SIDE);
     *touches = !*touches;
     if (*touches) { /* its angle is that of the straight part which met it */
         const fu_taut_rope *rope = (const fu_taut_rope *)run->model->couplings[point->ropes[0]];
@@ -127,7 +119,7 @@ static int act_of_rope(fu_run *run, const fu_coupling *coupling, int which, int 
     int *taut = run->now.flags + coupling->flags;
     (void)side;
     *what = which == OF_PARTS ? "became too short" : *taut ? "became slack" : "taut again";
-    if (which == OF_PARTS) return leave(run, coupling, FU_LEFT_BY_SPAN);
+    if (which == OF_PARTS) return fu_leave(run, coupling, FU_LEFT_BY_SPAN);
     *taut = !*taut;
     return FU_RUNNING;
 }
@@ -152,9 +144,9 @@ static int begin_rope(fu_run *run, const fu_coupling *coupling)
 {
     const fu_taut_rope *rope = rope_of(coupling);
     const double rounding = 1e-12;
-    if (may_have_other_turns(run, rope)) return leave(run, coupling, FU_LEFT_BY_TURNS);
+    if (may_have_other_turns(run, rope)) return fu_leave(run, coupling, FU_LEFT_BY_TURNS);
     run->now.flags[coupling->flags] = fu_taut_slack(run->model, rope, &run->now) <= rounding * rope->free_length;
-    return fu_taut_margin(run->model, rope, &run->now) < 0.0 ? leave(run, coupling, FU_LEFT_BY_SPAN) : FU_RUNNING;
+    return fu_taut_margin(run->model, rope, &run->now) < 0.0 ? fu_leave(run, coupling, FU_LEFT_BY_SPAN) : FU_RUNNING;
 }
 
 const fu_coupling_events fu_taut_rope_events = {
