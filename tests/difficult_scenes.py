@@ -256,10 +256,10 @@ def gripped() -> Scene:
     """Return a rope over sheaves with a body that grips it, and one that a spring with a damper holds to it."""
     scene = reeved()
     rope = scene.ropes["hoist"]
-    first, *_, last = rope.drawn(scene.bodies).arc_lengths(0.0)
+    first, *_, last = rope.drawn(scene.holders).arc_lengths(0.0)
     for name, (start, end), below in (("C", first, 0.0), ("D", last, 0.4)):
         s = start + 0.6 * (end - start)
-        x, y, _ = rope.point(scene.bodies, s)
+        x, y, _ = rope.point(scene.holders, s)
         scene.rigid_body(name, mass=0.7, inertia=(1, 1, 0.03), position=(x - 0.1, y - 0.05 - below, 0),
                          velocity=(0.2, 0.1, 0), angular_velocity=(0, 0, 2))
         held = (("hoist", s), (name, (0.1, 0.05, 0)))

@@ -198,7 +198,7 @@ def _placed_on_rope(scene: SceneData, end: Attachment, where: str, prefix: str) 
                          + (", not a point at" if end.at else ""))
     rope = scene.ropes[end.on]
     try:
-        rope.span_at(rope.drawn(scene.bodies), end.s)
+        rope.span_at(rope.drawn(scene.holders), end.s)
     except ValueError as error:
         cause, *remedy = error.args
         raise SceneError(where, f'{prefix}s of rope "{rope.name}" {cause}', *remedy) from None

@@ -13,6 +13,7 @@ from ..parts.part import Part
 from ..parts.plane import called
 from ..parts.point_force import PointForce
 from ..parts.rope import Rope
+from ..parts.rope_items import Sheave
 from ..parts.rope_route import MAX_LAYER, DrawnRoute
 from ..parts.rope_route_space import fleet_angles
 from ..parts.scene_data import SceneData
@@ -87,18 +88,19 @@ def _check_pair(where: str, rope: Rope, cable: Cable) -> None:
 
 
 def _held(scene: SceneData, rope: Rope, k: int, end: Attachment) -> Attachment:
-    """Return the complete attachment of an item of a route to a body or to the ground."""
-    if end.on in scene.cables:
-        raise SceneError(rope.where, f'route.{k} is held by cable "{end.on}"', "take a body or a point of the ground")
-    if end.on is not None and end.on not in scene.bodies:
-        raise SceneError(rope.where, f'route.{k}: there is no body "{end.on}"', near(end.on, scene.bodies))
+    """Return the complete attachment of an item of a route to a body, to a cable or to the ground."""
+    if end.on is not None and end.on not in scene.holders:
+        raise SceneError(rope.where, f'route.{k}: there is no body or cable "{end.on}"', near(end.on, scene.holders))
+    if end.on in scene.cables and rope.dim == 3 and isinstance(rope.route[k], Sheave):
+        raise SceneError(rope.where, f'route.{k} is held by cable "{end.on}", whose sections turn',
+                         "take a body or a point of the ground, or a planar rope")
     return placed_attachment(scene, end, rope.where, f"route.{k}: ")
 
 
 def _notes(scene: SceneData, rope: Rope) -> list[str]:
     """Return notes on a rope as drawn. Raises SceneError for an impossible route."""
     try:
-        route = rope.drawn(scene.bodies)
+        route = rope.drawn(scene.holders)
     except ValueError as error:
         raise SceneError(rope.where, *error.args) from None
     EA, EI = rope.stiffness

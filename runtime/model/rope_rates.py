@@ -1,4 +1,5 @@
-"""Initial rates of ropes whose rates are not given: a rope follows the bodies that hold its ends, sheaves and drums.
+"""Initial rates of ropes whose rates are not given: a rope follows the bodies and cables that hold its ends, sheaves
+and drums.
 
 Its spans stay straight between their tangent points, it stays evenly stretched, and its stress-free length is kept. In
 space its rates are differences of the route drawn a moment later and before. In the plane, with u and n along a span
@@ -164,7 +165,11 @@ def _joined(q: np.ndarray, rope: RopeModel, holders: list[_Holder]) -> list[_Hol
 
 
 def _motion(model: Model, attachment: AttachmentModel) -> tuple[np.ndarray, float]:
-    """Return the velocity (dim,) of an attachment to a body or the ground in m/s, and its angular velocity in rad/s."""
+    """Return the velocity (dim,) of an attachment to a body, a cable or the ground in m/s, and its angular velocity in
+    rad/s.
+    """
+    if attachment.cable >= 0:
+        return _motion_on_cable(model, attachment)
     if attachment.body < 0:
         return np.zeros(model.dim), 0.0
     body, dim = model.bodies[attachment.body], model.dim
@@ -178,6 +183,20 @@ def _motion(model: Model, attachment: AttachmentModel) -> tuple[np.ndarray, floa
         velocity += rotate(orientation, spatial(rates @ attachment.modal[1]))[:dim]
         spin += float(np.sum(rates @ attachment.modal[2]))
     return velocity, spin
+
+
+def _motion_on_cable(model: Model, attachment: AttachmentModel) -> tuple[np.ndarray, float]:
+    """Return the velocity (dim,) of an attachment to a cable in m/s, and in the plane with axes the angular velocity of
+    its section in rad/s.
+    """
+    cable, size = model.cables[attachment.cable], len(attachment.N) * model.dim
+    start = cable.first + attachment.element * size // 2
+    vectors, rates = (each[start : start + size].reshape(-1, model.dim) for each in (model.q, model.v))
+    velocity = attachment.N @ rates
+    if model.dim == 3 or attachment.axes is None:
+        return velocity, 0.0
+    along, swing = attachment.S[0] @ vectors, attachment.S[0] @ rates
+    return velocity, float(_left(along) @ swing) / float(along @ along)
 
 
 @dataclass

@@ -157,7 +157,7 @@ def rope_models(scene: SceneData, at: int, supplied: bool = False) -> list[RopeM
     """Return the ropes in the scene's order, with coordinates from `at` on; supplied: their `supply` is free."""
     made = []
     for rope in scene.ropes.values():
-        made.append(rope_model(rope, rope.drawn(scene.bodies), at))
+        made.append(rope_model(rope, rope.drawn(scene.holders), at))
         if supplied and made[-1].supply >= 0:
             made[-1].fixed[made[-1].supply - at] = False
         at = made[-1].coordinates.stop
@@ -474,7 +474,7 @@ def sheave_models(builder: ModelBuilder) -> Iterator[SheaveModel]:
         for k, (item, arc, beside) in enumerate(of_sheaves):
             before, after = (rope.spans[each] for each in beside)
             scale = [rope.mass_of_element(each) for each in beside for _ in range(rope.part.dim)]
-            centre, weight = builder.attachment(item.end), rope.rho * gravity / 2
+            centre, weight = _centre_of(builder, item), rope.rho * gravity / 2
             if rope.part.may_leave(item):
                 scale += scale[:1] * CONDITIONS_BESIDE
             yield SheaveModel(type="sheave", name=item.name, kernel="planar_sheave", attachments=(centre,),
@@ -489,6 +489,11 @@ def sheave_models(builder: ModelBuilder) -> Iterator[SheaveModel]:
                               friction=item.coefficient, slip_velocity=item.slip_velocity,
                               closing=rope.route.free_length * (rope.part.closed and k == 0),
                               is_damped=rope.part.material.damping_time > 0 or item.coefficient > 0 or item.damping > 0)
+
+
+def _centre_of(builder: ModelBuilder, wheel: Sheave | Drum) -> AttachmentModel:
+    """Return the attachment of the centre of a sheave or a drum; in the plane a cable has axes that turn."""
+    return builder.attachment(wheel.end, np.eye(3) if builder.scene.dim == 2 else None)
 
 
 def _motion_of(builder: ModelBuilder, wheel: Sheave | Drum) -> dict[str, Any]:
@@ -572,7 +577,7 @@ def drum_models(builder: ModelBuilder) -> Iterator[DrumModel]:
             item = rope.part.drums[at.end]
             direction = 1.0 if at.end == 0 else -1.0
             yield DrumModel(type="drum", name=item.name, kernel="planar_sheave",
-                            attachments=(builder.attachment(item.end, np.eye(3)),), coordinates=at,
+                            attachments=(_centre_of(builder, item),), coordinates=at,
                             cell=rope.free_length / CELLS, direction=direction,
                             end=0.0 if at.end == 0 else rope.free_length, radius=item.radius,
                             tangent_radius=rope.route.reach[at.end], stretch=rope.route.stretch,

@@ -187,6 +187,9 @@ def _carrier(builder: ModelBuilder, item: RouteItem) -> float:
     """Return the angle as drawn of what carries an item, rad."""
     if item.end.on is None:
         return 0.0
+    if item.end.on in builder.scene.cables:
+        x, y, _ = builder.scene.cables[item.end.on].slope(item.end.arc_length)
+        return atan2(y, x)
     w, _, _, z = builder.scene.bodies[item.end.on].frame[1]
     return 2 * atan2(z, w)
 

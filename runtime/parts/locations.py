@@ -14,6 +14,8 @@ from .event import Event
 from .fluid import Fluid
 from .hanging import hangs
 from .part import Part, about_fields
+from .rope import Rope
+from .rope_items import RouteItem
 from .scene_data import SceneData
 from .schemas import Place
 from .support import Support, Tie
@@ -62,7 +64,7 @@ def point_of(scene: SceneData, end: Attachment) -> np.ndarray:
     if end.on in scene.bodies:
         return scene.bodies[end.on].point(end.point)
     if end.on in scene.ropes:
-        return scene.ropes[end.on].point(scene.bodies, end.arc_length)
+        return scene.ropes[end.on].point(scene.holders, end.arc_length)
     return scene.cables[end.on].point(end.arc_length)
 
 
@@ -120,6 +122,13 @@ def connected(scene: SceneData, name: str) -> set[str]:
     return {each for each in (*scene.cables, *scene.bodies) if each in found}
 
 
+def _moved(item: RouteItem, stretch: Mapping[str, float]) -> RouteItem:
+    """Return an item of a route at its share of the length of a cable that changes by a ratio, by name."""
+    if item.end.on is None or item.end.on not in stretch:
+        return item
+    return item.held_at(item.end.model_copy(update={"s": item.end.arc_length * stretch[item.end.on]}))
+
+
 def remade(part: Part, changes: Mapping[str, Any]) -> Part:
     """Return a part with other values, by keyword; a cable without its given nodes. Raises SceneError."""
     if isinstance(part, Cable) and part.nodes is not None and "nodes" not in changes:
@@ -154,6 +163,8 @@ def following(scene: SceneData, changes: Mapping[int, Mapping[str, Any]]) -> dic
         for name, value in part:
             if isinstance(value, Attachment) and value.on in stretch and value.s is not None:
                 moved[name] = value.model_copy(update={"s": value.s * stretch[value.on]})
+        if isinstance(part, Rope) and any(item.end.on in stretch for item in part.route):
+            moved["route"] = [_moved(item, stretch) for item in part.route]
         if moved:
             found[k] = moved | found.get(k, {})
     return found

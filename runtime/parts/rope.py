@@ -8,10 +8,8 @@ import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from .material import Material
-from .modal_body import ModalBody
 from .part import Part
 from .quantity import Quantity, vector_of_time
-from .rigid_body import RigidBody
 from .rope_items import ROUTE_ITEMS, Anchor, Block, Drum, RouteItem, Sheave
 from .schemas import POINT, checked
 from .section import AnySection, Rectangle, outer_radius_of
@@ -19,6 +17,7 @@ from .section_stiffness import law_of_measures, section_stiffness
 from .validation import MAX_COUNT, Flag, Name, items, one_of, positive, show, shown, whole_number
 
 if TYPE_CHECKING:
+    from .rope_drawing import Holders
     from .rope_route import DrawnRoute
 
 PLANAR, SPATIAL = "cable8p", "cable12"
@@ -276,7 +275,7 @@ class Rope(Part):
         return iter(self.wheels)
 
     def refers_to(self) -> Iterator[str]:
-        """Yield the names of the bodies that hold its ends, sheaves and drums."""
+        """Yield the names of what holds its ends, sheaves and drums."""
         return chain.from_iterable(item.refers_to() for item in self.route)
 
     def off_plane(self) -> Iterator[str]:
@@ -309,9 +308,9 @@ class Rope(Part):
 
         return span_at(self, route, s)
 
-    def point(self, bodies: Mapping[str, RigidBody | ModalBody], s: float) -> np.ndarray:
+    def point(self, holders: "Holders", s: float) -> np.ndarray:
         """Return (3,): the place as drawn of the stress-free arc-length s, m, in a span, in m. Raises ValueError."""
-        route = self.drawn(bodies)
+        route = self.drawn(holders)
         span = self.span_at(route, s)
         start, end = route.arc_lengths(self.first_arc_length)[span]
         drawn = route.spans[span]
@@ -319,15 +318,15 @@ class Rope(Part):
         found[: self.dim] = drawn.start + (s - start) / (end - start) * (drawn.end - drawn.start)
         return found
 
-    def drawn(self, bodies: Mapping[str, RigidBody | ModalBody]) -> "DrawnRoute":
-        """Return its route as drawn among the bodies of its scene.
+    def drawn(self, holders: "Holders") -> "DrawnRoute":
+        """Return its route as drawn among the bodies and cables of its scene.
 
         Its attachments must be complete, as in a scene. Raises ValueError(cause, remedy) for an impossible route and
         for a rope that is not taut.
         """
         from .rope_drawing import drawn  # where a rope is drawn: the import of the package stays quick
 
-        return drawn(self, bodies)
+        return drawn(self, holders)
 
 
 def driven_freely(ropes: Iterable[Rope]) -> list[str]:

@@ -9,12 +9,16 @@ from typing import Protocol
 import numpy as np
 
 from .attachment import Attachment
+from .cable import Cable
 from .modal_body import ModalBody
 from .rigid_body import RigidBody
 from .rope_items import SIDES, Drum, RouteItem, Sheave
 from .rope_route import MAX_LAYER, DrawnRoute, RoutePoint, default_senses, drawn_route, without_wraps
 from .rope_route_space import groove_of, senses_in_space, span_in_space
 from .validation import LENGTH_TOLERANCE, show
+
+Holders = Mapping[str, RigidBody | ModalBody | Cable]
+"""Bodies and cables by name, see `SceneData.holders`."""
 
 
 class Roped(Protocol):
@@ -62,9 +66,9 @@ class Roped(Protocol):
         ...
 
 
-def drawn(rope: Roped, bodies: Mapping[str, RigidBody | ModalBody]) -> DrawnRoute:
+def drawn(rope: Roped, holders: Holders) -> DrawnRoute:
     """Return the route of a rope, see `Rope.drawn`."""
-    points = _points(rope, np.array([_place(item.end, bodies)[:rope.dim] for item in rope.route]))
+    points = _points(rope, np.array([place_of(item.end, holders)[:rope.dim] for item in rope.route]))
     if not rope.mass:
         route = _without_mass(rope, points)
         return replace(route, stretch=_stretch(rope, route.length))
@@ -166,6 +170,9 @@ def _stretch(rope: Roped, drawn: float) -> float:
     return max(1.0, drawn / out)
 
 
-def _place(end: Attachment, bodies: Mapping[str, RigidBody | ModalBody]) -> np.ndarray:
-    """Return (3,): the place as drawn of a complete attachment to a body or to the ground, in m."""
-    return np.array(end.point) if end.on is None else bodies[end.on].point(end.point)
+def place_of(end: Attachment, holders: Holders) -> np.ndarray:
+    """Return (3,): the place as drawn of a complete attachment to a body, to a cable or to the ground, in m."""
+    if end.on is None:
+        return np.array(end.point)
+    on = holders[end.on]
+    return on.point(end.arc_length) if isinstance(on, Cable) else on.point(end.point)

@@ -12,7 +12,20 @@ from .part import Family, Part
 from .quantity import all_of_engine
 from .schemas import AXIS, checked
 from .signal import AnySignal, Integral, Signal
-from .validation import NAMES_A_PART, Flag, Name, Vector, direction, not_negative, one_of, positive, show, shown, xyz
+from .validation import (
+    NAMES_A_PART,
+    Flag,
+    Name,
+    Vector,
+    direction,
+    not_negative,
+    one_of,
+    place_on,
+    positive,
+    show,
+    shown,
+    xyz,
+)
 
 MAX_TURNS = 1000
 MAX_ZONES = 16
@@ -49,37 +62,41 @@ class RouteItem(Part):
 def _body(value: Any) -> str | None:
     name = getattr(value, "name", value)
     if name is not None and not isinstance(name, str):
-        raise ValueError(f"must be a body or its name, got {shown(value)}",
+        raise ValueError(f"must be a body, a cable or the name of one, got {shown(value)}",
                          "give a point of the ground as at=(x, y, z)")
     return name
 
 
 class Anchor(RouteItem):
-    """An end of a rope, held at a point of a body or of the ground; the direction of the rope is free.
+    """An end of a rope, held at a point of a body, of a cable or of the ground; the direction of the rope is free.
 
-    on: the body; by default the ground
+    on: the body or the cable; by default the ground
     at: point in the body's axes, by default its origin, or of the ground, m
+    s: arc-length of the cable, m
     """
 
     kind = "anchor"
     positional = ("on", "at")
     on: Annotated[str | None, checked(_body, {"type": "string"}), NAMES_A_PART] = None
     at: Annotated[Vector, xyz("m", of="on")] | None = None
+    s: Annotated[float, place_on("on")] | None = None
 
     @model_validator(mode="after")
     def _is_somewhere(self) -> "Anchor":
         if self.on is None and self.at is None:
             raise ValueError("has neither on nor at", "name a body, or give a point at=(x, y, z) of the ground")
+        if self.on is None and self.s is not None:
+            raise ValueError("has s, but not the cable on which it is", "give on, the name of the cable")
         return self
 
     @property
     def end(self) -> Attachment:
         """Return the point that holds it."""
-        return Attachment.model_construct(on=self.on, at=self.at)
+        return Attachment.model_construct(on=self.on, at=self.at, s=self.s)
 
     def held_at(self, end: Attachment) -> "Anchor":
         """Return the anchor at a complete attachment."""
-        return self.model_copy(update={"at": end.point})
+        return self.model_copy(update={"at": end.at, "s": end.s})
 
 
 def _whole_number_between(least: int, most: int) -> Any:
@@ -143,7 +160,7 @@ class Wheel(RouteItem):
 class Sheave(Wheel):
     """A sheave that a rope runs over, with friction or without.
 
-    at: its centre, a point of the ground, a body, or a point in the axes of a body
+    at: its centre, a point of the ground, a body, a point in the axes of a body, or in the plane ("cable", s)
     radius: from its centre to the axis of the rope, that of the groove plus that of the rope, m
     side: "left" or "right": where it lies, looking along the route with the axis up. A rope with the sheave on its
         left runs counter-clockwise around it. By default the side to which the line through the centres of the route
@@ -253,7 +270,7 @@ class Drum(Wheel):
     The rope sticks to the drum where it runs on, and keeps there the stretch with which it was wound. What is wound has
     the radius of the drum, turns with it, and adds to its inertia and weight.
 
-    at: its centre, a point of the ground, a body, or a point in the axes of a body
+    at: its centre, a point of the ground, a body, a point in the axes of a body, or ("cable", s)
     radius: from its centre to the axis of the rope, m
     side: "left" or "right": where it lies, looking along the route, from the first to the last item. A rope with the
         drum on its left runs counter-clockwise around it

@@ -197,9 +197,16 @@ class SceneData:
             yield from self.group(group)
 
     def attachments(self) -> Iterator[Attachment]:
-        """Yield the attachments that are fields of parts, such as those of springs and joints."""
+        """Yield the attachments of parts, such as those of springs, joints and the items of ropes."""
         for part in self.parts():
             yield from (value for _, value in part if isinstance(value, Attachment))
+        for rope in self.ropes.values():
+            yield from (item.end for item in rope.route)
+
+    @property
+    def holders(self) -> Mapping[str, RigidBody | ModalBody | Cable]:
+        """Return the bodies and cables by name, on which ropes are held."""
+        return {**self.bodies, **self.cables}
 
     def group(self, name: str) -> Iterable[Part]:
         """Return the parts of a group, in the order in which they were added."""

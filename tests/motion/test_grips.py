@@ -33,7 +33,7 @@ def hauled(*, elements: int = 4, s: float = S, speed: float = 1.0, divided: bool
     sheave = fu.Sheave("top", at=(20, -0.3, 0), radius=0.3, side="right")
     made = {"tension": 300 * 9.81, **ROPE}
     whole = scene.rope("haul", route=[drum, sheave, fu.Anchor("weight")], elements=[elements, 2], **made)
-    x, y, _ = whole.point(scene.bodies, s)
+    x, y, _ = whole.point(scene.holders, s)
     if divided:
         scene = fu.Scene()
         scene.rigid_body("weight", mass=300, inertia=(1, 1, 1), position=(20.3, -10, 0))
@@ -53,7 +53,7 @@ def spanned(dim: int = 2, *, load: tuple[float, float, float] = (0, -0.5, 0)) ->
     rope = scene.rope("line", route=[fu.Anchor(at=(0, 0, 0)), fu.Sheave("top", at=(10, -0.3, 0), radius=0.3),
                                      fu.Anchor(at=(10.3, -5, 0))], tension=2e3, elements=3,
                       element="cable8p" if dim == 2 else "cable12", **ROPE)
-    scene.rigid_body("load", mass=20, inertia=(1, 1, 1), position=np.add(rope.point(scene.bodies, 4.0), load).tolist())
+    scene.rigid_body("load", mass=20, inertia=(1, 1, 1), position=np.add(rope.point(scene.holders, 4.0), load).tolist())
     return scene
 
 
@@ -134,7 +134,7 @@ def test_momentum_is_kept():
         free[name] = mass, np.array(force)
     rope = scene.rope("rope", route=[fu.Anchor("A"), fu.Sheave("top", at="C", radius=0.2, side="right"),
                                      fu.Anchor("B")], tension=50.0, elements=3, **rope_of(2e4, 0.1, 0, 1e-4))
-    end = rope.drawn(scene.bodies).arc_lengths(0.0)[1]
+    end = rope.drawn(scene.holders).arc_lengths(0.0)[1]
     scene.joint("distance", ("rope", 0.5 * sum(end)), ("D", (-0.1, 0, 0)), name="grip")
     run = scene.run(0.3, **SETTINGS | {"tol": 1e-7})
     assert np.ptp(run["D.position"][:, 0] - 0.3 * run.time) > 0.1 and np.abs(run["grip.force"]).max() > 1.0
@@ -177,7 +177,7 @@ def test_at_rest_on_a_sheave_is_refused():
     scene.rigid_body("load", mass=1, inertia=(1, 1, 1), position=(19.9, -1, 0))
     rope = scene.rope("haul", route=[fu.Anchor(at=(0, 0, 0)), fu.Sheave("top", at=(20, -0.3, 0), radius=0.3),
                                      fu.Anchor("weight")], tension=100.0, elements=2, **ROPE)
-    drawn = rope.drawn(scene.bodies)
+    drawn = rope.drawn(scene.holders)
     scene = scene.replace("haul", length=drawn.free_length)
     end = drawn.arc_lengths(0.0)[0][1]
     scene.spring(("haul", end - 0.03), "load", stiffness=100.0, name="hanger")
@@ -263,7 +263,7 @@ def test_refused(add, words):
 def test_refused_where_a_change_moves_a_sheave_over_the_grip():
     """The rope as drawn is longer with more tension in it, so that the grip of a spring comes to lie on the sheave."""
     scene = spanned()
-    end = scene.ropes["line"].drawn(scene.bodies).arc_lengths(0.0)[0][1]
+    end = scene.ropes["line"].drawn(scene.holders).arc_lengths(0.0)[0][1]
     scene.spring(("line", end - 1e-3), "load", stiffness=10.0)
     with pytest.raises(fu.SceneError, match='spring "spring_1": a: s of rope "line" lies on sheave "top"'):
         scene.replace("line", tension=2e4)
@@ -278,7 +278,7 @@ def test_drawn_where_it_holds():
     assert np.ptp(on_rope[:, 0]) > 2
     assert np.abs(on_rope - on_body).max() < 0.02  # chords of 1.25 m
     drawn = place(of_scene(run.scene), grip.a)[0]
-    assert drawn == pytest.approx(run.scene.ropes["haul"].point(run.scene.bodies, S), abs=1e-12)
+    assert drawn == pytest.approx(run.scene.ropes["haul"].point(run.scene.holders, S), abs=1e-12)
 
 
 @pytest.mark.parametrize("system", ["newton", "accelerations"])

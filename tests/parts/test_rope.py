@@ -160,7 +160,7 @@ def test_points_of_bodies():
     rope = rope_of(fu.Anchor("load", at=(0, -0.7, 0)), fu.Sheave("top", at=carrier, radius=0.3), fu.Anchor("carrier", (
         0.3, -2, 0)), scene=scene, **THIN)
     assert rope.route[1].at.at == (0, 0, 0) and list(rope.refers_to()) == ["load", "carrier", "carrier"]
-    route = rope.drawn(scene.bodies)
+    route = rope.drawn(scene.holders)
     check_tangents(route)
     assert route.spans[0].start == pytest.approx([-0.3, -3], abs=1e-15)
     assert route.length == pytest.approx(4 + 2 + 0.3 * pi, rel=1e-14)
@@ -206,7 +206,7 @@ ORDER = "give an Anchor or a Drum, then the sheaves, then an Anchor or a Drum; o
 
 @pytest.mark.parametrize(("route", "complaint"), [
     ([], f"must be a list of 2 items or more, got []; {ORDER}"),
-    ([at(0, 0)], f"must be a list of 2 items or more, got [Anchor(on=None, at=(0.0, 0.0, 0.0))]; {ORDER}"),
+    ([at(0, 0)], f"must be a list of 2 items or more, got [Anchor(on=None, at=(0.0, 0.0, 0.0), s=None)]; {ORDER}"),
     ([TOP, ENDS[1]], f'must begin and end with an Anchor or a Drum, its first item is the sheave "top"; {ORDER}'),
     ([ENDS[0], TOP], f'must begin and end with an Anchor or a Drum, its last item is the sheave "top"; {ORDER}'),
     ([ENDS[0], at(0, 1), TOP, ENDS[1]], "has an Anchor between its ends; let two ropes end there"),
@@ -454,7 +454,8 @@ def test_drives():
 @pytest.mark.parametrize(("make", "complaint"), [
     (lambda: fu.Anchor(), "anchor: has neither on nor at; name a body, or give a point at=(x, y, z) of the ground"),
     (lambda: fu.Anchor((0, 3, 0)),
-     "anchor: on must be a body or its name, got (0, 3, 0); give a point of the ground as at=(x, y, z)"),
+     "anchor: on must be a body, a cable or the name of one, got (0, 3, 0); give a point of the ground as at=(x, y, z)"
+     ),
     (lambda: sheave(0, 0, -0.3), 'sheave "top": radius must be positive, got -0.3 m'),
     (lambda: sheave(0, 0, 0.3, "above"), 'sheave "top": side "above" is not known; known: left, right'),
     (lambda: sheave(0, 0, 0.3, turns=-1), 'sheave "top": turns must be a whole number from 0 to 1000, got -1'),
@@ -489,14 +490,19 @@ def test_items_of_a_route_are_checked(item, complaint):
 def test_what_holds_it():
     scene = fu.Scene()
     scene.rigid_body("load", position=(1, 0, 0), **BODY)
-    with refused('rope "hoist": route.2: there is no body "lod"; did you mean "load"?'):
+    with refused('rope "hoist": route.2: there is no body or cable "lod"; did you mean "load"?'):
         rope_of(ENDS[0], TOP, fu.Anchor("lod"), scene=scene)
     with refused('rope "hoist": route.2: acts on body "load" and takes no arc-length s; give a point in body axes, or '
                  "nothing for its origin"):
         rope_of(ENDS[0], TOP, fu.Sheave("low", at=("load", 0.5), radius=0.1), ENDS[1], scene=scene)
     scene.cable("track", start=(0, 0, 0), end=(1, 0, 0), elements=2, element="cable8p", **WIRE)
-    with refused('rope "hoist": route.1 is held by cable "track"; take a body or a point of the ground'):
-        rope_of(ENDS[0], fu.Sheave("top", at=("track", 0.5), radius=0.1), ENDS[1], scene=scene)
+    for item, rest in ((fu.Anchor("track"), ""), (fu.Anchor("track", at=(0, 0, 0)), ", not a point at")):
+        with refused(f'rope "hoist": route.2: acts on cable "track" and needs the arc-length s there{rest}'):
+            rope_of(ENDS[0], TOP, item, scene=scene)
+    with refused("anchor: has s, but not the cable on which it is; give on, the name of the cable"):
+        fu.Anchor(at=(0, 0, 0), s=1.0)
+    with refused('rope "hoist": route.1: s must lie on the cable, in [0, 1] m, got 2 m'):
+        rope_of(ENDS[0], fu.Sheave("top", at=("track", 2.0), radius=0.1), ENDS[1], scene=scene)
     assert not scene.ropes
 
 

@@ -48,9 +48,9 @@ def times_so_far(path: Path) -> int:
 
 @pytest.fixture
 def whole(tmp_path) -> tuple[dict[str, bytes], float]:
-    """Return the output of a run of about half a second and its writing time, s; scene.toml is in the folder."""
+    """Return the output of a run of about a second and its writing time, s; scene.toml is in the folder."""
     scene = short()
-    scene.run_settings = {"duration": 0.3, "output_step": 5e-4, "step": 1e-5}
+    scene.run_settings = {"duration": 0.6, "output_step": 5e-4, "step": 1e-5}
     (tmp_path / "scene.toml").write_text(scene.to_toml())
     running = start(tmp_path, "whole.nc")
     begin = await_file(running, tmp_path / "whole.nc")

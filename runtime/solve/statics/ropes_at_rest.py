@@ -18,9 +18,8 @@ from ...model.model import Model
 from ...model.ropes import RopeModel
 from ...model.states import attachment_points
 from ...parts.attachment import Attachment
-from ...parts.modal_body import ModalBody
-from ...parts.rigid_body import RigidBody
 from ...parts.rope import Rope
+from ...parts.rope_drawing import Holders, place_of
 from ...parts.rope_items import Anchor, Drum, RouteItem
 from ...parts.scene_data import SceneData
 from ...parts.validation import show
@@ -102,7 +101,7 @@ class _Supplied:
 
     def __init__(self, scene: SceneData, part: Rope):
         alone = SceneData(scene.gravity)
-        alone.put(part.model_copy(update={"route": tuple(_still(item, scene.bodies) for item in part.route)}))
+        alone.put(part.model_copy(update={"route": tuple(_still(item, scene.holders) for item in part.route)}))
         self.part, self.model = part, build(alone, supplied=True)
         self.rope, = self.model.ropes
         self.engine = Engine(self.model)
@@ -207,12 +206,11 @@ class _Supplied:
                           "give more tension, or the length" + "; or leave the sheave out" * bool(self.cause))
 
 
-def _still(item: RouteItem, bodies: dict[str, RigidBody | ModalBody]) -> RouteItem:
+def _still(item: RouteItem, holders: Holders) -> RouteItem:
     """Return an item of a route, held at its place as drawn."""
-    end = item.end
-    place = end.point if end.on is None else tuple(np.asarray(bodies[end.on].point(end.point)).tolist())
+    place = tuple(place_of(item.end, holders).tolist())
     if isinstance(item, Anchor):
-        return item.model_copy(update={"on": None, "at": place})
+        return item.model_copy(update={"on": None, "at": place, "s": None})
     return item.held_at(Attachment.model_construct(on=None, at=place)).model_copy(update=STILL)
 
 
