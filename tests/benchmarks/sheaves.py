@@ -3,9 +3,10 @@
 Rows of ropes without mass follow those of ropes with mass.
 
 A second table has the errors of refined meshes, zones and steps, with the order between two of them; a third one what
-a reference leaves out: the bending of the belt, the wraps of the elevator.
+a reference leaves out: the bending of the belt, the wraps of the elevator; a fourth one operations of elements through
+which the material moves; the last one a step of a crane by the length in store.
 
-    python tests/benchmarks/sheaves.py [--out FILE.csv]
+    python tests/benchmarks/sheaves.py [--out FILE.csv] [--repetitions 5]
 """
 
 import time
@@ -15,6 +16,7 @@ from collections.abc import Callable
 from ropes import CASES
 from ropes.belts import EI
 from ropes.case import Case
+from ropes.costs import operations, stores
 from ropes.massless_runs import RUNS as WITHOUT_MASS
 from ropes.refinements import SERIES
 from ropes.runs import RUNS, belt
@@ -48,7 +50,7 @@ def shares_left_out() -> list[dict]:
 
 def main() -> None:
     """Measure and print."""
-    options = arguments(__doc__)
+    options = arguments(__doc__, repetitions=(5, "runs of the crane, the least time of which counts"))
     warnings.simplefilter("ignore")
     cases = sorted((case for case in CASES if case.key in RUNS), key=lambda case: case.key != "run-on with bending")
     without = [] if options.smallest else [row for case in CASES if case.key in WITHOUT_MASS
@@ -60,6 +62,10 @@ def main() -> None:
     if not options.smallest:
         print()
         show(shares_left_out(), table="left out")
+    print()
+    show(operations(), table="operations")
+    print()
+    show(stores(options.repetitions), table="stores")
 
 
 if __name__ == "__main__":

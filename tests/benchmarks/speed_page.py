@@ -75,6 +75,24 @@ solver](../../runtime/guides/pages/cosseratbench.md) is part of the package.""",
                text="""The error with half, once and twice the elements. A constant error belongs to the reference
 (bending of the catenary, linear theory of cantilever and pendulum) or to the contact stiffness.""")]),
     Section(
+        "Ropes over sheaves beside Exudyn and MuJoCo",
+        """Two weights on a rope without mass, one of which swings: errors of its place against the inextensible
+solution, and the least CPU time of the solver. MuJoCo's tendon leaves the sheave where the wrap passes 180 degrees,
+between 1 and 2 s.""",
+        [Table("reeving",
+               {"code": "code", "EA, N": "EA, N", "setting": "setting", "error at 1 s, m": "error at 1 s, m",
+                "error at 3 s, m": "error at 3 s, m", "solver CPU s": "solver, s",
+                "whole call CPU s": "whole call, s"}),
+         Table("sheaves",
+               {"element": "element", "term": "term", "at rest": "at rest", "flowing": "flowing", "ratio": "ratio"},
+               table="operations",
+               text="""Operations of an element of a cable, and of one through which the material of a rope moves."""),
+         Table("sheaves",
+               {"store, m": "store, m", "steps": "steps", "iterations": "iterations", "us a step": "µs a step",
+                "us an iteration": "µs an iteration"},
+               table="stores",
+               text="The tower crane in fixed steps by the length on its winch.")]),
+    Section(
         "Many scenes",
         """Variants of a scene of 3 elements, with riders of 0.5 to 2 kg, one second each, `tol=1e-3`. Description,
 set-up, run and results count. The last column is the time with Python's lock, which bounds what further threads

@@ -107,6 +107,24 @@ in mm from that of the rigid link. The three agree while the link bends little.
                options="--plots .")],
         test="tests/motion/test_paper52.py"),
     Section(
+        "Ropes over sheaves",
+        """Runs beside closed forms, ordinary differential equations of ropes without mass, and chains of masses that
+touch a groove. Errors over the reference, of places, angles and lengths in their unit; `bar` is what the tests assert.
+Cases "no mass" are those of ropes without mass.""",
+        [Table("sheaves",
+               {"case": "case", "quantity": "quantity", "run": "run", "reference": "reference", "error": "error",
+                "bar": "bar", "CPU s": "CPU s"}),
+         Table("sheaves",
+               {"series": "series", "number": "number", "error": "error", "order": "order"},
+               table="refinements",
+               text="""The load of a heavy rope by elements a span, the tension that a held cylinder bears by zones,
+the same load by steps."""),
+         Table("sheaves",
+               {"case": "case", "quantity": "quantity", "without": "without", "with": "with", "share": "share"},
+               table="left out",
+               text="What the references leave out: the bending of the belt, the wraps of the elevator.")],
+        test="tests/motion/test_rope_cases.py"),
+    Section(
         "Planar and spatial",
         """Planar elements give the results of spatial ones where their kinematics are equal.
 
