@@ -1308,6 +1308,26 @@ typedef void fu_sheave_friction_tangent_kernel(const fu_real *A, fu_real sense, 
 /* A 2, g 2, angles3 3, lengths2 2, K 3x5, D 3x3 */
 fu_sheave_friction_tangent_kernel planar_sheave_friction_tangent;
 
+typedef void fu_sheave_coulomb_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, const fu_real *angles3, const fu_real *lengths2, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *numbers, fu_real *row, fu_real *column);
+/* Coulomb friction at a point between a zone and a zone: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2]; mu
+ * [1]; angles3 [rad]; lengths2 [m]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> numbers [m/s, N]; row [m, 1];
+ * column [m, 1] */
+/* A 2, g 2, angles3 3, lengths2 2, numbers 2, row 3, column 3 */
+fu_sheave_coulomb_kernel planar_sheave_coulomb;
+
+typedef void fu_sheave_coulomb_tangent_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, const fu_real *angles3, const fu_real *lengths2, fu_real angle_rate, fu_real spin, fu_real flow, fu_real held, fu_real direction, fu_real *K, fu_real *D);
+/* derivatives of Coulomb friction between a zone and a zone: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2];
+ * mu [1]; angles3 [rad]; lengths2 [m]; angle_rate [rad/s]; spin [rad/s]; flow [m/s]; held [N]; direction [1] -> K
+ * [SI]; D [SI] */
+/* A 2, g 2, angles3 3, lengths2 2, K 3x5, D 3x3 */
+fu_sheave_coulomb_tangent_kernel planar_sheave_coulomb_tangent;
+
+typedef void fu_sheave_coulomb_motion_kernel(fu_real sense, fu_real R, const fu_real *angles3, const fu_real *lengths2, const fu_real *angles3_rate, const fu_real *lengths2_rate, fu_real flow, fu_real angle_acc, fu_real *Q_d);
+/* rate of w at zero accelerations between a zone and a zone: sense [1]; R [m]; angles3 [rad]; lengths2 [m];
+ * angles3_rate [rad/s]; lengths2_rate [m/s]; flow [m/s]; angle_acc [rad/s^2] -> Q_d [m/s^2] */
+/* angles3 3, lengths2 2, angles3_rate 3, lengths2_rate 2, Q_d 1 */
+fu_sheave_coulomb_motion_kernel planar_sheave_coulomb_motion;
+
 typedef void fu_sheave_friction_on_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *F, fu_real *numbers, fu_real *power);
 /* friction at a point between a span and a zone: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2]; mu [1]; v0
  * [m/s]; angles2 [rad]; lengths1 [m]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> F [N m, N];
@@ -1322,6 +1342,27 @@ typedef void fu_sheave_friction_on_tangent_kernel(const fu_real *A, fu_real sens
 /* A 2, g 2, angles2 2, lengths1 1, span_slope 2, K 3x5, D 3x3 */
 fu_sheave_friction_on_tangent_kernel planar_sheave_friction_on_tangent;
 
+typedef void fu_sheave_coulomb_on_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *numbers, fu_real *row, fu_real *column);
+/* Coulomb friction at a point between a span and a zone: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2]; mu
+ * [1]; angles2 [rad]; lengths1 [m]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> numbers [m/s,
+ * N]; row [m, 1]; column [m, 1] */
+/* A 2, g 2, angles2 2, lengths1 1, span_slope 2, numbers 2, row 3, column 3 */
+fu_sheave_coulomb_on_kernel planar_sheave_coulomb_on;
+
+typedef void fu_sheave_coulomb_on_tangent_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real held, fu_real direction, fu_real *K, fu_real *D);
+/* derivatives of Coulomb friction between a span and a zone: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2];
+ * mu [1]; angles2 [rad]; lengths1 [m]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s]; held [N];
+ * direction [1] -> K [SI]; D [SI] */
+/* A 2, g 2, angles2 2, lengths1 1, span_slope 2, K 3x5, D 3x3 */
+fu_sheave_coulomb_on_tangent_kernel planar_sheave_coulomb_on_tangent;
+
+typedef void fu_sheave_coulomb_on_motion_kernel(fu_real sense, fu_real R, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, const fu_real *angles2_rate, const fu_real *lengths1_rate, const fu_real *span_slope_rate, fu_real flow, fu_real angle_acc, fu_real *Q_d);
+/* rate of w at zero accelerations between a span and a zone: sense [1]; R [m]; angles2 [rad]; lengths1 [m];
+ * span_slope [1]; angles2_rate [rad/s]; lengths1_rate [m/s]; span_slope_rate [1/s]; flow [m/s]; angle_acc [rad/s^2]
+ * -> Q_d [m/s^2] */
+/* angles2 2, lengths1 1, span_slope 2, angles2_rate 2, lengths1_rate 1, span_slope_rate 2, Q_d 1 */
+fu_sheave_coulomb_on_motion_kernel planar_sheave_coulomb_on_motion;
+
 typedef void fu_sheave_friction_off_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *F, fu_real *numbers, fu_real *power);
 /* friction at a point between a zone and a span: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2]; mu [1]; v0
  * [m/s]; angles2 [rad]; lengths1 [m]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> F [N m, N];
@@ -1335,6 +1376,27 @@ typedef void fu_sheave_friction_off_tangent_kernel(const fu_real *A, fu_real sen
  * [SI] */
 /* A 2, g 2, angles2 2, lengths1 1, span_slope 2, K 3x5, D 3x3 */
 fu_sheave_friction_off_tangent_kernel planar_sheave_friction_off_tangent;
+
+typedef void fu_sheave_coulomb_off_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *numbers, fu_real *row, fu_real *column);
+/* Coulomb friction at a point between a zone and a span: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2]; mu
+ * [1]; angles2 [rad]; lengths1 [m]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> numbers [m/s,
+ * N]; row [m, 1]; column [m, 1] */
+/* A 2, g 2, angles2 2, lengths1 1, span_slope 2, numbers 2, row 3, column 3 */
+fu_sheave_coulomb_off_kernel planar_sheave_coulomb_off;
+
+typedef void fu_sheave_coulomb_off_tangent_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real held, fu_real direction, fu_real *K, fu_real *D);
+/* derivatives of Coulomb friction between a zone and a span: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2];
+ * mu [1]; angles2 [rad]; lengths1 [m]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s]; held [N];
+ * direction [1] -> K [SI]; D [SI] */
+/* A 2, g 2, angles2 2, lengths1 1, span_slope 2, K 3x5, D 3x3 */
+fu_sheave_coulomb_off_tangent_kernel planar_sheave_coulomb_off_tangent;
+
+typedef void fu_sheave_coulomb_off_motion_kernel(fu_real sense, fu_real R, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, const fu_real *angles2_rate, const fu_real *lengths1_rate, const fu_real *span_slope_rate, fu_real flow, fu_real angle_acc, fu_real *Q_d);
+/* rate of w at zero accelerations between a zone and a span: sense [1]; R [m]; angles2 [rad]; lengths1 [m];
+ * span_slope [1]; angles2_rate [rad/s]; lengths1_rate [m/s]; span_slope_rate [1/s]; flow [m/s]; angle_acc [rad/s^2]
+ * -> Q_d [m/s^2] */
+/* angles2 2, lengths1 1, span_slope 2, angles2_rate 2, lengths1_rate 1, span_slope_rate 2, Q_d 1 */
+fu_sheave_coulomb_off_motion_kernel planar_sheave_coulomb_off_motion;
 
 typedef void fu_sheave_short_wrap_kernel(const fu_real *A, fu_real sense, fu_real R, const fu_real *phi, const fu_real *slope, const fu_real *span_slope, fu_real l, fu_real tension, fu_real *h, fu_real *U, fu_real *J, fu_real *F, fu_real *K);
 /* condition and elastic energy of a short wrap, and their derivatives: A [N, N m^2]; sense [1]; R [m]; phi [rad];
@@ -1959,10 +2021,19 @@ typedef struct {
     fu_sheave_damping_tangent_kernel *damping_tangent;
     fu_sheave_friction_kernel *friction;
     fu_sheave_friction_tangent_kernel *friction_tangent;
+    fu_sheave_coulomb_kernel *coulomb;
+    fu_sheave_coulomb_tangent_kernel *coulomb_tangent;
+    fu_sheave_coulomb_motion_kernel *coulomb_motion;
     fu_sheave_friction_on_kernel *friction_on;
     fu_sheave_friction_on_tangent_kernel *friction_on_tangent;
+    fu_sheave_coulomb_on_kernel *coulomb_on;
+    fu_sheave_coulomb_on_tangent_kernel *coulomb_on_tangent;
+    fu_sheave_coulomb_on_motion_kernel *coulomb_on_motion;
     fu_sheave_friction_off_kernel *friction_off;
     fu_sheave_friction_off_tangent_kernel *friction_off_tangent;
+    fu_sheave_coulomb_off_kernel *coulomb_off;
+    fu_sheave_coulomb_off_tangent_kernel *coulomb_off_tangent;
+    fu_sheave_coulomb_off_motion_kernel *coulomb_off_motion;
     fu_sheave_short_wrap_kernel *short_wrap;
     fu_sheave_short_wrap_motion_kernel *short_wrap_motion;
     fu_sheave_winding_kernel *winding;

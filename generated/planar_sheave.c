@@ -4,11 +4,73 @@
  */
 #include "kernels.h"
 
-/* part of derivatives: of planar_sheave_friction_tangent and 2 more */
+/* part of derivatives: of planar_sheave_friction_tangent and 1 more */
 #define PLANAR_SHEAVE_PART_OF_DERIVATIVES \
     const fu_real \
-        d_angle_rate_groove = R*sense, \
-        d_angle_rate_P = -(2.0*d_angle_rate_groove*drawn_mass*speed), \
+        d_angles30_stretch_before = -(R*sense/lengths2[0]), \
+        d_angles30_T_before = A[0]*d_angles30_stretch_before, \
+        d_angles30_mean_stretch = 0.5*d_angles30_stretch_before, \
+        d_angles30_inv_mean_stretch = -(d_angles30_mean_stretch*inv_mean_stretch*inv_mean_stretch), \
+        d_angles30_drawn_mass = 2.0*d_angles30_inv_mean_stretch*rho, \
+        d_angles30_speed = -(d_angles30_mean_stretch*flow), \
+        d_angles30_P = d_angles30_T_before + d_angles30_drawn_mass*(-outwards - speed*speed) - 2.0*d_angles30_speed*drawn_mass*speed, \
+        d_angles30_decay = 0.5*mu*sense*FU_EXP(-(0.5*mu*sense*(-angles3[0] + angles3[2]))), \
+        d_angles30_inv_share = -(d_angles30_decay*inv_share*inv_share), \
+        d_angles30_share = -d_angles30_decay*inv_share + d_angles30_inv_share*(-decay + 1.0);
+
+/* part of derivatives: of planar_sheave_friction_tangent and 1 more */
+#define PLANAR_SHEAVE_PART_OF_DERIVATIVES_2 \
+    const fu_real \
+        d_angles31_stretch_before = R*sense/lengths2[0], \
+        d_angles31_T_before = A[0]*d_angles31_stretch_before, \
+        d_angles31_stretch_behind = -(R*sense/lengths2[1]), \
+        d_angles31_T_behind = A[0]*d_angles31_stretch_behind, \
+        d_angles31_mean_stretch = 0.5*d_angles31_stretch_before + 0.5*d_angles31_stretch_behind, \
+        d_angles31_inv_mean_stretch = -(d_angles31_mean_stretch*inv_mean_stretch*inv_mean_stretch), \
+        d_angles31_drawn_mass = 2.0*d_angles31_inv_mean_stretch*rho, \
+        d_angles31_outwards = R*(-g[0]*FU_SIN(angles3[1]) + g[1]*FU_COS(angles3[1])), \
+        d_angles31_speed = -(d_angles31_mean_stretch*flow), \
+        d_angles31_P = d_angles31_T_before + d_angles31_T_behind + d_angles31_drawn_mass*(-outwards - speed*speed) - d_angles31_outwards*drawn_mass - 2.0*d_angles31_speed*drawn_mass*speed;
+
+/* part of derivatives: of planar_sheave_friction_tangent and 1 more */
+#define PLANAR_SHEAVE_PART_OF_DERIVATIVES_3 \
+    const fu_real \
+        d_angles32_stretch_behind = R*sense/lengths2[1], \
+        d_angles32_T_behind = A[0]*d_angles32_stretch_behind, \
+        d_angles32_mean_stretch = 0.5*d_angles32_stretch_behind, \
+        d_angles32_inv_mean_stretch = -(d_angles32_mean_stretch*inv_mean_stretch*inv_mean_stretch), \
+        d_angles32_drawn_mass = 2.0*d_angles32_inv_mean_stretch*rho, \
+        d_angles32_speed = -(d_angles32_mean_stretch*flow), \
+        d_angles32_P = d_angles32_T_behind + d_angles32_drawn_mass*(-outwards - speed*speed) - 2.0*d_angles32_speed*drawn_mass*speed, \
+        d_angles32_decay = -(0.5*mu*sense*FU_EXP(-(0.5*mu*sense*(-angles3[0] + angles3[2])))), \
+        d_angles32_inv_share = -(d_angles32_decay*inv_share*inv_share), \
+        d_angles32_share = -d_angles32_decay*inv_share + d_angles32_inv_share*(-decay + 1.0);
+
+/* part of derivatives: of planar_sheave_friction_tangent and 1 more */
+#define PLANAR_SHEAVE_PART_OF_DERIVATIVES_4 \
+    const fu_real \
+        d_lengths20_stretch_before = -(R*sense*(-angles3[0] + angles3[1])/(lengths2[0]*lengths2[0])), \
+        d_lengths20_T_before = A[0]*d_lengths20_stretch_before, \
+        d_lengths20_mean_stretch = 0.5*d_lengths20_stretch_before, \
+        d_lengths20_inv_mean_stretch = -(d_lengths20_mean_stretch*inv_mean_stretch*inv_mean_stretch), \
+        d_lengths20_drawn_mass = 2.0*d_lengths20_inv_mean_stretch*rho, \
+        d_lengths20_speed = -(d_lengths20_mean_stretch*flow), \
+        d_lengths20_P = d_lengths20_T_before + d_lengths20_drawn_mass*(-outwards - speed*speed) - 2.0*d_lengths20_speed*drawn_mass*speed;
+
+/* part of derivatives: of planar_sheave_friction_tangent and 1 more */
+#define PLANAR_SHEAVE_PART_OF_DERIVATIVES_5 \
+    const fu_real \
+        d_lengths21_stretch_behind = -(R*sense*(-angles3[1] + angles3[2])/(lengths2[1]*lengths2[1])), \
+        d_lengths21_T_behind = A[0]*d_lengths21_stretch_behind, \
+        d_lengths21_mean_stretch = 0.5*d_lengths21_stretch_behind, \
+        d_lengths21_inv_mean_stretch = -(d_lengths21_mean_stretch*inv_mean_stretch*inv_mean_stretch), \
+        d_lengths21_drawn_mass = 2.0*d_lengths21_inv_mean_stretch*rho, \
+        d_lengths21_speed = -(d_lengths21_mean_stretch*flow), \
+        d_lengths21_P = d_lengths21_T_behind + d_lengths21_drawn_mass*(-outwards - speed*speed) - 2.0*d_lengths21_speed*drawn_mass*speed;
+
+/* part of derivatives: of planar_sheave_friction_tangent and 2 more */
+#define PLANAR_SHEAVE_PART_OF_DERIVATIVES_6 \
+    const fu_real \
         d_angle_rate_len_w = d_angle_rate_groove*inv_w*w, \
         d_angle_rate_inv_w = -(d_angle_rate_len_w*inv_w*inv_w), \
         d_angle_rate_smooth = d_angle_rate_groove*inv_w + d_angle_rate_inv_w*w, \
@@ -23,9 +85,11 @@
         d_spin_f = d_spin_smooth*share*(FU_REAL(P) < 0.0 ? 0.0 : P), \
         d_spin_on_phi = R*d_spin_f*sense, \
         d_spin_on_psi = -(R*d_spin_f*sense), \
-        d_spin_on_s = -(d_spin_f*mean_stretch), \
-        d_flow_speed = -mean_stretch, \
-        d_flow_P = -(2.0*d_flow_speed*drawn_mass*speed), \
+        d_spin_on_s = -(d_spin_f*mean_stretch);
+
+/* part of derivatives: of planar_sheave_friction_tangent and 2 more */
+#define PLANAR_SHEAVE_PART_OF_DERIVATIVES_7 \
+    const fu_real \
         d_flow_w = -source, \
         d_flow_len_w = d_flow_w*inv_w*w, \
         d_flow_inv_w = -(d_flow_len_w*inv_w*inv_w), \
@@ -35,8 +99,35 @@
         d_flow_on_psi = -(R*d_flow_f*sense), \
         d_flow_on_s = -(d_flow_f*mean_stretch);
 
+/* part of outputs: of planar_sheave_friction_tangent and 1 more */
+#define PLANAR_SHEAVE_PART_OF_OUTPUTS \
+    K[0] = d_angles30_on_phi; \
+    K[1] = d_angles31_on_phi; \
+    K[2] = d_angles32_on_phi; \
+    K[3] = d_lengths20_on_phi; \
+    K[4] = d_lengths21_on_phi; \
+    K[5] = d_angles30_on_psi; \
+    K[6] = d_angles31_on_psi; \
+    K[7] = d_angles32_on_psi; \
+    K[8] = d_lengths20_on_psi; \
+    K[9] = d_lengths21_on_psi; \
+    K[10] = d_angles30_on_s; \
+    K[11] = d_angles31_on_s; \
+    K[12] = d_angles32_on_s; \
+    K[13] = d_lengths20_on_s; \
+    K[14] = d_lengths21_on_s;
+
+/* part of derivatives: of planar_sheave_coulomb_tangent and 2 more */
+#define PLANAR_SHEAVE_PART_OF_DERIVATIVES_8 \
+    const fu_real \
+        d_angle_rate_f = d_angle_rate_P*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0), \
+        d_angle_rate_f_all = d_angle_rate_f*direction, \
+        d_angle_rate_on_phi = R*d_angle_rate_f_all*sense, \
+        d_angle_rate_on_psi = -(R*d_angle_rate_f_all*sense), \
+        d_angle_rate_on_s = -(d_angle_rate_f_all*mean_stretch);
+
 /* part of derivatives: of planar_sheave_friction_on_tangent and 1 more */
-#define PLANAR_SHEAVE_PART_OF_DERIVATIVES_2 \
+#define PLANAR_SHEAVE_PART_OF_DERIVATIVES_9 \
     const fu_real \
         d_angles20_w = -(d_angles20_source*flow), \
         d_angles20_len_w = d_angles20_w*inv_w*w, \
@@ -48,7 +139,7 @@
         d_angles20_on_s = -d_angles20_f*mean_stretch - d_angles20_mean_stretch*f;
 
 /* part of derivatives: of planar_sheave_friction_on_tangent and 1 more */
-#define PLANAR_SHEAVE_PART_OF_DERIVATIVES_3 \
+#define PLANAR_SHEAVE_PART_OF_DERIVATIVES_10 \
     const fu_real \
         d_angles21_w = -(d_angles21_source*flow), \
         d_angles21_len_w = d_angles21_w*inv_w*w, \
@@ -60,7 +151,7 @@
         d_angles21_on_s = -d_angles21_f*mean_stretch - d_angles21_mean_stretch*f;
 
 /* part of derivatives: of planar_sheave_friction_on_tangent and 1 more */
-#define PLANAR_SHEAVE_PART_OF_DERIVATIVES_4 \
+#define PLANAR_SHEAVE_PART_OF_DERIVATIVES_11 \
     const fu_real \
         d_lengths10_w = -(d_lengths10_source*flow), \
         d_lengths10_len_w = d_lengths10_w*inv_w*w, \
@@ -70,6 +161,51 @@
         d_lengths10_on_phi = R*d_lengths10_f*sense, \
         d_lengths10_on_psi = -(R*d_lengths10_f*sense), \
         d_lengths10_on_s = -d_lengths10_f*mean_stretch - d_lengths10_mean_stretch*f;
+
+/* part of derivatives: of planar_sheave_coulomb_on_tangent and 1 more */
+#define PLANAR_SHEAVE_PART_OF_DERIVATIVES_12 \
+    const fu_real \
+        d_angles20_f = d_angles20_P*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0) + d_angles20_share*(FU_REAL(P) < 0.0 ? 0.0 : P), \
+        d_angles20_f_all = d_angles20_f*direction, \
+        d_angles20_on_phi = R*d_angles20_f_all*sense, \
+        d_angles20_on_psi = -(R*d_angles20_f_all*sense), \
+        d_angles20_on_s = -d_angles20_f_all*mean_stretch - d_angles20_mean_stretch*f_all;
+
+/* part of derivatives: of planar_sheave_coulomb_on_tangent and 1 more */
+#define PLANAR_SHEAVE_PART_OF_DERIVATIVES_13 \
+    const fu_real \
+        d_angles21_f = d_angles21_P*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0) + d_angles21_share*(FU_REAL(P) < 0.0 ? 0.0 : P), \
+        d_angles21_f_all = d_angles21_f*direction, \
+        d_angles21_on_phi = R*d_angles21_f_all*sense, \
+        d_angles21_on_psi = -(R*d_angles21_f_all*sense), \
+        d_angles21_on_s = -d_angles21_f_all*mean_stretch - d_angles21_mean_stretch*f_all;
+
+/* part of derivatives: of planar_sheave_coulomb_on_tangent and 1 more */
+#define PLANAR_SHEAVE_PART_OF_DERIVATIVES_14 \
+    const fu_real \
+        d_lengths10_f = d_lengths10_P*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0), \
+        d_lengths10_f_all = d_lengths10_f*direction, \
+        d_lengths10_on_phi = R*d_lengths10_f_all*sense, \
+        d_lengths10_on_psi = -(R*d_lengths10_f_all*sense), \
+        d_lengths10_on_s = -d_lengths10_f_all*mean_stretch - d_lengths10_mean_stretch*f_all;
+
+/* part of outputs: of planar_sheave_friction_on_tangent and 3 more */
+#define PLANAR_SHEAVE_PART_OF_OUTPUTS_2 \
+    K[0] = d_angles20_on_phi; \
+    K[1] = d_angles21_on_phi; \
+    K[2] = d_lengths10_on_phi; \
+    K[3] = d_span_slope_on_phi[0]; \
+    K[4] = d_span_slope_on_phi[1]; \
+    K[5] = d_angles20_on_psi; \
+    K[6] = d_angles21_on_psi; \
+    K[7] = d_lengths10_on_psi; \
+    K[8] = d_span_slope_on_psi[0]; \
+    K[9] = d_span_slope_on_psi[1]; \
+    K[10] = d_angles20_on_s; \
+    K[11] = d_angles21_on_s; \
+    K[12] = d_lengths10_on_s; \
+    K[13] = d_span_slope_on_s[0]; \
+    K[14] = d_span_slope_on_s[1];
 
 /* mean place of the zone: of planar_sheave_tangent and 1 more */
 #define PLANAR_SHEAVE_MEAN_PLACE_OF_THE_ZONE \
@@ -122,7 +258,7 @@
         k_t_x = k_angle_x*spread + k_middle_x*turn + m01_x*spread_t + m10_x*turn_t, \
         k_t_y = k_angle_y*spread + k_middle_y*turn + m01_y*spread_t + m10_y*turn_t;
 
-/* limit: of planar_sheave_friction and 1 more */
+/* limit: of planar_sheave_friction and 3 more */
 #define PLANAR_SHEAVE_LIMIT \
     const fu_real \
         outwards = R*(g[0]*FU_COS(angles3[1]) + g[1]*FU_SIN(angles3[1])), \
@@ -134,7 +270,7 @@
         inv_share = 1.0/one_more, \
         share = inv_share*(-decay + 1.0);
 
-/* both sides: of planar_sheave_friction_on and 1 more */
+/* both sides: of planar_sheave_friction_on and 3 more */
 #define PLANAR_SHEAVE_BOTH_SIDES \
     const fu_real \
         stretch_before = FU_SQRT(span_slope[0]*span_slope[0] + span_slope[1]*span_slope[1]), \
@@ -143,7 +279,7 @@
         T_behind = A[0]*(stretch_behind - 1.0), \
         mean_stretch = 0.5*stretch_before + 0.5*stretch_behind;
 
-/* limit: of planar_sheave_friction_on and 1 more */
+/* limit: of planar_sheave_friction_on and 3 more */
 #define PLANAR_SHEAVE_LIMIT_2 \
     const fu_real \
         outwards = R*(g[0]*FU_COS(angles2[0]) + g[1]*FU_SIN(angles2[0])), \
@@ -157,21 +293,7 @@
 
 /* outputs: of planar_sheave_friction_on_tangent and 1 more */
 #define PLANAR_SHEAVE_OUTPUTS \
-    K[0] = d_angles20_on_phi; \
-    K[1] = d_angles21_on_phi; \
-    K[2] = d_lengths10_on_phi; \
-    K[3] = d_span_slope_on_phi[0]; \
-    K[4] = d_span_slope_on_phi[1]; \
-    K[5] = d_angles20_on_psi; \
-    K[6] = d_angles21_on_psi; \
-    K[7] = d_lengths10_on_psi; \
-    K[8] = d_span_slope_on_psi[0]; \
-    K[9] = d_span_slope_on_psi[1]; \
-    K[10] = d_angles20_on_s; \
-    K[11] = d_angles21_on_s; \
-    K[12] = d_lengths10_on_s; \
-    K[13] = d_span_slope_on_s[0]; \
-    K[14] = d_span_slope_on_s[1]; \
+    PLANAR_SHEAVE_PART_OF_OUTPUTS_2 \
     D[0] = d_angle_rate_on_phi; \
     D[1] = d_spin_on_phi; \
     D[2] = d_flow_on_phi; \
@@ -182,7 +304,20 @@
     D[7] = d_spin_on_s; \
     D[8] = d_flow_on_s;
 
-/* both sides: of planar_sheave_friction_off and 1 more */
+/* outputs: of planar_sheave_coulomb_on_tangent and 1 more */
+#define PLANAR_SHEAVE_OUTPUTS_2 \
+    PLANAR_SHEAVE_PART_OF_OUTPUTS_2 \
+    D[0] = d_angle_rate_on_phi; \
+    D[1] = 0.0; \
+    D[2] = d_flow_on_phi; \
+    D[3] = d_angle_rate_on_psi; \
+    D[4] = 0.0; \
+    D[5] = d_flow_on_psi; \
+    D[6] = d_angle_rate_on_s; \
+    D[7] = 0.0; \
+    D[8] = d_flow_on_s;
+
+/* both sides: of planar_sheave_friction_off and 3 more */
 #define PLANAR_SHEAVE_BOTH_SIDES_2 \
     const fu_real \
         stretch_before = R*sense*(-angles2[0] + angles2[1])/lengths1[0], \
@@ -191,7 +326,7 @@
         T_behind = A[0]*(stretch_behind - 1.0), \
         mean_stretch = 0.5*stretch_before + 0.5*stretch_behind;
 
-/* limit: of planar_sheave_friction_off and 1 more */
+/* limit: of planar_sheave_friction_off and 3 more */
 #define PLANAR_SHEAVE_LIMIT_3 \
     const fu_real \
         outwards = R*(g[0]*FU_COS(angles2[1]) + g[1]*FU_SIN(angles2[1])), \
@@ -1324,17 +1459,8 @@ void planar_sheave_friction_tangent(const fu_real *A, fu_real sense, fu_real rho
     /* force */
     const fu_real f = share*smooth*(FU_REAL(P) < 0.0 ? 0.0 : P);
     /* derivatives */
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES
     const fu_real
-        d_angles30_stretch_before = -(R*sense/lengths2[0]),
-        d_angles30_T_before = A[0]*d_angles30_stretch_before,
-        d_angles30_mean_stretch = 0.5*d_angles30_stretch_before,
-        d_angles30_inv_mean_stretch = -(d_angles30_mean_stretch*inv_mean_stretch*inv_mean_stretch),
-        d_angles30_drawn_mass = 2.0*d_angles30_inv_mean_stretch*rho,
-        d_angles30_speed = -(d_angles30_mean_stretch*flow),
-        d_angles30_P = d_angles30_T_before + d_angles30_drawn_mass*(-outwards - speed*speed) - 2.0*d_angles30_speed*drawn_mass*speed,
-        d_angles30_decay = 0.5*mu*sense*FU_EXP(-(0.5*mu*sense*(-angles3[0] + angles3[2]))),
-        d_angles30_inv_share = -(d_angles30_decay*inv_share*inv_share),
-        d_angles30_share = -d_angles30_decay*inv_share + d_angles30_inv_share*(-decay + 1.0),
         d_angles30_source = d_angles30_stretch_before*(FU_REAL(flow) < 0.0 ? 1.0 : 0.0),
         d_angles30_w = -(d_angles30_source*flow),
         d_angles30_len_w = d_angles30_w*inv_w*w,
@@ -1343,17 +1469,9 @@ void planar_sheave_friction_tangent(const fu_real *A, fu_real sense, fu_real rho
         d_angles30_f = d_angles30_P*share*smooth*(FU_REAL(P) < 0.0 ? 0.0 : 1.0) + d_angles30_share*smooth*(FU_REAL(P) < 0.0 ? 0.0 : P) + d_angles30_smooth*share*(FU_REAL(P) < 0.0 ? 0.0 : P),
         d_angles30_on_phi = R*d_angles30_f*sense,
         d_angles30_on_psi = -(R*d_angles30_f*sense),
-        d_angles30_on_s = -d_angles30_f*mean_stretch - d_angles30_mean_stretch*f,
-        d_angles31_stretch_before = R*sense/lengths2[0],
-        d_angles31_T_before = A[0]*d_angles31_stretch_before,
-        d_angles31_stretch_behind = -(R*sense/lengths2[1]),
-        d_angles31_T_behind = A[0]*d_angles31_stretch_behind,
-        d_angles31_mean_stretch = 0.5*d_angles31_stretch_before + 0.5*d_angles31_stretch_behind,
-        d_angles31_inv_mean_stretch = -(d_angles31_mean_stretch*inv_mean_stretch*inv_mean_stretch),
-        d_angles31_drawn_mass = 2.0*d_angles31_inv_mean_stretch*rho,
-        d_angles31_outwards = R*(-g[0]*FU_SIN(angles3[1]) + g[1]*FU_COS(angles3[1])),
-        d_angles31_speed = -(d_angles31_mean_stretch*flow),
-        d_angles31_P = d_angles31_T_before + d_angles31_T_behind + d_angles31_drawn_mass*(-outwards - speed*speed) - d_angles31_outwards*drawn_mass - 2.0*d_angles31_speed*drawn_mass*speed,
+        d_angles30_on_s = -d_angles30_f*mean_stretch - d_angles30_mean_stretch*f;
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_2
+    const fu_real
         d_angles31_source = d_angles31_stretch_before*(FU_REAL(flow) < 0.0 ? 1.0 : 0.0) + d_angles31_stretch_behind*(FU_REAL(flow) < 0.0 ? 0.0 : 1.0),
         d_angles31_w = -(d_angles31_source*flow),
         d_angles31_len_w = d_angles31_w*inv_w*w,
@@ -1362,17 +1480,9 @@ void planar_sheave_friction_tangent(const fu_real *A, fu_real sense, fu_real rho
         d_angles31_f = d_angles31_P*share*smooth*(FU_REAL(P) < 0.0 ? 0.0 : 1.0) + d_angles31_smooth*share*(FU_REAL(P) < 0.0 ? 0.0 : P),
         d_angles31_on_phi = R*d_angles31_f*sense,
         d_angles31_on_psi = -(R*d_angles31_f*sense),
-        d_angles31_on_s = -d_angles31_f*mean_stretch - d_angles31_mean_stretch*f,
-        d_angles32_stretch_behind = R*sense/lengths2[1],
-        d_angles32_T_behind = A[0]*d_angles32_stretch_behind,
-        d_angles32_mean_stretch = 0.5*d_angles32_stretch_behind,
-        d_angles32_inv_mean_stretch = -(d_angles32_mean_stretch*inv_mean_stretch*inv_mean_stretch),
-        d_angles32_drawn_mass = 2.0*d_angles32_inv_mean_stretch*rho,
-        d_angles32_speed = -(d_angles32_mean_stretch*flow),
-        d_angles32_P = d_angles32_T_behind + d_angles32_drawn_mass*(-outwards - speed*speed) - 2.0*d_angles32_speed*drawn_mass*speed,
-        d_angles32_decay = -(0.5*mu*sense*FU_EXP(-(0.5*mu*sense*(-angles3[0] + angles3[2])))),
-        d_angles32_inv_share = -(d_angles32_decay*inv_share*inv_share),
-        d_angles32_share = -d_angles32_decay*inv_share + d_angles32_inv_share*(-decay + 1.0),
+        d_angles31_on_s = -d_angles31_f*mean_stretch - d_angles31_mean_stretch*f;
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_3
+    const fu_real
         d_angles32_source = d_angles32_stretch_behind*(FU_REAL(flow) < 0.0 ? 0.0 : 1.0),
         d_angles32_w = -(d_angles32_source*flow),
         d_angles32_len_w = d_angles32_w*inv_w*w,
@@ -1381,14 +1491,9 @@ void planar_sheave_friction_tangent(const fu_real *A, fu_real sense, fu_real rho
         d_angles32_f = d_angles32_P*share*smooth*(FU_REAL(P) < 0.0 ? 0.0 : 1.0) + d_angles32_share*smooth*(FU_REAL(P) < 0.0 ? 0.0 : P) + d_angles32_smooth*share*(FU_REAL(P) < 0.0 ? 0.0 : P),
         d_angles32_on_phi = R*d_angles32_f*sense,
         d_angles32_on_psi = -(R*d_angles32_f*sense),
-        d_angles32_on_s = -d_angles32_f*mean_stretch - d_angles32_mean_stretch*f,
-        d_lengths20_stretch_before = -(R*sense*(-angles3[0] + angles3[1])/(lengths2[0]*lengths2[0])),
-        d_lengths20_T_before = A[0]*d_lengths20_stretch_before,
-        d_lengths20_mean_stretch = 0.5*d_lengths20_stretch_before,
-        d_lengths20_inv_mean_stretch = -(d_lengths20_mean_stretch*inv_mean_stretch*inv_mean_stretch),
-        d_lengths20_drawn_mass = 2.0*d_lengths20_inv_mean_stretch*rho,
-        d_lengths20_speed = -(d_lengths20_mean_stretch*flow),
-        d_lengths20_P = d_lengths20_T_before + d_lengths20_drawn_mass*(-outwards - speed*speed) - 2.0*d_lengths20_speed*drawn_mass*speed,
+        d_angles32_on_s = -d_angles32_f*mean_stretch - d_angles32_mean_stretch*f;
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_4
+    const fu_real
         d_lengths20_source = d_lengths20_stretch_before*(FU_REAL(flow) < 0.0 ? 1.0 : 0.0),
         d_lengths20_w = -(d_lengths20_source*flow),
         d_lengths20_len_w = d_lengths20_w*inv_w*w,
@@ -1397,14 +1502,9 @@ void planar_sheave_friction_tangent(const fu_real *A, fu_real sense, fu_real rho
         d_lengths20_f = d_lengths20_P*share*smooth*(FU_REAL(P) < 0.0 ? 0.0 : 1.0) + d_lengths20_smooth*share*(FU_REAL(P) < 0.0 ? 0.0 : P),
         d_lengths20_on_phi = R*d_lengths20_f*sense,
         d_lengths20_on_psi = -(R*d_lengths20_f*sense),
-        d_lengths20_on_s = -d_lengths20_f*mean_stretch - d_lengths20_mean_stretch*f,
-        d_lengths21_stretch_behind = -(R*sense*(-angles3[1] + angles3[2])/(lengths2[1]*lengths2[1])),
-        d_lengths21_T_behind = A[0]*d_lengths21_stretch_behind,
-        d_lengths21_mean_stretch = 0.5*d_lengths21_stretch_behind,
-        d_lengths21_inv_mean_stretch = -(d_lengths21_mean_stretch*inv_mean_stretch*inv_mean_stretch),
-        d_lengths21_drawn_mass = 2.0*d_lengths21_inv_mean_stretch*rho,
-        d_lengths21_speed = -(d_lengths21_mean_stretch*flow),
-        d_lengths21_P = d_lengths21_T_behind + d_lengths21_drawn_mass*(-outwards - speed*speed) - 2.0*d_lengths21_speed*drawn_mass*speed,
+        d_lengths20_on_s = -d_lengths20_f*mean_stretch - d_lengths20_mean_stretch*f;
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_5
+    const fu_real
         d_lengths21_source = d_lengths21_stretch_behind*(FU_REAL(flow) < 0.0 ? 0.0 : 1.0),
         d_lengths21_w = -(d_lengths21_source*flow),
         d_lengths21_len_w = d_lengths21_w*inv_w*w,
@@ -1413,24 +1513,16 @@ void planar_sheave_friction_tangent(const fu_real *A, fu_real sense, fu_real rho
         d_lengths21_f = d_lengths21_P*share*smooth*(FU_REAL(P) < 0.0 ? 0.0 : 1.0) + d_lengths21_smooth*share*(FU_REAL(P) < 0.0 ? 0.0 : P),
         d_lengths21_on_phi = R*d_lengths21_f*sense,
         d_lengths21_on_psi = -(R*d_lengths21_f*sense),
-        d_lengths21_on_s = -d_lengths21_f*mean_stretch - d_lengths21_mean_stretch*f;
-    PLANAR_SHEAVE_PART_OF_DERIVATIVES
+        d_lengths21_on_s = -d_lengths21_f*mean_stretch - d_lengths21_mean_stretch*f,
+        d_angle_rate_groove = R*sense,
+        d_angle_rate_P = -(2.0*d_angle_rate_groove*drawn_mass*speed);
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_6
+    const fu_real
+        d_flow_speed = -mean_stretch,
+        d_flow_P = -(2.0*d_flow_speed*drawn_mass*speed);
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_7
     /* outputs */
-    K[0] = d_angles30_on_phi;
-    K[1] = d_angles31_on_phi;
-    K[2] = d_angles32_on_phi;
-    K[3] = d_lengths20_on_phi;
-    K[4] = d_lengths21_on_phi;
-    K[5] = d_angles30_on_psi;
-    K[6] = d_angles31_on_psi;
-    K[7] = d_angles32_on_psi;
-    K[8] = d_lengths20_on_psi;
-    K[9] = d_lengths21_on_psi;
-    K[10] = d_angles30_on_s;
-    K[11] = d_angles31_on_s;
-    K[12] = d_angles32_on_s;
-    K[13] = d_lengths20_on_s;
-    K[14] = d_lengths21_on_s;
+    PLANAR_SHEAVE_PART_OF_OUTPUTS
     D[0] = d_angle_rate_on_phi;
     D[1] = d_spin_on_phi;
     D[2] = d_flow_on_phi;
@@ -1440,6 +1532,132 @@ void planar_sheave_friction_tangent(const fu_real *A, fu_real sense, fu_real rho
     D[6] = d_angle_rate_on_s;
     D[7] = d_spin_on_s;
     D[8] = d_flow_on_s;
+}
+
+/* Coulomb friction at a point between a zone and a zone (Euler's belt equation); 15 add, 30 mul, 4 div, 1 cos, 1 sin, 1 exp */
+void planar_sheave_coulomb(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, const fu_real *angles3, const fu_real *lengths2, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *numbers, fu_real *row, fu_real *column)
+{
+    /* both sides */
+    const fu_real
+        stretch_before = R*sense*(-angles3[0] + angles3[1])/lengths2[0],
+        stretch_behind = R*sense*(-angles3[1] + angles3[2])/lengths2[1],
+        T_before = A[0]*(stretch_before - 1.0),
+        T_behind = A[0]*(stretch_behind - 1.0),
+        mean_stretch = 0.5*stretch_before + 0.5*stretch_behind;
+    /* sliding */
+    const fu_real
+        source = (FU_REAL(flow) < 0.0 ? stretch_before : stretch_behind),
+        groove = R*angle_rate*sense,
+        w = -R*sense*spin - flow*source + groove,
+        speed = -flow*mean_stretch + groove;
+    PLANAR_SHEAVE_LIMIT
+    /* force */
+    const fu_real
+        f = share*(FU_REAL(P) < 0.0 ? 0.0 : P),
+        d_angle_rate_groove = R*sense,
+        d_spin_w = -(R*sense),
+        d_flow_w = -source,
+        on_phi = R*sense,
+        on_psi = -(R*sense),
+        on_s = -mean_stretch;
+    /* outputs */
+    numbers[0] = w;
+    numbers[1] = f;
+    row[0] = d_angle_rate_groove;
+    row[1] = d_spin_w;
+    row[2] = d_flow_w;
+    column[0] = on_phi;
+    column[1] = on_psi;
+    column[2] = on_s;
+}
+
+/* derivatives of Coulomb friction between a zone and a zone (Euler's belt equation); 48 add, 190 mul, 10 div, 2 cos, 2 sin, 3 exp */
+void planar_sheave_coulomb_tangent(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, const fu_real *angles3, const fu_real *lengths2, fu_real angle_rate, fu_real spin, fu_real flow, fu_real held, fu_real direction, fu_real *K, fu_real *D)
+{
+    (void)spin;
+    /* both sides */
+    const fu_real
+        stretch_before = R*sense*(-angles3[0] + angles3[1])/lengths2[0],
+        stretch_behind = R*sense*(-angles3[1] + angles3[2])/lengths2[1],
+        T_before = A[0]*(stretch_before - 1.0),
+        T_behind = A[0]*(stretch_behind - 1.0),
+        mean_stretch = 0.5*stretch_before + 0.5*stretch_behind;
+    /* sliding */
+    const fu_real
+        groove = R*angle_rate*sense,
+        speed = -flow*mean_stretch + groove;
+    PLANAR_SHEAVE_LIMIT
+    /* force */
+    const fu_real
+        f = share*(FU_REAL(P) < 0.0 ? 0.0 : P),
+        f_all = direction*f + held;
+    /* derivatives */
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES
+    const fu_real
+        d_angles30_f = d_angles30_P*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0) + d_angles30_share*(FU_REAL(P) < 0.0 ? 0.0 : P),
+        d_angles30_f_all = d_angles30_f*direction,
+        d_angles30_on_phi = R*d_angles30_f_all*sense,
+        d_angles30_on_psi = -(R*d_angles30_f_all*sense),
+        d_angles30_on_s = -d_angles30_f_all*mean_stretch - d_angles30_mean_stretch*f_all;
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_2
+    const fu_real
+        d_angles31_f = d_angles31_P*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0),
+        d_angles31_f_all = d_angles31_f*direction,
+        d_angles31_on_phi = R*d_angles31_f_all*sense,
+        d_angles31_on_psi = -(R*d_angles31_f_all*sense),
+        d_angles31_on_s = -d_angles31_f_all*mean_stretch - d_angles31_mean_stretch*f_all;
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_3
+    const fu_real
+        d_angles32_f = d_angles32_P*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0) + d_angles32_share*(FU_REAL(P) < 0.0 ? 0.0 : P),
+        d_angles32_f_all = d_angles32_f*direction,
+        d_angles32_on_phi = R*d_angles32_f_all*sense,
+        d_angles32_on_psi = -(R*d_angles32_f_all*sense),
+        d_angles32_on_s = -d_angles32_f_all*mean_stretch - d_angles32_mean_stretch*f_all;
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_4
+    const fu_real
+        d_lengths20_f = d_lengths20_P*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0),
+        d_lengths20_f_all = d_lengths20_f*direction,
+        d_lengths20_on_phi = R*d_lengths20_f_all*sense,
+        d_lengths20_on_psi = -(R*d_lengths20_f_all*sense),
+        d_lengths20_on_s = -d_lengths20_f_all*mean_stretch - d_lengths20_mean_stretch*f_all;
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_5
+    const fu_real
+        d_lengths21_f = d_lengths21_P*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0),
+        d_lengths21_f_all = d_lengths21_f*direction,
+        d_lengths21_on_phi = R*d_lengths21_f_all*sense,
+        d_lengths21_on_psi = -(R*d_lengths21_f_all*sense),
+        d_lengths21_on_s = -d_lengths21_f_all*mean_stretch - d_lengths21_mean_stretch*f_all,
+        d_angle_rate_groove = R*sense,
+        d_angle_rate_P = -(2.0*d_angle_rate_groove*drawn_mass*speed);
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_8
+    const fu_real
+        d_flow_speed = -mean_stretch,
+        d_flow_P = -(2.0*d_flow_speed*drawn_mass*speed),
+        d_flow_f = d_flow_P*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0),
+        d_flow_f_all = d_flow_f*direction,
+        d_flow_on_phi = R*d_flow_f_all*sense,
+        d_flow_on_psi = -(R*d_flow_f_all*sense),
+        d_flow_on_s = -(d_flow_f_all*mean_stretch);
+    /* outputs */
+    PLANAR_SHEAVE_PART_OF_OUTPUTS
+    D[0] = d_angle_rate_on_phi;
+    D[1] = 0.0;
+    D[2] = d_flow_on_phi;
+    D[3] = d_angle_rate_on_psi;
+    D[4] = 0.0;
+    D[5] = d_flow_on_psi;
+    D[6] = d_angle_rate_on_s;
+    D[7] = 0.0;
+    D[8] = d_flow_on_s;
+}
+
+/* rate of w at zero accelerations between a zone and a zone (Euler's belt equation); 7 add, 18 mul, 6 div */
+void planar_sheave_coulomb_motion(fu_real sense, fu_real R, const fu_real *angles3, const fu_real *lengths2, const fu_real *angles3_rate, const fu_real *lengths2_rate, fu_real flow, fu_real angle_acc, fu_real *Q_d)
+{
+    /* rates */
+    const fu_real dt_source = angles3_rate[0]*(FU_REAL(flow) < 0.0 ? -(R*sense/lengths2[0]) : 0.0) + angles3_rate[1]*(FU_REAL(flow) < 0.0 ? R*sense/lengths2[0] : -(R*sense/lengths2[1])) + angles3_rate[2]*(FU_REAL(flow) < 0.0 ? 0.0 : R*sense/lengths2[1]) + lengths2_rate[0]*(FU_REAL(flow) < 0.0 ? -(R*sense*(-angles3[0] + angles3[1])/(lengths2[0]*lengths2[0])) : 0.0) + lengths2_rate[1]*(FU_REAL(flow) < 0.0 ? 0.0 : -(R*sense*(-angles3[1] + angles3[2])/(lengths2[1]*lengths2[1])));
+    /* outputs */
+    Q_d[0] = R*angle_acc*sense - dt_source*flow;
 }
 
 /* friction at a point between a span and a zone (Euler's belt equation); 18 add, 38 mul, 4 div, 2 sqrt, 1 cos, 1 sin, 1 exp */
@@ -1506,7 +1724,7 @@ void planar_sheave_friction_on_tangent(const fu_real *A, fu_real sense, fu_real 
         d_angles20_inv_share = -(d_angles20_decay*inv_share*inv_share),
         d_angles20_share = -d_angles20_decay*inv_share + d_angles20_inv_share*(-decay + 1.0),
         d_angles20_source = d_angles20_stretch_behind*(FU_REAL(flow) < 0.0 ? 0.0 : 1.0);
-    PLANAR_SHEAVE_PART_OF_DERIVATIVES_2
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_9
     const fu_real
         d_angles21_stretch_behind = R*sense/lengths1[0],
         d_angles21_T_behind = A[0]*d_angles21_stretch_behind,
@@ -1519,7 +1737,7 @@ void planar_sheave_friction_on_tangent(const fu_real *A, fu_real sense, fu_real 
         d_angles21_inv_share = -(d_angles21_decay*inv_share*inv_share),
         d_angles21_share = -d_angles21_decay*inv_share + d_angles21_inv_share*(-decay + 1.0),
         d_angles21_source = d_angles21_stretch_behind*(FU_REAL(flow) < 0.0 ? 0.0 : 1.0);
-    PLANAR_SHEAVE_PART_OF_DERIVATIVES_3
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_10
     const fu_real
         d_lengths10_stretch_behind = -(R*sense*(-angles2[0] + angles2[1])/(lengths1[0]*lengths1[0])),
         d_lengths10_T_behind = A[0]*d_lengths10_stretch_behind,
@@ -1529,7 +1747,7 @@ void planar_sheave_friction_on_tangent(const fu_real *A, fu_real sense, fu_real 
         d_lengths10_speed = -(d_lengths10_mean_stretch*flow),
         d_lengths10_P = d_lengths10_T_behind + d_lengths10_drawn_mass*(-outwards - speed*speed) - 2.0*d_lengths10_speed*drawn_mass*speed,
         d_lengths10_source = d_lengths10_stretch_behind*(FU_REAL(flow) < 0.0 ? 0.0 : 1.0);
-    PLANAR_SHEAVE_PART_OF_DERIVATIVES_4
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_11
     FU_EACH(point, 2,
         d_span_slope_stretch_before[point] = span_slope[point]/stretch_before;
         d_span_slope_T_before[point] = A[0]*d_span_slope_stretch_before[point];
@@ -1547,8 +1765,135 @@ void planar_sheave_friction_on_tangent(const fu_real *A, fu_real sense, fu_real 
         d_span_slope_on_phi[point] = R*d_span_slope_f[point]*sense;
         d_span_slope_on_psi[point] = -(R*d_span_slope_f[point]*sense);
         d_span_slope_on_s[point] = -d_span_slope_f[point]*mean_stretch - d_span_slope_mean_stretch[point]*f;)
-    PLANAR_SHEAVE_PART_OF_DERIVATIVES
+    const fu_real
+        d_angle_rate_groove = R*sense,
+        d_angle_rate_P = -(2.0*d_angle_rate_groove*drawn_mass*speed);
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_6
+    const fu_real
+        d_flow_speed = -mean_stretch,
+        d_flow_P = -(2.0*d_flow_speed*drawn_mass*speed);
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_7
     PLANAR_SHEAVE_OUTPUTS
+}
+
+/* Coulomb friction at a point between a span and a zone (Euler's belt equation); 15 add, 30 mul, 3 div, 1 sqrt, 1 cos, 1 sin, 1 exp */
+void planar_sheave_coulomb_on(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *numbers, fu_real *row, fu_real *column)
+{
+    PLANAR_SHEAVE_BOTH_SIDES
+    /* sliding */
+    const fu_real
+        source = (FU_REAL(flow) < 0.0 ? stretch_before : stretch_behind),
+        groove = R*angle_rate*sense,
+        w = -R*sense*spin - flow*source + groove,
+        speed = -flow*mean_stretch + groove;
+    PLANAR_SHEAVE_LIMIT_2
+    /* force */
+    const fu_real
+        f = share*(FU_REAL(P) < 0.0 ? 0.0 : P),
+        d_angle_rate_groove = R*sense,
+        d_spin_w = -(R*sense),
+        d_flow_w = -source,
+        on_phi = R*sense,
+        on_psi = -(R*sense),
+        on_s = -mean_stretch;
+    /* outputs */
+    numbers[0] = w;
+    numbers[1] = f;
+    row[0] = d_angle_rate_groove;
+    row[1] = d_spin_w;
+    row[2] = d_flow_w;
+    column[0] = on_phi;
+    column[1] = on_psi;
+    column[2] = on_s;
+}
+
+/* derivatives of Coulomb friction between a span and a zone (Euler's belt equation); 45 add, 183 mul, 8 div, 1 sqrt, 2 cos, 2 sin, 3 exp */
+void planar_sheave_coulomb_on_tangent(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real held, fu_real direction, fu_real *K, fu_real *D)
+{
+    (void)spin;
+    PLANAR_SHEAVE_BOTH_SIDES
+    /* sliding */
+    const fu_real
+        groove = R*angle_rate*sense,
+        speed = -flow*mean_stretch + groove;
+    PLANAR_SHEAVE_LIMIT_2
+    /* force */
+    const fu_real
+        f = share*(FU_REAL(P) < 0.0 ? 0.0 : P),
+        f_all = direction*f + held;
+    /* derivatives */
+    fu_real d_span_slope_stretch_before[2], d_span_slope_T_before[2], d_span_slope_mean_stretch[2],
+        d_span_slope_inv_mean_stretch[2], d_span_slope_drawn_mass[2], d_span_slope_speed[2], d_span_slope_P[2],
+        d_span_slope_f[2], d_span_slope_f_all[2], d_span_slope_on_phi[2], d_span_slope_on_psi[2], d_span_slope_on_s[2];
+    const fu_real
+        d_angles20_stretch_behind = -(R*sense/lengths1[0]),
+        d_angles20_T_behind = A[0]*d_angles20_stretch_behind,
+        d_angles20_mean_stretch = 0.5*d_angles20_stretch_behind,
+        d_angles20_inv_mean_stretch = -(d_angles20_mean_stretch*inv_mean_stretch*inv_mean_stretch),
+        d_angles20_drawn_mass = 2.0*d_angles20_inv_mean_stretch*rho,
+        d_angles20_outwards = R*(-g[0]*FU_SIN(angles2[0]) + g[1]*FU_COS(angles2[0])),
+        d_angles20_speed = -(d_angles20_mean_stretch*flow),
+        d_angles20_P = d_angles20_T_behind + d_angles20_drawn_mass*(-outwards - speed*speed) - d_angles20_outwards*drawn_mass - 2.0*d_angles20_speed*drawn_mass*speed,
+        d_angles20_decay = 0.5*mu*sense*FU_EXP(-(0.5*mu*sense*(-angles2[0] + angles2[1]))),
+        d_angles20_inv_share = -(d_angles20_decay*inv_share*inv_share),
+        d_angles20_share = -d_angles20_decay*inv_share + d_angles20_inv_share*(-decay + 1.0);
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_12
+    const fu_real
+        d_angles21_stretch_behind = R*sense/lengths1[0],
+        d_angles21_T_behind = A[0]*d_angles21_stretch_behind,
+        d_angles21_mean_stretch = 0.5*d_angles21_stretch_behind,
+        d_angles21_inv_mean_stretch = -(d_angles21_mean_stretch*inv_mean_stretch*inv_mean_stretch),
+        d_angles21_drawn_mass = 2.0*d_angles21_inv_mean_stretch*rho,
+        d_angles21_speed = -(d_angles21_mean_stretch*flow),
+        d_angles21_P = d_angles21_T_behind + d_angles21_drawn_mass*(-outwards - speed*speed) - 2.0*d_angles21_speed*drawn_mass*speed,
+        d_angles21_decay = -(0.5*mu*sense*FU_EXP(-(0.5*mu*sense*(-angles2[0] + angles2[1])))),
+        d_angles21_inv_share = -(d_angles21_decay*inv_share*inv_share),
+        d_angles21_share = -d_angles21_decay*inv_share + d_angles21_inv_share*(-decay + 1.0);
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_13
+    const fu_real
+        d_lengths10_stretch_behind = -(R*sense*(-angles2[0] + angles2[1])/(lengths1[0]*lengths1[0])),
+        d_lengths10_T_behind = A[0]*d_lengths10_stretch_behind,
+        d_lengths10_mean_stretch = 0.5*d_lengths10_stretch_behind,
+        d_lengths10_inv_mean_stretch = -(d_lengths10_mean_stretch*inv_mean_stretch*inv_mean_stretch),
+        d_lengths10_drawn_mass = 2.0*d_lengths10_inv_mean_stretch*rho,
+        d_lengths10_speed = -(d_lengths10_mean_stretch*flow),
+        d_lengths10_P = d_lengths10_T_behind + d_lengths10_drawn_mass*(-outwards - speed*speed) - 2.0*d_lengths10_speed*drawn_mass*speed;
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_14
+    FU_EACH(point, 2,
+        d_span_slope_stretch_before[point] = span_slope[point]/stretch_before;
+        d_span_slope_T_before[point] = A[0]*d_span_slope_stretch_before[point];
+        d_span_slope_mean_stretch[point] = 0.5*d_span_slope_stretch_before[point];
+        d_span_slope_inv_mean_stretch[point] = -(d_span_slope_mean_stretch[point]*inv_mean_stretch*inv_mean_stretch);
+        d_span_slope_drawn_mass[point] = 2.0*d_span_slope_inv_mean_stretch[point]*rho;
+        d_span_slope_speed[point] = -(d_span_slope_mean_stretch[point]*flow);
+        d_span_slope_P[point] = d_span_slope_T_before[point] + d_span_slope_drawn_mass[point]*(-outwards - speed*speed) - 2.0*d_span_slope_speed[point]*drawn_mass*speed;
+        d_span_slope_f[point] = d_span_slope_P[point]*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0);
+        d_span_slope_f_all[point] = d_span_slope_f[point]*direction;
+        d_span_slope_on_phi[point] = R*d_span_slope_f_all[point]*sense;
+        d_span_slope_on_psi[point] = -(R*d_span_slope_f_all[point]*sense);
+        d_span_slope_on_s[point] = -d_span_slope_f_all[point]*mean_stretch - d_span_slope_mean_stretch[point]*f_all;)
+    const fu_real
+        d_angle_rate_groove = R*sense,
+        d_angle_rate_P = -(2.0*d_angle_rate_groove*drawn_mass*speed);
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_8
+    const fu_real
+        d_flow_speed = -mean_stretch,
+        d_flow_P = -(2.0*d_flow_speed*drawn_mass*speed),
+        d_flow_f = d_flow_P*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0),
+        d_flow_f_all = d_flow_f*direction,
+        d_flow_on_phi = R*d_flow_f_all*sense,
+        d_flow_on_psi = -(R*d_flow_f_all*sense),
+        d_flow_on_s = -(d_flow_f_all*mean_stretch);
+    PLANAR_SHEAVE_OUTPUTS_2
+}
+
+/* rate of w at zero accelerations between a span and a zone (Euler's belt equation); 8 add, 17 mul, 5 div, 2 sqrt */
+void planar_sheave_coulomb_on_motion(fu_real sense, fu_real R, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, const fu_real *angles2_rate, const fu_real *lengths1_rate, const fu_real *span_slope_rate, fu_real flow, fu_real angle_acc, fu_real *Q_d)
+{
+    /* rates */
+    const fu_real dt_source = angles2_rate[0]*(FU_REAL(flow) < 0.0 ? 0.0 : -(R*sense/lengths1[0])) + angles2_rate[1]*(FU_REAL(flow) < 0.0 ? 0.0 : R*sense/lengths1[0]) + lengths1_rate[0]*(FU_REAL(flow) < 0.0 ? 0.0 : -(R*sense*(-angles2[0] + angles2[1])/(lengths1[0]*lengths1[0]))) + span_slope_rate[0]*(FU_REAL(flow) < 0.0 ? span_slope[0]/(FU_SQRT(span_slope[0]*span_slope[0] + span_slope[1]*span_slope[1])) : 0.0) + span_slope_rate[1]*(FU_REAL(flow) < 0.0 ? span_slope[1]/(FU_SQRT(span_slope[0]*span_slope[0] + span_slope[1]*span_slope[1])) : 0.0);
+    /* outputs */
+    Q_d[0] = R*angle_acc*sense - dt_source*flow;
 }
 
 /* friction at a point between a zone and a span (Euler's belt equation); 18 add, 38 mul, 4 div, 2 sqrt, 1 cos, 1 sin, 1 exp */
@@ -1614,7 +1959,7 @@ void planar_sheave_friction_off_tangent(const fu_real *A, fu_real sense, fu_real
         d_angles20_inv_share = -(d_angles20_decay*inv_share*inv_share),
         d_angles20_share = -d_angles20_decay*inv_share + d_angles20_inv_share*(-decay + 1.0),
         d_angles20_source = d_angles20_stretch_before*(FU_REAL(flow) < 0.0 ? 1.0 : 0.0);
-    PLANAR_SHEAVE_PART_OF_DERIVATIVES_2
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_9
     const fu_real
         d_angles21_stretch_before = R*sense/lengths1[0],
         d_angles21_T_before = A[0]*d_angles21_stretch_before,
@@ -1628,7 +1973,7 @@ void planar_sheave_friction_off_tangent(const fu_real *A, fu_real sense, fu_real
         d_angles21_inv_share = -(d_angles21_decay*inv_share*inv_share),
         d_angles21_share = -d_angles21_decay*inv_share + d_angles21_inv_share*(-decay + 1.0),
         d_angles21_source = d_angles21_stretch_before*(FU_REAL(flow) < 0.0 ? 1.0 : 0.0);
-    PLANAR_SHEAVE_PART_OF_DERIVATIVES_3
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_10
     const fu_real
         d_lengths10_stretch_before = -(R*sense*(-angles2[0] + angles2[1])/(lengths1[0]*lengths1[0])),
         d_lengths10_T_before = A[0]*d_lengths10_stretch_before,
@@ -1638,7 +1983,7 @@ void planar_sheave_friction_off_tangent(const fu_real *A, fu_real sense, fu_real
         d_lengths10_speed = -(d_lengths10_mean_stretch*flow),
         d_lengths10_P = d_lengths10_T_before + d_lengths10_drawn_mass*(-outwards - speed*speed) - 2.0*d_lengths10_speed*drawn_mass*speed,
         d_lengths10_source = d_lengths10_stretch_before*(FU_REAL(flow) < 0.0 ? 1.0 : 0.0);
-    PLANAR_SHEAVE_PART_OF_DERIVATIVES_4
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_11
     FU_EACH(point, 2,
         d_span_slope_stretch_behind[point] = span_slope[point]/stretch_behind;
         d_span_slope_T_behind[point] = A[0]*d_span_slope_stretch_behind[point];
@@ -1656,8 +2001,135 @@ void planar_sheave_friction_off_tangent(const fu_real *A, fu_real sense, fu_real
         d_span_slope_on_phi[point] = R*d_span_slope_f[point]*sense;
         d_span_slope_on_psi[point] = -(R*d_span_slope_f[point]*sense);
         d_span_slope_on_s[point] = -d_span_slope_f[point]*mean_stretch - d_span_slope_mean_stretch[point]*f;)
-    PLANAR_SHEAVE_PART_OF_DERIVATIVES
+    const fu_real
+        d_angle_rate_groove = R*sense,
+        d_angle_rate_P = -(2.0*d_angle_rate_groove*drawn_mass*speed);
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_6
+    const fu_real
+        d_flow_speed = -mean_stretch,
+        d_flow_P = -(2.0*d_flow_speed*drawn_mass*speed);
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_7
     PLANAR_SHEAVE_OUTPUTS
+}
+
+/* Coulomb friction at a point between a zone and a span (Euler's belt equation); 15 add, 30 mul, 3 div, 1 sqrt, 1 cos, 1 sin, 1 exp */
+void planar_sheave_coulomb_off(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *numbers, fu_real *row, fu_real *column)
+{
+    PLANAR_SHEAVE_BOTH_SIDES_2
+    /* sliding */
+    const fu_real
+        source = (FU_REAL(flow) < 0.0 ? stretch_before : stretch_behind),
+        groove = R*angle_rate*sense,
+        w = -R*sense*spin - flow*source + groove,
+        speed = -flow*mean_stretch + groove;
+    PLANAR_SHEAVE_LIMIT_3
+    /* force */
+    const fu_real
+        f = share*(FU_REAL(P) < 0.0 ? 0.0 : P),
+        d_angle_rate_groove = R*sense,
+        d_spin_w = -(R*sense),
+        d_flow_w = -source,
+        on_phi = R*sense,
+        on_psi = -(R*sense),
+        on_s = -mean_stretch;
+    /* outputs */
+    numbers[0] = w;
+    numbers[1] = f;
+    row[0] = d_angle_rate_groove;
+    row[1] = d_spin_w;
+    row[2] = d_flow_w;
+    column[0] = on_phi;
+    column[1] = on_psi;
+    column[2] = on_s;
+}
+
+/* derivatives of Coulomb friction between a zone and a span (Euler's belt equation); 45 add, 183 mul, 8 div, 1 sqrt, 2 cos, 2 sin, 3 exp */
+void planar_sheave_coulomb_off_tangent(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real held, fu_real direction, fu_real *K, fu_real *D)
+{
+    (void)spin;
+    PLANAR_SHEAVE_BOTH_SIDES_2
+    /* sliding */
+    const fu_real
+        groove = R*angle_rate*sense,
+        speed = -flow*mean_stretch + groove;
+    PLANAR_SHEAVE_LIMIT_3
+    /* force */
+    const fu_real
+        f = share*(FU_REAL(P) < 0.0 ? 0.0 : P),
+        f_all = direction*f + held;
+    /* derivatives */
+    fu_real d_span_slope_stretch_behind[2], d_span_slope_T_behind[2], d_span_slope_mean_stretch[2],
+        d_span_slope_inv_mean_stretch[2], d_span_slope_drawn_mass[2], d_span_slope_speed[2], d_span_slope_P[2],
+        d_span_slope_f[2], d_span_slope_f_all[2], d_span_slope_on_phi[2], d_span_slope_on_psi[2], d_span_slope_on_s[2];
+    const fu_real
+        d_angles20_stretch_before = -(R*sense/lengths1[0]),
+        d_angles20_T_before = A[0]*d_angles20_stretch_before,
+        d_angles20_mean_stretch = 0.5*d_angles20_stretch_before,
+        d_angles20_inv_mean_stretch = -(d_angles20_mean_stretch*inv_mean_stretch*inv_mean_stretch),
+        d_angles20_drawn_mass = 2.0*d_angles20_inv_mean_stretch*rho,
+        d_angles20_speed = -(d_angles20_mean_stretch*flow),
+        d_angles20_P = d_angles20_T_before + d_angles20_drawn_mass*(-outwards - speed*speed) - 2.0*d_angles20_speed*drawn_mass*speed,
+        d_angles20_decay = 0.5*mu*sense*FU_EXP(-(0.5*mu*sense*(-angles2[0] + angles2[1]))),
+        d_angles20_inv_share = -(d_angles20_decay*inv_share*inv_share),
+        d_angles20_share = -d_angles20_decay*inv_share + d_angles20_inv_share*(-decay + 1.0);
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_12
+    const fu_real
+        d_angles21_stretch_before = R*sense/lengths1[0],
+        d_angles21_T_before = A[0]*d_angles21_stretch_before,
+        d_angles21_mean_stretch = 0.5*d_angles21_stretch_before,
+        d_angles21_inv_mean_stretch = -(d_angles21_mean_stretch*inv_mean_stretch*inv_mean_stretch),
+        d_angles21_drawn_mass = 2.0*d_angles21_inv_mean_stretch*rho,
+        d_angles21_outwards = R*(-g[0]*FU_SIN(angles2[1]) + g[1]*FU_COS(angles2[1])),
+        d_angles21_speed = -(d_angles21_mean_stretch*flow),
+        d_angles21_P = d_angles21_T_before + d_angles21_drawn_mass*(-outwards - speed*speed) - d_angles21_outwards*drawn_mass - 2.0*d_angles21_speed*drawn_mass*speed,
+        d_angles21_decay = -(0.5*mu*sense*FU_EXP(-(0.5*mu*sense*(-angles2[0] + angles2[1])))),
+        d_angles21_inv_share = -(d_angles21_decay*inv_share*inv_share),
+        d_angles21_share = -d_angles21_decay*inv_share + d_angles21_inv_share*(-decay + 1.0);
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_13
+    const fu_real
+        d_lengths10_stretch_before = -(R*sense*(-angles2[0] + angles2[1])/(lengths1[0]*lengths1[0])),
+        d_lengths10_T_before = A[0]*d_lengths10_stretch_before,
+        d_lengths10_mean_stretch = 0.5*d_lengths10_stretch_before,
+        d_lengths10_inv_mean_stretch = -(d_lengths10_mean_stretch*inv_mean_stretch*inv_mean_stretch),
+        d_lengths10_drawn_mass = 2.0*d_lengths10_inv_mean_stretch*rho,
+        d_lengths10_speed = -(d_lengths10_mean_stretch*flow),
+        d_lengths10_P = d_lengths10_T_before + d_lengths10_drawn_mass*(-outwards - speed*speed) - 2.0*d_lengths10_speed*drawn_mass*speed;
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_14
+    FU_EACH(point, 2,
+        d_span_slope_stretch_behind[point] = span_slope[point]/stretch_behind;
+        d_span_slope_T_behind[point] = A[0]*d_span_slope_stretch_behind[point];
+        d_span_slope_mean_stretch[point] = 0.5*d_span_slope_stretch_behind[point];
+        d_span_slope_inv_mean_stretch[point] = -(d_span_slope_mean_stretch[point]*inv_mean_stretch*inv_mean_stretch);
+        d_span_slope_drawn_mass[point] = 2.0*d_span_slope_inv_mean_stretch[point]*rho;
+        d_span_slope_speed[point] = -(d_span_slope_mean_stretch[point]*flow);
+        d_span_slope_P[point] = d_span_slope_T_behind[point] + d_span_slope_drawn_mass[point]*(-outwards - speed*speed) - 2.0*d_span_slope_speed[point]*drawn_mass*speed;
+        d_span_slope_f[point] = d_span_slope_P[point]*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0);
+        d_span_slope_f_all[point] = d_span_slope_f[point]*direction;
+        d_span_slope_on_phi[point] = R*d_span_slope_f_all[point]*sense;
+        d_span_slope_on_psi[point] = -(R*d_span_slope_f_all[point]*sense);
+        d_span_slope_on_s[point] = -d_span_slope_f_all[point]*mean_stretch - d_span_slope_mean_stretch[point]*f_all;)
+    const fu_real
+        d_angle_rate_groove = R*sense,
+        d_angle_rate_P = -(2.0*d_angle_rate_groove*drawn_mass*speed);
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_8
+    const fu_real
+        d_flow_speed = -mean_stretch,
+        d_flow_P = -(2.0*d_flow_speed*drawn_mass*speed),
+        d_flow_f = d_flow_P*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0),
+        d_flow_f_all = d_flow_f*direction,
+        d_flow_on_phi = R*d_flow_f_all*sense,
+        d_flow_on_psi = -(R*d_flow_f_all*sense),
+        d_flow_on_s = -(d_flow_f_all*mean_stretch);
+    PLANAR_SHEAVE_OUTPUTS_2
+}
+
+/* rate of w at zero accelerations between a zone and a span (Euler's belt equation); 8 add, 17 mul, 5 div, 2 sqrt */
+void planar_sheave_coulomb_off_motion(fu_real sense, fu_real R, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, const fu_real *angles2_rate, const fu_real *lengths1_rate, const fu_real *span_slope_rate, fu_real flow, fu_real angle_acc, fu_real *Q_d)
+{
+    /* rates */
+    const fu_real dt_source = angles2_rate[0]*(FU_REAL(flow) < 0.0 ? -(R*sense/lengths1[0]) : 0.0) + angles2_rate[1]*(FU_REAL(flow) < 0.0 ? R*sense/lengths1[0] : 0.0) + lengths1_rate[0]*(FU_REAL(flow) < 0.0 ? -(R*sense*(-angles2[0] + angles2[1])/(lengths1[0]*lengths1[0])) : 0.0) + span_slope_rate[0]*(FU_REAL(flow) < 0.0 ? 0.0 : span_slope[0]/(FU_SQRT(span_slope[0]*span_slope[0] + span_slope[1]*span_slope[1]))) + span_slope_rate[1]*(FU_REAL(flow) < 0.0 ? 0.0 : span_slope[1]/(FU_SQRT(span_slope[0]*span_slope[0] + span_slope[1]*span_slope[1])));
+    /* outputs */
+    Q_d[0] = R*angle_acc*sense - dt_source*flow;
 }
 
 /* condition and elastic energy of a short wrap, and their derivatives; 87 add, 275 mul, 35 div, 2 sqrt */

@@ -6,6 +6,10 @@ of both sides on s, so that it is the jump of the tension. Of a point with the s
 tanh(mu theta/2) (P- + P+), with which the normal forces on an angle of both sides differ by exp(mu theta) (Euler's belt
 equation). P = T - rho/lambda (v^2 + R g . n), n from the centre to the point: the inertia of the turn and the weight
 are those of the stretched rope. Beside a tangent point the stretch of the span is that of its slope.
+
+Regularised friction is the limit times w/sqrt(w^2 + v0^2). Coulomb friction that sticks is a multiplier f with w = 0;
+where it slides, f is the limit in a direction. Since f acts on s by the mean stretch and w has that of one side, a
+sticking point through which material passes takes f s' times half the jump of the stretch: creep.
 """
 
 from __future__ import annotations
@@ -15,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 import sympy as sp
 
-from ..codegen.program import Program, jacobian
+from ..codegen.program import DirectionalDerivative, Program, jacobian
 
 DIM = 2
 SOURCE = "Euler's belt equation"
@@ -29,79 +33,190 @@ def _program(kernel: str, doc: str) -> Program:
 class Beside:
     """What is before and behind a point of friction: a zone of the wrap, or a span, of which the slope is known."""
 
-    name: str
+    suffix: str
     before: str
     behind: str
 
+    @property
+    def sides(self) -> tuple[str, str]:
+        """Return what is before and behind it."""
+        return self.before, self.behind
 
-POINTS = (Beside("friction", "zone", "zone"), Beside("friction_on", "span", "zone"),
-          Beside("friction_off", "zone", "span"))
+    @property
+    def zones(self) -> int:
+        """Return the number of zones beside it."""
+        return self.sides.count("zone")
+
+    @property
+    def between(self) -> str:
+        """Return where it lies, in words."""
+        return f"between a {self.before} and a {self.behind}"
+
+
+POINTS = (Beside("", "zone", "zone"), Beside("_on", "span", "zone"), Beside("_off", "zone", "span"))
 """A point between two zones; the point where the rope runs on; the point where it runs off."""
 
 
-def _friction(p: Program, beside: Beside) -> tuple[list[sp.Symbol], list[sp.Symbol], np.ndarray, dict[str, sp.Expr]]:
-    """Stage: the force of friction at a point; return configuration, rates, forces, and numbers."""
-    A = p.input("A", 2, "N, N m^2", "axial and bending stiffness EA, EI")
-    sense = p.input("sense", (), "1", "1 for travel towards greater angles, else -1")
-    rho, R = p.input("rho", (), "kg/m", "mass of a length"), p.input("R", (), "m", "radius to the axis of the rope")
-    g = p.input("g", DIM, "m/s^2", "gravity")
-    mu = p.input("mu", (), "1", "coefficient of friction")
-    v0 = p.input("v0", (), "m/s", "speed at which friction is 0.7 of its limit")
-    zones = (beside.before, beside.behind).count("zone")
+class _Point:
+    """Inputs of a point of friction, and the stages of its sliding speed w, and of the limit."""
+
+    def __init__(self, p: Program, beside: Beside, *, is_regularised: bool):
+        self.p, self.beside = p, beside
+        self.A = p.input("A", 2, "N, N m^2", "axial and bending stiffness EA, EI")
+        self.sense = p.input("sense", (), "1", "1 for travel towards greater angles, else -1")
+        self.rho = p.input("rho", (), "kg/m", "mass of a length")
+        self.R = p.input("R", (), "m", "radius to the axis of the rope")
+        self.g = p.input("g", DIM, "m/s^2", "gravity")
+        self.mu = p.input("mu", (), "1", "coefficient of friction")
+        self.v0 = p.input("v0", (), "m/s", "speed at which friction is 0.7 of its limit") if is_regularised else None
+        self.phi, self.length, self.slope = _places(p, beside)
+        self.phi_rate, self.psi_rate, self.s_rate = self.rates = _rates(p)
+        p.stage("both sides")
+        self.stretch = [p.define(f"stretch_{name}", value) for name, value in zip(
+            ("before", "behind"), _stretches(beside, self.sense * self.R, self.phi, self.length, self.slope),
+            strict=True)]
+        self.tension = [p.define(f"T_{name}", self.A[0] * (value - 1))
+                        for name, value in zip(("before", "behind"), self.stretch, strict=True)]
+        self.mean = p.define("mean_stretch", (self.stretch[0] + self.stretch[1]) / 2)
+        p.stage("sliding")
+        source = p.define("source", _source(self.stretch, self.s_rate))
+        self.groove = p.define("groove", self.sense * self.R * self.phi_rate)
+        self.w = p.define("w", self.groove - self.sense * self.R * self.psi_rate - source * self.s_rate)
+
+    @property
+    def configuration(self) -> list[sp.Symbol]:
+        """Return the angles, lengths and the slope."""
+        return [*self.phi, *self.length, *self.slope]
+
+    def limit(self, factor: sp.Expr, speed: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
+        """Stages: P- + P+, and the limit of |f| times a factor."""
+        p = self.p
+        p.stage("limit")
+        here = self.phi[1] if self.beside.before == "zone" else self.phi[0]
+        outwards = p.define("outwards", self.R * (self.g[0] * sp.cos(here) + self.g[1] * sp.sin(here)))
+        mass = p.define("drawn_mass", 2 * self.rho * p.define("inv_mean_stretch", 1 / self.mean))
+        both = p.define("P", self.tension[0] + self.tension[1] - mass * (speed**2 + outwards))
+        decay = p.define("decay", sp.exp(-self.mu * self.sense * (self.phi[self.beside.zones] - self.phi[0]) / 2))
+        share = p.define("share", (1 - decay) * p.define("inv_share", 1 / p.define("one_more", 1 + decay)))
+        p.stage("force")
+        return both, p.define("f", factor * share * sp.Piecewise((0, both < 0), (both, True)))
+
+    def speed(self) -> sp.Expr:
+        """Return the speed of the material past the centre, with the mean stretch."""
+        return self.p.define("speed", self.groove - self.mean * self.s_rate)
+
+    def forces(self, f: sp.Expr) -> np.ndarray:
+        """Return the forces on phi, psi, s."""
+        define = self.p.define
+        arm = self.sense * self.R * f
+        return np.array([define("on_phi", arm), define("on_psi", -arm), define("on_s", -f * self.mean)])
+
+
+def _places(p: Program, beside: Beside) -> tuple[np.ndarray, np.ndarray, list[sp.Symbol]]:
+    """Declare the angles, the lengths, and the slope of a span."""
+    zones = beside.zones
     phi = p.input(f"angles{zones + 1}", zones + 1, "rad", "angles of the ends of its zones, in the rope's order")
     length = p.input(f"lengths{zones}", zones, "m", "lengths of its zones")
     slope = [] if zones == 2 else [*p.input("span_slope", DIM, "1", "slope r_S of the span")]
-    phi_rate = p.input("angle_rate", (), "rad/s", "rate of the angle of the point")
-    psi_rate = p.input("spin", (), "rad/s", "angular velocity of the sheave")
-    s_rate = p.input("flow", (), "m/s", "rate of the material coordinate of the point")
-    p.stage("both sides")
-    of_zone = [sense * R * (phi[k + 1] - phi[k]) / length[k] for k in range(zones)]
-    stretch = [p.define(f"stretch_{name}", of_zone.pop(0) if kind == "zone" else sp.sqrt(slope[0]**2 + slope[1]**2))
-               for name, kind in (("before", beside.before), ("behind", beside.behind))]
-    tension = [p.define(f"T_{name}", A[0] * (value - 1))
-               for name, value in zip(("before", "behind"), stretch, strict=True)]
-    mean = p.define("mean_stretch", (stretch[0] + stretch[1]) / 2)
-    p.stage("sliding")
-    source = p.define("source", sp.Piecewise((stretch[0], s_rate < 0), (stretch[1], True)))
-    groove = p.define("groove", sense * R * phi_rate)
-    w = p.define("w", groove - sense * R * psi_rate - source * s_rate)
-    speed = p.define("speed", groove - mean * s_rate)
-    smooth = p.define("smooth", w * p.define("inv_w", 1 / p.define("len_w", sp.sqrt(w * w + v0 * v0))))
-    p.stage("limit")
-    here = phi[1] if beside.before == "zone" else phi[0]
-    outwards = p.define("outwards", R * (g[0] * sp.cos(here) + g[1] * sp.sin(here)))
-    mass = p.define("drawn_mass", 2 * rho * p.define("inv_mean_stretch", 1 / mean))
-    both = p.define("P", tension[0] + tension[1] - mass * (speed**2 + outwards))
-    decay = p.define("decay", sp.exp(-mu * sense * (phi[zones] - phi[0]) / 2))
-    share = p.define("share", (1 - decay) * p.define("inv_share", 1 / p.define("one_more", 1 + decay)))
-    p.stage("force")
-    f = p.define("f", smooth * share * sp.Piecewise((0, both < 0), (both, True)))
-    force = np.array([p.define("on_phi", sense * R * f), p.define("on_psi", -sense * R * f),
-                      p.define("on_s", -f * mean)])
-    numbers = {"w": w, "P": both, "force": f}
-    return [*phi, *length, *slope], [phi_rate, psi_rate, s_rate], force, numbers
+    return phi, length, slope
+
+
+def _rates(p: Program) -> list[sp.Symbol]:
+    """Declare the rates of phi, psi and s."""
+    return [p.input("angle_rate", (), "rad/s", "rate of the angle of the point"),
+            p.input("spin", (), "rad/s", "angular velocity of the sheave"),
+            p.input("flow", (), "m/s", "rate of the material coordinate of the point")]
+
+
+def _stretches(beside: Beside, arm: sp.Expr, phi: np.ndarray, length: np.ndarray,
+               slope: list[sp.Symbol]) -> list[sp.Expr]:
+    """Return the stretch of both sides; arm: the radius, with the sense of travel as sign."""
+    of_zone = [arm * (phi[k + 1] - phi[k]) / length[k] for k in range(beside.zones)]
+    return [of_zone.pop(0) if kind == "zone" else sp.sqrt(slope[0]**2 + slope[1]**2) for kind in beside.sides]
+
+
+def _source(stretch: list[sp.Expr], s_rate: sp.Expr) -> sp.Expr:
+    """Return the stretch of the side from which the material comes."""
+    return sp.Piecewise((stretch[0], s_rate < 0), (stretch[1], True))
 
 
 def kernels() -> list[Program]:
     """Return the kernels of friction."""
-    return [make(beside) for beside in POINTS for make in (friction, friction_tangent)]
+    made = (friction, friction_tangent, coulomb, coulomb_tangent, coulomb_motion)
+    return [make(beside) for beside in POINTS for make in made]
+
+
+def _friction(p: Program, beside: Beside) -> tuple[_Point, np.ndarray, dict[str, sp.Expr]]:
+    """Stage: the force of regularised friction at a point; return the point, the forces, and numbers."""
+    point = _Point(p, beside, is_regularised=True)
+    speed, w = point.speed(), point.w
+    inverse = p.define("inv_w", 1 / p.define("len_w", sp.sqrt(w * w + point.v0 * point.v0)))
+    both, f = point.limit(p.define("smooth", w * inverse), speed)
+    return point, point.forces(f), {"w": w, "P": both, "force": f}
 
 
 def friction(beside: Beside) -> Program:
-    """Return the kernel of friction at a point."""
-    p = _program(beside.name, f"friction at a point between a {beside.before} and a {beside.behind}")
-    _, rates, force, numbers = _friction(p, beside)
+    """Return the kernel of regularised friction at a point."""
+    p = _program(f"friction{beside.suffix}", f"friction at a point {beside.between}")
+    point, force, numbers = _friction(p, beside)
     p.output("F", force, "N m, N", "forces on phi, on psi, on s")
     p.output("numbers", list(numbers.values()), "m/s, N, N", "speed of sliding w, P- + P+, jump f of the tension")
-    p.output("power", [force.dot(np.array(rates))], "W", "dissipated power")
+    p.output("power", [force.dot(np.array(point.rates))], "W", "dissipated power")
     return p
 
 
 def friction_tangent(beside: Beside) -> Program:
-    """Return the kernel of the derivatives of friction at a point."""
-    p = _program(f"{beside.name}_tangent", f"derivatives of friction between a {beside.before} and a {beside.behind}")
-    configuration, rates, force, _ = _friction(p, beside)
+    """Return the kernel of the derivatives of regularised friction at a point."""
+    p = _program(f"friction{beside.suffix}_tangent", f"derivatives of friction {beside.between}")
+    point, force, _ = _friction(p, beside)
     p.stage("derivatives")
-    p.output("K", jacobian(p, force, configuration), "SI", "derivatives of F by the angles, the lengths, the slope")
-    p.output("D", jacobian(p, force, rates), "SI", "derivatives of F by rates of phi, psi, s")
+    p.output("K", jacobian(p, force, point.configuration), "SI", "derivatives of F by the angles, the lengths, the slope")
+    p.output("D", jacobian(p, force, point.rates), "SI", "derivatives of F by rates of phi, psi, s")
+    return p
+
+
+def coulomb(beside: Beside) -> Program:
+    """Return the kernel of Coulomb friction at a point."""
+    p = _program(f"coulomb{beside.suffix}", f"Coulomb friction at a point {beside.between}")
+    point = _Point(p, beside, is_regularised=False)
+    _, limit = point.limit(sp.Integer(1), point.speed())
+    p.output("numbers", [point.w, limit], "m/s, N", "speed of sliding w, limit of |f|")
+    p.output("row", jacobian(p, np.array([point.w]), point.rates)[0], "m, 1", "derivatives of w by rates of phi, psi, s")
+    p.output("column", point.forces(sp.Integer(1)), "m, 1", "forces on phi, psi, s of a unit of f")
+    return p
+
+
+def coulomb_tangent(beside: Beside) -> Program:
+    """Return the kernel of the derivatives of Coulomb friction at a point."""
+    p = _program(f"coulomb{beside.suffix}_tangent", f"derivatives of Coulomb friction {beside.between}")
+    point = _Point(p, beside, is_regularised=False)
+    held = p.input("held", (), "N", "f of a point that sticks, else 0")
+    direction = p.input("direction", (), "1", "of sliding, 1 or -1; 0 of a point that sticks")
+    _, limit = point.limit(sp.Integer(1), point.speed())
+    force = point.forces(p.define("f_all", held + direction * limit))
+    p.stage("derivatives")
+    p.output("K", jacobian(p, force, point.configuration), "SI", "derivatives of F by the angles, the lengths, the slope")
+    p.output("D", jacobian(p, force, point.rates), "SI", "derivatives of F by rates of phi, psi, s")
+    return p
+
+
+def coulomb_motion(beside: Beside) -> Program:
+    """Return the kernel of the rate of w at zero accelerations."""
+    p = _program(f"coulomb{beside.suffix}_motion", f"rate of w at zero accelerations {beside.between}")
+    arm = p.input("sense", (), "1", "1 for travel towards greater angles, else -1") * p.input(
+        "R", (), "m", "radius to the axis of the rope")
+    phi, length, slope = _places(p, beside)
+    zones = beside.zones
+    phi_rates = p.input(f"angles{zones + 1}_rate", zones + 1, "rad/s", "rates of these angles")
+    length_rates = p.input(f"lengths{zones}_rate", zones, "m/s", "rates of the lengths")
+    slope_rate = [] if zones == 2 else [*p.input("span_slope_rate", DIM, "1/s", "rate of the slope")]
+    s_rate = p.input("flow", (), "m/s", "rate of the material coordinate of the point")
+    second = p.input("angle_acc", (), "rad/s^2", "second rate of the angle of the point")
+    on = dict(zip([*phi, *length, *slope], [*phi_rates, *length_rates, *slope_rate], strict=True))
+    p.stage("both sides")
+    stretch = _stretches(beside, arm, phi, length, slope)
+    dt = DirectionalDerivative(p, "dt", on)
+    p.stage("rates")
+    p.output("Q_d", [arm * second - dt(p.define("source", _source(stretch, s_rate))) * s_rate], "m/s^2",
+             "rate of w at zero accelerations of the dofs")
     return p

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -341,6 +341,13 @@ class SheaveModel(CouplingModel):
     limit: float
     span_reach: tuple[int, int]
     least_wrap: float = MIN_WRAP
+    sticks: bool = False
+    points: list[WrapPointModel] = field(default_factory=list)
+
+    @property
+    def wrap_points(self) -> int:
+        """Return the number of the first of its points where friction sticks, -1 where it is regularised."""
+        return self.points[0].number if self.sticks else -1
 
     @property
     def no_length(self) -> float:
@@ -434,6 +441,29 @@ class SheaveModel(CouplingModel):
         return self.after.share
 
 
+@dataclass(kw_only=True)
+class WrapPointModel(CouplingModel):
+    """An end of a zone of a sheave where friction sticks: fu_wrap_point of the engine; place: in the wrap."""
+
+    of: SheaveModel
+    place: int
+
+    @property
+    def sheave(self) -> int:
+        """Return the number of its sheave among all couplings."""
+        return self.of.number
+
+    @property
+    def ends(self) -> Sequence[AttachmentModel]:
+        """Return the centre of its sheave."""
+        return self.of.attachments
+
+    @property
+    def adjacent(self) -> list[np.ndarray]:
+        """Return the dofs of its sheave."""
+        return self.of.adjacent
+
+
 def span_models(builder: ModelBuilder) -> Iterator[SpanModel]:
     """Yield the spans of all ropes."""
     gravity = np.array(builder.scene.gravity)
@@ -464,8 +494,18 @@ def _called(item: RouteItem) -> str:
     return "an anchor" if isinstance(item, Anchor) else item.where
 
 
-def sheave_models(builder: ModelBuilder) -> Iterator[SheaveModel]:
-    """Yield the sheaves of all ropes."""
+def sheave_models(builder: ModelBuilder) -> list[SheaveModel]:
+    """Return the sheaves of all ropes, made once."""
+    return builder.once("sheaves", lambda builder: list(_sheaves(builder)))
+
+
+def wrap_points(builder: ModelBuilder) -> Iterator[WrapPointModel]:
+    """Yield the points of all sheaves where friction sticks, in their order."""
+    for sheave in sheave_models(builder):
+        yield from sheave.points
+
+
+def _sheaves(builder: ModelBuilder) -> Iterator[SheaveModel]:
     gravity = np.array(builder.scene.gravity)
     for rope in builder.ropes:
         if not rope.part.mass:
@@ -477,7 +517,7 @@ def sheave_models(builder: ModelBuilder) -> Iterator[SheaveModel]:
             centre, weight = _centre_of(builder, item), rope.rho * gravity / 2
             if rope.part.may_leave(item):
                 scale += scale[:1] * CONDITIONS_BESIDE
-            yield SheaveModel(type="sheave", name=item.name, kernel="planar_sheave", attachments=(centre,),
+            sheave = SheaveModel(type="sheave", name=item.name, kernel="planar_sheave", attachments=(centre,),
                               before=before, after=after, coordinates=rope.sheaves[k], radius=arc.radius,
                               tangent_radius=(arc.tangent_radius,) * 2,
                               sense=float(arc.sense), rho=rope.rho, tau=rope.part.material.damping_time,
@@ -488,7 +528,12 @@ def sheave_models(builder: ModelBuilder) -> Iterator[SheaveModel]:
                               n_multipliers=len(scale), has_inertia=True, **_motion_of(builder, item),
                               friction=item.coefficient, slip_velocity=item.slip_velocity,
                               closing=rope.route.free_length * (rope.part.closed and k == 0),
-                              is_damped=rope.part.material.damping_time > 0 or item.coefficient > 0 or item.damping > 0)
+                              is_damped=rope.part.material.damping_time > 0 or item.coefficient > 0 or item.damping > 0,
+                              sticks=item.sticks)
+            sheave.points = [WrapPointModel(type="wrap_point", name=item.name, of=sheave, place=place, scale=scale[:1],
+                                            n_multipliers=1, is_damped=True)
+                             for place in range(item.sticks * (item.n_zones + 1))]
+            yield sheave
 
 
 def _centre_of(builder: ModelBuilder, wheel: Sheave | Drum) -> AttachmentModel:
@@ -609,5 +654,6 @@ def anchor_models(builder: ModelBuilder) -> Iterator[AnchorModel]:
 
 
 KINDS = (CouplingKind("anchor", Rope.group, anchor_models), CouplingKind("span", Rope.group, span_models),
-         CouplingKind("sheave", Rope.group, sheave_models), CouplingKind("drum", Rope.group, drum_models),
+         CouplingKind("sheave", Rope.group, sheave_models),
+         CouplingKind("wrap_point", Rope.group, wrap_points), CouplingKind("drum", Rope.group, drum_models),
          CouplingKind("taut_point", Rope.group, taut_points), CouplingKind("taut_rope", Rope.group, taut_ropes))

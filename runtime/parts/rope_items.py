@@ -171,7 +171,7 @@ class Sheave(Wheel):
     angle, velocity: of its rotation over time, prescribed, rad or rad/s, relative to the body that it is on
     damping: of its bearing, N m s
     axis: its direction, of a rope in space; by default z
-    friction: between rope and groove, a coefficient or a `Friction`, "regularised"; by default none
+    friction: between rope and groove, a coefficient or a `Friction`, by default "regularised"; without it none
     zones: number of parts of the wrap between which friction acts, and over each of which the tension is constant
     turns: whole turns of the rope around it, in addition to the wrap angle between both spans
     contact: whether the rope lies on it at the start. In the plane and without friction the rope may leave it and touch
@@ -210,6 +210,11 @@ class Sheave(Wheel):
         return 0.0 if self.friction is None else self.friction.coefficient
 
     @property
+    def sticks(self) -> bool:
+        """Return whether its friction sticks, by its model."""
+        return self.coefficient > 0 and self.friction is not None and self.friction.sticks
+
+    @property
     def slip_velocity(self) -> float:
         """Return the speed at which friction is 0.7 of its limit, m/s."""
         return Friction().velocity if self.friction is None else self.friction.velocity
@@ -228,8 +233,6 @@ class Sheave(Wheel):
     def _has_modelled_friction(self) -> "Sheave":
         if self.friction is not None:
             self.friction.check_coulomb()
-            if self.friction.sticks:
-                raise ValueError("has friction that sticks", 'give model="regularised", with a small velocity')
         drive = next((name for name in ("torque", "angle", "velocity") if getattr(self, name) is not None), None)
         if drive is not None and not self.coefficient:
             raise ValueError(f"has {drive}, but no friction with the rope, which it then never moves",

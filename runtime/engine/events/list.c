@@ -11,6 +11,7 @@
     ALONE(anchor)                                                                                                      \
     WITH_EVENTS(span)                                                                                                  \
     WITH_EVENTS(sheave)                                                                                                \
+    WITH_EVENTS(wrap_point)                                                                                            \
     WITH_EVENTS(drum)                                                                                                  \
     WITH_EVENTS(taut_point)                                                                                            \
     WITH_EVENTS(taut_rope)                                                                                             \

@@ -195,7 +195,7 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
         wheel->kernel->dissipation(wheel->A, sheave->tau, wheel->radius, of.phi, of.l, of.phi_rate, of.s_rate, &power);
         total += power;
     }
-    for (int j = 0; has_friction(sheave) && j <= sheave->n_zones; ++j) {
+    for (int j = 0; has_smooth_friction(sheave) && j <= sheave->n_zones; ++j) {
         double F[3], numbers[3];
         fu_friction_at(sheave, &at, j, F, numbers, &power);
         total += power;
@@ -253,6 +253,7 @@ static const fu_field fields[] = {
     FU_FIELD(fu_sheave, n_zones, FU_INTEGER, 0),
     FU_FIELD(fu_sheave, friction, FU_REAL, 0),
     FU_FIELD(fu_sheave, slip_velocity, FU_REAL, 0),
+    FU_FIELD(fu_sheave, wrap_points, FU_INTEGER, 0),
     FU_FIELD(fu_sheave, least_wrap, FU_REAL, 0),
     FU_FIELD(fu_sheave, no_length, FU_REAL, 0),
     FU_FIELD(fu_sheave, closing, FU_REAL, 0),

@@ -1,6 +1,7 @@
 /* Sheaves (couplings/sheave/): the coupling in sheave.c, its state in sheave_state.c, its wrap in wrap.c and
  * wrap_friction.c, its forces in sheave_forces.c, the conditions of its tangent points in sheave_conditions.c and
- * tangent_point.c, and its results in sheave_output.c.
+ * tangent_point.c, and its results in sheave_output.c. Points where friction sticks are couplings of their own,
+ * wrap_point.c.
  *
  * Derivatives are first by the places and slopes of both nodes, the wheel, and the material coordinates (y); the angles
  * of the wrap follow from the places (z).
@@ -22,8 +23,9 @@ typedef struct {
     const int *s; /* dofs: material coordinates of the ends of the zones */
     double tangent_radius[2], tau;
     double friction, slip_velocity; /* coefficient; m/s, see the kernel of friction */
-    double closing;                 /* m: between the last and the first s of a closed rope */
-    double least_wrap, no_length;   /* rad: of a wrap that stretches; m: of that of a rope that has left */
+    int wrap_points; /* number of the first of its points where friction sticks, -1 where it is regularised */
+    double closing;  /* m: between the last and the first s of a closed rope */
+    double least_wrap, no_length; /* rad: of a wrap that stretches; m: of that of a rope that has left */
     /* in space: of the spans before and after: the first dof, elements in all and within reach of a chord, s of their
      * ends, m: the stress-free length of a chord */
     double weight[3], limit, chord[2];
@@ -124,6 +126,12 @@ static inline int has_friction(const fu_sheave *sheave)
     return sheave->friction > 0.0;
 }
 
+/* Returns whether friction rises smoothly with the speed. */
+static inline int has_smooth_friction(const fu_sheave *sheave)
+{
+    return has_friction(sheave) && sheave->wrap_points < 0;
+}
+
 static inline int fu_may_leave(const fu_sheave *sheave)
 {
     return sheave->wheel.base.n_forces > SHORT_ROW && !is_in_space(sheave);
@@ -209,7 +217,42 @@ void fu_friction_at(const fu_sheave *sheave, const fu_sheave_state *at, int j, d
 void fu_friction_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at, int j, double factor, double (*D)[Z],
                               double (*K)[Z]);
 
+/* Coulomb friction at a point: the speed of sliding w, the limit of |f|, the derivatives of w by the rates of the
+ * angle, the rotation and s, and the forces of a unit of f on these. */
+enum { FU_SLIDING = 3 };
+typedef struct {
+    double w, limit, row[FU_SLIDING], column[FU_SLIDING];
+} fu_coulomb;
+void fu_coulomb_at(const fu_sheave *sheave, const fu_sheave_state *at, int j, fu_coulomb *out);
+/* Adds the derivatives of Coulomb friction, held by a multiplier, or at its limit in a direction. */
+void fu_coulomb_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at, int j, double held, double direction,
+                             double factor, double (*D)[Z], double (*K)[Z]);
+/* Returns the rate of w at the accelerations of `at`, of the dofs zero. */
+double fu_coulomb_drift(const fu_sheave *sheave, const fu_sheave_state *at, int j);
+/* Computes forces by z from those on the angle of a point, the rotation and s. */
+void fu_point_by_z(const fu_sheave *sheave, int j, const double forces[FU_SLIDING], double z[Z]);
+
+/* --- wrap_point.c --- */
+
+/* Friction at a point of a wrap, by its place; without multipliers of eq 38 by those of the state. */
+typedef struct {
+    fu_coulomb at;
+    double f, slips; /* N; 1 or -1 where it slides, a part of that where it is about to in statics, else 0 */
+} fu_wrap_force;
+void fu_wrap_force_at(const fu_model *model, const fu_sheave *sheave, const fu_sheave_state *at, int j,
+                      const fu_state *state, const double *multipliers, fu_wrap_force *out);
+
+/* Adds the force f of a point by y, with the forces of a unit of it. */
+void fu_wrap_force_by_y(const fu_sheave *sheave, const fu_sheave_state *at, int j, double f,
+                        const double column[FU_SLIDING], double y[Y]);
+
 /* --- sheave_forces.c: by y --- */
+
+/* Adds forces by z to those by y. */
+void fu_sheave_add_by_angles(const fu_sheave *sheave, const fu_sheave_state *at, const double *of_z, double *y);
+/* Adds the derivatives of forces by z, D_z by rates, K_z by places, to those by y. */
+void fu_sheave_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at, double factor, const double *of_z,
+                            double (*D_z)[Z], double (*K_z)[Z], double (*D)[Y], double (*K)[Y]);
 
 /* Computes the dofs of a sheave and the changes of y by them, with these of the centre; returns their number. */
 int fu_sheave_columns(const fu_sheave *sheave, const fu_sheave_state *at, const double *of_centre,

@@ -11,8 +11,7 @@ static int among_y(int k)
                             : MATERIAL + k - Z_MATERIAL;
 }
 
-/* Adds forces by z to those by y. */
-static void add_by_angles(const fu_sheave *sheave, const fu_sheave_state *at, const double *of_z, double *y)
+void fu_sheave_add_by_angles(const fu_sheave *sheave, const fu_sheave_state *at, const double *of_z, double *y)
 {
     for (int k = 0; k < ENDS; ++k)
         for (int d = 0; d < DIM; ++d) {
@@ -154,7 +153,7 @@ void fu_sheave_forces(const fu_sheave *sheave, const fu_sheave_state *at, double
     memset(y, 0, sizeof(double) * Y);
     fu_wrap_add_inertia(sheave, at, z);
     fu_wrap_add_forces(sheave, at, z);
-    add_by_angles(sheave, at, z, y);
+    fu_sheave_add_by_angles(sheave, at, z, y);
     if (is_in_space(sheave)) add_across(sheave, at, sheave->wheel.g[DIM], y);
 }
 
@@ -163,7 +162,7 @@ void fu_sheave_inertial_forces(const fu_sheave *sheave, const fu_sheave_state *a
     double z[Z] = {0.0};
     memset(y, 0, sizeof(double) * Y);
     fu_wrap_add_inertia(sheave, at, z);
-    add_by_angles(sheave, at, z, y);
+    fu_sheave_add_by_angles(sheave, at, z, y);
     if (is_in_space(sheave)) add_across(sheave, at, 0.0, y);
 }
 
@@ -202,6 +201,18 @@ void fu_sheave_add_derivatives(const fu_sheave *sheave, const fu_sheave_state *a
     fu_wrap_add_forces(sheave, at, z);
     add_turning(at, w.stiffness, z, K);
     if (is_in_space(sheave)) add_across_matrices(sheave, at, w.stiffness, D, K);
+}
+
+void fu_sheave_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at, double factor, const double *of_z,
+                            double (*D_z)[Z], double (*K_z)[Z], double (*D)[Y], double (*K)[Y])
+{
+    double J[ENDS][Y], by[ENDS][Y];
+    of_angles(at->phi_x, J);
+    of_angles(at->rate_x, by);
+    add_product(sheave, J, K_z, J, 1, K);
+    add_product(sheave, J, D_z, by, 0, K);
+    add_product(sheave, J, D_z, J, 1, D);
+    add_turning(at, factor, of_z, K);
 }
 
 void fu_sheave_energies_across(const fu_sheave *sheave, const fu_sheave_state *at, double *T, double *V)

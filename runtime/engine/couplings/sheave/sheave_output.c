@@ -24,13 +24,16 @@ static double arm_over_radius(const fu_sheave *sheave, const fu_sheave_state *at
 
 /* Computes the tension at both tangent points from the balance of momentum at the nodes, through which material passes,
  * along the groove in the sense of travel, with the accelerations of `at`; the speed of the material past the centre;
- * and all forces by y. */
+ * and all forces by y. sticking: friction at points to which the rope may stick. */
 static void tensions(const fu_sheave *sheave, const fu_sheave_state *at, const double *multipliers,
-                     double tension[ENDS], double speed[ENDS], double phi[MAX_CONDITIONS], double y[Y])
+                     const fu_wrap_force *sticking, double tension[ENDS], double speed[ENDS],
+                     double phi[MAX_CONDITIONS], double y[Y])
 {
     const fu_wheel *wheel = &sheave->wheel;
     fu_sheave_forces(sheave, at, y);
     fu_sheave_add_multipliers(sheave, at, multipliers, phi, y);
+    for (int j = 0; j <= sheave->n_zones && has_friction(sheave) && !has_smooth_friction(sheave); ++j)
+        fu_wrap_force_by_y(sheave, at, j, sticking[j].f, sticking[j].at.column, y);
     for (int k = 0; k < ENDS; ++k) {
         const double s_rate = at->s_rate[k ? sheave->n_zones : 0];
         const double t[DIM] = {-wheel->sense * sin(at->phi[k]), wheel->sense * cos(at->phi[k])};
@@ -154,7 +157,7 @@ static double wrap_pressure(const fu_sheave *sheave, const fu_sheave_state *at)
     double tension[ENDS], speed[ENDS], phi[MAX_CONDITIONS], y[Y];
     if (at->mode == FU_LIFTED) return 0.0;
     if (has_friction(sheave) || at->mode == FU_SHORT) elastic_tensions(sheave, at, tension, speed);
-    else tensions(sheave, at, none, tension, speed, phi, y);
+    else tensions(sheave, at, none, 0, tension, speed, phi, y);
     return least_pressure(sheave, at, tension, speed);
 }
 
@@ -173,6 +176,39 @@ static double slipping(const fu_sheave *sheave, const double numbers[3])
     return numbers[1] > 0.0 ? 2.0 / sheave->friction * atanh(fabs(numbers[2]) / numbers[1]) : 0.0;
 }
 
+/* Computes friction at all points of a wrap to which the rope may stick. */
+static void find_sticking(const fu_model *model, const fu_sheave *sheave, const fu_sheave_state *at,
+                          const fu_state *state, const fu_accelerator *work, fu_wrap_force *points)
+{
+    for (int j = 0; j <= sheave->n_zones; ++j)
+        fu_wrap_force_at(model, sheave, at, j, state, work ? work->multipliers : 0, &points[j]);
+}
+
+static void add_smooth_friction(const fu_sheave *sheave, const fu_sheave_state *at, sheave_output *numbers)
+{
+    for (int j = 0; j <= sheave->n_zones; ++j) {
+        double F[3], of[3], power;
+        fu_friction_at(sheave, at, j, F, of, &power);
+        if (at->spin_below == at->wheel.turn_rate && fabs(of[0]) > fabs(numbers->slip)) numbers->slip = of[0];
+        numbers->slip_angle += slipping(sheave, of);
+        numbers->torque -= F[1];
+    }
+}
+
+/* Of points that slide all of their share of the wrap counts. */
+static void add_sticking_friction(const fu_sheave *sheave, const fu_sheave_state *at, const fu_wrap_force *points,
+                                  sheave_output *numbers)
+{
+    const double zone = fabs(at->phi[1] - at->phi[0]) / sheave->n_zones;
+    for (int j = 0; j <= sheave->n_zones; ++j) {
+        const fu_wrap_force *of = &points[j];
+        if (fabs(of->at.w) > fabs(numbers->slip)) numbers->slip = of->at.w;
+        if (of->at.limit > 0.0)
+            numbers->slip_angle += fabs(of->slips) * zone * (j == 0 || j == sheave->n_zones ? 0.5 : 1.0);
+        numbers->torque -= of->f * of->at.column[1];
+    }
+}
+
 void fu_sheave_outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                        const double *acceleration, const fu_accelerator *work, double *out)
 {
@@ -181,9 +217,11 @@ void fu_sheave_outputs(const fu_model *model, const fu_coupling *coupling, const
     sheave_output *numbers = (sheave_output *)out;
     fu_sheave_state at;
     double y[Y], phi[MAX_CONDITIONS], tension[ENDS], speed[ENDS], on_centre[SPACE];
+    fu_wrap_force sticking[MAX_ZONES + 1];
     fu_sheave_at(model, sheave, state, acceleration, &at);
     if (at.mode == FU_SHORT) at.tension = multipliers[SHORT_ROW];
-    tensions(sheave, &at, multipliers, tension, speed, phi, y);
+    if (has_friction(sheave) && !has_smooth_friction(sheave)) find_sticking(model, sheave, &at, state, work, sticking);
+    tensions(sheave, &at, multipliers, sticking, tension, speed, phi, y);
     if (at.mode == FU_LIFTED) elastic_tensions(sheave, &at, tension, speed);
     *numbers = (sheave_output){.tension_on = tension[0], .tension_off = tension[1]};
     numbers->wrap_angle = at.mode == FU_LIFTED ? 0.0 : sheave->wheel.sense * (at.phi[1] - at.phi[0]);
@@ -195,13 +233,8 @@ void fu_sheave_outputs(const fu_model *model, const fu_coupling *coupling, const
     numbers->material_speed = -0.5 * (at.s_rate[0] + at.s_rate[sheave->n_zones]);
     numbers->normal_force = wrap_pressure(sheave, &at);
     numbers->angle = sheave->wheel.turn < 0 ? 0.0 : state->q[sheave->wheel.turn];
-    for (int j = 0; has_friction(sheave) && j <= sheave->n_zones; ++j) {
-        double F[3], of[3], power;
-        fu_friction_at(sheave, &at, j, F, of, &power);
-        if (at.spin_below == at.wheel.turn_rate && fabs(of[0]) > fabs(numbers->slip)) numbers->slip = of[0];
-        numbers->slip_angle += slipping(sheave, of);
-        numbers->torque -= F[1];
-    }
+    if (has_smooth_friction(sheave)) add_smooth_friction(sheave, &at, numbers);
+    else if (has_friction(sheave)) add_sticking_friction(sheave, &at, sticking, numbers);
     for (int r = 0; r < fu_sheave_conditions(sheave, &at); ++r)
         numbers->residual = fmax(numbers->residual, fabs(phi[r]));
 }

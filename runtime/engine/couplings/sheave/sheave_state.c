@@ -63,7 +63,8 @@ static void find_node_in_space(const fu_sheave *sheave, const double *q, const d
     fu_into_groove(&sheave->wheel, rate, out->x_rate[k]);
     fu_into_groove(&sheave->wheel, acc, x_acc);
     out->slope[k][0] = size;
-    out->slope[k][1] = out->slope_rate[k][0] = out->slope_rate[k][1] = 0.0;
+    out->slope_rate[k][0] = fu_dot(SPACE, out->stretch[k], v + r + SPACE);
+    out->slope[k][1] = out->slope_rate[k][1] = 0.0;
 }
 
 /* Computes the motion of a node from the centre, with the acceleration x_acc, in the plane. */

@@ -97,7 +97,7 @@ void fu_wrap_add_forces(const fu_sheave *sheave, const fu_sheave_state *at, doub
                                      damping);
         add_zone(&of, 4, damped, damping, z);
     }
-    for (int j = 0; has_friction(sheave) && j <= sheave->n_zones; ++j) {
+    for (int j = 0; has_smooth_friction(sheave) && j <= sheave->n_zones; ++j) {
         double F[3], numbers[3], power;
         const double share = (double)j / sheave->n_zones;
         fu_friction_at(sheave, at, j, F, numbers, &power);
@@ -151,6 +151,6 @@ void fu_wrap_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at, do
         add_zone_matrix(&of, 4, damped, 3, of_zone, factor, K_4, K);
         add_zone_matrix(&of, 4, damped, 4, damped, factor, D_4, D);
     }
-    for (int j = 0; has_friction(sheave) && j <= sheave->n_zones; ++j)
+    for (int j = 0; has_smooth_friction(sheave) && j <= sheave->n_zones; ++j)
         fu_friction_add_matrices(sheave, at, j, factor, D, K);
 }

@@ -161,10 +161,17 @@ void fu_wheel_add_tangent(const fu_model *model, const fu_wheel *wheel, const fu
                           const fu_equations *equations, const double *forces, fu_system *system)
 {
     const fu_weights w = equations->weights;
-    const int n = at->centre.n;
-    double force[SPACE], moment[SPACE], K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
     if (wheel->turn >= 0 && wheel->damping != 0.0)
         fu_add(model, system, wheel->turn, wheel->turn, w.stiffness * w.rate * wheel->damping);
+    fu_wheel_add_turning(model, wheel, at, equations, forces, system);
+}
+
+void fu_wheel_add_turning(const fu_model *model, const fu_wheel *wheel, const fu_wheel_state *at,
+                          const fu_equations *equations, const double *forces, fu_system *system)
+{
+    const fu_weights w = equations->weights;
+    const int n = at->centre.n;
+    double force[SPACE], moment[SPACE], K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
     if (!n) return;
     wrench_of(wheel, forces, force, moment);
     fu_wrench_derivatives(model, &wheel->attachments[0], equations->next, force, moment, n, K, 0, 0);

@@ -81,6 +81,9 @@ void fu_wheel_add_matrix(const fu_model *model, int n, const fu_wheel_column *ro
  * ones. */
 void fu_wheel_add_tangent(const fu_model *model, const fu_wheel *wheel, const fu_wheel_state *at,
                           const fu_equations *equations, const double *forces, fu_system *system);
+/* Adds the latter alone. */
+void fu_wheel_add_turning(const fu_model *model, const fu_wheel *wheel, const fu_wheel_state *at,
+                          const fu_equations *equations, const double *forces, fu_system *system);
 /* Returns the normal force on an angle, N: of a tension at an angle, a speed and a stretch of the rope. */
 double fu_wheel_pressure(const fu_wheel *wheel, const fu_wheel_state *at, double phi, double tension, double speed,
                          double stretch);
