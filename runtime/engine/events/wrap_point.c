@@ -11,7 +11,7 @@
 
 #include <math.h>
 
-#define EXCESS_TOLERANCE 1e-9   /* of the limit: excess of a sticking point that is rounding */
+#define EXCESS_TOLERANCE 1e-7   /* of the limit: excess at which a point breaks loose; small vibrations stay below it */
 #define SPEED_TOLERANCE 1e-12   /* of the size of the scene over the duration: slower points do not slide */
 #define ROUNDING_OF_SPEED 1e-12 /* of the speed of the groove: the same */
 #define FORCE_TOLERANCE 1e-12   /* of EA: excess of a point without normal force that is rounding */
@@ -68,6 +68,13 @@ static const fu_coupling *loosest(const fu_run *run)
     return found;
 }
 
+/* Lets a sticking point slide in the direction that its f opposes. */
+static void release(fu_run *run, const fu_coupling *coupling)
+{
+    *fu_wrap_point_flag(coupling, &run->now) =
+        run->now.forces[coupling->force] > 0.0 ? FU_SLIDES_FORWARDS : FU_SLIDES_BACKWARDS;
+}
+
 /* Determines the points after sticking ones, at rest, have been chosen; returns a status. */
 static int settle(fu_run *run)
 {
@@ -75,8 +82,7 @@ static int settle(fu_run *run)
         if (fu_complete(run, &run->now)) return FU_SINGULAR;
         const fu_coupling *loose = loosest(run);
         if (!loose) return FU_RUNNING;
-        *fu_wrap_point_flag(loose, &run->now) =
-            run->now.forces[loose->force] > 0.0 ? FU_SLIDES_FORWARDS : FU_SLIDES_BACKWARDS;
+        release(run, loose);
     }
     return FU_NO_CONVERGENCE;
 }
@@ -87,8 +93,11 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
     (void)which, (void)side;
     *what = "";
     if (*mode == FU_STICKS) {
+        fu_coulomb of;
         if (fu_complete(run, &run->now)) return FU_SINGULAR;
-        *mode = run->now.forces[coupling->force] > 0.0 ? FU_SLIDES_FORWARDS : FU_SLIDES_BACKWARDS;
+        fu_wrap_point_at(run->model, coupling, &run->now, &of);
+        if (fabs(run->now.forces[coupling->force]) >= of.limit)
+            release(run, coupling); /* the change of another may hold it */
     } else {
         *mode = FU_STICKS;
         if (stop(run)) return FU_SINGULAR;
