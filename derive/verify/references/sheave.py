@@ -74,37 +74,41 @@ def _square(vector: np.ndarray) -> Any:
     return vector.dot(vector)
 
 
-def _stretches(kernel: str, s: Any) -> list[Any]:
+def _stretches(suffix: str, s: Any) -> list[Any]:
     """Return the stretches before and behind a point of friction."""
-    angles = s["angles3" if kernel == "friction" else "angles2"]
-    lengths = s["lengths2" if kernel == "friction" else "lengths1"]
+    angles, lengths = (s["angles2"], s["lengths1"]) if suffix else (s["angles3"], s["lengths2"])
     of_zones = [abs(b - a) * s["R"].item() / length for a, b, length in zip(angles, angles[1:], lengths, strict=False)]
     of_span = s["span_slope"].dot(s["span_slope"]) ** 0.5
-    return {"friction": of_zones, "friction_on": [of_span, *of_zones], "friction_off": [*of_zones, of_span]}[kernel]
+    return {"": of_zones, "_on": [of_span, *of_zones], "_off": [*of_zones, of_span]}[suffix]
 
 
-def friction(k: Any, kernel: str, s: Any) -> list[Any]:
-    """Return the speed of sliding, P- + P+, and the jump of the tension by Euler's belt equation, regularised."""
-    before, behind = _stretches(kernel, s)
+def coulomb(suffix: str, s: Any) -> list[Any]:
+    """Return the speed of sliding, P- + P+, and the limit of the jump of the tension by Euler's belt equation."""
+    before, behind = _stretches(suffix, s)
     sense, R, rate, spin, flow = (s[name].item() for name in ("sense", "R", "angle_rate", "spin", "flow"))
     EA, rho = s["A"][0], s["rho"].item()
     speed = sense * R * rate - (before + behind) / 2 * flow
-    angles = s["angles3" if kernel == "friction" else "angles2"]
-    here = angles[0 if kernel == "friction_on" else 1]
+    angles = s["angles2" if suffix else "angles3"]
+    here = angles[0 if suffix == "_on" else 1]
     outwards = s["R"].item() * s["g"].dot(np.array([mp.cos(here), mp.sin(here)]))
     pressure = EA * (before + behind - 2) - 4 * rho / (before + behind) * (speed * speed + outwards)
     sliding = sense * R * (rate - spin) - (before if flow < 0 else behind) * flow
     half = s["mu"].item() * abs(angles[-1] - angles[0]) / 4
     up, down = mpmath.exp(half), mpmath.exp(-half)
+    return [sliding, pressure, (up - down) / (up + down) * pressure]
+
+
+def friction(suffix: str, s: Any) -> list[Any]:
+    """Return the speed of sliding, P- + P+, and the jump of the tension, regularised."""
+    sliding, pressure, limit = coulomb(suffix, s)
     v0 = s["v0"].item()
-    return [sliding, pressure, (up - down) / (up + down) * pressure * sliding / (sliding * sliding + v0 * v0) ** 0.5]
+    return [sliding, pressure, limit * sliding / (sliding * sliding + v0 * v0) ** 0.5]
 
 
-def friction_forces(k: Any, kernel: str, s: Any) -> list[Any]:
-    """Return the generalised forces of friction on the angle, on the rotation of the sheave, and on s."""
-    jump = friction(k, kernel, s)[2]
+def friction_forces(suffix: str, jump: Any, s: Any) -> list[Any]:
+    """Return the generalised forces of a jump of the tension on the angle, on the rotation of the sheave, and on s."""
     arm = s["sense"].item() * s["R"].item() * jump
-    return [arm, -arm, -jump * sum(_stretches(kernel, s)) / 2]
+    return [arm, -arm, -jump * sum(_stretches(suffix, s)) / 2]
 
 
 # --- a short wrap -------------------------------------------------------------------------------------------------

@@ -19,17 +19,17 @@ COORDINATES = (("phi", 2), ("c", 2), ("l", 1))
 RATES = (("phi_rate", 2), ("c_rate", 2), ("s_rate", 2))
 SECOND_RATES = (("phi_acc", 2), ("c_acc", 2), ("s_acc", 2))
 N = sum(size for _, size in RATES)
-FRICTION = {"friction": (("angles3", 3), ("lengths2", 2)),
-            "friction_on": (("angles2", 2), ("lengths1", 1), ("span_slope", 2)),
-            "friction_off": (("angles2", 2), ("lengths1", 1), ("span_slope", 2))}
-"""Kernels of friction with their coordinates."""
+BESIDE_A_SPAN = (("angles2", 2), ("lengths1", 1), ("span_slope", 2))
+FRICTION = {"": (("angles3", 3), ("lengths2", 2)), "_on": BESIDE_A_SPAN, "_off": BESIDE_A_SPAN}
+"""Ends of the names of kernels of friction, with their coordinates."""
 SLIDING = (("angle_rate", 1), ("spin", 1), ("flow", 1))
 
 
 def sheave(family: CouplingFamily) -> list[Relation]:
     """Return the relations of a sheave's kernels."""
     return [*_of_tangent_point(), *_of_angle(), *_of_energies(), *_of_inertia(), *_of_damping(),
-            *(each for kernel in FRICTION for each in _of_friction(kernel)), *_of_short_wrap(), *drum()]
+            *(each for suffix in FRICTION for each in (*_of_friction(suffix), *_of_coulomb(suffix))),
+            *_of_short_wrap(), *drum()]
 
 
 def without(names: tuple[tuple[str, int], ...], one: str) -> tuple[tuple[str, int], ...]:
@@ -153,26 +153,56 @@ def _of_damping() -> list[Relation]:
             Relation("damping_tangent", "K", "df by the angles and l", 1, along(force, without(COORDINATES, "c")), 3)]
 
 
-def _of_friction(kernel: str) -> list[Relation]:
-    def numbers(k, s):
-        return reference.friction(k, kernel, s)
+def _of_forces(suffix: str, kernel: str, forces: Callable[..., Any]) -> list[Relation]:
+    """Return those of the derivatives of forces at a point of friction."""
+    places = FRICTION[suffix]
+    return [Relation(kernel, "K", "dF by angles, lengths and the slope", 1, along(forces, places),
+                     sum(size for _, size in places)),
+            Relation(kernel, "D", "dF by rates of the angle, of the sheave, and of s", 1, along(forces, SLIDING), 3)]
 
-    def rates(s):
-        return [s[name] for name, _ in SLIDING]
+
+def _of_friction(suffix: str) -> list[Relation]:
+    kernel = f"friction{suffix}"
+
+    def forces(s):
+        return reference.friction_forces(suffix, reference.friction(suffix, s)[2], s)
 
     def power(k, s, t, j):
-        return sum(force * rate for force, rate in zip(k(kernel, s)["F"], rates(s), strict=True))
+        rates = [s[name] for name, _ in SLIDING]
+        return sum(force * rate for force, rate in zip(k(kernel, s)["F"], rates, strict=True))
 
-    places = FRICTION[kernel]
     return [Relation(kernel, "numbers", "speed of sliding, P- + P+, Euler's jump of the tension", 0,
-                     lambda k, s, t, j: numbers(k, s)),
+                     root(reference.friction, suffix)),
             Relation(kernel, "F", "R f and its opposite on the angles, -f times the mean stretch on s", 0,
-                     lambda k, s, t, j: reference.friction_forces(k, kernel, s)),
+                     root(forces)),
             Relation(kernel, "power", "F times the rates", 0, power),
-            Relation(f"{kernel}_tangent", "K", "dF by angles, lengths and the slope", 1, along(of(kernel, "F"), places),
-                     sum(size for _, size in places)),
-            Relation(f"{kernel}_tangent", "D", "dF by rates of the angle, of the sheave, and of s", 1,
-                     along(of(kernel, "F"), SLIDING), 3)]
+            *_of_forces(suffix, f"{kernel}_tangent", of(kernel, "F"))]
+
+
+def _of_coulomb(suffix: str) -> list[Relation]:
+    kernel, places = f"coulomb{suffix}", FRICTION[suffix]
+
+    def numbers(s):
+        sliding, _, limit = reference.coulomb(suffix, s)
+        return [sliding, limit]
+
+    def sliding(k, s):
+        return k(kernel, s)["numbers"][0]
+
+    def forces(k, s):
+        out = k(kernel, s)
+        return (s["held"].item() + s["direction"].item() * out["numbers"][1]) * out["column"]
+
+    def moving(k, s, t, j):
+        moved = {name: s[name] + t * s[f"{name}_rate"] for name, _ in places}
+        return sliding(k, s | moved | {"angle_rate": s["angle_rate"] + t * s["angle_acc"]})
+
+    return [Relation(kernel, "numbers", "speed of sliding, Euler's limit of the jump of the tension", 0, root(numbers)),
+            Relation(kernel, "row", "dw by rates of the angle, of the sheave, and of s", 1, along(sliding, SLIDING), 3),
+            Relation(kernel, "column", "R and its opposite on the angles, the mean stretch on s", 0,
+                     root(lambda s: reference.friction_forces(suffix, 1, s))),
+            *_of_forces(suffix, f"{kernel}_tangent", forces),
+            Relation(f"{kernel}_motion", "Q_d", "dw/dt at zero accelerations of the sheave and s", 1, moving)]
 
 
 def _of_short_wrap() -> list[Relation]:

@@ -26,12 +26,14 @@ def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) 
               "lengths1": np.array([lengths]), "span_slope": random.uniform(1.1, 1.3) * polar[1],
               "angle_rate": np.float64(random.uniform(0.02, 0.1)), "spin": np.float64(random.uniform(0.2, 0.4)),
               "flow": np.float64(random.choice([-1, 1]) * random.uniform(0.05, 0.1)), "mu": np.float64(0.3),
-              "v0": np.float64(0.2)}
+              "v0": np.float64(0.2), "direction": np.float64(0.7)}
     found |= {"R": np.float64(R), "phi": np.array([phi_a, phi_a + angle]), "sense": np.float64(sense),
               "l": np.float64(abs(angle) * R * random.uniform(0.8, 0.9)), "A": random.uniform(2, 5, 2),
               "rho": np.float64(1.3), "tau": np.float64(0.37)}
     found["span_slope_rate"] = random.normal(size=2)
     # winds is 0 or 1 in a run; between these both stretches count
-    return found | {name: np.float64(random.uniform(*limits)) for name, limits in {
+    found |= {name: np.float64(random.uniform(*limits)) for name, limits in {
         "tension": (2, 4), "winds": (0.3, 0.7), "wound": (1.1, 1.3), "span_stretch": (1.4, 1.6), "u": (2, 4),
-        "u_rate": (0.5, 1), "spin_acc": (0.5, 1), "l_rate": (0.5, 1)}.items()}
+        "u_rate": (0.5, 1), "spin_acc": (0.5, 1), "l_rate": (0.5, 1), "held": (1, 2), "angle_acc": (0.5, 1)}.items()}
+    return found | {f"{name}_rate": random.uniform(0.5, 1, np.size(found[name]))
+                    for name in ("angles3", "angles2", "lengths2", "lengths1")}
