@@ -1295,6 +1295,24 @@ typedef void fu_sheave_damping_tangent_kernel(const fu_real *A, fu_real tau, fu_
 /* A 2, phi 2, phi_rate 2, s_rate 2, D 4x4, K 4x3 */
 fu_sheave_damping_tangent_kernel planar_sheave_damping_tangent;
 
+typedef void fu_sheave_momentum_kernel(fu_real R, fu_real l, fu_real xi, fu_real angle_at, fu_real alpha, const fu_real *c_rate, fu_real turn, const fu_real *s_rate, fu_real *P);
+/* momentum of the material at a point of a zone, over the mass of a length: R [m]; l [m]; xi [1]; angle_at [rad];
+ * alpha [rad]; c_rate [m/s]; turn [rad/s]; s_rate [m/s] -> P [m^2/s] */
+/* c_rate 2, s_rate 2, P 2 */
+fu_sheave_momentum_kernel planar_sheave_momentum;
+
+typedef void fu_sheave_momentum_energy_kernel(fu_real rho, fu_real l, const fu_real *P, fu_real *T);
+/* kinetic energy of the momentum at a point of a zone: rho [kg/m]; l [m]; P [m^2/s] -> T [J] */
+/* P 2, T 1 */
+fu_sheave_momentum_energy_kernel planar_sheave_momentum_energy;
+
+typedef void fu_sheave_momentum_step_kernel(fu_real rho, fu_real h, fu_real l, const fu_real *s_change, fu_real R, fu_real xi, fu_real angle_at, fu_real angle_change, fu_real alpha, fu_real alpha_change, const fu_real *c_change, const fu_real *P, fu_real *on_c, fu_real *on_turn, fu_real *on_alpha, fu_real *on_s, fu_real *P_next);
+/* inertial forces of a point of a zone over a step that conserves energy: rho [kg/m]; h [s]; l [m]; s_change [m]; R
+ * [m]; xi [1]; angle_at [rad]; angle_change [rad]; alpha [rad]; alpha_change [rad]; c_change [m]; P [m^2/s] -> on_c
+ * [N]; on_turn [N m]; on_alpha [N m]; on_s [N]; P_next [m^2/s] */
+/* s_change 2, c_change 2, P 2, on_c 2, on_turn 1, on_alpha 1, on_s 2, P_next 2 */
+fu_sheave_momentum_step_kernel planar_sheave_momentum_step;
+
 typedef void fu_sheave_friction_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, fu_real v0, const fu_real *angles3, const fu_real *lengths2, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *F, fu_real *numbers, fu_real *power);
 /* friction at a point between a zone and a zone: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2]; mu [1]; v0
  * [m/s]; angles3 [rad]; lengths2 [m]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> F [N m, N]; numbers [m/s, N,
@@ -1547,6 +1565,37 @@ typedef void fu_span_damping_tangent_kernel(fu_real l, const fu_real *e, const f
 fu_span_damping_tangent_kernel span_cable8p_damping_tangent;
 /* e 4x3, v 4x3, s_rate 2, A 3, D 14x14, K 14x13 */
 fu_span_damping_tangent_kernel span_cable12_damping_tangent;
+
+typedef void fu_span_momentum_kernel(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real *P);
+/* momentum of the material at the points of a step, over the mass of a length: l [m]; e [m, 1]; v [m/s, 1/s]; s_rate
+ * [m/s] -> P [m^2/s] */
+/* e 4x2, v 4x2, s_rate 2, P 4x2 */
+fu_span_momentum_kernel span_cable8p_momentum;
+/* e 4x3, v 4x3, s_rate 2, P 4x3 */
+fu_span_momentum_kernel span_cable12_momentum;
+
+typedef void fu_span_momentum_energy_kernel(fu_real rho, fu_real l, const fu_real *P, fu_real *T);
+/* kinetic energy of the momentum at the points of a step: rho [kg/m]; l [m]; P [m^2/s] -> T [J] */
+/* P 4x2, T 1 */
+fu_span_momentum_energy_kernel span_cable8p_momentum_energy;
+/* P 4x3, T 1 */
+fu_span_momentum_energy_kernel span_cable12_momentum_energy;
+
+typedef void fu_span_momentum_step_kernel(fu_real rho, fu_real h, fu_real l, const fu_real *s_change, const fu_real *e, const fu_real *e_change, const fu_real *P, fu_real *f, fu_real *f_s, fu_real *P_next);
+/* inertial forces over a step that conserves energy: rho [kg/m]; h [s]; l [m]; s_change [m]; e [m, 1]; e_change [m,
+ * 1]; P [m^2/s] -> f [N, N m]; f_s [N]; P_next [m^2/s] */
+/* s_change 2, e 4x2, e_change 4x2, P 4x2, f 4x2, f_s 2, P_next 4x2 */
+fu_span_momentum_step_kernel span_cable8p_momentum_step;
+/* s_change 2, e 4x3, e_change 4x3, P 4x3, f 4x3, f_s 2, P_next 4x3 */
+fu_span_momentum_step_kernel span_cable12_momentum_step;
+
+typedef void fu_span_elastic_step_kernel(fu_real l, fu_real l_next, const fu_real *e, const fu_real *e_next, const fu_real *A, const fu_real *U_m, const fu_real *U_b, fu_real *f, fu_real *f_l);
+/* discrete gradient of the elastic energy over a step: l [m]; l_next [m]; e [m, 1]; e_next [m, 1]; A [N, N m^2, N];
+ * U_m [J]; U_b [J] -> f [N, N m]; f_l [N] */
+/* e 4x2, e_next 4x2, A 3, U_m 2, U_b 2, f 4x2, f_l 1 */
+fu_span_elastic_step_kernel span_cable8p_elastic_step;
+/* e 4x3, e_next 4x3, A 3, U_m 2, U_b 2, f 4x3, f_l 1 */
+fu_span_elastic_step_kernel span_cable12_elastic_step;
 
 typedef void fu_surface_flat_kernel(const fu_real *y, const fu_real *normal, fu_real *g, fu_real *g_y);
 /* distance from a plane, and its gradient: y [m]; normal [1] -> g [m]; g_y [1] */
@@ -2019,6 +2068,9 @@ typedef struct {
     fu_sheave_dissipation_kernel *dissipation;
     fu_sheave_damping_force_kernel *damping_force;
     fu_sheave_damping_tangent_kernel *damping_tangent;
+    fu_sheave_momentum_kernel *momentum;
+    fu_sheave_momentum_energy_kernel *momentum_energy;
+    fu_sheave_momentum_step_kernel *momentum_step;
     fu_sheave_friction_kernel *friction;
     fu_sheave_friction_tangent_kernel *friction_tangent;
     fu_sheave_coulomb_kernel *coulomb;
@@ -2051,6 +2103,7 @@ typedef struct {
     const char *name;
     int dim;
     int coordinates;
+    int points;
     fu_span_point_kernel *point;
     fu_span_kinetic_energy_kernel *kinetic_energy;
     fu_span_inertia_kernel *inertia;
@@ -2063,6 +2116,10 @@ typedef struct {
     fu_span_dissipation_kernel *dissipation;
     fu_span_damping_force_kernel *damping_force;
     fu_span_damping_tangent_kernel *damping_tangent;
+    fu_span_momentum_kernel *momentum;
+    fu_span_momentum_energy_kernel *momentum_energy;
+    fu_span_momentum_step_kernel *momentum_step;
+    fu_span_elastic_step_kernel *elastic_step;
 } fu_span_kernels;
 
 /* What the engine needs of a surface. */

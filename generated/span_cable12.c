@@ -17,20 +17,6 @@
         e_S4_y = w*(4.0*e[10] + 2.0*e[4] - 6.0*e_chord3_y), \
         e_S4_z = w*(4.0*e[11] + 2.0*e[5] - 6.0*e_chord3_z);
 
-/* part of strain at the quadrature points: of span_cable12_energy and 2 more */
-#define SPAN_CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS \
-    EI5[0] = 0.23692688505618928*EI_l; \
-    EI5[1] = 0.4786286704993663*EI_l; \
-    EI5[2] = 0.5688888888888887*EI_l; \
-    FU_EACH(g, 5, \
-        len[g] = FU_SQRT(a1[g] + 1.0); \
-        inv_len[g] = 1.0/len[g]; \
-        eps[g] = a1[g]/(len[g] + 1.0); \
-        a[g] = a1[g] + 1.0; \
-        inv_a[g] = inv_len[g]*inv_len[g]; \
-        scale[g] = EI5[g < 2 ? g : 4 - g]*inv_a[g]*inv_a[g]; \
-        cross2[g] = a[g]*c[g] - b[g]*b[g];)
-
 /* part of rate of curvature at the quadrature points: of span_cable12_dissipation and 2 more */
 #define SPAN_CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS \
     const fu_real EI_tau = 2.0*A[1]*tau*w; \
@@ -105,7 +91,17 @@
         a1[g] = r1[g][0]*r1[g][0] + r1[g][1]*r1[g][1] + r1[g][2]*r1[g][2] - 1.0; \
         b[g] = r1[g][0]*r2[g][0] + r1[g][1]*r2[g][1] + r1[g][2]*r2[g][2]; \
         c[g] = r2[g][0]*r2[g][0] + r2[g][1]*r2[g][1] + r2[g][2]*r2[g][2];) \
-    SPAN_CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS
+    EI5[0] = 0.23692688505618928*EI_l; \
+    EI5[1] = 0.4786286704993663*EI_l; \
+    EI5[2] = 0.5688888888888887*EI_l; \
+    FU_EACH(g, 5, \
+        len[g] = FU_SQRT(a1[g] + 1.0); \
+        inv_len[g] = 1.0/len[g]; \
+        eps[g] = a1[g]/(len[g] + 1.0); \
+        a[g] = a1[g] + 1.0; \
+        inv_a[g] = inv_len[g]*inv_len[g]; \
+        scale[g] = EI5[g < 2 ? g : 4 - g]*inv_a[g]*inv_a[g]; \
+        cross2[g] = a[g]*c[g] - b[g]*b[g];)
 
 /* normal force at the quadrature points: of span_cable12_elastic_force and 1 more */
 #define SPAN_CABLE12_NORMAL_FORCE_AT_THE_QUADRATURE_POINTS \
@@ -1307,7 +1303,17 @@ void span_cable12_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real 
         a1[g] = r1_x[g]*r1_x[g] + r1_y[g]*r1_y[g] + r1_z[g]*r1_z[g] - 1.0;
         b[g] = r1_x[g]*r2_x[g] + r1_y[g]*r2_y[g] + r1_z[g]*r2_z[g];
         c[g] = r2_x[g]*r2_x[g] + r2_y[g]*r2_y[g] + r2_z[g]*r2_z[g];)
-    SPAN_CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS
+    EI5[0] = 0.23692688505618928*EI_l;
+    EI5[1] = 0.4786286704993663*EI_l;
+    EI5[2] = 0.5688888888888887*EI_l;
+    FU_EACH(g, 5,
+        len[g] = FU_SQRT(a1[g] + 1.0);
+        inv_len[g] = 1.0/len[g];
+        eps[g] = a1[g]/(len[g] + 1.0);
+        a[g] = a1[g] + 1.0;
+        inv_a[g] = inv_len[g]*inv_len[g];
+        scale[g] = EI5[g < 2 ? g : 4 - g]*inv_a[g]*inv_a[g];
+        cross2[g] = a[g]*c[g] - b[g]*b[g];)
     SPAN_CABLE12_STRAIN_BY_ITS_LEGENDRE_MODES
     /* normal force at the quadrature points */
     const fu_real
@@ -2409,4 +2415,433 @@ void span_cable12_damping_tangent(fu_real l, const fu_real *e, const fu_real *v,
     K[179] = -K34[0][1]*e[9] - K34[1][1]*e[10] - K34[2][1]*e[11] - K44[0][1]*e_S4[0] - K44[1][1]*e_S4[1] - K44[2][1]*e_S4[2] - S44*force4[1] - force3[1];
     K[180] = -K34[0][2]*e[9] - K34[1][2]*e[10] - K34[2][2]*e[11] - K44[0][2]*e_S4[0] - K44[1][2]*e_S4[1] - K44[2][2]*e_S4[2] - S44*force4[2] - force3[2];
     K[181] = -by_l3_x*e[9] - by_l3_y*e[10] - by_l3_z*e[11] - by_l4_x*e_S4[0] - by_l4_y*e_S4[1] - by_l4_z*e_S4[2] - e_Sl4[0]*force4[0] - e_Sl4[1]*force4[1] - e_Sl4[2]*force4[2];
+}
+
+/* momentum of the material at the points of a step, over the mass of a length; 63 add, 105 mul, 1 div */
+void span_cable12_momentum(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real *P)
+{
+    /* slopes and curvatures at the nodes */
+    fu_real e_chord3[3], e_S2[3], e_S4[3];
+    const fu_real w = 1.0/l;
+    FU_EACH(i, 3, e_chord3[i] = w*(-e[i] + e[i + 6]);)
+    FU_EACH(i, 3, e_S2[i] = w*(-4.0*e[i + 3] - 2.0*e[i + 9] + 6.0*e_chord3[i]);)
+    FU_EACH(i, 3, e_S4[i] = w*(2.0*e[i + 3] + 4.0*e[i + 9] - 6.0*e_chord3[i]);)
+    /* velocities of material points at the nodes */
+    fu_real u1[3], u2[3], u3[3], u4[3];
+    FU_EACH(i, 3, u1[i] = -e[i + 3]*s_rate[0] + v[i];)
+    FU_EACH(i, 3, u2[i] = -e_S2[i]*s_rate[0] + v[i + 3];)
+    FU_EACH(i, 3, u3[i] = -e[i + 9]*s_rate[1] + v[i + 6];)
+    FU_EACH(i, 3, u4[i] = -e_S4[i]*s_rate[1] + v[i + 9];)
+    /* velocities of the material */
+    fu_real scaled1[3], scaled2[3], scaled3[3], scaled4[3];
+    FU_EACH(i, 3, scaled1[i] = l*u1[i];)
+    FU_EACH(i, 3, scaled2[i] = l*l*u2[i];)
+    FU_EACH(i, 3, scaled3[i] = l*u3[i];)
+    FU_EACH(i, 3, scaled4[i] = l*l*u4[i];)
+    /* outputs */
+    FU_EACH(i, 3, P[i] = 0.9862070884609109*scaled1[i] + 0.06012499793871617*scaled2[i] + 0.013792911539089075*scaled3[i] - 0.00448606527483153*scaled4[i];)
+    FU_EACH(i, 3, P[i + 3] = 0.7451614261182038*scaled1[i] + 0.14813706341325683*scaled2[i] + 0.25483857388179626*scaled3[i] - 0.07296615908748122*scaled4[i];)
+    FU_EACH(i, 3, P[i + 6] = 0.2548385738817962*scaled1[i] + 0.07296615908748116*scaled2[i] + 0.7451614261182038*scaled3[i] - 0.14813706341325683*scaled4[i];)
+    FU_EACH(i, 3, P[i + 9] = 0.013792911539088903*scaled1[i] + 0.004486065274831308*scaled2[i] + 0.9862070884609111*scaled3[i] - 0.060124997938716285*scaled4[i];)
+}
+
+/* kinetic energy of the momentum at the points of a step (discrete derivatives; Gonzalez, J. Nonlinear Sci. 6 (1996) 449-467); 11 add, 26 mul, 1 div */
+void span_cable12_momentum_energy(fu_real rho, fu_real l, const fu_real *P, fu_real *T)
+{
+    /* outputs */
+    T[0] = 0.5*rho*(0.17392742256872679*P[0]*P[0] + 0.17392742256872679*P[10]*P[10] + 0.17392742256872679*P[11]*P[11] + 0.17392742256872679*P[1]*P[1] + 0.17392742256872679*P[2]*P[2] + 0.3260725774312732*P[3]*P[3] + 0.3260725774312732*P[4]*P[4] + 0.3260725774312732*P[5]*P[5] + 0.3260725774312732*P[6]*P[6] + 0.3260725774312732*P[7]*P[7] + 0.3260725774312732*P[8]*P[8] + 0.17392742256872679*P[9]*P[9])/l;
+}
+
+/* inertial forces over a step that conserves energy (discrete derivatives; Gonzalez, J. Nonlinear Sci. 6 (1996) 449-467); 377 add, 577 mul, 44 div */
+void span_cable12_momentum_step(fu_real rho, fu_real h, fu_real l, const fu_real *s_change, const fu_real *e, const fu_real *e_change, const fu_real *P, fu_real *f, fu_real *f_s, fu_real *P_next)
+{
+    /* length over the step */
+    const fu_real
+        l_next = l - s_change[0] + s_change[1],
+        l_mean = 0.5*l + 0.5*l_next,
+        l_product = l*l_next;
+    /* nodal vectors of unit length */
+    fu_real middle1[3], middle2[3], middle3[3], middle4[3], mean2[3], change2[3], mean4[3], change4[3];
+    FU_EACH(i, 3, middle1[i] = e[i] + 0.5*e_change[i];)
+    FU_EACH(i, 3, middle2[i] = e[i + 3] + 0.5*e_change[i + 3];)
+    FU_EACH(i, 3, middle3[i] = e[i + 6] + 0.5*e_change[i + 6];)
+    FU_EACH(i, 3, middle4[i] = e[i + 9] + 0.5*e_change[i + 9];)
+    FU_EACH(i, 3, mean2[i] = 0.5*e[i + 3]*l + 0.5*l_next*(e[i + 3] + e_change[i + 3]);)
+    FU_EACH(i, 3, change2[i] = e_change[i + 3]*l_mean + middle2[i]*(-l + l_next);)
+    FU_EACH(i, 3, mean4[i] = 0.5*e[i + 9]*l + 0.5*l_next*(e[i + 9] + e_change[i + 9]);)
+    FU_EACH(i, 3, change4[i] = e_change[i + 9]*l_mean + middle4[i]*(-l + l_next);)
+    /* forces at the points */
+    fu_real slope_0[3], slope_change_0[3], w_0[3], gain_0[3], relative_0[3], on_place_0[3], on_slope_0[3], slope_1[3],
+        slope_change_1[3], w_1[3], gain_1[3], relative_1[3], on_place_1[3], on_slope_1[3], slope_2[3],
+        slope_change_2[3], w_2[3], gain_2[3], relative_2[3], on_place_2[3], on_slope_2[3], slope_3[3],
+        slope_change_3[3], w_3[3], gain_3[3], relative_3[3], on_place_3[3], on_slope_3[3];
+    const fu_real flow_0 = (0.9305681557970262*s_change[0] + 0.06943184420297371*s_change[1])/(h*l_mean);
+    FU_EACH(i, 3, slope_0[i] = 0.7367349661563832*mean2[i] - 0.12440134543766938*mean4[i] - 0.3876663792812862*middle1[i] + 0.3876663792812862*middle3[i];)
+    FU_EACH(i, 3, slope_change_0[i] = 0.7367349661563832*change2[i] - 0.12440134543766938*change4[i] - 0.3876663792812862*e_change[i] + 0.3876663792812862*e_change[i + 6];)
+    FU_EACH(i, 3, w_0[i] = -flow_0*slope_0[i] + (0.06012499793871617*change2[i] - 0.00448606527483153*change4[i] + 0.9862070884609109*e_change[i] + 0.013792911539089075*e_change[i + 6])/h;)
+    FU_EACH(i, 3, gain_0[i] = -2.0*P[i] + 2.0*l_mean*w_0[i];)
+    FU_EACH(i, 3, relative_0[i] = gain_0[i] - w_0[i]*(-l + l_next);)
+    const fu_real
+        X_0 = rho*(slope_change_0[0]*w_0[0] + slope_change_0[1]*w_0[1] + slope_change_0[2]*w_0[2] + (gain_0[0]*slope_0[0] + gain_0[1]*slope_0[1] + gain_0[2]*slope_0[2])/l_mean)/h,
+        Y_0 = rho*(0.5*w_0[0]*w_0[0] + 0.5*w_0[1]*w_0[1] + 0.5*w_0[2]*w_0[2] + 0.125*(relative_0[0]*relative_0[0] + relative_0[1]*relative_0[1] + relative_0[2]*relative_0[2])/l_product),
+        Z_0 = rho*(slope_0[0]*w_0[0] + slope_0[1]*w_0[1] + slope_0[2]*w_0[2])/(h*l_mean);
+    FU_EACH(i, 3, on_place_0[i] = 0.17392742256872679*gain_0[i]*rho/h;)
+    FU_EACH(i, 3, on_slope_0[i] = 0.17392742256872679*flow_0*l_mean*rho*w_0[i];)
+    const fu_real flow_1 = (0.6699905217924281*s_change[0] + 0.33000947820757187*s_change[1])/(h*l_mean);
+    FU_EACH(i, 3, slope_1[i] = 0.006680854290214033*mean2[i] - 0.3333001892946422*mean4[i] - 1.3266193350044282*middle1[i] + 1.3266193350044282*middle3[i];)
+    FU_EACH(i, 3, slope_change_1[i] = 0.006680854290214033*change2[i] - 0.3333001892946422*change4[i] - 1.3266193350044282*e_change[i] + 1.3266193350044282*e_change[i + 6];)
+    FU_EACH(i, 3, w_1[i] = -flow_1*slope_1[i] + (0.14813706341325683*change2[i] - 0.07296615908748122*change4[i] + 0.7451614261182038*e_change[i] + 0.25483857388179626*e_change[i + 6])/h;)
+    FU_EACH(i, 3, gain_1[i] = -2.0*P[i + 3] + 2.0*l_mean*w_1[i];)
+    FU_EACH(i, 3, relative_1[i] = gain_1[i] - w_1[i]*(-l + l_next);)
+    const fu_real
+        X_1 = rho*(slope_change_1[0]*w_1[0] + slope_change_1[1]*w_1[1] + slope_change_1[2]*w_1[2] + (gain_1[0]*slope_1[0] + gain_1[1]*slope_1[1] + gain_1[2]*slope_1[2])/l_mean)/h,
+        Y_1 = rho*(0.5*w_1[0]*w_1[0] + 0.5*w_1[1]*w_1[1] + 0.5*w_1[2]*w_1[2] + 0.125*(relative_1[0]*relative_1[0] + relative_1[1]*relative_1[1] + relative_1[2]*relative_1[2])/l_product),
+        Z_1 = rho*(slope_1[0]*w_1[0] + slope_1[1]*w_1[1] + slope_1[2]*w_1[2])/(h*l_mean);
+    FU_EACH(i, 3, on_place_1[i] = 0.3260725774312732*gain_1[i]*rho/h;)
+    FU_EACH(i, 3, on_slope_1[i] = 0.3260725774312732*flow_1*l_mean*rho*w_1[i];)
+    const fu_real flow_2 = (0.33000947820757187*s_change[0] + 0.6699905217924281*s_change[1])/(h*l_mean);
+    FU_EACH(i, 3, slope_2[i] = -0.3333001892946421*mean2[i] + 0.006680854290214144*mean4[i] - 1.3266193350044277*middle1[i] + 1.3266193350044277*middle3[i];)
+    FU_EACH(i, 3, slope_change_2[i] = -0.3333001892946421*change2[i] + 0.006680854290214144*change4[i] - 1.3266193350044277*e_change[i] + 1.3266193350044277*e_change[i + 6];)
+    FU_EACH(i, 3, w_2[i] = -flow_2*slope_2[i] + (0.07296615908748116*change2[i] - 0.14813706341325683*change4[i] + 0.2548385738817962*e_change[i] + 0.7451614261182038*e_change[i + 6])/h;)
+    FU_EACH(i, 3, gain_2[i] = -2.0*P[i + 6] + 2.0*l_mean*w_2[i];)
+    FU_EACH(i, 3, relative_2[i] = gain_2[i] - w_2[i]*(-l + l_next);)
+    const fu_real
+        X_2 = rho*(slope_change_2[0]*w_2[0] + slope_change_2[1]*w_2[1] + slope_change_2[2]*w_2[2] + (gain_2[0]*slope_2[0] + gain_2[1]*slope_2[1] + gain_2[2]*slope_2[2])/l_mean)/h,
+        Y_2 = rho*(0.5*w_2[0]*w_2[0] + 0.5*w_2[1]*w_2[1] + 0.5*w_2[2]*w_2[2] + 0.125*(relative_2[0]*relative_2[0] + relative_2[1]*relative_2[1] + relative_2[2]*relative_2[2])/l_product),
+        Z_2 = rho*(slope_2[0]*w_2[0] + slope_2[1]*w_2[1] + slope_2[2]*w_2[2])/(h*l_mean);
+    FU_EACH(i, 3, on_place_2[i] = 0.3260725774312732*gain_2[i]*rho/h;)
+    FU_EACH(i, 3, on_slope_2[i] = 0.3260725774312732*flow_2*l_mean*rho*w_2[i];)
+    const fu_real flow_3 = (0.06943184420297377*s_change[0] + 0.9305681557970262*s_change[1])/(h*l_mean);
+    FU_EACH(i, 3, slope_3[i] = -0.12440134543766934*mean2[i] + 0.7367349661563831*mean4[i] - 0.38766637928128667*middle1[i] + 0.38766637928128667*middle3[i];)
+    FU_EACH(i, 3, slope_change_3[i] = -0.12440134543766934*change2[i] + 0.7367349661563831*change4[i] - 0.38766637928128667*e_change[i] + 0.38766637928128667*e_change[i + 6];)
+    FU_EACH(i, 3, w_3[i] = -flow_3*slope_3[i] + (0.004486065274831308*change2[i] - 0.060124997938716285*change4[i] + 0.013792911539088903*e_change[i] + 0.9862070884609111*e_change[i + 6])/h;)
+    FU_EACH(i, 3, gain_3[i] = -2.0*P[i + 9] + 2.0*l_mean*w_3[i];)
+    FU_EACH(i, 3, relative_3[i] = gain_3[i] - w_3[i]*(-l + l_next);)
+    const fu_real
+        X_3 = rho*(slope_change_3[0]*w_3[0] + slope_change_3[1]*w_3[1] + slope_change_3[2]*w_3[2] + (gain_3[0]*slope_3[0] + gain_3[1]*slope_3[1] + gain_3[2]*slope_3[2])/l_mean)/h,
+        Y_3 = rho*(0.5*w_3[0]*w_3[0] + 0.5*w_3[1]*w_3[1] + 0.5*w_3[2]*w_3[2] + 0.125*(relative_3[0]*relative_3[0] + relative_3[1]*relative_3[1] + relative_3[2]*relative_3[2])/l_product),
+        Z_3 = rho*(slope_3[0]*w_3[0] + slope_3[1]*w_3[1] + slope_3[2]*w_3[2])/(h*l_mean);
+    FU_EACH(i, 3, on_place_3[i] = 0.17392742256872679*gain_3[i]*rho/h;)
+    FU_EACH(i, 3, on_slope_3[i] = 0.17392742256872679*flow_3*l_mean*rho*w_3[i];)
+    /* forces on the nodal vectors */
+    fu_real unit2[3], unit4[3];
+    FU_EACH(i, 3, f[i] = 0.9862070884609109*on_place_0[i] + 0.7451614261182038*on_place_1[i] + 0.2548385738817962*on_place_2[i] + 0.013792911539088903*on_place_3[i] - 0.3876663792812862*on_slope_0[i] - 1.3266193350044282*on_slope_1[i] - 1.3266193350044277*on_slope_2[i] - 0.38766637928128667*on_slope_3[i];)
+    FU_EACH(i, 3, unit2[i] = 0.06012499793871617*on_place_0[i] + 0.14813706341325683*on_place_1[i] + 0.07296615908748116*on_place_2[i] + 0.004486065274831308*on_place_3[i] + 0.7367349661563832*on_slope_0[i] + 0.006680854290214033*on_slope_1[i] - 0.3333001892946421*on_slope_2[i] - 0.12440134543766934*on_slope_3[i];)
+    FU_EACH(i, 3, f[i + 6] = 0.013792911539089075*on_place_0[i] + 0.25483857388179626*on_place_1[i] + 0.7451614261182038*on_place_2[i] + 0.9862070884609111*on_place_3[i] + 0.3876663792812862*on_slope_0[i] + 1.3266193350044282*on_slope_1[i] + 1.3266193350044277*on_slope_2[i] + 0.38766637928128667*on_slope_3[i];)
+    FU_EACH(i, 3, unit4[i] = -0.00448606527483153*on_place_0[i] - 0.07296615908748122*on_place_1[i] - 0.14813706341325683*on_place_2[i] - 0.060124997938716285*on_place_3[i] - 0.12440134543766938*on_slope_0[i] - 0.3333001892946422*on_slope_1[i] + 0.006680854290214144*on_slope_2[i] + 0.7367349661563831*on_slope_3[i];)
+    /* outputs */
+    FU_EACH(i, 3, f[i + 3] = l_mean*unit2[i];)
+    FU_EACH(i, 3, f[i + 9] = l_mean*unit4[i];)
+    f_s[0] = -0.16185132086231016*X_0 - 0.21846553629538065*X_1 - 0.10760704113589255*X_2 - 0.012076101706416622*X_3 + 0.17392742256872679*Y_0 + 0.3260725774312732*Y_1 + 0.3260725774312732*Y_2 + 0.17392742256872679*Y_3 + 0.17392742256872679*Z_0*s_change[1] + 0.3260725774312732*Z_1*s_change[1] + 0.3260725774312732*Z_2*s_change[1] + 0.17392742256872679*Z_3*s_change[1] - middle2[0]*unit2[0] - middle2[1]*unit2[1] - middle2[2]*unit2[2] - middle4[0]*unit4[0] - middle4[1]*unit4[1] - middle4[2]*unit4[2];
+    f_s[1] = -0.012076101706416612*X_0 - 0.10760704113589255*X_1 - 0.21846553629538065*X_2 - 0.16185132086231016*X_3 - 0.17392742256872679*Y_0 - 0.3260725774312732*Y_1 - 0.3260725774312732*Y_2 - 0.17392742256872679*Y_3 - 0.17392742256872679*Z_0*s_change[0] - 0.3260725774312732*Z_1*s_change[0] - 0.3260725774312732*Z_2*s_change[0] - 0.17392742256872679*Z_3*s_change[0] + middle2[0]*unit2[0] + middle2[1]*unit2[1] + middle2[2]*unit2[2] + middle4[0]*unit4[0] + middle4[1]*unit4[1] + middle4[2]*unit4[2];
+    FU_EACH(i, 3, P_next[i] = P[i] + gain_0[i];)
+    FU_EACH(i, 3, P_next[i + 3] = P[i + 3] + gain_1[i];)
+    FU_EACH(i, 3, P_next[i + 6] = P[i + 6] + gain_2[i];)
+    FU_EACH(i, 3, P_next[i + 9] = P[i + 9] + gain_3[i];)
+}
+
+/* discrete gradient of the elastic energy over a step (Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)); 697 add, 806 mul, 30 div, 10 sqrt */
+void span_cable12_elastic_step(fu_real l, fu_real l_next, const fu_real *e, const fu_real *e_next, const fu_real *A, const fu_real *U_m, const fu_real *U_b, fu_real *f, fu_real *f_l)
+{
+    /* strain vectors at both ends of the step */
+    fu_real chord2[3], now_t1[3], now_t2[3], chord_next2[3], next_t1[3], next_t2[3];
+    const fu_real
+        w = 1.0/l,
+        w_next = 1.0/l_next;
+    FU_EACH(i, 3, chord2[i] = w*(-e[i] + e[i + 6]);)
+    FU_EACH(i, 3, now_t1[i] = -0.5*e[i + 3] + 0.5*e[i + 9];)
+    FU_EACH(i, 3, now_t2[i] = -chord2[i] + 0.5*e[i + 3] + 0.5*e[i + 9];)
+    FU_EACH(i, 3, chord_next2[i] = w_next*(-e_next[i] + e_next[i + 6]);)
+    FU_EACH(i, 3, next_t1[i] = -0.5*e_next[i + 3] + 0.5*e_next[i + 9];)
+    FU_EACH(i, 3, next_t2[i] = -chord_next2[i] + 0.5*e_next[i + 3] + 0.5*e_next[i + 9];)
+    const fu_real
+        l_mean = 0.5*l + 0.5*l_next,
+        w_mean = 0.5*w + 0.5*w_next,
+        EI_step = A[1]*l_mean*w_mean,
+        w_step = 1.0/l_mean;
+    /* strain at the quadrature points */
+    fu_real now_r1_even0[3], next_r1_even0[3], now_r1_odd0[3], next_r1_odd0[3], now_r1_at[2][3], next_r1_at[2][3],
+        now_r1[2][3], next_r1[2][3], now_r1_even1[3], next_r1_even1[3], now_r1_odd1[3], next_r1_odd1[3], now_r1_2[3],
+        next_r1_2[3], now_r2_odd0[3], next_r2_odd0[3], now_r2_at[2][3], next_r2_at[2][3], now_r2[2][3], next_r2[2][3],
+        now_r2_odd1[3], next_r2_odd1[3], now_a1[5], next_a1[5], now_b[5], next_b[5], now_c[5], next_c[5], EI5[3],
+        now_len[5], next_len[5], now_inv_len[5], next_inv_len[5], now_eps[5], next_eps[5], now_a[5], next_a[5],
+        now_inv_a[5], next_inv_a[5], now_scale[5], next_scale[5], now_cross2[5], next_cross2[5];
+    const fu_real EI_l = 2.0*EI_step*w_step;
+    FU_EACH(i, 3, now_r1_even0[i] = chord2[i] + 0.7317428697781312*now_t2[i];)
+    FU_EACH(i, 3, next_r1_even0[i] = chord_next2[i] + 0.7317428697781312*next_t2[i];)
+    FU_EACH(i, 3, now_r1_odd0[i] = -(0.906179845938664*now_t1[i]);)
+    FU_EACH(i, 3, next_r1_odd0[i] = -(0.906179845938664*next_t1[i]);)
+    FU_EACH(i, 3, now_r1_at[1][i] = now_r1_even0[i] - now_r1_odd0[i];)
+    FU_EACH(i, 3, next_r1_at[1][i] = next_r1_even0[i] - next_r1_odd0[i];)
+    FU_EACH(i, 3, now_r1[0][i] = now_r1_even0[i] + now_r1_odd0[i];)
+    FU_EACH(i, 3, next_r1[0][i] = next_r1_even0[i] + next_r1_odd0[i];)
+    FU_EACH(i, 3, now_r1_even1[i] = chord2[i] - 0.06507620311146456*now_t2[i];)
+    FU_EACH(i, 3, next_r1_even1[i] = chord_next2[i] - 0.06507620311146456*next_t2[i];)
+    FU_EACH(i, 3, now_r1_odd1[i] = -(0.5384693101056831*now_t1[i]);)
+    FU_EACH(i, 3, next_r1_odd1[i] = -(0.5384693101056831*next_t1[i]);)
+    FU_EACH(i, 3, now_r1_at[0][i] = now_r1_even1[i] - now_r1_odd1[i];)
+    FU_EACH(i, 3, next_r1_at[0][i] = next_r1_even1[i] - next_r1_odd1[i];)
+    FU_EACH(i, 3, now_r1[1][i] = now_r1_even1[i] + now_r1_odd1[i];)
+    FU_EACH(i, 3, next_r1[1][i] = next_r1_even1[i] + next_r1_odd1[i];)
+    FU_EACH(i, 3, now_r1_2[i] = chord2[i] - 0.5*now_t2[i];)
+    FU_EACH(i, 3, next_r1_2[i] = chord_next2[i] - 0.5*next_t2[i];)
+    FU_EACH(i, 3, now_r2_odd0[i] = -(2.718539537815992*now_t2[i]);)
+    FU_EACH(i, 3, next_r2_odd0[i] = -(2.718539537815992*next_t2[i]);)
+    FU_EACH(i, 3, now_r2_at[1][i] = -now_r2_odd0[i] + now_t1[i];)
+    FU_EACH(i, 3, next_r2_at[1][i] = -next_r2_odd0[i] + next_t1[i];)
+    FU_EACH(i, 3, now_r2[0][i] = now_r2_odd0[i] + now_t1[i];)
+    FU_EACH(i, 3, next_r2[0][i] = next_r2_odd0[i] + next_t1[i];)
+    FU_EACH(i, 3, now_r2_odd1[i] = -(1.6154079303170494*now_t2[i]);)
+    FU_EACH(i, 3, next_r2_odd1[i] = -(1.6154079303170494*next_t2[i]);)
+    FU_EACH(i, 3, now_r2_at[0][i] = -now_r2_odd1[i] + now_t1[i];)
+    FU_EACH(i, 3, next_r2_at[0][i] = -next_r2_odd1[i] + next_t1[i];)
+    FU_EACH(i, 3, now_r2[1][i] = now_r2_odd1[i] + now_t1[i];)
+    FU_EACH(i, 3, next_r2[1][i] = next_r2_odd1[i] + next_t1[i];)
+    FU_EACH(g, 2,
+        now_a1[g] = now_r1[g][0]*now_r1[g][0] + now_r1[g][1]*now_r1[g][1] + now_r1[g][2]*now_r1[g][2] - 1.0;
+        next_a1[g] = next_r1[g][0]*next_r1[g][0] + next_r1[g][1]*next_r1[g][1] + next_r1[g][2]*next_r1[g][2] - 1.0;
+        now_b[g] = now_r1[g][0]*now_r2[g][0] + now_r1[g][1]*now_r2[g][1] + now_r1[g][2]*now_r2[g][2];
+        next_b[g] = next_r1[g][0]*next_r2[g][0] + next_r1[g][1]*next_r2[g][1] + next_r1[g][2]*next_r2[g][2];
+        now_c[g] = now_r2[g][0]*now_r2[g][0] + now_r2[g][1]*now_r2[g][1] + now_r2[g][2]*now_r2[g][2];
+        next_c[g] = next_r2[g][0]*next_r2[g][0] + next_r2[g][1]*next_r2[g][1] + next_r2[g][2]*next_r2[g][2];)
+    now_a1[2] = now_r1_2[0]*now_r1_2[0] + now_r1_2[1]*now_r1_2[1] + now_r1_2[2]*now_r1_2[2] - 1.0;
+    next_a1[2] = next_r1_2[0]*next_r1_2[0] + next_r1_2[1]*next_r1_2[1] + next_r1_2[2]*next_r1_2[2] - 1.0;
+    now_b[2] = now_r1_2[0]*now_t1[0] + now_r1_2[1]*now_t1[1] + now_r1_2[2]*now_t1[2];
+    next_b[2] = next_r1_2[0]*next_t1[0] + next_r1_2[1]*next_t1[1] + next_r1_2[2]*next_t1[2];
+    now_c[2] = now_t1[0]*now_t1[0] + now_t1[1]*now_t1[1] + now_t1[2]*now_t1[2];
+    next_c[2] = next_t1[0]*next_t1[0] + next_t1[1]*next_t1[1] + next_t1[2]*next_t1[2];
+    FU_EACH(g, 2,
+        now_a1[g + 3] = now_r1_at[g][0]*now_r1_at[g][0] + now_r1_at[g][1]*now_r1_at[g][1] + now_r1_at[g][2]*now_r1_at[g][2] - 1.0;
+        next_a1[g + 3] = next_r1_at[g][0]*next_r1_at[g][0] + next_r1_at[g][1]*next_r1_at[g][1] + next_r1_at[g][2]*next_r1_at[g][2] - 1.0;
+        now_b[g + 3] = now_r1_at[g][0]*now_r2_at[g][0] + now_r1_at[g][1]*now_r2_at[g][1] + now_r1_at[g][2]*now_r2_at[g][2];
+        next_b[g + 3] = next_r1_at[g][0]*next_r2_at[g][0] + next_r1_at[g][1]*next_r2_at[g][1] + next_r1_at[g][2]*next_r2_at[g][2];
+        now_c[g + 3] = now_r2_at[g][0]*now_r2_at[g][0] + now_r2_at[g][1]*now_r2_at[g][1] + now_r2_at[g][2]*now_r2_at[g][2];
+        next_c[g + 3] = next_r2_at[g][0]*next_r2_at[g][0] + next_r2_at[g][1]*next_r2_at[g][1] + next_r2_at[g][2]*next_r2_at[g][2];)
+    EI5[0] = 0.23692688505618928*EI_l;
+    EI5[1] = 0.4786286704993663*EI_l;
+    EI5[2] = 0.5688888888888887*EI_l;
+    FU_EACH(g, 5,
+        now_len[g] = FU_SQRT(now_a1[g] + 1.0);
+        next_len[g] = FU_SQRT(next_a1[g] + 1.0);
+        now_inv_len[g] = 1.0/now_len[g];
+        next_inv_len[g] = 1.0/next_len[g];
+        now_eps[g] = now_a1[g]/(now_len[g] + 1.0);
+        next_eps[g] = next_a1[g]/(next_len[g] + 1.0);
+        now_a[g] = now_a1[g] + 1.0;
+        next_a[g] = next_a1[g] + 1.0;
+        now_inv_a[g] = now_inv_len[g]*now_inv_len[g];
+        next_inv_a[g] = next_inv_len[g]*next_inv_len[g];
+        now_scale[g] = EI5[g < 2 ? g : 4 - g]*now_inv_a[g]*now_inv_a[g];
+        next_scale[g] = EI5[g < 2 ? g : 4 - g]*next_inv_a[g]*next_inv_a[g];
+        now_cross2[g] = now_a[g]*now_c[g] - now_b[g]*now_b[g];
+        next_cross2[g] = next_a[g]*next_c[g] - next_b[g]*next_b[g];)
+    /* strain by its Legendre modes */
+    fu_real now_even_eps[2], next_even_eps[2], now_odd_eps[2], next_odd_eps[2];
+    FU_EACH(g, 2,
+        now_even_eps[g] = now_eps[g] + now_eps[4 - g];
+        next_even_eps[g] = next_eps[g] + next_eps[4 - g];
+        now_odd_eps[g] = now_eps[g] - now_eps[4 - g];
+        next_odd_eps[g] = next_eps[g] - next_eps[4 - g];)
+    const fu_real
+        now_eps_m0 = 0.28444444444444433*now_eps[2] + 0.11846344252809464*now_even_eps[0] + 0.23931433524968315*now_even_eps[1],
+        next_eps_m0 = 0.28444444444444433*next_eps[2] + 0.11846344252809464*next_even_eps[0] + 0.23931433524968315*next_even_eps[1],
+        now_eps_m1 = -0.3220475522984177*now_odd_eps[0] - 0.38659027500089116*now_odd_eps[1],
+        next_eps_m1 = -0.3220475522984177*next_odd_eps[0] - 0.38659027500089116*next_odd_eps[1],
+        now_eps_m2 = -0.7111111111111108*now_eps[2] + 0.43342389699652345*now_even_eps[0] - 0.07786834144096752*now_even_eps[1],
+        next_eps_m2 = -0.7111111111111108*next_eps[2] + 0.43342389699652345*next_even_eps[0] - 0.07786834144096752*next_even_eps[1];
+    /* normal force at the quadrature points */
+    fu_real now_stress[2], next_stress[2], now_stress_at[2], next_stress_at[2];
+    const fu_real
+        EA_l = 0.5*A[0]/w_step,
+        EA_up_l = 0.5*A[2]/w_step,
+        now_N_m0 = EA_l*now_eps_m0,
+        next_N_m0 = EA_l*next_eps_m0,
+        now_N_m1 = EA_l*now_eps_m1,
+        next_N_m1 = EA_l*next_eps_m1,
+        now_N_m2 = EA_up_l*now_eps_m2,
+        next_N_m2 = EA_up_l*next_eps_m2,
+        now_even_N_0 = 0.47385377011237856*now_N_m0 + 0.34673911759721876*now_N_m2,
+        next_even_N_0 = 0.47385377011237856*next_N_m0 + 0.34673911759721876*next_N_m2,
+        now_odd_N_0 = -(0.4293967363978903*now_N_m1),
+        next_odd_N_0 = -(0.4293967363978903*next_N_m1);
+    now_stress[0] = now_even_N_0 + now_odd_N_0;
+    next_stress[0] = next_even_N_0 + next_odd_N_0;
+    now_stress_at[1] = now_even_N_0 - now_odd_N_0;
+    next_stress_at[1] = next_even_N_0 - next_odd_N_0;
+    const fu_real
+        now_even_N_1 = 0.9572573409987326*now_N_m0 - 0.06229467315277401*now_N_m2,
+        next_even_N_1 = 0.9572573409987326*next_N_m0 - 0.06229467315277401*next_N_m2,
+        now_odd_N_1 = -(0.5154537000011882*now_N_m1),
+        next_odd_N_1 = -(0.5154537000011882*next_N_m1);
+    now_stress[1] = now_even_N_1 + now_odd_N_1;
+    next_stress[1] = next_even_N_1 + next_odd_N_1;
+    now_stress_at[0] = now_even_N_1 - now_odd_N_1;
+    next_stress_at[0] = next_even_N_1 - next_odd_N_1;
+    const fu_real
+        now_even_N_2 = 1.1377777777777773*now_N_m0 - 0.5688888888888887*now_N_m2,
+        next_even_N_2 = 1.1377777777777773*next_N_m0 - 0.5688888888888887*next_N_m2;
+    /* derivatives at the quadrature points */
+    fu_real D_cross2_a1[2], D_inv_a_a1[2], D_scale_a1[2], D_len_a1[2], D_cross2_b[2], D_cross2_c[2], D_a1[5], D_b[5],
+        D_c[5], D_cross2_a1_at[2], D_inv_a_a1_at[2], D_scale_a1_at[2], D_len_a1_at[2], D_cross2_b_at[2],
+        D_cross2_c_at[2], unit_t0[3], unit_t1[3], unit_t2[3];
+    FU_EACH(g, 2,
+        D_cross2_a1[g] = 0.5*next_c[g] + 0.5*now_c[g];
+        D_inv_a_a1[g] = -(next_inv_a[g]*now_inv_a[g]);
+        D_scale_a1[g] = D_inv_a_a1[g]*EI5[g]*(next_inv_a[g] + now_inv_a[g]);
+        D_len_a1[g] = 1.0/(next_len[g] + now_len[g]);
+        D_cross2_b[g] = -next_b[g] - now_b[g];
+        D_cross2_c[g] = 0.5*next_a[g] + 0.5*now_a[g];
+        D_a1[g] = D_cross2_a1[g]*(0.5*next_scale[g] + 0.5*now_scale[g]) + D_len_a1[g]*(0.5*next_stress[g] + 0.5*now_stress[g]) + D_scale_a1[g]*(0.5*next_cross2[g] + 0.5*now_cross2[g]);
+        D_b[g] = D_cross2_b[g]*(0.5*next_scale[g] + 0.5*now_scale[g]);
+        D_c[g] = D_cross2_c[g]*(0.5*next_scale[g] + 0.5*now_scale[g]);)
+    const fu_real
+        D_cross2_2_a1_2 = 0.5*next_c[2] + 0.5*now_c[2],
+        D_inv_a_2_a1_2 = -(next_inv_a[2]*now_inv_a[2]),
+        D_scale_2_a1_2 = D_inv_a_2_a1_2*EI5[2]*(next_inv_a[2] + now_inv_a[2]),
+        D_len_2_a1_2 = 1.0/(next_len[2] + now_len[2]),
+        D_cross2_2_b_2 = -next_b[2] - now_b[2],
+        D_cross2_2_c_2 = 0.5*next_a[2] + 0.5*now_a[2];
+    D_a1[2] = D_cross2_2_a1_2*(0.5*next_scale[2] + 0.5*now_scale[2]) + D_len_2_a1_2*(0.5*next_even_N_2 + 0.5*now_even_N_2) + D_scale_2_a1_2*(0.5*next_cross2[2] + 0.5*now_cross2[2]);
+    D_b[2] = D_cross2_2_b_2*(0.5*next_scale[2] + 0.5*now_scale[2]);
+    D_c[2] = D_cross2_2_c_2*(0.5*next_scale[2] + 0.5*now_scale[2]);
+    FU_EACH(g, 2,
+        D_cross2_a1_at[g] = 0.5*next_c[g + 3] + 0.5*now_c[g + 3];
+        D_inv_a_a1_at[g] = -(next_inv_a[g + 3]*now_inv_a[g + 3]);
+        D_scale_a1_at[g] = D_inv_a_a1_at[g]*EI5[1 - g]*(next_inv_a[g + 3] + now_inv_a[g + 3]);
+        D_len_a1_at[g] = 1.0/(next_len[g + 3] + now_len[g + 3]);
+        D_cross2_b_at[g] = -next_b[g + 3] - now_b[g + 3];
+        D_cross2_c_at[g] = 0.5*next_a[g + 3] + 0.5*now_a[g + 3];
+        D_a1[g + 3] = D_cross2_a1_at[g]*(0.5*next_scale[g + 3] + 0.5*now_scale[g + 3]) + D_len_a1_at[g]*(0.5*next_stress_at[g] + 0.5*now_stress_at[g]) + D_scale_a1_at[g]*(0.5*next_cross2[g + 3] + 0.5*now_cross2[g + 3]);
+        D_b[g + 3] = D_cross2_b_at[g]*(0.5*next_scale[g + 3] + 0.5*now_scale[g + 3]);
+        D_c[g + 3] = D_cross2_c_at[g]*(0.5*next_scale[g + 3] + 0.5*now_scale[g + 3]);)
+    const fu_real w2_mean = 0.5*w*w + 0.5*w_next*w_next;
+    FU_EACH(i, 3, unit_t0[i] = 0.5*w2_mean*(chord2[i]*l + chord_next2[i]*l_next);)
+    FU_EACH(i, 3, unit_t1[i] = 0.5*w2_mean*(l*now_t1[i] + l_next*next_t1[i]);)
+    FU_EACH(i, 3, unit_t2[i] = 0.5*w2_mean*(l*now_t2[i] + l_next*next_t2[i]);)
+    /* products at the quadrature points */
+    fu_real mean1_abc_even0[3], mean1_abc_odd0[3], mean1_abc[5][3], mean1_abc_even1[3], mean1_abc_odd1[3],
+        mean2_abc_odd0[3], mean2_abc[5][3], mean2_abc_odd1[3], half_mean_abc[5], F1_mean_abc[5][3], F2_mean_abc[5][3],
+        sum_mean_abc1_0[3], difference_mean_abc1_0[3], sum_mean_abc1_1[3], difference_mean_abc1_1[3],
+        sum_mean_abc2_0[3], difference_mean_abc2_0[3], sum_mean_abc2_1[3], difference_mean_abc2_1[3];
+    FU_EACH(i, 3, mean1_abc_even0[i] = unit_t0[i] + 0.7317428697781312*unit_t2[i];)
+    FU_EACH(i, 3, mean1_abc_odd0[i] = -(0.906179845938664*unit_t1[i]);)
+    FU_EACH(i, 3, mean1_abc[4][i] = mean1_abc_even0[i] - mean1_abc_odd0[i];)
+    FU_EACH(i, 3, mean1_abc[0][i] = mean1_abc_even0[i] + mean1_abc_odd0[i];)
+    FU_EACH(i, 3, mean1_abc_even1[i] = unit_t0[i] - 0.06507620311146456*unit_t2[i];)
+    FU_EACH(i, 3, mean1_abc_odd1[i] = -(0.5384693101056831*unit_t1[i]);)
+    FU_EACH(i, 3, mean1_abc[3][i] = mean1_abc_even1[i] - mean1_abc_odd1[i];)
+    FU_EACH(i, 3, mean1_abc[1][i] = mean1_abc_even1[i] + mean1_abc_odd1[i];)
+    FU_EACH(i, 3, mean1_abc[2][i] = unit_t0[i] - 0.5*unit_t2[i];)
+    FU_EACH(i, 3, mean2_abc_odd0[i] = -(2.718539537815992*unit_t2[i]);)
+    FU_EACH(i, 3, mean2_abc[4][i] = -mean2_abc_odd0[i] + unit_t1[i];)
+    FU_EACH(i, 3, mean2_abc[0][i] = mean2_abc_odd0[i] + unit_t1[i];)
+    FU_EACH(i, 3, mean2_abc_odd1[i] = -(1.6154079303170494*unit_t2[i]);)
+    FU_EACH(i, 3, mean2_abc[3][i] = -mean2_abc_odd1[i] + unit_t1[i];)
+    FU_EACH(i, 3, mean2_abc[1][i] = mean2_abc_odd1[i] + unit_t1[i];)
+    FU_EACH(i, 3, mean2_abc[2][i] = unit_t1[i];)
+    FU_EACH(g, 5,
+        half_mean_abc[g] = 0.5*D_b[g];
+        FU_EACH(i, 3, F1_mean_abc[g][i] = D_a1[g]*mean1_abc[g][i] + half_mean_abc[g]*mean2_abc[g][i];)
+        FU_EACH(i, 3, F2_mean_abc[g][i] = D_c[g]*mean2_abc[g][i] + half_mean_abc[g]*mean1_abc[g][i];))
+    FU_EACH(i, 3, sum_mean_abc1_0[i] = F1_mean_abc[0][i] + F1_mean_abc[4][i];)
+    FU_EACH(i, 3, difference_mean_abc1_0[i] = F1_mean_abc[0][i] - F1_mean_abc[4][i];)
+    FU_EACH(i, 3, sum_mean_abc1_1[i] = F1_mean_abc[1][i] + F1_mean_abc[3][i];)
+    FU_EACH(i, 3, difference_mean_abc1_1[i] = F1_mean_abc[1][i] - F1_mean_abc[3][i];)
+    FU_EACH(i, 3, sum_mean_abc2_0[i] = F2_mean_abc[0][i] + F2_mean_abc[4][i];)
+    FU_EACH(i, 3, difference_mean_abc2_0[i] = F2_mean_abc[0][i] - F2_mean_abc[4][i];)
+    FU_EACH(i, 3, sum_mean_abc2_1[i] = F2_mean_abc[1][i] + F2_mean_abc[3][i];)
+    FU_EACH(i, 3, difference_mean_abc2_1[i] = F2_mean_abc[1][i] - F2_mean_abc[3][i];)
+    /* products over strain vectors */
+    fu_real mean_f_t0[3], mean_f_t1[3], mean_f_t2[3];
+    FU_EACH(i, 3, mean_f_t0[i] = F1_mean_abc[2][i] + sum_mean_abc1_0[i] + sum_mean_abc1_1[i];)
+    FU_EACH(i, 3, mean_f_t1[i] = F2_mean_abc[2][i] - 0.906179845938664*difference_mean_abc1_0[i] - 0.5384693101056831*difference_mean_abc1_1[i] + sum_mean_abc2_0[i] + sum_mean_abc2_1[i];)
+    FU_EACH(i, 3, mean_f_t2[i] = -0.5*F1_mean_abc[2][i] - 2.718539537815992*difference_mean_abc2_0[i] - 1.6154079303170494*difference_mean_abc2_1[i] + 0.7317428697781312*sum_mean_abc1_0[i] - 0.06507620311146456*sum_mean_abc1_1[i];)
+    /* products at the quadrature points */
+    fu_real now1_abc_even0[3], now1_abc_odd0[3], now1_abc[5][3], now1_abc_even1[3], now1_abc_odd1[3], now2_abc_odd0[3],
+        now2_abc[5][3], now2_abc_odd1[3], half_now_abc[5], F1_now_abc[5][3], F2_now_abc[5][3], sum_now_abc1_0[3],
+        difference_now_abc1_0[3], sum_now_abc1_1[3], difference_now_abc1_1[3], sum_now_abc2_0[3],
+        difference_now_abc2_0[3], sum_now_abc2_1[3], difference_now_abc2_1[3];
+    FU_EACH(i, 3, now1_abc_even0[i] = chord2[i] + 0.7317428697781312*now_t2[i];)
+    FU_EACH(i, 3, now1_abc_odd0[i] = -(0.906179845938664*now_t1[i]);)
+    FU_EACH(i, 3, now1_abc[4][i] = now1_abc_even0[i] - now1_abc_odd0[i];)
+    FU_EACH(i, 3, now1_abc[0][i] = now1_abc_even0[i] + now1_abc_odd0[i];)
+    FU_EACH(i, 3, now1_abc_even1[i] = chord2[i] - 0.06507620311146456*now_t2[i];)
+    FU_EACH(i, 3, now1_abc_odd1[i] = -(0.5384693101056831*now_t1[i]);)
+    FU_EACH(i, 3, now1_abc[3][i] = now1_abc_even1[i] - now1_abc_odd1[i];)
+    FU_EACH(i, 3, now1_abc[1][i] = now1_abc_even1[i] + now1_abc_odd1[i];)
+    FU_EACH(i, 3, now1_abc[2][i] = chord2[i] - 0.5*now_t2[i];)
+    FU_EACH(i, 3, now2_abc_odd0[i] = -(2.718539537815992*now_t2[i]);)
+    FU_EACH(i, 3, now2_abc[4][i] = -now2_abc_odd0[i] + now_t1[i];)
+    FU_EACH(i, 3, now2_abc[0][i] = now2_abc_odd0[i] + now_t1[i];)
+    FU_EACH(i, 3, now2_abc_odd1[i] = -(1.6154079303170494*now_t2[i]);)
+    FU_EACH(i, 3, now2_abc[3][i] = -now2_abc_odd1[i] + now_t1[i];)
+    FU_EACH(i, 3, now2_abc[1][i] = now2_abc_odd1[i] + now_t1[i];)
+    FU_EACH(i, 3, now2_abc[2][i] = now_t1[i];)
+    FU_EACH(g, 5,
+        half_now_abc[g] = 0.5*D_b[g];
+        FU_EACH(i, 3, F1_now_abc[g][i] = D_a1[g]*now1_abc[g][i] + half_now_abc[g]*now2_abc[g][i];)
+        FU_EACH(i, 3, F2_now_abc[g][i] = D_c[g]*now2_abc[g][i] + half_now_abc[g]*now1_abc[g][i];))
+    FU_EACH(i, 3, sum_now_abc1_0[i] = F1_now_abc[0][i] + F1_now_abc[4][i];)
+    FU_EACH(i, 3, difference_now_abc1_0[i] = F1_now_abc[0][i] - F1_now_abc[4][i];)
+    FU_EACH(i, 3, sum_now_abc1_1[i] = F1_now_abc[1][i] + F1_now_abc[3][i];)
+    FU_EACH(i, 3, difference_now_abc1_1[i] = F1_now_abc[1][i] - F1_now_abc[3][i];)
+    FU_EACH(i, 3, sum_now_abc2_0[i] = F2_now_abc[0][i] + F2_now_abc[4][i];)
+    FU_EACH(i, 3, difference_now_abc2_0[i] = F2_now_abc[0][i] - F2_now_abc[4][i];)
+    FU_EACH(i, 3, sum_now_abc2_1[i] = F2_now_abc[1][i] + F2_now_abc[3][i];)
+    FU_EACH(i, 3, difference_now_abc2_1[i] = F2_now_abc[1][i] - F2_now_abc[3][i];)
+    /* products over strain vectors */
+    fu_real now_f_t0[3], now_f_t1[3], now_f_t2[3];
+    FU_EACH(i, 3, now_f_t0[i] = F1_now_abc[2][i] + sum_now_abc1_0[i] + sum_now_abc1_1[i];)
+    FU_EACH(i, 3, now_f_t1[i] = F2_now_abc[2][i] - 0.906179845938664*difference_now_abc1_0[i] - 0.5384693101056831*difference_now_abc1_1[i] + sum_now_abc2_0[i] + sum_now_abc2_1[i];)
+    FU_EACH(i, 3, now_f_t2[i] = -0.5*F1_now_abc[2][i] - 2.718539537815992*difference_now_abc2_0[i] - 1.6154079303170494*difference_now_abc2_1[i] + 0.7317428697781312*sum_now_abc1_0[i] - 0.06507620311146456*sum_now_abc1_1[i];)
+    /* products at the quadrature points */
+    fu_real next1_abc_even0[3], next1_abc_odd0[3], next1_abc[5][3], next1_abc_even1[3], next1_abc_odd1[3],
+        next2_abc_odd0[3], next2_abc[5][3], next2_abc_odd1[3], half_next_abc[5], F1_next_abc[5][3], F2_next_abc[5][3],
+        sum_next_abc1_0[3], difference_next_abc1_0[3], sum_next_abc1_1[3], difference_next_abc1_1[3],
+        sum_next_abc2_0[3], difference_next_abc2_0[3], sum_next_abc2_1[3], difference_next_abc2_1[3];
+    FU_EACH(i, 3, next1_abc_even0[i] = chord_next2[i] + 0.7317428697781312*next_t2[i];)
+    FU_EACH(i, 3, next1_abc_odd0[i] = -(0.906179845938664*next_t1[i]);)
+    FU_EACH(i, 3, next1_abc[4][i] = next1_abc_even0[i] - next1_abc_odd0[i];)
+    FU_EACH(i, 3, next1_abc[0][i] = next1_abc_even0[i] + next1_abc_odd0[i];)
+    FU_EACH(i, 3, next1_abc_even1[i] = chord_next2[i] - 0.06507620311146456*next_t2[i];)
+    FU_EACH(i, 3, next1_abc_odd1[i] = -(0.5384693101056831*next_t1[i]);)
+    FU_EACH(i, 3, next1_abc[3][i] = next1_abc_even1[i] - next1_abc_odd1[i];)
+    FU_EACH(i, 3, next1_abc[1][i] = next1_abc_even1[i] + next1_abc_odd1[i];)
+    FU_EACH(i, 3, next1_abc[2][i] = chord_next2[i] - 0.5*next_t2[i];)
+    FU_EACH(i, 3, next2_abc_odd0[i] = -(2.718539537815992*next_t2[i]);)
+    FU_EACH(i, 3, next2_abc[4][i] = -next2_abc_odd0[i] + next_t1[i];)
+    FU_EACH(i, 3, next2_abc[0][i] = next2_abc_odd0[i] + next_t1[i];)
+    FU_EACH(i, 3, next2_abc_odd1[i] = -(1.6154079303170494*next_t2[i]);)
+    FU_EACH(i, 3, next2_abc[3][i] = -next2_abc_odd1[i] + next_t1[i];)
+    FU_EACH(i, 3, next2_abc[1][i] = next2_abc_odd1[i] + next_t1[i];)
+    FU_EACH(i, 3, next2_abc[2][i] = next_t1[i];)
+    FU_EACH(g, 5,
+        half_next_abc[g] = 0.5*D_b[g];
+        FU_EACH(i, 3, F1_next_abc[g][i] = D_a1[g]*next1_abc[g][i] + half_next_abc[g]*next2_abc[g][i];)
+        FU_EACH(i, 3, F2_next_abc[g][i] = D_c[g]*next2_abc[g][i] + half_next_abc[g]*next1_abc[g][i];))
+    FU_EACH(i, 3, sum_next_abc1_0[i] = F1_next_abc[0][i] + F1_next_abc[4][i];)
+    FU_EACH(i, 3, difference_next_abc1_0[i] = F1_next_abc[0][i] - F1_next_abc[4][i];)
+    FU_EACH(i, 3, sum_next_abc1_1[i] = F1_next_abc[1][i] + F1_next_abc[3][i];)
+    FU_EACH(i, 3, difference_next_abc1_1[i] = F1_next_abc[1][i] - F1_next_abc[3][i];)
+    FU_EACH(i, 3, sum_next_abc2_0[i] = F2_next_abc[0][i] + F2_next_abc[4][i];)
+    FU_EACH(i, 3, difference_next_abc2_0[i] = F2_next_abc[0][i] - F2_next_abc[4][i];)
+    FU_EACH(i, 3, sum_next_abc2_1[i] = F2_next_abc[1][i] + F2_next_abc[3][i];)
+    FU_EACH(i, 3, difference_next_abc2_1[i] = F2_next_abc[1][i] - F2_next_abc[3][i];)
+    /* products over strain vectors */
+    fu_real next_f_t0[3], next_f_t1[3], next_f_t2[3], f_r_x1[3], f_r_2[3], f_r_x2[3], middle2[3], middle4[3];
+    FU_EACH(i, 3, next_f_t0[i] = F1_next_abc[2][i] + sum_next_abc1_0[i] + sum_next_abc1_1[i];)
+    FU_EACH(i, 3, next_f_t1[i] = F2_next_abc[2][i] - 0.906179845938664*difference_next_abc1_0[i] - 0.5384693101056831*difference_next_abc1_1[i] + sum_next_abc2_0[i] + sum_next_abc2_1[i];)
+    FU_EACH(i, 3, next_f_t2[i] = -0.5*F1_next_abc[2][i] - 2.718539537815992*difference_next_abc2_0[i] - 1.6154079303170494*difference_next_abc2_1[i] + 0.7317428697781312*sum_next_abc1_0[i] - 0.06507620311146456*sum_next_abc1_1[i];)
+    FU_EACH(i, 3, f_r_x1[i] = -0.5*mean_f_t1[i] + 0.5*mean_f_t2[i];)
+    FU_EACH(i, 3, f_r_2[i] = mean_f_t0[i] - mean_f_t2[i];)
+    FU_EACH(i, 3, f_r_x2[i] = 0.5*mean_f_t1[i] + 0.5*mean_f_t2[i];)
+    FU_EACH(i, 3, middle2[i] = 0.5*e[i + 3] + 0.5*e_next[i + 3];)
+    FU_EACH(i, 3, middle4[i] = 0.5*e[i + 9] + 0.5*e_next[i + 9];)
+    /* forces on the nodal vectors */
+    FU_EACH(i, 3, f[i] = -f_r_2[i];)
+    /* outputs */
+    FU_EACH(i, 3, f[i + 3] = f_r_x1[i]*l_mean;)
+    FU_EACH(i, 3, f[i + 6] = f_r_2[i];)
+    FU_EACH(i, 3, f[i + 9] = f_r_x2[i]*l_mean;)
+    f_l[0] = 0.5*U_m[0]*w + 0.5*U_m[1]*w_next + f_r_x1[0]*middle2[0] + f_r_x1[1]*middle2[1] + f_r_x1[2]*middle2[2] + f_r_x2[0]*middle4[0] + f_r_x2[1]*middle4[1] + f_r_x2[2]*middle4[2] - 0.5*w*w_mean*w_next*(l*l*(chord2[0]*now_f_t0[0] + chord2[1]*now_f_t0[1] + chord2[2]*now_f_t0[2] + now_f_t1[0]*now_t1[0] + now_f_t1[1]*now_t1[1] + now_f_t1[2]*now_t1[2] + now_f_t2[0]*now_t2[0] + now_f_t2[1]*now_t2[1] + now_f_t2[2]*now_t2[2]) + l_next*l_next*(chord_next2[0]*next_f_t0[0] + chord_next2[1]*next_f_t0[1] + chord_next2[2]*next_f_t0[2] + next_f_t1[0]*next_t1[0] + next_f_t1[1]*next_t1[1] + next_f_t1[2]*next_t1[2] + next_f_t2[0]*next_t2[0] + next_f_t2[1]*next_t2[1] + next_f_t2[2]*next_t2[2])) - w*w_next*(0.5*U_b[0]*l + 0.5*U_b[1]*l_next);
 }

@@ -14,7 +14,7 @@ import sympy as sp
 
 from ..codegen.family import CouplingFamily
 from ..codegen.program import DirectionalDerivative, Program, jacobian
-from . import drum, sheave_friction, sheave_zone, short_wrap
+from . import drum, sheave_friction, sheave_step, sheave_zone, short_wrap
 from .sheave_zone import DIM, program
 
 
@@ -25,8 +25,8 @@ def families() -> list[CouplingFamily]:
 
 def build(dim: int) -> list[Program]:
     """Return the kernels of a sheave."""
-    return [tangent_point(), tangent_point_motion(), angle(), *sheave_zone.kernels(), *sheave_friction.kernels(),
-            *short_wrap.kernels(), *drum.kernels()]
+    return [tangent_point(), tangent_point_motion(), angle(), *sheave_zone.kernels(), *sheave_step.kernels(),
+            *sheave_friction.kernels(), *short_wrap.kernels(), *drum.kernels()]
 
 
 def _conditions(p: Program, x: np.ndarray, slope: np.ndarray) -> np.ndarray:

@@ -22,6 +22,7 @@ from ..elements import ELEMENTS
 from ..laws import law_class, law_traits
 from ..laws.cable.blocks import named_block
 from ..spec import Element, x
+from . import span_step
 from .span_inertia import Flow, FlowingElement
 
 SPANS = {"cable8p": "engineering_exact_assumed", "cable12": "engineering_exact_assumed"}
@@ -32,7 +33,8 @@ def families() -> list[ElementFamily]:
     """Return the families of spans."""
     return [ElementFamily(f"span_{name}", f"span of a rope of {name} elements", partial(build, ELEMENTS[name], law),
                           ("couplings.span", f"elements.{name}"), role="span",
-                          facts={"dim": ELEMENTS[name].dim, "coordinates": ELEMENTS[name].n_coordinates},
+                          facts={"dim": ELEMENTS[name].dim, "coordinates": ELEMENTS[name].n_coordinates,
+                                 "points": span_step.POINTS},
                           element=ELEMENTS[name], law=law, traits=law_traits(law))
             for name, law in SPANS.items()]
 
@@ -42,7 +44,7 @@ def build(element: Element, law: str) -> list[Program]:
     span = Span(element, law)
     return [span.point(), span.kinetic_energy(), span.inertia(), span.mass_matrix(), span.inertia_tangent(),
             span.weight(), span.energy(), span.elastic_force(), span.elastic_tangent(), span.dissipation(),
-            span.damping_force(), span.damping_tangent()]
+            span.damping_force(), span.damping_tangent(), *span_step.kernels(span)]
 
 
 class Span(FlowingElement):

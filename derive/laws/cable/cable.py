@@ -271,22 +271,54 @@ class Cable(Damping):
     def discrete_forces(self, program: Program, A: np.ndarray, now: np.ndarray, then: np.ndarray,
                         w: sp.Expr) -> np.ndarray:
         """Return forces f on strain vectors with f . (then - now) = the difference of U, by the mean vectors."""
-        law, c = staged(program, now)
-        terms = list(self._terms(law, A, c, w))
-        inputs = zip(c.ravel(), zip(now.ravel(), then.ravel(), strict=True), strict=True)
-        discrete = DiscreteGradient(program, law, dict(inputs))
         f = np.zeros((len(self.gram.names), self.gram.element.dim), dtype=object)
-        for names, of_rule in groupby(terms, key=lambda term: term.names):
-            group = list(of_rule)
+        for names, group, discrete in self._discrete_terms(program, A, now, then, w):
             program.stage("forces at the quadrature points")
             forces = []
             for g, term in enumerate(group):
-                D = [program.define(f"D_{s.name}", d) for s, d in
-                     zip(term.invariants, discrete.gradient(term.varied, term.invariants, term.constant), strict=True)]
+                D = self._discrete_first(program, term, discrete)
                 means = [discrete.means(f"mean{k + 1}_{names}{g}", v) for k, v in enumerate(term.vectors)]
                 forces.append(on_vectors(program, f"{names}{g}", means, D))
             f[self.axis_indices] += self._gathered(program, names, group, forces)
         return self._named(program, f)
+
+    def discrete_product(self, program: Program, A: np.ndarray, now: np.ndarray, then: np.ndarray,
+                         w: sp.Expr) -> Callable[[str, np.ndarray], np.ndarray]:
+        """Return the product B c of strain vectors c, under a tag; `discrete_forces` is that of the mean ones."""
+        terms = []
+        for names, group, discrete in self._discrete_terms(program, A, now, then, w):
+            program.stage("derivatives at the quadrature points")
+            terms.append((names, group, [self._discrete_first(program, term, discrete) for term in group]))
+
+        def product(tag: str, c: np.ndarray) -> np.ndarray:
+            f = np.zeros((len(self.gram.names), self.gram.element.dim), dtype=object)
+            along = [c[m] for m in self.axis_indices]
+            for names, group, first in terms:
+                program.stage("products at the quadrature points")
+                vectors = [values(program, f"{tag}{k + 1}_{names}", [term.series[k] for term in group], along)
+                           for k in range(len(group[0].vectors))]
+                forces = [on_vectors(program, f"{tag}_{names}{g}", at, D)
+                          for g, (at, D) in enumerate(zip(zip(*vectors, strict=True), first, strict=True))]
+                f[self.axis_indices] += self._gathered(program, f"{tag}_{names}", group, forces)
+            program.stage("products over strain vectors")
+            return np.array([program.vector(f"{tag}_f_{name}", v) for name, v in zip(self.gram.names, f, strict=True)])
+
+        return product
+
+    def _discrete_terms(self, program: Program, A: np.ndarray, now: np.ndarray, then: np.ndarray,
+                        w: sp.Expr) -> Iterator[tuple[str, list[Term], DiscreteGradient]]:
+        """Yield the terms of each rule with the discrete gradient of their program."""
+        law, c = staged(program, now)
+        terms = list(self._terms(law, A, c, w))
+        inputs = zip(c.ravel(), zip(now.ravel(), then.ravel(), strict=True), strict=True)
+        discrete = DiscreteGradient(program, law, dict(inputs))
+        for names, of_rule in groupby(terms, key=lambda term: term.names):
+            yield names, list(of_rule), discrete
+
+    def _discrete_first(self, program: Program, term: Term, discrete: DiscreteGradient) -> list[sp.Expr]:
+        """Return the discrete derivatives of twice the energy by a term's invariants."""
+        return [program.define(f"D_{s.name}", d) for s, d in
+                zip(term.invariants, discrete.gradient(term.varied, term.invariants, term.constant), strict=True)]
 
     def stress_of_turning(self, program: Program, A: np.ndarray, change: np.ndarray, w: sp.Expr) -> np.ndarray:
         """Return blocks (n, n, 1, 1) over strain vectors that the mean stress of a step has more than the stress of the

@@ -124,6 +124,7 @@ cdef extern from * nogil:
     ctypedef struct fu_coupling_type:
         const char *name
         size_t size
+        int n_numbers
         const fu_field *fields
         const fu_output *output_fields
         const fu_supply_operations *supply
@@ -136,6 +137,7 @@ cdef extern from * nogil:
     ctypedef struct fu_coupling:
         const fu_coupling_type *type
         int index, number, unknown, n_coordinates, coordinate, n_forces, force, n_multipliers, multiplier, row, output
+        int numbers, n_numbers
     void fu_contact_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
     int FU_ADDED_MASS_DENSITIES, FU_DRAG_DENSITIES, FU_DRAG_POINTS
     int fu_drag_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)

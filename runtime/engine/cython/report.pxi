@@ -148,6 +148,11 @@ cdef class Report(Statics):
         """Displacement at the start that closed the gaps of joints, m."""
         return self.run.closed
 
+    def history(self, k):
+        """Return the history variables of a coupling at the time reached."""
+        cdef const fu_coupling *c = self.couplings[k]
+        return self._view(&self.run.now, "numbers")[c.numbers : c.numbers + c.type.n_numbers + c.n_numbers].copy()
+
     def now(self):
         """t, q, v, s at the time reached."""
         return self._snapshot(&self.run.now)

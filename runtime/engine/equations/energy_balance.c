@@ -94,6 +94,7 @@ void fu_take_jump(fu_run *run, const double *change, double lost)
     fu_state *now = &run->now;
     const double before = fu_kinetic_energy(model, now->t, now->q, now->v);
     for (int i = 0; i < model->n_dof; ++i) now->v[i] += change[i];
+    fu_history_jump(model, now, change);
     run->dissipated += lost;
     if (model->n_driven || model->n_motions || model->n_inertial)
         run->external += fu_kinetic_energy(model, now->t, now->q, now->v) - before + lost;

@@ -48,7 +48,8 @@ static int pass(fu_run *run, const fu_coupling *coupling, int grows, const char 
 static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
 {
     (void)side;
-    if (which != PRESSURE && fu_wrap_may_leave(coupling)) return pass(run, coupling, which == GROWTH, what);
+    if (which != PRESSURE && fu_wrap_may_leave(coupling) && !run->integrator->keeps_energy)
+        return pass(run, coupling, which == GROWTH, what);
     *what = which == WRAP ? "left the sheave" : which == PRESSURE ? "lifted off" : "left the groove";
     return fu_leave(run, coupling, which);
 }
@@ -71,8 +72,15 @@ static int begin(fu_run *run, const fu_coupling *coupling)
     return FU_RUNNING;
 }
 
+/* The same of a sheave; a method that conserves energy ends at a wrap that does not stretch, too. */
+static int begin_sheave(fu_run *run, const fu_coupling *coupling)
+{
+    const int wrapped = fu_wrap_stretches(coupling, &run->now);
+    return run->integrator->keeps_energy && !wrapped ? fu_leave(run, coupling, WRAP) : begin(run, coupling);
+}
+
 const fu_coupling_events fu_sheave_events = {
-    .functions = functions, .value = value, .sign = sign, .act = act, .begin = begin};
+    .functions = functions, .value = value, .sign = sign, .act = act, .begin = begin_sheave};
 
 static double margin(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {

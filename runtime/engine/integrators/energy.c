@@ -207,6 +207,7 @@ static void account(fu_run *run, double h)
     const fu_state middle_state = middle_of(run, h);
     const fu_equations at = equations(run, &middle_state, h);
     run->since = 0.5 * h;
+    fu_history_over_step(model, &at);
     if (fu_count_deferred(run)) run->factored = 0; /* the matrix has the mean stiffness over the step */
     for (int i = 0; i < model->n_dof; ++i) m.force[i] = 0.0;
     fu_rate_forces(model, m.q, m.v, m.force);

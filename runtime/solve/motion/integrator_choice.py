@@ -18,7 +18,9 @@ from ...integrators import AUTO, INTEGRATORS, Demands, Explicit, Integrator, Rad
 from ...kernels.libraries import of_library
 from ...model.model import Model
 from ...model.taut_ropes import TautPointModel
+from ...parts.locations import grips
 from ...parts.rope import rough_sheaves
+from ...parts.rope_items import Drum
 from ...parts.scene_data import SceneData
 from ...parts.settings import RunSettings
 from ...parts.slide import Slide
@@ -215,6 +217,7 @@ def check(integrator: Integrator, scene: SceneData, model: Model, engine: Engine
             raise SceneError(contact.where, f'{who} has no discrete gradient of a hard contact with a surface that '
                              f'moves, and "{contact.b}" is on body "{on}"', "take another integrator")
     if integrator.needs_discrete_gradient:
+        _check_ropes(integrator, scene)
         _check_gradients(integrator, scene, model, engine)
 
 
@@ -222,6 +225,29 @@ def _take_another(capability: str) -> str:
     """Return the end of a message with the integrators that have a capability."""
     able = [one.name for one in INTEGRATORS.values() if getattr(one, capability)]
     return f"take another integrator: {', '.join(able[:-1])} or {able[-1]}"
+
+
+def _check_ropes(integrator: Integrator, scene: SceneData) -> None:
+    """Raise SceneError for ropes without equations over a step that conserves energy, and for what holds to them."""
+    who, another = f'integrator "{integrator.name}"', "take another integrator"
+    for rope in scene.ropes.values():
+        if not rope.mass:
+            raise SceneError(rope.where, f"{who} does not support ropes without mass", another)
+        if getattr(integrator, "spectral_radius", 1.0) < 1:
+            raise SceneError(rope.where, f"{who} has no algorithmic dissipation of ropes",
+                             "take spectral_radius = 1, or another integrator")
+        for item in rope.wheels:
+            if isinstance(item, Drum):
+                raise SceneError(rope.where, f"{who} does not support {item.where}: creep on drums has no discrete "
+                                 "gradient", another)
+            if rope.dim == 3:
+                raise SceneError(rope.where, f"{who} does not support {item.where} in space", another)
+            if not item.contact:
+                raise SceneError(rope.where, f"{who} does not support {item.where}, which the rope touches in a run",
+                                 f"draw the rope on it, or {another}")
+    for part, _, end in grips(scene):
+        raise SceneError(part.where, f'{who} does not support parts that hold to a rope, and it holds to "{end.on}"',
+                         another)
 
 
 def _check_gradients(integrator: Integrator, scene: SceneData, model: Model, engine: Engine) -> None:

@@ -73,6 +73,9 @@ typedef struct {
                              const double *v, int past_fluid);
     /* Returns the energy of gravity, J. Null: none. */
     double (*potential_energy)(const fu_model *model, const fu_coupling *coupling, const double *q);
+    /* Returns the kinetic energy of a state beyond that of its velocities, J: that of momenta which are history
+     * variables of steps that conserve energy. Null: none. */
+    double (*beyond_velocities)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 } fu_inertia_operations;
 
 /* A lower bound of the distance at which a coupling acts. Operations may be skipped until motions have exceeded it
@@ -129,7 +132,12 @@ typedef struct {
 
 /* History variables: numbers and flags of a state that change from step to step. */
 typedef struct {
-    /* Updates them after an accepted step. */
+    /* Returns their number beyond those of the type. Null: none. */
+    int (*size)(const fu_coupling *coupling);
+    /* Computes them at the end of a step that conserves energy, and after a change of the velocities. Null: none. */
+    void (*over_step)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
+    void (*jump)(const fu_model *model, const fu_coupling *coupling, fu_state *state, const double *change);
+    /* Updates them after an accepted step. Null: none. */
     void (*update)(const fu_model *model, const fu_coupling *coupling, fu_state *state);
     /* Returns their error after a step from one state to another, m. Null: none. */
     double (*error)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);

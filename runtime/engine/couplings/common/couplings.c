@@ -47,6 +47,7 @@ void fu_number_couplings(fu_coupling *const *couplings, int n, const fu_coupling
         c->number = k;
         if (c->type == &fu_slide_type && !model->slides)
             model->slides = (const fu_slide *)c; /* attachments are on them */
+        if (c->type->history && c->type->history->size) c->n_numbers = c->type->history->size(c);
         c->coordinate = model->n_coordinates;
         c->force = model->n_forces;
         c->output = model->n_outputs;
@@ -115,6 +116,15 @@ double fu_coupling_kinetic_energy(const fu_model *model, double t, const double 
     double total = 0.0;
     FU_EACH_COUPLING(c, model->always_active, model->n_inertial ? model->n_always_active : 0)
         if (c->has_inertia) total += c->type->inertia->kinetic_energy(model, c, t, q, v, past_fluid);
+    return total;
+}
+
+double fu_kinetic_energy_beyond_velocities(const fu_model *model, const fu_state *state)
+{
+    double total = 0.0;
+    FU_EACH_COUPLING(c, model->always_active, model->n_always_active)
+        if (c->type->inertia && c->type->inertia->beyond_velocities)
+            total += c->type->inertia->beyond_velocities(model, c, state);
     return total;
 }
 
@@ -235,7 +245,20 @@ double fu_history_error(const fu_model *model, const fu_state *from, const fu_st
 
 void fu_update_history(const fu_model *model, fu_state *state)
 {
-    FU_EACH_COUPLING(c, model->with_history, model->n_with_history) c->type->history->update(model, c, state);
+    FU_EACH_COUPLING(c, model->with_history, model->n_with_history)
+        if (c->type->history->update) c->type->history->update(model, c, state);
+}
+
+void fu_history_over_step(const fu_model *model, const fu_equations *at)
+{
+    FU_EACH_COUPLING(c, model->with_history, model->n_with_history)
+        if (c->type->history->over_step) c->type->history->over_step(model, c, at);
+}
+
+void fu_history_jump(const fu_model *model, fu_state *state, const double *change)
+{
+    FU_EACH_COUPLING(c, model->with_history, model->n_with_history)
+        if (c->type->history->jump) c->type->history->jump(model, c, state, change);
 }
 
 void fu_detect_contact(const fu_model *model, fu_state *state)

@@ -26,6 +26,7 @@ void fu_coupling_step_tangents(const fu_model *model, const fu_equations *at, fu
 void fu_coupling_inertia(const fu_model *model, const double *q, const double *a, double *f);
 void fu_coupling_masses(const fu_model *model, const double *q, double scale, fu_system *system);
 double fu_coupling_kinetic_energy(const fu_model *model, double t, const double *q, const double *v, int past_fluid);
+double fu_kinetic_energy_beyond_velocities(const fu_model *model, const fu_state *state);
 double fu_coupling_potential_energy(const fu_model *model, const double *q);
 void fu_coupling_forces(const fu_model *model, const fu_state *state, double *f);
 void fu_coupling_external_forces(const fu_model *model, double t, const double *q, double *f);
@@ -45,6 +46,8 @@ int fu_may_start_open(const fu_model *model, const fu_state *state);
 const fu_coupling *fu_solve_coordinates(const fu_model *model, fu_state *state);
 void fu_reset(const fu_model *model, fu_state *state);
 void fu_update_history(const fu_model *model, fu_state *state);
+void fu_history_over_step(const fu_model *model, const fu_equations *at);
+void fu_history_jump(const fu_model *model, fu_state *state, const double *change);
 /* Returns the largest error of history variables after a step, m. */
 double fu_history_error(const fu_model *model, const fu_state *from, const fu_state *to);
 void fu_outputs_at_rest(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);

@@ -92,6 +92,40 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     }
 }
 
+/* --- the end of a rope over a step that conserves energy -------------------------------------------------------- */
+
+/* The gap of two points has the discrete derivatives of their places. */
+static void anchor_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations,
+                                 double *f, double *internal)
+{
+    const fu_joint *joint = (const fu_joint *)coupling;
+    const double *multipliers = equations->next->forces + coupling->force;
+    double gap[3] = {0.0};
+    for (int e = 0; e < 2; ++e) {
+        const fu_attachment *on = &joint->attachments[e];
+        const double sign = e ? 1.0 : -1.0;
+        fu_attachment_state at;
+        fu_attachment_at(model, on, equations->next, 0.0, FU_PLACE, &at);
+        for (int d = 0; d < model->dim; ++d) gap[d] += sign * at.p[d];
+        fu_discrete_point(model, on, equations->now, equations->next, at.P);
+        for (int d = 0; d < model->dim; ++d)
+            for (int i = 0; i < at.n; ++i) f[at.at[i]] += sign * multipliers[d] * at.P[d * at.n + i];
+    }
+    for (int d = 0; d < model->dim; ++d)
+        internal[coupling->unknown + d] = -fu_row_unit(equations->weights.inertia, coupling->scale[d]) * gap[d];
+}
+
+/* Adds the derivatives by those half-way. */
+static void anchor_step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations,
+                                fu_system *system)
+{
+    fu_state middle = *equations->middle;
+    fu_equations half_way = *equations;
+    middle.forces = equations->next->forces;
+    half_way.next = &middle;
+    tangent(model, coupling, &half_way, system);
+}
+
 static void gaps(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *phi)
 {
     fu_joint_rows_at at;
@@ -152,20 +186,20 @@ static const fu_output output_fields[] = {
 
 static const fu_start_operations start = {.may_be_open = may_be_open};
 
-#define TYPE(kind)                                                                                                     \
-    {                                                                                                                  \
-        .name = kind,                                                                                                  \
-        .size = sizeof(fu_joint),                                                                                      \
-        .fields = fields,                                                                                              \
-        .output_fields = output_fields,                                                                                \
-        .residual = residual,                                                                                          \
-        .tangent = tangent,                                                                                            \
-        .rows = fu_joint_rows,                                                                                         \
-        .take_forces = take_forces,                                                                                    \
-        .outputs = outputs,                                                                                            \
-        .gaps = gaps,                                                                                                  \
-        .start = &start,                                                                                               \
-    }
+#define TYPE(kind, ...)                                                                                                \
+    {.name = kind,                                                                                                     \
+     .size = sizeof(fu_joint),                                                                                         \
+     .fields = fields,                                                                                                 \
+     .output_fields = output_fields,                                                                                   \
+     .residual = residual,                                                                                             \
+     .tangent = tangent,                                                                                               \
+     .rows = fu_joint_rows,                                                                                            \
+     .take_forces = take_forces,                                                                                       \
+     .outputs = outputs,                                                                                               \
+     .gaps = gaps,                                                                                                     \
+     .start = &start,                                                                                                  \
+     __VA_ARGS__}
 
-const fu_coupling_type fu_joint_type = TYPE("joint");
-const fu_coupling_type fu_anchor_type = TYPE("anchor"); /* between the end of a rope and a body */
+const fu_coupling_type fu_joint_type = TYPE("joint", );
+const fu_coupling_type fu_anchor_type = /* between the end of a rope and a body */
+    TYPE("anchor", .step_residual = anchor_step_residual, .step_tangent = anchor_step_tangent);

@@ -33,10 +33,12 @@ static inline const double *fu_span_node(const fu_span_coupling *span, int k, co
  * fleet angles slides out of the groove, m. Growth: how far a short wrap is from one that stretches, rad. */
 double fu_wrap_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 double fu_wrap_growth_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
-/* Return whether a rope may leave a sheave and touch it again; whether it has left; and whether it has after the change
- * of the sheave's mode where its wrap margin, or the one of growth, has reached zero. */
+/* Return whether a rope may leave a sheave and touch it again; whether it has left; whether its wrap stretches; and
+ * whether it has left after the change of the sheave's mode where its wrap margin, or the one of growth, has reached
+ * zero. */
 int fu_wrap_may_leave(const fu_coupling *coupling);
 int fu_wrap_has_left(const fu_coupling *coupling, const fu_state *state);
+int fu_wrap_stretches(const fu_coupling *coupling, const fu_state *state);
 int fu_wrap_change(const fu_coupling *coupling, fu_state *now, int grows);
 double fu_wrap_pressure(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 double fu_fleet_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state);

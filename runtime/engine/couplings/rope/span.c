@@ -1,42 +1,28 @@
 /* Spans of ropes: sums over elements whose ends flow along the rope. */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
-#include "couplings/rope/rope.h"
+#include "couplings/rope/span.h"
 
 #include <string.h>
 
-enum { ENDS = 2, LOCAL = FU_MAX_COORDINATES + ENDS };
+enum { ENDS = FU_SPAN_ENDS, LOCAL = FU_MAX_COORDINATES + ENDS };
 
-static const fu_span_coupling *span_of(const fu_coupling *coupling)
-{
-    return (const fu_span_coupling *)coupling;
-}
-
-/* An element at a configuration q, and its motion with the rates v and accelerations a of the dofs; null: zero. */
-typedef struct {
-    int at; /* first dof */
-    double l;
-    const double *e, *v, *a;
-    double s_rate[ENDS], s_acc[ENDS];
-} element;
-
-/* Computes numbers of the ends of an element from those of the ends of the span. */
-static void at_ends(const fu_span_coupling *span, int k, const double *dofs, double out[ENDS])
+void fu_span_at_ends(const fu_span_coupling *span, int k, const double *dofs, double out[ENDS])
 {
     const double first = dofs[span->s[0]], change = dofs[span->s[1]] - first;
     for (int i = 0; i < ENDS; ++i) out[i] = first + span->share[k + i] * change;
 }
 
-static element element_of(const fu_model *model, const fu_span_coupling *span, int k, const double *q, const double *v,
-                          const double *a)
+fu_span_element fu_span_element_at(const fu_model *model, const fu_span_coupling *span, int k, const double *q,
+                                   const double *v, const double *a)
 {
-    element it = {.at = span->first + k * (span->kernel->coordinates / ENDS)};
+    fu_span_element it = {.at = span->first + k * (span->kernel->coordinates / ENDS)};
     double s[ENDS];
     if (!v) v = model->zero;
     if (!a) a = model->zero;
-    at_ends(span, k, q, s);
-    at_ends(span, k, v, it.s_rate);
-    at_ends(span, k, a, it.s_acc);
+    fu_span_at_ends(span, k, q, s);
+    fu_span_at_ends(span, k, v, it.s_rate);
+    fu_span_at_ends(span, k, a, it.s_acc);
     it.l = s[1] - s[0];
     it.e = q + it.at;
     it.v = v + it.at;
@@ -44,9 +30,8 @@ static element element_of(const fu_model *model, const fu_span_coupling *span, i
     return it;
 }
 
-/* Adds forces on an element, and on its ends (null: none) and its length, to those on the dofs. */
-static void add_force(const fu_span_coupling *span, int k, int at, const double *of_e, const double *of_ends,
-                      double of_length, double *f)
+void fu_span_add_force(const fu_span_coupling *span, int k, int at, const double *of_e, const double *of_ends,
+                       double of_length, double *f)
 {
     for (int i = 0; i < span->kernel->coordinates; ++i) f[at + i] += of_e[i];
     for (int i = 0; i < ENDS; ++i) {
@@ -85,23 +70,23 @@ static void add_matrix(const fu_model *model, const fu_span_coupling *span, int 
 static void inertial_force(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a,
                            double *f)
 {
-    const fu_span_coupling *span = span_of(coupling);
+    const fu_span_coupling *span = fu_span_of(coupling);
     double of_e[FU_MAX_COORDINATES], of_ends[ENDS];
     for (int k = 0; k < span->n_elements; ++k) {
-        const element it = element_of(model, span, k, q, 0, a);
+        const fu_span_element it = fu_span_element_at(model, span, k, q, 0, a);
         span->kernel->inertia(span->rho, it.l, it.e, it.v, it.s_rate, it.a, it.s_acc, of_e, of_ends);
-        add_force(span, k, it.at, of_e, of_ends, 0.0, f);
+        fu_span_add_force(span, k, it.at, of_e, of_ends, 0.0, f);
     }
 }
 
 static void mass_matrix(const fu_model *model, const fu_coupling *coupling, const double *q, double scale,
                         fu_system *system)
 {
-    const fu_span_coupling *span = span_of(coupling);
+    const fu_span_coupling *span = fu_span_of(coupling);
     const int n = span->kernel->coordinates, all = n + ENDS;
     double M[LOCAL * LOCAL], local[LOCAL][LOCAL];
     for (int k = 0; k < span->n_elements; ++k) {
-        const element it = element_of(model, span, k, q, 0, 0);
+        const fu_span_element it = fu_span_element_at(model, span, k, q, 0, 0);
         span->kernel->mass_matrix(span->rho, it.l, it.e, M);
         for (int i = 0; i < all; ++i)
             for (int j = 0; j < all; ++j) local[i][j] = scale * M[i * all + j];
@@ -112,11 +97,11 @@ static void mass_matrix(const fu_model *model, const fu_coupling *coupling, cons
 static double kinetic_energy(const fu_model *model, const fu_coupling *coupling, double t, const double *q,
                              const double *v, int past_fluid)
 {
-    const fu_span_coupling *span = span_of(coupling);
+    const fu_span_coupling *span = fu_span_of(coupling);
     double total = 0.0, T;
     (void)t, (void)past_fluid;
     for (int k = 0; k < span->n_elements; ++k) {
-        const element it = element_of(model, span, k, q, v, 0);
+        const fu_span_element it = fu_span_element_at(model, span, k, q, v, 0);
         span->kernel->kinetic_energy(span->rho, it.l, it.e, it.v, it.s_rate, &T);
         total += T;
     }
@@ -125,10 +110,10 @@ static double kinetic_energy(const fu_model *model, const fu_coupling *coupling,
 
 static double potential_energy(const fu_model *model, const fu_coupling *coupling, const double *q)
 {
-    const fu_span_coupling *span = span_of(coupling);
+    const fu_span_coupling *span = fu_span_of(coupling);
     double total = 0.0, V, f[FU_MAX_COORDINATES], f_l, K_l[FU_MAX_COORDINATES], K_ll;
     for (int k = 0; k < span->n_elements; ++k) {
-        const element it = element_of(model, span, k, q, 0, 0);
+        const fu_span_element it = fu_span_element_at(model, span, k, q, 0, 0);
         span->kernel->weight(span->rho, it.l, it.e, span->g, &V, f, &f_l, K_l, &K_ll);
         total += V;
     }
@@ -140,19 +125,19 @@ static double potential_energy(const fu_model *model, const fu_coupling *couplin
 /* Adds all forces at zero accelerations. */
 static void force(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f)
 {
-    const fu_span_coupling *span = span_of(coupling);
+    const fu_span_coupling *span = fu_span_of(coupling);
     double of_e[FU_MAX_COORDINATES], of_ends[ENDS], of_length, V, K_l[FU_MAX_COORDINATES], K_ll;
     for (int k = 0; k < span->n_elements; ++k) {
-        const element it = element_of(model, span, k, state->q, state->v, 0);
+        const fu_span_element it = fu_span_element_at(model, span, k, state->q, state->v, 0);
         span->kernel->inertia(span->rho, it.l, it.e, it.v, it.s_rate, it.a, it.s_acc, of_e, of_ends);
-        add_force(span, k, it.at, of_e, of_ends, 0.0, f);
+        fu_span_add_force(span, k, it.at, of_e, of_ends, 0.0, f);
         span->kernel->weight(span->rho, it.l, it.e, span->g, &V, of_e, &of_length, K_l, &K_ll);
-        add_force(span, k, it.at, of_e, 0, of_length, f);
+        fu_span_add_force(span, k, it.at, of_e, 0, of_length, f);
         span->kernel->elastic_force(it.l, it.e, span->A, of_e, &of_length);
-        add_force(span, k, it.at, of_e, 0, of_length, f);
+        fu_span_add_force(span, k, it.at, of_e, 0, of_length, f);
         if (span->tau == 0.0) continue;
         span->kernel->damping_force(it.l, it.e, it.v, it.s_rate, span->A, span->tau, of_e, of_ends);
-        add_force(span, k, it.at, of_e, of_ends, 0.0, f);
+        fu_span_add_force(span, k, it.at, of_e, of_ends, 0.0, f);
     }
 }
 
@@ -196,14 +181,14 @@ static void add_rates(int all, double factor, const double *D, double (*local)[L
 
 static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
 {
-    const fu_span_coupling *span = span_of(coupling);
+    const fu_span_coupling *span = fu_span_of(coupling);
     const fu_state *state = at->next;
     const fu_weights w = at->weights;
     const int n = span->kernel->coordinates, all = n + ENDS;
     double D[LOCAL * LOCAL], K[LOCAL * LOCAL], local[LOCAL][LOCAL], K_l[FU_MAX_COORDINATES], K_ll,
         f[FU_MAX_COORDINATES], f_l, V;
     for (int k = 0; k < span->n_elements; ++k) {
-        const element it = element_of(model, span, k, state->q, state->v, state->acceleration);
+        const fu_span_element it = fu_span_element_at(model, span, k, state->q, state->v, state->acceleration);
         memset(local, 0, sizeof local);
         span->kernel->elastic_tangent(it.l, it.e, span->A, K, K_l, &K_ll);
         add_energy(n, w.stiffness, K, K_l, K_ll, local);
@@ -223,12 +208,22 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     }
 }
 
+/* Adds the derivatives over a step by those half-way. */
+static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
+{
+    fu_state middle = *at->middle;
+    fu_equations half_way = *at;
+    middle.acceleration = at->next->acceleration;
+    half_way.next = &middle;
+    tangent(model, coupling, &half_way, system);
+}
+
 static double energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
-    const fu_span_coupling *span = span_of(coupling);
+    const fu_span_coupling *span = fu_span_of(coupling);
     double total = 0.0, U;
     for (int k = 0; k < span->n_elements; ++k) {
-        const element it = element_of(model, span, k, state->q, 0, 0);
+        const fu_span_element it = fu_span_element_at(model, span, k, state->q, 0, 0);
         span->kernel->energy(it.l, it.e, span->A, &U);
         total += U;
     }
@@ -238,11 +233,11 @@ static double energy(const fu_model *model, const fu_coupling *coupling, const f
 static double dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                           const fu_accelerator *work)
 {
-    const fu_span_coupling *span = span_of(coupling);
+    const fu_span_coupling *span = fu_span_of(coupling);
     double total = 0.0, P;
     (void)work;
     for (int k = 0; span->tau > 0.0 && k < span->n_elements; ++k) {
-        const element it = element_of(model, span, k, state->q, state->v, 0);
+        const fu_span_element it = fu_span_element_at(model, span, k, state->q, state->v, 0);
         span->kernel->dissipation(it.l, it.e, it.v, it.s_rate, span->A, span->tau, &P);
         total += P;
     }
@@ -251,14 +246,14 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
 
 double fu_span_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
-    const fu_span_coupling *span = span_of(coupling);
+    const fu_span_coupling *span = fu_span_of(coupling);
     (void)model;
     return state->q[span->s[1]] - state->q[span->s[0]] - span->least_length;
 }
 
 double fu_grip_margin(const fu_coupling *coupling, const fu_state *state, int end)
 {
-    const fu_span_coupling *span = span_of(coupling);
+    const fu_span_coupling *span = fu_span_of(coupling);
     const double apart = span->grips[end] - state->q[span->s[end]];
     return end ? -apart : apart;
 }
@@ -279,15 +274,22 @@ static const fu_field fields[] = {
     {0},
 };
 
-static const fu_inertia_operations inertia = {inertial_force, mass_matrix, kinetic_energy, potential_energy};
+static const fu_inertia_operations inertia = {inertial_force, mass_matrix, kinetic_energy, potential_energy,
+                                              fu_span_energy_beyond_velocities};
+static const fu_history_operations history = {
+    .size = fu_span_history_size, .over_step = fu_span_history_over_step, .jump = fu_span_history_jump};
 
 const fu_coupling_type fu_span_type = {
     .name = "span",
     .size = sizeof(fu_span_coupling),
     .fields = fields,
     .inertia = &inertia,
+    .history = &history,
     .residual = residual,
     .tangent = tangent,
+    .step_residual = fu_span_step_residual,
+    .step_tangent = step_tangent,
+    .step_dissipation = fu_span_step_dissipation,
     .force = force,
     .energy = energy,
     .dissipation = dissipation,

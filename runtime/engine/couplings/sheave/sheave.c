@@ -144,6 +144,20 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     fu_wheel_add_tangent(model, &sheave->wheel, &at.wheel, equations, y + CENTRE, system);
 }
 
+/* Adds the derivatives over a step by those half-way. */
+static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
+{
+    const fu_state *next = at->next;
+    fu_state middle = *at->middle;
+    fu_equations half_way = *at;
+    middle.acceleration = next->acceleration;
+    middle.forces = next->forces;
+    middle.numbers = next->numbers;
+    middle.flags = next->flags;
+    half_way.next = &middle;
+    tangent(model, coupling, &half_way, system);
+}
+
 static void take_forces(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state)
 {
     fu_sheave_state at;
@@ -262,10 +276,15 @@ static const fu_field fields[] = {
     {0},
 };
 
-static const fu_inertia_operations inertia = {inertial_force, mass_matrix, kinetic_energy, potential_energy};
+static const fu_inertia_operations inertia = {inertial_force, mass_matrix, kinetic_energy, potential_energy,
+                                              fu_sheave_energy_beyond_velocities};
+static const fu_supply_operations supply = {.force = fu_wheel_drive, .step_work = fu_sheave_step_work};
 static const fu_start_operations start = {
     .excess = excess, .may_be_open = fu_wheel_may_be_open, .is_possible = is_possible};
-static const fu_history_operations history = {.update = update_mode};
+static const fu_history_operations history = {.size = fu_sheave_history_size,
+                                              .over_step = fu_sheave_history_over_step,
+                                              .jump = fu_sheave_history_jump,
+                                              .update = update_mode};
 
 const fu_coupling_type fu_sheave_type = {
     .name = "sheave",
@@ -275,10 +294,13 @@ const fu_coupling_type fu_sheave_type = {
     .n_flags = 1,
     .history = &history,
     .inertia = &inertia,
-    .supply = &fu_wheel_supply,
+    .supply = &supply,
     .start = &start,
     .residual = residual,
     .tangent = tangent,
+    .step_residual = fu_sheave_step_residual,
+    .step_tangent = step_tangent,
+    .step_dissipation = fu_sheave_step_dissipation,
     .rows = fu_sheave_rows,
     .force = force,
     .take_forces = take_forces,

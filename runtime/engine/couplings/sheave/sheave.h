@@ -289,6 +289,21 @@ void fu_sheave_add_conditions(const fu_model *model, const fu_coupling *coupling
 /* Operations of the coupling. */
 void fu_sheave_rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work);
 
+/* Computes the derivatives J of the conditions by y in the plane, and their residuals, at these x and slopes. */
+void fu_sheave_rows_at(const fu_sheave *sheave, const fu_sheave_state *at, double J[MAX_CONDITIONS][Y],
+                       double phi[MAX_CONDITIONS]);
+
+/* --- sheave_step.c: over a step that conserves energy, in the plane --- */
+
+int fu_sheave_history_size(const fu_coupling *coupling);
+void fu_sheave_history_over_step(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
+void fu_sheave_history_jump(const fu_model *model, const fu_coupling *coupling, fu_state *state, const double *change);
+double fu_sheave_energy_beyond_velocities(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+void fu_sheave_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
+                             double *internal);
+double fu_sheave_step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
+double fu_sheave_step_work(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
+
 /* --- sheave_output.c --- */
 
 extern const fu_output fu_sheave_output_fields[];

@@ -117,6 +117,16 @@ void fu_sheave_add_all_multipliers(const fu_sheave *sheave, const fu_sheave_stat
     else add_multipliers_in_plane(sheave, at, multipliers, phi, y);
 }
 
+void fu_sheave_rows_at(const fu_sheave *sheave, const fu_sheave_state *at, double J[MAX_CONDITIONS][Y],
+                       double phi[MAX_CONDITIONS])
+{
+    const double none[MAX_CONDITIONS] = {0.0};
+    conditions of;
+    find_conditions(sheave, at, none, &of);
+    memcpy(J, of.J, sizeof of.J);
+    memcpy(phi, of.phi, sizeof of.phi);
+}
+
 /* --- derivatives ------------------------------------------------------------------------------------------------ */
 
 /* Adds the derivatives of the conditions of a tangent point, and of their forces, in space. */

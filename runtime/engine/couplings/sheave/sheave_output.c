@@ -108,6 +108,11 @@ int fu_wrap_may_leave(const fu_coupling *coupling)
     return fu_may_leave(sheave_of(coupling));
 }
 
+int fu_wrap_stretches(const fu_coupling *coupling, const fu_state *state)
+{
+    return !fu_may_leave(sheave_of(coupling)) || *fu_wrap_flag(sheave_of(coupling), state) == FU_WRAPPED;
+}
+
 int fu_wrap_has_left(const fu_coupling *coupling, const fu_state *state)
 {
     return *fu_wrap_flag(sheave_of(coupling), state) == FU_LIFTED;

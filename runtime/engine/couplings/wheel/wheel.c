@@ -90,8 +90,7 @@ void fu_wheel_add_bearing(const fu_wheel *wheel, const fu_wheel_state *at, doubl
     if (wheel->turn >= 0) f[wheel->turn] += wheel->damping * at->own_rate;
 }
 
-/* Subtracts the torque of the drive. */
-static void drive(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f)
+void fu_wheel_drive(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f)
 {
     const fu_wheel *wheel = (const fu_wheel *)coupling;
     const int signal = wheel->torque_signal;
@@ -101,7 +100,7 @@ static void drive(const fu_model *model, const fu_coupling *coupling, double t, 
         model->load_fraction * wheel->torque * (signal < 0 ? 1.0 : fu_signal_at(&model->signals[signal], t, 0, 0));
 }
 
-const fu_supply_operations fu_wheel_supply = {.force = drive};
+const fu_supply_operations fu_wheel_supply = {.force = fu_wheel_drive};
 
 int fu_wheel_may_be_open(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {

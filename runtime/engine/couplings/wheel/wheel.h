@@ -91,6 +91,8 @@ double fu_wheel_pressure(const fu_wheel *wheel, const fu_wheel_state *at, double
 double fu_wheel_outwards(const fu_wheel *wheel, const fu_wheel_state *at, double phi);
 
 extern const fu_supply_operations fu_wheel_supply;
+/* Subtracts the torque of the drive. */
+void fu_wheel_drive(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f);
 int fu_wheel_may_be_open(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 
 #endif
