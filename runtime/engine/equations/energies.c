@@ -15,6 +15,12 @@ double fu_kinetic_energy(const fu_model *model, double t, const double *q, const
     return fu_constant_kinetic_energy(model, q, v) + fu_coupling_kinetic_energy(model, t, q, v, 1);
 }
 
+/* Returns the kinetic energy of a state, J, with that of momenta which are history variables. */
+double fu_kinetic_energy_at(const fu_model *model, const fu_state *state)
+{
+    return fu_kinetic_energy(model, state->t, state->q, state->v) + fu_kinetic_energy_beyond_velocities(model, state);
+}
+
 /* Returns v' M v/2 of a change v of velocities, J. */
 double fu_kinetic_energy_of_change(const fu_model *model, const double *q, const double *v)
 {

@@ -92,12 +92,12 @@ void fu_take_jump(fu_run *run, const double *change, double lost)
 {
     const fu_model *model = run->model;
     fu_state *now = &run->now;
-    const double before = fu_kinetic_energy(model, now->t, now->q, now->v);
+    const double before = fu_kinetic_energy_at(model, now);
     for (int i = 0; i < model->n_dof; ++i) now->v[i] += change[i];
     fu_history_jump(model, now, change);
     run->dissipated += lost;
     if (model->n_driven || model->n_motions || model->n_inertial)
-        run->external += fu_kinetic_energy(model, now->t, now->q, now->v) - before + lost;
+        run->external += fu_kinetic_energy_at(model, now) - before + lost;
 }
 
 /* Changes the velocities of `now` by an impact, so that the violated constraints hold. The loss is (1 - e)/(1 + e) of

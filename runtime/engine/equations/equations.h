@@ -35,6 +35,7 @@ int fu_strike(const fu_model *model, const fu_state *state, fu_accelerator *work
 /* equations/energies.c */
 void fu_mass_times(const fu_model *model, const double *q, const double *a, double *f);
 double fu_kinetic_energy(const fu_model *model, double t, const double *q, const double *v);
+double fu_kinetic_energy_at(const fu_model *model, const fu_state *state);
 double fu_kinetic_energy_of_change(const fu_model *model, const double *q, const double *v);
 double fu_elastic_energy(const fu_model *model, const fu_state *state);
 double fu_dissipation(const fu_model *model, const fu_state *state, const fu_accelerator *work);

@@ -1,4 +1,5 @@
 /* Breakpoints: instants at which signals are not smooth, and steps end. */
+#include "couplings/common/couplings.h"
 #include "equations/equations.h"
 #include "events/events.h"
 #include "run/run.h"
@@ -30,11 +31,12 @@ int fu_pass_breakpoint(fu_run *run, const fu_breakpoint *breakpoint, int event)
     run->drive_step = fmin(run->drive_step, 0.0); /* earlier powers do not predict the power from here */
     if (breakpoint->jumps == FU_HIGHER_JUMPS && run->fixed_step <= 0.0) return FU_RUNNING;
     if (breakpoint->jumps == FU_RATE_JUMPS) {
-        const double before = fu_kinetic_energy(model, now->t, now->q, now->v);
+        const double before = fu_kinetic_energy_at(model, now);
         fu_prescribe(model, now);
         if (fu_project_velocities(model, now, &run->accelerator, run->work)) return FU_SINGULAR;
         for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->work[i];
-        run->external += fu_kinetic_energy(model, now->t, now->q, now->v) - before;
+        fu_history_jump(model, now, run->work);
+        run->external += fu_kinetic_energy_at(model, now) - before;
     }
     fu_prescribe(model, now);
     if (!event) fu_evaluate_event_functions(run, fu_no_event, INFINITY);

@@ -21,8 +21,7 @@ int fu_record_row(fu_run *run)
     memcpy(r->v + row * model->n_dof, now->v, sizeof(double) * (size_t)model->n_dof);
     memcpy(r->s + row * model->n_coordinates, now->s, sizeof(double) * (size_t)model->n_coordinates);
     const int info = fu_accelerations(model, now, &run->accelerator, acceleration, r->reaction + row * model->n_dof);
-    r->kinetic[row] =
-        fu_kinetic_energy(model, now->t, now->q, now->v) + fu_kinetic_energy_beyond_velocities(model, now);
+    r->kinetic[row] = fu_kinetic_energy_at(model, now);
     r->elastic[row] = fu_elastic_energy(model, now);
     r->potential[row] = fu_potential_energy(model, now->q) + fu_coupling_potential_energy(model, now->q);
     r->dissipated[row] = run->dissipated;

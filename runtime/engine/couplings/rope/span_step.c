@@ -24,7 +24,7 @@ int fu_span_history_size(const fu_coupling *coupling)
 static void momenta_at(const fu_model *model, const fu_span_coupling *span, int k, const fu_state *state, double *P)
 {
     const fu_momenta *known = fu_momenta_of(&span->base, state);
-    if (fu_momenta_are_known(known, state)) {
+    if (known->is_known != 0.0) {
         memcpy(P, known->P + k * of_element(span), sizeof(double) * (size_t)of_element(span));
         return;
     }
@@ -56,7 +56,7 @@ void fu_span_history_over_step(const fu_model *model, const fu_coupling *couplin
         inertia_of(model, span, k, at, &of);
         memcpy(next->P + k * of_element(span), of.P, sizeof(double) * (size_t)of_element(span));
     }
-    fu_know_momenta(next, at->next);
+    next->is_known = 1.0;
 }
 
 void fu_span_history_jump(const fu_model *model, const fu_coupling *coupling, fu_state *state, const double *change)
@@ -64,7 +64,7 @@ void fu_span_history_jump(const fu_model *model, const fu_coupling *coupling, fu
     const fu_span_coupling *span = fu_span_of(coupling);
     fu_momenta *known = fu_momenta_of(coupling, state);
     double P[MAX_NUMBERS];
-    for (int k = 0; fu_momenta_are_known(known, state) && k < span->n_elements; ++k) {
+    for (int k = 0; known->is_known != 0.0 && k < span->n_elements; ++k) {
         const fu_span_element it = fu_span_element_at(model, span, k, state->q, change, 0);
         span->kernel->momentum(it.l, it.e, it.v, it.s_rate, P);
         for (int i = 0; i < of_element(span); ++i) known->P[k * of_element(span) + i] += P[i];
@@ -76,7 +76,7 @@ double fu_span_energy_beyond_velocities(const fu_model *model, const fu_coupling
     const fu_span_coupling *span = fu_span_of(coupling);
     const fu_momenta *known = fu_momenta_of(coupling, state);
     double total = 0.0, T, velocities;
-    for (int k = 0; fu_momenta_are_known(known, state) && k < span->n_elements; ++k) {
+    for (int k = 0; known->is_known != 0.0 && k < span->n_elements; ++k) {
         const fu_span_element it = fu_span_element_at(model, span, k, state->q, state->v, 0);
         span->kernel->momentum_energy(span->rho, it.l, known->P + k * of_element(span), &T);
         span->kernel->kinetic_energy(span->rho, it.l, it.e, it.v, it.s_rate, &velocities);

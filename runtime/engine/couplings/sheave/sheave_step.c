@@ -113,7 +113,7 @@ static void point_over_step(const fu_sheave *sheave, const fu_equations *at, con
     const double part = begin + xi * width, wrap = step->now.phi[1] - step->now.phi[0];
     const double opening = 2.0 * (step->half[1] - step->half[0]);
     double P[DIM], on_c[DIM], on_turn, on_alpha, on_s[ENDS];
-    if (fu_momenta_are_known(known, at->now)) memcpy(P, known->P + number_of(j, g), sizeof P);
+    if (known->is_known != 0.0) memcpy(P, known->P + number_of(j, g), sizeof P);
     else momentum_of_velocities(sheave, &step->now, j, g, P);
     wheel->kernel->momentum_step(weight_in_zone[g] * wheel->rho, at->h, step->now.length[j], step->s_change + j,
                                  wheel->radius, xi, step->now.phi[0] + part * wrap,
@@ -135,7 +135,7 @@ void fu_sheave_history_over_step(const fu_model *model, const fu_coupling *coupl
     step_at(model, sheave, at, &step);
     for (int j = 0; j < sheave->n_zones; ++j)
         for (int g = 0; g < POINTS; ++g) point_over_step(sheave, at, &step, j, g, 0, next->P + number_of(j, g));
-    fu_know_momenta(next, at->next);
+    next->is_known = 1.0;
 }
 
 void fu_sheave_history_jump(const fu_model *model, const fu_coupling *coupling, fu_state *state, const double *change)
@@ -144,7 +144,7 @@ void fu_sheave_history_jump(const fu_model *model, const fu_coupling *coupling, 
     fu_momenta *known = fu_momenta_of(coupling, state);
     fu_state jump = *state;
     fu_sheave_state at;
-    if (is_in_space(sheave) || !fu_momenta_are_known(known, state)) return;
+    if (is_in_space(sheave) || known->is_known == 0.0) return;
     jump.v = (double *)change;
     fu_sheave_at(model, sheave, &jump, 0, &at);
     for (int j = 0; j < sheave->n_zones; ++j)
@@ -162,7 +162,7 @@ double fu_sheave_energy_beyond_velocities(const fu_model *model, const fu_coupli
     const fu_momenta *known = is_in_space(sheave) ? 0 : fu_momenta_of(coupling, state);
     fu_sheave_state at;
     double total = 0.0, T;
-    if (!known || !fu_momenta_are_known(known, state)) return 0.0;
+    if (!known || known->is_known == 0.0) return 0.0;
     fu_sheave_at(model, sheave, state, 0, &at);
     for (int j = 0; j < sheave->n_zones; ++j) {
         const fu_zone of = fu_zone_at(&at, j);
