@@ -289,11 +289,11 @@ static const fu_span_kernels spans[] = {
     {"span_cable8p", 2, 8, span_cable8p_point, span_cable8p_kinetic_energy, span_cable8p_inertia,
      span_cable8p_mass_matrix, span_cable8p_inertia_tangent, span_cable8p_weight, span_cable8p_energy,
      span_cable8p_elastic_force, span_cable8p_elastic_tangent, span_cable8p_dissipation, span_cable8p_damping_force,
-     span_cable8p_damping_tangent},
+     span_cable8p_damping_tangent, span_cable8p_line_force, span_cable8p_line_force_tangent, span_cable8p_share},
     {"span_cable12", 3, 12, span_cable12_point, span_cable12_kinetic_energy, span_cable12_inertia,
      span_cable12_mass_matrix, span_cable12_inertia_tangent, span_cable12_weight, span_cable12_energy,
      span_cable12_elastic_force, span_cable12_elastic_tangent, span_cable12_dissipation, span_cable12_damping_force,
-     span_cable12_damping_tangent},
+     span_cable12_damping_tangent, span_cable12_line_force, span_cable12_line_force_tangent, span_cable12_share},
 };
 
 static const fu_surface_kernels surfaces[] = {
@@ -412,6 +412,9 @@ static const fu_taut_rope_kernels taut_ropes[] = {
 #define FU_ARGUMENTS_svv_3 *a[0], a[1], a[2], out[0], out[1], out[2]
 #define FU_ARGUMENTS_svvvvs_1 *a[0], a[1], a[2], a[3], a[4], *a[5], out[0]
 #define FU_ARGUMENTS_svvvvs_2 *a[0], a[1], a[2], a[3], a[4], *a[5], out[0], out[1]
+#define FU_ARGUMENTS_ssvsv_2 *a[0], *a[1], a[2], *a[3], a[4], out[0], out[1]
+#define FU_ARGUMENTS_ssvvvsvvvv_2 *a[0], *a[1], a[2], a[3], a[4], *a[5], a[6], a[7], a[8], a[9], out[0], out[1]
+#define FU_ARGUMENTS_sv_2 *a[0], a[1], out[0], out[1]
 #define FU_ARGUMENTS_vvs_3 a[0], a[1], *a[2], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vv_3 a[0], a[1], out[0], out[1], out[2]
 #define FU_ARGUMENTS_ssvs_6 *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]
@@ -997,6 +1000,9 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(span_cable8p_dissipation, svvvvs_1) \
     X(span_cable8p_damping_force, svvvvs_2) \
     X(span_cable8p_damping_tangent, svvvvs_2) \
+    X(span_cable8p_line_force, ssvsv_2) \
+    X(span_cable8p_line_force_tangent, ssvvvsvvvv_2) \
+    X(span_cable8p_share, sv_2) \
     X(span_cable12_point, svvvs_3) \
     X(span_cable12_kinetic_energy, ssvvv_1) \
     X(span_cable12_inertia, ssvvvvv_2) \
@@ -1009,6 +1015,9 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(span_cable12_dissipation, svvvvs_1) \
     X(span_cable12_damping_force, svvvvs_2) \
     X(span_cable12_damping_tangent, svvvvs_2) \
+    X(span_cable12_line_force, ssvsv_2) \
+    X(span_cable12_line_force_tangent, ssvvvsvvvv_2) \
+    X(span_cable12_share, sv_2) \
     X(surface_flat, vv_2) \
     X(surface_rounded, vvs_3) \
     X(surface_terrain, vv_3) \

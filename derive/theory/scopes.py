@@ -414,7 +414,8 @@ def span_scope(name: str) -> Scope:
     return Scope(family, (Symbol("l", "l", number), _nodal(dim, r"\mathbf{e}", "e"),
                           _nodal(dim, r"\dot{\mathbf{e}}", "v"), _nodal(dim, r"\ddot{\mathbf{e}}", "a"), *ends,
                           Symbol(r"\rho", "rho", number), Symbol(r"\mathbf{g}", "g", column), *stiffness,
-                          Symbol(r"\tau", "tau", number)), constants=_of_span)
+                          Symbol(r"\tau", "tau", number), Symbol("c", "part", number),
+                          Symbol(r"\mathbf{h}", "F", column)), constants=_of_span)
 
 
 def _of_span(scope: Scope, state: State) -> dict[str, Any]:

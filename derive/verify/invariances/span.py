@@ -13,7 +13,7 @@ from .law import spun
 from .measures import ORIGIN_SHIFT, Invariance, quantised, relative, spins
 
 KERNELS = ("kinetic_energy", "inertia", "mass_matrix", "inertia_tangent", "energy", "elastic_force", "elastic_tangent",
-           "dissipation", "damping_force", "damping_tangent")
+           "dissipation", "damping_force", "damping_tangent", "line_force", "line_force_tangent")
 """Kernels that do not depend on the origin."""
 
 
@@ -23,6 +23,7 @@ def span(family: ElementFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     yield from _frame(family, k, s)
     yield from _deformed(family, k, s)
     yield from _straight_flow(family, k, s)
+    yield from _line_force(family, k, s)
 
 
 def _signs(k: Numbers, s: State) -> Iterator[Invariance]:
@@ -126,3 +127,18 @@ def _straight_flow(family: ElementFamily, k: Numbers, s: State) -> Iterator[Inva
     on_slopes = elastic["f"][[not p for p in spec.is_position]]
     yield "even stretch: dU/dl of a straight bar", relative(elastic["f_l"] - closed, closed), 256 * EPS
     yield "even stretch: no force on the slopes", relative(on_slopes, closed * s["l"]), 256 * EPS
+
+
+def _line_force(family: ElementFamily, k: Numbers, s: State) -> Iterator[Invariance]:
+    """Yield the power of a force on the material, its balance, and a turned scene."""
+    out, velocity = k("line_force", s), k("point", s)["velocity"]
+    power = np.sum(out["f"] * s["v"]) + out["f_s"] @ s["s_rate"]
+    expected = s["part"] * s["l"] * (s["F"] @ velocity)
+    yield "line force: its power is F . velocity", relative(power - expected, out["f"]), 256 * EPS
+    positions = np.array(family.element.is_position, dtype=float)
+    yield "line force: on the positions F", relative(
+        positions @ out["f"] - s["part"] * s["l"] * s["F"], out["f"]), 16 * EPS
+    Q = rotation(np.random.default_rng(3), family.element.dim)
+    turned = k("line_force", s | {"e": s["e"] @ Q.T, "F": Q @ s["F"]})
+    yield "turned scene: line force turns", relative(turned["f"] - out["f"] @ Q.T, out["f"]), 256 * EPS
+    yield "turned scene: same line force on the ends", relative(turned["f_s"] - out["f_s"], out["f_s"]), 512 * EPS

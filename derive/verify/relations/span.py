@@ -25,7 +25,7 @@ ENDS = 2
 def span(family: ElementFamily) -> list[Relation]:
     """Return the relations of a span's kernels."""
     return [*_of_points(family.element), *_of_inertia(family.element), *_of_weight(family.element),
-            *_of_elasticity(family), *_of_damping(family)]
+            *_of_elasticity(family), *_of_damping(family), *_of_line_force(family.element)]
 
 
 def moved(s: State, t: Any) -> State:
@@ -209,3 +209,41 @@ def _of_damping(family: ElementFamily) -> list[Relation]:
         Relation("damping_force", "f", "power P", 0, lambda k, s, t, j: power(k, s), of=work),
         Relation("damping_tangent", "D", "df by rates", 1, by_rate(both("damping_force"), n), n + ENDS),
         Relation("damping_tangent", "K", "df by e and l", 1, by_configuration(both("damping_force"), n), n + 1)]
+
+
+def _of_line_force(spec: Element) -> list[Relation]:
+    n = spec.n_coordinates
+
+    def work(k, s, t, j):
+        """Return F times the displacement of a material point by a coordinate: the ends move past it."""
+        weight = s["part"] * s["l"]
+        if j < n:
+            now = {"e": s["e"] + t * unit(s["e"], j)}
+        else:
+            sign = 2 * (j - n) - 1
+            l = s["l"] + sign * t
+            now = {"l": l, "xi": (s["xi"] * s["l"] - (t if j == n else 0)) / l}
+        return weight * s["F"].dot(k("point", s, **now)["r"])
+
+    def acting(k, s):
+        """Return the force of the state at another one, by its derivatives."""
+        now, then = k("point", s), k("point", s["first"])
+        changes = [s[name].dot(now[output] - then[output])
+                   for name, output in (("F_r", "r"), ("F_t", "r_S"), ("F_v", "velocity"))]
+        return both("line_force")(k, s | {"F": s["F"] + sum(changes)})
+
+    def from_state(path):
+        return lambda k, s, t, j: path(k, s | {"first": s}, t, j)
+
+    def moved_end(k, s, t, j):
+        return k("share", s, ends=s["ends"] + t * unit(s["ends"], j))["share"]
+
+    return [
+        Relation("line_force", "f", "F . dr/de at a point that stays in the material", 1, work, n),
+        Relation("line_force", "f_s", "F . dr/ds at a point that stays in the material", 1,
+                 lambda k, s, t, j: work(k, s, t, n + j), ENDS),
+        Relation("line_force_tangent", "D", "df by rates", 1, from_state(by_rate(acting, n)), n + ENDS),
+        Relation("line_force_tangent", "K", "df by e and l", 1, from_state(by_configuration(acting, n)), n + 1),
+        Relation("share", "share", "(S - s1)/(s2 - s1)", 0,
+                 root(lambda s: np.array([(s["at"].item() - s["ends"][0]) / (s["ends"][1] - s["ends"][0])]))),
+        Relation("share", "share_s", "d share/ds", 1, moved_end, ENDS)]

@@ -6,6 +6,7 @@ import numpy as np
 
 from ...codegen.family import ElementFamily
 from ...laws import law_traits
+from ...spec import Element
 from ..numbers import Numbers, State
 from .element import element_state, straight
 from .law import section_stiffness
@@ -21,9 +22,18 @@ def sample(family: ElementFamily, exact: Numbers, random: np.random.Generator) -
     assert family.law is not None
     state |= section_stiffness(law_traits(family.law), element.dim, state["section"], random)
     rho = state["density"] * np.prod(state["rectangle"])
-    return state | {"A": state["S"], "rho": np.float64(rho), "a": random.normal(size=state["v"].shape),
-                    "s_rate": random.normal(size=2), "s_acc": random.normal(size=2),
-                    "xi": np.float64(random.uniform(0.2, 0.8))}
+    return state | of_force(element, state, random.spawn(1)[0]) | {
+        "A": state["S"], "rho": np.float64(rho), "a": random.normal(size=state["v"].shape),
+        "s_rate": random.normal(size=2), "s_acc": random.normal(size=2), "xi": np.float64(random.uniform(0.2, 0.8))}
+
+
+def of_force(element: Element, state: State, random: np.random.Generator) -> State:
+    """Return a force of a length with its derivatives, its weight, and a material point between the ends."""
+    square = {name: random.normal(size=(element.dim, element.dim)) for name in ("F_r", "F_t", "F_v")}
+    first = random.normal()
+    return square | {"F": random.normal(size=element.dim), "part": np.float64(random.uniform(0.2, 0.4)),
+                     "ends": np.array([first, first + float(state["l"])]),
+                     "at": np.float64(first + random.uniform(0.2, 0.8) * float(state["l"]))}
 
 
 def at_rest(family: ElementFamily, exact: Numbers, first: State) -> State:

@@ -1,0 +1,119 @@
+"""Forces on the material of a span: loads, and forces of a fluid, by its length.
+
+A force F of a stress-free length acts on the material points of an element. It does work on their displacements at
+constant S. These have the shape functions N, as the velocities do (span_inertia.py): with e_S, the nodal vectors of the
+slope r_S,
+
+    dr = sum N_k de_k - g_1 ds1 - g_2 ds2,   g_i = sum over the vectors of node i of N_k e_Sk,   r_S = g_1 + g_2.
+
+A point of quadrature has a constant share xi of the length and a part of it as its weight. F may depend on place, slope
+and velocity of the material there.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from ..codegen.program import DirectionalDerivative, Program
+from ..spec import x
+from .span_inertia import Flow, FlowingElement
+
+SOURCE = "virtual work of the material at constant S"
+
+
+def build(span: FlowingElement) -> list[Program]:
+    """Return the kernels of forces on a span."""
+    return [line_force(span), line_force_tangent(span), share(span)]
+
+
+class _Line:
+    """Inputs and stages of a point of quadrature: l times the part, N, g."""
+
+    def __init__(self, span: FlowingElement, p: Program, moves: bool):
+        part = p.input("part", (), "1", "weight of the point of quadrature: part of the length")
+        flow = Flow(p, span, moves=moves)
+        xi = p.input("xi", (), "1", "(S - s1)/l")
+        self.F = p.input("F", span.element.dim, "N/m", "force of a stress-free length")
+        self.span, self.program, self.flow = span, p, flow
+        flow.along()
+        p.stage("shape functions")
+        self.N = np.array([p.define(f"N{k + 1}", flow.l**power * sp.horner(shape.subs(x, xi)))
+                           for k, (shape, power) in enumerate(zip(span.unit_shapes, span.powers, strict=True))])
+        p.stage("displacements by the ends of the element")
+        self.g = np.array([p.vector(f"g{i + 1}", sum(self.N[k] * flow.e_S[k] for k in nodal))
+                           for i, nodal in enumerate(span.vectors_of)])
+        self.weight = p.define("weight", part * flow.l)
+
+
+def line_force(span: FlowingElement) -> Program:
+    """Return the kernel of the generalised forces."""
+    p = span.program("line_force", "generalised forces of a force on the material", SOURCE)
+    at = _Line(span, p, moves=False)
+    p.output("f", np.outer(at.weight * at.N, at.F), "N, N m", "forces on the nodal vectors")
+    p.output("f_s", [-at.weight * g.dot(at.F) for g in at.g], "N", "forces on s1, s2")
+    return p
+
+
+def line_force_tangent(span: FlowingElement) -> Program:
+    """Return the kernel of the derivatives of the generalised forces, at a constant share of the length."""
+    p = span.program("line_force_tangent", "derivatives of the generalised forces of a force on the material", SOURCE)
+    at = _Line(span, p, moves=True)
+    flow, dim = at.flow, span.element.dim
+    by_r, by_r_S, by_v = (p.input(f"F_{name}", (dim, dim), f"N/m by {unit}", f"derivatives of F by {doc}")
+                          for name, unit, doc in (("r", "m", "the place"), ("t", "1", "the slope"),
+                                                  ("v", "m/s", "the velocity of the material")))
+    p.stage("derivatives of place, slope and velocity of the material")
+    S = span.slope_matrix(p, flow.w)
+    g_e = np.array([[p.define(f"g{i + 1}_{k + 1}", sum(at.N[j] * S[j, k] for j in nodal)) for k in range(len(S))]
+                    for i, nodal in enumerate(span.vectors_of)])
+    past = [p.define(f"past{k + 1}", flow.s_rate.dot(g_e[:, k])) for k in range(len(S))]
+    of_slopes = dict(zip(flow.e_S.ravel(), flow.e_Sl.ravel(), strict=True))
+    by_l = DirectionalDerivative(p, "dl", {flow.l: 1, **of_slopes})
+    g_l = np.array([p.vector(f"g{i + 1}_l", by_l.array(g)) for i, g in enumerate(at.g)])
+    r_l = p.vector("r_l", by_l.array(at.N).dot(flow.e))
+    v_l = p.vector("v_l", by_l.array(at.N).dot(flow.v) - flow.s_rate.dot(g_l))
+    p.stage("derivatives of the force")
+    of_e = np.array([_named(p, f"F_e{k + 1}", at.N[k] * by_r + g_e[:, k].sum() * by_r_S - past[k] * by_v)
+                     for k in range(len(S))])
+    of_v = np.array([_named(p, f"F_v{k + 1}", n * by_v) for k, n in enumerate(at.N)])
+    of_l = p.vector("F_l", by_r.dot(r_l) + by_r_S.dot(g_l.sum(axis=0)) + by_v.dot(v_l))
+    of_s = np.array([p.vector(f"F_s{i + 1}", -by_v.dot(g)) for i, g in enumerate(at.g)])
+    p.stage("derivatives of the generalised forces")
+    scaled = np.array([p.define(f"scaled{k + 1}", at.weight * n) for k, n in enumerate(at.N)])
+    lever = np.array([p.vector(f"lever{i + 1}", -at.weight * g) for i, g in enumerate(at.g)])
+    over_e, over_v = (np.hstack(list(blocks)) for blocks in (of_e, of_v))
+    turned = -np.array([np.outer(at.weight * row, at.F).ravel() for row in g_e])
+    p.output("D", np.hstack([_on_all(scaled, lever, over_v), _on_all(scaled, lever, of_s.T)]), "SI",
+             "derivatives of f and f_s by rates of e, s1, s2")
+    K_l = _on_all(scaled, lever, of_l[:, None])[:, 0] + np.concatenate(
+        [np.outer(by_l.array(scaled), at.F).ravel(), by_l.array(lever).dot(at.F)])
+    K_e = _on_all(scaled, lever, over_e)
+    K_e[-len(turned):] += turned
+    p.output("K", np.hstack([K_e, K_l[:, None]]), "SI", "derivatives of f and f_s by e and l")
+    return p
+
+
+def _named(p: Program, name: str, matrix: np.ndarray) -> np.ndarray:
+    """Return a matrix with its rows named."""
+    return np.array([p.vector(f"{name}{i + 1}", row) for i, row in enumerate(matrix)])
+
+
+def _on_all(scaled: np.ndarray, lever: np.ndarray, of: np.ndarray) -> Any:
+    """Return the generalised forces on e and s1, s2 of forces, the columns of a matrix (dim, n)."""
+    return np.vstack([*(n * of for n in scaled), lever.dot(of)])
+
+
+def share(span: FlowingElement) -> Program:
+    """Return the kernel of the share of a material point in the length, and its derivatives."""
+    p = span.program("share", "share of a material point in the length of an element", SOURCE)
+    at, ends = p.input("at", (), "m", "material coordinate"), p.input("ends", 2, "m", "s1, s2")
+    p.stage("share")
+    inverse = p.define("inv_l", 1 / p.define("l", ends[1] - ends[0]))
+    xi = p.define("xi", (at - ends[0]) * inverse)
+    p.output("share", [xi], "1", "(S - s1)/l")
+    p.output("share_s", [DirectionalDerivative(p, f"d{i + 1}", {end: 1})(xi) for i, end in enumerate(ends)], "1/m",
+             "derivatives by s1, s2")
+    return p
