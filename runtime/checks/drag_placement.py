@@ -9,13 +9,14 @@ import numpy as np
 from ..errors import SceneError, near
 from ..parts.attachment import Attachment
 from ..parts.cable import Cable
-from ..parts.drag import OF_BODY, OF_CABLE, Drag
+from ..parts.drag import OF_BODY, OF_CABLE, OF_ROPE, Drag
 from ..parts.fluid import NO_SURFACE, Fluid
+from ..parts.rope import Rope
 from ..parts.scene_data import SceneData
 from ..parts.validation import LENGTH_TOLERANCE, show
 from ..parts.velocity_table import VelocityTable
 from .frames import draws_section
-from .placement import placed_attachment
+from .placement import check_has_mass, placed_attachment
 
 PLACES = 65
 """Number of points of a cable that are checked."""
@@ -29,6 +30,11 @@ def placed_drag(scene: SceneData, drag: Drag) -> Drag:
         _check_cable(scene, drag)
         cable = scene.cables[drag.on]
         _check_table(scene, drag, lambda: cable.points_at(np.linspace(0, cable.length, PLACES)))
+        return drag
+    if (rope := scene.ropes.get(drag.on)) is not None:
+        _check_rope(scene, drag, rope)
+        points = [point for span in rope.drawn(scene.bodies).spans for point in (span.start, span.end)]
+        _check_table(scene, drag, lambda: np.array([[*point, 0.0][:3] for point in points]))
         return drag
     placed = placed_attachment(scene, Attachment(on=drag.on, at=drag.at), drag.where)
     _refuse(drag, "body")
@@ -124,20 +130,47 @@ def _check_cable(scene: SceneData, drag: Drag) -> None:
     if isinstance(drag.added_mass, tuple):
         raise SceneError(drag.where, f'acts on cable "{drag.on}", whose added_mass is one number',
                          "give that across the cable, and added_mass_tangential along it")
-    if other := next((each for each in scene.drags.values() if each.on == drag.on
-                      and (None in (each.fluid, drag.fluid) or each.fluid == drag.fluid
-                           or not _are_apart(scene, each, drag))), None):
-        raise SceneError(drag.where, f'cable "{drag.on}" has the {other.where} already', "leave one of them out")
+    _check_alone(scene, drag, cable)
     if drag.lift != 0 and cable.dim == 2:
         raise SceneError(drag.where, f'lift of cable "{drag.on}" leaves the plane of its element {cable.element}',
                          "take a spatial element, or leave lift out")
     _check_section(drag, cable)
+    _check_acts(drag, cable)
+
+
+def _check_rope(scene: SceneData, drag: Drag, rope: Rope) -> None:
+    """Raise SceneError for a drag that its rope does not admit."""
+    check_has_mass(rope, drag.where)
+    if drag.added_mass is not None:
+        raise SceneError(drag.where, f'acts on rope "{rope.name}" and has added_mass, which ropes do not have yet',
+                         "leave added_mass out")
+    if drag.polar is not None:
+        raise SceneError(drag.where, f'acts on rope "{rope.name}", and has a polar, but its sections have no rotation',
+                         "give normal and lift")
+    _refuse(drag, "rope")
+    _check_alone(scene, drag, rope)
+    if drag.lift != 0 and rope.dim == 2:
+        raise SceneError(drag.where, f'lift of rope "{rope.name}" leaves the plane of its element {rope.element}',
+                         'take element="cable12", or leave lift out')
+    _check_acts(drag, rope)
+
+
+def _check_alone(scene: SceneData, drag: Drag, line: Cable | Rope) -> None:
+    """Raise SceneError where a cable or a rope has another drag in the same fluid."""
+    if other := next((each for each in scene.drags.values() if each.on == drag.on
+                      and (None in (each.fluid, drag.fluid) or each.fluid == drag.fluid
+                           or not _are_apart(scene, each, drag))), None):
+        raise SceneError(drag.where, f'{line.where} has the {other.where} already', "leave one of them out")
+
+
+def _check_acts(drag: Drag, line: Cable | Rope) -> None:
+    """Raise SceneError for a drag without an effect on a cable or a rope, or without a diameter."""
     if drag.normal == 0 and drag.tangential == 0 and drag.lift == 0 and drag.polar is None:
-        if drag.displaced(cable) == 0:
+        if drag.displaced(line) == 0:
             raise SceneError(drag.where, "has neither drag nor buoyancy", "give normal, tangential or displaced_area")
         return
     try:
-        drag.width(cable)
+        drag.width(line)
     except ValueError as error:
         raise SceneError(drag.where, str(error), "give diameter, in m: the width across the flow") from None
 
@@ -209,9 +242,9 @@ def _check_added_mass(drag: Drag, displaced: float, name: str) -> None:
 
 
 def _refuse(drag: Drag, kind: str) -> None:
-    """Raise SceneError for values that a drag on this kind of part, "cable" or "body", does not take."""
+    """Raise SceneError for values that a drag on this kind of part, "cable", "rope" or "body", does not take."""
     defaults = {name: field.default for name, field in Drag.model_fields.items()}
-    takes, others = (OF_CABLE, OF_BODY) if kind == "cable" else (OF_BODY, OF_CABLE)
-    for name in (name for name in others if name not in takes):
+    takes = {"cable": OF_CABLE, "rope": OF_ROPE, "body": OF_BODY}[kind]
+    for name in (name for name in OF_BODY + OF_CABLE if name not in takes):
         if getattr(drag, name) != defaults[name]:
             raise SceneError(drag.where, f'acts on {kind} "{drag.on}" and takes no {name}', f"takes {', '.join(takes)}")

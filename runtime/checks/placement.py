@@ -17,6 +17,7 @@ from ..parts.locations import Node, grips, joined, node_of, point_of, support_of
 from ..parts.modal_body import ModalBody
 from ..parts.part import Part
 from ..parts.point_force import PointForce
+from ..parts.rope import Rope
 from ..parts.scene_data import SceneData
 from ..parts.support import Support, Tie
 from ..parts.validation import LENGTH_TOLERANCE, show
@@ -185,18 +186,19 @@ def placed_attachment(scene: SceneData, end: Attachment, where: str, prefix: str
                              "give a point in body axes, or nothing for its origin")
         return end.model_copy(update={"at": end.at or (0.0, 0.0, 0.0)})
     if end.on in scene.ropes:
-        return _placed_on_rope(scene, end, where, prefix)
+        return placed_on_rope(scene, end, where, prefix)
     known = [*scene.cables, *scene.bodies]
     raise SceneError(where, f'{prefix}there is no cable or body "{end.on}"', near(end.on, known))
 
 
-def _placed_on_rope(scene: SceneData, end: Attachment, where: str, prefix: str) -> Attachment:
+def placed_on_rope(scene: SceneData, end: Attachment, where: str, prefix: str) -> Attachment:
     """Return an attachment to a rope, checked to lie in one of its spans as drawn. Raises SceneError."""
     assert end.on is not None
     if end.s is None or end.at is not None:
         raise SceneError(where, f'{prefix}acts on rope "{end.on}" and needs the stress-free arc-length s there'
                          + (", not a point at" if end.at else ""))
     rope = scene.ropes[end.on]
+    check_has_mass(rope, where, prefix)
     try:
         rope.span_at(rope.drawn(scene.holders), end.s)
     except ValueError as error:
@@ -205,10 +207,17 @@ def _placed_on_rope(scene: SceneData, end: Attachment, where: str, prefix: str) 
     return end
 
 
+def check_has_mass(rope: Rope, where: str, prefix: str = "") -> None:
+    """Raise SceneError for a part that acts on a rope without mass."""
+    if not rope.mass:
+        raise SceneError(where, f'{prefix}acts on rope "{rope.name}", which has mass=False: it is straight and carries '
+                         "no load", "give it a mass, or act on a body that an end or a sheave is on")
+
+
 def check_grips(scene: SceneData) -> None:
-    """Raise SceneError for joints and springs whose place on a rope is no longer in a span."""
+    """Raise SceneError for joints, springs and forces whose place on a rope is no longer in a span."""
     for part, name, end in grips(scene):
-        _placed_on_rope(scene, end, part.where, f"{name}: ")
+        placed_on_rope(scene, end, part.where, f"{name}: " if name else "")
 
 
 def placed_between(scene: SceneData, part: P) -> P:

@@ -7,8 +7,10 @@ from math import pi
 from ..errors import SceneError, near
 from ..parts.attachment import Attachment
 from ..parts.cable import Cable
+from ..parts.drag import Drag
 from ..parts.event import Event
 from ..parts.joint import Joint
+from ..parts.load import Load
 from ..parts.part import Part
 from ..parts.plane import called
 from ..parts.point_force import PointForce
@@ -21,6 +23,8 @@ from ..parts.validation import show
 from .placement import placed_attachment, report
 from .whole_scene import check_plane
 
+ON_ROPES = (Joint, PointForce, Load, Drag)
+"""Parts that act on ropes."""
 MIN_RADIUS_RATIO = 10.0
 """Radius of a sheave over the diameter of its rope below which the bending stress is reported."""
 MAX_RADIUS_OF_ELEMENTS = 20.0
@@ -48,22 +52,20 @@ def placed_rope(scene: SceneData, rope: Rope) -> Rope:
 
 
 def check_apart_from_ropes(scene: SceneData, part: Part) -> None:
-    """Raise SceneError for a part that names a rope or a sheave, on which nothing can act or be measured, but for the
-    joints and springs that hold to a point of a rope.
-    """
+    """Raise SceneError for a part that names a sheave or a rope, on which only some can act (`ON_ROPES`)."""
     if not scene.ropes:
         return
     for name in part.refers_to():
         rope = next((rope for rope in scene.ropes.values()
                      if name == rope.name or any(name == wheel.name for wheel in rope.wheels)), None)
-        if rope is None or (name == rope.name and isinstance(part, Joint | PointForce)):
+        if rope is None or (name == rope.name and isinstance(part, ON_ROPES)):
             continue
         wheel = next((f'a {wheel.kind} of rope "{rope.name}"' for wheel in rope.wheels if wheel.name == name), "")
         what = wheel or "a rope"
         if isinstance(part, Event):
             raise SceneError(part.where, f'"{name}" is {what}, whose results cannot be watched',
                              f"""watch a body, or give function=, which gets state["{rope.name}.position"]""")
-        connects = "no other part" if wheel else "only joints and springs"
+        connects = "no other part" if wheel else "only joints, springs, loads and drags"
         raise SceneError(part.where, f'"{name}" is {what}, to which {connects} can be connected',
                          "take a body that an end or a sheave of the rope is on"
                          + ("" if wheel else f', or that a joint to ("{rope.name}", s) holds'))

@@ -94,6 +94,8 @@ def outside_tables(model: Model, q: np.ndarray) -> list[str]:
         if drag.cable >= 0:
             cable = model.cables[drag.cable]
             r = cable.nodal(q)[:, 0]
+        elif drag.coordinates is not None:
+            r = drag.coordinates.places(q)
         else:
             r = attachment_points(model, drag.attachments[0], q[None])[:, : model.dim]
         height = drag.base + r @ drag.up

@@ -15,11 +15,13 @@ from ..parts.drag import Drag
 from ..parts.flow_profile import PowerProfile, TableProfile
 from ..parts.fluid import NO_SURFACE, Fluid
 from ..parts.polar import Polar
+from ..parts.rope import Rope
 from ..parts.scene_data import SceneData
 from ..parts.velocity_table import AXES
 from .attachments import AttachmentModel, ModelBuilder
 from .coupling import CouplingKind, CouplingModel, no_numbers
 from .loads import GAUSS
+from .span_coordinates import AlongSpan, SpanCoordinates
 
 MIN_SPEED = 1e-30
 """Lower bound of speeds in the kernels, m/s: derivatives at rest would be 0/0 without it."""
@@ -29,8 +31,9 @@ KERNELS = {2: "planar_drag", 3: "drag"}
 
 
 @dataclass
-class DragModel(CouplingModel):
-    """The force of a fluid on a cable, or on a point of a body; cable -1: on a body, at the one attachment.
+class DragModel(AlongSpan, CouplingModel):
+    """The force of a fluid on a cable, on a span of a rope, or on a point of a body; cable -1: along the span of the
+    coordinates, or on a body, at the one attachment.
 
     velocity (dim): m/s, multiplied by the signal of that number (-1: one) and the profile of the fluid at the height
     base + up . r. degree: of the splines of its table, 0 without. origin (3,), axes (9,): those of the model, along
@@ -55,6 +58,7 @@ class DragModel(CouplingModel):
     fluid: Fluid
     polar: Polar | None
     cable: int = -1
+    coordinates: SpanCoordinates | None = None
     coefficients: tuple[float, ...] = ()
     lift: tuple[float, ...] = (0.0, MIN_SPEED)
     section: tuple[float, ...] = (0.0, 0.0, MIN_SPEED)
@@ -68,19 +72,20 @@ class DragModel(CouplingModel):
 
 
 def drag_models(builder: ModelBuilder) -> Iterator[DragModel]:
-    """Yield the models of the drags of a scene, one for each fluid that acts on a part."""
-    return (_in_fluid(part, fluid, builder) for part in builder.scene.drags.values()
-            for fluid in builder.scene.fluids_of(part))
+    """Yield the models of the drags of a scene, one for each fluid that acts on a part, of a rope for each span."""
+    spans = {rope.part.name: rope.spans for rope in builder.ropes}
+    return (_in_fluid(part, fluid, builder, span) for part in builder.scene.drags.values()
+            for fluid in builder.scene.fluids_of(part) for span in spans.get(part.on, (None,)))
 
 
-def _in_fluid(part: Drag, fluid: Fluid, builder: ModelBuilder) -> DragModel:
+def _in_fluid(part: Drag, fluid: Fluid, builder: ModelBuilder, span: SpanCoordinates | None) -> DragModel:
     scene, dim = builder.scene, builder.scene.dim
     signal, factor = builder.signals.scale(fluid.scale)
     up, base = _height(scene)
-    cable, plane = scene.cables.get(part.on), None if scene.plane_axes is None else scene.plane_axes.plane
+    line, plane = scene.line(part.on), None if scene.plane_axes is None else scene.plane_axes.plane
     origin, axes = (np.zeros(3), np.eye(3)) if plane is None else (plane.origin, plane.axes)
-    displaced, bottom = fluid.density * part.displaced(cable), fluid.bottom(scene.fluids.values())
-    cut = "section" if cable is not None else "sphere" if part.height is None else "column"
+    displaced, bottom = fluid.density * part.displaced(line), fluid.bottom(scene.fluids.values())
+    cut = "section" if line is not None else "sphere" if part.height is None else "column"
     degree, table = _table(fluid, dim)
     model = DragModel(
         type="drag", name=part.name or "", is_damped=True, has_inertia=part.added_mass is not None,
@@ -89,32 +94,42 @@ def _in_fluid(part: Drag, fluid: Fluid, builder: ModelBuilder) -> DragModel:
         wet=cut if fluid.surface is not None or bottom > -NO_SURFACE else "all", surface=fluid.top, bottom=bottom,
         fluid=fluid, polar=part.polar,
         entries=table | _profile(fluid) | _foil(part, fluid, dim) | {
-            "extent": part.extent(cable), "displaced": displaced, "added": (),
-            "is_foil": part.polar is not None or (cable is None and part.lift != 0)})
+            "extent": part.extent(line), "displaced": displaced, "added": (),
+            "is_foil": part.polar is not None or (line is None and part.lift != 0)})
     if model.has_inertia:
-        added = part.added_of_body(dim) if cable is None else part.added_of_cable()
+        added = part.added_of_body(dim) if line is None else part.added_of_cable()
         model.entries["added"] = (displaced * added).ravel()
-    if cable is None:
+    if line is None:
         coefficient = part.coefficient if part.polar is None else 0.0
         model.coefficients = (fluid.density / 2 * part.area * coefficient, MIN_SPEED)
         model.attachments = [builder.attachment(Attachment(on=part.on, at=part.at), np.eye(3))]
     else:
-        _along_cable(model, part, cable, builder)
+        _along_line(model, part, line)
+        if isinstance(line, Cable):
+            _along_cable(model, part, line, builder)
+        else:
+            model.coordinates = span
     return model
 
 
-def _along_cable(model: DragModel, part: Drag, cable: Cable, builder: ModelBuilder) -> None:
-    """Add the coefficients per length of a cable, and the quadrature on it."""
-    model.cable = builder.cable_index[cable.name]
-    on, pressure = builder.cables[model.cable], model.fluid.density / 2
-    lengths, has_width = on.mesh.lengths, part.normal or part.tangential or part.lift or part.polar
-    width = part.width(cable) if has_width else 0.0
+def _along_line(model: DragModel, part: Drag, line: Cable | Rope) -> None:
+    """Add the coefficients per length of a cable or a rope."""
+    pressure, has_width = model.fluid.density / 2, part.normal or part.tangential or part.lift or part.polar
+    width = part.width(line) if has_width else 0.0
     model.lift = (pressure * width * part.lift, MIN_SPEED)
     model.coefficients = (pressure * width * part.normal, pressure * np.pi * width * part.tangential, MIN_SPEED)
-    model.n_points, model.stride = len(GAUSS[0]), 0 if on.mesh.is_even else len(GAUSS[0])
-    model.N, model.N_x, model.weights = along_elements(on.kernel("on_axis"), lengths, GAUSS)
+    model.n_points = len(GAUSS[0])
     if part.polar is not None:
         model.section = (pressure * width, width, MIN_SPEED)
+
+
+def _along_cable(model: DragModel, part: Drag, cable: Cable, builder: ModelBuilder) -> None:
+    """Add the quadrature on a cable."""
+    model.cable = builder.cable_index[cable.name]
+    on = builder.cables[model.cable]
+    lengths, model.stride = on.mesh.lengths, 0 if on.mesh.is_even else len(GAUSS[0])
+    model.N, model.N_x, model.weights = along_elements(on.kernel("on_axis"), lengths, GAUSS)
+    if part.polar is not None:
         slopes = [[on.kernel("slopes")(length, length * (1 + x) / 2) for x in GAUSS[0]] for length in lengths]
         model.N_chord = np.einsum("c,egck->egk", part.foil_axes[1], np.array(slopes)[..., 0, :])
 

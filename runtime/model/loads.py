@@ -12,7 +12,10 @@ from ..parts.attachment import Attachment
 from ..parts.load import DistributedForce, Force, Load, Moment
 from .attachments import AttachmentModel, ModelBuilder
 from .coupling import CouplingKind, CouplingModel
+from .span_coordinates import AlongSpan, SpanCoordinates
 
+EVERYWHERE = 1e300
+"""m, beyond the ends of all ropes."""
 GAUSS = np.polynomial.legendre.leggauss(4)
 """Points along an element of a distributed force: exact to degree 7."""
 
@@ -33,9 +36,10 @@ class DeadLoadModel(CouplingModel):
 
 @dataclass
 class LoadModel(CouplingModel):
-    """A load that depends on rotations of its cable or body.
+    """A load that depends on rotations of its cable or body, or a force on a point of a rope.
 
-    kind: cable_follower, cable_moment, body_force, body_follower or body_moment; x: place in an element, m.
+    kind: cable_follower, cable_moment, body_force, also on a rope, body_follower or body_moment; x: place in an
+    element, m.
     """
 
     kind: str
@@ -44,17 +48,39 @@ class LoadModel(CouplingModel):
     x: float
     c: tuple[float, float, float]
 
+    @property
+    def kernel_families(self) -> list[str]:
+        """Return the names of the kernel families that it uses beside those of its carrier."""
+        return [self.on.rope_point] if self.on.rope_point else []
+
+
+@dataclass(kw_only=True)
+class LineLoadModel(AlongSpan, CouplingModel):
+    """A force of a stress-free length on the material of a rope in a span, times a signal (number, -1: one).
+
+    value (3,): N/m; between: material coordinates of its ends, m.
+    """
+
+    coordinates: SpanCoordinates
+    signal: int
+    value: np.ndarray
+    between: tuple[float, ...]
+
+
+AnyLoadModel = DeadLoadModel | LoadModel | LineLoadModel
+
 
 class LoadBuilder:
-    """Builds the models of loads: dead ones, constant in the dofs, and others."""
+    """Builds the models of loads: dead ones, constant in the dofs, those along spans of ropes, and others."""
 
     def __init__(self, builder: ModelBuilder):
         self.builder, self.scene, self.cables = builder, builder.scene, builder.cables
         self.dead: list[DeadLoadModel] = []
         self.turning: list[LoadModel] = []
+        self.along: list[LineLoadModel] = []
 
     def load(self, load: Force | DistributedForce | Moment) -> None:
-        """Add the model of a load to `dead` or `turning`."""
+        """Add the model of a load to `dead`, `turning` or `along`."""
         number, factor = self.builder.signals.scale(load.scale)
         value = factor * np.array(load.value)
         if isinstance(load, DistributedForce):
@@ -73,7 +99,19 @@ class LoadBuilder:
             on.axes = np.eye(self.scene.dim)
             self.turning.append(LoadModel(kind, number, on, 0.0, (value[0], value[1], value[2]), type="load"))
 
+    @property
+    def all(self) -> list[AnyLoadModel]:
+        """Return the models in the engine's order."""
+        return [*self.dead, *self.turning, *self.along]
+
     def _distributed(self, load: DistributedForce, number: int, value: np.ndarray) -> None:
+        if load.cable in self.scene.ropes:
+            between = tuple(end if given is None else given
+                            for given, end in ((load.start, -EVERYWHERE), (load.stop, EVERYWHERE)))
+            rope = next(each for each in self.builder.ropes if each.part.name == load.cable)
+            self.along += [LineLoadModel(type="line load", coordinates=span, signal=number, value=value,
+                                         between=between) for span in rope.spans]
+            return
         model = self.cables[self.builder.cable_index[load.cable]]
         points = [(element, (start + stop) / 2 + (stop - start) / 2 * x, (stop - start) / 2 * w)
                   for element, start, stop in model.mesh.covered(load.start, load.stop)
@@ -104,14 +142,15 @@ class LoadBuilder:
                                    type="load") for element, x, weight in points]
 
 
-def _loads(builder: ModelBuilder) -> tuple[list[DeadLoadModel], list[LoadModel]]:
-    """Return the loads of a scene, translated once: dead ones, and those that turn."""
-    made = LoadBuilder(builder)  # not kept: it refers to the builder, which would then keep its scene in memory
+def _loads(builder: ModelBuilder) -> tuple[list[DeadLoadModel], list[LoadModel], list[LineLoadModel]]:
+    """Return the loads of a scene, translated once."""
+    made = LoadBuilder(builder)
     for load in builder.scene.loads.values():
         made.load(load)
-    return made.dead, made.turning
+    return made.dead, made.turning, made.along  # not the builder, which would keep its scene in memory
 
 
 KINDS = (
     CouplingKind("dead load", Load.group, lambda builder: builder.once("loads", _loads)[0], has_state=False),
-    CouplingKind("load", Load.group, lambda builder: builder.once("loads", _loads)[1], has_state=False))
+    CouplingKind("load", Load.group, lambda builder: builder.once("loads", _loads)[1], has_state=False),
+    CouplingKind("line load", Load.group, lambda builder: builder.once("loads", _loads)[2], has_state=False))

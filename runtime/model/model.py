@@ -24,7 +24,7 @@ from .crossings import CrossingModel
 from .drags import DragModel
 from .elimination import Elimination
 from .joints import JointModel
-from .loads import DeadLoadModel, LoadModel
+from .loads import AnyLoadModel, DeadLoadModel, LineLoadModel, LoadModel
 from .point_forces import PointForceModel
 from .ropes import DrumModel, RopeModel, SheaveModel, SpanModel
 from .signals import SignalModel
@@ -245,9 +245,9 @@ class Model:
         return [cast(K, coupling) for coupling in self.couplings if type(coupling) in kinds]
 
     @cached_property
-    def loads(self) -> list[DeadLoadModel | LoadModel]:
+    def loads(self) -> list[AnyLoadModel]:
         """Return the loads among the couplings."""
-        return self.of(DeadLoadModel, LoadModel)
+        return self.of(DeadLoadModel, LoadModel, LineLoadModel)
 
     def place_slides(self, s: np.ndarray) -> None:
         """Put the slides at arc-lengths (slides,) in m."""

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..parts.load import Force
 from ..parts.locations import grips
 from ..parts.rope import Rope
 from ..parts.rope_items import SIDES, Anchor, Drum, RouteItem, Sheave
@@ -17,7 +18,7 @@ from ..parts.section_stiffness import section_stiffness
 from .attachments import AttachmentModel, ModelBuilder
 from .coupling import CouplingKind, CouplingModel
 from .signals import Signals
-from .span_coordinates import PER_NODE, SpanCoordinates
+from .span_coordinates import PER_NODE, AlongSpan, SpanCoordinates
 from .taut_ropes import taut_points, taut_ropes
 
 LAW = "engineering_exact_assumed"
@@ -244,14 +245,13 @@ def turn_motions(ropes: list[RopeModel], signals: Signals) -> list[tuple[int, in
 
 
 @dataclass(kw_only=True)
-class SpanModel(CouplingModel):
+class SpanModel(AlongSpan, CouplingModel):
     """A span between two tangent points or ends: fu_span_coupling of the engine.
 
-    held: material coordinates in m to which parts hold, increasing, with these parts as messages name them; beside:
-    what the rope meets at both ends of the span.
+    held: material coordinates in m to which parts hold or on which they act, increasing, with the words of messages for
+    that; beside: what the rope meets at both ends of the span.
     """
 
-    kernel: str
     coordinates: SpanCoordinates
     rho: float
     tau: float
@@ -274,38 +274,12 @@ class SpanModel(CouplingModel):
     def reached(self, end: int) -> str:
         """Return in words that what holds to it has come to its first end, 0, or to its last one, 1."""
         s, part = self.held[-end]
-        return f'{part} holds rope "{self.name}" at s = {s:.9g} m, which reaches {self.beside[end]}'
+        return f'{part} rope "{self.name}" at s = {s:.9g} m, which reaches {self.beside[end]}'
 
     def end_of_grips(self, q: np.ndarray) -> int | None:
         """Return the end, 0 or 1, that a material point to which a part holds has passed in a configuration q (n,)."""
-        passed = [self.is_gripped and (2 * end - 1) * (self.grips[end] - q[self.s[end]]) > 0 for end in range(2)]
+        passed = [self.is_gripped and (2 * end - 1) * (self.grips[end] - q[self.span_s[end]]) > 0 for end in range(2)]
         return passed.index(True) if any(passed) else None
-
-    @property
-    def n_elements(self) -> int:
-        """Return the number of its elements."""
-        return self.coordinates.n_elements
-
-    @property
-    def first(self) -> int:
-        """Return the first dof of its nodes."""
-        return self.coordinates.first
-
-    @property
-    def s(self) -> tuple[int, int]:
-        """Return the dofs of the material coordinates of its ends."""
-        return self.coordinates.s
-
-    @property
-    def share(self) -> np.ndarray:
-        """Return the shares of its nodes in its length."""
-        return self.coordinates.share
-
-    @property
-    def adjacent(self) -> list[np.ndarray]:
-        """Return the dofs of each element."""
-        at = self.coordinates
-        return [np.r_[at.node(k), at.node(k + 1), at.s] for k in range(at.n_elements)]
 
 
 @dataclass(kw_only=True)
@@ -474,18 +448,21 @@ def span_models(builder: ModelBuilder) -> Iterator[SpanModel]:
         labels += labels[: rope.part.closed]
         for k, span in enumerate(rope.spans):
             least = max(MIN_SPAN_RATIO * max(radii[k : k + 2]), rope.part.radius)
-            yield SpanModel(type="span", name=rope.part.name, kernel=f"span_{rope.part.element}", coordinates=span,
+            yield SpanModel(type="span", name=rope.part.name, coordinates=span,
                             rho=rope.rho, tau=rope.part.material.damping_time, g=gravity, A=rope.stiffness,
                             least_length=least, has_inertia=True, is_damped=rope.part.material.damping_time > 0,
                             held=held[k], beside=(labels[k], labels[k + 1]))
 
 
 def grips_of(scene: SceneData, rope: RopeModel) -> list[list[tuple[float, str]]]:
-    """Return for each span of a rope the arc-lengths at which parts of the scene hold it, m, and these parts."""
+    """Return for each span of a rope the arc-lengths at which parts of the scene hold it or act on it, m, and the words
+    of messages for that.
+    """
     found: list[list[tuple[float, str]]] = [[] for _ in rope.spans]
     for part, _, end in grips(scene):
         if end.on == rope.part.name:
-            found[rope.part.span_at(rope.route, end.arc_length)].append((end.arc_length, part.where))
+            acts = "acts on" if isinstance(part, Force) else "holds"
+            found[rope.part.span_at(rope.route, end.arc_length)].append((end.arc_length, f"{part.where} {acts}"))
     return [sorted(each) for each in found]
 
 

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+KERNELS = {2: "span_cable8p", 3: "span_cable12"}
+"""Kernels of spans, by the dimension of space."""
 PER_NODE = 2
 """Vectors of a node: its place, and its slope by the stress-free arc-length."""
 
@@ -64,3 +66,49 @@ class SpanCoordinates:
 def cubic_shapes(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return shape functions of an element of unit length at x (n,), (2, n) each: of the places and slopes of nodes."""
     return (np.stack([1 - 3 * x**2 + 2 * x**3, 3 * x**2 - 2 * x**3]), np.stack([x - 2 * x**2 + x**3, x**3 - x**2]))
+
+
+class AlongSpan:
+    """Base of models of couplings along a span; without coordinates they are on none. Names are those of the engine,
+    couplings/common/span_elements.h.
+    """
+
+    coordinates: SpanCoordinates | None
+
+    @property
+    def span_kernel(self) -> str:
+        """Return the name of the kernels of the span, "" for none."""
+        return KERNELS[self.coordinates.dim] if self.coordinates else ""
+
+    @property
+    def span_elements(self) -> int:
+        """Return the number of its elements."""
+        return self.coordinates.n_elements if self.coordinates else 0
+
+    @property
+    def span_first(self) -> int:
+        """Return the first dof of its nodes."""
+        return self.coordinates.first if self.coordinates else 0
+
+    @property
+    def span_s(self) -> tuple[int, int]:
+        """Return the dofs of the material coordinates of its ends."""
+        return self.coordinates.s if self.coordinates else (0, 0)
+
+    @property
+    def span_share(self) -> np.ndarray:
+        """Return the shares of its nodes in its length."""
+        return self.coordinates.share if self.coordinates else np.zeros(0)
+
+    @property
+    def adjacent(self) -> list[np.ndarray]:
+        """Return the dofs of each element."""
+        if (at := self.coordinates) is None:
+            return []
+        return [np.r_[at.node(k), at.node(k + 1), at.s] for k in range(at.n_elements)]
+
+    @property
+    def kernel_families(self) -> list[str]:
+        """Return the names of the kernel families that it uses."""
+        kernel = getattr(self, "kernel", "")
+        return [each for each in (kernel, self.span_kernel) if each]

@@ -3,11 +3,10 @@
 import math
 from collections.abc import Iterator
 from numbers import Real
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
-from .cable import Cable
 from .part import Part
 from .polar import Polar
 from .quantity import all_of_engine
@@ -28,8 +27,13 @@ from .validation import (
     xyz,
 )
 
+if TYPE_CHECKING:
+    from .cable import Cable
+    from .rope import Rope
+
 OF_CABLE = ("normal", "tangential", "lift", "polar", "chord", "diameter", "displaced_area", "added_mass",
             "added_mass_tangential")
+OF_ROPE = ("normal", "tangential", "lift", "diameter", "displaced_area")
 OF_BODY = ("area", "coefficient", "lift", "polar", "span", "chord", "at", "volume", "height", "added_mass")
 
 
@@ -60,7 +64,10 @@ class Drag(Part):
     Buoyancy acts at ``at``, not at the middle of the wet part. A heeling body needs several drags; its stiffness is too
     high by its weight times that distance.
 
-    on: the cable, all of it, or the body
+    On a rope all but polar and added mass act on its spans, by the velocity of the material. Nothing acts on what lies
+    on sheaves and drums.
+
+    on: the cable or the rope, all of it, or the body
     fluid: by default all fluids of the scene, which must not overlap
     normal: of a cable, coefficient of the force ``ρ/2 d normal |w_n| w_n`` a length
     tangential: of a cable, coefficient of the force ``ρ/2 π d tangential |w_t| w_t`` a length
@@ -89,7 +96,7 @@ class Drag(Part):
     kind = "drag"
     group = "drags"
     positional = ("on",)
-    results = all_of_engine("drag", force="drag and buoyancy on the cable or body")
+    results = all_of_engine("drag", force="drag and buoyancy on the cable, rope or body")
     name: Name | None = None
     on: Reference
     fluid: Reference | None = None
@@ -136,30 +143,30 @@ class Drag(Part):
         C = self.added_mass if isinstance(self.added_mass, tuple) else np.eye(3) * (self.added_mass or 0.0)
         return np.array(C)[:dim, :dim]
 
-    def width(self, cable: Cable) -> float:
+    def width(self, line: "Cable | Rope") -> float:
         """Return the diameter of drag, m. Raises ValueError where the section has none."""
         if self.diameter is not None:
             return self.diameter
-        radius = outer_radius_of(cable.section)
+        radius = outer_radius_of(line.section)
         if radius is None:
-            raise ValueError("diameter is missing, which the section of the cable does not tell")
+            raise ValueError(f"diameter is missing, which the section of the {line.kind} does not tell")
         return 2 * radius
 
-    def extent(self, cable: Cable | None) -> float:
-        """Return half of the height of a cable's section or of a body at a surface, in m; 0 for a point."""
-        if cable is None:
+    def extent(self, line: "Cable | Rope | None") -> float:
+        """Return half of the height of a cable's or a rope's section or of a body at a surface, in m; 0 for a point."""
+        if line is None:
             if self.height is not None:
                 return self.height / 2
             return math.cbrt(3 * self.volume / (4 * math.pi)) if self.volume else math.sqrt(self.area / math.pi)
         try:
-            return self.width(cable) / 2
+            return self.width(line) / 2
         except ValueError:
-            return math.sqrt(self.displaced(cable) / math.pi)
+            return math.sqrt(self.displaced(line) / math.pi)
 
-    def displaced(self, cable: Cable | None) -> float:
-        """Return the displaced volume, of a cable by length, m², of a body in all, m³."""
-        if cable is None:
+    def displaced(self, line: "Cable | Rope | None") -> float:
+        """Return the displaced volume, of a cable or a rope by length, m², of a body in all, m³."""
+        if line is None:
             return self.volume
         if self.displaced_area is not None:
             return self.displaced_area
-        return math.pi * cable.section.outer_radius**2 if isinstance(cable.section, Tube) else cable.section.area
+        return math.pi * line.section.outer_radius**2 if isinstance(line.section, Tube) else line.section.area

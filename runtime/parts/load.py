@@ -21,11 +21,13 @@ class Load(Part):
 
 
 class Force(Load):
-    """A force at a point of a cable or of a body.
+    """A force at a point of a cable, of a rope or of a body.
 
-    on: the cable or the body
+    On a rope it acts on a material point in a span, see `Rope`.
+
+    on: the cable, the rope or the body
     value: components of the force, N
-    s: of a cable or a modal beam, the arc-length, m
+    s: of a cable, a rope or a modal beam, the arc-length, m
     at: of a body, the point in body axes, m; by default its origin (a modal body's first node)
     follower: whether the components are along local axes, of a cable (tangent, height, width), of a body its own, of a
         modal body those of the section there; else along the ground's
@@ -46,11 +48,13 @@ class Force(Load):
 
 
 class DistributedForce(Load):
-    """A force along a cable, by its undeformed length.
+    """A force along a cable or the spans of a rope, by the undeformed length.
 
-    cable: the cable
+    On a rope it moves with the material. Nothing acts on what lies on sheaves and drums.
+
+    cable: the cable or the rope
     value: components of the force, N/m
-    start, stop: arc-lengths between which it acts, m; by default all of the cable
+    start, stop: arc-lengths between which it acts, m; by default all of it
     follower: as of a `Force`
     """
 

@@ -13,6 +13,7 @@ from .cable import Cable
 from .event import Event
 from .fluid import Fluid
 from .hanging import hangs
+from .load import Force
 from .part import Part, about_fields
 from .rope import Rope
 from .rope_items import RouteItem
@@ -69,10 +70,12 @@ def point_of(scene: SceneData, end: Attachment) -> np.ndarray:
 
 
 def grips(scene: SceneData) -> Iterator[tuple[Part, str, Attachment]]:
-    """Yield the attachments to points of ropes, with their parts and keywords."""
+    """Yield the attachments to points of ropes, with their parts and keywords, "" for that of a force."""
     if not scene.ropes:
         return
     for part in scene.parts():
+        if isinstance(part, Force) and part.on in scene.ropes:
+            yield part, "", Attachment(on=part.on, s=part.s)
         yield from ((part, name, value) for name, value in part
                     if isinstance(value, Attachment) and value.on in scene.ropes)
 

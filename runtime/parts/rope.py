@@ -66,16 +66,16 @@ class Rope(Part):
     unless it is prescribed.
 
     A joint or a spring grips the rope by an end ("haul", s): s in m is stress-free, from the first end, with what is on
-    a drum there. The grip moves with the material, past ends of elements; where it reaches a sheave, a drum or an
-    anchor, the run ends with a RopeLeftError. A load that kinks the rope there has an error in proportion to the length
-    of elements, which two ropes that end at the body do not have.
+    a drum there. The grip, or the point of a force, moves with the material, past ends of elements; where it reaches a
+    sheave, a drum or an anchor, the run ends with a RopeLeftError. A load that kinks the rope there has an error in
+    proportion to the length of elements, which two ropes that end at the body do not have.
 
     route: an `Anchor` or a `Drum`, sheaves, and again an `Anchor` or a `Drum`, in the rope's order; of a closed rope
         two sheaves or more. A `Block` stands for its sheaves
     closed: whether the last sheave leads to the first one, as of a belt
     elements: number of elements of each span, or a list of one number for each span
     tension: at the route's first point, N: uniform as drawn; `equilibrium` finds the stress-free length of a rope with
-        an anchor with which it is that tension at rest, without friction, among the bodies as drawn
+        an anchor with which it is that tension at rest, without friction, loads and fluids, among the bodies as drawn
     length: stress-free length of the whole rope with what is wound on drums, m; without this at most the drawn length.
         The stretch is uniform as drawn
     element: "cable8p" in the plane z = 0; "cable12" in space, with axes of sheaves in any direction. There a body with

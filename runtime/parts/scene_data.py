@@ -155,6 +155,10 @@ class SceneData:
         known.update(((part.a, part.b), part.given_name or "") for part in reversed(added))
         return known
 
+    def line(self, name: str) -> Cable | Rope | None:
+        """Return the cable or the rope of a name, None without one."""
+        return self.cables.get(name) or self.ropes.get(name)
+
     @property
     def dim(self) -> int:
         """Return 2 if its cables or its ropes are planar, else 3."""

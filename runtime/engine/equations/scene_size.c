@@ -120,8 +120,9 @@ double fu_scene_size(const fu_model *model, const double *origin, const double *
         for (int k = 0, at = cable->first; k <= cable->n_elements; ++k, at += cable->per_node)
             widen(model->dim, q + at, low, high);
     FU_EACH_COUPLING(c, model->couplings, model->n_couplings) {
-        const int nodes = c->type == &fu_span_type ? ((const fu_span_coupling *)c)->n_elements + 1 : 0;
-        for (int k = 0; k < nodes; ++k) widen(model->dim, fu_span_node((const fu_span_coupling *)c, k, q), low, high);
+        const int nodes = c->type == &fu_span_type ? ((const fu_span_coupling *)c)->on.n_elements + 1 : 0;
+        for (int k = 0; k < nodes; ++k)
+            widen(model->dim, fu_span_node(&((const fu_span_coupling *)c)->on, k, q), low, high);
         const fu_attachment *on = c->type == &fu_taut_point_type ? ((const fu_taut_point *)c)->attachments : 0;
         if (on && on->body < 0) widen(model->dim, on->u, low, high);
     }

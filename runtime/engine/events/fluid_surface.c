@@ -30,19 +30,19 @@ int fu_surface_event_functions(const fu_drag *drag, int first, fu_event_function
     return n;
 }
 
-/* Computes the lowest and the highest position, m: of a cable among its nodes. */
+/* Computes the lowest and the highest position, m: of a cable or a span among its nodes. */
 static void heights_of(const fu_model *model, const fu_drag *drag, const fu_state *state, double *low, double *high)
 {
-    if (drag->cable < 0) {
+    const int nodes = fu_drag_nodes(model, drag);
+    if (!nodes) {
         fu_attachment_state end;
         fu_attachment_at(model, &drag->attachments[0], state, 0.0, FU_POINT, &end);
         *low = *high = fu_drag_height(model, drag, end.p);
         return;
     }
-    const fu_cable *cable = &model->cables[drag->cable];
-    *low = *high = fu_drag_height(model, drag, state->q + cable->first);
-    for (int k = 1; k <= cable->n_elements; ++k) {
-        const double height = fu_drag_height(model, drag, state->q + cable->first + k * cable->per_node);
+    *low = *high = fu_drag_height(model, drag, fu_drag_node(model, drag, 0, state->q));
+    for (int k = 1; k < nodes; ++k) {
+        const double height = fu_drag_height(model, drag, fu_drag_node(model, drag, k, state->q));
         *low = fmin(*low, height);
         *high = fmax(*high, height);
     }

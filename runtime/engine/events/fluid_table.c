@@ -24,11 +24,10 @@ static double margin_at(const fu_model *model, const fu_drag *drag, double t, co
 static double margin(const fu_model *model, const fu_drag *drag, const fu_state *state)
 {
     double least = 1.0;
-    if (drag->cable >= 0) {
-        const fu_cable *cable = &model->cables[drag->cable];
-        for (int k = 0; k <= cable->n_elements; ++k)
-            least = fmin(least, margin_at(model, drag, state->t, state->q + cable->first + k * cable->per_node));
-    } else {
+    const int nodes = fu_drag_nodes(model, drag);
+    for (int k = 0; k < nodes; ++k)
+        least = fmin(least, margin_at(model, drag, state->t, fu_drag_node(model, drag, k, state->q)));
+    if (!nodes) {
         fu_attachment_state end;
         fu_attachment_at(model, &drag->attachments[0], state, 0.0, FU_POINT, &end);
         least = margin_at(model, drag, state->t, end.p);

@@ -6,6 +6,7 @@
 #define FU_TYPES(ALONE, WITH_EVENTS)                                                                                   \
     ALONE(dead_load)                                                                                                   \
     ALONE(load)                                                                                                        \
+    ALONE(line_load)                                                                                                   \
     WITH_EVENTS(slide)                                                                                                 \
     ALONE(joint)                                                                                                       \
     ALONE(anchor)                                                                                                      \

@@ -218,25 +218,35 @@ def _loads(frames: Frames, refs: Frames, longest: float) -> Iterator[Segment]:
             end = _loaded(frames, load)
             forces.append((name, end, scale * _components(frames, end, load.value, load.follower)))
         elif isinstance(load, DistributedForce):
-            cable = frames.scene.cables[load.cable]
-            for s in np.linspace(load.start or 0.0, cable.length if load.stop is None else load.stop,
-                                 DISTRIBUTED_ARROWS):
+            first, last = _ends(frames, load.cable)
+            start, stop = (given if given is not None else end
+                           for given, end in ((load.start, first), (load.stop, last)))
+            for s in np.linspace(max(start, first), min(stop, last), DISTRIBUTED_ARROWS):
                 end = Attachment(on=load.cable, s=float(s))
                 distributed.append((name, end, scale * _components(frames, end, load.value, load.follower)))
     yield from _arrows(frames, refs, longest, forces)
     yield from _arrows(frames, refs, longest, distributed)
 
 
+def _ends(frames: Frames, name: str) -> tuple[float, float]:
+    """Return the arc-lengths of the ends of a cable, or of what a rope has off its drums at all times, m."""
+    if name in frames.scene.cables:
+        return 0.0, frames.scene.cables[name].length
+    s = frames.value(f"{name}.s")
+    return float(s[:, 0].max()), float(s[:, -1].min())
+
+
 def _flows(frames: Frames, refs: Frames, longest: float) -> Iterator[Segment]:
-    """Yield velocities of fluids as arrows at the middle of cables and at the points of bodies with drag."""
+    """Yield velocities of fluids as arrows at the middle of cables and ropes and at the points of bodies with drag."""
     scene, found = frames.scene, []
     up, time = scene.up, _load_time(frames)
     for name, drag in scene.drags.items():
         fluids = [fluid for fluid in scene.fluids_of(drag) if fluid.moves]
         if not fluids:
             continue
-        cable = scene.cables.get(drag.on)
-        end = Attachment(on=drag.on, at=drag.at) if cable is None else Attachment(on=drag.on, s=cable.length / 2)
+        end = Attachment(on=drag.on, at=drag.at)
+        if scene.line(drag.on) is not None:
+            end = Attachment(on=drag.on, s=float(np.mean(_ends(frames, drag.on))))
         at = np.broadcast_to(place(frames, end), (len(time), 3))
         for fluid in fluids:
             is_there = (at @ up > fluid.bottom(scene.fluids.values())) & (at @ up <= fluid.top)

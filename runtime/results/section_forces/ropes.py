@@ -7,6 +7,7 @@ those of the elastic law, whose axial strain is linear in an element.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,6 +19,8 @@ from ...model.ropes import LAW, RopeModel
 from ...model.span_coordinates import PER_NODE, SpanCoordinates
 from ...model.states import spatial
 from ...parts.cable import Cable
+from ...parts.locations import grips
+from ...parts.part import Part
 from ...parts.rope import Rope
 from ...parts.scene_data import SceneData
 from ...parts.slide import Slide
@@ -53,6 +56,9 @@ def _of_rope(state: Recorded | RestState, rope: Rope, s: ArrayLike | Slide | Non
 
     if method == "balance" and not isinstance(state, RestState):
         raise FunicularError(f'section forces of rope "{rope.name}" {IN_MOTION[0]}; {IN_MOTION[1]}')
+    if method == "balance" and (acting := next(_acting_on(state.scene, rope), None)) is not None:
+        raise FunicularError(f'section forces of rope "{rope.name}" in balance do not contain the forces of the '
+                             f'{acting.where}; take method="constitutive"')
     model = next(each for each in state.model.ropes if each.part.name == rope.name)
     coordinates = np.atleast_2d(state[f"{rope.name}.coordinates"])
     q = np.zeros((len(coordinates), state.model.n_q))
@@ -83,6 +89,13 @@ def _of_rope(state: Recorded | RestState, rope: Rope, s: ArrayLike | Slide | Non
         {name: (dims + ("xyz",) * (name in GLOBAL), values[name] if over_time else values[name][0],
                 {"units": unit, "long_name": label}) for name, (unit, label) in NAMES.items()},
         coords, {"rope": rope.name, "element": rope.element, "law": LAW, "method": method, "side": side})
+
+
+def _acting_on(scene: SceneData, rope: Rope) -> Iterator[Part]:
+    """Yield the parts that act on a rope within its spans."""
+    yield from (part for part, _, end in grips(scene) if end.on == rope.name)
+    yield from (load for load in scene.loads.values() if getattr(load, "cable", None) == rope.name)
+    yield from (drag for drag in scene.drags.values() if drag.on == rope.name)
 
 
 def _given(rope: Rope, s: Any) -> np.ndarray:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import chain
 from typing import cast
 
 import numpy as np
 
 from ...model.attachments import ModelBuilder
 from ...model.kinds import in_order
-from ...model.loads import DeadLoadModel, LoadBuilder, LoadModel
+from ...model.loads import AnyLoadModel, LoadBuilder
 from ...model.signals import Signals
 from ...model.states import attachment_points
 from ...parts.in_plane import turned
@@ -39,17 +40,17 @@ def by_values(rest: Rest, units: Mapping[int, AnyLoad]) -> dict[int, Change]:
     builder = ModelBuilder(rest.scene, model.cables, model.ropes, model.bodies)
     builder.signals = Signals(model.signals)
     loads = LoadBuilder(builder)
-    owners: dict[str, list[int]] = {"dead": [], "turning": []}
+    owners: dict[str, list[int]] = {"dead": [], "turning": [], "along": []}
     for k, unit in units.items():
         loads.load(unit)
-        owners["dead"] += [k] * (len(loads.dead) - len(owners["dead"]))
-        owners["turning"] += [k] * (len(loads.turning) - len(owners["turning"]))
-    others = [coupling for coupling in model.couplings if not isinstance(coupling, DeadLoadModel | LoadModel)]
-    couplings = in_order([*loads.dead, *loads.turning, *others])
+        for kind, of in owners.items():
+            of += [k] * (len(getattr(loads, kind)) - len(of))
+    others = [coupling for coupling in model.couplings if not isinstance(coupling, AnyLoadModel)]
+    couplings = in_order([*loads.all, *others])
     loaded = altered(model, couplings=couplings, signals=builder.signals)
     engine = rest.engine(loaded)
     found = {k: Change(model) for k in units}
-    for number, k in enumerate([*owners["dead"], *owners["turning"]]):
+    for number, k in enumerate(chain.from_iterable(owners.values())):
         found[k].f += engine.external_forces(number, number + 1)[0]
     return found
 

@@ -28,7 +28,7 @@ ROPE_LEFT = (
     ('a span of rope "{name}" becomes too short to be modelled',
      "keep what is at the ends of the span apart, or stop before by an event"),
     *(("{reached},",
-       "give the rope less way, let the joint hold it farther away, or stop before by an event"),) * 2,
+       "give the rope less way, take a point farther away, or stop before by an event"),) * 2,
     ('drum "{name}" has run empty', "give a greater length_in_store, or stop before by an event"),
     ('a rope without mass slips on sheave "{name}", as its tensions differ by more than friction holds,',
      "give a greater coefficient, or a rope with mass, which may slide; or stop before by an event"),

@@ -20,7 +20,7 @@ from ...checks.plausibility import implausible
 from ...engine import Engine
 from ...errors import EquilibriumError, FunicularWarning
 from ...integrators import GeneralisedAlpha
-from ...model.loads import DeadLoadModel, LoadModel
+from ...model.loads import DeadLoadModel
 from ...model.redundant_constraints import drop_redundant_rows
 from ...parts.scene_data import SceneData
 from ...parts.settings import EquilibriumSettings, RelaxationSettings
@@ -113,7 +113,7 @@ class _Motion:
         self.free = self.model.unknown_of_dof >= 0
         self.units = np.where(problem.weight > 0, problem.weight, np.inf)
         self.largest_load = float(np.max(np.abs(problem.load_vector() / self.units), initial=0.0)) or 1.0
-        self.has_energy = not (any(isinstance(load, LoadModel) for load in self.model.loads) or self.model.drags
+        self.has_energy = not (any(not isinstance(load, DeadLoadModel) for load in self.model.loads) or self.model.drags
                                or any(contact.friction for contact in self.model.contacts))
         self.time = float(np.sqrt(problem.size / (np.linalg.norm(scene.gravity) or DEFAULT_GRAVITY)))
         self.step = FIRST_TIME_STEP * self.time

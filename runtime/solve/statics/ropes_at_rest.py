@@ -86,7 +86,7 @@ def off_sheaves(model: Model, engine: Engine) -> str:
         if numbers["normal_force"][k] < 0.0:
             return f'the rope lifts off drum "{drum.name}": it has no tension there'
     for span in model.spans:
-        if q[span.s[1]] - q[span.s[0]] < span.least_length:
+        if q[span.span_s[1]] - q[span.span_s[0]] < span.least_length:
             return f'a span of rope "{span.name}" becomes too short to be modelled'
         if (end := span.end_of_grips(q)) is not None:
             return span.reached(end)

@@ -13,7 +13,7 @@ from ...model.contacts import ContactModel
 from ...model.crossings import CrossingModel
 from ...model.drags import DragModel
 from ...model.joints import JointModel
-from ...model.loads import DeadLoadModel, LoadModel
+from ...model.loads import AnyLoadModel
 from ...model.model import Model
 from ...model.point_forces import PointForceModel
 
@@ -132,7 +132,7 @@ class StringNodes:
         self.held = np.zeros(len(self.cable), dtype=bool)
         self.acted_on, self.joined, self.in_contact = set[int](), set[int](), set[int]()
         for coupling in self.model.couplings:
-            if isinstance(coupling, DeadLoadModel | LoadModel | DragModel) or rests(coupling):
+            if isinstance(coupling, AnyLoadModel | DragModel) or rests(coupling):
                 continue
             cables = _cables_of(coupling)
             node = self._node_of(coupling) if len(cables) == 1 else None

@@ -1,6 +1,6 @@
 /* The force of a fluid on cables and bodies: drag, quadratic in the relative velocity (derive/couplings/drag.py), and
  * buoyancy; couplings/fluid/added_mass.c adds the inertia of the fluid. Along a cable it is integrated by Gauss
- * quadrature on each element.
+ * quadrature on each element, along a span of a rope in couplings/fluid/span_drag.c.
  *
  * With the velocity U of the fluid and w = U - v, the power of drag f at a point of the velocity v is f . U - f . w.
  * The first term is external power of the fluid. The second, f . w, is never negative and is dissipated.
@@ -13,31 +13,6 @@
 
 #include <string.h>
 
-/* Computes the derivative of drag by position (dim x dim). */
-static void by_place(int dim, const fu_drag_action *a, double out[9])
-{
-    for (int i = 0; i < dim; ++i)
-        for (int j = 0; j < dim; ++j) {
-            out[i * dim + j] = a->by_wet[i * dim + j];
-            for (int k = 0; k < dim; ++k) out[i * dim + j] += a->by_w[i * dim + k] * a->flow.gradient[k * dim + j];
-        }
-}
-
-/* Computes the force of drag and buoyancy, N/m or N, times the load fraction. */
-static void whole_force(const fu_model *model, const fu_drag_action *a, double force[3])
-{
-    for (int d = 0; d < model->dim; ++d) force[d] = model->load_fraction * (a->f[d] + a->buoyancy[d]);
-}
-
-/* Adds the powers at a point of this weight to `sum`. */
-static void add_powers(const fu_model *model, const fu_drag_place *at, const fu_drag_action *a, double weight,
-                       fu_drag_powers *sum)
-{
-    const double part = weight * model->load_fraction;
-    sum->dissipated += part * fu_dot(model->dim, a->f, a->w);
-    sum->external += part * (fu_dot(model->dim, a->f, a->flow.U) + fu_dot(model->dim, a->buoyancy, at->v));
-}
-
 /* Adds the forces of drag and buoyancy at a point of a cable. */
 static void add_at(const fu_model *model, const fu_drag *drag, const fu_drag_site *site, fu_drag_loop *loop, double *K)
 {
@@ -49,8 +24,8 @@ static void add_at(const fu_model *model, const fu_drag *drag, const fu_drag_sit
     double force[3];
     (void)K;
     fu_drag_act(model, drag, loop->t, &site->at, 0, &a);
-    whole_force(model, &a, force);
-    if (sums->power) add_powers(model, &site->at, &a, point.weight, sums->power);
+    fu_drag_whole_force(model, &a, force);
+    if (sums->power) fu_drag_add_powers(model, &site->at, &a, point.weight, sums->power);
     if (sums->power && point.N_chord) sums->power->external += share * fu_section_power(&site->at, &a);
     if (sums->f && point.N_chord) fu_section_forces(&a, point, share, n, sums->f + site->first);
     for (int d = 0; d < dim; ++d) {
@@ -67,7 +42,7 @@ static void densities_at(const fu_model *model, const fu_drag *drag, const fu_dr
     fu_drag_action a;
     (void)K;
     fu_drag_act(model, drag, loop->t, &site->at, 0, &a);
-    whole_force(model, &a, force);
+    fu_drag_whole_force(model, &a, force);
     out[0] = site->element;
     out[1] = site->part;
     out[2] = site->x;
@@ -93,7 +68,7 @@ static void matrix_at(const fu_model *model, const fu_drag *drag, const fu_drag_
     double gradient[9];
     fu_drag_action a;
     fu_drag_act(model, drag, loop->t, &site->at, 0, &a);
-    by_place(dim, &a, gradient);
+    fu_drag_by_place(dim, &a, gradient);
     for (int i = 0; i < dim; ++i)
         for (int j = 0; j < dim; ++j) {
             const double by_r = gradient[i * dim + j] - loop->weights.rate * a.by_w[i * dim + j];
@@ -136,8 +111,8 @@ static void on_body(const fu_model *model, const fu_drag *drag, double t, const 
     double force[3];
     place_on_body(model, drag, state, step, &at, &end);
     fu_drag_act(model, drag, t, &at, end.A, &a);
-    whole_force(model, &a, force);
-    if (sums->power) add_powers(model, &at, &a, 1.0, sums->power);
+    fu_drag_whole_force(model, &a, force);
+    if (sums->power) fu_drag_add_powers(model, &at, &a, 1.0, sums->power);
     for (int d = 0; d < model->dim && sums->total; ++d) sums->total[d] += force[d];
     if (sums->f) fu_add_wrench(model->dim, &end, force, 0, -1.0, sums->f);
 }
@@ -153,10 +128,10 @@ static void matrix_of_body(const fu_model *model, const fu_drag *drag, const fu_
     fu_drag_action a;
     place_on_body(model, drag, state, 0, &at, &end);
     fu_drag_act(model, drag, state->t, &at, end.A, &a);
-    whole_force(model, &a, force);
+    fu_drag_whole_force(model, &a, force);
     fu_point_motion_at(model, &drag->attachments[0], state, drag->is_foil ? FU_POINT | FU_AXES : FU_POINT, force, 0,
                        psi, weights.rate, &motion);
-    by_place(dim, &a, gradient);
+    fu_drag_by_place(dim, &a, gradient);
     for (int d = 0; d < dim; ++d) {
         for (int k = 0; k < dim; ++k) {
             by[d * rows + k] = model->load_fraction * gradient[d * dim + k];
@@ -175,6 +150,7 @@ static void add(const fu_model *model, const fu_drag *drag, const fu_state *stat
 {
     fu_drag_loop loop = {.t = state->t, .sums = sums};
     if (drag->cable >= 0) fu_drag_visit(model, drag, state->q, state->v, 0, add_at, &loop, 0);
+    else if (drag->on.kernel) fu_add_span_drag(model, drag, state, sums);
     else on_body(model, drag, state->t, state, step, sums);
 }
 
@@ -223,6 +199,7 @@ static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_
     const fu_drag *drag = (const fu_drag *)coupling;
     fu_drag_loop loop = {.t = state->t, .has_matrix = 1, .weights = weights};
     if (drag->cable >= 0) fu_drag_visit(model, drag, state->q, state->v, 0, matrix_at, &loop, system);
+    else if (drag->on.kernel) fu_add_span_drag_matrix(model, drag, state, weights, system);
     else matrix_of_body(model, drag, state, psi, weights, system);
     if (coupling->has_inertia)
         fu_added_mass_tangent(model, drag, state, weights.inertia != 0.0 ? a : 0, psi, weights, system);
@@ -308,6 +285,7 @@ static const fu_field fields[] = {
     FLOW_VECTOR(origin),
     {"axes", FU_REAL, offsetof(fu_drag, flow.axes), 9, sizeof(double), NULL},
     FU_FIELD(fu_drag, cable, FU_INTEGER, 0),
+    FU_SPAN_FIELDS(fu_drag, on),
     FU_FIELD_ARRAY(fu_drag, coefficients, FU_REAL),
     FU_FIELD_ARRAY(fu_drag, lift, FU_REAL),
     FU_FIELD(fu_drag, is_foil, FU_INTEGER, 0),

@@ -6,6 +6,7 @@
 #include "base/common.h"
 #include "couplings/common/attachments.h"
 #include "couplings/common/coupling.h"
+#include "couplings/common/span_elements.h"
 
 #define FU_FLOW_AXES 4   /* of a table: time, and three directions of the ground */
 #define FU_FLOW_DEGREE 3 /* largest degree of its splines */
@@ -44,12 +45,13 @@ double fu_flow_margin(const fu_model *model, const fu_flow *flow, double t, cons
  * a circle, a sphere, or a column (couplings/fluid/wetness.c). */
 enum { FU_ALL_WET, FU_WET_SECTION, FU_WET_SPHERE, FU_WET_COLUMN };
 
-/* The force of a fluid on a whole cable, or on a point of a body. */
+/* The force of a fluid on a whole cable, on a span of a rope, or on a point of a body. */
 typedef struct {
     fu_coupling base; /* base.has_inertia: with added mass */
     const fu_drag_kernels *kernel;
     fu_flow flow;
-    int cable;              /* -1: at a point of a body */
+    int cable;              /* -1: at a point of a body, or along a span */
+    fu_span_elements on;    /* the span of a rope; without kernels: none */
     double coefficients[3]; /* as the kernel takes them */
     double lift[2];         /* of a cable, arguments of the kernel: no lift if the first is zero */
     int is_foil; /* nonzero: forces depend on the angle of attack, of a body with a span or of a beam with a chord */
@@ -154,6 +156,9 @@ typedef void fu_drag_visitor(const fu_model *model, const fu_drag *drag, const f
 
 /* couplings/fluid/quadrature.c */
 fu_quadrature_point fu_drag_point(const fu_drag *drag, int n, int element, int point);
+/* Return the number of nodes of the cable or the span, and the place of one. */
+int fu_drag_nodes(const fu_model *model, const fu_drag *drag);
+const double *fu_drag_node(const fu_model *model, const fu_drag *drag, int k, const double *q);
 void fu_drag_place_on_axis(const fu_model *model, const fu_drag *drag, const double *e, const double *v,
                            const double *a, fu_quadrature_point point, fu_drag_place *at);
 
@@ -164,12 +169,13 @@ void fu_drag_visit(const fu_model *model, const fu_drag *drag, const double *q, 
                    fu_drag_visitor *visit, fu_drag_loop *loop, fu_system *system);
 
 /* couplings/fluid/wetness.c: the wet part at a height; the height of a point, m; the points of quadrature of an element
- * at the coordinates e, and over a step between two coordinates. */
+ * at the coordinates e, on a span without shape functions, and over a step between two coordinates. */
 fu_wetness fu_wet_at_height(const fu_drag *drag, double height);
 fu_wetness fu_wet_part(const fu_model *model, const fu_drag *drag, const double *r); /* at a point */
 double fu_wet_reach(const fu_drag *drag); /* largest distance from a surface at which the wet part changes, m */
 double fu_drag_height(const fu_model *model, const fu_drag *drag, const double *r);
 void fu_drag_points_on(const fu_model *model, const fu_drag *drag, int element, const double *e, fu_drag_points *out);
+void fu_drag_points_on_span(const fu_model *model, const fu_drag *drag, const fu_span_element *on, fu_drag_points *out);
 void fu_drag_points_over(const fu_model *model, const fu_drag *drag, int element, const double *e, const double *e_next,
                          fu_drag_points *out);
 
@@ -182,6 +188,17 @@ int fu_drag_densities(const fu_model *model, const fu_coupling *coupling, const 
 /* couplings/fluid/drag_force.c: computes the forces of the fluid at a point; A: axes of the body. */
 void fu_drag_act(const fu_model *model, const fu_drag *drag, double t, const fu_drag_place *at, const double *A,
                  fu_drag_action *out);
+/* Compute the derivative of drag by position (dim x dim); the force of drag and buoyancy, N/m or N, times the load
+ * fraction. Adds the powers at a point of this weight to `sum`. */
+void fu_drag_by_place(int dim, const fu_drag_action *a, double out[9]);
+void fu_drag_whole_force(const fu_model *model, const fu_drag_action *a, double force[3]);
+void fu_drag_add_powers(const fu_model *model, const fu_drag_place *at, const fu_drag_action *a, double weight,
+                        fu_drag_powers *sum);
+
+/* couplings/fluid/span_drag.c: add drag and buoyancy on the material in a span of a rope, and their derivatives. */
+void fu_add_span_drag(const fu_model *model, const fu_drag *drag, const fu_state *state, const fu_drag_sums *sums);
+void fu_add_span_drag_matrix(const fu_model *model, const fu_drag *drag, const fu_state *state, fu_weights weights,
+                             fu_system *system);
 
 /* couplings/fluid/section_moment.c: forces on slope and chord of a beam's foil at a point of quadrature, their power,
  * and their derivatives. */

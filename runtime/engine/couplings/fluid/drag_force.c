@@ -113,7 +113,7 @@ void fu_drag_act(const fu_model *model, const fu_drag *drag, double t, const fu_
 {
     fu_flow_at(model, &drag->flow, t, at->r, &out->flow);
     for (int d = 0; d < model->dim; ++d) out->w[d] = out->flow.U[d] - at->v[d];
-    if (drag->cable >= 0)
+    if (drag->cable >= 0 || drag->on.kernel)
         drag->kernel->along_cable(at->r_x, out->w, drag->coefficients, out->f, out->by_slope, out->by_w);
     else drag->kernel->on_point(out->w, drag->coefficients, out->f, out->by_w);
     if (drag->lift[0] != 0.0) add_lift(drag, at, out);
@@ -122,4 +122,26 @@ void fu_drag_act(const fu_model *model, const fu_drag *drag, double t, const fu_
     memcpy(out->buoyancy, drag->buoyancy, sizeof out->buoyancy);
     if (drag->wet == FU_ALL_WET) memset(out->by_wet, 0, sizeof out->by_wet);
     else take_wet_part(model, drag, at, out);
+}
+
+void fu_drag_by_place(int dim, const fu_drag_action *a, double out[9])
+{
+    for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) {
+            out[i * dim + j] = a->by_wet[i * dim + j];
+            for (int k = 0; k < dim; ++k) out[i * dim + j] += a->by_w[i * dim + k] * a->flow.gradient[k * dim + j];
+        }
+}
+
+void fu_drag_whole_force(const fu_model *model, const fu_drag_action *a, double force[3])
+{
+    for (int d = 0; d < model->dim; ++d) force[d] = model->load_fraction * (a->f[d] + a->buoyancy[d]);
+}
+
+void fu_drag_add_powers(const fu_model *model, const fu_drag_place *at, const fu_drag_action *a, double weight,
+                        fu_drag_powers *sum)
+{
+    const double part = weight * model->load_fraction;
+    sum->dissipated += part * fu_dot(model->dim, a->f, a->w);
+    sum->external += part * (fu_dot(model->dim, a->f, a->flow.U) + fu_dot(model->dim, a->buoyancy, at->v));
 }

@@ -12,6 +12,18 @@ fu_quadrature_point fu_drag_point(const fu_drag *drag, int n, int element, int p
                                  fu_drag_on_section(drag) ? drag->N_chord + k * n : 0};
 }
 
+int fu_drag_nodes(const fu_model *model, const fu_drag *drag)
+{
+    return drag->cable >= 0 ? model->cables[drag->cable].n_elements + 1 : drag->on.kernel ? drag->on.n_elements + 1 : 0;
+}
+
+const double *fu_drag_node(const fu_model *model, const fu_drag *drag, int k, const double *q)
+{
+    if (drag->cable < 0) return fu_span_node(&drag->on, k, q);
+    const fu_cable *cable = &model->cables[drag->cable];
+    return q + cable->first + k * cable->per_node;
+}
+
 /* Computes the motion of a point of quadrature on an element with the coordinates e, rates v and accelerations a (null:
  * none). */
 void fu_drag_place_on_axis(const fu_model *model, const fu_drag *drag, const double *e, const double *v,

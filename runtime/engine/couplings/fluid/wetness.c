@@ -151,12 +151,20 @@ static const double GATHERED[2][8] = {
     {0.05061426814518853, 0.11119051722668721, 0.15685332293894344, 0.18134189168918083, 0.18134189168918083,
      0.15685332293894344, 0.11119051722668721, 0.05061426814518853}};
 
-/* Adds a point at x of an element of n shape functions. */
-static void add_point(const fu_cable *cable, double length, int n, int part, double x, double weight,
-                      fu_drag_points *out)
+/* An element of a cable, or of a span of a rope: its number, the number of its shape functions, its length, m. */
+typedef struct {
+    int number, n;
+    double length;
+    const fu_cable *cable;     /* null: of a span */
+    const fu_span_element *on; /* null: of a cable */
+} element;
+
+/* Adds a point at x of an element; of a span without shape functions. */
+static void add_point(const element *of, int part, double x, double weight, fu_drag_points *out)
 {
+    const int n = of->n;
     double *N = out->shapes + (size_t)out->n * 2 * (size_t)n, *N_x = N + n;
-    cable->kernel->on_axis(length, x, N, N_x);
+    if (of->cable) of->cable->kernel->on_axis(of->length, x, N, N_x);
     out->x[out->n] = x;
     out->part[out->n] = part;
     out->at[out->n++] = (fu_quadrature_point){weight, N, N_x, 0};
@@ -170,8 +178,8 @@ typedef struct {
 
 /* Adds the points of a part of an element, unless it is dry; wet: wet parts of one or two configurations in the middle
  * of it. */
-static void add_part(const fu_cable *cable, double length, int n, int number, double from, double to,
-                     const fu_wetness *wet, int n_shapes, fu_drag_points *out)
+static void add_part(const element *of, int number, double from, double to, const fu_wetness *wet, int n_shapes,
+                     fu_drag_points *out)
 {
     const double part = to - from;
     int is_wet = 0, is_cut = 0;
@@ -179,13 +187,11 @@ static void add_part(const fu_cable *cable, double length, int n, int number, do
         is_wet |= wet[k].part != 0.0 || wet[k].slope != 0.0;
         is_cut |= wet[k].slope != 0.0;
     }
-    if (part <= MIN_PART * length || !is_wet) return;
-    for (int k = 0; k < 4 && !is_cut; ++k)
-        add_point(cable, length, n, number, from + part * PLAIN[0][k], part * PLAIN[1][k], out);
+    if (part <= MIN_PART * of->length || !is_wet) return;
+    for (int k = 0; k < 4 && !is_cut; ++k) add_point(of, number, from + part * PLAIN[0][k], part * PLAIN[1][k], out);
     for (int k = 0; k < 8 && is_cut; ++k) {
         const double x = GATHERED[0][k];
-        add_point(cable, length, n, number, from + part * x * x * (3.0 - 2.0 * x),
-                  part * 6.0 * x * (1.0 - x) * GATHERED[1][k], out);
+        add_point(of, number, from + part * x * x * (3.0 - 2.0 * x), part * 6.0 * x * (1.0 - x) * GATHERED[1][k], out);
     }
 }
 
@@ -198,22 +204,43 @@ static double along_axis(const fu_model *model, const fu_drag *drag, int n, cons
     return sum;
 }
 
-/* Returns whether an element is entirely on one side of each surface; *height is then a height of it. */
-static int is_uncut(const fu_model *model, const fu_drag *drag, int n, int element, const double *e, double *height)
+/* Computes the height of a point at x of an element's axis, and its slope by x. */
+static void axis_at(const fu_model *model, const fu_drag *drag, const element *of, const double *e, double x,
+                    double *height, double *slope)
 {
-    const fu_cable *cable = &model->cables[drag->cable];
+    if (of->cable) {
+        double N[FU_MAX_COORDINATES], N_x[FU_MAX_COORDINATES];
+        of->cable->kernel->on_axis(of->length, x, N, N_x);
+        *height = drag->flow.base + along_axis(model, drag, of->n, N, e);
+        *slope = along_axis(model, drag, of->n, N_x, e);
+        return;
+    }
+    double r[3], r_S[3], velocity[3];
+    drag->on.kernel->point(of->length, e, of->on->v, of->on->s_rate, x / of->length, r, r_S, velocity);
+    *height = fu_drag_height(model, drag, r);
+    *slope = fu_dot(model->dim, drag->flow.up, r_S);
+}
+
+/* Returns whether an element is entirely on one side of each surface; *height is then a height of it. */
+static int is_uncut(const fu_model *model, const fu_drag *drag, const element *of, const double *e, double *height)
+{
+    const int n = of->n, per_node = of->cable ? of->cable->per_node : drag->on.kernel->coordinates / FU_SPAN_ENDS;
     double low = fu_drag_height(model, drag, e), high = low, steepest = 0.0;
-    const double last = fu_drag_height(model, drag, e + cable->per_node);
+    const double last = fu_drag_height(model, drag, e + per_node);
     low = fmin(low, last);
     high = fmax(high, last);
     for (int g = 0; g < drag->n_points; ++g) {
-        const fu_quadrature_point point = fu_drag_point(drag, n, element, g);
-        const double h = drag->flow.base + along_axis(model, drag, n, point.N, e);
+        double h, slope;
+        if (of->cable) {
+            const fu_quadrature_point point = fu_drag_point(drag, n, of->number, g);
+            h = drag->flow.base + along_axis(model, drag, n, point.N, e);
+            slope = along_axis(model, drag, n, point.N_x, e);
+        } else axis_at(model, drag, of, e, of->length * PLAIN[0][g], &h, &slope);
         low = fmin(low, h);
         high = fmax(high, h);
-        steepest = fmax(steepest, fabs(along_axis(model, drag, n, point.N_x, e)));
+        steepest = fmax(steepest, fabs(slope));
     }
-    const double reach = drag->extent + HEIGHT_VARIATION * fu_element_length(cable, element) * steepest;
+    const double reach = drag->extent + HEIGHT_VARIATION * of->length * steepest;
     *height = low;
     return (low - reach > drag->surface || high + reach < drag->surface) &&
            (low - reach > drag->bottom || high + reach < drag->bottom);
@@ -221,17 +248,16 @@ static int is_uncut(const fu_model *model, const fu_drag *drag, int n, int eleme
 
 /* Computes the heights of a configuration, and adds the positions at which a surface touches the edge of the section to
  * the cuts. */
-static void cut_shape(const fu_model *model, const fu_drag *drag, int n, double length, shape *of,
-                      double cuts[MAX_CUTS], int *n_cuts)
+static void cut_shape(const fu_model *model, const fu_drag *drag, const element *on, shape *of, double cuts[MAX_CUTS],
+                      int *n_cuts)
 {
     const double levels[4] = {drag->surface - drag->extent, drag->surface + drag->extent, drag->bottom - drag->extent,
                               drag->bottom + drag->extent};
-    const double span = length / SPANS_PER_ELEMENT;
-    double N[FU_MAX_COORDINATES], N_x[FU_MAX_COORDINATES], h[SPANS_PER_ELEMENT + 1], slope[SPANS_PER_ELEMENT + 1];
+    const double span = on->length / SPANS_PER_ELEMENT;
+    double h[SPANS_PER_ELEMENT + 1], slope[SPANS_PER_ELEMENT + 1];
     for (int k = 0; k <= SPANS_PER_ELEMENT; ++k) {
-        model->cables[drag->cable].kernel->on_axis(length, k * span, N, N_x);
-        h[k] = drag->flow.base + along_axis(model, drag, n, N, of->e);
-        slope[k] = span * along_axis(model, drag, n, N_x, of->e);
+        axis_at(model, drag, on, of->e, k * span, &h[k], &slope[k]);
+        slope[k] *= span;
     }
     for (int k = 0; k < SPANS_PER_ELEMENT; ++k) {
         of->of[k] = (heights){k * span,
@@ -243,59 +269,73 @@ static void cut_shape(const fu_model *model, const fu_drag *drag, int n, double 
 }
 
 /* Computes the points of an element that a surface may cut, in one or two configurations. */
-static void cut_points(const fu_model *model, const fu_drag *drag, int n, int element, shape *shapes, int n_shapes,
+static void cut_points(const fu_model *model, const fu_drag *drag, const element *of, shape *shapes, int n_shapes,
                        fu_drag_points *out)
 {
-    const fu_cable *cable = &model->cables[drag->cable];
-    const double length = fu_element_length(cable, element), span = length / SPANS_PER_ELEMENT;
+    const double length = of->length, span = length / SPANS_PER_ELEMENT;
     double cuts[MAX_CUTS];
     int n_cuts = 0;
-    for (int s = 0; s < n_shapes; ++s) cut_shape(model, drag, n, length, &shapes[s], cuts, &n_cuts);
+    for (int s = 0; s < n_shapes; ++s) cut_shape(model, drag, of, &shapes[s], cuts, &n_cuts);
     for (int k = 0; k <= n_cuts; ++k) {
         const double from = k ? cuts[k - 1] : 0.0, to = k < n_cuts ? cuts[k] : length,
                      middle = 0.5 * (from + to) / span;
         const int in = middle < SPANS_PER_ELEMENT - 1 ? (int)middle : SPANS_PER_ELEMENT - 1;
         fu_wetness wet[2];
         for (int s = 0; s < n_shapes; ++s) wet[s] = fu_wet_at_height(drag, height_on(&shapes[s].of[in], middle - in));
-        add_part(cable, length, n, k, from, to, wet, n_shapes, out);
+        add_part(of, k, from, to, wet, n_shapes, out);
     }
 }
 
 /* Computes the points of an element, in one or two configurations. */
-static void points_of(const fu_model *model, const fu_drag *drag, int element, shape *shapes, int n_shapes,
+static void points_of(const fu_model *model, const fu_drag *drag, const element *of, shape *shapes, int n_shapes,
                       fu_drag_points *out)
 {
-    const int n = model->cables[drag->cable].coordinates / model->dim;
     out->n = 0;
     if (drag->wet != FU_ALL_WET) {
         double height, part[2] = {0.0};
         int uncut = 1;
         for (int s = 0; s < n_shapes && uncut; ++s) {
-            uncut = is_uncut(model, drag, n, element, shapes[s].e, &height);
+            uncut = is_uncut(model, drag, of, shapes[s].e, &height);
             if (uncut) part[s] = fu_wet_at_height(drag, height).part;
         }
         if (!uncut) {
-            cut_points(model, drag, n, element, shapes, n_shapes, out);
+            cut_points(model, drag, of, shapes, n_shapes, out);
             return;
         }
         if (part[0] == 0.0 && part[1] == 0.0) return;
     }
     for (int g = 0; g < drag->n_points; ++g) {
-        out->x[g] = fu_element_length(&model->cables[drag->cable], element) * PLAIN[0][g];
+        out->x[g] = of->length * PLAIN[0][g];
         out->part[g] = 0;
-        out->at[out->n++] = fu_drag_point(drag, n, element, g);
+        out->at[out->n++] = of->cable ? fu_drag_point(drag, of->n, of->number, g)
+                                      : (fu_quadrature_point){.weight = of->length * PLAIN[1][g]};
     }
 }
 
-void fu_drag_points_on(const fu_model *model, const fu_drag *drag, int element, const double *e, fu_drag_points *out)
+static element of_cable(const fu_model *model, const fu_drag *drag, int number)
 {
-    shape one[1] = {{.e = e}};
-    points_of(model, drag, element, one, 1, out);
+    const fu_cable *cable = &model->cables[drag->cable];
+    return (element){number, cable->coordinates / model->dim, fu_element_length(cable, number), cable, 0};
 }
 
-void fu_drag_points_over(const fu_model *model, const fu_drag *drag, int element, const double *e, const double *e_next,
+void fu_drag_points_on(const fu_model *model, const fu_drag *drag, int number, const double *e, fu_drag_points *out)
+{
+    const element of = of_cable(model, drag, number);
+    shape one[1] = {{.e = e}};
+    points_of(model, drag, &of, one, 1, out);
+}
+
+void fu_drag_points_on_span(const fu_model *model, const fu_drag *drag, const fu_span_element *on, fu_drag_points *out)
+{
+    const element of = {on->number, 0, on->l, 0, on};
+    shape one[1] = {{.e = on->e}};
+    points_of(model, drag, &of, one, 1, out);
+}
+
+void fu_drag_points_over(const fu_model *model, const fu_drag *drag, int number, const double *e, const double *e_next,
                          fu_drag_points *out)
 {
+    const element of = of_cable(model, drag, number);
     shape both[2] = {{.e = e}, {.e = e_next}};
-    points_of(model, drag, element, both, 2, out);
+    points_of(model, drag, &of, both, 2, out);
 }

@@ -4,6 +4,7 @@
 
 #include "couplings/common/attachments.h"
 #include "couplings/common/coupling.h"
+#include "couplings/common/span_elements.h"
 
 /* Permitted senses of a segment of a law: pull and push, one of them alone, or none: then it has no force. */
 enum { FU_PUSHES_ALONE = -1, FU_PULLS_AND_PUSHES = 0, FU_PULLS_ALONE = 1, FU_HAS_NO_FORCE = 2 };
@@ -49,7 +50,8 @@ typedef struct {
 } fu_dead_load;
 extern const fu_coupling_type fu_dead_load_type;
 
-/* A load that rotates with its carrier, or whose lever does: at x of a cable's element, or at a point of a body. */
+/* A load that rotates with its carrier, or whose lever does: at x of a cable's element, or at a point of a body; a
+ * force at a material point of a rope is one on a body. */
 enum { FU_CABLE_FOLLOWER, FU_CABLE_MOMENT, FU_BODY_FORCE, FU_BODY_FOLLOWER, FU_BODY_MOMENT };
 typedef struct {
     fu_coupling base;
@@ -59,6 +61,18 @@ typedef struct {
 } fu_load;
 extern const fu_coupling_type fu_load_type;
 
+/* A force of a stress-free length of a rope on the material in a span, between two material coordinates, times a signal
+ * (-1: one): couplings/force/line_load.c. */
+typedef struct {
+    fu_coupling base;
+    fu_span_elements on;
+    int signal;
+    double value[3], between[2]; /* N/m, m */
+} fu_line_load;
+extern const fu_coupling_type fu_line_load_type;
+
+/* Returns the value of a load's signal, 1 without one. */
+double fu_load_scale(const fu_model *model, int signal, double t);
 void fu_external_forces(const fu_model *model, double t, const double *q, double *f);
 
 #endif

@@ -6,8 +6,7 @@
 
 #include <string.h>
 
-/* Returns the value of a signal, 1 without one. */
-static double scale_at(const fu_model *model, int signal, double t)
+double fu_load_scale(const fu_model *model, int signal, double t)
 {
     return signal < 0 ? 1.0 : fu_signal_at(&model->signals[signal], t, 0, 0);
 }
@@ -25,8 +24,8 @@ static int on_element(const fu_model *model, const fu_load *load, const double *
     return cable->coordinates;
 }
 
-/* Computes the load on a body at unit signal: the attachment, a force `f` or a moment `m` in global axes, null without
- * one. */
+/* Computes the load on a body or on a point of a rope at unit signal: the attachment, a force `f` or a moment `m` in
+ * global axes, null without one. */
 typedef struct {
     fu_attachment_state at;
     double vector[3];
@@ -50,7 +49,7 @@ static void on_body(const fu_model *model, const fu_load *load, const fu_state *
 static void dead_force(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f)
 {
     const fu_dead_load *load = (const fu_dead_load *)coupling;
-    const double scale = scale_at(model, load->signal, t);
+    const double scale = fu_load_scale(model, load->signal, t);
     (void)q;
     for (int i = 0; i < load->n; ++i) f[load->dofs[i]] -= scale * (model->load_fraction * load->values[i]);
 }
@@ -70,8 +69,8 @@ const fu_coupling_type fu_dead_load_type = {
 static void rotating_force(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f)
 {
     const fu_load *load = (const fu_load *)coupling;
-    const double scale = scale_at(model, load->signal, t);
-    if (load->on.body < 0) {
+    const double scale = fu_load_scale(model, load->signal, t);
+    if (load->on.cable >= 0) {
         double g[FU_MAX_COORDINATES], K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
         int first;
         const int n = on_element(model, load, q, g, K, &first);
@@ -89,9 +88,9 @@ static void rotating_force(const fu_model *model, const fu_coupling *coupling, d
 static void matrix(const fu_model *model, const fu_load *load, const fu_state *state, const double *psi,
                    double stiffness, fu_system *system)
 {
-    const double scale = stiffness * scale_at(model, load->signal, state->t);
+    const double scale = stiffness * fu_load_scale(model, load->signal, state->t);
     const int dim = model->dim;
-    if (load->on.body < 0) {
+    if (load->on.cable >= 0) {
         double g[FU_MAX_COORDINATES], K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
         int first;
         const int n = on_element(model, load, state->q, g, K, &first);

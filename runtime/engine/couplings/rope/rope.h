@@ -4,28 +4,20 @@
 
 #include "couplings/common/attachments.h"
 #include "couplings/common/coupling.h"
+#include "couplings/common/span_elements.h"
 
 #define FU_ROPE_CONSTANTS 4 /* of a law, at most */
 
-/* A span (derive/couplings/span.py). The dofs of its nodes are contiguous. The material coordinate of a node is
- * s1 + share (s2 - s1). */
+/* A span (derive/couplings/span.py). */
 typedef struct {
     fu_coupling base;
-    const fu_span_kernels *kernel;
-    int n_elements, first, s[2]; /* dofs: the first of the nodes, and s1, s2 */
-    const double *share;         /* of the nodes */
+    fu_span_elements on;
     double rho, tau, g[3], A[FU_ROPE_CONSTANTS];
     double least_length; /* m: stress-free, of a span that can be modelled */
     int is_gripped;      /* whether joints or springs hold to material points within it */
     double grips[2];     /* m: the first and the last material coordinate of these */
 } fu_span_coupling;
 extern const fu_coupling_type fu_span_type;
-
-/* Returns the place of the k-th node of a span. */
-static inline const double *fu_span_node(const fu_span_coupling *span, int k, const double *q)
-{
-    return q + span->first + k * (span->kernel->coordinates / 2);
-}
 
 /* Return how far a rope is from leaving: its wrap above the least one, rad, of a short wrap above zero, or of a rope
  * that has left its distance from touching, m; the least normal force, times the radius on an angle, N; the length of a
