@@ -1710,6 +1710,60 @@ typedef void fu_tangent_point_across_kernel(fu_real rho, fu_real l, fu_real w, f
 /* s_rate 2, T 1, V 1, f 3, M 3x1, D 3x3, K 3x2 */
 fu_tangent_point_across_kernel tangent_point_across;
 
+typedef void fu_tangent_point_turned_conditions_kernel(const fu_real *x, const fu_real *chord, fu_real b, const fu_real *axis, const fu_real *weight, fu_real EA, fu_real limit, fu_real R, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+/* conditions of a tangent point, and their derivatives by the axis, too: x [m]; chord [m]; b [m]; axis [1]; weight
+ * [N/m]; EA [N]; limit [N/m]; R [m]; f [N] -> phi [m]; J [1]; K [N/m] */
+/* x 3, chord 3, axis 3, weight 3, f 3, phi 3, J 3x10, K 10x10 */
+fu_tangent_point_turned_conditions_kernel tangent_point_turned_conditions;
+
+typedef void fu_tangent_point_turned_motion_kernel(const fu_real *x, const fu_real *chord, fu_real b, const fu_real *axis, const fu_real *weight, fu_real EA, fu_real limit, const fu_real *x_rate, const fu_real *chord_rate, fu_real b_rate, const fu_real *axis_rate, fu_real *Q_d);
+/* second rates of the conditions at zero accelerations: x [m]; chord [m]; b [m]; axis [1]; weight [N/m]; EA [N];
+ * limit [N/m]; x_rate [m/s]; chord_rate [m/s]; b_rate [m/s]; axis_rate [1/s] -> Q_d [m/s^2] */
+/* x 3, chord 3, axis 3, weight 3, x_rate 3, chord_rate 3, axis_rate 3, Q_d 3 */
+fu_tangent_point_turned_motion_kernel tangent_point_turned_motion;
+
+typedef void fu_tangent_point_turned_acc_kernel(const fu_real *omega, const fu_real *x_rate, const fu_real *x_acc, fu_real *acc);
+/* second rate of a tangent point in the plane of a groove that tilts: omega [rad/s]; x_rate [m/s]; x_acc [m/s^2] ->
+ * acc [m/s^2] */
+/* omega 3, x_rate 3, x_acc 3, acc 2 */
+fu_tangent_point_turned_acc_kernel tangent_point_turned_acc;
+
+typedef void fu_tangent_point_wrap_energy_kernel(fu_real rho, const fu_real *omega, fu_real R, const fu_real *phi, fu_real l, const fu_real *phi_rate, const fu_real *c_rate, const fu_real *s_rate, fu_real *E);
+/* kinetic energy of a zone in a groove that tilts: rho [kg/m]; omega [rad/s]; R [m]; phi [rad]; l [m]; phi_rate
+ * [rad/s]; c_rate [m/s]; s_rate [m/s] -> E [J] */
+/* omega 3, phi 2, phi_rate 2, c_rate 3, s_rate 2, E 1 */
+fu_tangent_point_wrap_energy_kernel tangent_point_wrap_energy;
+
+typedef void fu_tangent_point_wrap_inertia_kernel(fu_real rho, const fu_real *omega, const fu_real *omega_acc, fu_real R, const fu_real *phi, fu_real l, const fu_real *phi_rate, const fu_real *c_rate, const fu_real *s_rate, const fu_real *phi_acc, const fu_real *c_acc, const fu_real *s_acc, fu_real *f);
+/* inertial forces of a zone in a groove that tilts: rho [kg/m]; omega [rad/s]; omega_acc [rad/s^2]; R [m]; phi
+ * [rad]; l [m]; phi_rate [rad/s]; c_rate [m/s]; s_rate [m/s]; phi_acc [rad/s^2]; c_acc [m/s^2]; s_acc [m/s^2] -> f
+ * [N, N m] */
+/* omega 3, omega_acc 2, phi 2, phi_rate 2, c_rate 3, s_rate 2, phi_acc 2, c_acc 3, s_acc 2, f 9 */
+fu_tangent_point_wrap_inertia_kernel tangent_point_wrap_inertia;
+
+typedef void fu_tangent_point_wrap_mass_kernel(fu_real rho, fu_real R, const fu_real *phi, fu_real l, fu_real *M);
+/* mass matrix of a zone in a groove that tilts: rho [kg/m]; R [m]; phi [rad]; l [m] -> M [kg] */
+/* phi 2, M 9x9 */
+fu_tangent_point_wrap_mass_kernel tangent_point_wrap_mass;
+
+typedef void fu_tangent_point_wrap_weight_kernel(fu_real rho, const fu_real *gravity, fu_real R, const fu_real *phi, fu_real l, fu_real *moment, fu_real *M_q, fu_real *M_turn);
+/* moments of the weight of a zone about the centre of a groove that tilts: rho [kg/m]; gravity [m/s^2]; R [m]; phi
+ * [rad]; l [m] -> moment [N m]; M_q [N m, N]; M_turn [N m] */
+/* gravity 3, phi 2, moment 2, M_q 2x3, M_turn 2x2 */
+fu_tangent_point_wrap_weight_kernel tangent_point_wrap_weight;
+
+typedef void fu_tangent_point_laid_weight_kernel(fu_real laid, const fu_real *gravity, const fu_real *x, fu_real *V, fu_real *F, fu_real *K);
+/* energy of gravity of the tangent point, as the rope is laid on there, and its forces: laid [kg m]; gravity
+ * [m/s^2]; x [m] -> V [J]; F [N, N m]; K [N/m, N] */
+/* gravity 3, x 3, V 1, F 4, K 4x4 */
+fu_tangent_point_laid_weight_kernel tangent_point_laid_weight;
+
+typedef void fu_tangent_point_ring_kernel(const fu_real *inertia, fu_real growth, const fu_real *omega, const fu_real *omega_acc, fu_real spin, fu_real *E, fu_real *moment);
+/* moments about diameters of a ring that spins about its axis, which tilts: inertia [kg m^2]; growth [kg m^2/s];
+ * omega [rad/s]; omega_acc [rad/s^2]; spin [rad/s] -> E [J]; moment [N m] */
+/* inertia 2, omega 3, omega_acc 2, E 1, moment 2 */
+fu_tangent_point_ring_kernel tangent_point_ring;
+
 typedef void fu_taut_rope_straight_kernel(const fu_real *d, fu_real rise, fu_real *l, fu_real *u, fu_real *l_d, fu_real *b_d);
 /* straight part of a rope without mass: d [m]; rise [m] -> l [m]; u [1]; l_d [1]; b_d [1/m] */
 /* d 2, l 1, u 2, l_d 2, b_d 2 */
@@ -2147,6 +2201,15 @@ typedef struct {
     fu_tangent_point_motion_kernel *motion;
     fu_tangent_point_chord_kernel *chord;
     fu_tangent_point_across_kernel *across;
+    fu_tangent_point_turned_conditions_kernel *turned_conditions;
+    fu_tangent_point_turned_motion_kernel *turned_motion;
+    fu_tangent_point_turned_acc_kernel *turned_acc;
+    fu_tangent_point_wrap_energy_kernel *wrap_energy;
+    fu_tangent_point_wrap_inertia_kernel *wrap_inertia;
+    fu_tangent_point_wrap_mass_kernel *wrap_mass;
+    fu_tangent_point_wrap_weight_kernel *wrap_weight;
+    fu_tangent_point_laid_weight_kernel *laid_weight;
+    fu_tangent_point_ring_kernel *ring;
 } fu_tangent_point_kernels;
 
 /* What the engine needs of a taut_rope. */

@@ -53,22 +53,25 @@ class Zone:
     at_rest: the rates are symbols by which the program differentiates, and no inputs.
     """
 
+    dim = DIM
+    """Components of the centre."""
+
     def __init__(self, program: Program, order: int = 0, has_place: bool = False, centre_moves: bool = False,
                  at_rest: bool = False):
         p = self.program = program
         rate = _symbols if at_rest else p.input
         self.R = p.input("R", (), "m", "radius to the axis of the rope")
         phi = p.input("phi", 2, "rad", "angles phi_a, phi_b of the ends of the zone, over turns")
-        self.c: Any = p.input("c", DIM, "m", "centre of the sheave") if has_place else []
+        self.c: Any = p.input("c", self.dim, "m", "centre of the sheave") if has_place else []
         self.l = p.input("l", (), "m", "length s_b - s_a of the zone")
         given: list[tuple[Any, ...]] = []
         if order:
             given.append((rate("phi_rate", 2, "rad/s", "rates of the angles"),
-                          rate("c_rate", DIM, "m/s", "velocity of the centre") if centre_moves else [],
+                          rate("c_rate", self.dim, "m/s", "velocity of the centre") if centre_moves else [],
                           rate("s_rate", 2, "m/s", "rates of s_a and s_b")))
         if order > 1:
             given.append((p.input("phi_acc", 2, "rad/s^2", "second rates of the angles"),
-                          p.input("c_acc", DIM, "m/s^2", "acceleration of the centre"),
+                          p.input("c_acc", self.dim, "m/s^2", "acceleration of the centre"),
                           p.input("s_acc", 2, "m/s^2", "second rates of s_a and s_b")))
         p.stage("zone")
         self.middle, self.angle = self._mean_and_difference("middle", "angle", phi)
@@ -109,16 +112,18 @@ class Zone:
         turned = [np.array(v) for v in ((n_x, n_y), (-n_y, n_x), (-n_x, -n_y), (n_y, -n_x))]
         self.m = {(i, j): p.vector(f"m{i}{j}", C[j] * turned[i]) for j in range(order + 1)
                   for i in range(order + 1 - j)}
+        self.means = [self.m]
 
     def jacobian(self, values: np.ndarray, symbols: Sequence[sp.Symbol]) -> np.ndarray:
         """Return the derivatives of values (n,) by symbols (m,), (n, m)."""
         columns = []
         for one in symbols:
             on: dict[sp.Symbol, Any] = dict.fromkeys(symbols, 0)
-            for (i, j), vector in self.m.items():
-                rate = {self.middle: self.m.get((i + 1, j)), self.angle: self.m.get((i, j + 1))}.get(one, 0 * vector)
-                if rate is not None:
-                    on |= dict(zip(vector, rate, strict=True))
+            for means in self.means:
+                for (i, j), vector in means.items():
+                    rate = {self.middle: means.get((i + 1, j)), self.angle: means.get((i, j + 1))}.get(one, 0 * vector)
+                    if rate is not None:
+                        on |= dict(zip(vector, rate, strict=True))
             tag = f"d_{one.name}".replace("[", "").replace("]", "")
             columns.append(DirectionalDerivative(self.program, tag, on | {one: 1}).array(values))
         return np.stack(columns, axis=-1)
@@ -128,7 +133,7 @@ def _symbols(name: str, shape: int, *_: str) -> np.ndarray:
     return np.array([sp.Symbol(f"{name}[{k}]") for k in range(shape)], dtype=object)
 
 
-def _at_ends(p: Program, name: str, values: np.ndarray, *pairs: tuple[int, int]) -> np.ndarray:
+def at_ends(p: Program, name: str, values: np.ndarray, *pairs: tuple[int, int]) -> np.ndarray:
     """Return derivatives by values at both ends from those by their means and differences: places of these in pairs,
     on the first axis.
     """
@@ -140,14 +145,12 @@ def _at_ends(p: Program, name: str, values: np.ndarray, *pairs: tuple[int, int])
     return found
 
 
-def _between_ends(p: Program, name: str, matrix: np.ndarray, rows: Pairs, columns: Pairs) -> np.ndarray:
-    """Return a matrix of derivatives by values at both ends, see `_at_ends`."""
-    first = _at_ends(p, f"{name}_", matrix.T, *columns).T
+def between_ends(p: Program, name: str, matrix: np.ndarray, rows: Pairs, columns: Pairs) -> np.ndarray:
+    """Return a matrix of derivatives by values at both ends, see `at_ends`."""
+    first = at_ends(p, f"{name}_", matrix.T, *columns).T
     named = np.array([[p.define(f"{name}{i + 1}{k + 1}", value) for k, value in enumerate(row)]
                       for i, row in enumerate(first)])
-    return _at_ends(p, name, named, *rows)
-
-
+    return at_ends(p, name, named, *rows)
 
 
 def _stiffness(p: Program) -> np.ndarray:
@@ -208,7 +211,7 @@ def force() -> Program:
     """Return the kernel of the derivatives of both energies."""
     p = program("force", "derivatives of the elastic energy and of that of gravity")
     _, value = _potential(p, 1)
-    p.output("f", _at_ends(p, "F", value, *ANGLES), "N", "derivatives by phi_a, phi_b, c and l")
+    p.output("f", at_ends(p, "F", value, *ANGLES), "N", "derivatives by phi_a, phi_b, c and l")
     return p
 
 
@@ -218,7 +221,7 @@ def tangent() -> Program:
     zone, value = _potential(p, 2)
     p.stage("second derivatives")
     K = zone.jacobian(value, zone.coordinates)
-    p.output("K", _between_ends(p, "K", K, ANGLES, ANGLES), "N/m", "derivatives of f by phi_a, phi_b, c and l")
+    p.output("K", between_ends(p, "K", K, ANGLES, ANGLES), "N/m", "derivatives of f by phi_a, phi_b, c and l")
     return p
 
 
@@ -291,7 +294,7 @@ def inertia() -> Program:
     """Return the kernel of the inertial forces."""
     p = program("inertia", "inertial forces d/dt dT/dv - dT/dq of a zone")
     _, force = _inertia(p, 2)
-    p.output("f", _at_ends(p, "F", force, *OF_MOTION), "N", "forces on phi_a, phi_b, c, s_a, s_b")
+    p.output("f", at_ends(p, "F", force, *OF_MOTION), "N", "forces on phi_a, phi_b, c, s_a, s_b")
     return p
 
 
@@ -304,7 +307,7 @@ def mass_matrix() -> Program:
     p.stage("momenta and their derivatives")
     (rates,) = zone.motion
     momenta = zone.jacobian(np.array([rho * zone.l * tau]), rates)[0]
-    M = _between_ends(p, "M", zone.jacobian(momenta, rates), OF_MOTION, OF_MOTION)
+    M = between_ends(p, "M", zone.jacobian(momenta, rates), OF_MOTION, OF_MOTION)
     p.output("M", M, "kg", "derivatives of momenta by rates of phi_a, phi_b, c, s_a, s_b")
     return p
 
@@ -318,7 +321,7 @@ def inertia_tangent() -> Program:
     for name, symbols, pairs, unit, doc in (
             ("D", rates, OF_MOTION, "kg/s", "rates of phi_a, phi_b, c, s_a, s_b"),
             ("K", [zone.middle, zone.angle, zone.l], ANGLES, "SI", "phi_a, phi_b, l")):
-        value = _between_ends(p, name, zone.jacobian(force, symbols), OF_MOTION, pairs)
+        value = between_ends(p, name, zone.jacobian(force, symbols), OF_MOTION, pairs)
         p.output(name, value, unit, f"derivatives of f by {doc}")
     return p
 
@@ -352,7 +355,7 @@ def _damping(p: Program) -> tuple[Zone, np.ndarray]:
 def damping_force() -> Program:
     """Return the kernel of the forces of damping."""
     p = program("damping_force", "forces of damping of a zone")
-    p.output("f", _at_ends(p, "F", _damping(p)[1], *OF_DAMPING), "N m, N", "forces on phi_a, phi_b, s_a, s_b")
+    p.output("f", at_ends(p, "F", _damping(p)[1], *OF_DAMPING), "N m, N", "forces on phi_a, phi_b, s_a, s_b")
     return p
 
 
@@ -364,6 +367,6 @@ def damping_tangent() -> Program:
     for name, symbols, pairs, unit, doc in (
             ("D", zone.motion[0], OF_DAMPING, "N m s, N s", "rates of phi_a, phi_b, s_a, s_b"),
             ("K", zone.coordinates, ANGLES, "N m, N", "phi_a, phi_b, l")):
-        value = _between_ends(p, name, jacobian(p, force, symbols), OF_DAMPING, pairs)
+        value = between_ends(p, name, jacobian(p, force, symbols), OF_DAMPING, pairs)
         p.output(name, value, unit, f"derivatives of f by {doc}")
     return p

@@ -14,7 +14,8 @@ d/|d| + rho b g/(2 T), with the tension T of the chord. At low tension the sag h
 The slope at the end cannot take the place of the chord: it follows the shape of the span by its stiffness alone, so
 that rest would be a saddle of the energy. It stays free.
 
-A sheave that moves along its axis takes the mass of the wrap along, which the kernels in the plane do not have.
+A sheave that moves along its axis takes the mass of the wrap along, which the kernels in the plane do not have. On a
+body that rotates the axis turns with it (turning_wheel.py): the conditions depend on it, and a moment acts on the body.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from ..codegen.family import CouplingFamily
 from ..codegen.program import DirectionalDerivative, Program, jacobian
 from ..elements import ELEMENTS
 from ..spec import x as along
+from . import turning_wheel
 from .span_inertia import FlowingElement
 
 DIM, NAME = 3, "tangent_point"
@@ -39,7 +41,8 @@ def families() -> list[CouplingFamily]:
 
 def build(dim: int) -> list[Program]:
     """Return the kernels of a tangent point."""
-    return [conditions(), motion(), chord(), across()]
+    return [conditions(), motion(), chord(), across(), conditions(turns=True), motion(turns=True),
+            *turning_wheel.kernels()]
 
 
 def _program(kernel: str, doc: str) -> Program:
@@ -47,9 +50,9 @@ def _program(kernel: str, doc: str) -> Program:
 
 
 class _Foot:
-    """Inputs and stages of the conditions; coordinates: x, the chord, and b."""
+    """Inputs and stages of the conditions; coordinates: x, the chord, and b; with an axis that turns the axis, too."""
 
-    def __init__(self, p: Program):
+    def __init__(self, p: Program, turns: bool):
         self.x = p.input("x", DIM, "m", "end of the span less the centre of the sheave")
         self.chord = p.input("chord", DIM, "m", "from there to a point of the span")
         self.b = p.input("b", (), "m", "stress-free length of the chord")
@@ -57,7 +60,7 @@ class _Foot:
         self.weight = p.input("weight", DIM, "N/m", "half the weight of a length")
         self.EA = p.input("EA", (), "N", "axial stiffness")
         self.limit = p.input("limit", (), "N/m", "tension over b below which the sag has its limit")
-        self.coordinates = [*self.x, *self.chord, self.b]
+        self.coordinates = [*self.x, *self.chord, self.b, *(self.axis if turns else ())]
 
     def conditions(self, p: Program) -> np.ndarray:
         """Stages: u, which is e but for its length; a . x, u . x, |x| cos f."""
@@ -79,34 +82,40 @@ class _Foot:
                          p.define("arm", size * fleet)])
 
 
-def conditions() -> Program:
-    """Return the kernel of the conditions and their derivatives."""
-    p = _program("conditions", "conditions of a tangent point, and their derivatives")
-    foot = _Foot(p)
+def conditions(turns: bool = False) -> Program:
+    """Return the kernel of the conditions and their derivatives; turns: by the axis, too."""
+    p = _program("turned_conditions" if turns else "conditions", "conditions of a tangent point, and their derivatives"
+                 + " by the axis, too" * turns)
+    foot = _Foot(p, turns)
     R, f = p.input("R", (), "m", "radius to the axis of the rope"), p.input("f", 3, "N", "multipliers")
     phi = foot.conditions(p)
     p.stage("derivatives")
     J = jacobian(p, phi, foot.coordinates)
     J = np.array([[*p.vector(f"J{k}_x", row[:DIM]), *p.vector(f"J{k}_chord", row[DIM:2 * DIM]),
-                   p.define(f"J{k}_b", row[-1])] for k, row in enumerate(J)], dtype=object)
+                   p.define(f"J{k}_b", row[2 * DIM]), *p.vector(f"J{k}_axis", row[2 * DIM + 1:])]
+                  for k, row in enumerate(J)], dtype=object)
+    by = "x, the chord and b" if not turns else "x, the chord, b and the axis"
     p.output("phi", phi - np.array([0, 0, R]), "m", "a . x, u . x, |x| cos f - R")
-    p.output("J", J, "1", "derivatives by x, the chord and b")
+    p.output("J", J, "1", f"derivatives by {by}")
     K = np.tril(jacobian(p, J.T.dot(f), foot.coordinates))
-    p.output("K", K + np.tril(K, -1).T, "N/m", "derivatives of J' f by x, the chord and b")
+    p.output("K", K + np.tril(K, -1).T, "N/m", f"derivatives of J' f by {by}")
     return p
 
 
-def motion() -> Program:
-    """Return the kernel of the second rates of the conditions at zero accelerations."""
-    p = _program("motion", "second rates of the conditions at zero accelerations")
-    foot = _Foot(p)
+def motion(turns: bool = False) -> Program:
+    """Return the kernel of the second rates of the conditions at zero accelerations; turns: the axis has a rate."""
+    p = _program("turned_motion" if turns else "motion", "second rates of the conditions at zero accelerations")
+    foot = _Foot(p, turns)
     rates = [*p.input("x_rate", DIM, "m/s", "rate of x"), *p.input("chord_rate", DIM, "m/s", "rate of the chord"),
              p.input("b_rate", (), "m/s", "rate of b")]
+    if turns:
+        rates += [*p.input("axis_rate", DIM, "1/s", "rate of the axis")]
     dt = DirectionalDerivative(p, "dt", dict(zip(foot.coordinates, rates, strict=True)))
     phi = foot.conditions(p)
     p.stage("rates")
     rate = [p.define(f"rate_{k + 1}", dt(value)) for k, value in enumerate(phi)]
-    p.output("Q_d", dt.array(np.array(rate)), "m/s^2", "second rates at zero accelerations of x, the chord and b")
+    p.output("Q_d", dt.array(np.array(rate)), "m/s^2", "second rates at zero accelerations of x, the chord"
+             + (" and b" if not turns else ", b and the axis"))
     return p
 
 

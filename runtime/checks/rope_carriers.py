@@ -1,21 +1,14 @@
-"""Check of the bodies that carry the sheaves of ropes in space."""
+"""Which bodies that carry the sheaves and drums of ropes in space may rotate."""
 
 from __future__ import annotations
 
-from ..errors import SceneError
 from ..parts.modal_body import ModalBody
 from ..parts.scene_data import SceneData
 
 
-def check_carriers(scene: SceneData) -> None:
-    """Raise SceneError for a sheave in space on a body that may rotate: the plane of its groove is fixed."""
-    for rope in scene.ropes.values():
-        for item in rope.sheaves if rope.dim == 3 else ():
-            body = item.end.on
-            if body is not None and not _translates(scene, body, set()):
-                raise SceneError(rope.where, f'{item.where} is on body "{body}", which may rotate',
-                                 "hold the sheave at the ground, or guide a rigid body by a prismatic joint with the "
-                                 "ground or with a body that is guided so: sheaves that tilt are not possible yet")
+def may_turn(scene: SceneData, body: str | None) -> bool:
+    """Return whether a body, None for the ground, may rotate, and with it the grooves of wheels on it."""
+    return body is not None and not _translates(scene, body, set())
 
 
 def _translates(scene: SceneData, body: str, known: set[str]) -> bool:

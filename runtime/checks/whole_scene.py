@@ -19,7 +19,6 @@ from ..parts.signal import Signal, signals_of
 from ..parts.validation import LENGTH_TOLERANCE, show
 from .joint_placement import check_drive, check_joint
 from .placement import check_grips
-from .rope_carriers import check_carriers
 from .slide_placement import check_on_cable
 
 
@@ -52,7 +51,6 @@ def check_scene(scene: SceneData) -> None:
     if not scene.cables and not scene.bodies and not scene.ropes:
         raise SceneError("scene", "is empty: there is nothing to simulate", "add a cable or a rigid body")
     check_plane(scene)
-    check_carriers(scene)
     check_grips(scene)
     for joint in scene.joints.values():
         check_joint(scene, joint)

@@ -91,7 +91,7 @@ ax.set(xlabel="x (m)", ylabel="y (m)", aspect="equal")
 # --------
 #
 # With ``element="cable12"`` the rope leaves the plane, and each sheave has an ``axis``. The load below swings out of
-# the plane of the groove. A sheave is on the ground, or on a body that a prismatic joint guides.
+# the plane of the groove. On a body that rotates the groove turns with it.
 
 scene = fu.Scene()
 scene.rigid_body("weight", mass=5.5, inertia=(1, 1, 1), position=(-0.3, -3, 0), velocity=(0, 0.0131, 0))

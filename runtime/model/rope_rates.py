@@ -28,7 +28,7 @@ from .model import Model
 from .rope_states import moved
 from .ropes import AnchorModel, DrumCoordinates, DrumModel, RopeModel, SheaveModel, rope_model
 from .span_coordinates import SpanCoordinates
-from .states import attachment_points, body_state, spatial
+from .states import attachment_axes, attachment_points, body_state, spatial
 
 RATE_STEP = 1e-5
 """Time by which a moving route in space is differenced, s."""
@@ -52,10 +52,14 @@ def _follow_in_space(model: Model, rope: RopeModel) -> None:
     steps = RATE_STEP * np.array([-1.0, 1.0])[:, None] * model.v
     held = [attachment if attachment is not None else AttachmentModel(node=node)
             for _, attachment, node in _items(model, rope)]
-    places = [attachment_points(model, each, moved(model, model.q, steps)) for each in held]
+    beside = moved(model, model.q, steps)
+    places = [attachment_points(model, each, beside) for each in held]
+    grooves = {wheel.name: attachment_axes(model, wheel.attachments[0], beside)[..., :2]
+               for wheel, _, _ in _items(model, rope) if wheel is not None and wheel.tilts}
     try:
-        before, after = (rope_model(rope.part, drawn_anew(rope.part, rope.route, centres), rope.first).q
-                         for centres in np.stack(places, axis=1))
+        before, after = (rope_model(rope.part, drawn_anew(rope.part, rope.route, centres, {
+            name: both[k] for name, both in grooves.items()}), rope.first).q
+            for k, centres in enumerate(np.stack(places, axis=1)))
     except ValueError as error:
         raise SceneError(rope.part.where, f"the rates with which it starts are not known: {error.args[0]}",
                          f'give "{rope.part.name}.coordinate_rates" in the state to start from') from None

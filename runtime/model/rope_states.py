@@ -9,9 +9,9 @@ from ..parts.rope import Rope
 from ..parts.rope_drawing import drawn_anew
 from ..parts.rope_route import DrawnArc, DrawnRoute
 from .model import Model
-from .ropes import AnchorModel, RopeModel, SheaveModel
+from .ropes import AnchorModel, DrumModel, RopeModel, SheaveModel
 from .span_coordinates import PER_NODE, SpanCoordinates, cubic_shapes
-from .states import attachment_points, spatial
+from .states import attachment_axes, attachment_points, spatial
 from .taut_ropes import TautPointModel, points_of_rope
 
 POINTS_OF_ELEMENT = 4
@@ -158,7 +158,7 @@ def _span_points(span: SpanCoordinates, q: np.ndarray) -> tuple[np.ndarray, np.n
 def _wrap_points(model: Model, sheave: SheaveModel, q: np.ndarray, n: int) -> np.ndarray:
     """Return the inner ones of n points (T, n - 2, dim) at equal angles along a wrap."""
     centre = attachment_points(model, sheave.attachments[0], q)[:, : model.dim]
-    on, off = ((q[:, node : node + model.dim] - centre) @ sheave.plane for node in sheave.nodes)
+    on, off = (in_groove(model, sheave, q, q[:, node : node + model.dim] - centre) for node in sheave.nodes)
     slopes = (q[:, node + model.dim : node + 2 * model.dim] for node in sheave.nodes)
     stretch = np.mean([np.linalg.norm(slope, axis=1) for slope in slopes], axis=0)
     length = stretch * (q[:, sheave.s[-1]] - q[:, sheave.s[0]] + sheave.closing)
@@ -167,9 +167,20 @@ def _wrap_points(model: Model, sheave: SheaveModel, q: np.ndarray, n: int) -> np
     angle = (np.arctan2(on[:, 1], on[:, 0])[:, None]
              + sheave.sense * wrap[:, None] * np.linspace(0.0, 1.0, n)[1:-1])
     radius = np.where(length > stretch * sheave.no_length, sheave.radius, np.linalg.norm(on, axis=1))  # or it has left
-    found: np.ndarray = centre[:, None] + radius[:, None, None] * (
-        np.stack([np.cos(angle), np.sin(angle)], axis=-1) @ sheave.plane.T)
+    around = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    if sheave.tilts:
+        around = np.einsum("tdk,tnk->tnd", attachment_axes(model, sheave.attachments[0], q)[..., :2], around)
+    else:
+        around = around @ sheave.plane.T
+    found: np.ndarray = centre[:, None] + radius[:, None, None] * around
     return found
+
+
+def in_groove(model: Model, wheel: SheaveModel | DrumModel, q: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """Return vectors (T, dim) in the plane of the groove of a wheel in configurations (T, n_q), (T, 2)."""
+    if not wheel.tilts:
+        return np.asarray(vectors @ wheel.plane)
+    return np.einsum("td,tdk->tk", vectors, attachment_axes(model, wheel.attachments[0], q)[..., :2])
 
 
 def end_forces(model: Model, rope: RopeModel, reaction: np.ndarray, of_anchors: dict[int, np.ndarray],

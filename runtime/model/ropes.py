@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..checks.rope_carriers import may_turn
 from ..parts.load import Force
 from ..parts.locations import grips
 from ..parts.rope import Rope
@@ -286,7 +287,8 @@ class SpanModel(AlongSpan, CouplingModel):
 class SheaveModel(CouplingModel):
     """A sheave between two spans: fu_sheave of the engine.
 
-    plane: (dim, 2), unit vectors of the plane of the groove; foot: in space the kernel of tangent points; weight:
+    plane: (dim, 2), unit vectors of the plane of the groove; tilts: whether it turns with the body, in whose axes they
+    are then, and g along the ground's; foot: in space the kernel of tangent points; weight:
     half that of a length, N/m, by which chords sag; limit: tension over the length of a chord below which the sag has
     its limit, N/m.
     """
@@ -311,6 +313,7 @@ class SheaveModel(CouplingModel):
     torque_signal: int
     torque: float
     plane: np.ndarray
+    tilts: bool
     weight: np.ndarray
     limit: float
     span_reach: tuple[int, int]
@@ -491,15 +494,17 @@ def _sheaves(builder: ModelBuilder) -> Iterator[SheaveModel]:
         for k, (item, arc, beside) in enumerate(of_sheaves):
             before, after = (rope.spans[each] for each in beside)
             scale = [rope.mass_of_element(each) for each in beside for _ in range(rope.part.dim)]
-            centre, weight = _centre_of(builder, item), rope.rho * gravity / 2
+            weight, tilts = rope.rho * gravity / 2, rope.part.dim == 3 and may_turn(builder.scene, item.end.on)
+            plane = _on_body(builder.scene, item.end.on, arc.groove) if tilts else arc.groove
+            centre = builder.attachment(item.end, _axes_of(plane)) if tilts else _centre_of(builder, item)
             if rope.part.may_leave(item):
                 scale += scale[:1] * CONDITIONS_BESIDE
             sheave = SheaveModel(type="sheave", name=item.name, kernel="planar_sheave", attachments=(centre,),
                               before=before, after=after, coordinates=rope.sheaves[k], radius=arc.radius,
                               tangent_radius=(arc.tangent_radius,) * 2,
                               sense=float(arc.sense), rho=rope.rho, tau=rope.part.material.damping_time,
-                              g=_in_groove(arc.groove, gravity), A=rope.stiffness[:2], scale=scale,
-                              plane=arc.groove, weight=weight[: 3 * (rope.part.dim == 3)],
+                              g=gravity if tilts else _in_groove(plane, gravity), A=rope.stiffness[:2], scale=scale,
+                              plane=plane, tilts=tilts, weight=weight[: 3 * (rope.part.dim == 3)],
                               limit=float(np.linalg.norm(weight)) / MAX_SAG + NO_TENSION * rope.stiffness[0],
                               span_reach=(_reach(rope, beside[0], arc), _reach(rope, beside[1], arc)),
                               n_multipliers=len(scale), has_inertia=True, **_motion_of(builder, item),
@@ -522,6 +527,16 @@ def _motion_of(builder: ModelBuilder, wheel: Sheave | Drum) -> dict[str, Any]:
     """Return the entries of a sheave or a drum about its axis: inertia, bearing, and the torque of its drive."""
     number, factor = (-1, 0.0) if wheel.torque is None else builder.signals.scale(wheel.torque)
     return {"inertia": wheel.inertia, "damping": wheel.damping, "torque_signal": number, "torque": factor}
+
+
+def _axes_of(plane: np.ndarray) -> np.ndarray:
+    """Return (3, 3): the vectors of the plane of a groove, and its axis, as columns."""
+    return np.column_stack([plane, np.cross(*plane.T)])
+
+
+def _on_body(scene: SceneData, body: str | None, plane: np.ndarray) -> np.ndarray:
+    """Return the plane of a groove as drawn in the axes of the body that carries it."""
+    return plane if body is None else scene.bodies[body].axes.T @ plane
 
 
 def _in_groove(plane: np.ndarray, vector: np.ndarray) -> np.ndarray:
@@ -566,6 +581,7 @@ class DrumModel(CouplingModel):
     torque_signal: int
     torque: float
     ends_run_by: str
+    tilts: bool = False
     n_cells: int = CELLS
     n_numbers: int = CELLS + 1
 

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ..base.rotations import conjugate, cross, rotate
+from ..base.rotations import conjugate, cross, product, rotate
 from ..parts.locations import ends_of, joined, node_of
 from ..parts.scene_data import SceneData
 from ..parts.support import Support, Tie
@@ -148,6 +148,19 @@ def attachment_points(model: Model, attachment: AttachmentModel, q: np.ndarray) 
     if attachment.node >= 0:
         return spatial(q[:, attachment.node : attachment.node + model.dim])
     return np.broadcast_to(np.array(attachment.u), (len(q), 3))
+
+
+def attachment_axes(model: Model, attachment: AttachmentModel, q: np.ndarray) -> np.ndarray:
+    """Return (time, 3, 3): the axes of an attachment to a body in space, by columns."""
+    body = model.bodies[attachment.body]
+    state = body_state(model, body, q)
+    orientation = state["orientation"]
+    if attachment.modal is not None:  # the section has turned by twice arctan(theta/2)
+        theta = modal_state(model, body, state, q)["modal_coordinates"] @ attachment.modal[2]
+        half = np.concatenate([np.ones((len(q), 1)), theta / 2], axis=1)
+        orientation = product(orientation, half / np.linalg.norm(half, axis=1, keepdims=True))
+    columns = [rotate(orientation, axis) for axis in attachment.axes.T]
+    return np.stack(columns, axis=-1)
 
 
 def element_coordinates(cable: CableModel, values: np.ndarray, element: np.ndarray | None = None) -> np.ndarray:

@@ -78,8 +78,8 @@ class Rope(Part):
         an anchor with which it is that tension at rest, without friction, loads and fluids, among the bodies as drawn
     length: stress-free length of the whole rope with what is wound on drums, m; without this at most the drawn length.
         The stretch is uniform as drawn
-    element: "cable8p" in the plane z = 0; "cable12" in space, with axes of sheaves in any direction. There a body with
-        a sheave must not rotate: a prismatic joint guides it; and drums are not possible yet
+    element: "cable8p" in the plane z = 0; "cable12" in space, with axes of sheaves in any direction, which turn with
+        the bodies that they are on. There drums are not possible yet
     mass: False for a rope without mass and bending stiffness, in the plane: straight between the sheaves, with one
         tension from one end, drum or sheave with friction to the next, and slack where it would push. A sheave with
         friction holds the rope up to the limit e^(mu theta), where the run ends with a RopeLeftError; there and on

@@ -95,13 +95,17 @@ def span_at(rope: Roped, route: DrawnRoute, s: float) -> int:
     raise ValueError(f"must lie within a span, off the ends and what is wound, got {show(s, 'm')}", remedy)
 
 
-def drawn_anew(rope: Roped, route: DrawnRoute, centres: np.ndarray) -> DrawnRoute:
-    """Return a drawn route of a rope with its items at other places (n, dim), m: the sides of sheaves, distances of
-    tangent points and stress-free length are kept. Raises ValueError(cause, remedy) for an impossible one.
+def drawn_anew(rope: Roped, route: DrawnRoute, centres: np.ndarray,
+               grooves: Mapping[str, np.ndarray] | None = None) -> DrawnRoute:
+    """Return a drawn route of a rope with its items at other places (n, dim), m, and wheels with other planes of their
+    grooves (3, 2) by name: the sides of sheaves, distances of tangent points and stress-free length are kept. Raises
+    ValueError(cause, remedy) for an impossible one.
     """
     arcs = {arc.name: arc for arc in route.sheaves}
     points = [replace(point, sense=arcs[point.name].sense, offset=arcs[point.name].tangent_radius - point.radius)
               if point.name in arcs else point for point in _points(rope, centres)]
+    points = [replace(point, groove=grooves[point.name]) if grooves and point.name in grooves else point
+              for point in points]
     found = _along(rope, points) if rope.mass else _without_mass(rope, points)
     return replace(found, stretch=found.length / route.free_length)
 

@@ -170,7 +170,7 @@ class Sheave(Wheel):
         counter-clockwise
     angle, velocity: of its rotation over time, prescribed, rad or rad/s, relative to the body that it is on
     damping: of its bearing, N m s
-    axis: its direction, of a rope in space; by default z
+    axis: its direction as drawn, of a rope in space, which turns with the body that it is on; by default z
     friction: between rope and groove, a coefficient or a `Friction`, by default "regularised"; without it none
     zones: number of parts of the wrap between which friction acts, and over each of which the tension is constant
     turns: whole turns of the rope around it, in addition to the wrap angle between both spans

@@ -265,7 +265,9 @@ CEILINGS = {
     "planar_taut_rope": {
         "straight": 43, "straight_tangent": 135, "free_length": 12, "tension": 24, "tension_tangent": 70, "energy": 13
     },
-    "tangent_point": {"conditions": 1678, "motion": 310, "chord": 202, "across": 27},
+    "tangent_point": {"conditions": 1678, "motion": 310, "chord": 202, "across": 27, "turned_conditions": 1951,
+                      "turned_motion": 354, "turned_acc": 4, "wrap_energy": 93, "wrap_inertia": 616, "wrap_mass": 183,
+                      "wrap_weight": 63, "laid_weight": 139, "ring": 22},
     "planar_sheave": {
         "tangent_point": 27, "tangent_point_motion": 26, "angle": 121, "energy": 13, "weight": 21, "force": 85,
         "tangent": 204, "kinetic_energy": 60, "inertia": 213, "mass_matrix": 162, "inertia_tangent": 1099,

@@ -109,36 +109,6 @@ def test_what_is_refused():
                 element="cable8p")
 
 
-def test_a_body_with_a_sheave_must_not_rotate():
-    def carried(*joints):
-        scene = fu.Scene()
-        for name in ("block", "bridge"):
-            scene.rigid_body(name, position=(0, 0, 0), **BODY)
-        rope_of(ENDS[0], fu.Sheave("top", at="block", radius=0.3), ENDS[1], scene=scene)
-        for kind, *ends in joints:
-            scene.joint(kind, *ends, axis=(1, 0, 0))
-        return scene.run(1e-3, output_step=1e-3, progress=False)
-
-    ground = (0.0, 0.0, 0.0)
-    for joints in ((), [("revolute", ground, "block")], [("prismatic", "bridge", "block")]):
-        with refused('rope "hoist": sheave "top" is on body "block", which may rotate; hold the sheave at the ground, '
-                     "or guide a rigid body by a prismatic joint with the ground or with a body that is guided so: "
-                     "sheaves that tilt are not possible yet"):
-            carried(*joints)
-    carried(("prismatic", ground, "block"))
-    carried(("prismatic", "bridge", "block"), ("prismatic", "bridge", ground))
-
-
-def test_a_modal_body_turns_a_sheave_where_it_bends():
-    scene = fu.Scene()
-    scene.modal_body("beam", start=(-1, 0, 0), end=(1, 0, 0), element="beam24", elements=4, modes=2,
-                     section=fu.Rectangle(height=0.05, width=0.05), material=GIVEN["material"])
-    scene.joint("weld", (-1.0, 0.0, 0.0), "beam")
-    rope_of(ENDS[0], fu.Sheave("top", at="beam", radius=0.3), ENDS[1], scene=scene)
-    with pytest.raises(fu.SceneError, match='sheave "top" is on body "beam", which may rotate; hold'):
-        scene.run(1e-3, output_step=1e-3, progress=False)
-
-
 def test_drums_are_planar():
     winch = fu.Drum("winch", at=(-0.3, -1, 0), radius=0.2, side="right", length_in_store=3.0)
     with refused('rope "hoist": drum "winch" winds it in the plane z = 0, but its element is "cable12", of ropes in '

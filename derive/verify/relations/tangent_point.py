@@ -13,17 +13,24 @@ from ...elements import ELEMENTS
 from ..methods import Relation
 from ..references.element import Shape
 from .paths import along, of, root
+from .turning_wheel import turning_wheel
 
 INPUTS = (("x", 3), ("chord", 3), ("b", 1))
 """Names and sizes of the coordinates of the conditions."""
+TURNED = (*INPUTS, ("axis", 3))
+"""The same with an axis that turns."""
 
 
 def tangent_point(family: CouplingFamily) -> list[Relation]:
     """Return the relations of the kernels."""
-    return [*_of_conditions(), *_of_chord(), *_of_motion_across()]
+    return [*_of_conditions("", INPUTS), *_of_conditions("turned_", TURNED), *_of_chord(), *_of_motion_across(),
+            *turning_wheel()]
 
 
-def _of_conditions() -> list[Relation]:
+def _of_conditions(kind: str, inputs: tuple[tuple[str, int], ...]) -> list[Relation]:
+    """Return the relations of conditions and their motion; kind: "turned_" with derivatives by the axis."""
+    conditions, n = f"{kind}conditions", sum(size for _, size in inputs)
+
     def geodesic(s):
         axis, x = s["axis"], s["x"]
         length, b = mpmath.sqrt(s["chord"].dot(s["chord"])), s["b"].item()
@@ -34,16 +41,16 @@ def _of_conditions() -> list[Relation]:
         return [axis.dot(x), along.dot(x), arm - s["R"].item()]
 
     def forces(k, s):
-        return k("conditions", s)["J"].T.dot(s["f"])
+        return k(conditions, s)["J"].T.dot(s["f"])
 
     def drifting(k, s, t, j):
-        return k("conditions", s, **{name: s[name] + t * s[f"{name}_rate"] for name, _ in INPUTS})["phi"]
+        return k(conditions, s, **{name: s[name] + t * s[f"{name}_rate"] for name, _ in inputs})["phi"]
 
-    return [Relation("conditions", "phi", "a . x, u . x, |x| times the part of e across a, less R", 0,
-                     root(geodesic)),
-            Relation("conditions", "J", "dphi by x, the chord and b", 1, along(of("conditions", "phi"), INPUTS), 7),
-            Relation("conditions", "K", "d(J' f) by x, the chord and b", 1, along(forces, INPUTS), 7),
-            Relation("motion", "Q_d", "d²phi/dt² at zero accelerations", 2, drifting)]
+    by = "x, the chord and b" + " and the axis" * (n > 7)
+    return [Relation(conditions, "phi", "a . x, u . x, |x| times the part of e across a, less R", 0, root(geodesic)),
+            Relation(conditions, "J", f"dphi by {by}", 1, along(of(conditions, "phi"), inputs), n),
+            Relation(conditions, "K", f"d(J' f) by {by}", 1, along(forces, inputs), n),
+            Relation(f"{kind}motion", "Q_d", "d²phi/dt² at zero accelerations", 2, drifting)]
 
 
 def _of_chord() -> list[Relation]:

@@ -13,7 +13,13 @@ from .shapes import rotation
 
 def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) -> State:
     """Return a tangent point not far from the groove, with a fleet angle, and a point of a bent element."""
-    found: State = {name: random.normal(size=3) for name in ("x_rate", "chord_rate", "f")}
+    found: State = {name: random.normal(size=3) for name in (
+        "x_rate", "chord_rate", "f", "axis_rate", "omega", "c_rate", "c_acc", "x_acc", "gravity")}
+    found |= {name: random.normal(size=2) for name in ("omega_acc", "phi_rate", "phi_acc", "s_acc")}
+    angle = random.uniform(0.7, 1.5)
+    found |= {"phi": random.uniform(-3, 3) + np.array([0.0, angle]), "spin": np.float64(random.normal()),
+              "growth": np.float64(random.normal()), "inertia": random.uniform(0.5, 1.5, 2),
+              "laid": np.float64(random.uniform(0.5, 1.5))}
     Q = rotation(random, 3)  # columns: from the centre, along the groove, along the axis
     R, length = random.uniform(0.6, 0.9), random.uniform(0.7, 1.1)
     direction = Q @ np.array([random.uniform(0.1, 0.2), 1.0, random.uniform(0.2, 0.4)])

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...base.rotations import product, quaternion, turned_by
+from ...base.rotations import product, quaternion, rotate, turned_by
 from ...model.rope_states import POINTS_OF_ELEMENT, as_drawn, points_of_spans
 from ...parts.rope import Rope
 from ...parts.rope_items import Drum, Sheave
@@ -156,12 +156,13 @@ def _wrap(frames: Frames, sheave: Sheave, arc: DrawnArc, points: np.ndarray, s: 
     """Return the stations of a wrap, without its tangent points; arguments and results as of `_span`."""
     centre = place(frames, sheave.end)
     groove, sense = np.eye(3)[:, :2] if len(arc.groove) == 2 else arc.groove, arc.sense
-    on, off = (points[:, 0] - centre) @ groove, (points[:, -1] - centre) @ groove
+    turned = _turned(frames, sheave, groove)
+    on, off = (np.einsum("td,tdk->tk", points[:, k] - centre, turned) for k in (0, -1))
     part = sense * np.arctan2(on[:, 0] * off[:, 1] - on[:, 1] * off[:, 0], np.sum(on * off, axis=1))
     wrap = part + 2 * np.pi * np.round((frames.value(f"{sheave.name}.wrap_angle") - part) / (2 * np.pi))
     share = np.linspace(0, 1, count)[1:-1]
     angle = np.arctan2(on[:, 1], on[:, 0])[:, None] + sense * wrap[:, None] * share
-    around = np.stack([np.cos(angle), np.sin(angle)], axis=-1) @ groove.T
+    around = np.einsum("tnk,tdk->tnd", np.stack([np.cos(angle), np.sin(angle)], axis=-1), turned)
     given = np.linspace(0, 1, s.shape[1])
     touches = frames.value(f"{sheave.name}.wrap_angle") > 0
     length = np.where(touches[:, None], np.diff(s), 1.0)  # a wrap without contact has neither length nor strain
@@ -173,6 +174,14 @@ def _wrap(frames: Frames, sheave: Sheave, arc: DrawnArc, points: np.ndarray, s: 
 
     radius = np.where(touches, sheave.radius, np.linalg.norm(on, axis=1))
     return centre[:, None] + radius[:, None, None] * around, between(s), between(middle)
+
+
+def _turned(frames: Frames, wheel: Sheave | Drum, groove: np.ndarray) -> np.ndarray:
+    """Return (T, 3, 2): the plane of a groove as drawn, turned with the body that the wheel is on."""
+    if wheel.end.on is None or np.array_equal(groove, np.eye(3)[:, :2]) and frames.scene.dim == 2:
+        return np.broadcast_to(groove, (len(frames.time), 3, 2))
+    orientation, body = frames.value(f"{wheel.end.on}.orientation"), frames.scene.bodies[wheel.end.on]
+    return np.stack([rotate(orientation, body.axes.T @ axis) for axis in groove.T], axis=-1)
 
 
 def wheel_shape(frames: Frames, refs: Frames, rope: Rope, sheave: Sheave | Drum) -> BodyShape:
@@ -188,10 +197,13 @@ def wheel_shape(frames: Frames, refs: Frames, rope: Rope, sheave: Sheave | Drum)
     turn = np.zeros((times, 3))
     turn[:, 2] = frames.value(f"{sheave.name}.angle")
     orientation = turned_by(turn)
-    if rope.dim == 3 and isinstance(sheave, Sheave):  # there carriers do not rotate
+    if rope.dim == 3:
         groove = groove_of(sheave.axis)
-        orientation = product(quaternion(np.column_stack([groove, np.cross(*groove.T)])), orientation)
-    elif sheave.end.on is not None:
+        drawn = np.column_stack([groove, np.cross(*groove.T)])
+        if sheave.end.on is not None:
+            drawn = frames.scene.bodies[sheave.end.on].axes.T @ drawn
+        orientation = product(quaternion(drawn), orientation)
+    if sheave.end.on is not None:
         orientation = product(frames.value(f"{sheave.end.on}.orientation"), orientation)
     found = {label: (unit, frames.value(f"{sheave.name}.{key}")) for key, (label, unit) in WHEEL_RESULTS.items()
              if frames.has(f"{sheave.name}.{key}") and frames.section_forces is not no_forces}

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.sparse import csc_array, lil_array
 
 from ...model.model import Model
-from ...model.rope_states import moved
+from ...model.rope_states import in_groove, moved
 from ...model.ropes import SheaveModel
 from ...model.states import attachment_points
 
@@ -71,5 +71,5 @@ def _rows(model: Model, sheave: SheaveModel, q: np.ndarray) -> tuple[np.ndarray,
 def _angles(model: Model, sheave: SheaveModel, q: np.ndarray) -> np.ndarray:
     """Return the angles (n, 2) of both tangent points about the centre in configurations (n, n_q), rad."""
     centre = attachment_points(model, sheave.attachments[0], q)[:, : model.dim]
-    places = [(q[:, node : node + model.dim] - centre) @ sheave.plane for node in sheave.nodes]
+    places = [in_groove(model, sheave, q, q[:, node : node + model.dim] - centre) for node in sheave.nodes]
     return np.stack([np.arctan2(place[:, 1], place[:, 0]) for place in places], axis=1)

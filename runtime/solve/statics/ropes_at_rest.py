@@ -15,6 +15,7 @@ from ...engine import Engine, outputs_by_name
 from ...errors import SceneError
 from ...model.build import build
 from ...model.model import Model
+from ...model.rope_states import in_groove
 from ...model.ropes import RopeModel
 from ...model.states import attachment_points
 from ...parts.attachment import Attachment
@@ -72,9 +73,8 @@ def off_sheaves(model: Model, engine: Engine) -> str:
             continue
         centre = attachment_points(model, sheave.attachments[0], q[None])[0, : model.dim]
         dim = model.dim
-        folded = any(sheave.sense * np.linalg.det([(q[at : at + dim] - centre) @ sheave.plane,
-                                                   q[at + dim : at + 2 * dim] @ sheave.plane]) <= 0
-                     for at in sheave.nodes)  # its slope is tangent, but against the sense of travel
+        folded = any(sheave.sense * np.linalg.det([in_groove(model, sheave, q[None], vector[None])[0] for vector in (
+            q[at : at + dim] - centre, q[at + dim : at + 2 * dim])]) <= 0 for at in sheave.nodes)  # its slope is tangent, but against the sense of travel
         if folded or numbers["wrap_angle"][k] < sheave.least_wrap:
             return f'the rope leaves sheave "{sheave.name}"'
         if min(numbers[name][k] for name in ("normal_force", "tension_on", "tension_off")) < 0.0:

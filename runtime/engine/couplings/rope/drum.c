@@ -137,13 +137,13 @@ static void look(const fu_model *model, const fu_coupling *coupling, const fu_st
 
 /* --- forces by y ------------------------------------------------------------------------------------------------ */
 
-/* Computes the dofs of a drum and the changes of y by them, with these of the centre; returns their number. */
-static int columns_of(const fu_drum *drum, const view *at, const double *of_centre, fu_wheel_column *out)
+/* Computes the dofs of a drum and the changes of y by them, with these moves of the centre; returns their number. */
+static int columns_of(const fu_drum *drum, const view *at, const fu_centre_moves *moves, fu_wheel_column *out)
 {
     int n = 0;
     for (; n < NODE; ++n) out[n] = (fu_wheel_column){drum->node + n, n, 1, {1.0}};
     out[n++] = (fu_wheel_column){drum->s, LENGTH, 1, {drum->direction}};
-    return n + fu_wheel_columns(&drum->wheel, &at->wheel, of_centre, CENTRE, out + n);
+    return n + fu_wheel_columns(&drum->wheel, &at->wheel, moves, CENTRE, out + n);
 }
 
 /* Adds forces by y to those on the dofs. */
@@ -157,15 +157,15 @@ static void scatter(const fu_drum *drum, const view *at, const double *y, double
 static void store_forces(const fu_drum *drum, const view *at, double F[STORE])
 {
     const fu_wheel *wheel = &drum->wheel;
-    wheel->kernel->store(wheel->A, wheel->rho, wheel->radius, wheel->g, at->u, at->wheel.centre.p, at->wheel.turn_rate,
-                         at->wheel.centre.v, at->u_rate, at->wheel.turn_acc, at->wheel.c_acc, at->slope, at->winds,
-                         at->wound, F);
+    wheel->kernel->store(wheel->A, wheel->rho, wheel->radius, at->wheel.g, at->u, at->wheel.centre.p,
+                         at->wheel.turn_rate, at->wheel.centre.v, at->u_rate, at->wheel.turn_acc, at->wheel.c_acc,
+                         at->slope, at->winds, at->wound, F);
 }
 
 static void store_derivatives(const fu_drum *drum, const view *at, double *D, double *K)
 {
     const fu_wheel *wheel = &drum->wheel;
-    wheel->kernel->store_tangent(wheel->A, wheel->rho, wheel->radius, wheel->g, at->u, at->wheel.centre.p,
+    wheel->kernel->store_tangent(wheel->A, wheel->rho, wheel->radius, at->wheel.g, at->u, at->wheel.centre.p,
                                  at->wheel.turn_rate, at->wheel.centre.v, at->u_rate, at->wheel.turn_acc,
                                  at->wheel.c_acc, at->slope, at->winds, at->wound, D, K);
 }
@@ -176,7 +176,7 @@ static double laying(const fu_drum *drum, const view *at, double F[DIM])
 {
     const fu_wheel *wheel = &drum->wheel;
     double V;
-    wheel->kernel->laying(wheel->rho, wheel->g, winding_sense(drum), wheel->radius, drum->stretch, at->x, &V, F);
+    wheel->kernel->laying(wheel->rho, at->wheel.g, winding_sense(drum), wheel->radius, drum->stretch, at->x, &V, F);
     return V;
 }
 
@@ -269,9 +269,11 @@ static void inertial_force(const fu_model *model, const fu_coupling *coupling, c
     const fu_state state = {.q = (double *)q};
     double M[Y][Y], acceleration[Y] = {0.0}, y[Y] = {0.0};
     fu_wheel_column columns[COLUMNS];
+    fu_centre_moves moves;
     view at;
     look(model, coupling, &state, 0, &at);
-    const int n = columns_of(drum, &at, at.wheel.centre.P, columns);
+    fu_wheel_moves(model, &at.wheel, &moves);
+    const int n = columns_of(drum, &at, &moves, columns);
     for (int j = 0; j < n; ++j)
         for (int k = 0; k < columns[j].n; ++k)
             acceleration[columns[j].row + k] += columns[j].value[k] * a[columns[j].dof];
@@ -286,10 +288,12 @@ static void mass_matrix(const fu_model *model, const fu_coupling *coupling, cons
     const fu_state state = {.q = (double *)q};
     double M[Y][Y];
     fu_wheel_column columns[COLUMNS];
+    fu_centre_moves moves;
     view at;
     look(model, coupling, &state, 0, &at);
     mass_by_y(drum_of(coupling), &at, scale, M);
-    const int n = columns_of(drum_of(coupling), &at, at.wheel.centre.P, columns);
+    fu_wheel_moves(model, &at.wheel, &moves);
+    const int n = columns_of(drum_of(coupling), &at, &moves, columns);
     fu_wheel_add_matrix(model, n, columns, columns, Y, M[0], system);
 }
 
@@ -303,7 +307,7 @@ static void energies(const fu_model *model, const fu_coupling *coupling, const d
     double laid[DIM];
     view at;
     look(model, coupling, &state, 0, &at);
-    wheel->kernel->store_energy(wheel->rho, wheel->radius, wheel->g, at.u, at.wheel.centre.p, at.wheel.turn_rate,
+    wheel->kernel->store_energy(wheel->rho, wheel->radius, at.wheel.g, at.u, at.wheel.centre.p, at.wheel.turn_rate,
                                 at.wheel.centre.v, T, V);
     *V += laying(drum, &at, laid);
     *T += 0.5 * wheel->inertia * at.wheel.turn_rate * at.wheel.turn_rate;
@@ -378,8 +382,8 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     const fu_drum *drum = drum_of(coupling);
     const fu_weights w = equations->weights;
     const double *multipliers = equations->next->forces + coupling->force;
-    double D[STORE * STORE], K[STORE * (DIM + 1 + DIM)], D_y[Y][Y], K_y[Y][Y], y[Y],
-        by_psi[DIM * FU_ATTACHMENT_COORDINATES];
+    double D[STORE * STORE], K[STORE * (DIM + 1 + DIM)], D_y[Y][Y], K_y[Y][Y], y[Y];
+    fu_centre_moves moves, by_psi;
     fu_wheel_column columns[COLUMNS], turned[COLUMNS];
     view at;
     conditions of;
@@ -395,9 +399,10 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
         for (int j = 0; j < DIM + 1 + DIM; ++j)
             K_y[of_store[i]][of_place[j]] += w.stiffness * K[i * (DIM + 1 + DIM) + j];
     }
-    fu_wheel_by_psi(model, &drum->wheel, &at.wheel, equations->psi, by_psi);
-    const int n = columns_of(drum, &at, at.wheel.centre.P, columns);
-    columns_of(drum, &at, by_psi, turned);
+    fu_wheel_by_psi(model, &drum->wheel, &at.wheel, equations->psi, &by_psi);
+    fu_wheel_moves(model, &at.wheel, &moves);
+    const int n = columns_of(drum, &at, &moves, columns);
+    columns_of(drum, &at, &by_psi, turned);
     add_rows(model, coupling, &of, n, columns, turned, w.inertia, system);
     fu_wheel_add_matrix(model, n, columns, turned, Y, K_y[0], system);
     if (w.rate != 0.0) fu_wheel_add_matrix(model, n, columns, columns, Y, D_y[0], system);
@@ -415,6 +420,7 @@ static void rows(const fu_model *model, const fu_coupling *coupling, const fu_st
     fu_rows *out = &work->rows[coupling->row];
     double bias[CONDITIONS];
     fu_wheel_column columns[COLUMNS];
+    fu_centre_moves moves;
     view at;
     conditions of;
     look(model, coupling, state, 0, &at);
@@ -424,7 +430,8 @@ static void rows(const fu_model *model, const fu_coupling *coupling, const fu_st
     wheel->kernel->tangent_point_motion(at.x, at.x_rate, at.slope_rate, bias);
     wheel->kernel->winding_motion(winding_sense(drum), wheel->radius, at.x, at.slope, at.winds, at.wound, at.x_rate,
                                   at.slope_rate, at.u_rate, bias + WINDING);
-    out->n = columns_of(drum, &at, at.wheel.centre.P, columns);
+    fu_wheel_moves(model, &at.wheel, &moves);
+    out->n = columns_of(drum, &at, &moves, columns);
     for (int j = 0; j < out->n; ++j) out->at[j] = columns[j].dof;
     for (int r = 0; r < CONDITIONS; ++r) {
         out->rate[r] = 0.0;

@@ -27,11 +27,13 @@ static void mass_matrix(const fu_model *model, const fu_coupling *coupling, cons
     const fu_state state = {.q = (double *)q, .v = (double *)model->zero};
     double K[Y][Y];
     fu_wheel_column columns[COLUMNS];
+    fu_centre_moves moves;
     fu_sheave_state at;
     fu_sheave_at(model, sheave, &state, 0, &at);
     memset(K, 0, sizeof K);
     fu_sheave_add_mass(sheave, &at, scale, K);
-    const int n = fu_sheave_columns(sheave, &at, at.wheel.centre.P, columns);
+    fu_wheel_moves(model, &at.wheel, &moves);
+    const int n = fu_sheave_columns(sheave, &at, &moves, columns);
     fu_wheel_add_matrix(model, n, columns, columns, Y, K[0], system);
 }
 
@@ -49,6 +51,7 @@ static double kinetic_energy(const fu_model *model, const fu_coupling *coupling,
         fu_sheave_energies_across(sheave, &at, &T, &V);
         total += T;
     }
+    if (is_turning(sheave)) return total + fu_turning_wrap_energy(sheave, &at);
     for (int j = 0; j < sheave->n_zones; ++j) {
         const fu_zone of = fu_zone_at(&at, j);
         wheel->kernel->kinetic_energy(wheel->rho, wheel->radius, of.phi, of.l, of.phi_rate, at.wheel.c_rate, of.s_rate,
@@ -68,7 +71,7 @@ static double potential_energy(const fu_model *model, const fu_coupling *couplin
     fu_sheave_at(model, sheave, &state, 0, &at);
     for (int j = 0; j < sheave->n_zones; ++j) {
         const fu_zone of = fu_zone_at(&at, j);
-        wheel->kernel->weight(wheel->rho, wheel->g, wheel->radius, of.phi, at.wheel.c, of.l, &V);
+        wheel->kernel->weight(wheel->rho, at.wheel.g, wheel->radius, of.phi, at.wheel.c, of.l, &V);
         total += V;
     }
     if (is_in_space(sheave)) {
@@ -123,7 +126,8 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     const fu_sheave *sheave = sheave_of(coupling);
     const fu_weights w = equations->weights;
     const fu_state *next = equations->next;
-    double K[Y][Y], D[Y][Y], y[Y], phi[MAX_CONDITIONS], by_psi[SPACE * FU_ATTACHMENT_COORDINATES];
+    double K[Y][Y], D[Y][Y], y[Y], phi[MAX_CONDITIONS];
+    fu_centre_moves moves, by_psi;
     fu_wheel_column columns[COLUMNS], turned[COLUMNS];
     fu_sheave_state at;
     fu_sheave_at(model, sheave, next, next->acceleration, &at);
@@ -131,15 +135,17 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     memset(K, 0, sizeof K);
     memset(D, 0, sizeof D);
     fu_sheave_add_derivatives(sheave, &at, w, D, K);
-    fu_wheel_by_psi(model, &sheave->wheel, &at.wheel, equations->psi, by_psi);
-    const int n = fu_sheave_columns(sheave, &at, at.wheel.centre.P, columns);
-    fu_sheave_columns(sheave, &at, by_psi, turned);
-    fu_sheave_add_conditions(model, coupling, &at, equations, n, columns, turned, by_psi, K, system);
+    fu_wheel_by_psi(model, &sheave->wheel, &at.wheel, equations->psi, &by_psi);
+    fu_wheel_moves(model, &at.wheel, &moves);
+    const int n = fu_sheave_columns(sheave, &at, &moves, columns);
+    fu_sheave_columns(sheave, &at, &by_psi, turned);
+    fu_sheave_add_conditions(model, coupling, &at, equations, n, columns, turned, &by_psi, K, system);
     fu_wheel_add_matrix(model, n, columns, turned, Y, K[0], system);
     for (int i = 0; i < Y; ++i)
         for (int j = 0; j < Y; ++j) D[i][j] *= w.rate;
     if (w.rate != 0.0) fu_wheel_add_matrix(model, n, columns, columns, Y, D[0], system);
     fu_sheave_forces(sheave, &at, y);
+    if (is_turning(sheave)) fu_turning_wrap_add_turning(model, sheave, &at, &by_psi, y, w.stiffness, system);
     fu_sheave_add_multipliers(sheave, &at, next->forces + coupling->force, phi, y);
     fu_wheel_add_tangent(model, &sheave->wheel, &at.wheel, equations, y + CENTRE, system);
 }
@@ -250,8 +256,7 @@ static const char *const foot_role[] = {"tangent_point", 0};
 static const fu_field fields[] = {
     FU_FIELD(fu_wheel, kernel, FU_KERNELS, 0),
     FU_FIELD(fu_wheel, foot, FU_KERNELS, foot_role),
-    FU_FIELD_ARRAY(fu_wheel, groove, FU_REAL),
-    FU_FIELD_ARRAY(fu_wheel, axis, FU_REAL),
+    FU_WHEEL_FIELDS_IN_SPACE,
     FU_WHEEL_FIELDS,
     FU_FIELD_ARRAY(fu_sheave, weight, FU_REAL),
     FU_FIELD(fu_sheave, limit, FU_REAL, 0),

@@ -12,6 +12,7 @@
 #define FUNICULAR_COUPLINGS_SHEAVE_SHEAVE_H
 
 #include "couplings/common/accelerator.h"
+#include "couplings/wheel/tangent_point.h"
 #include "couplings/wheel/wheel.h"
 
 /* A sheave between the last node of a span and the first of the next (derive/couplings/sheave.py): two tangent points,
@@ -33,56 +34,23 @@ typedef struct {
     const double *share_before, *share_after; /* of their nodes */
 } fu_sheave;
 
-/* --- the tangent point of a rope on a sheave in space (derive/couplings/tangent_point.py) --- */
-
-enum {
-    FU_FOOT_CONDITIONS = 3,
-    FU_FOOT_VECTORS = 7, /* x, chord, its stress-free length b */
-    FU_FOOT_ELEMENT = 12,
-    FU_FOOT_CENTRE = 6 + FU_FOOT_ELEMENT + 2, /* where the coordinates of the centre are among the dofs */
-    FU_FOOT_DOFS = FU_FOOT_CENTRE + FU_ATTACHMENT_COORDINATES
-};
-
-/* A tangent point at a state: its n dofs, those of the node, of the element in which the chord ends, s of both ends of
- * the span, and the coordinates of the centre, some of them twice; the conditions and their derivatives by x, the chord
- * and b (J, K), and the changes of these by the dofs. K: of J' multipliers. */
-typedef struct {
-    int n, dofs[FU_FOOT_DOFS];
-    double phi[FU_FOOT_CONDITIONS], J[FU_FOOT_CONDITIONS * FU_FOOT_VECTORS], K[FU_FOOT_VECTORS * FU_FOOT_VECTORS];
-    double by[FU_FOOT_VECTORS][FU_FOOT_DOFS], N_L[4], chord[3], chord_L[3], chord_LL[3], b;
-} fu_tangent_point;
-
-/* Computes the tangent point where the rope runs on (k = 0) or off (1), with these multipliers. */
-void fu_tangent_point_at(const fu_sheave *sheave, int k, const fu_attachment_state *centre, const double *q,
-                         const double *multipliers, fu_tangent_point *out);
-/* Computes the changes of x by the coordinates of the centre anew, from those of the centre (3 x coordinates). */
-void fu_tangent_point_turn(const double *of_centre, fu_tangent_point *at);
-/* Computes the derivatives of the conditions by the dofs (conditions x n). */
-void fu_tangent_point_rows(const fu_tangent_point *at, double *rows);
-/* Computes the derivatives of the forces J' multipliers on the dofs (n x n) by those of `columns`. */
-void fu_tangent_point_stiffness(const fu_tangent_point *at, const fu_tangent_point *columns, const double *multipliers,
-                                double *K);
-/* Computes the second rates of the conditions at zero accelerations of the dofs. */
-void fu_tangent_point_bias(const fu_sheave *sheave, int k, const fu_tangent_point *at,
-                           const fu_attachment_state *centre, const double *q, const double *v,
-                           double bias[FU_FOOT_CONDITIONS]);
-/* Returns the fleet angle of the chord there, rad: positive where the span leaves the groove along the axis. */
-double fu_fleet_angle(const fu_sheave *sheave, int k, const double *q);
-
 /* --- variables and state --- */
 
 enum { DIM = FU_GROOVE, SPACE = 3, ENDS = 2, MAX_CONDITIONS = ENDS * FU_FOOT_CONDITIONS, MAX_ZONES = 16 };
-/* y: of each node the place and the slope; of the wheel the centre, the rotation, the place along the axis; s of the
- * ends of the zones */
+/* y: of each node the place and the slope; of the wheel the centre, the rotation, the place along the axis, rotations
+ * about the vectors of the groove; s of the ends of the zones */
 enum { NODE = 2 * DIM, SLOPE = DIM, CENTRE = ENDS * NODE, TURN = CENTRE + FU_WHEEL_TURN };
-enum { ACROSS = CENTRE + FU_WHEEL_ACROSS, MATERIAL = CENTRE + FU_WHEEL_FORCES, Y = MATERIAL + MAX_ZONES + 1 };
+enum { ACROSS = CENTRE + FU_WHEEL_ACROSS, TILT = CENTRE + FU_WHEEL_TILT };
+enum { MATERIAL = CENTRE + FU_WHEEL_FORCES, Y = MATERIAL + MAX_ZONES + 1 };
 enum { COLUMNS = ENDS * 2 * SPACE + MAX_ZONES + 2 + FU_ATTACHMENT_COORDINATES };
 /* z: the same with the angles of both tangent points in the place of those of the nodes, in the plane of the groove */
 enum {
     Z_SLOPE = ENDS,
     Z_CENTRE = Z_SLOPE + ENDS * DIM,
-    Z_TURN = Z_CENTRE + DIM,
-    Z_MATERIAL = Z_TURN + 1,
+    Z_TURN = Z_CENTRE + FU_WHEEL_TURN,
+    Z_ACROSS = Z_CENTRE + FU_WHEEL_ACROSS,
+    Z_TILT = Z_CENTRE + FU_WHEEL_TILT,
+    Z_MATERIAL = Z_CENTRE + FU_WHEEL_FORCES,
     Z = Z_MATERIAL + MAX_ZONES + 1
 };
 
@@ -100,8 +68,8 @@ typedef struct {
     int mode;
     double tension;
     fu_wheel_state wheel;
-    double spin_below;           /* angular velocity of the sheave as friction has it, see `fu_model.impending` */
-    double stretch[ENDS][SPACE]; /* in space: direction of the slope */
+    double spin_below; /* angular velocity of the sheave as friction has it, see `fu_model.impending` */
+    double stretch[ENDS][SPACE], rise[ENDS]; /* in space: direction of the slope; place along the axis, m */
     double s[MAX_ZONES + 1], s_rate[MAX_ZONES + 1], s_acc[MAX_ZONES + 1];
     double x[ENDS][DIM], slope[ENDS][DIM], x_rate[ENDS][DIM], slope_rate[ENDS][DIM];
     double phi[ENDS], phi_rate[ENDS], phi_acc[ENDS];
@@ -119,6 +87,12 @@ static inline const fu_sheave *sheave_of(const fu_coupling *coupling)
 static inline int is_in_space(const fu_sheave *sheave)
 {
     return sheave->wheel.foot != 0;
+}
+
+/* Returns whether its groove turns with its body, in space. */
+static inline int is_turning(const fu_sheave *sheave)
+{
+    return sheave->wheel.tilts;
 }
 
 static inline int has_friction(const fu_sheave *sheave)
@@ -147,6 +121,23 @@ static inline int *fu_wrap_flag(const fu_sheave *sheave, const fu_state *state)
 static inline int conditions_of(const fu_sheave *sheave)
 {
     return is_in_space(sheave) ? FU_FOOT_CONDITIONS : DIM;
+}
+
+/* Returns the tangent point where the rope runs on (k = 0) or off (1), in space. */
+static inline fu_foot fu_foot_of(const fu_sheave *sheave, int k)
+{
+    return (fu_foot){.wheel = &sheave->wheel,
+                     .is_start = k,
+                     .node = sheave->nodes[k],
+                     .first = sheave->span_first[k],
+                     .n_elements = sheave->span_elements[k],
+                     .reach = sheave->span_reach[k],
+                     .s = sheave->span_s + 2 * k,
+                     .share = k ? sheave->share_after : sheave->share_before,
+                     .chord = sheave->chord[k],
+                     .radius = sheave->tangent_radius[k],
+                     .weight = sheave->weight,
+                     .limit = sheave->limit};
 }
 
 /* Returns the number of variables z of a sheave. */
@@ -191,6 +182,21 @@ void fu_wrap_add_inertia_matrices(const fu_sheave *sheave, const fu_sheave_state
 /* Adds the derivatives of the other forces by rates and places. */
 void fu_wrap_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at, double factor, double (*D)[Z],
                           double (*K)[Z]);
+
+/* --- turning_wrap.c: zones in a groove that turns, by z --- */
+
+/* Add the inertial forces of the zones; their mass matrix; and the moments of their weight with its derivatives (M
+ * null: none). */
+void fu_turning_wrap_add_inertia(const fu_sheave *sheave, const fu_sheave_state *at, double *z);
+void fu_turning_wrap_add_mass(const fu_sheave *sheave, const fu_sheave_state *at, double factor, double (*M)[Z]);
+void fu_turning_wrap_add_weight(const fu_sheave *sheave, const fu_sheave_state *at, double *z);
+void fu_turning_wrap_add_weight_matrix(const fu_sheave *sheave, const fu_sheave_state *at, double factor,
+                                       double (*K)[Z]);
+/* Returns the kinetic energy. */
+double fu_turning_wrap_energy(const fu_sheave *sheave, const fu_sheave_state *at);
+/* Adds the derivatives of the forces `y` by rotations of the groove; moves: those of the columns. */
+void fu_turning_wrap_add_turning(const fu_model *model, const fu_sheave *sheave, const fu_sheave_state *at,
+                                 const fu_centre_moves *moves, const double y[Y], double factor, fu_system *system);
 
 /* --- short_wrap.c --- */
 
@@ -255,7 +261,7 @@ void fu_sheave_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at, 
                             double (*D_z)[Z], double (*K_z)[Z], double (*D)[Y], double (*K)[Y]);
 
 /* Computes the dofs of a sheave and the changes of y by them, with these of the centre; returns their number. */
-int fu_sheave_columns(const fu_sheave *sheave, const fu_sheave_state *at, const double *of_centre,
+int fu_sheave_columns(const fu_sheave *sheave, const fu_sheave_state *at, const fu_centre_moves *moves,
                       fu_wheel_column *out);
 /* Computes all forces but those of the tangent points, or the inertial ones alone. */
 void fu_sheave_forces(const fu_sheave *sheave, const fu_sheave_state *at, double y[Y]);
@@ -281,10 +287,10 @@ void fu_sheave_add_multipliers(const fu_sheave *sheave, const fu_sheave_state *a
 void fu_sheave_add_all_multipliers(const fu_sheave *sheave, const fu_sheave_state *at, const double *multipliers,
                                    double *phi, double *y, double *f);
 /* Adds the derivatives of the conditions, and of their forces, to a system, and in the plane to K_y. `rows` and
- * `columns`: of the n dofs; by_psi: changes of the centre in the latter. */
+ * `columns`: of the n dofs; by_psi: moves of the centre in the latter. */
 void fu_sheave_add_conditions(const fu_model *model, const fu_coupling *coupling, const fu_sheave_state *at,
                               const fu_equations *equations, int n, const fu_wheel_column *rows,
-                              const fu_wheel_column *columns, const double *by_psi, double (*K_y)[Y],
+                              const fu_wheel_column *columns, const fu_centre_moves *by_psi, double (*K_y)[Y],
                               fu_system *system);
 /* Operations of the coupling. */
 void fu_sheave_rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work);

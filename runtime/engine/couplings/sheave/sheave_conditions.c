@@ -61,9 +61,10 @@ static void add_multipliers_in_space(const fu_sheave *sheave, const fu_sheave_st
                                      double *phi, double *f)
 {
     for (int k = 0; k < ENDS; ++k, multipliers += FU_FOOT_CONDITIONS, phi += FU_FOOT_CONDITIONS) {
+        const fu_foot of = fu_foot_of(sheave, k);
         double rows[FU_FOOT_CONDITIONS * FU_FOOT_DOFS];
         fu_tangent_point foot;
-        fu_tangent_point_at(sheave, k, &at->wheel.centre, at->q, multipliers, &foot);
+        fu_tangent_point_at(&of, &at->wheel, at->q, multipliers, &foot);
         fu_tangent_point_rows(&foot, rows);
         memcpy(phi, foot.phi, sizeof foot.phi);
         for (int r = 0; r < FU_FOOT_CONDITIONS; ++r)
@@ -76,18 +77,23 @@ static void add_multipliers_on_nodes(const fu_sheave *sheave, const fu_sheave_st
                                      double *phi, double *y)
 {
     for (int k = 0; k < ENDS; ++k, multipliers += FU_FOOT_CONDITIONS, phi += FU_FOOT_CONDITIONS) {
+        const fu_foot of = fu_foot_of(sheave, k);
         double on_node[SPACE] = {0.0}, in_groove[DIM];
         fu_tangent_point foot;
-        fu_tangent_point_at(sheave, k, &at->wheel.centre, at->q, multipliers, &foot);
+        fu_tangent_point_at(&of, &at->wheel, at->q, multipliers, &foot);
         memcpy(phi, foot.phi, sizeof foot.phi);
         for (int r = 0; r < FU_FOOT_CONDITIONS; ++r)
-            for (int d = 0; d < SPACE; ++d) on_node[d] += foot.J[r * FU_FOOT_VECTORS + d] * multipliers[r];
-        fu_into_groove(&sheave->wheel, on_node, in_groove);
-        y[ACROSS] -= fu_dot(SPACE, sheave->wheel.axis, on_node);
+            for (int d = 0; d < SPACE; ++d) on_node[d] += foot.J[r * foot.n_vectors + d] * multipliers[r];
+        fu_into_groove(&at->wheel, on_node, in_groove);
+        y[ACROSS] -= fu_dot(SPACE, at->wheel.axis, on_node);
         for (int d = 0; d < DIM; ++d) {
             y[k * NODE + d] += in_groove[d];
             y[CENTRE + d] -= in_groove[d];
         }
+        if (!is_turning(sheave)) continue;
+        fu_tangent_point_moment(&at->wheel, &foot, multipliers, on_node);
+        fu_into_groove(&at->wheel, on_node, in_groove);
+        for (int d = 0; d < FU_TILTS; ++d) y[TILT + d] += in_groove[d];
     }
 }
 
@@ -129,40 +135,17 @@ void fu_sheave_rows_at(const fu_sheave *sheave, const fu_sheave_state *at, doubl
 
 /* --- derivatives ------------------------------------------------------------------------------------------------ */
 
-/* Adds the derivatives of the conditions of a tangent point, and of their forces, in space. */
-static void add_foot(const fu_model *model, const fu_coupling *coupling, const fu_tangent_point *foot, int first,
-                     const double *by_psi, const fu_equations *equations, fu_system *system)
-{
-    const int own = fu_extra(model, coupling->unknown) + first, n = foot->n;
-    const double *multipliers = equations->next->forces + coupling->force + first;
-    double rows[FU_FOOT_CONDITIONS * FU_FOOT_DOFS], columns[FU_FOOT_CONDITIONS * FU_FOOT_DOFS],
-        K[FU_FOOT_DOFS * FU_FOOT_DOFS];
-    fu_tangent_point turned = *foot;
-    fu_tangent_point_turn(by_psi, &turned);
-    fu_tangent_point_rows(&turned, rows);
-    fu_tangent_point_rows(foot, columns);
-    fu_tangent_point_stiffness(foot, &turned, multipliers, K);
-    for (int j = 0; j < n; ++j) {
-        for (int r = 0; r < FU_FOOT_CONDITIONS; ++r) {
-            const double unit = fu_row_unit(equations->weights.inertia, coupling->scale[first + r]);
-            if (rows[r * n + j] != 0.0) fu_add(model, system, own + r, foot->dofs[j], unit * rows[r * n + j]);
-            if (columns[r * n + j] != 0.0) fu_add(model, system, foot->dofs[j], own + r, unit * columns[r * n + j]);
-        }
-        for (int i = 0; i < n; ++i)
-            if (K[i * n + j] != 0.0)
-                fu_add(model, system, foot->dofs[i], foot->dofs[j], equations->weights.stiffness * K[i * n + j]);
-    }
-}
-
 static void add_conditions_in_space(const fu_model *model, const fu_coupling *coupling, const fu_sheave_state *at,
-                                    const fu_equations *equations, const double *by_psi, fu_system *system)
+                                    const fu_equations *equations, const fu_centre_moves *by_psi, fu_system *system)
 {
     for (int k = 0; k < ENDS; ++k) {
         const int first = FU_FOOT_CONDITIONS * k;
+        const double *multipliers = equations->next->forces + coupling->force + first;
+        const fu_foot of = fu_foot_of(sheave_of(coupling), k);
         fu_tangent_point foot;
-        fu_tangent_point_at(sheave_of(coupling), k, &at->wheel.centre, at->q,
-                            equations->next->forces + coupling->force + first, &foot);
-        add_foot(model, coupling, &foot, first, by_psi, equations, system);
+        fu_tangent_point_at(&of, &at->wheel, at->q, multipliers, &foot);
+        fu_tangent_point_add(model, &at->wheel, &foot, by_psi, multipliers, coupling->scale + first, equations->weights,
+                             fu_extra(model, coupling->unknown) + first, system);
     }
 }
 
@@ -181,7 +164,8 @@ static void add_stiffness_of_foot(int k, double factor, const double K[NODE * NO
 
 void fu_sheave_add_conditions(const fu_model *model, const fu_coupling *coupling, const fu_sheave_state *at,
                               const fu_equations *equations, int n, const fu_wheel_column *rows,
-                              const fu_wheel_column *columns, const double *by_psi, double (*K_y)[Y], fu_system *system)
+                              const fu_wheel_column *columns, const fu_centre_moves *by_psi, double (*K_y)[Y],
+                              fu_system *system)
 {
     const fu_sheave *sheave = sheave_of(coupling);
     const int own = fu_extra(model, coupling->unknown);
@@ -209,14 +193,15 @@ void fu_sheave_add_conditions(const fu_model *model, const fu_coupling *coupling
 static void rows_in_space(const fu_model *model, const fu_sheave *sheave, const fu_state *state, fu_rows *out)
 {
     const double none[FU_FOOT_CONDITIONS] = {0.0};
-    fu_attachment_state centre;
-    fu_attachment_at(model, &sheave->wheel.attachments[0], state, 0.0, FU_POINT, &centre);
+    fu_wheel_state wheel;
+    fu_wheel_at(model, &sheave->wheel, state, model->zero, &wheel);
     for (int k = 0; k < ENDS; ++k) {
+        const fu_foot of = fu_foot_of(sheave, k);
         double rows[FU_FOOT_CONDITIONS * FU_FOOT_DOFS], bias[FU_FOOT_CONDITIONS];
         fu_tangent_point foot;
-        fu_tangent_point_at(sheave, k, &centre, state->q, none, &foot);
+        fu_tangent_point_at(&of, &wheel, state->q, none, &foot);
         fu_tangent_point_rows(&foot, rows);
-        fu_tangent_point_bias(sheave, k, &foot, &centre, state->q, state->v, bias);
+        fu_tangent_point_bias(&of, &foot, &wheel, state->q, state->v, bias);
         out->n = ENDS * foot.n;
         memcpy(out->at + k * foot.n, foot.dofs, sizeof(int) * (size_t)foot.n);
         for (int r = 0; r < FU_FOOT_CONDITIONS; ++r) {
@@ -252,12 +237,14 @@ static void rows_in_plane(const fu_model *model, const fu_sheave *sheave, const 
     double drift[MAX_CONDITIONS];
     conditions of;
     fu_wheel_column columns[COLUMNS];
+    fu_centre_moves moves;
     fu_sheave_state at;
     fu_sheave_at(model, sheave, state, 0, &at);
     find_conditions(sheave, &at, none, &of);
     find_drift(sheave, &at, &of, drift);
     out->rows = of.n;
-    out->n = fu_sheave_columns(sheave, &at, at.wheel.centre.P, columns);
+    fu_wheel_moves(model, &at.wheel, &moves);
+    out->n = fu_sheave_columns(sheave, &at, &moves, columns);
     for (int j = 0; j < out->n; ++j) out->at[j] = columns[j].dof;
     for (int r = 0; r < of.n; ++r) {
         out->C[r] = of.phi[r];

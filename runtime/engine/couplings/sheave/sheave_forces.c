@@ -19,6 +19,10 @@ void fu_sheave_add_by_angles(const fu_sheave *sheave, const fu_sheave_state *at,
             y[k * NODE + d] += force;
             y[CENTRE + d] -= force;
         }
+    for (int k = 0; k < ENDS && is_turning(sheave); ++k) { /* zero on the condition that the node is in the groove */
+        y[TILT] += of_z[k] * at->rise[k] * at->phi_x[k][1];
+        y[TILT + 1] -= of_z[k] * at->rise[k] * at->phi_x[k][0];
+    }
     for (int k = Z_SLOPE; k < size_of_z(sheave); ++k) y[among_y(k)] += of_z[k];
 }
 
@@ -41,9 +45,11 @@ static motion_across across_of(const fu_sheave *sheave, const fu_sheave_state *a
 {
     const int n = sheave->n_zones;
     const double s_rate[ENDS] = {at->s_rate[0], at->s_rate[n]};
+    const int moves = !is_turning(sheave); /* else it is in the kernels of turning wraps */
     motion_across out;
-    sheave->wheel.foot->across(sheave->wheel.rho, at->s[n] - at->s[0], at->wheel.across, gravity, at->wheel.across_rate,
-                               at->wheel.across_acc, s_rate, &out.T, &out.V, out.f, out.M, out.D, out.K);
+    sheave->wheel.foot->across(sheave->wheel.rho, at->s[n] - at->s[0], at->wheel.across, gravity,
+                               moves * at->wheel.across_rate, moves * at->wheel.across_acc, s_rate, &out.T, &out.V,
+                               out.f, out.M, out.D, out.K);
     return out;
 }
 
@@ -60,7 +66,7 @@ static void add_across(const fu_sheave *sheave, const fu_sheave_state *at, doubl
 static void add_across_matrices(const fu_sheave *sheave, const fu_sheave_state *at, double factor, double (*D)[Y],
                                 double (*K)[Y])
 {
-    const motion_across motion = across_of(sheave, at, sheave->wheel.g[DIM]);
+    const motion_across motion = across_of(sheave, at, at->wheel.g[DIM]);
     int place[OF_ACROSS];
     places_across(sheave, place);
     for (int i = 0; i < OF_ACROSS; ++i) {
@@ -76,7 +82,7 @@ void fu_sheave_scatter(const fu_sheave *sheave, const fu_sheave_state *at, const
         for (int i = 0; i < NODE; ++i) f[sheave->nodes[k] + i] += y[k * NODE + i];
     for (int k = 0; k < ENDS && is_in_space(sheave); ++k)
         for (int d = 0; d < SPACE; ++d)
-            f[sheave->nodes[k] + d] += fu_dot(DIM, sheave->wheel.groove + d * DIM, y + k * NODE);
+            f[sheave->nodes[k] + d] += fu_dot(DIM, at->wheel.groove + d * DIM, y + k * NODE);
     for (int j = 0; j <= sheave->n_zones; ++j) f[sheave->s[j]] += y[MATERIAL + j];
     fu_wheel_add_forces(&sheave->wheel, &at->wheel, y + CENTRE, f);
 }
@@ -131,9 +137,10 @@ static void add_turning(const fu_sheave_state *at, double factor, const double *
             }
 }
 
-int fu_sheave_columns(const fu_sheave *sheave, const fu_sheave_state *at, const double *of_centre, fu_wheel_column *out)
+int fu_sheave_columns(const fu_sheave *sheave, const fu_sheave_state *at, const fu_centre_moves *moves,
+                      fu_wheel_column *out)
 {
-    const double *groove = sheave->wheel.groove;
+    const double *groove = at->wheel.groove;
     int n = 0;
     for (int k = 0; k < ENDS && !is_in_space(sheave); ++k)
         for (int i = 0; i < NODE; ++i) out[n++] = (fu_wheel_column){sheave->nodes[k] + i, k * NODE + i, 1, {1.0}};
@@ -144,7 +151,7 @@ int fu_sheave_columns(const fu_sheave *sheave, const fu_sheave_state *at, const 
             else out[n++] = (fu_wheel_column){dof, k * NODE, DIM, {groove[i * DIM], groove[i * DIM + 1]}};
         }
     for (int j = 0; j <= sheave->n_zones; ++j) out[n++] = (fu_wheel_column){sheave->s[j], MATERIAL + j, 1, {1.0}};
-    return n + fu_wheel_columns(&sheave->wheel, &at->wheel, of_centre, CENTRE, out + n);
+    return n + fu_wheel_columns(&sheave->wheel, &at->wheel, moves, CENTRE, out + n);
 }
 
 void fu_sheave_forces(const fu_sheave *sheave, const fu_sheave_state *at, double y[Y])
@@ -154,7 +161,7 @@ void fu_sheave_forces(const fu_sheave *sheave, const fu_sheave_state *at, double
     fu_wrap_add_inertia(sheave, at, z);
     fu_wrap_add_forces(sheave, at, z);
     fu_sheave_add_by_angles(sheave, at, z, y);
-    if (is_in_space(sheave)) add_across(sheave, at, sheave->wheel.g[DIM], y);
+    if (is_in_space(sheave)) add_across(sheave, at, at->wheel.g[DIM], y);
 }
 
 void fu_sheave_inertial_forces(const fu_sheave *sheave, const fu_sheave_state *at, double y[Y])
@@ -163,7 +170,7 @@ void fu_sheave_inertial_forces(const fu_sheave *sheave, const fu_sheave_state *a
     memset(y, 0, sizeof(double) * Y);
     fu_wrap_add_inertia(sheave, at, z);
     fu_sheave_add_by_angles(sheave, at, z, y);
-    if (is_in_space(sheave)) add_across(sheave, at, 0.0, y);
+    if (is_in_space(sheave) && !is_turning(sheave)) add_across(sheave, at, 0.0, y);
 }
 
 void fu_sheave_add_mass(const fu_sheave *sheave, const fu_sheave_state *at, double factor, double (*K)[Y])
@@ -173,7 +180,7 @@ void fu_sheave_add_mass(const fu_sheave *sheave, const fu_sheave_state *at, doub
     fu_wrap_add_mass(sheave, at, factor, M);
     of_angles(at->phi_x, J);
     add_product(sheave, J, M, J, 1, K);
-    if (is_in_space(sheave)) K[ACROSS][ACROSS] += factor * across_of(sheave, at, 0.0).M[0];
+    if (is_in_space(sheave) && !is_turning(sheave)) K[ACROSS][ACROSS] += factor * across_of(sheave, at, 0.0).M[0];
 }
 
 void fu_sheave_add_derivatives(const fu_sheave *sheave, const fu_sheave_state *at, fu_weights w, double (*D)[Y],
@@ -217,7 +224,7 @@ void fu_sheave_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at, 
 
 void fu_sheave_energies_across(const fu_sheave *sheave, const fu_sheave_state *at, double *T, double *V)
 {
-    const motion_across motion = across_of(sheave, at, sheave->wheel.g[DIM]);
+    const motion_across motion = across_of(sheave, at, at->wheel.g[DIM]);
     *T = motion.T;
     *V = motion.V;
 }

@@ -48,8 +48,7 @@ static void tensions(const fu_sheave *sheave, const fu_sheave_state *at, const d
 static double tension_in(const fu_sheave *sheave, const fu_sheave_state *at, const fu_zone *of, double phi, double mean)
 {
     const double half = 0.5 * (of->phi[1] - of->phi[0]), middle = 0.5 * (of->phi[0] + of->phi[1]);
-    const double below = fu_wheel_outwards(&sheave->wheel, &at->wheel, phi) -
-                         sin(half) / half * fu_wheel_outwards(&sheave->wheel, &at->wheel, middle);
+    const double below = fu_wheel_outwards(&at->wheel, phi) - sin(half) / half * fu_wheel_outwards(&at->wheel, middle);
     return mean - sheave->wheel.rho * sheave->wheel.radius * below;
 }
 
@@ -125,6 +124,13 @@ int fu_wrap_change(const fu_coupling *coupling, fu_state *now, int grows)
     return *mode == FU_LIFTED;
 }
 
+/* Returns the fleet angle at a tangent point, in space. */
+static double fleet_angle(const fu_sheave *sheave, const fu_sheave_state *at, int k)
+{
+    const fu_foot foot = fu_foot_of(sheave, k);
+    return fu_fleet_angle(&foot, at->q, at->wheel.axis);
+}
+
 /* A span is a minimum of the energy R phi + l while its length along the groove is above R tan f: else the tangent
  * point runs away along the groove. The margin has a reserve. */
 double fu_fleet_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
@@ -132,9 +138,10 @@ double fu_fleet_margin(const fu_model *model, const fu_coupling *coupling, const
     const fu_sheave *sheave = sheave_of(coupling);
     const double reserve = 3.0;
     double least = INFINITY;
-    (void)model;
+    fu_sheave_state at;
+    fu_sheave_at(model, sheave, state, 0, &at);
     for (int k = 0; k < ENDS; ++k) {
-        const double fleet = fu_fleet_angle(sheave, k, state->q);
+        const double fleet = fleet_angle(sheave, &at, k);
         const double length = state->q[sheave->span_s[ENDS * k + 1]] - state->q[sheave->span_s[ENDS * k]];
         least = fmin(least, length * cos(fleet) - reserve * sheave->wheel.radius * tan(fabs(fleet)));
     }
@@ -231,10 +238,10 @@ void fu_sheave_outputs(const fu_model *model, const fu_coupling *coupling, const
     *numbers = (sheave_output){.tension_on = tension[0], .tension_off = tension[1]};
     numbers->wrap_angle = at.mode == FU_LIFTED ? 0.0 : sheave->wheel.sense * (at.phi[1] - at.phi[0]);
     numbers->gap = at.mode == FU_LIFTED ? gap_of(sheave, &at) : 0.0;
-    fu_wheel_force(&sheave->wheel, y + CENTRE, on_centre);
+    fu_wheel_force(&sheave->wheel, &at.wheel, y + CENTRE, on_centre);
     for (int d = 0; d < SPACE; ++d) numbers->force[d] = -on_centre[d] + 0.0; /* no -0 */
-    numbers->fleet_angle_on = is_in_space(sheave) ? fu_fleet_angle(sheave, 0, state->q) : 0.0;
-    numbers->fleet_angle_off = is_in_space(sheave) ? fu_fleet_angle(sheave, 1, state->q) : 0.0;
+    numbers->fleet_angle_on = is_in_space(sheave) ? fleet_angle(sheave, &at, 0) : 0.0;
+    numbers->fleet_angle_off = is_in_space(sheave) ? fleet_angle(sheave, &at, 1) : 0.0;
     numbers->material_speed = -0.5 * (at.s_rate[0] + at.s_rate[sheave->n_zones]);
     numbers->normal_force = wrap_pressure(sheave, &at);
     numbers->angle = sheave->wheel.turn < 0 ? 0.0 : state->q[sheave->wheel.turn];

@@ -52,16 +52,9 @@ static void find_node_in_space(const fu_sheave *sheave, const double *q, const d
 {
     const int r = sheave->nodes[k];
     const double *slope = q + r + SPACE, size = sqrt(fu_dot(SPACE, slope, slope));
-    double x[SPACE], rate[SPACE], acc[SPACE];
-    for (int d = 0; d < SPACE; ++d) {
-        x[d] = q[r + d] - out->wheel.centre.p[d];
-        rate[d] = v[r + d] - out->wheel.centre.v[d];
-        acc[d] = a[r + d] - out->wheel.acc[d];
-        out->stretch[k][d] = slope[d] / size;
-    }
-    fu_into_groove(&sheave->wheel, x, out->x[k]);
-    fu_into_groove(&sheave->wheel, rate, out->x_rate[k]);
-    fu_into_groove(&sheave->wheel, acc, x_acc);
+    for (int d = 0; d < SPACE; ++d) out->stretch[k][d] = slope[d] / size;
+    out->rise[k] = fu_dot(SPACE, out->wheel.axis, q + r) - fu_dot(SPACE, out->wheel.axis, out->wheel.centre.p);
+    fu_from_centre(&sheave->wheel, &out->wheel, q + r, v + r, a + r, out->x[k], out->x_rate[k], x_acc);
     out->slope[k][0] = size;
     out->slope_rate[k][0] = fu_dot(SPACE, out->stretch[k], v + r + SPACE);
     out->slope[k][1] = out->slope_rate[k][1] = 0.0;

@@ -63,6 +63,10 @@ void fu_wrap_add_inertia(const fu_sheave *sheave, const fu_sheave_state *at, dou
 {
     const fu_wheel *wheel = &sheave->wheel;
     z[Z_TURN] += wheel->inertia * at->wheel.turn_acc;
+    if (is_turning(sheave)) {
+        fu_turning_wrap_add_inertia(sheave, at, z);
+        return;
+    }
     for (int j = 0; j < sheave->n_zones; ++j) {
         const fu_zone of = fu_zone_at(at, j);
         double u[U];
@@ -87,7 +91,7 @@ void fu_wrap_add_forces(const fu_sheave *sheave, const fu_sheave_state *at, doub
     for (int j = 0; at->mode != FU_LIFTED && j < sheave->n_zones; ++j) {
         const fu_zone of = fu_zone_at(at, j);
         double f[U_MATERIAL + 1], u[U], damping[4];
-        wheel->kernel->force(A, wheel->sense, wheel->rho, wheel->g, wheel->radius, of.phi, at->wheel.c, of.l, f);
+        wheel->kernel->force(A, wheel->sense, wheel->rho, at->wheel.g, wheel->radius, of.phi, at->wheel.c, of.l, f);
         memcpy(u, f, sizeof(double) * U_MATERIAL);
         u[U_MATERIAL] = -f[U_MATERIAL];
         u[U_MATERIAL + 1] = f[U_MATERIAL];
@@ -97,6 +101,7 @@ void fu_wrap_add_forces(const fu_sheave *sheave, const fu_sheave_state *at, doub
                                      damping);
         add_zone(&of, 4, damped, damping, z);
     }
+    if (is_turning(sheave)) fu_turning_wrap_add_weight(sheave, at, z);
     for (int j = 0; has_smooth_friction(sheave) && j <= sheave->n_zones; ++j) {
         double F[3], numbers[3], power;
         const double share = (double)j / sheave->n_zones;
@@ -112,6 +117,10 @@ void fu_wrap_add_mass(const fu_sheave *sheave, const fu_sheave_state *at, double
 {
     const fu_wheel *wheel = &sheave->wheel;
     M[Z_TURN][Z_TURN] += factor * wheel->inertia;
+    if (is_turning(sheave)) {
+        fu_turning_wrap_add_mass(sheave, at, factor, M);
+        return;
+    }
     for (int j = 0; j < sheave->n_zones; ++j) {
         const fu_zone of = fu_zone_at(at, j);
         double M_u[U * U];
@@ -143,7 +152,7 @@ void fu_wrap_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at, do
     for (int j = 0; at->mode != FU_LIFTED && j < sheave->n_zones; ++j) {
         const fu_zone of = fu_zone_at(at, j);
         double K_u[5 * 5], D_4[4 * 4], K_4[4 * 3];
-        wheel->kernel->tangent(A, wheel->sense, wheel->rho, wheel->g, wheel->radius, of.phi, at->wheel.c, of.l, K_u);
+        wheel->kernel->tangent(A, wheel->sense, wheel->rho, at->wheel.g, wheel->radius, of.phi, at->wheel.c, of.l, K_u);
         add_zone_matrix(&of, 5, with_length, 5, with_length, factor, K_u, K);
         if (sheave->tau == 0.0 || at->mode == FU_SHORT) continue;
         wheel->kernel->damping_tangent(wheel->A, sheave->tau, wheel->radius, of.phi, of.l, of.phi_rate, of.s_rate, D_4,
@@ -151,6 +160,7 @@ void fu_wrap_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at, do
         add_zone_matrix(&of, 4, damped, 3, of_zone, factor, K_4, K);
         add_zone_matrix(&of, 4, damped, 4, damped, factor, D_4, D);
     }
+    if (is_turning(sheave)) fu_turning_wrap_add_weight_matrix(sheave, at, factor, K);
     for (int j = 0; has_smooth_friction(sheave) && j <= sheave->n_zones; ++j)
         fu_friction_add_matrices(sheave, at, j, factor, D, K);
 }

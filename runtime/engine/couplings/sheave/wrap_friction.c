@@ -32,12 +32,12 @@ void fu_friction_at(const fu_sheave *sheave, const fu_sheave_state *at, int j, d
     const fu_wheel *wheel = &sheave->wheel;
     const fu_sheave_kernels *kernel = wheel->kernel;
     if (p.foot < 0)
-        kernel->friction(wheel->A, wheel->sense, wheel->rho, wheel->radius, wheel->g, sheave->friction,
+        kernel->friction(wheel->A, wheel->sense, wheel->rho, wheel->radius, at->wheel.g, sheave->friction,
                          sheave->slip_velocity, p.phi, p.l, p.phi_rate, at->spin_below, p.s_rate, F, numbers, power);
     else
         (p.foot ? kernel->friction_off : kernel->friction_on)(
-            wheel->A, wheel->sense, wheel->rho, wheel->radius, wheel->g, sheave->friction, sheave->slip_velocity, p.phi,
-            p.l, at->slope[p.foot], p.phi_rate, at->spin_below, p.s_rate, F, numbers, power);
+            wheel->A, wheel->sense, wheel->rho, wheel->radius, at->wheel.g, sheave->friction, sheave->slip_velocity,
+            p.phi, p.l, at->slope[p.foot], p.phi_rate, at->spin_below, p.s_rate, F, numbers, power);
 }
 
 /* Derivatives of the forces at a point on its angle, the rotation and its s: by the angles, the lengths and the slope,
@@ -82,13 +82,13 @@ void fu_friction_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at
     const fu_sheave_kernels *kernel = wheel->kernel;
     derivatives by;
     if (p.foot < 0)
-        kernel->friction_tangent(wheel->A, wheel->sense, wheel->rho, wheel->radius, wheel->g, sheave->friction,
+        kernel->friction_tangent(wheel->A, wheel->sense, wheel->rho, wheel->radius, at->wheel.g, sheave->friction,
                                  sheave->slip_velocity, p.phi, p.l, p.phi_rate, at->spin_below, p.s_rate, by.of_place,
                                  by.of_rate);
     else
         (p.foot ? kernel->friction_off_tangent : kernel->friction_on_tangent)(
-            wheel->A, wheel->sense, wheel->rho, wheel->radius, wheel->g, sheave->friction, sheave->slip_velocity, p.phi,
-            p.l, at->slope[p.foot], p.phi_rate, at->spin_below, p.s_rate, by.of_place, by.of_rate);
+            wheel->A, wheel->sense, wheel->rho, wheel->radius, at->wheel.g, sheave->friction, sheave->slip_velocity,
+            p.phi, p.l, at->slope[p.foot], p.phi_rate, at->spin_below, p.s_rate, by.of_place, by.of_rate);
     scatter(sheave, &p, j, factor, &by, D, K);
 }
 
@@ -101,11 +101,11 @@ void fu_coulomb_at(const fu_sheave *sheave, const fu_sheave_state *at, int j, fu
     const fu_sheave_kernels *kernel = wheel->kernel;
     double numbers[2];
     if (p.foot < 0)
-        kernel->coulomb(wheel->A, wheel->sense, wheel->rho, wheel->radius, wheel->g, sheave->friction, p.phi, p.l,
+        kernel->coulomb(wheel->A, wheel->sense, wheel->rho, wheel->radius, at->wheel.g, sheave->friction, p.phi, p.l,
                         p.phi_rate, at->wheel.turn_rate, p.s_rate, numbers, out->row, out->column);
     else
         (p.foot ? kernel->coulomb_off : kernel->coulomb_on)(
-            wheel->A, wheel->sense, wheel->rho, wheel->radius, wheel->g, sheave->friction, p.phi, p.l,
+            wheel->A, wheel->sense, wheel->rho, wheel->radius, at->wheel.g, sheave->friction, p.phi, p.l,
             at->slope[p.foot], p.phi_rate, at->wheel.turn_rate, p.s_rate, numbers, out->row, out->column);
     out->w = numbers[0];
     out->limit = numbers[1];
@@ -119,12 +119,12 @@ void fu_coulomb_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at,
     const fu_sheave_kernels *kernel = wheel->kernel;
     derivatives by;
     if (p.foot < 0)
-        kernel->coulomb_tangent(wheel->A, wheel->sense, wheel->rho, wheel->radius, wheel->g, sheave->friction, p.phi,
+        kernel->coulomb_tangent(wheel->A, wheel->sense, wheel->rho, wheel->radius, at->wheel.g, sheave->friction, p.phi,
                                 p.l, p.phi_rate, at->wheel.turn_rate, p.s_rate, held, direction, by.of_place,
                                 by.of_rate);
     else
         (p.foot ? kernel->coulomb_off_tangent : kernel->coulomb_on_tangent)(
-            wheel->A, wheel->sense, wheel->rho, wheel->radius, wheel->g, sheave->friction, p.phi, p.l,
+            wheel->A, wheel->sense, wheel->rho, wheel->radius, at->wheel.g, sheave->friction, p.phi, p.l,
             at->slope[p.foot], p.phi_rate, at->wheel.turn_rate, p.s_rate, held, direction, by.of_place, by.of_rate);
     scatter(sheave, &p, j, factor, &by, D, K);
 }

@@ -184,7 +184,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
         for (int k = 0; k < Y; ++k) D[i][k] *= w.rate;
     if (w.rate != 0.0) fu_wheel_add_matrix(model, n, columns, columns, Y, D[0], system);
     fu_sheave_add_by_angles(sheave, &at, z, y);
-    fu_wheel_add_turning(model, &sheave->wheel, &at.wheel, equations, y + CENTRE, system);
+    fu_wheel_add_carried(model, &sheave->wheel, &at.wheel, equations, y + CENTRE, system);
 }
 
 /* --- eq 38 ------------------------------------------------------------------------------------------------------ */
