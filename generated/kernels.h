@@ -1597,6 +1597,26 @@ fu_span_elastic_step_kernel span_cable8p_elastic_step;
 /* e 4x3, e_next 4x3, A 3, U_m 2, U_b 2, f 4x3, f_l 1 */
 fu_span_elastic_step_kernel span_cable12_elastic_step;
 
+typedef void fu_span_line_force_kernel(fu_real part, fu_real l, const fu_real *e, fu_real xi, const fu_real *F, fu_real *f, fu_real *f_s);
+/* generalised forces of a force on the material: part [1]; l [m]; e [m, 1]; xi [1]; F [N/m] -> f [N, N m]; f_s [N] */
+/* e 4x2, F 2, f 4x2, f_s 2 */
+fu_span_line_force_kernel span_cable8p_line_force;
+/* e 4x3, F 3, f 4x3, f_s 2 */
+fu_span_line_force_kernel span_cable12_line_force;
+
+typedef void fu_span_line_force_tangent_kernel(fu_real part, fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real xi, const fu_real *F, const fu_real *F_r, const fu_real *F_t, const fu_real *F_v, fu_real *D, fu_real *K);
+/* derivatives of the generalised forces of a force on the material: part [1]; l [m]; e [m, 1]; v [m/s, 1/s]; s_rate
+ * [m/s]; xi [1]; F [N/m]; F_r [N/m by m]; F_t [N/m by 1]; F_v [N/m by m/s] -> D [SI]; K [SI] */
+/* e 4x2, v 4x2, s_rate 2, F 2, F_r 2x2, F_t 2x2, F_v 2x2, D 10x10, K 10x9 */
+fu_span_line_force_tangent_kernel span_cable8p_line_force_tangent;
+/* e 4x3, v 4x3, s_rate 2, F 3, F_r 3x3, F_t 3x3, F_v 3x3, D 14x14, K 14x13 */
+fu_span_line_force_tangent_kernel span_cable12_line_force_tangent;
+
+typedef void fu_span_share_kernel(fu_real at, const fu_real *ends, fu_real *share, fu_real *share_s);
+/* share of a material point in the length of an element: at [m]; ends [m] -> share [1]; share_s [1/m] */
+/* ends 2, share 1, share_s 2 */
+fu_span_share_kernel span_cable8p_share, span_cable12_share;
+
 typedef void fu_surface_flat_kernel(const fu_real *y, const fu_real *normal, fu_real *g, fu_real *g_y);
 /* distance from a plane, and its gradient: y [m]; normal [1] -> g [m]; g_y [1] */
 /* y 3, normal 3, g 1, g_y 3 */
@@ -2174,6 +2194,9 @@ typedef struct {
     fu_span_momentum_energy_kernel *momentum_energy;
     fu_span_momentum_step_kernel *momentum_step;
     fu_span_elastic_step_kernel *elastic_step;
+    fu_span_line_force_kernel *line_force;
+    fu_span_line_force_tangent_kernel *line_force_tangent;
+    fu_span_share_kernel *share;
 } fu_span_kernels;
 
 /* What the engine needs of a surface. */

@@ -275,25 +275,28 @@ static const fu_sheave_kernels sheaves[] = {
     {"planar_sheave", 2, planar_sheave_tangent_point, planar_sheave_tangent_point_motion, planar_sheave_angle,
      planar_sheave_energy, planar_sheave_weight, planar_sheave_force, planar_sheave_tangent,
      planar_sheave_kinetic_energy, planar_sheave_inertia, planar_sheave_mass_matrix, planar_sheave_inertia_tangent,
-     planar_sheave_dissipation, planar_sheave_damping_force, planar_sheave_damping_tangent, planar_sheave_friction,
-     planar_sheave_friction_tangent, planar_sheave_coulomb, planar_sheave_coulomb_tangent, planar_sheave_coulomb_motion,
-     planar_sheave_friction_on, planar_sheave_friction_on_tangent, planar_sheave_coulomb_on,
-     planar_sheave_coulomb_on_tangent, planar_sheave_coulomb_on_motion, planar_sheave_friction_off,
-     planar_sheave_friction_off_tangent, planar_sheave_coulomb_off, planar_sheave_coulomb_off_tangent,
-     planar_sheave_coulomb_off_motion, planar_sheave_short_wrap, planar_sheave_short_wrap_motion, planar_sheave_winding,
-     planar_sheave_winding_motion, planar_sheave_store, planar_sheave_store_mass, planar_sheave_store_tangent,
-     planar_sheave_store_energy, planar_sheave_laying, planar_sheave_creep},
+     planar_sheave_dissipation, planar_sheave_damping_force, planar_sheave_damping_tangent, planar_sheave_momentum,
+     planar_sheave_momentum_energy, planar_sheave_momentum_step, planar_sheave_friction, planar_sheave_friction_tangent,
+     planar_sheave_coulomb, planar_sheave_coulomb_tangent, planar_sheave_coulomb_motion, planar_sheave_friction_on,
+     planar_sheave_friction_on_tangent, planar_sheave_coulomb_on, planar_sheave_coulomb_on_tangent,
+     planar_sheave_coulomb_on_motion, planar_sheave_friction_off, planar_sheave_friction_off_tangent,
+     planar_sheave_coulomb_off, planar_sheave_coulomb_off_tangent, planar_sheave_coulomb_off_motion,
+     planar_sheave_short_wrap, planar_sheave_short_wrap_motion, planar_sheave_winding, planar_sheave_winding_motion,
+     planar_sheave_store, planar_sheave_store_mass, planar_sheave_store_tangent, planar_sheave_store_energy,
+     planar_sheave_laying, planar_sheave_creep},
 };
 
 static const fu_span_kernels spans[] = {
-    {"span_cable8p", 2, 8, span_cable8p_point, span_cable8p_kinetic_energy, span_cable8p_inertia,
+    {"span_cable8p", 2, 8, 4, span_cable8p_point, span_cable8p_kinetic_energy, span_cable8p_inertia,
      span_cable8p_mass_matrix, span_cable8p_inertia_tangent, span_cable8p_weight, span_cable8p_energy,
      span_cable8p_elastic_force, span_cable8p_elastic_tangent, span_cable8p_dissipation, span_cable8p_damping_force,
-     span_cable8p_damping_tangent, span_cable8p_line_force, span_cable8p_line_force_tangent, span_cable8p_share},
-    {"span_cable12", 3, 12, span_cable12_point, span_cable12_kinetic_energy, span_cable12_inertia,
+     span_cable8p_damping_tangent, span_cable8p_momentum, span_cable8p_momentum_energy, span_cable8p_momentum_step,
+     span_cable8p_elastic_step, span_cable8p_line_force, span_cable8p_line_force_tangent, span_cable8p_share},
+    {"span_cable12", 3, 12, 4, span_cable12_point, span_cable12_kinetic_energy, span_cable12_inertia,
      span_cable12_mass_matrix, span_cable12_inertia_tangent, span_cable12_weight, span_cable12_energy,
      span_cable12_elastic_force, span_cable12_elastic_tangent, span_cable12_dissipation, span_cable12_damping_force,
-     span_cable12_damping_tangent, span_cable12_line_force, span_cable12_line_force_tangent, span_cable12_share},
+     span_cable12_damping_tangent, span_cable12_momentum, span_cable12_momentum_energy, span_cable12_momentum_step,
+     span_cable12_elastic_step, span_cable12_line_force, span_cable12_line_force_tangent, span_cable12_share},
 };
 
 static const fu_surface_kernels surfaces[] = {
@@ -388,6 +391,8 @@ static const fu_taut_rope_kernels taut_ropes[] = {
 #define FU_ARGUMENTS_ssvsvvvvvv_2 *a[0], *a[1], a[2], *a[3], a[4], a[5], a[6], a[7], a[8], a[9], out[0], out[1]
 #define FU_ARGUMENTS_vssvsvv_1 a[0], *a[1], *a[2], a[3], *a[4], a[5], a[6], out[0]
 #define FU_ARGUMENTS_vssvsvv_2 a[0], *a[1], *a[2], a[3], *a[4], a[5], a[6], out[0], out[1]
+#define FU_ARGUMENTS_sssssvsv_1 *a[0], *a[1], *a[2], *a[3], *a[4], a[5], *a[6], a[7], out[0]
+#define FU_ARGUMENTS_sssvssssssvv_5 *a[0], *a[1], *a[2], a[3], *a[4], *a[5], *a[6], *a[7], *a[8], *a[9], a[10], a[11], out[0], out[1], out[2], out[3], out[4]
 #define FU_ARGUMENTS_vsssvssvvsss_3 a[0], *a[1], *a[2], *a[3], a[4], *a[5], *a[6], a[7], a[8], *a[9], *a[10], *a[11], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vsssvssvvsss_2 a[0], *a[1], *a[2], *a[3], a[4], *a[5], *a[6], a[7], a[8], *a[9], *a[10], *a[11], out[0], out[1]
 #define FU_ARGUMENTS_vsssvsvvsss_3 a[0], *a[1], *a[2], *a[3], a[4], *a[5], a[6], a[7], *a[8], *a[9], *a[10], out[0], out[1], out[2]
@@ -415,6 +420,7 @@ static const fu_taut_rope_kernels taut_ropes[] = {
 #define FU_ARGUMENTS_svv_3 *a[0], a[1], a[2], out[0], out[1], out[2]
 #define FU_ARGUMENTS_svvvvs_1 *a[0], a[1], a[2], a[3], a[4], *a[5], out[0]
 #define FU_ARGUMENTS_svvvvs_2 *a[0], a[1], a[2], a[3], a[4], *a[5], out[0], out[1]
+#define FU_ARGUMENTS_sssvvvv_3 *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0], out[1], out[2]
 #define FU_ARGUMENTS_ssvsv_2 *a[0], *a[1], a[2], *a[3], a[4], out[0], out[1]
 #define FU_ARGUMENTS_ssvvvsvvvv_2 *a[0], *a[1], a[2], a[3], a[4], *a[5], a[6], a[7], a[8], a[9], out[0], out[1]
 #define FU_ARGUMENTS_sv_2 *a[0], a[1], out[0], out[1]
@@ -971,6 +977,9 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(planar_sheave_dissipation, vssvsvv_1) \
     X(planar_sheave_damping_force, vssvsvv_1) \
     X(planar_sheave_damping_tangent, vssvsvv_2) \
+    X(planar_sheave_momentum, sssssvsv_1) \
+    X(planar_sheave_momentum_energy, ssv_1) \
+    X(planar_sheave_momentum_step, sssvssssssvv_5) \
     X(planar_sheave_friction, vsssvssvvsss_3) \
     X(planar_sheave_friction_tangent, vsssvssvvsss_2) \
     X(planar_sheave_coulomb, vsssvsvvsss_3) \
@@ -1008,6 +1017,10 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(span_cable8p_dissipation, svvvvs_1) \
     X(span_cable8p_damping_force, svvvvs_2) \
     X(span_cable8p_damping_tangent, svvvvs_2) \
+    X(span_cable8p_momentum, svvv_1) \
+    X(span_cable8p_momentum_energy, ssv_1) \
+    X(span_cable8p_momentum_step, sssvvvv_3) \
+    X(span_cable8p_elastic_step, ssvvvvv_2) \
     X(span_cable8p_line_force, ssvsv_2) \
     X(span_cable8p_line_force_tangent, ssvvvsvvvv_2) \
     X(span_cable8p_share, sv_2) \
@@ -1023,6 +1036,10 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(span_cable12_dissipation, svvvvs_1) \
     X(span_cable12_damping_force, svvvvs_2) \
     X(span_cable12_damping_tangent, svvvvs_2) \
+    X(span_cable12_momentum, svvv_1) \
+    X(span_cable12_momentum_energy, ssv_1) \
+    X(span_cable12_momentum_step, sssvvvv_3) \
+    X(span_cable12_elastic_step, ssvvvvv_2) \
     X(span_cable12_line_force, ssvsv_2) \
     X(span_cable12_line_force_tangent, ssvvvsvvvv_2) \
     X(span_cable12_share, sv_2) \

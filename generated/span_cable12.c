@@ -4,7 +4,7 @@
  */
 #include "kernels.h"
 
-/* part of slopes and curvatures at the nodes: of span_cable12_mass_matrix and 1 more */
+/* part of slopes and curvatures at the nodes: of span_cable12_mass_matrix and 2 more */
 #define SPAN_CABLE12_PART_OF_SLOPES_AND_CURVATURES_AT_THE_NODES \
     const fu_real \
         e_chord3_x = w*(-e[0] + e[6]), \
@@ -2844,4 +2844,437 @@ void span_cable12_elastic_step(fu_real l, fu_real l_next, const fu_real *e, cons
     FU_EACH(i, 3, f[i + 6] = f_r_2[i];)
     FU_EACH(i, 3, f[i + 9] = f_r_x2[i]*l_mean;)
     f_l[0] = 0.5*U_m[0]*w + 0.5*U_m[1]*w_next + f_r_x1[0]*middle2[0] + f_r_x1[1]*middle2[1] + f_r_x1[2]*middle2[2] + f_r_x2[0]*middle4[0] + f_r_x2[1]*middle4[1] + f_r_x2[2]*middle4[2] - 0.5*w*w_mean*w_next*(l*l*(chord2[0]*now_f_t0[0] + chord2[1]*now_f_t0[1] + chord2[2]*now_f_t0[2] + now_f_t1[0]*now_t1[0] + now_f_t1[1]*now_t1[1] + now_f_t1[2]*now_t1[2] + now_f_t2[0]*now_t2[0] + now_f_t2[1]*now_t2[1] + now_f_t2[2]*now_t2[2]) + l_next*l_next*(chord_next2[0]*next_f_t0[0] + chord_next2[1]*next_f_t0[1] + chord_next2[2]*next_f_t0[2] + next_f_t1[0]*next_t1[0] + next_f_t1[1]*next_t1[1] + next_f_t1[2]*next_t1[2] + next_f_t2[0]*next_t2[0] + next_f_t2[1]*next_t2[1] + next_f_t2[2]*next_t2[2])) - w*w_next*(0.5*U_b[0]*l + 0.5*U_b[1]*l_next);
+}
+
+/* generalised forces of a force on the material (virtual work of the material at constant S); 31 add, 84 mul, 1 div */
+void span_cable12_line_force(fu_real part, fu_real l, const fu_real *e, fu_real xi, const fu_real *F, fu_real *f, fu_real *f_s)
+{
+    /* slopes and curvatures at the nodes */
+    fu_real e_chord3[3], e_S2[3], e_S4[3];
+    const fu_real w = 1.0/l;
+    FU_EACH(i, 3, e_chord3[i] = w*(-e[i] + e[i + 6]);)
+    FU_EACH(i, 3, e_S2[i] = w*(-4.0*e[i + 3] - 2.0*e[i + 9] + 6.0*e_chord3[i]);)
+    FU_EACH(i, 3, e_S4[i] = w*(2.0*e[i + 3] + 4.0*e[i + 9] - 6.0*e_chord3[i]);)
+    /* shape functions */
+    const fu_real
+        N1 = xi*xi*(2.0*xi - 3.0) + 1.0,
+        N2 = l*xi*(xi*(xi - 2.0) + 1.0),
+        N3 = xi*xi*(-2.0*xi + 3.0),
+        N4 = l*xi*xi*(xi - 1.0);
+    /* displacements by the ends of the element */
+    fu_real g1[3], g2[3];
+    FU_EACH(i, 3, g1[i] = N1*e[i + 3] + N2*e_S2[i];)
+    FU_EACH(i, 3, g2[i] = N3*e[i + 9] + N4*e_S4[i];)
+    const fu_real weight = l*part;
+    /* outputs */
+    FU_EACH(i, 3, f[i] = F[i]*N1*weight;)
+    FU_EACH(i, 3, f[i + 3] = F[i]*N2*weight;)
+    FU_EACH(i, 3, f[i + 6] = F[i]*N3*weight;)
+    FU_EACH(i, 3, f[i + 9] = F[i]*N4*weight;)
+    f_s[0] = -(weight*(F[0]*g1[0] + F[1]*g1[1] + F[2]*g1[2]));
+    f_s[1] = -(weight*(F[0]*g2[0] + F[1]*g2[1] + F[2]*g2[2]));
+}
+
+/* derivatives of the generalised forces of a force on the material (virtual work of the material at constant S); 371 add, 897 mul, 1 div */
+void span_cable12_line_force_tangent(fu_real part, fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real xi, const fu_real *F, const fu_real *F_r, const fu_real *F_t, const fu_real *F_v, fu_real *D, fu_real *K)
+{
+    /* slopes and curvatures at the nodes */
+    const fu_real w = 1.0/l;
+    SPAN_CABLE12_PART_OF_SLOPES_AND_CURVATURES_AT_THE_NODES
+    const fu_real
+        e_Sl2_x = -(w*(e_S2_x + 6.0*e_chord3_x*w)),
+        e_Sl2_y = -(w*(e_S2_y + 6.0*e_chord3_y*w)),
+        e_Sl2_z = -(w*(e_S2_z + 6.0*e_chord3_z*w)),
+        e_Sl4_x = -(w*(e_S4_x - 6.0*e_chord3_x*w)),
+        e_Sl4_y = -(w*(e_S4_y - 6.0*e_chord3_y*w)),
+        e_Sl4_z = -(w*(e_S4_z - 6.0*e_chord3_z*w));
+    /* shape functions */
+    fu_real N[4];
+    N[0] = xi*xi*(2.0*xi - 3.0) + 1.0;
+    N[1] = l*xi*(xi*(xi - 2.0) + 1.0);
+    N[2] = xi*xi*(-2.0*xi + 3.0);
+    N[3] = l*xi*xi*(xi - 1.0);
+    /* displacements by the ends of the element */
+    fu_real g_x[2], g_y[2], g_z[2];
+    g_x[0] = N[0]*e[3] + N[1]*e_S2_x;
+    g_y[0] = N[0]*e[4] + N[1]*e_S2_y;
+    g_z[0] = N[0]*e[5] + N[1]*e_S2_z;
+    g_x[1] = N[2]*e[9] + N[3]*e_S4_x;
+    g_y[1] = N[2]*e[10] + N[3]*e_S4_y;
+    g_z[1] = N[2]*e[11] + N[3]*e_S4_z;
+    const fu_real weight = l*part;
+    /* derivatives of place, slope and velocity of the material */
+    fu_real g1[4], g2[4], past[4], dl_g_x[2], dl_g_y[2], dl_g_z[2];
+    const fu_real
+        S22 = -(4.0*w),
+        S23 = 6.0*w*w,
+        S24 = -(2.0*w),
+        S42 = 2.0*w,
+        S43 = -(6.0*w*w),
+        S44 = 4.0*w;
+    g1[0] = -(N[1]*S23);
+    g1[1] = N[0] + N[1]*S22;
+    g1[2] = N[1]*S23;
+    g1[3] = N[1]*S24;
+    g2[0] = -(N[3]*S43);
+    g2[1] = N[3]*S42;
+    g2[2] = N[3]*S43;
+    g2[3] = N[2] + N[3]*S44;
+    FU_EACH(g, 4,
+        past[g] = g1[g]*s_rate[0] + g2[g]*s_rate[1];)
+    const fu_real dl_N2 = xi*(xi*(xi - 2.0) + 1.0);
+    dl_g_x[0] = N[1]*e_Sl2_x + dl_N2*e_S2_x;
+    dl_g_y[0] = N[1]*e_Sl2_y + dl_N2*e_S2_y;
+    dl_g_z[0] = N[1]*e_Sl2_z + dl_N2*e_S2_z;
+    const fu_real dl_N4 = xi*xi*(xi - 1.0);
+    dl_g_x[1] = N[3]*e_Sl4_x + dl_N4*e_S4_x;
+    dl_g_y[1] = N[3]*e_Sl4_y + dl_N4*e_S4_y;
+    dl_g_z[1] = N[3]*e_Sl4_z + dl_N4*e_S4_z;
+    const fu_real
+        r_l_x = dl_N2*e[3] + dl_N4*e[9],
+        r_l_y = dl_N2*e[4] + dl_N4*e[10],
+        r_l_z = dl_N2*e[5] + dl_N4*e[11],
+        v_l_x = dl_N2*v[3] + dl_N4*v[9] - dl_g_x[0]*s_rate[0] - dl_g_x[1]*s_rate[1],
+        v_l_y = dl_N2*v[4] + dl_N4*v[10] - dl_g_y[0]*s_rate[0] - dl_g_y[1]*s_rate[1],
+        v_l_z = dl_N2*v[5] + dl_N4*v[11] - dl_g_z[0]*s_rate[0] - dl_g_z[1]*s_rate[1];
+    /* derivatives of the force */
+    fu_real F_e_x[3], F_e_y[3], F_e_z[3], F_e_x_at[3], F_e_y_at[3], F_e_z_at[3], F_v_x[3], F_v_y[3], F_v_z[3],
+        F_v_x_at[3], F_v_y_at[3], F_v_z_at[3], F_s_x[2], F_s_y[2], F_s_z[2];
+    FU_EACH(g, 3,
+        F_e_x[g] = F_r[3*g]*N[0] + F_t[3*g]*(g1[0] + g2[0]) - F_v[3*g]*past[0];
+        F_e_y[g] = F_r[3*g + 1]*N[0] + F_t[3*g + 1]*(g1[0] + g2[0]) - F_v[3*g + 1]*past[0];
+        F_e_z[g] = F_r[3*g + 2]*N[0] + F_t[3*g + 2]*(g1[0] + g2[0]) - F_v[3*g + 2]*past[0];)
+    FU_EACH(g, 3,
+        F_e_x_at[g] = F_r[3*g]*N[1] + F_t[3*g]*(g1[1] + g2[1]) - F_v[3*g]*past[1];
+        F_e_y_at[g] = F_r[3*g + 1]*N[1] + F_t[3*g + 1]*(g1[1] + g2[1]) - F_v[3*g + 1]*past[1];
+        F_e_z_at[g] = F_r[3*g + 2]*N[1] + F_t[3*g + 2]*(g1[1] + g2[1]) - F_v[3*g + 2]*past[1];)
+    const fu_real
+        F_e31_x = F_r[0]*N[2] + F_t[0]*(g1[2] + g2[2]) - F_v[0]*past[2],
+        F_e31_y = F_r[1]*N[2] + F_t[1]*(g1[2] + g2[2]) - F_v[1]*past[2],
+        F_e31_z = F_r[2]*N[2] + F_t[2]*(g1[2] + g2[2]) - F_v[2]*past[2],
+        F_e32_x = F_r[3]*N[2] + F_t[3]*(g1[2] + g2[2]) - F_v[3]*past[2],
+        F_e32_y = F_r[4]*N[2] + F_t[4]*(g1[2] + g2[2]) - F_v[4]*past[2],
+        F_e32_z = F_r[5]*N[2] + F_t[5]*(g1[2] + g2[2]) - F_v[5]*past[2],
+        F_e33_x = F_r[6]*N[2] + F_t[6]*(g1[2] + g2[2]) - F_v[6]*past[2],
+        F_e33_y = F_r[7]*N[2] + F_t[7]*(g1[2] + g2[2]) - F_v[7]*past[2],
+        F_e33_z = F_r[8]*N[2] + F_t[8]*(g1[2] + g2[2]) - F_v[8]*past[2],
+        F_e41_x = F_r[0]*N[3] + F_t[0]*(g1[3] + g2[3]) - F_v[0]*past[3],
+        F_e41_y = F_r[1]*N[3] + F_t[1]*(g1[3] + g2[3]) - F_v[1]*past[3],
+        F_e41_z = F_r[2]*N[3] + F_t[2]*(g1[3] + g2[3]) - F_v[2]*past[3],
+        F_e42_x = F_r[3]*N[3] + F_t[3]*(g1[3] + g2[3]) - F_v[3]*past[3],
+        F_e42_y = F_r[4]*N[3] + F_t[4]*(g1[3] + g2[3]) - F_v[4]*past[3],
+        F_e42_z = F_r[5]*N[3] + F_t[5]*(g1[3] + g2[3]) - F_v[5]*past[3],
+        F_e43_x = F_r[6]*N[3] + F_t[6]*(g1[3] + g2[3]) - F_v[6]*past[3],
+        F_e43_y = F_r[7]*N[3] + F_t[7]*(g1[3] + g2[3]) - F_v[7]*past[3],
+        F_e43_z = F_r[8]*N[3] + F_t[8]*(g1[3] + g2[3]) - F_v[8]*past[3];
+    FU_EACH(g, 3,
+        F_v_x[g] = F_v[3*g]*N[0];
+        F_v_y[g] = F_v[3*g + 1]*N[0];
+        F_v_z[g] = F_v[3*g + 2]*N[0];)
+    FU_EACH(g, 3,
+        F_v_x_at[g] = F_v[3*g]*N[1];
+        F_v_y_at[g] = F_v[3*g + 1]*N[1];
+        F_v_z_at[g] = F_v[3*g + 2]*N[1];)
+    const fu_real
+        F_v31_x = F_v[0]*N[2],
+        F_v31_y = F_v[1]*N[2],
+        F_v31_z = F_v[2]*N[2],
+        F_v32_x = F_v[3]*N[2],
+        F_v32_y = F_v[4]*N[2],
+        F_v32_z = F_v[5]*N[2],
+        F_v33_x = F_v[6]*N[2],
+        F_v33_y = F_v[7]*N[2],
+        F_v33_z = F_v[8]*N[2],
+        F_v41_x = F_v[0]*N[3],
+        F_v41_y = F_v[1]*N[3],
+        F_v41_z = F_v[2]*N[3],
+        F_v42_x = F_v[3]*N[3],
+        F_v42_y = F_v[4]*N[3],
+        F_v42_z = F_v[5]*N[3],
+        F_v43_x = F_v[6]*N[3],
+        F_v43_y = F_v[7]*N[3],
+        F_v43_z = F_v[8]*N[3],
+        F_l_x = F_r[0]*r_l_x + F_r[1]*r_l_y + F_r[2]*r_l_z + F_t[0]*(dl_g_x[0] + dl_g_x[1]) + F_t[1]*(dl_g_y[0] + dl_g_y[1]) + F_t[2]*(dl_g_z[0] + dl_g_z[1]) + F_v[0]*v_l_x + F_v[1]*v_l_y + F_v[2]*v_l_z,
+        F_l_y = F_r[3]*r_l_x + F_r[4]*r_l_y + F_r[5]*r_l_z + F_t[3]*(dl_g_x[0] + dl_g_x[1]) + F_t[4]*(dl_g_y[0] + dl_g_y[1]) + F_t[5]*(dl_g_z[0] + dl_g_z[1]) + F_v[3]*v_l_x + F_v[4]*v_l_y + F_v[5]*v_l_z,
+        F_l_z = F_r[6]*r_l_x + F_r[7]*r_l_y + F_r[8]*r_l_z + F_t[6]*(dl_g_x[0] + dl_g_x[1]) + F_t[7]*(dl_g_y[0] + dl_g_y[1]) + F_t[8]*(dl_g_z[0] + dl_g_z[1]) + F_v[6]*v_l_x + F_v[7]*v_l_y + F_v[8]*v_l_z;
+    FU_EACH(g, 2,
+        F_s_x[g] = -F_v[0]*g_x[g] - F_v[1]*g_y[g] - F_v[2]*g_z[g];
+        F_s_y[g] = -F_v[3]*g_x[g] - F_v[4]*g_y[g] - F_v[5]*g_z[g];
+        F_s_z[g] = -F_v[6]*g_x[g] - F_v[7]*g_y[g] - F_v[8]*g_z[g];)
+    /* derivatives of the generalised forces */
+    fu_real scaled[4], lever_x[2], lever_y[2], lever_z[2], dl_lever_x[2], dl_lever_y[2], dl_lever_z[2];
+    FU_EACH(g, 4,
+        scaled[g] = N[g]*weight;)
+    FU_EACH(g, 2,
+        lever_x[g] = -(g_x[g]*weight);
+        lever_y[g] = -(g_y[g]*weight);
+        lever_z[g] = -(g_z[g]*weight);)
+    const fu_real
+        dl_scaled1 = N[0]*part,
+        dl_scaled2 = N[1]*part + dl_N2*weight,
+        dl_scaled3 = N[2]*part,
+        dl_scaled4 = N[3]*part + dl_N4*weight;
+    FU_EACH(g, 2,
+        dl_lever_x[g] = -dl_g_x[g]*weight - g_x[g]*part;
+        dl_lever_y[g] = -dl_g_y[g]*weight - g_y[g]*part;
+        dl_lever_z[g] = -dl_g_z[g]*weight - g_z[g]*part;)
+    /* outputs */
+    FU_EACH(g, 4,
+        D[42*g] = F_v_x[0]*scaled[g];
+        D[42*g + 1] = F_v_y[0]*scaled[g];
+        D[42*g + 2] = F_v_z[0]*scaled[g];
+        D[42*g + 3] = F_v_x_at[0]*scaled[g];
+        D[42*g + 4] = F_v_y_at[0]*scaled[g];
+        D[42*g + 5] = F_v_z_at[0]*scaled[g];
+        D[42*g + 6] = F_v31_x*scaled[g];
+        D[42*g + 7] = F_v31_y*scaled[g];
+        D[42*g + 8] = F_v31_z*scaled[g];
+        D[42*g + 9] = F_v41_x*scaled[g];
+        D[42*g + 10] = F_v41_y*scaled[g];
+        D[42*g + 11] = F_v41_z*scaled[g];
+        D[42*g + 12] = F_s_x[0]*scaled[g];
+        D[42*g + 13] = F_s_x[1]*scaled[g];
+        D[42*g + 14] = F_v_x[1]*scaled[g];
+        D[42*g + 15] = F_v_y[1]*scaled[g];
+        D[42*g + 16] = F_v_z[1]*scaled[g];
+        D[42*g + 17] = F_v_x_at[1]*scaled[g];
+        D[42*g + 18] = F_v_y_at[1]*scaled[g];
+        D[42*g + 19] = F_v_z_at[1]*scaled[g];
+        D[42*g + 20] = F_v32_x*scaled[g];
+        D[42*g + 21] = F_v32_y*scaled[g];
+        D[42*g + 22] = F_v32_z*scaled[g];
+        D[42*g + 23] = F_v42_x*scaled[g];
+        D[42*g + 24] = F_v42_y*scaled[g];
+        D[42*g + 25] = F_v42_z*scaled[g];
+        D[42*g + 26] = F_s_y[0]*scaled[g];
+        D[42*g + 27] = F_s_y[1]*scaled[g];
+        D[42*g + 28] = F_v_x[2]*scaled[g];
+        D[42*g + 29] = F_v_y[2]*scaled[g];
+        D[42*g + 30] = F_v_z[2]*scaled[g];
+        D[42*g + 31] = F_v_x_at[2]*scaled[g];
+        D[42*g + 32] = F_v_y_at[2]*scaled[g];
+        D[42*g + 33] = F_v_z_at[2]*scaled[g];
+        D[42*g + 34] = F_v33_x*scaled[g];
+        D[42*g + 35] = F_v33_y*scaled[g];
+        D[42*g + 36] = F_v33_z*scaled[g];
+        D[42*g + 37] = F_v43_x*scaled[g];
+        D[42*g + 38] = F_v43_y*scaled[g];
+        D[42*g + 39] = F_v43_z*scaled[g];
+        D[42*g + 40] = F_s_z[0]*scaled[g];
+        D[42*g + 41] = F_s_z[1]*scaled[g];)
+    FU_EACH(g, 2,
+        D[14*g + 168] = F_v_x[0]*lever_x[g] + F_v_x[1]*lever_y[g] + F_v_x[2]*lever_z[g];
+        D[14*g + 169] = F_v_y[0]*lever_x[g] + F_v_y[1]*lever_y[g] + F_v_y[2]*lever_z[g];
+        D[14*g + 170] = F_v_z[0]*lever_x[g] + F_v_z[1]*lever_y[g] + F_v_z[2]*lever_z[g];
+        D[14*g + 171] = F_v_x_at[0]*lever_x[g] + F_v_x_at[1]*lever_y[g] + F_v_x_at[2]*lever_z[g];
+        D[14*g + 172] = F_v_y_at[0]*lever_x[g] + F_v_y_at[1]*lever_y[g] + F_v_y_at[2]*lever_z[g];
+        D[14*g + 173] = F_v_z_at[0]*lever_x[g] + F_v_z_at[1]*lever_y[g] + F_v_z_at[2]*lever_z[g];
+        D[14*g + 174] = F_v31_x*lever_x[g] + F_v32_x*lever_y[g] + F_v33_x*lever_z[g];
+        D[14*g + 175] = F_v31_y*lever_x[g] + F_v32_y*lever_y[g] + F_v33_y*lever_z[g];
+        D[14*g + 176] = F_v31_z*lever_x[g] + F_v32_z*lever_y[g] + F_v33_z*lever_z[g];
+        D[14*g + 177] = F_v41_x*lever_x[g] + F_v42_x*lever_y[g] + F_v43_x*lever_z[g];
+        D[14*g + 178] = F_v41_y*lever_x[g] + F_v42_y*lever_y[g] + F_v43_y*lever_z[g];
+        D[14*g + 179] = F_v41_z*lever_x[g] + F_v42_z*lever_y[g] + F_v43_z*lever_z[g];
+        D[14*g + 180] = F_s_x[0]*lever_x[g] + F_s_y[0]*lever_y[g] + F_s_z[0]*lever_z[g];
+        D[14*g + 181] = F_s_x[1]*lever_x[g] + F_s_y[1]*lever_y[g] + F_s_z[1]*lever_z[g];)
+    K[0] = F_e_x[0]*scaled[0];
+    K[1] = F_e_y[0]*scaled[0];
+    K[2] = F_e_z[0]*scaled[0];
+    K[3] = F_e_x_at[0]*scaled[0];
+    K[4] = F_e_y_at[0]*scaled[0];
+    K[5] = F_e_z_at[0]*scaled[0];
+    K[6] = F_e31_x*scaled[0];
+    K[7] = F_e31_y*scaled[0];
+    K[8] = F_e31_z*scaled[0];
+    K[9] = F_e41_x*scaled[0];
+    K[10] = F_e41_y*scaled[0];
+    K[11] = F_e41_z*scaled[0];
+    K[12] = F[0]*dl_scaled1 + F_l_x*scaled[0];
+    K[13] = F_e_x[1]*scaled[0];
+    K[14] = F_e_y[1]*scaled[0];
+    K[15] = F_e_z[1]*scaled[0];
+    K[16] = F_e_x_at[1]*scaled[0];
+    K[17] = F_e_y_at[1]*scaled[0];
+    K[18] = F_e_z_at[1]*scaled[0];
+    K[19] = F_e32_x*scaled[0];
+    K[20] = F_e32_y*scaled[0];
+    K[21] = F_e32_z*scaled[0];
+    K[22] = F_e42_x*scaled[0];
+    K[23] = F_e42_y*scaled[0];
+    K[24] = F_e42_z*scaled[0];
+    K[25] = F[1]*dl_scaled1 + F_l_y*scaled[0];
+    K[26] = F_e_x[2]*scaled[0];
+    K[27] = F_e_y[2]*scaled[0];
+    K[28] = F_e_z[2]*scaled[0];
+    K[29] = F_e_x_at[2]*scaled[0];
+    K[30] = F_e_y_at[2]*scaled[0];
+    K[31] = F_e_z_at[2]*scaled[0];
+    K[32] = F_e33_x*scaled[0];
+    K[33] = F_e33_y*scaled[0];
+    K[34] = F_e33_z*scaled[0];
+    K[35] = F_e43_x*scaled[0];
+    K[36] = F_e43_y*scaled[0];
+    K[37] = F_e43_z*scaled[0];
+    K[38] = F[2]*dl_scaled1 + F_l_z*scaled[0];
+    K[39] = F_e_x[0]*scaled[1];
+    K[40] = F_e_y[0]*scaled[1];
+    K[41] = F_e_z[0]*scaled[1];
+    K[42] = F_e_x_at[0]*scaled[1];
+    K[43] = F_e_y_at[0]*scaled[1];
+    K[44] = F_e_z_at[0]*scaled[1];
+    K[45] = F_e31_x*scaled[1];
+    K[46] = F_e31_y*scaled[1];
+    K[47] = F_e31_z*scaled[1];
+    K[48] = F_e41_x*scaled[1];
+    K[49] = F_e41_y*scaled[1];
+    K[50] = F_e41_z*scaled[1];
+    K[51] = F[0]*dl_scaled2 + F_l_x*scaled[1];
+    K[52] = F_e_x[1]*scaled[1];
+    K[53] = F_e_y[1]*scaled[1];
+    K[54] = F_e_z[1]*scaled[1];
+    K[55] = F_e_x_at[1]*scaled[1];
+    K[56] = F_e_y_at[1]*scaled[1];
+    K[57] = F_e_z_at[1]*scaled[1];
+    K[58] = F_e32_x*scaled[1];
+    K[59] = F_e32_y*scaled[1];
+    K[60] = F_e32_z*scaled[1];
+    K[61] = F_e42_x*scaled[1];
+    K[62] = F_e42_y*scaled[1];
+    K[63] = F_e42_z*scaled[1];
+    K[64] = F[1]*dl_scaled2 + F_l_y*scaled[1];
+    K[65] = F_e_x[2]*scaled[1];
+    K[66] = F_e_y[2]*scaled[1];
+    K[67] = F_e_z[2]*scaled[1];
+    K[68] = F_e_x_at[2]*scaled[1];
+    K[69] = F_e_y_at[2]*scaled[1];
+    K[70] = F_e_z_at[2]*scaled[1];
+    K[71] = F_e33_x*scaled[1];
+    K[72] = F_e33_y*scaled[1];
+    K[73] = F_e33_z*scaled[1];
+    K[74] = F_e43_x*scaled[1];
+    K[75] = F_e43_y*scaled[1];
+    K[76] = F_e43_z*scaled[1];
+    K[77] = F[2]*dl_scaled2 + F_l_z*scaled[1];
+    K[78] = F_e_x[0]*scaled[2];
+    K[79] = F_e_y[0]*scaled[2];
+    K[80] = F_e_z[0]*scaled[2];
+    K[81] = F_e_x_at[0]*scaled[2];
+    K[82] = F_e_y_at[0]*scaled[2];
+    K[83] = F_e_z_at[0]*scaled[2];
+    K[84] = F_e31_x*scaled[2];
+    K[85] = F_e31_y*scaled[2];
+    K[86] = F_e31_z*scaled[2];
+    K[87] = F_e41_x*scaled[2];
+    K[88] = F_e41_y*scaled[2];
+    K[89] = F_e41_z*scaled[2];
+    K[90] = F[0]*dl_scaled3 + F_l_x*scaled[2];
+    K[91] = F_e_x[1]*scaled[2];
+    K[92] = F_e_y[1]*scaled[2];
+    K[93] = F_e_z[1]*scaled[2];
+    K[94] = F_e_x_at[1]*scaled[2];
+    K[95] = F_e_y_at[1]*scaled[2];
+    K[96] = F_e_z_at[1]*scaled[2];
+    K[97] = F_e32_x*scaled[2];
+    K[98] = F_e32_y*scaled[2];
+    K[99] = F_e32_z*scaled[2];
+    K[100] = F_e42_x*scaled[2];
+    K[101] = F_e42_y*scaled[2];
+    K[102] = F_e42_z*scaled[2];
+    K[103] = F[1]*dl_scaled3 + F_l_y*scaled[2];
+    K[104] = F_e_x[2]*scaled[2];
+    K[105] = F_e_y[2]*scaled[2];
+    K[106] = F_e_z[2]*scaled[2];
+    K[107] = F_e_x_at[2]*scaled[2];
+    K[108] = F_e_y_at[2]*scaled[2];
+    K[109] = F_e_z_at[2]*scaled[2];
+    K[110] = F_e33_x*scaled[2];
+    K[111] = F_e33_y*scaled[2];
+    K[112] = F_e33_z*scaled[2];
+    K[113] = F_e43_x*scaled[2];
+    K[114] = F_e43_y*scaled[2];
+    K[115] = F_e43_z*scaled[2];
+    K[116] = F[2]*dl_scaled3 + F_l_z*scaled[2];
+    K[117] = F_e_x[0]*scaled[3];
+    K[118] = F_e_y[0]*scaled[3];
+    K[119] = F_e_z[0]*scaled[3];
+    K[120] = F_e_x_at[0]*scaled[3];
+    K[121] = F_e_y_at[0]*scaled[3];
+    K[122] = F_e_z_at[0]*scaled[3];
+    K[123] = F_e31_x*scaled[3];
+    K[124] = F_e31_y*scaled[3];
+    K[125] = F_e31_z*scaled[3];
+    K[126] = F_e41_x*scaled[3];
+    K[127] = F_e41_y*scaled[3];
+    K[128] = F_e41_z*scaled[3];
+    K[129] = F[0]*dl_scaled4 + F_l_x*scaled[3];
+    K[130] = F_e_x[1]*scaled[3];
+    K[131] = F_e_y[1]*scaled[3];
+    K[132] = F_e_z[1]*scaled[3];
+    K[133] = F_e_x_at[1]*scaled[3];
+    K[134] = F_e_y_at[1]*scaled[3];
+    K[135] = F_e_z_at[1]*scaled[3];
+    K[136] = F_e32_x*scaled[3];
+    K[137] = F_e32_y*scaled[3];
+    K[138] = F_e32_z*scaled[3];
+    K[139] = F_e42_x*scaled[3];
+    K[140] = F_e42_y*scaled[3];
+    K[141] = F_e42_z*scaled[3];
+    K[142] = F[1]*dl_scaled4 + F_l_y*scaled[3];
+    K[143] = F_e_x[2]*scaled[3];
+    K[144] = F_e_y[2]*scaled[3];
+    K[145] = F_e_z[2]*scaled[3];
+    K[146] = F_e_x_at[2]*scaled[3];
+    K[147] = F_e_y_at[2]*scaled[3];
+    K[148] = F_e_z_at[2]*scaled[3];
+    K[149] = F_e33_x*scaled[3];
+    K[150] = F_e33_y*scaled[3];
+    K[151] = F_e33_z*scaled[3];
+    K[152] = F_e43_x*scaled[3];
+    K[153] = F_e43_y*scaled[3];
+    K[154] = F_e43_z*scaled[3];
+    K[155] = F[2]*dl_scaled4 + F_l_z*scaled[3];
+    K[156] = -F[0]*g1[0]*weight + F_e_x[0]*lever_x[0] + F_e_x[1]*lever_y[0] + F_e_x[2]*lever_z[0];
+    K[157] = -F[1]*g1[0]*weight + F_e_y[0]*lever_x[0] + F_e_y[1]*lever_y[0] + F_e_y[2]*lever_z[0];
+    K[158] = -F[2]*g1[0]*weight + F_e_z[0]*lever_x[0] + F_e_z[1]*lever_y[0] + F_e_z[2]*lever_z[0];
+    K[159] = -F[0]*g1[1]*weight + F_e_x_at[0]*lever_x[0] + F_e_x_at[1]*lever_y[0] + F_e_x_at[2]*lever_z[0];
+    K[160] = -F[1]*g1[1]*weight + F_e_y_at[0]*lever_x[0] + F_e_y_at[1]*lever_y[0] + F_e_y_at[2]*lever_z[0];
+    K[161] = -F[2]*g1[1]*weight + F_e_z_at[0]*lever_x[0] + F_e_z_at[1]*lever_y[0] + F_e_z_at[2]*lever_z[0];
+    K[162] = -F[0]*g1[2]*weight + F_e31_x*lever_x[0] + F_e32_x*lever_y[0] + F_e33_x*lever_z[0];
+    K[163] = -F[1]*g1[2]*weight + F_e31_y*lever_x[0] + F_e32_y*lever_y[0] + F_e33_y*lever_z[0];
+    K[164] = -F[2]*g1[2]*weight + F_e31_z*lever_x[0] + F_e32_z*lever_y[0] + F_e33_z*lever_z[0];
+    K[165] = -F[0]*g1[3]*weight + F_e41_x*lever_x[0] + F_e42_x*lever_y[0] + F_e43_x*lever_z[0];
+    K[166] = -F[1]*g1[3]*weight + F_e41_y*lever_x[0] + F_e42_y*lever_y[0] + F_e43_y*lever_z[0];
+    K[167] = -F[2]*g1[3]*weight + F_e41_z*lever_x[0] + F_e42_z*lever_y[0] + F_e43_z*lever_z[0];
+    K[168] = F[0]*dl_lever_x[0] + F[1]*dl_lever_y[0] + F[2]*dl_lever_z[0] + F_l_x*lever_x[0] + F_l_y*lever_y[0] + F_l_z*lever_z[0];
+    K[169] = -F[0]*g2[0]*weight + F_e_x[0]*lever_x[1] + F_e_x[1]*lever_y[1] + F_e_x[2]*lever_z[1];
+    K[170] = -F[1]*g2[0]*weight + F_e_y[0]*lever_x[1] + F_e_y[1]*lever_y[1] + F_e_y[2]*lever_z[1];
+    K[171] = -F[2]*g2[0]*weight + F_e_z[0]*lever_x[1] + F_e_z[1]*lever_y[1] + F_e_z[2]*lever_z[1];
+    K[172] = -F[0]*g2[1]*weight + F_e_x_at[0]*lever_x[1] + F_e_x_at[1]*lever_y[1] + F_e_x_at[2]*lever_z[1];
+    K[173] = -F[1]*g2[1]*weight + F_e_y_at[0]*lever_x[1] + F_e_y_at[1]*lever_y[1] + F_e_y_at[2]*lever_z[1];
+    K[174] = -F[2]*g2[1]*weight + F_e_z_at[0]*lever_x[1] + F_e_z_at[1]*lever_y[1] + F_e_z_at[2]*lever_z[1];
+    K[175] = -F[0]*g2[2]*weight + F_e31_x*lever_x[1] + F_e32_x*lever_y[1] + F_e33_x*lever_z[1];
+    K[176] = -F[1]*g2[2]*weight + F_e31_y*lever_x[1] + F_e32_y*lever_y[1] + F_e33_y*lever_z[1];
+    K[177] = -F[2]*g2[2]*weight + F_e31_z*lever_x[1] + F_e32_z*lever_y[1] + F_e33_z*lever_z[1];
+    K[178] = -F[0]*g2[3]*weight + F_e41_x*lever_x[1] + F_e42_x*lever_y[1] + F_e43_x*lever_z[1];
+    K[179] = -F[1]*g2[3]*weight + F_e41_y*lever_x[1] + F_e42_y*lever_y[1] + F_e43_y*lever_z[1];
+    K[180] = -F[2]*g2[3]*weight + F_e41_z*lever_x[1] + F_e42_z*lever_y[1] + F_e43_z*lever_z[1];
+    K[181] = F[0]*dl_lever_x[1] + F[1]*dl_lever_y[1] + F[2]*dl_lever_z[1] + F_l_x*lever_x[1] + F_l_y*lever_y[1] + F_l_z*lever_z[1];
+}
+
+/* share of a material point in the length of an element (virtual work of the material at constant S); 5 add, 5 mul, 1 div */
+void span_cable12_share(fu_real at, const fu_real *ends, fu_real *share, fu_real *share_s)
+{
+    /* share */
+    const fu_real
+        l = -ends[0] + ends[1],
+        inv_l = 1.0/l,
+        xi = inv_l*(at - ends[0]),
+        d1_inv_l = inv_l*inv_l,
+        d1_xi = d1_inv_l*(at - ends[0]) - inv_l,
+        d2_inv_l = -inv_l*inv_l,
+        d2_xi = d2_inv_l*(at - ends[0]);
+    /* outputs */
+    share[0] = xi;
+    share_s[0] = d1_xi;
+    share_s[1] = d2_xi;
 }

@@ -170,6 +170,16 @@
         inv[g] = 1.0/len[g]; \
         deps[g] = inv[g]*(d1_x[g]*r1_x[g] + d1_y[g]*r1_y[g]);)
 
+/* slopes and curvatures at the nodes: of span_cable8p_damping_tangent and 1 more */
+#define SPAN_CABLE8P_SLOPES_AND_CURVATURES_AT_THE_NODES_2 \
+    fu_real e_chord3[2], e_S2[2], e_S4[2], e_Sl2[2], e_Sl4[2]; \
+    const fu_real w = 1.0/l; \
+    FU_EACH(i, 2, e_chord3[i] = w*(-e[i] + e[i + 4]);) \
+    FU_EACH(i, 2, e_S2[i] = w*(-4.0*e[i + 2] - 2.0*e[i + 6] + 6.0*e_chord3[i]);) \
+    FU_EACH(i, 2, e_S4[i] = w*(2.0*e[i + 2] + 4.0*e[i + 6] - 6.0*e_chord3[i]);) \
+    FU_EACH(i, 2, e_Sl2[i] = -(w*(e_S2[i] + 6.0*e_chord3[i]*w));) \
+    FU_EACH(i, 2, e_Sl4[i] = -(w*(e_S4[i] - 6.0*e_chord3[i]*w));)
+
 /* place, slope and velocity of a material point; 42 add, 62 mul, 1 div */
 void span_cable8p_point(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real xi, fu_real *r, fu_real *r_S, fu_real *velocity)
 {
@@ -1264,14 +1274,7 @@ void span_cable8p_damping_force(fu_real l, const fu_real *e, const fu_real *v, c
 /* derivatives of the forces of damping (Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)); 852 add, 1307 mul, 7 div, 5 sqrt */
 void span_cable8p_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, const fu_real *A, fu_real tau, fu_real *D, fu_real *K)
 {
-    /* slopes and curvatures at the nodes */
-    fu_real e_chord3[2], e_S2[2], e_S4[2], e_Sl2[2], e_Sl4[2];
-    const fu_real w = 1.0/l;
-    FU_EACH(i, 2, e_chord3[i] = w*(-e[i] + e[i + 4]);)
-    FU_EACH(i, 2, e_S2[i] = w*(-4.0*e[i + 2] - 2.0*e[i + 6] + 6.0*e_chord3[i]);)
-    FU_EACH(i, 2, e_S4[i] = w*(2.0*e[i + 2] + 4.0*e[i + 6] - 6.0*e_chord3[i]);)
-    FU_EACH(i, 2, e_Sl2[i] = -(w*(e_S2[i] + 6.0*e_chord3[i]*w));)
-    FU_EACH(i, 2, e_Sl4[i] = -(w*(e_S4[i] - 6.0*e_chord3[i]*w));)
+    SPAN_CABLE8P_SLOPES_AND_CURVATURES_AT_THE_NODES_2
     /* velocities of material points at the nodes */
     fu_real u1[2], u2[2], u3[2], u4[2];
     FU_EACH(i, 2, u1[i] = -e[i + 2]*s_rate[0] + v[i];)
@@ -2201,4 +2204,243 @@ void span_cable8p_elastic_step(fu_real l, fu_real l_next, const fu_real *e, cons
     f[6] = f_r_x2[0]*l_mean - middle4[1]*turned4*(-l + l_next);
     f[7] = f_r_x2[1]*l_mean + middle4[0]*turned4*(-l + l_next);
     f_l[0] = 0.5*U_m[0]*w + 0.5*U_m[1]*w_next + f_r_x1[0]*middle2[0] + f_r_x1[1]*middle2[1] + f_r_x2[0]*middle4[0] + f_r_x2[1]*middle4[1] - turned2*(-change2[0]*middle2[1] + change2[1]*middle2[0]) - turned4*(-change4[0]*middle4[1] + change4[1]*middle4[0]) - 0.5*w*w_mean*w_next*(l*l*(chord2[0]*now_f_t0[0] + chord2[1]*now_f_t0[1] + now_f_t1[0]*now_t1[0] + now_f_t1[1]*now_t1[1] + now_f_t2[0]*now_t2[0] + now_f_t2[1]*now_t2[1]) + l_next*l_next*(chord_next2[0]*next_f_t0[0] + chord_next2[1]*next_f_t0[1] + next_f_t1[0]*next_t1[0] + next_f_t1[1]*next_t1[1] + next_f_t2[0]*next_t2[0] + next_f_t2[1]*next_t2[1])) - w*w_next*(0.5*U_b[0]*l + 0.5*U_b[1]*l_next);
+}
+
+/* generalised forces of a force on the material (virtual work of the material at constant S); 22 add, 61 mul, 1 div */
+void span_cable8p_line_force(fu_real part, fu_real l, const fu_real *e, fu_real xi, const fu_real *F, fu_real *f, fu_real *f_s)
+{
+    /* slopes and curvatures at the nodes */
+    const fu_real
+        w = 1.0/l,
+        e_chord3_x = w*(-e[0] + e[4]),
+        e_chord3_y = w*(-e[1] + e[5]),
+        e_S2_x = w*(-4.0*e[2] - 2.0*e[6] + 6.0*e_chord3_x),
+        e_S2_y = w*(-4.0*e[3] - 2.0*e[7] + 6.0*e_chord3_y),
+        e_S4_x = w*(2.0*e[2] + 4.0*e[6] - 6.0*e_chord3_x),
+        e_S4_y = w*(2.0*e[3] + 4.0*e[7] - 6.0*e_chord3_y);
+    /* shape functions */
+    const fu_real
+        N1 = xi*xi*(2.0*xi - 3.0) + 1.0,
+        N2 = l*xi*(xi*(xi - 2.0) + 1.0),
+        N3 = xi*xi*(-2.0*xi + 3.0),
+        N4 = l*xi*xi*(xi - 1.0);
+    /* displacements by the ends of the element */
+    const fu_real
+        g1_x = N1*e[2] + N2*e_S2_x,
+        g1_y = N1*e[3] + N2*e_S2_y,
+        g2_x = N3*e[6] + N4*e_S4_x,
+        g2_y = N3*e[7] + N4*e_S4_y,
+        weight = l*part;
+    /* outputs */
+    f[0] = F[0]*N1*weight;
+    f[1] = F[1]*N1*weight;
+    f[2] = F[0]*N2*weight;
+    f[3] = F[1]*N2*weight;
+    f[4] = F[0]*N3*weight;
+    f[5] = F[1]*N3*weight;
+    f[6] = F[0]*N4*weight;
+    f[7] = F[1]*N4*weight;
+    f_s[0] = -(weight*(F[0]*g1_x + F[1]*g1_y));
+    f_s[1] = -(weight*(F[0]*g2_x + F[1]*g2_y));
+}
+
+/* derivatives of the generalised forces of a force on the material (virtual work of the material at constant S); 183 add, 477 mul, 1 div */
+void span_cable8p_line_force_tangent(fu_real part, fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real xi, const fu_real *F, const fu_real *F_r, const fu_real *F_t, const fu_real *F_v, fu_real *D, fu_real *K)
+{
+    SPAN_CABLE8P_SLOPES_AND_CURVATURES_AT_THE_NODES_2
+    /* shape functions */
+    fu_real N[4];
+    N[0] = xi*xi*(2.0*xi - 3.0) + 1.0;
+    N[1] = l*xi*(xi*(xi - 2.0) + 1.0);
+    N[2] = xi*xi*(-2.0*xi + 3.0);
+    N[3] = l*xi*xi*(xi - 1.0);
+    /* displacements by the ends of the element */
+    fu_real g1[2], g2[2];
+    FU_EACH(i, 2, g1[i] = N[0]*e[i + 2] + N[1]*e_S2[i];)
+    FU_EACH(i, 2, g2[i] = N[2]*e[i + 6] + N[3]*e_S4[i];)
+    const fu_real weight = l*part;
+    /* derivatives of place, slope and velocity of the material */
+    fu_real g1_at[4], g2_at[4], past[4], dl_g1[2], dl_g2[2], r_l[2];
+    const fu_real
+        S22 = -(4.0*w),
+        S23 = 6.0*w*w,
+        S24 = -(2.0*w),
+        S42 = 2.0*w,
+        S43 = -(6.0*w*w),
+        S44 = 4.0*w;
+    g1_at[0] = -(N[1]*S23);
+    g1_at[1] = N[0] + N[1]*S22;
+    g1_at[2] = N[1]*S23;
+    g1_at[3] = N[1]*S24;
+    g2_at[0] = -(N[3]*S43);
+    g2_at[1] = N[3]*S42;
+    g2_at[2] = N[3]*S43;
+    g2_at[3] = N[2] + N[3]*S44;
+    FU_EACH(g, 4,
+        past[g] = g1_at[g]*s_rate[0] + g2_at[g]*s_rate[1];)
+    const fu_real dl_N2 = xi*(xi*(xi - 2.0) + 1.0);
+    FU_EACH(i, 2, dl_g1[i] = N[1]*e_Sl2[i] + dl_N2*e_S2[i];)
+    const fu_real dl_N4 = xi*xi*(xi - 1.0);
+    FU_EACH(i, 2, dl_g2[i] = N[3]*e_Sl4[i] + dl_N4*e_S4[i];)
+    FU_EACH(i, 2, r_l[i] = dl_N2*e[i + 2] + dl_N4*e[i + 6];)
+    const fu_real
+        v_l_x = dl_N2*v[2] + dl_N4*v[6] - dl_g1[0]*s_rate[0] - dl_g2[0]*s_rate[1],
+        v_l_y = dl_N2*v[3] + dl_N4*v[7] - dl_g1[1]*s_rate[0] - dl_g2[1]*s_rate[1];
+    /* derivatives of the force */
+    fu_real F_e[4][2], F_e_at[4][2], F_v11[2], F_v12[2], F_v21[2], F_v22[2], F_v31[2], F_v32[2], F_v41[2], F_v42[2],
+        F_l[2];
+    FU_EACH(g, 4,
+        FU_EACH(i, 2, F_e[g][i] = F_r[i]*N[g] + F_t[i]*(g1_at[g] + g2_at[g]) - F_v[i]*past[g];)
+        FU_EACH(i, 2, F_e_at[g][i] = F_r[i + 2]*N[g] + F_t[i + 2]*(g1_at[g] + g2_at[g]) - F_v[i + 2]*past[g];))
+    FU_EACH(i, 2, F_v11[i] = F_v[i]*N[0];)
+    FU_EACH(i, 2, F_v12[i] = F_v[i + 2]*N[0];)
+    FU_EACH(i, 2, F_v21[i] = F_v[i]*N[1];)
+    FU_EACH(i, 2, F_v22[i] = F_v[i + 2]*N[1];)
+    FU_EACH(i, 2, F_v31[i] = F_v[i]*N[2];)
+    FU_EACH(i, 2, F_v32[i] = F_v[i + 2]*N[2];)
+    FU_EACH(i, 2, F_v41[i] = F_v[i]*N[3];)
+    FU_EACH(i, 2, F_v42[i] = F_v[i + 2]*N[3];)
+    F_l[0] = F_r[0]*r_l[0] + F_r[1]*r_l[1] + F_t[0]*(dl_g1[0] + dl_g2[0]) + F_t[1]*(dl_g1[1] + dl_g2[1]) + F_v[0]*v_l_x + F_v[1]*v_l_y;
+    F_l[1] = F_r[2]*r_l[0] + F_r[3]*r_l[1] + F_t[2]*(dl_g1[0] + dl_g2[0]) + F_t[3]*(dl_g1[1] + dl_g2[1]) + F_v[2]*v_l_x + F_v[3]*v_l_y;
+    const fu_real
+        F_s1_x = -F_v[0]*g1[0] - F_v[1]*g1[1],
+        F_s1_y = -F_v[2]*g1[0] - F_v[3]*g1[1],
+        F_s2_x = -F_v[0]*g2[0] - F_v[1]*g2[1],
+        F_s2_y = -F_v[2]*g2[0] - F_v[3]*g2[1];
+    /* derivatives of the generalised forces */
+    fu_real scaled[4], lever1[2], lever2[2], dl_lever1[2], dl_lever2[2];
+    FU_EACH(g, 4,
+        scaled[g] = N[g]*weight;)
+    FU_EACH(i, 2, lever1[i] = -(g1[i]*weight);)
+    FU_EACH(i, 2, lever2[i] = -(g2[i]*weight);)
+    const fu_real
+        dl_scaled1 = N[0]*part,
+        dl_scaled2 = N[1]*part + dl_N2*weight,
+        dl_scaled3 = N[2]*part,
+        dl_scaled4 = N[3]*part + dl_N4*weight;
+    FU_EACH(i, 2, dl_lever1[i] = -dl_g1[i]*weight - g1[i]*part;)
+    FU_EACH(i, 2, dl_lever2[i] = -dl_g2[i]*weight - g2[i]*part;)
+    /* outputs */
+    FU_EACH(i, 2, D[i] = F_v11[i]*scaled[0];)
+    FU_EACH(i, 2, D[i + 2] = F_v21[i]*scaled[0];)
+    FU_EACH(i, 2, D[i + 4] = F_v31[i]*scaled[0];)
+    FU_EACH(i, 2, D[i + 6] = F_v41[i]*scaled[0];)
+    D[8] = F_s1_x*scaled[0];
+    D[9] = F_s2_x*scaled[0];
+    FU_EACH(i, 2, D[i + 10] = F_v12[i]*scaled[0];)
+    FU_EACH(i, 2, D[i + 12] = F_v22[i]*scaled[0];)
+    FU_EACH(i, 2, D[i + 14] = F_v32[i]*scaled[0];)
+    FU_EACH(i, 2, D[i + 16] = F_v42[i]*scaled[0];)
+    D[18] = F_s1_y*scaled[0];
+    D[19] = F_s2_y*scaled[0];
+    FU_EACH(i, 2, D[i + 20] = F_v11[i]*scaled[1];)
+    FU_EACH(i, 2, D[i + 22] = F_v21[i]*scaled[1];)
+    FU_EACH(i, 2, D[i + 24] = F_v31[i]*scaled[1];)
+    FU_EACH(i, 2, D[i + 26] = F_v41[i]*scaled[1];)
+    D[28] = F_s1_x*scaled[1];
+    D[29] = F_s2_x*scaled[1];
+    FU_EACH(i, 2, D[i + 30] = F_v12[i]*scaled[1];)
+    FU_EACH(i, 2, D[i + 32] = F_v22[i]*scaled[1];)
+    FU_EACH(i, 2, D[i + 34] = F_v32[i]*scaled[1];)
+    FU_EACH(i, 2, D[i + 36] = F_v42[i]*scaled[1];)
+    D[38] = F_s1_y*scaled[1];
+    D[39] = F_s2_y*scaled[1];
+    FU_EACH(i, 2, D[i + 40] = F_v11[i]*scaled[2];)
+    FU_EACH(i, 2, D[i + 42] = F_v21[i]*scaled[2];)
+    FU_EACH(i, 2, D[i + 44] = F_v31[i]*scaled[2];)
+    FU_EACH(i, 2, D[i + 46] = F_v41[i]*scaled[2];)
+    D[48] = F_s1_x*scaled[2];
+    D[49] = F_s2_x*scaled[2];
+    FU_EACH(i, 2, D[i + 50] = F_v12[i]*scaled[2];)
+    FU_EACH(i, 2, D[i + 52] = F_v22[i]*scaled[2];)
+    FU_EACH(i, 2, D[i + 54] = F_v32[i]*scaled[2];)
+    FU_EACH(i, 2, D[i + 56] = F_v42[i]*scaled[2];)
+    D[58] = F_s1_y*scaled[2];
+    D[59] = F_s2_y*scaled[2];
+    FU_EACH(i, 2, D[i + 60] = F_v11[i]*scaled[3];)
+    FU_EACH(i, 2, D[i + 62] = F_v21[i]*scaled[3];)
+    FU_EACH(i, 2, D[i + 64] = F_v31[i]*scaled[3];)
+    FU_EACH(i, 2, D[i + 66] = F_v41[i]*scaled[3];)
+    D[68] = F_s1_x*scaled[3];
+    D[69] = F_s2_x*scaled[3];
+    FU_EACH(i, 2, D[i + 70] = F_v12[i]*scaled[3];)
+    FU_EACH(i, 2, D[i + 72] = F_v22[i]*scaled[3];)
+    FU_EACH(i, 2, D[i + 74] = F_v32[i]*scaled[3];)
+    FU_EACH(i, 2, D[i + 76] = F_v42[i]*scaled[3];)
+    D[78] = F_s1_y*scaled[3];
+    D[79] = F_s2_y*scaled[3];
+    D[80] = F_v11[0]*lever1[0] + F_v12[0]*lever1[1];
+    D[81] = F_v11[1]*lever1[0] + F_v12[1]*lever1[1];
+    D[82] = F_v21[0]*lever1[0] + F_v22[0]*lever1[1];
+    D[83] = F_v21[1]*lever1[0] + F_v22[1]*lever1[1];
+    D[84] = F_v31[0]*lever1[0] + F_v32[0]*lever1[1];
+    D[85] = F_v31[1]*lever1[0] + F_v32[1]*lever1[1];
+    D[86] = F_v41[0]*lever1[0] + F_v42[0]*lever1[1];
+    D[87] = F_v41[1]*lever1[0] + F_v42[1]*lever1[1];
+    D[88] = F_s1_x*lever1[0] + F_s1_y*lever1[1];
+    D[89] = F_s2_x*lever1[0] + F_s2_y*lever1[1];
+    D[90] = F_v11[0]*lever2[0] + F_v12[0]*lever2[1];
+    D[91] = F_v11[1]*lever2[0] + F_v12[1]*lever2[1];
+    D[92] = F_v21[0]*lever2[0] + F_v22[0]*lever2[1];
+    D[93] = F_v21[1]*lever2[0] + F_v22[1]*lever2[1];
+    D[94] = F_v31[0]*lever2[0] + F_v32[0]*lever2[1];
+    D[95] = F_v31[1]*lever2[0] + F_v32[1]*lever2[1];
+    D[96] = F_v41[0]*lever2[0] + F_v42[0]*lever2[1];
+    D[97] = F_v41[1]*lever2[0] + F_v42[1]*lever2[1];
+    D[98] = F_s1_x*lever2[0] + F_s1_y*lever2[1];
+    D[99] = F_s2_x*lever2[0] + F_s2_y*lever2[1];
+    FU_EACH(g, 4,
+        K[2*g] = F_e[g][0]*scaled[0];
+        K[2*g + 1] = F_e[g][1]*scaled[0];)
+    FU_EACH(i, 2, K[9*i + 8] = F[i]*dl_scaled1 + F_l[i]*scaled[0];)
+    FU_EACH(g, 4,
+        K[2*g + 9] = F_e_at[g][0]*scaled[0];
+        K[2*g + 10] = F_e_at[g][1]*scaled[0];)
+    FU_EACH(g, 4,
+        K[2*g + 18] = F_e[g][0]*scaled[1];
+        K[2*g + 19] = F_e[g][1]*scaled[1];)
+    FU_EACH(i, 2, K[9*i + 26] = F[i]*dl_scaled2 + F_l[i]*scaled[1];)
+    FU_EACH(g, 4,
+        K[2*g + 27] = F_e_at[g][0]*scaled[1];
+        K[2*g + 28] = F_e_at[g][1]*scaled[1];)
+    FU_EACH(g, 4,
+        K[2*g + 36] = F_e[g][0]*scaled[2];
+        K[2*g + 37] = F_e[g][1]*scaled[2];)
+    FU_EACH(i, 2, K[9*i + 44] = F[i]*dl_scaled3 + F_l[i]*scaled[2];)
+    FU_EACH(g, 4,
+        K[2*g + 45] = F_e_at[g][0]*scaled[2];
+        K[2*g + 46] = F_e_at[g][1]*scaled[2];)
+    FU_EACH(g, 4,
+        K[2*g + 54] = F_e[g][0]*scaled[3];
+        K[2*g + 55] = F_e[g][1]*scaled[3];)
+    FU_EACH(i, 2, K[9*i + 62] = F[i]*dl_scaled4 + F_l[i]*scaled[3];)
+    FU_EACH(g, 4,
+        K[2*g + 63] = F_e_at[g][0]*scaled[3];
+        K[2*g + 64] = F_e_at[g][1]*scaled[3];)
+    FU_EACH(g, 4,
+        K[2*g + 72] = -F[0]*g1_at[g]*weight + F_e[g][0]*lever1[0] + F_e_at[g][0]*lever1[1];
+        K[2*g + 73] = -F[1]*g1_at[g]*weight + F_e[g][1]*lever1[0] + F_e_at[g][1]*lever1[1];)
+    K[80] = F[0]*dl_lever1[0] + F[1]*dl_lever1[1] + F_l[0]*lever1[0] + F_l[1]*lever1[1];
+    FU_EACH(g, 4,
+        K[2*g + 81] = -F[0]*g2_at[g]*weight + F_e[g][0]*lever2[0] + F_e_at[g][0]*lever2[1];
+        K[2*g + 82] = -F[1]*g2_at[g]*weight + F_e[g][1]*lever2[0] + F_e_at[g][1]*lever2[1];)
+    K[89] = F[0]*dl_lever2[0] + F[1]*dl_lever2[1] + F_l[0]*lever2[0] + F_l[1]*lever2[1];
+}
+
+/* share of a material point in the length of an element (virtual work of the material at constant S); 5 add, 5 mul, 1 div */
+void span_cable8p_share(fu_real at, const fu_real *ends, fu_real *share, fu_real *share_s)
+{
+    /* share */
+    const fu_real
+        l = -ends[0] + ends[1],
+        inv_l = 1.0/l,
+        xi = inv_l*(at - ends[0]),
+        d1_inv_l = inv_l*inv_l,
+        d1_xi = d1_inv_l*(at - ends[0]) - inv_l,
+        d2_inv_l = -inv_l*inv_l,
+        d2_xi = d2_inv_l*(at - ends[0]);
+    /* outputs */
+    share[0] = xi;
+    share_s[0] = d1_xi;
+    share_s[1] = d2_xi;
 }
