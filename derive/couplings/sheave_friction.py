@@ -60,6 +60,8 @@ POINTS = (Beside("", "zone", "zone"), Beside("_on", "span", "zone"), Beside("_of
 class _Point:
     """Inputs of a point of friction, and the stages of its sliding speed w, and of the limit."""
 
+    v0: sp.Symbol
+
     def __init__(self, p: Program, beside: Beside, *, is_regularised: bool):
         self.p, self.beside = p, beside
         self.A = p.input("A", 2, "N, N m^2", "axial and bending stiffness EA, EI")
@@ -68,7 +70,8 @@ class _Point:
         self.R = p.input("R", (), "m", "radius to the axis of the rope")
         self.g = p.input("g", DIM, "m/s^2", "gravity")
         self.mu = p.input("mu", (), "1", "coefficient of friction")
-        self.v0 = p.input("v0", (), "m/s", "speed at which friction is 0.7 of its limit") if is_regularised else None
+        if is_regularised:
+            self.v0 = p.input("v0", (), "m/s", "speed at which friction is 0.7 of its limit")
         self.phi, self.length, self.slope = _places(p, beside)
         self.phi_rate, self.psi_rate, self.s_rate = self.rates = _rates(p)
         p.stage("both sides")
@@ -110,6 +113,14 @@ class _Point:
         define = self.p.define
         arm = self.sense * self.R * f
         return np.array([define("on_phi", arm), define("on_psi", -arm), define("on_s", -f * self.mean)])
+
+    def with_derivatives(self, force: np.ndarray) -> Program:
+        """Return the kernel with the derivatives of forces as its outputs."""
+        p = self.p
+        p.stage("derivatives")
+        p.output("K", jacobian(p, force, self.configuration), "SI", "derivatives of F by angles, lengths, the slope")
+        p.output("D", jacobian(p, force, self.rates), "SI", "derivatives of F by rates of phi, psi, s")
+        return p
 
 
 def _places(p: Program, beside: Beside) -> tuple[np.ndarray, np.ndarray, list[sp.Symbol]]:
@@ -169,10 +180,7 @@ def friction_tangent(beside: Beside) -> Program:
     """Return the kernel of the derivatives of regularised friction at a point."""
     p = _program(f"friction{beside.suffix}_tangent", f"derivatives of friction {beside.between}")
     point, force, _ = _friction(p, beside)
-    p.stage("derivatives")
-    p.output("K", jacobian(p, force, point.configuration), "SI", "derivatives of F by the angles, the lengths, the slope")
-    p.output("D", jacobian(p, force, point.rates), "SI", "derivatives of F by rates of phi, psi, s")
-    return p
+    return point.with_derivatives(force)
 
 
 def coulomb(beside: Beside) -> Program:
@@ -181,7 +189,8 @@ def coulomb(beside: Beside) -> Program:
     point = _Point(p, beside, is_regularised=False)
     _, limit = point.limit(sp.Integer(1), point.speed())
     p.output("numbers", [point.w, limit], "m/s, N", "speed of sliding w, limit of |f|")
-    p.output("row", jacobian(p, np.array([point.w]), point.rates)[0], "m, 1", "derivatives of w by rates of phi, psi, s")
+    row = jacobian(p, np.array([point.w]), point.rates)[0]
+    p.output("row", row, "m, 1", "derivatives of w by rates of phi, psi, s")
     p.output("column", point.forces(sp.Integer(1)), "m, 1", "forces on phi, psi, s of a unit of f")
     return p
 
@@ -194,10 +203,7 @@ def coulomb_tangent(beside: Beside) -> Program:
     direction = p.input("direction", (), "1", "of sliding, 1 or -1; 0 of a point that sticks")
     _, limit = point.limit(sp.Integer(1), point.speed())
     force = point.forces(p.define("f_all", held + direction * limit))
-    p.stage("derivatives")
-    p.output("K", jacobian(p, force, point.configuration), "SI", "derivatives of F by the angles, the lengths, the slope")
-    p.output("D", jacobian(p, force, point.rates), "SI", "derivatives of F by rates of phi, psi, s")
-    return p
+    return point.with_derivatives(force)
 
 
 def coulomb_motion(beside: Beside) -> Program:

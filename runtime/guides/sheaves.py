@@ -11,9 +11,8 @@ stand beside closed forms.
 # -----------
 #
 # The route names what the rope passes, in its order. With ``side="right"`` the sheave lies on the right of the rope as
-# it runs. A sheave with ``inertia`` turns, by ``friction`` alone; without both the rope slides over it freely. Friction
-# is regularised: at rest the rope creeps at a part of ``velocity``, which therefore is small beside the speeds of
-# interest.
+# it runs. A sheave with ``inertia`` turns, by ``friction`` alone; without both the rope slides over it freely. With
+# ``model="stick"`` friction holds the rope; regularised friction, the default, lets it creep at a part of ``velocity``.
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -35,12 +34,12 @@ def two_weights(light: float, heavy: float, **sheave: object) -> fu.Scene:
     return scene
 
 
-run = two_weights(1.0, 1.2, inertia=INERTIA, friction=fu.Friction(coefficient=0.1, velocity=1e-4)).run(
+run = two_weights(1.0, 1.2, inertia=INERTIA, friction=fu.Friction(coefficient=0.1, model="stick")).run(
     1.0, output_step=0.1, tol=1e-4, integrator="radau", progress=False)
 expected = 0.2 * G / (2.2 + INERTIA / R**2)
 found = -2 * (run["heavy.position"][-1, 1] + 2)
 print(f"acceleration {found:.4f} m/s², in closed form {expected:.4f} m/s²")
-assert abs(found - expected) < 1e-2 * expected
+assert abs(found - expected) < 1e-3 * expected
 
 # %%
 # Euler's belt equation

@@ -425,8 +425,6 @@ GRIP = {"friction": 0.3, "inertia": 0.1}
     (GRIP | {"angle": 1.0, "velocity": 2.0}, "has two drives, angle and velocity; give one of them"),
     ({"torque": 1.0, "friction": 0.3}, "has torque, but no inertia; give its inertia in kg m²"),
     ({"damping": 1.0, "friction": 0.3}, "has damping, but no inertia; give its inertia in kg m²"),
-    (GRIP | {"friction": fu.Friction(coefficient=0.3, model="stick")},
-     'has friction that sticks; give model="regularised", with a small velocity'),
     ({"inertia": 0.1}, "has inertia, but no friction with the rope, which then never turns it; give its friction, or "
                        "leave the inertia out"),
     ({"inertia": -0.1}, "inertia must not be negative, got -0.1 kg m²"),
