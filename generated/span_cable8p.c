@@ -1763,7 +1763,7 @@ void span_cable8p_momentum_energy(fu_real rho, fu_real l, const fu_real *P, fu_r
     T[0] = 0.5*rho*(0.17392742256872679*P[0]*P[0] + 0.17392742256872679*P[1]*P[1] + 0.3260725774312732*P[2]*P[2] + 0.3260725774312732*P[3]*P[3] + 0.3260725774312732*P[4]*P[4] + 0.3260725774312732*P[5]*P[5] + 0.17392742256872679*P[6]*P[6] + 0.17392742256872679*P[7]*P[7])/l;
 }
 
-/* inertial forces over a step that conserves energy (discrete derivatives; Gonzalez, J. Nonlinear Sci. 6 (1996) 449-467); 277 add, 439 mul, 38 div */
+/* inertial forces over a step that conserves energy (discrete derivatives; Gonzalez, J. Nonlinear Sci. 6 (1996) 449-467); 271 add, 431 mul, 38 div */
 void span_cable8p_momentum_step(fu_real rho, fu_real h, fu_real l, const fu_real *s_change, const fu_real *e, const fu_real *e_change, const fu_real *P, fu_real *f, fu_real *f_s, fu_real *P_next)
 {
     /* length over the step */
@@ -1772,24 +1772,26 @@ void span_cable8p_momentum_step(fu_real rho, fu_real h, fu_real l, const fu_real
         l_mean = 0.5*l + 0.5*l_next,
         l_product = l*l_next;
     /* nodal vectors of unit length */
-    fu_real middle_x[4], middle_y[4];
-    FU_EACH(g, 4,
-        middle_x[g] = e[2*g] + 0.5*e_change[2*g];
-        middle_y[g] = e[2*g + 1] + 0.5*e_change[2*g + 1];)
     const fu_real
+        middle2_x = e[2] + 0.5*e_change[2],
+        middle2_y = e[3] + 0.5*e_change[3],
         mean2_x = 0.5*e[2]*l + 0.5*l_next*(e[2] + e_change[2]),
         mean2_y = 0.5*e[3]*l + 0.5*l_next*(e[3] + e_change[3]),
-        change2_x = e_change[2]*l_mean + middle_x[1]*(-l + l_next),
-        change2_y = e_change[3]*l_mean + middle_y[1]*(-l + l_next),
+        change2_x = e_change[2]*l_mean + middle2_x*(-l + l_next),
+        change2_y = e_change[3]*l_mean + middle2_y*(-l + l_next),
+        middle3_x = -e[0] + e[4] - 0.5*e_change[0] + 0.5*e_change[4],
+        middle3_y = -e[1] + e[5] - 0.5*e_change[1] + 0.5*e_change[5],
+        middle4_x = e[6] + 0.5*e_change[6],
+        middle4_y = e[7] + 0.5*e_change[7],
         mean4_x = 0.5*e[6]*l + 0.5*l_next*(e[6] + e_change[6]),
         mean4_y = 0.5*e[7]*l + 0.5*l_next*(e[7] + e_change[7]),
-        change4_x = e_change[6]*l_mean + middle_x[3]*(-l + l_next),
-        change4_y = e_change[7]*l_mean + middle_y[3]*(-l + l_next);
+        change4_x = e_change[6]*l_mean + middle4_x*(-l + l_next),
+        change4_y = e_change[7]*l_mean + middle4_y*(-l + l_next);
     /* forces at the points */
     const fu_real
         flow_0 = (0.9305681557970262*s_change[0] + 0.06943184420297371*s_change[1])/(h*l_mean),
-        slope_0_x = 0.7367349661563832*mean2_x - 0.12440134543766938*mean4_x - 0.3876663792812862*middle_x[0] + 0.3876663792812862*middle_x[2],
-        slope_0_y = 0.7367349661563832*mean2_y - 0.12440134543766938*mean4_y - 0.3876663792812862*middle_y[0] + 0.3876663792812862*middle_y[2],
+        slope_0_x = 0.7367349661563832*mean2_x - 0.12440134543766938*mean4_x + 0.3876663792812862*middle3_x,
+        slope_0_y = 0.7367349661563832*mean2_y - 0.12440134543766938*mean4_y + 0.3876663792812862*middle3_y,
         slope_change_0_x = 0.7367349661563832*change2_x - 0.12440134543766938*change4_x - 0.3876663792812862*e_change[0] + 0.3876663792812862*e_change[4],
         slope_change_0_y = 0.7367349661563832*change2_y - 0.12440134543766938*change4_y - 0.3876663792812862*e_change[1] + 0.3876663792812862*e_change[5],
         w_0_x = -flow_0*slope_0_x + (0.06012499793871617*change2_x - 0.00448606527483153*change4_x + 0.9862070884609109*e_change[0] + 0.013792911539089075*e_change[4])/h,
@@ -1806,8 +1808,8 @@ void span_cable8p_momentum_step(fu_real rho, fu_real h, fu_real l, const fu_real
         on_slope_0_x = 0.17392742256872679*flow_0*l_mean*rho*w_0_x,
         on_slope_0_y = 0.17392742256872679*flow_0*l_mean*rho*w_0_y,
         flow_1 = (0.6699905217924281*s_change[0] + 0.33000947820757187*s_change[1])/(h*l_mean),
-        slope_1_x = 0.006680854290214033*mean2_x - 0.3333001892946422*mean4_x - 1.3266193350044282*middle_x[0] + 1.3266193350044282*middle_x[2],
-        slope_1_y = 0.006680854290214033*mean2_y - 0.3333001892946422*mean4_y - 1.3266193350044282*middle_y[0] + 1.3266193350044282*middle_y[2],
+        slope_1_x = 0.006680854290214033*mean2_x - 0.3333001892946422*mean4_x + 1.3266193350044282*middle3_x,
+        slope_1_y = 0.006680854290214033*mean2_y - 0.3333001892946422*mean4_y + 1.3266193350044282*middle3_y,
         slope_change_1_x = 0.006680854290214033*change2_x - 0.3333001892946422*change4_x - 1.3266193350044282*e_change[0] + 1.3266193350044282*e_change[4],
         slope_change_1_y = 0.006680854290214033*change2_y - 0.3333001892946422*change4_y - 1.3266193350044282*e_change[1] + 1.3266193350044282*e_change[5],
         w_1_x = -flow_1*slope_1_x + (0.14813706341325683*change2_x - 0.07296615908748122*change4_x + 0.7451614261182038*e_change[0] + 0.25483857388179626*e_change[4])/h,
@@ -1824,8 +1826,8 @@ void span_cable8p_momentum_step(fu_real rho, fu_real h, fu_real l, const fu_real
         on_slope_1_x = 0.3260725774312732*flow_1*l_mean*rho*w_1_x,
         on_slope_1_y = 0.3260725774312732*flow_1*l_mean*rho*w_1_y,
         flow_2 = (0.33000947820757187*s_change[0] + 0.6699905217924281*s_change[1])/(h*l_mean),
-        slope_2_x = -0.3333001892946421*mean2_x + 0.006680854290214144*mean4_x - 1.3266193350044277*middle_x[0] + 1.3266193350044277*middle_x[2],
-        slope_2_y = -0.3333001892946421*mean2_y + 0.006680854290214144*mean4_y - 1.3266193350044277*middle_y[0] + 1.3266193350044277*middle_y[2],
+        slope_2_x = -0.3333001892946421*mean2_x + 0.006680854290214144*mean4_x + 1.3266193350044277*middle3_x,
+        slope_2_y = -0.3333001892946421*mean2_y + 0.006680854290214144*mean4_y + 1.3266193350044277*middle3_y,
         slope_change_2_x = -0.3333001892946421*change2_x + 0.006680854290214144*change4_x - 1.3266193350044277*e_change[0] + 1.3266193350044277*e_change[4],
         slope_change_2_y = -0.3333001892946421*change2_y + 0.006680854290214144*change4_y - 1.3266193350044277*e_change[1] + 1.3266193350044277*e_change[5],
         w_2_x = -flow_2*slope_2_x + (0.07296615908748116*change2_x - 0.14813706341325683*change4_x + 0.2548385738817962*e_change[0] + 0.7451614261182038*e_change[4])/h,
@@ -1842,8 +1844,8 @@ void span_cable8p_momentum_step(fu_real rho, fu_real h, fu_real l, const fu_real
         on_slope_2_x = 0.3260725774312732*flow_2*l_mean*rho*w_2_x,
         on_slope_2_y = 0.3260725774312732*flow_2*l_mean*rho*w_2_y,
         flow_3 = (0.06943184420297377*s_change[0] + 0.9305681557970262*s_change[1])/(h*l_mean),
-        slope_3_x = -0.12440134543766934*mean2_x + 0.7367349661563831*mean4_x - 0.38766637928128667*middle_x[0] + 0.38766637928128667*middle_x[2],
-        slope_3_y = -0.12440134543766934*mean2_y + 0.7367349661563831*mean4_y - 0.38766637928128667*middle_y[0] + 0.38766637928128667*middle_y[2],
+        slope_3_x = -0.12440134543766934*mean2_x + 0.7367349661563831*mean4_x + 0.38766637928128667*middle3_x,
+        slope_3_y = -0.12440134543766934*mean2_y + 0.7367349661563831*mean4_y + 0.38766637928128667*middle3_y,
         slope_change_3_x = -0.12440134543766934*change2_x + 0.7367349661563831*change4_x - 0.38766637928128667*e_change[0] + 0.38766637928128667*e_change[4],
         slope_change_3_y = -0.12440134543766934*change2_y + 0.7367349661563831*change4_y - 0.38766637928128667*e_change[1] + 0.38766637928128667*e_change[5],
         w_3_x = -flow_3*slope_3_x + (0.004486065274831308*change2_x - 0.060124997938716285*change4_x + 0.013792911539088903*e_change[0] + 0.9862070884609111*e_change[4])/h,
@@ -1865,23 +1867,23 @@ void span_cable8p_momentum_step(fu_real rho, fu_real h, fu_real l, const fu_real
         unit1_y = 0.9862070884609109*on_place_0_y + 0.7451614261182038*on_place_1_y + 0.2548385738817962*on_place_2_y + 0.013792911539088903*on_place_3_y - 0.3876663792812862*on_slope_0_y - 1.3266193350044282*on_slope_1_y - 1.3266193350044277*on_slope_2_y - 0.38766637928128667*on_slope_3_y,
         unit2_x = 0.06012499793871617*on_place_0_x + 0.14813706341325683*on_place_1_x + 0.07296615908748116*on_place_2_x + 0.004486065274831308*on_place_3_x + 0.7367349661563832*on_slope_0_x + 0.006680854290214033*on_slope_1_x - 0.3333001892946421*on_slope_2_x - 0.12440134543766934*on_slope_3_x,
         unit2_y = 0.06012499793871617*on_place_0_y + 0.14813706341325683*on_place_1_y + 0.07296615908748116*on_place_2_y + 0.004486065274831308*on_place_3_y + 0.7367349661563832*on_slope_0_y + 0.006680854290214033*on_slope_1_y - 0.3333001892946421*on_slope_2_y - 0.12440134543766934*on_slope_3_y,
-        turned2 = (e_change[2]*unit2_y - e_change[3]*unit2_x)/((4.0*middle_x[1]*middle_x[1] + 4.0*middle_y[1]*middle_y[1])),
+        turned2 = (e_change[2]*unit2_y - e_change[3]*unit2_x)/((4.0*middle2_x*middle2_x + 4.0*middle2_y*middle2_y)),
         unit3_x = 0.013792911539089075*on_place_0_x + 0.25483857388179626*on_place_1_x + 0.7451614261182038*on_place_2_x + 0.9862070884609111*on_place_3_x + 0.3876663792812862*on_slope_0_x + 1.3266193350044282*on_slope_1_x + 1.3266193350044277*on_slope_2_x + 0.38766637928128667*on_slope_3_x,
         unit3_y = 0.013792911539089075*on_place_0_y + 0.25483857388179626*on_place_1_y + 0.7451614261182038*on_place_2_y + 0.9862070884609111*on_place_3_y + 0.3876663792812862*on_slope_0_y + 1.3266193350044282*on_slope_1_y + 1.3266193350044277*on_slope_2_y + 0.38766637928128667*on_slope_3_y,
         unit4_x = -0.00448606527483153*on_place_0_x - 0.07296615908748122*on_place_1_x - 0.14813706341325683*on_place_2_x - 0.060124997938716285*on_place_3_x - 0.12440134543766938*on_slope_0_x - 0.3333001892946422*on_slope_1_x + 0.006680854290214144*on_slope_2_x + 0.7367349661563831*on_slope_3_x,
         unit4_y = -0.00448606527483153*on_place_0_y - 0.07296615908748122*on_place_1_y - 0.14813706341325683*on_place_2_y - 0.060124997938716285*on_place_3_y - 0.12440134543766938*on_slope_0_y - 0.3333001892946422*on_slope_1_y + 0.006680854290214144*on_slope_2_y + 0.7367349661563831*on_slope_3_y,
-        turned4 = (e_change[6]*unit4_y - e_change[7]*unit4_x)/((4.0*middle_x[3]*middle_x[3] + 4.0*middle_y[3]*middle_y[3]));
+        turned4 = (e_change[6]*unit4_y - e_change[7]*unit4_x)/((4.0*middle4_x*middle4_x + 4.0*middle4_y*middle4_y));
     /* outputs */
     f[0] = unit1_x;
     f[1] = unit1_y;
-    f[2] = l_mean*unit2_x - middle_y[1]*turned2*(-l + l_next);
-    f[3] = l_mean*unit2_y + middle_x[1]*turned2*(-l + l_next);
+    f[2] = l_mean*unit2_x - middle2_y*turned2*(-l + l_next);
+    f[3] = l_mean*unit2_y + middle2_x*turned2*(-l + l_next);
     f[4] = unit3_x;
     f[5] = unit3_y;
-    f[6] = l_mean*unit4_x - middle_y[3]*turned4*(-l + l_next);
-    f[7] = l_mean*unit4_y + middle_x[3]*turned4*(-l + l_next);
-    f_s[0] = -0.16185132086231016*X_0 - 0.21846553629538065*X_1 - 0.10760704113589255*X_2 - 0.012076101706416622*X_3 + 0.17392742256872679*Y_0 + 0.3260725774312732*Y_1 + 0.3260725774312732*Y_2 + 0.17392742256872679*Y_3 + 0.17392742256872679*Z_0*s_change[1] + 0.3260725774312732*Z_1*s_change[1] + 0.3260725774312732*Z_2*s_change[1] + 0.17392742256872679*Z_3*s_change[1] - middle_x[1]*unit2_x - middle_y[1]*unit2_y - middle_x[3]*unit4_x - middle_y[3]*unit4_y + turned2*(-e_change[2]*middle_y[1] + e_change[3]*middle_x[1]) + turned4*(-e_change[6]*middle_y[3] + e_change[7]*middle_x[3]);
-    f_s[1] = -0.012076101706416612*X_0 - 0.10760704113589255*X_1 - 0.21846553629538065*X_2 - 0.16185132086231016*X_3 - 0.17392742256872679*Y_0 - 0.3260725774312732*Y_1 - 0.3260725774312732*Y_2 - 0.17392742256872679*Y_3 - 0.17392742256872679*Z_0*s_change[0] - 0.3260725774312732*Z_1*s_change[0] - 0.3260725774312732*Z_2*s_change[0] - 0.17392742256872679*Z_3*s_change[0] + middle_x[1]*unit2_x + middle_y[1]*unit2_y + middle_x[3]*unit4_x + middle_y[3]*unit4_y - turned2*(-e_change[2]*middle_y[1] + e_change[3]*middle_x[1]) - turned4*(-e_change[6]*middle_y[3] + e_change[7]*middle_x[3]);
+    f[6] = l_mean*unit4_x - middle4_y*turned4*(-l + l_next);
+    f[7] = l_mean*unit4_y + middle4_x*turned4*(-l + l_next);
+    f_s[0] = -0.16185132086231016*X_0 - 0.21846553629538065*X_1 - 0.10760704113589255*X_2 - 0.012076101706416622*X_3 + 0.17392742256872679*Y_0 + 0.3260725774312732*Y_1 + 0.3260725774312732*Y_2 + 0.17392742256872679*Y_3 + 0.17392742256872679*Z_0*s_change[1] + 0.3260725774312732*Z_1*s_change[1] + 0.3260725774312732*Z_2*s_change[1] + 0.17392742256872679*Z_3*s_change[1] - middle2_x*unit2_x - middle2_y*unit2_y - middle4_x*unit4_x - middle4_y*unit4_y + turned2*(-e_change[2]*middle2_y + e_change[3]*middle2_x) + turned4*(-e_change[6]*middle4_y + e_change[7]*middle4_x);
+    f_s[1] = -0.012076101706416612*X_0 - 0.10760704113589255*X_1 - 0.21846553629538065*X_2 - 0.16185132086231016*X_3 - 0.17392742256872679*Y_0 - 0.3260725774312732*Y_1 - 0.3260725774312732*Y_2 - 0.17392742256872679*Y_3 - 0.17392742256872679*Z_0*s_change[0] - 0.3260725774312732*Z_1*s_change[0] - 0.3260725774312732*Z_2*s_change[0] - 0.17392742256872679*Z_3*s_change[0] + middle2_x*unit2_x + middle2_y*unit2_y + middle4_x*unit4_x + middle4_y*unit4_y - turned2*(-e_change[2]*middle2_y + e_change[3]*middle2_x) - turned4*(-e_change[6]*middle4_y + e_change[7]*middle4_x);
     P_next[0] = P[0] + gain_0_x;
     P_next[1] = P[1] + gain_0_y;
     P_next[2] = P[2] + gain_1_x;

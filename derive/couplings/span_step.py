@@ -82,11 +82,12 @@ def momentum_step(span: Span) -> Program:
     change = span.coordinates(p, "e_change", doc="changes of the nodal vectors over the step")
     P = p.input("P", (POINTS, span.element.dim), "m^2/s", "momentum l u at the points at the start of the step")
     p.stage("nodal vectors of unit length")
-    middle = [p.vector(f"middle{k + 1}", e[k] + change[k] / 2) for k in range(len(e))]
-    means, changes = [], []
+    first = span.element.is_position.index(True)
+    middle, means, changes = [], [], []  # positions from the first one: far from the origin they keep their digits
     for k, power in enumerate(span.powers):
-        ends = [length**power * vector for length, vector in zip(step.l, (e[k], e[k] + change[k]), strict=True)]
-        means.append(p.vector(f"mean{k + 1}", (ends[0] + ends[1]) / 2) if power else middle[k])
+        ends = (e[k], e[k] + change[k]) if power else (e[k] - e[first], e[k] - e[first] + change[k] - change[first])
+        middle.append(p.vector(f"middle{k + 1}", ends[0] + (change[k] if power else change[k] - change[first]) / 2))
+        means.append(p.vector(f"mean{k + 1}", (step.l[0] * ends[0] + step.l[1] * ends[1]) / 2) if power else middle[k])
         changes.append(p.vector(f"change{k + 1}", step.mean * change[k] + (step.l[1] - step.l[0]) * middle[k]) if power
                        else change[k])
     p.stage("forces at the points")

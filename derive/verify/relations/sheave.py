@@ -13,6 +13,7 @@ from ..numbers import Numbers, State
 from ..references import sheave as reference
 from .drum import drum
 from .paths import along, entry, from_kernel, half, of, root, unit
+from .sheave_step import sheave_step
 
 COORDINATES = (("phi", 2), ("c", 2), ("l", 1))
 """Names and sizes of the coordinates of a zone; those of its rates and of its accelerations follow."""
@@ -29,7 +30,7 @@ def sheave(family: CouplingFamily) -> list[Relation]:
     """Return the relations of a sheave's kernels."""
     return [*_of_tangent_point(), *_of_angle(), *_of_energies(), *_of_inertia(), *_of_damping(),
             *(each for suffix in FRICTION for each in (*_of_friction(suffix), *_of_coulomb(suffix))),
-            *_of_short_wrap(), *drum()]
+            *_of_short_wrap(), *sheave_step(), *drum()]
 
 
 def without(names: tuple[tuple[str, int], ...], one: str) -> tuple[tuple[str, int], ...]:

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 
 from ...codegen.family import ElementFamily
+from ...couplings.material_step import gauss
+from ...couplings.span_step import POINTS
 from ...laws.kernels import Kernels
 from ...spec import Element
 from ..exact import ExactProgram
@@ -25,7 +27,8 @@ ENDS = 2
 def span(family: ElementFamily) -> list[Relation]:
     """Return the relations of a span's kernels."""
     return [*_of_points(family.element), *_of_inertia(family.element), *_of_weight(family.element),
-            *_of_elasticity(family), *_of_damping(family), *_of_line_force(family.element)]
+            *_of_elasticity(family), *_of_damping(family), *_of_line_force(family.element), *_of_momentum(family.element),
+            *_of_elastic_step(family.element)]
 
 
 def moved(s: State, t: Any) -> State:
@@ -247,3 +250,75 @@ def _of_line_force(spec: Element) -> list[Relation]:
         Relation("share", "share", "(S - s1)/(s2 - s1)", 0,
                  root(lambda s: np.array([(s["at"].item() - s["ends"][0]) / (s["ends"][1] - s["ends"][0])]))),
         Relation("share", "share_s", "d share/ds", 1, moved_end, ENDS)]
+
+
+# --- over a step that conserves energy --------------------------------------------------------------------------
+
+
+def _of_momentum(spec: Element) -> list[Relation]:
+    positions = np.array(spec.is_position, dtype=int)
+
+    def at_points(k: Numbers, s: State) -> Any:
+        return np.array([s["l"] * k("point", s, xi=k.array(np.float64(float(xi))))["velocity"]
+                         for xi, _ in gauss(POINTS)])
+
+    def change(k: Numbers, s: State, of: Callable[[Any, Any], Any]) -> Any:
+        """Return the change over the step of a number of the momentum and the length."""
+        return of(k("momentum_step", s)["P_next"], s["l"] + s["s_change"][1] - s["s_change"][0]) - of(s["P"], s["l"])
+
+    def energy(k: Numbers, s: State) -> Callable[[Any, Any], Any]:
+        return lambda P, length: k("momentum_energy", s, P=P, l=length)["T"]
+
+    def momentum(k: Numbers, s: State) -> Callable[[Any, Any], Any]:
+        weights = k.array(np.array([float(weight) for _, weight in gauss(POINTS)]))
+        return lambda P, length: s["rho"] * weights.dot(P) / s["h"]
+
+    def work(k: Numbers, s: State) -> Any:
+        found = k("momentum_step", s)
+        return np.sum(found["f"] * s["e_change"]) + found["f_s"].dot(s["s_change"])
+
+    def along_rest(k: Numbers, s: State) -> Any:
+        """Return 2 l dr/h of a step without flow, less the momentum at its start."""
+        still = s | {"s_rate": 0 * s["s_rate"], "v": s["e_change"] / s["h"]}
+        return 2 * k("momentum", still)["P"] - s["P"]
+
+    return [
+        Relation("momentum", "P", "l times the velocity of a material point", 0, lambda k, s, t, j: at_points(k, s)),
+        Relation("momentum_energy", "T", "the kinetic energy", 0, lambda k, s, t, j: k("kinetic_energy", s)["T"],
+                 of=lambda k, s: k("momentum_energy", s, P=k("momentum", s)["P"])["T"]),
+        Relation("momentum_step", "f", "net force: the change of the momentum", 0,
+                 lambda k, s, t, j: change(k, s, momentum(k, s)),
+                 of=lambda k, s: positions.dot(k("momentum_step", s)["f"])),
+        Relation("momentum_step", "f_s", "with f, work: the change of the kinetic energy", 0,
+                 lambda k, s, t, j: change(k, s, energy(k, s)), of=work),
+        Relation("momentum_step", "P_next", "2 l dr/h - P where the ends are at rest", 0,
+                 lambda k, s, t, j: along_rest(k, s),
+                 of=lambda k, s: k("momentum_step", s, s_change=0 * s["s_change"])["P_next"])]
+
+
+def _of_elastic_step(spec: Element) -> list[Relation]:
+    n = spec.n_coordinates
+
+    def parts(k: Numbers, s: State) -> dict[str, Any]:
+        """Return the energies of stretching and of bending at both ends of a step."""
+        bends = np.array([0, 1, 0])
+        ends = [s, s | {"e": s["e_next"], "l": s["l_next"]}]
+        return {name: np.array([k("energy", end, A=s["A"] * factor)["U"][0] for end in ends])
+                for name, factor in (("U_m", 1 - bends), ("U_b", bends))}
+
+    def step(k: Numbers, s: State) -> dict[str, np.ndarray]:
+        return k("elastic_step", s, **parts(k, s))
+
+    def end(k: Numbers, s: State) -> Any:
+        found = step(k, s)
+        return k("energy", s)["U"] + np.sum(found["f"] * (s["e_next"] - s["e"])) + found["f_l"] * (s["l_next"] - s["l"])
+
+    def still(output: str) -> Callable[[Numbers, State], Any]:
+        return lambda k, s: step(k, s | {"e_next": s["e"], "l_next": s["l"]})[output]
+
+    return [
+        Relation("elastic_step", "f", "U + f . de + f_l dl is U at the end", 0,
+                 lambda k, s, t, j: k("energy", s, e=s["e_next"], l=s["l_next"])["U"], of=end),
+        Relation("elastic_step", "f", "dU/de where the ends agree", 1, from_kernel("energy", "U", e=entry("e")), n,
+                 of=still("f")),
+        Relation("elastic_step", "f_l", "dU/dl where the ends agree", 1, _by_length("energy", "U"), of=still("f_l"))]

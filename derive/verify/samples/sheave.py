@@ -31,6 +31,10 @@ def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) 
               "l": np.float64(abs(angle) * R * random.uniform(0.8, 0.9)), "A": random.uniform(2, 5, 2),
               "rho": np.float64(1.3), "tau": np.float64(0.37)}
     found["span_slope_rate"] = random.normal(size=2)
+    found |= {"P": random.normal(size=2), "c_change": 0.1 * random.normal(size=2),
+              "s_change": found["l"] / 20 * random.normal(size=2)} | {name: np.float64(random.uniform(*limits))
+              for name, limits in {"h": (0.1, 0.2), "xi": (0.2, 0.8), "angle_at": (0.3, 1.2), "turn": (0.5, 1),
+                                   "angle_change": (0.1, 0.3), "alpha": (0.5, 1), "alpha_change": (0.1, 0.2)}.items()}
     # winds is 0 or 1 in a run; between these both stretches count
     found |= {name: np.float64(random.uniform(*limits)) for name, limits in {
         "tension": (2, 4), "winds": (0.3, 0.7), "wound": (1.1, 1.3), "span_stretch": (1.4, 1.6), "u": (2, 4),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...codegen.family import ElementFamily
+from ...couplings import span_step
 from ...laws import law_traits
 from ...spec import Element
 from ..numbers import Numbers, State
@@ -22,6 +23,10 @@ def sample(family: ElementFamily, exact: Numbers, random: np.random.Generator) -
     assert family.law is not None
     state |= section_stiffness(law_traits(family.law), element.dim, state["section"], random)
     rho = state["density"] * np.prod(state["rectangle"])
+    change = random.normal(size=2) * state["l"] / 20
+    state |= {"h": np.float64(0.1), "s_change": change, "l_next": state["l"] + change[1] - change[0],
+              "e_change": state["e_next"] - state["e"], "P": random.normal(size=(span_step.POINTS, element.dim)),
+              "U_m": random.uniform(1, 2, 2), "U_b": random.uniform(1, 2, 2)}
     return state | of_force(element, state, random.spawn(1)[0]) | {
         "A": state["S"], "rho": np.float64(rho), "a": random.normal(size=state["v"].shape),
         "s_rate": random.normal(size=2), "s_acc": random.normal(size=2), "xi": np.float64(random.uniform(0.2, 0.8))}
