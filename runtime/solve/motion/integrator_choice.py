@@ -240,8 +240,9 @@ def _check_ropes(integrator: Integrator, scene: SceneData) -> None:
             if isinstance(item, Drum):
                 raise SceneError(rope.where, f"{who} does not support {item.where}: creep on drums has no discrete "
                                  "gradient", another)
-            if rope.dim == 3:
-                raise SceneError(rope.where, f"{who} does not support {item.where} in space", another)
+            if rope.dim == 3 and item.end.on is not None:
+                raise SceneError(rope.where, f'{who} does not support {item.where} in space on body "{item.end.on}"',
+                                 f"hold it at the ground, or {another}")
             if not item.contact:
                 raise SceneError(rope.where, f"{who} does not support {item.where}, which the rope touches in a run",
                                  f"draw the rope on it, or {another}")

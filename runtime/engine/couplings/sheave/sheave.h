@@ -276,6 +276,9 @@ void fu_sheave_add_derivatives(const fu_sheave *sheave, const fu_sheave_state *a
 /* Compute the kinetic energy and that of gravity, J, along the axis, in space. */
 void fu_sheave_energies_across(const fu_sheave *sheave, const fu_sheave_state *at, double *T, double *V);
 
+/* Adds the forces of the weight along the axis on a wrap that does not move along it, in space. */
+void fu_sheave_add_weight_across(const fu_sheave *sheave, const fu_sheave_state *at, double y[Y]);
+
 /* --- sheave_conditions.c: tangent points --- */
 
 /* Returns the number of conditions at a state; others of the coupling are left out. */
@@ -299,7 +302,7 @@ void fu_sheave_rows(const fu_model *model, const fu_coupling *coupling, const fu
 void fu_sheave_rows_at(const fu_sheave *sheave, const fu_sheave_state *at, double J[MAX_CONDITIONS][Y],
                        double phi[MAX_CONDITIONS]);
 
-/* --- sheave_step.c: over a step that conserves energy, in the plane --- */
+/* --- sheave_step.c: over a step that conserves energy --- */
 
 int fu_sheave_history_size(const fu_coupling *coupling);
 void fu_sheave_history_over_step(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);

@@ -1,8 +1,12 @@
-/* Sheaves in the plane over a step that conserves energy (derive/couplings/sheave_step.py).
+/* Sheaves over a step that conserves energy (derive/couplings/sheave_step.py).
  *
- * A moment on the angle of a tangent point is one of the force about the centre at the mean place of its node: a turn
- * from x_0 to x_1, both on the groove, has the measure 2 tan(dphi/2) = 2 x~ x dx/(x~.x~). A zone turns at its part of
- * the wrap by the angle in between; so a moment there is shared between both tangent points by the parts of its work.
+ * A turn of a tangent point by dphi, from x_0 to x_1, has the measure 2 tan(dphi/2). A moment on it is the force along
+ * k x x~ whose work is the moment times this; in the plane, where |x_0| = |x_1|, it has this moment about the centre. A
+ * zone turns at its part of the wrap by the angle in between; so a moment there is shared between both tangent points
+ * by the parts of its work.
+ *
+ * In space the conditions of a tangent point have their derivatives half-way, and a part along the displacement by
+ * which their work vanishes (Gonzalez 1996).
  *
  * Both energies of the wrap have the mean gradient along the angles, the centre and the lengths, by quadrature. */
 #include "bodies/model.h"
@@ -28,10 +32,10 @@ static const double part_of_zone[POINTS] = {0.01985507175123188, 0.1016667612931
                                              0.23931433524968324, 0.11846344252809454};
 
 /* A sheave over a step: at its start, at its end, half-way (with the mean places of nodes); half the turns of both
- * tangent points; changes of the centre and of s. */
+ * tangent points, and the forces along k x x~ of moments on these; changes of the centre and of s. */
 typedef struct {
     fu_sheave_state now, next, middle;
-    double half[ENDS], c_change[DIM], s_change[MAX_ZONES + 1];
+    double half[ENDS], arm[ENDS], c_change[DIM], s_change[MAX_ZONES + 1];
 } step_view;
 
 /* Forces over a step: moments on the turns of both tangent points by their measures, and the rest of z. */
@@ -59,6 +63,10 @@ static void step_at(const fu_model *model, const fu_sheave *sheave, const fu_equ
     const double wrap = out->now.phi[1] - out->now.phi[0], wrap_next = out->next.phi[1] - out->next.phi[0];
     out->half[0] = 0.5 * atan2(from[0] * to[1] - from[1] * to[0], from[0] * to[0] + from[1] * to[1]);
     out->half[1] = out->half[0] + 0.5 * (wrap_next - wrap);
+    for (int k = 0; k < ENDS; ++k) {
+        const double *one = out->now.x[k], *other = out->next.x[k], turn = cos(out->half[k]);
+        out->arm[k] = 1.0 / (sqrt(fu_dot(DIM, one, one) * fu_dot(DIM, other, other)) * turn * turn);
+    }
     fu_discrete_point(model, &sheave->wheel.attachments[0], at->now, at->next, out->middle.wheel.centre.P);
     for (int d = 0; d < DIM; ++d) out->c_change[d] = out->next.wheel.c[d] - out->now.wheel.c[d];
     for (int j = 0; j <= sheave->n_zones; ++j) out->s_change[j] = at->psi[sheave->s[j]];
@@ -86,7 +94,7 @@ static void add_opening(const step_view *step, double moment, step_forces *out)
 int fu_sheave_history_size(const fu_coupling *coupling)
 {
     const fu_sheave *sheave = sheave_of(coupling);
-    return is_in_space(sheave) ? 0 : FU_MOMENTA_HEAD + sheave->n_zones * POINTS * DIM;
+    return FU_MOMENTA_HEAD + sheave->n_zones * POINTS * DIM;
 }
 
 static int number_of(int zone, int point)
@@ -131,7 +139,6 @@ void fu_sheave_history_over_step(const fu_model *model, const fu_coupling *coupl
     const fu_sheave *sheave = sheave_of(coupling);
     fu_momenta *next = fu_momenta_of(coupling, at->next);
     step_view step;
-    if (is_in_space(sheave)) return;
     step_at(model, sheave, at, &step);
     for (int j = 0; j < sheave->n_zones; ++j)
         for (int g = 0; g < POINTS; ++g) point_over_step(sheave, at, &step, j, g, 0, next->P + number_of(j, g));
@@ -144,7 +151,7 @@ void fu_sheave_history_jump(const fu_model *model, const fu_coupling *coupling, 
     fu_momenta *known = fu_momenta_of(coupling, state);
     fu_state jump = *state;
     fu_sheave_state at;
-    if (is_in_space(sheave) || known->is_known == 0.0) return;
+    if (known->is_known == 0.0) return;
     jump.v = (double *)change;
     fu_sheave_at(model, sheave, &jump, 0, &at);
     for (int j = 0; j < sheave->n_zones; ++j)
@@ -159,10 +166,10 @@ double fu_sheave_energy_beyond_velocities(const fu_model *model, const fu_coupli
 {
     const fu_sheave *sheave = sheave_of(coupling);
     const fu_wheel *wheel = &sheave->wheel;
-    const fu_momenta *known = is_in_space(sheave) ? 0 : fu_momenta_of(coupling, state);
+    const fu_momenta *known = fu_momenta_of(coupling, state);
     fu_sheave_state at;
     double total = 0.0, T;
-    if (!known || known->is_known == 0.0) return 0.0;
+    if (known->is_known == 0.0) return 0.0;
     fu_sheave_at(model, sheave, state, 0, &at);
     for (int j = 0; j < sheave->n_zones; ++j) {
         const fu_zone of = fu_zone_at(&at, j);
@@ -259,8 +266,7 @@ static double spin_change(const step_view *step)
 static void into_y(const fu_sheave *sheave, const step_view *step, const step_forces *of, double y[Y])
 {
     for (int k = 0; k < ENDS; ++k) {
-        const double *x = step->middle.x[k], arm = of->turn[k] / fu_dot(DIM, x, x),
-                     force[DIM] = {-arm * x[1], arm * x[0]};
+        const double *x = step->middle.x[k], arm = of->turn[k] * step->arm[k], force[DIM] = {-arm * x[1], arm * x[0]};
         for (int d = 0; d < DIM; ++d) {
             y[k * NODE + d] += force[d];
             y[CENTRE + d] -= force[d];
@@ -271,12 +277,49 @@ static void into_y(const fu_sheave *sheave, const step_view *step, const step_fo
     for (int j = 0; j <= sheave->n_zones; ++j) y[MATERIAL + j] += of->s[j];
 }
 
+/* Adds the forces of the conditions in the plane, |x| and the product of x and the slope, by y: their derivatives by
+ * the mean vectors are discrete ones. Computes the residuals. */
+static void add_conditions_in_plane(const fu_sheave *sheave, const step_view *step, const double *multipliers,
+                                    double *phi, double y[Y])
+{
+    double J[MAX_CONDITIONS][Y], unused[MAX_CONDITIONS][Y], half_way[MAX_CONDITIONS];
+    fu_sheave_rows_at(sheave, &step->middle, J, half_way);
+    fu_sheave_rows_at(sheave, &step->next, unused, phi);
+    for (int r = 0; r < ENDS * DIM; ++r)
+        for (int i = 0; i < Y; ++i) y[i] += J[r][i] * multipliers[r];
+}
+
+/* Adds the same in space to those on the dofs. */
+static void add_conditions_in_space(const fu_sheave *sheave, const step_view *step, const fu_equations *at,
+                                    const double *multipliers, double *phi, double *f)
+{
+    for (int k = 0; k < ENDS; ++k, multipliers += FU_FOOT_CONDITIONS, phi += FU_FOOT_CONDITIONS) {
+        double rows[FU_FOOT_CONDITIONS * FU_FOOT_DOFS], square = 0.0;
+        fu_tangent_point now, next, foot;
+        fu_tangent_point_at(sheave, k, &step->now.wheel.centre, at->now->q, multipliers, &now);
+        fu_tangent_point_at(sheave, k, &step->next.wheel.centre, at->next->q, multipliers, &next);
+        fu_tangent_point_at(sheave, k, &step->middle.wheel.centre, at->middle->q, multipliers, &foot);
+        fu_tangent_point_rows(&foot, rows);
+        memcpy(phi, next.phi, sizeof next.phi);
+        for (int j = 0; j < foot.n; ++j) square += at->psi[foot.dofs[j]] * at->psi[foot.dofs[j]];
+        for (int r = 0; r < FU_FOOT_CONDITIONS; ++r) {
+            const double *row = rows + r * foot.n;
+            double rest = next.phi[r] - now.phi[r];
+            for (int j = 0; j < foot.n; ++j) rest -= row[j] * at->psi[foot.dofs[j]];
+            const double along = square > 0.0 ? rest / square : 0.0;
+            for (int j = 0; j < foot.n; ++j)
+                f[foot.dofs[j]] += multipliers[r] * (row[j] + along * at->psi[foot.dofs[j]]);
+        }
+    }
+}
+
 void fu_sheave_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
                              double *internal)
 {
     const fu_sheave *sheave = sheave_of(coupling);
     const double *multipliers = at->next->forces + coupling->force;
-    double y[Y] = {0.0}, J[MAX_CONDITIONS][Y], unused[MAX_CONDITIONS][Y], phi[MAX_CONDITIONS], passed[MAX_CONDITIONS];
+    const int n = ENDS * conditions_of(sheave);
+    double y[Y] = {0.0}, phi[MAX_CONDITIONS];
     step_forces of = {.wheel = 0.0};
     step_view step;
     step_at(model, sheave, at, &step);
@@ -289,16 +332,15 @@ void fu_sheave_step_residual(const fu_model *model, const fu_coupling *coupling,
     }
     add_losses(sheave, &step, &of);
     into_y(sheave, &step, &of, y);
-    /* |x| and the product of x and the slope: their derivatives by the mean vectors are discrete ones */
-    fu_sheave_rows_at(sheave, &step.middle, J, passed);
-    fu_sheave_rows_at(sheave, &step.next, unused, phi);
-    for (int r = 0; r < ENDS * DIM; ++r)
-        for (int i = 0; i < Y; ++i) y[i] += J[r][i] * multipliers[r];
+    if (is_in_space(sheave)) {
+        fu_sheave_add_weight_across(sheave, &step.middle, y);
+        add_conditions_in_space(sheave, &step, at, multipliers, phi, f);
+    } else add_conditions_in_plane(sheave, &step, multipliers, phi, y);
     fu_sheave_scatter(sheave, &step.middle, y, f);
     fu_wheel_add_bearing(&sheave->wheel, &step.middle.wheel, f);
-    for (int r = 0; r < ENDS * DIM; ++r)
+    for (int r = 0; r < n; ++r)
         internal[coupling->unknown + r] = -fu_row_unit(at->weights.inertia, coupling->scale[r]) * phi[r];
-    for (int r = ENDS * DIM; r < coupling->n_forces; ++r)
+    for (int r = n; r < coupling->n_forces; ++r)
         internal[coupling->unknown + r] = -at->weights.stiffness * multipliers[r];
 }
 
