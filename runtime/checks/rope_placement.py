@@ -17,7 +17,7 @@ from ..parts.point_force import PointForce
 from ..parts.rope import Rope
 from ..parts.rope_items import Sheave
 from ..parts.rope_route import MAX_LAYER, DrawnRoute
-from ..parts.rope_route_space import fleet_angles
+from ..parts.rope_route_space import fleet_angle, fleet_angles, groove_of
 from ..parts.scene_data import SceneData
 from ..parts.validation import show
 from .placement import placed_attachment, report
@@ -133,7 +133,8 @@ def _notes(scene: SceneData, rope: Rope) -> list[str]:
 def _notes_in_space(rope: Rope, route: DrawnRoute) -> list[str]:
     """Return notes on the fleet angles of a rope as drawn."""
     found = []
-    for item, angles in zip(rope.sheaves, fleet_angles(route), strict=True):
+    at_drums = [(drum, (fleet_angle(groove_of(drum.axis), route.spans[end]),)) for end, drum in rope.drums.items()]
+    for item, angles in [*zip(rope.sheaves, fleet_angles(route), strict=True), *at_drums]:
         if (largest := max(angles)) > item.max_fleet_angle:
             found.append(f"{rope.where}: {item.where}: the fleet angle {show(largest, 'rad')} exceeds max_fleet_angle, "
                          f"{show(item.max_fleet_angle, 'rad')}: a rope may leave its groove; turn the axis, or move it "

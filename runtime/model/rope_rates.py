@@ -15,7 +15,7 @@ at the last end the opposite.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -23,6 +23,9 @@ import numpy as np
 from ..base.rotations import rotate
 from ..errors import SceneError
 from ..parts.rope_drawing import drawn_anew
+from ..parts.rope_items import SIDES
+from ..parts.rope_route import DrawnRoute
+from ..parts.rope_route_space import groove_of
 from .attachments import AttachmentModel
 from .model import Model
 from .rope_states import moved
@@ -57,15 +60,46 @@ def _follow_in_space(model: Model, rope: RopeModel) -> None:
     grooves = {wheel.name: attachment_axes(model, wheel.attachments[0], beside)[..., :2]
                for wheel, _, _ in _items(model, rope) if wheel is not None and wheel.tilts}
     try:
-        before, after = (rope_model(rope.part, drawn_anew(rope.part, rope.route, centres, {
-            name: both[k] for name, both in grooves.items()}), rope.first).q
-            for k, centres in enumerate(np.stack(places, axis=1)))
+        routes = [drawn_anew(rope.part, rope.route, centres, {name: both[k] for name, both in grooves.items()})
+                  for k, centres in enumerate(np.stack(places, axis=1))]
     except ValueError as error:
         raise SceneError(rope.part.where, f"the rates with which it starts are not known: {error.args[0]}",
                          f'give "{rope.part.name}.coordinate_rates" in the state to start from') from None
+    wound = _wound_in_space(model, rope, routes, [places[0], places[-1]], grooves)
+    before, after = (_wound_along(rope, route, {end: sign * length for end, length in wound.items()})
+                     for sign, route in zip((-1, 1), routes, strict=True))
     rates = (after - before) / (2 * RATE_STEP)
     turning = np.isin(np.arange(len(rates)), [turn - rope.first for _, turn in rope.turns])
     model.v[rope.coordinates] = np.where(turning, model.v[rope.coordinates], rates)
+
+
+def _wound_in_space(model: Model, rope: RopeModel, routes: list[DrawnRoute], centres: list[np.ndarray],
+                    grooves: dict[str, np.ndarray]) -> dict[int, float]:
+    """Return the stress-free lengths in m that drums, by their ends, wind over `RATE_STEP`.
+
+    routes: that time before the start and after; centres (2, 3) of the items at both ends, grooves (2, 3, 2), then.
+    """
+    found = {}
+    for at in rope.drums:
+        drum = rope.part.drums[at.end]
+        planes = grooves.get(drum.name, np.broadcast_to(groove_of(drum.axis), (2, 3, 2)))
+        feet = [route.spans[0].start if at.end == 0 else route.spans[-1].end for route in routes]
+        angles = [np.arctan2(*((foot - centre) @ plane)[::-1])
+                  for foot, centre, plane in zip(feet, centres[at.end], planes, strict=True)]
+        angle = (angles[1] - angles[0] + np.pi) % (2 * np.pi) - np.pi
+        turned = 2 * RATE_STEP * model.v[at.turn] if at.turn >= 0 else 0.0
+        sense = SIDES[drum.side] * (1 if at.end == 0 else -1)
+        found[at.end] = sense * drum.radius * (angle - turned) / (2 * rope.route.stretch)
+    return found
+
+
+def _wound_along(rope: RopeModel, route: DrawnRoute, wound: dict[int, float]) -> np.ndarray:
+    """Return the coordinates of a rope along a route after its drums have wound these lengths, m, by their ends."""
+    free = rope.route.free_length - sum(wound.values())
+    found = rope_model(rope.part, replace(route, stretch=route.length / free), rope.first)
+    lengths = np.concatenate([np.array(at.s) - rope.first for at in (*found.spans, *found.sheaves)]).astype(int)
+    found.q[np.unique(lengths)] += wound.get(0, 0.0)
+    return found.q
 
 
 def _follow_in_plane(model: Model, rope: RopeModel) -> None:

@@ -14,6 +14,7 @@ from ..parts.locations import grips
 from ..parts.rope import Rope
 from ..parts.rope_items import SIDES, Anchor, Drum, RouteItem, Sheave
 from ..parts.rope_route import MIN_SPAN_RATIO, MIN_WRAP, DrawnArc, DrawnRoute
+from ..parts.rope_route_space import groove_of
 from ..parts.scene_data import SceneData
 from ..parts.section_stiffness import section_stiffness
 from .attachments import AttachmentModel, ModelBuilder
@@ -284,31 +285,22 @@ class SpanModel(AlongSpan, CouplingModel):
 
 
 @dataclass(kw_only=True)
-class SheaveModel(CouplingModel):
-    """A sheave between two spans: fu_sheave of the engine.
+class WheelModel(CouplingModel):
+    """What sheaves and drums share: fu_wheel of the engine.
 
     plane: (dim, 2), unit vectors of the plane of the groove; tilts: whether it turns with the body, in whose axes they
-    are then, and g along the ground's; foot: in space the kernel of tangent points; weight:
-    half that of a length, N/m, by which chords sag; limit: tension over the length of a chord below which the sag has
-    its limit, N/m.
+    are then, and g along the ground's. weight: half that of a length of the rope, N/m, by which chords sag; limit:
+    tension over the length of a chord below which the sag has its limit, N/m.
     """
 
     kernel: str
     attachments: tuple[AttachmentModel]
-    before: SpanCoordinates
-    after: SpanCoordinates
-    coordinates: SheaveCoordinates
     radius: float
-    tangent_radius: tuple[float, float]
     sense: float
     rho: float
-    tau: float
     g: np.ndarray
     A: np.ndarray
     inertia: float
-    friction: float
-    slip_velocity: float
-    closing: float
     damping: float
     torque_signal: int
     torque: float
@@ -316,6 +308,40 @@ class SheaveModel(CouplingModel):
     tilts: bool
     weight: np.ndarray
     limit: float
+
+    @property
+    def kernel_families(self) -> list[str]:
+        """Return the names of the kernel families that it uses."""
+        return [self.kernel, *([self.foot] if self.foot else [])]
+
+    @property
+    def foot(self) -> str:
+        """Return the kernel of its tangent points in space, none in the plane."""
+        return "tangent_point" if len(self.plane) == 3 else ""
+
+    @property
+    def groove(self) -> list[float]:
+        """Return the plane of the groove, in space."""
+        return np.ravel(self.plane).tolist() if self.foot else []
+
+    @property
+    def axis(self) -> list[float]:
+        """Return its axis in space."""
+        return np.cross(*self.plane.T).tolist() if self.foot else []
+
+
+@dataclass(kw_only=True)
+class SheaveModel(WheelModel):
+    """A sheave between two spans: fu_sheave of the engine."""
+
+    before: SpanCoordinates
+    after: SpanCoordinates
+    coordinates: SheaveCoordinates
+    tangent_radius: tuple[float, float]
+    tau: float
+    friction: float
+    slip_velocity: float
+    closing: float
     span_reach: tuple[int, int]
     least_wrap: float = MIN_WRAP
     sticks: bool = False
@@ -365,27 +391,7 @@ class SheaveModel(CouplingModel):
             found += [np.r_[self.after.node(k), self.after.s] for k in range(1, other + 1)]
         return found
 
-    @property
-    def kernel_families(self) -> list[str]:
-        """Return the names of the kernel families that it uses."""
-        return [self.kernel, *([self.foot] if self.foot else [])]
-
     # --- in space -------------------------------------------------------------------------------------------------
-
-    @property
-    def foot(self) -> str:
-        """Return the kernel of its tangent points, none in the plane."""
-        return "tangent_point" if self.before.dim == 3 else ""
-
-    @property
-    def groove(self) -> list[float]:
-        """Return the plane of the groove."""
-        return np.ravel(self.plane).tolist()
-
-    @property
-    def axis(self) -> list[float]:
-        """Return its axis in space."""
-        return np.cross(*self.plane.T).tolist() if self.foot else []
 
     @property
     def chord(self) -> tuple[float, float]:
@@ -486,7 +492,6 @@ def wrap_points(builder: ModelBuilder) -> Iterator[WrapPointModel]:
 
 
 def _sheaves(builder: ModelBuilder) -> Iterator[SheaveModel]:
-    gravity = np.array(builder.scene.gravity)
     for rope in builder.ropes:
         if not rope.part.mass:
             continue
@@ -494,39 +499,42 @@ def _sheaves(builder: ModelBuilder) -> Iterator[SheaveModel]:
         for k, (item, arc, beside) in enumerate(of_sheaves):
             before, after = (rope.spans[each] for each in beside)
             scale = [rope.mass_of_element(each) for each in beside for _ in range(rope.part.dim)]
-            weight, tilts = rope.rho * gravity / 2, rope.part.dim == 3 and may_turn(builder.scene, item.end.on)
-            plane = _on_body(builder.scene, item.end.on, arc.groove) if tilts else arc.groove
-            centre = builder.attachment(item.end, _axes_of(plane)) if tilts else _centre_of(builder, item)
             if rope.part.may_leave(item):
                 scale += scale[:1] * CONDITIONS_BESIDE
-            sheave = SheaveModel(type="sheave", name=item.name, kernel="planar_sheave", attachments=(centre,),
-                              before=before, after=after, coordinates=rope.sheaves[k], radius=arc.radius,
-                              tangent_radius=(arc.tangent_radius,) * 2,
-                              sense=float(arc.sense), rho=rope.rho, tau=rope.part.material.damping_time,
-                              g=gravity if tilts else _in_groove(plane, gravity), A=rope.stiffness[:2], scale=scale,
-                              plane=plane, tilts=tilts, weight=weight[: 3 * (rope.part.dim == 3)],
-                              limit=float(np.linalg.norm(weight)) / MAX_SAG + NO_TENSION * rope.stiffness[0],
-                              span_reach=(_reach(rope, beside[0], arc), _reach(rope, beside[1], arc)),
-                              n_multipliers=len(scale), has_inertia=True, **_motion_of(builder, item),
-                              friction=item.coefficient, slip_velocity=item.slip_velocity,
-                              closing=rope.route.free_length * (rope.part.closed and k == 0),
-                              is_damped=rope.part.material.damping_time > 0 or item.coefficient > 0 or item.damping > 0,
-                              sticks=item.sticks)
+            sheave = SheaveModel(
+                type="sheave", name=item.name, kernel="planar_sheave", before=before, after=after,
+                coordinates=rope.sheaves[k], radius=arc.radius, tangent_radius=(arc.tangent_radius,) * 2,
+                sense=float(arc.sense), tau=rope.part.material.damping_time, scale=scale, n_multipliers=len(scale),
+                **_wheel_of(builder, rope, item, arc.groove), has_inertia=True, friction=item.coefficient,
+                span_reach=(_reach(rope, beside[0], arc.radius), _reach(rope, beside[1], arc.radius)),
+                slip_velocity=item.slip_velocity, closing=rope.route.free_length * (rope.part.closed and k == 0),
+                is_damped=rope.part.material.damping_time > 0 or item.coefficient > 0 or item.damping > 0,
+                sticks=item.sticks)
             sheave.points = [WrapPointModel(type="wrap_point", name=item.name, of=sheave, place=place, scale=scale[:1],
                                             n_multipliers=1, is_damped=True)
                              for place in range(item.sticks * (item.n_zones + 1))]
             yield sheave
 
 
-def _centre_of(builder: ModelBuilder, wheel: Sheave | Drum) -> AttachmentModel:
-    """Return the attachment of the centre of a sheave or a drum; in the plane a cable has axes that turn."""
-    return builder.attachment(wheel.end, np.eye(3) if builder.scene.dim == 2 else None)
-
-
 def _motion_of(builder: ModelBuilder, wheel: Sheave | Drum) -> dict[str, Any]:
     """Return the entries of a sheave or a drum about its axis: inertia, bearing, and the torque of its drive."""
     number, factor = (-1, 0.0) if wheel.torque is None else builder.signals.scale(wheel.torque)
     return {"inertia": wheel.inertia, "damping": wheel.damping, "torque_signal": number, "torque": factor}
+
+
+def _wheel_of(builder: ModelBuilder, rope: RopeModel, item: Sheave | Drum, groove: np.ndarray) -> dict[str, Any]:
+    """Return the entries of a wheel of a rope with mass, of a plane of the groove as drawn: what holds it, gravity and
+    the rope, and those of `_motion_of`.
+    """
+    gravity, dim = np.array(builder.scene.gravity), rope.part.dim
+    tilts, weight = dim == 3 and may_turn(builder.scene, item.end.on), rope.rho * gravity / 2
+    plane = _on_body(builder.scene, item.end.on, groove) if tilts else groove
+    axes = _axes_of(plane) if tilts else np.eye(3) if dim == 2 else None  # a cable turns
+    return {"attachments": (builder.attachment(item.end, axes),), "plane": plane, "tilts": tilts,
+            "g": gravity if tilts else _in_groove(plane, gravity), "rho": rope.rho, "A": rope.stiffness[:2],
+            "weight": weight[: 3 * (dim == 3)],
+            "limit": float(np.linalg.norm(weight)) / MAX_SAG + NO_TENSION * rope.stiffness[0],
+            **_motion_of(builder, item)}
 
 
 def _axes_of(plane: np.ndarray) -> np.ndarray:
@@ -544,12 +552,12 @@ def _in_groove(plane: np.ndarray, vector: np.ndarray) -> np.ndarray:
     return vector if len(plane) == 2 else np.array([*(vector @ plane), vector @ np.cross(*plane.T)])
 
 
-def _reach(rope: RopeModel, k: int, arc: DrawnArc) -> int:
+def _reach(rope: RopeModel, k: int, radius: float) -> int:
     """Return the number of elements of a span in which a chord may end: twice those of its length as drawn, and
     `LEAST_REACH` of a span that becomes short.
     """
     n, span = rope.spans[k].n_elements, rope.route.spans[k]
-    return min(n, max(LEAST_REACH, int(np.ceil(2 * arc.radius * rope.route.stretch * n / span.length))))
+    return min(n, max(LEAST_REACH, int(np.ceil(2 * radius * rope.route.stretch * n / span.length))))
 
 
 CELLS = 256
@@ -557,31 +565,20 @@ CELLS = 256
 
 
 @dataclass(kw_only=True)
-class DrumModel(CouplingModel):
+class DrumModel(WheelModel):
     """A drum at an end of a rope: fu_drum of the engine.
 
     ends_run_by: "error" or "stop", where it has run empty.
     """
 
-    kernel: str
-    attachments: tuple[AttachmentModel]
     coordinates: DrumCoordinates
     cell: float
     direction: float
     end: float
-    radius: float
     tangent_radius: float
     stretch: float
-    sense: float
-    rho: float
-    g: np.ndarray
-    A: np.ndarray
-    inertia: float
-    damping: float
-    torque_signal: int
-    torque: float
     ends_run_by: str
-    tilts: bool = False
+    span_reach: int
     n_cells: int = CELLS
     n_numbers: int = CELLS + 1
 
@@ -604,24 +601,54 @@ class DrumModel(CouplingModel):
     @property
     def adjacent(self) -> list[np.ndarray]:
         """Return its dofs, beside those of its centre."""
-        return [np.r_[self.coordinates.node, self.s, self.coordinates.turns].astype(int)]
+        found = [np.r_[self.coordinates.node, self.s, self.coordinates.turns].astype(int)]
+        if self.foot:
+            span, reach = self.coordinates.span, self.span_reach
+            near = range(1, reach + 1) if self.direction > 0 else range(span.n_elements - reach, span.n_elements)
+            found += [np.r_[span.node(k), span.s] for k in near]
+        return found
+
+    @property
+    def chord(self) -> float:
+        """Return the stress-free length of the chord at the tangent point, m."""
+        return self.radius
+
+    @property
+    def span_first(self) -> int:
+        """Return the first dof of its span."""
+        return self.coordinates.span.first
+
+    @property
+    def span_elements(self) -> int:
+        """Return the number of elements of its span."""
+        return self.coordinates.span.n_elements
+
+    @property
+    def span_s(self) -> tuple[int, int]:
+        """Return the dofs of the material coordinates of the ends of its span."""
+        return self.coordinates.span.s
+
+    @property
+    def share(self) -> np.ndarray:
+        """Return the shares of the nodes of its span."""
+        return self.coordinates.span.share
 
 
 def drum_models(builder: ModelBuilder) -> Iterator[DrumModel]:
     """Yield the drums of all ropes."""
-    gravity = np.array(builder.scene.gravity)
     for rope in builder.ropes:
         for at in rope.drums if rope.part.mass else ():
-            item = rope.part.drums[at.end]
+            item, dim = rope.part.drums[at.end], rope.part.dim
             direction = 1.0 if at.end == 0 else -1.0
-            yield DrumModel(type="drum", name=item.name, kernel="planar_sheave",
-                            attachments=(_centre_of(builder, item),), coordinates=at,
+            number = at.end if at.end == 0 else len(rope.spans) - 1
+            yield DrumModel(type="drum", name=item.name, kernel="planar_sheave", coordinates=at,
                             cell=rope.free_length / CELLS, direction=direction,
                             end=0.0 if at.end == 0 else rope.free_length, radius=item.radius,
                             tangent_radius=rope.route.reach[at.end], stretch=rope.route.stretch,
-                            sense=float(SIDES[item.side]), rho=rope.rho,
-                            g=gravity, A=rope.stiffness[:2], **_motion_of(builder, item), ends_run_by=item.at_end,
-                            scale=[rope.mass_of_element(at.end)] * 3, n_multipliers=3, has_inertia=True, is_damped=True)
+                            sense=float(SIDES[item.side]), ends_run_by=item.at_end,
+                            **_wheel_of(builder, rope, item, groove_of(item.axis) if dim == 3 else np.eye(2)),
+                            span_reach=_reach(rope, number, item.radius), scale=[rope.mass_of_element(at.end)] * (dim + 1),
+                            n_multipliers=dim + 1, has_inertia=True, is_damped=True)
 
 
 @dataclass(kw_only=True)

@@ -78,8 +78,8 @@ class Rope(Part):
         an anchor with which it is that tension at rest, without friction, loads and fluids, among the bodies as drawn
     length: stress-free length of the whole rope with what is wound on drums, m; without this at most the drawn length.
         The stretch is uniform as drawn
-    element: "cable8p" in the plane z = 0; "cable12" in space, with axes of sheaves in any direction, which turn with
-        the bodies that they are on. There drums are not possible yet
+    element: "cable8p" in the plane z = 0; "cable12" in space, with axes of sheaves and drums in any direction, which
+        turn with the bodies that they are on
     mass: False for a rope without mass and bending stiffness, in the plane: straight between the sheaves, with one
         tension from one end, drum or sheave with friction to the next, and slack where it would push. A sheave with
         friction holds the rope up to the limit e^(mu theta), where the run ends with a RopeLeftError; there and on
@@ -130,11 +130,6 @@ class Rope(Part):
                 raise ValueError(f"route has {what} between its ends", "let two ropes end there")
         if not self.wheels:
             raise ValueError("route has no sheave and no drum", "take scene.cable() between two points")
-        if self.drums and self.dim == 3:
-            drum = next(iter(self.drums.values()))
-            raise ValueError(f'{drum.where} winds it in the plane z = 0, but its element is "{self.element}", of ropes '
-                             "in space", f'take element="{PLANAR}", or an Anchor in the place of the drum: drums in '
-                             "space are not possible yet")
         for sheave in self.sheaves:
             if not (sheave.contact or self.may_leave(sheave)):
                 what = ("is on a rope without mass, whose contact follows from its place," if not self.mass else

@@ -102,8 +102,10 @@ def drawn_anew(rope: Roped, route: DrawnRoute, centres: np.ndarray,
     ValueError(cause, remedy) for an impossible one.
     """
     arcs = {arc.name: arc for arc in route.sheaves}
+    ends = dict(zip((0, len(rope.route) - 1), route.reach, strict=True))
     points = [replace(point, sense=arcs[point.name].sense, offset=arcs[point.name].tangent_radius - point.radius)
-              if point.name in arcs else point for point in _points(rope, centres)]
+              if point.name in arcs else replace(point, offset=ends[k] - point.radius) if point.name else point
+              for k, point in enumerate(_points(rope, centres))]
     points = [replace(point, groove=grooves[point.name]) if grooves and point.name in grooves else point
               for point in points]
     found = _along(rope, points) if rope.mass else _without_mass(rope, points)

@@ -110,7 +110,9 @@ def _whole_number_between(least: int, most: int) -> Any:
 
 
 class Wheel(RouteItem):
-    """Base of the items that a rope runs on: at, radius, side, inertia, torque, angle, velocity and damping."""
+    """Base of the items that a rope runs on: at, radius, side, inertia, torque, angle, velocity, damping, axis and
+    max_fleet_angle.
+    """
 
     positional = ("name", "at")
     name: Name
@@ -122,6 +124,8 @@ class Wheel(RouteItem):
     angle: AnySignal | None = None
     velocity: AnySignal | None = None
     damping: Annotated[float, not_negative("N m s")] = 0.0
+    axis: Annotated[Vector, direction(turns=AXIS)] = (0.0, 0.0, 1.0)
+    max_fleet_angle: Annotated[float, positive("rad")] = MAX_FLEET_ANGLE
 
     @property
     def turns_round(self) -> bool:
@@ -146,6 +150,12 @@ class Wheel(RouteItem):
     def held_at(self, end: Attachment) -> Self:
         """Return it at a complete attachment."""
         return self.model_copy(update={"at": end})
+
+    def off_plane(self) -> Iterator[str]:
+        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
+        yield from super().off_plane()
+        if any(self.axis[:2]) or self.axis[2] < 0:
+            yield f"axis {show(self.axis)}"
 
     @model_validator(mode="after")
     def _is_driven_once(self) -> Self:
@@ -197,12 +207,10 @@ class Sheave(Wheel):
         fleet_angle_off="from the plane of the groove to the rope where it runs off, towards its axis",
         gap="of a rope that has left the sheave to the groove",
     )
-    axis: Annotated[Vector, direction(turns=AXIS)] = (0.0, 0.0, 1.0)
     friction: AnyFriction | None = None
     zones: Annotated[int, _whole_number_between(1, MAX_ZONES)] = 8
     turns: Annotated[int, _whole_number_between(0, MAX_TURNS)] = 0
     contact: Flag = True
-    max_fleet_angle: Annotated[float, positive("rad")] = MAX_FLEET_ANGLE
 
     @property
     def coefficient(self) -> float:
@@ -256,12 +264,6 @@ class Sheave(Wheel):
                              "along the route")
         return self
 
-    def off_plane(self) -> Iterator[str]:
-        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
-        yield from super().off_plane()
-        if any(self.axis[:2]) or self.axis[2] < 0:
-            yield f"axis {show(self.axis)}"
-
     def refined(self) -> "Sheave":
         """Return the sheave with twice the zones, or with half of them where twice exceeds `MAX_ZONES`."""
         return self.model_copy(update={"zones": self.zones // 2 if self.has_most_zones else 2 * self.zones})
@@ -275,13 +277,17 @@ class Drum(Wheel):
 
     at: its centre, a point of the ground, a body, a point in the axes of a body, or ("cable", s)
     radius: from its centre to the axis of the rope, m
-    side: "left" or "right": where it lies, looking along the route, from the first to the last item. A rope with the
-        drum on its left runs counter-clockwise around it
+    side: "left" or "right": where it lies, looking along the route, from the first to the last item, with the axis up.
+        A rope with the drum on its left runs counter-clockwise around it
     length_in_store: stress-free length of the rope that is wound at the start, m
     inertia: about its axis, without the wound rope, kg m²; a drum with neither inertia nor prescribed motion is held
-    torque: of a motor or a brake between it and what holds it, over time, N m; it turns about z, counter-clockwise
+    torque: of a motor or a brake between it and what holds it, over time, N m; it turns about its axis,
+        counter-clockwise
     angle, velocity: of its rotation over time, prescribed, rad or rad/s, relative to the body that it is on
     damping: of its bearing, N m s
+    axis: its direction as drawn, of a rope in space, which turns with the body that it is on; by default z. There the
+        rope lies in the plane across it through ``at``
+    max_fleet_angle: between this plane and the rope as drawn, in space, rad; a larger one is reported
     at_end: where it has run empty, "error" ends the run with a RopeLeftError, "stop" as an event does
     """
 
@@ -297,6 +303,7 @@ class Drum(Wheel):
         normal_force="of the drum on an angle, where the rope leaves it",
         angle="by which the drum has turned, relative to the body that it is on",
         residual="largest distance of the rope from its tangent point",
+        fleet_angle="from the plane of the groove to the rope, towards its axis",
     )
     side: Annotated[str, one_of(SIDES)]
     length_in_store: Annotated[float, positive("m")]

@@ -32,10 +32,14 @@ def fleet_angles(route: DrawnRoute) -> list[tuple[float, float]]:
     after = len(route.sheaves) - len(route.spans) + 1
     found = []
     for k, arc in enumerate(route.sheaves):
-        axis = np.cross(*arc.groove.T)
         beside = route.spans[k - after], route.spans[k - after + 1]
-        found.append((asin(abs(axis @ beside[0].direction)), asin(abs(axis @ beside[1].direction))))
+        found.append((fleet_angle(arc.groove, beside[0]), fleet_angle(arc.groove, beside[1])))
     return found
+
+
+def fleet_angle(groove: np.ndarray, span: DrawnSpan) -> float:
+    """Return the angle between a span as drawn and the plane of a groove, rad."""
+    return asin(abs(np.cross(*groove.T) @ span.direction))
 
 
 def groove_of(axis: tuple[float, float, float]) -> np.ndarray:

@@ -146,7 +146,7 @@ def test_a_scene_that_a_joint_turns_steadily(integrator):
                     run["hoist.position"])
     assert np.abs(turned - turned[0]).max() < 2e-3
     still = slewed(0.0).run(0.08, output_step=0.04, tol=1e-6, integrator=integrator, progress=False)
-    assert run["top.wrap_angle"] == pytest.approx(still["top.wrap_angle"], abs=2e-3)
+    assert run["top.wrap_angle"] == pytest.approx(still["top.wrap_angle"], abs=3e-3)
     assert run["top.tension_on"] == pytest.approx(still["top.tension_on"], rel=2e-2)
     force = rotate(turned_by(np.stack([0 * run.time, -rate * run.time, 0 * run.time], axis=1)), run["top.force"])
     assert np.abs(force - force[0])[:, 2].max() < 0.1

@@ -109,11 +109,9 @@ def test_what_is_refused():
                 element="cable8p")
 
 
-def test_drums_are_planar():
-    winch = fu.Drum("winch", at=(-0.3, -1, 0), radius=0.2, side="right", length_in_store=3.0)
-    with refused('rope "hoist": drum "winch" winds it in the plane z = 0, but its element is "cable12", of ropes in '
-                 'space; take element="cable8p", or an Anchor in the place of the drum: drums in space are not '
-                 "possible yet"):
+def test_a_large_fleet_angle_of_a_drum_is_reported():
+    winch = fu.Drum("winch", at=(-0.3, -1, 0), radius=0.2, side="right", axis=(0, 0.2, 1), length_in_store=3.0)
+    with pytest.warns(fu.FunicularWarning, match='drum "winch": the fleet angle .* rad exceeds max_fleet_angle, 0.07'):
         rope_of(winch, TOP, ENDS[1])
 
 

@@ -104,19 +104,19 @@ const fu_coupling_events fu_span_events = {
 
 static double value_of_drum(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {
+    if (which == FLEET) return fu_drum_fleet_margin(run->model, coupling, state);
     return which == WRAP ? fu_drum_margin(run->model, coupling, state) : fu_drum_pressure(run->model, coupling, state);
 }
 
 static int functions_of_drum(const fu_coupling *coupling, fu_event_function *out)
 {
-    (void)coupling;
-    return list(PRESSURE + 1, out);
+    return list(fu_drum_is_in_space(coupling) ? FLEET + 1 : FLEET, out);
 }
 
 static int act_of_drum(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
 {
     (void)side;
-    *what = which == WRAP ? "ran empty" : "lifted off";
+    *what = which == WRAP ? "ran empty" : which == PRESSURE ? "lifted off" : "left the groove";
     return fu_leave(run, coupling, which == WRAP ? FU_LEFT_BY_EMPTY : which);
 }
 

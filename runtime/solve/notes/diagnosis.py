@@ -23,7 +23,7 @@ ROPE_LEFT = (
      "move the sheave into the way of the rope, leave it out, or stop before by an event"),
     ('a rope lifts off {kind} "{name}", as its tension is not above rho v² and its weight there, for the mass rho of a '
      "length at the speed v,", "take a higher tension or a lower speed, or stop before by an event"),
-    ('a rope leaves the groove of sheave "{name}", as a span is too short for its fleet angle f: not above 3 R tan f,',
+    ('a rope leaves the groove of {kind} "{name}", as a span is too short for its fleet angle f: not above 3 R tan f,',
      "turn the axis, keep what is at the ends of the span apart, or stop before by an event"),
     ('a span of rope "{name}" becomes too short to be modelled',
      "keep what is at the ends of the span apart, or stop before by an event"),

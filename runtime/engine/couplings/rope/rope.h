@@ -34,6 +34,8 @@ int fu_wrap_stretches(const fu_coupling *coupling, const fu_state *state);
 int fu_wrap_change(const fu_coupling *coupling, fu_state *now, int grows);
 double fu_wrap_pressure(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 double fu_fleet_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+double fu_span_fleet_margin(double length, double radius, double fleet);
+double fu_drum_fleet_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 double fu_span_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 /* Returns the stress-free length between an end of a span, 0 or 1, and the next material point that something holds to,
  * m. */
@@ -48,7 +50,8 @@ static inline int fu_is_gripped(const fu_coupling *span)
     return ((const fu_span_coupling *)span)->is_gripped;
 }
 
-/* Returns whether a sheave is one in space. */
+/* Return whether a sheave or a drum is one in space. */
 int fu_is_in_space(const fu_coupling *sheave);
+int fu_drum_is_in_space(const fu_coupling *drum);
 
 #endif

@@ -78,22 +78,10 @@ static void add_multipliers_on_nodes(const fu_sheave *sheave, const fu_sheave_st
 {
     for (int k = 0; k < ENDS; ++k, multipliers += FU_FOOT_CONDITIONS, phi += FU_FOOT_CONDITIONS) {
         const fu_foot of = fu_foot_of(sheave, k);
-        double on_node[SPACE] = {0.0}, in_groove[DIM];
         fu_tangent_point foot;
         fu_tangent_point_at(&of, &at->wheel, at->q, multipliers, &foot);
         memcpy(phi, foot.phi, sizeof foot.phi);
-        for (int r = 0; r < FU_FOOT_CONDITIONS; ++r)
-            for (int d = 0; d < SPACE; ++d) on_node[d] += foot.J[r * foot.n_vectors + d] * multipliers[r];
-        fu_into_groove(&at->wheel, on_node, in_groove);
-        y[ACROSS] -= fu_dot(SPACE, at->wheel.axis, on_node);
-        for (int d = 0; d < DIM; ++d) {
-            y[k * NODE + d] += in_groove[d];
-            y[CENTRE + d] -= in_groove[d];
-        }
-        if (!is_turning(sheave)) continue;
-        fu_tangent_point_moment(&at->wheel, &foot, multipliers, on_node);
-        fu_into_groove(&at->wheel, on_node, in_groove);
-        for (int d = 0; d < FU_TILTS; ++d) y[TILT + d] += in_groove[d];
+        fu_tangent_point_add_forces(&at->wheel, &foot, multipliers, y + k * NODE, y + CENTRE);
     }
 }
 

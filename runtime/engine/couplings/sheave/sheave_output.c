@@ -133,17 +133,22 @@ static double fleet_angle(const fu_sheave *sheave, const fu_sheave_state *at, in
 
 /* A span is a minimum of the energy R phi + l while its length along the groove is above R tan f: else the tangent
  * point runs away along the groove. The margin has a reserve. */
+double fu_span_fleet_margin(double length, double radius, double fleet)
+{
+    const double reserve = 3.0;
+    return length * cos(fleet) - reserve * radius * tan(fabs(fleet));
+}
+
 double fu_fleet_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     const fu_sheave *sheave = sheave_of(coupling);
-    const double reserve = 3.0;
     double least = INFINITY;
     fu_sheave_state at;
     fu_sheave_at(model, sheave, state, 0, &at);
     for (int k = 0; k < ENDS; ++k) {
         const double fleet = fleet_angle(sheave, &at, k);
         const double length = state->q[sheave->span_s[ENDS * k + 1]] - state->q[sheave->span_s[ENDS * k]];
-        least = fmin(least, length * cos(fleet) - reserve * sheave->wheel.radius * tan(fabs(fleet)));
+        least = fmin(least, fu_span_fleet_margin(length, sheave->wheel.radius, fleet));
     }
     return least;
 }

@@ -145,12 +145,23 @@ static void find_force_on_axis(const fu_tangent_point *at, const double *multipl
     }
 }
 
-void fu_tangent_point_moment(const fu_wheel_state *wheel, const fu_tangent_point *at, const double *multipliers,
-                             double out[SPACE])
+void fu_tangent_point_add_forces(const fu_wheel_state *wheel, const fu_tangent_point *at, const double *multipliers,
+                                 double on_node[FU_GROOVE], double *on_wheel)
 {
-    double force[SPACE];
+    double force[SPACE] = {0.0}, moment[SPACE], in_groove[FU_GROOVE];
+    for (int r = 0; r < FU_FOOT_CONDITIONS; ++r)
+        for (int d = 0; d < SPACE; ++d) force[d] += derivative(at, r, d) * multipliers[r];
+    fu_into_groove(wheel, force, in_groove);
+    on_wheel[FU_WHEEL_ACROSS] -= fu_dot(SPACE, wheel->axis, force);
+    for (int d = 0; d < FU_GROOVE; ++d) {
+        on_node[d] += in_groove[d];
+        on_wheel[d] -= in_groove[d];
+    }
+    if (at->n_vectors == AXIS) return;
     find_force_on_axis(at, multipliers, force);
-    fu_cross(wheel->axis, force, out);
+    fu_cross(wheel->axis, force, moment);
+    fu_into_groove(wheel, moment, in_groove);
+    for (int d = 0; d < FU_TILTS; ++d) on_wheel[FU_WHEEL_TILT + d] += in_groove[d];
 }
 
 /* Adds the change of the moment on the body, as the axis turns under the force on it. */

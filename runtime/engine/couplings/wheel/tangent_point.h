@@ -49,9 +49,9 @@ void fu_tangent_point_rows(const fu_tangent_point *at, double *rows);
 /* Computes the derivatives of the forces J' multipliers on the dofs (n x n) by those of `columns`. */
 void fu_tangent_point_stiffness(const fu_wheel_state *wheel, const fu_tangent_point *at,
                                 const fu_tangent_point *columns, const double *multipliers, double *K);
-/* Computes the moment of these forces on the body, as the axis turns with it. */
-void fu_tangent_point_moment(const fu_wheel_state *wheel, const fu_tangent_point *at, const double *multipliers,
-                             double out[3]);
+/* Adds these forces but those on the chord: on the node in the plane of the groove, and on the wheel. */
+void fu_tangent_point_add_forces(const fu_wheel_state *wheel, const fu_tangent_point *at, const double *multipliers,
+                                 double on_node[FU_GROOVE], double *on_wheel);
 /* Computes the second rates of the conditions at zero accelerations of the dofs. */
 void fu_tangent_point_bias(const fu_foot *foot, const fu_tangent_point *at, const fu_wheel_state *wheel,
                            const double *q, const double *v, double bias[FU_FOOT_CONDITIONS]);

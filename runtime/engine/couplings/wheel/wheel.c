@@ -78,6 +78,7 @@ static void find_centre(const fu_wheel *wheel, const double *a, fu_wheel_state *
         fu_into_groove(out, centre->p, out->c);
         fu_into_groove(out, centre->v, out->c_rate);
         fu_into_groove(out, out->acc, out->c_acc);
+        fu_into_groove(out, centre->bias, out->c_bias);
         out->across = fu_dot(SPACE, out->axis, centre->p);
         out->across_rate = fu_dot(SPACE, out->axis, centre->v);
         out->across_acc = fu_dot(SPACE, out->axis, out->acc);
@@ -86,6 +87,7 @@ static void find_centre(const fu_wheel *wheel, const double *a, fu_wheel_state *
     memcpy(out->c, centre->p, sizeof out->c);
     memcpy(out->c_rate, centre->v, sizeof out->c_rate);
     memcpy(out->c_acc, out->acc, sizeof out->c_acc);
+    memcpy(out->c_bias, centre->bias, sizeof out->c_bias);
 }
 
 void fu_wheel_at(const fu_model *model, const fu_wheel *wheel, const fu_state *state, const double *a,
