@@ -15,7 +15,7 @@ from ..parts.part import Part
 from ..parts.plane import called
 from ..parts.point_force import PointForce
 from ..parts.rope import Rope
-from ..parts.rope_items import Sheave
+from ..parts.rope_items import Wheel
 from ..parts.rope_route import MAX_LAYER, DrawnRoute
 from ..parts.rope_route_space import fleet_angle, fleet_angles, groove_of
 from ..parts.scene_data import SceneData
@@ -93,7 +93,7 @@ def _held(scene: SceneData, rope: Rope, k: int, end: Attachment) -> Attachment:
     """Return the complete attachment of an item of a route to a body, to a cable or to the ground."""
     if end.on is not None and end.on not in scene.holders:
         raise SceneError(rope.where, f'route.{k}: there is no body or cable "{end.on}"', near(end.on, scene.holders))
-    if end.on in scene.cables and rope.dim == 3 and isinstance(rope.route[k], Sheave):
+    if end.on in scene.cables and rope.dim == 3 and isinstance(rope.route[k], Wheel):
         raise SceneError(rope.where, f'route.{k} is held by cable "{end.on}", whose sections turn',
                          "take a body or a point of the ground, or a planar rope")
     return placed_attachment(scene, end, rope.where, f"route.{k}: ")
