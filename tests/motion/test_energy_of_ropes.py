@@ -99,9 +99,9 @@ def momenta(duration: float, scene: fu.Scene) -> np.ndarray:
         if coupling.type == "span":
             x, weight = np.polynomial.legendre.leggauss(4)
             P = coupling.rho * weight[:, None] / 2 * engine.history(k)[1:].reshape(-1, 4, 2)
-            lengths = np.diff(coupling.share) * np.diff(q[list(coupling.s)])
+            lengths = np.diff(coupling.span_share) * np.diff(q[list(coupling.span_s)])
             for j, length in enumerate(lengths):
-                e = q[coupling.first + 4 * j : coupling.first + 4 * j + 8].reshape(4, 2)
+                e = q[coupling.span_first + 4 * j : coupling.span_first + 4 * j + 8].reshape(4, 2)
                 total += momenta_of(hermite(e, length, (1 + x) / 2), P[j])
         if coupling.type == "sheave":
             x, weight = np.polynomial.legendre.leggauss(8)
@@ -257,7 +257,7 @@ def guided() -> fu.Scene:
     (lambda: with_route(fu.Anchor(at=(0.2, 1, 0)), fu.Sheave("top", at=(-0.5, 0, 0), radius=0.2, side="right",
                                                              contact=False)),
      'sheave "top", which the rope touches in a run; draw the rope on it, or take'),
-    (gripped, 'does not support parts that hold to a rope, and it holds to "rope"')])
+    (gripped, 'does not support what acts on a point of a rope, and it acts on "rope"')])
 def test_what_has_no_step_equations_is_refused(scene, message):
     with pytest.raises(fu.SceneError, match=message):
         scene().run(0.1, integrator="energy")

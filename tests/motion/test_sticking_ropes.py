@@ -236,5 +236,5 @@ def test_a_rope_without_mass_takes_sticking_friction():
 
 
 def test_integrators_without_sticking_ropes():
-    with pytest.raises(fu.SceneError, match='integrator "energy" has no discrete gradient'):
+    with pytest.raises(fu.SceneError, match='integrator "energy" does not support friction that sticks'):
         swing(**SHEAVES["held"]).run(0.01, integrator="energy")

@@ -20,7 +20,7 @@ from ...model.model import Model
 from ...model.taut_ropes import TautPointModel
 from ...parts.locations import grips
 from ...parts.rope import rough_sheaves
-from ...parts.rope_items import Drum
+from ...parts.rope_items import Drum, Sheave
 from ...parts.scene_data import SceneData
 from ...parts.settings import RunSettings
 from ...parts.slide import Slide
@@ -243,12 +243,20 @@ def _check_ropes(integrator: Integrator, scene: SceneData) -> None:
             if rope.dim == 3 and item.end.on is not None:
                 raise SceneError(rope.where, f'{who} does not support {item.where} in space on body "{item.end.on}"',
                                  f"hold it at the ground, or {another}")
+            if item.end.on in scene.cables:
+                raise SceneError(rope.where, f'{who} does not support {item.where} on cable "{item.end.on}"', another)
+            if isinstance(item, Sheave) and item.sticks:
+                raise SceneError(rope.where, f"{who} does not support friction that sticks, and that of {item.where} "
+                                 "does", f'take model="regularised", or {another}')
             if not item.contact:
                 raise SceneError(rope.where, f"{who} does not support {item.where}, which the rope touches in a run",
                                  f"draw the rope on it, or {another}")
     for part, _, end in grips(scene):
-        raise SceneError(part.where, f'{who} does not support parts that hold to a rope, and it holds to "{end.on}"',
+        raise SceneError(part.where, f'{who} does not support what acts on a point of a rope, and it acts on "{end.on}"',
                          another)
+    for part in (*scene.group("drags"), *scene.loads) if scene.ropes else ():
+        if on := next((name for name in part.refers_to() if name in scene.ropes), None):
+            raise SceneError(part.where, f'{who} does not support what acts along a rope, and it acts on "{on}"', another)
 
 
 def _check_gradients(integrator: Integrator, scene: SceneData, model: Model, engine: Engine) -> None:

@@ -294,11 +294,12 @@ static void add_conditions_in_space(const fu_sheave *sheave, const step_view *st
                                     const double *multipliers, double *phi, double *f)
 {
     for (int k = 0; k < ENDS; ++k, multipliers += FU_FOOT_CONDITIONS, phi += FU_FOOT_CONDITIONS) {
+        const fu_foot of = fu_foot_of(sheave, k);
         double rows[FU_FOOT_CONDITIONS * FU_FOOT_DOFS], square = 0.0;
         fu_tangent_point now, next, foot;
-        fu_tangent_point_at(sheave, k, &step->now.wheel.centre, at->now->q, multipliers, &now);
-        fu_tangent_point_at(sheave, k, &step->next.wheel.centre, at->next->q, multipliers, &next);
-        fu_tangent_point_at(sheave, k, &step->middle.wheel.centre, at->middle->q, multipliers, &foot);
+        fu_tangent_point_at(&of, &step->now.wheel, at->now->q, multipliers, &now);
+        fu_tangent_point_at(&of, &step->next.wheel, at->next->q, multipliers, &next);
+        fu_tangent_point_at(&of, &step->middle.wheel, at->middle->q, multipliers, &foot);
         fu_tangent_point_rows(&foot, rows);
         memcpy(phi, next.phi, sizeof next.phi);
         for (int j = 0; j < foot.n; ++j) square += at->psi[foot.dofs[j]] * at->psi[foot.dofs[j]];
