@@ -37,7 +37,7 @@ def _two_weights(rho: float) -> Found:
     found = {}
     for friction, name in ((0.1, "acceleration"), (0.0, "acceleration without friction")):
         scene = swing(1.0, 1.2, 0.22, 2.0, 2.0, 0.0)
-        turning = {"inertia": 0.90, "friction": fu.Friction(coefficient=friction, velocity=1e-6)} if friction else {}
+        turning = {"inertia": 0.90, "friction": fu.Friction(coefficient=friction, model="stick")} if friction else {}
         over_one(scene, 0.22, ("counterweight", "load"), elements=1, tension=10.7, given=rope_of(1e7, rho, 0, 1e-3),
                  **turning)
         run = scene.run(2.0, output_step=0.5, tol=1e-6, integrator="radau", progress=False)
@@ -53,7 +53,7 @@ def heavy_rope() -> Found:
     """A heavy rope with two weights on a sheave that it turns."""
     scene = swing(2.0, 2.5, 0.2, 5.0, 5.0, 0.0)
     over_one(scene, 0.2, ("counterweight", "load"), elements=2, tension=40.0, given=rope_of(1e7, 0.5, 0, 1e-4),
-             inertia=0.1, friction=fu.Friction(coefficient=0.5, velocity=1e-5))
+             inertia=0.1, friction=fu.Friction(coefficient=0.5, model="stick"))
     run = scene.run(2.0, output_step=1.0, tol=1e-5, integrator="radau", progress=False)
     way = run["load.position"][0, 1] - run["load.position"][:, 1]
     return {"way at 1 s": way[1], "way at 2 s": way[2], "light side": run["top.tension_on"][-1],
@@ -86,7 +86,7 @@ def _tackle(rho: float) -> Found:
     scene = fu.Scene(gravity=(0, -GRAVITY, 0))
     scene.rigid_body("block", mass=M, inertia=(M,) * 3, position=(0, -10, 0))
     weight(scene, "haul", m, 3 * R, -2)
-    of_both = {"radius": R, "inertia": J, "friction": fu.Friction(coefficient=0.5, velocity=1e-6)}
+    of_both = {"radius": R, "inertia": J, "friction": fu.Friction(coefficient=0.5, model="stick")}
     scene.rope("rope", route=[fu.Anchor(at=(-R, 0, 0)), fu.Sheave("lower", at="block", side="left", **of_both),
                               fu.Sheave("upper", at=(2 * R, 0, 0), side="right", **of_both), fu.Anchor("haul")],
                elements=1, tension=2050.0, **rope_of(1e7, rho, 0, 1e-3))
@@ -159,7 +159,7 @@ def capstan() -> Found:
     found = {}
     for mu, turns, name in ((0.1, 0, "mu .1 over pi"), (0.3, 0, "mu .3 over pi"), (0.3, 1, "mu .3 over 3 pi")):
         scene = fu.Scene(gravity=(0, 0, 0))
-        friction = fu.Friction(coefficient=mu, velocity=1e-4)
+        friction = fu.Friction(coefficient=mu, model="stick")
         turning = fu.TableSignal(time=[0, 0.5, 1], value=[0, -1, -1], interpolation="linear")
         scene.rope("rope", route=[fu.Anchor(at=(-0.2, -2, 0)),
                                   fu.Sheave("top", at=(0, 0, 0), radius=0.2, side="right", turns=turns, zones=4,
@@ -174,7 +174,7 @@ def belt(EI: float = 0.0) -> Found:
     """A belt that drives a loaded pulley, with 8 zones a wrap; EI: its bending, which the reference leaves out."""
     time = np.linspace(0, 2.5, 501)
     x = np.clip((time - 1) / 0.5, 0, 1)
-    friction = fu.Friction(coefficient=0.5, velocity=1e-4)
+    friction = fu.Friction(coefficient=0.5, model="stick")
     pulley = {"radius": 0.1, "side": "left", "inertia": 0.25, "friction": friction, "zones": 8}
     scene = fu.Scene(gravity=(0, 0, 0))
     scene.rope("belt", closed=True, length=1.1938052, elements=1, route=[
