@@ -27,8 +27,8 @@ ENDS = 2
 def span(family: ElementFamily) -> list[Relation]:
     """Return the relations of a span's kernels."""
     return [*_of_points(family.element), *_of_inertia(family.element), *_of_weight(family.element),
-            *_of_elasticity(family), *_of_damping(family), *_of_line_force(family.element), *_of_momentum(family.element),
-            *_of_elastic_step(family.element)]
+            *_of_elasticity(family), *_of_damping(family), *_of_line_force(family.element),
+            *_of_momentum(family.element), *_of_elastic_step(family.element)]
 
 
 def moved(s: State, t: Any) -> State:

@@ -252,11 +252,13 @@ def _check_ropes(integrator: Integrator, scene: SceneData) -> None:
                 raise SceneError(rope.where, f"{who} does not support {item.where}, which the rope touches in a run",
                                  f"draw the rope on it, or {another}")
     for part, _, end in grips(scene):
-        raise SceneError(part.where, f'{who} does not support what acts on a point of a rope, and it acts on "{end.on}"',
-                         another)
-    for part in (*scene.group("drags"), *scene.loads) if scene.ropes else ():
+        raise SceneError(part.where, f'{who} does not support what acts on a point of a rope, and it acts on '
+                         f'"{end.on}"', another)
+    along: list[Part] = [*scene.drags.values(), *scene.loads] if scene.ropes else []
+    for part in along:
         if on := next((name for name in part.refers_to() if name in scene.ropes), None):
-            raise SceneError(part.where, f'{who} does not support what acts along a rope, and it acts on "{on}"', another)
+            raise SceneError(part.where, f'{who} does not support what acts along a rope, and it acts on "{on}"',
+                             another)
 
 
 def _check_gradients(integrator: Integrator, scene: SceneData, model: Model, engine: Engine) -> None:
