@@ -5,7 +5,8 @@ side from which the material comes. The force f is sigma R f on phi, its opposit
 of both sides on s, so that it is the jump of the tension. Of a point with the share theta of the wrap |f| is at most
 tanh(mu theta/2) (P- + P+), with which the normal forces on an angle of both sides differ by exp(mu theta) (Euler's belt
 equation). P = T - rho/lambda (v^2 + R g . n), n from the centre to the point: the inertia of the turn and the weight
-are those of the stretched rope. Beside a tangent point the stretch of the span is that of its slope.
+are those of the stretched rope. Beside a tangent point the stretch of the span is that of its slope. A short wrap
+(short_wrap.py) has one point, in its middle between both spans, with all of its angle.
 
 Regularised friction is the limit times w/sqrt(w^2 + v0^2). Coulomb friction that sticks is a multiplier f with w = 0;
 where it slides, f is the limit in a direction. Since f acts on s by the mean stretch and w has that of one side, a
@@ -15,6 +16,7 @@ sticking point through which material passes takes f s' times half the jump of t
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -53,8 +55,10 @@ class Beside:
         return f"between a {self.before} and a {self.behind}"
 
 
-POINTS = (Beside("", "zone", "zone"), Beside("_on", "span", "zone"), Beside("_off", "zone", "span"))
+ON_ZONES = (Beside("", "zone", "zone"), Beside("_on", "span", "zone"), Beside("_off", "zone", "span"))
 """A point between two zones; the point where the rope runs on; the point where it runs off."""
+POINTS = (*ON_ZONES, Beside("_short", "span", "span"))
+"""These, and the point of a short wrap."""
 
 
 class _Point:
@@ -88,18 +92,21 @@ class _Point:
 
     @property
     def configuration(self) -> list[sp.Symbol]:
-        """Return the angles, lengths and the slope."""
+        """Return the angles, lengths and slopes."""
         return [*self.phi, *self.length, *self.slope]
 
     def limit(self, factor: sp.Expr, speed: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
         """Stages: P- + P+, and the limit of |f| times a factor."""
         p = self.p
         p.stage("limit")
-        here = self.phi[1] if self.beside.before == "zone" else self.phi[0]
+        phi, zones = self.phi, self.beside.zones
+        here = phi[1] if self.beside.before == "zone" else phi[0] if zones else (phi[0] + phi[1]) / 2
         outwards = p.define("outwards", self.R * (self.g[0] * sp.cos(here) + self.g[1] * sp.sin(here)))
         mass = p.define("drawn_mass", 2 * self.rho * p.define("inv_mean_stretch", 1 / self.mean))
         both = p.define("P", self.tension[0] + self.tension[1] - mass * (speed**2 + outwards))
-        decay = p.define("decay", sp.exp(-self.mu * self.sense * (self.phi[self.beside.zones] - self.phi[0]) / 2))
+        angle = self.sense * (phi[-1] - phi[0])
+        part = angle / 2 if zones else p.define("angle", sp.Piecewise((0, angle < 0), (angle, True)))
+        decay = p.define("decay", sp.exp(-self.mu * part))
         share = p.define("share", (1 - decay) * p.define("inv_share", 1 / p.define("one_more", 1 + decay)))
         p.stage("force")
         return both, p.define("f", factor * share * sp.Piecewise((0, both < 0), (both, True)))
@@ -118,18 +125,18 @@ class _Point:
         """Return the kernel with the derivatives of forces as its outputs."""
         p = self.p
         p.stage("derivatives")
-        p.output("K", jacobian(p, force, self.configuration), "SI", "derivatives of F by angles, lengths, the slope")
+        p.output("K", jacobian(p, force, self.configuration), "SI", "derivatives of F by angles, lengths, slopes")
         p.output("D", jacobian(p, force, self.rates), "SI", "derivatives of F by rates of phi, psi, s")
         return p
 
 
-def _places(p: Program, beside: Beside) -> tuple[np.ndarray, np.ndarray, list[sp.Symbol]]:
-    """Declare the angles, the lengths, and the slope of a span."""
-    zones = beside.zones
-    phi = p.input(f"angles{zones + 1}", zones + 1, "rad", "angles of the ends of its zones, in the rope's order")
-    length = p.input(f"lengths{zones}", zones, "m", "lengths of its zones")
-    slope = [] if zones == 2 else [*p.input("span_slope", DIM, "1", "slope r_S of the span")]
-    return phi, length, slope
+def _places(p: Program, beside: Beside) -> tuple[np.ndarray, list[sp.Symbol], list[sp.Symbol]]:
+    """Declare the angles, the lengths, and the slopes of spans."""
+    zones, angles = beside.zones, max(beside.zones, 1) + 1
+    phi = p.input(f"angles{angles}", angles, "rad", "angles of the ends of its zones, in the rope's order")
+    length = [*p.input(f"lengths{zones}", zones, "m", "lengths of its zones")] if zones else []
+    names = {0: ("slope", "span_slope"), 1: ("span_slope",), 2: ()}[zones]
+    return phi, length, [part for name in names for part in p.input(name, DIM, "1", "slope r_S of a span beside it")]
 
 
 def _rates(p: Program) -> list[sp.Symbol]:
@@ -143,7 +150,8 @@ def _stretches(beside: Beside, arm: sp.Expr, phi: np.ndarray, length: np.ndarray
                slope: list[sp.Symbol]) -> list[sp.Expr]:
     """Return the stretch of both sides; arm: the radius, with the sense of travel as sign."""
     of_zone = [arm * (phi[k + 1] - phi[k]) / length[k] for k in range(beside.zones)]
-    return [of_zone.pop(0) if kind == "zone" else sp.sqrt(slope[0]**2 + slope[1]**2) for kind in beside.sides]
+    of_span = [sp.sqrt(slope[k]**2 + slope[k + 1]**2) for k in range(0, len(slope), DIM)]
+    return [(of_zone if kind == "zone" else of_span).pop(0) for kind in beside.sides]
 
 
 def _source(stretch: list[sp.Expr], s_rate: sp.Expr) -> sp.Expr:
@@ -153,8 +161,8 @@ def _source(stretch: list[sp.Expr], s_rate: sp.Expr) -> sp.Expr:
 
 def kernels() -> list[Program]:
     """Return the kernels of friction."""
-    made = (friction, friction_tangent, coulomb, coulomb_tangent, coulomb_motion)
-    return [make(beside) for beside in POINTS for make in made]
+    return [*(make(beside) for beside in POINTS for make in (friction, friction_tangent)),
+            *(make(beside) for beside in ON_ZONES for make in (coulomb, coulomb_tangent, coulomb_motion))]
 
 
 def _friction(p: Program, beside: Beside) -> tuple[_Point, np.ndarray, dict[str, sp.Expr]]:

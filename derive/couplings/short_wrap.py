@@ -1,11 +1,12 @@
-"""A wrap so short that its stretch is that of the spans beside it, on a sheave without friction.
+"""A wrap so short that its stretch is that of the spans beside it.
 
 The stretch sigma R (phi_b - phi_a)/l of a wrap has no limit as the rope leaves the sheave. Below a small angle it is
 therefore the mean lambda of the lengths of both slopes beside the wrap, by the condition
 
     h = sigma R (phi_b - phi_a) - lambda l = 0,
 
-and the elastic energy is that of the length l at this stretch. Inertia and weight are those of a zone (sheave_zone.py).
+and the elastic energy is that of the length l at this stretch. Inertia and weight are those of zones (sheave_zone.py),
+which are equal parts of the wrap. Friction acts at one point in its middle (sheave_friction.py).
 """
 
 from __future__ import annotations

@@ -143,7 +143,7 @@ def _set_turns(model: Model, rope: RopeModel) -> None:
 class _Holder:
     """What holds an item of a route: velocity (dim,) in m/s, angular velocity of the item in rad/s, and radii in m to
     the axis of the rope and to its tangent points, with the sense of travel as sign; 0 at an anchor. contact: whether
-    the rope is held there.
+    the rope is held there; centre (dim,): of a sheave or drum, m.
     """
 
     velocity: np.ndarray
@@ -151,6 +151,7 @@ class _Holder:
     radius: float = 0.0
     reach: float = 0.0
     contact: bool = True
+    centre: np.ndarray | None = None
 
 
 def _items(model: Model, rope: RopeModel
@@ -180,25 +181,32 @@ def _holders(model: Model, rope: RopeModel) -> Iterator[_Holder]:
         turn = turns[wheel.name]
         reach = float(np.max(wheel.tangent_radius))
         yield _Holder(velocity, spin + (model.v[turn] if turn >= 0 else 0.0), wheel.sense * wheel.radius,
-                      wheel.sense * reach, not isinstance(wheel, SheaveModel) or wheel.has_contact(model.q))
+                      wheel.sense * reach, not isinstance(wheel, SheaveModel) or wheel.has_contact(model.q),
+                      attachment_points(model, held, model.q[None])[0, : model.dim])
 
 
 def _joined(q: np.ndarray, rope: RopeModel, holders: list[_Holder]) -> list[_Holder]:
-    """Return what holds the items, where points of a straight line stand for sheaves without contact beside it."""
-    found = list(holders)
-    for i, j in pairwise(k for k, holder in enumerate(holders) if holder.contact):
+    """Return what holds the items, where points of a straight line stand for sheaves without contact beside it: those
+    next to the centres.
+    """
+    found, n = list(holders), len(holders)
+    held = [k for k, holder in enumerate(holders) if holder.contact]
+    for i, j in pairwise([*held, held[0] + n] if rope.part.closed else held):
         if j - i == 1:
             continue
-        places = np.array([q[span.node(0)][: span.dim] for span in rope.spans[i:j]]
-                          + [q[rope.spans[j - 1].node(-1)][: rope.part.dim]])
-        way, one, other = places[-1] - places[0], holders[i], holders[j]
+        spans = [rope.spans[k % n] for k in range(i, j)]
+        places = np.array([q[span.node(0)][: span.dim] for span in spans] + [q[spans[-1].node(-1)][: rope.part.dim]])
+        way, one, other = places[-1] - places[0], holders[i], holders[j % n]
         length = float(np.linalg.norm(way))
         along = way / length
         turning = float((other.velocity - one.velocity) @ _left(along)) / length
-        ends = [holder.velocity + turning * holder.reach * along for holder in (one, other)]
+        start = one.velocity + turning * one.reach * along
         for k in range(i + 1, j):
-            share = float((places[k - i] - places[0]) @ along) / length
-            found[k] = _Holder((1 - share) * ends[0] + share * ends[1], contact=False)
+            beside = holders[k % n]
+            assert beside.centre is not None, "sheaves have centres"
+            to, apart = beside.centre - places[0], beside.velocity - start
+            runs = float(apart @ along + turning * (to @ _left(along)))  # along the line
+            found[k % n] = _Holder(start + runs * along + float(to @ along) * turning * _left(along), contact=False)
     return found
 
 

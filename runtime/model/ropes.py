@@ -34,7 +34,7 @@ LEAST_REACH = 8
 NO_WRAP = 1e-9
 """Length of the wrap of a rope that has left a sheave, over its radius, at most."""
 CONDITIONS_BESIDE = 2
-"""Conditions of a rope that has left a sheave beyond those of its tangent points."""
+"""Conditions of a rope that has left a sheave beyond those of its tangent points and zones."""
 NO_TENSION = 1e-12
 """Strain below which a tension is none; over 1 m."""
 
@@ -343,7 +343,6 @@ class SheaveModel(WheelModel):
     slip_velocity: float
     closing: float
     span_reach: tuple[int, int]
-    least_wrap: float = MIN_WRAP
     sticks: bool = False
     points: list[WrapPointModel] = field(default_factory=list)
 
@@ -351,6 +350,13 @@ class SheaveModel(WheelModel):
     def wrap_points(self) -> int:
         """Return the number of the first of its points where friction sticks, -1 where it is regularised."""
         return self.points[0].number if self.sticks else -1
+
+    @property
+    def least_wrap(self) -> float:
+        """Return the least angle of a wrap that stretches, rad: with zones they have this angle each, as far as the
+        rope may leave the sheave.
+        """
+        return MIN_WRAP * (self.n_zones if self.n_multipliers > 2 * self.before.dim else 1)
 
     @property
     def no_length(self) -> float:
@@ -500,7 +506,7 @@ def _sheaves(builder: ModelBuilder) -> Iterator[SheaveModel]:
             before, after = (rope.spans[each] for each in beside)
             scale = [rope.mass_of_element(each) for each in beside for _ in range(rope.part.dim)]
             if rope.part.may_leave(item):
-                scale += scale[:1] * CONDITIONS_BESIDE
+                scale += scale[:1] * (CONDITIONS_BESIDE + item.n_zones - 1)
             sheave = SheaveModel(
                 type="sheave", name=item.name, kernel="planar_sheave", before=before, after=after,
                 coordinates=rope.sheaves[k], radius=arc.radius, tangent_radius=(arc.tangent_radius,) * 2,

@@ -184,8 +184,8 @@ class Sheave(Wheel):
     friction: between rope and groove, a coefficient or a `Friction`, by default "regularised"; without it none
     zones: number of parts of the wrap between which friction acts, and over each of which the tension is constant
     turns: whole turns of the rope around it, in addition to the wrap angle between both spans
-    contact: whether the rope lies on it at the start. In the plane and without friction the rope may leave it and touch
-        it again
+    contact: whether the rope lies on it at the start. In the plane the rope may leave it and touch it again; the sheave
+        then turns on
     max_fleet_angle: between the plane of the groove and the rope as drawn, in space, rad; a larger one is reported
     """
 
@@ -254,9 +254,6 @@ class Sheave(Wheel):
     def _may_be_without_contact(self) -> "Sheave":
         if self.contact:
             return self
-        if self.coefficient:
-            raise ValueError("has friction and contact=False: only sheaves without friction are left and touched again",
-                             "leave friction out")
         if self.turns:
             raise ValueError("has turns and contact=False", "give one of them")
         if self.side is None:

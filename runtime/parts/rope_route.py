@@ -175,10 +175,12 @@ def drawn_route(points: list[RoutePoint], rope_radius: float = 0.0, closed: bool
     remedy) for an impossible route.
     """
     touched = [point for point in points if point.contact]
+    if len(touched) < 2:
+        raise ValueError("needs two sheaves or more that it touches as drawn", "leave contact=False out")
     ends = [*pairwise(touched), (touched[-1], touched[0])] if closed else [*pairwise(touched)]
     spans = [(span_between or _span)(one, other, rope_radius) for one, other in ends]
     if len(touched) < len(points):
-        spans, ends = _split(points, spans, rope_radius)
+        spans, ends = _split(points, spans, rope_radius, closed)
     before = [spans[-1], *spans[:-1]] if closed else spans
     after = spans if closed else spans[1:]
     sheaves = [_arc(point, *beside) for point, *beside in zip(points if closed else points[1:-1], before, after,
@@ -242,15 +244,17 @@ def _span(one: RoutePoint, other: RoutePoint, rope_radius: float) -> DrawnSpan:
     return DrawnSpan(one.centre - one.sense * one.reach * n, other.centre - other.sense * other.reach * n, length)
 
 
-def _split(points: list[RoutePoint], spans: list[DrawnSpan], rope_radius: float
+def _split(points: list[RoutePoint], spans: list[DrawnSpan], rope_radius: float, closed: bool
            ) -> tuple[list[DrawnSpan], list[tuple[RoutePoint, RoutePoint]]]:
-    """Return the spans of an open route, split beside sheaves without contact, and their ends.
+    """Return the spans of a route, split beside sheaves without contact, and their ends.
 
     spans: between the points with contact. Raises ValueError where a sheave is in the way, or not beside its span.
     """
     found: list[DrawnSpan] = []
+    first = next(k for k, point in enumerate(points) if point.contact)  # 0 of an open route
+    turned = [*points[first:], *points[: first + closed]]
     whole = iter(spans)
-    for one, other in pairwise(points):
+    for one, other in pairwise(turned):
         if one.contact:
             span = next(whole)
             start = span.start
@@ -259,7 +263,8 @@ def _split(points: list[RoutePoint], spans: list[DrawnSpan], rope_radius: float
         check_length(one, other, length, rope_radius)
         found.append(DrawnSpan(start, end, length))
         start = end
-    return found, [*pairwise(points)]
+    at = len(found) - first if closed else 0  # of the first point
+    return found[at:] + found[:at], [*pairwise(turned)][at:] + [*pairwise(turned)][:at]
 
 
 def _foot(span: DrawnSpan, sheave: RoutePoint) -> np.ndarray:

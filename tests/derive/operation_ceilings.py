@@ -273,7 +273,7 @@ CEILINGS = {
         "tangent": 204, "kinetic_energy": 60, "inertia": 213, "mass_matrix": 162, "inertia_tangent": 1099,
         "dissipation": 15, "damping_force": 16, "damping_tangent": 50,
         "friction": 66, "friction_tangent": 367, "friction_on": 65, "friction_on_tangent": 351, "friction_off": 65,
-        "friction_off_tangent": 351,
+        "friction_off_tangent": 351, "friction_short": 70, "friction_short_tangent": 342,
         "short_wrap": 399, "short_wrap_motion": 52,
         "winding": 46, "winding_motion": 29, "store": 69, "store_mass": 5, "store_tangent": 71, "store_energy": 15,
         "laying": 9,

@@ -199,7 +199,6 @@ def test_equilibrium_beside_a_peg_and_on_it():
 
 
 @pytest.mark.parametrize(("sheave", "message"), [
-    ({"friction": 0.1}, "has friction and contact=False"),
     ({"turns": 1}, "has turns and contact=False"),
     ({"side": None}, "has contact=False, but no side"),
 ])

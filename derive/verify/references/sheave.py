@@ -76,6 +76,8 @@ def _square(vector: np.ndarray) -> Any:
 
 def _stretches(suffix: str, s: Any) -> list[Any]:
     """Return the stretches before and behind a point of friction."""
+    if suffix == "_short":
+        return [s[name].dot(s[name]) ** 0.5 for name in ("slope", "span_slope")]
     angles, lengths = (s["angles2"], s["lengths1"]) if suffix else (s["angles3"], s["lengths2"])
     of_zones = [abs(b - a) * s["R"].item() / length for a, b, length in zip(angles, angles[1:], lengths, strict=False)]
     of_span = s["span_slope"].dot(s["span_slope"]) ** 0.5
@@ -89,11 +91,11 @@ def coulomb(suffix: str, s: Any) -> list[Any]:
     EA, rho = s["A"][0], s["rho"].item()
     speed = sense * R * rate - (before + behind) / 2 * flow
     angles = s["angles2" if suffix else "angles3"]
-    here = angles[0 if suffix == "_on" else 1]
+    here = {"_on": angles[0], "_short": sum(angles) / 2}.get(suffix, angles[1])
     outwards = s["R"].item() * s["g"].dot(np.array([mp.cos(here), mp.sin(here)]))
     pressure = EA * (before + behind - 2) - 4 * rho / (before + behind) * (speed * speed + outwards)
     sliding = sense * R * (rate - spin) - (before if flow < 0 else behind) * flow
-    half = s["mu"].item() * abs(angles[-1] - angles[0]) / 4
+    half = s["mu"].item() * abs(angles[-1] - angles[0]) / (2 if suffix == "_short" else 4)
     up, down = mpmath.exp(half), mpmath.exp(-half)
     return [sliding, pressure, (up - down) / (up + down) * pressure]
 

@@ -21,15 +21,18 @@ RATES = (("phi_rate", 2), ("c_rate", 2), ("s_rate", 2))
 SECOND_RATES = (("phi_acc", 2), ("c_acc", 2), ("s_acc", 2))
 N = sum(size for _, size in RATES)
 BESIDE_A_SPAN = (("angles2", 2), ("lengths1", 1), ("span_slope", 2))
-FRICTION = {"": (("angles3", 3), ("lengths2", 2)), "_on": BESIDE_A_SPAN, "_off": BESIDE_A_SPAN}
-"""Ends of the names of kernels of friction, with their coordinates."""
+COULOMB = {"": (("angles3", 3), ("lengths2", 2)), "_on": BESIDE_A_SPAN, "_off": BESIDE_A_SPAN}
+"""Ends of the names of kernels of Coulomb friction, with their coordinates."""
+FRICTION = COULOMB | {"_short": (("angles2", 2), ("slope", 2), ("span_slope", 2))}
+"""The same of regularised friction."""
 SLIDING = (("angle_rate", 1), ("spin", 1), ("flow", 1))
 
 
 def sheave(family: CouplingFamily) -> list[Relation]:
     """Return the relations of a sheave's kernels."""
     return [*_of_tangent_point(), *_of_angle(), *_of_energies(), *_of_inertia(), *_of_damping(),
-            *(each for suffix in FRICTION for each in (*_of_friction(suffix), *_of_coulomb(suffix))),
+            *(each for suffix in FRICTION for each in _of_friction(suffix)),
+            *(each for suffix in COULOMB for each in _of_coulomb(suffix)),
             *_of_short_wrap(), *sheave_step(), *drum()]
 
 
@@ -157,7 +160,7 @@ def _of_damping() -> list[Relation]:
 def _of_forces(suffix: str, kernel: str, forces: Callable[..., Any]) -> list[Relation]:
     """Return those of the derivatives of forces at a point of friction."""
     places = FRICTION[suffix]
-    return [Relation(kernel, "K", "dF by angles, lengths and the slope", 1, along(forces, places),
+    return [Relation(kernel, "K", "dF by angles, lengths and slopes", 1, along(forces, places),
                      sum(size for _, size in places)),
             Relation(kernel, "D", "dF by rates of the angle, of the sheave, and of s", 1, along(forces, SLIDING), 3)]
 

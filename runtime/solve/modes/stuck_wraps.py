@@ -22,9 +22,10 @@ def stuck_wraps(model: Model, q: np.ndarray, size: int) -> csc_array:
 
     The rows of a sheave are w = sigma R (d phi - d psi) - lambda ds = 0 at the ends of the zones of its wrap, in m:
     phi the angle of such a point, psi the rotation of the sheave with its carrier, lambda the stretch of the wrap, s
-    the material coordinate there. q (n_q,): the configuration about which the motions are.
+    the material coordinate there. A short wrap has one, the mean of those at its ends; a sheave that the rope has left
+    has none. q (n_q,): the configuration about which the motions are.
     """
-    blocks = [_rows(model, sheave, q) for sheave in model.sheaves if sheave.friction > 0]
+    blocks = [_rows(model, sheave, q) for sheave in model.sheaves if sheave.friction > 0 and sheave.has_contact(q)]
     rows = lil_array((sum(len(values) for _, values in blocks), size))
     at = 0
     for dofs, values in blocks:
@@ -65,6 +66,8 @@ def _rows(model: Model, sheave: SheaveModel, q: np.ndarray) -> tuple[np.ndarray,
     stretch = sheave.radius * (sheave.sense * (off - on) + 2 * np.pi * turns) / length
     for point, s in enumerate(sheave.s):
         rows[point, dofs == s] -= stretch
+    if stretch * length < sheave.least_wrap * sheave.radius:
+        rows = (rows[:1] + rows[-1:]) / 2
     return dofs, rows
 
 

@@ -22,6 +22,7 @@ from ...parts.attachment import Attachment
 from ...parts.rope import Rope
 from ...parts.rope_drawing import Holders, place_of
 from ...parts.rope_items import Anchor, Drum, RouteItem
+from ...parts.rope_route import MIN_WRAP
 from ...parts.scene_data import SceneData
 from ...parts.validation import show
 from ..linear.solver import solver
@@ -74,8 +75,9 @@ def off_sheaves(model: Model, engine: Engine) -> str:
         centre = attachment_points(model, sheave.attachments[0], q[None])[0, : model.dim]
         dim = model.dim
         folded = any(sheave.sense * np.linalg.det([in_groove(model, sheave, q[None], vector[None])[0] for vector in (
-            q[at : at + dim] - centre, q[at + dim : at + 2 * dim])]) <= 0 for at in sheave.nodes)  # its slope is tangent, but against the sense of travel
-        if folded or numbers["wrap_angle"][k] < sheave.least_wrap:
+            q[at : at + dim] - centre, q[at + dim : at + 2 * dim])]) <= 0
+                     for at in sheave.nodes)  # its slope is tangent, but against the sense of travel
+        if folded or numbers["wrap_angle"][k] < MIN_WRAP:
             return f'the rope leaves sheave "{sheave.name}"'
         if min(numbers[name][k] for name in ("normal_force", "tension_on", "tension_off")) < 0.0:
             return f'the rope lifts off sheave "{sheave.name}": it has no tension there'

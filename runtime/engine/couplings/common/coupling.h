@@ -7,7 +7,7 @@
 #include "linear/linear.h"
 #include "bodies/state.h"
 
-#define FU_MAX_FORCES 6 /* of one coupling */
+#define FU_MAX_FORCES 23 /* of one coupling: a rope in space that has left a sheave with 16 zones */
 
 typedef struct fu_coupling_type fu_coupling_type;
 typedef struct fu_coupling_events fu_coupling_events;

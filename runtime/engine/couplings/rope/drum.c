@@ -9,7 +9,8 @@
 #include <string.h>
 
 typedef struct {
-    double tension, force[3], torque, power, length_in_store, material_speed, normal_force, angle, residual, fleet_angle;
+    double tension, force[3], torque, power, length_in_store, material_speed, normal_force, angle, residual,
+        fleet_angle;
 } drum_output;
 
 /* Computes the node at the tangent point, in space. */
@@ -196,8 +197,8 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
 /* Adds the derivatives by rotations of the groove of all forces but those of a tangent point; those on the wheel with
  * the latter. */
 static void add_motion_of_wheel(const fu_model *model, const fu_drum *drum, const fu_drum_state *at,
-                                const fu_drum_conditions *of, const double *multipliers,
-                                const fu_centre_moves *by_psi, const fu_equations *equations, fu_system *system)
+                                const fu_drum_conditions *of, const double *multipliers, const fu_centre_moves *by_psi,
+                                const fu_equations *equations, fu_system *system)
 {
     const int winding = conditions_of(drum) - 1;
     double y[Y];
@@ -382,11 +383,16 @@ static const fu_field fields[] = {
 };
 
 static const fu_output output_fields[] = {
-    FU_OUTPUT(drum_output, tension, "N", NULL),         FU_OUTPUT(drum_output, force, "N", "direction"),
-    FU_OUTPUT(drum_output, torque, "N m", NULL),        FU_OUTPUT(drum_output, power, "W", NULL),
-    FU_OUTPUT(drum_output, length_in_store, "m", NULL), FU_OUTPUT(drum_output, material_speed, "m/s", NULL),
-    FU_OUTPUT(drum_output, normal_force, "N", NULL),    FU_OUTPUT(drum_output, angle, "rad", NULL),
-    FU_OUTPUT(drum_output, residual, "m", NULL),        FU_OUTPUT(drum_output, fleet_angle, "rad", NULL),
+    FU_OUTPUT(drum_output, tension, "N", NULL),
+    FU_OUTPUT(drum_output, force, "N", "direction"),
+    FU_OUTPUT(drum_output, torque, "N m", NULL),
+    FU_OUTPUT(drum_output, power, "W", NULL),
+    FU_OUTPUT(drum_output, length_in_store, "m", NULL),
+    FU_OUTPUT(drum_output, material_speed, "m/s", NULL),
+    FU_OUTPUT(drum_output, normal_force, "N", NULL),
+    FU_OUTPUT(drum_output, angle, "rad", NULL),
+    FU_OUTPUT(drum_output, residual, "m", NULL),
+    FU_OUTPUT(drum_output, fleet_angle, "rad", NULL),
     FU_LAST_OUTPUT(drum_output),
 };
 

@@ -100,7 +100,8 @@ double fu_drum_winding_gap(const fu_drum *drum, const fu_drum_history *past, con
 /* Computes all forces by y but those of the conditions; the bearing's is on the drum alone. */
 void fu_drum_forces(const fu_drum *drum, const fu_drum_state *at, double y[Y]);
 /* Adds their derivatives: D by rates, in units of w.rate, K by places. */
-void fu_drum_add_derivatives(const fu_drum *drum, const fu_drum_state *at, fu_weights w, double (*D)[Y], double (*K)[Y]);
+void fu_drum_add_derivatives(const fu_drum *drum, const fu_drum_state *at, fu_weights w, double (*D)[Y],
+                             double (*K)[Y]);
 /* Computes the mass matrix by y. */
 void fu_drum_mass(const fu_drum *drum, const fu_drum_state *at, double factor, double (*out)[Y]);
 /* Computes the kinetic energy and that of gravity, J. */

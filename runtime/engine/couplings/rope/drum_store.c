@@ -81,8 +81,8 @@ static void store_derivatives(const fu_drum *drum, const fu_drum_state *at, doub
 {
     const fu_wheel *wheel = &drum->wheel;
     wheel->kernel->store_tangent(wheel->A, wheel->rho, wheel->radius, at->wheel.g, at->u, at->wheel.c,
-                                 at->wheel.turn_rate, at->wheel.c_rate, at->u_rate, at->wheel.turn_acc,
-                                 at->wheel.c_acc, at->slope, at->winds, at->wound, D, K);
+                                 at->wheel.turn_rate, at->wheel.c_rate, at->u_rate, at->wheel.turn_acc, at->wheel.c_acc,
+                                 at->slope, at->winds, at->wound, D, K);
 }
 
 /* The energy of the height at which the rope is laid on, and its derivatives by the place of the tangent point from the

@@ -215,7 +215,7 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
         wheel->kernel->dissipation(wheel->A, sheave->tau, wheel->radius, of.phi, of.l, of.phi_rate, of.s_rate, &power);
         total += power;
     }
-    for (int j = 0; has_smooth_friction(sheave) && j <= sheave->n_zones; ++j) {
+    for (int j = 0; j < friction_points(sheave, &at); ++j) {
         double F[3], numbers[3];
         fu_friction_at(sheave, &at, j, F, numbers, &power);
         total += power;

@@ -36,7 +36,7 @@ typedef struct {
 
 /* --- variables and state --- */
 
-enum { DIM = FU_GROOVE, SPACE = 3, ENDS = 2, MAX_CONDITIONS = ENDS * FU_FOOT_CONDITIONS, MAX_ZONES = 16 };
+enum { DIM = FU_GROOVE, SPACE = 3, ENDS = 2, MAX_CONDITIONS = FU_MAX_FORCES, MAX_ZONES = 16 };
 /* y: of each node the place and the slope; of the wheel the centre, the rotation, the place along the axis, rotations
  * about the vectors of the groove; s of the ends of the zones */
 enum { NODE = 2 * DIM, SLOPE = DIM, CENTRE = ENDS * NODE, TURN = CENTRE + FU_WHEEL_TURN };
@@ -58,7 +58,7 @@ enum {
  * stretches. Zero: not known yet. */
 enum { FU_LIFTED = 1, FU_SHORT, FU_WRAPPED };
 /* The condition of a short wrap, after those of the tangent points; of a rope that has left, that of its point next to
- * the centre, and that of its length on the sheave. */
+ * the centre, and that of its length on the sheave. After them, in both modes, those that keep the zones equal. */
 enum { SHORT_ROW = ENDS * DIM, NEXT_ROW = SHORT_ROW, LENGTH_ROW };
 
 /* A sheave at a state: both tangent points, the angles with their rates and derivatives, and the material. tension: the
@@ -109,6 +109,18 @@ static inline int has_smooth_friction(const fu_sheave *sheave)
 static inline int fu_may_leave(const fu_sheave *sheave)
 {
     return sheave->wheel.base.n_forces > SHORT_ROW && !is_in_space(sheave);
+}
+
+/* Returns the number of points of smooth friction at a state: ends of zones; in a short wrap one, in its middle. */
+static inline int friction_points(const fu_sheave *sheave, const fu_sheave_state *at)
+{
+    return !has_smooth_friction(sheave) || at->mode == FU_LIFTED ? 0 : at->mode == FU_SHORT ? 1 : sheave->n_zones + 1;
+}
+
+/* Returns the stress-free length of the wrap, m. */
+static inline double wrap_length(const fu_sheave *sheave, const fu_sheave_state *at)
+{
+    return at->s[sheave->n_zones] - at->s[0];
 }
 
 /* Returns the mode in a state. */
@@ -202,8 +214,8 @@ void fu_turning_wrap_add_turning(const fu_model *model, const fu_sheave *sheave,
 
 /* Returns the mode of a sheave in a state, where it is not known by the angles and the length of its wrap. */
 int fu_wrap_mode(const fu_sheave *sheave, const fu_sheave_state *at, const fu_state *state);
-/* Returns the least length of a zone, m, at which its inertia and weight are computed. */
-double fu_least_zone(const fu_sheave *sheave);
+/* Returns the least length of the wrap, m, at which its inertia and weight are computed. */
+double fu_least_length(const fu_sheave *sheave);
 /* Adds the forces of a short wrap by z, that of its condition included, and their derivatives; returns its energy. */
 void fu_short_wrap_add_forces(const fu_sheave *sheave, const fu_sheave_state *at, double *z);
 void fu_short_wrap_add_matrix(const fu_sheave *sheave, const fu_sheave_state *at, double factor, double (*K)[Z]);
@@ -212,13 +224,17 @@ double fu_short_wrap_energy(const fu_sheave *sheave, const fu_sheave_state *at);
 double fu_short_wrap_row(const fu_sheave *sheave, const fu_sheave_state *at, double J[Y]);
 double fu_short_wrap_drift(const fu_sheave *sheave, const fu_sheave_state *at);
 /* Computes the residual of a condition that joins both spans, and the derivatives J by y. */
-void fu_join_row(const fu_sheave_state *at, int r, double *phi, double J[Y]);
+void fu_join_row(const fu_sheave *sheave, const fu_sheave_state *at, int r, double *phi, double J[Y]);
+/* The same of the condition that keeps the j-th point between zones at its share of the wrap. */
+void fu_share_row(const fu_sheave *sheave, const fu_sheave_state *at, int j, double *phi, double J[Y]);
 
 /* --- wrap_friction.c: points between zones, by z --- */
 
 /* Computes the forces of the j-th point on its angle, the rotation and its s; its slip and limit; and its power. */
 void fu_friction_at(const fu_sheave *sheave, const fu_sheave_state *at, int j, double *F, double numbers[3],
                     double *power);
+/* Adds the forces of the j-th point. */
+void fu_friction_add_forces(const fu_sheave *sheave, const fu_sheave_state *at, int j, double *z);
 /* Adds the derivatives of friction at the j-th point. */
 void fu_friction_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at, int j, double factor, double (*D)[Z],
                               double (*K)[Z]);

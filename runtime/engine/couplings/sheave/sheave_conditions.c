@@ -13,9 +13,15 @@ typedef struct {
     double phi[MAX_CONDITIONS], J[MAX_CONDITIONS][Y], K[ENDS][NODE * NODE];
 } conditions;
 
+/* Returns the number of conditions of a mode but those of the zones. */
+static int without_zones(const fu_sheave *sheave, int mode)
+{
+    return mode == FU_LIFTED ? LENGTH_ROW + 1 : ENDS * conditions_of(sheave) + (mode == FU_SHORT);
+}
+
 int fu_sheave_conditions(const fu_sheave *sheave, const fu_sheave_state *at)
 {
-    return at->mode == FU_LIFTED ? LENGTH_ROW + 1 : ENDS * conditions_of(sheave) + (at->mode == FU_SHORT);
+    return without_zones(sheave, at->mode) + (at->mode == FU_WRAPPED ? 0 : sheave->n_zones - 1);
 }
 
 /* Computes derivatives by y from those of a tangent point by x and the slope. */
@@ -33,7 +39,7 @@ static void join(const fu_sheave *sheave, const fu_sheave_state *at, const doubl
     const double next[DIM] = {0.0, multipliers[NEXT_ROW]};
     double phi[DIM], J[DIM * NODE];
     memset(out->K, 0, sizeof out->K);
-    for (int r = 0; r <= LENGTH_ROW; ++r) fu_join_row(at, r, &out->phi[r], out->J[r]);
+    for (int r = 0; r <= LENGTH_ROW; ++r) fu_join_row(sheave, at, r, &out->phi[r], out->J[r]);
     sheave->wheel.kernel->tangent_point(at->x[0], at->slope[0], sheave->tangent_radius[0], next, phi, J, out->K[0]);
     out->phi[NEXT_ROW] = phi[1];
     by_y(0, J + NODE, out->J[NEXT_ROW]);
@@ -42,7 +48,9 @@ static void join(const fu_sheave *sheave, const fu_sheave_state *at, const doubl
 static void find_conditions(const fu_sheave *sheave, const fu_sheave_state *at, const double *multipliers,
                             conditions *out)
 {
+    const int first = without_zones(sheave, at->mode);
     out->n = fu_sheave_conditions(sheave, at);
+    for (int r = first; r < out->n; ++r) fu_share_row(sheave, at, r - first + 1, &out->phi[r], out->J[r]);
     if (at->mode == FU_LIFTED) {
         join(sheave, at, multipliers, out);
         return;
@@ -91,10 +99,10 @@ static void add_multipliers_in_plane(const fu_sheave *sheave, const fu_sheave_st
 {
     conditions of;
     find_conditions(sheave, at, multipliers, &of);
-    memset(phi, 0, sizeof(double) * MAX_CONDITIONS);
+    memset(phi, 0, sizeof(double) * (size_t)sheave->wheel.base.n_forces);
     memcpy(phi, of.phi, sizeof(double) * (size_t)of.n);
     for (int r = 0; r < of.n; ++r)
-        for (int i = 0; i < MATERIAL + ENDS && (r != SHORT_ROW || at->mode != FU_SHORT); ++i)
+        for (int i = 0; i <= MATERIAL + sheave->n_zones && (r != SHORT_ROW || at->mode != FU_SHORT); ++i)
             y[i] += of.J[r][i] * multipliers[r];
 }
 

@@ -166,15 +166,30 @@ static void elastic_tensions(const fu_sheave *sheave, const fu_sheave_state *at,
     }
 }
 
+/* Computes the tensions at both tangent points from those of the zones beside them, and friction there. */
+static void tensions_beside_zones(const fu_sheave *sheave, const fu_sheave_state *at, double tension[ENDS])
+{
+    const fu_wheel *wheel = &sheave->wheel;
+    for (int k = 0; k < ENDS; ++k) {
+        const fu_zone of = fu_zone_at(at, k ? sheave->n_zones - 1 : 0);
+        const double stretch = wheel->sense * wheel->radius * (of.phi[1] - of.phi[0]) / of.l;
+        double F[3], numbers[3], power;
+        fu_friction_at(sheave, at, k ? sheave->n_zones : 0, F, numbers, &power);
+        tension[k] =
+            tension_in(sheave, at, &of, of.phi[k], wheel->A[0] * (stretch - 1.0)) + (k ? 1.0 : -1.0) * numbers[2];
+    }
+}
+
 /* Without friction the tension at the tangent points is from the balance of the arc alone: multipliers of short steps
- * have little accuracy. With friction it is elastic: friction on a light rope accelerates its nodes at once. */
+ * have little accuracy. With friction it is from the zones: friction on a light rope accelerates its nodes at once. */
 static double wrap_pressure(const fu_sheave *sheave, const fu_sheave_state *at)
 {
     const double none[MAX_CONDITIONS] = {0.0};
     double tension[ENDS], speed[ENDS], phi[MAX_CONDITIONS], y[Y];
     if (at->mode == FU_LIFTED) return 0.0;
-    if (has_friction(sheave) || at->mode == FU_SHORT) elastic_tensions(sheave, at, tension, speed);
+    if (at->mode == FU_SHORT || has_friction(sheave)) elastic_tensions(sheave, at, tension, speed);
     else tensions(sheave, at, none, 0, tension, speed, phi, y);
+    if (at->mode == FU_WRAPPED && has_smooth_friction(sheave)) tensions_beside_zones(sheave, at, tension);
     return least_pressure(sheave, at, tension, speed);
 }
 
@@ -203,7 +218,7 @@ static void find_sticking(const fu_model *model, const fu_sheave *sheave, const 
 
 static void add_smooth_friction(const fu_sheave *sheave, const fu_sheave_state *at, sheave_output *numbers)
 {
-    for (int j = 0; j <= sheave->n_zones; ++j) {
+    for (int j = 0; j < friction_points(sheave, at); ++j) {
         double F[3], of[3], power;
         fu_friction_at(sheave, at, j, F, of, &power);
         if (at->spin_below == at->wheel.turn_rate && fabs(of[0]) > fabs(numbers->slip)) numbers->slip = of[0];

@@ -4,6 +4,9 @@
 
 #include <math.h>
 
+/* of the length of the least wrap that stretches: that of a short one whose zones are equal beyond rounding */
+#define RESOLVED 0.5
+
 double fu_stretch_at(const fu_sheave_state *at, int k)
 {
     return sqrt(fu_dot(DIM, at->slope[k], at->slope[k]));
@@ -21,15 +24,14 @@ static void find_angles(const fu_sheave *sheave, fu_sheave_state *at)
     at->phi[1] = at->phi[0] + sense * wrap;
 }
 
-/* Extends a wrap of one zone without length to the least one, at the stretch of the spans. */
+/* Extends a wrap without length to the least one, at the stretch of the spans. */
 static void extend(const fu_sheave *sheave, fu_sheave_state *at)
 {
-    const double middle = 0.5 * (at->phi[0] + at->phi[1]), length = fu_least_zone(sheave);
+    const double middle = 0.5 * (at->phi[0] + at->phi[1]), length = fu_least_length(sheave);
     const double half =
         0.25 * sheave->wheel.sense * (fu_stretch_at(at, 0) + fu_stretch_at(at, 1)) * length / sheave->wheel.radius;
-    at->length[0] = length;
-    at->angle[0] = middle - half;
-    at->angle[1] = middle + half;
+    for (int j = 0; j < sheave->n_zones; ++j) at->length[j] = length / sheave->n_zones;
+    for (int j = 0; j <= sheave->n_zones; ++j) at->angle[j] = middle + (2.0 * at->share[j] - 1.0) * half;
 }
 
 /* Computes the angles of the ends of the zones, and their lengths. */
@@ -43,7 +45,10 @@ static void find_zones(const fu_sheave *sheave, fu_sheave_state *at)
         at->angle_rate[j] = at->phi_rate[0] + share * (at->phi_rate[1] - at->phi_rate[0]);
         at->angle_acc[j] = at->phi_acc[0] + share * (at->phi_acc[1] - at->phi_acc[0]);
     }
-    if (fu_may_leave(sheave) && at->length[0] < fu_least_zone(sheave)) extend(sheave, at);
+    if (!fu_may_leave(sheave)) return;
+    if (wrap_length(sheave, at) < fu_least_length(sheave)) extend(sheave, at);
+    else if (wrap_length(sheave, at) < RESOLVED * sheave->least_wrap * sheave->wheel.radius)
+        for (int j = 0; j < sheave->n_zones; ++j) at->length[j] = wrap_length(sheave, at) / sheave->n_zones;
 }
 
 /* Computes the motion of a node from the centre, with the acceleration x_acc, in space. */

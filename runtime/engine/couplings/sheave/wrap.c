@@ -102,15 +102,7 @@ void fu_wrap_add_forces(const fu_sheave *sheave, const fu_sheave_state *at, doub
         add_zone(&of, 4, damped, damping, z);
     }
     if (is_turning(sheave)) fu_turning_wrap_add_weight(sheave, at, z);
-    for (int j = 0; has_smooth_friction(sheave) && j <= sheave->n_zones; ++j) {
-        double F[3], numbers[3], power;
-        const double share = (double)j / sheave->n_zones;
-        fu_friction_at(sheave, at, j, F, numbers, &power);
-        z[0] += (1.0 - share) * F[0];
-        z[1] += share * F[0];
-        z[Z_TURN] += F[1];
-        z[Z_MATERIAL + j] += F[2];
-    }
+    for (int j = 0; j < friction_points(sheave, at); ++j) fu_friction_add_forces(sheave, at, j, z);
 }
 
 void fu_wrap_add_mass(const fu_sheave *sheave, const fu_sheave_state *at, double factor, double (*M)[Z])
@@ -161,6 +153,5 @@ void fu_wrap_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at, do
         add_zone_matrix(&of, 4, damped, 4, damped, factor, D_4, D);
     }
     if (is_turning(sheave)) fu_turning_wrap_add_weight_matrix(sheave, at, factor, K);
-    for (int j = 0; has_smooth_friction(sheave) && j <= sheave->n_zones; ++j)
-        fu_friction_add_matrices(sheave, at, j, factor, D, K);
+    for (int j = 0; j < friction_points(sheave, at); ++j) fu_friction_add_matrices(sheave, at, j, factor, D, K);
 }

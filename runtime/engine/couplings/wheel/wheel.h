@@ -48,7 +48,8 @@ enum { FU_TILTS = 2 }; /* rotations of a groove about the vectors of its plane *
 typedef struct {
     fu_attachment_state centre;
     double groove[6], axis[3], g[3], omega[3], omega_acc[3];
-    double c[FU_GROOVE], c_rate[FU_GROOVE], c_acc[FU_GROOVE], c_bias[FU_GROOVE], across, across_rate, across_acc, acc[3];
+    double c[FU_GROOVE], c_rate[FU_GROOVE], c_acc[FU_GROOVE], c_bias[FU_GROOVE], across, across_rate, across_acc,
+        acc[3];
     double own_rate, turn_rate, turn_acc;
 } fu_wheel_state;
 
