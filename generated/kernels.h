@@ -1326,6 +1326,47 @@ typedef void fu_sheave_friction_tangent_kernel(const fu_real *A, fu_real sense, 
 /* A 2, g 2, angles3 3, lengths2 2, K 3x5, D 3x3 */
 fu_sheave_friction_tangent_kernel planar_sheave_friction_tangent;
 
+typedef void fu_sheave_friction_on_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *F, fu_real *numbers, fu_real *power);
+/* friction at a point between a span and a zone: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2]; mu [1]; v0
+ * [m/s]; angles2 [rad]; lengths1 [m]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> F [N m, N];
+ * numbers [m/s, N, N]; power [W] */
+/* A 2, g 2, angles2 2, lengths1 1, span_slope 2, F 3, numbers 3, power 1 */
+fu_sheave_friction_on_kernel planar_sheave_friction_on;
+
+typedef void fu_sheave_friction_on_tangent_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *K, fu_real *D);
+/* derivatives of friction between a span and a zone: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2]; mu [1];
+ * v0 [m/s]; angles2 [rad]; lengths1 [m]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> K [SI]; D
+ * [SI] */
+/* A 2, g 2, angles2 2, lengths1 1, span_slope 2, K 3x5, D 3x3 */
+fu_sheave_friction_on_tangent_kernel planar_sheave_friction_on_tangent;
+
+typedef void fu_sheave_friction_off_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *F, fu_real *numbers, fu_real *power);
+/* friction at a point between a zone and a span: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2]; mu [1]; v0
+ * [m/s]; angles2 [rad]; lengths1 [m]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> F [N m, N];
+ * numbers [m/s, N, N]; power [W] */
+/* A 2, g 2, angles2 2, lengths1 1, span_slope 2, F 3, numbers 3, power 1 */
+fu_sheave_friction_off_kernel planar_sheave_friction_off;
+
+typedef void fu_sheave_friction_off_tangent_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *K, fu_real *D);
+/* derivatives of friction between a zone and a span: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2]; mu [1];
+ * v0 [m/s]; angles2 [rad]; lengths1 [m]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> K [SI]; D
+ * [SI] */
+/* A 2, g 2, angles2 2, lengths1 1, span_slope 2, K 3x5, D 3x3 */
+fu_sheave_friction_off_tangent_kernel planar_sheave_friction_off_tangent;
+
+typedef void fu_sheave_friction_short_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *slope, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *F, fu_real *numbers, fu_real *power);
+/* friction at a point between a span and a span: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2]; mu [1]; v0
+ * [m/s]; angles2 [rad]; slope [1]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> F [N m, N];
+ * numbers [m/s, N, N]; power [W] */
+/* A 2, g 2, angles2 2, slope 2, span_slope 2, F 3, numbers 3, power 1 */
+fu_sheave_friction_short_kernel planar_sheave_friction_short;
+
+typedef void fu_sheave_friction_short_tangent_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *slope, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *K, fu_real *D);
+/* derivatives of friction between a span and a span: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2]; mu [1];
+ * v0 [m/s]; angles2 [rad]; slope [1]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> K [SI]; D [SI] */
+/* A 2, g 2, angles2 2, slope 2, span_slope 2, K 3x6, D 3x3 */
+fu_sheave_friction_short_tangent_kernel planar_sheave_friction_short_tangent;
+
 typedef void fu_sheave_coulomb_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, const fu_real *angles3, const fu_real *lengths2, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *numbers, fu_real *row, fu_real *column);
 /* Coulomb friction at a point between a zone and a zone: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2]; mu
  * [1]; angles3 [rad]; lengths2 [m]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> numbers [m/s, N]; row [m, 1];
@@ -1345,20 +1386,6 @@ typedef void fu_sheave_coulomb_motion_kernel(fu_real sense, fu_real R, const fu_
  * angles3_rate [rad/s]; lengths2_rate [m/s]; flow [m/s]; angle_acc [rad/s^2] -> Q_d [m/s^2] */
 /* angles3 3, lengths2 2, angles3_rate 3, lengths2_rate 2, Q_d 1 */
 fu_sheave_coulomb_motion_kernel planar_sheave_coulomb_motion;
-
-typedef void fu_sheave_friction_on_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *F, fu_real *numbers, fu_real *power);
-/* friction at a point between a span and a zone: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2]; mu [1]; v0
- * [m/s]; angles2 [rad]; lengths1 [m]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> F [N m, N];
- * numbers [m/s, N, N]; power [W] */
-/* A 2, g 2, angles2 2, lengths1 1, span_slope 2, F 3, numbers 3, power 1 */
-fu_sheave_friction_on_kernel planar_sheave_friction_on;
-
-typedef void fu_sheave_friction_on_tangent_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *K, fu_real *D);
-/* derivatives of friction between a span and a zone: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2]; mu [1];
- * v0 [m/s]; angles2 [rad]; lengths1 [m]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> K [SI]; D
- * [SI] */
-/* A 2, g 2, angles2 2, lengths1 1, span_slope 2, K 3x5, D 3x3 */
-fu_sheave_friction_on_tangent_kernel planar_sheave_friction_on_tangent;
 
 typedef void fu_sheave_coulomb_on_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *numbers, fu_real *row, fu_real *column);
 /* Coulomb friction at a point between a span and a zone: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2]; mu
@@ -1380,20 +1407,6 @@ typedef void fu_sheave_coulomb_on_motion_kernel(fu_real sense, fu_real R, const 
  * -> Q_d [m/s^2] */
 /* angles2 2, lengths1 1, span_slope 2, angles2_rate 2, lengths1_rate 1, span_slope_rate 2, Q_d 1 */
 fu_sheave_coulomb_on_motion_kernel planar_sheave_coulomb_on_motion;
-
-typedef void fu_sheave_friction_off_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *F, fu_real *numbers, fu_real *power);
-/* friction at a point between a zone and a span: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2]; mu [1]; v0
- * [m/s]; angles2 [rad]; lengths1 [m]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> F [N m, N];
- * numbers [m/s, N, N]; power [W] */
-/* A 2, g 2, angles2 2, lengths1 1, span_slope 2, F 3, numbers 3, power 1 */
-fu_sheave_friction_off_kernel planar_sheave_friction_off;
-
-typedef void fu_sheave_friction_off_tangent_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, fu_real v0, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *K, fu_real *D);
-/* derivatives of friction between a zone and a span: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2]; mu [1];
- * v0 [m/s]; angles2 [rad]; lengths1 [m]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> K [SI]; D
- * [SI] */
-/* A 2, g 2, angles2 2, lengths1 1, span_slope 2, K 3x5, D 3x3 */
-fu_sheave_friction_off_tangent_kernel planar_sheave_friction_off_tangent;
 
 typedef void fu_sheave_coulomb_off_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, const fu_real *angles2, const fu_real *lengths1, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *numbers, fu_real *row, fu_real *column);
 /* Coulomb friction at a point between a zone and a span: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2]; mu
@@ -2147,16 +2160,18 @@ typedef struct {
     fu_sheave_momentum_step_kernel *momentum_step;
     fu_sheave_friction_kernel *friction;
     fu_sheave_friction_tangent_kernel *friction_tangent;
+    fu_sheave_friction_on_kernel *friction_on;
+    fu_sheave_friction_on_tangent_kernel *friction_on_tangent;
+    fu_sheave_friction_off_kernel *friction_off;
+    fu_sheave_friction_off_tangent_kernel *friction_off_tangent;
+    fu_sheave_friction_short_kernel *friction_short;
+    fu_sheave_friction_short_tangent_kernel *friction_short_tangent;
     fu_sheave_coulomb_kernel *coulomb;
     fu_sheave_coulomb_tangent_kernel *coulomb_tangent;
     fu_sheave_coulomb_motion_kernel *coulomb_motion;
-    fu_sheave_friction_on_kernel *friction_on;
-    fu_sheave_friction_on_tangent_kernel *friction_on_tangent;
     fu_sheave_coulomb_on_kernel *coulomb_on;
     fu_sheave_coulomb_on_tangent_kernel *coulomb_on_tangent;
     fu_sheave_coulomb_on_motion_kernel *coulomb_on_motion;
-    fu_sheave_friction_off_kernel *friction_off;
-    fu_sheave_friction_off_tangent_kernel *friction_off_tangent;
     fu_sheave_coulomb_off_kernel *coulomb_off;
     fu_sheave_coulomb_off_tangent_kernel *coulomb_off_tangent;
     fu_sheave_coulomb_off_motion_kernel *coulomb_off_motion;

@@ -277,13 +277,14 @@ static const fu_sheave_kernels sheaves[] = {
      planar_sheave_kinetic_energy, planar_sheave_inertia, planar_sheave_mass_matrix, planar_sheave_inertia_tangent,
      planar_sheave_dissipation, planar_sheave_damping_force, planar_sheave_damping_tangent, planar_sheave_momentum,
      planar_sheave_momentum_energy, planar_sheave_momentum_step, planar_sheave_friction, planar_sheave_friction_tangent,
-     planar_sheave_coulomb, planar_sheave_coulomb_tangent, planar_sheave_coulomb_motion, planar_sheave_friction_on,
-     planar_sheave_friction_on_tangent, planar_sheave_coulomb_on, planar_sheave_coulomb_on_tangent,
-     planar_sheave_coulomb_on_motion, planar_sheave_friction_off, planar_sheave_friction_off_tangent,
-     planar_sheave_coulomb_off, planar_sheave_coulomb_off_tangent, planar_sheave_coulomb_off_motion,
-     planar_sheave_short_wrap, planar_sheave_short_wrap_motion, planar_sheave_winding, planar_sheave_winding_motion,
-     planar_sheave_store, planar_sheave_store_mass, planar_sheave_store_tangent, planar_sheave_store_energy,
-     planar_sheave_laying, planar_sheave_creep},
+     planar_sheave_friction_on, planar_sheave_friction_on_tangent, planar_sheave_friction_off,
+     planar_sheave_friction_off_tangent, planar_sheave_friction_short, planar_sheave_friction_short_tangent,
+     planar_sheave_coulomb, planar_sheave_coulomb_tangent, planar_sheave_coulomb_motion, planar_sheave_coulomb_on,
+     planar_sheave_coulomb_on_tangent, planar_sheave_coulomb_on_motion, planar_sheave_coulomb_off,
+     planar_sheave_coulomb_off_tangent, planar_sheave_coulomb_off_motion, planar_sheave_short_wrap,
+     planar_sheave_short_wrap_motion, planar_sheave_winding, planar_sheave_winding_motion, planar_sheave_store,
+     planar_sheave_store_mass, planar_sheave_store_tangent, planar_sheave_store_energy, planar_sheave_laying,
+     planar_sheave_creep},
 };
 
 static const fu_span_kernels spans[] = {
@@ -395,11 +396,11 @@ static const fu_taut_rope_kernels taut_ropes[] = {
 #define FU_ARGUMENTS_sssvssssssvv_5 *a[0], *a[1], *a[2], a[3], *a[4], *a[5], *a[6], *a[7], *a[8], *a[9], a[10], a[11], out[0], out[1], out[2], out[3], out[4]
 #define FU_ARGUMENTS_vsssvssvvsss_3 a[0], *a[1], *a[2], *a[3], a[4], *a[5], *a[6], a[7], a[8], *a[9], *a[10], *a[11], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vsssvssvvsss_2 a[0], *a[1], *a[2], *a[3], a[4], *a[5], *a[6], a[7], a[8], *a[9], *a[10], *a[11], out[0], out[1]
+#define FU_ARGUMENTS_vsssvssvvvsss_3 a[0], *a[1], *a[2], *a[3], a[4], *a[5], *a[6], a[7], a[8], a[9], *a[10], *a[11], *a[12], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vsssvssvvvsss_2 a[0], *a[1], *a[2], *a[3], a[4], *a[5], *a[6], a[7], a[8], a[9], *a[10], *a[11], *a[12], out[0], out[1]
 #define FU_ARGUMENTS_vsssvsvvsss_3 a[0], *a[1], *a[2], *a[3], a[4], *a[5], a[6], a[7], *a[8], *a[9], *a[10], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vsssvsvvsssss_2 a[0], *a[1], *a[2], *a[3], a[4], *a[5], a[6], a[7], *a[8], *a[9], *a[10], *a[11], *a[12], out[0], out[1]
 #define FU_ARGUMENTS_ssvvvvss_1 *a[0], *a[1], a[2], a[3], a[4], a[5], *a[6], *a[7], out[0]
-#define FU_ARGUMENTS_vsssvssvvvsss_3 a[0], *a[1], *a[2], *a[3], a[4], *a[5], *a[6], a[7], a[8], a[9], *a[10], *a[11], *a[12], out[0], out[1], out[2]
-#define FU_ARGUMENTS_vsssvssvvvsss_2 a[0], *a[1], *a[2], *a[3], a[4], *a[5], *a[6], a[7], a[8], a[9], *a[10], *a[11], *a[12], out[0], out[1]
 #define FU_ARGUMENTS_vsssvsvvvsss_3 a[0], *a[1], *a[2], *a[3], a[4], *a[5], a[6], a[7], a[8], *a[9], *a[10], *a[11], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vsssvsvvvsssss_2 a[0], *a[1], *a[2], *a[3], a[4], *a[5], a[6], a[7], a[8], *a[9], *a[10], *a[11], *a[12], *a[13], out[0], out[1]
 #define FU_ARGUMENTS_ssvvvvvvss_1 *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], *a[8], *a[9], out[0]
@@ -982,16 +983,18 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(planar_sheave_momentum_step, sssvssssssvv_5) \
     X(planar_sheave_friction, vsssvssvvsss_3) \
     X(planar_sheave_friction_tangent, vsssvssvvsss_2) \
+    X(planar_sheave_friction_on, vsssvssvvvsss_3) \
+    X(planar_sheave_friction_on_tangent, vsssvssvvvsss_2) \
+    X(planar_sheave_friction_off, vsssvssvvvsss_3) \
+    X(planar_sheave_friction_off_tangent, vsssvssvvvsss_2) \
+    X(planar_sheave_friction_short, vsssvssvvvsss_3) \
+    X(planar_sheave_friction_short_tangent, vsssvssvvvsss_2) \
     X(planar_sheave_coulomb, vsssvsvvsss_3) \
     X(planar_sheave_coulomb_tangent, vsssvsvvsssss_2) \
     X(planar_sheave_coulomb_motion, ssvvvvss_1) \
-    X(planar_sheave_friction_on, vsssvssvvvsss_3) \
-    X(planar_sheave_friction_on_tangent, vsssvssvvvsss_2) \
     X(planar_sheave_coulomb_on, vsssvsvvvsss_3) \
     X(planar_sheave_coulomb_on_tangent, vsssvsvvvsssss_2) \
     X(planar_sheave_coulomb_on_motion, ssvvvvvvss_1) \
-    X(planar_sheave_friction_off, vsssvssvvvsss_3) \
-    X(planar_sheave_friction_off_tangent, vsssvssvvvsss_2) \
     X(planar_sheave_coulomb_off, vsssvsvvvsss_3) \
     X(planar_sheave_coulomb_off_tangent, vsssvsvvvsssss_2) \
     X(planar_sheave_coulomb_off_motion, ssvvvvvvss_1) \
