@@ -11,11 +11,13 @@
 
 #include <math.h>
 
-#define EXCESS_TOLERANCE 1e-7   /* of the limit: excess at which a point breaks loose; small vibrations stay below it */
-#define SPEED_TOLERANCE 1e-12   /* of the size of the scene over the duration: slower points do not slide */
-#define ROUNDING_OF_SPEED 1e-12 /* of the speed of the groove: the same */
-#define FORCE_TOLERANCE 1e-12   /* of EA: excess of a point without normal force that is rounding */
-#define ROUNDING_OF_RATE 1e-10  /* of its terms: rate of w that is none */
+/* of the limit: excess at which a point breaks loose; small vibrations stay below it */
+#define EXCESS_TOLERANCE 1e-7
+/* of EA: excess of a point without normal force that is rounding */
+#define FORCE_TOLERANCE 1e-12
+#define SPEED_TOLERANCE 1e-11   /* of the size of the scene over the duration: slower points do not slide */
+#define ROUNDING_OF_SPEED 1e-11 /* of the largest speed: the same */
+#define ROUNDING_OF_RATE 1e-9   /* of its terms: a rate of w that is none */
 #define MAX_CHANGES 1000        /* of points at one instant */
 
 /* Returns f of a sticking point: by eq 38, since multipliers of Newton's method have the rounding of positions over
@@ -75,33 +77,81 @@ static void release(fu_run *run, const fu_coupling *coupling)
         run->now.forces[coupling->force] > 0.0 ? FU_SLIDES_FORWARDS : FU_SLIDES_BACKWARDS;
 }
 
-/* Determines the points after sticking ones, at rest, have been chosen; returns a status. */
+/* Returns whether a speed of sliding is none. */
+static int is_at_rest(const fu_run *run, double w)
+{
+    return fabs(w) <=
+           fmax(SPEED_TOLERANCE * run->size / run->duration, ROUNDING_OF_SPEED * fu_size(run->model, run->now.v));
+}
+
+/* Returns whether a sliding point at rest is accelerated against its direction, so that it sticks. */
+static int goes_back(const fu_run *run, const fu_coupling *coupling)
+{
+    const fu_sheave *sheave = fu_sheave_of_point(run->model, coupling);
+    const int mode = *fu_wrap_point_flag(coupling, &run->now);
+    fu_sheave_state at;
+    fu_coulomb of;
+    if (mode == FU_STICKS || mode == FU_POINT_IS_FREE) return 0;
+    fu_wrap_point_at(run->model, coupling, &run->now, &of);
+    if (!is_at_rest(run, of.w)) return 0;
+    fu_sheave_at(run->model, sheave, &run->now, run->now.acceleration, &at);
+    const int j = fu_place_of_point(coupling);
+    const double parts[] = {fu_coulomb_drift(sheave, &at, j), of.row[1] * at.wheel.turn_acc, of.row[2] * at.s_acc[j]};
+    const double size = fabs(parts[0]) + fabs(parts[1]) + fabs(parts[2]);
+    return mode * (parts[0] + parts[1] + parts[2]) < -ROUNDING_OF_RATE * size;
+}
+
+/* Determines the points after sticking ones, at rest, have been chosen: the loosest are released one by one, and one
+ * that would go back sticks again. Returns a status. */
 static int settle(fu_run *run)
 {
     for (int changes = 0; changes < MAX_CHANGES; ++changes) {
         if (fu_complete(run, &run->now)) return FU_SINGULAR;
-        const fu_coupling *loose = loosest(run);
-        if (!loose) return FU_RUNNING;
-        release(run, loose);
+        const fu_coupling *loose = loosest(run), *back = 0;
+        if (loose) {
+            release(run, loose);
+            continue;
+        }
+        FU_EACH_COUPLING(c, run->model->couplings, run->model->n_couplings)
+            if (c->type == &fu_wrap_point_type && goes_back(run, c)) back = c;
+        if (!back) return FU_RUNNING;
+        *fu_wrap_point_flag(back, &run->now) = FU_STICKS;
     }
     return FU_NO_CONVERGENCE;
+}
+
+/* Lets the points of a scene stick at which sliding has stopped. */
+static void stick_at_rest(fu_run *run)
+{
+    FU_EACH_COUPLING(c, run->model->couplings, run->model->n_couplings) {
+        if (c->type != &fu_wrap_point_type) continue;
+        int *mode = fu_wrap_point_flag(c, &run->now);
+        fu_coulomb of;
+        fu_wrap_point_at(run->model, c, &run->now, &of);
+        if (*mode != FU_STICKS && is_at_rest(run, of.w)) *mode = FU_STICKS;
+    }
 }
 
 static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
 {
     int *mode = fu_wrap_point_flag(coupling, &run->now);
+    fu_coulomb of;
     (void)which, (void)side;
-    *what = "";
+    *what = 0;
     if (*mode == FU_STICKS) {
-        fu_coulomb of;
         if (fu_complete(run, &run->now)) return FU_SINGULAR;
         fu_wrap_point_at(run->model, coupling, &run->now, &of);
-        if (fabs(run->now.forces[coupling->force]) >= of.limit)
-            release(run, coupling); /* the change of another may hold it */
+        if (fabs(run->now.forces[coupling->force]) < of.limit) { /* another change holds it */
+            fu_restart_event_functions(run, coupling->number);
+            return FU_RUNNING;
+        }
+        release(run, coupling);
     } else {
         *mode = FU_STICKS;
+        stick_at_rest(run);
         if (stop(run)) return FU_SINGULAR;
     }
+    *what = "";
     return settle(run);
 }
 
@@ -109,17 +159,14 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
 static int begin(fu_run *run, const fu_coupling *coupling)
 {
     const fu_model *model = run->model;
-    const double slow = SPEED_TOLERANCE * run->size / run->duration;
     if (coupling->index) return FU_RUNNING;
     FU_EACH_COUPLING(c, model->couplings, model->n_couplings) {
         if (c->type != &fu_wrap_point_type) continue;
         fu_coulomb of;
         fu_wrap_point_at(model, c, &run->now, &of);
-        const double rounding = ROUNDING_OF_SPEED * fu_size(model, run->now.v);
-        *fu_wrap_point_flag(c, &run->now) = fabs(of.w) <= fmax(slow, rounding) ? FU_STICKS
-                                            : of.w > 0.0                       ? FU_SLIDES_FORWARDS
-                                                                               : FU_SLIDES_BACKWARDS;
+        *fu_wrap_point_flag(c, &run->now) = of.w > 0.0 ? FU_SLIDES_FORWARDS : FU_SLIDES_BACKWARDS;
     }
+    stick_at_rest(run);
     return stop(run) ? FU_SINGULAR : settle(run);
 }
 

@@ -19,6 +19,11 @@ int *fu_wrap_point_flag(const fu_coupling *coupling, const fu_state *state)
     return state->flags + coupling->flags;
 }
 
+int fu_place_of_point(const fu_coupling *coupling)
+{
+    return point_of(coupling)->place;
+}
+
 const fu_sheave *fu_sheave_of_point(const fu_model *model, const fu_coupling *coupling)
 {
     return (const fu_sheave *)model->couplings[point_of(coupling)->sheave];

@@ -16,6 +16,8 @@ extern const fu_coupling_type fu_wrap_point_type;
 enum { FU_SLIDES_BACKWARDS = -1, FU_POINT_IS_FREE, FU_SLIDES_FORWARDS, FU_STICKS };
 
 int *fu_wrap_point_flag(const fu_coupling *coupling, const fu_state *state);
+/* Return the place of a point in its wrap; its sheave. */
+int fu_place_of_point(const fu_coupling *coupling);
 const fu_sheave *fu_sheave_of_point(const fu_model *model, const fu_coupling *coupling);
 /* Computes Coulomb friction at a point in a state. */
 void fu_wrap_point_at(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_coulomb *out);
