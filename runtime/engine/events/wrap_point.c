@@ -3,7 +3,7 @@
  * accelerations that follow. */
 #include "bodies/unknowns.h"
 #include "couplings/common/coupling_events.h"
-#include "couplings/sheave/wrap_point.h"
+#include "couplings/sheave/sheave.h"
 #include "equations/equations.h"
 #include "equations/run.h"
 #include "equations/scene_size.h"

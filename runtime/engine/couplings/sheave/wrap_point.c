@@ -4,7 +4,7 @@
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
-#include "couplings/sheave/wrap_point.h"
+#include "couplings/sheave/sheave.h"
 
 #include <math.h>
 #include <string.h>
