@@ -91,8 +91,9 @@ def check_comes_to_rest(scene: SceneData) -> None:
                              'take model="stick", which holds it, or leave friction out')
     for rope in scene.ropes.values():
         for sheave in rope.rough_sheaves:
-            raise SceneError(f"{rope.where}: {sheave.where}", "its friction is regularised, so that the rope creeps "
-                             "and never comes to rest", "leave friction out")
+            why = ("its friction has part in a state of rest, which has no tensions of ropes that stick"
+                   if sheave.sticks else "its friction is regularised, so that the rope creeps and never comes to rest")
+            raise SceneError(f"{rope.where}: {sheave.where}", why, "leave friction out")
 
 
 def check_impending(scene: SceneData, motion: str) -> None:

@@ -257,6 +257,10 @@ def test_a_rope_without_mass_takes_sticking_friction():
     near(run(stick(0.1)), run(fu.Friction(coefficient=0.1)), 1e-14, "heavy.position")
 
 
-def test_integrators_without_sticking_ropes():
+def test_what_sticking_ropes_are_refused_in():
+    with pytest.raises(fu.SceneError, match="has no tensions of ropes that stick; leave friction out"):
+        hung(0.3).relax()
+    with pytest.raises(fu.SceneError, match="has rolling friction, which only slides have"):
+        fu.Sheave("top", at=(0, 0, 0), radius=R, friction=fu.Friction(coefficient=0.1, rolling=0.1, model="stick"))
     with pytest.raises(fu.SceneError, match='integrator "energy" does not support friction that sticks'):
         swing(**SHEAVES["held"]).run(0.01, integrator="energy")
