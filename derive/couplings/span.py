@@ -14,16 +14,15 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from ..algebra.gram import Gram
 from ..algebra.gram_tangent import from_others, nodal_tangent
 from ..codegen.family import ElementFamily
 from ..codegen.program import Program
 from ..elements import ELEMENTS
-from ..laws import law_class, law_traits
+from ..laws import law_traits
 from ..laws.cable.blocks import named_block
 from ..spec import Element, x
 from . import span_force, span_step
-from .span_inertia import Flow, FlowingElement
+from .span_inertia import Flow
 
 SPANS = {"cable8p": "engineering_exact_assumed", "cable12": "engineering_exact_assumed"}
 """Elements that spans have, and their law."""
@@ -47,13 +46,8 @@ def build(element: Element, law: str) -> list[Program]:
             span.damping_force(), span.damping_tangent(), *span_step.kernels(span), *span_force.build(span)]
 
 
-class Span(FlowingElement):
+class Span(span_step.ElasticElement):
     """The kernels of the spans of an element with a law."""
-
-    def __init__(self, element: Element, law: str):
-        super().__init__(element)
-        self.gram = Gram(element)
-        self.law = law_class(law)(self.gram)
 
     def weight(self) -> Program:
         """Return the kernel of the energy of gravity and its derivatives."""

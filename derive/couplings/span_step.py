@@ -14,43 +14,51 @@ vectors of unit length, positions and l r_x; so the first two terms are
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import sympy as sp
 
 from ..algebra.discrete_gradient import STATES
+from ..algebra.gram import Gram
 from ..codegen.program import Program
-from ..spec import x
+from ..laws import law_class
+from ..spec import Element, x
 from .material_step import SOURCE, Step, at_point, gauss, on_slope
-from .span_inertia import Flow
-
-if TYPE_CHECKING:
-    from .span import Span
+from .span_inertia import Flow, FlowingElement
 
 POINTS = 4
 """Gauss points of the momentum of an element: exact for the square of a cubic, and for its product with the flow."""
 
 
-def kernels(span: Span) -> list[Program]:
+class ElasticElement(FlowingElement):
+    """An element whose ends flow along the rope, with a law."""
+
+    def __init__(self, element: Element, law: str):
+        super().__init__(element)
+        self.gram = Gram(element)
+        self.law = law_class(law)(self.gram)
+
+
+def kernels(span: ElasticElement) -> list[Program]:
     """Return the kernels of a span over a step."""
     return [momentum(span), momentum_energy(span), momentum_step(span), elastic_step(span)]
 
 
-def _shapes(span: Span, at: sp.Expr) -> tuple[np.ndarray, np.ndarray]:
+def _shapes(span: ElasticElement, at: sp.Expr) -> tuple[np.ndarray, np.ndarray]:
     """Return the shape functions of the element of unit length and their derivatives at a point."""
     return tuple(np.array([sp.sympify(f.subs(x, at)) for f in functions], dtype=object) for functions in (
         span.unit_shapes, [sp.diff(n, x) for n in span.unit_shapes]))
 
 
-def _along(span: Span, N_xi: np.ndarray, vectors: Sequence[np.ndarray]) -> np.ndarray:
+def _along(span: ElasticElement, N_xi: np.ndarray, vectors: Sequence[np.ndarray]) -> np.ndarray:
     """Return the derivative by xi of nodal vectors of unit length, through differences of positions."""
     first = span.element.is_position.index(True)
     return np.asarray(sum(n * (v - vectors[first] if position else v) for k, (n, v, position) in enumerate(
         zip(N_xi, vectors, span.element.is_position, strict=True)) if k != first))
 
 
-def momentum(span: Span) -> Program:
+def momentum(span: ElasticElement) -> Program:
     """Return the kernel of the momentum at the points, over the mass of a length: l u."""
     p = span.program("momentum", "momentum of the material at the points of a step, over the mass of a length")
     flow = Flow(p, span)
@@ -63,7 +71,7 @@ def momentum(span: Span) -> Program:
     return p
 
 
-def momentum_energy(span: Span) -> Program:
+def momentum_energy(span: ElasticElement) -> Program:
     """Return the kernel of the kinetic energy of momenta at the points."""
     p = span.program("momentum_energy", "kinetic energy of the momentum at the points of a step", SOURCE)
     rho, length = p.input("rho", (), "kg/m", "mass of a length"), p.input("l", (), "m", "length s2 - s1 of the element")
@@ -74,7 +82,7 @@ def momentum_energy(span: Span) -> Program:
     return p
 
 
-def momentum_step(span: Span) -> Program:
+def momentum_step(span: ElasticElement) -> Program:
     """Return the kernel of the inertial forces over a step, and the momentum at its end."""
     p = span.program("momentum_step", "inertial forces over a step that conserves energy", SOURCE)
     step = Step.of(p)
@@ -108,8 +116,8 @@ def momentum_step(span: Span) -> Program:
     return p
 
 
-def _on_nodes(p: Program, span: Span, f: np.ndarray, middle: Sequence[np.ndarray], change: np.ndarray, l: Sequence[Any],
-              mean: Any) -> tuple[np.ndarray, Any]:
+def _on_nodes(p: Program, span: ElasticElement, f: np.ndarray, middle: Sequence[np.ndarray], change: np.ndarray,
+              l: Sequence[Any], mean: Any) -> tuple[np.ndarray, Any]:
     """Stage: the forces on the nodal vectors, with these means and changes, and on l of forces on those of unit length.
     """
     p.stage("forces on the nodal vectors")
@@ -123,7 +131,7 @@ def _on_nodes(p: Program, span: Span, f: np.ndarray, middle: Sequence[np.ndarray
     return np.array(found), on_length
 
 
-def elastic_step(span: Span) -> Program:
+def elastic_step(span: ElasticElement) -> Program:
     """Return the kernel of a discrete gradient of the elastic energy by e and l."""
     p = span.program("elastic_step", "discrete gradient of the elastic energy over a step", span.law.source)
     now = p.input("l", (), "m", "length of the element at the start of the step")
