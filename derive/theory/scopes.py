@@ -445,12 +445,17 @@ def tangent_point_scope(name: str) -> Scope:
     vectors = [Symbol(latex, argument, column) for latex, argument in (
         (r"\mathbf{x}", "x"), (r"\dot{\mathbf{x}}", "x_rate"), (r"\mathbf{d}", "chord"),
         (r"\dot{\mathbf{d}}", "chord_rate"), (r"\mathbf{w}", "weight"), (r"\mathbf{a}", "axis"),
-        (r"\boldsymbol{\lambda}", "f"))]
+        (r"\dot{\mathbf{a}}", "axis_rate"), (r"\boldsymbol{\lambda}", "f"))]
     numbers = [Symbol(latex, argument, number) for latex, argument in (
         ("R", "R"), ("l", "l"), (r"\rho", "rho"), ("w", "w"), (r"\dot{w}", "w_rate"), (r"\ddot{w}", "w_acc"),
         ("g", "g"), ("b", "b"), (r"\dot{b}", "b_rate"), (r"\mathrm{EA}", "EA"), ("N_{0}", "limit"))]
-    ends = [Symbol(rf"\dot{{s}}_{{{k + 1}}}", "s_rate", entry(k)) for k in range(2)]
-    return Scope(families()[name], (*vectors, *numbers, *ends))
+    ends = [Symbol(rf"{latex}_{{{k + 1}}}", argument, entry(k)) for latex, argument in (
+        (r"\dot{s}", "s_rate"), (r"\ddot{s}", "s_acc"), (r"\phi", "phi"), (r"\dot{\phi}", "phi_rate"),
+        (r"\ddot{\phi}", "phi_acc"), (r"\dot{\Omega}", "omega_acc"), ("I", "inertia")) for k in range(2)]
+    ends += [Symbol(rf"{latex}_{{{k + 1}}}", argument, entry(k)) for latex, argument in (
+        (r"\Omega", "omega"), ("v", "c_rate"), ("a", "c_acc"), ("g", "gravity")) for k in range(3)]
+    spin = Symbol(r"\dot{\psi}", "spin", number), Symbol(r"\dot{I}_{1}", "growth", number)
+    return Scope(families()[name], (*vectors, *numbers, *ends, *spin))
 
 
 def rope_point_scope(name: str) -> Scope:

@@ -317,7 +317,7 @@ class Block(RouteItem):
     at: lower axle, a body, or a point in the axes of a body
     upper: upper axle, a point of the ground, a body, or a point in the axes of a body
     falls: number of parts of the rope that hold the lower axle; there is one sheave less
-    radius, side, inertia, friction, zones: of each sheave, see `Sheave`
+    radius, side, inertia, friction, zones, axis, max_fleet_angle: of each sheave, see `Sheave`
     """
 
     kind = "block"
@@ -331,6 +331,8 @@ class Block(RouteItem):
     inertia: Annotated[float, not_negative("kg m²")] = 0.0
     friction: AnyFriction | None = None
     zones: Annotated[int, _whole_number_between(1, MAX_ZONES)] = 8
+    axis: Annotated[Vector, direction(turns=AXIS)] = (0.0, 0.0, 1.0)
+    max_fleet_angle: Annotated[float, positive("rad")] = MAX_FLEET_ANGLE
 
     @property
     def end(self) -> Attachment:
@@ -340,7 +342,8 @@ class Block(RouteItem):
     @property
     def sheaves(self) -> tuple[Sheave, ...]:
         """Return its sheaves in the rope's order."""
-        shared = {name: getattr(self, name) for name in ("radius", "side", "inertia", "friction", "zones")}
+        shared = {name: getattr(self, name) for name in (
+            "radius", "side", "inertia", "friction", "zones", "axis", "max_fleet_angle")}
         return tuple(Sheave(name=f"{self.name}_{k + 1}", at=self.upper if k % 2 else self.at, **shared)
                      for k in range(self.falls - 1))
 

@@ -35,6 +35,34 @@ def test_tower_crane():
     assert not run.report["messages"]
 
 
+@pytest.mark.slow
+def test_slewing_crane():
+    """At its tolerance the load is within 1e-4 m of a run on elements of half the length; at half of it within 2e-6 m.
+    """
+    text = (Path(fu.__file__).parent / "scenes" / "slewing_crane.toml").read_text(encoding="utf-8").replace("\n#", "")
+    run = fu.load_scene("slewing_crane").run(progress=False)
+    load, trolley, tension = run["load.position"], run["trolley.position"], run["winch.tension"] / 1e3
+    swing = np.linalg.norm((load - trolley)[:, [0, 2]], axis=1)
+    yaw = [np.unwrap(2 * np.arctan2(*run[f"{name}.orientation"][:, [2, 0]].T)) for name in ("jib", "load")]
+    said = re.search(r"by ([\d.]+) degrees.*?rises by ([\d.]+) m; .*?takes ([\d.]+) kW.*?winds ([\d.]+) m.*?is ([\d.]+) to "
+                     r"([\d.]+) kN.*?swings by ([\d.]+) m.*?by ([\d.]+) rad", text)
+    assert [float(number) for number in said.groups()] == pytest.approx([
+        np.degrees(yaw[0][-1]), np.ptp(load[:, 1]), run["winch.power"].max() / 1e3, np.ptp(run["winch.length_in_store"]),
+        tension.min(), tension.max(), swing.max(), np.abs(yaw[1] - yaw[0]).max()], rel=1e-2)
+    assert abs(run.energy_balance().relative).max() < 1e-5
+    assert max(run[f"hook_{k}.residual"].max() for k in range(1, 8)) < 1e-10
+    assert not run.report["messages"]
+
+
+def test_the_slewing_crane_starts_at_rest():
+    """In the first 2 s nothing moves; in the next second the jib turns with all that it carries."""
+    scene = fu.load_scene("slewing_crane")
+    run = scene.run(duration=3.0, output_step=1.0, progress=False)
+    assert np.abs(run["load.position"][2] - run["load.position"][0]).max() < 1e-6
+    assert run["jib.orientation"][-1, 2] == pytest.approx(np.sin(0.05 / 12 / 2), rel=1e-3)
+    assert run["hook_1.tension_on"] == pytest.approx(12267.8, rel=1e-3)
+
+
 def test_elevator():
     """At the tolerance of the scene bodies are within 1.3e-4 m of a run at a thousandth of it on half the elements."""
     text = (Path(fu.__file__).parent / "scenes" / "elevator.toml").read_text(encoding="utf-8").replace("\n#", "")
