@@ -20,6 +20,8 @@ the moments about 1 and 2.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import sympy as sp
 
@@ -73,8 +75,8 @@ class _Wrap(Zone):
 
     def __init__(self, p: Program, order: int = 1, at_rest: bool = False):
         self.rho = p.input("rho", (), "kg/m", "mass of a length")
-        self.omega = (np.array(sp.symbols("omega:3"), dtype=object) if at_rest else _omega(p))
-        self.alpha = p.input("omega_acc", TILTS, "rad/s^2", "its rates about 1 and 2") if order > 1 else None
+        self.omega = np.array(sp.symbols("omega:3"), dtype=object) if at_rest else _omega(p)
+        self.alpha: Any = p.input("omega_acc", TILTS, "rad/s^2", "its rates about 1 and 2") if order > 1 else None
         super().__init__(p, order, centre_moves=True, at_rest=at_rest)
         self.velocity = self.c_rate
         middle, angle, *centre, flow, length = self.motion[0]
@@ -94,7 +96,7 @@ class _Wrap(Zone):
 
     def kinetic_energy(self, order: int) -> sp.Expr:
         """Stage: T."""
-        p, v, m = self.program, self.velocity, None
+        p, v = self.program, self.velocity
         self.material_rates()
         self.place(order)
         self.squares()
@@ -122,7 +124,7 @@ def wrap_inertia() -> Program:
     p = _program("wrap_inertia", "inertial forces of a zone in a groove that tilts")
     zone = _Wrap(p, 2)
     T = zone.kinetic_energy(2)
-    (*_, flow_rate, l_rate), (middle_acc, angle_acc, *acc, flow_acc, l_acc) = zone.motion
+    (*_, l_rate), (middle_acc, angle_acc, *acc, flow_acc, l_acc) = zone.motion
     p.stage("momenta")
     momenta = [p.define(f"p{k + 1}", value) for k, value in enumerate(jacobian(p, np.array([T]), zone.rates)[0])]
     P, L = np.array(momenta[2:5]), np.array([*momenta[5:7], momenta[0]])
@@ -142,8 +144,8 @@ def wrap_inertia() -> Program:
     T_middle, T_angle, T_l = zone.jacobian(np.array([T]), [zone.middle, zone.angle, zone.l])[0]
     on_c = np.array(rates[2:5]) + cross(omega, P)
     moment = np.array([*rates[5:7], 0]) + cross(omega, L) + cross(v, P)
-    force = [rates[0] - T_middle, rates[1] - T_angle, *on_c, *moment[:TILTS], rates[7], rates[8] - T_l]
-    force = np.array([p.define(f"F{k + 1}", value) for k, value in enumerate(force)])
+    on_all = [rates[0] - T_middle, rates[1] - T_angle, *on_c, *moment[:TILTS], rates[7], rates[8] - T_l]
+    force = np.array([p.define(f"F{k + 1}", value) for k, value in enumerate(on_all)])
     p.output("f", at_ends(p, "F", force, *OF_WRAP), "N, N m", "forces on phi_a, phi_b, c, about 1 and 2, on s_a, s_b")
     return p
 
@@ -202,8 +204,8 @@ def laid_weight() -> Program:
     height = p.define("height", weight * (g[1] * n[0] - g[0] * n[1]))
     p.stage("forces, and their derivatives")
     turns = _by_turns(p, g, dict.fromkeys(x, sp.S.Zero))
-    F = [p.define(f"F{k + 1}", value) for k, value in enumerate(jacobian(p, np.array([height]), x[:TILTS])[0])]
-    F = np.array([*F, *(p.define(f"M{k + 1}", turn(height)) for k, turn in enumerate(turns))])
+    by_x = [p.define(f"F{k + 1}", value) for k, value in enumerate(jacobian(p, np.array([height]), x[:TILTS])[0])]
+    F = np.array([*by_x, *(p.define(f"M{k + 1}", turn(height)) for k, turn in enumerate(turns))])
     p.output("V", [height], "J", "energy of gravity")
     p.output("F", F, "N, N m", "derivatives of V by x_1, x_2, and by rotations about 1 and 2")
     K = np.concatenate([jacobian(p, F, x[:TILTS]), np.stack([turn.array(F) for turn in turns], axis=1)], axis=1)

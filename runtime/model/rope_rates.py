@@ -97,8 +97,8 @@ def _wound_along(rope: RopeModel, route: DrawnRoute, wound: dict[int, float]) ->
     """Return the coordinates of a rope along a route after its drums have wound these lengths, m, by their ends."""
     free = rope.route.free_length - sum(wound.values())
     found = rope_model(rope.part, replace(route, stretch=route.length / free), rope.first)
-    lengths = np.concatenate([np.array(at.s) - rope.first for at in (*found.spans, *found.sheaves)]).astype(int)
-    found.q[np.unique(lengths)] += wound.get(0, 0.0)
+    ends = [*(np.array(span.s) for span in found.spans), *(sheave.s for sheave in found.sheaves)]
+    found.q[np.unique(np.concatenate(ends).astype(int)) - rope.first] += wound.get(0, 0.0)
     return found.q
 
 

@@ -180,7 +180,7 @@ def in_groove(model: Model, wheel: SheaveModel | DrumModel, q: np.ndarray, vecto
     """Return vectors (T, dim) in the plane of the groove of a wheel in configurations (T, n_q), (T, 2)."""
     if not wheel.tilts:
         return np.asarray(vectors @ wheel.plane)
-    return np.einsum("td,tdk->tk", vectors, attachment_axes(model, wheel.attachments[0], q)[..., :2])
+    return np.asarray(np.einsum("td,tdk->tk", vectors, attachment_axes(model, wheel.attachments[0], q)[..., :2]))
 
 
 def end_forces(model: Model, rope: RopeModel, reaction: np.ndarray, of_anchors: dict[int, np.ndarray],

@@ -13,7 +13,7 @@ from ..parts.load import Force
 from ..parts.locations import grips
 from ..parts.rope import Rope
 from ..parts.rope_items import SIDES, Anchor, Drum, RouteItem, Sheave
-from ..parts.rope_route import MIN_SPAN_RATIO, MIN_WRAP, DrawnArc, DrawnRoute
+from ..parts.rope_route import MIN_SPAN_RATIO, MIN_WRAP, DrawnRoute
 from ..parts.rope_route_space import groove_of
 from ..parts.scene_data import SceneData
 from ..parts.section_stiffness import section_stiffness
@@ -653,8 +653,9 @@ def drum_models(builder: ModelBuilder) -> Iterator[DrumModel]:
                             tangent_radius=rope.route.reach[at.end], stretch=rope.route.stretch,
                             sense=float(SIDES[item.side]), ends_run_by=item.at_end,
                             **_wheel_of(builder, rope, item, groove_of(item.axis) if dim == 3 else np.eye(2)),
-                            span_reach=_reach(rope, number, item.radius), scale=[rope.mass_of_element(at.end)] * (dim + 1),
-                            n_multipliers=dim + 1, has_inertia=True, is_damped=True)
+                            span_reach=_reach(rope, number, item.radius),
+                            scale=[rope.mass_of_element(at.end)] * (dim + 1), n_multipliers=dim + 1,
+                            has_inertia=True, is_damped=True)
 
 
 @dataclass(kw_only=True)

@@ -159,6 +159,7 @@ def attachment_axes(model: Model, attachment: AttachmentModel, q: np.ndarray) ->
         theta = modal_state(model, body, state, q)["modal_coordinates"] @ attachment.modal[2]
         half = np.concatenate([np.ones((len(q), 1)), theta / 2], axis=1)
         orientation = product(orientation, half / np.linalg.norm(half, axis=1, keepdims=True))
+    assert attachment.axes is not None, "an attachment without axes"
     columns = [rotate(orientation, axis) for axis in attachment.axes.T]
     return np.stack(columns, axis=-1)
 

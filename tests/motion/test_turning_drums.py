@@ -1,4 +1,4 @@
-"""Ropes in space on drums, at the ground and on bodies that rotate: planar twins, momenta, energy, integrators, files."""
+"""Ropes in space on drums, at the ground and on bodies that rotate: planar twins, momenta, energy, files."""
 
 import funicular as fu
 import numpy as np

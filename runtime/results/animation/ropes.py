@@ -178,7 +178,7 @@ def _wrap(frames: Frames, sheave: Sheave, arc: DrawnArc, points: np.ndarray, s: 
 
 def _turned(frames: Frames, wheel: Sheave | Drum, groove: np.ndarray) -> np.ndarray:
     """Return (T, 3, 2): the plane of a groove as drawn, turned with the body that the wheel is on."""
-    if wheel.end.on is None or np.array_equal(groove, np.eye(3)[:, :2]) and frames.scene.dim == 2:
+    if wheel.end.on is None or frames.scene.dim == 2:
         return np.broadcast_to(groove, (len(frames.time), 3, 2))
     orientation, body = frames.value(f"{wheel.end.on}.orientation"), frames.scene.bodies[wheel.end.on]
     return np.stack([rotate(orientation, body.axes.T @ axis) for axis in groove.T], axis=-1)

@@ -186,7 +186,7 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
     fu_drum_at(model, drum, equations->next, 0, &at);
     fu_drum_conditions_at(drum, &at, equations->next, multipliers, &of);
     fu_drum_forces(drum, &at, y);
-    fu_drum_add_all_multipliers(drum, &at, &of, multipliers, y, f);
+    fu_drum_add_all_multipliers(drum, &of, multipliers, y, f);
     add_rise(drum, &at, y);
     scatter(drum, &at, y, f);
     fu_wheel_add_bearing(&drum->wheel, &at.wheel, f);
@@ -211,8 +211,8 @@ static void add_motion_of_wheel(const fu_model *model, const fu_drum *drum, cons
         add_rise(drum, at, turning);
         for (int d = 0; d < SPACE; ++d) on_node.arm[d] = at->q[drum->node + d] - at->wheel.centre.p[d];
         fu_out_of_groove(&at->wheel, turning, on_node.force);
-        fu_wheel_add_turning(model, &drum->wheel, &at->wheel, by_psi, 1, &on_node, turning + CENTRE,
-                             equations->weights.stiffness, system);
+        fu_wheel_add_turning(model, &at->wheel, by_psi, 1, &on_node, turning + CENTRE, equations->weights.stiffness,
+                             system);
     }
     fu_drum_add_multipliers(drum, at, of, multipliers, y);
     fu_wheel_add_tangent(model, &drum->wheel, &at->wheel, equations, y + CENTRE, system);

@@ -127,8 +127,8 @@ void fu_drum_conditions_at(const fu_drum *drum, const fu_drum_state *at, const f
 void fu_drum_add_multipliers(const fu_drum *drum, const fu_drum_state *at, const fu_drum_conditions *of,
                              const double *multipliers, double y[Y]);
 /* Adds all these forces: by y, in space those of the tangent point to those on the dofs. */
-void fu_drum_add_all_multipliers(const fu_drum *drum, const fu_drum_state *at, const fu_drum_conditions *of,
-                                 const double *multipliers, double y[Y], double *f);
+void fu_drum_add_all_multipliers(const fu_drum *drum, const fu_drum_conditions *of, const double *multipliers,
+                                 double y[Y], double *f);
 /* Adds the rows of the conditions, the columns of their forces, and in space the derivatives of those of the tangent
  * point. `rows` and `columns`: of the n dofs; by_psi: moves of the centre in the latter. */
 void fu_drum_add_rows(const fu_model *model, const fu_coupling *coupling, const fu_drum_state *at,

@@ -70,14 +70,13 @@ void fu_drum_add_multipliers(const fu_drum *drum, const fu_drum_state *at, const
     if (is_in_space(drum)) fu_tangent_point_add_forces(&at->wheel, &of->foot, multipliers, y, y + CENTRE);
 }
 
-void fu_drum_add_all_multipliers(const fu_drum *drum, const fu_drum_state *at, const fu_drum_conditions *of,
-                                 const double *multipliers, double y[Y], double *f)
+void fu_drum_add_all_multipliers(const fu_drum *drum, const fu_drum_conditions *of, const double *multipliers,
+                                 double y[Y], double *f)
 {
     double rows[FU_FOOT_CONDITIONS * FU_FOOT_DOFS];
-    const int n = of->foot.n;
-    (void)at;
     add_by_rows(drum, of, multipliers, y);
     if (!is_in_space(drum)) return;
+    const int n = of->foot.n;
     fu_tangent_point_rows(&of->foot, rows);
     for (int r = 0; r < FU_FOOT_CONDITIONS; ++r)
         for (int j = 0; j < n; ++j) f[of->foot.dofs[j]] += rows[r * n + j] * multipliers[r];

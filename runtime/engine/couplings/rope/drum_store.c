@@ -135,17 +135,15 @@ static void rings(const fu_drum *drum, double u, double out[2])
 static double add_in_space(const fu_drum *drum, const fu_drum_state *at, double y[Y])
 {
     const motion_across across = across_of(drum, at);
-    double inertia[2], growth[2], of_length;
+    double inertia[2], growth[2], none[FU_WHEEL_FORCES] = {0.0};
     y[ACROSS] += across.f[0];
     y[LENGTH] += across.f[2];
     if (!drum->wheel.tilts) return 0.0;
     rings(drum, at->u, inertia);
     rings(drum, at->u_rate, growth);
     const double tilting = fu_wheel_add_ring(&drum->wheel, &at->wheel, inertia, growth[0], y + CENTRE);
-    double none[FU_WHEEL_FORCES] = {0.0};
     rings(drum, 1.0, inertia);
-    of_length = fu_wheel_add_ring(&drum->wheel, &at->wheel, inertia, 0.0, none);
-    y[LENGTH] -= of_length;
+    y[LENGTH] -= fu_wheel_add_ring(&drum->wheel, &at->wheel, inertia, 0.0, none); /* of a length */
     return tilting;
 }
 

@@ -132,5 +132,5 @@ void fu_turning_wrap_add_turning(const fu_model *model, const fu_sheave *sheave,
         for (int d = 0; d < SPACE; ++d) on_nodes[k].arm[d] = at->q[sheave->nodes[k] + d] - at->wheel.centre.p[d];
         fu_out_of_groove(&at->wheel, y + k * NODE, on_nodes[k].force);
     }
-    fu_wheel_add_turning(model, &sheave->wheel, &at->wheel, moves, ENDS, on_nodes, y + CENTRE, factor, system);
+    fu_wheel_add_turning(model, &at->wheel, moves, ENDS, on_nodes, y + CENTRE, factor, system);
 }

@@ -23,13 +23,12 @@ static void add_to_centre(const fu_model *model, const fu_wheel_state *at, int d
 }
 
 /* Adds the changes with a coordinate of the centre, which moves it by `move` and turns it by `turn`. */
-static void add_move(const fu_model *model, const fu_wheel *wheel, const fu_wheel_state *at, int dof,
-                     const double move[SPACE], const double turn[SPACE], int n, const fu_turning_force *on_nodes,
-                     const double *forces, double factor, fu_system *system)
+static void add_move(const fu_model *model, const fu_wheel_state *at, int dof, const double move[SPACE],
+                     const double turn[SPACE], int n, const fu_turning_force *on_nodes, const double *forces,
+                     double factor, fu_system *system)
 {
     const double about = fu_dot(SPACE, at->axis, turn);
     double tilt[SPACE], on_centre[SPACE] = {0.0}, moment[SPACE], of_tilt[SPACE], axle[SPACE];
-    (void)wheel;
     for (int d = 0; d < SPACE; ++d) tilt[d] = turn[d] - about * at->axis[d];
     fu_out_of_groove(at, forces + FU_WHEEL_TILT, of_tilt);
     fu_cross(tilt, of_tilt, moment);
@@ -50,15 +49,14 @@ static void add_move(const fu_model *model, const fu_wheel *wheel, const fu_whee
     add_to_centre(model, at, dof, on_centre, moment, factor, system);
 }
 
-void fu_wheel_add_turning(const fu_model *model, const fu_wheel *wheel, const fu_wheel_state *at,
-                          const fu_centre_moves *moves, int n, const fu_turning_force *on_nodes, const double *forces,
-                          double factor, fu_system *system)
+void fu_wheel_add_turning(const fu_model *model, const fu_wheel_state *at, const fu_centre_moves *moves, int n,
+                          const fu_turning_force *on_nodes, const double *forces, double factor, fu_system *system)
 {
     for (int j = 0; j < at->centre.n; ++j) {
         double move[SPACE], turn[SPACE];
         column_of(moves->P, at->centre.n, j, move);
         column_of(moves->T, at->centre.n, j, turn);
-        add_move(model, wheel, at, at->centre.at[j], move, turn, n, on_nodes, forces, factor, system);
+        add_move(model, at, at->centre.at[j], move, turn, n, on_nodes, forces, factor, system);
     }
     for (int k = 0; k < n; ++k) {
         double across[SPACE];

@@ -118,9 +118,8 @@ typedef struct {
 } fu_turning_force;
 /* Adds the derivatives of such forces, of their opposites on the centre, and of the moments among the forces on the
  * wheel, by rotations of the groove that turns them, and by moves of the nodes out of its plane. */
-void fu_wheel_add_turning(const fu_model *model, const fu_wheel *wheel, const fu_wheel_state *at,
-                          const fu_centre_moves *moves, int n, const fu_turning_force *on_nodes, const double *forces,
-                          double factor, fu_system *system);
+void fu_wheel_add_turning(const fu_model *model, const fu_wheel_state *at, const fu_centre_moves *moves, int n,
+                          const fu_turning_force *on_nodes, const double *forces, double factor, fu_system *system);
 /* Adds the moments of a wheel, and of the rope wound on it, that spins about an axis that tilts to forces on the wheel;
  * inertia: about a diameter and about the axis, growth: rate of the first. Returns the kinetic energy about diameters.
  */
