@@ -3,6 +3,7 @@
 import funicular as fu
 import numpy as np
 import pytest
+from funicular.base.rotations import rotate
 from funicular.results import streaming
 from interrupted_runs import Killed, failing
 from test_ropes import BRIEF, INTEGRATORS, THIN, near
@@ -126,3 +127,18 @@ def test_a_file_and_a_drum_that_runs_empty():
         *hoist("cable12", 0.05).ropes["hoist"].route[1:]])
     with pytest.raises(fu.RopeLeftError, match='drum "winch" has run empty'):
         paying.run(0.5, output_step=0.1, progress=False)
+
+
+def test_a_picture_turns_wheels_and_wraps_with_their_body():
+    """Of a free deck: stations of the wrap lie in its groove, at its radius; the drum's axis is that of its body."""
+    run = deck(inertia=0.05, torque=2.0).run(0.02, output_step=0.01, tol=1e-5, integrator="radau", progress=False)
+    made = run.animation()
+    turned = rotate(run["deck.orientation"], np.array([0.1, 0.05, 1]) / np.linalg.norm([0.1, 0.05, 1]))
+    shape = next(body for body in made.clips[0].bodies if body.name == "winch")
+    assert np.abs(rotate(shape.orientation, np.array([0.0, 0.0, 1.0])) - turned).max() < 1e-12
+    wrap = run["hoist.position"][:, 9:19]
+    centre = run["deck.position"] + rotate(run["deck.orientation"], np.array([0.8, 0.5, 0.08]))
+    axis = rotate(run["deck.orientation"], np.array([0, 0.1, 1]) / np.linalg.norm([0, 0.1, 1]))
+    arm = wrap - centre[:, None]
+    assert np.abs(np.einsum("tnd,td->tn", arm, axis)).max() < 1e-12
+    assert np.linalg.norm(arm, axis=-1) == pytest.approx(np.full(arm.shape[:2], 0.15), rel=1e-6)

@@ -157,12 +157,12 @@ def _wrap(frames: Frames, sheave: Sheave, arc: DrawnArc, points: np.ndarray, s: 
     centre = place(frames, sheave.end)
     groove, sense = np.eye(3)[:, :2] if len(arc.groove) == 2 else arc.groove, arc.sense
     turned = _turned(frames, sheave, groove)
-    on, off = (np.einsum("td,tdk->tk", points[:, k] - centre, turned) for k in (0, -1))
+    on, off = (((points[:, k] - centre)[:, None] @ turned)[:, 0] for k in (0, -1))
     part = sense * np.arctan2(on[:, 0] * off[:, 1] - on[:, 1] * off[:, 0], np.sum(on * off, axis=1))
     wrap = part + 2 * np.pi * np.round((frames.value(f"{sheave.name}.wrap_angle") - part) / (2 * np.pi))
     share = np.linspace(0, 1, count)[1:-1]
     angle = np.arctan2(on[:, 1], on[:, 0])[:, None] + sense * wrap[:, None] * share
-    around = np.einsum("tnk,tdk->tnd", np.stack([np.cos(angle), np.sin(angle)], axis=-1), turned)
+    around = np.stack([np.cos(angle), np.sin(angle)], axis=-1) @ turned.swapaxes(1, 2)
     given = np.linspace(0, 1, s.shape[1])
     touches = frames.value(f"{sheave.name}.wrap_angle") > 0
     length = np.where(touches[:, None], np.diff(s), 1.0)  # a wrap without contact has neither length nor strain
@@ -177,9 +177,9 @@ def _wrap(frames: Frames, sheave: Sheave, arc: DrawnArc, points: np.ndarray, s: 
 
 
 def _turned(frames: Frames, wheel: Sheave | Drum, groove: np.ndarray) -> np.ndarray:
-    """Return (T, 3, 2): the plane of a groove as drawn, turned with the body that the wheel is on."""
+    """Return (T, 3, 2): the plane of a groove as drawn, turned with the body that the wheel is on; else (1, 3, 2)."""
     if wheel.end.on is None or frames.scene.dim == 2:
-        return np.broadcast_to(groove, (len(frames.time), 3, 2))
+        return groove[None]
     orientation, body = frames.value(f"{wheel.end.on}.orientation"), frames.scene.bodies[wheel.end.on]
     return np.stack([rotate(orientation, body.axes.T @ axis) for axis in groove.T], axis=-1)
 
