@@ -12,7 +12,7 @@
 #define FUNICULAR_COUPLINGS_SHEAVE_SHEAVE_H
 
 #include "couplings/common/accelerator.h"
-#include "couplings/wheel/tangent_point.h"
+#include "couplings/tangent_point/tangent_point.h"
 #include "couplings/wheel/wheel.h"
 
 /* A sheave between the last node of a span and the first of the next (derive/couplings/sheave.py): two tangent points,

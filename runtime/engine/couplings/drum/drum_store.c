@@ -1,6 +1,6 @@
-/* The rope that is wound on a drum: its stretch in cells, its energies, inertia and weight, by y. */
+/* The rope that is wound on a drum: its energies, inertia and weight, by y; and the update of its history. */
 #include "couplings/common/couplings.h"
-#include "couplings/rope/drum.h"
+#include "couplings/drum/drum.h"
 
 #include <math.h>
 #include <string.h>
@@ -8,64 +8,6 @@
 /* of the forces of the wound rope in the plane: on the rotation, the centre, the length */
 enum { STORE = 2 + DIM };
 static const int of_store[STORE] = {TURN, CENTRE, CENTRE + 1, LENGTH};
-
-/* Returns the cell with the last part of a wound length. */
-static int cell_of(const fu_drum *drum, double u)
-{
-    const double cell = ceil(u / drum->cell) - 1.0;
-    return cell < 0.0 ? 0 : cell < drum->n_cells ? (int)cell : drum->n_cells - 1;
-}
-
-/* Returns the stretch of a cell, the last one of a wound length. */
-static double stretch_of(const fu_drum *drum, const fu_drum_history *past, int cell)
-{
-    if (cell < cell_of(drum, past->u)) return (past->profile[cell + 1] - past->profile[cell]) / drum->cell;
-    const double length = past->u - cell * drum->cell;
-    return length > 0.0 ? (past->drawn - past->profile[cell]) / length : past->stretch;
-}
-
-double fu_drum_wound_stretch(const fu_drum *drum, const fu_drum_history *past, double u)
-{
-    return stretch_of(drum, past, cell_of(drum, u));
-}
-
-/* Returns the drawn length of a part u of the wound rope. */
-static double drawn_of(const fu_drum *drum, const fu_drum_history *past, double u)
-{
-    const int cell = cell_of(drum, u);
-    return past->profile[cell] + stretch_of(drum, past, cell) * (u - cell * drum->cell);
-}
-
-/* Returns a change of an angle that is less than half a turn. */
-static double turned(double from, double to)
-{
-    return remainder(to - from, 2.0 * acos(-1.0));
-}
-
-/* It is that of travel, which pays out at the first end, or its opposite. */
-double fu_winding_sense(const fu_drum *drum)
-{
-    return drum->direction * drum->wheel.sense;
-}
-
-/* Returns the way of the tangent point on the rim since the last accepted state, m. */
-static double way_of(const fu_drum *drum, const fu_drum_history *past, const fu_drum_state *at)
-{
-    return fu_winding_sense(drum) * drum->wheel.radius *
-           (turned(past->phi, at->phi) - turned(past->carrier, at->carrier) - (at->turn - past->turn));
-}
-
-/* Returns the drawn length that has been wound since then, by the mean stretch of winding. */
-static double wound_since(const fu_drum *drum, const fu_drum_history *past, const fu_drum_state *at)
-{
-    return at->u > past->u ? 0.5 * (at->u - past->u) * (past->stretch + at->span_stretch)
-                           : drawn_of(drum, past, at->u) - past->drawn;
-}
-
-double fu_drum_winding_gap(const fu_drum *drum, const fu_drum_history *past, const fu_drum_state *at)
-{
-    return way_of(drum, past, at) - wound_since(drum, past, at);
-}
 
 /* --- forces by y ------------------------------------------------------------------------------------------------ */
 
@@ -239,10 +181,10 @@ double fu_drum_energy(const fu_model *model, const fu_coupling *coupling, const 
     fu_drum_state at;
     fu_drum_at(model, drum, state, 0, &at);
     const double known = past->is_known ? fmin(at.u, past->u) : 0.0;
-    const int last = cell_of(drum, known);
+    const int last = fu_drum_cell(drum, known);
     for (int cell = 0; known > 0.0 && cell <= last; ++cell) {
         const double length = cell < last ? drum->cell : known - cell * drum->cell;
-        wheel->kernel->creep(wheel->A, wheel->radius, stretch_of(drum, past, cell), 1.0, &W, &loss);
+        wheel->kernel->creep(wheel->A, wheel->radius, fu_drum_cell_stretch(drum, past, cell), 1.0, &W, &loss);
         total += length * W;
     }
     wheel->kernel->creep(wheel->A, wheel->radius, at.span_stretch, 1.0, &W, &loss);
@@ -275,11 +217,11 @@ void fu_drum_update(const fu_model *model, const fu_coupling *coupling, fu_state
         past->drawn = at.span_stretch * at.u;
         past->is_known = 1.0;
     } else if (at.u > past->u) {
-        const double way = way_of(drum, past, &at);
-        for (int cell = cell_of(drum, past->u) + 1; cell <= cell_of(drum, at.u); ++cell)
+        const double way = fu_drum_way(drum, past, &at);
+        for (int cell = fu_drum_cell(drum, past->u) + 1; cell <= fu_drum_cell(drum, at.u); ++cell)
             past->profile[cell] = past->drawn + way * (cell * drum->cell - past->u) / (at.u - past->u);
         past->drawn += way;
-    } else past->drawn = drawn_of(drum, past, at.u);
+    } else past->drawn = fu_drum_drawn_length(drum, past, at.u);
     past->u = at.u;
     past->phi = at.phi;
     past->turn = at.turn;

@@ -2,7 +2,7 @@
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
-#include "couplings/rope/drum.h"
+#include "couplings/drum/drum.h"
 
 #include <string.h>
 

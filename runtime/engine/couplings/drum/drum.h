@@ -1,12 +1,12 @@
-/* Drums: a tangent point at an end of a rope, the condition of winding (drum_conditions.c), and the rope that is wound
- * (drum_store.c). Derivatives are by the place and slope of the node, the wheel, and the wound length (y). In space the
- * wound rope lies in the plane of the groove, to which all vectors of y belong, in one layer; in the place of the slope
- * is its length. */
-#ifndef FUNICULAR_COUPLINGS_ROPE_DRUM_H
-#define FUNICULAR_COUPLINGS_ROPE_DRUM_H
+/* Drums (couplings/drum/): the coupling in drum.c, its state in drum_state.c, the conditions of its tangent point and
+ * of winding in drum_conditions.c, and the rope that is wound in drum_history.c and drum_store.c. Derivatives are by
+ * the place and slope of the node, the wheel, and the wound length (y). In space the wound rope lies in the plane of
+ * the groove, to which all vectors of y belong, in one layer; in the place of the slope is its length. */
+#ifndef FUNICULAR_COUPLINGS_DRUM_DRUM_H
+#define FUNICULAR_COUPLINGS_DRUM_DRUM_H
 
 #include "couplings/common/accelerator.h"
-#include "couplings/wheel/tangent_point.h"
+#include "couplings/tangent_point/tangent_point.h"
 #include "couplings/wheel/wheel.h"
 
 enum { DIM = FU_GROOVE, SPACE = 3, NODE = 2 * DIM, MAX_CONDITIONS = FU_FOOT_CONDITIONS + 1 };
@@ -79,14 +79,14 @@ static inline fu_foot foot_of(const fu_drum *drum)
                      .limit = drum->limit};
 }
 
-/* --- drum.c --- */
+/* --- drum_state.c --- */
 
 /* Computes a drum at a state, with these accelerations of the dofs (null: zero). */
 void fu_drum_at(const fu_model *model, const fu_drum *drum, const fu_state *state, const double *a, fu_drum_state *out);
 /* Computes the dofs of a drum and the changes of y by them, with these moves of the centre; returns their number. */
 int fu_drum_columns(const fu_drum *drum, const fu_drum_state *at, const fu_centre_moves *moves, fu_wheel_column *out);
 
-/* --- drum_store.c: the wound rope --- */
+/* --- drum_history.c --- */
 
 static inline fu_drum_history *fu_drum_history_of(const fu_drum *drum, const fu_state *state)
 {
@@ -94,9 +94,19 @@ static inline fu_drum_history *fu_drum_history_of(const fu_drum *drum, const fu_
 }
 /* Returns the sense in which the tangent point passes over the rim as the rope is wound. */
 double fu_winding_sense(const fu_drum *drum);
-/* Compute the stretch of what is paid out next; the residual of winding since the last accepted state, m. */
+/* Return the cell with the last part of a wound length; the stretch of a cell, the last one of the wound length; and
+ * that of what is paid out next. */
+int fu_drum_cell(const fu_drum *drum, double u);
+double fu_drum_cell_stretch(const fu_drum *drum, const fu_drum_history *past, int cell);
 double fu_drum_wound_stretch(const fu_drum *drum, const fu_drum_history *past, double u);
+/* Return, in m, the drawn length of a part u of the wound rope; the way of the tangent point on the rim since the last
+ * accepted state; and the residual of winding since then. */
+double fu_drum_drawn_length(const fu_drum *drum, const fu_drum_history *past, double u);
+double fu_drum_way(const fu_drum *drum, const fu_drum_history *past, const fu_drum_state *at);
 double fu_drum_winding_gap(const fu_drum *drum, const fu_drum_history *past, const fu_drum_state *at);
+
+/* --- drum_store.c: the wound rope --- */
+
 /* Computes all forces by y but those of the conditions; the bearing's is on the drum alone. */
 void fu_drum_forces(const fu_drum *drum, const fu_drum_state *at, double y[Y]);
 /* Adds their derivatives: D by rates, in units of w.rate, K by places. */

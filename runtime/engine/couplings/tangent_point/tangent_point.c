@@ -1,6 +1,6 @@
 /* Tangent points in space: the conditions of a node at the end of a span, with the chord over a fixed stress-free
  * length of the span. */
-#include "couplings/wheel/tangent_point.h"
+#include "couplings/tangent_point/tangent_point.h"
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"

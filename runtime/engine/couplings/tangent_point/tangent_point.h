@@ -1,6 +1,6 @@
 /* Tangent points in space (derive/couplings/tangent_point.py). */
-#ifndef FUNICULAR_COUPLINGS_WHEEL_TANGENT_POINT_H
-#define FUNICULAR_COUPLINGS_WHEEL_TANGENT_POINT_H
+#ifndef FUNICULAR_COUPLINGS_TANGENT_POINT_TANGENT_POINT_H
+#define FUNICULAR_COUPLINGS_TANGENT_POINT_TANGENT_POINT_H
 
 #include "couplings/wheel/wheel.h"
 
