@@ -1625,6 +1625,22 @@ fu_span_line_force_tangent_kernel span_cable8p_line_force_tangent;
 /* e 4x3, v 4x3, s_rate 2, F 3, F_r 3x3, F_t 3x3, F_v 3x3, D 14x14, K 14x13 */
 fu_span_line_force_tangent_kernel span_cable12_line_force_tangent;
 
+typedef void fu_span_stored_force_kernel(fu_real part, fu_real l, const fu_real *e, fu_real xi, fu_real u, const fu_real *F, fu_real *f, fu_real *f_l);
+/* generalised forces of a stored energy of the material: part [1]; l [m]; e [m, 1]; xi [1]; u [J/m]; F [N/m] -> f
+ * [N, N m]; f_l [N] */
+/* e 4x2, F 2, f 4x2, f_l 1 */
+fu_span_stored_force_kernel span_cable8p_stored_force;
+/* e 4x3, F 3, f 4x3, f_l 1 */
+fu_span_stored_force_kernel span_cable12_stored_force;
+
+typedef void fu_span_stored_force_tangent_kernel(fu_real part, fu_real l, const fu_real *e, fu_real xi, const fu_real *F, const fu_real *H, fu_real *K, fu_real *K_l, fu_real *K_ll);
+/* derivatives of the generalised forces of a stored energy: part [1]; l [m]; e [m, 1]; xi [1]; F [N/m]; H [N/m^2] ->
+ * K [N/m, N, N m]; K_l [N/m, N]; K_ll [N/m] */
+/* e 4x2, F 2, H 2x2, K 8x8, K_l 4x2, K_ll 1 */
+fu_span_stored_force_tangent_kernel span_cable8p_stored_force_tangent;
+/* e 4x3, F 3, H 3x3, K 12x12, K_l 4x3, K_ll 1 */
+fu_span_stored_force_tangent_kernel span_cable12_stored_force_tangent;
+
 typedef void fu_span_share_kernel(fu_real at, const fu_real *ends, fu_real *share, fu_real *share_s);
 /* share of a material point in the length of an element: at [m]; ends [m] -> share [1]; share_s [1/m] */
 /* ends 2, share 1, share_s 2 */
@@ -2211,6 +2227,8 @@ typedef struct {
     fu_span_elastic_step_kernel *elastic_step;
     fu_span_line_force_kernel *line_force;
     fu_span_line_force_tangent_kernel *line_force_tangent;
+    fu_span_stored_force_kernel *stored_force;
+    fu_span_stored_force_tangent_kernel *stored_force_tangent;
     fu_span_share_kernel *share;
 } fu_span_kernels;
 

@@ -3260,6 +3260,74 @@ void span_cable12_line_force_tangent(fu_real part, fu_real l, const fu_real *e, 
     K[181] = F[0]*dl_lever_x[1] + F[1]*dl_lever_y[1] + F[2]*dl_lever_z[1] + F_l_x*lever_x[1] + F_l_y*lever_y[1] + F_l_z*lever_z[1];
 }
 
+/* generalised forces of a stored energy of the material (virtual work of the material at constant S); 15 add, 52 mul */
+void span_cable12_stored_force(fu_real part, fu_real l, const fu_real *e, fu_real xi, fu_real u, const fu_real *F, fu_real *f, fu_real *f_l)
+{
+    /* shape functions */
+    const fu_real
+        N1 = xi*xi*(2.0*xi - 3.0) + 1.0,
+        N2 = l*xi*(xi*(xi - 2.0) + 1.0),
+        N3 = xi*xi*(-2.0*xi + 3.0),
+        N4 = l*xi*xi*(xi - 1.0),
+        dl_N2 = xi*(xi*(xi - 2.0) + 1.0),
+        dl_N4 = xi*xi*(xi - 1.0);
+    /* derivative of the place by the length, and weight */
+    fu_real r_l[3];
+    FU_EACH(i, 3, r_l[i] = dl_N2*e[i + 3] + dl_N4*e[i + 9];)
+    const fu_real weight = l*part;
+    /* outputs */
+    FU_EACH(i, 3, f[i] = F[i]*N1*weight;)
+    FU_EACH(i, 3, f[i + 3] = F[i]*N2*weight;)
+    FU_EACH(i, 3, f[i + 6] = F[i]*N3*weight;)
+    FU_EACH(i, 3, f[i + 9] = F[i]*N4*weight;)
+    f_l[0] = -part*u + weight*(F[0]*r_l[0] + F[1]*r_l[1] + F[2]*r_l[2]);
+}
+
+/* derivatives of the generalised forces of a stored energy (virtual work of the material at constant S); 41 add, 529 mul */
+void span_cable12_stored_force_tangent(fu_real part, fu_real l, const fu_real *e, fu_real xi, const fu_real *F, const fu_real *H, fu_real *K, fu_real *K_l, fu_real *K_ll)
+{
+    /* shape functions */
+    const fu_real
+        N1 = xi*xi*(2.0*xi - 3.0) + 1.0,
+        N2 = l*xi*(xi*(xi - 2.0) + 1.0),
+        N3 = xi*xi*(-2.0*xi + 3.0),
+        N4 = l*xi*xi*(xi - 1.0),
+        dl_N2 = xi*(xi*(xi - 2.0) + 1.0),
+        dl_N4 = xi*xi*(xi - 1.0);
+    /* derivative of the place by the length, and weight */
+    fu_real r_l[3];
+    FU_EACH(i, 3, r_l[i] = dl_N2*e[i + 3] + dl_N4*e[i + 9];)
+    const fu_real weight = l*part;
+    /* derivatives */
+    fu_real H_l[3];
+    H_l[0] = H[0]*r_l[0] + H[1]*r_l[1] + H[2]*r_l[2];
+    H_l[1] = H[3]*r_l[0] + H[4]*r_l[1] + H[5]*r_l[2];
+    H_l[2] = H[6]*r_l[0] + H[7]*r_l[1] + H[8]*r_l[2];
+    const fu_real twice = 2.0*F[0]*r_l[0] + 2.0*F[1]*r_l[1] + 2.0*F[2]*r_l[2];
+    /* outputs */
+    FU_PAIRS(i, j, 3, K[12*i + j] = H[3*i + j]*N1*N1*weight;)
+    FU_PAIRS(i, j, 3, K[12*i + j + 3] = H[3*i + j]*N1*N2*weight;)
+    FU_PAIRS(i, j, 3, K[12*i + j + 6] = H[3*i + j]*N1*N3*weight;)
+    FU_PAIRS(i, j, 3, K[12*i + j + 9] = H[3*i + j]*N1*N4*weight;)
+    FU_PAIRS(i, j, 3, K[12*i + j + 36] = H[3*i + j]*N1*N2*weight;)
+    FU_PAIRS(i, j, 3, K[12*i + j + 39] = H[3*i + j]*N2*N2*weight;)
+    FU_PAIRS(i, j, 3, K[12*i + j + 42] = H[3*i + j]*N2*N3*weight;)
+    FU_PAIRS(i, j, 3, K[12*i + j + 45] = H[3*i + j]*N2*N4*weight;)
+    FU_PAIRS(i, j, 3, K[12*i + j + 72] = H[3*i + j]*N1*N3*weight;)
+    FU_PAIRS(i, j, 3, K[12*i + j + 75] = H[3*i + j]*N2*N3*weight;)
+    FU_PAIRS(i, j, 3, K[12*i + j + 78] = H[3*i + j]*N3*N3*weight;)
+    FU_PAIRS(i, j, 3, K[12*i + j + 81] = H[3*i + j]*N3*N4*weight;)
+    FU_PAIRS(i, j, 3, K[12*i + j + 108] = H[3*i + j]*N1*N4*weight;)
+    FU_PAIRS(i, j, 3, K[12*i + j + 111] = H[3*i + j]*N2*N4*weight;)
+    FU_PAIRS(i, j, 3, K[12*i + j + 114] = H[3*i + j]*N3*N4*weight;)
+    FU_PAIRS(i, j, 3, K[12*i + j + 117] = H[3*i + j]*N4*N4*weight;)
+    FU_EACH(i, 3, K_l[i] = F[i]*N1*part + H_l[i]*N1*weight;)
+    FU_EACH(i, 3, K_l[i + 3] = F[i]*part*(N2 + dl_N2*l) + H_l[i]*N2*weight;)
+    FU_EACH(i, 3, K_l[i + 6] = F[i]*N3*part + H_l[i]*N3*weight;)
+    FU_EACH(i, 3, K_l[i + 9] = F[i]*part*(N4 + dl_N4*l) + H_l[i]*N4*weight;)
+    K_ll[0] = part*twice + weight*(H_l[0]*r_l[0] + H_l[1]*r_l[1] + H_l[2]*r_l[2]);
+}
+
 /* share of a material point in the length of an element (virtual work of the material at constant S); 5 add, 5 mul, 1 div */
 void span_cable12_share(fu_real at, const fu_real *ends, fu_real *share, fu_real *share_s)
 {

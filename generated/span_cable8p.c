@@ -2429,6 +2429,78 @@ void span_cable8p_line_force_tangent(fu_real part, fu_real l, const fu_real *e, 
     K[89] = F[0]*dl_lever2[0] + F[1]*dl_lever2[1] + F_l[0]*lever2[0] + F_l[1]*lever2[1];
 }
 
+/* generalised forces of a stored energy of the material (virtual work of the material at constant S); 13 add, 41 mul */
+void span_cable8p_stored_force(fu_real part, fu_real l, const fu_real *e, fu_real xi, fu_real u, const fu_real *F, fu_real *f, fu_real *f_l)
+{
+    /* shape functions */
+    const fu_real
+        N1 = xi*xi*(2.0*xi - 3.0) + 1.0,
+        N2 = l*xi*(xi*(xi - 2.0) + 1.0),
+        N3 = xi*xi*(-2.0*xi + 3.0),
+        N4 = l*xi*xi*(xi - 1.0),
+        dl_N2 = xi*(xi*(xi - 2.0) + 1.0),
+        dl_N4 = xi*xi*(xi - 1.0);
+    /* derivative of the place by the length, and weight */
+    const fu_real
+        r_l_x = dl_N2*e[2] + dl_N4*e[6],
+        r_l_y = dl_N2*e[3] + dl_N4*e[7],
+        weight = l*part;
+    /* outputs */
+    f[0] = F[0]*N1*weight;
+    f[1] = F[1]*N1*weight;
+    f[2] = F[0]*N2*weight;
+    f[3] = F[1]*N2*weight;
+    f[4] = F[0]*N3*weight;
+    f[5] = F[1]*N3*weight;
+    f[6] = F[0]*N4*weight;
+    f[7] = F[1]*N4*weight;
+    f_l[0] = -part*u + weight*(F[0]*r_l_x + F[1]*r_l_y);
+}
+
+/* derivatives of the generalised forces of a stored energy (virtual work of the material at constant S); 28 add, 261 mul */
+void span_cable8p_stored_force_tangent(fu_real part, fu_real l, const fu_real *e, fu_real xi, const fu_real *F, const fu_real *H, fu_real *K, fu_real *K_l, fu_real *K_ll)
+{
+    /* shape functions */
+    const fu_real
+        N1 = xi*xi*(2.0*xi - 3.0) + 1.0,
+        N2 = l*xi*(xi*(xi - 2.0) + 1.0),
+        N3 = xi*xi*(-2.0*xi + 3.0),
+        N4 = l*xi*xi*(xi - 1.0),
+        dl_N2 = xi*(xi*(xi - 2.0) + 1.0),
+        dl_N4 = xi*xi*(xi - 1.0);
+    /* derivative of the place by the length, and weight */
+    fu_real r_l[2];
+    FU_EACH(i, 2, r_l[i] = dl_N2*e[i + 2] + dl_N4*e[i + 6];)
+    const fu_real weight = l*part;
+    /* derivatives */
+    fu_real H_l[2];
+    H_l[0] = H[0]*r_l[0] + H[1]*r_l[1];
+    H_l[1] = H[2]*r_l[0] + H[3]*r_l[1];
+    const fu_real twice = 2.0*F[0]*r_l[0] + 2.0*F[1]*r_l[1];
+    /* outputs */
+    FU_PAIRS(i, j, 2, K[8*i + j] = H[2*i + j]*N1*N1*weight;)
+    FU_PAIRS(i, j, 2, K[8*i + j + 2] = H[2*i + j]*N1*N2*weight;)
+    FU_PAIRS(i, j, 2, K[8*i + j + 4] = H[2*i + j]*N1*N3*weight;)
+    FU_PAIRS(i, j, 2, K[8*i + j + 6] = H[2*i + j]*N1*N4*weight;)
+    FU_PAIRS(i, j, 2, K[8*i + j + 16] = H[2*i + j]*N1*N2*weight;)
+    FU_PAIRS(i, j, 2, K[8*i + j + 18] = H[2*i + j]*N2*N2*weight;)
+    FU_PAIRS(i, j, 2, K[8*i + j + 20] = H[2*i + j]*N2*N3*weight;)
+    FU_PAIRS(i, j, 2, K[8*i + j + 22] = H[2*i + j]*N2*N4*weight;)
+    FU_PAIRS(i, j, 2, K[8*i + j + 32] = H[2*i + j]*N1*N3*weight;)
+    FU_PAIRS(i, j, 2, K[8*i + j + 34] = H[2*i + j]*N2*N3*weight;)
+    FU_PAIRS(i, j, 2, K[8*i + j + 36] = H[2*i + j]*N3*N3*weight;)
+    FU_PAIRS(i, j, 2, K[8*i + j + 38] = H[2*i + j]*N3*N4*weight;)
+    FU_PAIRS(i, j, 2, K[8*i + j + 48] = H[2*i + j]*N1*N4*weight;)
+    FU_PAIRS(i, j, 2, K[8*i + j + 50] = H[2*i + j]*N2*N4*weight;)
+    FU_PAIRS(i, j, 2, K[8*i + j + 52] = H[2*i + j]*N3*N4*weight;)
+    FU_PAIRS(i, j, 2, K[8*i + j + 54] = H[2*i + j]*N4*N4*weight;)
+    FU_EACH(i, 2, K_l[i] = F[i]*N1*part + H_l[i]*N1*weight;)
+    FU_EACH(i, 2, K_l[i + 2] = F[i]*part*(N2 + dl_N2*l) + H_l[i]*N2*weight;)
+    FU_EACH(i, 2, K_l[i + 4] = F[i]*N3*part + H_l[i]*N3*weight;)
+    FU_EACH(i, 2, K_l[i + 6] = F[i]*part*(N4 + dl_N4*l) + H_l[i]*N4*weight;)
+    K_ll[0] = part*twice + weight*(H_l[0]*r_l[0] + H_l[1]*r_l[1]);
+}
+
 /* share of a material point in the length of an element (virtual work of the material at constant S); 5 add, 5 mul, 1 div */
 void span_cable8p_share(fu_real at, const fu_real *ends, fu_real *share, fu_real *share_s)
 {

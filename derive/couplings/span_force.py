@@ -8,6 +8,9 @@ slope r_S,
 
 A point of quadrature has a constant share xi of the length and a part of it as its weight. F may depend on place, slope
 and velocity of the material there.
+
+A force with a stored energy u of a stress-free length, as that of contact with a surface, follows from the sum of the
+energy over the points: -d(part l u)/d(e, l). The energy of material that leaves a span in contact is then work on s.
 """
 
 from __future__ import annotations
@@ -26,7 +29,7 @@ SOURCE = "virtual work of the material at constant S"
 
 def build(span: FlowingElement) -> list[Program]:
     """Return the kernels of forces on a span."""
-    return [line_force(span), line_force_tangent(span), share(span)]
+    return [line_force(span), line_force_tangent(span), stored_force(span), stored_force_tangent(span), share(span)]
 
 
 class _Line:
@@ -104,6 +107,52 @@ def _named(p: Program, name: str, matrix: np.ndarray) -> np.ndarray:
 def _on_all(scaled: np.ndarray, lever: np.ndarray, of: np.ndarray) -> Any:
     """Return the generalised forces on e and s1, s2 of forces, the columns of a matrix (dim, n)."""
     return np.vstack([*(n * of for n in scaled), lever.dot(of)])
+
+
+class _Stored:
+    """Inputs and stages of a point of quadrature with a stored energy: l times the part, N, and dr/dl."""
+
+    def __init__(self, span: FlowingElement, p: Program, has_energy: bool):
+        self.part = p.input("part", (), "1", "weight of the point of quadrature: part of the length")
+        self.l, self.e = p.input("l", (), "m", "length s2 - s1 of the element"), span.coordinates(p)
+        xi = p.input("xi", (), "1", "(S - s1)/l")
+        self.u = p.input("u", (), "J/m", "stored energy of a stress-free length") if has_energy else None
+        self.F = p.input("F", span.element.dim, "N/m", "minus its derivative by the place")
+        p.stage("shape functions")
+        self.N = np.array([p.define(f"N{k + 1}", self.l**power * sp.horner(shape.subs(x, xi)))
+                           for k, (shape, power) in enumerate(zip(span.unit_shapes, span.powers, strict=True))])
+        self.by_l = DirectionalDerivative(p, "dl", {self.l: 1})
+        self.N_l = self.by_l.array(self.N)
+        p.stage("derivative of the place by the length, and weight")
+        self.r_l = p.vector("r_l", self.N_l.dot(self.e))
+        self.weight = p.define("weight", self.part * self.l)
+
+
+def stored_force(span: FlowingElement) -> Program:
+    """Return the kernel of the generalised forces of a stored energy."""
+    p = span.program("stored_force", "generalised forces of a stored energy of the material", SOURCE)
+    at = _Stored(span, p, has_energy=True)
+    p.output("f", np.outer(at.weight * at.N, at.F), "N, N m", "forces on the nodal vectors")
+    p.output("f_l", [at.weight * at.F.dot(at.r_l) - at.part * at.u], "N", "force on l")
+    return p
+
+
+def stored_force_tangent(span: FlowingElement) -> Program:
+    """Return the kernel of the derivatives of these forces."""
+    p = span.program("stored_force_tangent", "derivatives of the generalised forces of a stored energy", SOURCE)
+    at = _Stored(span, p, has_energy=False)
+    dim = span.element.dim
+    H = p.input("H", (dim, dim), "N/m^2", "derivatives of F by the place, symmetric")
+    p.stage("derivatives")
+    H_l = p.vector("H_l", H.dot(at.r_l))
+    twice = p.define("twice", 2 * at.F.dot(at.r_l))
+    r_ll = at.by_l.array(at.N_l).dot(at.e)
+    p.output("K", np.kron(at.weight * np.outer(at.N, at.N), H), "N/m, N, N m", "derivatives of f by e")
+    p.output("K_l", np.outer(at.part * (at.N + at.l * at.N_l), at.F) + np.outer(at.weight * at.N, H_l), "N/m, N",
+             "derivatives of f by l")
+    p.output("K_ll", [at.part * twice + at.weight * (H_l.dot(at.r_l) + at.F.dot(r_ll))], "N/m",
+             "derivative of f_l by l")
+    return p
 
 
 def share(span: FlowingElement) -> Program:

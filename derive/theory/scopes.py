@@ -414,7 +414,7 @@ def span_scope(name: str) -> Scope:
     return Scope(family, (Symbol("l", "l", number), _nodal(dim, r"\mathbf{e}", "e"),
                           _nodal(dim, r"\dot{\mathbf{e}}", "v"), _nodal(dim, r"\ddot{\mathbf{e}}", "a"), *ends,
                           Symbol(r"\rho", "rho", number), Symbol(r"\mathbf{g}", "g", column), *stiffness,
-                          Symbol(r"\tau", "tau", number), Symbol("c", "part", number),
+                          Symbol(r"\tau", "tau", number), Symbol("c", "part", number), Symbol("u", "u", number),
                           Symbol(r"\mathbf{h}", "F", column)), constants=_of_span)
 
 

@@ -15,12 +15,14 @@ from ..parts.cable import Cable
 from ..parts.contact import GAUSS_POINTS, Contact
 from ..parts.modal_body import ModalBody
 from ..parts.rigid_body import RigidBody
+from ..parts.rope import Rope
 from ..parts.scene_data import SceneData
 from ..parts.section import outer_radius_of
 from ..parts.surface import Surface
 from ..parts.surface_shapes import HeightField
 from ..parts.validation import show
 from .frames import plane_normal
+from .placement import check_has_mass
 
 WEIGHT_PENETRATION = 0.01
 """Penetration under the weight with the default stiffness, as a fraction of the radius."""
@@ -96,11 +98,13 @@ def _of_surface(scene: SceneData, contact: Contact, own: Mapping[tuple[str, str]
 def _complete(scene: SceneData, contact: Contact) -> Contact:
     if contact.a in scene.cables:
         contact = _of_cable(scene, contact, scene.cables[contact.a])
+    elif contact.a in scene.ropes:
+        contact = _of_rope(scene, contact, scene.ropes[contact.a], scene.surfaces[contact.b])
     elif contact.a in scene.bodies:
         contact = _of_body(scene, contact, scene.bodies[contact.a], scene.surfaces[contact.b])
     else:
         raise SceneError(contact.where, f'there is no cable or body "{contact.a}"',
-                         near(contact.a, [*scene.cables, *scene.bodies]))
+                         near(contact.a, [*scene.cables, *scene.ropes, *scene.bodies]))
     if not contact.is_hard and contact.exponent != 1.0 and contact.friction_coefficient and \
             contact.tangential_stiffness is None:
         raise SceneError(contact.where, "tangential_stiffness is missing, which the stiffness of the exponent 1.5 is "
@@ -125,6 +129,11 @@ def _start_of(scene: SceneData, contact: Contact, last: _Start | None) -> _Start
     if contact.a in scene.cables:
         cable = scene.cables[contact.a]
         drawn = cable.points_at(cable.samples(SAMPLES))
+    elif contact.a in scene.ropes:
+        rope = scene.ropes[contact.a]
+        drawn = np.zeros((rope.n_spans * (SAMPLES + 1), 3))
+        drawn[:, : rope.dim] = np.concatenate([np.linspace(span.start, span.end, SAMPLES + 1)
+                                               for span in rope.drawn(scene.bodies).spans])
     else:
         drawn = np.array([scene.bodies[contact.a].point(point) for point in contact.points or ()])
     return _Start(key, drawn, _weight(scene, contact))
@@ -143,6 +152,40 @@ def _of_cable(scene: SceneData, contact: Contact, cable: Cable) -> Contact:
     return _with_stiffness(scene, contact, radius)
 
 
+def _of_rope(scene: SceneData, contact: Contact, rope: Rope, surface: Surface) -> Contact:
+    check_has_mass(rope, contact.where)
+    if contact.is_hard:
+        raise SceneError(contact.where, f'hard contact is of points of bodies, and "{rope.name}" is a rope',
+                         "leave restitution out and give stiffness, in N/m a length")
+    if contact.points is not None:
+        raise SceneError(contact.where, f'acts along rope "{rope.name}" and takes no points', "leave points out")
+    if contact.friction_coefficient:
+        raise SceneError(contact.where, f'has friction, and rope "{rope.name}" has no friction with surfaces yet: its '
+                         "material moves past the points of contact", "leave friction out")
+    if surface.on is not None:
+        raise SceneError(contact.where, f'surface "{surface.name}" is on body "{surface.on}", with which rope '
+                         f'"{rope.name}" has no contact yet', "take a surface of the ground, or a sheave on the body")
+    radius = rope.radius if contact.radius is None else contact.radius
+    if not radius:
+        raise SceneError(contact.where, "radius is missing, which does not follow from the section of the rope",
+                         "give radius, in m: the distance of the surface from the axis at contact")
+    contact = _with_stiffness(scene, contact, radius)
+    _check_resolution(scene, contact, rope)
+    return contact
+
+
+def _check_resolution(scene: SceneData, contact: Contact, rope: Rope) -> None:
+    """Raise SceneError where elements of a rope as drawn are too long for the shape of a surface."""
+    if (limit := resolved(scene, contact)) is None:
+        return
+    spans = zip(rope.drawn(scene.bodies).spans, rope.elements_of_spans, strict=True)
+    longest, most = max(span.length / n for span, n in spans), limit.chord / MAX_POINT_DISTANCE
+    if longest > most:
+        raise SceneError(contact.where, f'"{rope.name}" has elements of {show(float(longest), "m")}, between whose '
+                         f'points of contact it may be more than {show(float(limit.allowed), "m")} below "{contact.b}"',
+                         f"take elements of at most {most:.3g} m")
+
+
 def _of_body(scene: SceneData, contact: Contact, body: RigidBody | ModalBody, surface: Surface) -> Contact:
     if isinstance(body, ModalBody):
         raise SceneError(contact.where, f'modal_body "{body.name}" has no contact with surfaces', "take a rigid body")
@@ -155,9 +198,9 @@ def _of_body(scene: SceneData, contact: Contact, body: RigidBody | ModalBody, su
 
 
 def _weight(scene: SceneData, contact: Contact) -> float:
-    """Return the weight of a cable per length, N/m, or of a body, N."""
-    cable = scene.cables.get(contact.a)
-    mass = scene.bodies[contact.a].mass if cable is None else cable.material.density * cable.section.area
+    """Return the weight of a cable or a rope per length, N/m, or of a body, N."""
+    line = scene.line(contact.a)
+    mass = scene.bodies[contact.a].mass if line is None else line.material.density * line.section.area
     return mass * float(np.linalg.norm(scene.gravity))
 
 
@@ -265,8 +308,8 @@ def _too_deep(scene: SceneData, contact: Contact, start: _Start, distance: np.nd
 def radius_of(scene: SceneData, contact: Contact) -> float:
     """Return the radius of a contact, m, 0 where it is negligible beside the section of the cable."""
     assert contact.radius is not None, f"{contact.where} is not complete"
-    cable = scene.cables.get(contact.a)
-    least = 0.0 if cable is None else MIN_CONTACT_RADIUS * float(np.sqrt(cable.section.moments()[0] / np.pi))
+    line = scene.line(contact.a)
+    least = 0.0 if line is None else MIN_CONTACT_RADIUS * float(np.sqrt(line.section.moments()[0] / np.pi))
     return contact.radius if contact.radius > least else 0.0
 
 

@@ -7,6 +7,7 @@ from math import pi
 from ..errors import SceneError, near
 from ..parts.attachment import Attachment
 from ..parts.cable import Cable
+from ..parts.contact import Contact
 from ..parts.drag import Drag
 from ..parts.event import Event
 from ..parts.joint import Joint
@@ -23,7 +24,7 @@ from ..parts.validation import show
 from .placement import placed_attachment, report
 from .whole_scene import check_plane
 
-ON_ROPES = (Joint, PointForce, Load, Drag)
+ON_ROPES = (Joint, PointForce, Load, Drag, Contact)
 """Parts that act on ropes."""
 MIN_RADIUS_RATIO = 10.0
 """Radius of a sheave over the diameter of its rope below which the bending stress is reported."""
@@ -65,7 +66,7 @@ def check_apart_from_ropes(scene: SceneData, part: Part) -> None:
         if isinstance(part, Event):
             raise SceneError(part.where, f'"{name}" is {what}, whose results cannot be watched',
                              f"""watch a body, or give function=, which gets state["{rope.name}.position"]""")
-        connects = "no other part" if wheel else "only joints, springs, loads and drags"
+        connects = "no other part" if wheel else "only joints, springs, loads, drags and contacts"
         raise SceneError(part.where, f'"{name}" is {what}, to which {connects} can be connected',
                          "take a body that an end or a sheave of the rope is on"
                          + ("" if wheel else f', or that a joint to ("{rope.name}", s) holds'))

@@ -21,6 +21,7 @@ from ..parts.surface_shapes import HALF_WIDTH, Geometry
 from ..parts.validation import Vector
 from .attachments import AttachmentModel, ModelBuilder
 from .coupling import CouplingKind, CouplingModel, no_numbers
+from .span_coordinates import AlongSpan, SpanCoordinates
 
 GAUSS = np.polynomial.legendre.leggauss(GAUSS_POINTS)
 KERNELS = {2: "planar_surface", 3: "surface"}
@@ -82,6 +83,30 @@ class HardContactModel(ContactModel):
         return [*self.attachments, *self.on]
 
 
+@dataclass(kw_only=True)
+class RopeContactModel(AlongSpan, CouplingModel):
+    """Contact of a span of a rope with a surface of the ground: fu_rope_contact of engine/couplings/contact/contact.h.
+
+    on, direction, round_radius: as of a `ContactModel`. arc, weights: shares in the length of an element, of points of
+    quadrature and of their weights.
+    """
+
+    coordinates: SpanCoordinates
+    kernel: str
+    shape: str
+    direction: np.ndarray
+    on: list[AttachmentModel]
+    round_radius: float
+    radius: float
+    stiffness: float
+    damping: float
+    hertz: int
+    cable: int = -1
+    n_points: int = GAUSS_POINTS
+    weights: np.ndarray = field(default_factory=lambda: GAUSS[1] / 2)
+    arc: np.ndarray = field(default_factory=lambda: (1 + GAUSS[0]) / 2)
+
+
 def _of_surface(surface: Surface, builder: ModelBuilder, wall: Geometry | None = None) -> dict[str, Any]:
     """Return the arguments of a model that describe a surface, or one of its walls."""
     shape, dim = surface.geometry if wall is None else wall, builder.scene.dim
@@ -102,22 +127,37 @@ def _of_surface(surface: Surface, builder: ModelBuilder, wall: Geometry | None =
 
 def contact_models(builder: ModelBuilder) -> Iterator[ContactModel]:
     """Yield the models of the contacts of a scene by penalty."""
-    return (_contact(contact, builder) for contact in builder.scene.contacts.values() if not contact.is_hard)
+    return (_contact(contact, builder) for contact in builder.scene.contacts.values()
+            if not contact.is_hard and contact.a not in builder.scene.ropes)
+
+
+def rope_contact_models(builder: ModelBuilder) -> Iterator[RopeContactModel]:
+    """Yield the models of the contacts of ropes, one for each span."""
+    for part in builder.scene.contacts.values():
+        for span in (span for rope in builder.ropes if rope.part.name == part.a for span in rope.spans):
+            yield RopeContactModel(**_by_penalty(part, builder), type="rope contact", coordinates=span)
+
+
+def _by_penalty(part: Contact, builder: ModelBuilder) -> dict[str, Any]:
+    """Return the arguments of a model that describe the surface of a contact and its normal force."""
+    assert part.stiffness is not None and part.radius is not None, f"{part.where} is not complete"
+    surface = builder.scene.surfaces[part.b]
+    arguments = builder.once(("surface", part.b), lambda builder: _of_surface(surface, builder))
+    entries = arguments["entries"]
+    if entries["inside"] and arguments["shape"] == "box":  # its walls as seen by a sphere's centre
+        entries = entries | {"inset": part.radius, "half_size": entries["half_size"] - part.radius}
+    return arguments | {"entries": entries, "name": part.name or "", "is_damped": part.damping > 0,
+                        "stiffness": part.stiffness, "damping": part.damping, "hertz": int(part.exponent == 1.5),
+                        "radius": part.radius}
 
 
 def _contact(part: Contact, builder: ModelBuilder) -> ContactModel:
     scene = builder.scene
-    assert part.stiffness is not None and part.radius is not None, f"{part.where} is not complete"
-    surface = scene.surfaces[part.b]
-    arguments = builder.once(("surface", part.b), lambda builder: _of_surface(surface, builder))
+    arguments = _by_penalty(part, builder)
     entries = arguments["entries"] | {"length": 0.0, "n_hull": 0, "marks": NONE}
-    if entries["inside"] and arguments["shape"] == "box":  # its walls as seen by a sphere's centre
-        entries |= {"inset": part.radius, "half_size": entries["half_size"] - part.radius}
-    tangential = part.stiffness if part.tangential_stiffness is None else part.tangential_stiffness
-    model = ContactModel(**arguments | {"entries": entries}, type="contact", name=part.name or "",
-                         is_damped=part.damping > 0, stiffness=part.stiffness, damping=part.damping,
-                         friction=part.friction_coefficient, tangential=tangential, hertz=int(part.exponent == 1.5),
-                         radius=part.radius)
+    tangential = arguments["stiffness"] if part.tangential_stiffness is None else part.tangential_stiffness
+    model = ContactModel(**arguments | {"entries": entries}, type="contact", friction=part.friction_coefficient,
+                         tangential=tangential)
     if part.a in builder.cable_index:
         drawn = _along_cable(model, builder.cable_index[part.a], builder)
     else:
@@ -127,7 +167,7 @@ def _contact(part: Contact, builder: ModelBuilder) -> ContactModel:
         model.attachments, model.spread, drawn = builder.once(
             (part.a, points), lambda builder: _on_body(part.a, points, builder))
     if part.friction_coefficient:
-        marks = _marks(part, scene, surface, drawn)
+        marks = _marks(part, scene, scene.surfaces[part.b], drawn)
         model.n_numbers, entries["marks"] = marks.size, marks
     return model
 
@@ -204,4 +244,5 @@ def _hard_contact(part: Contact, builder: ModelBuilder) -> Iterator[HardContactM
 
 
 KINDS = (CouplingKind("contact", Contact.group, contact_models, has_state=False),
+         CouplingKind("rope contact", Contact.group, rope_contact_models, has_state=False),
          CouplingKind("hard_contact", Contact.group, hard_contact_models, has_state=False))

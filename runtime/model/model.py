@@ -18,7 +18,7 @@ from ..kernels.mesh import Mesh
 from ..parts.body_shape import Shape
 from ..parts.plane_axes import PlaneAxes
 from .attachments import AttachmentModel
-from .contacts import ContactModel, HardContactModel
+from .contacts import ContactModel, HardContactModel, RopeContactModel
 from .coupling import CouplingModel
 from .crossings import CrossingModel
 from .drags import DragModel
@@ -238,6 +238,7 @@ class Model:
     sheaves = _couplings_of(SheaveModel)
     drums = _couplings_of(DrumModel)
     contacts = _couplings_of(ContactModel)
+    rope_contacts = _couplings_of(RopeContactModel)
     hard_contacts = _couplings_of(HardContactModel)
 
     def of(self, *kinds: type[K]) -> list[K]:

@@ -177,6 +177,22 @@ def _contacts(model: Model, at: States, kind: str, asked: Asked) -> Values:
     return found
 
 
+def _rope_contacts(model: Model, at: States, kind: str, asked: Asked) -> Values:
+    """Return the results of contacts of ropes by name: sums and extremes over the outputs of their spans."""
+    found: Values = {}
+    for name in dict.fromkeys(contact.name for contact in model.rope_contacts):
+        spans = [k for k, contact in enumerate(model.rope_contacts) if contact.name == name]
+        of = outputs_by_name(kind, at.numbers[kind][:, spans])
+        touches = of["touching"] > 0
+        ends = {"first": np.where(touches, of["first"], np.inf).min(axis=1),
+                "last": np.where(touches, of["last"], -np.inf).max(axis=1)}
+        found[name] = {"force": of["force"].sum(axis=1), "friction_force": of["friction_force"].sum(axis=1),
+                       "penetration": of["penetration"].max(axis=1), "touching": of["touching"].sum(axis=1),
+                       **{end: np.where(np.isfinite(s), s, np.nan) for end, s in ends.items()},
+                       "gap": np.full(len(at.q), np.nan)}
+    return found
+
+
 def _hard_contacts(model: Model, at: States, kind: str, asked: Asked) -> Values:
     """Return the results of hard contacts by name: sums and extremes over the outputs of their points."""
     found: Values = {}
@@ -222,5 +238,6 @@ def _none(model: Model, at: States, kind: str, asked: Asked) -> Values:
 
 
 RESULTS = {"slide": _slides, "anchor": _ropes, "joint": _joints, "point_force": _point_forces, "drag": _drags,
-           "contact": _contacts, "hard_contact": _hard_contacts, "taut_point": _taut_points, "taut_rope": _none}
+           "contact": _contacts, "rope contact": _rope_contacts, "hard_contact": _hard_contacts,
+           "taut_point": _taut_points, "taut_rope": _none}
 """Functions from outputs to results, of the kinds of couplings whose results are not the outputs themselves."""

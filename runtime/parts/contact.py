@@ -37,7 +37,7 @@ def _points(value: Any) -> tuple[Vector, ...]:
 
 
 class Contact(Part):
-    """Unilateral contact of a cable along its length, or of points of a body, with a `Surface`.
+    """Unilateral contact of a cable or a rope along its length, or of points of a body, with a `Surface`.
 
     It acts by penalty, with ``stiffness``, or is hard, with ``restitution``: points of a body then do not penetrate.
     The penalty force is ``stiffness d^exponent (1 + damping d')`` at the depth d, a length of a cable or on each
@@ -45,8 +45,11 @@ class Contact(Part):
     v and -e v. In statics friction acts against the displacement from the drawn position. On spheres about a body's
     points it acts at the point of contact, with its moment; along cables it acts on the axis.
 
-    a: the cable or the body; a list, or "all" of the scene: a contact is added for each pair, and a name given gets a
-        number
+    The spans of a rope have contact with surfaces of the ground, by penalty and without friction; what lies on sheaves
+    and drums has none. Where `equilibrium` finds no rest of a rope on a surface, `relax` does.
+
+    a: the cable, the rope or the body; a list, or "all" cables and bodies of the scene: a contact is added for each
+        pair, and a name given gets a number
     b: the surface; or a list, or "all"
     stiffness: N/m a length in m, or N/m; by default the weight penetrates by 1 % of the radius
     exponent: 1, or 1.5 (Hertz)
@@ -66,12 +69,12 @@ class Contact(Part):
     takes_lists = True
     results = all_of_engine(
         "contact",
-        force="force of the surface on the cable or body",
+        force="force of the surface on the cable, rope or body",
         friction_force="friction component of the force",
         penetration="largest depth below the surface",
-        touching="length of the cable in contact, m, or number of points in contact",
-        first="first arc-length of the cable in contact, NaN without contact",
-        last="last arc-length of the cable in contact, NaN without contact",
+        touching="length of the cable or rope in contact, m, or number of points in contact",
+        first="first arc-length of the cable or rope in contact, NaN without contact",
+        last="last arc-length of the cable or rope in contact, NaN without contact",
     ) | all_of_engine("hard_contact", gap="of a hard contact: least distance of its points from the surface, else NaN")
     name: Name | None = None
     a: Listed

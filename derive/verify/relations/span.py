@@ -241,7 +241,33 @@ def _of_line_force(spec: Element) -> list[Relation]:
     def moved_end(k, s, t, j):
         return k("share", s, ends=s["ends"] + t * unit(s["ends"], j))["share"]
 
+    def stored(k, s):
+        """Return the energy at a state, from that of the first one by its derivatives."""
+        change = k("point", s)["r"] - k("point", s["first"])["r"]
+        return s["part"] * s["l"] * (s["u"] - s["F"].dot(change) - change.dot(s["H"].dot(change)) / 2)
+
+    def released(k, s):
+        change = k("point", s)["r"] - k("point", s["first"])["r"]
+        u = s["u"] - s["F"].dot(change) - change.dot(s["H"].dot(change)) / 2
+        return k("stored_force", s, F=s["F"] + s["H"].dot(change), u=u)
+
+    def negative(path):
+        return lambda k, s, t, j: -path(k, s, t, j)
+
+    by_stored = negative(from_state(by_configuration(stored, n)))
+    of_stored = {output: from_state(by_configuration(lambda k, s, output=output: released(k, s)[output], n))
+                 for output in ("f", "f_l")}
+
+    def by_last(path):
+        return lambda k, s, t, j: path(k, s, t, n)
+
     return [
+        Relation("stored_force", "f", "-dU/de", 1, by_stored, n),
+        Relation("stored_force", "f_l", "-dU/dl", 1, by_last(by_stored)),
+        Relation("stored_force_tangent", "K", "df/de", 1, of_stored["f"], n),
+        Relation("stored_force_tangent", "K_l", "df/dl", 1, by_last(of_stored["f"])),
+        Relation("stored_force_tangent", "K_l", "df_l/de", 1, of_stored["f_l"], n),
+        Relation("stored_force_tangent", "K_ll", "df_l/dl", 1, by_last(of_stored["f_l"])),
         Relation("line_force", "f", "F . dr/de at a point that stays in the material", 1, work, n),
         Relation("line_force", "f_s", "F . dr/ds at a point that stays in the material", 1,
                  lambda k, s, t, j: work(k, s, t, n + j), ENDS),

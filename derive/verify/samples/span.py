@@ -36,9 +36,11 @@ def of_force(element: Element, state: State, random: np.random.Generator) -> Sta
     """Return a force of a length with its derivatives, its weight, and a material point between the ends."""
     square = {name: random.normal(size=(element.dim, element.dim)) for name in ("F_r", "F_t", "F_v")}
     first = random.normal()
-    return square | {"F": random.normal(size=element.dim), "part": np.float64(random.uniform(0.2, 0.4)),
-                     "ends": np.array([first, first + float(state["l"])]),
-                     "at": np.float64(first + random.uniform(0.2, 0.8) * float(state["l"]))}
+    stored = {"H": square["F_r"] + square["F_r"].T, "u": np.float64(random.normal())}
+    return square | stored | {
+        "F": random.normal(size=element.dim), "part": np.float64(random.uniform(0.2, 0.4)),
+        "ends": np.array([first, first + float(state["l"])]),
+        "at": np.float64(first + random.uniform(0.2, 0.8) * float(state["l"]))}
 
 
 def at_rest(family: ElementFamily, exact: Numbers, first: State) -> State:

@@ -20,6 +20,7 @@
     WITH_EVENTS(drag)                                                                                                  \
     WITH_EVENTS(crossing)                                                                                              \
     WITH_EVENTS(contact)                                                                                               \
+    ALONE(rope_contact)                                                                                                \
     WITH_EVENTS(hard_contact)
 
 #define DECLARE(kind) extern const fu_coupling_type fu_##kind##_type;

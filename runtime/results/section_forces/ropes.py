@@ -96,6 +96,7 @@ def _acting_on(scene: SceneData, rope: Rope) -> Iterator[Part]:
     yield from (part for part, _, end in grips(scene) if end.on == rope.name)
     yield from (load for load in scene.loads.values() if getattr(load, "cable", None) == rope.name)
     yield from (drag for drag in scene.drags.values() if drag.on == rope.name)
+    yield from (contact for contact in scene.contacts.values() if contact.a == rope.name)
 
 
 def _given(rope: Rope, s: Any) -> np.ndarray:

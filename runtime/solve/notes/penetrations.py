@@ -8,6 +8,7 @@ import numpy as np
 
 from ...checks.contact_placement import radius_of
 from ...engine import Engine, outputs_by_name
+from ...model.contacts import ContactModel, RopeContactModel
 from .note import Note, Rows
 
 PENETRATION_LIMIT = 0.1
@@ -31,15 +32,22 @@ class Penetrations(Note):
 
     def prepare(self) -> None:
         """Select the parts to measure."""
-        self._limits: dict[str, list[_Limit]] = {"contact": [], "crossing": []}
-        for contact in self.model.contacts:
+        self._limits: dict[str, list[_Limit]] = {"contact": [], "rope contact": [], "crossing": []}
+        contacts: list[ContactModel | RopeContactModel] = [*self.model.contacts, *self.model.rope_contacts]
+        for contact in contacts:
             radii = radius_of(self.scene, self.scene.contacts[contact.name]), contact.round_radius
             radius = min((r for r in radii if r > 0), default=np.inf)
-            self._limits["contact"].append(_Limit(contact.name, contact.stiffness, PENETRATION_LIMIT * radius, radius,
-                                                  "below its surface"))
+            self._limits[contact.type].append(
+                _Limit(contact.name, contact.stiffness, PENETRATION_LIMIT * radius, radius, "below its surface"))
         for each in self.model.crossings:  # deeper, lines are past each other's axes; without a radius that is contact
             self._limits["crossing"].append(_Limit(each.name, each.stiffness, each.law[0] or np.inf, each.law[0],
                                                    "beyond the contact of its lines"))
+
+    def see(self, rows: Rows) -> None:
+        """Measure further output rows: those of ropes, whose extremes the engine does not record."""
+        if self._limits["rope contact"]:
+            of = outputs_by_name("rope contact", rows["rope contact"])
+            self._take("rope contact", of["penetration"].max(axis=0))
 
     def see_steps(self, engine: Engine) -> None:
         """Measure extremes that the engine records at the ends of its steps."""

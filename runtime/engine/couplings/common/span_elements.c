@@ -78,3 +78,18 @@ void fu_add_by_rates(int all, double factor, const double *D, double (*local)[FU
     for (int i = 0; i < all; ++i)
         for (int j = 0; j < all; ++j) local[i][j] += factor * D[i * all + j];
 }
+
+void fu_add_by_energy(int n, double factor, const double *K, const double *K_l, double K_ll,
+                      double (*local)[FU_SPAN_LOCAL])
+{
+    static const double sign[ENDS] = {-1.0, 1.0};
+    for (int i = 0; i < n; ++i) {
+        for (int j = 0; K && j < n; ++j) local[i][j] += factor * K[i * n + j];
+        for (int e = 0; e < ENDS; ++e) {
+            local[i][n + e] += factor * sign[e] * K_l[i];
+            local[n + e][i] += factor * sign[e] * K_l[i];
+        }
+    }
+    for (int i = 0; i < ENDS; ++i)
+        for (int j = 0; j < ENDS; ++j) local[n + i][n + j] += factor * sign[i] * sign[j] * K_ll;
+}

@@ -55,5 +55,8 @@ void fu_add_span_matrix(const fu_model *model, const fu_span_elements *span, con
  * and of both ends (`all` a row). */
 void fu_add_by_length(int rows, int n, double factor, const double *by, double (*local)[FU_SPAN_LOCAL]);
 void fu_add_by_rates(int all, double factor, const double *D, double (*local)[FU_SPAN_LOCAL]);
+/* Adds, times a factor, second derivatives of an energy by e (K, null: none), by e and l, by l. */
+void fu_add_by_energy(int n, double factor, const double *K, const double *K_l, double K_ll,
+                      double (*local)[FU_SPAN_LOCAL]);
 
 #endif

@@ -3,6 +3,7 @@
 #define FUNICULAR_COUPLINGS_CONTACT_CONTACT_H
 
 #include "couplings/common/coupling.h"
+#include "couplings/common/span_elements.h"
 #include "couplings/common/stick_friction.h"
 #include "couplings/common/surfaces.h"
 
@@ -49,6 +50,14 @@ typedef struct {
     fu_attachment attachments[FU_CONTACT_POINTS];
 } fu_contact;
 extern const fu_coupling_type fu_contact_type;
+
+/* Contact of a span of a rope, without friction: couplings/contact/span_contact.c. Of the contact, `arc` and `weights`
+ * have the shares of the points and of their weights in the length of an element. */
+typedef struct {
+    fu_contact contact;
+    fu_span_elements on;
+} fu_rope_contact;
+extern const fu_coupling_type fu_rope_contact_type;
 
 /* Numbers of a row of output: the force on the cable or body, and its friction; the largest penetration; the length in
  * contact, of a body the number of points; the arc-lengths of its ends. */

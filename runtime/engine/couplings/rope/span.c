@@ -90,21 +90,6 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
     force(model, coupling, at->next, f);
 }
 
-/* Adds second derivatives of an energy by e (K, null: none), by e and l, by l. */
-static void add_energy(int n, double factor, const double *K, const double *K_l, double K_ll, double (*local)[LOCAL])
-{
-    static const double sign[ENDS] = {-1.0, 1.0};
-    for (int i = 0; i < n; ++i) {
-        for (int j = 0; K && j < n; ++j) local[i][j] += factor * K[i * n + j];
-        for (int e = 0; e < ENDS; ++e) {
-            local[i][n + e] += factor * sign[e] * K_l[i];
-            local[n + e][i] += factor * sign[e] * K_l[i];
-        }
-    }
-    for (int i = 0; i < ENDS; ++i)
-        for (int j = 0; j < ENDS; ++j) local[n + i][n + j] += factor * sign[i] * sign[j] * K_ll;
-}
-
 static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
 {
     const fu_span_coupling *span = fu_span_of(coupling);
@@ -117,9 +102,9 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
         const fu_span_element it = fu_span_element_at(model, &span->on, k, state->q, state->v, state->acceleration);
         memset(local, 0, sizeof local);
         span->on.kernel->elastic_tangent(it.l, it.e, span->A, K, K_l, &K_ll);
-        add_energy(n, w.stiffness, K, K_l, K_ll, local);
+        fu_add_by_energy(n, w.stiffness, K, K_l, K_ll, local);
         span->on.kernel->weight(span->rho, it.l, it.e, span->g, &V, f, &f_l, K_l, &K_ll);
-        add_energy(n, w.stiffness, 0, K_l, K_ll, local);
+        fu_add_by_energy(n, w.stiffness, 0, K_l, K_ll, local);
         if (w.inertia != 0.0 || w.rate != 0.0) {
             span->on.kernel->inertia_tangent(span->rho, it.l, it.e, it.v, it.s_rate, it.a, it.s_acc, D, K);
             fu_add_by_length(all, n, w.stiffness, K, local);
