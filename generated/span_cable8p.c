@@ -2457,15 +2457,16 @@ void span_cable8p_stored_force(fu_real part, fu_real l, const fu_real *e, fu_rea
     f_l[0] = -part*u + weight*(F[0]*r_l_x + F[1]*r_l_y);
 }
 
-/* derivatives of the generalised forces of a stored energy (virtual work of the material at constant S); 28 add, 261 mul */
+/* derivatives of the generalised forces of a stored energy (virtual work of the material at constant S); 26 add, 133 mul */
 void span_cable8p_stored_force_tangent(fu_real part, fu_real l, const fu_real *e, fu_real xi, const fu_real *F, const fu_real *H, fu_real *K, fu_real *K_l, fu_real *K_ll)
 {
     /* shape functions */
+    fu_real N[4];
+    N[0] = xi*xi*(2.0*xi - 3.0) + 1.0;
+    N[1] = l*xi*(xi*(xi - 2.0) + 1.0);
+    N[2] = xi*xi*(-2.0*xi + 3.0);
+    N[3] = l*xi*xi*(xi - 1.0);
     const fu_real
-        N1 = xi*xi*(2.0*xi - 3.0) + 1.0,
-        N2 = l*xi*(xi*(xi - 2.0) + 1.0),
-        N3 = xi*xi*(-2.0*xi + 3.0),
-        N4 = l*xi*xi*(xi - 1.0),
         dl_N2 = xi*(xi*(xi - 2.0) + 1.0),
         dl_N4 = xi*xi*(xi - 1.0);
     /* derivative of the place by the length, and weight */
@@ -2473,31 +2474,46 @@ void span_cable8p_stored_force_tangent(fu_real part, fu_real l, const fu_real *e
     FU_EACH(i, 2, r_l[i] = dl_N2*e[i + 2] + dl_N4*e[i + 6];)
     const fu_real weight = l*part;
     /* derivatives */
-    fu_real H_l[2];
+    fu_real H_l[2], scaled[4], N1N[4];
     H_l[0] = H[0]*r_l[0] + H[1]*r_l[1];
     H_l[1] = H[2]*r_l[0] + H[3]*r_l[1];
     const fu_real twice = 2.0*F[0]*r_l[0] + 2.0*F[1]*r_l[1];
+    FU_EACH(g, 4,
+        scaled[g] = N[g]*weight;)
+    FU_EACH(g, 4,
+        N1N[g] = N[g]*scaled[0];)
+    const fu_real
+        N2N2 = N[1]*scaled[1],
+        N2N3 = N[2]*scaled[1],
+        N2N4 = N[3]*scaled[1],
+        N3N3 = N[2]*scaled[2],
+        N3N4 = N[3]*scaled[2],
+        N4N4 = N[3]*scaled[3],
+        dl_scaled1 = N[0]*part,
+        dl_scaled2 = N[1]*part + dl_N2*weight,
+        dl_scaled3 = N[2]*part,
+        dl_scaled4 = N[3]*part + dl_N4*weight;
     /* outputs */
-    FU_PAIRS(i, j, 2, K[8*i + j] = H[2*i + j]*N1*N1*weight;)
-    FU_PAIRS(i, j, 2, K[8*i + j + 2] = H[2*i + j]*N1*N2*weight;)
-    FU_PAIRS(i, j, 2, K[8*i + j + 4] = H[2*i + j]*N1*N3*weight;)
-    FU_PAIRS(i, j, 2, K[8*i + j + 6] = H[2*i + j]*N1*N4*weight;)
-    FU_PAIRS(i, j, 2, K[8*i + j + 16] = H[2*i + j]*N1*N2*weight;)
-    FU_PAIRS(i, j, 2, K[8*i + j + 18] = H[2*i + j]*N2*N2*weight;)
-    FU_PAIRS(i, j, 2, K[8*i + j + 20] = H[2*i + j]*N2*N3*weight;)
-    FU_PAIRS(i, j, 2, K[8*i + j + 22] = H[2*i + j]*N2*N4*weight;)
-    FU_PAIRS(i, j, 2, K[8*i + j + 32] = H[2*i + j]*N1*N3*weight;)
-    FU_PAIRS(i, j, 2, K[8*i + j + 34] = H[2*i + j]*N2*N3*weight;)
-    FU_PAIRS(i, j, 2, K[8*i + j + 36] = H[2*i + j]*N3*N3*weight;)
-    FU_PAIRS(i, j, 2, K[8*i + j + 38] = H[2*i + j]*N3*N4*weight;)
-    FU_PAIRS(i, j, 2, K[8*i + j + 48] = H[2*i + j]*N1*N4*weight;)
-    FU_PAIRS(i, j, 2, K[8*i + j + 50] = H[2*i + j]*N2*N4*weight;)
-    FU_PAIRS(i, j, 2, K[8*i + j + 52] = H[2*i + j]*N3*N4*weight;)
-    FU_PAIRS(i, j, 2, K[8*i + j + 54] = H[2*i + j]*N4*N4*weight;)
-    FU_EACH(i, 2, K_l[i] = F[i]*N1*part + H_l[i]*N1*weight;)
-    FU_EACH(i, 2, K_l[i + 2] = F[i]*part*(N2 + dl_N2*l) + H_l[i]*N2*weight;)
-    FU_EACH(i, 2, K_l[i + 4] = F[i]*N3*part + H_l[i]*N3*weight;)
-    FU_EACH(i, 2, K_l[i + 6] = F[i]*part*(N4 + dl_N4*l) + H_l[i]*N4*weight;)
+    FU_PAIRS(i, j, 2, K[8*i + j] = H[2*i + j]*N1N[0];)
+    FU_PAIRS(i, j, 2, K[8*i + j + 2] = H[2*i + j]*N1N[1];)
+    FU_PAIRS(i, j, 2, K[8*i + j + 4] = H[2*i + j]*N1N[2];)
+    FU_PAIRS(i, j, 2, K[8*i + j + 6] = H[2*i + j]*N1N[3];)
+    FU_PAIRS(i, j, 2, K[8*i + j + 16] = H[2*i + j]*N1N[1];)
+    FU_PAIRS(i, j, 2, K[8*i + j + 18] = H[2*i + j]*N2N2;)
+    FU_PAIRS(i, j, 2, K[8*i + j + 20] = H[2*i + j]*N2N3;)
+    FU_PAIRS(i, j, 2, K[8*i + j + 22] = H[2*i + j]*N2N4;)
+    FU_PAIRS(i, j, 2, K[8*i + j + 32] = H[2*i + j]*N1N[2];)
+    FU_PAIRS(i, j, 2, K[8*i + j + 34] = H[2*i + j]*N2N3;)
+    FU_PAIRS(i, j, 2, K[8*i + j + 36] = H[2*i + j]*N3N3;)
+    FU_PAIRS(i, j, 2, K[8*i + j + 38] = H[2*i + j]*N3N4;)
+    FU_PAIRS(i, j, 2, K[8*i + j + 48] = H[2*i + j]*N1N[3];)
+    FU_PAIRS(i, j, 2, K[8*i + j + 50] = H[2*i + j]*N2N4;)
+    FU_PAIRS(i, j, 2, K[8*i + j + 52] = H[2*i + j]*N3N4;)
+    FU_PAIRS(i, j, 2, K[8*i + j + 54] = H[2*i + j]*N4N4;)
+    FU_EACH(i, 2, K_l[i] = F[i]*dl_scaled1 + H_l[i]*scaled[0];)
+    FU_EACH(i, 2, K_l[i + 2] = F[i]*dl_scaled2 + H_l[i]*scaled[1];)
+    FU_EACH(i, 2, K_l[i + 4] = F[i]*dl_scaled3 + H_l[i]*scaled[2];)
+    FU_EACH(i, 2, K_l[i + 6] = F[i]*dl_scaled4 + H_l[i]*scaled[3];)
     K_ll[0] = part*twice + weight*(H_l[0]*r_l[0] + H_l[1]*r_l[1]);
 }
 

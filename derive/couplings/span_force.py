@@ -147,8 +147,12 @@ def stored_force_tangent(span: FlowingElement) -> Program:
     H_l = p.vector("H_l", H.dot(at.r_l))
     twice = p.define("twice", 2 * at.F.dot(at.r_l))
     r_ll = at.by_l.array(at.N_l).dot(at.e)
-    p.output("K", np.kron(at.weight * np.outer(at.N, at.N), H), "N/m, N, N m", "derivatives of f by e")
-    p.output("K_l", np.outer(at.part * (at.N + at.l * at.N_l), at.F) + np.outer(at.weight * at.N, H_l), "N/m, N",
+    scaled = np.array([p.define(f"scaled{k + 1}", at.weight * n) for k, n in enumerate(at.N)])
+    products = {(j, k): p.define(f"N{j + 1}N{k + 1}", scaled[j] * at.N[k])
+                for j in range(len(scaled)) for k in range(j, len(scaled))}
+    squares = np.array([[products[min(j, k), max(j, k)] for k in range(len(scaled))] for j in range(len(scaled))])
+    p.output("K", np.kron(squares, H), "N/m, N, N m", "derivatives of f by e")
+    p.output("K_l", np.outer(at.by_l.array(scaled), at.F) + np.outer(scaled, H_l), "N/m, N",
              "derivatives of f by l")
     p.output("K_ll", [at.part * twice + at.weight * (H_l.dot(at.r_l) + at.F.dot(r_ll))], "N/m",
              "derivative of f_l by l")
