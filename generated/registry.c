@@ -292,12 +292,14 @@ static const fu_span_kernels spans[] = {
      span_cable8p_mass_matrix, span_cable8p_inertia_tangent, span_cable8p_weight, span_cable8p_energy,
      span_cable8p_elastic_force, span_cable8p_elastic_tangent, span_cable8p_dissipation, span_cable8p_damping_force,
      span_cable8p_damping_tangent, span_cable8p_momentum, span_cable8p_momentum_energy, span_cable8p_momentum_step,
-     span_cable8p_elastic_step, span_cable8p_line_force, span_cable8p_line_force_tangent, span_cable8p_share},
+     span_cable8p_elastic_step, span_cable8p_line_force, span_cable8p_line_force_tangent, span_cable8p_stored_force,
+     span_cable8p_stored_force_tangent, span_cable8p_share},
     {"span_cable12", 3, 12, 4, span_cable12_point, span_cable12_kinetic_energy, span_cable12_inertia,
      span_cable12_mass_matrix, span_cable12_inertia_tangent, span_cable12_weight, span_cable12_energy,
      span_cable12_elastic_force, span_cable12_elastic_tangent, span_cable12_dissipation, span_cable12_damping_force,
      span_cable12_damping_tangent, span_cable12_momentum, span_cable12_momentum_energy, span_cable12_momentum_step,
-     span_cable12_elastic_step, span_cable12_line_force, span_cable12_line_force_tangent, span_cable12_share},
+     span_cable12_elastic_step, span_cable12_line_force, span_cable12_line_force_tangent, span_cable12_stored_force,
+     span_cable12_stored_force_tangent, span_cable12_share},
 };
 
 static const fu_surface_kernels surfaces[] = {
@@ -424,6 +426,8 @@ static const fu_taut_rope_kernels taut_ropes[] = {
 #define FU_ARGUMENTS_sssvvvv_3 *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0], out[1], out[2]
 #define FU_ARGUMENTS_ssvsv_2 *a[0], *a[1], a[2], *a[3], a[4], out[0], out[1]
 #define FU_ARGUMENTS_ssvvvsvvvv_2 *a[0], *a[1], a[2], a[3], a[4], *a[5], a[6], a[7], a[8], a[9], out[0], out[1]
+#define FU_ARGUMENTS_ssvssv_2 *a[0], *a[1], a[2], *a[3], *a[4], a[5], out[0], out[1]
+#define FU_ARGUMENTS_ssvsvv_3 *a[0], *a[1], a[2], *a[3], a[4], a[5], out[0], out[1], out[2]
 #define FU_ARGUMENTS_sv_2 *a[0], a[1], out[0], out[1]
 #define FU_ARGUMENTS_vvs_3 a[0], a[1], *a[2], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vv_3 a[0], a[1], out[0], out[1], out[2]
@@ -1026,6 +1030,8 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(span_cable8p_elastic_step, ssvvvvv_2) \
     X(span_cable8p_line_force, ssvsv_2) \
     X(span_cable8p_line_force_tangent, ssvvvsvvvv_2) \
+    X(span_cable8p_stored_force, ssvssv_2) \
+    X(span_cable8p_stored_force_tangent, ssvsvv_3) \
     X(span_cable8p_share, sv_2) \
     X(span_cable12_point, svvvs_3) \
     X(span_cable12_kinetic_energy, ssvvv_1) \
@@ -1045,6 +1051,8 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(span_cable12_elastic_step, ssvvvvv_2) \
     X(span_cable12_line_force, ssvsv_2) \
     X(span_cable12_line_force_tangent, ssvvvsvvvv_2) \
+    X(span_cable12_stored_force, ssvssv_2) \
+    X(span_cable12_stored_force_tangent, ssvsvv_3) \
     X(span_cable12_share, sv_2) \
     X(surface_flat, vv_2) \
     X(surface_rounded, vvs_3) \
