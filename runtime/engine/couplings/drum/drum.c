@@ -332,7 +332,10 @@ static const fu_output output_fields[] = {
     FU_LAST_OUTPUT(drum_output),
 };
 
-static const fu_inertia_operations inertia = {inertial_force, mass_matrix, kinetic_energy, potential_energy};
+static const fu_inertia_operations inertia = {.force = inertial_force,
+                                              .matrix = mass_matrix,
+                                              .kinetic_energy = kinetic_energy,
+                                              .potential_energy = potential_energy};
 static const fu_start_operations start = {.may_be_open = fu_wheel_may_be_open};
 static const fu_history_operations of_history = {.update = fu_drum_update};
 

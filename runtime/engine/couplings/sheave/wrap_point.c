@@ -164,15 +164,16 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     const fu_weights w = equations->weights;
     const double held = mode == FU_STICKS ? equations->next->forces[coupling->force] : 0.0,
                  slips = slips_at(model, sheave, mode);
-    double F[FU_SLIDING], z[Z], D_z[Z][Z], K_z[Z][Z], D[Y][Y], K[Y][Y], y[Y] = {0.0},
-                                                                        by_psi[3 * FU_ATTACHMENT_COORDINATES];
+    double F[FU_SLIDING], z[Z], D_z[Z][Z], K_z[Z][Z], D[Y][Y], K[Y][Y], y[Y] = {0.0};
+    fu_centre_moves moves, by_psi;
     fu_wheel_column columns[COLUMNS], turned[COLUMNS];
     fu_sheave_state at;
     fu_coulomb of;
     look(model, coupling, equations->next, &at, &of);
-    fu_wheel_by_psi(model, &sheave->wheel, &at.wheel, equations->psi, by_psi);
-    const int n = fu_sheave_columns(sheave, &at, at.wheel.centre.P, columns);
-    fu_sheave_columns(sheave, &at, by_psi, turned);
+    fu_wheel_by_psi(model, &sheave->wheel, &at.wheel, equations->psi, &by_psi);
+    fu_wheel_moves(model, &at.wheel, &moves);
+    const int n = fu_sheave_columns(sheave, &at, &moves, columns);
+    fu_sheave_columns(sheave, &at, &by_psi, turned);
     if (mode == FU_STICKS) add_row_and_column(model, coupling, &at, &of, equations, n, columns, turned, system);
     else fu_add(model, system, own, own, fu_row_unit(w.inertia, coupling->scale[0]));
     if (held == 0.0 && slips == 0.0) return;
@@ -189,6 +190,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
         for (int k = 0; k < Y; ++k) D[i][k] *= w.rate;
     if (w.rate != 0.0) fu_wheel_add_matrix(model, n, columns, columns, Y, D[0], system);
     fu_sheave_add_by_angles(sheave, &at, z, y);
+    if (is_turning(sheave)) fu_turning_wrap_add_turning(model, sheave, &at, &by_psi, y, w.stiffness, system);
     fu_wheel_add_carried(model, &sheave->wheel, &at.wheel, equations, y + CENTRE, system);
 }
 
@@ -201,6 +203,7 @@ static void rows(const fu_model *model, const fu_coupling *coupling, const fu_st
     fu_rows *out = &work->rows[coupling->row];
     double row[Y], column[Y];
     fu_wheel_column columns[COLUMNS];
+    fu_centre_moves moves;
     fu_sheave_state at;
     fu_coulomb of;
     out->n = out->rows = 0;
@@ -208,7 +211,8 @@ static void rows(const fu_model *model, const fu_coupling *coupling, const fu_st
     look(model, coupling, state, &at, &of);
     by_y(sheave, &at, j, of.row, row);
     by_y(sheave, &at, j, of.column, column);
-    const int n = fu_sheave_columns(sheave, &at, at.wheel.centre.P, columns);
+    fu_wheel_moves(model, &at.wheel, &moves);
+    const int n = fu_sheave_columns(sheave, &at, &moves, columns);
     for (int i = 0; i < n; ++i) {
         const double by_rate = fu_by_column(&columns[i], row), by_f = fu_by_column(&columns[i], column);
         if (by_rate == 0.0 && by_f == 0.0) continue;

@@ -329,7 +329,8 @@ static const fu_output output_fields[] = {
     FU_LAST_OUTPUT(point_output),
 };
 
-static const fu_inertia_operations inertia = {inertial_force, mass_matrix, kinetic_energy, 0};
+static const fu_inertia_operations inertia = {
+    .force = inertial_force, .matrix = mass_matrix, .kinetic_energy = kinetic_energy};
 static const fu_supply_operations supply = {.force = drive};
 static const fu_start_operations start = {.reset = reset};
 
