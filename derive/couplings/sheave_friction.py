@@ -16,7 +16,6 @@ sticking point through which material passes takes f s' times half the jump of t
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -146,7 +145,7 @@ def _rates(p: Program) -> list[sp.Symbol]:
             p.input("flow", (), "m/s", "rate of the material coordinate of the point")]
 
 
-def _stretches(beside: Beside, arm: sp.Expr, phi: np.ndarray, length: np.ndarray,
+def _stretches(beside: Beside, arm: sp.Expr, phi: np.ndarray, length: list[sp.Symbol],
                slope: list[sp.Symbol]) -> list[sp.Expr]:
     """Return the stretch of both sides; arm: the radius, with the sense of travel as sign."""
     of_zone = [arm * (phi[k + 1] - phi[k]) / length[k] for k in range(beside.zones)]

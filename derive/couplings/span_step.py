@@ -47,8 +47,9 @@ def kernels(span: ElasticElement) -> list[Program]:
 
 def _shapes(span: ElasticElement, at: sp.Expr) -> tuple[np.ndarray, np.ndarray]:
     """Return the shape functions of the element of unit length and their derivatives at a point."""
-    return tuple(np.array([sp.sympify(f.subs(x, at)) for f in functions], dtype=object) for functions in (
-        span.unit_shapes, [sp.diff(n, x) for n in span.unit_shapes]))
+    values = [[sp.sympify(f.subs(x, at)) for f in functions]
+              for functions in (span.unit_shapes, [sp.diff(n, x) for n in span.unit_shapes])]
+    return np.array(values[0], dtype=object), np.array(values[1], dtype=object)
 
 
 def _along(span: ElasticElement, N_xi: np.ndarray, vectors: Sequence[np.ndarray]) -> np.ndarray:

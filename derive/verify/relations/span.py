@@ -285,7 +285,7 @@ def _of_momentum(spec: Element) -> list[Relation]:
     positions = np.array(spec.is_position, dtype=int)
 
     def at_points(k: Numbers, s: State) -> Any:
-        return np.array([s["l"] * k("point", s, xi=k.array(np.float64(float(xi))))["velocity"]
+        return np.array([s["l"] * k("point", s, xi=k.array(np.asarray(float(xi))))["velocity"]
                          for xi, _ in gauss(POINTS)])
 
     def change(k: Numbers, s: State, of: Callable[[Any, Any], Any]) -> Any:
