@@ -215,7 +215,7 @@ static void rows_in_space(const fu_model *model, const fu_sheave *sheave, const 
 /* Computes the second rates of the conditions at zero accelerations of the dofs, in the plane. */
 static void find_drift(const fu_sheave *sheave, const fu_sheave_state *at, const conditions *of, double *drift)
 {
-    memset(drift, 0, sizeof(double) * MAX_CONDITIONS);
+    memset(drift, 0, sizeof(double) * (size_t)sheave->wheel.base.n_forces);
     for (int k = 0; k < ENDS; ++k) {
         double foot[DIM];
         sheave->wheel.kernel->tangent_point_motion(at->x[k], at->x_rate[k], at->slope_rate[k], foot);
