@@ -574,7 +574,7 @@ CELLS = 256
 class DrumModel(WheelModel):
     """A drum at an end of a rope: fu_drum of the engine.
 
-    ends_run_by: "error" or "stop", where it has run empty.
+    ends_run_by: "error" or "stop", where it has run empty; "leave" where the end of the rope is free then.
     """
 
     coordinates: DrumCoordinates
@@ -587,6 +587,11 @@ class DrumModel(WheelModel):
     span_reach: int
     n_cells: int = CELLS
     n_numbers: int = CELLS + 1
+
+    @property
+    def leaves(self) -> int:
+        """Return whether the rope leaves it where it has run empty."""
+        return int(self.ends_run_by == "leave")
 
     @property
     def node(self) -> int:

@@ -162,6 +162,10 @@ class Rope(Part):
         if self.closed and not self.holding_sheaves:
             raise ValueError("has no mass, is closed, and no sheave holds it: how far it has run is then not known",
                              "give friction of a sheave")
+        for drum in self.drums.values():
+            if drum.at_end == "leave":
+                raise ValueError(f'has no mass, and {drum.where} has at_end="leave": its free end would have no place',
+                                 'give at_end="stop", or a small mass')
         return self
 
     @model_validator(mode="after")

@@ -34,7 +34,7 @@ MAX_FLEET_ANGLE = 0.07
 """Fleet angle in rad, 4 degrees, that rules for cranes allow."""
 MAX_FALLS = 100
 """Falls of a tackle, at most."""
-AT_END = ("error", "stop")
+AT_END = ("error", "stop", "leave")
 """What a drum does that has run empty."""
 SIDES = {"left": 1, "right": -1}
 """The senses in which the rope runs around a sheave on a side of it: 1 counter-clockwise."""
@@ -285,7 +285,8 @@ class Drum(Wheel):
     axis: its direction as drawn, of a rope in space, which turns with the body that it is on; by default z. There the
         rope lies in the plane across it through ``at``
     max_fleet_angle: between this plane and the rope as drawn, in space, rad; a larger one is reported
-    at_end: where it has run empty, "error" ends the run with a RopeLeftError, "stop" as an event does
+    at_end: where it has run empty, "error" ends the run with a RopeLeftError, "stop" as an event does, "leave" frees
+        the end of the rope, not of one without mass
     """
 
     kind = "drum"

@@ -113,12 +113,29 @@ static int functions_of_drum(const fu_coupling *coupling, fu_event_function *out
     return list(fu_drum_is_in_space(coupling) ? FLEET + 1 : FLEET, out);
 }
 
+/* Frees the end of a rope whose drum is empty. Its material keeps its velocity, while the node there no longer flows
+ * along it; what is lost is the kinetic energy of the jump, see `pass`. */
+static int release(fu_run *run, const fu_coupling *coupling)
+{
+    const fu_model *model = run->model;
+    fu_state *now = &run->now;
+    fu_drum_leave(model, coupling, now);
+    if (fu_close(run)) return FU_NO_CONVERGENCE;
+    if (fu_project_velocities(model, now, &run->accelerator, run->work)) return FU_SINGULAR;
+    fu_impact(run, run->work, 0.0);
+    return FU_RUNNING;
+}
+
 static int act_of_drum(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
 {
     (void)side;
+    if (which == WRAP && fu_drum_leaves(coupling)) {
+        *what = "left the drum";
+        return release(run, coupling);
+    }
     *what = which == WRAP ? "ran empty" : which == PRESSURE ? "lifted off" : "left the groove";
     return fu_leave(run, coupling, which == WRAP ? FU_LEFT_BY_EMPTY : which);
 }
 
 const fu_coupling_events fu_drum_events = {
-    .functions = functions_of_drum, .value = value_of_drum, .act = act_of_drum, .begin = begin};
+    .functions = functions_of_drum, .value = value_of_drum, .sign = sign, .act = act_of_drum, .begin = begin};

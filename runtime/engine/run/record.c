@@ -23,7 +23,7 @@ int fu_record_row(fu_run *run)
     const int info = fu_accelerations(model, now, &run->accelerator, acceleration, r->reaction + row * model->n_dof);
     r->kinetic[row] = fu_kinetic_energy_at(model, now);
     r->elastic[row] = fu_elastic_energy(model, now);
-    r->potential[row] = fu_potential_energy(model, now->q) + fu_coupling_potential_energy(model, now->q);
+    r->potential[row] = fu_potential_energy(model, now->q) + fu_coupling_potential_energy(model, now);
     r->dissipated[row] = run->dissipated;
     r->external[row] = run->external;
     if (!info) fu_coupling_outputs(model, now, acceleration, &run->accelerator, r->output + row * model->n_outputs);

@@ -72,7 +72,7 @@ typedef struct {
     double (*kinetic_energy)(const fu_model *model, const fu_coupling *coupling, double t, const double *q,
                              const double *v, int past_fluid);
     /* Returns the energy of gravity, J. Null: none. */
-    double (*potential_energy)(const fu_model *model, const fu_coupling *coupling, const double *q);
+    double (*potential_energy)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
     /* Returns the kinetic energy of a state beyond that of its velocities, J: that of momenta which are history
      * variables of steps that conserve energy. Null: none. */
     double (*beyond_velocities)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);

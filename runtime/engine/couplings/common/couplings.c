@@ -128,12 +128,12 @@ double fu_kinetic_energy_beyond_velocities(const fu_model *model, const fu_state
     return total;
 }
 
-double fu_coupling_potential_energy(const fu_model *model, const double *q)
+double fu_coupling_potential_energy(const fu_model *model, const fu_state *state)
 {
     double total = 0.0;
     FU_EACH_COUPLING(c, model->always_active, model->n_inertial ? model->n_always_active : 0)
         if (c->has_inertia && c->type->inertia->potential_energy)
-            total += c->type->inertia->potential_energy(model, c, q);
+            total += c->type->inertia->potential_energy(model, c, state);
     return total;
 }
 

@@ -27,7 +27,7 @@ void fu_coupling_inertia(const fu_model *model, const double *q, const double *a
 void fu_coupling_masses(const fu_model *model, const double *q, double scale, fu_system *system);
 double fu_coupling_kinetic_energy(const fu_model *model, double t, const double *q, const double *v, int past_fluid);
 double fu_kinetic_energy_beyond_velocities(const fu_model *model, const fu_state *state);
-double fu_coupling_potential_energy(const fu_model *model, const double *q);
+double fu_coupling_potential_energy(const fu_model *model, const fu_state *state);
 void fu_coupling_forces(const fu_model *model, const fu_state *state, double *f);
 void fu_coupling_external_forces(const fu_model *model, double t, const double *q, double *f);
 double fu_coupling_external_power(const fu_model *model, const fu_state *state);

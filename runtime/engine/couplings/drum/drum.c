@@ -90,10 +90,12 @@ static double kinetic_energy(const fu_model *model, const fu_coupling *coupling,
     return T;
 }
 
-static double potential_energy(const fu_model *model, const fu_coupling *coupling, const double *q)
+static double potential_energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
+    const fu_drum_history *past = fu_drum_history_of(drum_of(coupling), state);
     double T, V;
-    energies(model, coupling, q, 0, &T, &V);
+    if (past->has_left != 0.0) return past->laid;
+    energies(model, coupling, state->q, 0, &T, &V);
     return V;
 }
 
@@ -122,12 +124,14 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
     fu_drum_at(model, drum, equations->next, 0, &at);
     fu_drum_conditions_at(drum, &at, equations->next, multipliers, &of);
     fu_drum_forces(drum, &at, y);
-    fu_drum_add_all_multipliers(drum, &of, multipliers, y, f);
+    fu_drum_add_all_multipliers(&of, multipliers, y, f);
     add_rise(drum, &at, y);
     scatter(drum, &at, y, f);
     fu_wheel_add_bearing(&drum->wheel, &at.wheel, f);
-    for (int r = 0; r < conditions_of(drum); ++r)
+    for (int r = 0; r < of.n; ++r)
         internal[coupling->unknown + r] = -fu_row_unit(equations->weights.inertia, coupling->scale[r]) * of.phi[r];
+    for (int r = of.n; r < conditions_of(drum); ++r)
+        internal[coupling->unknown + r] = -equations->weights.stiffness * multipliers[r];
 }
 
 /* Adds the derivatives by rotations of the groove of all forces but those of a tangent point; those on the wheel with
@@ -150,7 +154,7 @@ static void add_motion_of_wheel(const fu_model *model, const fu_drum *drum, cons
         fu_wheel_add_turning(model, &at->wheel, by_psi, 1, &on_node, turning + CENTRE, equations->weights.stiffness,
                              system);
     }
-    fu_drum_add_multipliers(drum, at, of, multipliers, y);
+    fu_drum_add_multipliers(at, of, multipliers, y);
     fu_wheel_add_tangent(model, &drum->wheel, &at->wheel, equations, y + CENTRE, system);
 }
 
@@ -184,9 +188,10 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
 
 static void take_forces(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state)
 {
+    const int left = fu_drum_history_of(drum_of(coupling), state)->has_left != 0.0;
     (void)model;
-    memcpy(state->forces + coupling->force, work->multipliers + coupling->multiplier,
-           sizeof(double) * (size_t)coupling->n_forces);
+    for (int r = 0; r < coupling->n_forces; ++r)
+        state->forces[coupling->force + r] = left && r > 0 ? 0.0 : work->multipliers[coupling->multiplier + r];
 }
 
 static void gaps(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *phi)
@@ -203,7 +208,13 @@ double fu_drum_margin(const fu_model *model, const fu_coupling *coupling, const 
 {
     const fu_drum *drum = drum_of(coupling);
     (void)model;
+    if (fu_drum_history_of(drum, state)->has_left != 0.0) return 1.0;
     return drum->direction * (state->q[drum->s] - drum->end);
+}
+
+int fu_drum_leaves(const fu_coupling *coupling)
+{
+    return drum_of(coupling)->leaves;
 }
 
 int fu_drum_is_in_space(const fu_coupling *drum)
@@ -223,6 +234,7 @@ double fu_drum_fleet_margin(const fu_model *model, const fu_coupling *coupling, 
     const fu_drum *drum = drum_of(coupling);
     fu_drum_state at;
     fu_drum_at(model, drum, state, 0, &at);
+    if (at.has_left) return 1.0;
     return fu_span_fleet_margin(state->q[drum->span_s[1]] - state->q[drum->span_s[0]], drum->wheel.radius,
                                 fleet_angle(drum, &at));
 }
@@ -254,7 +266,7 @@ double fu_drum_pressure(const fu_model *model, const fu_coupling *coupling, cons
 {
     fu_drum_state at;
     fu_drum_at(model, drum_of(coupling), state, state->acceleration, &at);
-    return pressure(drum_of(coupling), &at);
+    return at.has_left ? 1.0 : pressure(drum_of(coupling), &at);
 }
 
 /* Returns the arm of a force along the groove over that of the tension, see sheave_output.c. */
@@ -277,19 +289,19 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     fu_drum_at(model, drum, state, acceleration, &at);
     fu_drum_conditions_at(drum, &at, state, multipliers, &of);
     fu_drum_forces(drum, &at, y);
-    fu_drum_add_multipliers(drum, &at, &of, multipliers, y);
+    fu_drum_add_multipliers(&at, &of, multipliers, y);
     const double speed = speed_of(drum, &at, t), s_rate = drum->direction * at.u_rate;
     const double velocity = speed + fu_dot(DIM, t, at.wheel.c_rate);
     *numbers = (drum_output){.length_in_store = at.u, .material_speed = -s_rate, .angle = at.turn};
     numbers->tension =
         drum->direction * arm_over_radius(drum, &at) * fu_dot(DIM, t, y) - wheel->rho * s_rate * velocity;
-    numbers->normal_force = pressure(drum, &at);
+    numbers->normal_force = at.has_left ? 0.0 : pressure(drum, &at);
     numbers->torque = y[TURN] + wheel->damping * at.wheel.own_rate;
     numbers->power = numbers->torque * at.wheel.own_rate;
     fu_wheel_force(wheel, &at.wheel, y + CENTRE, on_centre);
     for (int d = 0; d < SPACE; ++d) numbers->force[d] = d < DIM || is_in_space(drum) ? -on_centre[d] : 0.0;
     for (int r = 0; r < conditions_of(drum) - 1; ++r) numbers->residual = fmax(numbers->residual, fabs(of.phi[r]));
-    numbers->fleet_angle = is_in_space(drum) ? fleet_angle(drum, &at) : 0.0;
+    numbers->fleet_angle = of.has_foot ? fleet_angle(drum, &at) : 0.0;
 }
 
 static const char *const role[] = {"sheave", 0}, *const foot_role[] = {"tangent_point", 0};
@@ -310,6 +322,7 @@ static const fu_field fields[] = {
     FU_FIELD(fu_drum, node, FU_INTEGER, 0),
     FU_FIELD(fu_drum, s, FU_INTEGER, 0),
     FU_FIELD(fu_drum, n_cells, FU_INTEGER, 0),
+    FU_FIELD(fu_drum, leaves, FU_INTEGER, 0),
     FU_FIELD(fu_drum, cell, FU_REAL, 0),
     FU_FIELD(fu_drum, direction, FU_REAL, 0),
     FU_FIELD(fu_drum, end, FU_REAL, 0),

@@ -17,11 +17,12 @@ enum { TILT = CENTRE + FU_WHEEL_TILT, LENGTH = CENTRE + FU_WHEEL_FORCES, Y = LEN
 enum { COLUMNS = 2 * SPACE + 2 + FU_ATTACHMENT_COORDINATES };
 
 /* A drum at an end of a rope (derive/couplings/drum.py): a tangent point, and the rope that is wound. Its wound length
- * is direction (s - end). Its history is the drawn length over the wound one, in cells. */
+ * is direction (s - end). Its history is the drawn length over the wound one, in cells. A rope that leaves the empty
+ * drum has a free end there. */
 typedef struct {
     fu_wheel wheel;
     int node, s; /* dofs: the first of the node; its material coordinate */
-    int n_cells;
+    int n_cells, leaves;
     double cell, direction, end;    /* m: stress-free length of a cell; 1 at the first end of the rope, else -1; m */
     double tangent_radius, stretch; /* m; of the rope as drawn */
     /* in space: half the weight of a length; of the span the first dof, elements in all and within reach of a chord, s
@@ -31,11 +32,12 @@ typedef struct {
     const double *share; /* of its nodes */
 } fu_drum;
 
-/* History of a drum: the last accepted state, and the drawn length over the wound one at the ends of cells. */
+/* History of a drum: the last accepted state, whether the rope has left it and the energy of the height at which it was
+ * laid on until then, J, and the drawn length over the wound one at the ends of cells. */
 typedef struct {
-    double is_known, u, phi, turn, carrier, drawn, stretch, profile[];
+    double is_known, u, phi, turn, carrier, drawn, stretch, has_left, laid, profile[];
 } fu_drum_history;
-enum { FU_DRUM_HISTORY = 7 };
+enum { FU_DRUM_HISTORY = 9 };
 
 /* A drum at a state; u: wound length. */
 typedef struct {
@@ -44,6 +46,7 @@ typedef struct {
     double x[DIM], slope[DIM], x_rate[DIM], slope_rate[DIM];
     double stretch[SPACE], rise; /* in space: direction of the slope; place along the axis, m */
     double u, u_rate, turn, carrier, phi, span_stretch, wound, winds;
+    int has_left;
 } fu_drum_state;
 
 static inline const fu_drum *drum_of(const fu_coupling *coupling)
@@ -56,7 +59,7 @@ static inline int is_in_space(const fu_drum *drum)
     return drum->wheel.foot != 0;
 }
 
-/* Returns the number of its conditions; the last one is that of winding. */
+/* Returns the number of its conditions until the rope leaves; the last one is that of winding. */
 static inline int conditions_of(const fu_drum *drum)
 {
     return (is_in_space(drum) ? FU_FOOT_CONDITIONS : DIM) + 1;
@@ -124,9 +127,11 @@ void fu_drum_update(const fu_model *model, const fu_coupling *coupling, fu_state
 
 /* --- drum_conditions.c --- */
 
-/* The conditions of a drum: residuals; derivatives by y and those of J' multipliers, in space of winding alone, whose
- * tangent point follows. */
+/* The conditions of a drum: their number; whether the tangent point is one in space, which then follows; residuals;
+ * derivatives by y and those of J' multipliers, in space of winding alone. A rope that has left has one condition, that
+ * of its end: the wound length is zero. */
 typedef struct {
+    int n, has_foot;
     double phi[MAX_CONDITIONS], J[MAX_CONDITIONS][Y], K[Y][Y];
     fu_tangent_point foot;
 } fu_drum_conditions;
@@ -134,11 +139,10 @@ typedef struct {
 void fu_drum_conditions_at(const fu_drum *drum, const fu_drum_state *at, const fu_state *state,
                            const double *multipliers, fu_drum_conditions *out);
 /* Adds the forces of the conditions by y, in space without those on the chord. */
-void fu_drum_add_multipliers(const fu_drum *drum, const fu_drum_state *at, const fu_drum_conditions *of,
-                             const double *multipliers, double y[Y]);
+void fu_drum_add_multipliers(const fu_drum_state *at, const fu_drum_conditions *of, const double *multipliers,
+                             double y[Y]);
 /* Adds all these forces: by y, in space those of the tangent point to those on the dofs. */
-void fu_drum_add_all_multipliers(const fu_drum *drum, const fu_drum_conditions *of, const double *multipliers,
-                                 double y[Y], double *f);
+void fu_drum_add_all_multipliers(const fu_drum_conditions *of, const double *multipliers, double y[Y], double *f);
 /* Adds the rows of the conditions, the columns of their forces, and in space the derivatives of those of the tangent
  * point. `rows` and `columns`: of the n dofs; by_psi: moves of the centre in the latter. */
 void fu_drum_add_rows(const fu_model *model, const fu_coupling *coupling, const fu_drum_state *at,

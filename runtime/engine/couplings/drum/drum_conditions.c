@@ -31,14 +31,22 @@ void fu_drum_conditions_at(const fu_drum *drum, const fu_drum_state *at, const f
                            const double *multipliers, fu_drum_conditions *out)
 {
     const fu_wheel *wheel = &drum->wheel;
-    const int winding = conditions_of(drum) - 1, in_space = is_in_space(drum);
+    const int winding = conditions_of(drum) - 1;
     const fu_drum_history *past = fu_drum_history_of(drum, state);
     double J[DIM * NODE], K[NODE * NODE], of_winding[NODE], K_winding[(DIM + 1) * NODE];
     memset(out->J, 0, sizeof out->J);
     memset(out->K, 0, sizeof out->K);
+    out->has_foot = is_in_space(drum) && !at->has_left;
+    out->n = at->has_left ? 1 : conditions_of(drum);
+    if (at->has_left) {
+        memset(out->phi, 0, sizeof out->phi);
+        out->phi[0] = at->u;
+        out->J[0][LENGTH] = 1.0;
+        return;
+    }
     wheel->kernel->winding(fu_winding_sense(drum), wheel->radius, at->x, at->slope, at->winds, at->wound,
                            multipliers[winding], of_winding, K_winding);
-    if (in_space) {
+    if (out->has_foot) {
         const fu_foot foot = foot_of(drum);
         fu_tangent_point_at(&foot, &at->wheel, at->q, multipliers, &out->foot);
         memcpy(out->phi, out->foot.phi, sizeof out->foot.phi);
@@ -52,30 +60,29 @@ void fu_drum_conditions_at(const fu_drum *drum, const fu_drum_state *at, const f
     }
     out->J[winding][TURN] = of_winding[DIM];
     out->J[winding][LENGTH] = of_winding[DIM + 1];
-    add_stiffness(in_space ? 0 : K, K_winding, out);
+    add_stiffness(out->has_foot ? 0 : K, K_winding, out);
     out->phi[winding] = past->is_known ? fu_drum_winding_gap(drum, past, at) : 0.0;
 }
 
 /* Adds the forces by y of all conditions in the plane, in space of winding. */
-static void add_by_rows(const fu_drum *drum, const fu_drum_conditions *of, const double *multipliers, double y[Y])
+static void add_by_rows(const fu_drum_conditions *of, const double *multipliers, double y[Y])
 {
-    for (int r = 0; r < conditions_of(drum); ++r)
+    for (int r = 0; r < of->n; ++r)
         for (int j = 0; j < Y; ++j) y[j] += of->J[r][j] * multipliers[r];
 }
 
-void fu_drum_add_multipliers(const fu_drum *drum, const fu_drum_state *at, const fu_drum_conditions *of,
-                             const double *multipliers, double y[Y])
+void fu_drum_add_multipliers(const fu_drum_state *at, const fu_drum_conditions *of, const double *multipliers,
+                             double y[Y])
 {
-    add_by_rows(drum, of, multipliers, y);
-    if (is_in_space(drum)) fu_tangent_point_add_forces(&at->wheel, &of->foot, multipliers, y, y + CENTRE);
+    add_by_rows(of, multipliers, y);
+    if (of->has_foot) fu_tangent_point_add_forces(&at->wheel, &of->foot, multipliers, y, y + CENTRE);
 }
 
-void fu_drum_add_all_multipliers(const fu_drum *drum, const fu_drum_conditions *of, const double *multipliers,
-                                 double y[Y], double *f)
+void fu_drum_add_all_multipliers(const fu_drum_conditions *of, const double *multipliers, double y[Y], double *f)
 {
     double rows[FU_FOOT_CONDITIONS * FU_FOOT_DOFS];
-    add_by_rows(drum, of, multipliers, y);
-    if (!is_in_space(drum)) return;
+    add_by_rows(of, multipliers, y);
+    if (!of->has_foot) return;
     const int n = of->foot.n;
     fu_tangent_point_rows(&of->foot, rows);
     for (int r = 0; r < FU_FOOT_CONDITIONS; ++r)
@@ -86,18 +93,20 @@ void fu_drum_add_rows(const fu_model *model, const fu_coupling *coupling, const 
                       const fu_drum_conditions *of, int n, const fu_wheel_column *rows, const fu_wheel_column *columns,
                       const fu_centre_moves *by_psi, const fu_equations *equations, fu_system *system)
 {
-    const fu_drum *drum = drum_of(coupling);
+    const double inertia = equations->weights.inertia;
     const int own = fu_extra(model, coupling->unknown);
-    if (is_in_space(drum))
+    if (of->has_foot)
         fu_tangent_point_add(model, &at->wheel, &of->foot, by_psi, equations->next->forces + coupling->force,
                              coupling->scale, equations->weights, own, system);
-    for (int r = is_in_space(drum) ? FU_FOOT_CONDITIONS : 0; r < conditions_of(drum); ++r)
+    for (int r = of->has_foot ? FU_FOOT_CONDITIONS : 0; r < of->n; ++r)
         for (int j = 0; j < n; ++j) {
-            const double unit = fu_row_unit(equations->weights.inertia, coupling->scale[r]);
+            const double unit = fu_row_unit(inertia, coupling->scale[r]);
             const double row = fu_by_column(&columns[j], of->J[r]), column = fu_by_column(&rows[j], of->J[r]);
             if (row != 0.0) fu_add(model, system, own + r, columns[j].dof, unit * row);
             if (column != 0.0) fu_add(model, system, rows[j].dof, own + r, unit * column);
         }
+    for (int r = of->n; r < conditions_of(drum_of(coupling)); ++r) /* left out: the multiplier is zero */
+        fu_add(model, system, own + r, own + r, fu_row_unit(inertia, coupling->scale[r]));
 }
 
 /* Computes the rows of conditions from number `first` on, of n dofs from column `at` on. */
@@ -122,13 +131,24 @@ static void set_foot(const fu_drum *drum, const fu_drum_state *at, const fu_drum
     for (int r = 0; r < FU_FOOT_CONDITIONS; ++r) memcpy(out->H + r * out->n, rows + r * n, sizeof(double) * (size_t)n);
 }
 
+/* Computes the second rates of the conditions but those of a tangent point in space. */
+static void set_bias(const fu_drum *drum, const fu_drum_state *at, const fu_drum_conditions *of, double *bias)
+{
+    const fu_wheel *wheel = &drum->wheel;
+    if (at->has_left) {
+        bias[0] = 0.0;
+        return;
+    }
+    if (!of->has_foot) wheel->kernel->tangent_point_motion(at->x, at->x_rate, at->slope_rate, bias);
+    wheel->kernel->winding_motion(fu_winding_sense(drum), wheel->radius, at->x, at->slope, at->winds, at->wound,
+                                  at->x_rate, at->slope_rate, at->u_rate, bias + of->n - 1);
+}
+
 /* Of winding the rates are the condition; a residual of places is corrected where the rope keeps its stretch. */
 void fu_drum_rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work)
 {
     const fu_drum *drum = drum_of(coupling);
-    const fu_wheel *wheel = &drum->wheel;
     const double none[MAX_CONDITIONS] = {0.0};
-    const int n_rows = conditions_of(drum), winding = n_rows - 1, in_space = is_in_space(drum);
     fu_rows *out = &work->rows[coupling->row];
     double bias[MAX_CONDITIONS];
     fu_wheel_column columns[COLUMNS];
@@ -137,18 +157,17 @@ void fu_drum_rows(const fu_model *model, const fu_coupling *coupling, const fu_s
     fu_drum_conditions of;
     fu_drum_at(model, drum, state, 0, &at);
     fu_drum_conditions_at(drum, &at, state, none, &of);
-    memcpy(out->C, of.phi, sizeof(double) * (size_t)n_rows);
-    if (at.winds != 0.0) out->C[winding] = 0.0;
+    out->rows = of.n;
+    memcpy(out->C, of.phi, sizeof(double) * (size_t)of.n);
+    if (at.winds != 0.0 && !at.has_left) out->C[of.n - 1] = 0.0;
     fu_wheel_moves(model, &at.wheel, &moves);
-    const int n = fu_drum_columns(drum, &at, &moves, columns), foot = in_space ? of.foot.n : 0;
+    const int n = fu_drum_columns(drum, &at, &moves, columns), foot = of.has_foot ? of.foot.n : 0;
     out->n = foot + n;
-    memset(out->H, 0, sizeof(double) * (size_t)(n_rows * out->n));
-    if (in_space) set_foot(drum, &at, &of, state->v, out, bias);
-    else wheel->kernel->tangent_point_motion(at.x, at.x_rate, at.slope_rate, bias);
-    wheel->kernel->winding_motion(fu_winding_sense(drum), wheel->radius, at.x, at.slope, at.winds, at.wound, at.x_rate,
-                                  at.slope_rate, at.u_rate, bias + winding);
-    set_rows(&of, in_space ? winding : 0, n_rows, n, foot, columns, out);
-    for (int r = 0; r < n_rows; ++r) {
+    memset(out->H, 0, sizeof(double) * (size_t)(of.n * out->n));
+    if (of.has_foot) set_foot(drum, &at, &of, state->v, out, bias);
+    set_bias(drum, &at, &of, bias);
+    set_rows(&of, of.has_foot ? FU_FOOT_CONDITIONS : 0, of.n, n, foot, columns, out);
+    for (int r = 0; r < of.n; ++r) {
         out->rate[r] = 0.0;
         out->W[r] = -bias[r];
         for (int d = 0; d < DIM; ++d) out->W[r] -= of.J[r][CENTRE + d] * at.wheel.c_bias[d];

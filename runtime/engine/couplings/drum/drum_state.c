@@ -47,8 +47,10 @@ void fu_drum_at(const fu_model *model, const fu_drum *drum, const fu_state *stat
     out->span_stretch = sqrt(fu_dot(DIM, out->slope, out->slope));
     out->wound = out->span_stretch;
     out->winds = 1.0;
+    out->has_left = 0;
     if (!state->numbers) return;
     const fu_drum_history *past = fu_drum_history_of(drum, state);
+    out->has_left = past->has_left != 0.0;
     if (!past->is_known) return;
     out->wound = fu_drum_wound_stretch(drum, past, out->u);
     out->winds = out->u > past->u || (out->u == past->u && out->u_rate > 0.0) ? 1.0 : 0.0;

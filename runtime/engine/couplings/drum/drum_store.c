@@ -1,9 +1,12 @@
 /* The rope that is wound on a drum: its energies, inertia and weight, by y; and the update of its history. */
 #include "couplings/common/couplings.h"
 #include "couplings/drum/drum.h"
+#include "couplings/rope/rope.h"
 
 #include <math.h>
 #include <string.h>
+
+#define NO_STORE 1e-9 /* of the radius: wound length of a drum that a rope has left, at most */
 
 /* of the forces of the wound rope in the plane: on the rotation, the centre, the length */
 enum { STORE = 2 + DIM };
@@ -89,11 +92,25 @@ static double add_in_space(const fu_drum *drum, const fu_drum_state *at, double 
     return tilting;
 }
 
+/* Adds the forces of the inertia of a drum that its rope has left. */
+static void add_alone(const fu_drum *drum, const fu_drum_state *at, double y[Y])
+{
+    double inertia[2];
+    y[TURN] += drum->wheel.inertia * at->wheel.turn_acc;
+    if (!drum->wheel.tilts) return;
+    rings(drum, 0.0, inertia);
+    fu_wheel_add_ring(&drum->wheel, &at->wheel, inertia, 0.0, y + CENTRE);
+}
+
 void fu_drum_forces(const fu_drum *drum, const fu_drum_state *at, double y[Y])
 {
     const laid_rope laid = laying(drum, at);
     double F[STORE];
     memset(y, 0, sizeof(double) * Y);
+    if (at->has_left) {
+        add_alone(drum, at, y);
+        return;
+    }
     store_forces(drum, at, F);
     for (int k = 0; k < STORE; ++k) y[of_store[k]] += F[k];
     for (int d = 0; d < DIM; ++d) {
@@ -131,6 +148,7 @@ void fu_drum_add_derivatives(const fu_drum *drum, const fu_drum_state *at, fu_we
 {
     static const int of_place[DIM + 1 + DIM] = {CENTRE, CENTRE + 1, LENGTH, SLOPE, SLOPE + 1};
     double D_store[STORE * STORE], K_store[STORE * (DIM + 1 + DIM)];
+    if (at->has_left) return;
     store_derivatives(drum, at, D_store, K_store);
     for (int i = 0; i < STORE; ++i) {
         for (int j = 0; j < STORE; ++j) D[of_store[i]][of_store[j]] += w.stiffness * w.rate * D_store[i * STORE + j];
@@ -204,13 +222,28 @@ double fu_drum_dissipation(const fu_model *model, const fu_coupling *coupling, c
     return wheel->damping * at.wheel.own_rate * at.wheel.own_rate + loss * fabs(at.u_rate);
 }
 
+void fu_drum_leave(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+{
+    fu_drum_history *past = fu_drum_history_of(drum_of(coupling), state);
+    fu_drum_state at;
+    fu_drum_at(model, drum_of(coupling), state, 0, &at);
+    past->laid = laying(drum_of(coupling), &at).V;
+    past->has_left = 1.0;
+    memset(state->forces + coupling->force, 0, sizeof(double) * (size_t)coupling->n_forces);
+}
+
 /* Updates the profile of the wound rope: what is wound has the mean stretch of its way on the rim. */
 void fu_drum_update(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     const fu_drum *drum = drum_of(coupling);
     fu_drum_history *past = fu_drum_history_of(drum, state);
     fu_drum_state at;
+    if (past->has_left != 0.0) return;
     fu_drum_at(model, drum, state, 0, &at);
+    if (!past->is_known && drum->leaves && at.u <= NO_STORE * drum->wheel.radius) {
+        fu_drum_leave(model, coupling, state); /* as of a run whose rope has left */
+        return;
+    }
     if (!past->is_known) {
         for (int cell = 0; cell <= drum->n_cells; ++cell)
             past->profile[cell] = at.span_stretch * fmin(at.u, cell * drum->cell);

@@ -40,8 +40,11 @@ double fu_span_margin(const fu_model *model, const fu_coupling *coupling, const 
 /* Returns the stress-free length between an end of a span, 0 or 1, and the next material point that something holds to,
  * m. */
 double fu_grip_margin(const fu_coupling *coupling, const fu_state *state, int end);
-/* Return the wound length of a drum, m; the normal force as above, N. */
+/* Return the wound length of a drum, m, and the normal force as above, N, or 1 where the rope has left it; whether the
+ * rope leaves the empty drum. Lets it leave. */
 double fu_drum_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+int fu_drum_leaves(const fu_coupling *coupling);
+void fu_drum_leave(const fu_model *model, const fu_coupling *coupling, fu_state *state);
 double fu_drum_pressure(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 
 /* Returns whether anything holds to material points of a span. */

@@ -50,12 +50,12 @@ static double kinetic_energy(const fu_model *model, const fu_coupling *coupling,
     return total;
 }
 
-static double potential_energy(const fu_model *model, const fu_coupling *coupling, const double *q)
+static double potential_energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     const fu_span_coupling *span = fu_span_of(coupling);
     double total = 0.0, V, f[FU_MAX_COORDINATES], f_l, K_l[FU_MAX_COORDINATES], K_ll;
     for (int k = 0; k < span->on.n_elements; ++k) {
-        const fu_span_element it = fu_span_element_at(model, &span->on, k, q, 0, 0);
+        const fu_span_element it = fu_span_element_at(model, &span->on, k, state->q, 0, 0);
         span->on.kernel->weight(span->rho, it.l, it.e, span->g, &V, f, &f_l, K_l, &K_ll);
         total += V;
     }

@@ -61,14 +61,14 @@ static double kinetic_energy(const fu_model *model, const fu_coupling *coupling,
     return total;
 }
 
-static double potential_energy(const fu_model *model, const fu_coupling *coupling, const double *q)
+static double potential_energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     const fu_sheave *sheave = sheave_of(coupling);
     const fu_wheel *wheel = &sheave->wheel;
-    const fu_state state = {.q = (double *)q, .v = (double *)model->zero};
+    const fu_state at_rest = {.q = state->q, .v = (double *)model->zero};
     fu_sheave_state at;
     double total = 0.0, T, V;
-    fu_sheave_at(model, sheave, &state, 0, &at);
+    fu_sheave_at(model, sheave, &at_rest, 0, &at);
     for (int j = 0; j < sheave->n_zones; ++j) {
         const fu_zone of = fu_zone_at(&at, j);
         wheel->kernel->weight(wheel->rho, at.wheel.g, wheel->radius, of.phi, at.wheel.c, of.l, &V);
