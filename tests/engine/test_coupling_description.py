@@ -80,7 +80,8 @@ def test_the_model_has_one_list_of_couplings():
     model = build(fu.load_scene("cable_car"))
     kinds = [kind.name for kind in COUPLINGS]
     numbers = [kinds.index(coupling.type) for coupling in model.couplings]
-    assert numbers == sorted(numbers) and {*OUTPUTS} == {*kinds} - {"dead load", "load", "span", "wrap_point"}
+    without = {"dead load", "load", "line load", "span", "wrap_point"}
+    assert numbers == sorted(numbers) and {*OUTPUTS} == {*kinds} - without
     assert in_order(reversed(model.couplings[:1] + model.couplings[-1:])) == [model.couplings[0], model.couplings[-1]]
     assert [*model.of(SlideModel)] == model.slides and model.slides
     assert [each.name for each in fields(model) if isinstance(getattr(model, each.name), list)] == [

@@ -206,7 +206,7 @@ def test_integrators_agree(wheel):
 
 
 def test_the_energy_scheme_is_refused():
-    with refused('rope "hoist": integrator "energy" has no discrete gradient of it; take another integrator'):
+    with refused('rope "hoist": integrator "energy" does not support ropes without mass; take another integrator'):
         carried().run(0.1, integrator="energy", progress=False)
 
 

@@ -47,11 +47,17 @@ def test_no_part_can_be_connected_to_a_sheave(part):
     assert made.to_toml() == scene().to_toml()
 
 
-@pytest.mark.parametrize("part", [part for part in CONNECTED if part not in ("joint", "spring")])
-def test_only_joints_and_springs_can_be_connected_to_a_rope(part):
+OWN_MESSAGES = {"joint": "", "spring": "", "line load": "", "drag": "", "contact": "",  # can be connected
+                "force": 'acts on rope "hoist" and needs the stress-free arc-length s there',
+                "moment": 'acts on rope "hoist", whose sections have no axes on which a moment could act',
+                "contacts": 'there is no surface "hoist"', "on": 'there is no surface "hoist"'}
+
+
+@pytest.mark.parametrize("part", [part for part in CONNECTED if OWN_MESSAGES.get(part, part)])
+def test_few_parts_can_be_connected_to_a_rope(part):
     made = scene()
-    with pytest.raises(fu.SceneError, match='"hoist" is a rope, to which only joints and springs can be connected; '
-                       "take a body that"):
+    others = '"hoist" is a rope, to which only joints, springs, loads, drags and contacts can be connected; take'
+    with pytest.raises(fu.SceneError, match=OWN_MESSAGES.get(part, others)):
         CONNECTED[part](made, "hoist")
     assert made.to_toml() == scene().to_toml()
 

@@ -28,6 +28,7 @@ def span(family: ElementFamily) -> list[Relation]:
     """Return the relations of a span's kernels."""
     return [*_of_points(family.element), *_of_inertia(family.element), *_of_weight(family.element),
             *_of_elasticity(family), *_of_damping(family), *_of_line_force(family.element),
+            *_of_stored_force(family.element),
             *_of_momentum(family.element), *_of_elastic_step(family.element)]
 
 
@@ -235,11 +236,27 @@ def _of_line_force(spec: Element) -> list[Relation]:
                    for name, output in (("F_r", "r"), ("F_t", "r_S"), ("F_v", "velocity"))]
         return both("line_force")(k, s | {"F": s["F"] + sum(changes)})
 
-    def from_state(path):
-        return lambda k, s, t, j: path(k, s | {"first": s}, t, j)
-
     def moved_end(k, s, t, j):
         return k("share", s, ends=s["ends"] + t * unit(s["ends"], j))["share"]
+
+    return [
+        Relation("line_force", "f", "F . dr/de at a point that stays in the material", 1, work, n),
+        Relation("line_force", "f_s", "F . dr/ds at a point that stays in the material", 1,
+                 lambda k, s, t, j: work(k, s, t, n + j), ENDS),
+        Relation("line_force_tangent", "D", "df by rates", 1, _from_state(by_rate(acting, n)), n + ENDS),
+        Relation("line_force_tangent", "K", "df by e and l", 1, _from_state(by_configuration(acting, n)), n + 1),
+        Relation("share", "share", "(S - s1)/(s2 - s1)", 0,
+                 root(lambda s: np.array([(s["at"].item() - s["ends"][0]) / (s["ends"][1] - s["ends"][0])]))),
+        Relation("share", "share_s", "d share/ds", 1, moved_end, ENDS)]
+
+
+def _from_state(path: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a path whose state knows the one where it begins, as "first"."""
+    return lambda k, s, t, j: path(k, s | {"first": s}, t, j)
+
+
+def _of_stored_force(spec: Element) -> list[Relation]:
+    n = spec.n_coordinates
 
     def stored(k, s):
         """Return the energy at a state, from that of the first one by its derivatives."""
@@ -254,8 +271,8 @@ def _of_line_force(spec: Element) -> list[Relation]:
     def negative(path):
         return lambda k, s, t, j: -path(k, s, t, j)
 
-    by_stored = negative(from_state(by_configuration(stored, n)))
-    of_stored = {output: from_state(by_configuration(lambda k, s, output=output: released(k, s)[output], n))
+    by_stored = negative(_from_state(by_configuration(stored, n)))
+    of_stored = {output: _from_state(by_configuration(lambda k, s, output=output: released(k, s)[output], n))
                  for output in ("f", "f_l")}
 
     def by_last(path):
@@ -267,15 +284,7 @@ def _of_line_force(spec: Element) -> list[Relation]:
         Relation("stored_force_tangent", "K", "df/de", 1, of_stored["f"], n),
         Relation("stored_force_tangent", "K_l", "df/dl", 1, by_last(of_stored["f"])),
         Relation("stored_force_tangent", "K_l", "df_l/de", 1, of_stored["f_l"], n),
-        Relation("stored_force_tangent", "K_ll", "df_l/dl", 1, by_last(of_stored["f_l"])),
-        Relation("line_force", "f", "F . dr/de at a point that stays in the material", 1, work, n),
-        Relation("line_force", "f_s", "F . dr/ds at a point that stays in the material", 1,
-                 lambda k, s, t, j: work(k, s, t, n + j), ENDS),
-        Relation("line_force_tangent", "D", "df by rates", 1, from_state(by_rate(acting, n)), n + ENDS),
-        Relation("line_force_tangent", "K", "df by e and l", 1, from_state(by_configuration(acting, n)), n + 1),
-        Relation("share", "share", "(S - s1)/(s2 - s1)", 0,
-                 root(lambda s: np.array([(s["at"].item() - s["ends"][0]) / (s["ends"][1] - s["ends"][0])]))),
-        Relation("share", "share_s", "d share/ds", 1, moved_end, ENDS)]
+        Relation("stored_force_tangent", "K_ll", "df_l/dl", 1, by_last(of_stored["f_l"]))]
 
 
 # --- over a step that conserves energy --------------------------------------------------------------------------

@@ -1,7 +1,7 @@
 /* Spans of ropes: sums over elements whose ends flow along the rope. */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
-#include "couplings/rope/span.h"
+#include "couplings/rope/rope.h"
 
 #include <string.h>
 

@@ -1,8 +1,8 @@
 /* Spans over a step that conserves energy (derive/couplings/span_step.py). History variables are the momenta of the
  * material at points, which are those of the velocities where they are not known. */
 #include "bodies/model.h"
-#include "couplings/rope/momenta.h"
-#include "couplings/rope/span.h"
+#include "couplings/common/momenta.h"
+#include "couplings/rope/rope.h"
 
 #include <string.h>
 

@@ -11,7 +11,7 @@
  * Both energies of the wrap have the mean gradient along the angles, the centre and the lengths, by quadrature. */
 #include "bodies/model.h"
 #include "couplings/common/couplings.h"
-#include "couplings/rope/momenta.h"
+#include "couplings/common/momenta.h"
 #include "couplings/sheave/sheave.h"
 
 #include <math.h>

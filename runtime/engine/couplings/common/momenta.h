@@ -1,6 +1,6 @@
 /* Momenta of the material of a rope, over the mass of a length: history variables of steps that conserve energy. */
-#ifndef FUNICULAR_COUPLINGS_ROPE_MOMENTA_H
-#define FUNICULAR_COUPLINGS_ROPE_MOMENTA_H
+#ifndef FUNICULAR_COUPLINGS_COMMON_MOMENTA_H
+#define FUNICULAR_COUPLINGS_COMMON_MOMENTA_H
 
 #include "couplings/common/coupling.h"
 
