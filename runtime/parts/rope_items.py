@@ -184,8 +184,8 @@ class Sheave(Wheel):
     friction: between rope and groove, a coefficient or a `Friction`, by default "regularised"; without it none
     zones: number of parts of the wrap between which friction acts, and over each of which the tension is constant
     turns: whole turns of the rope around it, in addition to the wrap angle between both spans
-    contact: whether the rope lies on it at the start. In the plane the rope may leave it and touch it again; the sheave
-        then turns on
+    contact: whether the rope lies on it at the start. In the plane, without friction that sticks, the rope may leave it
+        and touch it again; the sheave then turns on
     max_fleet_angle: between the plane of the groove and the rope as drawn, in space, rad; a larger one is reported
     """
 

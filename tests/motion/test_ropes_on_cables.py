@@ -181,3 +181,35 @@ def test_a_rope_starts_with_its_cable(element):
     run = scene.run(1e-4, output_step=1e-4, step=1e-5, integrator="genalpha", progress=False)
     start, end = run["rope.position"]
     assert end - start == pytest.approx(1e-4 * np.add([0.3, 1, 0], np.cross(turning, start)), abs=2e-6)
+
+
+def test_loads_and_fluids_on_a_rope_on_a_cable():
+    """The wind moves the load to its side, and the sheave bears the load of a length. A file keeps all parts."""
+    scene = hung()
+    scene.fluid("air", density=1.2, velocity=(4, 0, 0))
+    scene.drag("rope", normal=1.2, diameter=0.05)
+    scene.distributed_force("rope", value=(0, -0.05, 0))
+    scene.force("rope", s=0.5, value=(0.1, 0, 0))
+    scene.surface("floor", fu.Plane(point=(0, -9, 0), normal=(0, 1, 0)))
+    scene.contact("rope", "floor", stiffness=1e4)
+    rest, still = scene.equilibrium(), hung().equilibrium()
+    assert rest["load.position"][0] > still["load.position"][0] + 0.02
+    assert rest["top.force"][1] < still["top.force"][1] - 0.1
+    assert fu.Scene.from_toml(scene.to_toml()).to_toml() == scene.to_toml()
+
+
+STICKING = {"friction": fu.Friction(coefficient=0.3, model="stick"), "inertia": 0.1}
+
+
+def test_friction_that_sticks():
+    settings = {"duration": 0.1, "output_step": 0.02, "tol": 1e-6, "integrator": "radau", "progress": False}
+    run = on_cable(**STICKING).run(**settings)
+    other = weights(scene := bearer(), hinged(scene), **STICKING).run(**settings)
+    assert apart(run, other) < 2e-7
+    assert run["top.slip_angle"][0] == 0.0
+
+
+@pytest.mark.parametrize("sheave", [SLIDING, STICKING])
+def test_the_energy_scheme_is_refused(sheave):
+    with pytest.raises(fu.SceneError, match='does not support sheave "top" on cable "bearer"'):
+        on_cable(**sheave).run(0.01, integrator="energy", progress=False)

@@ -10,9 +10,11 @@ from funicular.results import streaming
 from interrupted_runs import Killed, failing
 from ropes.runs import rope_of
 from test_ropes import BRIEF, INTEGRATORS, SHEAVES, THIN, near
+from test_sticking_ropes import SHEAVES as STICKING
 from turned_scenes import ASKEW, differences, turned_scene
 
 SPIN = (1.5, 1.0, 2.0)
+ALL = SHEAVES | {f"{name}, sticking": given for name, given in STICKING.items()}
 
 
 def free(gravity=(0, 0, 0), density=7e5, **sheave) -> fu.Scene:
@@ -63,10 +65,10 @@ def momenta(scene: fu.Scene, run, k: int) -> np.ndarray:
     return np.array([over(each) @ p for each in rigid])
 
 
-@pytest.mark.parametrize("sheave", SHEAVES)
+@pytest.mark.parametrize("sheave", ALL)
 def test_momenta_and_energy_of_free_bodies(sheave):
     """The sheave's body turns by 20 degrees, with fleet angles to .2 rad; on the explicit run both are to 1e-10."""
-    scene, runs = free(**SHEAVES[sheave]), []
+    scene, runs = free(**ALL[sheave]), []
     for integrator, bound in (("radau", 1e-8), ("explicit", 1e-9)):
         run = scene.run(0.06, output_step=0.03, tol=1e-7, integrator=integrator, progress=False)
         found = np.array([momenta(scene, run, k) for k in range(3)])
