@@ -213,3 +213,11 @@ def test_friction_that_sticks():
 def test_the_energy_scheme_is_refused(sheave):
     with pytest.raises(fu.SceneError, match='does not support sheave "top" on cable "bearer"'):
         on_cable(**sheave).run(0.01, integrator="energy", progress=False)
+
+
+def test_pictures():
+    """A wheel follows its point of the cable."""
+    clip = on_cable(**TURNING).run(0.05, output_step=0.01, step=1e-4, progress=False).animation("a run").clips[0]
+    wheel = next(body for body in clip.bodies if body.name == "top")
+    bearer = next(cable for cable in clip.cables if cable.name == "bearer")
+    assert np.abs(bearer.position - wheel.position[:, None]).sum(axis=-1).min(axis=1).max() < 1e-3

@@ -187,7 +187,7 @@ def _turned(frames: Frames, wheel: Sheave | Drum, groove: np.ndarray) -> np.ndar
 def wheel_shape(frames: Frames, refs: Frames, rope: Rope, sheave: Sheave | Drum) -> BodyShape:
     """Return a sheave or a drum as a wheel below the rope; refs: see `references`.
 
-    One without rotation keeps the axes of its carrier.
+    One without rotation keeps the axes of its carrier; of a cable the turn of the section is left out.
     """
     height, width = section_sides(section_data(rope.section))
     shape = {"kind": "wheel", "radius": max(sheave.radius - height / 2, sheave.radius / 2),
@@ -203,7 +203,7 @@ def wheel_shape(frames: Frames, refs: Frames, rope: Rope, sheave: Sheave | Drum)
         if sheave.end.on is not None:
             drawn = frames.scene.bodies[sheave.end.on].axes.T @ drawn
         orientation = product(quaternion(drawn), orientation)
-    if sheave.end.on is not None:
+    if sheave.end.on in frames.scene.bodies:
         orientation = product(frames.value(f"{sheave.end.on}.orientation"), orientation)
     found = {label: (unit, frames.value(f"{sheave.name}.{key}")) for key, (label, unit) in WHEEL_RESULTS.items()
              if frames.has(f"{sheave.name}.{key}") and frames.section_forces is not no_forces}
