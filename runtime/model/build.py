@@ -14,8 +14,8 @@ from .coupling import number
 from .cutting import attached
 from .kinds import COUPLINGS
 from .model import CableModel, Model, MotionModel
+from .rope_model import rope_models, turn_motions
 from .rope_rates import follow
-from .ropes import rope_models, turn_motions
 from .unknowns import Node, supports
 
 

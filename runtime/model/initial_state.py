@@ -17,8 +17,8 @@ from ..parts.scene_data import SceneData
 from ..parts.validation import LENGTH_TOLERANCE, show, shown
 from .bodies import configuration_of, velocity_of
 from .model import BodyModel, CableModel, Model
+from .rope_model import RopeModel
 from .rope_rates import follow
-from .ropes import RopeModel
 from .unknowns import as_supports_leave
 
 CABLE = ("nodal_vectors", "nodal_velocity")

@@ -26,7 +26,9 @@ from .elimination import Elimination
 from .joints import JointModel
 from .loads import AnyLoadModel, DeadLoadModel, LineLoadModel, LoadModel
 from .point_forces import PointForceModel
-from .ropes import DrumModel, RopeModel, SheaveModel, SpanModel
+from .rope_model import RopeModel
+from .rope_wheels import DrumModel, SheaveModel
+from .ropes import SpanModel
 from .signals import SignalModel
 from .unknowns import Node
 

@@ -28,8 +28,10 @@ from ..parts.rope_route import DrawnRoute
 from ..parts.rope_route_space import groove_of
 from .attachments import AttachmentModel
 from .model import Model
+from .rope_model import DrumCoordinates, RopeModel, rope_model
 from .rope_states import moved
-from .ropes import AnchorModel, DrumCoordinates, DrumModel, RopeModel, SheaveModel, rope_model
+from .rope_wheels import DrumModel, SheaveModel
+from .ropes import AnchorModel
 from .span_coordinates import SpanCoordinates
 from .states import attachment_axes, attachment_points, body_state, spatial
 

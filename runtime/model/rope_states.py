@@ -9,7 +9,9 @@ from ..parts.rope import Rope
 from ..parts.rope_drawing import drawn_anew
 from ..parts.rope_route import DrawnArc, DrawnRoute
 from .model import Model
-from .ropes import AnchorModel, DrumModel, RopeModel, SheaveModel
+from .rope_model import RopeModel
+from .rope_wheels import DrumModel, SheaveModel
+from .ropes import AnchorModel
 from .span_coordinates import PER_NODE, SpanCoordinates, cubic_shapes
 from .states import attachment_axes, attachment_points, spatial
 from .taut_ropes import TautPointModel, points_of_rope

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from .model import Model
+from .rope_model import RopeModel
 from .rope_states import points_of_spans
-from .ropes import RopeModel
 from .states import attachment_points, spatial
 from .taut_ropes import TautPointModel, TautRopeModel, points_of_rope
 

@@ -15,7 +15,7 @@ import numpy as np
 from ...errors import FunicularError
 from ...kernels.libraries import kernels_of
 from ...model.build import build
-from ...model.ropes import LAW, RopeModel
+from ...model.rope_model import LAW, RopeModel
 from ...model.span_coordinates import PER_NODE, SpanCoordinates
 from ...model.states import spatial
 from ...parts.cable import Cable

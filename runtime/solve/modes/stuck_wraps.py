@@ -7,7 +7,7 @@ from scipy.sparse import csc_array, lil_array
 
 from ...model.model import Model
 from ...model.rope_states import in_groove, moved
-from ...model.ropes import SheaveModel
+from ...model.rope_wheels import SheaveModel
 from ...model.states import attachment_points
 
 MOTION_STEP = 1e-6

@@ -14,7 +14,7 @@ from ...errors import SceneError, near
 from ...model.middle_strain import middle_strain
 from ...model.model import Model
 from ...model.rope_states import rope_state
-from ...model.ropes import DrumModel
+from ...model.rope_wheels import DrumModel
 from ...model.states import body_rates, body_state, spatial
 from ...model.taut_ropes import TautPointModel
 from ...parts.event import Event

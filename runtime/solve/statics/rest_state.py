@@ -12,8 +12,8 @@ from ...errors import EquilibriumError, SceneError, UnknownResultError, near
 from ...model.kinds import COUPLINGS
 from ...model.model import Model
 from ...model.part_states import States, numbers_at_rest, part_states
+from ...model.rope_model import RopeModel
 from ...model.rope_rates import follow
-from ...model.ropes import RopeModel
 from ...model.states import attachment_points
 from ...parts.joint import Joint
 from ...parts.part import Part

@@ -15,8 +15,8 @@ from ...engine import Engine, outputs_by_name
 from ...errors import SceneError
 from ...model.build import build
 from ...model.model import Model
+from ...model.rope_model import RopeModel
 from ...model.rope_states import in_groove
-from ...model.ropes import RopeModel
 from ...model.states import attachment_points
 from ...parts.attachment import Attachment
 from ...parts.rope import Rope
