@@ -166,17 +166,34 @@ static void elastic_tensions(const fu_sheave *sheave, const fu_sheave_state *at,
     }
 }
 
-/* Computes the tensions at both tangent points from those of the zones beside them, and friction there. */
+#define MOST_INERTIA 0.02 /* of half a zone over the tension; above it is that of a vibration */
+
+/* Returns the mean acceleration of the material along the wrap, in the sense of travel: that of a point of a light rope
+ * follows friction there at once. */
+static double mean_acceleration(const fu_sheave *sheave, const fu_sheave_state *at)
+{
+    const fu_wheel *wheel = &sheave->wheel;
+    const int n = sheave->n_zones;
+    const double arm = wheel->sense * wheel->radius, stretch = arm * (at->phi[1] - at->phi[0]) / (at->s[n] - at->s[0]);
+    double sum = 0.0;
+    for (int j = 0; j <= n; ++j) sum += arm * at->angle_acc[j] - stretch * at->s_acc[j];
+    return sum / (n + 1);
+}
+
+/* Computes the tensions at both tangent points from those of the zones beside them, the inertia of half of these, and
+ * friction there. */
 static void tensions_beside_zones(const fu_sheave *sheave, const fu_sheave_state *at, double tension[ENDS])
 {
     const fu_wheel *wheel = &sheave->wheel;
+    const double acceleration = mean_acceleration(sheave, at);
     for (int k = 0; k < ENDS; ++k) {
         const fu_zone of = fu_zone_at(at, k ? sheave->n_zones - 1 : 0);
         const double stretch = wheel->sense * wheel->radius * (of.phi[1] - of.phi[0]) / of.l;
         double F[3], numbers[3], power;
         fu_friction_at(sheave, at, k ? sheave->n_zones : 0, F, numbers, &power);
-        tension[k] =
-            tension_in(sheave, at, &of, of.phi[k], wheel->A[0] * (stretch - 1.0)) + (k ? 1.0 : -1.0) * numbers[2];
+        const double mean = wheel->A[0] * (stretch - 1.0), most = MOST_INERTIA * fabs(mean);
+        const double inertia = fmax(-most, fmin(most, 0.5 * wheel->rho * of.l * acceleration));
+        tension[k] = tension_in(sheave, at, &of, of.phi[k], mean) + (k ? 1.0 : -1.0) * (numbers[2] + inertia);
     }
 }
 
