@@ -5,8 +5,8 @@ from types import ModuleType
 
 import pytest
 from fake_recording import fake_recording
-from funicular.results import recording, streaming
-from interrupted_runs import SETTINGS, WRITES, Killed, content, failing, short
+from funicular.results import recording
+from interrupted_runs import SETTINGS, WRITES, content, kill, short
 from validation import pytest_addoption, validated
 
 __all__ = ["pytest_addoption", "validated"]
@@ -47,12 +47,8 @@ def uninterrupted(tmp_path_factory):
 
 
 @pytest.fixture
-def stopped(tmp_path, monkeypatch):
+def stopped(tmp_path):
     """Return the file of a run that was killed half-way."""
     path = tmp_path / "x.nc"
-    with monkeypatch.context() as patch:
-        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
-        failing(patch, WRITES // 2, Killed())
-        with pytest.raises(Killed):
-            short().run(**SETTINGS, save=path)
+    kill(short(), path, WRITES // 2, **SETTINGS)
     return path

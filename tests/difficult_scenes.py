@@ -256,7 +256,7 @@ def gripped() -> Scene:
     """Return a rope over sheaves with a body that grips it, and one that a spring with a damper holds to it."""
     scene = reeved()
     rope = scene.ropes["hoist"]
-    first, *_, last = rope.drawn(scene.holders).arc_lengths(0.0)
+    first, *_, last = scene.route_of(rope).arc_lengths(0.0)
     for name, (start, end), below in (("C", first, 0.0), ("D", last, 0.4)):
         s = start + 0.6 * (end - start)
         x, y, _ = rope.point(scene.holders, s)

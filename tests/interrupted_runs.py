@@ -6,7 +6,8 @@ import re
 from pathlib import Path
 
 import pytest
-from funicular import Circle, Material, ResultFileError, Scene, load_run
+from funicular import Circle, Material, ResultFileError, Run, Scene, load_run
+from funicular.results import streaming
 from shared_scenes import add_cable, add_rider
 
 SETTINGS = {"duration": 0.2, "output_step": 0.01, "tol": 1e-3}
@@ -75,3 +76,18 @@ def signed(checkpoint: bytes) -> bytes:
     """Return a changed checkpoint with its correct digest."""
     content = checkpoint.partition(b"\n")[2]
     return hashlib.sha256(content).hexdigest().encode() + b"\n" + content
+
+
+def kill(scene: Scene, path: Path, writes: int, **settings: object) -> None:
+    """Run a scene with a checkpoint at every row, and kill it after a number of writes to its file."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
+        failing(patch, writes, Killed())
+        with pytest.raises(Killed):
+            scene.run(**settings, save=path)
+
+
+def killed_and_resumed(scene: Scene, path: Path, writes: int, **settings: object) -> Run:
+    """Return a run that is killed after a number of writes to a file, and resumed from its last checkpoint there."""
+    kill(scene, path, writes, **settings)
+    return scene.run(**settings, save=path, resume=True)

@@ -133,7 +133,7 @@ def _start_of(scene: SceneData, contact: Contact, last: _Start | None) -> _Start
         rope = scene.ropes[contact.a]
         drawn = np.zeros((rope.n_spans * (SAMPLES + 1), 3))
         drawn[:, : rope.dim] = np.concatenate([np.linspace(span.start, span.end, SAMPLES + 1)
-                                               for span in rope.drawn(scene.holders).spans])
+                                               for span in scene.route_of(rope).spans])
     else:
         drawn = np.array([scene.bodies[contact.a].point(point) for point in contact.points or ()])
     return _Start(key, drawn, _weight(scene, contact))
@@ -178,7 +178,7 @@ def _check_resolution(scene: SceneData, contact: Contact, rope: Rope) -> None:
     """Raise SceneError where elements of a rope as drawn are too long for the shape of a surface."""
     if (limit := resolved(scene, contact)) is None:
         return
-    spans = zip(rope.drawn(scene.holders).spans, rope.elements_of_spans, strict=True)
+    spans = zip(scene.route_of(rope).spans, rope.elements_of_spans, strict=True)
     longest, most = max(span.length / n for span, n in spans), limit.chord / MAX_POINT_DISTANCE
     if longest > most:
         raise SceneError(contact.where, f'"{rope.name}" has elements of {show(float(longest), "m")}, between whose '

@@ -33,7 +33,7 @@ def placed_drag(scene: SceneData, drag: Drag) -> Drag:
         return drag
     if (rope := scene.ropes.get(drag.on)) is not None:
         _check_rope(scene, drag, rope)
-        points = [point for span in rope.drawn(scene.holders).spans for point in (span.start, span.end)]
+        points = [point for span in scene.route_of(rope).spans for point in (span.start, span.end)]
         _check_table(scene, drag, lambda: np.array([[*point, 0.0][:3] for point in points]))
         return drag
     placed = placed_attachment(scene, Attachment(on=drag.on, at=drag.at), drag.where)

@@ -94,7 +94,7 @@ def scene_size(scene: SceneData, joint: Joint) -> float:
     points = [point_of(scene, joint.a), point_of(scene, joint.b)]
     points += [body.frame[0] for body in scene.bodies.values()]
     lengths = [cable.length for cable in scene.cables.values()]
-    lengths += [scene.ropes[end.on].drawn(scene.holders).length for end in (joint.a, joint.b) if end.on in scene.ropes]
+    lengths += [scene.route_of(scene.ropes[end.on]).length for end in (joint.a, joint.b) if end.on in scene.ropes]
     return max(_extent(points), *lengths, 0.0)
 
 

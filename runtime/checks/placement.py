@@ -200,7 +200,7 @@ def placed_on_rope(scene: SceneData, end: Attachment, where: str, prefix: str) -
     rope = scene.ropes[end.on]
     check_has_mass(rope, where, prefix)
     try:
-        rope.span_at(rope.drawn(scene.holders), end.s)
+        rope.span_at(scene.route_of(rope), end.s)
     except ValueError as error:
         cause, *remedy = error.args
         raise SceneError(where, f'{prefix}s of rope "{rope.name}" {cause}', *remedy) from None

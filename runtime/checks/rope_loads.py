@@ -30,7 +30,7 @@ def placed(scene: SceneData, load: Force | DistributedForce | Moment) -> Part:
         placed_on_rope(scene, Attachment(on=load.on, s=load.s, at=load.at), load.where, "")
         return load
     check_has_mass(rope, load.where)
-    whole = rope.drawn(scene.holders).free_length + rope.length_in_store
+    whole = scene.route_of(rope).free_length + rope.length_in_store
     for name in ("start", "stop"):
         s = getattr(load, name)
         if s is not None and not 0 <= s <= whole:

@@ -103,7 +103,7 @@ def _held(scene: SceneData, rope: Rope, k: int, end: Attachment) -> Attachment:
 def _notes(scene: SceneData, rope: Rope) -> list[str]:
     """Return notes on a rope as drawn. Raises SceneError for an impossible route."""
     try:
-        route = rope.drawn(scene.holders)
+        route = scene.route_of(rope)
     except ValueError as error:
         raise SceneError(rope.where, *error.args) from None
     EA, EI = rope.stiffness

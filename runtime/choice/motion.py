@@ -77,7 +77,7 @@ def along_rope(scene: SceneData, rope: Rope, values: np.ndarray) -> np.ndarray:
     """Return (time, points, components): results of a rope (time, rope point, ...) at five equal distances along each
     span, which are points of results on any mesh.
     """
-    spans = points_of_spans(rope, rope.drawn(scene.holders))
+    spans = points_of_spans(rope, scene.route_of(rope))
     at = np.concatenate([np.linspace(span.start, span.stop - 1, POINTS_OF_ELEMENT + 1) for span, _ in spans])
     found: np.ndarray = values[:, np.rint(at).astype(int)].reshape(len(values), len(at), -1)
     return found

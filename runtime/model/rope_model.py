@@ -139,7 +139,7 @@ def rope_models(scene: SceneData, at: int, supplied: bool = False) -> list[RopeM
     """Return the ropes in the scene's order, with coordinates from `at` on; supplied: their `supply` is free."""
     made = []
     for rope in scene.ropes.values():
-        made.append(rope_model(rope, rope.drawn(scene.holders), at))
+        made.append(rope_model(rope, scene.route_of(rope), at))
         if supplied and made[-1].supply >= 0:
             made[-1].fixed[made[-1].supply - at] = False
         at = made[-1].coordinates.stop

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from copy import copy
 from functools import cache
 from itertools import count, islice
-from typing import Any, Never, Self
+from typing import TYPE_CHECKING, Any, Never, Self
 
 import numpy as np
 
@@ -32,6 +32,9 @@ from .slide import Slide
 from .support import Clamp, Motion, Pin, Support, Tie
 from .surface import Surface
 from .validation import vector
+
+if TYPE_CHECKING:
+    from .rope_route import DrawnRoute
 
 RESERVED = ("energy", "time")
 """Names of results that belong to no part."""
@@ -206,6 +209,10 @@ class SceneData:
             yield from (value for _, value in part if isinstance(value, Attachment))
         for rope in self.ropes.values():
             yield from (item.end for item in rope.route)
+
+    def route_of(self, rope: Rope) -> DrawnRoute:
+        """Return the route of a rope as drawn among the bodies and cables of the scene, see `Rope.drawn`."""
+        return rope.drawn(self.holders)
 
     @property
     def holders(self) -> Mapping[str, RigidBody | ModalBody | Cable]:

@@ -7,8 +7,7 @@ from derivatives import of_a_step
 from funicular.engine import Engine
 from funicular.integrators import GeneralisedAlpha
 from funicular.model.build import build
-from funicular.results import streaming
-from interrupted_runs import Killed, failing
+from interrupted_runs import killed_and_resumed
 from ropes.scenes import rope_of
 from test_grips import SETTINGS
 
@@ -92,12 +91,7 @@ def test_resumed_bit_for_bit_and_from_a_file(tmp_path):
     scene, settings = laid(), SETTINGS | {"duration": 0.6}
     (tmp_path / "scene.toml").write_text(scene.to_toml(), encoding="utf-8")
     whole = fu.load_scene(tmp_path / "scene.toml").run(**settings)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
-        failing(patch, 8, Killed())
-        with pytest.raises(Killed):
-            scene.run(**settings, save=tmp_path / "run.nc")
-    resumed = scene.run(**settings, save=tmp_path / "run.nc", resume=True)
+    resumed = killed_and_resumed(scene, tmp_path / "run.nc", 8, **settings)
     assert all(np.array_equal(whole[name], resumed[name], equal_nan=True) for name in whole)
     assert np.isnan(whole["bed.first"][0]) and np.nanmax(whole["bed.last"]) < 6
 

@@ -4,8 +4,7 @@ import funicular as fu
 import numpy as np
 import pytest
 from derivatives import error_by_drags
-from funicular.results import streaming
-from interrupted_runs import Killed, failing
+from interrupted_runs import killed_and_resumed
 from ropes.scenes import rope_of
 from test_grips import SETTINGS, spanned
 from test_rope_loads import on_a_cable_and_a_rope
@@ -123,12 +122,7 @@ def test_still_water_carries_a_rope_of_its_density():
 def test_resumed_bit_for_bit(tmp_path):
     scene, settings = blown(surface=-2.0), SETTINGS | {"duration": 0.8}
     whole = scene.run(**settings)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
-        failing(patch, 10, Killed())
-        with pytest.raises(Killed):
-            scene.run(**settings, save=tmp_path / "run.nc")
-    resumed = scene.run(**settings, save=tmp_path / "run.nc", resume=True)
+    resumed = killed_and_resumed(scene, tmp_path / "run.nc", 10, **settings)
     assert all(np.array_equal(whole[name], resumed[name]) for name in whole)
 
 

@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 from funicular.model.build import build
 from funicular.model.rope_states import rope_state
-from funicular.results import streaming
-from interrupted_runs import Killed, failing
+from interrupted_runs import killed_and_resumed
 from test_ropes import INTEGRATORS, THIN, body, momenta, near
 
 RAMP = fu.TableSignal(time=[0, 0.1, 1], value=[0, 3, 3], interpolation="linear")
@@ -114,12 +113,7 @@ def test_resumed_bit_for_bit(tmp_path, integrator):
     scene = hoist(velocity=fu.TableSignal(time=[0, 0.05, 0.1, 1], value=[0, 3, -3, -3], interpolation="linear"))
     settings = {"duration": 0.2, "output_step": 0.01, "tol": 1e-5, "integrator": integrator}
     whole = scene.run(**settings, progress=False)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
-        failing(patch, 15, Killed())
-        with pytest.raises(Killed):
-            scene.run(**settings, save=tmp_path / "run.nc", progress=False)
-    resumed = scene.run(**settings, save=tmp_path / "run.nc", resume=True, progress=False)
+    resumed = killed_and_resumed(scene, tmp_path / "run.nc", 15, **settings, progress=False)
     assert all(np.array_equal(whole[name], resumed[name]) for name in whole)
 
 

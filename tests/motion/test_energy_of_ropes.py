@@ -9,8 +9,7 @@ from expectations import unaccounted
 from funicular.engine import Engine
 from funicular.integrators import EnergyMomentum
 from funicular.model.build import build
-from funicular.results import streaming
-from interrupted_runs import Killed, failing
+from interrupted_runs import killed_and_resumed
 from ropes.scenes import rope_of
 
 FRICTION = fu.Friction(coefficient=0.3, velocity=1e-2)
@@ -197,12 +196,7 @@ def test_resumed_bit_for_bit(tmp_path):
     scene = swinging(1, 1e-4, **ROUGH)
     settings = {"duration": 0.2, "output_step": 0.01, "step": 1e-3, "integrator": "energy"}
     whole = scene.run(**settings, progress=False)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
-        failing(patch, 15, Killed())
-        with pytest.raises(Killed):
-            scene.run(**settings, save=tmp_path / "run.nc", progress=False)
-    resumed = scene.run(**settings, save=tmp_path / "run.nc", resume=True, progress=False)
+    resumed = killed_and_resumed(scene, tmp_path / "run.nc", 15, **settings, progress=False)
     assert all(np.array_equal(whole[name], resumed[name]) for name in whole)
 
 

@@ -6,10 +6,9 @@ import pytest
 from funicular.engine import Engine
 from funicular.integrators import GeneralisedAlpha
 from funicular.model.build import build
-from funicular.results import streaming
 from funicular.results.animation.frames import place
 from funicular.results.animation.sources import of_run, of_scene
-from interrupted_runs import Killed, failing
+from interrupted_runs import killed_and_resumed
 from ropes.scenes import rope_of
 from scipy.interpolate import CubicSpline
 from test_ropes import momenta
@@ -134,7 +133,7 @@ def test_momentum_is_kept():
         free[name] = mass, np.array(force)
     rope = scene.rope("rope", route=[fu.Anchor("A"), fu.Sheave("top", at="C", radius=0.2, side="right"),
                                      fu.Anchor("B")], tension=50.0, elements=3, **rope_of(2e4, 0.1, 0, 1e-4))
-    end = rope.drawn(scene.holders).arc_lengths(0.0)[1]
+    end = scene.route_of(rope).arc_lengths(0.0)[1]
     scene.joint("distance", ("rope", 0.5 * sum(end)), ("D", (-0.1, 0, 0)), name="grip")
     run = scene.run(0.3, **SETTINGS | {"tol": 1e-7})
     assert np.ptp(run["D.position"][:, 0] - 0.3 * run.time) > 0.1 and np.abs(run["grip.force"]).max() > 1.0
@@ -177,7 +176,7 @@ def test_at_rest_on_a_sheave_is_refused():
     scene.rigid_body("load", mass=1, inertia=(1, 1, 1), position=(19.9, -1, 0))
     rope = scene.rope("haul", route=[fu.Anchor(at=(0, 0, 0)), fu.Sheave("top", at=(20, -0.3, 0), radius=0.3),
                                      fu.Anchor("weight")], tension=100.0, elements=2, **ROPE)
-    drawn = rope.drawn(scene.holders)
+    drawn = scene.route_of(rope)
     scene = scene.replace("haul", length=drawn.free_length)
     end = drawn.arc_lengths(0.0)[0][1]
     scene.spring(("haul", end - 0.03), "load", stiffness=100.0, name="hanger")
@@ -220,12 +219,7 @@ def test_resumed_bit_for_bit(tmp_path, integrator):
     """A run is paused where the carriage has passed the end of an element."""
     scene, settings = hauled(elements=8), SETTINGS | {"duration": 3.0, "integrator": integrator}
     whole = scene.run(**settings)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
-        failing(patch, 45, Killed())
-        with pytest.raises(Killed):
-            scene.run(**settings, save=tmp_path / "run.nc")
-    resumed = scene.run(**settings, save=tmp_path / "run.nc", resume=True)
+    resumed = killed_and_resumed(scene, tmp_path / "run.nc", 45, **settings)
     assert all(np.array_equal(whole[name], resumed[name]) for name in whole)
 
 
@@ -263,7 +257,7 @@ def test_refused(add, words):
 def test_refused_where_a_change_moves_a_sheave_over_the_grip():
     """The rope as drawn is longer with more tension in it, so that the grip of a spring comes to lie on the sheave."""
     scene = spanned()
-    end = scene.ropes["line"].drawn(scene.holders).arc_lengths(0.0)[0][1]
+    end = scene.route_of(scene.ropes["line"]).arc_lengths(0.0)[0][1]
     scene.spring(("line", end - 1e-3), "load", stiffness=10.0)
     with pytest.raises(fu.SceneError, match='spring "spring_1": a: s of rope "line" lies on sheave "top"'):
         scene.replace("line", tension=2e4)

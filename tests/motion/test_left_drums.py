@@ -3,8 +3,7 @@
 import funicular as fu
 import numpy as np
 import pytest
-from funicular.results import streaming
-from interrupted_runs import Killed, failing
+from interrupted_runs import killed_and_resumed
 from test_ropes import INTEGRATORS, THIN, body, momenta, near
 
 BRIEF = {"duration": 0.6, "output_step": 0.05, "tol": 1e-6}
@@ -78,12 +77,7 @@ def test_goes_on_from_a_state_after_it_left(runs):
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 def test_resumed_bit_for_bit(tmp_path, integrator, runs):
     scene = hanging()
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
-        failing(patch, 10, Killed())
-        with pytest.raises(Killed):
-            scene.run(**BRIEF, integrator=integrator, save=tmp_path / "run.nc", progress=False)
-    resumed = scene.run(**BRIEF, integrator=integrator, save=tmp_path / "run.nc", resume=True, progress=False)
+    resumed = killed_and_resumed(scene, tmp_path / "run.nc", 10, **BRIEF, integrator=integrator, progress=False)
     assert all(np.array_equal(runs[integrator][name], resumed[name]) for name in resumed)
 
 

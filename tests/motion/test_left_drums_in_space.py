@@ -3,8 +3,7 @@
 import funicular as fu
 import numpy as np
 import pytest
-from funicular.results import streaming
-from interrupted_runs import Killed, failing
+from interrupted_runs import killed_and_resumed
 from test_left_drums import BRIEF, FALLING, paying
 from test_ropes import INTEGRATORS, THIN, near
 from test_turning_sheaves import momenta
@@ -97,12 +96,7 @@ def test_resumed_bit_for_bit(tmp_path, integrator, writes):
     scene, settings = deck(**DRIVES["damped"]), SHORT | {"tol": 1e-6, "integrator": integrator, "progress": False}
     whole = scene.run(**settings)
     assert whole.time[2] < whole.events[0]["time"] < whole.time[5]
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
-        failing(patch, writes, Killed())
-        with pytest.raises(Killed):
-            scene.run(**settings, save=tmp_path / "run.nc")
-    resumed = scene.run(**settings, save=tmp_path / "run.nc", resume=True)
+    resumed = killed_and_resumed(scene, tmp_path / "run.nc", writes, **settings)
     assert all(np.array_equal(whole[name], resumed[name]) for name in whole)
 
 

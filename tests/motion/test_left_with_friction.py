@@ -3,8 +3,7 @@
 import funicular as fu
 import numpy as np
 import pytest
-from funicular.results import streaming
-from interrupted_runs import Killed, failing
+from interrupted_runs import killed_and_resumed
 from ropes.scenes import over_a_peg, rope_of, weight
 from test_left_and_touched import LIGHT, TWICE, whats
 from test_ropes import momenta, pulled_off
@@ -78,12 +77,7 @@ def test_results_beside_and_on_the_peg(swing):
 def test_resumed_bit_for_bit(tmp_path, integrator, rows):
     scene = pendulum(zones=2)
     settings = {"duration": 2.0, "output_step": 0.02, "tol": 1e-4, "integrator": integrator, "progress": False}
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
-        failing(patch, rows, Killed())
-        with pytest.raises(Killed):
-            scene.run(**settings, save=tmp_path / "run.nc")
-    resumed = scene.run(**settings, save=tmp_path / "run.nc", resume=True)
+    resumed = killed_and_resumed(scene, tmp_path / "run.nc", rows, **settings)
     whole = scene.run(**settings)
     assert all(np.array_equal(whole[name], resumed[name]) for name in whole)
     assert whats(whole) == whats(resumed) == TWICE[:2]

@@ -9,8 +9,7 @@ import funicular as fu
 import numpy as np
 import pytest
 from expectations import refused
-from funicular.results import streaming
-from interrupted_runs import Killed, failing
+from interrupted_runs import kill
 from ropes import CASES
 from ropes.massless_runs import RUNS
 from ropes.scenes import GRAVITY, over_one, rope_of, swing, weight
@@ -392,11 +391,7 @@ def test_resumed_bit_for_bit(tmp_path, integrator):
         return made
 
     settings = {"duration": 2.0, "output_step": 0.05, "tol": 1e-5, "integrator": integrator}
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
-        failing(patch, 25, Killed())
-        with pytest.raises(Killed):
-            scene().run(**settings, save=tmp_path / "run.nc", progress=False)
+    kill(scene(), tmp_path / "run.nc", 25, **settings, progress=False)
     resumed = scene().run(**settings, save=tmp_path / "run.nc", resume=True, progress=False)
     whole = scene().run(**settings, progress=False)
     assert {each["what"] for each in whole.report["events"]} == {"returned", "left the sheave"}

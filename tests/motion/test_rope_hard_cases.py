@@ -261,7 +261,7 @@ def test_forty_sheaves_in_a_row():
     sheaves = [fu.Sheave(f"s{k}", at=(k, -0.5 * (k % 2), 0), radius=R, side=("right", "left")[k % 2]) for k in range(n)]
     scene.rope("rope", route=[fu.Anchor("A"), *sheaves, fu.Anchor("B")], tension=20.6, elements=1,
                **rope_of(1e6, rho, 0, 1e-3))
-    length = scene.ropes["rope"].drawn(scene.holders).length
+    length = scene.route_of(scene.ropes["rope"]).length
     run = scene.run(0.1, output_step=0.02, tol=1e-4, integrator="genalpha", progress=False)
     fallen = -0.2 * GRAVITY / (4.2 + rho * length) * 0.1**2 / 2
     assert run["B.position"][-1, 1] + 1 == pytest.approx(fallen, rel=1e-3)
@@ -278,7 +278,7 @@ def hung(tension: float, mass: float = 2.0, EA: float = 2e3, damping_time: float
     weight(scene, "B", mass, R, -2.0)
     scene.rope("rope", route=[fu.Anchor(at=(-R, -2.0, 0)), fu.Sheave("top", at=(0, 0, 0), radius=R, side="right"),
                               fu.Anchor("B")], elements=1, tension=tension, **rope_of(EA, 1e-4, 0, damping_time))
-    return scene, sqrt(EA / scene.ropes["rope"].drawn(scene.holders).free_length / mass)
+    return scene, sqrt(EA / scene.route_of(scene.ropes["rope"]).free_length / mass)
 
 
 def test_a_rope_goes_slack_at_its_sheave():

@@ -59,7 +59,7 @@ def test_material_is_neither_made_nor_lost(made, integrator):
     ends = ends_of_spans(scene, run)
     if made is two_sheaves:
         whole = (ends[:, :, 1] - ends[:, :, 0]).sum(axis=1) + (ends[:, 1:, 0] - ends[:, :-1, 1]).sum(axis=1)
-        assert whole == pytest.approx(scene.ropes["rope"].drawn(scene.holders).free_length, abs=1e-14)
+        assert whole == pytest.approx(scene.route_of(scene.ropes["rope"]).free_length, abs=1e-14)
     ran_on, ran_off = ends[0, :-1, 1] - ends[:, :-1, 1], ends[0, 1:, 0] - ends[:, 1:, 0]
     on_sheaves = ends[:, 1:, 0] - ends[:, :-1, 1]
     assert np.abs(ran_on - ran_off - (on_sheaves - on_sheaves[0])).max() < 1e-14

@@ -7,8 +7,7 @@ from derivatives import at_rest, of_a_step
 from funicular.engine import Engine
 from funicular.integrators import GeneralisedAlpha
 from funicular.model.build import build
-from funicular.results import streaming
-from interrupted_runs import Killed, failing
+from interrupted_runs import killed_and_resumed
 from ropes.scenes import rope_of
 from test_grips import ROPE, SETTINGS, hauled, spanned
 
@@ -162,12 +161,7 @@ def test_resumed_bit_for_bit(tmp_path):
     scene.distributed_force("haul", value=(3, -5, 0), stop=15.0)
     settings = SETTINGS | {"duration": 1.0}
     whole = scene.run(**settings)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
-        failing(patch, 15, Killed())
-        with pytest.raises(Killed):
-            scene.run(**settings, save=tmp_path / "run.nc")
-    resumed = scene.run(**settings, save=tmp_path / "run.nc", resume=True)
+    resumed = killed_and_resumed(scene, tmp_path / "run.nc", 15, **settings)
     assert all(np.array_equal(whole[name], resumed[name]) for name in whole)
 
 

@@ -8,8 +8,7 @@ import pytest
 from expectations import refused
 from funicular.engine import Engine
 from funicular.model.build import build
-from funicular.results import streaming
-from interrupted_runs import Killed, failing
+from interrupted_runs import killed_and_resumed
 from rewritten import in_units
 from turned_scenes import turned_scene
 
@@ -302,12 +301,7 @@ def test_files(tmp_path):
 def test_resumed_bit_for_bit(tmp_path, integrator):
     scene = swing(**SHEAVES["turning"])
     settings = {"duration": 0.02, "output_step": 0.002, "tol": 1e-5, "integrator": integrator}
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
-        failing(patch, 15, Killed())
-        with pytest.raises(Killed):
-            scene.run(**settings, save=tmp_path / "run.nc", progress=False)
-    resumed = scene.run(**settings, save=tmp_path / "run.nc", resume=True, progress=False)
+    resumed = killed_and_resumed(scene, tmp_path / "run.nc", 15, **settings, progress=False)
     whole = scene.run(**settings)
     assert all(np.array_equal(whole[name], resumed[name]) for name in whole)
 
@@ -374,7 +368,7 @@ def test_a_rope_leaves_a_sheave_without_friction(integrator):
 def test_a_rope_without_tension_as_drawn():
     """Its weights pull it taut, or it lifts off; never is the normal force negative."""
     scene = swing()
-    length = scene.ropes["hoist"].drawn(scene.holders).length - 1e-4
+    length = scene.route_of(scene.ropes["hoist"]).length - 1e-4
     slack = scene.replace("hoist", length=length, tension=None)
     drawn = slack.ropes["hoist"].drawn(slack.bodies)
     assert drawn.stretch == pytest.approx(1.0, abs=2e-4)

@@ -4,8 +4,7 @@ import funicular as fu
 import numpy as np
 import pytest
 from funicular.base.rotations import rotate, turned_by
-from funicular.results import streaming
-from interrupted_runs import Killed, failing
+from interrupted_runs import killed_and_resumed
 from ropes.runs import fleet_at_rest, rope_of
 from ropes.swings import on_the_line
 from test_ropes import BRIEF, FRICTION, INTEGRATORS, SHEAVES, THIN, near
@@ -261,12 +260,7 @@ def test_it_starts_with_its_bodies():
 def test_resumed_bit_for_bit(tmp_path, integrator):
     scene = swing(**SHEAVES["turning"])
     settings = {"duration": 0.02, "output_step": 0.002, "tol": 1e-5, "integrator": integrator}
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
-        failing(patch, 15, Killed())
-        with pytest.raises(Killed):
-            scene.run(**settings, save=tmp_path / "run.nc", progress=False)
-    resumed = scene.run(**settings, save=tmp_path / "run.nc", resume=True, progress=False)
+    resumed = killed_and_resumed(scene, tmp_path / "run.nc", 15, **settings, progress=False)
     whole = scene.run(**settings)
     assert all(np.array_equal(whole[name], resumed[name]) for name in whole)
 

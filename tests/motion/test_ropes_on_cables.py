@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 from funicular.parts.locations import following
 from funicular.parts.paths import changes_of, path_of
-from funicular.results import streaming
-from interrupted_runs import Killed, failing
+from interrupted_runs import killed_and_resumed
 
 THREAD = {"section": fu.Circle(radius=3e-4),
           "material": fu.Material(youngs_modulus=2e9, poisson_ratio=0.3, density=4000, damping_time=1e-3)}
@@ -155,12 +154,7 @@ def test_files_and_changes(tmp_path):
 def test_resumed_bit_for_bit(tmp_path, integrator):
     scene = on_cable(**SLIDING)
     settings = {"duration": 0.05, "output_step": 1e-3, "tol": 1e-4, "integrator": integrator, "progress": False}
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
-        failing(patch, 20, Killed())
-        with pytest.raises(Killed):
-            scene.run(**settings, save=tmp_path / "run.nc")
-    resumed = scene.run(**settings, save=tmp_path / "run.nc", resume=True)
+    resumed = killed_and_resumed(scene, tmp_path / "run.nc", 20, **settings)
     whole = scene.run(**settings)
     assert all(np.array_equal(whole[name], resumed[name]) for name in whole)
 

@@ -3,8 +3,7 @@
 import funicular as fu
 import numpy as np
 import pytest
-from funicular.results import streaming
-from interrupted_runs import Killed, failing
+from interrupted_runs import killed_and_resumed
 from test_ropes import BRIEF, FORCES, INTEGRATORS, THIN, body, carried, momenta, near, row, swing
 from turned_scenes import turned_scene
 
@@ -229,12 +228,7 @@ def test_space_mirror_axes_and_the_route_backwards():
 def test_sticking_ropes_resume_bit_for_bit(tmp_path, integrator):
     scene = swing(**SHEAVES["turning"])
     settings = {"duration": 0.02, "output_step": 0.002, "tol": 1e-5, "integrator": integrator}
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
-        failing(patch, 15, Killed())
-        with pytest.raises(Killed):
-            scene.run(**settings, save=tmp_path / "run.nc", progress=False)
-    resumed = scene.run(**settings, save=tmp_path / "run.nc", resume=True, progress=False)
+    resumed = killed_and_resumed(scene, tmp_path / "run.nc", 15, **settings, progress=False)
     whole = fu.Scene.from_toml(scene.to_toml()).run(**settings)
     assert all(np.array_equal(whole[name], resumed[name]) for name in whole)
 

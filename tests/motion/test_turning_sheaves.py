@@ -6,8 +6,7 @@ import pytest
 from funicular.base.rotations import rotate, turned_by
 from funicular.engine import Engine
 from funicular.model.build import build
-from funicular.results import streaming
-from interrupted_runs import Killed, failing
+from interrupted_runs import killed_and_resumed
 from ropes.runs import rope_of
 from test_ropes import BRIEF, INTEGRATORS, SHEAVES, THIN, near
 from test_sticking_ropes import SHEAVES as STICKING
@@ -200,12 +199,7 @@ def test_modal_carriers():
 def test_resumed_bit_for_bit(tmp_path, integrator):
     scene = free(**SHEAVES["turning"])
     settings = {"duration": 0.02, "output_step": 0.002, "tol": 1e-5, "integrator": integrator}
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
-        failing(patch, 15, Killed())
-        with pytest.raises(Killed):
-            scene.run(**settings, save=tmp_path / "run.nc", progress=False)
-    resumed = scene.run(**settings, save=tmp_path / "run.nc", resume=True, progress=False)
+    resumed = killed_and_resumed(scene, tmp_path / "run.nc", 15, **settings, progress=False)
     whole = scene.run(**settings)
     assert all(np.array_equal(whole[name], resumed[name]) for name in whole)
 

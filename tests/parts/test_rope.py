@@ -160,7 +160,7 @@ def test_points_of_bodies():
     rope = rope_of(fu.Anchor("load", at=(0, -0.7, 0)), fu.Sheave("top", at=carrier, radius=0.3), fu.Anchor("carrier", (
         0.3, -2, 0)), scene=scene, **THIN)
     assert rope.route[1].at.at == (0, 0, 0) and list(rope.refers_to()) == ["load", "carrier", "carrier"]
-    route = rope.drawn(scene.holders)
+    route = scene.route_of(rope)
     check_tangents(route)
     assert route.spans[0].start == pytest.approx([-0.3, -3], abs=1e-15)
     assert route.length == pytest.approx(4 + 2 + 0.3 * pi, rel=1e-14)

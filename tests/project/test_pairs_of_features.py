@@ -47,7 +47,7 @@ NOT_ASKED = {
     "changed", "check_name", "check_stable", "fluids_of", "copied", "dim", "drawn", "free_name",
     "free_names", "from_toml", "group", "libraries", "part_named", "parts", "plane", "plane_axes", "put", "supports",
     "touching", "with_parts",  # what the methods above are made of
-    "from_recording", "items", "line", "model", "of", "sketch", "view",
+    "from_recording", "items", "line", "model", "of", "route_of", "sketch", "view",
     "adjustment", "check_adjusted", "check_fits", "check_supports", "heading", "neutral_directions", "relaxation",
     "rope_tensions", "stable", "unstable_directions", "about"}
 """Methods of scenes and results that no question calls by name: parts of those that are called, or plain data."""

@@ -29,6 +29,7 @@ from interrupted_runs import (
     content,
     failing,
     file_refused,
+    kill,
     resumed,
     short,
     signed,
@@ -52,13 +53,9 @@ def test_results_do_not_depend_on_when_they_are_written(uninterrupted, tmp_path,
 
 
 @pytest.mark.parametrize("writes", [*range(0, 12), *range(13, WRITES - 5, 4), *range(WRITES - 5, WRITES)])
-def test_dying_in_the_middle_of_a_write(uninterrupted, tmp_path, monkeypatch, writes):
+def test_dying_in_the_middle_of_a_write(uninterrupted, tmp_path, writes):
     path, state = tmp_path / "x.nc", tmp_path / "x.nc.state"
-    with monkeypatch.context() as patch:
-        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
-        failing(patch, writes, Killed())
-        with pytest.raises(Killed):
-            short().run(**SETTINGS, save=path)
+    kill(short(), path, writes, **SETTINGS)
     assert path.exists() == (writes > 2)  # its first row, the number of rows, its name
     assert state.exists() == (writes > 3)
     if path.exists():
@@ -132,16 +129,12 @@ def test_rows_are_written_between_checkpoints(tmp_path, monkeypatch):
     assert all(run[name].tobytes() == memory[name].tobytes() for name in run.keys())
 
 
-def test_an_equilibrium_to_start_from(tmp_path, monkeypatch):
+def test_an_equilibrium_to_start_from(tmp_path):
     scene = cable_scene(pins=(0.0,), **SOFT)
     scene.pin("wire", s=1.0)
     settings, path = {"duration": 0.1, "tol": 1e-3}, tmp_path / "x.nc"
     scene.run(**settings, initial="equilibrium", save=tmp_path / "whole.nc")
-    with monkeypatch.context() as patch:
-        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
-        failing(patch, 100, Killed())
-        with pytest.raises(Killed):
-            scene.run(**settings, initial="equilibrium", save=path)
+    kill(scene, path, 100, **settings, initial="equilibrium")
     with file_refused(path, "its run cannot be resumed from another state" + ANEW):
         scene.run(**settings, initial=scene.equilibrium(load_steps=3, tolerance=1e-5), save=path, resume=True)
     scene.run(**settings, initial=scene.equilibrium(), save=path, resume=True)

@@ -25,7 +25,7 @@ def hung(mass: float, rho: float, below: float = 3.0, side: float = -1.0, **give
 def test_no_tension_as_drawn(mass):
     """The length is that of the route but for 2e-7 of it, a tension of .2 N: Newton's method stretches the rope."""
     scene = hung(mass, 0.1, side=-5.0, tension=50.0)
-    length = scene.ropes["rope"].drawn(scene.holders).length * (1 - 2e-7)
+    length = scene.route_of(scene.ropes["rope"]).length * (1 - 2e-7)
     rest = scene.replace("rope", length=length).equilibrium()
     assert rest.stable and rest.iterations < 30
     assert np.linalg.norm(rest["rope.end_force"]) == pytest.approx(mass * GRAVITY, rel=1e-6)

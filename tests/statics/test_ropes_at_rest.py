@@ -81,7 +81,7 @@ def test_modes_of_two_weights():
     """
     scene = pair()
     modes = scene.modes(6, about=scene.equilibrium(seek_stable=False))
-    length = scene.ropes["rope"].drawn(scene.holders).free_length
+    length = scene.route_of(scene.ropes["rope"]).free_length
     assert modes.growth_rate[0] == pytest.approx(np.sqrt(AREA * G / 5), rel=3e-3)
     assert modes.angular_frequency[:3] == pytest.approx(0, abs=1e-6)  # the antisymmetric one, and the bodies' rotations
     assert modes.angular_frequency[3:5] == pytest.approx(np.sqrt(G / 2), rel=1e-4)
@@ -131,7 +131,7 @@ def test_adjusted(path, start, target):
 
 def test_a_longer_rope_lowers_its_weight():
     scene = hung()
-    length = scene.ropes["rope"].drawn(scene.holders).free_length
+    length = scene.route_of(scene.ropes["rope"]).free_length
     rest = scene.replace("rope", length=length).equilibrium(adjust=["rope.length"], to={"B.position.y": -1.9})
     assert rest.adjusted["rope.length"] == pytest.approx(length - 0.1, abs=1e-3)
 

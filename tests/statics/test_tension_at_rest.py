@@ -167,7 +167,7 @@ def test_runs_start_from_it_and_stay():
 def test_without_weight_the_drawn_state_is_that_of_rest():
     scene = spans(300.0)
     scene.gravity = (0.0, 0.0, 0.0)
-    rest, drawn = scene.equilibrium(), scene.ropes["rope"].drawn(scene.holders)
+    rest, drawn = scene.equilibrium(), scene.route_of(scene.ropes["rope"])
     assert rest["rope.s"][-1] == pytest.approx(drawn.free_length, rel=1e-9)
     assert first_tension(rest) == pytest.approx(300.0, rel=1e-9)
 

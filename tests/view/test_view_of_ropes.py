@@ -40,7 +40,7 @@ def quantity(cable, key):
 def test_a_rope_as_drawn_is_straight_between_arcs():
     scene = hoist()
     rope = part(scene.animation().clips[0].cables, "rope")
-    route = scene.ropes["rope"].drawn(scene.holders)
+    route = scene.route_of(scene.ropes["rope"])
     line, s = rope.position[0], rope.material_s[0]
     assert_allclose(line[[0, -1]], [(-0.25, -2.5, 0), (1.9, -2.3348, 0)], atol=1e-12)
     assert_allclose(s[[0, -1]], [0, route.free_length], rtol=1e-12, atol=1e-15)
@@ -150,7 +150,7 @@ def test_the_surface_of_a_wheel_is_closed_and_looks_outward():
 def test_a_belt_is_closed_and_has_marks_without_a_seam():
     scene = belt()
     line = part(scene.animation().clips[0].cables, "belt")
-    length = scene.ropes["belt"].drawn(scene.holders).free_length
+    length = scene.route_of(scene.ropes["belt"]).free_length
     assert_allclose(line.position[0, -1], line.position[0, 0], atol=1e-15)
     assert np.ptp(line.material_s[0]) == pytest.approx(length, rel=1e-12)
     assert length / line.spacing == pytest.approx(round(length / line.spacing), rel=1e-12)
@@ -282,7 +282,7 @@ def test_a_rope_in_space_and_its_wheels():
         fu.Sheave("c", at=(2.15, 0, 1.5), axis=axes["c"], radius=0.2), fu.Anchor(at=(2.15, -1.2, 1.7))],
         section=fu.Circle(radius=1e-3), material=fu.Material(youngs_modulus=6e8, poisson_ratio=0.3, density=7000))
     clip = scene.animation().clips[0]
-    rope, route = part(clip.cables, "rope"), scene.ropes["rope"].drawn(scene.holders)
+    rope, route = part(clip.cables, "rope"), scene.route_of(scene.ropes["rope"])
     line, s, at = rope.position[0], rope.material_s[0], 0.0
     for span, arc in zip(route.spans, route.sheaves, strict=False):
         at += span.length / route.stretch

@@ -42,7 +42,7 @@ def ropes_as_drawn(scene: SceneData) -> dict[str, np.ndarray]:
     """Return the results of ropes, sheaves and drums by name as the scene is drawn, of those that pictures need."""
     found: dict[str, np.ndarray] = {}
     for name, rope in scene.ropes.items():
-        route = rope.drawn(scene.holders)
+        route = scene.route_of(rope)
         found |= {f"{name}.{key}": value for key, value in as_drawn(rope, route).items()}
         for arc in route.sheaves:
             found[f"{arc.name}.wrap_angle"] = np.array(arc.wrap)
@@ -94,7 +94,7 @@ class _Line:
 
     def __init__(self, frames: Frames, rope: Rope, counts: list[int]):
         """counts: of the stations of each wrap."""
-        self.rope, route = rope, rope.drawn(frames.scene.holders)
+        self.rope, route = rope, frames.scene.route_of(rope)
         points, s = (frames.value(f"{rope.name}.{key}") for key in ("position", "s"))
         if rope.closed:  # back to its first point
             points = np.concatenate([points, points[:, :1]], axis=1)

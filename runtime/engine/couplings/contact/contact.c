@@ -103,7 +103,7 @@ static const fu_error_operations errors = {.quadrature = fu_contact_quadrature_e
 static const fu_start_operations start = {.reset = fu_contact_reset};
 static const fu_history_operations history = {.update = fu_contact_update_history, .error = fu_contact_history_error};
 
-static const fu_output output_fields[] = {
+const fu_output fu_contact_output_fields[] = {
     FU_OUTPUT(fu_contact_output, force, "N", "direction"),
     FU_OUTPUT(fu_contact_output, friction_force, "N", "direction"),
     FU_OUTPUT(fu_contact_output, penetration, "m", NULL),
@@ -117,7 +117,7 @@ const fu_coupling_type fu_contact_type = {
     .name = "contact",
     .size = sizeof(fu_contact),
     .fields = fields,
-    .output_fields = output_fields,
+    .output_fields = fu_contact_output_fields,
     .n_flags = 1,
     .residual = residual,
     .tangent = tangent,

@@ -64,6 +64,7 @@ extern const fu_coupling_type fu_rope_contact_type;
 typedef struct {
     double force[3], friction_force[3], penetration, touching, first, last;
 } fu_contact_output;
+extern const fu_output fu_contact_output_fields[];
 
 /* A point that may be in contact: its position and velocity; its history, null without friction; the time since, s,
  * the rotation of its body relative to the surface since then, and its rate, along the shape's axes. In contact:

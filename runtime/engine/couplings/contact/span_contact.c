@@ -217,21 +217,11 @@ static const fu_field fields[] = {
     {0},
 };
 
-static const fu_output output_fields[] = {
-    FU_OUTPUT(fu_contact_output, force, "N", "direction"),
-    FU_OUTPUT(fu_contact_output, friction_force, "N", "direction"),
-    FU_OUTPUT(fu_contact_output, penetration, "m", NULL),
-    FU_OUTPUT(fu_contact_output, touching, "1", NULL),
-    FU_OUTPUT(fu_contact_output, first, "m", NULL),
-    FU_OUTPUT(fu_contact_output, last, "m", NULL),
-    FU_LAST_OUTPUT(fu_contact_output),
-};
-
 const fu_coupling_type fu_rope_contact_type = {
     .name = "rope contact",
     .size = sizeof(fu_rope_contact),
     .fields = fields,
-    .output_fields = output_fields,
+    .output_fields = fu_contact_output_fields,
     .residual = residual,
     .tangent = tangent,
     .force = force,

@@ -100,10 +100,16 @@ static inline int has_friction(const fu_sheave *sheave)
     return sheave->friction > 0.0;
 }
 
+/* Returns whether friction sticks. */
+static inline int sticks(const fu_sheave *sheave)
+{
+    return has_friction(sheave) && sheave->wrap_points >= 0;
+}
+
 /* Returns whether friction rises smoothly with the speed. */
 static inline int has_smooth_friction(const fu_sheave *sheave)
 {
-    return has_friction(sheave) && sheave->wrap_points < 0;
+    return has_friction(sheave) && !sticks(sheave);
 }
 
 static inline int fu_may_leave(const fu_sheave *sheave)

@@ -47,7 +47,7 @@ static motion_across across_of(const fu_sheave *sheave, const fu_sheave_state *a
     const double s_rate[ENDS] = {at->s_rate[0], at->s_rate[n]};
     const int moves = !is_turning(sheave); /* else it is in the kernels of turning wraps */
     motion_across out;
-    sheave->wheel.foot->across(sheave->wheel.rho, at->s[n] - at->s[0], at->wheel.across, gravity,
+    sheave->wheel.foot->across(sheave->wheel.rho, wrap_length(sheave, at), at->wheel.across, gravity,
                                moves * at->wheel.across_rate, moves * at->wheel.across_acc, s_rate, &out.T, &out.V,
                                out.f, out.M, out.D, out.K);
     return out;

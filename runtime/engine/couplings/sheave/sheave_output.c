@@ -32,7 +32,7 @@ static void tensions(const fu_sheave *sheave, const fu_sheave_state *at, const d
     const fu_wheel *wheel = &sheave->wheel;
     fu_sheave_forces(sheave, at, y);
     fu_sheave_add_multipliers(sheave, at, multipliers, phi, y);
-    for (int j = 0; j <= sheave->n_zones && has_friction(sheave) && !has_smooth_friction(sheave); ++j)
+    for (int j = 0; j <= sheave->n_zones && sticks(sheave); ++j)
         fu_wrap_force_by_y(sheave, at, j, sticking[j].f, sticking[j].at.column, y);
     for (int k = 0; k < ENDS; ++k) {
         const double s_rate = at->s_rate[k ? sheave->n_zones : 0];
@@ -42,6 +42,12 @@ static void tensions(const fu_sheave *sheave, const fu_sheave_state *at, const d
         const double velocity = speed[k] + fu_dot(DIM, t, at->wheel.c_rate);
         tension[k] = (k ? along : -along) - wheel->rho * s_rate * velocity;
     }
+}
+
+/* Returns the stretch of a zone. */
+static double stretch_of(const fu_sheave *sheave, const fu_zone *zone)
+{
+    return sheave->wheel.sense * sheave->wheel.radius * (zone->phi[1] - zone->phi[0]) / zone->l;
 }
 
 /* Returns the tension at an angle of a zone with this mean: it grows with the height, as on a smooth groove. */
@@ -64,7 +70,7 @@ static double least_pressure(const fu_sheave *sheave, const fu_sheave_state *at,
             fmin(least, fu_wheel_pressure(wheel, &at->wheel, at->phi[k], tension[k], speeds[k], fu_stretch_at(at, k)));
     for (int j = 0; at->mode == FU_WRAPPED && j < sheave->n_zones; ++j) {
         const fu_zone of = fu_zone_at(at, j);
-        const double stretch = wheel->sense * wheel->radius * (of.phi[1] - of.phi[0]) / of.l;
+        const double stretch = stretch_of(sheave, &of);
         const double inside = wheel->A[0] * (stretch - 1.0);
         for (int part = j ? 0 : 1; part < (j + 1 < sheave->n_zones ? 3 : 2); ++part) { /* its inner end, the middle */
             const double x = 0.5 * part, rate = (1.0 - x) * of.phi_rate[0] + x * of.phi_rate[1];
@@ -174,7 +180,8 @@ static double mean_acceleration(const fu_sheave *sheave, const fu_sheave_state *
 {
     const fu_wheel *wheel = &sheave->wheel;
     const int n = sheave->n_zones;
-    const double arm = wheel->sense * wheel->radius, stretch = arm * (at->phi[1] - at->phi[0]) / (at->s[n] - at->s[0]);
+    const double arm = wheel->sense * wheel->radius,
+                 stretch = arm * (at->phi[1] - at->phi[0]) / wrap_length(sheave, at);
     double sum = 0.0;
     for (int j = 0; j <= n; ++j) sum += arm * at->angle_acc[j] - stretch * at->s_acc[j];
     return sum / (n + 1);
@@ -188,7 +195,7 @@ static void tensions_beside_zones(const fu_sheave *sheave, const fu_sheave_state
     const double acceleration = mean_acceleration(sheave, at);
     for (int k = 0; k < ENDS; ++k) {
         const fu_zone of = fu_zone_at(at, k ? sheave->n_zones - 1 : 0);
-        const double stretch = wheel->sense * wheel->radius * (of.phi[1] - of.phi[0]) / of.l;
+        const double stretch = stretch_of(sheave, &of);
         double F[3], numbers[3], power;
         fu_friction_at(sheave, at, k ? sheave->n_zones : 0, F, numbers, &power);
         const double mean = wheel->A[0] * (stretch - 1.0), most = MOST_INERTIA * fabs(mean);
@@ -269,7 +276,7 @@ void fu_sheave_outputs(const fu_model *model, const fu_coupling *coupling, const
     fu_wrap_force sticking[MAX_ZONES + 1];
     fu_sheave_at(model, sheave, state, acceleration, &at);
     if (at.mode == FU_SHORT) at.tension = multipliers[SHORT_ROW];
-    if (has_friction(sheave) && !has_smooth_friction(sheave)) find_sticking(model, sheave, &at, state, work, sticking);
+    if (sticks(sheave)) find_sticking(model, sheave, &at, state, work, sticking);
     tensions(sheave, &at, multipliers, sticking, tension, speed, phi, y);
     if (at.mode == FU_LIFTED) elastic_tensions(sheave, &at, tension, speed);
     *numbers = (sheave_output){.tension_on = tension[0], .tension_off = tension[1]};
@@ -283,7 +290,7 @@ void fu_sheave_outputs(const fu_model *model, const fu_coupling *coupling, const
     numbers->normal_force = wrap_pressure(sheave, &at);
     numbers->angle = sheave->wheel.turn < 0 ? 0.0 : state->q[sheave->wheel.turn];
     if (has_smooth_friction(sheave)) add_smooth_friction(sheave, &at, numbers);
-    else if (has_friction(sheave)) add_sticking_friction(sheave, &at, sticking, numbers);
+    else if (sticks(sheave)) add_sticking_friction(sheave, &at, sticking, numbers);
     for (int r = 0; r < fu_sheave_conditions(sheave, &at); ++r)
         numbers->residual = fmax(numbers->residual, fabs(phi[r]));
 }

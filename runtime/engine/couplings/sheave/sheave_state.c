@@ -16,7 +16,7 @@ double fu_stretch_at(const fu_sheave_state *at, int k)
  * both spans. */
 static void find_angles(const fu_sheave *sheave, fu_sheave_state *at)
 {
-    const double length = 0.5 * (fu_stretch_at(at, 0) + fu_stretch_at(at, 1)) * (at->s[sheave->n_zones] - at->s[0]);
+    const double length = 0.5 * (fu_stretch_at(at, 0) + fu_stretch_at(at, 1)) * wrap_length(sheave, at);
     const double *a = at->x[0], *b = at->x[1], turn = 2.0 * acos(-1.0), sense = sheave->wheel.sense;
     const double part = sense * atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
     const double wrap = part + turn * round((length / sheave->wheel.radius - part) / turn);
