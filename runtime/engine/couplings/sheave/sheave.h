@@ -255,7 +255,7 @@ void fu_coulomb_at(const fu_sheave *sheave, const fu_sheave_state *at, int j, fu
 /* Adds the derivatives of Coulomb friction, held by a multiplier, or at its limit in a direction. */
 void fu_coulomb_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at, int j, double held, double direction,
                              double factor, double (*D)[Z], double (*K)[Z]);
-/* Returns the rate of w at the accelerations of `at`, of the dofs zero. */
+/* Returns the rate of w at the accelerations of `at`, without those of the sheave's rotation and of s. */
 double fu_coulomb_drift(const fu_sheave *sheave, const fu_sheave_state *at, int j);
 /* Computes forces by z from those on the angle of a point, the rotation and s. */
 void fu_point_by_z(const fu_sheave *sheave, int j, const double forces[FU_SLIDING], double z[Z]);

@@ -213,7 +213,6 @@ double fu_coulomb_drift(const fu_sheave *sheave, const fu_sheave_state *at, int 
         (p.span ? kernel->coulomb_off_motion
                 : kernel->coulomb_on_motion)(wheel->sense, wheel->radius, p.phi, p.l, at->slope[p.span], phi_rate,
                                              l_rate, at->slope_rate[p.span], p.s_rate, at->angle_acc[j], &drift);
-    if (wheel->tilts) drift -= wheel->sense * wheel->radius * fu_dot(SPACE, at->wheel.axis, at->wheel.centre.alpha);
     return drift;
 }
 

@@ -221,7 +221,7 @@ static void rows(const fu_model *model, const fu_coupling *coupling, const fu_st
         out->column[out->n++] = by_f;
     }
     out->rows = out->is_pushed = 1;
-    out->W[0] = -fu_coulomb_drift(sheave, &at, j);
+    out->W[0] = -(fu_coulomb_drift(sheave, &at, j) + of.row[1] * at.wheel.turn_acc);
     out->C[0] = out->rate[0] = 0.0;
 }
 
