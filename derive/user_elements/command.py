@@ -21,7 +21,7 @@ from ..laws.kernels import Kernels
 from ..verify import timing
 from ..verify.command import examined
 from ..verify.compiled import SHARED_FLAGS, CompilerError, compile_units, compiler, link_shared
-from ..verify.report import CONSOLE_WIDTH, Report
+from ..verify.report import PIPED_WIDTH, Report
 from . import basis, energy, library, load
 from .load import SpecError
 
@@ -33,7 +33,7 @@ def main(spec: Path, out: Path) -> None:
     begin = time.perf_counter()
     console = Console(highlight=False, markup=False, soft_wrap=True)
     if not console.is_terminal:
-        console = Console(highlight=False, markup=False, width=CONSOLE_WIDTH)  # piped lines stay whole
+        console = Console(highlight=False, markup=False, width=PIPED_WIDTH)
     spec, out = spec.resolve(), out.resolve()
     library.check_destination(out)
     try:

@@ -15,7 +15,8 @@ from .inputs import KINDS
 from .methods import METHODS, Finding
 from .rounding import ENTRY, NORM, Rounding
 
-CONSOLE_WIDTH = 220  # columns of the whole table
+CONSOLE_WIDTH = 220  # columns from which on a table has all its columns
+PIPED_WIDTH = 1000  # more than any line has: piped lines stay whole
 
 
 class Report:
@@ -28,7 +29,7 @@ class Report:
         self.uncovered: list[str] = []
         self.out = Console(highlight=False, markup=False)
         if not self.out.is_terminal:
-            self.out = Console(highlight=False, markup=False, width=CONSOLE_WIDTH)  # piped lines stay whole
+            self.out = Console(highlight=False, markup=False, width=PIPED_WIDTH)
 
     @contextmanager
     def progress(self, total: int) -> Iterator[Callable[[], None]]:
