@@ -195,22 +195,64 @@ JOINED: dict[str, Callable[[Site], object]] = {
 
 # ---- ropes
 
-def _rope(on: Site, carried: bool = False, **given) -> None:
-    """Hang a body on a rope from the ground over a sheave beside the cable, which a held body may carry."""
+ROUGH = fu.Friction(coefficient=0.2)
+STUCK = fu.Friction(coefficient=0.2, model="stick")
+
+
+def _rope(on: Site, carried: bool = False, first: object = None, also: Callable[[Site], object] | None = None,
+          mass: bool = True, **given) -> None:
+    """Hang a body on a rope from the ground, or from a drum, over a sheave beside the cable, which a held body may
+    carry.
+    """
     x, y, _ = on.below(1.0, 0)
     on.body("load", (x + 1.6, y - 1.0, 0))
     at = (on.held("post", (x + 1.4, y, 0)), (0, 0.05, 0)) if carried else (x + 1.4, y, 0)
-    on.scene.rope("hoist", route=[fu.Anchor(at=(x + 0.8, y - 0.8, 0)), fu.Sheave("top", at=at, radius=0.2, **given),
-                                  fu.Anchor("load")], section=fu.Circle(radius=0.002), elements=2, tension=0.981,
+    element = {} if on.planar or not mass else {"element": "cable12"}
+    first = first or fu.Anchor(at=(x + 0.8, y - 0.8, 0))
+    on.scene.rope("hoist", route=[first, fu.Sheave("top", at=at, radius=0.2, **given), fu.Anchor("load")],
+                  section=fu.Circle(radius=0.002), elements=2, tension=0.981, mass=mass, **element,
                   material=fu.Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1000, damping_time=1e-4))
+    if also is not None:
+        also(on)
+
+
+def _belt(on: Site) -> None:
+    """Drive a belt around two sheaves beside the cable."""
+    x, y, _ = on.below(1.0, 0)
+    element = {} if on.planar else {"element": "cable12"}
+    route = [fu.Sheave("driver", at=(x + 1.4, y, 0), radius=0.2, side="left", friction=STUCK, zones=1,
+                       velocity=SIGNALS["ramp"]),
+             fu.Sheave("driven", at=(x + 2.4, y, 0), radius=0.1, side="left", friction=STUCK, zones=1, inertia=1e-3,
+                       damping=0.1)]
+    on.scene.rope("belt", route=route, closed=True, section=fu.Circle(radius=0.002), elements=2, tension=5.0, **element,
+                  material=fu.Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1000, damping_time=1e-4))
+
+
+def _drum(**given) -> fu.Drum:
+    """Return a drum below the sheave beside the cable."""
+    return fu.Drum("winch", at=(1.8, -0.8, 0), radius=0.1, side="right", length_in_store=2.0, **given)
+
+
+def _blown(on: Site) -> None:
+    """Blow at the rope."""
+    on.scene.fluid("air", density=1.2, velocity=(3.0, 0, 0))
+    on.scene.drag("hoist", fluid="air", normal=1.2, name="wind_on_rope")
 
 
 ROPES: dict[str, Callable[[Site], object]] = {
     "none": lambda on: None,
     "rope": _rope,
-    "rope on a rough sheave": partial(_rope, friction=0.2, zones=3),
-    "rope on a sheave that turns": partial(_rope, friction=0.2, zones=2, inertia=1e-3),
-    "rope over a body": partial(_rope, carried=True)}
+    "rope on a rough sheave": partial(_rope, friction=ROUGH, zones=3),
+    "rope that sticks": partial(_rope, friction=STUCK, zones=2),
+    "rope on a sheave that turns": partial(_rope, friction=ROUGH, zones=2, inertia=1e-3),
+    "rope on a driven sheave": partial(_rope, friction=ROUGH, zones=2, velocity=SIGNALS["ramp"]),
+    "rope over a body": partial(_rope, carried=True),
+    "rope on a drum": partial(_rope, first=_drum(velocity=SIGNALS["ramp"])),
+    "rope on a drum over a body": partial(_rope, carried=True, first=_drum()),
+    "loaded rope": partial(_rope, also=lambda on: on.scene.force("hoist", s=0.1, value=(0.0, -0.1, 0))),
+    "rope in a wind": partial(_rope, also=_blown),
+    "belt": _belt,
+    "rope without mass": partial(_rope, mass=False)}
 
 
 # ---- loads and springs

@@ -21,8 +21,8 @@ RAISED = {"²": 2, "³": 3, "⁴": 4}
 SAID = re.compile(r"\bin ([^ ,.]+(?: [^ ,.]+)?)$")
 """A unit at the end of a description in the schema."""
 DRIVES = {("motion", "displacement"): "m", ("joint", "distance"): "m", ("slide", "drive"): "m",
-          ("slide", "velocity"): "m/s"}
-"""Units of signals, which the schema does not know."""
+          ("slide", "velocity"): "m/s", ("rope", "velocity"): "rad/s", ("rope", "torque"): "N m"}
+"""Units of signals, also of items of a part, which the schema does not know."""
 PER_LENGTH = "contact", "crossing"
 """Parts whose stiffness has a unit of its exponent, and of what touches."""
 
@@ -71,7 +71,7 @@ def _of_part(kind: str, table: Mapping[str, Any], rules: Mapping[str, Any], per:
     units = {name: powers_of(unit) for (of, name), unit in DRIVES.items() if of == kind}
     if kind == "joint":
         units["velocity"] = powers_of("m/s" if table["kind"] in ("prismatic", "distance") else "rad/s")
-    made = {name: _converted(value, rules[name], units.get(name, NUMBER), per) for name, value in table.items()}
+    made = {name: _converted(value, rules[name], units.get(name, NUMBER), per, units) for name, value in table.items()}
     if kind in PER_LENGTH:
         along = 1.0 if kind == "contact" and table["a"] in scene.cables else 0.0
         for name, exponent in (("stiffness", table["exponent"]), ("tangential_stiffness", 1.0)):
@@ -84,15 +84,19 @@ def _factor(powers: Powers, per: Powers) -> float:
     return per[0] ** powers[0] * per[1] ** powers[1] * per[2] ** powers[2]
 
 
-def _converted(value: Any, rule: Any, powers: Powers, per: Powers) -> Any:
-    """Return a value of a scene file in other units; rule: its schema; powers: its unit, if the schema has none."""
+def _converted(value: Any, rule: Any, powers: Powers, per: Powers, units: Mapping[str, Powers] | None = None) -> Any:
+    """Return a value of a scene file in other units; rule: its schema; powers: its unit, if the schema has none; units:
+    those of its entries by name.
+    """
+    units = units or {}
     rule = _ruling(value, rule)
     if isinstance(value, dict):
-        return {name: _converted(each, rule["properties"][name], powers, per) for name, each in value.items()}
+        return {name: _converted(each, rule["properties"][name], units.get(name, powers), per, units)
+                for name, each in value.items()}
     said = SAID.search(rule.get("description", ""))
     powers = powers_of(said[1]) if said else powers
     if isinstance(value, list):
-        return [_converted(each, rule.get("items", {}), powers, per) for each in value]
+        return [_converted(each, rule.get("items", {}), powers, per, units) for each in value]
     if isinstance(value, float) and powers != NUMBER:
         return value * _factor(powers, per)
     return value

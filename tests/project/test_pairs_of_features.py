@@ -52,9 +52,6 @@ NOT_ASKED = {
     "rope_tensions", "stable", "unstable_directions", "about"}
 """Methods of scenes and results that no question calls by name: parts of those that are called, or plain data."""
 
-NOT_SIMULATED = {"rope"}
-"""Kinds of parts that the engine does not have yet: models of scenes with them are refused."""
-
 WORKS, REFUSED, TOLD = "", "refused", "told"
 
 
@@ -198,7 +195,7 @@ def test_every_kind_of_part_is_in_some_scene(tmp_path):
         for level in levels:
             with strict(), suppress(fu.FunicularError):  # of another element
                 kinds |= {part.kind for part in build(neutral | {factor: level}, tmp_path).parts()}
-    assert kinds == PARTS.keys() - NOT_SIMULATED
+    assert kinds == PARTS.keys()
 
 
 def test_every_method_of_a_scene_and_its_results_is_asked():
