@@ -66,7 +66,7 @@ TYPES = {
     "ForceTable": "ForceTable | dict[str, Numbers]",
     "Displacement": "Sequence[Scale | str | None]", "Rotation": "tuple[Numbers, Scale]",
     "Listed": "Named | Sequence[Named]", "Route": "Sequence[Anchor | Block | Drum | Sheave | dict[str, Any]]",
-    "ElementsOfSpans": "int | Sequence[int]",
+    "ElementsOfSpans": "int | Sequence[int]", "LengthOfSpans": "float | Sequence[float]",
     "Name": "str", "Count": "int", "Flag": "bool", "Exponent": "float",
     "Material": "Material", "AnyFriction": "Friction | float",
     "float": "float", "str": "str", "Callable": "Callable[..., Any]",

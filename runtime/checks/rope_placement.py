@@ -107,11 +107,11 @@ def _notes(scene: SceneData, rope: Rope) -> list[str]:
     except ValueError as error:
         raise SceneError(rope.where, *error.args) from None
     EA, EI = rope.stiffness
-    tension, diameter, notes = EA * (route.stretch - 1), 2 * rope.radius, []
+    diameter, notes = 2 * rope.radius, list[str]()
     elements = [span.length / n for span, n in zip(route.spans, rope.elements_of_spans, strict=True)]
-    for k, (item, arc) in enumerate(zip(rope.sheaves, route.sheaves, strict=True)):
+    for item, arc, spans in zip(rope.sheaves, route.sheaves, route.beside_sheaves, strict=True):
         sheave = f"{rope.where}: {item.where}"
-        beside = min(elements[k - 1 if rope.closed else k], elements[k if rope.closed else k + 1])
+        beside, tension = min(elements[k] for k in spans), EA * (min(route.stretch_of(k) for k in spans) - 1)
         if arc.radius > MAX_RADIUS_OF_ELEMENTS * beside:
             notes.append(f"{sheave}: its radius {show(arc.radius, 'm')} is above {MAX_RADIUS_OF_ELEMENTS:g} lengths of "
                          f"the elements beside it, {show(beside, 'm')}: steps may be very short or not converge; take "

@@ -110,6 +110,13 @@ def check_impending(scene: SceneData, motion: str) -> None:
                              "leave the friction out, or impending")
 
 
+def check_sticking(scene: SceneData) -> None:
+    """Raise SceneError where no rope can stick to a sheave."""
+    if not any(sheave.contact for rope in scene.ropes.values() for sheave in rope.rough_sheaves):
+        raise SceneError("equilibrium", 'wraps="stick" needs a rope with mass and with friction on a sheave',
+                         'give the friction of a sheave, or take wraps="slip"')
+
+
 def _given(part: Part) -> Iterator[tuple[str, Signal]]:
     """Yield all signals of a part with their names, the integral of a rate included."""
     yield from signals_of(part)

@@ -161,7 +161,7 @@ def rope_model(rope: Rope, route: DrawnRoute, first: int) -> RopeModel:
         share = np.linspace(0.0, 1.0, n + 1)
         nodes = np.empty((n + 1, PER_NODE, dim))
         nodes[:, 0] = span.start + share[:, None] * (span.end - span.start)
-        nodes[:, 1] = route.stretch * span.direction
+        nodes[:, 1] = route.stretch_of(len(spans)) * span.direction
         spans.append(SpanCoordinates(at, share, (0, 0), dim))
         values.append(nodes.ravel())
         weight.append(np.tile(np.repeat([1.0, span.length / n], dim), n + 1))
@@ -178,7 +178,8 @@ def rope_model(rope: Rope, route: DrawnRoute, first: int) -> RopeModel:
         sheaves.append(SheaveCoordinates(np.r_[before.s[1], inner, after.s[0]], at + len(inner) if item.turns_round
                                          else -1))
         at += len(inner) + item.turns_round
-        values_of_sheave = np.r_[np.linspace(ends[0], ends[1], item.n_zones + 1)[1:-1], np.zeros(int(item.turns_round))]
+        values_of_sheave = np.r_[route.free_zones(k, float(ends[0]), float(ends[1]), item.n_zones)[1:-1],
+                                 np.zeros(int(item.turns_round))]
         of_sheaves.append(values_of_sheave)
         weight_of_sheaves.append(np.r_[np.ones(len(inner)), np.full(int(item.turns_round), item.radius)])
     drums: list[DrumCoordinates] = []

@@ -43,13 +43,19 @@ def follow(model: Model, rope: RopeModel) -> None:
     """Set the rates of a rope in a model, in its state, to those that follow from the velocities of bodies.
 
     Sheaves and drums turn relative to the body that they are on only where this is prescribed. A closed rope does not
-    run around: the mean rate of its arc-lengths is zero.
+    run around: the mean rate of its arc-lengths is zero. Raises SceneError for a rope of given lengths of spans that
+    moves: the tensions would not stay as given.
     """
     _set_turns(model, rope)
     if not rope.part.mass:
         return
     (_follow_in_plane if rope.part.dim == 2 else _follow_in_space)(model, rope)
     model.v[rope.held] = 0.0
+    turning = np.array([turn - rope.first for _, turn in rope.turns if turn >= 0], dtype=int)
+    if rope.route.free is not None and np.any(np.delete(model.v[rope.coordinates], turning)):
+        raise SceneError(rope.part.where, "has lengths of spans, and what holds it moves as drawn: the rates with "
+                         "which it starts are not known", "let it start at rest, or give "
+                         f'"{rope.part.name}.coordinate_rates" in the state to start from')
 
 
 def _follow_in_space(model: Model, rope: RopeModel) -> None:
@@ -91,7 +97,7 @@ def _wound_in_space(model: Model, rope: RopeModel, routes: list[DrawnRoute], cen
         angle = (angles[1] - angles[0] + np.pi) % (2 * np.pi) - np.pi
         turned = 2 * RATE_STEP * model.v[at.turn] if at.turn >= 0 else 0.0
         sense = SIDES[drum.side] * (1 if at.end == 0 else -1)
-        found[at.end] = sense * drum.radius * (angle - turned) / (2 * rope.route.stretch)
+        found[at.end] = sense * drum.radius * (angle - turned) / (2 * rope.route.stretch_of(at.end))
     return found
 
 

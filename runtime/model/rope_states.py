@@ -125,14 +125,15 @@ def as_drawn(rope: Rope, route: DrawnRoute, points: list[tuple[slice, tuple[int,
     for k, (span, wrap) in enumerate(points or points_of_spans(rope, route)):
         drawn, share = route.spans[k], np.linspace(0, 1, span.stop - span.start)
         places.append(drawn.start + share[:, None] * (drawn.end - drawn.start))
-        lengths.append(s + share * drawn.length / route.stretch)
-        s += drawn.length / route.stretch
+        lengths.append(s + share * route.free_span(k))
+        s += route.free_span(k)
         if wrap is not None:
             arc, share = route.sheaves[wrap[0]], np.linspace(0, 1, wrap[1].stop - wrap[1].start)[1:-1]
             angle = arc.angle_on + share * (arc.angle_off - arc.angle_on)
             places.append(arc.centre + arc.radius * np.stack([np.cos(angle), np.sin(angle)], axis=1) @ arc.groove.T)
-            lengths.append(s + share * arc.length / route.stretch)
-            s += arc.length / route.stretch
+            after = s + route.free_wrap(wrap[0])
+            lengths.append(route.free_zones(wrap[0], s, after, len(share) + 1)[1:-1])
+            s = after
     return {"position": spatial(np.concatenate(places)), "s": np.concatenate(lengths)}
 
 

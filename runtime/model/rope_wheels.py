@@ -222,7 +222,7 @@ def _sheaves(builder: ModelBuilder) -> Iterator[SheaveModel]:
                 scale += scale[:1] * (CONDITIONS_BESIDE + item.n_zones - 1)
             sheave = SheaveModel(
                 type="sheave", name=item.name, kernel="planar_sheave", before=before, after=after,
-                coordinates=rope.sheaves[k], radius=arc.radius, tangent_radius=(arc.tangent_radius,) * 2,
+                coordinates=rope.sheaves[k], radius=arc.radius, tangent_radius=arc.tangent_radius,
                 sense=float(arc.sense), tau=rope.part.material.damping_time, scale=scale, n_multipliers=len(scale),
                 **_wheel_of(builder, rope, item, arc.groove), has_inertia=True, friction=item.coefficient,
                 span_reach=(_reach(rope, beside[0], arc.radius), _reach(rope, beside[1], arc.radius)),
@@ -276,7 +276,7 @@ def _reach(rope: RopeModel, k: int, radius: float) -> int:
     `LEAST_REACH` of a span that becomes short.
     """
     n, span = rope.spans[k].n_elements, rope.route.spans[k]
-    return min(n, max(LEAST_REACH, int(np.ceil(2 * radius * rope.route.stretch * n / span.length))))
+    return min(n, max(LEAST_REACH, int(np.ceil(2 * radius * rope.route.stretch_of(k) * n / span.length))))
 
 
 CELLS = 256
@@ -368,7 +368,7 @@ def drum_models(builder: ModelBuilder) -> Iterator[DrumModel]:
             yield DrumModel(type="drum", name=item.name, kernel="planar_sheave", coordinates=at,
                             cell=rope.free_length / CELLS, direction=direction,
                             end=0.0 if at.end == 0 else rope.free_length, radius=item.radius,
-                            tangent_radius=rope.route.reach[at.end], stretch=rope.route.stretch,
+                            tangent_radius=rope.route.reach[at.end], stretch=rope.route.stretch_of(at.end),
                             sense=float(SIDES[item.side]), ends_run_by=item.at_end,
                             **_wheel_of(builder, rope, item, groove_of(item.axis) if dim == 3 else np.eye(2)),
                             span_reach=_reach(rope, number, item.radius),

@@ -11,10 +11,10 @@ from .material import Material
 from .part import Part
 from .quantity import Quantity, vector_of_time
 from .rope_items import ROUTE_ITEMS, Anchor, Block, Drum, RouteItem, Sheave
-from .schemas import POINT, checked
+from .schemas import POINT, checked, number_schema
 from .section import AnySection, Rectangle, outer_radius_of
 from .section_stiffness import law_of_measures, section_stiffness
-from .validation import MAX_COUNT, Flag, Name, items, one_of, positive, show, shown, whole_number
+from .validation import MAX_COUNT, Flag, Name, items, one_of, positive, positive_number, show, shown, whole_number
 
 if TYPE_CHECKING:
     from .rope_drawing import Holders
@@ -45,6 +45,15 @@ def _elements(value: Any) -> int | tuple[int, ...]:
     return whole_number(value)
 
 
+def _length(value: Any) -> float | tuple[float, ...]:
+    if (given := items(value, 1)) is not None:
+        return tuple(positive_number(each, "m") for each in given)
+    return positive_number(value, "m")
+
+
+LengthOfSpans = Annotated[float | tuple[float, ...], checked(_length, {
+    "anyOf": [number_schema("m", exclusiveMinimum=0),
+              {"type": "array", "items": number_schema("m", exclusiveMinimum=0), "minItems": 1}]})]
 COUNT = {"type": "integer", "minimum": 1, "maximum": MAX_COUNT}
 Route = Annotated[tuple[Annotated[RouteItem, ROUTE_ITEMS.checked()], ...], Field(json_schema_extra={"minItems": 2}),
                   BeforeValidator(_listed), AfterValidator(_without_blocks)]
@@ -61,9 +70,9 @@ class Rope(Part):
     sqrt(EI / T) in which the curvature begins is not resolved but moves the span away from the sheave by EI / (2 T R),
     with the tension T as drawn all through the run.
 
-    Given is the ``tension`` or the ``length``; gravity acts from the start. The rope starts with the velocities of the
-    bodies that hold it, straight and evenly stretched; sheaves and drums start without rotation on what carries them,
-    unless it is prescribed.
+    Given is the ``tension``, the ``length``, or that of each span; gravity acts from the start. The rope starts with
+    the velocities of the bodies that hold it, straight and evenly stretched; sheaves and drums start without rotation
+    on what carries them, unless it is prescribed.
 
     A joint or a spring grips the rope by an end ("haul", s): s in m is stress-free, from the first end, with what is on
     a drum there. The grip, or the point of a force, moves with the material, past ends of elements; where it reaches a
@@ -77,7 +86,10 @@ class Rope(Part):
     tension: at the route's first point, N: uniform as drawn; `equilibrium` finds the stress-free length of a rope with
         an anchor with which it is that tension at rest, without friction, loads and fluids, among the bodies as drawn
     length: stress-free length of the whole rope with what is wound on drums, m; without this at most the drawn length.
-        The stretch is uniform as drawn
+        The stretch is uniform as drawn. Or a list of the stress-free lengths of each span, from end to end at anchors
+        and tangent points as drawn, of a rope with mass: each then has its tension. On a wrap between two spans the
+        logarithm of the tension is linear in the angle as drawn, which gives the length there;
+        ``equilibrium(wraps="stick")`` is the state of rest in which friction holds the differences
     element: "cable8p" in the plane z = 0; "cable12" in space, with axes of sheaves and drums in any direction, which
         turn with the bodies that they are on
     mass: False for a rope without mass and bending stiffness, in the plane: straight between the sheaves, with one
@@ -111,7 +123,7 @@ class Rope(Part):
     material: Material
     elements: ElementsOfSpans = 4
     tension: Annotated[float, positive("N")] | None = None
-    length: Annotated[float, positive("m")] | None = None
+    length: LengthOfSpans | None = None
     element: Annotated[str, one_of(ELEMENTS)] = PLANAR
     mass: Flag = True
 
@@ -148,6 +160,12 @@ class Rope(Part):
             have = "neither tension nor length" if self.tension is None else "tension and length"
             raise ValueError(f"has {have}", "give one of them")
         spans = self.n_spans
+        if isinstance(self.length, tuple):
+            if len(self.length) != spans:
+                raise ValueError(f"length must be one number or {spans}, one for each span, got {len(self.length)}")
+            if not self.mass:
+                raise ValueError("has no mass, and lengths of spans: its sheaves hold the tensions that loads give it",
+                                 "give the length of the whole rope, or tension")
         if isinstance(self.elements, tuple) and len(self.elements) != spans:
             raise ValueError(f"elements must be one number or {spans}, one for each span, got {len(self.elements)}")
         return self

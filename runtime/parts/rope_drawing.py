@@ -13,7 +13,7 @@ from .cable import Cable
 from .modal_body import ModalBody
 from .rigid_body import RigidBody
 from .rope_items import SIDES, Drum, RouteItem, Sheave
-from .rope_route import MAX_LAYER, DrawnRoute, RoutePoint, default_senses, drawn_route, without_wraps
+from .rope_route import MAX_LAYER, DrawnRoute, FreeLengths, RoutePoint, default_senses, drawn_route, without_wraps
 from .rope_route_space import groove_of, senses_in_space, span_in_space
 from .validation import LENGTH_TOLERANCE, show
 
@@ -28,7 +28,7 @@ class Roped(Protocol):
     closed: bool
     mass: bool
     tension: float | None
-    length: float | None
+    length: float | tuple[float, ...] | None
 
     @property
     def where(self) -> str:
@@ -61,8 +61,8 @@ class Roped(Protocol):
         ...
 
     @property
-    def wheels(self) -> tuple[Sheave | Drum, ...]:
-        """Return its sheaves and drums."""
+    def sheaves(self) -> tuple[Sheave, ...]:
+        """Return its sheaves."""
         ...
 
 
@@ -71,11 +71,11 @@ def drawn(rope: Roped, holders: Holders) -> DrawnRoute:
     points = _points(rope, np.array([place_of(item.end, holders)[:rope.dim] for item in rope.route]))
     if not rope.mass:
         route = _without_mass(rope, points)
-        return replace(route, stretch=_stretch(rope, route.length))
+        return stretched(rope, route)
     route = _along(rope, points)
-    if offsets := _offsets(rope, _stretch(rope, route.length)):
-        route = _along(rope, [replace(point, offset=offsets.get(point.name, 0.0)) for point in points])
-    return replace(route, stretch=_stretch(rope, route.length))
+    if offsets := _offsets(rope, stretched(rope, route)):
+        route = _along(rope, [replace(point, offsets=offsets.get(point.name, (0.0, 0.0))) for point in points])
+    return stretched(rope, route)
 
 
 def span_at(rope: Roped, route: DrawnRoute, s: float) -> int:
@@ -103,13 +103,18 @@ def drawn_anew(rope: Roped, route: DrawnRoute, centres: np.ndarray,
     """
     arcs = {arc.name: arc for arc in route.sheaves}
     ends = dict(zip((0, len(rope.route) - 1), route.reach, strict=True))
-    points = [replace(point, sense=arcs[point.name].sense, offset=arcs[point.name].tangent_radius - point.radius)
-              if point.name in arcs else replace(point, offset=ends[k] - point.radius) if point.name else point
-              for k, point in enumerate(_points(rope, centres))]
+    points = [replace(point, sense=arcs[point.name].sense, offsets=_beyond(point, arcs[point.name].tangent_radius))
+              if point.name in arcs else replace(point, offsets=_beyond(point, (ends[k], ends[k]))) if point.name
+              else point for k, point in enumerate(_points(rope, centres))]
     points = [replace(point, groove=grooves[point.name]) if grooves and point.name in grooves else point
               for point in points]
     found = _along(rope, points) if rope.mass else _without_mass(rope, points)
     return replace(found, stretch=found.length / route.free_length)
+
+
+def _beyond(point: RoutePoint, reach: tuple[float, float]) -> tuple[float, float]:
+    """Return the offsets of the tangent points of a sheave or a drum with these radii of theirs, m."""
+    return reach[0] - point.radius, reach[1] - point.radius
 
 
 def _may_be_absent(item: RouteItem) -> bool:
@@ -137,15 +142,21 @@ def _points(rope: Roped, centres: np.ndarray) -> list[RoutePoint]:
             for point, sense in zip(points, senses_in_space(points, rope.closed), strict=True)]
 
 
-def _offsets(rope: Roped, stretch: float) -> dict[str, float]:
-    """Return the distances by which bending moves the tangent points away from sheaves, m, by name; none without
-    tension, where they are not known. At low tension they are those of the longest layer for which they hold.
+def _offsets(rope: Roped, route: DrawnRoute) -> dict[str, tuple[float, float]]:
+    """Return the distances by which bending moves the tangent points away from sheaves where the rope runs on and off,
+    m, by name; zero without tension, where they are not known. At low tension they are those of the longest layer for
+    which they hold.
     """
     EA, EI = rope.stiffness
-    tension = EA * (stretch - 1)
-    if tension <= 0:
-        return {}
-    return {wheel.name: min(EI / tension, (MAX_LAYER * wheel.radius)**2) / (2 * wheel.radius) for wheel in rope.wheels}
+    n = len(rope.route)
+
+    def offset(radius: float, span: int) -> float:
+        tension = EA * (route.stretch_of(span) - 1)
+        return min(EI / tension, (MAX_LAYER * radius)**2) / (2 * radius) if tension > 0 else 0.0
+
+    return {item.name: (offset(item.radius, k - 1 if k or rope.closed else 0),
+                        offset(item.radius, k if k < n - 1 or rope.closed else k - 1))
+            for k, item in enumerate(rope.route) if isinstance(item, Sheave | Drum)}
 
 
 def _point(rope: Roped, k: int, centre: np.ndarray, sense: int) -> RoutePoint:
@@ -158,19 +169,51 @@ def _point(rope: Roped, k: int, centre: np.ndarray, sense: int) -> RoutePoint:
                       contact=getattr(item, "contact", True))
 
 
-def _stretch(rope: Roped, drawn: float) -> float:
-    """Return drawn over stress-free length; drawn: the length as drawn, m."""
-    if rope.length is None:
+def stretched(rope: Roped, route: DrawnRoute) -> DrawnRoute:
+    """Return a route with the stretch of its rope. Raises ValueError(cause, remedy) for one that is not taut."""
+    if not isinstance(rope.length, tuple):
+        return replace(route, stretch=_stretch(rope, rope.length, route.length))
+    spans = tuple(_taut(k, free, span.length) for k, (free, span) in enumerate(
+        zip(rope.length, route.spans, strict=True)))
+    strains = [span.length / free - 1 for span, free in zip(route.spans, spans, strict=True)]
+    zones = tuple(_zones(arc.length, sheave.n_zones, strains[before], strains[after]) for arc, sheave, (before, after)
+                  in zip(route.sheaves, rope.sheaves, route.beside_sheaves, strict=True))
+    whole = sum(spans) + sum(map(sum, zones))
+    return replace(route, stretch=route.length / whole, free=FreeLengths(spans, zones))
+
+
+def _taut(k: int, free: float, drawn: float) -> float:
+    """Return the stress-free length of a span, by its number, within its length as drawn, m. Raises ValueError."""
+    if free > (1 + LENGTH_TOLERANCE) * drawn:
+        raise ValueError(f"is never taut: the length of its span {k}, {show(free, 'm')}, exceeds that as drawn, "
+                         f"{show(drawn, 'm')}, by {show(free - drawn, 'm')}", f"give a smaller length.{k}")
+    return min(free, drawn)
+
+
+def _zones(drawn: float, n: int, before: float, after: float) -> tuple[float, ...]:
+    """Return the stress-free lengths of n zones of a wrap of a length as drawn, m, between spans with these strains.
+
+    The logarithm of the tension is linear in the angle, so that all points of the wrap need the same coefficient of
+    friction; the tension itself where one of the spans has none.
+    """
+    share = (np.arange(n) + 0.5) / n
+    strain = before * (after / before)**share if before > 0 and after > 0 else before + share * (after - before)
+    return tuple((drawn / n / (1 + strain)).tolist())
+
+
+def _stretch(rope: Roped, length: float | None, drawn: float) -> float:
+    """Return drawn over stress-free length; length: that of the rope, drawn: without what is wound, as drawn, m."""
+    if length is None:
         assert rope.tension is not None, f"{rope.where} has neither tension nor length"
         return 1 + rope.tension / rope.stiffness[0]
-    out = rope.length - rope.length_in_store
+    out = length - rope.length_in_store
     if out <= 0:
-        raise ValueError(f"is too short: its length {show(rope.length, 'm')} is that of the whole rope, and its "
+        raise ValueError(f"is too short: its length {show(length, 'm')} is that of the whole rope, and its "
                          f"drums have {show(rope.length_in_store, 'm')} in store",
                          "give a greater length, or tension")
     if out > (1 + LENGTH_TOLERANCE) * drawn:
         wound = f" without {show(rope.length_in_store, 'm')} in store" if rope.length_in_store else ""
-        raise ValueError(f"is never taut: its length {show(rope.length, 'm')}{wound} exceeds that of its route as "
+        raise ValueError(f"is never taut: its length {show(length, 'm')}{wound} exceeds that of its route as "
                          f"drawn, {show(drawn, 'm')}, by {show(out - drawn, 'm')}",
                          "give a smaller length, or tension")
     return max(1.0, drawn / out)

@@ -36,8 +36,8 @@ class RoutePoint:
 
     label: its name in messages; centre: (2,) in m; radius: to the axis of the rope, m, 0 at an end; sense: 1 where the
     rope runs counter-clockwise around it, -1 clockwise, 0 at an end or where that is not known; turns: whole turns
-    beside the wrap angle of the tangents; name: of the sheave; offset: of the tangent points beyond the radius, m;
-    contact: whether the rope lies on it.
+    beside the wrap angle of the tangents; name: of the sheave; offsets: of the tangent points where the rope runs on
+    and off beyond the radius, m; contact: whether the rope lies on it.
     groove: (dim, 2), unit vectors of the plane of the groove. In space the centre is (3,), and the sense is about the
     axis, to the right of which the second vector follows from the first.
     """
@@ -48,14 +48,14 @@ class RoutePoint:
     sense: int = 0
     turns: int = 0
     name: str = ""
-    offset: float = 0.0
+    offsets: tuple[float, float] = (0.0, 0.0)
     groove: np.ndarray = field(default_factory=lambda: np.eye(2))
     contact: bool = True
 
     @property
-    def reach(self) -> float:
-        """Return the radius of the tangent points, m."""
-        return self.radius + self.offset
+    def reach(self) -> tuple[float, float]:
+        """Return the radii of the tangent points where the rope runs on and off, m."""
+        return self.radius + self.offsets[0], self.radius + self.offsets[1]
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,9 +81,9 @@ class DrawnArc:
     """The rope on the sheave ``name``: centre (dim,) in m, radius of the rope's axis in m, sense and groove as in
     `RoutePoint`.
 
-    tangent_radius: of the tangent points, m, above the radius for a rope that bends; in space the arm of the tension
-    about the axis. angle_on, angle_off: of the two tangent points from the centre, in rad, so that angle_off - angle_on
-    is the sense times the wrap angle, whole turns included.
+    tangent_radius: of the tangent points where the rope runs on and off, m, above the radius for a rope that bends; in
+    space the arm of the tension about the axis. angle_on, angle_off: of the two tangent points from the centre, in rad,
+    so that angle_off - angle_on is the sense times the wrap angle, whole turns included.
     """
 
     name: str
@@ -92,7 +92,7 @@ class DrawnArc:
     sense: int
     angle_on: float
     angle_off: float
-    tangent_radius: float
+    tangent_radius: tuple[float, float]
     groove: np.ndarray = field(default_factory=lambda: np.eye(2))
 
     @property
@@ -106,19 +106,28 @@ class DrawnArc:
         return self.radius * self.wrap
 
 
+@dataclass(frozen=True)
+class FreeLengths:
+    """Stress-free lengths in m of each span of a route, and of the zones, equal angles, of the wrap on each sheave."""
+
+    spans: tuple[float, ...]
+    zones: tuple[tuple[float, ...], ...]
+
+
 @dataclass(frozen=True, eq=False)
 class DrawnRoute:
     """A route as drawn, in the rope's order: one span more than sheaves, or of a closed one as many, the first from the
     first sheave to the next.
 
     reach: radii of the tangent points of both ends, m, 0 at an anchor. stretch: drawn length over stress-free length,
-    the same everywhere.
+    the same everywhere unless ``free`` has the stress-free lengths.
     """
 
     spans: tuple[DrawnSpan, ...]
     sheaves: tuple[DrawnArc, ...]
     reach: tuple[float, float]
     stretch: float = 1.0
+    free: FreeLengths | None = None
 
     @property
     def length(self) -> float:
@@ -130,12 +139,34 @@ class DrawnRoute:
         """Return its stress-free length, m."""
         return self.length / self.stretch
 
+    def free_span(self, k: int) -> float:
+        """Return the stress-free length of a span, m."""
+        return self.spans[k].length / self.stretch if self.free is None else self.free.spans[k]
+
+    def free_wrap(self, number: int) -> float:
+        """Return the stress-free length of the rope on a sheave, m."""
+        return self.sheaves[number].length / self.stretch if self.free is None else sum(self.free.zones[number])
+
+    def free_zones(self, number: int, start: float, end: float, n: int) -> np.ndarray:
+        """Return (n + 1,): the arc-lengths of the ends of n equal angles of a wrap, from the one of its start to that
+        of its end, m.
+        """
+        if self.free is None:
+            return np.linspace(start, end, n + 1)
+        zones = np.append(0.0, np.cumsum(self.free.zones[number]))
+        shares = np.interp(np.linspace(0.0, 1.0, n + 1), np.linspace(0.0, 1.0, len(zones)), zones / zones[-1])
+        return start + (end - start) * shares
+
+    def stretch_of(self, k: int) -> float:
+        """Return the stretch of a span, by its number, from the last one on where this is negative."""
+        return self.stretch if self.free is None else self.spans[k].length / self.free.spans[k]
+
     def arc_lengths(self, start: float) -> list[tuple[float, float]]:
         """Return the stress-free arc-lengths of both ends of each span, m; start: that of the first point."""
         found: list[tuple[float, float]] = []
         for k, number, _ in self.sequence():
-            found.append((start, start + self.spans[k].length / self.stretch))
-            start = found[-1][1] + (0.0 if number is None else self.sheaves[number].length / self.stretch)
+            found.append((start, start + self.free_span(k)))
+            start = found[-1][1] + (0.0 if number is None else self.free_wrap(number))
         return found
 
     def sequence(self) -> Iterator[tuple[int, int | None, int]]:
@@ -189,7 +220,7 @@ def drawn_route(points: list[RoutePoint], rope_radius: float = 0.0, closed: bool
         for point in points:
             if point.radius and point not in both:
                 _check_clear(span, *both, point)
-    return DrawnRoute(tuple(spans), tuple(sheaves), (points[0].reach, points[-1].reach))
+    return DrawnRoute(tuple(spans), tuple(sheaves), (points[0].reach[1], points[-1].reach[0]))
 
 
 def without_wraps(points: list[RoutePoint], may_be_absent: list[bool], rope_radius: float,
@@ -217,7 +248,8 @@ def without_wraps(points: list[RoutePoint], may_be_absent: list[bool], rope_radi
             foot = span.start + min(max(along, 0.0), span.length) * span.direction
             spans.append(DrawnSpan(at, foot, float(np.linalg.norm(foot - at))))
             angle = atan2(span.direction[1], span.direction[0]) - point.sense * pi / 2
-            arcs[point.name] = DrawnArc(point.name, point.centre, point.radius, point.sense, angle, angle, point.radius)
+            arcs[point.name] = DrawnArc(point.name, point.centre, point.radius, point.sense, angle, angle,
+                                        (point.radius, point.radius))
             at = foot
         spans.append(DrawnSpan(at, span.end, float(np.linalg.norm(span.end - at))))
     return DrawnRoute(tuple(spans), tuple(arcs[point.name] for point in points if point.name in arcs), route.reach)
@@ -234,14 +266,15 @@ def _turn(points: list[RoutePoint], kept: list[int], k: int) -> float:
 def _span(one: RoutePoint, other: RoutePoint, rope_radius: float) -> DrawnSpan:
     """Return the tangent from a point of a route to the next one. Raises ValueError where there is none."""
     x, y = (other.centre - one.centre).tolist()
-    apart, across = hypot(x, y), other.sense * other.reach - one.sense * one.reach
+    leaves, arrives = one.sense * one.reach[1], other.sense * other.reach[0]
+    apart, across = hypot(x, y), arrives - leaves
     if apart <= abs(across):
         raise ValueError(*without_tangent(one, other, apart))
     length = ((apart - across) * (apart + across)) ** 0.5
     check_length(one, other, length, rope_radius)
     u = np.array([length * x + across * y, length * y - across * x]) / apart**2
     n = np.array([-u[1], u[0]])
-    return DrawnSpan(one.centre - one.sense * one.reach * n, other.centre - other.sense * other.reach * n, length)
+    return DrawnSpan(one.centre - leaves * n, other.centre - arrives * n, length)
 
 
 def _split(points: list[RoutePoint], spans: list[DrawnSpan], rope_radius: float, closed: bool
@@ -272,9 +305,9 @@ def _foot(span: DrawnSpan, sheave: RoutePoint) -> np.ndarray:
     x, y = (sheave.centre - span.start).tolist()
     ux, uy = span.direction.tolist()
     away = sheave.sense * (ux * y - uy * x)
-    if away < sheave.reach:
+    if away < sheave.reach[0]:
         raise ValueError(f"the rope touches {sheave.label}, which has contact=False: it passes its centre at "
-                         f"{show(away, 'm')} on its side, and its radius is {show(sheave.reach, 'm')}",
+                         f"{show(away, 'm')} on its side, and its radius is {show(sheave.reach[0], 'm')}",
                          "leave contact=False out, move the sheave, or give the other side")
     foot: np.ndarray = span.start + (x * ux + y * uy) * span.direction
     return foot
@@ -313,7 +346,7 @@ def _arc(point: RoutePoint, before: DrawnSpan, after: DrawnSpan) -> DrawnArc:
     if not point.contact:
         x, y = (before.end - point.centre).tolist()
         at = atan2(y, x)
-        return DrawnArc(point.name, point.centre, point.radius, point.sense, at, at, point.radius + point.offset)
+        return DrawnArc(point.name, point.centre, point.radius, point.sense, at, at, point.reach)
     if not point.sense:
         raise ValueError(f"the route runs straight through the centre of {point.label}, which does not tell its side",
                          'give side="left" or "right"')
@@ -327,7 +360,7 @@ def _arc(point: RoutePoint, before: DrawnSpan, after: DrawnSpan) -> DrawnArc:
     x, y = ((before.end - point.centre) @ point.groove).tolist()
     on = atan2(y, x)
     return DrawnArc(point.name, point.centre, point.radius, point.sense, on, on + point.sense * wrap,
-                    point.radius + point.offset, point.groove)
+                    point.reach, point.groove)
 
 
 def _check_clear(span: DrawnSpan, one: RoutePoint, other: RoutePoint, sheave: RoutePoint) -> None:

@@ -98,7 +98,7 @@ def _tangent(sheave: RoutePoint, place: np.ndarray, way: int, other: RoutePoint,
     """Return the tangent point of the span that leads to a place (way 1) or comes from there (-1)."""
     if not sheave.radius:
         return sheave.centre
-    R, arm = sheave.reach, place - sheave.centre
+    R, arm = sheave.reach[way > 0], place - sheave.centre
     x, y = (arm @ sheave.groove).tolist()
     p = hypot(x, y)
     z = float(np.linalg.norm(arm - sheave.groove @ np.array([x, y])))

@@ -160,7 +160,7 @@ class SceneMethods(SceneData):
         closed: bool = False,
         elements: int | Sequence[int] = 4,
         tension: float | None = None,
-        length: float | None = None,
+        length: float | Sequence[float] | None = None,
         element: str = "cable8p",
         mass: bool = True,
     ) -> Rope:

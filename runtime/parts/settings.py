@@ -154,6 +154,8 @@ _ADJUST = {"anyOf": [{"type": "array", "items": {"type": "string"}, "minItems": 
 _TO = {"type": "object", "additionalProperties": {"type": "number"}, "minProperties": 1}
 
 
+Wraps = Annotated[str, one_of(("slip", "stick"))]
+"""Whether ropes slip on the sheaves on which they have friction, or stick to them."""
 IMPENDING = {"hoisting": -1.0, "lowering": 1.0}
 """The motions that ropes are about to begin, with their sense in the order of their routes."""
 
@@ -175,6 +177,10 @@ class EquilibriumSettings(Part):
     impending: "hoisting" or "lowering", where ropes are about to slide towards their first or their last items: their
         friction is at its limit on all sheaves that are held or whose rotation is prescribed; on a sheave that turns
         freely there is none. By default ropes have no friction
+    wraps: whether ropes "slip" without friction on their sheaves, or "stick" to those on which they have friction,
+        held ones and those that turn: their material stays on the groove where it lies in the state to begin from, as
+        drawn by default; beyond the tangent points it comes with the stretch of the spans there. Parts of a wrap slide
+        where friction is at its limit; a wrap that slides as a whole is an error
     adjust: parameters of the scene, by paths as in sweeps, such as "dropper.length", with limits (low, high) or "free",
         that are adjusted until the state has the values ``to``
     to: values of the state by name, such as "A.position.y" or "wire@12.5.tension"
@@ -189,6 +195,7 @@ class EquilibriumSettings(Part):
     seek_stable: Flag = True
     scale_gravity: Flag = True
     impending: Annotated[str | None, one_of(IMPENDING, optional=True)] = None
+    wraps: Wraps = "slip"
     adjust: Annotated[dict[str, Limits] | None, checked(_adjust, _ADJUST)] = None
     to: Annotated[dict[str, float] | None, checked(_to, _TO)] = None
 
@@ -203,6 +210,28 @@ class EquilibriumSettings(Part):
         if self.impending is not None and self.method != "newton":
             raise ValueError("has friction of ropes at its limit along no path of equilibria", 'take method="newton"')
         return self
+
+    @model_validator(mode="after")
+    def _sticks_in_one_state(self) -> "EquilibriumSettings":
+        if not self.sticks:
+            return self
+        if self.impending is not None:
+            raise ValueError(f'has wraps="stick" and impending="{self.impending}"', "give one of them")
+        if self.method != "newton":
+            raise ValueError("has ropes that stick along no path of equilibria", 'take method="newton"')
+        if self.adjust is not None:
+            raise ValueError("adjusts no parameters of scenes with ropes that stick", "leave adjust out, or wraps")
+        return self
+
+    @property
+    def sticks(self) -> bool:
+        """Return whether ropes stick to their sheaves."""
+        return self.wraps == "stick"
+
+    @property
+    def has_friction(self) -> bool:
+        """Return whether ropes have friction on their sheaves."""
+        return self.sticks or self.impending is not None
 
 
 class RelaxationSettings(Part):
@@ -223,4 +252,4 @@ class ModeSettings(Part):
 
     kind = "modes"
     n: Count
-    wraps: Annotated[str, one_of(("slip", "stick"))] = "slip"
+    wraps: Wraps = "slip"

@@ -167,18 +167,18 @@ def finite(unit: str = "") -> Check:
     return checked(lambda value: number(value, unit), number_schema(unit))
 
 
+def positive_number(value: Any, unit: str = "") -> float:
+    """Return ``value`` as a finite float above 0 and within `LIMITS`. Raises ValueError."""
+    result, least = number(value, unit), LIMITS.get(unit, OTHER_LIMITS)[0]
+    if result < least:
+        rule = "be positive" if result <= 0 else f"not be below {show(least, unit)}"
+        raise ValueError(f"must {rule}, got {show(result, unit)}")
+    return result
+
+
 def positive(unit: str = "") -> Check:
     """Return the check of a finite number above 0 and within `LIMITS`."""
-    least = LIMITS.get(unit, OTHER_LIMITS)[0]
-
-    def check(value: Any) -> float:
-        result = number(value, unit)
-        if result < least:
-            rule = "be positive" if result <= 0 else f"not be below {show(least, unit)}"
-            raise ValueError(f"must {rule}, got {show(result, unit)}")
-        return result
-
-    return checked(check, number_schema(unit, exclusiveMinimum=0))
+    return checked(lambda value: positive_number(value, unit), number_schema(unit, exclusiveMinimum=0))
 
 
 def not_negative(unit: str = "") -> Check:

@@ -266,6 +266,7 @@ class Scene(Viewable, DescribedScene):
         seek_stable: bool | None = None,
         scale_gravity: bool | None = None,
         impending: str | None = None,
+        wraps: str | None = None,
         adjust: Mapping[str, tuple[float, float] | str | None] | Sequence[str] | None = None,
         to: Mapping[str, float] | None = None,
         start: Equilibrium | None = None,
@@ -280,7 +281,8 @@ class Scene(Viewable, DescribedScene):
         or, from a state under all loads, starts anew from rest without loads, and needs the same mesh.
 
         Ropes have no friction, but with ``impending``: of ropes that are about to move towards their first items,
-        "hoisting", or towards their last ones, "lowering".
+        "hoisting", or towards their last ones, "lowering"; and with wraps="stick": of ropes that stay on the sheaves on
+        which they have friction as they lie there as drawn, or in the state ``start``.
 
         adjust, to: parameters, by path with limits or "free", that are changed until the state has given values, by
         name: ``adjust={"dropper.length": "free"}, to={"wire@20.position.y": 5.3}``. The state's ``scene`` is the
@@ -292,7 +294,7 @@ class Scene(Viewable, DescribedScene):
         _refuse_unknown("equilibrium", unknown, (*EquilibriumSettings.keywords(), "start"))
         given = {"load_steps": load_steps, "tolerance": tolerance, "max_iterations": max_iterations, "method": method,
                  "largest_step": largest_step, "seek_stable": seek_stable, "scale_gravity": scale_gravity,
-                 "impending": impending, "adjust": adjust, "to": to}
+                 "impending": impending, "wraps": wraps, "adjust": adjust, "to": to}
         settings = EquilibriumSettings(**self.equilibrium_settings | {k: v for k, v in given.items() if v is not None})
         any_mesh = settings.method != "arc_length"  # which needs the direction of its path
         begin = None if start is None else _equilibrium_state(self, start, anew=True, any_mesh=any_mesh)

@@ -37,7 +37,8 @@ PLACES = {
         "solve/adjustment/parameter_search.py"],
     "ropes: their points on sheaves, and the constraints there": [
         "model/rope_rates.py", "model/rope_states.py", "solve/modes/stuck_wraps.py",
-        "results/section_forces/ropes.py", "solve/motion/integrator_choice.py", "solve/statics/ropes_at_rest.py"],
+        "results/section_forces/ropes.py", "solve/motion/integrator_choice.py", "solve/statics/held_wraps.py",
+        "solve/statics/ropes_at_rest.py"],
     "points that must not coincide, as a force or a distance has no direction there": [
         "solve/notes/coincident_points.py"],
     "fleet angles, against what sheaves in space take": ["solve/notes/fleet_angles.py"],
@@ -52,7 +53,8 @@ PLACES = {
 SCENE_PLACES = {
     "friction": [
         "choice/indicators.py", "results/rope_tensions.py", "solve/modes/modes.py", "solve/motion/integrator_choice.py",
-        "solve/notes/uncontrolled_errors.py", "solve/statics/relaxation.py", "solve/statics/static.py"],
+        "solve/notes/uncontrolled_errors.py", "solve/statics/relaxation.py", "solve/statics/static.py",
+        "solve/statics/sticking_ropes.py"],
     "points that move along a cable: slides and crossings": [
         "choice/chooser.py", "results/animation/curves.py", "results/animation/references.py",
         "results/animation/sources.py", "results/charts.py", "results/section_forces/forces.py",

@@ -50,9 +50,10 @@ def check_tangents(route):
     closed = len(route.spans) == len(route.sheaves)
     before_each = [route.spans[-1], *route.spans[:-1]] if closed else route.spans[:-1]
     for before, arc, after in zip(before_each, route.sheaves, route.spans[not closed:], strict=True):
-        for angle, point, span in ((arc.angle_on, before.end, before), (arc.angle_off, after.start, after)):
+        for angle, point, span, radius in ((arc.angle_on, before.end, before, arc.tangent_radius[0]),
+                                           (arc.angle_off, after.start, after, arc.tangent_radius[1])):
             radial = np.array([cos(angle), sin(angle)])
-            assert point == pytest.approx(arc.centre + arc.tangent_radius * radial, abs=1e-13)
+            assert point == pytest.approx(arc.centre + radius * radial, abs=1e-13)
             assert span.direction == pytest.approx(arc.sense * np.array([-radial[1], radial[0]]), abs=1e-13)
         assert arc.wrap == arc.sense * (arc.angle_off - arc.angle_on) > 0
     for span in route.spans:
@@ -338,16 +339,16 @@ def test_bending_moves_tangent_points():
     route = drawn(ends[0], sheave(0, 0, R), ends[1], section=WIRE["section"], tension=T)
     check_tangents(route)
     (arc,) = route.sheaves
-    assert arc.radius == R and arc.tangent_radius - R == pytest.approx(offset, rel=1e-10)
+    assert arc.radius == R and arc.tangent_radius[0] - R == pytest.approx(offset, rel=1e-10)
     assert arc.wrap == pytest.approx(pi, rel=1e-14) and arc.length == pytest.approx(R * pi, rel=1e-14)
     assert [span.length for span in route.spans] == pytest.approx([2, 5], rel=1e-14)
     length = route.length / (1 + T / (4e3 * pi))
     by_length = drawn(ends[0], sheave(0, 0, R), ends[1], section=WIRE["section"], length=length)
     # the tension of a given length is that of the route on circles, longer or shorter by far less than its stretch
-    assert by_length.sheaves[0].tangent_radius - R == pytest.approx(offset, rel=1e-3)
+    assert by_length.sheaves[0].tangent_radius[1] - R == pytest.approx(offset, rel=1e-3)
     limit = EI / (MAX_LAYER * R)**2
     loose = fu.Rope("hoist", route=[ends[0], sheave(0, 0, R), ends[1]], **WIRE, tension=limit / 4).drawn({})
-    assert loose.sheaves[0].tangent_radius - R == pytest.approx(MAX_LAYER**2 * R / 2, rel=1e-10)  # not 4 times that
+    assert loose.sheaves[0].tangent_radius[1] - R == pytest.approx(MAX_LAYER**2 * R / 2, rel=1e-10)  # not 4 times that
 
 
 C, R = 2.0, 0.3

@@ -58,8 +58,8 @@ def test_settings_and_defaults_reach_the_solver(solvers):
     scene.equilibrium()
     scene.equilibrium_settings = {"load_steps": 7, "tolerance": 1e-6}
     scene.equilibrium(tolerance=1e-8, method="arc_length")
-    others = {"largest_step": 0.1, "seek_stable": True, "scale_gravity": True, "impending": None, "adjust": None,
-              "to": None}
+    others = {"largest_step": 0.1, "seek_stable": True, "scale_gravity": True, "impending": None, "wraps": "slip",
+              "adjust": None, "to": None}
     assert [settings.model_dump() for settings in solvers.static] == [
         {"load_steps": 1, "tolerance": 1e-9, "max_iterations": 50, "method": "newton", **others},
         {"load_steps": 7, "tolerance": 1e-8, "max_iterations": 50, "method": "arc_length", **others}]

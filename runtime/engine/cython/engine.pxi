@@ -36,6 +36,7 @@ cdef extern from * nogil:
     #include "couplings/fluid/drag.h"
     #include "couplings/hard_contact/hard_contact.h"
     #include "couplings/joint/joint.h"
+    #include "couplings/rope/rope.h"
     #include "equations/equations.h"
     #include "events/events.h"
     #include "events/list.h"
@@ -319,6 +320,12 @@ cdef extern from * nogil:
     int fu_probe_mechanism(fu_run *run, const double *along, double *left)
     int fu_joint_moves(const fu_model *model, const fu_joint *joint, const fu_state *state, int at)
     int fu_between_cables(const fu_joint *joint)
+    ctypedef struct fu_held_friction:
+        int mode
+        double f, limit, slip
+    void fu_hold_point(const fu_model *model, fu_coupling *coupling, const fu_state *state)
+    void fu_held_point(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_held_friction *out)
+    void fu_set_held_mode(const fu_coupling *coupling, const fu_state *state, int mode)
     ctypedef struct fu_joint_derivatives:
         int n[2]
         int **at

@@ -140,6 +140,29 @@ cdef class Statics(Translation):
         """Let ropes be about to slide on their sheaves in static states: speed in their order over the slip velocity."""
         self.model.impending = slip
 
+    def hold_wraps(self):
+        """Let ropes stick to the sheaves with sticking friction in static states, where they lie in the present one."""
+        for number in self._of("wrap_point"):
+            fu_hold_point(&self.model, self.couplings[<int>number], &self.run.next)
+
+    def held_wraps(self):
+        """Return the points where ropes stick to sheaves in static states: whether they stick, 2, or slide, 1 or -1 (n,);
+        friction and its limit in N, and the sliding since `hold_wraps` in m (n, 3).
+        """
+        cdef fu_held_friction of
+        numbers = self._of("wrap_point")
+        modes, found = np.zeros(len(numbers), dtype=int), np.zeros((len(numbers), 3))
+        for k, number in enumerate(numbers):
+            fu_held_point(&self.model, self.couplings[<int>number], &self.run.next, &of)
+            modes[k] = of.mode
+            found[k] = of.f, of.limit, of.slip
+        return modes, found
+
+    def set_held_wraps(self, modes):
+        """Let these points stick or slide: modes (n,), as `held_wraps` returns them."""
+        for number, mode in zip(self._of("wrap_point"), modes):
+            fu_set_held_mode(self.couplings[<int>number], &self.run.next, mode)
+
     def hold(self, int signal, value):
         """Fix the value of a signal; None restores that of the model."""
         cdef fu_signal *g = &self.signals[signal]

@@ -26,6 +26,7 @@ from ..statics.balance import balance
 from ..statics.rest_state import RestState
 from ..statics.stability import count
 from ..statics.static_problem import StaticState, units_of
+from ..statics.sticking_ropes import with_sticking_wraps
 from .contact_edges import resolve_contact_edges
 from .stuck_wraps import stuck_wraps
 
@@ -95,12 +96,12 @@ def modes(scene: SceneData, n: int, about: RestState | None = None, as_drawn: bo
     sheaves on which they have friction. ``messages`` and a FunicularWarning report what is left out or uncertain.
     Raises SceneError.
     """
-    model = build(scene)
+    model = build(with_sticking_wraps(scene) if about is not None and about.wraps == "stick" else scene)
     if about is not None:
         resolve_contact_edges(model, scene, about.static_state["q"])
     static = StaticState(scene, EquilibriumSettings(), model)
     engine = static.engine
-    notes = _begin(static, about, as_drawn)
+    notes = _begin(static, about, as_drawn, stick)
     K, constraints = condensed(engine.matrix(0.0, 0.0, 1.0), model)
     size = K.shape[0]
     if stick and rough_sheaves(scene.ropes.values()):
@@ -126,12 +127,15 @@ def modes(scene: SceneData, n: int, about: RestState | None = None, as_drawn: bo
     return found
 
 
-def _begin(static: StaticState, about: RestState | None, as_drawn: bool) -> list[str]:
+def _begin(static: StaticState, about: RestState | None, as_drawn: bool, stick: bool) -> list[str]:
     """Go to the state of the modes; return the messages on it. Raises SceneError, see `modes`."""
     if about is not None:
         if about.impending is not None:
             raise SceneError("modes", f'the state that modes are about has ropes at the limit of friction, "'
                              f'{about.impending}", which modes do not have', "take an equilibrium without impending")
+        if about.wraps == "stick" and not stick:
+            raise SceneError("modes", "the state that modes are about has ropes that stick to their sheaves, without "
+                             "which it is not at rest", 'take wraps="stick", or an equilibrium with wraps="slip"')
         about.check_supports(static.model, static.scene)
         own = static.keep()
         if any(values.shape != own[name].shape for name, values in about.static_state.items()):

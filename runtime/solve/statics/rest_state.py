@@ -139,7 +139,8 @@ class RestState(NamedArrays):
     passed, adjusted or left out; relaxation: the motion by which `Scene.relax` found the state, else None; turned: the
     angles of motions and driven joints in rad by label, with whole turns; adjustment: the parameters found for given
     values of the state, else None; ``scene`` then has these values; impending: the motion that ropes are about to
-    begin, "hoisting" or "lowering", with their friction at its limit, else None.
+    begin, "hoisting" or "lowering", with their friction at its limit, else None; wraps: whether ropes "stick" to their
+    sheaves, or "slip" without friction.
     """
 
     scene: SceneData
@@ -161,6 +162,7 @@ class RestState(NamedArrays):
     turned: dict[str, float] = field(default_factory=dict, repr=False)
     relaxation: Relaxation | None = None
     impending: str | None = None
+    wraps: str = "slip"
     adjustment: Adjustment | None = None
 
     @classmethod
@@ -176,7 +178,7 @@ class RestState(NamedArrays):
                     numbers_at_rest(engine), heading)
         state.quantities = state._quantities()
         state.path, state.layout, state.turned = [state], layout(scene), problem.turns.reached
-        state.impending = problem.settings.impending
+        state.impending, state.wraps = problem.settings.impending, problem.settings.wraps
         return state
 
     def __repr__(self) -> str:

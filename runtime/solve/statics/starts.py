@@ -56,9 +56,9 @@ def on_mesh(kept: Mapping[str, np.ndarray], was: Model, model: Model, drawn: Map
     """Return a static state on the meshes of another model of the same parts; itself on the same meshes.
 
     kept: of `was`; drawn: the state of the other model, which keeps the numbers of its elements, and the forces of
-    contacts where their number differs.
+    contacts and sheaves where their number differs.
     """
-    fitting = {name: values for name, values in kept.items() if values.shape == np.shape(drawn[name])}
+    fitting = {name: values for name, values in kept.items() if values.shape == np.shape(drawn.get(name, np.zeros(0)))}
     pairs = list(zip(was.cables, model.cables, strict=True))
     if all(np.array_equal(one.mesh.node_s, other.mesh.node_s) for one, other in pairs):
         return dict(drawn) | fitting

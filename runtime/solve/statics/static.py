@@ -11,13 +11,14 @@ import warnings
 from typing import Generic, TypeVar
 
 from ...checks.plausibility import implausible
-from ...checks.whole_scene import check_impending
+from ...checks.whole_scene import check_impending, check_sticking
 from ...errors import EquilibriumError, FunicularWarning
 from ...model.drag_forces import outside_tables
 from ...parts.rope import driven_freely, rough_sheaves
 from ...parts.scene_data import SceneData
 from ...parts.settings import EquilibriumSettings
 from ..notes.row_notes import rest_notes
+from .held_wraps import HeldWraps
 from .lying import left, lying, not_held
 from .path_following import Critical, Point, follow
 from .rest_state import CriticalPoint, RestState
@@ -49,6 +50,8 @@ def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestStat
     """
     if settings.impending is not None:
         check_impending(scene, settings.impending)
+    if settings.sticks:
+        check_sticking(scene)
     search, reached = _searched(scene, settings, start, made)
     problem, state = search.problem, search.found
     note(problem, state)
@@ -71,6 +74,9 @@ def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestStat
         raise EquilibriumError(
             f"no equilibrium was reached{at_limit}: the path from the drawn state ends at {100 * reached:.4g} % of the "
             f"load{remedy}{problem.cause()}; the state there is kept in .state", state, reached)
+    if search.wraps is not None and (cause := search.wraps.causes()):
+        raise EquilibriumError(f"ropes do not stick to their sheaves at rest: {cause} is kept in .state", state,
+                               reached)
     if scene.ropes:
         problem.restore(state.static_state)
         if off := problem.off_sheaves():
@@ -91,6 +97,8 @@ def _searched(scene: SceneData, settings: EquilibriumSettings, start: RestState 
     search = _Search(_begun(scene, settings, start), made)
     if settings.method == "arc_length":
         return search, search.along_path(start)
+    if settings.sticks:
+        return search, search.sticking()
     if settings.impending is None:
         return search, search.in_steps()
     search.problem.impend(0.0)
@@ -134,7 +142,7 @@ def note(problem: StaticProblem, state: RestState) -> None:
     for parts, what in (([f'"{name}"' for name, slide in scene.slides.items() if slide.friction is not None], "slides"),
                         ([contact.where for contact in scene.contacts.values()
                           if contact.is_hard and contact.friction_coefficient], "contacts"),
-                        ([] if problem.settings.impending else rough_sheaves(scene.ropes.values()), "ropes")):
+                        ([] if problem.settings.has_friction else rough_sheaves(scene.ropes.values()), "ropes")):
         if parts:
             problem.messages.append(f"friction of {' and '.join(parts)} is left out: at rest {what} move freely")
     problem.messages += rest_notes(problem.scene, problem.model, problem.engine, state.static_state, state.couplings)
@@ -159,6 +167,7 @@ class _Search(Generic[S]):
         self.state: S | None = None
         self.path: list[S] = []
         self.critical: list[CriticalPoint] = []
+        self.wraps: HeldWraps | None = None  # of ropes that stick
         self.slid: float | None = None  # the fraction of the friction of ropes reached before, None without any
 
     @property
@@ -206,6 +215,16 @@ class _Search(Generic[S]):
             step = 0.5 * (target - reached)
             if step < MIN_LOAD_STEP:
                 break
+        return reached
+
+    def sticking(self) -> float:
+        """Do the same with ropes that stick to their sheaves, then with points that slide at the limit of friction."""
+        self.wraps = HeldWraps(self.problem)
+        if (reached := self.in_steps()) < 1.0:
+            return reached
+        if self.wraps.settle():
+            self.path.pop()
+            self.remember(self.made.of(self.problem, stability(self.problem)))
         return reached
 
     def without_loads(self) -> bool:

@@ -22,6 +22,7 @@ from ..linear.condensation import condensed, fastest
 from ..linear.solver import solver
 from .ropes_at_rest import off_sheaves, with_ropes_at_rest
 from .starts import with_moved_supports
+from .sticking_ropes import with_sticking_wraps
 from .turns import Turns
 
 MAX_CORRECTION_GROWTH = 1e3
@@ -39,7 +40,7 @@ class StaticState:
                  turned: Mapping[str, float] | None = None):
         """model: of the scene, made if None; turned: prescribed angles of the first state, see `Turns`."""
         self.scene, self.settings = scene, settings
-        self.model = static_model(scene) if model is None else model
+        self.model = static_model(with_sticking_wraps(scene) if settings.sticks else scene) if model is None else model
         self.engine = Engine(self.model)
         drop_redundant_rows(self.model, self.engine)
         self.turns = Turns(scene, self.model, self.engine, turned)

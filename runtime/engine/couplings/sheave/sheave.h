@@ -1,7 +1,7 @@
 /* Sheaves (couplings/sheave/): the coupling in sheave.c, its state in sheave_state.c, its wrap in wrap.c and
  * wrap_friction.c, its forces in sheave_forces.c, the conditions of its tangent points in sheave_conditions.c and
  * tangent_point.c, and its results in sheave_output.c. Points where friction sticks are couplings of their own,
- * wrap_point.c.
+ * wrap_point.c, which in statics held_wrap.c holds.
  *
  * Derivatives are first by the places and slopes of both nodes, the wheel, and the material coordinates (y); the angles
  * of the wrap follow from the places (z).
@@ -263,10 +263,15 @@ void fu_point_by_z(const fu_sheave *sheave, int j, const double forces[FU_SLIDIN
 /* --- wrap_point.c --- */
 
 /* The end of a zone at which friction sticks: the number of its sheave among all couplings; its place in the wrap. Its
- * flag is its mode. */
+ * flag is its mode. held: of statics, see held_wrap.c. */
 typedef struct {
     fu_coupling base;
     int sheave, place;
+    struct {
+        int is_held;
+        double s, angle, turn; /* m; rad: on the carrier, and of the sheave on it */
+        double stretch[2];     /* of the spans beyond both tangent points */
+    } held;
 } fu_wrap_point;
 extern const fu_coupling_type fu_wrap_point_type;
 
@@ -291,6 +296,11 @@ void fu_wrap_force_at(const fu_model *model, const fu_sheave *sheave, const fu_s
 /* Adds the force f of a point by y, with the forces of a unit of it. */
 void fu_wrap_force_by_y(const fu_sheave *sheave, const fu_sheave_state *at, int j, double f,
                         const double column[FU_SLIDING], double y[Y]);
+
+/* --- held_wrap.c, see rope.h, too --- */
+
+/* Returns by how much the rope has slid at the j-th point, m, and computes the stretch of the material held there. */
+double fu_held_slip(const fu_model *model, const fu_sheave *sheave, const fu_sheave_state *at, int j, double *stretch);
 
 /* --- sheave_forces.c: by y --- */
 

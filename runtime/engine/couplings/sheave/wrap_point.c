@@ -101,16 +101,30 @@ static void force(const fu_model *model, const fu_coupling *coupling, const fu_s
 
 /* --- Newton's systems ------------------------------------------------------------------------------------------- */
 
-/* Returns the mode in a system: in statics nothing sticks. */
+static int is_static(const fu_equations *equations)
+{
+    return equations->weights.inertia == 0.0;
+}
+
+/* Returns the mode in a system: in statics nothing sticks that is not held. */
 static int mode_in(const fu_coupling *coupling, const fu_equations *equations)
 {
-    return equations->weights.inertia == 0.0 ? FU_POINT_IS_FREE : *fu_wrap_point_flag(coupling, equations->next);
+    return is_static(equations) && !point_of(coupling)->held.is_held ? FU_POINT_IS_FREE
+                                                                     : *fu_wrap_point_flag(coupling, equations->next);
 }
 
 /* Returns the time that turns w to a length, of the order of the step, s. */
 static double time_of(fu_weights weights)
 {
     return weights.rate > 0.0 ? 1.0 / weights.rate : 0.0;
+}
+
+/* Returns the sliding of a sticking point in a system, m. */
+static double sliding(const fu_model *model, const fu_sheave *sheave, const fu_sheave_state *at, int j,
+                      const fu_coulomb *of, const fu_equations *equations)
+{
+    double stretch;
+    return is_static(equations) ? fu_held_slip(model, sheave, at, j, &stretch) : time_of(equations->weights) * of->w;
 }
 
 static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, double *f,
@@ -124,9 +138,10 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
     look(model, coupling, equations->next, &at, &of);
     add_force(sheave, &at, point_of(coupling)->place, &of,
               mode == FU_STICKS ? multiplier : slips_at(model, sheave, mode) * of.limit, f);
-    internal[coupling->unknown] = mode == FU_STICKS ? -fu_row_unit(equations->weights.inertia, coupling->scale[0]) *
-                                                          time_of(equations->weights) * of.w
-                                                    : -equations->weights.stiffness * multiplier;
+    internal[coupling->unknown] = mode == FU_STICKS
+                                      ? -fu_row_unit(equations->weights.inertia, coupling->scale[0]) *
+                                            sliding(model, sheave, &at, point_of(coupling)->place, &of, equations)
+                                      : -equations->weights.stiffness * multiplier;
 }
 
 /* Computes the derivatives by y from those by the rates of the angle of a point, the rotation and s. */
@@ -136,7 +151,7 @@ static void by_y(const fu_sheave *sheave, const fu_sheave_state *at, int j, cons
     fu_wrap_force_by_y(sheave, at, j, 1.0, of, y);
 }
 
-/* Adds the row of w and the column of f. */
+/* Adds the row of w, in statics of the sliding, and the column of f. */
 static void add_row_and_column(const fu_model *model, const fu_coupling *coupling, const fu_sheave_state *at,
                                const fu_coulomb *of, const fu_equations *equations, int n,
                                const fu_wheel_column *columns, const fu_wheel_column *turned, fu_system *system)
@@ -144,8 +159,12 @@ static void add_row_and_column(const fu_model *model, const fu_coupling *couplin
     const fu_sheave *sheave = fu_sheave_of_point(model, coupling);
     const int own = fu_extra(model, coupling->unknown), j = point_of(coupling)->place;
     const double unit = fu_row_unit(equations->weights.inertia, coupling->scale[0]);
-    double row[Y], column[Y];
-    by_y(sheave, at, j, of->row, row);
+    double by[FU_SLIDING] = {of->row[0], of->row[1], of->row[2]}, row[Y], column[Y];
+    if (is_static(equations)) {
+        fu_held_slip(model, sheave, at, j, &by[2]);
+        by[2] = -by[2];
+    }
+    by_y(sheave, at, j, by, row);
     by_y(sheave, at, j, of->column, column);
     for (int i = 0; i < n; ++i) {
         const double by_rate = fu_by_column(&turned[i], row), by_f = fu_by_column(&columns[i], column);
