@@ -114,7 +114,7 @@ def test_friction_is_left_out_and_said():
 def test_a_torque_that_turns_a_sheave_freely_is_the_cause(settings):
     driven = hung(friction=0.2, inertia=0.1, torque=2.0)
     with pytest.raises(fu.EquilibriumError, match="friction of ropes is left out at rest, so that sheave \"top\" turns "
-                       "freely under its torque; prescribe its angle, or leave the torque out"):
+                       "freely under its torque; take wraps=\"stick\", prescribe its angle, or leave the torque out"):
         driven.equilibrium(**settings)
     assert hung(friction=0.2, inertia=0.1, torque=0.0).equilibrium().neutral_directions > 0
 

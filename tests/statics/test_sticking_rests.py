@@ -206,6 +206,19 @@ def test_a_load_is_added_to_a_rope_that_stands():
         assert before["B.position"][1] - run["B.position"][-1, 1] == pytest.approx(sunk, abs=apart)
 
 
+def test_runs_with_regularised_friction_begin_with_the_creep_that_holds_the_rope():
+    """Tensions jump by 1e-6 of themselves, and friction by as little: it relaxes by 1e-3 m/s."""
+    scene = capstan((100.0, 120.0), model="regularised")
+    rest = scene.equilibrium(wraps="stick")
+    assert rest.held["top"] == pytest.approx(np.full(9, log(1.2) / (0.3 * pi)), rel=2e-2)
+    run = scene.run(1e-4, output_step=1e-4, tol=1e-6, integrator="radau", initial=rest)
+    for k, tolerance in ((0, 1e-5), (1, 1e-4)):
+        for name in ("tension_on", "tension_off", "torque"):
+            assert run[f"top.{name}"][k] == pytest.approx(rest[f"top.{name}"], rel=tolerance)
+    creep = 1e-3 * log(1.2) / (0.3 * pi)
+    assert run["top.slip"][0] == pytest.approx(creep, rel=0.05)
+
+
 # ---- beside other things
 
 def test_modes_of_two_weights_that_stick():

@@ -25,12 +25,15 @@ from ...parts.validation import show
 from .ropes_at_rest import with_ropes_at_rest
 from .stability import Stability
 from .static_problem import StaticState
+from .sticking_ropes import held_friction
 from .turns import prescribed_angles
 
 VALUE_ROUNDING = 1e-12
 """Rounding error of an adjusted value, as a fraction of it."""
 POSITION_TOLERANCE = 1e-6
 """Distance of two equal positions, as a fraction of the scene's size."""
+MAX_CREEPING = 0.9
+"""Regularised friction over its limit with which ropes begin to creep, at most: at twice its velocity."""
 
 SIGNAL_START_REMEDY = "let its signal start at the value of the state, or take the equilibrium of this scene"
 
@@ -140,7 +143,8 @@ class RestState(NamedArrays):
     angles of motions and driven joints in rad by label, with whole turns; adjustment: the parameters found for given
     values of the state, else None; ``scene`` then has these values; impending: the motion that ropes are about to
     begin, "hoisting" or "lowering", with their friction at its limit, else None; wraps: whether ropes "stick" to their
-    sheaves, or "slip" without friction.
+    sheaves, or "slip" without friction; held: by the names of sheaves to which they stick, friction over its limit at
+    the ends of the zones (zones + 1,), positive against sliding in the order of the rope.
     """
 
     scene: SceneData
@@ -163,6 +167,7 @@ class RestState(NamedArrays):
     relaxation: Relaxation | None = None
     impending: str | None = None
     wraps: str = "slip"
+    held: dict[str, np.ndarray] = field(default_factory=dict, repr=False)
     adjustment: Adjustment | None = None
 
     @classmethod
@@ -179,6 +184,7 @@ class RestState(NamedArrays):
         state.quantities = state._quantities()
         state.path, state.layout, state.turned = [state], layout(scene), problem.turns.reached
         state.impending, state.wraps = problem.settings.impending, problem.settings.wraps
+        state.held = held_friction(problem.model, engine) if problem.settings.sticks else {}
         return state
 
     def __repr__(self) -> str:
@@ -313,6 +319,16 @@ class RestState(NamedArrays):
         model.place_slides(self.static_state["s"])
         for rope in model.ropes:
             follow(model, rope)
+        self._creep(model)
+
+    def _creep(self, model: Model) -> None:
+        """Let ropes creep on sheaves with regularised friction as fast as for the friction that holds them at rest."""
+        for sheave in model.sheaves:
+            if sheave.name in self.held and not sheave.sticks:
+                part = np.clip(self.held[sheave.name], -MAX_CREEPING, MAX_CREEPING)
+                w = sheave.slip_velocity * part / np.sqrt(1 - part**2)
+                length = model.q[sheave.s[-1]] - model.q[sheave.s[0]] + sheave.closing
+                model.v[sheave.s] = -w * length / (sheave.radius * self[f"{sheave.name}.wrap_angle"])
 
     def _quantities(self) -> dict[str, np.ndarray]:
         kept = self.static_state

@@ -62,9 +62,9 @@ def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestStat
                   'limit point, which method="arc_length" passes; or take more load_steps or max_iterations')
         if problem.turns.fraction < 1.0:
             remedy = f"; {problem.turns}" + (f"; {problem.turns.lost}" if problem.turns.lost else remedy)
-        if driven := driven_freely(scene.ropes.values()):
+        if not settings.sticks and (driven := driven_freely(scene.ropes.values())):
             remedy = (f"; friction of ropes is left out at rest, so that sheave {' and '.join(driven)} turns freely "
-                      "under its torque; prescribe its angle, or leave the torque out")
+                      'under its torque; take wraps="stick", prescribe its angle, or leave the torque out')
         if slides := not_held(problem, lying(problem.scene, problem.model, problem.model.q)):
             remedy = f"; {slides}{remedy}"
         at_limit = "" if settings.impending is None else f' with ropes at the limit of friction, "{settings.impending}"'

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
+
+from ...engine import Engine
+from ...model.model import Model
 from ...parts.rope_items import RouteItem, Sheave
 from ...parts.scene_data import SceneData
 
@@ -20,3 +24,14 @@ def _sticking(item: RouteItem) -> RouteItem:
     if not isinstance(item, Sheave) or item.friction is None or not (item.coefficient and item.contact):
         return item
     return item.model_copy(update={"friction": item.friction.model_copy(update={"model": "stick"})})
+
+
+def held_friction(model: Model, engine: Engine) -> dict[str, np.ndarray]:
+    """Return friction over its limit at the points of wraps that stick in the engine's static state, by the names of
+    their sheaves (zones + 1,); zero without a normal force.
+    """
+    f, limit, _ = engine.held_wraps()[1].T
+    part = np.divide(f, limit, out=np.zeros_like(f), where=limit > 0)
+    sheaves = [sheave for sheave in model.sheaves if sheave.sticks]
+    ends = np.cumsum([len(sheave.points) for sheave in sheaves], dtype=int)
+    return {sheave.name: of for sheave, of in zip(sheaves, np.split(part, ends[:-1]), strict=True)}
