@@ -11,6 +11,10 @@ are those of the stretched rope. Beside a tangent point the stretch of the span 
 Regularised friction is the limit times w/sqrt(w^2 + v0^2). Coulomb friction that sticks is a multiplier f with w = 0;
 where it slides, f is the limit in a direction. Since f acts on s by the mean stretch and w has that of one side, a
 sticking point through which material passes takes f s' times half the jump of the stretch: creep.
+
+At rest a rope that sticks has no w. There its sliding is sigma R (phi - psi) - X(s) since the state in which it began
+to stick, with the place X along the groove that a material coordinate had: linear over each zone, with the stretch of
+the spans beyond both tangent points. f is the same.
 """
 
 from __future__ import annotations

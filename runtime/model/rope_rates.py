@@ -29,7 +29,7 @@ from ..parts.rope_route_space import groove_of
 from .attachments import AttachmentModel
 from .model import Model
 from .rope_model import DrumCoordinates, RopeModel, rope_model
-from .rope_states import moved
+from .rope_states import moved, wrap_angle
 from .rope_wheels import DrumModel, SheaveModel
 from .ropes import AnchorModel
 from .span_coordinates import SpanCoordinates
@@ -43,8 +43,8 @@ def follow(model: Model, rope: RopeModel) -> None:
     """Set the rates of a rope in a model, in its state, to those that follow from the velocities of bodies.
 
     Sheaves and drums turn relative to the body that they are on only where this is prescribed. A closed rope does not
-    run around: the mean rate of its arc-lengths is zero. Raises SceneError for a rope of given lengths of spans that
-    moves: the tensions would not stay as given.
+    run around: the mean rate of its arc-lengths is zero. A rope of given lengths of spans does not slide on its
+    sheaves; in space it must be at rest. Raises SceneError.
     """
     _set_turns(model, rope)
     if not rope.part.mass:
@@ -52,9 +52,9 @@ def follow(model: Model, rope: RopeModel) -> None:
     (_follow_in_plane if rope.part.dim == 2 else _follow_in_space)(model, rope)
     model.v[rope.held] = 0.0
     turning = np.array([turn - rope.first for _, turn in rope.turns if turn >= 0], dtype=int)
-    if rope.route.free is not None and np.any(np.delete(model.v[rope.coordinates], turning)):
-        raise SceneError(rope.part.where, "has lengths of spans, and what holds it moves as drawn: the rates with "
-                         "which it starts are not known", "let it start at rest, or give "
+    if rope.part.dim == 3 and rope.route.free is not None and np.any(np.delete(model.v[rope.coordinates], turning)):
+        raise SceneError(rope.part.where, "is in space and has lengths of spans, and what holds it moves as drawn: the "
+                         "rates with which it starts are not known", "let it start at rest, or give "
                          f'"{rope.part.name}.coordinate_rates" in the state to start from')
 
 
@@ -112,9 +112,44 @@ def _wound_along(rope: RopeModel, route: DrawnRoute, wound: dict[int, float]) ->
 
 def _follow_in_plane(model: Model, rope: RopeModel) -> None:
     """Set the rates of a planar rope but those of rotations."""
-    q, v = model.q, model.v
+    q = model.q
     holders = _joined(q, rope, list(_holders(model, rope)))
     spans = [_SpanRates.of(q, span, holders[k], holders[(k + 1) % len(holders)]) for k, span in enumerate(rope.spans)]
+    (_slide_evenly if rope.route.free is None else _roll)(model, rope, holders, spans)
+
+
+def _roll(model: Model, rope: RopeModel, holders: list[_Holder], spans: list[_SpanRates]) -> None:
+    """Set the rates of the spans and zones of a planar rope that does not slide on its sheaves and drums.
+
+    The stretch at a point of a wrap is that of the side from which the material comes (derive/couplings/
+    sheave_friction.py).
+    """
+    q, v, n = model.q, model.v, len(holders)
+    for at, span in zip(rope.spans, spans, strict=True):
+        v[list(at.s)] = [holder.radius * (span.turning - holder.spin) / _slope(q, at, end)
+                         for end, holder in zip((0, -1), span.holders, strict=True)]
+    sheaves = {sheave.before.first: sheave for sheave in model.sheaves}
+    for k, after in rope.route.beside_sheaves:
+        sheave, holder = sheaves[rope.spans[k].first], holders[(k + 1) % n]
+        s = q[sheave.s] + np.r_[np.zeros(sheave.n_zones), sheave.closing]
+        wrap = float(wrap_angle(model, sheave, q[None])[0])
+        stretch = np.r_[_slope(q, rope.spans[k], -1), sheave.radius * wrap / sheave.n_zones / np.diff(s),
+                        _slope(q, rope.spans[after], 0)]
+        along = holder.radius * (np.linspace(spans[k].turning, spans[after].turning, len(s)) - holder.spin)
+        v[sheave.s] = along / np.where(along < 0, stretch[:-1], stretch[1:])
+    for at, span in zip(rope.spans, spans, strict=True):
+        start, end = v[list(at.s)]
+        span.set(q, v, at, (span.growth - span.length / span.free * (end - start)) / span.free)
+
+
+def _slope(q: np.ndarray, span: SpanCoordinates, end: int) -> float:
+    """Return the stretch of a span at its first end, 0, or its last one, -1."""
+    return float(np.linalg.norm(q[span.node(end)][span.dim :]))
+
+
+def _slide_evenly(model: Model, rope: RopeModel, holders: list[_Holder], spans: list[_SpanRates]) -> None:
+    """Set the rates of the spans of a planar rope that slides on its sheaves so that it stays evenly stretched."""
+    q, v = model.q, model.v
     stretch = sum(span.length for span in spans) / sum(span.free for span in spans)
     pieces: list[tuple[float, float]] = []  # growth and stress-free length of spans, and of the wraps after them
     for k, number, after in rope.route.sequence():
@@ -150,14 +185,15 @@ def _set_turns(model: Model, rope: RopeModel) -> None:
 @dataclass
 class _Holder:
     """What holds an item of a route: velocity (dim,) in m/s, angular velocity of the item in rad/s, and radii in m to
-    the axis of the rope and to its tangent points, with the sense of travel as sign; 0 at an anchor. contact: whether
+    the axis of the rope and to its tangent points where it runs on and off, with the sense of travel as sign; 0 at an
+    anchor. contact: whether
     the rope is held there; centre (dim,): of a sheave or drum, m.
     """
 
     velocity: np.ndarray
     spin: float = 0.0
     radius: float = 0.0
-    reach: float = 0.0
+    reach: tuple[float, float] = (0.0, 0.0)
     contact: bool = True
     centre: np.ndarray | None = None
 
@@ -187,9 +223,9 @@ def _holders(model: Model, rope: RopeModel) -> Iterator[_Holder]:
             continue
         velocity, spin = _motion(model, held)
         turn = turns[wheel.name]
-        reach = float(np.max(wheel.tangent_radius))
+        on, off = (wheel.sense * np.broadcast_to(wheel.tangent_radius, 2)).tolist()
         yield _Holder(velocity, spin + (model.v[turn] if turn >= 0 else 0.0), wheel.sense * wheel.radius,
-                      wheel.sense * reach, not isinstance(wheel, SheaveModel) or wheel.has_contact(model.q),
+                      (on, off), not isinstance(wheel, SheaveModel) or wheel.has_contact(model.q),
                       attachment_points(model, held, model.q[None])[0, : model.dim])
 
 
@@ -208,7 +244,7 @@ def _joined(q: np.ndarray, rope: RopeModel, holders: list[_Holder]) -> list[_Hol
         length = float(np.linalg.norm(way))
         along = way / length
         turning = float((other.velocity - one.velocity) @ _left(along)) / length
-        start = one.velocity + turning * one.reach * along
+        start = one.velocity + turning * one.reach[1] * along
         for k in range(i + 1, j):
             beside = holders[k % n]
             assert beside.centre is not None, "sheaves have centres"
@@ -272,13 +308,13 @@ class _SpanRates:
         apart = other.velocity - one.velocity
         turning = float(apart @ _left(along)) / length
         return cls((one, other), length, float(q[span.s[1]] - q[span.s[0]]),
-                   float(apart @ along) + turning * (other.reach - one.reach), turning)
+                   float(apart @ along) + turning * (other.reach[0] - one.reach[1]), turning)
 
     def set(self, q: np.ndarray, v: np.ndarray, span: SpanCoordinates, stretching: float) -> None:
         """Set the rates of its nodes; stretching: the rate of its stretch."""
         slopes = q[span.nodes].reshape(-1, 2, span.dim)[:, 1]
         along = slopes / np.linalg.norm(slopes, axis=1, keepdims=True)
-        ends = [holder.velocity + self.turning * holder.reach * along[k]
+        ends = [holder.velocity + self.turning * holder.reach[1 + k] * along[k]
                 for k, holder in zip((0, -1), self.holders, strict=True)]
         share = span.share[:, None]
         places, turned = (1 - share) * ends[0] + share * ends[1], stretching * along + self.turning * _left(slopes)

@@ -158,15 +158,31 @@ def _span_points(span: SpanCoordinates, q: np.ndarray) -> tuple[np.ndarray, np.n
             np.concatenate([at.reshape(len(q), count), s[:, -1:]], axis=1))
 
 
-def _wrap_points(model: Model, sheave: SheaveModel, q: np.ndarray, n: int) -> np.ndarray:
-    """Return the inner ones of n points (T, n - 2, dim) at equal angles along a wrap."""
+def _on_groove(model: Model, sheave: SheaveModel, q: np.ndarray
+               ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Return of a wrap in configurations (T, n_q) the tangent points from the centre in the plane of the groove (T, 2),
+    m; the mean stretch of the spans beside it (T,); and the length of its material with this (T,), m.
+    """
     centre = attachment_points(model, sheave.attachments[0], q)[:, : model.dim]
     on, off = (in_groove(model, sheave, q, q[:, node : node + model.dim] - centre) for node in sheave.nodes)
     slopes = (q[:, node + model.dim : node + 2 * model.dim] for node in sheave.nodes)
     stretch = np.mean([np.linalg.norm(slope, axis=1) for slope in slopes], axis=0)
-    length = stretch * (q[:, sheave.s[-1]] - q[:, sheave.s[0]] + sheave.closing)
+    return on, off, stretch, stretch * (q[:, sheave.s[-1]] - q[:, sheave.s[0]] + sheave.closing)
+
+
+def wrap_angle(model: Model, sheave: SheaveModel, q: np.ndarray) -> np.ndarray:
+    """Return the angle of a wrap in configurations (T, n_q), with whole turns (T,), rad."""
+    on, off, _, length = _on_groove(model, sheave, q)
     part = sheave.sense * np.arctan2(on[:, 0] * off[:, 1] - on[:, 1] * off[:, 0], np.sum(on * off, axis=1))
-    wrap = part + 2 * np.pi * np.round((length / sheave.radius - part) / (2 * np.pi))
+    found: np.ndarray = part + 2 * np.pi * np.round((length / sheave.radius - part) / (2 * np.pi))
+    return found
+
+
+def _wrap_points(model: Model, sheave: SheaveModel, q: np.ndarray, n: int) -> np.ndarray:
+    """Return the inner ones of n points (T, n - 2, dim) at equal angles along a wrap."""
+    centre = attachment_points(model, sheave.attachments[0], q)[:, : model.dim]
+    on, _, stretch, length = _on_groove(model, sheave, q)
+    wrap = wrap_angle(model, sheave, q)
     angle = (np.arctan2(on[:, 1], on[:, 0])[:, None]
              + sheave.sense * wrap[:, None] * np.linspace(0.0, 1.0, n)[1:-1])
     radius = np.where(length > stretch * sheave.no_length, sheave.radius, np.linalg.norm(on, axis=1))  # or it has left

@@ -163,6 +163,9 @@ class Rope(Part):
         if isinstance(self.length, tuple):
             if len(self.length) != spans:
                 raise ValueError(f"length must be one number or {spans}, one for each span, got {len(self.length)}")
+            if apart := next((sheave for sheave in self.sheaves if not sheave.contact), None):
+                raise ValueError(f"has lengths of spans, and {apart.where} has contact=False: the spans beside it are "
+                                 "one straight line", "leave contact=False out, or give the length of the whole rope")
             if not self.mass:
                 raise ValueError("has no mass, and lengths of spans: its sheaves hold the tensions that loads give it",
                                  "give the length of the whole rope, or tension")

@@ -48,10 +48,11 @@ class HeldWraps:
         return self.settled
 
     def _found(self) -> bool:
+        """Do the same by changing which points slide."""
         seen: set[tuple[int, ...]] = set()
         for _ in range(MAX_CHANGES):
             modes, points = self.engine.held_wraps()
-            changed = self._changed(modes, *points.T, one=tuple(modes) in seen)
+            changed = self._changed(modes, points, tuple(modes) in seen)
             if np.array_equal(changed, modes):
                 return True
             seen.add(tuple(modes))
@@ -60,11 +61,11 @@ class HeldWraps:
                 return False
         return False
 
-    def _changed(self, modes: np.ndarray, f: np.ndarray, limit: np.ndarray, slip: np.ndarray, one: bool) -> np.ndarray:
+    def _changed(self, modes: np.ndarray, points: np.ndarray, one: bool) -> np.ndarray:
         """Return the next modes of the points: those above the limit slide; without any, the point sticks that has slid
         furthest against its direction. one: of the points above the limit the worst alone.
         """
-        found = modes.copy()
+        found, (f, limit, slip) = modes.copy(), points.T
         EA = np.array([sheave.A[0] for sheave in self.sheaves])[self.of_point]
         excess = np.where(modes == STICKS, np.abs(f) - (1 + EXCESS_TOLERANCE) * limit - FORCE_TOLERANCE * EA, 0.0)
         back = np.where(modes == STICKS, 0.0, -modes * slip)
@@ -111,9 +112,12 @@ class HeldWraps:
         """Return in words why ropes do not stick, with the friction that they need, and which state is the last one of
         the search; else "".
         """
-        sliding = [f'the rope slides on sheave "{sheave.name}"{f" by {slip:.4g} m" * self.settled}: its coefficient of '
-                   f"friction {show(sheave.friction)} is below {self.needed[sheave.name]:.9g}, with which it sticks"
-                   for sheave, slip in self._sliding()]
+        sliding = []
+        for sheave, slip in self._sliding():
+            needed, given = self.needed[sheave.name], f"its coefficient of friction {show(sheave.friction)}"
+            sliding.append(f'the rope slides on sheave "{sheave.name}"{f" by {slip:.4g} m" * self.settled}'
+                           + (f": {given} is below {needed:.9g}, with which it sticks" if needed > sheave.friction else
+                              ", with what slides beside it"))
         if self.settled:
             return "; ".join([*sliding, "the state after sliding"] if sliding else [])
         return "; ".join([*sliding, "no state of rest was found with friction at its limit where it slides, and the "
