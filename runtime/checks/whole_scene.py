@@ -93,7 +93,8 @@ def check_comes_to_rest(scene: SceneData) -> None:
         for sheave in rope.rough_sheaves:
             why = ("its friction has part in a state of rest, which has no tensions of ropes that stick"
                    if sheave.sticks else "its friction is regularised, so that the rope creeps and never comes to rest")
-            raise SceneError(f"{rope.where}: {sheave.where}", why, "leave friction out")
+            raise SceneError(f"{rope.where}: {sheave.where}", why,
+                             'leave friction out, or take equilibrium(wraps="stick")')
 
 
 def check_impending(scene: SceneData, motion: str) -> None:

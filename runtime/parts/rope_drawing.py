@@ -62,7 +62,7 @@ class Roped(Protocol):
 
     @property
     def sheaves(self) -> tuple[Sheave, ...]:
-        """Return its sheaves."""
+        """Return its sheaves in their order."""
         ...
 
 

@@ -104,7 +104,7 @@ class HeldWraps:
         found = []
         for k, sheave in enumerate(self.sheaves):
             own = modes[self.of_point == k]
-            if abs(own.sum()) == len(own) and own[0] != STICKS:
+            if own[0] != STICKS and np.all(own == own[0]):
                 found.append((sheave, float(np.abs(points[self.of_point == k, 2]).min())))
         return found
 
