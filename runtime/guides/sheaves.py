@@ -65,16 +65,6 @@ print(f"10 kg hang on {float(limits.min()):.1f} to {float(limits.max()):.1f} N")
 assert abs(limits.sel(limit="hoisting") / (10 * G * np.exp(0.3 * np.pi)) - 1) < 5e-3
 
 # %%
-# Between the limits it keeps the tensions that it got: here by a stress-free length of each span, drawn with 150 N on
-# one side. ``wraps="stick"`` finds that rest.
-
-EA = scene.ropes["rope"].stiffness[0]
-scene = scene.replace("rope", length=[2 / (1 + T / EA) for T in (150.0, 10 * G)])
-rest = scene.equilibrium(wraps="stick")
-print(f"10 kg hang on {rest['held.tension_on']:.1f} N, and friction takes {abs(rest['held.torque']):.2f} N m")
-assert abs(rest["held.tension_on"] - 150) < 1
-
-# %%
 # A pendulum meets a peg
 # ----------------------
 #
