@@ -6,6 +6,7 @@ import difflib
 from collections.abc import Iterable, Iterator
 from functools import partial
 from importlib import import_module
+from itertools import chain
 from pkgutil import iter_modules
 
 from . import couplings
@@ -14,6 +15,7 @@ from .bodies import kernels as body_kernels
 from .bodies.point import Point
 from .codegen.family import BodyFamily, ElementFamily, Family, LawFamily, SlideFamily
 from .couplings import slide
+from .couplings.span import SPANS
 from .elements import ELEMENTS
 from .elements import kernels as element_kernels
 from .laws import kernels as law_kernels
@@ -60,15 +62,21 @@ def _modal(name: str, body: Body) -> BodyFamily:
                       rider=body.NAME)
 
 
-def _slide(element: Element, rider: Rider) -> SlideFamily:
-    return SlideFamily(f"slide_{element.name}_{rider.NAME}",
-                       f"sliding joint of a {rider.NAME} rider on a {element.name} cable",
-                       partial(slide.build, element, rider),
+def _slide(element: Element, rider: Rider, flows: bool = False) -> SlideFamily:
+    name = f"slide_{'span_' if flows else ''}{element.name}_{rider.NAME}"
+    return SlideFamily(name,
+                       f"sliding joint of a {rider.NAME} rider on a {element.name} {'rope' if flows else 'cable'}",
+                       partial(slide.build, name, element, rider, flows),
                        ("couplings.slide", f"elements.{element.name}",
                         "bodies.point" if isinstance(rider, Point) else f"bodies.{rider.NAME}"),
-                       group="slide", role="slide",
-                       facts={"coordinates": element.n_coordinates + rider.N_VELOCITY, "dim": element.dim},
-                       element=element, rider=rider.NAME)
+                       group="slide", role="slide", missing=("discrete_gradient",) if flows else (),
+                       facts={"coordinates": element.n_coordinates + slide.N_ENDS * flows + rider.N_VELOCITY,
+                              "dim": element.dim},
+                       element=element, rider=rider.NAME, flows=flows)
+
+
+def _slides(element: Element, flows: bool = False) -> list[SlideFamily]:
+    return [_slide(element, rider, flows) for rider in RIDERS.values() if rider.DIM == element.dim]
 
 
 def _couplings() -> Iterator[Family]:
@@ -80,18 +88,20 @@ def _couplings() -> Iterator[Family]:
 
 def of_element(element: Element) -> list[Family]:
     """Return the families of an element: its own kernels, its laws, and its slide for each rider of its dimension."""
-    return [_element(element), *(_law(element, law) for law in element.laws),
-            *(_slide(element, rider) for rider in RIDERS.values() if rider.DIM == element.dim)]
+    return [_element(element), *(_law(element, law) for law in element.laws), *_slides(element)]
 
 
 def families() -> dict[str, Family]:
-    """Return every family by name: elements, laws, bodies, the slide of each element and rider, other couplings."""
+    """Return every family by name: elements, laws, bodies, the slide of each element and rider, on ropes too, other
+    couplings.
+    """
     of_role: dict[str, list[Family]] = {"element": [], "law": [], "slide": []}
     for element in ELEMENTS.values():
         for family in of_element(element):
             of_role[family.role].append(family)
     every = [*of_role["element"], *of_role["law"], *map(_body, BODIES.values()),
-             *(_modal(name, body) for name, body in modal.FRAMES.items()), *of_role["slide"], *_couplings()]
+             *(_modal(name, body) for name, body in modal.FRAMES.items()), *of_role["slide"],
+             *chain.from_iterable(_slides(ELEMENTS[name], flows=True) for name in SPANS), *_couplings()]
     return {f.name: f for f in every}
 
 

@@ -710,25 +710,25 @@ typedef void fu_slide_constraint_kernel(fu_real l, fu_real x, const fu_real *e, 
 /* e 8x3, b 7, u 3, director 3, C 3, C_s 3, s_step 1, A_t 3x3 */
 fu_slide_constraint_kernel slide_beam24_rigid_constraint;
 /* e 4x3, b 7, u 3, director 3, C 3, C_s 3, s_step 1, A_t 3x3 */
-fu_slide_constraint_kernel slide_cable12_rigid_constraint;
+fu_slide_constraint_kernel slide_cable12_rigid_constraint, slide_span_cable12_rigid_constraint;
 /* e 6x3, b 7, u 3, director 3, C 3, C_s 3, s_step 1, A_t 3x3 */
 fu_slide_constraint_kernel slide_cable18_rigid_constraint;
 /* e 6x2, b 4, u 2, director 2, C 2, C_s 2, s_step 1, A_t 2x2 */
 fu_slide_constraint_kernel slide_beam12p_planar_rigid_constraint;
 /* e 4x2, b 4, u 2, director 2, C 2, C_s 2, s_step 1, A_t 2x2 */
-fu_slide_constraint_kernel slide_cable8p_planar_rigid_constraint;
+fu_slide_constraint_kernel slide_cable8p_planar_rigid_constraint, slide_span_cable8p_planar_rigid_constraint;
 /* C, C_s and the Newton step for s: l [m]; x [m]; e [m, 1]; b [m]; u [m]; director [1] -> C [m]; C_s [1]; s_step
  * [m]; A_t [1] */
 /* e 8x3, b 3, u 3, director 3, C 3, C_s 3, s_step 1, A_t 3x3 */
 fu_slide_constraint_kernel slide_beam24_point_constraint;
 /* e 4x3, b 3, u 3, director 3, C 3, C_s 3, s_step 1, A_t 3x3 */
-fu_slide_constraint_kernel slide_cable12_point_constraint;
+fu_slide_constraint_kernel slide_cable12_point_constraint, slide_span_cable12_point_constraint;
 /* e 6x3, b 3, u 3, director 3, C 3, C_s 3, s_step 1, A_t 3x3 */
 fu_slide_constraint_kernel slide_cable18_point_constraint;
 /* e 6x2, b 2, u 2, director 2, C 2, C_s 2, s_step 1, A_t 2x2 */
 fu_slide_constraint_kernel slide_beam12p_planar_point_constraint;
 /* e 4x2, b 2, u 2, director 2, C 2, C_s 2, s_step 1, A_t 2x2 */
-fu_slide_constraint_kernel slide_cable8p_planar_point_constraint;
+fu_slide_constraint_kernel slide_cable8p_planar_point_constraint, slide_span_cable8p_planar_point_constraint;
 
 typedef void fu_slide_terms_kernel(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *v, const fu_real *w, const fu_real *director, fu_real *C, fu_real *C_q, fu_real *C_s, fu_real *G, fu_real *s_rate, fu_real *Q_d, fu_real *H, fu_real *W, fu_real *s_bias);
 /* terms of the equations of motion with the slide: l [m]; x [m]; e [m, 1]; b [m, 1]; u [m]; v [m/s, 1/s]; w [m/s,
@@ -744,6 +744,10 @@ fu_slide_terms_kernel slide_cable18_rigid_terms;
 fu_slide_terms_kernel slide_beam12p_planar_rigid_terms;
 /* e 4x2, b 4, u 2, v 4x2, w 3, director 2, C 2, C_q 2x11, C_s 2, G 11, s_rate 1, Q_d 2, H 1x11, W 1, s_bias 1 */
 fu_slide_terms_kernel slide_cable8p_planar_rigid_terms;
+/* e 4x2, b 4, u 2, v 10, w 3, director 2, C 2, C_q 2x13, C_s 2, G 13, s_rate 1, Q_d 2, H 1x13, W 1, s_bias 1 */
+fu_slide_terms_kernel slide_span_cable8p_planar_rigid_terms;
+/* e 4x3, b 7, u 3, v 14, w 6, director 3, C 3, C_q 3x20, C_s 3, G 20, s_rate 1, Q_d 3, H 2x20, W 2, s_bias 1 */
+fu_slide_terms_kernel slide_span_cable12_rigid_terms;
 /* terms of the equations of motion with the slide: l [m]; x [m]; e [m, 1]; b [m]; u [m]; v [m/s, 1/s]; w [m/s];
  * director [1] -> C [m]; C_q [1, m]; C_s [1]; G [1, m]; s_rate [m/s]; Q_d [m/s^2]; H [1, m]; W [m/s^2]; s_bias
  * [m/s^2] */
@@ -757,6 +761,10 @@ fu_slide_terms_kernel slide_cable18_point_terms;
 fu_slide_terms_kernel slide_beam12p_planar_point_terms;
 /* e 4x2, b 2, u 2, v 4x2, w 2, director 2, C 2, C_q 2x10, C_s 2, G 10, s_rate 1, Q_d 2, H 1x10, W 1, s_bias 1 */
 fu_slide_terms_kernel slide_cable8p_planar_point_terms;
+/* e 4x2, b 2, u 2, v 10, w 2, director 2, C 2, C_q 2x12, C_s 2, G 12, s_rate 1, Q_d 2, H 1x12, W 1, s_bias 1 */
+fu_slide_terms_kernel slide_span_cable8p_planar_point_terms;
+/* e 4x3, b 3, u 3, v 14, w 3, director 3, C 3, C_q 3x17, C_s 3, G 17, s_rate 1, Q_d 3, H 2x17, W 2, s_bias 1 */
+fu_slide_terms_kernel slide_span_cable12_point_terms;
 
 typedef void fu_slide_residual_kernel(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *phi, fu_real *g);
 /* phi and the gradient of f . phi by (e, rider, s): l [m]; x [m]; e [m, 1]; b [m, 1]; u [m]; f [N] -> phi [m]; g [N,
@@ -771,6 +779,10 @@ fu_slide_residual_kernel slide_cable18_rigid_residual;
 fu_slide_residual_kernel slide_beam12p_planar_rigid_residual;
 /* e 4x2, b 4, u 2, f 2, phi 2, g 12 */
 fu_slide_residual_kernel slide_cable8p_planar_rigid_residual;
+/* e 4x2, b 4, u 2, f 2, phi 2, g 14 */
+fu_slide_residual_kernel slide_span_cable8p_planar_rigid_residual;
+/* e 4x3, b 7, u 3, f 3, phi 3, g 21 */
+fu_slide_residual_kernel slide_span_cable12_rigid_residual;
 /* phi and the gradient of f . phi by (e, rider, s): l [m]; x [m]; e [m, 1]; b [m]; u [m]; f [N] -> phi [m]; g [N, N
  * m] */
 /* e 8x3, b 3, u 3, f 3, phi 3, g 28 */
@@ -783,6 +795,10 @@ fu_slide_residual_kernel slide_cable18_point_residual;
 fu_slide_residual_kernel slide_beam12p_planar_point_residual;
 /* e 4x2, b 2, u 2, f 2, phi 2, g 11 */
 fu_slide_residual_kernel slide_cable8p_planar_point_residual;
+/* e 4x2, b 2, u 2, f 2, phi 2, g 13 */
+fu_slide_residual_kernel slide_span_cable8p_planar_point_residual;
+/* e 4x3, b 3, u 3, f 3, phi 3, g 18 */
+fu_slide_residual_kernel slide_span_cable12_point_residual;
 
 typedef void fu_slide_tangent_kernel(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *J, fu_real *K);
 /* derivatives of phi and of the gradient of f . phi: l [m]; x [m]; e [m, 1]; b [m, 1]; u [m]; f [N] -> J [1, m]; K
@@ -797,6 +813,10 @@ fu_slide_tangent_kernel slide_cable18_rigid_tangent;
 fu_slide_tangent_kernel slide_beam12p_planar_rigid_tangent;
 /* e 4x2, b 4, u 2, f 2, J 2x12, K 12x12 */
 fu_slide_tangent_kernel slide_cable8p_planar_rigid_tangent;
+/* e 4x2, b 4, u 2, f 2, J 2x14, K 14x14 */
+fu_slide_tangent_kernel slide_span_cable8p_planar_rigid_tangent;
+/* e 4x3, b 7, u 3, f 3, J 3x21, K 21x21 */
+fu_slide_tangent_kernel slide_span_cable12_rigid_tangent;
 /* derivatives of phi and of the gradient of f . phi: l [m]; x [m]; e [m, 1]; b [m]; u [m]; f [N] -> J [1, m]; K
  * [N/m, N, N m] */
 /* e 8x3, b 3, u 3, f 3, J 3x28, K 28x28 */
@@ -809,6 +829,10 @@ fu_slide_tangent_kernel slide_cable18_point_tangent;
 fu_slide_tangent_kernel slide_beam12p_planar_point_tangent;
 /* e 4x2, b 2, u 2, f 2, J 2x11, K 11x11 */
 fu_slide_tangent_kernel slide_cable8p_planar_point_tangent;
+/* e 4x2, b 2, u 2, f 2, J 2x13, K 13x13 */
+fu_slide_tangent_kernel slide_span_cable8p_planar_point_tangent;
+/* e 4x3, b 3, u 3, f 3, J 3x18, K 18x18 */
+fu_slide_tangent_kernel slide_span_cable12_point_tangent;
 
 typedef void fu_slide_discrete_gradient_kernel(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
 /* discrete Jacobian of phi over a step: l [m]; x [m]; x_next [m]; e [m, 1]; e_next [m, 1]; b [m, 1]; b_next [m, 1]

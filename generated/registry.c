@@ -196,6 +196,16 @@ static const fu_slide_kernels slides[] = {
     {"slide_cable8p_planar_point", 10, 2, slide_cable8p_planar_point_constraint, slide_cable8p_planar_point_terms,
      slide_cable8p_planar_point_residual, slide_cable8p_planar_point_tangent,
      slide_cable8p_planar_point_discrete_gradient},
+    {"slide_span_cable8p_planar_rigid", 13, 2, slide_span_cable8p_planar_rigid_constraint,
+     slide_span_cable8p_planar_rigid_terms, slide_span_cable8p_planar_rigid_residual,
+     slide_span_cable8p_planar_rigid_tangent, 0},
+    {"slide_span_cable8p_planar_point", 12, 2, slide_span_cable8p_planar_point_constraint,
+     slide_span_cable8p_planar_point_terms, slide_span_cable8p_planar_point_residual,
+     slide_span_cable8p_planar_point_tangent, 0},
+    {"slide_span_cable12_rigid", 20, 3, slide_span_cable12_rigid_constraint, slide_span_cable12_rigid_terms,
+     slide_span_cable12_rigid_residual, slide_span_cable12_rigid_tangent, 0},
+    {"slide_span_cable12_point", 17, 3, slide_span_cable12_point_constraint, slide_span_cable12_point_terms,
+     slide_span_cable12_point_residual, slide_span_cable12_point_tangent, 0},
 };
 
 static const fu_crossing_kernels crossings[] = {
@@ -838,6 +848,22 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(slide_cable8p_planar_point_residual, ssvvvv_2) \
     X(slide_cable8p_planar_point_tangent, ssvvvv_2) \
     X(slide_cable8p_planar_point_discrete_gradient, sssvvvv_1) \
+    X(slide_span_cable8p_planar_rigid_constraint, ssvvvv_4) \
+    X(slide_span_cable8p_planar_rigid_terms, ssvvvvvv_9) \
+    X(slide_span_cable8p_planar_rigid_residual, ssvvvv_2) \
+    X(slide_span_cable8p_planar_rigid_tangent, ssvvvv_2) \
+    X(slide_span_cable8p_planar_point_constraint, ssvvvv_4) \
+    X(slide_span_cable8p_planar_point_terms, ssvvvvvv_9) \
+    X(slide_span_cable8p_planar_point_residual, ssvvvv_2) \
+    X(slide_span_cable8p_planar_point_tangent, ssvvvv_2) \
+    X(slide_span_cable12_rigid_constraint, ssvvvv_4) \
+    X(slide_span_cable12_rigid_terms, ssvvvvvv_9) \
+    X(slide_span_cable12_rigid_residual, ssvvvv_2) \
+    X(slide_span_cable12_rigid_tangent, ssvvvv_2) \
+    X(slide_span_cable12_point_constraint, ssvvvv_4) \
+    X(slide_span_cable12_point_terms, ssvvvvvv_9) \
+    X(slide_span_cable12_point_residual, ssvvvv_2) \
+    X(slide_span_cable12_point_tangent, ssvvvv_2) \
     X(crossing_closest, vvv_1) \
     X(crossing_contact, vvvv_6) \
     X(crossing_force, vvvvvv_6) \
@@ -1111,7 +1137,7 @@ const fu_tables fu_all = {
     30, laws,
     2, bodys,
     2, modals,
-    10, slides,
+    14, slides,
     2, crossings,
     2, drags,
     2, frames,

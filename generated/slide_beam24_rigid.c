@@ -36,7 +36,7 @@
         de1_r_p_y = de1_r_y + 1.0, \
         de2_r_z = -P_r_2, \
         de2_r_p_z = de2_r_z + 1.0; \
-    SLIDE_PART_OF_JACOBIAN_OF_PHI \
+    SLIDE_PART_OF_JACOBIAN_OF_PHI_3 \
     const fu_real \
         ds_P_r_x1 = inv_l*(xi*(xi - 2.0) + xi*(2.0*xi - 2.0) + 1.0), \
         ds_N_r_x1 = ds_P_r_x1*l, \

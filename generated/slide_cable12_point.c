@@ -5,24 +5,6 @@
 #include "kernels.h"
 #include "slide_stages.h"
 
-/* centreline at s and rider's point (eq 19): of slide_cable12_point_constraint and 2 more */
-#define SLIDE_CABLE12_POINT_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19 \
-    const fu_real \
-        P_r_x1 = xi*(xi*(xi - 2.0) + 1.0), \
-        N_r_x1 = P_r_x1*l, \
-        P_r_2 = xi*xi*(-2.0*xi + 3.0), \
-        P_r_x2 = xi*xi*(xi - 1.0), \
-        N_r_x2 = P_r_x2*l, \
-        r_x = N_r_x1*e[3] + N_r_x2*e[9] + P_r_2*(-e[0] + e[6]), \
-        r_y = N_r_x1*e[4] + N_r_x2*e[10] + P_r_2*(-e[1] + e[7]), \
-        r_z = N_r_x1*e[5] + N_r_x2*e[11] + P_r_2*(-e[2] + e[8]), \
-        gap_x = -b[0] + e[0], \
-        gap_y = -b[1] + e[1], \
-        gap_z = -b[2] + e[2], \
-        r_p_x = gap_x + r_x - u[0], \
-        r_p_y = gap_y + r_y - u[1], \
-        r_p_z = gap_z + r_z - u[2];
-
 /* Jacobian of phi: of slide_cable12_point_residual and 1 more */
 #define SLIDE_CABLE12_POINT_JACOBIAN_OF_PHI \
     const fu_real \
@@ -48,7 +30,7 @@ void slide_cable12_point_constraint(fu_real l, fu_real x, const fu_real *e, cons
     const fu_real
         inv_l = 1.0/l,
         xi = inv_l*x;
-    SLIDE_CABLE12_POINT_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19
+    SLIDE_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19_3
     SLIDE_TANGENT_AND_DIRECTOR_2
     SLIDE_TANGENT_FRAME_EQ_13_18_2
     /* C (eq 20) */
@@ -68,7 +50,7 @@ void slide_cable12_point_terms(fu_real l, fu_real x, const fu_real *e, const fu_
     const fu_real
         inv_l = 1.0/l,
         xi = inv_l*x;
-    SLIDE_CABLE12_POINT_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19
+    SLIDE_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19_3
     SLIDE_TANGENT_AND_DIRECTOR_2
     SLIDE_TANGENT_FRAME_EQ_13_18_2
     /* C (eq 20) */
@@ -299,7 +281,7 @@ void slide_cable12_point_residual(fu_real l, fu_real x, const fu_real *e, const 
     const fu_real
         inv_l = 1.0/l,
         xi = inv_l*x;
-    SLIDE_CABLE12_POINT_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19
+    SLIDE_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19_3
     SLIDE_CABLE12_POINT_JACOBIAN_OF_PHI
     /* gradient of f . phi */
     const fu_real

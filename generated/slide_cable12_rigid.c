@@ -5,28 +5,6 @@
 #include "kernels.h"
 #include "slide_stages.h"
 
-/* centreline at s and rider's point (eq 19): of slide_cable12_rigid_constraint and 2 more */
-#define SLIDE_CABLE12_RIGID_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19 \
-    SLIDE_PART_OF_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19 \
-    const fu_real \
-        P_r_x1 = xi*(xi*(xi - 2.0) + 1.0), \
-        N_r_x1 = P_r_x1*l, \
-        P_r_2 = xi*xi*(-2.0*xi + 3.0), \
-        P_r_x2 = xi*xi*(xi - 1.0), \
-        N_r_x2 = P_r_x2*l, \
-        r_x = N_r_x1*e[3] + N_r_x2*e[9] + P_r_2*(-e[0] + e[6]), \
-        r_y = N_r_x1*e[4] + N_r_x2*e[10] + P_r_2*(-e[1] + e[7]), \
-        r_z = N_r_x1*e[5] + N_r_x2*e[11] + P_r_2*(-e[2] + e[8]), \
-        arm_x = A1_x*u[0] + A1_y*u[1] + A1_z*u[2], \
-        arm_y = A2_x*u[0] + A2_y*u[1] + A2_z*u[2], \
-        arm_z = A3_x*u[0] + A3_y*u[1] + A3_z*u[2], \
-        gap_x = -b[0] + e[0], \
-        gap_y = -b[1] + e[1], \
-        gap_z = -b[2] + e[2], \
-        r_p_x = -arm_x + gap_x + r_x, \
-        r_p_y = -arm_y + gap_y + r_y, \
-        r_p_z = -arm_z + gap_z + r_z;
-
 /* Jacobian of phi: of slide_cable12_rigid_residual and 1 more */
 #define SLIDE_CABLE12_RIGID_JACOBIAN_OF_PHI \
     const fu_real \
@@ -36,7 +14,7 @@
         de1_r_p_y = de1_r_y + 1.0, \
         de2_r_z = -P_r_2, \
         de2_r_p_z = de2_r_z + 1.0; \
-    SLIDE_PART_OF_JACOBIAN_OF_PHI \
+    SLIDE_PART_OF_JACOBIAN_OF_PHI_3 \
     const fu_real \
         ds_P_r_x1 = inv_l*(xi*(xi - 2.0) + xi*(2.0*xi - 2.0) + 1.0), \
         ds_N_r_x1 = ds_P_r_x1*l, \
@@ -54,7 +32,7 @@ void slide_cable12_rigid_constraint(fu_real l, fu_real x, const fu_real *e, cons
     const fu_real
         inv_l = 1.0/l,
         xi = inv_l*x;
-    SLIDE_CABLE12_RIGID_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19
+    SLIDE_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19_2
     SLIDE_TANGENT_AND_DIRECTOR_2
     SLIDE_TANGENT_FRAME_EQ_13_18_2
     /* C (eq 20) */
@@ -74,7 +52,7 @@ void slide_cable12_rigid_terms(fu_real l, fu_real x, const fu_real *e, const fu_
     const fu_real
         inv_l = 1.0/l,
         xi = inv_l*x;
-    SLIDE_CABLE12_RIGID_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19
+    SLIDE_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19_2
     SLIDE_TANGENT_AND_DIRECTOR_2
     SLIDE_TANGENT_FRAME_EQ_13_18_2
     /* C (eq 20) */
@@ -362,7 +340,7 @@ void slide_cable12_rigid_residual(fu_real l, fu_real x, const fu_real *e, const 
     const fu_real
         inv_l = 1.0/l,
         xi = inv_l*x;
-    SLIDE_CABLE12_RIGID_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19
+    SLIDE_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19_2
     SLIDE_CABLE12_RIGID_JACOBIAN_OF_PHI
     /* gradient of f . phi */
     const fu_real

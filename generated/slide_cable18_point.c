@@ -40,7 +40,7 @@
         ds_N_r_x1 = ds_P_r_x1*l, \
         ds_P_r_x2 = inv_l*(xi*xi*xi*(-6.0*xi + 7.0) + 3.0*xi*xi*(xi*(-3.0*xi + 7.0) - 4.0)), \
         ds_N_r_x2 = ds_P_r_x2*l; \
-    SLIDE_PART_OF_JACOBIAN_OF_PHI_2
+    SLIDE_PART_OF_JACOBIAN_OF_PHI_4
 
 /* C, C_s and the Newton step for s (eq 19-22); 231 add, 398 mul, 4 div, 2 sqrt */
 void slide_cable18_point_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t)

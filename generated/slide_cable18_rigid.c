@@ -40,13 +40,13 @@
         de1_r_p_y = de1_r_y + 1.0, \
         de2_r_z = -P_r_2, \
         de2_r_p_z = de2_r_z + 1.0; \
-    SLIDE_PART_OF_JACOBIAN_OF_PHI \
+    SLIDE_PART_OF_JACOBIAN_OF_PHI_3 \
     const fu_real \
         ds_P_r_x1 = inv_l*(xi*xi*(xi*(-3.0*xi + 8.0) - 6.0) + xi*(xi*xi*(-6.0*xi + 8.0) + 2.0*xi*(xi*(-3.0*xi + 8.0) - 6.0)) + 1.0), \
         ds_N_r_x1 = ds_P_r_x1*l, \
         ds_P_r_x2 = inv_l*(xi*xi*xi*(-6.0*xi + 7.0) + 3.0*xi*xi*(xi*(-3.0*xi + 7.0) - 4.0)), \
         ds_N_r_x2 = ds_P_r_x2*l; \
-    SLIDE_PART_OF_JACOBIAN_OF_PHI_2
+    SLIDE_PART_OF_JACOBIAN_OF_PHI_4
 
 /* C, C_s and the Newton step for s (eq 19-22); 249 add, 443 mul, 4 div, 2 sqrt */
 void slide_cable18_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t)

@@ -5,21 +5,6 @@
 #include "kernels.h"
 #include "slide_stages.h"
 
-/* centreline at s and rider's point (eq 19): of slide_cable8p_planar_point_constraint and 2 more */
-#define SLIDE_CABLE8P_PLANAR_POINT_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19 \
-    const fu_real \
-        P_r_x1 = xi*(xi*(xi - 2.0) + 1.0), \
-        N_r_x1 = P_r_x1*l, \
-        P_r_2 = xi*xi*(-2.0*xi + 3.0), \
-        P_r_x2 = xi*xi*(xi - 1.0), \
-        N_r_x2 = P_r_x2*l, \
-        r_x = N_r_x1*e[2] + N_r_x2*e[6] + P_r_2*(-e[0] + e[4]), \
-        r_y = N_r_x1*e[3] + N_r_x2*e[7] + P_r_2*(-e[1] + e[5]), \
-        gap_x = -b[0] + e[0], \
-        gap_y = -b[1] + e[1], \
-        r_p_x = gap_x + r_x - u[0], \
-        r_p_y = gap_y + r_y - u[1];
-
 /* Jacobian of phi: of slide_cable8p_planar_point_residual and 1 more */
 #define SLIDE_CABLE8P_PLANAR_POINT_JACOBIAN_OF_PHI \
     const fu_real \
@@ -43,7 +28,7 @@ void slide_cable8p_planar_point_constraint(fu_real l, fu_real x, const fu_real *
     const fu_real
         inv_l = 1.0/l,
         xi = inv_l*x;
-    SLIDE_CABLE8P_PLANAR_POINT_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19
+    SLIDE_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19_5
     SLIDE_TANGENT_AND_DIRECTOR_5
     /* tangent frame (eq 13-18) */
     const fu_real
@@ -77,7 +62,7 @@ void slide_cable8p_planar_point_terms(fu_real l, fu_real x, const fu_real *e, co
     const fu_real
         inv_l = 1.0/l,
         xi = inv_l*x;
-    SLIDE_CABLE8P_PLANAR_POINT_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19
+    SLIDE_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19_5
     SLIDE_TANGENT_AND_DIRECTOR_5
     /* tangent frame (eq 13-18) */
     const fu_real
@@ -218,7 +203,7 @@ void slide_cable8p_planar_point_residual(fu_real l, fu_real x, const fu_real *e,
     const fu_real
         inv_l = 1.0/l,
         xi = inv_l*x;
-    SLIDE_CABLE8P_PLANAR_POINT_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19
+    SLIDE_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19_5
     SLIDE_CABLE8P_PLANAR_POINT_JACOBIAN_OF_PHI
     /* gradient of f . phi */
     const fu_real

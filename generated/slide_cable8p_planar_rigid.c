@@ -5,23 +5,6 @@
 #include "kernels.h"
 #include "slide_stages.h"
 
-/* centreline at s and rider's point (eq 19): of slide_cable8p_planar_rigid_constraint and 2 more */
-#define SLIDE_CABLE8P_PLANAR_RIGID_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19 \
-    const fu_real \
-        P_r_x1 = xi*(xi*(xi - 2.0) + 1.0), \
-        N_r_x1 = P_r_x1*l, \
-        P_r_2 = xi*xi*(-2.0*xi + 3.0), \
-        P_r_x2 = xi*xi*(xi - 1.0), \
-        N_r_x2 = P_r_x2*l, \
-        r_x = N_r_x1*e[2] + N_r_x2*e[6] + P_r_2*(-e[0] + e[4]), \
-        r_y = N_r_x1*e[3] + N_r_x2*e[7] + P_r_2*(-e[1] + e[5]), \
-        arm_x = b[2]*u[0] - b[3]*u[1], \
-        arm_y = b[2]*u[1] + b[3]*u[0], \
-        gap_x = -b[0] + e[0], \
-        gap_y = -b[1] + e[1], \
-        r_p_x = -arm_x + gap_x + r_x, \
-        r_p_y = -arm_y + gap_y + r_y;
-
 /* C, C_s and the Newton step for s (eq 19-22); 57 add, 95 mul, 3 div, 1 sqrt */
 void slide_cable8p_planar_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t)
 {
@@ -30,7 +13,7 @@ void slide_cable8p_planar_rigid_constraint(fu_real l, fu_real x, const fu_real *
     const fu_real
         inv_l = 1.0/l,
         xi = inv_l*x;
-    SLIDE_CABLE8P_PLANAR_RIGID_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19
+    SLIDE_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19_4
     SLIDE_TANGENT_AND_DIRECTOR_5
     /* tangent frame (eq 13-18) */
     const fu_real
@@ -64,7 +47,7 @@ void slide_cable8p_planar_rigid_terms(fu_real l, fu_real x, const fu_real *e, co
     const fu_real
         inv_l = 1.0/l,
         xi = inv_l*x;
-    SLIDE_CABLE8P_PLANAR_RIGID_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19
+    SLIDE_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19_4
     SLIDE_TANGENT_AND_DIRECTOR_5
     /* tangent frame (eq 13-18) */
     const fu_real
@@ -220,7 +203,7 @@ void slide_cable8p_planar_rigid_residual(fu_real l, fu_real x, const fu_real *e,
     const fu_real
         inv_l = 1.0/l,
         xi = inv_l*x;
-    SLIDE_CABLE8P_PLANAR_RIGID_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19
+    SLIDE_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19_4
     /* Jacobian of phi */
     const fu_real
         de0_r_x = -P_r_2,

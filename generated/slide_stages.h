@@ -22,7 +22,7 @@
         C_sm1 = d_ds_r_x_C_m1*ds_ds_r_x + d_ds_r_y_C_m1*ds_ds_r_y + d_ds_r_z_C_m1*ds_ds_r_z + d_n_x_C_m1*ds_n_x + d_n_y_C_m1*ds_n_y + d_n_z_C_m1*ds_n_z, \
         C_sm2 = d_ds_r_x_C_m2*ds_ds_r_x + d_ds_r_y_C_m2*ds_ds_r_y + d_ds_r_z_C_m2*ds_ds_r_z + d_n_x_C_m2*ds_n_x + d_n_y_C_m2*ds_n_y + d_n_z_C_m2*ds_n_z;
 
-/* part of C_s and C_q (eq 23): of slide_beam24_rigid_terms and 5 more */
+/* part of C_s and C_q (eq 23): of slide_beam24_rigid_terms and 7 more */
 #define SLIDE_PART_OF_C_S_AND_C_Q_EQ_23_3 \
     const fu_real \
         C_qm1_1 = d_ds_r_y_C_m1*de1_ds_r_y + de1_r_p_y*j_y, \
@@ -86,7 +86,7 @@
         dt_m_y = -dt_i_x*n_z + dt_i_z*n_x + dt_n_x*i_z - dt_n_z*i_x, \
         dt_m_z = dt_i_x*n_y - dt_i_y*n_x - dt_n_x*i_y + dt_n_y*i_x;
 
-/* part of Q_d: second derivative along the motion (eq 33): of slide_beam24_rigid_terms and 5 more */
+/* part of Q_d: second derivative along the motion (eq 33): of slide_beam24_rigid_terms and 7 more */
 #define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_3 \
     const fu_real \
         dt_len_k = inv_k*(dt_m_x*m_x + dt_m_y*m_y + dt_m_z*m_z), \
@@ -115,7 +115,7 @@
         dt_dt_m_y = -dt_dt_i_x*n_z + dt_dt_i_z*n_x + dt_dt_n_x*i_z - dt_dt_n_z*i_x - 2.0*dt_i_x*dt_n_z + 2.0*dt_i_z*dt_n_x, \
         dt_dt_m_z = dt_dt_i_x*n_y - dt_dt_i_y*n_x - dt_dt_n_x*i_y + dt_dt_n_y*i_x + 2.0*dt_i_x*dt_n_y - 2.0*dt_i_y*dt_n_x;
 
-/* part of Q_d: second derivative along the motion (eq 33): of slide_beam24_rigid_terms and 5 more */
+/* part of Q_d: second derivative along the motion (eq 33): of slide_beam24_rigid_terms and 7 more */
 #define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_6 \
     const fu_real \
         dt_dt_len_k = dt_dt_m_x*inv_k*m_x + dt_dt_m_y*inv_k*m_y + dt_dt_m_z*inv_k*m_z + dt_inv_k*(dt_m_x*m_x + dt_m_y*m_y + dt_m_z*m_z) + dt_m_x*dt_m_x*inv_k + dt_m_y*dt_m_y*inv_k + dt_m_z*dt_m_z*inv_k, \
@@ -127,7 +127,7 @@
         dt_dt_j_y = dt_dt_i_x*k_z - dt_dt_i_z*k_x - dt_dt_k_x*i_z + dt_dt_k_z*i_x + 2.0*dt_i_x*dt_k_z - 2.0*dt_i_z*dt_k_x, \
         dt_dt_j_z = -dt_dt_i_x*k_y + dt_dt_i_y*k_x + dt_dt_k_x*i_y - dt_dt_k_y*i_x - 2.0*dt_i_x*dt_k_y + 2.0*dt_i_y*dt_k_x;
 
-/* part of Q_d: second derivative along the motion (eq 33): of slide_beam24_rigid_terms and 2 more */
+/* part of Q_d: second derivative along the motion (eq 33): of slide_beam24_rigid_terms and 3 more */
 #define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_7 \
     const fu_real \
         dt_dt_C_m1 = dt_dt_j_x*r_p_x + dt_dt_j_y*r_p_y + dt_dt_j_z*r_p_z + dt_dt_r_p_x*j_x + dt_dt_r_p_y*j_y + dt_dt_r_p_z*j_z + 2.0*dt_j_x*dt_r_p_x + 2.0*dt_j_y*dt_r_p_y + 2.0*dt_j_z*dt_r_p_z, \
@@ -151,20 +151,20 @@
     H[25] = C_qm1_25 + C_sm1*G_25; \
     H[26] = C_qm1_26 + C_sm1*G_26;
 
-/* part of Q_d: second derivative along the motion (eq 33): of slide_beam24_point_terms and 2 more */
+/* part of Q_d: second derivative along the motion (eq 33): of slide_beam24_point_terms and 3 more */
 #define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_8 \
     const fu_real \
         dt_dt_C_m1 = dt_dt_j_x*r_p_x + dt_dt_j_y*r_p_y + dt_dt_j_z*r_p_z + dt_dt_r_x*j_x + dt_dt_r_y*j_y + dt_dt_r_z*j_z + 2.0*dt_j_x*dt_r_p_x + 2.0*dt_j_y*dt_r_p_y + 2.0*dt_j_z*dt_r_p_z, \
         dt_dt_C_m2 = dt_dt_k_x*r_p_x + dt_dt_k_y*r_p_y + dt_dt_k_z*r_p_z + dt_dt_r_x*k_x + dt_dt_r_y*k_y + dt_dt_r_z*k_z + 2.0*dt_k_x*dt_r_p_x + 2.0*dt_k_y*dt_r_p_y + 2.0*dt_k_z*dt_r_p_z;
 
-/* part of Q_d: second derivative along the motion (eq 33): of slide_cable12_rigid_terms and 1 more */
+/* part of Q_d: second derivative along the motion (eq 33): of slide_cable12_rigid_terms and 3 more */
 #define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_9 \
     const fu_real \
         dt_ds_r_x = ds_N_r_x1*v[3] + ds_N_r_x2*v[9] - ds_P_r_2*v[0] + ds_P_r_2*v[6] + dt_ds_N_r_x1*e[3] + dt_ds_N_r_x2*e[9] + dt_ds_P_r_2*(-e[0] + e[6]), \
         dt_ds_r_y = ds_N_r_x1*v[4] + ds_N_r_x2*v[10] - ds_P_r_2*v[1] + ds_P_r_2*v[7] + dt_ds_N_r_x1*e[4] + dt_ds_N_r_x2*e[10] + dt_ds_P_r_2*(-e[1] + e[7]), \
         dt_ds_r_z = ds_N_r_x1*v[5] + ds_N_r_x2*v[11] - ds_P_r_2*v[2] + ds_P_r_2*v[8] + dt_ds_N_r_x1*e[5] + dt_ds_N_r_x2*e[11] + dt_ds_P_r_2*(-e[2] + e[8]);
 
-/* part of Q_d: second derivative along the motion (eq 33): of slide_cable12_rigid_terms and 1 more */
+/* part of Q_d: second derivative along the motion (eq 33): of slide_cable12_rigid_terms and 3 more */
 #define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_10 \
     const fu_real \
         dt_dt_ds_r_x = 2.0*dt_ds_N_r_x1*v[3] + 2.0*dt_ds_N_r_x2*v[9] - dt_ds_P_r_2*v[0] + dt_ds_P_r_2*v[6] + dt_ds_P_r_2*(-v[0] + v[6]) + dt_dt_ds_N_r_x1*e[3] + dt_dt_ds_N_r_x2*e[9] + dt_dt_ds_P_r_2*(-e[0] + e[6]), \
@@ -300,7 +300,7 @@
         g_19 = -f[1], \
         g_20 = -f[2];
 
-/* part of centreline at s and rider's point (eq 19): of slide_cable18_rigid_tangent and 11 more */
+/* part of centreline at s and rider's point (eq 19): of slide_cable18_rigid_tangent and 15 more */
 #define SLIDE_PART_OF_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19 \
     const fu_real \
         A1_x = -2.0*b[5]*b[5] - 2.0*b[6]*b[6] + 1.0, \
@@ -342,7 +342,7 @@
         ds_ds_r_y = ds_ds_N_r_x1*e[4] + ds_ds_N_r_x2*e[13] + ds_ds_N_r_xx1*e[7] + ds_ds_N_r_xx2*e[16] + ds_ds_P_r_2*(e[10] - e[1]), \
         ds_ds_r_z = ds_ds_N_r_x1*e[5] + ds_ds_N_r_x2*e[14] + ds_ds_N_r_xx1*e[8] + ds_ds_N_r_xx2*e[17] + ds_ds_P_r_2*(e[11] - e[2]);
 
-/* part of C_s and C_q (eq 23): of slide_beam12p_planar_rigid_terms and 3 more */
+/* part of C_s and C_q (eq 23): of slide_beam12p_planar_rigid_terms and 5 more */
 #define SLIDE_PART_OF_C_S_AND_C_Q_EQ_23_7 \
     const fu_real C_qm_1 = d_ds_r_y_C_m*de1_ds_r_y + de1_r_p_y*i_x; \
     C_ql[2] = N_r_x1*i_x + d_ds_r_x_C_l*ds_N_r_x1; \
@@ -363,68 +363,211 @@
         dt_dt_ds_r_x = 2.0*dt_ds_N_r_x1*v[2] + 2.0*dt_ds_N_r_x2*v[8] - dt_ds_P_r_2*v[0] + dt_ds_P_r_2*v[6] + dt_ds_P_r_2*(-v[0] + v[6]) + dt_dt_ds_N_r_x1*e[2] + dt_dt_ds_N_r_x2*e[8] + dt_dt_ds_P_r_2*(-e[0] + e[6]), \
         dt_dt_ds_r_y = 2.0*dt_ds_N_r_x1*v[3] + 2.0*dt_ds_N_r_x2*v[9] - dt_ds_P_r_2*v[1] + dt_ds_P_r_2*v[7] + dt_ds_P_r_2*(-v[1] + v[7]) + dt_dt_ds_N_r_x1*e[3] + dt_dt_ds_N_r_x2*e[9] + dt_dt_ds_P_r_2*(-e[1] + e[7]);
 
-/* part of Q_d: second derivative along the motion (eq 33): of slide_cable8p_planar_rigid_terms and 1 more */
+/* part of Q_d: second derivative along the motion (eq 33): of slide_cable8p_planar_rigid_terms and 3 more */
 #define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_17 \
     const fu_real \
         dt_ds_r_x = ds_N_r_x1*v[2] + ds_N_r_x2*v[6] - ds_P_r_2*v[0] + ds_P_r_2*v[4] + dt_ds_N_r_x1*e[2] + dt_ds_N_r_x2*e[6] + dt_ds_P_r_2*(-e[0] + e[4]), \
         dt_ds_r_y = ds_N_r_x1*v[3] + ds_N_r_x2*v[7] - ds_P_r_2*v[1] + ds_P_r_2*v[5] + dt_ds_N_r_x1*e[3] + dt_ds_N_r_x2*e[7] + dt_ds_P_r_2*(-e[1] + e[5]);
 
-/* part of Q_d: second derivative along the motion (eq 33): of slide_cable8p_planar_rigid_terms and 1 more */
+/* part of Q_d: second derivative along the motion (eq 33): of slide_cable8p_planar_rigid_terms and 3 more */
 #define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_18 \
     const fu_real \
         dt_dt_ds_r_x = 2.0*dt_ds_N_r_x1*v[2] + 2.0*dt_ds_N_r_x2*v[6] - dt_ds_P_r_2*v[0] + dt_ds_P_r_2*v[4] + dt_ds_P_r_2*(-v[0] + v[4]) + dt_dt_ds_N_r_x1*e[2] + dt_dt_ds_N_r_x2*e[6] + dt_dt_ds_P_r_2*(-e[0] + e[4]), \
         dt_dt_ds_r_y = 2.0*dt_ds_N_r_x1*v[3] + 2.0*dt_ds_N_r_x2*v[7] - dt_ds_P_r_2*v[1] + dt_ds_P_r_2*v[5] + dt_ds_P_r_2*(-v[1] + v[5]) + dt_dt_ds_N_r_x1*e[3] + dt_dt_ds_N_r_x2*e[7] + dt_dt_ds_P_r_2*(-e[1] + e[5]);
 
-/* part of derivatives of C by r_p, r_x, director: of slide_beam24_rigid_constraint and 11 more */
-#define SLIDE_PART_OF_DERIVATIVES_OF_C_BY_R_P_R_X_DIRECTOR \
+/* part of C_s and C_q (eq 23): of slide_span_cable8p_planar_rigid_terms and 3 more */
+#define SLIDE_PART_OF_C_S_AND_C_Q_EQ_23_8 \
     const fu_real \
-        d_ds_r_x_len_k = inv_k*(d_ds_r_x_m_x*m_x + d_ds_r_x_m_y*m_y + d_ds_r_x_m_z*m_z), \
-        d_ds_r_x_inv_k = -(d_ds_r_x_len_k*inv_k*inv_k), \
-        d_ds_r_x_k_y = d_ds_r_x_inv_k*m_y + d_ds_r_x_m_y*inv_k, \
-        d_ds_r_x_k_z = d_ds_r_x_inv_k*m_z + d_ds_r_x_m_z*inv_k, \
-        d_ds_r_x_j_x = -d_ds_r_x_i_y*k_z + d_ds_r_x_i_z*k_y + d_ds_r_x_k_y*i_z - d_ds_r_x_k_z*i_y, \
-        d_ds_r_x_k_x = d_ds_r_x_inv_k*m_x + d_ds_r_x_m_x*inv_k, \
-        d_ds_r_x_j_y = d_ds_r_x_i_x*k_z - d_ds_r_x_i_z*k_x - d_ds_r_x_k_x*i_z + d_ds_r_x_k_z*i_x, \
-        d_ds_r_x_j_z = -d_ds_r_x_i_x*k_y + d_ds_r_x_i_y*k_x + d_ds_r_x_k_x*i_y - d_ds_r_x_k_y*i_x, \
-        d_ds_r_x_C_m1 = d_ds_r_x_j_x*r_p_x + d_ds_r_x_j_y*r_p_y + d_ds_r_x_j_z*r_p_z, \
-        d_ds_r_x_C_m2 = d_ds_r_x_k_x*r_p_x + d_ds_r_x_k_y*r_p_y + d_ds_r_x_k_z*r_p_z;
+        ds1_inv_l = inv_l*inv_l, \
+        ds1_xi = ds1_inv_l*x - inv_l, \
+        ds1_P_r_x1 = ds1_xi*(xi*(xi - 2.0) + xi*(2.0*xi - 2.0) + 1.0), \
+        ds1_N_r_x1 = -P_r_x1 + ds1_P_r_x1*l, \
+        ds1_P_r_x2 = ds1_xi*(xi*xi + 2.0*xi*(xi - 1.0)), \
+        ds1_N_r_x2 = -P_r_x2 + ds1_P_r_x2*l, \
+        ds1_P_r_2 = ds1_xi*(-2.0*xi*xi + 2.0*xi*(-2.0*xi + 3.0));
 
-/* part of derivatives of C by r_p, r_x, director: of slide_beam24_rigid_constraint and 11 more */
-#define SLIDE_PART_OF_DERIVATIVES_OF_C_BY_R_P_R_X_DIRECTOR_2 \
+/* part of C_s and C_q (eq 23): of slide_span_cable8p_planar_rigid_terms and 3 more */
+#define SLIDE_PART_OF_C_S_AND_C_Q_EQ_23_9 \
     const fu_real \
-        d_ds_r_y_len_k = inv_k*(d_ds_r_y_m_x*m_x + d_ds_r_y_m_y*m_y + d_ds_r_y_m_z*m_z), \
-        d_ds_r_y_inv_k = -(d_ds_r_y_len_k*inv_k*inv_k), \
-        d_ds_r_y_k_y = d_ds_r_y_inv_k*m_y + d_ds_r_y_m_y*inv_k, \
-        d_ds_r_y_k_z = d_ds_r_y_inv_k*m_z + d_ds_r_y_m_z*inv_k, \
-        d_ds_r_y_j_x = -d_ds_r_y_i_y*k_z + d_ds_r_y_i_z*k_y + d_ds_r_y_k_y*i_z - d_ds_r_y_k_z*i_y, \
-        d_ds_r_y_k_x = d_ds_r_y_inv_k*m_x + d_ds_r_y_m_x*inv_k, \
-        d_ds_r_y_j_y = d_ds_r_y_i_x*k_z - d_ds_r_y_i_z*k_x - d_ds_r_y_k_x*i_z + d_ds_r_y_k_z*i_x, \
-        d_ds_r_y_j_z = -d_ds_r_y_i_x*k_y + d_ds_r_y_i_y*k_x + d_ds_r_y_k_x*i_y - d_ds_r_y_k_y*i_x, \
-        d_ds_r_y_C_m1 = d_ds_r_y_j_x*r_p_x + d_ds_r_y_j_y*r_p_y + d_ds_r_y_j_z*r_p_z, \
-        d_ds_r_y_C_m2 = d_ds_r_y_k_x*r_p_x + d_ds_r_y_k_y*r_p_y + d_ds_r_y_k_z*r_p_z, \
-        d_ds_r_z_len_i = ds_r_z*inv_i, \
-        d_ds_r_z_inv_i = -(d_ds_r_z_len_i*inv_i*inv_i), \
-        d_ds_r_z_i_x = d_ds_r_z_inv_i*ds_r_x, \
-        d_ds_r_z_i_y = d_ds_r_z_inv_i*ds_r_y, \
-        d_ds_r_z_i_z = d_ds_r_z_inv_i*ds_r_z + inv_i, \
-        d_ds_r_z_C_l = d_ds_r_z_i_x*r_p_x + d_ds_r_z_i_y*r_p_y + d_ds_r_z_i_z*r_p_z;
+        ds1_ds_P_r_x1 = ds1_inv_l*(xi*(xi - 2.0) + xi*(2.0*xi - 2.0) + 1.0) + ds1_xi*inv_l*(6.0*xi - 4.0), \
+        ds1_ds_N_r_x1 = ds1_ds_P_r_x1*l - ds_P_r_x1, \
+        ds1_ds_P_r_x2 = ds1_inv_l*(xi*xi + 2.0*xi*(xi - 1.0)) + ds1_xi*inv_l*(6.0*xi - 2.0), \
+        ds1_ds_N_r_x2 = ds1_ds_P_r_x2*l - ds_P_r_x2, \
+        ds1_ds_P_r_2 = ds1_inv_l*(-2.0*xi*xi + 2.0*xi*(-2.0*xi + 3.0)) + ds1_xi*inv_l*(-12.0*xi + 6.0);
 
-/* part of derivatives of C by r_p, r_x, director: of slide_beam24_rigid_constraint and 11 more */
-#define SLIDE_PART_OF_DERIVATIVES_OF_C_BY_R_P_R_X_DIRECTOR_3 \
+/* part of C_s and C_q (eq 23): of slide_span_cable8p_planar_rigid_terms and 1 more */
+#define SLIDE_PART_OF_C_S_AND_C_Q_EQ_23_10 \
     const fu_real \
-        d_ds_r_z_len_k = inv_k*(d_ds_r_z_m_x*m_x + d_ds_r_z_m_y*m_y + d_ds_r_z_m_z*m_z), \
-        d_ds_r_z_inv_k = -(d_ds_r_z_len_k*inv_k*inv_k), \
-        d_ds_r_z_k_y = d_ds_r_z_inv_k*m_y + d_ds_r_z_m_y*inv_k, \
-        d_ds_r_z_k_z = d_ds_r_z_inv_k*m_z + d_ds_r_z_m_z*inv_k, \
-        d_ds_r_z_j_x = -d_ds_r_z_i_y*k_z + d_ds_r_z_i_z*k_y + d_ds_r_z_k_y*i_z - d_ds_r_z_k_z*i_y, \
-        d_ds_r_z_k_x = d_ds_r_z_inv_k*m_x + d_ds_r_z_m_x*inv_k, \
-        d_ds_r_z_j_y = d_ds_r_z_i_x*k_z - d_ds_r_z_i_z*k_x - d_ds_r_z_k_x*i_z + d_ds_r_z_k_z*i_x, \
-        d_ds_r_z_j_z = -d_ds_r_z_i_x*k_y + d_ds_r_z_i_y*k_x + d_ds_r_z_k_x*i_y - d_ds_r_z_k_y*i_x, \
-        d_ds_r_z_C_m1 = d_ds_r_z_j_x*r_p_x + d_ds_r_z_j_y*r_p_y + d_ds_r_z_j_z*r_p_z, \
-        d_ds_r_z_C_m2 = d_ds_r_z_k_x*r_p_x + d_ds_r_z_k_y*r_p_y + d_ds_r_z_k_z*r_p_z;
+        ds1_ds_r_x = ds1_ds_N_r_x1*e[2] + ds1_ds_N_r_x2*e[6] + ds1_ds_P_r_2*(-e[0] + e[4]), \
+        ds1_ds_r_y = ds1_ds_N_r_x1*e[3] + ds1_ds_N_r_x2*e[7] + ds1_ds_P_r_2*(-e[1] + e[5]); \
+    C_ql[8] = d_ds_r_x_C_l*ds1_ds_r_x + d_ds_r_y_C_l*ds1_ds_r_y + ds1_r_x*i_x + ds1_r_y*i_y; \
+    const fu_real C_qm_8 = d_ds_r_x_C_m*ds1_ds_r_x + d_ds_r_y_C_m*ds1_ds_r_y + d_r_p_x_C_m*ds1_r_x + ds1_r_y*i_x;
 
-/* part of Jacobian of phi: of slide_beam24_rigid_residual and 5 more */
+/* part of C_s and C_q (eq 23): of slide_span_cable8p_planar_rigid_terms and 3 more */
+#define SLIDE_PART_OF_C_S_AND_C_Q_EQ_23_11 \
+    const fu_real \
+        ds2_inv_l = -inv_l*inv_l, \
+        ds2_xi = ds2_inv_l*x, \
+        ds2_P_r_x1 = ds2_xi*(xi*(xi - 2.0) + xi*(2.0*xi - 2.0) + 1.0), \
+        ds2_N_r_x1 = P_r_x1 + ds2_P_r_x1*l, \
+        ds2_P_r_x2 = ds2_xi*(xi*xi + 2.0*xi*(xi - 1.0)), \
+        ds2_N_r_x2 = P_r_x2 + ds2_P_r_x2*l, \
+        ds2_P_r_2 = ds2_xi*(-2.0*xi*xi + 2.0*xi*(-2.0*xi + 3.0));
+
+/* part of C_s and C_q (eq 23): of slide_span_cable8p_planar_rigid_terms and 3 more */
+#define SLIDE_PART_OF_C_S_AND_C_Q_EQ_23_12 \
+    const fu_real \
+        ds2_ds_P_r_x1 = ds2_inv_l*(xi*(xi - 2.0) + xi*(2.0*xi - 2.0) + 1.0) + ds2_xi*inv_l*(6.0*xi - 4.0), \
+        ds2_ds_N_r_x1 = ds2_ds_P_r_x1*l + ds_P_r_x1, \
+        ds2_ds_P_r_x2 = ds2_inv_l*(xi*xi + 2.0*xi*(xi - 1.0)) + ds2_xi*inv_l*(6.0*xi - 2.0), \
+        ds2_ds_N_r_x2 = ds2_ds_P_r_x2*l + ds_P_r_x2, \
+        ds2_ds_P_r_2 = ds2_inv_l*(-2.0*xi*xi + 2.0*xi*(-2.0*xi + 3.0)) + ds2_xi*inv_l*(-12.0*xi + 6.0);
+
+/* part of C_s and C_q (eq 23): of slide_span_cable8p_planar_rigid_terms and 1 more */
+#define SLIDE_PART_OF_C_S_AND_C_Q_EQ_23_13 \
+    const fu_real \
+        ds2_ds_r_x = ds2_ds_N_r_x1*e[2] + ds2_ds_N_r_x2*e[6] + ds2_ds_P_r_2*(-e[0] + e[4]), \
+        ds2_ds_r_y = ds2_ds_N_r_x1*e[3] + ds2_ds_N_r_x2*e[7] + ds2_ds_P_r_2*(-e[1] + e[5]); \
+    C_ql[9] = d_ds_r_x_C_l*ds2_ds_r_x + d_ds_r_y_C_l*ds2_ds_r_y + ds2_r_x*i_x + ds2_r_y*i_y; \
+    const fu_real C_qm_9 = d_ds_r_x_C_m*ds2_ds_r_x + d_ds_r_y_C_m*ds2_ds_r_y + d_r_p_x_C_m*ds2_r_x + ds2_r_y*i_x; \
+    C_ql[10] = -i_x; \
+    const fu_real C_qm_10 = -d_r_p_x_C_m; \
+    C_ql[11] = -i_y; \
+    const fu_real C_qm_11 = -i_x;
+
+/* part of Jacobian of phi: of slide_span_cable8p_planar_rigid_residual and 7 more */
 #define SLIDE_PART_OF_JACOBIAN_OF_PHI \
+    const fu_real \
+        ds1_inv_l = inv_l*inv_l, \
+        ds1_xi = ds1_inv_l*x - inv_l, \
+        ds1_P_r_x1 = ds1_xi*(xi*(xi - 2.0) + xi*(2.0*xi - 2.0) + 1.0), \
+        ds1_N_r_x1 = -P_r_x1 + ds1_P_r_x1*l, \
+        ds1_P_r_x2 = ds1_xi*(xi*xi + 2.0*xi*(xi - 1.0)), \
+        ds1_N_r_x2 = -P_r_x2 + ds1_P_r_x2*l, \
+        ds1_P_r_2 = ds1_xi*(-2.0*xi*xi + 2.0*xi*(-2.0*xi + 3.0));
+
+/* part of Jacobian of phi: of slide_span_cable8p_planar_rigid_residual and 7 more */
+#define SLIDE_PART_OF_JACOBIAN_OF_PHI_2 \
+    const fu_real \
+        ds2_inv_l = -inv_l*inv_l, \
+        ds2_xi = ds2_inv_l*x, \
+        ds2_P_r_x1 = ds2_xi*(xi*(xi - 2.0) + xi*(2.0*xi - 2.0) + 1.0), \
+        ds2_N_r_x1 = P_r_x1 + ds2_P_r_x1*l, \
+        ds2_P_r_x2 = ds2_xi*(xi*xi + 2.0*xi*(xi - 1.0)), \
+        ds2_N_r_x2 = P_r_x2 + ds2_P_r_x2*l, \
+        ds2_P_r_2 = ds2_xi*(-2.0*xi*xi + 2.0*xi*(-2.0*xi + 3.0));
+
+/* part of derivative of the gradient: of slide_span_cable8p_planar_rigid_tangent and 3 more */
+#define SLIDE_PART_OF_DERIVATIVE_OF_THE_GRADIENT_3 \
+    const fu_real \
+        ds1_ds1_inv_l = 2.0*ds1_inv_l*inv_l, \
+        ds1_ds1_xi = ds1_ds1_inv_l*x - 2.0*ds1_inv_l, \
+        ds1_ds1_P_r_x1 = ds1_ds1_xi*(xi*(xi - 2.0) + xi*(2.0*xi - 2.0) + 1.0) + ds1_xi*ds1_xi*(6.0*xi - 4.0), \
+        ds1_ds1_N_r_x1 = -2.0*ds1_P_r_x1 + ds1_ds1_P_r_x1*l, \
+        ds1_ds1_P_r_x2 = ds1_ds1_xi*(xi*xi + 2.0*xi*(xi - 1.0)) + ds1_xi*ds1_xi*(6.0*xi - 2.0), \
+        ds1_ds1_N_r_x2 = -2.0*ds1_P_r_x2 + ds1_ds1_P_r_x2*l, \
+        ds1_ds1_P_r_2 = ds1_ds1_xi*(-2.0*xi*xi + 2.0*xi*(-2.0*xi + 3.0)) + ds1_xi*ds1_xi*(-12.0*xi + 6.0);
+
+/* part of derivative of the gradient: of slide_span_cable8p_planar_rigid_tangent and 3 more */
+#define SLIDE_PART_OF_DERIVATIVE_OF_THE_GRADIENT_4 \
+    const fu_real \
+        ds1_ds2_inv_l = -(2.0*ds1_inv_l*inv_l), \
+        ds1_ds2_xi = ds1_ds2_inv_l*x - ds2_inv_l, \
+        ds1_ds2_P_r_x1 = ds1_ds2_xi*(xi*(xi - 2.0) + xi*(2.0*xi - 2.0) + 1.0) + ds1_xi*ds2_xi*(6.0*xi - 4.0), \
+        ds1_ds2_N_r_x1 = ds1_P_r_x1 + ds1_ds2_P_r_x1*l - ds2_P_r_x1, \
+        ds1_ds2_P_r_x2 = ds1_ds2_xi*(xi*xi + 2.0*xi*(xi - 1.0)) + ds1_xi*ds2_xi*(6.0*xi - 2.0), \
+        ds1_ds2_N_r_x2 = ds1_P_r_x2 + ds1_ds2_P_r_x2*l - ds2_P_r_x2, \
+        ds1_ds2_P_r_2 = ds1_ds2_xi*(-2.0*xi*xi + 2.0*xi*(-2.0*xi + 3.0)) + ds1_xi*ds2_xi*(-12.0*xi + 6.0);
+
+/* part of derivative of the gradient: of slide_span_cable8p_planar_rigid_tangent and 3 more */
+#define SLIDE_PART_OF_DERIVATIVE_OF_THE_GRADIENT_5 \
+    const fu_real \
+        ds1_ds_P_r_x1 = ds1_inv_l*(xi*(xi - 2.0) + xi*(2.0*xi - 2.0) + 1.0) + ds1_xi*inv_l*(6.0*xi - 4.0), \
+        ds1_ds_N_r_x1 = ds1_ds_P_r_x1*l - ds_P_r_x1, \
+        ds1_ds_P_r_x2 = ds1_inv_l*(xi*xi + 2.0*xi*(xi - 1.0)) + ds1_xi*inv_l*(6.0*xi - 2.0), \
+        ds1_ds_N_r_x2 = ds1_ds_P_r_x2*l - ds_P_r_x2, \
+        ds1_ds_P_r_2 = ds1_inv_l*(-2.0*xi*xi + 2.0*xi*(-2.0*xi + 3.0)) + ds1_xi*inv_l*(-12.0*xi + 6.0);
+
+/* part of derivative of the gradient: of slide_span_cable8p_planar_rigid_tangent and 3 more */
+#define SLIDE_PART_OF_DERIVATIVE_OF_THE_GRADIENT_6 \
+    const fu_real \
+        ds2_ds1_inv_l = 2.0*ds2_inv_l*inv_l, \
+        ds2_ds1_xi = ds2_ds1_inv_l*x - ds2_inv_l, \
+        ds2_ds1_P_r_x1 = ds1_xi*ds2_xi*(6.0*xi - 4.0) + ds2_ds1_xi*(xi*(xi - 2.0) + xi*(2.0*xi - 2.0) + 1.0), \
+        ds2_ds1_N_r_x1 = ds1_P_r_x1 - ds2_P_r_x1 + ds2_ds1_P_r_x1*l, \
+        ds2_ds1_P_r_x2 = ds1_xi*ds2_xi*(6.0*xi - 2.0) + ds2_ds1_xi*(xi*xi + 2.0*xi*(xi - 1.0)), \
+        ds2_ds1_N_r_x2 = ds1_P_r_x2 - ds2_P_r_x2 + ds2_ds1_P_r_x2*l, \
+        ds2_ds1_P_r_2 = ds1_xi*ds2_xi*(-12.0*xi + 6.0) + ds2_ds1_xi*(-2.0*xi*xi + 2.0*xi*(-2.0*xi + 3.0));
+
+/* part of derivative of the gradient: of slide_span_cable8p_planar_rigid_tangent and 3 more */
+#define SLIDE_PART_OF_DERIVATIVE_OF_THE_GRADIENT_7 \
+    const fu_real \
+        ds2_ds2_inv_l = -(2.0*ds2_inv_l*inv_l), \
+        ds2_ds2_xi = ds2_ds2_inv_l*x, \
+        ds2_ds2_P_r_x1 = ds2_ds2_xi*(xi*(xi - 2.0) + xi*(2.0*xi - 2.0) + 1.0) + ds2_xi*ds2_xi*(6.0*xi - 4.0), \
+        ds2_ds2_N_r_x1 = 2.0*ds2_P_r_x1 + ds2_ds2_P_r_x1*l, \
+        ds2_ds2_P_r_x2 = ds2_ds2_xi*(xi*xi + 2.0*xi*(xi - 1.0)) + ds2_xi*ds2_xi*(6.0*xi - 2.0), \
+        ds2_ds2_N_r_x2 = 2.0*ds2_P_r_x2 + ds2_ds2_P_r_x2*l, \
+        ds2_ds2_P_r_2 = ds2_ds2_xi*(-2.0*xi*xi + 2.0*xi*(-2.0*xi + 3.0)) + ds2_xi*ds2_xi*(-12.0*xi + 6.0);
+
+/* part of derivative of the gradient: of slide_span_cable8p_planar_rigid_tangent and 3 more */
+#define SLIDE_PART_OF_DERIVATIVE_OF_THE_GRADIENT_8 \
+    const fu_real \
+        ds2_ds_P_r_x1 = ds2_inv_l*(xi*(xi - 2.0) + xi*(2.0*xi - 2.0) + 1.0) + ds2_xi*inv_l*(6.0*xi - 4.0), \
+        ds2_ds_N_r_x1 = ds2_ds_P_r_x1*l + ds_P_r_x1, \
+        ds2_ds_P_r_x2 = ds2_inv_l*(xi*xi + 2.0*xi*(xi - 1.0)) + ds2_xi*inv_l*(6.0*xi - 2.0), \
+        ds2_ds_N_r_x2 = ds2_ds_P_r_x2*l + ds_P_r_x2, \
+        ds2_ds_P_r_2 = ds2_inv_l*(-2.0*xi*xi + 2.0*xi*(-2.0*xi + 3.0)) + ds2_xi*inv_l*(-12.0*xi + 6.0);
+
+/* part of derivative of the gradient: of slide_span_cable8p_planar_rigid_tangent and 3 more */
+#define SLIDE_PART_OF_DERIVATIVE_OF_THE_GRADIENT_9 \
+    const fu_real \
+        ds_ds1_P_r_x1 = ds1_inv_l*(xi*(xi - 2.0) + xi*(2.0*xi - 2.0) + 1.0) + ds1_xi*inv_l*(6.0*xi - 4.0), \
+        ds_ds1_N_r_x1 = -ds_P_r_x1 + ds_ds1_P_r_x1*l, \
+        ds_ds1_P_r_x2 = ds1_inv_l*(xi*xi + 2.0*xi*(xi - 1.0)) + ds1_xi*inv_l*(6.0*xi - 2.0), \
+        ds_ds1_N_r_x2 = -ds_P_r_x2 + ds_ds1_P_r_x2*l, \
+        ds_ds1_P_r_2 = ds1_inv_l*(-2.0*xi*xi + 2.0*xi*(-2.0*xi + 3.0)) + ds1_xi*inv_l*(-12.0*xi + 6.0);
+
+/* part of derivative of the gradient: of slide_span_cable8p_planar_rigid_tangent and 3 more */
+#define SLIDE_PART_OF_DERIVATIVE_OF_THE_GRADIENT_10 \
+    const fu_real \
+        ds_ds2_P_r_x1 = ds2_inv_l*(xi*(xi - 2.0) + xi*(2.0*xi - 2.0) + 1.0) + ds2_xi*inv_l*(6.0*xi - 4.0), \
+        ds_ds2_N_r_x1 = ds_P_r_x1 + ds_ds2_P_r_x1*l, \
+        ds_ds2_P_r_x2 = ds2_inv_l*(xi*xi + 2.0*xi*(xi - 1.0)) + ds2_xi*inv_l*(6.0*xi - 2.0), \
+        ds_ds2_N_r_x2 = ds_P_r_x2 + ds_ds2_P_r_x2*l, \
+        ds_ds2_P_r_2 = ds2_inv_l*(-2.0*xi*xi + 2.0*xi*(-2.0*xi + 3.0)) + ds2_xi*inv_l*(-12.0*xi + 6.0);
+
+/* part of C_s and C_q (eq 23): of slide_span_cable12_rigid_terms and 1 more */
+#define SLIDE_PART_OF_C_S_AND_C_Q_EQ_23_14 \
+    const fu_real \
+        ds1_ds_r_x = ds1_ds_N_r_x1*e[3] + ds1_ds_N_r_x2*e[9] + ds1_ds_P_r_2*(-e[0] + e[6]), \
+        ds1_ds_r_y = ds1_ds_N_r_x1*e[4] + ds1_ds_N_r_x2*e[10] + ds1_ds_P_r_2*(-e[1] + e[7]), \
+        ds1_ds_r_z = ds1_ds_N_r_x1*e[5] + ds1_ds_N_r_x2*e[11] + ds1_ds_P_r_2*(-e[2] + e[8]), \
+        C_ql_12 = d_ds_r_x_C_l*ds1_ds_r_x + d_ds_r_y_C_l*ds1_ds_r_y + d_ds_r_z_C_l*ds1_ds_r_z + ds1_r_x*i_x + ds1_r_y*i_y + ds1_r_z*i_z, \
+        C_qm1_12 = d_ds_r_x_C_m1*ds1_ds_r_x + d_ds_r_y_C_m1*ds1_ds_r_y + d_ds_r_z_C_m1*ds1_ds_r_z + ds1_r_x*j_x + ds1_r_y*j_y + ds1_r_z*j_z, \
+        C_qm2_12 = d_ds_r_x_C_m2*ds1_ds_r_x + d_ds_r_y_C_m2*ds1_ds_r_y + d_ds_r_z_C_m2*ds1_ds_r_z + ds1_r_x*k_x + ds1_r_y*k_y + ds1_r_z*k_z;
+
+/* part of C_s and C_q (eq 23): of slide_span_cable12_rigid_terms and 1 more */
+#define SLIDE_PART_OF_C_S_AND_C_Q_EQ_23_15 \
+    const fu_real \
+        ds2_ds_r_x = ds2_ds_N_r_x1*e[3] + ds2_ds_N_r_x2*e[9] + ds2_ds_P_r_2*(-e[0] + e[6]), \
+        ds2_ds_r_y = ds2_ds_N_r_x1*e[4] + ds2_ds_N_r_x2*e[10] + ds2_ds_P_r_2*(-e[1] + e[7]), \
+        ds2_ds_r_z = ds2_ds_N_r_x1*e[5] + ds2_ds_N_r_x2*e[11] + ds2_ds_P_r_2*(-e[2] + e[8]), \
+        C_ql_13 = d_ds_r_x_C_l*ds2_ds_r_x + d_ds_r_y_C_l*ds2_ds_r_y + d_ds_r_z_C_l*ds2_ds_r_z + ds2_r_x*i_x + ds2_r_y*i_y + ds2_r_z*i_z, \
+        C_qm1_13 = d_ds_r_x_C_m1*ds2_ds_r_x + d_ds_r_y_C_m1*ds2_ds_r_y + d_ds_r_z_C_m1*ds2_ds_r_z + ds2_r_x*j_x + ds2_r_y*j_y + ds2_r_z*j_z, \
+        C_qm2_13 = d_ds_r_x_C_m2*ds2_ds_r_x + d_ds_r_y_C_m2*ds2_ds_r_y + d_ds_r_z_C_m2*ds2_ds_r_z + ds2_r_x*k_x + ds2_r_y*k_y + ds2_r_z*k_z, \
+        C_ql_14 = -i_x, \
+        C_qm1_14 = -j_x, \
+        C_qm2_14 = -k_x, \
+        C_ql_15 = -i_y, \
+        C_qm1_15 = -j_y, \
+        C_qm2_15 = -k_y, \
+        C_ql_16 = -i_z, \
+        C_qm1_16 = -j_z, \
+        C_qm2_16 = -k_z;
+
+/* part of Jacobian of phi: of slide_span_cable12_rigid_residual and 7 more */
+#define SLIDE_PART_OF_JACOBIAN_OF_PHI_3 \
     const fu_real \
         d_th1_arm_x = -A1_y*u[2] + A1_z*u[1], \
         d_th1_r_p_x = -d_th1_arm_x, \
@@ -445,8 +588,86 @@
         d_th3_arm_z = -A3_x*u[1] + A3_y*u[0], \
         d_th3_r_p_z = -d_th3_arm_z;
 
+/* part of derivative of the gradient: of slide_span_cable12_rigid_tangent and 1 more */
+#define SLIDE_PART_OF_DERIVATIVE_OF_THE_GRADIENT_11 \
+    const fu_real \
+        ds1_de2_r_z = -ds1_P_r_2, \
+        ds1_g_2 = ds1_de2_r_z*f[2], \
+        ds1_g_3 = ds1_N_r_x1*f[0], \
+        ds1_g_4 = ds1_N_r_x1*f[1], \
+        ds1_g_5 = ds1_N_r_x1*f[2], \
+        ds1_g_6 = ds1_P_r_2*f[0], \
+        ds1_g_7 = ds1_P_r_2*f[1], \
+        ds1_g_8 = ds1_P_r_2*f[2], \
+        ds1_g_9 = ds1_N_r_x2*f[0], \
+        ds1_g_10 = ds1_N_r_x2*f[1], \
+        ds1_g_11 = ds1_N_r_x2*f[2];
+
+/* part of derivative of the gradient: of slide_span_cable12_rigid_tangent and 1 more */
+#define SLIDE_PART_OF_DERIVATIVE_OF_THE_GRADIENT_12 \
+    const fu_real \
+        ds2_de2_r_z = -ds2_P_r_2, \
+        ds2_g_2 = ds2_de2_r_z*f[2], \
+        ds2_g_3 = ds2_N_r_x1*f[0], \
+        ds2_g_4 = ds2_N_r_x1*f[1], \
+        ds2_g_5 = ds2_N_r_x1*f[2], \
+        ds2_g_6 = ds2_P_r_2*f[0], \
+        ds2_g_7 = ds2_P_r_2*f[1], \
+        ds2_g_8 = ds2_P_r_2*f[2], \
+        ds2_g_9 = ds2_N_r_x2*f[0], \
+        ds2_g_10 = ds2_N_r_x2*f[1], \
+        ds2_g_11 = ds2_N_r_x2*f[2];
+
+/* part of derivatives of C by r_p, r_x, director: of slide_beam24_rigid_constraint and 15 more */
+#define SLIDE_PART_OF_DERIVATIVES_OF_C_BY_R_P_R_X_DIRECTOR \
+    const fu_real \
+        d_ds_r_x_len_k = inv_k*(d_ds_r_x_m_x*m_x + d_ds_r_x_m_y*m_y + d_ds_r_x_m_z*m_z), \
+        d_ds_r_x_inv_k = -(d_ds_r_x_len_k*inv_k*inv_k), \
+        d_ds_r_x_k_y = d_ds_r_x_inv_k*m_y + d_ds_r_x_m_y*inv_k, \
+        d_ds_r_x_k_z = d_ds_r_x_inv_k*m_z + d_ds_r_x_m_z*inv_k, \
+        d_ds_r_x_j_x = -d_ds_r_x_i_y*k_z + d_ds_r_x_i_z*k_y + d_ds_r_x_k_y*i_z - d_ds_r_x_k_z*i_y, \
+        d_ds_r_x_k_x = d_ds_r_x_inv_k*m_x + d_ds_r_x_m_x*inv_k, \
+        d_ds_r_x_j_y = d_ds_r_x_i_x*k_z - d_ds_r_x_i_z*k_x - d_ds_r_x_k_x*i_z + d_ds_r_x_k_z*i_x, \
+        d_ds_r_x_j_z = -d_ds_r_x_i_x*k_y + d_ds_r_x_i_y*k_x + d_ds_r_x_k_x*i_y - d_ds_r_x_k_y*i_x, \
+        d_ds_r_x_C_m1 = d_ds_r_x_j_x*r_p_x + d_ds_r_x_j_y*r_p_y + d_ds_r_x_j_z*r_p_z, \
+        d_ds_r_x_C_m2 = d_ds_r_x_k_x*r_p_x + d_ds_r_x_k_y*r_p_y + d_ds_r_x_k_z*r_p_z;
+
+/* part of derivatives of C by r_p, r_x, director: of slide_beam24_rigid_constraint and 15 more */
+#define SLIDE_PART_OF_DERIVATIVES_OF_C_BY_R_P_R_X_DIRECTOR_2 \
+    const fu_real \
+        d_ds_r_y_len_k = inv_k*(d_ds_r_y_m_x*m_x + d_ds_r_y_m_y*m_y + d_ds_r_y_m_z*m_z), \
+        d_ds_r_y_inv_k = -(d_ds_r_y_len_k*inv_k*inv_k), \
+        d_ds_r_y_k_y = d_ds_r_y_inv_k*m_y + d_ds_r_y_m_y*inv_k, \
+        d_ds_r_y_k_z = d_ds_r_y_inv_k*m_z + d_ds_r_y_m_z*inv_k, \
+        d_ds_r_y_j_x = -d_ds_r_y_i_y*k_z + d_ds_r_y_i_z*k_y + d_ds_r_y_k_y*i_z - d_ds_r_y_k_z*i_y, \
+        d_ds_r_y_k_x = d_ds_r_y_inv_k*m_x + d_ds_r_y_m_x*inv_k, \
+        d_ds_r_y_j_y = d_ds_r_y_i_x*k_z - d_ds_r_y_i_z*k_x - d_ds_r_y_k_x*i_z + d_ds_r_y_k_z*i_x, \
+        d_ds_r_y_j_z = -d_ds_r_y_i_x*k_y + d_ds_r_y_i_y*k_x + d_ds_r_y_k_x*i_y - d_ds_r_y_k_y*i_x, \
+        d_ds_r_y_C_m1 = d_ds_r_y_j_x*r_p_x + d_ds_r_y_j_y*r_p_y + d_ds_r_y_j_z*r_p_z, \
+        d_ds_r_y_C_m2 = d_ds_r_y_k_x*r_p_x + d_ds_r_y_k_y*r_p_y + d_ds_r_y_k_z*r_p_z, \
+        d_ds_r_z_len_i = ds_r_z*inv_i, \
+        d_ds_r_z_inv_i = -(d_ds_r_z_len_i*inv_i*inv_i), \
+        d_ds_r_z_i_x = d_ds_r_z_inv_i*ds_r_x, \
+        d_ds_r_z_i_y = d_ds_r_z_inv_i*ds_r_y, \
+        d_ds_r_z_i_z = d_ds_r_z_inv_i*ds_r_z + inv_i, \
+        d_ds_r_z_C_l = d_ds_r_z_i_x*r_p_x + d_ds_r_z_i_y*r_p_y + d_ds_r_z_i_z*r_p_z;
+
+/* part of derivatives of C by r_p, r_x, director: of slide_beam24_rigid_constraint and 15 more */
+#define SLIDE_PART_OF_DERIVATIVES_OF_C_BY_R_P_R_X_DIRECTOR_3 \
+    const fu_real \
+        d_ds_r_z_len_k = inv_k*(d_ds_r_z_m_x*m_x + d_ds_r_z_m_y*m_y + d_ds_r_z_m_z*m_z), \
+        d_ds_r_z_inv_k = -(d_ds_r_z_len_k*inv_k*inv_k), \
+        d_ds_r_z_k_y = d_ds_r_z_inv_k*m_y + d_ds_r_z_m_y*inv_k, \
+        d_ds_r_z_k_z = d_ds_r_z_inv_k*m_z + d_ds_r_z_m_z*inv_k, \
+        d_ds_r_z_j_x = -d_ds_r_z_i_y*k_z + d_ds_r_z_i_z*k_y + d_ds_r_z_k_y*i_z - d_ds_r_z_k_z*i_y, \
+        d_ds_r_z_k_x = d_ds_r_z_inv_k*m_x + d_ds_r_z_m_x*inv_k, \
+        d_ds_r_z_j_y = d_ds_r_z_i_x*k_z - d_ds_r_z_i_z*k_x - d_ds_r_z_k_x*i_z + d_ds_r_z_k_z*i_x, \
+        d_ds_r_z_j_z = -d_ds_r_z_i_x*k_y + d_ds_r_z_i_y*k_x + d_ds_r_z_k_x*i_y - d_ds_r_z_k_y*i_x, \
+        d_ds_r_z_C_m1 = d_ds_r_z_j_x*r_p_x + d_ds_r_z_j_y*r_p_y + d_ds_r_z_j_z*r_p_z, \
+        d_ds_r_z_C_m2 = d_ds_r_z_k_x*r_p_x + d_ds_r_z_k_y*r_p_y + d_ds_r_z_k_z*r_p_z;
+
 /* part of Jacobian of phi: of slide_cable18_rigid_residual and 3 more */
-#define SLIDE_PART_OF_JACOBIAN_OF_PHI_2 \
+#define SLIDE_PART_OF_JACOBIAN_OF_PHI_4 \
     const fu_real \
         ds_P_r_xx1 = inv_l*(xi*xi*(xi*(-xi + 1.5) + xi*(-0.5*xi + 1.5) - 1.5) + 2.0*xi*(xi*(xi*(-0.5*xi + 1.5) - 1.5) + 0.5)), \
         ds_N_r_xx1 = ds_P_r_xx1*l*l, \
@@ -593,7 +814,7 @@
     A_t[7] = j_z; \
     A_t[8] = k_z;
 
-/* centreline at s and rider's point (eq 19): of slide_beam24_rigid_tangent and 1 more */
+/* centreline at s and rider's point (eq 19): of slide_beam24_rigid_tangent and 2 more */
 #define SLIDE_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19 \
     SLIDE_PART_OF_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19 \
     const fu_real \
@@ -666,7 +887,29 @@
         theta_y = 2.0*A_x[1]*half_x + 2.0*A_y[1]*half_y + 2.0*A_z[1]*half_z, \
         theta_z = 2.0*A_x[2]*half_x + 2.0*A_y[2]*half_y + 2.0*A_z[2]*half_z;
 
-/* tangent and director: of slide_cable12_rigid_constraint and 3 more */
+/* centreline at s and rider's point (eq 19): of slide_cable12_rigid_constraint and 5 more */
+#define SLIDE_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19_2 \
+    SLIDE_PART_OF_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19 \
+    const fu_real \
+        P_r_x1 = xi*(xi*(xi - 2.0) + 1.0), \
+        N_r_x1 = P_r_x1*l, \
+        P_r_2 = xi*xi*(-2.0*xi + 3.0), \
+        P_r_x2 = xi*xi*(xi - 1.0), \
+        N_r_x2 = P_r_x2*l, \
+        r_x = N_r_x1*e[3] + N_r_x2*e[9] + P_r_2*(-e[0] + e[6]), \
+        r_y = N_r_x1*e[4] + N_r_x2*e[10] + P_r_2*(-e[1] + e[7]), \
+        r_z = N_r_x1*e[5] + N_r_x2*e[11] + P_r_2*(-e[2] + e[8]), \
+        arm_x = A1_x*u[0] + A1_y*u[1] + A1_z*u[2], \
+        arm_y = A2_x*u[0] + A2_y*u[1] + A2_z*u[2], \
+        arm_z = A3_x*u[0] + A3_y*u[1] + A3_z*u[2], \
+        gap_x = -b[0] + e[0], \
+        gap_y = -b[1] + e[1], \
+        gap_z = -b[2] + e[2], \
+        r_p_x = -arm_x + gap_x + r_x, \
+        r_p_y = -arm_y + gap_y + r_y, \
+        r_p_z = -arm_z + gap_z + r_z;
+
+/* tangent and director: of slide_cable12_rigid_constraint and 7 more */
 #define SLIDE_TANGENT_AND_DIRECTOR_2 \
     const fu_real \
         ds_P_r_x1 = inv_l*(xi*(xi - 2.0) + xi*(2.0*xi - 2.0) + 1.0), \
@@ -678,7 +921,7 @@
         ds_r_y = ds_N_r_x1*e[4] + ds_N_r_x2*e[10] + ds_P_r_2*(-e[1] + e[7]), \
         ds_r_z = ds_N_r_x1*e[5] + ds_N_r_x2*e[11] + ds_P_r_2*(-e[2] + e[8]);
 
-/* tangent frame (eq 13-18): of slide_cable12_rigid_constraint and 7 more */
+/* tangent frame (eq 13-18): of slide_cable12_rigid_constraint and 11 more */
 #define SLIDE_TANGENT_FRAME_EQ_13_18_2 \
     const fu_real \
         len_i = FU_SQRT(ds_r_x*ds_r_x + ds_r_y*ds_r_y + ds_r_z*ds_r_z), \
@@ -698,7 +941,7 @@
         j_y = i_x*k_z - i_z*k_x, \
         j_z = -i_x*k_y + i_y*k_x;
 
-/* derivatives of C by r_p, r_x, director: of slide_cable12_rigid_constraint and 7 more */
+/* derivatives of C by r_p, r_x, director: of slide_cable12_rigid_constraint and 11 more */
 #define SLIDE_DERIVATIVES_OF_C_BY_R_P_R_X_DIRECTOR_2 \
     const fu_real \
         d_ds_r_x_len_i = ds_r_x*inv_i, \
@@ -728,7 +971,7 @@
         d_ds_r_z_m_z = d_ds_r_z_i_x*director[1] - d_ds_r_z_i_y*director[0]; \
     SLIDE_PART_OF_DERIVATIVES_OF_C_BY_R_P_R_X_DIRECTOR_3
 
-/* C_s, eq 23: of slide_cable12_rigid_constraint and 1 more */
+/* C_s, eq 23: of slide_cable12_rigid_constraint and 3 more */
 #define SLIDE_C_S_EQ_23_2 \
     const fu_real \
         ds_ds_P_r_x1 = inv_l*inv_l*(6.0*xi - 4.0), \
@@ -741,7 +984,7 @@
         ds_ds_r_z = ds_ds_N_r_x1*e[5] + ds_ds_N_r_x2*e[11] + ds_ds_P_r_2*(-e[2] + e[8]), \
         C_ls = d_ds_r_x_C_l*ds_ds_r_x + d_ds_r_y_C_l*ds_ds_r_y + d_ds_r_z_C_l*ds_ds_r_z + ds_r_x*i_x + ds_r_y*i_y + ds_r_z*i_z;
 
-/* outputs: of slide_cable12_rigid_constraint and 3 more */
+/* outputs: of slide_cable12_rigid_constraint and 5 more */
 #define SLIDE_OUTPUTS_2 \
     C[0] = C_l; \
     C[1] = C_m1; \
@@ -759,6 +1002,24 @@
     A_t[6] = i_z; \
     A_t[7] = j_z; \
     A_t[8] = k_z;
+
+/* centreline at s and rider's point (eq 19): of slide_cable12_point_constraint and 5 more */
+#define SLIDE_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19_3 \
+    const fu_real \
+        P_r_x1 = xi*(xi*(xi - 2.0) + 1.0), \
+        N_r_x1 = P_r_x1*l, \
+        P_r_2 = xi*xi*(-2.0*xi + 3.0), \
+        P_r_x2 = xi*xi*(xi - 1.0), \
+        N_r_x2 = P_r_x2*l, \
+        r_x = N_r_x1*e[3] + N_r_x2*e[9] + P_r_2*(-e[0] + e[6]), \
+        r_y = N_r_x1*e[4] + N_r_x2*e[10] + P_r_2*(-e[1] + e[7]), \
+        r_z = N_r_x1*e[5] + N_r_x2*e[11] + P_r_2*(-e[2] + e[8]), \
+        gap_x = -b[0] + e[0], \
+        gap_y = -b[1] + e[1], \
+        gap_z = -b[2] + e[2], \
+        r_p_x = gap_x + r_x - u[0], \
+        r_p_y = gap_y + r_y - u[1], \
+        r_p_z = gap_z + r_z - u[2];
 
 /* tangent and director: of slide_cable18_rigid_constraint and 3 more */
 #define SLIDE_TANGENT_AND_DIRECTOR_3 \
@@ -854,7 +1115,7 @@
         ds_r_x = ds_N_r_x1*e[2] + ds_N_r_x2*e[8] + ds_P_r_2*(-e[0] + e[6]), \
         ds_r_y = ds_N_r_x1*e[3] + ds_N_r_x2*e[9] + ds_P_r_2*(-e[1] + e[7]);
 
-/* derivatives of C by r_p, r_x, director: of slide_beam12p_planar_rigid_constraint and 3 more */
+/* derivatives of C by r_p, r_x, director: of slide_beam12p_planar_rigid_constraint and 5 more */
 #define SLIDE_DERIVATIVES_OF_C_BY_R_P_R_X_DIRECTOR_3 \
     const fu_real \
         d_ds_r_x_len_i = ds_r_x*inv_i, \
@@ -882,7 +1143,7 @@
         ds_ds_r_y = ds_ds_N_r_x1*e[3] + ds_ds_N_r_x2*e[9] + ds_ds_P_r_2*(-e[1] + e[7]), \
         C_ls = d_ds_r_x_C_l*ds_ds_r_x + d_ds_r_y_C_l*ds_ds_r_y + ds_r_x*i_x + ds_r_y*i_y;
 
-/* derivatives of C by r_p, r_x, director: of slide_beam12p_planar_rigid_terms and 3 more */
+/* derivatives of C by r_p, r_x, director: of slide_beam12p_planar_rigid_terms and 5 more */
 #define SLIDE_DERIVATIVES_OF_C_BY_R_P_R_X_DIRECTOR_4 \
     const fu_real \
         d_r_p_x_C_m = -i_y, \
@@ -899,7 +1160,24 @@
         d_ds_r_y_C_l = d_ds_r_y_i_x*r_p_x + d_ds_r_y_i_y*r_p_y, \
         d_ds_r_y_C_m = d_ds_r_y_i_x*r_p_y - d_ds_r_y_i_y*r_p_x;
 
-/* tangent and director: of slide_cable8p_planar_rigid_constraint and 3 more */
+/* centreline at s and rider's point (eq 19): of slide_cable8p_planar_rigid_constraint and 5 more */
+#define SLIDE_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19_4 \
+    const fu_real \
+        P_r_x1 = xi*(xi*(xi - 2.0) + 1.0), \
+        N_r_x1 = P_r_x1*l, \
+        P_r_2 = xi*xi*(-2.0*xi + 3.0), \
+        P_r_x2 = xi*xi*(xi - 1.0), \
+        N_r_x2 = P_r_x2*l, \
+        r_x = N_r_x1*e[2] + N_r_x2*e[6] + P_r_2*(-e[0] + e[4]), \
+        r_y = N_r_x1*e[3] + N_r_x2*e[7] + P_r_2*(-e[1] + e[5]), \
+        arm_x = b[2]*u[0] - b[3]*u[1], \
+        arm_y = b[2]*u[1] + b[3]*u[0], \
+        gap_x = -b[0] + e[0], \
+        gap_y = -b[1] + e[1], \
+        r_p_x = -arm_x + gap_x + r_x, \
+        r_p_y = -arm_y + gap_y + r_y;
+
+/* tangent and director: of slide_cable8p_planar_rigid_constraint and 7 more */
 #define SLIDE_TANGENT_AND_DIRECTOR_5 \
     const fu_real \
         ds_P_r_x1 = inv_l*(xi*(xi - 2.0) + xi*(2.0*xi - 2.0) + 1.0), \
@@ -910,7 +1188,7 @@
         ds_r_x = ds_N_r_x1*e[2] + ds_N_r_x2*e[6] + ds_P_r_2*(-e[0] + e[4]), \
         ds_r_y = ds_N_r_x1*e[3] + ds_N_r_x2*e[7] + ds_P_r_2*(-e[1] + e[5]);
 
-/* C_s, eq 23: of slide_cable8p_planar_rigid_constraint and 1 more */
+/* C_s, eq 23: of slide_cable8p_planar_rigid_constraint and 3 more */
 #define SLIDE_C_S_EQ_23_5 \
     const fu_real \
         ds_ds_P_r_x1 = inv_l*inv_l*(6.0*xi - 4.0), \
@@ -921,5 +1199,20 @@
         ds_ds_r_x = ds_ds_N_r_x1*e[2] + ds_ds_N_r_x2*e[6] + ds_ds_P_r_2*(-e[0] + e[4]), \
         ds_ds_r_y = ds_ds_N_r_x1*e[3] + ds_ds_N_r_x2*e[7] + ds_ds_P_r_2*(-e[1] + e[5]), \
         C_ls = d_ds_r_x_C_l*ds_ds_r_x + d_ds_r_y_C_l*ds_ds_r_y + ds_r_x*i_x + ds_r_y*i_y;
+
+/* centreline at s and rider's point (eq 19): of slide_cable8p_planar_point_constraint and 5 more */
+#define SLIDE_CENTRELINE_AT_S_AND_RIDER_S_POINT_EQ_19_5 \
+    const fu_real \
+        P_r_x1 = xi*(xi*(xi - 2.0) + 1.0), \
+        N_r_x1 = P_r_x1*l, \
+        P_r_2 = xi*xi*(-2.0*xi + 3.0), \
+        P_r_x2 = xi*xi*(xi - 1.0), \
+        N_r_x2 = P_r_x2*l, \
+        r_x = N_r_x1*e[2] + N_r_x2*e[6] + P_r_2*(-e[0] + e[4]), \
+        r_y = N_r_x1*e[3] + N_r_x2*e[7] + P_r_2*(-e[1] + e[5]), \
+        gap_x = -b[0] + e[0], \
+        gap_y = -b[1] + e[1], \
+        r_p_x = gap_x + r_x - u[0], \
+        r_p_y = gap_y + r_y - u[1];
 
 #endif

@@ -92,10 +92,11 @@ class BodyFamily(Family):
 
 @dataclass(frozen=True, kw_only=True)
 class SlideFamily(ElementFamily, BodyFamily):
-    """The kernels of the slide of a rider on an element."""
+    """The kernels of the slide of a rider on an element, of a rope where the ends of the element flow."""
 
     element: Element
     rider: str
+    flows: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)

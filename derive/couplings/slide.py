@@ -3,6 +3,9 @@
 Everything is differentiated from C = A_t' (r(s) - p). The derivations are by the cable's nodal vectors e, by the
 rider's coordinates, by s, and along the motion; Q_d is the second derivative along the motion with q'' = s'' = 0.
 Cable and rider are both planar, with C = (C_l, C_m), or both spatial.
+
+On a rope the ends of the element flow, too (span.py): the material coordinates s1, s2 of its nodes are coordinates of
+the cable, after e. The slide's s counts along the material, so that x = s - s1 and l = s2 - s1.
 """
 
 from __future__ import annotations
@@ -11,6 +14,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
+import sympy as sp
 
 from ..algebra.axis import Axis
 from ..algebra.discrete_gradient import STATES, DiscreteGradient
@@ -21,20 +25,25 @@ from ..codegen.program import DirectionalDerivative, Program, jacobian
 from ..spec import Element
 
 ENTRIES = {2: ("l", "m"), 3: ("l", "m1", "m2")}  # of C, by dim
+N_ENDS = 2  # material coordinates s1, s2 of an element whose ends flow
 _C_DOC = "constraint in the tangent frame: C_l, then C_m across the cable"
 
 
 class Slide:
     """Symbols that every kernel of the joint starts from: inputs, derivatives and r_p = r - p."""
 
-    def __init__(self, program: Program, element: Element, rider: Rider):
-        self.program, self.element, self.rider = program, element, rider
+    def __init__(self, program: Program, element: Element, rider: Rider, flows: bool):
+        self.program, self.element, self.rider, self.flows = program, element, rider, flows
         self.entries = ENTRIES[element.dim]
         self.axis = Axis(program, element)
         self.e = self.axis.coordinates()
         self.b, self.u = rider.configuration(program), rider.attachment(program)
         self.by_s = DirectionalDerivative(program, "ds", {self.axis.x: 1})
-        self.by_e = [DirectionalDerivative(program, f"de{k}", {symbol: 1}) for k, symbol in enumerate(self.e.ravel())]
+        x, l = self.axis.x, self.axis.length
+        of_ends = [{x: -1, l: -1}, {l: 1}] if flows else []
+        self.by_cable = [*(DirectionalDerivative(program, f"de{k}", {symbol: 1})
+                           for k, symbol in enumerate(self.e.ravel())),
+                         *(DirectionalDerivative(program, f"ds{k + 1}", of_end) for k, of_end in enumerate(of_ends))]
         program.stage("centreline at s and rider's point (eq 19)")
         self.axes = rider.axes(program, self.b)
         self.by_rider = rider.tangents(program, self.b, self.axes)
@@ -72,6 +81,20 @@ class Slide:
         self.C_cut = jacobian(self.program, self.C, self.cut)
         return self.C
 
+    def cable_rates(self) -> np.ndarray:
+        """Declare the input v, the rates of the cable's coordinates, and return it."""
+        if not self.flows:
+            return self.program.input("v", self.e.shape, "m/s, 1/s", "rates of the nodal vectors")
+        return self.program.input("v", self.e.size + N_ENDS, "m/s, 1/s", "rates of the nodal vectors, and of s1, s2")
+
+    def cable_motion(self, v: np.ndarray, s_rate: sp.Symbol) -> dict[sp.Symbol, sp.Expr]:
+        """Return the rates of e, x and l."""
+        motion = dict(zip(self.e.ravel(), v.ravel(), strict=False)) | {self.axis.x: s_rate}
+        if not self.flows:
+            return motion
+        first, last = v[-N_ENDS:]
+        return motion | {self.axis.x: s_rate - first, self.axis.length: last - first}
+
     def named(self, name: str, values: np.ndarray, suffix: str = "") -> np.ndarray:
         """Return the entries of something like C, named in the program."""
         return np.array([self.program.define(f"{name}{entry}{suffix}", value)
@@ -89,15 +112,15 @@ class Slide:
         return np.asarray(self.C_cut.dot(derivation.array(np.array(self.cut, dtype=object))))
 
 
-def build(element: Element, rider: Rider) -> list[Program]:
-    """Return the kernels of the slide of a rider on a cable of this element."""
-    name = f"slide_{element.name}_{rider.NAME}"
-    return [kernel(name, element, rider) for kernel in (_constraint, _terms, _residual, _tangent, _discrete_gradient)]
+def build(name: str, element: Element, rider: Rider, flows: bool = False) -> list[Program]:
+    """Return the kernels of the slide of a rider on a cable of this element, or on a rope, whose elements flow."""
+    found = [kernel(name, element, rider, flows) for kernel in (_constraint, _terms, _residual, _tangent)]
+    return found if flows else [*found, _discrete_gradient(name, element, rider)]
 
 
-def _constraint(name: str, element: Element, rider: Rider) -> Program:
+def _constraint(name: str, element: Element, rider: Rider, flows: bool) -> Program:
     p = Program(f"{name}_constraint", "C, C_s and the Newton step for s", "eq 19-22")
-    slide = Slide(p, element, rider)
+    slide = Slide(p, element, rider, flows)
     C = slide.constraint()
     p.stage("C_s, eq 23")
     C_s = slide.by_arc_length()
@@ -109,15 +132,15 @@ def _constraint(name: str, element: Element, rider: Rider) -> Program:
     return p
 
 
-def _terms(name: str, element: Element, rider: Rider) -> Program:
+def _terms(name: str, element: Element, rider: Rider, flows: bool) -> Program:
     p = Program(f"{name}_terms", "terms of the equations of motion with the slide", "eq 20-37")
-    slide = Slide(p, element, rider)
-    v = p.input("v", slide.e.shape, "m/s, 1/s", "rates of the nodal vectors")
+    slide = Slide(p, element, rider, flows)
+    v = slide.cable_rates()
     w = slide.rider.velocity(p)
     C = slide.constraint()
     p.stage("C_s and C_q (eq 23)")
     C_s = slide.named("C_s", slide.by_arc_length())
-    by_q = slide.by_e + slide.by_rider
+    by_q = slide.by_cable + slide.by_rider
     C_q = np.stack([slide.named("C_q", slide.through_cut(d), f"_{k}") for k, d in enumerate(by_q)], axis=1)
     p.stage("G (eq 24) and the rate of s (eq 25)")
     inverse = p.define("inv_C_sl", 1 / C_s[0])
@@ -125,8 +148,7 @@ def _terms(name: str, element: Element, rider: Rider) -> Program:
     velocities = np.concatenate([v.ravel(), w])
     s_rate = p.define("sdot", G.dot(velocities))
     p.stage("Q_d: second derivative along the motion (eq 33)")
-    motion = dict(zip(slide.e.ravel(), v.ravel(), strict=True)) | {slide.axis.x: s_rate}
-    motion |= slide.rider.rate(slide.b, slide.axes, w)
+    motion = slide.cable_motion(v, s_rate) | slide.rider.rate(slide.b, slide.axes, w)
     # velocities are held: the derivation knows s_rate as a constant, not as the function of q that it is
     along = DirectionalDerivative(p, "dt", motion | {s_rate: 0})
     Q_d = slide.named("Q_d", along.array(along.array(C)))
@@ -134,7 +156,7 @@ def _terms(name: str, element: Element, rider: Rider) -> Program:
     H = C_q[1:] + np.outer(C_s[1:], G)
     W = -Q_d[1:] + C_s[1:] * inverse * Q_d[0]  # C_M'' after elimination of s'' (eq 35)
     p.output("C", C, "m", _C_DOC)
-    p.output("C_q", C_q, "1, m", "derivatives of C by the nodal vectors, then the rider")
+    p.output("C_q", C_q, "1, m", "derivatives of C by the cable, then the rider")
     p.output("C_s", C_s, "1", "derivative of C by s")
     p.output("G", G, "1, m", "ds = G dq, eq 24")
     p.output("s_rate", [s_rate], "m/s", "rate of s, eq 25")
@@ -146,7 +168,7 @@ def _terms(name: str, element: Element, rider: Rider) -> Program:
     return p
 
 
-def _lagrangian(p: Program, element: Element, rider: Rider) -> tuple[Slide, np.ndarray, np.ndarray]:
+def _lagrangian(p: Program, element: Element, rider: Rider, flows: bool) -> tuple[Slide, np.ndarray, np.ndarray]:
     """Stage phi = r_p; return the slide, the Jacobian of phi by (e, rider, s), and the gradient of f . phi.
 
     The integrator carries s and the whole force f on the joint as unknowns instead of C_M and its multipliers:
@@ -154,29 +176,29 @@ def _lagrangian(p: Program, element: Element, rider: Rider) -> tuple[Slide, np.n
     force along the tangent. Same solutions and no frame in the Newton matrix, which is symmetric but for the rider's
     rotations (their bracket).
     """
-    slide = Slide(p, element, rider)
+    slide = Slide(p, element, rider, flows)
     f = p.input("f", element.dim, "N", "force of the joint on the rider")
     p.stage("Jacobian of phi")
     # d phi = phi_q dq + phi_s ds (eq 27)
-    J = np.stack([d.array(slide.r_p) for d in (*slide.by_e, *slide.by_rider, slide.by_s)], axis=1)
+    J = np.stack([d.array(slide.r_p) for d in (*slide.by_cable, *slide.by_rider, slide.by_s)], axis=1)
     p.stage("gradient of f . phi")
     g = np.array([p.define(f"g_{k}", f.dot(column)) for k, column in enumerate(J.T)])  # entry by entry (eq 29)
     return slide, J, g
 
 
-def _residual(name: str, element: Element, rider: Rider) -> Program:
+def _residual(name: str, element: Element, rider: Rider, flows: bool) -> Program:
     p = Program(f"{name}_residual", "phi and the gradient of f . phi by (e, rider, s)", "eq 19, 28-30")
-    slide, _, g = _lagrangian(p, element, rider)
+    slide, _, g = _lagrangian(p, element, rider, flows)
     p.output("phi", slide.r_p, "m", "r(s) - p")
     p.output("g", g, "N, N m", "gradient of f . phi, the terms of the slide in M q'' - Q and in the row of s (eq 28)")
     return p
 
 
-def _tangent(name: str, element: Element, rider: Rider) -> Program:
+def _tangent(name: str, element: Element, rider: Rider, flows: bool) -> Program:
     p = Program(f"{name}_tangent", "derivatives of phi and of the gradient of f . phi", "eq 19, 28-30")
-    slide, J, g = _lagrangian(p, element, rider)
+    slide, J, g = _lagrangian(p, element, rider, flows)
     p.stage("derivative of the gradient")
-    K = np.stack([d.array(g) for d in (*slide.by_e, *slide.by_rider, slide.by_s)], axis=1)
+    K = np.stack([d.array(g) for d in (*slide.by_cable, *slide.by_rider, slide.by_s)], axis=1)
     p.output("J", J, "1, m", "derivatives of phi by (e, rider, s)")
     p.output("K", K, "N/m, N, N m", "derivatives of g by (e, rider, s)")
     return p

@@ -206,6 +206,10 @@ CEILINGS = {
     "slide_cable8p_planar_point": {
         "constraint": 150, "terms": 518, "residual": 82, "tangent": 98, "discrete_gradient": 136
     },
+    "slide_span_cable8p_planar_rigid": {"constraint": 156, "terms": 954, "residual": 184, "tangent": 698},
+    "slide_span_cable8p_planar_point": {"constraint": 150, "terms": 903, "residual": 169, "tangent": 683},
+    "slide_span_cable12_rigid": {"constraint": 472, "terms": 1880, "residual": 312, "tangent": 963},
+    "slide_span_cable12_point": {"constraint": 409, "terms": 1607, "residual": 207, "tangent": 798},
     "frame": {"axes": 98, "motion": 458, "moment": 1238},
     "planar_frame": {"axes": 13, "motion": 50, "moment": 55},
     "joint_spherical": {"force": 0, "motion": 0},

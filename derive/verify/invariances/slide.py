@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...codegen.family import SlideFamily
+from ...couplings.slide import N_ENDS
 from ..motion import RIDERS, swung
 from ..numbers import EPS, Numbers, State
 from .measures import ORIGIN_SHIFT, Invariance, quantised, relative
@@ -21,12 +22,13 @@ def slide(family: SlideFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     yield "A_t' A_t = I", relative(A.T @ A - np.eye(len(A)), 1), 8 * EPS
     yield "A_t right-handed", abs(np.linalg.det(A) - 1), 8 * EPS
     out = k("terms", s)
-    n_e = family.element.n_coordinates
+    n_e = family.element.n_coordinates + N_ENDS * family.flows
     yield "eq 30: C_lq + C_ls G = 0", relative(out["C_q"][0] + out["C_s"][0] * out["G"], out["C_q"][0]), 8 * EPS
     yield from _constraint_invariances(family, k, s, n_e)
     yield from _frame(family, k, s, out, n_e)
     yield from _forces(family, k, s, n_e)
-    yield from _step(family, k, s, n_e)
+    if not family.flows:
+        yield from _step(family, k, s, n_e)
 
 
 def _constraint_invariances(family: SlideFamily, k: Numbers, s: State, n_e: int) -> Iterator[Invariance]:
@@ -59,7 +61,9 @@ def _frame(family: SlideFamily, k: Numbers, s: State, out: dict[str, Any], n_e: 
     element, rider = family.element, RIDERS[family.rider]
     positions = np.array(element.is_position, dtype=float)
     Q, turn = rider.frame(np.random.default_rng(3))
-    turned = {**s, "e": s["e"] @ Q.T, "v": s["v"] @ Q.T, "b": turn(s["b"]), "w": s["w"].copy()}
+    n, v = element.n_coordinates, s["v"].copy()
+    v.ravel()[:n] = (v.ravel()[:n].reshape(-1, element.dim) @ Q.T).ravel()
+    turned = {**s, "e": s["e"] @ Q.T, "v": v, "b": turn(s["b"]), "w": s["w"].copy()}
     turned["w"][: element.dim] = Q @ s["w"][: element.dim]
     turned["director"] = Q @ s["director"]
     if rider.n_velocity == element.dim:  # the arm of a mere point is in global axes
@@ -70,7 +74,7 @@ def _frame(family: SlideFamily, k: Numbers, s: State, out: dict[str, Any], n_e: 
     for name in ("H", "C_q", "G"):
         back = np.atleast_2d(new[name]).copy()
         rows = len(back)
-        back[:, :n_e] = (back[:, :n_e].reshape(rows, -1, element.dim) @ Q).reshape(rows, -1)
+        back[:, :n] = (back[:, :n].reshape(rows, -1, element.dim) @ Q).reshape(rows, -1)
         back[:, n_e : n_e + element.dim] = back[:, n_e : n_e + element.dim] @ Q
         yield "turned scene: H, C_q, G turn", relative(back - out[name], out[name]), 256 * EPS
     ends = {"e": quantised(s["e"]), "e_next": quantised(s["e_next"]), "b": s["b"].copy(), "b_next": s["b_next"].copy()}
@@ -82,7 +86,7 @@ def _frame(family: SlideFamily, k: Numbers, s: State, out: dict[str, Any], n_e: 
         else:
             shift = np.outer(positions, np.full(element.dim, ORIGIN_SHIFT))
         away[name] = value + shift
-    for kernel in ("constraint", "terms", "residual", "tangent", "discrete_gradient"):
+    for kernel in ("constraint", "terms", "residual", "tangent", *([] if family.flows else ["discrete_gradient"])):
         here, there = k(kernel, near), k(kernel, away)
         yield "same digits at 10⁴ lengths", max(float(np.max(np.abs(here[n] - there[n]))) for n in here), 0.0
 
@@ -107,7 +111,7 @@ def _forces(family: SlideFamily, k: Numbers, s: State, n_e: int) -> Iterator[Inv
     element, rider = family.element, RIDERS[family.rider]
     g, out = k("residual", s)["g"], k("tangent", s)
     positions = np.array(element.is_position, dtype=float)
-    net = positions @ g[:n_e].reshape(-1, element.dim) + g[n_e : n_e + element.dim]
+    net = positions @ g[: element.n_coordinates].reshape(-1, element.dim) + g[n_e : n_e + element.dim]
     yield "no net force of the joint", relative(net, g), 8 * EPS
     yield "g is J' f", relative(out["J"].T @ s["f"] - g, g), 16 * EPS
     K = out["K"]

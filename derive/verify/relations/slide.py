@@ -1,7 +1,8 @@
 """Relations of the kernels of slides, for any element and any rider.
 
 s(q) is the root of C_l(q, s) = C_l at the sample, found by Newton in the kind of number in use: the samples are
-off the joint, since the formulas hold there too.
+off the joint, since the formulas hold there too. On a rope the nodes flow: s counts from where the first one is at the
+sample, and x from where it is on the path.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ...codegen.family import SlideFamily
+from ...couplings.slide import N_ENDS
 from ..methods import Relation
 from ..motion import RIDERS, frame, swung
 from ..numbers import Numbers, State
@@ -30,16 +32,25 @@ class Curve:
 
 
 class Paths:
-    """Finite motions of a slide: along one coordinate of (e, rider, s), along the motion in time, over a step."""
+    """Finite motions of a slide: along one coordinate of (cable, rider, s), along the motion in time, over a step.
+
+    n_e: number of coordinates of the cable: of e, and of s1 and s2 where the nodes flow.
+    """
 
     def __init__(self, family: SlideFamily):
-        self.element, self.rider = family.element, RIDERS[family.rider]
-        self.n_e = self.element.n_coordinates
+        self.element, self.rider, self.flows = family.element, RIDERS[family.rider], family.flows
+        self.n_e = self.element.n_coordinates + N_ENDS * family.flows
         self.n = self.n_e + self.rider.n_velocity
 
     def moved(self, k: Numbers, s: State, motion_e: np.ndarray, motion_b: np.ndarray) -> State:
-        """Return e and b after a motion of the nodal vectors and of the rider."""
-        return {"e": s["e"] + motion_e.reshape(s["e"].shape), "b": self.rider.moved(k, s["b"], motion_b)}
+        """Return e and b, and l and x of the same material where nodes flow, after a motion of cable and rider."""
+        n = self.element.n_coordinates
+        found = {"e": s["e"] + motion_e.ravel()[:n].reshape(s["e"].shape),
+                 "b": self.rider.moved(k, s["b"], motion_b)}
+        if not self.flows:
+            return found
+        first, last = motion_e[n:]
+        return found | {"l": s["l"] + (last - first), "x": s["x"] - first}
 
     def by_coordinate(self, k: Numbers, s: State, t: Any, j: int) -> State:
         """Return the configuration with coordinate j of (e, rider) moved by t."""
@@ -52,11 +63,11 @@ class Paths:
         return self.moved(k, s, t * s["v"] + bend * s["vdot"], t * s["w"] + bend * s["wdot"])
 
     def closed(self, k: Numbers, s: State, q: State, level: Any = None) -> Any:
-        """Return s on C_l(q, s) = level, by default that of the state."""
+        """Return x on C_l(q, s) = level, by default that of the state."""
         level = k("constraint", s)["C"][0] if level is None else level
-        x = s["x"]
+        x = q.get("x", s["x"])
         for _ in range(12):
-            now = k("constraint", s, x=x, **q)
+            now = k("constraint", s, **(q | {"x": x}))
             step = (now["C"][0] - level) / now["C_s"][0]
             x = x - step
             if abs(step) ** 2 < k.eps / 100:  # the rest is of second order
@@ -65,7 +76,11 @@ class Paths:
 
     def constraint_along(self, k: Numbers, s: State, q: State) -> np.ndarray:
         """Return C_m along s(q)."""
-        return constraint(k, s, self.closed(k, s, q), **q)[1:]
+        return constraint(k, s, **(q | {"x": self.closed(k, s, q)}))[1:]
+
+    def arc_length(self, k: Numbers, s: State, q: State) -> Any:
+        """Return s on C_l(q, s) = C_l of the state, from the place of the first node there."""
+        return self.closed(k, s, q) + (s["x"] - q.get("x", s["x"]))
 
     def lagrangian(self, get: Callable[..., Any]) -> Callable[..., Any]:
         """Return the path of a function of the state along (e, rider, s)."""
@@ -97,7 +112,8 @@ class Paths:
     def unaccelerated(self, k: Numbers, s: State, t: Any, j: int) -> np.ndarray:
         """Return C at time t at constant velocities of all, s among them."""
         rate = k("terms", s)["s_rate"].item()
-        return constraint(k, s, s["x"] + t * rate, **self.by_motion(k, s, t, accelerated=False))
+        q = self.by_motion(k, s, t, accelerated=False)
+        return constraint(k, s, **(q | {"x": q.get("x", s["x"]) + t * rate}))
 
     def bend_left(self, k: Numbers, s: State, t: Any, j: int) -> np.ndarray:
         """Return t^2/2 H q'' - C_m along s(q), whose second derivative is W."""
@@ -106,7 +122,7 @@ class Paths:
 
     def slide_left(self, k: Numbers, s: State, t: Any, j: int) -> Any:
         """Return s - t^2/2 G q'', whose second derivative is s_bias."""
-        return self.closed(k, s, self.by_motion(k, s, t)) - t * t / 2 * k("terms", s)["G"].dot(_acceleration(s))
+        return self.arc_length(k, s, self.by_motion(k, s, t)) - t * t / 2 * k("terms", s)["G"].dot(_acceleration(s))
 
     # --- over a step --------------------------------------------------------------------------------------------
 
@@ -130,9 +146,9 @@ class Paths:
         return path - swung(self.rider.turn(s["b"], t * unit(s["w"], j - self.n_e)), gap(k, s))
 
 
-def constraint(k: Numbers, s: State, x: Any = None, **q: np.ndarray) -> np.ndarray:
+def constraint(k: Numbers, s: State, **q: np.ndarray) -> np.ndarray:
     """Return C at a configuration, of the kernel."""
-    return k("constraint", s, x=s["x"] if x is None else x, **q)["C"]
+    return k("constraint", s, **q)["C"]
 
 
 def gap(k: Numbers, s: State, **q: np.ndarray) -> np.ndarray:
@@ -152,19 +168,24 @@ def slide(family: SlideFamily) -> list[Relation]:
             Relation("residual", "phi", "r - p at 50 digits", 0, p.reference_gap),
             Relation("residual", "g", "d(f . phi) by (e, rider, s)", 1,
                      p.lagrangian(lambda k, s, **q: gap(k, s, **q).dot(s["f"])), n + 1),
-            Relation("discrete_gradient", "G", "G step is the change of phi seen from the rider", 0, p.swept,
-                     of=lambda k, s: k("discrete_gradient", s)["G"].dot(p.step(s))),
-            Relation("discrete_gradient", "G", "derivatives of phi seen from the rider, over no step", 1, p.seen, n + 1,
-                     of=lambda k, s: k("discrete_gradient", s, **{f"{name}_next": s[name] for name in "xeb"})["G"]),
+            *([] if family.flows else _over_a_step(p)),
             Relation("tangent", "J", "dphi by (e, rider, s)", 1, p.lagrangian(gap), n + 1),
             Relation("tangent", "K", "dg by (e, rider, s)", 1,
                      p.lagrangian(lambda k, s, **q: k("residual", s, **q)["g"]), n + 1)]
 
 
+def _over_a_step(p: Paths) -> list[Relation]:
+    return [Relation("discrete_gradient", "G", "G step is the change of phi seen from the rider", 0, p.swept,
+                     of=lambda k, s: k("discrete_gradient", s)["G"].dot(p.step(s))),
+            Relation("discrete_gradient", "G", "derivatives of phi seen from the rider, over no step", 1, p.seen,
+                     p.n + 1,
+                     of=lambda k, s: k("discrete_gradient", s, **{f"{name}_next": s[name] for name in "xeb"})["G"])]
+
+
 def _of_constraint(p: Paths) -> list[Relation]:
     return [Relation("constraint", "C", "A_t' (r - p) at 50 digits", 0, p.reference_constraint),
             Relation("constraint", "A_t", "Gram-Schmidt of r_x and the director", 0, p.reference_frame),
-            Relation("constraint", "C_s", "dC/ds", 1, lambda k, s, t, j: constraint(k, s, s["x"] + t)),
+            Relation("constraint", "C_s", "dC/ds", 1, lambda k, s, t, j: constraint(k, s, x=s["x"] + t)),
             Relation("constraint", "s_step", "s on C_l(s) = (1 - t) C_l", 1, p.newton_step)]
 
 
@@ -172,11 +193,11 @@ def _of_terms(p: Paths) -> list[Relation]:
     return [Relation("terms", "C", "A_t' (r - p) at 50 digits", 0, p.reference_constraint),
             Relation("terms", "C_q", "dC/dq", 1,
                      lambda k, s, t, j: constraint(k, s, **p.by_coordinate(k, s, t, j)), p.n),
-            Relation("terms", "C_s", "dC/ds", 1, lambda k, s, t, j: constraint(k, s, s["x"] + t)),
+            Relation("terms", "C_s", "dC/ds", 1, lambda k, s, t, j: constraint(k, s, x=s["x"] + t)),
             Relation("terms", "G", "ds/dq of s on C_l = const", 1,
-                     lambda k, s, t, j: p.closed(k, s, p.by_coordinate(k, s, t, j)), p.n),
+                     lambda k, s, t, j: p.arc_length(k, s, p.by_coordinate(k, s, t, j)), p.n),
             Relation("terms", "s_rate", "ds/dt of s on C_l = const", 1,
-                     lambda k, s, t, j: p.closed(k, s, p.by_motion(k, s, t))),
+                     lambda k, s, t, j: p.arc_length(k, s, p.by_motion(k, s, t))),
             Relation("terms", "Q_d", "d²C/dt² at q'' = s'' = 0", 2, p.unaccelerated),
             Relation("terms", "H", "dC_m/dq along s(q)", 1,
                      lambda k, s, t, j: p.constraint_along(k, s, p.by_coordinate(k, s, t, j)), p.n),

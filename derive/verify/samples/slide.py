@@ -5,11 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from ...codegen.family import SlideFamily
+from ...couplings.slide import N_ENDS
 from ..numbers import Numbers, State
 from .body import rider_state, unturned
 from .element import element_state, straight
 from .shapes import director, on_axis
 from .step import following
+
+FLOW = 0.3
+"""Size of the rates of material coordinates, in a sample in which those of nodes are of size 1."""
 
 
 def sample(family: SlideFamily, exact: Numbers, random: np.random.Generator) -> State:
@@ -19,7 +23,11 @@ def sample(family: SlideFamily, exact: Numbers, random: np.random.Generator) -> 
     state |= rider_state(family, on_axis(family.element, state), random)
     state |= following(family, state, random.spawn(1)[0])
     state["director"] = director(family.element, state, random)
-    return state | {"f": random.normal(size=family.element.dim)}
+    state["f"] = random.normal(size=family.element.dim)
+    if family.flows:  # rates and accelerations of s1, s2, slower than the nodes, so that none cancels the others
+        state |= {name: np.concatenate([state[name].ravel(), FLOW * random.normal(size=N_ENDS)])
+                  for name in ("v", "vdot")}
+    return state
 
 
 def at_rest(family: SlideFamily, exact: Numbers, first: State) -> State:
