@@ -20,11 +20,12 @@ from ..parts.rope_items import Wheel
 from ..parts.rope_route import MAX_LAYER, DrawnRoute
 from ..parts.rope_route_space import fleet_angle, fleet_angles, groove_of
 from ..parts.scene_data import SceneData
+from ..parts.slide import Slide
 from ..parts.validation import show
 from .placement import placed_attachment, report
 from .whole_scene import check_plane
 
-ON_ROPES = (Joint, PointForce, Load, Drag, Contact)
+ON_ROPES = (Joint, PointForce, Slide, Load, Drag, Contact)
 """Parts that act on ropes."""
 MIN_RADIUS_RATIO = 10.0
 """Radius of a sheave over the diameter of its rope below which the bending stress is reported."""
@@ -66,7 +67,7 @@ def check_apart_from_ropes(scene: SceneData, part: Part) -> None:
         if isinstance(part, Event):
             raise SceneError(part.where, f'"{name}" is {what}, whose results cannot be watched',
                              f"""watch a body, or give function=, which gets state["{rope.name}.position"]""")
-        connects = "no other part" if wheel else "only joints, springs, loads, drags and contacts"
+        connects = "no other part" if wheel else "only joints, springs, slides, loads, drags and contacts"
         raise SceneError(part.where, f'"{name}" is {what}, to which {connects} can be connected',
                          "take a body that an end or a sheave of the rope is on"
                          + ("" if wheel else f', or that a joint to ("{rope.name}", s) holds'))

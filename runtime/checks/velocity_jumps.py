@@ -9,17 +9,21 @@ from collections.abc import Container, Iterator
 import numpy as np
 
 from ..parts.attachment import Attachment
+from ..parts.cable import Cable
 from ..parts.locations import velocity_of
 from ..parts.scene_data import SceneData
 from ..parts.signal import Signal
 from ..parts.slide import Slide
 from ..parts.support import Motion
 from ..parts.validation import show
+from .slide_on_rope import line_of
 
 NEGLIGIBLE_JUMP = 1e-4
 """Negligible jump of a rate, as a fraction of the largest rate in the run."""
 SAMPLES = 200
 """Instants of a run at which rates are evaluated."""
+RATE = "the rate of s"
+"""The quantity that is driven, as messages name it."""
 VELOCITIES = "velocity", "angular_velocity", "nodal_velocity"
 """Results that give velocities of bodies and cables."""
 
@@ -49,11 +53,13 @@ def velocity_jumps(scene: SceneData, duration: float, given: Container[str] = ()
 
 def _of_slide(scene: SceneData, slide: Slide, signal: Signal, duration: float, given: Container[str]) -> Iterator[str]:
     """Yield messages on jumps of the rate of a driven slide, at the start and later."""
-    cable = scene.cables[slide.along]
-    slope = cable.slope(slide.arc_length)
+    line, rates = line_of(scene, slide), signal.value(np.linspace(0, duration, SAMPLES), 1)
+    if not isinstance(line, Cable):  # the velocity of a rope follows from those of all that holds it
+        yield from _later(slide.where, RATE, signal, "m/s", duration, NEGLIGIBLE_JUMP * np.abs(rates).max())
+        return
+    slope = line.slope(slide.arc_length)
     relative = velocity_of(scene, slide.rider) - velocity_of(scene, Attachment(on=slide.along, s=slide.s))
     own = float(relative @ slope / (slope @ slope))
-    rates = signal.value(np.linspace(0, duration, SAMPLES), 1)
     least = NEGLIGIBLE_JUMP * max(np.abs(rates).max(), abs(own))
     as_drawn = not any(f"{part}.{name}" in given for part in (slide.body, slide.along) for name in VELOCITIES)
     if as_drawn and abs(jump := float(rates[0]) - own) > least:
@@ -62,10 +68,10 @@ def _of_slide(scene: SceneData, slide: Slide, signal: Signal, duration: float, g
         begin = "Let"
         if body is not None:
             begin = f"Start {rider} at velocity {show(body.velocity + jump * slope, 'm/s')}, or let"
-        yield (f'{slide.where}: moves along cable "{slide.along}" at {show(float(rates[0]), "m/s")} from t = 0, but '
+        yield (f'{slide.where}: moves along {line.where} at {show(float(rates[0]), "m/s")} from t = 0, but '
                f"{rider} is drawn at {show(own, 'm/s')} along it; this jump is a blow to rider and cable, which "
                f"depends on the mesh. {begin} the rate begin at {show(own, 'm/s')}, as that of a Ramp does")
-    yield from _later(slide.where, "the rate of s", signal, "m/s", duration, least)
+    yield from _later(slide.where, RATE, signal, "m/s", duration, least)
 
 
 def _later(where: str, what: str, signal: Signal, unit: str, duration: float, least: float) -> Iterator[str]:

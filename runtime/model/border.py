@@ -134,7 +134,7 @@ class _Border:
         if count:
             first += self.model.n_border_dof
             self._add_internal(coupling, range(first, first + count), [*chain.from_iterable(sides)])
-        if ties or (adjacent and coupling.ends):
+        if ties or (adjacent and coupling.ends and coupling.ties_adjacent):
             for one, other in permutations([*sides, *([self.cables[k]] for k in coupling.along)], 2):
                 for place, across in product(one, other):
                     self._couple(place.groups, across)

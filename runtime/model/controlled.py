@@ -11,6 +11,7 @@ from ..errors import SceneError, near
 from ..parts.locations import connected
 from ..parts.scene_data import SceneData
 from .model import BodyModel, CableModel, Model, SlideModel
+from .span_coordinates import SpanCoordinates
 
 COUNTED = {"rigid_body": ("position", "orientation"), "modal_body": ("position", "orientation", "modal_coordinates"),
            "cable": ("position", "nodal_vectors"), "slide": ("s",)}
@@ -56,11 +57,11 @@ def counted_weights(quantities: Sequence[str], controlled: np.ndarray, scene: Sc
 
 
 def _parts_of(name: str, scene: SceneData) -> list[str]:
-    """Return the cable or body of that name, or those of the slide of that name."""
+    """Return the cable or body of that name, or those of the slide of that name, without ropes."""
     if name not in scene.slides:
         return [name]
     slide = scene.slides[name]
-    return [each for each in (slide.along, slide.rider.on) if each is not None]
+    return [each for each in (slide.along, slide.rider.on) if each is not None and each not in scene.ropes]
 
 
 def _masses(scene: SceneData) -> dict[str, float]:
@@ -138,9 +139,21 @@ def _count_body(model: Model, body: BodyModel, what: str, axis: str, weights: np
         weights[modes] = model.weight[modes]
 
 
+def _count_span(model: Model, span: SpanCoordinates, weights: np.ndarray) -> None:
+    """Weigh the positions of the nodes of a span of a rope, and the material coordinates of its ends."""
+    for node in map(span.node, range(span.n_elements + 1)):
+        places = slice(node.start, node.start + span.dim)
+        weights[places] = model.weight[places]
+    for s in span.s:
+        weights[s] = model.weight[s]
+
+
 def _count_slide(model: Model, slide: SlideModel, weights: np.ndarray) -> None:
-    """Weigh the positions of the rider and the cable of a slide."""
-    _count_cable(model, model.cables[slide.cable], "position", "", weights)
+    """Weigh the positions of the rider and the cable or span of a slide."""
+    if slide.coordinates is None:
+        _count_cable(model, model.cables[slide.cable], "position", "", weights)
+    else:
+        _count_span(model, slide.coordinates, weights)
     rider = slide.rider
     if rider.cable >= 0:
         _count_cable(model, model.cables[rider.cable], "position", "", weights)

@@ -30,11 +30,13 @@ class CouplingModel:
     that the engine alone reads.
 
     keeps_forces: whether a search for rest continues from the internal forces of the last state, which else start at
-    zero; reports_cost: whether the report of a run has its computing time.
+    zero; reports_cost: whether the report of a run has its computing time; ties_adjacent: whether its tangent has
+    entries between its attachments and adjacent dofs.
     """
 
     keeps_forces: ClassVar[bool] = True
     reports_cost: ClassVar[bool] = False
+    ties_adjacent: ClassVar[bool] = True
     type: str
     name: str = ""
     n_coordinates: int = 0

@@ -119,7 +119,7 @@ class InitialState(Mapping[str, np.ndarray]):
         _check_supports(model, model.v - moving, "moves", "m/s")
         for slide in model.slides:
             if (s := self.get(f"{slide.name}.s")) is not None:
-                slide.place_at(float(_of_shape(s, (), f"{slide.name}.s")), model.cables[slide.cable])
+                slide.place_at(float(_of_shape(s, (), f"{slide.name}.s")), model)
 
     def _place_cable(self, model: Model, cable: CableModel, drawn: Cable) -> None:
         for whole, points, into in zip(CABLE, POINTS, (model.q, model.v), strict=True):

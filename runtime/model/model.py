@@ -30,6 +30,7 @@ from .rope_model import RopeModel
 from .rope_wheels import DrumModel, SheaveModel
 from .ropes import SpanModel
 from .signals import SignalModel
+from .span_coordinates import AlongSpan, SpanCoordinates
 from .unknowns import Node
 
 K = TypeVar("K", bound=CouplingModel)
@@ -137,15 +138,18 @@ class BodyModel:
 
 
 @dataclass
-class SlideModel(CouplingModel):
-    """One slide on a cable; its first unknown is s.
+class SlideModel(AlongSpan, CouplingModel):
+    """One slide on a cable, or on a span of a rope; its first unknown is s.
 
-    rider_is_rigid: the kernels take the configuration of the rider; resistance: kernels of friction and buffers, or
-    none; s (m), element, director: at the start.
+    line: the cable or rope in words; cable: its number, -1 of a rope, with the coordinates of the span, and in words
+    what the rope meets at both ends of it. rider_is_rigid: the kernels take the configuration of the rider; resistance:
+    kernels of friction and buffers, or none; s (m), element, director: at the start.
     """
 
     reports_cost: ClassVar[bool] = True
+    ties_adjacent: ClassVar[bool] = False
     kernel: str
+    line: str
     cable: int
     rider: AttachmentModel
     rider_is_rigid: bool
@@ -153,11 +157,13 @@ class SlideModel(CouplingModel):
     element: int
     director: np.ndarray
     resistance: str
+    coordinates: SpanCoordinates | None = None
+    beside: tuple[str, str] = ("", "")
 
     @property
     def kernel_families(self) -> list[str]:
-        """Return the names of its kernels and of those of its resistance."""
-        return [self.kernel, self.resistance] if self.resistance else [self.kernel]
+        """Return the names of its kernels, of those of its resistance, and of those of its span."""
+        return [*super().kernel_families, *([self.resistance] if self.resistance else [])]
 
     @property
     def ends(self) -> Sequence[AttachmentModel]:
@@ -167,10 +173,25 @@ class SlideModel(CouplingModel):
     @property
     def along(self) -> Sequence[int]:
         """Return the number of its cable."""
-        return (self.cable,)
+        return () if self.cable < 0 else (self.cable,)
 
-    def place_at(self, s: float, cable: CableModel) -> None:
-        """Move the slide to arc-length s (m) of its cable; at a node it stays on its element."""
+    def reached(self, end: int) -> str:
+        """Return in words that it has come to the first end of its span, 0, or to the last one, 1."""
+        return f'slide "{self.name}" on {self.line} reaches {self.beside[end]}'
+
+    def ends_at(self, model: Model, q: np.ndarray) -> tuple[float, float]:
+        """Return s in m at both ends of its cable, or of its span in a configuration q (n,)."""
+        if self.coordinates is None:
+            return 0.0, model.cables[self.cable].mesh.total
+        first, last = self.coordinates.s
+        return float(q[first]), float(q[last])
+
+    def place_at(self, s: float, model: Model) -> None:
+        """Move the slide to arc-length s (m) of its cable or rope; at a node it stays on its element."""
+        if self.coordinates is not None:
+            self.s, self.element = s, self.coordinates.element_of(model.q, s, self.element)
+            return
+        cable = model.cables[self.cable]
         mesh, self.s = cable.mesh, s
         if mesh.is_even:
             at = s / mesh.mean
@@ -255,7 +276,7 @@ class Model:
     def place_slides(self, s: np.ndarray) -> None:
         """Put the slides at arc-lengths (slides,) in m."""
         for slide, at in zip(self.slides, s, strict=True):
-            slide.place_at(float(at), self.cables[slide.cable])
+            slide.place_at(float(at), self)
 
     def prescribed_at(self, t: float) -> dict[int, float]:
         """Return the prescribed values at the time t in s, by dof."""

@@ -66,16 +66,15 @@ def span_models(builder: ModelBuilder) -> Iterator[SpanModel]:
     """Yield the spans of all ropes."""
     gravity = np.array(builder.scene.gravity)
     for rope in builder.ropes:
-        held, labels = grips_of(builder.scene, rope), [_called(item) for item in rope.part.route]
+        held, beside = grips_of(builder.scene, rope), items_beside(rope.part)
         radii = [getattr(item, "radius", 0.0) for item in rope.part.route]
         radii += radii[: rope.part.closed]
-        labels += labels[: rope.part.closed]
         for k, span in enumerate(rope.spans):
             least = max(MIN_SPAN_RATIO * max(radii[k : k + 2]), rope.part.radius)
             yield SpanModel(type="span", name=rope.part.name, coordinates=span,
                             rho=rope.rho, tau=rope.part.material.damping_time, g=gravity, A=rope.stiffness,
                             least_length=least, has_inertia=True, is_damped=rope.part.material.damping_time > 0,
-                            held=held[k], beside=(labels[k], labels[k + 1]))
+                            held=held[k], beside=beside[k])
 
 
 def grips_of(scene: SceneData, rope: RopeModel) -> list[list[tuple[float, str]]]:
@@ -88,6 +87,11 @@ def grips_of(scene: SceneData, rope: RopeModel) -> list[list[tuple[float, str]]]
             acts = "acts on" if isinstance(part, Force) else "holds"
             found[rope.part.span_at(rope.route, end.arc_length)].append((end.arc_length, f"{part.where} {acts}"))
     return [sorted(each) for each in found]
+
+
+def items_beside(rope: Rope) -> list[tuple[str, str]]:
+    """Return what a rope meets at both ends of each span, as messages name it."""
+    return [(_called(one), _called(other)) for one, other in rope.ends_of_spans]
 
 
 def _called(item: RouteItem) -> str:

@@ -46,6 +46,16 @@ class SpanCoordinates:
         return element, first[:, None] + np.stack([self.share[element], self.share[element + 1]], axis=1) * (
             last - first)[:, None]
 
+    def element_of(self, q: np.ndarray, s: float, at: int) -> int:
+        """Return the element that holds the material coordinate s, m, in a configuration q (n,): where s is at a node,
+        the element `at` if it is beside it.
+        """
+        first, last = q[list(self.s)]
+        share = (s - first) / (last - first)
+        if self.share[at] <= share <= self.share[at + 1]:
+            return at
+        return int(np.clip(np.searchsorted(self.share, share, "right") - 1, 0, self.n_elements - 1))
+
     def point(self, q: np.ndarray, s: float) -> np.ndarray:
         """Return (T, dim): places of the material coordinate s, m, in configurations q (T, n)."""
         element, ends = self.element_at(q, s)

@@ -19,6 +19,7 @@ from .rope import Rope
 from .rope_items import RouteItem
 from .scene_data import SceneData
 from .schemas import Place
+from .slide import Slide
 from .support import Support, Tie
 from .surface import Surface
 
@@ -76,6 +77,8 @@ def grips(scene: SceneData) -> Iterator[tuple[Part, str, Attachment]]:
     for part in scene.parts():
         if isinstance(part, Force) and part.on in scene.ropes:
             yield part, "", Attachment(on=part.on, s=part.s)
+        if isinstance(part, Slide) and part.body in scene.ropes:
+            yield part, "body", part.rider
         yield from ((part, name, value) for name, value in part
                     if isinstance(value, Attachment) and value.on in scene.ropes)
 

@@ -75,9 +75,9 @@ class Rope(Part):
     on what carries them, unless it is prescribed.
 
     A joint or a spring grips the rope by an end ("haul", s): s in m is stress-free, from the first end, with what is on
-    a drum there. The grip, or the point of a force, moves with the material, past ends of elements; where it reaches a
-    sheave, a drum or an anchor, the run ends with a RopeLeftError. A load that kinks the rope there has an error in
-    proportion to the length of elements, which two ropes that end at the body do not have.
+    a drum there. The grip, or the point of a force, moves with the material, past ends of elements, and a `Slide` along
+    it; where it reaches a sheave, a drum or an anchor, the run ends with a RopeLeftError. A load that kinks the rope
+    there has an error in proportion to the length of elements, which two ropes that end at the body do not have.
 
     route: an `Anchor` or a `Drum`, sheaves, and again an `Anchor` or a `Drum`, in the rope's order; of a closed rope
         two sheaves or more. A `Block` stands for its sheaves

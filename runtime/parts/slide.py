@@ -1,4 +1,4 @@
-"""Slides: joints between a cable and a point on its centreline."""
+"""Slides: joints between a cable or a rope and a point on its centreline."""
 
 from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar
@@ -17,12 +17,18 @@ from .validation import Name, Reference, Vector, direction, items, one_of, place
 
 
 class Slide(Part):
-    """A sliding joint: a point of a body, of another cable or of the ground rides the centreline of a cable.
+    """A sliding joint: a point of a body, of another cable or of the ground rides the centreline of a cable or a rope.
 
-    body: the rider: a body; ("link", s), the point of another cable; or a point (x, y, z) of the ground, an eyelet
-        through which the cable slides
-    body_s: of a cable that rides, the arc-length of its point, m, which body=("link", 0.5) gives, too
-    along: the cable
+    Along a rope s is stress-free and material, from the first end: the rope carries a rider with constant s along. The
+    slide runs within one span, past ends of elements; at a sheave, a drum or an anchor the run ends with a
+    RopeLeftError. Friction and ``traction`` are those on the material. There the frame is "point", and stops and the
+    integrator "energy" are not supported. The rope is rounded under a rider: its path is off in proportion to the
+    length of elements.
+
+    body: the rider: a body; ("link", s), the point of another cable or rope; or a point (x, y, z) of the ground, an
+        eyelet through which the cable slides
+    body_s: of a cable or rope that rides, the arc-length of its point, m, which body=("link", 0.5) gives, too
+    along: the cable or the rope
     s: initial arc-length, m; by default that of ``drive``, else the point of the drawn cable nearest to the rider
     at: the rider's point in body axes, m
     frame: "point": the rider rotates freely. "tangent": it keeps its initial angle to the tangent, so that the floor of

@@ -40,16 +40,17 @@ def acceleration(run: Recorded, figure: Figure) -> bool:
 
 
 def slide(run: Recorded, figure: Figure) -> bool:
-    """Draw positions and speeds of slides along their cables over time; False without a slide."""
+    """Draw positions and speeds of slides along their cables and ropes over time; False without a slide."""
     slides = run.scene.slides
     if not slides:
         return False
     figure.set_size_inches(7, 4.6)
     place, speed = figure.subplots(2, sharex=True)
-    nodes = np.unique(np.concatenate([run.coords[f"{slide.along}.node"].values for slide in slides.values()]))
-    for s in nodes:
+    along = {slide.along for slide in slides.values()} & run.scene.cables.keys()
+    for s in np.unique(np.concatenate([run.coords[f"{cable}.node"].values for cable in along])) if along else ():
         place.axhline(s, color="0.6", linewidth=0.7, linestyle=":")
-    place.plot([], [], color="0.6", linewidth=0.7, linestyle=":", label="nodes of the cable")
+    if along:
+        place.plot([], [], color="0.6", linewidth=0.7, linestyle=":", label="nodes of the cable")
     for name in slides:
         place.plot(run.time, run[f"{name}.s"], label=f"slide {name}")
         speed.plot(run.time, run[f"{name}.s_rate"])

@@ -316,9 +316,9 @@ class Run(Viewable, NamedArrays):
         tension is the size of the force, shear excludes this length, and moment is that of an elastica along the line
         of the force, not of the mesh. Raises UnknownResultError; FunicularError for s off the cable.
 
-        Of a rope: of its spans, over (time, point) with s of each point, and the number of its span; at given s not a
-        number while that part of the rope is on a sheave or a drum. In motion by the elastic law alone; "balance" at
-        rest.
+        Of a rope: of its spans, over (time, point) with s of each point, and the number of its span; at given s, or at
+        a slide on it, not a number while that part of the rope is on a sheave or a drum. In motion by the elastic law
+        alone; "balance" at rest.
         """
         from .section_forces.ropes import section_forces
 

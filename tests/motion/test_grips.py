@@ -244,8 +244,8 @@ def test_from_a_file(tmp_path):
     (lambda scene: scene.joint("spherical", ("haul", 7.0), ("haul", 7.0)), 'joins rope "haul" at s = 7 m to itself'),
     (lambda scene: scene.joint("spherical", ("winch", 7.0), "carriage"), '"winch" is a drum of rope "haul"'),
     (lambda scene: scene.joint("spherical", ("haul", 20.0), "carriage"), "m apart at the start"),
-    (lambda scene: scene.slide("carriage", along="haul", s=7.0), "only joints, springs, loads, drags and contacts"),
-    (lambda scene: scene.slide("carriage", along="haul", s=7.0), "or that a joint to (\"haul\", s) holds"),
+    (lambda scene: scene.pin("haul", s=7.0), "only joints, springs, slides, loads, drags and contacts"),
+    (lambda scene: scene.pin("haul", s=7.0), "or that a joint to (\"haul\", s) holds"),
     (lambda scene: scene.replace("haul", tension=2e5), "apart at the start"),
 ])
 def test_refused(add, words):

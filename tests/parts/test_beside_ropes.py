@@ -47,7 +47,8 @@ def test_no_part_can_be_connected_to_a_sheave(part):
     assert made.to_toml() == scene().to_toml()
 
 
-OWN_MESSAGES = {"joint": "", "spring": "", "line load": "", "drag": "", "contact": "",  # can be connected
+OWN_MESSAGES = {"along": 'm away from rope "hoist" at s =', "rider": 'body: s of rope "hoist" must lie within a span',
+                "joint": "", "spring": "", "line load": "", "drag": "", "contact": "",  # can be connected
                 "force": 'acts on rope "hoist" and needs the stress-free arc-length s there',
                 "moment": 'acts on rope "hoist", whose sections have no axes on which a moment could act',
                 "contacts": 'there is no surface "hoist"', "on": 'there is no surface "hoist"'}
@@ -56,7 +57,7 @@ OWN_MESSAGES = {"joint": "", "spring": "", "line load": "", "drag": "", "contact
 @pytest.mark.parametrize("part", [part for part in CONNECTED if OWN_MESSAGES.get(part, part)])
 def test_few_parts_can_be_connected_to_a_rope(part):
     made = scene()
-    others = '"hoist" is a rope, to which only joints, springs, loads, drags and contacts can be connected; take'
+    others = '"hoist" is a rope, to which only joints, springs, slides, loads, drags and contacts can be connected'
     with pytest.raises(fu.SceneError, match=OWN_MESSAGES.get(part, others)):
         CONNECTED[part](made, "hoist")
     assert made.to_toml() == scene().to_toml()

@@ -10,27 +10,33 @@
 /* of a segment: smaller distances beyond a boundary are rounding */
 #define BOUNDARY_TOLERANCE 1e-11
 
-/* Returns the permitted distance of a coordinate beyond its segment, m. */
+/* Returns the permitted distance of a coordinate beyond its segment. */
 double fu_boundary_tolerance(fu_path path)
 {
     return BOUNDARY_TOLERANCE * path.length;
 }
 
-/* Returns the start of the k-th segment of a path, the end of the one before, m. */
+/* Returns the start of the k-th segment of a path, the end of the one before. */
 double fu_boundary(fu_path path, int k)
 {
     return path.boundaries ? path.boundaries[k] : k * path.length;
 }
 
-/* Returns the length of the k-th segment of a path, m. */
+/* Returns the length of the k-th segment of a path. */
 double fu_path_segment_length(fu_path path, int k)
 {
     return path.boundaries ? path.boundaries[k + 1] - path.boundaries[k] : path.length;
 }
 
-static double coordinate_of(const fu_coupling *coupling, const fu_state *state)
+double fu_path_coordinate(fu_path path, const fu_coupling *coupling, const fu_state *state)
 {
-    return state->s[coupling->coordinate];
+    return (state->s[coupling->coordinate] - path.origin) / path.unit;
+}
+
+double fu_path_rate(fu_path path, const fu_run *run, const fu_coupling *c, const fu_state *state)
+{
+    const double rate = c->events->path->rate(run->model, c, state);
+    return (rate - path.origin_rate - path.unit_rate * fu_path_coordinate(path, c, state)) / path.unit;
 }
 
 static int segment_of(const fu_coupling *coupling, const fu_state *state)
@@ -38,12 +44,12 @@ static int segment_of(const fu_coupling *coupling, const fu_state *state)
     return state->segment[coupling->coordinate];
 }
 
-/* Returns the distance of a coupling's coordinate outside its segment, m, negative inside, and the nearer side. */
+/* Returns the distance of a coupling's coordinate outside its segment, negative inside, and the nearer side. */
 double fu_outside(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int *side)
 {
     const fu_path path = fu_path_of(model, coupling, state);
     const double length = fu_path_segment_length(path, segment_of(coupling, state));
-    const double x = coordinate_of(coupling, state) - fu_boundary(path, segment_of(coupling, state));
+    const double x = fu_path_coordinate(path, coupling, state) - fu_boundary(path, segment_of(coupling, state));
     *side = x > 0.5 * length ? 1 : -1;
     return *side > 0 ? x - length : -x;
 }
@@ -68,7 +74,7 @@ void fu_choose_path_segments(fu_run *run)
         const fu_path path = fu_path_of(model, c, &run->next);
         int side, *segment = &run->next.segment[c->coordinate];
         if (!path.n || !(fu_outside(model, c, &run->next, &side) > fu_boundary_tolerance(path))) continue;
-        const double s = coordinate_of(c, &run->next);
+        const double s = fu_path_coordinate(path, c, &run->next);
         const double holds = path.boundaries ? fu_last_reached(path.boundaries, 0, path.n, s)
                                              : fmin(fmax(s / path.length, 0.0), path.n - 1.0);
         if ((int)holds != *segment) run->factored = 0;
@@ -82,7 +88,7 @@ void fu_find_path_segments(const fu_model *model, fu_state *state)
 {
     FU_EACH_COUPLING(c, model->always_active, model->n_always_active) {
         const fu_path path = fu_path_of(model, c, state);
-        const double s = path.n ? coordinate_of(c, state) : 0.0;
+        const double s = path.n ? fu_path_coordinate(path, c, state) : 0.0;
         int *segment = &state->segment[c->coordinate];
         if (!path.n || (fu_boundary(path, *segment) <= s && s <= fu_boundary(path, *segment + 1))) continue;
         const double holds = path.boundaries
@@ -113,9 +119,9 @@ double fu_time_to_boundary(const fu_run *run)
     FU_EACH_COUPLING(c, run->model->always_active, run->model->n_always_active) {
         const fu_path path = fu_path_of(run->model, c, &run->now);
         if (!path.n) continue;
-        const double rate = c->events->path->rate(run->model, c, &run->now);
+        const double rate = fu_path_rate(path, run, c, &run->now);
         const double end = fu_boundary(path, segment_of(c, &run->now) + (rate > 0.0));
-        const double distance = fabs(end - coordinate_of(c, &run->now));
+        const double distance = fabs(end - fu_path_coordinate(path, c, &run->now));
         if (distance > fu_boundary_tolerance(path)) least = fmin(least, distance / fabs(rate));
     }
     return least;
@@ -126,9 +132,10 @@ double fu_time_to_boundary(const fu_run *run)
  * boundary on which it stood at `now`. */
 static double part_to_turn(const fu_run *run, const fu_coupling *c, fu_path path, double h)
 {
-    const double rise = h * c->events->path->rate(run->model, c, &run->now), tolerance = fu_boundary_tolerance(path);
-    const double moved = coordinate_of(c, &run->next) - coordinate_of(c, &run->now);
-    const double part = 0.5 * rise / (rise - moved), s = coordinate_of(c, &run->now);
+    const fu_path next = fu_path_of(run->model, c, &run->next);
+    const double rise = h * fu_path_rate(path, run, c, &run->now), tolerance = fu_boundary_tolerance(path);
+    const double moved = fu_path_coordinate(next, c, &run->next) - fu_path_coordinate(path, c, &run->now);
+    const double part = 0.5 * rise / (rise - moved), s = fu_path_coordinate(path, c, &run->now);
     const int up = rise > 0.0, segment = segment_of(c, &run->now);
     const double ahead = fabs(fu_boundary(path, segment + up) - s), behind = fabs(fu_boundary(path, segment + !up) - s);
     const double forward = (up ? 1.0 : -1.0) * moved;
@@ -164,7 +171,7 @@ int fu_are_on_path_segments(const fu_model *model, const fu_state *state, double
     FU_EACH_COUPLING(c, model->always_active, model->n_always_active) {
         const fu_path path = fu_path_of(model, c, state);
         if (!path.n) continue;
-        const double x = coordinate_of(c, state) - fu_boundary(path, segment_of(c, state));
+        const double x = fu_path_coordinate(path, c, state) - fu_boundary(path, segment_of(c, state));
         const double length = fu_path_segment_length(path, segment_of(c, state));
         if (!(x >= -aside * length && x <= (1.0 + aside) * length)) return 0;
     }

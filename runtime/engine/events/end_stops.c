@@ -112,7 +112,8 @@ static int try_to_stick(fu_run *run, int j)
 /* Returns whether a slide is at rest. */
 static int is_at_rest(const fu_run *run, int j)
 {
-    return fabs(fu_slide_rate(run->model, &run->now, j)) * run->duration <= REST_SPEED * fu_length(run->model, j);
+    return fabs(fu_slide_rate(run->model, &run->now, j)) * run->duration <=
+           REST_SPEED * fu_length(run->model, &run->now, j);
 }
 
 /* Sets the direction of sliding of a slide whose friction needs it. */
@@ -161,7 +162,7 @@ static int strike(fu_run *run, int j, int side)
     if (fu_complete(run, now)) return FU_SINGULAR;
     fu_slide_outputs(model, now, j, now->acceleration, &run->accelerator, &slide);
     const double back = -side * slide.s_rate, push = side * slide.s_acceleration;
-    if (is_at_rest(run, j) || back * back <= 2.0 * push * MIN_REBOUND * fu_length(model, j)) {
+    if (is_at_rest(run, j) || back * back <= 2.0 * push * MIN_REBOUND * fu_length(model, now, j)) {
         flags->contact = side;
         if (try_to_stick(run, j)) return FU_SINGULAR;
     }
@@ -169,12 +170,14 @@ static int strike(fu_run *run, int j, int side)
     return FU_RUNNING;
 }
 
-/* Executes the action of the cable's end on a slide that moves outwards there; returns a status. */
+/* Executes the action of the end of the cable, or of the span of a rope, on a slide that moves outwards there; returns
+ * a status. */
 int fu_reach_end(fu_run *run, const fu_coupling *coupling, int side, const char **what)
 {
     const fu_slide *slide = (const fu_slide *)coupling;
     const int j = coupling->index, kind = slide->stops[side > 0].kind;
     fu_slide_flags *flags = fu_slide_flags_of(run->model, &run->now, j);
+    if (slide->cable < 0) return fu_leave(run, coupling, side > 0 ? FU_LEFT_BY_LAST_GRIP : FU_LEFT_BY_GRIP);
     if (kind == FU_END_IS_OPEN) {
         flags->mode = FU_LEFT;
         flags->slip_direction = flags->contact = 0;

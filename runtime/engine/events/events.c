@@ -76,7 +76,8 @@ static double value(const fu_run *run, const fu_state *state, fu_event event)
     if (event.kind == FU_EVENT_FUNCTION) return event.side * value_of(run, state, event.which);
     const fu_coupling *c = run->model->couplings[event.which];
     const int boundary = run->now.segment[c->coordinate] + (event.side > 0);
-    return event.side * (state->s[c->coordinate] - fu_boundary(fu_path_of(run->model, c, &run->now), boundary));
+    const fu_path path = fu_path_of(run->model, c, state);
+    return event.side * (fu_path_coordinate(path, c, state) - fu_boundary(path, boundary));
 }
 
 /* Returns the event of an event function that passes zero between the stored value and this one, else none. */
@@ -159,9 +160,9 @@ static landing_place landing(const fu_run *run, fu_event event, double range)
     const int next = run->now.segment[c->coordinate] + event.side;
     if (run->fixed_step > 0.0 || next < 0 || next >= path.n) return (landing_place){0.0, EVENT_TOLERANCE * path.length};
     const double shorter = fmin(fu_path_segment_length(path, next), fu_path_segment_length(path, next - event.side));
-    return (landing_place){0.0,
-                           fmax(EVENT_TOLERANCE * path.length,
-                                fmin(MAX_BOUNDARY_DISTANCE, BOUNDARY_ERROR_SHARE * run->allowed / range) * shorter)};
+    return (landing_place){
+        0.0, fmax(EVENT_TOLERANCE * path.length,
+                  fmin(MAX_BOUNDARY_DISTANCE, BOUNDARY_ERROR_SHARE * run->allowed / (path.unit * range)) * shorter)};
 }
 
 /* Returns whether an event belongs to an event function of a coupling, whose value leaves its zero again after each
@@ -241,7 +242,7 @@ static double locate(fu_run *run, fu_event event, double h)
     double middle = h * b.g_low / (b.g_low - b.g_high);
     if (event.kind == FU_PATH_BOUNDARY) {
         const fu_coupling *c = run->model->couplings[event.which];
-        const double rate = event.side * c->events->path->rate(run->model, c, &run->now);
+        const double rate = event.side * fu_path_rate(fu_path_of(run->model, c, &run->now), run, c, &run->now);
         middle = h * root_of_parabola(b.g_low, b.g_high, h * rate);
     }
     const fu_coupling *passes = passing(run, event);

@@ -41,6 +41,9 @@ extern const fu_event fu_no_event;
 double fu_boundary_tolerance(fu_path path);
 double fu_boundary(fu_path path, int k);
 double fu_path_segment_length(fu_path path, int k);
+/* Return a coupling's coordinate at the state of its path, in the units of the boundaries, and its rate there. */
+double fu_path_coordinate(fu_path path, const fu_coupling *coupling, const fu_state *state);
+double fu_path_rate(fu_path path, const fu_run *run, const fu_coupling *coupling, const fu_state *state);
 double fu_outside(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int *side);
 int fu_stop_at_boundaries(const fu_model *model);
 double fu_time_to_boundary(const fu_run *run);

@@ -44,8 +44,9 @@ def curves(run: Recorded, notes: list[str]) -> Iterator[Curve]:
         notes.append(f"curves have {len(chosen)} of the run's {len(run.time)} output times")
     time = run.time[chosen]
     yield from _energies(run, chosen)
-    for name in run.scene.slides:
-        yield from _tension_at(run, name, notes)
+    for name, slide in run.scene.slides.items():
+        if slide.along in run.scene.cables:  # ropes have those at their wheels
+            yield from _tension_at(run, name, notes)
     for rope in run.scene.ropes.values():
         yield from _at_wheels(run, rope, chosen)
     together = {f"{wheel.name}.{key}" for rope in run.scene.ropes.values() for wheel in rope.wheels

@@ -85,8 +85,7 @@ def place(frames: Frames, attachment: Attachment) -> np.ndarray:
         s = np.array([attachment.arc_length])
         return along(frames.scene.cables[attachment.on], s, frames.value(f"{attachment.on}.nodal_vectors"))[:, 0]
     if attachment.on in frames.scene.ropes:
-        return _on_line(frames.value(f"{attachment.on}.position"), frames.value(f"{attachment.on}.s"),
-                        attachment.arc_length)
+        return on_rope(frames, attachment.on, attachment.arc_length)
     body = frames.scene.bodies[attachment.on]
     orientation, position = (frames.value(f"{attachment.on}.{what}") for what in ("orientation", "position"))
     if isinstance(body, ModalBody):  # the point is fixed to the section at the nearest node
@@ -99,11 +98,17 @@ def place(frames: Frames, attachment: Attachment) -> np.ndarray:
     return np.asarray(position + rotate(orientation, arm))
 
 
-def _on_line(position: np.ndarray, s: np.ndarray, at: float) -> np.ndarray:
-    """Return the points (T, 3) at an arc-length of lines (T, points, 3) that are drawn through arc-lengths (T, points).
+def on_rope(frames: Frames, name: str, s: np.ndarray | float) -> np.ndarray:
+    """Return the points (T, 3) of a rope at one arc-length s, m, or one (T,) of each instant."""
+    return _on_line(frames.value(f"{name}.position"), frames.value(f"{name}.s"), s)
+
+
+def _on_line(position: np.ndarray, s: np.ndarray, at: np.ndarray | float) -> np.ndarray:
+    """Return the points (T, 3) at an arc-length, or at one (T,) of each instant, of lines (T, points, 3) that are drawn
+    through arc-lengths (T, points).
     """
     last = s.shape[1] - 2
-    k = np.clip(np.sum(s <= at, axis=1) - 1, 0, last)
+    k = np.clip(np.sum(s <= np.reshape(at, (-1, 1)), axis=1) - 1, 0, last)
     rows = np.arange(len(s))
     share = ((at - s[rows, k]) / (s[rows, k + 1] - s[rows, k]))[:, None]
     return np.asarray(position[rows, k] + share * (position[rows, k + 1] - position[rows, k]))

@@ -22,7 +22,7 @@ from ...parts.scene_data import SceneData
 from ...parts.support import Clamp, Motion, Support
 from ...parts.validation import Vector, show, vector3
 from ...view.animation import Mark, Segment
-from .frames import Frames, along, moving, one_or_all, place
+from .frames import Frames, along, moving, on_rope, one_or_all, place
 from .references import slide_reference
 
 ROUNDING_OF_POSITION = 1e-13
@@ -129,10 +129,12 @@ def _apart(a: np.ndarray, b: np.ndarray, size: float) -> bool:
 
 
 def slide_place(frames: Frames, name: str) -> np.ndarray:
-    """Return the positions (T, 3) of a slide in m: of its cable at s, or of its rider if s is unknown."""
+    """Return the positions (T, 3) of a slide in m: of its cable or rope at s, or of its rider if s is unknown."""
     slide = frames.scene.slides[name]
     if not frames.has(f"{name}.s"):
         return place(frames, slide.rider)
+    if slide.along in frames.scene.ropes:
+        return on_rope(frames, slide.along, frames.value(f"{name}.s"))
     return moving(frames.scene.cables[slide.along], frames.value(f"{name}.s"),
                   frames.value(f"{slide.along}.nodal_vectors"))
 

@@ -33,9 +33,11 @@ def references(frames: Frames) -> Frames:
 
 
 def slide_reference(frames: Frames, name: str) -> np.ndarray | None:
-    """Return the point (T, 3) of the undisplaced cable at a slide; None if its rider cannot follow."""
+    """Return the point (T, 3) of the undisplaced cable at a slide; None if its rider cannot follow, and on a rope,
+    whose material moves along itself.
+    """
     slide = frames.scene.slides[name]
-    if not frames.has(f"{name}.s"):
+    if not frames.has(f"{name}.s") or slide.along in frames.scene.ropes:
         return None
     s = frames.value(f"{name}.s")
     if slide.rider.on not in _riders(frames.scene) and (s != slide.arc_length).any():

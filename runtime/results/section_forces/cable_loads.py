@@ -227,7 +227,8 @@ class CableLoads:
         """Add riders: their force at s and its opposite on the rider; and moments of slides that keep axes."""
         for slide in self.model.slides:
             force = self.at.value(f"{slide.name}.force")
-            self._add_at(slide.cable, self.at.value(f"{slide.name}.s"), -force)
+            if slide.cable >= 0:
+                self._add_at(slide.cable, self.at.value(f"{slide.name}.s"), -force)
             self._on_end(slide.rider, force, None)
         for joint in self.model.joints:
             if joint.slide is None:

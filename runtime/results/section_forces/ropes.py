@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...errors import FunicularError
+from ...errors import FunicularError, near
 from ...kernels.libraries import kernels_of
 from ...model.build import build
 from ...model.rope_model import LAW, RopeModel
@@ -64,7 +64,9 @@ def _of_rope(state: Recorded | RestState, rope: Rope, s: ArrayLike | Slide | Non
     q = np.zeros((len(coordinates), state.model.n_q))
     q[:, model.coordinates] = coordinates
     parts = [_Span(model, span, q) for span in model.spans]
-    given = None if s is None else _given(rope, s)
+    name = s.name if isinstance(s, Slide) else s if isinstance(s, str) else None
+    follows = name is not None
+    given = _at_slide(state, rope, name) if name is not None else None if s is None else _given(rope, s)
     places = [part.divided() if given is None else part.within(given) for part in parts]
     found = [part.forces(at, SceneData(state.scene.gravity), method, side == "after")
              for part, at in zip(parts, places, strict=True)]
@@ -84,7 +86,10 @@ def _of_rope(state: Recorded | RestState, rope: Rope, s: ArrayLike | Slide | Non
         axis = "s"
         values = {name: _of_either([each[name] for each in found]) for name in NAMES}
         coords["s"] = ("s", given, of_s)
-    dims = ("time",) * over_time + (axis,)
+        if follows:
+            values = {name: value[:, 0] for name, value in values.items()}
+            coords["s"] = (("time",) * over_time, given[:, 0] if over_time else given[0, 0], of_s)
+    dims = ("time",) * over_time + (axis,) * (not follows)
     return xarray.Dataset(
         {name: (dims + ("xyz",) * (name in GLOBAL), values[name] if over_time else values[name][0],
                 {"units": unit, "long_name": label}) for name, (unit, label) in NAMES.items()},
@@ -94,9 +99,20 @@ def _of_rope(state: Recorded | RestState, rope: Rope, s: ArrayLike | Slide | Non
 def _acting_on(scene: SceneData, rope: Rope) -> Iterator[Part]:
     """Yield the parts that act on a rope within its spans."""
     yield from (part for part, _, end in grips(scene) if end.on == rope.name)
+    yield from (slide for slide in scene.slides.values() if slide.along == rope.name)
     yield from (load for load in scene.loads.values() if getattr(load, "cable", None) == rope.name)
     yield from (drag for drag in scene.drags.values() if drag.on == rope.name)
     yield from (contact for contact in scene.contacts.values() if contact.a == rope.name)
+
+
+def _at_slide(state: Recorded | RestState, rope: Rope, name: str) -> np.ndarray:
+    """Return (T, 1): the arc-length of a slide on a rope, m. Raises FunicularError."""
+    slide = state.scene.slides.get(name)
+    if slide is None or slide.along != rope.name:
+        known = [each.name for each in state.scene.slides.values() if each.along == rope.name]
+        raise FunicularError(f'section forces of rope "{rope.name}": there is no slide "{name}" on it; '
+                             f"{near(name, known)}")
+    return np.atleast_1d(state[f"{name}.s"])[:, None]
 
 
 def _given(rope: Rope, s: Any) -> np.ndarray:
@@ -134,7 +150,8 @@ class _Span:
         return found
 
     def within(self, s: np.ndarray) -> np.ndarray:
-        """Return places (n,) at all times (T, n), m, not numbers where they are off the span."""
+        """Return places (n,), or (T, n) of each time, at all times (T, n), m, not numbers where they are off the span.
+        """
         inside = (s >= self.s[:, :1]) & (s <= self.s[:, -1:])
         return np.where(inside, s, np.nan)
 

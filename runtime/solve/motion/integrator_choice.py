@@ -255,7 +255,7 @@ def _check_ropes(integrator: Integrator, scene: SceneData) -> None:
     for part, _, end in grips(scene):
         raise SceneError(part.where, f'{who} does not support what acts on a point of a rope, and it acts on '
                          f'"{end.on}"', another)
-    along: list[Part] = [*scene.drags.values(), *scene.loads.values()] if scene.ropes else []
+    along: list[Part] = [*scene.slides.values(), *scene.drags.values(), *scene.loads.values()] if scene.ropes else []
     for part in along:
         if on := next((name for name in part.refers_to() if name in scene.ropes), None):
             raise SceneError(part.where, f'{who} does not support what acts along a rope, and it acts on "{on}"',

@@ -30,12 +30,16 @@ class CoarseSlides(Note):
 
     def see(self, rows: Rows) -> None:
         """Measure further output rows."""
-        for k, slide in enumerate(self.model.slides):
+        for k, slide in self._on_cables():
             force = np.linalg.norm(outputs_by_name("slide", rows["slide"])["force"][:, k], axis=-1)
             numbers, h = self._of(slide, rows["q"], rows["s"][:, k], force)
             count, sums, longest = self.found.get(slide.name, (0, [0.0, 0.0, 0.0], 0.0))
             self.found[slide.name] = [count + len(h), (np.array(sums) + numbers.sum(axis=0)).tolist(),
                                       max(longest, float(h.max()))]
+
+    def _on_cables(self) -> list[tuple[int, SlideModel]]:
+        """Return the slides on cables, with their numbers; a kink of a rope is a note of `Rope`."""
+        return [(k, slide) for k, slide in enumerate(self.model.slides) if slide.cable >= 0]
 
     def _of(self, slide: SlideModel, q: np.ndarray, s: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return error, angle and tension (T, 3), see `found`, and lengths of elements (T,), at coordinates q (T, n),
@@ -63,7 +67,7 @@ class CoarseSlides(Note):
     def notes(self) -> list[str]:
         """Return a note for each slide with a large mean error."""
         notes = []
-        for slide in self.model.slides:
+        for _, slide in self._on_cables():
             count, sums, h = self.found.get(slide.name, (0, [0.0, 0.0, 0.0], 0.0))
             error, angle, tension = (each / max(count, 1) for each in sums)
             if error <= FORCE_ERROR_LIMIT:

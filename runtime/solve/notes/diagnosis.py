@@ -40,7 +40,8 @@ ROPE_LEFT = (
 EMPTY = 6
 """The reason of a drum."""
 GRIP = EMPTY - 2
-"""The reason of a span at whose first end a point arrives that a joint or a spring holds; at its last end one more."""
+"""The reason of a span at whose first end a point arrives that a joint or a spring holds, or a slide; at its last end
+one more."""
 
 MAX_PLAUSIBLE_STRETCH = 3.0
 """Messages name elements that are longer than this multiple of their undeformed length."""
@@ -150,7 +151,7 @@ def rope_left(model: Model, number: int, reason: int) -> tuple[str, str]:
     cause, remedy = ROPE_LEFT[reason]
     held: dict[str, str] = {}
     if reason in (GRIP, GRIP + 1):
-        assert isinstance(coupling, SpanModel)
+        assert isinstance(coupling, SpanModel | SlideModel)
         held = {"reached": coupling.reached(reason - GRIP)}
     wrap = 0.0 if isinstance(coupling, TautPointModel) else MIN_WRAP
     return cause.format(name=coupling.name, kind=coupling.type, wrap=wrap, **held), remedy
@@ -162,7 +163,7 @@ def describe_dof(model: Model, dof: int, coupling: int | None = None) -> str:
         failed = model.couplings[coupling]
         if not isinstance(failed, SlideModel):
             return f'{failed.type.removeprefix("hard_").replace("_", " ")} "{failed.name}"'
-        return f'slide "{failed.name}" on cable "{model.cables[failed.cable].name}"'
+        return f'slide "{failed.name}" on {failed.line}'
     if (found := _node(model, dof)) is not None:
         cable, node = found
         return f'cable "{cable.name}" at s = {cable.mesh.node_s[node]:.6g} m'
@@ -175,7 +176,9 @@ def describe_dof(model: Model, dof: int, coupling: int | None = None) -> str:
 def damping(model: Model, dof: int, coupling: int | None = None) -> str:
     """Return the end of a remedy: the damping of the part of a dof, or of a slide's cable; empty for a rigid body."""
     found, failed = _node(model, dof), None if coupling is None else model.couplings[coupling]
-    cable = model.cables[failed.cable] if isinstance(failed, SlideModel) else found and found[0]
+    cable = found and found[0]
+    if isinstance(failed, SlideModel):
+        cable = model.cables[failed.cable] if failed.cable >= 0 else None
     if cable:
         return f", or {'a larger ' if cable.tau else ''}damping_time in the material"
     bodies = [body for body in model.bodies if body.dof <= dof]

@@ -30,8 +30,8 @@ def outrunning(scene: SceneData) -> list[str]:
     """
     found = []
     for slide in scene.slides.values():
-        cable, body = scene.cables[slide.along], scene.bodies.get(slide.body or "")
-        if body is None or cable.stretch <= 1.0:
+        cable, body = scene.cables.get(slide.along), scene.bodies.get(slide.body or "")
+        if cable is None or body is None or cable.stretch <= 1.0:
             continue
         if excess(cable, cable.stretch, np.linalg.norm(body.velocity) / cable.stretch) > 0:
             found.append(slide.name)

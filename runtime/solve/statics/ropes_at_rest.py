@@ -61,7 +61,7 @@ def with_ropes_at_rest(model: Model, scene: SceneData) -> np.ndarray:
 
 def off_sheaves(model: Model, engine: Engine) -> str:
     """Return where a rope of a static state has left a sheave, a span has no length, or something that holds to a rope
-    has come to the end of a span, in words, else "".
+    or slides along it has come to the end of a span, in words, else "".
     """
     if not model.ropes:
         return ""
@@ -92,6 +92,10 @@ def off_sheaves(model: Model, engine: Engine) -> str:
             return f'a span of rope "{span.name}" becomes too short to be modelled'
         if (end := span.end_of_grips(q)) is not None:
             return span.reached(end)
+    for slide, s in zip(model.slides, engine.state()["s"], strict=True):
+        first, last = slide.ends_at(model, q)
+        if slide.cable < 0 and not first <= s <= last:
+            return slide.reached(int(s > last))
     return ""
 
 

@@ -214,10 +214,12 @@ class StaticProblem(StaticState):
         return bool(left)
 
     def on_cables(self) -> bool:
-        """Return whether no slide is past an end of its cable, where the last element would continue without end."""
-        ends = np.array([self.model.cables[j.cable].mesh.total for j in self.model.slides])
-        s = self.engine.state()["s"]
-        past = np.maximum(-s, s - ends)
+        """Return whether no slide is past an end of its cable or span, where the last element would continue without
+        end.
+        """
+        state = self.engine.state()
+        ends = np.array([j.ends_at(self.model, state["q"]) for j in self.model.slides]).reshape(-1, 2)
+        past = np.maximum(ends[:, 0] - state["s"], state["s"] - ends[:, 1])
         return bool(np.all(past <= self.settings.tolerance * self.size))
 
 

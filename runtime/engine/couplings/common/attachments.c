@@ -66,7 +66,7 @@ static void vectors_of(const fu_model *model, const fu_attachment *on, const fu_
     memset(w->rows, 0, sizeof(double) * 2 * (size_t)(dim * n_columns));
     if (on_slide)
         cable->kernel->slopes(fu_element_length(cable, element),
-                              state->s[on->slide] - fu_element_start(model, on->slide, element), every);
+                              state->s[on->slide] - fu_element_start(model, state, on->slide, element), every);
     for (int k = 0; k < 2; ++k) {
         const double *fixed =
             on->slopes[k] == FU_CARRIED ? fu_slide_numbers_of(model, state, on->slide)->director : on->up;

@@ -6,20 +6,22 @@
 #include "couplings/common/coupling.h"
 #include "base/event.h"
 
-/* The path of a coupling's coordinate: n segments, of one length, m, or between given boundaries, m, if that is not
- * null, with their mean length. At the boundaries the equations are not smooth. state->segment is the segment of a
- * coupling. n is zero for a coupling without a segment. */
+/* The path of a coupling's coordinate: n segments, of one length, or between given boundaries if that is not null, with
+ * their mean length. At the boundaries the equations are not smooth. state->segment is the segment of a coupling. n is
+ * zero for a coupling without a segment. Boundaries count from `origin`, m, in units of m, 0 and 1 on a cable: on a
+ * rope its nodes move, and both have rates. */
 typedef struct {
     int n;
     double length;
     const double *boundaries;
+    double origin, unit, origin_rate, unit_rate;
 } fu_path;
 
 /* The path of a coupling's coordinate, and the actions at its boundaries. */
 typedef struct {
     /* Returns the path at a state. */
     fu_path (*at)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
-    /* Rate of the coordinate along the path, m/s. */
+    /* Rate of the coordinate, m/s. */
     double (*rate)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
     /* Whether every step must end where the coupling passes a boundary, with any integrator. */
     int (*stops_at_boundaries)(const fu_model *model, const fu_coupling *coupling);
@@ -106,7 +108,7 @@ static inline int fu_can_defer(const fu_coupling *coupling)
 static inline fu_path fu_path_of(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     const fu_coupling_events *events = coupling->events;
-    return events && events->path ? events->path->at(model, coupling, state) : (fu_path){0, 0.0, 0};
+    return events && events->path ? events->path->at(model, coupling, state) : (fu_path){.unit = 1.0};
 }
 
 #endif

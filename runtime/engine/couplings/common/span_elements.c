@@ -41,24 +41,25 @@ void fu_add_span_force(const fu_span_elements *span, const fu_span_element *on, 
     }
 }
 
+void fu_to_ends_of_span(const fu_span_elements *span, int k, double *first, double *last, int n, int stride)
+{
+    const double a = span->share[k], b = span->share[k + 1];
+    for (int i = 0; i < n; ++i, first += stride, last += stride) {
+        const double by_first = *first, by_last = *last;
+        *first = (1.0 - a) * by_first + (1.0 - b) * by_last;
+        *last = a * by_first + b * by_last;
+    }
+}
+
 void fu_add_span_matrix(const fu_model *model, const fu_span_elements *span, const fu_span_element *on,
                         double (*K)[FU_SPAN_LOCAL], fu_system *system)
 {
     const int n = span->kernel->coordinates;
-    const double a = span->share[on->number], b = span->share[on->number + 1];
     int dofs[FU_SPAN_LOCAL];
     for (int i = 0; i < n; ++i) dofs[i] = on->at + i;
     for (int i = 0; i < ENDS; ++i) dofs[n + i] = span->s[i];
-    for (int i = 0; i < n + ENDS; ++i) {
-        const double first = K[i][n], last = K[i][n + 1];
-        K[i][n] = (1.0 - a) * first + (1.0 - b) * last;
-        K[i][n + 1] = a * first + b * last;
-    }
-    for (int j = 0; j < n + ENDS; ++j) {
-        const double first = K[n][j], last = K[n + 1][j];
-        K[n][j] = (1.0 - a) * first + (1.0 - b) * last;
-        K[n + 1][j] = a * first + b * last;
-    }
+    fu_to_ends_of_span(span, on->number, &K[0][n], &K[0][n + 1], n + ENDS, FU_SPAN_LOCAL);
+    fu_to_ends_of_span(span, on->number, K[n], K[n + 1], n + ENDS, 1);
     for (int i = 0; i < n + ENDS; ++i)
         for (int j = 0; j < n + ENDS; ++j)
             if (K[i][j] != 0.0) fu_add(model, system, dofs[i], dofs[j], K[i][j]);

@@ -48,6 +48,9 @@ fu_span_element fu_span_element_at(const fu_model *model, const fu_span_elements
 /* Adds forces on an element, and on its ends (null: none) and its length, to those on the dofs. */
 void fu_add_span_force(const fu_span_elements *span, const fu_span_element *on, const double *of_e,
                        const double *of_ends, double of_length, double *f);
+/* Converts n derivatives by the material coordinates of both ends of the k-th element, each `stride` apart, to those by
+ * s1 and s2 of the span. */
+void fu_to_ends_of_span(const fu_span_elements *span, int k, double *first, double *last, int n, int stride);
 /* Adds a matrix over e and both ends to a system; it is overwritten. */
 void fu_add_span_matrix(const fu_model *model, const fu_span_elements *span, const fu_span_element *on,
                         double (*K)[FU_SPAN_LOCAL], fu_system *system);

@@ -19,7 +19,7 @@ static void discrete_gradient(const fu_model *model, const fu_coupling *coupling
     const fu_slide *slide = (const fu_slide *)coupling;
     const fu_state *now = step->now, *next = step->next;
     const int j = coupling->index;
-    const double start = fu_element_start(model, j, now->segment[j]);
+    const double start = fu_element_start(model, now, j, now->segment[j]);
     const double length = fu_element_length(&model->cables[slide->cable], now->segment[j]);
     slide->kernel->discrete_gradient(length, now->s[j] - start, next->s[j] - start, now->q + first, next->q + first,
                                      rider_at(model, now, slide), rider_at(model, next, slide), G);
@@ -32,7 +32,8 @@ void fu_slide_over_step(const fu_model *model, const fu_coupling *coupling, cons
     const fu_slide *slide = (const fu_slide *)coupling;
     const fu_state *next = step->next;
     const int j = coupling->index, s = slide->kernel->coordinates, n = s + 1;
-    const double start = fu_element_start(model, j, step->now->segment[j]), *force = next->forces + coupling->force;
+    const double start = fu_element_start(model, step->now, j, step->now->segment[j]),
+                 *force = next->forces + coupling->force;
     double G[3 * FU_MAX_COORDINATES], phi[3], unused[FU_MAX_COORDINATES], along = 0.0;
     int at[FU_SLIDE_COORDINATES + 1];
     fu_slide_coordinates(model, next, j, at);
@@ -59,7 +60,7 @@ void fu_slide_over_step_tangent(const fu_model *model, const fu_coupling *coupli
     const int j = coupling->index, s = slide->kernel->coordinates, n = s + 1, dim = slide->kernel->dim;
     const fu_cable *cable = &model->cables[slide->cable];
     const int turns = cable->coordinates;
-    const double start = fu_element_start(model, j, step->now->segment[j]);
+    const double start = fu_element_start(model, step->now, j, step->now->segment[j]);
     double G[3 * FU_MAX_COORDINATES], J[3 * FU_MAX_COORDINATES], K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
     int at[FU_SLIDE_COORDINATES + 1];
     fu_slide_coordinates(model, next, j, at);

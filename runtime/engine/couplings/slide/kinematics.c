@@ -1,7 +1,8 @@
 /* A slide's kernels over its coordinates, for any rider: the element's, the rider's, s.
  *
  * A rigid body has kernels of its own; any other rider is a point of a part, and the chain rule converts derivatives by
- * that point to those by its coordinates: dp = P dq, p'' = P q'' + bias.
+ * that point to those by its coordinates: dp = P dq, p'' = P q'' + bias. On a rope the kernels take the material
+ * coordinates of an element's ends, which follow from those of the span's ends.
  */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
@@ -14,20 +15,40 @@
 typedef struct {
     double length, x;
     const double *e, *v, *b, *u, *w;
-    fu_attachment_state rider; /* if it is a point */
+    double rates[FU_SPAN_LOCAL]; /* on a rope: v */
+    fu_attachment_state rider;   /* if it is a point */
 } slide_view;
 
 static const double no_arm[3];
 
+static void look_at_cable(const fu_model *model, const fu_state *state, int j, slide_view *view)
+{
+    const fu_cable *cable = &model->cables[model->slides[j].cable];
+    const int at = cable->first + state->segment[j] * cable->per_node;
+    view->length = fu_element_length(cable, state->segment[j]);
+    view->x = state->s[j] - fu_element_start(model, state, j, state->segment[j]);
+    view->e = state->q + at;
+    view->v = state->v + at;
+}
+
+static void look_at_rope(const fu_model *model, const fu_state *state, int j, slide_view *view)
+{
+    const fu_span_elements *on = &model->slides[j].on;
+    const fu_span_element it = fu_span_element_at(model, on, state->segment[j], state->q, state->v, 0);
+    const int n = on->kernel->coordinates;
+    view->length = it.l;
+    view->x = state->s[j] - it.s[0];
+    view->e = it.e;
+    view->v = view->rates;
+    memcpy(view->rates, it.v, sizeof(double) * (size_t)n);
+    memcpy(view->rates + n, it.s_rate, sizeof it.s_rate);
+}
+
 static void look(const fu_model *model, const fu_state *state, int j, slide_view *view)
 {
     const fu_slide *slide = &model->slides[j];
-    const fu_cable *cable = &model->cables[slide->cable];
-    const int at = cable->first + state->segment[j] * cable->per_node;
-    view->length = fu_element_length(cable, state->segment[j]);
-    view->x = state->s[j] - fu_element_start(model, j, state->segment[j]);
-    view->e = state->q + at;
-    view->v = state->v + at;
+    if (slide->cable < 0) look_at_rope(model, state, j, view);
+    else look_at_cable(model, state, j, view);
     if (slide->rider_is_rigid) {
         const fu_body *body = &model->bodies[slide->rider.body];
         view->b = state->q + body->configuration;
@@ -39,6 +60,17 @@ static void look(const fu_model *model, const fu_state *state, int j, slide_view
     view->b = view->rider.p;
     view->w = view->rider.v;
     view->u = no_arm;
+}
+
+/* Converts n derivatives by both ends of the element of a rope, `first` and those beside it by `beside`, each `stride`
+ * apart, to those by the ends of the span; on a cable there are none. */
+static void to_ends_of_span(const fu_model *model, const fu_state *state, int j, double *derivatives, int n, int stride,
+                            int beside)
+{
+    const fu_span_elements *on = &model->slides[j].on;
+    if (!on->kernel) return;
+    double *first = derivatives + on->kernel->coordinates * beside;
+    fu_to_ends_of_span(on, state->segment[j], first, first + beside, n, stride);
 }
 
 /* Expands rows over (element, point, `more`) to rows over (element, rider, `more`). */
@@ -65,9 +97,12 @@ static void expand(const fu_slide *slide, const slide_view *view, int n_rows, in
 int fu_slide_coordinates(const fu_model *model, const fu_state *state, int j, int *at)
 {
     const fu_slide *slide = &model->slides[j];
-    const fu_cable *cable = &model->cables[slide->cable];
-    const int n = cable->coordinates;
-    for (int i = 0; i < n; ++i) at[i] = cable->first + state->segment[j] * cable->per_node + i;
+    const fu_span_elements *on = &slide->on;
+    const fu_cable *cable = slide->cable < 0 ? 0 : &model->cables[slide->cable];
+    const int per_node = cable ? cable->per_node : on->kernel->coordinates / FU_SPAN_ENDS;
+    const int n = fu_slide_element_coordinates(model, j), of_nodes = cable ? n : on->kernel->coordinates;
+    for (int i = 0; i < of_nodes; ++i) at[i] = (cable ? cable->first : on->first) + state->segment[j] * per_node + i;
+    for (int i = of_nodes; i < n; ++i) at[i] = on->s[i - of_nodes];
     const int all = n + fu_attachment_coordinates(model, &slide->rider, state, at + n);
     at[all] = fu_extra(model, slide->base.unknown);
     return all;
@@ -82,25 +117,21 @@ void fu_slide_residual(const fu_model *model, const fu_state *state, int j, doub
     look(model, state, j, &v);
     slide->kernel->residual(v.length, v.x, v.e, v.b, v.u, state->forces + slide->base.force, phi,
                             slide->rider_is_rigid ? g : of_point);
-    if (!slide->rider_is_rigid) expand(slide, &v, 1, model->cables[slide->cable].coordinates, 1, of_point, g);
+    if (!slide->rider_is_rigid) expand(slide, &v, 1, fu_slide_element_coordinates(model, j), 1, of_point, g);
+    to_ends_of_span(model, state, j, g, 1, 0, 1);
 }
 
-/* Computes the derivatives of both over the same, at a force f. */
-void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const double *f, double *J, double *K)
+/* Computes the derivatives of both over the same, for a rider that is a point. */
+static void tangent_of_point(const fu_model *model, const fu_state *state, int j, const slide_view *v, const double *f,
+                             double *J, double *K)
 {
     const fu_slide *slide = &model->slides[j];
-    const int n_element = model->cables[slide->cable].coordinates, dim = slide->kernel->dim, from = n_element + dim + 1;
+    const int n_element = fu_slide_element_coordinates(model, j), dim = slide->kernel->dim, from = n_element + dim + 1;
     double of_point[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
-    slide_view v;
-    look(model, state, j, &v);
-    if (slide->rider_is_rigid) {
-        slide->kernel->tangent(v.length, v.x, v.e, v.b, v.u, f, J, K);
-        return;
-    }
     double J_point[3 * FU_MAX_COORDINATES], pull[3], part[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
-    const int n_rider = v.rider.n, n = n_element + n_rider + 1;
-    slide->kernel->tangent(v.length, v.x, v.e, v.b, v.u, f, J_point, of_point);
-    expand(slide, &v, dim, n_element, 1, J_point, J);
+    const int n_rider = v->rider.n, n = n_element + n_rider + 1;
+    slide->kernel->tangent(v->length, v->x, v->e, v->b, v->u, f, J_point, of_point);
+    expand(slide, v, dim, n_element, 1, J_point, J);
     /* the rider's point appears linearly in phi = r - p: second derivatives are those of the point itself */
     memset(K, 0, sizeof(double) * (size_t)(n * n));
     for (int i = 0; i <= n_element; ++i)
@@ -112,6 +143,21 @@ void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const
     fu_wrench_derivatives(model, &slide->rider, state, pull, 0, n_rider, part, 0, 0);
     for (int i = 0; i < n_rider; ++i)
         for (int k = 0; k < n_rider; ++k) K[(n_element + i) * n + n_element + k] = part[i * n_rider + k];
+}
+
+/* Computes the derivatives of both over the same, at a force f. */
+void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const double *f, double *J, double *K)
+{
+    const fu_slide *slide = &model->slides[j];
+    slide_view v;
+    look(model, state, j, &v);
+    if (slide->rider_is_rigid) slide->kernel->tangent(v.length, v.x, v.e, v.b, v.u, f, J, K);
+    else tangent_of_point(model, state, j, &v, f, J, K);
+    const int n =
+        (slide->rider_is_rigid ? slide->kernel->coordinates : fu_slide_element_coordinates(model, j) + v.rider.n) + 1;
+    to_ends_of_span(model, state, j, J, slide->kernel->dim, n, 1);
+    to_ends_of_span(model, state, j, K, n, n, 1);
+    to_ends_of_span(model, state, j, K, n, 1, n);
 }
 
 /* Adds the row that locks s to the rows across the cable: s of the slide less its signal or its place. */
@@ -129,7 +175,7 @@ static void add_lock(const fu_model *model, const fu_state *state, int j, const 
 void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows *rows, fu_slide_state *slide_state)
 {
     const fu_slide *slide = &model->slides[j];
-    const int n_element = model->cables[slide->cable].coordinates, dim = slide->kernel->dim;
+    const int n_element = fu_slide_element_coordinates(model, j), dim = slide->kernel->dim;
     double C_q[3 * FU_SLIDE_COORDINATES], C_s[3], Q_d[3], H[2 * FU_SLIDE_COORDINATES], G[FU_SLIDE_COORDINATES];
     slide_view v;
     const fu_slide_flags *flags = fu_slide_flags_of(model, state, j);
@@ -158,6 +204,8 @@ void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows
             slide_state->s_bias += slide_state->by_point[across * dim + d] * v.rider.bias[d];
         }
     }
+    to_ends_of_span(model, state, j, rows->H, across, n, 1);
+    to_ends_of_span(model, state, j, slide_state->G, 1, 0, 1);
     rows->n = n;
     rows->rows = flags->mode == FU_LOCKED ? dim : across;
     for (int c = 0; c < across; ++c) {
@@ -184,7 +232,7 @@ static double constraints_at(const fu_model *model, const fu_state *state, int j
     double C[3], step;
     slide_view v;
     look(model, state, j, &v);
-    slide->kernel->constraint(v.length, s - fu_element_start(model, j, state->segment[j]), v.e, v.b, v.u,
+    slide->kernel->constraint(v.length, s - fu_element_start(model, state, j, state->segment[j]), v.e, v.b, v.u,
                               fu_slide_numbers_of(model, state, j)->director, C, C_s, &step, A_t);
     return step;
 }

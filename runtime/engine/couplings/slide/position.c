@@ -26,7 +26,7 @@ static double evaluate_constraint(const fu_model *model, const fu_state *state, 
 /* Solves C_l(s) = 0 for s by Newton's method, eq 21 on the curve of the element of s; returns 0 on convergence. */
 int fu_find_arc_length(const fu_model *model, const fu_state *state, int j, double *s)
 {
-    const double length = model->cables[model->slides[j].cable].length;
+    const double length = fu_mean_element(model, state, j);
     double step = 0.0, tangent[3];
     for (int i = 0; i < MAX_ITERATIONS; ++i) {
         step = evaluate_constraint(model, state, j, *s, tangent);

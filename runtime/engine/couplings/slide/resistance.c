@@ -41,7 +41,9 @@ double fu_compression(const fu_model *model, const fu_state *state, int j, int s
 {
     const fu_slide *slide = &model->slides[j];
     const double length = slide->stops[side > 0].length;
-    return side > 0 ? state->s[j] - (fu_length(model, j) - length) : length - state->s[j];
+    double ends[2];
+    fu_slide_ends(model, state, j, ends);
+    return side > 0 ? state->s[j] - (ends[1] - length) : ends[0] + length - state->s[j];
 }
 
 /* Returns the buffer that a slide compresses, null if there is none. */

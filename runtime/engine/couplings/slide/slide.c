@@ -64,7 +64,7 @@ static void resistance_matrix(const fu_model *model, int j, const fu_equations *
     fu_resistance resistance;
     resistance_of(model, equations->next, j, J, &resistance);
     fu_resistance_rows(model, equations->next, j, J, &resistance, by_place, by_rate);
-    fu_turn_attachment(model, &slide->rider, equations->psi, by_place, 1, n, model->cables[slide->cable].coordinates);
+    fu_turn_attachment(model, &slide->rider, equations->psi, by_place, 1, n, fu_slide_element_coordinates(model, j));
     for (int k = 0; k < n; ++k) fu_add(model, system, at[s], at[k], -w.stiffness * (by_place[k] + w.rate * by_rate[k]));
     for (int d = 0; d < model->dim; ++d)
         fu_add(model, system, at[s], at[s] + 1 + d, -fu_row_unit(w.inertia, slide->base.scale[0]) * resistance.by_f[d]);
@@ -76,7 +76,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     const fu_slide *slide = (const fu_slide *)coupling;
     const fu_state *next = equations->next;
     const fu_weights w = equations->weights;
-    const int j = coupling->index, element = model->cables[slide->cable].coordinates;
+    const int j = coupling->index, element = fu_slide_element_coordinates(model, j);
     const fu_slide_flags *flags = fu_slide_flags_of(model, next, j);
     const int slides = flags->mode == FU_SLIDES;
     const double mass = fu_row_unit(w.inertia, slide->base.scale[0]);
@@ -268,9 +268,8 @@ static int is_possible(const fu_model *model, const fu_coupling *coupling, const
     const fu_slide *slide = (const fu_slide *)coupling;
     const int j = coupling->index;
     const fu_slide_flags *flags = fu_slide_flags_of(model, state, j);
-    return in_range(state->segment[j], 0, model->cables[slide->cable].n_elements - 1) &&
-           is_possible_mode(slide, flags->mode) && in_range(flags->slip_direction, -1, 1) &&
-           in_range(flags->contact, -1, 1);
+    return in_range(state->segment[j], 0, fu_slide_elements(model, j) - 1) && is_possible_mode(slide, flags->mode) &&
+           in_range(flags->slip_direction, -1, 1) && in_range(flags->contact, -1, 1);
 }
 
 static const char *excess(const fu_coupling *coupling)
@@ -286,6 +285,7 @@ static const char *const role[] = {"slide", 0}, *const resistance_role[] = {"res
 static const fu_field fields[] = {
     FU_FIELD(fu_slide, kernel, FU_KERNELS, role),
     FU_FIELD(fu_slide, cable, FU_INTEGER, 0),
+    FU_SPAN_FIELDS(fu_slide, on),
     FU_FIELD(fu_slide, rider, FU_ATTACHMENT, 0),
     FU_FIELD(fu_slide, rider_is_rigid, FU_INTEGER, 0),
     FU_FIELD(fu_slide, drive, FU_INTEGER, 0),

@@ -8,6 +8,7 @@
 #include "couplings/common/accelerator.h"
 #include "couplings/common/coupling.h"
 #include "couplings/common/coupling_events.h"
+#include "couplings/common/span_elements.h"
 
 /* End stop at an end of a cable: the restitution of a hard stop; the length before the end, m, the stiffness, N/m, and
  * the damping, N s/m, of a buffer. */
@@ -35,7 +36,8 @@ typedef struct {
 struct fu_slide {
     fu_coupling base; /* one coordinate, s; as many forces as dimensions, on the rider */
     const fu_slide_kernels *kernel;
-    int cable;
+    int cable;           /* -1 on a rope */
+    fu_span_elements on; /* elements of the span of a rope, whose kernel is null on a cable; s is material */
     fu_attachment rider;
     int rider_is_rigid;                      /* the kernels take the rider's own configuration: it is a rigid body */
     int drive;                               /* signal of s, -1 */
@@ -96,9 +98,15 @@ void fu_slide_outputs(const fu_model *model, const fu_state *state, int j, const
 /* couplings/slide/kinematics.c: the force on the rider by these multipliers. */
 void fu_slide_force(const fu_model *model, const fu_accelerator *work, int j, const double *lambda, double *f);
 
-/* couplings/slide/state.c */
-double fu_length(const fu_model *model, int slide);
-double fu_element_start(const fu_model *model, int slide, int element);
+/* couplings/slide/state.c: s at both ends of a slide's cable or span, m, and their distance; s at the first node of an
+ * element; the mean length of elements, m; the number of coordinates of an element: on a rope those of its nodes, and s
+ * of both ends of the span. */
+void fu_slide_ends(const fu_model *model, const fu_state *state, int slide, double ends[2]);
+double fu_length(const fu_model *model, const fu_state *state, int slide);
+double fu_element_start(const fu_model *model, const fu_state *state, int slide, int element);
+double fu_mean_element(const fu_model *model, const fu_state *state, int slide);
+int fu_slide_elements(const fu_model *model, int slide);
+int fu_slide_element_coordinates(const fu_model *model, int slide);
 
 /* R of a slide, the force along its cable times r_x, and its derivatives */
 typedef struct {
