@@ -37,9 +37,9 @@ class SpanCoordinates:
         found: np.ndarray = q[self.nodes].reshape(len(self.share), PER_NODE, self.dim)[:, 0]
         return found
 
-    def element_at(self, q: np.ndarray, s: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return the elements (T,) that hold the material coordinate s, m, in configurations q (T, n), and the material
-        coordinates (T, 2) of their nodes.
+    def element_at(self, q: np.ndarray, s: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
+        """Return the elements (T,) that hold a material coordinate, m, or one (T,) in each, in configurations q (T, n),
+        and the material coordinates (T, 2) of their nodes.
         """
         first, last = q[:, self.s[0]], q[:, self.s[1]]
         element = np.clip(np.searchsorted(self.share, (s - first) / (last - first)) - 1, 0, self.n_elements - 1)

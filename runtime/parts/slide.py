@@ -19,7 +19,7 @@ from .validation import Name, Reference, Vector, direction, items, one_of, place
 class Slide(Part):
     """A sliding joint: a point of a body, of another cable or of the ground rides the centreline of a cable or a rope.
 
-    Along a rope s is stress-free and material, from the first end: the rope carries a rider with constant s along. The
+    Along a rope s is stress-free and material, from the first end as drawn: a rider with constant s moves with it. The
     slide runs within one span, past ends of elements; at a sheave, a drum or an anchor the run ends with a
     RopeLeftError. Friction and ``traction`` are those on the material. There the frame is "point", and stops and the
     integrator "energy" are not supported. The rope is rounded under a rider: its path is off in proportion to the

@@ -218,6 +218,15 @@ def test_at_rest():
     assert forces["s"].item() == rest["trolley.s"]
 
 
+def test_a_kink_that_elements_cannot_follow_is_reported():
+    """A heavy carriage turns the rope by 38 degrees within 4 cm; a light one by 4 degrees, without an effect."""
+    heavy, light = (hauled(along=0.0, elements=4).replace("carriage", mass=mass).equilibrium() for mass in (200, 20))
+    note, = (message for message in heavy.messages if "cannot follow" in message)
+    assert note.startswith('slide "trolley": rope "haul" turns there by 35 degrees within sqrt(EI/N) = 0.039 m')
+    assert note.endswith("Take elements of at most 0.039 m where it slides")
+    assert not any("cannot follow" in message for message in light.messages)
+
+
 @pytest.mark.parametrize("integrator", ["radau", "genalpha"])
 def test_a_point_of_a_rope_slides_along_a_cable(integrator):
     """It rides as a point of a cable does."""

@@ -63,10 +63,11 @@ def _of_rope(state: Recorded | RestState, rope: Rope, s: ArrayLike | Slide | Non
     coordinates = np.atleast_2d(state[f"{rope.name}.coordinates"])
     q = np.zeros((len(coordinates), state.model.n_q))
     q[:, model.coordinates] = coordinates
-    parts = [_Span(model, span, q) for span in model.spans]
     name = s.name if isinstance(s, Slide) else s if isinstance(s, str) else None
     follows = name is not None
-    given = _at_slide(state, rope, name) if name is not None else None if s is None else _given(rope, s)
+    given = None if s is None else (_given(rope, s) if name is None else
+                                    _at_slide(state, rope, name) - np.reshape(model.origin(q), (-1, 1)))
+    parts = [_Span(model, span, q) for span in model.spans]
     places = [part.divided() if given is None else part.within(given) for part in parts]
     found = [part.forces(at, SceneData(state.scene.gravity), method, side == "after")
              for part, at in zip(parts, places, strict=True)]

@@ -1,4 +1,4 @@
-"""Slides over which a taut cable turns more sharply than its elements can.
+"""Slides over which a taut cable or rope turns more sharply than its elements can.
 
 Under a force at a point a cable of tension N turns within sqrt(EI/N). A longer element cuts the corner, by more or less
 as the point moves through it: that is a force along the cable, and none of the rope's. A rope in balance over an eyelet
@@ -9,16 +9,43 @@ h/sqrt(EI/N) of 0.5 to 8. While the rope slides, each node that passes the point
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ...engine import outputs_by_name
 from ...model.middle_strain import middle_strain
 from ...model.model import SlideModel
+from ...model.span_coordinates import PER_NODE, SpanCoordinates
+from ...parts.cable import Cable
+from ...parts.rope import Rope
 from .coarse_meshes import FORCE_ERROR_LIMIT, ROW_INTERVAL
 from .note import LineStiffness, Note, Rows
 
 LENGTH_FACTOR, ANGLE_FACTOR = 0.02, 0.08
 """Difference of the tensions over the squared angle times h/sqrt(EI/N), and its upper bound over the squared angle."""
+
+
+class _Beside(NamedTuple):
+    """Slopes (T, dim) of a line by its arc-length before and after a slide, its strain, and the length of the element
+    that has the slide, m (T,).
+    """
+
+    before: np.ndarray
+    after: np.ndarray
+    strain: np.ndarray
+    h: np.ndarray
+
+
+def _on_rope(span: SpanCoordinates, q: np.ndarray, s: np.ndarray) -> _Beside:
+    """Return the slopes of a span beside a slide; the strain is that at its ends, as the tension along it hardly
+    differs.
+    """
+    rows, (element, ends) = np.arange(len(q)), span.element_at(q, s)
+    slopes = q[:, span.nodes].reshape(len(q), span.n_elements + 1, PER_NODE, span.dim)[:, :, 1]
+    first, last = np.maximum(element - 1, 0), np.minimum(element + 2, span.n_elements)
+    strain = np.linalg.norm(slopes[:, [0, -1]], axis=-1).min(axis=1) - 1
+    return _Beside(slopes[rows, first], slopes[rows, last], strain, np.diff(ends)[:, 0])
 
 
 class CoarseSlides(Note):
@@ -30,53 +57,60 @@ class CoarseSlides(Note):
 
     def see(self, rows: Rows) -> None:
         """Measure further output rows."""
-        for k, slide in self._on_cables():
+        for k, slide in enumerate(self.model.slides):
             force = np.linalg.norm(outputs_by_name("slide", rows["slide"])["force"][:, k], axis=-1)
             numbers, h = self._of(slide, rows["q"], rows["s"][:, k], force)
             count, sums, longest = self.found.get(slide.name, (0, [0.0, 0.0, 0.0], 0.0))
             self.found[slide.name] = [count + len(h), (np.array(sums) + numbers.sum(axis=0)).tolist(),
                                       max(longest, float(h.max()))]
 
-    def _on_cables(self) -> list[tuple[int, SlideModel]]:
-        """Return the slides on cables, with their numbers; a kink of a rope is a note of `Rope`."""
-        return [(k, slide) for k, slide in enumerate(self.model.slides) if slide.cable >= 0]
-
     def _of(self, slide: SlideModel, q: np.ndarray, s: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return error, angle and tension (T, 3), see `found`, and lengths of elements (T,), at coordinates q (T, n),
         arc-lengths s (T,) and forces on the rider (T,) in N.
         """
+        at = self._on_cable(slide, q, s) if slide.coordinates is None else _on_rope(slide.coordinates, q, s)
+        lengths = np.linalg.norm(at.before, axis=-1) * np.linalg.norm(at.after, axis=-1)
+        cosine = np.einsum("td,td->t", at.before, at.after) / np.where(lengths > 0, lengths, 1.0)
+        half = np.maximum(np.arccos(np.clip(cosine, -1, 1)) / 2, np.finfo(float).eps)
+        of = self._stiffness(slide)
+        tension = np.maximum(np.maximum(of.EA * at.strain, force / (2 * np.sin(half))), 1e-300)
+        angle = 2 * np.arcsin(np.minimum(force / (2 * tension), 1.0))
+        longer = at.h * np.sqrt(tension / of.EI_strong)
+        error = np.where(longer > 1, np.minimum(LENGTH_FACTOR * longer, ANGLE_FACTOR) * angle**2, 0.0)
+        return np.stack([error, angle, tension], axis=1), at.h
+
+    def _on_cable(self, slide: SlideModel, q: np.ndarray, s: np.ndarray) -> _Beside:
         cable = self.model.cables[slide.cable]
         n, rows, nodal = cable.n_elements, np.arange(len(q)), cable.nodal(q)
         element = np.array([int(cable.mesh.element_at(float(each))) for each in s])
         first, last = np.maximum(element - 1, 0), np.minimum(element + 2, n)
         slopes = nodal[:, :, cable.vectors.index("r_x")]
-        one, other = slopes[rows, first], slopes[rows, last]
-        lengths = np.linalg.norm(one, axis=-1) * np.linalg.norm(other, axis=-1)
-        cosine = np.einsum("td,td->t", one, other) / np.where(lengths > 0, lengths, 1.0)
-        half = np.maximum(np.arccos(np.clip(cosine, -1, 1)) / 2, np.finfo(float).eps)
-        of = LineStiffness.of(self.scene.cables[cable.name], self.model.dim)
         mean = np.cumsum(np.pad(middle_strain(cable, nodal), ((0, 0), (1, 0))), axis=1)
         strain = (mean[rows, last] - mean[rows, first]) / (last - first)
-        tension = np.maximum(np.maximum(of.EA * strain, force / (2 * np.sin(half))), 1e-300)
-        angle = 2 * np.arcsin(np.minimum(force / (2 * tension), 1.0))
-        h = np.broadcast_to(cable.mesh.lengths, n)[element]
-        longer = h * np.sqrt(tension / of.EI_strong)
-        error = np.where(longer > 1, np.minimum(LENGTH_FACTOR * longer, ANGLE_FACTOR) * angle**2, 0.0)
-        return np.stack([error, angle, tension], axis=1), h
+        return _Beside(slopes[rows, first], slopes[rows, last], strain, np.broadcast_to(cable.mesh.lengths, n)[element])
+
+    def _line(self, slide: SlideModel) -> Cable | Rope:
+        """Return the cable or rope of a slide."""
+        name = self.scene.slides[slide.name].along
+        return self.scene.cables[name] if slide.coordinates is None else self.scene.ropes[name]
+
+    def _stiffness(self, slide: SlideModel) -> LineStiffness:
+        return LineStiffness.of(self._line(slide), self.model.dim)
 
     def notes(self) -> list[str]:
         """Return a note for each slide with a large mean error."""
         notes = []
-        for _, slide in self._on_cables():
+        for slide in self.model.slides:
             count, sums, h = self.found.get(slide.name, (0, [0.0, 0.0, 0.0], 0.0))
             error, angle, tension = (each / max(count, 1) for each in sums)
             if error <= FORCE_ERROR_LIMIT:
                 continue
-            part = self.scene.cables[self.model.cables[slide.cable].name]
-            bent = float(np.sqrt(LineStiffness.of(part, self.model.dim).EI_strong / tension))
+            part = self._line(slide)
+            bent = float(np.sqrt(self._stiffness(slide).EI_strong / tension))
+            such = f", such as elements={np.ceil(part.length / bent):.0f}" if isinstance(part, Cable) else ""
             notes.append(
-                f'slide "{slide.name}": cable "{part.name}" turns there by {np.degrees(angle):.2g} degrees within '
+                f'slide "{slide.name}": {part.where} turns there by {np.degrees(angle):.2g} degrees within '
                 f"sqrt(EI/N) = {bent:.2g} m, which its elements of {h:.3g} m cannot follow: its tension may be "
                 f"{100 * error:.2g} % off at rest, and far more as it slides from element to element. Take elements of "
-                f"at most {bent:.2g} m where it slides, such as elements={np.ceil(part.length / bent):.0f}")
+                f"at most {bent:.2g} m where it slides{such}")
         return notes

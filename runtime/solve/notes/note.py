@@ -12,6 +12,7 @@ import numpy as np
 from ...engine import Engine
 from ...model.model import CableModel, Model
 from ...parts.cable import Cable
+from ...parts.rope import Rope
 from ...parts.scene_data import SceneData
 from ...parts.settings import RunSettings
 
@@ -66,7 +67,8 @@ class Note:
 
 
 class LineStiffness(NamedTuple):
-    """EA of a cable in N, its smaller and larger EI in N m², of a planar scene that in its plane, and its mass in kg/m.
+    """EA of a cable or rope in N, its smaller and larger EI in N m², of a planar scene that in its plane, and its mass
+    in kg/m.
     """
 
     EA: float
@@ -75,8 +77,8 @@ class LineStiffness(NamedTuple):
     mass: float
 
     @classmethod
-    def of(cls, part: Cable, dim: int) -> LineStiffness:
-        """Return those of a cable's section and material."""
+    def of(cls, part: Cable | Rope, dim: int) -> LineStiffness:
+        """Return those of the section and material of a cable or rope."""
         E, moments = part.material.youngs_modulus, part.section.moments()
         bending = moments[1:2] if dim == 2 else moments[1:3]
         return cls(E * float(moments[0]), E * float(min(bending)), E * float(max(bending)),
