@@ -9,7 +9,6 @@ from collections.abc import Container, Iterator
 import numpy as np
 
 from ..parts.attachment import Attachment
-from ..parts.cable import Cable
 from ..parts.locations import velocity_of
 from ..parts.scene_data import SceneData
 from ..parts.signal import Signal
@@ -24,8 +23,8 @@ SAMPLES = 200
 """Instants of a run at which rates are evaluated."""
 RATE = "the rate of s"
 """The quantity that is driven, as messages name it."""
-VELOCITIES = "velocity", "angular_velocity", "nodal_velocity"
-"""Results that give velocities of bodies and cables."""
+VELOCITIES = "velocity", "angular_velocity", "nodal_velocity", "coordinate_rates"
+"""Results that give velocities of bodies, cables and ropes."""
 
 
 def velocity_jumps(scene: SceneData, duration: float, given: Container[str] = ()) -> list[str]:
@@ -54,17 +53,18 @@ def velocity_jumps(scene: SceneData, duration: float, given: Container[str] = ()
 def _of_slide(scene: SceneData, slide: Slide, signal: Signal, duration: float, given: Container[str]) -> Iterator[str]:
     """Yield messages on jumps of the rate of a driven slide, at the start and later."""
     line, rates = line_of(scene, slide), signal.value(np.linspace(0, duration, SAMPLES), 1)
-    if not isinstance(line, Cable):  # the velocity of a rope follows from those of all that holds it
+    riding, carried = (_velocity(scene, end) for end in (slide.rider, Attachment(on=slide.along, s=slide.s)))
+    if riding is None or carried is None:
         yield from _later(slide.where, RATE, signal, "m/s", duration, NEGLIGIBLE_JUMP * np.abs(rates).max())
         return
     slope = line.slope(slide.arc_length)
-    relative = velocity_of(scene, slide.rider) - velocity_of(scene, Attachment(on=slide.along, s=slide.s))
-    own = float(relative @ slope / (slope @ slope))
+    own = float((riding - carried) @ slope / (slope @ slope))
     least = NEGLIGIBLE_JUMP * max(np.abs(rates).max(), abs(own))
     as_drawn = not any(f"{part}.{name}" in given for part in (slide.body, slide.along) for name in VELOCITIES)
     if as_drawn and abs(jump := float(rates[0]) - own) > least:
         body = scene.bodies.get(slide.body or "")
-        rider = "the eyelet" if slide.body is None else f'{"cable" if body is None else "body"} "{slide.body}"'
+        on = None if slide.body is None else scene.line(slide.body)
+        rider = "the eyelet" if slide.body is None else f'body "{slide.body}"' if on is None else on.where
         begin = "Let"
         if body is not None:
             begin = f"Start {rider} at velocity {show(body.velocity + jump * slope, 'm/s')}, or let"
@@ -72,6 +72,18 @@ def _of_slide(scene: SceneData, slide: Slide, signal: Signal, duration: float, g
                f"{rider} is drawn at {show(own, 'm/s')} along it; this jump is a blow to rider and cable, which "
                f"depends on the mesh. {begin} the rate begin at {show(own, 'm/s')}, as that of a Ramp does")
     yield from _later(slide.where, RATE, signal, "m/s", duration, least)
+
+
+def _velocity(scene: SceneData, end: Attachment) -> np.ndarray | None:
+    """Return (3,): the velocity of an attachment as drawn, m/s; None of a rope, which follows from those of all that
+    holds it, unless these and its wheels are at rest.
+    """
+    rope = scene.ropes.get(end.on or "")
+    if rope is None:
+        return velocity_of(scene, end)
+    moves = any(wheel.prescribed is not None for wheel in rope.wheels) or any(
+        velocity_of(scene, item.end).any() for item in rope.route)
+    return None if moves else np.zeros(3)
 
 
 def _later(where: str, what: str, signal: Signal, unit: str, duration: float, least: float) -> Iterator[str]:

@@ -23,7 +23,7 @@ class Slide(Part):
     slide runs within one span, past ends of elements; at a sheave, a drum or an anchor the run ends with a
     RopeLeftError. Friction and ``traction`` are those on the material. There the frame is "point", and stops and the
     integrator "energy" are not supported. The rope is rounded under a rider: its path is off in proportion to the
-    length of elements.
+    length of elements, and without friction it may rest beside the lowest place.
 
     body: the rider: a body; ("link", s), the point of another cable or rope; or a point (x, y, z) of the ground, an
         eyelet through which the cable slides

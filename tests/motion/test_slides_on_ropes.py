@@ -353,6 +353,18 @@ def test_a_drive_whose_rate_jumps_is_reported():
         scene.run(1.5, **SETTINGS)
 
 
+def test_a_drive_that_starts_with_a_jump_is_reported():
+    """The rope is at rest as drawn, and so is its rider."""
+    scene = fu.Scene()
+    rope = scene.rope("line", route=[fu.Anchor(at=(0, 0, 0)), fu.Sheave("top", at=(10, -0.3, 0), radius=0.3),
+                                     fu.Anchor(at=(10.3, -5, 0))], tension=2e3, elements=4, **ROPE)
+    scene.rigid_body("load", mass=2, inertia=(1, 1, 1), position=rope.point(scene.holders, 4.0))
+    scene.slide("load", along="line", s=4.0, name="trolley", velocity=1.0)
+    with pytest.warns(fu.FunicularWarning, match='slide "trolley": moves along rope "line" at 1 m/s from t = 0, but '
+                      r'body "load" is drawn at 0 m/s along it; .* Start body "load" at velocity \(1.00'):
+        scene.run(0.05, **SETTINGS)
+
+
 def test_drawn_on_the_rope():
     """In pictures the slide is on the line of the rope, which is drawn through points of it, at its rider."""
     run = hauled().run(1.0, **SETTINGS)
