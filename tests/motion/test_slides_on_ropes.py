@@ -205,6 +205,36 @@ def test_a_slide_that_reaches_a_tangent_point_ends_the_run(integrator, along, en
     assert np.abs(run["carriage.position"][-1, 0] - rim) < 0.5
 
 
+def test_a_body_on_two_slides():
+    """Both run along one span, one behind the other."""
+    scene = fu.Scene()
+    rope = scene.rope("line", route=[fu.Anchor(at=(0, 0, 0)), fu.Sheave("top", at=(10, -0.3, 0), radius=0.3),
+                                     fu.Anchor(at=(10.3, -5, 0))], tension=2e3, elements=4, **ROPE)
+    wheels = np.array([rope.point(scene.holders, s) for s in (4.0, 4.6)])
+    middle = wheels.mean(axis=0)
+    scene.rigid_body("load", mass=20, inertia=(1, 1, 1), position=middle, velocity=(1, 0, 0))
+    for k, wheel in enumerate(wheels):
+        scene.slide("load", along="line", s=(4.0, 4.6)[k], at=wheel - middle, name=f"wheel_{k}")
+    run = scene.run(0.5, **SETTINGS)
+    front, rear = run["wheel_1.s"], run["wheel_0.s"]
+    assert front[-1] > 5 and front - rear == pytest.approx(0.6, abs=1e-2)
+    assert np.abs(run.energy_balance().relative).max() < 1e-6
+
+
+def test_friction_stops_a_carriage():
+    """It sticks at the same instant by both methods, and stays."""
+    found = []
+    for integrator in ("radau", "genalpha"):
+        scene = hauled(elements=4, friction=fu.Friction(coefficient=0.3, model="stick"))
+        run = scene.run(1.0, **SETTINGS | {"integrator": integrator})
+        event, = run.events
+        assert (event["name"], event["what"]) == ("trolley", "stuck")
+        assert run["trolley.s"][-1] == pytest.approx(event["s"], abs=1e-12)
+        assert np.abs(run.energy_balance().relative).max() < 1e-5
+        found.append((event["time"], event["s"]))
+    assert found[0] == pytest.approx(found[1], abs=1e-4)
+
+
 def test_at_rest():
     """Without friction the carriage slides to where the rope is lowest, and stays there."""
     scene = hauled(along=0.0, elements=4)
