@@ -21,7 +21,7 @@ from .printed import PRINTERS as GENERAL
 from .printed_bodies import BODY_PRINTERS
 from .printed_laws import LAW_PRINTERS
 from .proofs import PROOFS, Proof
-from .scopes import Scope, compiled, programs_of, scope
+from .scopes import Scope, compiled, ends_of, programs_of, scope
 from .staged import staged_scope
 
 PRINTERS = GENERAL | LAW_PRINTERS | BODY_PRINTERS
@@ -165,7 +165,7 @@ def expanded(line: Line, scope: Scope | None) -> Line:
     turns = [] if scope.family.rider in ("point", "planar_point") else [r"\boldsymbol{\theta}"]
 
     def columns(found: re.Match[str]) -> str:
-        by = [r"\mathbf{e}", r"\mathbf{R}", *turns, *(["s"] if found[1] == "qs" else [])]
+        by = [r"\mathbf{e}", *ends_of(scope.family), r"\mathbf{R}", *turns, *(["s"] if found[1] == "qs" else [])]
         return (r"\begin{bmatrix} " + " & ".join(rf"\frac{{\partial {found[2]}}}{{\partial {q}}}" for q in by)
                 + r" \end{bmatrix}")
 

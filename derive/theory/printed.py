@@ -14,7 +14,7 @@ from .markdown import Line
 from .notation.from_sympy import formula, plain_names, signed_sum
 from .notation.latex import latex
 from .notation.tree import Equation, Matrix, Name, Node, Number, Product, Transpose
-from .scopes import Scope, programs_of
+from .scopes import Scope, ends_of, programs_of
 
 XI = sp.Symbol("xi", positive=True)
 TABLE = {XI: Name("xi")}
@@ -181,10 +181,17 @@ def _is_point(scope: Scope) -> bool:
     return scope.family.rider in ("point", "planar_point")
 
 
+def place_on_cable(scope: Scope) -> list[Line]:
+    """Return the place of a slide in its element, of a rope from the material coordinates of the nodes."""
+    return [Line("x = s - s_{1}"), Line("l = s_{2} - s_{1}")] if ends_of(scope.family) else [Line("x = s")]
+
+
 def velocities(scope: Scope) -> list[Line]:
     """Return the velocities of cable and rider, one below the other."""
     turn = "" if _is_point(scope) else r" \\ \boldsymbol{\omega}"
-    return [Line(r"\dot{\mathbf{q}} = \begin{bmatrix} \dot{\mathbf{e}} \\ \dot{\mathbf{R}}" + turn + r" \end{bmatrix}")]
+    ends = r"\dot{s}_{1} \\ \dot{s}_{2} \\ " if ends_of(scope.family) else ""
+    return [Line(r"\dot{\mathbf{q}} = \begin{bmatrix} \dot{\mathbf{e}} \\ " + ends + r"\dot{\mathbf{R}}" + turn
+                 + r" \end{bmatrix}")]
 
 
 def moved_along(changes: dict[str, str], of: str) -> list[Line]:
@@ -203,6 +210,8 @@ def motion(scope: Scope) -> list[Line]:
     """Return C along the motion at constant velocities."""
     changes = {r"\mathbf{e}": r"\mathbf{e} + t \dot{\mathbf{e}}", r"\mathbf{R}": r"\mathbf{R} + t \dot{\mathbf{R}}",
                "s": r"s + t \dot{s}"}
+    if ends_of(scope.family):
+        changes |= {rf"s_{{{k}}}": rf"s_{{{k}}} + t \dot{{s}}_{{{k}}}" for k in (1, 2)}
     if not _is_point(scope):
         spin = r"\widetilde{\boldsymbol{\omega}}"
         turned = rf"\left( \mathbf{{I}} + t {spin} + \frac{{1}}{{2}} t^{{2}} {spin} {spin} \right)"
@@ -223,12 +232,14 @@ def parted_bias(scope: Scope) -> list[Line]:
 
 def slide_tangent(scope: Scope) -> list[Line]:
     """Return the derivatives of g; turns come before those by which g is made."""
-    by = [r"\mathbf{e}", r"\mathbf{R}", *([] if _is_point(scope) else [r"\boldsymbol{\theta}_{0}"]), "s"]
+    turns = [] if _is_point(scope) else [r"\boldsymbol{\theta}_{0}"]
+    by = [r"\mathbf{e}", *ends_of(scope.family), r"\mathbf{R}", *turns, "s"]
     columns = " & ".join(rf"\frac{{\partial \mathbf{{g}}}}{{\partial {q}}}" for q in by)
     return [Line(rf"\mathbf{{K}} = \begin{{bmatrix}} {columns} \end{{bmatrix}}", output="tangent.K")]
 
 
-PRINTERS |= {"velocities": velocities, "motion": motion, "parted_bias": parted_bias, "slide_tangent": slide_tangent}
+PRINTERS |= {"place_on_cable": place_on_cable, "velocities": velocities, "motion": motion, "parted_bias": parted_bias,
+             "slide_tangent": slide_tangent}
 
 
 def normal(scope: Scope) -> list[Line]:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..catalogue import families
-from ..codegen.family import CouplingFamily, Family, PointLawFamily
+from ..codegen.family import CouplingFamily, Family, PointLawFamily, SlideFamily
 from ..codegen.program import Argument, Program
 from ..verify import numbers as verify_numbers
 from ..verify.samples import states
@@ -244,12 +244,26 @@ def slide_scope(name: str) -> Scope:
     dim = element.dim
     cable = (Symbol("l", "l", number), Symbol("s", "x", number), _nodal(dim, r"\mathbf{e}", "e"),
              _nodal(dim, r"\dot{\mathbf{e}}", "v"))
+    if ends_of(family):
+        n = element.n_coordinates
+        cable = (_nodal(dim, r"\mathbf{e}", "e"), Symbol(r"\dot{\mathbf{e}}", "v", entries(0, n), dim),
+                 *(Symbol(rf"\dot{{s}}_{{{k + 1}}}", "v", entry(n + k)) for k in range(len(ends_of(family)))))
     rider = (Symbol(r"\mathbf{R}", "b", entries(0, dim)), Symbol(r"\mathbf{u}", "u", column),
              Symbol(r"\dot{\mathbf{R}}", "w", entries(0, dim)), *_attitude(family))
     if family.rider not in ("point", "planar_point"):
         rider = (*rider, Symbol(r"\boldsymbol{\omega}", "w", entries(dim, 6)))
     return Scope(family, (*cable, *rider, Symbol(r"\mathbf{d}", "director", column),
-                          Symbol(r"\mathbf{f}", "f", column)), constants=_at_rest)
+                          Symbol(r"\mathbf{f}", "f", column)), constants=_on_rope if ends_of(family) else _at_rest)
+
+
+def ends_of(family: Family) -> list[str]:
+    """Return the material coordinates of nodes that are coordinates of a slide's cable: of a rope, else none."""
+    return ["s_{1}", "s_{2}"] if isinstance(family, SlideFamily) and family.flows else []
+
+
+def _on_rope(scope: Scope, state: State) -> dict[str, Any]:
+    """Return also the material coordinates of a slide and of both nodes, counted from the first one."""
+    return _at_rest(scope, state) | {"s": float(state["x"]), "s_{1}": 0.0, "s_{2}": float(state["l"])}
 
 
 def _attitude(family: Family) -> tuple[Symbol, ...]:
