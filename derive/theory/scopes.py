@@ -242,8 +242,8 @@ def slide_scope(name: str) -> Scope:
     element = family.element
     assert element is not None
     dim = element.dim
-    cable = (Symbol("l", "l", number), Symbol("s", "x", number), _nodal(dim, r"\mathbf{e}", "e"),
-             _nodal(dim, r"\dot{\mathbf{e}}", "v"))
+    cable: tuple[Symbol, ...] = (Symbol("l", "l", number), Symbol("s", "x", number), _nodal(dim, r"\mathbf{e}", "e"),
+                                 _nodal(dim, r"\dot{\mathbf{e}}", "v"))
     if ends_of(family):
         n = element.n_coordinates
         cable = (_nodal(dim, r"\mathbf{e}", "e"), Symbol(r"\dot{\mathbf{e}}", "v", entries(0, n), dim),
