@@ -1869,6 +1869,17 @@ typedef void fu_taut_rope_energy_kernel(fu_real EA, fu_real tau, fu_real L, fu_r
 /* U 1, W 1, P 1 */
 fu_taut_rope_energy_kernel planar_taut_rope_energy;
 
+typedef void fu_taut_rope_slide_kernel(const fu_real *lengths, const fu_real *past, fu_real ratio, fu_real x, fu_real *sums, fu_real *sums_x);
+/* rope without mass that slips on wheels: lengths [m]; past [m]; ratio [1]; x [1] -> sums [m, m]; sums_x [m, m] */
+/* lengths 2, past 2, sums 2, sums_x 2 */
+fu_taut_rope_slide_kernel planar_taut_rope_slide;
+
+typedef void fu_taut_rope_slide_tangent_kernel(const fu_real *weights, const fu_real *lengths, const fu_real *past, fu_real ratio, fu_real x, fu_real *K, fu_real *by_ratio);
+/* derivatives of the sums of ropes without mass that slip on wheels: weights [N/m, N/m]; lengths [m]; past [m];
+ * ratio [1]; x [1] -> K [N/m]; by_ratio [N] */
+/* weights 2, lengths 2, past 2, K 2, by_ratio 1 */
+fu_taut_rope_slide_tangent_kernel planar_taut_rope_slide_tangent;
+
 /* constants of the law from the stiffness of the section: l [m]; S [N, N m^2, N m^2, N m^4, N m^4, N m^4] -> A [N m] */
 /* S 9x6, A 61 */
 void beam24_continuum_stiffness(fu_real l, const fu_real *S, fu_real *A);
@@ -2302,6 +2313,8 @@ typedef struct {
     fu_taut_rope_tension_kernel *tension;
     fu_taut_rope_tension_tangent_kernel *tension_tangent;
     fu_taut_rope_energy_kernel *energy;
+    fu_taut_rope_slide_kernel *slide;
+    fu_taut_rope_slide_tangent_kernel *slide_tangent;
 } fu_taut_rope_kernels;
 
 /* Every table, one entry a family. */

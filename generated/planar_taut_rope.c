@@ -178,3 +178,54 @@ void planar_taut_rope_energy(fu_real EA, fu_real tau, fu_real L, fu_real L0, fu_
     W[0] = W_all;
     P[0] = EA*growth*growth*inv_free*tau;
 }
+
+/* rope without mass that slips on wheels; 6 add, 20 mul, 3 div */
+void planar_taut_rope_slide(const fu_real *lengths, const fu_real *past, fu_real ratio, fu_real x, fu_real *sums, fu_real *sums_x)
+{
+    /* stretch */
+    const fu_real
+        stretch = ratio*x + 1.0,
+        inv_stretch = 1.0/stretch;
+    /* parts of the sums */
+    const fu_real
+        free_before = past[0]/past[1],
+        inv_free = 1.0/(free_before + inv_stretch),
+        way = inv_free*(-2.0*inv_stretch*lengths[0] + 2.0*past[0]),
+        by_rate = inv_stretch*lengths[0]*ratio;
+    /* derivatives */
+    const fu_real
+        d_x_inv_stretch = -(inv_stretch*inv_stretch*ratio),
+        d_x_inv_free = -(d_x_inv_stretch*inv_free*inv_free),
+        d_x_way = d_x_inv_free*(-2.0*inv_stretch*lengths[0] + 2.0*past[0]) - 2.0*d_x_inv_stretch*inv_free*lengths[0],
+        d_x_by_rate = d_x_inv_stretch*lengths[0]*ratio;
+    /* outputs */
+    sums[0] = lengths[1] - way;
+    sums[1] = by_rate;
+    sums_x[0] = -d_x_way;
+    sums_x[1] = d_x_by_rate;
+}
+
+/* derivatives of the sums of ropes without mass that slip on wheels; 7 add, 23 mul, 3 div */
+void planar_taut_rope_slide_tangent(const fu_real *weights, const fu_real *lengths, const fu_real *past, fu_real ratio, fu_real x, fu_real *K, fu_real *by_ratio)
+{
+    /* stretch */
+    const fu_real
+        stretch = ratio*x + 1.0,
+        inv_stretch = 1.0/stretch;
+    /* parts of the sums */
+    const fu_real
+        free_before = past[0]/past[1],
+        inv_free = 1.0/(free_before + inv_stretch);
+    /* derivatives */
+    const fu_real
+        d_lengths0_by_rate = inv_stretch*ratio,
+        d_lengths0_way = -(2.0*inv_free*inv_stretch),
+        d_ratio_inv_stretch = -(inv_stretch*inv_stretch*x),
+        d_ratio_by_rate = d_ratio_inv_stretch*lengths[0]*ratio + inv_stretch*lengths[0],
+        d_ratio_inv_free = -(d_ratio_inv_stretch*inv_free*inv_free),
+        d_ratio_way = d_ratio_inv_free*(-2.0*inv_stretch*lengths[0] + 2.0*past[0]) - 2.0*d_ratio_inv_stretch*inv_free*lengths[0];
+    /* outputs */
+    K[0] = d_lengths0_by_rate*weights[1] - d_lengths0_way*weights[0];
+    K[1] = weights[0];
+    by_ratio[0] = ratio*(d_ratio_by_rate*weights[1] - d_ratio_way*weights[0]);
+}

@@ -329,7 +329,8 @@ static const fu_tangent_point_kernels tangent_points[] = {
 
 static const fu_taut_rope_kernels taut_ropes[] = {
     {"planar_taut_rope", 2, planar_taut_rope_straight, planar_taut_rope_straight_tangent, planar_taut_rope_free_length,
-     planar_taut_rope_tension, planar_taut_rope_tension_tangent, planar_taut_rope_energy},
+     planar_taut_rope_tension, planar_taut_rope_tension_tangent, planar_taut_rope_energy, planar_taut_rope_slide,
+     planar_taut_rope_slide_tangent},
 };
 
 /* Arguments from arrays of pointers, to inputs `a` and outputs `out`: s a number, v an array, then how many outputs. */
@@ -461,6 +462,8 @@ static const fu_taut_rope_kernels taut_ropes[] = {
 #define FU_ARGUMENTS_vvssv_1 a[0], a[1], *a[2], *a[3], a[4], out[0]
 #define FU_ARGUMENTS_vvssv_3 a[0], a[1], *a[2], *a[3], a[4], out[0], out[1], out[2]
 #define FU_ARGUMENTS_sssss_3 *a[0], *a[1], *a[2], *a[3], *a[4], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vvss_2 a[0], a[1], *a[2], *a[3], out[0], out[1]
+#define FU_ARGUMENTS_vvvss_2 a[0], a[1], a[2], *a[3], *a[4], out[0], out[1]
 
 /* X(name, form of its arguments) for every kernel */
 #define FU_EVERY(X) \
@@ -1121,6 +1124,8 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(planar_taut_rope_tension, vvssv_1) \
     X(planar_taut_rope_tension_tangent, vvssv_3) \
     X(planar_taut_rope_energy, sssss_3) \
+    X(planar_taut_rope_slide, vvss_2) \
+    X(planar_taut_rope_slide_tangent, vvvss_2) \
 
 #define FU_CALL(name, form) \
     static void call_##name(const fu_real *const *a, fu_real *const *out) { name(FU_ARGUMENTS_##form); }

@@ -8,6 +8,9 @@ as signs, and are 0 at an anchor. With d = c_2 - c_1, u along the part and n to 
 which gives its length l and the angle of u. The drawn length L of the rope is the sum of the l and of arcs, which are
 linear in the angles. Where the rope runs by a way w onto wheels at its ends, which do not slip, it leaves with its own
 stretch: L0' = -w' L0/L. The trapezoidal rule over a step gives L0 as a function of L and w.
+
+A chain is a sequence of such ropes between which the rope slips on wheels. Their tensions are those of the first one
+times ratios by friction. The way by slip, which is the same on both sides of a wheel, follows from that.
 """
 
 from __future__ import annotations
@@ -28,7 +31,8 @@ def families() -> list[CouplingFamily]:
 
 def build(dim: int) -> list[Program]:
     """Return the kernels of a rope without mass."""
-    return [straight(), straight_tangent(), free_length(), tension(), tension_tangent(), energy()]
+    return [straight(), straight_tangent(), free_length(), tension(), tension_tangent(), energy(),
+            slide(), slide_tangent()]
 
 
 def _program(kernel: str, doc: str) -> Program:
@@ -147,4 +151,50 @@ def energy() -> Program:
     p.output("U", [free * W], "J", "elastic energy")
     p.output("W", [W], "N", "that of a stress-free length")
     p.output("P", [tau * EA * inverse * growth**2], "W", "dissipated power")
+    return p
+
+
+class _Chain:
+    """Inputs and stages of a rope in a chain: its parts of the sums over the chain.
+
+    The strain is the ratio times that of the first rope, x. With it the trapezoidal rule gives the way onto wheels.
+    Ways by slip cancel in the sum over the chain, in which the other ways exceed this one by zero. The rate of that
+    gives x': the growth is x' times the sum of `by_rate`, and what changes of the ratio take.
+    """
+
+    def __init__(self, p: Program):
+        self.lengths = p.input("lengths", 2, "m", "drawn length, and way onto wheels without slip since the last step")
+        past = p.input("past", 2, "m", "stress-free and drawn length after the last step")
+        self.ratio = p.input("ratio", (), "1", "of its tension to that of the first rope")
+        self.x = p.input("x", (), "1", "strain of the first rope")
+        L, w = self.lengths
+        p.stage("stretch")
+        stretch = p.define("stretch", 1 + self.ratio * self.x)
+        inverse = p.define("inv_stretch", 1 / stretch)
+        p.stage("parts of the sums")
+        before = p.define("free_before", past[0] / past[1])
+        way = 2 * (past[0] - L * inverse) * p.define("inv_free", 1 / (before + inverse))
+        self.sums = np.array([w - p.define("way", way), p.define("by_rate", L * self.ratio * inverse)])
+
+
+def slide() -> Program:
+    """Return the kernel of the parts of a rope in the sums over a chain."""
+    p = _program("slide", "rope without mass that slips on wheels")
+    chain = _Chain(p)
+    p.output("sums", chain.sums, "m, m", "excess of the way without slip; growth by the rate of x")
+    p.stage("derivatives")
+    p.output("sums_x", jacobian(p, chain.sums, np.array([chain.x]))[:, 0], "m, m", "derivatives by x")
+    return p
+
+
+def slide_tangent() -> Program:
+    """Return the kernel of the derivatives of weighted sums over a chain."""
+    p = _program("slide_tangent", "derivatives of the sums of ropes without mass that slip on wheels")
+    weights = p.input("weights", 2, "N/m, N/m", "of the sums in the tension of a rope of the chain")
+    chain = _Chain(p)
+    p.stage("derivatives")
+    tension = np.array([weights.dot(chain.sums)])
+    p.output("K", jacobian(p, tension, chain.lengths)[0], "N/m", "derivatives by the lengths")
+    p.output("by_ratio", chain.ratio * jacobian(p, tension, np.array([chain.ratio]))[0], "N",
+             "derivative by the logarithm of the ratio")
     return p

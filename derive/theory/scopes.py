@@ -487,11 +487,11 @@ def rope_point_scope(name: str) -> Scope:
 def taut_rope_scope(name: str) -> Scope:
     """Return the scope of a rope without mass."""
     numbers = [Symbol(latex, argument, number) for latex, argument in (
-        ("h", "rise"), (r"\mathrm{EA}", "EA"), (r"\tau", "tau"))]
+        ("h", "rise"), (r"\mathrm{EA}", "EA"), (r"\tau", "tau"), ("r", "ratio"), ("x", "x"))]
     ends = [Symbol(latex, argument, entry(k)) for latex, argument, k in (
         ("d_{1}", "d", 0), ("d_{2}", "d", 1), ("w_{1}", "w", 0), ("w_{2}", "w", 1), ("L", "lengths", 0),
         ("w", "lengths", 1), (r"\dot{L}", "rates", 0), (r"\dot{w}", "rates", 1), ("L_{0p}", "past", 0),
-        ("L_{p}", "past", 1))]
+        ("L_{p}", "past", 1), ("k_{1}", "weights", 0), ("k_{2}", "weights", 1))]
     return Scope(families()[name], (Symbol(r"\mathbf{d}", "d", column), *numbers, *ends))
 
 

@@ -42,13 +42,14 @@ class InitialState(Mapping[str, np.ndarray]):
     results. Other quantities are as drawn; rates of ropes that are not given follow from those of bodies.
     """
 
-    def __init__(self, arrays: Mapping[str, Any], time: float | None = None, unstretched: Sequence[str] = ()):
+    def __init__(self, arrays: Mapping[str, Any], time: float | None = None, unstretched: Sequence[str] = (),
+                 slipped: Sequence[str] = ()):
         """Check and store the arrays. Raises SceneError for values that are no numbers.
 
         time: of the run that they are from, in s; unstretched: names of contacts and crossings whose friction springs
-        were stretched in that run.
+        were stretched in that run; slipped: names of sheaves on which ropes without mass had slipped.
         """
-        self.time, self._unstretched = time, unstretched
+        self.time, self._unstretched, self._slipped = time, unstretched, slipped
         self._arrays = {}
         for name, values in arrays.items():
             try:
@@ -97,6 +98,9 @@ class InitialState(Mapping[str, np.ndarray]):
 
     def start(self, model: Model, scene: SceneData) -> None:
         """Set a freshly built model of the scene to this state. Raises SceneError."""
+        if self._slipped:
+            raise SceneError("initial", f'a rope without mass had slipped on sheave "{self._slipped[0]}" until then, '
+                             "and a state does not tell how far", "continue that run by save and resume=True")
         if model.plane_axes is not None:
             InitialState({name: model.as_in_model(name, values) for name, values in self.items()},
                          self.time)._start(model, scene)

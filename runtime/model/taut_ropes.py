@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from math import atan2
 from typing import Protocol
@@ -79,7 +79,10 @@ class TautPointModel(CouplingModel):
 
 @dataclass(kw_only=True)
 class TautRopeModel(CouplingModel):
-    """A rope of one tension between points that hold it: fu_taut_rope of the engine."""
+    """A rope of one tension between points that hold it: fu_taut_rope of the engine.
+
+    pieces: those of the whole rope, it among them: where the rope slips, its tension depends on their places.
+    """
 
     kernel: str = KERNEL
     of: list[TautPointModel]
@@ -90,6 +93,12 @@ class TautRopeModel(CouplingModel):
     angles: tuple[float, float]
     held: float
     least_length: float
+    pieces: list[TautRopeModel] = field(default_factory=list, repr=False, compare=False)
+
+    @property
+    def n_pieces(self) -> int:
+        """Return the number of ropes of one tension that the whole rope has."""
+        return len(self.pieces)
 
     @property
     def points(self) -> np.ndarray:
@@ -108,14 +117,17 @@ class TautRopeModel(CouplingModel):
 
     @property
     def ends(self) -> list[AttachmentModel]:
-        """Return the attachments of its points."""
-        return [point.attachments[0] for point in self.of]
+        """Return the attachments of the points of the whole rope."""
+        return [point.attachments[0] for point in self._points_of_all()]
 
     @property
     def adjacent(self) -> list[np.ndarray]:
-        """Return the dofs of the rotations of its ends."""
-        turns = [point.turn for point in (self.of[0], self.of[-1]) if point.turn >= 0]
+        """Return the dofs of the rotations of wheels that hold the whole rope."""
+        turns = [point.turn for point in self._points_of_all() if point.turn >= 0]
         return [np.unique(turns)] if turns else []
+
+    def _points_of_all(self) -> list[TautPointModel]:
+        return list({id(point): point for piece in self.pieces for point in piece.of}.values())
 
     def ties_ends(self, dim: int) -> bool:
         """Return whether its tangent has entries between the attachments: those of straight parts."""
@@ -200,6 +212,7 @@ def _pieces(rope: TurningRope, points: list[TautPointModel]) -> Iterator[TautRop
     starts = [k for k, point in enumerate(points) if point.holds]
     arcs = iter(route.sheaves)
     wraps = [next(arcs).length if isinstance(item, Sheave) else 0.0 for item in part.route]
+    pieces: list[TautRopeModel] = []
     for start, end in pairwise([*starts, starts[0] + n] if part.closed else starts):
         at = [k % n for k in range(start, end + 1)]
         first = points[at[0]]
@@ -211,13 +224,14 @@ def _pieces(rope: TurningRope, points: list[TautPointModel]) -> Iterator[TautRop
             angles=(first.angle, points[at[-2]].angle),
             held=sum(points[k].store + wraps[k] / (2 * route.stretch) for k in (at[0], at[-1])), follows_law=True,
             least_length=max(MIN_SPAN_RATIO * max(abs(points[k].radius) for k in at), part.radius),
-            is_damped=part.material.damping_time > 0, scale=[mass])
+            is_damped=part.material.damping_time > 0, scale=[mass], pieces=pieces)
+        pieces.append(made)
         for place, k in enumerate(at):
             if place:
                 points[k].before = made, place
             if place < len(at) - 1:
                 points[k].after = made, place
-        yield made
+    yield from pieces
 
 
 def points_of_rope(points: Iterable[TautPointModel], rope: str) -> list[TautPointModel]:
@@ -234,5 +248,5 @@ def wheel_results(outputs: dict[str, np.ndarray], point: TautPointModel) -> dict
     if point.is_end:
         return shared | {"tension": outputs["tension_on"] + outputs["tension_off"], "torque": outputs["drive"],
                          "power": outputs["power"], "length_in_store": outputs["length_in_store"]}
-    return shared | {name: outputs[name] for name in ("tension_on", "tension_off", "wrap_angle", "torque")} | {
-        "slip": none, "fleet_angle_on": none, "fleet_angle_off": none}
+    own = ("tension_on", "tension_off", "wrap_angle", "torque", "slip", "slip_angle")
+    return shared | {name: outputs[name] for name in own} | {"fleet_angle_on": none, "fleet_angle_off": none}

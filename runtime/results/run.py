@@ -220,7 +220,11 @@ class Run(Viewable, NamedArrays):
             raise UnknownResultError(f"the run has no row at t = {time:.9g} s; {there}")
         sticking = [part.given_name or "" for part in self.scene.parts() if getattr(part, "has_friction_spring", False)]
         springs = [name for name in sticking if np.any(self[f"{name}.friction_force"][row])]
-        return InitialState({name: self[name][row] for name in names_of(self.scene)}, float(self.time[row]), springs)
+        slips = {event["name"] for event in self.report["events"]
+                 if event.get("what") == "slips" and event["time"] <= self.time[row]}
+        holding = [sheave.name for rope in self.scene.ropes.values() for sheave in rope.holding_sheaves]
+        return InitialState({name: self[name][row] for name in names_of(self.scene)}, float(self.time[row]), springs,
+                            [name for name in holding if name in slips])
 
     def __repr__(self) -> str:
         """Return the status, times and number of results."""

@@ -271,7 +271,8 @@ CEILINGS = {
     "planar_rope_point": {"point": 357, "wrench": 776},
     "rope_point": {"point": 402, "wrench": 844},
     "planar_taut_rope": {
-        "straight": 43, "straight_tangent": 135, "free_length": 12, "tension": 24, "tension_tangent": 70, "energy": 13
+        "straight": 43, "straight_tangent": 135, "free_length": 12, "tension": 24, "tension_tangent": 70, "energy": 13,
+        "slide": 29, "slide_tangent": 33
     },
     "tangent_point": {"conditions": 1678, "motion": 310, "chord": 202, "across": 27, "turned_conditions": 1951,
                       "turned_motion": 354, "turned_acc": 4, "wrap_energy": 93, "wrap_inertia": 616, "wrap_mass": 183,

@@ -37,5 +37,8 @@ def taut_rope(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invarian
     yield "slack: no tension", float(abs(slack[0])), 0.0
     still = k("tension", s, rates=np.zeros(2), lengths=np.array([free, 0.0]), past=np.array([free, free]))["T"]
     yield "without stretch: no tension", float(abs(still[0])), 0.0
+    alone = float(k("free_length", s)["L0"][0])
+    of_chain = k("slide", s, ratio=np.float64(1), x=np.float64(L / alone - 1))["sums"]
+    yield "a chain of one rope: its way", abs(float(of_chain[0])) / free, 64 * EPS
     D = k("tension_tangent", s)["D"]
     yield "damping: of L' + w'", relative(D[0] - D[1], D), 4 * EPS

@@ -16,7 +16,7 @@ D, LENGTHS, RATES = (("d", 2),), (("lengths", 2),), (("rates", 2),)
 
 def taut_rope(family: CouplingFamily) -> list[Relation]:
     """Return the relations of the kernels."""
-    return [*_of_straight(), *_of_tension()]
+    return [*_of_straight(), *_of_tension(), *_of_chain()]
 
 
 def _of_straight() -> list[Relation]:
@@ -73,3 +73,24 @@ def _of_tension() -> list[Relation]:
             Relation("tension_tangent", "T", "dU/dL + d(P/2)/dL'", 1, by_length),
             Relation("tension_tangent", "K", "dT by L and w", 1, along(of("tension", "T"), LENGTHS), 2),
             Relation("tension_tangent", "D", "dT by their rates", 1, along(of("tension", "T"), RATES), 2)]
+
+
+def _of_chain() -> list[Relation]:
+    def sums(s: State) -> Any:
+        """Return the way without slip less the one by which a rope has the stress-free length L0,
+        and r L0.
+        """
+        (L, w), (free, length) = s["lengths"], s["past"]
+        L0 = L / (1 + s["ratio"] * s["x"])
+        return [w - mpmath.findroot(lambda x: free - L0 - x * (free / length + L0 / L) / 2, 0.1), s["ratio"] * L0]
+
+    def weighted(k, s):
+        return s["weights"] @ k("slide", s)["sums"]
+
+    def by_log(k, s, t, j):
+        return weighted(k, s | {"ratio": s["ratio"] * mpmath.exp(t)})
+
+    return [Relation("slide", "sums", "the trapezoidal rule, and the stress-free length", 0, root(sums)),
+            Relation("slide", "sums_x", "d(sums) by x", 1, along(of("slide", "sums"), (("x", 1),))),
+            Relation("slide_tangent", "K", "d(weights . sums) by L and w", 1, along(weighted, LENGTHS), 2),
+            Relation("slide_tangent", "by_ratio", "d(weights . sums) by the logarithm of the ratio", 1, by_log)]

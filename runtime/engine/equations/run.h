@@ -37,7 +37,7 @@ enum {
 /* A run, in sections by subject, with the files that write them. */
 /* Why a rope has left what it runs over: its wrap angle; its normal force; in space the fleet angle of a short span;
  * the length of a span; something that holds to a span and reaches its first or its last end; a drum that has run
- * empty; without mass: it slips, meets a sheave from its other side, or starts with unknown turns. */
+ * empty; without mass: it meets a sheave from its other side, or starts with unknown turns. */
 enum {
     FU_LEFT_BY_WRAP,
     FU_LEFT_BY_PRESSURE,
@@ -46,7 +46,6 @@ enum {
     FU_LEFT_BY_GRIP,
     FU_LEFT_BY_LAST_GRIP,
     FU_LEFT_BY_EMPTY,
-    FU_LEFT_BY_SLIP,
     FU_LEFT_BY_SIDE,
     FU_LEFT_BY_TURNS
 };

@@ -1,11 +1,15 @@
-/* Ropes without mass: a rope becomes slack or taut; a wrap leaves and returns, which changes its geometry alone. A run
- * ends where a rope slips on a sheave, leaves one that holds it, meets one from the other side, has run off a drum, or
- * where a straight part becomes too short. */
+/* Ropes without mass: a rope becomes slack or taut; a wrap leaves and returns, which changes its geometry alone; a rope
+ * breaks loose on a sheave, where its tensions differ by more than friction holds, and sticks where sliding stops. A
+ * run ends where a rope leaves a sheave with friction, meets one from the other side, has run off a drum, or where a
+ * straight part becomes too short. */
 #include "couplings/common/coupling_events.h"
 #include "couplings/taut_rope/taut_rope.h"
 #include "equations/run.h"
+#include "events/events.h"
 
 #include <math.h>
+
+#define MAX_CHANGES 1000 /* of points at one instant */
 
 enum { OF_WRAP, OF_GRIP };
 enum { OF_TENSION, OF_PARTS };
@@ -50,23 +54,54 @@ static int functions_of_point(const fu_coupling *coupling, fu_event_function *ou
     return list(is_sheave(point) && holds(point) ? OF_GRIP + 1 : OF_WRAP + 1, 1, out);
 }
 
+/* Of a rope that sticks by how much it does so too little; of one that slips the speed against its direction. A slack
+ * one that slips does so until it is taut. */
+static double value_of_grip(const fu_model *model, const fu_taut_point *point, const fu_state *state)
+{
+    const int slips = fu_taut_slips(point, state);
+    if (!slips) return fu_taut_grip(model, point, state);
+    return fu_is_taut(fu_taut_beside(model, point, 1), state) ? -slips * fu_taut_slip(model, point, state) : -1.0;
+}
+
 static double value_of_point(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {
     const fu_taut_point *point = point_of(coupling);
     int side;
-    if (which == OF_GRIP) return fu_taut_grip(run->model, point, state);
+    if (which == OF_GRIP) return value_of_grip(run->model, point, state);
     if (!is_sheave(point)) return -fu_taut_store(run->model, point, state);
     return fu_touches(point, state) ? fu_taut_wrap(run->model, point, state)
                                     : fu_taut_depth(run->model, point, state, &side);
 }
 
+/* Lets a rope slip on a sheave. */
+static void break_loose(fu_run *run, const fu_taut_point *point)
+{
+    fu_taut_set_slip(run->model, point, &run->now, fu_taut_pulled(run->model, point, &run->now));
+    fu_taut_close(run->model, point, &run->now);
+    fu_taut_find_taut(run->model, fu_taut_beside(run->model, point, 1), &run->now);
+}
+
+static int act_of_grip(fu_run *run, const fu_taut_point *point, const char **what)
+{
+    const int slips = fu_taut_slips(point, &run->now);
+    *what = 0;
+    if (!slips && fu_taut_grip(run->model, point, &run->now) < 0.0) { /* another change holds it */
+        fu_restart_event_functions(run, point->base.number);
+        return FU_RUNNING;
+    }
+    *what = slips ? "sticks" : "slips";
+    if (slips) fu_taut_set_slip(run->model, point, &run->now, 0);
+    else break_loose(run, point);
+    return FU_RUNNING;
+}
+
 static int act_of_point(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
 {
     const fu_taut_point *point = point_of(coupling);
-    int *touches = run->now.flags + coupling->flags, from_side = 1;
+    int *touches = run->now.flags + coupling->flags + FU_TOUCHES, from_side = 1;
     (void)side;
-    *what = which == OF_GRIP ? "slips" : !is_sheave(point) ? "ran empty" : *touches ? "left the sheave" : "returned";
-    if (which == OF_GRIP) return fu_leave(run, coupling, FU_LEFT_BY_SLIP);
+    if (which == OF_GRIP) return act_of_grip(run, point, what);
+    *what = !is_sheave(point) ? "ran empty" : *touches ? "left the sheave" : "returned";
     if (!is_sheave(point)) return fu_leave(run, coupling, FU_LEFT_BY_EMPTY);
     if (*touches && holds(point)) return fu_leave(run, coupling, FU_LEFT_BY_WRAP);
     if (!*touches) fu_taut_depth(run->model, point, &run->now, &from_side);
@@ -84,13 +119,8 @@ static int act_of_point(fu_run *run, const fu_coupling *coupling, int which, int
 static int begin_point(fu_run *run, const fu_coupling *coupling)
 {
     const char *what;
-    const int n = functions_of_point(coupling, 0);
-    for (int which = 0; which < n; ++which) {
-        if (value_of_point(run, coupling, &run->now, which) <= 0.0) continue;
-        const int status = act_of_point(run, coupling, which, 1, &what);
-        if (status != FU_RUNNING) return status;
-    }
-    return FU_RUNNING;
+    if (!can_act(coupling) || value_of_point(run, coupling, &run->now, OF_WRAP) <= 0.0) return FU_RUNNING;
+    return act_of_point(run, coupling, OF_WRAP, 1, &what);
 }
 
 const fu_coupling_events fu_taut_point_events = {.functions = functions_of_point,
@@ -111,6 +141,7 @@ static double value_of_rope(const fu_run *run, const fu_coupling *coupling, cons
 {
     if (which == OF_PARTS) return -fu_taut_margin(run->model, rope_of(coupling), state);
     const double slack = fu_taut_slack(run->model, rope_of(coupling), state);
+    if (isnan(slack)) return -1.0; /* the first rope of a chain is slack with the others */
     return state->flags[coupling->flags] ? slack : -slack;
 }
 
@@ -120,6 +151,11 @@ static int act_of_rope(fu_run *run, const fu_coupling *coupling, int which, int 
     (void)side;
     *what = which == OF_PARTS ? "became too short" : *taut ? "became slack" : "taut again";
     if (which == OF_PARTS) return fu_leave(run, coupling, FU_LEFT_BY_SPAN);
+    if (fu_taut_slides(run->model, rope_of(coupling), &run->now)) {
+        fu_taut_set_taut(run->model, rope_of(coupling), &run->now, !*taut);
+        if (*taut) fu_taut_redirect(run->model, rope_of(coupling), &run->now);
+        return FU_RUNNING;
+    }
     *taut = !*taut;
     return FU_RUNNING;
 }
@@ -139,14 +175,42 @@ static int may_have_other_turns(const fu_run *run, const fu_taut_rope *rope)
     return fabs(change) > acos(-1.0) * radius;
 }
 
-/* A rope without strain at the start is taut, to rounding. */
+/* Returns the sheave on which a rope sticks with the largest excess over what friction holds, null for none. */
+static const fu_taut_point *loosest(const fu_run *run)
+{
+    const fu_taut_point *found = 0;
+    double worst = 0.0;
+    FU_EACH_COUPLING(c, run->model->couplings, run->model->n_couplings) {
+        if (c->type != &fu_taut_point_type || !is_sheave(point_of(c)) || !holds(point_of(c))) continue;
+        const double excess =
+            fu_taut_slips(point_of(c), &run->now) ? 0.0 : fu_taut_grip(run->model, point_of(c), &run->now);
+        if (excess > worst) worst = excess, found = point_of(c);
+    }
+    return found;
+}
+
+/* Lets ropes slip where friction does not hold them at the start. */
+static int begin_slip(fu_run *run)
+{
+    const fu_taut_point *loose;
+    for (int changes = 0; (loose = loosest(run)) != 0; ++changes) {
+        if (changes == MAX_CHANGES) return FU_NO_CONVERGENCE;
+        break_loose(run, loose);
+    }
+    return FU_RUNNING;
+}
+
+/* A rope without strain at the start is taut, to rounding. The last rope determines where all slip. */
 static int begin_rope(fu_run *run, const fu_coupling *coupling)
 {
     const fu_taut_rope *rope = rope_of(coupling);
     const double rounding = 1e-12;
     if (may_have_other_turns(run, rope)) return fu_leave(run, coupling, FU_LEFT_BY_TURNS);
     run->now.flags[coupling->flags] = fu_taut_slack(run->model, rope, &run->now) <= rounding * rope->free_length;
-    return fu_taut_margin(run->model, rope, &run->now) < 0.0 ? fu_leave(run, coupling, FU_LEFT_BY_SPAN) : FU_RUNNING;
+    if (fu_taut_margin(run->model, rope, &run->now) < 0.0) return fu_leave(run, coupling, FU_LEFT_BY_SPAN);
+    const int next = coupling->number + 1;
+    const int last = next == run->model->n_couplings || run->model->couplings[next]->type != coupling->type;
+    return last ? begin_slip(run) : FU_RUNNING;
 }
 
 const fu_coupling_events fu_taut_rope_events = {

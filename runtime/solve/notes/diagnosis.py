@@ -30,8 +30,6 @@ ROPE_LEFT = (
     *(("{reached},",
        "give the rope less way, take a point farther away, or stop before by an event"),) * 2,
     ('drum "{name}" has run empty', "give a greater length_in_store, or stop before by an event"),
-    ('a rope without mass slips on sheave "{name}", as its tensions differ by more than friction holds,',
-     "give a greater coefficient, or a rope with mass, which may slide; or stop before by an event"),
     ('a rope without mass meets sheave "{name}" from its other side',
      "give a sheave on that side, or stop before by an event"),
     ('the length of rope "{name}" at the start differs from that as drawn by more than half a turn around a wheel, so '

@@ -5,7 +5,10 @@
 #include "couplings/taut_rope/taut_rope.h"
 
 #include <math.h>
-#include <string.h>
+#include <stdlib.h>
+
+#define ROUNDING_OF_FORCE 1e-12   /* of EA: a slack rope needs no friction */
+#define ROUNDING_OF_TENSION 1e-10 /* of both tensions: excess at which a rope breaks loose */
 
 enum { DIM = 2, SIDES = 2 };
 
@@ -27,17 +30,12 @@ typedef struct {
     fu_taut_lengths lengths[SIDES];
 } surroundings;
 
-static const fu_taut_rope *rope_beside(const fu_model *model, const fu_taut_point *point, int side)
-{
-    return point->ropes[side] < 0 ? 0 : (const fu_taut_rope *)model->couplings[point->ropes[side]];
-}
-
 /* Computes the straight parts beside a point; of one that the rope does not touch, both are the one that passes it. */
 static void find_parts(const fu_model *model, const fu_taut_point *point, const fu_state *state, surroundings *out)
 {
     out->touches = fu_touches(point, state);
     for (int side = 0; side < SIDES; ++side) {
-        const fu_taut_rope *rope = out->rope[side] = rope_beside(model, point, side);
+        const fu_taut_rope *rope = out->rope[side] = fu_taut_beside(model, point, side);
         const int place = point->places[side];
         out->has[side] = rope != 0;
         if (!rope) continue;
@@ -70,7 +68,7 @@ double fu_taut_wrap(const fu_model *model, const fu_taut_point *point, const fu_
 
 double fu_taut_depth(const fu_model *model, const fu_taut_point *point, const fu_state *state, int *side)
 {
-    const fu_taut_rope *rope = rope_beside(model, point, 0);
+    const fu_taut_rope *rope = fu_taut_beside(model, point, 0);
     surroundings at;
     fu_attachment_state centre, start;
     find_parts(model, point, state, &at);
@@ -91,15 +89,31 @@ double fu_taut_grip(const fu_model *model, const fu_taut_point *point, const fu_
 {
     surroundings at;
     look(model, point, state, &at);
-    const double before = at.lengths[0].tension, after = at.lengths[1].tension;
-    const double rounding = 1e-12 * (at.rope[0]->EA + at.rope[1]->EA); /* a slack rope needs no friction */
+    const double before = at.lengths[0].elastic, after = at.lengths[1].elastic;
+    const double rounding =
+        ROUNDING_OF_FORCE * (at.rope[0]->EA + at.rope[1]->EA) + ROUNDING_OF_TENSION * (before + after);
     return fabs(after - before) - tanh(0.5 * point->friction * wrap_of(point, &at)) * (after + before) - rounding;
+}
+
+int fu_taut_pulled(const fu_model *model, const fu_taut_point *point, const fu_state *state)
+{
+    surroundings at;
+    look(model, point, state, &at);
+    return at.lengths[1].elastic > at.lengths[0].elastic ? 1 : -1;
+}
+
+/* Returns the power of friction of a rope that slips, W. */
+static double power_of_slip(const fu_model *model, const fu_taut_point *point, const fu_state *state)
+{
+    surroundings at;
+    look(model, point, state, &at);
+    return (at.lengths[1].tension - at.lengths[0].tension) * fu_taut_slip(model, point, state);
 }
 
 double fu_taut_store(const fu_model *model, const fu_taut_point *point, const fu_state *state)
 {
     const int side = point->ropes[1] >= 0 ? 1 : 0;
-    const fu_taut_rope *rope = rope_beside(model, point, side);
+    const fu_taut_rope *rope = fu_taut_beside(model, point, side);
     fu_taut_lengths now;
     double rate;
     fu_taut_lengths_at(model, rope, state, &now);
@@ -179,8 +193,9 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
                           const fu_accelerator *work)
 {
     const fu_taut_point *point = point_of(coupling);
-    (void)model, (void)work;
-    return point->turn < 0 ? 0.0 : point->damping * state->v[point->turn] * state->v[point->turn];
+    (void)work;
+    const double slips = fu_taut_slips(point, state) ? power_of_slip(model, point, state) : 0.0;
+    return slips + (point->turn < 0 ? 0.0 : point->damping * state->v[point->turn] * state->v[point->turn]);
 }
 
 static double drive_torque(const fu_model *model, const fu_taut_point *point, double t)
@@ -202,7 +217,7 @@ static void drive(const fu_model *model, const fu_coupling *coupling, double t, 
 
 typedef struct {
     double tension_on, tension_off, wrap_angle, force[3], material_speed, normal_force, torque, drive, power,
-        length_in_store, angle, angle_on, angle_off, touches;
+        length_in_store, angle, angle_on, angle_off, touches, slip, slip_angle;
 } point_output;
 
 /* Returns the stress-free length a second that passes a point in the rope's order: of a wheel that holds the rope, the
@@ -238,6 +253,8 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     (void)work;
     look(model, point, state, &at);
     *numbers = (point_output){.touches = at.touches, .wrap_angle = wrap_of(point, &at)};
+    numbers->slip = fu_taut_slip(model, point, state);
+    numbers->slip_angle = fu_taut_slips(point, state) ? numbers->wrap_angle : 0.0;
     for (int side = 0; side < SIDES; ++side) {
         if (!at.has[side]) continue;
         const double tension = at.lengths[side].tension + 0.0; /* no -0 */
@@ -273,8 +290,8 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
 static void detect(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     const fu_taut_point *point = point_of(coupling);
-    const fu_taut_rope *rope = rope_beside(model, point, 0);
-    int *touches = state->flags + coupling->flags, side = 1;
+    const fu_taut_rope *rope = fu_taut_beside(model, point, 0);
+    int *touches = state->flags + coupling->flags + FU_TOUCHES, side = 1;
     if (!rope || point->places[0] == rope->n_points - 1) return;
     if (*touches) *touches = fu_taut_wrap(model, point, state) <= 0.0;
     else if (fu_taut_depth(model, point, state, &side) > 0.0) {
@@ -289,7 +306,14 @@ static void reset(const fu_coupling *coupling, fu_state *state)
     const fu_taut_point *point = point_of(coupling);
     state->numbers[coupling->numbers] = point->angle;
     state->numbers[coupling->numbers + 1] = point->carrier;
-    state->flags[coupling->flags] = point->touches;
+    state->flags[coupling->flags + FU_TOUCHES] = point->touches;
+    state->flags[coupling->flags + FU_SLIPS] = 0;
+}
+
+static int is_possible(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    (void)model;
+    return abs(fu_taut_slips(point_of(coupling), state)) <= 1;
 }
 
 static const fu_field fields[] = {
@@ -326,13 +350,15 @@ static const fu_output output_fields[] = {
     FU_OUTPUT(point_output, angle_on, "rad", NULL),
     FU_OUTPUT(point_output, angle_off, "rad", NULL),
     FU_OUTPUT(point_output, touches, "1", NULL),
+    FU_OUTPUT(point_output, slip, "m/s", NULL),
+    FU_OUTPUT(point_output, slip_angle, "rad", NULL),
     FU_LAST_OUTPUT(point_output),
 };
 
 static const fu_inertia_operations inertia = {
     .force = inertial_force, .matrix = mass_matrix, .kinetic_energy = kinetic_energy};
 static const fu_supply_operations supply = {.force = drive};
-static const fu_start_operations start = {.reset = reset};
+static const fu_start_operations start = {.reset = reset, .is_possible = is_possible};
 
 const fu_coupling_type fu_taut_point_type = {
     .name = "taut_point",
@@ -340,7 +366,7 @@ const fu_coupling_type fu_taut_point_type = {
     .fields = fields,
     .output_fields = output_fields,
     .n_numbers = 2,
-    .n_flags = 1,
+    .n_flags = FU_POINT_FLAGS,
     .inertia = &inertia,
     .supply = &supply,
     .start = &start,

@@ -24,7 +24,7 @@ const fu_taut_point *fu_taut_point_of(const fu_model *model, const fu_taut_rope 
 
 int fu_touches(const fu_taut_point *point, const fu_state *state)
 {
-    return state->flags[point->base.flags];
+    return state->flags[point->base.flags + FU_TOUCHES];
 }
 
 int fu_next_touched(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, int place)
@@ -41,9 +41,9 @@ int fu_touched_before(const fu_model *model, const fu_taut_rope *rope, const fu_
     return place;
 }
 
-static int is_taut(const fu_coupling *coupling, const fu_state *state)
+int fu_is_taut(const fu_taut_rope *rope, const fu_state *state)
 {
-    return state->flags[coupling->flags];
+    return state->flags[rope->base.flags];
 }
 
 /* Returns an angle, whole turns added, near another one. */
@@ -124,13 +124,13 @@ static void add_way(int end, double share, double angle, double rate, fu_taut_le
     out->way_rate[end] += share * rate;
 }
 
-/* Subtracts the rotation of the wheel at an end. */
+/* Subtracts the rotation of the wheel at an end, unless the rope slips there. */
 static void subtract_turn(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, int end,
                           const fu_attachment_state *at, fu_taut_lengths *out)
 {
     const fu_taut_point *point = fu_taut_point_of(model, rope, end ? rope->n_points - 1 : 0);
     const double share = share_of_end(model, rope, end);
-    if (share != 0.0)
+    if (share != 0.0 && !fu_taut_slips(point, state))
         add_way(end, -share, fu_taut_turn(point, state, at) - rope->carriers[end],
                 fu_taut_spin(model, point, state, at), out);
 }
@@ -159,7 +159,7 @@ static void add_forces_of_part(const fu_model *model, const fu_taut_rope *rope, 
     }
 }
 
-/* Computes all but the tension; adds the forces of this tension to f, unless that is null. */
+/* Computes places, lengths and ways; adds the forces of this tension to f, unless that is null. */
 static void walk(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_lengths *out,
                  double tension, double *f)
 {
@@ -178,8 +178,11 @@ static void walk(const fu_model *model, const fu_taut_rope *rope, const fu_state
         out->length[FU_DRAWN] += part.l + part.share[FU_DRAWN] * part.angle;
         out->rate[FU_DRAWN] += fu_dot(DIM, part.l_d, part.d_rate) + part.share[FU_DRAWN] * turning;
         for (int end = 0; end < SIDES; ++end)
-            if (end ? to == last : from == 0)
+            if (end ? to == last : from == 0) {
                 add_way(end, share_of_end(model, rope, end), part.angle - rope->angles[end], turning, out);
+                out->angle[end] = part.angle;
+                out->turning[end] = turning;
+            }
         if (f) add_forces_of_part(model, rope, &part, before, after, tension, f);
         fu_attachment_state *passed = before;
         before = after;
@@ -190,32 +193,56 @@ static void walk(const fu_model *model, const fu_taut_rope *rope, const fu_state
         out->length[FU_WAY] += out->way[end] - past->way[end];
         out->rate[FU_WAY] += out->way_rate[end];
     }
+    out->growth = out->rate[FU_DRAWN] + out->rate[FU_WAY];
     out->past[0] = past->free;
     out->past[1] = past->drawn;
+}
+
+void fu_taut_geometry(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_lengths *out)
+{
+    walk(model, rope, state, out, 0.0, 0);
+}
+
+/* Computes the stress-free length, and in a chain the tension, from the geometry. */
+static void find_free_length(const fu_model *model, const fu_taut_rope *rope, const fu_state *state,
+                             fu_taut_lengths *out)
+{
     double slack;
+    if (fu_taut_slides(model, rope, state)) {
+        fu_taut_chain chain;
+        fu_taut_chain_at(model, rope, state, &chain);
+        fu_taut_slide(&chain, state, out);
+        return;
+    }
     rope->kernel->free_length(out->length, out->past, &out->free, &slack);
     out->per_way = out->free / out->length[FU_DRAWN];
-    if (is_taut(&rope->base, state)) return;
+    if (fu_is_taut(rope, state)) return;
     out->free = slack;
     out->per_way = 1.0;
 }
 
 static void find_lengths(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_lengths *out)
 {
-    walk(model, rope, state, out, 0.0, 0);
+    fu_taut_geometry(model, rope, state, out);
+    find_free_length(model, rope, state, out);
 }
 
-/* Computes the tension of a rope of these lengths. */
-static void find_tension(const fu_taut_rope *rope, const fu_state *state, fu_taut_lengths *now)
+/* Computes the tension of a rope of these lengths, which of one in a chain is known with them. */
+static void find_tension(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_lengths *now)
 {
-    rope->kernel->tension(now->length, now->past, is_taut(&rope->base, state) ? rope->EA : 0.0, rope->tau, now->rate,
+    if (fu_taut_slides(model, rope, state)) return;
+    rope->kernel->tension(now->length, now->past, fu_is_taut(rope, state) ? rope->EA : 0.0, rope->tau, now->rate,
                           &now->tension);
 }
 
 void fu_taut_lengths_at(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_lengths *out)
 {
+    const double at_rest[FU_LENGTHS] = {0.0, 0.0};
     find_lengths(model, rope, state, out);
-    find_tension(rope, state, out);
+    find_tension(model, rope, state, out);
+    if (fu_taut_slides(model, rope, state)) return;
+    rope->kernel->tension(out->length, out->past, out->length[FU_DRAWN] > out->free ? rope->EA : 0.0, rope->tau,
+                          at_rest, &out->elastic);
 }
 
 double fu_taut_length_to(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, int place,
@@ -265,8 +292,9 @@ static double free_per_way(const fu_taut_lengths *now)
 double fu_taut_held(const fu_taut_rope *rope, const fu_state *state, const fu_taut_lengths *now, int end, double *rate)
 {
     const fu_taut_history *past = history_of(rope, state);
-    *rate = now->way_rate[end] * now->per_way;
-    return past->held[end] + (now->way[end] - past->way[end]) * free_per_way(now);
+    const double sign = end ? 1.0 : -1.0;
+    *rate = (now->way_rate[end] + sign * now->slid_rate[end]) * now->per_way;
+    return past->held[end] + (now->way[end] - past->way[end] + sign * now->slid[end]) * free_per_way(now);
 }
 
 /* --- forces ----------------------------------------------------------------------------------------------------- */
@@ -277,7 +305,8 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
     const double unknown = at->next->forces[coupling->force];
     fu_taut_lengths now;
     walk(model, rope_of(coupling), at->next, &now, unknown, f);
-    find_tension(rope_of(coupling), at->next, &now);
+    find_free_length(model, rope_of(coupling), at->next, &now);
+    find_tension(model, rope_of(coupling), at->next, &now);
     internal[coupling->unknown] = -at->weights.stiffness * (unknown - now.tension);
 }
 
@@ -292,41 +321,46 @@ static void force(const fu_model *model, const fu_coupling *coupling, const fu_s
 typedef struct {
     const fu_taut_point *point;
     fu_point_motion motion;
-    double sign, turn_share; /* of its rotation in the way, 0 where it does not hold the rope */
+    /* of its rotation in the way: as wheels get the tension, 0 where it does not hold the rope; where the rope does not
+     * slip on it */
+    double sign, turn_share, way_share;
 } side;
 
-/* The changes of the tension by drawn length and way, and by their rates. */
-typedef struct {
-    double K[FU_LENGTHS], D[FU_LENGTHS];
-} law_changes;
-
-/* Adds the entries of one side with the tension: its row of the law, its column of the forces. */
-static void add_tension(const fu_model *model, const fu_coupling *coupling, const fu_taut_part *part,
-                        const law_changes *law, double (*by_rate)[DIM], const side *of, fu_weights weights,
-                        fu_system *system)
+/* Adds the entries of one side in the row of the law of a tension, which depends on the angle of the part by by_angle
+ * too. */
+static void add_row(const fu_model *model, const fu_coupling *coupling, const fu_taut_part *part,
+                    const fu_taut_law *law, double by_angle, double (*by_rate)[DIM], const side *of, fu_weights weights,
+                    fu_system *system)
 {
     const int row = fu_extra(model, coupling->unknown), n = of->motion.at.n;
-    const double unit = fu_row_unit(weights.inertia, coupling->scale[0]), moment = of->turn_share;
-    double by[ROWS] = {0.0}, changes[FU_ATTACHMENT_COORDINATES], on_point[FU_ATTACHMENT_COORDINATES], pull[DIM];
+    double by[ROWS] = {0.0}, changes[FU_ATTACHMENT_COORDINATES];
+    for (int d = 0; d < DIM; ++d) by[d] = by_angle * of->sign * part->b_d[d];
     for (int i = 0; i < FU_LENGTHS; ++i)
         for (int d = 0; d < DIM; ++d) {
             const double change = of->sign * ((i == FU_DRAWN ? part->l_d[d] : 0.0) + part->share[i] * part->b_d[d]);
             by[d] += law->K[i] * change + law->D[i] * of->sign * by_rate[i][d];
             by[VELOCITY + d] += law->D[i] * change;
         }
-    by[TURN] = law->K[FU_WAY] * of->turn_share;
-    by[SPIN] = law->D[FU_WAY] * of->turn_share;
+    by[TURN] = law->K[FU_WAY] * of->way_share;
+    by[SPIN] = law->D[FU_WAY] * of->way_share;
     fu_changes(&of->motion, 1, by, changes);
+    for (int i = 0; i < n; ++i) fu_add(model, system, row, of->motion.at.at[i], -weights.stiffness * changes[i]);
+    if (of->way_share == 0.0 || of->point->turn < 0) return;
+    fu_add(model, system, row, of->point->turn, -weights.stiffness * (by[TURN] + weights.rate * by[SPIN]));
+}
+
+/* Adds the entries of one side in the column of the forces of the tension. */
+static void add_column(const fu_model *model, const fu_coupling *coupling, const fu_taut_part *part, const side *of,
+                       fu_weights weights, fu_system *system)
+{
+    const int column = fu_extra(model, coupling->unknown), n = of->motion.at.n;
+    const double unit = fu_row_unit(weights.inertia, coupling->scale[0]), moment = of->turn_share;
+    double on_point[FU_ATTACHMENT_COORDINATES], pull[DIM];
     fu_taut_pull(part, pull);
     for (int d = 0; d < DIM; ++d) pull[d] *= of->sign;
     fu_wrench_force(DIM, &of->motion.at, pull, moment != 0.0 ? &moment : 0, 1.0, on_point);
-    for (int i = 0; i < n; ++i) {
-        fu_add(model, system, row, of->motion.at.at[i], -weights.stiffness * changes[i]);
-        fu_add(model, system, of->motion.at.at[i], row, unit * on_point[i]);
-    }
-    if (moment == 0.0 || of->point->turn < 0) return;
-    fu_add(model, system, row, of->point->turn, -weights.stiffness * (by[TURN] + weights.rate * by[SPIN]));
-    fu_add(model, system, of->point->turn, row, unit * moment);
+    for (int i = 0; i < n; ++i) fu_add(model, system, of->motion.at.at[i], column, unit * on_point[i]);
+    if (moment != 0.0 && of->point->turn >= 0) fu_add(model, system, of->point->turn, column, unit * moment);
 }
 
 /* Adds the changes of the force of a part on one side by the other one, or by itself. */
@@ -342,12 +376,15 @@ static void add_stiffness(const fu_model *model, const double *K, const side *of
                           of == by ? fu_stiffness_of(&by->motion) : 0, stiffness, system);
 }
 
-/* Adds the derivatives of a straight part. */
-static void add_part(const fu_model *model, const fu_coupling *coupling, const fu_taut_part *part,
-                     const law_changes *law, double unknown, const fu_equations *equations, fu_system *system)
+/* Adds the derivatives of a straight part of a rope: those of the tension of a coupling, and, of its own rope, those of
+ * the forces. */
+static void add_part(const fu_model *model, const fu_coupling *coupling, const fu_taut_rope *rope,
+                     const fu_taut_part *part, const fu_taut_law *law, const fu_equations *equations, fu_system *system)
 {
-    const fu_taut_rope *rope = rope_of(coupling);
+    const int own = rope == rope_of(coupling), last = rope->n_points - 1;
+    const double unknown = own ? equations->next->forces[coupling->force] : 0.0;
     const double on_part[2] = {unknown, (part->share[FU_DRAWN] + part->share[FU_WAY]) * unknown};
+    const double by_angle = (part->from == 0 ? law->angle[0] : 0.0) + (part->to == last ? law->angle[1] : 0.0);
     double pull[DIM], K[DIM * DIM], by_rate[FU_LENGTHS][DIM];
     side sides[SIDES];
     fu_taut_pull(part, pull);
@@ -359,19 +396,33 @@ static void add_part(const fu_model *model, const fu_coupling *coupling, const f
     rope->kernel->straight_tangent(on_part, part->d, part->rise, K);
     for (int end = 0; end < SIDES; ++end) {
         side *of = &sides[end];
-        const int holds = end ? part->to == rope->n_points - 1 : part->from == 0;
+        const int holds = end ? part->to == last : part->from == 0;
         of->point = fu_taut_point_of(model, rope, end ? part->to : part->from);
         of->sign = end ? 1.0 : -1.0;
         of->turn_share = holds ? -share_of_end(model, rope, end) : 0.0;
+        of->way_share = holds && fu_taut_slips(of->point, equations->next) ? 0.0 : of->turn_share;
         const double moment = of->turn_share * unknown, along = of->sign * unknown;
         const double force[DIM] = {along * pull[0], along * pull[1]};
         fu_point_motion_at(model, &of->point->attachments[0], equations->next, FU_POINT | FU_AXES, force, &moment,
                            equations->psi, equations->weights.rate, &of->motion);
-        add_tension(model, coupling, part, law, by_rate, of, equations->weights, system);
+        add_row(model, coupling, part, law, by_angle, by_rate, of, equations->weights, system);
+        if (own) add_column(model, coupling, part, of, equations->weights, system);
     }
-    for (int end = 0; end < SIDES; ++end)
+    for (int end = 0; own && end < SIDES; ++end)
         for (int by = 0; by < SIDES; ++by)
             add_stiffness(model, K, &sides[end], &sides[by], equations->weights.stiffness, system);
+}
+
+/* Adds the derivatives of all straight parts of a rope. */
+static void add_parts(const fu_model *model, const fu_coupling *coupling, const fu_taut_rope *rope,
+                      const fu_taut_law *law, const fu_equations *equations, fu_system *system)
+{
+    for (int from = 0, to; from < rope->n_points - 1; from = to) {
+        fu_taut_part part;
+        to = fu_next_touched(model, rope, equations->next, from);
+        fu_taut_part_at(model, rope, equations->next, from, to, &part);
+        add_part(model, coupling, rope, &part, law, equations, system);
+    }
 }
 
 static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations,
@@ -380,18 +431,22 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     const fu_taut_rope *rope = rope_of(coupling);
     const fu_state *next = equations->next;
     const int row = fu_extra(model, coupling->unknown);
-    fu_taut_lengths now;
-    law_changes law;
-    find_lengths(model, rope, next, &now);
-    rope->kernel->tension_tangent(now.length, now.past, is_taut(coupling, next) ? rope->EA : 0.0, rope->tau, now.rate,
-                                  &now.tension, law.K, law.D);
+    fu_taut_law law = {.angle = {0.0, 0.0}};
     fu_add(model, system, row, row, fu_row_unit(equations->weights.inertia, coupling->scale[0]));
-    for (int from = 0, to; from < rope->n_points - 1; from = to) {
-        fu_taut_part part;
-        to = fu_next_touched(model, rope, next, from);
-        fu_taut_part_at(model, rope, next, from, to, &part);
-        add_part(model, coupling, &part, &law, next->forces[coupling->force], equations, system);
+    if (fu_taut_slides(model, rope, next)) {
+        fu_taut_chain chain;
+        fu_taut_chain_at(model, rope, next, &chain);
+        for (int k = 0; k < chain.n; ++k) {
+            fu_taut_slide_law(model, &chain, next, k, &law);
+            add_parts(model, coupling, chain.of[k].rope, &law, equations, system);
+        }
+        return;
     }
+    fu_taut_lengths now;
+    find_lengths(model, rope, next, &now);
+    rope->kernel->tension_tangent(now.length, now.past, fu_is_taut(rope, next) ? rope->EA : 0.0, rope->tau, now.rate,
+                                  &now.tension, law.K, law.D);
+    add_parts(model, coupling, rope, &law, equations, system);
 }
 
 /* --- the coupling ----------------------------------------------------------------------------------------------- */
@@ -431,7 +486,7 @@ static energies energies_of(const fu_taut_rope *rope, double drawn, double free,
 
 static energies energies_at(const fu_taut_rope *rope, const fu_taut_lengths *now)
 {
-    return energies_of(rope, now->length[FU_DRAWN], now->free, now->rate[FU_DRAWN] + now->rate[FU_WAY]);
+    return energies_of(rope, now->length[FU_DRAWN], now->free, now->growth);
 }
 
 /* Returns the energy of what wheels hold, J: what they have taken up in the step has the mean energy over it. */
@@ -454,14 +509,17 @@ static double energy(const fu_model *model, const fu_coupling *coupling, const f
 static double dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                           const fu_accelerator *work)
 {
+    const fu_taut_rope *rope = rope_of(coupling);
     fu_taut_lengths now;
     (void)work;
-    if (!coupling->is_damped || !is_taut(coupling, state)) return 0.0;
-    find_lengths(model, rope_of(coupling), state, &now);
-    const fu_taut_rope *rope = rope_of(coupling);
+    if (!coupling->is_damped || !fu_is_taut(rope, state)) return 0.0;
+    if (fu_taut_slides(model, rope, state)) { /* damped by another rate than that of its own strain */
+        fu_taut_lengths_at(model, rope, state, &now);
+        return (now.tension - now.elastic) * now.growth;
+    }
+    find_lengths(model, rope, state, &now);
     double U, W, P;
-    rope->kernel->energy(rope->EA, rope->tau, now.length[FU_DRAWN], now.free, now.rate[FU_DRAWN] + now.rate[FU_WAY], &U,
-                         &W, &P);
+    rope->kernel->energy(rope->EA, rope->tau, now.length[FU_DRAWN], now.free, now.growth, &U, &W, &P);
     return P;
 }
 
@@ -469,7 +527,7 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
 static double energy_without_force(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     fu_taut_lengths now;
-    if (is_taut(coupling, state)) return 0.0;
+    if (fu_is_taut(rope_of(coupling), state)) return 0.0;
     find_lengths(model, rope_of(coupling), state, &now);
     return energies_at(rope_of(coupling), &now).U;
 }
@@ -499,22 +557,40 @@ static void update_angles(const fu_model *model, const fu_taut_rope *rope, fu_st
     }
 }
 
+/* Stores the lengths of a rope, from which those of the next step are counted. */
+static void store_lengths(const fu_taut_rope *rope, const fu_taut_lengths *now, fu_state *state)
+{
+    fu_taut_history *past = history_of(rope, state);
+    double rate;
+    const double held[SIDES] = {fu_taut_held(rope, state, now, 0, &rate), fu_taut_held(rope, state, now, 1, &rate)};
+    past->energy = energy_held(rope, state, now, energies_at(rope, now).W);
+    past->free = now->free;
+    past->drawn = fu_is_taut(rope, state) ? now->length[FU_DRAWN] : now->free;
+    for (int end = 0; end < SIDES; ++end) {
+        past->held[end] = held[end];
+        past->way[end] = now->way[end];
+    }
+}
+
+/* The first rope of a chain stores the lengths of all of its ropes, which depend on those after the last step. */
 static void update_history(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     const fu_taut_rope *rope = rope_of(coupling);
-    fu_taut_history *past = history_of(rope, state);
     fu_taut_lengths now;
-    double rate;
     update_angles(model, rope, state);
-    find_lengths(model, rope, state, &now);
-    const double held[SIDES] = {fu_taut_held(rope, state, &now, 0, &rate), fu_taut_held(rope, state, &now, 1, &rate)};
-    past->energy = energy_held(rope, state, &now, energies_at(rope, &now).W);
-    past->free = now.free;
-    past->drawn = is_taut(coupling, state) ? now.length[FU_DRAWN] : now.free;
-    for (int end = 0; end < SIDES; ++end) {
-        past->held[end] = held[end];
-        past->way[end] = now.way[end];
+    if (fu_taut_slides(model, rope, state)) {
+        fu_taut_chain chain;
+        fu_taut_chain_at(model, rope, state, &chain);
+        if (chain.own) return;
+        for (; chain.own < chain.n; ++chain.own) {
+            fu_taut_piece *own = &chain.of[chain.own];
+            fu_taut_slide(&chain, state, &own->now);
+            store_lengths(own->rope, &own->now, state);
+        }
+        return;
     }
+    find_lengths(model, rope, state, &now);
+    store_lengths(rope, &now, state);
 }
 
 static void reset(const fu_coupling *coupling, fu_state *state)
@@ -540,8 +616,9 @@ static void detect(const fu_model *model, const fu_coupling *coupling, fu_state 
 double fu_taut_slack(const fu_model *model, const fu_taut_rope *rope, const fu_state *state)
 {
     fu_taut_lengths now;
+    if (fu_taut_slides(model, rope, state)) return fu_taut_chain_slack(model, rope, state);
     find_lengths(model, rope, state, &now);
-    const double growth = (now.rate[FU_DRAWN] + now.rate[FU_WAY]) * rope->tau;
+    const double growth = now.growth * rope->tau;
     return -fmin(0.0, growth) - (now.length[FU_DRAWN] - now.free);
 }
 
@@ -560,12 +637,19 @@ double fu_taut_margin(const fu_model *model, const fu_taut_rope *rope, const fu_
 static const char *const role[] = {"taut_rope", 0};
 
 static const fu_field fields[] = {
-    FU_FIELD(fu_taut_rope, kernel, FU_KERNELS, role), FU_FIELD(fu_taut_rope, n_points, FU_INTEGER, 0),
-    FU_FIELD(fu_taut_rope, points, FU_INTEGERS, 0),   FU_FIELD(fu_taut_rope, EA, FU_REAL, 0),
-    FU_FIELD(fu_taut_rope, tau, FU_REAL, 0),          FU_FIELD(fu_taut_rope, drawn_length, FU_REAL, 0),
-    FU_FIELD(fu_taut_rope, free_length, FU_REAL, 0),  FU_FIELD_ARRAY(fu_taut_rope, angles, FU_REAL),
-    FU_FIELD_ARRAY(fu_taut_rope, carriers, FU_REAL),  FU_FIELD(fu_taut_rope, held, FU_REAL, 0),
-    FU_FIELD(fu_taut_rope, least_length, FU_REAL, 0), {0},
+    FU_FIELD(fu_taut_rope, kernel, FU_KERNELS, role),
+    FU_FIELD(fu_taut_rope, n_points, FU_INTEGER, 0),
+    FU_FIELD(fu_taut_rope, points, FU_INTEGERS, 0),
+    FU_FIELD(fu_taut_rope, EA, FU_REAL, 0),
+    FU_FIELD(fu_taut_rope, tau, FU_REAL, 0),
+    FU_FIELD(fu_taut_rope, drawn_length, FU_REAL, 0),
+    FU_FIELD(fu_taut_rope, free_length, FU_REAL, 0),
+    FU_FIELD_ARRAY(fu_taut_rope, angles, FU_REAL),
+    FU_FIELD_ARRAY(fu_taut_rope, carriers, FU_REAL),
+    FU_FIELD(fu_taut_rope, held, FU_REAL, 0),
+    FU_FIELD(fu_taut_rope, least_length, FU_REAL, 0),
+    FU_FIELD(fu_taut_rope, n_pieces, FU_INTEGER, 0),
+    {0},
 };
 
 static const fu_output output_fields[] = {
@@ -575,7 +659,12 @@ static const fu_output output_fields[] = {
     FU_LAST_OUTPUT(rope_output),
 };
 
-static const fu_start_operations start = {.reset = reset};
+static const char *excess(const fu_coupling *coupling)
+{
+    return rope_of(coupling)->n_pieces > FU_MAX_PIECES ? "sheaves with friction" : 0;
+}
+
+static const fu_start_operations start = {.reset = reset, .excess = excess};
 static const fu_history_operations of_history = {.update = update_history};
 
 const fu_coupling_type fu_taut_rope_type = {

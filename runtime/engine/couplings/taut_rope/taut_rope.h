@@ -1,6 +1,7 @@
 /* Ropes without mass (derive/couplings/taut_rope.py). The items of a rope's route are points, couplings of their own:
  * anchors, sheaves and drums. A rope with one tension leads from an end or a wheel that holds it, a drum or a sheave
- * with friction, to the next one, over the frictionless sheaves between these. */
+ * with friction, to the next one, over the frictionless sheaves between these. Ropes between which it slips on sheaves
+ * are a chain (taut_slip.c). */
 #ifndef FUNICULAR_COUPLINGS_ROPE_TAUT_ROPE_H
 #define FUNICULAR_COUPLINGS_ROPE_TAUT_ROPE_H
 
@@ -8,9 +9,13 @@
 #include "couplings/common/coupling.h"
 
 enum { FU_DRAWN, FU_WAY, FU_LENGTHS }; /* of a rope: its drawn length, and the way of its ends onto wheels */
+enum { FU_TOUCHES, FU_SLIPS, FU_POINT_FLAGS };
+
+#define FU_MAX_PIECES 128 /* ropes of one tension of a rope */
 
 /* A point. Its numbers in a state are the angles of the straight part after it and of what carries it, counted over
- * turns; its flag is whether the rope touches it. */
+ * turns; its flags are whether the rope touches it, and the direction in which the rope slips on it: 1 in its order, -1
+ * against it, 0 where it sticks. */
 typedef struct {
     fu_coupling base;
     fu_attachment attachments[1]; /* the centre */
@@ -37,6 +42,7 @@ typedef struct {
     double drawn_length, free_length, angles[2], carriers[2]; /* as drawn: m; rad: of both end parts and end points */
     double held;         /* m: stress-free length that wheels at its ends hold as drawn */
     double least_length; /* m: of a straight part */
+    int n_pieces;        /* ropes of one tension that the whole rope has */
 } fu_taut_rope;
 
 /* Numbers of a rope in a state: its stress-free and drawn length, this without slack, after the last step, the ways of
@@ -55,11 +61,37 @@ typedef struct {
 } fu_taut_part;
 
 /* A rope at a state: drawn length, and way since the last step, with their rates; ways of both ends since the start,
- * with their rates; stress-free and drawn length after the last step; the stress-free length now, and that of a length
- * of way; the tension. */
+ * with their rates, without the rotation of wheels on which it slips; angles of its first and its last part, with their
+ * rates; stress-free and drawn length after the last step; the stress-free length now, and that of a length of way; the
+ * tension, and the part of it without damping; the rate of the drawn length at the present stress-free one; the
+ * ways by which it has slipped over the wheels at its ends since the last step, in its order, with the rates. */
 typedef struct {
-    double length[FU_LENGTHS], rate[FU_LENGTHS], way[2], way_rate[2], past[2], free, per_way, tension;
+    double length[FU_LENGTHS], rate[FU_LENGTHS], way[2], way_rate[2], angle[2], turning[2], past[2], free, per_way,
+        tension, elastic, growth, slid[2], slid_rate[2];
 } fu_taut_lengths;
+
+enum { FU_EXCESS, FU_BY_RATE, FU_SUMS }; /* sums over a chain: outputs of the kernel `slide` */
+
+/* A rope of a chain: logarithm of the ratio of its tension to that of the first one, with its rate; its sums, and their
+ * derivatives by the strain x of the first one. */
+typedef struct {
+    const fu_taut_rope *rope;
+    fu_taut_lengths now;
+    double log_ratio, log_ratio_rate, sums[FU_SUMS], sums_x[FU_SUMS];
+} fu_taut_piece;
+
+/* A chain, with the place of the rope from which it was found; the strain of its first rope, and its rate, also at
+ * constant ratios; the sums. */
+typedef struct {
+    int n, own;
+    double x, x_rate, x_rate_alone, sums[FU_SUMS], sums_x[FU_SUMS];
+    fu_taut_piece of[FU_MAX_PIECES];
+} fu_taut_chain;
+
+/* Changes of a tension by drawn length and way, by their rates, and by the angles of the first and the last part. */
+typedef struct {
+    double K[FU_LENGTHS], D[FU_LENGTHS], angle[2];
+} fu_taut_law;
 
 const fu_taut_point *fu_taut_point_of(const fu_model *model, const fu_taut_rope *rope, int place);
 /* Returns whether a rope touches a point. */
@@ -70,6 +102,12 @@ int fu_touched_before(const fu_model *model, const fu_taut_rope *rope, const fu_
 /* Computes the straight part between two places of a rope. */
 void fu_taut_part_at(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, int from, int to,
                      fu_taut_part *out);
+/* Returns the direction in which a rope slips on a point, 0 where it sticks. */
+int fu_taut_slips(const fu_taut_point *point, const fu_state *state);
+/* Returns whether a rope is taut. */
+int fu_is_taut(const fu_taut_rope *rope, const fu_state *state);
+/* Computes places, lengths and ways of a rope, without what its law gives. */
+void fu_taut_geometry(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_lengths *out);
 /* Computes lengths and tension of a rope, none where it is slack. */
 void fu_taut_lengths_at(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_lengths *out);
 /* Computes the force of a part on its second point, of a unit of tension; its opposite acts on the first. */
@@ -88,13 +126,39 @@ double fu_taut_length_to(const fu_model *model, const fu_taut_rope *rope, const 
  * at the rope's start, 1 at its end. */
 double fu_taut_held(const fu_taut_rope *rope, const fu_state *state, const fu_taut_lengths *now, int end, double *rate);
 
+/* Ropes that slip (taut_slip.c). Returns the rope beside a point, null for none; side: 0 before it, 1 after it. */
+const fu_taut_rope *fu_taut_beside(const fu_model *model, const fu_taut_point *point, int side);
+/* Returns whether a rope is part of a chain. */
+int fu_taut_slides(const fu_model *model, const fu_taut_rope *rope, const fu_state *state);
+/* Computes the chain of a rope; and what its law gives for one of its ropes, from the geometry. */
+void fu_taut_chain_at(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_chain *out);
+void fu_taut_slide(const fu_taut_chain *chain, const fu_state *state, fu_taut_lengths *out);
+/* Computes the changes of the tension of the chain's own rope by one of its ropes. */
+void fu_taut_slide_law(const fu_model *model, const fu_taut_chain *chain, const fu_state *state, int of,
+                       fu_taut_law *out);
+/* Returns the speed of the rope on a sheave, in its order, m/s; none where it sticks. */
+double fu_taut_slip(const fu_model *model, const fu_taut_point *point, const fu_state *state);
+/* Lets a rope slip on a point in a direction, or stick. */
+void fu_taut_set_slip(const fu_model *model, const fu_taut_point *point, fu_state *state, int direction);
+/* Lets a closed rope that slips on all sheaves stick on all but one. */
+void fu_taut_close(const fu_model *model, const fu_taut_point *point, fu_state *state);
+/* Returns by how much a chain is slack, m, for its first rope; NaN for others. */
+double fu_taut_chain_slack(const fu_model *model, const fu_taut_rope *rope, const fu_state *state);
+/* Makes a chain taut or slack; finds which it is, from its lengths; finds the directions in which it slips as it
+ * becomes taut. */
+void fu_taut_set_taut(const fu_model *model, const fu_taut_rope *rope, fu_state *state, int is_taut);
+void fu_taut_find_taut(const fu_model *model, const fu_taut_rope *rope, fu_state *state);
+void fu_taut_redirect(const fu_model *model, const fu_taut_rope *rope, fu_state *state);
+
 /* Event functions (events/taut_rope.c): of a point, the angle of its wrap, rad, positive beyond its end; the depth of a
- * straight rope in a sheave that it does not touch, m; of friction, the difference of both tensions less the limit, N;
- * of a drum, the length in store, m. Of a rope, by how far it is slack, and the length of its shortest part above the
- * least one, m. */
+ * straight rope in a sheave that it does not touch, m; of friction, the difference of both elastic tensions less the
+ * limit, N; of a drum, the length in store, m. Of a rope, by how far it is slack, and the length of its shortest part
+ * above the least one, m. */
 double fu_taut_wrap(const fu_model *model, const fu_taut_point *point, const fu_state *state);
 double fu_taut_depth(const fu_model *model, const fu_taut_point *point, const fu_state *state, int *side);
 double fu_taut_grip(const fu_model *model, const fu_taut_point *point, const fu_state *state);
+/* Returns the direction in which the tensions beside a point pull the rope: 1 in its order, -1 against it. */
+int fu_taut_pulled(const fu_model *model, const fu_taut_point *point, const fu_state *state);
 double fu_taut_store(const fu_model *model, const fu_taut_point *point, const fu_state *state);
 double fu_taut_slack(const fu_model *model, const fu_taut_rope *rope, const fu_state *state);
 double fu_taut_margin(const fu_model *model, const fu_taut_rope *rope, const fu_state *state);
