@@ -405,7 +405,7 @@ def test_drawn_on_the_rope():
     assert run.plot("slide").axes[0].lines
     tension = run.section_forces("haul", "trolley", method="constitutive")["tension"]
     assert tension.dims == ("time",) and np.isfinite(tension.values).all()
-    with pytest.raises(fu.FunicularError, match='there is no slide "trolly" on it; did you mean "trolley"'):
+    with pytest.raises(fu.FunicularError, match='or a slide on it, got "trolly"; did you mean "trolley"'):
         run.section_forces("haul", "trolly", method="constitutive")
 
 

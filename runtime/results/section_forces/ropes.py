@@ -111,8 +111,8 @@ def _at_slide(state: Recorded | RestState, rope: Rope, name: str) -> np.ndarray:
     slide = state.scene.slides.get(name)
     if slide is None or slide.along != rope.name:
         known = [each.name for each in state.scene.slides.values() if each.along == rope.name]
-        raise FunicularError(f'section forces of rope "{rope.name}": there is no slide "{name}" on it; '
-                             f"{near(name, known)}")
+        raise FunicularError(f'section forces of rope "{rope.name}": s must be arc-lengths in m, or a slide on it, got '
+                             f'"{name}"' + (f"; {near(name, known)}" if known else ""))
     return np.atleast_1d(state[f"{name}.s"])[:, None]
 
 
