@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from ..errors import SceneError, near
 from ..parts.cable import Cable
-from ..parts.rope_line import RopeLine, rope_line
 from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
 from .placement import cable_at, check_has_mass
+from .rope_line import RopeLine, rope_line
 
 Line = Cable | RopeLine
 """A cable, or a rope as drawn."""

@@ -58,8 +58,8 @@ SCENE_PLACES = {
     "points that move along a cable: slides and crossings": [
         "choice/chooser.py", "results/animation/curves.py", "results/animation/references.py",
         "results/animation/sources.py", "results/charts.py", "results/section_forces/forces.py",
-        "results/trajectories.py", "solve/motion/event_handler.py", "solve/motion/run.py", "solve/notes/diagnosis.py",
-        "solve/notes/supersonic_loads.py"],
+        "results/trajectories.py", "solve/motion/event_handler.py", "solve/motion/run.py",
+        "solve/notes/coarse_slides.py", "solve/notes/diagnosis.py", "solve/notes/supersonic_loads.py"],
     "loads and flows at a point or along a cable": [
         "choice/candidates.py", "choice/planar.py", "choice/remeshing.py", "results/section_forces/cable_loads.py"],
     "connections of bodies by joints": [

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .rope import Rope
-from .rope_route import DrawnRoute
-from .scene_data import SceneData
-from .validation import LENGTH_TOLERANCE
+from ..parts.rope import Rope
+from ..parts.rope_route import DrawnRoute
+from ..parts.scene_data import SceneData
+from ..parts.validation import LENGTH_TOLERANCE
 
 
 @dataclass(frozen=True)
