@@ -38,7 +38,7 @@ PLACES = {
     "ropes: their points on sheaves, and the constraints there": [
         "model/rope_rates.py", "model/rope_states.py", "solve/modes/stuck_wraps.py",
         "results/section_forces/ropes.py", "solve/motion/integrator_choice.py", "solve/statics/held_wraps.py",
-        "solve/statics/ropes_at_rest.py"],
+        "solve/statics/ropes_at_rest.py", "solve/statics/sticking_ropes.py"],
     "points that must not coincide, as a force or a distance has no direction there": [
         "solve/notes/coincident_points.py"],
     "fleet angles, against what sheaves in space take": ["solve/notes/fleet_angles.py"],

@@ -278,6 +278,19 @@ def test_a_sheave_without_friction_is_named_with_what_holds():
 
 # ---- refusals
 
+def test_a_span_that_becomes_slack_is_refused():
+    """The beam that carries the sheave sinks by far more than the stretch of the spans."""
+    scene = fu.Scene(gravity=(0, -GRAVITY, 0))
+    scene.cable("beam", start=(-1, 0, 0), end=(1, 0, 0), elements=4, element="cable8p", material=fu.Material(
+        youngs_modulus=2e11, poisson_ratio=0.3, density=7800), section=fu.Rectangle(height=0.02, width=0.02))
+    scene.clamp("beam", s=0.0)
+    scene.rope("rope", elements=2, length=[1.998, 1.998], **rope_of(EA, 0.05, 0), route=[
+        fu.Anchor(at=(0.5, -2, 0)), fu.Sheave("top", at=("beam", 1.6), radius=R, side="right", friction=0.5),
+        fu.Anchor(at=(0.8, -2, 0))])
+    with pytest.raises(fu.EquilibriumError, match=r'a span beside sheave "top" is slack|it has no tension there'):
+        scene.equilibrium(wraps="stick")
+
+
 @pytest.mark.parametrize(("change", "words"), [
     ({"length": [2.0]}, "length must be one number or 2, one for each span, got 1"),
     ({"length": [1.9, 0.0]}, "length must be positive, got 0 m"),

@@ -23,6 +23,8 @@ FORCE_TOLERANCE = 1e-12
 """The same of a point without normal force, over EA."""
 SLIP_TOLERANCE = 1e-12
 """Of sliding against its direction, over the size of the scene."""
+MAX_STRAIN_ERROR = 0.02
+"""Of a slope beside a sheave from the strain of the tension there: folds of a span without tension are larger."""
 MAX_CHANGES = 200
 """Changes of which points slide, at most."""
 
@@ -108,10 +110,23 @@ class HeldWraps:
                 found.append((sheave, float(np.abs(points[self.of_point == k, 2]).min())))
         return found
 
+    def _slack(self) -> Iterator[str]:
+        """Yield in words which spans beside sheaves have folds: their material, which stays, is longer than they."""
+        q, numbers = self.problem.keep()["q"], outputs_by_name("sheave", self.engine.static_outputs("sheave"))
+        for k, sheave in enumerate(self.problem.model.sheaves):
+            for node, name in zip(sheave.nodes, ("tension_on", "tension_off"), strict=True):
+                dim = sheave.before.dim
+                strain, held = np.linalg.norm(q[node + dim : node + 2 * dim]) - 1, numbers[name][k] / sheave.A[0]
+                if abs(strain - held) > MAX_STRAIN_ERROR:
+                    yield (f'a span beside sheave "{sheave.name}" is slack, or its elements are too few: its strain '
+                           f"there is {strain:.3g}, that of its tension {held:.3g}; the state")
+
     def causes(self) -> str:
         """Return in words why ropes do not stick, with the friction that they need, and which state is the last one of
         the search; else "".
         """
+        if slack := next(self._slack(), ""):
+            return slack
         sliding = []
         for sheave, slip in self._sliding():
             needed, given = self.needed[sheave.name], f"its coefficient of friction {show(sheave.friction)}"

@@ -70,6 +70,8 @@ def count(K: csc_array, C: csr_array, units: np.ndarray) -> Stability:
 
 
 def _counted(K: csc_array, C: csr_array, units: np.ndarray) -> Stability:
+    if not np.isfinite(K.data).all():
+        raise ArithmeticError("the stiffness is not finite")
     if abs(K - K.T).max() <= ASYMMETRY_ROUNDING * (abs(K).max() or 1.0):
         found = inertia(K, C, units)
         return Stability(found.negative, found.zero)

@@ -74,14 +74,14 @@ def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestStat
         raise EquilibriumError(
             f"no equilibrium was reached{at_limit}: the path from the drawn state ends at {100 * reached:.4g} % of the "
             f"load{remedy}{problem.cause()}; the state there is kept in .state", state, reached)
+    if scene.ropes:
+        problem.restore(state.static_state)
     if search.wraps is not None and (cause := search.wraps.causes()):
         raise EquilibriumError(f"ropes do not stick to their sheaves at rest: {cause} is kept in .state", state,
                                reached)
-    if scene.ropes:
-        problem.restore(state.static_state)
-        if off := problem.off_sheaves():
-            raise EquilibriumError(f"the state found is not one of rest: {off}; the state is kept in .state", state,
-                                   reached)
+    if scene.ropes and (off := problem.off_sheaves()):
+        raise EquilibriumError(f"the state found is not one of rest: {off}; the state is kept in .state", state,
+                               reached)
     if settings.seek_stable and settings.method == "newton" and state.unstable_directions:
         problem.restore(state.static_state)
         state.check_stable(problem.cause() or spinning(problem))
