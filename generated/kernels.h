@@ -1759,16 +1759,16 @@ fu_surface_slip_kernel surface_slip;
 /* n 2, H 2x2, r 2, v 2, a 2, r_o 2, v_o 2, a_o 2, omega_o 1, alpha_o 1, omega 1, alpha 1, w 2, w_t 2 */
 fu_surface_slip_kernel planar_surface_slip;
 
-typedef void fu_tangent_point_conditions_kernel(const fu_real *x, const fu_real *chord, fu_real b, const fu_real *axis, const fu_real *weight, fu_real EA, fu_real limit, fu_real R, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
-/* conditions of a tangent point, and their derivatives: x [m]; chord [m]; b [m]; axis [1]; weight [N/m]; EA [N];
- * limit [N/m]; R [m]; f [N] -> phi [m]; J [1]; K [N/m] */
-/* x 3, chord 3, axis 3, weight 3, f 3, phi 3, J 3x7, K 7x7 */
+typedef void fu_tangent_point_conditions_kernel(const fu_real *x, const fu_real *slope, const fu_real *chord, fu_real b, const fu_real *axis, const fu_real *weight, fu_real EA, fu_real by_chord, fu_real limit, fu_real R, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+/* conditions of a tangent point, and their derivatives: x [m]; slope [1]; chord [m]; b [m]; axis [1]; weight [N/m];
+ * EA [N]; by_chord [1]; limit [N/m]; R [m]; f [N] -> phi [m]; J [1]; K [N/m] */
+/* x 3, slope 3, chord 3, axis 3, weight 3, f 3, phi 3, J 3x10, K 10x10 */
 fu_tangent_point_conditions_kernel tangent_point_conditions;
 
-typedef void fu_tangent_point_motion_kernel(const fu_real *x, const fu_real *chord, fu_real b, const fu_real *axis, const fu_real *weight, fu_real EA, fu_real limit, const fu_real *x_rate, const fu_real *chord_rate, fu_real b_rate, fu_real *Q_d);
-/* second rates of the conditions at zero accelerations: x [m]; chord [m]; b [m]; axis [1]; weight [N/m]; EA [N];
- * limit [N/m]; x_rate [m/s]; chord_rate [m/s]; b_rate [m/s] -> Q_d [m/s^2] */
-/* x 3, chord 3, axis 3, weight 3, x_rate 3, chord_rate 3, Q_d 3 */
+typedef void fu_tangent_point_motion_kernel(const fu_real *x, const fu_real *slope, const fu_real *chord, fu_real b, const fu_real *axis, const fu_real *weight, fu_real EA, fu_real by_chord, fu_real limit, const fu_real *x_rate, const fu_real *slope_rate, const fu_real *chord_rate, fu_real b_rate, fu_real *Q_d);
+/* second rates of the conditions at zero accelerations: x [m]; slope [1]; chord [m]; b [m]; axis [1]; weight [N/m];
+ * EA [N]; by_chord [1]; limit [N/m]; x_rate [m/s]; slope_rate [1/s]; chord_rate [m/s]; b_rate [m/s] -> Q_d [m/s^2] */
+/* x 3, slope 3, chord 3, axis 3, weight 3, x_rate 3, slope_rate 3, chord_rate 3, Q_d 3 */
 fu_tangent_point_motion_kernel tangent_point_motion;
 
 typedef void fu_tangent_point_chord_kernel(const fu_real *e, fu_real l, fu_real s, const fu_real *by_L, fu_real *N, fu_real *N_L, fu_real *r, fu_real *r_L, fu_real *r_LL);
@@ -1783,16 +1783,17 @@ typedef void fu_tangent_point_across_kernel(fu_real rho, fu_real l, fu_real w, f
 /* s_rate 2, T 1, V 1, f 3, M 3x1, D 3x3, K 3x2 */
 fu_tangent_point_across_kernel tangent_point_across;
 
-typedef void fu_tangent_point_turned_conditions_kernel(const fu_real *x, const fu_real *chord, fu_real b, const fu_real *axis, const fu_real *weight, fu_real EA, fu_real limit, fu_real R, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
-/* conditions of a tangent point, and their derivatives by the axis, too: x [m]; chord [m]; b [m]; axis [1]; weight
- * [N/m]; EA [N]; limit [N/m]; R [m]; f [N] -> phi [m]; J [1]; K [N/m] */
-/* x 3, chord 3, axis 3, weight 3, f 3, phi 3, J 3x10, K 10x10 */
+typedef void fu_tangent_point_turned_conditions_kernel(const fu_real *x, const fu_real *slope, const fu_real *chord, fu_real b, const fu_real *axis, const fu_real *weight, fu_real EA, fu_real by_chord, fu_real limit, fu_real R, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+/* conditions of a tangent point, and their derivatives by the axis, too: x [m]; slope [1]; chord [m]; b [m]; axis
+ * [1]; weight [N/m]; EA [N]; by_chord [1]; limit [N/m]; R [m]; f [N] -> phi [m]; J [1]; K [N/m] */
+/* x 3, slope 3, chord 3, axis 3, weight 3, f 3, phi 3, J 3x13, K 13x13 */
 fu_tangent_point_turned_conditions_kernel tangent_point_turned_conditions;
 
-typedef void fu_tangent_point_turned_motion_kernel(const fu_real *x, const fu_real *chord, fu_real b, const fu_real *axis, const fu_real *weight, fu_real EA, fu_real limit, const fu_real *x_rate, const fu_real *chord_rate, fu_real b_rate, const fu_real *axis_rate, fu_real *Q_d);
-/* second rates of the conditions at zero accelerations: x [m]; chord [m]; b [m]; axis [1]; weight [N/m]; EA [N];
- * limit [N/m]; x_rate [m/s]; chord_rate [m/s]; b_rate [m/s]; axis_rate [1/s] -> Q_d [m/s^2] */
-/* x 3, chord 3, axis 3, weight 3, x_rate 3, chord_rate 3, axis_rate 3, Q_d 3 */
+typedef void fu_tangent_point_turned_motion_kernel(const fu_real *x, const fu_real *slope, const fu_real *chord, fu_real b, const fu_real *axis, const fu_real *weight, fu_real EA, fu_real by_chord, fu_real limit, const fu_real *x_rate, const fu_real *slope_rate, const fu_real *chord_rate, fu_real b_rate, const fu_real *axis_rate, fu_real *Q_d);
+/* second rates of the conditions at zero accelerations: x [m]; slope [1]; chord [m]; b [m]; axis [1]; weight [N/m];
+ * EA [N]; by_chord [1]; limit [N/m]; x_rate [m/s]; slope_rate [1/s]; chord_rate [m/s]; b_rate [m/s]; axis_rate [1/s]
+ * -> Q_d [m/s^2] */
+/* x 3, slope 3, chord 3, axis 3, weight 3, x_rate 3, slope_rate 3, chord_rate 3, axis_rate 3, Q_d 3 */
 fu_tangent_point_turned_motion_kernel tangent_point_turned_motion;
 
 typedef void fu_tangent_point_turned_acc_kernel(const fu_real *omega, const fu_real *x_rate, const fu_real *x_acc, fu_real *acc);

@@ -448,11 +448,11 @@ static const fu_taut_rope_kernels taut_ropes[] = {
 #define FU_ARGUMENTS_vvvvvvvvsvvvsvvvvv_3 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], *a[8], a[9], a[10], a[11], *a[12], a[13], a[14], a[15], a[16], a[17], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vvvvvvvvvv_2 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], out[0], out[1]
 #define FU_ARGUMENTS_vvvvvvvvvvsvv_2 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], *a[10], a[11], a[12], out[0], out[1]
-#define FU_ARGUMENTS_vvsvvsssv_3 a[0], a[1], *a[2], a[3], a[4], *a[5], *a[6], *a[7], a[8], out[0], out[1], out[2]
-#define FU_ARGUMENTS_vvsvvssvvs_1 a[0], a[1], *a[2], a[3], a[4], *a[5], *a[6], a[7], a[8], *a[9], out[0]
+#define FU_ARGUMENTS_vvvsvvssssv_3 a[0], a[1], a[2], *a[3], a[4], a[5], *a[6], *a[7], *a[8], *a[9], a[10], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vvvsvvsssvvvs_1 a[0], a[1], a[2], *a[3], a[4], a[5], *a[6], *a[7], *a[8], a[9], a[10], a[11], *a[12], out[0]
 #define FU_ARGUMENTS_vssv_5 a[0], *a[1], *a[2], a[3], out[0], out[1], out[2], out[3], out[4]
 #define FU_ARGUMENTS_ssssssv_6 *a[0], *a[1], *a[2], *a[3], *a[4], *a[5], a[6], out[0], out[1], out[2], out[3], out[4], out[5]
-#define FU_ARGUMENTS_vvsvvssvvsv_1 a[0], a[1], *a[2], a[3], a[4], *a[5], *a[6], a[7], a[8], *a[9], a[10], out[0]
+#define FU_ARGUMENTS_vvvsvvsssvvvsv_1 a[0], a[1], a[2], *a[3], a[4], a[5], *a[6], *a[7], *a[8], a[9], a[10], a[11], *a[12], a[13], out[0]
 #define FU_ARGUMENTS_svsvsvvv_1 *a[0], a[1], *a[2], a[3], *a[4], a[5], a[6], a[7], out[0]
 #define FU_ARGUMENTS_svvsvsvvvvvv_1 *a[0], a[1], a[2], *a[3], a[4], *a[5], a[6], a[7], a[8], a[9], a[10], a[11], out[0]
 #define FU_ARGUMENTS_svsvs_3 *a[0], a[1], *a[2], a[3], *a[4], out[0], out[1], out[2]
@@ -1105,12 +1105,12 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(planar_surface_reaction, vvvvvvvvsvvvsvvvvv_3) \
     X(planar_surface_motion, vvvvvvvvvv_2) \
     X(planar_surface_slip, vvvvvvvvvvsvv_2) \
-    X(tangent_point_conditions, vvsvvsssv_3) \
-    X(tangent_point_motion, vvsvvssvvs_1) \
+    X(tangent_point_conditions, vvvsvvssssv_3) \
+    X(tangent_point_motion, vvvsvvsssvvvs_1) \
     X(tangent_point_chord, vssv_5) \
     X(tangent_point_across, ssssssv_6) \
-    X(tangent_point_turned_conditions, vvsvvsssv_3) \
-    X(tangent_point_turned_motion, vvsvvssvvsv_1) \
+    X(tangent_point_turned_conditions, vvvsvvssssv_3) \
+    X(tangent_point_turned_motion, vvvsvvsssvvvsv_1) \
     X(tangent_point_turned_acc, vvv_1) \
     X(tangent_point_wrap_energy, svsvsvvv_1) \
     X(tangent_point_wrap_inertia, svvsvsvvvvvv_1) \

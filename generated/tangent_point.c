@@ -10,6 +10,12 @@
         d_x_size[g] = inv_size*x[g]; \
         d_x_arm[g] = cos_fleet*d_x_size[g];) \
     const fu_real \
+        d_slope0_across_x = -by_chord + 1.0, \
+        d_slope0_lean = d_slope0_across_x*x[0], \
+        d_slope1_across_y = -by_chord + 1.0, \
+        d_slope1_lean = d_slope1_across_y*x[1], \
+        d_slope2_across_z = -by_chord + 1.0, \
+        d_slope2_lean = d_slope2_across_z*x[2], \
         d_chord0_length = chord[0]*inv_length, \
         d_chord0_T = EA*d_chord0_length/b, \
         d_chord0_pull = T*d_chord0_T*inv_pull, \
@@ -17,9 +23,12 @@
         d_chord0_bend = b*d_chord0_inv_pull, \
         d_chord0_inv_length = -(d_chord0_length*inv_length*inv_length), \
         d_chord0_along_x = chord[0]*d_chord0_inv_length + d_chord0_bend*weight[0] + inv_length, \
+        d_chord0_across_x = by_chord*d_chord0_along_x, \
         d_chord0_along_y = chord[1]*d_chord0_inv_length + d_chord0_bend*weight[1], \
+        d_chord0_across_y = by_chord*d_chord0_along_y, \
         d_chord0_along_z = chord[2]*d_chord0_inv_length + d_chord0_bend*weight[2], \
-        d_chord0_lean = d_chord0_along_x*x[0] + d_chord0_along_y*x[1] + d_chord0_along_z*x[2], \
+        d_chord0_across_z = by_chord*d_chord0_along_z, \
+        d_chord0_lean = d_chord0_across_x*x[0] + d_chord0_across_y*x[1] + d_chord0_across_z*x[2], \
         d_chord0_len_along = inv_along*(along_x*d_chord0_along_x + along_y*d_chord0_along_y + along_z*d_chord0_along_z), \
         d_chord0_inv_along = -(d_chord0_len_along*inv_along*inv_along), \
         d_chord0_rise = axis[0]*d_chord0_along_x*inv_along + axis[1]*d_chord0_along_y*inv_along + axis[2]*d_chord0_along_z*inv_along + d_chord0_inv_along*(along_x*axis[0] + along_y*axis[1] + along_z*axis[2]), \
@@ -32,9 +41,12 @@
         d_chord1_bend = b*d_chord1_inv_pull, \
         d_chord1_inv_length = -(d_chord1_length*inv_length*inv_length), \
         d_chord1_along_x = chord[0]*d_chord1_inv_length + d_chord1_bend*weight[0], \
+        d_chord1_across_x = by_chord*d_chord1_along_x, \
         d_chord1_along_y = chord[1]*d_chord1_inv_length + d_chord1_bend*weight[1] + inv_length, \
+        d_chord1_across_y = by_chord*d_chord1_along_y, \
         d_chord1_along_z = chord[2]*d_chord1_inv_length + d_chord1_bend*weight[2], \
-        d_chord1_lean = d_chord1_along_x*x[0] + d_chord1_along_y*x[1] + d_chord1_along_z*x[2], \
+        d_chord1_across_z = by_chord*d_chord1_along_z, \
+        d_chord1_lean = d_chord1_across_x*x[0] + d_chord1_across_y*x[1] + d_chord1_across_z*x[2], \
         d_chord1_len_along = inv_along*(along_x*d_chord1_along_x + along_y*d_chord1_along_y + along_z*d_chord1_along_z), \
         d_chord1_inv_along = -(d_chord1_len_along*inv_along*inv_along), \
         d_chord1_rise = axis[0]*d_chord1_along_x*inv_along + axis[1]*d_chord1_along_y*inv_along + axis[2]*d_chord1_along_z*inv_along + d_chord1_inv_along*(along_x*axis[0] + along_y*axis[1] + along_z*axis[2]), \
@@ -47,9 +59,12 @@
         d_chord2_bend = b*d_chord2_inv_pull, \
         d_chord2_inv_length = -(d_chord2_length*inv_length*inv_length), \
         d_chord2_along_x = chord[0]*d_chord2_inv_length + d_chord2_bend*weight[0], \
+        d_chord2_across_x = by_chord*d_chord2_along_x, \
         d_chord2_along_y = chord[1]*d_chord2_inv_length + d_chord2_bend*weight[1], \
+        d_chord2_across_y = by_chord*d_chord2_along_y, \
         d_chord2_along_z = chord[2]*d_chord2_inv_length + d_chord2_bend*weight[2] + inv_length, \
-        d_chord2_lean = d_chord2_along_x*x[0] + d_chord2_along_y*x[1] + d_chord2_along_z*x[2], \
+        d_chord2_across_z = by_chord*d_chord2_along_z, \
+        d_chord2_lean = d_chord2_across_x*x[0] + d_chord2_across_y*x[1] + d_chord2_across_z*x[2], \
         d_chord2_len_along = inv_along*(along_x*d_chord2_along_x + along_y*d_chord2_along_y + along_z*d_chord2_along_z), \
         d_chord2_inv_along = -(d_chord2_len_along*inv_along*inv_along), \
         d_chord2_rise = axis[0]*d_chord2_along_x*inv_along + axis[1]*d_chord2_along_y*inv_along + axis[2]*d_chord2_along_z*inv_along + d_chord2_inv_along*(along_x*axis[0] + along_y*axis[1] + along_z*axis[2]), \
@@ -60,9 +75,12 @@
         d_b_inv_pull = -(d_b_pull*inv_pull*inv_pull), \
         d_b_bend = b*d_b_inv_pull + inv_pull, \
         d_b_along_x = d_b_bend*weight[0], \
+        d_b_across_x = by_chord*d_b_along_x, \
         d_b_along_y = d_b_bend*weight[1], \
+        d_b_across_y = by_chord*d_b_along_y, \
         d_b_along_z = d_b_bend*weight[2], \
-        d_b_lean = d_b_along_x*x[0] + d_b_along_y*x[1] + d_b_along_z*x[2], \
+        d_b_across_z = by_chord*d_b_along_z, \
+        d_b_lean = d_b_across_x*x[0] + d_b_across_y*x[1] + d_b_across_z*x[2], \
         d_b_len_along = inv_along*(along_x*d_b_along_x + along_y*d_b_along_y + along_z*d_b_along_z), \
         d_b_inv_along = -(d_b_len_along*inv_along*inv_along), \
         d_b_rise = axis[0]*d_b_along_x*inv_along + axis[1]*d_b_along_y*inv_along + axis[2]*d_b_along_z*inv_along + d_b_inv_along*(along_x*axis[0] + along_y*axis[1] + along_z*axis[2]), \
@@ -142,7 +160,10 @@
         d_chord0_inv_fleet = -(d_chord0_cos_fleet_2*inv_fleet*inv_fleet), \
         d_chord0_d_chord0_cos_fleet = -d_chord0_d_chord0_rise*inv_fleet*rise - d_chord0_inv_fleet*d_chord0_rise*rise - d_chord0_rise*d_chord0_rise_2*inv_fleet, \
         d_chord0_d_chord0_arm = d_chord0_d_chord0_cos_fleet*size, \
-        d_chord0_d_chord0_lean = d_chord0_d_chord0_along_x*x[0] + d_chord0_d_chord0_along_y*x[1] + d_chord0_d_chord0_along_z*x[2], \
+        d_chord0_d_chord0_across_x = by_chord*d_chord0_d_chord0_along_x, \
+        d_chord0_d_chord0_across_y = by_chord*d_chord0_d_chord0_along_y, \
+        d_chord0_d_chord0_across_z = by_chord*d_chord0_d_chord0_along_z, \
+        d_chord0_d_chord0_lean = d_chord0_d_chord0_across_x*x[0] + d_chord0_d_chord0_across_y*x[1] + d_chord0_d_chord0_across_z*x[2], \
         d_chord0_d_chord1_length = chord[1]*d_chord0_inv_length_2, \
         d_chord0_d_chord1_T = EA*d_chord0_d_chord1_length/b, \
         d_chord0_d_chord1_pull = T*d_chord0_d_chord1_T*inv_pull + T*d_chord0_inv_pull_2*d_chord1_T + d_chord0_T_2*d_chord1_T*inv_pull, \
@@ -157,7 +178,10 @@
         d_chord0_d_chord1_rise = axis[0]*d_chord0_along_x_2*d_chord1_inv_along + axis[0]*d_chord0_d_chord1_along_x*inv_along + axis[1]*d_chord0_along_y_2*d_chord1_inv_along + axis[1]*d_chord0_d_chord1_along_y*inv_along + axis[2]*d_chord0_along_z_2*d_chord1_inv_along + axis[2]*d_chord0_d_chord1_along_z*inv_along + d_chord0_d_chord1_inv_along*(along_x*axis[0] + along_y*axis[1] + along_z*axis[2]) + d_chord0_inv_along_2*(axis[0]*d_chord1_along_x + axis[1]*d_chord1_along_y + axis[2]*d_chord1_along_z), \
         d_chord0_d_chord1_cos_fleet = -d_chord0_d_chord1_rise*inv_fleet*rise - d_chord0_inv_fleet*d_chord1_rise*rise - d_chord0_rise_2*d_chord1_rise*inv_fleet, \
         d_chord0_d_chord1_arm = d_chord0_d_chord1_cos_fleet*size, \
-        d_chord0_d_chord1_lean = d_chord0_d_chord1_along_x*x[0] + d_chord0_d_chord1_along_y*x[1] + d_chord0_d_chord1_along_z*x[2], \
+        d_chord0_d_chord1_across_x = by_chord*d_chord0_d_chord1_along_x, \
+        d_chord0_d_chord1_across_y = by_chord*d_chord0_d_chord1_along_y, \
+        d_chord0_d_chord1_across_z = by_chord*d_chord0_d_chord1_along_z, \
+        d_chord0_d_chord1_lean = d_chord0_d_chord1_across_x*x[0] + d_chord0_d_chord1_across_y*x[1] + d_chord0_d_chord1_across_z*x[2], \
         d_chord0_d_chord2_length = chord[2]*d_chord0_inv_length_2, \
         d_chord0_d_chord2_T = EA*d_chord0_d_chord2_length/b, \
         d_chord0_d_chord2_pull = T*d_chord0_d_chord2_T*inv_pull + T*d_chord0_inv_pull_2*d_chord2_T + d_chord0_T_2*d_chord2_T*inv_pull, \
@@ -172,7 +196,10 @@
         d_chord0_d_chord2_rise = axis[0]*d_chord0_along_x_2*d_chord2_inv_along + axis[0]*d_chord0_d_chord2_along_x*inv_along + axis[1]*d_chord0_along_y_2*d_chord2_inv_along + axis[1]*d_chord0_d_chord2_along_y*inv_along + axis[2]*d_chord0_along_z_2*d_chord2_inv_along + axis[2]*d_chord0_d_chord2_along_z*inv_along + d_chord0_d_chord2_inv_along*(along_x*axis[0] + along_y*axis[1] + along_z*axis[2]) + d_chord0_inv_along_2*(axis[0]*d_chord2_along_x + axis[1]*d_chord2_along_y + axis[2]*d_chord2_along_z), \
         d_chord0_d_chord2_cos_fleet = -d_chord0_d_chord2_rise*inv_fleet*rise - d_chord0_inv_fleet*d_chord2_rise*rise - d_chord0_rise_2*d_chord2_rise*inv_fleet, \
         d_chord0_d_chord2_arm = d_chord0_d_chord2_cos_fleet*size, \
-        d_chord0_d_chord2_lean = d_chord0_d_chord2_along_x*x[0] + d_chord0_d_chord2_along_y*x[1] + d_chord0_d_chord2_along_z*x[2], \
+        d_chord0_d_chord2_across_x = by_chord*d_chord0_d_chord2_along_x, \
+        d_chord0_d_chord2_across_y = by_chord*d_chord0_d_chord2_along_y, \
+        d_chord0_d_chord2_across_z = by_chord*d_chord0_d_chord2_along_z, \
+        d_chord0_d_chord2_lean = d_chord0_d_chord2_across_x*x[0] + d_chord0_d_chord2_across_y*x[1] + d_chord0_d_chord2_across_z*x[2], \
         d_chord0_d_b_T = -(EA*d_chord0_length_2/(b*b)), \
         d_chord0_d_b_pull = T*d_chord0_d_b_T*inv_pull + d_b_T*d_chord0_T_2*inv_pull + d_chord0_inv_pull_2*(T*d_b_T + least*limit), \
         d_chord0_d_b_inv_pull = -2.0*d_b_pull*d_chord0_inv_pull_2*inv_pull - d_chord0_d_b_pull*inv_pull*inv_pull, \
@@ -185,7 +212,10 @@
         d_chord0_d_b_rise = axis[0]*d_b_inv_along*d_chord0_along_x_2 + axis[0]*d_chord0_d_b_along_x*inv_along + axis[1]*d_b_inv_along*d_chord0_along_y_2 + axis[1]*d_chord0_d_b_along_y*inv_along + axis[2]*d_b_inv_along*d_chord0_along_z_2 + axis[2]*d_chord0_d_b_along_z*inv_along + d_chord0_d_b_inv_along*(along_x*axis[0] + along_y*axis[1] + along_z*axis[2]) + d_chord0_inv_along_2*(axis[0]*d_b_along_x + axis[1]*d_b_along_y + axis[2]*d_b_along_z), \
         d_chord0_d_b_cos_fleet = -d_b_rise*d_chord0_inv_fleet*rise - d_b_rise*d_chord0_rise_2*inv_fleet - d_chord0_d_b_rise*inv_fleet*rise, \
         d_chord0_d_b_arm = d_chord0_d_b_cos_fleet*size, \
-        d_chord0_d_b_lean = d_chord0_d_b_along_x*x[0] + d_chord0_d_b_along_y*x[1] + d_chord0_d_b_along_z*x[2];
+        d_chord0_d_b_across_x = by_chord*d_chord0_d_b_along_x, \
+        d_chord0_d_b_across_y = by_chord*d_chord0_d_b_along_y, \
+        d_chord0_d_b_across_z = by_chord*d_chord0_d_b_along_z, \
+        d_chord0_d_b_lean = d_chord0_d_b_across_x*x[0] + d_chord0_d_b_across_y*x[1] + d_chord0_d_b_across_z*x[2];
 
 /* part of derivatives: of tangent_point_conditions and 1 more */
 #define TANGENT_POINT_PART_OF_DERIVATIVES_6 \
@@ -218,7 +248,10 @@
         d_chord1_d_chord1_rise = axis[0]*d_chord1_along_x_2*d_chord1_inv_along + axis[0]*d_chord1_d_chord1_along_x*inv_along + axis[1]*d_chord1_along_y_2*d_chord1_inv_along + axis[1]*d_chord1_d_chord1_along_y*inv_along + axis[2]*d_chord1_along_z_2*d_chord1_inv_along + axis[2]*d_chord1_d_chord1_along_z*inv_along + d_chord1_d_chord1_inv_along*(along_x*axis[0] + along_y*axis[1] + along_z*axis[2]) + d_chord1_inv_along_2*(axis[0]*d_chord1_along_x + axis[1]*d_chord1_along_y + axis[2]*d_chord1_along_z), \
         d_chord1_d_chord1_cos_fleet = -d_chord1_d_chord1_rise*inv_fleet*rise - d_chord1_inv_fleet*d_chord1_rise*rise - d_chord1_rise*d_chord1_rise_2*inv_fleet, \
         d_chord1_d_chord1_arm = d_chord1_d_chord1_cos_fleet*size, \
-        d_chord1_d_chord1_lean = d_chord1_d_chord1_along_x*x[0] + d_chord1_d_chord1_along_y*x[1] + d_chord1_d_chord1_along_z*x[2], \
+        d_chord1_d_chord1_across_x = by_chord*d_chord1_d_chord1_along_x, \
+        d_chord1_d_chord1_across_y = by_chord*d_chord1_d_chord1_along_y, \
+        d_chord1_d_chord1_across_z = by_chord*d_chord1_d_chord1_along_z, \
+        d_chord1_d_chord1_lean = d_chord1_d_chord1_across_x*x[0] + d_chord1_d_chord1_across_y*x[1] + d_chord1_d_chord1_across_z*x[2], \
         d_chord1_d_chord2_length = chord[2]*d_chord1_inv_length_2, \
         d_chord1_d_chord2_T = EA*d_chord1_d_chord2_length/b, \
         d_chord1_d_chord2_pull = T*d_chord1_d_chord2_T*inv_pull + T*d_chord1_inv_pull_2*d_chord2_T + d_chord1_T_2*d_chord2_T*inv_pull, \
@@ -233,7 +266,10 @@
         d_chord1_d_chord2_rise = axis[0]*d_chord1_along_x_2*d_chord2_inv_along + axis[0]*d_chord1_d_chord2_along_x*inv_along + axis[1]*d_chord1_along_y_2*d_chord2_inv_along + axis[1]*d_chord1_d_chord2_along_y*inv_along + axis[2]*d_chord1_along_z_2*d_chord2_inv_along + axis[2]*d_chord1_d_chord2_along_z*inv_along + d_chord1_d_chord2_inv_along*(along_x*axis[0] + along_y*axis[1] + along_z*axis[2]) + d_chord1_inv_along_2*(axis[0]*d_chord2_along_x + axis[1]*d_chord2_along_y + axis[2]*d_chord2_along_z), \
         d_chord1_d_chord2_cos_fleet = -d_chord1_d_chord2_rise*inv_fleet*rise - d_chord1_inv_fleet*d_chord2_rise*rise - d_chord1_rise_2*d_chord2_rise*inv_fleet, \
         d_chord1_d_chord2_arm = d_chord1_d_chord2_cos_fleet*size, \
-        d_chord1_d_chord2_lean = d_chord1_d_chord2_along_x*x[0] + d_chord1_d_chord2_along_y*x[1] + d_chord1_d_chord2_along_z*x[2], \
+        d_chord1_d_chord2_across_x = by_chord*d_chord1_d_chord2_along_x, \
+        d_chord1_d_chord2_across_y = by_chord*d_chord1_d_chord2_along_y, \
+        d_chord1_d_chord2_across_z = by_chord*d_chord1_d_chord2_along_z, \
+        d_chord1_d_chord2_lean = d_chord1_d_chord2_across_x*x[0] + d_chord1_d_chord2_across_y*x[1] + d_chord1_d_chord2_across_z*x[2], \
         d_chord1_d_b_T = -(EA*d_chord1_length_2/(b*b)), \
         d_chord1_d_b_pull = T*d_chord1_d_b_T*inv_pull + d_b_T*d_chord1_T_2*inv_pull + d_chord1_inv_pull_2*(T*d_b_T + least*limit), \
         d_chord1_d_b_inv_pull = -2.0*d_b_pull*d_chord1_inv_pull_2*inv_pull - d_chord1_d_b_pull*inv_pull*inv_pull, \
@@ -246,7 +282,10 @@
         d_chord1_d_b_rise = axis[0]*d_b_inv_along*d_chord1_along_x_2 + axis[0]*d_chord1_d_b_along_x*inv_along + axis[1]*d_b_inv_along*d_chord1_along_y_2 + axis[1]*d_chord1_d_b_along_y*inv_along + axis[2]*d_b_inv_along*d_chord1_along_z_2 + axis[2]*d_chord1_d_b_along_z*inv_along + d_chord1_d_b_inv_along*(along_x*axis[0] + along_y*axis[1] + along_z*axis[2]) + d_chord1_inv_along_2*(axis[0]*d_b_along_x + axis[1]*d_b_along_y + axis[2]*d_b_along_z), \
         d_chord1_d_b_cos_fleet = -d_b_rise*d_chord1_inv_fleet*rise - d_b_rise*d_chord1_rise_2*inv_fleet - d_chord1_d_b_rise*inv_fleet*rise, \
         d_chord1_d_b_arm = d_chord1_d_b_cos_fleet*size, \
-        d_chord1_d_b_lean = d_chord1_d_b_along_x*x[0] + d_chord1_d_b_along_y*x[1] + d_chord1_d_b_along_z*x[2];
+        d_chord1_d_b_across_x = by_chord*d_chord1_d_b_along_x, \
+        d_chord1_d_b_across_y = by_chord*d_chord1_d_b_along_y, \
+        d_chord1_d_b_across_z = by_chord*d_chord1_d_b_along_z, \
+        d_chord1_d_b_lean = d_chord1_d_b_across_x*x[0] + d_chord1_d_b_across_y*x[1] + d_chord1_d_b_across_z*x[2];
 
 /* part of derivatives: of tangent_point_conditions and 1 more */
 #define TANGENT_POINT_PART_OF_DERIVATIVES_7 \
@@ -279,7 +318,10 @@
         d_chord2_d_chord2_rise = axis[0]*d_chord2_along_x_2*d_chord2_inv_along + axis[0]*d_chord2_d_chord2_along_x*inv_along + axis[1]*d_chord2_along_y_2*d_chord2_inv_along + axis[1]*d_chord2_d_chord2_along_y*inv_along + axis[2]*d_chord2_along_z_2*d_chord2_inv_along + axis[2]*d_chord2_d_chord2_along_z*inv_along + d_chord2_d_chord2_inv_along*(along_x*axis[0] + along_y*axis[1] + along_z*axis[2]) + d_chord2_inv_along_2*(axis[0]*d_chord2_along_x + axis[1]*d_chord2_along_y + axis[2]*d_chord2_along_z), \
         d_chord2_d_chord2_cos_fleet = -d_chord2_d_chord2_rise*inv_fleet*rise - d_chord2_inv_fleet*d_chord2_rise*rise - d_chord2_rise*d_chord2_rise_2*inv_fleet, \
         d_chord2_d_chord2_arm = d_chord2_d_chord2_cos_fleet*size, \
-        d_chord2_d_chord2_lean = d_chord2_d_chord2_along_x*x[0] + d_chord2_d_chord2_along_y*x[1] + d_chord2_d_chord2_along_z*x[2], \
+        d_chord2_d_chord2_across_x = by_chord*d_chord2_d_chord2_along_x, \
+        d_chord2_d_chord2_across_y = by_chord*d_chord2_d_chord2_along_y, \
+        d_chord2_d_chord2_across_z = by_chord*d_chord2_d_chord2_along_z, \
+        d_chord2_d_chord2_lean = d_chord2_d_chord2_across_x*x[0] + d_chord2_d_chord2_across_y*x[1] + d_chord2_d_chord2_across_z*x[2], \
         d_chord2_d_b_T = -(EA*d_chord2_length_2/(b*b)), \
         d_chord2_d_b_pull = T*d_chord2_d_b_T*inv_pull + d_b_T*d_chord2_T_2*inv_pull + d_chord2_inv_pull_2*(T*d_b_T + least*limit), \
         d_chord2_d_b_inv_pull = -2.0*d_b_pull*d_chord2_inv_pull_2*inv_pull - d_chord2_d_b_pull*inv_pull*inv_pull, \
@@ -292,7 +334,10 @@
         d_chord2_d_b_rise = axis[0]*d_b_inv_along*d_chord2_along_x_2 + axis[0]*d_chord2_d_b_along_x*inv_along + axis[1]*d_b_inv_along*d_chord2_along_y_2 + axis[1]*d_chord2_d_b_along_y*inv_along + axis[2]*d_b_inv_along*d_chord2_along_z_2 + axis[2]*d_chord2_d_b_along_z*inv_along + d_chord2_d_b_inv_along*(along_x*axis[0] + along_y*axis[1] + along_z*axis[2]) + d_chord2_inv_along_2*(axis[0]*d_b_along_x + axis[1]*d_b_along_y + axis[2]*d_b_along_z), \
         d_chord2_d_b_cos_fleet = -d_b_rise*d_chord2_inv_fleet*rise - d_b_rise*d_chord2_rise_2*inv_fleet - d_chord2_d_b_rise*inv_fleet*rise, \
         d_chord2_d_b_arm = d_chord2_d_b_cos_fleet*size, \
-        d_chord2_d_b_lean = d_chord2_d_b_along_x*x[0] + d_chord2_d_b_along_y*x[1] + d_chord2_d_b_along_z*x[2];
+        d_chord2_d_b_across_x = by_chord*d_chord2_d_b_along_x, \
+        d_chord2_d_b_across_y = by_chord*d_chord2_d_b_along_y, \
+        d_chord2_d_b_across_z = by_chord*d_chord2_d_b_along_z, \
+        d_chord2_d_b_lean = d_chord2_d_b_across_x*x[0] + d_chord2_d_b_across_y*x[1] + d_chord2_d_b_across_z*x[2];
 
 /* part of derivatives: of tangent_point_conditions and 1 more */
 #define TANGENT_POINT_PART_OF_DERIVATIVES_8 \
@@ -321,7 +366,10 @@
         d_b_d_b_rise = axis[0]*d_b_along_x_2*d_b_inv_along + axis[0]*d_b_d_b_along_x*inv_along + axis[1]*d_b_along_y_2*d_b_inv_along + axis[1]*d_b_d_b_along_y*inv_along + axis[2]*d_b_along_z_2*d_b_inv_along + axis[2]*d_b_d_b_along_z*inv_along + d_b_d_b_inv_along*(along_x*axis[0] + along_y*axis[1] + along_z*axis[2]) + d_b_inv_along_2*(axis[0]*d_b_along_x + axis[1]*d_b_along_y + axis[2]*d_b_along_z), \
         d_b_d_b_cos_fleet = -d_b_d_b_rise*inv_fleet*rise - d_b_inv_fleet*d_b_rise*rise - d_b_rise*d_b_rise_2*inv_fleet, \
         d_b_d_b_arm = d_b_d_b_cos_fleet*size, \
-        d_b_d_b_lean = d_b_d_b_along_x*x[0] + d_b_d_b_along_y*x[1] + d_b_d_b_along_z*x[2];
+        d_b_d_b_across_x = by_chord*d_b_d_b_along_x, \
+        d_b_d_b_across_y = by_chord*d_b_d_b_along_y, \
+        d_b_d_b_across_z = by_chord*d_b_d_b_along_z, \
+        d_b_d_b_lean = d_b_d_b_across_x*x[0] + d_b_d_b_across_y*x[1] + d_b_d_b_across_z*x[2];
 
 /* part of rates: of tangent_point_motion and 1 more */
 #define TANGENT_POINT_PART_OF_RATES \
@@ -334,8 +382,11 @@
         dt_bend = b*dt_inv_pull + b_rate*inv_pull, \
         dt_inv_length = -(dt_length*inv_length*inv_length), \
         dt_along_x = chord[0]*dt_inv_length + chord_rate[0]*inv_length + dt_bend*weight[0], \
+        dt_across_x = by_chord*dt_along_x + slope_rate[0]*(-by_chord + 1.0), \
         dt_along_y = chord[1]*dt_inv_length + chord_rate[1]*inv_length + dt_bend*weight[1], \
+        dt_across_y = by_chord*dt_along_y + slope_rate[1]*(-by_chord + 1.0), \
         dt_along_z = chord[2]*dt_inv_length + chord_rate[2]*inv_length + dt_bend*weight[2], \
+        dt_across_z = by_chord*dt_along_z + slope_rate[2]*(-by_chord + 1.0), \
         dt_len_along = inv_along*(along_x*dt_along_x + along_y*dt_along_y + along_z*dt_along_z), \
         dt_inv_along = -(dt_len_along*inv_along*inv_along);
 
@@ -349,9 +400,12 @@
         dt_dt_bend = b*dt_dt_inv_pull + 2.0*b_rate*dt_inv_pull, \
         dt_dt_inv_length = -dt_dt_length*inv_length*inv_length - 2.0*dt_inv_length*dt_length*inv_length, \
         dt_dt_along_x = chord[0]*dt_dt_inv_length + 2.0*chord_rate[0]*dt_inv_length + dt_dt_bend*weight[0], \
+        dt_dt_across_x = by_chord*dt_dt_along_x, \
         dt_dt_along_y = chord[1]*dt_dt_inv_length + 2.0*chord_rate[1]*dt_inv_length + dt_dt_bend*weight[1], \
+        dt_dt_across_y = by_chord*dt_dt_along_y, \
         dt_dt_along_z = chord[2]*dt_dt_inv_length + 2.0*chord_rate[2]*dt_inv_length + dt_dt_bend*weight[2], \
-        dt_dt_lean = 2.0*dt_along_x*x_rate[0] + 2.0*dt_along_y*x_rate[1] + 2.0*dt_along_z*x_rate[2] + dt_dt_along_x*x[0] + dt_dt_along_y*x[1] + dt_dt_along_z*x[2], \
+        dt_dt_across_z = by_chord*dt_dt_along_z, \
+        dt_dt_lean = 2.0*dt_across_x*x_rate[0] + 2.0*dt_across_y*x_rate[1] + 2.0*dt_across_z*x_rate[2] + dt_dt_across_x*x[0] + dt_dt_across_y*x[1] + dt_dt_across_z*x[2], \
         dt_dt_len_along = along_x*dt_dt_along_x*inv_along + along_y*dt_dt_along_y*inv_along + along_z*dt_dt_along_z*inv_along + dt_along_x*dt_along_x*inv_along + dt_along_y*dt_along_y*inv_along + dt_along_z*dt_along_z*inv_along + dt_inv_along*(along_x*dt_along_x + along_y*dt_along_y + along_z*dt_along_z), \
         dt_dt_inv_along = -dt_dt_len_along*inv_along*inv_along - 2.0*dt_inv_along*dt_len_along*inv_along;
 
@@ -390,6 +444,18 @@
         cos_fleet = FU_SQRT(-rise*rise + 1.0), \
         inv_fleet = 1.0/cos_fleet;
 
+/* conditions: of tangent_point_conditions and 1 more */
+#define TANGENT_POINT_CONDITIONS \
+    const fu_real \
+        size = FU_SQRT(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]), \
+        inv_size = 1.0/size, \
+        across_x = along_x*by_chord + slope[0]*(-by_chord + 1.0), \
+        across_y = along_y*by_chord + slope[1]*(-by_chord + 1.0), \
+        across_z = along_z*by_chord + slope[2]*(-by_chord + 1.0), \
+        aside = axis[0]*x[0] + axis[1]*x[1] + axis[2]*x[2], \
+        lean = across_x*x[0] + across_y*x[1] + across_z*x[2], \
+        arm = cos_fleet*size;
+
 /* mean place of the zone: of tangent_point_wrap_energy and 2 more */
 #define TANGENT_POINT_MEAN_PLACE_OF_THE_ZONE \
     const fu_real \
@@ -406,17 +472,11 @@
         m01_x = C1*n_x, \
         m01_y = C1*n_y;
 
-/* conditions of a tangent point, and their derivatives (Clairaut's relation of geodesics); 473 add, 1176 mul, 24 div, 5 sqrt */
-void tangent_point_conditions(const fu_real *x, const fu_real *chord, fu_real b, const fu_real *axis, const fu_real *weight, fu_real EA, fu_real limit, fu_real R, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K)
+/* conditions of a tangent point, and their derivatives (Clairaut's relation of geodesics); 482 add, 1233 mul, 24 div, 5 sqrt */
+void tangent_point_conditions(const fu_real *x, const fu_real *slope, const fu_real *chord, fu_real b, const fu_real *axis, const fu_real *weight, fu_real EA, fu_real by_chord, fu_real limit, fu_real R, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K)
 {
     TANGENT_POINT_DIRECTION_OF_THE_SPAN
-    /* conditions */
-    const fu_real
-        size = FU_SQRT(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]),
-        inv_size = 1.0/size,
-        aside = axis[0]*x[0] + axis[1]*x[1] + axis[2]*x[2],
-        lean = along_x*x[0] + along_y*x[1] + along_z*x[2],
-        arm = cos_fleet*size;
+    TANGENT_POINT_CONDITIONS
     /* derivatives */
     fu_real d_x_size[3], d_x_arm[3];
     TANGENT_POINT_PART_OF_DERIVATIVES
@@ -434,76 +494,113 @@ void tangent_point_conditions(const fu_real *x, const fu_real *chord, fu_real b,
     J[0] = axis[0];
     J[1] = axis[1];
     J[2] = axis[2];
-    FU_EACH(g, 4,
+    FU_EACH(g, 7,
         J[g + 3] = 0.0;)
-    J[7] = along_x;
-    J[8] = along_y;
-    J[9] = along_z;
-    J[10] = d_chord0_lean;
-    J[11] = d_chord1_lean;
-    J[12] = d_chord2_lean;
-    J[13] = d_b_lean;
-    J[14] = d_x_arm[0];
-    J[15] = d_x_arm[1];
-    J[16] = d_x_arm[2];
-    J[17] = d_chord0_arm;
-    J[18] = d_chord1_arm;
-    J[19] = d_chord2_arm;
-    J[20] = d_b_arm;
+    J[10] = across_x;
+    J[11] = across_y;
+    J[12] = across_z;
+    J[13] = d_slope0_lean;
+    J[14] = d_slope1_lean;
+    J[15] = d_slope2_lean;
+    J[16] = d_chord0_lean;
+    J[17] = d_chord1_lean;
+    J[18] = d_chord2_lean;
+    J[19] = d_b_lean;
+    J[20] = d_x_arm[0];
+    J[21] = d_x_arm[1];
+    J[22] = d_x_arm[2];
+    J[23] = 0.0;
+    J[24] = 0.0;
+    J[25] = 0.0;
+    J[26] = d_chord0_arm;
+    J[27] = d_chord1_arm;
+    J[28] = d_chord2_arm;
+    J[29] = d_b_arm;
     K[0] = d_x0_d_x0_arm*f[2];
     K[1] = d_x0_d_x1_arm*f[2];
     K[2] = d_x0_d_x2_arm*f[2];
-    K[3] = d_chord0_along_x*f[1] + d_x0_d_chord0_arm*f[2];
-    K[4] = d_chord1_along_x*f[1] + d_x0_d_chord1_arm*f[2];
-    K[5] = d_chord2_along_x*f[1] + d_x0_d_chord2_arm*f[2];
-    K[6] = d_b_along_x*f[1] + d_x0_d_b_arm*f[2];
-    K[7] = d_x0_d_x1_arm*f[2];
-    K[8] = d_x1_d_x1_arm*f[2];
-    K[9] = d_x1_d_x2_arm*f[2];
-    K[10] = d_chord0_along_y*f[1] + d_x1_d_chord0_arm*f[2];
-    K[11] = d_chord1_along_y*f[1] + d_x1_d_chord1_arm*f[2];
-    K[12] = d_chord2_along_y*f[1] + d_x1_d_chord2_arm*f[2];
-    K[13] = d_b_along_y*f[1] + d_x1_d_b_arm*f[2];
-    K[14] = d_x0_d_x2_arm*f[2];
-    K[15] = d_x1_d_x2_arm*f[2];
-    K[16] = d_x2_d_x2_arm*f[2];
-    K[17] = d_chord0_along_z*f[1] + d_x2_d_chord0_arm*f[2];
-    K[18] = d_chord1_along_z*f[1] + d_x2_d_chord1_arm*f[2];
-    K[19] = d_chord2_along_z*f[1] + d_x2_d_chord2_arm*f[2];
-    K[20] = d_b_along_z*f[1] + d_x2_d_b_arm*f[2];
-    K[21] = d_chord0_along_x*f[1] + d_x0_d_chord0_arm*f[2];
-    K[22] = d_chord0_along_y*f[1] + d_x1_d_chord0_arm*f[2];
-    K[23] = d_chord0_along_z*f[1] + d_x2_d_chord0_arm*f[2];
-    K[24] = d_chord0_d_chord0_arm*f[2] + d_chord0_d_chord0_lean*f[1];
-    K[25] = d_chord0_d_chord1_arm*f[2] + d_chord0_d_chord1_lean*f[1];
-    K[26] = d_chord0_d_chord2_arm*f[2] + d_chord0_d_chord2_lean*f[1];
-    K[27] = d_chord0_d_b_arm*f[2] + d_chord0_d_b_lean*f[1];
-    K[28] = d_chord1_along_x*f[1] + d_x0_d_chord1_arm*f[2];
-    K[29] = d_chord1_along_y*f[1] + d_x1_d_chord1_arm*f[2];
-    K[30] = d_chord1_along_z*f[1] + d_x2_d_chord1_arm*f[2];
-    K[31] = d_chord0_d_chord1_arm*f[2] + d_chord0_d_chord1_lean*f[1];
-    K[32] = d_chord1_d_chord1_arm*f[2] + d_chord1_d_chord1_lean*f[1];
-    K[33] = d_chord1_d_chord2_arm*f[2] + d_chord1_d_chord2_lean*f[1];
-    K[34] = d_chord1_d_b_arm*f[2] + d_chord1_d_b_lean*f[1];
-    K[35] = d_chord2_along_x*f[1] + d_x0_d_chord2_arm*f[2];
-    K[36] = d_chord2_along_y*f[1] + d_x1_d_chord2_arm*f[2];
-    K[37] = d_chord2_along_z*f[1] + d_x2_d_chord2_arm*f[2];
-    K[38] = d_chord0_d_chord2_arm*f[2] + d_chord0_d_chord2_lean*f[1];
-    K[39] = d_chord1_d_chord2_arm*f[2] + d_chord1_d_chord2_lean*f[1];
-    K[40] = d_chord2_d_chord2_arm*f[2] + d_chord2_d_chord2_lean*f[1];
-    K[41] = d_chord2_d_b_arm*f[2] + d_chord2_d_b_lean*f[1];
-    K[42] = d_b_along_x*f[1] + d_x0_d_b_arm*f[2];
-    K[43] = d_b_along_y*f[1] + d_x1_d_b_arm*f[2];
-    K[44] = d_b_along_z*f[1] + d_x2_d_b_arm*f[2];
-    K[45] = d_chord0_d_b_arm*f[2] + d_chord0_d_b_lean*f[1];
-    K[46] = d_chord1_d_b_arm*f[2] + d_chord1_d_b_lean*f[1];
-    K[47] = d_chord2_d_b_arm*f[2] + d_chord2_d_b_lean*f[1];
-    K[48] = d_b_d_b_arm*f[2] + d_b_d_b_lean*f[1];
+    K[3] = d_slope0_across_x*f[1];
+    K[4] = 0.0;
+    K[5] = 0.0;
+    K[6] = d_chord0_across_x*f[1] + d_x0_d_chord0_arm*f[2];
+    K[7] = d_chord1_across_x*f[1] + d_x0_d_chord1_arm*f[2];
+    K[8] = d_chord2_across_x*f[1] + d_x0_d_chord2_arm*f[2];
+    K[9] = d_b_across_x*f[1] + d_x0_d_b_arm*f[2];
+    K[10] = d_x0_d_x1_arm*f[2];
+    K[11] = d_x1_d_x1_arm*f[2];
+    K[12] = d_x1_d_x2_arm*f[2];
+    K[13] = 0.0;
+    K[14] = d_slope1_across_y*f[1];
+    K[15] = 0.0;
+    K[16] = d_chord0_across_y*f[1] + d_x1_d_chord0_arm*f[2];
+    K[17] = d_chord1_across_y*f[1] + d_x1_d_chord1_arm*f[2];
+    K[18] = d_chord2_across_y*f[1] + d_x1_d_chord2_arm*f[2];
+    K[19] = d_b_across_y*f[1] + d_x1_d_b_arm*f[2];
+    K[20] = d_x0_d_x2_arm*f[2];
+    K[21] = d_x1_d_x2_arm*f[2];
+    K[22] = d_x2_d_x2_arm*f[2];
+    K[23] = 0.0;
+    K[24] = 0.0;
+    K[25] = d_slope2_across_z*f[1];
+    K[26] = d_chord0_across_z*f[1] + d_x2_d_chord0_arm*f[2];
+    K[27] = d_chord1_across_z*f[1] + d_x2_d_chord1_arm*f[2];
+    K[28] = d_chord2_across_z*f[1] + d_x2_d_chord2_arm*f[2];
+    K[29] = d_b_across_z*f[1] + d_x2_d_b_arm*f[2];
+    K[30] = d_slope0_across_x*f[1];
+    FU_EACH(g, 10,
+        K[g + 31] = 0.0;)
+    K[41] = d_slope1_across_y*f[1];
+    FU_EACH(g, 10,
+        K[g + 42] = 0.0;)
+    K[52] = d_slope2_across_z*f[1];
+    FU_EACH(g, 7,
+        K[g + 53] = 0.0;)
+    K[60] = d_chord0_across_x*f[1] + d_x0_d_chord0_arm*f[2];
+    K[61] = d_chord0_across_y*f[1] + d_x1_d_chord0_arm*f[2];
+    K[62] = d_chord0_across_z*f[1] + d_x2_d_chord0_arm*f[2];
+    K[63] = 0.0;
+    K[64] = 0.0;
+    K[65] = 0.0;
+    K[66] = d_chord0_d_chord0_arm*f[2] + d_chord0_d_chord0_lean*f[1];
+    K[67] = d_chord0_d_chord1_arm*f[2] + d_chord0_d_chord1_lean*f[1];
+    K[68] = d_chord0_d_chord2_arm*f[2] + d_chord0_d_chord2_lean*f[1];
+    K[69] = d_chord0_d_b_arm*f[2] + d_chord0_d_b_lean*f[1];
+    K[70] = d_chord1_across_x*f[1] + d_x0_d_chord1_arm*f[2];
+    K[71] = d_chord1_across_y*f[1] + d_x1_d_chord1_arm*f[2];
+    K[72] = d_chord1_across_z*f[1] + d_x2_d_chord1_arm*f[2];
+    K[73] = 0.0;
+    K[74] = 0.0;
+    K[75] = 0.0;
+    K[76] = d_chord0_d_chord1_arm*f[2] + d_chord0_d_chord1_lean*f[1];
+    K[77] = d_chord1_d_chord1_arm*f[2] + d_chord1_d_chord1_lean*f[1];
+    K[78] = d_chord1_d_chord2_arm*f[2] + d_chord1_d_chord2_lean*f[1];
+    K[79] = d_chord1_d_b_arm*f[2] + d_chord1_d_b_lean*f[1];
+    K[80] = d_chord2_across_x*f[1] + d_x0_d_chord2_arm*f[2];
+    K[81] = d_chord2_across_y*f[1] + d_x1_d_chord2_arm*f[2];
+    K[82] = d_chord2_across_z*f[1] + d_x2_d_chord2_arm*f[2];
+    K[83] = 0.0;
+    K[84] = 0.0;
+    K[85] = 0.0;
+    K[86] = d_chord0_d_chord2_arm*f[2] + d_chord0_d_chord2_lean*f[1];
+    K[87] = d_chord1_d_chord2_arm*f[2] + d_chord1_d_chord2_lean*f[1];
+    K[88] = d_chord2_d_chord2_arm*f[2] + d_chord2_d_chord2_lean*f[1];
+    K[89] = d_chord2_d_b_arm*f[2] + d_chord2_d_b_lean*f[1];
+    K[90] = d_b_across_x*f[1] + d_x0_d_b_arm*f[2];
+    K[91] = d_b_across_y*f[1] + d_x1_d_b_arm*f[2];
+    K[92] = d_b_across_z*f[1] + d_x2_d_b_arm*f[2];
+    K[93] = 0.0;
+    K[94] = 0.0;
+    K[95] = 0.0;
+    K[96] = d_chord0_d_b_arm*f[2] + d_chord0_d_b_lean*f[1];
+    K[97] = d_chord1_d_b_arm*f[2] + d_chord1_d_b_lean*f[1];
+    K[98] = d_chord2_d_b_arm*f[2] + d_chord2_d_b_lean*f[1];
+    K[99] = d_b_d_b_arm*f[2] + d_b_d_b_lean*f[1];
 }
 
-/* second rates of the conditions at zero accelerations (Clairaut's relation of geodesics); 89 add, 204 mul, 12 div, 5 sqrt */
-void tangent_point_motion(const fu_real *x, const fu_real *chord, fu_real b, const fu_real *axis, const fu_real *weight, fu_real EA, fu_real limit, const fu_real *x_rate, const fu_real *chord_rate, fu_real b_rate, fu_real *Q_d)
+/* second rates of the conditions at zero accelerations (Clairaut's relation of geodesics); 95 add, 213 mul, 12 div, 5 sqrt */
+void tangent_point_motion(const fu_real *x, const fu_real *slope, const fu_real *chord, fu_real b, const fu_real *axis, const fu_real *weight, fu_real EA, fu_real by_chord, fu_real limit, const fu_real *x_rate, const fu_real *slope_rate, const fu_real *chord_rate, fu_real b_rate, fu_real *Q_d)
 {
+    (void)slope;
     TANGENT_POINT_DIRECTION_OF_THE_SPAN
     /* conditions */
     const fu_real
@@ -623,17 +720,11 @@ void tangent_point_across(fu_real rho, fu_real l, fu_real w, fu_real g, fu_real 
     K[5] = 0.0;
 }
 
-/* conditions of a tangent point, and their derivatives by the axis, too (Clairaut's relation of geodesics); 521 add, 1401 mul, 24 div, 5 sqrt */
-void tangent_point_turned_conditions(const fu_real *x, const fu_real *chord, fu_real b, const fu_real *axis, const fu_real *weight, fu_real EA, fu_real limit, fu_real R, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K)
+/* conditions of a tangent point, and their derivatives by the axis, too (Clairaut's relation of geodesics); 530 add, 1458 mul, 24 div, 5 sqrt */
+void tangent_point_turned_conditions(const fu_real *x, const fu_real *slope, const fu_real *chord, fu_real b, const fu_real *axis, const fu_real *weight, fu_real EA, fu_real by_chord, fu_real limit, fu_real R, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K)
 {
     TANGENT_POINT_DIRECTION_OF_THE_SPAN
-    /* conditions */
-    const fu_real
-        size = FU_SQRT(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]),
-        inv_size = 1.0/size,
-        aside = axis[0]*x[0] + axis[1]*x[1] + axis[2]*x[2],
-        lean = along_x*x[0] + along_y*x[1] + along_z*x[2],
-        arm = cos_fleet*size;
+    TANGENT_POINT_CONDITIONS
     /* derivatives */
     fu_real d_x_size[3], d_x_arm[3];
     TANGENT_POINT_PART_OF_DERIVATIVES
@@ -734,136 +825,184 @@ void tangent_point_turned_conditions(const fu_real *x, const fu_real *chord, fu_
     J[0] = axis[0];
     J[1] = axis[1];
     J[2] = axis[2];
-    FU_EACH(g, 4,
+    FU_EACH(g, 7,
         J[g + 3] = 0.0;)
-    J[7] = x[0];
-    J[8] = x[1];
-    J[9] = x[2];
-    J[10] = along_x;
-    J[11] = along_y;
-    J[12] = along_z;
-    J[13] = d_chord0_lean;
-    J[14] = d_chord1_lean;
-    J[15] = d_chord2_lean;
-    J[16] = d_b_lean;
-    J[17] = 0.0;
-    J[18] = 0.0;
-    J[19] = 0.0;
-    J[20] = d_x_arm[0];
-    J[21] = d_x_arm[1];
-    J[22] = d_x_arm[2];
-    J[23] = d_chord0_arm;
-    J[24] = d_chord1_arm;
-    J[25] = d_chord2_arm;
-    J[26] = d_b_arm;
-    J[27] = d_axis0_arm;
-    J[28] = d_axis1_arm;
-    J[29] = d_axis2_arm;
+    J[10] = x[0];
+    J[11] = x[1];
+    J[12] = x[2];
+    J[13] = across_x;
+    J[14] = across_y;
+    J[15] = across_z;
+    J[16] = d_slope0_lean;
+    J[17] = d_slope1_lean;
+    J[18] = d_slope2_lean;
+    J[19] = d_chord0_lean;
+    J[20] = d_chord1_lean;
+    J[21] = d_chord2_lean;
+    J[22] = d_b_lean;
+    J[23] = 0.0;
+    J[24] = 0.0;
+    J[25] = 0.0;
+    J[26] = d_x_arm[0];
+    J[27] = d_x_arm[1];
+    J[28] = d_x_arm[2];
+    J[29] = 0.0;
+    J[30] = 0.0;
+    J[31] = 0.0;
+    J[32] = d_chord0_arm;
+    J[33] = d_chord1_arm;
+    J[34] = d_chord2_arm;
+    J[35] = d_b_arm;
+    J[36] = d_axis0_arm;
+    J[37] = d_axis1_arm;
+    J[38] = d_axis2_arm;
     K[0] = d_x0_d_x0_arm*f[2];
     K[1] = d_x0_d_x1_arm*f[2];
     K[2] = d_x0_d_x2_arm*f[2];
-    K[3] = d_chord0_along_x*f[1] + d_x0_d_chord0_arm*f[2];
-    K[4] = d_chord1_along_x*f[1] + d_x0_d_chord1_arm*f[2];
-    K[5] = d_chord2_along_x*f[1] + d_x0_d_chord2_arm*f[2];
-    K[6] = d_b_along_x*f[1] + d_x0_d_b_arm*f[2];
-    K[7] = d_x0_d_axis0_arm*f[2] + f[0];
-    K[8] = d_x0_d_axis1_arm*f[2];
-    K[9] = d_x0_d_axis2_arm*f[2];
-    K[10] = d_x0_d_x1_arm*f[2];
-    K[11] = d_x1_d_x1_arm*f[2];
-    K[12] = d_x1_d_x2_arm*f[2];
-    K[13] = d_chord0_along_y*f[1] + d_x1_d_chord0_arm*f[2];
-    K[14] = d_chord1_along_y*f[1] + d_x1_d_chord1_arm*f[2];
-    K[15] = d_chord2_along_y*f[1] + d_x1_d_chord2_arm*f[2];
-    K[16] = d_b_along_y*f[1] + d_x1_d_b_arm*f[2];
-    K[17] = d_x1_d_axis0_arm*f[2];
-    K[18] = d_x1_d_axis1_arm*f[2] + f[0];
-    K[19] = d_x1_d_axis2_arm*f[2];
-    K[20] = d_x0_d_x2_arm*f[2];
-    K[21] = d_x1_d_x2_arm*f[2];
-    K[22] = d_x2_d_x2_arm*f[2];
-    K[23] = d_chord0_along_z*f[1] + d_x2_d_chord0_arm*f[2];
-    K[24] = d_chord1_along_z*f[1] + d_x2_d_chord1_arm*f[2];
-    K[25] = d_chord2_along_z*f[1] + d_x2_d_chord2_arm*f[2];
-    K[26] = d_b_along_z*f[1] + d_x2_d_b_arm*f[2];
-    K[27] = d_x2_d_axis0_arm*f[2];
-    K[28] = d_x2_d_axis1_arm*f[2];
-    K[29] = d_x2_d_axis2_arm*f[2] + f[0];
-    K[30] = d_chord0_along_x*f[1] + d_x0_d_chord0_arm*f[2];
-    K[31] = d_chord0_along_y*f[1] + d_x1_d_chord0_arm*f[2];
-    K[32] = d_chord0_along_z*f[1] + d_x2_d_chord0_arm*f[2];
-    K[33] = d_chord0_d_chord0_arm*f[2] + d_chord0_d_chord0_lean*f[1];
-    K[34] = d_chord0_d_chord1_arm*f[2] + d_chord0_d_chord1_lean*f[1];
-    K[35] = d_chord0_d_chord2_arm*f[2] + d_chord0_d_chord2_lean*f[1];
-    K[36] = d_chord0_d_b_arm*f[2] + d_chord0_d_b_lean*f[1];
-    K[37] = d_chord0_d_axis0_arm*f[2];
-    K[38] = d_chord0_d_axis1_arm*f[2];
-    K[39] = d_chord0_d_axis2_arm*f[2];
-    K[40] = d_chord1_along_x*f[1] + d_x0_d_chord1_arm*f[2];
-    K[41] = d_chord1_along_y*f[1] + d_x1_d_chord1_arm*f[2];
-    K[42] = d_chord1_along_z*f[1] + d_x2_d_chord1_arm*f[2];
-    K[43] = d_chord0_d_chord1_arm*f[2] + d_chord0_d_chord1_lean*f[1];
-    K[44] = d_chord1_d_chord1_arm*f[2] + d_chord1_d_chord1_lean*f[1];
-    K[45] = d_chord1_d_chord2_arm*f[2] + d_chord1_d_chord2_lean*f[1];
-    K[46] = d_chord1_d_b_arm*f[2] + d_chord1_d_b_lean*f[1];
-    K[47] = d_chord1_d_axis0_arm*f[2];
-    K[48] = d_chord1_d_axis1_arm*f[2];
-    K[49] = d_chord1_d_axis2_arm*f[2];
-    K[50] = d_chord2_along_x*f[1] + d_x0_d_chord2_arm*f[2];
-    K[51] = d_chord2_along_y*f[1] + d_x1_d_chord2_arm*f[2];
-    K[52] = d_chord2_along_z*f[1] + d_x2_d_chord2_arm*f[2];
-    K[53] = d_chord0_d_chord2_arm*f[2] + d_chord0_d_chord2_lean*f[1];
-    K[54] = d_chord1_d_chord2_arm*f[2] + d_chord1_d_chord2_lean*f[1];
-    K[55] = d_chord2_d_chord2_arm*f[2] + d_chord2_d_chord2_lean*f[1];
-    K[56] = d_chord2_d_b_arm*f[2] + d_chord2_d_b_lean*f[1];
-    K[57] = d_chord2_d_axis0_arm*f[2];
-    K[58] = d_chord2_d_axis1_arm*f[2];
-    K[59] = d_chord2_d_axis2_arm*f[2];
-    K[60] = d_b_along_x*f[1] + d_x0_d_b_arm*f[2];
-    K[61] = d_b_along_y*f[1] + d_x1_d_b_arm*f[2];
-    K[62] = d_b_along_z*f[1] + d_x2_d_b_arm*f[2];
-    K[63] = d_chord0_d_b_arm*f[2] + d_chord0_d_b_lean*f[1];
-    K[64] = d_chord1_d_b_arm*f[2] + d_chord1_d_b_lean*f[1];
-    K[65] = d_chord2_d_b_arm*f[2] + d_chord2_d_b_lean*f[1];
-    K[66] = d_b_d_b_arm*f[2] + d_b_d_b_lean*f[1];
-    K[67] = d_b_d_axis0_arm*f[2];
-    K[68] = d_b_d_axis1_arm*f[2];
-    K[69] = d_b_d_axis2_arm*f[2];
-    K[70] = d_x0_d_axis0_arm*f[2] + f[0];
-    K[71] = d_x1_d_axis0_arm*f[2];
-    K[72] = d_x2_d_axis0_arm*f[2];
-    K[73] = d_chord0_d_axis0_arm*f[2];
-    K[74] = d_chord1_d_axis0_arm*f[2];
-    K[75] = d_chord2_d_axis0_arm*f[2];
-    K[76] = d_b_d_axis0_arm*f[2];
-    K[77] = d_axis0_d_axis0_arm*f[2];
-    K[78] = d_axis0_d_axis1_arm*f[2];
-    K[79] = d_axis0_d_axis2_arm*f[2];
-    K[80] = d_x0_d_axis1_arm*f[2];
-    K[81] = d_x1_d_axis1_arm*f[2] + f[0];
-    K[82] = d_x2_d_axis1_arm*f[2];
-    K[83] = d_chord0_d_axis1_arm*f[2];
-    K[84] = d_chord1_d_axis1_arm*f[2];
-    K[85] = d_chord2_d_axis1_arm*f[2];
-    K[86] = d_b_d_axis1_arm*f[2];
-    K[87] = d_axis0_d_axis1_arm*f[2];
-    K[88] = d_axis1_d_axis1_arm*f[2];
-    K[89] = d_axis1_d_axis2_arm*f[2];
-    K[90] = d_x0_d_axis2_arm*f[2];
-    K[91] = d_x1_d_axis2_arm*f[2];
-    K[92] = d_x2_d_axis2_arm*f[2] + f[0];
-    K[93] = d_chord0_d_axis2_arm*f[2];
-    K[94] = d_chord1_d_axis2_arm*f[2];
-    K[95] = d_chord2_d_axis2_arm*f[2];
-    K[96] = d_b_d_axis2_arm*f[2];
-    K[97] = d_axis0_d_axis2_arm*f[2];
-    K[98] = d_axis1_d_axis2_arm*f[2];
-    K[99] = d_axis2_d_axis2_arm*f[2];
+    K[3] = d_slope0_across_x*f[1];
+    K[4] = 0.0;
+    K[5] = 0.0;
+    K[6] = d_chord0_across_x*f[1] + d_x0_d_chord0_arm*f[2];
+    K[7] = d_chord1_across_x*f[1] + d_x0_d_chord1_arm*f[2];
+    K[8] = d_chord2_across_x*f[1] + d_x0_d_chord2_arm*f[2];
+    K[9] = d_b_across_x*f[1] + d_x0_d_b_arm*f[2];
+    K[10] = d_x0_d_axis0_arm*f[2] + f[0];
+    K[11] = d_x0_d_axis1_arm*f[2];
+    K[12] = d_x0_d_axis2_arm*f[2];
+    K[13] = d_x0_d_x1_arm*f[2];
+    K[14] = d_x1_d_x1_arm*f[2];
+    K[15] = d_x1_d_x2_arm*f[2];
+    K[16] = 0.0;
+    K[17] = d_slope1_across_y*f[1];
+    K[18] = 0.0;
+    K[19] = d_chord0_across_y*f[1] + d_x1_d_chord0_arm*f[2];
+    K[20] = d_chord1_across_y*f[1] + d_x1_d_chord1_arm*f[2];
+    K[21] = d_chord2_across_y*f[1] + d_x1_d_chord2_arm*f[2];
+    K[22] = d_b_across_y*f[1] + d_x1_d_b_arm*f[2];
+    K[23] = d_x1_d_axis0_arm*f[2];
+    K[24] = d_x1_d_axis1_arm*f[2] + f[0];
+    K[25] = d_x1_d_axis2_arm*f[2];
+    K[26] = d_x0_d_x2_arm*f[2];
+    K[27] = d_x1_d_x2_arm*f[2];
+    K[28] = d_x2_d_x2_arm*f[2];
+    K[29] = 0.0;
+    K[30] = 0.0;
+    K[31] = d_slope2_across_z*f[1];
+    K[32] = d_chord0_across_z*f[1] + d_x2_d_chord0_arm*f[2];
+    K[33] = d_chord1_across_z*f[1] + d_x2_d_chord1_arm*f[2];
+    K[34] = d_chord2_across_z*f[1] + d_x2_d_chord2_arm*f[2];
+    K[35] = d_b_across_z*f[1] + d_x2_d_b_arm*f[2];
+    K[36] = d_x2_d_axis0_arm*f[2];
+    K[37] = d_x2_d_axis1_arm*f[2];
+    K[38] = d_x2_d_axis2_arm*f[2] + f[0];
+    K[39] = d_slope0_across_x*f[1];
+    FU_EACH(g, 12,
+        K[g + 40] = 0.0;)
+    K[52] = 0.0;
+    K[53] = d_slope1_across_y*f[1];
+    FU_EACH(g, 12,
+        K[g + 54] = 0.0;)
+    K[66] = 0.0;
+    K[67] = d_slope2_across_z*f[1];
+    FU_EACH(g, 10,
+        K[g + 68] = 0.0;)
+    K[78] = d_chord0_across_x*f[1] + d_x0_d_chord0_arm*f[2];
+    K[79] = d_chord0_across_y*f[1] + d_x1_d_chord0_arm*f[2];
+    K[80] = d_chord0_across_z*f[1] + d_x2_d_chord0_arm*f[2];
+    K[81] = 0.0;
+    K[82] = 0.0;
+    K[83] = 0.0;
+    K[84] = d_chord0_d_chord0_arm*f[2] + d_chord0_d_chord0_lean*f[1];
+    K[85] = d_chord0_d_chord1_arm*f[2] + d_chord0_d_chord1_lean*f[1];
+    K[86] = d_chord0_d_chord2_arm*f[2] + d_chord0_d_chord2_lean*f[1];
+    K[87] = d_chord0_d_b_arm*f[2] + d_chord0_d_b_lean*f[1];
+    K[88] = d_chord0_d_axis0_arm*f[2];
+    K[89] = d_chord0_d_axis1_arm*f[2];
+    K[90] = d_chord0_d_axis2_arm*f[2];
+    K[91] = d_chord1_across_x*f[1] + d_x0_d_chord1_arm*f[2];
+    K[92] = d_chord1_across_y*f[1] + d_x1_d_chord1_arm*f[2];
+    K[93] = d_chord1_across_z*f[1] + d_x2_d_chord1_arm*f[2];
+    K[94] = 0.0;
+    K[95] = 0.0;
+    K[96] = 0.0;
+    K[97] = d_chord0_d_chord1_arm*f[2] + d_chord0_d_chord1_lean*f[1];
+    K[98] = d_chord1_d_chord1_arm*f[2] + d_chord1_d_chord1_lean*f[1];
+    K[99] = d_chord1_d_chord2_arm*f[2] + d_chord1_d_chord2_lean*f[1];
+    K[100] = d_chord1_d_b_arm*f[2] + d_chord1_d_b_lean*f[1];
+    K[101] = d_chord1_d_axis0_arm*f[2];
+    K[102] = d_chord1_d_axis1_arm*f[2];
+    K[103] = d_chord1_d_axis2_arm*f[2];
+    K[104] = d_chord2_across_x*f[1] + d_x0_d_chord2_arm*f[2];
+    K[105] = d_chord2_across_y*f[1] + d_x1_d_chord2_arm*f[2];
+    K[106] = d_chord2_across_z*f[1] + d_x2_d_chord2_arm*f[2];
+    K[107] = 0.0;
+    K[108] = 0.0;
+    K[109] = 0.0;
+    K[110] = d_chord0_d_chord2_arm*f[2] + d_chord0_d_chord2_lean*f[1];
+    K[111] = d_chord1_d_chord2_arm*f[2] + d_chord1_d_chord2_lean*f[1];
+    K[112] = d_chord2_d_chord2_arm*f[2] + d_chord2_d_chord2_lean*f[1];
+    K[113] = d_chord2_d_b_arm*f[2] + d_chord2_d_b_lean*f[1];
+    K[114] = d_chord2_d_axis0_arm*f[2];
+    K[115] = d_chord2_d_axis1_arm*f[2];
+    K[116] = d_chord2_d_axis2_arm*f[2];
+    K[117] = d_b_across_x*f[1] + d_x0_d_b_arm*f[2];
+    K[118] = d_b_across_y*f[1] + d_x1_d_b_arm*f[2];
+    K[119] = d_b_across_z*f[1] + d_x2_d_b_arm*f[2];
+    K[120] = 0.0;
+    K[121] = 0.0;
+    K[122] = 0.0;
+    K[123] = d_chord0_d_b_arm*f[2] + d_chord0_d_b_lean*f[1];
+    K[124] = d_chord1_d_b_arm*f[2] + d_chord1_d_b_lean*f[1];
+    K[125] = d_chord2_d_b_arm*f[2] + d_chord2_d_b_lean*f[1];
+    K[126] = d_b_d_b_arm*f[2] + d_b_d_b_lean*f[1];
+    K[127] = d_b_d_axis0_arm*f[2];
+    K[128] = d_b_d_axis1_arm*f[2];
+    K[129] = d_b_d_axis2_arm*f[2];
+    K[130] = d_x0_d_axis0_arm*f[2] + f[0];
+    K[131] = d_x1_d_axis0_arm*f[2];
+    K[132] = d_x2_d_axis0_arm*f[2];
+    K[133] = 0.0;
+    K[134] = 0.0;
+    K[135] = 0.0;
+    K[136] = d_chord0_d_axis0_arm*f[2];
+    K[137] = d_chord1_d_axis0_arm*f[2];
+    K[138] = d_chord2_d_axis0_arm*f[2];
+    K[139] = d_b_d_axis0_arm*f[2];
+    K[140] = d_axis0_d_axis0_arm*f[2];
+    K[141] = d_axis0_d_axis1_arm*f[2];
+    K[142] = d_axis0_d_axis2_arm*f[2];
+    K[143] = d_x0_d_axis1_arm*f[2];
+    K[144] = d_x1_d_axis1_arm*f[2] + f[0];
+    K[145] = d_x2_d_axis1_arm*f[2];
+    K[146] = 0.0;
+    K[147] = 0.0;
+    K[148] = 0.0;
+    K[149] = d_chord0_d_axis1_arm*f[2];
+    K[150] = d_chord1_d_axis1_arm*f[2];
+    K[151] = d_chord2_d_axis1_arm*f[2];
+    K[152] = d_b_d_axis1_arm*f[2];
+    K[153] = d_axis0_d_axis1_arm*f[2];
+    K[154] = d_axis1_d_axis1_arm*f[2];
+    K[155] = d_axis1_d_axis2_arm*f[2];
+    K[156] = d_x0_d_axis2_arm*f[2];
+    K[157] = d_x1_d_axis2_arm*f[2];
+    K[158] = d_x2_d_axis2_arm*f[2] + f[0];
+    K[159] = 0.0;
+    K[160] = 0.0;
+    K[161] = 0.0;
+    K[162] = d_chord0_d_axis2_arm*f[2];
+    K[163] = d_chord1_d_axis2_arm*f[2];
+    K[164] = d_chord2_d_axis2_arm*f[2];
+    K[165] = d_b_d_axis2_arm*f[2];
+    K[166] = d_axis0_d_axis2_arm*f[2];
+    K[167] = d_axis1_d_axis2_arm*f[2];
+    K[168] = d_axis2_d_axis2_arm*f[2];
 }
 
-/* second rates of the conditions at zero accelerations (Clairaut's relation of geodesics); 106 add, 231 mul, 12 div, 5 sqrt */
-void tangent_point_turned_motion(const fu_real *x, const fu_real *chord, fu_real b, const fu_real *axis, const fu_real *weight, fu_real EA, fu_real limit, const fu_real *x_rate, const fu_real *chord_rate, fu_real b_rate, const fu_real *axis_rate, fu_real *Q_d)
+/* second rates of the conditions at zero accelerations (Clairaut's relation of geodesics); 112 add, 240 mul, 12 div, 5 sqrt */
+void tangent_point_turned_motion(const fu_real *x, const fu_real *slope, const fu_real *chord, fu_real b, const fu_real *axis, const fu_real *weight, fu_real EA, fu_real by_chord, fu_real limit, const fu_real *x_rate, const fu_real *slope_rate, const fu_real *chord_rate, fu_real b_rate, const fu_real *axis_rate, fu_real *Q_d)
 {
+    (void)slope;
     TANGENT_POINT_DIRECTION_OF_THE_SPAN
     /* conditions */
     const fu_real

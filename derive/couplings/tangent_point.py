@@ -14,6 +14,10 @@ d/|d| + rho b g/(2 T), with the tension T of the chord. At low tension the sag h
 The slope at the end cannot take the place of the chord: it follows the shape of the span by its stiffness alone, so
 that rest would be a saddle of the energy. It stays free.
 
+Small wraps have the slope t in the place of e in the second condition, t . x = 0 (by_chord: 0), so that both spans join
+where the wrap vanishes. With the chord in the last condition rest is a minimum of the energy up to a fleet angle that
+falls with the length of elements (tangent_point.md).
+
 A sheave that moves along its axis takes the mass of the wrap along, which the kernels in the plane do not have. On a
 body that rotates the axis turns with it (turning_wheel.py): the conditions depend on it, and a moment acts on the body.
 """
@@ -50,20 +54,24 @@ def _program(kernel: str, doc: str) -> Program:
 
 
 class _Foot:
-    """Inputs and stages of the conditions; coordinates: x, the chord, and b; with an axis that turns the axis, too."""
+    """Inputs and stages of the conditions; coordinates: x, the slope, the chord, and b; with an axis that turns the
+    axis, too.
+    """
 
     def __init__(self, p: Program, turns: bool):
         self.x = p.input("x", DIM, "m", "end of the span less the centre of the sheave")
+        self.slope = p.input("slope", DIM, "1", "slope r_S of the span there")
         self.chord = p.input("chord", DIM, "m", "from there to a point of the span")
         self.b = p.input("b", (), "m", "stress-free length of the chord")
         self.axis = p.input("axis", DIM, "1", "axis of the sheave, a unit vector")
         self.weight = p.input("weight", DIM, "N/m", "half the weight of a length")
         self.EA = p.input("EA", (), "N", "axial stiffness")
+        self.by_chord = p.input("by_chord", (), "1", "1: x lies across the chord, 0: across the slope")
         self.limit = p.input("limit", (), "N/m", "tension over b below which the sag has its limit")
-        self.coordinates = [*self.x, *self.chord, self.b, *(self.axis if turns else ())]
+        self.coordinates = [*self.x, *self.slope, *self.chord, self.b, *(self.axis if turns else ())]
 
     def conditions(self, p: Program) -> np.ndarray:
-        """Stages: u, which is e but for its length; a . x, u . x, |x| cos f."""
+        """Stages: u, which is e but for its length; a . x, u . x or t . x, |x| cos f."""
         p.stage("direction of the span")
         length = p.define("length", sp.sqrt(self.chord.dot(self.chord)))
         inverse = p.define("inv_length", 1 / length)
@@ -78,7 +86,8 @@ class _Foot:
         p.stage("conditions")
         size = p.define("size", sp.sqrt(self.x.dot(self.x)))
         p.define("inv_size", 1 / size)
-        return np.array([p.define("aside", self.axis.dot(self.x)), p.define("lean", u.dot(self.x)),
+        across = np.array(p.vector("across", self.by_chord * u + (1 - self.by_chord) * self.slope))
+        return np.array([p.define("aside", self.axis.dot(self.x)), p.define("lean", across.dot(self.x)),
                          p.define("arm", size * fleet)])
 
 
@@ -91,11 +100,11 @@ def conditions(turns: bool = False) -> Program:
     phi = foot.conditions(p)
     p.stage("derivatives")
     J = jacobian(p, phi, foot.coordinates)
-    J = np.array([[*p.vector(f"J{k}_x", row[:DIM]), *p.vector(f"J{k}_chord", row[DIM:2 * DIM]),
-                   p.define(f"J{k}_b", row[2 * DIM]), *p.vector(f"J{k}_axis", row[2 * DIM + 1:])]
-                  for k, row in enumerate(J)], dtype=object)
-    by = "x, the chord and b" if not turns else "x, the chord, b and the axis"
-    p.output("phi", phi - np.array([0, 0, R]), "m", "a . x, u . x, |x| cos f - R")
+    J = np.array([[*p.vector(f"J{k}_x", row[:DIM]), *p.vector(f"J{k}_slope", row[DIM:2 * DIM]),
+                   *p.vector(f"J{k}_chord", row[2 * DIM:3 * DIM]), p.define(f"J{k}_b", row[3 * DIM]),
+                   *p.vector(f"J{k}_axis", row[3 * DIM + 1:])] for k, row in enumerate(J)], dtype=object)
+    by = "x, the slope, the chord and b" if not turns else "x, the slope, the chord, b and the axis"
+    p.output("phi", phi - np.array([0, 0, R]), "m", "a . x, u . x or t . x, |x| cos f - R")
     p.output("J", J, "1", f"derivatives by {by}")
     K = np.tril(jacobian(p, J.T.dot(f), foot.coordinates))
     p.output("K", K + np.tril(K, -1).T, "N/m", f"derivatives of J' f by {by}")
@@ -106,15 +115,15 @@ def motion(turns: bool = False) -> Program:
     """Return the kernel of the second rates of the conditions at zero accelerations; turns: the axis has a rate."""
     p = _program("turned_motion" if turns else "motion", "second rates of the conditions at zero accelerations")
     foot = _Foot(p, turns)
-    rates = [*p.input("x_rate", DIM, "m/s", "rate of x"), *p.input("chord_rate", DIM, "m/s", "rate of the chord"),
-             p.input("b_rate", (), "m/s", "rate of b")]
+    rates = [*p.input("x_rate", DIM, "m/s", "rate of x"), *p.input("slope_rate", DIM, "1/s", "rate of the slope"),
+             *p.input("chord_rate", DIM, "m/s", "rate of the chord"), p.input("b_rate", (), "m/s", "rate of b")]
     if turns:
         rates += [*p.input("axis_rate", DIM, "1/s", "rate of the axis")]
     dt = DirectionalDerivative(p, "dt", dict(zip(foot.coordinates, rates, strict=True)))
     phi = foot.conditions(p)
     p.stage("rates")
     rate = [p.define(f"rate_{k + 1}", dt(value)) for k, value in enumerate(phi)]
-    p.output("Q_d", dt.array(np.array(rate)), "m/s^2", "second rates at zero accelerations of x, the chord"
+    p.output("Q_d", dt.array(np.array(rate)), "m/s^2", "second rates at zero accelerations of x, the slope, the chord"
              + (" and b" if not turns else ", b and the axis"))
     return p
 

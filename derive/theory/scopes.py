@@ -458,11 +458,13 @@ def tangent_point_scope(name: str) -> Scope:
     """Return the scope of the tangent point of a rope on a sheave in space."""
     vectors = [Symbol(latex, argument, column) for latex, argument in (
         (r"\mathbf{x}", "x"), (r"\dot{\mathbf{x}}", "x_rate"), (r"\mathbf{d}", "chord"),
-        (r"\dot{\mathbf{d}}", "chord_rate"), (r"\mathbf{w}", "weight"), (r"\mathbf{a}", "axis"),
-        (r"\dot{\mathbf{a}}", "axis_rate"), (r"\boldsymbol{\lambda}", "f"))]
+        (r"\dot{\mathbf{d}}", "chord_rate"), (r"\mathbf{t}", "slope"), (r"\dot{\mathbf{t}}", "slope_rate"),
+        (r"\mathbf{w}", "weight"), (r"\mathbf{a}", "axis"), (r"\dot{\mathbf{a}}", "axis_rate"),
+        (r"\boldsymbol{\lambda}", "f"))]
     numbers = [Symbol(latex, argument, number) for latex, argument in (
         ("R", "R"), ("l", "l"), (r"\rho", "rho"), ("w", "w"), (r"\dot{w}", "w_rate"), (r"\ddot{w}", "w_acc"),
-        ("g", "g"), ("b", "b"), (r"\dot{b}", "b_rate"), (r"\mathrm{EA}", "EA"), ("N_{0}", "limit"))]
+        ("g", "g"), ("b", "b"), (r"\dot{b}", "b_rate"), (r"\mathrm{EA}", "EA"), ("N_{0}", "limit"),
+        (r"\beta", "by_chord"))]
     ends = [Symbol(rf"{latex}_{{{k + 1}}}", argument, entry(k)) for latex, argument in (
         (r"\dot{s}", "s_rate"), (r"\ddot{s}", "s_acc"), (r"\phi", "phi"), (r"\dot{\phi}", "phi_rate"),
         (r"\ddot{\phi}", "phi_acc"), (r"\dot{\Omega}", "omega_acc"), ("I", "inertia")) for k in range(2)]

@@ -68,7 +68,7 @@ assert abs(limits.sel(limit="hoisting") / (10 * G * np.exp(0.3 * np.pi)) - 1) < 
 # A pendulum meets a peg
 # ----------------------
 #
-# In the plane a rope leaves a sheave and touches it again. ``contact=False``: it begins apart.
+# A rope leaves a sheave and touches it again. ``contact=False``: it begins apart.
 
 scene = fu.Scene()
 scene.rigid_body("bob", mass=1, inertia=(1, 1, 1), position=(-2 * np.sin(0.7), -2 * np.cos(0.7), 0))

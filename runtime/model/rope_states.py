@@ -187,12 +187,18 @@ def _wrap_points(model: Model, sheave: SheaveModel, q: np.ndarray, n: int) -> np
              + sheave.sense * wrap[:, None] * np.linspace(0.0, 1.0, n)[1:-1])
     radius = np.where(length > stretch * sheave.no_length, sheave.radius, np.linalg.norm(on, axis=1))  # or it has left
     around = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    if sheave.tilts:
-        around = np.einsum("tdk,tnk->tnd", attachment_axes(model, sheave.attachments[0], q)[..., :2], around)
-    else:
-        around = around @ sheave.plane.T
-    found: np.ndarray = centre[:, None] + radius[:, None, None] * around
+    node = q[:, sheave.nodes[0] : sheave.nodes[0] + model.dim]
+    aside = node - centre - _out_of_groove(model, sheave, q, on[:, None])[:, 0]  # of a rope beside the plane
+    found: np.ndarray = (centre[:, None] + radius[:, None, None] * _out_of_groove(model, sheave, q, around)
+                         + aside[:, None])
     return found
+
+
+def _out_of_groove(model: Model, sheave: SheaveModel, q: np.ndarray, parts: np.ndarray) -> np.ndarray:
+    """Return vectors (T, n, dim) of parts (T, n, 2) in the plane of the groove in configurations (T, n_q)."""
+    if not sheave.tilts:
+        return np.asarray(parts @ sheave.plane.T)
+    return np.asarray(np.einsum("tdk,tnk->tnd", attachment_axes(model, sheave.attachments[0], q)[..., :2], parts))
 
 
 def in_groove(model: Model, wheel: SheaveModel | DrumModel, q: np.ndarray, vectors: np.ndarray) -> np.ndarray:

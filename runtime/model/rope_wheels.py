@@ -78,7 +78,10 @@ class WheelModel(CouplingModel):
 
 @dataclass(kw_only=True)
 class SheaveModel(WheelModel):
-    """A sheave between two spans: fu_sheave of the engine."""
+    """A sheave between two spans: fu_sheave of the engine.
+
+    mouth: half the width of the groove, m; kink: largest angle along the axis with which a rope leaves it, rad.
+    """
 
     before: SpanCoordinates
     after: SpanCoordinates
@@ -88,6 +91,8 @@ class SheaveModel(WheelModel):
     friction: float
     slip_velocity: float
     closing: float
+    mouth: float
+    kink: float
     span_reach: tuple[int, int]
     sticks: bool = False
     points: list[WrapPointModel] = field(default_factory=list)
@@ -226,7 +231,8 @@ def _sheaves(builder: ModelBuilder) -> Iterator[SheaveModel]:
                 sense=float(arc.sense), tau=rope.part.material.damping_time, scale=scale, n_multipliers=len(scale),
                 **_wheel_of(builder, rope, item, arc.groove), has_inertia=True, friction=item.coefficient,
                 span_reach=(_reach(rope, beside[0], arc.radius), _reach(rope, beside[1], arc.radius)),
-                slip_velocity=item.slip_velocity, closing=rope.route.free_length * (rope.part.closed and k == 0),
+                closing=rope.route.free_length * (rope.part.closed and k == 0), slip_velocity=item.slip_velocity,
+                mouth=item.mouth, kink=item.max_fleet_angle,
                 is_damped=rope.part.material.damping_time > 0 or item.coefficient > 0 or item.damping > 0,
                 sticks=item.sticks)
             sheave.points = [WrapPointModel(type="wrap_point", name=item.name, of=sheave, place=place, scale=scale[:1],

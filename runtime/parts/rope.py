@@ -146,7 +146,7 @@ class Rope(Part):
         for sheave in self.sheaves:
             if not (sheave.contact or self.may_leave(sheave)):
                 what = ("is on a rope without mass, whose contact follows from its place," if not self.mass else
-                        "has friction that sticks," if sheave.sticks else "is on a rope in space,")
+                        "has friction that sticks,")
                 raise ValueError(f"{sheave.where} {what} and has contact=False", "leave contact=False out")
         names = [wheel.name for wheel in self.wheels]
         if self.name in names:
@@ -228,7 +228,7 @@ class Rope(Part):
 
     def may_leave(self, sheave: Sheave) -> bool:
         """Return whether the rope may leave one of its sheaves in a run, and touch it again."""
-        return self.mass and self.dim == 2 and not sheave.sticks
+        return self.mass and not sheave.sticks
 
     @property
     def differing_sheaves(self) -> list[Sheave]:

@@ -32,6 +32,8 @@ MAX_ZONES = 16
 """Zones of a wrap for which the engine has room."""
 MAX_FLEET_ANGLE = 0.07
 """Fleet angle in rad, 4 degrees, that rules for cranes allow."""
+GROOVE_WIDTH = 0.2
+"""Width of a groove over the radius: twice the diameter of a rope that runs on a sheave of 20 of these."""
 MAX_FALLS = 100
 """Falls of a tackle, at most."""
 AT_END = ("error", "stop", "leave")
@@ -184,9 +186,12 @@ class Sheave(Wheel):
     friction: between rope and groove, a coefficient or a `Friction`, by default "regularised"; without it none
     zones: number of parts of the wrap between which friction acts, and over each of which the tension is constant
     turns: whole turns of the rope around it, in addition to the wrap angle between both spans
-    contact: whether the rope lies on it at the start. In the plane, without friction that sticks, the rope may leave it
-        and touch it again; the sheave then turns on
-    max_fleet_angle: between the plane of the groove and the rope as drawn, in space, rad; a larger one is reported
+    contact: whether the rope lies on it at the start. Without friction that sticks the rope may leave it and touch it
+        again; the sheave then turns on
+    max_fleet_angle: between the plane of the groove and the rope as drawn, in space, rad; a larger one is reported. A
+        rope that leaves with a larger kink along the axis ends the run with a RopeLeftError
+    groove_width: between the edges of the groove, m, by default 0.2 of the radius. In space a rope that returns farther
+        than half of it beside the plane of the groove ends the run with a RopeLeftError
     """
 
     kind = "sheave"
@@ -211,6 +216,12 @@ class Sheave(Wheel):
     zones: Annotated[int, _whole_number_between(1, MAX_ZONES)] = 8
     turns: Annotated[int, _whole_number_between(0, MAX_TURNS)] = 0
     contact: Flag = True
+    groove_width: Annotated[float, positive("m")] | None = None
+
+    @property
+    def mouth(self) -> float:
+        """Return half the width of its groove, m."""
+        return (GROOVE_WIDTH * self.radius if self.groove_width is None else self.groove_width) / 2
 
     @property
     def coefficient(self) -> float:

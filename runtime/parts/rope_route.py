@@ -302,14 +302,15 @@ def _split(points: list[RoutePoint], spans: list[DrawnSpan], rope_radius: float,
 
 def _foot(span: DrawnSpan, sheave: RoutePoint) -> np.ndarray:
     """Return the point of a span next to the centre of a sheave without contact. Raises ValueError for contact."""
-    x, y = (sheave.centre - span.start).tolist()
-    ux, uy = span.direction.tolist()
+    x, y = ((sheave.centre - span.start) @ sheave.groove).tolist()
+    ux, uy = (span.direction @ sheave.groove).tolist()
     away = sheave.sense * (ux * y - uy * x)
     if away < sheave.reach[0]:
         raise ValueError(f"the rope touches {sheave.label}, which has contact=False: it passes its centre at "
                          f"{show(away, 'm')} on its side, and its radius is {show(sheave.reach[0], 'm')}",
                          "leave contact=False out, move the sheave, or give the other side")
-    foot: np.ndarray = span.start + (x * ux + y * uy) * span.direction
+    along = sum(a * b for a, b in zip((sheave.centre - span.start).tolist(), span.direction.tolist(), strict=True))
+    foot: np.ndarray = span.start + along * span.direction
     return foot
 
 
@@ -344,9 +345,9 @@ def _apart(one: RoutePoint, other: RoutePoint, apart: float) -> str:
 def _arc(point: RoutePoint, before: DrawnSpan, after: DrawnSpan) -> DrawnArc:
     """Return the rope on a sheave between two spans. Raises ValueError where the rope does not touch it."""
     if not point.contact:
-        x, y = (before.end - point.centre).tolist()
+        x, y = ((before.end - point.centre) @ point.groove).tolist()
         at = atan2(y, x)
-        return DrawnArc(point.name, point.centre, point.radius, point.sense, at, at, point.reach)
+        return DrawnArc(point.name, point.centre, point.radius, point.sense, at, at, point.reach, point.groove)
     if not point.sense:
         raise ValueError(f"the route runs straight through the centre of {point.label}, which does not tell its side",
                          'give side="left" or "right"')

@@ -274,8 +274,8 @@ CEILINGS = {
         "straight": 43, "straight_tangent": 135, "free_length": 12, "tension": 24, "tension_tangent": 70, "energy": 13,
         "slide": 29, "slide_tangent": 33
     },
-    "tangent_point": {"conditions": 1678, "motion": 310, "chord": 202, "across": 27, "turned_conditions": 1951,
-                      "turned_motion": 354, "turned_acc": 4, "wrap_energy": 93, "wrap_inertia": 616, "wrap_mass": 183,
+    "tangent_point": {"conditions": 1744, "motion": 325, "chord": 202, "across": 27, "turned_conditions": 2017,
+                      "turned_motion": 369, "turned_acc": 4, "wrap_energy": 93, "wrap_inertia": 616, "wrap_mass": 183,
                       "wrap_weight": 63, "laid_weight": 139, "ring": 22},
     "planar_sheave": {
         "tangent_point": 27, "tangent_point_motion": 26, "angle": 121, "energy": 13, "weight": 21, "force": 85,

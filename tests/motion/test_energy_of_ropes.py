@@ -104,7 +104,8 @@ def momenta(duration: float, scene: fu.Scene) -> np.ndarray:
                 total += momenta_of(hermite(e, length, (1 + x) / 2), P[j])
         if coupling.type == "sheave":
             x, weight = np.polynomial.legendre.leggauss(8)
-            P = coupling.rho * weight[:, None] / 2 * engine.history(k)[1:].reshape(-1, 8, 2)
+            history = engine.history(k)[1:-2]  # without the place of the rope in the groove
+            P = coupling.rho * weight[:, None] / 2 * history.reshape(-1, 8, 2)
             body = model.bodies[coupling.attachments[0].body]
             place, (c, s) = q[body.configuration : body.configuration + 2], q[body.configuration + 2 :][:2]
             centre = place + np.array([[c, -s], [s, c]]) @ (0, -0.1)

@@ -476,7 +476,7 @@ def test_items_are_checked(make, complaint):
     ({"kind": "sheave", "name": "top", "at": (0, 3, 0)}, "route.1.radius is missing"),
     ({"kind": "sheave", "name": "top", "at": (0, 3, 0), "radius": 1, "mass": 1},
      'route.1 "mass" is not known here; known: name, at, radius, side, inertia, torque, angle, velocity, damping, '
-     "axis, max_fleet_angle, friction, zones, turns, contact"),
+     "axis, max_fleet_angle, friction, zones, turns, contact, groove_width"),
     ({"kind": "sheave", "name": "top", "at": (0, 3, 0), "radius": 1, "inertia": 1},
      "route.1 has inertia, but no friction with the rope, which then never turns it; give its friction, or leave the "
      "inertia out"),

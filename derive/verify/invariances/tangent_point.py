@@ -11,7 +11,7 @@ from ..numbers import EPS, Numbers, State
 from ..samples.shapes import rotation
 from .measures import ORIGIN_SHIFT, Invariance, quantised, relative
 
-VECTORS = ("x", "chord", "weight", "axis", "x_rate", "chord_rate")
+VECTORS = ("x", "slope", "chord", "weight", "axis", "x_rate", "slope_rate", "chord_rate")
 
 
 def tangent_point(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]:
@@ -38,7 +38,7 @@ def _in_plane(k: Numbers, s: State) -> Iterator[Invariance]:
     found = k("conditions", s | flat)
     yield "chord in the plane: |x| - R", relative(
         found["phi"][2] - (np.linalg.norm(flat["x"]) - s["R"]), s["R"]), 16 * EPS
-    yield "chord in the plane: no force on it", relative(found["J"][2, 3:6], 1 / s["R"]), 64 * EPS
+    yield "chord in the plane: no force on it", relative(found["J"][2, 6:9], 1 / s["R"]), 64 * EPS
 
 
 def _geodesic(k: Numbers, s: State) -> Iterator[Invariance]:
@@ -48,7 +48,7 @@ def _geodesic(k: Numbers, s: State) -> Iterator[Invariance]:
     n = np.linalg.svd(axis[None])[2][1]
     t = np.cross(axis, n)
     x, e = R / np.cos(fleet) * n, np.cos(fleet) * t + np.sin(fleet) * axis
-    found = k("conditions", s | {"x": x, "chord": length * e, "weight": np.zeros(3)})
+    found = k("conditions", s | {"x": x, "slope": 1.01 * e, "chord": length * e, "weight": np.zeros(3)})
     yield "geodesic: the conditions hold", relative(found["phi"], R), 64 * EPS
     by_angle = R * t / np.linalg.norm(x)  # of R phi, by x
     slope = by_angle - e  # of R phi + l, in the plane of the groove

@@ -15,7 +15,7 @@ from ..references.element import Shape
 from .paths import along, of, root
 from .turning_wheel import turning_wheel
 
-INPUTS = (("x", 3), ("chord", 3), ("b", 1))
+INPUTS = (("x", 3), ("slope", 3), ("chord", 3), ("b", 1))
 """Names and sizes of the coordinates of the conditions."""
 TURNED = (*INPUTS, ("axis", 3))
 """The same with an axis that turns."""
@@ -38,7 +38,8 @@ def _of_conditions(kind: str, inputs: tuple[tuple[str, int], ...]) -> list[Relat
         along = s["chord"] / length + s["weight"] * b / tension
         across, size = along - axis * axis.dot(along), mpmath.sqrt(along.dot(along))
         arm = mpmath.sqrt(x.dot(x)) * mpmath.sqrt(across.dot(across)) / size
-        return [axis.dot(x), along.dot(x), arm - s["R"].item()]
+        share = s["by_chord"].item()
+        return [axis.dot(x), share * along.dot(x) + (1 - share) * s["slope"].dot(x), arm - s["R"].item()]
 
     def forces(k, s):
         return k(conditions, s)["J"].T.dot(s["f"])
@@ -46,8 +47,9 @@ def _of_conditions(kind: str, inputs: tuple[tuple[str, int], ...]) -> list[Relat
     def drifting(k, s, t, j):
         return k(conditions, s, **{name: s[name] + t * s[f"{name}_rate"] for name, _ in inputs})["phi"]
 
-    by = "x, the chord and b" + " and the axis" * (n > 7)
-    return [Relation(conditions, "phi", "a . x, u . x, |x| times the part of e across a, less R", 0, root(geodesic)),
+    by = "x, the slope, the chord and b" + " and the axis" * (n > 10)
+    return [Relation(conditions, "phi", "a . x, u . x or t . x, |x| times the part of e across a, less R", 0,
+                     root(geodesic)),
             Relation(conditions, "J", f"dphi by {by}", 1, along(of(conditions, "phi"), inputs), n),
             Relation(conditions, "K", f"d(J' f) by {by}", 1, along(forces, inputs), n),
             Relation(f"{kind}motion", "Q_d", "d²phi/dt² at zero accelerations", 2, drifting)]

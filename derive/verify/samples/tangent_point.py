@@ -32,4 +32,6 @@ def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) 
                     "rho": np.float64(1.3), "w": np.float64(random.normal()),
                     "g": np.float64(random.normal()), "w_rate": np.float64(random.normal()),
                     "w_acc": np.float64(random.normal()), "s_rate": random.normal(size=2),
-                    "by_L": np.array([random.uniform(-0.9, -0.5), random.uniform(0.3, 0.6)])}
+                    "by_L": np.array([random.uniform(-0.9, -0.5), random.uniform(0.3, 0.6)]),
+                    "slope": Q @ np.array([random.uniform(0.1, 0.2), 1.1, random.uniform(0.2, 0.4)]),
+                    "slope_rate": random.normal(size=3), "by_chord": np.float64(random.uniform(0.2, 0.8))}

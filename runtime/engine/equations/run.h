@@ -47,7 +47,9 @@ enum {
     FU_LEFT_BY_LAST_GRIP,
     FU_LEFT_BY_EMPTY,
     FU_LEFT_BY_SIDE,
-    FU_LEFT_BY_TURNS
+    FU_LEFT_BY_TURNS,
+    FU_LEFT_BESIDE,
+    FU_LEFT_BY_KINK
 };
 
 struct fu_run {

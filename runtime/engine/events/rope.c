@@ -8,7 +8,7 @@
 #include "equations/run.h"
 
 /* Event functions, the first of which have the numbers of their reasons. */
-enum { WRAP = FU_LEFT_BY_WRAP, PRESSURE = FU_LEFT_BY_PRESSURE, FLEET = FU_LEFT_BY_FLEET, GROWTH = FLEET };
+enum { WRAP = FU_LEFT_BY_WRAP, PRESSURE = FU_LEFT_BY_PRESSURE, FLEET = FU_LEFT_BY_FLEET, GROWTH };
 
 static int list(int n, fu_event_function *out)
 {
@@ -16,20 +16,32 @@ static int list(int n, fu_event_function *out)
     return n;
 }
 
+static void add(int which, int *n, fu_event_function *out)
+{
+    if (out) out[*n] = (fu_event_function){.which = which, .direction = -1};
+    ++*n;
+}
+
 static int functions(const fu_coupling *coupling, fu_event_function *out)
 {
-    return list(fu_is_in_space(coupling) || fu_wrap_may_leave(coupling) ? FLEET + 1 : FLEET, out);
+    int n = list(FLEET, out);
+    if (fu_is_in_space(coupling)) add(FLEET, &n, out);
+    if (fu_wrap_may_leave(coupling)) add(GROWTH, &n, out);
+    return n;
 }
 
 static double value(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {
-    if (which == FLEET)
-        return (fu_wrap_may_leave(coupling) ? fu_wrap_growth_margin : fu_fleet_margin)(run->model, coupling, state);
-    return which == WRAP ? fu_wrap_margin(run->model, coupling, state) : fu_wrap_pressure(run->model, coupling, state);
+    if (which == FLEET) return fu_fleet_margin(run->model, coupling, state);
+    if (which == PRESSURE) return fu_wrap_pressure(run->model, coupling, state);
+    const int may_change = !run->integrator->keeps_energy;
+    if (which == WRAP) return fu_wrap_margin(run->model, coupling, state, may_change);
+    return may_change ? fu_wrap_growth_margin(run->model, coupling, state) : 1.0;
 }
 
 /* Changes the conditions of a sheave that a rope leaves or touches. The error of the step is projected away before.
- * What the rope then loses is the kinetic energy of the jump of its velocities: waves shorter than its elements. */
+ * What the rope then loses is the kinetic energy of the jump of its velocities: waves shorter than its elements; in
+ * space also the elastic energy of what the groove turns or moves along its axis. */
 static int pass(fu_run *run, const fu_coupling *coupling, int grows, const char **what)
 {
     const fu_model *model = run->model;
@@ -37,9 +49,11 @@ static int pass(fu_run *run, const fu_coupling *coupling, int grows, const char 
     const int had_left = fu_wrap_has_left(coupling, now);
     if (fu_project_velocities(model, now, &run->accelerator, run->work)) return FU_SINGULAR;
     for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->work[i];
-    const int has_left = fu_wrap_change(coupling, now, grows);
+    const int has_left = fu_wrap_change(model, coupling, now, grows);
     *what = has_left ? "left the sheave" : had_left ? "touched the sheave" : "";
+    const double stored = fu_elastic_energy(model, now);
     if (fu_close(run)) return FU_NO_CONVERGENCE;
+    if (fu_is_in_space(coupling)) run->dissipated += stored - fu_elastic_energy(model, now);
     if (fu_project_velocities(model, now, &run->accelerator, run->work)) return FU_SINGULAR;
     fu_impact(run, run->work, 0.0);
     return FU_RUNNING;
@@ -48,8 +62,13 @@ static int pass(fu_run *run, const fu_coupling *coupling, int grows, const char 
 static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
 {
     (void)side;
-    if (which != PRESSURE && fu_wrap_may_leave(coupling) && !run->integrator->keeps_energy)
-        return pass(run, coupling, which == GROWTH, what);
+    if ((which == WRAP || which == GROWTH) && fu_wrap_may_leave(coupling) && !run->integrator->keeps_energy) {
+        const int returns = fu_wrap_has_left(coupling, &run->now);
+        if (which == GROWTH || !fu_wrap_is_beside(run->model, coupling, &run->now))
+            return pass(run, coupling, which == GROWTH, what);
+        *what = returns ? "passed beside the groove" : "left the groove along the axis";
+        return fu_leave(run, coupling, returns ? FU_LEFT_BESIDE : FU_LEFT_BY_KINK);
+    }
     *what = which == WRAP ? "left the sheave" : which == PRESSURE ? "lifted off" : "left the groove";
     return fu_leave(run, coupling, which);
 }
@@ -65,10 +84,12 @@ static int sign(const fu_model *model, const fu_coupling *coupling, const fu_sta
 static int begin(fu_run *run, const fu_coupling *coupling)
 {
     const fu_coupling_events *events = coupling->events;
-    const int n = events->functions ? events->functions(coupling, 0) : 1;
+    fu_event_function of[GROWTH + 1];
+    const int n = events->functions(coupling, of);
     const char *what;
-    for (int which = 0; which < n; ++which)
-        if (events->value(run, coupling, &run->now, which) < 0.0) return events->act(run, coupling, which, -1, &what);
+    for (int k = 0; k < n; ++k)
+        if (events->value(run, coupling, &run->now, of[k].which) < 0.0)
+            return events->act(run, coupling, of[k].which, -1, &what);
     return FU_RUNNING;
 }
 

@@ -173,7 +173,8 @@ def _wrap(frames: Frames, sheave: Sheave, arc: DrawnArc, points: np.ndarray, s: 
         return values @ np.stack([np.interp(share, given, one) for one in np.eye(len(given))])
 
     radius = np.where(touches, sheave.radius, np.linalg.norm(on, axis=1))
-    return centre[:, None] + radius[:, None, None] * around, between(s), between(middle)
+    aside = (points[:, 0] - centre)[:, None] - on[:, None] @ turned.swapaxes(1, 2)  # of a rope beside the plane
+    return centre[:, None] + radius[:, None, None] * around + aside, between(s), between(middle)
 
 
 def _turned(frames: Frames, wheel: Sheave | Drum, groove: np.ndarray) -> np.ndarray:

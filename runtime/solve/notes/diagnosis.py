@@ -33,7 +33,11 @@ ROPE_LEFT = (
     ('a rope without mass meets sheave "{name}" from its other side',
      "give a sheave on that side, or stop before by an event"),
     ('the length of rope "{name}" at the start differs from that as drawn by more than half a turn around a wheel, so '
-     "that its turns are not known,", "draw the scene nearer to this start, or resume the run that it is from"))
+     "that its turns are not known,", "draw the scene nearer to this start, or resume the run that it is from"),
+    ('a rope returns to sheave "{name}" and passes beside its groove, by more than half of groove_width,',
+     "guide the rope, give a greater groove_width, or stop before by an event"),
+    ('a rope leaves the groove of sheave "{name}" along its axis, with a kink above max_fleet_angle,',
+     "turn the axis, give a greater max_fleet_angle, or stop before by an event"))
 """Why a run with a rope ended, and what helps, by the reasons of engine/equations/run.h."""
 EMPTY = 6
 """The reason of a drum."""

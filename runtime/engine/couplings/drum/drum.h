@@ -79,7 +79,8 @@ static inline fu_foot foot_of(const fu_drum *drum)
                      .chord = drum->chord,
                      .radius = drum->tangent_radius,
                      .weight = drum->weight,
-                     .limit = drum->limit};
+                     .limit = drum->limit,
+                     .by_chord = 1.0};
 }
 
 /* --- drum_state.c --- */

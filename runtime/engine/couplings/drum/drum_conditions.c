@@ -97,7 +97,7 @@ void fu_drum_add_rows(const fu_model *model, const fu_coupling *coupling, const 
     const int own = fu_extra(model, coupling->unknown);
     if (of->has_foot)
         fu_tangent_point_add(model, &at->wheel, &of->foot, by_psi, equations->next->forces + coupling->force,
-                             coupling->scale, equations->weights, own, system);
+                             coupling->scale, equations->weights, 0, FU_FOOT_CONDITIONS, own, system);
     for (int r = of->has_foot ? FU_FOOT_CONDITIONS : 0; r < of->n; ++r)
         for (int j = 0; j < n; ++j) {
             const double unit = fu_row_unit(inertia, coupling->scale[r]);

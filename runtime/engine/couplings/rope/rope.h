@@ -22,8 +22,10 @@ extern const fu_coupling_type fu_span_type;
 /* Return how far a rope is from leaving: its wrap above the least one, rad, of a short wrap above zero, or of a rope
  * that has left its distance from touching, m; the least normal force, times the radius on an angle, N; the length of a
  * span above the least one, m; in space that of both spans beside a sheave above the one at which a rope with their
- * fleet angles slides out of the groove, m. Growth: how far a short wrap is from one that stretches, rad. */
-double fu_wrap_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+ * fleet angles slides out of the groove, m. Growth: how far a short wrap is from one that stretches, or in space one
+ * with slopes from one with chords, rad. may_change: whether the method of the run admits changes of the sheave's mode.
+ */
+double fu_wrap_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int may_change);
 double fu_wrap_growth_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 /* Return whether a rope may leave a sheave and touch it again; whether it has left; whether its wrap stretches; and
  * whether it has left after the change of the sheave's mode where its wrap margin, or the one of growth, has reached
@@ -31,7 +33,10 @@ double fu_wrap_growth_margin(const fu_model *model, const fu_coupling *coupling,
 int fu_wrap_may_leave(const fu_coupling *coupling);
 int fu_wrap_has_left(const fu_coupling *coupling, const fu_state *state);
 int fu_wrap_stretches(const fu_coupling *coupling, const fu_state *state);
-int fu_wrap_change(const fu_coupling *coupling, fu_state *now, int grows);
+int fu_wrap_change(const fu_model *model, const fu_coupling *coupling, fu_state *now, int grows);
+/* Returns whether a rope in space that is about to leave a sheave, or to touch it again, does so beside the plane of
+ * its groove. */
+int fu_wrap_is_beside(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 double fu_wrap_pressure(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 double fu_fleet_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 double fu_span_fleet_margin(double length, double radius, double fleet);

@@ -97,7 +97,7 @@ static void force(const fu_model *model, const fu_coupling *coupling, const fu_s
 /* Returns the multiplier of the condition of a short wrap. */
 static double multiplier_of_short(const fu_sheave *sheave, const fu_state *state)
 {
-    return fu_may_leave(sheave) ? state->forces[sheave->wheel.base.force + SHORT_ROW] : 0.0;
+    return fu_may_leave(sheave) ? state->forces[sheave->wheel.base.force + short_row(sheave)] : 0.0;
 }
 
 static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, double *f,
@@ -145,6 +145,8 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
         for (int j = 0; j < Y; ++j) D[i][j] *= w.rate;
     if (w.rate != 0.0) fu_wheel_add_matrix(model, n, columns, columns, Y, D[0], system);
     fu_sheave_forces(sheave, &at, y);
+    if (is_in_space(sheave) && at.mode == FU_SHORT)
+        fu_sheave_add_turn_of_slopes(model, sheave, &at, y, w.stiffness, system);
     if (is_turning(sheave)) fu_turning_wrap_add_turning(model, sheave, &at, &by_psi, y, w.stiffness, system);
     fu_sheave_add_multipliers(sheave, &at, next->forces + coupling->force, phi, y);
     fu_wheel_add_tangent(model, &sheave->wheel, &at.wheel, equations, y + CENTRE, system);
@@ -189,7 +191,7 @@ static double energy(const fu_model *model, const fu_coupling *coupling, const f
     double total = 0.0;
     fu_sheave_state at;
     fu_sheave_at(model, sheave, state, 0, &at);
-    if (at.mode != FU_WRAPPED) return at.mode == FU_SHORT ? fu_short_wrap_energy(sheave, &at) : 0.0;
+    if (!fu_stretches(at.mode)) return at.mode == FU_SHORT ? fu_short_wrap_energy(sheave, &at) : 0.0;
     for (int j = 0; j < sheave->n_zones; ++j) {
         const fu_zone of = fu_zone_at(&at, j);
         double stored;
@@ -210,7 +212,7 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
     if (!coupling->is_damped) return 0.0;
     fu_sheave_at(model, sheave, state, 0, &at);
     total += wheel->damping * at.wheel.own_rate * at.wheel.own_rate;
-    for (int j = 0; sheave->tau > 0.0 && at.mode == FU_WRAPPED && j < sheave->n_zones; ++j) {
+    for (int j = 0; sheave->tau > 0.0 && fu_stretches(at.mode) && j < sheave->n_zones; ++j) {
         const fu_zone of = fu_zone_at(&at, j);
         wheel->kernel->dissipation(wheel->A, sheave->tau, wheel->radius, of.phi, of.l, of.phi_rate, of.s_rate, &power);
         total += power;
@@ -234,21 +236,27 @@ static const char *excess(const fu_coupling *coupling)
     return sheave_of(coupling)->n_zones > MAX_ZONES ? "zones" : 0;
 }
 
-/* Determines the mode where it is not known yet. */
+/* Determines the mode where it is not known yet, and where a rope lies beside the plane of its groove. */
 static void update_mode(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
+    const double rounding = 1e-9; /* of the radius */
     const fu_sheave *sheave = sheave_of(coupling);
+    fu_place_in_groove *place = fu_place_in(sheave, state);
     fu_sheave_state at;
-    if (!fu_may_leave(sheave) || *fu_wrap_flag(sheave, state)) return;
+    if (!fu_may_leave(sheave) || (*fu_wrap_flag(sheave, state) && place->is_known != 0.0)) return;
     fu_sheave_at(model, sheave, state, 0, &at);
     *fu_wrap_flag(sheave, state) = at.mode;
+    place->is_known = 1.0;
+    if (!is_in_space(sheave) || at.mode == FU_LIFTED) return;
+    const double aside = 0.5 * (at.rise[0] + at.rise[1]);
+    place->aside = fabs(aside) > rounding * sheave->wheel.radius && fabs(aside) <= sheave->mouth ? aside : 0.0;
 }
 
 static int is_possible(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     (void)model;
     const int mode = *fu_wrap_flag(sheave_of(coupling), state);
-    return mode >= 0 && mode <= FU_WRAPPED;
+    return mode >= 0 && mode <= FU_CHORDED;
 }
 
 static const char *const foot_role[] = {"tangent_point", 0};
@@ -275,6 +283,8 @@ static const fu_field fields[] = {
     FU_FIELD(fu_sheave, wrap_points, FU_INTEGER, 0),
     FU_FIELD(fu_sheave, least_wrap, FU_REAL, 0),
     FU_FIELD(fu_sheave, no_length, FU_REAL, 0),
+    FU_FIELD(fu_sheave, mouth, FU_REAL, 0),
+    FU_FIELD(fu_sheave, kink, FU_REAL, 0),
     FU_FIELD(fu_sheave, closing, FU_REAL, 0),
     FU_FIELD_ARRAY(fu_sheave, tangent_radius, FU_REAL),
     FU_FIELD(fu_sheave, tau, FU_REAL, 0),
@@ -296,6 +306,7 @@ const fu_coupling_type fu_sheave_type = {
     .size = sizeof(fu_sheave),
     .fields = fields,
     .output_fields = fu_sheave_output_fields,
+    .n_numbers = FU_SHEAVE_NUMBERS,
     .n_flags = 1,
     .history = &history,
     .inertia = &inertia,

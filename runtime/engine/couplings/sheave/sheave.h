@@ -1,13 +1,13 @@
 /* Sheaves (couplings/sheave/): the coupling in sheave.c, its state in sheave_state.c, its wrap in wrap.c and
  * wrap_friction.c, its forces in sheave_forces.c, the conditions of its tangent points in sheave_conditions.c and
- * tangent_point.c, and its results in sheave_output.c. Points where friction sticks are couplings of their own,
+ * space_conditions.c, and its results in sheave_output.c. Points where friction sticks are couplings of their own,
  * wrap_point.c, which in statics held_wrap.c holds.
  *
  * Derivatives are first by the places and slopes of both nodes, the wheel, and the material coordinates (y); the angles
  * of the wrap follow from the places (z).
  *
  * In space the wrap lies in the plane of the groove, to which all vectors of y and z belong; in the place of the slope
- * of a node is its length, which alone friction needs. */
+ * of a node is its length, which alone friction and short wraps need. */
 #ifndef FUNICULAR_COUPLINGS_SHEAVE_SHEAVE_H
 #define FUNICULAR_COUPLINGS_SHEAVE_SHEAVE_H
 
@@ -27,6 +27,7 @@ typedef struct {
     int wrap_points; /* number of the first of its points where friction sticks, -1 where it is regularised */
     double closing;  /* m: between the last and the first s of a closed rope */
     double least_wrap, no_length; /* rad: of a wrap that stretches; m: of that of a rope that has left */
+    double mouth, kink; /* in space: m: half the width of the groove; rad: of a rope that leaves, along the axis */
     /* in space: of the spans before and after: the first dof, elements in all and within reach of a chord, s of their
      * ends, m: the stress-free length of a chord */
     double weight[3], limit, chord[2];
@@ -54,12 +55,9 @@ enum {
     Z = Z_MATERIAL + MAX_ZONES + 1
 };
 
-/* Modes of a sheave that a rope may leave (short_wrap.c): the rope has left it; has a short wrap; or a wrap that
- * stretches. Zero: not known yet. */
-enum { FU_LIFTED = 1, FU_SHORT, FU_WRAPPED };
-/* The condition of a short wrap, after those of the tangent points; of a rope that has left, that of its point next to
- * the centre, and that of its length on the sheave. After them, in both modes, those that keep the zones equal. */
-enum { SHORT_ROW = ENDS * DIM, NEXT_ROW = SHORT_ROW, LENGTH_ROW };
+/* Modes of a sheave that a rope may leave (short_wrap.c): the rope has left it; has a short wrap; a wrap that
+ * stretches; in space one whose tangent points are across chords, not slopes. Zero: not known yet. */
+enum { FU_LIFTED = 1, FU_SHORT, FU_WRAPPED, FU_CHORDED };
 
 /* A sheave at a state: both tangent points, the angles with their rates and derivatives, and the material. tension: the
  * multiplier of a short wrap, as its user sets it. */
@@ -70,7 +68,9 @@ typedef struct {
     fu_wheel_state wheel;
     double spin_below; /* angular velocity of the sheave as friction has it, see `fu_model.impending` */
     double stretch[ENDS][SPACE], rise[ENDS]; /* in space: direction of the slope; place along the axis, m */
+    double aside;                            /* m: in space of the rope in the groove along the axis */
     double s[MAX_ZONES + 1], s_rate[MAX_ZONES + 1], s_acc[MAX_ZONES + 1];
+    /* in space a slope is (length, 0), with the rate (that of the length, that of the direction times the length) */
     double x[ENDS][DIM], slope[ENDS][DIM], x_rate[ENDS][DIM], slope_rate[ENDS][DIM];
     double phi[ENDS], phi_rate[ENDS], phi_acc[ENDS];
     /* of the ends of the zones: their shares of the wrap, and their angles */
@@ -112,9 +112,47 @@ static inline int has_smooth_friction(const fu_sheave *sheave)
     return has_friction(sheave) && !sticks(sheave);
 }
 
+/* Returns whether a wrap in this mode stretches on its own. */
+static inline int fu_stretches(int mode)
+{
+    return mode >= FU_WRAPPED;
+}
+
+/* The place along the axis, m, in which a rope lies in the groove; not known before the start. */
+typedef struct {
+    double is_known, aside;
+} fu_place_in_groove;
+enum { FU_SHEAVE_NUMBERS = sizeof(fu_place_in_groove) / sizeof(double) };
+
+static inline fu_place_in_groove *fu_place_in(const fu_sheave *sheave, const fu_state *state)
+{
+    const fu_coupling *base = &sheave->wheel.base;
+    return (fu_place_in_groove *)(state->numbers + base->numbers + base->n_numbers);
+}
+
+/* Returns the number of conditions of a tangent point. */
+static inline int conditions_of(const fu_sheave *sheave)
+{
+    return is_in_space(sheave) ? FU_FOOT_CONDITIONS : DIM;
+}
+
+/* Returns the number of the condition of a short wrap, after those of the tangent points; of a rope that has left, that
+ * of its point next to the centre, after those that join both spans. */
+static inline int short_row(const fu_sheave *sheave)
+{
+    return ENDS * conditions_of(sheave);
+}
+
+/* Returns the number of the first condition of the wrap alone: of a short wrap, or of the length of one that has left.
+ * After it, in both modes, are those that keep the zones equal. */
+static inline int first_row_of_wrap(const fu_sheave *sheave, int mode)
+{
+    return short_row(sheave) + (mode == FU_LIFTED);
+}
+
 static inline int fu_may_leave(const fu_sheave *sheave)
 {
-    return sheave->wheel.base.n_forces > SHORT_ROW && !is_in_space(sheave);
+    return sheave->wheel.base.n_forces > short_row(sheave);
 }
 
 /* Returns the number of points of smooth friction at a state: ends of zones; in a short wrap one, in its middle. */
@@ -135,15 +173,13 @@ static inline int *fu_wrap_flag(const fu_sheave *sheave, const fu_state *state)
     return state->flags + sheave->wheel.base.flags;
 }
 
-/* Returns the number of conditions of a tangent point. */
-static inline int conditions_of(const fu_sheave *sheave)
+/* Returns the tangent point where the rope runs on (k = 0) or off (1), in space. Small wraps have slopes in the place
+ * of chords, in which both spans join where the wrap vanishes. Their chords have no sag: it would change at once where
+ * the tension of a chord falls to zero in a wave along the rope. */
+static inline fu_foot fu_foot_of(const fu_sheave *sheave, const fu_sheave_state *at, int k)
 {
-    return is_in_space(sheave) ? FU_FOOT_CONDITIONS : DIM;
-}
-
-/* Returns the tangent point where the rope runs on (k = 0) or off (1), in space. */
-static inline fu_foot fu_foot_of(const fu_sheave *sheave, int k)
-{
+    static const double no_weight[SPACE] = {0.0};
+    const int is_chorded = at->mode == FU_CHORDED;
     return (fu_foot){.wheel = &sheave->wheel,
                      .is_start = k,
                      .node = sheave->nodes[k],
@@ -154,8 +190,10 @@ static inline fu_foot fu_foot_of(const fu_sheave *sheave, int k)
                      .share = k ? sheave->share_after : sheave->share_before,
                      .chord = sheave->chord[k],
                      .radius = sheave->tangent_radius[k],
-                     .weight = sheave->weight,
-                     .limit = sheave->limit};
+                     .weight = is_chorded ? sheave->weight : no_weight,
+                     .limit = sheave->limit,
+                     .by_chord = is_chorded,
+                     .aside = at->aside};
 }
 
 /* Returns the number of variables z of a sheave. */
@@ -218,6 +256,8 @@ void fu_turning_wrap_add_turning(const fu_model *model, const fu_sheave *sheave,
 
 /* --- short_wrap.c --- */
 
+#define FU_LEAST_CHORDED 0.1 /* rad: of wraps that have chords */
+
 /* Returns the mode of a sheave in a state, where it is not known by the angles and the length of its wrap. */
 int fu_wrap_mode(const fu_sheave *sheave, const fu_sheave_state *at, const fu_state *state);
 /* Returns the least length of the wrap, m, at which its inertia and weight are computed. */
@@ -229,7 +269,8 @@ double fu_short_wrap_energy(const fu_sheave *sheave, const fu_sheave_state *at);
 /* Compute the residual of its condition and the derivatives J by y; its second rate at zero accelerations. */
 double fu_short_wrap_row(const fu_sheave *sheave, const fu_sheave_state *at, double J[Y]);
 double fu_short_wrap_drift(const fu_sheave *sheave, const fu_sheave_state *at);
-/* Computes the residual of a condition that joins both spans, and the derivatives J by y. */
+/* Computes the residual of a condition that joins both spans in the plane, or from number NODE on of the length of the
+ * wrap, and the derivatives J by y. */
 void fu_join_row(const fu_sheave *sheave, const fu_sheave_state *at, int r, double *phi, double J[Y]);
 /* The same of the condition that keeps the j-th point between zones at its share of the wrap. */
 void fu_share_row(const fu_sheave *sheave, const fu_sheave_state *at, int j, double *phi, double J[Y]);
@@ -316,8 +357,11 @@ int fu_sheave_columns(const fu_sheave *sheave, const fu_sheave_state *at, const 
 /* Computes all forces but those of the tangent points, or the inertial ones alone. */
 void fu_sheave_forces(const fu_sheave *sheave, const fu_sheave_state *at, double y[Y]);
 void fu_sheave_inertial_forces(const fu_sheave *sheave, const fu_sheave_state *at, double y[Y]);
-/* Adds forces by y to those on the dofs; in space there are none on the slopes. */
+/* Adds forces by y to those on the dofs. */
 void fu_sheave_scatter(const fu_sheave *sheave, const fu_sheave_state *at, const double *y, double *f);
+/* Adds the derivatives of forces by y on the lengths of slopes in space, as these turn. */
+void fu_sheave_add_turn_of_slopes(const fu_model *model, const fu_sheave *sheave, const fu_sheave_state *at,
+                                  const double y[Y], double factor, fu_system *system);
 /* Adds the mass matrix. */
 void fu_sheave_add_mass(const fu_sheave *sheave, const fu_sheave_state *at, double factor, double (*K)[Y]);
 /* Adds the derivatives of all forces but those of the tangent points: D by rates, K by places. */
@@ -348,9 +392,25 @@ void fu_sheave_add_conditions(const fu_model *model, const fu_coupling *coupling
 /* Operations of the coupling. */
 void fu_sheave_rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work);
 
+/* Computes the residuals of the conditions of the wrap alone, and the derivatives J by y. */
+void fu_sheave_rows_of_wrap(const fu_sheave *sheave, const fu_sheave_state *at, double phi[MAX_CONDITIONS],
+                            double J[MAX_CONDITIONS][Y]);
 /* Computes the derivatives J of the conditions by y in the plane, and their residuals, at these x and slopes. */
 void fu_sheave_rows_at(const fu_sheave *sheave, const fu_sheave_state *at, double J[MAX_CONDITIONS][Y],
                        double phi[MAX_CONDITIONS]);
+
+/* --- space_conditions.c: conditions in space but those of the wrap alone --- */
+
+/* Add their forces to those on the dofs; or by y without those on the chords; compute the residuals. */
+void fu_space_add_multipliers(const fu_sheave *sheave, const fu_sheave_state *at, const double *multipliers,
+                              double *phi, double *f);
+void fu_space_add_multipliers_by_y(const fu_sheave *sheave, const fu_sheave_state *at, const double *multipliers,
+                                   double *phi, double *y);
+/* Adds their derivatives, and those of their forces; by_psi: moves of the centre in the columns. */
+void fu_space_add_conditions(const fu_model *model, const fu_coupling *coupling, const fu_sheave_state *at,
+                             const fu_equations *equations, const fu_centre_moves *by_psi, fu_system *system);
+/* Computes the rows of eq 38 of all conditions in space. */
+void fu_space_rows(const fu_model *model, const fu_sheave *sheave, const fu_state *state, fu_rows *out);
 
 /* --- sheave_step.c: over a step that conserves energy --- */
 

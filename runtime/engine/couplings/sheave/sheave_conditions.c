@@ -16,12 +16,22 @@ typedef struct {
 /* Returns the number of conditions of a mode but those of the zones. */
 static int without_zones(const fu_sheave *sheave, int mode)
 {
-    return mode == FU_LIFTED ? LENGTH_ROW + 1 : ENDS * conditions_of(sheave) + (mode == FU_SHORT);
+    return first_row_of_wrap(sheave, mode) + !fu_stretches(mode);
 }
 
 int fu_sheave_conditions(const fu_sheave *sheave, const fu_sheave_state *at)
 {
-    return without_zones(sheave, at->mode) + (at->mode == FU_WRAPPED ? 0 : sheave->n_zones - 1);
+    return without_zones(sheave, at->mode) + (fu_stretches(at->mode) ? 0 : sheave->n_zones - 1);
+}
+
+void fu_sheave_rows_of_wrap(const fu_sheave *sheave, const fu_sheave_state *at, double phi[MAX_CONDITIONS],
+                            double J[MAX_CONDITIONS][Y])
+{
+    const int zones = without_zones(sheave, at->mode), own = first_row_of_wrap(sheave, at->mode);
+    for (int r = zones; r < fu_sheave_conditions(sheave, at); ++r)
+        fu_share_row(sheave, at, r - zones + 1, &phi[r], J[r]);
+    if (at->mode == FU_SHORT) phi[own] = fu_short_wrap_row(sheave, at, J[own]);
+    if (at->mode == FU_LIFTED) fu_join_row(sheave, at, NODE, &phi[own], J[own]);
 }
 
 /* Computes derivatives by y from those of a tangent point by x and the slope. */
@@ -36,21 +46,21 @@ static void by_y(int k, const double of[NODE], double y[Y])
  * centre, the second condition of a tangent point. */
 static void join(const fu_sheave *sheave, const fu_sheave_state *at, const double *multipliers, conditions *out)
 {
-    const double next[DIM] = {0.0, multipliers[NEXT_ROW]};
+    const int nearest = short_row(sheave);
+    const double force[DIM] = {0.0, multipliers[nearest]};
     double phi[DIM], J[DIM * NODE];
     memset(out->K, 0, sizeof out->K);
-    for (int r = 0; r <= LENGTH_ROW; ++r) fu_join_row(sheave, at, r, &out->phi[r], out->J[r]);
-    sheave->wheel.kernel->tangent_point(at->x[0], at->slope[0], sheave->tangent_radius[0], next, phi, J, out->K[0]);
-    out->phi[NEXT_ROW] = phi[1];
-    by_y(0, J + NODE, out->J[NEXT_ROW]);
+    for (int r = 0; r < nearest; ++r) fu_join_row(sheave, at, r, &out->phi[r], out->J[r]);
+    sheave->wheel.kernel->tangent_point(at->x[0], at->slope[0], sheave->tangent_radius[0], force, phi, J, out->K[0]);
+    out->phi[nearest] = phi[1];
+    by_y(0, J + NODE, out->J[nearest]);
 }
 
 static void find_conditions(const fu_sheave *sheave, const fu_sheave_state *at, const double *multipliers,
                             conditions *out)
 {
-    const int first = without_zones(sheave, at->mode);
     out->n = fu_sheave_conditions(sheave, at);
-    for (int r = first; r < out->n; ++r) fu_share_row(sheave, at, r - first + 1, &out->phi[r], out->J[r]);
+    fu_sheave_rows_of_wrap(sheave, at, out->phi, out->J);
     if (at->mode == FU_LIFTED) {
         join(sheave, at, multipliers, out);
         return;
@@ -61,39 +71,28 @@ static void find_conditions(const fu_sheave *sheave, const fu_sheave_state *at, 
                                             out->phi + DIM * k, J, out->K[k]);
         for (int r = 0; r < DIM; ++r) by_y(k, J + r * NODE, out->J[DIM * k + r]);
     }
-    if (at->mode == FU_SHORT) out->phi[SHORT_ROW] = fu_short_wrap_row(sheave, at, out->J[SHORT_ROW]);
 }
 
-/* Adds the forces of the tangent points on the dofs, in space. */
-static void add_multipliers_in_space(const fu_sheave *sheave, const fu_sheave_state *at, const double *multipliers,
-                                     double *phi, double *f)
+/* Adds the forces of conditions from number `first` on by y; that of a short wrap is among those of its wrap. */
+static void add_forces(const fu_sheave *sheave, const fu_sheave_state *at, int first, double (*J)[Y],
+                       const double *multipliers, double *y)
 {
-    for (int k = 0; k < ENDS; ++k, multipliers += FU_FOOT_CONDITIONS, phi += FU_FOOT_CONDITIONS) {
-        const fu_foot of = fu_foot_of(sheave, k);
-        double rows[FU_FOOT_CONDITIONS * FU_FOOT_DOFS];
-        fu_tangent_point foot;
-        fu_tangent_point_at(&of, &at->wheel, at->q, multipliers, &foot);
-        fu_tangent_point_rows(&foot, rows);
-        memcpy(phi, foot.phi, sizeof foot.phi);
-        for (int r = 0; r < FU_FOOT_CONDITIONS; ++r)
-            for (int j = 0; j < foot.n; ++j) f[foot.dofs[j]] += rows[r * foot.n + j] * multipliers[r];
-    }
+    for (int r = first; r < fu_sheave_conditions(sheave, at); ++r)
+        for (int i = 0; i <= MATERIAL + sheave->n_zones && (r != short_row(sheave) || at->mode != FU_SHORT); ++i)
+            y[i] += J[r][i] * multipliers[r];
 }
 
-/* The same by y, without the forces on the chords: those on the nodes, and their opposites on the centre. */
-static void add_multipliers_on_nodes(const fu_sheave *sheave, const fu_sheave_state *at, const double *multipliers,
-                                     double *phi, double *y)
+/* Adds the forces of the conditions of the wrap alone; computes all residuals of these. */
+static void add_forces_of_wrap(const fu_sheave *sheave, const fu_sheave_state *at, const double *multipliers,
+                               double *phi, double *y)
 {
-    for (int k = 0; k < ENDS; ++k, multipliers += FU_FOOT_CONDITIONS, phi += FU_FOOT_CONDITIONS) {
-        const fu_foot of = fu_foot_of(sheave, k);
-        fu_tangent_point foot;
-        fu_tangent_point_at(&of, &at->wheel, at->q, multipliers, &foot);
-        memcpy(phi, foot.phi, sizeof foot.phi);
-        fu_tangent_point_add_forces(&at->wheel, &foot, multipliers, y + k * NODE, y + CENTRE);
-    }
+    double J[MAX_CONDITIONS][Y];
+    memset(phi, 0, sizeof(double) * (size_t)sheave->wheel.base.n_forces);
+    fu_sheave_rows_of_wrap(sheave, at, phi, J);
+    add_forces(sheave, at, first_row_of_wrap(sheave, at->mode), J, multipliers, y);
 }
 
-/* Adds the forces of the conditions by y, in the plane; that of a short wrap is among those of its wrap. */
+/* Adds the forces of the conditions by y, in the plane. */
 static void add_multipliers_in_plane(const fu_sheave *sheave, const fu_sheave_state *at, const double *multipliers,
                                      double *phi, double *y)
 {
@@ -101,22 +100,29 @@ static void add_multipliers_in_plane(const fu_sheave *sheave, const fu_sheave_st
     find_conditions(sheave, at, multipliers, &of);
     memset(phi, 0, sizeof(double) * (size_t)sheave->wheel.base.n_forces);
     memcpy(phi, of.phi, sizeof(double) * (size_t)of.n);
-    for (int r = 0; r < of.n; ++r)
-        for (int i = 0; i <= MATERIAL + sheave->n_zones && (r != SHORT_ROW || at->mode != FU_SHORT); ++i)
-            y[i] += of.J[r][i] * multipliers[r];
+    add_forces(sheave, at, 0, of.J, multipliers, y);
 }
 
 void fu_sheave_add_multipliers(const fu_sheave *sheave, const fu_sheave_state *at, const double *multipliers,
                                double *phi, double *y)
 {
-    (is_in_space(sheave) ? add_multipliers_on_nodes : add_multipliers_in_plane)(sheave, at, multipliers, phi, y);
+    if (!is_in_space(sheave)) {
+        add_multipliers_in_plane(sheave, at, multipliers, phi, y);
+        return;
+    }
+    add_forces_of_wrap(sheave, at, multipliers, phi, y);
+    fu_space_add_multipliers_by_y(sheave, at, multipliers, phi, y);
 }
 
 void fu_sheave_add_all_multipliers(const fu_sheave *sheave, const fu_sheave_state *at, const double *multipliers,
                                    double *phi, double *y, double *f)
 {
-    if (is_in_space(sheave)) add_multipliers_in_space(sheave, at, multipliers, phi, f);
-    else add_multipliers_in_plane(sheave, at, multipliers, phi, y);
+    if (!is_in_space(sheave)) {
+        add_multipliers_in_plane(sheave, at, multipliers, phi, y);
+        return;
+    }
+    add_forces_of_wrap(sheave, at, multipliers, phi, y);
+    fu_space_add_multipliers(sheave, at, multipliers, phi, f);
 }
 
 void fu_sheave_rows_at(const fu_sheave *sheave, const fu_sheave_state *at, double J[MAX_CONDITIONS][Y],
@@ -130,20 +136,6 @@ void fu_sheave_rows_at(const fu_sheave *sheave, const fu_sheave_state *at, doubl
 }
 
 /* --- derivatives ------------------------------------------------------------------------------------------------ */
-
-static void add_conditions_in_space(const fu_model *model, const fu_coupling *coupling, const fu_sheave_state *at,
-                                    const fu_equations *equations, const fu_centre_moves *by_psi, fu_system *system)
-{
-    for (int k = 0; k < ENDS; ++k) {
-        const int first = FU_FOOT_CONDITIONS * k;
-        const double *multipliers = equations->next->forces + coupling->force + first;
-        const fu_foot of = fu_foot_of(sheave_of(coupling), k);
-        fu_tangent_point foot;
-        fu_tangent_point_at(&of, &at->wheel, at->q, multipliers, &foot);
-        fu_tangent_point_add(model, &at->wheel, &foot, by_psi, multipliers, coupling->scale + first, equations->weights,
-                             fu_extra(model, coupling->unknown) + first, system);
-    }
-}
 
 /* Adds the derivatives of the forces of a tangent point by y. */
 static void add_stiffness_of_foot(int k, double factor, const double K[NODE * NODE], double (*K_y)[Y])
@@ -165,14 +157,17 @@ void fu_sheave_add_conditions(const fu_model *model, const fu_coupling *coupling
 {
     const fu_sheave *sheave = sheave_of(coupling);
     const int own = fu_extra(model, coupling->unknown);
+    const int first = is_in_space(sheave) ? first_row_of_wrap(sheave, at->mode) : 0;
     conditions of;
     if (is_in_space(sheave)) {
-        add_conditions_in_space(model, coupling, at, equations, by_psi, system);
-        return;
+        of.n = fu_sheave_conditions(sheave, at);
+        fu_sheave_rows_of_wrap(sheave, at, of.phi, of.J);
+        fu_space_add_conditions(model, coupling, at, equations, by_psi, system);
+    } else {
+        find_conditions(sheave, at, equations->next->forces + coupling->force, &of);
+        for (int k = 0; k < ENDS; ++k) add_stiffness_of_foot(k, equations->weights.stiffness, of.K[k], K_y);
     }
-    find_conditions(sheave, at, equations->next->forces + coupling->force, &of);
-    for (int k = 0; k < ENDS; ++k) add_stiffness_of_foot(k, equations->weights.stiffness, of.K[k], K_y);
-    for (int r = 0; r < of.n; ++r) {
+    for (int r = first; r < of.n; ++r) {
         const double unit = fu_row_unit(equations->weights.inertia, coupling->scale[r]);
         for (int j = 0; j < n; ++j) {
             const double row = fu_by_column(&columns[j], of.J[r]), column = fu_by_column(&rows[j], of.J[r]);
@@ -186,45 +181,20 @@ void fu_sheave_add_conditions(const fu_model *model, const fu_coupling *coupling
 
 /* --- eq 38 ------------------------------------------------------------------------------------------------------ */
 
-static void rows_in_space(const fu_model *model, const fu_sheave *sheave, const fu_state *state, fu_rows *out)
-{
-    const double none[FU_FOOT_CONDITIONS] = {0.0};
-    fu_wheel_state wheel;
-    fu_wheel_at(model, &sheave->wheel, state, model->zero, &wheel);
-    for (int k = 0; k < ENDS; ++k) {
-        const fu_foot of = fu_foot_of(sheave, k);
-        double rows[FU_FOOT_CONDITIONS * FU_FOOT_DOFS], bias[FU_FOOT_CONDITIONS];
-        fu_tangent_point foot;
-        fu_tangent_point_at(&of, &wheel, state->q, none, &foot);
-        fu_tangent_point_rows(&foot, rows);
-        fu_tangent_point_bias(&of, &foot, &wheel, state->q, state->v, bias);
-        out->n = ENDS * foot.n;
-        memcpy(out->at + k * foot.n, foot.dofs, sizeof(int) * (size_t)foot.n);
-        for (int r = 0; r < FU_FOOT_CONDITIONS; ++r) {
-            const int row = FU_FOOT_CONDITIONS * k + r;
-            double *H = out->H + row * out->n;
-            out->C[row] = foot.phi[r];
-            out->rate[row] = 0.0;
-            out->W[row] = -bias[r];
-            memset(H, 0, sizeof(double) * (size_t)out->n);
-            memcpy(H + k * foot.n, rows + r * foot.n, sizeof(double) * (size_t)foot.n);
-        }
-    }
-}
-
 /* Computes the second rates of the conditions at zero accelerations of the dofs, in the plane. */
 static void find_drift(const fu_sheave *sheave, const fu_sheave_state *at, const conditions *of, double *drift)
 {
+    const int nearest = short_row(sheave);
     memset(drift, 0, sizeof(double) * (size_t)sheave->wheel.base.n_forces);
     for (int k = 0; k < ENDS; ++k) {
         double foot[DIM];
         sheave->wheel.kernel->tangent_point_motion(at->x[k], at->x_rate[k], at->slope_rate[k], foot);
-        if (at->mode == FU_LIFTED) drift[NEXT_ROW] = k ? drift[NEXT_ROW] : foot[1];
+        if (at->mode == FU_LIFTED) drift[nearest] = k ? drift[nearest] : foot[1];
         else memcpy(drift + DIM * k, foot, sizeof foot);
     }
     for (int r = 0; r < of->n; ++r)
         for (int d = 0; d < DIM; ++d) drift[r] += of->J[r][CENTRE + d] * at->wheel.centre.bias[d];
-    if (at->mode == FU_SHORT) drift[SHORT_ROW] = fu_short_wrap_drift(sheave, at);
+    if (at->mode == FU_SHORT) drift[short_row(sheave)] = fu_short_wrap_drift(sheave, at);
 }
 
 static void rows_in_plane(const fu_model *model, const fu_sheave *sheave, const fu_state *state, fu_rows *out)
@@ -253,5 +223,5 @@ static void rows_in_plane(const fu_model *model, const fu_sheave *sheave, const 
 void fu_sheave_rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work)
 {
     const fu_sheave *sheave = sheave_of(coupling);
-    (is_in_space(sheave) ? rows_in_space : rows_in_plane)(model, sheave, state, &work->rows[coupling->row]);
+    (is_in_space(sheave) ? fu_space_rows : rows_in_plane)(model, sheave, state, &work->rows[coupling->row]);
 }

@@ -1,4 +1,5 @@
 /* Forces of a sheave and its wrap, and their derivatives, by the places of the nodes (y). */
+#include "bodies/unknowns.h"
 #include "couplings/sheave/sheave.h"
 
 #include <string.h>
@@ -47,7 +48,7 @@ static motion_across across_of(const fu_sheave *sheave, const fu_sheave_state *a
     const double s_rate[ENDS] = {at->s_rate[0], at->s_rate[n]};
     const int moves = !is_turning(sheave); /* else it is in the kernels of turning wraps */
     motion_across out;
-    sheave->wheel.foot->across(sheave->wheel.rho, wrap_length(sheave, at), at->wheel.across, gravity,
+    sheave->wheel.foot->across(sheave->wheel.rho, wrap_length(sheave, at), at->wheel.across + at->aside, gravity,
                                moves * at->wheel.across_rate, moves * at->wheel.across_acc, s_rate, &out.T, &out.V,
                                out.f, out.M, out.D, out.K);
     return out;
@@ -88,6 +89,8 @@ void fu_sheave_scatter(const fu_sheave *sheave, const fu_sheave_state *at, const
     for (int k = 0; k < ENDS && is_in_space(sheave); ++k)
         for (int d = 0; d < SPACE; ++d)
             f[sheave->nodes[k] + d] += fu_dot(DIM, at->wheel.groove + d * DIM, y + k * NODE);
+    for (int k = 0; k < ENDS && is_in_space(sheave) && at->mode == FU_SHORT; ++k)
+        for (int d = 0; d < SPACE; ++d) f[sheave->nodes[k] + SPACE + d] += y[k * NODE + SLOPE] * at->stretch[k][d];
     for (int j = 0; j <= sheave->n_zones; ++j) f[sheave->s[j]] += y[MATERIAL + j];
     fu_wheel_add_forces(&sheave->wheel, &at->wheel, y + CENTRE, f);
 }
@@ -139,6 +142,18 @@ static void add_turning(const fu_sheave_state *at, double factor, const double *
                 K[k * NODE + i][CENTRE + j] -= value;
                 K[CENTRE + i][k * NODE + j] -= value;
                 K[CENTRE + i][CENTRE + j] += value;
+            }
+}
+
+void fu_sheave_add_turn_of_slopes(const fu_model *model, const fu_sheave *sheave, const fu_sheave_state *at,
+                                  const double y[Y], double factor, fu_system *system)
+{
+    for (int k = 0; k < ENDS; ++k)
+        for (int i = 0; i < SPACE; ++i)
+            for (int j = 0; j < SPACE; ++j) {
+                const double across = (i == j) - at->stretch[k][i] * at->stretch[k][j];
+                const int slope = sheave->nodes[k] + SPACE;
+                fu_add(model, system, slope + i, slope + j, factor * y[k * NODE + SLOPE] * across / at->slope[k][0]);
             }
 }
 

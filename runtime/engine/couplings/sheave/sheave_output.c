@@ -68,7 +68,7 @@ static double least_pressure(const fu_sheave *sheave, const fu_sheave_state *at,
     for (int k = 0; k < ENDS; ++k)
         least =
             fmin(least, fu_wheel_pressure(wheel, &at->wheel, at->phi[k], tension[k], speeds[k], fu_stretch_at(at, k)));
-    for (int j = 0; at->mode == FU_WRAPPED && j < sheave->n_zones; ++j) {
+    for (int j = 0; fu_stretches(at->mode) && j < sheave->n_zones; ++j) {
         const fu_zone of = fu_zone_at(at, j);
         const double stretch = stretch_of(sheave, &of);
         const double inside = wheel->A[0] * (stretch - 1.0);
@@ -90,13 +90,33 @@ static double gap_of(const fu_sheave *sheave, const fu_sheave_state *at)
     return sqrt(fu_dot(DIM, at->x[0], at->x[0])) - sheave->tangent_radius[0];
 }
 
-double fu_wrap_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+double fu_wrap_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int may_change)
 {
     const fu_sheave *sheave = sheave_of(coupling);
     fu_sheave_state at;
     fu_sheave_at(model, sheave, state, 0, &at);
     const double wrap = sheave->wheel.sense * (at.phi[1] - at.phi[0]);
-    return at.mode == FU_LIFTED ? gap_of(sheave, &at) : at.mode == FU_SHORT ? wrap : wrap - sheave->least_wrap;
+    if (at.mode == FU_LIFTED) return gap_of(sheave, &at);
+    if (at.mode == FU_SHORT) return wrap;
+    return wrap - (at.mode == FU_CHORDED && may_change && fu_may_leave(sheave) ? FU_LEAST_CHORDED : sheave->least_wrap);
+}
+
+/* Returns the fleet angle at a tangent point, in space. */
+static double fleet_angle(const fu_sheave *sheave, const fu_sheave_state *at, int k)
+{
+    const fu_foot foot = fu_foot_of(sheave, at, k);
+    return fu_fleet_angle(&foot, at->q, at->wheel.axis);
+}
+
+/* Returns how far a tangent point across the slope is from one of which rest is a saddle of the energy, where its
+ * element has the length 6 R tan^2 f at the fleet angle f, over 6 R; with a reserve
+ * (derive/couplings/tangent_point.md). */
+static double slope_margin(const fu_sheave *sheave, const fu_sheave_state *at, int k)
+{
+    const double reserve = 2.0, slant = tan(fleet_angle(sheave, at, k));
+    const int *s = sheave->span_s + ENDS * k;
+    const double share = k ? sheave->share_after[1] : 1.0 - sheave->share_before[sheave->span_elements[0] - 1];
+    return share * (at->q[s[1]] - at->q[s[0]]) / (6.0 * sheave->wheel.radius) - reserve * slant * slant;
 }
 
 double fu_wrap_growth_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
@@ -105,7 +125,10 @@ double fu_wrap_growth_margin(const fu_model *model, const fu_coupling *coupling,
     const double reserve = 2.0;
     fu_sheave_state at;
     fu_sheave_at(model, sheave, state, 0, &at);
-    return at.mode == FU_SHORT ? reserve * sheave->least_wrap - sheave->wheel.sense * (at.phi[1] - at.phi[0]) : 1.0;
+    const double wrap = sheave->wheel.sense * (at.phi[1] - at.phi[0]);
+    if (at.mode == FU_SHORT) return reserve * sheave->least_wrap - wrap;
+    if (at.mode != FU_WRAPPED || !is_in_space(sheave)) return 1.0;
+    return fmax(reserve * FU_LEAST_CHORDED - wrap, fmin(slope_margin(sheave, &at, 0), slope_margin(sheave, &at, 1)));
 }
 
 int fu_wrap_may_leave(const fu_coupling *coupling)
@@ -115,7 +138,7 @@ int fu_wrap_may_leave(const fu_coupling *coupling)
 
 int fu_wrap_stretches(const fu_coupling *coupling, const fu_state *state)
 {
-    return !fu_may_leave(sheave_of(coupling)) || *fu_wrap_flag(sheave_of(coupling), state) == FU_WRAPPED;
+    return !fu_may_leave(sheave_of(coupling)) || fu_stretches(*fu_wrap_flag(sheave_of(coupling), state));
 }
 
 int fu_wrap_has_left(const fu_coupling *coupling, const fu_state *state)
@@ -123,18 +146,27 @@ int fu_wrap_has_left(const fu_coupling *coupling, const fu_state *state)
     return *fu_wrap_flag(sheave_of(coupling), state) == FU_LIFTED;
 }
 
-int fu_wrap_change(const fu_coupling *coupling, fu_state *now, int grows)
+int fu_wrap_change(const fu_model *model, const fu_coupling *coupling, fu_state *now, int grows)
 {
-    int *mode = fu_wrap_flag(sheave_of(coupling), now);
-    *mode = *mode != FU_SHORT ? FU_SHORT : grows ? FU_WRAPPED : FU_LIFTED;
+    const fu_sheave *sheave = sheave_of(coupling);
+    int *mode = fu_wrap_flag(sheave, now);
+    if (*mode == FU_LIFTED && is_in_space(sheave)) {
+        fu_sheave_state at;
+        fu_sheave_at(model, sheave, now, 0, &at);
+        fu_place_in(sheave, now)->aside = at.rise[0];
+    }
+    *mode += grows || *mode == FU_LIFTED ? 1 : -1;
     return *mode == FU_LIFTED;
 }
 
-/* Returns the fleet angle at a tangent point, in space. */
-static double fleet_angle(const fu_sheave *sheave, const fu_sheave_state *at, int k)
+int fu_wrap_is_beside(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
-    const fu_foot foot = fu_foot_of(sheave, k);
-    return fu_fleet_angle(&foot, at->q, at->wheel.axis);
+    const fu_sheave *sheave = sheave_of(coupling);
+    fu_sheave_state at;
+    if (!is_in_space(sheave)) return 0;
+    fu_sheave_at(model, sheave, state, 0, &at);
+    if (at.mode == FU_LIFTED) return fabs(at.rise[0]) > sheave->mouth;
+    return at.mode == FU_SHORT && fabs(fleet_angle(sheave, &at, 0) + fleet_angle(sheave, &at, 1)) > sheave->kink;
 }
 
 /* A span is a minimum of the energy R phi + l while its length along the groove is above R tan f: else the tangent
@@ -151,7 +183,7 @@ double fu_fleet_margin(const fu_model *model, const fu_coupling *coupling, const
     double least = INFINITY;
     fu_sheave_state at;
     fu_sheave_at(model, sheave, state, 0, &at);
-    for (int k = 0; k < ENDS; ++k) {
+    for (int k = 0; k < ENDS && at.mode != FU_LIFTED; ++k) {
         const double fleet = fleet_angle(sheave, &at, k);
         const double length = state->q[sheave->span_s[ENDS * k + 1]] - state->q[sheave->span_s[ENDS * k]];
         least = fmin(least, fu_span_fleet_margin(length, sheave->wheel.radius, fleet));
@@ -213,7 +245,7 @@ static double wrap_pressure(const fu_sheave *sheave, const fu_sheave_state *at)
     if (at->mode == FU_LIFTED) return 0.0;
     if (at->mode == FU_SHORT || has_friction(sheave)) elastic_tensions(sheave, at, tension, speed);
     else tensions(sheave, at, none, 0, tension, speed, phi, y);
-    if (at->mode == FU_WRAPPED && has_smooth_friction(sheave)) tensions_beside_zones(sheave, at, tension);
+    if (fu_stretches(at->mode) && has_smooth_friction(sheave)) tensions_beside_zones(sheave, at, tension);
     return least_pressure(sheave, at, tension, speed);
 }
 
@@ -275,7 +307,7 @@ void fu_sheave_outputs(const fu_model *model, const fu_coupling *coupling, const
     double y[Y], phi[MAX_CONDITIONS], tension[ENDS], speed[ENDS], on_centre[SPACE];
     fu_wrap_force sticking[MAX_ZONES + 1];
     fu_sheave_at(model, sheave, state, acceleration, &at);
-    if (at.mode == FU_SHORT) at.tension = multipliers[SHORT_ROW];
+    if (at.mode == FU_SHORT) at.tension = multipliers[short_row(sheave)];
     if (sticks(sheave)) find_sticking(model, sheave, &at, state, work, sticking);
     tensions(sheave, &at, multipliers, sticking, tension, speed, phi, y);
     if (at.mode == FU_LIFTED) elastic_tensions(sheave, &at, tension, speed);
@@ -284,8 +316,9 @@ void fu_sheave_outputs(const fu_model *model, const fu_coupling *coupling, const
     numbers->gap = at.mode == FU_LIFTED ? gap_of(sheave, &at) : 0.0;
     fu_wheel_force(&sheave->wheel, &at.wheel, y + CENTRE, on_centre);
     for (int d = 0; d < SPACE; ++d) numbers->force[d] = -on_centre[d] + 0.0; /* no -0 */
-    numbers->fleet_angle_on = is_in_space(sheave) ? fleet_angle(sheave, &at, 0) : 0.0;
-    numbers->fleet_angle_off = is_in_space(sheave) ? fleet_angle(sheave, &at, 1) : 0.0;
+    const int is_beside = is_in_space(sheave) && at.mode != FU_LIFTED;
+    numbers->fleet_angle_on = is_beside ? fleet_angle(sheave, &at, 0) : 0.0;
+    numbers->fleet_angle_off = is_beside ? fleet_angle(sheave, &at, 1) : 0.0;
     numbers->material_speed = -0.5 * (at.s_rate[0] + at.s_rate[sheave->n_zones]);
     numbers->normal_force = wrap_pressure(sheave, &at);
     numbers->angle = sheave->wheel.turn < 0 ? 0.0 : state->q[sheave->wheel.turn];

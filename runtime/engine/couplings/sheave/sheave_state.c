@@ -61,8 +61,10 @@ static void find_node_in_space(const fu_sheave *sheave, const double *q, const d
     out->rise[k] = fu_dot(SPACE, out->wheel.axis, q + r) - fu_dot(SPACE, out->wheel.axis, out->wheel.centre.p);
     fu_from_centre(&sheave->wheel, &out->wheel, q + r, v + r, a + r, out->x[k], out->x_rate[k], x_acc);
     out->slope[k][0] = size;
-    out->slope_rate[k][0] = fu_dot(SPACE, out->stretch[k], v + r + SPACE);
-    out->slope[k][1] = out->slope_rate[k][1] = 0.0;
+    const double rate = fu_dot(SPACE, out->stretch[k], v + r + SPACE);
+    out->slope_rate[k][0] = rate;
+    out->slope_rate[k][1] = sqrt(fmax(fu_dot(SPACE, v + r + SPACE, v + r + SPACE) - rate * rate, 0.0));
+    out->slope[k][1] = 0.0;
 }
 
 /* Computes the motion of a node from the centre, with the acceleration x_acc, in the plane. */
@@ -112,5 +114,7 @@ void fu_sheave_at(const fu_model *model, const fu_sheave *sheave, const fu_state
     find_angles(sheave, out);
     find_zones(sheave, out);
     out->mode = fu_wrap_mode(sheave, out, state);
+    const int lies = state->numbers && is_in_space(sheave) && out->mode != FU_LIFTED;
+    out->aside = lies ? fu_place_in(sheave, state)->aside : 0.0;
     out->tension = 0.0;
 }

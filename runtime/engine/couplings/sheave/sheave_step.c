@@ -294,7 +294,7 @@ static void add_conditions_in_space(const fu_sheave *sheave, const step_view *st
                                     const double *multipliers, double *phi, double *f)
 {
     for (int k = 0; k < ENDS; ++k, multipliers += FU_FOOT_CONDITIONS, phi += FU_FOOT_CONDITIONS) {
-        const fu_foot of = fu_foot_of(sheave, k);
+        const fu_foot of = fu_foot_of(sheave, &step->now, k);
         double rows[FU_FOOT_CONDITIONS * FU_FOOT_DOFS], square = 0.0;
         fu_tangent_point now, next, foot;
         fu_tangent_point_at(&of, &step->now.wheel, at->now->q, multipliers, &now);

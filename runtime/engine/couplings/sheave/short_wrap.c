@@ -16,11 +16,12 @@ typedef struct {
 
 int fu_wrap_mode(const fu_sheave *sheave, const fu_sheave_state *at, const fu_state *state)
 {
-    if (!fu_may_leave(sheave)) return FU_WRAPPED;
+    if (!fu_may_leave(sheave)) return is_in_space(sheave) ? FU_CHORDED : FU_WRAPPED;
     if (state->flags && *fu_wrap_flag(sheave, state)) return *fu_wrap_flag(sheave, state);
     const double wrap = sheave->wheel.sense * (at->phi[1] - at->phi[0]);
     if (fabs(wrap_length(sheave, at)) <= sheave->no_length) return FU_LIFTED;
-    return wrap < sheave->least_wrap ? FU_SHORT : FU_WRAPPED;
+    if (wrap < sheave->least_wrap) return FU_SHORT;
+    return is_in_space(sheave) && wrap >= FU_LEAST_CHORDED ? FU_CHORDED : FU_WRAPPED;
 }
 
 double fu_least_length(const fu_sheave *sheave)

@@ -9,7 +9,7 @@
 #include <string.h>
 
 enum { SPACE = 3, NODE_IN_SPACE = 2 * SPACE, VECTORS = 4, S = NODE_IN_SPACE + FU_FOOT_ELEMENT };
-enum { CHORD = SPACE, LENGTH = 2 * SPACE, AXIS = LENGTH + 1 };
+enum { SLOPE = SPACE, CHORD = 2 * SPACE, LENGTH = 3 * SPACE, AXIS = LENGTH + 1 };
 
 static double derivative(const fu_tangent_point *at, int row, int of)
 {
@@ -48,7 +48,7 @@ static chord_end before_end(const fu_foot *span, double L)
     return (chord_end){j, rest * L - span->chord, whole * L, {rest, whole}, span->chord, 0.0};
 }
 
-/* Computes the chord and its derivatives, the dofs, and the changes of x, the chord and b by them. */
+/* Computes the chord and its derivatives, the dofs, and the changes of x, the slope, the chord and b by them. */
 static void find_chord(const fu_foot *foot, const double *q, fu_tangent_point *out)
 {
     const double L = q[foot->s[1]] - q[foot->s[0]], *node = q + foot->node;
@@ -70,7 +70,7 @@ static void find_chord(const fu_foot *foot, const double *q, fu_tangent_point *o
     }
     for (int d = 0; d < SPACE; ++d) {
         out->chord[d] = r[d] - node[d];
-        out->by[d][d] = 1.0;
+        out->by[d][d] = out->by[SLOPE + d][SLOPE + d] = 1.0;
         out->by[CHORD + d][d] = -1.0;
         out->by[CHORD + d][S] = -out->chord_L[d];
         out->by[CHORD + d][S + 1] = out->chord_L[d];
@@ -86,7 +86,10 @@ void fu_tangent_point_turn(const fu_wheel_state *wheel, const fu_centre_moves *m
         double turn[SPACE], change[SPACE];
         for (int d = 0; d < SPACE; ++d) turn[d] = moves->T[d * n + i];
         fu_cross(turn, wheel->axis, change);
-        for (int d = 0; d < SPACE; ++d) at->by[AXIS + d][FU_FOOT_CENTRE + i] = change[d];
+        for (int d = 0; d < SPACE; ++d) {
+            at->by[AXIS + d][FU_FOOT_CENTRE + i] = change[d];
+            at->by[d][FU_FOOT_CENTRE + i] -= at->aside * change[d];
+        }
     }
 }
 
@@ -98,16 +101,17 @@ void fu_tangent_point_at(const fu_foot *foot, const fu_wheel_state *wheel, const
     fu_centre_moves moves;
     double x[SPACE];
     find_chord(foot, q, out);
+    out->aside = foot->aside;
     out->n = FU_FOOT_CENTRE + centre->n;
     out->n_vectors = foot->wheel->tilts ? FU_FOOT_VECTORS : AXIS;
     memcpy(out->dofs + FU_FOOT_CENTRE, centre->at, sizeof(int) * (size_t)centre->n);
     memcpy(moves.P, centre->P, sizeof(double) * (size_t)(SPACE * centre->n));
     memcpy(moves.T, centre->T, sizeof(double) * (size_t)(SPACE * centre->n));
     fu_tangent_point_turn(wheel, &moves, out);
-    for (int d = 0; d < SPACE; ++d) x[d] = q[foot->node + d] - centre->p[d];
-    (foot->wheel->tilts ? kernel->turned_conditions
-                        : kernel->conditions)(x, out->chord, out->b, wheel->axis, foot->weight, foot->wheel->A[0],
-                                              foot->limit, foot->radius, multipliers, out->phi, out->J, out->K);
+    for (int d = 0; d < SPACE; ++d) x[d] = q[foot->node + d] - centre->p[d] - foot->aside * wheel->axis[d];
+    (foot->wheel->tilts ? kernel->turned_conditions : kernel->conditions)(
+        x, q + foot->node + SLOPE, out->chord, out->b, wheel->axis, foot->weight, foot->wheel->A[0], foot->by_chord,
+        foot->limit, foot->radius, multipliers, out->phi, out->J, out->K);
 }
 
 void fu_tangent_point_rows(const fu_tangent_point *at, double *rows)
@@ -141,7 +145,8 @@ static void find_force_on_axis(const fu_tangent_point *at, const double *multipl
 {
     for (int d = 0; d < SPACE; ++d) {
         out[d] = 0.0;
-        for (int r = 0; r < FU_FOOT_CONDITIONS; ++r) out[d] += multipliers[r] * derivative(at, r, AXIS + d);
+        for (int r = 0; r < FU_FOOT_CONDITIONS; ++r)
+            out[d] += multipliers[r] * (derivative(at, r, AXIS + d) - at->aside * derivative(at, r, d));
     }
 }
 
@@ -204,7 +209,7 @@ void fu_tangent_point_stiffness(const fu_wheel_state *wheel, const fu_tangent_po
 
 void fu_tangent_point_add(const fu_model *model, const fu_wheel_state *wheel, const fu_tangent_point *at,
                           const fu_centre_moves *moves, const double *multipliers, const double *scale, fu_weights w,
-                          int own, fu_system *system)
+                          int first, int n_rows, int own, fu_system *system)
 {
     const int n = at->n;
     double rows[FU_FOOT_CONDITIONS * FU_FOOT_DOFS], columns[FU_FOOT_CONDITIONS * FU_FOOT_DOFS],
@@ -215,10 +220,11 @@ void fu_tangent_point_add(const fu_model *model, const fu_wheel_state *wheel, co
     fu_tangent_point_rows(at, columns);
     fu_tangent_point_stiffness(wheel, at, &turned, multipliers, K);
     for (int j = 0; j < n; ++j) {
-        for (int r = 0; r < FU_FOOT_CONDITIONS; ++r) {
+        for (int r = 0; r < n_rows; ++r) {
             const double unit = fu_row_unit(w.inertia, scale[r]);
-            if (rows[r * n + j] != 0.0) fu_add(model, system, own + r, at->dofs[j], unit * rows[r * n + j]);
-            if (columns[r * n + j] != 0.0) fu_add(model, system, at->dofs[j], own + r, unit * columns[r * n + j]);
+            const double row = rows[(first + r) * n + j], column = columns[(first + r) * n + j];
+            if (row != 0.0) fu_add(model, system, own + r, at->dofs[j], unit * row);
+            if (column != 0.0) fu_add(model, system, at->dofs[j], own + r, unit * column);
         }
         for (int i = 0; i < n; ++i)
             if (K[i * n + j] != 0.0) fu_add(model, system, at->dofs[i], at->dofs[j], w.stiffness * K[i * n + j]);
@@ -242,7 +248,7 @@ void fu_tangent_point_bias(const fu_foot *foot, const fu_tangent_point *at, cons
     const fu_tangent_point_kernels *kernel = foot->wheel->foot;
     double x[SPACE], rate[FU_FOOT_VECTORS] = {0.0}, second[FU_FOOT_VECTORS] = {0.0};
     for (int d = 0; d < SPACE; ++d) {
-        x[d] = q[foot->node + d] - wheel->centre.p[d];
+        x[d] = q[foot->node + d] - wheel->centre.p[d] - foot->aside * wheel->axis[d];
         second[d] = -wheel->centre.bias[d];
         second[CHORD + d] = at->chord_LL[d] * L_rate * L_rate;
     }
@@ -252,11 +258,13 @@ void fu_tangent_point_bias(const fu_foot *foot, const fu_tangent_point *at, cons
         second[CHORD + i % SPACE] += 2.0 * L_rate * at->N_L[i / SPACE] * v[at->dofs[NODE_IN_SPACE + i]];
     if (foot->wheel->tilts) {
         find_motion_of_axis(wheel, rate + AXIS, second + AXIS);
-        kernel->turned_motion(x, at->chord, at->b, wheel->axis, foot->weight, foot->wheel->A[0], foot->limit, rate,
-                              rate + CHORD, rate[LENGTH], rate + AXIS, bias);
+        for (int d = 0; d < SPACE; ++d) second[d] -= foot->aside * second[AXIS + d];
+        kernel->turned_motion(x, q + foot->node + SLOPE, at->chord, at->b, wheel->axis, foot->weight, foot->wheel->A[0],
+                              foot->by_chord, foot->limit, rate, rate + SLOPE, rate + CHORD, rate[LENGTH], rate + AXIS,
+                              bias);
     } else
-        kernel->motion(x, at->chord, at->b, wheel->axis, foot->weight, foot->wheel->A[0], foot->limit, rate,
-                       rate + CHORD, rate[LENGTH], bias);
+        kernel->motion(x, q + foot->node + SLOPE, at->chord, at->b, wheel->axis, foot->weight, foot->wheel->A[0],
+                       foot->by_chord, foot->limit, rate, rate + SLOPE, rate + CHORD, rate[LENGTH], bias);
     for (int r = 0; r < FU_FOOT_CONDITIONS; ++r)
         for (int i = 0; i < at->n_vectors; ++i) bias[r] += derivative(at, r, i) * second[i];
 }

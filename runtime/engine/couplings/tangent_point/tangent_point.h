@@ -7,31 +7,32 @@
 /* A node of a wheel at the start of a span, or at its end; of the span the first dof, elements in all and within reach
  * of the chord, s of its ends, shares of its nodes; m: the stress-free length of the chord, and the radius to the
  * tangent point; half the weight of a length, and the tension over the length of a chord below which its sag has its
- * limit, N/m. */
+ * limit, N/m; by_chord: 1 where the radius is across the chord, 0 where it is across the slope; aside: m, the place of
+ * the rope in the groove along the axis. */
 typedef struct {
     const fu_wheel *wheel;
     int is_start, node, first, n_elements, reach;
     const int *s;
     const double *share, *weight;
-    double chord, radius, limit;
+    double chord, radius, limit, by_chord, aside;
 } fu_foot;
 
 enum {
     FU_FOOT_CONDITIONS = 3,
-    FU_FOOT_VECTORS = 10, /* x, chord, its stress-free length b; where the groove turns the axis */
+    FU_FOOT_VECTORS = 13, /* x, slope, chord, its stress-free length b; where the groove turns the axis */
     FU_FOOT_ELEMENT = 12,
     FU_FOOT_CENTRE = 6 + FU_FOOT_ELEMENT + 2, /* where the coordinates of the centre are among the dofs */
     FU_FOOT_DOFS = FU_FOOT_CENTRE + FU_ATTACHMENT_COORDINATES
 };
 
-/* A tangent point at a state: its n dofs, those of the node, of the element in which the chord ends, s of both ends of
- * the span, and the coordinates of the centre, some of them twice; the conditions and their derivatives by n_vectors
- * numbers, x, the chord, b and the axis where it turns (J, K), and the changes of these by the dofs. K: of J'
- * multipliers. */
+/* A tangent point at a state; x is from the centre of the circle on which the rope lies. Its n dofs, those of the node,
+ * of the element in which the chord ends, s of both ends of the span, and the coordinates of the centre, some of them
+ * twice; the conditions and their derivatives by n_vectors numbers, x, the slope, the chord, b and the axis where it
+ * turns (J, K), and the changes of these by the dofs. K: of J' multipliers. */
 typedef struct {
     int n, n_vectors, dofs[FU_FOOT_DOFS];
     double phi[FU_FOOT_CONDITIONS], J[FU_FOOT_CONDITIONS * FU_FOOT_VECTORS], K[FU_FOOT_VECTORS * FU_FOOT_VECTORS];
-    double by[FU_FOOT_VECTORS][FU_FOOT_DOFS], N_L[4], chord[3], chord_L[3], chord_LL[3], b;
+    double by[FU_FOOT_VECTORS][FU_FOOT_DOFS], N_L[4], chord[3], chord_L[3], chord_LL[3], b, aside;
 } fu_tangent_point;
 
 /* Computes a tangent point with these multipliers. */
@@ -39,11 +40,12 @@ void fu_tangent_point_at(const fu_foot *foot, const fu_wheel_state *wheel, const
                          fu_tangent_point *out);
 /* Computes the changes of x and the axis by the coordinates of the centre anew, from its moves. */
 void fu_tangent_point_turn(const fu_wheel_state *wheel, const fu_centre_moves *moves, fu_tangent_point *at);
-/* Adds its rows, and the columns of its forces, to a system whose unknown `own` is that of the first condition, with
- * these scales of the rows; moves: those of the columns. */
+/* Adds n_rows of its rows from number `first` on, and the columns of their forces, to a system whose unknown `own` is
+ * that of the first of them, with these scales; multipliers: of all rows, zero of others; moves: those of the columns.
+ */
 void fu_tangent_point_add(const fu_model *model, const fu_wheel_state *wheel, const fu_tangent_point *at,
                           const fu_centre_moves *moves, const double *multipliers, const double *scale, fu_weights w,
-                          int own, fu_system *system);
+                          int first, int n_rows, int own, fu_system *system);
 /* Computes the derivatives of the conditions by the dofs (conditions x n). */
 void fu_tangent_point_rows(const fu_tangent_point *at, double *rows);
 /* Computes the derivatives of the forces J' multipliers on the dofs (n x n) by those of `columns`. */
