@@ -25,6 +25,8 @@ ELEMENTS = {PLANAR: 2, SPATIAL: 3}
 """Elements of spans, whose material points move along them, with the dimension of space."""
 LAW = law_of_measures("engineering", "exact", "full")
 """The law of the stiffness: tension is EA (stretch - 1)."""
+MAX_HOLDING_SHEAVES = 127
+"""Sheaves with friction of a rope without mass for which the engine has room."""
 ORDER = "give an Anchor or a Drum, then the sheaves, then an Anchor or a Drum; or closed=True"
 
 
@@ -184,6 +186,10 @@ class Rope(Part):
         if self.closed and not self.holding_sheaves:
             raise ValueError("has no mass, is closed, and no sheave holds it: how far it has run is then not known",
                              "give friction of a sheave")
+        if len(self.holding_sheaves) > MAX_HOLDING_SHEAVES:
+            raise ValueError(f"has no mass, and {len(self.holding_sheaves)} sheaves with friction, more than "
+                             f"{MAX_HOLDING_SHEAVES}",
+                             "let two ropes end at a body between them, or leave friction out")
         for drum in self.drums.values():
             if drum.at_end == "leave":
                 raise ValueError(f'has no mass, and {drum.where} has at_end="leave": its free end would have no place',

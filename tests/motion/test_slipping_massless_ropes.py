@@ -137,6 +137,23 @@ def test_three_sheaves_on_which_a_rope_slips(integrator):
     assert balance(run) < 2e-6
 
 
+@pytest.mark.parametrize("integrator", ["radau", "explicit"])
+def test_eleven_sheaves_break_loose_one_by_one(integrator):
+    """From both ends to the middle; then the ratio is that of the sum of all wraps."""
+    scene, n = fu.Scene(gravity=(0, -GRAVITY, 0)), 11
+    weight(scene, "A", 2.0, -0.2, -1)
+    weight(scene, "B", 9.0, n - 0.8, -1)
+    names = [f"s{k}" for k in range(n)]
+    sheaves = [fu.Sheave(name, at=(k, -0.5 * (k % 2), 0), radius=0.2, side=("right", "left")[k % 2], friction=0.01)
+               for k, name in enumerate(names)]
+    scene.rope("hoist", route=[fu.Anchor("A"), *sheaves, fu.Anchor("B")], tension=30.0, **STIFF)
+    run = scene.run(0.2, output_step=0.05, integrator=integrator, tol=1e-6, progress=False)
+    assert sorted(events(run)) == sorted((name, "slips") for name in names)
+    wraps = sum(run[f"{name}.wrap_angle"] for name in names)
+    assert np.log(run["s10.tension_off"] / run["s0.tension_on"])[1:] == pytest.approx(0.01 * wraps[1:], rel=1e-12)
+    assert balance(run) < 1e-6
+
+
 def test_a_belt_that_slips_until_both_pulleys_run_alike():
     """T1 + T2 = 2 T0 of equal spans and T2 = T1 e^(mu pi) give the driven pulley's acceleration, until it sticks."""
     scene, R, inertia, mean, coefficient, top = fu.Scene(gravity=(0, 0, 0)), 0.1, 2.0, 250.0, 0.2, 12.0
@@ -248,6 +265,14 @@ def test_a_state_of_a_rope_that_has_slipped_is_refused():
                  "far; continue that run by save and resume=True"):
         scene.run(0.1, initial=run.at(0.2), **BRIEF)
     assert scene.run(0.1, initial=run.at(0.0), **BRIEF).status == "completed"
+
+
+def test_too_many_sheaves_with_friction_are_refused():
+    sheaves = [fu.Sheave(f"s{k}", at=(k, -0.5 * (k % 2), 0), radius=0.2, friction=0.1) for k in range(128)]
+    with refused('rope "rope": has no mass, and 128 sheaves with friction, more than 127; let two ropes end at a body '
+                 "between them, or leave friction out"):
+        fu.Scene().rope("rope", route=[fu.Anchor(at=(-1, 0, 0)), *sheaves, fu.Anchor(at=(129, 0, 0))], tension=40.0,
+                        **STIFF)
 
 
 def test_friction_that_holds_is_not_touched_by_slip():

@@ -85,7 +85,7 @@ static int act_of_grip(fu_run *run, const fu_taut_point *point, const char **wha
 {
     const int slips = fu_taut_slips(point, &run->now);
     *what = 0;
-    if (!slips && fu_taut_grip(run->model, point, &run->now) < 0.0) { /* another change holds it */
+    if (!slips && fu_taut_is_held(run->model, point, &run->now)) { /* by another change */
         fu_restart_event_functions(run, point->base.number);
         return FU_RUNNING;
     }

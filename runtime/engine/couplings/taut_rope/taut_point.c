@@ -85,14 +85,31 @@ double fu_taut_depth(const fu_model *model, const fu_taut_point *point, const fu
     return fabs(point->radius) - hypot(across, beyond);
 }
 
+/* Returns the excess over the limit of friction that is rounding, N. */
+static double rounding_of(const surroundings *at)
+{
+    return ROUNDING_OF_FORCE * (at->rope[0]->EA + at->rope[1]->EA) +
+           ROUNDING_OF_TENSION * (at->lengths[0].elastic + at->lengths[1].elastic);
+}
+
+static double grip_of(const fu_taut_point *point, const surroundings *at)
+{
+    const double before = at->lengths[0].elastic, after = at->lengths[1].elastic;
+    return fabs(after - before) - tanh(0.5 * point->friction * wrap_of(point, at)) * (after + before) - rounding_of(at);
+}
+
 double fu_taut_grip(const fu_model *model, const fu_taut_point *point, const fu_state *state)
 {
     surroundings at;
     look(model, point, state, &at);
-    const double before = at.lengths[0].elastic, after = at.lengths[1].elastic;
-    const double rounding =
-        ROUNDING_OF_FORCE * (at.rope[0]->EA + at.rope[1]->EA) + ROUNDING_OF_TENSION * (before + after);
-    return fabs(after - before) - tanh(0.5 * point->friction * wrap_of(point, &at)) * (after + before) - rounding;
+    return grip_of(point, &at);
+}
+
+int fu_taut_is_held(const fu_model *model, const fu_taut_point *point, const fu_state *state)
+{
+    surroundings at;
+    look(model, point, state, &at);
+    return grip_of(point, &at) < -0.5 * rounding_of(&at);
 }
 
 int fu_taut_pulled(const fu_model *model, const fu_taut_point *point, const fu_state *state)

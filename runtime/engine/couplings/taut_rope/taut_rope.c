@@ -435,9 +435,10 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     fu_add(model, system, row, row, fu_row_unit(equations->weights.inertia, coupling->scale[0]));
     if (fu_taut_slides(model, rope, next)) {
         fu_taut_chain chain;
+        double by_ratios = 0.0;
         fu_taut_chain_at(model, rope, next, &chain);
-        for (int k = 0; k < chain.n; ++k) {
-            fu_taut_slide_law(model, &chain, next, k, &law);
+        for (int k = chain.n - 1; k >= 0; --k) {
+            fu_taut_slide_law(model, &chain, next, k, &by_ratios, &law);
             add_parts(model, coupling, chain.of[k].rope, &law, equations, system);
         }
         return;

@@ -133,9 +133,10 @@ int fu_taut_slides(const fu_model *model, const fu_taut_rope *rope, const fu_sta
 /* Computes the chain of a rope; and what its law gives for one of its ropes, from the geometry. */
 void fu_taut_chain_at(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_chain *out);
 void fu_taut_slide(const fu_taut_chain *chain, const fu_state *state, fu_taut_lengths *out);
-/* Computes the changes of the tension of the chain's own rope by one of its ropes. */
+/* Computes the changes of the tension of the chain's own rope by one of its ropes, and adds that by its ratio, of which
+ * by_ratios has the sum over the ropes after it. */
 void fu_taut_slide_law(const fu_model *model, const fu_taut_chain *chain, const fu_state *state, int of,
-                       fu_taut_law *out);
+                       double *by_ratios, fu_taut_law *out);
 /* Returns the speed of the rope on a sheave, in its order, m/s; none where it sticks. */
 double fu_taut_slip(const fu_model *model, const fu_taut_point *point, const fu_state *state);
 /* Lets a rope slip on a point in a direction, or stick. */
@@ -157,6 +158,8 @@ void fu_taut_redirect(const fu_model *model, const fu_taut_rope *rope, fu_state 
 double fu_taut_wrap(const fu_model *model, const fu_taut_point *point, const fu_state *state);
 double fu_taut_depth(const fu_model *model, const fu_taut_point *point, const fu_state *state, int *side);
 double fu_taut_grip(const fu_model *model, const fu_taut_point *point, const fu_state *state);
+/* Returns whether friction holds a rope on a point, by more than rounding. */
+int fu_taut_is_held(const fu_model *model, const fu_taut_point *point, const fu_state *state);
 /* Returns the direction in which the tensions beside a point pull the rope: 1 in its order, -1 against it. */
 int fu_taut_pulled(const fu_model *model, const fu_taut_point *point, const fu_state *state);
 double fu_taut_store(const fu_model *model, const fu_taut_point *point, const fu_state *state);

@@ -196,25 +196,20 @@ static double share_of_angle(const fu_model *model, const fu_taut_rope *rope, co
 
 /* Implicit differentiation of the strain x by the excess, whose sum is zero. */
 void fu_taut_slide_law(const fu_model *model, const fu_taut_chain *chain, const fu_state *state, int of,
-                       fu_taut_law *out)
+                       double *by_ratios, fu_taut_law *out)
 {
-    const fu_taut_rope *rope = chain->of[of].rope;
-    const int taut = fu_is_taut(chain->of[chain->own].rope, state);
-    const double EA = taut ? rope->EA * exp(chain->of[chain->own].log_ratio) : 0.0, tau = rope->tau;
-    const double rate = tau / chain->sums[FU_BY_RATE], by_rate = -rate * chain->x_rate_alone;
+    const fu_taut_piece *at = &chain->of[of];
+    const fu_taut_rope *rope = at->rope;
+    const double own = fu_is_taut(chain->of[chain->own].rope, state) ? exp(chain->of[chain->own].log_ratio) : 0.0;
+    const double EA = own * rope->EA, rate = rope->tau / chain->sums[FU_BY_RATE], by_rate = -rate * chain->x_rate_alone;
     const double by_x = 1.0 + by_rate * chain->sums_x[FU_BY_RATE];
-    const double weights[FU_SUMS] = {-EA * by_x / chain->sums_x[FU_EXCESS], EA * by_rate};
-    double by_ratio, beyond[SIDES] = {0.0, 0.0}; /* by ratios from this rope on, and from the next one on */
-    for (int k = chain->n - 1; k >= of; --k) {
-        const fu_taut_piece *at = &chain->of[k];
-        rope->kernel->slide_tangent(weights, at->now.length, at->now.past, exp(at->log_ratio), chain->x, out->K,
-                                    &by_ratio);
-        if (k == chain->own) by_ratio += taut ? exp(at->log_ratio) * first_tension(chain) : 0.0;
-        beyond[START] += by_ratio;
-        if (k > of) beyond[END] += by_ratio;
-    }
+    const double weights[FU_SUMS] = {-EA * by_x / chain->sums_x[FU_EXCESS], EA * by_rate}, next = *by_ratios;
+    double by_ratio;
+    rope->kernel->slide_tangent(weights, at->now.length, at->now.past, exp(at->log_ratio), chain->x, out->K, &by_ratio);
+    *by_ratios += by_ratio + (of == chain->own ? own * first_tension(chain) : 0.0);
     out->D[FU_DRAWN] = out->D[FU_WAY] = EA * rate;
-    for (int end = 0; end < SIDES; ++end) out->angle[end] = beyond[end] * share_of_angle(model, rope, state, end);
+    out->angle[START] = *by_ratios * share_of_angle(model, rope, state, START);
+    out->angle[END] = next * share_of_angle(model, rope, state, END);
 }
 
 /* Returns the way a second onto the wheel at an end that its rotation takes, where the rope sticks, m/s. */
