@@ -56,7 +56,8 @@ def _check_buffers(slide: Slide, cable: Cable) -> None:
 def check_on_cable(scene: SceneData, slide: Slide) -> None:
     """Raise SceneError for a body off its cable because another slide moved it."""
     line = line_of(scene, slide)
-    check_on_line(scene, slide, line, slide.arc_length)
+    if not isinstance(line, Cable):  # a route is drawn anew where a body has moved
+        check_on_line(scene, slide, line, slide.arc_length)
     gap, moved = _gap(scene, slide, line), isinstance(scene.bodies.get(slide.body or ""), RigidBody)
     if gap > (LENGTH_TOLERANCE if moved else MAX_GAP) * line.length:
         raise SceneError(slide.where, _away(scene, slide, line, gap),

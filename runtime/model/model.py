@@ -16,6 +16,7 @@ from scipy.sparse import csr_array
 from ..kernels.libraries import kernels_of, of_library
 from ..kernels.mesh import Mesh
 from ..parts.body_shape import Shape
+from ..parts.part import Part
 from ..parts.plane_axes import PlaneAxes
 from .attachments import AttachmentModel
 from .contacts import ContactModel, HardContactModel, RopeContactModel
@@ -141,7 +142,7 @@ class BodyModel:
 class SlideModel(AlongSpan, CouplingModel):
     """One slide on a cable, or on a span of a rope; its first unknown is s.
 
-    line: the cable or rope in words; cable: its number, -1 of a rope, with the coordinates of the span, and in words
+    line: the cable or rope; cable: its number, -1 of a rope, with the coordinates of the span, and in words
     what the rope meets at both ends of it. rider_is_rigid: the kernels take the configuration of the rider; resistance:
     kernels of friction and buffers, or none; s (m), element, director: at the start.
     """
@@ -149,7 +150,7 @@ class SlideModel(AlongSpan, CouplingModel):
     reports_cost: ClassVar[bool] = True
     ties_adjacent: ClassVar[bool] = False
     kernel: str
-    line: str
+    line: Part
     cable: int
     rider: AttachmentModel
     rider_is_rigid: bool
@@ -177,7 +178,7 @@ class SlideModel(AlongSpan, CouplingModel):
 
     def reached(self, end: int) -> str:
         """Return in words that it has come to the first end of its span, 0, or to the last one, 1."""
-        return f'slide "{self.name}" on {self.line} reaches {self.beside[end]}'
+        return f'slide "{self.name}" on {self.line.where} reaches {self.beside[end]}'
 
     def ends_at(self, model: Model, q: np.ndarray) -> tuple[float, float]:
         """Return s in m at both ends of its cable, or of its span in a configuration q (n,)."""

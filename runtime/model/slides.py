@@ -45,7 +45,7 @@ def _on_cable(slide: Slide, builder: ModelBuilder) -> _Line:
     node, axes = along.node_at(slide.arc_length), along.axes_at(slide.arc_length)
     elements = (along.element_at(slide.arc_length),) if node is None else (node - 1, node)
     inside = tuple(min(max(element, 0), along.elements - 1) for element in elements)
-    return _Line(along.element, {"line": along.where, "cable": builder.cable_index[slide.along], "director": axes[1]},
+    return _Line(along.element, {"line": along, "cable": builder.cable_index[slide.along], "director": axes[1]},
                  inside, axes[0], bool(along.kind_of_element.director))
 
 
@@ -61,7 +61,7 @@ def _on_rope(slide: Slide, builder: ModelBuilder) -> _Line:
     tangent = (drawn.end - drawn.start) / np.linalg.norm(drawn.end - drawn.start)
     across = np.eye(span.dim)[np.argmin(np.abs(tangent))]
     return _Line(KERNELS[span.dim],
-                 {"line": rope.part.where, "cable": -1, "director": across - (across @ tangent) * tangent,
+                 {"line": rope.part, "cable": -1, "director": across - (across @ tangent) * tangent,
                   "coordinates": span, "beside": items_beside(rope.part)[number]}, elements, tangent, False)
 
 

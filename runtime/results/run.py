@@ -222,7 +222,7 @@ class Run(Viewable, NamedArrays):
         springs = [name for name in sticking if np.any(self[f"{name}.friction_force"][row])]
         slips = {event["name"] for event in self.report["events"]
                  if event.get("what") == "slips" and event["time"] <= self.time[row]}
-        holding = [sheave.name for rope in self.scene.ropes.values() for sheave in rope.holding_sheaves]
+        holding = [sheave.name for part in self.scene.parts() for sheave in getattr(part, "holding_sheaves", ())]
         return InitialState({name: self[name][row] for name in names_of(self.scene)}, float(self.time[row]), springs,
                             [name for name in holding if name in slips])
 

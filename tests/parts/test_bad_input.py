@@ -218,11 +218,11 @@ def test_pin_twice_or_nowhere():
 
 
 def test_slide_without_cable_or_body():
-    with refused('slide "t": there is no cable "wirr"; did you mean "wire"?'):
+    with refused('slide "t": there is no cable or rope "wirr"; did you mean "wire"?'):
         scene().slide("A", along="wirr", s=0.25, name="t")
     with refused('slide "t": body: there is no cable or body "B"; known: wire, A'):
         scene().slide("B", along="wire", s=0.25, name="t")
-    with refused('slide "t": there is no cable "wire"; the scene has none yet'):
+    with refused('slide "t": there is no cable or rope "wire"; the scene has none yet'):
         made = Scene()
         made.rigid_body("A", **BODY)
         made.slide("A", along="wire", s=0.25, name="t")

@@ -36,7 +36,6 @@ cdef extern from * nogil:
     #include "couplings/fluid/drag.h"
     #include "couplings/hard_contact/hard_contact.h"
     #include "couplings/joint/joint.h"
-    #include "couplings/rope/rope.h"
     #include "equations/equations.h"
     #include "events/events.h"
     #include "events/list.h"

@@ -165,7 +165,7 @@ def describe_dof(model: Model, dof: int, coupling: int | None = None) -> str:
         failed = model.couplings[coupling]
         if not isinstance(failed, SlideModel):
             return f'{failed.type.removeprefix("hard_").replace("_", " ")} "{failed.name}"'
-        return f'slide "{failed.name}" on {failed.line}'
+        return f'slide "{failed.name}" on {failed.line.where}'
     if (found := _node(model, dof)) is not None:
         cable, node = found
         return f'cable "{cable.name}" at s = {cable.mesh.node_s[node]:.6g} m'

@@ -54,6 +54,17 @@ void fu_outputs_at_rest(const fu_model *model, const fu_coupling *coupling, cons
 void fu_detect_contact(const fu_model *model, fu_state *state);
 int fu_is_possible(const fu_model *model, const fu_state *state);
 
+/* A point of a wrap to which a rope sticks in statics: whether it sticks, FU_STICKS, or in which direction it slides, 1
+ * or -1; friction f and the limit of |f|, N; by how much it has slid, m. */
+typedef struct {
+    int mode;
+    double f, limit, slip;
+} fu_held_friction;
+/* Hold a point from a state on, so that it sticks; compute it in a later state; set its mode. */
+void fu_hold_point(const fu_model *model, fu_coupling *coupling, const fu_state *state);
+void fu_held_point(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_held_friction *out);
+void fu_set_held_mode(const fu_coupling *coupling, const fu_state *state, int mode);
+
 /* Scale of constraint rows, and of internal forces, by the inertia of a system: statics has none. */
 static inline double fu_row_unit(double inertia, double mass)
 {

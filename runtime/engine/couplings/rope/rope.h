@@ -52,17 +52,6 @@ int fu_drum_leaves(const fu_coupling *coupling);
 void fu_drum_leave(const fu_model *model, const fu_coupling *coupling, fu_state *state);
 double fu_drum_pressure(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 
-/* A point of a wrap to which a rope sticks in statics: whether it sticks, FU_STICKS, or in which direction it slides, 1
- * or -1; friction f and the limit of |f|, N; by how much it has slid, m. */
-typedef struct {
-    int mode;
-    double f, limit, slip;
-} fu_held_friction;
-/* Hold a point from a state on, so that it sticks; compute it in a later state; set its mode. */
-void fu_hold_point(const fu_model *model, fu_coupling *coupling, const fu_state *state);
-void fu_held_point(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_held_friction *out);
-void fu_set_held_mode(const fu_coupling *coupling, const fu_state *state, int mode);
-
 /* Returns whether anything holds to material points of a span. */
 static inline int fu_is_gripped(const fu_coupling *span)
 {

@@ -342,6 +342,8 @@ void fu_wrap_force_by_y(const fu_sheave *sheave, const fu_sheave_state *at, int 
 
 /* Returns by how much the rope has slid at the j-th point, m, and computes the stretch of the material held there. */
 double fu_held_slip(const fu_model *model, const fu_sheave *sheave, const fu_sheave_state *at, int j, double *stretch);
+/* Holds the material at a point of the wrap where it lies. */
+void fu_hold_at(const fu_sheave *sheave, const fu_sheave_state *at, fu_wrap_point *point);
 
 /* --- sheave_forces.c: by y --- */
 

@@ -120,3 +120,24 @@ void fu_share_row(const fu_sheave *sheave, const fu_sheave_state *at, int j, dou
     J[MATERIAL] = share - 1.0;
     J[MATERIAL + sheave->n_zones] = -share;
 }
+
+/* Returns the number of conditions of a mode but those of the zones. */
+static int without_zones(const fu_sheave *sheave, int mode)
+{
+    return first_row_of_wrap(sheave, mode) + !fu_stretches(mode);
+}
+
+int fu_sheave_conditions(const fu_sheave *sheave, const fu_sheave_state *at)
+{
+    return without_zones(sheave, at->mode) + (fu_stretches(at->mode) ? 0 : sheave->n_zones - 1);
+}
+
+void fu_sheave_rows_of_wrap(const fu_sheave *sheave, const fu_sheave_state *at, double phi[MAX_CONDITIONS],
+                            double J[MAX_CONDITIONS][Y])
+{
+    const int zones = without_zones(sheave, at->mode), own = first_row_of_wrap(sheave, at->mode);
+    for (int r = zones; r < fu_sheave_conditions(sheave, at); ++r)
+        fu_share_row(sheave, at, r - zones + 1, &phi[r], J[r]);
+    if (at->mode == FU_SHORT) phi[own] = fu_short_wrap_row(sheave, at, J[own]);
+    if (at->mode == FU_LIFTED) fu_join_row(sheave, at, NODE, &phi[own], J[own]);
+}

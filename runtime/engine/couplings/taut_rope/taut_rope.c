@@ -17,192 +17,6 @@ static const fu_taut_rope *rope_of(const fu_coupling *coupling)
     return (const fu_taut_rope *)coupling;
 }
 
-const fu_taut_point *fu_taut_point_of(const fu_model *model, const fu_taut_rope *rope, int place)
-{
-    return (const fu_taut_point *)model->couplings[rope->points[place]];
-}
-
-int fu_touches(const fu_taut_point *point, const fu_state *state)
-{
-    return state->flags[point->base.flags + FU_TOUCHES];
-}
-
-int fu_next_touched(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, int place)
-{
-    do ++place;
-    while (place < rope->n_points - 1 && !fu_touches(fu_taut_point_of(model, rope, place), state));
-    return place;
-}
-
-int fu_touched_before(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, int place)
-{
-    do --place;
-    while (place > 0 && !fu_touches(fu_taut_point_of(model, rope, place), state));
-    return place;
-}
-
-int fu_is_taut(const fu_taut_rope *rope, const fu_state *state)
-{
-    return state->flags[rope->base.flags];
-}
-
-/* Returns an angle, whole turns added, near another one. */
-static double near_angle(double angle, double to)
-{
-    return to + remainder(angle - to, 2.0 * acos(-1.0));
-}
-
-void fu_taut_centre(const fu_model *model, const fu_taut_point *point, const fu_state *state, fu_attachment_state *out)
-{
-    const fu_state moving = {.t = state->t, .q = state->q, .v = state->v ? state->v : (double *)model->zero};
-    fu_attachment_at(model, &point->attachments[0], &moving, 0.0, FU_POINT | FU_AXES, out);
-}
-
-static double carrier_angle(const fu_taut_point *point, const fu_state *state, const fu_attachment_state *at)
-{
-    return near_angle(atan2(at->A[DIM], at->A[0]), state->numbers[point->base.numbers + 1]);
-}
-
-double fu_taut_turn(const fu_taut_point *point, const fu_state *state, const fu_attachment_state *at)
-{
-    return carrier_angle(point, state, at) + (point->turn < 0 ? 0.0 : state->q[point->turn]);
-}
-
-double fu_taut_spin(const fu_model *model, const fu_taut_point *point, const fu_state *state,
-                    const fu_attachment_state *at)
-{
-    const double *v = state->v ? state->v : model->zero;
-    return at->omega[0] + (point->turn < 0 ? 0.0 : v[point->turn]);
-}
-
-/* --- geometry --------------------------------------------------------------------------------------------------- */
-
-static fu_taut_history *history_of(const fu_taut_rope *rope, const fu_state *state)
-{
-    return (fu_taut_history *)(state->numbers + rope->base.numbers);
-}
-
-/* Returns the change of the way by the angle of the first straight part, or of the last one. */
-static double share_of_end(const fu_model *model, const fu_taut_rope *rope, int end)
-{
-    const double radius = fu_taut_point_of(model, rope, end ? rope->n_points - 1 : 0)->radius;
-    return end ? -radius : radius;
-}
-
-/* Computes the straight part between two points at these places and velocities. */
-static void find_part(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, int from, int to,
-                      const fu_attachment_state *one, const fu_attachment_state *other, fu_taut_part *out)
-{
-    const fu_taut_point *start = fu_taut_point_of(model, rope, from), *end = fu_taut_point_of(model, rope, to);
-    const int first = from == 0, last = to == rope->n_points - 1;
-    out->from = from;
-    out->to = to;
-    out->rise = end->radius - start->radius;
-    for (int d = 0; d < DIM; ++d) {
-        out->d[d] = other->p[d] - one->p[d];
-        out->d_rate[d] = other->v[d] - one->v[d];
-    }
-    rope->kernel->straight(out->d, out->rise, &out->l, out->u, out->l_d, out->b_d);
-    out->angle = near_angle(atan2(out->u[1], out->u[0]), state->numbers[start->base.numbers]);
-    out->share[FU_DRAWN] = (first ? 0.0 : start->radius) - (last ? 0.0 : end->radius);
-    out->share[FU_WAY] = (first ? share_of_end(model, rope, 0) : 0.0) + (last ? share_of_end(model, rope, 1) : 0.0);
-}
-
-void fu_taut_part_at(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, int from, int to,
-                     fu_taut_part *out)
-{
-    fu_attachment_state one, other;
-    fu_taut_centre(model, fu_taut_point_of(model, rope, from), state, &one);
-    fu_taut_centre(model, fu_taut_point_of(model, rope, to), state, &other);
-    find_part(model, rope, state, from, to, &one, &other, out);
-}
-
-/* Adds the way of an end onto its wheel by an angle of the straight part there, or by a rotation of the wheel. */
-static void add_way(int end, double share, double angle, double rate, fu_taut_lengths *out)
-{
-    out->way[end] += share * angle;
-    out->way_rate[end] += share * rate;
-}
-
-/* Subtracts the rotation of the wheel at an end, unless the rope slips there. */
-static void subtract_turn(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, int end,
-                          const fu_attachment_state *at, fu_taut_lengths *out)
-{
-    const fu_taut_point *point = fu_taut_point_of(model, rope, end ? rope->n_points - 1 : 0);
-    const double share = share_of_end(model, rope, end);
-    if (share != 0.0 && !fu_taut_slips(point, state))
-        add_way(end, -share, fu_taut_turn(point, state, at) - rope->carriers[end],
-                fu_taut_spin(model, point, state, at), out);
-}
-
-void fu_taut_pull(const fu_taut_part *part, double pull[2])
-{
-    const double on_angle = part->share[FU_DRAWN] + part->share[FU_WAY];
-    for (int d = 0; d < DIM; ++d) pull[d] = part->l_d[d] + on_angle * part->b_d[d];
-}
-
-/* Adds the forces of a part under a tension to those on the dofs, from the states of its points. */
-static void add_forces_of_part(const fu_model *model, const fu_taut_rope *rope, const fu_taut_part *part,
-                               const fu_attachment_state *before, const fu_attachment_state *after, double tension,
-                               double *f)
-{
-    const int last = rope->n_points - 1;
-    double pull[DIM];
-    fu_taut_pull(part, pull);
-    for (int end = 0; end < SIDES; ++end) {
-        const fu_taut_point *point = fu_taut_point_of(model, rope, end ? part->to : part->from);
-        const int holds = end ? part->to == last : part->from == 0;
-        const double moment = holds ? -share_of_end(model, rope, end) * tension : 0.0;
-        const double along = end ? tension : -tension, force[DIM] = {along * pull[0], along * pull[1]};
-        fu_add_wrench(DIM, end ? after : before, force, moment != 0.0 ? &moment : 0, 1.0, f);
-        if (moment != 0.0 && point->turn >= 0) f[point->turn] += moment;
-    }
-}
-
-/* Computes places, lengths and ways; adds the forces of this tension to f, unless that is null. */
-static void walk(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_lengths *out,
-                 double tension, double *f)
-{
-    const int last = rope->n_points - 1;
-    const fu_taut_history *past = history_of(rope, state);
-    fu_attachment_state one, other, *before = &one, *after = &other;
-    memset(out, 0, sizeof *out);
-    fu_taut_centre(model, fu_taut_point_of(model, rope, 0), state, before);
-    subtract_turn(model, rope, state, 0, before, out);
-    for (int from = 0, to; from < last; from = to) {
-        fu_taut_part part;
-        to = fu_next_touched(model, rope, state, from);
-        fu_taut_centre(model, fu_taut_point_of(model, rope, to), state, after);
-        find_part(model, rope, state, from, to, before, after, &part);
-        const double turning = fu_dot(DIM, part.b_d, part.d_rate);
-        out->length[FU_DRAWN] += part.l + part.share[FU_DRAWN] * part.angle;
-        out->rate[FU_DRAWN] += fu_dot(DIM, part.l_d, part.d_rate) + part.share[FU_DRAWN] * turning;
-        for (int end = 0; end < SIDES; ++end)
-            if (end ? to == last : from == 0) {
-                add_way(end, share_of_end(model, rope, end), part.angle - rope->angles[end], turning, out);
-                out->angle[end] = part.angle;
-                out->turning[end] = turning;
-            }
-        if (f) add_forces_of_part(model, rope, &part, before, after, tension, f);
-        fu_attachment_state *passed = before;
-        before = after;
-        after = passed;
-    }
-    subtract_turn(model, rope, state, 1, before, out);
-    for (int end = 0; end < SIDES; ++end) {
-        out->length[FU_WAY] += out->way[end] - past->way[end];
-        out->rate[FU_WAY] += out->way_rate[end];
-    }
-    out->growth = out->rate[FU_DRAWN] + out->rate[FU_WAY];
-    out->past[0] = past->free;
-    out->past[1] = past->drawn;
-}
-
-void fu_taut_geometry(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_lengths *out)
-{
-    walk(model, rope, state, out, 0.0, 0);
-}
-
 /* Computes the stress-free length, and in a chain the tension, from the geometry. */
 static void find_free_length(const fu_model *model, const fu_taut_rope *rope, const fu_state *state,
                              fu_taut_lengths *out)
@@ -245,44 +59,6 @@ void fu_taut_lengths_at(const fu_model *model, const fu_taut_rope *rope, const f
                           at_rest, &out->elastic);
 }
 
-double fu_taut_length_to(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, int place,
-                         double *rate)
-{
-    double length = 0.0, radius = 0.0, angle = 0.0, turning = 0.0;
-    *rate = 0.0;
-    for (int from = 0, to; from <= place && from < rope->n_points - 1; from = to) {
-        fu_taut_part part;
-        to = fu_next_touched(model, rope, state, from);
-        fu_taut_part_at(model, rope, state, from, to, &part);
-        const double now = fu_dot(DIM, part.b_d, part.d_rate), share = from == place ? 0.5 : 1.0;
-        if (from) {
-            length += share * radius * (part.angle - angle);
-            *rate += share * radius * (now - turning);
-        }
-        if (from == place) break;
-        radius = fu_taut_point_of(model, rope, to)->radius;
-        angle = part.angle;
-        turning = now;
-        if (to > place) { /* a sheave that the rope does not touch: its foot on the straight part */
-            fu_attachment_state start, centre;
-            double along = 0.0, along_rate = 0.0;
-            fu_taut_centre(model, fu_taut_point_of(model, rope, from), state, &start);
-            fu_taut_centre(model, fu_taut_point_of(model, rope, place), state, &centre);
-            for (int d = 0; d < DIM; ++d) {
-                along += part.u[d] * (centre.p[d] - start.p[d]);
-                along_rate += part.u[d] * (centre.v[d] - start.v[d]);
-            }
-            along_rate += now * (part.u[0] * (centre.p[1] - start.p[1]) - part.u[1] * (centre.p[0] - start.p[0]));
-            length += along;
-            *rate += along_rate;
-            break;
-        }
-        length += part.l;
-        *rate += fu_dot(DIM, part.l_d, part.d_rate);
-    }
-    return length;
-}
-
 /* The stress-free length per length of way: the mean over the step, and now. */
 static double free_per_way(const fu_taut_lengths *now)
 {
@@ -291,7 +67,7 @@ static double free_per_way(const fu_taut_lengths *now)
 
 double fu_taut_held(const fu_taut_rope *rope, const fu_state *state, const fu_taut_lengths *now, int end, double *rate)
 {
-    const fu_taut_history *past = history_of(rope, state);
+    const fu_taut_history *past = fu_taut_history_of(rope, state);
     const double sign = end ? 1.0 : -1.0;
     *rate = (now->way_rate[end] + sign * now->slid_rate[end]) * now->per_way;
     return past->held[end] + (now->way[end] - past->way[end] + sign * now->slid[end]) * free_per_way(now);
@@ -304,7 +80,7 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
 {
     const double unknown = at->next->forces[coupling->force];
     fu_taut_lengths now;
-    walk(model, rope_of(coupling), at->next, &now, unknown, f);
+    fu_taut_walk(model, rope_of(coupling), at->next, &now, unknown, f);
     find_free_length(model, rope_of(coupling), at->next, &now);
     find_tension(model, rope_of(coupling), at->next, &now);
     internal[coupling->unknown] = -at->weights.stiffness * (unknown - now.tension);
@@ -314,7 +90,7 @@ static void force(const fu_model *model, const fu_coupling *coupling, const fu_s
 {
     fu_taut_lengths now;
     fu_taut_lengths_at(model, rope_of(coupling), state, &now);
-    walk(model, rope_of(coupling), state, &now, now.tension, f);
+    fu_taut_walk(model, rope_of(coupling), state, &now, now.tension, f);
 }
 
 /* A side of a straight part in a Newton system: its point, and the sign of its place in d. */
@@ -399,7 +175,7 @@ static void add_part(const fu_model *model, const fu_coupling *coupling, const f
         const int holds = end ? part->to == last : part->from == 0;
         of->point = fu_taut_point_of(model, rope, end ? part->to : part->from);
         of->sign = end ? 1.0 : -1.0;
-        of->turn_share = holds ? -share_of_end(model, rope, end) : 0.0;
+        of->turn_share = holds ? -fu_taut_share_of_end(model, rope, end) : 0.0;
         of->way_share = holds && fu_taut_slips(of->point, equations->next) ? 0.0 : of->turn_share;
         const double moment = of->turn_share * unknown, along = of->sign * unknown;
         const double force[DIM] = {along * pull[0], along * pull[1]};
@@ -494,7 +270,7 @@ static energies energies_at(const fu_taut_rope *rope, const fu_taut_lengths *now
 static double energy_held(const fu_taut_rope *rope, const fu_state *state, const fu_taut_lengths *now, double W)
 {
     const double before = energies_of(rope, now->past[1], now->past[0], 0.0).W;
-    return history_of(rope, state)->energy + 0.5 * (W + before) * (now->past[0] - now->free);
+    return fu_taut_history_of(rope, state)->energy + 0.5 * (W + before) * (now->past[0] - now->free);
 }
 
 /* Returns the elastic energy, with that of what wheels hold, J. */
@@ -549,7 +325,7 @@ static void update_angles(const fu_model *model, const fu_taut_rope *rope, fu_st
         double *numbers = state->numbers + point->base.numbers;
         fu_attachment_state at;
         fu_taut_centre(model, point, state, &at);
-        numbers[1] = carrier_angle(point, state, &at);
+        numbers[1] = fu_taut_carrier_angle(point, state, &at);
         if (from == rope->n_points - 1) return;
         fu_taut_part part;
         to = fu_next_touched(model, rope, state, from);
@@ -561,7 +337,7 @@ static void update_angles(const fu_model *model, const fu_taut_rope *rope, fu_st
 /* Stores the lengths of a rope, from which those of the next step are counted. */
 static void store_lengths(const fu_taut_rope *rope, const fu_taut_lengths *now, fu_state *state)
 {
-    fu_taut_history *past = history_of(rope, state);
+    fu_taut_history *past = fu_taut_history_of(rope, state);
     double rate;
     const double held[SIDES] = {fu_taut_held(rope, state, now, 0, &rate), fu_taut_held(rope, state, now, 1, &rate)};
     past->energy = energy_held(rope, state, now, energies_at(rope, now).W);
@@ -598,7 +374,7 @@ static void reset(const fu_coupling *coupling, fu_state *state)
 {
     const fu_taut_rope *rope = rope_of(coupling);
     state->flags[coupling->flags] = 1;
-    *history_of(rope, state) =
+    *fu_taut_history_of(rope, state) =
         (fu_taut_history){.free = rope->free_length,
                           .drawn = rope->drawn_length,
                           .energy = rope->held * energies_of(rope, rope->drawn_length, rope->free_length, 0.0).W};

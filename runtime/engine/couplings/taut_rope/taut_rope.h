@@ -94,6 +94,11 @@ typedef struct {
 } fu_taut_law;
 
 const fu_taut_point *fu_taut_point_of(const fu_model *model, const fu_taut_rope *rope, int place);
+/* Returns the point at an end of a rope, 0 at its start, 1 at its end. */
+const fu_taut_point *fu_taut_end(const fu_model *model, const fu_taut_rope *rope, int end);
+fu_taut_history *fu_taut_history_of(const fu_taut_rope *rope, const fu_state *state);
+/* Returns the change of the way by the angle of the first straight part, or of the last one. */
+double fu_taut_share_of_end(const fu_model *model, const fu_taut_rope *rope, int end);
 /* Returns whether a rope touches a point. */
 int fu_touches(const fu_taut_point *point, const fu_state *state);
 /* Returns the place of the next point that a rope touches, or of the one before. */
@@ -104,15 +109,19 @@ void fu_taut_part_at(const fu_model *model, const fu_taut_rope *rope, const fu_s
                      fu_taut_part *out);
 /* Returns the direction in which a rope slips on a point, 0 where it sticks. */
 int fu_taut_slips(const fu_taut_point *point, const fu_state *state);
+int fu_taut_slips_at(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, int end);
 /* Returns whether a rope is taut. */
 int fu_is_taut(const fu_taut_rope *rope, const fu_state *state);
-/* Computes places, lengths and ways of a rope, without what its law gives. */
+/* Computes places, lengths and ways of a rope, without what its law gives; adds the forces of a tension to f. */
 void fu_taut_geometry(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_lengths *out);
+void fu_taut_walk(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_lengths *out,
+                  double tension, double *f);
 /* Computes lengths and tension of a rope, none where it is slack. */
 void fu_taut_lengths_at(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_lengths *out);
 /* Computes the force of a part on its second point, of a unit of tension; its opposite acts on the first. */
 void fu_taut_pull(const fu_taut_part *part, double pull[2]);
-/* Returns the rotation of a point with what carries it, and its rate; at: with its axes. */
+/* Returns the rotation of what carries a point; that of the point with it, and its rate; at: with its axes. */
+double fu_taut_carrier_angle(const fu_taut_point *point, const fu_state *state, const fu_attachment_state *at);
 double fu_taut_turn(const fu_taut_point *point, const fu_state *state, const fu_attachment_state *at);
 double fu_taut_spin(const fu_model *model, const fu_taut_point *point, const fu_state *state,
                     const fu_attachment_state *at);
@@ -126,9 +135,11 @@ double fu_taut_length_to(const fu_model *model, const fu_taut_rope *rope, const 
  * at the rope's start, 1 at its end. */
 double fu_taut_held(const fu_taut_rope *rope, const fu_state *state, const fu_taut_lengths *now, int end, double *rate);
 
-/* Ropes that slip (taut_slip.c). Returns the rope beside a point, null for none; side: 0 before it, 1 after it. */
+/* Returns the rope beside a point, null for none; side: 0 before it, 1 after it; and the rope beyond an end of one. */
 const fu_taut_rope *fu_taut_beside(const fu_model *model, const fu_taut_point *point, int side);
-/* Returns whether a rope is part of a chain. */
+const fu_taut_rope *fu_taut_beyond(const fu_model *model, const fu_taut_rope *rope, int end);
+
+/* Ropes that slip (taut_chain.c, taut_slip.c). Returns whether a rope is part of a chain. */
 int fu_taut_slides(const fu_model *model, const fu_taut_rope *rope, const fu_state *state);
 /* Computes the chain of a rope; and what its law gives for one of its ropes, from the geometry. */
 void fu_taut_chain_at(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_chain *out);
