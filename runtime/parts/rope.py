@@ -362,6 +362,11 @@ def driven_freely(ropes: Iterable[Rope]) -> list[str]:
             if sheave.prescribed is None and sheave.torque is not None and sheave.torque.value(0.0)]
 
 
+def running_round(ropes: Iterable[Rope]) -> list[str]:
+    """Return the names in quotes of the closed ropes that only friction keeps from running round their sheaves."""
+    return [f'"{rope.name}"' for rope in ropes if rope.closed and rope.rough_sheaves]
+
+
 def rough_sheaves(ropes: Iterable[Rope]) -> list[str]:
     """Return the names in quotes of the sheaves on which ropes have friction."""
     return [f'"{sheave.name}"' for rope in ropes for sheave in rope.rough_sheaves]

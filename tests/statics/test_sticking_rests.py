@@ -162,6 +162,27 @@ def test_a_belt_that_is_tighter_on_one_side_over_two_held_pulleys():
     assert rest["one.torque"] == pytest.approx(-rest["other.torque"], rel=1e-9) and rest["one.slip_angle"] == 0
 
 
+def belt_under_gravity(element: str, tension: float = 300.0, stiffness: float = EA, rho: float = RHO) -> fu.Scene:
+    """Return a belt over a held pulley and one that turns."""
+    scene = fu.Scene(gravity=(0, -GRAVITY, 0))
+    route = [fu.Sheave("one", at=(0, 0, 0), radius=0.2, side="left", friction=0.5),
+             fu.Sheave("other", at=(1.0, 0, 0), radius=R, side="left", friction=0.5, inertia=1e-3)]
+    scene.rope("belt", closed=True, tension=tension, element=element, elements=2, route=route,
+               **rope_of(stiffness, rho, 0))
+    return scene
+
+
+def test_a_belt_under_gravity_is_the_same_in_space():
+    planar, spatial = (belt_under_gravity(element).equilibrium(wraps="stick") for element in ("cable8p", "cable12"))
+    for name in ("one.tension_on", "one.tension_off", "other.tension_on", "one.wrap_angle"):
+        assert spatial[name] == pytest.approx(planar[name], rel=1e-6)
+
+
+def test_a_belt_in_space_runs_round_where_its_friction_is_left_out():
+    with pytest.raises(fu.EquilibriumError, match='so that rope "belt" runs round freely; take wraps="stick"'):
+        belt_under_gravity("cable12", tension=5.0, stiffness=126.0, rho=0.0126).equilibrium()
+
+
 def test_a_rope_off_a_drum():
     def scene(**given):
         made = fu.Scene(gravity=(0, -GRAVITY, 0))

@@ -14,7 +14,7 @@ from ...checks.plausibility import implausible
 from ...checks.whole_scene import check_impending, check_sticking
 from ...errors import EquilibriumError, FunicularWarning
 from ...model.drag_forces import outside_tables
-from ...parts.rope import driven_freely, rough_sheaves
+from ...parts.rope import driven_freely, rough_sheaves, running_round
 from ...parts.scene_data import SceneData
 from ...parts.settings import EquilibriumSettings
 from ..notes.row_notes import rest_notes
@@ -65,6 +65,9 @@ def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestStat
         if not settings.sticks and (driven := driven_freely(scene.ropes.values())):
             remedy = (f"; friction of ropes is left out at rest, so that sheave {' and '.join(driven)} turns freely "
                       'under its torque; take wraps="stick", prescribe its angle, or leave the torque out')
+        if not settings.sticks and (closed := running_round(scene.ropes.values())):
+            remedy = (f"; friction of ropes is left out at rest, so that rope {' and '.join(closed)} runs round freely"
+                      f'; take wraps="stick"{remedy}')
         if slides := not_held(problem, lying(problem.scene, problem.model, problem.model.q)):
             remedy = f"; {slides}{remedy}"
         at_limit = "" if settings.impending is None else f' with ropes at the limit of friction, "{settings.impending}"'
