@@ -34,10 +34,12 @@ from funicular.results.run import Run
 from paired_questions import QUESTIONS, Asked
 from paired_scenes import FACTORS, PROFILES, SECTIONS, SIGNALS, SOLIDS, STOPS, SURFACES, build, laws
 
-SLOW = ("adjusted", "errors", "from_another_run", "loads_in_steps", "plots", "plots_of_run", "film_of_run",
-        "picture_of_run", "page_of_run", "page_of_scene", "page_of_rest", "modes_as_drawn", "load_path", "relaxed",
-        "from_relaxed", "files_for_paraview", "swept")
-"""Questions that take long: pictures, searches with many steps, several runs or states of rest of a scene."""
+PICTURES = ("plots", "plots_of_run", "film_of_run", "picture_of_run", "page_of_run", "page_of_scene", "page_of_rest",
+            "files_for_paraview")
+SEARCHES = ("adjusted", "errors", "from_another_run", "loads_in_steps", "modes_as_drawn", "load_path", "relaxed",
+            "from_relaxed", "swept")
+"""Questions that take long: pictures; searches with many steps, several runs or states of rest of a scene."""
+QUICK = [question for question in QUESTIONS if question not in (*PICTURES, *SEARCHES)]
 
 EVERY = FACTORS | {"integrator": [AUTO, *INTEGRATORS]}
 NEUTRAL = {factor: levels if factor == "element" else levels[:1] for factor, levels in EVERY.items()}
@@ -166,18 +168,38 @@ def test_scenes_are_described_or_refused():
     assert min(map(len, array.refused)) == 2
 
 
-@pytest.mark.parametrize("question", [pytest.param(question, marks=[pytest.mark.slow] * (question in SLOW))
-                                      for question in QUESTIONS])
-def test_each_question_with_each_level(question):
+def check_with_each_level(question: str) -> None:
     matplotlib.use("Agg")
     errors = asked([question], everything=False)
     assert not errors, told(errors)
 
 
+@pytest.mark.parametrize("question", QUICK)
+def test_each_question_with_each_level(question):
+    check_with_each_level(question)
+
+
 @pytest.mark.slow
-def test_every_pair():
-    errors = asked([question for question in QUESTIONS if question not in SLOW], everything=True)
-    assert not errors, told(errors)
+class TestPictures:
+    """A class is tested beside others of its file, by another process."""
+
+    @pytest.mark.parametrize("question", PICTURES)
+    def test_each_with_each_level(self, question):
+        check_with_each_level(question)
+
+
+@pytest.mark.slow
+class TestSearches:
+    @pytest.mark.parametrize("question", SEARCHES)
+    def test_each_with_each_level(self, question):
+        check_with_each_level(question)
+
+
+@pytest.mark.slow
+class TestAll:
+    def test_every_pair(self):
+        errors = asked(QUICK, everything=True)
+        assert not errors, told(errors)
 
 
 def test_every_kind_in_the_lists_of_the_project_is_here():
