@@ -197,6 +197,8 @@ JOINED: dict[str, Callable[[Site], object]] = {
 
 ROUGH = fu.Friction(coefficient=0.2)
 STUCK = fu.Friction(coefficient=0.2, model="stick")
+OF_ROPE = {"section": fu.Circle(radius=0.002),
+           "material": fu.Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1000, damping_time=1e-4)}
 
 
 def _rope(on: Site, carried: bool = False, first: object = None, also: Callable[[Site], object] | None = None,
@@ -210,8 +212,7 @@ def _rope(on: Site, carried: bool = False, first: object = None, also: Callable[
     element = {} if on.planar or not mass else {"element": "cable12"}
     first = first or fu.Anchor(at=(x + 0.8, y - 0.8, 0))
     on.scene.rope("hoist", route=[first, fu.Sheave("top", at=at, radius=0.2, **given), fu.Anchor("load")],
-                  section=fu.Circle(radius=0.002), elements=2, tension=0.981, mass=mass, **element,
-                  material=fu.Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1000, damping_time=1e-4))
+                  elements=2, tension=0.981, mass=mass, **element, **OF_ROPE)
     if also is not None:
         also(on)
 
@@ -224,8 +225,7 @@ def _belt(on: Site) -> None:
                        velocity=SIGNALS["ramp"]),
              fu.Sheave("driven", at=(x + 2.4, y, 0), radius=0.1, side="left", friction=STUCK, zones=1, inertia=1e-3,
                        damping=0.1)]
-    on.scene.rope("belt", route=route, closed=True, section=fu.Circle(radius=0.002), elements=2, tension=5.0, **element,
-                  material=fu.Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1000, damping_time=1e-4))
+    on.scene.rope("belt", route=route, closed=True, elements=2, tension=5.0, **element, **OF_ROPE)
 
 
 def _drum(**given) -> fu.Drum:

@@ -9,7 +9,7 @@ from funicular.model.build import build
 from funicular.results.animation.frames import place
 from funicular.results.animation.sources import of_run, of_scene
 from interrupted_runs import killed_and_resumed
-from ropes.scenes import rope_of
+from ropes.scenes import on_rope_and_cable, rope_of
 from scipy.interpolate import CubicSpline
 from test_ropes import momenta
 
@@ -71,19 +71,8 @@ def test_a_gripped_mass_agrees_with_one_on_a_cable(end):
     """A mass on a heavy rope of 10 m falls by .27 m as on a cable; beside it a sheave of 1 cm and a length `end` are
     left out. The difference is in proportion to both.
     """
-    radius, wrap, at, made = 0.01, 0.5, 4.0, rope_of(8e5, 0.5, 0, 2e-3)
-    rope, cable = fu.Scene(), fu.Scene()
-    off = (10 + radius * np.sin(wrap), radius * (np.cos(wrap) - 1))
-    last = (off[0] + end * np.cos(wrap), off[1] - end * np.sin(wrap), 0)
-    line = rope.rope("line", route=[fu.Anchor(at=(0, 0, 0)),
-                                    fu.Sheave("top", at=(10, -radius, 0), radius=radius, side="right"),
-                                    fu.Anchor(at=last)], tension=3e3, elements=[4, 1], **made)
-    free = 10 / line.drawn(rope.bodies).stretch
-    cable.cable("line", start=(0, 0, 0), end=(10, 0, 0), rest_length=free, elements=4, element="cable8p",
-                strain="engineering", membrane="assumed", **made)
-    for s in (0.0, free):
-        cable.pin("line", s=s)
-    runs = []
+    radius, at, runs = 0.01, 4.0, []
+    rope, cable, line = on_rope_and_cable(end, radius)
     for scene in (rope, cable):
         scene.rigid_body("load", mass=20, inertia=(1, 1, 1), position=line.point(rope.bodies, at).tolist())
         scene.joint("spherical", ("line", at), "load", name="grip")

@@ -8,7 +8,7 @@ from funicular.engine import Engine
 from funicular.integrators import GeneralisedAlpha
 from funicular.model.build import build
 from interrupted_runs import killed_and_resumed
-from ropes.scenes import rope_of
+from ropes.scenes import on_rope_and_cable, rope_of
 from test_grips import ROPE, SETTINGS, hauled, spanned
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*youngs_modulus|.*density:funicular.FunicularWarning")
@@ -29,18 +29,7 @@ def loaded(dim: int = 2, *, mirrored: bool = False) -> fu.Scene:
 
 def on_a_cable_and_a_rope(end: float, load) -> list[fu.Scene]:
     """Return a cable of 10 m, and a rope of it that goes on over a sheave of 1 cm for a length `end`, both loaded."""
-    radius, wrap, made = 0.01, 0.5, rope_of(8e5, 0.5, 0, 2e-3)
-    rope, cable = fu.Scene(), fu.Scene()
-    off = (10 + radius * np.sin(wrap), radius * (np.cos(wrap) - 1))
-    last = (off[0] + end * np.cos(wrap), off[1] - end * np.sin(wrap), 0)
-    line = rope.rope("line", route=[fu.Anchor(at=(0, 0, 0)),
-                                    fu.Sheave("top", at=(10, -radius, 0), radius=radius, side="right"),
-                                    fu.Anchor(at=last)], tension=3e3, elements=[4, 1], **made)
-    free = 10 / line.drawn(rope.bodies).stretch
-    cable.cable("line", start=(0, 0, 0), end=(10, 0, 0), rest_length=free, elements=4, element="cable8p",
-                strain="engineering", membrane="assumed", **made)
-    for s in (0.0, free):
-        cable.pin("line", s=s)
+    rope, cable, _ = on_rope_and_cable(end)
     for scene in (rope, cable):
         load(scene)
     return [rope, cable]

@@ -10,7 +10,7 @@ from funicular.results.animation.frames import place
 from funicular.results.animation.marks import slide_place
 from funicular.results.animation.sources import of_run
 from interrupted_runs import killed_and_resumed
-from ropes.scenes import rope_of
+from ropes.scenes import on_rope_and_cable, rope_of
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from test_grips import ROPE, SETTINGS
@@ -42,23 +42,12 @@ def hauled(*, elements: int = 8, s: float = S, speed: float = 0.0, along: float 
     return scene
 
 
-def on_rope_and_cable(end: float, radius: float, **slide) -> list[fu.Run]:
+def runs_on_rope_and_cable(end: float, radius: float, **slide) -> list[fu.Run]:
     """Return runs of a mass on a heavy rope of 10 m with a small sheave and a length `end` beside it, and on a cable of
     the same elements.
     """
-    wrap, made, at = 0.5, rope_of(8e5, 0.5, 0, 2e-3), 2.0
-    rope, cable = fu.Scene(), fu.Scene()
-    off = (10 + radius * np.sin(wrap), radius * (np.cos(wrap) - 1))
-    last = (off[0] + end * np.cos(wrap), off[1] - end * np.sin(wrap), 0)
-    line = rope.rope("line", route=[fu.Anchor(at=(0, 0, 0)),
-                                    fu.Sheave("top", at=(10, -radius, 0), radius=radius, side="right"),
-                                    fu.Anchor(at=last)], tension=3e3, elements=[4, 1], **made)
-    free = 10 / line.drawn(rope.bodies).stretch
-    cable.cable("line", start=(0, 0, 0), end=(10, 0, 0), rest_length=free, elements=4, element="cable8p",
-                strain="engineering", membrane="assumed", **made)
-    for s in (0.0, free):
-        cable.pin("line", s=s)
-    runs = []
+    rope, cable, line = on_rope_and_cable(end, radius)
+    at, runs = 2.0, []
     for scene in (rope, cable):
         scene.rigid_body("load", mass=20, inertia=(1, 1, 1), position=line.point(rope.bodies, at).tolist(),
                          velocity=(4, 0, 0))
@@ -75,7 +64,7 @@ def test_agrees_with_a_slide_on_a_cable(slide, force):
     """The difference is in proportion to what the cable leaves out: extrapolated to none of it, places agree to 3e-6 of
     a path of 3 m. The mass passes ends of elements, where the force of a drive jumps.
     """
-    (coarse, _), (fine, cable) = (on_rope_and_cable(each, each / 2, **slide) for each in (0.01, 0.005))
+    (coarse, _), (fine, cable) = (runs_on_rope_and_cable(each, each / 2, **slide) for each in (0.01, 0.005))
     assert np.ptp(cable["trolley.s"]) > 2 and cable.report["element_crossings"] == fine.report["element_crossings"] > 0
     for name in ("load.position", "trolley.s"):
         assert np.abs(2 * fine[name] - coarse[name] - cable[name]).max() < 3e-6, name

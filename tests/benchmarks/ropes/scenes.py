@@ -52,3 +52,22 @@ def over_a_peg(rho: float, EA: float, damping_time: float, elements: int = 1, *,
     scene.rope("rope", route=[fu.Anchor(at=(0, 0, 0)), *(pegs or (peg,)), fu.Anchor("load")], elements=elements,
                length=length / (1 + mass * GRAVITY * cos(start) / EA), **rope_of(EA, rho, 0, damping_time))
     return scene
+
+
+def on_rope_and_cable(end: float, radius: float = 0.01) -> tuple[fu.Scene, fu.Scene, fu.Rope]:
+    """Return a scene with a heavy rope "line" of 10 m that goes on over a small sheave for a length `end`, one with a
+    pinned cable of its elements without that, and the rope.
+    """
+    wrap, made = 0.5, rope_of(8e5, 0.5, 0, 2e-3)
+    rope, cable = fu.Scene(), fu.Scene()
+    off = (10 + radius * sin(wrap), radius * (cos(wrap) - 1))
+    last = (off[0] + end * cos(wrap), off[1] - end * sin(wrap), 0)
+    line = rope.rope("line", route=[fu.Anchor(at=(0, 0, 0)),
+                                    fu.Sheave("top", at=(10, -radius, 0), radius=radius, side="right"),
+                                    fu.Anchor(at=last)], tension=3e3, elements=[4, 1], **made)
+    free = 10 / line.drawn(rope.bodies).stretch
+    cable.cable("line", start=(0, 0, 0), end=(10, 0, 0), rest_length=free, elements=4, element="cable8p",
+                strain="engineering", membrane="assumed", **made)
+    for s in (0.0, free):
+        cable.pin("line", s=s)
+    return rope, cable, line

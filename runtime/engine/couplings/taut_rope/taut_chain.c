@@ -84,6 +84,12 @@ static double growth_of(const fu_taut_chain *chain, int k)
     return chain->of[k].sums[FU_BY_RATE] * (chain->x_rate + chain->of[k].log_ratio_rate * chain->x);
 }
 
+/* Returns the change of the logarithm of the ratio by the angle of the wrap at a point; 0 where the rope sticks. */
+static double by_wrap(const fu_taut_point *point, const fu_state *state)
+{
+    return fu_taut_slips(point, state) * point->friction * (point->radius < 0.0 ? -1.0 : 1.0);
+}
+
 void fu_taut_chain_at(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_chain *out)
 {
     const fu_taut_rope *next = first_of(model, rope, state);
@@ -97,7 +103,7 @@ void fu_taut_chain_at(const fu_model *model, const fu_taut_rope *rope, const fu_
         if (out->n) { /* the sheave between the last rope and this one */
             const fu_taut_point *point = fu_taut_end(model, next, START);
             const fu_taut_lengths *one = &at[-1].now, *other = &at->now;
-            const double share = fu_taut_slips(point, state) * point->friction * (point->radius < 0.0 ? -1.0 : 1.0);
+            const double share = by_wrap(point, state);
             log_ratio += share * (other->angle[START] - one->angle[END] + point->closing);
             log_ratio_rate += share * (other->turning[START] - one->turning[END]);
         }
@@ -164,7 +170,7 @@ void fu_taut_slide(const fu_taut_chain *chain, const fu_state *state, fu_taut_le
 static double share_of_angle(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, int end)
 {
     const fu_taut_point *point = fu_taut_end(model, rope, end);
-    const double share = fu_taut_slips(point, state) * point->friction * (point->radius < 0.0 ? -1.0 : 1.0);
+    const double share = by_wrap(point, state);
     return end ? -share : share;
 }
 
