@@ -58,7 +58,8 @@ def drum(mu: float) -> dict[str, object]:
 def cost() -> list[dict[str, object]]:
     """Return the cost of evaluating all forces of 1,000 elements, of which none, ten, or all touch."""
     found = []
-    for name, height in (("no contact", None), ("none touch", -2.0), ("ten touch", 4.9e-3), ("all touch", 2e-5)):
+    for name, height in few((("no contact", None), ("none touch", -2.0), ("ten touch", 4.9e-3),
+                              ("all touch", 2e-5))):
         scene = Scene()
         end = 0.01 if name == "all touch" else 0.5
         scene.cable("line", start=(0, 0.01, 0), end=(100, end, 0), elements=1000, element="cable12",
@@ -67,7 +68,7 @@ def cost() -> list[dict[str, object]]:
         if height is not None:
             scene.surface("bed", Plane(point=(0, height, 0)))
             scene.contact("line", "bed", stiffness=1e5, name="bed_contact")
-        runs = [scene.run(0.05, output_step=0.05, step=1e-3, integrator="genalpha") for _ in range(3)]
+        runs = [scene.run(0.05, output_step=0.05, step=1e-3, integrator="genalpha") for _ in few(range(3))]
         best = min(run.report["time_s"]["residual"] / run.report["newton_iterations"] for run in runs)
         touching = runs[0]["bed_contact.touching"][0] if height is not None else 0.0
         found.append({"1,000 elements": name, "touching, m": f"{touching:.2f}", "forces, us": f"{1e6 * best:.0f}"})
@@ -104,7 +105,7 @@ def many_cables(pairs: bool) -> Scene:
 def seconds_of(scene: Scene, duration: float) -> tuple[float, float]:
     """Return the minimum CPU seconds of three runs with steps of 1 ms, and of an evaluation of all forces."""
     least = [np.inf, np.inf]
-    for _ in range(3):
+    for _ in few(range(3)):
         begin = process_time()
         run = scene.run(duration, output_step=duration, step=1e-3, integrator="genalpha")
         taken = process_time() - begin, run.report["time_s"]["residual"] / run.report["newton_iterations"]
@@ -115,7 +116,7 @@ def seconds_of(scene: Scene, duration: float) -> tuple[float, float]:
 def far() -> list[dict[str, object]]:
     """Return the cost of distant pairs."""
     found = []
-    for name, make in (("10,000 contacts", many_bodies), ("100 crossings", many_cables)):
+    for name, make in few((("10,000 contacts", many_bodies), ("100 crossings", many_cables))):
         steps, added = [], []
         for pairs in (False, True):
             begin = process_time()

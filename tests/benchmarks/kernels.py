@@ -24,7 +24,7 @@ from funicular.derive.verify import timing
 from funicular.derive.verify.compiled import compile_units, compiler
 from funicular.generated import described
 from funicular.generated import kernels as compiled
-from table import Parser, arguments, show
+from table import Parser, arguments, few, show
 
 AIMS = {
     ("cable12", "elastic_force"): 0.08, ("cable12", "elastic_tangent"): 0.6,
@@ -56,10 +56,11 @@ def rows(repetitions: int) -> list[dict]:
     manifest = json.loads((drift.folder() / "manifest.json").read_text(encoding="utf-8"))
     with tempfile.TemporaryDirectory() as folder:
         flags = [*options(), f"-I{drift.folder()}"]
-        units = compile_units((drift.folder() / f"{name}.c" for name in manifest["families"]), flags, Path(folder))
-        program = timing.build(families().values(), manifest, compiled, units, flags, Path(folder))
+        measured = few(families().values())
+        units = compile_units((drift.folder() / f"{family.name}.c" for family in measured), flags, Path(folder))
+        program = timing.build(measured, manifest, compiled, units, flags, Path(folder))
         times, sizes = timing.times(program, repetitions), timing.code_sizes(program)
-    every = described(manifest)
+    every = {name: kernel for name, kernel in described(manifest).items() if name in times}
     none = {operation: 0 for kernel in every.values() for operation in kernel["operations"]}
     found = []
     for name, kernel in every.items():
@@ -79,7 +80,7 @@ def main() -> None:
     show(table, given.out, "kernels")
     over = [f"{row['kernel']} {row['us'] / row['aim']:.2g}" for row in table if row["aim"] and row["us"] > row["aim"]]
     print("over its aim, times:", ", ".join(over) or "none")
-    if several := blocks.rows(given.repetitions):
+    if not given.smallest and (several := blocks.rows(given.repetitions)):  # blocks.py has its own smallest run
         show(several, table="blocks")
     if given.derivations:
         taken = [making.derivation() for _ in range(given.derivations)]
