@@ -139,7 +139,7 @@ def test_files(text):
 
 
 @pytest.mark.slow
-@examples(250)
+@examples(125)
 @given(scenes(), INTEGRATORS, STEPS, st.sampled_from(["drawn", "drawn", "drawn", "drawn", "equilibrium"]))
 def test_many_runs(scene, integrator, steps, initial):
     check_run(*scene, integrator, steps, initial)
