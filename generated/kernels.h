@@ -1838,6 +1838,35 @@ typedef void fu_tangent_point_ring_kernel(const fu_real *inertia, fu_real growth
 /* inertia 2, omega 3, omega_acc 2, E 1, moment 2 */
 fu_tangent_point_ring_kernel tangent_point_ring;
 
+typedef void fu_tangent_point_momentum_kernel(fu_real R, fu_real l, fu_real xi, fu_real angle_at, fu_real alpha, const fu_real *axes, const fu_real *c_rate, const fu_real *omega, fu_real turn, const fu_real *s_rate, fu_real *P);
+/* momentum of the material at a point of a zone, over the mass of a length: R [m]; l [m]; xi [1]; angle_at [rad];
+ * alpha [rad]; axes [1]; c_rate [m/s]; omega [rad/s]; turn [rad/s]; s_rate [m/s] -> P [m^2/s] */
+/* axes 3x2, c_rate 3, omega 3, s_rate 2, P 3 */
+fu_tangent_point_momentum_kernel tangent_point_momentum;
+
+typedef void fu_tangent_point_momentum_energy_kernel(fu_real rho, fu_real l, const fu_real *P, fu_real *T);
+/* kinetic energy of the momentum at a point of a zone: rho [kg/m]; l [m]; P [m^2/s] -> T [J] */
+/* P 3, T 1 */
+fu_tangent_point_momentum_energy_kernel tangent_point_momentum_energy;
+
+typedef void fu_tangent_point_momentum_step_kernel(fu_real rho, fu_real h, fu_real l, const fu_real *s_change, fu_real R, fu_real xi, fu_real angle_at, fu_real angle_change, fu_real alpha, fu_real alpha_change, const fu_real *c_change, const fu_real *axes, const fu_real *theta, const fu_real *P, fu_real *on_c, fu_real *moment, fu_real *on_turn, fu_real *on_alpha, fu_real *on_s, fu_real *P_next);
+/* inertial forces of a point of a zone over a step that conserves energy: rho [kg/m]; h [s]; l [m]; s_change [m]; R
+ * [m]; xi [1]; angle_at [rad]; angle_change [rad]; alpha [rad]; alpha_change [rad]; c_change [m]; axes [1]; theta
+ * [rad]; P [m^2/s] -> on_c [N]; moment [N m]; on_turn [N m]; on_alpha [N m]; on_s [N]; P_next [m^2/s] */
+/* s_change 2, c_change 3, axes 3x2, theta 3, P 3, on_c 3, moment 3, on_turn 1, on_alpha 1, on_s 2, P_next 3 */
+fu_tangent_point_momentum_step_kernel tangent_point_momentum_step;
+
+typedef void fu_tangent_point_by_products_kernel(const fu_real *products, fu_real weight_square, fu_real EA, fu_real limit, fu_real R, fu_real *phi, fu_real *J);
+/* conditions of a tangent point by products of its vectors: products [m^2, m]; weight_square [N^2/m^2]; EA [N];
+ * limit [N/m]; R [m] -> phi [m]; J [1/m, 1] */
+/* products 9, phi 3, J 3x9 */
+fu_tangent_point_by_products_kernel tangent_point_by_products;
+
+typedef void fu_tangent_point_chord_step_kernel(const fu_real *xis, fu_real *N, fu_real *N_xi);
+/* shape functions at the end of a chord over a step: xis [1] -> N [1]; N_xi [1] */
+/* xis 2, N 2x4, N_xi 4 */
+fu_tangent_point_chord_step_kernel tangent_point_chord_step;
+
 typedef void fu_taut_rope_straight_kernel(const fu_real *d, fu_real rise, fu_real *l, fu_real *u, fu_real *l_d, fu_real *b_d);
 /* straight part of a rope without mass: d [m]; rise [m] -> l [m]; u [1]; l_d [1]; b_d [1/m] */
 /* d 2, l 1, u 2, l_d 2, b_d 2 */
@@ -2302,6 +2331,11 @@ typedef struct {
     fu_tangent_point_wrap_weight_kernel *wrap_weight;
     fu_tangent_point_laid_weight_kernel *laid_weight;
     fu_tangent_point_ring_kernel *ring;
+    fu_tangent_point_momentum_kernel *momentum;
+    fu_tangent_point_momentum_energy_kernel *momentum_energy;
+    fu_tangent_point_momentum_step_kernel *momentum_step;
+    fu_tangent_point_by_products_kernel *by_products;
+    fu_tangent_point_chord_step_kernel *chord_step;
 } fu_tangent_point_kernels;
 
 /* What the engine needs of a taut_rope. */

@@ -324,7 +324,8 @@ static const fu_tangent_point_kernels tangent_points[] = {
     {"tangent_point", 3, tangent_point_conditions, tangent_point_motion, tangent_point_chord, tangent_point_across,
      tangent_point_turned_conditions, tangent_point_turned_motion, tangent_point_turned_acc, tangent_point_wrap_energy,
      tangent_point_wrap_inertia, tangent_point_wrap_mass, tangent_point_wrap_weight, tangent_point_laid_weight,
-     tangent_point_ring},
+     tangent_point_ring, tangent_point_momentum, tangent_point_momentum_energy, tangent_point_momentum_step,
+     tangent_point_by_products, tangent_point_chord_step},
 };
 
 static const fu_taut_rope_kernels taut_ropes[] = {
@@ -457,6 +458,9 @@ static const fu_taut_rope_kernels taut_ropes[] = {
 #define FU_ARGUMENTS_svvsvsvvvvvv_1 *a[0], a[1], a[2], *a[3], a[4], *a[5], a[6], a[7], a[8], a[9], a[10], a[11], out[0]
 #define FU_ARGUMENTS_svsvs_3 *a[0], a[1], *a[2], a[3], *a[4], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vsvvs_2 a[0], *a[1], a[2], a[3], *a[4], out[0], out[1]
+#define FU_ARGUMENTS_sssssvvvsv_1 *a[0], *a[1], *a[2], *a[3], *a[4], a[5], a[6], a[7], *a[8], a[9], out[0]
+#define FU_ARGUMENTS_sssvssssssvvvv_6 *a[0], *a[1], *a[2], a[3], *a[4], *a[5], *a[6], *a[7], *a[8], *a[9], a[10], a[11], a[12], a[13], out[0], out[1], out[2], out[3], out[4], out[5]
+#define FU_ARGUMENTS_vssss_2 a[0], *a[1], *a[2], *a[3], *a[4], out[0], out[1]
 #define FU_ARGUMENTS_vs_4 a[0], *a[1], out[0], out[1], out[2], out[3]
 #define FU_ARGUMENTS_vvs_1 a[0], a[1], *a[2], out[0]
 #define FU_ARGUMENTS_vvssv_1 a[0], a[1], *a[2], *a[3], a[4], out[0]
@@ -1118,6 +1122,11 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(tangent_point_wrap_weight, svsvs_3) \
     X(tangent_point_laid_weight, svv_3) \
     X(tangent_point_ring, vsvvs_2) \
+    X(tangent_point_momentum, sssssvvvsv_1) \
+    X(tangent_point_momentum_energy, ssv_1) \
+    X(tangent_point_momentum_step, sssvssssssvvvv_6) \
+    X(tangent_point_by_products, vssss_2) \
+    X(tangent_point_chord_step, v_2) \
     X(planar_taut_rope_straight, vs_4) \
     X(planar_taut_rope_straight_tangent, vvs_1) \
     X(planar_taut_rope_free_length, vv_2) \

@@ -21,8 +21,10 @@ A slope e of a node has the vector l e of unit length, on which a force f acts. 
 
     l~ f + (dl/4) (de x f) k x e~/|e~|^2 on e,   f.e~ - (de x f) (e~ x de)/(4 |e~|^2) on l
 
-do the work f.d(l e), and have the moment of f with the arm (l e)~. In space the terms with products are left out, and
-the angular momentum has an error of order h^2 where the length changes.
+do the work f.d(l e), and have the moment of f with the arm (l e)~. In space the terms with products are left out: the
+forces have the moments of f with the arms l~ e^, where e^ = (l e)~/l~. These directions are those of all elements at a
+node, as their lengths are parts of that of the span. So the moments of all forces of a step balance along e^, which is
+the change of the angular momentum. Damping and chords have the slopes e^, too.
 """
 
 from __future__ import annotations

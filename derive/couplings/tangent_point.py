@@ -31,7 +31,7 @@ from ..codegen.family import CouplingFamily
 from ..codegen.program import DirectionalDerivative, Program, jacobian
 from ..elements import ELEMENTS
 from ..spec import x as along
-from . import turning_wheel
+from . import turning_step, turning_wheel
 from .span_inertia import FlowingElement
 
 DIM, NAME = 3, "tangent_point"
@@ -46,7 +46,7 @@ def families() -> list[CouplingFamily]:
 def build(dim: int) -> list[Program]:
     """Return the kernels of a tangent point."""
     return [conditions(), motion(), chord(), across(), conditions(turns=True), motion(turns=True),
-            *turning_wheel.kernels()]
+            *turning_wheel.kernels(), *turning_step.kernels()]
 
 
 def _program(kernel: str, doc: str) -> Program:

@@ -14,7 +14,8 @@ class EnergyMomentum(Integrator):
     """Implicit, of order 2; keeps energy and momenta to rounding (Simo & Tarnow 1992; Gonzalez 1996).
 
     Ropes with mass over sheaves have the momenta of their material as a state (derive/couplings/material_step.py), and
-    their kinetic energy is that of these momenta. A run ends where a rope leaves its sheave.
+    their kinetic energy is that of these momenta; in space on bodies that turn, too (derive/couplings/turning_step.py).
+    A run ends where a rope leaves its sheave.
 
     With a spectral radius below 1 at infinite frequency it keeps only momenta, and algorithmic dissipation damps fast
     vibrations of cables (engine/integrators/algorithmic_dissipation.c).

@@ -276,7 +276,8 @@ CEILINGS = {
     },
     "tangent_point": {"conditions": 1744, "motion": 325, "chord": 202, "across": 27, "turned_conditions": 2017,
                       "turned_motion": 369, "turned_acc": 4, "wrap_energy": 93, "wrap_inertia": 616, "wrap_mass": 183,
-                      "wrap_weight": 63, "laid_weight": 139, "ring": 22},
+                      "wrap_weight": 63, "laid_weight": 139, "ring": 22, "momentum": 62, "momentum_energy": 8,
+                      "momentum_step": 371, "by_products": 119, "chord_step": 63},
     "planar_sheave": {
         "tangent_point": 27, "tangent_point_motion": 26, "angle": 121, "energy": 13, "weight": 21, "force": 85,
         "tangent": 204, "kinetic_energy": 60, "inertia": 213, "mass_matrix": 162, "inertia_tangent": 1099,

@@ -13,6 +13,7 @@ from ...elements import ELEMENTS
 from ..methods import Relation
 from ..references.element import Shape
 from .paths import along, of, root
+from .turning_step import turning_step
 from .turning_wheel import turning_wheel
 
 INPUTS = (("x", 3), ("slope", 3), ("chord", 3), ("b", 1))
@@ -24,7 +25,7 @@ TURNED = (*INPUTS, ("axis", 3))
 def tangent_point(family: CouplingFamily) -> list[Relation]:
     """Return the relations of the kernels."""
     return [*_of_conditions("", INPUTS), *_of_conditions("turned_", TURNED), *_of_chord(), *_of_motion_across(),
-            *turning_wheel()]
+            *turning_wheel(), *turning_step()]
 
 
 def _of_conditions(kind: str, inputs: tuple[tuple[str, int], ...]) -> list[Relation]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...codegen.family import CouplingFamily
+from ...couplings.turning_step import PRODUCTS
 from ...elements import ELEMENTS
 from ..numbers import Numbers, State
 from .element import element_state
@@ -27,6 +28,9 @@ def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) 
               "b": np.float64(length * random.uniform(0.85, 0.95)), "weight": random.uniform(-0.2, 0.2, 3),
               "EA": np.float64(random.uniform(7, 12)), "limit": np.float64(random.uniform(0.2, 0.4)),
               "b_rate": np.float64(random.uniform(0.2, 0.5)), "chord": length * direction / np.linalg.norm(direction)}
+    found |= _step(random)
+    vectors = {"x": found["x"], "a": found["axis"], "d": found["chord"], "w": found["weight"]}
+    found["products"] = np.array([*(vectors[name[0]] @ vectors[name[2]] for name in PRODUCTS), found["b"]])
     element = element_state(ELEMENTS["cable12"], random)
     return found | {"e": element["e"], "l": element["l"], "s": element["l"] * random.uniform(0.2, 0.8),
                     "rho": np.float64(1.3), "w": np.float64(random.normal()),
@@ -35,3 +39,14 @@ def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) 
                     "by_L": np.array([random.uniform(-0.9, -0.5), random.uniform(0.3, 0.6)]),
                     "slope": Q @ np.array([random.uniform(0.1, 0.2), 1.1, random.uniform(0.2, 0.4)]),
                     "slope_rate": random.normal(size=3), "by_chord": np.float64(random.uniform(0.2, 0.8))}
+
+
+def _step(random: np.random.Generator) -> State:
+    """Return a step of a groove that turns."""
+    axes = rotation(random, 3)[:, :2]
+    found: State = {"axes": axes, "theta": 0.3 * random.normal(size=3), "P": random.normal(size=3),
+                    "c_change": 0.1 * random.normal(size=3), "s_change": 0.03 * random.normal(size=2),
+                    "xis": np.sort(random.uniform(0.1, 0.9, 2)), "weight_square": np.float64(random.uniform(0.1, 0.2))}
+    return found | {name: np.float64(random.uniform(*limits)) for name, limits in {
+        "h": (0.1, 0.2), "xi": (0.2, 0.8), "angle_at": (0.3, 1.2), "turn": (0.5, 1), "angle_change": (0.1, 0.3),
+        "alpha": (0.5, 1), "alpha_change": (0.1, 0.2)}.items()}

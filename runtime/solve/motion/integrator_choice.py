@@ -241,9 +241,6 @@ def _check_ropes(integrator: Integrator, scene: SceneData) -> None:
             if isinstance(item, Drum):
                 raise SceneError(rope.where, f"{who} does not support {item.where}: creep on drums has no discrete "
                                  "gradient", another)
-            if rope.dim == 3 and item.end.on is not None:
-                raise SceneError(rope.where, f'{who} does not support {item.where} in space on body "{item.end.on}"',
-                                 f"hold it at the ground, or {another}")
             if item.end.on in scene.cables:
                 raise SceneError(rope.where, f'{who} does not support {item.where} on cable "{item.end.on}"', another)
             if isinstance(item, Sheave) and item.sticks:

@@ -124,11 +124,29 @@ static void add_elastic(const fu_model *model, const fu_span_coupling *span, int
     fu_add_span_force(&span->on, &from, of_e, 0, of_length, f);
 }
 
+/* Returns an element half-way, in space with slopes weighted by the lengths at both ends of the step: the moments of
+ * all forces over a step balance along these (derive/couplings/material_step.py). e: space for its nodal vectors. */
+static fu_span_element half_way(const fu_model *model, const fu_span_coupling *span, int k, const fu_equations *at,
+                                double e[FU_MAX_COORDINATES])
+{
+    const int dim = span->on.kernel->dim;
+    fu_span_element it = fu_span_element_at(model, &span->on, k, at->middle->q, at->middle->v, 0);
+    const fu_span_element from = fu_span_element_at(model, &span->on, k, at->now->q, 0, 0),
+                          to = fu_span_element_at(model, &span->on, k, at->next->q, 0, 0);
+    if (dim == 2) return it;
+    for (int i = 0; i < span->on.kernel->coordinates; ++i) {
+        const int is_slope = i / dim % 2;
+        e[i] = is_slope ? (from.l * from.e[i] + to.l * to.e[i]) / (from.l + to.l) : it.e[i];
+    }
+    it.e = e;
+    return it;
+}
+
 /* Adds the forces of damping half-way. */
 static void add_damping(const fu_model *model, const fu_span_coupling *span, int k, const fu_equations *at, double *f)
 {
-    const fu_span_element it = fu_span_element_at(model, &span->on, k, at->middle->q, at->middle->v, 0);
-    double of_e[FU_MAX_COORDINATES], of_ends[ENDS];
+    double of_e[FU_MAX_COORDINATES], of_ends[ENDS], e[FU_MAX_COORDINATES];
+    const fu_span_element it = half_way(model, span, k, at, e);
     if (span->tau == 0.0) return;
     span->on.kernel->damping_force(it.l, it.e, it.v, it.s_rate, span->A, span->tau, of_e, of_ends);
     fu_add_span_force(&span->on, &it, of_e, of_ends, 0.0, f);
@@ -156,7 +174,8 @@ double fu_span_step_dissipation(const fu_model *model, const fu_coupling *coupli
     double total = 0.0, P;
     (void)model;
     for (int k = 0; span->tau > 0.0 && k < span->on.n_elements; ++k) {
-        const fu_span_element it = fu_span_element_at(model, &span->on, k, at->middle->q, at->middle->v, 0);
+        double e[FU_MAX_COORDINATES];
+        const fu_span_element it = half_way(model, span, k, at, e);
         span->on.kernel->dissipation(it.l, it.e, it.v, it.s_rate, span->A, span->tau, &P);
         total += at->h * P;
     }

@@ -372,9 +372,6 @@ void fu_sheave_add_derivatives(const fu_sheave *sheave, const fu_sheave_state *a
 /* Compute the kinetic energy and that of gravity, J, along the axis, in space. */
 void fu_sheave_energies_across(const fu_sheave *sheave, const fu_sheave_state *at, double *T, double *V);
 
-/* Adds the forces of the weight along the axis on a wrap that does not move along it, in space. */
-void fu_sheave_add_weight_across(const fu_sheave *sheave, const fu_sheave_state *at, double y[Y]);
-
 /* --- sheave_conditions.c: tangent points --- */
 
 /* Returns the number of conditions at a state; others of the coupling are left out. */
@@ -414,7 +411,65 @@ void fu_space_add_conditions(const fu_model *model, const fu_coupling *coupling,
 /* Computes the rows of eq 38 of all conditions in space. */
 void fu_space_rows(const fu_model *model, const fu_sheave *sheave, const fu_state *state, fu_rows *out);
 
-/* --- sheave_step.c: over a step that conserves energy --- */
+/* --- over a step that conserves energy (derive/couplings/sheave_step.py, turning_step.py): shared types --- */
+
+enum { FU_ZONE_POINTS = 8 }; /* of the momentum along a zone */
+
+/* A groove in space over a step: means of the vectors of its plane (3 x 2) and of the axis; its turn by the Cayley
+ * vector; changes of its centre; means of the places of the tangent points from it, and of gravity in the groove. */
+typedef struct {
+    double axes[SPACE * DIM], axis[SPACE], theta[SPACE], c_change[SPACE], x[ENDS][SPACE], gravity[SPACE], g[DIM];
+} fu_groove_step;
+
+/* A sheave over a step: at its start, at its end, half-way (with the mean places of nodes); half the turns of both
+ * tangent points, and the forces along k x x~ of moments on these; the centre at the start, its change, and that of s.
+ * In space the turns are those from the groove, and the centre is taken as zero. */
+typedef struct {
+    fu_sheave_state now, next, middle;
+    double half[ENDS], arm[ENDS], c[DIM], c_change[DIM], s_change[MAX_ZONES + 1];
+    fu_groove_step groove;
+} fu_sheave_over;
+
+/* Forces over a step: moments on the turns of both tangent points by their measures, and the rest of z; in space the
+ * force on the centre and the moment about it. */
+typedef struct {
+    double turn[ENDS], centre[DIM], wheel, s[MAX_ZONES + 1], force[SPACE], moment[SPACE];
+} fu_sheave_step_forces;
+
+/* A point of a zone: its number, its part of the zone and its weight there. */
+typedef struct {
+    int zone;
+    double xi, weight;
+} fu_zone_point;
+
+/* --- step_view.c --- */
+
+/* Computes a sheave over a step. */
+void fu_sheave_over_step(const fu_model *model, const fu_sheave *sheave, const fu_equations *at, fu_sheave_over *out);
+/* Adds a moment on the turn at a part of the wrap. */
+void fu_add_turn(const fu_sheave_over *step, double part, double moment, fu_sheave_step_forces *out);
+/* Adds a moment on the angle of the wrap. */
+void fu_add_opening(const fu_sheave_over *step, double moment, fu_sheave_step_forces *out);
+/* Returns x/sin(x). */
+double fu_over_sine(double x);
+
+/* --- space_step.c --- */
+
+/* Computes the momentum at a point of a zone by velocities. */
+void fu_space_momentum(const fu_sheave *sheave, const fu_sheave_state *at, const fu_zone_point *point, double P[SPACE]);
+/* Adds the inertial forces of a point of a zone with the momentum P (null: none); computes it at the end of the step.
+ */
+void fu_space_point_over_step(const fu_sheave *sheave, const fu_sheave_over *step, const fu_zone_point *point, double h,
+                              const double P[SPACE], fu_sheave_step_forces *out, double P_next[SPACE]);
+/* Returns the kinetic energy of the wrap. */
+double fu_space_wrap_energy(const fu_sheave *sheave, const fu_sheave_state *at);
+/* Adds the weight but for that of the places from the centre in the groove. */
+void fu_space_add_weight(const fu_sheave *sheave, const fu_sheave_over *step, fu_sheave_step_forces *out);
+/* Adds all these forces and those of the conditions to those on the dofs; computes the residuals. */
+void fu_space_over_step(const fu_sheave *sheave, const fu_sheave_over *step, const fu_equations *at,
+                        const fu_sheave_step_forces *of, const double *multipliers, double *phi, double *f);
+
+/* --- sheave_step.c: operations of the coupling over a step --- */
 
 int fu_sheave_history_size(const fu_coupling *coupling);
 void fu_sheave_history_over_step(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);

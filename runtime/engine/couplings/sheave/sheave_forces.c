@@ -63,11 +63,6 @@ static void add_across(const fu_sheave *sheave, const fu_sheave_state *at, doubl
     for (int i = 0; i < OF_ACROSS; ++i) y[place[i]] += motion.f[i];
 }
 
-void fu_sheave_add_weight_across(const fu_sheave *sheave, const fu_sheave_state *at, double y[Y])
-{
-    add_across(sheave, at, sheave->wheel.g[DIM], y);
-}
-
 /* Adds its derivatives by y: D by rates, K by places. */
 static void add_across_matrices(const fu_sheave *sheave, const fu_sheave_state *at, double factor, double (*D)[Y],
                                 double (*K)[Y])

@@ -1,14 +1,6 @@
-/* Sheaves over a step that conserves energy (derive/couplings/sheave_step.py).
- *
- * A turn of a tangent point by dphi, from x_0 to x_1, has the measure 2 tan(dphi/2). A moment on it is the force along
- * k x x~ whose work is the moment times this; in the plane, where |x_0| = |x_1|, it has this moment about the centre. A
- * zone turns at its part of the wrap by the angle in between; so a moment there is shared between both tangent points
- * by the parts of its work.
- *
- * In space the conditions of a tangent point have their derivatives half-way, and a part along the displacement by
- * which their work vanishes (Gonzalez 1996).
- *
- * Both energies of the wrap have the mean gradient along the angles, the centre and the lengths, by quadrature. */
+/* Sheaves over a step that conserves energy (derive/couplings/sheave_step.py, in space turning_step.py): the operations
+ * of the coupling. Both energies of the wrap have the mean gradient along the angles, the centre and the lengths, by
+ * quadrature. */
 #include "bodies/model.h"
 #include "couplings/common/couplings.h"
 #include "couplings/common/momenta.h"
@@ -17,120 +9,78 @@
 #include <math.h>
 #include <string.h>
 
-enum { POINTS = 8, ALONG = 5 };
+enum { ALONG = 5 };
 
 /* Gauss points on (0, 1) and their weights: of the momentum along a zone, and along the step. */
-static const double part_of_zone[POINTS] = {0.01985507175123188, 0.10166676129318664, 0.23723379504183550,
-                                            0.40828267875217511, 0.59171732124782489, 0.76276620495816450,
-                                            0.89833323870681336, 0.98014492824876812},
-                    weight_in_zone[POINTS] = {0.05061426814518813, 0.11119051722668724, 0.15685332293894364,
-                                              0.18134189168918099, 0.18134189168918099, 0.15685332293894364,
-                                              0.11119051722668724, 0.05061426814518813},
+static const double part_of_zone[FU_ZONE_POINTS] = {0.01985507175123188, 0.10166676129318664, 0.23723379504183550,
+                                                    0.40828267875217511, 0.59171732124782489, 0.76276620495816450,
+                                                    0.89833323870681336, 0.98014492824876812},
+                    weight_in_zone[FU_ZONE_POINTS] = {0.05061426814518813, 0.11119051722668724, 0.15685332293894364,
+                                                      0.18134189168918099, 0.18134189168918099, 0.15685332293894364,
+                                                      0.11119051722668724, 0.05061426814518813},
                     part_of_step[ALONG] = {0.04691007703066800, 0.23076534494715845, 0.5, 0.76923465505284155,
                                            0.95308992296933200},
                     weight_in_step[ALONG] = {0.11846344252809454, 0.23931433524968324, 0.28444444444444444,
                                              0.23931433524968324, 0.11846344252809454};
 
-/* A sheave over a step: at its start, at its end, half-way (with the mean places of nodes); half the turns of both
- * tangent points, and the forces along k x x~ of moments on these; changes of the centre and of s. */
-typedef struct {
-    fu_sheave_state now, next, middle;
-    double half[ENDS], arm[ENDS], c_change[DIM], s_change[MAX_ZONES + 1];
-} step_view;
-
-/* Forces over a step: moments on the turns of both tangent points by their measures, and the rest of z. */
-typedef struct {
-    double turn[ENDS], centre[DIM], wheel, s[MAX_ZONES + 1];
-} step_forces;
-
-/* Returns x/sin(x). */
-static double over_sine(double x)
-{
-    return fabs(x) < 1e-4 ? 1.0 + x * x / 6.0 : x / sin(x);
-}
-
-static void step_at(const fu_model *model, const fu_sheave *sheave, const fu_equations *at, step_view *out)
-{
-    fu_state middle = *at->middle;
-    middle.numbers = at->next->numbers;
-    middle.flags = at->next->flags;
-    fu_sheave_at(model, sheave, at->now, 0, &out->now);
-    fu_sheave_at(model, sheave, at->next, 0, &out->next);
-    fu_sheave_at(model, sheave, &middle, 0, &out->middle);
-    for (int k = 0; k < ENDS; ++k)
-        for (int d = 0; d < DIM; ++d) out->middle.x[k][d] = 0.5 * (out->now.x[k][d] + out->next.x[k][d]);
-    const double *from = out->now.x[0], *to = out->next.x[0];
-    const double wrap = out->now.phi[1] - out->now.phi[0], wrap_next = out->next.phi[1] - out->next.phi[0];
-    out->half[0] = 0.5 * atan2(from[0] * to[1] - from[1] * to[0], from[0] * to[0] + from[1] * to[1]);
-    out->half[1] = out->half[0] + 0.5 * (wrap_next - wrap);
-    for (int k = 0; k < ENDS; ++k) {
-        const double *one = out->now.x[k], *other = out->next.x[k], turn = cos(out->half[k]);
-        out->arm[k] = 1.0 / (sqrt(fu_dot(DIM, one, one) * fu_dot(DIM, other, other)) * turn * turn);
-    }
-    fu_discrete_point(model, &sheave->wheel.attachments[0], at->now, at->next, out->middle.wheel.centre.P);
-    for (int d = 0; d < DIM; ++d) out->c_change[d] = out->next.wheel.c[d] - out->now.wheel.c[d];
-    for (int j = 0; j <= sheave->n_zones; ++j) out->s_change[j] = at->psi[sheave->s[j]];
-}
-
-/* Adds a moment on the turn at a part of the wrap. */
-static void add_turn(const step_view *step, double part, double moment, step_forces *out)
-{
-    const double open = step->half[1] - step->half[0], here = step->half[0] + part * open;
-    const double share = part * over_sine(open) / over_sine(part * open) * cos(step->half[1]) / cos(here);
-    out->turn[0] += (1.0 - share) * moment;
-    out->turn[1] += share * moment;
-}
-
-/* Adds a moment on the angle of the wrap. */
-static void add_opening(const step_view *step, double moment, step_forces *out)
-{
-    const double opening = moment * over_sine(step->half[1] - step->half[0]) * cos(step->half[0]) * cos(step->half[1]);
-    out->turn[0] -= opening;
-    out->turn[1] += opening;
-}
-
 /* --- inertia ---------------------------------------------------------------------------------------------------- */
+
+/* Returns the dimension of the momentum. */
+static int dim_of(const fu_sheave *sheave)
+{
+    return is_in_space(sheave) ? SPACE : DIM;
+}
 
 int fu_sheave_history_size(const fu_coupling *coupling)
 {
     const fu_sheave *sheave = sheave_of(coupling);
-    return FU_MOMENTA_HEAD + sheave->n_zones * POINTS * DIM;
+    return FU_MOMENTA_HEAD + sheave->n_zones * FU_ZONE_POINTS * dim_of(sheave);
 }
 
-static int number_of(int zone, int point)
+static int number_of(const fu_sheave *sheave, int zone, int point)
 {
-    return (zone * POINTS + point) * DIM;
+    return (zone * FU_ZONE_POINTS + point) * dim_of(sheave);
 }
 
 /* Computes the momentum at a point of a zone by velocities. */
-static void momentum_of_velocities(const fu_sheave *sheave, const fu_sheave_state *at, int j, int g, double P[DIM])
+static void momentum_of_velocities(const fu_sheave *sheave, const fu_sheave_state *at, int j, int g, double P[SPACE])
 {
     const double part = part_of_zone[g], alpha = at->angle[j + 1] - at->angle[j];
+    if (is_in_space(sheave)) {
+        const fu_zone_point point = {j, part, weight_in_zone[g]};
+        fu_space_momentum(sheave, at, &point, P);
+        return;
+    }
     sheave->wheel.kernel->momentum(
         sheave->wheel.radius, at->length[j], part, at->angle[j] + part * alpha, alpha, at->wheel.c_rate,
         at->angle_rate[j] + part * (at->angle_rate[j + 1] - at->angle_rate[j]), at->s_rate + j, P);
 }
 
 /* Adds the inertial forces of a point of a zone (null: none); computes its momentum at the end of the step. */
-static void point_over_step(const fu_sheave *sheave, const fu_equations *at, const step_view *step, int j, int g,
-                            step_forces *out, double P_next[DIM])
+static void point_over_step(const fu_sheave *sheave, const fu_equations *at, const fu_sheave_over *step, int j, int g,
+                            fu_sheave_step_forces *out, double P_next[SPACE])
 {
     const fu_wheel *wheel = &sheave->wheel;
     const fu_momenta *known = fu_momenta_of(&wheel->base, at->now);
     const double begin = step->now.share[j], width = step->now.share[j + 1] - begin, xi = part_of_zone[g];
     const double part = begin + xi * width, wrap = step->now.phi[1] - step->now.phi[0];
     const double opening = 2.0 * (step->half[1] - step->half[0]);
-    double P[DIM], on_c[DIM], on_turn, on_alpha, on_s[ENDS];
-    if (known->is_known != 0.0) memcpy(P, known->P + number_of(j, g), sizeof P);
+    double P[SPACE], on_c[DIM], on_turn, on_alpha, on_s[ENDS];
+    if (known->is_known != 0.0) memcpy(P, known->P + number_of(sheave, j, g), sizeof(double) * (size_t)dim_of(sheave));
     else momentum_of_velocities(sheave, &step->now, j, g, P);
+    if (is_in_space(sheave)) {
+        const fu_zone_point point = {j, xi, weight_in_zone[g]};
+        fu_space_point_over_step(sheave, step, &point, at->h, P, out, P_next);
+        return;
+    }
     wheel->kernel->momentum_step(weight_in_zone[g] * wheel->rho, at->h, step->now.length[j], step->s_change + j,
                                  wheel->radius, xi, step->now.phi[0] + part * wrap,
                                  2.0 * step->half[0] + part * opening, width * wrap, width * opening, step->c_change, P,
                                  on_c, &on_turn, &on_alpha, on_s, P_next);
     if (!out) return;
     for (int d = 0; d < DIM; ++d) out->centre[d] += on_c[d];
-    add_turn(step, part, on_turn, out);
-    add_opening(step, width * on_alpha, out);
+    fu_add_turn(step, part, on_turn, out);
+    fu_add_opening(step, width * on_alpha, out);
     for (int e = 0; e < ENDS; ++e) out->s[j + e] += on_s[e];
 }
 
@@ -138,10 +88,11 @@ void fu_sheave_history_over_step(const fu_model *model, const fu_coupling *coupl
 {
     const fu_sheave *sheave = sheave_of(coupling);
     fu_momenta *next = fu_momenta_of(coupling, at->next);
-    step_view step;
-    step_at(model, sheave, at, &step);
+    fu_sheave_over step;
+    fu_sheave_over_step(model, sheave, at, &step);
     for (int j = 0; j < sheave->n_zones; ++j)
-        for (int g = 0; g < POINTS; ++g) point_over_step(sheave, at, &step, j, g, 0, next->P + number_of(j, g));
+        for (int g = 0; g < FU_ZONE_POINTS; ++g)
+            point_over_step(sheave, at, &step, j, g, 0, next->P + number_of(sheave, j, g));
     next->is_known = 1.0;
 }
 
@@ -155,10 +106,10 @@ void fu_sheave_history_jump(const fu_model *model, const fu_coupling *coupling, 
     jump.v = (double *)change;
     fu_sheave_at(model, sheave, &jump, 0, &at);
     for (int j = 0; j < sheave->n_zones; ++j)
-        for (int g = 0; g < POINTS; ++g) {
-            double P[DIM];
+        for (int g = 0; g < FU_ZONE_POINTS; ++g) {
+            double P[SPACE];
             momentum_of_velocities(sheave, &at, j, g, P);
-            for (int d = 0; d < DIM; ++d) known->P[number_of(j, g) + d] += P[d];
+            for (int d = 0; d < dim_of(sheave); ++d) known->P[number_of(sheave, j, g) + d] += P[d];
         }
 }
 
@@ -171,13 +122,18 @@ double fu_sheave_energy_beyond_velocities(const fu_model *model, const fu_coupli
     double total = 0.0, T;
     if (known->is_known == 0.0) return 0.0;
     fu_sheave_at(model, sheave, state, 0, &at);
+    if (is_in_space(sheave)) total -= fu_space_wrap_energy(sheave, &at);
     for (int j = 0; j < sheave->n_zones; ++j) {
         const fu_zone of = fu_zone_at(&at, j);
-        wheel->kernel->kinetic_energy(wheel->rho, wheel->radius, of.phi, of.l, of.phi_rate, at.wheel.c_rate, of.s_rate,
-                                      &T);
-        total -= T;
-        for (int g = 0; g < POINTS; ++g) {
-            wheel->kernel->momentum_energy(weight_in_zone[g] * wheel->rho, of.l, known->P + number_of(j, g), &T);
+        if (!is_in_space(sheave)) {
+            wheel->kernel->kinetic_energy(wheel->rho, wheel->radius, of.phi, of.l, of.phi_rate, at.wheel.c_rate,
+                                          of.s_rate, &T);
+            total -= T;
+        }
+        for (int g = 0; g < FU_ZONE_POINTS; ++g) {
+            const double *P = known->P + number_of(sheave, j, g), mass = weight_in_zone[g] * wheel->rho;
+            if (is_in_space(sheave)) wheel->foot->momentum_energy(mass, of.l, P, &T);
+            else wheel->kernel->momentum_energy(mass, of.l, P, &T);
             total += T;
         }
     }
@@ -187,7 +143,7 @@ double fu_sheave_energy_beyond_velocities(const fu_model *model, const fu_coupli
 /* --- forces ----------------------------------------------------------------------------------------------------- */
 
 /* Computes the derivatives by the angles of the ends of a zone, the centre and the length along the step. */
-static void mean_gradient(const fu_sheave *sheave, const step_view *step, int j, const double *A, const double *g,
+static void mean_gradient(const fu_sheave *sheave, const fu_sheave_over *step, int j, const double *A, const double *g,
                           double mean[DIM + 3])
 {
     const fu_wheel *wheel = &sheave->wheel;
@@ -197,7 +153,7 @@ static void mean_gradient(const fu_sheave *sheave, const step_view *step, int j,
         const double t = part_of_step[k];
         double phi[ENDS], c[DIM], f[DIM + 3];
         for (int e = 0; e < ENDS; ++e) phi[e] = step->now.angle[j + e] + t * 2.0 * (step->half[0] + share[e] * opening);
-        for (int d = 0; d < DIM; ++d) c[d] = step->now.wheel.c[d] + t * step->c_change[d];
+        for (int d = 0; d < DIM; ++d) c[d] = step->c[d] + t * step->c_change[d];
         wheel->kernel->force(A, wheel->sense, wheel->rho, g, wheel->radius, phi, c,
                              step->now.length[j] + t * (step->next.length[j] - step->now.length[j]), f);
         for (int i = 0; i < DIM + 3; ++i) mean[i] += weight_in_step[k] * f[i];
@@ -205,34 +161,34 @@ static void mean_gradient(const fu_sheave *sheave, const step_view *step, int j,
 }
 
 /* Adds the forces of the elastic energy, which a turn of the whole wrap does not change. */
-static void add_elastic(const fu_sheave *sheave, const step_view *step, int j, step_forces *out)
+static void add_elastic(const fu_sheave *sheave, const fu_sheave_over *step, int j, fu_sheave_step_forces *out)
 {
     static const double none[3] = {0.0};
     double f[DIM + 3];
     mean_gradient(sheave, step, j, sheave->wheel.A, none, f);
-    add_opening(step, (step->now.share[j + 1] - step->now.share[j]) * f[1], out);
+    fu_add_opening(step, (step->now.share[j + 1] - step->now.share[j]) * f[1], out);
     out->s[j] -= f[DIM + 2];
     out->s[j + 1] += f[DIM + 2];
 }
 
 /* Adds the forces of the weight. */
-static void add_weight(const fu_sheave *sheave, const step_view *step, int j, step_forces *out)
+static void add_weight(const fu_sheave *sheave, const fu_sheave_over *step, int j, fu_sheave_step_forces *out)
 {
     static const double none[2] = {0.0};
     double f[DIM + 3], on_angle[ENDS] = {0.0};
-    mean_gradient(sheave, step, j, none, sheave->wheel.g, f);
+    mean_gradient(sheave, step, j, none, is_in_space(sheave) ? step->groove.g : sheave->wheel.g, f);
     for (int e = 0; e < ENDS; ++e) {
         on_angle[0] += (1.0 - step->now.share[j + e]) * f[e];
         on_angle[1] += step->now.share[j + e] * f[e];
     }
-    for (int k = 0; k < ENDS; ++k) out->turn[k] += on_angle[k] * cos(step->half[k]) * over_sine(step->half[k]);
+    for (int k = 0; k < ENDS; ++k) out->turn[k] += on_angle[k] * cos(step->half[k]) * fu_over_sine(step->half[k]);
     for (int d = 0; d < DIM; ++d) out->centre[d] += f[ENDS + d];
     out->s[j] -= f[DIM + 2];
     out->s[j + 1] += f[DIM + 2];
 }
 
 /* Adds the forces half-way that dissipate energy: damping, friction, and the bearing. */
-static void add_losses(const fu_sheave *sheave, const step_view *step, step_forces *out)
+static void add_losses(const fu_sheave *sheave, const fu_sheave_over *step, fu_sheave_step_forces *out)
 {
     const fu_wheel *wheel = &sheave->wheel;
     const fu_sheave_state *at = &step->middle;
@@ -257,13 +213,13 @@ static void add_losses(const fu_sheave *sheave, const step_view *step, step_forc
 }
 
 /* Returns the change of the angular velocity of the wheel over the step. */
-static double spin_change(const step_view *step)
+static double spin_change(const fu_sheave_over *step)
 {
     return step->next.wheel.turn_rate - step->now.wheel.turn_rate;
 }
 
 /* Adds forces over a step by y. */
-static void into_y(const fu_sheave *sheave, const step_view *step, const step_forces *of, double y[Y])
+static void into_y(const fu_sheave *sheave, const fu_sheave_over *step, const fu_sheave_step_forces *of, double y[Y])
 {
     for (int k = 0; k < ENDS; ++k) {
         const double *x = step->middle.x[k], arm = of->turn[k] * step->arm[k], force[DIM] = {-arm * x[1], arm * x[0]};
@@ -279,7 +235,7 @@ static void into_y(const fu_sheave *sheave, const step_view *step, const step_fo
 
 /* Adds the forces of the conditions in the plane, |x| and the product of x and the slope, by y: their derivatives by
  * the mean vectors are discrete ones. Computes the residuals. */
-static void add_conditions_in_plane(const fu_sheave *sheave, const step_view *step, const double *multipliers,
+static void add_conditions_in_plane(const fu_sheave *sheave, const fu_sheave_over *step, const double *multipliers,
                                     double *phi, double y[Y])
 {
     double J[MAX_CONDITIONS][Y], unused[MAX_CONDITIONS][Y], half_way[MAX_CONDITIONS];
@@ -289,29 +245,13 @@ static void add_conditions_in_plane(const fu_sheave *sheave, const step_view *st
         for (int i = 0; i < Y; ++i) y[i] += J[r][i] * multipliers[r];
 }
 
-/* Adds the same in space to those on the dofs. */
-static void add_conditions_in_space(const fu_sheave *sheave, const step_view *step, const fu_equations *at,
-                                    const double *multipliers, double *phi, double *f)
+static void over_step_in_plane(const fu_sheave *sheave, const fu_sheave_over *step, const fu_sheave_step_forces *of,
+                               const double *multipliers, double *phi, double *f)
 {
-    for (int k = 0; k < ENDS; ++k, multipliers += FU_FOOT_CONDITIONS, phi += FU_FOOT_CONDITIONS) {
-        const fu_foot of = fu_foot_of(sheave, &step->now, k);
-        double rows[FU_FOOT_CONDITIONS * FU_FOOT_DOFS], square = 0.0;
-        fu_tangent_point now, next, foot;
-        fu_tangent_point_at(&of, &step->now.wheel, at->now->q, multipliers, &now);
-        fu_tangent_point_at(&of, &step->next.wheel, at->next->q, multipliers, &next);
-        fu_tangent_point_at(&of, &step->middle.wheel, at->middle->q, multipliers, &foot);
-        fu_tangent_point_rows(&foot, rows);
-        memcpy(phi, next.phi, sizeof next.phi);
-        for (int j = 0; j < foot.n; ++j) square += at->psi[foot.dofs[j]] * at->psi[foot.dofs[j]];
-        for (int r = 0; r < FU_FOOT_CONDITIONS; ++r) {
-            const double *row = rows + r * foot.n;
-            double rest = next.phi[r] - now.phi[r];
-            for (int j = 0; j < foot.n; ++j) rest -= row[j] * at->psi[foot.dofs[j]];
-            const double along = square > 0.0 ? rest / square : 0.0;
-            for (int j = 0; j < foot.n; ++j)
-                f[foot.dofs[j]] += multipliers[r] * (row[j] + along * at->psi[foot.dofs[j]]);
-        }
-    }
+    double y[Y] = {0.0};
+    into_y(sheave, step, of, y);
+    add_conditions_in_plane(sheave, step, multipliers, phi, y);
+    fu_sheave_scatter(sheave, &step->middle, y, f);
 }
 
 void fu_sheave_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
@@ -320,24 +260,22 @@ void fu_sheave_step_residual(const fu_model *model, const fu_coupling *coupling,
     const fu_sheave *sheave = sheave_of(coupling);
     const double *multipliers = at->next->forces + coupling->force;
     const int n = ENDS * conditions_of(sheave);
-    double y[Y] = {0.0}, phi[MAX_CONDITIONS];
-    step_forces of = {.wheel = 0.0};
-    step_view step;
-    step_at(model, sheave, at, &step);
+    double phi[MAX_CONDITIONS];
+    fu_sheave_step_forces of = {.wheel = 0.0};
+    fu_sheave_over step;
+    fu_sheave_over_step(model, sheave, at, &step);
     of.wheel = sheave->wheel.inertia * spin_change(&step) / at->h;
     for (int j = 0; j < sheave->n_zones; ++j) {
-        double P[DIM];
-        for (int g = 0; g < POINTS; ++g) point_over_step(sheave, at, &step, j, g, &of, P);
+        double P[SPACE];
+        for (int g = 0; g < FU_ZONE_POINTS; ++g) point_over_step(sheave, at, &step, j, g, &of, P);
         add_elastic(sheave, &step, j, &of);
         add_weight(sheave, &step, j, &of);
     }
     add_losses(sheave, &step, &of);
-    into_y(sheave, &step, &of, y);
     if (is_in_space(sheave)) {
-        fu_sheave_add_weight_across(sheave, &step.middle, y);
-        add_conditions_in_space(sheave, &step, at, multipliers, phi, f);
-    } else add_conditions_in_plane(sheave, &step, multipliers, phi, y);
-    fu_sheave_scatter(sheave, &step.middle, y, f);
+        fu_space_add_weight(sheave, &step, &of);
+        fu_space_over_step(sheave, &step, at, &of, multipliers, phi, f);
+    } else over_step_in_plane(sheave, &step, &of, multipliers, phi, f);
     fu_wheel_add_bearing(&sheave->wheel, &step.middle.wheel, f);
     for (int r = 0; r < n; ++r)
         internal[coupling->unknown + r] = -fu_row_unit(at->weights.inertia, coupling->scale[r]) * phi[r];
@@ -345,22 +283,23 @@ void fu_sheave_step_residual(const fu_model *model, const fu_coupling *coupling,
         internal[coupling->unknown + r] = -at->weights.stiffness * multipliers[r];
 }
 
-/* Returns the turn of the wheel about its axis over the step: velocities half-way are displacements over the step. */
-static double turn_of_wheel(const step_view *step, const fu_equations *at)
+/* Returns the turn of the wheel about its axis over the step, in space from the groove: velocities half-way are
+ * displacements over the step. */
+static double turn_of_wheel(const fu_sheave *sheave, const fu_sheave_over *step, const fu_equations *at)
 {
-    return step->middle.wheel.turn_rate * at->h;
+    return (is_in_space(sheave) ? step->middle.wheel.own_rate : step->middle.wheel.turn_rate) * at->h;
 }
 
 double fu_sheave_step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
 {
     const fu_sheave *sheave = sheave_of(coupling);
-    step_forces of = {.wheel = 0.0};
-    step_view step;
+    fu_sheave_step_forces of = {.wheel = 0.0};
+    fu_sheave_over step;
     if (!coupling->is_damped) return 0.0;
-    step_at(model, sheave, at, &step);
+    fu_sheave_over_step(model, sheave, at, &step);
     add_losses(sheave, &step, &of);
     const double own = step.middle.wheel.own_rate;
-    double total = of.wheel * turn_of_wheel(&step, at) + at->h * sheave->wheel.damping * own * own;
+    double total = of.wheel * turn_of_wheel(sheave, &step, at) + at->h * sheave->wheel.damping * own * own;
     for (int k = 0; k < ENDS; ++k) total += of.turn[k] * 2.0 * tan(step.half[k]);
     for (int j = 0; j <= sheave->n_zones; ++j) total += of.s[j] * step.s_change[j];
     return total;
@@ -371,9 +310,10 @@ double fu_sheave_step_dissipation(const fu_model *model, const fu_coupling *coup
 double fu_sheave_step_work(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
 {
     const fu_sheave *sheave = sheave_of(coupling);
-    step_view step;
+    fu_sheave_over step;
     if (sheave->wheel.inertia == 0.0 || sheave->wheel.turn < 0) return 0.0;
-    step_at(model, sheave, at, &step);
-    const double mean = 0.5 * (step.now.wheel.turn_rate + step.next.wheel.turn_rate);
-    return sheave->wheel.inertia * spin_change(&step) * (mean - turn_of_wheel(&step, at) / at->h);
+    fu_sheave_over_step(model, sheave, at, &step);
+    const fu_wheel_state *from = &step.now.wheel, *to = &step.next.wheel;
+    const double mean = 0.5 * (is_in_space(sheave) ? from->own_rate + to->own_rate : from->turn_rate + to->turn_rate);
+    return sheave->wheel.inertia * spin_change(&step) * (mean - turn_of_wheel(sheave, &step, at) / at->h);
 }

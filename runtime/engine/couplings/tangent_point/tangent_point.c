@@ -16,15 +16,8 @@ static double derivative(const fu_tangent_point *at, int row, int of)
     return at->J[row * at->n_vectors + of];
 }
 
-/* The point at which a chord ends: its element, and there the distance from the first node and the element's length,
- * and the stress-free length of the chord, with their derivatives by the length of the span. */
-typedef struct {
-    int element;
-    double distance, length, by_L[2], b, b_L;
-} chord_end;
-
 /* Returns the end of a chord from the first node of a span of the length L. */
-static chord_end after_start(const fu_foot *span, double L)
+static fu_chord_end after_start(const fu_foot *span, double L)
 {
     const double *share = span->share;
     const int last = span->reach - 1;
@@ -32,27 +25,32 @@ static chord_end after_start(const fu_foot *span, double L)
     while (j < last && share[j + 1] * L < span->chord) ++j;
     const double whole = share[j + 1] - share[j];
     if (span->chord > share[j + 1] * L)
-        return (chord_end){j, whole * L, whole * L, {whole, whole}, share[j + 1] * L, share[j + 1]};
-    return (chord_end){j, span->chord - share[j] * L, whole * L, {-share[j], whole}, span->chord, 0.0};
+        return (fu_chord_end){j, whole * L, whole * L, {whole, whole}, share[j + 1] * L, share[j + 1]};
+    return (fu_chord_end){j, span->chord - share[j] * L, whole * L, {-share[j], whole}, span->chord, 0.0};
 }
 
 /* Returns the end of a chord from the last node. */
-static chord_end before_end(const fu_foot *span, double L)
+static fu_chord_end before_end(const fu_foot *span, double L)
 {
     const double *share = span->share;
     const int first = span->n_elements - span->reach;
     int j = span->n_elements - 1;
     while (j > first && (1.0 - share[j]) * L < span->chord) --j;
     const double whole = share[j + 1] - share[j], rest = 1.0 - share[j];
-    if (span->chord > rest * L) return (chord_end){j, 0.0, whole * L, {0.0, whole}, rest * L, rest};
-    return (chord_end){j, rest * L - span->chord, whole * L, {rest, whole}, span->chord, 0.0};
+    if (span->chord > rest * L) return (fu_chord_end){j, 0.0, whole * L, {0.0, whole}, rest * L, rest};
+    return (fu_chord_end){j, rest * L - span->chord, whole * L, {rest, whole}, span->chord, 0.0};
+}
+
+fu_chord_end fu_chord_end_at(const fu_foot *foot, double L)
+{
+    return foot->is_start ? after_start(foot, L) : before_end(foot, L);
 }
 
 /* Computes the chord and its derivatives, the dofs, and the changes of x, the slope, the chord and b by them. */
 static void find_chord(const fu_foot *foot, const double *q, fu_tangent_point *out)
 {
     const double L = q[foot->s[1]] - q[foot->s[0]], *node = q + foot->node;
-    const chord_end end = foot->is_start ? after_start(foot, L) : before_end(foot, L);
+    const fu_chord_end end = fu_chord_end_at(foot, L);
     const int first = foot->first + end.element * NODE_IN_SPACE;
     double N[VECTORS], r[SPACE];
     foot->wheel->foot->chord(q + first, end.length, end.distance, end.by_L, N, out->N_L, r, out->chord_L,

@@ -60,4 +60,22 @@ void fu_tangent_point_bias(const fu_foot *foot, const fu_tangent_point *at, cons
 /* Returns the fleet angle of the chord there, rad: positive where the span leaves the groove along the axis. */
 double fu_fleet_angle(const fu_foot *foot, const double *q, const double axis[3]);
 
+/* The point at which a chord ends: its element, and there the distance from the first node and the element's length,
+ * and the stress-free length of the chord, with their derivatives by the length of the span. */
+typedef struct {
+    int element;
+    double distance, length, by_L[2], b, b_L;
+} fu_chord_end;
+/* Returns the end of the chord in a span of the length L. */
+fu_chord_end fu_chord_end_at(const fu_foot *foot, double L);
+
+/* The groove over a step: at both ends the places of the centre and the axis, q at both ends. */
+typedef struct {
+    const double *q[2], *centre[2], *axis[2];
+} fu_foot_step;
+/* Adds the forces of the conditions of a tangent point across its chord over a step, a discrete gradient of theirs, to
+ * those on the dofs of the span, on the centre, and to the moment about it (tangent_point_step.c). */
+void fu_tangent_point_over_step(const fu_foot *foot, const fu_foot_step *step, const double *multipliers, double *f,
+                                double force[3], double moment[3]);
+
 #endif
