@@ -87,6 +87,8 @@ static void kinematics(fu_run *run, double h)
         next->acceleration[i] = (next->v[i] - now->v[i]) / h;
         m.v[i] = run->psi[i] / h;
     }
+    const fu_equations at = {.now = now, .next = next, .psi = run->psi, .h = h};
+    fu_history_velocities(model, &at, run->since);
     fu_between(model, now->q, next->q, m.q);
     if (fu_update_deferred(run, 1)) run->factored = 0;
 }

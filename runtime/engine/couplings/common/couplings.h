@@ -47,6 +47,8 @@ const fu_coupling *fu_solve_coordinates(const fu_model *model, fu_state *state);
 void fu_reset(const fu_model *model, fu_state *state);
 void fu_update_history(const fu_model *model, fu_state *state);
 void fu_history_over_step(const fu_model *model, const fu_equations *at);
+/* Computes the velocities after a step of dofs whose inertia is in history variables alone. */
+void fu_history_velocities(const fu_model *model, const fu_equations *at, double since);
 void fu_history_jump(const fu_model *model, fu_state *state, const double *change);
 /* Returns the largest error of history variables after a step, m. */
 double fu_history_error(const fu_model *model, const fu_state *from, const fu_state *to);

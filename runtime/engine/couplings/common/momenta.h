@@ -16,4 +16,15 @@ static inline fu_momenta *fu_momenta_of(const fu_coupling *coupling, const fu_st
     return (fu_momenta *)(state->numbers + coupling->numbers);
 }
 
+/* Computes the velocity of a dof after a step, whose momentum is not known by it, and its acceleration: linear through
+ * the displacements over the last step and this one, each over its time. Velocities whose mean over a step is its
+ * displacement keep an error with alternating signs, of which the estimate of errors would make short steps. */
+static inline void fu_velocity_of_step(const fu_equations *at, double since, int dof)
+{
+    const double mean = at->psi[dof] / at->h, before = at->now->v[dof] - since * at->now->acceleration[dof];
+    const double slope = (mean - before) / (0.5 * at->h + since);
+    at->next->v[dof] = mean + 0.5 * at->h * slope;
+    at->next->acceleration[dof] = slope;
+}
+
 #endif

@@ -183,8 +183,10 @@ static const fu_field fields[] = {
 
 static const fu_inertia_operations inertia = {inertial_force, mass_matrix, kinetic_energy, potential_energy,
                                               fu_span_energy_beyond_velocities};
-static const fu_history_operations history = {
-    .size = fu_span_history_size, .over_step = fu_span_history_over_step, .jump = fu_span_history_jump};
+static const fu_history_operations history = {.size = fu_span_history_size,
+                                              .over_step = fu_span_history_over_step,
+                                              .jump = fu_span_history_jump,
+                                              .velocities = fu_span_velocities};
 
 const fu_coupling_type fu_span_type = {
     .name = "span",

@@ -299,7 +299,8 @@ static const fu_start_operations start = {
 static const fu_history_operations history = {.size = fu_sheave_history_size,
                                               .over_step = fu_sheave_history_over_step,
                                               .jump = fu_sheave_history_jump,
-                                              .update = update_mode};
+                                              .update = update_mode,
+                                              .velocities = fu_sheave_velocities};
 
 const fu_coupling_type fu_sheave_type = {
     .name = "sheave",

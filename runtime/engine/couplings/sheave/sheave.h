@@ -473,6 +473,7 @@ void fu_space_over_step(const fu_sheave *sheave, const fu_sheave_over *step, con
 
 int fu_sheave_history_size(const fu_coupling *coupling);
 void fu_sheave_history_over_step(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
+void fu_sheave_velocities(const fu_coupling *coupling, const fu_equations *at, double since);
 void fu_sheave_history_jump(const fu_model *model, const fu_coupling *coupling, fu_state *state, const double *change);
 double fu_sheave_energy_beyond_velocities(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 void fu_sheave_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,

@@ -96,6 +96,12 @@ void fu_sheave_history_over_step(const fu_model *model, const fu_coupling *coupl
     next->is_known = 1.0;
 }
 
+void fu_sheave_velocities(const fu_coupling *coupling, const fu_equations *at, double since)
+{
+    const fu_sheave *sheave = sheave_of(coupling);
+    for (int j = 0; j <= sheave->n_zones; ++j) fu_velocity_of_step(at, since, sheave->s[j]);
+}
+
 void fu_sheave_history_jump(const fu_model *model, const fu_coupling *coupling, fu_state *state, const double *change)
 {
     const fu_sheave *sheave = sheave_of(coupling);
