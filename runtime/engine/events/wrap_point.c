@@ -46,7 +46,8 @@ static double value(const fu_run *run, const fu_coupling *coupling, const fu_sta
            largest_without_excess(fu_sheave_of_point(run->model, coupling), of.limit);
 }
 
-/* Removes the speed of sticking points; returns nonzero where eq 38 has no solution. */
+/* Removes the speed of sticking points, which is that of an event's instant; returns nonzero where eq 38 has no
+ * solution. */
 static int stop(fu_run *run)
 {
     if (fu_project_velocities(run->model, &run->now, &run->accelerator, run->work)) return 1;
@@ -149,7 +150,7 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
     } else {
         *mode = FU_STICKS;
         stick_at_rest(run);
-        if (stop(run)) return FU_SINGULAR;
+        if (!run->integrator->keeps_energy && stop(run)) return FU_SINGULAR;
     }
     *what = "";
     return settle(run);
@@ -170,4 +171,5 @@ static int begin(fu_run *run, const fu_coupling *coupling)
     return stop(run) ? FU_SINGULAR : settle(run);
 }
 
-const fu_coupling_events fu_wrap_point_events = {.direction = 1, .value = value, .act = act, .begin = begin};
+const fu_coupling_events fu_wrap_point_events = {
+    .direction = 1, .value = value, .act = act, .keeps_velocities = 1, .begin = begin};

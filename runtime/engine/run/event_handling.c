@@ -12,7 +12,7 @@
  * caller, unless `what` is empty, or the status of a run that cannot continue. */
 static int acted(fu_run *run, const fu_coupling *coupling, const char *what, double since)
 {
-    const int status = fu_start_scheme(run, 1);
+    const int status = fu_start_scheme(run, !run->integrator->keeps_energy || !coupling->events->keeps_velocities);
     run->acts = run->now.t - run->acted <= FU_AT_ONCE * run->duration ? run->acts + 1 : 0;
     run->acted = run->now.t;
     if (run->acts > MAX_ACTS) {

@@ -1,5 +1,6 @@
 /* Steps: their size, trial, error and events, until one is accepted. */
 #include "base/clock.h"
+#include "couplings/common/coupling_events.h"
 #include "couplings/common/couplings.h"
 #include "equations/equations.h"
 #include "equations/scene_size.h"
@@ -178,6 +179,15 @@ static void find_event(fu_run *run, trial *t)
     }
 }
 
+/* Returns whether a step that ends on an event is too short for a method that conserves energy, whose velocities would
+ * be rounding over it, and the event may act before it. */
+static int acts_at_once(const fu_run *run, const trial *t)
+{
+    if (!run->integrator->keeps_energy || t->event.kind == FU_PATH_BOUNDARY || !fu_is_short(run, t->h)) return 0;
+    const fu_coupling *coupling = fu_event_coupling(run, t->event.which);
+    return coupling && coupling->events->keeps_velocities;
+}
+
 /* Shortens the step until it ends on the first of its events; returns 0 if that is not found. */
 static int end_on_event(fu_run *run, trial *t)
 {
@@ -190,6 +200,7 @@ static int end_on_event(fu_run *run, trial *t)
             t->want *= MISSED_EVENT_FACTOR;
             return 0;
         }
+        if (acts_at_once(run, t)) break;
     }
     return 1;
 }
@@ -287,6 +298,10 @@ int fu_step_towards(fu_run *run, double target)
         }
         if ((t.changes || t.deferred) && !is_accurate_without_jump(run, &t)) continue;
         if (run->n_event_functions && is_cut_at_grazing(run, &t)) continue;
+        if (acts_at_once(run, &t)) {
+            fu_evaluate_event_functions(run, t.event, 0.0);
+            return fu_handle_event(run, t.event);
+        }
         accept(run, &t);
         const int status = t.event.kind == FU_PATH_BOUNDARY ? FU_RUNNING : refresh(run, t.h);
         return status ? status : fu_handle_event(run, t.event);

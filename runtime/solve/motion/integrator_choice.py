@@ -21,7 +21,7 @@ from ...model.taut_ropes import TautPointModel
 from ...parts.locations import grips
 from ...parts.part import Part
 from ...parts.rope import rough_sheaves
-from ...parts.rope_items import Drum, Sheave
+from ...parts.rope_items import Drum
 from ...parts.scene_data import SceneData
 from ...parts.settings import RunSettings
 from ...parts.slide import Slide
@@ -243,9 +243,6 @@ def _check_ropes(integrator: Integrator, scene: SceneData) -> None:
                                  "gradient", another)
             if item.end.on in scene.cables:
                 raise SceneError(rope.where, f'{who} does not support {item.where} on cable "{item.end.on}"', another)
-            if isinstance(item, Sheave) and item.sticks:
-                raise SceneError(rope.where, f"{who} does not support friction that sticks, and that of {item.where} "
-                                 "does", f'take model="regularised", or {another}')
             if not item.contact:
                 raise SceneError(rope.where, f"{who} does not support {item.where}, which the rope touches in a run",
                                  f"draw the rope on it, or {another}")

@@ -141,7 +141,7 @@ typedef struct {
     void (*update)(const fu_model *model, const fu_coupling *coupling, fu_state *state);
     /* Computes velocities and accelerations after a step of dofs whose inertia is in the variables alone, see
      * fu_velocity_of_step; since: from the middle of the step before to the start, s. Null: none. */
-    void (*velocities)(const fu_coupling *coupling, const fu_equations *at, double since);
+    void (*velocities)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double since);
     /* Returns their error after a step from one state to another, m. Null: none. */
     double (*error)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);
 } fu_history_operations;

@@ -85,6 +85,8 @@ struct fu_coupling_events {
     /* Executes the action of an event function that has passed zero to this side; returns a status. *what describes the
      * change in words, is empty for one that is not reported, and null if there is none. */
     int (*act)(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what);
+    /* Whether velocities are continuous there: a method that conserves energy does not project them. */
+    int keeps_velocities;
 
     /* Whether the coupling can change its state (null: it can): `begin` then determines its state at the start; returns
      * a status. */

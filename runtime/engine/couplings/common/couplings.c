@@ -258,7 +258,7 @@ void fu_history_over_step(const fu_model *model, const fu_equations *at)
 void fu_history_velocities(const fu_model *model, const fu_equations *at, double since)
 {
     FU_EACH_COUPLING(c, model->with_history, model->n_with_history)
-        if (c->type->history->velocities) c->type->history->velocities(c, at, since);
+        if (c->type->history->velocities) c->type->history->velocities(model, c, at, since);
 }
 
 void fu_history_jump(const fu_model *model, fu_state *state, const double *change)

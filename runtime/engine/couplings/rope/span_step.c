@@ -59,9 +59,10 @@ void fu_span_history_over_step(const fu_model *model, const fu_coupling *couplin
     next->is_known = 1.0;
 }
 
-void fu_span_velocities(const fu_coupling *coupling, const fu_equations *at, double since)
+void fu_span_velocities(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double since)
 {
     const fu_span_elements *on = &fu_span_of(coupling)->on;
+    (void)model;
     const int n = (on->n_elements + 1) * on->kernel->coordinates / 2;
     for (int i = 0; i < n; ++i) fu_velocity_of_step(at, since, on->first + i);
     for (int e = 0; e < ENDS; ++e) fu_velocity_of_step(at, since, on->s[e]);

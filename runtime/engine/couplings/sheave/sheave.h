@@ -465,15 +465,25 @@ void fu_space_point_over_step(const fu_sheave *sheave, const fu_sheave_over *ste
 double fu_space_wrap_energy(const fu_sheave *sheave, const fu_sheave_state *at);
 /* Adds the weight but for that of the places from the centre in the groove. */
 void fu_space_add_weight(const fu_sheave *sheave, const fu_sheave_over *step, fu_sheave_step_forces *out);
+/* Adds these forces to those on the dofs. */
+void fu_space_add_step_forces(const fu_sheave *sheave, const fu_sheave_over *step, const fu_sheave_step_forces *of,
+                              double *f);
 /* Adds all these forces and those of the conditions to those on the dofs; computes the residuals. */
 void fu_space_over_step(const fu_sheave *sheave, const fu_sheave_over *step, const fu_equations *at,
                         const fu_sheave_step_forces *of, const double *multipliers, double *phi, double *f);
 
 /* --- sheave_step.c: operations of the coupling over a step --- */
 
+/* Adds forces to those on the dofs; returns their work over the step, J. */
+void fu_sheave_add_step_forces(const fu_sheave *sheave, const fu_sheave_over *step, const fu_sheave_step_forces *of,
+                               double *f);
+double fu_sheave_step_power(const fu_sheave *sheave, const fu_sheave_over *step, const fu_equations *at,
+                            const fu_sheave_step_forces *of);
+/* Returns the turn of the wheel about its axis over the step, in space from the groove. */
+double fu_turn_of_wheel(const fu_sheave *sheave, const fu_sheave_over *step, const fu_equations *at);
 int fu_sheave_history_size(const fu_coupling *coupling);
 void fu_sheave_history_over_step(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
-void fu_sheave_velocities(const fu_coupling *coupling, const fu_equations *at, double since);
+void fu_sheave_velocities(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double since);
 void fu_sheave_history_jump(const fu_model *model, const fu_coupling *coupling, fu_state *state, const double *change);
 double fu_sheave_energy_beyond_velocities(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 void fu_sheave_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,

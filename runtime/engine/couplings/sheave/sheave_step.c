@@ -96,9 +96,10 @@ void fu_sheave_history_over_step(const fu_model *model, const fu_coupling *coupl
     next->is_known = 1.0;
 }
 
-void fu_sheave_velocities(const fu_coupling *coupling, const fu_equations *at, double since)
+void fu_sheave_velocities(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double since)
 {
     const fu_sheave *sheave = sheave_of(coupling);
+    (void)model;
     for (int j = 0; j <= sheave->n_zones; ++j) fu_velocity_of_step(at, since, sheave->s[j]);
 }
 
@@ -208,7 +209,7 @@ static void add_losses(const fu_sheave *sheave, const fu_sheave_over *step, fu_s
             out->s[j + e] += d[ENDS + e];
         }
     }
-    for (int j = 0; has_friction(sheave) && j <= sheave->n_zones; ++j) {
+    for (int j = 0; j < friction_points(sheave, at); ++j) {
         double F[3], numbers[3], power;
         fu_friction_at(sheave, at, j, F, numbers, &power);
         out->turn[0] += (1.0 - at->share[j]) * F[0];
@@ -251,6 +252,18 @@ static void add_conditions_in_plane(const fu_sheave *sheave, const fu_sheave_ove
         for (int i = 0; i < Y; ++i) y[i] += J[r][i] * multipliers[r];
 }
 
+void fu_sheave_add_step_forces(const fu_sheave *sheave, const fu_sheave_over *step, const fu_sheave_step_forces *of,
+                               double *f)
+{
+    double y[Y] = {0.0};
+    if (is_in_space(sheave)) {
+        fu_space_add_step_forces(sheave, step, of, f);
+        return;
+    }
+    into_y(sheave, step, of, y);
+    fu_sheave_scatter(sheave, &step->middle, y, f);
+}
+
 static void over_step_in_plane(const fu_sheave *sheave, const fu_sheave_over *step, const fu_sheave_step_forces *of,
                                const double *multipliers, double *phi, double *f)
 {
@@ -289,11 +302,19 @@ void fu_sheave_step_residual(const fu_model *model, const fu_coupling *coupling,
         internal[coupling->unknown + r] = -at->weights.stiffness * multipliers[r];
 }
 
-/* Returns the turn of the wheel about its axis over the step, in space from the groove: velocities half-way are
- * displacements over the step. */
-static double turn_of_wheel(const fu_sheave *sheave, const fu_sheave_over *step, const fu_equations *at)
+/* Velocities half-way are displacements over the step. */
+double fu_turn_of_wheel(const fu_sheave *sheave, const fu_sheave_over *step, const fu_equations *at)
 {
     return (is_in_space(sheave) ? step->middle.wheel.own_rate : step->middle.wheel.turn_rate) * at->h;
+}
+
+double fu_sheave_step_power(const fu_sheave *sheave, const fu_sheave_over *step, const fu_equations *at,
+                            const fu_sheave_step_forces *of)
+{
+    double total = of->wheel * fu_turn_of_wheel(sheave, step, at);
+    for (int k = 0; k < ENDS; ++k) total += of->turn[k] * 2.0 * tan(step->half[k]);
+    for (int j = 0; j <= sheave->n_zones; ++j) total += of->s[j] * step->s_change[j];
+    return total;
 }
 
 double fu_sheave_step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
@@ -305,10 +326,7 @@ double fu_sheave_step_dissipation(const fu_model *model, const fu_coupling *coup
     fu_sheave_over_step(model, sheave, at, &step);
     add_losses(sheave, &step, &of);
     const double own = step.middle.wheel.own_rate;
-    double total = of.wheel * turn_of_wheel(sheave, &step, at) + at->h * sheave->wheel.damping * own * own;
-    for (int k = 0; k < ENDS; ++k) total += of.turn[k] * 2.0 * tan(step.half[k]);
-    for (int j = 0; j <= sheave->n_zones; ++j) total += of.s[j] * step.s_change[j];
-    return total;
+    return fu_sheave_step_power(sheave, &step, at, &of) + at->h * sheave->wheel.damping * own * own;
 }
 
 /* Returns the work of the drive of a prescribed rotation, whose mean velocity differs slightly from its turn over the
@@ -321,5 +339,5 @@ double fu_sheave_step_work(const fu_model *model, const fu_coupling *coupling, c
     fu_sheave_over_step(model, sheave, at, &step);
     const fu_wheel_state *from = &step.now.wheel, *to = &step.next.wheel;
     const double mean = 0.5 * (is_in_space(sheave) ? from->own_rate + to->own_rate : from->turn_rate + to->turn_rate);
-    return sheave->wheel.inertia * spin_change(&step) * (mean - turn_of_wheel(sheave, &step, at) / at->h);
+    return sheave->wheel.inertia * spin_change(&step) * (mean - fu_turn_of_wheel(sheave, &step, at) / at->h);
 }

@@ -137,17 +137,24 @@ static void add_conditions(const fu_sheave *sheave, const fu_sheave_over *step, 
     }
 }
 
-void fu_space_over_step(const fu_sheave *sheave, const fu_sheave_over *step, const fu_equations *at,
-                        const fu_sheave_step_forces *of, const double *multipliers, double *phi, double *f)
+void fu_space_add_step_forces(const fu_sheave *sheave, const fu_sheave_over *step, const fu_sheave_step_forces *of,
+                              double *f)
 {
     const fu_wheel *wheel = &sheave->wheel;
     double force[SPACE], moment[SPACE];
     memcpy(force, of->force, sizeof force);
     memcpy(moment, of->moment, sizeof moment);
     add_turns(sheave, step, of, f, force, moment);
-    add_conditions(sheave, step, at, multipliers, phi, f, force, moment);
-    add_spin(sheave, step, at->h, moment);
     if (wheel->turn >= 0) f[wheel->turn] += of->wheel;
     for (int j = 0; j <= sheave->n_zones; ++j) f[sheave->s[j]] += of->s[j];
     fu_add_wrench(SPACE, &step->middle.wheel.centre, force, moment, 1.0, f);
+}
+
+void fu_space_over_step(const fu_sheave *sheave, const fu_sheave_over *step, const fu_equations *at,
+                        const fu_sheave_step_forces *of, const double *multipliers, double *phi, double *f)
+{
+    fu_sheave_step_forces all = *of;
+    add_conditions(sheave, step, at, multipliers, phi, f, all.force, all.moment);
+    add_spin(sheave, step, at->h, all.moment);
+    fu_space_add_step_forces(sheave, step, &all, f);
 }

@@ -213,6 +213,87 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     fu_wheel_add_carried(model, &sheave->wheel, &at.wheel, equations, y + CENTRE, system);
 }
 
+/* --- over a step that conserves energy -------------------------------------------------------------------------- */
+
+/* A point over a step: its sheave, Coulomb friction half-way, the force and its parts. */
+typedef struct {
+    fu_sheave_over step;
+    fu_coulomb friction;
+    fu_sheave_step_forces force;
+} point_over_step;
+
+static void look_over_step(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,
+                           point_over_step *out)
+{
+    const fu_sheave *sheave = fu_sheave_of_point(model, coupling);
+    const int j = point_of(coupling)->place, mode = *fu_wrap_point_flag(coupling, at->next);
+    fu_sheave_over_step(model, sheave, at, &out->step);
+    fu_coulomb_at(sheave, &out->step.middle, j, &out->friction);
+    const double f =
+        mode == FU_STICKS ? at->next->forces[coupling->force] : slips_at(model, sheave, mode) * out->friction.limit;
+    const double share = out->step.middle.share[j];
+    memset(&out->force, 0, sizeof out->force);
+    out->force.turn[0] = (1.0 - share) * f * out->friction.column[0];
+    out->force.turn[1] = share * f * out->friction.column[0];
+    out->force.wheel = f * out->friction.column[1];
+    out->force.s[j] = f * out->friction.column[2];
+}
+
+/* Returns the sliding over the step, m. */
+static double slide_of_step(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,
+                            const point_over_step *of)
+{
+    const fu_sheave *sheave = fu_sheave_of_point(model, coupling);
+    const int j = point_of(coupling)->place;
+    const double share = of->step.middle.share[j], *half = of->step.half, *row = of->friction.row;
+    return row[0] * 2.0 * ((1.0 - share) * half[0] + share * half[1]) +
+           row[1] * fu_turn_of_wheel(sheave, &of->step, at) + row[2] * of->step.s_change[j];
+}
+
+static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
+                          double *internal)
+{
+    const int sticks_here = *fu_wrap_point_flag(coupling, at->next) == FU_STICKS;
+    point_over_step of;
+    look_over_step(model, coupling, at, &of);
+    fu_sheave_add_step_forces(fu_sheave_of_point(model, coupling), &of.step, &of.force, f);
+    internal[coupling->unknown] =
+        sticks_here ? -fu_row_unit(at->weights.inertia, coupling->scale[0]) * slide_of_step(model, coupling, at, &of)
+                    : -at->weights.stiffness * at->next->forces[coupling->force];
+}
+
+/* Adds the derivatives by those half-way. */
+static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
+{
+    fu_state middle = *at->middle;
+    fu_equations half_way = *at;
+    middle.forces = at->next->forces;
+    middle.numbers = at->next->numbers;
+    middle.flags = at->next->flags;
+    half_way.next = &middle;
+    tangent(model, coupling, &half_way, system);
+}
+
+static double step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
+{
+    point_over_step of;
+    look_over_step(model, coupling, at, &of);
+    return fu_sheave_step_power(fu_sheave_of_point(model, coupling), &of.step, at, &of.force);
+}
+
+/* The material at a sticking point moves with the rim at the end of a step, too: its momentum is not known by its
+ * velocity. */
+static void velocities(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double since)
+{
+    const int s = fu_sheave_of_point(model, coupling)->s[point_of(coupling)->place];
+    fu_coulomb of;
+    (void)since;
+    if (*fu_wrap_point_flag(coupling, at->next) != FU_STICKS) return;
+    fu_wrap_point_at(model, coupling, at->next, &of);
+    at->next->v[s] -= of.w / of.row[2];
+    at->next->acceleration[s] = 2.0 / at->h * (at->next->v[s] - at->psi[s] / at->h);
+}
+
 /* --- eq 38 ------------------------------------------------------------------------------------------------------ */
 
 static void rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work)
@@ -285,15 +366,20 @@ static const fu_field fields[] = {
 };
 
 static const fu_start_operations start = {.is_possible = is_possible};
+static const fu_history_operations history = {.velocities = velocities};
 
 const fu_coupling_type fu_wrap_point_type = {
     .name = "wrap_point",
     .size = sizeof(fu_wrap_point),
     .fields = fields,
     .n_flags = 1,
+    .history = &history,
     .start = &start,
     .residual = residual,
     .tangent = tangent,
+    .step_residual = step_residual,
+    .step_tangent = step_tangent,
+    .step_dissipation = step_dissipation,
     .rows = rows,
     .force = force,
     .take_forces = take_forces,
