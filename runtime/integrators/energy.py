@@ -15,7 +15,9 @@ class EnergyMomentum(Integrator):
 
     Ropes with mass over sheaves have the momenta of their material as a state (derive/couplings/material_step.py), and
     their kinetic energy is that of these momenta; in space on bodies that turn, too (derive/couplings/turning_step.py).
-    A run ends where a rope leaves its sheave.
+    A run ends where a rope leaves its sheave. Friction that sticks is held by the sliding over each step. With a fixed
+    step that does not resolve the vibrations of a light wheel, points may stick and slide at one instant without end,
+    which ends the run with an error: with tol the steps resolve them.
 
     With a spectral radius below 1 at infinite frequency it keeps only momenta, and algorithmic dissipation damps fast
     vibrations of cables (engine/integrators/algorithmic_dissipation.c).

@@ -59,8 +59,9 @@ def test_momenta_are_kept_where_ropes_stick_on_free_bodies():
 def test_a_rope_that_sticks_does_not_creep():
     """A weight at rest on a rope that friction holds: the rope does not move over the sheave in 2000 steps."""
     run = hung(0.9).run(2.0, output_step=0.2, step=1e-3, integrator="energy", progress=False)
+    radau = hung(0.9).run(2.0, output_step=0.2, tol=1e-8, integrator="radau", progress=False)
     assert np.abs(run["top.slip"]).max() < 1e-20
-    assert np.ptp(run["load.position"], axis=0).max() < 1e-9
+    assert np.abs(run["load.position"] - radau["load.position"]).max() < 2e-8  # of a vibration of 2.7e-6 m
 
 
 def test_resumed_bit_for_bit(tmp_path):

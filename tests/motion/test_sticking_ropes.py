@@ -256,5 +256,3 @@ def test_what_sticking_ropes_are_refused_in():
         hung(0.3).relax()
     with pytest.raises(fu.SceneError, match="has rolling friction, which only slides have"):
         fu.Sheave("top", at=(0, 0, 0), radius=R, friction=fu.Friction(coefficient=0.1, rolling=0.1, model="stick"))
-    with pytest.raises(fu.SceneError, match='integrator "energy" does not support friction that sticks'):
-        swing(**SHEAVES["held"]).run(0.01, integrator="energy")
