@@ -86,3 +86,17 @@ void joint_distance_motion(const fu_real *gap, const fu_real *A1, const fu_real 
     phi_t[0] = dc_phi_0;
     Q_d[0] = dt_dt_phi_0;
 }
+
+/* Jacobian of the equations over a step that conserves energy (Gonzalez, Comput. Methods Appl. Mech. Eng. 174 (1999) 165-174); 10 add, 6 mul, 3 div, 2 sqrt */
+void joint_distance_discrete(const fu_real *gap, const fu_real *gap_next, fu_real *J)
+{
+    /* equations of the joint */
+    const fu_real
+        now_distance = FU_SQRT(gap[0]*gap[0] + gap[1]*gap[1] + gap[2]*gap[2]),
+        next_distance = FU_SQRT(gap_next[0]*gap_next[0] + gap_next[1]*gap_next[1] + gap_next[2]*gap_next[2]);
+    /* discrete derivatives */
+    fu_real D_distance_gap[3];
+    FU_EACH(i, 3, D_distance_gap[i] = (gap[i] + gap_next[i])/(next_distance + now_distance);)
+    /* outputs */
+    FU_EACH(i, 3, J[i] = D_distance_gap[i];)
+}

@@ -63,3 +63,19 @@ void joint_planar_distance_motion(const fu_real *gap, const fu_real *A1, const f
     phi_t[0] = dc_phi_0;
     Q_d[0] = dt_dt_phi_0;
 }
+
+/* Jacobian of the equations over a step that conserves energy (Gonzalez, Comput. Methods Appl. Mech. Eng. 174 (1999) 165-174); 6 add, 4 mul, 2 div, 2 sqrt */
+void joint_planar_distance_discrete(const fu_real *gap, const fu_real *gap_next, fu_real *J)
+{
+    /* equations of the joint */
+    const fu_real
+        now_distance = FU_SQRT(gap[0]*gap[0] + gap[1]*gap[1]),
+        next_distance = FU_SQRT(gap_next[0]*gap_next[0] + gap_next[1]*gap_next[1]);
+    /* discrete derivatives */
+    const fu_real
+        D_distance_gap_x = (gap[0] + gap_next[0])/(next_distance + now_distance),
+        D_distance_gap_y = (gap[1] + gap_next[1])/(next_distance + now_distance);
+    /* outputs */
+    J[0] = D_distance_gap_x;
+    J[1] = D_distance_gap_y;
+}

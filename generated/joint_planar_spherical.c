@@ -43,3 +43,15 @@ void joint_planar_spherical_motion(const fu_real *gap, const fu_real *A1, const 
     Q_d[0] = 0.0;
     Q_d[1] = 0.0;
 }
+
+/* Jacobian of the equations over a step that conserves energy (Gonzalez, Comput. Methods Appl. Mech. Eng. 174 (1999) 165-174); no operations */
+void joint_planar_spherical_discrete(const fu_real *gap, const fu_real *gap_next, fu_real *J)
+{
+    (void)gap;
+    (void)gap_next;
+    /* outputs */
+    J[0] = 1.0;
+    J[1] = 0.0;
+    J[2] = 0.0;
+    J[3] = 1.0;
+}

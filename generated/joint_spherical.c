@@ -54,3 +54,17 @@ void joint_spherical_motion(const fu_real *gap, const fu_real *A1, const fu_real
     Q_d[1] = 0.0;
     Q_d[2] = 0.0;
 }
+
+/* Jacobian of the equations over a step that conserves energy (Gonzalez, Comput. Methods Appl. Mech. Eng. 174 (1999) 165-174); no operations */
+void joint_spherical_discrete(const fu_real *gap, const fu_real *gap_next, fu_real *J)
+{
+    (void)gap;
+    (void)gap_next;
+    /* outputs */
+    FU_EACH(g, 2,
+        J[4*g] = 1.0;
+        J[4*g + 1] = 0.0;
+        J[4*g + 2] = 0.0;
+        J[4*g + 3] = 0.0;)
+    J[8] = 1.0;
+}

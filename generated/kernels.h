@@ -860,6 +860,20 @@ fu_slide_discrete_gradient_kernel slide_beam12p_planar_point_discrete_gradient;
 /* e 4x2, e_next 4x2, b 2, b_next 2, G 2x11 */
 fu_slide_discrete_gradient_kernel slide_cable8p_planar_point_discrete_gradient;
 
+typedef void fu_slide_flowing_gradient_kernel(fu_real l, fu_real l_next, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
+/* discrete Jacobian of phi over a step: l [m]; l_next [m]; x [m]; x_next [m]; e [m, 1]; e_next [m, 1]; b [m, 1];
+ * b_next [m, 1] -> G [1, m] */
+/* e 4x2, e_next 4x2, b 4, b_next 4, G 2x14 */
+fu_slide_flowing_gradient_kernel slide_span_cable8p_planar_rigid_flowing_gradient;
+/* e 4x3, e_next 4x3, b 7, b_next 7, G 3x21 */
+fu_slide_flowing_gradient_kernel slide_span_cable12_rigid_flowing_gradient;
+/* discrete Jacobian of phi over a step: l [m]; l_next [m]; x [m]; x_next [m]; e [m, 1]; e_next [m, 1]; b [m]; b_next
+ * [m, 1] -> G [1, m] */
+/* e 4x2, e_next 4x2, b 2, b_next 2, G 2x13 */
+fu_slide_flowing_gradient_kernel slide_span_cable8p_planar_point_flowing_gradient;
+/* e 4x3, e_next 4x3, b 3, b_next 3, G 3x18 */
+fu_slide_flowing_gradient_kernel slide_span_cable12_point_flowing_gradient;
+
 typedef void fu_crossing_closest_kernel(const fu_real *d, const fu_real *t, const fu_real *k, fu_real *step);
 /* a step of Newton's method to the closest points: d [m]; t [1]; k [1/m] -> step [m] */
 /* d 3, t 2x3, k 2x3, step 2 */
@@ -1124,6 +1138,17 @@ fu_joint_motion_kernel joint_planar_revolute_angle_motion, joint_planar_prismati
 /* gap 2, A1 2x2, A2 2x2, c 3, gap_rate 2, omega1 1, omega2 1, c_rate 2, phi_t 1, Q_d 1 */
 fu_joint_motion_kernel joint_planar_distance_motion, joint_planar_locked_motion;
 
+typedef void fu_joint_discrete_kernel(const fu_real *gap, const fu_real *gap_next, fu_real *J);
+/* Jacobian of the equations over a step that conserves energy: gap [m]; gap_next [m] -> J [1] */
+/* gap 3, gap_next 3, J 3x3 */
+fu_joint_discrete_kernel joint_spherical_discrete;
+/* gap 3, gap_next 3, J 1x3 */
+fu_joint_discrete_kernel joint_distance_discrete;
+/* gap 2, gap_next 2, J 2x2 */
+fu_joint_discrete_kernel joint_planar_spherical_discrete;
+/* gap 2, gap_next 2, J 1x2 */
+fu_joint_discrete_kernel joint_planar_distance_discrete;
+
 typedef void fu_point_law_energy_kernel(const fu_real *parameters, const fu_real *gap, fu_real *U);
 /* stored energy: parameters [N/m, N s/m, m]; gap [m] -> U [J] */
 /* parameters 3, gap 3, U 1 */
@@ -1238,6 +1263,14 @@ typedef void fu_rope_point_wrench_kernel(const fu_real *e, const fu_real *v, con
 fu_rope_point_wrench_kernel planar_rope_point_wrench;
 /* e 4x3, v 4x3, s 2, s_rate 2, share 2, f 3, K 14x14, v_q 3x14 */
 fu_rope_point_wrench_kernel rope_point_wrench;
+
+typedef void fu_rope_point_discrete_point_kernel(const fu_real *e, const fu_real *e_next, const fu_real *s, const fu_real *s_next, const fu_real *share, fu_real S, fu_real *P);
+/* Jacobian of a material point over a step that conserves energy: e [m, 1]; e_next [m, 1]; s [m]; s_next [m]; share
+ * [1]; S [m] -> P [1, m] */
+/* e 4x2, e_next 4x2, s 2, s_next 2, share 2, P 2x10 */
+fu_rope_point_discrete_point_kernel planar_rope_point_discrete_point;
+/* e 4x3, e_next 4x3, s 2, s_next 2, share 2, P 3x14 */
+fu_rope_point_discrete_point_kernel rope_point_discrete_point;
 
 typedef void fu_sheave_tangent_point_kernel(const fu_real *x, const fu_real *slope, fu_real R, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
 /* conditions of a tangent point, and their derivatives: x [m]; slope [1]; R [m]; f [N] -> phi [m]; J [1, m]; K [N/m,
@@ -2134,6 +2167,7 @@ typedef struct {
     fu_slide_residual_kernel *residual;
     fu_slide_tangent_kernel *tangent;
     fu_slide_discrete_gradient_kernel *discrete_gradient;
+    fu_slide_flowing_gradient_kernel *flowing_gradient;
 } fu_slide_kernels;
 
 /* What the engine needs of a crossing. */
@@ -2189,6 +2223,7 @@ typedef struct {
     int rows;
     fu_joint_force_kernel *force;
     fu_joint_motion_kernel *motion;
+    fu_joint_discrete_kernel *discrete;
 } fu_joint_kernels;
 
 /* What the engine needs of a point_law. */
@@ -2216,6 +2251,7 @@ typedef struct {
     int dim;
     fu_rope_point_point_kernel *point;
     fu_rope_point_wrench_kernel *wrench;
+    fu_rope_point_discrete_point_kernel *discrete_point;
 } fu_rope_point_kernels;
 
 /* What the engine needs of a sheave. */

@@ -192,3 +192,119 @@ void planar_rope_point_wrench(const fu_real *e, const fu_real *v, const fu_real 
     v_q[18] = d1_N2*v[3] + d1_N3*d_rate3[1] + d1_N4*v[7] + d1_dt_N2*e[3] + d1_dt_N3*d3[1] + d1_dt_N4*e[7];
     v_q[19] = d2_N2*v[3] + d2_N3*d_rate3[1] + d2_N4*v[7] + d2_dt_N2*e[3] + d2_dt_N3*d3[1] + d2_dt_N4*e[7];
 }
+
+/* Jacobian of a material point over a step that conserves energy (shape functions of an element whose ends flow along the rope; Gonzalez, J. Nonlinear Sci. 6 (1996) 449-467); 141 add, 248 mul, 3 div */
+void planar_rope_point_discrete_point(const fu_real *e, const fu_real *e_next, const fu_real *s, const fu_real *s_next, const fu_real *share, fu_real S, fu_real *P)
+{
+    /* place and length at both ends of the step */
+    const fu_real
+        L = -s[0] + s[1],
+        L_next = -s_next[0] + s_next[1],
+        part = -share[0] + share[1],
+        x = -L*share[0] + S - s[0],
+        x_next = -L_next*share[0] + S - s_next[0],
+        l = L*part,
+        l_next = L_next*part;
+    /* place on the centreline */
+    const fu_real
+        now_inv_l = 1.0/l,
+        next_inv_l = 1.0/l_next,
+        now_xi = now_inv_l*x,
+        next_xi = next_inv_l*x_next,
+        now_P_r_1 = now_xi*now_xi*(2.0*now_xi - 3.0) + 1.0,
+        next_P_r_1 = next_xi*next_xi*(2.0*next_xi - 3.0) + 1.0,
+        now_P_r_x1 = now_xi*(now_xi*(now_xi - 2.0) + 1.0),
+        next_P_r_x1 = next_xi*(next_xi*(next_xi - 2.0) + 1.0),
+        now_N_r_x1 = l*now_P_r_x1,
+        next_N_r_x1 = l_next*next_P_r_x1,
+        now_P_r_2 = now_xi*now_xi*(-2.0*now_xi + 3.0),
+        next_P_r_2 = next_xi*next_xi*(-2.0*next_xi + 3.0),
+        now_P_r_x2 = now_xi*now_xi*(now_xi - 1.0),
+        next_P_r_x2 = next_xi*next_xi*(next_xi - 1.0),
+        now_N_r_x2 = l*now_P_r_x2,
+        next_N_r_x2 = l_next*next_P_r_x2;
+    /* mean shape functions, and their divided differences */
+    const fu_real
+        mean_N_r_1 = 0.5*next_P_r_1 + 0.5*now_P_r_1,
+        mean_N_r_x1 = 0.5*next_N_r_x1 + 0.5*now_N_r_x1,
+        mean_N_r_2 = 0.5*next_P_r_2 + 0.5*now_P_r_2,
+        mean_N_r_x2 = 0.5*next_N_r_x2 + 0.5*now_N_r_x2,
+        D_xi_x = 0.5*next_inv_l + 0.5*now_inv_l,
+        D_P_r_1_x = D_xi_x*(next_xi + now_xi)*(next_xi + now_xi - 3.0) + 2.0*D_xi_x*(0.5*next_xi*next_xi + 0.5*now_xi*now_xi),
+        D_xi_x_2 = 0.5*next_inv_l + 0.5*now_inv_l,
+        D_P_r_x1_x = D_xi_x_2*(0.5*next_xi*(next_xi - 2.0) + 0.5*now_xi*(now_xi - 2.0) + 1.0) + (0.5*next_xi + 0.5*now_xi)*(D_xi_x_2*(0.5*next_xi + 0.5*now_xi) + D_xi_x_2*(0.5*next_xi + 0.5*now_xi - 2.0)),
+        D_N_r_x1_x = D_P_r_x1_x*(0.5*l + 0.5*l_next),
+        D_inv_l_l_2 = -(next_inv_l*now_inv_l),
+        D_xi_l_2 = D_inv_l_l_2*(0.5*x + 0.5*x_next),
+        D_P_r_x1_l = D_xi_l_2*(0.5*next_xi*(next_xi - 2.0) + 0.5*now_xi*(now_xi - 2.0) + 1.0) + (0.5*next_xi + 0.5*now_xi)*(D_xi_l_2*(0.5*next_xi + 0.5*now_xi) + D_xi_l_2*(0.5*next_xi + 0.5*now_xi - 2.0)),
+        D_N_r_x1_l = D_P_r_x1_l*(0.5*l + 0.5*l_next) + 0.5*next_P_r_x1 + 0.5*now_P_r_x1,
+        D_xi_x_3 = 0.5*next_inv_l + 0.5*now_inv_l,
+        D_P_r_2_x = D_xi_x_3*(next_xi + now_xi)*(-next_xi - now_xi + 3.0) - 2.0*D_xi_x_3*(0.5*next_xi*next_xi + 0.5*now_xi*now_xi),
+        D_inv_l_l_3 = -(next_inv_l*now_inv_l),
+        D_xi_l_3 = D_inv_l_l_3*(0.5*x + 0.5*x_next),
+        D_P_r_2_l = D_xi_l_3*(next_xi + now_xi)*(-next_xi - now_xi + 3.0) - 2.0*D_xi_l_3*(0.5*next_xi*next_xi + 0.5*now_xi*now_xi),
+        D_xi_x_4 = 0.5*next_inv_l + 0.5*now_inv_l,
+        D_P_r_x2_x = D_xi_x_4*(next_xi + now_xi)*(0.5*next_xi + 0.5*now_xi - 1.0) + D_xi_x_4*(0.5*next_xi*next_xi + 0.5*now_xi*now_xi),
+        D_N_r_x2_x = D_P_r_x2_x*(0.5*l + 0.5*l_next),
+        D_inv_l_l_4 = -(next_inv_l*now_inv_l),
+        D_xi_l_4 = D_inv_l_l_4*(0.5*x + 0.5*x_next),
+        D_P_r_x2_l = D_xi_l_4*(next_xi + now_xi)*(0.5*next_xi + 0.5*now_xi - 1.0) + D_xi_l_4*(0.5*next_xi*next_xi + 0.5*now_xi*now_xi),
+        D_N_r_x2_l = D_P_r_x2_l*(0.5*l + 0.5*l_next) + 0.5*next_P_r_x2 + 0.5*now_P_r_x2;
+    /* means and changes, from the first node */
+    const fu_real
+        now_r_2_x = -e[0] + e[4],
+        now_r_2_y = -e[1] + e[5],
+        next_r_2_x = -e_next[0] + e_next[4],
+        next_r_2_y = -e_next[1] + e_next[5],
+        mean_r_x1_x = 0.5*e[2] + 0.5*e_next[2],
+        mean_r_x1_y = 0.5*e[3] + 0.5*e_next[3],
+        mean_r_2_x = 0.5*next_r_2_x + 0.5*now_r_2_x,
+        mean_r_2_y = 0.5*next_r_2_y + 0.5*now_r_2_y,
+        mean_r_x2_x = 0.5*e[6] + 0.5*e_next[6],
+        mean_r_x2_y = 0.5*e[7] + 0.5*e_next[7],
+        change_r_x1_x = -e[2] + e_next[2],
+        change_r_x1_y = -e[3] + e_next[3],
+        change_r_2_x = next_r_2_x - now_r_2_x,
+        change_r_2_y = next_r_2_y - now_r_2_y,
+        change_r_x2_x = -e[6] + e_next[6],
+        change_r_x2_y = -e[7] + e_next[7],
+        along_x = D_N_r_x1_x*mean_r_x1_x + D_N_r_x2_x*mean_r_x2_x + D_P_r_2_x*mean_r_2_x,
+        along_y = D_N_r_x1_x*mean_r_x1_y + D_N_r_x2_x*mean_r_x2_y + D_P_r_2_x*mean_r_2_y,
+        along_l_x = D_N_r_x1_l*mean_r_x1_x + D_N_r_x2_l*mean_r_x2_x + D_P_r_2_l*mean_r_2_x,
+        along_l_y = D_N_r_x1_l*mean_r_x1_y + D_N_r_x2_l*mean_r_x2_y + D_P_r_2_l*mean_r_2_y,
+        swing_x = 0.25*D_N_r_x1_x*change_r_x1_x + 0.25*D_N_r_x2_x*change_r_x2_x + 0.25*D_P_r_2_x*change_r_2_x,
+        swing_y = 0.25*D_N_r_x1_x*change_r_x1_y + 0.25*D_N_r_x2_x*change_r_x2_y + 0.25*D_P_r_2_x*change_r_2_y,
+        swing_l_x = 0.25*D_N_r_x1_l*change_r_x1_x + 0.25*D_N_r_x2_l*change_r_x2_x + 0.25*D_P_r_2_l*change_r_2_x,
+        swing_l_y = 0.25*D_N_r_x1_l*change_r_x1_y + 0.25*D_N_r_x2_l*change_r_x2_y + 0.25*D_P_r_2_l*change_r_2_y,
+        inv_tt = 1.0/(along_x*along_x + along_y*along_y),
+        arm_x = -(along_y*inv_tt),
+        arm_y = along_x*inv_tt,
+        turn = 4.0*arm_x*swing_x + 4.0*arm_y*swing_y,
+        couple_x = -swing_l_y*(-l + l_next) - swing_y*(-x + x_next),
+        couple_y = swing_l_x*(-l + l_next) + swing_x*(-x + x_next),
+        worked_x = along_x + swing_y*turn,
+        worked_y = along_y - swing_x*turn,
+        worked_l_x = along_l_x + swing_l_y*turn,
+        worked_l_y = along_l_y - swing_l_x*turn;
+    /* outputs */
+    P[0] = D_P_r_1_x*arm_x*couple_x + mean_N_r_1;
+    P[1] = D_P_r_1_x*arm_y*couple_x;
+    P[2] = D_N_r_x1_x*arm_x*couple_x + mean_N_r_x1;
+    P[3] = D_N_r_x1_x*arm_y*couple_x;
+    P[4] = D_P_r_2_x*arm_x*couple_x + mean_N_r_2;
+    P[5] = D_P_r_2_x*arm_y*couple_x;
+    P[6] = D_N_r_x2_x*arm_x*couple_x + mean_N_r_x2;
+    P[7] = D_N_r_x2_x*arm_y*couple_x;
+    P[8] = -part*worked_l_x + worked_x*(share[0] - 1.0);
+    P[9] = part*worked_l_x - share[0]*worked_x;
+    P[10] = D_P_r_1_x*arm_x*couple_y;
+    P[11] = D_P_r_1_x*arm_y*couple_y + mean_N_r_1;
+    P[12] = D_N_r_x1_x*arm_x*couple_y;
+    P[13] = D_N_r_x1_x*arm_y*couple_y + mean_N_r_x1;
+    P[14] = D_P_r_2_x*arm_x*couple_y;
+    P[15] = D_P_r_2_x*arm_y*couple_y + mean_N_r_2;
+    P[16] = D_N_r_x2_x*arm_x*couple_y;
+    P[17] = D_N_r_x2_x*arm_y*couple_y + mean_N_r_x2;
+    P[18] = -part*worked_l_y + worked_y*(share[0] - 1.0);
+    P[19] = part*worked_l_y - share[0]*worked_y;
+}

@@ -173,39 +173,39 @@ static const fu_modal_kernels modals[] = {
 
 static const fu_slide_kernels slides[] = {
     {"slide_beam24_rigid", 30, 3, slide_beam24_rigid_constraint, slide_beam24_rigid_terms, slide_beam24_rigid_residual,
-     slide_beam24_rigid_tangent, slide_beam24_rigid_discrete_gradient},
+     slide_beam24_rigid_tangent, slide_beam24_rigid_discrete_gradient, 0},
     {"slide_beam24_point", 27, 3, slide_beam24_point_constraint, slide_beam24_point_terms, slide_beam24_point_residual,
-     slide_beam24_point_tangent, slide_beam24_point_discrete_gradient},
+     slide_beam24_point_tangent, slide_beam24_point_discrete_gradient, 0},
     {"slide_cable12_rigid", 18, 3, slide_cable12_rigid_constraint, slide_cable12_rigid_terms,
-     slide_cable12_rigid_residual, slide_cable12_rigid_tangent, slide_cable12_rigid_discrete_gradient},
+     slide_cable12_rigid_residual, slide_cable12_rigid_tangent, slide_cable12_rigid_discrete_gradient, 0},
     {"slide_cable12_point", 15, 3, slide_cable12_point_constraint, slide_cable12_point_terms,
-     slide_cable12_point_residual, slide_cable12_point_tangent, slide_cable12_point_discrete_gradient},
+     slide_cable12_point_residual, slide_cable12_point_tangent, slide_cable12_point_discrete_gradient, 0},
     {"slide_cable18_rigid", 24, 3, slide_cable18_rigid_constraint, slide_cable18_rigid_terms,
-     slide_cable18_rigid_residual, slide_cable18_rigid_tangent, slide_cable18_rigid_discrete_gradient},
+     slide_cable18_rigid_residual, slide_cable18_rigid_tangent, slide_cable18_rigid_discrete_gradient, 0},
     {"slide_cable18_point", 21, 3, slide_cable18_point_constraint, slide_cable18_point_terms,
-     slide_cable18_point_residual, slide_cable18_point_tangent, slide_cable18_point_discrete_gradient},
+     slide_cable18_point_residual, slide_cable18_point_tangent, slide_cable18_point_discrete_gradient, 0},
     {"slide_beam12p_planar_rigid", 15, 2, slide_beam12p_planar_rigid_constraint, slide_beam12p_planar_rigid_terms,
      slide_beam12p_planar_rigid_residual, slide_beam12p_planar_rigid_tangent,
-     slide_beam12p_planar_rigid_discrete_gradient},
+     slide_beam12p_planar_rigid_discrete_gradient, 0},
     {"slide_beam12p_planar_point", 14, 2, slide_beam12p_planar_point_constraint, slide_beam12p_planar_point_terms,
      slide_beam12p_planar_point_residual, slide_beam12p_planar_point_tangent,
-     slide_beam12p_planar_point_discrete_gradient},
+     slide_beam12p_planar_point_discrete_gradient, 0},
     {"slide_cable8p_planar_rigid", 11, 2, slide_cable8p_planar_rigid_constraint, slide_cable8p_planar_rigid_terms,
      slide_cable8p_planar_rigid_residual, slide_cable8p_planar_rigid_tangent,
-     slide_cable8p_planar_rigid_discrete_gradient},
+     slide_cable8p_planar_rigid_discrete_gradient, 0},
     {"slide_cable8p_planar_point", 10, 2, slide_cable8p_planar_point_constraint, slide_cable8p_planar_point_terms,
      slide_cable8p_planar_point_residual, slide_cable8p_planar_point_tangent,
-     slide_cable8p_planar_point_discrete_gradient},
+     slide_cable8p_planar_point_discrete_gradient, 0},
     {"slide_span_cable8p_planar_rigid", 13, 2, slide_span_cable8p_planar_rigid_constraint,
      slide_span_cable8p_planar_rigid_terms, slide_span_cable8p_planar_rigid_residual,
-     slide_span_cable8p_planar_rigid_tangent, 0},
+     slide_span_cable8p_planar_rigid_tangent, 0, slide_span_cable8p_planar_rigid_flowing_gradient},
     {"slide_span_cable8p_planar_point", 12, 2, slide_span_cable8p_planar_point_constraint,
      slide_span_cable8p_planar_point_terms, slide_span_cable8p_planar_point_residual,
-     slide_span_cable8p_planar_point_tangent, 0},
+     slide_span_cable8p_planar_point_tangent, 0, slide_span_cable8p_planar_point_flowing_gradient},
     {"slide_span_cable12_rigid", 20, 3, slide_span_cable12_rigid_constraint, slide_span_cable12_rigid_terms,
-     slide_span_cable12_rigid_residual, slide_span_cable12_rigid_tangent, 0},
+     slide_span_cable12_rigid_residual, slide_span_cable12_rigid_tangent, 0, slide_span_cable12_rigid_flowing_gradient},
     {"slide_span_cable12_point", 17, 3, slide_span_cable12_point_constraint, slide_span_cable12_point_terms,
-     slide_span_cable12_point_residual, slide_span_cable12_point_tangent, 0},
+     slide_span_cable12_point_residual, slide_span_cable12_point_tangent, 0, slide_span_cable12_point_flowing_gradient},
 };
 
 static const fu_crossing_kernels crossings[] = {
@@ -234,27 +234,29 @@ static const fu_frame_kernels frames[] = {
 };
 
 static const fu_joint_kernels joints[] = {
-    {"joint_spherical", 3, 3, joint_spherical_force, joint_spherical_motion},
-    {"joint_revolute", 3, 5, joint_revolute_force, joint_revolute_motion},
-    {"joint_revolute_angle", 3, 6, joint_revolute_angle_force, joint_revolute_angle_motion},
-    {"joint_universal", 3, 4, joint_universal_force, joint_universal_motion},
-    {"joint_cylindrical", 3, 4, joint_cylindrical_force, joint_cylindrical_motion},
-    {"joint_cylindrical_angle", 3, 5, joint_cylindrical_angle_force, joint_cylindrical_angle_motion},
-    {"joint_cylindrical_distance", 3, 5, joint_cylindrical_distance_force, joint_cylindrical_distance_motion},
-    {"joint_prismatic", 3, 5, joint_prismatic_force, joint_prismatic_motion},
-    {"joint_prismatic_distance", 3, 6, joint_prismatic_distance_force, joint_prismatic_distance_motion},
-    {"joint_weld", 3, 6, joint_weld_force, joint_weld_motion},
-    {"joint_distance", 3, 1, joint_distance_force, joint_distance_motion},
-    {"joint_aligned", 3, 2, joint_aligned_force, joint_aligned_motion},
-    {"joint_locked", 3, 3, joint_locked_force, joint_locked_motion},
-    {"joint_planar_spherical", 2, 2, joint_planar_spherical_force, joint_planar_spherical_motion},
-    {"joint_planar_revolute_angle", 2, 3, joint_planar_revolute_angle_force, joint_planar_revolute_angle_motion},
-    {"joint_planar_prismatic", 2, 2, joint_planar_prismatic_force, joint_planar_prismatic_motion},
+    {"joint_spherical", 3, 3, joint_spherical_force, joint_spherical_motion, joint_spherical_discrete},
+    {"joint_revolute", 3, 5, joint_revolute_force, joint_revolute_motion, 0},
+    {"joint_revolute_angle", 3, 6, joint_revolute_angle_force, joint_revolute_angle_motion, 0},
+    {"joint_universal", 3, 4, joint_universal_force, joint_universal_motion, 0},
+    {"joint_cylindrical", 3, 4, joint_cylindrical_force, joint_cylindrical_motion, 0},
+    {"joint_cylindrical_angle", 3, 5, joint_cylindrical_angle_force, joint_cylindrical_angle_motion, 0},
+    {"joint_cylindrical_distance", 3, 5, joint_cylindrical_distance_force, joint_cylindrical_distance_motion, 0},
+    {"joint_prismatic", 3, 5, joint_prismatic_force, joint_prismatic_motion, 0},
+    {"joint_prismatic_distance", 3, 6, joint_prismatic_distance_force, joint_prismatic_distance_motion, 0},
+    {"joint_weld", 3, 6, joint_weld_force, joint_weld_motion, 0},
+    {"joint_distance", 3, 1, joint_distance_force, joint_distance_motion, joint_distance_discrete},
+    {"joint_aligned", 3, 2, joint_aligned_force, joint_aligned_motion, 0},
+    {"joint_locked", 3, 3, joint_locked_force, joint_locked_motion, 0},
+    {"joint_planar_spherical", 2, 2, joint_planar_spherical_force, joint_planar_spherical_motion,
+     joint_planar_spherical_discrete},
+    {"joint_planar_revolute_angle", 2, 3, joint_planar_revolute_angle_force, joint_planar_revolute_angle_motion, 0},
+    {"joint_planar_prismatic", 2, 2, joint_planar_prismatic_force, joint_planar_prismatic_motion, 0},
     {"joint_planar_prismatic_distance", 2, 3, joint_planar_prismatic_distance_force,
-     joint_planar_prismatic_distance_motion},
-    {"joint_planar_weld", 2, 3, joint_planar_weld_force, joint_planar_weld_motion},
-    {"joint_planar_distance", 2, 1, joint_planar_distance_force, joint_planar_distance_motion},
-    {"joint_planar_locked", 2, 1, joint_planar_locked_force, joint_planar_locked_motion},
+     joint_planar_prismatic_distance_motion, 0},
+    {"joint_planar_weld", 2, 3, joint_planar_weld_force, joint_planar_weld_motion, 0},
+    {"joint_planar_distance", 2, 1, joint_planar_distance_force, joint_planar_distance_motion,
+     joint_planar_distance_discrete},
+    {"joint_planar_locked", 2, 1, joint_planar_locked_force, joint_planar_locked_motion, 0},
 };
 
 static const fu_point_law_kernels point_laws[] = {
@@ -277,8 +279,8 @@ static const fu_resistance_kernels resistances[] = {
 };
 
 static const fu_rope_point_kernels rope_points[] = {
-    {"planar_rope_point", 2, planar_rope_point_point, planar_rope_point_wrench},
-    {"rope_point", 3, rope_point_point, rope_point_wrench},
+    {"planar_rope_point", 2, planar_rope_point_point, planar_rope_point_wrench, planar_rope_point_discrete_point},
+    {"rope_point", 3, rope_point_point, rope_point_wrench, rope_point_discrete_point},
 };
 
 static const fu_sheave_kernels sheaves[] = {
@@ -373,6 +375,7 @@ static const fu_taut_rope_kernels taut_ropes[] = {
 #define FU_ARGUMENTS_ssvvvvvv_9 *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]
 #define FU_ARGUMENTS_ssvvvv_2 *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]
 #define FU_ARGUMENTS_sssvvvv_1 *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]
+#define FU_ARGUMENTS_ssssvvvv_1 *a[0], *a[1], *a[2], *a[3], a[4], a[5], a[6], a[7], out[0]
 #define FU_ARGUMENTS_vvvv_6 a[0], a[1], a[2], a[3], out[0], out[1], out[2], out[3], out[4], out[5]
 #define FU_ARGUMENTS_vvvvvv_6 a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5]
 #define FU_ARGUMENTS_vvvvvvvsvvvvvvv_3 a[0], a[1], a[2], a[3], a[4], a[5], a[6], *a[7], a[8], a[9], a[10], a[11], a[12], a[13], a[14], out[0], out[1], out[2]
@@ -395,6 +398,7 @@ static const fu_taut_rope_kernels taut_ropes[] = {
 #define FU_ARGUMENTS_vvvvv_5 a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]
 #define FU_ARGUMENTS_vvvvvs_4 a[0], a[1], a[2], a[3], a[4], *a[5], out[0], out[1], out[2], out[3]
 #define FU_ARGUMENTS_vvvvvsv_2 a[0], a[1], a[2], a[3], a[4], *a[5], a[6], out[0], out[1]
+#define FU_ARGUMENTS_vvvvvs_1 a[0], a[1], a[2], a[3], a[4], *a[5], out[0]
 #define FU_ARGUMENTS_vvsv_3 a[0], a[1], *a[2], a[3], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vvv_7 a[0], a[1], a[2], out[0], out[1], out[2], out[3], out[4], out[5], out[6]
 #define FU_ARGUMENTS_vssvs_1 a[0], *a[1], *a[2], a[3], *a[4], out[0]
@@ -859,18 +863,22 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(slide_span_cable8p_planar_rigid_terms, ssvvvvvv_9) \
     X(slide_span_cable8p_planar_rigid_residual, ssvvvv_2) \
     X(slide_span_cable8p_planar_rigid_tangent, ssvvvv_2) \
+    X(slide_span_cable8p_planar_rigid_flowing_gradient, ssssvvvv_1) \
     X(slide_span_cable8p_planar_point_constraint, ssvvvv_4) \
     X(slide_span_cable8p_planar_point_terms, ssvvvvvv_9) \
     X(slide_span_cable8p_planar_point_residual, ssvvvv_2) \
     X(slide_span_cable8p_planar_point_tangent, ssvvvv_2) \
+    X(slide_span_cable8p_planar_point_flowing_gradient, ssssvvvv_1) \
     X(slide_span_cable12_rigid_constraint, ssvvvv_4) \
     X(slide_span_cable12_rigid_terms, ssvvvvvv_9) \
     X(slide_span_cable12_rigid_residual, ssvvvv_2) \
     X(slide_span_cable12_rigid_tangent, ssvvvv_2) \
+    X(slide_span_cable12_rigid_flowing_gradient, ssssvvvv_1) \
     X(slide_span_cable12_point_constraint, ssvvvv_4) \
     X(slide_span_cable12_point_terms, ssvvvvvv_9) \
     X(slide_span_cable12_point_residual, ssvvvv_2) \
     X(slide_span_cable12_point_tangent, ssvvvv_2) \
+    X(slide_span_cable12_point_flowing_gradient, ssssvvvv_1) \
     X(crossing_closest, vvv_1) \
     X(crossing_contact, vvvv_6) \
     X(crossing_force, vvvvvv_6) \
@@ -927,6 +935,7 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(planar_frame_moment, vvv_2) \
     X(joint_spherical_force, vvvvv_3) \
     X(joint_spherical_motion, vvvvvvvv_2) \
+    X(joint_spherical_discrete, vv_1) \
     X(joint_revolute_force, vvvvv_3) \
     X(joint_revolute_motion, vvvvvvvv_2) \
     X(joint_revolute_angle_force, vvvvv_3) \
@@ -947,12 +956,14 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(joint_weld_motion, vvvvvvvv_2) \
     X(joint_distance_force, vvvvv_3) \
     X(joint_distance_motion, vvvvvvvv_2) \
+    X(joint_distance_discrete, vv_1) \
     X(joint_aligned_force, vvvvv_3) \
     X(joint_aligned_motion, vvvvvvvv_2) \
     X(joint_locked_force, vvvvv_3) \
     X(joint_locked_motion, vvvvvvvv_2) \
     X(joint_planar_spherical_force, vvvvv_3) \
     X(joint_planar_spherical_motion, vvvvvvvv_2) \
+    X(joint_planar_spherical_discrete, vv_1) \
     X(joint_planar_revolute_angle_force, vvvvv_3) \
     X(joint_planar_revolute_angle_motion, vvvvvvvv_2) \
     X(joint_planar_prismatic_force, vvvvv_3) \
@@ -963,6 +974,7 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(joint_planar_weld_motion, vvvvvvvv_2) \
     X(joint_planar_distance_force, vvvvv_3) \
     X(joint_planar_distance_motion, vvvvvvvv_2) \
+    X(joint_planar_distance_discrete, vv_1) \
     X(joint_planar_locked_force, vvvvv_3) \
     X(joint_planar_locked_motion, vvvvvvvv_2) \
     X(spring_energy, vv_1) \
@@ -999,8 +1011,10 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(planar_resistance_force, vvvvv_5) \
     X(planar_rope_point_point, vvvvvs_4) \
     X(planar_rope_point_wrench, vvvvvsv_2) \
+    X(planar_rope_point_discrete_point, vvvvvs_1) \
     X(rope_point_point, vvvvvs_4) \
     X(rope_point_wrench, vvvvvsv_2) \
+    X(rope_point_discrete_point, vvvvvs_1) \
     X(planar_sheave_tangent_point, vvsv_3) \
     X(planar_sheave_tangent_point_motion, vvv_1) \
     X(planar_sheave_angle, vvv_7) \

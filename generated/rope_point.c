@@ -281,3 +281,126 @@ void rope_point_wrench(const fu_real *e, const fu_real *v, const fu_real *s, con
     v_q[40] = d1_N2*v[5] + d1_N3*d_rate3_z + d1_N4*v[11] + d1_dt_N2*e[5] + d1_dt_N3*d3_z + d1_dt_N4*e[11];
     v_q[41] = d2_N2*v[5] + d2_N3*d_rate3_z + d2_N4*v[11] + d2_dt_N2*e[5] + d2_dt_N3*d3_z + d2_dt_N4*e[11];
 }
+
+/* Jacobian of a material point over a step that conserves energy (shape functions of an element whose ends flow along the rope; Gonzalez, J. Nonlinear Sci. 6 (1996) 449-467); 113 add, 182 mul, 2 div */
+void rope_point_discrete_point(const fu_real *e, const fu_real *e_next, const fu_real *s, const fu_real *s_next, const fu_real *share, fu_real S, fu_real *P)
+{
+    /* place and length at both ends of the step */
+    const fu_real
+        L = -s[0] + s[1],
+        L_next = -s_next[0] + s_next[1],
+        part = -share[0] + share[1],
+        x = -L*share[0] + S - s[0],
+        x_next = -L_next*share[0] + S - s_next[0],
+        l = L*part,
+        l_next = L_next*part;
+    /* place on the centreline */
+    const fu_real
+        now_inv_l = 1.0/l,
+        next_inv_l = 1.0/l_next,
+        now_xi = now_inv_l*x,
+        next_xi = next_inv_l*x_next,
+        now_P_r_1 = now_xi*now_xi*(2.0*now_xi - 3.0) + 1.0,
+        next_P_r_1 = next_xi*next_xi*(2.0*next_xi - 3.0) + 1.0,
+        now_P_r_x1 = now_xi*(now_xi*(now_xi - 2.0) + 1.0),
+        next_P_r_x1 = next_xi*(next_xi*(next_xi - 2.0) + 1.0),
+        now_N_r_x1 = l*now_P_r_x1,
+        next_N_r_x1 = l_next*next_P_r_x1,
+        now_P_r_2 = now_xi*now_xi*(-2.0*now_xi + 3.0),
+        next_P_r_2 = next_xi*next_xi*(-2.0*next_xi + 3.0),
+        now_P_r_x2 = now_xi*now_xi*(now_xi - 1.0),
+        next_P_r_x2 = next_xi*next_xi*(next_xi - 1.0),
+        now_N_r_x2 = l*now_P_r_x2,
+        next_N_r_x2 = l_next*next_P_r_x2;
+    /* mean shape functions, and their divided differences */
+    const fu_real
+        mean_N_r_1 = 0.5*next_P_r_1 + 0.5*now_P_r_1,
+        mean_N_r_x1 = 0.5*next_N_r_x1 + 0.5*now_N_r_x1,
+        mean_N_r_2 = 0.5*next_P_r_2 + 0.5*now_P_r_2,
+        mean_N_r_x2 = 0.5*next_N_r_x2 + 0.5*now_N_r_x2,
+        D_xi_x_2 = 0.5*next_inv_l + 0.5*now_inv_l,
+        D_P_r_x1_x = D_xi_x_2*(0.5*next_xi*(next_xi - 2.0) + 0.5*now_xi*(now_xi - 2.0) + 1.0) + (0.5*next_xi + 0.5*now_xi)*(D_xi_x_2*(0.5*next_xi + 0.5*now_xi) + D_xi_x_2*(0.5*next_xi + 0.5*now_xi - 2.0)),
+        D_N_r_x1_x = D_P_r_x1_x*(0.5*l + 0.5*l_next),
+        D_inv_l_l_2 = -(next_inv_l*now_inv_l),
+        D_xi_l_2 = D_inv_l_l_2*(0.5*x + 0.5*x_next),
+        D_P_r_x1_l = D_xi_l_2*(0.5*next_xi*(next_xi - 2.0) + 0.5*now_xi*(now_xi - 2.0) + 1.0) + (0.5*next_xi + 0.5*now_xi)*(D_xi_l_2*(0.5*next_xi + 0.5*now_xi) + D_xi_l_2*(0.5*next_xi + 0.5*now_xi - 2.0)),
+        D_N_r_x1_l = D_P_r_x1_l*(0.5*l + 0.5*l_next) + 0.5*next_P_r_x1 + 0.5*now_P_r_x1,
+        D_xi_x_3 = 0.5*next_inv_l + 0.5*now_inv_l,
+        D_P_r_2_x = D_xi_x_3*(next_xi + now_xi)*(-next_xi - now_xi + 3.0) - 2.0*D_xi_x_3*(0.5*next_xi*next_xi + 0.5*now_xi*now_xi),
+        D_inv_l_l_3 = -(next_inv_l*now_inv_l),
+        D_xi_l_3 = D_inv_l_l_3*(0.5*x + 0.5*x_next),
+        D_P_r_2_l = D_xi_l_3*(next_xi + now_xi)*(-next_xi - now_xi + 3.0) - 2.0*D_xi_l_3*(0.5*next_xi*next_xi + 0.5*now_xi*now_xi),
+        D_xi_x_4 = 0.5*next_inv_l + 0.5*now_inv_l,
+        D_P_r_x2_x = D_xi_x_4*(next_xi + now_xi)*(0.5*next_xi + 0.5*now_xi - 1.0) + D_xi_x_4*(0.5*next_xi*next_xi + 0.5*now_xi*now_xi),
+        D_N_r_x2_x = D_P_r_x2_x*(0.5*l + 0.5*l_next),
+        D_inv_l_l_4 = -(next_inv_l*now_inv_l),
+        D_xi_l_4 = D_inv_l_l_4*(0.5*x + 0.5*x_next),
+        D_P_r_x2_l = D_xi_l_4*(next_xi + now_xi)*(0.5*next_xi + 0.5*now_xi - 1.0) + D_xi_l_4*(0.5*next_xi*next_xi + 0.5*now_xi*now_xi),
+        D_N_r_x2_l = D_P_r_x2_l*(0.5*l + 0.5*l_next) + 0.5*next_P_r_x2 + 0.5*now_P_r_x2;
+    /* means and changes, from the first node */
+    const fu_real
+        now_r_2_x = -e[0] + e[6],
+        now_r_2_y = -e[1] + e[7],
+        now_r_2_z = -e[2] + e[8],
+        next_r_2_x = -e_next[0] + e_next[6],
+        next_r_2_y = -e_next[1] + e_next[7],
+        next_r_2_z = -e_next[2] + e_next[8],
+        mean_r_x1_x = 0.5*e[3] + 0.5*e_next[3],
+        mean_r_x1_y = 0.5*e[4] + 0.5*e_next[4],
+        mean_r_x1_z = 0.5*e[5] + 0.5*e_next[5],
+        mean_r_2_x = 0.5*next_r_2_x + 0.5*now_r_2_x,
+        mean_r_2_y = 0.5*next_r_2_y + 0.5*now_r_2_y,
+        mean_r_2_z = 0.5*next_r_2_z + 0.5*now_r_2_z,
+        mean_r_x2_x = 0.5*e[9] + 0.5*e_next[9],
+        mean_r_x2_y = 0.5*e[10] + 0.5*e_next[10],
+        mean_r_x2_z = 0.5*e[11] + 0.5*e_next[11],
+        along_x = D_N_r_x1_x*mean_r_x1_x + D_N_r_x2_x*mean_r_x2_x + D_P_r_2_x*mean_r_2_x,
+        along_y = D_N_r_x1_x*mean_r_x1_y + D_N_r_x2_x*mean_r_x2_y + D_P_r_2_x*mean_r_2_y,
+        along_z = D_N_r_x1_x*mean_r_x1_z + D_N_r_x2_x*mean_r_x2_z + D_P_r_2_x*mean_r_2_z,
+        along_l_x = D_N_r_x1_l*mean_r_x1_x + D_N_r_x2_l*mean_r_x2_x + D_P_r_2_l*mean_r_2_x,
+        along_l_y = D_N_r_x1_l*mean_r_x1_y + D_N_r_x2_l*mean_r_x2_y + D_P_r_2_l*mean_r_2_y,
+        along_l_z = D_N_r_x1_l*mean_r_x1_z + D_N_r_x2_l*mean_r_x2_z + D_P_r_2_l*mean_r_2_z;
+    /* outputs */
+    P[0] = mean_N_r_1;
+    P[1] = 0.0;
+    P[2] = 0.0;
+    P[3] = mean_N_r_x1;
+    P[4] = 0.0;
+    P[5] = 0.0;
+    P[6] = mean_N_r_2;
+    P[7] = 0.0;
+    P[8] = 0.0;
+    P[9] = mean_N_r_x2;
+    P[10] = 0.0;
+    P[11] = 0.0;
+    P[12] = -along_l_x*part + along_x*(share[0] - 1.0);
+    P[13] = along_l_x*part - along_x*share[0];
+    P[14] = 0.0;
+    P[15] = mean_N_r_1;
+    P[16] = 0.0;
+    P[17] = 0.0;
+    P[18] = mean_N_r_x1;
+    P[19] = 0.0;
+    P[20] = 0.0;
+    P[21] = mean_N_r_2;
+    P[22] = 0.0;
+    P[23] = 0.0;
+    P[24] = mean_N_r_x2;
+    P[25] = 0.0;
+    P[26] = -along_l_y*part + along_y*(share[0] - 1.0);
+    P[27] = along_l_y*part - along_y*share[0];
+    P[28] = 0.0;
+    P[29] = 0.0;
+    P[30] = mean_N_r_1;
+    P[31] = 0.0;
+    P[32] = 0.0;
+    P[33] = mean_N_r_x1;
+    P[34] = 0.0;
+    P[35] = 0.0;
+    P[36] = mean_N_r_2;
+    P[37] = 0.0;
+    P[38] = 0.0;
+    P[39] = mean_N_r_x2;
+    P[40] = -along_l_z*part + along_z*(share[0] - 1.0);
+    P[41] = along_l_z*part - along_z*share[0];
+}

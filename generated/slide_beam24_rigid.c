@@ -795,14 +795,7 @@ void slide_beam24_rigid_discrete_gradient(fu_real l, fu_real x, fu_real x_next, 
     FU_EACH(i, 3, change_r_x1[i] = -e[i + 3] + e_next[i + 3];)
     FU_EACH(i, 3, change_r_2[i] = next_r_2[i] - now_r_2[i];)
     FU_EACH(i, 3, change_r_x2[i] = -e[i + 15] + e_next[i + 15];)
-    now_gap[0] = -b[0] + e[0];
-    now_gap[1] = -b[1] + e[1];
-    now_gap[2] = -b[2] + e[2];
-    next_gap[0] = -b_next[0] + e_next[0];
-    next_gap[1] = -b_next[1] + e_next[1];
-    next_gap[2] = -b_next[2] + e_next[2];
-    FU_EACH(i, 3, arm[i] = mean_N_r_2*mean_r_2[i] + mean_N_r_x1*mean_r_x1[i] + mean_N_r_x2*mean_r_x2[i] + 0.5*next_gap[i] + 0.5*now_gap[i];)
-    FU_EACH(i, 3, swing[i] = 0.25*D_N_r_x1_x*change_r_x1[i] + 0.25*D_N_r_x2_x*change_r_x2[i] + 0.25*D_P_r_2_x*change_r_2[i];)
+    SLIDE_PART_OF_MEAN_POINT_AND_SLOPE_OF_THE_CABLE_FROM_ITS_FIRST_NODE
     along[0] = D_N_r_x1_x*mean_r_x1[0] + D_N_r_x2_x*mean_r_x2[0] + D_P_r_2_x*mean_r_2[0] + swing[1]*theta_z - swing[2]*theta_y;
     along[1] = D_N_r_x1_x*mean_r_x1[1] + D_N_r_x2_x*mean_r_x2[1] + D_P_r_2_x*mean_r_2[1] - swing[0]*theta_z + swing[2]*theta_x;
     along[2] = D_N_r_x1_x*mean_r_x1[2] + D_N_r_x2_x*mean_r_x2[2] + D_P_r_2_x*mean_r_2[2] + swing[0]*theta_y - swing[1]*theta_x;

@@ -849,3 +849,77 @@ void slide_span_cable12_rigid_tangent(fu_real l, fu_real x, const fu_real *e, co
     K[439] = 0.0;
     K[440] = ds_g_20;
 }
+
+/* discrete Jacobian of phi over a step (eq 19); 208 add, 338 mul, 3 div */
+void slide_span_cable12_rigid_flowing_gradient(fu_real l, fu_real l_next, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G)
+{
+    SLIDE_PLACE_ON_THE_CENTRELINE_3
+    SLIDE_MEAN_SHAPE_FUNCTIONS_AND_THEIR_DIVIDED_DIFFERENCES_3
+    SLIDE_ATTITUDES_AT_BOTH_ENDS_OF_THE_STEP
+    SLIDE_TURN_AND_AXES_HALF_WAY
+    /* mean point and slope of the cable, from its first node */
+    fu_real now_r_2[3], next_r_2[3], mean_r_x1[3], mean_r_2[3], mean_r_x2[3], change_r_x1[3], change_r_2[3],
+        change_r_x2[3], now_gap[3], next_gap[3], arm[3], swing[3], swing_l[3];
+    FU_EACH(i, 3, now_r_2[i] = -e[i] + e[i + 6];)
+    FU_EACH(i, 3, next_r_2[i] = -e_next[i] + e_next[i + 6];)
+    FU_EACH(i, 3, mean_r_x1[i] = 0.5*e[i + 3] + 0.5*e_next[i + 3];)
+    FU_EACH(i, 3, mean_r_2[i] = 0.5*next_r_2[i] + 0.5*now_r_2[i];)
+    FU_EACH(i, 3, mean_r_x2[i] = 0.5*e[i + 9] + 0.5*e_next[i + 9];)
+    FU_EACH(i, 3, change_r_x1[i] = -e[i + 3] + e_next[i + 3];)
+    FU_EACH(i, 3, change_r_2[i] = next_r_2[i] - now_r_2[i];)
+    FU_EACH(i, 3, change_r_x2[i] = -e[i + 9] + e_next[i + 9];)
+    SLIDE_PART_OF_MEAN_POINT_AND_SLOPE_OF_THE_CABLE_FROM_ITS_FIRST_NODE
+    const fu_real
+        along_x = D_N_r_x1_x*mean_r_x1[0] + D_N_r_x2_x*mean_r_x2[0] + D_P_r_2_x*mean_r_2[0] + swing[1]*theta_z - swing[2]*theta_y,
+        along_y = D_N_r_x1_x*mean_r_x1[1] + D_N_r_x2_x*mean_r_x2[1] + D_P_r_2_x*mean_r_2[1] - swing[0]*theta_z + swing[2]*theta_x,
+        along_z = D_N_r_x1_x*mean_r_x1[2] + D_N_r_x2_x*mean_r_x2[2] + D_P_r_2_x*mean_r_2[2] + swing[0]*theta_y - swing[1]*theta_x;
+    FU_EACH(i, 3, swing_l[i] = 0.25*D_N_r_x1_l*change_r_x1[i] + 0.25*D_N_r_x2_l*change_r_x2[i] + 0.25*D_P_r_2_l*change_r_2[i];)
+    const fu_real
+        along_l_x = D_N_r_x1_l*mean_r_x1[0] + D_N_r_x2_l*mean_r_x2[0] + D_P_r_2_l*mean_r_2[0] + swing_l[1]*theta_z - swing_l[2]*theta_y,
+        along_l_y = D_N_r_x1_l*mean_r_x1[1] + D_N_r_x2_l*mean_r_x2[1] + D_P_r_2_l*mean_r_2[1] - swing_l[0]*theta_z + swing_l[2]*theta_x,
+        along_l_z = D_N_r_x1_l*mean_r_x1[2] + D_N_r_x2_l*mean_r_x2[2] + D_P_r_2_l*mean_r_2[2] + swing_l[0]*theta_y - swing_l[1]*theta_x;
+    /* outputs */
+    FU_PAIRS(i, j, 3, G[21*i + j] = 0.0;)
+    G[0] += mean_N_r_1;
+    G[22] += mean_N_r_1;
+    G[44] += mean_N_r_1;
+    FU_PAIRS(i, j, 3, G[21*i + j + 3] = 0.0;)
+    G[3] += mean_N_r_x1;
+    G[25] += mean_N_r_x1;
+    G[47] += mean_N_r_x1;
+    FU_PAIRS(i, j, 3, G[21*i + j + 6] = 0.0;)
+    G[6] += mean_N_r_2;
+    G[28] += mean_N_r_2;
+    G[50] += mean_N_r_2;
+    FU_PAIRS(i, j, 3, G[21*i + j + 9] = 0.0;)
+    G[9] += mean_N_r_x2;
+    G[31] += mean_N_r_x2;
+    G[53] += mean_N_r_x2;
+    G[12] = -along_l_x - along_x;
+    G[13] = along_l_x;
+    G[14] = -1.0;
+    G[15] = 0.0;
+    G[16] = 0.0;
+    G[17] = -B_x[1]*arm[2] + B_x[2]*arm[1];
+    G[18] = -B_y[1]*arm[2] + B_y[2]*arm[1];
+    G[19] = -B_z[1]*arm[2] + B_z[2]*arm[1];
+    G[20] = along_x;
+    G[33] = -along_l_y - along_y;
+    G[34] = along_l_y;
+    G[35] = 0.0;
+    G[36] = -1.0;
+    G[37] = 0.0;
+    G[38] = B_x[0]*arm[2] - B_x[2]*arm[0];
+    G[39] = B_y[0]*arm[2] - B_y[2]*arm[0];
+    G[40] = B_z[0]*arm[2] - B_z[2]*arm[0];
+    G[41] = along_y;
+    G[54] = -along_l_z - along_z;
+    G[55] = along_l_z;
+    G[56] = 0.0;
+    G[57] = 0.0;
+    G[58] = -1.0;
+    G[59] = -B_x[0]*arm[1] + B_x[1]*arm[0];
+    G[60] = -B_y[0]*arm[1] + B_y[1]*arm[0];
+    G[61] = -B_z[0]*arm[1] + B_z[1]*arm[0];
+    G[62] = along_z;
+}

@@ -514,3 +514,55 @@ void slide_span_cable8p_planar_point_tangent(fu_real l, fu_real x, const fu_real
     K[167] = 0.0;
     K[168] = ds_g_12;
 }
+
+/* discrete Jacobian of phi over a step (eq 19); 90 add, 154 mul, 2 div */
+void slide_span_cable8p_planar_point_flowing_gradient(fu_real l, fu_real l_next, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G)
+{
+    (void)b;
+    (void)b_next;
+    SLIDE_PLACE_ON_THE_CENTRELINE_3
+    SLIDE_MEAN_SHAPE_FUNCTIONS_AND_THEIR_DIVIDED_DIFFERENCES_3
+    /* mean point and slope of the cable, from its first node */
+    const fu_real
+        now_r_2_x = -e[0] + e[4],
+        now_r_2_y = -e[1] + e[5],
+        next_r_2_x = -e_next[0] + e_next[4],
+        next_r_2_y = -e_next[1] + e_next[5],
+        mean_r_x1_x = 0.5*e[2] + 0.5*e_next[2],
+        mean_r_x1_y = 0.5*e[3] + 0.5*e_next[3],
+        mean_r_2_x = 0.5*next_r_2_x + 0.5*now_r_2_x,
+        mean_r_2_y = 0.5*next_r_2_y + 0.5*now_r_2_y,
+        mean_r_x2_x = 0.5*e[6] + 0.5*e_next[6],
+        mean_r_x2_y = 0.5*e[7] + 0.5*e_next[7],
+        along_x = D_N_r_x1_x*mean_r_x1_x + D_N_r_x2_x*mean_r_x2_x + D_P_r_2_x*mean_r_2_x,
+        along_y = D_N_r_x1_x*mean_r_x1_y + D_N_r_x2_x*mean_r_x2_y + D_P_r_2_x*mean_r_2_y,
+        along_l_x = D_N_r_x1_l*mean_r_x1_x + D_N_r_x2_l*mean_r_x2_x + D_P_r_2_l*mean_r_2_x,
+        along_l_y = D_N_r_x1_l*mean_r_x1_y + D_N_r_x2_l*mean_r_x2_y + D_P_r_2_l*mean_r_2_y;
+    /* outputs */
+    G[0] = mean_N_r_1;
+    G[1] = 0.0;
+    G[2] = mean_N_r_x1;
+    G[3] = 0.0;
+    G[4] = mean_N_r_2;
+    G[5] = 0.0;
+    G[6] = mean_N_r_x2;
+    G[7] = 0.0;
+    G[8] = -along_l_x - along_x;
+    G[9] = along_l_x;
+    G[10] = -1.0;
+    G[11] = 0.0;
+    G[12] = along_x;
+    G[13] = 0.0;
+    G[14] = mean_N_r_1;
+    G[15] = 0.0;
+    G[16] = mean_N_r_x1;
+    G[17] = 0.0;
+    G[18] = mean_N_r_2;
+    G[19] = 0.0;
+    G[20] = mean_N_r_x2;
+    G[21] = -along_l_y - along_y;
+    G[22] = along_l_y;
+    G[23] = 0.0;
+    G[24] = -1.0;
+    G[25] = along_y;
+}

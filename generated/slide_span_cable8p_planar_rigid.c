@@ -547,3 +547,76 @@ void slide_span_cable8p_planar_rigid_tangent(fu_real l, fu_real x, const fu_real
     K[190] = ds1_g_13;
     K[191] = ds2_g_13;
 }
+
+/* discrete Jacobian of phi over a step (eq 19); 123 add, 197 mul, 3 div */
+void slide_span_cable8p_planar_rigid_flowing_gradient(fu_real l, fu_real l_next, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G)
+{
+    SLIDE_PLACE_ON_THE_CENTRELINE_3
+    SLIDE_MEAN_SHAPE_FUNCTIONS_AND_THEIR_DIVIDED_DIFFERENCES_3
+    /* turn, and axes half-way */
+    const fu_real
+        turn_sine = b[2]*b_next[3] - b[3]*b_next[2],
+        turn_cosine = b[2]*b_next[2] + b[3]*b_next[3],
+        theta = 2.0*turn_sine/(turn_cosine + 1.0);
+    /* mean point and slope of the cable, from its first node */
+    const fu_real
+        now_r_2_x = -e[0] + e[4],
+        now_r_2_y = -e[1] + e[5],
+        next_r_2_x = -e_next[0] + e_next[4],
+        next_r_2_y = -e_next[1] + e_next[5],
+        mean_r_x1_x = 0.5*e[2] + 0.5*e_next[2],
+        mean_r_x1_y = 0.5*e[3] + 0.5*e_next[3],
+        mean_r_2_x = 0.5*next_r_2_x + 0.5*now_r_2_x,
+        mean_r_2_y = 0.5*next_r_2_y + 0.5*now_r_2_y,
+        mean_r_x2_x = 0.5*e[6] + 0.5*e_next[6],
+        mean_r_x2_y = 0.5*e[7] + 0.5*e_next[7],
+        change_r_x1_x = -e[2] + e_next[2],
+        change_r_x1_y = -e[3] + e_next[3],
+        change_r_2_x = next_r_2_x - now_r_2_x,
+        change_r_2_y = next_r_2_y - now_r_2_y,
+        change_r_x2_x = -e[6] + e_next[6],
+        change_r_x2_y = -e[7] + e_next[7],
+        now_gap_x = -b[0] + e[0],
+        now_gap_y = -b[1] + e[1],
+        next_gap_x = -b_next[0] + e_next[0],
+        next_gap_y = -b_next[1] + e_next[1],
+        arm_x = mean_N_r_2*mean_r_2_x + mean_N_r_x1*mean_r_x1_x + mean_N_r_x2*mean_r_x2_x + 0.5*next_gap_x + 0.5*now_gap_x,
+        arm_y = mean_N_r_2*mean_r_2_y + mean_N_r_x1*mean_r_x1_y + mean_N_r_x2*mean_r_x2_y + 0.5*next_gap_y + 0.5*now_gap_y,
+        swing_x = 0.25*D_N_r_x1_x*change_r_x1_x + 0.25*D_N_r_x2_x*change_r_x2_x + 0.25*D_P_r_2_x*change_r_2_x,
+        swing_y = 0.25*D_N_r_x1_x*change_r_x1_y + 0.25*D_N_r_x2_x*change_r_x2_y + 0.25*D_P_r_2_x*change_r_2_y,
+        along_x = D_N_r_x1_x*mean_r_x1_x + D_N_r_x2_x*mean_r_x2_x + D_P_r_2_x*mean_r_2_x + swing_y*theta,
+        along_y = D_N_r_x1_x*mean_r_x1_y + D_N_r_x2_x*mean_r_x2_y + D_P_r_2_x*mean_r_2_y - swing_x*theta,
+        swing_l_x = 0.25*D_N_r_x1_l*change_r_x1_x + 0.25*D_N_r_x2_l*change_r_x2_x + 0.25*D_P_r_2_l*change_r_2_x,
+        swing_l_y = 0.25*D_N_r_x1_l*change_r_x1_y + 0.25*D_N_r_x2_l*change_r_x2_y + 0.25*D_P_r_2_l*change_r_2_y,
+        along_l_x = D_N_r_x1_l*mean_r_x1_x + D_N_r_x2_l*mean_r_x2_x + D_P_r_2_l*mean_r_2_x + swing_l_y*theta,
+        along_l_y = D_N_r_x1_l*mean_r_x1_y + D_N_r_x2_l*mean_r_x2_y + D_P_r_2_l*mean_r_2_y - swing_l_x*theta;
+    /* outputs */
+    G[0] = mean_N_r_1;
+    G[1] = 0.0;
+    G[2] = mean_N_r_x1;
+    G[3] = 0.0;
+    G[4] = mean_N_r_2;
+    G[5] = 0.0;
+    G[6] = mean_N_r_x2;
+    G[7] = 0.0;
+    G[8] = -along_l_x - along_x;
+    G[9] = along_l_x;
+    G[10] = -1.0;
+    G[11] = 0.0;
+    G[12] = arm_y;
+    G[13] = along_x;
+    G[14] = 0.0;
+    G[15] = mean_N_r_1;
+    G[16] = 0.0;
+    G[17] = mean_N_r_x1;
+    G[18] = 0.0;
+    G[19] = mean_N_r_2;
+    G[20] = 0.0;
+    G[21] = mean_N_r_x2;
+    G[22] = -along_l_y - along_y;
+    G[23] = along_l_y;
+    G[24] = 0.0;
+    G[25] = -1.0;
+    G[26] = -arm_x;
+    G[27] = along_y;
+}

@@ -151,6 +151,17 @@
     H[25] = C_qm1_25 + C_sm1*G_25; \
     H[26] = C_qm1_26 + C_sm1*G_26;
 
+/* part of mean point and slope of the cable, from its first node: of slide_beam24_rigid_discrete_gradient and 1 more */
+#define SLIDE_PART_OF_MEAN_POINT_AND_SLOPE_OF_THE_CABLE_FROM_ITS_FIRST_NODE \
+    now_gap[0] = -b[0] + e[0]; \
+    now_gap[1] = -b[1] + e[1]; \
+    now_gap[2] = -b[2] + e[2]; \
+    next_gap[0] = -b_next[0] + e_next[0]; \
+    next_gap[1] = -b_next[1] + e_next[1]; \
+    next_gap[2] = -b_next[2] + e_next[2]; \
+    FU_EACH(i, 3, arm[i] = mean_N_r_2*mean_r_2[i] + mean_N_r_x1*mean_r_x1[i] + mean_N_r_x2*mean_r_x2[i] + 0.5*next_gap[i] + 0.5*now_gap[i];) \
+    FU_EACH(i, 3, swing[i] = 0.25*D_N_r_x1_x*change_r_x1[i] + 0.25*D_N_r_x2_x*change_r_x2[i] + 0.25*D_P_r_2_x*change_r_2[i];)
+
 /* part of Q_d: second derivative along the motion (eq 33): of slide_beam24_point_terms and 3 more */
 #define SLIDE_PART_OF_Q_D_SECOND_DERIVATIVE_ALONG_THE_MOTION_EQ_33_8 \
     const fu_real \
@@ -856,7 +867,7 @@
         D_P_r_x2_x = inv_l*(next_xi + now_xi)*(0.5*next_xi + 0.5*now_xi - 1.0) + inv_l*(0.5*next_xi*next_xi + 0.5*now_xi*now_xi), \
         D_N_r_x2_x = D_P_r_x2_x*l;
 
-/* attitudes at both ends of the step: of slide_beam24_rigid_discrete_gradient and 2 more */
+/* attitudes at both ends of the step: of slide_beam24_rigid_discrete_gradient and 3 more */
 #define SLIDE_ATTITUDES_AT_BOTH_ENDS_OF_THE_STEP \
     fu_real A_x[3], A_y[3], A_z[3]; \
     A_x[0] = -2.0*b[5]*b[5] - 2.0*b[6]*b[6] + 1.0; \
@@ -869,7 +880,7 @@
     A_y[2] = 2.0*b[3]*b[4] + 2.0*b[5]*b[6]; \
     A_z[2] = -2.0*b[4]*b[4] - 2.0*b[5]*b[5] + 1.0;
 
-/* turn, and axes half-way: of slide_beam24_rigid_discrete_gradient and 2 more */
+/* turn, and axes half-way: of slide_beam24_rigid_discrete_gradient and 3 more */
 #define SLIDE_TURN_AND_AXES_HALF_WAY \
     fu_real B_x[3], B_y[3], B_z[3]; \
     const fu_real \
@@ -1214,5 +1225,52 @@
         gap_y = -b[1] + e[1], \
         r_p_x = gap_x + r_x - u[0], \
         r_p_y = gap_y + r_y - u[1];
+
+/* place on the centreline: of slide_span_cable8p_planar_rigid_flowing_gradient and 3 more */
+#define SLIDE_PLACE_ON_THE_CENTRELINE_3 \
+    const fu_real \
+        now_inv_l = 1.0/l, \
+        next_inv_l = 1.0/l_next, \
+        now_xi = now_inv_l*x, \
+        next_xi = next_inv_l*x_next, \
+        now_P_r_1 = now_xi*now_xi*(2.0*now_xi - 3.0) + 1.0, \
+        next_P_r_1 = next_xi*next_xi*(2.0*next_xi - 3.0) + 1.0, \
+        now_P_r_x1 = now_xi*(now_xi*(now_xi - 2.0) + 1.0), \
+        next_P_r_x1 = next_xi*(next_xi*(next_xi - 2.0) + 1.0), \
+        now_N_r_x1 = l*now_P_r_x1, \
+        next_N_r_x1 = l_next*next_P_r_x1, \
+        now_P_r_2 = now_xi*now_xi*(-2.0*now_xi + 3.0), \
+        next_P_r_2 = next_xi*next_xi*(-2.0*next_xi + 3.0), \
+        now_P_r_x2 = now_xi*now_xi*(now_xi - 1.0), \
+        next_P_r_x2 = next_xi*next_xi*(next_xi - 1.0), \
+        now_N_r_x2 = l*now_P_r_x2, \
+        next_N_r_x2 = l_next*next_P_r_x2;
+
+/* mean shape functions, and their divided differences: of slide_span_cable8p_planar_rigid_flowing_gradient and 3 more */
+#define SLIDE_MEAN_SHAPE_FUNCTIONS_AND_THEIR_DIVIDED_DIFFERENCES_3 \
+    const fu_real \
+        mean_N_r_1 = 0.5*next_P_r_1 + 0.5*now_P_r_1, \
+        mean_N_r_x1 = 0.5*next_N_r_x1 + 0.5*now_N_r_x1, \
+        mean_N_r_2 = 0.5*next_P_r_2 + 0.5*now_P_r_2, \
+        mean_N_r_x2 = 0.5*next_N_r_x2 + 0.5*now_N_r_x2, \
+        D_xi_x_2 = 0.5*next_inv_l + 0.5*now_inv_l, \
+        D_P_r_x1_x = D_xi_x_2*(0.5*next_xi*(next_xi - 2.0) + 0.5*now_xi*(now_xi - 2.0) + 1.0) + (0.5*next_xi + 0.5*now_xi)*(D_xi_x_2*(0.5*next_xi + 0.5*now_xi) + D_xi_x_2*(0.5*next_xi + 0.5*now_xi - 2.0)), \
+        D_N_r_x1_x = D_P_r_x1_x*(0.5*l + 0.5*l_next), \
+        D_inv_l_l_2 = -(next_inv_l*now_inv_l), \
+        D_xi_l_2 = D_inv_l_l_2*(0.5*x + 0.5*x_next), \
+        D_P_r_x1_l = D_xi_l_2*(0.5*next_xi*(next_xi - 2.0) + 0.5*now_xi*(now_xi - 2.0) + 1.0) + (0.5*next_xi + 0.5*now_xi)*(D_xi_l_2*(0.5*next_xi + 0.5*now_xi) + D_xi_l_2*(0.5*next_xi + 0.5*now_xi - 2.0)), \
+        D_N_r_x1_l = D_P_r_x1_l*(0.5*l + 0.5*l_next) + 0.5*next_P_r_x1 + 0.5*now_P_r_x1, \
+        D_xi_x_3 = 0.5*next_inv_l + 0.5*now_inv_l, \
+        D_P_r_2_x = D_xi_x_3*(next_xi + now_xi)*(-next_xi - now_xi + 3.0) - 2.0*D_xi_x_3*(0.5*next_xi*next_xi + 0.5*now_xi*now_xi), \
+        D_inv_l_l_3 = -(next_inv_l*now_inv_l), \
+        D_xi_l_3 = D_inv_l_l_3*(0.5*x + 0.5*x_next), \
+        D_P_r_2_l = D_xi_l_3*(next_xi + now_xi)*(-next_xi - now_xi + 3.0) - 2.0*D_xi_l_3*(0.5*next_xi*next_xi + 0.5*now_xi*now_xi), \
+        D_xi_x_4 = 0.5*next_inv_l + 0.5*now_inv_l, \
+        D_P_r_x2_x = D_xi_x_4*(next_xi + now_xi)*(0.5*next_xi + 0.5*now_xi - 1.0) + D_xi_x_4*(0.5*next_xi*next_xi + 0.5*now_xi*now_xi), \
+        D_N_r_x2_x = D_P_r_x2_x*(0.5*l + 0.5*l_next), \
+        D_inv_l_l_4 = -(next_inv_l*now_inv_l), \
+        D_xi_l_4 = D_inv_l_l_4*(0.5*x + 0.5*x_next), \
+        D_P_r_x2_l = D_xi_l_4*(next_xi + now_xi)*(0.5*next_xi + 0.5*now_xi - 1.0) + D_xi_l_4*(0.5*next_xi*next_xi + 0.5*now_xi*now_xi), \
+        D_N_r_x2_l = D_P_r_x2_l*(0.5*l + 0.5*l_next) + 0.5*next_P_r_x2 + 0.5*now_P_r_x2;
 
 #endif

@@ -264,6 +264,10 @@ def _shared(members: list[Derived]) -> dict[str, str]:
     """
     first = min(members, key=lambda member: len(member.family.not_own))
     kernels = _signatures(first)
+    for other in members:  # what the first one has not got
+        for suffix, parameters in _signatures(other).items():
+            if suffix in first.family.not_own:
+                kernels.setdefault(suffix, parameters)
     for other in members:
         theirs = _signatures(other)
         for suffix in {**kernels, **theirs}.keys() - other.family.not_own:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
+from ..algebra.discrete_gradient import DiscreteGradient
 from ..codegen.family import CouplingFamily
 from ..codegen.program import DirectionalDerivative, Program
 from .frame import TURNS, spun
@@ -113,17 +114,28 @@ def _equations(frames: TwoFrames, name: str) -> np.ndarray:
     return np.array([frames.program.define(f"phi_{k}", e) for k, e in enumerate(every)])
 
 
+OF_POINTS = ("spherical", "distance")
+"""Joints whose equations depend on the gap alone."""
+
+
+def is_of_points(name: str) -> bool:
+    """Return whether the equations of a joint depend on the gap alone: these have a discrete gradient."""
+    return name.removeprefix("planar_") in OF_POINTS
+
+
 def families() -> list[CouplingFamily]:
     """Return the families of all kinds of joints."""
     return [CouplingFamily(f"joint_{name}", f"{name.replace('_', ' ')} joint between two frames",
                            partial(build, dim, name), ("couplings.joint",), role="joint",
+                           missing=() if is_of_points(name) else ("discrete",),
                            facts={"dim": dim, "rows": rows(dim, name)}, dim=dim)
             for dim, of_dim in JOINTS.items() for name in of_dim]
 
 
 def build(dim: int, name: str) -> list[Program]:
     """Return the kernels of a joint."""
-    return [force(dim, name), motion(dim, name)]
+    kernels = [force(dim, name), motion(dim, name)]
+    return [*kernels, discrete(dim, name)] if is_of_points(name) else kernels
 
 
 def force(dim: int, name: str) -> Program:
@@ -161,4 +173,23 @@ def motion(dim: int, name: str) -> Program:
     moved = frames.along("dt", gap_rate, turn_1, turn_2, driving)
     p.output("phi_t", driven.array(phi), "m/s, 1/s", "rate at rest, of the driven quantity")
     p.output("Q_d", moved.array(moved.array(phi)), "m/s^2, 1/s^2", "second rate at zero accelerations")
+    return p
+
+
+def discrete(dim: int, name: str) -> Program:
+    """Return the kernel of the Jacobian over a step, of equations of the gap alone: phi_next - phi = J (gap_next - gap).
+    """
+    p = Program(f"joint_{name}_discrete", "Jacobian of the equations over a step that conserves energy",
+                "Gonzalez, Comput. Methods Appl. Mech. Eng. 174 (1999) 165-174")
+    gap = p.input("gap", dim, "m", "p_2 - p_1 at the start of the step")
+    gap_next = p.input("gap_next", dim, "m", "p_2 - p_1 at the end of the step")
+    law = TwoFrames(Program("law", "equations at one state", ""), dim)
+    law.gap = np.array([law.program.input(f"gap_{axis}", (), "m", "p_2 - p_1") for axis in "xyz"[:dim]])
+    law.c = np.zeros(3, dtype=int)  # its change is not that of the gap
+    phi = _equations(law, name)
+    over_step = DiscreteGradient(p, law.program, {one: (now, then) for one, now, then
+                                                  in zip(law.gap, gap, gap_next, strict=True)})
+    p.stage("discrete derivatives")
+    p.output("J", np.array([over_step.gradient(equation, [*law.gap]) for equation in phi]), "1",
+             "derivatives by the gap over a step")
     return p

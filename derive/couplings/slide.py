@@ -17,7 +17,8 @@ import numpy as np
 import sympy as sp
 
 from ..algebra.axis import Axis
-from ..algebra.discrete_gradient import STATES, DiscreteGradient
+from ..algebra.discrete_axis import DiscreteShapes, middle_and_change
+from ..algebra.discrete_gradient import STATES
 from ..algebra.tangent_frame import cross, tangent_frame
 from ..bodies import kernels as body_kernels
 from ..bodies.body import Rider
@@ -25,6 +26,7 @@ from ..codegen.program import DirectionalDerivative, Program, jacobian
 from ..spec import Element
 
 ENTRIES = {2: ("l", "m"), 3: ("l", "m1", "m2")}  # of C, by dim
+DISCRETE_GRADIENT, FLOWING_GRADIENT = "discrete_gradient", "flowing_gradient"  # kernels on a cable, on a rope
 N_ENDS = 2  # material coordinates s1, s2 of an element whose ends flow
 _C_DOC = "constraint in the tangent frame: C_l, then C_m across the cable"
 
@@ -114,8 +116,8 @@ class Slide:
 
 def build(name: str, element: Element, rider: Rider, flows: bool = False) -> list[Program]:
     """Return the kernels of the slide of a rider on a cable of this element, or on a rope, whose elements flow."""
-    found = [kernel(name, element, rider, flows) for kernel in (_constraint, _terms, _residual, _tangent)]
-    return found if flows else [*found, _discrete_gradient(name, element, rider)]
+    return [kernel(name, element, rider, flows)
+            for kernel in (_constraint, _terms, _residual, _tangent, _discrete_gradient)]
 
 
 def _constraint(name: str, element: Element, rider: Rider, flows: bool) -> Program:
@@ -204,7 +206,7 @@ def _tangent(name: str, element: Element, rider: Rider, flows: bool) -> Program:
     return p
 
 
-def _discrete_gradient(name: str, element: Element, rider: Rider) -> Program:
+def _discrete_gradient(name: str, element: Element, rider: Rider, flows: bool) -> Program:
     """Return the kernel of G (de, psi, ds) = phi_next - phi - theta x (phi_next + phi)/2, theta the rider's turn: zero
     on the joint.
 
@@ -215,37 +217,27 @@ def _discrete_gradient(name: str, element: Element, rider: Rider) -> Program:
     A force f acts on cable and rider at one place, N~ e~, so that it makes no moment; the part of r along which it does
     no work for that is D (e~ - theta x de/4) in place of r_x. After Gonzalez, Comput. Methods Appl. Mech. Eng. 174
     (1999) 165-174, for a constraint that turns with the scene.
+
+    On a rope N_next - N = D_x dx + D_l dl, and each difference has such a part.
     """
-    p = Program(f"{name}_discrete_gradient", "discrete Jacobian of phi over a step", "eq 19")
-    law = Program("axis", "shape functions at one place", "")
-    axis = Axis(law, element)
-    N = axis.shape()
-    length = p.input("l", (), "m", "length of the element")
-    x = p.input("x", (), "m", "arc-length from the element's first node")
-    x_next = p.input("x_next", (), "m", "x at the end of the step")
+    kernel = FLOWING_GRADIENT if flows else DISCRETE_GRADIENT
+    p = Program(f"{name}_{kernel}", "discrete Jacobian of phi over a step", "eq 19")
+    steps = DiscreteShapes(p, element, flows)
     e = p.input("e", (element.n_vectors, element.dim), "m, 1", "nodal vectors e, eq 1")
     e_next = p.input("e_next", e.shape, "m, 1", "nodal vectors at the end of the step")
-    discrete = DiscreteGradient(p, law, {axis.length: (length, length), axis.x: (x, x_next)})
-    p.stage("mean shape functions, and their divided differences")
-    mean = np.array([p.define(f"mean_N_{node}", discrete.mean(n)) for node, n in zip(element.names, N, strict=True)])
-    slope = np.array([p.define(f"D_N_{node}", *discrete.gradient(n, [axis.x]))
-                      for node, n in zip(element.names, N, strict=True)])
+    mean, slopes = steps.shapes()
     b = rider.configuration(p)
     step = body_kernels.Step(p, rider, b)
     p.stage("mean point and slope of the cable, from its first node")
-    first = np.array(element.is_position, dtype=int)
-    named = partial(_named_rows, p, element)
-    now, then = (named(state, vectors - np.outer(first, vectors[0])) for state, vectors in zip(STATES, (e, e_next),
-                                                                                               strict=True))
-    middle, change = named("mean", (now + then) / 2), named("change", then - now)
+    middle, change = middle_and_change(p, element, e, e_next)
     gaps = [p.vector(f"{state}_gap", vectors[0] - rider.origin(at))
             for state, vectors, at in zip(STATES, (e, e_next), (b, step.b_next), strict=True)]
     arm = p.vector("arm", sum(gaps) / 2 + mean.dot(middle))
-    along = p.vector("along", slope.dot(middle) - cross(step.theta, p.vector("swing", slope.dot(change) / 4)))
-    p.output("G", np.concatenate([np.kron(mean, np.eye(element.dim, dtype=int)), -step.jacobian(arm), along[:, None]],
-                                 axis=1), "1, m", "by (e, rider, s); the rider's turn by its Cayley vector")
+    along = [p.vector(f"along{tag}", slope.dot(middle) - cross(step.theta, p.vector(f"swing{tag}",
+                                                                                    slope.dot(change) / 4)))
+             for tag, slope in slopes.items()]
+    by_ends = [(-along[0] - along[1])[:, None], along[1][:, None]] if flows else []
+    p.output("G", np.concatenate([np.kron(mean, np.eye(element.dim, dtype=int)), *by_ends, -step.jacobian(arm),
+                                  along[0][:, None]], axis=1), "1, m",
+             "by (e, rider, s); the rider's turn by its Cayley vector")
     return p
-
-
-def _named_rows(p: Program, element: Element, name: str, vectors: np.ndarray) -> np.ndarray:
-    return np.array([p.vector(f"{name}_{node}", v) for node, v in zip(element.names, vectors, strict=True)])

@@ -28,12 +28,15 @@ def rope_point(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invaria
         yield f"turned scene: {name} follows", relative(turned[name] - Q @ at[name], at[name]), 512 * EPS
     yield from _at_rest(family, k, s)
     yield from _at_nodes(family, k, s)
-    near = s | {"e": quantised(s["e"])}
+    yield from _step(family, k, s)
+    near = s | {"e": quantised(s["e"]), "e_next": quantised(s["e_next"])}
     positions = ELEMENTS[ELEMENT[family.dim]].is_position
-    away = near | {"e": near["e"] + np.outer(positions, np.full(family.dim, ORIGIN_SHIFT))}
-    here, there = k("point", near), k("point", away)
-    difference = max(float(np.max(np.abs(here[name] - there[name]))) for name in ("P", "velocity", "bias"))
-    yield "same digits at 10⁴ lengths", difference, 0.0
+    shift = np.outer(positions, np.full(family.dim, ORIGIN_SHIFT))
+    away = near | {name: near[name] + shift for name in ("e", "e_next")}
+    for kernel, names in (("point", ("P", "velocity", "bias")), ("discrete_point", ("P",))):
+        here, there = k(kernel, near), k(kernel, away)
+        difference = max(float(np.max(np.abs(here[name] - there[name]))) for name in names)
+        yield "same digits at 10⁴ lengths", difference, 0.0
 
 
 def _at_rest(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]:
@@ -61,3 +64,23 @@ def _at_nodes(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invarian
         yield f"{name} node: its place", relative(found["p"] - place, place), 64 * EPS
         expected = s["v"][2 * i] - rate * slope
         yield f"{name} node: r' = e' - s' r_S", relative(found["velocity"] - expected, expected), 512 * EPS
+
+
+def _step(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]:
+    """Yield the momenta over a step of a force on the point; in space the moment where the rope does not flow."""
+    spec = ELEMENTS[ELEMENT[family.dim]]
+    dim, positions = family.dim, np.array(spec.is_position, dtype=float)
+    for said, step in (("", s), (", rope at rest", s | {"s_next": s["s"]})):
+        forces = (k("discrete_point", step)["P"].T @ s["f"])[: spec.n_coordinates].reshape(-1, dim)
+        yield f"step{said}: net force is that on the point", relative(positions @ forces - s["f"], forces), 8 * EPS
+        ends = (k("point", s), k("point", s | {"e": step["e_next"], "s": step["s_next"]}))
+        if dim == 2 or said:
+            moment = _moment((step["e"] + step["e_next"]) / 2, forces)
+            of_point = _moment(sum(end["p"] for end in ends)[None] / 2, s["f"][None])
+            yield f"step{said}: moment is that of the mean place", relative(moment - of_point, forces), 64 * EPS
+
+
+def _moment(arms: np.ndarray, forces: np.ndarray) -> np.ndarray:
+    if arms.shape[1] == 2:
+        return np.array([np.sum(arms[:, 0] * forces[:, 1] - arms[:, 1] * forces[:, 0])])
+    return np.sum(np.cross(arms, forces), axis=0)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...codegen.family import SlideFamily
-from ...couplings.slide import N_ENDS
+from ...couplings.slide import DISCRETE_GRADIENT, FLOWING_GRADIENT, N_ENDS
 from ..motion import RIDERS, swung
 from ..numbers import EPS, Numbers, State
 from .measures import ORIGIN_SHIFT, Invariance, quantised, relative
@@ -27,8 +27,7 @@ def slide(family: SlideFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     yield from _constraint_invariances(family, k, s, n_e)
     yield from _frame(family, k, s, out, n_e)
     yield from _forces(family, k, s, n_e)
-    if not family.flows:
-        yield from _step(family, k, s, n_e)
+    yield from _step(family, k, s, n_e)
 
 
 def _constraint_invariances(family: SlideFamily, k: Numbers, s: State, n_e: int) -> Iterator[Invariance]:
@@ -86,7 +85,7 @@ def _frame(family: SlideFamily, k: Numbers, s: State, out: dict[str, Any], n_e: 
         else:
             shift = np.outer(positions, np.full(element.dim, ORIGIN_SHIFT))
         away[name] = value + shift
-    for kernel in ("constraint", "terms", "residual", "tangent", *([] if family.flows else ["discrete_gradient"])):
+    for kernel in ("constraint", "terms", "residual", "tangent", _step_kernel(family)):
         here, there = k(kernel, near), k(kernel, away)
         yield "same digits at 10⁴ lengths", max(float(np.max(np.abs(here[n] - there[n]))) for n in here), 0.0
 
@@ -95,8 +94,8 @@ def _step(family: SlideFamily, k: Numbers, s: State, n_e: int) -> Iterator[Invar
     """Yield the momenta over a step of the joint's force on cable and rider, about the rider's mean place."""
     element, rider = family.element, RIDERS[family.rider]
     dim, positions = element.dim, np.array(element.is_position, dtype=float)
-    forces = k("discrete_gradient", s)["G"].T @ s["f"]
-    on_cable, on_rider = forces[:n_e].reshape(-1, dim), forces[n_e:-1]
+    forces = k(_step_kernel(family), s)["G"].T @ s["f"]
+    on_cable, on_rider = forces[: element.n_coordinates].reshape(-1, dim), forces[n_e:-1]
     yield "step: no net force of the joint", relative(positions @ on_cable + on_rider[:dim], forces), 8 * EPS
     arms = (s["e"] + s["e_next"] - np.outer(positions, s["b"][:dim] + s["b_next"][:dim])) / 2
     half = rider.step(s["b"], s["b_next"]) / 2
@@ -105,6 +104,10 @@ def _step(family: SlideFamily, k: Numbers, s: State, n_e: int) -> Iterator[Invar
         about = about + np.cross(rider.turn(s["b"], half), about)
         turning = np.array([swung(about, arm) for arm in arms])
         yield "step: no net moment of the joint", relative(np.sum(turning * on_cable) + row, forces), 32 * EPS
+
+
+def _step_kernel(family: SlideFamily) -> str:
+    return FLOWING_GRADIENT if family.flows else DISCRETE_GRADIENT
 
 
 def _forces(family: SlideFamily, k: Numbers, s: State, n_e: int) -> Iterator[Invariance]:

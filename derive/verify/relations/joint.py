@@ -6,6 +6,7 @@ import numpy as np
 
 from ...codegen.family import CouplingFamily
 from ...couplings.frame import TURNS
+from ...couplings.joint import is_of_points
 from ..methods import Relation
 from ..motion import turned_axes
 from .paths import from_kernel
@@ -31,7 +32,16 @@ def joint(family: CouplingFamily) -> list[Relation]:
     def phi(k, s, **changes):
         return k("force", s, **changes)["phi"]
 
+    def over_step(k, s):
+        return phi(k, s) + k("discrete", s)["J"].dot(s["gap_next"] - s["gap"])
+
     return [
+        *([Relation("discrete", "J", "phi + J (gap_next - gap) is phi at the end", 0,
+                    lambda k, s, t, j: phi(k, s, gap=s["gap_next"]), of=over_step),
+           Relation("discrete", "J", "dphi by the gap, over no step", 1,
+                    lambda k, s, t, j: phi(k, s, gap=s["gap"] + t * np.eye(dim, dtype=int)[j]), dim,
+                    of=lambda k, s: k("discrete", s, gap_next=s["gap"])["J"])]
+          if is_of_points(family.name.removeprefix("joint_")) else []),
         Relation("force", "phi", "at 50 digits; see what the joint lets pass", 0, from_kernel("force", "phi")),
         Relation("force", "J", "dphi by gap and turns", 1,
                  lambda k, s, t, j: phi(k, s, **by_coordinate(k, s, t, j)), n),

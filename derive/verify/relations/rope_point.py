@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from ...codegen.family import CouplingFamily
 from ...couplings.rope_point import ELEMENT
 from ...elements import ELEMENTS
@@ -30,7 +32,15 @@ def rope_point(family: CouplingFamily) -> list[Relation]:
     def force(k, s):
         return k("point", s)["P"].T.dot(s["f"])
 
-    return [Relation("point", "p", "Σ N d at 50 digits, at the same place in the material", 0, root(place)),
+    def over_step(k, s):
+        change = np.concatenate([(s["e_next"] - s["e"]).ravel(), s["s_next"] - s["s"]])
+        return k("point", s)["p"] + k("discrete_point", s)["P"].dot(change)
+
+    return [Relation("discrete_point", "P", "p + P dq is p at the end of the step", 0,
+                     lambda k, s, t, j: k("point", s, e=s["e_next"], s=s["s_next"])["p"], of=over_step),
+            Relation("discrete_point", "P", "dp by e, s1, s2, over no step", 1, along(of("point", "p"), coordinates), n,
+                     of=lambda k, s: k("discrete_point", s, e_next=s["e"], s_next=s["s"])["P"]),
+            Relation("point", "p", "Σ N d at 50 digits, at the same place in the material", 0, root(place)),
             Relation("point", "P", "dp by e, s1, s2", 1, along(of("point", "p"), coordinates), n),
             Relation("point", "velocity", "dp/dt", 1, moving),
             Relation("point", "bias", "d²p/dt² at zero second rates", 2, moving),

@@ -13,12 +13,15 @@ from typing import Any
 import numpy as np
 
 from ...codegen.family import SlideFamily
-from ...couplings.slide import N_ENDS
+from ...couplings.slide import DISCRETE_GRADIENT, FLOWING_GRADIENT, N_ENDS
 from ..methods import Relation
 from ..motion import RIDERS, frame, swung
 from ..numbers import Numbers, State
 from ..references import element as reference
 from .paths import unit
+
+FLOW = 0.2
+"""m: of s1 in a step."""
 
 
 class Curve:
@@ -41,6 +44,7 @@ class Paths:
         self.element, self.rider, self.flows = family.element, RIDERS[family.rider], family.flows
         self.n_e = self.element.n_coordinates + N_ENDS * family.flows
         self.n = self.n_e + self.rider.n_velocity
+        self.changing = "xebl" if family.flows else "xeb"
 
     def moved(self, k: Numbers, s: State, motion_e: np.ndarray, motion_b: np.ndarray) -> State:
         """Return e and b, and l and x of the same material where nodes flow, after a motion of cable and rider."""
@@ -127,14 +131,16 @@ class Paths:
     # --- over a step --------------------------------------------------------------------------------------------
 
     def step(self, s: State) -> np.ndarray:
-        """Return the change over a step, over (e, rider, s)."""
-        return np.concatenate([(s["e_next"] - s["e"]).ravel(), self.rider.step(s["b"], s["b_next"]),
-                               [s["x_next"].item() - s["x"].item()]])
+        """Return the change over a step, over (e, rider, s); s1 and s2 of a rope both move by `FLOW` more."""
+        change = s["x_next"].item() - s["x"].item()
+        ends = [FLOW, FLOW + (s["l_next"].item() - s["l"].item())] if self.flows else []
+        return np.concatenate([(s["e_next"] - s["e"]).ravel(), ends, self.rider.step(s["b"], s["b_next"]),
+                               [change + FLOW * self.flows]])
 
     def swept(self, k: Numbers, s: State, t: Any, j: int) -> np.ndarray:
         """Return the change of the gap over a step as seen from a frame that turns with the rider."""
         here, there = (self.reference_gap(k, end, t, j)
-                       for end in (s, s | {name: s[f"{name}_next"] for name in "xeb"}))
+                       for end in (s, s | {name: s[f"{name}_next"] for name in self.changing}))
         turn = self.rider.turn(s["b"], self.step(s)[self.n_e : self.n])
         return there - here - swung(turn, (here + there) / 2)
 
@@ -168,18 +174,17 @@ def slide(family: SlideFamily) -> list[Relation]:
             Relation("residual", "phi", "r - p at 50 digits", 0, p.reference_gap),
             Relation("residual", "g", "d(f . phi) by (e, rider, s)", 1,
                      p.lagrangian(lambda k, s, **q: gap(k, s, **q).dot(s["f"])), n + 1),
-            *([] if family.flows else _over_a_step(p)),
+            *_over_a_step(p, FLOWING_GRADIENT if family.flows else DISCRETE_GRADIENT),
             Relation("tangent", "J", "dphi by (e, rider, s)", 1, p.lagrangian(gap), n + 1),
             Relation("tangent", "K", "dg by (e, rider, s)", 1,
                      p.lagrangian(lambda k, s, **q: k("residual", s, **q)["g"]), n + 1)]
 
 
-def _over_a_step(p: Paths) -> list[Relation]:
-    return [Relation("discrete_gradient", "G", "G step is the change of phi seen from the rider", 0, p.swept,
-                     of=lambda k, s: k("discrete_gradient", s)["G"].dot(p.step(s))),
-            Relation("discrete_gradient", "G", "derivatives of phi seen from the rider, over no step", 1, p.seen,
-                     p.n + 1,
-                     of=lambda k, s: k("discrete_gradient", s, **{f"{name}_next": s[name] for name in "xeb"})["G"])]
+def _over_a_step(p: Paths, kernel: str) -> list[Relation]:
+    return [Relation(kernel, "G", "G step is the change of phi seen from the rider", 0, p.swept,
+                     of=lambda k, s: k(kernel, s)["G"].dot(p.step(s))),
+            Relation(kernel, "G", "derivatives of phi seen from the rider, over no step", 1, p.seen, p.n + 1,
+                     of=lambda k, s: k(kernel, s, **{f"{name}_next": s[name] for name in p.changing})["G"])]
 
 
 def _of_constraint(p: Paths) -> list[Relation]:

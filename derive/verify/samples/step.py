@@ -17,6 +17,7 @@ def following(family: Family, state: State, random: np.random.Generator) -> Stat
         e = state["e"] @ rotation(random, family.element.dim, angle=0.3).T
         found["e_next"] = e + 0.05 * random.normal(size=e.shape)
         found["x_next"] = np.float64(state["x"] + 0.1 * LENGTH)
+        found["l_next"] = np.float64(1.07 * state["l"]) if getattr(family, "flows", False) else state["l"]
     if family.rider:
         rider = RIDERS[family.rider]
         found["b_next"] = rider.moved(np, state["b"], 0.2 * random.normal(size=rider.n_velocity))
