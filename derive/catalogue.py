@@ -69,7 +69,7 @@ def _slide(element: Element, rider: Rider, flows: bool = False) -> SlideFamily:
                        partial(slide.build, name, element, rider, flows),
                        ("couplings.slide", f"elements.{element.name}",
                         "bodies.point" if isinstance(rider, Point) else f"bodies.{rider.NAME}"),
-                       group="slide", role="slide", 
+                       group="slide", role="slide",
                        missing=(slide.DISCRETE_GRADIENT if flows else slide.FLOWING_GRADIENT,),
                        facts={"coordinates": element.n_coordinates + slide.N_ENDS * flows + rider.N_VELOCITY,
                               "dim": element.dim},

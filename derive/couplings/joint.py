@@ -177,8 +177,7 @@ def motion(dim: int, name: str) -> Program:
 
 
 def discrete(dim: int, name: str) -> Program:
-    """Return the kernel of the Jacobian over a step, of equations of the gap alone: phi_next - phi = J (gap_next - gap).
-    """
+    """Return the kernel of the Jacobian of equations of the gap alone: phi_next - phi = J (gap_next - gap)."""
     p = Program(f"joint_{name}_discrete", "Jacobian of the equations over a step that conserves energy",
                 "Gonzalez, Comput. Methods Appl. Mech. Eng. 174 (1999) 165-174")
     gap = p.input("gap", dim, "m", "p_2 - p_1 at the start of the step")

@@ -10,7 +10,6 @@ the cable, after e. The slide's s counts along the material, so that x = s - s1 
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Any
 
 import numpy as np

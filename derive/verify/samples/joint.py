@@ -15,7 +15,8 @@ def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) 
     dim, turns = family.dim, TURNS[family.dim]
     c = random.uniform(0.3, 1.2)
     step = random.spawn(1)[0]  # the other numbers stay as they are without it
-    return {"gap_next": step.normal(size=dim), "gap": random.normal(size=dim), "A1": _attitude(random, dim), "A2": _attitude(random, dim),
+    return {"gap_next": step.normal(size=dim), "gap": random.normal(size=dim),
+            "A1": _attitude(random, dim), "A2": _attitude(random, dim),
             "c": np.array([c, np.cos(c), np.sin(c)]), "f": random.normal(size=family.facts["rows"]),
             "gap_rate": random.normal(size=dim), "c_rate": random.normal(size=2),
             "omega1": random.uniform(0.5, 1.5, turns), "omega2": -random.uniform(0.5, 1.5, turns)}

@@ -130,8 +130,6 @@ cdef extern from * nogil:
         const fu_supply_operations *supply
         const fu_start_operations *start
         void (*residual)(const fu_model *model, const fu_coupling *coupling, const void *at, double *f, double *internal)
-        void (*step_residual)(const fu_model *model, const fu_coupling *coupling, const void *at, double *f,
-                              double *internal)
         void (*outputs)(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                         const double *acceleration, const void *work, double *out)
     ctypedef struct fu_coupling:
@@ -145,6 +143,7 @@ cdef extern from * nogil:
     const fu_coupling_type *fu_coupling_type_of(const char *name)
     const fu_coupling_type *fu_coupling_type_at(size_t k)
     int fu_n_outputs(const fu_coupling_type *type)
+    int fu_has_step(const fu_coupling *coupling)
     void fu_bind_events(fu_coupling *coupling)
     ctypedef struct fu_joint:
         fu_coupling base

@@ -19,7 +19,7 @@ cdef class Report(Statics):
     def without_step_equations(self):
         """Return the numbers of the couplings with equations at an instant, but not over a step that conserves energy."""
         return [i for i in range(self.model.n_couplings)
-                if self.couplings[i].type.residual != NULL and self.couplings[i].type.step_residual == NULL]
+                if self.couplings[i].type.residual != NULL and not fu_has_step(self.couplings[i])]
 
     @property
     def breakpoints_passed(self):

@@ -18,8 +18,6 @@ from ...integrators import AUTO, INTEGRATORS, Demands, Explicit, Integrator, Rad
 from ...kernels.libraries import of_library
 from ...model.model import Model
 from ...model.taut_ropes import TautPointModel
-from ...parts.locations import grips
-from ...parts.part import Part
 from ...parts.rope import rough_sheaves
 from ...parts.rope_items import Drum
 from ...parts.scene_data import SceneData
@@ -229,7 +227,7 @@ def _take_another(capability: str) -> str:
 
 
 def _check_ropes(integrator: Integrator, scene: SceneData) -> None:
-    """Raise SceneError for ropes without equations over a step that conserves energy, and for what holds to them."""
+    """Raise SceneError for ropes without equations over a step that conserves energy."""
     who, another = f'integrator "{integrator.name}"', "take another integrator"
     for rope in scene.ropes.values():
         if not rope.mass:
@@ -246,14 +244,6 @@ def _check_ropes(integrator: Integrator, scene: SceneData) -> None:
             if not item.contact:
                 raise SceneError(rope.where, f"{who} does not support {item.where}, which the rope touches in a run",
                                  f"draw the rope on it, or {another}")
-    for part, _, end in grips(scene):
-        raise SceneError(part.where, f'{who} does not support what acts on a point of a rope, and it acts on '
-                         f'"{end.on}"', another)
-    along: list[Part] = [*scene.slides.values(), *scene.drags.values(), *scene.loads.values()] if scene.ropes else []
-    for part in along:
-        if on := next((name for name in part.refers_to() if name in scene.ropes), None):
-            raise SceneError(part.where, f'{who} does not support what acts along a rope, and it acts on "{on}"',
-                             another)
 
 
 def _check_gradients(integrator: Integrator, scene: SceneData, model: Model, engine: Engine) -> None:

@@ -49,9 +49,13 @@ static inline void fu_turn_in_space(int dim, const double *turn, double out[3])
 int fu_attachment_coordinates(const fu_model *model, const fu_attachment *on, const fu_state *state, int *at);
 void fu_attachment_at(const fu_model *model, const fu_attachment *on, const fu_state *state, double s_rate, int what,
                       fu_attachment_state *out);
-/* Computes, of an attachment on a body, P over a step: P psi is the displacement of its point. Other points keep P. */
+/* Computes, of an attachment on a body, P over a step: P psi is the displacement of its point. Points of cables and
+ * nodes keep P. */
 void fu_discrete_point(const fu_model *model, const fu_attachment *on, const fu_state *now, const fu_state *next,
                        double *P);
+/* Adds `factor` times a force on a point over a step to f: its work is that on the displacement of the point. */
+void fu_add_point_over_step(const fu_model *model, const fu_attachment *on, const fu_state *now, const fu_state *next,
+                            const double *force, double factor, double *f);
 /* Computes K (n x n), the derivative by the attachment's coordinates of P' f + T' m at a fixed force f and moment m,
  * and those of velocity and angular velocity at fixed rates, where these are known: on a body, and of the velocity on a
  * rope. All but K may be null. */

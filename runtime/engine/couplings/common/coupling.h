@@ -191,6 +191,8 @@ struct fu_coupling_type {
                           double *internal);
     void (*step_tangent)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system);
     double (*step_dissipation)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
+    /* Returns whether a coupling has them. Null: all that have step_residual do. */
+    int (*has_step)(const fu_coupling *coupling);
 
     /* Computes the constraint rows of accelerations (eq 38), H and W among them, in work->rows[coupling->row]. */
     void (*rows)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work);

@@ -30,6 +30,12 @@ int fu_n_outputs(const fu_coupling_type *type)
     return output ? output->first : 0;
 }
 
+int fu_has_step(const fu_coupling *coupling)
+{
+    const fu_coupling_type *type = coupling->type;
+    return type->step_residual && (!type->has_step || type->has_step(coupling));
+}
+
 void fu_number_couplings(fu_coupling *const *couplings, int n, const fu_coupling **lists, fu_model *model)
 {
     model->couplings = (const fu_coupling *const *)couplings;

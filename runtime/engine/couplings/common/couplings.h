@@ -40,6 +40,7 @@ void fu_take_forces(const fu_model *model, const fu_accelerator *work, fu_state 
 void fu_coupling_outputs(const fu_model *model, const fu_state *state, const double *acceleration,
                          const fu_accelerator *work, double *out);
 int fu_n_outputs(const fu_coupling_type *type); /* the length of `out` of one coupling */
+int fu_has_step(const fu_coupling *coupling);   /* whether it has equations over a step that conserves energy */
 void fu_gaps(const fu_model *model, const fu_state *state, double *gaps);
 void fu_coordinate_rates(const fu_model *model, const fu_accelerator *work, double *rates);
 int fu_may_start_open(const fu_model *model, const fu_state *state);

@@ -76,27 +76,40 @@ static void add_by_ends(const fu_line_load *load, const fu_span_element *it, con
     }
 }
 
-static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
+/* Subtracts stiffness times the derivatives of the load from a system. */
+static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double stiffness,
+                   fu_system *system)
 {
     const fu_line_load *load = load_of(coupling);
     const int n = load->on.kernel->coordinates, all = n + ENDS;
     const double none[9] = {0.0};
     double F[3], D[LOCAL * LOCAL], K[LOCAL * LOCAL], local[LOCAL][LOCAL];
     loaded_part part;
-    force_of_length(model, load, at->next->t, F);
+    force_of_length(model, load, state->t, F);
     for (int k = 0; k < load->on.n_elements; ++k) {
-        const fu_span_element it = fu_span_element_at(model, &load->on, k, at->next->q, 0, 0);
+        const fu_span_element it = fu_span_element_at(model, &load->on, k, state->q, 0, 0);
         if (!part_of(load, &it, &part)) continue;
         const double length = part.share[1] - part.share[0];
         memset(local, 0, sizeof local);
         for (int g = 0; g < POINTS; ++g) {
             load->on.kernel->line_force_tangent(WEIGHT * length, it.l, it.e, it.v, it.s_rate,
                                                 part.share[0] + length * PLACES[g], F, none, none, none, D, K);
-            fu_add_by_length(all, n, -at->weights.stiffness, K, local);
+            fu_add_by_length(all, n, -stiffness, K, local);
         }
-        add_by_ends(load, &it, &part, F, -at->weights.stiffness, local);
+        add_by_ends(load, &it, &part, F, -stiffness, local);
         fu_add_span_matrix(model, &load->on, &it, local, system);
     }
+}
+
+static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
+{
+    matrix(model, coupling, at->next, at->weights.stiffness, system);
+}
+
+/* The middle moves by half of psi, which is in weights.stiffness. */
+static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
+{
+    matrix(model, coupling, at->middle, at->weights.stiffness, system);
 }
 
 static const fu_field fields[] = {
@@ -108,5 +121,9 @@ static const fu_field fields[] = {
 };
 
 static const fu_supply_operations supply = {.force = force};
-const fu_coupling_type fu_line_load_type = {
-    .name = "line load", .size = sizeof(fu_line_load), .fields = fields, .supply = &supply, .tangent = tangent};
+const fu_coupling_type fu_line_load_type = {.name = "line load",
+                                            .size = sizeof(fu_line_load),
+                                            .fields = fields,
+                                            .supply = &supply,
+                                            .tangent = tangent,
+                                            .step_tangent = step_tangent};

@@ -92,38 +92,54 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     }
 }
 
-/* --- the end of a rope over a step that conserves energy -------------------------------------------------------- */
+/* --- joints of points over a step that conserves energy --------------------------------------------------------- */
 
-/* The gap of two points has the discrete derivatives of their places. */
-static void anchor_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations,
-                                 double *f, double *internal)
+/* The equations at the end of the step. Their change is the discrete Jacobian by the gap times the change of the gap,
+ * which has the discrete derivatives of the places: multipliers do no work. */
+static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, double *f,
+                          double *internal)
 {
     const fu_joint *joint = (const fu_joint *)coupling;
+    const int rows = joint->kernel->rows, dim = model->dim;
     const double *multipliers = equations->next->forces + coupling->force;
-    double gap[3] = {0.0};
+    double gaps[2][3] = {{0.0}}, J[3 * 3], force[3] = {0.0};
+    fu_joint_rows_at at;
     for (int e = 0; e < 2; ++e) {
-        const fu_attachment *on = &joint->attachments[e];
-        const double sign = e ? 1.0 : -1.0;
-        fu_attachment_state at;
-        fu_attachment_at(model, on, equations->next, 0.0, FU_PLACE, &at);
-        for (int d = 0; d < model->dim; ++d) gap[d] += sign * at.p[d];
-        fu_discrete_point(model, on, equations->now, equations->next, at.P);
-        for (int d = 0; d < model->dim; ++d)
-            for (int i = 0; i < at.n; ++i) f[at.at[i]] += sign * multipliers[d] * at.P[d * at.n + i];
+        const fu_state *states[2] = {equations->now, equations->next};
+        for (int k = 0; k < 2; ++k) {
+            fu_attachment_state end;
+            fu_attachment_at(model, &joint->attachments[e], states[k], 0.0, FU_PLACE, &end);
+            for (int d = 0; d < dim; ++d) gaps[k][d] += e ? end.p[d] : -end.p[d];
+        }
     }
-    for (int d = 0; d < model->dim; ++d)
-        internal[coupling->unknown + d] = -fu_row_unit(equations->weights.inertia, coupling->scale[d]) * gap[d];
+    joint->kernel->discrete(gaps[0], gaps[1], J);
+    for (int r = 0; r < rows; ++r)
+        for (int d = 0; d < dim; ++d) force[d] += J[r * dim + d] * multipliers[r];
+    for (int e = 0; e < 2; ++e)
+        fu_add_point_over_step(model, &joint->attachments[e], equations->now, equations->next, force, e ? 1.0 : -1.0,
+                               f);
+    fu_joint_equations(model, joint, equations->next, &at);
+    for (int r = 0; r < rows; ++r)
+        internal[coupling->unknown + r] = -fu_row_unit(equations->weights.inertia, coupling->scale[r]) *
+                                          (joint->redundant_rows >> r & 1 ? 0.0 : at.phi[r]);
 }
 
 /* Adds the derivatives by those half-way. */
-static void anchor_step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations,
-                                fu_system *system)
+static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations,
+                         fu_system *system)
 {
     fu_state middle = *equations->middle;
     fu_equations half_way = *equations;
     middle.forces = equations->next->forces;
     half_way.next = &middle;
     tangent(model, coupling, &half_way, system);
+}
+
+/* Returns whether the joint has equations over a step: the gap at a drive moves for itself. */
+static int has_step(const fu_coupling *coupling)
+{
+    const fu_joint *joint = (const fu_joint *)coupling;
+    return joint->kernel->discrete && joint->signal < 0;
 }
 
 static void gaps(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *phi)
@@ -186,7 +202,7 @@ static const fu_output output_fields[] = {
 
 static const fu_start_operations start = {.may_be_open = may_be_open};
 
-#define TYPE(kind, ...)                                                                                                \
+#define TYPE(kind)                                                                                                     \
     {.name = kind,                                                                                                     \
      .size = sizeof(fu_joint),                                                                                         \
      .fields = fields,                                                                                                 \
@@ -198,8 +214,9 @@ static const fu_start_operations start = {.may_be_open = may_be_open};
      .outputs = outputs,                                                                                               \
      .gaps = gaps,                                                                                                     \
      .start = &start,                                                                                                  \
-     __VA_ARGS__}
+     .step_residual = step_residual,                                                                                   \
+     .step_tangent = step_tangent,                                                                                     \
+     .has_step = has_step}
 
-const fu_coupling_type fu_joint_type = TYPE("joint", );
-const fu_coupling_type fu_anchor_type = /* between the end of a rope and a body */
-    TYPE("anchor", .step_residual = anchor_step_residual, .step_tangent = anchor_step_tangent);
+const fu_coupling_type fu_joint_type = TYPE("joint");
+const fu_coupling_type fu_anchor_type = TYPE("anchor"); /* between the end of a rope and a body */

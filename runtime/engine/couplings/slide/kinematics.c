@@ -62,15 +62,17 @@ static void look(const fu_model *model, const fu_state *state, int j, slide_view
     view->u = no_arm;
 }
 
-/* Converts n derivatives by both ends of the element of a rope, `first` and those beside it by `beside`, each `stride`
- * apart, to those by the ends of the span; on a cable there are none. */
+void fu_slide_to_ends_of_span(const fu_slide *slide, int element, double *derivatives, int n, int stride, int beside)
+{
+    if (!slide->on.kernel) return;
+    double *first = derivatives + slide->on.kernel->coordinates * beside;
+    fu_to_ends_of_span(&slide->on, element, first, first + beside, n, stride);
+}
+
 static void to_ends_of_span(const fu_model *model, const fu_state *state, int j, double *derivatives, int n, int stride,
                             int beside)
 {
-    const fu_span_elements *on = &model->slides[j].on;
-    if (!on->kernel) return;
-    double *first = derivatives + on->kernel->coordinates * beside;
-    fu_to_ends_of_span(on, state->segment[j], first, first + beside, n, stride);
+    fu_slide_to_ends_of_span(&model->slides[j], state->segment[j], derivatives, n, stride, beside);
 }
 
 /* Expands rows over (element, point, `more`) to rows over (element, rider, `more`). */

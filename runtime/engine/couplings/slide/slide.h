@@ -74,6 +74,9 @@ fu_slide_state *fu_slide_state_of(const fu_model *model, const fu_accelerator *w
 
 int fu_slide_coordinates(const fu_model *model, const fu_state *state, int j, int *at);
 double fu_slide_locked_s(const fu_model *model, const fu_state *state, int j, double *rate, double *second);
+/* Converts n derivatives by both ends of an element of a rope, `first` and those beside it by `beside`, each `stride`
+ * apart, to those by the ends of the span; on a cable there are none. */
+void fu_slide_to_ends_of_span(const fu_slide *slide, int element, double *derivatives, int n, int stride, int beside);
 void fu_slide_residual(const fu_model *model, const fu_state *state, int j, double *phi, double *g);
 void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const double *f, double *J, double *K);
 void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows *rows, fu_slide_state *slide_state);
