@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from ..errors import SceneError, near
 from ..parts.cable import Cable
+from ..parts.end_stops import Buffer, Stop
+from ..parts.rope_items import Anchor, Drum
 from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
+from ..parts.validation import show
 from .placement import cable_at, check_has_mass
 from .rope_line import RopeLine, rope_line
 
@@ -38,11 +41,19 @@ def check_on_line(scene: SceneData, slide: Slide, line: Line, s: float) -> None:
 
 
 def check_possible_on_rope(slide: Slide, line: RopeLine) -> None:
-    """Raise SceneError for what slides on ropes do not have: a frame, and stops at ends."""
+    """Raise SceneError for what a slide with s on a rope does not have: a frame, and some stops at ends of its span."""
     if slide.frame != "point":
         raise SceneError(slide.where, f'frame "{slide.frame}" needs the axes of a cable, which {line.where} does not '
                          "have", 'take frame="point"')
-    for name in ("at_start", "at_end"):
-        if getattr(slide, name) != "error":
-            raise SceneError(slide.where, f"{name}: {line.where} has no stops, its spans end at sheaves, drums and "
-                             "anchors, where the run ends", "leave it out")
+    number = line.rope.span_at(line.route, slide.arc_length)
+    for name, item in zip(("at_start", "at_end"), line.rope.ends_of_spans[number], strict=True):
+        stop = getattr(slide, name)
+        if isinstance(stop, Stop) and not isinstance(item, Anchor):
+            raise SceneError(slide.where, f"{name}: the span of {line.where} ends at {item.where}, where the material "
+                             "runs past a stop", 'take "error", "leave", or an event that stops the run')
+        if isinstance(stop, Buffer) and stop.length > (length := line.route.spans[number].length):
+            raise SceneError(slide.where, f"{name}: the buffer's length must not exceed that of its span of "
+                             f'{line.where}, {show(length, "m")}, got {show(stop.length, "m")}')
+        if stop != "error" and isinstance(item, Drum) and item.at_end == "leave":
+            raise SceneError(slide.where, f"{name}: {item.where} lets the rope leave, and its free end has no stops",
+                             f'leave {name} out, or give the drum at_end="stop"')

@@ -38,8 +38,8 @@ def placed_slide(scene: SceneData, slide: Slide) -> Slide:
         slide = _framed(scene, slide.completed({"s": min(max(s, 0.0), line.length)}), line)
         _check_buffers(slide, line)
     else:
-        check_possible_on_rope(slide, line)
         slide = slide.completed({"s": s})
+        check_possible_on_rope(slide, line)
     _check_drive(slide, line)
     return _seated(scene, slide, line)
 

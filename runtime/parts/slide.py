@@ -20,10 +20,11 @@ class Slide(Part):
     """A sliding joint: a point of a body, of another cable or of the ground rides the centreline of a cable or a rope.
 
     Along a rope s is stress-free and material, from the first end as drawn: a rider with constant s moves with it. The
-    slide runs within one span, past ends of elements; at a sheave, a drum or an anchor the run ends with a
-    RopeLeftError. Friction and ``traction`` are those on the material. There the frame is "point", and stops and the
-    integrator "energy" are not supported. The rope is rounded under a rider: its path is off in proportion to the
-    length of elements, and without friction it may rest beside the lowest place.
+    slide runs within one span, past ends of elements. Its ends are those of the span, at a sheave, a drum or an anchor:
+    "error" ends the run with a RopeLeftError, "leave" lets the rider go, and a `HardStop` or a `Buffer` may stand at an
+    anchor. Friction and ``traction`` are those on the material. There the frame is "point". The rope is rounded under a
+    rider: its path is off in proportion to the length of elements, and without friction it may rest beside the lowest
+    place.
 
     body: the rider: a body; ("link", s), the point of another cable or rope; or a point (x, y, z) of the ground, an
         eyelet through which the cable slides
@@ -39,7 +40,7 @@ class Slide(Part):
     drive: s over time as a signal, m, prescribed for any force
     velocity: rate of s as a signal, m/s, in the place of ``drive``
     friction: a coefficient, or a `Friction`
-    at_start, at_end: at the ends of the cable: "error", "leave" (the cable), a `HardStop` or a `Buffer`
+    at_start, at_end: at the ends of the cable, or of the span: "error", "leave" (the cable), a `HardStop` or a `Buffer`
     """
 
     kind = "slide"

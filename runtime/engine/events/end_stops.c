@@ -4,6 +4,7 @@
  * slip_direction is the direction of sliding. For friction that sticks at rest it is known, since its change is an
  * event. */
 #include "couplings/joint/joint.h"
+#include "couplings/rope/rope.h"
 #include "couplings/slide/slide.h"
 #include "equations/equations.h"
 #include "equations/run.h"
@@ -170,6 +171,16 @@ static int strike(fu_run *run, int j, int side)
     return FU_RUNNING;
 }
 
+/* Returns whether the span of a slide ends on a side at a sheave that the rope has left. */
+static int ends_in_the_air(const fu_run *run, const fu_slide *slide, int side)
+{
+    FU_EACH_COUPLING(c, run->model->couplings, run->model->n_couplings)
+        if (c->type == &fu_sheave_type && fu_wrap_is_beside_span(c, slide->on.s[side > 0]) &&
+            fu_wrap_has_left(c, &run->now))
+            return 1;
+    return 0;
+}
+
 /* Executes the action of the end of the cable, or of the span of a rope, on a slide that moves outwards there; returns
  * a status. */
 int fu_reach_end(fu_run *run, const fu_coupling *coupling, int side, const char **what)
@@ -177,7 +188,9 @@ int fu_reach_end(fu_run *run, const fu_coupling *coupling, int side, const char 
     const fu_slide *slide = (const fu_slide *)coupling;
     const int j = coupling->index, kind = slide->stops[side > 0].kind;
     fu_slide_flags *flags = fu_slide_flags_of(run->model, &run->now, j);
-    if (slide->cable < 0) return fu_leave(run, coupling, side > 0 ? FU_LEFT_BY_LAST_GRIP : FU_LEFT_BY_GRIP);
+    const int acts = slide->drive < 0 && (kind == FU_END_IS_OPEN || kind == FU_END_IS_HARD);
+    if (slide->cable < 0 && (!acts || ends_in_the_air(run, slide, side)))
+        return fu_leave(run, coupling, side > 0 ? FU_LEFT_BY_LAST_GRIP : FU_LEFT_BY_GRIP);
     if (kind == FU_END_IS_OPEN) {
         flags->mode = FU_LEFT;
         flags->slip_direction = flags->contact = 0;

@@ -18,10 +18,10 @@ static const fu_slide *slide_of(const fu_coupling *coupling)
 }
 
 /* The path is a span of a rope: nodes have constant shares of its length. */
-static fu_path path_of_span(const fu_span_elements *on, const fu_state *state)
+static fu_path path_of_span(const fu_span_elements *on, const fu_state *state, int n)
 {
     const int first = on->s[0], last = on->s[1];
-    return (fu_path){.n = on->n_elements,
+    return (fu_path){.n = n,
                      .length = 1.0 / on->n_elements,
                      .boundaries = on->share,
                      .origin = state->q[first],
@@ -30,13 +30,13 @@ static fu_path path_of_span(const fu_span_elements *on, const fu_state *state)
                      .unit_rate = state->v[last] - state->v[first]};
 }
 
-/* The path is the cable; a slide that has left it is on no element. */
+/* The path is the cable or the span; a slide that has left it is on no element. */
 static fu_path path_at(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     const fu_slide *slide = slide_of(coupling);
-    if (slide->cable < 0) return path_of_span(&slide->on, state);
-    const fu_cable *cable = &model->cables[slide->cable];
     const int left = fu_slide_flags_of(model, state, coupling->index)->mode == FU_LEFT;
+    if (slide->cable < 0) return path_of_span(&slide->on, state, left ? 0 : slide->on.n_elements);
+    const fu_cable *cable = &model->cables[slide->cable];
     return (fu_path){
         .n = left ? 0 : cable->n_elements, .length = cable->length, .boundaries = cable->nodes, .unit = 1.0};
 }

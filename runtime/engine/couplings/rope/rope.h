@@ -17,7 +17,7 @@ typedef struct {
     int is_gripped;      /* whether joints or springs hold to material points within it */
     double grips[2];     /* m: the first and the last material coordinate of these */
 } fu_span_coupling;
-extern const fu_coupling_type fu_span_type;
+extern const fu_coupling_type fu_span_type, fu_sheave_type;
 
 /* Return how far a rope is from leaving: its wrap above the least one, rad, of a short wrap above zero, or of a rope
  * that has left its distance from touching, m; the least normal force, times the radius on an angle, N; the length of a
@@ -27,11 +27,12 @@ extern const fu_coupling_type fu_span_type;
  */
 double fu_wrap_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int may_change);
 double fu_wrap_growth_margin(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
-/* Return whether a rope may leave a sheave and touch it again; whether it has left; whether its wrap stretches; and
- * whether it has left after the change of the sheave's mode where its wrap margin, or the one of growth, has reached
- * zero. */
+/* Return whether a rope may leave a sheave and touch it again; whether it has left; whether a span with this dof of s
+ * at an end ends at the sheave; whether its wrap stretches; and whether it has left after the change of the sheave's
+ * mode where its wrap margin, or the one of growth, has reached zero. */
 int fu_wrap_may_leave(const fu_coupling *coupling);
 int fu_wrap_has_left(const fu_coupling *coupling, const fu_state *state);
+int fu_wrap_is_beside_span(const fu_coupling *coupling, int s);
 int fu_wrap_stretches(const fu_coupling *coupling, const fu_state *state);
 int fu_wrap_change(const fu_model *model, const fu_coupling *coupling, fu_state *now, int grows);
 /* Returns whether a rope in space that is about to leave a sheave, or to touch it again, does so beside the plane of

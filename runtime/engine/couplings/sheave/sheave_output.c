@@ -146,6 +146,12 @@ int fu_wrap_has_left(const fu_coupling *coupling, const fu_state *state)
     return *fu_wrap_flag(sheave_of(coupling), state) == FU_LIFTED;
 }
 
+int fu_wrap_is_beside_span(const fu_coupling *coupling, int s)
+{
+    const fu_sheave *sheave = sheave_of(coupling);
+    return s == sheave->s[0] || s == sheave->s[sheave->n_zones];
+}
+
 int fu_wrap_change(const fu_model *model, const fu_coupling *coupling, fu_state *now, int grows)
 {
     const fu_sheave *sheave = sheave_of(coupling);
