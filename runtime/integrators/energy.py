@@ -15,9 +15,11 @@ class EnergyMomentum(Integrator):
 
     Ropes with mass over sheaves have the momenta of their material as a state (derive/couplings/material_step.py), and
     their kinetic energy is that of these momenta; in space on bodies that turn, too (derive/couplings/turning_step.py).
-    A run ends where a rope leaves its sheave. Friction that sticks is held by the sliding over each step. With a fixed
-    step that does not resolve the vibrations of a light wheel, points may stick and slide at one instant without end,
-    which ends the run with an error: with tol the steps resolve them.
+    A run ends where a rope leaves its sheave. Friction that sticks is held by the sliding over each step. Where steps
+    do not resolve the vibrations of a light wheel, above all fixed ones, points may stick and slide at one instant
+    without end, which ends the run with an error. On ropes act spherical and distance joints, springs, slides, forces,
+    loads and drag; where a rope in space flows past a joint or a spring, the angular momentum has an error of second
+    order in the step.
 
     With a spectral radius below 1 at infinite frequency it keeps only momenta, and algorithmic dissipation damps fast
     vibrations of cables (engine/integrators/algorithmic_dissipation.c).

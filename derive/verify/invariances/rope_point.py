@@ -76,11 +76,11 @@ def _step(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]:
         ends = (k("point", s), k("point", s | {"e": step["e_next"], "s": step["s_next"]}))
         if dim == 2 or said:
             moment = _moment((step["e"] + step["e_next"]) / 2, forces)
-            of_point = _moment(sum(end["p"] for end in ends)[None] / 2, s["f"][None])
+            of_point = _moment((ends[0]["p"] + ends[1]["p"])[None] / 2, s["f"][None])
             yield f"step{said}: moment is that of the mean place", relative(moment - of_point, forces), 64 * EPS
 
 
 def _moment(arms: np.ndarray, forces: np.ndarray) -> np.ndarray:
     if arms.shape[1] == 2:
         return np.array([np.sum(arms[:, 0] * forces[:, 1] - arms[:, 1] * forces[:, 0])])
-    return np.sum(np.cross(arms, forces), axis=0)
+    return np.asarray(np.sum(np.cross(arms, forces), axis=0))
