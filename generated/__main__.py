@@ -105,6 +105,7 @@ SOURCES = (
     "surface.c",
     "planar_surface.c",
     "tangent_point.c",
+    "taut_part.c",
     "planar_taut_rope.c",
     "registry.c",
 )

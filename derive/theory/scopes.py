@@ -497,6 +497,14 @@ def taut_rope_scope(name: str) -> Scope:
     return Scope(families()[name], (Symbol(r"\mathbf{d}", "d", column), *numbers, *ends))
 
 
+def taut_part_scope(name: str) -> Scope:
+    """Return the scope of a straight part of a rope without mass in space."""
+    ends = [Symbol(rf"{latex}_{{{k + 1}}}", argument, entry(k)) for latex, argument in (
+        ("b", "angle"), (r"\rho", "reach"), ("R", "R")) for k in range(2)]
+    return Scope(families()[name], (Symbol(r"\mathbf{d}", "d", column), *ends, Symbol(r"\mathbf{A}_{1}", "one", matrix),
+                                    Symbol(r"\mathbf{A}_{2}", "other", matrix)))
+
+
 def scope(role: str, name: str) -> Scope:
     """Return the scope of a family: the function of this module called as its role makes it."""
     found: Scope = globals()[f"{role}_scope"](name)
