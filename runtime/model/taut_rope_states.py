@@ -10,7 +10,7 @@ import numpy as np
 from .model import Model
 from .rope_model import RopeModel
 from .rope_states import points_of_spans
-from .states import attachment_points, spatial
+from .states import attachment_axes, attachment_points, spatial
 from .taut_ropes import TautPointModel, TautRopeModel, points_of_rope
 
 Outputs = Callable[[str, int], dict[str, np.ndarray]]
@@ -19,11 +19,13 @@ Outputs = Callable[[str, int], dict[str, np.ndarray]]
 
 @dataclass
 class _Point:
-    """A point of a rope in T states: centre (T, 2) in m; the rope's angle before and after it, rad, (T,); radius with
-    the sense as sign, m; whether the rope touches it (T,); where the rope runs on and off (T, 2), m.
+    """A point of a rope in T states: centre (T, dim) in m; the plane of its groove (T, dim, 2); the rope's angle before
+    and after it, rad, (T,); radius with the sense as sign, m; whether the rope touches it (T,); where the rope runs on
+    and off (T, dim), m.
     """
 
     centre: np.ndarray
+    groove: np.ndarray
     before: np.ndarray
     after: np.ndarray
     radius: float
@@ -32,9 +34,10 @@ class _Point:
     off: np.ndarray
     outputs: dict[str, np.ndarray]
 
-    def on_circle(self, angle: np.ndarray) -> np.ndarray:
-        """Return (T, 2): the tangent point of a straight part of an angle, m."""
-        made: np.ndarray = self.centre + self.radius * np.stack([np.sin(angle), -np.cos(angle)], axis=1)
+    def on_circle(self, angle: np.ndarray, fleet: np.ndarray | float = 0.0) -> np.ndarray:
+        """Return (T, dim): the tangent point of a straight part of an angle, and of a fleet angle, rad, in m."""
+        out = self.radius / np.cos(fleet) * np.stack([np.sin(angle), -np.cos(angle)])
+        made: np.ndarray = self.centre + np.einsum("tdk,kt->td", self.groove, out)
         return made
 
 
@@ -71,10 +74,21 @@ def taut_rope_state(model: Model, rope: RopeModel, q: np.ndarray, outputs: Outpu
 def _point(model: Model, point: TautPointModel, q: np.ndarray, outputs: dict[str, np.ndarray]) -> _Point:
     centre = attachment_points(model, point.attachments[0], q)[:, : model.dim]
     before, after = outputs["angle_on"], outputs["angle_off"]
-    made = _Point(centre, before, after, point.radius, outputs["touches"] > 0, centre, centre, outputs)
-    made.on, made.off = made.on_circle(before), made.on_circle(after)
+    groove = grooves(model, point, q)
+    made = _Point(centre, groove, before, after, point.radius, outputs["touches"] > 0, centre, centre, outputs)
+    made.on = made.on_circle(before, outputs["fleet_angle_on"])
+    made.off = made.on_circle(after, outputs["fleet_angle_off"])
     made.after = after + point.closing
     return made
+
+
+def grooves(model: Model, point: TautPointModel, q: np.ndarray) -> np.ndarray:
+    """Return (T, dim, 2): the plane of the groove of a point in configurations (T, n_q); any plane of an anchor."""
+    end = point.attachments[0]
+    if point.in_space and point.radius and end.body >= 0:
+        return attachment_axes(model, end, q)[..., :2]
+    axes = np.eye(model.dim) if end.axes is None or not point.in_space else end.axes
+    return np.tile(axes[:, :2], (len(q), 1, 1))
 
 
 def _find_feet(points: list[_Point]) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from itertools import pairwise
-from math import atan2
+from math import atan2, pi
 from typing import Protocol
 
 import numpy as np
@@ -13,10 +13,13 @@ import numpy as np
 from ..parts.rope import Rope
 from ..parts.rope_items import SIDES, Drum, RouteItem, Sheave
 from ..parts.rope_route import MIN_SPAN_RATIO, DrawnRoute
+from ..parts.rope_route_space import groove_of
 from .attachments import AttachmentModel, ModelBuilder
 from .coupling import CouplingModel
 
 KERNEL = "planar_taut_rope"
+KERNELS_OF_PARTS = {2: "", 3: "taut_part"}
+"""Kernels of the law of a rope, and of straight parts in space."""
 
 
 class TurningRope(Protocol):
@@ -35,7 +38,9 @@ class TurningRope(Protocol):
 class TautPointModel(CouplingModel):
     """A point of a rope without mass, an item of its route: fu_taut_point of the engine.
 
-    before, after: the ropes of one tension on both sides, with its place in them; ends_run_by: of a drum.
+    angle, carrier: in the plane the angle of the straight part after it and that of what carries it as drawn; in space
+    those of the parts after and before it in its groove, rad. before, after: the ropes of one tension on both sides,
+    with its place in them; ends_run_by: of a drum.
     """
 
     attachments: tuple[AttachmentModel]
@@ -51,6 +56,7 @@ class TautPointModel(CouplingModel):
     carrier: float = 0.0
     closing: float = 0.0
     touches: int = 1
+    in_space: bool = False
     is_end: bool = False
     ends_run_by: str = "error"
     before: tuple[TautRopeModel, int] | None = None
@@ -85,6 +91,7 @@ class TautRopeModel(CouplingModel):
     """
 
     kernel: str = KERNEL
+    part: str = ""
     of: list[TautPointModel]
     EA: float
     tau: float
@@ -94,6 +101,11 @@ class TautRopeModel(CouplingModel):
     held: float
     least_length: float
     pieces: list[TautRopeModel] = field(default_factory=list, repr=False, compare=False)
+
+    @property
+    def kernel_families(self) -> list[str]:
+        """Return the names of the kernel families that it uses."""
+        return [self.kernel, *([self.part] if self.part else [])]
 
     @property
     def n_pieces(self) -> int:
@@ -112,8 +124,10 @@ class TautRopeModel(CouplingModel):
 
     @property
     def carriers(self) -> tuple[float, float]:
-        """Return the angles as drawn of what carries its first and its last point, rad."""
-        return self.of[0].carrier, self.of[-1].carrier
+        """Return the angles as drawn of what carries its first and its last point, rad: none in space, where angles are
+        those in the grooves.
+        """
+        return (0.0, 0.0) if self.part else (self.of[0].carrier, self.of[-1].carrier)
 
     @property
     def ends(self) -> list[AttachmentModel]:
@@ -158,8 +172,10 @@ def _points(builder: ModelBuilder, rope: TurningRope) -> list[TautPointModel]:
     turns = {wheel.name: turn for wheel, turn in rope.turns}
     found = []
     for item in part.route:
-        made = TautPointModel(type="taut_point", name=getattr(item, "name", part.name),
-                              attachments=(builder.attachment(item.end, np.eye(3)),), carrier=_carrier(builder, item))
+        in_space = part.dim == 3
+        made = TautPointModel(type="taut_point", name=getattr(item, "name", part.name), in_space=in_space,
+                              attachments=(builder.attachment(item.end, _axes(builder, item, part.dim)),),
+                              carrier=0.0 if in_space else _carrier(builder, item))
         if isinstance(item, Sheave):
             arc = next(arcs)
             made.radius, made.friction, made.touches = arc.sense * arc.radius, item.coefficient, int(arc.wrap > 0)
@@ -174,8 +190,39 @@ def _points(builder: ModelBuilder, rope: TurningRope) -> list[TautPointModel]:
             if item.torque is not None:
                 made.torque_signal, made.torque = builder.signals.scale(item.torque)
         found.append(made)
-    _set_angles(rope.route, found, part.closed)
+    if part.dim == 3:
+        _set_angles_in_space(rope, found)
+    else:
+        _set_angles(rope.route, found, part.closed)
     return found
+
+
+def _axes(builder: ModelBuilder, item: RouteItem, dim: int) -> np.ndarray | None:
+    """Return the axes of a point on what carries it: in space the plane of the groove and the axis of a wheel, (3, 3)
+    by columns.
+    """
+    if dim == 2:
+        return np.eye(3)
+    if not isinstance(item, Sheave | Drum):
+        return None
+    plane = groove_of(item.axis)
+    axes = np.column_stack([plane, np.cross(*plane.T)])
+    made: np.ndarray = axes if item.end.on is None else builder.scene.bodies[item.end.on].axes.T @ axes
+    return made
+
+
+def _set_angles_in_space(rope: TurningRope, points: list[TautPointModel]) -> None:
+    """Set the angles of the straight parts after and before wheels as drawn, each in its groove: the angle of the foot
+    and, with the sense of travel, a right angle.
+    """
+    arcs = iter(rope.route.sheaves)
+    for k, (item, point) in enumerate(zip(rope.part.route, points, strict=True)):
+        if isinstance(item, Sheave):
+            arc = next(arcs)
+            point.carrier, point.angle = (each + arc.sense * pi / 2 for each in (arc.angle_on, arc.angle_off))
+        elif isinstance(item, Drum):
+            x, y = rope.route.spans[-1 if k else 0].direction @ groove_of(item.axis)
+            point.carrier = point.angle = atan2(y, x)  # a part lies across the radius at its foot
 
 
 def _set_angles(route: DrawnRoute, points: list[TautPointModel], closed: bool) -> None:
@@ -221,7 +268,8 @@ def _pieces(rope: TurningRope, points: list[TautPointModel]) -> Iterator[TautRop
         made = TautRopeModel(
             type="taut_rope", name=part.name, of=[points[k] for k in at], EA=part.stiffness[0],
             tau=part.material.damping_time, drawn_length=length, free_length=length / route.stretch,
-            angles=(first.angle, points[at[-2]].angle),
+            angles=(first.angle, points[at[-1]].carrier if part.dim == 3 else points[at[-2]].angle),
+            part=KERNELS_OF_PARTS[part.dim],
             held=sum(points[k].store + wraps[k] / (2 * route.stretch) for k in (at[0], at[-1])), follows_law=True,
             least_length=max(MIN_SPAN_RATIO * max(abs(points[k].radius) for k in at), part.radius),
             is_damped=part.material.damping_time > 0, scale=[mass], pieces=pieces)
@@ -246,7 +294,9 @@ def wheel_results(outputs: dict[str, np.ndarray], point: TautPointModel) -> dict
     none = np.zeros_like(outputs["angle"])
     shared = {name: outputs[name] for name in ("force", "material_speed", "normal_force", "angle")} | {"residual": none}
     if point.is_end:
-        return shared | {"tension": outputs["tension_on"] + outputs["tension_off"], "torque": outputs["drive"],
+        return shared | {"fleet_angle": outputs["fleet_angle_on"] + outputs["fleet_angle_off"],
+                         "tension": outputs["tension_on"] + outputs["tension_off"], "torque": outputs["drive"],
                          "power": outputs["power"], "length_in_store": outputs["length_in_store"]}
-    own = ("tension_on", "tension_off", "wrap_angle", "torque", "slip", "slip_angle")
-    return shared | {name: outputs[name] for name in own} | {"fleet_angle_on": none, "fleet_angle_off": none}
+    own = ("tension_on", "tension_off", "wrap_angle", "torque", "slip", "slip_angle", "fleet_angle_on",
+           "fleet_angle_off")
+    return shared | {name: outputs[name] for name in own}

@@ -180,9 +180,6 @@ class Rope(Part):
     def _is_possible_without_mass(self) -> "Rope":
         if self.mass:
             return self
-        if self.dim == 3:
-            raise ValueError(f'has no mass, and its element "{self.element}" is that of ropes in space',
-                             f'take element="{PLANAR}", or a small mass: ropes without mass are planar')
         if self.closed and not self.holding_sheaves:
             raise ValueError("has no mass, is closed, and no sheave holds it: how far it has run is then not known",
                              "give friction of a sheave")

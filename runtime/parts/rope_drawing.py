@@ -123,6 +123,8 @@ def _may_be_absent(item: RouteItem) -> bool:
 
 
 def _without_mass(rope: Roped, points: list[RoutePoint]) -> DrawnRoute:
+    if rope.dim == 3:
+        return _along(rope, points)
     return without_wraps(points, [_may_be_absent(item) for item in rope.route], rope.radius, rope.closed)
 
 

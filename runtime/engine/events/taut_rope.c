@@ -11,7 +11,7 @@
 
 #define MAX_CHANGES 1000 /* of points at one instant */
 
-enum { OF_WRAP, OF_GRIP };
+enum { OF_WRAP, OF_GRIP, OF_FLEET };
 enum { OF_TENSION, OF_PARTS };
 
 static const fu_taut_point *point_of(const fu_coupling *coupling)
@@ -51,6 +51,7 @@ static int functions_of_point(const fu_coupling *coupling, fu_event_function *ou
 {
     const fu_taut_point *point = point_of(coupling);
     if (!can_act(coupling)) return 0;
+    if (point->in_space) return list(OF_FLEET + 1, 1, out);
     return list(is_sheave(point) && holds(point) ? OF_GRIP + 1 : OF_WRAP + 1, 1, out);
 }
 
@@ -67,7 +68,8 @@ static double value_of_point(const fu_run *run, const fu_coupling *coupling, con
 {
     const fu_taut_point *point = point_of(coupling);
     int side;
-    if (which == OF_GRIP) return value_of_grip(run->model, point, state);
+    if (which == OF_GRIP) return is_sheave(point) && holds(point) ? value_of_grip(run->model, point, state) : -1.0;
+    if (which == OF_FLEET) return -fu_taut_fleet_margin(run->model, point, state);
     if (!is_sheave(point)) return -fu_taut_store(run->model, point, state);
     return fu_touches(point, state) ? fu_taut_wrap(run->model, point, state)
                                     : fu_taut_depth(run->model, point, state, &side);
@@ -101,9 +103,13 @@ static int act_of_point(fu_run *run, const fu_coupling *coupling, int which, int
     int *touches = run->now.flags + coupling->flags + FU_TOUCHES, from_side = 1;
     (void)side;
     if (which == OF_GRIP) return act_of_grip(run, point, what);
+    if (which == OF_FLEET) {
+        *what = "slides along the groove";
+        return fu_leave(run, coupling, FU_LEFT_BY_FLEET);
+    }
     *what = !is_sheave(point) ? "ran empty" : *touches ? "left the sheave" : "returned";
     if (!is_sheave(point)) return fu_leave(run, coupling, FU_LEFT_BY_EMPTY);
-    if (*touches && holds(point)) return fu_leave(run, coupling, FU_LEFT_BY_WRAP);
+    if (*touches && (holds(point) || point->in_space)) return fu_leave(run, coupling, FU_LEFT_BY_WRAP);
     if (!*touches) fu_taut_depth(run->model, point, &run->now, &from_side);
     if (from_side < 0) return fu_leave(run, coupling, FU_LEFT_BY_SIDE);
     *touches = !*touches;
@@ -119,7 +125,10 @@ static int act_of_point(fu_run *run, const fu_coupling *coupling, int which, int
 static int begin_point(fu_run *run, const fu_coupling *coupling)
 {
     const char *what;
-    if (!can_act(coupling) || value_of_point(run, coupling, &run->now, OF_WRAP) <= 0.0) return FU_RUNNING;
+    if (!can_act(coupling)) return FU_RUNNING;
+    if (point_of(coupling)->in_space && value_of_point(run, coupling, &run->now, OF_FLEET) > 0.0)
+        return fu_leave(run, coupling, FU_LEFT_BY_FLEET);
+    if (value_of_point(run, coupling, &run->now, OF_WRAP) <= 0.0) return FU_RUNNING;
     return act_of_point(run, coupling, OF_WRAP, 1, &what);
 }
 

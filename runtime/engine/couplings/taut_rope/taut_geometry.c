@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { DIM = 2, SIDES = 2 };
+enum { DIM = 2, SPACE = 3, SIDES = 2 };
 
 const fu_taut_point *fu_taut_point_of(const fu_model *model, const fu_taut_rope *rope, int place)
 {
@@ -66,8 +66,7 @@ int fu_is_taut(const fu_taut_rope *rope, const fu_state *state)
     return state->flags[rope->base.flags];
 }
 
-/* Returns an angle, whole turns added, near another one. */
-static double near_angle(double angle, double to)
+double fu_near_angle(double angle, double to)
 {
     return to + remainder(angle - to, 2.0 * acos(-1.0));
 }
@@ -80,19 +79,21 @@ void fu_taut_centre(const fu_model *model, const fu_taut_point *point, const fu_
 
 double fu_taut_carrier_angle(const fu_taut_point *point, const fu_state *state, const fu_attachment_state *at)
 {
-    return near_angle(atan2(at->A[DIM], at->A[0]), state->numbers[point->base.numbers + 1]);
+    return fu_near_angle(atan2(at->A[DIM], at->A[0]), state->numbers[point->base.numbers + 1]);
 }
 
 double fu_taut_turn(const fu_taut_point *point, const fu_state *state, const fu_attachment_state *at)
 {
-    return fu_taut_carrier_angle(point, state, at) + (point->turn < 0 ? 0.0 : state->q[point->turn]);
+    const double own = point->turn < 0 ? 0.0 : state->q[point->turn];
+    return point->in_space ? own : fu_taut_carrier_angle(point, state, at) + own;
 }
 
 double fu_taut_spin(const fu_model *model, const fu_taut_point *point, const fu_state *state,
                     const fu_attachment_state *at)
 {
     const double *v = state->v ? state->v : model->zero;
-    return at->omega[0] + (point->turn < 0 ? 0.0 : v[point->turn]);
+    const double own = point->turn < 0 ? 0.0 : v[point->turn];
+    return point->in_space ? own : at->omega[0] + own;
 }
 
 double fu_taut_share_of_end(const fu_model *model, const fu_taut_rope *rope, int end)
@@ -109,16 +110,30 @@ static void find_part(const fu_model *model, const fu_taut_rope *rope, const fu_
     const int first = from == 0, last = to == rope->n_points - 1;
     out->from = from;
     out->to = to;
+    out->dim = model->dim;
+    if (rope->part) {
+        fu_taut_part_in_space(model, rope, state, one, other, out);
+        return;
+    }
     out->rise = end->radius - start->radius;
     for (int d = 0; d < DIM; ++d) {
         out->d[d] = other->p[d] - one->p[d];
         out->d_rate[d] = other->v[d] - one->v[d];
     }
     rope->kernel->straight(out->d, out->rise, &out->l, out->u, out->l_d, out->b_d);
-    out->angle = near_angle(atan2(out->u[1], out->u[0]), state->numbers[start->base.numbers]);
+    const double angle = fu_near_angle(atan2(out->u[1], out->u[0]), state->numbers[start->base.numbers]),
+                 turning = fu_dot(DIM, out->b_d, out->d_rate);
     out->share[FU_DRAWN] = (first ? 0.0 : start->radius) - (last ? 0.0 : end->radius);
     out->share[FU_WAY] =
         (first ? fu_taut_share_of_end(model, rope, 0) : 0.0) + (last ? fu_taut_share_of_end(model, rope, 1) : 0.0);
+    out->growth = fu_dot(DIM, out->l_d, out->d_rate);
+    out->drawn = out->l + out->share[FU_DRAWN] * angle;
+    out->drawn_rate = out->growth + out->share[FU_DRAWN] * turning;
+    for (int k = 0; k < SIDES; ++k) {
+        out->angle[k] = angle;
+        out->turning[k] = turning;
+        out->fleet[k] = 0.0;
+    }
 }
 
 void fu_taut_part_at(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, int from, int to,
@@ -148,8 +163,12 @@ static void subtract_turn(const fu_model *model, const fu_taut_rope *rope, const
                 fu_taut_spin(model, point, state, at), out);
 }
 
-void fu_taut_pull(const fu_taut_part *part, double pull[2])
+void fu_taut_pull(const fu_taut_part *part, double pull[3])
 {
+    if (part->dim == SPACE) {
+        memcpy(pull, part->u, sizeof part->u);
+        return;
+    }
     const double on_angle = part->share[FU_DRAWN] + part->share[FU_WAY];
     for (int d = 0; d < DIM; ++d) pull[d] = part->l_d[d] + on_angle * part->b_d[d];
 }
@@ -159,15 +178,25 @@ static void add_forces_of_part(const fu_model *model, const fu_taut_rope *rope, 
                                const fu_attachment_state *before, const fu_attachment_state *after, double tension,
                                double *f)
 {
-    const int last = rope->n_points - 1;
-    double pull[DIM];
+    const int last = rope->n_points - 1, in_space = part->dim == SPACE;
+    double pull[SPACE];
     fu_taut_pull(part, pull);
     for (int end = 0; end < SIDES; ++end) {
         const fu_taut_point *point = fu_taut_point_of(model, rope, end ? part->to : part->from);
         const int holds = end ? part->to == last : part->from == 0;
         const double moment = holds ? -fu_taut_share_of_end(model, rope, end) * tension : 0.0;
-        const double along = end ? tension : -tension, force[DIM] = {along * pull[0], along * pull[1]};
-        fu_add_wrench(DIM, end ? after : before, force, moment != 0.0 ? &moment : 0, 1.0, f);
+        const double along = end ? tension : -tension;
+        if (in_space) {
+            double force[SPACE], of_force[SPACE];
+            for (int d = 0; d < SPACE; ++d) {
+                force[d] = along * pull[d];
+                of_force[d] = tension * fu_taut_moment(part, end)[d];
+            }
+            fu_add_wrench(SPACE, end ? after : before, force, of_force, 1.0, f);
+        } else {
+            const double force[DIM] = {along * pull[0], along * pull[1]};
+            fu_add_wrench(DIM, end ? after : before, force, moment != 0.0 ? &moment : 0, 1.0, f);
+        }
         if (moment != 0.0 && point->turn >= 0) f[point->turn] += moment;
     }
 }
@@ -186,14 +215,14 @@ void fu_taut_walk(const fu_model *model, const fu_taut_rope *rope, const fu_stat
         to = fu_next_touched(model, rope, state, from);
         fu_taut_centre(model, fu_taut_point_of(model, rope, to), state, after);
         find_part(model, rope, state, from, to, before, after, &part);
-        const double turning = fu_dot(DIM, part.b_d, part.d_rate);
-        out->length[FU_DRAWN] += part.l + part.share[FU_DRAWN] * part.angle;
-        out->rate[FU_DRAWN] += fu_dot(DIM, part.l_d, part.d_rate) + part.share[FU_DRAWN] * turning;
+        out->length[FU_DRAWN] += part.drawn;
+        out->rate[FU_DRAWN] += part.drawn_rate;
         for (int end = 0; end < SIDES; ++end)
             if (end ? to == last : from == 0) {
-                add_way(end, fu_taut_share_of_end(model, rope, end), part.angle - rope->angles[end], turning, out);
-                out->angle[end] = part.angle;
-                out->turning[end] = turning;
+                add_way(end, fu_taut_share_of_end(model, rope, end), part.angle[end] - rope->angles[end],
+                        part.turning[end], out);
+                out->angle[end] = part.angle[end];
+                out->turning[end] = part.turning[end];
             }
         if (f) add_forces_of_part(model, rope, &part, before, after, tension, f);
         fu_attachment_state *passed = before;
@@ -224,15 +253,15 @@ double fu_taut_length_to(const fu_model *model, const fu_taut_rope *rope, const 
         fu_taut_part part;
         to = fu_next_touched(model, rope, state, from);
         fu_taut_part_at(model, rope, state, from, to, &part);
-        const double now = fu_dot(DIM, part.b_d, part.d_rate), share = from == place ? 0.5 : 1.0;
+        const double now = part.turning[0], share = from == place ? 0.5 : 1.0;
         if (from) {
-            length += share * radius * (part.angle - angle);
+            length += share * radius * (part.angle[0] - angle);
             *rate += share * radius * (now - turning);
         }
         if (from == place) break;
         radius = fu_taut_point_of(model, rope, to)->radius;
-        angle = part.angle;
-        turning = now;
+        angle = part.angle[1];
+        turning = part.turning[1];
         if (to > place) { /* a sheave that the rope does not touch: its foot on the straight part */
             fu_attachment_state start, centre;
             double along = 0.0, along_rate = 0.0;
@@ -248,7 +277,7 @@ double fu_taut_length_to(const fu_model *model, const fu_taut_rope *rope, const 
             break;
         }
         length += part.l;
-        *rate += fu_dot(DIM, part.l_d, part.d_rate);
+        *rate += part.growth;
     }
     return length;
 }

@@ -10,7 +10,7 @@
 #define ROUNDING_OF_FORCE 1e-12   /* of EA: a slack rope needs no friction */
 #define ROUNDING_OF_TENSION 1e-10 /* of both tensions: excess at which a rope breaks loose */
 
-enum { DIM = 2, SIDES = 2 };
+enum { DIM = 2, SPACE = 3, SIDES = 2 };
 
 static const fu_taut_point *point_of(const fu_coupling *coupling)
 {
@@ -55,7 +55,7 @@ static void look(const fu_model *model, const fu_taut_point *point, const fu_sta
 static double wrap_of(const fu_taut_point *point, const surroundings *at)
 {
     return at->touches && at->has[0] && at->has[1]
-               ? sense_of(point) * (at->part[1].angle - at->part[0].angle + point->closing)
+               ? sense_of(point) * (at->part[1].angle[0] - at->part[0].angle[1] + point->closing)
                : 0.0;
 }
 
@@ -71,6 +71,8 @@ double fu_taut_depth(const fu_model *model, const fu_taut_point *point, const fu
     const fu_taut_rope *rope = fu_taut_beside(model, point, 0);
     surroundings at;
     fu_attachment_state centre, start;
+    *side = 1;
+    if (point->in_space) return -INFINITY; /* a rope in space touches all of its sheaves */
     find_parts(model, point, state, &at);
     const fu_taut_part *part = &at.part[0];
     const fu_taut_point *first = fu_taut_point_of(model, rope, part->from);
@@ -137,6 +139,13 @@ double fu_taut_store(const fu_model *model, const fu_taut_point *point, const fu
     return point->store + fu_taut_held(rope, state, &now, !side, &rate);
 }
 
+/* Returns the number of coordinates of a centre with which a wheel with inertia turns: in space none, as what carries
+ * it keeps its orientation. */
+static int turning_with(const fu_model *model, const fu_attachment_state *at)
+{
+    return model->dim == SPACE ? 0 : at->n;
+}
+
 /* --- what turns ------------------------------------------------------------------------------------------------- */
 
 static void inertial_force(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a,
@@ -147,9 +156,9 @@ static void inertial_force(const fu_model *model, const fu_coupling *coupling, c
     fu_attachment_state at;
     fu_taut_centre(model, point, &state, &at);
     double acceleration = a[point->turn];
-    for (int i = 0; i < at.n; ++i) acceleration += at.T[i] * a[at.at[i]];
+    for (int i = 0; i < turning_with(model, &at); ++i) acceleration += at.T[i] * a[at.at[i]];
     f[point->turn] += point->inertia * acceleration;
-    for (int i = 0; i < at.n; ++i) f[at.at[i]] += point->inertia * at.T[i] * acceleration;
+    for (int i = 0; i < turning_with(model, &at); ++i) f[at.at[i]] += point->inertia * at.T[i] * acceleration;
 }
 
 static void mass_matrix(const fu_model *model, const fu_coupling *coupling, const double *q, double scale,
@@ -161,7 +170,7 @@ static void mass_matrix(const fu_model *model, const fu_coupling *coupling, cons
     fu_attachment_state at;
     fu_taut_centre(model, point, &state, &at);
     fu_add(model, system, point->turn, point->turn, mass);
-    for (int i = 0; i < at.n; ++i) {
+    for (int i = 0; i < turning_with(model, &at); ++i) {
         if (at.T[i] == 0.0) continue;
         fu_add(model, system, point->turn, at.at[i], mass * at.T[i]);
         fu_add(model, system, at.at[i], point->turn, mass * at.T[i]);
@@ -234,7 +243,7 @@ static void drive(const fu_model *model, const fu_coupling *coupling, double t, 
 
 typedef struct {
     double tension_on, tension_off, wrap_angle, force[3], material_speed, normal_force, torque, drive, power,
-        length_in_store, angle, angle_on, angle_off, touches, slip, slip_angle;
+        length_in_store, angle, angle_on, angle_off, touches, slip, slip_angle, fleet_angle_on, fleet_angle_off;
 } point_output;
 
 /* Returns the stress-free length a second that passes a point in the rope's order: of a wheel that holds the rope, the
@@ -275,12 +284,13 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     for (int side = 0; side < SIDES; ++side) {
         if (!at.has[side]) continue;
         const double tension = at.lengths[side].tension + 0.0; /* no -0 */
-        double pull[DIM];
+        double pull[SPACE] = {0.0};
         *(side ? &numbers->tension_off : &numbers->tension_on) = tension;
-        *(side ? &numbers->angle_off : &numbers->angle_on) = at.part[side].angle;
+        *(side ? &numbers->angle_off : &numbers->angle_on) = at.part[side].angle[!side];
+        *(side ? &numbers->fleet_angle_off : &numbers->fleet_angle_on) = at.part[side].fleet[!side];
         if (at.has[!side] && !at.touches) continue;
         fu_taut_pull(&at.part[side], pull);
-        for (int d = 0; d < DIM; ++d) numbers->force[d] += (side ? tension : -tension) * pull[d];
+        for (int d = 0; d < model->dim; ++d) numbers->force[d] += (side ? tension : -tension) * pull[d];
         const int holds = side ? point->places[1] == 0 : point->places[0] == at.rope[0]->n_points - 1;
         if (holds) on_wheel += (side ? tension : -tension) * point->radius;
     }
@@ -297,7 +307,7 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     fu_taut_centre(model, point, state, &centre);
     const double rate = state->v ? state->v[point->turn] : 0.0;
     double turning = a[point->turn];
-    for (int i = 0; i < centre.n; ++i) turning += centre.T[i] * a[centre.at[i]];
+    for (int i = 0; i < turning_with(model, &centre); ++i) turning += centre.T[i] * a[centre.at[i]];
     numbers->drive += point->inertia * turning + point->damping * rate;
     numbers->power = numbers->drive * rate;
     numbers->angle = state->q[point->turn];
@@ -309,7 +319,7 @@ static void detect(const fu_model *model, const fu_coupling *coupling, fu_state 
     const fu_taut_point *point = point_of(coupling);
     const fu_taut_rope *rope = fu_taut_beside(model, point, 0);
     int *touches = state->flags + coupling->flags + FU_TOUCHES, side = 1;
-    if (!rope || point->places[0] == rope->n_points - 1) return;
+    if (!rope || rope->part || point->places[0] == rope->n_points - 1) return;
     if (*touches) *touches = fu_taut_wrap(model, point, state) <= 0.0;
     else if (fu_taut_depth(model, point, state, &side) > 0.0) {
         const int before = fu_touched_before(model, rope, state, point->places[0]);
@@ -349,6 +359,7 @@ static const fu_field fields[] = {
     FU_FIELD(fu_taut_point, carrier, FU_REAL, 0),
     FU_FIELD(fu_taut_point, closing, FU_REAL, 0),
     FU_FIELD(fu_taut_point, touches, FU_INTEGER, 0),
+    FU_FIELD(fu_taut_point, in_space, FU_INTEGER, 0),
     {0},
 };
 
@@ -369,6 +380,8 @@ static const fu_output output_fields[] = {
     FU_OUTPUT(point_output, touches, "1", NULL),
     FU_OUTPUT(point_output, slip, "m/s", NULL),
     FU_OUTPUT(point_output, slip_angle, "rad", NULL),
+    FU_OUTPUT(point_output, fleet_angle_on, "rad", NULL),
+    FU_OUTPUT(point_output, fleet_angle_off, "rad", NULL),
     FU_LAST_OUTPUT(point_output),
 };
 

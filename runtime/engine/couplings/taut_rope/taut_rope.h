@@ -1,7 +1,7 @@
-/* Ropes without mass (derive/couplings/taut_rope.py). The items of a rope's route are points, couplings of their own:
- * anchors, sheaves and drums. A rope with one tension leads from an end or a wheel that holds it, a drum or a sheave
- * with friction, to the next one, over the frictionless sheaves between these. Ropes between which it slips on sheaves
- * are a chain (taut_slip.c). */
+/* Ropes without mass (derive/couplings/taut_rope.py, taut_part.py). The items of a rope's route are points, couplings
+ * of their own: anchors, sheaves and drums. A rope with one tension leads from an end or a wheel that holds it, a drum
+ * or a sheave with friction, to the next one, over the frictionless sheaves between these. Ropes between which it slips
+ * on sheaves are a chain (taut_slip.c). */
 #ifndef FUNICULAR_COUPLINGS_ROPE_TAUT_ROPE_H
 #define FUNICULAR_COUPLINGS_ROPE_TAUT_ROPE_H
 
@@ -13,9 +13,12 @@ enum { FU_TOUCHES, FU_SLIPS, FU_POINT_FLAGS };
 
 #define FU_MAX_PIECES 128 /* ropes of one tension of a rope */
 
-/* A point. Its numbers in a state are the angles of the straight part after it and of what carries it, counted over
- * turns; its flags are whether the rope touches it, and the direction in which the rope slips on it: 1 in its order, -1
- * against it, 0 where it sticks. */
+/* of a straight part in space: angle and reach of both feet; change of the centres, and rotations of both grooves */
+enum { FU_FEET = 4, FU_PART_PLACES = 9 };
+
+/* A point. Its numbers in a state are the angles of the straight part after it and of what carries it, in space those
+ * of the parts after and before it in its groove, counted over turns; its flags are whether the rope touches it, and
+ * the direction in which the rope slips on it: 1 in its order, -1 against it, 0 where it sticks. */
 typedef struct {
     fu_coupling base;
     fu_attachment attachments[1]; /* the centre */
@@ -27,15 +30,17 @@ typedef struct {
     double friction;              /* coefficient */
     double store;                 /* m: stress-free length that a drum holds as drawn */
     int ropes[2], places[2];      /* before and after it: numbers of the ropes, -1 for none; its places in them */
-    double angle, carrier;        /* rad: as drawn */
+    double angle, carrier;        /* rad: its two numbers as drawn */
     double closing;               /* rad: by which the angles of parts grow along a closed rope, at its first point */
     int touches;                  /* as drawn */
+    int in_space;
 } fu_taut_point;
 
 /* A rope with one tension. */
 typedef struct {
     fu_coupling base;
     const fu_taut_rope_kernels *kernel;
+    const fu_taut_part_kernels *part; /* of straight parts in space; null in the plane */
     int n_points;
     const int *points; /* numbers of the couplings */
     double EA, tau;
@@ -53,11 +58,25 @@ typedef struct {
 
 extern const fu_coupling_type fu_taut_point_type, fu_taut_rope_type;
 
-/* A straight part between two points of a rope, by their places in it: change of the centres and its rate, length,
- * direction with its angle, derivatives of length and angle by d; the shares of its angle in drawn length and way. */
+/* A straight part in space beside its length and direction: radii with senses, frames and places of both feet, change
+ * of the centres and angular velocities, rates of the feet; derivatives of the feet, of the length with the shares of
+ * both angles, and of its contributions to drawn length and way, by the places; the factors of the conditions. */
 typedef struct {
-    int from, to;
-    double rise, d[2], d_rate[2], l, u[2], l_d[2], b_d[2], angle, share[FU_LENGTHS];
+    double radius[2], frame[2][9], reach[2], d[3], rate[FU_PART_PLACES], z_rate[FU_FEET], z_p[FU_FEET * FU_PART_PLACES],
+        whole[FU_PART_PLACES], by[FU_LENGTHS][FU_PART_PLACES], factors[FU_FEET * FU_FEET];
+    double way_share[2]; /* of both angles in the way */
+    int pivot[FU_FEET];
+} fu_taut_feet;
+
+/* A straight part between two points of a rope, by their places in it: change of the centres and its rate, length and
+ * direction, derivatives of length and angle by d; the shares of its angle in drawn length and way. Both angles, in the
+ * plane the same one, with their rates; the rate of the length; its contribution to the drawn length, and the rate of
+ * that; angles between it and the grooves of both points, towards their axes. */
+typedef struct {
+    int from, to, dim;
+    double rise, d[2], d_rate[2], l, u[3], l_d[2], b_d[2], share[FU_LENGTHS], angle[2], turning[2], growth, drawn,
+        drawn_rate, fleet[2];
+    fu_taut_feet feet;
 } fu_taut_part;
 
 /* A rope at a state: drawn length, and way since the last step, with their rates; ways of both ends since the start,
@@ -119,8 +138,20 @@ void fu_taut_walk(const fu_model *model, const fu_taut_rope *rope, const fu_stat
 /* Computes lengths and tension of a rope, none where it is slack. */
 void fu_taut_lengths_at(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_lengths *out);
 /* Computes the force of a part on its second point, of a unit of tension; its opposite acts on the first. */
-void fu_taut_pull(const fu_taut_part *part, double pull[2]);
-/* Returns the rotation of what carries a point; that of the point with it, and its rate; at: with its axes. */
+void fu_taut_pull(const fu_taut_part *part, double pull[3]);
+/* In space (taut_space.c). Computes what a straight part has between these states of its points; not a number where
+ * there is none. */
+void fu_taut_part_in_space(const fu_model *model, const fu_taut_rope *rope, const fu_state *state,
+                           const fu_attachment_state *one, const fu_attachment_state *other, fu_taut_part *out);
+/* Returns the moment of a part on one of its points, of a unit of tension. */
+const double *fu_taut_moment(const fu_taut_part *part, int end);
+/* Computes the derivatives, by the places, of the force and both moments of a part of a unit of tension, K (9 x 9), and
+ * of the rates of its contributions to drawn length and way. */
+void fu_taut_second(const fu_taut_rope *rope, const fu_taut_part *part, double *K, double (*by_rate)[FU_PART_PLACES]);
+/* Returns an angle, whole turns added, near another one. */
+double fu_near_angle(double angle, double to);
+/* Returns the rotation of what carries a point, in the plane; that of the point with it, and its rate, in space alone;
+ * at: with its axes. */
 double fu_taut_carrier_angle(const fu_taut_point *point, const fu_state *state, const fu_attachment_state *at);
 double fu_taut_turn(const fu_taut_point *point, const fu_state *state, const fu_attachment_state *at);
 double fu_taut_spin(const fu_model *model, const fu_taut_point *point, const fu_state *state,
@@ -176,5 +207,7 @@ int fu_taut_pulled(const fu_model *model, const fu_taut_point *point, const fu_s
 double fu_taut_store(const fu_model *model, const fu_taut_point *point, const fu_state *state);
 double fu_taut_slack(const fu_model *model, const fu_taut_rope *rope, const fu_state *state);
 double fu_taut_margin(const fu_model *model, const fu_taut_rope *rope, const fu_state *state);
+/* Returns by how much the parts beside a point exceed the length at which they would slide along its groove, m. */
+double fu_taut_fleet_margin(const fu_model *model, const fu_taut_point *point, const fu_state *state);
 
 #endif
