@@ -260,8 +260,7 @@ static double speed_of(const fu_model *model, const fu_taut_point *point, const 
         return at->has[0] && at->has[1] ? 0.5 * speed : speed;
     }
     const fu_taut_lengths *now = &at->lengths[0];
-    const double stretch = now->length[FU_DRAWN] / now->free,
-                 growth = (now->rate[FU_DRAWN] + now->rate[FU_WAY]) / now->free;
+    const double stretch = now->length[FU_DRAWN] / now->free, growth = now->growth / now->free;
     const double length = fu_taut_length_to(model, at->rope[0], state, point->places[0], &rate);
     double held;
     fu_taut_held(at->rope[0], state, now, 0, &held);
