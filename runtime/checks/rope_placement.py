@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from math import pi
-
 from ..errors import SceneError, near
 from ..parts.attachment import Attachment
 from ..parts.cable import Cable
@@ -17,7 +15,7 @@ from ..parts.plane import called
 from ..parts.point_force import PointForce
 from ..parts.rope import Rope
 from ..parts.rope_items import Wheel
-from ..parts.rope_route import MAX_LAYER, DrawnRoute
+from ..parts.rope_route import MAX_LAYER, MAX_PLAUSIBLE_WRAP, DrawnRoute
 from ..parts.rope_route_space import fleet_angle, fleet_angles, groove_of
 from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
@@ -32,8 +30,6 @@ MIN_RADIUS_RATIO = 10.0
 MAX_RADIUS_OF_ELEMENTS = 20.0
 """Radius of a sheave over the length of an element beside it above which steps may not converge: the place of the
 tangent point on an almost straight rope then has little inertia."""
-MAX_PLAUSIBLE_WRAP = 1.5 * pi
-"""Wrap angle without whole turns, in rad, above which the side of a sheave may be wrong."""
 
 
 def placed_rope(scene: SceneData, rope: Rope) -> Rope:

@@ -13,7 +13,16 @@ from .cable import Cable
 from .modal_body import ModalBody
 from .rigid_body import RigidBody
 from .rope_items import SIDES, Drum, RouteItem, Sheave
-from .rope_route import MAX_LAYER, DrawnRoute, FreeLengths, RoutePoint, default_senses, drawn_route, without_wraps
+from .rope_route import (
+    MAX_LAYER,
+    MAX_PLAUSIBLE_WRAP,
+    DrawnRoute,
+    FreeLengths,
+    RoutePoint,
+    default_senses,
+    drawn_route,
+    without_wraps,
+)
 from .rope_route_space import groove_of, senses_in_space, span_in_space
 from .validation import LENGTH_TOLERANCE, show
 
@@ -124,7 +133,14 @@ def _may_be_absent(item: RouteItem) -> bool:
 
 def _without_mass(rope: Roped, points: list[RoutePoint]) -> DrawnRoute:
     if rope.dim == 3:
-        return _along(rope, points)
+        route = _along(rope, points)
+        arcs = {arc.name: arc for arc in route.sheaves}
+        for item in rope.sheaves:
+            if _may_be_absent(item) and arcs[item.name].wrap > MAX_PLAUSIBLE_WRAP:
+                raise ValueError(f"passes {item.where} without touching it, and a rope without mass in space lies on "
+                                 "all of its sheaves", "leave it out, move it into the way of the rope, or give the "
+                                 "rope a small mass")
+        return route
     return without_wraps(points, [_may_be_absent(item) for item in rope.route], rope.radius, rope.closed)
 
 

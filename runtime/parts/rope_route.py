@@ -18,6 +18,8 @@ from .validation import show
 
 MIN_WRAP = 1e-3
 """Least wrap angle in rad: a smaller one is a sheave that the rope does not touch."""
+MAX_PLAUSIBLE_WRAP = 1.5 * pi
+"""Wrap angle without whole turns, in rad, above which the side of a sheave may be wrong."""
 MIN_SPAN_RATIO = 0.05
 """Least length of a span over the radii of the sheaves at its ends."""
 MAX_LAYER = 0.2

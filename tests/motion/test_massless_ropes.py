@@ -412,13 +412,7 @@ def test_a_run_from_a_state_of_another():
 
 # ---- refusals
 
-ROUTE = {"route": [fu.Anchor(at=(0, 0, 0)), fu.Sheave("top", at=(1, 1, 0), radius=0.1), fu.Anchor(at=(2, 0, 0))],
-         "tension": 10.0}
-
-
 @pytest.mark.parametrize(("given", "message"), [
-    (ROUTE | {"element": "cable12"}, 'rope "rope": has no mass, and its element "cable12" is that of ropes in space; '
-     'take element="cable8p", or a small mass: ropes without mass are planar'),
     ({"route": [fu.Sheave("a", at=(0, 0, 0), radius=0.1, side="left"), fu.Sheave("b", at=(1, 0, 0), radius=0.1,
                                                                                  side="left")],
       "closed": True, "tension": 10.0}, 'rope "rope": has no mass, is closed, and no sheave holds it: how far it has '

@@ -155,8 +155,10 @@ def rope_left(model: Model, number: int, reason: int) -> tuple[str, str]:
     if reason in (GRIP, GRIP + 1):
         assert isinstance(coupling, SpanModel | SlideModel)
         held = {"reached": coupling.reached(reason - GRIP)}
-    wrap = 0.0 if isinstance(coupling, TautPointModel) else MIN_WRAP
-    return cause.format(name=coupling.name, kind=coupling.type, wrap=wrap, **held), remedy
+    kind, wrap = coupling.type, MIN_WRAP
+    if isinstance(coupling, TautPointModel):
+        kind, wrap = "drum" if coupling.is_end else "sheave", 0.0
+    return cause.format(name=coupling.name, kind=kind, wrap=wrap, **held), remedy
 
 
 def describe_dof(model: Model, dof: int, coupling: int | None = None) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...engine import outputs_by_name
+from ...model.taut_ropes import TautPointModel
 from ...parts.validation import show
 from .note import Note, Rows
 
@@ -18,7 +19,8 @@ class FleetAngles(Note):
         """Select the parts to measure."""
         self._items = {item.name: item for rope in self.model.ropes for item in rope.part.wheels}
         self._names = {kind: [wheel.name for wheel in wheels] for kind, wheels in (
-            ("sheave", self.model.sheaves), ("drum", self.model.drums)) if wheels and self.model.dim == 3}
+            ("sheave", self.model.sheaves), ("drum", self.model.drums), ("taut_point", self.model.of(TautPointModel)))
+            if wheels and self.model.dim == 3}
 
     def see(self, rows: Rows) -> None:
         """Measure further output rows."""
@@ -26,6 +28,8 @@ class FleetAngles(Note):
             numbers = outputs_by_name(kind, rows[kind])
             angle = np.max([np.abs(value) for key, value in numbers.items() if key.startswith("fleet_angle")], axis=0)
             for k, name in enumerate(names):
+                if name not in self._items:  # an anchor
+                    continue
                 row = int(np.argmax(angle[:, k]))
                 self.keep(name, angle[row, k], rows["time"][row])
 

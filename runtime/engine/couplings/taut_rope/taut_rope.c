@@ -9,8 +9,8 @@
 #include <string.h>
 
 enum { DIM = 2, SPACE = 3, SIDES = 2 };
-/* of a point in a Newton system: place, velocity, turn, angular velocity; in space each has three parts */
-enum { VELOCITY = DIM, TURN = 2 * DIM, SPIN = TURN + 1, ROWS = SPIN + 1, SPACE_ROWS = 4 * SPACE };
+/* of a point in a Newton system: place, velocity, turn, angular velocity */
+enum { VELOCITY = DIM, TURN = 2 * DIM, SPIN = TURN + 1, ROWS = SPIN + 1 };
 
 static const fu_taut_rope *rope_of(const fu_coupling *coupling)
 {
@@ -152,121 +152,13 @@ static void add_stiffness(const fu_model *model, const double *K, const side *of
                           of == by ? fu_stiffness_of(&by->motion) : 0, stiffness, system);
 }
 
-/* --- in space --------------------------------------------------------------------------------------------------- */
-
-/* Computes, from the derivatives by the places of a part, those by place and turn of the point at an end. */
-static void of_end(int end, const double *by_places, double *place, double *turn)
-{
-    for (int d = 0; d < SPACE; ++d) {
-        place[d] = (end ? 1.0 : -1.0) * by_places[d];
-        turn[d] = by_places[SPACE * (1 + end) + d];
-    }
-}
-
-/* Adds the entries of one side in the row of the law of a tension. */
-static void add_row_in_space(const fu_model *model, const fu_coupling *coupling, const fu_taut_part *part, int end,
-                             const fu_taut_law *law, const double by_angle[SIDES],
-                             const double (*by_rate)[FU_PART_PLACES], const side *of, fu_weights weights,
-                             fu_system *system)
-{
-    const fu_taut_feet *feet = &part->feet;
-    const int row = fu_extra(model, coupling->unknown), n = of->motion.at.n, angles = FU_FEET / SIDES;
-    double at[FU_PART_PLACES], moving[FU_PART_PLACES], by[SPACE_ROWS], changes[FU_ATTACHMENT_COORDINATES];
-    for (int j = 0; j < FU_PART_PLACES; ++j) {
-        at[j] = moving[j] = 0.0;
-        for (int k = 0; k < SIDES; ++k) at[j] += by_angle[k] * feet->z_p[angles * k * FU_PART_PLACES + j];
-        for (int i = 0; i < FU_LENGTHS; ++i) {
-            at[j] += law->K[i] * feet->by[i][j] + law->D[i] * by_rate[i][j];
-            moving[j] += law->D[i] * feet->by[i][j];
-        }
-    }
-    of_end(end, at, by, by + 2 * SPACE);
-    of_end(end, moving, by + SPACE, by + 3 * SPACE);
-    fu_changes(&of->motion, 1, by, changes);
-    for (int i = 0; i < n; ++i) fu_add(model, system, row, of->motion.at.at[i], -weights.stiffness * changes[i]);
-    if (of->way_share == 0.0 || of->point->turn < 0) return;
-    const double turn = of->way_share * (law->K[FU_WAY] + weights.rate * law->D[FU_WAY]);
-    fu_add(model, system, row, of->point->turn, -weights.stiffness * turn);
-}
-
-/* Adds the entries of one side in the column of the forces of the tension. */
-static void add_column_in_space(const fu_model *model, const fu_coupling *coupling, const fu_taut_part *part, int end,
-                                const side *of, fu_weights weights, fu_system *system)
-{
-    const int column = fu_extra(model, coupling->unknown), n = of->motion.at.n;
-    const double unit = fu_row_unit(weights.inertia, coupling->scale[0]);
-    double on_point[FU_ATTACHMENT_COORDINATES], force[SPACE], moment[SPACE];
-    of_end(end, part->feet.whole, force, moment);
-    fu_wrench_force(SPACE, &of->motion.at, force, moment, 1.0, on_point);
-    for (int i = 0; i < n; ++i) fu_add(model, system, of->motion.at.at[i], column, unit * on_point[i]);
-    if (of->turn_share != 0.0 && of->point->turn >= 0)
-        fu_add(model, system, of->point->turn, column, unit * of->turn_share);
-}
-
-/* Adds the changes of the force and the moment of a part on one side by the other one, or by itself. */
-static void add_stiffness_in_space(const fu_model *model, const double *K, double tension, const side *sides, int of,
-                                   int by, double stiffness, fu_system *system)
-{
-    double force[SPACE * SPACE_ROWS], moment[SPACE * SPACE_ROWS], changes[2][SPACE * FU_ATTACHMENT_COORDINATES];
-    double row[FU_PART_PLACES];
-    memset(force, 0, sizeof force);
-    memset(moment, 0, sizeof moment);
-    for (int i = 0; i < SPACE; ++i) {
-        double *on_force = force + i * SPACE_ROWS, *on_moment = moment + i * SPACE_ROWS;
-        for (int j = 0; j < FU_PART_PLACES; ++j) row[j] = (of ? tension : -tension) * K[i * FU_PART_PLACES + j];
-        of_end(by, row, on_force, on_force + 2 * SPACE);
-        for (int j = 0; j < FU_PART_PLACES; ++j) row[j] = tension * K[(SPACE * (1 + of) + i) * FU_PART_PLACES + j];
-        of_end(by, row, on_moment, on_moment + 2 * SPACE);
-    }
-    fu_changes(&sides[by].motion, SPACE, force, changes[0]);
-    fu_changes(&sides[by].motion, SPACE, moment, changes[1]);
-    fu_add_wrench_tangent(model, &sides[of].motion.at, &sides[by].motion.at, changes[0], changes[1],
-                          of == by ? fu_stiffness_of(&sides[by].motion) : 0, stiffness, system);
-}
-
-/* Does what add_part does, in space. */
-static void add_part_in_space(const fu_model *model, const fu_coupling *coupling, const fu_taut_rope *rope,
-                              const fu_taut_part *part, const fu_taut_law *law, const fu_equations *equations,
-                              fu_system *system)
-{
-    const int own = rope == rope_of(coupling), last = rope->n_points - 1;
-    const int holds[SIDES] = {part->from == 0, part->to == last};
-    const double unknown = own ? equations->next->forces[coupling->force] : 0.0;
-    const double by_angle[SIDES] = {holds[0] ? law->angle[0] : 0.0, holds[1] ? law->angle[1] : 0.0};
-    double K[FU_PART_PLACES * FU_PART_PLACES], by_rate[FU_LENGTHS][FU_PART_PLACES];
-    side sides[SIDES];
-    fu_taut_second(rope, part, K, by_rate);
-    for (int end = 0; end < SIDES; ++end) {
-        side *of = &sides[end];
-        double force[SPACE], moment[SPACE];
-        of->point = fu_taut_point_of(model, rope, end ? part->to : part->from);
-        of->turn_share = holds[end] ? -fu_taut_share_of_end(model, rope, end) : 0.0;
-        of->way_share = holds[end] && fu_taut_slips(of->point, equations->next) ? 0.0 : of->turn_share;
-        of_end(end, part->feet.whole, force, moment);
-        for (int d = 0; d < SPACE; ++d) {
-            force[d] *= unknown;
-            moment[d] *= unknown;
-        }
-        fu_point_motion_at(model, &of->point->attachments[0], equations->next, FU_POINT | FU_AXES, force, moment,
-                           equations->psi, equations->weights.rate, &of->motion);
-        add_row_in_space(model, coupling, part, end, law, by_angle, (const double (*)[FU_PART_PLACES])by_rate, of,
-                         equations->weights, system);
-        if (own) add_column_in_space(model, coupling, part, end, of, equations->weights, system);
-    }
-    for (int end = 0; own && end < SIDES; ++end)
-        for (int by = 0; by < SIDES; ++by)
-            add_stiffness_in_space(model, K, unknown, sides, end, by, equations->weights.stiffness, system);
-}
-
-/* ---------------------------------------------------------------------------------------------------------------- */
-
 /* Adds the derivatives of a straight part of a rope: those of the tension of a coupling, and, of its own rope, those of
  * the forces. */
 static void add_part(const fu_model *model, const fu_coupling *coupling, const fu_taut_rope *rope,
                      const fu_taut_part *part, const fu_taut_law *law, const fu_equations *equations, fu_system *system)
 {
     if (part->dim == SPACE) {
-        add_part_in_space(model, coupling, rope, part, law, equations, system);
+        fu_taut_add_in_space(model, coupling, rope, part, law, equations, system);
         return;
     }
     const int own = rope == rope_of(coupling), last = rope->n_points - 1;

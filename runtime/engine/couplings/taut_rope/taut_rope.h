@@ -148,6 +148,11 @@ const double *fu_taut_moment(const fu_taut_part *part, int end);
 /* Computes the derivatives, by the places, of the force and both moments of a part of a unit of tension, K (9 x 9), and
  * of the rates of its contributions to drawn length and way. */
 void fu_taut_second(const fu_taut_rope *rope, const fu_taut_part *part, double *K, double (*by_rate)[FU_PART_PLACES]);
+/* Adds the derivatives of a part of a rope to a Newton system (taut_space_tangent.c): those of the tension of a
+ * coupling, and, of its own rope, those of the forces. */
+void fu_taut_add_in_space(const fu_model *model, const fu_coupling *coupling, const fu_taut_rope *rope,
+                          const fu_taut_part *part, const fu_taut_law *law, const fu_equations *equations,
+                          fu_system *system);
 /* Returns an angle, whole turns added, near another one. */
 double fu_near_angle(double angle, double to);
 /* Returns the rotation of what carries a point, in the plane; that of the point with it, and its rate, in space alone;
