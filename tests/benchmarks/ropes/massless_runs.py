@@ -9,6 +9,7 @@ import funicular as fu
 import numpy as np
 
 from .scenes import GRAVITY, Found, over_one, rope_of, swing, weight
+from .space_runs import fleet, fleet_at_rest_without_mass
 
 EA = 1e7
 """Of ropes that are inextensible in a case, N."""
@@ -102,4 +103,5 @@ def hauled() -> Found:
 
 RUNS: dict[str, Callable[[], Found]] = {
     "two weights": two_weights, "tackle": tackle, "swinging Atwood": swinging_atwood, "peg": peg,
-    "pendulum hauled in": hauled}
+    "pendulum hauled in": hauled, "fleet angle": lambda: fleet(0.0, 1e-6),
+    "fleet angle at rest": fleet_at_rest_without_mass}
