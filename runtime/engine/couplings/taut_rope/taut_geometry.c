@@ -66,11 +66,6 @@ int fu_is_taut(const fu_taut_rope *rope, const fu_state *state)
     return state->flags[rope->base.flags];
 }
 
-double fu_near_angle(double angle, double to)
-{
-    return to + remainder(angle - to, 2.0 * acos(-1.0));
-}
-
 void fu_taut_centre(const fu_model *model, const fu_taut_point *point, const fu_state *state, fu_attachment_state *out)
 {
     const fu_state moving = {.t = state->t, .q = state->q, .v = state->v ? state->v : (double *)model->zero};
@@ -112,7 +107,13 @@ static void find_part(const fu_model *model, const fu_taut_rope *rope, const fu_
     out->to = to;
     out->dim = model->dim;
     if (rope->part) {
-        fu_taut_part_in_space(model, rope, state, one, other, out);
+        /* the angle before a point is its second number */
+        const double near[SIDES] = {state->numbers[start->base.numbers], state->numbers[end->base.numbers + 1]};
+        out->feet.radius[0] = start->radius;
+        out->feet.radius[1] = end->radius;
+        out->feet.way_share[0] = first ? fu_taut_share_of_end(model, rope, 0) : 0.0;
+        out->feet.way_share[1] = last ? fu_taut_share_of_end(model, rope, 1) : 0.0;
+        fu_taut_part_in_space(rope->part, one, other, near, out);
         return;
     }
     out->rise = end->radius - start->radius;

@@ -87,6 +87,16 @@ double fu_taut_depth(const fu_model *model, const fu_taut_point *point, const fu
     return fabs(point->radius) - hypot(across, beyond);
 }
 
+double fu_taut_fleet_margin(const fu_model *model, const fu_taut_point *point, const fu_state *state)
+{
+    double least = INFINITY;
+    surroundings at;
+    find_parts(model, point, state, &at);
+    for (int side = 0; side < SIDES; ++side)
+        if (at.has[side]) least = fmin(least, fu_taut_margin_of_fleet(&at.part[side], !side));
+    return least;
+}
+
 /* Returns the excess over the limit of friction that is rounding, N. */
 static double rounding_of(const surroundings *at)
 {

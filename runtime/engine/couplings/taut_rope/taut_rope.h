@@ -8,6 +8,8 @@
 #include "couplings/common/attachments.h"
 #include "couplings/common/coupling.h"
 
+#include <math.h>
+
 enum { FU_DRAWN, FU_WAY, FU_LENGTHS }; /* of a rope: its drawn length, and the way of its ends onto wheels */
 enum { FU_TOUCHES, FU_SLIPS, FU_POINT_FLAGS };
 
@@ -139,10 +141,12 @@ void fu_taut_walk(const fu_model *model, const fu_taut_rope *rope, const fu_stat
 void fu_taut_lengths_at(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_lengths *out);
 /* Computes the force of a part on its second point, of a unit of tension; its opposite acts on the first. */
 void fu_taut_pull(const fu_taut_part *part, double pull[3]);
-/* In space (taut_space.c). Computes what a straight part has between these states of its points; not a number where
- * there is none. */
-void fu_taut_part_in_space(const fu_model *model, const fu_taut_rope *rope, const fu_state *state,
-                           const fu_attachment_state *one, const fu_attachment_state *other, fu_taut_part *out);
+/* In space (taut_space.c). Computes what a straight part has between these states of its points, the radii and shares
+ * of which are given, with angles near those given; not a number where there is none. */
+void fu_taut_part_in_space(const fu_taut_part_kernels *kernel, const fu_attachment_state *one,
+                           const fu_attachment_state *other, const double near[2], fu_taut_part *out);
+/* Returns by how much a part exceeds the length at which it would slide along the groove at an end, m. */
+double fu_taut_margin_of_fleet(const fu_taut_part *part, int end);
 /* Returns the moment of a part on one of its points, of a unit of tension. */
 const double *fu_taut_moment(const fu_taut_part *part, int end);
 /* Computes the derivatives, by the places, of the force and both moments of a part of a unit of tension, K (9 x 9), and
@@ -154,7 +158,10 @@ void fu_taut_add_in_space(const fu_model *model, const fu_coupling *coupling, co
                           const fu_taut_part *part, const fu_taut_law *law, const fu_equations *equations,
                           fu_system *system);
 /* Returns an angle, whole turns added, near another one. */
-double fu_near_angle(double angle, double to);
+static inline double fu_near_angle(double angle, double to)
+{
+    return to + remainder(angle - to, 2.0 * acos(-1.0));
+}
 /* Returns the rotation of what carries a point, in the plane; that of the point with it, and its rate, in space alone;
  * at: with its axes. */
 double fu_taut_carrier_angle(const fu_taut_point *point, const fu_state *state, const fu_attachment_state *at);

@@ -110,12 +110,9 @@ static void differentiate(const fu_taut_part_kernels *kernel, const double z[FU_
     for (int k = 0; k < FU_FEET; ++k) of->z_rate[k] = fu_dot(COLUMNS, of->z_p + k * COLUMNS, of->rate);
 }
 
-void fu_taut_part_in_space(const fu_model *model, const fu_taut_rope *rope, const fu_state *state,
-                           const fu_attachment_state *one, const fu_attachment_state *other, fu_taut_part *out)
+void fu_taut_part_in_space(const fu_taut_part_kernels *kernel, const fu_attachment_state *one,
+                           const fu_attachment_state *other, const double near[2], fu_taut_part *out)
 {
-    const fu_taut_point *points[SIDES] = {fu_taut_point_of(model, rope, out->from),
-                                          fu_taut_point_of(model, rope, out->to)};
-    const int holds[SIDES] = {out->from == 0, out->to == rope->n_points - 1};
     fu_taut_feet *of = &out->feet;
     double z[FU_FEET] = {0.0};
     memcpy(of->frame[0], one->A, sizeof of->frame[0]);
@@ -126,25 +123,20 @@ void fu_taut_part_in_space(const fu_model *model, const fu_taut_rope *rope, cons
         of->rate[DIM + d] = one->omega[d];
         of->rate[2 * DIM + d] = other->omega[d];
     }
-    for (int end = 0; end < SIDES; ++end) {
-        of->radius[end] = points[end]->radius;
-        of->way_share[end] = holds[end] ? fu_taut_share_of_end(model, rope, end) : 0.0;
-    }
-    solve(rope->part, of, z, &out->l, out->u);
-    differentiate(rope->part, z, of);
+    solve(kernel, of, z, &out->l, out->u);
+    differentiate(kernel, z, of);
     out->growth = fu_dot(COLUMNS, of->whole, of->rate);
     out->drawn = out->l;
     for (int end = 0; end < SIDES; ++end) {
         const double *axis = of->frame[end], sign = end ? -1.0 : 1.0;
         const double share = sign * of->radius[end] - of->way_share[end];
-        /* the angle before a point is its second number */
-        out->angle[end] = fu_near_angle(z[OF_FOOT * end], state->numbers[points[end]->base.numbers + end]);
+        out->angle[end] = fu_near_angle(z[OF_FOOT * end], near[end]);
         out->turning[end] = of->z_rate[OF_FOOT * end];
         of->reach[end] = z[OF_FOOT * end + REACH];
         out->growth -= sign * of->radius[end] * out->turning[end];
         out->drawn += share * out->angle[end];
         out->fleet[end] =
-            points[end]->radius == 0.0
+            of->radius[end] == 0.0
                 ? 0.0
                 : sign * asin(axis[2] * out->u[0] + axis[DIM + 2] * out->u[1] + axis[2 * DIM + 2] * out->u[2]);
     }
@@ -183,23 +175,8 @@ void fu_taut_second(const fu_taut_rope *rope, const fu_taut_part *part, double *
 
 /* A part is a minimum of the length while it is longer, along the groove, than R tan f: else its foot runs away along
  * the groove. The margin has a reserve. */
-static double fleet_margin(const fu_taut_part *part, int end)
+double fu_taut_margin_of_fleet(const fu_taut_part *part, int end)
 {
     const double fleet = fabs(part->fleet[end]);
     return part->l * cos(fleet) - FLEET_RESERVE * fabs(part->feet.radius[end]) * tan(fleet);
-}
-
-double fu_taut_fleet_margin(const fu_model *model, const fu_taut_point *point, const fu_state *state)
-{
-    double least = INFINITY;
-    for (int side = 0; side < SIDES; ++side) {
-        const fu_taut_rope *rope = fu_taut_beside(model, point, side);
-        const int place = point->places[side];
-        if (!rope) continue;
-        fu_taut_part part;
-        const int from = side ? place : fu_touched_before(model, rope, state, place);
-        fu_taut_part_at(model, rope, state, from, fu_next_touched(model, rope, state, from), &part);
-        least = fmin(least, fleet_margin(&part, !side));
-    }
-    return least;
 }
