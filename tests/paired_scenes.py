@@ -209,7 +209,7 @@ def _rope(on: Site, carried: bool = False, first: object = None, also: Callable[
     x, y, _ = on.below(1.0, 0)
     on.body("load", (x + 1.6, y - 1.0, 0))
     at = (on.held("post", (x + 1.4, y, 0)), (0, 0.05, 0)) if carried else (x + 1.4, y, 0)
-    element = {} if on.planar or not mass else {"element": "cable12"}
+    element = {} if on.planar else {"element": "cable12"}
     first = first or fu.Anchor(at=(x + 0.8, y - 0.8, 0))
     on.scene.rope("hoist", route=[first, fu.Sheave("top", at=at, radius=0.2, **given), fu.Anchor("load")],
                   elements=2, tension=0.981, mass=mass, **element, **OF_ROPE)
@@ -252,7 +252,9 @@ ROPES: dict[str, Callable[[Site], object]] = {
     "loaded rope": partial(_rope, also=lambda on: on.scene.force("hoist", s=0.1, value=(0.0, -0.1, 0))),
     "rope in a wind": partial(_rope, also=_blown),
     "belt": _belt,
-    "rope without mass": partial(_rope, mass=False)}
+    "rope without mass": partial(_rope, mass=False),
+    "rope without mass over a body": partial(_rope, mass=False, carried=True, friction=STUCK,
+                                             first=_drum(velocity=SIGNALS["ramp"]))}
 
 
 # ---- loads and springs
