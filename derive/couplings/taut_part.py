@@ -63,10 +63,10 @@ class _Part:
         self.by_p += [self._by(f"d_turn_{k + 1}_{i}", self._turned(k, np.eye(DIM, dtype=int)[i]))
                       for k in range(ENDS) for i in range(DIM)]
 
-    def _by(self, tag: str, on: dict) -> DirectionalDerivative:
+    def _by(self, tag: str, on: dict[sp.Symbol, sp.Expr]) -> DirectionalDerivative:
         return DirectionalDerivative(self.p, tag, on)
 
-    def _turned(self, k: int, about: np.ndarray) -> dict:
+    def _turned(self, k: int, about: np.ndarray) -> dict[sp.Symbol, sp.Expr]:
         """Return the rates of a frame that turns about an axis of the ground."""
         A = self.frames[k]
         return {A[i, j]: value for j in (X, Y) for i, value in enumerate(np.cross(about, A[:, j]))}

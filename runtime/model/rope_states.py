@@ -64,17 +64,28 @@ def rope_motion(model: Model, rope: RopeModel, q: np.ndarray, dofs: np.ndarray) 
 
 def _motion_without_mass(model: Model, rope: RopeModel, q: np.ndarray, dofs: np.ndarray) -> dict[str, np.ndarray]:
     """Return the displacement (n, points, 3) of points along a rope without mass, see `rope_motion`."""
-    held = [point.attachments[0] for point in points_of_rope(model.of(TautPointModel), rope.part.name)]
+    points = points_of_rope(model.of(TautPointModel), rope.part.name)
     counts, found = points_of_spans(rope.part, rope.route), []
     for sign in (-1, 1):
-        centres = np.stack([attachment_points(model, each, moved(model, q, sign * MOTION_STEP * dofs))
-                            for each in held], axis=1)
-        found.append([as_drawn(rope.part, drawn_anew(rope.part, rope.route, each), counts)
-                      for each in centres[..., : model.dim]])
+        at = moved(model, q, sign * MOTION_STEP * dofs)
+        centres = np.stack([attachment_points(model, each.attachments[0], at) for each in points], axis=1)
+        planes = [{point.name: plane for point, plane in zip(points, each, strict=True) if point.radius}
+                  for each in zip(*(grooves(model, point, at) for point in points), strict=True)]
+        found.append([as_drawn(rope.part, drawn_anew(rope.part, rope.route, *each), counts)
+                      for each in zip(centres[..., : model.dim], planes, strict=True)])
     changes = {key: np.array([other[key] - one[key] for one, other in zip(*found, strict=True)]) / (2 * MOTION_STEP)
                for key in ("position", "s")}
     alone = {"displacement": changes["position"]}
     return alone if rope.part.holding_sheaves or rope.part.drums else alone | {"s": changes["s"]}
+
+
+def grooves(model: Model, point: TautPointModel, q: np.ndarray) -> np.ndarray:
+    """Return (T, dim, 2): the plane of the groove of a point in configurations (T, n_q); any plane of an anchor."""
+    end = point.attachments[0]
+    if point.in_space and point.radius and end.body >= 0:
+        return attachment_axes(model, end, q)[..., :2]
+    axes = np.eye(model.dim) if end.axes is None or not point.in_space else end.axes
+    return np.tile(axes[:, :2], (len(q), 1, 1))
 
 
 def moved(model: Model, q: np.ndarray, dofs: np.ndarray) -> np.ndarray:

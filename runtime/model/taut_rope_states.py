@@ -9,8 +9,8 @@ import numpy as np
 
 from .model import Model
 from .rope_model import RopeModel
-from .rope_states import points_of_spans
-from .states import attachment_axes, attachment_points, spatial
+from .rope_states import grooves, points_of_spans
+from .states import attachment_points, spatial
 from .taut_ropes import TautPointModel, TautRopeModel, points_of_rope
 
 Outputs = Callable[[str, int], dict[str, np.ndarray]]
@@ -80,15 +80,6 @@ def _point(model: Model, point: TautPointModel, q: np.ndarray, outputs: dict[str
     made.off = made.on_circle(after, outputs["fleet_angle_off"])
     made.after = after + point.closing
     return made
-
-
-def grooves(model: Model, point: TautPointModel, q: np.ndarray) -> np.ndarray:
-    """Return (T, dim, 2): the plane of the groove of a point in configurations (T, n_q); any plane of an anchor."""
-    end = point.attachments[0]
-    if point.in_space and point.radius and end.body >= 0:
-        return attachment_axes(model, end, q)[..., :2]
-    axes = np.eye(model.dim) if end.axes is None or not point.in_space else end.axes
-    return np.tile(axes[:, :2], (len(q), 1, 1))
 
 
 def _find_feet(points: list[_Point]) -> None:
