@@ -280,8 +280,28 @@ def test_rest_and_modes_are_those_in_the_plane():
     assert space[2]["rope.displacement"][k, -1] == pytest.approx(shapes[k], abs=1e-6)
 
 
+@pytest.mark.parametrize("k", [1, 6])
+def test_modes_move_the_rope_as_velocities_do(k):
+    """A sheave on a ring on a ball joint, whose groove tilts with it."""
+    scene = fu.Scene(gravity=(0, -GRAVITY, 0))
+    scene.rigid_body("load", mass=5.0, inertia=(1, 1, 1), position=(0.3, -2, 0))
+    scene.rigid_body("ring", mass=5.0, inertia=(0.2, 0.1, 0.3), position=(0, 0.5, 0))
+    scene.joint("spherical", (0, 0.8, 0), ("ring", (0, 0.3, 0)), name="hinge")
+    top = fu.Sheave("top", at=("ring", (0, -0.5, 0)), radius=0.3, side="right", **ANY)
+    route = [fu.Anchor(at=(-0.3, -2, 0)), top, fu.Anchor("load", at=(0, 0.05, 0))]
+    scene.rope("rope", tension=40.0, **SOFT, route=route)
+    modes = scene.modes(9, about=scene.equilibrium())
+    assert modes.frequency[k] > 0.1
+    for name in ("load", "ring"):
+        motion = (tuple(0.1 * modes[f"{name}.{of}"][k]) for of in ("displacement", "rotation"))
+        scene = scene.replace(name, **dict(zip(("velocity", "angular_velocity"), motion, strict=True)))
+    run = scene.run(1e-4, output_step=1e-4, initial="equilibrium", integrator="radau", progress=False)
+    moved = np.diff(run["rope.position"], axis=0)[0] / 1e-5
+    assert np.abs(moved - modes["rope.displacement"][k]).max() < 1e-4 * np.abs(moved).max()
+
+
 def test_a_load_comes_to_rest_below_its_sheave():
-    """The axis of a sheave on a ring turns into the pull of its rope."""
+    """Which hangs straight down from the edge of its groove."""
     scene = fu.Scene(gravity=(0, -GRAVITY, 0))
     scene.rigid_body("load", mass=5.0, inertia=(1, 1, 1), position=(0.6, -2, 0.3))
     scene.rope("rope", route=[fu.Anchor(at=(-0.3, -2, 0.2)),
