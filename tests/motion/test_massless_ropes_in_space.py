@@ -314,6 +314,16 @@ def test_a_load_comes_to_rest_below_its_sheave():
     assert np.abs(run["load.position"] - rest["load.position"]).max() < 1e-8
 
 
+def test_a_rest_at_which_the_rope_leaves_its_sheave_is_refused():
+    """The load hangs beside the peg that its rope lies on as drawn."""
+    scene = fu.Scene(gravity=(0, -GRAVITY, 0))
+    weight(scene, "load", 5.0, -1.0, -1.5)
+    peg = fu.Sheave("peg", at=(0.05, -1, 0), radius=0.1, side="right", **ANY)
+    scene.rope("rope", route=[fu.Anchor(at=(0.3, 0, 0.05)), peg, fu.Anchor("load")], tension=49.0, **SOFT)
+    with pytest.raises(fu.EquilibriumError, match='the rope leaves sheave "peg"; the state there'):
+        scene.equilibrium()
+
+
 # ---- files
 
 def test_files(tmp_path):

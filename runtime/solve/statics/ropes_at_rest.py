@@ -18,11 +18,12 @@ from ...model.model import Model
 from ...model.rope_model import RopeModel
 from ...model.rope_states import in_groove
 from ...model.states import attachment_points
+from ...model.taut_ropes import TautPointModel
 from ...parts.attachment import Attachment
 from ...parts.rope import Rope
 from ...parts.rope_drawing import Holders, place_of
 from ...parts.rope_items import Anchor, Drum, RouteItem
-from ...parts.rope_route import MIN_WRAP
+from ...parts.rope_route import ANGLE_ROUNDING, MIN_WRAP
 from ...parts.scene_data import SceneData
 from ...parts.validation import show
 from ..linear.solver import solver
@@ -87,6 +88,11 @@ def off_sheaves(model: Model, engine: Engine) -> str:
             return f'drum "{drum.name}" is empty'
         if numbers["normal_force"][k] < 0.0:
             return f'the rope lifts off drum "{drum.name}": it has no tension there'
+    if points := model.of(TautPointModel):
+        numbers = outputs_by_name("taut_point", engine.static_outputs("taut_point"))
+        for k, point in enumerate(points):
+            if numbers["touches"][k] and not numbers["wrap_angle"][k] >= -ANGLE_ROUNDING:
+                return f'the rope leaves sheave "{point.name}"'
     for span in model.spans:
         if q[span.span_s[1]] - q[span.span_s[0]] < span.least_length:
             return f'a span of rope "{span.name}" becomes too short to be modelled'
