@@ -197,6 +197,23 @@ def test_a_planar_scene_and_its_spatial_twin(sheave):
         assert np.abs(plane["top.slip"]).max() > 0.01
 
 
+@pytest.mark.parametrize(("friction", "inertia"), [(3.0, 0.5), (0.1, 2.0)])
+def test_a_belt_and_its_spatial_twin(friction, inertia):
+    """With more than a turn of both pulleys; at the lower friction the belt slips on them."""
+    runs = []
+    for element in (PLANAR, {}):
+        scene, pulley = fu.Scene(gravity=(0, 0, 0)), {"radius": 0.1, "friction": friction, "side": "left"}
+        scene.rope("belt", closed=True, tension=500.0, **rope_of(1e5, 1e-5, 0, 1e-3) | SPATIAL | element, route=[
+            fu.Sheave("driver", at=(0, 0, 0), **pulley, velocity=fu.Ramp(start=0, end=0.2, after=20.0)),
+            fu.Sheave("driven", at=(1, 0, 0), **pulley | {"radius": 0.15}, inertia=inertia)])
+        runs.append(scene.run(0.6, output_step=0.1, integrator="radau", **BRIEF | {"tol": 1e-9}))
+    near(*runs, 1e-8, "driver.angle", "driven.angle", "driver.wrap_angle", "driven.wrap_angle")
+    near(*runs, 1e-4, "driver.tension_on", "driven.tension_on", "driver.material_speed", "driven.slip")
+    assert runs[0]["driver.angle"][-1] > 2 * pi
+    assert bool(np.abs(runs[0]["driven.slip"]).max() > 0.01 or np.abs(runs[0]["driver.slip"]).max() > 0.01) is (
+        friction < 1)
+
+
 def test_the_speed_of_a_rope_that_slips_is_that_of_the_material_that_passes():
     """Between the middle of the wrap on the second sheave and the load, beside a sheave on which the rope slips."""
     scene = twins(friction=0.05)[1]
