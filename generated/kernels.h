@@ -1703,6 +1703,14 @@ typedef void fu_span_share_kernel(fu_real at, const fu_real *ends, fu_real *shar
 /* ends 2, share 1, share_s 2 */
 fu_span_share_kernel span_cable8p_share, span_cable12_share;
 
+typedef void fu_span_point_tangent_kernel(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real xi, fu_real *r_q, fu_real *v_q, fu_real *v_v);
+/* derivatives of place and velocity of the material at a constant share: l [m]; e [m, 1]; v [m/s, 1/s]; s_rate
+ * [m/s]; xi [1] -> r_q [1, m]; v_q [1/s]; v_v [1, m] */
+/* e 4x2, v 4x2, s_rate 2, r_q 2x9, v_q 2x9, v_v 2x10 */
+fu_span_point_tangent_kernel span_cable8p_point_tangent;
+/* e 4x3, v 4x3, s_rate 2, r_q 3x13, v_q 3x13, v_v 3x14 */
+fu_span_point_tangent_kernel span_cable12_point_tangent;
+
 typedef void fu_surface_flat_kernel(const fu_real *y, const fu_real *normal, fu_real *g, fu_real *g_y);
 /* distance from a plane, and its gradient: y [m]; normal [1] -> g [m]; g_y [1] */
 /* y 3, normal 3, g 1, g_y 3 */
@@ -1762,6 +1770,14 @@ typedef void fu_surface_sliding_kernel(const fu_real *n, const fu_real *H, const
 fu_surface_sliding_kernel surface_sliding;
 /* n 2, H 2x2, w 2, normal_force 3, x 2, f 2, f_y 2x2, f_w 2x2, f_x 2x2 */
 fu_surface_sliding_kernel planar_surface_sliding;
+
+typedef void fu_surface_slipping_kernel(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *normal_force, fu_real mu, fu_real v0, fu_real *f, fu_real *f_y, fu_real *f_w);
+/* regularised friction, and its derivatives: n [1]; H [1/m]; w [m/s]; normal_force [N, N/m, N s/m (a length)]; mu
+ * [1]; v0 [m/s] -> f [N (a length)]; f_y [N/m (a length)]; f_w [N s/m (a length)] */
+/* n 3, H 3x3, w 3, normal_force 3, f 3, f_y 3x3, f_w 3x3 */
+fu_surface_slipping_kernel surface_slipping;
+/* n 2, H 2x2, w 2, normal_force 3, f 2, f_y 2x2, f_w 2x2 */
+fu_surface_slipping_kernel planar_surface_slipping;
 
 typedef void fu_surface_reaction_kernel(const fu_real *x, const fu_real *w, const fu_real *omega_o, const fu_real *f, const fu_real *f_y, const fu_real *f_w, const fu_real *f_x, const fu_real *H, fu_real radius, const fu_real *arm, const fu_real *turn, const fu_real *mean_arm, fu_real share, const fu_real *dr, const fu_real *dv, const fu_real *dtheta, const fu_real *dtheta_o, const fu_real *domega_o, fu_real *f_t, fu_real *m_t, fu_real *m_o_t);
 /* change of contact along a motion of the point and of the surface: x [m]; w [m/s]; omega_o [rad/s]; f [N (a
@@ -2331,6 +2347,7 @@ typedef struct {
     fu_span_stored_force_kernel *stored_force;
     fu_span_stored_force_tangent_kernel *stored_force_tangent;
     fu_span_share_kernel *share;
+    fu_span_point_tangent_kernel *point_tangent;
 } fu_span_kernels;
 
 /* What the engine needs of a surface. */
@@ -2345,6 +2362,7 @@ typedef struct {
     fu_surface_frictionless_kernel *frictionless;
     fu_surface_sticking_kernel *sticking;
     fu_surface_sliding_kernel *sliding;
+    fu_surface_slipping_kernel *slipping;
     fu_surface_reaction_kernel *reaction;
     fu_surface_motion_kernel *motion;
     fu_surface_slip_kernel *slip;

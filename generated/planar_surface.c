@@ -4,6 +4,18 @@
  */
 #include "kernels.h"
 
+/* part of derivatives: of planar_surface_sliding and 1 more */
+#define PLANAR_SURFACE_PART_OF_DERIVATIVES \
+    const fu_real \
+        dy0_F_x = -dy0_inv_size*mu*normal_force[0]*t_x - dy0_t_x*inv_size*mu*normal_force[0] - inv_size*mu*t_x*(-Hw_x*normal_force[2] - n[0]*normal_force[1]), \
+        dy0_F_y = -dy0_inv_size*mu*normal_force[0]*t_y - dy0_t_y*inv_size*mu*normal_force[0] - inv_size*mu*t_y*(-Hw_x*normal_force[2] - n[0]*normal_force[1]);
+
+/* part of derivatives: of planar_surface_sliding and 1 more */
+#define PLANAR_SURFACE_PART_OF_DERIVATIVES_2 \
+    const fu_real \
+        dy1_F_x = -dy1_inv_size*mu*normal_force[0]*t_x - dy1_t_x*inv_size*mu*normal_force[0] - inv_size*mu*t_x*(-Hw_y*normal_force[2] - n[1]*normal_force[1]), \
+        dy1_F_y = -dy1_inv_size*mu*normal_force[0]*t_y - dy1_t_y*inv_size*mu*normal_force[0] - inv_size*mu*t_y*(-Hw_y*normal_force[2] - n[1]*normal_force[1]);
+
 /* distance from a plane, and its gradient; 1 add, 2 mul */
 void planar_surface_flat(const fu_real *y, const fu_real *normal, fu_real *g, fu_real *g_y)
 {
@@ -186,18 +198,18 @@ void planar_surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w
         dy0_t_x = -H[0]*along*inv_nn - along*dy0_inv_nn*n[0] - dy0_along*inv_nn*n[0] + 1.0,
         dy0_t_y = -H[2]*along*inv_nn - along*dy0_inv_nn*n[1] - dy0_along*inv_nn*n[1],
         dy0_size = inv_size*(dy0_t_x*t_x + dy0_t_y*t_y),
-        dy0_inv_size = -(dy0_size*inv_size*inv_size),
-        dy0_F_x = -dy0_inv_size*mu*normal_force[0]*t_x - dy0_t_x*inv_size*mu*normal_force[0] - inv_size*mu*t_x*(-Hw_x*normal_force[2] - n[0]*normal_force[1]),
-        dy0_F_y = -dy0_inv_size*mu*normal_force[0]*t_y - dy0_t_y*inv_size*mu*normal_force[0] - inv_size*mu*t_y*(-Hw_x*normal_force[2] - n[0]*normal_force[1]),
+        dy0_inv_size = -(dy0_size*inv_size*inv_size);
+    PLANAR_SURFACE_PART_OF_DERIVATIVES
+    const fu_real
         dy1_along = H[1]*x[0] + H[3]*x[1] + n[1],
         dy1_nn = 2.0*H[1]*n[0] + 2.0*H[3]*n[1],
         dy1_inv_nn = -(dy1_nn*inv_nn*inv_nn),
         dy1_t_x = -H[1]*along*inv_nn - along*dy1_inv_nn*n[0] - dy1_along*inv_nn*n[0],
         dy1_t_y = -H[3]*along*inv_nn - along*dy1_inv_nn*n[1] - dy1_along*inv_nn*n[1] + 1.0,
         dy1_size = inv_size*(dy1_t_x*t_x + dy1_t_y*t_y),
-        dy1_inv_size = -(dy1_size*inv_size*inv_size),
-        dy1_F_x = -dy1_inv_size*mu*normal_force[0]*t_x - dy1_t_x*inv_size*mu*normal_force[0] - inv_size*mu*t_x*(-Hw_y*normal_force[2] - n[1]*normal_force[1]),
-        dy1_F_y = -dy1_inv_size*mu*normal_force[0]*t_y - dy1_t_y*inv_size*mu*normal_force[0] - inv_size*mu*t_y*(-Hw_y*normal_force[2] - n[1]*normal_force[1]),
+        dy1_inv_size = -(dy1_size*inv_size*inv_size);
+    PLANAR_SURFACE_PART_OF_DERIVATIVES_2
+    const fu_real
         dw0_F_x = inv_size*mu*n[0]*normal_force[2]*t_x,
         dw0_F_y = inv_size*mu*n[0]*normal_force[2]*t_y,
         dw1_F_x = inv_size*mu*n[1]*normal_force[2]*t_x,
@@ -215,6 +227,64 @@ void planar_surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w
     f_w[3] = dw1_F_y;
     FU_EACH(g, 4,
         f_x[g] = 0.0;)
+}
+
+/* regularised friction, and its derivatives; 53 add, 199 mul, 2 div, 1 sqrt */
+void planar_surface_slipping(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *normal_force, fu_real mu, fu_real v0, fu_real *f, fu_real *f_y, fu_real *f_w)
+{
+    /* friction */
+    const fu_real
+        nn = n[0]*n[0] + n[1]*n[1],
+        inv_nn = 1.0/nn,
+        t_x = -(inv_nn*n[1]*(n[0]*w[1] - n[1]*w[0])),
+        t_y = inv_nn*n[0]*(n[0]*w[1] - n[1]*w[0]),
+        speed = FU_SQRT(t_x*t_x + t_y*t_y + v0*v0),
+        inv_size = 1.0/speed,
+        F_x = -(inv_size*mu*normal_force[0]*t_x),
+        F_y = -(inv_size*mu*normal_force[0]*t_y),
+        Hw_x = H[0]*w[0] + H[1]*w[1],
+        Hw_y = H[2]*w[0] + H[3]*w[1];
+    /* derivatives */
+    const fu_real
+        dy0_nn = 2.0*H[0]*n[0] + 2.0*H[2]*n[1],
+        dy0_inv_nn = -(dy0_nn*inv_nn*inv_nn),
+        dy0_t_x = -H[0]*inv_nn*n[1]*w[1] + H[2]*(inv_nn*n[1]*w[0] - inv_nn*(n[0]*w[1] - n[1]*w[0])) - dy0_inv_nn*n[1]*(n[0]*w[1] - n[1]*w[0]),
+        dy0_t_y = H[0]*(inv_nn*n[0]*w[1] + inv_nn*(n[0]*w[1] - n[1]*w[0])) - H[2]*inv_nn*n[0]*w[0] + dy0_inv_nn*n[0]*(n[0]*w[1] - n[1]*w[0]),
+        dy0_speed = inv_size*(dy0_t_x*t_x + dy0_t_y*t_y),
+        dy0_inv_size = -(dy0_speed*inv_size*inv_size);
+    PLANAR_SURFACE_PART_OF_DERIVATIVES
+    const fu_real
+        dy1_nn = 2.0*H[1]*n[0] + 2.0*H[3]*n[1],
+        dy1_inv_nn = -(dy1_nn*inv_nn*inv_nn),
+        dy1_t_x = -H[1]*inv_nn*n[1]*w[1] + H[3]*(inv_nn*n[1]*w[0] - inv_nn*(n[0]*w[1] - n[1]*w[0])) - dy1_inv_nn*n[1]*(n[0]*w[1] - n[1]*w[0]),
+        dy1_t_y = H[1]*(inv_nn*n[0]*w[1] + inv_nn*(n[0]*w[1] - n[1]*w[0])) - H[3]*inv_nn*n[0]*w[0] + dy1_inv_nn*n[0]*(n[0]*w[1] - n[1]*w[0]),
+        dy1_speed = inv_size*(dy1_t_x*t_x + dy1_t_y*t_y),
+        dy1_inv_size = -(dy1_speed*inv_size*inv_size);
+    PLANAR_SURFACE_PART_OF_DERIVATIVES_2
+    const fu_real
+        dw0_t_x = inv_nn*n[1]*n[1],
+        dw0_t_y = -(inv_nn*n[0]*n[1]),
+        dw0_speed = inv_size*(dw0_t_x*t_x + dw0_t_y*t_y),
+        dw0_inv_size = -(dw0_speed*inv_size*inv_size),
+        dw0_F_x = -dw0_inv_size*mu*normal_force[0]*t_x - dw0_t_x*inv_size*mu*normal_force[0] + inv_size*mu*n[0]*normal_force[2]*t_x,
+        dw0_F_y = -dw0_inv_size*mu*normal_force[0]*t_y - dw0_t_y*inv_size*mu*normal_force[0] + inv_size*mu*n[0]*normal_force[2]*t_y,
+        dw1_t_x = -(inv_nn*n[0]*n[1]),
+        dw1_t_y = inv_nn*n[0]*n[0],
+        dw1_speed = inv_size*(dw1_t_x*t_x + dw1_t_y*t_y),
+        dw1_inv_size = -(dw1_speed*inv_size*inv_size),
+        dw1_F_x = -dw1_inv_size*mu*normal_force[0]*t_x - dw1_t_x*inv_size*mu*normal_force[0] + inv_size*mu*n[1]*normal_force[2]*t_x,
+        dw1_F_y = -dw1_inv_size*mu*normal_force[0]*t_y - dw1_t_y*inv_size*mu*normal_force[0] + inv_size*mu*n[1]*normal_force[2]*t_y;
+    /* outputs */
+    f[0] = F_x;
+    f[1] = F_y;
+    f_y[0] = dy0_F_x;
+    f_y[1] = dy1_F_x;
+    f_y[2] = dy0_F_y;
+    f_y[3] = dy1_F_y;
+    f_w[0] = dw0_F_x;
+    f_w[1] = dw1_F_x;
+    f_w[2] = dw0_F_y;
+    f_w[3] = dw1_F_y;
 }
 
 /* change of contact along a motion of the point and of the surface; 39 add, 46 mul */

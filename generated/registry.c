@@ -305,21 +305,22 @@ static const fu_span_kernels spans[] = {
      span_cable8p_elastic_force, span_cable8p_elastic_tangent, span_cable8p_dissipation, span_cable8p_damping_force,
      span_cable8p_damping_tangent, span_cable8p_momentum, span_cable8p_momentum_energy, span_cable8p_momentum_step,
      span_cable8p_elastic_step, span_cable8p_line_force, span_cable8p_line_force_tangent, span_cable8p_stored_force,
-     span_cable8p_stored_force_tangent, span_cable8p_share},
+     span_cable8p_stored_force_tangent, span_cable8p_share, span_cable8p_point_tangent},
     {"span_cable12", 3, 12, 4, span_cable12_point, span_cable12_kinetic_energy, span_cable12_inertia,
      span_cable12_mass_matrix, span_cable12_inertia_tangent, span_cable12_weight, span_cable12_energy,
      span_cable12_elastic_force, span_cable12_elastic_tangent, span_cable12_dissipation, span_cable12_damping_force,
      span_cable12_damping_tangent, span_cable12_momentum, span_cable12_momentum_energy, span_cable12_momentum_step,
      span_cable12_elastic_step, span_cable12_line_force, span_cable12_line_force_tangent, span_cable12_stored_force,
-     span_cable12_stored_force_tangent, span_cable12_share},
+     span_cable12_stored_force_tangent, span_cable12_share, span_cable12_point_tangent},
 };
 
 static const fu_surface_kernels surfaces[] = {
     {"surface", 3, surface_flat, surface_rounded, surface_terrain, surface_push, surface_push_hertz,
-     surface_frictionless, surface_sticking, surface_sliding, surface_reaction, surface_motion, surface_slip},
+     surface_frictionless, surface_sticking, surface_sliding, surface_slipping, surface_reaction, surface_motion,
+     surface_slip},
     {"planar_surface", 2, planar_surface_flat, planar_surface_rounded, planar_surface_terrain, planar_surface_push,
      planar_surface_push_hertz, planar_surface_frictionless, planar_surface_sticking, planar_surface_sliding,
-     planar_surface_reaction, planar_surface_motion, planar_surface_slip},
+     planar_surface_slipping, planar_surface_reaction, planar_surface_motion, planar_surface_slip},
 };
 
 static const fu_tangent_point_kernels tangent_points[] = {
@@ -450,6 +451,7 @@ static const fu_taut_rope_kernels taut_ropes[] = {
 #define FU_ARGUMENTS_ssvs_6 *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]
 #define FU_ARGUMENTS_vvvv_3 a[0], a[1], a[2], a[3], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vvvs_4 a[0], a[1], a[2], *a[3], out[0], out[1], out[2], out[3]
+#define FU_ARGUMENTS_vvvvss_3 a[0], a[1], a[2], a[3], *a[4], *a[5], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vvvvvvvvsvvvsvvvvv_3 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], *a[8], a[9], a[10], a[11], *a[12], a[13], a[14], a[15], a[16], a[17], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vvvvvvvvvv_2 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], out[0], out[1]
 #define FU_ARGUMENTS_vvvvvvvvvvsvv_2 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], *a[10], a[11], a[12], out[0], out[1]
@@ -1080,6 +1082,7 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(span_cable8p_stored_force, ssvssv_2) \
     X(span_cable8p_stored_force_tangent, ssvsvv_3) \
     X(span_cable8p_share, sv_2) \
+    X(span_cable8p_point_tangent, svvvs_3) \
     X(span_cable12_point, svvvs_3) \
     X(span_cable12_kinetic_energy, ssvvv_1) \
     X(span_cable12_inertia, ssvvvvv_2) \
@@ -1101,6 +1104,7 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(span_cable12_stored_force, ssvssv_2) \
     X(span_cable12_stored_force_tangent, ssvsvv_3) \
     X(span_cable12_share, sv_2) \
+    X(span_cable12_point_tangent, svvvs_3) \
     X(surface_flat, vv_2) \
     X(surface_rounded, vvs_3) \
     X(surface_terrain, vv_3) \
@@ -1109,6 +1113,7 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(surface_frictionless, vvvv_3) \
     X(surface_sticking, vvvs_4) \
     X(surface_sliding, vvvvvs_4) \
+    X(surface_slipping, vvvvss_3) \
     X(surface_reaction, vvvvvvvvsvvvsvvvvv_3) \
     X(surface_motion, vvvvvvvvvv_2) \
     X(surface_slip, vvvvvvvvvvsvv_2) \
@@ -1120,6 +1125,7 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(planar_surface_frictionless, vvvv_3) \
     X(planar_surface_sticking, vvvs_4) \
     X(planar_surface_sliding, vvvvvs_4) \
+    X(planar_surface_slipping, vvvvss_3) \
     X(planar_surface_reaction, vvvvvvvvsvvvsvvvvv_3) \
     X(planar_surface_motion, vvvvvvvvvv_2) \
     X(planar_surface_slip, vvvvvvvvvvsvv_2) \

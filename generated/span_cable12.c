@@ -7,9 +7,6 @@
 /* part of slopes and curvatures at the nodes: of span_cable12_mass_matrix and 2 more */
 #define SPAN_CABLE12_PART_OF_SLOPES_AND_CURVATURES_AT_THE_NODES \
     const fu_real \
-        e_chord3_x = w*(-e[0] + e[6]), \
-        e_chord3_y = w*(-e[1] + e[7]), \
-        e_chord3_z = w*(-e[2] + e[8]), \
         e_S2_x = w*(-4.0*e[3] - 2.0*e[9] + 6.0*e_chord3_x), \
         e_S2_y = w*(-2.0*e[10] - 4.0*e[4] + 6.0*e_chord3_y), \
         e_S2_z = w*(-2.0*e[11] - 4.0*e[5] + 6.0*e_chord3_z), \
@@ -263,7 +260,11 @@ void span_cable12_inertia(fu_real rho, fu_real l, const fu_real *e, const fu_rea
 void span_cable12_mass_matrix(fu_real rho, fu_real l, const fu_real *e, fu_real *M)
 {
     /* slopes and curvatures at the nodes */
-    const fu_real w = 1.0/l;
+    const fu_real
+        w = 1.0/l,
+        e_chord3_x = w*(-e[0] + e[6]),
+        e_chord3_y = w*(-e[1] + e[7]),
+        e_chord3_z = w*(-e[2] + e[8]);
     SPAN_CABLE12_PART_OF_SLOPES_AND_CURVATURES_AT_THE_NODES
     /* mass matrix */
     fu_real m[3], m_at[3];
@@ -473,7 +474,11 @@ void span_cable12_mass_matrix(fu_real rho, fu_real l, const fu_real *e, fu_real 
 void span_cable12_inertia_tangent(fu_real rho, fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, const fu_real *a, const fu_real *s_acc, fu_real *D, fu_real *K)
 {
     /* slopes and curvatures at the nodes */
-    const fu_real w = 1.0/l;
+    const fu_real
+        w = 1.0/l,
+        e_chord3_x = w*(-e[0] + e[6]),
+        e_chord3_y = w*(-e[1] + e[7]),
+        e_chord3_z = w*(-e[2] + e[8]);
     SPAN_CABLE12_PART_OF_SLOPES_AND_CURVATURES_AT_THE_NODES
     const fu_real
         e_Sl2_x = -(w*(e_S2_x + 6.0*e_chord3_x*w)),
@@ -2878,7 +2883,11 @@ void span_cable12_line_force(fu_real part, fu_real l, const fu_real *e, fu_real 
 void span_cable12_line_force_tangent(fu_real part, fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real xi, const fu_real *F, const fu_real *F_r, const fu_real *F_t, const fu_real *F_v, fu_real *D, fu_real *K)
 {
     /* slopes and curvatures at the nodes */
-    const fu_real w = 1.0/l;
+    const fu_real
+        w = 1.0/l,
+        e_chord3_x = w*(-e[0] + e[6]),
+        e_chord3_y = w*(-e[1] + e[7]),
+        e_chord3_z = w*(-e[2] + e[8]);
     SPAN_CABLE12_PART_OF_SLOPES_AND_CURVATURES_AT_THE_NODES
     const fu_real
         e_Sl2_x = -(w*(e_S2_x + 6.0*e_chord3_x*w)),
@@ -3360,4 +3369,142 @@ void span_cable12_share(fu_real at, const fu_real *ends, fu_real *share, fu_real
     share[0] = xi;
     share_s[0] = d1_xi;
     share_s[1] = d2_xi;
+}
+
+/* derivatives of place and velocity of the material at a constant share (virtual work of the material at constant S); 60 add, 127 mul, 1 div */
+void span_cable12_point_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real xi, fu_real *r_q, fu_real *v_q, fu_real *v_v)
+{
+    /* slopes and curvatures at the nodes */
+    fu_real e_S_x[2], e_S_y[2], e_S_z[2];
+    const fu_real
+        w = 1.0/l,
+        e_chord3_x = w*(-e[0] + e[6]),
+        e_chord3_y = w*(-e[1] + e[7]),
+        e_chord3_z = w*(-e[2] + e[8]);
+    e_S_x[0] = w*(-4.0*e[3] - 2.0*e[9] + 6.0*e_chord3_x);
+    e_S_y[0] = w*(-2.0*e[10] - 4.0*e[4] + 6.0*e_chord3_y);
+    e_S_z[0] = w*(-2.0*e[11] - 4.0*e[5] + 6.0*e_chord3_z);
+    e_S_x[1] = w*(2.0*e[3] + 4.0*e[9] - 6.0*e_chord3_x);
+    e_S_y[1] = w*(4.0*e[10] + 2.0*e[4] - 6.0*e_chord3_y);
+    e_S_z[1] = w*(4.0*e[11] + 2.0*e[5] - 6.0*e_chord3_z);
+    const fu_real
+        e_Sl2_x = -(w*(e_S_x[0] + 6.0*e_chord3_x*w)),
+        e_Sl2_y = -(w*(e_S_y[0] + 6.0*e_chord3_y*w)),
+        e_Sl2_z = -(w*(e_S_z[0] + 6.0*e_chord3_z*w)),
+        e_Sl4_x = -(w*(e_S_x[1] - 6.0*e_chord3_x*w)),
+        e_Sl4_y = -(w*(e_S_y[1] - 6.0*e_chord3_y*w)),
+        e_Sl4_z = -(w*(e_S_z[1] - 6.0*e_chord3_z*w));
+    /* shape functions */
+    fu_real N[2], N_at[2];
+    N[0] = xi*xi*(2.0*xi - 3.0) + 1.0;
+    N_at[0] = l*xi*(xi*(xi - 2.0) + 1.0);
+    N[1] = xi*xi*(-2.0*xi + 3.0);
+    N_at[1] = l*xi*xi*(xi - 1.0);
+    /* displacements by the ends of the element */
+    fu_real g_x[2], g_y[2], g_z[2];
+    FU_EACH(g, 2,
+        g_x[g] = N[g]*e[6*g + 3] + N_at[g]*e_S_x[g];
+        g_y[g] = N[g]*e[6*g + 4] + N_at[g]*e_S_y[g];
+        g_z[g] = N[g]*e[6*g + 5] + N_at[g]*e_S_z[g];)
+    /* derivatives of place, slope and velocity of the material */
+    fu_real g1[4], g2[4], past[4];
+    const fu_real
+        S22 = -(4.0*w),
+        S23 = 6.0*w*w,
+        S24 = -(2.0*w),
+        S42 = 2.0*w,
+        S43 = -(6.0*w*w),
+        S44 = 4.0*w;
+    g1[0] = -(N_at[0]*S23);
+    g1[1] = N[0] + N_at[0]*S22;
+    g1[2] = N_at[0]*S23;
+    g1[3] = N_at[0]*S24;
+    g2[0] = -(N_at[1]*S43);
+    g2[1] = N_at[1]*S42;
+    g2[2] = N_at[1]*S43;
+    g2[3] = N[1] + N_at[1]*S44;
+    FU_EACH(g, 4,
+        past[g] = g1[g]*s_rate[0] + g2[g]*s_rate[1];)
+    const fu_real
+        dl_N2 = xi*(xi*(xi - 2.0) + 1.0),
+        dl_g1_x = N_at[0]*e_Sl2_x + dl_N2*e_S_x[0],
+        dl_g1_y = N_at[0]*e_Sl2_y + dl_N2*e_S_y[0],
+        dl_g1_z = N_at[0]*e_Sl2_z + dl_N2*e_S_z[0],
+        dl_N4 = xi*xi*(xi - 1.0),
+        dl_g2_x = N_at[1]*e_Sl4_x + dl_N4*e_S_x[1],
+        dl_g2_y = N_at[1]*e_Sl4_y + dl_N4*e_S_y[1],
+        dl_g2_z = N_at[1]*e_Sl4_z + dl_N4*e_S_z[1],
+        r_l_x = dl_N2*e[3] + dl_N4*e[9],
+        r_l_y = dl_N2*e[4] + dl_N4*e[10],
+        r_l_z = dl_N2*e[5] + dl_N4*e[11],
+        v_l_x = dl_N2*v[3] + dl_N4*v[9] - dl_g1_x*s_rate[0] - dl_g2_x*s_rate[1],
+        v_l_y = dl_N2*v[4] + dl_N4*v[10] - dl_g1_y*s_rate[0] - dl_g2_y*s_rate[1],
+        v_l_z = dl_N2*v[5] + dl_N4*v[11] - dl_g1_z*s_rate[0] - dl_g2_z*s_rate[1];
+    /* outputs */
+    FU_EACH(g, 2,
+        r_q[6*g] = N[g];
+        r_q[6*g + 1] = 0.0;
+        r_q[6*g + 2] = 0.0;
+        r_q[6*g + 3] = N_at[g];
+        r_q[6*g + 4] = 0.0;
+        r_q[6*g + 5] = 0.0;)
+    r_q[12] = r_l_x;
+    FU_EACH(g, 2,
+        r_q[6*g + 13] = 0.0;
+        r_q[6*g + 14] = N[g];
+        r_q[6*g + 15] = 0.0;
+        r_q[6*g + 16] = 0.0;
+        r_q[6*g + 17] = N_at[g];
+        r_q[6*g + 18] = 0.0;)
+    r_q[25] = r_l_y;
+    FU_EACH(g, 2,
+        r_q[6*g + 26] = 0.0;
+        r_q[6*g + 27] = 0.0;
+        r_q[6*g + 28] = N[g];
+        r_q[6*g + 29] = 0.0;
+        r_q[6*g + 30] = 0.0;
+        r_q[6*g + 31] = N_at[g];)
+    r_q[38] = r_l_z;
+    FU_EACH(g, 4,
+        v_q[3*g] = -past[g];
+        v_q[3*g + 1] = 0.0;
+        v_q[3*g + 2] = 0.0;)
+    v_q[12] = v_l_x;
+    FU_EACH(g, 4,
+        v_q[3*g + 13] = 0.0;
+        v_q[3*g + 14] = -past[g];
+        v_q[3*g + 15] = 0.0;)
+    v_q[25] = v_l_y;
+    FU_EACH(g, 4,
+        v_q[3*g + 26] = 0.0;
+        v_q[3*g + 27] = 0.0;
+        v_q[3*g + 28] = -past[g];)
+    v_q[38] = v_l_z;
+    FU_EACH(g, 2,
+        v_v[6*g] = N[g];
+        v_v[6*g + 1] = 0.0;
+        v_v[6*g + 2] = 0.0;
+        v_v[6*g + 3] = N_at[g];
+        v_v[6*g + 4] = 0.0;
+        v_v[6*g + 5] = 0.0;)
+    v_v[12] = -g_x[0];
+    v_v[13] = -g_x[1];
+    FU_EACH(g, 2,
+        v_v[6*g + 14] = 0.0;
+        v_v[6*g + 15] = N[g];
+        v_v[6*g + 16] = 0.0;
+        v_v[6*g + 17] = 0.0;
+        v_v[6*g + 18] = N_at[g];
+        v_v[6*g + 19] = 0.0;)
+    v_v[26] = -g_y[0];
+    v_v[27] = -g_y[1];
+    FU_EACH(g, 2,
+        v_v[6*g + 28] = 0.0;
+        v_v[6*g + 29] = 0.0;
+        v_v[6*g + 30] = N[g];
+        v_v[6*g + 31] = 0.0;
+        v_v[6*g + 32] = 0.0;
+        v_v[6*g + 33] = N_at[g];)
+    v_v[40] = -g_z[0];
+    v_v[41] = -g_z[1];
 }

@@ -2534,3 +2534,110 @@ void span_cable8p_share(fu_real at, const fu_real *ends, fu_real *share, fu_real
     share_s[0] = d1_xi;
     share_s[1] = d2_xi;
 }
+
+/* derivatives of place and velocity of the material at a constant share (virtual work of the material at constant S); 45 add, 98 mul, 1 div */
+void span_cable8p_point_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real xi, fu_real *r_q, fu_real *v_q, fu_real *v_v)
+{
+    /* slopes and curvatures at the nodes */
+    const fu_real
+        w = 1.0/l,
+        e_chord3_x = w*(-e[0] + e[4]),
+        e_chord3_y = w*(-e[1] + e[5]),
+        e_S2_x = w*(-4.0*e[2] - 2.0*e[6] + 6.0*e_chord3_x),
+        e_S2_y = w*(-4.0*e[3] - 2.0*e[7] + 6.0*e_chord3_y),
+        e_S4_x = w*(2.0*e[2] + 4.0*e[6] - 6.0*e_chord3_x),
+        e_S4_y = w*(2.0*e[3] + 4.0*e[7] - 6.0*e_chord3_y),
+        e_Sl2_x = -(w*(e_S2_x + 6.0*e_chord3_x*w)),
+        e_Sl2_y = -(w*(e_S2_y + 6.0*e_chord3_y*w)),
+        e_Sl4_x = -(w*(e_S4_x - 6.0*e_chord3_x*w)),
+        e_Sl4_y = -(w*(e_S4_y - 6.0*e_chord3_y*w));
+    /* shape functions */
+    const fu_real
+        N1 = xi*xi*(2.0*xi - 3.0) + 1.0,
+        N2 = l*xi*(xi*(xi - 2.0) + 1.0),
+        N3 = xi*xi*(-2.0*xi + 3.0),
+        N4 = l*xi*xi*(xi - 1.0);
+    /* displacements by the ends of the element */
+    const fu_real
+        g1_x = N1*e[2] + N2*e_S2_x,
+        g1_y = N1*e[3] + N2*e_S2_y,
+        g2_x = N3*e[6] + N4*e_S4_x,
+        g2_y = N3*e[7] + N4*e_S4_y;
+    /* derivatives of place, slope and velocity of the material */
+    fu_real g1[4], g2[4], past[4];
+    const fu_real
+        S22 = -(4.0*w),
+        S23 = 6.0*w*w,
+        S24 = -(2.0*w),
+        S42 = 2.0*w,
+        S43 = -(6.0*w*w),
+        S44 = 4.0*w;
+    g1[0] = -(N2*S23);
+    g1[1] = N1 + N2*S22;
+    g1[2] = N2*S23;
+    g1[3] = N2*S24;
+    g2[0] = -(N4*S43);
+    g2[1] = N4*S42;
+    g2[2] = N4*S43;
+    g2[3] = N3 + N4*S44;
+    FU_EACH(g, 4,
+        past[g] = g1[g]*s_rate[0] + g2[g]*s_rate[1];)
+    const fu_real
+        dl_N2 = xi*(xi*(xi - 2.0) + 1.0),
+        dl_g1_x = N2*e_Sl2_x + dl_N2*e_S2_x,
+        dl_g1_y = N2*e_Sl2_y + dl_N2*e_S2_y,
+        dl_N4 = xi*xi*(xi - 1.0),
+        dl_g2_x = N4*e_Sl4_x + dl_N4*e_S4_x,
+        dl_g2_y = N4*e_Sl4_y + dl_N4*e_S4_y,
+        r_l_x = dl_N2*e[2] + dl_N4*e[6],
+        r_l_y = dl_N2*e[3] + dl_N4*e[7],
+        v_l_x = dl_N2*v[2] + dl_N4*v[6] - dl_g1_x*s_rate[0] - dl_g2_x*s_rate[1],
+        v_l_y = dl_N2*v[3] + dl_N4*v[7] - dl_g1_y*s_rate[0] - dl_g2_y*s_rate[1];
+    /* outputs */
+    r_q[0] = N1;
+    r_q[1] = 0.0;
+    r_q[2] = N2;
+    r_q[3] = 0.0;
+    r_q[4] = N3;
+    r_q[5] = 0.0;
+    r_q[6] = N4;
+    r_q[7] = 0.0;
+    r_q[8] = r_l_x;
+    r_q[9] = 0.0;
+    r_q[10] = N1;
+    r_q[11] = 0.0;
+    r_q[12] = N2;
+    r_q[13] = 0.0;
+    r_q[14] = N3;
+    r_q[15] = 0.0;
+    r_q[16] = N4;
+    r_q[17] = r_l_y;
+    FU_EACH(g, 4,
+        v_q[2*g] = -past[g];
+        v_q[2*g + 1] = 0.0;)
+    v_q[8] = v_l_x;
+    FU_EACH(g, 4,
+        v_q[2*g + 9] = 0.0;
+        v_q[2*g + 10] = -past[g];)
+    v_q[17] = v_l_y;
+    v_v[0] = N1;
+    v_v[1] = 0.0;
+    v_v[2] = N2;
+    v_v[3] = 0.0;
+    v_v[4] = N3;
+    v_v[5] = 0.0;
+    v_v[6] = N4;
+    v_v[7] = 0.0;
+    v_v[8] = -g1_x;
+    v_v[9] = -g2_x;
+    v_v[10] = 0.0;
+    v_v[11] = N1;
+    v_v[12] = 0.0;
+    v_v[13] = N2;
+    v_v[14] = 0.0;
+    v_v[15] = N3;
+    v_v[16] = 0.0;
+    v_v[17] = N4;
+    v_v[18] = -g1_y;
+    v_v[19] = -g2_y;
+}

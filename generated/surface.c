@@ -4,6 +4,27 @@
  */
 #include "kernels.h"
 
+/* part of derivatives: of surface_sliding and 1 more */
+#define SURFACE_PART_OF_DERIVATIVES \
+    const fu_real \
+        dy0_F_x = -dy0_inv_size*mu*normal_force[0]*t_x - dy0_t_x*inv_size*mu*normal_force[0] - inv_size*mu*t_x*(-Hw_x*normal_force[2] - n[0]*normal_force[1]), \
+        dy0_F_y = -dy0_inv_size*mu*normal_force[0]*t_y - dy0_t_y*inv_size*mu*normal_force[0] - inv_size*mu*t_y*(-Hw_x*normal_force[2] - n[0]*normal_force[1]), \
+        dy0_F_z = -dy0_inv_size*mu*normal_force[0]*t_z - dy0_t_z*inv_size*mu*normal_force[0] - inv_size*mu*t_z*(-Hw_x*normal_force[2] - n[0]*normal_force[1]);
+
+/* part of derivatives: of surface_sliding and 1 more */
+#define SURFACE_PART_OF_DERIVATIVES_2 \
+    const fu_real \
+        dy1_F_x = -dy1_inv_size*mu*normal_force[0]*t_x - dy1_t_x*inv_size*mu*normal_force[0] - inv_size*mu*t_x*(-Hw_y*normal_force[2] - n[1]*normal_force[1]), \
+        dy1_F_y = -dy1_inv_size*mu*normal_force[0]*t_y - dy1_t_y*inv_size*mu*normal_force[0] - inv_size*mu*t_y*(-Hw_y*normal_force[2] - n[1]*normal_force[1]), \
+        dy1_F_z = -dy1_inv_size*mu*normal_force[0]*t_z - dy1_t_z*inv_size*mu*normal_force[0] - inv_size*mu*t_z*(-Hw_y*normal_force[2] - n[1]*normal_force[1]);
+
+/* part of derivatives: of surface_sliding and 1 more */
+#define SURFACE_PART_OF_DERIVATIVES_3 \
+    const fu_real \
+        dy2_F_x = -dy2_inv_size*mu*normal_force[0]*t_x - dy2_t_x*inv_size*mu*normal_force[0] - inv_size*mu*t_x*(-Hw_z*normal_force[2] - n[2]*normal_force[1]), \
+        dy2_F_y = -dy2_inv_size*mu*normal_force[0]*t_y - dy2_t_y*inv_size*mu*normal_force[0] - inv_size*mu*t_y*(-Hw_z*normal_force[2] - n[2]*normal_force[1]), \
+        dy2_F_z = -dy2_inv_size*mu*normal_force[0]*t_z - dy2_t_z*inv_size*mu*normal_force[0] - inv_size*mu*t_z*(-Hw_z*normal_force[2] - n[2]*normal_force[1]);
+
 /* part of velocity past the surface: of surface_motion and 1 more */
 #define SURFACE_PART_OF_VELOCITY_PAST_THE_SURFACE \
     const fu_real \
@@ -268,10 +289,9 @@ void surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w, const
         dy0_t_y = -H[3]*along*inv_nn - along*dy0_inv_nn*n[1] - dy0_along*inv_nn*n[1],
         dy0_t_z = -H[6]*along*inv_nn - along*dy0_inv_nn*n[2] - dy0_along*inv_nn*n[2],
         dy0_size = inv_size*(dy0_t_x*t_x + dy0_t_y*t_y + dy0_t_z*t_z),
-        dy0_inv_size = -(dy0_size*inv_size*inv_size),
-        dy0_F_x = -dy0_inv_size*mu*normal_force[0]*t_x - dy0_t_x*inv_size*mu*normal_force[0] - inv_size*mu*t_x*(-Hw_x*normal_force[2] - n[0]*normal_force[1]),
-        dy0_F_y = -dy0_inv_size*mu*normal_force[0]*t_y - dy0_t_y*inv_size*mu*normal_force[0] - inv_size*mu*t_y*(-Hw_x*normal_force[2] - n[0]*normal_force[1]),
-        dy0_F_z = -dy0_inv_size*mu*normal_force[0]*t_z - dy0_t_z*inv_size*mu*normal_force[0] - inv_size*mu*t_z*(-Hw_x*normal_force[2] - n[0]*normal_force[1]),
+        dy0_inv_size = -(dy0_size*inv_size*inv_size);
+    SURFACE_PART_OF_DERIVATIVES
+    const fu_real
         dy1_along = H[1]*x[0] + H[4]*x[1] + H[7]*x[2] + n[1],
         dy1_nn = 2.0*H[1]*n[0] + 2.0*H[4]*n[1] + 2.0*H[7]*n[2],
         dy1_inv_nn = -(dy1_nn*inv_nn*inv_nn),
@@ -279,10 +299,9 @@ void surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w, const
         dy1_t_y = -H[4]*along*inv_nn - along*dy1_inv_nn*n[1] - dy1_along*inv_nn*n[1] + 1.0,
         dy1_t_z = -H[7]*along*inv_nn - along*dy1_inv_nn*n[2] - dy1_along*inv_nn*n[2],
         dy1_size = inv_size*(dy1_t_x*t_x + dy1_t_y*t_y + dy1_t_z*t_z),
-        dy1_inv_size = -(dy1_size*inv_size*inv_size),
-        dy1_F_x = -dy1_inv_size*mu*normal_force[0]*t_x - dy1_t_x*inv_size*mu*normal_force[0] - inv_size*mu*t_x*(-Hw_y*normal_force[2] - n[1]*normal_force[1]),
-        dy1_F_y = -dy1_inv_size*mu*normal_force[0]*t_y - dy1_t_y*inv_size*mu*normal_force[0] - inv_size*mu*t_y*(-Hw_y*normal_force[2] - n[1]*normal_force[1]),
-        dy1_F_z = -dy1_inv_size*mu*normal_force[0]*t_z - dy1_t_z*inv_size*mu*normal_force[0] - inv_size*mu*t_z*(-Hw_y*normal_force[2] - n[1]*normal_force[1]),
+        dy1_inv_size = -(dy1_size*inv_size*inv_size);
+    SURFACE_PART_OF_DERIVATIVES_2
+    const fu_real
         dy2_along = H[2]*x[0] + H[5]*x[1] + H[8]*x[2] + n[2],
         dy2_nn = 2.0*H[2]*n[0] + 2.0*H[5]*n[1] + 2.0*H[8]*n[2],
         dy2_inv_nn = -(dy2_nn*inv_nn*inv_nn),
@@ -290,10 +309,8 @@ void surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w, const
         dy2_t_y = -H[5]*along*inv_nn - along*dy2_inv_nn*n[1] - dy2_along*inv_nn*n[1],
         dy2_t_z = -H[8]*along*inv_nn - along*dy2_inv_nn*n[2] - dy2_along*inv_nn*n[2] + 1.0,
         dy2_size = inv_size*(dy2_t_x*t_x + dy2_t_y*t_y + dy2_t_z*t_z),
-        dy2_inv_size = -(dy2_size*inv_size*inv_size),
-        dy2_F_x = -dy2_inv_size*mu*normal_force[0]*t_x - dy2_t_x*inv_size*mu*normal_force[0] - inv_size*mu*t_x*(-Hw_z*normal_force[2] - n[2]*normal_force[1]),
-        dy2_F_y = -dy2_inv_size*mu*normal_force[0]*t_y - dy2_t_y*inv_size*mu*normal_force[0] - inv_size*mu*t_y*(-Hw_z*normal_force[2] - n[2]*normal_force[1]),
-        dy2_F_z = -dy2_inv_size*mu*normal_force[0]*t_z - dy2_t_z*inv_size*mu*normal_force[0] - inv_size*mu*t_z*(-Hw_z*normal_force[2] - n[2]*normal_force[1]);
+        dy2_inv_size = -(dy2_size*inv_size*inv_size);
+    SURFACE_PART_OF_DERIVATIVES_3
     FU_EACH(g, 3,
         dw_F_x[g] = inv_size*mu*n[g]*normal_force[2]*t_x;
         dw_F_y[g] = inv_size*mu*n[g]*normal_force[2]*t_y;
@@ -354,6 +371,101 @@ void surface_sliding(const fu_real *n, const fu_real *H, const fu_real *w, const
     f_x[6] = dx0_F_z;
     f_x[7] = dx1_F_z;
     f_x[8] = dx2_F_z;
+}
+
+/* regularised friction, and its derivatives; 167 add, 505 mul, 2 div, 1 sqrt */
+void surface_slipping(const fu_real *n, const fu_real *H, const fu_real *w, const fu_real *normal_force, fu_real mu, fu_real v0, fu_real *f, fu_real *f_y, fu_real *f_w)
+{
+    /* friction */
+    const fu_real
+        nn = n[0]*n[0] + n[1]*n[1] + n[2]*n[2],
+        inv_nn = 1.0/nn,
+        t_x = inv_nn*(-n[1]*(n[0]*w[1] - n[1]*w[0]) + n[2]*(-n[0]*w[2] + n[2]*w[0])),
+        t_y = inv_nn*(n[0]*(n[0]*w[1] - n[1]*w[0]) - n[2]*(n[1]*w[2] - n[2]*w[1])),
+        t_z = inv_nn*(-n[0]*(-n[0]*w[2] + n[2]*w[0]) + n[1]*(n[1]*w[2] - n[2]*w[1])),
+        speed = FU_SQRT(t_x*t_x + t_y*t_y + t_z*t_z + v0*v0),
+        inv_size = 1.0/speed,
+        F_x = -(inv_size*mu*normal_force[0]*t_x),
+        F_y = -(inv_size*mu*normal_force[0]*t_y),
+        F_z = -(inv_size*mu*normal_force[0]*t_z),
+        Hw_x = H[0]*w[0] + H[1]*w[1] + H[2]*w[2],
+        Hw_y = H[3]*w[0] + H[4]*w[1] + H[5]*w[2],
+        Hw_z = H[6]*w[0] + H[7]*w[1] + H[8]*w[2];
+    /* derivatives */
+    const fu_real
+        dy0_nn = 2.0*H[0]*n[0] + 2.0*H[3]*n[1] + 2.0*H[6]*n[2],
+        dy0_inv_nn = -(dy0_nn*inv_nn*inv_nn),
+        dy0_t_x = H[0]*inv_nn*(-n[1]*w[1] - n[2]*w[2]) + H[3]*inv_nn*(-n[0]*w[1] + 2.0*n[1]*w[0]) + H[6]*inv_nn*(-n[0]*w[2] + 2.0*n[2]*w[0]) + dy0_inv_nn*(-n[1]*(n[0]*w[1] - n[1]*w[0]) + n[2]*(-n[0]*w[2] + n[2]*w[0])),
+        dy0_t_y = H[0]*inv_nn*(2.0*n[0]*w[1] - n[1]*w[0]) + H[3]*inv_nn*(-n[0]*w[0] - n[2]*w[2]) + H[6]*inv_nn*(-n[1]*w[2] + 2.0*n[2]*w[1]) + dy0_inv_nn*(n[0]*(n[0]*w[1] - n[1]*w[0]) - n[2]*(n[1]*w[2] - n[2]*w[1])),
+        dy0_t_z = H[0]*inv_nn*(2.0*n[0]*w[2] - n[2]*w[0]) + H[3]*inv_nn*(2.0*n[1]*w[2] - n[2]*w[1]) + H[6]*inv_nn*(-n[0]*w[0] - n[1]*w[1]) + dy0_inv_nn*(-n[0]*(-n[0]*w[2] + n[2]*w[0]) + n[1]*(n[1]*w[2] - n[2]*w[1])),
+        dy0_speed = inv_size*(dy0_t_x*t_x + dy0_t_y*t_y + dy0_t_z*t_z),
+        dy0_inv_size = -(dy0_speed*inv_size*inv_size);
+    SURFACE_PART_OF_DERIVATIVES
+    const fu_real
+        dy1_nn = 2.0*H[1]*n[0] + 2.0*H[4]*n[1] + 2.0*H[7]*n[2],
+        dy1_inv_nn = -(dy1_nn*inv_nn*inv_nn),
+        dy1_t_x = H[1]*inv_nn*(-n[1]*w[1] - n[2]*w[2]) + H[4]*inv_nn*(-n[0]*w[1] + 2.0*n[1]*w[0]) + H[7]*inv_nn*(-n[0]*w[2] + 2.0*n[2]*w[0]) + dy1_inv_nn*(-n[1]*(n[0]*w[1] - n[1]*w[0]) + n[2]*(-n[0]*w[2] + n[2]*w[0])),
+        dy1_t_y = H[1]*inv_nn*(2.0*n[0]*w[1] - n[1]*w[0]) + H[4]*inv_nn*(-n[0]*w[0] - n[2]*w[2]) + H[7]*inv_nn*(-n[1]*w[2] + 2.0*n[2]*w[1]) + dy1_inv_nn*(n[0]*(n[0]*w[1] - n[1]*w[0]) - n[2]*(n[1]*w[2] - n[2]*w[1])),
+        dy1_t_z = H[1]*inv_nn*(2.0*n[0]*w[2] - n[2]*w[0]) + H[4]*inv_nn*(2.0*n[1]*w[2] - n[2]*w[1]) + H[7]*inv_nn*(-n[0]*w[0] - n[1]*w[1]) + dy1_inv_nn*(-n[0]*(-n[0]*w[2] + n[2]*w[0]) + n[1]*(n[1]*w[2] - n[2]*w[1])),
+        dy1_speed = inv_size*(dy1_t_x*t_x + dy1_t_y*t_y + dy1_t_z*t_z),
+        dy1_inv_size = -(dy1_speed*inv_size*inv_size);
+    SURFACE_PART_OF_DERIVATIVES_2
+    const fu_real
+        dy2_nn = 2.0*H[2]*n[0] + 2.0*H[5]*n[1] + 2.0*H[8]*n[2],
+        dy2_inv_nn = -(dy2_nn*inv_nn*inv_nn),
+        dy2_t_x = H[2]*inv_nn*(-n[1]*w[1] - n[2]*w[2]) + H[5]*inv_nn*(-n[0]*w[1] + 2.0*n[1]*w[0]) + H[8]*inv_nn*(-n[0]*w[2] + 2.0*n[2]*w[0]) + dy2_inv_nn*(-n[1]*(n[0]*w[1] - n[1]*w[0]) + n[2]*(-n[0]*w[2] + n[2]*w[0])),
+        dy2_t_y = H[2]*inv_nn*(2.0*n[0]*w[1] - n[1]*w[0]) + H[5]*inv_nn*(-n[0]*w[0] - n[2]*w[2]) + H[8]*inv_nn*(-n[1]*w[2] + 2.0*n[2]*w[1]) + dy2_inv_nn*(n[0]*(n[0]*w[1] - n[1]*w[0]) - n[2]*(n[1]*w[2] - n[2]*w[1])),
+        dy2_t_z = H[2]*inv_nn*(2.0*n[0]*w[2] - n[2]*w[0]) + H[5]*inv_nn*(2.0*n[1]*w[2] - n[2]*w[1]) + H[8]*inv_nn*(-n[0]*w[0] - n[1]*w[1]) + dy2_inv_nn*(-n[0]*(-n[0]*w[2] + n[2]*w[0]) + n[1]*(n[1]*w[2] - n[2]*w[1])),
+        dy2_speed = inv_size*(dy2_t_x*t_x + dy2_t_y*t_y + dy2_t_z*t_z),
+        dy2_inv_size = -(dy2_speed*inv_size*inv_size);
+    SURFACE_PART_OF_DERIVATIVES_3
+    const fu_real
+        dw0_t_x = inv_nn*(n[1]*n[1] + n[2]*n[2]),
+        dw0_t_y = -(inv_nn*n[0]*n[1]),
+        dw0_t_z = -(inv_nn*n[0]*n[2]),
+        dw0_speed = inv_size*(dw0_t_x*t_x + dw0_t_y*t_y + dw0_t_z*t_z),
+        dw0_inv_size = -(dw0_speed*inv_size*inv_size),
+        dw0_F_x = -dw0_inv_size*mu*normal_force[0]*t_x - dw0_t_x*inv_size*mu*normal_force[0] + inv_size*mu*n[0]*normal_force[2]*t_x,
+        dw0_F_y = -dw0_inv_size*mu*normal_force[0]*t_y - dw0_t_y*inv_size*mu*normal_force[0] + inv_size*mu*n[0]*normal_force[2]*t_y,
+        dw0_F_z = -dw0_inv_size*mu*normal_force[0]*t_z - dw0_t_z*inv_size*mu*normal_force[0] + inv_size*mu*n[0]*normal_force[2]*t_z,
+        dw1_t_x = -(inv_nn*n[0]*n[1]),
+        dw1_t_y = inv_nn*(n[0]*n[0] + n[2]*n[2]),
+        dw1_t_z = -(inv_nn*n[1]*n[2]),
+        dw1_speed = inv_size*(dw1_t_x*t_x + dw1_t_y*t_y + dw1_t_z*t_z),
+        dw1_inv_size = -(dw1_speed*inv_size*inv_size),
+        dw1_F_x = -dw1_inv_size*mu*normal_force[0]*t_x - dw1_t_x*inv_size*mu*normal_force[0] + inv_size*mu*n[1]*normal_force[2]*t_x,
+        dw1_F_y = -dw1_inv_size*mu*normal_force[0]*t_y - dw1_t_y*inv_size*mu*normal_force[0] + inv_size*mu*n[1]*normal_force[2]*t_y,
+        dw1_F_z = -dw1_inv_size*mu*normal_force[0]*t_z - dw1_t_z*inv_size*mu*normal_force[0] + inv_size*mu*n[1]*normal_force[2]*t_z,
+        dw2_t_x = -(inv_nn*n[0]*n[2]),
+        dw2_t_y = -(inv_nn*n[1]*n[2]),
+        dw2_t_z = inv_nn*(n[0]*n[0] + n[1]*n[1]),
+        dw2_speed = inv_size*(dw2_t_x*t_x + dw2_t_y*t_y + dw2_t_z*t_z),
+        dw2_inv_size = -(dw2_speed*inv_size*inv_size),
+        dw2_F_x = -dw2_inv_size*mu*normal_force[0]*t_x - dw2_t_x*inv_size*mu*normal_force[0] + inv_size*mu*n[2]*normal_force[2]*t_x,
+        dw2_F_y = -dw2_inv_size*mu*normal_force[0]*t_y - dw2_t_y*inv_size*mu*normal_force[0] + inv_size*mu*n[2]*normal_force[2]*t_y,
+        dw2_F_z = -dw2_inv_size*mu*normal_force[0]*t_z - dw2_t_z*inv_size*mu*normal_force[0] + inv_size*mu*n[2]*normal_force[2]*t_z;
+    /* outputs */
+    f[0] = F_x;
+    f[1] = F_y;
+    f[2] = F_z;
+    f_y[0] = dy0_F_x;
+    f_y[1] = dy1_F_x;
+    f_y[2] = dy2_F_x;
+    f_y[3] = dy0_F_y;
+    f_y[4] = dy1_F_y;
+    f_y[5] = dy2_F_y;
+    f_y[6] = dy0_F_z;
+    f_y[7] = dy1_F_z;
+    f_y[8] = dy2_F_z;
+    f_w[0] = dw0_F_x;
+    f_w[1] = dw1_F_x;
+    f_w[2] = dw2_F_x;
+    f_w[3] = dw0_F_y;
+    f_w[4] = dw1_F_y;
+    f_w[5] = dw2_F_y;
+    f_w[6] = dw0_F_z;
+    f_w[7] = dw1_F_z;
+    f_w[8] = dw2_F_z;
 }
 
 /* change of contact along a motion of the point and of the surface; 126 add, 150 mul */

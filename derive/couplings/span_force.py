@@ -29,18 +29,18 @@ SOURCE = "virtual work of the material at constant S"
 
 def build(span: FlowingElement) -> list[Program]:
     """Return the kernels of forces on a span."""
-    return [line_force(span), line_force_tangent(span), stored_force(span), stored_force_tangent(span), share(span)]
+    return [line_force(span), line_force_tangent(span), stored_force(span), stored_force_tangent(span), share(span),
+            point_tangent(span)]
 
 
-class _Line:
-    """Inputs and stages of a point of quadrature: l times the part, N, g."""
+class _Point:
+    """Inputs and stages of a point of quadrature: N, g."""
 
     def __init__(self, span: FlowingElement, p: Program, moves: bool):
-        part = p.input("part", (), "1", "weight of the point of quadrature: part of the length")
         flow = Flow(p, span, moves=moves)
         xi = p.input("xi", (), "1", "(S - s1)/l")
-        self.F = p.input("F", span.element.dim, "N/m", "force of a stress-free length")
         self.span, self.program, self.flow = span, p, flow
+        self._more_inputs()
         flow.along()
         p.stage("shape functions")
         self.N = np.array([p.define(f"N{k + 1}", flow.l**power * sp.horner(shape.subs(x, xi)))
@@ -48,7 +48,35 @@ class _Line:
         p.stage("displacements by the ends of the element")
         self.g = np.array([p.vector(f"g{i + 1}", sum(self.N[k] * flow.e_S[k] for k in nodal))
                            for i, nodal in enumerate(span.vectors_of)])
-        self.weight = p.define("weight", part * flow.l)
+
+    def _more_inputs(self) -> None:
+        """Declare further inputs."""
+
+    def derive_motion(self) -> None:
+        """Stage: derivatives of slope, place and velocity by the nodal vectors and by l, at a constant share."""
+        p, flow, span = self.program, self.flow, self.span
+        p.stage("derivatives of place, slope and velocity of the material")
+        S = span.slope_matrix(p, flow.w)
+        self.g_e = np.array([[p.define(f"g{i + 1}_{k + 1}", sum(self.N[j] * S[j, k] for j in nodal))
+                              for k in range(len(S))] for i, nodal in enumerate(span.vectors_of)])
+        self.past = [p.define(f"past{k + 1}", flow.s_rate.dot(self.g_e[:, k])) for k in range(len(S))]
+        of_slopes = dict(zip(flow.e_S.ravel(), flow.e_Sl.ravel(), strict=True))
+        self.by_l = DirectionalDerivative(p, "dl", {flow.l: 1, **of_slopes})
+        self.g_l = np.array([p.vector(f"g{i + 1}_l", self.by_l.array(g)) for i, g in enumerate(self.g)])
+        self.r_l = p.vector("r_l", self.by_l.array(self.N).dot(flow.e))
+        self.v_l = p.vector("v_l", self.by_l.array(self.N).dot(flow.v) - flow.s_rate.dot(self.g_l))
+
+
+class _Line(_Point):
+    """The same, with a force there, and l times the part."""
+
+    def __init__(self, span: FlowingElement, p: Program, moves: bool):
+        part = p.input("part", (), "1", "weight of the point of quadrature: part of the length")
+        super().__init__(span, p, moves)
+        self.weight = p.define("weight", part * self.flow.l)
+
+    def _more_inputs(self) -> None:
+        self.F = self.program.input("F", self.span.element.dim, "N/m", "force of a stress-free length")
 
 
 def line_force(span: FlowingElement) -> Program:
@@ -64,25 +92,17 @@ def line_force_tangent(span: FlowingElement) -> Program:
     """Return the kernel of the derivatives of the generalised forces, at a constant share of the length."""
     p = span.program("line_force_tangent", "derivatives of the generalised forces of a force on the material", SOURCE)
     at = _Line(span, p, moves=True)
-    flow, dim = at.flow, span.element.dim
+    dim = span.element.dim
     by_r, by_r_S, by_v = (p.input(f"F_{name}", (dim, dim), f"N/m by {unit}", f"derivatives of F by {doc}")
                           for name, unit, doc in (("r", "m", "the place"), ("t", "1", "the slope"),
                                                   ("v", "m/s", "the velocity of the material")))
-    p.stage("derivatives of place, slope and velocity of the material")
-    S = span.slope_matrix(p, flow.w)
-    g_e = np.array([[p.define(f"g{i + 1}_{k + 1}", sum(at.N[j] * S[j, k] for j in nodal)) for k in range(len(S))]
-                    for i, nodal in enumerate(span.vectors_of)])
-    past = [p.define(f"past{k + 1}", flow.s_rate.dot(g_e[:, k])) for k in range(len(S))]
-    of_slopes = dict(zip(flow.e_S.ravel(), flow.e_Sl.ravel(), strict=True))
-    by_l = DirectionalDerivative(p, "dl", {flow.l: 1, **of_slopes})
-    g_l = np.array([p.vector(f"g{i + 1}_l", by_l.array(g)) for i, g in enumerate(at.g)])
-    r_l = p.vector("r_l", by_l.array(at.N).dot(flow.e))
-    v_l = p.vector("v_l", by_l.array(at.N).dot(flow.v) - flow.s_rate.dot(g_l))
+    at.derive_motion()
+    g_e, g_l, by_l = at.g_e, at.g_l, at.by_l
     p.stage("derivatives of the force")
-    of_e = np.array([_named(p, f"F_e{k + 1}", at.N[k] * by_r + g_e[:, k].sum() * by_r_S - past[k] * by_v)
-                     for k in range(len(S))])
+    of_e = np.array([_named(p, f"F_e{k + 1}", at.N[k] * by_r + g_e[:, k].sum() * by_r_S - at.past[k] * by_v)
+                     for k in range(len(at.N))])
     of_v = np.array([_named(p, f"F_v{k + 1}", n * by_v) for k, n in enumerate(at.N)])
-    of_l = p.vector("F_l", by_r.dot(r_l) + by_r_S.dot(g_l.sum(axis=0)) + by_v.dot(v_l))
+    of_l = p.vector("F_l", by_r.dot(at.r_l) + by_r_S.dot(g_l.sum(axis=0)) + by_v.dot(at.v_l))
     of_s = np.array([p.vector(f"F_s{i + 1}", -by_v.dot(g)) for i, g in enumerate(at.g)])
     p.stage("derivatives of the generalised forces")
     scaled = np.array([p.define(f"scaled{k + 1}", at.weight * n) for k, n in enumerate(at.N)])
@@ -169,4 +189,18 @@ def share(span: FlowingElement) -> Program:
     p.output("share", [xi], "1", "(S - s1)/l")
     p.output("share_s", [DirectionalDerivative(p, f"d{i + 1}", {end: 1})(xi) for i, end in enumerate(ends)], "1/m",
              "derivatives by s1, s2")
+    return p
+
+
+def point_tangent(span: FlowingElement) -> Program:
+    """Return the kernel of the derivatives of place and velocity of the material, at a constant share of the length."""
+    p = span.program("point_tangent", "derivatives of place and velocity of the material at a constant share", SOURCE)
+    at = _Point(span, p, moves=True)
+    at.derive_motion()
+    dim = span.element.dim
+    unit = np.eye(dim, dtype=int)
+    p.output("r_q", np.hstack([np.kron(at.N, unit), at.r_l[:, None]]), "1, m", "derivatives of the place by e and l")
+    p.output("v_q", np.hstack([-np.kron(np.array(at.past), unit), at.v_l[:, None]]), "1/s",
+             "derivatives of the velocity by e and l")
+    p.output("v_v", np.hstack([np.kron(at.N, unit), -at.g.T]), "1, m", "derivatives of the velocity by rates")
     return p

@@ -20,6 +20,10 @@ def sticking_force(p: Program, stretch: np.ndarray, stiffness: sp.Expr) -> np.nd
 
 def sliding_force(p: Program, stretch: np.ndarray, most: sp.Expr) -> np.ndarray:
     """Return the force of the spring while it slides: friction of the size ``most``, against the stretch."""
-    size = p.define("size", sp.sqrt(stretch.dot(stretch)))
+    return sliding_force_at(p, stretch, most, p.define("size", sp.sqrt(stretch.dot(stretch))))
+
+
+def sliding_force_at(p: Program, stretch: np.ndarray, most: sp.Expr, size: sp.Symbol) -> np.ndarray:
+    """Return the force of the size ``most`` times the stretch over ``size``, against the stretch."""
     inverse = p.define("inv_size", 1 / size)
     return p.vector("F", -most * inverse * stretch)

@@ -6,7 +6,8 @@ the vertical one over sqrt(1 + h'^2), which is exact to first order at the surfa
 
 The normal force is p = k d^e (1 + c d'), with the depth d below the surface and e = 1 or 3/2 (Hertz): the law of Hunt &
 Crossley, J. Appl. Mech. 42 (1975) 440-445, whose damping makes no jump where contact begins. Friction is Coulomb's with
-a tangential spring from an anchor on the surface (`stretch`).
+a tangential spring from an anchor on the surface (`stretch`). That of a rope, whose material moves past the points of
+contact, is regularised by the velocity w past the surface, with t its part along the surface: -mu p t/sqrt(t.t + v0^2).
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from ..algebra.tangent_frame import cross, moment_of
 from ..codegen.family import CouplingFamily
 from ..codegen.program import DirectionalDerivative, Program
 from .frame import TURNS
-from .stretch import sliding_force, sticking_force
+from .stretch import sliding_force, sliding_force_at, sticking_force
 
 SURFACES = {3: "surface", 2: "planar_surface"}
 SOURCE = "Hunt & Crossley 1975; Wriggers 2006"
@@ -38,7 +39,7 @@ def families() -> list[CouplingFamily]:
 def build(dim: int) -> list[Program]:
     """Return the kernels in space or in the plane."""
     return [*(make(dim) for make in (flat, rounded, terrain)), push(dim, hertz=False), push(dim, hertz=True),
-            *(make(dim) for make in (frictionless, sticking, sliding, reaction, motion, slip))]
+            *(make(dim) for make in (frictionless, sticking, sliding, slipping, reaction, motion, slip))]
 
 
 def _program(dim: int, name: str, doc: str) -> Program:
@@ -143,7 +144,7 @@ def push(dim: int, hertz: bool) -> Program:
 def _moving(p: Program, dim: int, normal_force: sp.Symbol, n: np.ndarray, H: np.ndarray, w: np.ndarray, by_d: sp.Symbol,
             by_rate: sp.Symbol, x: np.ndarray | None = None) -> tuple[list[Any], list[Any]]:
     """Return the derivations by the place y and by the velocity w: of n by H, of the normal force by depth and its
-    rate.
+    rate, of w itself.
     """
     turned = p.vector("Hw", H @ w)
     of_place, of_rate = [], []
@@ -152,7 +153,8 @@ def _moving(p: Program, dim: int, normal_force: sp.Symbol, n: np.ndarray, H: np.
         if x is not None:
             known |= {x[i]: sp.Integer(i == k) for i in range(dim)}
         of_place.append(DirectionalDerivative(p, f"dy{k}", known))
-        of_rate.append(DirectionalDerivative(p, f"dw{k}", {normal_force: -by_rate * n[k]}))
+        of_rate.append(DirectionalDerivative(p, f"dw{k}", {normal_force: -by_rate * n[k]}
+                                             | {w[i]: sp.Integer(i == k) for i in range(dim)}))
     return of_place, of_rate
 
 
@@ -234,6 +236,20 @@ def sliding(dim: int) -> Program:
     _outputs(p, f, _moving(p, dim, normal_force, n, H, w, by_d, by_rate, x))
     # in the plane friction that slides has one direction, whatever the stretch is
     return _by_stretch(p, np.zeros((dim, dim), dtype=int) if dim == 2 else _along_each(p, dim, f, x))
+
+
+def slipping(dim: int) -> Program:
+    """Return the kernel of regularised friction, against the velocity along the surface."""
+    p = _program(dim, "slipping", "regularised friction, and its derivatives")
+    n, H, w, (normal_force, by_d, by_rate) = _inputs(p, dim)
+    mu = p.input("mu", (), "1", "coefficient of friction")
+    v0 = p.input("v0", (), "m/s", "velocity at which friction is 0.7 of its limit")
+    p.stage("friction")
+    inverse = p.define("inv_nn", 1 / p.define("nn", n.dot(n)))
+    t = p.vector("t", inverse * cross(moment_of(n, w), n))  # no difference of the parts along the normal
+    speed = p.define("speed", sp.sqrt(t.dot(t) + v0 * v0))
+    f = sliding_force_at(p, t, mu * normal_force, speed)
+    return _outputs(p, f, _moving(p, dim, normal_force, n, H, w, by_d, by_rate))
 
 
 def reaction(dim: int) -> Program:

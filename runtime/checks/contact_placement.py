@@ -99,12 +99,16 @@ def _complete(scene: SceneData, contact: Contact) -> Contact:
     if contact.a in scene.cables:
         contact = _of_cable(scene, contact, scene.cables[contact.a])
     elif contact.a in scene.ropes:
-        contact = _of_rope(scene, contact, scene.ropes[contact.a], scene.surfaces[contact.b])
+        contact = _of_rope(scene, contact, scene.ropes[contact.a])
     elif contact.a in scene.bodies:
         contact = _of_body(scene, contact, scene.bodies[contact.a], scene.surfaces[contact.b])
     else:
         raise SceneError(contact.where, f'there is no cable or body "{contact.a}"',
                          near(contact.a, [*scene.cables, *scene.ropes, *scene.bodies]))
+    if contact.a in scene.ropes:
+        return contact
+    if contact.friction is not None and contact.friction.model == "regularised":
+        raise SceneError(contact.where, "has no regularised friction", 'leave model="regularised" out')
     if not contact.is_hard and contact.exponent != 1.0 and contact.friction_coefficient and \
             contact.tangential_stiffness is None:
         raise SceneError(contact.where, "tangential_stiffness is missing, which the stiffness of the exponent 1.5 is "
@@ -152,24 +156,26 @@ def _of_cable(scene: SceneData, contact: Contact, cable: Cable) -> Contact:
     return _with_stiffness(scene, contact, radius)
 
 
-def _of_rope(scene: SceneData, contact: Contact, rope: Rope, surface: Surface) -> Contact:
+def _of_rope(scene: SceneData, contact: Contact, rope: Rope) -> Contact:
     check_has_mass(rope, contact.where)
     if contact.is_hard:
         raise SceneError(contact.where, f'hard contact is of points of bodies, and "{rope.name}" is a rope',
                          "leave restitution out and give stiffness, in N/m a length")
     if contact.points is not None:
         raise SceneError(contact.where, f'acts along rope "{rope.name}" and takes no points', "leave points out")
-    if contact.friction_coefficient:
-        raise SceneError(contact.where, f'has friction, and rope "{rope.name}" has no friction with surfaces yet: its '
-                         "material moves past the points of contact", "leave friction out")
-    if surface.on is not None:
-        raise SceneError(contact.where, f'surface "{surface.name}" is on body "{surface.on}", with which rope '
-                         f'"{rope.name}" has no contact yet', "take a surface of the ground, or a sheave on the body")
+    if contact.friction is not None and contact.friction.sticks:
+        raise SceneError(contact.where, f'friction sticks, and the material of rope "{rope.name}" moves past the '
+                         "points of contact, where springs would hold it", 'take model="regularised"')
+    if contact.tangential_stiffness is not None:
+        raise SceneError(contact.where, f'acts along rope "{rope.name}" and takes no tangential_stiffness: its '
+                         "friction is regularised", "leave tangential_stiffness out")
     radius = rope.radius if contact.radius is None else contact.radius
     if not radius:
         raise SceneError(contact.where, "radius is missing, which does not follow from the section of the rope",
                          "give radius, in m: the distance of the surface from the axis at contact")
-    contact = _with_stiffness(scene, contact, radius)
+    others = {} if contact.friction is None else {
+        "friction": contact.friction.completed({"model": "regularised"})}
+    contact = _with_stiffness(scene, contact, radius, others)
     _check_resolution(scene, contact, rope)
     return contact
 

@@ -91,6 +91,10 @@ def check_comes_to_rest(scene: SceneData) -> None:
         if slide.friction is not None and not slide.friction.sticks and slide.friction.sliding > 0:
             raise SceneError(slide.where, "its friction is regularised, so that a rider creeps and never comes to rest",
                              'take model="stick", which holds it, or leave friction out')
+    for contact in scene.contacts.values():
+        if contact.a in scene.ropes and contact.friction_coefficient:
+            raise SceneError(contact.where, "its friction is regularised, so that the rope creeps and never comes to "
+                             "rest", "leave friction out")
     for rope in scene.ropes.values():
         for sheave in rope.rough_sheaves:
             why = ("its friction has part in a state of rest, which has no tensions of ropes that stick"

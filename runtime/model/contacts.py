@@ -14,6 +14,7 @@ from ..kernels.element_line import along_elements
 from ..kernels.mesh import Mesh
 from ..parts.attachment import Attachment
 from ..parts.contact import GAUSS_POINTS, Contact
+from ..parts.friction import Friction
 from ..parts.modal_body import ModalBody
 from ..parts.scene_data import SceneData
 from ..parts.surface import Surface
@@ -85,10 +86,10 @@ class HardContactModel(ContactModel):
 
 @dataclass(kw_only=True)
 class RopeContactModel(AlongSpan, CouplingModel):
-    """Contact of a span of a rope with a surface of the ground: fu_rope_contact of engine/couplings/contact/contact.h.
+    """Contact of a span of a rope with a surface: fu_rope_contact of engine/couplings/contact/contact.h.
 
-    on, direction, round_radius: as of a `ContactModel`. arc, weights: shares in the length of an element, of points of
-    quadrature and of their weights.
+    on, direction, round_radius: as of a `ContactModel`. slip_velocity: of regularised friction, m/s. arc, weights:
+    shares in the length of an element, of points of quadrature and of their weights.
     """
 
     coordinates: SpanCoordinates
@@ -101,10 +102,17 @@ class RopeContactModel(AlongSpan, CouplingModel):
     stiffness: float
     damping: float
     hertz: int
+    friction: float
+    slip_velocity: float
     cable: int = -1
     n_points: int = GAUSS_POINTS
     weights: np.ndarray = field(default_factory=lambda: GAUSS[1] / 2)
     arc: np.ndarray = field(default_factory=lambda: (1 + GAUSS[0]) / 2)
+
+    @property
+    def ends(self) -> Sequence[AttachmentModel]:
+        """Return the attachment of the surface."""
+        return self.on
 
 
 def _of_surface(surface: Surface, builder: ModelBuilder, wall: Geometry | None = None) -> dict[str, Any]:
@@ -135,7 +143,11 @@ def rope_contact_models(builder: ModelBuilder) -> Iterator[RopeContactModel]:
     """Yield the models of the contacts of ropes, one for each span."""
     for part in builder.scene.contacts.values():
         for span in (span for rope in builder.ropes if rope.part.name == part.a for span in rope.spans):
-            yield RopeContactModel(**_by_penalty(part, builder), type="rope contact", coordinates=span)
+            friction = part.friction or Friction()
+            model = RopeContactModel(**_by_penalty(part, builder), type="rope contact", coordinates=span,
+                                     friction=friction.coefficient, slip_velocity=friction.velocity)
+            model.is_damped |= friction.coefficient > 0
+            yield model
 
 
 def _by_penalty(part: Contact, builder: ModelBuilder) -> dict[str, Any]:

@@ -45,8 +45,10 @@ class Contact(Part):
     v and -e v. In statics friction acts against the displacement from the drawn position. On spheres about a body's
     points it acts at the point of contact, with its moment; along cables it acts on the axis.
 
-    The spans of a rope have contact with surfaces of the ground, by penalty and without friction; what lies on sheaves
-    and drums has none. Where `equilibrium` finds no rest of a rope on a surface, `relax` does.
+    The spans of a rope have contact by penalty; what lies on sheaves and drums has none. Friction of a rope is
+    regularised, as its material moves past the points of contact: a rope at rest creeps, at a part of
+    ``friction.velocity``. In statics it has none. Where `equilibrium` finds no rest of a rope on a surface, `relax`
+    does.
 
     a: the cable, the rope or the body; a list, or "all" cables and bodies of the scene: a contact is added for each
         pair, and a name given gets a number
@@ -54,7 +56,7 @@ class Contact(Part):
     stiffness: N/m a length in m, or N/m; by default the weight penetrates by 1 % of the radius
     exponent: 1, or 1.5 (Hertz)
     damping: s/m (Hunt and Crossley)
-    friction: Coulomb's coefficient, or a `Friction` with the model "stick"
+    friction: Coulomb's coefficient, or a `Friction`, of ropes with the model "regularised", else "stick"
     tangential_stiffness: of the spring of sticking friction, N/m; by default that of the normal force. Along a sticking
         cable, tension decays over the length √(EA/tangential_stiffness)
     radius: of the cable, m, by default that of its section, 0 for its centreline; of spheres about a body's points
@@ -104,14 +106,13 @@ class Contact(Part):
     @property
     def has_friction_spring(self) -> bool:
         """Return whether sticking friction has a spring."""
-        return not self.is_hard and self.friction_coefficient > 0
+        return (not self.is_hard and self.friction is not None and self.friction.model != "regularised"
+                and self.friction.coefficient > 0)
 
     @model_validator(mode="after")
-    def _has_friction_that_sticks(self) -> "Contact":
+    def _has_coulomb_friction(self) -> "Contact":
         if self.friction is not None:
             self.friction.check_coulomb()
-            if self.friction.model == "regularised":
-                raise ValueError("has no regularised friction", 'leave model="regularised" out')
         return self
 
     @model_validator(mode="after")

@@ -14,9 +14,9 @@ class Friction(Part):
     """Friction of a slide, a contact, a crossing or a rope on a sheave, from normal force N and speed of sliding.
 
     A number in its place is the coefficient. Slides and ropes find the instants at which they stick and break loose as
-    events. In contacts and crossings a spring holds sticking points, and slides where its force exceeds friction.
-    Friction of a driven slide acts against the drive, is part of the slide's traction, and is zero while the drive
-    stands.
+    events. In contacts and crossings a spring holds sticking points, and slides where its force exceeds friction;
+    contacts of ropes have none. Friction of a driven slide acts against the drive, is part of the slide's traction, and
+    is zero while the drive stands.
 
     coefficient: of sliding, Coulomb's
     static_coefficient: of sticking, of slides alone; by default that of sliding
@@ -24,7 +24,7 @@ class Friction(Part):
     rolling: coefficient of rolling resistance, of slides alone, a force of rolling N against the motion (for wheels:
         the arm of the resistance over the radius)
     model: "regularised": the force rises smoothly with the speed and permits creep at rest; "stick": it holds at rest.
-        By default contacts with surfaces stick, others are regularised
+        By default contacts of cables and bodies with surfaces stick, others are regularised
     velocity: of "regularised", at which the force is 0.7 of its limit, m/s
     """
 

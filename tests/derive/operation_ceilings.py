@@ -255,22 +255,22 @@ CEILINGS = {
     "planar_crossing": {"closest": 12, "contact": 59, "force": 309, "motion": 24, "stretch": 97, "sticking": 523,
                         "sliding": 324, "step": 101, "turned": 56},
     "surface": {"flat": 5, "rounded": 61, "terrain": 116, "push": 12, "push_hertz": 29, "frictionless": 90,
-                "sticking": 185, "sliding": 468, "reaction": 276, "motion": 91, "slip": 123},
+                "sticking": 185, "sliding": 468, "slipping": 675, "reaction": 276, "motion": 91, "slip": 123},
     "planar_surface": {"flat": 3, "rounded": 33, "terrain": 35, "push": 12, "push_hertz": 29, "frictionless": 40,
-                       "sticking": 89, "sliding": 170, "reaction": 85, "motion": 40, "slip": 48},
+                       "sticking": 89, "sliding": 170, "slipping": 255, "reaction": 85, "motion": 40, "slip": 48},
     "span_cable8p": {
         "point": 105, "kinetic_energy": 137, "inertia": 257, "mass_matrix": 118, "inertia_tangent": 1138, "weight": 63,
         "energy": 238, "elastic_force": 439, "elastic_tangent": 1551, "dissipation": 267, "damping_force": 365,
         "damping_tangent": 2171, "momentum": 113, "momentum_energy": 26, "momentum_step": 740, "elastic_step": 1212,
         "line_force": 84, "line_force_tangent": 661, "stored_force": 54,
-        "stored_force_tangent": 159, "share": 11
+        "stored_force_tangent": 159, "share": 11, "point_tangent": 144
     },
     "span_cable12": {
         "point": 148, "kinetic_energy": 199, "inertia": 373, "mass_matrix": 172, "inertia_tangent": 1574, "weight": 79,
         "energy": 295, "elastic_force": 561, "elastic_tangent": 2582, "dissipation": 391, "damping_force": 538,
         "damping_tangent": 4371, "momentum": 169, "momentum_energy": 38, "momentum_step": 977, "elastic_step": 1543,
         "line_force": 116, "line_force_tangent": 1269, "stored_force": 67,
-        "stored_force_tangent": 268, "share": 11
+        "stored_force_tangent": 268, "share": 11, "point_tangent": 188
     },
     "planar_rope_point": {"point": 357, "wrench": 776, "discrete_point": 392},
     "rope_point": {"point": 402, "wrench": 844, "discrete_point": 297},

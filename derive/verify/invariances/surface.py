@@ -41,6 +41,11 @@ def surface(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance
     yield "friction is along the surface", relative(np.atleast_1d(slides @ s["n"]), slides), 64 * EPS
     yield "friction that slides has its coefficient's size", abs(
         float(np.linalg.norm(slides)) / float(s["mu"] * s["normal_force"][0]) - 1), 64 * EPS
+    slips, fast = (k("slipping", {**s, "w": factor * s["w"]})["f"] for factor in (1.0, 1e9))
+    yield "regularised friction is along the surface", relative(np.atleast_1d(slips @ s["n"]), slips), 64 * EPS
+    yield "regularised friction opposes the slip", max(0.0, float(slips @ s["w"])), 0.0
+    yield "regularised friction of a fast slip has its coefficient's size", abs(
+        float(np.linalg.norm(fast)) / float(s["mu"] * s["normal_force"][0]) - 1), 64 * EPS
     sticks = k("sticking", s)
     yield "friction that sticks is a spring along the surface", relative(sticks["f"] + s["k_t"] * sticks["t"],
                                                                         sticks["f"]), 64 * EPS

@@ -236,6 +236,9 @@ def _of_line_force(spec: Element) -> list[Relation]:
                    for name, output in (("F_r", "r"), ("F_t", "r_S"), ("F_v", "velocity"))]
         return both("line_force")(k, s | {"F": s["F"] + sum(changes)})
 
+    def of_point(output: str) -> Callable[..., Any]:
+        return lambda k, s: k("point", s)[output]
+
     def moved_end(k, s, t, j):
         return k("share", s, ends=s["ends"] + t * unit(s["ends"], j))["share"]
 
@@ -245,6 +248,9 @@ def _of_line_force(spec: Element) -> list[Relation]:
                  lambda k, s, t, j: work(k, s, t, n + j), ENDS),
         Relation("line_force_tangent", "D", "df by rates", 1, _from_state(by_rate(acting, n)), n + ENDS),
         Relation("line_force_tangent", "K", "df by e and l", 1, _from_state(by_configuration(acting, n)), n + 1),
+        Relation("point_tangent", "r_q", "dr by e and l", 1, by_configuration(of_point("r"), n), n + 1),
+        Relation("point_tangent", "v_q", "dv by e and l", 1, by_configuration(of_point("velocity"), n), n + 1),
+        Relation("point_tangent", "v_v", "dv by rates", 1, by_rate(of_point("velocity"), n), n + ENDS),
         Relation("share", "share", "(S - s1)/(s2 - s1)", 0,
                  root(lambda s: np.array([(s["at"].item() - s["ends"][0]) / (s["ends"][1] - s["ends"][0])]))),
         Relation("share", "share_s", "d share/ds", 1, moved_end, ENDS)]

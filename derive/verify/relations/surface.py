@@ -99,8 +99,9 @@ def _forces(dim: int) -> list[Relation]:
     def by_rate(kernel: str) -> Any:
         def path(k: Any, s: Any, t: Any, j: int) -> Any:
             p, by_d, by_rate = s["normal_force"]
-            normal_force = s["normal_force"] * 0 + [p - by_rate * (s["n"] @ (t * unit(s["n"], j))), by_d, by_rate]
-            return k(kernel, s, normal_force=normal_force)["f"]
+            change = t * unit(s["n"], j)
+            normal_force = s["normal_force"] * 0 + [p - by_rate * (s["n"] @ change), by_d, by_rate]
+            return k(kernel, s, normal_force=normal_force, w=s["w"] + change)["f"]
         return path
 
     def by_stretch(kernel: str) -> Any:
@@ -116,7 +117,10 @@ def _forces(dim: int) -> list[Relation]:
             Relation("sliding", "f", "at 50 digits", 0, from_kernel("sliding", "f")),
             Relation("sliding", "f_y", "df by the place", 1, by_place("sliding", True, True), dim),
             Relation("sliding", "f_x", "df by the stretch", 1, by_stretch("sliding"), dim),
-            Relation("sliding", "f_w", "df by the velocity", 1, by_rate("sliding"), dim)]
+            Relation("sliding", "f_w", "df by the velocity", 1, by_rate("sliding"), dim),
+            Relation("slipping", "f", "at 50 digits", 0, from_kernel("slipping", "f")),
+            Relation("slipping", "f_y", "df by the place", 1, by_place("slipping", False, True), dim),
+            Relation("slipping", "f_w", "df by the velocity", 1, by_rate("slipping"), dim)]
 
 
 def _reactions(dim: int) -> list[Relation]:

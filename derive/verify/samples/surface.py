@@ -27,5 +27,5 @@ def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) 
             "h": 0.5 * random.normal(size=len(HEIGHTS[dim])), "depth": np.array(0.7), "depth_next": np.array(0.4),
             "depth_rate": np.array(0.3), "law": np.array([1.7, 0.6]), "n": 1.1 * n / np.linalg.norm(n),
             "H": second + second.T, "w": w, "normal_force": np.array([0.8, 1.3, 0.4]), "x": x, "k_t": np.array(1.4),
-            "mu": np.array(0.35), "r": r, "v": v, "a": a, "r_o": r_o, "v_o": v_o, "a_o": a_o,
+            "mu": np.array(0.35), "v0": np.array(0.9), "r": r, "v": v, "a": a, "r_o": r_o, "v_o": v_o, "a_o": a_o,
             "omega": omega, "alpha": alpha, "omega_o": omega_o, "alpha_o": alpha_o}

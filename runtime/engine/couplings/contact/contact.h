@@ -51,11 +51,13 @@ typedef struct {
 } fu_contact;
 extern const fu_coupling_type fu_contact_type;
 
-/* Contact of a span of a rope, without friction: couplings/contact/span_contact.c. Of the contact, `arc` and `weights`
- * have the shares of the points and of their weights in the length of an element. */
+/* Contact of a span of a rope: couplings/contact/span_contact.c. Of the contact, `arc` and `weights` have the shares of
+ * the points and of their weights in the length of an element. Friction is regularised, not that of the contact's law:
+ * `friction` is its coefficient, `slip_velocity` that at which it is 0.7 of its limit, m/s. */
 typedef struct {
     fu_contact contact;
     fu_span_elements on;
+    double friction, slip_velocity;
 } fu_rope_contact;
 extern const fu_coupling_type fu_rope_contact_type;
 
@@ -174,6 +176,34 @@ void fu_contact_visit(const fu_model *model, const fu_contact *contact, const fu
 void fu_contact_add_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                                 const fu_state *state, int element, int number, const fu_contact_point *point,
                                 const double *psi, fu_weights weights, fu_system *system);
+
+/* Changes by each unknown of a motion, in column i of all: of the force on a point, and of its moments about the point
+ * and about the origin of the surface. Computes them by the unknowns of the point or, if is_surface is nonzero, of the
+ * surface. */
+typedef struct {
+    double force[3 * FU_ATTACHMENT_COORDINATES], near[3 * FU_ATTACHMENT_COORDINATES],
+        far[3 * FU_ATTACHMENT_COORDINATES];
+} fu_contact_changes;
+void fu_contact_changes_by(int dim, const fu_contact *contact, const fu_attachment_state *on,
+                           const fu_contact_point *point, const fu_point_motion *of, int is_surface,
+                           fu_contact_changes *out);
+
+/* couplings/contact/span_contact_point.c: calls `visit` with each point in contact; after the last one of an element with
+ * none. */
+typedef void fu_rope_contact_visitor(const fu_model *model, const fu_rope_contact *rope, const fu_attachment_state *on,
+                                     const fu_span_element *it, int k, fu_contact_point *point, void *context);
+void fu_rope_contact_visit(const fu_model *model, const fu_rope_contact *rope, const fu_state *state,
+                           fu_rope_contact_visitor *visit, void *context);
+/* Computes the elastic part of the normal force at a point, with its derivatives by the place. */
+void fu_rope_contact_elastic(const fu_rope_contact *rope, const fu_contact_point *point, double F[3],
+                             double by_place[9]);
+/* Computes friction at a point, with its derivatives by place and velocity; returns the dissipated power, W/m. */
+double fu_rope_contact_friction(int dim, const fu_rope_contact *rope, const fu_attachment_state *on,
+                                const fu_contact_point *point, double f[3], double by_place[9], double by_rate[9]);
+
+/* couplings/contact/span_contact_matrix.c */
+void fu_rope_contact_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,
+                             fu_system *system);
 
 /* couplings/contact/energy_step.c */
 void fu_contact_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,

@@ -7,13 +7,6 @@
 
 #include <string.h>
 
-/* Changes by each unknown, in column i of all: of the force, and of its moments about the point and about the origin of
- * the surface. */
-typedef struct {
-    double force[3 * FU_ATTACHMENT_COORDINATES], near[3 * FU_ATTACHMENT_COORDINATES],
-        far[3 * FU_ATTACHMENT_COORDINATES];
-} changes;
-
 /* Arguments of `reaction` for a point: position and velocity relative to the surface, the rotation since the last step
  * in global axes, the mean of the arms now and then, and the share of the arm in it. */
 typedef struct {
@@ -41,7 +34,7 @@ static void rolling_of(int dim, const fu_contact *contact, const fu_attachment_s
 
 /* Computes the changes by the unknowns of the point or, if is_surface is nonzero, of the surface. */
 static void changes_by(int dim, const fu_contact *contact, const fu_attachment_state *on, const fu_contact_point *point,
-                       const rolling_point *rolling, const fu_point_motion *of, int is_surface, changes *out)
+                       const rolling_point *rolling, const fu_point_motion *of, int is_surface, fu_contact_changes *out)
 {
     const int n = of->at.n, turns = of->rows > 2 * dim ? fu_turns(dim) : 0;
     for (int i = 0; i < n; ++i) {
@@ -68,6 +61,15 @@ static void changes_by(int dim, const fu_contact *contact, const fu_attachment_s
     }
 }
 
+void fu_contact_changes_by(int dim, const fu_contact *contact, const fu_attachment_state *on,
+                           const fu_contact_point *point, const fu_point_motion *of, int is_surface,
+                           fu_contact_changes *out)
+{
+    rolling_point rolling;
+    rolling_of(dim, contact, on, point, &rolling);
+    changes_by(dim, contact, on, point, &rolling, of, is_surface, out);
+}
+
 void fu_contact_add_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                                 const fu_state *state, int element, int number, const fu_contact_point *point,
                                 const double *psi, fu_weights weights, fu_system *system)
@@ -77,7 +79,7 @@ void fu_contact_add_derivatives(const fu_model *model, const fu_contact *contact
     double lever[3], moment[3];
     rolling_point rolling;
     fu_point_motion a, b;
-    changes by_a, by_b;
+    fu_contact_changes by_a, by_b;
     rolling_of(dim, contact, on, point, &rolling);
     if (contact->cable >= 0) {
         const int n = model->cables[contact->cable].coordinates;
