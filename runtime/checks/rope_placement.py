@@ -91,9 +91,6 @@ def _held(scene: SceneData, rope: Rope, k: int, end: Attachment) -> Attachment:
     """Return the complete attachment of an item of a route to a body, to a cable or to the ground."""
     if end.on is not None and end.on not in scene.holders:
         raise SceneError(rope.where, f'route.{k}: there is no body or cable "{end.on}"', near(end.on, scene.holders))
-    if end.on in scene.cables and rope.dim == 3 and isinstance(rope.route[k], Wheel):
-        raise SceneError(rope.where, f'route.{k} is held by cable "{end.on}", whose sections turn',
-                         "take a body or a point of the ground, or a planar rope")
     return placed_attachment(scene, end, rope.where, f"route.{k}: ")
 
 

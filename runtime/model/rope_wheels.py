@@ -8,11 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from ..checks.rope_carriers import may_turn
+from ..checks.rope_carriers import carried_groove, may_turn
 from ..parts.rope_items import SIDES, Drum, Sheave
 from ..parts.rope_route import MIN_WRAP
 from ..parts.rope_route_space import groove_of
-from ..parts.scene_data import SceneData
 from .attachments import AttachmentModel, ModelBuilder
 from .coupling import CouplingModel
 from .rope_model import DrumCoordinates, RopeModel, SheaveCoordinates
@@ -253,23 +252,14 @@ def _wheel_of(builder: ModelBuilder, rope: RopeModel, item: Sheave | Drum, groov
     """
     gravity, dim = np.array(builder.scene.gravity), rope.part.dim
     tilts, weight = dim == 3 and may_turn(builder.scene, item.end.on), rope.rho * gravity / 2
-    plane = _on_body(builder.scene, item.end.on, groove) if tilts else groove
-    axes = _axes_of(plane) if tilts else np.eye(3) if dim == 2 else None  # a cable turns
-    return {"attachments": (builder.attachment(item.end, axes),), "plane": plane, "tilts": tilts,
+    carried = carried_groove(builder.scene, item.end, groove) if tilts else None
+    plane = groove if carried is None else carried.axes[:, :2]
+    axes, up = carried or (np.eye(3) if dim == 2 else None, None)  # a cable turns
+    return {"attachments": (builder.attachment(item.end, axes, up),), "plane": plane, "tilts": tilts,
             "g": gravity if tilts else _in_groove(plane, gravity), "rho": rope.rho, "A": rope.stiffness[:2],
             "weight": weight[: 3 * (dim == 3)],
             "limit": float(np.linalg.norm(weight)) / MAX_SAG + NO_TENSION * rope.stiffness[0],
             **_motion_of(builder, item)}
-
-
-def _axes_of(plane: np.ndarray) -> np.ndarray:
-    """Return (3, 3): the vectors of the plane of a groove, and its axis, as columns."""
-    return np.column_stack([plane, np.cross(*plane.T)])
-
-
-def _on_body(scene: SceneData, body: str | None, plane: np.ndarray) -> np.ndarray:
-    """Return the plane of a groove as drawn in the axes of the body that carries it."""
-    return plane if body is None else scene.bodies[body].axes.T @ plane
 
 
 def _in_groove(plane: np.ndarray, vector: np.ndarray) -> np.ndarray:

@@ -132,10 +132,7 @@ def point_force_state(model: Model, between: PointForceModel, force: np.ndarray,
 def attachment_points(model: Model, attachment: AttachmentModel, q: np.ndarray) -> np.ndarray:
     """Return (time, 3): positions of an attachment, m."""
     if attachment.cable >= 0:
-        cable = model.cables[attachment.cable]
-        start = cable.first + attachment.element * cable.shape[1] * model.dim
-        vectors = q[:, start : start + len(attachment.N) * model.dim].reshape(len(q), len(attachment.N), model.dim)
-        return spatial(np.einsum("k,tkd->td", attachment.N, vectors))
+        return spatial(np.einsum("k,tkd->td", attachment.N, _vectors_of(model, attachment, q)))
     if attachment.body >= 0:
         body = model.bodies[attachment.body]
         state, arm = body_state(model, body, q), body.centre + attachment.u
@@ -151,7 +148,10 @@ def attachment_points(model: Model, attachment: AttachmentModel, q: np.ndarray) 
 
 
 def attachment_axes(model: Model, attachment: AttachmentModel, q: np.ndarray) -> np.ndarray:
-    """Return (time, 3, 3): the axes of an attachment to a body in space, by columns."""
+    """Return (time, 3, 3): the axes of an attachment to a body or a cable in space, by columns."""
+    assert attachment.axes is not None, "an attachment without axes"
+    if attachment.cable >= 0:
+        return np.asarray(_frame_on_cable(model, attachment, q) @ attachment.axes)
     body = model.bodies[attachment.body]
     state = body_state(model, body, q)
     orientation = state["orientation"]
@@ -159,9 +159,30 @@ def attachment_axes(model: Model, attachment: AttachmentModel, q: np.ndarray) ->
         theta = modal_state(model, body, state, q)["modal_coordinates"] @ attachment.modal[2]
         half = np.concatenate([np.ones((len(q), 1)), theta / 2], axis=1)
         orientation = product(orientation, half / np.linalg.norm(half, axis=1, keepdims=True))
-    assert attachment.axes is not None, "an attachment without axes"
     columns = [rotate(orientation, axis) for axis in attachment.axes.T]
     return np.stack(columns, axis=-1)
+
+
+def _frame_on_cable(model: Model, attachment: AttachmentModel, q: np.ndarray) -> np.ndarray:
+    """Return (time, 3, 3): the frame of two vectors of a cable, by columns, as in derive/couplings/frame.py."""
+    vectors = _vectors_of(model, attachment, q)
+    one, other = (np.broadcast_to(attachment.up, (len(q), 3)) if slope < 0 else np.einsum("k,tkd->td", S, vectors)
+                  for slope, S in zip(attachment.slopes, attachment.S, strict=True))
+    along, across = _unit(one), _unit(np.cross(one, other))
+    return np.stack([along, np.cross(across, along), across], axis=-1)
+
+
+def _vectors_of(model: Model, attachment: AttachmentModel, q: np.ndarray) -> np.ndarray:
+    """Return (time, vectors, dim): the nodal vectors of the element of an attachment to a cable."""
+    cable, n = model.cables[attachment.cable], len(attachment.N)
+    start = cable.first + attachment.element * cable.shape[1] * model.dim
+    found: np.ndarray = q[:, start : start + n * model.dim].reshape(len(q), n, model.dim)
+    return found
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    found: np.ndarray = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return found
 
 
 def element_coordinates(cable: CableModel, values: np.ndarray, element: np.ndarray | None = None) -> np.ndarray:

@@ -172,7 +172,8 @@ class Wheel(RouteItem):
 class Sheave(Wheel):
     """A sheave that a rope runs over, with friction or without.
 
-    at: its centre, a point of the ground, a body, a point in the axes of a body, or in the plane ("cable", s)
+    at: its centre, a point of the ground, a body, a point in the axes of a body, or ("cable", s). In space the groove
+        turns with the cable; on one without sections its axis stays across the tangent
     radius: from its centre to the axis of the rope, that of the groove plus that of the rope, m
     side: "left" or "right": where it lies, looking along the route with the axis up. A rope with the sheave on its
         left runs counter-clockwise around it. By default the side to which the line through the centres of the route

@@ -109,14 +109,14 @@ def test_a_drum_and_an_end_on_a_cable(element, mass):
     assert np.ptp(run["load.position"][:, 1]) > 0.01
 
 
-def hung() -> fu.Scene:
+def hung(element: str = "cable8p") -> fu.Scene:
     """Return a heavy cable with a sheave, over which a rope from the ground holds a weight."""
     scene = fu.Scene()
-    scene.cable("bearer", start=(-4, 0, 0), end=(4, 0, 0), elements=8, element="cable8p", rest_length=2 * MIDDLE, **BAR)
+    scene.cable("bearer", start=(-4, 0, 0), end=(4, 0, 0), elements=8, element=element, rest_length=2 * MIDDLE, **BAR)
     for s in (0.0, 2 * MIDDLE):
         scene.pin("bearer", s=s)
     scene.rigid_body("load", mass=1, inertia=(1, 1, 1), position=(R, -2, 0))
-    scene.rope("rope", tension=9.81, elements=1, **THREAD, route=[
+    scene.rope("rope", tension=9.81, elements=1, element=element, **THREAD, route=[
         fu.Anchor(at=(-R, -2, 0)), fu.Sheave("top", at=("bearer", MIDDLE), radius=R, side="right"), fu.Anchor("load")])
     return scene
 

@@ -19,6 +19,7 @@ from ...parts.scene_data import SceneData
 from ...parts.section import Rectangle
 from ...view.animation import BodyShape, CableShape, Quantity, section_sides
 from .cables import CABLE_STATIONS, MAX_DIVISIONS, section_data
+from .carried_wheels import axes_on_cable
 from .frames import Frames, no_forces, one_or_all, place
 
 WRAP_STEP = np.pi / 36
@@ -178,9 +179,13 @@ def _wrap(frames: Frames, sheave: Sheave, arc: DrawnArc, points: np.ndarray, s: 
 
 
 def _turned(frames: Frames, wheel: Sheave | Drum, groove: np.ndarray) -> np.ndarray:
-    """Return (T, 3, 2): the plane of a groove as drawn, turned with the body that the wheel is on; else (1, 3, 2)."""
+    """Return (T, 3, 2): the plane of a groove as drawn, turned with the body or the cable that the wheel is on; else
+    (1, 3, 2).
+    """
     if wheel.end.on is None or frames.scene.dim == 2:
         return groove[None]
+    if wheel.end.on in frames.scene.cables:
+        return axes_on_cable(frames, wheel.end, groove)[..., :2]
     orientation, body = frames.value(f"{wheel.end.on}.orientation"), frames.scene.bodies[wheel.end.on]
     return np.stack([rotate(orientation, body.axes.T @ axis) for axis in groove.T], axis=-1)
 
@@ -188,7 +193,7 @@ def _turned(frames: Frames, wheel: Sheave | Drum, groove: np.ndarray) -> np.ndar
 def wheel_shape(frames: Frames, refs: Frames, rope: Rope, sheave: Sheave | Drum) -> BodyShape:
     """Return a sheave or a drum as a wheel below the rope; refs: see `references`.
 
-    One without rotation keeps the axes of its carrier; of a cable the turn of the section is left out.
+    One without rotation keeps the axes of its carrier; in the plane the turn of a cable's section is left out.
     """
     height, width = section_sides(section_data(rope.section))
     shape = {"kind": "wheel", "radius": max(sheave.radius - height / 2, sheave.radius / 2),
@@ -201,9 +206,10 @@ def wheel_shape(frames: Frames, refs: Frames, rope: Rope, sheave: Sheave | Drum)
     if rope.dim == 3:
         groove = groove_of(sheave.axis)
         drawn = np.column_stack([groove, np.cross(*groove.T)])
-        if sheave.end.on is not None:
+        if sheave.end.on in frames.scene.bodies:
             drawn = frames.scene.bodies[sheave.end.on].axes.T @ drawn
-        orientation = product(quaternion(drawn), orientation)
+        carried = axes_on_cable(frames, sheave.end, groove) if sheave.end.on in frames.scene.cables else drawn[None]
+        orientation = product(np.array([quaternion(axes) for axes in carried]), orientation)
     if sheave.end.on in frames.scene.bodies:
         orientation = product(frames.value(f"{sheave.end.on}.orientation"), orientation)
     found = {label: (unit, frames.value(f"{sheave.name}.{key}")) for key, (label, unit) in WHEEL_RESULTS.items()
