@@ -217,6 +217,17 @@ def _rope(on: Site, carried: bool = False, first: object = None, also: Callable[
         also(on)
 
 
+def _on_the_cable(on: Site) -> None:
+    """Hang a body on a rope from the ground over a sheave in the middle of the cable."""
+    s = on.cable.length / 2
+    x, y, z = on.cable.point(s)
+    on.body("load", (x + 0.1, y - 1.0, z))
+    element = {} if on.planar else {"element": "cable12"}
+    on.scene.rope("hoist", route=[fu.Anchor(at=(x - 0.1, y - 0.8, z)), fu.Sheave(
+        "top", at=("wire", s), radius=0.1, side="right"), fu.Anchor("load")], elements=2, tension=0.981, **element,
+        **OF_ROPE)
+
+
 def _belt(on: Site) -> None:
     """Drive a belt around two sheaves beside the cable."""
     x, y, _ = on.below(1.0, 0)
@@ -254,6 +265,7 @@ ROPES: dict[str, Callable[[Site], object]] = {
     "rope on a sheave that turns": partial(_rope, friction=ROUGH, zones=2, inertia=1e-3),
     "rope on a driven sheave": partial(_rope, friction=ROUGH, zones=2, velocity=SIGNALS["ramp"]),
     "rope over a body": partial(_rope, carried=True),
+    "rope on the cable": _on_the_cable,
     "rope on a drum": partial(_rope, first=_drum(velocity=SIGNALS["ramp"])),
     "rope on a drum over a body": partial(_rope, carried=True, first=_drum()),
     "loaded rope": partial(_rope, also=lambda on: on.scene.force("hoist", s=0.1, value=(0.0, -0.1, 0))),

@@ -14,7 +14,6 @@ from ..parts.part import Part
 from ..parts.plane import called
 from ..parts.point_force import PointForce
 from ..parts.rope import Rope
-from ..parts.rope_items import Wheel
 from ..parts.rope_route import MAX_LAYER, MAX_PLAUSIBLE_WRAP, DrawnRoute
 from ..parts.rope_route_space import fleet_angle, fleet_angles, groove_of
 from ..parts.scene_data import SceneData

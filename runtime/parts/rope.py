@@ -93,7 +93,7 @@ class Rope(Part):
         logarithm of the tension is linear in the angle as drawn, which gives the length there;
         ``equilibrium(wraps="stick")`` is the state of rest in which friction holds the differences
     element: "cable8p" in the plane z = 0; "cable12" in space, with axes of sheaves and drums in any direction, which
-        turn with the bodies that they are on
+        turn with the bodies and cables that they are on
     mass: False for a rope without mass and bending stiffness: straight between the sheaves, with one tension from one
         end, drum or sheave with friction to the next, and slack where it would push. On a sheave with friction,
         whatever its model, the rope sticks up to the limit e^(mu theta) of the ratio of its elastic tensions, beyond

@@ -183,7 +183,7 @@ class Sheave(Wheel):
         counter-clockwise
     angle, velocity: of its rotation over time, prescribed, rad or rad/s, relative to the body that it is on
     damping: of its bearing, N m s
-    axis: its direction as drawn, of a rope in space, which turns with the body that it is on; by default z
+    axis: its direction as drawn, of a rope in space, which turns with the body or cable that it is on; by default z
     friction: between rope and groove, a coefficient or a `Friction`, by default "regularised"; without it none
     zones: number of parts of the wrap between which friction acts, and over each of which the tension is constant
     turns: whole turns of the rope around it, in addition to the wrap angle between both spans
@@ -294,8 +294,8 @@ class Drum(Wheel):
         counter-clockwise
     angle, velocity: of its rotation over time, prescribed, rad or rad/s, relative to the body that it is on
     damping: of its bearing, N m s
-    axis: its direction as drawn, of a rope in space, which turns with the body that it is on; by default z. There the
-        rope lies in the plane across it through ``at``
+    axis: its direction as drawn, of a rope in space, which turns with the body or cable that it is on; by default z.
+        There the rope lies in the plane across it through ``at``
     max_fleet_angle: between this plane and the rope as drawn, in space, rad; a larger one is reported
     at_end: where it has run empty, "error" ends the run with a RopeLeftError, "stop" as an event does, "leave" frees
         the end of the rope, not of one without mass
