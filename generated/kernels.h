@@ -1916,6 +1916,24 @@ typedef void fu_tangent_point_chord_step_kernel(const fu_real *xis, fu_real *N, 
 /* xis 2, N 2x4, N_xi 4 */
 fu_tangent_point_chord_step_kernel tangent_point_chord_step;
 
+typedef void fu_taut_part_feet_kernel(const fu_real *d, const fu_real *angle, const fu_real *reach, const fu_real *one, const fu_real *other, const fu_real *R, fu_real *l, fu_real *u, fu_real *s, fu_real *F_z, fu_real *F_zz);
+/* conditions of the feet of a straight part: d [m]; angle [rad]; reach [m]; one [1]; other [1]; R [m] -> l [m]; u
+ * [1]; s [m]; F_z [m, 1]; F_zz [m, 1, 1/m] */
+/* d 3, angle 2, reach 2, one 3x3, other 3x3, R 2, l 1, u 3, s 2x3, F_z 4, F_zz 4x4 */
+fu_taut_part_feet_kernel taut_part_feet;
+
+typedef void fu_taut_part_moves_kernel(const fu_real *d, const fu_real *angle, const fu_real *reach, const fu_real *one, const fu_real *other, fu_real *F_p, fu_real *F_zp);
+/* derivatives of a straight part by its places: d [m]; angle [rad]; reach [m]; one [1]; other [1] -> F_p [1, m];
+ * F_zp [m, 1] */
+/* d 3, angle 2, reach 2, one 3x3, other 3x3, F_p 9, F_zp 4x9 */
+fu_taut_part_moves_kernel taut_part_moves;
+
+typedef void fu_taut_part_tangent_kernel(const fu_real *d, const fu_real *angle, const fu_real *reach, const fu_real *one, const fu_real *other, const fu_real *z_rate, const fu_real *p_rate, fu_real *F_pp, fu_real *Q_z, fu_real *Q_p);
+/* second derivatives of a straight part: d [m]; angle [rad]; reach [m]; one [1]; other [1]; z_rate [rad/s, m/s];
+ * p_rate [m/s, rad/s] -> F_pp [1/m, 1, m]; Q_z [m/s, 1/s, 1/(m s)]; Q_p [m/s, 1/s, 1/(m s)] */
+/* d 3, angle 2, reach 2, one 3x3, other 3x3, z_rate 4, p_rate 9, F_pp 9x9, Q_z 4x4, Q_p 4x9 */
+fu_taut_part_tangent_kernel taut_part_tangent;
+
 typedef void fu_taut_rope_straight_kernel(const fu_real *d, fu_real rise, fu_real *l, fu_real *u, fu_real *l_d, fu_real *b_d);
 /* straight part of a rope without mass: d [m]; rise [m] -> l [m]; u [1]; l_d [1]; b_d [1/m] */
 /* d 2, l 1, u 2, l_d 2, b_d 2 */
@@ -2392,6 +2410,15 @@ typedef struct {
     fu_tangent_point_chord_step_kernel *chord_step;
 } fu_tangent_point_kernels;
 
+/* What the engine needs of a taut_part. */
+typedef struct {
+    const char *name;
+    int dim;
+    fu_taut_part_feet_kernel *feet;
+    fu_taut_part_moves_kernel *moves;
+    fu_taut_part_tangent_kernel *tangent;
+} fu_taut_part_kernels;
+
 /* What the engine needs of a taut_rope. */
 typedef struct {
     const char *name;
@@ -2440,6 +2467,8 @@ typedef struct {
     const fu_surface_kernels *surfaces;
     int n_tangent_points;
     const fu_tangent_point_kernels *tangent_points;
+    int n_taut_parts;
+    const fu_taut_part_kernels *taut_parts;
     int n_taut_ropes;
     const fu_taut_rope_kernels *taut_ropes;
 } fu_tables;
@@ -2480,6 +2509,8 @@ static inline const void *fu_find(const fu_tables *tables, const char *role, con
         if (!strcmp(tables->surfaces[i].name, name)) return &tables->surfaces[i];
     for (int i = 0; i < tables->n_tangent_points && !strcmp(role, "tangent_point"); ++i)
         if (!strcmp(tables->tangent_points[i].name, name)) return &tables->tangent_points[i];
+    for (int i = 0; i < tables->n_taut_parts && !strcmp(role, "taut_part"); ++i)
+        if (!strcmp(tables->taut_parts[i].name, name)) return &tables->taut_parts[i];
     for (int i = 0; i < tables->n_taut_ropes && !strcmp(role, "taut_rope"); ++i)
         if (!strcmp(tables->taut_ropes[i].name, name)) return &tables->taut_ropes[i];
     return 0;

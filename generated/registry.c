@@ -331,6 +331,10 @@ static const fu_tangent_point_kernels tangent_points[] = {
      tangent_point_by_products, tangent_point_chord_step},
 };
 
+static const fu_taut_part_kernels taut_parts[] = {
+    {"taut_part", 3, taut_part_feet, taut_part_moves, taut_part_tangent},
+};
+
 static const fu_taut_rope_kernels taut_ropes[] = {
     {"planar_taut_rope", 2, planar_taut_rope_straight, planar_taut_rope_straight_tangent, planar_taut_rope_free_length,
      planar_taut_rope_tension, planar_taut_rope_tension_tangent, planar_taut_rope_energy, planar_taut_rope_slide,
@@ -467,6 +471,8 @@ static const fu_taut_rope_kernels taut_ropes[] = {
 #define FU_ARGUMENTS_sssssvvvsv_1 *a[0], *a[1], *a[2], *a[3], *a[4], a[5], a[6], a[7], *a[8], a[9], out[0]
 #define FU_ARGUMENTS_sssvssssssvvvv_6 *a[0], *a[1], *a[2], a[3], *a[4], *a[5], *a[6], *a[7], *a[8], *a[9], a[10], a[11], a[12], a[13], out[0], out[1], out[2], out[3], out[4], out[5]
 #define FU_ARGUMENTS_vssss_2 a[0], *a[1], *a[2], *a[3], *a[4], out[0], out[1]
+#define FU_ARGUMENTS_vvvvvv_5 a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4]
+#define FU_ARGUMENTS_vvvvvvv_3 a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vs_4 a[0], *a[1], out[0], out[1], out[2], out[3]
 #define FU_ARGUMENTS_vvs_1 a[0], a[1], *a[2], out[0]
 #define FU_ARGUMENTS_vvssv_1 a[0], a[1], *a[2], *a[3], a[4], out[0]
@@ -1147,6 +1153,9 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(tangent_point_momentum_step, sssvssssssvvvv_6) \
     X(tangent_point_by_products, vssss_2) \
     X(tangent_point_chord_step, v_2) \
+    X(taut_part_feet, vvvvvv_5) \
+    X(taut_part_moves, vvvvv_2) \
+    X(taut_part_tangent, vvvvvvv_3) \
     X(planar_taut_rope_straight, vs_4) \
     X(planar_taut_rope_straight_tangent, vvs_1) \
     X(planar_taut_rope_free_length, vv_2) \
@@ -1183,5 +1192,6 @@ const fu_tables fu_all = {
     2, spans,
     2, surfaces,
     1, tangent_points,
+    1, taut_parts,
     1, taut_ropes
 };
