@@ -191,3 +191,27 @@ def test_error_of_a_steady_turn_is_controlled(element):
     turned = 2 * np.arctan2(run["A.orientation"][:, 3], run["A.orientation"][:, 0])
     off = np.abs((turned - rate * run.time + np.pi) % (2 * np.pi) - np.pi)
     assert off.max() < 5 * tol  # measured: 2.3 tol, and 27,000 tol where steps followed the change of the rate alone
+
+
+@pytest.mark.filterwarnings("ignore:.*initial velocities:funicular.FunicularWarning")
+@pytest.mark.parametrize("dim", [2, 3])
+def test_joints_of_points_do_no_work(dim):
+    """A double pendulum with joints off the mass centres, and a body that a cable holds."""
+    scene = Scene(gravity=(0, -9.81, 0))
+    out = 0.5 * (dim == 3)
+    scene.rigid_body("A", mass=2.0, inertia=(0.2, 0.3, 0.1), position=(0.5, 0.2, 0), angular_velocity=(0, out, 1.0))
+    scene.rigid_body("B", mass=1.0, inertia=(0.1, 0.2, 0.1), position=(1.6, 0, 0), angular_velocity=(out, 0, -2.0))
+    scene.rigid_body("C", mass=0.5, inertia=(0.1, 0.2, 0.1), position=(0.5, -1.0, 0))
+    scene.joint("spherical", (0, 0, 0), ("A", (-0.5, -0.2, 0)))
+    scene.joint("distance", ("A", (0.5, 0.1, 0)), ("B", (-0.1, 0, 0)))
+    scene.cable("wire", start=(0, -1, 0), end=(1, -1, 0), elements=2, element="cable8p" if dim == 2 else "cable12",
+                section=Rectangle(height=0.01, width=0.01),
+                material=Material(youngs_modulus=1e8, poisson_ratio=0.0, density=1000))
+    scene.pin("wire", s=0.0)
+    scene.pin("wire", s=1.0)
+    scene.joint("spherical", ("wire", 0.3), ("C", (-0.2, 0, 0)))
+    run = scene.run(0.5, output_step=0.05, step=2e-3, integrator="energy", progress=False)
+    assert unaccounted(run) < 1e-11 * run["energy.kinetic"].max()
+    radau = scene.run(0.5, output_step=0.5, tol=1e-6, integrator="radau", progress=False)
+    for name in "ABC":
+        assert np.abs(run[f"{name}.position"][-1] - radau[f"{name}.position"][-1]).max() < 2e-3
