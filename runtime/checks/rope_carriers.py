@@ -52,9 +52,9 @@ def check_wheels_with_inertia(scene: SceneData) -> None:
     for rope in scene.ropes.values():
         for wheel in rope.wheels if rope.dim == 3 and not rope.mass else ():
             if wheel.inertia > 0 and may_turn(scene, wheel.end.on):
-                raise SceneError(f"{rope.where}: {wheel.where}", f'has inertia on body "{wheel.end.on}", which may '
+                raise SceneError(f"{rope.where}: {wheel.where}", f'has inertia on "{wheel.end.on}", which may '
                                  "rotate, and its rope has no mass: its axis would tilt as it spins",
-                                 "leave the inertia out and give it to the body, or give the rope a small mass")
+                                 "leave the inertia out and give it to what holds it, or give the rope a small mass")
 
 
 def _translates(scene: SceneData, body: str, known: set[str]) -> bool:

@@ -121,7 +121,22 @@ def _notes(scene: SceneData, rope: Rope) -> list[str]:
         if arc.wrap > MAX_PLAUSIBLE_WRAP and not item.turns:
             notes.append(f"{sheave}: the rope runs around it by {show(arc.wrap, 'rad')} and crosses itself; give the "
                          "other side if that is not meant")
-    return notes + (_notes_in_space(rope, route) if rope.dim == 3 else [])
+    return notes + (_notes_in_space(rope, route) if rope.dim == 3 else [] if rope.mass else
+                    _notes_without_mass(scene, rope, route))
+
+
+def _notes_without_mass(scene: SceneData, rope: Rope, route: DrawnRoute) -> list[str]:
+    """Return notes on sheaves that a planar rope without mass passes as drawn, and one with mass would run around."""
+    passed = [item for item, arc in zip(rope.sheaves, route.sheaves, strict=True) if not arc.wrap]
+    if not passed:
+        return []
+    try:
+        arcs = {arc.name: arc for arc in scene.route_of(rope.model_copy(update={"mass": True})).sheaves}
+    except ValueError:
+        return []
+    return [f"{rope.where}: {item.where}: the rope passes it without touching it as drawn; a rope with mass would run "
+            f"around it by {arcs[item.name].wrap:.3g} rad: give friction, or the rope a small mass, if that is meant"
+            for item in passed if arcs[item.name].wrap <= MAX_PLAUSIBLE_WRAP]
 
 
 def _notes_in_space(rope: Rope, route: DrawnRoute) -> list[str]:

@@ -82,7 +82,7 @@ def _motion_without_mass(model: Model, rope: RopeModel, q: np.ndarray, dofs: np.
 def grooves(model: Model, point: TautPointModel, q: np.ndarray) -> np.ndarray:
     """Return (T, dim, 2): the plane of the groove of a point in configurations (T, n_q); any plane of an anchor."""
     end = point.attachments[0]
-    if point.in_space and point.radius and end.body >= 0:
+    if point.in_space and point.radius and max(end.body, end.cable) >= 0:
         return attachment_axes(model, end, q)[..., :2]
     axes = np.eye(model.dim) if end.axes is None or not point.in_space else end.axes
     return np.tile(axes[:, :2], (len(q), 1, 1))

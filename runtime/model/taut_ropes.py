@@ -10,6 +10,7 @@ from typing import Protocol
 
 import numpy as np
 
+from ..checks.rope_carriers import carried_groove
 from ..parts.rope import Rope
 from ..parts.rope_items import SIDES, Drum, RouteItem, Sheave
 from ..parts.rope_route import MIN_SPAN_RATIO, DrawnRoute
@@ -174,7 +175,7 @@ def _points(builder: ModelBuilder, rope: TurningRope) -> list[TautPointModel]:
     for item in part.route:
         in_space = part.dim == 3
         made = TautPointModel(type="taut_point", name=getattr(item, "name", part.name), in_space=in_space,
-                              attachments=(builder.attachment(item.end, _axes(builder, item, part.dim)),),
+                              attachments=(_attachment(builder, item, part.dim),),
                               carrier=0.0 if in_space else _carrier(builder, item))
         if isinstance(item, Sheave):
             arc = next(arcs)
@@ -197,18 +198,13 @@ def _points(builder: ModelBuilder, rope: TurningRope) -> list[TautPointModel]:
     return found
 
 
-def _axes(builder: ModelBuilder, item: RouteItem, dim: int) -> np.ndarray | None:
-    """Return the axes of a point on what carries it: in space the plane of the groove and the axis of a wheel, (3, 3)
-    by columns.
-    """
+def _attachment(builder: ModelBuilder, item: RouteItem, dim: int) -> AttachmentModel:
+    """Return what holds a point; in space its axes are the plane of the groove and the axis of a wheel."""
     if dim == 2:
-        return np.eye(3)
+        return builder.attachment(item.end, np.eye(3))
     if not isinstance(item, Sheave | Drum):
-        return None
-    plane = groove_of(item.axis)
-    axes = np.column_stack([plane, np.cross(*plane.T)])
-    made: np.ndarray = axes if item.end.on is None else builder.scene.bodies[item.end.on].axes.T @ axes
-    return made
+        return builder.attachment(item.end)
+    return builder.attachment(item.end, *carried_groove(builder.scene, item.end, groove_of(item.axis)))
 
 
 def _set_angles_in_space(rope: TurningRope, points: list[TautPointModel]) -> None:

@@ -235,7 +235,7 @@ def without_wraps(points: list[RoutePoint], may_be_absent: list[bool], rope_radi
     kept = list(range(len(points)))
     gone: int | None = -1
     while gone is not None:
-        gone = next((k for k in kept if may_be_absent[k] and _turn(points, kept, k) < MIN_WRAP), None)
+        gone = next((k for k in kept if may_be_absent[k] and _is_passed(points, kept, k)), None)
         kept = [k for k in kept if k != gone]
     route = drawn_route([points[k] for k in kept], rope_radius, closed)
     if len(kept) == len(points):
@@ -257,12 +257,25 @@ def without_wraps(points: list[RoutePoint], may_be_absent: list[bool], rope_radi
     return DrawnRoute(tuple(spans), tuple(arcs[point.name] for point in points if point.name in arcs), route.reach)
 
 
-def _turn(points: list[RoutePoint], kept: list[int], k: int) -> float:
-    """Return the angle by which a rope along some points turns at one of these, to its side, rad."""
+def _is_passed(points: list[RoutePoint], kept: list[int], k: int) -> bool:
+    """Return whether a rope along some points does not touch one of these: it would not turn to its side there, and the
+    line between its neighbours has it on this side.
+    """
     at = kept.index(k)
     before, point, after = (points[kept[(at + j) % len(kept)]] for j in (-1, 0, 1))
     one, other = (_span(*ends, 0.0).direction for ends in ((before, point), (point, after)))
-    return point.sense * atan2(one[0] * other[1] - one[1] * other[0], one @ other)
+    turn = point.sense * atan2(_cross(one, other), one @ other)  # of half a turn and more it is negative, too
+    if turn >= MIN_WRAP or before is after:
+        return False
+    try:
+        line = _span(before, after, 0.0)
+    except ValueError:
+        return False  # there is none
+    return point.sense * _cross(line.direction, point.centre - line.start) > 0
+
+
+def _cross(one: np.ndarray, other: np.ndarray) -> float:
+    return float(one[0] * other[1] - one[1] * other[0])
 
 
 def _span(one: RoutePoint, other: RoutePoint, rope_radius: float) -> DrawnSpan:

@@ -429,3 +429,38 @@ def test_a_straight_part_becomes_too_short():
                               fu.Anchor("load")], tension=1e-3, **SOFT)
     with pytest.raises(fu.RopeLeftError, match='a span of rope "rope" becomes too short to be modelled'):
         scene.run(2.0, output_step=0.1, **BRIEF)
+
+
+def around(wrap: float) -> fu.Scene:
+    """Return a rope between two anchors over the top of a sheave whose side is given."""
+    on, off = (0.1 * np.array([cos(a), sin(a), 0]) + 2.0 * way * np.array([sin(a), -cos(a), 0])
+               for a, way in (((pi + wrap) / 2, -1), ((pi - wrap) / 2, 1)))
+    scene = fu.Scene(gravity=(0, 0, 0))
+    scene.rope("rope", tension=10.0, **SOFT, route=[fu.Anchor(at=tuple(on)), fu.Sheave(
+        "top", at=(0, 0, 0), radius=0.1, side="right"), fu.Anchor(at=tuple(off))])
+    return scene
+
+
+@pytest.mark.parametrize("wrap", [0.3, 1.0, pi, 3.2])
+def test_a_side_that_is_given_changes_nothing_where_the_rope_turns_to_it(wrap):
+    """Half a turn is not that of a rope that passes on the other side."""
+    run = around(wrap).run(0.01, output_step=0.01, **BRIEF)
+    assert np.abs(run["top.wrap_angle"] - wrap).max() < 1e-3
+    assert np.abs(run["top.tension_on"] - 10.0).max() < 1e-3
+
+
+def test_a_sheave_far_from_the_line_between_the_ends_is_passed_with_a_note():
+    with pytest.warns(fu.FunicularWarning, match=r'"rope": sheave "top": the rope passes it without touching it as '
+                                                 r"drawn; a rope with mass would run around it by 3\.5 rad: give"):
+        scene = around(3.5)
+    assert np.all(scene.run(0.01, output_step=0.01, **BRIEF)["top.wrap_angle"] == 0)
+
+
+def test_a_belt_over_equal_sheaves_with_sides():
+    scene = fu.Scene(gravity=(0, 0, 0))
+    scene.rope("belt", closed=True, tension=10.0, **SOFT, route=[
+        fu.Sheave("one", at=(0, 0, 0), radius=0.1, side="left", friction=0.1),
+        fu.Sheave("other", at=(1, 0, 0), radius=0.1, side="left")])
+    run = scene.run(0.01, output_step=0.01, **BRIEF)
+    for name in ("one", "other"):
+        assert np.abs(run[f"{name}.wrap_angle"] - pi).max() < 1e-9

@@ -389,9 +389,9 @@ def test_a_part_that_becomes_too_short_for_its_fleet_angle_ends_the_run():
 
 def test_refusals():
     scene = free(friction=2.0, inertia=0.1)
-    with refused('rope "hoist": sheave "top": has inertia on body "S", which may rotate, and its rope has no mass: its '
-                 "axis would tilt as it spins; leave the inertia out and give it to the body, or give the rope a small "
-                 "mass"):
+    with refused('rope "hoist": sheave "top": has inertia on "S", which may rotate, and its rope has no mass: its '
+                 "axis would tilt as it spins; leave the inertia out and give it to what holds it, or give the rope a "
+                 "small mass"):
         scene.run(0.1, progress=False)
     with refused('rope "rope": passes sheave "peg" without touching it, and a rope without mass in space lies on all '
                  "of its sheaves; leave it out, move it into the way of the rope, or give the rope a small mass"):

@@ -33,12 +33,13 @@ def hinged(scene: fu.Scene, mass: float = 1e-5) -> str:
     return "hanger"
 
 
-def weights(scene: fu.Scene, at, element: str = "cable8p", heavy: float = 11.8, **given) -> fu.Scene:
+def weights(scene: fu.Scene, at, element: str = "cable8p", heavy: float = 11.8, mass: bool = True,
+            **given) -> fu.Scene:
     """Return the scene with two pulled bodies on a rope over a sheave at a place."""
     for name, x, force in (("light", -R, 9.81), ("heavy", R, heavy)):
         scene.rigid_body(name, mass=1, inertia=(1, 1, 1), position=(x, -2, 0))
         scene.force(name, value=(0, -force, 0))
-    scene.rope("rope", element=element, tension=10.7, elements=1, **THREAD, route=[
+    scene.rope("rope", element=element, tension=10.7, elements=1, mass=mass, **THREAD, route=[
         fu.Anchor("light"), fu.Sheave("top", at=at, radius=R, side="right", **given), fu.Anchor("heavy")])
     return scene
 

@@ -67,6 +67,25 @@ def test_a_sheave_out_of_the_plane_is_one_on_a_light_body(element, sheave):
     assert np.abs(run.energy_balance().relative).max() < 1e-5
 
 
+@pytest.mark.parametrize("sheave", [SLIDING, {"friction": 0.2, "angle": 0.0}], ids=["sliding", "held"])
+def test_a_rope_without_mass_and_its_twin_in_space(sheave):
+    runs = [weights(bearer(element), ("bearer", MIDDLE), element=element, mass=False, **sheave).run(
+        **SETTINGS | {"duration": 0.15, "tol": 1e-8}) for element in ("cable8p", "cable12")]
+    assert apart(*runs) < 1e-8
+    assert runs[0]["top.force"] == pytest.approx(runs[1]["top.force"], abs=1e-6)
+    assert np.abs(runs[1]["bearer.position"][:, 4, 1]).max() > 3e-3
+
+
+@pytest.mark.parametrize("element", ["cable12", "beam24"])
+def test_a_rope_without_mass_on_a_cable_is_one_on_a_light_body_there(element):
+    run, other = (swaying(element, by_body=by_body, mass=False).run(**SETTINGS) for by_body in (False, True))
+    assert apart(run, other) < 5e-7
+    assert run["top.force"] == pytest.approx(other["top.force"], rel=1e-4, abs=1e-3)
+    assert run["heavy.position"][-1, 2] > 0.08
+    assert np.abs(run.energy_balance().relative).max() < 1e-5
+    assert run.animation("a run").clips[0].bodies
+
+
 @pytest.mark.parametrize("element", ["cable12", "beam24"])
 def test_a_drum_on_a_cable(element):
     """A drum winds up, and an end of its rope is on the cable, too."""
