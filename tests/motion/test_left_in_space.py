@@ -179,6 +179,15 @@ def test_a_run_that_conserves_energy_ends_where_the_rope_leaves():
         run_of(thrown(), 0.2, "energy", step=1e-3, tol=None)
 
 
+def test_a_wrap_that_is_small_conserves_energy():
+    """Its tangent points lie across their slopes."""
+    run, other = (thrown().run(0.04, output_step=0.01, integrator=integrator, tol=1e-6, progress=False)
+                  for integrator in ("energy", "radau"))
+    assert run["top.wrap_angle"].max() < 0.1
+    assert np.abs(run.energy_balance().relative).max() < 1e-11
+    assert run["load.position"] == pytest.approx(other["load.position"], abs=2e-6)
+
+
 # ---- at rest, in files and pictures
 
 def test_rest_and_modes_beside_a_peg():

@@ -2,12 +2,22 @@
  * the conditions by the products of their vectors, by quadrature.
  *
  * A chord ends in another element where it passes a node within the step. Its shape functions are then those of the
- * nodes of both elements, zero for those of the other one. */
+ * nodes of both elements, zero for those of the other one. Where a point lies across its slope, their product has its
+ * mean gradient by the means of both. */
 #include "couplings/tangent_point/tangent_point.h"
 
 #include <string.h>
 
-enum { SPACE = 3, ENDS = 2, PER_NODE = 2, NODE = PER_NODE * SPACE, ALONG = 5, OF_ELEMENT = 2 * PER_NODE };
+enum {
+    SPACE = 3,
+    SLOPE = 3,
+    LEAN = 1,
+    ENDS = 2,
+    PER_NODE = 2,
+    NODE = PER_NODE * SPACE,
+    ALONG = 5,
+    OF_ELEMENT = 2 * PER_NODE
+};
 enum { MAX_SHAPES = 2 * OF_ELEMENT, X_X = 0, A_X, D_X, D_D, A_D, X_W, A_W, D_W, B, PRODUCTS };
 
 /* Gauss points on (0, 1) and their weights. */
@@ -169,18 +179,22 @@ static void add_on_chord(const fu_foot *foot, const fu_foot_step *step, const ch
 void fu_tangent_point_over_step(const fu_foot *foot, const fu_foot_step *step, const double *multipliers, double *f,
                                 double force[SPACE], double moment[SPACE])
 {
+    const double lean = multipliers[LEAN], by_slope = (1.0 - foot->by_chord) * lean;
+    const double by_chord[FU_FOOT_CONDITIONS] = {multipliers[0], foot->by_chord * lean, multipliers[2]};
     double g[PRODUCTS], d[SPACE] = {0.0}, on_axis[SPACE], turn[SPACE];
     chord_step chord;
     foot_vectors of;
     find_chord(foot, step, &chord);
     find_vectors(foot, step, &chord, &of);
-    mean_gradient(foot, &of, multipliers, g);
+    mean_gradient(foot, &of, by_chord, g);
     add_on_chord(foot, step, &chord, &of, g, f);
     for (int i = 0; i < chord.n; ++i)
         for (int k = 0; k < SPACE; ++k) d[k] += chord.mean[i] * chord.middle[i][k];
     for (int k = 0; k < SPACE; ++k) {
-        const double x =
-            2.0 * g[X_X] * of.middle_x[k] + g[A_X] * of.middle_axis[k] + g[D_X] * d[k] + g[X_W] * foot->weight[k];
+        const int slope = foot->node + SLOPE + k;
+        const double x = 2.0 * g[X_X] * of.middle_x[k] + g[A_X] * of.middle_axis[k] + g[D_X] * d[k] +
+                         g[X_W] * foot->weight[k] + by_slope * 0.5 * (step->q[0][slope] + step->q[1][slope]);
+        f[slope] += by_slope * of.middle_x[k];
         f[foot->node + k] += x;
         force[k] -= x;
         on_axis[k] = g[A_X] * of.middle_x[k] + g[A_D] * d[k] + g[A_W] * foot->weight[k];
