@@ -55,6 +55,8 @@ NOT_ASKED = {
 """Methods of scenes and results that no question calls by name: parts of those that are called, or plain data."""
 
 WORKS, REFUSED, TOLD = "", "refused", "told"
+FREE = "runs round freely"
+"""What the error says where a closed rope has no state of rest without friction."""
 
 
 @contextmanager
@@ -115,12 +117,13 @@ def _known(row: Row, found: str) -> frozenset[Level] | None:
 def answered(array: CoveringArray, neutral: dict[str, list[str]]) -> dict[frozenset[Level], str]:
     """Answer all rows of an array; return the errors by minimal set of levels.
 
-    A few rows may find no equilibrium, where the scene is too difficult and not the combination.
+    A few rows may find no equilibrium, where the scene is too difficult and not the combination. A belt without
+    friction has none.
     """
     errors, counts = {}, Counter()
     for row in array.rows():
         found = outcome(row)
-        counts[found.partition(":")[0]] += 1
+        counts["free" if FREE in found else found.partition(":")[0]] += 1
         if found == WORKS or found.startswith(TOLD):
             array.worked(row)
         else:

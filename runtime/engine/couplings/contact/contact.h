@@ -188,8 +188,8 @@ void fu_contact_changes_by(int dim, const fu_contact *contact, const fu_attachme
                            const fu_contact_point *point, const fu_point_motion *of, int is_surface,
                            fu_contact_changes *out);
 
-/* couplings/contact/span_contact_point.c: calls `visit` with each point in contact; after the last one of an element with
- * none. */
+/* couplings/contact/span_contact_point.c: calls `visit` with each point in contact; after the last one of an element
+ * with none. */
 typedef void fu_rope_contact_visitor(const fu_model *model, const fu_rope_contact *rope, const fu_attachment_state *on,
                                      const fu_span_element *it, int k, fu_contact_point *point, void *context);
 void fu_rope_contact_visit(const fu_model *model, const fu_rope_contact *rope, const fu_state *state,
