@@ -410,9 +410,9 @@ def crossing_scope(name: str) -> Scope:
 def surface_scope(name: str) -> Scope:
     """Return the scope of surfaces and contact with them."""
     vectors = [Symbol(rf"\mathbf{{{letter}}}", argument, column)
-               for letter, argument in (("y", "y"), ("m", "normal"), ("a", "axis"), ("n", "n"), ("x", "x"))]
+               for letter, argument in (("y", "y"), ("m", "normal"), ("a", "axis"), ("n", "n"), ("x", "x"), ("w", "w"))]
     numbers = [Symbol(letter, argument, number) for letter, argument in (
-        ("R", "radius"), ("d", "depth"), ("v", "depth_rate"), ("k_{t}", "k_t"), (r"\mu", "mu"))]
+        ("R", "radius"), ("d", "depth"), ("v", "depth_rate"), ("k_{t}", "k_t"), (r"\mu", "mu"), ("v_{0}", "v0"))]
     return Scope(families()[name], (*vectors, *numbers, Symbol("k", "law", entry(0)), Symbol("c", "law", entry(1)),
                                     Symbol("p", "normal_force", entry(0))))
 
