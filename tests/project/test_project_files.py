@@ -2,6 +2,7 @@
 
 import ast
 import re
+import subprocess
 import tomllib
 from pathlib import Path
 
@@ -82,6 +83,13 @@ def test_dependency_groups_name_extras(project):
 def test_the_source_distribution_has_the_files_of_the_top_folder():
     listed = " ".join(re.findall(r"^include (.*)", text("MANIFEST.in"), re.MULTILINE)).split()
     assert {path.name for path in ROOT.glob("*.md")} | {path.name for path in ROOT.glob("*.bib")} <= {*listed}
+
+
+@pytest.mark.skipif(not (ROOT / ".git").exists(), reason="not in a repository")
+def test_the_repository_has_no_output_of_runs_at_its_top():
+    listed = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.split()
+    assert {Path(name).suffix for name in listed if "/" not in name} <= {
+        "", ".md", ".toml", ".in", ".cff", ".bib", ".yaml"}
 
 
 def test_the_changelog_is_short():
