@@ -24,7 +24,7 @@ def kernels() -> list[Program]:
     return [momentum(), momentum_energy(), momentum_step()]
 
 
-def _across(angle: sp.Expr) -> tuple[np.ndarray, np.ndarray]:
+def radial_and_along(angle: sp.Expr) -> tuple[np.ndarray, np.ndarray]:
     """Return n and n_phi at an angle."""
     return np.array([sp.cos(angle), sp.sin(angle)]), np.array([-sp.sin(angle), sp.cos(angle)])
 
@@ -41,7 +41,7 @@ def momentum() -> Program:
     s_rate = p.input("s_rate", 2, "m/s", "rates of s_a and s_b")
     p.stage("momentum")
     along = p.define("along", R * (length * turn - angle * ((1 - xi) * s_rate[0] + xi * s_rate[1])))
-    p.output("P", length * c_rate + along * p.vector("across", _across(phi)[1]), "m^2/s", "l u")
+    p.output("P", length * c_rate + along * p.vector("across", radial_and_along(phi)[1]), "m^2/s", "l u")
     return p
 
 
@@ -70,7 +70,7 @@ def momentum_step() -> Program:
     p.stage("directions")
     half = p.define("half", phi_change / 2)
     cos, sin = p.define("cos_half", sp.cos(half)), p.define("sin_half", sp.sin(half))
-    n, across = (p.vector(name, v) for name, v in zip(("n", "across"), _across(p.define("middle", phi + half)),
+    n, across = (p.vector(name, v) for name, v in zip(("n", "across"), radial_and_along(p.define("middle", phi + half)),
                                                       strict=True))
     mean = p.define("mean_size", R * (alpha + alpha_change / 2))
     p.stage("forces")

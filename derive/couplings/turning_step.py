@@ -35,6 +35,7 @@ from ..codegen.program import Program, jacobian
 from ..elements import ELEMENTS
 from ..spec import x as along
 from .material_step import SOURCE, Step, at_point
+from .sheave_step import radial_and_along
 from .span_inertia import FlowingElement
 
 DIM, PLANE = 3, 2
@@ -54,11 +55,6 @@ def _axes(p: Program, doc: str) -> np.ndarray:
     return p.input("axes", (DIM, PLANE), "1", f"vectors of the plane of the groove by columns{doc}")
 
 
-def _across(angle: sp.Expr) -> tuple[np.ndarray, np.ndarray]:
-    """Return n and n_phi at an angle."""
-    return np.array([sp.cos(angle), sp.sin(angle)]), np.array([-sp.sin(angle), sp.cos(angle)])
-
-
 def momentum() -> Program:
     """Return the kernel of the momentum at a point, over the mass of a length."""
     p = _program("momentum", "momentum of the material at a point of a zone, over the mass of a length",
@@ -72,7 +68,7 @@ def momentum() -> Program:
     turn = p.input("turn", (), "rad/s", "rate of the angle of the point, from the groove")
     s_rate = p.input("s_rate", 2, "m/s", "rates of s_a and s_b")
     p.stage("directions in space")
-    n, across = (p.vector(name, axes.dot(v)) for name, v in zip(("n", "across"), _across(phi), strict=True))
+    n, across = (p.vector(name, axes.dot(v)) for name, v in zip(("n", "across"), radial_and_along(phi), strict=True))
     p.stage("momentum")
     flow = p.define("flow", R * (length * turn - angle * ((1 - xi) * s_rate[0] + xi * s_rate[1])))
     p.output("P", length * (c_rate + R * np.array(p.vector("swing", cross(omega, n)))) + flow * across, "m^2/s", "l u")
@@ -105,7 +101,7 @@ def momentum_step() -> Program:
     p.stage("directions")
     half = p.define("half", phi_change / 2)
     cos, sin = p.define("cos_half", sp.cos(half)), p.define("sin_half", sp.sin(half))
-    n, across = (p.vector(name, v) for name, v in zip(("n", "across"), _across(p.define("middle", phi + half)),
+    n, across = (p.vector(name, v) for name, v in zip(("n", "across"), radial_and_along(p.define("middle", phi + half)),
                                                       strict=True))
     size = p.define("mean_size", R * (alpha + alpha_change / 2))
     p.stage("place and slope in the groove")

@@ -21,6 +21,12 @@ def cross(first: ArrayLike, second: ArrayLike) -> np.ndarray:
     return found
 
 
+def unit(vectors: np.ndarray) -> np.ndarray:
+    """Return vectors (..., n) over their lengths."""
+    found: np.ndarray = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return found
+
+
 def rotate(quaternion: ArrayLike, vector: ArrayLike) -> np.ndarray:
     """Return vectors (..., 3) in body axes in those of the ground, by unit quaternions (..., 4)."""
     if isinstance(quaternion, tuple) and isinstance(vector, tuple) and isinstance(vector[0], float):

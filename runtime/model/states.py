@@ -9,7 +9,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ..base.rotations import conjugate, cross, product, rotate
+from ..base.rotations import conjugate, cross, product, rotate, unit
 from ..parts.locations import ends_of, joined, node_of
 from ..parts.scene_data import SceneData
 from ..parts.support import Support, Tie
@@ -168,7 +168,7 @@ def _frame_on_cable(model: Model, attachment: AttachmentModel, q: np.ndarray) ->
     vectors = _vectors_of(model, attachment, q)
     one, other = (np.broadcast_to(attachment.up, (len(q), 3)) if slope < 0 else np.einsum("k,tkd->td", S, vectors)
                   for slope, S in zip(attachment.slopes, attachment.S, strict=True))
-    along, across = _unit(one), _unit(np.cross(one, other))
+    along, across = unit(one), unit(np.cross(one, other))
     return np.stack([along, np.cross(across, along), across], axis=-1)
 
 
@@ -177,11 +177,6 @@ def _vectors_of(model: Model, attachment: AttachmentModel, q: np.ndarray) -> np.
     cable, n = model.cables[attachment.cable], len(attachment.N)
     start = cable.first + attachment.element * cable.shape[1] * model.dim
     found: np.ndarray = q[:, start : start + n * model.dim].reshape(len(q), n, model.dim)
-    return found
-
-
-def _unit(vectors: np.ndarray) -> np.ndarray:
-    found: np.ndarray = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
     return found
 
 

@@ -367,7 +367,7 @@ def _arc(point: RoutePoint, before: DrawnSpan, after: DrawnSpan) -> DrawnArc:
         raise ValueError(f"the route runs straight through the centre of {point.label}, which does not tell its side",
                          'give side="left" or "right"')
     one, other = before.direction @ point.groove, after.direction @ point.groove
-    turn = point.sense * atan2(one[0] * other[1] - one[1] * other[0], one @ other) + 0.0  # no -0
+    turn = point.sense * atan2(_cross(one, other), one @ other) + 0.0  # no -0
     if abs(turn) < MIN_WRAP and not point.turns:
         raise ValueError(f"the rope does not touch {point.label}: its wrap angle must be {show(MIN_WRAP, 'rad')} or "
                          f"more, got {show(turn, 'rad')}", "leave it out, move it into the way of the "

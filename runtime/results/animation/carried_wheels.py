@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...base.rotations import unit
 from ...checks.frames import draws_section
 from ...checks.rope_carriers import carried_groove
 from ...parts.attachment import Attachment
@@ -20,18 +21,13 @@ def axes_on_cable(frames: Frames, end: Attachment, groove: np.ndarray) -> np.nda
         return along(cable, s, vectors, k)[:, 0]
 
     if draws_section(cable):
-        height = _unit(slope(1))
-        normal = _unit(np.cross(height, slope(2)))
+        height = unit(slope(1))
+        normal = unit(np.cross(height, slope(2)))
         frame = np.stack([normal, height, np.cross(normal, height)], axis=-1)
     else:
-        director, tangent = cable.kind_of_element.director, _unit(slope(0))
+        director, tangent = cable.kind_of_element.director, unit(slope(0))
         across = slope("xyz".index(director[-1])) if director else np.asarray(carried.up)
-        width = _unit(np.cross(tangent, across))
+        width = unit(np.cross(tangent, across))
         frame = np.stack([tangent, np.cross(width, tangent), width], axis=-1)
     found: np.ndarray = frame @ carried.axes
-    return found
-
-
-def _unit(vectors: np.ndarray) -> np.ndarray:
-    found: np.ndarray = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
     return found

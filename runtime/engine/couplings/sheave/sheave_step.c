@@ -9,19 +9,13 @@
 #include <math.h>
 #include <string.h>
 
-enum { ALONG = 5 };
-
-/* Gauss points on (0, 1) and their weights: of the momentum along a zone, and along the step. */
+/* Gauss points on (0, 1) and their weights: of the momentum along a zone. */
 static const double part_of_zone[FU_ZONE_POINTS] = {0.01985507175123188, 0.10166676129318664, 0.23723379504183550,
                                                     0.40828267875217511, 0.59171732124782489, 0.76276620495816450,
                                                     0.89833323870681336, 0.98014492824876812},
                     weight_in_zone[FU_ZONE_POINTS] = {0.05061426814518813, 0.11119051722668724, 0.15685332293894364,
                                                       0.18134189168918099, 0.18134189168918099, 0.15685332293894364,
-                                                      0.11119051722668724, 0.05061426814518813},
-                    part_of_step[ALONG] = {0.04691007703066800, 0.23076534494715845, 0.5, 0.76923465505284155,
-                                           0.95308992296933200},
-                    weight_in_step[ALONG] = {0.11846344252809454, 0.23931433524968324, 0.28444444444444444,
-                                             0.23931433524968324, 0.11846344252809454};
+                                                      0.11119051722668724, 0.05061426814518813};
 
 /* --- inertia ---------------------------------------------------------------------------------------------------- */
 
@@ -156,14 +150,14 @@ static void mean_gradient(const fu_sheave *sheave, const fu_sheave_over *step, i
     const fu_wheel *wheel = &sheave->wheel;
     const double *share = step->now.share + j, opening = step->half[1] - step->half[0];
     memset(mean, 0, sizeof(double) * (DIM + 3));
-    for (int k = 0; k < ALONG; ++k) {
-        const double t = part_of_step[k];
+    for (int k = 0; k < FU_STEP_POINTS; ++k) {
+        const double t = fu_part_of_step[k];
         double phi[ENDS], c[DIM], f[DIM + 3];
         for (int e = 0; e < ENDS; ++e) phi[e] = step->now.angle[j + e] + t * 2.0 * (step->half[0] + share[e] * opening);
         for (int d = 0; d < DIM; ++d) c[d] = step->c[d] + t * step->c_change[d];
         wheel->kernel->force(A, wheel->sense, wheel->rho, g, wheel->radius, phi, c,
                              step->now.length[j] + t * (step->next.length[j] - step->now.length[j]), f);
-        for (int i = 0; i < DIM + 3; ++i) mean[i] += weight_in_step[k] * f[i];
+        for (int i = 0; i < DIM + 3; ++i) mean[i] += fu_weight_in_step[k] * f[i];
     }
 }
 

@@ -4,6 +4,13 @@
 
 #include "couplings/wheel/wheel.h"
 
+/* Gauss points on (0, 1) and their weights, of mean gradients along a step that conserves energy. */
+enum { FU_STEP_POINTS = 5 };
+static const double fu_part_of_step[FU_STEP_POINTS] = {0.04691007703066800, 0.23076534494715845, 0.5,
+                                                       0.76923465505284155, 0.95308992296933200},
+                    fu_weight_in_step[FU_STEP_POINTS] = {0.11846344252809454, 0.23931433524968324, 0.28444444444444444,
+                                                         0.23931433524968324, 0.11846344252809454};
+
 /* A node of a wheel at the start of a span, or at its end; of the span the first dof, elements in all and within reach
  * of the chord, s of its ends, shares of its nodes; m: the stress-free length of the chord, and the radius to the
  * tangent point; half the weight of a length, and the tension over the length of a chord below which its sag has its

@@ -8,23 +8,8 @@
 
 #include <string.h>
 
-enum {
-    SPACE = 3,
-    SLOPE = 3,
-    LEAN = 1,
-    ENDS = 2,
-    PER_NODE = 2,
-    NODE = PER_NODE * SPACE,
-    ALONG = 5,
-    OF_ELEMENT = 2 * PER_NODE
-};
+enum { SPACE = 3, SLOPE = 3, LEAN = 1, ENDS = 2, PER_NODE = 2, NODE = PER_NODE * SPACE, OF_ELEMENT = 2 * PER_NODE };
 enum { MAX_SHAPES = 2 * OF_ELEMENT, X_X = 0, A_X, D_X, D_D, A_D, X_W, A_W, D_W, B, PRODUCTS };
-
-/* Gauss points on (0, 1) and their weights. */
-static const double part_of_step[ALONG] = {0.04691007703066800, 0.23076534494715845, 0.5, 0.76923465505284155,
-                                           0.95308992296933200},
-                    weight_in_step[ALONG] = {0.11846344252809454, 0.23931433524968324, 0.28444444444444444,
-                                             0.23931433524968324, 0.11846344252809454};
 
 /* A chord over a step, over the nodal vectors D of n / 2 nodes, slopes times the length L of the span: dofs of these;
  * D, its shape functions, L and b at both ends; means of D and of the functions, their change over that of L, and that
@@ -125,13 +110,13 @@ static void mean_gradient(const fu_foot *foot, const foot_vectors *of, const dou
 {
     const double square = fu_dot(SPACE, foot->weight, foot->weight);
     memset(g, 0, sizeof(double) * PRODUCTS);
-    for (int k = 0; k < ALONG; ++k) {
+    for (int k = 0; k < FU_STEP_POINTS; ++k) {
         double at[PRODUCTS], phi[FU_FOOT_CONDITIONS], J[FU_FOOT_CONDITIONS * PRODUCTS];
         for (int i = 0; i < PRODUCTS; ++i)
-            at[i] = of->products[0][i] + part_of_step[k] * (of->products[1][i] - of->products[0][i]);
+            at[i] = of->products[0][i] + fu_part_of_step[k] * (of->products[1][i] - of->products[0][i]);
         foot->wheel->foot->by_products(at, square, foot->wheel->A[0], foot->limit, foot->radius, phi, J);
         for (int r = 0; r < FU_FOOT_CONDITIONS; ++r)
-            for (int i = 0; i < PRODUCTS; ++i) g[i] += weight_in_step[k] * multipliers[r] * J[r * PRODUCTS + i];
+            for (int i = 0; i < PRODUCTS; ++i) g[i] += fu_weight_in_step[k] * multipliers[r] * J[r * PRODUCTS + i];
     }
 }
 
