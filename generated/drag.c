@@ -7,6 +7,95 @@
 /* part of derivatives: of drag_inertia_of_cable_tangent and 1 more */
 #define DRAG_PART_OF_DERIVATIVES \
     const fu_real \
+        d_t0_P_y = -d_t0_i_y*less*w_t - d_t0_w_t*i_y*less, \
+        d_t0_P_z = -d_t0_i_z*less*w_t - d_t0_w_t*i_z*less, \
+        d_t0_T = 0.5*d_t0_P_x*w_x + 0.5*d_t0_P_y*w_y + 0.5*d_t0_P_z*w_z, \
+        d_t0_P_wet_x = d_t0_P_x*wet[0], \
+        d_t0_P_wet_y = d_t0_P_y*wet[0], \
+        d_t0_P_wet_z = d_t0_P_z*wet[0], \
+        d_t0_strained_x = G[0]*d_t0_P_wet_x + G[3]*d_t0_P_wet_y + G[6]*d_t0_P_wet_z;
+
+/* part of derivatives: of drag_inertia_of_cable_tangent and 1 more */
+#define DRAG_PART_OF_DERIVATIVES_2 \
+    const fu_real \
+        d_t1_P_y = -d_t1_i_y*less*w_t - d_t1_w_t*i_y*less, \
+        d_t1_P_z = -d_t1_i_z*less*w_t - d_t1_w_t*i_z*less, \
+        d_t1_T = 0.5*d_t1_P_x*w_x + 0.5*d_t1_P_y*w_y + 0.5*d_t1_P_z*w_z, \
+        d_t1_P_wet_x = d_t1_P_x*wet[0], \
+        d_t1_P_wet_y = d_t1_P_y*wet[0], \
+        d_t1_P_wet_z = d_t1_P_z*wet[0], \
+        d_t1_strained_x = G[0]*d_t1_P_wet_x + G[3]*d_t1_P_wet_y + G[6]*d_t1_P_wet_z;
+
+/* part of derivatives: of drag_inertia_of_cable_tangent and 1 more */
+#define DRAG_PART_OF_DERIVATIVES_3 \
+    const fu_real \
+        d_t2_P_y = -d_t2_i_y*less*w_t - d_t2_w_t*i_y*less, \
+        d_t2_P_z = -d_t2_i_z*less*w_t - d_t2_w_t*i_z*less, \
+        d_t2_T = 0.5*d_t2_P_x*w_x + 0.5*d_t2_P_y*w_y + 0.5*d_t2_P_z*w_z, \
+        d_t2_P_wet_x = d_t2_P_x*wet[0], \
+        d_t2_P_wet_y = d_t2_P_y*wet[0], \
+        d_t2_P_wet_z = d_t2_P_z*wet[0], \
+        d_t2_strained_x = G[0]*d_t2_P_wet_x + G[3]*d_t2_P_wet_y + G[6]*d_t2_P_wet_z;
+
+/* part of derivatives: of drag_inertia_of_cable_tangent and 1 more */
+#define DRAG_PART_OF_DERIVATIVES_4 \
+    const fu_real \
+        d_t_rate0_i_rate_x = inv_len_t*(-i_x*i_x + 1.0), \
+        d_t_rate0_i_rate_y = -(i_x*i_y*inv_len_t), \
+        d_t_rate0_i_rate_z = -(i_x*i_z*inv_len_t), \
+        d_t_rate0_w_t_rate = d_t_rate0_i_rate_x*w_x + d_t_rate0_i_rate_y*w_y + d_t_rate0_i_rate_z*w_z, \
+        d_t_rate0_P_rate_x = -d_t_rate0_i_rate_x*less*w_t - d_t_rate0_w_t_rate*i_x*less, \
+        d_t_rate0_P_wet_rate_x = d_t_rate0_P_rate_x*wet[0], \
+        d_t_rate0_P_rate_y = -d_t_rate0_i_rate_y*less*w_t - d_t_rate0_w_t_rate*i_y*less, \
+        d_t_rate0_P_wet_rate_y = d_t_rate0_P_rate_y*wet[0], \
+        d_t_rate0_P_rate_z = -d_t_rate0_i_rate_z*less*w_t - d_t_rate0_w_t_rate*i_z*less, \
+        d_t_rate0_P_wet_rate_z = d_t_rate0_P_rate_z*wet[0], \
+        d_t_rate1_i_rate_x = -(i_x*i_y*inv_len_t), \
+        d_t_rate1_i_rate_y = inv_len_t*(-i_y*i_y + 1.0), \
+        d_t_rate1_i_rate_z = -(i_y*i_z*inv_len_t), \
+        d_t_rate1_w_t_rate = d_t_rate1_i_rate_x*w_x + d_t_rate1_i_rate_y*w_y + d_t_rate1_i_rate_z*w_z, \
+        d_t_rate1_P_rate_x = -d_t_rate1_i_rate_x*less*w_t - d_t_rate1_w_t_rate*i_x*less, \
+        d_t_rate1_P_wet_rate_x = d_t_rate1_P_rate_x*wet[0], \
+        d_t_rate1_P_rate_y = -d_t_rate1_i_rate_y*less*w_t - d_t_rate1_w_t_rate*i_y*less, \
+        d_t_rate1_P_wet_rate_y = d_t_rate1_P_rate_y*wet[0], \
+        d_t_rate1_P_rate_z = -d_t_rate1_i_rate_z*less*w_t - d_t_rate1_w_t_rate*i_z*less, \
+        d_t_rate1_P_wet_rate_z = d_t_rate1_P_rate_z*wet[0], \
+        d_t_rate2_i_rate_x = -(i_x*i_z*inv_len_t), \
+        d_t_rate2_i_rate_y = -(i_y*i_z*inv_len_t), \
+        d_t_rate2_i_rate_z = inv_len_t*(-i_z*i_z + 1.0), \
+        d_t_rate2_w_t_rate = d_t_rate2_i_rate_x*w_x + d_t_rate2_i_rate_y*w_y + d_t_rate2_i_rate_z*w_z, \
+        d_t_rate2_P_rate_x = -d_t_rate2_i_rate_x*less*w_t - d_t_rate2_w_t_rate*i_x*less, \
+        d_t_rate2_P_wet_rate_x = d_t_rate2_P_rate_x*wet[0], \
+        d_t_rate2_P_rate_y = -d_t_rate2_i_rate_y*less*w_t - d_t_rate2_w_t_rate*i_y*less, \
+        d_t_rate2_P_wet_rate_y = d_t_rate2_P_rate_y*wet[0], \
+        d_t_rate2_P_rate_z = -d_t_rate2_i_rate_z*less*w_t - d_t_rate2_w_t_rate*i_z*less, \
+        d_t_rate2_P_wet_rate_z = d_t_rate2_P_rate_z*wet[0];
+
+/* part of derivatives: of drag_inertia_of_cable_tangent and 1 more */
+#define DRAG_PART_OF_DERIVATIVES_5 \
+    const fu_real \
+        d_w_rate_x_P_rate_x = -i_x*i_x*less + m[0], \
+        d_w_rate_x_P_wet_rate_x = d_w_rate_x_P_rate_x*wet[0], \
+        d_w_rate_x_P_rate_y = -(i_x*i_y*less), \
+        d_w_rate_x_P_wet_rate_y = d_w_rate_x_P_rate_y*wet[0], \
+        d_w_rate_x_P_rate_z = -(i_x*i_z*less), \
+        d_w_rate_x_P_wet_rate_z = d_w_rate_x_P_rate_z*wet[0], \
+        d_w_rate_y_P_rate_x = -(i_x*i_y*less), \
+        d_w_rate_y_P_wet_rate_x = d_w_rate_y_P_rate_x*wet[0], \
+        d_w_rate_y_P_rate_y = -i_y*i_y*less + m[0], \
+        d_w_rate_y_P_wet_rate_y = d_w_rate_y_P_rate_y*wet[0], \
+        d_w_rate_y_P_rate_z = -(i_y*i_z*less), \
+        d_w_rate_y_P_wet_rate_z = d_w_rate_y_P_rate_z*wet[0], \
+        d_w_rate_z_P_rate_x = -(i_x*i_z*less), \
+        d_w_rate_z_P_wet_rate_x = d_w_rate_z_P_rate_x*wet[0], \
+        d_w_rate_z_P_rate_y = -(i_y*i_z*less), \
+        d_w_rate_z_P_wet_rate_y = d_w_rate_z_P_rate_y*wet[0], \
+        d_w_rate_z_P_rate_z = -i_z*i_z*less + m[0], \
+        d_w_rate_z_P_wet_rate_z = d_w_rate_z_P_rate_z*wet[0];
+
+/* part of derivatives: of drag_inertia_of_cable_tangent and 1 more */
+#define DRAG_PART_OF_DERIVATIVES_6 \
+    const fu_real \
         d_material_x_F_x = -displaced_wet, \
         d_material_y_F_y = -displaced_wet, \
         d_material_z_F_z = -displaced_wet, \
@@ -18,15 +107,11 @@
         d_v1_P_wet_rate_z = P_z*c_place_y, \
         d_v2_P_wet_rate_x = P_x*c_place_z, \
         d_v2_P_wet_rate_y = P_y*c_place_z, \
-        d_v2_P_wet_rate_z = P_z*c_place_z, \
-        d_wet0_carried_x = displaced*material_x, \
-        d_wet0_strained_x = G[0]*P_x + G[3]*P_y + G[6]*P_z, \
-        d_wet0_F_x = P_rate_x - d_wet0_carried_x + d_wet0_strained_x, \
-        d_wet0_carried_y = displaced*material_y, \
-        d_wet0_strained_y = G[1]*P_x + G[4]*P_y + G[7]*P_z, \
-        d_wet0_F_y = P_rate_y - d_wet0_carried_y + d_wet0_strained_y, \
-        d_wet0_carried_z = displaced*material_z, \
-        d_wet0_strained_z = G[2]*P_x + G[5]*P_y + G[8]*P_z, \
+        d_v2_P_wet_rate_z = P_z*c_place_z;
+
+/* part of derivatives: of drag_inertia_of_cable_tangent and 1 more */
+#define DRAG_PART_OF_DERIVATIVES_7 \
+    const fu_real \
         d_wet0_F_z = P_rate_z - d_wet0_carried_z + d_wet0_strained_z, \
         d_c_place_x_P_wet_rate_x = P_x*v[0], \
         d_c_place_x_F_x = -T + d_c_place_x_P_wet_rate_x, \
@@ -40,6 +125,60 @@
         d_c_place_z_P_wet_rate_y = P_y*v[2], \
         d_c_place_z_P_wet_rate_z = P_z*v[2], \
         d_c_place_z_F_z = -T + d_c_place_z_P_wet_rate_z;
+
+/* part of derivatives: of drag_inertia_of_cable_tangent and 1 more */
+#define DRAG_PART_OF_DERIVATIVES_8 \
+    const fu_real \
+        d_t0_len_t_2 = inv_len_t*t[0], \
+        d_t0_inv_len_t_2 = -(d_t0_len_t_2*inv_len_t*inv_len_t), \
+        d_t0_i_x_2 = d_t0_inv_len_t_2*t[0] + inv_len_t, \
+        d_t0_i_y_2 = d_t0_inv_len_t_2*t[1], \
+        d_t0_i_z_2 = d_t0_inv_len_t_2*t[2], \
+        d_t0_w_t_2 = d_t0_i_x_2*w_x + d_t0_i_y_2*w_y + d_t0_i_z_2*w_z, \
+        d_t0_pull = d_t0_inv_len_t_2*less*w_t*wet[0] + d_t0_w_t_2*inv_len_t*less*wet[0], \
+        d_t0_G_t_x = d_t0_i_x_2*pull*w_t + d_t0_pull*(i_x*w_t - w_x) + d_t0_w_t_2*i_x*pull, \
+        d_t0_G_t_y = d_t0_i_y_2*pull*w_t + d_t0_pull*(i_y*w_t - w_y) + d_t0_w_t_2*i_y*pull, \
+        d_t0_G_t_z = d_t0_i_z_2*pull*w_t + d_t0_pull*(i_z*w_t - w_z) + d_t0_w_t_2*i_z*pull, \
+        d_t1_len_t_2 = inv_len_t*t[1], \
+        d_t1_inv_len_t_2 = -(d_t1_len_t_2*inv_len_t*inv_len_t), \
+        d_t1_i_x_2 = d_t1_inv_len_t_2*t[0], \
+        d_t1_i_y_2 = d_t1_inv_len_t_2*t[1] + inv_len_t, \
+        d_t1_i_z_2 = d_t1_inv_len_t_2*t[2], \
+        d_t1_w_t_2 = d_t1_i_x_2*w_x + d_t1_i_y_2*w_y + d_t1_i_z_2*w_z, \
+        d_t1_pull = d_t1_inv_len_t_2*less*w_t*wet[0] + d_t1_w_t_2*inv_len_t*less*wet[0], \
+        d_t1_G_t_x = d_t1_i_x_2*pull*w_t + d_t1_pull*(i_x*w_t - w_x) + d_t1_w_t_2*i_x*pull, \
+        d_t1_G_t_y = d_t1_i_y_2*pull*w_t + d_t1_pull*(i_y*w_t - w_y) + d_t1_w_t_2*i_y*pull, \
+        d_t1_G_t_z = d_t1_i_z_2*pull*w_t + d_t1_pull*(i_z*w_t - w_z) + d_t1_w_t_2*i_z*pull, \
+        d_t2_len_t_2 = inv_len_t*t[2], \
+        d_t2_inv_len_t_2 = -(d_t2_len_t_2*inv_len_t*inv_len_t), \
+        d_t2_i_x_2 = d_t2_inv_len_t_2*t[0], \
+        d_t2_i_y_2 = d_t2_inv_len_t_2*t[1], \
+        d_t2_i_z_2 = d_t2_inv_len_t_2*t[2] + inv_len_t, \
+        d_t2_w_t_2 = d_t2_i_x_2*w_x + d_t2_i_y_2*w_y + d_t2_i_z_2*w_z, \
+        d_t2_pull = d_t2_inv_len_t_2*less*w_t*wet[0] + d_t2_w_t_2*inv_len_t*less*wet[0], \
+        d_t2_G_t_x = d_t2_i_x_2*pull*w_t + d_t2_pull*(i_x*w_t - w_x) + d_t2_w_t_2*i_x*pull, \
+        d_t2_G_t_y = d_t2_i_y_2*pull*w_t + d_t2_pull*(i_y*w_t - w_y) + d_t2_w_t_2*i_y*pull, \
+        d_t2_G_t_z = d_t2_i_z_2*pull*w_t + d_t2_pull*(i_z*w_t - w_z) + d_t2_w_t_2*i_z*pull;
+
+/* part of derivatives: of drag_inertia_of_cable_tangent and 1 more */
+#define DRAG_PART_OF_DERIVATIVES_9 \
+    const fu_real \
+        d_w_x_pull = i_x*inv_len_t*less*wet[0], \
+        d_w_x_G_t_x = d_w_x_pull*(i_x*w_t - w_x) + i_x*i_x*pull - pull, \
+        d_w_x_G_t_y = d_w_x_pull*(i_y*w_t - w_y) + i_x*i_y*pull, \
+        d_w_x_G_t_z = d_w_x_pull*(i_z*w_t - w_z) + i_x*i_z*pull, \
+        d_w_y_pull = i_y*inv_len_t*less*wet[0], \
+        d_w_y_G_t_x = d_w_y_pull*(i_x*w_t - w_x) + i_x*i_y*pull, \
+        d_w_y_G_t_y = d_w_y_pull*(i_y*w_t - w_y) + i_y*i_y*pull - pull, \
+        d_w_y_G_t_z = d_w_y_pull*(i_z*w_t - w_z) + i_y*i_z*pull, \
+        d_w_z_pull = i_z*inv_len_t*less*wet[0], \
+        d_w_z_G_t_x = d_w_z_pull*(i_x*w_t - w_x) + i_x*i_z*pull, \
+        d_w_z_G_t_y = d_w_z_pull*(i_y*w_t - w_y) + i_y*i_z*pull, \
+        d_w_z_G_t_z = d_w_z_pull*(i_z*w_t - w_z) + i_z*i_z*pull - pull, \
+        d_wet0_pull = inv_len_t*less*w_t, \
+        d_wet0_G_t_x = d_wet0_pull*(i_x*w_t - w_x), \
+        d_wet0_G_t_y = d_wet0_pull*(i_y*w_t - w_y), \
+        d_wet0_G_t_z = d_wet0_pull*(i_z*w_t - w_z);
 
 /* part of impulse, its rate and moment: of drag_inertia_of_point and 1 more */
 #define DRAG_PART_OF_IMPULSE_ITS_RATE_AND_MOMENT \
@@ -78,6 +217,27 @@
     f_w[7] = d_w1_F_z; \
     f_w[8] = d_w2_F_z;
 
+/* tangent and its rate: of drag_inertia_of_cable and 1 more */
+#define DRAG_TANGENT_AND_ITS_RATE \
+    fu_real i[3], i_rate[3]; \
+    const fu_real \
+        less = m[0] - m[1], \
+        len_t = FU_SQRT(t[0]*t[0] + t[1]*t[1] + t[2]*t[2]), \
+        inv_len_t = 1.0/len_t; \
+    FU_EACH(row, 3, i[row] = inv_len_t*t[row];) \
+    i_rate[0] = inv_len_t*(-i[0]*(i[0]*t_rate[0] + i[1]*t_rate[1] + i[2]*t_rate[2]) + t_rate[0]); \
+    i_rate[1] = inv_len_t*(-i[1]*(i[0]*t_rate[0] + i[1]*t_rate[1] + i[2]*t_rate[2]) + t_rate[1]); \
+    i_rate[2] = inv_len_t*(-i[2]*(i[0]*t_rate[0] + i[1]*t_rate[1] + i[2]*t_rate[2]) + t_rate[2]);
+
+/* impulse and its rate: of drag_inertia_of_cable and 1 more */
+#define DRAG_IMPULSE_AND_ITS_RATE \
+    fu_real P[3], P_rate[3]; \
+    const fu_real \
+        w_t = i[0]*w[0] + i[1]*w[1] + i[2]*w[2], \
+        w_t_rate = i_rate[0]*w[0] + i_rate[1]*w[1] + i_rate[2]*w[2] + i[0]*w_rate[0] + i[1]*w_rate[1] + i[2]*w_rate[2]; \
+    FU_EACH(row, 3, P[row] = -i[row]*less*w_t + m[0]*w[row];) \
+    FU_EACH(row, 3, P_rate[row] = -less*(i_rate[row]*w_t + i[row]*w_t_rate) + m[0]*w_rate[row];)
+
 /* motion past the fluid: of drag_inertia_of_cable_tangent and 2 more */
 #define DRAG_MOTION_PAST_THE_FLUID \
     const fu_real \
@@ -93,6 +253,31 @@
         c_place_x = up[0]*wet[1], \
         c_place_y = up[1]*wet[1], \
         c_place_z = up[2]*wet[1];
+
+/* tangent and its rate: of drag_inertia_of_cable_tangent and 1 more */
+#define DRAG_TANGENT_AND_ITS_RATE_2 \
+    const fu_real \
+        less = m[0] - m[1], \
+        len_t = FU_SQRT(t[0]*t[0] + t[1]*t[1] + t[2]*t[2]), \
+        inv_len_t = 1.0/len_t, \
+        i_x = inv_len_t*t[0], \
+        i_y = inv_len_t*t[1], \
+        i_z = inv_len_t*t[2], \
+        i_rate_x = inv_len_t*(-i_x*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[0]), \
+        i_rate_y = inv_len_t*(-i_y*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[1]), \
+        i_rate_z = inv_len_t*(-i_z*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[2]);
+
+/* impulse and its rate: of drag_inertia_of_cable_tangent and 1 more */
+#define DRAG_IMPULSE_AND_ITS_RATE_2 \
+    const fu_real \
+        w_t = i_x*w_x + i_y*w_y + i_z*w_z, \
+        w_t_rate = i_rate_x*w_x + i_rate_y*w_y + i_rate_z*w_z + i_x*w_rate_x + i_y*w_rate_y + i_z*w_rate_z, \
+        P_x = -i_x*less*w_t + m[0]*w_x, \
+        P_y = -i_y*less*w_t + m[0]*w_y, \
+        P_z = -i_z*less*w_t + m[0]*w_z, \
+        P_rate_x = -less*(i_rate_x*w_t + i_x*w_t_rate) + m[0]*w_rate_x, \
+        P_rate_y = -less*(i_rate_y*w_t + i_y*w_t_rate) + m[0]*w_rate_y, \
+        P_rate_z = -less*(i_rate_z*w_t + i_z*w_t_rate) + m[0]*w_rate_z;
 
 /* added mass: of drag_impulse_of_point and 2 more */
 #define DRAG_ADDED_MASS \
@@ -846,23 +1031,8 @@ void drag_inertia_of_cable(const fu_real *t, const fu_real *t_rate, const fu_rea
     material[1] = G[3]*U[0] + G[4]*U[1] + G[5]*U[2] + U_rate[1];
     material[2] = G[6]*U[0] + G[7]*U[1] + G[8]*U[2] + U_rate[2];
     FU_EACH(row, 3, c_place[row] = up[row]*wet[1];)
-    /* tangent and its rate */
-    fu_real i[3], i_rate[3];
-    const fu_real
-        less = m[0] - m[1],
-        len_t = FU_SQRT(t[0]*t[0] + t[1]*t[1] + t[2]*t[2]),
-        inv_len_t = 1.0/len_t;
-    FU_EACH(row, 3, i[row] = inv_len_t*t[row];)
-    i_rate[0] = inv_len_t*(-i[0]*(i[0]*t_rate[0] + i[1]*t_rate[1] + i[2]*t_rate[2]) + t_rate[0]);
-    i_rate[1] = inv_len_t*(-i[1]*(i[0]*t_rate[0] + i[1]*t_rate[1] + i[2]*t_rate[2]) + t_rate[1]);
-    i_rate[2] = inv_len_t*(-i[2]*(i[0]*t_rate[0] + i[1]*t_rate[1] + i[2]*t_rate[2]) + t_rate[2]);
-    /* impulse and its rate */
-    fu_real P[3], P_rate[3];
-    const fu_real
-        w_t = i[0]*w[0] + i[1]*w[1] + i[2]*w[2],
-        w_t_rate = i_rate[0]*w[0] + i_rate[1]*w[1] + i_rate[2]*w[2] + i[0]*w_rate[0] + i[1]*w_rate[1] + i[2]*w_rate[2];
-    FU_EACH(row, 3, P[row] = -i[row]*less*w_t + m[0]*w[row];)
-    FU_EACH(row, 3, P_rate[row] = -less*(i_rate[row]*w_t + i[row]*w_t_rate) + m[0]*w_rate[row];)
+    DRAG_TANGENT_AND_ITS_RATE
+    DRAG_IMPULSE_AND_ITS_RATE
     /* derivative of the kinetic energy by the slope */
     fu_real G_t[3];
     const fu_real pull = inv_len_t*less*w_t*wet[0];
@@ -888,27 +1058,8 @@ void drag_inertia_of_cable(const fu_real *t, const fu_real *t_rate, const fu_rea
 void drag_inertia_of_cable_tangent(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_t, fu_real *f_t_rate, fu_real *f_r, fu_real *f_v, fu_real *g_t, fu_real *g_r, fu_real *g_v)
 {
     DRAG_MOTION_PAST_THE_FLUID
-    /* tangent and its rate */
-    const fu_real
-        less = m[0] - m[1],
-        len_t = FU_SQRT(t[0]*t[0] + t[1]*t[1] + t[2]*t[2]),
-        inv_len_t = 1.0/len_t,
-        i_x = inv_len_t*t[0],
-        i_y = inv_len_t*t[1],
-        i_z = inv_len_t*t[2],
-        i_rate_x = inv_len_t*(-i_x*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[0]),
-        i_rate_y = inv_len_t*(-i_y*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[1]),
-        i_rate_z = inv_len_t*(-i_z*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[2]);
-    /* impulse and its rate */
-    const fu_real
-        w_t = i_x*w_x + i_y*w_y + i_z*w_z,
-        w_t_rate = i_rate_x*w_x + i_rate_y*w_y + i_rate_z*w_z + i_x*w_rate_x + i_y*w_rate_y + i_z*w_rate_z,
-        P_x = -i_x*less*w_t + m[0]*w_x,
-        P_y = -i_y*less*w_t + m[0]*w_y,
-        P_z = -i_z*less*w_t + m[0]*w_z,
-        P_rate_x = -less*(i_rate_x*w_t + i_x*w_t_rate) + m[0]*w_rate_x,
-        P_rate_y = -less*(i_rate_y*w_t + i_y*w_t_rate) + m[0]*w_rate_y,
-        P_rate_z = -less*(i_rate_z*w_t + i_z*w_t_rate) + m[0]*w_rate_z;
+    DRAG_TANGENT_AND_ITS_RATE_2
+    DRAG_IMPULSE_AND_ITS_RATE_2
     /* derivative of the kinetic energy by the slope */
     const fu_real pull = inv_len_t*less*w_t*wet[0];
     /* force on the particle */
@@ -930,14 +1081,9 @@ void drag_inertia_of_cable_tangent(const fu_real *t, const fu_real *t_rate, cons
         d_t0_w_t_rate = d_t0_i_rate_x*w_x + d_t0_i_rate_y*w_y + d_t0_i_rate_z*w_z + d_t0_i_x*w_rate_x + d_t0_i_y*w_rate_y + d_t0_i_z*w_rate_z,
         d_t0_P_rate_x = -d_t0_i_rate_x*less*w_t - d_t0_i_x*less*w_t_rate - d_t0_w_t*i_rate_x*less - d_t0_w_t_rate*i_x*less,
         d_t0_P_x = -d_t0_i_x*less*w_t - d_t0_w_t*i_x*less,
-        d_t0_P_wet_rate_x = c_rate*d_t0_P_x + d_t0_P_rate_x*wet[0],
-        d_t0_P_y = -d_t0_i_y*less*w_t - d_t0_w_t*i_y*less,
-        d_t0_P_z = -d_t0_i_z*less*w_t - d_t0_w_t*i_z*less,
-        d_t0_T = 0.5*d_t0_P_x*w_x + 0.5*d_t0_P_y*w_y + 0.5*d_t0_P_z*w_z,
-        d_t0_P_wet_x = d_t0_P_x*wet[0],
-        d_t0_P_wet_y = d_t0_P_y*wet[0],
-        d_t0_P_wet_z = d_t0_P_z*wet[0],
-        d_t0_strained_x = G[0]*d_t0_P_wet_x + G[3]*d_t0_P_wet_y + G[6]*d_t0_P_wet_z,
+        d_t0_P_wet_rate_x = c_rate*d_t0_P_x + d_t0_P_rate_x*wet[0];
+    DRAG_PART_OF_DERIVATIVES
+    const fu_real
         d_t0_F_x = -c_place_x*d_t0_T + d_t0_P_wet_rate_x + d_t0_strained_x,
         d_t0_P_rate_y = -d_t0_i_rate_y*less*w_t - d_t0_i_y*less*w_t_rate - d_t0_w_t*i_rate_y*less - d_t0_w_t_rate*i_y*less,
         d_t0_P_wet_rate_y = c_rate*d_t0_P_y + d_t0_P_rate_y*wet[0],
@@ -959,14 +1105,9 @@ void drag_inertia_of_cable_tangent(const fu_real *t, const fu_real *t_rate, cons
         d_t1_w_t_rate = d_t1_i_rate_x*w_x + d_t1_i_rate_y*w_y + d_t1_i_rate_z*w_z + d_t1_i_x*w_rate_x + d_t1_i_y*w_rate_y + d_t1_i_z*w_rate_z,
         d_t1_P_rate_x = -d_t1_i_rate_x*less*w_t - d_t1_i_x*less*w_t_rate - d_t1_w_t*i_rate_x*less - d_t1_w_t_rate*i_x*less,
         d_t1_P_x = -d_t1_i_x*less*w_t - d_t1_w_t*i_x*less,
-        d_t1_P_wet_rate_x = c_rate*d_t1_P_x + d_t1_P_rate_x*wet[0],
-        d_t1_P_y = -d_t1_i_y*less*w_t - d_t1_w_t*i_y*less,
-        d_t1_P_z = -d_t1_i_z*less*w_t - d_t1_w_t*i_z*less,
-        d_t1_T = 0.5*d_t1_P_x*w_x + 0.5*d_t1_P_y*w_y + 0.5*d_t1_P_z*w_z,
-        d_t1_P_wet_x = d_t1_P_x*wet[0],
-        d_t1_P_wet_y = d_t1_P_y*wet[0],
-        d_t1_P_wet_z = d_t1_P_z*wet[0],
-        d_t1_strained_x = G[0]*d_t1_P_wet_x + G[3]*d_t1_P_wet_y + G[6]*d_t1_P_wet_z,
+        d_t1_P_wet_rate_x = c_rate*d_t1_P_x + d_t1_P_rate_x*wet[0];
+    DRAG_PART_OF_DERIVATIVES_2
+    const fu_real
         d_t1_F_x = -c_place_x*d_t1_T + d_t1_P_wet_rate_x + d_t1_strained_x,
         d_t1_P_rate_y = -d_t1_i_rate_y*less*w_t - d_t1_i_y*less*w_t_rate - d_t1_w_t*i_rate_y*less - d_t1_w_t_rate*i_y*less,
         d_t1_P_wet_rate_y = c_rate*d_t1_P_y + d_t1_P_rate_y*wet[0],
@@ -988,14 +1129,9 @@ void drag_inertia_of_cable_tangent(const fu_real *t, const fu_real *t_rate, cons
         d_t2_w_t_rate = d_t2_i_rate_x*w_x + d_t2_i_rate_y*w_y + d_t2_i_rate_z*w_z + d_t2_i_x*w_rate_x + d_t2_i_y*w_rate_y + d_t2_i_z*w_rate_z,
         d_t2_P_rate_x = -d_t2_i_rate_x*less*w_t - d_t2_i_x*less*w_t_rate - d_t2_w_t*i_rate_x*less - d_t2_w_t_rate*i_x*less,
         d_t2_P_x = -d_t2_i_x*less*w_t - d_t2_w_t*i_x*less,
-        d_t2_P_wet_rate_x = c_rate*d_t2_P_x + d_t2_P_rate_x*wet[0],
-        d_t2_P_y = -d_t2_i_y*less*w_t - d_t2_w_t*i_y*less,
-        d_t2_P_z = -d_t2_i_z*less*w_t - d_t2_w_t*i_z*less,
-        d_t2_T = 0.5*d_t2_P_x*w_x + 0.5*d_t2_P_y*w_y + 0.5*d_t2_P_z*w_z,
-        d_t2_P_wet_x = d_t2_P_x*wet[0],
-        d_t2_P_wet_y = d_t2_P_y*wet[0],
-        d_t2_P_wet_z = d_t2_P_z*wet[0],
-        d_t2_strained_x = G[0]*d_t2_P_wet_x + G[3]*d_t2_P_wet_y + G[6]*d_t2_P_wet_z,
+        d_t2_P_wet_rate_x = c_rate*d_t2_P_x + d_t2_P_rate_x*wet[0];
+    DRAG_PART_OF_DERIVATIVES_3
+    const fu_real
         d_t2_F_x = -c_place_x*d_t2_T + d_t2_P_wet_rate_x + d_t2_strained_x,
         d_t2_P_rate_y = -d_t2_i_rate_y*less*w_t - d_t2_i_y*less*w_t_rate - d_t2_w_t*i_rate_y*less - d_t2_w_t_rate*i_y*less,
         d_t2_P_wet_rate_y = c_rate*d_t2_P_y + d_t2_P_rate_y*wet[0],
@@ -1004,37 +1140,9 @@ void drag_inertia_of_cable_tangent(const fu_real *t, const fu_real *t_rate, cons
         d_t2_P_rate_z = -d_t2_i_rate_z*less*w_t - d_t2_i_z*less*w_t_rate - d_t2_w_t*i_rate_z*less - d_t2_w_t_rate*i_z*less,
         d_t2_P_wet_rate_z = c_rate*d_t2_P_z + d_t2_P_rate_z*wet[0],
         d_t2_strained_z = G[2]*d_t2_P_wet_x + G[5]*d_t2_P_wet_y + G[8]*d_t2_P_wet_z,
-        d_t2_F_z = -c_place_z*d_t2_T + d_t2_P_wet_rate_z + d_t2_strained_z,
-        d_t_rate0_i_rate_x = inv_len_t*(-i_x*i_x + 1.0),
-        d_t_rate0_i_rate_y = -(i_x*i_y*inv_len_t),
-        d_t_rate0_i_rate_z = -(i_x*i_z*inv_len_t),
-        d_t_rate0_w_t_rate = d_t_rate0_i_rate_x*w_x + d_t_rate0_i_rate_y*w_y + d_t_rate0_i_rate_z*w_z,
-        d_t_rate0_P_rate_x = -d_t_rate0_i_rate_x*less*w_t - d_t_rate0_w_t_rate*i_x*less,
-        d_t_rate0_P_wet_rate_x = d_t_rate0_P_rate_x*wet[0],
-        d_t_rate0_P_rate_y = -d_t_rate0_i_rate_y*less*w_t - d_t_rate0_w_t_rate*i_y*less,
-        d_t_rate0_P_wet_rate_y = d_t_rate0_P_rate_y*wet[0],
-        d_t_rate0_P_rate_z = -d_t_rate0_i_rate_z*less*w_t - d_t_rate0_w_t_rate*i_z*less,
-        d_t_rate0_P_wet_rate_z = d_t_rate0_P_rate_z*wet[0],
-        d_t_rate1_i_rate_x = -(i_x*i_y*inv_len_t),
-        d_t_rate1_i_rate_y = inv_len_t*(-i_y*i_y + 1.0),
-        d_t_rate1_i_rate_z = -(i_y*i_z*inv_len_t),
-        d_t_rate1_w_t_rate = d_t_rate1_i_rate_x*w_x + d_t_rate1_i_rate_y*w_y + d_t_rate1_i_rate_z*w_z,
-        d_t_rate1_P_rate_x = -d_t_rate1_i_rate_x*less*w_t - d_t_rate1_w_t_rate*i_x*less,
-        d_t_rate1_P_wet_rate_x = d_t_rate1_P_rate_x*wet[0],
-        d_t_rate1_P_rate_y = -d_t_rate1_i_rate_y*less*w_t - d_t_rate1_w_t_rate*i_y*less,
-        d_t_rate1_P_wet_rate_y = d_t_rate1_P_rate_y*wet[0],
-        d_t_rate1_P_rate_z = -d_t_rate1_i_rate_z*less*w_t - d_t_rate1_w_t_rate*i_z*less,
-        d_t_rate1_P_wet_rate_z = d_t_rate1_P_rate_z*wet[0],
-        d_t_rate2_i_rate_x = -(i_x*i_z*inv_len_t),
-        d_t_rate2_i_rate_y = -(i_y*i_z*inv_len_t),
-        d_t_rate2_i_rate_z = inv_len_t*(-i_z*i_z + 1.0),
-        d_t_rate2_w_t_rate = d_t_rate2_i_rate_x*w_x + d_t_rate2_i_rate_y*w_y + d_t_rate2_i_rate_z*w_z,
-        d_t_rate2_P_rate_x = -d_t_rate2_i_rate_x*less*w_t - d_t_rate2_w_t_rate*i_x*less,
-        d_t_rate2_P_wet_rate_x = d_t_rate2_P_rate_x*wet[0],
-        d_t_rate2_P_rate_y = -d_t_rate2_i_rate_y*less*w_t - d_t_rate2_w_t_rate*i_y*less,
-        d_t_rate2_P_wet_rate_y = d_t_rate2_P_rate_y*wet[0],
-        d_t_rate2_P_rate_z = -d_t_rate2_i_rate_z*less*w_t - d_t_rate2_w_t_rate*i_z*less,
-        d_t_rate2_P_wet_rate_z = d_t_rate2_P_rate_z*wet[0],
+        d_t2_F_z = -c_place_z*d_t2_T + d_t2_P_wet_rate_z + d_t2_strained_z;
+    DRAG_PART_OF_DERIVATIVES_4
+    const fu_real
         d_w_x_P_rate_x = -(2.0*i_rate_x*i_x*less),
         d_w_x_P_x = -i_x*i_x*less + m[0],
         d_w_x_P_wet_rate_x = c_rate*d_w_x_P_x + d_w_x_P_rate_x*wet[0],
@@ -1091,73 +1199,21 @@ void drag_inertia_of_cable_tangent(const fu_real *t, const fu_real *t_rate, cons
         d_w_z_P_rate_z = -(2.0*i_rate_z*i_z*less),
         d_w_z_P_wet_rate_z = c_rate*d_w_z_P_z + d_w_z_P_rate_z*wet[0],
         d_w_z_strained_z = G[2]*d_w_z_P_wet_x + G[5]*d_w_z_P_wet_y + G[8]*d_w_z_P_wet_z,
-        d_w_z_F_z = -c_place_z*d_w_z_T + d_w_z_P_wet_rate_z + d_w_z_strained_z,
-        d_w_rate_x_P_rate_x = -i_x*i_x*less + m[0],
-        d_w_rate_x_P_wet_rate_x = d_w_rate_x_P_rate_x*wet[0],
-        d_w_rate_x_P_rate_y = -(i_x*i_y*less),
-        d_w_rate_x_P_wet_rate_y = d_w_rate_x_P_rate_y*wet[0],
-        d_w_rate_x_P_rate_z = -(i_x*i_z*less),
-        d_w_rate_x_P_wet_rate_z = d_w_rate_x_P_rate_z*wet[0],
-        d_w_rate_y_P_rate_x = -(i_x*i_y*less),
-        d_w_rate_y_P_wet_rate_x = d_w_rate_y_P_rate_x*wet[0],
-        d_w_rate_y_P_rate_y = -i_y*i_y*less + m[0],
-        d_w_rate_y_P_wet_rate_y = d_w_rate_y_P_rate_y*wet[0],
-        d_w_rate_y_P_rate_z = -(i_y*i_z*less),
-        d_w_rate_y_P_wet_rate_z = d_w_rate_y_P_rate_z*wet[0],
-        d_w_rate_z_P_rate_x = -(i_x*i_z*less),
-        d_w_rate_z_P_wet_rate_x = d_w_rate_z_P_rate_x*wet[0],
-        d_w_rate_z_P_rate_y = -(i_y*i_z*less),
-        d_w_rate_z_P_wet_rate_y = d_w_rate_z_P_rate_y*wet[0],
-        d_w_rate_z_P_rate_z = -i_z*i_z*less + m[0],
-        d_w_rate_z_P_wet_rate_z = d_w_rate_z_P_rate_z*wet[0];
-    DRAG_PART_OF_DERIVATIVES
+        d_w_z_F_z = -c_place_z*d_w_z_T + d_w_z_P_wet_rate_z + d_w_z_strained_z;
+    DRAG_PART_OF_DERIVATIVES_5
+    DRAG_PART_OF_DERIVATIVES_6
     const fu_real
-        d_t0_len_t_2 = inv_len_t*t[0],
-        d_t0_inv_len_t_2 = -(d_t0_len_t_2*inv_len_t*inv_len_t),
-        d_t0_i_x_2 = d_t0_inv_len_t_2*t[0] + inv_len_t,
-        d_t0_i_y_2 = d_t0_inv_len_t_2*t[1],
-        d_t0_i_z_2 = d_t0_inv_len_t_2*t[2],
-        d_t0_w_t_2 = d_t0_i_x_2*w_x + d_t0_i_y_2*w_y + d_t0_i_z_2*w_z,
-        d_t0_pull = d_t0_inv_len_t_2*less*w_t*wet[0] + d_t0_w_t_2*inv_len_t*less*wet[0],
-        d_t0_G_t_x = d_t0_i_x_2*pull*w_t + d_t0_pull*(i_x*w_t - w_x) + d_t0_w_t_2*i_x*pull,
-        d_t0_G_t_y = d_t0_i_y_2*pull*w_t + d_t0_pull*(i_y*w_t - w_y) + d_t0_w_t_2*i_y*pull,
-        d_t0_G_t_z = d_t0_i_z_2*pull*w_t + d_t0_pull*(i_z*w_t - w_z) + d_t0_w_t_2*i_z*pull,
-        d_t1_len_t_2 = inv_len_t*t[1],
-        d_t1_inv_len_t_2 = -(d_t1_len_t_2*inv_len_t*inv_len_t),
-        d_t1_i_x_2 = d_t1_inv_len_t_2*t[0],
-        d_t1_i_y_2 = d_t1_inv_len_t_2*t[1] + inv_len_t,
-        d_t1_i_z_2 = d_t1_inv_len_t_2*t[2],
-        d_t1_w_t_2 = d_t1_i_x_2*w_x + d_t1_i_y_2*w_y + d_t1_i_z_2*w_z,
-        d_t1_pull = d_t1_inv_len_t_2*less*w_t*wet[0] + d_t1_w_t_2*inv_len_t*less*wet[0],
-        d_t1_G_t_x = d_t1_i_x_2*pull*w_t + d_t1_pull*(i_x*w_t - w_x) + d_t1_w_t_2*i_x*pull,
-        d_t1_G_t_y = d_t1_i_y_2*pull*w_t + d_t1_pull*(i_y*w_t - w_y) + d_t1_w_t_2*i_y*pull,
-        d_t1_G_t_z = d_t1_i_z_2*pull*w_t + d_t1_pull*(i_z*w_t - w_z) + d_t1_w_t_2*i_z*pull,
-        d_t2_len_t_2 = inv_len_t*t[2],
-        d_t2_inv_len_t_2 = -(d_t2_len_t_2*inv_len_t*inv_len_t),
-        d_t2_i_x_2 = d_t2_inv_len_t_2*t[0],
-        d_t2_i_y_2 = d_t2_inv_len_t_2*t[1],
-        d_t2_i_z_2 = d_t2_inv_len_t_2*t[2] + inv_len_t,
-        d_t2_w_t_2 = d_t2_i_x_2*w_x + d_t2_i_y_2*w_y + d_t2_i_z_2*w_z,
-        d_t2_pull = d_t2_inv_len_t_2*less*w_t*wet[0] + d_t2_w_t_2*inv_len_t*less*wet[0],
-        d_t2_G_t_x = d_t2_i_x_2*pull*w_t + d_t2_pull*(i_x*w_t - w_x) + d_t2_w_t_2*i_x*pull,
-        d_t2_G_t_y = d_t2_i_y_2*pull*w_t + d_t2_pull*(i_y*w_t - w_y) + d_t2_w_t_2*i_y*pull,
-        d_t2_G_t_z = d_t2_i_z_2*pull*w_t + d_t2_pull*(i_z*w_t - w_z) + d_t2_w_t_2*i_z*pull,
-        d_w_x_pull = i_x*inv_len_t*less*wet[0],
-        d_w_x_G_t_x = d_w_x_pull*(i_x*w_t - w_x) + i_x*i_x*pull - pull,
-        d_w_x_G_t_y = d_w_x_pull*(i_y*w_t - w_y) + i_x*i_y*pull,
-        d_w_x_G_t_z = d_w_x_pull*(i_z*w_t - w_z) + i_x*i_z*pull,
-        d_w_y_pull = i_y*inv_len_t*less*wet[0],
-        d_w_y_G_t_x = d_w_y_pull*(i_x*w_t - w_x) + i_x*i_y*pull,
-        d_w_y_G_t_y = d_w_y_pull*(i_y*w_t - w_y) + i_y*i_y*pull - pull,
-        d_w_y_G_t_z = d_w_y_pull*(i_z*w_t - w_z) + i_y*i_z*pull,
-        d_w_z_pull = i_z*inv_len_t*less*wet[0],
-        d_w_z_G_t_x = d_w_z_pull*(i_x*w_t - w_x) + i_x*i_z*pull,
-        d_w_z_G_t_y = d_w_z_pull*(i_y*w_t - w_y) + i_y*i_z*pull,
-        d_w_z_G_t_z = d_w_z_pull*(i_z*w_t - w_z) + i_z*i_z*pull - pull,
-        d_wet0_pull = inv_len_t*less*w_t,
-        d_wet0_G_t_x = d_wet0_pull*(i_x*w_t - w_x),
-        d_wet0_G_t_y = d_wet0_pull*(i_y*w_t - w_y),
-        d_wet0_G_t_z = d_wet0_pull*(i_z*w_t - w_z);
+        d_wet0_carried_x = displaced*material_x,
+        d_wet0_strained_x = G[0]*P_x + G[3]*P_y + G[6]*P_z,
+        d_wet0_F_x = P_rate_x - d_wet0_carried_x + d_wet0_strained_x,
+        d_wet0_carried_y = displaced*material_y,
+        d_wet0_strained_y = G[1]*P_x + G[4]*P_y + G[7]*P_z,
+        d_wet0_F_y = P_rate_y - d_wet0_carried_y + d_wet0_strained_y,
+        d_wet0_carried_z = displaced*material_z,
+        d_wet0_strained_z = G[2]*P_x + G[5]*P_y + G[8]*P_z;
+    DRAG_PART_OF_DERIVATIVES_7
+    DRAG_PART_OF_DERIVATIVES_8
+    DRAG_PART_OF_DERIVATIVES_9
     /* outputs */
     f_t[0] = d_t0_F_x;
     f_t[1] = d_t1_F_x;
@@ -1261,6 +1317,490 @@ void drag_inertia_step(const fu_real *t, const fu_real *t_next, const fu_real *w
     g[0] = scale*(-mean_x*(n0 + n1) + pull_x*(0.5*size + 0.5*size_next));
     g[1] = scale*(-mean_y*(n0 + n1) + pull_y*(0.5*size + 0.5*size_next));
     g[2] = scale*(-mean_z*(n0 + n1) + pull_z*(0.5*size + 0.5*size_next));
+}
+
+/* kinetic energy of the fluid along a rope, and its derivatives (Lighthill 1971; Lagrange's equations of T); 85 add, 128 mul, 1 div, 1 sqrt */
+void drag_inertia_of_span(fu_real growth, const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *y, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *T_r, fu_real *T_t, fu_real *T_v, fu_real *rate, fu_real *energy, fu_real *power)
+{
+    /* motion past the fluid */
+    fu_real w[3], w_rate[3], material[3], c_place[3];
+    FU_EACH(row, 3, w[row] = -U[row] + v[row];)
+    w_rate[0] = -G[0]*y[0] - G[1]*y[1] - G[2]*y[2] - U_rate[0] + a[0];
+    w_rate[1] = -G[3]*y[0] - G[4]*y[1] - G[5]*y[2] - U_rate[1] + a[1];
+    w_rate[2] = -G[6]*y[0] - G[7]*y[1] - G[8]*y[2] - U_rate[2] + a[2];
+    material[0] = G[0]*U[0] + G[1]*U[1] + G[2]*U[2] + U_rate[0];
+    material[1] = G[3]*U[0] + G[4]*U[1] + G[5]*U[2] + U_rate[1];
+    material[2] = G[6]*U[0] + G[7]*U[1] + G[8]*U[2] + U_rate[2];
+    FU_EACH(row, 3, c_place[row] = up[row]*wet[1];)
+    DRAG_TANGENT_AND_ITS_RATE
+    DRAG_IMPULSE_AND_ITS_RATE
+    /* derivative of the kinetic energy by the slope */
+    fu_real G_t[3];
+    const fu_real pull = inv_len_t*less*w_t*wet[0];
+    FU_EACH(row, 3, G_t[row] = -(pull*(-i[row]*w_t + w[row]));)
+    /* force on the particle */
+    fu_real P_wet[3], P_wet_rate[3], strained[3], carried[3];
+    FU_EACH(row, 3, P_wet[row] = P[row]*wet[0];)
+    const fu_real c_rate = c_place[0]*y[0] + c_place[1]*y[1] + c_place[2]*y[2];
+    FU_EACH(row, 3, P_wet_rate[row] = P_rate[row]*wet[0] + P_wet[row]*growth + P[row]*c_rate;)
+    strained[0] = G[0]*P_wet[0] + G[3]*P_wet[1] + G[6]*P_wet[2];
+    strained[1] = G[1]*P_wet[0] + G[4]*P_wet[1] + G[7]*P_wet[2];
+    strained[2] = G[2]*P_wet[0] + G[5]*P_wet[1] + G[8]*P_wet[2];
+    const fu_real displaced_wet = displaced*wet[0];
+    FU_EACH(row, 3, carried[row] = displaced_wet*material[row];)
+    const fu_real T = 0.5*P[0]*w[0] + 0.5*P[1]*w[1] + 0.5*P[2]*w[2];
+    FU_EACH(row, 3, T_r[row] = T*c_place[row] - strained[row];)
+    FU_EACH(row, 3, rate[row] = P_wet_rate[row] - carried[row];)
+    /* outputs */
+    FU_EACH(row, 3, T_t[row] = G_t[row];)
+    FU_EACH(row, 3, T_v[row] = P_wet[row];)
+    energy[0] = T*wet[0];
+    power[0] = -P_wet_rate[0]*U[0] - P_wet_rate[1]*U[1] - P_wet_rate[2]*U[2] + carried[0]*v[0] + carried[1]*v[1] + carried[2]*v[2] - strained[0]*y[0] - strained[1]*y[1] - strained[2]*y[2];
+}
+
+/* second derivatives of the kinetic energy of the fluid along a rope, and derivatives of the rate of the impulse (derivatives of Lighthill 1971; Lagrange's equations of T); 638 add, 1377 mul, 1 div, 1 sqrt */
+void drag_inertia_of_span_tangent(fu_real growth, const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *y, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *second, fu_real *rate_by)
+{
+    /* motion past the fluid */
+    const fu_real
+        w_x = -U[0] + v[0],
+        w_y = -U[1] + v[1],
+        w_z = -U[2] + v[2],
+        w_rate_x = -G[0]*y[0] - G[1]*y[1] - G[2]*y[2] - U_rate[0] + a[0],
+        w_rate_y = -G[3]*y[0] - G[4]*y[1] - G[5]*y[2] - U_rate[1] + a[1],
+        w_rate_z = -G[6]*y[0] - G[7]*y[1] - G[8]*y[2] - U_rate[2] + a[2],
+        material_x = G[0]*U[0] + G[1]*U[1] + G[2]*U[2] + U_rate[0],
+        material_y = G[3]*U[0] + G[4]*U[1] + G[5]*U[2] + U_rate[1],
+        material_z = G[6]*U[0] + G[7]*U[1] + G[8]*U[2] + U_rate[2],
+        c_place_x = up[0]*wet[1],
+        c_place_y = up[1]*wet[1],
+        c_place_z = up[2]*wet[1];
+    DRAG_TANGENT_AND_ITS_RATE_2
+    DRAG_IMPULSE_AND_ITS_RATE_2
+    /* derivative of the kinetic energy by the slope */
+    const fu_real pull = inv_len_t*less*w_t*wet[0];
+    /* force on the particle */
+    const fu_real
+        c_rate = c_place_x*y[0] + c_place_y*y[1] + c_place_z*y[2],
+        displaced_wet = displaced*wet[0],
+        T = 0.5*P_x*w_x + 0.5*P_y*w_y + 0.5*P_z*w_z;
+    /* derivatives */
+    const fu_real
+        d_w_x_P_x = -i_x*i_x*less + m[0],
+        d_w_x_P_y = -(i_x*i_y*less),
+        d_w_x_P_z = -(i_x*i_z*less),
+        d_w_x_T = 0.5*P_x + 0.5*d_w_x_P_x*w_x + 0.5*d_w_x_P_y*w_y + 0.5*d_w_x_P_z*w_z,
+        d_w_x_P_wet_x = d_w_x_P_x*wet[0],
+        d_w_x_P_wet_y = d_w_x_P_y*wet[0],
+        d_w_x_P_wet_z = d_w_x_P_z*wet[0],
+        d_w_x_strained_x = G[0]*d_w_x_P_wet_x + G[3]*d_w_x_P_wet_y + G[6]*d_w_x_P_wet_z,
+        d_w_x_b_x = c_place_x*d_w_x_T - d_w_x_strained_x,
+        d_w_x_strained_y = G[1]*d_w_x_P_wet_x + G[4]*d_w_x_P_wet_y + G[7]*d_w_x_P_wet_z,
+        d_w_x_b_y = c_place_y*d_w_x_T - d_w_x_strained_y,
+        d_w_x_strained_z = G[2]*d_w_x_P_wet_x + G[5]*d_w_x_P_wet_y + G[8]*d_w_x_P_wet_z,
+        d_w_x_b_z = c_place_z*d_w_x_T - d_w_x_strained_z,
+        d_w_y_P_x = -(i_x*i_y*less),
+        d_w_y_P_y = -i_y*i_y*less + m[0],
+        d_w_y_P_z = -(i_y*i_z*less),
+        d_w_y_T = 0.5*P_y + 0.5*d_w_y_P_x*w_x + 0.5*d_w_y_P_y*w_y + 0.5*d_w_y_P_z*w_z,
+        d_w_y_P_wet_x = d_w_y_P_x*wet[0],
+        d_w_y_P_wet_y = d_w_y_P_y*wet[0],
+        d_w_y_P_wet_z = d_w_y_P_z*wet[0],
+        d_w_y_strained_x = G[0]*d_w_y_P_wet_x + G[3]*d_w_y_P_wet_y + G[6]*d_w_y_P_wet_z,
+        d_w_y_b_x = c_place_x*d_w_y_T - d_w_y_strained_x,
+        d_w_y_strained_y = G[1]*d_w_y_P_wet_x + G[4]*d_w_y_P_wet_y + G[7]*d_w_y_P_wet_z,
+        d_w_y_b_y = c_place_y*d_w_y_T - d_w_y_strained_y,
+        d_w_y_strained_z = G[2]*d_w_y_P_wet_x + G[5]*d_w_y_P_wet_y + G[8]*d_w_y_P_wet_z,
+        d_w_y_b_z = c_place_z*d_w_y_T - d_w_y_strained_z,
+        d_w_z_P_x = -(i_x*i_z*less),
+        d_w_z_P_y = -(i_y*i_z*less),
+        d_w_z_P_z = -i_z*i_z*less + m[0],
+        d_w_z_T = 0.5*P_z + 0.5*d_w_z_P_x*w_x + 0.5*d_w_z_P_y*w_y + 0.5*d_w_z_P_z*w_z,
+        d_w_z_P_wet_x = d_w_z_P_x*wet[0],
+        d_w_z_P_wet_y = d_w_z_P_y*wet[0],
+        d_w_z_P_wet_z = d_w_z_P_z*wet[0],
+        d_w_z_strained_x = G[0]*d_w_z_P_wet_x + G[3]*d_w_z_P_wet_y + G[6]*d_w_z_P_wet_z,
+        d_w_z_b_x = c_place_x*d_w_z_T - d_w_z_strained_x,
+        d_w_z_strained_y = G[1]*d_w_z_P_wet_x + G[4]*d_w_z_P_wet_y + G[7]*d_w_z_P_wet_z,
+        d_w_z_b_y = c_place_y*d_w_z_T - d_w_z_strained_y,
+        d_w_z_strained_z = G[2]*d_w_z_P_wet_x + G[5]*d_w_z_P_wet_y + G[8]*d_w_z_P_wet_z,
+        d_w_z_b_z = c_place_z*d_w_z_T - d_w_z_strained_z,
+        d_wet0_strained_x = G[0]*P_x + G[3]*P_y + G[6]*P_z,
+        d_wet0_b_x = -d_wet0_strained_x,
+        d_wet0_strained_y = G[1]*P_x + G[4]*P_y + G[7]*P_z,
+        d_wet0_b_y = -d_wet0_strained_y,
+        d_wet0_strained_z = G[2]*P_x + G[5]*P_y + G[8]*P_z,
+        d_wet0_b_z = -d_wet0_strained_z,
+        d_t0_len_t = inv_len_t*t[0],
+        d_t0_inv_len_t = -(d_t0_len_t*inv_len_t*inv_len_t),
+        d_t0_i_x = d_t0_inv_len_t*t[0] + inv_len_t,
+        d_t0_i_y = d_t0_inv_len_t*t[1],
+        d_t0_i_z = d_t0_inv_len_t*t[2],
+        d_t0_w_t = d_t0_i_x*w_x + d_t0_i_y*w_y + d_t0_i_z*w_z,
+        d_t0_P_x = -d_t0_i_x*less*w_t - d_t0_w_t*i_x*less;
+    DRAG_PART_OF_DERIVATIVES
+    const fu_real
+        d_t0_b_x = c_place_x*d_t0_T - d_t0_strained_x,
+        d_t0_strained_y = G[1]*d_t0_P_wet_x + G[4]*d_t0_P_wet_y + G[7]*d_t0_P_wet_z,
+        d_t0_b_y = c_place_y*d_t0_T - d_t0_strained_y,
+        d_t0_strained_z = G[2]*d_t0_P_wet_x + G[5]*d_t0_P_wet_y + G[8]*d_t0_P_wet_z,
+        d_t0_b_z = c_place_z*d_t0_T - d_t0_strained_z,
+        d_t1_len_t = inv_len_t*t[1],
+        d_t1_inv_len_t = -(d_t1_len_t*inv_len_t*inv_len_t),
+        d_t1_i_x = d_t1_inv_len_t*t[0],
+        d_t1_i_y = d_t1_inv_len_t*t[1] + inv_len_t,
+        d_t1_i_z = d_t1_inv_len_t*t[2],
+        d_t1_w_t = d_t1_i_x*w_x + d_t1_i_y*w_y + d_t1_i_z*w_z,
+        d_t1_P_x = -d_t1_i_x*less*w_t - d_t1_w_t*i_x*less;
+    DRAG_PART_OF_DERIVATIVES_2
+    const fu_real
+        d_t1_b_x = c_place_x*d_t1_T - d_t1_strained_x,
+        d_t1_strained_y = G[1]*d_t1_P_wet_x + G[4]*d_t1_P_wet_y + G[7]*d_t1_P_wet_z,
+        d_t1_b_y = c_place_y*d_t1_T - d_t1_strained_y,
+        d_t1_strained_z = G[2]*d_t1_P_wet_x + G[5]*d_t1_P_wet_y + G[8]*d_t1_P_wet_z,
+        d_t1_b_z = c_place_z*d_t1_T - d_t1_strained_z,
+        d_t2_len_t = inv_len_t*t[2],
+        d_t2_inv_len_t = -(d_t2_len_t*inv_len_t*inv_len_t),
+        d_t2_i_x = d_t2_inv_len_t*t[0],
+        d_t2_i_y = d_t2_inv_len_t*t[1],
+        d_t2_i_z = d_t2_inv_len_t*t[2] + inv_len_t,
+        d_t2_w_t = d_t2_i_x*w_x + d_t2_i_y*w_y + d_t2_i_z*w_z,
+        d_t2_P_x = -d_t2_i_x*less*w_t - d_t2_w_t*i_x*less;
+    DRAG_PART_OF_DERIVATIVES_3
+    const fu_real
+        d_t2_b_x = c_place_x*d_t2_T - d_t2_strained_x,
+        d_t2_strained_y = G[1]*d_t2_P_wet_x + G[4]*d_t2_P_wet_y + G[7]*d_t2_P_wet_z,
+        d_t2_b_y = c_place_y*d_t2_T - d_t2_strained_y,
+        d_t2_strained_z = G[2]*d_t2_P_wet_x + G[5]*d_t2_P_wet_y + G[8]*d_t2_P_wet_z,
+        d_t2_b_z = c_place_z*d_t2_T - d_t2_strained_z;
+    DRAG_PART_OF_DERIVATIVES_9
+    DRAG_PART_OF_DERIVATIVES_8
+    const fu_real
+        d_w_x_P_x_2 = -i_x*i_x*less + m[0],
+        d_w_x_P_wet_x_2 = d_w_x_P_x_2*wet[0],
+        d_w_x_P_y_2 = -(i_x*i_y*less),
+        d_w_x_P_wet_y_2 = d_w_x_P_y_2*wet[0],
+        d_w_x_P_z_2 = -(i_x*i_z*less),
+        d_w_x_P_wet_z_2 = d_w_x_P_z_2*wet[0],
+        d_w_y_P_x_2 = -(i_x*i_y*less),
+        d_w_y_P_wet_x_2 = d_w_y_P_x_2*wet[0],
+        d_w_y_P_y_2 = -i_y*i_y*less + m[0],
+        d_w_y_P_wet_y_2 = d_w_y_P_y_2*wet[0],
+        d_w_y_P_z_2 = -(i_y*i_z*less),
+        d_w_y_P_wet_z_2 = d_w_y_P_z_2*wet[0],
+        d_w_z_P_x_2 = -(i_x*i_z*less),
+        d_w_z_P_wet_x_2 = d_w_z_P_x_2*wet[0],
+        d_w_z_P_y_2 = -(i_y*i_z*less),
+        d_w_z_P_wet_y_2 = d_w_z_P_y_2*wet[0],
+        d_w_z_P_z_2 = -i_z*i_z*less + m[0],
+        d_w_z_P_wet_z_2 = d_w_z_P_z_2*wet[0],
+        d_t0_len_t_3 = inv_len_t*t[0],
+        d_t0_inv_len_t_3 = -(d_t0_len_t_3*inv_len_t*inv_len_t),
+        d_t0_i_x_3 = d_t0_inv_len_t_3*t[0] + inv_len_t,
+        d_t0_i_y_3 = d_t0_inv_len_t_3*t[1],
+        d_t0_i_z_3 = d_t0_inv_len_t_3*t[2],
+        d_t0_w_t_3 = d_t0_i_x_3*w_x + d_t0_i_y_3*w_y + d_t0_i_z_3*w_z,
+        d_t0_P_x_2 = -d_t0_i_x_3*less*w_t - d_t0_w_t_3*i_x*less,
+        d_t0_P_wet_x_2 = d_t0_P_x_2*wet[0],
+        d_t0_P_y_2 = -d_t0_i_y_3*less*w_t - d_t0_w_t_3*i_y*less,
+        d_t0_P_wet_y_2 = d_t0_P_y_2*wet[0],
+        d_t0_P_z_2 = -d_t0_i_z_3*less*w_t - d_t0_w_t_3*i_z*less,
+        d_t0_P_wet_z_2 = d_t0_P_z_2*wet[0],
+        d_t1_len_t_3 = inv_len_t*t[1],
+        d_t1_inv_len_t_3 = -(d_t1_len_t_3*inv_len_t*inv_len_t),
+        d_t1_i_x_3 = d_t1_inv_len_t_3*t[0],
+        d_t1_i_y_3 = d_t1_inv_len_t_3*t[1] + inv_len_t,
+        d_t1_i_z_3 = d_t1_inv_len_t_3*t[2],
+        d_t1_w_t_3 = d_t1_i_x_3*w_x + d_t1_i_y_3*w_y + d_t1_i_z_3*w_z,
+        d_t1_P_x_2 = -d_t1_i_x_3*less*w_t - d_t1_w_t_3*i_x*less,
+        d_t1_P_wet_x_2 = d_t1_P_x_2*wet[0],
+        d_t1_P_y_2 = -d_t1_i_y_3*less*w_t - d_t1_w_t_3*i_y*less,
+        d_t1_P_wet_y_2 = d_t1_P_y_2*wet[0],
+        d_t1_P_z_2 = -d_t1_i_z_3*less*w_t - d_t1_w_t_3*i_z*less,
+        d_t1_P_wet_z_2 = d_t1_P_z_2*wet[0],
+        d_t2_len_t_3 = inv_len_t*t[2],
+        d_t2_inv_len_t_3 = -(d_t2_len_t_3*inv_len_t*inv_len_t),
+        d_t2_i_x_3 = d_t2_inv_len_t_3*t[0],
+        d_t2_i_y_3 = d_t2_inv_len_t_3*t[1],
+        d_t2_i_z_3 = d_t2_inv_len_t_3*t[2] + inv_len_t,
+        d_t2_w_t_3 = d_t2_i_x_3*w_x + d_t2_i_y_3*w_y + d_t2_i_z_3*w_z,
+        d_t2_P_x_2 = -d_t2_i_x_3*less*w_t - d_t2_w_t_3*i_x*less,
+        d_t2_P_wet_x_2 = d_t2_P_x_2*wet[0],
+        d_t2_P_y_2 = -d_t2_i_y_3*less*w_t - d_t2_w_t_3*i_y*less,
+        d_t2_P_wet_y_2 = d_t2_P_y_2*wet[0],
+        d_t2_P_z_2 = -d_t2_i_z_3*less*w_t - d_t2_w_t_3*i_z*less,
+        d_t2_P_wet_z_2 = d_t2_P_z_2*wet[0],
+        d_w_x_P_rate_x = -(2.0*i_rate_x*i_x*less),
+        d_w_x_P_x_3 = -i_x*i_x*less + m[0],
+        d_w_x_P_wet_x_3 = d_w_x_P_x_3*wet[0],
+        d_w_x_P_wet_rate_x = c_rate*d_w_x_P_x_3 + d_w_x_P_rate_x*wet[0] + d_w_x_P_wet_x_3*growth,
+        d_w_x_P_rate_y = -i_rate_x*i_y*less - i_rate_y*i_x*less,
+        d_w_x_P_y_3 = -(i_x*i_y*less),
+        d_w_x_P_wet_y_3 = d_w_x_P_y_3*wet[0],
+        d_w_x_P_wet_rate_y = c_rate*d_w_x_P_y_3 + d_w_x_P_rate_y*wet[0] + d_w_x_P_wet_y_3*growth,
+        d_w_x_P_rate_z = -i_rate_x*i_z*less - i_rate_z*i_x*less,
+        d_w_x_P_z_3 = -(i_x*i_z*less),
+        d_w_x_P_wet_z_3 = d_w_x_P_z_3*wet[0],
+        d_w_x_P_wet_rate_z = c_rate*d_w_x_P_z_3 + d_w_x_P_rate_z*wet[0] + d_w_x_P_wet_z_3*growth,
+        d_w_y_P_rate_x = -i_rate_x*i_y*less - i_rate_y*i_x*less,
+        d_w_y_P_x_3 = -(i_x*i_y*less),
+        d_w_y_P_wet_x_3 = d_w_y_P_x_3*wet[0],
+        d_w_y_P_wet_rate_x = c_rate*d_w_y_P_x_3 + d_w_y_P_rate_x*wet[0] + d_w_y_P_wet_x_3*growth,
+        d_w_y_P_rate_y = -(2.0*i_rate_y*i_y*less),
+        d_w_y_P_y_3 = -i_y*i_y*less + m[0],
+        d_w_y_P_wet_y_3 = d_w_y_P_y_3*wet[0],
+        d_w_y_P_wet_rate_y = c_rate*d_w_y_P_y_3 + d_w_y_P_rate_y*wet[0] + d_w_y_P_wet_y_3*growth,
+        d_w_y_P_rate_z = -i_rate_y*i_z*less - i_rate_z*i_y*less,
+        d_w_y_P_z_3 = -(i_y*i_z*less),
+        d_w_y_P_wet_z_3 = d_w_y_P_z_3*wet[0],
+        d_w_y_P_wet_rate_z = c_rate*d_w_y_P_z_3 + d_w_y_P_rate_z*wet[0] + d_w_y_P_wet_z_3*growth,
+        d_w_z_P_rate_x = -i_rate_x*i_z*less - i_rate_z*i_x*less,
+        d_w_z_P_x_3 = -(i_x*i_z*less),
+        d_w_z_P_wet_x_3 = d_w_z_P_x_3*wet[0],
+        d_w_z_P_wet_rate_x = c_rate*d_w_z_P_x_3 + d_w_z_P_rate_x*wet[0] + d_w_z_P_wet_x_3*growth,
+        d_w_z_P_rate_y = -i_rate_y*i_z*less - i_rate_z*i_y*less,
+        d_w_z_P_y_3 = -(i_y*i_z*less),
+        d_w_z_P_wet_y_3 = d_w_z_P_y_3*wet[0],
+        d_w_z_P_wet_rate_y = c_rate*d_w_z_P_y_3 + d_w_z_P_rate_y*wet[0] + d_w_z_P_wet_y_3*growth,
+        d_w_z_P_rate_z = -(2.0*i_rate_z*i_z*less),
+        d_w_z_P_z_3 = -i_z*i_z*less + m[0],
+        d_w_z_P_wet_z_3 = d_w_z_P_z_3*wet[0],
+        d_w_z_P_wet_rate_z = c_rate*d_w_z_P_z_3 + d_w_z_P_rate_z*wet[0] + d_w_z_P_wet_z_3*growth;
+    DRAG_PART_OF_DERIVATIVES_5
+    const fu_real
+        d_material_x_x_x = -displaced_wet,
+        d_material_y_x_y = -displaced_wet,
+        d_material_z_x_z = -displaced_wet,
+        d_y0_P_wet_rate_x = P_x*c_place_x,
+        d_y0_P_wet_rate_y = P_y*c_place_x,
+        d_y0_P_wet_rate_z = P_z*c_place_x,
+        d_y1_P_wet_rate_x = P_x*c_place_y,
+        d_y1_P_wet_rate_y = P_y*c_place_y,
+        d_y1_P_wet_rate_z = P_z*c_place_y,
+        d_y2_P_wet_rate_x = P_x*c_place_z,
+        d_y2_P_wet_rate_y = P_y*c_place_z,
+        d_y2_P_wet_rate_z = P_z*c_place_z,
+        d_wet0_P_wet_rate_x = P_rate_x + P_x*growth,
+        d_wet0_carried_x = displaced*material_x,
+        d_wet0_x_x = d_wet0_P_wet_rate_x - d_wet0_carried_x,
+        d_wet0_P_wet_rate_y = P_rate_y + P_y*growth,
+        d_wet0_carried_y = displaced*material_y,
+        d_wet0_x_y = d_wet0_P_wet_rate_y - d_wet0_carried_y,
+        d_wet0_P_wet_rate_z = P_rate_z + P_z*growth,
+        d_wet0_carried_z = displaced*material_z,
+        d_wet0_x_z = d_wet0_P_wet_rate_z - d_wet0_carried_z,
+        d_c_place_x_P_wet_rate_x = P_x*y[0],
+        d_c_place_x_P_wet_rate_y = P_y*y[0],
+        d_c_place_x_P_wet_rate_z = P_z*y[0],
+        d_c_place_y_P_wet_rate_x = P_x*y[1],
+        d_c_place_y_P_wet_rate_y = P_y*y[1],
+        d_c_place_y_P_wet_rate_z = P_z*y[1],
+        d_c_place_z_P_wet_rate_x = P_x*y[2],
+        d_c_place_z_P_wet_rate_y = P_y*y[2],
+        d_c_place_z_P_wet_rate_z = P_z*y[2],
+        d_t0_len_t_4 = inv_len_t*t[0],
+        d_t0_inv_len_t_4 = -(d_t0_len_t_4*inv_len_t*inv_len_t),
+        d_t0_i_x_4 = d_t0_inv_len_t_4*t[0] + inv_len_t,
+        d_t0_i_y_4 = d_t0_inv_len_t_4*t[1],
+        d_t0_i_z_4 = d_t0_inv_len_t_4*t[2],
+        d_t0_i_rate_x = d_t0_i_x_4*inv_len_t*(-2.0*i_x*t_rate[0] - i_y*t_rate[1] - i_z*t_rate[2]) - d_t0_i_y_4*i_x*inv_len_t*t_rate[1] - d_t0_i_z_4*i_x*inv_len_t*t_rate[2] + d_t0_inv_len_t_4*(-i_x*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[0]),
+        d_t0_w_t_4 = d_t0_i_x_4*w_x + d_t0_i_y_4*w_y + d_t0_i_z_4*w_z,
+        d_t0_i_rate_y = -d_t0_i_x_4*i_y*inv_len_t*t_rate[0] + d_t0_i_y_4*inv_len_t*(-i_x*t_rate[0] - 2.0*i_y*t_rate[1] - i_z*t_rate[2]) - d_t0_i_z_4*i_y*inv_len_t*t_rate[2] + d_t0_inv_len_t_4*(-i_y*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[1]),
+        d_t0_i_rate_z = -d_t0_i_x_4*i_z*inv_len_t*t_rate[0] - d_t0_i_y_4*i_z*inv_len_t*t_rate[1] + d_t0_i_z_4*inv_len_t*(-i_x*t_rate[0] - i_y*t_rate[1] - 2.0*i_z*t_rate[2]) + d_t0_inv_len_t_4*(-i_z*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[2]),
+        d_t0_w_t_rate = d_t0_i_rate_x*w_x + d_t0_i_rate_y*w_y + d_t0_i_rate_z*w_z + d_t0_i_x_4*w_rate_x + d_t0_i_y_4*w_rate_y + d_t0_i_z_4*w_rate_z,
+        d_t0_P_rate_x = -d_t0_i_rate_x*less*w_t - d_t0_i_x_4*less*w_t_rate - d_t0_w_t_4*i_rate_x*less - d_t0_w_t_rate*i_x*less,
+        d_t0_P_x_3 = -d_t0_i_x_4*less*w_t - d_t0_w_t_4*i_x*less,
+        d_t0_P_wet_x_3 = d_t0_P_x_3*wet[0],
+        d_t0_P_wet_rate_x = c_rate*d_t0_P_x_3 + d_t0_P_rate_x*wet[0] + d_t0_P_wet_x_3*growth,
+        d_t0_P_rate_y = -d_t0_i_rate_y*less*w_t - d_t0_i_y_4*less*w_t_rate - d_t0_w_t_4*i_rate_y*less - d_t0_w_t_rate*i_y*less,
+        d_t0_P_y_3 = -d_t0_i_y_4*less*w_t - d_t0_w_t_4*i_y*less,
+        d_t0_P_wet_y_3 = d_t0_P_y_3*wet[0],
+        d_t0_P_wet_rate_y = c_rate*d_t0_P_y_3 + d_t0_P_rate_y*wet[0] + d_t0_P_wet_y_3*growth,
+        d_t0_P_rate_z = -d_t0_i_rate_z*less*w_t - d_t0_i_z_4*less*w_t_rate - d_t0_w_t_4*i_rate_z*less - d_t0_w_t_rate*i_z*less,
+        d_t0_P_z_3 = -d_t0_i_z_4*less*w_t - d_t0_w_t_4*i_z*less,
+        d_t0_P_wet_z_3 = d_t0_P_z_3*wet[0],
+        d_t0_P_wet_rate_z = c_rate*d_t0_P_z_3 + d_t0_P_rate_z*wet[0] + d_t0_P_wet_z_3*growth,
+        d_t1_len_t_4 = inv_len_t*t[1],
+        d_t1_inv_len_t_4 = -(d_t1_len_t_4*inv_len_t*inv_len_t),
+        d_t1_i_x_4 = d_t1_inv_len_t_4*t[0],
+        d_t1_i_y_4 = d_t1_inv_len_t_4*t[1] + inv_len_t,
+        d_t1_i_z_4 = d_t1_inv_len_t_4*t[2],
+        d_t1_i_rate_x = d_t1_i_x_4*inv_len_t*(-2.0*i_x*t_rate[0] - i_y*t_rate[1] - i_z*t_rate[2]) - d_t1_i_y_4*i_x*inv_len_t*t_rate[1] - d_t1_i_z_4*i_x*inv_len_t*t_rate[2] + d_t1_inv_len_t_4*(-i_x*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[0]),
+        d_t1_w_t_4 = d_t1_i_x_4*w_x + d_t1_i_y_4*w_y + d_t1_i_z_4*w_z,
+        d_t1_i_rate_y = -d_t1_i_x_4*i_y*inv_len_t*t_rate[0] + d_t1_i_y_4*inv_len_t*(-i_x*t_rate[0] - 2.0*i_y*t_rate[1] - i_z*t_rate[2]) - d_t1_i_z_4*i_y*inv_len_t*t_rate[2] + d_t1_inv_len_t_4*(-i_y*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[1]),
+        d_t1_i_rate_z = -d_t1_i_x_4*i_z*inv_len_t*t_rate[0] - d_t1_i_y_4*i_z*inv_len_t*t_rate[1] + d_t1_i_z_4*inv_len_t*(-i_x*t_rate[0] - i_y*t_rate[1] - 2.0*i_z*t_rate[2]) + d_t1_inv_len_t_4*(-i_z*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[2]),
+        d_t1_w_t_rate = d_t1_i_rate_x*w_x + d_t1_i_rate_y*w_y + d_t1_i_rate_z*w_z + d_t1_i_x_4*w_rate_x + d_t1_i_y_4*w_rate_y + d_t1_i_z_4*w_rate_z,
+        d_t1_P_rate_x = -d_t1_i_rate_x*less*w_t - d_t1_i_x_4*less*w_t_rate - d_t1_w_t_4*i_rate_x*less - d_t1_w_t_rate*i_x*less,
+        d_t1_P_x_3 = -d_t1_i_x_4*less*w_t - d_t1_w_t_4*i_x*less,
+        d_t1_P_wet_x_3 = d_t1_P_x_3*wet[0],
+        d_t1_P_wet_rate_x = c_rate*d_t1_P_x_3 + d_t1_P_rate_x*wet[0] + d_t1_P_wet_x_3*growth,
+        d_t1_P_rate_y = -d_t1_i_rate_y*less*w_t - d_t1_i_y_4*less*w_t_rate - d_t1_w_t_4*i_rate_y*less - d_t1_w_t_rate*i_y*less,
+        d_t1_P_y_3 = -d_t1_i_y_4*less*w_t - d_t1_w_t_4*i_y*less,
+        d_t1_P_wet_y_3 = d_t1_P_y_3*wet[0],
+        d_t1_P_wet_rate_y = c_rate*d_t1_P_y_3 + d_t1_P_rate_y*wet[0] + d_t1_P_wet_y_3*growth,
+        d_t1_P_rate_z = -d_t1_i_rate_z*less*w_t - d_t1_i_z_4*less*w_t_rate - d_t1_w_t_4*i_rate_z*less - d_t1_w_t_rate*i_z*less,
+        d_t1_P_z_3 = -d_t1_i_z_4*less*w_t - d_t1_w_t_4*i_z*less,
+        d_t1_P_wet_z_3 = d_t1_P_z_3*wet[0],
+        d_t1_P_wet_rate_z = c_rate*d_t1_P_z_3 + d_t1_P_rate_z*wet[0] + d_t1_P_wet_z_3*growth,
+        d_t2_len_t_4 = inv_len_t*t[2],
+        d_t2_inv_len_t_4 = -(d_t2_len_t_4*inv_len_t*inv_len_t),
+        d_t2_i_x_4 = d_t2_inv_len_t_4*t[0],
+        d_t2_i_y_4 = d_t2_inv_len_t_4*t[1],
+        d_t2_i_z_4 = d_t2_inv_len_t_4*t[2] + inv_len_t,
+        d_t2_i_rate_x = d_t2_i_x_4*inv_len_t*(-2.0*i_x*t_rate[0] - i_y*t_rate[1] - i_z*t_rate[2]) - d_t2_i_y_4*i_x*inv_len_t*t_rate[1] - d_t2_i_z_4*i_x*inv_len_t*t_rate[2] + d_t2_inv_len_t_4*(-i_x*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[0]),
+        d_t2_w_t_4 = d_t2_i_x_4*w_x + d_t2_i_y_4*w_y + d_t2_i_z_4*w_z,
+        d_t2_i_rate_y = -d_t2_i_x_4*i_y*inv_len_t*t_rate[0] + d_t2_i_y_4*inv_len_t*(-i_x*t_rate[0] - 2.0*i_y*t_rate[1] - i_z*t_rate[2]) - d_t2_i_z_4*i_y*inv_len_t*t_rate[2] + d_t2_inv_len_t_4*(-i_y*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[1]),
+        d_t2_i_rate_z = -d_t2_i_x_4*i_z*inv_len_t*t_rate[0] - d_t2_i_y_4*i_z*inv_len_t*t_rate[1] + d_t2_i_z_4*inv_len_t*(-i_x*t_rate[0] - i_y*t_rate[1] - 2.0*i_z*t_rate[2]) + d_t2_inv_len_t_4*(-i_z*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[2]),
+        d_t2_w_t_rate = d_t2_i_rate_x*w_x + d_t2_i_rate_y*w_y + d_t2_i_rate_z*w_z + d_t2_i_x_4*w_rate_x + d_t2_i_y_4*w_rate_y + d_t2_i_z_4*w_rate_z,
+        d_t2_P_rate_x = -d_t2_i_rate_x*less*w_t - d_t2_i_x_4*less*w_t_rate - d_t2_w_t_4*i_rate_x*less - d_t2_w_t_rate*i_x*less,
+        d_t2_P_x_3 = -d_t2_i_x_4*less*w_t - d_t2_w_t_4*i_x*less,
+        d_t2_P_wet_x_3 = d_t2_P_x_3*wet[0],
+        d_t2_P_wet_rate_x = c_rate*d_t2_P_x_3 + d_t2_P_rate_x*wet[0] + d_t2_P_wet_x_3*growth,
+        d_t2_P_rate_y = -d_t2_i_rate_y*less*w_t - d_t2_i_y_4*less*w_t_rate - d_t2_w_t_4*i_rate_y*less - d_t2_w_t_rate*i_y*less,
+        d_t2_P_y_3 = -d_t2_i_y_4*less*w_t - d_t2_w_t_4*i_y*less,
+        d_t2_P_wet_y_3 = d_t2_P_y_3*wet[0],
+        d_t2_P_wet_rate_y = c_rate*d_t2_P_y_3 + d_t2_P_rate_y*wet[0] + d_t2_P_wet_y_3*growth,
+        d_t2_P_rate_z = -d_t2_i_rate_z*less*w_t - d_t2_i_z_4*less*w_t_rate - d_t2_w_t_4*i_rate_z*less - d_t2_w_t_rate*i_z*less,
+        d_t2_P_z_3 = -d_t2_i_z_4*less*w_t - d_t2_w_t_4*i_z*less,
+        d_t2_P_wet_z_3 = d_t2_P_z_3*wet[0],
+        d_t2_P_wet_rate_z = c_rate*d_t2_P_z_3 + d_t2_P_rate_z*wet[0] + d_t2_P_wet_z_3*growth;
+    DRAG_PART_OF_DERIVATIVES_4
+    /* outputs */
+    second[0] = -G[0]*d_w_x_b_x - G[3]*d_w_y_b_x - G[6]*d_w_z_b_x + T*up[0]*up[0]*wet[2] + c_place_x*d_wet0_b_x;
+    second[1] = -G[1]*d_w_x_b_x - G[4]*d_w_y_b_x - G[7]*d_w_z_b_x + T*up[0]*up[1]*wet[2] + c_place_y*d_wet0_b_x;
+    second[2] = -G[2]*d_w_x_b_x - G[5]*d_w_y_b_x - G[8]*d_w_z_b_x + T*up[0]*up[2]*wet[2] + c_place_z*d_wet0_b_x;
+    second[3] = d_t0_b_x;
+    second[4] = d_t1_b_x;
+    second[5] = d_t2_b_x;
+    second[6] = d_w_x_b_x;
+    second[7] = d_w_y_b_x;
+    second[8] = d_w_z_b_x;
+    second[9] = -G[0]*d_w_x_b_y - G[3]*d_w_y_b_y - G[6]*d_w_z_b_y + T*up[0]*up[1]*wet[2] + c_place_x*d_wet0_b_y;
+    second[10] = -G[1]*d_w_x_b_y - G[4]*d_w_y_b_y - G[7]*d_w_z_b_y + T*up[1]*up[1]*wet[2] + c_place_y*d_wet0_b_y;
+    second[11] = -G[2]*d_w_x_b_y - G[5]*d_w_y_b_y - G[8]*d_w_z_b_y + T*up[1]*up[2]*wet[2] + c_place_z*d_wet0_b_y;
+    second[12] = d_t0_b_y;
+    second[13] = d_t1_b_y;
+    second[14] = d_t2_b_y;
+    second[15] = d_w_x_b_y;
+    second[16] = d_w_y_b_y;
+    second[17] = d_w_z_b_y;
+    second[18] = -G[0]*d_w_x_b_z - G[3]*d_w_y_b_z - G[6]*d_w_z_b_z + T*up[0]*up[2]*wet[2] + c_place_x*d_wet0_b_z;
+    second[19] = -G[1]*d_w_x_b_z - G[4]*d_w_y_b_z - G[7]*d_w_z_b_z + T*up[1]*up[2]*wet[2] + c_place_y*d_wet0_b_z;
+    second[20] = -G[2]*d_w_x_b_z - G[5]*d_w_y_b_z - G[8]*d_w_z_b_z + T*up[2]*up[2]*wet[2] + c_place_z*d_wet0_b_z;
+    second[21] = d_t0_b_z;
+    second[22] = d_t1_b_z;
+    second[23] = d_t2_b_z;
+    second[24] = d_w_x_b_z;
+    second[25] = d_w_y_b_z;
+    second[26] = d_w_z_b_z;
+    second[27] = -G[0]*d_w_x_G_t_x - G[3]*d_w_y_G_t_x - G[6]*d_w_z_G_t_x + c_place_x*d_wet0_G_t_x;
+    second[28] = -G[1]*d_w_x_G_t_x - G[4]*d_w_y_G_t_x - G[7]*d_w_z_G_t_x + c_place_y*d_wet0_G_t_x;
+    second[29] = -G[2]*d_w_x_G_t_x - G[5]*d_w_y_G_t_x - G[8]*d_w_z_G_t_x + c_place_z*d_wet0_G_t_x;
+    second[30] = d_t0_G_t_x;
+    second[31] = d_t1_G_t_x;
+    second[32] = d_t2_G_t_x;
+    second[33] = d_w_x_G_t_x;
+    second[34] = d_w_y_G_t_x;
+    second[35] = d_w_z_G_t_x;
+    second[36] = -G[0]*d_w_x_G_t_y - G[3]*d_w_y_G_t_y - G[6]*d_w_z_G_t_y + c_place_x*d_wet0_G_t_y;
+    second[37] = -G[1]*d_w_x_G_t_y - G[4]*d_w_y_G_t_y - G[7]*d_w_z_G_t_y + c_place_y*d_wet0_G_t_y;
+    second[38] = -G[2]*d_w_x_G_t_y - G[5]*d_w_y_G_t_y - G[8]*d_w_z_G_t_y + c_place_z*d_wet0_G_t_y;
+    second[39] = d_t0_G_t_y;
+    second[40] = d_t1_G_t_y;
+    second[41] = d_t2_G_t_y;
+    second[42] = d_w_x_G_t_y;
+    second[43] = d_w_y_G_t_y;
+    second[44] = d_w_z_G_t_y;
+    second[45] = -G[0]*d_w_x_G_t_z - G[3]*d_w_y_G_t_z - G[6]*d_w_z_G_t_z + c_place_x*d_wet0_G_t_z;
+    second[46] = -G[1]*d_w_x_G_t_z - G[4]*d_w_y_G_t_z - G[7]*d_w_z_G_t_z + c_place_y*d_wet0_G_t_z;
+    second[47] = -G[2]*d_w_x_G_t_z - G[5]*d_w_y_G_t_z - G[8]*d_w_z_G_t_z + c_place_z*d_wet0_G_t_z;
+    second[48] = d_t0_G_t_z;
+    second[49] = d_t1_G_t_z;
+    second[50] = d_t2_G_t_z;
+    second[51] = d_w_x_G_t_z;
+    second[52] = d_w_y_G_t_z;
+    second[53] = d_w_z_G_t_z;
+    second[54] = -G[0]*d_w_x_P_wet_x_2 - G[3]*d_w_y_P_wet_x_2 - G[6]*d_w_z_P_wet_x_2 + P_x*c_place_x;
+    second[55] = -G[1]*d_w_x_P_wet_x_2 - G[4]*d_w_y_P_wet_x_2 - G[7]*d_w_z_P_wet_x_2 + P_x*c_place_y;
+    second[56] = -G[2]*d_w_x_P_wet_x_2 - G[5]*d_w_y_P_wet_x_2 - G[8]*d_w_z_P_wet_x_2 + P_x*c_place_z;
+    second[57] = d_t0_P_wet_x_2;
+    second[58] = d_t1_P_wet_x_2;
+    second[59] = d_t2_P_wet_x_2;
+    second[60] = d_w_x_P_wet_x_2;
+    second[61] = d_w_y_P_wet_x_2;
+    second[62] = d_w_z_P_wet_x_2;
+    second[63] = -G[0]*d_w_x_P_wet_y_2 - G[3]*d_w_y_P_wet_y_2 - G[6]*d_w_z_P_wet_y_2 + P_y*c_place_x;
+    second[64] = -G[1]*d_w_x_P_wet_y_2 - G[4]*d_w_y_P_wet_y_2 - G[7]*d_w_z_P_wet_y_2 + P_y*c_place_y;
+    second[65] = -G[2]*d_w_x_P_wet_y_2 - G[5]*d_w_y_P_wet_y_2 - G[8]*d_w_z_P_wet_y_2 + P_y*c_place_z;
+    second[66] = d_t0_P_wet_y_2;
+    second[67] = d_t1_P_wet_y_2;
+    second[68] = d_t2_P_wet_y_2;
+    second[69] = d_w_x_P_wet_y_2;
+    second[70] = d_w_y_P_wet_y_2;
+    second[71] = d_w_z_P_wet_y_2;
+    second[72] = -G[0]*d_w_x_P_wet_z_2 - G[3]*d_w_y_P_wet_z_2 - G[6]*d_w_z_P_wet_z_2 + P_z*c_place_x;
+    second[73] = -G[1]*d_w_x_P_wet_z_2 - G[4]*d_w_y_P_wet_z_2 - G[7]*d_w_z_P_wet_z_2 + P_z*c_place_y;
+    second[74] = -G[2]*d_w_x_P_wet_z_2 - G[5]*d_w_y_P_wet_z_2 - G[8]*d_w_z_P_wet_z_2 + P_z*c_place_z;
+    second[75] = d_t0_P_wet_z_2;
+    second[76] = d_t1_P_wet_z_2;
+    second[77] = d_t2_P_wet_z_2;
+    second[78] = d_w_x_P_wet_z_2;
+    second[79] = d_w_y_P_wet_z_2;
+    second[80] = d_w_z_P_wet_z_2;
+    rate_by[0] = G[0]*(G[0]*d_material_x_x_x - d_w_x_P_wet_rate_x) + G[3]*(G[1]*d_material_x_x_x - d_w_y_P_wet_rate_x) + G[6]*(G[2]*d_material_x_x_x - d_w_z_P_wet_rate_x) + c_place_x*d_wet0_x_x + up[0]*wet[2]*(d_c_place_x_P_wet_rate_x*up[0] + d_c_place_y_P_wet_rate_x*up[1] + d_c_place_z_P_wet_rate_x*up[2]);
+    rate_by[1] = G[1]*(G[0]*d_material_x_x_x - d_w_x_P_wet_rate_x) + G[4]*(G[1]*d_material_x_x_x - d_w_y_P_wet_rate_x) + G[7]*(G[2]*d_material_x_x_x - d_w_z_P_wet_rate_x) + c_place_y*d_wet0_x_x + up[1]*wet[2]*(d_c_place_x_P_wet_rate_x*up[0] + d_c_place_y_P_wet_rate_x*up[1] + d_c_place_z_P_wet_rate_x*up[2]);
+    rate_by[2] = G[2]*(G[0]*d_material_x_x_x - d_w_x_P_wet_rate_x) + G[5]*(G[1]*d_material_x_x_x - d_w_y_P_wet_rate_x) + G[8]*(G[2]*d_material_x_x_x - d_w_z_P_wet_rate_x) + c_place_z*d_wet0_x_x + up[2]*wet[2]*(d_c_place_x_P_wet_rate_x*up[0] + d_c_place_y_P_wet_rate_x*up[1] + d_c_place_z_P_wet_rate_x*up[2]);
+    rate_by[3] = d_t0_P_wet_rate_x;
+    rate_by[4] = d_t1_P_wet_rate_x;
+    rate_by[5] = d_t2_P_wet_rate_x;
+    rate_by[6] = d_w_x_P_wet_rate_x;
+    rate_by[7] = d_w_y_P_wet_rate_x;
+    rate_by[8] = d_w_z_P_wet_rate_x;
+    rate_by[9] = d_t_rate0_P_wet_rate_x;
+    rate_by[10] = d_t_rate1_P_wet_rate_x;
+    rate_by[11] = d_t_rate2_P_wet_rate_x;
+    rate_by[12] = -G[0]*d_w_rate_x_P_wet_rate_x - G[3]*d_w_rate_y_P_wet_rate_x - G[6]*d_w_rate_z_P_wet_rate_x + d_y0_P_wet_rate_x;
+    rate_by[13] = -G[1]*d_w_rate_x_P_wet_rate_x - G[4]*d_w_rate_y_P_wet_rate_x - G[7]*d_w_rate_z_P_wet_rate_x + d_y1_P_wet_rate_x;
+    rate_by[14] = -G[2]*d_w_rate_x_P_wet_rate_x - G[5]*d_w_rate_y_P_wet_rate_x - G[8]*d_w_rate_z_P_wet_rate_x + d_y2_P_wet_rate_x;
+    rate_by[15] = d_w_rate_x_P_wet_rate_x;
+    rate_by[16] = d_w_rate_y_P_wet_rate_x;
+    rate_by[17] = d_w_rate_z_P_wet_rate_x;
+    rate_by[18] = G[0]*(G[3]*d_material_y_x_y - d_w_x_P_wet_rate_y) + G[3]*(G[4]*d_material_y_x_y - d_w_y_P_wet_rate_y) + G[6]*(G[5]*d_material_y_x_y - d_w_z_P_wet_rate_y) + c_place_x*d_wet0_x_y + up[0]*wet[2]*(d_c_place_x_P_wet_rate_y*up[0] + d_c_place_y_P_wet_rate_y*up[1] + d_c_place_z_P_wet_rate_y*up[2]);
+    rate_by[19] = G[1]*(G[3]*d_material_y_x_y - d_w_x_P_wet_rate_y) + G[4]*(G[4]*d_material_y_x_y - d_w_y_P_wet_rate_y) + G[7]*(G[5]*d_material_y_x_y - d_w_z_P_wet_rate_y) + c_place_y*d_wet0_x_y + up[1]*wet[2]*(d_c_place_x_P_wet_rate_y*up[0] + d_c_place_y_P_wet_rate_y*up[1] + d_c_place_z_P_wet_rate_y*up[2]);
+    rate_by[20] = G[2]*(G[3]*d_material_y_x_y - d_w_x_P_wet_rate_y) + G[5]*(G[4]*d_material_y_x_y - d_w_y_P_wet_rate_y) + G[8]*(G[5]*d_material_y_x_y - d_w_z_P_wet_rate_y) + c_place_z*d_wet0_x_y + up[2]*wet[2]*(d_c_place_x_P_wet_rate_y*up[0] + d_c_place_y_P_wet_rate_y*up[1] + d_c_place_z_P_wet_rate_y*up[2]);
+    rate_by[21] = d_t0_P_wet_rate_y;
+    rate_by[22] = d_t1_P_wet_rate_y;
+    rate_by[23] = d_t2_P_wet_rate_y;
+    rate_by[24] = d_w_x_P_wet_rate_y;
+    rate_by[25] = d_w_y_P_wet_rate_y;
+    rate_by[26] = d_w_z_P_wet_rate_y;
+    rate_by[27] = d_t_rate0_P_wet_rate_y;
+    rate_by[28] = d_t_rate1_P_wet_rate_y;
+    rate_by[29] = d_t_rate2_P_wet_rate_y;
+    rate_by[30] = -G[0]*d_w_rate_x_P_wet_rate_y - G[3]*d_w_rate_y_P_wet_rate_y - G[6]*d_w_rate_z_P_wet_rate_y + d_y0_P_wet_rate_y;
+    rate_by[31] = -G[1]*d_w_rate_x_P_wet_rate_y - G[4]*d_w_rate_y_P_wet_rate_y - G[7]*d_w_rate_z_P_wet_rate_y + d_y1_P_wet_rate_y;
+    rate_by[32] = -G[2]*d_w_rate_x_P_wet_rate_y - G[5]*d_w_rate_y_P_wet_rate_y - G[8]*d_w_rate_z_P_wet_rate_y + d_y2_P_wet_rate_y;
+    rate_by[33] = d_w_rate_x_P_wet_rate_y;
+    rate_by[34] = d_w_rate_y_P_wet_rate_y;
+    rate_by[35] = d_w_rate_z_P_wet_rate_y;
+    rate_by[36] = G[0]*(G[6]*d_material_z_x_z - d_w_x_P_wet_rate_z) + G[3]*(G[7]*d_material_z_x_z - d_w_y_P_wet_rate_z) + G[6]*(G[8]*d_material_z_x_z - d_w_z_P_wet_rate_z) + c_place_x*d_wet0_x_z + up[0]*wet[2]*(d_c_place_x_P_wet_rate_z*up[0] + d_c_place_y_P_wet_rate_z*up[1] + d_c_place_z_P_wet_rate_z*up[2]);
+    rate_by[37] = G[1]*(G[6]*d_material_z_x_z - d_w_x_P_wet_rate_z) + G[4]*(G[7]*d_material_z_x_z - d_w_y_P_wet_rate_z) + G[7]*(G[8]*d_material_z_x_z - d_w_z_P_wet_rate_z) + c_place_y*d_wet0_x_z + up[1]*wet[2]*(d_c_place_x_P_wet_rate_z*up[0] + d_c_place_y_P_wet_rate_z*up[1] + d_c_place_z_P_wet_rate_z*up[2]);
+    rate_by[38] = G[2]*(G[6]*d_material_z_x_z - d_w_x_P_wet_rate_z) + G[5]*(G[7]*d_material_z_x_z - d_w_y_P_wet_rate_z) + G[8]*(G[8]*d_material_z_x_z - d_w_z_P_wet_rate_z) + c_place_z*d_wet0_x_z + up[2]*wet[2]*(d_c_place_x_P_wet_rate_z*up[0] + d_c_place_y_P_wet_rate_z*up[1] + d_c_place_z_P_wet_rate_z*up[2]);
+    rate_by[39] = d_t0_P_wet_rate_z;
+    rate_by[40] = d_t1_P_wet_rate_z;
+    rate_by[41] = d_t2_P_wet_rate_z;
+    rate_by[42] = d_w_x_P_wet_rate_z;
+    rate_by[43] = d_w_y_P_wet_rate_z;
+    rate_by[44] = d_w_z_P_wet_rate_z;
+    rate_by[45] = d_t_rate0_P_wet_rate_z;
+    rate_by[46] = d_t_rate1_P_wet_rate_z;
+    rate_by[47] = d_t_rate2_P_wet_rate_z;
+    rate_by[48] = -G[0]*d_w_rate_x_P_wet_rate_z - G[3]*d_w_rate_y_P_wet_rate_z - G[6]*d_w_rate_z_P_wet_rate_z + d_y0_P_wet_rate_z;
+    rate_by[49] = -G[1]*d_w_rate_x_P_wet_rate_z - G[4]*d_w_rate_y_P_wet_rate_z - G[7]*d_w_rate_z_P_wet_rate_z + d_y1_P_wet_rate_z;
+    rate_by[50] = -G[2]*d_w_rate_x_P_wet_rate_z - G[5]*d_w_rate_y_P_wet_rate_z - G[8]*d_w_rate_z_P_wet_rate_z + d_y2_P_wet_rate_z;
+    rate_by[51] = d_w_rate_x_P_wet_rate_z;
+    rate_by[52] = d_w_rate_y_P_wet_rate_z;
+    rate_by[53] = d_w_rate_z_P_wet_rate_z;
 }
 
 /* impulse of the fluid at a body, and its mass (Lamb, Hydrodynamics, art. 124; Taylor 1928); 42 add, 63 mul */
@@ -1498,7 +2038,17 @@ void drag_inertia_of_point_tangent(const fu_real *A, const fu_real *C, const fu_
         d_w_rate_z_P_wet_rate_x = M_z[0]*wet[0],
         d_w_rate_z_P_wet_rate_y = M_z[1]*wet[0],
         d_w_rate_z_P_wet_rate_z = M_z[2]*wet[0];
-    DRAG_PART_OF_DERIVATIVES
+    DRAG_PART_OF_DERIVATIVES_6
+    const fu_real
+        d_wet0_carried_x = displaced*material_x,
+        d_wet0_strained_x = G[0]*P_x + G[3]*P_y + G[6]*P_z,
+        d_wet0_F_x = P_rate_x - d_wet0_carried_x + d_wet0_strained_x,
+        d_wet0_carried_y = displaced*material_y,
+        d_wet0_strained_y = G[1]*P_x + G[4]*P_y + G[7]*P_z,
+        d_wet0_F_y = P_rate_y - d_wet0_carried_y + d_wet0_strained_y,
+        d_wet0_carried_z = displaced*material_z,
+        d_wet0_strained_z = G[2]*P_x + G[5]*P_y + G[8]*P_z;
+    DRAG_PART_OF_DERIVATIVES_7
     const fu_real
         d_omega0_rest_z = -w_y,
         d_omega0_P_rate_x = M_y[0]*w_z + M_z[0]*d_omega0_rest_z,

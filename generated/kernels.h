@@ -1023,6 +1023,26 @@ fu_drag_inertia_step_kernel drag_inertia_step;
 /* t 2, t_next 2, w 2, w_next 2, m 2, dp 2, g 2 */
 fu_drag_inertia_step_kernel planar_drag_inertia_step;
 
+typedef void fu_drag_inertia_of_span_kernel(fu_real growth, const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *y, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *T_r, fu_real *T_t, fu_real *T_v, fu_real *rate, fu_real *energy, fu_real *power);
+/* kinetic energy of the fluid along a rope, and its derivatives: growth [1/s]; t [1]; t_rate [1/s]; m [kg/m];
+ * displaced [kg/m]; v [m/s]; y [m/s]; a [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2]; up [1] ->
+ * T_r [N/m]; T_t [N]; T_v [kg/s]; rate [N/m]; energy [J/m]; power [W/m] */
+/* t 3, t_rate 3, m 2, v 3, y 3, a 3, U 3, U_rate 3, G 3x3, wet 3, up 3, T_r 3, T_t 3, T_v 3, rate 3, energy 1, power
+ * 1 */
+fu_drag_inertia_of_span_kernel drag_inertia_of_span;
+/* t 2, t_rate 2, m 2, v 2, y 2, a 2, U 2, U_rate 2, G 2x2, wet 3, up 2, T_r 2, T_t 2, T_v 2, rate 2, energy 1, power
+ * 1 */
+fu_drag_inertia_of_span_kernel planar_drag_inertia_of_span;
+
+typedef void fu_drag_inertia_of_span_tangent_kernel(fu_real growth, const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *y, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *second, fu_real *rate_by);
+/* second derivatives of the kinetic energy of the fluid along a rope, and derivatives of the rate of the impulse:
+ * growth [1/s]; t [1]; t_rate [1/s]; m [kg/m]; displaced [kg/m]; v [m/s]; y [m/s]; a [m/s^2]; U [m/s]; U_rate
+ * [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2]; up [1] -> second [SI]; rate_by [SI] */
+/* t 3, t_rate 3, m 2, v 3, y 3, a 3, U 3, U_rate 3, G 3x3, wet 3, up 3, second 9x9, rate_by 3x18 */
+fu_drag_inertia_of_span_tangent_kernel drag_inertia_of_span_tangent;
+/* t 2, t_rate 2, m 2, v 2, y 2, a 2, U 2, U_rate 2, G 2x2, wet 3, up 2, second 6x6, rate_by 2x12 */
+fu_drag_inertia_of_span_tangent_kernel planar_drag_inertia_of_span_tangent;
+
 typedef void fu_drag_impulse_of_point_kernel(const fu_real *A, const fu_real *C, const fu_real *w, fu_real *p, fu_real *M);
 /* impulse of the fluid at a body, and its mass: A [1]; C [kg]; w [m/s] -> p [kg m/s]; M [kg] */
 /* A 3x3, C 3x3, w 3, p 3, M 3x3 */
@@ -1711,6 +1731,34 @@ fu_span_point_tangent_kernel span_cable8p_point_tangent;
 /* e 4x3, v 4x3, s_rate 2, r_q 3x13, v_q 3x13, v_v 3x14 */
 fu_span_point_tangent_kernel span_cable12_point_tangent;
 
+typedef void fu_span_motion_kernel(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real xi, const fu_real *a, const fu_real *s_acc, fu_real *r, fu_real *r_S, fu_real *velocity, fu_real *slope_rate, fu_real *place_rate, fu_real *velocity_rate, fu_real *growth);
+/* motion of the material at a constant share of the length: l [m]; e [m, 1]; v [m/s, 1/s]; s_rate [m/s]; xi [1]; a
+ * [m/s^2, 1/s^2]; s_acc [m/s^2] -> r [m]; r_S [1]; velocity [m/s]; slope_rate [1/s]; place_rate [m/s]; velocity_rate
+ * [m/s^2]; growth [1/s] */
+/* e 4x2, v 4x2, s_rate 2, a 4x2, s_acc 2, r 2, r_S 2, velocity 2, slope_rate 2, place_rate 2, velocity_rate 2,
+ * growth 1 */
+fu_span_motion_kernel span_cable8p_motion;
+/* e 4x3, v 4x3, s_rate 2, a 4x3, s_acc 2, r 3, r_S 3, velocity 3, slope_rate 3, place_rate 3, velocity_rate 3,
+ * growth 1 */
+fu_span_motion_kernel span_cable12_motion;
+
+typedef void fu_span_kinetic_force_kernel(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real xi, fu_real part, const fu_real *T_r, const fu_real *T_t, const fu_real *T_v, const fu_real *rate, fu_real T, fu_real *f, fu_real *f_s);
+/* generalised forces of a kinetic energy of the material: l [m]; e [m, 1]; v [m/s, 1/s]; s_rate [m/s]; xi [1]; part
+ * [1]; T_r [N/m]; T_t [N]; T_v [kg/s]; rate [N/m]; T [J/m] -> f [N, N m]; f_s [N] */
+/* e 4x2, v 4x2, s_rate 2, T_r 2, T_t 2, T_v 2, rate 2, f 4x2, f_s 2 */
+fu_span_kinetic_force_kernel span_cable8p_kinetic_force;
+/* e 4x3, v 4x3, s_rate 2, T_r 3, T_t 3, T_v 3, rate 3, f 4x3, f_s 2 */
+fu_span_kinetic_force_kernel span_cable12_kinetic_force;
+
+typedef void fu_span_kinetic_force_tangent_kernel(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real xi, const fu_real *a, const fu_real *s_acc, fu_real part, const fu_real *T_r, const fu_real *T_t, const fu_real *T_v, const fu_real *rate, const fu_real *second, const fu_real *rate_by, fu_real *D, fu_real *K);
+/* derivatives of the generalised forces of a kinetic energy: l [m]; e [m, 1]; v [m/s, 1/s]; s_rate [m/s]; xi [1]; a
+ * [m/s^2, 1/s^2]; s_acc [m/s^2]; part [1]; T_r [N/m]; T_t [N]; T_v [kg/s]; rate [N/m]; second [SI]; rate_by [SI] ->
+ * D [SI]; K [SI] */
+/* e 4x2, v 4x2, s_rate 2, a 4x2, s_acc 2, T_r 2, T_t 2, T_v 2, rate 2, second 6x6, rate_by 2x12, D 10x10, K 10x9 */
+fu_span_kinetic_force_tangent_kernel span_cable8p_kinetic_force_tangent;
+/* e 4x3, v 4x3, s_rate 2, a 4x3, s_acc 2, T_r 3, T_t 3, T_v 3, rate 3, second 9x9, rate_by 3x18, D 14x14, K 14x13 */
+fu_span_kinetic_force_tangent_kernel span_cable12_kinetic_force_tangent;
+
 typedef void fu_surface_flat_kernel(const fu_real *y, const fu_real *normal, fu_real *g, fu_real *g_y);
 /* distance from a plane, and its gradient: y [m]; normal [1] -> g [m]; g_y [1] */
 /* y 3, normal 3, g 1, g_y 3 */
@@ -2232,6 +2280,8 @@ typedef struct {
     fu_drag_inertia_of_cable_kernel *inertia_of_cable;
     fu_drag_inertia_of_cable_tangent_kernel *inertia_of_cable_tangent;
     fu_drag_inertia_step_kernel *inertia_step;
+    fu_drag_inertia_of_span_kernel *inertia_of_span;
+    fu_drag_inertia_of_span_tangent_kernel *inertia_of_span_tangent;
     fu_drag_impulse_of_point_kernel *impulse_of_point;
     fu_drag_inertia_of_point_kernel *inertia_of_point;
     fu_drag_inertia_of_point_tangent_kernel *inertia_of_point_tangent;
@@ -2366,6 +2416,9 @@ typedef struct {
     fu_span_stored_force_tangent_kernel *stored_force_tangent;
     fu_span_share_kernel *share;
     fu_span_point_tangent_kernel *point_tangent;
+    fu_span_motion_kernel *motion;
+    fu_span_kinetic_force_kernel *kinetic_force;
+    fu_span_kinetic_force_tangent_kernel *kinetic_force_tangent;
 } fu_span_kernels;
 
 /* What the engine needs of a surface. */

@@ -7,17 +7,36 @@
 /* part of derivatives: of planar_drag_inertia_of_cable_tangent and 1 more */
 #define PLANAR_DRAG_PART_OF_DERIVATIVES \
     const fu_real \
-        d_material_x_F_x = -displaced_wet, \
-        d_material_y_F_y = -displaced_wet, \
-        d_v0_P_wet_rate_x = P_x*c_place_x, \
-        d_v0_P_wet_rate_y = P_y*c_place_x, \
-        d_v1_P_wet_rate_x = P_x*c_place_y, \
-        d_v1_P_wet_rate_y = P_y*c_place_y, \
-        d_wet0_carried_x = displaced*material_x, \
-        d_wet0_strained_x = G[0]*P_x + G[2]*P_y, \
-        d_wet0_F_x = P_rate_x - d_wet0_carried_x + d_wet0_strained_x, \
-        d_wet0_carried_y = displaced*material_y, \
-        d_wet0_strained_y = G[1]*P_x + G[3]*P_y, \
+        d_t_rate0_i_rate_x = inv_len_t*(-i_x*i_x + 1.0), \
+        d_t_rate0_i_rate_y = -(i_x*i_y*inv_len_t), \
+        d_t_rate0_w_t_rate = d_t_rate0_i_rate_x*w_x + d_t_rate0_i_rate_y*w_y, \
+        d_t_rate0_P_rate_x = -d_t_rate0_i_rate_x*less*w_t - d_t_rate0_w_t_rate*i_x*less, \
+        d_t_rate0_P_wet_rate_x = d_t_rate0_P_rate_x*wet[0], \
+        d_t_rate0_P_rate_y = -d_t_rate0_i_rate_y*less*w_t - d_t_rate0_w_t_rate*i_y*less, \
+        d_t_rate0_P_wet_rate_y = d_t_rate0_P_rate_y*wet[0], \
+        d_t_rate1_i_rate_x = -(i_x*i_y*inv_len_t), \
+        d_t_rate1_i_rate_y = inv_len_t*(-i_y*i_y + 1.0), \
+        d_t_rate1_w_t_rate = d_t_rate1_i_rate_x*w_x + d_t_rate1_i_rate_y*w_y, \
+        d_t_rate1_P_rate_x = -d_t_rate1_i_rate_x*less*w_t - d_t_rate1_w_t_rate*i_x*less, \
+        d_t_rate1_P_wet_rate_x = d_t_rate1_P_rate_x*wet[0], \
+        d_t_rate1_P_rate_y = -d_t_rate1_i_rate_y*less*w_t - d_t_rate1_w_t_rate*i_y*less, \
+        d_t_rate1_P_wet_rate_y = d_t_rate1_P_rate_y*wet[0];
+
+/* part of derivatives: of planar_drag_inertia_of_cable_tangent and 1 more */
+#define PLANAR_DRAG_PART_OF_DERIVATIVES_2 \
+    const fu_real \
+        d_w_rate_x_P_rate_x = -i_x*i_x*less + m[0], \
+        d_w_rate_x_P_wet_rate_x = d_w_rate_x_P_rate_x*wet[0], \
+        d_w_rate_x_P_rate_y = -(i_x*i_y*less), \
+        d_w_rate_x_P_wet_rate_y = d_w_rate_x_P_rate_y*wet[0], \
+        d_w_rate_y_P_rate_x = -(i_x*i_y*less), \
+        d_w_rate_y_P_wet_rate_x = d_w_rate_y_P_rate_x*wet[0], \
+        d_w_rate_y_P_rate_y = -i_y*i_y*less + m[0], \
+        d_w_rate_y_P_wet_rate_y = d_w_rate_y_P_rate_y*wet[0];
+
+/* part of derivatives: of planar_drag_inertia_of_cable_tangent and 1 more */
+#define PLANAR_DRAG_PART_OF_DERIVATIVES_3 \
+    const fu_real \
         d_wet0_F_y = P_rate_y - d_wet0_carried_y + d_wet0_strained_y, \
         d_c_place_x_P_wet_rate_x = P_x*v[0], \
         d_c_place_x_F_x = -T + d_c_place_x_P_wet_rate_x, \
@@ -25,6 +44,39 @@
         d_c_place_y_P_wet_rate_x = P_x*v[1], \
         d_c_place_y_P_wet_rate_y = P_y*v[1], \
         d_c_place_y_F_y = -T + d_c_place_y_P_wet_rate_y;
+
+/* part of derivatives: of planar_drag_inertia_of_cable_tangent and 1 more */
+#define PLANAR_DRAG_PART_OF_DERIVATIVES_4 \
+    const fu_real \
+        d_t0_len_t_2 = inv_len_t*t[0], \
+        d_t0_inv_len_t_2 = -(d_t0_len_t_2*inv_len_t*inv_len_t), \
+        d_t0_i_x_2 = d_t0_inv_len_t_2*t[0] + inv_len_t, \
+        d_t0_i_y_2 = d_t0_inv_len_t_2*t[1], \
+        d_t0_w_t_2 = d_t0_i_x_2*w_x + d_t0_i_y_2*w_y, \
+        d_t0_pull = d_t0_inv_len_t_2*less*w_t*wet[0] + d_t0_w_t_2*inv_len_t*less*wet[0], \
+        d_t0_G_t_x = d_t0_i_x_2*pull*w_t + d_t0_pull*(i_x*w_t - w_x) + d_t0_w_t_2*i_x*pull, \
+        d_t0_G_t_y = d_t0_i_y_2*pull*w_t + d_t0_pull*(i_y*w_t - w_y) + d_t0_w_t_2*i_y*pull, \
+        d_t1_len_t_2 = inv_len_t*t[1], \
+        d_t1_inv_len_t_2 = -(d_t1_len_t_2*inv_len_t*inv_len_t), \
+        d_t1_i_x_2 = d_t1_inv_len_t_2*t[0], \
+        d_t1_i_y_2 = d_t1_inv_len_t_2*t[1] + inv_len_t, \
+        d_t1_w_t_2 = d_t1_i_x_2*w_x + d_t1_i_y_2*w_y, \
+        d_t1_pull = d_t1_inv_len_t_2*less*w_t*wet[0] + d_t1_w_t_2*inv_len_t*less*wet[0], \
+        d_t1_G_t_x = d_t1_i_x_2*pull*w_t + d_t1_pull*(i_x*w_t - w_x) + d_t1_w_t_2*i_x*pull, \
+        d_t1_G_t_y = d_t1_i_y_2*pull*w_t + d_t1_pull*(i_y*w_t - w_y) + d_t1_w_t_2*i_y*pull;
+
+/* part of derivatives: of planar_drag_inertia_of_cable_tangent and 1 more */
+#define PLANAR_DRAG_PART_OF_DERIVATIVES_5 \
+    const fu_real \
+        d_w_x_pull = i_x*inv_len_t*less*wet[0], \
+        d_w_x_G_t_x = d_w_x_pull*(i_x*w_t - w_x) + i_x*i_x*pull - pull, \
+        d_w_x_G_t_y = d_w_x_pull*(i_y*w_t - w_y) + i_x*i_y*pull, \
+        d_w_y_pull = i_y*inv_len_t*less*wet[0], \
+        d_w_y_G_t_x = d_w_y_pull*(i_x*w_t - w_x) + i_x*i_y*pull, \
+        d_w_y_G_t_y = d_w_y_pull*(i_y*w_t - w_y) + i_y*i_y*pull - pull, \
+        d_wet0_pull = inv_len_t*less*w_t, \
+        d_wet0_G_t_x = d_wet0_pull*(i_x*w_t - w_x), \
+        d_wet0_G_t_y = d_wet0_pull*(i_y*w_t - w_y);
 
 /* motion past the fluid: of planar_drag_inertia_of_cable and 3 more */
 #define PLANAR_DRAG_MOTION_PAST_THE_FLUID \
@@ -38,7 +90,7 @@
         c_place_x = up[0]*wet[1], \
         c_place_y = up[1]*wet[1];
 
-/* tangent and its rate: of planar_drag_inertia_of_cable and 1 more */
+/* tangent and its rate: of planar_drag_inertia_of_cable and 3 more */
 #define PLANAR_DRAG_TANGENT_AND_ITS_RATE \
     const fu_real \
         less = m[0] - m[1], \
@@ -49,7 +101,7 @@
         i_rate_x = inv_len_t*(-i_x*(i_x*t_rate[0] + i_y*t_rate[1]) + t_rate[0]), \
         i_rate_y = inv_len_t*(-i_y*(i_x*t_rate[0] + i_y*t_rate[1]) + t_rate[1]);
 
-/* impulse and its rate: of planar_drag_inertia_of_cable and 1 more */
+/* impulse and its rate: of planar_drag_inertia_of_cable and 3 more */
 #define PLANAR_DRAG_IMPULSE_AND_ITS_RATE \
     const fu_real \
         w_t = i_x*w_x + i_y*w_y, \
@@ -75,6 +127,18 @@
         T = 0.5*P_x*w_x + 0.5*P_y*w_y, \
         F_x = P_wet_rate_x - T*c_place_x - carried_x + strained_x, \
         F_y = P_wet_rate_y - T*c_place_y - carried_y + strained_y;
+
+/* motion past the fluid: of planar_drag_inertia_of_span and 1 more */
+#define PLANAR_DRAG_MOTION_PAST_THE_FLUID_2 \
+    const fu_real \
+        w_x = -U[0] + v[0], \
+        w_y = -U[1] + v[1], \
+        w_rate_x = -G[0]*y[0] - G[1]*y[1] - U_rate[0] + a[0], \
+        w_rate_y = -G[2]*y[0] - G[3]*y[1] - U_rate[1] + a[1], \
+        material_x = G[0]*U[0] + G[1]*U[1] + U_rate[0], \
+        material_y = G[2]*U[0] + G[3]*U[1] + U_rate[1], \
+        c_place_x = up[0]*wet[1], \
+        c_place_y = up[1]*wet[1];
 
 /* drag a length of a cable, and its derivatives; 51 add, 136 mul, 11 div, 3 sqrt */
 void planar_drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *c, fu_real *f, fu_real *f_t, fu_real *f_w)
@@ -315,21 +379,9 @@ void planar_drag_inertia_of_cable_tangent(const fu_real *t, const fu_real *t_rat
         d_t1_P_rate_y = -d_t1_i_rate_y*less*w_t - d_t1_i_y*less*w_t_rate - d_t1_w_t*i_rate_y*less - d_t1_w_t_rate*i_y*less,
         d_t1_P_wet_rate_y = c_rate*d_t1_P_y + d_t1_P_rate_y*wet[0],
         d_t1_strained_y = G[1]*d_t1_P_wet_x + G[3]*d_t1_P_wet_y,
-        d_t1_F_y = -c_place_y*d_t1_T + d_t1_P_wet_rate_y + d_t1_strained_y,
-        d_t_rate0_i_rate_x = inv_len_t*(-i_x*i_x + 1.0),
-        d_t_rate0_i_rate_y = -(i_x*i_y*inv_len_t),
-        d_t_rate0_w_t_rate = d_t_rate0_i_rate_x*w_x + d_t_rate0_i_rate_y*w_y,
-        d_t_rate0_P_rate_x = -d_t_rate0_i_rate_x*less*w_t - d_t_rate0_w_t_rate*i_x*less,
-        d_t_rate0_P_wet_rate_x = d_t_rate0_P_rate_x*wet[0],
-        d_t_rate0_P_rate_y = -d_t_rate0_i_rate_y*less*w_t - d_t_rate0_w_t_rate*i_y*less,
-        d_t_rate0_P_wet_rate_y = d_t_rate0_P_rate_y*wet[0],
-        d_t_rate1_i_rate_x = -(i_x*i_y*inv_len_t),
-        d_t_rate1_i_rate_y = inv_len_t*(-i_y*i_y + 1.0),
-        d_t_rate1_w_t_rate = d_t_rate1_i_rate_x*w_x + d_t_rate1_i_rate_y*w_y,
-        d_t_rate1_P_rate_x = -d_t_rate1_i_rate_x*less*w_t - d_t_rate1_w_t_rate*i_x*less,
-        d_t_rate1_P_wet_rate_x = d_t_rate1_P_rate_x*wet[0],
-        d_t_rate1_P_rate_y = -d_t_rate1_i_rate_y*less*w_t - d_t_rate1_w_t_rate*i_y*less,
-        d_t_rate1_P_wet_rate_y = d_t_rate1_P_rate_y*wet[0],
+        d_t1_F_y = -c_place_y*d_t1_T + d_t1_P_wet_rate_y + d_t1_strained_y;
+    PLANAR_DRAG_PART_OF_DERIVATIVES
+    const fu_real
         d_w_x_P_rate_x = -(2.0*i_rate_x*i_x*less),
         d_w_x_P_x = -i_x*i_x*less + m[0],
         d_w_x_P_wet_rate_x = c_rate*d_w_x_P_x + d_w_x_P_rate_x*wet[0],
@@ -355,42 +407,23 @@ void planar_drag_inertia_of_cable_tangent(const fu_real *t, const fu_real *t_rat
         d_w_y_P_rate_y = -(2.0*i_rate_y*i_y*less),
         d_w_y_P_wet_rate_y = c_rate*d_w_y_P_y + d_w_y_P_rate_y*wet[0],
         d_w_y_strained_y = G[1]*d_w_y_P_wet_x + G[3]*d_w_y_P_wet_y,
-        d_w_y_F_y = -c_place_y*d_w_y_T + d_w_y_P_wet_rate_y + d_w_y_strained_y,
-        d_w_rate_x_P_rate_x = -i_x*i_x*less + m[0],
-        d_w_rate_x_P_wet_rate_x = d_w_rate_x_P_rate_x*wet[0],
-        d_w_rate_x_P_rate_y = -(i_x*i_y*less),
-        d_w_rate_x_P_wet_rate_y = d_w_rate_x_P_rate_y*wet[0],
-        d_w_rate_y_P_rate_x = -(i_x*i_y*less),
-        d_w_rate_y_P_wet_rate_x = d_w_rate_y_P_rate_x*wet[0],
-        d_w_rate_y_P_rate_y = -i_y*i_y*less + m[0],
-        d_w_rate_y_P_wet_rate_y = d_w_rate_y_P_rate_y*wet[0];
-    PLANAR_DRAG_PART_OF_DERIVATIVES
+        d_w_y_F_y = -c_place_y*d_w_y_T + d_w_y_P_wet_rate_y + d_w_y_strained_y;
+    PLANAR_DRAG_PART_OF_DERIVATIVES_2
     const fu_real
-        d_t0_len_t_2 = inv_len_t*t[0],
-        d_t0_inv_len_t_2 = -(d_t0_len_t_2*inv_len_t*inv_len_t),
-        d_t0_i_x_2 = d_t0_inv_len_t_2*t[0] + inv_len_t,
-        d_t0_i_y_2 = d_t0_inv_len_t_2*t[1],
-        d_t0_w_t_2 = d_t0_i_x_2*w_x + d_t0_i_y_2*w_y,
-        d_t0_pull = d_t0_inv_len_t_2*less*w_t*wet[0] + d_t0_w_t_2*inv_len_t*less*wet[0],
-        d_t0_G_t_x = d_t0_i_x_2*pull*w_t + d_t0_pull*(i_x*w_t - w_x) + d_t0_w_t_2*i_x*pull,
-        d_t0_G_t_y = d_t0_i_y_2*pull*w_t + d_t0_pull*(i_y*w_t - w_y) + d_t0_w_t_2*i_y*pull,
-        d_t1_len_t_2 = inv_len_t*t[1],
-        d_t1_inv_len_t_2 = -(d_t1_len_t_2*inv_len_t*inv_len_t),
-        d_t1_i_x_2 = d_t1_inv_len_t_2*t[0],
-        d_t1_i_y_2 = d_t1_inv_len_t_2*t[1] + inv_len_t,
-        d_t1_w_t_2 = d_t1_i_x_2*w_x + d_t1_i_y_2*w_y,
-        d_t1_pull = d_t1_inv_len_t_2*less*w_t*wet[0] + d_t1_w_t_2*inv_len_t*less*wet[0],
-        d_t1_G_t_x = d_t1_i_x_2*pull*w_t + d_t1_pull*(i_x*w_t - w_x) + d_t1_w_t_2*i_x*pull,
-        d_t1_G_t_y = d_t1_i_y_2*pull*w_t + d_t1_pull*(i_y*w_t - w_y) + d_t1_w_t_2*i_y*pull,
-        d_w_x_pull = i_x*inv_len_t*less*wet[0],
-        d_w_x_G_t_x = d_w_x_pull*(i_x*w_t - w_x) + i_x*i_x*pull - pull,
-        d_w_x_G_t_y = d_w_x_pull*(i_y*w_t - w_y) + i_x*i_y*pull,
-        d_w_y_pull = i_y*inv_len_t*less*wet[0],
-        d_w_y_G_t_x = d_w_y_pull*(i_x*w_t - w_x) + i_x*i_y*pull,
-        d_w_y_G_t_y = d_w_y_pull*(i_y*w_t - w_y) + i_y*i_y*pull - pull,
-        d_wet0_pull = inv_len_t*less*w_t,
-        d_wet0_G_t_x = d_wet0_pull*(i_x*w_t - w_x),
-        d_wet0_G_t_y = d_wet0_pull*(i_y*w_t - w_y);
+        d_material_x_F_x = -displaced_wet,
+        d_material_y_F_y = -displaced_wet,
+        d_v0_P_wet_rate_x = P_x*c_place_x,
+        d_v0_P_wet_rate_y = P_y*c_place_x,
+        d_v1_P_wet_rate_x = P_x*c_place_y,
+        d_v1_P_wet_rate_y = P_y*c_place_y,
+        d_wet0_carried_x = displaced*material_x,
+        d_wet0_strained_x = G[0]*P_x + G[2]*P_y,
+        d_wet0_F_x = P_rate_x - d_wet0_carried_x + d_wet0_strained_x,
+        d_wet0_carried_y = displaced*material_y,
+        d_wet0_strained_y = G[1]*P_x + G[3]*P_y;
+    PLANAR_DRAG_PART_OF_DERIVATIVES_3
+    PLANAR_DRAG_PART_OF_DERIVATIVES_4
+    PLANAR_DRAG_PART_OF_DERIVATIVES_5
     /* outputs */
     f_t[0] = d_t0_F_x;
     f_t[1] = d_t1_F_x;
@@ -453,6 +486,271 @@ void planar_drag_inertia_step(const fu_real *t, const fu_real *t_next, const fu_
     dp[1] = 2.0*b_y*m[0] - less*(-along*t[1] + along_next*t_next[1]);
     g[0] = scale*(-mean_x*(n0 + n1) + pull_x*(0.5*size + 0.5*size_next));
     g[1] = scale*(-mean_y*(n0 + n1) + pull_y*(0.5*size + 0.5*size_next));
+}
+
+/* kinetic energy of the fluid along a rope, and its derivatives (Lighthill 1971; Lagrange's equations of T); 47 add, 79 mul, 1 div, 1 sqrt */
+void planar_drag_inertia_of_span(fu_real growth, const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *y, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *T_r, fu_real *T_t, fu_real *T_v, fu_real *rate, fu_real *energy, fu_real *power)
+{
+    PLANAR_DRAG_MOTION_PAST_THE_FLUID_2
+    PLANAR_DRAG_TANGENT_AND_ITS_RATE
+    PLANAR_DRAG_IMPULSE_AND_ITS_RATE
+    /* derivative of the kinetic energy by the slope */
+    const fu_real
+        pull = inv_len_t*less*w_t*wet[0],
+        G_t_x = -(pull*(-i_x*w_t + w_x)),
+        G_t_y = -(pull*(-i_y*w_t + w_y));
+    /* force on the particle */
+    const fu_real
+        P_wet_x = P_x*wet[0],
+        P_wet_y = P_y*wet[0],
+        c_rate = c_place_x*y[0] + c_place_y*y[1],
+        P_wet_rate_x = P_rate_x*wet[0] + P_wet_x*growth + P_x*c_rate,
+        P_wet_rate_y = P_rate_y*wet[0] + P_wet_y*growth + P_y*c_rate,
+        strained_x = G[0]*P_wet_x + G[2]*P_wet_y,
+        strained_y = G[1]*P_wet_x + G[3]*P_wet_y,
+        displaced_wet = displaced*wet[0],
+        carried_x = displaced_wet*material_x,
+        carried_y = displaced_wet*material_y,
+        T = 0.5*P_x*w_x + 0.5*P_y*w_y,
+        b_x = T*c_place_x - strained_x,
+        b_y = T*c_place_y - strained_y,
+        x_x = P_wet_rate_x - carried_x,
+        x_y = P_wet_rate_y - carried_y;
+    /* outputs */
+    T_r[0] = b_x;
+    T_r[1] = b_y;
+    T_t[0] = G_t_x;
+    T_t[1] = G_t_y;
+    T_v[0] = P_wet_x;
+    T_v[1] = P_wet_y;
+    rate[0] = x_x;
+    rate[1] = x_y;
+    energy[0] = T*wet[0];
+    power[0] = -P_wet_rate_x*U[0] - P_wet_rate_y*U[1] + carried_x*v[0] + carried_y*v[1] - strained_x*y[0] - strained_y*y[1];
+}
+
+/* second derivatives of the kinetic energy of the fluid along a rope, and derivatives of the rate of the impulse (derivatives of Lighthill 1971; Lagrange's equations of T); 244 add, 588 mul, 1 div, 1 sqrt */
+void planar_drag_inertia_of_span_tangent(fu_real growth, const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *y, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *second, fu_real *rate_by)
+{
+    PLANAR_DRAG_MOTION_PAST_THE_FLUID_2
+    PLANAR_DRAG_TANGENT_AND_ITS_RATE
+    PLANAR_DRAG_IMPULSE_AND_ITS_RATE
+    /* derivative of the kinetic energy by the slope */
+    const fu_real pull = inv_len_t*less*w_t*wet[0];
+    /* force on the particle */
+    const fu_real
+        c_rate = c_place_x*y[0] + c_place_y*y[1],
+        displaced_wet = displaced*wet[0],
+        T = 0.5*P_x*w_x + 0.5*P_y*w_y;
+    /* derivatives */
+    const fu_real
+        d_w_x_P_x = -i_x*i_x*less + m[0],
+        d_w_x_P_y = -(i_x*i_y*less),
+        d_w_x_T = 0.5*P_x + 0.5*d_w_x_P_x*w_x + 0.5*d_w_x_P_y*w_y,
+        d_w_x_P_wet_x = d_w_x_P_x*wet[0],
+        d_w_x_P_wet_y = d_w_x_P_y*wet[0],
+        d_w_x_strained_x = G[0]*d_w_x_P_wet_x + G[2]*d_w_x_P_wet_y,
+        d_w_x_b_x = c_place_x*d_w_x_T - d_w_x_strained_x,
+        d_w_x_strained_y = G[1]*d_w_x_P_wet_x + G[3]*d_w_x_P_wet_y,
+        d_w_x_b_y = c_place_y*d_w_x_T - d_w_x_strained_y,
+        d_w_y_P_x = -(i_x*i_y*less),
+        d_w_y_P_y = -i_y*i_y*less + m[0],
+        d_w_y_T = 0.5*P_y + 0.5*d_w_y_P_x*w_x + 0.5*d_w_y_P_y*w_y,
+        d_w_y_P_wet_x = d_w_y_P_x*wet[0],
+        d_w_y_P_wet_y = d_w_y_P_y*wet[0],
+        d_w_y_strained_x = G[0]*d_w_y_P_wet_x + G[2]*d_w_y_P_wet_y,
+        d_w_y_b_x = c_place_x*d_w_y_T - d_w_y_strained_x,
+        d_w_y_strained_y = G[1]*d_w_y_P_wet_x + G[3]*d_w_y_P_wet_y,
+        d_w_y_b_y = c_place_y*d_w_y_T - d_w_y_strained_y,
+        d_wet0_strained_x = G[0]*P_x + G[2]*P_y,
+        d_wet0_b_x = -d_wet0_strained_x,
+        d_wet0_strained_y = G[1]*P_x + G[3]*P_y,
+        d_wet0_b_y = -d_wet0_strained_y,
+        d_t0_len_t = inv_len_t*t[0],
+        d_t0_inv_len_t = -(d_t0_len_t*inv_len_t*inv_len_t),
+        d_t0_i_x = d_t0_inv_len_t*t[0] + inv_len_t,
+        d_t0_i_y = d_t0_inv_len_t*t[1],
+        d_t0_w_t = d_t0_i_x*w_x + d_t0_i_y*w_y,
+        d_t0_P_x = -d_t0_i_x*less*w_t - d_t0_w_t*i_x*less,
+        d_t0_P_y = -d_t0_i_y*less*w_t - d_t0_w_t*i_y*less,
+        d_t0_T = 0.5*d_t0_P_x*w_x + 0.5*d_t0_P_y*w_y,
+        d_t0_P_wet_x = d_t0_P_x*wet[0],
+        d_t0_P_wet_y = d_t0_P_y*wet[0],
+        d_t0_strained_x = G[0]*d_t0_P_wet_x + G[2]*d_t0_P_wet_y,
+        d_t0_b_x = c_place_x*d_t0_T - d_t0_strained_x,
+        d_t0_strained_y = G[1]*d_t0_P_wet_x + G[3]*d_t0_P_wet_y,
+        d_t0_b_y = c_place_y*d_t0_T - d_t0_strained_y,
+        d_t1_len_t = inv_len_t*t[1],
+        d_t1_inv_len_t = -(d_t1_len_t*inv_len_t*inv_len_t),
+        d_t1_i_x = d_t1_inv_len_t*t[0],
+        d_t1_i_y = d_t1_inv_len_t*t[1] + inv_len_t,
+        d_t1_w_t = d_t1_i_x*w_x + d_t1_i_y*w_y,
+        d_t1_P_x = -d_t1_i_x*less*w_t - d_t1_w_t*i_x*less,
+        d_t1_P_y = -d_t1_i_y*less*w_t - d_t1_w_t*i_y*less,
+        d_t1_T = 0.5*d_t1_P_x*w_x + 0.5*d_t1_P_y*w_y,
+        d_t1_P_wet_x = d_t1_P_x*wet[0],
+        d_t1_P_wet_y = d_t1_P_y*wet[0],
+        d_t1_strained_x = G[0]*d_t1_P_wet_x + G[2]*d_t1_P_wet_y,
+        d_t1_b_x = c_place_x*d_t1_T - d_t1_strained_x,
+        d_t1_strained_y = G[1]*d_t1_P_wet_x + G[3]*d_t1_P_wet_y,
+        d_t1_b_y = c_place_y*d_t1_T - d_t1_strained_y;
+    PLANAR_DRAG_PART_OF_DERIVATIVES_5
+    PLANAR_DRAG_PART_OF_DERIVATIVES_4
+    const fu_real
+        d_w_x_P_x_2 = -i_x*i_x*less + m[0],
+        d_w_x_P_wet_x_2 = d_w_x_P_x_2*wet[0],
+        d_w_x_P_y_2 = -(i_x*i_y*less),
+        d_w_x_P_wet_y_2 = d_w_x_P_y_2*wet[0],
+        d_w_y_P_x_2 = -(i_x*i_y*less),
+        d_w_y_P_wet_x_2 = d_w_y_P_x_2*wet[0],
+        d_w_y_P_y_2 = -i_y*i_y*less + m[0],
+        d_w_y_P_wet_y_2 = d_w_y_P_y_2*wet[0],
+        d_t0_len_t_3 = inv_len_t*t[0],
+        d_t0_inv_len_t_3 = -(d_t0_len_t_3*inv_len_t*inv_len_t),
+        d_t0_i_x_3 = d_t0_inv_len_t_3*t[0] + inv_len_t,
+        d_t0_i_y_3 = d_t0_inv_len_t_3*t[1],
+        d_t0_w_t_3 = d_t0_i_x_3*w_x + d_t0_i_y_3*w_y,
+        d_t0_P_x_2 = -d_t0_i_x_3*less*w_t - d_t0_w_t_3*i_x*less,
+        d_t0_P_wet_x_2 = d_t0_P_x_2*wet[0],
+        d_t0_P_y_2 = -d_t0_i_y_3*less*w_t - d_t0_w_t_3*i_y*less,
+        d_t0_P_wet_y_2 = d_t0_P_y_2*wet[0],
+        d_t1_len_t_3 = inv_len_t*t[1],
+        d_t1_inv_len_t_3 = -(d_t1_len_t_3*inv_len_t*inv_len_t),
+        d_t1_i_x_3 = d_t1_inv_len_t_3*t[0],
+        d_t1_i_y_3 = d_t1_inv_len_t_3*t[1] + inv_len_t,
+        d_t1_w_t_3 = d_t1_i_x_3*w_x + d_t1_i_y_3*w_y,
+        d_t1_P_x_2 = -d_t1_i_x_3*less*w_t - d_t1_w_t_3*i_x*less,
+        d_t1_P_wet_x_2 = d_t1_P_x_2*wet[0],
+        d_t1_P_y_2 = -d_t1_i_y_3*less*w_t - d_t1_w_t_3*i_y*less,
+        d_t1_P_wet_y_2 = d_t1_P_y_2*wet[0],
+        d_w_x_P_rate_x = -(2.0*i_rate_x*i_x*less),
+        d_w_x_P_x_3 = -i_x*i_x*less + m[0],
+        d_w_x_P_wet_x_3 = d_w_x_P_x_3*wet[0],
+        d_w_x_P_wet_rate_x = c_rate*d_w_x_P_x_3 + d_w_x_P_rate_x*wet[0] + d_w_x_P_wet_x_3*growth,
+        d_w_x_P_rate_y = -i_rate_x*i_y*less - i_rate_y*i_x*less,
+        d_w_x_P_y_3 = -(i_x*i_y*less),
+        d_w_x_P_wet_y_3 = d_w_x_P_y_3*wet[0],
+        d_w_x_P_wet_rate_y = c_rate*d_w_x_P_y_3 + d_w_x_P_rate_y*wet[0] + d_w_x_P_wet_y_3*growth,
+        d_w_y_P_rate_x = -i_rate_x*i_y*less - i_rate_y*i_x*less,
+        d_w_y_P_x_3 = -(i_x*i_y*less),
+        d_w_y_P_wet_x_3 = d_w_y_P_x_3*wet[0],
+        d_w_y_P_wet_rate_x = c_rate*d_w_y_P_x_3 + d_w_y_P_rate_x*wet[0] + d_w_y_P_wet_x_3*growth,
+        d_w_y_P_rate_y = -(2.0*i_rate_y*i_y*less),
+        d_w_y_P_y_3 = -i_y*i_y*less + m[0],
+        d_w_y_P_wet_y_3 = d_w_y_P_y_3*wet[0],
+        d_w_y_P_wet_rate_y = c_rate*d_w_y_P_y_3 + d_w_y_P_rate_y*wet[0] + d_w_y_P_wet_y_3*growth;
+    PLANAR_DRAG_PART_OF_DERIVATIVES_2
+    const fu_real
+        d_material_x_x_x = -displaced_wet,
+        d_material_y_x_y = -displaced_wet,
+        d_y0_P_wet_rate_x = P_x*c_place_x,
+        d_y0_P_wet_rate_y = P_y*c_place_x,
+        d_y1_P_wet_rate_x = P_x*c_place_y,
+        d_y1_P_wet_rate_y = P_y*c_place_y,
+        d_wet0_P_wet_rate_x = P_rate_x + P_x*growth,
+        d_wet0_carried_x = displaced*material_x,
+        d_wet0_x_x = d_wet0_P_wet_rate_x - d_wet0_carried_x,
+        d_wet0_P_wet_rate_y = P_rate_y + P_y*growth,
+        d_wet0_carried_y = displaced*material_y,
+        d_wet0_x_y = d_wet0_P_wet_rate_y - d_wet0_carried_y,
+        d_c_place_x_P_wet_rate_x = P_x*y[0],
+        d_c_place_x_P_wet_rate_y = P_y*y[0],
+        d_c_place_y_P_wet_rate_x = P_x*y[1],
+        d_c_place_y_P_wet_rate_y = P_y*y[1],
+        d_t0_len_t_4 = inv_len_t*t[0],
+        d_t0_inv_len_t_4 = -(d_t0_len_t_4*inv_len_t*inv_len_t),
+        d_t0_i_x_4 = d_t0_inv_len_t_4*t[0] + inv_len_t,
+        d_t0_i_y_4 = d_t0_inv_len_t_4*t[1],
+        d_t0_i_rate_x = d_t0_i_x_4*inv_len_t*(-2.0*i_x*t_rate[0] - i_y*t_rate[1]) - d_t0_i_y_4*i_x*inv_len_t*t_rate[1] + d_t0_inv_len_t_4*(-i_x*(i_x*t_rate[0] + i_y*t_rate[1]) + t_rate[0]),
+        d_t0_w_t_4 = d_t0_i_x_4*w_x + d_t0_i_y_4*w_y,
+        d_t0_i_rate_y = -d_t0_i_x_4*i_y*inv_len_t*t_rate[0] + d_t0_i_y_4*inv_len_t*(-i_x*t_rate[0] - 2.0*i_y*t_rate[1]) + d_t0_inv_len_t_4*(-i_y*(i_x*t_rate[0] + i_y*t_rate[1]) + t_rate[1]),
+        d_t0_w_t_rate = d_t0_i_rate_x*w_x + d_t0_i_rate_y*w_y + d_t0_i_x_4*w_rate_x + d_t0_i_y_4*w_rate_y,
+        d_t0_P_rate_x = -d_t0_i_rate_x*less*w_t - d_t0_i_x_4*less*w_t_rate - d_t0_w_t_4*i_rate_x*less - d_t0_w_t_rate*i_x*less,
+        d_t0_P_x_3 = -d_t0_i_x_4*less*w_t - d_t0_w_t_4*i_x*less,
+        d_t0_P_wet_x_3 = d_t0_P_x_3*wet[0],
+        d_t0_P_wet_rate_x = c_rate*d_t0_P_x_3 + d_t0_P_rate_x*wet[0] + d_t0_P_wet_x_3*growth,
+        d_t0_P_rate_y = -d_t0_i_rate_y*less*w_t - d_t0_i_y_4*less*w_t_rate - d_t0_w_t_4*i_rate_y*less - d_t0_w_t_rate*i_y*less,
+        d_t0_P_y_3 = -d_t0_i_y_4*less*w_t - d_t0_w_t_4*i_y*less,
+        d_t0_P_wet_y_3 = d_t0_P_y_3*wet[0],
+        d_t0_P_wet_rate_y = c_rate*d_t0_P_y_3 + d_t0_P_rate_y*wet[0] + d_t0_P_wet_y_3*growth,
+        d_t1_len_t_4 = inv_len_t*t[1],
+        d_t1_inv_len_t_4 = -(d_t1_len_t_4*inv_len_t*inv_len_t),
+        d_t1_i_x_4 = d_t1_inv_len_t_4*t[0],
+        d_t1_i_y_4 = d_t1_inv_len_t_4*t[1] + inv_len_t,
+        d_t1_i_rate_x = d_t1_i_x_4*inv_len_t*(-2.0*i_x*t_rate[0] - i_y*t_rate[1]) - d_t1_i_y_4*i_x*inv_len_t*t_rate[1] + d_t1_inv_len_t_4*(-i_x*(i_x*t_rate[0] + i_y*t_rate[1]) + t_rate[0]),
+        d_t1_w_t_4 = d_t1_i_x_4*w_x + d_t1_i_y_4*w_y,
+        d_t1_i_rate_y = -d_t1_i_x_4*i_y*inv_len_t*t_rate[0] + d_t1_i_y_4*inv_len_t*(-i_x*t_rate[0] - 2.0*i_y*t_rate[1]) + d_t1_inv_len_t_4*(-i_y*(i_x*t_rate[0] + i_y*t_rate[1]) + t_rate[1]),
+        d_t1_w_t_rate = d_t1_i_rate_x*w_x + d_t1_i_rate_y*w_y + d_t1_i_x_4*w_rate_x + d_t1_i_y_4*w_rate_y,
+        d_t1_P_rate_x = -d_t1_i_rate_x*less*w_t - d_t1_i_x_4*less*w_t_rate - d_t1_w_t_4*i_rate_x*less - d_t1_w_t_rate*i_x*less,
+        d_t1_P_x_3 = -d_t1_i_x_4*less*w_t - d_t1_w_t_4*i_x*less,
+        d_t1_P_wet_x_3 = d_t1_P_x_3*wet[0],
+        d_t1_P_wet_rate_x = c_rate*d_t1_P_x_3 + d_t1_P_rate_x*wet[0] + d_t1_P_wet_x_3*growth,
+        d_t1_P_rate_y = -d_t1_i_rate_y*less*w_t - d_t1_i_y_4*less*w_t_rate - d_t1_w_t_4*i_rate_y*less - d_t1_w_t_rate*i_y*less,
+        d_t1_P_y_3 = -d_t1_i_y_4*less*w_t - d_t1_w_t_4*i_y*less,
+        d_t1_P_wet_y_3 = d_t1_P_y_3*wet[0],
+        d_t1_P_wet_rate_y = c_rate*d_t1_P_y_3 + d_t1_P_rate_y*wet[0] + d_t1_P_wet_y_3*growth;
+    PLANAR_DRAG_PART_OF_DERIVATIVES
+    /* outputs */
+    second[0] = -G[0]*d_w_x_b_x - G[2]*d_w_y_b_x + T*up[0]*up[0]*wet[2] + c_place_x*d_wet0_b_x;
+    second[1] = -G[1]*d_w_x_b_x - G[3]*d_w_y_b_x + T*up[0]*up[1]*wet[2] + c_place_y*d_wet0_b_x;
+    second[2] = d_t0_b_x;
+    second[3] = d_t1_b_x;
+    second[4] = d_w_x_b_x;
+    second[5] = d_w_y_b_x;
+    second[6] = -G[0]*d_w_x_b_y - G[2]*d_w_y_b_y + T*up[0]*up[1]*wet[2] + c_place_x*d_wet0_b_y;
+    second[7] = -G[1]*d_w_x_b_y - G[3]*d_w_y_b_y + T*up[1]*up[1]*wet[2] + c_place_y*d_wet0_b_y;
+    second[8] = d_t0_b_y;
+    second[9] = d_t1_b_y;
+    second[10] = d_w_x_b_y;
+    second[11] = d_w_y_b_y;
+    second[12] = -G[0]*d_w_x_G_t_x - G[2]*d_w_y_G_t_x + c_place_x*d_wet0_G_t_x;
+    second[13] = -G[1]*d_w_x_G_t_x - G[3]*d_w_y_G_t_x + c_place_y*d_wet0_G_t_x;
+    second[14] = d_t0_G_t_x;
+    second[15] = d_t1_G_t_x;
+    second[16] = d_w_x_G_t_x;
+    second[17] = d_w_y_G_t_x;
+    second[18] = -G[0]*d_w_x_G_t_y - G[2]*d_w_y_G_t_y + c_place_x*d_wet0_G_t_y;
+    second[19] = -G[1]*d_w_x_G_t_y - G[3]*d_w_y_G_t_y + c_place_y*d_wet0_G_t_y;
+    second[20] = d_t0_G_t_y;
+    second[21] = d_t1_G_t_y;
+    second[22] = d_w_x_G_t_y;
+    second[23] = d_w_y_G_t_y;
+    second[24] = -G[0]*d_w_x_P_wet_x_2 - G[2]*d_w_y_P_wet_x_2 + P_x*c_place_x;
+    second[25] = -G[1]*d_w_x_P_wet_x_2 - G[3]*d_w_y_P_wet_x_2 + P_x*c_place_y;
+    second[26] = d_t0_P_wet_x_2;
+    second[27] = d_t1_P_wet_x_2;
+    second[28] = d_w_x_P_wet_x_2;
+    second[29] = d_w_y_P_wet_x_2;
+    second[30] = -G[0]*d_w_x_P_wet_y_2 - G[2]*d_w_y_P_wet_y_2 + P_y*c_place_x;
+    second[31] = -G[1]*d_w_x_P_wet_y_2 - G[3]*d_w_y_P_wet_y_2 + P_y*c_place_y;
+    second[32] = d_t0_P_wet_y_2;
+    second[33] = d_t1_P_wet_y_2;
+    second[34] = d_w_x_P_wet_y_2;
+    second[35] = d_w_y_P_wet_y_2;
+    rate_by[0] = G[0]*(G[0]*d_material_x_x_x - d_w_x_P_wet_rate_x) + G[2]*(G[1]*d_material_x_x_x - d_w_y_P_wet_rate_x) + c_place_x*d_wet0_x_x + up[0]*wet[2]*(d_c_place_x_P_wet_rate_x*up[0] + d_c_place_y_P_wet_rate_x*up[1]);
+    rate_by[1] = G[1]*(G[0]*d_material_x_x_x - d_w_x_P_wet_rate_x) + G[3]*(G[1]*d_material_x_x_x - d_w_y_P_wet_rate_x) + c_place_y*d_wet0_x_x + up[1]*wet[2]*(d_c_place_x_P_wet_rate_x*up[0] + d_c_place_y_P_wet_rate_x*up[1]);
+    rate_by[2] = d_t0_P_wet_rate_x;
+    rate_by[3] = d_t1_P_wet_rate_x;
+    rate_by[4] = d_w_x_P_wet_rate_x;
+    rate_by[5] = d_w_y_P_wet_rate_x;
+    rate_by[6] = d_t_rate0_P_wet_rate_x;
+    rate_by[7] = d_t_rate1_P_wet_rate_x;
+    rate_by[8] = -G[0]*d_w_rate_x_P_wet_rate_x - G[2]*d_w_rate_y_P_wet_rate_x + d_y0_P_wet_rate_x;
+    rate_by[9] = -G[1]*d_w_rate_x_P_wet_rate_x - G[3]*d_w_rate_y_P_wet_rate_x + d_y1_P_wet_rate_x;
+    rate_by[10] = d_w_rate_x_P_wet_rate_x;
+    rate_by[11] = d_w_rate_y_P_wet_rate_x;
+    rate_by[12] = G[0]*(G[2]*d_material_y_x_y - d_w_x_P_wet_rate_y) + G[2]*(G[3]*d_material_y_x_y - d_w_y_P_wet_rate_y) + c_place_x*d_wet0_x_y + up[0]*wet[2]*(d_c_place_x_P_wet_rate_y*up[0] + d_c_place_y_P_wet_rate_y*up[1]);
+    rate_by[13] = G[1]*(G[2]*d_material_y_x_y - d_w_x_P_wet_rate_y) + G[3]*(G[3]*d_material_y_x_y - d_w_y_P_wet_rate_y) + c_place_y*d_wet0_x_y + up[1]*wet[2]*(d_c_place_x_P_wet_rate_y*up[0] + d_c_place_y_P_wet_rate_y*up[1]);
+    rate_by[14] = d_t0_P_wet_rate_y;
+    rate_by[15] = d_t1_P_wet_rate_y;
+    rate_by[16] = d_w_x_P_wet_rate_y;
+    rate_by[17] = d_w_y_P_wet_rate_y;
+    rate_by[18] = d_t_rate0_P_wet_rate_y;
+    rate_by[19] = d_t_rate1_P_wet_rate_y;
+    rate_by[20] = -G[0]*d_w_rate_x_P_wet_rate_y - G[2]*d_w_rate_y_P_wet_rate_y + d_y0_P_wet_rate_y;
+    rate_by[21] = -G[1]*d_w_rate_x_P_wet_rate_y - G[3]*d_w_rate_y_P_wet_rate_y + d_y1_P_wet_rate_y;
+    rate_by[22] = d_w_rate_x_P_wet_rate_y;
+    rate_by[23] = d_w_rate_y_P_wet_rate_y;
 }
 
 /* impulse of the fluid at a body, and its mass (Lamb, Hydrodynamics, art. 124; Taylor 1928); 10 add, 20 mul */
@@ -584,8 +882,19 @@ void planar_drag_inertia_of_point_tangent(const fu_real *A, const fu_real *C, co
         d_w_rate_x_P_wet_rate_x = M1_x*wet[0],
         d_w_rate_x_P_wet_rate_y = M2_x*wet[0],
         d_w_rate_y_P_wet_rate_x = M1_y*wet[0],
-        d_w_rate_y_P_wet_rate_y = M2_y*wet[0];
-    PLANAR_DRAG_PART_OF_DERIVATIVES
+        d_w_rate_y_P_wet_rate_y = M2_y*wet[0],
+        d_material_x_F_x = -displaced_wet,
+        d_material_y_F_y = -displaced_wet,
+        d_v0_P_wet_rate_x = P_x*c_place_x,
+        d_v0_P_wet_rate_y = P_y*c_place_x,
+        d_v1_P_wet_rate_x = P_x*c_place_y,
+        d_v1_P_wet_rate_y = P_y*c_place_y,
+        d_wet0_carried_x = displaced*material_x,
+        d_wet0_strained_x = G[0]*P_x + G[2]*P_y,
+        d_wet0_F_x = P_rate_x - d_wet0_carried_x + d_wet0_strained_x,
+        d_wet0_carried_y = displaced*material_y,
+        d_wet0_strained_y = G[1]*P_x + G[3]*P_y;
+    PLANAR_DRAG_PART_OF_DERIVATIVES_3
     const fu_real
         d_omega0_rest_y = -w_x,
         d_omega0_P_rate_x = M1_x*w_y + M1_y*d_omega0_rest_y - P_y,

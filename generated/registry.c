@@ -219,13 +219,13 @@ static const fu_crossing_kernels crossings[] = {
 static const fu_drag_kernels drags[] = {
     {"drag", 3, drag_along_cable, drag_lift_along_cable, drag_on_section, drag_on_point, drag_on_foil,
      drag_impulse_of_cable, drag_inertia_of_cable, drag_inertia_of_cable_tangent, drag_inertia_step,
-     drag_impulse_of_point, drag_inertia_of_point, drag_inertia_of_point_tangent, drag_inertia_of_point_step,
-     drag_wet_sphere, drag_wet_section, drag_wet_column},
+     drag_inertia_of_span, drag_inertia_of_span_tangent, drag_impulse_of_point, drag_inertia_of_point,
+     drag_inertia_of_point_tangent, drag_inertia_of_point_step, drag_wet_sphere, drag_wet_section, drag_wet_column},
     {"planar_drag", 2, planar_drag_along_cable, 0, 0, planar_drag_on_point, planar_drag_on_foil,
      planar_drag_impulse_of_cable, planar_drag_inertia_of_cable, planar_drag_inertia_of_cable_tangent,
-     planar_drag_inertia_step, planar_drag_impulse_of_point, planar_drag_inertia_of_point,
-     planar_drag_inertia_of_point_tangent, planar_drag_inertia_of_point_step, planar_drag_wet_sphere,
-     planar_drag_wet_section, planar_drag_wet_column},
+     planar_drag_inertia_step, planar_drag_inertia_of_span, planar_drag_inertia_of_span_tangent,
+     planar_drag_impulse_of_point, planar_drag_inertia_of_point, planar_drag_inertia_of_point_tangent,
+     planar_drag_inertia_of_point_step, planar_drag_wet_sphere, planar_drag_wet_section, planar_drag_wet_column},
 };
 
 static const fu_frame_kernels frames[] = {
@@ -305,13 +305,15 @@ static const fu_span_kernels spans[] = {
      span_cable8p_elastic_force, span_cable8p_elastic_tangent, span_cable8p_dissipation, span_cable8p_damping_force,
      span_cable8p_damping_tangent, span_cable8p_momentum, span_cable8p_momentum_energy, span_cable8p_momentum_step,
      span_cable8p_elastic_step, span_cable8p_line_force, span_cable8p_line_force_tangent, span_cable8p_stored_force,
-     span_cable8p_stored_force_tangent, span_cable8p_share, span_cable8p_point_tangent},
+     span_cable8p_stored_force_tangent, span_cable8p_share, span_cable8p_point_tangent, span_cable8p_motion,
+     span_cable8p_kinetic_force, span_cable8p_kinetic_force_tangent},
     {"span_cable12", 3, 12, 4, span_cable12_point, span_cable12_kinetic_energy, span_cable12_inertia,
      span_cable12_mass_matrix, span_cable12_inertia_tangent, span_cable12_weight, span_cable12_energy,
      span_cable12_elastic_force, span_cable12_elastic_tangent, span_cable12_dissipation, span_cable12_damping_force,
      span_cable12_damping_tangent, span_cable12_momentum, span_cable12_momentum_energy, span_cable12_momentum_step,
      span_cable12_elastic_step, span_cable12_line_force, span_cable12_line_force_tangent, span_cable12_stored_force,
-     span_cable12_stored_force_tangent, span_cable12_share, span_cable12_point_tangent},
+     span_cable12_stored_force_tangent, span_cable12_share, span_cable12_point_tangent, span_cable12_motion,
+     span_cable12_kinetic_force, span_cable12_kinetic_force_tangent},
 };
 
 static const fu_surface_kernels surfaces[] = {
@@ -393,6 +395,8 @@ static const fu_taut_rope_kernels taut_ropes[] = {
 #define FU_ARGUMENTS_vvv_2 a[0], a[1], a[2], out[0], out[1]
 #define FU_ARGUMENTS_vvvsvvvvvvv_3 a[0], a[1], a[2], *a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vvvsvvvvvvv_7 a[0], a[1], a[2], *a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1], out[2], out[3], out[4], out[5], out[6]
+#define FU_ARGUMENTS_svvvsvvvvvvvv_6 *a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], a[11], a[12], out[0], out[1], out[2], out[3], out[4], out[5]
+#define FU_ARGUMENTS_svvvsvvvvvvvv_2 *a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], a[11], a[12], out[0], out[1]
 #define FU_ARGUMENTS_vvvsvvvvvvv_2 a[0], a[1], a[2], *a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1]
 #define FU_ARGUMENTS_vvvvvvv_4 a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1], out[2], out[3]
 #define FU_ARGUMENTS_v_4 a[0], out[0], out[1], out[2], out[3]
@@ -450,6 +454,9 @@ static const fu_taut_rope_kernels taut_ropes[] = {
 #define FU_ARGUMENTS_ssvssv_2 *a[0], *a[1], a[2], *a[3], *a[4], a[5], out[0], out[1]
 #define FU_ARGUMENTS_ssvsvv_3 *a[0], *a[1], a[2], *a[3], a[4], a[5], out[0], out[1], out[2]
 #define FU_ARGUMENTS_sv_2 *a[0], a[1], out[0], out[1]
+#define FU_ARGUMENTS_svvvsvv_7 *a[0], a[1], a[2], a[3], *a[4], a[5], a[6], out[0], out[1], out[2], out[3], out[4], out[5], out[6]
+#define FU_ARGUMENTS_svvvssvvvvs_2 *a[0], a[1], a[2], a[3], *a[4], *a[5], a[6], a[7], a[8], a[9], *a[10], out[0], out[1]
+#define FU_ARGUMENTS_svvvsvvsvvvvvv_2 *a[0], a[1], a[2], a[3], *a[4], a[5], a[6], *a[7], a[8], a[9], a[10], a[11], a[12], a[13], out[0], out[1]
 #define FU_ARGUMENTS_vvs_3 a[0], a[1], *a[2], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vv_3 a[0], a[1], out[0], out[1], out[2]
 #define FU_ARGUMENTS_ssvs_6 *a[0], *a[1], a[2], *a[3], out[0], out[1], out[2], out[3], out[4], out[5]
@@ -914,6 +921,8 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(drag_inertia_of_cable, vvvsvvvvvvv_3) \
     X(drag_inertia_of_cable_tangent, vvvsvvvvvvv_7) \
     X(drag_inertia_step, vvvvv_2) \
+    X(drag_inertia_of_span, svvvsvvvvvvvv_6) \
+    X(drag_inertia_of_span_tangent, svvvsvvvvvvvv_2) \
     X(drag_impulse_of_point, vvv_2) \
     X(drag_inertia_of_point, vvvsvvvvvvv_3) \
     X(drag_inertia_of_point_tangent, vvvsvvvvvvv_2) \
@@ -928,6 +937,8 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(planar_drag_inertia_of_cable, vvvsvvvvvvv_3) \
     X(planar_drag_inertia_of_cable_tangent, vvvsvvvvvvv_7) \
     X(planar_drag_inertia_step, vvvvv_2) \
+    X(planar_drag_inertia_of_span, svvvsvvvvvvvv_6) \
+    X(planar_drag_inertia_of_span_tangent, svvvsvvvvvvvv_2) \
     X(planar_drag_impulse_of_point, vvv_2) \
     X(planar_drag_inertia_of_point, vvvsvvvvvvv_3) \
     X(planar_drag_inertia_of_point_tangent, vvvsvvvvvvv_2) \
@@ -1089,6 +1100,9 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(span_cable8p_stored_force_tangent, ssvsvv_3) \
     X(span_cable8p_share, sv_2) \
     X(span_cable8p_point_tangent, svvvs_3) \
+    X(span_cable8p_motion, svvvsvv_7) \
+    X(span_cable8p_kinetic_force, svvvssvvvvs_2) \
+    X(span_cable8p_kinetic_force_tangent, svvvsvvsvvvvvv_2) \
     X(span_cable12_point, svvvs_3) \
     X(span_cable12_kinetic_energy, ssvvv_1) \
     X(span_cable12_inertia, ssvvvvv_2) \
@@ -1111,6 +1125,9 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(span_cable12_stored_force_tangent, ssvsvv_3) \
     X(span_cable12_share, sv_2) \
     X(span_cable12_point_tangent, svvvs_3) \
+    X(span_cable12_motion, svvvsvv_7) \
+    X(span_cable12_kinetic_force, svvvssvvvvs_2) \
+    X(span_cable12_kinetic_force_tangent, svvvsvvsvvvvvv_2) \
     X(surface_flat, vv_2) \
     X(surface_rounded, vvs_3) \
     X(surface_terrain, vv_3) \

@@ -146,6 +146,74 @@
         inv[g] = 1.0/len[g]; \
         deps[g] = inv[g]*(d1[g][0]*r1[g][0] + d1[g][1]*r1[g][1] + d1[g][2]*r1[g][2]);)
 
+/* slopes and curvatures at the nodes: of span_cable12_damping_tangent and 2 more */
+#define SPAN_CABLE12_SLOPES_AND_CURVATURES_AT_THE_NODES \
+    fu_real e_chord3[3], e_S2[3], e_S4[3], e_Sl2[3], e_Sl4[3]; \
+    const fu_real w = 1.0/l; \
+    FU_EACH(i, 3, e_chord3[i] = w*(-e[i] + e[i + 6]);) \
+    FU_EACH(i, 3, e_S2[i] = w*(-4.0*e[i + 3] - 2.0*e[i + 9] + 6.0*e_chord3[i]);) \
+    FU_EACH(i, 3, e_S4[i] = w*(2.0*e[i + 3] + 4.0*e[i + 9] - 6.0*e_chord3[i]);) \
+    FU_EACH(i, 3, e_Sl2[i] = -(w*(e_S2[i] + 6.0*e_chord3[i]*w));) \
+    FU_EACH(i, 3, e_Sl4[i] = -(w*(e_S4[i] - 6.0*e_chord3[i]*w));)
+
+/* slopes and curvatures at the nodes: of span_cable12_point_tangent and 1 more */
+#define SPAN_CABLE12_SLOPES_AND_CURVATURES_AT_THE_NODES_2 \
+    fu_real e_S_x[2], e_S_y[2], e_S_z[2]; \
+    const fu_real \
+        w = 1.0/l, \
+        e_chord3_x = w*(-e[0] + e[6]), \
+        e_chord3_y = w*(-e[1] + e[7]), \
+        e_chord3_z = w*(-e[2] + e[8]); \
+    e_S_x[0] = w*(-4.0*e[3] - 2.0*e[9] + 6.0*e_chord3_x); \
+    e_S_y[0] = w*(-2.0*e[10] - 4.0*e[4] + 6.0*e_chord3_y); \
+    e_S_z[0] = w*(-2.0*e[11] - 4.0*e[5] + 6.0*e_chord3_z); \
+    e_S_x[1] = w*(2.0*e[3] + 4.0*e[9] - 6.0*e_chord3_x); \
+    e_S_y[1] = w*(4.0*e[10] + 2.0*e[4] - 6.0*e_chord3_y); \
+    e_S_z[1] = w*(4.0*e[11] + 2.0*e[5] - 6.0*e_chord3_z); \
+    const fu_real \
+        e_Sl2_x = -(w*(e_S_x[0] + 6.0*e_chord3_x*w)), \
+        e_Sl2_y = -(w*(e_S_y[0] + 6.0*e_chord3_y*w)), \
+        e_Sl2_z = -(w*(e_S_z[0] + 6.0*e_chord3_z*w)), \
+        e_Sl4_x = -(w*(e_S_x[1] - 6.0*e_chord3_x*w)), \
+        e_Sl4_y = -(w*(e_S_y[1] - 6.0*e_chord3_y*w)), \
+        e_Sl4_z = -(w*(e_S_z[1] - 6.0*e_chord3_z*w));
+
+/* derivatives of place, slope and velocity of the material: of span_cable12_point_tangent and 1 more */
+#define SPAN_CABLE12_DERIVATIVES_OF_PLACE_SLOPE_AND_VELOCITY_OF_THE_MATERIAL \
+    fu_real g1[4], g2[4], past[4]; \
+    const fu_real \
+        S22 = -(4.0*w), \
+        S23 = 6.0*w*w, \
+        S24 = -(2.0*w), \
+        S42 = 2.0*w, \
+        S43 = -(6.0*w*w), \
+        S44 = 4.0*w; \
+    g1[0] = -(N_at[0]*S23); \
+    g1[1] = N[0] + N_at[0]*S22; \
+    g1[2] = N_at[0]*S23; \
+    g1[3] = N_at[0]*S24; \
+    g2[0] = -(N_at[1]*S43); \
+    g2[1] = N_at[1]*S42; \
+    g2[2] = N_at[1]*S43; \
+    g2[3] = N[1] + N_at[1]*S44; \
+    FU_EACH(g, 4, \
+        past[g] = g1[g]*s_rate[0] + g2[g]*s_rate[1];) \
+    const fu_real \
+        dl_N2 = xi*(xi*(xi - 2.0) + 1.0), \
+        dl_g1_x = N_at[0]*e_Sl2_x + dl_N2*e_S_x[0], \
+        dl_g1_y = N_at[0]*e_Sl2_y + dl_N2*e_S_y[0], \
+        dl_g1_z = N_at[0]*e_Sl2_z + dl_N2*e_S_z[0], \
+        dl_N4 = xi*xi*(xi - 1.0), \
+        dl_g2_x = N_at[1]*e_Sl4_x + dl_N4*e_S_x[1], \
+        dl_g2_y = N_at[1]*e_Sl4_y + dl_N4*e_S_y[1], \
+        dl_g2_z = N_at[1]*e_Sl4_z + dl_N4*e_S_z[1], \
+        r_l_x = dl_N2*e[3] + dl_N4*e[9], \
+        r_l_y = dl_N2*e[4] + dl_N4*e[10], \
+        r_l_z = dl_N2*e[5] + dl_N4*e[11], \
+        v_l_x = dl_N2*v[3] + dl_N4*v[9] - dl_g1_x*s_rate[0] - dl_g2_x*s_rate[1], \
+        v_l_y = dl_N2*v[4] + dl_N4*v[10] - dl_g1_y*s_rate[0] - dl_g2_y*s_rate[1], \
+        v_l_z = dl_N2*v[5] + dl_N4*v[11] - dl_g1_z*s_rate[0] - dl_g2_z*s_rate[1];
+
 /* place, slope and velocity of a material point; 60 add, 87 mul, 1 div */
 void span_cable12_point(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real xi, fu_real *r, fu_real *r_S, fu_real *velocity)
 {
@@ -1671,14 +1739,7 @@ void span_cable12_damping_force(fu_real l, const fu_real *e, const fu_real *v, c
 /* derivatives of the forces of damping (Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)); 1768 add, 2591 mul, 7 div, 5 sqrt */
 void span_cable12_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, const fu_real *A, fu_real tau, fu_real *D, fu_real *K)
 {
-    /* slopes and curvatures at the nodes */
-    fu_real e_chord3[3], e_S2[3], e_S4[3], e_Sl2[3], e_Sl4[3];
-    const fu_real w = 1.0/l;
-    FU_EACH(i, 3, e_chord3[i] = w*(-e[i] + e[i + 6]);)
-    FU_EACH(i, 3, e_S2[i] = w*(-4.0*e[i + 3] - 2.0*e[i + 9] + 6.0*e_chord3[i]);)
-    FU_EACH(i, 3, e_S4[i] = w*(2.0*e[i + 3] + 4.0*e[i + 9] - 6.0*e_chord3[i]);)
-    FU_EACH(i, 3, e_Sl2[i] = -(w*(e_S2[i] + 6.0*e_chord3[i]*w));)
-    FU_EACH(i, 3, e_Sl4[i] = -(w*(e_S4[i] - 6.0*e_chord3[i]*w));)
+    SPAN_CABLE12_SLOPES_AND_CURVATURES_AT_THE_NODES
     /* velocities of material points at the nodes */
     fu_real u1[3], u2[3], u3[3], u4[3];
     FU_EACH(i, 3, u1[i] = -e[i + 3]*s_rate[0] + v[i];)
@@ -3374,26 +3435,7 @@ void span_cable12_share(fu_real at, const fu_real *ends, fu_real *share, fu_real
 /* derivatives of place and velocity of the material at a constant share (virtual work of the material at constant S); 60 add, 127 mul, 1 div */
 void span_cable12_point_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real xi, fu_real *r_q, fu_real *v_q, fu_real *v_v)
 {
-    /* slopes and curvatures at the nodes */
-    fu_real e_S_x[2], e_S_y[2], e_S_z[2];
-    const fu_real
-        w = 1.0/l,
-        e_chord3_x = w*(-e[0] + e[6]),
-        e_chord3_y = w*(-e[1] + e[7]),
-        e_chord3_z = w*(-e[2] + e[8]);
-    e_S_x[0] = w*(-4.0*e[3] - 2.0*e[9] + 6.0*e_chord3_x);
-    e_S_y[0] = w*(-2.0*e[10] - 4.0*e[4] + 6.0*e_chord3_y);
-    e_S_z[0] = w*(-2.0*e[11] - 4.0*e[5] + 6.0*e_chord3_z);
-    e_S_x[1] = w*(2.0*e[3] + 4.0*e[9] - 6.0*e_chord3_x);
-    e_S_y[1] = w*(4.0*e[10] + 2.0*e[4] - 6.0*e_chord3_y);
-    e_S_z[1] = w*(4.0*e[11] + 2.0*e[5] - 6.0*e_chord3_z);
-    const fu_real
-        e_Sl2_x = -(w*(e_S_x[0] + 6.0*e_chord3_x*w)),
-        e_Sl2_y = -(w*(e_S_y[0] + 6.0*e_chord3_y*w)),
-        e_Sl2_z = -(w*(e_S_z[0] + 6.0*e_chord3_z*w)),
-        e_Sl4_x = -(w*(e_S_x[1] - 6.0*e_chord3_x*w)),
-        e_Sl4_y = -(w*(e_S_y[1] - 6.0*e_chord3_y*w)),
-        e_Sl4_z = -(w*(e_S_z[1] - 6.0*e_chord3_z*w));
+    SPAN_CABLE12_SLOPES_AND_CURVATURES_AT_THE_NODES_2
     /* shape functions */
     fu_real N[2], N_at[2];
     N[0] = xi*xi*(2.0*xi - 3.0) + 1.0;
@@ -3406,40 +3448,7 @@ void span_cable12_point_tangent(fu_real l, const fu_real *e, const fu_real *v, c
         g_x[g] = N[g]*e[6*g + 3] + N_at[g]*e_S_x[g];
         g_y[g] = N[g]*e[6*g + 4] + N_at[g]*e_S_y[g];
         g_z[g] = N[g]*e[6*g + 5] + N_at[g]*e_S_z[g];)
-    /* derivatives of place, slope and velocity of the material */
-    fu_real g1[4], g2[4], past[4];
-    const fu_real
-        S22 = -(4.0*w),
-        S23 = 6.0*w*w,
-        S24 = -(2.0*w),
-        S42 = 2.0*w,
-        S43 = -(6.0*w*w),
-        S44 = 4.0*w;
-    g1[0] = -(N_at[0]*S23);
-    g1[1] = N[0] + N_at[0]*S22;
-    g1[2] = N_at[0]*S23;
-    g1[3] = N_at[0]*S24;
-    g2[0] = -(N_at[1]*S43);
-    g2[1] = N_at[1]*S42;
-    g2[2] = N_at[1]*S43;
-    g2[3] = N[1] + N_at[1]*S44;
-    FU_EACH(g, 4,
-        past[g] = g1[g]*s_rate[0] + g2[g]*s_rate[1];)
-    const fu_real
-        dl_N2 = xi*(xi*(xi - 2.0) + 1.0),
-        dl_g1_x = N_at[0]*e_Sl2_x + dl_N2*e_S_x[0],
-        dl_g1_y = N_at[0]*e_Sl2_y + dl_N2*e_S_y[0],
-        dl_g1_z = N_at[0]*e_Sl2_z + dl_N2*e_S_z[0],
-        dl_N4 = xi*xi*(xi - 1.0),
-        dl_g2_x = N_at[1]*e_Sl4_x + dl_N4*e_S_x[1],
-        dl_g2_y = N_at[1]*e_Sl4_y + dl_N4*e_S_y[1],
-        dl_g2_z = N_at[1]*e_Sl4_z + dl_N4*e_S_z[1],
-        r_l_x = dl_N2*e[3] + dl_N4*e[9],
-        r_l_y = dl_N2*e[4] + dl_N4*e[10],
-        r_l_z = dl_N2*e[5] + dl_N4*e[11],
-        v_l_x = dl_N2*v[3] + dl_N4*v[9] - dl_g1_x*s_rate[0] - dl_g2_x*s_rate[1],
-        v_l_y = dl_N2*v[4] + dl_N4*v[10] - dl_g1_y*s_rate[0] - dl_g2_y*s_rate[1],
-        v_l_z = dl_N2*v[5] + dl_N4*v[11] - dl_g1_z*s_rate[0] - dl_g2_z*s_rate[1];
+    SPAN_CABLE12_DERIVATIVES_OF_PLACE_SLOPE_AND_VELOCITY_OF_THE_MATERIAL
     /* outputs */
     FU_EACH(g, 2,
         r_q[6*g] = N[g];
@@ -3507,4 +3516,829 @@ void span_cable12_point_tangent(fu_real l, const fu_real *e, const fu_real *v, c
         v_v[6*g + 33] = N_at[g];)
     v_v[40] = -g_z[0];
     v_v[41] = -g_z[1];
+}
+
+/* motion of the material at a constant share of the length (Lagrange's equations with moving nodes); 145 add, 218 mul, 1 div */
+void span_cable12_motion(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real xi, const fu_real *a, const fu_real *s_acc, fu_real *r, fu_real *r_S, fu_real *velocity, fu_real *slope_rate, fu_real *place_rate, fu_real *velocity_rate, fu_real *growth)
+{
+    SPAN_CABLE12_SLOPES_AND_CURVATURES_AT_THE_NODES
+    /* shape functions */
+    const fu_real
+        N1 = xi*xi*(2.0*xi - 3.0) + 1.0,
+        N2 = l*xi*(xi*(xi - 2.0) + 1.0),
+        N3 = xi*xi*(-2.0*xi + 3.0),
+        N4 = l*xi*xi*(xi - 1.0);
+    /* displacements by the ends of the element */
+    fu_real g1[3], g2[3];
+    FU_EACH(i, 3, g1[i] = N1*e[i + 3] + N2*e_S2[i];)
+    FU_EACH(i, 3, g2[i] = N3*e[i + 9] + N4*e_S4[i];)
+    /* derivatives of place, slope and velocity of the material */
+    fu_real r_l[3];
+    const fu_real
+        dl_N2 = xi*(xi*(xi - 2.0) + 1.0),
+        dl_N4 = xi*xi*(xi - 1.0);
+    FU_EACH(i, 3, r_l[i] = dl_N2*e[i + 3] + dl_N4*e[i + 9];)
+    /* rates at a constant share */
+    fu_real v_chord3[3], v_S2[3], v_S4[3], dt_g1[3], dt_g2[3];
+    const fu_real l_rate = -s_rate[0] + s_rate[1];
+    FU_EACH(i, 3, v_chord3[i] = w*(-v[i] + v[i + 6]);)
+    FU_EACH(i, 3, v_S2[i] = w*(-4.0*v[i + 3] - 2.0*v[i + 9] + 6.0*v_chord3[i]);)
+    FU_EACH(i, 3, v_S4[i] = w*(2.0*v[i + 3] + 4.0*v[i + 9] - 6.0*v_chord3[i]);)
+    const fu_real dt_N2 = l_rate*xi*(xi*(xi - 2.0) + 1.0);
+    FU_EACH(i, 3, dt_g1[i] = N1*v[i + 3] + N2*(e_Sl2[i]*l_rate + v_S2[i]) + dt_N2*e_S2[i];)
+    const fu_real dt_N4 = l_rate*xi*xi*(xi - 1.0);
+    FU_EACH(i, 3, dt_g2[i] = N3*v[i + 9] + N4*(e_Sl4[i]*l_rate + v_S4[i]) + dt_N4*e_S4[i];)
+    /* outputs */
+    FU_EACH(i, 3, r[i] = N1*e[i] + N2*e[i + 3] + N3*e[i + 6] + N4*e[i + 9];)
+    FU_EACH(i, 3, r_S[i] = g1[i] + g2[i];)
+    FU_EACH(i, 3, velocity[i] = N1*v[i] + N2*v[i + 3] + N3*v[i + 6] + N4*v[i + 9] - g1[i]*s_rate[0] - g2[i]*s_rate[1];)
+    FU_EACH(i, 3, slope_rate[i] = dt_g1[i] + dt_g2[i];)
+    FU_EACH(i, 3, place_rate[i] = N1*v[i] + N2*v[i + 3] + N3*v[i + 6] + N4*v[i + 9] + l_rate*r_l[i];)
+    FU_EACH(i, 3, velocity_rate[i] = N1*a[i] + N2*a[i + 3] + N3*a[i + 6] + N4*a[i + 9] + dl_N2*l_rate*v[i + 3] + dl_N4*l_rate*v[i + 9] - dt_g1[i]*s_rate[0] - dt_g2[i]*s_rate[1] - g1[i]*s_acc[0] - g2[i]*s_acc[1];)
+    growth[0] = l_rate*w;
+}
+
+/* generalised forces of a kinetic energy of the material (Lagrange's equations with moving nodes); 157 add, 257 mul, 1 div */
+void span_cable12_kinetic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real xi, fu_real part, const fu_real *T_r, const fu_real *T_t, const fu_real *T_v, const fu_real *rate, fu_real T, fu_real *f, fu_real *f_s)
+{
+    SPAN_CABLE12_SLOPES_AND_CURVATURES_AT_THE_NODES
+    /* shape functions */
+    const fu_real
+        N1 = xi*xi*(2.0*xi - 3.0) + 1.0,
+        N2 = l*xi*(xi*(xi - 2.0) + 1.0),
+        N3 = xi*xi*(-2.0*xi + 3.0),
+        N4 = l*xi*xi*(xi - 1.0);
+    /* displacements by the ends of the element */
+    fu_real g1[3], g2[3];
+    FU_EACH(i, 3, g1[i] = N1*e[i + 3] + N2*e_S2[i];)
+    FU_EACH(i, 3, g2[i] = N3*e[i + 9] + N4*e_S4[i];)
+    /* derivatives of place, slope and velocity of the material */
+    fu_real g1_at[4], g2_at[4], past[4], dl_g1[3], dl_g2[3], r_l[3], v_l[3];
+    const fu_real
+        S22 = -(4.0*w),
+        S23 = 6.0*w*w,
+        S24 = -(2.0*w),
+        S42 = 2.0*w,
+        S43 = -(6.0*w*w),
+        S44 = 4.0*w;
+    g1_at[0] = -(N2*S23);
+    g1_at[1] = N1 + N2*S22;
+    g1_at[2] = N2*S23;
+    g1_at[3] = N2*S24;
+    g2_at[0] = -(N4*S43);
+    g2_at[1] = N4*S42;
+    g2_at[2] = N4*S43;
+    g2_at[3] = N3 + N4*S44;
+    FU_EACH(g, 4,
+        past[g] = g1_at[g]*s_rate[0] + g2_at[g]*s_rate[1];)
+    const fu_real dl_N2 = xi*(xi*(xi - 2.0) + 1.0);
+    FU_EACH(i, 3, dl_g1[i] = N2*e_Sl2[i] + dl_N2*e_S2[i];)
+    const fu_real dl_N4 = xi*xi*(xi - 1.0);
+    FU_EACH(i, 3, dl_g2[i] = N4*e_Sl4[i] + dl_N4*e_S4[i];)
+    FU_EACH(i, 3, r_l[i] = dl_N2*e[i + 3] + dl_N4*e[i + 9];)
+    FU_EACH(i, 3, v_l[i] = dl_N2*v[i + 3] + dl_N4*v[i + 9] - dl_g1[i]*s_rate[0] - dl_g2[i]*s_rate[1];)
+    /* rates at a constant share */
+    fu_real v_chord3[3], v_S2[3], v_S4[3], dt_g1[3], dt_g2[3], h[4], t_l[3];
+    const fu_real l_rate = -s_rate[0] + s_rate[1];
+    FU_EACH(i, 3, v_chord3[i] = w*(-v[i] + v[i + 6]);)
+    FU_EACH(i, 3, v_S2[i] = w*(-4.0*v[i + 3] - 2.0*v[i + 9] + 6.0*v_chord3[i]);)
+    FU_EACH(i, 3, v_S4[i] = w*(2.0*v[i + 3] + 4.0*v[i + 9] - 6.0*v_chord3[i]);)
+    const fu_real dt_N2 = l_rate*xi*(xi*(xi - 2.0) + 1.0);
+    FU_EACH(i, 3, dt_g1[i] = N1*v[i + 3] + N2*(e_Sl2[i]*l_rate + v_S2[i]) + dt_N2*e_S2[i];)
+    const fu_real dt_N4 = l_rate*xi*xi*(xi - 1.0);
+    FU_EACH(i, 3, dt_g2[i] = N3*v[i + 9] + N4*(e_Sl4[i]*l_rate + v_S4[i]) + dt_N4*e_S4[i];)
+    FU_EACH(g, 4,
+        h[g] = g1_at[g] + g2_at[g];)
+    FU_EACH(i, 3, t_l[i] = dl_g1[i] + dl_g2[i];)
+    const fu_real W = l*part;
+    /* factors of the impulse */
+    fu_real turn1[3], turn2[3];
+    const fu_real
+        drift2 = dl_N2*l_rate + past[1],
+        drift4 = dl_N4*l_rate + past[3];
+    FU_EACH(i, 3, turn1[i] = -dt_g1[i] + v_l[i];)
+    FU_EACH(i, 3, turn2[i] = -dt_g2[i] - v_l[i];)
+    /* generalised forces */
+    fu_real on_place[3];
+    FU_EACH(i, 3, on_place[i] = -T_r[i] + rate[i];)
+    const fu_real on_length = T*part + W*(T_r[0]*r_l[0] + T_r[1]*r_l[1] + T_r[2]*r_l[2] + T_t[0]*t_l[0] + T_t[1]*t_l[1] + T_t[2]*t_l[2]);
+    /* outputs */
+    FU_EACH(i, 3, f[i] = W*(N1*on_place[i] - T_t[i]*h[0] + T_v[i]*past[0]);)
+    FU_EACH(i, 3, f[i + 3] = W*(N2*on_place[i] - T_t[i]*h[1] + T_v[i]*drift2);)
+    FU_EACH(i, 3, f[i + 6] = W*(N3*on_place[i] - T_t[i]*h[2] + T_v[i]*past[2]);)
+    FU_EACH(i, 3, f[i + 9] = W*(N4*on_place[i] - T_t[i]*h[3] + T_v[i]*drift4);)
+    f_s[0] = W*(T_v[0]*turn1[0] + T_v[1]*turn1[1] + T_v[2]*turn1[2] - g1[0]*rate[0] - g1[1]*rate[1] - g1[2]*rate[2]) + on_length;
+    f_s[1] = W*(T_v[0]*turn2[0] + T_v[1]*turn2[1] + T_v[2]*turn2[2] - g2[0]*rate[0] - g2[1]*rate[1] - g2[2]*rate[2]) - on_length;
+}
+
+/* derivatives of the generalised forces of a kinetic energy (Lagrange's equations with moving nodes); 2942 add, 4045 mul, 1 div */
+void span_cable12_kinetic_force_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real xi, const fu_real *a, const fu_real *s_acc, fu_real part, const fu_real *T_r, const fu_real *T_t, const fu_real *T_v, const fu_real *rate, const fu_real *second, const fu_real *rate_by, fu_real *D, fu_real *K)
+{
+    SPAN_CABLE12_SLOPES_AND_CURVATURES_AT_THE_NODES_2
+    /* shape functions */
+    fu_real N[2], N_at[2];
+    N[0] = xi*xi*(2.0*xi - 3.0) + 1.0;
+    N_at[0] = l*xi*(xi*(xi - 2.0) + 1.0);
+    N[1] = xi*xi*(-2.0*xi + 3.0);
+    N_at[1] = l*xi*xi*(xi - 1.0);
+    /* displacements by the ends of the element */
+    fu_real g_x[2], g_y[2], g_z[2];
+    FU_EACH(g, 2,
+        g_x[g] = N[g]*e[6*g + 3] + N_at[g]*e_S_x[g];
+        g_y[g] = N[g]*e[6*g + 4] + N_at[g]*e_S_y[g];
+        g_z[g] = N[g]*e[6*g + 5] + N_at[g]*e_S_z[g];)
+    SPAN_CABLE12_DERIVATIVES_OF_PLACE_SLOPE_AND_VELOCITY_OF_THE_MATERIAL
+    /* rates at a constant share */
+    fu_real h[4];
+    const fu_real
+        l_rate = -s_rate[0] + s_rate[1],
+        v_chord3_x = w*(-v[0] + v[6]),
+        v_chord3_y = w*(-v[1] + v[7]),
+        v_chord3_z = w*(-v[2] + v[8]),
+        v_S2_x = w*(-4.0*v[3] - 2.0*v[9] + 6.0*v_chord3_x),
+        v_S2_y = w*(-2.0*v[10] - 4.0*v[4] + 6.0*v_chord3_y),
+        v_S2_z = w*(-2.0*v[11] - 4.0*v[5] + 6.0*v_chord3_z),
+        v_S4_x = w*(2.0*v[3] + 4.0*v[9] - 6.0*v_chord3_x),
+        v_S4_y = w*(4.0*v[10] + 2.0*v[4] - 6.0*v_chord3_y),
+        v_S4_z = w*(4.0*v[11] + 2.0*v[5] - 6.0*v_chord3_z),
+        dt_N2 = l_rate*xi*(xi*(xi - 2.0) + 1.0),
+        dt_g1_x = N[0]*v[3] + N_at[0]*(e_Sl2_x*l_rate + v_S2_x) + dt_N2*e_S_x[0],
+        dt_g1_y = N[0]*v[4] + N_at[0]*(e_Sl2_y*l_rate + v_S2_y) + dt_N2*e_S_y[0],
+        dt_g1_z = N[0]*v[5] + N_at[0]*(e_Sl2_z*l_rate + v_S2_z) + dt_N2*e_S_z[0],
+        dt_N4 = l_rate*xi*xi*(xi - 1.0),
+        dt_g2_x = N[1]*v[9] + N_at[1]*(e_Sl4_x*l_rate + v_S4_x) + dt_N4*e_S_x[1],
+        dt_g2_y = N[1]*v[10] + N_at[1]*(e_Sl4_y*l_rate + v_S4_y) + dt_N4*e_S_y[1],
+        dt_g2_z = N[1]*v[11] + N_at[1]*(e_Sl4_z*l_rate + v_S4_z) + dt_N4*e_S_z[1];
+    FU_EACH(g, 4,
+        h[g] = g1[g] + g2[g];)
+    const fu_real
+        t_l_x = dl_g1_x + dl_g2_x,
+        t_l_y = dl_g1_y + dl_g2_y,
+        t_l_z = dl_g1_z + dl_g2_z,
+        W = l*part;
+    /* factors of the impulse */
+    fu_real dl_g1[4], dl_g2[4], dl_h[4];
+    const fu_real
+        drift2 = dl_N2*l_rate + past[1],
+        drift4 = dl_N4*l_rate + past[3],
+        turn1_x = -dt_g1_x + v_l_x,
+        turn1_y = -dt_g1_y + v_l_y,
+        turn1_z = -dt_g1_z + v_l_z,
+        turn2_x = -dt_g2_x - v_l_x,
+        turn2_y = -dt_g2_y - v_l_y,
+        turn2_z = -dt_g2_z - v_l_z,
+        dl_w = -w*w,
+        dl_S23 = 12.0*dl_w*w;
+    dl_g1[0] = -N_at[0]*dl_S23 - S23*dl_N2;
+    const fu_real dl_S22 = -(4.0*dl_w);
+    dl_g1[1] = N_at[0]*dl_S22 + S22*dl_N2;
+    dl_g1[2] = N_at[0]*dl_S23 + S23*dl_N2;
+    const fu_real dl_S24 = -(2.0*dl_w);
+    dl_g1[3] = N_at[0]*dl_S24 + S24*dl_N2;
+    const fu_real dl_S43 = -(12.0*dl_w*w);
+    dl_g2[0] = -N_at[1]*dl_S43 - S43*dl_N4;
+    const fu_real dl_S42 = 2.0*dl_w;
+    dl_g2[1] = N_at[1]*dl_S42 + S42*dl_N4;
+    dl_g2[2] = N_at[1]*dl_S43 + S43*dl_N4;
+    const fu_real dl_S44 = 4.0*dl_w;
+    dl_g2[3] = N_at[1]*dl_S44 + S44*dl_N4;
+    FU_EACH(g, 4,
+        dl_h[g] = dl_g1[g] + dl_g2[g];)
+    /* derivatives by rates */
+    fu_real v1_Tr_x[3], v1_Tr_y[3], v1_Tr_z[3], v1_Tt_x[3], v1_Tt_y[3], v1_Tt_z[3], v1_Tv_x[3], v1_Tv_y[3], v1_Tv_z[3],
+        v1_x_x[3], v1_x_y[3], v1_x_z[3], v2_Tr_x[3], v2_Tr_y[3], v2_Tr_z[3], v2_Tt_x[3], v2_Tt_y[3], v2_Tt_z[3],
+        v2_Tv_x[3], v2_Tv_y[3], v2_Tv_z[3], v2_x_x[3], v2_x_y[3], v2_x_z[3], v3_Tr_x[3], v3_Tr_y[3], v3_Tr_z[3],
+        v3_Tt_x[3], v3_Tt_y[3], v3_Tt_z[3], v3_Tv_x[3], v3_Tv_y[3], v3_Tv_z[3], v3_x_x[3], v3_x_y[3], v3_x_z[3],
+        v4_Tr_x[3], v4_Tr_y[3], v4_Tr_z[3], v4_Tt_x[3], v4_Tt_y[3], v4_Tt_z[3], v4_Tv_x[3], v4_Tv_y[3], v4_Tv_z[3],
+        v4_x_x[3], v4_x_y[3], v4_x_z[3];
+    FU_EACH(g, 3,
+        v1_Tr_x[g] = N[0]*second[g + 6];
+        v1_Tr_y[g] = N[0]*second[g + 15];
+        v1_Tr_z[g] = N[0]*second[g + 24];)
+    FU_EACH(g, 3,
+        v1_Tt_x[g] = N[0]*second[g + 33];
+        v1_Tt_y[g] = N[0]*second[g + 42];
+        v1_Tt_z[g] = N[0]*second[g + 51];)
+    FU_EACH(g, 3,
+        v1_Tv_x[g] = N[0]*second[g + 60];
+        v1_Tv_y[g] = N[0]*second[g + 69];
+        v1_Tv_z[g] = N[0]*second[g + 78];)
+    FU_EACH(g, 3,
+        v1_x_x[g] = N[0]*rate_by[g + 12] + N[0]*rate_by[g + 6] + h[0]*rate_by[g + 9] - past[0]*rate_by[g + 15];
+        v1_x_y[g] = N[0]*rate_by[g + 24] + N[0]*rate_by[g + 30] + h[0]*rate_by[g + 27] - past[0]*rate_by[g + 33];
+        v1_x_z[g] = N[0]*rate_by[g + 42] + N[0]*rate_by[g + 48] + h[0]*rate_by[g + 45] - past[0]*rate_by[g + 51];)
+    const fu_real
+        v1_length1 = N[0]*T_v[0]*part + W*(r_l_x*v1_Tr_x[0] + r_l_y*v1_Tr_y[0] + r_l_z*v1_Tr_z[0] + t_l_x*v1_Tt_x[0] + t_l_y*v1_Tt_y[0] + t_l_z*v1_Tt_z[0]),
+        v1_length2 = N[0]*T_v[1]*part + W*(r_l_x*v1_Tr_x[1] + r_l_y*v1_Tr_y[1] + r_l_z*v1_Tr_z[1] + t_l_x*v1_Tt_x[1] + t_l_y*v1_Tt_y[1] + t_l_z*v1_Tt_z[1]),
+        v1_length3 = N[0]*T_v[2]*part + W*(r_l_x*v1_Tr_x[2] + r_l_y*v1_Tr_y[2] + r_l_z*v1_Tr_z[2] + t_l_x*v1_Tt_x[2] + t_l_y*v1_Tt_y[2] + t_l_z*v1_Tt_z[2]);
+    FU_EACH(g, 3,
+        v2_Tr_x[g] = N_at[0]*second[g + 6];
+        v2_Tr_y[g] = N_at[0]*second[g + 15];
+        v2_Tr_z[g] = N_at[0]*second[g + 24];)
+    FU_EACH(g, 3,
+        v2_Tt_x[g] = N_at[0]*second[g + 33];
+        v2_Tt_y[g] = N_at[0]*second[g + 42];
+        v2_Tt_z[g] = N_at[0]*second[g + 51];)
+    FU_EACH(g, 3,
+        v2_Tv_x[g] = N_at[0]*second[g + 60];
+        v2_Tv_y[g] = N_at[0]*second[g + 69];
+        v2_Tv_z[g] = N_at[0]*second[g + 78];)
+    FU_EACH(g, 3,
+        v2_x_x[g] = N_at[0]*rate_by[g + 12] + N_at[0]*rate_by[g + 6] + h[1]*rate_by[g + 9] + rate_by[g + 15]*(dl_N2*l_rate - past[1]);
+        v2_x_y[g] = N_at[0]*rate_by[g + 24] + N_at[0]*rate_by[g + 30] + h[1]*rate_by[g + 27] + rate_by[g + 33]*(dl_N2*l_rate - past[1]);
+        v2_x_z[g] = N_at[0]*rate_by[g + 42] + N_at[0]*rate_by[g + 48] + h[1]*rate_by[g + 45] + rate_by[g + 51]*(dl_N2*l_rate - past[1]);)
+    const fu_real
+        v2_length1 = N_at[0]*T_v[0]*part + W*(r_l_x*v2_Tr_x[0] + r_l_y*v2_Tr_y[0] + r_l_z*v2_Tr_z[0] + t_l_x*v2_Tt_x[0] + t_l_y*v2_Tt_y[0] + t_l_z*v2_Tt_z[0]),
+        v2_length2 = N_at[0]*T_v[1]*part + W*(r_l_x*v2_Tr_x[1] + r_l_y*v2_Tr_y[1] + r_l_z*v2_Tr_z[1] + t_l_x*v2_Tt_x[1] + t_l_y*v2_Tt_y[1] + t_l_z*v2_Tt_z[1]),
+        v2_length3 = N_at[0]*T_v[2]*part + W*(r_l_x*v2_Tr_x[2] + r_l_y*v2_Tr_y[2] + r_l_z*v2_Tr_z[2] + t_l_x*v2_Tt_x[2] + t_l_y*v2_Tt_y[2] + t_l_z*v2_Tt_z[2]);
+    FU_EACH(g, 3,
+        v3_Tr_x[g] = N[1]*second[g + 6];
+        v3_Tr_y[g] = N[1]*second[g + 15];
+        v3_Tr_z[g] = N[1]*second[g + 24];)
+    FU_EACH(g, 3,
+        v3_Tt_x[g] = N[1]*second[g + 33];
+        v3_Tt_y[g] = N[1]*second[g + 42];
+        v3_Tt_z[g] = N[1]*second[g + 51];)
+    FU_EACH(g, 3,
+        v3_Tv_x[g] = N[1]*second[g + 60];
+        v3_Tv_y[g] = N[1]*second[g + 69];
+        v3_Tv_z[g] = N[1]*second[g + 78];)
+    FU_EACH(g, 3,
+        v3_x_x[g] = N[1]*rate_by[g + 12] + N[1]*rate_by[g + 6] + h[2]*rate_by[g + 9] - past[2]*rate_by[g + 15];
+        v3_x_y[g] = N[1]*rate_by[g + 24] + N[1]*rate_by[g + 30] + h[2]*rate_by[g + 27] - past[2]*rate_by[g + 33];
+        v3_x_z[g] = N[1]*rate_by[g + 42] + N[1]*rate_by[g + 48] + h[2]*rate_by[g + 45] - past[2]*rate_by[g + 51];)
+    const fu_real
+        v3_length1 = N[1]*T_v[0]*part + W*(r_l_x*v3_Tr_x[0] + r_l_y*v3_Tr_y[0] + r_l_z*v3_Tr_z[0] + t_l_x*v3_Tt_x[0] + t_l_y*v3_Tt_y[0] + t_l_z*v3_Tt_z[0]),
+        v3_length2 = N[1]*T_v[1]*part + W*(r_l_x*v3_Tr_x[1] + r_l_y*v3_Tr_y[1] + r_l_z*v3_Tr_z[1] + t_l_x*v3_Tt_x[1] + t_l_y*v3_Tt_y[1] + t_l_z*v3_Tt_z[1]),
+        v3_length3 = N[1]*T_v[2]*part + W*(r_l_x*v3_Tr_x[2] + r_l_y*v3_Tr_y[2] + r_l_z*v3_Tr_z[2] + t_l_x*v3_Tt_x[2] + t_l_y*v3_Tt_y[2] + t_l_z*v3_Tt_z[2]);
+    FU_EACH(g, 3,
+        v4_Tr_x[g] = N_at[1]*second[g + 6];
+        v4_Tr_y[g] = N_at[1]*second[g + 15];
+        v4_Tr_z[g] = N_at[1]*second[g + 24];)
+    FU_EACH(g, 3,
+        v4_Tt_x[g] = N_at[1]*second[g + 33];
+        v4_Tt_y[g] = N_at[1]*second[g + 42];
+        v4_Tt_z[g] = N_at[1]*second[g + 51];)
+    FU_EACH(g, 3,
+        v4_Tv_x[g] = N_at[1]*second[g + 60];
+        v4_Tv_y[g] = N_at[1]*second[g + 69];
+        v4_Tv_z[g] = N_at[1]*second[g + 78];)
+    FU_EACH(g, 3,
+        v4_x_x[g] = N_at[1]*rate_by[g + 12] + N_at[1]*rate_by[g + 6] + h[3]*rate_by[g + 9] + rate_by[g + 15]*(dl_N4*l_rate - past[3]);
+        v4_x_y[g] = N_at[1]*rate_by[g + 24] + N_at[1]*rate_by[g + 30] + h[3]*rate_by[g + 27] + rate_by[g + 33]*(dl_N4*l_rate - past[3]);
+        v4_x_z[g] = N_at[1]*rate_by[g + 42] + N_at[1]*rate_by[g + 48] + h[3]*rate_by[g + 45] + rate_by[g + 51]*(dl_N4*l_rate - past[3]);)
+    const fu_real
+        v4_length1 = N_at[1]*T_v[0]*part + W*(r_l_x*v4_Tr_x[0] + r_l_y*v4_Tr_y[0] + r_l_z*v4_Tr_z[0] + t_l_x*v4_Tt_x[0] + t_l_y*v4_Tt_y[0] + t_l_z*v4_Tt_z[0]),
+        v4_length2 = N_at[1]*T_v[1]*part + W*(r_l_x*v4_Tr_x[1] + r_l_y*v4_Tr_y[1] + r_l_z*v4_Tr_z[1] + t_l_x*v4_Tt_x[1] + t_l_y*v4_Tt_y[1] + t_l_z*v4_Tt_z[1]),
+        v4_length3 = N_at[1]*T_v[2]*part + W*(r_l_x*v4_Tr_x[2] + r_l_y*v4_Tr_y[2] + r_l_z*v4_Tr_z[2] + t_l_x*v4_Tt_x[2] + t_l_y*v4_Tt_y[2] + t_l_z*v4_Tt_z[2]),
+        s1_Tr1_x = -g_x[0]*second[6] - g_y[0]*second[7] - g_z[0]*second[8],
+        s1_Tr1_y = -g_x[0]*second[15] - g_y[0]*second[16] - g_z[0]*second[17],
+        s1_Tr1_z = -g_x[0]*second[24] - g_y[0]*second[25] - g_z[0]*second[26],
+        s1_Tt1_x = -g_x[0]*second[33] - g_y[0]*second[34] - g_z[0]*second[35],
+        s1_Tt1_y = -g_x[0]*second[42] - g_y[0]*second[43] - g_z[0]*second[44],
+        s1_Tt1_z = -g_x[0]*second[51] - g_y[0]*second[52] - g_z[0]*second[53],
+        s1_Tv1_x = -g_x[0]*second[60] - g_y[0]*second[61] - g_z[0]*second[62],
+        s1_Tv1_y = -g_x[0]*second[69] - g_y[0]*second[70] - g_z[0]*second[71],
+        s1_Tv1_z = -g_x[0]*second[78] - g_y[0]*second[79] - g_z[0]*second[80],
+        s1_x1_x = -T_v[0]*w - g_x[0]*rate_by[6] - g_y[0]*rate_by[7] - g_z[0]*rate_by[8] - r_l_x*rate_by[12] - r_l_y*rate_by[13] - r_l_z*rate_by[14] - rate_by[10]*t_l_y - rate_by[11]*t_l_z + rate_by[15]*(-dt_g1_x - v_l_x) + rate_by[16]*(-dt_g1_y - v_l_y) + rate_by[17]*(-dt_g1_z - v_l_z) - rate_by[9]*t_l_x,
+        s1_x1_y = -T_v[1]*w - g_x[0]*rate_by[24] - g_y[0]*rate_by[25] - g_z[0]*rate_by[26] - r_l_x*rate_by[30] - r_l_y*rate_by[31] - r_l_z*rate_by[32] - rate_by[27]*t_l_x - rate_by[28]*t_l_y - rate_by[29]*t_l_z + rate_by[33]*(-dt_g1_x - v_l_x) + rate_by[34]*(-dt_g1_y - v_l_y) + rate_by[35]*(-dt_g1_z - v_l_z),
+        s1_x1_z = -T_v[2]*w - g_x[0]*rate_by[42] - g_y[0]*rate_by[43] - g_z[0]*rate_by[44] - r_l_x*rate_by[48] - r_l_y*rate_by[49] - r_l_z*rate_by[50] - rate_by[45]*t_l_x - rate_by[46]*t_l_y - rate_by[47]*t_l_z + rate_by[51]*(-dt_g1_x - v_l_x) + rate_by[52]*(-dt_g1_y - v_l_y) + rate_by[53]*(-dt_g1_z - v_l_z),
+        s1_length1 = W*(r_l_x*s1_Tr1_x + r_l_y*s1_Tr1_y + r_l_z*s1_Tr1_z + s1_Tt1_x*t_l_x + s1_Tt1_y*t_l_y + s1_Tt1_z*t_l_z) + part*(-T_v[0]*g_x[0] - T_v[1]*g_y[0] - T_v[2]*g_z[0]),
+        s2_Tr1_x = -g_x[1]*second[6] - g_y[1]*second[7] - g_z[1]*second[8],
+        s2_Tr1_y = -g_x[1]*second[15] - g_y[1]*second[16] - g_z[1]*second[17],
+        s2_Tr1_z = -g_x[1]*second[24] - g_y[1]*second[25] - g_z[1]*second[26],
+        s2_Tt1_x = -g_x[1]*second[33] - g_y[1]*second[34] - g_z[1]*second[35],
+        s2_Tt1_y = -g_x[1]*second[42] - g_y[1]*second[43] - g_z[1]*second[44],
+        s2_Tt1_z = -g_x[1]*second[51] - g_y[1]*second[52] - g_z[1]*second[53],
+        s2_Tv1_x = -g_x[1]*second[60] - g_y[1]*second[61] - g_z[1]*second[62],
+        s2_Tv1_y = -g_x[1]*second[69] - g_y[1]*second[70] - g_z[1]*second[71],
+        s2_Tv1_z = -g_x[1]*second[78] - g_y[1]*second[79] - g_z[1]*second[80],
+        s2_x1_x = T_v[0]*w - g_x[1]*rate_by[6] - g_y[1]*rate_by[7] - g_z[1]*rate_by[8] + r_l_x*rate_by[12] + r_l_y*rate_by[13] + r_l_z*rate_by[14] + rate_by[10]*t_l_y + rate_by[11]*t_l_z + rate_by[15]*(-dt_g2_x + v_l_x) + rate_by[16]*(-dt_g2_y + v_l_y) + rate_by[17]*(-dt_g2_z + v_l_z) + rate_by[9]*t_l_x,
+        s2_x1_y = T_v[1]*w - g_x[1]*rate_by[24] - g_y[1]*rate_by[25] - g_z[1]*rate_by[26] + r_l_x*rate_by[30] + r_l_y*rate_by[31] + r_l_z*rate_by[32] + rate_by[27]*t_l_x + rate_by[28]*t_l_y + rate_by[29]*t_l_z + rate_by[33]*(-dt_g2_x + v_l_x) + rate_by[34]*(-dt_g2_y + v_l_y) + rate_by[35]*(-dt_g2_z + v_l_z),
+        s2_x1_z = T_v[2]*w - g_x[1]*rate_by[42] - g_y[1]*rate_by[43] - g_z[1]*rate_by[44] + r_l_x*rate_by[48] + r_l_y*rate_by[49] + r_l_z*rate_by[50] + rate_by[45]*t_l_x + rate_by[46]*t_l_y + rate_by[47]*t_l_z + rate_by[51]*(-dt_g2_x + v_l_x) + rate_by[52]*(-dt_g2_y + v_l_y) + rate_by[53]*(-dt_g2_z + v_l_z),
+        s2_length1 = W*(r_l_x*s2_Tr1_x + r_l_y*s2_Tr1_y + r_l_z*s2_Tr1_z + s2_Tt1_x*t_l_x + s2_Tt1_y*t_l_y + s2_Tt1_z*t_l_z) + part*(-T_v[0]*g_x[1] - T_v[1]*g_y[1] - T_v[2]*g_z[1]);
+    /* derivatives by the configuration */
+    fu_real e1_Tr_x[3], e1_Tr_y[3], e1_Tr_z[3], e1_Tt_x[3], e1_Tt_y[3], e1_Tt_z[3], e1_Tv_x[3], e1_Tv_y[3], e1_Tv_z[3],
+        e1_x_x[3], e1_x_y[3], e1_x_z[3], e2_Tr_x[3], e2_Tr_y[3], e2_Tr_z[3], e2_Tt_x[3], e2_Tt_y[3], e2_Tt_z[3],
+        e2_Tv_x[3], e2_Tv_y[3], e2_Tv_z[3], e2_x_x[3], e2_x_y[3], e2_x_z[3], e3_Tr_x[3], e3_Tr_y[3], e3_Tr_z[3],
+        e3_Tt_x[3], e3_Tt_y[3], e3_Tt_z[3], e3_Tv_x[3], e3_Tv_y[3], e3_Tv_z[3], e3_x_x[3], e3_x_y[3], e3_x_z[3],
+        e4_Tr_x[3], e4_Tr_y[3], e4_Tr_z[3], e4_Tt_x[3], e4_Tt_y[3], e4_Tt_z[3], e4_Tv_x[3], e4_Tv_y[3], e4_Tv_z[3],
+        e4_x_x[3], e4_x_y[3], e4_x_z[3], dl_past[4];
+    FU_EACH(g, 3,
+        e1_Tr_x[g] = N[0]*second[g] + h[0]*second[g + 3] - past[0]*second[g + 6];
+        e1_Tr_y[g] = N[0]*second[g + 9] + h[0]*second[g + 12] - past[0]*second[g + 15];
+        e1_Tr_z[g] = N[0]*second[g + 18] + h[0]*second[g + 21] - past[0]*second[g + 24];)
+    FU_EACH(g, 3,
+        e1_Tt_x[g] = N[0]*second[g + 27] + h[0]*second[g + 30] - past[0]*second[g + 33];
+        e1_Tt_y[g] = N[0]*second[g + 36] + h[0]*second[g + 39] - past[0]*second[g + 42];
+        e1_Tt_z[g] = N[0]*second[g + 45] + h[0]*second[g + 48] - past[0]*second[g + 51];)
+    FU_EACH(g, 3,
+        e1_Tv_x[g] = N[0]*second[g + 54] + h[0]*second[g + 57] - past[0]*second[g + 60];
+        e1_Tv_y[g] = N[0]*second[g + 63] + h[0]*second[g + 66] - past[0]*second[g + 69];
+        e1_Tv_z[g] = N[0]*second[g + 72] + h[0]*second[g + 75] - past[0]*second[g + 78];)
+    FU_EACH(g, 3,
+        e1_x_x[g] = N[0]*rate_by[g] + dl_h[0]*l_rate*rate_by[g + 9] + h[0]*rate_by[g + 3] - past[0]*rate_by[g + 6] + rate_by[g + 15]*(-g1[0]*s_acc[0] - g2[0]*s_acc[1] - l_rate*(dl_g1[0]*s_rate[0] + dl_g2[0]*s_rate[1]));
+        e1_x_y[g] = N[0]*rate_by[g + 18] + dl_h[0]*l_rate*rate_by[g + 27] + h[0]*rate_by[g + 21] - past[0]*rate_by[g + 24] + rate_by[g + 33]*(-g1[0]*s_acc[0] - g2[0]*s_acc[1] - l_rate*(dl_g1[0]*s_rate[0] + dl_g2[0]*s_rate[1]));
+        e1_x_z[g] = N[0]*rate_by[g + 36] + dl_h[0]*l_rate*rate_by[g + 45] + h[0]*rate_by[g + 39] - past[0]*rate_by[g + 42] + rate_by[g + 51]*(-g1[0]*s_acc[0] - g2[0]*s_acc[1] - l_rate*(dl_g1[0]*s_rate[0] + dl_g2[0]*s_rate[1]));)
+    const fu_real
+        e1_length1 = W*(T_t[0]*dl_h[0] + e1_Tr_x[0]*r_l_x + e1_Tr_y[0]*r_l_y + e1_Tr_z[0]*r_l_z + e1_Tt_x[0]*t_l_x + e1_Tt_y[0]*t_l_y + e1_Tt_z[0]*t_l_z) + part*(N[0]*T_r[0] + T_t[0]*h[0] - T_v[0]*past[0]),
+        e1_length2 = W*(T_t[1]*dl_h[0] + e1_Tr_x[1]*r_l_x + e1_Tr_y[1]*r_l_y + e1_Tr_z[1]*r_l_z + e1_Tt_x[1]*t_l_x + e1_Tt_y[1]*t_l_y + e1_Tt_z[1]*t_l_z) + part*(N[0]*T_r[1] + T_t[1]*h[0] - T_v[1]*past[0]),
+        e1_length3 = W*(T_t[2]*dl_h[0] + e1_Tr_x[2]*r_l_x + e1_Tr_y[2]*r_l_y + e1_Tr_z[2]*r_l_z + e1_Tt_x[2]*t_l_x + e1_Tt_y[2]*t_l_y + e1_Tt_z[2]*t_l_z) + part*(N[0]*T_r[2] + T_t[2]*h[0] - T_v[2]*past[0]);
+    FU_EACH(g, 3,
+        e2_Tr_x[g] = N_at[0]*second[g] + h[1]*second[g + 3] - past[1]*second[g + 6];
+        e2_Tr_y[g] = N_at[0]*second[g + 9] + h[1]*second[g + 12] - past[1]*second[g + 15];
+        e2_Tr_z[g] = N_at[0]*second[g + 18] + h[1]*second[g + 21] - past[1]*second[g + 24];)
+    FU_EACH(g, 3,
+        e2_Tt_x[g] = N_at[0]*second[g + 27] + h[1]*second[g + 30] - past[1]*second[g + 33];
+        e2_Tt_y[g] = N_at[0]*second[g + 36] + h[1]*second[g + 39] - past[1]*second[g + 42];
+        e2_Tt_z[g] = N_at[0]*second[g + 45] + h[1]*second[g + 48] - past[1]*second[g + 51];)
+    FU_EACH(g, 3,
+        e2_Tv_x[g] = N_at[0]*second[g + 54] + h[1]*second[g + 57] - past[1]*second[g + 60];
+        e2_Tv_y[g] = N_at[0]*second[g + 63] + h[1]*second[g + 66] - past[1]*second[g + 69];
+        e2_Tv_z[g] = N_at[0]*second[g + 72] + h[1]*second[g + 75] - past[1]*second[g + 78];)
+    FU_EACH(g, 3,
+        e2_x_x[g] = N_at[0]*rate_by[g] + dl_N2*l_rate*rate_by[g + 12] + dl_h[1]*l_rate*rate_by[g + 9] + h[1]*rate_by[g + 3] - past[1]*rate_by[g + 6] + rate_by[g + 15]*(-g1[1]*s_acc[0] - g2[1]*s_acc[1] - l_rate*(dl_g1[1]*s_rate[0] + dl_g2[1]*s_rate[1]));
+        e2_x_y[g] = N_at[0]*rate_by[g + 18] + dl_N2*l_rate*rate_by[g + 30] + dl_h[1]*l_rate*rate_by[g + 27] + h[1]*rate_by[g + 21] - past[1]*rate_by[g + 24] + rate_by[g + 33]*(-g1[1]*s_acc[0] - g2[1]*s_acc[1] - l_rate*(dl_g1[1]*s_rate[0] + dl_g2[1]*s_rate[1]));
+        e2_x_z[g] = N_at[0]*rate_by[g + 36] + dl_N2*l_rate*rate_by[g + 48] + dl_h[1]*l_rate*rate_by[g + 45] + h[1]*rate_by[g + 39] - past[1]*rate_by[g + 42] + rate_by[g + 51]*(-g1[1]*s_acc[0] - g2[1]*s_acc[1] - l_rate*(dl_g1[1]*s_rate[0] + dl_g2[1]*s_rate[1]));)
+    const fu_real
+        e2_length1 = W*(T_r[0]*dl_N2 + T_t[0]*dl_h[1] + e2_Tr_x[0]*r_l_x + e2_Tr_y[0]*r_l_y + e2_Tr_z[0]*r_l_z + e2_Tt_x[0]*t_l_x + e2_Tt_y[0]*t_l_y + e2_Tt_z[0]*t_l_z) + part*(N_at[0]*T_r[0] + T_t[0]*h[1] - T_v[0]*past[1]),
+        e2_length2 = W*(T_r[1]*dl_N2 + T_t[1]*dl_h[1] + e2_Tr_x[1]*r_l_x + e2_Tr_y[1]*r_l_y + e2_Tr_z[1]*r_l_z + e2_Tt_x[1]*t_l_x + e2_Tt_y[1]*t_l_y + e2_Tt_z[1]*t_l_z) + part*(N_at[0]*T_r[1] + T_t[1]*h[1] - T_v[1]*past[1]),
+        e2_length3 = W*(T_r[2]*dl_N2 + T_t[2]*dl_h[1] + e2_Tr_x[2]*r_l_x + e2_Tr_y[2]*r_l_y + e2_Tr_z[2]*r_l_z + e2_Tt_x[2]*t_l_x + e2_Tt_y[2]*t_l_y + e2_Tt_z[2]*t_l_z) + part*(N_at[0]*T_r[2] + T_t[2]*h[1] - T_v[2]*past[1]);
+    FU_EACH(g, 3,
+        e3_Tr_x[g] = N[1]*second[g] + h[2]*second[g + 3] - past[2]*second[g + 6];
+        e3_Tr_y[g] = N[1]*second[g + 9] + h[2]*second[g + 12] - past[2]*second[g + 15];
+        e3_Tr_z[g] = N[1]*second[g + 18] + h[2]*second[g + 21] - past[2]*second[g + 24];)
+    FU_EACH(g, 3,
+        e3_Tt_x[g] = N[1]*second[g + 27] + h[2]*second[g + 30] - past[2]*second[g + 33];
+        e3_Tt_y[g] = N[1]*second[g + 36] + h[2]*second[g + 39] - past[2]*second[g + 42];
+        e3_Tt_z[g] = N[1]*second[g + 45] + h[2]*second[g + 48] - past[2]*second[g + 51];)
+    FU_EACH(g, 3,
+        e3_Tv_x[g] = N[1]*second[g + 54] + h[2]*second[g + 57] - past[2]*second[g + 60];
+        e3_Tv_y[g] = N[1]*second[g + 63] + h[2]*second[g + 66] - past[2]*second[g + 69];
+        e3_Tv_z[g] = N[1]*second[g + 72] + h[2]*second[g + 75] - past[2]*second[g + 78];)
+    FU_EACH(g, 3,
+        e3_x_x[g] = N[1]*rate_by[g] + dl_h[2]*l_rate*rate_by[g + 9] + h[2]*rate_by[g + 3] - past[2]*rate_by[g + 6] + rate_by[g + 15]*(-g1[2]*s_acc[0] - g2[2]*s_acc[1] - l_rate*(dl_g1[2]*s_rate[0] + dl_g2[2]*s_rate[1]));
+        e3_x_y[g] = N[1]*rate_by[g + 18] + dl_h[2]*l_rate*rate_by[g + 27] + h[2]*rate_by[g + 21] - past[2]*rate_by[g + 24] + rate_by[g + 33]*(-g1[2]*s_acc[0] - g2[2]*s_acc[1] - l_rate*(dl_g1[2]*s_rate[0] + dl_g2[2]*s_rate[1]));
+        e3_x_z[g] = N[1]*rate_by[g + 36] + dl_h[2]*l_rate*rate_by[g + 45] + h[2]*rate_by[g + 39] - past[2]*rate_by[g + 42] + rate_by[g + 51]*(-g1[2]*s_acc[0] - g2[2]*s_acc[1] - l_rate*(dl_g1[2]*s_rate[0] + dl_g2[2]*s_rate[1]));)
+    const fu_real
+        e3_length1 = W*(T_t[0]*dl_h[2] + e3_Tr_x[0]*r_l_x + e3_Tr_y[0]*r_l_y + e3_Tr_z[0]*r_l_z + e3_Tt_x[0]*t_l_x + e3_Tt_y[0]*t_l_y + e3_Tt_z[0]*t_l_z) + part*(N[1]*T_r[0] + T_t[0]*h[2] - T_v[0]*past[2]),
+        e3_length2 = W*(T_t[1]*dl_h[2] + e3_Tr_x[1]*r_l_x + e3_Tr_y[1]*r_l_y + e3_Tr_z[1]*r_l_z + e3_Tt_x[1]*t_l_x + e3_Tt_y[1]*t_l_y + e3_Tt_z[1]*t_l_z) + part*(N[1]*T_r[1] + T_t[1]*h[2] - T_v[1]*past[2]),
+        e3_length3 = W*(T_t[2]*dl_h[2] + e3_Tr_x[2]*r_l_x + e3_Tr_y[2]*r_l_y + e3_Tr_z[2]*r_l_z + e3_Tt_x[2]*t_l_x + e3_Tt_y[2]*t_l_y + e3_Tt_z[2]*t_l_z) + part*(N[1]*T_r[2] + T_t[2]*h[2] - T_v[2]*past[2]);
+    FU_EACH(g, 3,
+        e4_Tr_x[g] = N_at[1]*second[g] + h[3]*second[g + 3] - past[3]*second[g + 6];
+        e4_Tr_y[g] = N_at[1]*second[g + 9] + h[3]*second[g + 12] - past[3]*second[g + 15];
+        e4_Tr_z[g] = N_at[1]*second[g + 18] + h[3]*second[g + 21] - past[3]*second[g + 24];)
+    FU_EACH(g, 3,
+        e4_Tt_x[g] = N_at[1]*second[g + 27] + h[3]*second[g + 30] - past[3]*second[g + 33];
+        e4_Tt_y[g] = N_at[1]*second[g + 36] + h[3]*second[g + 39] - past[3]*second[g + 42];
+        e4_Tt_z[g] = N_at[1]*second[g + 45] + h[3]*second[g + 48] - past[3]*second[g + 51];)
+    FU_EACH(g, 3,
+        e4_Tv_x[g] = N_at[1]*second[g + 54] + h[3]*second[g + 57] - past[3]*second[g + 60];
+        e4_Tv_y[g] = N_at[1]*second[g + 63] + h[3]*second[g + 66] - past[3]*second[g + 69];
+        e4_Tv_z[g] = N_at[1]*second[g + 72] + h[3]*second[g + 75] - past[3]*second[g + 78];)
+    FU_EACH(g, 3,
+        e4_x_x[g] = N_at[1]*rate_by[g] + dl_N4*l_rate*rate_by[g + 12] + dl_h[3]*l_rate*rate_by[g + 9] + h[3]*rate_by[g + 3] - past[3]*rate_by[g + 6] + rate_by[g + 15]*(-g1[3]*s_acc[0] - g2[3]*s_acc[1] - l_rate*(dl_g1[3]*s_rate[0] + dl_g2[3]*s_rate[1]));
+        e4_x_y[g] = N_at[1]*rate_by[g + 18] + dl_N4*l_rate*rate_by[g + 30] + dl_h[3]*l_rate*rate_by[g + 27] + h[3]*rate_by[g + 21] - past[3]*rate_by[g + 24] + rate_by[g + 33]*(-g1[3]*s_acc[0] - g2[3]*s_acc[1] - l_rate*(dl_g1[3]*s_rate[0] + dl_g2[3]*s_rate[1]));
+        e4_x_z[g] = N_at[1]*rate_by[g + 36] + dl_N4*l_rate*rate_by[g + 48] + dl_h[3]*l_rate*rate_by[g + 45] + h[3]*rate_by[g + 39] - past[3]*rate_by[g + 42] + rate_by[g + 51]*(-g1[3]*s_acc[0] - g2[3]*s_acc[1] - l_rate*(dl_g1[3]*s_rate[0] + dl_g2[3]*s_rate[1]));)
+    const fu_real
+        e4_length1 = W*(T_r[0]*dl_N4 + T_t[0]*dl_h[3] + e4_Tr_x[0]*r_l_x + e4_Tr_y[0]*r_l_y + e4_Tr_z[0]*r_l_z + e4_Tt_x[0]*t_l_x + e4_Tt_y[0]*t_l_y + e4_Tt_z[0]*t_l_z) + part*(N_at[1]*T_r[0] + T_t[0]*h[3] - T_v[0]*past[3]),
+        e4_length2 = W*(T_r[1]*dl_N4 + T_t[1]*dl_h[3] + e4_Tr_x[1]*r_l_x + e4_Tr_y[1]*r_l_y + e4_Tr_z[1]*r_l_z + e4_Tt_x[1]*t_l_x + e4_Tt_y[1]*t_l_y + e4_Tt_z[1]*t_l_z) + part*(N_at[1]*T_r[1] + T_t[1]*h[3] - T_v[1]*past[3]),
+        e4_length3 = W*(T_r[2]*dl_N4 + T_t[2]*dl_h[3] + e4_Tr_x[2]*r_l_x + e4_Tr_y[2]*r_l_y + e4_Tr_z[2]*r_l_z + e4_Tt_x[2]*t_l_x + e4_Tt_y[2]*t_l_y + e4_Tt_z[2]*t_l_z) + part*(N_at[1]*T_r[2] + T_t[2]*h[3] - T_v[2]*past[3]),
+        dl_e_chord3_x = dl_w*(-e[0] + e[6]),
+        dl_e_Sl2_x = -6.0*dl_e_chord3_x*w*w + dl_w*(-e_S_x[0] - 12.0*e_chord3_x*w) - e_Sl2_x*w,
+        dl_v_chord3_x = dl_w*(-v[0] + v[6]),
+        dl_v_S2_x = 6.0*dl_v_chord3_x*w + dl_w*(-4.0*v[3] - 2.0*v[9] + 6.0*v_chord3_x),
+        dl_dt_g1_x = N_at[0]*dl_e_Sl2_x*l_rate + N_at[0]*dl_v_S2_x + dl_N2*(e_Sl2_x*l_rate + v_S2_x) + dt_N2*e_Sl2_x,
+        dl_e_chord3_y = dl_w*(-e[1] + e[7]),
+        dl_e_Sl2_y = -6.0*dl_e_chord3_y*w*w + dl_w*(-e_S_y[0] - 12.0*e_chord3_y*w) - e_Sl2_y*w,
+        dl_v_chord3_y = dl_w*(-v[1] + v[7]),
+        dl_v_S2_y = 6.0*dl_v_chord3_y*w + dl_w*(-2.0*v[10] - 4.0*v[4] + 6.0*v_chord3_y),
+        dl_dt_g1_y = N_at[0]*dl_e_Sl2_y*l_rate + N_at[0]*dl_v_S2_y + dl_N2*(e_Sl2_y*l_rate + v_S2_y) + dt_N2*e_Sl2_y,
+        dl_e_chord3_z = dl_w*(-e[2] + e[8]),
+        dl_e_Sl2_z = -6.0*dl_e_chord3_z*w*w + dl_w*(-e_S_z[0] - 12.0*e_chord3_z*w) - e_Sl2_z*w,
+        dl_v_chord3_z = dl_w*(-v[2] + v[8]),
+        dl_v_S2_z = 6.0*dl_v_chord3_z*w + dl_w*(-2.0*v[11] - 4.0*v[5] + 6.0*v_chord3_z),
+        dl_dt_g1_z = N_at[0]*dl_e_Sl2_z*l_rate + N_at[0]*dl_v_S2_z + dl_N2*(e_Sl2_z*l_rate + v_S2_z) + dt_N2*e_Sl2_z,
+        dl_e_Sl4_x = 6.0*dl_e_chord3_x*w*w + dl_w*(-e_S_x[1] + 12.0*e_chord3_x*w) - e_Sl4_x*w,
+        dl_v_S4_x = -6.0*dl_v_chord3_x*w + dl_w*(2.0*v[3] + 4.0*v[9] - 6.0*v_chord3_x),
+        dl_dt_g2_x = N_at[1]*dl_e_Sl4_x*l_rate + N_at[1]*dl_v_S4_x + dl_N4*(e_Sl4_x*l_rate + v_S4_x) + dt_N4*e_Sl4_x,
+        dl_e_Sl4_y = 6.0*dl_e_chord3_y*w*w + dl_w*(-e_S_y[1] + 12.0*e_chord3_y*w) - e_Sl4_y*w,
+        dl_v_S4_y = -6.0*dl_v_chord3_y*w + dl_w*(4.0*v[10] + 2.0*v[4] - 6.0*v_chord3_y),
+        dl_dt_g2_y = N_at[1]*dl_e_Sl4_y*l_rate + N_at[1]*dl_v_S4_y + dl_N4*(e_Sl4_y*l_rate + v_S4_y) + dt_N4*e_Sl4_y,
+        dl_e_Sl4_z = 6.0*dl_e_chord3_z*w*w + dl_w*(-e_S_z[1] + 12.0*e_chord3_z*w) - e_Sl4_z*w,
+        dl_v_S4_z = -6.0*dl_v_chord3_z*w + dl_w*(4.0*v[11] + 2.0*v[5] - 6.0*v_chord3_z),
+        dl_dt_g2_z = N_at[1]*dl_e_Sl4_z*l_rate + N_at[1]*dl_v_S4_z + dl_N4*(e_Sl4_z*l_rate + v_S4_z) + dt_N4*e_Sl4_z,
+        dl_dl_g1_x = N_at[0]*dl_e_Sl2_x + 2.0*dl_N2*e_Sl2_x,
+        dl_dl_g2_x = N_at[1]*dl_e_Sl4_x + 2.0*dl_N4*e_Sl4_x,
+        dl_v_l_x = -dl_dl_g1_x*s_rate[0] - dl_dl_g2_x*s_rate[1],
+        dl_turn1_x = -dl_dt_g1_x + dl_v_l_x,
+        dl_dl_g1_y = N_at[0]*dl_e_Sl2_y + 2.0*dl_N2*e_Sl2_y,
+        dl_dl_g2_y = N_at[1]*dl_e_Sl4_y + 2.0*dl_N4*e_Sl4_y,
+        dl_v_l_y = -dl_dl_g1_y*s_rate[0] - dl_dl_g2_y*s_rate[1],
+        dl_turn1_y = -dl_dt_g1_y + dl_v_l_y,
+        dl_dl_g1_z = N_at[0]*dl_e_Sl2_z + 2.0*dl_N2*e_Sl2_z,
+        dl_dl_g2_z = N_at[1]*dl_e_Sl4_z + 2.0*dl_N4*e_Sl4_z,
+        dl_v_l_z = -dl_dl_g1_z*s_rate[0] - dl_dl_g2_z*s_rate[1],
+        dl_turn1_z = -dl_dt_g1_z + dl_v_l_z,
+        dl_turn2_x = -dl_dt_g2_x - dl_v_l_x,
+        dl_turn2_y = -dl_dt_g2_y - dl_v_l_y,
+        dl_turn2_z = -dl_dt_g2_z - dl_v_l_z;
+    FU_EACH(g, 4,
+        dl_past[g] = dl_g1[g]*s_rate[0] + dl_g2[g]*s_rate[1];)
+    const fu_real
+        dl_t_l_x = dl_dl_g1_x + dl_dl_g2_x,
+        dl_t_l_y = dl_dl_g1_y + dl_dl_g2_y,
+        dl_t_l_z = dl_dl_g1_z + dl_dl_g2_z,
+        l_Tr1_x = r_l_x*second[0] + r_l_y*second[1] + r_l_z*second[2] + second[3]*t_l_x + second[4]*t_l_y + second[5]*t_l_z + second[6]*v_l_x + second[7]*v_l_y + second[8]*v_l_z,
+        l_Tr1_y = r_l_x*second[9] + r_l_y*second[10] + r_l_z*second[11] + second[12]*t_l_x + second[13]*t_l_y + second[14]*t_l_z + second[15]*v_l_x + second[16]*v_l_y + second[17]*v_l_z,
+        l_Tr1_z = r_l_x*second[18] + r_l_y*second[19] + r_l_z*second[20] + second[21]*t_l_x + second[22]*t_l_y + second[23]*t_l_z + second[24]*v_l_x + second[25]*v_l_y + second[26]*v_l_z,
+        l_Tt1_x = r_l_x*second[27] + r_l_y*second[28] + r_l_z*second[29] + second[30]*t_l_x + second[31]*t_l_y + second[32]*t_l_z + second[33]*v_l_x + second[34]*v_l_y + second[35]*v_l_z,
+        l_Tt1_y = r_l_x*second[36] + r_l_y*second[37] + r_l_z*second[38] + second[39]*t_l_x + second[40]*t_l_y + second[41]*t_l_z + second[42]*v_l_x + second[43]*v_l_y + second[44]*v_l_z,
+        l_Tt1_z = r_l_x*second[45] + r_l_y*second[46] + r_l_z*second[47] + second[48]*t_l_x + second[49]*t_l_y + second[50]*t_l_z + second[51]*v_l_x + second[52]*v_l_y + second[53]*v_l_z,
+        l_Tv1_x = r_l_x*second[54] + r_l_y*second[55] + r_l_z*second[56] + second[57]*t_l_x + second[58]*t_l_y + second[59]*t_l_z + second[60]*v_l_x + second[61]*v_l_y + second[62]*v_l_z,
+        l_Tv1_y = r_l_x*second[63] + r_l_y*second[64] + r_l_z*second[65] + second[66]*t_l_x + second[67]*t_l_y + second[68]*t_l_z + second[69]*v_l_x + second[70]*v_l_y + second[71]*v_l_z,
+        l_Tv1_z = r_l_x*second[72] + r_l_y*second[73] + r_l_z*second[74] + second[75]*t_l_x + second[76]*t_l_y + second[77]*t_l_z + second[78]*v_l_x + second[79]*v_l_y + second[80]*v_l_z,
+        l_x1_x = -T_v[0]*l_rate*w*w + r_l_x*rate_by[0] + r_l_y*rate_by[1] + r_l_z*rate_by[2] + rate_by[10]*(dl_dt_g1_y + dl_dt_g2_y) + rate_by[11]*(dl_dt_g1_z + dl_dt_g2_z) + rate_by[12]*(dl_N2*v[3] + dl_N4*v[9]) + rate_by[13]*(dl_N2*v[4] + dl_N4*v[10]) + rate_by[14]*(dl_N2*v[5] + dl_N4*v[11]) + rate_by[15]*(a[3]*dl_N2 + a[9]*dl_N4 - dl_dt_g1_x*s_rate[0] - dl_dt_g2_x*s_rate[1] - dl_g1_x*s_acc[0] - dl_g2_x*s_acc[1]) + rate_by[16]*(a[10]*dl_N4 + a[4]*dl_N2 - dl_dt_g1_y*s_rate[0] - dl_dt_g2_y*s_rate[1] - dl_g1_y*s_acc[0] - dl_g2_y*s_acc[1]) + rate_by[17]*(a[11]*dl_N4 + a[5]*dl_N2 - dl_dt_g1_z*s_rate[0] - dl_dt_g2_z*s_rate[1] - dl_g1_z*s_acc[0] - dl_g2_z*s_acc[1]) + rate_by[3]*t_l_x + rate_by[4]*t_l_y + rate_by[5]*t_l_z + rate_by[6]*v_l_x + rate_by[7]*v_l_y + rate_by[8]*v_l_z + rate_by[9]*(dl_dt_g1_x + dl_dt_g2_x),
+        l_x1_y = -T_v[1]*l_rate*w*w + r_l_x*rate_by[18] + r_l_y*rate_by[19] + r_l_z*rate_by[20] + rate_by[21]*t_l_x + rate_by[22]*t_l_y + rate_by[23]*t_l_z + rate_by[24]*v_l_x + rate_by[25]*v_l_y + rate_by[26]*v_l_z + rate_by[27]*(dl_dt_g1_x + dl_dt_g2_x) + rate_by[28]*(dl_dt_g1_y + dl_dt_g2_y) + rate_by[29]*(dl_dt_g1_z + dl_dt_g2_z) + rate_by[30]*(dl_N2*v[3] + dl_N4*v[9]) + rate_by[31]*(dl_N2*v[4] + dl_N4*v[10]) + rate_by[32]*(dl_N2*v[5] + dl_N4*v[11]) + rate_by[33]*(a[3]*dl_N2 + a[9]*dl_N4 - dl_dt_g1_x*s_rate[0] - dl_dt_g2_x*s_rate[1] - dl_g1_x*s_acc[0] - dl_g2_x*s_acc[1]) + rate_by[34]*(a[10]*dl_N4 + a[4]*dl_N2 - dl_dt_g1_y*s_rate[0] - dl_dt_g2_y*s_rate[1] - dl_g1_y*s_acc[0] - dl_g2_y*s_acc[1]) + rate_by[35]*(a[11]*dl_N4 + a[5]*dl_N2 - dl_dt_g1_z*s_rate[0] - dl_dt_g2_z*s_rate[1] - dl_g1_z*s_acc[0] - dl_g2_z*s_acc[1]),
+        l_x1_z = -T_v[2]*l_rate*w*w + r_l_x*rate_by[36] + r_l_y*rate_by[37] + r_l_z*rate_by[38] + rate_by[39]*t_l_x + rate_by[40]*t_l_y + rate_by[41]*t_l_z + rate_by[42]*v_l_x + rate_by[43]*v_l_y + rate_by[44]*v_l_z + rate_by[45]*(dl_dt_g1_x + dl_dt_g2_x) + rate_by[46]*(dl_dt_g1_y + dl_dt_g2_y) + rate_by[47]*(dl_dt_g1_z + dl_dt_g2_z) + rate_by[48]*(dl_N2*v[3] + dl_N4*v[9]) + rate_by[49]*(dl_N2*v[4] + dl_N4*v[10]) + rate_by[50]*(dl_N2*v[5] + dl_N4*v[11]) + rate_by[51]*(a[3]*dl_N2 + a[9]*dl_N4 - dl_dt_g1_x*s_rate[0] - dl_dt_g2_x*s_rate[1] - dl_g1_x*s_acc[0] - dl_g2_x*s_acc[1]) + rate_by[52]*(a[10]*dl_N4 + a[4]*dl_N2 - dl_dt_g1_y*s_rate[0] - dl_dt_g2_y*s_rate[1] - dl_g1_y*s_acc[0] - dl_g2_y*s_acc[1]) + rate_by[53]*(a[11]*dl_N4 + a[5]*dl_N2 - dl_dt_g1_z*s_rate[0] - dl_dt_g2_z*s_rate[1] - dl_g1_z*s_acc[0] - dl_g2_z*s_acc[1]),
+        l_length1 = W*(T_t[0]*dl_t_l_x + T_t[1]*dl_t_l_y + T_t[2]*dl_t_l_z + l_Tr1_x*r_l_x + l_Tr1_y*r_l_y + l_Tr1_z*r_l_z + l_Tt1_x*t_l_x + l_Tt1_y*t_l_y + l_Tt1_z*t_l_z) + part*(T_r[0]*r_l_x + T_r[1]*r_l_y + T_r[2]*r_l_z + T_t[0]*t_l_x + T_t[1]*t_l_y + T_t[2]*t_l_z) + part*(T_r[0]*r_l_x + T_r[1]*r_l_y + T_r[2]*r_l_z + T_t[0]*t_l_x + T_t[1]*t_l_y + T_t[2]*t_l_z + T_v[0]*v_l_x + T_v[1]*v_l_y + T_v[2]*v_l_z);
+    /* outputs */
+    D[0] = W*(N[0]*(-v1_Tr_x[0] + v1_x_x[0]) - h[0]*v1_Tt_x[0] + past[0]*v1_Tv_x[0]);
+    D[1] = W*(N[0]*(-v1_Tr_x[1] + v1_x_x[1]) - h[0]*v1_Tt_x[1] + past[0]*v1_Tv_x[1]);
+    D[2] = W*(N[0]*(-v1_Tr_x[2] + v1_x_x[2]) - h[0]*v1_Tt_x[2] + past[0]*v1_Tv_x[2]);
+    D[3] = W*(N[0]*(-v2_Tr_x[0] + v2_x_x[0]) - h[0]*v2_Tt_x[0] + past[0]*v2_Tv_x[0]);
+    D[4] = W*(N[0]*(-v2_Tr_x[1] + v2_x_x[1]) - h[0]*v2_Tt_x[1] + past[0]*v2_Tv_x[1]);
+    D[5] = W*(N[0]*(-v2_Tr_x[2] + v2_x_x[2]) - h[0]*v2_Tt_x[2] + past[0]*v2_Tv_x[2]);
+    D[6] = W*(N[0]*(-v3_Tr_x[0] + v3_x_x[0]) - h[0]*v3_Tt_x[0] + past[0]*v3_Tv_x[0]);
+    D[7] = W*(N[0]*(-v3_Tr_x[1] + v3_x_x[1]) - h[0]*v3_Tt_x[1] + past[0]*v3_Tv_x[1]);
+    D[8] = W*(N[0]*(-v3_Tr_x[2] + v3_x_x[2]) - h[0]*v3_Tt_x[2] + past[0]*v3_Tv_x[2]);
+    D[9] = W*(N[0]*(-v4_Tr_x[0] + v4_x_x[0]) - h[0]*v4_Tt_x[0] + past[0]*v4_Tv_x[0]);
+    D[10] = W*(N[0]*(-v4_Tr_x[1] + v4_x_x[1]) - h[0]*v4_Tt_x[1] + past[0]*v4_Tv_x[1]);
+    D[11] = W*(N[0]*(-v4_Tr_x[2] + v4_x_x[2]) - h[0]*v4_Tt_x[2] + past[0]*v4_Tv_x[2]);
+    D[12] = T_v[0]*W*g1[0] + W*(N[0]*(-s1_Tr1_x + s1_x1_x) - h[0]*s1_Tt1_x + past[0]*s1_Tv1_x);
+    D[13] = T_v[0]*W*g2[0] + W*(N[0]*(-s2_Tr1_x + s2_x1_x) - h[0]*s2_Tt1_x + past[0]*s2_Tv1_x);
+    D[14] = W*(N[0]*(-v1_Tr_y[0] + v1_x_y[0]) - h[0]*v1_Tt_y[0] + past[0]*v1_Tv_y[0]);
+    D[15] = W*(N[0]*(-v1_Tr_y[1] + v1_x_y[1]) - h[0]*v1_Tt_y[1] + past[0]*v1_Tv_y[1]);
+    D[16] = W*(N[0]*(-v1_Tr_y[2] + v1_x_y[2]) - h[0]*v1_Tt_y[2] + past[0]*v1_Tv_y[2]);
+    D[17] = W*(N[0]*(-v2_Tr_y[0] + v2_x_y[0]) - h[0]*v2_Tt_y[0] + past[0]*v2_Tv_y[0]);
+    D[18] = W*(N[0]*(-v2_Tr_y[1] + v2_x_y[1]) - h[0]*v2_Tt_y[1] + past[0]*v2_Tv_y[1]);
+    D[19] = W*(N[0]*(-v2_Tr_y[2] + v2_x_y[2]) - h[0]*v2_Tt_y[2] + past[0]*v2_Tv_y[2]);
+    D[20] = W*(N[0]*(-v3_Tr_y[0] + v3_x_y[0]) - h[0]*v3_Tt_y[0] + past[0]*v3_Tv_y[0]);
+    D[21] = W*(N[0]*(-v3_Tr_y[1] + v3_x_y[1]) - h[0]*v3_Tt_y[1] + past[0]*v3_Tv_y[1]);
+    D[22] = W*(N[0]*(-v3_Tr_y[2] + v3_x_y[2]) - h[0]*v3_Tt_y[2] + past[0]*v3_Tv_y[2]);
+    D[23] = W*(N[0]*(-v4_Tr_y[0] + v4_x_y[0]) - h[0]*v4_Tt_y[0] + past[0]*v4_Tv_y[0]);
+    D[24] = W*(N[0]*(-v4_Tr_y[1] + v4_x_y[1]) - h[0]*v4_Tt_y[1] + past[0]*v4_Tv_y[1]);
+    D[25] = W*(N[0]*(-v4_Tr_y[2] + v4_x_y[2]) - h[0]*v4_Tt_y[2] + past[0]*v4_Tv_y[2]);
+    D[26] = T_v[1]*W*g1[0] + W*(N[0]*(-s1_Tr1_y + s1_x1_y) - h[0]*s1_Tt1_y + past[0]*s1_Tv1_y);
+    D[27] = T_v[1]*W*g2[0] + W*(N[0]*(-s2_Tr1_y + s2_x1_y) - h[0]*s2_Tt1_y + past[0]*s2_Tv1_y);
+    D[28] = W*(N[0]*(-v1_Tr_z[0] + v1_x_z[0]) - h[0]*v1_Tt_z[0] + past[0]*v1_Tv_z[0]);
+    D[29] = W*(N[0]*(-v1_Tr_z[1] + v1_x_z[1]) - h[0]*v1_Tt_z[1] + past[0]*v1_Tv_z[1]);
+    D[30] = W*(N[0]*(-v1_Tr_z[2] + v1_x_z[2]) - h[0]*v1_Tt_z[2] + past[0]*v1_Tv_z[2]);
+    D[31] = W*(N[0]*(-v2_Tr_z[0] + v2_x_z[0]) - h[0]*v2_Tt_z[0] + past[0]*v2_Tv_z[0]);
+    D[32] = W*(N[0]*(-v2_Tr_z[1] + v2_x_z[1]) - h[0]*v2_Tt_z[1] + past[0]*v2_Tv_z[1]);
+    D[33] = W*(N[0]*(-v2_Tr_z[2] + v2_x_z[2]) - h[0]*v2_Tt_z[2] + past[0]*v2_Tv_z[2]);
+    D[34] = W*(N[0]*(-v3_Tr_z[0] + v3_x_z[0]) - h[0]*v3_Tt_z[0] + past[0]*v3_Tv_z[0]);
+    D[35] = W*(N[0]*(-v3_Tr_z[1] + v3_x_z[1]) - h[0]*v3_Tt_z[1] + past[0]*v3_Tv_z[1]);
+    D[36] = W*(N[0]*(-v3_Tr_z[2] + v3_x_z[2]) - h[0]*v3_Tt_z[2] + past[0]*v3_Tv_z[2]);
+    D[37] = W*(N[0]*(-v4_Tr_z[0] + v4_x_z[0]) - h[0]*v4_Tt_z[0] + past[0]*v4_Tv_z[0]);
+    D[38] = W*(N[0]*(-v4_Tr_z[1] + v4_x_z[1]) - h[0]*v4_Tt_z[1] + past[0]*v4_Tv_z[1]);
+    D[39] = W*(N[0]*(-v4_Tr_z[2] + v4_x_z[2]) - h[0]*v4_Tt_z[2] + past[0]*v4_Tv_z[2]);
+    D[40] = T_v[2]*W*g1[0] + W*(N[0]*(-s1_Tr1_z + s1_x1_z) - h[0]*s1_Tt1_z + past[0]*s1_Tv1_z);
+    D[41] = T_v[2]*W*g2[0] + W*(N[0]*(-s2_Tr1_z + s2_x1_z) - h[0]*s2_Tt1_z + past[0]*s2_Tv1_z);
+    D[42] = W*(N_at[0]*(-v1_Tr_x[0] + v1_x_x[0]) + drift2*v1_Tv_x[0] - h[1]*v1_Tt_x[0]);
+    D[43] = W*(N_at[0]*(-v1_Tr_x[1] + v1_x_x[1]) + drift2*v1_Tv_x[1] - h[1]*v1_Tt_x[1]);
+    D[44] = W*(N_at[0]*(-v1_Tr_x[2] + v1_x_x[2]) + drift2*v1_Tv_x[2] - h[1]*v1_Tt_x[2]);
+    D[45] = W*(N_at[0]*(-v2_Tr_x[0] + v2_x_x[0]) + drift2*v2_Tv_x[0] - h[1]*v2_Tt_x[0]);
+    D[46] = W*(N_at[0]*(-v2_Tr_x[1] + v2_x_x[1]) + drift2*v2_Tv_x[1] - h[1]*v2_Tt_x[1]);
+    D[47] = W*(N_at[0]*(-v2_Tr_x[2] + v2_x_x[2]) + drift2*v2_Tv_x[2] - h[1]*v2_Tt_x[2]);
+    D[48] = W*(N_at[0]*(-v3_Tr_x[0] + v3_x_x[0]) + drift2*v3_Tv_x[0] - h[1]*v3_Tt_x[0]);
+    D[49] = W*(N_at[0]*(-v3_Tr_x[1] + v3_x_x[1]) + drift2*v3_Tv_x[1] - h[1]*v3_Tt_x[1]);
+    D[50] = W*(N_at[0]*(-v3_Tr_x[2] + v3_x_x[2]) + drift2*v3_Tv_x[2] - h[1]*v3_Tt_x[2]);
+    D[51] = W*(N_at[0]*(-v4_Tr_x[0] + v4_x_x[0]) + drift2*v4_Tv_x[0] - h[1]*v4_Tt_x[0]);
+    D[52] = W*(N_at[0]*(-v4_Tr_x[1] + v4_x_x[1]) + drift2*v4_Tv_x[1] - h[1]*v4_Tt_x[1]);
+    D[53] = W*(N_at[0]*(-v4_Tr_x[2] + v4_x_x[2]) + drift2*v4_Tv_x[2] - h[1]*v4_Tt_x[2]);
+    D[54] = T_v[0]*W*(-dl_N2 + g1[1]) + W*(N_at[0]*(-s1_Tr1_x + s1_x1_x) + drift2*s1_Tv1_x - h[1]*s1_Tt1_x);
+    D[55] = T_v[0]*W*(dl_N2 + g2[1]) + W*(N_at[0]*(-s2_Tr1_x + s2_x1_x) + drift2*s2_Tv1_x - h[1]*s2_Tt1_x);
+    D[56] = W*(N_at[0]*(-v1_Tr_y[0] + v1_x_y[0]) + drift2*v1_Tv_y[0] - h[1]*v1_Tt_y[0]);
+    D[57] = W*(N_at[0]*(-v1_Tr_y[1] + v1_x_y[1]) + drift2*v1_Tv_y[1] - h[1]*v1_Tt_y[1]);
+    D[58] = W*(N_at[0]*(-v1_Tr_y[2] + v1_x_y[2]) + drift2*v1_Tv_y[2] - h[1]*v1_Tt_y[2]);
+    D[59] = W*(N_at[0]*(-v2_Tr_y[0] + v2_x_y[0]) + drift2*v2_Tv_y[0] - h[1]*v2_Tt_y[0]);
+    D[60] = W*(N_at[0]*(-v2_Tr_y[1] + v2_x_y[1]) + drift2*v2_Tv_y[1] - h[1]*v2_Tt_y[1]);
+    D[61] = W*(N_at[0]*(-v2_Tr_y[2] + v2_x_y[2]) + drift2*v2_Tv_y[2] - h[1]*v2_Tt_y[2]);
+    D[62] = W*(N_at[0]*(-v3_Tr_y[0] + v3_x_y[0]) + drift2*v3_Tv_y[0] - h[1]*v3_Tt_y[0]);
+    D[63] = W*(N_at[0]*(-v3_Tr_y[1] + v3_x_y[1]) + drift2*v3_Tv_y[1] - h[1]*v3_Tt_y[1]);
+    D[64] = W*(N_at[0]*(-v3_Tr_y[2] + v3_x_y[2]) + drift2*v3_Tv_y[2] - h[1]*v3_Tt_y[2]);
+    D[65] = W*(N_at[0]*(-v4_Tr_y[0] + v4_x_y[0]) + drift2*v4_Tv_y[0] - h[1]*v4_Tt_y[0]);
+    D[66] = W*(N_at[0]*(-v4_Tr_y[1] + v4_x_y[1]) + drift2*v4_Tv_y[1] - h[1]*v4_Tt_y[1]);
+    D[67] = W*(N_at[0]*(-v4_Tr_y[2] + v4_x_y[2]) + drift2*v4_Tv_y[2] - h[1]*v4_Tt_y[2]);
+    D[68] = T_v[1]*W*(-dl_N2 + g1[1]) + W*(N_at[0]*(-s1_Tr1_y + s1_x1_y) + drift2*s1_Tv1_y - h[1]*s1_Tt1_y);
+    D[69] = T_v[1]*W*(dl_N2 + g2[1]) + W*(N_at[0]*(-s2_Tr1_y + s2_x1_y) + drift2*s2_Tv1_y - h[1]*s2_Tt1_y);
+    D[70] = W*(N_at[0]*(-v1_Tr_z[0] + v1_x_z[0]) + drift2*v1_Tv_z[0] - h[1]*v1_Tt_z[0]);
+    D[71] = W*(N_at[0]*(-v1_Tr_z[1] + v1_x_z[1]) + drift2*v1_Tv_z[1] - h[1]*v1_Tt_z[1]);
+    D[72] = W*(N_at[0]*(-v1_Tr_z[2] + v1_x_z[2]) + drift2*v1_Tv_z[2] - h[1]*v1_Tt_z[2]);
+    D[73] = W*(N_at[0]*(-v2_Tr_z[0] + v2_x_z[0]) + drift2*v2_Tv_z[0] - h[1]*v2_Tt_z[0]);
+    D[74] = W*(N_at[0]*(-v2_Tr_z[1] + v2_x_z[1]) + drift2*v2_Tv_z[1] - h[1]*v2_Tt_z[1]);
+    D[75] = W*(N_at[0]*(-v2_Tr_z[2] + v2_x_z[2]) + drift2*v2_Tv_z[2] - h[1]*v2_Tt_z[2]);
+    D[76] = W*(N_at[0]*(-v3_Tr_z[0] + v3_x_z[0]) + drift2*v3_Tv_z[0] - h[1]*v3_Tt_z[0]);
+    D[77] = W*(N_at[0]*(-v3_Tr_z[1] + v3_x_z[1]) + drift2*v3_Tv_z[1] - h[1]*v3_Tt_z[1]);
+    D[78] = W*(N_at[0]*(-v3_Tr_z[2] + v3_x_z[2]) + drift2*v3_Tv_z[2] - h[1]*v3_Tt_z[2]);
+    D[79] = W*(N_at[0]*(-v4_Tr_z[0] + v4_x_z[0]) + drift2*v4_Tv_z[0] - h[1]*v4_Tt_z[0]);
+    D[80] = W*(N_at[0]*(-v4_Tr_z[1] + v4_x_z[1]) + drift2*v4_Tv_z[1] - h[1]*v4_Tt_z[1]);
+    D[81] = W*(N_at[0]*(-v4_Tr_z[2] + v4_x_z[2]) + drift2*v4_Tv_z[2] - h[1]*v4_Tt_z[2]);
+    D[82] = T_v[2]*W*(-dl_N2 + g1[1]) + W*(N_at[0]*(-s1_Tr1_z + s1_x1_z) + drift2*s1_Tv1_z - h[1]*s1_Tt1_z);
+    D[83] = T_v[2]*W*(dl_N2 + g2[1]) + W*(N_at[0]*(-s2_Tr1_z + s2_x1_z) + drift2*s2_Tv1_z - h[1]*s2_Tt1_z);
+    D[84] = W*(N[1]*(-v1_Tr_x[0] + v1_x_x[0]) - h[2]*v1_Tt_x[0] + past[2]*v1_Tv_x[0]);
+    D[85] = W*(N[1]*(-v1_Tr_x[1] + v1_x_x[1]) - h[2]*v1_Tt_x[1] + past[2]*v1_Tv_x[1]);
+    D[86] = W*(N[1]*(-v1_Tr_x[2] + v1_x_x[2]) - h[2]*v1_Tt_x[2] + past[2]*v1_Tv_x[2]);
+    D[87] = W*(N[1]*(-v2_Tr_x[0] + v2_x_x[0]) - h[2]*v2_Tt_x[0] + past[2]*v2_Tv_x[0]);
+    D[88] = W*(N[1]*(-v2_Tr_x[1] + v2_x_x[1]) - h[2]*v2_Tt_x[1] + past[2]*v2_Tv_x[1]);
+    D[89] = W*(N[1]*(-v2_Tr_x[2] + v2_x_x[2]) - h[2]*v2_Tt_x[2] + past[2]*v2_Tv_x[2]);
+    D[90] = W*(N[1]*(-v3_Tr_x[0] + v3_x_x[0]) - h[2]*v3_Tt_x[0] + past[2]*v3_Tv_x[0]);
+    D[91] = W*(N[1]*(-v3_Tr_x[1] + v3_x_x[1]) - h[2]*v3_Tt_x[1] + past[2]*v3_Tv_x[1]);
+    D[92] = W*(N[1]*(-v3_Tr_x[2] + v3_x_x[2]) - h[2]*v3_Tt_x[2] + past[2]*v3_Tv_x[2]);
+    D[93] = W*(N[1]*(-v4_Tr_x[0] + v4_x_x[0]) - h[2]*v4_Tt_x[0] + past[2]*v4_Tv_x[0]);
+    D[94] = W*(N[1]*(-v4_Tr_x[1] + v4_x_x[1]) - h[2]*v4_Tt_x[1] + past[2]*v4_Tv_x[1]);
+    D[95] = W*(N[1]*(-v4_Tr_x[2] + v4_x_x[2]) - h[2]*v4_Tt_x[2] + past[2]*v4_Tv_x[2]);
+    D[96] = T_v[0]*W*g1[2] + W*(N[1]*(-s1_Tr1_x + s1_x1_x) - h[2]*s1_Tt1_x + past[2]*s1_Tv1_x);
+    D[97] = T_v[0]*W*g2[2] + W*(N[1]*(-s2_Tr1_x + s2_x1_x) - h[2]*s2_Tt1_x + past[2]*s2_Tv1_x);
+    D[98] = W*(N[1]*(-v1_Tr_y[0] + v1_x_y[0]) - h[2]*v1_Tt_y[0] + past[2]*v1_Tv_y[0]);
+    D[99] = W*(N[1]*(-v1_Tr_y[1] + v1_x_y[1]) - h[2]*v1_Tt_y[1] + past[2]*v1_Tv_y[1]);
+    D[100] = W*(N[1]*(-v1_Tr_y[2] + v1_x_y[2]) - h[2]*v1_Tt_y[2] + past[2]*v1_Tv_y[2]);
+    D[101] = W*(N[1]*(-v2_Tr_y[0] + v2_x_y[0]) - h[2]*v2_Tt_y[0] + past[2]*v2_Tv_y[0]);
+    D[102] = W*(N[1]*(-v2_Tr_y[1] + v2_x_y[1]) - h[2]*v2_Tt_y[1] + past[2]*v2_Tv_y[1]);
+    D[103] = W*(N[1]*(-v2_Tr_y[2] + v2_x_y[2]) - h[2]*v2_Tt_y[2] + past[2]*v2_Tv_y[2]);
+    D[104] = W*(N[1]*(-v3_Tr_y[0] + v3_x_y[0]) - h[2]*v3_Tt_y[0] + past[2]*v3_Tv_y[0]);
+    D[105] = W*(N[1]*(-v3_Tr_y[1] + v3_x_y[1]) - h[2]*v3_Tt_y[1] + past[2]*v3_Tv_y[1]);
+    D[106] = W*(N[1]*(-v3_Tr_y[2] + v3_x_y[2]) - h[2]*v3_Tt_y[2] + past[2]*v3_Tv_y[2]);
+    D[107] = W*(N[1]*(-v4_Tr_y[0] + v4_x_y[0]) - h[2]*v4_Tt_y[0] + past[2]*v4_Tv_y[0]);
+    D[108] = W*(N[1]*(-v4_Tr_y[1] + v4_x_y[1]) - h[2]*v4_Tt_y[1] + past[2]*v4_Tv_y[1]);
+    D[109] = W*(N[1]*(-v4_Tr_y[2] + v4_x_y[2]) - h[2]*v4_Tt_y[2] + past[2]*v4_Tv_y[2]);
+    D[110] = T_v[1]*W*g1[2] + W*(N[1]*(-s1_Tr1_y + s1_x1_y) - h[2]*s1_Tt1_y + past[2]*s1_Tv1_y);
+    D[111] = T_v[1]*W*g2[2] + W*(N[1]*(-s2_Tr1_y + s2_x1_y) - h[2]*s2_Tt1_y + past[2]*s2_Tv1_y);
+    D[112] = W*(N[1]*(-v1_Tr_z[0] + v1_x_z[0]) - h[2]*v1_Tt_z[0] + past[2]*v1_Tv_z[0]);
+    D[113] = W*(N[1]*(-v1_Tr_z[1] + v1_x_z[1]) - h[2]*v1_Tt_z[1] + past[2]*v1_Tv_z[1]);
+    D[114] = W*(N[1]*(-v1_Tr_z[2] + v1_x_z[2]) - h[2]*v1_Tt_z[2] + past[2]*v1_Tv_z[2]);
+    D[115] = W*(N[1]*(-v2_Tr_z[0] + v2_x_z[0]) - h[2]*v2_Tt_z[0] + past[2]*v2_Tv_z[0]);
+    D[116] = W*(N[1]*(-v2_Tr_z[1] + v2_x_z[1]) - h[2]*v2_Tt_z[1] + past[2]*v2_Tv_z[1]);
+    D[117] = W*(N[1]*(-v2_Tr_z[2] + v2_x_z[2]) - h[2]*v2_Tt_z[2] + past[2]*v2_Tv_z[2]);
+    D[118] = W*(N[1]*(-v3_Tr_z[0] + v3_x_z[0]) - h[2]*v3_Tt_z[0] + past[2]*v3_Tv_z[0]);
+    D[119] = W*(N[1]*(-v3_Tr_z[1] + v3_x_z[1]) - h[2]*v3_Tt_z[1] + past[2]*v3_Tv_z[1]);
+    D[120] = W*(N[1]*(-v3_Tr_z[2] + v3_x_z[2]) - h[2]*v3_Tt_z[2] + past[2]*v3_Tv_z[2]);
+    D[121] = W*(N[1]*(-v4_Tr_z[0] + v4_x_z[0]) - h[2]*v4_Tt_z[0] + past[2]*v4_Tv_z[0]);
+    D[122] = W*(N[1]*(-v4_Tr_z[1] + v4_x_z[1]) - h[2]*v4_Tt_z[1] + past[2]*v4_Tv_z[1]);
+    D[123] = W*(N[1]*(-v4_Tr_z[2] + v4_x_z[2]) - h[2]*v4_Tt_z[2] + past[2]*v4_Tv_z[2]);
+    D[124] = T_v[2]*W*g1[2] + W*(N[1]*(-s1_Tr1_z + s1_x1_z) - h[2]*s1_Tt1_z + past[2]*s1_Tv1_z);
+    D[125] = T_v[2]*W*g2[2] + W*(N[1]*(-s2_Tr1_z + s2_x1_z) - h[2]*s2_Tt1_z + past[2]*s2_Tv1_z);
+    D[126] = W*(N_at[1]*(-v1_Tr_x[0] + v1_x_x[0]) + drift4*v1_Tv_x[0] - h[3]*v1_Tt_x[0]);
+    D[127] = W*(N_at[1]*(-v1_Tr_x[1] + v1_x_x[1]) + drift4*v1_Tv_x[1] - h[3]*v1_Tt_x[1]);
+    D[128] = W*(N_at[1]*(-v1_Tr_x[2] + v1_x_x[2]) + drift4*v1_Tv_x[2] - h[3]*v1_Tt_x[2]);
+    D[129] = W*(N_at[1]*(-v2_Tr_x[0] + v2_x_x[0]) + drift4*v2_Tv_x[0] - h[3]*v2_Tt_x[0]);
+    D[130] = W*(N_at[1]*(-v2_Tr_x[1] + v2_x_x[1]) + drift4*v2_Tv_x[1] - h[3]*v2_Tt_x[1]);
+    D[131] = W*(N_at[1]*(-v2_Tr_x[2] + v2_x_x[2]) + drift4*v2_Tv_x[2] - h[3]*v2_Tt_x[2]);
+    D[132] = W*(N_at[1]*(-v3_Tr_x[0] + v3_x_x[0]) + drift4*v3_Tv_x[0] - h[3]*v3_Tt_x[0]);
+    D[133] = W*(N_at[1]*(-v3_Tr_x[1] + v3_x_x[1]) + drift4*v3_Tv_x[1] - h[3]*v3_Tt_x[1]);
+    D[134] = W*(N_at[1]*(-v3_Tr_x[2] + v3_x_x[2]) + drift4*v3_Tv_x[2] - h[3]*v3_Tt_x[2]);
+    D[135] = W*(N_at[1]*(-v4_Tr_x[0] + v4_x_x[0]) + drift4*v4_Tv_x[0] - h[3]*v4_Tt_x[0]);
+    D[136] = W*(N_at[1]*(-v4_Tr_x[1] + v4_x_x[1]) + drift4*v4_Tv_x[1] - h[3]*v4_Tt_x[1]);
+    D[137] = W*(N_at[1]*(-v4_Tr_x[2] + v4_x_x[2]) + drift4*v4_Tv_x[2] - h[3]*v4_Tt_x[2]);
+    D[138] = T_v[0]*W*(-dl_N4 + g1[3]) + W*(N_at[1]*(-s1_Tr1_x + s1_x1_x) + drift4*s1_Tv1_x - h[3]*s1_Tt1_x);
+    D[139] = T_v[0]*W*(dl_N4 + g2[3]) + W*(N_at[1]*(-s2_Tr1_x + s2_x1_x) + drift4*s2_Tv1_x - h[3]*s2_Tt1_x);
+    D[140] = W*(N_at[1]*(-v1_Tr_y[0] + v1_x_y[0]) + drift4*v1_Tv_y[0] - h[3]*v1_Tt_y[0]);
+    D[141] = W*(N_at[1]*(-v1_Tr_y[1] + v1_x_y[1]) + drift4*v1_Tv_y[1] - h[3]*v1_Tt_y[1]);
+    D[142] = W*(N_at[1]*(-v1_Tr_y[2] + v1_x_y[2]) + drift4*v1_Tv_y[2] - h[3]*v1_Tt_y[2]);
+    D[143] = W*(N_at[1]*(-v2_Tr_y[0] + v2_x_y[0]) + drift4*v2_Tv_y[0] - h[3]*v2_Tt_y[0]);
+    D[144] = W*(N_at[1]*(-v2_Tr_y[1] + v2_x_y[1]) + drift4*v2_Tv_y[1] - h[3]*v2_Tt_y[1]);
+    D[145] = W*(N_at[1]*(-v2_Tr_y[2] + v2_x_y[2]) + drift4*v2_Tv_y[2] - h[3]*v2_Tt_y[2]);
+    D[146] = W*(N_at[1]*(-v3_Tr_y[0] + v3_x_y[0]) + drift4*v3_Tv_y[0] - h[3]*v3_Tt_y[0]);
+    D[147] = W*(N_at[1]*(-v3_Tr_y[1] + v3_x_y[1]) + drift4*v3_Tv_y[1] - h[3]*v3_Tt_y[1]);
+    D[148] = W*(N_at[1]*(-v3_Tr_y[2] + v3_x_y[2]) + drift4*v3_Tv_y[2] - h[3]*v3_Tt_y[2]);
+    D[149] = W*(N_at[1]*(-v4_Tr_y[0] + v4_x_y[0]) + drift4*v4_Tv_y[0] - h[3]*v4_Tt_y[0]);
+    D[150] = W*(N_at[1]*(-v4_Tr_y[1] + v4_x_y[1]) + drift4*v4_Tv_y[1] - h[3]*v4_Tt_y[1]);
+    D[151] = W*(N_at[1]*(-v4_Tr_y[2] + v4_x_y[2]) + drift4*v4_Tv_y[2] - h[3]*v4_Tt_y[2]);
+    D[152] = T_v[1]*W*(-dl_N4 + g1[3]) + W*(N_at[1]*(-s1_Tr1_y + s1_x1_y) + drift4*s1_Tv1_y - h[3]*s1_Tt1_y);
+    D[153] = T_v[1]*W*(dl_N4 + g2[3]) + W*(N_at[1]*(-s2_Tr1_y + s2_x1_y) + drift4*s2_Tv1_y - h[3]*s2_Tt1_y);
+    D[154] = W*(N_at[1]*(-v1_Tr_z[0] + v1_x_z[0]) + drift4*v1_Tv_z[0] - h[3]*v1_Tt_z[0]);
+    D[155] = W*(N_at[1]*(-v1_Tr_z[1] + v1_x_z[1]) + drift4*v1_Tv_z[1] - h[3]*v1_Tt_z[1]);
+    D[156] = W*(N_at[1]*(-v1_Tr_z[2] + v1_x_z[2]) + drift4*v1_Tv_z[2] - h[3]*v1_Tt_z[2]);
+    D[157] = W*(N_at[1]*(-v2_Tr_z[0] + v2_x_z[0]) + drift4*v2_Tv_z[0] - h[3]*v2_Tt_z[0]);
+    D[158] = W*(N_at[1]*(-v2_Tr_z[1] + v2_x_z[1]) + drift4*v2_Tv_z[1] - h[3]*v2_Tt_z[1]);
+    D[159] = W*(N_at[1]*(-v2_Tr_z[2] + v2_x_z[2]) + drift4*v2_Tv_z[2] - h[3]*v2_Tt_z[2]);
+    D[160] = W*(N_at[1]*(-v3_Tr_z[0] + v3_x_z[0]) + drift4*v3_Tv_z[0] - h[3]*v3_Tt_z[0]);
+    D[161] = W*(N_at[1]*(-v3_Tr_z[1] + v3_x_z[1]) + drift4*v3_Tv_z[1] - h[3]*v3_Tt_z[1]);
+    D[162] = W*(N_at[1]*(-v3_Tr_z[2] + v3_x_z[2]) + drift4*v3_Tv_z[2] - h[3]*v3_Tt_z[2]);
+    D[163] = W*(N_at[1]*(-v4_Tr_z[0] + v4_x_z[0]) + drift4*v4_Tv_z[0] - h[3]*v4_Tt_z[0]);
+    D[164] = W*(N_at[1]*(-v4_Tr_z[1] + v4_x_z[1]) + drift4*v4_Tv_z[1] - h[3]*v4_Tt_z[1]);
+    D[165] = W*(N_at[1]*(-v4_Tr_z[2] + v4_x_z[2]) + drift4*v4_Tv_z[2] - h[3]*v4_Tt_z[2]);
+    D[166] = T_v[2]*W*(-dl_N4 + g1[3]) + W*(N_at[1]*(-s1_Tr1_z + s1_x1_z) + drift4*s1_Tv1_z - h[3]*s1_Tt1_z);
+    D[167] = T_v[2]*W*(dl_N4 + g2[3]) + W*(N_at[1]*(-s2_Tr1_z + s2_x1_z) + drift4*s2_Tv1_z - h[3]*s2_Tt1_z);
+    D[168] = W*(-T_v[0]*g1[0] - g_x[0]*v1_x_x[0] - g_y[0]*v1_x_y[0] - g_z[0]*v1_x_z[0] + turn1_x*v1_Tv_x[0] + turn1_y*v1_Tv_y[0] + turn1_z*v1_Tv_z[0]) + v1_length1;
+    D[169] = W*(-T_v[1]*g1[0] - g_x[0]*v1_x_x[1] - g_y[0]*v1_x_y[1] - g_z[0]*v1_x_z[1] + turn1_x*v1_Tv_x[1] + turn1_y*v1_Tv_y[1] + turn1_z*v1_Tv_z[1]) + v1_length2;
+    D[170] = W*(-T_v[2]*g1[0] - g_x[0]*v1_x_x[2] - g_y[0]*v1_x_y[2] - g_z[0]*v1_x_z[2] + turn1_x*v1_Tv_x[2] + turn1_y*v1_Tv_y[2] + turn1_z*v1_Tv_z[2]) + v1_length3;
+    D[171] = W*(T_v[0]*(dl_N2 - g1[1]) - g_x[0]*v2_x_x[0] - g_y[0]*v2_x_y[0] - g_z[0]*v2_x_z[0] + turn1_x*v2_Tv_x[0] + turn1_y*v2_Tv_y[0] + turn1_z*v2_Tv_z[0]) + v2_length1;
+    D[172] = W*(T_v[1]*(dl_N2 - g1[1]) - g_x[0]*v2_x_x[1] - g_y[0]*v2_x_y[1] - g_z[0]*v2_x_z[1] + turn1_x*v2_Tv_x[1] + turn1_y*v2_Tv_y[1] + turn1_z*v2_Tv_z[1]) + v2_length2;
+    D[173] = W*(T_v[2]*(dl_N2 - g1[1]) - g_x[0]*v2_x_x[2] - g_y[0]*v2_x_y[2] - g_z[0]*v2_x_z[2] + turn1_x*v2_Tv_x[2] + turn1_y*v2_Tv_y[2] + turn1_z*v2_Tv_z[2]) + v2_length3;
+    D[174] = W*(-T_v[0]*g1[2] - g_x[0]*v3_x_x[0] - g_y[0]*v3_x_y[0] - g_z[0]*v3_x_z[0] + turn1_x*v3_Tv_x[0] + turn1_y*v3_Tv_y[0] + turn1_z*v3_Tv_z[0]) + v3_length1;
+    D[175] = W*(-T_v[1]*g1[2] - g_x[0]*v3_x_x[1] - g_y[0]*v3_x_y[1] - g_z[0]*v3_x_z[1] + turn1_x*v3_Tv_x[1] + turn1_y*v3_Tv_y[1] + turn1_z*v3_Tv_z[1]) + v3_length2;
+    D[176] = W*(-T_v[2]*g1[2] - g_x[0]*v3_x_x[2] - g_y[0]*v3_x_y[2] - g_z[0]*v3_x_z[2] + turn1_x*v3_Tv_x[2] + turn1_y*v3_Tv_y[2] + turn1_z*v3_Tv_z[2]) + v3_length3;
+    D[177] = W*(T_v[0]*(dl_N4 - g1[3]) - g_x[0]*v4_x_x[0] - g_y[0]*v4_x_y[0] - g_z[0]*v4_x_z[0] + turn1_x*v4_Tv_x[0] + turn1_y*v4_Tv_y[0] + turn1_z*v4_Tv_z[0]) + v4_length1;
+    D[178] = W*(T_v[1]*(dl_N4 - g1[3]) - g_x[0]*v4_x_x[1] - g_y[0]*v4_x_y[1] - g_z[0]*v4_x_z[1] + turn1_x*v4_Tv_x[1] + turn1_y*v4_Tv_y[1] + turn1_z*v4_Tv_z[1]) + v4_length2;
+    D[179] = W*(T_v[2]*(dl_N4 - g1[3]) - g_x[0]*v4_x_x[2] - g_y[0]*v4_x_y[2] - g_z[0]*v4_x_z[2] + turn1_x*v4_Tv_x[2] + turn1_y*v4_Tv_y[2] + turn1_z*v4_Tv_z[2]) + v4_length3;
+    D[180] = W*(-g_x[0]*s1_x1_x - g_y[0]*s1_x1_y - g_z[0]*s1_x1_z + s1_Tv1_x*turn1_x + s1_Tv1_y*turn1_y + s1_Tv1_z*turn1_z) + s1_length1;
+    D[181] = W*(T_v[0]*(-dl_g1_x - dl_g2_x) + T_v[1]*(-dl_g1_y - dl_g2_y) + T_v[2]*(-dl_g1_z - dl_g2_z) - g_x[0]*s2_x1_x - g_y[0]*s2_x1_y - g_z[0]*s2_x1_z + s2_Tv1_x*turn1_x + s2_Tv1_y*turn1_y + s2_Tv1_z*turn1_z) + s2_length1;
+    D[182] = W*(-T_v[0]*g2[0] - g_x[1]*v1_x_x[0] - g_y[1]*v1_x_y[0] - g_z[1]*v1_x_z[0] + turn2_x*v1_Tv_x[0] + turn2_y*v1_Tv_y[0] + turn2_z*v1_Tv_z[0]) - v1_length1;
+    D[183] = W*(-T_v[1]*g2[0] - g_x[1]*v1_x_x[1] - g_y[1]*v1_x_y[1] - g_z[1]*v1_x_z[1] + turn2_x*v1_Tv_x[1] + turn2_y*v1_Tv_y[1] + turn2_z*v1_Tv_z[1]) - v1_length2;
+    D[184] = W*(-T_v[2]*g2[0] - g_x[1]*v1_x_x[2] - g_y[1]*v1_x_y[2] - g_z[1]*v1_x_z[2] + turn2_x*v1_Tv_x[2] + turn2_y*v1_Tv_y[2] + turn2_z*v1_Tv_z[2]) - v1_length3;
+    D[185] = W*(T_v[0]*(-dl_N2 - g2[1]) - g_x[1]*v2_x_x[0] - g_y[1]*v2_x_y[0] - g_z[1]*v2_x_z[0] + turn2_x*v2_Tv_x[0] + turn2_y*v2_Tv_y[0] + turn2_z*v2_Tv_z[0]) - v2_length1;
+    D[186] = W*(T_v[1]*(-dl_N2 - g2[1]) - g_x[1]*v2_x_x[1] - g_y[1]*v2_x_y[1] - g_z[1]*v2_x_z[1] + turn2_x*v2_Tv_x[1] + turn2_y*v2_Tv_y[1] + turn2_z*v2_Tv_z[1]) - v2_length2;
+    D[187] = W*(T_v[2]*(-dl_N2 - g2[1]) - g_x[1]*v2_x_x[2] - g_y[1]*v2_x_y[2] - g_z[1]*v2_x_z[2] + turn2_x*v2_Tv_x[2] + turn2_y*v2_Tv_y[2] + turn2_z*v2_Tv_z[2]) - v2_length3;
+    D[188] = W*(-T_v[0]*g2[2] - g_x[1]*v3_x_x[0] - g_y[1]*v3_x_y[0] - g_z[1]*v3_x_z[0] + turn2_x*v3_Tv_x[0] + turn2_y*v3_Tv_y[0] + turn2_z*v3_Tv_z[0]) - v3_length1;
+    D[189] = W*(-T_v[1]*g2[2] - g_x[1]*v3_x_x[1] - g_y[1]*v3_x_y[1] - g_z[1]*v3_x_z[1] + turn2_x*v3_Tv_x[1] + turn2_y*v3_Tv_y[1] + turn2_z*v3_Tv_z[1]) - v3_length2;
+    D[190] = W*(-T_v[2]*g2[2] - g_x[1]*v3_x_x[2] - g_y[1]*v3_x_y[2] - g_z[1]*v3_x_z[2] + turn2_x*v3_Tv_x[2] + turn2_y*v3_Tv_y[2] + turn2_z*v3_Tv_z[2]) - v3_length3;
+    D[191] = W*(T_v[0]*(-dl_N4 - g2[3]) - g_x[1]*v4_x_x[0] - g_y[1]*v4_x_y[0] - g_z[1]*v4_x_z[0] + turn2_x*v4_Tv_x[0] + turn2_y*v4_Tv_y[0] + turn2_z*v4_Tv_z[0]) - v4_length1;
+    D[192] = W*(T_v[1]*(-dl_N4 - g2[3]) - g_x[1]*v4_x_x[1] - g_y[1]*v4_x_y[1] - g_z[1]*v4_x_z[1] + turn2_x*v4_Tv_x[1] + turn2_y*v4_Tv_y[1] + turn2_z*v4_Tv_z[1]) - v4_length2;
+    D[193] = W*(T_v[2]*(-dl_N4 - g2[3]) - g_x[1]*v4_x_x[2] - g_y[1]*v4_x_y[2] - g_z[1]*v4_x_z[2] + turn2_x*v4_Tv_x[2] + turn2_y*v4_Tv_y[2] + turn2_z*v4_Tv_z[2]) - v4_length3;
+    D[194] = W*(T_v[0]*(dl_g1_x + dl_g2_x) + T_v[1]*(dl_g1_y + dl_g2_y) + T_v[2]*(dl_g1_z + dl_g2_z) - g_x[1]*s1_x1_x - g_y[1]*s1_x1_y - g_z[1]*s1_x1_z + s1_Tv1_x*turn2_x + s1_Tv1_y*turn2_y + s1_Tv1_z*turn2_z) - s1_length1;
+    D[195] = W*(-g_x[1]*s2_x1_x - g_y[1]*s2_x1_y - g_z[1]*s2_x1_z + s2_Tv1_x*turn2_x + s2_Tv1_y*turn2_y + s2_Tv1_z*turn2_z) - s2_length1;
+    K[0] = W*(N[0]*(-e1_Tr_x[0] + e1_x_x[0]) - e1_Tt_x[0]*h[0] + e1_Tv_x[0]*past[0]);
+    K[1] = W*(N[0]*(-e1_Tr_x[1] + e1_x_x[1]) - e1_Tt_x[1]*h[0] + e1_Tv_x[1]*past[0]);
+    K[2] = W*(N[0]*(-e1_Tr_x[2] + e1_x_x[2]) - e1_Tt_x[2]*h[0] + e1_Tv_x[2]*past[0]);
+    K[3] = W*(N[0]*(-e2_Tr_x[0] + e2_x_x[0]) - e2_Tt_x[0]*h[0] + e2_Tv_x[0]*past[0]);
+    K[4] = W*(N[0]*(-e2_Tr_x[1] + e2_x_x[1]) - e2_Tt_x[1]*h[0] + e2_Tv_x[1]*past[0]);
+    K[5] = W*(N[0]*(-e2_Tr_x[2] + e2_x_x[2]) - e2_Tt_x[2]*h[0] + e2_Tv_x[2]*past[0]);
+    K[6] = W*(N[0]*(-e3_Tr_x[0] + e3_x_x[0]) - e3_Tt_x[0]*h[0] + e3_Tv_x[0]*past[0]);
+    K[7] = W*(N[0]*(-e3_Tr_x[1] + e3_x_x[1]) - e3_Tt_x[1]*h[0] + e3_Tv_x[1]*past[0]);
+    K[8] = W*(N[0]*(-e3_Tr_x[2] + e3_x_x[2]) - e3_Tt_x[2]*h[0] + e3_Tv_x[2]*past[0]);
+    K[9] = W*(N[0]*(-e4_Tr_x[0] + e4_x_x[0]) - e4_Tt_x[0]*h[0] + e4_Tv_x[0]*past[0]);
+    K[10] = W*(N[0]*(-e4_Tr_x[1] + e4_x_x[1]) - e4_Tt_x[1]*h[0] + e4_Tv_x[1]*past[0]);
+    K[11] = W*(N[0]*(-e4_Tr_x[2] + e4_x_x[2]) - e4_Tt_x[2]*h[0] + e4_Tv_x[2]*past[0]);
+    K[12] = N[0]*part*(-T_r[0] + rate[0]) - T_t[0]*(W*dl_h[0] + h[0]*part) + T_v[0]*(W*dl_past[0] + part*past[0]) + W*(N[0]*(-l_Tr1_x + l_x1_x) - h[0]*l_Tt1_x + l_Tv1_x*past[0]);
+    K[13] = W*(N[0]*(-e1_Tr_y[0] + e1_x_y[0]) - e1_Tt_y[0]*h[0] + e1_Tv_y[0]*past[0]);
+    K[14] = W*(N[0]*(-e1_Tr_y[1] + e1_x_y[1]) - e1_Tt_y[1]*h[0] + e1_Tv_y[1]*past[0]);
+    K[15] = W*(N[0]*(-e1_Tr_y[2] + e1_x_y[2]) - e1_Tt_y[2]*h[0] + e1_Tv_y[2]*past[0]);
+    K[16] = W*(N[0]*(-e2_Tr_y[0] + e2_x_y[0]) - e2_Tt_y[0]*h[0] + e2_Tv_y[0]*past[0]);
+    K[17] = W*(N[0]*(-e2_Tr_y[1] + e2_x_y[1]) - e2_Tt_y[1]*h[0] + e2_Tv_y[1]*past[0]);
+    K[18] = W*(N[0]*(-e2_Tr_y[2] + e2_x_y[2]) - e2_Tt_y[2]*h[0] + e2_Tv_y[2]*past[0]);
+    K[19] = W*(N[0]*(-e3_Tr_y[0] + e3_x_y[0]) - e3_Tt_y[0]*h[0] + e3_Tv_y[0]*past[0]);
+    K[20] = W*(N[0]*(-e3_Tr_y[1] + e3_x_y[1]) - e3_Tt_y[1]*h[0] + e3_Tv_y[1]*past[0]);
+    K[21] = W*(N[0]*(-e3_Tr_y[2] + e3_x_y[2]) - e3_Tt_y[2]*h[0] + e3_Tv_y[2]*past[0]);
+    K[22] = W*(N[0]*(-e4_Tr_y[0] + e4_x_y[0]) - e4_Tt_y[0]*h[0] + e4_Tv_y[0]*past[0]);
+    K[23] = W*(N[0]*(-e4_Tr_y[1] + e4_x_y[1]) - e4_Tt_y[1]*h[0] + e4_Tv_y[1]*past[0]);
+    K[24] = W*(N[0]*(-e4_Tr_y[2] + e4_x_y[2]) - e4_Tt_y[2]*h[0] + e4_Tv_y[2]*past[0]);
+    K[25] = N[0]*part*(-T_r[1] + rate[1]) - T_t[1]*(W*dl_h[0] + h[0]*part) + T_v[1]*(W*dl_past[0] + part*past[0]) + W*(N[0]*(-l_Tr1_y + l_x1_y) - h[0]*l_Tt1_y + l_Tv1_y*past[0]);
+    K[26] = W*(N[0]*(-e1_Tr_z[0] + e1_x_z[0]) - e1_Tt_z[0]*h[0] + e1_Tv_z[0]*past[0]);
+    K[27] = W*(N[0]*(-e1_Tr_z[1] + e1_x_z[1]) - e1_Tt_z[1]*h[0] + e1_Tv_z[1]*past[0]);
+    K[28] = W*(N[0]*(-e1_Tr_z[2] + e1_x_z[2]) - e1_Tt_z[2]*h[0] + e1_Tv_z[2]*past[0]);
+    K[29] = W*(N[0]*(-e2_Tr_z[0] + e2_x_z[0]) - e2_Tt_z[0]*h[0] + e2_Tv_z[0]*past[0]);
+    K[30] = W*(N[0]*(-e2_Tr_z[1] + e2_x_z[1]) - e2_Tt_z[1]*h[0] + e2_Tv_z[1]*past[0]);
+    K[31] = W*(N[0]*(-e2_Tr_z[2] + e2_x_z[2]) - e2_Tt_z[2]*h[0] + e2_Tv_z[2]*past[0]);
+    K[32] = W*(N[0]*(-e3_Tr_z[0] + e3_x_z[0]) - e3_Tt_z[0]*h[0] + e3_Tv_z[0]*past[0]);
+    K[33] = W*(N[0]*(-e3_Tr_z[1] + e3_x_z[1]) - e3_Tt_z[1]*h[0] + e3_Tv_z[1]*past[0]);
+    K[34] = W*(N[0]*(-e3_Tr_z[2] + e3_x_z[2]) - e3_Tt_z[2]*h[0] + e3_Tv_z[2]*past[0]);
+    K[35] = W*(N[0]*(-e4_Tr_z[0] + e4_x_z[0]) - e4_Tt_z[0]*h[0] + e4_Tv_z[0]*past[0]);
+    K[36] = W*(N[0]*(-e4_Tr_z[1] + e4_x_z[1]) - e4_Tt_z[1]*h[0] + e4_Tv_z[1]*past[0]);
+    K[37] = W*(N[0]*(-e4_Tr_z[2] + e4_x_z[2]) - e4_Tt_z[2]*h[0] + e4_Tv_z[2]*past[0]);
+    K[38] = N[0]*part*(-T_r[2] + rate[2]) - T_t[2]*(W*dl_h[0] + h[0]*part) + T_v[2]*(W*dl_past[0] + part*past[0]) + W*(N[0]*(-l_Tr1_z + l_x1_z) - h[0]*l_Tt1_z + l_Tv1_z*past[0]);
+    K[39] = W*(N_at[0]*(-e1_Tr_x[0] + e1_x_x[0]) + drift2*e1_Tv_x[0] - e1_Tt_x[0]*h[1]);
+    K[40] = W*(N_at[0]*(-e1_Tr_x[1] + e1_x_x[1]) + drift2*e1_Tv_x[1] - e1_Tt_x[1]*h[1]);
+    K[41] = W*(N_at[0]*(-e1_Tr_x[2] + e1_x_x[2]) + drift2*e1_Tv_x[2] - e1_Tt_x[2]*h[1]);
+    K[42] = W*(N_at[0]*(-e2_Tr_x[0] + e2_x_x[0]) + drift2*e2_Tv_x[0] - e2_Tt_x[0]*h[1]);
+    K[43] = W*(N_at[0]*(-e2_Tr_x[1] + e2_x_x[1]) + drift2*e2_Tv_x[1] - e2_Tt_x[1]*h[1]);
+    K[44] = W*(N_at[0]*(-e2_Tr_x[2] + e2_x_x[2]) + drift2*e2_Tv_x[2] - e2_Tt_x[2]*h[1]);
+    K[45] = W*(N_at[0]*(-e3_Tr_x[0] + e3_x_x[0]) + drift2*e3_Tv_x[0] - e3_Tt_x[0]*h[1]);
+    K[46] = W*(N_at[0]*(-e3_Tr_x[1] + e3_x_x[1]) + drift2*e3_Tv_x[1] - e3_Tt_x[1]*h[1]);
+    K[47] = W*(N_at[0]*(-e3_Tr_x[2] + e3_x_x[2]) + drift2*e3_Tv_x[2] - e3_Tt_x[2]*h[1]);
+    K[48] = W*(N_at[0]*(-e4_Tr_x[0] + e4_x_x[0]) + drift2*e4_Tv_x[0] - e4_Tt_x[0]*h[1]);
+    K[49] = W*(N_at[0]*(-e4_Tr_x[1] + e4_x_x[1]) + drift2*e4_Tv_x[1] - e4_Tt_x[1]*h[1]);
+    K[50] = W*(N_at[0]*(-e4_Tr_x[2] + e4_x_x[2]) + drift2*e4_Tv_x[2] - e4_Tt_x[2]*h[1]);
+    K[51] = -T_t[0]*(W*dl_h[1] + h[1]*part) + T_v[0]*(W*dl_past[1] + drift2*part) + W*(N_at[0]*(-l_Tr1_x + l_x1_x) + drift2*l_Tv1_x - h[1]*l_Tt1_x) + (-T_r[0] + rate[0])*(N_at[0]*part + W*dl_N2);
+    K[52] = W*(N_at[0]*(-e1_Tr_y[0] + e1_x_y[0]) + drift2*e1_Tv_y[0] - e1_Tt_y[0]*h[1]);
+    K[53] = W*(N_at[0]*(-e1_Tr_y[1] + e1_x_y[1]) + drift2*e1_Tv_y[1] - e1_Tt_y[1]*h[1]);
+    K[54] = W*(N_at[0]*(-e1_Tr_y[2] + e1_x_y[2]) + drift2*e1_Tv_y[2] - e1_Tt_y[2]*h[1]);
+    K[55] = W*(N_at[0]*(-e2_Tr_y[0] + e2_x_y[0]) + drift2*e2_Tv_y[0] - e2_Tt_y[0]*h[1]);
+    K[56] = W*(N_at[0]*(-e2_Tr_y[1] + e2_x_y[1]) + drift2*e2_Tv_y[1] - e2_Tt_y[1]*h[1]);
+    K[57] = W*(N_at[0]*(-e2_Tr_y[2] + e2_x_y[2]) + drift2*e2_Tv_y[2] - e2_Tt_y[2]*h[1]);
+    K[58] = W*(N_at[0]*(-e3_Tr_y[0] + e3_x_y[0]) + drift2*e3_Tv_y[0] - e3_Tt_y[0]*h[1]);
+    K[59] = W*(N_at[0]*(-e3_Tr_y[1] + e3_x_y[1]) + drift2*e3_Tv_y[1] - e3_Tt_y[1]*h[1]);
+    K[60] = W*(N_at[0]*(-e3_Tr_y[2] + e3_x_y[2]) + drift2*e3_Tv_y[2] - e3_Tt_y[2]*h[1]);
+    K[61] = W*(N_at[0]*(-e4_Tr_y[0] + e4_x_y[0]) + drift2*e4_Tv_y[0] - e4_Tt_y[0]*h[1]);
+    K[62] = W*(N_at[0]*(-e4_Tr_y[1] + e4_x_y[1]) + drift2*e4_Tv_y[1] - e4_Tt_y[1]*h[1]);
+    K[63] = W*(N_at[0]*(-e4_Tr_y[2] + e4_x_y[2]) + drift2*e4_Tv_y[2] - e4_Tt_y[2]*h[1]);
+    K[64] = -T_t[1]*(W*dl_h[1] + h[1]*part) + T_v[1]*(W*dl_past[1] + drift2*part) + W*(N_at[0]*(-l_Tr1_y + l_x1_y) + drift2*l_Tv1_y - h[1]*l_Tt1_y) + (-T_r[1] + rate[1])*(N_at[0]*part + W*dl_N2);
+    K[65] = W*(N_at[0]*(-e1_Tr_z[0] + e1_x_z[0]) + drift2*e1_Tv_z[0] - e1_Tt_z[0]*h[1]);
+    K[66] = W*(N_at[0]*(-e1_Tr_z[1] + e1_x_z[1]) + drift2*e1_Tv_z[1] - e1_Tt_z[1]*h[1]);
+    K[67] = W*(N_at[0]*(-e1_Tr_z[2] + e1_x_z[2]) + drift2*e1_Tv_z[2] - e1_Tt_z[2]*h[1]);
+    K[68] = W*(N_at[0]*(-e2_Tr_z[0] + e2_x_z[0]) + drift2*e2_Tv_z[0] - e2_Tt_z[0]*h[1]);
+    K[69] = W*(N_at[0]*(-e2_Tr_z[1] + e2_x_z[1]) + drift2*e2_Tv_z[1] - e2_Tt_z[1]*h[1]);
+    K[70] = W*(N_at[0]*(-e2_Tr_z[2] + e2_x_z[2]) + drift2*e2_Tv_z[2] - e2_Tt_z[2]*h[1]);
+    K[71] = W*(N_at[0]*(-e3_Tr_z[0] + e3_x_z[0]) + drift2*e3_Tv_z[0] - e3_Tt_z[0]*h[1]);
+    K[72] = W*(N_at[0]*(-e3_Tr_z[1] + e3_x_z[1]) + drift2*e3_Tv_z[1] - e3_Tt_z[1]*h[1]);
+    K[73] = W*(N_at[0]*(-e3_Tr_z[2] + e3_x_z[2]) + drift2*e3_Tv_z[2] - e3_Tt_z[2]*h[1]);
+    K[74] = W*(N_at[0]*(-e4_Tr_z[0] + e4_x_z[0]) + drift2*e4_Tv_z[0] - e4_Tt_z[0]*h[1]);
+    K[75] = W*(N_at[0]*(-e4_Tr_z[1] + e4_x_z[1]) + drift2*e4_Tv_z[1] - e4_Tt_z[1]*h[1]);
+    K[76] = W*(N_at[0]*(-e4_Tr_z[2] + e4_x_z[2]) + drift2*e4_Tv_z[2] - e4_Tt_z[2]*h[1]);
+    K[77] = -T_t[2]*(W*dl_h[1] + h[1]*part) + T_v[2]*(W*dl_past[1] + drift2*part) + W*(N_at[0]*(-l_Tr1_z + l_x1_z) + drift2*l_Tv1_z - h[1]*l_Tt1_z) + (-T_r[2] + rate[2])*(N_at[0]*part + W*dl_N2);
+    K[78] = W*(N[1]*(-e1_Tr_x[0] + e1_x_x[0]) - e1_Tt_x[0]*h[2] + e1_Tv_x[0]*past[2]);
+    K[79] = W*(N[1]*(-e1_Tr_x[1] + e1_x_x[1]) - e1_Tt_x[1]*h[2] + e1_Tv_x[1]*past[2]);
+    K[80] = W*(N[1]*(-e1_Tr_x[2] + e1_x_x[2]) - e1_Tt_x[2]*h[2] + e1_Tv_x[2]*past[2]);
+    K[81] = W*(N[1]*(-e2_Tr_x[0] + e2_x_x[0]) - e2_Tt_x[0]*h[2] + e2_Tv_x[0]*past[2]);
+    K[82] = W*(N[1]*(-e2_Tr_x[1] + e2_x_x[1]) - e2_Tt_x[1]*h[2] + e2_Tv_x[1]*past[2]);
+    K[83] = W*(N[1]*(-e2_Tr_x[2] + e2_x_x[2]) - e2_Tt_x[2]*h[2] + e2_Tv_x[2]*past[2]);
+    K[84] = W*(N[1]*(-e3_Tr_x[0] + e3_x_x[0]) - e3_Tt_x[0]*h[2] + e3_Tv_x[0]*past[2]);
+    K[85] = W*(N[1]*(-e3_Tr_x[1] + e3_x_x[1]) - e3_Tt_x[1]*h[2] + e3_Tv_x[1]*past[2]);
+    K[86] = W*(N[1]*(-e3_Tr_x[2] + e3_x_x[2]) - e3_Tt_x[2]*h[2] + e3_Tv_x[2]*past[2]);
+    K[87] = W*(N[1]*(-e4_Tr_x[0] + e4_x_x[0]) - e4_Tt_x[0]*h[2] + e4_Tv_x[0]*past[2]);
+    K[88] = W*(N[1]*(-e4_Tr_x[1] + e4_x_x[1]) - e4_Tt_x[1]*h[2] + e4_Tv_x[1]*past[2]);
+    K[89] = W*(N[1]*(-e4_Tr_x[2] + e4_x_x[2]) - e4_Tt_x[2]*h[2] + e4_Tv_x[2]*past[2]);
+    K[90] = N[1]*part*(-T_r[0] + rate[0]) - T_t[0]*(W*dl_h[2] + h[2]*part) + T_v[0]*(W*dl_past[2] + part*past[2]) + W*(N[1]*(-l_Tr1_x + l_x1_x) - h[2]*l_Tt1_x + l_Tv1_x*past[2]);
+    K[91] = W*(N[1]*(-e1_Tr_y[0] + e1_x_y[0]) - e1_Tt_y[0]*h[2] + e1_Tv_y[0]*past[2]);
+    K[92] = W*(N[1]*(-e1_Tr_y[1] + e1_x_y[1]) - e1_Tt_y[1]*h[2] + e1_Tv_y[1]*past[2]);
+    K[93] = W*(N[1]*(-e1_Tr_y[2] + e1_x_y[2]) - e1_Tt_y[2]*h[2] + e1_Tv_y[2]*past[2]);
+    K[94] = W*(N[1]*(-e2_Tr_y[0] + e2_x_y[0]) - e2_Tt_y[0]*h[2] + e2_Tv_y[0]*past[2]);
+    K[95] = W*(N[1]*(-e2_Tr_y[1] + e2_x_y[1]) - e2_Tt_y[1]*h[2] + e2_Tv_y[1]*past[2]);
+    K[96] = W*(N[1]*(-e2_Tr_y[2] + e2_x_y[2]) - e2_Tt_y[2]*h[2] + e2_Tv_y[2]*past[2]);
+    K[97] = W*(N[1]*(-e3_Tr_y[0] + e3_x_y[0]) - e3_Tt_y[0]*h[2] + e3_Tv_y[0]*past[2]);
+    K[98] = W*(N[1]*(-e3_Tr_y[1] + e3_x_y[1]) - e3_Tt_y[1]*h[2] + e3_Tv_y[1]*past[2]);
+    K[99] = W*(N[1]*(-e3_Tr_y[2] + e3_x_y[2]) - e3_Tt_y[2]*h[2] + e3_Tv_y[2]*past[2]);
+    K[100] = W*(N[1]*(-e4_Tr_y[0] + e4_x_y[0]) - e4_Tt_y[0]*h[2] + e4_Tv_y[0]*past[2]);
+    K[101] = W*(N[1]*(-e4_Tr_y[1] + e4_x_y[1]) - e4_Tt_y[1]*h[2] + e4_Tv_y[1]*past[2]);
+    K[102] = W*(N[1]*(-e4_Tr_y[2] + e4_x_y[2]) - e4_Tt_y[2]*h[2] + e4_Tv_y[2]*past[2]);
+    K[103] = N[1]*part*(-T_r[1] + rate[1]) - T_t[1]*(W*dl_h[2] + h[2]*part) + T_v[1]*(W*dl_past[2] + part*past[2]) + W*(N[1]*(-l_Tr1_y + l_x1_y) - h[2]*l_Tt1_y + l_Tv1_y*past[2]);
+    K[104] = W*(N[1]*(-e1_Tr_z[0] + e1_x_z[0]) - e1_Tt_z[0]*h[2] + e1_Tv_z[0]*past[2]);
+    K[105] = W*(N[1]*(-e1_Tr_z[1] + e1_x_z[1]) - e1_Tt_z[1]*h[2] + e1_Tv_z[1]*past[2]);
+    K[106] = W*(N[1]*(-e1_Tr_z[2] + e1_x_z[2]) - e1_Tt_z[2]*h[2] + e1_Tv_z[2]*past[2]);
+    K[107] = W*(N[1]*(-e2_Tr_z[0] + e2_x_z[0]) - e2_Tt_z[0]*h[2] + e2_Tv_z[0]*past[2]);
+    K[108] = W*(N[1]*(-e2_Tr_z[1] + e2_x_z[1]) - e2_Tt_z[1]*h[2] + e2_Tv_z[1]*past[2]);
+    K[109] = W*(N[1]*(-e2_Tr_z[2] + e2_x_z[2]) - e2_Tt_z[2]*h[2] + e2_Tv_z[2]*past[2]);
+    K[110] = W*(N[1]*(-e3_Tr_z[0] + e3_x_z[0]) - e3_Tt_z[0]*h[2] + e3_Tv_z[0]*past[2]);
+    K[111] = W*(N[1]*(-e3_Tr_z[1] + e3_x_z[1]) - e3_Tt_z[1]*h[2] + e3_Tv_z[1]*past[2]);
+    K[112] = W*(N[1]*(-e3_Tr_z[2] + e3_x_z[2]) - e3_Tt_z[2]*h[2] + e3_Tv_z[2]*past[2]);
+    K[113] = W*(N[1]*(-e4_Tr_z[0] + e4_x_z[0]) - e4_Tt_z[0]*h[2] + e4_Tv_z[0]*past[2]);
+    K[114] = W*(N[1]*(-e4_Tr_z[1] + e4_x_z[1]) - e4_Tt_z[1]*h[2] + e4_Tv_z[1]*past[2]);
+    K[115] = W*(N[1]*(-e4_Tr_z[2] + e4_x_z[2]) - e4_Tt_z[2]*h[2] + e4_Tv_z[2]*past[2]);
+    K[116] = N[1]*part*(-T_r[2] + rate[2]) - T_t[2]*(W*dl_h[2] + h[2]*part) + T_v[2]*(W*dl_past[2] + part*past[2]) + W*(N[1]*(-l_Tr1_z + l_x1_z) - h[2]*l_Tt1_z + l_Tv1_z*past[2]);
+    K[117] = W*(N_at[1]*(-e1_Tr_x[0] + e1_x_x[0]) + drift4*e1_Tv_x[0] - e1_Tt_x[0]*h[3]);
+    K[118] = W*(N_at[1]*(-e1_Tr_x[1] + e1_x_x[1]) + drift4*e1_Tv_x[1] - e1_Tt_x[1]*h[3]);
+    K[119] = W*(N_at[1]*(-e1_Tr_x[2] + e1_x_x[2]) + drift4*e1_Tv_x[2] - e1_Tt_x[2]*h[3]);
+    K[120] = W*(N_at[1]*(-e2_Tr_x[0] + e2_x_x[0]) + drift4*e2_Tv_x[0] - e2_Tt_x[0]*h[3]);
+    K[121] = W*(N_at[1]*(-e2_Tr_x[1] + e2_x_x[1]) + drift4*e2_Tv_x[1] - e2_Tt_x[1]*h[3]);
+    K[122] = W*(N_at[1]*(-e2_Tr_x[2] + e2_x_x[2]) + drift4*e2_Tv_x[2] - e2_Tt_x[2]*h[3]);
+    K[123] = W*(N_at[1]*(-e3_Tr_x[0] + e3_x_x[0]) + drift4*e3_Tv_x[0] - e3_Tt_x[0]*h[3]);
+    K[124] = W*(N_at[1]*(-e3_Tr_x[1] + e3_x_x[1]) + drift4*e3_Tv_x[1] - e3_Tt_x[1]*h[3]);
+    K[125] = W*(N_at[1]*(-e3_Tr_x[2] + e3_x_x[2]) + drift4*e3_Tv_x[2] - e3_Tt_x[2]*h[3]);
+    K[126] = W*(N_at[1]*(-e4_Tr_x[0] + e4_x_x[0]) + drift4*e4_Tv_x[0] - e4_Tt_x[0]*h[3]);
+    K[127] = W*(N_at[1]*(-e4_Tr_x[1] + e4_x_x[1]) + drift4*e4_Tv_x[1] - e4_Tt_x[1]*h[3]);
+    K[128] = W*(N_at[1]*(-e4_Tr_x[2] + e4_x_x[2]) + drift4*e4_Tv_x[2] - e4_Tt_x[2]*h[3]);
+    K[129] = -T_t[0]*(W*dl_h[3] + h[3]*part) + T_v[0]*(W*dl_past[3] + drift4*part) + W*(N_at[1]*(-l_Tr1_x + l_x1_x) + drift4*l_Tv1_x - h[3]*l_Tt1_x) + (-T_r[0] + rate[0])*(N_at[1]*part + W*dl_N4);
+    K[130] = W*(N_at[1]*(-e1_Tr_y[0] + e1_x_y[0]) + drift4*e1_Tv_y[0] - e1_Tt_y[0]*h[3]);
+    K[131] = W*(N_at[1]*(-e1_Tr_y[1] + e1_x_y[1]) + drift4*e1_Tv_y[1] - e1_Tt_y[1]*h[3]);
+    K[132] = W*(N_at[1]*(-e1_Tr_y[2] + e1_x_y[2]) + drift4*e1_Tv_y[2] - e1_Tt_y[2]*h[3]);
+    K[133] = W*(N_at[1]*(-e2_Tr_y[0] + e2_x_y[0]) + drift4*e2_Tv_y[0] - e2_Tt_y[0]*h[3]);
+    K[134] = W*(N_at[1]*(-e2_Tr_y[1] + e2_x_y[1]) + drift4*e2_Tv_y[1] - e2_Tt_y[1]*h[3]);
+    K[135] = W*(N_at[1]*(-e2_Tr_y[2] + e2_x_y[2]) + drift4*e2_Tv_y[2] - e2_Tt_y[2]*h[3]);
+    K[136] = W*(N_at[1]*(-e3_Tr_y[0] + e3_x_y[0]) + drift4*e3_Tv_y[0] - e3_Tt_y[0]*h[3]);
+    K[137] = W*(N_at[1]*(-e3_Tr_y[1] + e3_x_y[1]) + drift4*e3_Tv_y[1] - e3_Tt_y[1]*h[3]);
+    K[138] = W*(N_at[1]*(-e3_Tr_y[2] + e3_x_y[2]) + drift4*e3_Tv_y[2] - e3_Tt_y[2]*h[3]);
+    K[139] = W*(N_at[1]*(-e4_Tr_y[0] + e4_x_y[0]) + drift4*e4_Tv_y[0] - e4_Tt_y[0]*h[3]);
+    K[140] = W*(N_at[1]*(-e4_Tr_y[1] + e4_x_y[1]) + drift4*e4_Tv_y[1] - e4_Tt_y[1]*h[3]);
+    K[141] = W*(N_at[1]*(-e4_Tr_y[2] + e4_x_y[2]) + drift4*e4_Tv_y[2] - e4_Tt_y[2]*h[3]);
+    K[142] = -T_t[1]*(W*dl_h[3] + h[3]*part) + T_v[1]*(W*dl_past[3] + drift4*part) + W*(N_at[1]*(-l_Tr1_y + l_x1_y) + drift4*l_Tv1_y - h[3]*l_Tt1_y) + (-T_r[1] + rate[1])*(N_at[1]*part + W*dl_N4);
+    K[143] = W*(N_at[1]*(-e1_Tr_z[0] + e1_x_z[0]) + drift4*e1_Tv_z[0] - e1_Tt_z[0]*h[3]);
+    K[144] = W*(N_at[1]*(-e1_Tr_z[1] + e1_x_z[1]) + drift4*e1_Tv_z[1] - e1_Tt_z[1]*h[3]);
+    K[145] = W*(N_at[1]*(-e1_Tr_z[2] + e1_x_z[2]) + drift4*e1_Tv_z[2] - e1_Tt_z[2]*h[3]);
+    K[146] = W*(N_at[1]*(-e2_Tr_z[0] + e2_x_z[0]) + drift4*e2_Tv_z[0] - e2_Tt_z[0]*h[3]);
+    K[147] = W*(N_at[1]*(-e2_Tr_z[1] + e2_x_z[1]) + drift4*e2_Tv_z[1] - e2_Tt_z[1]*h[3]);
+    K[148] = W*(N_at[1]*(-e2_Tr_z[2] + e2_x_z[2]) + drift4*e2_Tv_z[2] - e2_Tt_z[2]*h[3]);
+    K[149] = W*(N_at[1]*(-e3_Tr_z[0] + e3_x_z[0]) + drift4*e3_Tv_z[0] - e3_Tt_z[0]*h[3]);
+    K[150] = W*(N_at[1]*(-e3_Tr_z[1] + e3_x_z[1]) + drift4*e3_Tv_z[1] - e3_Tt_z[1]*h[3]);
+    K[151] = W*(N_at[1]*(-e3_Tr_z[2] + e3_x_z[2]) + drift4*e3_Tv_z[2] - e3_Tt_z[2]*h[3]);
+    K[152] = W*(N_at[1]*(-e4_Tr_z[0] + e4_x_z[0]) + drift4*e4_Tv_z[0] - e4_Tt_z[0]*h[3]);
+    K[153] = W*(N_at[1]*(-e4_Tr_z[1] + e4_x_z[1]) + drift4*e4_Tv_z[1] - e4_Tt_z[1]*h[3]);
+    K[154] = W*(N_at[1]*(-e4_Tr_z[2] + e4_x_z[2]) + drift4*e4_Tv_z[2] - e4_Tt_z[2]*h[3]);
+    K[155] = -T_t[2]*(W*dl_h[3] + h[3]*part) + T_v[2]*(W*dl_past[3] + drift4*part) + W*(N_at[1]*(-l_Tr1_z + l_x1_z) + drift4*l_Tv1_z - h[3]*l_Tt1_z) + (-T_r[2] + rate[2])*(N_at[1]*part + W*dl_N4);
+    K[156] = W*(T_v[0]*(-dl_g1[0]*l_rate - dl_g1[0]*s_rate[0] - dl_g2[0]*s_rate[1]) + e1_Tv_x[0]*turn1_x + e1_Tv_y[0]*turn1_y + e1_Tv_z[0]*turn1_z - e1_x_x[0]*g_x[0] - e1_x_y[0]*g_y[0] - e1_x_z[0]*g_z[0] - g1[0]*rate[0]) + e1_length1;
+    K[157] = W*(T_v[1]*(-dl_g1[0]*l_rate - dl_g1[0]*s_rate[0] - dl_g2[0]*s_rate[1]) + e1_Tv_x[1]*turn1_x + e1_Tv_y[1]*turn1_y + e1_Tv_z[1]*turn1_z - e1_x_x[1]*g_x[0] - e1_x_y[1]*g_y[0] - e1_x_z[1]*g_z[0] - g1[0]*rate[1]) + e1_length2;
+    K[158] = W*(T_v[2]*(-dl_g1[0]*l_rate - dl_g1[0]*s_rate[0] - dl_g2[0]*s_rate[1]) + e1_Tv_x[2]*turn1_x + e1_Tv_y[2]*turn1_y + e1_Tv_z[2]*turn1_z - e1_x_x[2]*g_x[0] - e1_x_y[2]*g_y[0] - e1_x_z[2]*g_z[0] - g1[0]*rate[2]) + e1_length3;
+    K[159] = W*(T_v[0]*(-dl_g1[1]*l_rate - dl_g1[1]*s_rate[0] - dl_g2[1]*s_rate[1]) + e2_Tv_x[0]*turn1_x + e2_Tv_y[0]*turn1_y + e2_Tv_z[0]*turn1_z - e2_x_x[0]*g_x[0] - e2_x_y[0]*g_y[0] - e2_x_z[0]*g_z[0] - g1[1]*rate[0]) + e2_length1;
+    K[160] = W*(T_v[1]*(-dl_g1[1]*l_rate - dl_g1[1]*s_rate[0] - dl_g2[1]*s_rate[1]) + e2_Tv_x[1]*turn1_x + e2_Tv_y[1]*turn1_y + e2_Tv_z[1]*turn1_z - e2_x_x[1]*g_x[0] - e2_x_y[1]*g_y[0] - e2_x_z[1]*g_z[0] - g1[1]*rate[1]) + e2_length2;
+    K[161] = W*(T_v[2]*(-dl_g1[1]*l_rate - dl_g1[1]*s_rate[0] - dl_g2[1]*s_rate[1]) + e2_Tv_x[2]*turn1_x + e2_Tv_y[2]*turn1_y + e2_Tv_z[2]*turn1_z - e2_x_x[2]*g_x[0] - e2_x_y[2]*g_y[0] - e2_x_z[2]*g_z[0] - g1[1]*rate[2]) + e2_length3;
+    K[162] = W*(T_v[0]*(-dl_g1[2]*l_rate - dl_g1[2]*s_rate[0] - dl_g2[2]*s_rate[1]) + e3_Tv_x[0]*turn1_x + e3_Tv_y[0]*turn1_y + e3_Tv_z[0]*turn1_z - e3_x_x[0]*g_x[0] - e3_x_y[0]*g_y[0] - e3_x_z[0]*g_z[0] - g1[2]*rate[0]) + e3_length1;
+    K[163] = W*(T_v[1]*(-dl_g1[2]*l_rate - dl_g1[2]*s_rate[0] - dl_g2[2]*s_rate[1]) + e3_Tv_x[1]*turn1_x + e3_Tv_y[1]*turn1_y + e3_Tv_z[1]*turn1_z - e3_x_x[1]*g_x[0] - e3_x_y[1]*g_y[0] - e3_x_z[1]*g_z[0] - g1[2]*rate[1]) + e3_length2;
+    K[164] = W*(T_v[2]*(-dl_g1[2]*l_rate - dl_g1[2]*s_rate[0] - dl_g2[2]*s_rate[1]) + e3_Tv_x[2]*turn1_x + e3_Tv_y[2]*turn1_y + e3_Tv_z[2]*turn1_z - e3_x_x[2]*g_x[0] - e3_x_y[2]*g_y[0] - e3_x_z[2]*g_z[0] - g1[2]*rate[2]) + e3_length3;
+    K[165] = W*(T_v[0]*(-dl_g1[3]*l_rate - dl_g1[3]*s_rate[0] - dl_g2[3]*s_rate[1]) + e4_Tv_x[0]*turn1_x + e4_Tv_y[0]*turn1_y + e4_Tv_z[0]*turn1_z - e4_x_x[0]*g_x[0] - e4_x_y[0]*g_y[0] - e4_x_z[0]*g_z[0] - g1[3]*rate[0]) + e4_length1;
+    K[166] = W*(T_v[1]*(-dl_g1[3]*l_rate - dl_g1[3]*s_rate[0] - dl_g2[3]*s_rate[1]) + e4_Tv_x[1]*turn1_x + e4_Tv_y[1]*turn1_y + e4_Tv_z[1]*turn1_z - e4_x_x[1]*g_x[0] - e4_x_y[1]*g_y[0] - e4_x_z[1]*g_z[0] - g1[3]*rate[1]) + e4_length2;
+    K[167] = W*(T_v[2]*(-dl_g1[3]*l_rate - dl_g1[3]*s_rate[0] - dl_g2[3]*s_rate[1]) + e4_Tv_x[2]*turn1_x + e4_Tv_y[2]*turn1_y + e4_Tv_z[2]*turn1_z - e4_x_x[2]*g_x[0] - e4_x_y[2]*g_y[0] - e4_x_z[2]*g_z[0] - g1[3]*rate[2]) + e4_length3;
+    K[168] = W*(T_v[0]*dl_turn1_x + T_v[1]*dl_turn1_y + T_v[2]*dl_turn1_z - dl_g1_x*rate[0] - dl_g1_y*rate[1] - dl_g1_z*rate[2] - g_x[0]*l_x1_x - g_y[0]*l_x1_y - g_z[0]*l_x1_z + l_Tv1_x*turn1_x + l_Tv1_y*turn1_y + l_Tv1_z*turn1_z) + l_length1 + part*(T_v[0]*turn1_x + T_v[1]*turn1_y + T_v[2]*turn1_z - g_x[0]*rate[0] - g_y[0]*rate[1] - g_z[0]*rate[2]);
+    K[169] = W*(T_v[0]*(dl_g1[0]*s_rate[0] - dl_g2[0]*l_rate + dl_g2[0]*s_rate[1]) + e1_Tv_x[0]*turn2_x + e1_Tv_y[0]*turn2_y + e1_Tv_z[0]*turn2_z - e1_x_x[0]*g_x[1] - e1_x_y[0]*g_y[1] - e1_x_z[0]*g_z[1] - g2[0]*rate[0]) - e1_length1;
+    K[170] = W*(T_v[1]*(dl_g1[0]*s_rate[0] - dl_g2[0]*l_rate + dl_g2[0]*s_rate[1]) + e1_Tv_x[1]*turn2_x + e1_Tv_y[1]*turn2_y + e1_Tv_z[1]*turn2_z - e1_x_x[1]*g_x[1] - e1_x_y[1]*g_y[1] - e1_x_z[1]*g_z[1] - g2[0]*rate[1]) - e1_length2;
+    K[171] = W*(T_v[2]*(dl_g1[0]*s_rate[0] - dl_g2[0]*l_rate + dl_g2[0]*s_rate[1]) + e1_Tv_x[2]*turn2_x + e1_Tv_y[2]*turn2_y + e1_Tv_z[2]*turn2_z - e1_x_x[2]*g_x[1] - e1_x_y[2]*g_y[1] - e1_x_z[2]*g_z[1] - g2[0]*rate[2]) - e1_length3;
+    K[172] = W*(T_v[0]*(dl_g1[1]*s_rate[0] - dl_g2[1]*l_rate + dl_g2[1]*s_rate[1]) + e2_Tv_x[0]*turn2_x + e2_Tv_y[0]*turn2_y + e2_Tv_z[0]*turn2_z - e2_x_x[0]*g_x[1] - e2_x_y[0]*g_y[1] - e2_x_z[0]*g_z[1] - g2[1]*rate[0]) - e2_length1;
+    K[173] = W*(T_v[1]*(dl_g1[1]*s_rate[0] - dl_g2[1]*l_rate + dl_g2[1]*s_rate[1]) + e2_Tv_x[1]*turn2_x + e2_Tv_y[1]*turn2_y + e2_Tv_z[1]*turn2_z - e2_x_x[1]*g_x[1] - e2_x_y[1]*g_y[1] - e2_x_z[1]*g_z[1] - g2[1]*rate[1]) - e2_length2;
+    K[174] = W*(T_v[2]*(dl_g1[1]*s_rate[0] - dl_g2[1]*l_rate + dl_g2[1]*s_rate[1]) + e2_Tv_x[2]*turn2_x + e2_Tv_y[2]*turn2_y + e2_Tv_z[2]*turn2_z - e2_x_x[2]*g_x[1] - e2_x_y[2]*g_y[1] - e2_x_z[2]*g_z[1] - g2[1]*rate[2]) - e2_length3;
+    K[175] = W*(T_v[0]*(dl_g1[2]*s_rate[0] - dl_g2[2]*l_rate + dl_g2[2]*s_rate[1]) + e3_Tv_x[0]*turn2_x + e3_Tv_y[0]*turn2_y + e3_Tv_z[0]*turn2_z - e3_x_x[0]*g_x[1] - e3_x_y[0]*g_y[1] - e3_x_z[0]*g_z[1] - g2[2]*rate[0]) - e3_length1;
+    K[176] = W*(T_v[1]*(dl_g1[2]*s_rate[0] - dl_g2[2]*l_rate + dl_g2[2]*s_rate[1]) + e3_Tv_x[1]*turn2_x + e3_Tv_y[1]*turn2_y + e3_Tv_z[1]*turn2_z - e3_x_x[1]*g_x[1] - e3_x_y[1]*g_y[1] - e3_x_z[1]*g_z[1] - g2[2]*rate[1]) - e3_length2;
+    K[177] = W*(T_v[2]*(dl_g1[2]*s_rate[0] - dl_g2[2]*l_rate + dl_g2[2]*s_rate[1]) + e3_Tv_x[2]*turn2_x + e3_Tv_y[2]*turn2_y + e3_Tv_z[2]*turn2_z - e3_x_x[2]*g_x[1] - e3_x_y[2]*g_y[1] - e3_x_z[2]*g_z[1] - g2[2]*rate[2]) - e3_length3;
+    K[178] = W*(T_v[0]*(dl_g1[3]*s_rate[0] - dl_g2[3]*l_rate + dl_g2[3]*s_rate[1]) + e4_Tv_x[0]*turn2_x + e4_Tv_y[0]*turn2_y + e4_Tv_z[0]*turn2_z - e4_x_x[0]*g_x[1] - e4_x_y[0]*g_y[1] - e4_x_z[0]*g_z[1] - g2[3]*rate[0]) - e4_length1;
+    K[179] = W*(T_v[1]*(dl_g1[3]*s_rate[0] - dl_g2[3]*l_rate + dl_g2[3]*s_rate[1]) + e4_Tv_x[1]*turn2_x + e4_Tv_y[1]*turn2_y + e4_Tv_z[1]*turn2_z - e4_x_x[1]*g_x[1] - e4_x_y[1]*g_y[1] - e4_x_z[1]*g_z[1] - g2[3]*rate[1]) - e4_length2;
+    K[180] = W*(T_v[2]*(dl_g1[3]*s_rate[0] - dl_g2[3]*l_rate + dl_g2[3]*s_rate[1]) + e4_Tv_x[2]*turn2_x + e4_Tv_y[2]*turn2_y + e4_Tv_z[2]*turn2_z - e4_x_x[2]*g_x[1] - e4_x_y[2]*g_y[1] - e4_x_z[2]*g_z[1] - g2[3]*rate[2]) - e4_length3;
+    K[181] = W*(T_v[0]*dl_turn2_x + T_v[1]*dl_turn2_y + T_v[2]*dl_turn2_z - dl_g2_x*rate[0] - dl_g2_y*rate[1] - dl_g2_z*rate[2] - g_x[1]*l_x1_x - g_y[1]*l_x1_y - g_z[1]*l_x1_z + l_Tv1_x*turn2_x + l_Tv1_y*turn2_y + l_Tv1_z*turn2_z) - l_length1 + part*(T_v[0]*turn2_x + T_v[1]*turn2_y + T_v[2]*turn2_z - g_x[1]*rate[0] - g_y[1]*rate[1] - g_z[1]*rate[2]);
 }

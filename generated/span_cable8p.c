@@ -35,6 +35,23 @@
         rate_b_x[g] = across_b[g]*i_b_x[g] - along_b[g]*di_b_x[g] + d2_b_x[g]; \
         rate_b_y[g] = across_b[g]*i_b_y[g] - along_b[g]*di_b_y[g] + d2_b_y[g];)
 
+/* part of rates at a constant share: of span_cable8p_motion and 2 more */
+#define SPAN_CABLE8P_PART_OF_RATES_AT_A_CONSTANT_SHARE \
+    const fu_real \
+        l_rate = -s_rate[0] + s_rate[1], \
+        v_chord3_x = w*(-v[0] + v[4]), \
+        v_chord3_y = w*(-v[1] + v[5]), \
+        v_S2_x = w*(-4.0*v[2] - 2.0*v[6] + 6.0*v_chord3_x), \
+        v_S2_y = w*(-4.0*v[3] - 2.0*v[7] + 6.0*v_chord3_y), \
+        v_S4_x = w*(2.0*v[2] + 4.0*v[6] - 6.0*v_chord3_x), \
+        v_S4_y = w*(2.0*v[3] + 4.0*v[7] - 6.0*v_chord3_y), \
+        dt_N2 = l_rate*xi*(xi*(xi - 2.0) + 1.0), \
+        dt_g1_x = N1*v[2] + N2*(e_Sl2_x*l_rate + v_S2_x) + dt_N2*e_S2_x, \
+        dt_g1_y = N1*v[3] + N2*(e_Sl2_y*l_rate + v_S2_y) + dt_N2*e_S2_y, \
+        dt_N4 = l_rate*xi*xi*(xi - 1.0), \
+        dt_g2_x = N3*v[6] + N4*(e_Sl4_x*l_rate + v_S4_x) + dt_N4*e_S4_x, \
+        dt_g2_y = N3*v[7] + N4*(e_Sl4_y*l_rate + v_S4_y) + dt_N4*e_S4_y;
+
 /* slopes and curvatures at the nodes: of span_cable8p_kinetic_energy and 2 more */
 #define SPAN_CABLE8P_SLOPES_AND_CURVATURES_AT_THE_NODES \
     fu_real e_S_x[2], e_S_y[2]; \
@@ -179,6 +196,64 @@
     FU_EACH(i, 2, e_S4[i] = w*(2.0*e[i + 2] + 4.0*e[i + 6] - 6.0*e_chord3[i]);) \
     FU_EACH(i, 2, e_Sl2[i] = -(w*(e_S2[i] + 6.0*e_chord3[i]*w));) \
     FU_EACH(i, 2, e_Sl4[i] = -(w*(e_S4[i] - 6.0*e_chord3[i]*w));)
+
+/* slopes and curvatures at the nodes: of span_cable8p_point_tangent and 3 more */
+#define SPAN_CABLE8P_SLOPES_AND_CURVATURES_AT_THE_NODES_3 \
+    const fu_real \
+        w = 1.0/l, \
+        e_chord3_x = w*(-e[0] + e[4]), \
+        e_chord3_y = w*(-e[1] + e[5]), \
+        e_S2_x = w*(-4.0*e[2] - 2.0*e[6] + 6.0*e_chord3_x), \
+        e_S2_y = w*(-4.0*e[3] - 2.0*e[7] + 6.0*e_chord3_y), \
+        e_S4_x = w*(2.0*e[2] + 4.0*e[6] - 6.0*e_chord3_x), \
+        e_S4_y = w*(2.0*e[3] + 4.0*e[7] - 6.0*e_chord3_y), \
+        e_Sl2_x = -(w*(e_S2_x + 6.0*e_chord3_x*w)), \
+        e_Sl2_y = -(w*(e_S2_y + 6.0*e_chord3_y*w)), \
+        e_Sl4_x = -(w*(e_S4_x - 6.0*e_chord3_x*w)), \
+        e_Sl4_y = -(w*(e_S4_y - 6.0*e_chord3_y*w));
+
+/* derivatives of place, slope and velocity of the material: of span_cable8p_point_tangent and 2 more */
+#define SPAN_CABLE8P_DERIVATIVES_OF_PLACE_SLOPE_AND_VELOCITY_OF_THE_MATERIAL \
+    fu_real g1[4], g2[4], past[4]; \
+    const fu_real \
+        S22 = -(4.0*w), \
+        S23 = 6.0*w*w, \
+        S24 = -(2.0*w), \
+        S42 = 2.0*w, \
+        S43 = -(6.0*w*w), \
+        S44 = 4.0*w; \
+    g1[0] = -(N2*S23); \
+    g1[1] = N1 + N2*S22; \
+    g1[2] = N2*S23; \
+    g1[3] = N2*S24; \
+    g2[0] = -(N4*S43); \
+    g2[1] = N4*S42; \
+    g2[2] = N4*S43; \
+    g2[3] = N3 + N4*S44; \
+    FU_EACH(g, 4, \
+        past[g] = g1[g]*s_rate[0] + g2[g]*s_rate[1];) \
+    const fu_real \
+        dl_N2 = xi*(xi*(xi - 2.0) + 1.0), \
+        dl_g1_x = N2*e_Sl2_x + dl_N2*e_S2_x, \
+        dl_g1_y = N2*e_Sl2_y + dl_N2*e_S2_y, \
+        dl_N4 = xi*xi*(xi - 1.0), \
+        dl_g2_x = N4*e_Sl4_x + dl_N4*e_S4_x, \
+        dl_g2_y = N4*e_Sl4_y + dl_N4*e_S4_y, \
+        r_l_x = dl_N2*e[2] + dl_N4*e[6], \
+        r_l_y = dl_N2*e[3] + dl_N4*e[7], \
+        v_l_x = dl_N2*v[2] + dl_N4*v[6] - dl_g1_x*s_rate[0] - dl_g2_x*s_rate[1], \
+        v_l_y = dl_N2*v[3] + dl_N4*v[7] - dl_g1_y*s_rate[0] - dl_g2_y*s_rate[1];
+
+/* rates at a constant share: of span_cable8p_kinetic_force and 1 more */
+#define SPAN_CABLE8P_RATES_AT_A_CONSTANT_SHARE \
+    fu_real h[4]; \
+    SPAN_CABLE8P_PART_OF_RATES_AT_A_CONSTANT_SHARE \
+    FU_EACH(g, 4, \
+        h[g] = g1[g] + g2[g];) \
+    const fu_real \
+        t_l_x = dl_g1_x + dl_g2_x, \
+        t_l_y = dl_g1_y + dl_g2_y, \
+        W = l*part;
 
 /* place, slope and velocity of a material point; 42 add, 62 mul, 1 div */
 void span_cable8p_point(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real xi, fu_real *r, fu_real *r_S, fu_real *velocity)
@@ -2538,19 +2613,7 @@ void span_cable8p_share(fu_real at, const fu_real *ends, fu_real *share, fu_real
 /* derivatives of place and velocity of the material at a constant share (virtual work of the material at constant S); 45 add, 98 mul, 1 div */
 void span_cable8p_point_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real xi, fu_real *r_q, fu_real *v_q, fu_real *v_v)
 {
-    /* slopes and curvatures at the nodes */
-    const fu_real
-        w = 1.0/l,
-        e_chord3_x = w*(-e[0] + e[4]),
-        e_chord3_y = w*(-e[1] + e[5]),
-        e_S2_x = w*(-4.0*e[2] - 2.0*e[6] + 6.0*e_chord3_x),
-        e_S2_y = w*(-4.0*e[3] - 2.0*e[7] + 6.0*e_chord3_y),
-        e_S4_x = w*(2.0*e[2] + 4.0*e[6] - 6.0*e_chord3_x),
-        e_S4_y = w*(2.0*e[3] + 4.0*e[7] - 6.0*e_chord3_y),
-        e_Sl2_x = -(w*(e_S2_x + 6.0*e_chord3_x*w)),
-        e_Sl2_y = -(w*(e_S2_y + 6.0*e_chord3_y*w)),
-        e_Sl4_x = -(w*(e_S4_x - 6.0*e_chord3_x*w)),
-        e_Sl4_y = -(w*(e_S4_y - 6.0*e_chord3_y*w));
+    SPAN_CABLE8P_SLOPES_AND_CURVATURES_AT_THE_NODES_3
     /* shape functions */
     const fu_real
         N1 = xi*xi*(2.0*xi - 3.0) + 1.0,
@@ -2563,36 +2626,7 @@ void span_cable8p_point_tangent(fu_real l, const fu_real *e, const fu_real *v, c
         g1_y = N1*e[3] + N2*e_S2_y,
         g2_x = N3*e[6] + N4*e_S4_x,
         g2_y = N3*e[7] + N4*e_S4_y;
-    /* derivatives of place, slope and velocity of the material */
-    fu_real g1[4], g2[4], past[4];
-    const fu_real
-        S22 = -(4.0*w),
-        S23 = 6.0*w*w,
-        S24 = -(2.0*w),
-        S42 = 2.0*w,
-        S43 = -(6.0*w*w),
-        S44 = 4.0*w;
-    g1[0] = -(N2*S23);
-    g1[1] = N1 + N2*S22;
-    g1[2] = N2*S23;
-    g1[3] = N2*S24;
-    g2[0] = -(N4*S43);
-    g2[1] = N4*S42;
-    g2[2] = N4*S43;
-    g2[3] = N3 + N4*S44;
-    FU_EACH(g, 4,
-        past[g] = g1[g]*s_rate[0] + g2[g]*s_rate[1];)
-    const fu_real
-        dl_N2 = xi*(xi*(xi - 2.0) + 1.0),
-        dl_g1_x = N2*e_Sl2_x + dl_N2*e_S2_x,
-        dl_g1_y = N2*e_Sl2_y + dl_N2*e_S2_y,
-        dl_N4 = xi*xi*(xi - 1.0),
-        dl_g2_x = N4*e_Sl4_x + dl_N4*e_S4_x,
-        dl_g2_y = N4*e_Sl4_y + dl_N4*e_S4_y,
-        r_l_x = dl_N2*e[2] + dl_N4*e[6],
-        r_l_y = dl_N2*e[3] + dl_N4*e[7],
-        v_l_x = dl_N2*v[2] + dl_N4*v[6] - dl_g1_x*s_rate[0] - dl_g2_x*s_rate[1],
-        v_l_y = dl_N2*v[3] + dl_N4*v[7] - dl_g1_y*s_rate[0] - dl_g2_y*s_rate[1];
+    SPAN_CABLE8P_DERIVATIVES_OF_PLACE_SLOPE_AND_VELOCITY_OF_THE_MATERIAL
     /* outputs */
     r_q[0] = N1;
     r_q[1] = 0.0;
@@ -2640,4 +2674,532 @@ void span_cable8p_point_tangent(fu_real l, const fu_real *e, const fu_real *v, c
     v_v[17] = N4;
     v_v[18] = -g1_y;
     v_v[19] = -g2_y;
+}
+
+/* motion of the material at a constant share of the length (Lagrange's equations with moving nodes); 101 add, 153 mul, 1 div */
+void span_cable8p_motion(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real xi, const fu_real *a, const fu_real *s_acc, fu_real *r, fu_real *r_S, fu_real *velocity, fu_real *slope_rate, fu_real *place_rate, fu_real *velocity_rate, fu_real *growth)
+{
+    SPAN_CABLE8P_SLOPES_AND_CURVATURES_AT_THE_NODES_3
+    /* shape functions */
+    const fu_real
+        N1 = xi*xi*(2.0*xi - 3.0) + 1.0,
+        N2 = l*xi*(xi*(xi - 2.0) + 1.0),
+        N3 = xi*xi*(-2.0*xi + 3.0),
+        N4 = l*xi*xi*(xi - 1.0);
+    /* displacements by the ends of the element */
+    const fu_real
+        g1_x = N1*e[2] + N2*e_S2_x,
+        g1_y = N1*e[3] + N2*e_S2_y,
+        g2_x = N3*e[6] + N4*e_S4_x,
+        g2_y = N3*e[7] + N4*e_S4_y;
+    /* derivatives of place, slope and velocity of the material */
+    const fu_real
+        dl_N2 = xi*(xi*(xi - 2.0) + 1.0),
+        dl_N4 = xi*xi*(xi - 1.0),
+        r_l_x = dl_N2*e[2] + dl_N4*e[6],
+        r_l_y = dl_N2*e[3] + dl_N4*e[7];
+    /* rates at a constant share */
+    SPAN_CABLE8P_PART_OF_RATES_AT_A_CONSTANT_SHARE
+    /* outputs */
+    r[0] = N1*e[0] + N2*e[2] + N3*e[4] + N4*e[6];
+    r[1] = N1*e[1] + N2*e[3] + N3*e[5] + N4*e[7];
+    r_S[0] = g1_x + g2_x;
+    r_S[1] = g1_y + g2_y;
+    velocity[0] = N1*v[0] + N2*v[2] + N3*v[4] + N4*v[6] - g1_x*s_rate[0] - g2_x*s_rate[1];
+    velocity[1] = N1*v[1] + N2*v[3] + N3*v[5] + N4*v[7] - g1_y*s_rate[0] - g2_y*s_rate[1];
+    slope_rate[0] = dt_g1_x + dt_g2_x;
+    slope_rate[1] = dt_g1_y + dt_g2_y;
+    place_rate[0] = N1*v[0] + N2*v[2] + N3*v[4] + N4*v[6] + l_rate*r_l_x;
+    place_rate[1] = N1*v[1] + N2*v[3] + N3*v[5] + N4*v[7] + l_rate*r_l_y;
+    velocity_rate[0] = N1*a[0] + N2*a[2] + N3*a[4] + N4*a[6] + dl_N2*l_rate*v[2] + dl_N4*l_rate*v[6] - dt_g1_x*s_rate[0] - dt_g2_x*s_rate[1] - g1_x*s_acc[0] - g2_x*s_acc[1];
+    velocity_rate[1] = N1*a[1] + N2*a[3] + N3*a[5] + N4*a[7] + dl_N2*l_rate*v[3] + dl_N4*l_rate*v[7] - dt_g1_y*s_rate[0] - dt_g2_y*s_rate[1] - g1_y*s_acc[0] - g2_y*s_acc[1];
+    growth[0] = l_rate*w;
+}
+
+/* generalised forces of a kinetic energy of the material (Lagrange's equations with moving nodes); 113 add, 189 mul, 1 div */
+void span_cable8p_kinetic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real xi, fu_real part, const fu_real *T_r, const fu_real *T_t, const fu_real *T_v, const fu_real *rate, fu_real T, fu_real *f, fu_real *f_s)
+{
+    SPAN_CABLE8P_SLOPES_AND_CURVATURES_AT_THE_NODES_3
+    /* shape functions */
+    const fu_real
+        N1 = xi*xi*(2.0*xi - 3.0) + 1.0,
+        N2 = l*xi*(xi*(xi - 2.0) + 1.0),
+        N3 = xi*xi*(-2.0*xi + 3.0),
+        N4 = l*xi*xi*(xi - 1.0);
+    /* displacements by the ends of the element */
+    const fu_real
+        g1_x = N1*e[2] + N2*e_S2_x,
+        g1_y = N1*e[3] + N2*e_S2_y,
+        g2_x = N3*e[6] + N4*e_S4_x,
+        g2_y = N3*e[7] + N4*e_S4_y;
+    SPAN_CABLE8P_DERIVATIVES_OF_PLACE_SLOPE_AND_VELOCITY_OF_THE_MATERIAL
+    SPAN_CABLE8P_RATES_AT_A_CONSTANT_SHARE
+    /* factors of the impulse */
+    const fu_real
+        drift2 = dl_N2*l_rate + past[1],
+        drift4 = dl_N4*l_rate + past[3],
+        turn1_x = -dt_g1_x + v_l_x,
+        turn1_y = -dt_g1_y + v_l_y,
+        turn2_x = -dt_g2_x - v_l_x,
+        turn2_y = -dt_g2_y - v_l_y;
+    /* generalised forces */
+    const fu_real
+        on_place_x = -T_r[0] + rate[0],
+        on_place_y = -T_r[1] + rate[1],
+        on_length = T*part + W*(T_r[0]*r_l_x + T_r[1]*r_l_y + T_t[0]*t_l_x + T_t[1]*t_l_y);
+    /* outputs */
+    f[0] = W*(N1*on_place_x - T_t[0]*h[0] + T_v[0]*past[0]);
+    f[1] = W*(N1*on_place_y - T_t[1]*h[0] + T_v[1]*past[0]);
+    f[2] = W*(N2*on_place_x - T_t[0]*h[1] + T_v[0]*drift2);
+    f[3] = W*(N2*on_place_y - T_t[1]*h[1] + T_v[1]*drift2);
+    f[4] = W*(N3*on_place_x - T_t[0]*h[2] + T_v[0]*past[2]);
+    f[5] = W*(N3*on_place_y - T_t[1]*h[2] + T_v[1]*past[2]);
+    f[6] = W*(N4*on_place_x - T_t[0]*h[3] + T_v[0]*drift4);
+    f[7] = W*(N4*on_place_y - T_t[1]*h[3] + T_v[1]*drift4);
+    f_s[0] = W*(T_v[0]*turn1_x + T_v[1]*turn1_y - g1_x*rate[0] - g1_y*rate[1]) + on_length;
+    f_s[1] = W*(T_v[0]*turn2_x + T_v[1]*turn2_y - g2_x*rate[0] - g2_y*rate[1]) - on_length;
+}
+
+/* derivatives of the generalised forces of a kinetic energy (Lagrange's equations with moving nodes); 1474 add, 2075 mul, 1 div */
+void span_cable8p_kinetic_force_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real xi, const fu_real *a, const fu_real *s_acc, fu_real part, const fu_real *T_r, const fu_real *T_t, const fu_real *T_v, const fu_real *rate, const fu_real *second, const fu_real *rate_by, fu_real *D, fu_real *K)
+{
+    SPAN_CABLE8P_SLOPES_AND_CURVATURES_AT_THE_NODES_3
+    /* shape functions */
+    const fu_real
+        N1 = xi*xi*(2.0*xi - 3.0) + 1.0,
+        N2 = l*xi*(xi*(xi - 2.0) + 1.0),
+        N3 = xi*xi*(-2.0*xi + 3.0),
+        N4 = l*xi*xi*(xi - 1.0);
+    /* displacements by the ends of the element */
+    const fu_real
+        g1_x = N1*e[2] + N2*e_S2_x,
+        g1_y = N1*e[3] + N2*e_S2_y,
+        g2_x = N3*e[6] + N4*e_S4_x,
+        g2_y = N3*e[7] + N4*e_S4_y;
+    SPAN_CABLE8P_DERIVATIVES_OF_PLACE_SLOPE_AND_VELOCITY_OF_THE_MATERIAL
+    SPAN_CABLE8P_RATES_AT_A_CONSTANT_SHARE
+    /* factors of the impulse */
+    fu_real dl_g1[4], dl_g2[4], dl_h[4];
+    const fu_real
+        drift2 = dl_N2*l_rate + past[1],
+        drift4 = dl_N4*l_rate + past[3],
+        turn1_x = -dt_g1_x + v_l_x,
+        turn1_y = -dt_g1_y + v_l_y,
+        turn2_x = -dt_g2_x - v_l_x,
+        turn2_y = -dt_g2_y - v_l_y,
+        dl_w = -w*w,
+        dl_S23 = 12.0*dl_w*w;
+    dl_g1[0] = -N2*dl_S23 - S23*dl_N2;
+    const fu_real dl_S22 = -(4.0*dl_w);
+    dl_g1[1] = N2*dl_S22 + S22*dl_N2;
+    dl_g1[2] = N2*dl_S23 + S23*dl_N2;
+    const fu_real dl_S24 = -(2.0*dl_w);
+    dl_g1[3] = N2*dl_S24 + S24*dl_N2;
+    const fu_real dl_S43 = -(12.0*dl_w*w);
+    dl_g2[0] = -N4*dl_S43 - S43*dl_N4;
+    const fu_real dl_S42 = 2.0*dl_w;
+    dl_g2[1] = N4*dl_S42 + S42*dl_N4;
+    dl_g2[2] = N4*dl_S43 + S43*dl_N4;
+    const fu_real dl_S44 = 4.0*dl_w;
+    dl_g2[3] = N4*dl_S44 + S44*dl_N4;
+    FU_EACH(g, 4,
+        dl_h[g] = dl_g1[g] + dl_g2[g];)
+    /* derivatives by rates */
+    const fu_real
+        v1_Tr1_x = N1*second[4],
+        v1_Tr1_y = N1*second[10],
+        v1_Tr2_x = N1*second[5],
+        v1_Tr2_y = N1*second[11],
+        v1_Tt1_x = N1*second[16],
+        v1_Tt1_y = N1*second[22],
+        v1_Tt2_x = N1*second[17],
+        v1_Tt2_y = N1*second[23],
+        v1_Tv1_x = N1*second[28],
+        v1_Tv1_y = N1*second[34],
+        v1_Tv2_x = N1*second[29],
+        v1_Tv2_y = N1*second[35],
+        v1_x1_x = N1*rate_by[4] + N1*rate_by[8] + h[0]*rate_by[6] - past[0]*rate_by[10],
+        v1_x1_y = N1*rate_by[16] + N1*rate_by[20] + h[0]*rate_by[18] - past[0]*rate_by[22],
+        v1_x2_x = N1*rate_by[5] + N1*rate_by[9] + h[0]*rate_by[7] - past[0]*rate_by[11],
+        v1_x2_y = N1*rate_by[17] + N1*rate_by[21] + h[0]*rate_by[19] - past[0]*rate_by[23],
+        v1_length1 = N1*T_v[0]*part + W*(r_l_x*v1_Tr1_x + r_l_y*v1_Tr1_y + t_l_x*v1_Tt1_x + t_l_y*v1_Tt1_y),
+        v1_length2 = N1*T_v[1]*part + W*(r_l_x*v1_Tr2_x + r_l_y*v1_Tr2_y + t_l_x*v1_Tt2_x + t_l_y*v1_Tt2_y),
+        v2_Tr1_x = N2*second[4],
+        v2_Tr1_y = N2*second[10],
+        v2_Tr2_x = N2*second[5],
+        v2_Tr2_y = N2*second[11],
+        v2_Tt1_x = N2*second[16],
+        v2_Tt1_y = N2*second[22],
+        v2_Tt2_x = N2*second[17],
+        v2_Tt2_y = N2*second[23],
+        v2_Tv1_x = N2*second[28],
+        v2_Tv1_y = N2*second[34],
+        v2_Tv2_x = N2*second[29],
+        v2_Tv2_y = N2*second[35],
+        v2_x1_x = N2*rate_by[4] + N2*rate_by[8] + h[1]*rate_by[6] + rate_by[10]*(dl_N2*l_rate - past[1]),
+        v2_x1_y = N2*rate_by[16] + N2*rate_by[20] + h[1]*rate_by[18] + rate_by[22]*(dl_N2*l_rate - past[1]),
+        v2_x2_x = N2*rate_by[5] + N2*rate_by[9] + h[1]*rate_by[7] + rate_by[11]*(dl_N2*l_rate - past[1]),
+        v2_x2_y = N2*rate_by[17] + N2*rate_by[21] + h[1]*rate_by[19] + rate_by[23]*(dl_N2*l_rate - past[1]),
+        v2_length1 = N2*T_v[0]*part + W*(r_l_x*v2_Tr1_x + r_l_y*v2_Tr1_y + t_l_x*v2_Tt1_x + t_l_y*v2_Tt1_y),
+        v2_length2 = N2*T_v[1]*part + W*(r_l_x*v2_Tr2_x + r_l_y*v2_Tr2_y + t_l_x*v2_Tt2_x + t_l_y*v2_Tt2_y),
+        v3_Tr1_x = N3*second[4],
+        v3_Tr1_y = N3*second[10],
+        v3_Tr2_x = N3*second[5],
+        v3_Tr2_y = N3*second[11],
+        v3_Tt1_x = N3*second[16],
+        v3_Tt1_y = N3*second[22],
+        v3_Tt2_x = N3*second[17],
+        v3_Tt2_y = N3*second[23],
+        v3_Tv1_x = N3*second[28],
+        v3_Tv1_y = N3*second[34],
+        v3_Tv2_x = N3*second[29],
+        v3_Tv2_y = N3*second[35],
+        v3_x1_x = N3*rate_by[4] + N3*rate_by[8] + h[2]*rate_by[6] - past[2]*rate_by[10],
+        v3_x1_y = N3*rate_by[16] + N3*rate_by[20] + h[2]*rate_by[18] - past[2]*rate_by[22],
+        v3_x2_x = N3*rate_by[5] + N3*rate_by[9] + h[2]*rate_by[7] - past[2]*rate_by[11],
+        v3_x2_y = N3*rate_by[17] + N3*rate_by[21] + h[2]*rate_by[19] - past[2]*rate_by[23],
+        v3_length1 = N3*T_v[0]*part + W*(r_l_x*v3_Tr1_x + r_l_y*v3_Tr1_y + t_l_x*v3_Tt1_x + t_l_y*v3_Tt1_y),
+        v3_length2 = N3*T_v[1]*part + W*(r_l_x*v3_Tr2_x + r_l_y*v3_Tr2_y + t_l_x*v3_Tt2_x + t_l_y*v3_Tt2_y),
+        v4_Tr1_x = N4*second[4],
+        v4_Tr1_y = N4*second[10],
+        v4_Tr2_x = N4*second[5],
+        v4_Tr2_y = N4*second[11],
+        v4_Tt1_x = N4*second[16],
+        v4_Tt1_y = N4*second[22],
+        v4_Tt2_x = N4*second[17],
+        v4_Tt2_y = N4*second[23],
+        v4_Tv1_x = N4*second[28],
+        v4_Tv1_y = N4*second[34],
+        v4_Tv2_x = N4*second[29],
+        v4_Tv2_y = N4*second[35],
+        v4_x1_x = N4*rate_by[4] + N4*rate_by[8] + h[3]*rate_by[6] + rate_by[10]*(dl_N4*l_rate - past[3]),
+        v4_x1_y = N4*rate_by[16] + N4*rate_by[20] + h[3]*rate_by[18] + rate_by[22]*(dl_N4*l_rate - past[3]),
+        v4_x2_x = N4*rate_by[5] + N4*rate_by[9] + h[3]*rate_by[7] + rate_by[11]*(dl_N4*l_rate - past[3]),
+        v4_x2_y = N4*rate_by[17] + N4*rate_by[21] + h[3]*rate_by[19] + rate_by[23]*(dl_N4*l_rate - past[3]),
+        v4_length1 = N4*T_v[0]*part + W*(r_l_x*v4_Tr1_x + r_l_y*v4_Tr1_y + t_l_x*v4_Tt1_x + t_l_y*v4_Tt1_y),
+        v4_length2 = N4*T_v[1]*part + W*(r_l_x*v4_Tr2_x + r_l_y*v4_Tr2_y + t_l_x*v4_Tt2_x + t_l_y*v4_Tt2_y),
+        s1_Tr1_x = -g1_x*second[4] - g1_y*second[5],
+        s1_Tr1_y = -g1_x*second[10] - g1_y*second[11],
+        s1_Tt1_x = -g1_x*second[16] - g1_y*second[17],
+        s1_Tt1_y = -g1_x*second[22] - g1_y*second[23],
+        s1_Tv1_x = -g1_x*second[28] - g1_y*second[29],
+        s1_Tv1_y = -g1_x*second[34] - g1_y*second[35],
+        s1_x1_x = -T_v[0]*w - g1_x*rate_by[4] - g1_y*rate_by[5] - r_l_x*rate_by[8] - r_l_y*rate_by[9] + rate_by[10]*(-dt_g1_x - v_l_x) + rate_by[11]*(-dt_g1_y - v_l_y) - rate_by[6]*t_l_x - rate_by[7]*t_l_y,
+        s1_x1_y = -T_v[1]*w - g1_x*rate_by[16] - g1_y*rate_by[17] - r_l_x*rate_by[20] - r_l_y*rate_by[21] - rate_by[18]*t_l_x - rate_by[19]*t_l_y + rate_by[22]*(-dt_g1_x - v_l_x) + rate_by[23]*(-dt_g1_y - v_l_y),
+        s1_length1 = W*(r_l_x*s1_Tr1_x + r_l_y*s1_Tr1_y + s1_Tt1_x*t_l_x + s1_Tt1_y*t_l_y) + part*(-T_v[0]*g1_x - T_v[1]*g1_y),
+        s2_Tr1_x = -g2_x*second[4] - g2_y*second[5],
+        s2_Tr1_y = -g2_x*second[10] - g2_y*second[11],
+        s2_Tt1_x = -g2_x*second[16] - g2_y*second[17],
+        s2_Tt1_y = -g2_x*second[22] - g2_y*second[23],
+        s2_Tv1_x = -g2_x*second[28] - g2_y*second[29],
+        s2_Tv1_y = -g2_x*second[34] - g2_y*second[35],
+        s2_x1_x = T_v[0]*w - g2_x*rate_by[4] - g2_y*rate_by[5] + r_l_x*rate_by[8] + r_l_y*rate_by[9] + rate_by[10]*(-dt_g2_x + v_l_x) + rate_by[11]*(-dt_g2_y + v_l_y) + rate_by[6]*t_l_x + rate_by[7]*t_l_y,
+        s2_x1_y = T_v[1]*w - g2_x*rate_by[16] - g2_y*rate_by[17] + r_l_x*rate_by[20] + r_l_y*rate_by[21] + rate_by[18]*t_l_x + rate_by[19]*t_l_y + rate_by[22]*(-dt_g2_x + v_l_x) + rate_by[23]*(-dt_g2_y + v_l_y),
+        s2_length1 = W*(r_l_x*s2_Tr1_x + r_l_y*s2_Tr1_y + s2_Tt1_x*t_l_x + s2_Tt1_y*t_l_y) + part*(-T_v[0]*g2_x - T_v[1]*g2_y);
+    /* derivatives by the configuration */
+    fu_real dl_past[4];
+    const fu_real
+        e1_Tr1_x = N1*second[0] + h[0]*second[2] - past[0]*second[4],
+        e1_Tr1_y = N1*second[6] + h[0]*second[8] - past[0]*second[10],
+        e1_Tr2_x = N1*second[1] + h[0]*second[3] - past[0]*second[5],
+        e1_Tr2_y = N1*second[7] + h[0]*second[9] - past[0]*second[11],
+        e1_Tt1_x = N1*second[12] + h[0]*second[14] - past[0]*second[16],
+        e1_Tt1_y = N1*second[18] + h[0]*second[20] - past[0]*second[22],
+        e1_Tt2_x = N1*second[13] + h[0]*second[15] - past[0]*second[17],
+        e1_Tt2_y = N1*second[19] + h[0]*second[21] - past[0]*second[23],
+        e1_Tv1_x = N1*second[24] + h[0]*second[26] - past[0]*second[28],
+        e1_Tv1_y = N1*second[30] + h[0]*second[32] - past[0]*second[34],
+        e1_Tv2_x = N1*second[25] + h[0]*second[27] - past[0]*second[29],
+        e1_Tv2_y = N1*second[31] + h[0]*second[33] - past[0]*second[35],
+        e1_x1_x = N1*rate_by[0] + dl_h[0]*l_rate*rate_by[6] + h[0]*rate_by[2] - past[0]*rate_by[4] + rate_by[10]*(-g1[0]*s_acc[0] - g2[0]*s_acc[1] - l_rate*(dl_g1[0]*s_rate[0] + dl_g2[0]*s_rate[1])),
+        e1_x1_y = N1*rate_by[12] + dl_h[0]*l_rate*rate_by[18] + h[0]*rate_by[14] - past[0]*rate_by[16] + rate_by[22]*(-g1[0]*s_acc[0] - g2[0]*s_acc[1] - l_rate*(dl_g1[0]*s_rate[0] + dl_g2[0]*s_rate[1])),
+        e1_x2_x = N1*rate_by[1] + dl_h[0]*l_rate*rate_by[7] + h[0]*rate_by[3] - past[0]*rate_by[5] + rate_by[11]*(-g1[0]*s_acc[0] - g2[0]*s_acc[1] - l_rate*(dl_g1[0]*s_rate[0] + dl_g2[0]*s_rate[1])),
+        e1_x2_y = N1*rate_by[13] + dl_h[0]*l_rate*rate_by[19] + h[0]*rate_by[15] - past[0]*rate_by[17] + rate_by[23]*(-g1[0]*s_acc[0] - g2[0]*s_acc[1] - l_rate*(dl_g1[0]*s_rate[0] + dl_g2[0]*s_rate[1])),
+        e1_length1 = W*(T_t[0]*dl_h[0] + e1_Tr1_x*r_l_x + e1_Tr1_y*r_l_y + e1_Tt1_x*t_l_x + e1_Tt1_y*t_l_y) + part*(N1*T_r[0] + T_t[0]*h[0] - T_v[0]*past[0]),
+        e1_length2 = W*(T_t[1]*dl_h[0] + e1_Tr2_x*r_l_x + e1_Tr2_y*r_l_y + e1_Tt2_x*t_l_x + e1_Tt2_y*t_l_y) + part*(N1*T_r[1] + T_t[1]*h[0] - T_v[1]*past[0]),
+        e2_Tr1_x = N2*second[0] + h[1]*second[2] - past[1]*second[4],
+        e2_Tr1_y = N2*second[6] + h[1]*second[8] - past[1]*second[10],
+        e2_Tr2_x = N2*second[1] + h[1]*second[3] - past[1]*second[5],
+        e2_Tr2_y = N2*second[7] + h[1]*second[9] - past[1]*second[11],
+        e2_Tt1_x = N2*second[12] + h[1]*second[14] - past[1]*second[16],
+        e2_Tt1_y = N2*second[18] + h[1]*second[20] - past[1]*second[22],
+        e2_Tt2_x = N2*second[13] + h[1]*second[15] - past[1]*second[17],
+        e2_Tt2_y = N2*second[19] + h[1]*second[21] - past[1]*second[23],
+        e2_Tv1_x = N2*second[24] + h[1]*second[26] - past[1]*second[28],
+        e2_Tv1_y = N2*second[30] + h[1]*second[32] - past[1]*second[34],
+        e2_Tv2_x = N2*second[25] + h[1]*second[27] - past[1]*second[29],
+        e2_Tv2_y = N2*second[31] + h[1]*second[33] - past[1]*second[35],
+        e2_x1_x = N2*rate_by[0] + dl_N2*l_rate*rate_by[8] + dl_h[1]*l_rate*rate_by[6] + h[1]*rate_by[2] - past[1]*rate_by[4] + rate_by[10]*(-g1[1]*s_acc[0] - g2[1]*s_acc[1] - l_rate*(dl_g1[1]*s_rate[0] + dl_g2[1]*s_rate[1])),
+        e2_x1_y = N2*rate_by[12] + dl_N2*l_rate*rate_by[20] + dl_h[1]*l_rate*rate_by[18] + h[1]*rate_by[14] - past[1]*rate_by[16] + rate_by[22]*(-g1[1]*s_acc[0] - g2[1]*s_acc[1] - l_rate*(dl_g1[1]*s_rate[0] + dl_g2[1]*s_rate[1])),
+        e2_x2_x = N2*rate_by[1] + dl_N2*l_rate*rate_by[9] + dl_h[1]*l_rate*rate_by[7] + h[1]*rate_by[3] - past[1]*rate_by[5] + rate_by[11]*(-g1[1]*s_acc[0] - g2[1]*s_acc[1] - l_rate*(dl_g1[1]*s_rate[0] + dl_g2[1]*s_rate[1])),
+        e2_x2_y = N2*rate_by[13] + dl_N2*l_rate*rate_by[21] + dl_h[1]*l_rate*rate_by[19] + h[1]*rate_by[15] - past[1]*rate_by[17] + rate_by[23]*(-g1[1]*s_acc[0] - g2[1]*s_acc[1] - l_rate*(dl_g1[1]*s_rate[0] + dl_g2[1]*s_rate[1])),
+        e2_length1 = W*(T_r[0]*dl_N2 + T_t[0]*dl_h[1] + e2_Tr1_x*r_l_x + e2_Tr1_y*r_l_y + e2_Tt1_x*t_l_x + e2_Tt1_y*t_l_y) + part*(N2*T_r[0] + T_t[0]*h[1] - T_v[0]*past[1]),
+        e2_length2 = W*(T_r[1]*dl_N2 + T_t[1]*dl_h[1] + e2_Tr2_x*r_l_x + e2_Tr2_y*r_l_y + e2_Tt2_x*t_l_x + e2_Tt2_y*t_l_y) + part*(N2*T_r[1] + T_t[1]*h[1] - T_v[1]*past[1]),
+        e3_Tr1_x = N3*second[0] + h[2]*second[2] - past[2]*second[4],
+        e3_Tr1_y = N3*second[6] + h[2]*second[8] - past[2]*second[10],
+        e3_Tr2_x = N3*second[1] + h[2]*second[3] - past[2]*second[5],
+        e3_Tr2_y = N3*second[7] + h[2]*second[9] - past[2]*second[11],
+        e3_Tt1_x = N3*second[12] + h[2]*second[14] - past[2]*second[16],
+        e3_Tt1_y = N3*second[18] + h[2]*second[20] - past[2]*second[22],
+        e3_Tt2_x = N3*second[13] + h[2]*second[15] - past[2]*second[17],
+        e3_Tt2_y = N3*second[19] + h[2]*second[21] - past[2]*second[23],
+        e3_Tv1_x = N3*second[24] + h[2]*second[26] - past[2]*second[28],
+        e3_Tv1_y = N3*second[30] + h[2]*second[32] - past[2]*second[34],
+        e3_Tv2_x = N3*second[25] + h[2]*second[27] - past[2]*second[29],
+        e3_Tv2_y = N3*second[31] + h[2]*second[33] - past[2]*second[35],
+        e3_x1_x = N3*rate_by[0] + dl_h[2]*l_rate*rate_by[6] + h[2]*rate_by[2] - past[2]*rate_by[4] + rate_by[10]*(-g1[2]*s_acc[0] - g2[2]*s_acc[1] - l_rate*(dl_g1[2]*s_rate[0] + dl_g2[2]*s_rate[1])),
+        e3_x1_y = N3*rate_by[12] + dl_h[2]*l_rate*rate_by[18] + h[2]*rate_by[14] - past[2]*rate_by[16] + rate_by[22]*(-g1[2]*s_acc[0] - g2[2]*s_acc[1] - l_rate*(dl_g1[2]*s_rate[0] + dl_g2[2]*s_rate[1])),
+        e3_x2_x = N3*rate_by[1] + dl_h[2]*l_rate*rate_by[7] + h[2]*rate_by[3] - past[2]*rate_by[5] + rate_by[11]*(-g1[2]*s_acc[0] - g2[2]*s_acc[1] - l_rate*(dl_g1[2]*s_rate[0] + dl_g2[2]*s_rate[1])),
+        e3_x2_y = N3*rate_by[13] + dl_h[2]*l_rate*rate_by[19] + h[2]*rate_by[15] - past[2]*rate_by[17] + rate_by[23]*(-g1[2]*s_acc[0] - g2[2]*s_acc[1] - l_rate*(dl_g1[2]*s_rate[0] + dl_g2[2]*s_rate[1])),
+        e3_length1 = W*(T_t[0]*dl_h[2] + e3_Tr1_x*r_l_x + e3_Tr1_y*r_l_y + e3_Tt1_x*t_l_x + e3_Tt1_y*t_l_y) + part*(N3*T_r[0] + T_t[0]*h[2] - T_v[0]*past[2]),
+        e3_length2 = W*(T_t[1]*dl_h[2] + e3_Tr2_x*r_l_x + e3_Tr2_y*r_l_y + e3_Tt2_x*t_l_x + e3_Tt2_y*t_l_y) + part*(N3*T_r[1] + T_t[1]*h[2] - T_v[1]*past[2]),
+        e4_Tr1_x = N4*second[0] + h[3]*second[2] - past[3]*second[4],
+        e4_Tr1_y = N4*second[6] + h[3]*second[8] - past[3]*second[10],
+        e4_Tr2_x = N4*second[1] + h[3]*second[3] - past[3]*second[5],
+        e4_Tr2_y = N4*second[7] + h[3]*second[9] - past[3]*second[11],
+        e4_Tt1_x = N4*second[12] + h[3]*second[14] - past[3]*second[16],
+        e4_Tt1_y = N4*second[18] + h[3]*second[20] - past[3]*second[22],
+        e4_Tt2_x = N4*second[13] + h[3]*second[15] - past[3]*second[17],
+        e4_Tt2_y = N4*second[19] + h[3]*second[21] - past[3]*second[23],
+        e4_Tv1_x = N4*second[24] + h[3]*second[26] - past[3]*second[28],
+        e4_Tv1_y = N4*second[30] + h[3]*second[32] - past[3]*second[34],
+        e4_Tv2_x = N4*second[25] + h[3]*second[27] - past[3]*second[29],
+        e4_Tv2_y = N4*second[31] + h[3]*second[33] - past[3]*second[35],
+        e4_x1_x = N4*rate_by[0] + dl_N4*l_rate*rate_by[8] + dl_h[3]*l_rate*rate_by[6] + h[3]*rate_by[2] - past[3]*rate_by[4] + rate_by[10]*(-g1[3]*s_acc[0] - g2[3]*s_acc[1] - l_rate*(dl_g1[3]*s_rate[0] + dl_g2[3]*s_rate[1])),
+        e4_x1_y = N4*rate_by[12] + dl_N4*l_rate*rate_by[20] + dl_h[3]*l_rate*rate_by[18] + h[3]*rate_by[14] - past[3]*rate_by[16] + rate_by[22]*(-g1[3]*s_acc[0] - g2[3]*s_acc[1] - l_rate*(dl_g1[3]*s_rate[0] + dl_g2[3]*s_rate[1])),
+        e4_x2_x = N4*rate_by[1] + dl_N4*l_rate*rate_by[9] + dl_h[3]*l_rate*rate_by[7] + h[3]*rate_by[3] - past[3]*rate_by[5] + rate_by[11]*(-g1[3]*s_acc[0] - g2[3]*s_acc[1] - l_rate*(dl_g1[3]*s_rate[0] + dl_g2[3]*s_rate[1])),
+        e4_x2_y = N4*rate_by[13] + dl_N4*l_rate*rate_by[21] + dl_h[3]*l_rate*rate_by[19] + h[3]*rate_by[15] - past[3]*rate_by[17] + rate_by[23]*(-g1[3]*s_acc[0] - g2[3]*s_acc[1] - l_rate*(dl_g1[3]*s_rate[0] + dl_g2[3]*s_rate[1])),
+        e4_length1 = W*(T_r[0]*dl_N4 + T_t[0]*dl_h[3] + e4_Tr1_x*r_l_x + e4_Tr1_y*r_l_y + e4_Tt1_x*t_l_x + e4_Tt1_y*t_l_y) + part*(N4*T_r[0] + T_t[0]*h[3] - T_v[0]*past[3]),
+        e4_length2 = W*(T_r[1]*dl_N4 + T_t[1]*dl_h[3] + e4_Tr2_x*r_l_x + e4_Tr2_y*r_l_y + e4_Tt2_x*t_l_x + e4_Tt2_y*t_l_y) + part*(N4*T_r[1] + T_t[1]*h[3] - T_v[1]*past[3]),
+        dl_e_chord3_x = dl_w*(-e[0] + e[4]),
+        dl_e_Sl2_x = -6.0*dl_e_chord3_x*w*w + dl_w*(-e_S2_x - 12.0*e_chord3_x*w) - e_Sl2_x*w,
+        dl_v_chord3_x = dl_w*(-v[0] + v[4]),
+        dl_v_S2_x = 6.0*dl_v_chord3_x*w + dl_w*(-4.0*v[2] - 2.0*v[6] + 6.0*v_chord3_x),
+        dl_dt_g1_x = N2*dl_e_Sl2_x*l_rate + N2*dl_v_S2_x + dl_N2*(e_Sl2_x*l_rate + v_S2_x) + dt_N2*e_Sl2_x,
+        dl_e_chord3_y = dl_w*(-e[1] + e[5]),
+        dl_e_Sl2_y = -6.0*dl_e_chord3_y*w*w + dl_w*(-e_S2_y - 12.0*e_chord3_y*w) - e_Sl2_y*w,
+        dl_v_chord3_y = dl_w*(-v[1] + v[5]),
+        dl_v_S2_y = 6.0*dl_v_chord3_y*w + dl_w*(-4.0*v[3] - 2.0*v[7] + 6.0*v_chord3_y),
+        dl_dt_g1_y = N2*dl_e_Sl2_y*l_rate + N2*dl_v_S2_y + dl_N2*(e_Sl2_y*l_rate + v_S2_y) + dt_N2*e_Sl2_y,
+        dl_e_Sl4_x = 6.0*dl_e_chord3_x*w*w + dl_w*(-e_S4_x + 12.0*e_chord3_x*w) - e_Sl4_x*w,
+        dl_v_S4_x = -6.0*dl_v_chord3_x*w + dl_w*(2.0*v[2] + 4.0*v[6] - 6.0*v_chord3_x),
+        dl_dt_g2_x = N4*dl_e_Sl4_x*l_rate + N4*dl_v_S4_x + dl_N4*(e_Sl4_x*l_rate + v_S4_x) + dt_N4*e_Sl4_x,
+        dl_e_Sl4_y = 6.0*dl_e_chord3_y*w*w + dl_w*(-e_S4_y + 12.0*e_chord3_y*w) - e_Sl4_y*w,
+        dl_v_S4_y = -6.0*dl_v_chord3_y*w + dl_w*(2.0*v[3] + 4.0*v[7] - 6.0*v_chord3_y),
+        dl_dt_g2_y = N4*dl_e_Sl4_y*l_rate + N4*dl_v_S4_y + dl_N4*(e_Sl4_y*l_rate + v_S4_y) + dt_N4*e_Sl4_y,
+        dl_dl_g1_x = N2*dl_e_Sl2_x + 2.0*dl_N2*e_Sl2_x,
+        dl_dl_g2_x = N4*dl_e_Sl4_x + 2.0*dl_N4*e_Sl4_x,
+        dl_v_l_x = -dl_dl_g1_x*s_rate[0] - dl_dl_g2_x*s_rate[1],
+        dl_turn1_x = -dl_dt_g1_x + dl_v_l_x,
+        dl_dl_g1_y = N2*dl_e_Sl2_y + 2.0*dl_N2*e_Sl2_y,
+        dl_dl_g2_y = N4*dl_e_Sl4_y + 2.0*dl_N4*e_Sl4_y,
+        dl_v_l_y = -dl_dl_g1_y*s_rate[0] - dl_dl_g2_y*s_rate[1],
+        dl_turn1_y = -dl_dt_g1_y + dl_v_l_y,
+        dl_turn2_x = -dl_dt_g2_x - dl_v_l_x,
+        dl_turn2_y = -dl_dt_g2_y - dl_v_l_y;
+    FU_EACH(g, 4,
+        dl_past[g] = dl_g1[g]*s_rate[0] + dl_g2[g]*s_rate[1];)
+    const fu_real
+        dl_t_l_x = dl_dl_g1_x + dl_dl_g2_x,
+        dl_t_l_y = dl_dl_g1_y + dl_dl_g2_y,
+        l_Tr1_x = r_l_x*second[0] + r_l_y*second[1] + second[2]*t_l_x + second[3]*t_l_y + second[4]*v_l_x + second[5]*v_l_y,
+        l_Tr1_y = r_l_x*second[6] + r_l_y*second[7] + second[10]*v_l_x + second[11]*v_l_y + second[8]*t_l_x + second[9]*t_l_y,
+        l_Tt1_x = r_l_x*second[12] + r_l_y*second[13] + second[14]*t_l_x + second[15]*t_l_y + second[16]*v_l_x + second[17]*v_l_y,
+        l_Tt1_y = r_l_x*second[18] + r_l_y*second[19] + second[20]*t_l_x + second[21]*t_l_y + second[22]*v_l_x + second[23]*v_l_y,
+        l_Tv1_x = r_l_x*second[24] + r_l_y*second[25] + second[26]*t_l_x + second[27]*t_l_y + second[28]*v_l_x + second[29]*v_l_y,
+        l_Tv1_y = r_l_x*second[30] + r_l_y*second[31] + second[32]*t_l_x + second[33]*t_l_y + second[34]*v_l_x + second[35]*v_l_y,
+        l_x1_x = -T_v[0]*l_rate*w*w + r_l_x*rate_by[0] + r_l_y*rate_by[1] + rate_by[10]*(a[2]*dl_N2 + a[6]*dl_N4 - dl_dt_g1_x*s_rate[0] - dl_dt_g2_x*s_rate[1] - dl_g1_x*s_acc[0] - dl_g2_x*s_acc[1]) + rate_by[11]*(a[3]*dl_N2 + a[7]*dl_N4 - dl_dt_g1_y*s_rate[0] - dl_dt_g2_y*s_rate[1] - dl_g1_y*s_acc[0] - dl_g2_y*s_acc[1]) + rate_by[2]*t_l_x + rate_by[3]*t_l_y + rate_by[4]*v_l_x + rate_by[5]*v_l_y + rate_by[6]*(dl_dt_g1_x + dl_dt_g2_x) + rate_by[7]*(dl_dt_g1_y + dl_dt_g2_y) + rate_by[8]*(dl_N2*v[2] + dl_N4*v[6]) + rate_by[9]*(dl_N2*v[3] + dl_N4*v[7]),
+        l_x1_y = -T_v[1]*l_rate*w*w + r_l_x*rate_by[12] + r_l_y*rate_by[13] + rate_by[14]*t_l_x + rate_by[15]*t_l_y + rate_by[16]*v_l_x + rate_by[17]*v_l_y + rate_by[18]*(dl_dt_g1_x + dl_dt_g2_x) + rate_by[19]*(dl_dt_g1_y + dl_dt_g2_y) + rate_by[20]*(dl_N2*v[2] + dl_N4*v[6]) + rate_by[21]*(dl_N2*v[3] + dl_N4*v[7]) + rate_by[22]*(a[2]*dl_N2 + a[6]*dl_N4 - dl_dt_g1_x*s_rate[0] - dl_dt_g2_x*s_rate[1] - dl_g1_x*s_acc[0] - dl_g2_x*s_acc[1]) + rate_by[23]*(a[3]*dl_N2 + a[7]*dl_N4 - dl_dt_g1_y*s_rate[0] - dl_dt_g2_y*s_rate[1] - dl_g1_y*s_acc[0] - dl_g2_y*s_acc[1]),
+        l_length1 = W*(T_t[0]*dl_t_l_x + T_t[1]*dl_t_l_y + l_Tr1_x*r_l_x + l_Tr1_y*r_l_y + l_Tt1_x*t_l_x + l_Tt1_y*t_l_y) + part*(T_r[0]*r_l_x + T_r[1]*r_l_y + T_t[0]*t_l_x + T_t[1]*t_l_y) + part*(T_r[0]*r_l_x + T_r[1]*r_l_y + T_t[0]*t_l_x + T_t[1]*t_l_y + T_v[0]*v_l_x + T_v[1]*v_l_y);
+    /* outputs */
+    D[0] = W*(N1*(-v1_Tr1_x + v1_x1_x) - h[0]*v1_Tt1_x + past[0]*v1_Tv1_x);
+    D[1] = W*(N1*(-v1_Tr2_x + v1_x2_x) - h[0]*v1_Tt2_x + past[0]*v1_Tv2_x);
+    D[2] = W*(N1*(-v2_Tr1_x + v2_x1_x) - h[0]*v2_Tt1_x + past[0]*v2_Tv1_x);
+    D[3] = W*(N1*(-v2_Tr2_x + v2_x2_x) - h[0]*v2_Tt2_x + past[0]*v2_Tv2_x);
+    D[4] = W*(N1*(-v3_Tr1_x + v3_x1_x) - h[0]*v3_Tt1_x + past[0]*v3_Tv1_x);
+    D[5] = W*(N1*(-v3_Tr2_x + v3_x2_x) - h[0]*v3_Tt2_x + past[0]*v3_Tv2_x);
+    D[6] = W*(N1*(-v4_Tr1_x + v4_x1_x) - h[0]*v4_Tt1_x + past[0]*v4_Tv1_x);
+    D[7] = W*(N1*(-v4_Tr2_x + v4_x2_x) - h[0]*v4_Tt2_x + past[0]*v4_Tv2_x);
+    D[8] = T_v[0]*W*g1[0] + W*(N1*(-s1_Tr1_x + s1_x1_x) - h[0]*s1_Tt1_x + past[0]*s1_Tv1_x);
+    D[9] = T_v[0]*W*g2[0] + W*(N1*(-s2_Tr1_x + s2_x1_x) - h[0]*s2_Tt1_x + past[0]*s2_Tv1_x);
+    D[10] = W*(N1*(-v1_Tr1_y + v1_x1_y) - h[0]*v1_Tt1_y + past[0]*v1_Tv1_y);
+    D[11] = W*(N1*(-v1_Tr2_y + v1_x2_y) - h[0]*v1_Tt2_y + past[0]*v1_Tv2_y);
+    D[12] = W*(N1*(-v2_Tr1_y + v2_x1_y) - h[0]*v2_Tt1_y + past[0]*v2_Tv1_y);
+    D[13] = W*(N1*(-v2_Tr2_y + v2_x2_y) - h[0]*v2_Tt2_y + past[0]*v2_Tv2_y);
+    D[14] = W*(N1*(-v3_Tr1_y + v3_x1_y) - h[0]*v3_Tt1_y + past[0]*v3_Tv1_y);
+    D[15] = W*(N1*(-v3_Tr2_y + v3_x2_y) - h[0]*v3_Tt2_y + past[0]*v3_Tv2_y);
+    D[16] = W*(N1*(-v4_Tr1_y + v4_x1_y) - h[0]*v4_Tt1_y + past[0]*v4_Tv1_y);
+    D[17] = W*(N1*(-v4_Tr2_y + v4_x2_y) - h[0]*v4_Tt2_y + past[0]*v4_Tv2_y);
+    D[18] = T_v[1]*W*g1[0] + W*(N1*(-s1_Tr1_y + s1_x1_y) - h[0]*s1_Tt1_y + past[0]*s1_Tv1_y);
+    D[19] = T_v[1]*W*g2[0] + W*(N1*(-s2_Tr1_y + s2_x1_y) - h[0]*s2_Tt1_y + past[0]*s2_Tv1_y);
+    D[20] = W*(N2*(-v1_Tr1_x + v1_x1_x) + drift2*v1_Tv1_x - h[1]*v1_Tt1_x);
+    D[21] = W*(N2*(-v1_Tr2_x + v1_x2_x) + drift2*v1_Tv2_x - h[1]*v1_Tt2_x);
+    D[22] = W*(N2*(-v2_Tr1_x + v2_x1_x) + drift2*v2_Tv1_x - h[1]*v2_Tt1_x);
+    D[23] = W*(N2*(-v2_Tr2_x + v2_x2_x) + drift2*v2_Tv2_x - h[1]*v2_Tt2_x);
+    D[24] = W*(N2*(-v3_Tr1_x + v3_x1_x) + drift2*v3_Tv1_x - h[1]*v3_Tt1_x);
+    D[25] = W*(N2*(-v3_Tr2_x + v3_x2_x) + drift2*v3_Tv2_x - h[1]*v3_Tt2_x);
+    D[26] = W*(N2*(-v4_Tr1_x + v4_x1_x) + drift2*v4_Tv1_x - h[1]*v4_Tt1_x);
+    D[27] = W*(N2*(-v4_Tr2_x + v4_x2_x) + drift2*v4_Tv2_x - h[1]*v4_Tt2_x);
+    D[28] = T_v[0]*W*(-dl_N2 + g1[1]) + W*(N2*(-s1_Tr1_x + s1_x1_x) + drift2*s1_Tv1_x - h[1]*s1_Tt1_x);
+    D[29] = T_v[0]*W*(dl_N2 + g2[1]) + W*(N2*(-s2_Tr1_x + s2_x1_x) + drift2*s2_Tv1_x - h[1]*s2_Tt1_x);
+    D[30] = W*(N2*(-v1_Tr1_y + v1_x1_y) + drift2*v1_Tv1_y - h[1]*v1_Tt1_y);
+    D[31] = W*(N2*(-v1_Tr2_y + v1_x2_y) + drift2*v1_Tv2_y - h[1]*v1_Tt2_y);
+    D[32] = W*(N2*(-v2_Tr1_y + v2_x1_y) + drift2*v2_Tv1_y - h[1]*v2_Tt1_y);
+    D[33] = W*(N2*(-v2_Tr2_y + v2_x2_y) + drift2*v2_Tv2_y - h[1]*v2_Tt2_y);
+    D[34] = W*(N2*(-v3_Tr1_y + v3_x1_y) + drift2*v3_Tv1_y - h[1]*v3_Tt1_y);
+    D[35] = W*(N2*(-v3_Tr2_y + v3_x2_y) + drift2*v3_Tv2_y - h[1]*v3_Tt2_y);
+    D[36] = W*(N2*(-v4_Tr1_y + v4_x1_y) + drift2*v4_Tv1_y - h[1]*v4_Tt1_y);
+    D[37] = W*(N2*(-v4_Tr2_y + v4_x2_y) + drift2*v4_Tv2_y - h[1]*v4_Tt2_y);
+    D[38] = T_v[1]*W*(-dl_N2 + g1[1]) + W*(N2*(-s1_Tr1_y + s1_x1_y) + drift2*s1_Tv1_y - h[1]*s1_Tt1_y);
+    D[39] = T_v[1]*W*(dl_N2 + g2[1]) + W*(N2*(-s2_Tr1_y + s2_x1_y) + drift2*s2_Tv1_y - h[1]*s2_Tt1_y);
+    D[40] = W*(N3*(-v1_Tr1_x + v1_x1_x) - h[2]*v1_Tt1_x + past[2]*v1_Tv1_x);
+    D[41] = W*(N3*(-v1_Tr2_x + v1_x2_x) - h[2]*v1_Tt2_x + past[2]*v1_Tv2_x);
+    D[42] = W*(N3*(-v2_Tr1_x + v2_x1_x) - h[2]*v2_Tt1_x + past[2]*v2_Tv1_x);
+    D[43] = W*(N3*(-v2_Tr2_x + v2_x2_x) - h[2]*v2_Tt2_x + past[2]*v2_Tv2_x);
+    D[44] = W*(N3*(-v3_Tr1_x + v3_x1_x) - h[2]*v3_Tt1_x + past[2]*v3_Tv1_x);
+    D[45] = W*(N3*(-v3_Tr2_x + v3_x2_x) - h[2]*v3_Tt2_x + past[2]*v3_Tv2_x);
+    D[46] = W*(N3*(-v4_Tr1_x + v4_x1_x) - h[2]*v4_Tt1_x + past[2]*v4_Tv1_x);
+    D[47] = W*(N3*(-v4_Tr2_x + v4_x2_x) - h[2]*v4_Tt2_x + past[2]*v4_Tv2_x);
+    D[48] = T_v[0]*W*g1[2] + W*(N3*(-s1_Tr1_x + s1_x1_x) - h[2]*s1_Tt1_x + past[2]*s1_Tv1_x);
+    D[49] = T_v[0]*W*g2[2] + W*(N3*(-s2_Tr1_x + s2_x1_x) - h[2]*s2_Tt1_x + past[2]*s2_Tv1_x);
+    D[50] = W*(N3*(-v1_Tr1_y + v1_x1_y) - h[2]*v1_Tt1_y + past[2]*v1_Tv1_y);
+    D[51] = W*(N3*(-v1_Tr2_y + v1_x2_y) - h[2]*v1_Tt2_y + past[2]*v1_Tv2_y);
+    D[52] = W*(N3*(-v2_Tr1_y + v2_x1_y) - h[2]*v2_Tt1_y + past[2]*v2_Tv1_y);
+    D[53] = W*(N3*(-v2_Tr2_y + v2_x2_y) - h[2]*v2_Tt2_y + past[2]*v2_Tv2_y);
+    D[54] = W*(N3*(-v3_Tr1_y + v3_x1_y) - h[2]*v3_Tt1_y + past[2]*v3_Tv1_y);
+    D[55] = W*(N3*(-v3_Tr2_y + v3_x2_y) - h[2]*v3_Tt2_y + past[2]*v3_Tv2_y);
+    D[56] = W*(N3*(-v4_Tr1_y + v4_x1_y) - h[2]*v4_Tt1_y + past[2]*v4_Tv1_y);
+    D[57] = W*(N3*(-v4_Tr2_y + v4_x2_y) - h[2]*v4_Tt2_y + past[2]*v4_Tv2_y);
+    D[58] = T_v[1]*W*g1[2] + W*(N3*(-s1_Tr1_y + s1_x1_y) - h[2]*s1_Tt1_y + past[2]*s1_Tv1_y);
+    D[59] = T_v[1]*W*g2[2] + W*(N3*(-s2_Tr1_y + s2_x1_y) - h[2]*s2_Tt1_y + past[2]*s2_Tv1_y);
+    D[60] = W*(N4*(-v1_Tr1_x + v1_x1_x) + drift4*v1_Tv1_x - h[3]*v1_Tt1_x);
+    D[61] = W*(N4*(-v1_Tr2_x + v1_x2_x) + drift4*v1_Tv2_x - h[3]*v1_Tt2_x);
+    D[62] = W*(N4*(-v2_Tr1_x + v2_x1_x) + drift4*v2_Tv1_x - h[3]*v2_Tt1_x);
+    D[63] = W*(N4*(-v2_Tr2_x + v2_x2_x) + drift4*v2_Tv2_x - h[3]*v2_Tt2_x);
+    D[64] = W*(N4*(-v3_Tr1_x + v3_x1_x) + drift4*v3_Tv1_x - h[3]*v3_Tt1_x);
+    D[65] = W*(N4*(-v3_Tr2_x + v3_x2_x) + drift4*v3_Tv2_x - h[3]*v3_Tt2_x);
+    D[66] = W*(N4*(-v4_Tr1_x + v4_x1_x) + drift4*v4_Tv1_x - h[3]*v4_Tt1_x);
+    D[67] = W*(N4*(-v4_Tr2_x + v4_x2_x) + drift4*v4_Tv2_x - h[3]*v4_Tt2_x);
+    D[68] = T_v[0]*W*(-dl_N4 + g1[3]) + W*(N4*(-s1_Tr1_x + s1_x1_x) + drift4*s1_Tv1_x - h[3]*s1_Tt1_x);
+    D[69] = T_v[0]*W*(dl_N4 + g2[3]) + W*(N4*(-s2_Tr1_x + s2_x1_x) + drift4*s2_Tv1_x - h[3]*s2_Tt1_x);
+    D[70] = W*(N4*(-v1_Tr1_y + v1_x1_y) + drift4*v1_Tv1_y - h[3]*v1_Tt1_y);
+    D[71] = W*(N4*(-v1_Tr2_y + v1_x2_y) + drift4*v1_Tv2_y - h[3]*v1_Tt2_y);
+    D[72] = W*(N4*(-v2_Tr1_y + v2_x1_y) + drift4*v2_Tv1_y - h[3]*v2_Tt1_y);
+    D[73] = W*(N4*(-v2_Tr2_y + v2_x2_y) + drift4*v2_Tv2_y - h[3]*v2_Tt2_y);
+    D[74] = W*(N4*(-v3_Tr1_y + v3_x1_y) + drift4*v3_Tv1_y - h[3]*v3_Tt1_y);
+    D[75] = W*(N4*(-v3_Tr2_y + v3_x2_y) + drift4*v3_Tv2_y - h[3]*v3_Tt2_y);
+    D[76] = W*(N4*(-v4_Tr1_y + v4_x1_y) + drift4*v4_Tv1_y - h[3]*v4_Tt1_y);
+    D[77] = W*(N4*(-v4_Tr2_y + v4_x2_y) + drift4*v4_Tv2_y - h[3]*v4_Tt2_y);
+    D[78] = T_v[1]*W*(-dl_N4 + g1[3]) + W*(N4*(-s1_Tr1_y + s1_x1_y) + drift4*s1_Tv1_y - h[3]*s1_Tt1_y);
+    D[79] = T_v[1]*W*(dl_N4 + g2[3]) + W*(N4*(-s2_Tr1_y + s2_x1_y) + drift4*s2_Tv1_y - h[3]*s2_Tt1_y);
+    D[80] = W*(-T_v[0]*g1[0] - g1_x*v1_x1_x - g1_y*v1_x1_y + turn1_x*v1_Tv1_x + turn1_y*v1_Tv1_y) + v1_length1;
+    D[81] = W*(-T_v[1]*g1[0] - g1_x*v1_x2_x - g1_y*v1_x2_y + turn1_x*v1_Tv2_x + turn1_y*v1_Tv2_y) + v1_length2;
+    D[82] = W*(T_v[0]*(dl_N2 - g1[1]) - g1_x*v2_x1_x - g1_y*v2_x1_y + turn1_x*v2_Tv1_x + turn1_y*v2_Tv1_y) + v2_length1;
+    D[83] = W*(T_v[1]*(dl_N2 - g1[1]) - g1_x*v2_x2_x - g1_y*v2_x2_y + turn1_x*v2_Tv2_x + turn1_y*v2_Tv2_y) + v2_length2;
+    D[84] = W*(-T_v[0]*g1[2] - g1_x*v3_x1_x - g1_y*v3_x1_y + turn1_x*v3_Tv1_x + turn1_y*v3_Tv1_y) + v3_length1;
+    D[85] = W*(-T_v[1]*g1[2] - g1_x*v3_x2_x - g1_y*v3_x2_y + turn1_x*v3_Tv2_x + turn1_y*v3_Tv2_y) + v3_length2;
+    D[86] = W*(T_v[0]*(dl_N4 - g1[3]) - g1_x*v4_x1_x - g1_y*v4_x1_y + turn1_x*v4_Tv1_x + turn1_y*v4_Tv1_y) + v4_length1;
+    D[87] = W*(T_v[1]*(dl_N4 - g1[3]) - g1_x*v4_x2_x - g1_y*v4_x2_y + turn1_x*v4_Tv2_x + turn1_y*v4_Tv2_y) + v4_length2;
+    D[88] = W*(-g1_x*s1_x1_x - g1_y*s1_x1_y + s1_Tv1_x*turn1_x + s1_Tv1_y*turn1_y) + s1_length1;
+    D[89] = W*(T_v[0]*(-dl_g1_x - dl_g2_x) + T_v[1]*(-dl_g1_y - dl_g2_y) - g1_x*s2_x1_x - g1_y*s2_x1_y + s2_Tv1_x*turn1_x + s2_Tv1_y*turn1_y) + s2_length1;
+    D[90] = W*(-T_v[0]*g2[0] - g2_x*v1_x1_x - g2_y*v1_x1_y + turn2_x*v1_Tv1_x + turn2_y*v1_Tv1_y) - v1_length1;
+    D[91] = W*(-T_v[1]*g2[0] - g2_x*v1_x2_x - g2_y*v1_x2_y + turn2_x*v1_Tv2_x + turn2_y*v1_Tv2_y) - v1_length2;
+    D[92] = W*(T_v[0]*(-dl_N2 - g2[1]) - g2_x*v2_x1_x - g2_y*v2_x1_y + turn2_x*v2_Tv1_x + turn2_y*v2_Tv1_y) - v2_length1;
+    D[93] = W*(T_v[1]*(-dl_N2 - g2[1]) - g2_x*v2_x2_x - g2_y*v2_x2_y + turn2_x*v2_Tv2_x + turn2_y*v2_Tv2_y) - v2_length2;
+    D[94] = W*(-T_v[0]*g2[2] - g2_x*v3_x1_x - g2_y*v3_x1_y + turn2_x*v3_Tv1_x + turn2_y*v3_Tv1_y) - v3_length1;
+    D[95] = W*(-T_v[1]*g2[2] - g2_x*v3_x2_x - g2_y*v3_x2_y + turn2_x*v3_Tv2_x + turn2_y*v3_Tv2_y) - v3_length2;
+    D[96] = W*(T_v[0]*(-dl_N4 - g2[3]) - g2_x*v4_x1_x - g2_y*v4_x1_y + turn2_x*v4_Tv1_x + turn2_y*v4_Tv1_y) - v4_length1;
+    D[97] = W*(T_v[1]*(-dl_N4 - g2[3]) - g2_x*v4_x2_x - g2_y*v4_x2_y + turn2_x*v4_Tv2_x + turn2_y*v4_Tv2_y) - v4_length2;
+    D[98] = W*(T_v[0]*(dl_g1_x + dl_g2_x) + T_v[1]*(dl_g1_y + dl_g2_y) - g2_x*s1_x1_x - g2_y*s1_x1_y + s1_Tv1_x*turn2_x + s1_Tv1_y*turn2_y) - s1_length1;
+    D[99] = W*(-g2_x*s2_x1_x - g2_y*s2_x1_y + s2_Tv1_x*turn2_x + s2_Tv1_y*turn2_y) - s2_length1;
+    K[0] = W*(N1*(-e1_Tr1_x + e1_x1_x) - e1_Tt1_x*h[0] + e1_Tv1_x*past[0]);
+    K[1] = W*(N1*(-e1_Tr2_x + e1_x2_x) - e1_Tt2_x*h[0] + e1_Tv2_x*past[0]);
+    K[2] = W*(N1*(-e2_Tr1_x + e2_x1_x) - e2_Tt1_x*h[0] + e2_Tv1_x*past[0]);
+    K[3] = W*(N1*(-e2_Tr2_x + e2_x2_x) - e2_Tt2_x*h[0] + e2_Tv2_x*past[0]);
+    K[4] = W*(N1*(-e3_Tr1_x + e3_x1_x) - e3_Tt1_x*h[0] + e3_Tv1_x*past[0]);
+    K[5] = W*(N1*(-e3_Tr2_x + e3_x2_x) - e3_Tt2_x*h[0] + e3_Tv2_x*past[0]);
+    K[6] = W*(N1*(-e4_Tr1_x + e4_x1_x) - e4_Tt1_x*h[0] + e4_Tv1_x*past[0]);
+    K[7] = W*(N1*(-e4_Tr2_x + e4_x2_x) - e4_Tt2_x*h[0] + e4_Tv2_x*past[0]);
+    K[8] = N1*part*(-T_r[0] + rate[0]) - T_t[0]*(W*dl_h[0] + h[0]*part) + T_v[0]*(W*dl_past[0] + part*past[0]) + W*(N1*(-l_Tr1_x + l_x1_x) - h[0]*l_Tt1_x + l_Tv1_x*past[0]);
+    K[9] = W*(N1*(-e1_Tr1_y + e1_x1_y) - e1_Tt1_y*h[0] + e1_Tv1_y*past[0]);
+    K[10] = W*(N1*(-e1_Tr2_y + e1_x2_y) - e1_Tt2_y*h[0] + e1_Tv2_y*past[0]);
+    K[11] = W*(N1*(-e2_Tr1_y + e2_x1_y) - e2_Tt1_y*h[0] + e2_Tv1_y*past[0]);
+    K[12] = W*(N1*(-e2_Tr2_y + e2_x2_y) - e2_Tt2_y*h[0] + e2_Tv2_y*past[0]);
+    K[13] = W*(N1*(-e3_Tr1_y + e3_x1_y) - e3_Tt1_y*h[0] + e3_Tv1_y*past[0]);
+    K[14] = W*(N1*(-e3_Tr2_y + e3_x2_y) - e3_Tt2_y*h[0] + e3_Tv2_y*past[0]);
+    K[15] = W*(N1*(-e4_Tr1_y + e4_x1_y) - e4_Tt1_y*h[0] + e4_Tv1_y*past[0]);
+    K[16] = W*(N1*(-e4_Tr2_y + e4_x2_y) - e4_Tt2_y*h[0] + e4_Tv2_y*past[0]);
+    K[17] = N1*part*(-T_r[1] + rate[1]) - T_t[1]*(W*dl_h[0] + h[0]*part) + T_v[1]*(W*dl_past[0] + part*past[0]) + W*(N1*(-l_Tr1_y + l_x1_y) - h[0]*l_Tt1_y + l_Tv1_y*past[0]);
+    K[18] = W*(N2*(-e1_Tr1_x + e1_x1_x) + drift2*e1_Tv1_x - e1_Tt1_x*h[1]);
+    K[19] = W*(N2*(-e1_Tr2_x + e1_x2_x) + drift2*e1_Tv2_x - e1_Tt2_x*h[1]);
+    K[20] = W*(N2*(-e2_Tr1_x + e2_x1_x) + drift2*e2_Tv1_x - e2_Tt1_x*h[1]);
+    K[21] = W*(N2*(-e2_Tr2_x + e2_x2_x) + drift2*e2_Tv2_x - e2_Tt2_x*h[1]);
+    K[22] = W*(N2*(-e3_Tr1_x + e3_x1_x) + drift2*e3_Tv1_x - e3_Tt1_x*h[1]);
+    K[23] = W*(N2*(-e3_Tr2_x + e3_x2_x) + drift2*e3_Tv2_x - e3_Tt2_x*h[1]);
+    K[24] = W*(N2*(-e4_Tr1_x + e4_x1_x) + drift2*e4_Tv1_x - e4_Tt1_x*h[1]);
+    K[25] = W*(N2*(-e4_Tr2_x + e4_x2_x) + drift2*e4_Tv2_x - e4_Tt2_x*h[1]);
+    K[26] = -T_t[0]*(W*dl_h[1] + h[1]*part) + T_v[0]*(W*dl_past[1] + drift2*part) + W*(N2*(-l_Tr1_x + l_x1_x) + drift2*l_Tv1_x - h[1]*l_Tt1_x) + (-T_r[0] + rate[0])*(N2*part + W*dl_N2);
+    K[27] = W*(N2*(-e1_Tr1_y + e1_x1_y) + drift2*e1_Tv1_y - e1_Tt1_y*h[1]);
+    K[28] = W*(N2*(-e1_Tr2_y + e1_x2_y) + drift2*e1_Tv2_y - e1_Tt2_y*h[1]);
+    K[29] = W*(N2*(-e2_Tr1_y + e2_x1_y) + drift2*e2_Tv1_y - e2_Tt1_y*h[1]);
+    K[30] = W*(N2*(-e2_Tr2_y + e2_x2_y) + drift2*e2_Tv2_y - e2_Tt2_y*h[1]);
+    K[31] = W*(N2*(-e3_Tr1_y + e3_x1_y) + drift2*e3_Tv1_y - e3_Tt1_y*h[1]);
+    K[32] = W*(N2*(-e3_Tr2_y + e3_x2_y) + drift2*e3_Tv2_y - e3_Tt2_y*h[1]);
+    K[33] = W*(N2*(-e4_Tr1_y + e4_x1_y) + drift2*e4_Tv1_y - e4_Tt1_y*h[1]);
+    K[34] = W*(N2*(-e4_Tr2_y + e4_x2_y) + drift2*e4_Tv2_y - e4_Tt2_y*h[1]);
+    K[35] = -T_t[1]*(W*dl_h[1] + h[1]*part) + T_v[1]*(W*dl_past[1] + drift2*part) + W*(N2*(-l_Tr1_y + l_x1_y) + drift2*l_Tv1_y - h[1]*l_Tt1_y) + (-T_r[1] + rate[1])*(N2*part + W*dl_N2);
+    K[36] = W*(N3*(-e1_Tr1_x + e1_x1_x) - e1_Tt1_x*h[2] + e1_Tv1_x*past[2]);
+    K[37] = W*(N3*(-e1_Tr2_x + e1_x2_x) - e1_Tt2_x*h[2] + e1_Tv2_x*past[2]);
+    K[38] = W*(N3*(-e2_Tr1_x + e2_x1_x) - e2_Tt1_x*h[2] + e2_Tv1_x*past[2]);
+    K[39] = W*(N3*(-e2_Tr2_x + e2_x2_x) - e2_Tt2_x*h[2] + e2_Tv2_x*past[2]);
+    K[40] = W*(N3*(-e3_Tr1_x + e3_x1_x) - e3_Tt1_x*h[2] + e3_Tv1_x*past[2]);
+    K[41] = W*(N3*(-e3_Tr2_x + e3_x2_x) - e3_Tt2_x*h[2] + e3_Tv2_x*past[2]);
+    K[42] = W*(N3*(-e4_Tr1_x + e4_x1_x) - e4_Tt1_x*h[2] + e4_Tv1_x*past[2]);
+    K[43] = W*(N3*(-e4_Tr2_x + e4_x2_x) - e4_Tt2_x*h[2] + e4_Tv2_x*past[2]);
+    K[44] = N3*part*(-T_r[0] + rate[0]) - T_t[0]*(W*dl_h[2] + h[2]*part) + T_v[0]*(W*dl_past[2] + part*past[2]) + W*(N3*(-l_Tr1_x + l_x1_x) - h[2]*l_Tt1_x + l_Tv1_x*past[2]);
+    K[45] = W*(N3*(-e1_Tr1_y + e1_x1_y) - e1_Tt1_y*h[2] + e1_Tv1_y*past[2]);
+    K[46] = W*(N3*(-e1_Tr2_y + e1_x2_y) - e1_Tt2_y*h[2] + e1_Tv2_y*past[2]);
+    K[47] = W*(N3*(-e2_Tr1_y + e2_x1_y) - e2_Tt1_y*h[2] + e2_Tv1_y*past[2]);
+    K[48] = W*(N3*(-e2_Tr2_y + e2_x2_y) - e2_Tt2_y*h[2] + e2_Tv2_y*past[2]);
+    K[49] = W*(N3*(-e3_Tr1_y + e3_x1_y) - e3_Tt1_y*h[2] + e3_Tv1_y*past[2]);
+    K[50] = W*(N3*(-e3_Tr2_y + e3_x2_y) - e3_Tt2_y*h[2] + e3_Tv2_y*past[2]);
+    K[51] = W*(N3*(-e4_Tr1_y + e4_x1_y) - e4_Tt1_y*h[2] + e4_Tv1_y*past[2]);
+    K[52] = W*(N3*(-e4_Tr2_y + e4_x2_y) - e4_Tt2_y*h[2] + e4_Tv2_y*past[2]);
+    K[53] = N3*part*(-T_r[1] + rate[1]) - T_t[1]*(W*dl_h[2] + h[2]*part) + T_v[1]*(W*dl_past[2] + part*past[2]) + W*(N3*(-l_Tr1_y + l_x1_y) - h[2]*l_Tt1_y + l_Tv1_y*past[2]);
+    K[54] = W*(N4*(-e1_Tr1_x + e1_x1_x) + drift4*e1_Tv1_x - e1_Tt1_x*h[3]);
+    K[55] = W*(N4*(-e1_Tr2_x + e1_x2_x) + drift4*e1_Tv2_x - e1_Tt2_x*h[3]);
+    K[56] = W*(N4*(-e2_Tr1_x + e2_x1_x) + drift4*e2_Tv1_x - e2_Tt1_x*h[3]);
+    K[57] = W*(N4*(-e2_Tr2_x + e2_x2_x) + drift4*e2_Tv2_x - e2_Tt2_x*h[3]);
+    K[58] = W*(N4*(-e3_Tr1_x + e3_x1_x) + drift4*e3_Tv1_x - e3_Tt1_x*h[3]);
+    K[59] = W*(N4*(-e3_Tr2_x + e3_x2_x) + drift4*e3_Tv2_x - e3_Tt2_x*h[3]);
+    K[60] = W*(N4*(-e4_Tr1_x + e4_x1_x) + drift4*e4_Tv1_x - e4_Tt1_x*h[3]);
+    K[61] = W*(N4*(-e4_Tr2_x + e4_x2_x) + drift4*e4_Tv2_x - e4_Tt2_x*h[3]);
+    K[62] = -T_t[0]*(W*dl_h[3] + h[3]*part) + T_v[0]*(W*dl_past[3] + drift4*part) + W*(N4*(-l_Tr1_x + l_x1_x) + drift4*l_Tv1_x - h[3]*l_Tt1_x) + (-T_r[0] + rate[0])*(N4*part + W*dl_N4);
+    K[63] = W*(N4*(-e1_Tr1_y + e1_x1_y) + drift4*e1_Tv1_y - e1_Tt1_y*h[3]);
+    K[64] = W*(N4*(-e1_Tr2_y + e1_x2_y) + drift4*e1_Tv2_y - e1_Tt2_y*h[3]);
+    K[65] = W*(N4*(-e2_Tr1_y + e2_x1_y) + drift4*e2_Tv1_y - e2_Tt1_y*h[3]);
+    K[66] = W*(N4*(-e2_Tr2_y + e2_x2_y) + drift4*e2_Tv2_y - e2_Tt2_y*h[3]);
+    K[67] = W*(N4*(-e3_Tr1_y + e3_x1_y) + drift4*e3_Tv1_y - e3_Tt1_y*h[3]);
+    K[68] = W*(N4*(-e3_Tr2_y + e3_x2_y) + drift4*e3_Tv2_y - e3_Tt2_y*h[3]);
+    K[69] = W*(N4*(-e4_Tr1_y + e4_x1_y) + drift4*e4_Tv1_y - e4_Tt1_y*h[3]);
+    K[70] = W*(N4*(-e4_Tr2_y + e4_x2_y) + drift4*e4_Tv2_y - e4_Tt2_y*h[3]);
+    K[71] = -T_t[1]*(W*dl_h[3] + h[3]*part) + T_v[1]*(W*dl_past[3] + drift4*part) + W*(N4*(-l_Tr1_y + l_x1_y) + drift4*l_Tv1_y - h[3]*l_Tt1_y) + (-T_r[1] + rate[1])*(N4*part + W*dl_N4);
+    K[72] = W*(T_v[0]*(-dl_g1[0]*l_rate - dl_g1[0]*s_rate[0] - dl_g2[0]*s_rate[1]) + e1_Tv1_x*turn1_x + e1_Tv1_y*turn1_y - e1_x1_x*g1_x - e1_x1_y*g1_y - g1[0]*rate[0]) + e1_length1;
+    K[73] = W*(T_v[1]*(-dl_g1[0]*l_rate - dl_g1[0]*s_rate[0] - dl_g2[0]*s_rate[1]) + e1_Tv2_x*turn1_x + e1_Tv2_y*turn1_y - e1_x2_x*g1_x - e1_x2_y*g1_y - g1[0]*rate[1]) + e1_length2;
+    K[74] = W*(T_v[0]*(-dl_g1[1]*l_rate - dl_g1[1]*s_rate[0] - dl_g2[1]*s_rate[1]) + e2_Tv1_x*turn1_x + e2_Tv1_y*turn1_y - e2_x1_x*g1_x - e2_x1_y*g1_y - g1[1]*rate[0]) + e2_length1;
+    K[75] = W*(T_v[1]*(-dl_g1[1]*l_rate - dl_g1[1]*s_rate[0] - dl_g2[1]*s_rate[1]) + e2_Tv2_x*turn1_x + e2_Tv2_y*turn1_y - e2_x2_x*g1_x - e2_x2_y*g1_y - g1[1]*rate[1]) + e2_length2;
+    K[76] = W*(T_v[0]*(-dl_g1[2]*l_rate - dl_g1[2]*s_rate[0] - dl_g2[2]*s_rate[1]) + e3_Tv1_x*turn1_x + e3_Tv1_y*turn1_y - e3_x1_x*g1_x - e3_x1_y*g1_y - g1[2]*rate[0]) + e3_length1;
+    K[77] = W*(T_v[1]*(-dl_g1[2]*l_rate - dl_g1[2]*s_rate[0] - dl_g2[2]*s_rate[1]) + e3_Tv2_x*turn1_x + e3_Tv2_y*turn1_y - e3_x2_x*g1_x - e3_x2_y*g1_y - g1[2]*rate[1]) + e3_length2;
+    K[78] = W*(T_v[0]*(-dl_g1[3]*l_rate - dl_g1[3]*s_rate[0] - dl_g2[3]*s_rate[1]) + e4_Tv1_x*turn1_x + e4_Tv1_y*turn1_y - e4_x1_x*g1_x - e4_x1_y*g1_y - g1[3]*rate[0]) + e4_length1;
+    K[79] = W*(T_v[1]*(-dl_g1[3]*l_rate - dl_g1[3]*s_rate[0] - dl_g2[3]*s_rate[1]) + e4_Tv2_x*turn1_x + e4_Tv2_y*turn1_y - e4_x2_x*g1_x - e4_x2_y*g1_y - g1[3]*rate[1]) + e4_length2;
+    K[80] = W*(T_v[0]*dl_turn1_x + T_v[1]*dl_turn1_y - dl_g1_x*rate[0] - dl_g1_y*rate[1] - g1_x*l_x1_x - g1_y*l_x1_y + l_Tv1_x*turn1_x + l_Tv1_y*turn1_y) + l_length1 + part*(T_v[0]*turn1_x + T_v[1]*turn1_y - g1_x*rate[0] - g1_y*rate[1]);
+    K[81] = W*(T_v[0]*(dl_g1[0]*s_rate[0] - dl_g2[0]*l_rate + dl_g2[0]*s_rate[1]) + e1_Tv1_x*turn2_x + e1_Tv1_y*turn2_y - e1_x1_x*g2_x - e1_x1_y*g2_y - g2[0]*rate[0]) - e1_length1;
+    K[82] = W*(T_v[1]*(dl_g1[0]*s_rate[0] - dl_g2[0]*l_rate + dl_g2[0]*s_rate[1]) + e1_Tv2_x*turn2_x + e1_Tv2_y*turn2_y - e1_x2_x*g2_x - e1_x2_y*g2_y - g2[0]*rate[1]) - e1_length2;
+    K[83] = W*(T_v[0]*(dl_g1[1]*s_rate[0] - dl_g2[1]*l_rate + dl_g2[1]*s_rate[1]) + e2_Tv1_x*turn2_x + e2_Tv1_y*turn2_y - e2_x1_x*g2_x - e2_x1_y*g2_y - g2[1]*rate[0]) - e2_length1;
+    K[84] = W*(T_v[1]*(dl_g1[1]*s_rate[0] - dl_g2[1]*l_rate + dl_g2[1]*s_rate[1]) + e2_Tv2_x*turn2_x + e2_Tv2_y*turn2_y - e2_x2_x*g2_x - e2_x2_y*g2_y - g2[1]*rate[1]) - e2_length2;
+    K[85] = W*(T_v[0]*(dl_g1[2]*s_rate[0] - dl_g2[2]*l_rate + dl_g2[2]*s_rate[1]) + e3_Tv1_x*turn2_x + e3_Tv1_y*turn2_y - e3_x1_x*g2_x - e3_x1_y*g2_y - g2[2]*rate[0]) - e3_length1;
+    K[86] = W*(T_v[1]*(dl_g1[2]*s_rate[0] - dl_g2[2]*l_rate + dl_g2[2]*s_rate[1]) + e3_Tv2_x*turn2_x + e3_Tv2_y*turn2_y - e3_x2_x*g2_x - e3_x2_y*g2_y - g2[2]*rate[1]) - e3_length2;
+    K[87] = W*(T_v[0]*(dl_g1[3]*s_rate[0] - dl_g2[3]*l_rate + dl_g2[3]*s_rate[1]) + e4_Tv1_x*turn2_x + e4_Tv1_y*turn2_y - e4_x1_x*g2_x - e4_x1_y*g2_y - g2[3]*rate[0]) - e4_length1;
+    K[88] = W*(T_v[1]*(dl_g1[3]*s_rate[0] - dl_g2[3]*l_rate + dl_g2[3]*s_rate[1]) + e4_Tv2_x*turn2_x + e4_Tv2_y*turn2_y - e4_x2_x*g2_x - e4_x2_y*g2_y - g2[3]*rate[1]) - e4_length2;
+    K[89] = W*(T_v[0]*dl_turn2_x + T_v[1]*dl_turn2_y - dl_g2_x*rate[0] - dl_g2_y*rate[1] - g2_x*l_x1_x - g2_y*l_x1_y + l_Tv1_x*turn2_x + l_Tv1_y*turn2_y) - l_length1 + part*(T_v[0]*turn2_x + T_v[1]*turn2_y - g2_x*rate[0] - g2_y*rate[1]);
 }

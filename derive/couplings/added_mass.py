@@ -15,6 +15,10 @@ Of a partly wet section or body T is that of the wet part c: c T (wetness.py). L
 rate of c in that of the impulse, and the derivative of T by the place. At a vertical entry in still water the slamming
 force is half of that of von Karman (NACA TN 321, 1929), c' m v^2/R, who has the first alone. In his model the other
 half is lost to the jet, which has no part in T: here energy is conserved, and a body that leaves the water regains it.
+
+Along a span of a rope w is that of the material, and a point of quadrature moves past it with the velocity y of a place
+at a constant share of the length l. The kernels give the derivatives p, g and b of c T by v, the slope and the place,
+and the rate (l p)'/l at that point; span_kinetic.py has the generalised forces.
 """
 
 from __future__ import annotations
@@ -36,6 +40,7 @@ POINT = "Lamb, Hydrodynamics, art. 124; Taylor 1928"
 def build(name: str, dim: int) -> list[Program]:
     """Return the kernels in space or in the plane, of the family `name`."""
     return [impulse_of_cable(name, dim), of_cable(name, dim), of_cable_tangent(name, dim), of_cable_step(name, dim),
+            of_span(name, dim), of_span_tangent(name, dim),
             impulse_of_point(name, dim), of_point(name, dim), of_point_tangent(name, dim), of_point_step(name, dim)]
 
 
@@ -60,9 +65,13 @@ def impulse_of_cable(name: str, dim: int) -> Program:
 
 @dataclass(frozen=True)
 class Flow:
-    """The motion of a point and of the fluid there; vectors that are definitions are independent in derivatives."""
+    """The motion of a point and of the fluid there; vectors that are definitions are independent in derivatives.
+
+    y: velocity of the point of quadrature, on a cable v.
+    """
 
     v: np.ndarray
+    y: np.ndarray
     w: np.ndarray
     w_rate: np.ndarray
     material: np.ndarray
@@ -74,10 +83,14 @@ class Flow:
     up: np.ndarray
 
 
-def _input_flow(p: Program, dim: int) -> Flow:
-    """Declare velocity and acceleration of a point, the flow, and the wet part; open a stage of the relative motion."""
+def _input_flow(p: Program, dim: int, drifts: bool = False) -> Flow:
+    """Declare velocity and acceleration of a point, the flow, and the wet part; open a stage of the relative motion.
+
+    drifts: whether the point of quadrature moves past the particle.
+    """
     v = p.input("v", dim, "m/s", "velocity of the point")
-    a = p.input("a", dim, "m/s^2", "acceleration of the point")
+    y = p.input("y", dim, "m/s", "velocity of the point of quadrature") if drifts else v
+    a = p.input("a", dim, "m/s^2", "rate of v at the point of quadrature" if drifts else "acceleration of the point")
     U = p.input("U", dim, "m/s", "velocity of the fluid")
     U_rate = p.input("U_rate", dim, "m/s^2", "rate of U at a fixed place")
     G = p.input("G", (dim, dim), "1/s", "gradient of U: derivatives of a component in a row")
@@ -85,26 +98,33 @@ def _input_flow(p: Program, dim: int) -> Flow:
     up = p.input("up", dim, "1", "vertical")
     p.stage("motion past the fluid")
     w = p.vector("w", v - U)
-    w_rate = p.vector("w_rate", a - U_rate - G.dot(v))
+    w_rate = p.vector("w_rate", a - U_rate - G.dot(y))
     material = p.vector("material", U_rate + G.dot(U))
-    return Flow(v, w, w_rate, material, U, G, wet[0], p.vector("c_place", wet[1] * up), wet[2], up)
+    return Flow(v, y, w, w_rate, material, U, G, wet[0], p.vector("c_place", wet[1] * up), wet[2], up)
 
 
-def _by_motion(p: Program, name: str, values: np.ndarray, flow: Flow) -> tuple[np.ndarray, np.ndarray]:
-    """Return the derivatives of values (n,) by the place and by the velocity of the point -> (n, dim) each.
+def _partial(p: Program, name: str, values: np.ndarray, flow: Flow, motion: np.ndarray | None = None
+             ) -> tuple[np.ndarray, ...]:
+    """Return the derivatives of values (n,) by w, by w', by the place, and by `motion`, v or y, where w is constant.
 
     The gradient of U and the rate of U at a fixed place count as constants: second derivatives of U are neglected.
     """
-    motion = [*flow.w, *flow.w_rate, *flow.material]
+    relative = [*flow.w, *flow.w_rate, *flow.material]
     by_w, by_w_rate, by_material = (
         np.array([p.vector(f"{name}{k + 1}_{key}", row) for k, row in enumerate(jacobian(p, values, vector))])
         for key, vector in (("w", flow.w), ("w_rate", flow.w_rate), ("material", flow.material)))
-    by_v = jacobian(p, values, flow.v, constant=motion)
+    by_itself = np.zeros(0) if motion is None else jacobian(p, values, motion, constant=relative)
     by_part = jacobian(p, values, [flow.part])[:, 0]
     by_slope = jacobian(p, values, flow.part_by_place).dot(flow.up) * flow.curvature
     by_place = (by_material.dot(flow.G) - by_w).dot(flow.G)
-    return (by_place + np.outer(by_part, flow.part_by_place) + np.outer(by_slope, flow.up),
-            by_w - by_w_rate.dot(flow.G) + by_v)
+    by_place = by_place + np.outer(by_part, flow.part_by_place) + np.outer(by_slope, flow.up)
+    return by_w, by_w_rate, by_place, by_itself
+
+
+def _by_motion(p: Program, name: str, values: np.ndarray, flow: Flow) -> tuple[np.ndarray, np.ndarray]:
+    """Return the derivatives of values (n,) by the place and by the velocity of the point -> (n, dim) each."""
+    by_w, by_w_rate, by_place, by_v = _partial(p, name, values, flow, flow.v)
+    return by_place, by_w - by_w_rate.dot(flow.G) + by_v
 
 
 def _forces(p: Program, flow: Flow, impulse: np.ndarray, impulse_rate: np.ndarray) -> tuple[np.ndarray, sp.Expr]:
@@ -113,24 +133,44 @@ def _forces(p: Program, flow: Flow, impulse: np.ndarray, impulse_rate: np.ndarra
     Lagrange's equations of c T for the wet part c: the rate of c p, G' c p, less T times the derivative of c by the
     place; and less the force of the undisturbed fluid on the mass that it displaces.
     """
+    of = _parts(p, flow, impulse, impulse_rate)
+    force = of.rate + of.strained - of.carried - of.energy * flow.part_by_place
+    return p.vector("F", force), of.power(flow)
+
+
+@dataclass(frozen=True)
+class Parts:
+    """Impulse of the wet part and its rate, G' times it, force on the displaced mass, and energy of what is all wet."""
+
+    wet: np.ndarray
+    rate: np.ndarray
+    strained: np.ndarray
+    carried: np.ndarray
+    energy: sp.Expr
+
+    def power(self, flow: Flow) -> sp.Expr:
+        """Return the external power of the fluid."""
+        return self.carried.dot(flow.v) - self.rate.dot(flow.U) - self.strained.dot(flow.y)
+
+
+def _parts(p: Program, flow: Flow, impulse: np.ndarray, impulse_rate: np.ndarray, growth: sp.Expr = sp.S.Zero) -> Parts:
+    """Stage: the parts of the force; growth: l'/l of the length that has the impulse."""
     displaced = p.symbols["displaced"].item()
     p.stage("force on the particle")
     wet = p.vector("P_wet", flow.part * impulse)
-    part_rate = p.define("c_rate", flow.part_by_place.dot(flow.v))
-    rate = p.vector("P_wet_rate", flow.part * impulse_rate + part_rate * impulse)
+    part_rate = p.define("c_rate", flow.part_by_place.dot(flow.y))
+    rate = p.vector("P_wet_rate", flow.part * impulse_rate + part_rate * impulse + growth * wet)
     strained = p.vector("strained", flow.G.T.dot(wet))
     carried = p.vector("carried", p.define("displaced_wet", flow.part * displaced) * flow.material)
-    energy = p.define("T", flow.w.dot(impulse) / 2)
-    force = rate + strained - carried - energy * flow.part_by_place
-    return p.vector("F", force), carried.dot(flow.v) - rate.dot(flow.U) - strained.dot(flow.v)
+    return Parts(wet, rate, strained, carried, p.define("T", flow.w.dot(impulse) / 2))
 
 
-def _cable(p: Program, dim: int) -> tuple[Any, ...]:
-    """Return slope and rate, the flow, and impulse, its rate and the force on the slope of a length that is all wet."""
+def _cable(p: Program, dim: int, drifts: bool = False) -> tuple[Any, ...]:
+    """Return slope and rate, the flow, impulse and its rate of a length that is all wet, and the force on the slope."""
     t, t_rate = p.input("t", dim, "1", "slope r_x of the axis"), p.input("t_rate", dim, "1/s", "its rate")
     m = p.input("m", 2, "kg/m", "added masses of a length of the undeformed cable, across and along")
     p.input("displaced", (), "kg/m", "mass of the fluid that a length displaces")
-    flow = _input_flow(p, dim)
+    flow = _input_flow(p, dim, drifts)
     w, w_rate, normal = flow.w, flow.w_rate, m[0]
     p.stage("tangent and its rate")
     less = p.define("less", m[0] - m[1])
@@ -171,6 +211,52 @@ def of_cable_tangent(name: str, dim: int) -> Program:
         for key, by_motion in zip("rv", _by_motion(p, output, values, flow), strict=True):
             p.output(f"{output}_{key}", by_motion, "SI",
                      f"derivatives of {output} by the {'velocity' if key == 'v' else 'place'} of the point")
+    return p
+
+
+def _span(p: Program, dim: int) -> tuple[Any, ...]:
+    """Return slope and rate, the flow, the derivatives of c T by place, slope and velocity, its value, the rate of the
+    last derivative less the force on the displaced mass, and the external power.
+    """
+    growth = p.input("growth", (), "1/s", "l'/l of the length of the element")
+    t, t_rate, flow, impulse, impulse_rate, on_slope = _cable(p, dim, drifts=True)
+    of = _parts(p, flow, impulse, impulse_rate, growth)
+    by_place = p.vector("b", of.energy * flow.part_by_place - of.strained)
+    rate = p.vector("x", of.rate - of.carried)
+    return t, t_rate, flow, (by_place, on_slope, of.wet), flow.part * of.energy, rate, of.power(flow)
+
+
+def of_span(name: str, dim: int) -> Program:
+    """Return the kernel of the kinetic energy of the fluid along a length of a rope, its derivatives, and the rate of
+    the impulse.
+    """
+    p = Program(f"{name}_inertia_of_span", "kinetic energy of the fluid along a rope, and its derivatives", LENGTH)
+    *_, (by_place, on_slope, impulse), energy, rate, power = _span(p, dim)
+    p.output("T_r", by_place, "N/m", "derivative of c T by the place")
+    p.output("T_t", on_slope, "N", "derivative of c T by the slope")
+    p.output("T_v", impulse, "kg/s", "derivative of c T by the velocity, the impulse")
+    p.output("rate", rate, "N/m", "(l T_v)'/l at the point of quadrature, less the force on the displaced mass")
+    p.output("energy", [energy], "J/m", "c T")
+    p.output("power", [power], "W/m", "external power of the fluid, with T as a kinetic energy")
+    return p
+
+
+def of_span_tangent(name: str, dim: int) -> Program:
+    """Return the kernel of the derivatives of those derivatives, and of the rate."""
+    p = Program(f"{name}_inertia_of_span_tangent",
+                "second derivatives of the kinetic energy of the fluid along a rope, and derivatives of the rate of "
+                "the impulse", f"derivatives of {LENGTH}")
+    t, t_rate, flow, gradient, _, rate, _ = _span(p, dim)
+    p.stage("derivatives")
+    rows = []
+    for key, values in zip("rtv", gradient, strict=True):
+        by_w, _, by_place, _ = _partial(p, f"T_{key}", values, flow)
+        rows.append(np.hstack([by_place, jacobian(p, values, t), by_w]))
+    p.output("second", np.vstack(rows), "SI", "derivatives of T_r, T_t, T_v by place, slope, velocity")
+    by_w, by_w_rate, by_place, by_y = _partial(p, "rate", rate, flow, flow.y)
+    p.output("rate_by", np.hstack([by_place, jacobian(p, rate, t), by_w, jacobian(p, rate, t_rate),
+                                   by_y - by_w_rate.dot(flow.G), by_w_rate]), "SI",
+             "derivatives of the rate by place, slope, velocity, t_rate, y, a")
     return p
 
 

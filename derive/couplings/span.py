@@ -21,7 +21,7 @@ from ..elements import ELEMENTS
 from ..laws import law_traits
 from ..laws.cable.blocks import named_block
 from ..spec import Element, x
-from . import span_force, span_step
+from . import span_force, span_kinetic, span_step
 from .span_inertia import Flow
 
 SPANS = {"cable8p": "engineering_exact_assumed", "cable12": "engineering_exact_assumed"}
@@ -43,7 +43,8 @@ def build(element: Element, law: str) -> list[Program]:
     span = Span(element, law)
     return [span.point(), span.kinetic_energy(), span.inertia(), span.mass_matrix(), span.inertia_tangent(),
             span.weight(), span.energy(), span.elastic_force(), span.elastic_tangent(), span.dissipation(),
-            span.damping_force(), span.damping_tangent(), *span_step.kernels(span), *span_force.build(span)]
+            span.damping_force(), span.damping_tangent(), *span_step.kernels(span), *span_force.build(span),
+            *span_kinetic.build(span)]
 
 
 class Span(span_step.ElasticElement):

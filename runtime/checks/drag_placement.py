@@ -126,10 +126,7 @@ def _check_cable(scene: SceneData, drag: Drag) -> None:
     """Raise SceneError for a drag that its cable does not admit."""
     _refuse(drag, "cable")
     cable = scene.cables[drag.on]
-    _check_added_mass(drag, drag.displaced(cable), "displaced_area, in m²")
-    if isinstance(drag.added_mass, tuple):
-        raise SceneError(drag.where, f'acts on cable "{drag.on}", whose added_mass is one number',
-                         "give that across the cable, and added_mass_tangential along it")
+    _check_added_mass_of_line(drag, cable)
     _check_alone(scene, drag, cable)
     if drag.lift != 0 and cable.dim == 2:
         raise SceneError(drag.where, f'lift of cable "{drag.on}" leaves the plane of its element {cable.element}',
@@ -141,13 +138,11 @@ def _check_cable(scene: SceneData, drag: Drag) -> None:
 def _check_rope(scene: SceneData, drag: Drag, rope: Rope) -> None:
     """Raise SceneError for a drag that its rope does not admit."""
     check_has_mass(rope, drag.where)
-    if drag.added_mass is not None:
-        raise SceneError(drag.where, f'acts on rope "{rope.name}" and has added_mass, which ropes do not have yet',
-                         "leave added_mass out")
     if drag.polar is not None:
         raise SceneError(drag.where, f'acts on rope "{rope.name}", and has a polar, but its sections have no rotation',
                          "give normal and lift")
     _refuse(drag, "rope")
+    _check_added_mass_of_line(drag, rope)
     _check_alone(scene, drag, rope)
     if drag.lift != 0 and rope.dim == 2:
         raise SceneError(drag.where, f'lift of rope "{rope.name}" leaves the plane of its element {rope.element}',
@@ -239,6 +234,14 @@ def _check_added_mass(drag: Drag, displaced: float, name: str) -> None:
     if drag.added_mass is not None and displaced == 0:
         raise SceneError(drag.where, "added_mass is a multiple of the displaced mass, which is zero",
                          f"give {name}")
+
+
+def _check_added_mass_of_line(drag: Drag, line: Cable | Rope) -> None:
+    """Raise SceneError for added mass that a cable or a rope does not take."""
+    _check_added_mass(drag, drag.displaced(line), "displaced_area, in m²")
+    if isinstance(drag.added_mass, tuple):
+        raise SceneError(drag.where, f"acts on {line.where}, whose added_mass is one number",
+                         "give that across the axis, and added_mass_tangential along it")
 
 
 def _refuse(drag: Drag, kind: str) -> None:

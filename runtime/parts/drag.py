@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 OF_CABLE = ("normal", "tangential", "lift", "polar", "chord", "diameter", "displaced_area", "added_mass",
             "added_mass_tangential")
-OF_ROPE = ("normal", "tangential", "lift", "diameter", "displaced_area")
+OF_ROPE = ("normal", "tangential", "lift", "diameter", "displaced_area", "added_mass", "added_mass_tangential")
 OF_BODY = ("area", "coefficient", "lift", "polar", "span", "chord", "at", "volume", "height", "added_mass")
 
 
@@ -64,8 +64,8 @@ class Drag(Part):
     Buoyancy acts at ``at``, not at the middle of the wet part. A heeling body needs several drags; its stiffness is too
     high by its weight times that distance.
 
-    On a rope all but polar and added mass act on its spans, by the velocity of the material. Nothing acts on what lies
-    on sheaves and drums.
+    On a rope all but polar act on its spans, by the velocity of the material. Nothing acts on what lies on sheaves and
+    drums: where material runs onto one, the energy of its added mass returns to the rope.
 
     on: the cable or the rope, all of it, or the body
     fluid: by default all fluids of the scene, which must not overlap

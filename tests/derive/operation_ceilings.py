@@ -244,10 +244,12 @@ CEILINGS = {
     "planar_resistance": {"force": 207},
     "drag": {"along_cable": 370, "lift_along_cable": 341, "on_point": 31, "on_foil": 233, "on_section": 1103,
              "impulse_of_cable": 43, "inertia_of_cable": 211, "inertia_of_cable_tangent": 1606, "inertia_step": 166,
+             "inertia_of_span": 215, "inertia_of_span_tangent": 2017,
              "impulse_of_point": 105, "inertia_of_point": 274, "inertia_of_point_tangent": 1454,
              "inertia_of_point_step": 768, "wet_sphere": 15, "wet_section": 19, "wet_column": 16},
     "planar_drag": {"along_cable": 201, "on_point": 20, "on_foil": 65, "impulse_of_cable": 25, "inertia_of_cable": 125,
-                    "inertia_of_cable_tangent": 662, "inertia_step": 105, "impulse_of_point": 30,
+                    "inertia_of_cable_tangent": 662, "inertia_step": 105, "inertia_of_span": 128,
+                    "inertia_of_span_tangent": 834, "impulse_of_point": 30,
                     "inertia_of_point": 114, "inertia_of_point_tangent": 370,
                     "inertia_of_point_step": 221, "wet_sphere": 15, "wet_section": 19, "wet_column": 16},
     "crossing": {"closest": 54, "contact": 84, "force": 1034, "motion": 112, "stretch": 356, "sticking": 3950,
@@ -263,14 +265,16 @@ CEILINGS = {
         "energy": 238, "elastic_force": 439, "elastic_tangent": 1551, "dissipation": 267, "damping_force": 365,
         "damping_tangent": 2171, "momentum": 113, "momentum_energy": 26, "momentum_step": 740, "elastic_step": 1212,
         "line_force": 84, "line_force_tangent": 661, "stored_force": 54,
-        "stored_force_tangent": 159, "share": 11, "point_tangent": 144
+        "stored_force_tangent": 159, "share": 11, "point_tangent": 144, "motion": 255, "kinetic_force": 303,
+        "kinetic_force_tangent": 3550
     },
     "span_cable12": {
         "point": 148, "kinetic_energy": 199, "inertia": 373, "mass_matrix": 172, "inertia_tangent": 1574, "weight": 79,
         "energy": 295, "elastic_force": 561, "elastic_tangent": 2582, "dissipation": 391, "damping_force": 538,
         "damping_tangent": 4371, "momentum": 169, "momentum_energy": 38, "momentum_step": 977, "elastic_step": 1543,
         "line_force": 116, "line_force_tangent": 1269, "stored_force": 67,
-        "stored_force_tangent": 268, "share": 11, "point_tangent": 188
+        "stored_force_tangent": 268, "share": 11, "point_tangent": 188, "motion": 364, "kinetic_force": 415,
+        "kinetic_force_tangent": 6988
     },
     "planar_rope_point": {"point": 357, "wrench": 776, "discrete_point": 392},
     "rope_point": {"point": 402, "wrench": 844, "discrete_point": 297},

@@ -134,7 +134,6 @@ def test_from_a_file(tmp_path):
 
 
 @pytest.mark.parametrize(("given", "words"), [
-    ({"added_mass": 1.0}, "has added_mass, which ropes do not have yet"),
     ({"polar": fu.Polar(angle=[-np.pi, 0, np.pi], drag=[1, 1, 1], lift=[0, 0, 0]), "normal": 0.0},
      "has a polar, but its sections have no rotation"),
     ({"area": 1.0}, "takes no area"),

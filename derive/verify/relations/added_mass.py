@@ -26,7 +26,8 @@ def _along_cable(s: State, t: Any = 0, j: int = 0, name: str = "") -> Any:
 def added_mass(family: CouplingFamily) -> list[Relation]:
     """Return the relations of impulses, of forces and moments with their derivatives, and of those over a step."""
     return [*_impulses(family.dim), *_forces("inertia_of_cable", family.dim), *_on_slope(family.dim),
-            *_forces("inertia_of_point", family.dim), *_on_body(family.dim), *_cable_over_step(), *_body_over_step()]
+            *_forces("inertia_of_point", family.dim), *_on_body(family.dim), *_along_span(family.dim),
+            *_cable_over_step(), *_body_over_step()]
 
 
 def _impulses(dim: int) -> list[Relation]:
@@ -152,6 +153,58 @@ def _on_body(dim: int) -> list[Relation]:
     return [Relation(kernel, "moment", "minus the derivative of c T by a turn", 1, minus_energy, turns),
             *(Relation(f"{kernel}_tangent", f"{output}_by", f"d{output} by place, velocity, turn, angular velocity", 1,
                        moved(output), 2 * (dim + turns)) for output in ("f", "moment"))]
+
+
+def _along_span(dim: int) -> list[Relation]:
+    """Return the relations of the derivatives of c T, of the rate of l c p at a point that moves, and of their own."""
+    kernel, tangent = "inertia_of_span", "inertia_of_span_tangent"
+
+    def energy(k, s):
+        return k(kernel, s)["energy"]
+
+    def moved(path, name):
+        return lambda k, s, t, j: path(k, {**s, name: s[name] + t * unit(s[name], j)})
+
+    def displaced(path):
+        return lambda k, s, t, j: path(k, _displaced(s, unit(s["v"], j), t))
+
+    def impulse(k, s, t, j):
+        later = _displaced(s, s["y"], t)
+        later |= {"U": later["U"] + t * s["U_rate"], "v": s["v"] + t * s["a"], "t": s["t"] + t * s["t_rate"]}
+        return (1 + t * s["growth"]) * k(kernel, later)["T_v"]
+
+    def carried(s):
+        return s["displaced"] * s["wet"][0] * (s["U_rate"] + s["G"].dot(s["U"]))
+
+    def power(k, s, t, j):
+        found = k(kernel, s)
+        rate = found["rate"] + carried(s)
+        return carried(s).dot(s["v"]) - rate.dot(s["U"]) - found["T_v"].dot(s["G"].dot(s["y"]))
+
+    def gradient(k, s):
+        return np.concatenate([k(kernel, s)[f"T_{key}"] for key in "rtv"])
+
+    def rate(k, s):
+        return k(kernel, s)["rate"]
+
+    def along(path, names):
+        """Return the path along the entries of the place and then of inputs."""
+        def by_entry(k, s, t, j):
+            return (displaced(path) if j < dim else moved(path, names[j // dim - 1]))(k, s, t, j % dim)
+        return by_entry
+
+    return [
+        Relation(kernel, "energy", "c w . M w/2", 0, lambda k, s, t, j: s["wet"][0] * _along_cable(
+            {**s, "w": s["v"] - s["U"]})),
+        Relation(kernel, "T_r", "d c T by the place", 1, displaced(energy), dim),
+        *(Relation(kernel, f"T_{key}", f"d c T by {key}", 1, moved(energy, key), dim) for key in "tv"),
+        Relation(kernel, "rate", "rate of l c p over l, with the force on the displaced mass", 1, impulse,
+                 of=lambda k, s: k(kernel, s)["rate"] + carried(s)),
+        Relation(kernel, "power", "of the displaced fluid, and of U", 0, power),
+        Relation(tangent, "second", "d (T_r, T_t, T_v) by place, slope, velocity", 1, along(gradient, "tv"), 3 * dim),
+        Relation(tangent, "rate_by", "d rate by place, slope, velocity, and their rates", 1,
+                 along(rate, ("t", "v", "t_rate", "y", "a")), 6 * dim),
+    ]
 
 
 def _cable_over_step() -> list[Relation]:

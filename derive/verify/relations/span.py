@@ -28,7 +28,7 @@ def span(family: ElementFamily) -> list[Relation]:
     """Return the relations of a span's kernels."""
     return [*_of_points(family.element), *_of_inertia(family.element), *_of_weight(family.element),
             *_of_elasticity(family), *_of_damping(family), *_of_line_force(family.element),
-            *_of_stored_force(family.element),
+            *_of_stored_force(family.element), *_of_kinetic_force(family.element),
             *_of_momentum(family.element), *_of_elastic_step(family.element)]
 
 
@@ -291,6 +291,63 @@ def _of_stored_force(spec: Element) -> list[Relation]:
         Relation("stored_force_tangent", "K_l", "df/dl", 1, by_last(of_stored["f"])),
         Relation("stored_force_tangent", "K_l", "df_l/de", 1, of_stored["f_l"], n),
         Relation("stored_force_tangent", "K_ll", "df_l/dl", 1, by_last(of_stored["f_l"]))]
+
+
+def _of_kinetic_force(spec: Element) -> list[Relation]:
+    n, dim = spec.n_coordinates, spec.dim
+    of_motion = ("r", "r_S", "velocity"), ("slope_rate", "place_rate", "velocity_rate")
+
+    def along(output: str) -> Callable[..., Any]:
+        return lambda k, s, t, j: k("point", s | moved(s, t))[output]
+
+    def at_point(output: str) -> Callable[..., Any]:
+        return lambda k, s, t, j: k("point", s)[output]
+
+    def changes(k, s):
+        """Return the changes of place, slope and velocity since the first state, and of their rates."""
+        now, then = k("motion", s), k("motion", s["first"])
+        return [np.concatenate([now[name] - then[name] for name in names]) for names in of_motion]
+
+    def energy(k, s):
+        """Return the energy of the length, quadratic about the first state."""
+        gradient, (z, _) = np.concatenate([s[f"T_{key}"] for key in "rtv"]), changes(k, s)
+        return s["part"] * s["l"] * (s["T"] + gradient.dot(z) + z.dot(s["second"].dot(z)) / 2)
+
+    def by_coordinate(k, s, t, j):
+        """Return minus the energy, displaced by a coordinate."""
+        step = {"e": s["e"] + t * unit(s["e"], j)} if j < n else {"l": s["l"] + t * (2 * (j - n) - 1)}
+        return -energy(k, s | step | {"first": s})
+
+    def by_rate_of(k, s, j):
+        """Return the derivative of the velocity by a rate: the difference over a unit, as it is linear."""
+        name, at = ("v", j) if j < n else ("s_rate", j - n)
+        return k("point", s, **{name: s[name] + unit(s[name], at)})["velocity"] - k("point", s)["velocity"]
+
+    def lagrange(k, s, t, j):
+        """Return d/dt of that derivative times l T_v, whose rate is l `rate`, plus minus the energy."""
+        now = s | moved(s, t)
+        momentum = s["part"] * (s["l"] * s["T_v"] + t * s["l"] * s["rate"])
+        return by_rate_of(k, now, j).dot(momentum) + by_coordinate(k, s, t, j)
+
+    def acting(k, s):
+        """Return the forces at a state by the derivatives at the first one."""
+        z, rates = changes(k, s)
+        growth = [each["s_rate"].dot(np.array([-1, 1])) / each["l"] for each in (s, s["first"])]
+        gradient = np.concatenate([s[f"T_{key}"] for key in "rtv"]) + s["second"].dot(z)
+        rate = s["rate"] + s["rate_by"].dot(np.concatenate([z, rates])) + s["T_v"] * (growth[0] - growth[1])
+        energy_of_length = energy(k, s) / (s["part"] * s["l"])
+        parts = {f"T_{key}": gradient[i * dim : (i + 1) * dim] for i, key in enumerate("rtv")}
+        return both("kinetic_force")(k, s | parts | {"rate": rate, "T": energy_of_length})
+
+    return [
+        *(Relation("motion", name, "of the material point", 0, at_point(name)) for name in of_motion[0]),
+        *(Relation("motion", name, f"rate of {of} at a constant share", 1, along(of))
+          for name, of in zip(of_motion[1], ("r_S", "r", "velocity"), strict=True)),
+        Relation("motion", "growth", "l'/l", 0, lambda k, s, t, j: s["s_rate"].dot(np.array([-1, 1])) / s["l"]),
+        Relation("kinetic_force", "f", "d/dt dT/dv - dT/de", 1, lagrange, n),
+        Relation("kinetic_force", "f_s", "d/dt dT/ds' - dT/ds", 1, lambda k, s, t, j: lagrange(k, s, t, n + j), ENDS),
+        Relation("kinetic_force_tangent", "D", "df by rates", 1, _from_state(by_rate(acting, n)), n + ENDS),
+        Relation("kinetic_force_tangent", "K", "df by e and l", 1, _from_state(by_configuration(acting, n)), n + 1)]
 
 
 # --- over a step that conserves energy --------------------------------------------------------------------------

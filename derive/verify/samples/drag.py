@@ -29,7 +29,7 @@ def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) 
     theta = random.normal(size=3 if dim == 3 else 1)
     one, across = np.eye(dim), swung_axes(theta / 2, np.eye(dim))
     return sampled | {"theta": theta, "A_next": np.linalg.solve(one - across, (one + across) @ axes),
-                      "turning": random.normal(size=dim)}
+                      "turning": random.normal(size=dim), "y": random.normal(size=dim), "growth": np.float64(0.4)}
 
 
 def _section(random: np.random.Generator) -> State:

@@ -27,7 +27,8 @@ def sample(family: ElementFamily, exact: Numbers, random: np.random.Generator) -
     state |= {"h": np.float64(0.1), "s_change": change, "l_next": state["l"] + change[1] - change[0],
               "e_change": state["e_next"] - state["e"], "P": random.normal(size=(span_step.POINTS, element.dim)),
               "U_m": random.uniform(1, 2, 2), "U_b": random.uniform(1, 2, 2)}
-    return state | of_force(element, state, random.spawn(1)[0]) | {
+    state |= of_force(element, state, random.spawn(1)[0]) | of_energy(element, random.spawn(1)[0])
+    return state | {
         "A": state["S"], "rho": np.float64(rho), "a": random.normal(size=state["v"].shape),
         "s_rate": random.normal(size=2), "s_acc": random.normal(size=2), "xi": np.float64(random.uniform(0.2, 0.8))}
 
@@ -41,6 +42,14 @@ def of_force(element: Element, state: State, random: np.random.Generator) -> Sta
         "F": random.normal(size=element.dim), "part": np.float64(random.uniform(0.2, 0.4)),
         "ends": np.array([first, first + float(state["l"])]),
         "at": np.float64(first + random.uniform(0.2, 0.8) * float(state["l"]))}
+
+
+def of_energy(element: Element, random: np.random.Generator) -> State:
+    """Return a kinetic energy of a length with its derivatives, at a point with a weight."""
+    dim = element.dim
+    half = random.normal(size=(3 * dim, 3 * dim))
+    return {**{f"T_{key}": random.normal(size=dim) for key in "rtv"}, "rate": random.normal(size=dim),
+            "T": np.float64(random.normal()), "second": half + half.T, "rate_by": random.normal(size=(dim, 6 * dim))}
 
 
 def at_rest(family: ElementFamily, exact: Numbers, first: State) -> State:

@@ -1,4 +1,5 @@
-/* Inertia of the fluid around cables and bodies (derive/couplings/added_mass.py): the kinetic energy T = c w . M w/2 of
+/* Inertia of the fluid around cables and bodies (derive/couplings/added_mass.py), along spans of ropes in
+ * couplings/fluid/span_added_mass.c: the kinetic energy T = c w . M w/2 of
  * the added mass M and the wet part c at the velocity w = v - U relative to the fluid, and the force on the displaced
  * mass in an accelerated fluid.
  *
@@ -167,6 +168,7 @@ void fu_added_mass_forces(const fu_model *model, const fu_drag *drag, const fu_s
 {
     fu_drag_loop loop = {.t = state->t, .sums = sums};
     if (drag->cable >= 0) fu_drag_visit(model, drag, state->q, state->v, a, add_at, &loop, 0);
+    else if (drag->on.kernel) fu_span_added_mass_forces(model, drag, state, a, sums);
     else on_body(model, drag, state, a, sums);
 }
 
@@ -175,5 +177,6 @@ void fu_added_mass_tangent(const fu_model *model, const fu_drag *drag, const fu_
 {
     fu_drag_loop loop = {.t = state->t, .has_matrix = 1, .weights = weights};
     if (drag->cable >= 0) fu_drag_visit(model, drag, state->q, state->v, a, tangent_at, &loop, system);
+    else if (drag->on.kernel) fu_span_added_mass_tangent(model, drag, state, a, weights, system);
     else tangent_of_body(model, drag, state, a, psi, weights, system);
 }

@@ -51,6 +51,10 @@ void fu_added_mass_force(const fu_model *model, const fu_coupling *coupling, con
         fu_drag_visit(model, drag, q, a, 0, add_force, &loop, 0);
         return;
     }
+    if (drag->on.kernel) {
+        fu_span_added_mass_force(model, drag, q, a, f);
+        return;
+    }
     double p[3], M[9];
     fu_attachment_state end;
     fu_drag_place at;
@@ -78,6 +82,10 @@ void fu_added_mass_matrix(const fu_model *model, const fu_coupling *coupling, co
     if (drag->cable >= 0) {
         fu_drag_loop loop = {.has_matrix = 1, .weights = {.stiffness = scale}};
         fu_drag_visit(model, drag, q, model->zero, 0, add_mass, &loop, system);
+        return;
+    }
+    if (drag->on.kernel) {
+        fu_span_added_mass_matrix(model, drag, q, scale, system);
         return;
     }
     double p[3], M[9], changes[3 * FU_ATTACHMENT_COORDINATES] = {0.0};
@@ -119,6 +127,7 @@ double fu_added_mass_kinetic_energy(const fu_model *model, const fu_coupling *co
         fu_drag_visit(model, drag, q, v, 0, add_energy, &loop, 0);
         return loop.energy;
     }
+    if (drag->on.kernel) return fu_span_added_mass_kinetic_energy(model, drag, t, q, v, past_fluid);
     fu_attachment_state end;
     fu_drag_place at;
     place_on_body(model, drag, q, v, &end, &at);

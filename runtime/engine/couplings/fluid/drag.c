@@ -242,6 +242,12 @@ static double step_dissipation(const fu_model *model, const fu_coupling *couplin
     return at->h * power.dissipated;
 }
 
+/* Added mass of ropes has no equations over a step that conserves energy. */
+static int has_step(const fu_coupling *coupling)
+{
+    return !(coupling->has_inertia && ((const fu_drag *)coupling)->on.kernel);
+}
+
 static double step_work(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
 {
     fu_drag_powers power = {0.0, 0.0};
@@ -339,6 +345,7 @@ const fu_coupling_type fu_drag_type = {
     .step_residual = step_residual,
     .step_tangent = step_tangent,
     .step_dissipation = step_dissipation,
+    .has_step = has_step,
     .force = force,
     .dissipation = dissipation,
     .outputs = outputs,

@@ -200,6 +200,17 @@ void fu_add_span_drag(const fu_model *model, const fu_drag *drag, const fu_state
 void fu_add_span_drag_matrix(const fu_model *model, const fu_drag *drag, const fu_state *state, fu_weights weights,
                              fu_system *system);
 
+/* couplings/fluid/span_added_mass.c: the same as of cables, below, along a span of a rope. */
+void fu_span_added_mass_forces(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
+                               const fu_drag_sums *sums);
+void fu_span_added_mass_tangent(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
+                                fu_weights weights, fu_system *system);
+void fu_span_added_mass_force(const fu_model *model, const fu_drag *drag, const double *q, const double *a, double *f);
+void fu_span_added_mass_matrix(const fu_model *model, const fu_drag *drag, const double *q, double scale,
+                               fu_system *system);
+double fu_span_added_mass_kinetic_energy(const fu_model *model, const fu_drag *drag, double t, const double *q,
+                                         const double *v, int past_fluid);
+
 /* couplings/fluid/section_moment.c: forces on slope and chord of a beam's foil at a point of quadrature, their power,
  * and their derivatives. */
 double fu_section_power(const fu_drag_place *at, const fu_drag_action *action);
