@@ -1506,6 +1506,26 @@ typedef void fu_sheave_coulomb_off_motion_kernel(fu_real sense, fu_real R, const
 /* angles2 2, lengths1 1, span_slope 2, angles2_rate 2, lengths1_rate 1, span_slope_rate 2, Q_d 1 */
 fu_sheave_coulomb_off_motion_kernel planar_sheave_coulomb_off_motion;
 
+typedef void fu_sheave_coulomb_short_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, const fu_real *angles2, const fu_real *slope, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *numbers, fu_real *row, fu_real *column);
+/* Coulomb friction at a point between a span and a span: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2]; mu
+ * [1]; angles2 [rad]; slope [1]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s] -> numbers [m/s, N];
+ * row [m, 1]; column [m, 1] */
+/* A 2, g 2, angles2 2, slope 2, span_slope 2, numbers 2, row 3, column 3 */
+fu_sheave_coulomb_short_kernel planar_sheave_coulomb_short;
+
+typedef void fu_sheave_coulomb_short_tangent_kernel(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, const fu_real *angles2, const fu_real *slope, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real held, fu_real direction, fu_real *K, fu_real *D);
+/* derivatives of Coulomb friction between a span and a span: A [N, N m^2]; sense [1]; rho [kg/m]; R [m]; g [m/s^2];
+ * mu [1]; angles2 [rad]; slope [1]; span_slope [1]; angle_rate [rad/s]; spin [rad/s]; flow [m/s]; held [N];
+ * direction [1] -> K [SI]; D [SI] */
+/* A 2, g 2, angles2 2, slope 2, span_slope 2, K 3x6, D 3x3 */
+fu_sheave_coulomb_short_tangent_kernel planar_sheave_coulomb_short_tangent;
+
+typedef void fu_sheave_coulomb_short_motion_kernel(fu_real sense, fu_real R, const fu_real *slope, const fu_real *span_slope, const fu_real *slope_rate, const fu_real *span_slope_rate, fu_real flow, fu_real angle_acc, fu_real *Q_d);
+/* rate of w at zero accelerations between a span and a span: sense [1]; R [m]; slope [1]; span_slope [1]; slope_rate
+ * [1/s]; span_slope_rate [1/s]; flow [m/s]; angle_acc [rad/s^2] -> Q_d [m/s^2] */
+/* slope 2, span_slope 2, slope_rate 2, span_slope_rate 2, Q_d 1 */
+fu_sheave_coulomb_short_motion_kernel planar_sheave_coulomb_short_motion;
+
 typedef void fu_sheave_short_wrap_kernel(const fu_real *A, fu_real sense, fu_real R, const fu_real *phi, const fu_real *slope, const fu_real *span_slope, fu_real l, fu_real tension, fu_real *h, fu_real *U, fu_real *J, fu_real *F, fu_real *K);
 /* condition and elastic energy of a short wrap, and their derivatives: A [N, N m^2]; sense [1]; R [m]; phi [rad];
  * slope [1]; span_slope [1]; l [m]; tension [N] -> h [m]; U [J]; J [m, m, 1]; F [N m, N]; K [N m, N] */
@@ -2376,6 +2396,9 @@ typedef struct {
     fu_sheave_coulomb_off_kernel *coulomb_off;
     fu_sheave_coulomb_off_tangent_kernel *coulomb_off_tangent;
     fu_sheave_coulomb_off_motion_kernel *coulomb_off_motion;
+    fu_sheave_coulomb_short_kernel *coulomb_short;
+    fu_sheave_coulomb_short_tangent_kernel *coulomb_short_tangent;
+    fu_sheave_coulomb_short_motion_kernel *coulomb_short_motion;
     fu_sheave_short_wrap_kernel *short_wrap;
     fu_sheave_short_wrap_motion_kernel *short_wrap_motion;
     fu_sheave_winding_kernel *winding;

@@ -167,32 +167,49 @@
         d_span_slope_on_psi[point] = -(R*d_span_slope_f[point]*sense); \
         d_span_slope_on_s[point] = -d_span_slope_f[point]*mean_stretch - d_span_slope_mean_stretch[point]*f;)
 
-/* part of derivatives: of planar_sheave_coulomb_tangent and 2 more */
+/* part of derivatives: of planar_sheave_friction_short_tangent and 1 more */
 #define PLANAR_SHEAVE_PART_OF_DERIVATIVES_12 \
+    const fu_real \
+        d_angles20_outwards = R*(-0.5*g[0]*FU_SIN(0.5*angles2[0] + 0.5*angles2[1]) + 0.5*g[1]*FU_COS(0.5*angles2[0] + 0.5*angles2[1])), \
+        d_angles20_P = -(d_angles20_outwards*drawn_mass), \
+        d_angles20_angle = (FU_REAL(sense*(-angles2[0] + angles2[1])) < 0.0 ? 0.0 : -sense), \
+        d_angles20_decay = -(d_angles20_angle*mu*FU_EXP(-(angle*mu)));
+
+/* part of derivatives: of planar_sheave_friction_short_tangent and 1 more */
+#define PLANAR_SHEAVE_PART_OF_DERIVATIVES_13 \
+    const fu_real \
+        d_angles21_outwards = R*(-0.5*g[0]*FU_SIN(0.5*angles2[0] + 0.5*angles2[1]) + 0.5*g[1]*FU_COS(0.5*angles2[0] + 0.5*angles2[1])), \
+        d_angles21_P = -(d_angles21_outwards*drawn_mass), \
+        d_angles21_angle = (FU_REAL(sense*(-angles2[0] + angles2[1])) < 0.0 ? 0.0 : sense), \
+        d_angles21_decay = -(d_angles21_angle*mu*FU_EXP(-(angle*mu)));
+
+/* part of outputs: of planar_sheave_friction_short_tangent and 1 more */
+#define PLANAR_SHEAVE_PART_OF_OUTPUTS_2 \
+    K[2] = d_slope_on_phi[0]; \
+    K[3] = d_slope_on_phi[1]; \
+    K[4] = d_span_slope_on_phi[0]; \
+    K[5] = d_span_slope_on_phi[1]; \
+    K[6] = d_angles20_on_psi; \
+    K[7] = d_angles21_on_psi; \
+    K[8] = d_slope_on_psi[0]; \
+    K[9] = d_slope_on_psi[1]; \
+    K[10] = d_span_slope_on_psi[0]; \
+    K[11] = d_span_slope_on_psi[1]; \
+    K[12] = d_angles20_on_s; \
+    K[13] = d_angles21_on_s; \
+    K[14] = d_slope_on_s[0]; \
+    K[15] = d_slope_on_s[1]; \
+    K[16] = d_span_slope_on_s[0]; \
+    K[17] = d_span_slope_on_s[1];
+
+/* part of derivatives: of planar_sheave_coulomb_tangent and 3 more */
+#define PLANAR_SHEAVE_PART_OF_DERIVATIVES_14 \
     const fu_real \
         d_angle_rate_f = d_angle_rate_P*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0), \
         d_angle_rate_f_all = d_angle_rate_f*direction, \
         d_angle_rate_on_phi = R*d_angle_rate_f_all*sense, \
         d_angle_rate_on_psi = -(R*d_angle_rate_f_all*sense), \
         d_angle_rate_on_s = -(d_angle_rate_f_all*mean_stretch);
-
-/* part of derivatives: of planar_sheave_coulomb_on_tangent and 1 more */
-#define PLANAR_SHEAVE_PART_OF_DERIVATIVES_13 \
-    const fu_real \
-        d_angles20_f = d_angles20_P*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0) + d_angles20_share*(FU_REAL(P) < 0.0 ? 0.0 : P), \
-        d_angles20_f_all = d_angles20_f*direction, \
-        d_angles20_on_phi = R*d_angles20_f_all*sense, \
-        d_angles20_on_psi = -(R*d_angles20_f_all*sense), \
-        d_angles20_on_s = -d_angles20_f_all*mean_stretch - d_angles20_mean_stretch*f_all;
-
-/* part of derivatives: of planar_sheave_coulomb_on_tangent and 1 more */
-#define PLANAR_SHEAVE_PART_OF_DERIVATIVES_14 \
-    const fu_real \
-        d_angles21_f = d_angles21_P*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0) + d_angles21_share*(FU_REAL(P) < 0.0 ? 0.0 : P), \
-        d_angles21_f_all = d_angles21_f*direction, \
-        d_angles21_on_phi = R*d_angles21_f_all*sense, \
-        d_angles21_on_psi = -(R*d_angles21_f_all*sense), \
-        d_angles21_on_s = -d_angles21_f_all*mean_stretch - d_angles21_mean_stretch*f_all;
 
 /* part of derivatives: of planar_sheave_coulomb_on_tangent and 1 more */
 #define PLANAR_SHEAVE_PART_OF_DERIVATIVES_15 \
@@ -203,8 +220,24 @@
         d_lengths10_on_psi = -(R*d_lengths10_f_all*sense), \
         d_lengths10_on_s = -d_lengths10_f_all*mean_stretch - d_lengths10_mean_stretch*f_all;
 
+/* part of derivatives: of planar_sheave_coulomb_off_tangent and 1 more */
+#define PLANAR_SHEAVE_PART_OF_DERIVATIVES_16 \
+    FU_EACH(point, 2, \
+        d_span_slope_stretch_behind[point] = span_slope[point]/stretch_behind; \
+        d_span_slope_T_behind[point] = A[0]*d_span_slope_stretch_behind[point]; \
+        d_span_slope_mean_stretch[point] = 0.5*d_span_slope_stretch_behind[point]; \
+        d_span_slope_inv_mean_stretch[point] = -(d_span_slope_mean_stretch[point]*inv_mean_stretch*inv_mean_stretch); \
+        d_span_slope_drawn_mass[point] = 2.0*d_span_slope_inv_mean_stretch[point]*rho; \
+        d_span_slope_speed[point] = -(d_span_slope_mean_stretch[point]*flow); \
+        d_span_slope_P[point] = d_span_slope_T_behind[point] + d_span_slope_drawn_mass[point]*(-outwards - speed*speed) - 2.0*d_span_slope_speed[point]*drawn_mass*speed; \
+        d_span_slope_f[point] = d_span_slope_P[point]*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0); \
+        d_span_slope_f_all[point] = d_span_slope_f[point]*direction; \
+        d_span_slope_on_phi[point] = R*d_span_slope_f_all[point]*sense; \
+        d_span_slope_on_psi[point] = -(R*d_span_slope_f_all[point]*sense); \
+        d_span_slope_on_s[point] = -d_span_slope_f_all[point]*mean_stretch - d_span_slope_mean_stretch[point]*f_all;)
+
 /* part of outputs: of planar_sheave_friction_on_tangent and 3 more */
-#define PLANAR_SHEAVE_PART_OF_OUTPUTS_2 \
+#define PLANAR_SHEAVE_PART_OF_OUTPUTS_3 \
     K[2] = d_lengths10_on_phi; \
     K[3] = d_span_slope_on_phi[0]; \
     K[4] = d_span_slope_on_phi[1]; \
@@ -307,7 +340,7 @@
 #define PLANAR_SHEAVE_OUTPUTS \
     K[0] = d_angles20_on_phi; \
     K[1] = d_angles21_on_phi; \
-    PLANAR_SHEAVE_PART_OF_OUTPUTS_2 \
+    PLANAR_SHEAVE_PART_OF_OUTPUTS_3 \
     D[0] = d_angle_rate_on_phi; \
     D[1] = d_spin_on_phi; \
     D[2] = d_flow_on_phi; \
@@ -339,7 +372,7 @@
         inv_share = 1.0/one_more, \
         share = inv_share*(-decay + 1.0);
 
-/* both sides: of planar_sheave_friction_short and 1 more */
+/* both sides: of planar_sheave_friction_short and 3 more */
 #define PLANAR_SHEAVE_BOTH_SIDES_3 \
     const fu_real \
         stretch_before = FU_SQRT(slope[0]*slope[0] + slope[1]*slope[1]), \
@@ -348,7 +381,7 @@
         T_behind = A[0]*(stretch_behind - 1.0), \
         mean_stretch = 0.5*stretch_before + 0.5*stretch_behind;
 
-/* limit: of planar_sheave_friction_short and 1 more */
+/* limit: of planar_sheave_friction_short and 3 more */
 #define PLANAR_SHEAVE_LIMIT_4 \
     const fu_real \
         outwards = R*(g[0]*FU_COS(0.5*angles2[0] + 0.5*angles2[1]) + g[1]*FU_SIN(0.5*angles2[0] + 0.5*angles2[1])), \
@@ -365,7 +398,7 @@
 #define PLANAR_SHEAVE_OUTPUTS_2 \
     K[0] = d_angles20_on_phi; \
     K[1] = d_angles21_on_phi; \
-    PLANAR_SHEAVE_PART_OF_OUTPUTS_2 \
+    PLANAR_SHEAVE_PART_OF_OUTPUTS_3 \
     D[0] = d_angle_rate_on_phi; \
     D[1] = 0.0; \
     D[2] = d_flow_on_phi; \
@@ -1924,21 +1957,16 @@ void planar_sheave_friction_short_tangent(const fu_real *A, fu_real sense, fu_re
         d_span_slope_inv_mean_stretch[2], d_span_slope_drawn_mass[2], d_span_slope_speed[2], d_span_slope_P[2],
         d_span_slope_source[2], d_span_slope_w[2], d_span_slope_len_w[2], d_span_slope_inv_w[2], d_span_slope_smooth[2],
         d_span_slope_f[2], d_span_slope_on_phi[2], d_span_slope_on_psi[2], d_span_slope_on_s[2];
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_12
     const fu_real
-        d_angles20_outwards = R*(-0.5*g[0]*FU_SIN(0.5*angles2[0] + 0.5*angles2[1]) + 0.5*g[1]*FU_COS(0.5*angles2[0] + 0.5*angles2[1])),
-        d_angles20_P = -(d_angles20_outwards*drawn_mass),
-        d_angles20_angle = (FU_REAL(sense*(-angles2[0] + angles2[1])) < 0.0 ? 0.0 : -sense),
-        d_angles20_decay = -(d_angles20_angle*mu*FU_EXP(-(angle*mu))),
         d_angles20_inv_share = -(d_angles20_decay*inv_share*inv_share),
         d_angles20_share = -d_angles20_decay*inv_share + d_angles20_inv_share*(-decay + 1.0),
         d_angles20_f = d_angles20_P*share*smooth*(FU_REAL(P) < 0.0 ? 0.0 : 1.0) + d_angles20_share*smooth*(FU_REAL(P) < 0.0 ? 0.0 : P),
         d_angles20_on_phi = R*d_angles20_f*sense,
         d_angles20_on_psi = -(R*d_angles20_f*sense),
-        d_angles20_on_s = -(d_angles20_f*mean_stretch),
-        d_angles21_outwards = R*(-0.5*g[0]*FU_SIN(0.5*angles2[0] + 0.5*angles2[1]) + 0.5*g[1]*FU_COS(0.5*angles2[0] + 0.5*angles2[1])),
-        d_angles21_P = -(d_angles21_outwards*drawn_mass),
-        d_angles21_angle = (FU_REAL(sense*(-angles2[0] + angles2[1])) < 0.0 ? 0.0 : sense),
-        d_angles21_decay = -(d_angles21_angle*mu*FU_EXP(-(angle*mu))),
+        d_angles20_on_s = -(d_angles20_f*mean_stretch);
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_13
+    const fu_real
         d_angles21_inv_share = -(d_angles21_decay*inv_share*inv_share),
         d_angles21_share = -d_angles21_decay*inv_share + d_angles21_inv_share*(-decay + 1.0),
         d_angles21_f = d_angles21_P*share*smooth*(FU_REAL(P) < 0.0 ? 0.0 : 1.0) + d_angles21_share*smooth*(FU_REAL(P) < 0.0 ? 0.0 : P),
@@ -1974,22 +2002,7 @@ void planar_sheave_friction_short_tangent(const fu_real *A, fu_real sense, fu_re
     /* outputs */
     K[0] = d_angles20_on_phi;
     K[1] = d_angles21_on_phi;
-    K[2] = d_slope_on_phi[0];
-    K[3] = d_slope_on_phi[1];
-    K[4] = d_span_slope_on_phi[0];
-    K[5] = d_span_slope_on_phi[1];
-    K[6] = d_angles20_on_psi;
-    K[7] = d_angles21_on_psi;
-    K[8] = d_slope_on_psi[0];
-    K[9] = d_slope_on_psi[1];
-    K[10] = d_span_slope_on_psi[0];
-    K[11] = d_span_slope_on_psi[1];
-    K[12] = d_angles20_on_s;
-    K[13] = d_angles21_on_s;
-    K[14] = d_slope_on_s[0];
-    K[15] = d_slope_on_s[1];
-    K[16] = d_span_slope_on_s[0];
-    K[17] = d_span_slope_on_s[1];
+    PLANAR_SHEAVE_PART_OF_OUTPUTS_2
     D[0] = d_angle_rate_on_phi;
     D[1] = d_spin_on_phi;
     D[2] = d_flow_on_phi;
@@ -2096,7 +2109,7 @@ void planar_sheave_coulomb_tangent(const fu_real *A, fu_real sense, fu_real rho,
         d_lengths21_on_s = -d_lengths21_f_all*mean_stretch - d_lengths21_mean_stretch*f_all,
         d_angle_rate_groove = R*sense,
         d_angle_rate_P = -(2.0*d_angle_rate_groove*drawn_mass*speed);
-    PLANAR_SHEAVE_PART_OF_DERIVATIVES_12
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_14
     const fu_real
         d_flow_speed = -mean_stretch,
         d_flow_P = -(2.0*d_flow_speed*drawn_mass*speed),
@@ -2187,9 +2200,12 @@ void planar_sheave_coulomb_on_tangent(const fu_real *A, fu_real sense, fu_real r
         d_angles20_P = d_angles20_T_behind + d_angles20_drawn_mass*(-outwards - speed*speed) - d_angles20_outwards*drawn_mass - 2.0*d_angles20_speed*drawn_mass*speed,
         d_angles20_decay = 0.5*mu*sense*FU_EXP(-(0.5*mu*sense*(-angles2[0] + angles2[1]))),
         d_angles20_inv_share = -(d_angles20_decay*inv_share*inv_share),
-        d_angles20_share = -d_angles20_decay*inv_share + d_angles20_inv_share*(-decay + 1.0);
-    PLANAR_SHEAVE_PART_OF_DERIVATIVES_13
-    const fu_real
+        d_angles20_share = -d_angles20_decay*inv_share + d_angles20_inv_share*(-decay + 1.0),
+        d_angles20_f = d_angles20_P*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0) + d_angles20_share*(FU_REAL(P) < 0.0 ? 0.0 : P),
+        d_angles20_f_all = d_angles20_f*direction,
+        d_angles20_on_phi = R*d_angles20_f_all*sense,
+        d_angles20_on_psi = -(R*d_angles20_f_all*sense),
+        d_angles20_on_s = -d_angles20_f_all*mean_stretch - d_angles20_mean_stretch*f_all,
         d_angles21_stretch_behind = R*sense/lengths1[0],
         d_angles21_T_behind = A[0]*d_angles21_stretch_behind,
         d_angles21_mean_stretch = 0.5*d_angles21_stretch_behind,
@@ -2199,9 +2215,12 @@ void planar_sheave_coulomb_on_tangent(const fu_real *A, fu_real sense, fu_real r
         d_angles21_P = d_angles21_T_behind + d_angles21_drawn_mass*(-outwards - speed*speed) - 2.0*d_angles21_speed*drawn_mass*speed,
         d_angles21_decay = -(0.5*mu*sense*FU_EXP(-(0.5*mu*sense*(-angles2[0] + angles2[1])))),
         d_angles21_inv_share = -(d_angles21_decay*inv_share*inv_share),
-        d_angles21_share = -d_angles21_decay*inv_share + d_angles21_inv_share*(-decay + 1.0);
-    PLANAR_SHEAVE_PART_OF_DERIVATIVES_14
-    const fu_real
+        d_angles21_share = -d_angles21_decay*inv_share + d_angles21_inv_share*(-decay + 1.0),
+        d_angles21_f = d_angles21_P*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0) + d_angles21_share*(FU_REAL(P) < 0.0 ? 0.0 : P),
+        d_angles21_f_all = d_angles21_f*direction,
+        d_angles21_on_phi = R*d_angles21_f_all*sense,
+        d_angles21_on_psi = -(R*d_angles21_f_all*sense),
+        d_angles21_on_s = -d_angles21_f_all*mean_stretch - d_angles21_mean_stretch*f_all,
         d_lengths10_stretch_behind = -(R*sense*(-angles2[0] + angles2[1])/(lengths1[0]*lengths1[0])),
         d_lengths10_T_behind = A[0]*d_lengths10_stretch_behind,
         d_lengths10_mean_stretch = 0.5*d_lengths10_stretch_behind,
@@ -2226,7 +2245,7 @@ void planar_sheave_coulomb_on_tangent(const fu_real *A, fu_real sense, fu_real r
     const fu_real
         d_angle_rate_groove = R*sense,
         d_angle_rate_P = -(2.0*d_angle_rate_groove*drawn_mass*speed);
-    PLANAR_SHEAVE_PART_OF_DERIVATIVES_12
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_14
     const fu_real
         d_flow_speed = -mean_stretch,
         d_flow_P = -(2.0*d_flow_speed*drawn_mass*speed),
@@ -2306,9 +2325,12 @@ void planar_sheave_coulomb_off_tangent(const fu_real *A, fu_real sense, fu_real 
         d_angles20_P = d_angles20_T_before + d_angles20_drawn_mass*(-outwards - speed*speed) - 2.0*d_angles20_speed*drawn_mass*speed,
         d_angles20_decay = 0.5*mu*sense*FU_EXP(-(0.5*mu*sense*(-angles2[0] + angles2[1]))),
         d_angles20_inv_share = -(d_angles20_decay*inv_share*inv_share),
-        d_angles20_share = -d_angles20_decay*inv_share + d_angles20_inv_share*(-decay + 1.0);
-    PLANAR_SHEAVE_PART_OF_DERIVATIVES_13
-    const fu_real
+        d_angles20_share = -d_angles20_decay*inv_share + d_angles20_inv_share*(-decay + 1.0),
+        d_angles20_f = d_angles20_P*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0) + d_angles20_share*(FU_REAL(P) < 0.0 ? 0.0 : P),
+        d_angles20_f_all = d_angles20_f*direction,
+        d_angles20_on_phi = R*d_angles20_f_all*sense,
+        d_angles20_on_psi = -(R*d_angles20_f_all*sense),
+        d_angles20_on_s = -d_angles20_f_all*mean_stretch - d_angles20_mean_stretch*f_all,
         d_angles21_stretch_before = R*sense/lengths1[0],
         d_angles21_T_before = A[0]*d_angles21_stretch_before,
         d_angles21_mean_stretch = 0.5*d_angles21_stretch_before,
@@ -2319,9 +2341,12 @@ void planar_sheave_coulomb_off_tangent(const fu_real *A, fu_real sense, fu_real 
         d_angles21_P = d_angles21_T_before + d_angles21_drawn_mass*(-outwards - speed*speed) - d_angles21_outwards*drawn_mass - 2.0*d_angles21_speed*drawn_mass*speed,
         d_angles21_decay = -(0.5*mu*sense*FU_EXP(-(0.5*mu*sense*(-angles2[0] + angles2[1])))),
         d_angles21_inv_share = -(d_angles21_decay*inv_share*inv_share),
-        d_angles21_share = -d_angles21_decay*inv_share + d_angles21_inv_share*(-decay + 1.0);
-    PLANAR_SHEAVE_PART_OF_DERIVATIVES_14
-    const fu_real
+        d_angles21_share = -d_angles21_decay*inv_share + d_angles21_inv_share*(-decay + 1.0),
+        d_angles21_f = d_angles21_P*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0) + d_angles21_share*(FU_REAL(P) < 0.0 ? 0.0 : P),
+        d_angles21_f_all = d_angles21_f*direction,
+        d_angles21_on_phi = R*d_angles21_f_all*sense,
+        d_angles21_on_psi = -(R*d_angles21_f_all*sense),
+        d_angles21_on_s = -d_angles21_f_all*mean_stretch - d_angles21_mean_stretch*f_all,
         d_lengths10_stretch_before = -(R*sense*(-angles2[0] + angles2[1])/(lengths1[0]*lengths1[0])),
         d_lengths10_T_before = A[0]*d_lengths10_stretch_before,
         d_lengths10_mean_stretch = 0.5*d_lengths10_stretch_before,
@@ -2330,23 +2355,11 @@ void planar_sheave_coulomb_off_tangent(const fu_real *A, fu_real sense, fu_real 
         d_lengths10_speed = -(d_lengths10_mean_stretch*flow),
         d_lengths10_P = d_lengths10_T_before + d_lengths10_drawn_mass*(-outwards - speed*speed) - 2.0*d_lengths10_speed*drawn_mass*speed;
     PLANAR_SHEAVE_PART_OF_DERIVATIVES_15
-    FU_EACH(point, 2,
-        d_span_slope_stretch_behind[point] = span_slope[point]/stretch_behind;
-        d_span_slope_T_behind[point] = A[0]*d_span_slope_stretch_behind[point];
-        d_span_slope_mean_stretch[point] = 0.5*d_span_slope_stretch_behind[point];
-        d_span_slope_inv_mean_stretch[point] = -(d_span_slope_mean_stretch[point]*inv_mean_stretch*inv_mean_stretch);
-        d_span_slope_drawn_mass[point] = 2.0*d_span_slope_inv_mean_stretch[point]*rho;
-        d_span_slope_speed[point] = -(d_span_slope_mean_stretch[point]*flow);
-        d_span_slope_P[point] = d_span_slope_T_behind[point] + d_span_slope_drawn_mass[point]*(-outwards - speed*speed) - 2.0*d_span_slope_speed[point]*drawn_mass*speed;
-        d_span_slope_f[point] = d_span_slope_P[point]*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0);
-        d_span_slope_f_all[point] = d_span_slope_f[point]*direction;
-        d_span_slope_on_phi[point] = R*d_span_slope_f_all[point]*sense;
-        d_span_slope_on_psi[point] = -(R*d_span_slope_f_all[point]*sense);
-        d_span_slope_on_s[point] = -d_span_slope_f_all[point]*mean_stretch - d_span_slope_mean_stretch[point]*f_all;)
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_16
     const fu_real
         d_angle_rate_groove = R*sense,
         d_angle_rate_P = -(2.0*d_angle_rate_groove*drawn_mass*speed);
-    PLANAR_SHEAVE_PART_OF_DERIVATIVES_12
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_14
     const fu_real
         d_flow_speed = -mean_stretch,
         d_flow_P = -(2.0*d_flow_speed*drawn_mass*speed),
@@ -2363,6 +2376,126 @@ void planar_sheave_coulomb_off_motion(fu_real sense, fu_real R, const fu_real *a
 {
     /* rates */
     const fu_real dt_source = angles2_rate[0]*(FU_REAL(flow) < 0.0 ? -(R*sense/lengths1[0]) : 0.0) + angles2_rate[1]*(FU_REAL(flow) < 0.0 ? R*sense/lengths1[0] : 0.0) + lengths1_rate[0]*(FU_REAL(flow) < 0.0 ? -(R*sense*(-angles2[0] + angles2[1])/(lengths1[0]*lengths1[0])) : 0.0) + span_slope_rate[0]*(FU_REAL(flow) < 0.0 ? 0.0 : span_slope[0]/(FU_SQRT(span_slope[0]*span_slope[0] + span_slope[1]*span_slope[1]))) + span_slope_rate[1]*(FU_REAL(flow) < 0.0 ? 0.0 : span_slope[1]/(FU_SQRT(span_slope[0]*span_slope[0] + span_slope[1]*span_slope[1])));
+    /* outputs */
+    Q_d[0] = R*angle_acc*sense - dt_source*flow;
+}
+
+/* Coulomb friction at a point between a span and a span; 17 add, 33 mul, 2 div, 2 sqrt, 1 cos, 1 sin, 1 exp */
+void planar_sheave_coulomb_short(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, const fu_real *angles2, const fu_real *slope, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real *numbers, fu_real *row, fu_real *column)
+{
+    PLANAR_SHEAVE_BOTH_SIDES_3
+    /* sliding */
+    const fu_real
+        source = (FU_REAL(flow) < 0.0 ? stretch_before : stretch_behind),
+        groove = R*angle_rate*sense,
+        w = -R*sense*spin - flow*source + groove,
+        speed = -flow*mean_stretch + groove;
+    PLANAR_SHEAVE_LIMIT_4
+    /* force */
+    const fu_real
+        f = share*(FU_REAL(P) < 0.0 ? 0.0 : P),
+        d_angle_rate_groove = R*sense,
+        d_spin_w = -(R*sense),
+        d_flow_w = -source,
+        on_phi = R*sense,
+        on_psi = -(R*sense),
+        on_s = -mean_stretch;
+    /* outputs */
+    numbers[0] = w;
+    numbers[1] = f;
+    row[0] = d_angle_rate_groove;
+    row[1] = d_spin_w;
+    row[2] = d_flow_w;
+    column[0] = on_phi;
+    column[1] = on_psi;
+    column[2] = on_s;
+}
+
+/* derivatives of Coulomb friction between a span and a span; 44 add, 186 mul, 6 div, 2 sqrt, 3 cos, 3 sin, 3 exp */
+void planar_sheave_coulomb_short_tangent(const fu_real *A, fu_real sense, fu_real rho, fu_real R, const fu_real *g, fu_real mu, const fu_real *angles2, const fu_real *slope, const fu_real *span_slope, fu_real angle_rate, fu_real spin, fu_real flow, fu_real held, fu_real direction, fu_real *K, fu_real *D)
+{
+    (void)spin;
+    PLANAR_SHEAVE_BOTH_SIDES_3
+    /* sliding */
+    const fu_real
+        groove = R*angle_rate*sense,
+        speed = -flow*mean_stretch + groove;
+    PLANAR_SHEAVE_LIMIT_4
+    /* force */
+    const fu_real
+        f = share*(FU_REAL(P) < 0.0 ? 0.0 : P),
+        f_all = direction*f + held;
+    /* derivatives */
+    fu_real d_slope_stretch_before[2], d_slope_T_before[2], d_slope_mean_stretch[2], d_slope_inv_mean_stretch[2],
+        d_slope_drawn_mass[2], d_slope_speed[2], d_slope_P[2], d_slope_f[2], d_slope_f_all[2], d_slope_on_phi[2],
+        d_slope_on_psi[2], d_slope_on_s[2], d_span_slope_stretch_behind[2], d_span_slope_T_behind[2],
+        d_span_slope_mean_stretch[2], d_span_slope_inv_mean_stretch[2], d_span_slope_drawn_mass[2],
+        d_span_slope_speed[2], d_span_slope_P[2], d_span_slope_f[2], d_span_slope_f_all[2], d_span_slope_on_phi[2],
+        d_span_slope_on_psi[2], d_span_slope_on_s[2];
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_12
+    const fu_real
+        d_angles20_inv_share = -(d_angles20_decay*inv_share*inv_share),
+        d_angles20_share = -d_angles20_decay*inv_share + d_angles20_inv_share*(-decay + 1.0),
+        d_angles20_f = d_angles20_P*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0) + d_angles20_share*(FU_REAL(P) < 0.0 ? 0.0 : P),
+        d_angles20_f_all = d_angles20_f*direction,
+        d_angles20_on_phi = R*d_angles20_f_all*sense,
+        d_angles20_on_psi = -(R*d_angles20_f_all*sense),
+        d_angles20_on_s = -(d_angles20_f_all*mean_stretch);
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_13
+    const fu_real
+        d_angles21_inv_share = -(d_angles21_decay*inv_share*inv_share),
+        d_angles21_share = -d_angles21_decay*inv_share + d_angles21_inv_share*(-decay + 1.0),
+        d_angles21_f = d_angles21_P*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0) + d_angles21_share*(FU_REAL(P) < 0.0 ? 0.0 : P),
+        d_angles21_f_all = d_angles21_f*direction,
+        d_angles21_on_phi = R*d_angles21_f_all*sense,
+        d_angles21_on_psi = -(R*d_angles21_f_all*sense),
+        d_angles21_on_s = -(d_angles21_f_all*mean_stretch);
+    FU_EACH(point, 2,
+        d_slope_stretch_before[point] = slope[point]/stretch_before;
+        d_slope_T_before[point] = A[0]*d_slope_stretch_before[point];
+        d_slope_mean_stretch[point] = 0.5*d_slope_stretch_before[point];
+        d_slope_inv_mean_stretch[point] = -(d_slope_mean_stretch[point]*inv_mean_stretch*inv_mean_stretch);
+        d_slope_drawn_mass[point] = 2.0*d_slope_inv_mean_stretch[point]*rho;
+        d_slope_speed[point] = -(d_slope_mean_stretch[point]*flow);
+        d_slope_P[point] = d_slope_T_before[point] + d_slope_drawn_mass[point]*(-outwards - speed*speed) - 2.0*d_slope_speed[point]*drawn_mass*speed;
+        d_slope_f[point] = d_slope_P[point]*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0);
+        d_slope_f_all[point] = d_slope_f[point]*direction;
+        d_slope_on_phi[point] = R*d_slope_f_all[point]*sense;
+        d_slope_on_psi[point] = -(R*d_slope_f_all[point]*sense);
+        d_slope_on_s[point] = -d_slope_f_all[point]*mean_stretch - d_slope_mean_stretch[point]*f_all;)
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_16
+    const fu_real
+        d_angle_rate_groove = R*sense,
+        d_angle_rate_P = -(2.0*d_angle_rate_groove*drawn_mass*speed);
+    PLANAR_SHEAVE_PART_OF_DERIVATIVES_14
+    const fu_real
+        d_flow_speed = -mean_stretch,
+        d_flow_P = -(2.0*d_flow_speed*drawn_mass*speed),
+        d_flow_f = d_flow_P*share*(FU_REAL(P) < 0.0 ? 0.0 : 1.0),
+        d_flow_f_all = d_flow_f*direction,
+        d_flow_on_phi = R*d_flow_f_all*sense,
+        d_flow_on_psi = -(R*d_flow_f_all*sense),
+        d_flow_on_s = -(d_flow_f_all*mean_stretch);
+    /* outputs */
+    K[0] = d_angles20_on_phi;
+    K[1] = d_angles21_on_phi;
+    PLANAR_SHEAVE_PART_OF_OUTPUTS_2
+    D[0] = d_angle_rate_on_phi;
+    D[1] = 0.0;
+    D[2] = d_flow_on_phi;
+    D[3] = d_angle_rate_on_psi;
+    D[4] = 0.0;
+    D[5] = d_flow_on_psi;
+    D[6] = d_angle_rate_on_s;
+    D[7] = 0.0;
+    D[8] = d_flow_on_s;
+}
+
+/* rate of w at zero accelerations between a span and a span; 8 add, 15 mul, 4 div, 4 sqrt */
+void planar_sheave_coulomb_short_motion(fu_real sense, fu_real R, const fu_real *slope, const fu_real *span_slope, const fu_real *slope_rate, const fu_real *span_slope_rate, fu_real flow, fu_real angle_acc, fu_real *Q_d)
+{
+    /* rates */
+    const fu_real dt_source = slope_rate[0]*(FU_REAL(flow) < 0.0 ? slope[0]/(FU_SQRT(slope[0]*slope[0] + slope[1]*slope[1])) : 0.0) + slope_rate[1]*(FU_REAL(flow) < 0.0 ? slope[1]/(FU_SQRT(slope[0]*slope[0] + slope[1]*slope[1])) : 0.0) + span_slope_rate[0]*(FU_REAL(flow) < 0.0 ? 0.0 : span_slope[0]/(FU_SQRT(span_slope[0]*span_slope[0] + span_slope[1]*span_slope[1]))) + span_slope_rate[1]*(FU_REAL(flow) < 0.0 ? 0.0 : span_slope[1]/(FU_SQRT(span_slope[0]*span_slope[0] + span_slope[1]*span_slope[1])));
     /* outputs */
     Q_d[0] = R*angle_acc*sense - dt_source*flow;
 }

@@ -293,7 +293,8 @@ static const fu_sheave_kernels sheaves[] = {
      planar_sheave_friction_off_tangent, planar_sheave_friction_short, planar_sheave_friction_short_tangent,
      planar_sheave_coulomb, planar_sheave_coulomb_tangent, planar_sheave_coulomb_motion, planar_sheave_coulomb_on,
      planar_sheave_coulomb_on_tangent, planar_sheave_coulomb_on_motion, planar_sheave_coulomb_off,
-     planar_sheave_coulomb_off_tangent, planar_sheave_coulomb_off_motion, planar_sheave_short_wrap,
+     planar_sheave_coulomb_off_tangent, planar_sheave_coulomb_off_motion, planar_sheave_coulomb_short,
+     planar_sheave_coulomb_short_tangent, planar_sheave_coulomb_short_motion, planar_sheave_short_wrap,
      planar_sheave_short_wrap_motion, planar_sheave_winding, planar_sheave_winding_motion, planar_sheave_store,
      planar_sheave_store_mass, planar_sheave_store_tangent, planar_sheave_store_energy, planar_sheave_laying,
      planar_sheave_creep},
@@ -1068,6 +1069,9 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(planar_sheave_coulomb_off, vsssvsvvvsss_3) \
     X(planar_sheave_coulomb_off_tangent, vsssvsvvvsssss_2) \
     X(planar_sheave_coulomb_off_motion, ssvvvvvvss_1) \
+    X(planar_sheave_coulomb_short, vsssvsvvvsss_3) \
+    X(planar_sheave_coulomb_short_tangent, vsssvsvvvsssss_2) \
+    X(planar_sheave_coulomb_short_motion, ssvvvvss_1) \
     X(planar_sheave_short_wrap, vssvvvss_5) \
     X(planar_sheave_short_wrap_motion, vvsvvs_1) \
     X(planar_sheave_winding, ssvvsss_2) \

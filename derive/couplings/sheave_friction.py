@@ -58,10 +58,11 @@ class Beside:
         return f"between a {self.before} and a {self.behind}"
 
 
-ON_ZONES = (Beside("", "zone", "zone"), Beside("_on", "span", "zone"), Beside("_off", "zone", "span"))
-"""A point between two zones; the point where the rope runs on; the point where it runs off."""
-POINTS = (*ON_ZONES, Beside("_short", "span", "span"))
-"""These, and the point of a short wrap."""
+POINTS = (Beside("", "zone", "zone"), Beside("_on", "span", "zone"), Beside("_off", "zone", "span"),
+          Beside("_short", "span", "span"))
+"""A point between two zones; the point where the rope runs on; the point where it runs off; that of a short wrap."""
+SLOPES = {0: ("slope", "span_slope"), 1: ("span_slope",), 2: ()}
+"""Slopes of the spans beside a point, by the number of zones there."""
 
 
 class _Point:
@@ -138,8 +139,12 @@ def _places(p: Program, beside: Beside) -> tuple[np.ndarray, list[sp.Symbol], li
     zones, angles = beside.zones, max(beside.zones, 1) + 1
     phi = p.input(f"angles{angles}", angles, "rad", "angles of the ends of its zones, in the rope's order")
     length = [*p.input(f"lengths{zones}", zones, "m", "lengths of its zones")] if zones else []
-    names = {0: ("slope", "span_slope"), 1: ("span_slope",), 2: ()}[zones]
-    return phi, length, [part for name in names for part in p.input(name, DIM, "1", "slope r_S of a span beside it")]
+    return phi, length, _slopes(p, beside)
+
+
+def _slopes(p: Program, beside: Beside) -> list[sp.Symbol]:
+    """Declare the slopes of spans."""
+    return [part for name in SLOPES[beside.zones] for part in p.input(name, DIM, "1", "slope r_S of a span beside it")]
 
 
 def _rates(p: Program) -> list[sp.Symbol]:
@@ -164,8 +169,8 @@ def _source(stretch: list[sp.Expr], s_rate: sp.Expr) -> sp.Expr:
 
 def kernels() -> list[Program]:
     """Return the kernels of friction."""
-    return [*(make(beside) for beside in POINTS for make in (friction, friction_tangent)),
-            *(make(beside) for beside in ON_ZONES for make in (coulomb, coulomb_tangent, coulomb_motion))]
+    return [make(beside) for of in ((friction, friction_tangent), (coulomb, coulomb_tangent, coulomb_motion))
+            for beside in POINTS for make in of]
 
 
 def _friction(p: Program, beside: Beside) -> tuple[_Point, np.ndarray, dict[str, sp.Expr]]:
@@ -222,14 +227,17 @@ def coulomb_motion(beside: Beside) -> Program:
     p = _program(f"coulomb{beside.suffix}_motion", f"rate of w at zero accelerations {beside.between}")
     arm = p.input("sense", (), "1", "1 for travel towards greater angles, else -1") * p.input(
         "R", (), "m", "radius to the axis of the rope")
-    phi, length, slope = _places(p, beside)
     zones = beside.zones
-    phi_rates = p.input(f"angles{zones + 1}_rate", zones + 1, "rad/s", "rates of these angles")
-    length_rates = p.input(f"lengths{zones}_rate", zones, "m/s", "rates of the lengths")
-    slope_rate = [] if zones == 2 else [*p.input("span_slope_rate", DIM, "1/s", "rate of the slope")]
+    phi, length, slope = _places(p, beside) if zones else (np.array([]), [], _slopes(p, beside))
+    rates: list[sp.Symbol] = []
+    if zones:
+        rates += [*p.input(f"angles{zones + 1}_rate", zones + 1, "rad/s", "rates of these angles")]
+        rates += [*p.input(f"lengths{zones}_rate", zones, "m/s", "rates of the lengths")]
+    for name in SLOPES[zones]:
+        rates += [*p.input(f"{name}_rate", DIM, "1/s", "rate of the slope")]
     s_rate = p.input("flow", (), "m/s", "rate of the material coordinate of the point")
     second = p.input("angle_acc", (), "rad/s^2", "second rate of the angle of the point")
-    on = dict(zip([*phi, *length, *slope], [*phi_rates, *length_rates, *slope_rate], strict=True))
+    on = dict(zip([*phi, *length, *slope], rates, strict=True))
     p.stage("both sides")
     stretch = _stretches(beside, arm, phi, length, slope)
     dt = DirectionalDerivative(p, "dt", on)

@@ -103,10 +103,8 @@ class SheaveModel(WheelModel):
 
     @property
     def least_wrap(self) -> float:
-        """Return the least angle of a wrap that stretches, rad: with zones they have this angle each, as far as the
-        rope may leave the sheave.
-        """
-        return MIN_WRAP * (self.n_zones if self.n_multipliers > 2 * self.before.dim else 1)
+        """Return the least angle of a wrap that stretches, rad: of zones together."""
+        return MIN_WRAP * self.n_zones
 
     @property
     def no_length(self) -> float:
@@ -222,8 +220,7 @@ def _sheaves(builder: ModelBuilder) -> Iterator[SheaveModel]:
         for k, (item, arc, beside) in enumerate(of_sheaves):
             before, after = (rope.spans[each] for each in beside)
             scale = [rope.mass_of_element(each) for each in beside for _ in range(rope.part.dim)]
-            if rope.part.may_leave(item):
-                scale += scale[:1] * (CONDITIONS_BESIDE + item.n_zones - 1)
+            scale += scale[:1] * (CONDITIONS_BESIDE + item.n_zones - 1)
             sheave = SheaveModel(
                 type="sheave", name=item.name, kernel="planar_sheave", before=before, after=after,
                 coordinates=rope.sheaves[k], radius=arc.radius, tangent_radius=arc.tangent_radius,

@@ -148,10 +148,9 @@ class Rope(Part):
         if not self.wheels:
             raise ValueError("route has no sheave and no drum", "take scene.cable() between two points")
         for sheave in self.sheaves:
-            if not (sheave.contact or self.may_leave(sheave)):
-                what = ("is on a rope without mass, whose contact follows from its place," if not self.mass else
-                        "has friction that sticks,")
-                raise ValueError(f"{sheave.where} {what} and has contact=False", "leave contact=False out")
+            if not (sheave.contact or self.mass):
+                raise ValueError(f"{sheave.where} is on a rope without mass, whose contact follows from its place, and "
+                                 "has contact=False", "leave contact=False out")
         names = [wheel.name for wheel in self.wheels]
         if self.name in names:
             raise ValueError(f'route has a sheave "{self.name}", the name of the rope', "give each its own name")
@@ -230,10 +229,6 @@ class Rope(Part):
     def holding_sheaves(self) -> list[Sheave]:
         """Return its sheaves whose friction holds it: those with friction, without mass."""
         return [sheave for sheave in self.sheaves if sheave.coefficient > 0 and not self.mass]
-
-    def may_leave(self, sheave: Sheave) -> bool:
-        """Return whether the rope may leave one of its sheaves in a run, and touch it again."""
-        return self.mass and not sheave.sticks
 
     @property
     def differing_sheaves(self) -> list[Sheave]:

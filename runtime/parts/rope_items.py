@@ -187,8 +187,8 @@ class Sheave(Wheel):
     friction: between rope and groove, a coefficient or a `Friction`, by default "regularised"; without it none
     zones: number of parts of the wrap between which friction acts, and over each of which the tension is constant
     turns: whole turns of the rope around it, in addition to the wrap angle between both spans
-    contact: whether the rope lies on it at the start. Without friction that sticks the rope may leave it and touch it
-        again; the sheave then turns on
+    contact: whether the rope lies on it at the start. It may leave the sheave and touch it again; the sheave then turns
+        on
     max_fleet_angle: between the plane of the groove and the rope as drawn, in space, rad; a larger one is reported. A
         rope that leaves with a larger kink along the axis ends the run with a RopeLeftError
     groove_width: between the edges of the groove, m, by default 0.2 of the radius. In space a rope that returns farther

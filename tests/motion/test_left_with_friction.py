@@ -1,5 +1,7 @@
 """Ropes that leave sheaves with friction and touch them again, and closed ropes that do."""
 
+from collections.abc import Callable
+
 import funicular as fu
 import numpy as np
 import pytest
@@ -15,9 +17,14 @@ def rough(mu: float = MU, zones: int = 4, velocity: float = 1e-3) -> dict[str, o
     return {"friction": fu.Friction(coefficient=mu, velocity=velocity), "zones": zones}
 
 
-def pendulum(mu: float = MU, zones: int = 4, mirrored: bool = False) -> fu.Scene:
+def sticky(mu: float = MU, zones: int = 4) -> dict[str, object]:
+    return {"friction": fu.Friction(coefficient=mu, model="stick"), "zones": zones}
+
+
+def pendulum(mu: float = MU, zones: int = 4, mirrored: bool = False, friction: Callable[..., dict[str, object]] = rough
+             ) -> fu.Scene:
     peg = fu.Sheave("peg", at=(-0.3 if mirrored else 0.3, -1, 0), radius=0.1, side="right" if mirrored else "left",
-                    contact=False, **rough(mu, zones))
+                    contact=False, **friction(mu, zones))
     return over_a_peg(*LIGHT, pegs=(peg,), mirrored=mirrored)
 
 
@@ -106,7 +113,7 @@ def test_integrators_agree(integrator, zones):
 
 # ---- sheaves that turn
 
-def lowered(**drive: object) -> fu.Scene:
+def lowered(friction: Callable[..., dict[str, object]] = rough, **drive: object) -> fu.Scene:
     """Return a wheel that is lowered on a rope between two points of the ground for a time, and lifted."""
     scene = fu.Scene(gravity=(0, 0, 0))
     weight(scene, "arm", 1.0, 0.0, 0.31)
@@ -114,14 +121,16 @@ def lowered(**drive: object) -> fu.Scene:
     scene.joint("prismatic", (0.0, 0.31, 0), "arm", axis=(0, 1, 0),
                 velocity=fu.TableSignal(time=time, value=-0.1 * np.pi * np.sin(2 * np.pi * time)))
     scene.rope("rope", route=[fu.Anchor(at=(-1, 0, 0)),
-                              fu.Sheave("wheel", at="arm", radius=0.3, side="left", contact=False, **rough(), **drive),
+                              fu.Sheave("wheel", at="arm", radius=0.3, side="left", contact=False, **friction(),
+                                        **drive),
                               fu.Anchor(at=(1, 0, 0))], elements=1, tension=100.0, **rope_of(1e5, 1e-3, 0, 1e-3))
     return scene
 
 
-def test_a_wheel_slides_where_it_touches():
+@pytest.mark.parametrize("friction", [rough, sticky])
+def test_a_wheel_slides_where_it_touches(friction):
     """Its rim is faster than the rope: the tensions have the ratio exp(mu theta) at any angle, from the first on."""
-    run = run_of(lowered(velocity=5.0), 0.5, 1e-4)
+    run = run_of(lowered(friction, velocity=5.0), 0.5, 1e-4)
     on = run["wheel.wrap_angle"] > 0
     assert on.any() and not on.all()
     ratio = np.log(run["wheel.tension_off"] / run["wheel.tension_on"])[on]
@@ -142,8 +151,10 @@ def test_a_wheel_turns_while_the_rope_is_away():
     assert np.abs(run.energy_balance().relative).max() < 1e-6
 
 
-@pytest.mark.parametrize("integrator", ["radau", pytest.param("genalpha", marks=pytest.mark.slow)])
-def test_a_rough_peg_on_a_body_keeps_momentum(integrator):
+@pytest.mark.parametrize(("integrator", "friction"), [
+    ("radau", rough), pytest.param("radau", sticky, marks=pytest.mark.slow),
+    pytest.param("genalpha", rough, marks=pytest.mark.slow)])
+def test_a_rough_peg_on_a_body_keeps_momentum(integrator, friction):
     """A free body with a rough peg strikes a rope between two free weights beside its middle, and leaves it."""
     scene = fu.Scene(gravity=(0, 0, 0))
     for name, x in (("one", -1.0), ("other", 1.0)):
@@ -151,7 +162,7 @@ def test_a_rough_peg_on_a_body_keeps_momentum(integrator):
         scene.force(name, value=(100.0 * x, 0, 0))
     scene.rigid_body("ram", mass=2.0, inertia=(0.3,) * 3, position=(0.02, -0.5, 0), velocity=(0.3, 2.0, 0))
     scene.rope("rope", route=[fu.Anchor("one"), fu.Sheave("peg", at=("ram", (0, 0.1, 0)), radius=0.1, side="right",
-                                                          contact=False, **rough()), fu.Anchor("other")],
+                                                          contact=False, **friction()), fu.Anchor("other")],
                elements=2, tension=100.0, **rope_of(1e4, 0.01, 0, 5e-3))
     run = run_of(scene, 0.45, 1e-6, integrator)
     assert whats(run) == TWICE[:2]
@@ -163,7 +174,8 @@ def test_a_rough_peg_on_a_body_keeps_momentum(integrator):
 
 # ---- rest
 
-def test_friction_of_a_short_wrap_at_rest():
+@pytest.mark.parametrize("friction", [rough, sticky])
+def test_friction_of_a_short_wrap_at_rest(friction):
     """A wrap of 4e-3 rad: both limits are exp(mu theta)."""
     scene = fu.Scene(gravity=(0, 0, 0))
     low = -np.sin(2e-3)
@@ -171,7 +183,7 @@ def test_friction_of_a_short_wrap_at_rest():
     scene.joint("prismatic", (1.0, low, 0), "load", axis=(1, 0, 0))
     scene.force("load", value=(100.0, 0, 0))
     scene.rope("rope", route=[fu.Anchor(at=(-1, low, 0)), fu.Sheave("top", at=(0, -0.2, 0), radius=0.2, side="right",
-                                                                    **rough(zones=8)), fu.Anchor("load")],
+                                                                    **friction(zones=8)), fu.Anchor("load")],
                elements=1, tension=100.0, **rope_of(1e5, 0.1, 0, 1e-3))
     for impending, sign in (("hoisting", -1), ("lowering", 1)):
         rest = scene.equilibrium(impending=impending)
@@ -182,10 +194,11 @@ def test_friction_of_a_short_wrap_at_rest():
     assert stuck[4] == pytest.approx(np.sqrt(2) * slips[4], rel=0.03)  # half the length of the rope holds the load
 
 
-def test_modes_beside_a_rough_peg():
+@pytest.mark.parametrize("friction", [rough, sticky])
+def test_modes_beside_a_rough_peg(friction):
     """A rope does not stick to a peg that it does not touch."""
     pegs = [fu.Sheave("peg", at=(0.3, -1, 0), radius=0.1, side="left", contact=False, **given)
-            for given in ({}, rough())]
+            for given in ({}, friction())]
     smooth, rough_one = (over_a_peg(*LIGHT, start=-0.15, pegs=(peg,)) for peg in pegs)
     rest = smooth.equilibrium(), rough_one.equilibrium()
     assert rest[1]["peg.gap"] == pytest.approx(0.2, abs=1e-6)

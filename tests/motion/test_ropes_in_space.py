@@ -265,18 +265,6 @@ def test_resumed_bit_for_bit(tmp_path, integrator):
     assert all(np.array_equal(whole[name], resumed[name]) for name in whole)
 
 
-def test_a_rope_that_sticks_and_leaves_its_sheave_ends_the_run():
-    """A load thrown upward over the top: the wrap becomes small."""
-    rough = fu.Friction(coefficient=0.1, model="stick")
-    scene = fu.Scene()
-    scene.rigid_body("L", mass=2.0, inertia=(1, 1, 1), position=(1.0, 0.3, 0.05), velocity=(0, 4, 0))
-    scene.rope("hoist", route=[fu.Anchor(at=(-1, -0.2, 0)), fu.Sheave("top", at=(0, 0, 0), radius=0.2, side="right",
-                                                                      friction=rough), fu.Anchor("L")], tension=20.0,
-               **SPATIAL)
-    with pytest.raises(fu.RopeLeftError, match='"top"'):
-        scene.run(1.0, output_step=0.05, tol=1e-5, integrator="radau", progress=False)
-
-
 def test_a_fleet_angle_above_its_limit_is_reported():
     with pytest.warns(fu.FunicularWarning, match='sheave "top": its fleet angle reached .* at t = .* s, above '
                                                  "max_fleet_angle, 0.05 rad: the rope may leave its groove"):

@@ -21,10 +21,9 @@ RATES = (("phi_rate", 2), ("c_rate", 2), ("s_rate", 2))
 SECOND_RATES = (("phi_acc", 2), ("c_acc", 2), ("s_acc", 2))
 N = sum(size for _, size in RATES)
 BESIDE_A_SPAN = (("angles2", 2), ("lengths1", 1), ("span_slope", 2))
-COULOMB = {"": (("angles3", 3), ("lengths2", 2)), "_on": BESIDE_A_SPAN, "_off": BESIDE_A_SPAN}
-"""Ends of the names of kernels of Coulomb friction, with their coordinates."""
-FRICTION = COULOMB | {"_short": (("angles2", 2), ("slope", 2), ("span_slope", 2))}
-"""The same of regularised friction."""
+FRICTION = {"": (("angles3", 3), ("lengths2", 2)), "_on": BESIDE_A_SPAN, "_off": BESIDE_A_SPAN,
+            "_short": (("angles2", 2), ("slope", 2), ("span_slope", 2))}
+"""Ends of the names of kernels of friction, with their coordinates."""
 SLIDING = (("angle_rate", 1), ("spin", 1), ("flow", 1))
 
 
@@ -32,7 +31,7 @@ def sheave(family: CouplingFamily) -> list[Relation]:
     """Return the relations of a sheave's kernels."""
     return [*_of_tangent_point(), *_of_angle(), *_of_energies(), *_of_inertia(), *_of_damping(),
             *(each for suffix in FRICTION for each in _of_friction(suffix)),
-            *(each for suffix in COULOMB for each in _of_coulomb(suffix)),
+            *(each for suffix in FRICTION for each in _of_coulomb(suffix)),
             *_of_short_wrap(), *sheave_step(), *drum()]
 
 
@@ -198,7 +197,7 @@ def _of_coulomb(suffix: str) -> list[Relation]:
         return (s["held"].item() + s["direction"].item() * out["numbers"][1]) * out["column"]
 
     def moving(k, s, t, j):
-        moved = {name: s[name] + t * s[f"{name}_rate"] for name, _ in places}
+        moved = {name: s[name] + t * s[f"{name}_rate"] for name, _ in places if f"{name}_rate" in s}
         return sliding(k, s | moved | {"angle_rate": s["angle_rate"] + t * s["angle_acc"]})
 
     return [Relation(kernel, "numbers", "speed of sliding, Euler's limit of the jump of the tension", 0, root(numbers)),

@@ -6,6 +6,7 @@
 #include "couplings/rope/rope.h"
 #include "equations/equations.h"
 #include "equations/run.h"
+#include "events/wrap_points.h"
 
 /* Event functions, the first of which have the numbers of their reasons. */
 enum { WRAP = FU_LEFT_BY_WRAP, PRESSURE = FU_LEFT_BY_PRESSURE, FLEET = FU_LEFT_BY_FLEET, GROWTH };
@@ -52,11 +53,12 @@ static int pass(fu_run *run, const fu_coupling *coupling, int grows, const char 
     const int has_left = fu_wrap_change(model, coupling, now, grows);
     *what = has_left ? "left the sheave" : had_left ? "touched the sheave" : "";
     const double stored = fu_elastic_energy(model, now);
+    fu_change_points(run, coupling);
     if (fu_close(run)) return FU_NO_CONVERGENCE;
     if (fu_is_in_space(coupling)) run->dissipated += stored - fu_elastic_energy(model, now);
     if (fu_project_velocities(model, now, &run->accelerator, run->work)) return FU_SINGULAR;
     fu_impact(run, run->work, 0.0);
-    return FU_RUNNING;
+    return fu_settle_points(run);
 }
 
 static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)

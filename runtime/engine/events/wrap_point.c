@@ -8,6 +8,7 @@
 #include "equations/run.h"
 #include "equations/scene_size.h"
 #include "events/events.h"
+#include "events/wrap_points.h"
 
 #include <math.h>
 
@@ -31,6 +32,21 @@ static double held(const fu_run *run, const fu_coupling *coupling, const fu_stat
 static double largest_without_excess(const fu_sheave *sheave, double limit)
 {
     return (1.0 + EXCESS_TOLERANCE) * limit + FORCE_TOLERANCE * sheave->wheel.A[0];
+}
+
+/* Returns whether friction acts at a point: not on a rope that has left its sheave. */
+static int acts(const fu_run *run, const fu_coupling *coupling)
+{
+    fu_sheave_state at;
+    fu_sheave_at(run->model, fu_sheave_of_point(run->model, coupling), &run->now, 0, &at);
+    return fu_point_acts(&at, fu_place_of_point(coupling));
+}
+
+/* Returns whether a coupling is a point of a sheave. */
+static int is_of(const fu_run *run, const fu_coupling *coupling, const fu_coupling *sheave)
+{
+    return coupling->type == &fu_wrap_point_type &&
+           fu_sheave_of_point(run->model, coupling) == (const fu_sheave *)sheave;
 }
 
 /* The excess of |f| over the limit, N; of a sliding point, the speed against its direction, m/s. */
@@ -96,10 +112,9 @@ static int goes_back(const fu_run *run, const fu_coupling *coupling)
     fu_wrap_point_at(run->model, coupling, &run->now, &of);
     if (!is_at_rest(run, of.w)) return 0;
     fu_sheave_at(run->model, sheave, &run->now, run->now.acceleration, &at);
-    const int j = fu_place_of_point(coupling);
-    const double parts[] = {fu_coulomb_drift(sheave, &at, j), of.row[1] * at.wheel.turn_acc, of.row[2] * at.s_acc[j]};
-    const double size = fabs(parts[0]) + fabs(parts[1]) + fabs(parts[2]);
-    return mode * (parts[0] + parts[1] + parts[2]) < -ROUNDING_OF_RATE * size;
+    double size;
+    const double rate = fu_coulomb_rate(sheave, &at, fu_place_of_point(coupling), &of, &size);
+    return mode * rate < -ROUNDING_OF_RATE * size;
 }
 
 /* Determines the points after sticking ones, at rest, have been chosen: the loosest are released one by one, and one
@@ -129,7 +144,7 @@ static void stick_at_rest(fu_run *run)
         int *mode = fu_wrap_point_flag(c, &run->now);
         fu_coulomb of;
         fu_wrap_point_at(run->model, c, &run->now, &of);
-        if (*mode != FU_STICKS && is_at_rest(run, of.w)) *mode = FU_STICKS;
+        if (*mode != FU_STICKS && *mode != FU_POINT_IS_FREE && is_at_rest(run, of.w)) *mode = FU_STICKS;
     }
 }
 
@@ -156,19 +171,52 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
     return settle(run);
 }
 
-/* The first point determines all: those that do not slide stick, where friction can hold them. */
-static int begin(fu_run *run, const fu_coupling *coupling)
+/* Determines all points of a scene: those that do not slide stick, where friction can hold them; is_new: those that
+ * stick now do so, too. Returns a status. */
+static int determine(fu_run *run, int is_new)
 {
     const fu_model *model = run->model;
-    if (coupling->index) return FU_RUNNING;
     FU_EACH_COUPLING(c, model->couplings, model->n_couplings) {
         if (c->type != &fu_wrap_point_type) continue;
+        int *mode = fu_wrap_point_flag(c, &run->now);
         fu_coulomb of;
-        fu_wrap_point_at(model, c, &run->now, &of);
-        *fu_wrap_point_flag(c, &run->now) = of.w > 0.0 ? FU_SLIDES_FORWARDS : FU_SLIDES_BACKWARDS;
+        if (!acts(run, c)) *mode = FU_POINT_IS_FREE;
+        else if (is_new || *mode != FU_STICKS) {
+            fu_wrap_point_at(model, c, &run->now, &of);
+            *mode = of.w > 0.0 ? FU_SLIDES_FORWARDS : FU_SLIDES_BACKWARDS;
+        }
     }
     stick_at_rest(run);
     return stop(run) ? FU_SINGULAR : settle(run);
+}
+
+/* The first point determines all. */
+static int begin(fu_run *run, const fu_coupling *coupling)
+{
+    return coupling->index ? FU_RUNNING : determine(run, 1);
+}
+
+/* --- wraps that change ------------------------------------------------------------------------------------------ */
+
+void fu_change_points(fu_run *run, const fu_coupling *sheave)
+{
+    int has_new = 0, sticks = 0;
+    FU_EACH_COUPLING(c, run->model->couplings, run->model->n_couplings) {
+        if (!is_of(run, c, sheave)) continue;
+        const int mode = *fu_wrap_point_flag(c, &run->now);
+        has_new |= acts(run, c) != (mode != FU_POINT_IS_FREE);
+        sticks |= mode == FU_STICKS;
+    }
+    FU_EACH_COUPLING(c, run->model->couplings, run->model->n_couplings)
+        if (has_new && is_of(run, c, sheave))
+            *fu_wrap_point_flag(c, &run->now) = sticks && acts(run, c) ? FU_STICKS : FU_POINT_IS_FREE;
+}
+
+int fu_settle_points(fu_run *run)
+{
+    FU_EACH_COUPLING(c, run->model->couplings, run->model->n_couplings)
+        if (c->type == &fu_wrap_point_type) return determine(run, 0);
+    return FU_RUNNING;
 }
 
 const fu_coupling_events fu_wrap_point_events = {

@@ -286,25 +286,43 @@ void fu_friction_add_forces(const fu_sheave *sheave, const fu_sheave_state *at, 
 void fu_friction_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at, int j, double factor, double (*D)[Z],
                               double (*K)[Z]);
 
-/* Coulomb friction at a point: the speed of sliding w, the limit of |f|, the derivatives of w by the rates of the
- * angle, the rotation and s, and the forces of a unit of f on these. */
+/* Returns whether friction acts at the j-th point: in a short wrap at the first alone, which is in its middle. */
+static inline int fu_point_acts(const fu_sheave_state *at, int j)
+{
+    return fu_stretches(at->mode) || (at->mode == FU_SHORT && j == 0);
+}
+
+/* Return the angle and the material coordinate of such a point. */
+static inline double fu_angle_of_point(const fu_sheave_state *at, int j)
+{
+    return at->mode == FU_SHORT ? 0.5 * (at->phi[0] + at->phi[1]) : at->angle[j];
+}
+static inline double fu_s_of_point(const fu_sheave *sheave, const fu_sheave_state *at, int j)
+{
+    return at->mode == FU_SHORT ? 0.5 * (at->s[0] + at->s[sheave->n_zones]) : at->s[j];
+}
+
+/* Coulomb friction at a point: the speed of sliding w, the limit of |f|, the rates of the angle, the rotation and s,
+ * the derivatives of w by these, and the forces of a unit of f on them. All are zero at a point where it does not act.
+ */
 enum { FU_SLIDING = 3 };
 typedef struct {
-    double w, limit, row[FU_SLIDING], column[FU_SLIDING];
+    double w, limit, rate[FU_SLIDING], row[FU_SLIDING], column[FU_SLIDING];
 } fu_coulomb;
 void fu_coulomb_at(const fu_sheave *sheave, const fu_sheave_state *at, int j, fu_coulomb *out);
 /* Adds the derivatives of Coulomb friction, held by a multiplier, or at its limit in a direction. */
 void fu_coulomb_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at, int j, double held, double direction,
                              double factor, double (*D)[Z], double (*K)[Z]);
-/* Returns the rate of w at the accelerations of `at`, without those of the sheave's rotation and of s. */
-double fu_coulomb_drift(const fu_sheave *sheave, const fu_sheave_state *at, int j);
+/* Returns the rate of w at the accelerations of `at`, and the sum of the sizes of its terms. */
+double fu_coulomb_rate(const fu_sheave *sheave, const fu_sheave_state *at, int j, const fu_coulomb *of, double *size);
 /* Computes forces by z from those on the angle of a point, the rotation and s. */
-void fu_point_by_z(const fu_sheave *sheave, int j, const double forces[FU_SLIDING], double z[Z]);
+void fu_point_by_z(const fu_sheave *sheave, const fu_sheave_state *at, int j, const double forces[FU_SLIDING],
+                   double z[Z]);
 
 /* --- wrap_point.c --- */
 
 /* The end of a zone at which friction sticks: the number of its sheave among all couplings; its place in the wrap. Its
- * flag is its mode. held: of statics, see held_wrap.c. */
+ * flag is its mode. Of a short wrap the first stands for the middle. held: of statics, see held_wrap.c. */
 typedef struct {
     fu_coupling base;
     int sheave, place;
@@ -316,7 +334,8 @@ typedef struct {
 } fu_wrap_point;
 extern const fu_coupling_type fu_wrap_point_type;
 
-/* Modes of a point: without friction, as in statics where no rope is about to slide; others are directions. */
+/* Modes of a point: without friction, as in statics where no rope is about to slide, and where it does not act; others
+ * are directions. */
 enum { FU_SLIDES_BACKWARDS = -1, FU_POINT_IS_FREE, FU_SLIDES_FORWARDS, FU_STICKS };
 
 int *fu_wrap_point_flag(const fu_coupling *coupling, const fu_state *state);

@@ -225,33 +225,48 @@ static double mean_acceleration(const fu_sheave *sheave, const fu_sheave_state *
     return sum / (n + 1);
 }
 
+/* Returns friction at a point between zones, at most its limit: multipliers of short steps have little accuracy. */
+static double friction_at(const fu_model *model, const fu_sheave *sheave, const fu_sheave_state *at,
+                          const fu_state *state, int j)
+{
+    double F[3], numbers[3], power;
+    fu_wrap_force of;
+    if (sticks(sheave)) {
+        fu_wrap_force_at(model, sheave, at, j, state, 0, &of);
+        return fmax(-of.at.limit, fmin(of.at.limit, of.f));
+    }
+    fu_friction_at(sheave, at, j, F, numbers, &power);
+    return numbers[2];
+}
+
 /* Computes the tensions at both tangent points from those of the zones beside them, the inertia of half of these, and
  * friction there. */
-static void tensions_beside_zones(const fu_sheave *sheave, const fu_sheave_state *at, double tension[ENDS])
+static void tensions_beside_zones(const fu_model *model, const fu_sheave *sheave, const fu_sheave_state *at,
+                                  const fu_state *state, double tension[ENDS])
 {
     const fu_wheel *wheel = &sheave->wheel;
     const double acceleration = mean_acceleration(sheave, at);
     for (int k = 0; k < ENDS; ++k) {
         const fu_zone of = fu_zone_at(at, k ? sheave->n_zones - 1 : 0);
         const double stretch = stretch_of(sheave, &of);
-        double F[3], numbers[3], power;
-        fu_friction_at(sheave, at, k ? sheave->n_zones : 0, F, numbers, &power);
+        const double friction = friction_at(model, sheave, at, state, k ? sheave->n_zones : 0);
         const double mean = wheel->A[0] * (stretch - 1.0), most = MOST_INERTIA * fabs(mean);
         const double inertia = fmax(-most, fmin(most, 0.5 * wheel->rho * of.l * acceleration));
-        tension[k] = tension_in(sheave, at, &of, of.phi[k], mean) + (k ? 1.0 : -1.0) * (numbers[2] + inertia);
+        tension[k] = tension_in(sheave, at, &of, of.phi[k], mean) + (k ? 1.0 : -1.0) * (friction + inertia);
     }
 }
 
 /* Without friction the tension at the tangent points is from the balance of the arc alone: multipliers of short steps
  * have little accuracy. With friction it is from the zones: friction on a light rope accelerates its nodes at once. */
-static double wrap_pressure(const fu_sheave *sheave, const fu_sheave_state *at)
+static double wrap_pressure(const fu_model *model, const fu_sheave *sheave, const fu_sheave_state *at,
+                            const fu_state *state)
 {
     const double none[MAX_CONDITIONS] = {0.0};
     double tension[ENDS], speed[ENDS], phi[MAX_CONDITIONS], y[Y];
     if (at->mode == FU_LIFTED) return 0.0;
     if (at->mode == FU_SHORT || has_friction(sheave)) elastic_tensions(sheave, at, tension, speed);
     else tensions(sheave, at, none, 0, tension, speed, phi, y);
-    if (fu_stretches(at->mode) && has_smooth_friction(sheave)) tensions_beside_zones(sheave, at, tension);
+    if (fu_stretches(at->mode) && has_friction(sheave)) tensions_beside_zones(model, sheave, at, state, tension);
     return least_pressure(sheave, at, tension, speed);
 }
 
@@ -260,7 +275,7 @@ double fu_wrap_pressure(const fu_model *model, const fu_coupling *coupling, cons
     const fu_sheave *sheave = sheave_of(coupling);
     fu_sheave_state at;
     fu_sheave_at(model, sheave, state, state->acceleration, &at);
-    return at.mode == FU_LIFTED ? 1.0 : wrap_pressure(sheave, &at);
+    return at.mode == FU_LIFTED ? 1.0 : wrap_pressure(model, sheave, &at, state);
 }
 
 /* Returns the angle over which friction at its limit changes the tension as a point of the wrap does, of whose numbers
@@ -289,16 +304,22 @@ static void add_smooth_friction(const fu_sheave *sheave, const fu_sheave_state *
     }
 }
 
+/* Returns the share of the wrap that belongs to a point. */
+static double share_of_point(const fu_sheave *sheave, const fu_sheave_state *at, int j)
+{
+    const double zone = 1.0 / sheave->n_zones;
+    return at->mode == FU_SHORT ? 1.0 : j == 0 || j == sheave->n_zones ? 0.5 * zone : zone;
+}
+
 /* Of points that slide all of their share of the wrap counts. */
 static void add_sticking_friction(const fu_sheave *sheave, const fu_sheave_state *at, const fu_wrap_force *points,
                                   sheave_output *numbers)
 {
-    const double zone = fabs(at->phi[1] - at->phi[0]) / sheave->n_zones;
+    const double wrap = fabs(at->phi[1] - at->phi[0]);
     for (int j = 0; j <= sheave->n_zones; ++j) {
         const fu_wrap_force *of = &points[j];
         if (fabs(of->at.w) > fabs(numbers->slip)) numbers->slip = of->at.w;
-        if (of->at.limit > 0.0)
-            numbers->slip_angle += fabs(of->slips) * zone * (j == 0 || j == sheave->n_zones ? 0.5 : 1.0);
+        if (of->at.limit > 0.0) numbers->slip_angle += fabs(of->slips) * share_of_point(sheave, at, j) * wrap;
         numbers->torque -= of->f * of->at.column[1];
     }
 }
@@ -326,7 +347,7 @@ void fu_sheave_outputs(const fu_model *model, const fu_coupling *coupling, const
     numbers->fleet_angle_on = is_beside ? fleet_angle(sheave, &at, 0) : 0.0;
     numbers->fleet_angle_off = is_beside ? fleet_angle(sheave, &at, 1) : 0.0;
     numbers->material_speed = -0.5 * (at.s_rate[0] + at.s_rate[sheave->n_zones]);
-    numbers->normal_force = wrap_pressure(sheave, &at);
+    numbers->normal_force = wrap_pressure(model, sheave, &at, state);
     numbers->angle = sheave->wheel.turn < 0 ? 0.0 : state->q[sheave->wheel.turn];
     if (has_smooth_friction(sheave)) add_smooth_friction(sheave, &at, numbers);
     else if (sticks(sheave)) add_sticking_friction(sheave, &at, sticking, numbers);

@@ -1,6 +1,7 @@
 /* Friction of a rope on a sheave: at the ends of the zones of its wrap, or in the middle of a short wrap. */
 #include "couplings/sheave/sheave.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { SIDES = 2, MAX_PLACES = SIDES + 1 + SIDES * DIM };
@@ -15,7 +16,7 @@ typedef struct {
  * points of a short wrap; the spans beside it from number `span` on; the rates of its own angle and s. */
 typedef struct {
     int first, zones, angles, span, spans;
-    double phi[SIDES + 1], l[SIDES], phi_rate, s_rate;
+    double phi[SIDES + 1], l[SIDES], phi_rate, s_rate, phi_acc, s_acc;
     entry angle, s, of_angle[SIDES + 1];
 } friction_point;
 
@@ -33,6 +34,8 @@ static friction_point middle_of_short(const fu_sheave *sheave, const fu_sheave_s
                             .phi = {at->phi[0], at->phi[1]},
                             .phi_rate = 0.5 * (at->phi_rate[0] + at->phi_rate[1]),
                             .s_rate = 0.5 * (at->s_rate[0] + at->s_rate[n]),
+                            .phi_acc = 0.5 * (at->phi_acc[0] + at->phi_acc[1]),
+                            .s_acc = 0.5 * (at->s_acc[0] + at->s_acc[n]),
                             .angle = at_share(0.5),
                             .s = {ENDS, {Z_MATERIAL, Z_MATERIAL + n}, {0.5, 0.5}},
                             .of_angle = {at_share(0.0), at_share(1.0)}};
@@ -48,6 +51,8 @@ static friction_point end_of_zones(const fu_sheave *sheave, const fu_sheave_stat
                           .spans = j == 0 || j == n,
                           .phi_rate = at->angle_rate[j],
                           .s_rate = at->s_rate[j],
+                          .phi_acc = at->angle_acc[j],
+                          .s_acc = at->s_acc[j],
                           .angle = at_share(at->share[j]),
                           .s = {1, {Z_MATERIAL + j}, {1.0}}};
     for (int k = 0; k < out.zones; ++k) out.l[k] = at->s[first + k + 1] - at->s[first + k];
@@ -90,15 +95,21 @@ static void rows_of(const friction_point *p, entry rows[FU_SLIDING])
     rows[2] = p->s;
 }
 
+/* Adds forces on the angle of a point, the rotation and s. */
+static void add_by_z(const friction_point *p, const double forces[FU_SLIDING], double *z)
+{
+    entry rows[FU_SLIDING];
+    rows_of(p, rows);
+    for (int i = 0; i < FU_SLIDING; ++i)
+        for (int a = 0; a < rows[i].n; ++a) z[rows[i].at[a]] += rows[i].value[a] * forces[i];
+}
+
 void fu_friction_add_forces(const fu_sheave *sheave, const fu_sheave_state *at, int j, double *z)
 {
     const friction_point p = point_of(sheave, at, j);
     double F[FU_SLIDING], numbers[3], power;
-    entry rows[FU_SLIDING];
     fu_friction_at(sheave, at, j, F, numbers, &power);
-    rows_of(&p, rows);
-    for (int i = 0; i < FU_SLIDING; ++i)
-        for (int a = 0; a < rows[i].n; ++a) z[rows[i].at[a]] += rows[i].value[a] * F[i];
+    add_by_z(&p, F, z);
 }
 
 /* Computes the changes by z of the places of a point: angles, lengths, slopes. Returns their number. */
@@ -165,13 +176,21 @@ void fu_friction_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at
 
 void fu_coulomb_at(const fu_sheave *sheave, const fu_sheave_state *at, int j, fu_coulomb *out)
 {
+    memset(out, 0, sizeof *out);
+    if (!fu_point_acts(at, j)) return;
     const friction_point p = point_of(sheave, at, j);
     const fu_wheel *wheel = &sheave->wheel;
     const fu_sheave_kernels *kernel = wheel->kernel;
+    const double rates[FU_SLIDING] = {p.phi_rate, at->wheel.turn_rate, p.s_rate};
     double numbers[2];
+    memcpy(out->rate, rates, sizeof rates);
     if (!p.spans)
         kernel->coulomb(wheel->A, wheel->sense, wheel->rho, wheel->radius, at->wheel.g, sheave->friction, p.phi, p.l,
                         p.phi_rate, at->wheel.turn_rate, p.s_rate, numbers, out->row, out->column);
+    else if (!p.zones)
+        kernel->coulomb_short(wheel->A, wheel->sense, wheel->rho, wheel->radius, at->wheel.g, sheave->friction, p.phi,
+                              at->slope[0], at->slope[1], p.phi_rate, at->wheel.turn_rate, p.s_rate, numbers, out->row,
+                              out->column);
     else
         (p.span ? kernel->coulomb_off : kernel->coulomb_on)(
             wheel->A, wheel->sense, wheel->rho, wheel->radius, at->wheel.g, sheave->friction, p.phi, p.l,
@@ -183,6 +202,7 @@ void fu_coulomb_at(const fu_sheave *sheave, const fu_sheave_state *at, int j, fu
 void fu_coulomb_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at, int j, double held, double direction,
                              double factor, double (*D)[Z], double (*K)[Z])
 {
+    if (!fu_point_acts(at, j)) return;
     const friction_point p = point_of(sheave, at, j);
     const fu_wheel *wheel = &sheave->wheel;
     const fu_sheave_kernels *kernel = wheel->kernel;
@@ -191,6 +211,10 @@ void fu_coulomb_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at,
         kernel->coulomb_tangent(wheel->A, wheel->sense, wheel->rho, wheel->radius, at->wheel.g, sheave->friction, p.phi,
                                 p.l, p.phi_rate, at->wheel.turn_rate, p.s_rate, held, direction, by.of_place,
                                 by.of_rate);
+    else if (!p.zones)
+        kernel->coulomb_short_tangent(wheel->A, wheel->sense, wheel->rho, wheel->radius, at->wheel.g, sheave->friction,
+                                      p.phi, at->slope[0], at->slope[1], p.phi_rate, at->wheel.turn_rate, p.s_rate,
+                                      held, direction, by.of_place, by.of_rate);
     else
         (p.span ? kernel->coulomb_off_tangent : kernel->coulomb_on_tangent)(
             wheel->A, wheel->sense, wheel->rho, wheel->radius, at->wheel.g, sheave->friction, p.phi, p.l,
@@ -198,30 +222,39 @@ void fu_coulomb_add_matrices(const fu_sheave *sheave, const fu_sheave_state *at,
     scatter(&p, factor, &by, D, K);
 }
 
-double fu_coulomb_drift(const fu_sheave *sheave, const fu_sheave_state *at, int j)
+/* Returns the rate of w at the accelerations of `at`, without those of the sheave's rotation and of s. */
+static double drift_of(const fu_sheave *sheave, const fu_sheave_state *at, const friction_point *p)
 {
-    const friction_point p = point_of(sheave, at, j);
     const fu_wheel *wheel = &sheave->wheel;
     const fu_sheave_kernels *kernel = wheel->kernel;
-    const double *phi_rate = at->angle_rate + p.first, *s_rate = at->s_rate + p.first;
+    const double *phi_rate = at->angle_rate + p->first, *s_rate = at->s_rate + p->first;
     double l_rate[SIDES], drift;
-    for (int k = 0; k < p.zones; ++k) l_rate[k] = s_rate[k + 1] - s_rate[k];
-    if (!p.spans)
-        kernel->coulomb_motion(wheel->sense, wheel->radius, p.phi, p.l, phi_rate, l_rate, p.s_rate, at->angle_acc[j],
+    for (int k = 0; k < p->zones; ++k) l_rate[k] = s_rate[k + 1] - s_rate[k];
+    if (!p->spans)
+        kernel->coulomb_motion(wheel->sense, wheel->radius, p->phi, p->l, phi_rate, l_rate, p->s_rate, p->phi_acc,
                                &drift);
+    else if (!p->zones)
+        kernel->coulomb_short_motion(wheel->sense, wheel->radius, at->slope[0], at->slope[1], at->slope_rate[0],
+                                     at->slope_rate[1], p->s_rate, p->phi_acc, &drift);
     else
-        (p.span ? kernel->coulomb_off_motion
-                : kernel->coulomb_on_motion)(wheel->sense, wheel->radius, p.phi, p.l, at->slope[p.span], phi_rate,
-                                             l_rate, at->slope_rate[p.span], p.s_rate, at->angle_acc[j], &drift);
+        (p->span ? kernel->coulomb_off_motion
+                 : kernel->coulomb_on_motion)(wheel->sense, wheel->radius, p->phi, p->l, at->slope[p->span], phi_rate,
+                                              l_rate, at->slope_rate[p->span], p->s_rate, p->phi_acc, &drift);
     return drift;
 }
 
-void fu_point_by_z(const fu_sheave *sheave, int j, const double forces[FU_SLIDING], double z[Z])
+double fu_coulomb_rate(const fu_sheave *sheave, const fu_sheave_state *at, int j, const fu_coulomb *of, double *size)
 {
-    const double share = (double)j / sheave->n_zones;
+    const friction_point p = point_of(sheave, at, j);
+    const double parts[] = {drift_of(sheave, at, &p), of->row[1] * at->wheel.turn_acc, of->row[2] * p.s_acc};
+    *size = fabs(parts[0]) + fabs(parts[1]) + fabs(parts[2]);
+    return parts[0] + parts[1] + parts[2];
+}
+
+void fu_point_by_z(const fu_sheave *sheave, const fu_sheave_state *at, int j, const double forces[FU_SLIDING],
+                   double z[Z])
+{
+    const friction_point p = point_of(sheave, at, j);
     memset(z, 0, sizeof(double) * Z);
-    z[0] = (1.0 - share) * forces[0];
-    z[1] = share * forces[0];
-    z[Z_TURN] = forces[1];
-    z[Z_MATERIAL + j] = forces[2];
+    add_by_z(&p, forces, z);
 }

@@ -1,6 +1,7 @@
 /* Points of the wrap of a rope at which friction sticks, each a coupling: it slides in a direction with friction at its
  * limit, or is held by a multiplier f, with w = 0, a constraint on rates alone. events/wrap_point.c has its events. The
- * limit depends on stretches and speeds, and not on f. */
+ * limit depends on stretches and speeds, and not on f. It vanishes with the wrap: a short one has one point, and a rope
+ * that has left its sheave none. */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
@@ -43,6 +44,12 @@ static double slips_at(const fu_model *model, const fu_sheave *sheave, int mode)
     return mode == FU_POINT_IS_FREE ? impending_part(model, sheave) : mode == FU_STICKS ? 0.0 : (double)mode;
 }
 
+/* Returns a mode, or that of a point without friction where it does not act. */
+static int acting(const fu_sheave_state *at, int j, int mode)
+{
+    return fu_point_acts(at, j) ? mode : FU_POINT_IS_FREE;
+}
+
 /* Computes a point at a state, with its sheave. */
 static void look(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_sheave_state *at,
                  fu_coulomb *out)
@@ -62,7 +69,7 @@ void fu_wrap_force_at(const fu_model *model, const fu_sheave *sheave, const fu_s
                       const fu_state *state, const double *multipliers, fu_wrap_force *out)
 {
     const fu_coupling *coupling = model->couplings[sheave->wrap_points + j];
-    const int mode = *fu_wrap_point_flag(coupling, state);
+    const int mode = acting(at, j, *fu_wrap_point_flag(coupling, state));
     fu_coulomb_at(sheave, at, j, &out->at);
     out->slips = slips_at(model, sheave, mode);
     out->f = mode == FU_STICKS ? (multipliers ? multipliers[coupling->multiplier] : state->forces[coupling->force])
@@ -74,7 +81,7 @@ void fu_wrap_force_by_y(const fu_sheave *sheave, const fu_sheave_state *at, int 
 {
     double F[FU_SLIDING], z[Z];
     for (int k = 0; k < FU_SLIDING; ++k) F[k] = f * column[k];
-    fu_point_by_z(sheave, j, F, z);
+    fu_point_by_z(sheave, at, j, F, z);
     fu_sheave_add_by_angles(sheave, at, z, y);
 }
 
@@ -107,10 +114,11 @@ static int is_static(const fu_equations *equations)
 }
 
 /* Returns the mode in a system: in statics nothing sticks that is not held. */
-static int mode_in(const fu_coupling *coupling, const fu_equations *equations)
+static int mode_in(const fu_coupling *coupling, const fu_sheave_state *at, const fu_equations *equations)
 {
-    return is_static(equations) && !point_of(coupling)->held.is_held ? FU_POINT_IS_FREE
-                                                                     : *fu_wrap_point_flag(coupling, equations->next);
+    const fu_wrap_point *point = point_of(coupling);
+    if (is_static(equations) && !point->held.is_held) return FU_POINT_IS_FREE;
+    return acting(at, point->place, *fu_wrap_point_flag(coupling, equations->next));
 }
 
 /* Returns the time that turns w to a length, of the order of the step, s. */
@@ -131,11 +139,11 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
                      double *internal)
 {
     const fu_sheave *sheave = fu_sheave_of_point(model, coupling);
-    const int mode = mode_in(coupling, equations);
     const double multiplier = equations->next->forces[coupling->force];
     fu_sheave_state at;
     fu_coulomb of;
     look(model, coupling, equations->next, &at, &of);
+    const int mode = mode_in(coupling, &at, equations);
     add_force(sheave, &at, point_of(coupling)->place, &of,
               mode == FU_STICKS ? multiplier : slips_at(model, sheave, mode) * of.limit, f);
     internal[coupling->unknown] = mode == FU_STICKS
@@ -178,31 +186,31 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
                     fu_system *system)
 {
     const fu_sheave *sheave = fu_sheave_of_point(model, coupling);
-    const int mode = mode_in(coupling, equations), own = fu_extra(model, coupling->unknown),
-              j = point_of(coupling)->place;
+    const int own = fu_extra(model, coupling->unknown), j = point_of(coupling)->place;
     const fu_weights w = equations->weights;
-    const double held = mode == FU_STICKS ? equations->next->forces[coupling->force] : 0.0,
-                 slips = slips_at(model, sheave, mode);
     double F[FU_SLIDING], z[Z], D_z[Z][Z], K_z[Z][Z], D[Y][Y], K[Y][Y], y[Y] = {0.0};
     fu_centre_moves moves, by_psi;
     fu_wheel_column columns[COLUMNS], turned[COLUMNS];
     fu_sheave_state at;
     fu_coulomb of;
     look(model, coupling, equations->next, &at, &of);
+    const int mode = mode_in(coupling, &at, equations);
+    const double held = mode == FU_STICKS ? equations->next->forces[coupling->force] : 0.0,
+                 slips = slips_at(model, sheave, mode);
     fu_wheel_by_psi(model, &sheave->wheel, &at.wheel, equations->psi, &by_psi);
     fu_wheel_moves(model, &at.wheel, &moves);
     const int n = fu_sheave_columns(sheave, &at, &moves, columns);
     fu_sheave_columns(sheave, &at, &by_psi, turned);
     if (mode == FU_STICKS) add_row_and_column(model, coupling, &at, &of, equations, n, columns, turned, system);
     else fu_add(model, system, own, own, fu_row_unit(w.inertia, coupling->scale[0]));
-    if (held == 0.0 && slips == 0.0) return;
+    if (!fu_point_acts(&at, j) || (held == 0.0 && slips == 0.0)) return;
     memset(D_z, 0, sizeof D_z);
     memset(K_z, 0, sizeof K_z);
     memset(D, 0, sizeof D);
     memset(K, 0, sizeof K);
     fu_coulomb_add_matrices(sheave, &at, j, held, slips, w.stiffness, D_z, K_z);
     for (int k = 0; k < FU_SLIDING; ++k) F[k] = (held + slips * of.limit) * of.column[k];
-    fu_point_by_z(sheave, j, F, z);
+    fu_point_by_z(sheave, &at, j, F, z);
     fu_sheave_add_matrices(sheave, &at, w.stiffness, z, D_z, K_z, D, K);
     fu_wheel_add_matrix(model, n, columns, turned, Y, K[0], system);
     for (int i = 0; i < Y; ++i)
@@ -301,7 +309,7 @@ static void rows(const fu_model *model, const fu_coupling *coupling, const fu_st
     const fu_sheave *sheave = fu_sheave_of_point(model, coupling);
     const int j = point_of(coupling)->place;
     fu_rows *out = &work->rows[coupling->row];
-    double row[Y], column[Y];
+    double row[Y], column[Y], size;
     fu_wheel_column columns[COLUMNS];
     fu_centre_moves moves;
     fu_sheave_state at;
@@ -309,6 +317,7 @@ static void rows(const fu_model *model, const fu_coupling *coupling, const fu_st
     out->n = out->rows = 0;
     if (*fu_wrap_point_flag(coupling, state) != FU_STICKS) return;
     look(model, coupling, state, &at, &of);
+    if (!fu_point_acts(&at, j)) return;
     by_y(sheave, &at, j, of.row, row);
     by_y(sheave, &at, j, of.column, column);
     fu_wheel_moves(model, &at.wheel, &moves);
@@ -321,7 +330,7 @@ static void rows(const fu_model *model, const fu_coupling *coupling, const fu_st
         out->column[out->n++] = by_f;
     }
     out->rows = out->is_pushed = 1;
-    out->W[0] = -(fu_coulomb_drift(sheave, &at, j) + of.row[1] * at.wheel.turn_acc);
+    out->W[0] = -fu_coulomb_rate(sheave, &at, j, &of, &size);
     out->C[0] = out->rate[0] = 0.0;
 }
 
@@ -342,8 +351,7 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
     fu_wrap_force of;
     fu_sheave_at(model, sheave, state, 0, &at);
     fu_wrap_force_at(model, sheave, &at, j, state, work ? work->multipliers : 0, &of);
-    const double rates[FU_SLIDING] = {at.angle_rate[j], at.wheel.turn_rate, at.s_rate[j]};
-    return of.f * fu_dot(FU_SLIDING, of.at.column, rates);
+    return of.f * fu_dot(FU_SLIDING, of.at.column, of.at.rate);
 }
 
 static void gaps(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
