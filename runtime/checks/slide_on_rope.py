@@ -50,7 +50,8 @@ def check_possible_on_rope(slide: Slide, line: RopeLine) -> None:
         stop = getattr(slide, name)
         if isinstance(stop, Stop) and not isinstance(item, Anchor):
             raise SceneError(slide.where, f"{name}: the span of {line.where} ends at {item.where}, where the material "
-                             "runs past a stop", 'take "error", "leave", or an event that stops the run')
+                             "runs past a stop", 'let the rider strike a surface there by a contact, or take "error", '
+                             '"leave", or an event that stops the run')
         if isinstance(stop, Buffer) and stop.length > (length := line.route.spans[number].length):
             raise SceneError(slide.where, f"{name}: the buffer's length must not exceed that of its span of "
                              f'{line.where}, {show(length, "m")}, got {show(stop.length, "m")}')

@@ -337,7 +337,7 @@ def slide(**more):
     (slide(along="houl"), 'there is no cable or rope "houl"; did you mean "haul"?'),
     (slide(frame="tangent"), 'frame "tangent" needs the axes of a cable, which rope "haul" does not have'),
     (slide(at_end=fu.HardStop(restitution=0.5)), 'at_end: the span of rope "haul" ends at sheave "top", where the '
-     'material runs past a stop'),
+     'material runs past a stop; let the rider strike a surface there by a contact, or take "error"'),
     (slide(at_start=fu.Buffer(length=1, stiffness=1e3)), 'at_start: the span of rope "haul" ends at drum "winch"'),
     (slide(drive=S + 0.1), "drive is 12.1 m at t = 0, but the slide starts at s = 12 m"),
     (lambda scene: scene.slide("haul", along="haul"), 'rope "haul" rides and needs the arc-length of its point'),
