@@ -1292,6 +1292,22 @@ fu_rope_point_discrete_point_kernel planar_rope_point_discrete_point;
 /* e 4x3, e_next 4x3, s 2, s_next 2, share 2, P 3x14 */
 fu_rope_point_discrete_point_kernel rope_point_discrete_point;
 
+typedef void fu_rope_point_slope_kernel(const fu_real *e, const fu_real *v, const fu_real *s, const fu_real *s_rate, const fu_real *share, fu_real S, fu_real S_rate, fu_real *t, fu_real *T, fu_real *rate, fu_real *bias);
+/* slope at a place that moves along the rope, its derivatives and motion: e [m, 1]; v [m/s, 1/s]; s [m]; s_rate
+ * [m/s]; share [1]; S [m]; S_rate [m/s] -> t [1]; T [1/m, 1]; rate [1/s]; bias [1/s^2] */
+/* e 4x2, v 4x2, s 2, s_rate 2, share 2, t 2, T 2x11, rate 2, bias 2 */
+fu_rope_point_slope_kernel planar_rope_point_slope;
+/* e 4x3, v 4x3, s 2, s_rate 2, share 2, t 3, T 3x15, rate 3, bias 3 */
+fu_rope_point_slope_kernel rope_point_slope;
+
+typedef void fu_rope_point_slope_stiffness_kernel(const fu_real *e, const fu_real *v, const fu_real *s, const fu_real *s_rate, const fu_real *share, fu_real S, fu_real S_rate, const fu_real *g, fu_real *K);
+/* second derivatives of the slope at a place that moves along the rope: e [m, 1]; v [m/s, 1/s]; s [m]; s_rate [m/s];
+ * share [1]; S [m]; S_rate [m/s]; g [N m] -> K [N, N/m, N m] */
+/* e 4x2, v 4x2, s 2, s_rate 2, share 2, g 2, K 11x11 */
+fu_rope_point_slope_stiffness_kernel planar_rope_point_slope_stiffness;
+/* e 4x3, v 4x3, s 2, s_rate 2, share 2, g 3, K 15x15 */
+fu_rope_point_slope_stiffness_kernel rope_point_slope_stiffness;
+
 typedef void fu_sheave_tangent_point_kernel(const fu_real *x, const fu_real *slope, fu_real R, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
 /* conditions of a tangent point, and their derivatives: x [m]; slope [1]; R [m]; f [N] -> phi [m]; J [1, m]; K [N/m,
  * N] */
@@ -2356,6 +2372,8 @@ typedef struct {
     fu_rope_point_point_kernel *point;
     fu_rope_point_wrench_kernel *wrench;
     fu_rope_point_discrete_point_kernel *discrete_point;
+    fu_rope_point_slope_kernel *slope;
+    fu_rope_point_slope_stiffness_kernel *slope_stiffness;
 } fu_rope_point_kernels;
 
 /* What the engine needs of a sheave. */

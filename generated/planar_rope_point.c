@@ -308,3 +308,215 @@ void planar_rope_point_discrete_point(const fu_real *e, const fu_real *e_next, c
     P[18] = -part*worked_l_y + worked_y*(share[0] - 1.0);
     P[19] = part*worked_l_y - share[0]*worked_y;
 }
+
+/* slope at a place that moves along the rope, its derivatives and motion; 109 add, 164 mul, 21 div */
+void planar_rope_point_slope(const fu_real *e, const fu_real *v, const fu_real *s, const fu_real *s_rate, const fu_real *share, fu_real S, fu_real S_rate, fu_real *t, fu_real *T, fu_real *rate, fu_real *bias)
+{
+    /* shape functions */
+    const fu_real
+        L = -s[0] + s[1],
+        l = L*(-share[0] + share[1]),
+        w = 1.0/l,
+        xi = w*(-L*share[0] + S - s[0]),
+        N2 = xi*(3.0*xi - 4.0) + 1.0,
+        N3 = xi*(-6.0*xi + 6.0)/l,
+        N4 = xi*(3.0*xi - 2.0);
+    /* differences from the first node */
+    const fu_real
+        d3_x = -e[0] + e[4],
+        d3_y = -e[1] + e[5],
+        d_rate3_x = -v[0] + v[4],
+        d_rate3_y = -v[1] + v[5];
+    /* derivatives by s1, s2, S and along the motion */
+    const fu_real
+        d1_l = share[0] - share[1],
+        d1_w = -(d1_l*w*w),
+        d1_xi = d1_w*(-L*share[0] + S - s[0]) + share[0]*w - w,
+        d1_N2 = d1_xi*(6.0*xi - 4.0),
+        d1_N3 = -d1_l*xi*(-6.0*xi + 6.0)/(l*l) + d1_xi*(-6.0*xi/l + (-6.0*xi + 6.0)/l),
+        d1_N4 = d1_xi*(6.0*xi - 2.0),
+        d2_l = -share[0] + share[1],
+        d2_w = -(d2_l*w*w),
+        d2_xi = d2_w*(-L*share[0] + S - s[0]) - share[0]*w,
+        d2_N2 = d2_xi*(6.0*xi - 4.0),
+        d2_N3 = -d2_l*xi*(-6.0*xi + 6.0)/(l*l) + d2_xi*(-6.0*xi/l + (-6.0*xi + 6.0)/l),
+        d2_N4 = d2_xi*(6.0*xi - 2.0),
+        d3_N2 = w*(6.0*xi - 4.0),
+        d3_N3 = w*(-6.0*xi/l + (-6.0*xi + 6.0)/l),
+        d3_N4 = w*(6.0*xi - 2.0),
+        dt_L = -s_rate[0] + s_rate[1],
+        dt_l = dt_L*(-share[0] + share[1]),
+        dt_w = -(dt_l*w*w),
+        dt_xi = S_rate*w - dt_L*share[0]*w + dt_w*(-L*share[0] + S - s[0]) - s_rate[0]*w,
+        dt_N2 = dt_xi*(6.0*xi - 4.0),
+        dt_N3 = -dt_l*xi*(-6.0*xi + 6.0)/(l*l) + dt_xi*(-6.0*xi/l + (-6.0*xi + 6.0)/l),
+        dt_N4 = dt_xi*(6.0*xi - 2.0),
+        dt_dt_w = -(2.0*dt_l*dt_w*w),
+        dt_dt_xi = S_rate*dt_w - dt_L*dt_w*share[0] + dt_dt_w*(-L*share[0] + S - s[0]) - dt_w*s_rate[0] + dt_w*(S_rate - dt_L*share[0] - s_rate[0]),
+        dt_dt_N2 = dt_dt_xi*(6.0*xi - 4.0) + 6.0*dt_xi*dt_xi,
+        dt_dt_N3 = dt_dt_xi*(-6.0*xi/l + (-6.0*xi + 6.0)/l) + dt_l*(2.0*dt_l*xi*(-6.0*xi + 6.0)/(l*l*l) + dt_xi*(6.0*xi/(l*l) - (-6.0*xi + 6.0)/(l*l))) + dt_xi*(6.0*dt_l*xi/(l*l) - dt_l*(-6.0*xi + 6.0)/(l*l) - 12.0*dt_xi/l),
+        dt_dt_N4 = dt_dt_xi*(6.0*xi - 2.0) + 6.0*dt_xi*dt_xi;
+    /* outputs */
+    t[0] = N2*e[2] + N3*d3_x + N4*e[6];
+    t[1] = N2*e[3] + N3*d3_y + N4*e[7];
+    T[0] = -N3;
+    T[1] = 0.0;
+    T[2] = N2;
+    T[3] = 0.0;
+    T[4] = N3;
+    T[5] = 0.0;
+    T[6] = N4;
+    T[7] = 0.0;
+    T[8] = d1_N2*e[2] + d1_N3*d3_x + d1_N4*e[6];
+    T[9] = d2_N2*e[2] + d2_N3*d3_x + d2_N4*e[6];
+    T[10] = d3_N2*e[2] + d3_N3*d3_x + d3_N4*e[6];
+    T[11] = 0.0;
+    T[12] = -N3;
+    T[13] = 0.0;
+    T[14] = N2;
+    T[15] = 0.0;
+    T[16] = N3;
+    T[17] = 0.0;
+    T[18] = N4;
+    T[19] = d1_N2*e[3] + d1_N3*d3_y + d1_N4*e[7];
+    T[20] = d2_N2*e[3] + d2_N3*d3_y + d2_N4*e[7];
+    T[21] = d3_N2*e[3] + d3_N3*d3_y + d3_N4*e[7];
+    rate[0] = N2*v[2] + N3*d_rate3_x + N4*v[6] + d3_x*dt_N3 + dt_N2*e[2] + dt_N4*e[6];
+    rate[1] = N2*v[3] + N3*d_rate3_y + N4*v[7] + d3_y*dt_N3 + dt_N2*e[3] + dt_N4*e[7];
+    bias[0] = d3_x*dt_dt_N3 + 2.0*d_rate3_x*dt_N3 + 2.0*dt_N2*v[2] + 2.0*dt_N4*v[6] + dt_dt_N2*e[2] + dt_dt_N4*e[6];
+    bias[1] = d3_y*dt_dt_N3 + 2.0*d_rate3_y*dt_N3 + 2.0*dt_N2*v[3] + 2.0*dt_N4*v[7] + dt_dt_N2*e[3] + dt_dt_N4*e[7];
+}
+
+/* second derivatives of the slope at a place that moves along the rope; 155 add, 320 mul, 44 div */
+void planar_rope_point_slope_stiffness(const fu_real *e, const fu_real *v, const fu_real *s, const fu_real *s_rate, const fu_real *share, fu_real S, fu_real S_rate, const fu_real *g, fu_real *K)
+{
+    (void)v;
+    (void)s_rate;
+    (void)S_rate;
+    /* shape functions */
+    const fu_real
+        L = -s[0] + s[1],
+        l = L*(-share[0] + share[1]),
+        w = 1.0/l,
+        xi = w*(-L*share[0] + S - s[0]);
+    /* differences from the first node */
+    const fu_real
+        d3_x = -e[0] + e[4],
+        d3_y = -e[1] + e[5];
+    /* derivatives by s1, s2, S */
+    fu_real d_l[2], d_w[2], d_xi[2], d_d3_N2[2], d_d3_N3[2], d_d3_N4[2];
+    d_l[0] = share[0] - share[1];
+    d_w[0] = -(d_l[0]*w*w);
+    d_xi[0] = d_w[0]*(-L*share[0] + S - s[0]) + share[0]*w - w;
+    const fu_real
+        d1_N2 = d_xi[0]*(6.0*xi - 4.0),
+        d1_N3 = -d_l[0]*xi*(-6.0*xi + 6.0)/(l*l) + d_xi[0]*(-6.0*xi/l + (-6.0*xi + 6.0)/l),
+        d1_N4 = d_xi[0]*(6.0*xi - 2.0);
+    d_l[1] = -share[0] + share[1];
+    d_w[1] = -(d_l[1]*w*w);
+    d_xi[1] = d_w[1]*(-L*share[0] + S - s[0]) - share[0]*w;
+    const fu_real
+        d2_N2 = d_xi[1]*(6.0*xi - 4.0),
+        d2_N3 = -d_l[1]*xi*(-6.0*xi + 6.0)/(l*l) + d_xi[1]*(-6.0*xi/l + (-6.0*xi + 6.0)/l),
+        d2_N4 = d_xi[1]*(6.0*xi - 2.0),
+        d3_N2 = w*(6.0*xi - 4.0),
+        d3_N3 = w*(-6.0*xi/l + (-6.0*xi + 6.0)/l),
+        d3_N4 = w*(6.0*xi - 2.0),
+        d1_d1_w = -(2.0*d_l[0]*d_w[0]*w),
+        d1_d1_xi = d1_d1_w*(-L*share[0] + S - s[0]) + d_w[0]*share[0] + d_w[0]*(share[0] - 1.0) - d_w[0],
+        d1_d1_N2 = d1_d1_xi*(6.0*xi - 4.0) + 6.0*d_xi[0]*d_xi[0],
+        d1_d1_N3 = d1_d1_xi*(-6.0*xi/l + (-6.0*xi + 6.0)/l) + d_l[0]*(2.0*d_l[0]*xi*(-6.0*xi + 6.0)/(l*l*l) + d_xi[0]*(6.0*xi/(l*l) - (-6.0*xi + 6.0)/(l*l))) + d_xi[0]*(6.0*d_l[0]*xi/(l*l) - d_l[0]*(-6.0*xi + 6.0)/(l*l) - 12.0*d_xi[0]/l),
+        d1_d1_N4 = d1_d1_xi*(6.0*xi - 2.0) + 6.0*d_xi[0]*d_xi[0],
+        d1_d2_w = -(2.0*d_w[0]*d_l[1]*w),
+        d1_d2_xi = d1_d2_w*(-L*share[0] + S - s[0]) - d_w[0]*share[0] + d_w[1]*share[0] - d_w[1],
+        d1_d2_N2 = d1_d2_xi*(6.0*xi - 4.0) + 6.0*d_xi[0]*d_xi[1],
+        d1_d2_N3 = d1_d2_xi*(-6.0*xi/l + (-6.0*xi + 6.0)/l) + d_l[0]*(2.0*d_l[1]*xi*(-6.0*xi + 6.0)/(l*l*l) + d_xi[1]*(6.0*xi/(l*l) - (-6.0*xi + 6.0)/(l*l))) + d_xi[0]*(6.0*d_l[1]*xi/(l*l) - d_l[1]*(-6.0*xi + 6.0)/(l*l) - 12.0*d_xi[1]/l),
+        d1_d2_N4 = d1_d2_xi*(6.0*xi - 2.0) + 6.0*d_xi[0]*d_xi[1],
+        d2_d2_w = -(2.0*d_l[1]*d_w[1]*w),
+        d2_d2_xi = d2_d2_w*(-L*share[0] + S - s[0]) - 2.0*d_w[1]*share[0],
+        d2_d2_N2 = d2_d2_xi*(6.0*xi - 4.0) + 6.0*d_xi[1]*d_xi[1],
+        d2_d2_N3 = d2_d2_xi*(-6.0*xi/l + (-6.0*xi + 6.0)/l) + d_l[1]*(2.0*d_l[1]*xi*(-6.0*xi + 6.0)/(l*l*l) + d_xi[1]*(6.0*xi/(l*l) - (-6.0*xi + 6.0)/(l*l))) + d_xi[1]*(6.0*d_l[1]*xi/(l*l) - d_l[1]*(-6.0*xi + 6.0)/(l*l) - 12.0*d_xi[1]/l),
+        d2_d2_N4 = d2_d2_xi*(6.0*xi - 2.0) + 6.0*d_xi[1]*d_xi[1];
+    FU_EACH(point, 2,
+        d_d3_N2[point] = d_w[point]*(6.0*xi - 4.0) + 6.0*d_xi[point]*w;
+        d_d3_N3[point] = d_l[point]*w*(6.0*xi/(l*l) - (-6.0*xi + 6.0)/(l*l)) + d_w[point]*(-6.0*xi/l + (-6.0*xi + 6.0)/l) - 12.0*d_xi[point]*w/l;
+        d_d3_N4[point] = d_w[point]*(6.0*xi - 2.0) + 6.0*d_xi[point]*w;)
+    const fu_real
+        d3_d3_N2 = 6.0*w*w,
+        d3_d3_N3 = -(12.0*w*w/l),
+        d3_d3_N4 = 6.0*w*w;
+    /* outputs */
+    FU_EACH(point, 8,
+        K[point] = 0.0;)
+    K[8] = -(d1_N3*g[0]);
+    K[9] = -(d2_N3*g[0]);
+    K[10] = -(d3_N3*g[0]);
+    FU_EACH(point, 8,
+        K[point + 11] = 0.0;)
+    K[19] = -(d1_N3*g[1]);
+    K[20] = -(d2_N3*g[1]);
+    K[21] = -(d3_N3*g[1]);
+    FU_EACH(point, 8,
+        K[point + 22] = 0.0;)
+    K[30] = d1_N2*g[0];
+    K[31] = d2_N2*g[0];
+    K[32] = d3_N2*g[0];
+    FU_EACH(point, 8,
+        K[point + 33] = 0.0;)
+    K[41] = d1_N2*g[1];
+    K[42] = d2_N2*g[1];
+    K[43] = d3_N2*g[1];
+    FU_EACH(point, 8,
+        K[point + 44] = 0.0;)
+    K[52] = d1_N3*g[0];
+    K[53] = d2_N3*g[0];
+    K[54] = d3_N3*g[0];
+    FU_EACH(point, 8,
+        K[point + 55] = 0.0;)
+    K[63] = d1_N3*g[1];
+    K[64] = d2_N3*g[1];
+    K[65] = d3_N3*g[1];
+    FU_EACH(point, 8,
+        K[point + 66] = 0.0;)
+    K[74] = d1_N4*g[0];
+    K[75] = d2_N4*g[0];
+    K[76] = d3_N4*g[0];
+    FU_EACH(point, 8,
+        K[point + 77] = 0.0;)
+    K[85] = d1_N4*g[1];
+    K[86] = d2_N4*g[1];
+    K[87] = d3_N4*g[1];
+    K[88] = -(d1_N3*g[0]);
+    K[89] = -(d1_N3*g[1]);
+    K[90] = d1_N2*g[0];
+    K[91] = d1_N2*g[1];
+    K[92] = d1_N3*g[0];
+    K[93] = d1_N3*g[1];
+    K[94] = d1_N4*g[0];
+    K[95] = d1_N4*g[1];
+    K[96] = g[0]*(d1_d1_N2*e[2] + d1_d1_N3*d3_x + d1_d1_N4*e[6]) + g[1]*(d1_d1_N2*e[3] + d1_d1_N3*d3_y + d1_d1_N4*e[7]);
+    K[97] = g[0]*(d1_d2_N2*e[2] + d1_d2_N3*d3_x + d1_d2_N4*e[6]) + g[1]*(d1_d2_N2*e[3] + d1_d2_N3*d3_y + d1_d2_N4*e[7]);
+    K[98] = g[0]*(d_d3_N2[0]*e[2] + d_d3_N3[0]*d3_x + d_d3_N4[0]*e[6]) + g[1]*(d_d3_N2[0]*e[3] + d_d3_N3[0]*d3_y + d_d3_N4[0]*e[7]);
+    K[99] = -(d2_N3*g[0]);
+    K[100] = -(d2_N3*g[1]);
+    K[101] = d2_N2*g[0];
+    K[102] = d2_N2*g[1];
+    K[103] = d2_N3*g[0];
+    K[104] = d2_N3*g[1];
+    K[105] = d2_N4*g[0];
+    K[106] = d2_N4*g[1];
+    K[107] = g[0]*(d1_d2_N2*e[2] + d1_d2_N3*d3_x + d1_d2_N4*e[6]) + g[1]*(d1_d2_N2*e[3] + d1_d2_N3*d3_y + d1_d2_N4*e[7]);
+    K[108] = g[0]*(d2_d2_N2*e[2] + d2_d2_N3*d3_x + d2_d2_N4*e[6]) + g[1]*(d2_d2_N2*e[3] + d2_d2_N3*d3_y + d2_d2_N4*e[7]);
+    K[109] = g[0]*(d_d3_N2[1]*e[2] + d_d3_N3[1]*d3_x + d_d3_N4[1]*e[6]) + g[1]*(d_d3_N2[1]*e[3] + d_d3_N3[1]*d3_y + d_d3_N4[1]*e[7]);
+    K[110] = -(d3_N3*g[0]);
+    K[111] = -(d3_N3*g[1]);
+    K[112] = d3_N2*g[0];
+    K[113] = d3_N2*g[1];
+    K[114] = d3_N3*g[0];
+    K[115] = d3_N3*g[1];
+    K[116] = d3_N4*g[0];
+    K[117] = d3_N4*g[1];
+    K[118] = g[0]*(d_d3_N2[0]*e[2] + d_d3_N3[0]*d3_x + d_d3_N4[0]*e[6]) + g[1]*(d_d3_N2[0]*e[3] + d_d3_N3[0]*d3_y + d_d3_N4[0]*e[7]);
+    K[119] = g[0]*(d_d3_N2[1]*e[2] + d_d3_N3[1]*d3_x + d_d3_N4[1]*e[6]) + g[1]*(d_d3_N2[1]*e[3] + d_d3_N3[1]*d3_y + d_d3_N4[1]*e[7]);
+    K[120] = g[0]*(d3_d3_N2*e[2] + d3_d3_N3*d3_x + d3_d3_N4*e[6]) + g[1]*(d3_d3_N2*e[3] + d3_d3_N3*d3_y + d3_d3_N4*e[7]);
+}

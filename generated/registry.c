@@ -279,8 +279,10 @@ static const fu_resistance_kernels resistances[] = {
 };
 
 static const fu_rope_point_kernels rope_points[] = {
-    {"planar_rope_point", 2, planar_rope_point_point, planar_rope_point_wrench, planar_rope_point_discrete_point},
-    {"rope_point", 3, rope_point_point, rope_point_wrench, rope_point_discrete_point},
+    {"planar_rope_point", 2, planar_rope_point_point, planar_rope_point_wrench, planar_rope_point_discrete_point,
+     planar_rope_point_slope, planar_rope_point_slope_stiffness},
+    {"rope_point", 3, rope_point_point, rope_point_wrench, rope_point_discrete_point, rope_point_slope,
+     rope_point_slope_stiffness},
 };
 
 static const fu_sheave_kernels sheaves[] = {
@@ -409,6 +411,8 @@ static const fu_taut_rope_kernels taut_ropes[] = {
 #define FU_ARGUMENTS_vvvvvs_4 a[0], a[1], a[2], a[3], a[4], *a[5], out[0], out[1], out[2], out[3]
 #define FU_ARGUMENTS_vvvvvsv_2 a[0], a[1], a[2], a[3], a[4], *a[5], a[6], out[0], out[1]
 #define FU_ARGUMENTS_vvvvvs_1 a[0], a[1], a[2], a[3], a[4], *a[5], out[0]
+#define FU_ARGUMENTS_vvvvvss_4 a[0], a[1], a[2], a[3], a[4], *a[5], *a[6], out[0], out[1], out[2], out[3]
+#define FU_ARGUMENTS_vvvvvssv_1 a[0], a[1], a[2], a[3], a[4], *a[5], *a[6], a[7], out[0]
 #define FU_ARGUMENTS_vvsv_3 a[0], a[1], *a[2], a[3], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vvv_7 a[0], a[1], a[2], out[0], out[1], out[2], out[3], out[4], out[5], out[6]
 #define FU_ARGUMENTS_vssvs_1 a[0], *a[1], *a[2], a[3], *a[4], out[0]
@@ -1032,9 +1036,13 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(planar_rope_point_point, vvvvvs_4) \
     X(planar_rope_point_wrench, vvvvvsv_2) \
     X(planar_rope_point_discrete_point, vvvvvs_1) \
+    X(planar_rope_point_slope, vvvvvss_4) \
+    X(planar_rope_point_slope_stiffness, vvvvvssv_1) \
     X(rope_point_point, vvvvvs_4) \
     X(rope_point_wrench, vvvvvsv_2) \
     X(rope_point_discrete_point, vvvvvs_1) \
+    X(rope_point_slope, vvvvvss_4) \
+    X(rope_point_slope_stiffness, vvvvvssv_1) \
     X(planar_sheave_tangent_point, vvsv_3) \
     X(planar_sheave_tangent_point_motion, vvv_1) \
     X(planar_sheave_angle, vvv_7) \

@@ -404,3 +404,187 @@ void rope_point_discrete_point(const fu_real *e, const fu_real *e_next, const fu
     P[40] = -along_l_z*part + along_z*(share[0] - 1.0);
     P[41] = along_l_z*part - along_z*share[0];
 }
+
+/* slope at a place that moves along the rope, its derivatives and motion; 129 add, 191 mul, 21 div */
+void rope_point_slope(const fu_real *e, const fu_real *v, const fu_real *s, const fu_real *s_rate, const fu_real *share, fu_real S, fu_real S_rate, fu_real *t, fu_real *T, fu_real *rate, fu_real *bias)
+{
+    /* shape functions */
+    const fu_real
+        L = -s[0] + s[1],
+        l = L*(-share[0] + share[1]),
+        w = 1.0/l,
+        xi = w*(-L*share[0] + S - s[0]),
+        N2 = xi*(3.0*xi - 4.0) + 1.0,
+        N3 = xi*(-6.0*xi + 6.0)/l,
+        N4 = xi*(3.0*xi - 2.0);
+    /* differences from the first node */
+    fu_real d3[3], d_rate3[3];
+    FU_EACH(i, 3, d3[i] = -e[i] + e[i + 6];)
+    FU_EACH(i, 3, d_rate3[i] = -v[i] + v[i + 6];)
+    /* derivatives by s1, s2, S and along the motion */
+    const fu_real
+        d1_l = share[0] - share[1],
+        d1_w = -(d1_l*w*w),
+        d1_xi = d1_w*(-L*share[0] + S - s[0]) + share[0]*w - w,
+        d1_N2 = d1_xi*(6.0*xi - 4.0),
+        d1_N3 = -d1_l*xi*(-6.0*xi + 6.0)/(l*l) + d1_xi*(-6.0*xi/l + (-6.0*xi + 6.0)/l),
+        d1_N4 = d1_xi*(6.0*xi - 2.0),
+        d2_l = -share[0] + share[1],
+        d2_w = -(d2_l*w*w),
+        d2_xi = d2_w*(-L*share[0] + S - s[0]) - share[0]*w,
+        d2_N2 = d2_xi*(6.0*xi - 4.0),
+        d2_N3 = -d2_l*xi*(-6.0*xi + 6.0)/(l*l) + d2_xi*(-6.0*xi/l + (-6.0*xi + 6.0)/l),
+        d2_N4 = d2_xi*(6.0*xi - 2.0),
+        d3_N2 = w*(6.0*xi - 4.0),
+        d3_N3 = w*(-6.0*xi/l + (-6.0*xi + 6.0)/l),
+        d3_N4 = w*(6.0*xi - 2.0),
+        dt_L = -s_rate[0] + s_rate[1],
+        dt_l = dt_L*(-share[0] + share[1]),
+        dt_w = -(dt_l*w*w),
+        dt_xi = S_rate*w - dt_L*share[0]*w + dt_w*(-L*share[0] + S - s[0]) - s_rate[0]*w,
+        dt_N2 = dt_xi*(6.0*xi - 4.0),
+        dt_N3 = -dt_l*xi*(-6.0*xi + 6.0)/(l*l) + dt_xi*(-6.0*xi/l + (-6.0*xi + 6.0)/l),
+        dt_N4 = dt_xi*(6.0*xi - 2.0),
+        dt_dt_w = -(2.0*dt_l*dt_w*w),
+        dt_dt_xi = S_rate*dt_w - dt_L*dt_w*share[0] + dt_dt_w*(-L*share[0] + S - s[0]) - dt_w*s_rate[0] + dt_w*(S_rate - dt_L*share[0] - s_rate[0]),
+        dt_dt_N2 = dt_dt_xi*(6.0*xi - 4.0) + 6.0*dt_xi*dt_xi,
+        dt_dt_N3 = dt_dt_xi*(-6.0*xi/l + (-6.0*xi + 6.0)/l) + dt_l*(2.0*dt_l*xi*(-6.0*xi + 6.0)/(l*l*l) + dt_xi*(6.0*xi/(l*l) - (-6.0*xi + 6.0)/(l*l))) + dt_xi*(6.0*dt_l*xi/(l*l) - dt_l*(-6.0*xi + 6.0)/(l*l) - 12.0*dt_xi/l),
+        dt_dt_N4 = dt_dt_xi*(6.0*xi - 2.0) + 6.0*dt_xi*dt_xi;
+    /* outputs */
+    FU_EACH(i, 3, t[i] = N2*e[i + 3] + N3*d3[i] + N4*e[i + 9];)
+    FU_PAIRS(i, j, 3, T[15*i + j] = 0.0;)
+    T[0] += -N3;
+    T[16] += -N3;
+    T[32] += -N3;
+    FU_PAIRS(i, j, 3, T[15*i + j + 3] = 0.0;)
+    T[3] += N2;
+    T[19] += N2;
+    T[35] += N2;
+    FU_PAIRS(i, j, 3, T[15*i + j + 6] = 0.0;)
+    T[6] += N3;
+    T[22] += N3;
+    T[38] += N3;
+    FU_PAIRS(i, j, 3, T[15*i + j + 9] = 0.0;)
+    T[9] += N4;
+    T[25] += N4;
+    T[41] += N4;
+    FU_EACH(g, 3,
+        T[15*g + 12] = d1_N2*e[g + 3] + d1_N3*d3[g] + d1_N4*e[g + 9];
+        T[15*g + 13] = d2_N2*e[g + 3] + d2_N3*d3[g] + d2_N4*e[g + 9];
+        T[15*g + 14] = d3_N2*e[g + 3] + d3_N3*d3[g] + d3_N4*e[g + 9];)
+    FU_EACH(i, 3, rate[i] = N2*v[i + 3] + N3*d_rate3[i] + N4*v[i + 9] + d3[i]*dt_N3 + dt_N2*e[i + 3] + dt_N4*e[i + 9];)
+    FU_EACH(i, 3, bias[i] = d3[i]*dt_dt_N3 + 2.0*d_rate3[i]*dt_N3 + 2.0*dt_N2*v[i + 3] + 2.0*dt_N4*v[i + 9] + dt_dt_N2*e[i + 3] + dt_dt_N4*e[i + 9];)
+}
+
+/* second derivatives of the slope at a place that moves along the rope; 183 add, 380 mul, 44 div */
+void rope_point_slope_stiffness(const fu_real *e, const fu_real *v, const fu_real *s, const fu_real *s_rate, const fu_real *share, fu_real S, fu_real S_rate, const fu_real *g, fu_real *K)
+{
+    (void)v;
+    (void)s_rate;
+    (void)S_rate;
+    /* shape functions */
+    const fu_real
+        L = -s[0] + s[1],
+        l = L*(-share[0] + share[1]),
+        w = 1.0/l,
+        xi = w*(-L*share[0] + S - s[0]);
+    /* differences from the first node */
+    fu_real d3[3];
+    FU_EACH(i, 3, d3[i] = -e[i] + e[i + 6];)
+    /* derivatives by s1, s2, S */
+    fu_real d_l[2], d_w[2], d_xi[2], d_d3_N2[2], d_d3_N3[2], d_d3_N4[2];
+    d_l[0] = share[0] - share[1];
+    d_w[0] = -(d_l[0]*w*w);
+    d_xi[0] = d_w[0]*(-L*share[0] + S - s[0]) + share[0]*w - w;
+    const fu_real
+        d1_N2 = d_xi[0]*(6.0*xi - 4.0),
+        d1_N3 = -d_l[0]*xi*(-6.0*xi + 6.0)/(l*l) + d_xi[0]*(-6.0*xi/l + (-6.0*xi + 6.0)/l),
+        d1_N4 = d_xi[0]*(6.0*xi - 2.0);
+    d_l[1] = -share[0] + share[1];
+    d_w[1] = -(d_l[1]*w*w);
+    d_xi[1] = d_w[1]*(-L*share[0] + S - s[0]) - share[0]*w;
+    const fu_real
+        d2_N2 = d_xi[1]*(6.0*xi - 4.0),
+        d2_N3 = -d_l[1]*xi*(-6.0*xi + 6.0)/(l*l) + d_xi[1]*(-6.0*xi/l + (-6.0*xi + 6.0)/l),
+        d2_N4 = d_xi[1]*(6.0*xi - 2.0),
+        d3_N2 = w*(6.0*xi - 4.0),
+        d3_N3 = w*(-6.0*xi/l + (-6.0*xi + 6.0)/l),
+        d3_N4 = w*(6.0*xi - 2.0),
+        d1_d1_w = -(2.0*d_l[0]*d_w[0]*w),
+        d1_d1_xi = d1_d1_w*(-L*share[0] + S - s[0]) + d_w[0]*share[0] + d_w[0]*(share[0] - 1.0) - d_w[0],
+        d1_d1_N2 = d1_d1_xi*(6.0*xi - 4.0) + 6.0*d_xi[0]*d_xi[0],
+        d1_d1_N3 = d1_d1_xi*(-6.0*xi/l + (-6.0*xi + 6.0)/l) + d_l[0]*(2.0*d_l[0]*xi*(-6.0*xi + 6.0)/(l*l*l) + d_xi[0]*(6.0*xi/(l*l) - (-6.0*xi + 6.0)/(l*l))) + d_xi[0]*(6.0*d_l[0]*xi/(l*l) - d_l[0]*(-6.0*xi + 6.0)/(l*l) - 12.0*d_xi[0]/l),
+        d1_d1_N4 = d1_d1_xi*(6.0*xi - 2.0) + 6.0*d_xi[0]*d_xi[0],
+        d1_d2_w = -(2.0*d_w[0]*d_l[1]*w),
+        d1_d2_xi = d1_d2_w*(-L*share[0] + S - s[0]) - d_w[0]*share[0] + d_w[1]*share[0] - d_w[1],
+        d1_d2_N2 = d1_d2_xi*(6.0*xi - 4.0) + 6.0*d_xi[0]*d_xi[1],
+        d1_d2_N3 = d1_d2_xi*(-6.0*xi/l + (-6.0*xi + 6.0)/l) + d_l[0]*(2.0*d_l[1]*xi*(-6.0*xi + 6.0)/(l*l*l) + d_xi[1]*(6.0*xi/(l*l) - (-6.0*xi + 6.0)/(l*l))) + d_xi[0]*(6.0*d_l[1]*xi/(l*l) - d_l[1]*(-6.0*xi + 6.0)/(l*l) - 12.0*d_xi[1]/l),
+        d1_d2_N4 = d1_d2_xi*(6.0*xi - 2.0) + 6.0*d_xi[0]*d_xi[1],
+        d2_d2_w = -(2.0*d_l[1]*d_w[1]*w),
+        d2_d2_xi = d2_d2_w*(-L*share[0] + S - s[0]) - 2.0*d_w[1]*share[0],
+        d2_d2_N2 = d2_d2_xi*(6.0*xi - 4.0) + 6.0*d_xi[1]*d_xi[1],
+        d2_d2_N3 = d2_d2_xi*(-6.0*xi/l + (-6.0*xi + 6.0)/l) + d_l[1]*(2.0*d_l[1]*xi*(-6.0*xi + 6.0)/(l*l*l) + d_xi[1]*(6.0*xi/(l*l) - (-6.0*xi + 6.0)/(l*l))) + d_xi[1]*(6.0*d_l[1]*xi/(l*l) - d_l[1]*(-6.0*xi + 6.0)/(l*l) - 12.0*d_xi[1]/l),
+        d2_d2_N4 = d2_d2_xi*(6.0*xi - 2.0) + 6.0*d_xi[1]*d_xi[1];
+    FU_EACH(point, 2,
+        d_d3_N2[point] = d_w[point]*(6.0*xi - 4.0) + 6.0*d_xi[point]*w;
+        d_d3_N3[point] = d_l[point]*w*(6.0*xi/(l*l) - (-6.0*xi + 6.0)/(l*l)) + d_w[point]*(-6.0*xi/l + (-6.0*xi + 6.0)/l) - 12.0*d_xi[point]*w/l;
+        d_d3_N4[point] = d_w[point]*(6.0*xi - 2.0) + 6.0*d_xi[point]*w;)
+    const fu_real
+        d3_d3_N2 = 6.0*w*w,
+        d3_d3_N3 = -(12.0*w*w/l),
+        d3_d3_N4 = 6.0*w*w;
+    /* outputs */
+    FU_PAIRS(i, j, 3, K[15*i + j] = 0.0;)
+    FU_PAIRS(i, j, 3, K[15*i + j + 3] = 0.0;)
+    FU_PAIRS(i, j, 3, K[15*i + j + 6] = 0.0;)
+    FU_PAIRS(i, j, 3, K[15*i + j + 9] = 0.0;)
+    FU_EACH(point, 3,
+        K[15*point + 12] = -(d1_N3*g[point]);
+        K[15*point + 13] = -(d2_N3*g[point]);
+        K[15*point + 14] = -(d3_N3*g[point]);)
+    FU_PAIRS(i, j, 3, K[15*i + j + 45] = 0.0;)
+    FU_PAIRS(i, j, 3, K[15*i + j + 48] = 0.0;)
+    FU_PAIRS(i, j, 3, K[15*i + j + 51] = 0.0;)
+    FU_PAIRS(i, j, 3, K[15*i + j + 54] = 0.0;)
+    FU_EACH(point, 3,
+        K[15*point + 57] = d1_N2*g[point];
+        K[15*point + 58] = d2_N2*g[point];
+        K[15*point + 59] = d3_N2*g[point];)
+    FU_PAIRS(i, j, 3, K[15*i + j + 90] = 0.0;)
+    FU_PAIRS(i, j, 3, K[15*i + j + 93] = 0.0;)
+    FU_PAIRS(i, j, 3, K[15*i + j + 96] = 0.0;)
+    FU_PAIRS(i, j, 3, K[15*i + j + 99] = 0.0;)
+    FU_EACH(point, 3,
+        K[15*point + 102] = d1_N3*g[point];
+        K[15*point + 103] = d2_N3*g[point];
+        K[15*point + 104] = d3_N3*g[point];)
+    FU_PAIRS(i, j, 3, K[15*i + j + 135] = 0.0;)
+    FU_PAIRS(i, j, 3, K[15*i + j + 138] = 0.0;)
+    FU_PAIRS(i, j, 3, K[15*i + j + 141] = 0.0;)
+    FU_PAIRS(i, j, 3, K[15*i + j + 144] = 0.0;)
+    FU_EACH(point, 3,
+        K[15*point + 147] = d1_N4*g[point];
+        K[15*point + 148] = d2_N4*g[point];
+        K[15*point + 149] = d3_N4*g[point];)
+    FU_EACH(i, 3, K[i + 180] = -(d1_N3*g[i]);)
+    FU_EACH(i, 3, K[i + 183] = d1_N2*g[i];)
+    FU_EACH(i, 3, K[i + 186] = d1_N3*g[i];)
+    FU_EACH(i, 3, K[i + 189] = d1_N4*g[i];)
+    K[192] = g[0]*(d1_d1_N2*e[3] + d1_d1_N3*d3[0] + d1_d1_N4*e[9]) + g[1]*(d1_d1_N2*e[4] + d1_d1_N3*d3[1] + d1_d1_N4*e[10]) + g[2]*(d1_d1_N2*e[5] + d1_d1_N3*d3[2] + d1_d1_N4*e[11]);
+    K[193] = g[0]*(d1_d2_N2*e[3] + d1_d2_N3*d3[0] + d1_d2_N4*e[9]) + g[1]*(d1_d2_N2*e[4] + d1_d2_N3*d3[1] + d1_d2_N4*e[10]) + g[2]*(d1_d2_N2*e[5] + d1_d2_N3*d3[2] + d1_d2_N4*e[11]);
+    K[194] = g[0]*(d_d3_N2[0]*e[3] + d_d3_N3[0]*d3[0] + d_d3_N4[0]*e[9]) + g[1]*(d_d3_N2[0]*e[4] + d_d3_N3[0]*d3[1] + d_d3_N4[0]*e[10]) + g[2]*(d_d3_N2[0]*e[5] + d_d3_N3[0]*d3[2] + d_d3_N4[0]*e[11]);
+    FU_EACH(i, 3, K[i + 195] = -(d2_N3*g[i]);)
+    FU_EACH(i, 3, K[i + 198] = d2_N2*g[i];)
+    FU_EACH(i, 3, K[i + 201] = d2_N3*g[i];)
+    FU_EACH(i, 3, K[i + 204] = d2_N4*g[i];)
+    K[207] = g[0]*(d1_d2_N2*e[3] + d1_d2_N3*d3[0] + d1_d2_N4*e[9]) + g[1]*(d1_d2_N2*e[4] + d1_d2_N3*d3[1] + d1_d2_N4*e[10]) + g[2]*(d1_d2_N2*e[5] + d1_d2_N3*d3[2] + d1_d2_N4*e[11]);
+    K[208] = g[0]*(d2_d2_N2*e[3] + d2_d2_N3*d3[0] + d2_d2_N4*e[9]) + g[1]*(d2_d2_N2*e[4] + d2_d2_N3*d3[1] + d2_d2_N4*e[10]) + g[2]*(d2_d2_N2*e[5] + d2_d2_N3*d3[2] + d2_d2_N4*e[11]);
+    K[209] = g[0]*(d_d3_N2[1]*e[3] + d_d3_N3[1]*d3[0] + d_d3_N4[1]*e[9]) + g[1]*(d_d3_N2[1]*e[4] + d_d3_N3[1]*d3[1] + d_d3_N4[1]*e[10]) + g[2]*(d_d3_N2[1]*e[5] + d_d3_N3[1]*d3[2] + d_d3_N4[1]*e[11]);
+    FU_EACH(i, 3, K[i + 210] = -(d3_N3*g[i]);)
+    FU_EACH(i, 3, K[i + 213] = d3_N2*g[i];)
+    FU_EACH(i, 3, K[i + 216] = d3_N3*g[i];)
+    FU_EACH(i, 3, K[i + 219] = d3_N4*g[i];)
+    K[222] = g[0]*(d_d3_N2[0]*e[3] + d_d3_N3[0]*d3[0] + d_d3_N4[0]*e[9]) + g[1]*(d_d3_N2[0]*e[4] + d_d3_N3[0]*d3[1] + d_d3_N4[0]*e[10]) + g[2]*(d_d3_N2[0]*e[5] + d_d3_N3[0]*d3[2] + d_d3_N4[0]*e[11]);
+    K[223] = g[0]*(d_d3_N2[1]*e[3] + d_d3_N3[1]*d3[0] + d_d3_N4[1]*e[9]) + g[1]*(d_d3_N2[1]*e[4] + d_d3_N3[1]*d3[1] + d_d3_N4[1]*e[10]) + g[2]*(d_d3_N2[1]*e[5] + d_d3_N3[1]*d3[2] + d_d3_N4[1]*e[11]);
+    K[224] = g[0]*(d3_d3_N2*e[3] + d3_d3_N3*d3[0] + d3_d3_N4*e[9]) + g[1]*(d3_d3_N2*e[4] + d3_d3_N3*d3[1] + d3_d3_N4*e[10]) + g[2]*(d3_d3_N2*e[5] + d3_d3_N3*d3[2] + d3_d3_N4*e[11]);
+}

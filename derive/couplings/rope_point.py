@@ -6,7 +6,8 @@ L = s2 - s1 of the span, so that in the element
     r = N(x; l) e,   x = S - s1 - a L,   l = (b - a) L.
 
 The point moves with the nodal vectors e and with the coordinates s1, s2 of the span. At the nodes of elements r and its
-first derivatives are continuous.
+first derivatives are continuous. The frame at a slide moves along the rope: its slope t = N_x e has S as a coordinate,
+too.
 
 Over a step that conserves energy, with means ~ and changes d, and differences D of the shape functions by s1, s2,
 
@@ -45,13 +46,16 @@ def families() -> list[CouplingFamily]:
 
 def build(dim: int) -> list[Program]:
     """Return the kernels of a point."""
-    return [point(dim), wrench(dim), discrete_point(dim)]
+    return [point(dim), wrench(dim), discrete_point(dim), slope(dim), slope_stiffness(dim)]
 
 
 class _Point:
-    """Inputs and stages: shape functions, less those of the first node, over the span's coordinates e, s1, s2."""
+    """Inputs and stages: shape functions, less those of the first node, over the span's coordinates e, s1, s2.
 
-    def __init__(self, p: Program, dim: int):
+    of_slope: of r_x at a place that moves: S is the last coordinate.
+    """
+
+    def __init__(self, p: Program, dim: int, of_slope: bool = False):
         span = FlowingElement(ELEMENTS[ELEMENT[dim]])
         self.program, self.positions = p, span.element.is_position
         self.e = span.coordinates(p)
@@ -60,16 +64,20 @@ class _Point:
         self.s_rate = p.input("s_rate", 2, "m/s", "rates of s1, s2")
         share = p.input("share", 2, "1", "shares a, b of the nodes in the length of the span")
         S = p.input("S", (), "m", "material coordinate of the point")
+        along_rope = {S: p.input("S_rate", (), "m/s", "rate of S")} if of_slope else {}
         self.first = self.positions.index(True)
         self.others = [k for k in range(len(self.positions)) if k != self.first]
         p.stage("shape functions")
         L = p.define("L", self.s[1] - self.s[0])
         l = p.define("l", (share[1] - share[0]) * L)
         xi = p.define("xi", (S - self.s[0] - share[0] * L) * p.define("w", 1 / l))
+        shapes = [(sp.diff(shape, along), power - 1) if of_slope else (shape, power)
+                  for shape, power in zip(span.unit_shapes, span.powers, strict=True)]
         self.N = np.array([0 if k == self.first else p.define(f"N{k + 1}", l**power * sp.horner(shape.subs(along, xi)))
-                           for k, (shape, power) in enumerate(zip(span.unit_shapes, span.powers, strict=True))])
-        self.ends = [DirectionalDerivative(p, f"d{i + 1}", {self.s[i]: 1}) for i in range(2)]
-        self.time = DirectionalDerivative(p, "dt", dict(zip(self.s, self.s_rate, strict=True)))
+                           for k, (shape, power) in enumerate(shapes)])
+        self.ends = [DirectionalDerivative(p, f"d{i + 1}", {symbol: 1})
+                     for i, symbol in enumerate([*self.s, *along_rope])]
+        self.time = DirectionalDerivative(p, "dt", dict(zip(self.s, self.s_rate, strict=True)) | along_rope)
         p.stage("differences from the first node")
         self.d, self.d_rate = (np.array([p.vector(f"{name}{k + 1}", vectors[k] - vectors[self.first])
                                          if position and k != self.first else vectors[k]
@@ -92,9 +100,9 @@ class _Point:
         return found
 
 
-def _program(dim: int, kernel: str, doc: str) -> tuple[Program, _Point]:
+def _program(dim: int, kernel: str, doc: str, of_slope: bool = False) -> tuple[Program, _Point]:
     p = Program(f"{NAMES[dim]}_{kernel}", doc, SOURCE)
-    return p, _Point(p, dim)
+    return p, _Point(p, dim, of_slope)
 
 
 def _over_coordinates(dim: int, shapes: np.ndarray, by_ends: Any) -> np.ndarray:
@@ -136,6 +144,39 @@ def wrench(dim: int) -> Program:
     p.output("K", K, "N, N/m", "derivatives of P' f by e, s1, s2")
     p.output("v_q", _over_coordinates(dim, at.of_all(rate, 0), by_ends), "1/s, m/s",
              "derivatives of the velocity by e, s1, s2")
+    return p
+
+
+def slope(dim: int) -> Program:
+    """Return the kernel of the motion of the slope at a slide."""
+    p, at = _program(dim, "slope", "slope at a place that moves along the rope, its derivatives and motion", True)
+    p.stage("derivatives by s1, s2, S and along the motion")
+    by_ends = [at.sum(at.named(f"N_{i + 1}_", end.array(at.N)), at.d) for i, end in enumerate(at.ends)]
+    rate = at.named("N_t", at.time.array(at.N))
+    second = at.named("N_tt", at.time.array(rate))
+    p.output("t", at.sum(at.N, at.d), "1", "slope r_x")
+    p.output("T", _over_coordinates(dim, at.of_all(at.N, 0), by_ends), "1/m, 1", "derivatives of t by e, s1, s2, S")
+    p.output("rate", at.sum(at.N, at.d_rate) + at.sum(rate, at.d), "1/s", "rate of t")
+    p.output("bias", 2 * at.sum(rate, at.d_rate) + at.sum(second, at.d), "1/s^2",
+             "its second rate at zero second rates")
+    return p
+
+
+def slope_stiffness(dim: int) -> Program:
+    """Return the kernel of the second derivatives of g . t for a constant vector g."""
+    p, at = _program(dim, "slope_stiffness", "second derivatives of the slope at a place that moves along the rope",
+                     True)
+    g = p.input("g", dim, "N m", "a vector")
+    p.stage("derivatives by s1, s2, S")
+    first = [at.named(f"N_{i + 1}_", end.array(at.N)) for i, end in enumerate(at.ends)]
+    n, more = len(at.positions) * dim, len(at.ends)
+    K = np.zeros((n + more, n + more), dtype=object)
+    for i, by_end in enumerate(first):
+        K[:n, n + i] = K[n + i, :n] = np.outer(at.of_all(by_end, 0), g).ravel()
+        for j in range(i + 1):
+            both = at.named(f"N_{i + 1}{j + 1}_", at.ends[j].array(by_end))
+            K[n + i, n + j] = K[n + j, n + i] = g.dot(at.sum(both, at.d))
+    p.output("K", K, "N, N/m, N m", "derivatives of T' g by e, s1, s2, S")
     return p
 
 

@@ -12,6 +12,7 @@ from ..parts.cable import Cable
 from ..parts.joint import Joint
 from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
+from .rope_line import rope_line
 
 
 class JointAxes(NamedTuple):
@@ -82,14 +83,31 @@ def joint_axes(scene: SceneData, joint: Joint) -> JointAxes:
     return JointAxes(*(end_frame(scene, end, joint.up).T @ joint.axes for end in (joint.a, joint.b)))
 
 
+def rope_frame(scene: SceneData, name: str, s: float, up: Sequence[float] | None = None) -> np.ndarray:
+    """Return (3, 3): tangent, height and width of a rope as drawn at ``s``, as columns; by default any height."""
+    tangent = _unit(rope_line(scene, name).slope(s))
+    if scene.ropes[name].dim == 2:
+        width = plane_normal(scene)
+    else:
+        width = _unit(np.cross(tangent, np.eye(3)[np.argmin(np.abs(tangent))] if up is None else up))
+    return np.column_stack([tangent, np.cross(width, tangent), width])
+
+
+def _frame_along(scene: SceneData, slide: Slide) -> np.ndarray:
+    if slide.along in scene.ropes:
+        return rope_frame(scene, slide.along, slide.arc_length, slide.up)
+    along = scene.cables[slide.along]
+    if slide.frame == "section" and draws_section(along):
+        return section_frame(along, slide.arc_length)
+    return cable_frame(along, slide.arc_length, slide.up)
+
+
 def slide_axes(scene: SceneData, slide: Slide) -> JointAxes:
     """Return the axes that a slide of frame "tangent" or "section" aligns: a in the cable's frame, b in the rider's.
 
     z along the tangent, x along the height, y along the width. With roll "fixed" the cable's frame is that of
     `cable_frame` with the slide's up, at every s; with roll "free" the rotation about z is free.
     """
-    along = scene.cables[slide.along]
-    frame = (section_frame(along, slide.arc_length) if slide.frame == "section" and draws_section(along)
-             else cable_frame(along, slide.arc_length, slide.up))
+    frame = _frame_along(scene, slide)
     order = np.eye(3)[:, [1, 2, 0]]
     return JointAxes(order, end_frame(scene, slide.rider).T @ frame @ order)

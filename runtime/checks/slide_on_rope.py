@@ -41,10 +41,10 @@ def check_on_line(scene: SceneData, slide: Slide, line: Line, s: float) -> None:
 
 
 def check_possible_on_rope(slide: Slide, line: RopeLine) -> None:
-    """Raise SceneError for what a slide with s on a rope does not have: a frame, and some stops at ends of its span."""
-    if slide.frame != "point":
-        raise SceneError(slide.where, f'frame "{slide.frame}" needs the axes of a cable, which {line.where} does not '
-                         "have", 'take frame="point"')
+    """Raise SceneError for what a slide with s on a rope does not have: a section, and stops at some ends."""
+    if slide.frame == "section":
+        raise SceneError(slide.where, f'frame "section" needs section axes, but {line.where} has a tangent only',
+                         'take frame="tangent"')
     number = line.rope.span_at(line.route, slide.arc_length)
     for name, item in zip(("at_start", "at_end"), line.rope.ends_of_spans[number], strict=True):
         stop = getattr(slide, name)

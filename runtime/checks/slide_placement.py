@@ -12,7 +12,7 @@ from ..parts.rigid_body import RigidBody
 from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
 from ..parts.validation import LENGTH_TOLERANCE, show
-from .frames import cable_frame, has_section
+from .frames import cable_frame, has_section, rope_frame
 from .joint_placement import check_up
 from .placement import elements_with_sections, placed_attachment, report
 from .slide_on_rope import Line, check_on_line, check_possible_on_rope, line_of
@@ -38,8 +38,8 @@ def placed_slide(scene: SceneData, slide: Slide) -> Slide:
         slide = _framed(scene, slide.completed({"s": min(max(s, 0.0), line.length)}), line)
         _check_buffers(slide, line)
     else:
-        slide = slide.completed({"s": s})
-        check_possible_on_rope(slide, line)
+        check_possible_on_rope(slide.completed({"s": s}), line)
+        slide = _framed(scene, slide.completed({"s": s}), line)
     _check_drive(slide, line)
     return _seated(scene, slide, line)
 
@@ -107,11 +107,16 @@ def _carrier(scene: SceneData, slide: Slide) -> str:
     return f'body "{slide.body}"' if line is None else line.where
 
 
-def _framed(scene: SceneData, slide: Slide, cable: Cable) -> Slide:
+def _framed(scene: SceneData, slide: Slide, line: Line) -> Slide:
     """Return the slide with up complete, checked for the vectors that its frame needs."""
     if slide.frame == "point":
         return slide
-    if slide.frame == "section" and not cable.kind_of_element.director:
+    cable = line if isinstance(line, Cable) else None
+    dim = line.dim if isinstance(line, Cable) else line.rope.dim
+    if slide.body in scene.ropes:
+        raise SceneError(slide.where, f'frame "{slide.frame}" needs axes of the rider, and rope "{slide.body}" has '
+                         "none", 'take frame="point"')
+    if slide.frame == "section" and cable is not None and not cable.kind_of_element.director:
         with_axes = '"beam12p"' if cable.dim == 2 else elements_with_sections().removeprefix("element=")
         raise SceneError(slide.where, f'frame "section" needs section axes (r_y) of cable "{cable.name}", but '
                          f"{cable.element} has a tangent only", f'take frame="tangent", or element={with_axes}')
@@ -119,13 +124,16 @@ def _framed(scene: SceneData, slide: Slide, cable: Cable) -> Slide:
         raise SceneError(slide.where, f'frame "{slide.frame}" needs section axes of the rider, cable "{rider.name}", '
                          f"but {rider.element} has a tangent only",
                          f'take frame="point", or {elements_with_sections()}')
-    if slide.roll == "free" or cable.dim == 2:
+    if slide.roll == "free" or dim == 2:
         return slide
     up = slide.up
     if up is None:
         size = np.linalg.norm(scene.gravity)
-        up = tuple((-np.array(scene.gravity) / size + 0.0).tolist()) if size > 0 else cable.height_direction
-    check_up(up, cable_frame(cable, slide.arc_length)[:, 0], f'cable "{cable.name}"', slide.where)
+        across = cable.height_direction if cable else tuple(
+            rope_frame(scene, slide.along, slide.arc_length)[:, 1].tolist())
+        up = tuple((-np.array(scene.gravity) / size + 0.0).tolist()) if size > 0 else across
+    frame = cable_frame(cable, slide.arc_length) if cable else rope_frame(scene, slide.along, slide.arc_length)
+    check_up(up, frame[:, 0], line.where, slide.where)
     return slide.completed({"up": up})
 
 

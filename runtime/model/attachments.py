@@ -139,7 +139,13 @@ class ModelBuilder:
                                length=rope.route.spans[number].length / span.n_elements)
 
     def on_slide(self, slide: Slide, number: int, axes: np.ndarray) -> AttachmentModel:
-        """Return an attachment to the frame of the cable at a slide of that number."""
+        """Return an attachment to the frame of the cable or the rope at a slide of that number."""
+        if slide.along in self.scene.ropes:
+            found = self._on_rope(slide.along, slide.arc_length)
+            found.slide, found.frame, found.axes = number, FRAMES[self.scene.dim], self._axes(axes)
+            found.slopes = (0, CARRIED if slide.roll == "free" and self.scene.dim == 3 else UP)
+            found.up = (0.0,) * 3 if slide.up is None else tuple(map(float, slide.up))
+            return found
         section = slide.frame == "section" and draws_section(self.scene.cables[slide.along])
         found = self._on_cable(slide.along, slide.arc_length, self._axes(axes), slide.up, section)
         found.slide = number

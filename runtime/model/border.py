@@ -151,7 +151,7 @@ class _Border:
 
     def _bodies_of(self, end: AttachmentModel) -> set[int]:
         """Return the groups of the body of an attachment, on a slide those of the rider."""
-        if end.node >= 0 or end.span is not None:
+        if end.slide < 0 and (end.node >= 0 or end.span is not None):
             return self._end(end).groups
         body = self.model.slides[end.slide].rider.body if end.slide >= 0 else end.body
         return {self.bodies[body]} if body >= 0 else set()
@@ -161,14 +161,22 @@ class _Border:
         if end.span is None:
             return [self._end(end)]
         nodes = [end.span.node(k) for k in range(end.span.n_elements + 1)]
-        return [self._of_unknowns(self._unknowns(np.r_[one, other, end.span.s])) for one, other in pairwise(nodes)]
+        places = [self._of_unknowns(self._unknowns(np.r_[one, other, end.span.s])) for one, other in pairwise(nodes)]
+        return places if end.slide < 0 else [place | self._place_of_slide(end.slide) for place in places]
+
+    def _place_of_slide(self, number: int) -> _Place:
+        """Return the place of what a slide adds to that of its cable: its own unknowns, or its rider."""
+        if self.system == NEWTON:
+            return _Place({self.slides[number]})
+        return self._end(self.model.slides[number].rider)
 
     def _end(self, end: AttachmentModel) -> _Place:
         """Return the place for which the equations of an attachment have entries."""
         if end.slide >= 0:
-            slide = self.model.slides[end.slide]
-            along = self.cables[end.cable]
-            return along | (_Place({self.slides[end.slide]}) if self.system == NEWTON else self._end(slide.rider))
+            span = end.span
+            along = self.cables[end.cable] if span is None else self._of_unknowns(
+                self._unknowns(np.r_[span.nodes, span.s]))
+            return along | self._place_of_slide(end.slide)
         if end.body >= 0:
             return _Place({self.bodies[end.body]})
         if end.span is not None:

@@ -22,9 +22,9 @@ class Slide(Part):
     Along a rope s is stress-free and material, from the first end as drawn: a rider with constant s moves with it. The
     slide runs within one span, past ends of elements. Its ends are those of the span, at a sheave, a drum or an anchor:
     "error" ends the run with a RopeLeftError, "leave" lets the rider go, and a `HardStop` or a `Buffer` may stand at an
-    anchor. Friction and ``traction`` are those on the material. There the frame is "point". The rope is rounded under a
-    rider: its path is off in proportion to the length of elements, and without friction it may rest beside the lowest
-    place.
+    anchor. Friction and ``traction`` are those on the material. The frame is "point" or "tangent". The rope is rounded
+    under a rider: its path is off in proportion to the length of elements, and without friction it may rest beside the
+    lowest place.
 
     body: the rider: a body; ("link", s), the point of another cable or rope; or a point (x, y, z) of the ground, an
         eyelet through which the cable slides

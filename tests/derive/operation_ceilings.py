@@ -276,8 +276,8 @@ CEILINGS = {
         "stored_force_tangent": 268, "share": 11, "point_tangent": 188, "motion": 364, "kinetic_force": 415,
         "kinetic_force_tangent": 6988
     },
-    "planar_rope_point": {"point": 357, "wrench": 776, "discrete_point": 392},
-    "rope_point": {"point": 402, "wrench": 844, "discrete_point": 297},
+    "planar_rope_point": {"point": 357, "wrench": 776, "discrete_point": 392, "slope": 294, "slope_stiffness": 519},
+    "rope_point": {"point": 402, "wrench": 844, "discrete_point": 297, "slope": 341, "slope_stiffness": 607},
     "planar_taut_rope": {
         "straight": 43, "straight_tangent": 135, "free_length": 12, "tension": 24, "tension_tangent": 70, "energy": 13,
         "slide": 29, "slide_tangent": 33

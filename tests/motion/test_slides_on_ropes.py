@@ -335,7 +335,7 @@ def slide(**more):
     (slide(s=None, at=(0, 3, 0)), ", the nearest place; draw the rope through that point"),
     (slide(along="top"), '"top" is a sheave of rope "haul"'),
     (slide(along="houl"), 'there is no cable or rope "houl"; did you mean "haul"?'),
-    (slide(frame="tangent"), 'frame "tangent" needs the axes of a cable, which rope "haul" does not have'),
+    (slide(frame="section"), 'frame "section" needs section axes, but rope "haul" has a tangent only'),
     (slide(at_end=fu.HardStop(restitution=0.5)), 'at_end: the span of rope "haul" ends at sheave "top", where the '
      'material runs past a stop; let the rider strike a surface there by a contact, or take "error"'),
     (slide(at_start=fu.Buffer(length=1, stiffness=1e3)), 'at_start: the span of rope "haul" ends at drum "winch"'),

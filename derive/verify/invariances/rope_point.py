@@ -26,6 +26,11 @@ def rope_point(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invaria
     turned = k("point", s | {"e": s["e"] @ Q.T, "v": s["v"] @ Q.T})
     for name in ("p", "velocity", "bias"):
         yield f"turned scene: {name} follows", relative(turned[name] - Q @ at[name], at[name]), 512 * EPS
+    slope = k("slope", s)
+    yield "rate of the slope = T q'", relative(
+        slope["T"] @ np.append(rates, s["S_rate"]) - slope["rate"], slope["rate"]), 64 * EPS
+    K = k("slope_stiffness", s)["K"]
+    yield "K of the slope symmetric", relative(K - K.T, K), 64 * EPS
     yield from _at_rest(family, k, s)
     yield from _at_nodes(family, k, s)
     yield from _step(family, k, s)

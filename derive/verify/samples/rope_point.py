@@ -24,4 +24,5 @@ def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) 
     e_next = element["e"] @ rotation(step, family.dim, angle=0.3).T + 0.05 * step.normal(size=element["e"].shape)
     return {"e_next": e_next, "s_next": start + np.array([0, length]) + 0.03 * length * step.normal(size=2),
             "e": element["e"], "v": random.normal(size=element["e"].shape), "s": np.array([start, start + length]),
-            "s_rate": random.normal(size=2), "share": share, "S": np.float64(S), "f": random.normal(size=family.dim)}
+            "s_rate": random.normal(size=2), "share": share, "S": np.float64(S), "f": random.normal(size=family.dim),
+            "S_rate": np.float64(step.normal()), "g": step.normal(size=family.dim)}

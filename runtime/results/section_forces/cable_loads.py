@@ -235,9 +235,10 @@ class CableLoads:
                 continue
             moment = self.at.value(f"{joint.slide}.moment")
             slide = next(each for each in self.model.slides if each.name == joint.slide)
-            cable = self.model.cables[slide.cable]
-            element, x = cable.mesh.place(np.clip(self.at.value(f"{joint.slide}.s"), 0.0, cable.mesh.total))
-            self._add(slide.cable, element, x, self._couple(cable, joint.attachments[0], element, x, -moment))
+            if slide.cable >= 0:
+                cable = self.model.cables[slide.cable]
+                element, x = cable.mesh.place(np.clip(self.at.value(f"{joint.slide}.s"), 0.0, cable.mesh.total))
+                self._add(slide.cable, element, x, self._couple(cable, joint.attachments[0], element, x, -moment))
             self._on_end(joint.attachments[1], None, moment)
 
     def _joints(self) -> None:

@@ -20,8 +20,8 @@ static void multiply(int n, int k, int m, const double *A, const double *B, doub
         }
 }
 
-/* Computes the two vectors of a cable's frame; `rows` then holds their derivatives by the element's coordinates and, on
- * a slide, by s. */
+/* Computes the two vectors of the frame of a cable or a rope; `rows` then holds their derivatives by the element's
+ * coordinates and, on a slide, by s. */
 typedef struct {
     double value[2][3], rate[2][3], second[2][3], rows[6 * FU_ATTACHMENT_COORDINATES];
     double S[2]
@@ -53,20 +53,44 @@ static void add_vector(const fu_cable *cable, const double *e, const double *v, 
     }
 }
 
+enum { ROPE_NODE = 2, ROPE_ELEMENT = 2 * ROPE_NODE, SPAN_ENDS = 2 }; /* vectors of a node and of an element; s1, s2 */
+
+/* A place on a rope at a configuration: its material coordinate, the first dof of its element, the shares of its nodes,
+ * s1 and s2. */
+typedef struct {
+    int first;
+    const double *share;
+    double material, s[SPAN_ENDS], s_rate[SPAN_ENDS];
+} rope_place;
+
+static rope_place place_on_rope(int dim, const fu_attachment *on, const fu_state *state)
+{
+    rope_place at = {.material = on->slide >= 0 ? state->s[on->slide] : on->material};
+    int element = on->slide >= 0 ? state->segment[on->slide] : 0;
+    for (int i = 0; i < SPAN_ENDS; ++i) {
+        at.s[i] = state->q[on->span_s[i]];
+        at.s_rate[i] = state->v[on->span_s[i]];
+    }
+    const double beyond = at.material - at.s[0], length = at.s[1] - at.s[0];
+    while (on->slide < 0 && element < on->span_elements - 1 && on->share[element + 1] * length < beyond) ++element;
+    at.first = on->node + element * ROPE_NODE * dim;
+    at.share = on->share + element;
+    return at;
+}
+
+/* Computes the slope of a rope at a slide, the first vector of its frame. */
+static void slope_of_rope(const fu_attachment *on, const rope_place *at, const fu_state *state, double s_rate,
+                          frame_vectors *w)
+{
+    on->rope->slope(state->q + at->first, state->v + at->first, at->s, at->s_rate, at->share, at->material, s_rate,
+                    w->value[0], w->rows, w->rate[0], w->second[0]);
+}
+
 static void vectors_of(const fu_model *model, const fu_attachment *on, const fu_state *state, double s_rate,
                        int n_columns, frame_vectors *w)
 {
-    const int on_slide = on->slide >= 0;
-    const fu_cable *cable = &model->cables[on->cable];
-    const int dim = cable->kernel->dim, n = cable->coordinates / dim;
-    const int element = on_slide ? state->segment[on->slide] : on->element;
-    const double *e = state->q + cable->first + element * cable->per_node;
-    const double *v = state->v + cable->first + element * cable->per_node;
-    double every[9 * FU_MAX_COORDINATES];
+    const int on_slide = on->slide >= 0, dim = model->dim;
     memset(w->rows, 0, sizeof(double) * 2 * (size_t)(dim * n_columns));
-    if (on_slide)
-        cable->kernel->slopes(fu_element_length(cable, element),
-                              state->s[on->slide] - fu_element_start(model, state, on->slide, element), every);
     for (int k = 0; k < 2; ++k) {
         const double *fixed =
             on->slopes[k] == FU_CARRIED ? fu_slide_numbers_of(model, state, on->slide)->director : on->up;
@@ -74,6 +98,22 @@ static void vectors_of(const fu_model *model, const fu_attachment *on, const fu_
             w->value[k][d] = fixed[d];
             w->rate[k][d] = w->second[k][d] = 0.0;
         }
+    }
+    if (on->rope) {
+        const rope_place at = place_on_rope(dim, on, state);
+        slope_of_rope(on, &at, state, s_rate, w);
+        return;
+    }
+    const fu_cable *cable = &model->cables[on->cable];
+    const int n = cable->coordinates / dim;
+    const int element = on_slide ? state->segment[on->slide] : on->element;
+    const double *e = state->q + cable->first + element * cable->per_node;
+    const double *v = state->v + cable->first + element * cable->per_node;
+    double every[9 * FU_MAX_COORDINATES];
+    if (on_slide)
+        cable->kernel->slopes(fu_element_length(cable, element),
+                              state->s[on->slide] - fu_element_start(model, state, on->slide, element), every);
+    for (int k = 0; k < 2; ++k) {
         if (on->slopes[k] < 0) {
             memset(w->S[k], 0, sizeof w->S[k]);
             continue;
@@ -87,32 +127,8 @@ static void vectors_of(const fu_model *model, const fu_attachment *on, const fu_
     }
 }
 
-enum { ROPE_NODE = 2, ROPE_ELEMENT = 2 * ROPE_NODE, SPAN_ENDS = 2 }; /* vectors of a node and of an element; s1, s2 */
-
-/* A material point of a rope at a configuration: the first dof of its element, the shares of its nodes, s1 and s2. */
-typedef struct {
-    int first;
-    const double *share;
-    double s[SPAN_ENDS], s_rate[SPAN_ENDS];
-} rope_place;
-
-static rope_place place_on_rope(int dim, const fu_attachment *on, const fu_state *state)
-{
-    rope_place at;
-    int element = 0;
-    for (int i = 0; i < SPAN_ENDS; ++i) {
-        at.s[i] = state->q[on->span_s[i]];
-        at.s_rate[i] = state->v[on->span_s[i]];
-    }
-    const double beyond = on->material - at.s[0], length = at.s[1] - at.s[0];
-    while (element < on->span_elements - 1 && on->share[element + 1] * length < beyond) ++element;
-    at.first = on->node + element * ROPE_NODE * dim;
-    at.share = on->share + element;
-    return at;
-}
-
 /* Returns the number of coordinates of an attachment, and their numbers for fu_add; on a slide the last of them is
- * s, at a material point of a rope the last two are s1 and s2. */
+ * s, on a rope s1 and s2 stand before it. */
 int fu_attachment_coordinates(const fu_model *model, const fu_attachment *on, const fu_state *state, int *at)
 {
     if (on->body >= 0) {
@@ -125,7 +141,9 @@ int fu_attachment_coordinates(const fu_model *model, const fu_attachment *on, co
         const int n = ROPE_ELEMENT * model->dim, first = place_on_rope(model->dim, on, state).first;
         for (int i = 0; i < n; ++i) at[i] = first + i;
         for (int i = 0; i < SPAN_ENDS; ++i) at[n + i] = on->span_s[i];
-        return n + SPAN_ENDS;
+        if (on->slide < 0) return n + SPAN_ENDS;
+        at[n + SPAN_ENDS] = fu_extra(model, model->slides[on->slide].base.unknown);
+        return n + SPAN_ENDS + 1;
     }
     if (on->node >= 0) {
         for (int d = 0; d < model->dim; ++d) at[d] = on->node + d;
@@ -153,14 +171,14 @@ static void point_of(const fu_model *model, const fu_attachment *on, const fu_st
         else body->kernel->place(b, on->u, out->p, out->P);
         return;
     }
-    if (on->rope) {
+    if (on->rope && on->slide < 0) {
         const rope_place at = place_on_rope(dim, on, state);
-        on->rope->point(state->q + at.first, state->v + at.first, at.s, at.s_rate, at.share, on->material, out->p,
+        on->rope->point(state->q + at.first, state->v + at.first, at.s, at.s_rate, at.share, at.material, out->p,
                         out->P, out->v, out->bias);
         return;
     }
     memset(out->P, 0, sizeof(double) * (size_t)(dim * n));
-    for (int d = 0; on->node >= 0 && d < dim; ++d) {
+    for (int d = 0; on->node >= 0 && !on->rope && d < dim; ++d) {
         out->P[d * n + d] = 1.0;
         out->p[d] = state->q[on->node + d];
         out->v[d] = state->v[on->node + d];
@@ -268,7 +286,7 @@ static void derivatives_on_rope(const fu_model *model, const fu_attachment *on, 
     const rope_place at = place_on_rope(model->dim, on, state);
     const double none[3] = {0.0};
     double unused[3 * FU_ATTACHMENT_COORDINATES];
-    on->rope->wrench(state->q + at.first, state->v + at.first, at.s, at.s_rate, at.share, on->material, f ? f : none, K,
+    on->rope->wrench(state->q + at.first, state->v + at.first, at.s, at.s_rate, at.share, at.material, f ? f : none, K,
                      v_q ? v_q : unused);
 }
 
@@ -290,6 +308,17 @@ static void add_stiffness_of_s(const fu_model *model, const fu_attachment *on, c
         }
 }
 
+/* Adds the second derivatives of the slope of a rope. */
+static void add_stiffness_of_slope(int dim, const fu_attachment *on, const fu_state *state, const double *g, int n,
+                                   double *K)
+{
+    const rope_place at = place_on_rope(dim, on, state);
+    double part[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
+    on->rope->slope_stiffness(state->q + at.first, state->v + at.first, at.s, at.s_rate, at.share, at.material, 0.0, g,
+                              part);
+    for (int i = 0; i < n * n; ++i) K[i] += part[i];
+}
+
 void fu_wrench_derivatives(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *f,
                            const double *m, int n, double *K, double *v_q, double *omega_q)
 {
@@ -300,7 +329,7 @@ void fu_wrench_derivatives(const fu_model *model, const fu_attachment *on, const
         derivatives_on_body(model, on, state, f, m, K, v_q, omega_q);
         return;
     }
-    if (on->rope) {
+    if (on->rope && on->slide < 0) {
         derivatives_on_rope(model, on, state, f, K, v_q);
         return;
     }
@@ -315,7 +344,8 @@ void fu_wrench_derivatives(const fu_model *model, const fu_attachment *on, const
             for (int l = 0; l < 2 * dim; ++l) sum += w.rows[l * n + i] * half[l * n + j];
             K[i * n + j] += sum;
         }
-    if (on->slide >= 0) add_stiffness_of_s(model, on, state, &w, g, n, K);
+    if (on->rope) add_stiffness_of_slope(dim, on, state, g, n, K);
+    else if (on->slide >= 0) add_stiffness_of_s(model, on, state, &w, g, n, K);
 }
 
 void fu_turn_attachment(const fu_model *model, const fu_attachment *on, const double *psi, double *rows, int n_rows,

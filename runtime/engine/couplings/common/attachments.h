@@ -6,12 +6,13 @@
 #include "bodies/bodies.h"
 
 /* An attachment: a point with axes of the ground (cable, body and node -1), of a cable's element, of a body; a node or
- * a material point of a rope, without axes; or axes alone, of the cable at a slide. */
+ * a material point of a rope, without axes; or axes alone, of the cable or the rope at a slide. */
 enum { FU_UP = -1, FU_CARRIED = -2 };
 typedef struct {
     int cable, body, element, slide; /* -1 if it is not on one */
     int node;                        /* first dof of a node of a rope, or of the nodes of a span; -1 if on none */
-    /* of a material point in a span of a rope, else null: derive/couplings/rope_point.py */
+    /* of a material point, or of the slope at a slide, in a span of a rope, else null: derive/couplings/rope_point.py
+     */
     const fu_rope_point_kernels *rope;
     int span_s[2], span_elements;  /* dofs of s1, s2 */
     const double *share;           /* of the nodes in the length of the span */

@@ -29,15 +29,15 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
         internal[coupling->unknown + r] = -fu_row_unit(equations->weights.inertia, coupling->scale[r]) * at.phi[r];
         for (int e = 0; e < 2; ++e) {
             const int n = at.n[e], last = n - 1, on_slide = joint->attachments[e].slide >= 0;
-            const int apart = joint->attachments[e].rope ? 2 : on_slide;
+            const int apart = (joint->attachments[e].rope ? 2 : 0) + on_slide;
             if (!n) continue; /* the ground */
             const double *J = at.J[e] + r * n;
-            double *on = f + at.at[e][0]; /* an attachment's coordinates are contiguous, but for the last: s of a slide,
-                                           * or of the ends of a span */
+            double *on = f + at.at[e][0]; /* an attachment's coordinates are contiguous, but for the last: s of the ends
+                                           * of a span, and s of a slide */
             if (n == FU_FRAME_DOFS && !on_slide)
                 add_row(FU_FRAME_DOFS, multipliers[r], J, on); /* a loop without remainder */
             else add_row(n - apart, multipliers[r], J, on);
-            for (int i = n - apart; !on_slide && i < n; ++i) f[at.at[e][i]] += multipliers[r] * J[i];
+            for (int i = n - apart; i < n - on_slide; ++i) f[at.at[e][i]] += multipliers[r] * J[i];
             if (on_slide && fu_joint_moves(model, joint, next, at.at[e][last]))
                 internal[at.at[e][last] - model->n_dof] -= scale * (J[last] * multipliers[r]);
         }
