@@ -1602,6 +1602,12 @@ typedef void fu_sheave_creep_kernel(const fu_real *A, fu_real R, fu_real wound, 
 /* A 2, W 1, loss 1 */
 fu_sheave_creep_kernel planar_sheave_creep;
 
+typedef void fu_sheave_store_step_kernel(fu_real rho, fu_real h, fu_real R, const fu_real *g, fu_real u, fu_real u_change, const fu_real *c, const fu_real *c_change, fu_real turn_change, const fu_real *V, fu_real *F, fu_real *V_next);
+/* inertial forces and weight of the wound rope over a step that conserves energy: rho [kg/m]; h [s]; R [m]; g
+ * [m/s^2]; u [m]; u_change [m]; c [m]; c_change [m]; turn_change [rad]; V [m/s] -> F [N m, N, N]; V_next [m/s] */
+/* g 2, c 2, c_change 2, V 3, F 4, V_next 3 */
+fu_sheave_store_step_kernel planar_sheave_store_step;
+
 typedef void fu_span_point_kernel(fu_real l, const fu_real *e, const fu_real *v, const fu_real *s_rate, fu_real xi, fu_real *r, fu_real *r_S, fu_real *velocity);
 /* place, slope and velocity of a material point: l [m]; e [m, 1]; v [m/s, 1/s]; s_rate [m/s]; xi [1] -> r [m]; r_S
  * [1]; velocity [m/s] */
@@ -1999,6 +2005,19 @@ typedef void fu_tangent_point_chord_step_kernel(const fu_real *xis, fu_real *N, 
 /* shape functions at the end of a chord over a step: xis [1] -> N [1]; N_xi [1] */
 /* xis 2, N 2x4, N_xi 4 */
 fu_tangent_point_chord_step_kernel tangent_point_chord_step;
+
+typedef void fu_tangent_point_store_step_kernel(fu_real rho, fu_real h, fu_real R, const fu_real *gravity, fu_real u, fu_real u_change, fu_real own_change, const fu_real *c, const fu_real *c_change, const fu_real *axes, const fu_real *axis, const fu_real *theta, const fu_real *V, fu_real *on_c, fu_real *moment, fu_real *on_turn, fu_real *on_u, fu_real *V_next);
+/* inertial forces and weight of a wound rope in space over a step that conserves energy: rho [kg/m]; h [s]; R [m];
+ * gravity [m/s^2]; u [m]; u_change [m]; own_change [rad]; c [m]; c_change [m]; axes [1]; axis [1]; theta [rad]; V
+ * [m/s] -> on_c [N]; moment [N m]; on_turn [N m]; on_u [N]; V_next [m/s] */
+/* gravity 3, c 3, c_change 3, axes 3x2, axis 3, theta 3, V 6, on_c 3, moment 3, on_turn 1, on_u 1, V_next 6 */
+fu_tangent_point_store_step_kernel tangent_point_store_step;
+
+typedef void fu_tangent_point_laid_step_kernel(fu_real laid, const fu_real *gravity, const fu_real *axes, fu_real angle_at, fu_real angle_change, fu_real *on_turn, fu_real *moment);
+/* weight of a rope as it is laid on a drum in space over a step that conserves energy: laid [kg m]; gravity [m/s^2];
+ * axes [1]; angle_at [rad]; angle_change [rad] -> on_turn [N m]; moment [N m] */
+/* gravity 3, axes 3x2, on_turn 1, moment 3 */
+fu_tangent_point_laid_step_kernel tangent_point_laid_step;
 
 typedef void fu_taut_part_feet_kernel(const fu_real *d, const fu_real *angle, const fu_real *reach, const fu_real *one, const fu_real *other, const fu_real *R, fu_real *l, fu_real *u, fu_real *s, fu_real *F_z, fu_real *F_zz);
 /* conditions of the feet of a straight part: d [m]; angle [rad]; reach [m]; one [1]; other [1]; R [m] -> l [m]; u
@@ -2427,6 +2446,7 @@ typedef struct {
     fu_sheave_store_energy_kernel *store_energy;
     fu_sheave_laying_kernel *laying;
     fu_sheave_creep_kernel *creep;
+    fu_sheave_store_step_kernel *store_step;
 } fu_sheave_kernels;
 
 /* What the engine needs of a span. */
@@ -2502,6 +2522,8 @@ typedef struct {
     fu_tangent_point_momentum_step_kernel *momentum_step;
     fu_tangent_point_by_products_kernel *by_products;
     fu_tangent_point_chord_step_kernel *chord_step;
+    fu_tangent_point_store_step_kernel *store_step;
+    fu_tangent_point_laid_step_kernel *laid_step;
 } fu_tangent_point_kernels;
 
 /* What the engine needs of a taut_part. */

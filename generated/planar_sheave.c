@@ -2917,3 +2917,29 @@ void planar_sheave_creep(const fu_real *A, fu_real R, fu_real wound, fu_real spa
     W[0] = 0.5*A[0]*(wound - 1.0)*(wound - 1.0) + 0.5*A[1]*wound*wound/(R*R);
     loss[0] = 0.5*(A[0] + A[1]/(R*R))*(-span_stretch + wound)*(-span_stretch + wound);
 }
+
+/* inertial forces and weight of the wound rope over a step that conserves energy (Lagrange's equations of a rope that is wound on a drum); 19 add, 36 mul, 6 div */
+void planar_sheave_store_step(fu_real rho, fu_real h, fu_real R, const fu_real *g, fu_real u, fu_real u_change, const fu_real *c, const fu_real *c_change, fu_real turn_change, const fu_real *V, fu_real *F, fu_real *V_next)
+{
+    /* velocities at the end */
+    const fu_real
+        u_next = u + u_change,
+        u_mean = u + 0.5*u_change,
+        V_next_x = 2.0*R*turn_change/h - V[0],
+        V_next_y = -V[1] + 2.0*c_change[0]/h,
+        V_next_z = -V[2] + 2.0*c_change[1]/h;
+    /* forces */
+    const fu_real
+        couple = 0.25*rho*(V[1]*V_next_z - V[2]*V_next_y),
+        gain_x = rho*(-V[0]*u + V_next_x*u_next)/h,
+        gain_y = rho*(-V[1]*u + V_next_y*u_next)/h,
+        gain_z = rho*(-V[2]*u + V_next_z*u_next)/h;
+    /* outputs */
+    F[0] = R*gain_x + couple*u_change;
+    F[1] = -g[0]*rho*u_mean + gain_y;
+    F[2] = -g[1]*rho*u_mean + gain_z;
+    F[3] = -couple*turn_change - rho*(0.5*V[0]*V_next_x + 0.5*V[1]*V_next_y + 0.5*V[2]*V_next_z + g[0]*(c[0] + 0.5*c_change[0]) + g[1]*(c[1] + 0.5*c_change[1]));
+    V_next[0] = V_next_x;
+    V_next[1] = V_next_y;
+    V_next[2] = V_next_z;
+}

@@ -299,7 +299,7 @@ static const fu_sheave_kernels sheaves[] = {
      planar_sheave_coulomb_short_tangent, planar_sheave_coulomb_short_motion, planar_sheave_short_wrap,
      planar_sheave_short_wrap_motion, planar_sheave_winding, planar_sheave_winding_motion, planar_sheave_store,
      planar_sheave_store_mass, planar_sheave_store_tangent, planar_sheave_store_energy, planar_sheave_laying,
-     planar_sheave_creep},
+     planar_sheave_creep, planar_sheave_store_step},
 };
 
 static const fu_span_kernels spans[] = {
@@ -333,7 +333,7 @@ static const fu_tangent_point_kernels tangent_points[] = {
      tangent_point_turned_conditions, tangent_point_turned_motion, tangent_point_turned_acc, tangent_point_wrap_energy,
      tangent_point_wrap_inertia, tangent_point_wrap_mass, tangent_point_wrap_weight, tangent_point_laid_weight,
      tangent_point_ring, tangent_point_momentum, tangent_point_momentum_energy, tangent_point_momentum_step,
-     tangent_point_by_products, tangent_point_chord_step},
+     tangent_point_by_products, tangent_point_chord_step, tangent_point_store_step, tangent_point_laid_step},
 };
 
 static const fu_taut_part_kernels taut_parts[] = {
@@ -446,6 +446,7 @@ static const fu_taut_rope_kernels taut_ropes[] = {
 #define FU_ARGUMENTS_ssvsvsv_2 *a[0], *a[1], a[2], *a[3], a[4], *a[5], a[6], out[0], out[1]
 #define FU_ARGUMENTS_svsssv_2 *a[0], a[1], *a[2], *a[3], *a[4], a[5], out[0], out[1]
 #define FU_ARGUMENTS_vsss_2 a[0], *a[1], *a[2], *a[3], out[0], out[1]
+#define FU_ARGUMENTS_sssvssvvsv_2 *a[0], *a[1], *a[2], a[3], *a[4], *a[5], a[6], a[7], *a[8], a[9], out[0], out[1]
 #define FU_ARGUMENTS_svvvs_3 *a[0], a[1], a[2], a[3], *a[4], out[0], out[1], out[2]
 #define FU_ARGUMENTS_ssvvv_1 *a[0], *a[1], a[2], a[3], a[4], out[0]
 #define FU_ARGUMENTS_ssvvvvv_2 *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1]
@@ -483,6 +484,8 @@ static const fu_taut_rope_kernels taut_ropes[] = {
 #define FU_ARGUMENTS_sssssvvvsv_1 *a[0], *a[1], *a[2], *a[3], *a[4], a[5], a[6], a[7], *a[8], a[9], out[0]
 #define FU_ARGUMENTS_sssvssssssvvvv_6 *a[0], *a[1], *a[2], a[3], *a[4], *a[5], *a[6], *a[7], *a[8], *a[9], a[10], a[11], a[12], a[13], out[0], out[1], out[2], out[3], out[4], out[5]
 #define FU_ARGUMENTS_vssss_2 a[0], *a[1], *a[2], *a[3], *a[4], out[0], out[1]
+#define FU_ARGUMENTS_sssvsssvvvvvv_5 *a[0], *a[1], *a[2], a[3], *a[4], *a[5], *a[6], a[7], a[8], a[9], a[10], a[11], a[12], out[0], out[1], out[2], out[3], out[4]
+#define FU_ARGUMENTS_svvss_2 *a[0], a[1], a[2], *a[3], *a[4], out[0], out[1]
 #define FU_ARGUMENTS_vvvvvv_5 a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4]
 #define FU_ARGUMENTS_vvvvvvv_3 a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vs_4 a[0], *a[1], out[0], out[1], out[2], out[3]
@@ -1090,6 +1093,7 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(planar_sheave_store_energy, ssvsvsv_2) \
     X(planar_sheave_laying, svsssv_2) \
     X(planar_sheave_creep, vsss_2) \
+    X(planar_sheave_store_step, sssvssvvsv_2) \
     X(span_cable8p_point, svvvs_3) \
     X(span_cable8p_kinetic_energy, ssvvv_1) \
     X(span_cable8p_inertia, ssvvvvv_2) \
@@ -1182,6 +1186,8 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(tangent_point_momentum_step, sssvssssssvvvv_6) \
     X(tangent_point_by_products, vssss_2) \
     X(tangent_point_chord_step, v_2) \
+    X(tangent_point_store_step, sssvsssvvvvvv_5) \
+    X(tangent_point_laid_step, svvss_2) \
     X(taut_part_feet, vvvvvv_5) \
     X(taut_part_moves, vvvvv_2) \
     X(taut_part_tangent, vvvvvvv_3) \

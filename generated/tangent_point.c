@@ -1757,3 +1757,68 @@ void tangent_point_chord_step(const fu_real *xis, fu_real *N, fu_real *N_xi)
     N_xi[2] = xis[0]*(-2.0*xis[0] - 2.0*xis[1] + 3.0) + xis[1]*(-2.0*xis[1] + 3.0);
     N_xi[3] = xis[0]*(xis[0] + xis[1] - 1.0) + xis[1]*(xis[1] - 1.0);
 }
+
+/* inertial forces and weight of a wound rope in space over a step that conserves energy (discrete derivatives; Gonzalez, J. Nonlinear Sci. 6 (1996) 449-467); 65 add, 134 mul, 15 div */
+void tangent_point_store_step(fu_real rho, fu_real h, fu_real R, const fu_real *gravity, fu_real u, fu_real u_change, fu_real own_change, const fu_real *c, const fu_real *c_change, const fu_real *axes, const fu_real *axis, const fu_real *theta, const fu_real *V, fu_real *on_c, fu_real *moment, fu_real *on_turn, fu_real *on_u, fu_real *V_next)
+{
+    /* velocities at the end */
+    const fu_real
+        u_next = u + u_change,
+        u_mean = u + 0.5*u_change,
+        w_next_x = 2.0*R*(axis[0]*theta[0] + axis[1]*theta[1] + axis[2]*theta[2] + own_change)/h - V[0],
+        w_next_y = 2.0*R*(axes[0]*theta[0] + axes[2]*theta[1] + axes[4]*theta[2])/h - V[1],
+        w_next_z = 2.0*R*(axes[1]*theta[0] + axes[3]*theta[1] + axes[5]*theta[2])/h - V[2],
+        v_next_x = -V[3] + 2.0*c_change[0]/h,
+        v_next_y = -V[4] + 2.0*c_change[1]/h,
+        v_next_z = -V[5] + 2.0*c_change[2]/h;
+    /* forces */
+    const fu_real
+        couple_x = 0.25*rho*(V[4]*v_next_z - V[5]*v_next_y),
+        couple_y = 0.25*rho*(-V[3]*v_next_z + V[5]*v_next_x),
+        couple_z = 0.25*rho*(V[3]*v_next_y - V[4]*v_next_x),
+        gain_x = R*rho*(-V[0]*u + u_next*w_next_x)/h,
+        gain_y = R*rho*(-V[1]*u + u_next*w_next_y)/h,
+        gain_z = R*rho*(-V[2]*u + u_next*w_next_z)/h,
+        held_x = 0.5*R*rho*(V[0]*u + u_next*w_next_x)/h,
+        held_y = 0.5*R*rho*(V[1]*u + u_next*w_next_y)/h,
+        held_z = 0.5*R*rho*(V[2]*u + u_next*w_next_z)/h,
+        kept_x = 0.5*axes[0]*held_y + 0.5*axes[1]*held_z + axis[0]*held_x,
+        kept_y = 0.5*axes[2]*held_y + 0.5*axes[3]*held_z + axis[1]*held_x,
+        kept_z = 0.5*axes[4]*held_y + 0.5*axes[5]*held_z + axis[2]*held_x;
+    /* outputs */
+    on_c[0] = -gravity[0]*rho*u_mean + rho*(-V[3]*u + u_next*v_next_x)/h;
+    on_c[1] = -gravity[1]*rho*u_mean + rho*(-V[4]*u + u_next*v_next_y)/h;
+    on_c[2] = -gravity[2]*rho*u_mean + rho*(-V[5]*u + u_next*v_next_z)/h;
+    moment[0] = 0.5*axes[0]*gain_y + 0.5*axes[1]*gain_z + axis[0]*gain_x + couple_x*u_change - kept_y*theta[2] + kept_z*theta[1];
+    moment[1] = 0.5*axes[2]*gain_y + 0.5*axes[3]*gain_z + axis[1]*gain_x + couple_y*u_change + kept_x*theta[2] - kept_z*theta[0];
+    moment[2] = 0.5*axes[4]*gain_y + 0.5*axes[5]*gain_z + axis[2]*gain_x + couple_z*u_change - kept_x*theta[1] + kept_y*theta[0];
+    on_turn[0] = gain_x;
+    on_u[0] = -couple_x*theta[0] - couple_y*theta[1] - couple_z*theta[2] - rho*(0.5*V[0]*w_next_x + 0.25*V[1]*w_next_y + 0.25*V[2]*w_next_z + 0.5*V[3]*v_next_x + 0.5*V[4]*v_next_y + 0.5*V[5]*v_next_z + gravity[0]*(c[0] + 0.5*c_change[0]) + gravity[1]*(c[1] + 0.5*c_change[1]) + gravity[2]*(c[2] + 0.5*c_change[2]));
+    V_next[0] = w_next_x;
+    V_next[1] = w_next_y;
+    V_next[2] = w_next_z;
+    V_next[3] = v_next_x;
+    V_next[4] = v_next_y;
+    V_next[5] = v_next_z;
+}
+
+/* weight of a rope as it is laid on a drum in space over a step that conserves energy (discrete derivatives; Gonzalez, J. Nonlinear Sci. 6 (1996) 449-467); 12 add, 30 mul, 7 cos, 6 sin */
+void tangent_point_laid_step(fu_real laid, const fu_real *gravity, const fu_real *axes, fu_real angle_at, fu_real angle_change, fu_real *on_turn, fu_real *moment)
+{
+    /* directions */
+    const fu_real
+        half = 0.5*angle_change,
+        cos_half = FU_COS(half),
+        middle = angle_at + half,
+        n_x = axes[0]*FU_COS(middle) + axes[1]*FU_SIN(middle),
+        n_y = axes[2]*FU_COS(middle) + axes[3]*FU_SIN(middle),
+        n_z = axes[4]*FU_COS(middle) + axes[5]*FU_SIN(middle),
+        across_x = -axes[0]*FU_SIN(middle) + axes[1]*FU_COS(middle),
+        across_y = -axes[2]*FU_SIN(middle) + axes[3]*FU_COS(middle),
+        across_z = -axes[4]*FU_SIN(middle) + axes[5]*FU_COS(middle);
+    /* outputs */
+    on_turn[0] = -(cos_half*laid*(gravity[0]*n_x + gravity[1]*n_y + gravity[2]*n_z));
+    moment[0] = cos_half*laid*(across_y*gravity[2] - across_z*gravity[1]);
+    moment[1] = cos_half*laid*(-across_x*gravity[2] + across_z*gravity[0]);
+    moment[2] = cos_half*laid*(across_x*gravity[1] - across_y*gravity[0]);
+}

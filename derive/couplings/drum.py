@@ -12,6 +12,14 @@ on at the height of the tangent point, from where the drum takes it to the mean 
 W(lambda) du. Of what is paid out with another stretch lambda_w than that of the span, lambda_s, the difference
 W(lambda_w) - W(lambda_s) - W'(lambda_s) (lambda_w - lambda_s) a length is dissipated, so that the span pulls on the rim
 with its own tension.
+
+Over a step that conserves energy the wound rope has the velocities v of the centre and w = R omega of the rim, whose
+means over the step are the displacements over it, dc/h and R dpsi/h. With changes d and the lengths u_0, u_1 the forces
+
+    rho d(u w) R/h + K   on psi,   rho d(u v)/h   on c,   -rho (v_0.v_1 + w_0 w_1)/2 - K dpsi/du   on u
+
+do the work d(rho u (|v|^2 + w^2)/2), for d(u v).(v_0 + v_1)/2 = d(u |v|^2/2) + du v_0.v_1/2. The couple K = rho du
+(v_0 x v_1)/4 makes their moments the change of the angular momentum: dc x (u_0 v_0 + u_1 v_1)/2 is h du (v_0 x v_1)/4.
 """
 
 from __future__ import annotations
@@ -28,7 +36,7 @@ DIM = 2
 def kernels() -> list[Program]:
     """Return the kernels of a drum."""
     return [winding(), winding_motion(), store(), store_mass(), store_tangent(), store_energy(), laying(),
-            creep()]
+            creep(), store_step()]
 
 
 def _program(kernel: str, doc: str) -> Program:
@@ -209,4 +217,28 @@ def creep() -> Program:
     # W is quadratic: the remainder of its second order is the whole, exact where the stretches nearly agree
     loss = sp.diff(_elastic(A, R, span), span, 2) * (wound - span) ** 2 / 2
     p.output("loss", [loss], "J/m", "dissipated a length that passes")
+    return p
+
+
+def store_step() -> Program:
+    """Return the kernel of the forces of the wound rope over a step that conserves energy, but the elastic one."""
+    p = _program("store_step", "inertial forces and weight of the wound rope over a step that conserves energy")
+    rho, h, R = p.input("rho", (), "kg/m", "mass of a length"), p.input("h", (), "s", "step"), _radius(p)
+    g = p.input("g", DIM, "m/s^2", "gravity")
+    u = p.input("u", (), "m", "wound length at the start of the step")
+    u_change = p.input("u_change", (), "m", "its change")
+    c = p.input("c", DIM, "m", "centre of the drum at the start of the step")
+    c_change = p.input("c_change", DIM, "m", "its change")
+    turn = p.input("turn_change", (), "rad", "rotation of the drum over the step")
+    V = p.input("V", 1 + DIM, "m/s", "velocities of the rim by the rotation, and of the centre, at the start")
+    p.stage("velocities at the end")
+    u_next, u_mean = p.define("u_next", u + u_change), p.define("u_mean", u + u_change / 2)
+    V_next = np.array(p.vector("V_next", np.array([R * turn, *c_change]) * 2 / h - V))
+    p.stage("forces")
+    couple = p.define("couple", rho * (V[1] * V_next[2] - V[2] * V_next[1]) / 4)
+    gain = np.array(p.vector("gain", rho * (u_next * V_next - u * V) / h))
+    on_u = -rho * (V.dot(V_next) / 2 + g.dot(c + c_change / 2)) - couple * turn
+    p.output("F", [R * gain[0] + couple * u_change, *(gain[1:] - rho * u_mean * g), on_u], "N m, N, N",
+             "on the drum's rotation, on the centre, on the wound length")
+    p.output("V_next", V_next, "m/s", "these velocities at the end")
     return p

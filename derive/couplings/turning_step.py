@@ -23,6 +23,13 @@ chord is d = N_i(L) D_i over the vectors from the node to the nodal places of th
 length L. With the products of these vectors,
 
     d(N_i x.D_i) = N_i~ (x~.dD_i + D_i~.dx) + (x.D_i)~ dN_i.
+
+The rope that is wound on a drum (drum.py) has the velocities w = R omega of its rim about the axis and t_i = R Omega_i
+about both vectors of the groove, beside v of the centre: its angular momentum about the centre is
+
+    H = rho R u (w a + t_i a_i/2),   d(u w a) = d(u w) a~ + (u w)~ theta x a~.
+
+It is laid on with the energy V = L g . A n_phi, whose change is L g . (A~ dn_phi + theta x A~ n_phi~).
 """
 
 from __future__ import annotations
@@ -44,7 +51,7 @@ PRODUCTS = ("x.x", "a.x", "d.x", "d.d", "a.d", "x.w", "a.w", "d.w")
 
 def kernels() -> list[Program]:
     """Return the kernels of a step."""
-    return [momentum(), momentum_energy(), momentum_step(), by_products(), chord_step()]
+    return [momentum(), momentum_energy(), momentum_step(), by_products(), chord_step(), store_step(), laid_step()]
 
 
 def _program(kernel: str, doc: str, source: str = SOURCE) -> Program:
@@ -173,4 +180,62 @@ def chord_step() -> Program:
                 for shape in shapes]
     p.output("N", np.array(N), "1", "of an element of unit length, at both ends of the step")
     p.output("N_xi", quotient, "1", "their change over that of xi")
+    return p
+
+
+def store_step() -> Program:
+    """Return the kernel of the forces of the rope on a drum over a step, but the elastic one; see drum.py, too."""
+    p = _program("store_step", "inertial forces and weight of a wound rope in space over a step that conserves energy")
+    rho, h = p.input("rho", (), "kg/m", "mass of a length"), p.input("h", (), "s", "step")
+    R = p.input("R", (), "m", "radius to the axis of the rope")
+    g = p.input("gravity", DIM, "m/s^2", "gravity")
+    u = p.input("u", (), "m", "wound length at the start of the step")
+    u_change = p.input("u_change", (), "m", "its change")
+    own = p.input("own_change", (), "rad", "rotation of the drum on its carrier over the step")
+    c = p.input("c", DIM, "m", "centre of the drum at the start of the step")
+    c_change = p.input("c_change", DIM, "m", "its change")
+    axes = _axes(p, ", means over the step")
+    axis = p.input("axis", DIM, "1", "axis, mean over the step")
+    theta = p.input("theta", DIM, "rad", "turn of the groove by its Cayley vector")
+    V = p.input("V", DIM + DIM, "m/s", "w, t_1, t_2 and the velocity of the centre at the start")
+    frame = [axis, axes[:, 0], axes[:, 1]]
+    p.stage("velocities at the end")
+    u_next, u_mean = p.define("u_next", u + u_change), p.define("u_mean", u + u_change / 2)
+    turns = np.array([R * (axis.dot(theta) + own), *(R * unit.dot(theta) for unit in frame[1:])])
+    w, v = V[:DIM], V[DIM:]
+    w_next = np.array(p.vector("w_next", turns * 2 / h - w))
+    v_next = np.array(p.vector("v_next", c_change * 2 / h - v))
+    p.stage("forces")
+    couple = np.array(p.vector("couple", rho * cross(v, v_next) / 4))
+    gain = np.array(p.vector("gain", rho * R * (u_next * w_next - u * w) / h))
+    held = p.vector("held", rho * R * (u_next * w_next + u * w) / (2 * h))
+    parts = (1, sp.Rational(1, 2), sp.Rational(1, 2))
+    gained = sum(part * gain[k] * frame[k] for k, part in enumerate(parts))
+    kept = np.array(p.vector("kept", sum(part * held[k] * frame[k] for k, part in enumerate(parts))))
+    on_u = -rho * (w[0] * w_next[0] / 2 + w[1:].dot(w_next[1:]) / 4 + v.dot(v_next) / 2
+                   + g.dot(c + c_change / 2)) - couple.dot(theta)
+    p.output("on_c", rho * (u_next * v_next - u * v) / h - rho * u_mean * g, "N", "force on the centre")
+    p.output("moment", gained + cross(theta, kept) + u_change * couple, "N m", "moment on the body about the centre")
+    p.output("on_turn", [gain[0]], "N m", "moment on the rotation of the drum on its carrier")
+    p.output("on_u", [on_u], "N", "force on the wound length")
+    p.output("V_next", [*w_next, *v_next], "m/s", "these velocities at the end")
+    return p
+
+
+def laid_step() -> Program:
+    """Return the kernel of the forces of the height at which a rope is laid on a drum over a step."""
+    p = _program("laid_step", "weight of a rope as it is laid on a drum in space over a step that conserves energy")
+    weight = p.input("laid", (), "kg m", "rho sigma R^2 over the stretch of the wound rope")
+    g = p.input("gravity", DIM, "m/s^2", "gravity")
+    axes = _axes(p, ", means over the step")
+    phi = p.input("angle_at", (), "rad", "angle of the tangent point at the start of the step")
+    phi_change = p.input("angle_change", (), "rad", "its change")
+    p.stage("directions")
+    half = p.define("half", phi_change / 2)
+    cos = p.define("cos_half", sp.cos(half))
+    n, across = (p.vector(name, axes.dot(v)) for name, v in zip(("n", "across"), radial_and_along(
+        p.define("middle", phi + half)), strict=True))
+    p.stage("forces")
+    p.output("on_turn", [-weight * cos * g.dot(np.array(n))], "N m", "moment on the angle of the tangent point")
+    p.output("moment", weight * cos * cross(np.array(across), g), "N m", "moment on the body")
     return p

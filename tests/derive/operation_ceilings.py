@@ -286,7 +286,7 @@ CEILINGS = {
     "tangent_point": {"conditions": 1744, "motion": 325, "chord": 202, "across": 27, "turned_conditions": 2017,
                       "turned_motion": 369, "turned_acc": 4, "wrap_energy": 93, "wrap_inertia": 616, "wrap_mass": 183,
                       "wrap_weight": 63, "laid_weight": 139, "ring": 22, "momentum": 62, "momentum_energy": 8,
-                      "momentum_step": 371, "by_products": 119, "chord_step": 63},
+                      "momentum_step": 371, "by_products": 119, "chord_step": 63, "store_step": 214, "laid_step": 55},
     "planar_sheave": {
         "tangent_point": 27, "tangent_point_motion": 26, "angle": 121, "energy": 13, "weight": 21, "force": 85,
         "tangent": 204, "kinetic_energy": 60, "inertia": 213, "mass_matrix": 162, "inertia_tangent": 1099,
@@ -298,6 +298,6 @@ CEILINGS = {
         "short_wrap": 399, "short_wrap_motion": 52,
         "winding": 46, "winding_motion": 29, "store": 69, "store_mass": 5, "store_tangent": 71, "store_energy": 15,
         "laying": 9,
-        "creep": 17, "momentum": 16, "momentum_energy": 6, "momentum_step": 133
+        "creep": 17, "momentum": 16, "momentum_energy": 6, "momentum_step": 133, "store_step": 61
     },
 }

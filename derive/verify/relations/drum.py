@@ -22,7 +22,7 @@ N = 4
 
 def drum() -> list[Relation]:
     """Return the relations of a drum's kernels."""
-    return [*_of_winding(), *_of_motion(), *_of_energies(), *_of_forces(), *_of_tangent()]
+    return [*_of_winding(), *_of_motion(), *_of_energies(), *_of_forces(), *_of_tangent(), *_of_step()]
 
 
 def passing(s: State) -> Any:
@@ -150,3 +150,50 @@ def _of_tangent() -> list[Relation]:
             Relation("store_tangent", "D", "dF by rates", 1, along(force, (*RATES, ("u_rate", 1))), N),
             Relation("store_tangent", "K", "dF by the centre, the length and the slope", 1,
                      along(force, (*COORDINATES, ("slope", 2))), 5)]
+
+
+CHANGES = ("u_change", "c_change", "turn_change")
+
+
+def _of_step() -> list[Relation]:
+    def ends(k: Numbers, s: State) -> tuple[State, State]:
+        """Return the wound rope at both ends of a step, its velocities as spin and c_rate."""
+        after = s | {"u": s["u"] + s["u_change"], "c": s["c"] + s["c_change"], "V": k("store_step", s)["V_next"]}
+        one, other = (at | {"spin": at["V"][0] / s["R"], "c_rate": at["V"][1:]} for at in (s, after))
+        return one, other
+
+    def energies(k: Numbers, s: State) -> Any:
+        one, other = (k("store_energy", at) for at in ends(k, s))
+        return other["T"] + other["V"] - one["T"] - one["V"]
+
+    def angular_momentum(k: Numbers, s: State) -> Any:
+        """Return the change of the angular momentum over h, less the moment of the weight."""
+        one, other = (s["rho"] * at["u"] * (s["R"] * at["V"][0] + _cross(at["c"], at["V"][1:])) for at in ends(k, s))
+        weight = s["rho"] * (s["u"] + s["u_change"] / 2) * s["g"]
+        return (other - one) / s["h"] - _cross(s["c"] + s["c_change"] / 2, weight)
+
+    def moment(k: Numbers, s: State) -> Any:
+        F = k("store_step", s)["F"]
+        return F[0] + _cross(s["c"] + s["c_change"] / 2, F[CENTRE])
+
+    def work(k: Numbers, s: State) -> Any:
+        F = k("store_step", s)["F"]
+        return F[0] * s["turn_change"] + F[CENTRE].dot(s["c_change"]) + F[LENGTH] * s["u_change"]
+
+    def only(s: State, changing: tuple[str, ...]) -> State:
+        return s | {name: 0 * s[name] for name in CHANGES if name not in changing}
+
+    works = [Relation("store_step", "F", f"work where {', '.join(changing)} change: that of the energies", 0,
+                      lambda k, s, t, j, changing=changing: energies(k, only(s, changing)),
+                      of=lambda k, s, changing=changing: work(k, only(s, changing)))
+             for changing in (CHANGES, ("u_change",), ("c_change",), ("turn_change",))]
+    return [*works,
+            Relation("store_step", "F", "moment: the change of the angular momentum", 0,
+                     lambda k, s, t, j: angular_momentum(k, s), of=moment),
+            Relation("store_step", "V_next", "with V, the mean: displacements over h", 0,
+                     lambda k, s, t, j: 2 / s["h"] * np.array([s["R"] * s["turn_change"], *s["c_change"]]),
+                     of=lambda k, s: k("store_step", s)["V_next"] + s["V"])]
+
+
+def _cross(a: np.ndarray, b: np.ndarray) -> Any:
+    return a[0] * b[1] - a[1] * b[0]

@@ -21,7 +21,7 @@ STEP = "momentum_step"
 
 def turning_step() -> list[Relation]:
     """Return the relations of the kernels."""
-    return [*_of_momentum(), *_of_step(), *_of_products(), *_of_chord()]
+    return [*_of_momentum(), *_of_step(), *_of_products(), *_of_chord(), *_of_store(), *_of_laying()]
 
 
 def _of_momentum() -> list[Relation]:
@@ -112,3 +112,76 @@ def _of_chord() -> list[Relation]:
 
     return [Relation("chord_step", "N", "shape functions at 50 digits", 0, root(shapes)),
             Relation("chord_step", "N_xi", "the change of N over that of xi", 0, quotient)]
+
+
+OF_STORE = ("u_change", "c_change", "own_change", "theta")
+
+
+def _turned(s: State, sign: int, vector: Any) -> Any:
+    """Return a vector of the groove at an end of the step, by its mean over the step."""
+    return vector + sign * cross(s["theta"], vector) / 2
+
+
+def _of_store() -> list[Relation]:
+    def ends(k: Numbers, s: State) -> list[tuple[Any, Any, Any]]:
+        return [(s["u"], s["c"], s["V"]),
+                (s["u"] + s["u_change"], s["c"] + s["c_change"], k("store_step", s)["V_next"])]
+
+    def energies(k: Numbers, s: State) -> Any:
+        one, other = (s["rho"] * u * (V[0] ** 2 / 2 + V[1:3].dot(V[1:3]) / 4 + V[3:].dot(V[3:]) / 2
+                                      - s["gravity"].dot(c)) for u, c, V in ends(k, s))
+        return other - one
+
+    def work(k: Numbers, s: State) -> Any:
+        found = k("store_step", s)
+        return (found["on_c"].dot(s["c_change"]) + found["moment"].dot(s["theta"])
+                + found["on_turn"] * s["own_change"] + found["on_u"] * s["u_change"])
+
+    def angular_momentum(k: Numbers, s: State) -> Any:
+        """Return the change of the angular momentum over h, less the moment of the weight."""
+        frame = [s["axis"], s["axes"][:, 0] / 2, s["axes"][:, 1] / 2]
+        one, other = (s["rho"] * u * (cross(c, V[3:]) + s["R"] * sum(V[j] * _turned(s, sign, frame[j])
+                                                                     for j in range(3)))
+                      for sign, (u, c, V) in zip((-1, 1), ends(k, s), strict=True))
+        weight = s["rho"] * (s["u"] + s["u_change"] / 2) * s["gravity"]
+        return (other - one) / s["h"] - cross(s["c"] + s["c_change"] / 2, weight)
+
+    def moment(k: Numbers, s: State) -> Any:
+        found = k("store_step", s)
+        return found["moment"] + cross(s["c"] + s["c_change"] / 2, found["on_c"])
+
+    def only(s: State, changing: tuple[str, ...]) -> State:
+        return s | {name: 0 * s[name] for name in OF_STORE if name not in changing}
+
+    def of_work(output: str, *changing: str) -> Relation:
+        return Relation("store_step", output, f"work where {', '.join(changing)} change: that of the energies", 0,
+                        lambda k, s, t, j: energies(k, only(s, changing)), of=lambda k, s: work(k, only(s, changing)))
+
+    return [of_work("on_u", *OF_STORE), of_work("on_c", "c_change"), of_work("on_turn", "own_change"),
+            Relation("store_step", "moment", "with on_c: the change of the angular momentum", 0,
+                     lambda k, s, t, j: angular_momentum(k, s), of=moment),
+            Relation("store_step", "V_next", "2 dc/h - V where all else is at rest", 0,
+                     lambda k, s, t, j: np.array([0, 0, 0, *(2 * s["c_change"] / s["h"])]) - s["V"],
+                     of=lambda k, s: k("store_step", only(s, ("c_change",)))["V_next"])]
+
+
+def _of_laying() -> list[Relation]:
+    def height(k: Numbers, s: State, sign: int, angle: Any) -> Any:
+        cosine, sine = _direction(k, angle)
+        return s["laid"] * s["gravity"].dot(_turned(s, sign, s["axes"].dot(np.array([-sine, cosine]))))
+
+    def gain(k: Numbers, s: State) -> Any:
+        return height(k, s, 1, s["angle_at"] + s["angle_change"]) - height(k, s, -1, s["angle_at"])
+
+    def work(k: Numbers, s: State) -> Any:
+        found, half = k("laid_step", s), np.asarray(s["angle_change"] / 2).item()
+        return found["on_turn"] * 2 * (k.sin(half) / k.cos(half)) + found["moment"].dot(s["theta"])
+
+    def of_work(output: str, fixed: str, text: str) -> Relation:
+        return Relation("laid_step", output, text, 0, lambda k, s, t, j: gain(k, s | {fixed: 0 * s[fixed]}),
+                        of=lambda k, s: work(k, s | {fixed: 0 * s[fixed]}))
+
+    return [of_work("on_turn", "theta", "work where the angle changes: that of the energy"),
+            of_work("moment", "angle_change", "work where the groove turns: that of the energy"),
+            Relation("laid_step", "moment", "with on_turn, work: that of the energy", 0,
+                     lambda k, s, t, j: gain(k, s), of=work)]

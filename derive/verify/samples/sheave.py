@@ -31,6 +31,8 @@ def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) 
               "l": np.float64(abs(angle) * R * random.uniform(0.8, 0.9)), "A": random.uniform(2, 5, 2),
               "rho": np.float64(1.3), "tau": np.float64(0.37)}
     found["span_slope_rate"] = random.normal(size=2)
+    found |= {"V": random.normal(size=3), "u_change": np.float64(random.uniform(0.1, 0.3)),
+              "turn_change": np.float64(random.uniform(0.1, 0.3))}
     found |= {"P": random.normal(size=2), "c_change": 0.1 * random.normal(size=2),
               "s_change": found["l"] / 20 * random.normal(size=2)} | {name: np.float64(random.uniform(*limits))
               for name, limits in {"h": (0.1, 0.2), "xi": (0.2, 0.8), "angle_at": (0.3, 1.2), "turn": (0.5, 1),

@@ -46,7 +46,9 @@ def _step(random: np.random.Generator) -> State:
     axes = rotation(random, 3)[:, :2]
     found: State = {"axes": axes, "theta": 0.3 * random.normal(size=3), "P": random.normal(size=3),
                     "c_change": 0.1 * random.normal(size=3), "s_change": 0.03 * random.normal(size=2),
-                    "xis": np.sort(random.uniform(0.1, 0.9, 2)), "weight_square": np.float64(random.uniform(0.1, 0.2))}
+                    "xis": np.sort(random.uniform(0.1, 0.9, 2)), "weight_square": np.float64(random.uniform(0.1, 0.2)),
+                    "V": random.normal(size=6), "c": random.normal(size=3)}
     return found | {name: np.float64(random.uniform(*limits)) for name, limits in {
         "h": (0.1, 0.2), "xi": (0.2, 0.8), "angle_at": (0.3, 1.2), "turn": (0.5, 1), "angle_change": (0.1, 0.3),
-        "alpha": (0.5, 1), "alpha_change": (0.1, 0.2)}.items()}
+        "alpha": (0.5, 1), "alpha_change": (0.1, 0.2), "u": (2, 4), "u_change": (0.1, 0.3),
+        "own_change": (0.1, 0.3)}.items()}

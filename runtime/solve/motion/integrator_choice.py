@@ -19,7 +19,7 @@ from ...kernels.libraries import of_library
 from ...model.model import Model
 from ...model.taut_ropes import TautPointModel
 from ...parts.rope import rough_sheaves
-from ...parts.rope_items import Drum
+from ...parts.rope_items import Sheave
 from ...parts.scene_data import SceneData
 from ...parts.settings import RunSettings
 from ...parts.slide import Slide
@@ -236,12 +236,9 @@ def _check_ropes(integrator: Integrator, scene: SceneData) -> None:
             raise SceneError(rope.where, f"{who} has no algorithmic dissipation of ropes",
                              "take spectral_radius = 1, or another integrator")
         for item in rope.wheels:
-            if isinstance(item, Drum):
-                raise SceneError(rope.where, f"{who} does not support {item.where}: creep on drums has no discrete "
-                                 "gradient", another)
             if item.end.on in scene.cables:
                 raise SceneError(rope.where, f'{who} does not support {item.where} on cable "{item.end.on}"', another)
-            if not item.contact:
+            if isinstance(item, Sheave) and not item.contact:
                 raise SceneError(rope.where, f"{who} does not support {item.where}, which the rope touches in a run",
                                  f"draw the rope on it, or {another}")
 

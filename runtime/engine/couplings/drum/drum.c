@@ -186,6 +186,19 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     add_motion_of_wheel(model, drum, &at, &of, multipliers, &by_psi, equations, system);
 }
 
+/* Adds the derivatives of the equations over a step by those half-way. */
+static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
+{
+    const fu_state *next = at->next;
+    fu_state middle = *at->middle;
+    fu_equations half_way = *at;
+    middle.acceleration = next->acceleration;
+    middle.forces = next->forces;
+    middle.numbers = next->numbers;
+    half_way.next = &middle;
+    tangent(model, coupling, &half_way, system);
+}
+
 static void take_forces(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state)
 {
     const int left = fu_drum_history_of(drum_of(coupling), state)->has_left != 0.0;
@@ -348,9 +361,12 @@ static const fu_output output_fields[] = {
 static const fu_inertia_operations inertia = {.force = inertial_force,
                                               .matrix = mass_matrix,
                                               .kinetic_energy = kinetic_energy,
-                                              .potential_energy = potential_energy};
+                                              .potential_energy = potential_energy,
+                                              .beyond_velocities = fu_drum_energy_beyond_velocities};
+static const fu_supply_operations supply = {.force = fu_wheel_drive, .step_work = fu_drum_step_work};
 static const fu_start_operations start = {.may_be_open = fu_wheel_may_be_open};
-static const fu_history_operations of_history = {.update = fu_drum_update};
+static const fu_history_operations of_history = {
+    .over_step = fu_drum_history_over_step, .jump = fu_drum_history_jump, .update = fu_drum_update};
 
 const fu_coupling_type fu_drum_type = {
     .name = "drum",
@@ -359,11 +375,14 @@ const fu_coupling_type fu_drum_type = {
     .output_fields = output_fields,
     .n_numbers = FU_DRUM_HISTORY,
     .inertia = &inertia,
-    .supply = &fu_wheel_supply,
+    .supply = &supply,
     .start = &start,
     .history = &of_history,
     .residual = residual,
     .tangent = tangent,
+    .step_residual = fu_drum_step_residual,
+    .step_tangent = step_tangent,
+    .step_dissipation = fu_drum_step_dissipation,
     .rows = fu_drum_rows,
     .force = force,
     .take_forces = take_forces,

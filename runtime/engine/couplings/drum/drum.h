@@ -1,5 +1,6 @@
 /* Drums (couplings/drum/): the coupling in drum.c, its state in drum_state.c, the conditions of its tangent point and
- * of winding in drum_conditions.c, and the rope that is wound in drum_history.c and drum_store.c. Derivatives are by
+ * of winding in drum_conditions.c, the rope that is wound in drum_history.c and drum_store.c, and steps that conserve
+ * energy in drum_step.c. Derivatives are by
  * the place and slope of the node, the wheel, and the wound length (y). In space the wound rope lies in the plane of
  * the groove, to which all vectors of y belong, in one layer; in the place of the slope is its length. */
 #ifndef FUNICULAR_COUPLINGS_DRUM_DRUM_H
@@ -8,6 +9,8 @@
 #include "couplings/common/accelerator.h"
 #include "couplings/tangent_point/tangent_point.h"
 #include "couplings/wheel/wheel.h"
+
+#include <stddef.h>
 
 enum { DIM = FU_GROOVE, SPACE = 3, NODE = 2 * DIM, MAX_CONDITIONS = FU_FOOT_CONDITIONS + 1 };
 /* y: node; centre, rotation, place along the axis and rotations about the vectors of the groove of the wheel; wound
@@ -32,12 +35,17 @@ typedef struct {
     const double *share; /* of its nodes */
 } fu_drum;
 
+/* Velocities of the wound rope: of the rim by its rotation, in space by those about the vectors of the groove, too; and
+ * of the centre. */
+enum { FU_DRUM_VELOCITIES = 2 * SPACE };
+
 /* History of a drum: the last accepted state, whether the rope has left it and the energy of the height at which it was
- * laid on until then, J, and the drawn length over the wound one at the ends of cells. */
+ * laid on until then, J; whether it has made a step that conserves energy, and the velocities of the wound rope after
+ * it, m/s; and the drawn length over the wound one at the ends of cells. */
 typedef struct {
-    double is_known, u, phi, turn, carrier, drawn, stretch, has_left, laid, profile[];
+    double is_known, u, phi, turn, carrier, drawn, stretch, has_left, laid, is_moving, V[FU_DRUM_VELOCITIES], profile[];
 } fu_drum_history;
-enum { FU_DRUM_HISTORY = 9 };
+enum { FU_DRUM_HISTORY = offsetof(fu_drum_history, profile) / sizeof(double) };
 
 /* A drum at a state; u: wound length. */
 typedef struct {
@@ -108,6 +116,8 @@ double fu_drum_wound_stretch(const fu_drum *drum, const fu_drum_history *past, d
 double fu_drum_drawn_length(const fu_drum *drum, const fu_drum_history *past, double u);
 double fu_drum_way(const fu_drum *drum, const fu_drum_history *past, const fu_drum_state *at);
 double fu_drum_winding_gap(const fu_drum *drum, const fu_drum_history *past, const fu_drum_state *at);
+/* Returns the mean stretch of what has passed since then: the drawn length over the wound one. */
+double fu_drum_passing(const fu_drum *drum, const fu_drum_history *past, const fu_drum_state *at);
 
 /* --- drum_store.c: the wound rope --- */
 
@@ -116,6 +126,8 @@ void fu_drum_forces(const fu_drum *drum, const fu_drum_state *at, double y[Y]);
 /* Adds their derivatives: D by rates, in units of w.rate, K by places. */
 void fu_drum_add_derivatives(const fu_drum *drum, const fu_drum_state *at, fu_weights w, double (*D)[Y],
                              double (*K)[Y]);
+/* Returns the elastic energy that the wound rope has gained since the last accepted state once that is updated, J. */
+double fu_drum_stored(const fu_drum *drum, const fu_drum_history *past, const fu_drum_state *at);
 /* Computes the mass matrix by y. */
 void fu_drum_mass(const fu_drum *drum, const fu_drum_state *at, double factor, double (*out)[Y]);
 /* Computes the kinetic energy and that of gravity, J. */
@@ -151,5 +163,15 @@ void fu_drum_add_rows(const fu_model *model, const fu_coupling *coupling, const 
                       const fu_centre_moves *by_psi, const fu_equations *equations, fu_system *system);
 /* Operation of the coupling. */
 void fu_drum_rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work);
+
+/* --- drum_step.c: operations of the coupling over a step that conserves energy --- */
+
+void fu_drum_history_over_step(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
+void fu_drum_history_jump(const fu_model *model, const fu_coupling *coupling, fu_state *state, const double *change);
+double fu_drum_energy_beyond_velocities(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+void fu_drum_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
+                           double *internal);
+double fu_drum_step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
+double fu_drum_step_work(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
 
 #endif

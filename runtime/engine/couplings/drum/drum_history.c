@@ -52,6 +52,13 @@ static double wound_since(const fu_drum *drum, const fu_drum_history *past, cons
                            : fu_drum_drawn_length(drum, past, at->u) - past->drawn;
 }
 
+double fu_drum_passing(const fu_drum *drum, const fu_drum_history *past, const fu_drum_state *at)
+{
+    if (at->u > past->u) return 0.5 * (past->stretch + at->span_stretch);
+    if (fu_drum_cell(drum, at->u) == fu_drum_cell(drum, past->u)) return fu_drum_wound_stretch(drum, past, at->u);
+    return wound_since(drum, past, at) / (at->u - past->u);
+}
+
 double fu_drum_winding_gap(const fu_drum *drum, const fu_drum_history *past, const fu_drum_state *at)
 {
     return fu_drum_way(drum, past, at) - wound_since(drum, past, at);

@@ -209,6 +209,35 @@ double fu_drum_energy(const fu_model *model, const fu_coupling *coupling, const 
     return total + (at.u - known) * W;
 }
 
+/* Returns the elastic energy of a wound length. */
+static double energy_of(const fu_drum *drum, double length, double stretch)
+{
+    double W, loss;
+    drum->wheel.kernel->creep(drum->wheel.A, drum->wheel.radius, stretch, 1.0, &W, &loss);
+    return length * W;
+}
+
+/* What is wound shares the stretch of the cell in which it is. */
+double fu_drum_stored(const fu_drum *drum, const fu_drum_history *past, const fu_drum_state *at)
+{
+    const int last = fu_drum_cell(drum, past->u);
+    const double in_cell = past->u - last * drum->cell;
+    double total = 0.0;
+    if (at->u > past->u) {
+        const double passing = fu_drum_passing(drum, past, at), wound = at->u - past->u;
+        const double here = last < drum->n_cells - 1 ? fmin(wound, drum->cell - in_cell) : wound;
+        const double drawn = past->drawn - past->profile[last];
+        return energy_of(drum, in_cell + here, (drawn + here * passing) / (in_cell + here)) +
+               energy_of(drum, wound - here, passing) -
+               energy_of(drum, in_cell, fu_drum_cell_stretch(drum, past, last));
+    }
+    for (int cell = fu_drum_cell(drum, at->u); cell <= last; ++cell) {
+        const double from = fmax(at->u, cell * drum->cell), to = cell < last ? (cell + 1) * drum->cell : past->u;
+        total -= energy_of(drum, to - from, fu_drum_cell_stretch(drum, past, cell));
+    }
+    return total;
+}
+
 double fu_drum_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                            const fu_accelerator *work)
 {

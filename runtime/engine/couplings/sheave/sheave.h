@@ -434,18 +434,13 @@ void fu_space_rows(const fu_model *model, const fu_sheave *sheave, const fu_stat
 
 enum { FU_ZONE_POINTS = 8 }; /* of the momentum along a zone */
 
-/* A groove in space over a step: means of the vectors of its plane (3 x 2) and of the axis; its turn by the Cayley
- * vector; changes of its centre; means of the places of the tangent points from it, and of gravity in the groove. */
-typedef struct {
-    double axes[SPACE * DIM], axis[SPACE], theta[SPACE], c_change[SPACE], x[ENDS][SPACE], gravity[SPACE], g[DIM];
-} fu_groove_step;
-
 /* A sheave over a step: at its start, at its end, half-way (with the mean places of nodes); half the turns of both
  * tangent points, and the forces along k x x~ of moments on these; the centre at the start, its change, and that of s.
- * In space the turns are those from the groove, and the centre is taken as zero. */
+ * In space the turns are those from the groove, the centre is taken as zero, and x are the mean places of the tangent
+ * points from the centre. */
 typedef struct {
     fu_sheave_state now, next, middle;
-    double half[ENDS], arm[ENDS], c[DIM], c_change[DIM], s_change[MAX_ZONES + 1];
+    double half[ENDS], arm[ENDS], c[DIM], c_change[DIM], s_change[MAX_ZONES + 1], x[ENDS][SPACE];
     fu_groove_step groove;
 } fu_sheave_over;
 

@@ -323,15 +323,11 @@ double fu_sheave_step_dissipation(const fu_model *model, const fu_coupling *coup
     return fu_sheave_step_power(sheave, &step, at, &of) + at->h * sheave->wheel.damping * own * own;
 }
 
-/* Returns the work of the drive of a prescribed rotation, whose mean velocity differs slightly from its turn over the
- * step: the kinetic energy changes by the former. */
 double fu_sheave_step_work(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
 {
     const fu_sheave *sheave = sheave_of(coupling);
     fu_sheave_over step;
     if (sheave->wheel.inertia == 0.0 || sheave->wheel.turn < 0) return 0.0;
     fu_sheave_over_step(model, sheave, at, &step);
-    const fu_wheel_state *from = &step.now.wheel, *to = &step.next.wheel;
-    const double mean = 0.5 * (is_in_space(sheave) ? from->own_rate + to->own_rate : from->turn_rate + to->turn_rate);
-    return sheave->wheel.inertia * spin_change(&step) * (mean - fu_turn_of_wheel(sheave, &step, at) / at->h);
+    return fu_wheel_step_work(&sheave->wheel, &step.now.wheel, &step.next.wheel, at);
 }

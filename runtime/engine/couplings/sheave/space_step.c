@@ -57,16 +57,6 @@ double fu_space_wrap_energy(const fu_sheave *sheave, const fu_sheave_state *at)
     return total;
 }
 
-/* Adds the moments of the wheel, whose angular momentum about its axis turns with it. */
-static void add_spin(const fu_sheave *sheave, const fu_sheave_over *step, double h, double moment[SPACE])
-{
-    const double from = step->now.wheel.turn_rate, to = step->next.wheel.turn_rate, inertia = sheave->wheel.inertia;
-    double tilt[SPACE];
-    fu_cross(step->groove.theta, step->groove.axis, tilt);
-    for (int d = 0; d < SPACE; ++d)
-        moment[d] += inertia * ((to - from) * step->groove.axis[d] + 0.5 * (from + to) * tilt[d]) / h;
-}
-
 /* --- weight ----------------------------------------------------------------------------------------------------- */
 
 /* Adds the first moment of mass of a zone about the centre, in the groove, times a factor. */
@@ -112,7 +102,7 @@ static void add_turns(const fu_sheave *sheave, const fu_sheave_over *step, const
                      parts[DIM] = {-size * x[1], size * x[0]};
         double on_node[SPACE], turn[SPACE];
         for (int d = 0; d < SPACE; ++d) on_node[d] = fu_dot(DIM, step->groove.axes + d * DIM, parts);
-        fu_cross(on_node, step->groove.x[k], turn);
+        fu_cross(on_node, step->x[k], turn);
         for (int d = 0; d < SPACE; ++d) {
             f[sheave->nodes[k] + d] += on_node[d];
             force[d] -= on_node[d];
@@ -155,6 +145,6 @@ void fu_space_over_step(const fu_sheave *sheave, const fu_sheave_over *step, con
 {
     fu_sheave_step_forces all = *of;
     add_conditions(sheave, step, at, multipliers, phi, f, all.force, all.moment);
-    add_spin(sheave, step, at->h, all.moment);
+    fu_wheel_add_spin(&sheave->wheel, &step->now.wheel, &step->next.wheel, &step->groove, at->h, all.moment);
     fu_space_add_step_forces(sheave, step, &all, f);
 }

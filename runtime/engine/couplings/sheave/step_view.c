@@ -14,45 +14,11 @@ double fu_over_sine(double x)
     return fabs(x) < 1e-4 ? 1.0 + x * x / 6.0 : x / sin(x);
 }
 
-/* Computes the turn of the groove, and the turns by the unknowns of its body. */
-static void find_turn(const double *psi, fu_sheave_over *out)
+/* Computes the mean places of the tangent points from the centre, in space. */
+static void find_places(const fu_sheave *sheave, const fu_equations *at, fu_sheave_over *out)
 {
-    const fu_attachment_state *from = &out->now.wheel.centre;
-    fu_attachment_state *to = &out->middle.wheel.centre;
-    const int n = from->n;
-    double *theta = out->groove.theta;
-    for (int d = 0; d < SPACE; ++d) {
-        theta[d] = 0.0;
-        for (int i = 0; i < n; ++i) theta[d] += from->T[d * n + i] * psi[from->at[i]];
-    }
-    for (int i = 0; i < n; ++i) {
-        const double column[SPACE] = {from->T[i], from->T[n + i], from->T[2 * n + i]};
-        double turned[SPACE];
-        fu_cross(theta, column, turned);
-        for (int d = 0; d < SPACE; ++d) to->T[d * n + i] = column[d] + 0.5 * turned[d];
-    }
-}
-
-/* Computes the groove over a step, and the turns by the unknowns of its body half-way. */
-static void find_groove(const fu_sheave *sheave, const fu_equations *at, fu_sheave_over *out)
-{
-    const fu_wheel *wheel = &sheave->wheel;
-    const fu_wheel_state *now = &out->now.wheel, *next = &out->next.wheel;
-    fu_groove_step *groove = &out->groove;
-    for (int i = 0; i < SPACE * DIM; ++i) groove->axes[i] = 0.5 * (now->groove[i] + next->groove[i]);
-    for (int d = 0; d < SPACE; ++d) {
-        groove->axis[d] = 0.5 * (now->axis[d] + next->axis[d]);
-        groove->c_change[d] = next->centre.p[d] - now->centre.p[d];
-        groove->gravity[d] = is_turning(sheave)
-                                 ? wheel->g[d]
-                                 : fu_dot(DIM, now->groove + d * DIM, wheel->g) + now->axis[d] * wheel->g[DIM];
-        for (int k = 0; k < ENDS; ++k) {
-            const int r = sheave->nodes[k] + d;
-            groove->x[k][d] = 0.5 * (at->now->q[r] - now->centre.p[d] + at->next->q[r] - next->centre.p[d]);
-        }
-    }
-    for (int i = 0; i < DIM; ++i) groove->g[i] = 0.5 * (now->g[i] + next->g[i]);
-    find_turn(at->psi, out);
+    for (int k = 0; k < ENDS; ++k)
+        fu_mean_from_centre(sheave->nodes[k], at, &out->now.wheel, &out->next.wheel, out->x[k]);
 }
 
 void fu_sheave_over_step(const fu_model *model, const fu_sheave *sheave, const fu_equations *at, fu_sheave_over *out)
@@ -78,7 +44,11 @@ void fu_sheave_over_step(const fu_model *model, const fu_sheave *sheave, const f
         out->c[d] = is_in_space(sheave) ? 0.0 : out->now.wheel.c[d];
         out->c_change[d] = is_in_space(sheave) ? 0.0 : out->next.wheel.c[d] - out->now.wheel.c[d];
     }
-    if (is_in_space(sheave)) find_groove(sheave, at, out);
+    if (is_in_space(sheave)) {
+        fu_groove_over_step(&sheave->wheel, &out->now.wheel, &out->next.wheel, at->psi, &out->middle.wheel.centre,
+                            &out->groove);
+        find_places(sheave, at, out);
+    }
     for (int j = 0; j <= sheave->n_zones; ++j) out->s_change[j] = at->psi[sheave->s[j]];
 }
 

@@ -1,5 +1,5 @@
-/* Wheels whose groove turns with its body: forces on tangent points that turn along, and spinning wheels that tilt
- * (derive/couplings/turning_wheel.py). */
+/* Wheels whose groove turns with its body: forces on tangent points that turn along, spinning wheels that tilt
+ * (derive/couplings/turning_wheel.py), and steps that conserve energy (turning_step.py). */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
 #include "couplings/wheel/wheel.h"
@@ -73,4 +73,54 @@ double fu_wheel_add_ring(const fu_wheel *wheel, const fu_wheel_state *at, const 
     wheel->foot->ring(inertia, growth, at->omega, at->omega_acc, at->turn_rate, &energy, moment);
     for (int j = 0; j < FU_TILTS; ++j) forces[FU_WHEEL_TILT + j] += moment[j];
     return energy;
+}
+
+/* --- over a step that conserves energy -------------------------------------------------------------------------- */
+
+/* Computes the turn of the groove, and the turns by the unknowns of its body. */
+static void find_turn(const fu_attachment_state *from, const double *psi, fu_attachment_state *to, double theta[SPACE])
+{
+    const int n = from->n;
+    for (int d = 0; d < SPACE; ++d) {
+        theta[d] = 0.0;
+        for (int i = 0; i < n; ++i) theta[d] += from->T[d * n + i] * psi[from->at[i]];
+    }
+    for (int i = 0; i < n; ++i) {
+        double column[SPACE], turned[SPACE];
+        column_of(from->T, n, i, column);
+        fu_cross(theta, column, turned);
+        for (int d = 0; d < SPACE; ++d) to->T[d * n + i] = column[d] + 0.5 * turned[d];
+    }
+}
+
+void fu_groove_over_step(const fu_wheel *wheel, const fu_wheel_state *now, const fu_wheel_state *next,
+                         const double *psi, fu_attachment_state *middle, fu_groove_step *out)
+{
+    for (int i = 0; i < SPACE * PLANE; ++i) out->axes[i] = 0.5 * (now->groove[i] + next->groove[i]);
+    for (int d = 0; d < SPACE; ++d) {
+        out->axis[d] = 0.5 * (now->axis[d] + next->axis[d]);
+        out->c_change[d] = next->centre.p[d] - now->centre.p[d];
+        out->gravity[d] = wheel->tilts
+                              ? wheel->g[d]
+                              : fu_dot(PLANE, now->groove + d * PLANE, wheel->g) + now->axis[d] * wheel->g[PLANE];
+    }
+    for (int i = 0; i < PLANE; ++i) out->g[i] = 0.5 * (now->g[i] + next->g[i]);
+    find_turn(&now->centre, psi, middle, out->theta);
+}
+
+void fu_mean_from_centre(int node, const fu_equations *at, const fu_wheel_state *now, const fu_wheel_state *next,
+                         double out[SPACE])
+{
+    for (int d = 0; d < SPACE; ++d)
+        out[d] = 0.5 * (at->now->q[node + d] - now->centre.p[d] + at->next->q[node + d] - next->centre.p[d]);
+}
+
+void fu_wheel_add_spin(const fu_wheel *wheel, const fu_wheel_state *now, const fu_wheel_state *next,
+                       const fu_groove_step *groove, double h, double moment[SPACE])
+{
+    const double from = now->turn_rate, to = next->turn_rate;
+    double tilt[SPACE];
+    fu_cross(groove->theta, groove->axis, tilt);
+    for (int d = 0; d < SPACE; ++d)
+        moment[d] += wheel->inertia * ((to - from) * groove->axis[d] + 0.5 * (from + to) * tilt[d]) / h;
 }

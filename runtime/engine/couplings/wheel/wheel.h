@@ -131,7 +131,24 @@ double fu_wheel_pressure(const fu_wheel *wheel, const fu_wheel_state *at, double
 /* Returns the part of gravity, and of the acceleration of the centre, outwards at an angle, m/s^2. */
 double fu_wheel_outwards(const fu_wheel_state *at, double phi);
 
-extern const fu_supply_operations fu_wheel_supply;
+/* A groove in space over a step that conserves energy: means of the vectors of its plane (3 x 2) and of the axis; its
+ * turn by the Cayley vector; changes of its centre; gravity, and its mean in the groove. */
+typedef struct {
+    double axes[3 * FU_GROOVE], axis[3], theta[3], c_change[3], gravity[3], g[FU_GROOVE];
+} fu_groove_step;
+/* Computes the groove over a step, and the turns by the unknowns of its body half-way. */
+void fu_groove_over_step(const fu_wheel *wheel, const fu_wheel_state *now, const fu_wheel_state *next,
+                         const double *psi, fu_attachment_state *middle, fu_groove_step *out);
+/* Computes the mean place of a node from the centre, in space. */
+void fu_mean_from_centre(int node, const fu_equations *at, const fu_wheel_state *now, const fu_wheel_state *next,
+                         double out[3]);
+/* Adds the moments of a wheel in space, whose angular momentum about its axis turns with it. */
+void fu_wheel_add_spin(const fu_wheel *wheel, const fu_wheel_state *now, const fu_wheel_state *next,
+                       const fu_groove_step *groove, double h, double moment[3]);
+/* Returns the work over a step of the drive of a prescribed rotation, whose mean velocity differs slightly from its
+ * turn: the kinetic energy of the wheel changes by the former. */
+double fu_wheel_step_work(const fu_wheel *wheel, const fu_wheel_state *now, const fu_wheel_state *next,
+                          const fu_equations *at);
 /* Subtracts the torque of the drive. */
 void fu_wheel_drive(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f);
 int fu_wheel_may_be_open(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
