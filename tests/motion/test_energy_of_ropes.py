@@ -248,12 +248,6 @@ def with_route(*items: object, **settings: object) -> fu.Scene:
     return scene
 
 
-def driven() -> fu.Scene:
-    scene = with_route(fu.Anchor(at=(-1, -1, 0)), TOP)
-    scene.joint("distance", ("rope", 0.3), (-1.0, -2.0, 0), name="ram", velocity=fu.Ramp(start=0, end=1, after=-0.1))
-    return scene
-
-
 def lying() -> fu.Scene:
     scene = with_route(fu.Anchor(at=(-1, -1, 0)), TOP)
     scene.surface("floor", fu.Plane(point=(0, -3, 0)))
@@ -267,7 +261,6 @@ def lying() -> fu.Scene:
     (lambda: with_route(fu.Anchor(at=(0.2, 1, 0)), fu.Sheave("top", at=(-0.5, 0, 0), radius=0.2, side="right",
                                                              contact=False)),
      'sheave "top", which the rope touches in a run; draw the rope on it, or take'),
-    (driven, 'joint "ram": integrator "energy" has no discrete gradient of it'),
     (lying, 'contact "lies": integrator "energy" has no discrete gradient of it')])
 def test_what_has_no_step_equations_is_refused(scene, message):
     with pytest.raises(fu.SceneError, match=message):

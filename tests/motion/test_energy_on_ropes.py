@@ -1,4 +1,4 @@
-"""What acts on ropes by the energy-momentum integrator: grips by joints and springs, slides, loads and drag."""
+"""What acts on ropes by the energy-momentum integrator: grips by joints and springs, rams, slides, loads and drag."""
 
 from itertools import pairwise
 
@@ -40,6 +40,8 @@ def loaded(kind: str, dim: int = 2, damping: float = 0.0) -> fu.Scene:
     scene.rigid_body("G", mass=0.2, inertia=(0.1, 0.1, 0.1), position=(x + beside[0], y + beside[1], z))
     if kind == "slide":
         scene.slide("G", along="rope", s=s)
+    elif kind == "ram":
+        scene.joint("distance", ("rope", s), "G", velocity=fu.Ramp(start=0, end=0.4, before=0.1, after=0.4), name="ram")
     elif kind in ("spring", "damper"):
         scene.spring(("rope", s), ("G", (0.05, 0, 0)), stiffness=20.0, length=0.3, damping=float(kind == "damper"))
     else:
@@ -81,7 +83,7 @@ KINDS = ["spherical", "distance", "spring", "slide"]
 
 
 @pytest.mark.parametrize("dim", [2, 3])
-@pytest.mark.parametrize("kind", [*KINDS, "damper", "loads", "drag"])
+@pytest.mark.parametrize("kind", [*KINDS, "ram", "damper", "loads", "drag"])
 def test_energy_is_kept_and_agrees_with_radau(kind, dim):
     """The rope flows by .1 to .3 m past its nodes, which are .4 m apart."""
     run = loaded(kind, dim).run(0.4, output_step=0.05, step=1e-3, **STEP)

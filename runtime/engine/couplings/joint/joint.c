@@ -94,16 +94,17 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
 
 /* --- joints of points over a step that conserves energy --------------------------------------------------------- */
 
-/* The equations at the end of the step. Their change is the discrete Jacobian by the gap times the change of the gap,
- * which has the discrete derivatives of the places: multipliers do no work. */
-static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, double *f,
-                          double *internal)
+/* The force between both points over a step, and the change of the gap between them. */
+typedef struct {
+    double force[3], change[3];
+} force_over_step;
+
+static force_over_step find_force(const fu_model *model, const fu_joint *joint, const fu_equations *equations)
 {
-    const fu_joint *joint = (const fu_joint *)coupling;
     const int rows = joint->kernel->rows, dim = model->dim;
-    const double *multipliers = equations->next->forces + coupling->force;
-    double gaps[2][3] = {{0.0}}, J[3 * 3], force[3] = {0.0};
-    fu_joint_rows_at at;
+    const double *multipliers = equations->next->forces + joint->base.force;
+    double gaps[2][3] = {{0.0}}, J[3 * 3];
+    force_over_step out = {.force = {0.0}};
     for (int e = 0; e < 2; ++e) {
         const fu_state *states[2] = {equations->now, equations->next};
         for (int k = 0; k < 2; ++k) {
@@ -113,13 +114,26 @@ static void step_residual(const fu_model *model, const fu_coupling *coupling, co
         }
     }
     joint->kernel->discrete(gaps[0], gaps[1], J);
-    for (int r = 0; r < rows; ++r)
-        for (int d = 0; d < dim; ++d) force[d] += J[r * dim + d] * multipliers[r];
+    for (int d = 0; d < dim; ++d) {
+        for (int r = 0; r < rows; ++r) out.force[d] += J[r * dim + d] * multipliers[r];
+        out.change[d] = gaps[1][d] - gaps[0][d];
+    }
+    return out;
+}
+
+/* The equations at the end of the step. Their change is the discrete Jacobian by the gap times the change of the gap,
+ * which has the discrete derivatives of the places: multipliers do the work of the drive alone. */
+static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, double *f,
+                          double *internal)
+{
+    const fu_joint *joint = (const fu_joint *)coupling;
+    const force_over_step of = find_force(model, joint, equations);
+    fu_joint_rows_at at;
     for (int e = 0; e < 2; ++e)
-        fu_add_point_over_step(model, &joint->attachments[e], equations->now, equations->next, force, e ? 1.0 : -1.0,
+        fu_add_point_over_step(model, &joint->attachments[e], equations->now, equations->next, of.force, e ? 1.0 : -1.0,
                                f);
     fu_joint_equations(model, joint, equations->next, &at);
-    for (int r = 0; r < rows; ++r)
+    for (int r = 0; r < joint->kernel->rows; ++r)
         internal[coupling->unknown + r] = -fu_row_unit(equations->weights.inertia, coupling->scale[r]) *
                                           (joint->redundant_rows >> r & 1 ? 0.0 : at.phi[r]);
 }
@@ -135,11 +149,19 @@ static void step_tangent(const fu_model *model, const fu_coupling *coupling, con
     tangent(model, coupling, &half_way, system);
 }
 
-/* Returns whether the joint has equations over a step: the gap at a drive moves for itself. */
-static int has_step(const fu_coupling *coupling)
+/* Returns the work of the drive, which changes the gap. */
+static double step_work(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations)
 {
     const fu_joint *joint = (const fu_joint *)coupling;
-    return joint->kernel->discrete && joint->signal < 0;
+    if (joint->signal < 0) return 0.0;
+    const force_over_step of = find_force(model, joint, equations);
+    return -fu_dot(model->dim, of.force, of.change);
+}
+
+/* Returns whether the joint has equations over a step. */
+static int has_step(const fu_coupling *coupling)
+{
+    return ((const fu_joint *)coupling)->kernel->discrete != 0;
 }
 
 static void gaps(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *phi)
@@ -201,6 +223,7 @@ static const fu_output output_fields[] = {
 };
 
 static const fu_start_operations start = {.may_be_open = may_be_open};
+static const fu_supply_operations supply = {.step_work = step_work};
 
 #define TYPE(kind)                                                                                                     \
     {.name = kind,                                                                                                     \
@@ -214,6 +237,7 @@ static const fu_start_operations start = {.may_be_open = may_be_open};
      .outputs = outputs,                                                                                               \
      .gaps = gaps,                                                                                                     \
      .start = &start,                                                                                                  \
+     .supply = &supply,                                                                                                \
      .step_residual = step_residual,                                                                                   \
      .step_tangent = step_tangent,                                                                                     \
      .has_step = has_step}
