@@ -73,7 +73,7 @@ def momenta_in(model, engine: Engine, scene: fu.Scene) -> np.ndarray:
                 total += momenta_of(hermite(e, length, (1 + x) / 2), P[j])
         if coupling.type == "sheave":
             x, weight = np.polynomial.legendre.leggauss(8)
-            P = coupling.rho * weight[:, None] / 2 * engine.history(k)[1:-2].reshape(-1, 8, 3)
+            P = coupling.rho * weight[:, None] / 2 * engine.history(k)[1:-3].reshape(-1, 8, 3)
             on = coupling.attachments[0]
             body, axes = model.bodies[on.body], axes_of[on.body] @ np.asarray(on.axes).reshape(3, 3)
             centre = q[body.configuration : body.configuration + 3] + axes_of[on.body] @ np.asarray(on.u)

@@ -111,7 +111,7 @@ def momenta_in(model, engine: Engine, scene: fu.Scene) -> np.ndarray:
                 total += momenta_of(hermite(e, length, (1 + x) / 2), P[j])
         if coupling.type == "sheave":
             x, weight = np.polynomial.legendre.leggauss(8)
-            history = engine.history(k)[1:-2]  # without the place of the rope in the groove
+            history = engine.history(k)[1:-3]  # without the spin and the place of the rope
             P = coupling.rho * weight[:, None] / 2 * history.reshape(-1, 8, 2)
             body = model.bodies[coupling.attachments[0].body]
             place, (c, s) = q[body.configuration : body.configuration + 2], q[body.configuration + 2 :][:2]

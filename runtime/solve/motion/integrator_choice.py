@@ -236,8 +236,6 @@ def _check_ropes(integrator: Integrator, scene: SceneData) -> None:
             raise SceneError(rope.where, f"{who} has no algorithmic dissipation of ropes",
                              "take spectral_radius = 1, or another integrator")
         for item in rope.wheels:
-            if item.end.on in scene.cables:
-                raise SceneError(rope.where, f'{who} does not support {item.where} on cable "{item.end.on}"', another)
             if isinstance(item, Sheave) and not item.contact:
                 raise SceneError(rope.where, f"{who} does not support {item.where}, which the rope touches in a run",
                                  f"draw the rope on it, or {another}")

@@ -7,6 +7,8 @@
 
 #include <string.h>
 
+#define LEAST_CORRECTED 1e-6 /* change of the vectors of a frame over a step: of less, turns are linear to rounding */
+
 static const double unit_axes[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
 
 /* Computes C (n x m) = A (n x k) B (k x m). */
@@ -262,6 +264,69 @@ void fu_discrete_point(const fu_model *model, const fu_attachment *on, const fu_
     if (on->body < 0) return;
     const fu_body *body = &model->bodies[on->body];
     body->kernel->discrete_point(now->q + body->configuration, on->u, next->q + body->configuration, P);
+}
+
+/* Computes the Cayley vector of the rotation between two frames. */
+static void cayley_vector(int dim, const double *from, const double *to, double theta[3])
+{
+    double R[9] = {0.0}, trace = 1.0;
+    for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j) R[i * 3 + j] = fu_dot(dim, to + i * dim, from + j * dim);
+    for (int d = 0; d < dim; ++d) trace += R[4 * d];
+    theta[0] = theta[1] = theta[2] = 0.0;
+    if (dim == 2) theta[0] = 4.0 * R[3] / (trace + 1.0); /* trace: 1 + 2 cos */
+    else
+        for (int d = 0; d < 3; ++d) {
+            const int i = (d + 1) % 3, j = (d + 2) % 3;
+            theta[d] = 2.0 * (R[j * 3 + i] - R[i * 3 + j]) / trace;
+        }
+}
+
+/* Turns of the frame of a cable change with its vectors w; dw: their change over the step. The derivatives T half-way
+ * have the rest of the turn added along dw: a discrete gradient (Gonzalez 1996). */
+static void correct_turn(const fu_model *model, const fu_attachment *on, const fu_state *now, const fu_state *next,
+                         const double *psi, const double *theta, fu_attachment_state *middle)
+{
+    const int dim = model->dim, n = middle->n, turns = fu_turns(dim);
+    double change[2 * 3], along[FU_ATTACHMENT_COORDINATES] = {0.0}, size = 0.0;
+    frame_vectors from, to;
+    vectors_of(model, on, now, 0.0, n, &from);
+    vectors_of(model, on, next, 0.0, n, &to);
+    for (int k = 0; k < 2; ++k)
+        for (int d = 0; d < dim; ++d) {
+            change[k * dim + d] = to.value[k][d] - from.value[k][d];
+            size += change[k * dim + d] * change[k * dim + d];
+        }
+    if (size < LEAST_CORRECTED * LEAST_CORRECTED) return;
+    for (int r = 0; r < 2 * dim; ++r)
+        for (int i = 0; i < n; ++i) along[i] += change[r] * from.rows[r * n + i] / size;
+    for (int d = 0; d < turns; ++d) {
+        double rest = theta[d];
+        for (int i = 0; i < n; ++i) rest -= middle->T[d * n + i] * psi[middle->at[i]];
+        for (int i = 0; i < n; ++i) middle->T[d * n + i] += rest * along[i];
+    }
+}
+
+void fu_discrete_turn(const fu_model *model, const fu_attachment *on, const fu_state *now, const fu_state *next,
+                      const double *psi, const fu_attachment_state *from, const fu_attachment_state *to,
+                      fu_attachment_state *middle, double theta[3])
+{
+    const int dim = model->dim, n = from->n, turns = fu_turns(dim);
+    theta[0] = theta[1] = theta[2] = 0.0;
+    if (on->body < 0) {
+        if (!on->frame) return;
+        cayley_vector(dim, from->A, to->A, theta);
+        correct_turn(model, on, now, next, psi, theta, middle);
+        return;
+    }
+    for (int d = 0; d < turns; ++d)
+        for (int i = 0; i < n; ++i) theta[d] += from->T[d * n + i] * psi[from->at[i]];
+    for (int i = 0; i < n; ++i) {
+        double column[3] = {0.0}, turned[3] = {0.0};
+        for (int d = 0; d < turns; ++d) column[d] = from->T[d * n + i];
+        if (dim == 3) fu_cross(theta, column, turned);
+        for (int d = 0; d < turns; ++d) middle->T[d * n + i] = column[d] + 0.5 * turned[d];
+    }
 }
 
 /* fu_wrench_derivatives for an attachment to a body. */

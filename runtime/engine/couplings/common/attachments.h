@@ -54,6 +54,11 @@ void fu_attachment_at(const fu_model *model, const fu_attachment *on, const fu_s
  * nodes keep P. */
 void fu_discrete_point(const fu_model *model, const fu_attachment *on, const fu_state *now, const fu_state *next,
                        double *P);
+/* Computes, of an attachment with axes, the Cayley vector theta of their turn over a step, and T half-way such that T
+ * psi is theta; from, to: the attachment at both ends, middle: half-way. */
+void fu_discrete_turn(const fu_model *model, const fu_attachment *on, const fu_state *now, const fu_state *next,
+                      const double *psi, const fu_attachment_state *from, const fu_attachment_state *to,
+                      fu_attachment_state *middle, double theta[3]);
 /* Adds `factor` times a force on a point over a step to f: its work is that on the displacement of the point. */
 void fu_add_point_over_step(const fu_model *model, const fu_attachment *on, const fu_state *now, const fu_state *next,
                             const double *force, double factor, double *f);

@@ -363,7 +363,6 @@ static const fu_inertia_operations inertia = {.force = inertial_force,
                                               .kinetic_energy = kinetic_energy,
                                               .potential_energy = potential_energy,
                                               .beyond_velocities = fu_drum_energy_beyond_velocities};
-static const fu_supply_operations supply = {.force = fu_wheel_drive, .step_work = fu_drum_step_work};
 static const fu_start_operations start = {.may_be_open = fu_wheel_may_be_open};
 static const fu_history_operations of_history = {
     .over_step = fu_drum_history_over_step, .jump = fu_drum_history_jump, .update = fu_drum_update};
@@ -375,7 +374,7 @@ const fu_coupling_type fu_drum_type = {
     .output_fields = output_fields,
     .n_numbers = FU_DRUM_HISTORY,
     .inertia = &inertia,
-    .supply = &supply,
+    .supply = &fu_wheel_supply,
     .start = &start,
     .history = &of_history,
     .residual = residual,

@@ -172,6 +172,5 @@ double fu_drum_energy_beyond_velocities(const fu_model *model, const fu_coupling
 void fu_drum_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
                            double *internal);
 double fu_drum_step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
-double fu_drum_step_work(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
 
 #endif

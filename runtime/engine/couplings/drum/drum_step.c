@@ -23,15 +23,6 @@ typedef struct {
     double x[SPACE];
 } drum_over;
 
-/* Returns the turn of the carrier in the plane, by its Cayley vector. */
-static double turn_of_carrier(const fu_wheel_state *from, const double *psi)
-{
-    const fu_attachment_state *centre = &from->centre;
-    double turn = 0.0;
-    for (int i = 0; i < centre->n; ++i) turn += centre->T[i] * psi[centre->at[i]];
-    return turn;
-}
-
 /* Returns the angle between two turns by their measures 2 tan(angle/2) over the difference of these. */
 static double angle_over_measure(double one, double other)
 {
@@ -55,17 +46,15 @@ static void over_step(const fu_model *model, const fu_drum *drum, const fu_equat
         out->middle.x[d] = 0.5 * (from[d] + to[d]);
         out->middle.slope[d] = 0.5 * (out->now.slope[d] + out->next.slope[d]);
     }
-    fu_discrete_point(model, &wheel->attachments[0], at->now, at->next, out->middle.wheel.centre.P);
-    const double carrier = is_in_space(drum) ? 0.0 : turn_of_carrier(&out->now.wheel, at->psi);
+    fu_groove_over_step(model, wheel, at, &out->now.wheel, &out->next.wheel, &out->middle.wheel, &out->groove);
+    const double carrier = is_in_space(drum) ? 0.0 : out->groove.theta[0];
     out->angle = 2.0 * half;
     out->own = wheel->turn < 0 ? 0.0 : at->psi[wheel->turn];
-    out->turn = out->own + carrier;
+    out->turn = fu_wheel_turn(wheel, &out->groove, at);
     out->length = drum->direction * at->psi[drum->s];
     out->part = angle_over_measure(2.0 * tan(half), carrier);
     out->arm = 1.0 / (size * cos(half) * cos(half));
-    if (!is_in_space(drum)) return;
-    fu_groove_over_step(wheel, &out->now.wheel, &out->next.wheel, at->psi, &out->middle.wheel.centre, &out->groove);
-    fu_mean_from_centre(drum->node, at, &out->now.wheel, &out->next.wheel, out->x);
+    if (is_in_space(drum)) fu_mean_from_centre(drum->node, at, &out->now.wheel, &out->next.wheel, out->x);
 }
 
 /* --- the wound rope --------------------------------------------------------------------------------------------- */
@@ -89,23 +78,25 @@ static void velocities_at(const fu_drum *drum, const fu_drum_history *past, cons
     else by_velocities(drum, at, V);
 }
 
-/* Returns the kinetic energy of the wound rope. */
+/* Returns the kinetic energy of the wound rope and of the drum. */
 static double kinetic_energy(const fu_drum *drum, double u, const double V[FU_DRUM_VELOCITIES])
 {
     const int about_diameters = is_in_space(drum) ? FU_TILTS : 0;
-    return 0.5 * drum->wheel.rho * u * (fu_dot(FU_DRUM_VELOCITIES, V, V) - 0.5 * fu_dot(about_diameters, V + 1, V + 1));
+    const double spin = V[0] / drum->wheel.radius;
+    return 0.5 * drum->wheel.inertia * spin * spin +
+           0.5 * drum->wheel.rho * u * (fu_dot(FU_DRUM_VELOCITIES, V, V) - 0.5 * fu_dot(about_diameters, V + 1, V + 1));
 }
 
-/* Inertial forces and weight of the wound rope, and its velocities at the end; on_drum: on its rotation on the carrier,
- * with which it turns in `moment`, too. */
+/* Inertial forces and weight of the wound rope, and its velocities at both ends; on_drum: on its rotation on the
+ * carrier, with which it turns in `moment`, too. */
 typedef struct {
-    double on_c[SPACE], moment[SPACE], on_drum, on_u, V[FU_DRUM_VELOCITIES];
+    double on_c[SPACE], moment[SPACE], on_drum, on_u, V_now[FU_DRUM_VELOCITIES], V[FU_DRUM_VELOCITIES];
 } wound_rope;
 
 static void find_wound_rope(const fu_drum *drum, const fu_equations *at, const drum_over *step, wound_rope *out)
 {
     const fu_wheel *wheel = &drum->wheel;
-    double V[FU_DRUM_VELOCITIES];
+    double *V = out->V_now;
     memset(out, 0, sizeof *out);
     velocities_at(drum, fu_drum_history_of(drum, at->now), &step->now, V);
     if (is_in_space(drum)) {
@@ -130,7 +121,6 @@ void fu_drum_history_over_step(const fu_model *model, const fu_coupling *couplin
     fu_drum_history *next = fu_drum_history_of(drum, at->next);
     wound_rope of;
     drum_over step;
-    if (next->has_left != 0.0) return;
     over_step(model, drum, at, &step);
     find_wound_rope(drum, at, &step, &of);
     memcpy(next->V, of.V, sizeof of.V);
@@ -157,7 +147,7 @@ double fu_drum_energy_beyond_velocities(const fu_model *model, const fu_coupling
     const fu_drum_history *past = fu_drum_history_of(drum, state);
     double V[FU_DRUM_VELOCITIES];
     fu_drum_state at;
-    if (past->is_moving == 0.0 || past->has_left != 0.0) return 0.0;
+    if (past->is_moving == 0.0) return 0.0;
     fu_drum_at(model, drum, state, 0, &at);
     by_velocities(drum, &at, V);
     return kinetic_energy(drum, at.u, past->V) - kinetic_energy(drum, at.u, V);
@@ -251,37 +241,24 @@ static void add_foot(const fu_drum *drum, const fu_equations *at, const drum_ove
 }
 
 /* Adds all forces of a drum with its rope; computes the residuals of its conditions. */
-static void add_rope(const fu_drum *drum, const fu_equations *at, const drum_over *step, const double *multipliers,
-                     double *phi, double *f, forces *out)
+static void add_rope(const fu_drum *drum, const fu_equations *at, const drum_over *step, const wound_rope *of,
+                     const double *multipliers, double *phi, double *f, forces *out)
 {
     const fu_drum_history *past = fu_drum_history_of(drum, at->next);
     const int winding = conditions_of(drum) - 1;
     const double passing = fu_drum_passing(drum, past, &step->next),
                  moment = fu_winding_sense(drum) * drum->wheel.radius * multipliers[winding];
-    wound_rope of;
-    find_wound_rope(drum, at, step, &of);
     for (int d = 0; d < SPACE; ++d) {
-        out->centre[d] += of.on_c[d];
-        out->moment[d] += of.moment[d];
+        out->centre[d] += of->on_c[d];
+        out->moment[d] += of->moment[d];
     }
-    out->on_drum += of.on_drum - moment;
-    out->on_u += of.on_u + elastic_force(drum, step, passing) - passing * multipliers[winding];
+    out->on_drum += of->on_drum - moment;
+    out->on_u += of->on_u + elastic_force(drum, step, passing) - passing * multipliers[winding];
     add_laying(drum, step, out);
     add_on_turn(drum, step, step->part * moment, out);
     if (is_in_space(drum)) add_foot(drum, at, step, multipliers, phi, f, out);
     else add_tangent_point(drum, step, multipliers, phi, out);
     phi[winding] = fu_drum_winding_gap(drum, past, &step->next);
-}
-
-/* Adds the inertial forces of the drum alone. */
-static void add_wheel(const fu_drum *drum, const drum_over *step, double h, forces *out)
-{
-    const fu_wheel *wheel = &drum->wheel;
-    const fu_wheel_state *now = &step->now.wheel, *next = &step->next.wheel;
-    const double moment = wheel->inertia * (next->turn_rate - now->turn_rate) / h;
-    out->on_drum += moment;
-    if (is_in_space(drum)) fu_wheel_add_spin(wheel, now, next, &step->groove, h, out->moment);
-    else out->moment[0] += moment;
 }
 
 static void scatter(const fu_drum *drum, const drum_over *step, const forces *of, double *f)
@@ -302,14 +279,17 @@ void fu_drum_step_residual(const fu_model *model, const fu_coupling *coupling, c
     const double *multipliers = at->next->forces + coupling->force;
     double phi[MAX_CONDITIONS] = {0.0};
     forces of = {.on_u = 0.0};
+    wound_rope rope;
     drum_over step;
     over_step(model, drum, at, &step);
+    find_wound_rope(drum, at, &step, &rope);
     const int n = step.next.has_left ? 1 : conditions_of(drum);
     if (step.next.has_left) {
         phi[0] = step.next.u;
         of.on_u = multipliers[0];
-    } else add_rope(drum, at, &step, multipliers, phi, f, &of);
-    add_wheel(drum, &step, at->h, &of);
+    } else add_rope(drum, at, &step, &rope, multipliers, phi, f, &of);
+    const double R = drum->wheel.radius, from = rope.V_now[0] / R, to = rope.V[0] / R;
+    of.on_drum += fu_wheel_add_spin(&drum->wheel, from, to, &step.groove, at->h, of.moment);
     scatter(drum, &step, &of, f);
     for (int r = 0; r < n; ++r)
         internal[coupling->unknown + r] = -fu_row_unit(at->weights.inertia, coupling->scale[r]) * phi[r];
@@ -327,13 +307,4 @@ double fu_drum_step_dissipation(const fu_model *model, const fu_coupling *coupli
     if (step.next.has_left) return bearing;
     const double force = elastic_force(drum, &step, fu_drum_passing(drum, past, &step.next));
     return bearing + force * step.length - fu_drum_stored(drum, past, &step.next);
-}
-
-double fu_drum_step_work(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
-{
-    const fu_drum *drum = drum_of(coupling);
-    drum_over step;
-    if (drum->wheel.inertia == 0.0) return 0.0;
-    over_step(model, drum, at, &step);
-    return fu_wheel_step_work(&drum->wheel, &step.now.wheel, &step.next.wheel, at);
 }

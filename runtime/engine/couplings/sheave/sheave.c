@@ -293,7 +293,6 @@ static const fu_field fields[] = {
 
 static const fu_inertia_operations inertia = {inertial_force, mass_matrix, kinetic_energy, potential_energy,
                                               fu_sheave_energy_beyond_velocities};
-static const fu_supply_operations supply = {.force = fu_wheel_drive, .step_work = fu_sheave_step_work};
 static const fu_start_operations start = {
     .excess = excess, .may_be_open = fu_wheel_may_be_open, .is_possible = is_possible};
 static const fu_history_operations history = {.size = fu_sheave_history_size,
@@ -311,7 +310,7 @@ const fu_coupling_type fu_sheave_type = {
     .n_flags = 1,
     .history = &history,
     .inertia = &inertia,
-    .supply = &supply,
+    .supply = &fu_wheel_supply,
     .start = &start,
     .residual = residual,
     .tangent = tangent,

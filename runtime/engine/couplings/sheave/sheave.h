@@ -437,10 +437,10 @@ enum { FU_ZONE_POINTS = 8 }; /* of the momentum along a zone */
 /* A sheave over a step: at its start, at its end, half-way (with the mean places of nodes); half the turns of both
  * tangent points, and the forces along k x x~ of moments on these; the centre at the start, its change, and that of s.
  * In space the turns are those from the groove, the centre is taken as zero, and x are the mean places of the tangent
- * points from the centre. */
+ * points from the centre. spin: angular velocities of the wheel at both ends, whose mean is the rotation. */
 typedef struct {
     fu_sheave_state now, next, middle;
-    double half[ENDS], arm[ENDS], c[DIM], c_change[DIM], s_change[MAX_ZONES + 1], x[ENDS][SPACE];
+    double half[ENDS], arm[ENDS], c[DIM], c_change[DIM], s_change[MAX_ZONES + 1], x[ENDS][SPACE], spin[2];
     fu_groove_step groove;
 } fu_sheave_over;
 
@@ -464,6 +464,9 @@ void fu_sheave_over_step(const fu_model *model, const fu_sheave *sheave, const f
 void fu_add_turn(const fu_sheave_over *step, double part, double moment, fu_sheave_step_forces *out);
 /* Adds a moment on the angle of the wrap. */
 void fu_add_opening(const fu_sheave_over *step, double moment, fu_sheave_step_forces *out);
+/* Returns the angular velocity of the wheel, a history variable after the momenta; by velocities where these are not
+ * known. */
+double fu_sheave_spin(const fu_sheave *sheave, const fu_sheave_state *at, const fu_state *state);
 /* Returns x/sin(x). */
 double fu_over_sine(double x);
 
@@ -503,7 +506,6 @@ double fu_sheave_energy_beyond_velocities(const fu_model *model, const fu_coupli
 void fu_sheave_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
                              double *internal);
 double fu_sheave_step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
-double fu_sheave_step_work(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
 
 /* --- sheave_output.c --- */
 

@@ -28,12 +28,18 @@ static int dim_of(const fu_sheave *sheave)
 int fu_sheave_history_size(const fu_coupling *coupling)
 {
     const fu_sheave *sheave = sheave_of(coupling);
-    return FU_MOMENTA_HEAD + sheave->n_zones * FU_ZONE_POINTS * dim_of(sheave);
+    return FU_MOMENTA_HEAD + sheave->n_zones * FU_ZONE_POINTS * dim_of(sheave) + 1;
 }
 
 static int number_of(const fu_sheave *sheave, int zone, int point)
 {
     return (zone * FU_ZONE_POINTS + point) * dim_of(sheave);
+}
+
+double fu_sheave_spin(const fu_sheave *sheave, const fu_sheave_state *at, const fu_state *state)
+{
+    const fu_momenta *known = fu_momenta_of(&sheave->wheel.base, state);
+    return known->is_known != 0.0 ? known->P[number_of(sheave, sheave->n_zones, 0)] : at->wheel.turn_rate;
 }
 
 /* Computes the momentum at a point of a zone by velocities. */
@@ -87,6 +93,7 @@ void fu_sheave_history_over_step(const fu_model *model, const fu_coupling *coupl
     for (int j = 0; j < sheave->n_zones; ++j)
         for (int g = 0; g < FU_ZONE_POINTS; ++g)
             point_over_step(sheave, at, &step, j, g, 0, next->P + number_of(sheave, j, g));
+    next->P[number_of(sheave, sheave->n_zones, 0)] = step.spin[1];
     next->is_known = 1.0;
 }
 
@@ -106,6 +113,7 @@ void fu_sheave_history_jump(const fu_model *model, const fu_coupling *coupling, 
     if (known->is_known == 0.0) return;
     jump.v = (double *)change;
     fu_sheave_at(model, sheave, &jump, 0, &at);
+    known->P[number_of(sheave, sheave->n_zones, 0)] += at.wheel.turn_rate;
     for (int j = 0; j < sheave->n_zones; ++j)
         for (int g = 0; g < FU_ZONE_POINTS; ++g) {
             double P[SPACE];
@@ -123,6 +131,8 @@ double fu_sheave_energy_beyond_velocities(const fu_model *model, const fu_coupli
     double total = 0.0, T;
     if (known->is_known == 0.0) return 0.0;
     fu_sheave_at(model, sheave, state, 0, &at);
+    const double spin = fu_sheave_spin(sheave, &at, state), rate = at.wheel.turn_rate;
+    total += 0.5 * wheel->inertia * (spin * spin - rate * rate);
     if (is_in_space(sheave)) total -= fu_space_wrap_energy(sheave, &at);
     for (int j = 0; j < sheave->n_zones; ++j) {
         const fu_zone of = fu_zone_at(&at, j);
@@ -213,12 +223,6 @@ static void add_losses(const fu_sheave *sheave, const fu_sheave_over *step, fu_s
     }
 }
 
-/* Returns the change of the angular velocity of the wheel over the step. */
-static double spin_change(const fu_sheave_over *step)
-{
-    return step->next.wheel.turn_rate - step->now.wheel.turn_rate;
-}
-
 /* Adds forces over a step by y. */
 static void into_y(const fu_sheave *sheave, const fu_sheave_over *step, const fu_sheave_step_forces *of, double y[Y])
 {
@@ -277,7 +281,7 @@ void fu_sheave_step_residual(const fu_model *model, const fu_coupling *coupling,
     fu_sheave_step_forces of = {.wheel = 0.0};
     fu_sheave_over step;
     fu_sheave_over_step(model, sheave, at, &step);
-    of.wheel = sheave->wheel.inertia * spin_change(&step) / at->h;
+    of.wheel = sheave->wheel.inertia * (step.spin[1] - step.spin[0]) / at->h;
     for (int j = 0; j < sheave->n_zones; ++j) {
         double P[SPACE];
         for (int g = 0; g < FU_ZONE_POINTS; ++g) point_over_step(sheave, at, &step, j, g, &of, P);
@@ -296,10 +300,10 @@ void fu_sheave_step_residual(const fu_model *model, const fu_coupling *coupling,
         internal[coupling->unknown + r] = -at->weights.stiffness * multipliers[r];
 }
 
-/* Velocities half-way are displacements over the step. */
 double fu_turn_of_wheel(const fu_sheave *sheave, const fu_sheave_over *step, const fu_equations *at)
 {
-    return (is_in_space(sheave) ? step->middle.wheel.own_rate : step->middle.wheel.turn_rate) * at->h;
+    if (!is_in_space(sheave)) return fu_wheel_turn(&sheave->wheel, &step->groove, at);
+    return sheave->wheel.turn < 0 ? 0.0 : at->psi[sheave->wheel.turn];
 }
 
 double fu_sheave_step_power(const fu_sheave *sheave, const fu_sheave_over *step, const fu_equations *at,
@@ -321,13 +325,4 @@ double fu_sheave_step_dissipation(const fu_model *model, const fu_coupling *coup
     add_losses(sheave, &step, &of);
     const double own = step.middle.wheel.own_rate;
     return fu_sheave_step_power(sheave, &step, at, &of) + at->h * sheave->wheel.damping * own * own;
-}
-
-double fu_sheave_step_work(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
-{
-    const fu_sheave *sheave = sheave_of(coupling);
-    fu_sheave_over step;
-    if (sheave->wheel.inertia == 0.0 || sheave->wheel.turn < 0) return 0.0;
-    fu_sheave_over_step(model, sheave, at, &step);
-    return fu_wheel_step_work(&sheave->wheel, &step.now.wheel, &step.next.wheel, at);
 }

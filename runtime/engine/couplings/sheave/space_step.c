@@ -145,6 +145,6 @@ void fu_space_over_step(const fu_sheave *sheave, const fu_sheave_over *step, con
 {
     fu_sheave_step_forces all = *of;
     add_conditions(sheave, step, at, multipliers, phi, f, all.force, all.moment);
-    fu_wheel_add_spin(&sheave->wheel, &step->now.wheel, &step->next.wheel, &step->groove, at->h, all.moment);
+    fu_wheel_add_spin(&sheave->wheel, step->spin[0], step->spin[1], &step->groove, at->h, all.moment);
     fu_space_add_step_forces(sheave, step, &all, f);
 }

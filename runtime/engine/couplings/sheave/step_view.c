@@ -39,16 +39,14 @@ void fu_sheave_over_step(const fu_model *model, const fu_sheave *sheave, const f
         const double *one = out->now.x[k], *other = out->next.x[k], turn = cos(out->half[k]);
         out->arm[k] = 1.0 / (sqrt(fu_dot(DIM, one, one) * fu_dot(DIM, other, other)) * turn * turn);
     }
-    fu_discrete_point(model, &sheave->wheel.attachments[0], at->now, at->next, out->middle.wheel.centre.P);
+    fu_groove_over_step(model, &sheave->wheel, at, &out->now.wheel, &out->next.wheel, &out->middle.wheel, &out->groove);
     for (int d = 0; d < DIM; ++d) {
         out->c[d] = is_in_space(sheave) ? 0.0 : out->now.wheel.c[d];
         out->c_change[d] = is_in_space(sheave) ? 0.0 : out->next.wheel.c[d] - out->now.wheel.c[d];
     }
-    if (is_in_space(sheave)) {
-        fu_groove_over_step(&sheave->wheel, &out->now.wheel, &out->next.wheel, at->psi, &out->middle.wheel.centre,
-                            &out->groove);
-        find_places(sheave, at, out);
-    }
+    if (is_in_space(sheave)) find_places(sheave, at, out);
+    out->spin[0] = fu_sheave_spin(sheave, &out->now, at->now);
+    out->spin[1] = 2.0 * fu_wheel_turn(&sheave->wheel, &out->groove, at) / at->h - out->spin[0];
     for (int j = 0; j <= sheave->n_zones; ++j) out->s_change[j] = at->psi[sheave->s[j]];
 }
 

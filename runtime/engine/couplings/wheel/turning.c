@@ -77,25 +77,14 @@ double fu_wheel_add_ring(const fu_wheel *wheel, const fu_wheel_state *at, const 
 
 /* --- over a step that conserves energy -------------------------------------------------------------------------- */
 
-/* Computes the turn of the groove, and the turns by the unknowns of its body. */
-static void find_turn(const fu_attachment_state *from, const double *psi, fu_attachment_state *to, double theta[SPACE])
+void fu_groove_over_step(const fu_model *model, const fu_wheel *wheel, const fu_equations *at,
+                         const fu_wheel_state *now, const fu_wheel_state *next, fu_wheel_state *middle,
+                         fu_groove_step *out)
 {
-    const int n = from->n;
-    for (int d = 0; d < SPACE; ++d) {
-        theta[d] = 0.0;
-        for (int i = 0; i < n; ++i) theta[d] += from->T[d * n + i] * psi[from->at[i]];
-    }
-    for (int i = 0; i < n; ++i) {
-        double column[SPACE], turned[SPACE];
-        column_of(from->T, n, i, column);
-        fu_cross(theta, column, turned);
-        for (int d = 0; d < SPACE; ++d) to->T[d * n + i] = column[d] + 0.5 * turned[d];
-    }
-}
-
-void fu_groove_over_step(const fu_wheel *wheel, const fu_wheel_state *now, const fu_wheel_state *next,
-                         const double *psi, fu_attachment_state *middle, fu_groove_step *out)
-{
+    const fu_attachment *on = &wheel->attachments[0];
+    fu_discrete_point(model, on, at->now, at->next, middle->centre.P);
+    fu_discrete_turn(model, on, at->now, at->next, at->psi, &now->centre, &next->centre, &middle->centre, out->theta);
+    if (!wheel->foot) return;
     for (int i = 0; i < SPACE * PLANE; ++i) out->axes[i] = 0.5 * (now->groove[i] + next->groove[i]);
     for (int d = 0; d < SPACE; ++d) {
         out->axis[d] = 0.5 * (now->axis[d] + next->axis[d]);
@@ -105,7 +94,12 @@ void fu_groove_over_step(const fu_wheel *wheel, const fu_wheel_state *now, const
                               : fu_dot(PLANE, now->groove + d * PLANE, wheel->g) + now->axis[d] * wheel->g[PLANE];
     }
     for (int i = 0; i < PLANE; ++i) out->g[i] = 0.5 * (now->g[i] + next->g[i]);
-    find_turn(&now->centre, psi, middle, out->theta);
+}
+
+double fu_wheel_turn(const fu_wheel *wheel, const fu_groove_step *groove, const fu_equations *at)
+{
+    const double own = wheel->turn < 0 ? 0.0 : at->psi[wheel->turn];
+    return own + (wheel->foot ? fu_dot(SPACE, groove->axis, groove->theta) : groove->theta[0]);
 }
 
 void fu_mean_from_centre(int node, const fu_equations *at, const fu_wheel_state *now, const fu_wheel_state *next,
@@ -115,12 +109,16 @@ void fu_mean_from_centre(int node, const fu_equations *at, const fu_wheel_state 
         out[d] = 0.5 * (at->now->q[node + d] - now->centre.p[d] + at->next->q[node + d] - next->centre.p[d]);
 }
 
-void fu_wheel_add_spin(const fu_wheel *wheel, const fu_wheel_state *now, const fu_wheel_state *next,
-                       const fu_groove_step *groove, double h, double moment[SPACE])
+double fu_wheel_add_spin(const fu_wheel *wheel, double from, double to, const fu_groove_step *groove, double h,
+                         double moment[SPACE])
 {
-    const double from = now->turn_rate, to = next->turn_rate;
+    const double gained = wheel->inertia * (to - from) / h, held = 0.5 * wheel->inertia * (from + to) / h;
     double tilt[SPACE];
+    if (!wheel->foot) {
+        moment[0] += gained;
+        return gained;
+    }
     fu_cross(groove->theta, groove->axis, tilt);
-    for (int d = 0; d < SPACE; ++d)
-        moment[d] += wheel->inertia * ((to - from) * groove->axis[d] + 0.5 * (from + to) * tilt[d]) / h;
+    for (int d = 0; d < SPACE; ++d) moment[d] += gained * groove->axis[d] + held * tilt[d];
+    return gained;
 }

@@ -169,12 +169,7 @@ void fu_wheel_drive(const fu_model *model, const fu_coupling *coupling, double t
         model->load_fraction * wheel->torque * (signal < 0 ? 1.0 : fu_signal_at(&model->signals[signal], t, 0, 0));
 }
 
-double fu_wheel_step_work(const fu_wheel *wheel, const fu_wheel_state *now, const fu_wheel_state *next,
-                          const fu_equations *at)
-{
-    const double mean = 0.5 * (now->own_rate + next->own_rate), change = next->turn_rate - now->turn_rate;
-    return wheel->turn < 0 ? 0.0 : wheel->inertia * change * (mean - at->psi[wheel->turn] / at->h);
-}
+const fu_supply_operations fu_wheel_supply = {.force = fu_wheel_drive};
 
 int fu_wheel_may_be_open(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {

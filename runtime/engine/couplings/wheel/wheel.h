@@ -136,19 +136,21 @@ double fu_wheel_outwards(const fu_wheel_state *at, double phi);
 typedef struct {
     double axes[3 * FU_GROOVE], axis[3], theta[3], c_change[3], gravity[3], g[FU_GROOVE];
 } fu_groove_step;
-/* Computes the groove over a step, and the turns by the unknowns of its body half-way. */
-void fu_groove_over_step(const fu_wheel *wheel, const fu_wheel_state *now, const fu_wheel_state *next,
-                         const double *psi, fu_attachment_state *middle, fu_groove_step *out);
+/* Computes the groove over a step, in the plane the turn alone; and, half-way, moves and turns of the centre by the
+ * unknowns of its carrier. */
+void fu_groove_over_step(const fu_model *model, const fu_wheel *wheel, const fu_equations *at,
+                         const fu_wheel_state *now, const fu_wheel_state *next, fu_wheel_state *middle,
+                         fu_groove_step *out);
+/* Returns the rotation of the wheel about its axis over a step. */
+double fu_wheel_turn(const fu_wheel *wheel, const fu_groove_step *groove, const fu_equations *at);
 /* Computes the mean place of a node from the centre, in space. */
 void fu_mean_from_centre(int node, const fu_equations *at, const fu_wheel_state *now, const fu_wheel_state *next,
                          double out[3]);
-/* Adds the moments of a wheel in space, whose angular momentum about its axis turns with it. */
-void fu_wheel_add_spin(const fu_wheel *wheel, const fu_wheel_state *now, const fu_wheel_state *next,
-                       const fu_groove_step *groove, double h, double moment[3]);
-/* Returns the work over a step of the drive of a prescribed rotation, whose mean velocity differs slightly from its
- * turn: the kinetic energy of the wheel changes by the former. */
-double fu_wheel_step_work(const fu_wheel *wheel, const fu_wheel_state *now, const fu_wheel_state *next,
-                          const fu_equations *at);
+/* Adds the moments of a wheel whose angular velocity changes over a step h, and its angular momentum about its axis
+ * turns with it; returns that on the rotation on its carrier. */
+double fu_wheel_add_spin(const fu_wheel *wheel, double from, double to, const fu_groove_step *groove, double h,
+                         double moment[3]);
+extern const fu_supply_operations fu_wheel_supply;
 /* Subtracts the torque of the drive. */
 void fu_wheel_drive(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f);
 int fu_wheel_may_be_open(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
