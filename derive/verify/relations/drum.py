@@ -183,11 +183,11 @@ def _of_step() -> list[Relation]:
     def only(s: State, changing: tuple[str, ...]) -> State:
         return s | {name: 0 * s[name] for name in CHANGES if name not in changing}
 
-    works = [Relation("store_step", "F", f"work where {', '.join(changing)} change: that of the energies", 0,
-                      lambda k, s, t, j, changing=changing: energies(k, only(s, changing)),
-                      of=lambda k, s, changing=changing: work(k, only(s, changing)))
-             for changing in (CHANGES, ("u_change",), ("c_change",), ("turn_change",))]
-    return [*works,
+    def of_work(changing: tuple[str, ...]) -> Relation:
+        return Relation("store_step", "F", f"work where {', '.join(changing)} change: that of the energies", 0,
+                        lambda k, s, t, j: energies(k, only(s, changing)), of=lambda k, s: work(k, only(s, changing)))
+
+    return [*(of_work(changing) for changing in (CHANGES, *((name,) for name in CHANGES))),
             Relation("store_step", "F", "moment: the change of the angular momentum", 0,
                      lambda k, s, t, j: angular_momentum(k, s), of=moment),
             Relation("store_step", "V_next", "with V, the mean: displacements over h", 0,
