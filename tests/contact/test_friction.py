@@ -237,7 +237,7 @@ def test_a_tied_frame_that_is_trapped_at_a_node_makes_no_energy_and_is_noted():
                                          output_step=2e-3, progress=False)
     assert run.status == "completed"
     assert energy_error(run) < 3e-3
-    assert 'drives the frame of "trolley" back to the node. Take element="cable18"' in str(run.report["messages"])
+    assert 'the frame of "trolley" back to the node. Take more elements, or on a cable' in str(run.report["messages"])
 
 
 def test_a_slide_that_may_stick_stands_beside_joints():

@@ -295,6 +295,7 @@ CEILINGS = {
         "friction_off_tangent": 351, "friction_short": 70, "friction_short_tangent": 342,
         "coulomb": 52, "coulomb_tangent": 255, "coulomb_motion": 31, "coulomb_on": 52, "coulomb_on_tangent": 244,
         "coulomb_on_motion": 32, "coulomb_off": 52, "coulomb_off_tangent": 244, "coulomb_off_motion": 32,
+        "coulomb_short": 57, "coulomb_short_tangent": 247, "coulomb_short_motion": 31,
         "short_wrap": 399, "short_wrap_motion": 52,
         "winding": 46, "winding_motion": 29, "store": 69, "store_mass": 5, "store_tangent": 71, "store_energy": 15,
         "laying": 9,

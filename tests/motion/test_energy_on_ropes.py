@@ -87,7 +87,7 @@ KINDS = ["spherical", "distance", "spring", "slide"]
 def test_energy_is_kept_and_agrees_with_radau(kind, dim):
     """The rope flows by .1 to .3 m past its nodes, which are .4 m apart."""
     run = loaded(kind, dim).run(0.4, output_step=0.05, step=1e-3, **STEP)
-    radau = loaded(kind, dim).run(0.4, output_step=0.05, tol=1e-6, integrator="radau", progress=False)
+    radau = loaded(kind, dim).run(0.4, output_step=0.05, tol=1e-4, integrator="radau", progress=False)
     assert unaccounted(run) < 1e-12 * run["energy.kinetic"].max()  # measured: 7e-14 at most
     for name in ("W", "L", *(["G"] if "G.position" in run else [])):
         place, other = run[f"{name}.position"], radau[f"{name}.position"]

@@ -204,12 +204,6 @@ def test_friction_that_sticks():
     assert run["top.slip_angle"][0] == 0.0
 
 
-@pytest.mark.parametrize("sheave", [SLIDING, STICKING])
-def test_the_energy_scheme_is_refused(sheave):
-    with pytest.raises(fu.SceneError, match='does not support sheave "top" on cable "bearer"'):
-        on_cable(**sheave).run(0.01, integrator="energy", progress=False)
-
-
 def test_pictures():
     """A wheel follows its point of the cable."""
     clip = on_cable(**TURNING).run(0.05, output_step=0.01, step=1e-4, progress=False).animation("a run").clips[0]

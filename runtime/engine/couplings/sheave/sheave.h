@@ -434,6 +434,18 @@ void fu_space_rows(const fu_model *model, const fu_sheave *sheave, const fu_stat
 
 enum { FU_ZONE_POINTS = 8 }; /* of the momentum along a zone */
 
+/* Returns the dimension of the momentum at a point of a zone. */
+static inline int momentum_dim(const fu_sheave *sheave)
+{
+    return is_in_space(sheave) ? SPACE : DIM;
+}
+
+/* Returns where the momentum at a point of a zone stands in the history; after those of all zones stands the spin. */
+static inline int momentum_number(const fu_sheave *sheave, int zone, int point)
+{
+    return (zone * FU_ZONE_POINTS + point) * momentum_dim(sheave);
+}
+
 /* A sheave over a step: at its start, at its end, half-way (with the mean places of nodes); half the turns of both
  * tangent points, and the forces along k x x~ of moments on these; the centre at the start, its change, and that of s.
  * In space the turns are those from the groove, the centre is taken as zero, and x are the mean places of the tangent

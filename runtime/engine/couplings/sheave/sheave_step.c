@@ -19,27 +19,10 @@ static const double part_of_zone[FU_ZONE_POINTS] = {0.01985507175123188, 0.10166
 
 /* --- inertia ---------------------------------------------------------------------------------------------------- */
 
-/* Returns the dimension of the momentum. */
-static int dim_of(const fu_sheave *sheave)
-{
-    return is_in_space(sheave) ? SPACE : DIM;
-}
-
 int fu_sheave_history_size(const fu_coupling *coupling)
 {
     const fu_sheave *sheave = sheave_of(coupling);
-    return FU_MOMENTA_HEAD + sheave->n_zones * FU_ZONE_POINTS * dim_of(sheave) + 1;
-}
-
-static int number_of(const fu_sheave *sheave, int zone, int point)
-{
-    return (zone * FU_ZONE_POINTS + point) * dim_of(sheave);
-}
-
-double fu_sheave_spin(const fu_sheave *sheave, const fu_sheave_state *at, const fu_state *state)
-{
-    const fu_momenta *known = fu_momenta_of(&sheave->wheel.base, state);
-    return known->is_known != 0.0 ? known->P[number_of(sheave, sheave->n_zones, 0)] : at->wheel.turn_rate;
+    return FU_MOMENTA_HEAD + sheave->n_zones * FU_ZONE_POINTS * momentum_dim(sheave) + 1;
 }
 
 /* Computes the momentum at a point of a zone by velocities. */
@@ -66,7 +49,8 @@ static void point_over_step(const fu_sheave *sheave, const fu_equations *at, con
     const double part = begin + xi * width, wrap = step->now.phi[1] - step->now.phi[0];
     const double opening = 2.0 * (step->half[1] - step->half[0]);
     double P[SPACE], on_c[DIM], on_turn, on_alpha, on_s[ENDS];
-    if (known->is_known != 0.0) memcpy(P, known->P + number_of(sheave, j, g), sizeof(double) * (size_t)dim_of(sheave));
+    if (known->is_known != 0.0)
+        memcpy(P, known->P + momentum_number(sheave, j, g), sizeof(double) * (size_t)momentum_dim(sheave));
     else momentum_of_velocities(sheave, &step->now, j, g, P);
     if (is_in_space(sheave)) {
         const fu_zone_point point = {j, xi, weight_in_zone[g]};
@@ -92,8 +76,8 @@ void fu_sheave_history_over_step(const fu_model *model, const fu_coupling *coupl
     fu_sheave_over_step(model, sheave, at, &step);
     for (int j = 0; j < sheave->n_zones; ++j)
         for (int g = 0; g < FU_ZONE_POINTS; ++g)
-            point_over_step(sheave, at, &step, j, g, 0, next->P + number_of(sheave, j, g));
-    next->P[number_of(sheave, sheave->n_zones, 0)] = step.spin[1];
+            point_over_step(sheave, at, &step, j, g, 0, next->P + momentum_number(sheave, j, g));
+    next->P[momentum_number(sheave, sheave->n_zones, 0)] = step.spin[1];
     next->is_known = 1.0;
 }
 
@@ -113,12 +97,12 @@ void fu_sheave_history_jump(const fu_model *model, const fu_coupling *coupling, 
     if (known->is_known == 0.0) return;
     jump.v = (double *)change;
     fu_sheave_at(model, sheave, &jump, 0, &at);
-    known->P[number_of(sheave, sheave->n_zones, 0)] += at.wheel.turn_rate;
+    known->P[momentum_number(sheave, sheave->n_zones, 0)] += at.wheel.turn_rate;
     for (int j = 0; j < sheave->n_zones; ++j)
         for (int g = 0; g < FU_ZONE_POINTS; ++g) {
             double P[SPACE];
             momentum_of_velocities(sheave, &at, j, g, P);
-            for (int d = 0; d < dim_of(sheave); ++d) known->P[number_of(sheave, j, g) + d] += P[d];
+            for (int d = 0; d < momentum_dim(sheave); ++d) known->P[momentum_number(sheave, j, g) + d] += P[d];
         }
 }
 
@@ -142,7 +126,7 @@ double fu_sheave_energy_beyond_velocities(const fu_model *model, const fu_coupli
             total -= T;
         }
         for (int g = 0; g < FU_ZONE_POINTS; ++g) {
-            const double *P = known->P + number_of(sheave, j, g), mass = weight_in_zone[g] * wheel->rho;
+            const double *P = known->P + momentum_number(sheave, j, g), mass = weight_in_zone[g] * wheel->rho;
             if (is_in_space(sheave)) wheel->foot->momentum_energy(mass, of.l, P, &T);
             else wheel->kernel->momentum_energy(mass, of.l, P, &T);
             total += T;

@@ -5,6 +5,7 @@
  * zone turns at its part of the wrap by the angle in between; so a moment there is shared between both tangent points
  * by the parts of its work. */
 #include "bodies/model.h"
+#include "couplings/common/momenta.h"
 #include "couplings/sheave/sheave.h"
 
 #include <math.h>
@@ -12,6 +13,12 @@
 double fu_over_sine(double x)
 {
     return fabs(x) < 1e-4 ? 1.0 + x * x / 6.0 : x / sin(x);
+}
+
+double fu_sheave_spin(const fu_sheave *sheave, const fu_sheave_state *at, const fu_state *state)
+{
+    const fu_momenta *known = fu_momenta_of(&sheave->wheel.base, state);
+    return known->is_known != 0.0 ? known->P[momentum_number(sheave, sheave->n_zones, 0)] : at->wheel.turn_rate;
 }
 
 /* Computes the mean places of the tangent points from the centre, in space. */
