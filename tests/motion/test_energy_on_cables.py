@@ -73,3 +73,12 @@ def test_the_twin_in_space(kind):
     runs = [weights(bearer(element), ("bearer", MIDDLE), element=element, **SHEAVES[kind]).run(
         0.03, output_step=0.01, **STEP) for element in ("cable8p", "cable12")]
     assert apart(*runs) < 5e-7
+
+
+def test_a_point_at_its_limit_over_a_step_alone_does_not_hold_up_a_run():
+    """At .083 s a point is held by less than its limit at the step's start, and by more within it. Beyond .09 s points
+    of the light wheel alternate, which ends the run.
+    """
+    with pytest.raises(fu.ConvergenceError, match="alternates between two states at one instant") as ended:
+        on_cable("cable8p", **STICKING).run(0.1, output_step=2e-3, **STEP)
+    assert ended.value.run.time[-1] > 0.09

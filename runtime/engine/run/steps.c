@@ -67,10 +67,11 @@ static int must_keep_forces(const fu_run *run)
 
 /* A trial step: its intended and its actual size, s; the place of a cut at a grazing event, s, else 0, and the number
  * of cuts; its error, m, and the ratio to the permitted error; the numbers of boundaries and of deferred events in it;
- * whether it has been found to have none; the event at its end. */
+ * whether it has been found to have none; the event at its end; whether what may act before it acts after it
+ * instead. */
 typedef struct {
     double want, h, cut, error, ratio;
-    int cuts, changes, deferred, refused;
+    int cuts, changes, deferred, refused, is_late;
     fu_event event;
 } trial;
 
@@ -179,13 +180,18 @@ static void find_event(fu_run *run, trial *t)
     }
 }
 
+/* Returns whether the event of a step may act before it. */
+static int may_act_before(const fu_run *run, const trial *t)
+{
+    const fu_coupling *coupling = t->event.kind == FU_EVENT_FUNCTION ? fu_event_coupling(run, t->event.which) : 0;
+    return coupling && coupling->events->keeps_velocities;
+}
+
 /* Returns whether a step that ends on an event is too short for a method that conserves energy, whose velocities would
  * be rounding over it, and the event may act before it. */
 static int acts_at_once(const fu_run *run, const trial *t)
 {
-    if (!run->integrator->keeps_energy || t->event.kind == FU_PATH_BOUNDARY || !fu_is_short(run, t->h)) return 0;
-    const fu_coupling *coupling = fu_event_coupling(run, t->event.which);
-    return coupling && coupling->events->keeps_velocities;
+    return run->integrator->keeps_energy && fu_is_short(run, t->h) && may_act_before(run, t);
 }
 
 /* Shortens the step until it ends on the first of its events; returns 0 if that is not found. */
@@ -267,6 +273,17 @@ static int take_step(fu_run *run, const trial *t)
     return refresh(run, t->h);
 }
 
+/* Handles an event before the short step that leads to it; returns a status, and whether a coupling has changed. */
+static int act_before(fu_run *run, const trial *t, int *has_acted)
+{
+    const int acts = run->acts;
+    const double acted = run->acted;
+    fu_evaluate_event_functions(run, t->event, 0.0);
+    const int status = fu_handle_event(run, t->event);
+    *has_acted = run->acts != acts || run->acted != acted;
+    return status;
+}
+
 /* Computes and accepts one step towards `target`, or executes the action of an event at `now`; returns a status. */
 int fu_step_towards(fu_run *run, double target)
 {
@@ -280,6 +297,7 @@ int fu_step_towards(fu_run *run, double target)
         if (!choose_size(run, &t, target - run->now.t)) return FU_NO_CONVERGENCE;
         if (!attempt(run, &t) || shall_go_over(run, &t)) continue;
         find_event(run, &t);
+        if (t.is_late && may_act_before(run, &t)) t.event = fu_no_event;
         const double turn = run->keep_segments ? fu_time_of_turn(run, t.h) : 0.0;
         if (turn > shortest(run) && run->turned < MAX_TURNS) {
             t.want = turn;
@@ -299,8 +317,11 @@ int fu_step_towards(fu_run *run, double target)
         if ((t.changes || t.deferred) && !is_accurate_without_jump(run, &t)) continue;
         if (run->n_event_functions && is_cut_at_grazing(run, &t)) continue;
         if (acts_at_once(run, &t)) {
-            fu_evaluate_event_functions(run, t.event, 0.0);
-            return fu_handle_event(run, t.event);
+            int has_acted;
+            const int status = act_before(run, &t, &has_acted);
+            if (status || has_acted) return status;
+            t.is_late = 1; /* it is at its limit only beyond the start */
+            continue;
         }
         accept(run, &t);
         const int status = t.event.kind == FU_PATH_BOUNDARY ? FU_RUNNING : refresh(run, t.h);
