@@ -38,8 +38,9 @@ def placed_slide(scene: SceneData, slide: Slide) -> Slide:
         slide = _framed(scene, slide.completed({"s": min(max(s, 0.0), line.length)}), line)
         _check_buffers(slide, line)
     else:
-        check_possible_on_rope(slide.completed({"s": s}), line)
-        slide = _framed(scene, slide.completed({"s": s}), line)
+        slide = slide.completed({"s": s})
+        check_possible_on_rope(slide, line)
+        slide = _framed(scene, slide, line)
     _check_drive(slide, line)
     return _seated(scene, slide, line)
 
@@ -126,13 +127,12 @@ def _framed(scene: SceneData, slide: Slide, line: Line) -> Slide:
                          f'take frame="point", or {elements_with_sections()}')
     if slide.roll == "free" or dim == 2:
         return slide
+    frame = cable_frame(cable, slide.arc_length) if cable else rope_frame(scene, slide.along, slide.arc_length)
     up = slide.up
     if up is None:
         size = np.linalg.norm(scene.gravity)
-        across = cable.height_direction if cable else tuple(
-            rope_frame(scene, slide.along, slide.arc_length)[:, 1].tolist())
+        across = cable.height_direction if cable else tuple(frame[:, 1].tolist())
         up = tuple((-np.array(scene.gravity) / size + 0.0).tolist()) if size > 0 else across
-    frame = cable_frame(cable, slide.arc_length) if cable else rope_frame(scene, slide.along, slide.arc_length)
     check_up(up, frame[:, 0], line.where, slide.where)
     return slide.completed({"up": up})
 

@@ -245,7 +245,7 @@ def trapped(scene: SceneData, engine: Engine) -> list[str]:
     counts = engine.statistics
     names = [f'"{slide.name}"' for slide in scene.slides.values()
              if slide.frame != "point" and (slide.along in scene.ropes or
-                                         scene.cables[slide.along].element != CONTINUOUS_CURVATURE_ELEMENT)]
+                                          scene.cables[slide.along].element != CONTINUOUS_CURVATURE_ELEMENT)]
     if not names or counts["element_crossings"] < max(MANY_NODE_PASSAGES, NODE_PASSAGES_PER_STEP * counts["steps"]):
         return []
     return [f"slides passed nodes {counts['element_crossings']} times in {counts['steps']} steps: the curvature of "
