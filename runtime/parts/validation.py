@@ -128,8 +128,8 @@ def symmetric(value: Any, unit: str, check: Callable[[np.ndarray], None]) -> Mat
 def show(value: float | tuple[float, ...] | np.ndarray, unit: str = "") -> str:
     """Return the text of a number or vector in messages, with its unit."""
     if isinstance(value, float):
-        return f"{value:.9g} {unit}".strip()
-    numbers = [f"{v:.9g}" for v in value]
+        return f"{value:z.9g} {unit}".strip()
+    numbers = [f"{v:z.9g}" for v in value]
     if len(numbers) > 12:
         numbers[6:-3] = ["..."]
     return f"({', '.join(numbers)}) {unit}".strip()
