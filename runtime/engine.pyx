@@ -39,16 +39,17 @@ cdef size_t _own_tables() except 0:
 cdef _take_lapack():
     """Attach the functions of LAPACK that the engine names, those of SciPy.
 
-    Runs call this, not `import funicular`: SciPy would double the time of that import.
+    Runs call this, not `import funicular`, which does without SciPy.
     """
     global has_lapack
     cdef int k = 0
     if has_lapack:
         return
-    from scipy.linalg import cython_lapack
+    from funicular.base.lapack import cython_lapack
 
+    table = cython_lapack().__pyx_capi__
     while fu_lapack_name(k) != NULL:
-        function = cython_lapack.__pyx_capi__[fu_lapack_name(k).decode()]
+        function = table[fu_lapack_name(k).decode()]
         fu_lapack_attach(&LAPACK, k, PyCapsule_GetPointer(function, PyCapsule_GetName(function)))
         k += 1
     has_lapack = True

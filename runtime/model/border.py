@@ -102,7 +102,7 @@ class _Border:
         model = self.model
         unknown = model.unknown_of_dof[dofs]
         if (combined := -2 - unknown[unknown < -1]).size:
-            unknown = np.append(unknown, model.combinations[combined].indices)
+            unknown = np.append(unknown, model.combinations.entries(combined)[1])
         return np.unique(unknown[unknown >= 0])
 
     def _of_unknowns(self, at: np.ndarray) -> _Place:

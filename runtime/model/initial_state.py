@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from ..errors import SceneError, near
 from ..parts.cable import Cable
@@ -202,6 +201,8 @@ def _along_spline(points: np.ndarray, cable: CableModel, drawn: Cable, name: str
     if not set(cable.vectors) <= set(orders):
         raise SceneError("initial", f'"{name}" does not determine the rotations of the sections of {drawn.where}',
                          f'give "{cable.name}.nodal_vectors" or "{cable.name}.nodal_velocity"')
+    from scipy.interpolate import CubicSpline  # slow to import, and most runs do without
+
     s = cable.mesh.node_s
     ends = "not-a-knot" if len(s) > 2 else "natural"
     spline = CubicSpline(s, points, bc_type=ends)

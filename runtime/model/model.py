@@ -11,7 +11,6 @@ from functools import cached_property
 from typing import Any, ClassVar, Protocol, TypeVar, cast
 
 import numpy as np
-from scipy.sparse import csr_array
 
 from ..kernels.libraries import kernels_of, of_library
 from ..kernels.mesh import Mesh
@@ -19,6 +18,7 @@ from ..parts.body_shape import Shape
 from ..parts.part import Part
 from ..parts.plane_axes import PlaneAxes
 from .attachments import AttachmentModel
+from .combinations import Combinations
 from .contacts import ContactModel, HardContactModel, RopeContactModel
 from .coupling import CouplingModel
 from .crossings import CrossingModel
@@ -240,7 +240,7 @@ class Model:
     weight: np.ndarray
     gravity: np.ndarray
     unknown_of_dof: np.ndarray
-    combinations: csr_array
+    combinations: Combinations
     n_band: int
     n_border_dof: int
     n_extra: int

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.linalg import solve_triangular
 
 from ..engine import Engine
 from ..errors import SceneError
@@ -144,6 +143,8 @@ def _following(S: np.ndarray) -> dict[int, list[int]]:
     S = scale[:, None] * S[np.ix_(used, used)] * scale
     if len(S) <= MAX_DENSE_EQUATIONS and _is_definite(S):
         return {}
+    from scipy.linalg import solve_triangular  # slow to import, and most runs do without
+
     L = np.zeros_like(S)
     kept = np.zeros(len(S), dtype=int)
     before = np.zeros(len(S) + 1, dtype=int)  # number of rows kept before each

@@ -11,16 +11,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import csr_array
 
 from ..errors import SceneError
 from ..parts.scene_data import SceneData
 from ..parts.signal import Signal
+from .combinations import Combinations
 from .cutting import MAX_ATTACHMENTS, cut
-from .numbering import Numbering, as_drawn, cheapest, incidence_of
+from .numbering import Numbering, as_drawn
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
 
 PARALLEL_SINE = 1e-9
 """Sine of the angle below which tangents are parallel."""
@@ -58,37 +61,40 @@ class Reduction:
     """
 
     unknown_of_dof: np.ndarray
-    combinations: csr_array
+    combinations: Combinations
     n_unknowns: int
     numbering: Numbering
     prescribed: list[tuple[int, Prescribed]]
 
 
-def as_supports_leave(asked: np.ndarray, unknown_of_dof: np.ndarray, combinations: csr_array) -> np.ndarray:
+def as_supports_leave(asked: np.ndarray, unknown_of_dof: np.ndarray, combinations: Combinations) -> np.ndarray:
     """Return changes of dofs (n,) that supports and ties admit: those of fixed dofs are zero.
 
     asked: the requested changes (n,), of which those of the unknowns count; the last one of dofs that share an unknown.
     unknown_of_dof, combinations: as in `Reduction`.
     """
-    unknowns, free, tied = np.zeros(combinations.shape[1]), unknown_of_dof >= 0, unknown_of_dof < -1
+    free, tied = unknown_of_dof >= 0, unknown_of_dof < -1
+    unknowns = np.zeros(max(unknown_of_dof.max(initial=-1), combinations.unknown.max(initial=-1)) + 1)
     unknowns[unknown_of_dof[free]] = asked[free]
     given = np.zeros(len(asked))
     given[free] = unknowns[unknown_of_dof[free]]
     if tied.any():
-        given[tied] = (combinations @ unknowns)[-2 - unknown_of_dof[tied]]
+        given[tied] = combinations.times(unknowns)[-2 - unknown_of_dof[tied]]
     return given
 
 
-def by_unknowns(unknown_of_dof: np.ndarray, combinations: csr_array, n: int) -> csr_array:
+def by_unknowns(unknown_of_dof: np.ndarray, combinations: Combinations, n: int) -> csr_array:
     """Return T (dofs, n unknowns), sparse: dofs = T unknowns + prescribed parts.
 
     unknown_of_dof (dofs,): of all dofs or of some; combinations: as in `Reduction`.
     """
+    from scipy.sparse import csr_array  # slow to import, and runs do without
+
     free, tied = np.flatnonzero(unknown_of_dof >= 0), np.flatnonzero(unknown_of_dof < -1)
-    part = combinations[-2 - unknown_of_dof[tied]].tocoo()
-    rows = np.concatenate([free, tied[part.row]])
-    columns = np.concatenate([unknown_of_dof[free], part.col])
-    values = np.concatenate([np.ones(len(free)), part.data])
+    place, unknown, factor = combinations.entries(-2 - unknown_of_dof[tied])
+    rows = np.concatenate([free, tied[place]])
+    columns = np.concatenate([unknown_of_dof[free], unknown])
+    values = np.concatenate([np.ones(len(free)), factor])
     return csr_array((values, (rows, columns)), shape=(len(unknown_of_dof), n))
 
 
@@ -220,26 +226,23 @@ class Supports:
         numbering = self._numbering(drawn, combined, elements, attached)
         number = numbering.number
         unknown_of_dof = np.where(unknown, number[drawn], -1) if n else drawn
-        rows, columns, values, count = [], [], [], 0
+        rows: list[dict[int, float]] = []
         for dof, row in sorted(combined.items()):
             if list(row.free.values()) == [1.0]:
                 unknown_of_dof[dof] = unknown_of_dof[next(iter(row.free))]
                 continue
-            unknown_of_dof[dof] = -2 - count
-            rows += [count] * len(row.free)
-            columns += [int(unknown_of_dof[of]) for of in row.free]
-            values += list(row.free.values())
-            count += 1
-        shape = count, max(n, 1)
-        combinations = csr_array((values, (rows, columns)), shape=shape) if count else _none(shape[1])
+            unknown_of_dof[dof] = -2 - len(rows)
+            rows.append({int(unknown_of_dof[of]): factor for of, factor in row.free.items()})
         prescribed = [(dof, part) for dof, row in self.rows.items() for part in row.prescribed]
-        return Reduction(unknown_of_dof.astype(int), combinations, n, numbering, prescribed)
+        return Reduction(unknown_of_dof.astype(int), Combinations.of(rows), n, numbering, prescribed)
 
     def _numbering(self, drawn: np.ndarray, combined: dict[int, Row], elements: np.ndarray,
                    attached: np.ndarray) -> Numbering:
         """Return the numbering of the unknowns; drawn: their numbers as drawn; combined: rows of dependent dofs."""
         if not combined and len(attached) <= MAX_ATTACHMENTS:
             return as_drawn(elements, drawn)
+        from .fewest_operations import cheapest, incidence_of  # imports SciPy, which most runs do without
+
         free = np.flatnonzero(drawn >= 0)
         shape = len(drawn), len(free)
         made_of = np.stack([free, drawn[free]], axis=1)
@@ -250,12 +253,6 @@ class Supports:
         if len(attached) <= MAX_ATTACHMENTS:
             return numbering
         return cut(numbering, incidence_of(elements, made_of, shape), attached)
-
-
-@lru_cache(maxsize=64)
-def _none(columns: int) -> csr_array:
-    """Return an empty matrix (0, columns), made once, as SciPy takes long for it."""
-    return csr_array((0, columns))
 
 
 def _shared(master: Node, slave: Node) -> dict[str, list[dict[int, float]]]:

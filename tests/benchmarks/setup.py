@@ -29,7 +29,7 @@ from funicular.integrators import Integrator
 from funicular.model.breakpoints import breakpoints
 from funicular.model.build import build
 from funicular.model.elimination import eliminated
-from funicular.model.numbering import ordered
+from funicular.model.fewest_operations import ordered
 from funicular.model.redundant_constraints import drop_redundant_rows
 from funicular.parts.settings import RunSettings
 from funicular.solve.motion.event_handler import EventHandler

@@ -5,6 +5,7 @@ import subprocess
 import sys
 
 import funicular as fu
+import pytest
 
 HEAVY = {"sympy", "jinja2", "matplotlib", "xarray", "h5py", "h5netcdf", "scipy", "pandas", "rich", "typer"}
 
@@ -27,6 +28,23 @@ def test_catenaries_load_none_either():
 def test_the_command_line_loads_none_either():
     loaded = set(python("import sys, funicular.cli.main; print(*sys.modules)").split())
     assert not loaded & (HEAVY - {"rich", "typer"})
+
+
+@pytest.mark.parametrize("scene", ["paper51", "cable_car", "belt_drive"])
+def test_a_run_loads_no_more_of_scipy_than_its_table_of_lapack(scene):
+    """The rest of SciPy and numpy.random take longer to load than the first scene takes to run."""
+    loaded = set(python("import sys, warnings, funicular; warnings.simplefilter('ignore'); "
+                        f"funicular.load_scene('{scene}').run(duration=0.02, output_step=0.01, progress=False); "
+                        "print(*sys.modules)").split())
+    assert {name for name in loaded if re.match(r"scipy\.(?!_|version)\w+", name)} == {"scipy.linalg.cython_lapack"}
+    assert not loaded & (HEAVY - {"scipy"} | {"numpy.random", "numpy.testing"})
+
+
+def test_the_table_of_lapack_is_that_of_a_later_import():
+    python("from funicular.base.lapack import cython_lapack; table = cython_lapack()\n"
+           "import scipy.linalg, scipy.sparse.linalg\n"
+           "from scipy.linalg import cython_lapack as later\n"
+           "assert later is table and 'dpbtrf' in later.__pyx_capi__ and cython_lapack() is table")
 
 
 NEEDED = "import numpy; from pydantic import BaseModel; type('Model', (BaseModel,), {})"

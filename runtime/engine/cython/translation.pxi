@@ -61,9 +61,9 @@ cdef class Translation(Arrays):
         m.n_extra, m.n_multipliers = model.n_extra, model.n_multipliers
         m.unknown_of_dof, m.weight, m.lapack = self._ints(model.unknown_of_dof), self._doubles(model.weight), &LAPACK
         self.run.controlled = self.run.counted = m.weight
-        m.combination_start = self._ints(model.combinations.indptr)
-        m.combination_unknown = self._ints(model.combinations.indices)
-        m.combination_value = self._doubles(model.combinations.data)
+        m.combination_start = self._ints(model.combinations.start)
+        m.combination_unknown = self._ints(model.combinations.unknown)
+        m.combination_value = self._doubles(model.combinations.value)
         m.threads = NULL
         m.gravity, m.zero = self._doubles(model.gravity), self._zeros(model.n_dof)
         self._work_space(model)

@@ -23,6 +23,7 @@ from ...errors import SceneError
 from ...model.bodies import body_gravity
 from ...model.border import ACCELERATIONS, NEWTON, elimination
 from ...model.cables import cable_gravity
+from ...model.combinations import Combinations
 from ...model.kinds import COUPLINGS
 from ...model.model import Model
 from ...model.numbering import as_drawn
@@ -209,7 +210,7 @@ class Changes:
         elements = np.array([(node.first, 2 * node.vectors.size) for nodes in model.nodes.values()
                              for node in nodes[:-1]], dtype=int).reshape(-1, 2)
         numbering = as_drawn(elements, np.arange(n))
-        free = altered(model, motions=[], unknown_of_dof=np.arange(model.n_dof), combinations=csr_array((0, n)),
+        free = altered(model, motions=[], unknown_of_dof=np.arange(model.n_dof), combinations=Combinations.of([]),
                      n_band=n, n_border_dof=model.n_dof - n, width=numbering.width, chains=numbering.chains)
         free.newton, free.accelerations = elimination(free, NEWTON), elimination(free, ACCELERATIONS)
         return self.rest.engine(free).matrix(0.0, 0.0, 1.0)

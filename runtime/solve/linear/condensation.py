@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.linalg import qr
-from scipy.sparse import csc_array, csr_array
 
 from ...model.model import Model
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_array, csr_array
 
 DEPENDENCE_TOLERANCE = 1e-9
 """Part of a contact's row that is independent of the others, as a fraction of the largest, below which they imply
@@ -35,8 +36,9 @@ def condensed(full: csc_array, model: Model) -> tuple[csc_array, csc_array]:
                                    [row for row, k in enumerate(forces) if k in of_contacts]).tocsc()
 
 
-def with_entries(rows: csr_array) -> csr_array:
-    """Return rows without empty ones, of constraints that do not hold in a state."""
+def with_entries(rows: Any) -> Any:
+    """Return the rows of a matrix, an array or sparse, without empty ones, of constraints that do not hold in a state.
+    """
     return rows[np.flatnonzero(abs(rows).sum(axis=1))]
 
 
@@ -50,6 +52,8 @@ def _independent(rows: csr_array, of_contacts: list[int]) -> csr_array:
         rows, of_contacts = rows[np.flatnonzero(sizes)], [place[row] for row in of_contacts if row in place]
     if not of_contacts:
         return rows
+    from scipy.linalg import qr  # slow to import, and runs do without
+
     own = rows[of_contacts].toarray()
     _, factor, order = qr(own.T, mode="economic", pivoting=True)
     sizes = np.abs(np.diagonal(factor))

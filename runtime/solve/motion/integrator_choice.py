@@ -9,8 +9,6 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from scipy.sparse import block_array, csc_array, csr_array
-from scipy.sparse.linalg import splu
 
 from ...engine import Engine
 from ...errors import SceneError
@@ -28,6 +26,7 @@ from ..notes.supersonic_loads import outrunning
 
 POWER_ITERATIONS = 20
 """Number of power iterations."""
+GOLDEN_RATIO = (1 + math.sqrt(5)) / 2
 
 MAX_DENSE_UNKNOWNS = 120
 """Unknowns up to which matrices are arrays: assembly of sparse ones takes longer than products with zeros."""
@@ -303,10 +302,12 @@ def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:
     full = matrix(0.0, 0.0, 1.0)
     if wheels := [*model.sheaves, *model.drums]:
         on_wheels = [n + k for wheel in wheels for k in wheel.force_unknowns]
-        by_mass = _on_wheels(csc_array(mass), with_entries(csr_array(full[on_wheels][:, :n])).tocsc())
+        by_mass = _on_wheels(mass, with_entries(full[on_wheels][:, :n]))
     elif n <= MAX_DENSE_UNKNOWNS:
         by_mass = np.linalg.inv(mass).dot
     else:
+        from scipy.sparse.linalg import splu  # slow to import, and small scenes do without
+
         by_mass = splu(mass.tocsc(), permc_spec="NATURAL").solve
     stiffness = without_forces(full, slice(n), model)
     decay = 0.0
@@ -316,12 +317,17 @@ def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:
     return math.sqrt(_largest(stiffness, mass, by_mass)), decay
 
 
-def _on_wheels(mass: csc_array, rows: csc_array) -> Callable[[np.ndarray], np.ndarray]:
+def _on_wheels(mass: Any, rows: Any) -> Callable[[np.ndarray], np.ndarray]:
     """Return the product with the inverse of a mass (n, n) on the constraints rows x = 0 (k, n) of tangent points.
 
-    Without these a straight span may flow along its nodes, and has no mass then.
+    Without these a straight span may flow along its nodes, and has no mass then. mass, rows: arrays or sparse.
     """
     k, n = rows.shape
+    if isinstance(mass, np.ndarray):
+        return np.linalg.inv(np.block([[mass, rows.T], [rows, np.zeros((k, k))]]))[:n, :n].dot
+    from scipy.sparse import block_array, csc_array
+    from scipy.sparse.linalg import splu
+
     solve = splu(csc_array(block_array([[mass, rows.T], [rows, None]]))).solve
     return lambda x: solve(np.append(x, np.zeros(k)))[:n]
 
@@ -333,7 +339,7 @@ def _largest(matrix: Any, mass: Any, by_mass: Callable[[np.ndarray], np.ndarray]
     matrix, mass: (n, n), arrays or sparse; by_mass: returns mass^-1 times (n,).
     """
     symmetric = (matrix + matrix.T) / 2
-    x = np.random.default_rng(0).normal(size=matrix.shape[0])
+    x = np.modf(GOLDEN_RATIO * np.arange(1, matrix.shape[0] + 1))[0] - 0.5  # a start with all eigenvectors in it
     for _ in range(POWER_ITERATIONS - 1):
         x = by_mass(symmetric.dot(x))
         size = math.sqrt(x.dot(x))

@@ -12,7 +12,6 @@ from ...engine import Engine
 from ...model.model import CableModel, Model
 from ...parts.section_stiffness import compressive_stiffness
 from ..linear.condensation import condensed
-from ..linear.inertia import inertia
 from .note import LineStiffness, Note, Rows
 
 STRAIGHTNESS_TOLERANCE = 1e-9
@@ -99,6 +98,8 @@ def _on_line(r: np.ndarray) -> np.ndarray:
 
 def _unstable(model: Model, cable: CableModel, t: float, q: np.ndarray, s: np.ndarray) -> int:
     """Return the number of directions that lower the energy of a cable; all else is fixed, forces are left out."""
+    from ..linear.inertia import inertia  # imports SciPy, which most runs do without
+
     engine = Engine(model)
     engine.set_state(t, q=q, s=s)
     K, C = condensed(engine.matrix(0.0, 0.0, 1.0), model)
