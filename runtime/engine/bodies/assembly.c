@@ -1,4 +1,5 @@
 /* Sums over elements, and over bodies through bodies.c: forces, energies, and the band of a Newton matrix. */
+#include "base/simd.h"
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
 
@@ -208,16 +209,33 @@ static void add_mass(const fu_cable *cable, int k, double mass, double *K)
             for (int d = 0; d < dim; ++d) K[(j * dim + d) * n + i * dim + d] += mass * m[j * vectors + i];
 }
 
-void fu_add_element_product(int dim, int n, double factor, const double *a, const double *b, const double *by,
-                            double *K)
+/* K[m] += scale[m] row[m] for n numbers */
+FU_INLINE void add_row(int n, const double *scale, const double *row, double *K)
 {
-    const int vectors = n / dim;
-    for (int k = 0; k < vectors; ++k)
-        for (int l = 0; l < vectors; ++l)
-            for (int i = 0; i < dim; ++i)
-                for (int j = 0; j < dim; ++j)
-                    K[(k * dim + i) * n + l * dim + j] += factor * a[k] * b[l] * by[i * dim + j];
+    int m = 0;
+    for (; m + FU_SIMD_WIDTH <= n; m += FU_SIMD_WIDTH)
+        *(fu_simd_block *)(K + m) += *(const fu_simd_block *)(scale + m) * *(const fu_simd_block *)(row + m);
+    for (; m < n; ++m) K[m] += scale[m] * row[m];
 }
+
+FU_INLINE void add_element_product(int dim, int n, double factor, const double *a, const double *b, const double *by,
+                                   double *K)
+{
+    double rows[3 * FU_MAX_COORDINATES], right[FU_MAX_COORDINATES], scale[FU_MAX_COORDINATES]; /* as rows of K */
+    for (int m = 0, l = 0; m < n; ++l)
+        for (int j = 0; j < dim; ++j, ++m) {
+            right[m] = b[l];
+            for (int i = 0; i < dim; ++i) rows[i * n + m] = by[i * dim + j];
+        }
+    for (int k = 0; k < n / dim; ++k) {
+        for (int m = 0; m < n; ++m) scale[m] = factor * a[k] * right[m];
+        for (int i = 0; i < dim; ++i, K += n) add_row(n, scale, rows + i * n, K);
+    }
+}
+
+FU_SIMD_FUNCTION(fu_add_element_product, add_element_product,
+                 (int dim, int n, double factor, const double *a, const double *b, const double *by, double *K),
+                 (dim, n, factor, a, b, by, K))
 
 /* A matrix of a cable that threads share. */
 typedef struct {

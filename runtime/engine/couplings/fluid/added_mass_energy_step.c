@@ -108,10 +108,13 @@ static void on_cable_in_step(const fu_model *model, const fu_drag *drag, const f
 {
     const fu_cable *cable = &model->cables[drag->cable];
     const int dim = model->dim;
-    const fu_state *ends[2] = {at->now, at->next};
+    const fu_state *states[3] = {at->now, at->next, at->middle};
     for (int e = 0; e < cable->n_elements; ++e) {
         const int first = cable->first + e * cable->per_node;
         fu_drag_points points;
+        fu_drag_motion motions[3];
+        for (int i = 0; i < 3; ++i)
+            fu_drag_motion_of(cable, states[i]->q + first, states[i]->v + first, 0, &motions[i]);
         fu_drag_points_over(model, drag, e, at->now->q + first, at->next->q + first, &points);
         for (int k = 0; k < points.n; ++k) {
             const fu_quadrature_point point = points.at[k];
@@ -119,10 +122,10 @@ static void on_cable_in_step(const fu_model *model, const fu_drag *drag, const f
             relative_motion motion[2];
             double dp[3], g[3], rate[3], mean[3], M[9], left[3], on_place[3] = {0.0};
             for (int i = 0; i < 2; ++i) {
-                fu_drag_place_on_axis(model, drag, ends[i]->q + first, ends[i]->v + first, 0, point, &place[i]);
-                motion[i] = motion_in_fluid(model, drag, ends[i]->t, place[i].r, place[i].v);
+                fu_drag_place_on_axis(&motions[i], &point, &place[i]);
+                motion[i] = motion_in_fluid(model, drag, states[i]->t, place[i].r, place[i].v);
             }
-            fu_drag_place_on_axis(model, drag, at->middle->q + first, at->middle->v + first, 0, point, &middle);
+            fu_drag_place_on_axis(&motions[2], &point, &middle);
             const relative_motion halfway = motion_in_fluid(model, drag, at->middle->t, middle.r, middle.v);
             drag->kernel->inertia_step(place[0].r_x, place[1].r_x, motion[0].w, motion[1].w, drag->added, dp, g);
             drag->kernel->impulse_of_cable(middle.r_x, halfway.w, drag->added, mean, M);

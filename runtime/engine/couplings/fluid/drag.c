@@ -69,14 +69,15 @@ static void matrix_at(const fu_model *model, const fu_drag *drag, const fu_drag_
     fu_drag_action a;
     fu_drag_act(model, drag, loop->t, &site->at, 0, &a);
     fu_drag_by_place(dim, &a, gradient);
-    for (int i = 0; i < dim; ++i)
+    for (int i = 0; i < dim; ++i) {
+        double row[FU_MAX_COORDINATES]; /* of the derivatives by the coordinates */
         for (int j = 0; j < dim; ++j) {
             const double by_r = gradient[i * dim + j] - loop->weights.rate * a.by_w[i * dim + j];
-            for (int k = 0; k < n; ++k)
-                for (int l = 0; l < n; ++l)
-                    K[(k * dim + i) * all + l * dim + j] +=
-                        scale * N[k] * (a.by_slope[i * dim + j] * N_x[l] + by_r * N[l]);
+            for (int l = 0; l < n; ++l) row[l * dim + j] = a.by_slope[i * dim + j] * N_x[l] + by_r * N[l];
         }
+        for (int k = 0; k < n; ++k)
+            for (int m = 0; m < all; ++m) K[(k * dim + i) * all + m] += scale * N[k] * row[m];
+    }
     if (point.N_chord) fu_section_matrix(&a, point, scale, loop->weights.rate, all, K);
 }
 

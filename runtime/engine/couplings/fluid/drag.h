@@ -99,9 +99,28 @@ typedef struct {
 } fu_wetness;
 
 /* A point of a cable's axis, or of a body, in the fluid. r_x, its rate, and `a`, acceleration, of a cable only; the
- * director along the chord and its rate of a beam's foil only. */
+ * director along the chord and its rate of a beam's foil only. Sums over shape functions fill whole blocks of numbers:
+ * r to a, r_x and its rate, chord and its rate. */
+enum { FU_DRAG_MOTION = 12, FU_DRAG_SLOPES = 8 };
 typedef struct {
-    double r[3], r_x[3], v[3], r_x_rate[3], a[3], chord[3], chord_rate[3];
+    union {
+        struct {
+            double r[3], v[3], a[3];
+        };
+        double by_N[FU_DRAG_MOTION];
+    };
+    union {
+        struct {
+            double r_x[3], r_x_rate[3];
+        };
+        double by_N_x[FU_DRAG_SLOPES];
+    };
+    union {
+        struct {
+            double chord[3], chord_rate[3];
+        };
+        double by_N_chord[FU_DRAG_SLOPES];
+    };
 } fu_drag_place;
 
 /* Forces of the fluid at a point: the fluid's velocity with derivatives, and that relative to the point; drag and lift
@@ -159,8 +178,17 @@ fu_quadrature_point fu_drag_point(const fu_drag *drag, int n, int element, int p
 /* Return the number of nodes of the cable or the span, and the place of one. */
 int fu_drag_nodes(const fu_model *model, const fu_drag *drag);
 const double *fu_drag_node(const fu_model *model, const fu_drag *drag, int k, const double *q);
-void fu_drag_place_on_axis(const fu_model *model, const fu_drag *drag, const double *e, const double *v,
-                           const double *a, fu_quadrature_point point, fu_drag_place *at);
+/* The motion of an element of a cable, a row for each nodal vector: coordinates, rates and accelerations (zero
+ * without); coordinates and rates relative to the first node, for slopes: they do not depend on its position, and no
+ * digits are lost far from the origin. */
+typedef struct {
+    int n;
+    double by_N[FU_MAX_COORDINATES / 2][FU_DRAG_MOTION], by_N_x[FU_MAX_COORDINATES / 2][FU_DRAG_SLOPES];
+} fu_drag_motion;
+void fu_drag_motion_of(const fu_cable *cable, const double *e, const double *v, const double *a, fu_drag_motion *out);
+/* Computes the motion of a point of quadrature on an element; that of the chord if the point has its shape functions.
+ */
+void fu_drag_place_on_axis(const fu_drag_motion *of, const fu_quadrature_point *point, fu_drag_place *at);
 
 /* couplings/fluid/point_loop.c: calls `visit` at each point of a cable with the coordinates q, rates v and
  * accelerations a (null: none). K: matrix of the element, which is added to the system (or to none, null) after its

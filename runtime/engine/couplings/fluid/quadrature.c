@@ -1,4 +1,5 @@
 /* Points of quadrature on the elements of a cable in a fluid, and their positions. */
+#include "base/simd.h"
 #include "bodies/model.h"
 #include "couplings/fluid/drag.h"
 
@@ -24,27 +25,40 @@ const double *fu_drag_node(const fu_model *model, const fu_drag *drag, int k, co
     return q + cable->first + k * cable->per_node;
 }
 
-/* Computes the motion of a point of quadrature on an element with the coordinates e, rates v and accelerations a (null:
- * none). */
-void fu_drag_place_on_axis(const fu_model *model, const fu_drag *drag, const double *e, const double *v,
-                           const double *a, fu_quadrature_point point, fu_drag_place *at)
+void fu_drag_motion_of(const fu_cable *cable, const double *e, const double *v, const double *a, fu_drag_motion *out)
 {
-    const fu_cable *cable = &model->cables[drag->cable];
-    const int dim = model->dim, n = cable->coordinates / dim;
-    const double *N = point.N, *N_x = point.N_x;
-    memset(at, 0, sizeof *at);
-    for (int k = 0; k < n; ++k)
+    const int dim = cable->kernel->dim, vectors = cable->kernel->vectors;
+    out->n = cable->coordinates / dim;
+    memset(out->by_N, 0, sizeof out->by_N[0] * (size_t)out->n);
+    memset(out->by_N_x, 0, sizeof out->by_N_x[0] * (size_t)out->n);
+    for (int k = 0; k < out->n; ++k) {
+        double *const motion = out->by_N[k], *const relative = out->by_N_x[k];
+        const int is_place = k % vectors == 0;
         for (int d = 0; d < dim; ++d) {
-            /* from the first node: slopes do not depend on its position, and no digits are lost far from the origin */
-            const int is_place = k % cable->kernel->vectors == 0;
-            const double local = e[k * dim + d] - (is_place ? e[d] : 0.0);
-            at->r[d] += N[k] * e[k * dim + d];
-            at->r_x[d] += N_x[k] * local;
-            at->v[d] += N[k] * v[k * dim + d];
-            at->r_x_rate[d] += N_x[k] * (v[k * dim + d] - (is_place ? v[d] : 0.0));
-            if (a) at->a[d] += N[k] * a[k * dim + d];
-            if (!point.N_chord) continue;
-            at->chord[d] += point.N_chord[k] * local;
-            at->chord_rate[d] += point.N_chord[k] * (v[k * dim + d] - (is_place ? v[d] : 0.0));
+            motion[d] = e[k * dim + d];
+            motion[3 + d] = v[k * dim + d];
+            if (a) motion[6 + d] = a[k * dim + d];
+            relative[d] = motion[d] - (is_place ? e[d] : 0.0);
+            relative[3 + d] = motion[3 + d] - (is_place ? v[d] : 0.0);
         }
+    }
 }
+
+/* Computes the sum of n rows of a whole number of blocks of numbers, times N. */
+FU_INLINE void sum_rows(int n, const double *N, const double *rows, int size, double *out)
+{
+    memset(out, 0, sizeof(double) * (size_t)size);
+    for (int k = 0; k < n; ++k)
+        for (int i = 0; i < size; i += FU_SIMD_WIDTH)
+            *(fu_simd_block *)(out + i) += N[k] * *(const fu_simd_block *)(rows + k * size + i);
+}
+
+FU_INLINE void place_on_axis(const fu_drag_motion *of, const fu_quadrature_point *point, fu_drag_place *at)
+{
+    sum_rows(of->n, point->N, of->by_N[0], FU_DRAG_MOTION, at->by_N);
+    sum_rows(of->n, point->N_x, of->by_N_x[0], FU_DRAG_SLOPES, at->by_N_x);
+    if (point->N_chord) sum_rows(of->n, point->N_chord, of->by_N_x[0], FU_DRAG_SLOPES, at->by_N_chord);
+}
+
+FU_SIMD_FUNCTION(fu_drag_place_on_axis, place_on_axis,
+                 (const fu_drag_motion *of, const fu_quadrature_point *point, fu_drag_place *at), (of, point, at))
