@@ -237,6 +237,25 @@ FU_SIMD_FUNCTION(fu_add_element_product, add_element_product,
                  (int dim, int n, double factor, const double *a, const double *b, const double *by, double *K),
                  (dim, n, factor, a, b, by, K))
 
+FU_INLINE void add_field_matrix(int dim, int n, double factor, const double *a, const fu_field_change *change,
+                                double *K)
+{
+    double rows[3 * FU_MAX_COORDINATES], scale[FU_MAX_COORDINATES];
+    for (int i = 0; i < dim; ++i)
+        for (int m = 0, l = 0; m < n; ++l)
+            for (int j = 0; j < dim; ++j, ++m)
+                rows[i * n + m] =
+                    change->by_slope[i * dim + j] * change->N_x[l] + change->by_place[i * dim + j] * change->N[l];
+    for (int k = 0; k < n / dim; ++k) {
+        for (int m = 0; m < n; ++m) scale[m] = factor * a[k];
+        for (int i = 0; i < dim; ++i, K += n) add_row(n, scale, rows + i * n, K);
+    }
+}
+
+FU_SIMD_FUNCTION(fu_add_field_matrix, add_field_matrix,
+                 (int dim, int n, double factor, const double *a, const fu_field_change *change, double *K),
+                 (dim, n, factor, a, change, K))
+
 /* A matrix of a cable that threads share. */
 typedef struct {
     const fu_model *model;

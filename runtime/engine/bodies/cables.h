@@ -38,6 +38,12 @@ void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, 
  * dim). */
 void fu_add_element_product(int dim, int n, double factor, const double *a, const double *b, const double *by,
                             double *K);
+/* The derivatives of a force at a point of an element by its slope and its place (dim x dim), of the rows N_x and N. */
+typedef struct {
+    const double *by_slope, *N_x, *by_place, *N;
+} fu_field_change;
+/* Adds to the matrix K (n x n) of an element factor times a' by these derivatives. */
+void fu_add_field_matrix(int dim, int n, double factor, const double *a, const fu_field_change *change, double *K);
 double fu_constant_elastic_energy(const fu_model *model, const double *q);
 double fu_constant_kinetic_energy(const fu_model *model, const double *q, const double *v);
 double fu_potential_energy(const fu_model *model, const double *q);

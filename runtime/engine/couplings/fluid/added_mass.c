@@ -55,7 +55,8 @@ static void on_length(const fu_model *model, const fu_drag *drag, double t, cons
     if (power) power->external += part * external;
 }
 
-static void add_at(const fu_model *model, const fu_drag *drag, const fu_drag_site *site, fu_drag_loop *loop, double *K)
+void fu_added_mass_at(const fu_model *model, const fu_drag *drag, const fu_drag_site *site, fu_drag_loop *loop,
+                      double *K)
 {
     double left[3], on_slope[3];
     (void)K;
@@ -84,8 +85,8 @@ void fu_added_mass_densities(const fu_model *model, const fu_coupling *coupling,
     fu_drag_visit(model, (const fu_drag *)coupling, state->q, state->v, 0, densities_at, &loop, 0);
 }
 
-static void tangent_at(const fu_model *model, const fu_drag *drag, const fu_drag_site *site, fu_drag_loop *loop,
-                       double *K)
+void fu_added_mass_tangent_at(const fu_model *model, const fu_drag *drag, const fu_drag_site *site, fu_drag_loop *loop,
+                              double *K)
 {
     const fu_drag_place *at = &site->at;
     const surroundings of = surroundings_of(model, drag, loop->t, at->r);
@@ -101,10 +102,8 @@ static void tangent_at(const fu_model *model, const fu_drag *drag, const fu_drag
         f_r[i] += rate * f_v[i];
         g_r[i] += rate * g_v[i];
     }
-    fu_add_element_product(dim, all, part, N, N_x, f_t, K);
-    fu_add_element_product(dim, all, part, N, N, f_r, K);
-    fu_add_element_product(dim, all, -part, N_x, N_x, g_t, K);
-    fu_add_element_product(dim, all, -part, N_x, N, g_r, K);
+    fu_add_field_matrix(dim, all, part, N, &(fu_field_change){f_t, N_x, f_r, N}, K);
+    fu_add_field_matrix(dim, all, -part, N_x, &(fu_field_change){g_t, N_x, g_r, N}, K);
 }
 
 /* Computes the state of a body's point with its axes, the fluid there, and the acceleration of the point at those of
@@ -166,17 +165,13 @@ static void tangent_of_body(const fu_model *model, const fu_drag *drag, const fu
 void fu_added_mass_forces(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
                           const fu_drag_sums *sums)
 {
-    fu_drag_loop loop = {.t = state->t, .sums = sums};
-    if (drag->cable >= 0) fu_drag_visit(model, drag, state->q, state->v, a, add_at, &loop, 0);
-    else if (drag->on.kernel) fu_span_added_mass_forces(model, drag, state, a, sums);
+    if (drag->on.kernel) fu_span_added_mass_forces(model, drag, state, a, sums);
     else on_body(model, drag, state, a, sums);
 }
 
 void fu_added_mass_tangent(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
                            const double *psi, fu_weights weights, fu_system *system)
 {
-    fu_drag_loop loop = {.t = state->t, .has_matrix = 1, .weights = weights};
-    if (drag->cable >= 0) fu_drag_visit(model, drag, state->q, state->v, a, tangent_at, &loop, system);
-    else if (drag->on.kernel) fu_span_added_mass_tangent(model, drag, state, a, weights, system);
+    if (drag->on.kernel) fu_span_added_mass_tangent(model, drag, state, a, weights, system);
     else tangent_of_body(model, drag, state, a, psi, weights, system);
 }

@@ -62,23 +62,30 @@ static void matrix_at(const fu_model *model, const fu_drag *drag, const fu_drag_
                       double *K)
 {
     const fu_quadrature_point point = site->point;
-    const int dim = model->dim, all = model->cables[drag->cable].coordinates, n = all / dim;
-    const double *N = point.N, *N_x = point.N_x;
+    const int dim = model->dim, all = model->cables[drag->cable].coordinates;
     const double scale = -loop->weights.stiffness * model->load_fraction * point.weight;
     double gradient[9];
     fu_drag_action a;
     fu_drag_act(model, drag, loop->t, &site->at, 0, &a);
     fu_drag_by_place(dim, &a, gradient);
-    for (int i = 0; i < dim; ++i) {
-        double row[FU_MAX_COORDINATES]; /* of the derivatives by the coordinates */
-        for (int j = 0; j < dim; ++j) {
-            const double by_r = gradient[i * dim + j] - loop->weights.rate * a.by_w[i * dim + j];
-            for (int l = 0; l < n; ++l) row[l * dim + j] = a.by_slope[i * dim + j] * N_x[l] + by_r * N[l];
-        }
-        for (int k = 0; k < n; ++k)
-            for (int m = 0; m < all; ++m) K[(k * dim + i) * all + m] += scale * N[k] * row[m];
-    }
+    for (int i = 0; i < dim * dim; ++i) gradient[i] -= loop->weights.rate * a.by_w[i];
+    fu_add_field_matrix(dim, all, scale, point.N, &(fu_field_change){a.by_slope, point.N_x, gradient, point.N}, K);
     if (point.N_chord) fu_section_matrix(&a, point, scale, loop->weights.rate, all, K);
+}
+
+/* Adds all forces of the fluid at a point of a cable, with those of its inertia. */
+static void add_all_at(const fu_model *model, const fu_drag *drag, const fu_drag_site *site, fu_drag_loop *loop,
+                       double *K)
+{
+    add_at(model, drag, site, loop, K);
+    fu_added_mass_at(model, drag, site, loop, K);
+}
+
+static void matrix_of_all_at(const fu_model *model, const fu_drag *drag, const fu_drag_site *site, fu_drag_loop *loop,
+                             double *K)
+{
+    matrix_at(model, drag, site, loop, K);
+    fu_added_mass_tangent_at(model, drag, site, loop, K);
 }
 
 /* Computes a body's point, and its motion with the coordinates; over a step that conserves energy, the mean position
@@ -160,6 +167,11 @@ static void add_all(const fu_model *model, const fu_coupling *coupling, const fu
                     const fu_drag_sums *sums)
 {
     const fu_drag *drag = (const fu_drag *)coupling;
+    if (drag->cable >= 0 && coupling->has_inertia) {
+        fu_drag_loop loop = {.t = state->t, .sums = sums};
+        fu_drag_visit(model, drag, state->q, state->v, a, add_all_at, &loop, 0);
+        return;
+    }
     add(model, drag, state, 0, sums);
     if (coupling->has_inertia) fu_added_mass_forces(model, drag, state, a, sums);
 }
@@ -198,12 +210,16 @@ static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_
                    const double *psi, fu_weights weights, fu_system *system)
 {
     const fu_drag *drag = (const fu_drag *)coupling;
-    fu_drag_loop loop = {.t = state->t, .has_matrix = 1, .weights = weights};
-    if (drag->cable >= 0) fu_drag_visit(model, drag, state->q, state->v, 0, matrix_at, &loop, system);
-    else if (drag->on.kernel) fu_add_span_drag_matrix(model, drag, state, weights, system);
+    const double *accelerations = weights.inertia != 0.0 ? a : 0;
+    if (drag->cable >= 0) {
+        fu_drag_loop loop = {.t = state->t, .has_matrix = 1, .weights = weights};
+        fu_drag_visit(model, drag, state->q, state->v, accelerations,
+                      coupling->has_inertia ? matrix_of_all_at : matrix_at, &loop, system);
+        return;
+    }
+    if (drag->on.kernel) fu_add_span_drag_matrix(model, drag, state, weights, system);
     else matrix_of_body(model, drag, state, psi, weights, system);
-    if (coupling->has_inertia)
-        fu_added_mass_tangent(model, drag, state, weights.inertia != 0.0 ? a : 0, psi, weights, system);
+    if (coupling->has_inertia) fu_added_mass_tangent(model, drag, state, accelerations, psi, weights, system);
 }
 
 static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)

@@ -249,7 +249,9 @@ void fu_section_matrix(const fu_drag_action *action, fu_quadrature_point point, 
 /* flags of a state: one of the table, one of each event function of surfaces */
 #define FU_DRAG_FLAGS (1 + FU_SURFACE_EVENT_FUNCTIONS)
 
-/* couplings/fluid/added_mass.c: inertial forces of the fluid, with the accelerations `a` of the dofs (null: zero). */
+/* couplings/fluid/added_mass.c: inertial forces of the fluid at a point of a cable, and their derivatives; on spans and
+ * bodies with the accelerations `a` of the dofs (null: zero). */
+fu_drag_visitor fu_added_mass_at, fu_added_mass_tangent_at;
 void fu_added_mass_forces(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
                           const fu_drag_sums *sums);
 void fu_added_mass_tangent(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,

@@ -46,7 +46,6 @@ void fu_section_matrix(const fu_drag_action *action, fu_quadrature_point point, 
                 by_place[3 * i + j] = -rate * by_w[3 * i + j];
                 for (int k = 0; k < 3; ++k) by_place[3 * i + j] += by_w[3 * i + k] * action->flow.gradient[3 * k + j];
             }
-        fu_add_element_product(3, all, scale, shapes[force], point.N_x, by, K);
-        fu_add_element_product(3, all, scale, shapes[force], point.N, by_place, K);
+        fu_add_field_matrix(3, all, scale, shapes[force], &(fu_field_change){by, point.N_x, by_place, point.N}, K);
     }
 }
