@@ -233,7 +233,19 @@ FU_INLINE void add_element_product(int dim, int n, double factor, const double *
     }
 }
 
-FU_SIMD_FUNCTION(fu_add_element_product, add_element_product,
+/* Calls an inlined function with the sizes of the usual elements as constants, which unrolls its loops. */
+#define FU_BY_SIZE(function, dim, n, ...)                                                                              \
+    if (dim == 2 && n == 8) function(2, 8, __VA_ARGS__);                                                               \
+    else if (dim == 3 && n == 12) function(3, 12, __VA_ARGS__);                                                        \
+    else function(dim, n, __VA_ARGS__)
+
+FU_INLINE void add_product_by_size(int dim, int n, double factor, const double *a, const double *b, const double *by,
+                                   double *K)
+{
+    FU_BY_SIZE(add_element_product, dim, n, factor, a, b, by, K);
+}
+
+FU_SIMD_FUNCTION(fu_add_element_product, add_product_by_size,
                  (int dim, int n, double factor, const double *a, const double *b, const double *by, double *K),
                  (dim, n, factor, a, b, by, K))
 
@@ -252,7 +264,13 @@ FU_INLINE void add_field_matrix(int dim, int n, double factor, const double *a, 
     }
 }
 
-FU_SIMD_FUNCTION(fu_add_field_matrix, add_field_matrix,
+FU_INLINE void add_field_by_size(int dim, int n, double factor, const double *a, const fu_field_change *change,
+                                 double *K)
+{
+    FU_BY_SIZE(add_field_matrix, dim, n, factor, a, change, K);
+}
+
+FU_SIMD_FUNCTION(fu_add_field_matrix, add_field_by_size,
                  (int dim, int n, double factor, const double *a, const fu_field_change *change, double *K),
                  (dim, n, factor, a, change, K))
 

@@ -53,11 +53,17 @@ FU_INLINE void sum_rows(int n, const double *N, const double *rows, int size, do
             *(fu_simd_block *)(out + i) += N[k] * *(const fu_simd_block *)(rows + k * size + i);
 }
 
+FU_INLINE void place_of(int n, const fu_drag_motion *of, const fu_quadrature_point *point, fu_drag_place *at)
+{
+    sum_rows(n, point->N, of->by_N[0], FU_DRAG_MOTION, at->by_N);
+    sum_rows(n, point->N_x, of->by_N_x[0], FU_DRAG_SLOPES, at->by_N_x);
+    if (point->N_chord) sum_rows(n, point->N_chord, of->by_N_x[0], FU_DRAG_SLOPES, at->by_N_chord);
+}
+
 FU_INLINE void place_on_axis(const fu_drag_motion *of, const fu_quadrature_point *point, fu_drag_place *at)
 {
-    sum_rows(of->n, point->N, of->by_N[0], FU_DRAG_MOTION, at->by_N);
-    sum_rows(of->n, point->N_x, of->by_N_x[0], FU_DRAG_SLOPES, at->by_N_x);
-    if (point->N_chord) sum_rows(of->n, point->N_chord, of->by_N_x[0], FU_DRAG_SLOPES, at->by_N_chord);
+    if (of->n == 4) place_of(4, of, point, at); /* of the usual elements: unrolled */
+    else place_of(of->n, of, point, at);
 }
 
 FU_SIMD_FUNCTION(fu_drag_place_on_axis, place_on_axis,
