@@ -102,25 +102,28 @@ def _notes(scene: SceneData, rope: Rope) -> list[str]:
     EA, EI = rope.stiffness
     diameter, notes = 2 * rope.radius, list[str]()
     elements = [span.length / n for span, n in zip(route.spans, rope.elements_of_spans, strict=True)]
-    for item, arc, spans in zip(rope.sheaves, route.sheaves, route.beside_sheaves, strict=True):
-        sheave = f"{rope.where}: {item.where}"
+    spans_beside = {drum.where: [end] for end, drum in rope.drums.items()} | {
+        sheave.where: spans for sheave, spans in zip(rope.sheaves, route.beside_sheaves, strict=True)}
+    for item in rope.wheels:
+        wheel, spans = f"{rope.where}: {item.where}", spans_beside[item.where]
         beside, tension = min(elements[k] for k in spans), EA * (min(route.stretch_of(k) for k in spans) - 1)
-        if arc.radius > MAX_RADIUS_OF_ELEMENTS * beside:
-            notes.append(f"{sheave}: its radius {show(arc.radius, 'm')} is above {MAX_RADIUS_OF_ELEMENTS:g} lengths of "
+        if item.radius > MAX_RADIUS_OF_ELEMENTS * beside:
+            notes.append(f"{wheel}: its radius {show(item.radius, 'm')} is above {MAX_RADIUS_OF_ELEMENTS:g} lengths of "
                          f"the elements beside it, {show(beside, 'm')}: steps may be very short or not converge; take "
                          "fewer elements")
-        if EI > tension * (MAX_LAYER * arc.radius)**2:
-            notes.append(f"{sheave}: at a tension of {show(tension, 'N')} the rope's bending reaches further than "
-                         f"{MAX_LAYER:g} of the radius {show(arc.radius, 'm')} along the span: sqrt(EI / T) is "
+        if EI > tension * (MAX_LAYER * item.radius)**2:
+            notes.append(f"{wheel}: at a tension of {show(tension, 'N')} the rope's bending reaches further than "
+                         f"{MAX_LAYER:g} of the radius {show(item.radius, 'm')} along the span: sqrt(EI / T) is "
                          f"{show((EI / tension)**0.5, 'm') if tension else 'infinite'}, so that its tangent points are "
-                         "inaccurate; take a thinner rope, a larger sheave, or more tension")
-        if arc.radius < MIN_RADIUS_RATIO * diameter:
-            stress = rope.material.youngs_modulus * rope.radius / arc.radius
-            notes.append(f"{sheave}: its radius {show(arc.radius, 'm')} is below {MIN_RADIUS_RATIO:g} diameters of the "
+                         "inaccurate; take a thinner rope, a larger radius, or more tension")
+        if item.radius < MIN_RADIUS_RATIO * diameter:
+            stress = rope.material.youngs_modulus * rope.radius / item.radius
+            notes.append(f"{wheel}: its radius {show(item.radius, 'm')} is below {MIN_RADIUS_RATIO:g} diameters of the "
                          f"rope, {show(diameter, 'm')}: a bending stress of {stress:.3g} Pa, E d / (2 R)")
+    for item, arc in zip(rope.sheaves, route.sheaves, strict=True):
         if arc.wrap > MAX_PLAUSIBLE_WRAP and not item.turns:
-            notes.append(f"{sheave}: the rope runs around it by {show(arc.wrap, 'rad')} and crosses itself; give the "
-                         "other side if that is not meant")
+            notes.append(f"{rope.where}: {item.where}: the rope runs around it by {show(arc.wrap, 'rad')} and crosses "
+                         "itself; give the other side if that is not meant")
     return notes + (_notes_in_space(rope, route) if rope.dim == 3 else [] if rope.mass else
                     _notes_without_mass(scene, rope, route))
 

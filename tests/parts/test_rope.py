@@ -585,12 +585,29 @@ def test_notes_on_bending():
     assert note == ('rope "hoist": sheave "top": at a tension of ' f"{0.999 * limit:.9g} N the rope's bending reaches "
                     "further than 0.2 of the radius 0.3 m along the span: sqrt(EI / T) is "
                     f"{0.06 / sqrt(0.999):.9g} m, so that its tangent points are inaccurate; take a thinner rope, a "
-                    "larger sheave, or more tension")
+                    "larger radius, or more tension")
     (note,) = noted(ENDS[0], sheave(0, 3, 0.0399), ENDS[1])
     assert note == ('rope "hoist": sheave "top": its radius 0.0399 m is below 10 diameters of the rope, 0.004 m: a '
                     "bending stress of 5.01e+07 Pa, E d / (2 R)")
     rope_of(ENDS[0], TOP, ENDS[1], tension=1.001 * limit)
     rope_of(ENDS[0], sheave(0, 3, 0.0401), ENDS[1])
+
+
+def test_notes_on_bending_at_a_drum():
+    """They are those of sheaves, with the tension of the span at the drum."""
+    limit = 4e-3 * pi / (0.2 * 0.3)**2
+
+    def drum(radius: float) -> fu.Drum:
+        return fu.Drum("winch", at=(0, 3, 0), radius=radius, side="right", length_in_store=5.0)
+
+    for route in ((drum(0.3), at(3, 0)), (at(-3, 0), drum(0.3))):
+        (note,) = noted(*route, tension=0.999 * limit)
+        assert note.startswith(f'rope "hoist": drum "winch": at a tension of {0.999 * limit:.9g} N the rope\'s bending')
+        rope_of(*route, tension=1.001 * limit)
+    (note,) = noted(drum(0.0399), at(3, 0))
+    assert note.startswith('rope "hoist": drum "winch": its radius 0.0399 m is below 10 diameters of the rope, 0.004 m')
+    (note,) = noted(drum(0.3), at(3, 0), elements=300, **THIN)
+    assert note.startswith('rope "hoist": drum "winch": its radius 0.3 m is above 20 lengths of the elements beside it')
 
 
 def test_note_on_elements_far_shorter_than_a_sheave():
