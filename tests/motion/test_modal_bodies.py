@@ -116,6 +116,21 @@ def test_attachment_modes_are_those_of_the_cantilever():
     assert np.argmax(np.abs(tip)) == np.argmax(np.abs(slope)) and tip @ slope > 0
 
 
+def test_bodies_of_one_description_share_their_modes():
+    """Each entry that the modes depend on makes them anew; nothing can change those that are shared."""
+    shape = beam(Scene()).shape
+    assert beam(Scene()).shape is shape
+    assert beam(Scene(), start=(1, 0, 0), end=(1, 0.5, 0)).shape is shape, "in the axes of the body"
+    for changes in ({"elements": 9}, {"modes": 4}, {"boundary": "attached"}, {"end": (0, 0.6, 0)},
+                    {"section": Rectangle(height=0.02, width=0.03)},
+                    {"material": Material(youngs_modulus=3e6, poisson_ratio=0.0, density=1100)}):
+        other = beam(Scene(), **changes).shape
+        assert other is not shape
+        assert not np.array_equal(other.vibrations[0], shape.vibrations[0])
+    with pytest.raises(ValueError, match="read-only"):
+        shape.modes[0] = 0.0
+
+
 @pytest.mark.parametrize("boundary", ["free", "attached"])
 def test_stiffened_it_flies_like_the_mesh_in_absolute_coordinates(boundary):
     """A bar is thrown with a spin that stretches it, at increasing stiffness: the motions differ by the square of the
