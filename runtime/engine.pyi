@@ -18,6 +18,8 @@ SLACK_STRAIN: float
 MAX_HARD_CONTACTS: int
 CROSSING_STICK: int
 FRICTION_MARK: int
+SPAN_BEGIN: int
+SPAN_STRETCH: int
 NO_TIME: float
 
 class Output(NamedTuple):

@@ -119,6 +119,7 @@ SLACK_STRAIN = FU_SLACK_STRAIN
 MAX_HARD_CONTACTS = FU_MAX_HARD_CONTACTS
 """Largest number of points in hard contact of a scene."""
 CROSSING_STICK, FRICTION_MARK = FU_CROSSING_STICK, FU_FRICTION_MARK
+SPAN_BEGIN, SPAN_STRETCH = FU_SPAN_BEGIN, FU_SPAN_STRETCH
 """Numbers that a state keeps of friction: of a crossing that sticks, of a point of a contact."""
 NO_TIME = FU_NO_TIME
 """Time of the last step in a state as drawn, s."""

@@ -6,8 +6,8 @@ the vertical one over sqrt(1 + h'^2), which is exact to first order at the surfa
 
 The normal force is p = k d^e (1 + c d'), with the depth d below the surface and e = 1 or 3/2 (Hertz): the law of Hunt &
 Crossley, J. Appl. Mech. 42 (1975) 440-445, whose damping makes no jump where contact begins. Friction is Coulomb's with
-a tangential spring from an anchor on the surface (`stretch`). That of a rope, whose material moves past the points of
-contact, is regularised by the velocity w past the surface, with t its part along the surface: -mu p t/sqrt(t.t + v0^2).
+a tangential spring from an anchor on the surface (`stretch`). That of a rope may also be regularised by the velocity w
+past the surface, with t its part along the surface: -mu p t/sqrt(t.t + v0^2).
 """
 
 from __future__ import annotations

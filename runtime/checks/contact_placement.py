@@ -105,12 +105,9 @@ def _complete(scene: SceneData, contact: Contact) -> Contact:
     else:
         raise SceneError(contact.where, f'there is no cable or body "{contact.a}"',
                          near(contact.a, [*scene.cables, *scene.ropes, *scene.bodies]))
-    if contact.a in scene.ropes:
-        return contact
-    if contact.friction is not None and contact.friction.model == "regularised":
+    if contact.a not in scene.ropes and contact.friction is not None and contact.friction.model == "regularised":
         raise SceneError(contact.where, "has no regularised friction", 'leave model="regularised" out')
-    if not contact.is_hard and contact.exponent != 1.0 and contact.friction_coefficient and \
-            contact.tangential_stiffness is None:
+    if contact.has_friction_spring and contact.exponent != 1.0 and contact.tangential_stiffness is None:
         raise SceneError(contact.where, "tangential_stiffness is missing, which the stiffness of the exponent 1.5 is "
                          "not", "give it, in N/m (a length of a cable)")
     return contact
@@ -163,17 +160,15 @@ def _of_rope(scene: SceneData, contact: Contact, rope: Rope) -> Contact:
                          "leave restitution out and give stiffness, in N/m a length")
     if contact.points is not None:
         raise SceneError(contact.where, f'acts along rope "{rope.name}" and takes no points', "leave points out")
-    if contact.friction is not None and contact.friction.sticks:
-        raise SceneError(contact.where, f'friction sticks, and the material of rope "{rope.name}" moves past the '
-                         "points of contact, where springs would hold it", 'take model="regularised"')
-    if contact.tangential_stiffness is not None:
+    sticks = contact.friction is not None and contact.friction.sticks
+    if contact.tangential_stiffness is not None and not sticks:
         raise SceneError(contact.where, f'acts along rope "{rope.name}" and takes no tangential_stiffness: its '
-                         "friction is regularised", "leave tangential_stiffness out")
+                         "friction is regularised", 'leave it out, or give friction model="stick"')
     radius = rope.radius if contact.radius is None else contact.radius
     if not radius:
         raise SceneError(contact.where, "radius is missing, which does not follow from the section of the rope",
                          "give radius, in m: the distance of the surface from the axis at contact")
-    others = {} if contact.friction is None else {
+    others = {} if contact.friction is None or sticks else {
         "friction": contact.friction.completed({"model": "regularised"})}
     contact = _with_stiffness(scene, contact, radius, others)
     _check_resolution(scene, contact, rope)

@@ -93,8 +93,10 @@ def check_comes_to_rest(scene: SceneData) -> None:
                              'take model="stick", which holds it, or leave friction out')
     for contact in scene.contacts.values():
         if contact.a in scene.ropes and contact.friction_coefficient:
-            raise SceneError(contact.where, "its friction is regularised, so that the rope creeps and never comes to "
-                             "rest", "leave friction out")
+            why = ("its friction has no part in a state of rest: springs along a rope begin a motion without stretch"
+                   if contact.has_friction_spring else
+                   "its friction is regularised, so that the rope creeps and never comes to rest")
+            raise SceneError(contact.where, why, "leave friction out")
     for rope in scene.ropes.values():
         for sheave in rope.rough_sheaves:
             why = ("its friction has part in a state of rest, which has no tensions of ropes that stick"

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..engine import FRICTION_MARK, NO_TIME
+from ..engine import FRICTION_MARK, NO_TIME, SPAN_BEGIN, SPAN_STRETCH
 from ..kernels.element_line import along_elements
 from ..kernels.mesh import Mesh
 from ..parts.attachment import Attachment
@@ -88,8 +88,9 @@ class HardContactModel(ContactModel):
 class RopeContactModel(AlongSpan, CouplingModel):
     """Contact of a span of a rope with a surface: fu_rope_contact of engine/couplings/contact/contact.h.
 
-    on, direction, round_radius: as of a `ContactModel`. slip_velocity: of regularised friction, m/s. arc, weights:
-    shares in the length of an element, of points of quadrature and of their weights.
+    on, direction, round_radius, tangential: as of a `ContactModel`. friction, slip_velocity (m/s): of regularised
+    friction. sticking: coefficient of friction with a spring. arc, weights: shares in the length of an element, of
+    points of quadrature and of their weights.
     """
 
     coordinates: SpanCoordinates
@@ -104,6 +105,8 @@ class RopeContactModel(AlongSpan, CouplingModel):
     hertz: int
     friction: float
     slip_velocity: float
+    sticking: float
+    tangential: float
     cable: int = -1
     n_points: int = GAUSS_POINTS
     weights: np.ndarray = field(default_factory=lambda: GAUSS[1] / 2)
@@ -144,10 +147,22 @@ def rope_contact_models(builder: ModelBuilder) -> Iterator[RopeContactModel]:
     for part in builder.scene.contacts.values():
         for span in (span for rope in builder.ropes if rope.part.name == part.a for span in rope.spans):
             friction = part.friction or Friction()
-            model = RopeContactModel(**_by_penalty(part, builder), type="rope contact", coordinates=span,
-                                     friction=friction.coefficient, slip_velocity=friction.velocity)
+            arguments = _by_penalty(part, builder)
+            sticking = friction.coefficient if part.has_friction_spring else 0.0
+            model = RopeContactModel(**arguments, type="rope contact", coordinates=span,
+                                     friction=0.0 if sticking else friction.coefficient,
+                                     slip_velocity=friction.velocity, sticking=sticking,
+                                     tangential=_tangential(part, arguments["stiffness"]))
             model.is_damped |= friction.coefficient > 0
+            if sticking:
+                model.n_numbers = (SPAN_STRETCH * model.n_points * span.n_elements + SPAN_BEGIN
+                                   + 2 * (span.nodes.stop - span.nodes.start))
             yield model
+
+
+def _tangential(part: Contact, stiffness: float) -> float:
+    """Return the stiffness of friction's spring, by default that of the normal force."""
+    return stiffness if part.tangential_stiffness is None else part.tangential_stiffness
 
 
 def _by_penalty(part: Contact, builder: ModelBuilder) -> dict[str, Any]:
@@ -167,9 +182,8 @@ def _contact(part: Contact, builder: ModelBuilder) -> ContactModel:
     scene = builder.scene
     arguments = _by_penalty(part, builder)
     entries = arguments["entries"] | {"length": 0.0, "n_hull": 0, "marks": NONE}
-    tangential = arguments["stiffness"] if part.tangential_stiffness is None else part.tangential_stiffness
     model = ContactModel(**arguments | {"entries": entries}, type="contact", friction=part.friction_coefficient,
-                         tangential=tangential)
+                         tangential=_tangential(part, arguments["stiffness"]))
     if part.a in builder.cable_index:
         drawn = _along_cable(model, builder.cable_index[part.a], builder)
     else:

@@ -46,9 +46,10 @@ class Contact(Part):
     points it acts at the point of contact, with its moment; along cables it acts on the axis.
 
     The spans of a rope have contact by penalty; what lies on sheaves and drums has none. Friction of a rope is
-    regularised, as its material moves past the points of contact: a rope at rest creeps, at a part of
-    ``friction.velocity``. In statics it has none. Where `equilibrium` finds no rest of a rope on a surface, `relax`
-    does.
+    regularised by default: a rope at rest creeps, at a part of ``friction.velocity``. With the model "stick" springs
+    hold its material, which takes their stretch along as it flows, and comes from sheaves and drums without stretch. In
+    statics and modes ropes have no friction on surfaces. Where `equilibrium` finds no rest of a rope on a surface,
+    `relax` does.
 
     a: the cable, the rope or the body; a list, or "all" cables and bodies of the scene: a contact is added for each
         pair, and a name given gets a number
@@ -56,9 +57,9 @@ class Contact(Part):
     stiffness: N/m a length in m, or N/m; by default the weight penetrates by 1 % of the radius
     exponent: 1, or 1.5 (Hertz)
     damping: s/m (Hunt and Crossley)
-    friction: Coulomb's coefficient, or a `Friction`, of ropes with the model "regularised", else "stick"
+    friction: Coulomb's coefficient, or a `Friction`, of cables and bodies with the model "stick", of ropes with either
     tangential_stiffness: of the spring of sticking friction, N/m; by default that of the normal force. Along a sticking
-        cable, tension decays over the length √(EA/tangential_stiffness)
+        cable or rope, tension decays over the length √(EA/tangential_stiffness)
     radius: of the cable, m, by default that of its section, 0 for its centreline; of spheres about a body's points
     restitution: normal velocity after an impact over that before it, 0 to 1 (Newton)
     rest_velocity: normal velocity below which points stay in contact after an impact, m/s

@@ -14,9 +14,9 @@ class Friction(Part):
     """Friction of a slide, a contact, a crossing or a rope on a sheave, from normal force N and speed of sliding.
 
     A number in its place is the coefficient. Slides and ropes find the instants at which they stick and break loose as
-    events. In contacts and crossings a spring holds sticking points, and slides where its force exceeds friction;
-    contacts of ropes have none. Friction of a driven slide acts against the drive, is part of the slide's traction, and
-    is zero while the drive stands.
+    events. In contacts and crossings a spring holds sticking points, and slides where its force exceeds friction.
+    Friction of a driven slide acts against the drive, is part of the slide's traction, and is zero while the drive
+    stands.
 
     coefficient: of sliding, Coulomb's
     static_coefficient: of sticking, of slides alone; by default that of sliding

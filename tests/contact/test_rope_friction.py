@@ -168,7 +168,6 @@ def test_at_rest_there_is_none():
 
 
 @pytest.mark.parametrize(("a", "given", "words"), [
-    ("line", {"friction": fu.Friction(coefficient=0.3, model="stick")}, 'material of rope "line" moves past'),
     ("line", {"friction": 0.3, "tangential_stiffness": 1e4}, "takes no tangential_stiffness"),
     ("weight", {"friction": fu.Friction(coefficient=0.3, model="regularised")}, "has no regularised friction"),
 ])

@@ -179,8 +179,11 @@ def _without_friction(scene: SceneData, stick: bool) -> list[str]:
     """Return messages on friction that is left out, and on sheaves to which ropes stick."""
     slides = [f'"{slide.name}"' for slide in scene.slides.values() if slide.friction and not slide.is_driven]
     wraps = rough_sheaves(scene.ropes.values())
+    contacts = [f'"{contact.name}"' for contact in scene.contacts.values()
+                if contact.a in scene.ropes and contact.friction_coefficient]
     return [f"modes {do} {what}{'s' * (len(names) > 1)} {', '.join(names)}"
             for do, what, names in (("leave out the friction of", "slide", slides),
+                                    ("leave out the friction of", "contact", contacts),
                                     ("have ropes that stick to" if stick else "leave out the friction of", "sheave",
                                      wraps)) if names]
 

@@ -144,7 +144,8 @@ def note(problem: StaticProblem, state: RestState) -> None:
     scene = problem.scene
     for parts, what in (([f'"{name}"' for name, slide in scene.slides.items() if slide.friction is not None], "slides"),
                         ([contact.where for contact in scene.contacts.values()
-                          if contact.friction_coefficient and not contact.has_friction_spring], "contacts"),
+                          if contact.friction_coefficient and not (
+                              contact.has_friction_spring and contact.a not in scene.ropes)], "contacts"),
                         ([] if problem.settings.has_friction else rough_sheaves(scene.ropes.values()), "ropes")):
         if parts:
             problem.messages.append(f"friction of {' and '.join(parts)} is left out: at rest {what} move freely")

@@ -52,14 +52,32 @@ typedef struct {
 extern const fu_coupling_type fu_contact_type;
 
 /* Contact of a span of a rope: couplings/contact/span_contact.c. Of the contact, `arc` and `weights` have the shares of
- * the points and of their weights in the length of an element. Friction is regularised, not that of the contact's law:
- * `friction` is its coefficient, `slip_velocity` that at which it is 0.7 of its limit, m/s. */
+ * the points and of their weights in the length of an element. Friction is that of the contact's law, with a spring of
+ * the material; or regularised: `friction` is its coefficient, `slip_velocity` that at which it is 0.7 of its limit,
+ * m/s. */
 typedef struct {
     fu_contact contact;
     fu_span_elements on;
     double friction, slip_velocity;
 } fu_rope_contact;
 extern const fu_coupling_type fu_rope_contact_type;
+
+/* Returns the contact as that of a span; null: it is of a cable or a body. */
+static inline const fu_rope_contact *fu_contact_on_span(const fu_contact *contact)
+{
+    return contact->base.type == &fu_rope_contact_type ? (const fu_rope_contact *)contact : 0;
+}
+
+/* History of friction on a span, from the last step: the position of the surface and its motion, the material
+ * coordinates of both ends, m, with their rates, and the time, s (FU_NO_TIME: none, before any step). Before it among
+ * the numbers of a state: the stretch of each point (3), as many numbers for its update, and the dofs of the span's
+ * nodes with their rates. */
+typedef struct {
+    double p[3], v[3], A[9], omega[3], s[FU_SPAN_ENDS], s_rate[FU_SPAN_ENDS], time;
+} fu_span_begin;
+#define FU_SPAN_BEGIN 23  /* numbers of it */
+#define FU_SPAN_STRETCH 6 /* numbers of a point */
+_Static_assert(sizeof(fu_span_begin) == FU_SPAN_BEGIN * sizeof(double), "numbers of a state are doubles");
 
 /* Numbers of a row of output: the force on the cable or body, and its friction; the largest penetration; the length in
  * contact, of a body the number of points; the arc-lengths of its ends. */
@@ -73,17 +91,22 @@ extern const fu_output fu_contact_output_fields[];
  * penetration and its rate, the normal, its rate along the shape's axes, the arm from the point to the contact of
  * its sphere, the velocity there relative to the surface, along the shape's axes, the force on it (a length) with its
  * friction, derivatives by its position, by its velocity relative to the surface and by the stretch alone, the stored
- * energy and the dissipated power of the normal force, the stretch of friction's spring, along the shape's axes, its
- * path, and whether friction slides. */
+ * energy and the dissipated power of the normal force, the energy of friction's spring, its stretch, along the shape's
+ * axes, its path, and whether friction slides. On a span: the part of the step after which the material there entered
+ * the span, 0 if it was there before, the history of the material, and
+ * changes of its stretch and place by the material coordinate, along the shape's axes. */
 typedef struct {
     double r[3], v[3];
     const fu_friction_mark *mark;
     double since, turn[3], spin[3], arm[3], slip[3], normal_rate[3];
     double depth, sinking, normal_force, f[3], friction[3], by_place[9], by_rate[9], by_stretch[9], energy, power,
-        stretch[3];
+        spring_energy, stretch[3];
     fu_distance distance;
     fu_friction_end friction_end;
     int slides;
+    double entered;
+    fu_friction_mark of_material;
+    double stretch_by_S[3], place_by_S[3];
 } fu_contact_point;
 
 /* The normal force at a penetration, with its derivatives, its elastic part, the stored energy; the mean of that part
@@ -119,6 +142,8 @@ fu_normal_force fu_normal_force_at(const fu_contact *contact, double depth, doub
  * not. */
 void fu_contact_slip(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                      fu_contact_point *point);
+/* Computes the history of a point with these, except for the stretch, which is zero. */
+void fu_contact_note(int dim, const fu_attachment_state *on, const fu_contact_point *point, fu_friction_mark *mark);
 int fu_contact_is_active(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                          fu_contact_point *point);
 void fu_contact_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
@@ -188,7 +213,35 @@ void fu_contact_changes_by(int dim, const fu_contact *contact, const fu_attachme
                            const fu_contact_point *point, const fu_point_motion *of, int is_surface,
                            fu_contact_changes *out);
 
-/* couplings/contact/span_contact_point.c: calls `visit` with each point in contact; after the last one of an element
+/* couplings/contact/span_marks.c: friction's history of the material at S, m, in the span; the element that holds S may
+ * be near the e-th. */
+void fu_span_mark(const fu_model *model, const fu_rope_contact *rope, const fu_state *state, int e, double S,
+                  fu_contact_point *of);
+fu_span_begin *fu_span_begin_of(const fu_rope_contact *rope, const fu_state *state);
+/* The stretch of each point (3), then the numbers for its update. */
+double *fu_span_stretch_of(const fu_rope_contact *rope, const fu_state *state);
+/* The dofs of the nodes, then their rates. */
+double *fu_span_nodes_of(const fu_rope_contact *rope, const fu_state *state);
+
+/* couplings/contact/span_history.c */
+void fu_rope_contact_reset(const fu_coupling *coupling, fu_state *state);
+void fu_rope_contact_update_history(const fu_model *model, const fu_coupling *coupling, fu_state *state);
+double fu_rope_contact_released(const fu_model *model, const fu_coupling *coupling, const fu_state *from,
+                                const fu_state *to, int by_ends);
+
+/* couplings/contact/span_contact_point.c: the place of a point, with its history; whether any point of an element may
+ * be nearer to the surface than the radius. */
+void fu_rope_contact_place(const fu_model *model, const fu_rope_contact *rope, const fu_state *state,
+                           const fu_span_element *it, int k, fu_contact_point *point);
+int fu_rope_contact_may_be_active(int dim, const fu_rope_contact *rope, const fu_attachment_state *on,
+                                  const fu_span_element *it);
+/* Adds the reaction at a point on the body of the surface, to the left side of the equations; the force on the material
+ * at a point with its reaction. */
+void fu_rope_contact_add_reaction(int dim, const fu_attachment_state *on, const fu_contact_point *point, double weight,
+                                  double *f);
+void fu_rope_contact_add_force(const fu_model *model, const fu_rope_contact *rope, const fu_attachment_state *on,
+                               const fu_span_element *it, int k, const fu_contact_point *point, double *f);
+/* Calls `visit` with each point in contact; after the last one of an element
  * with none. */
 typedef void fu_rope_contact_visitor(const fu_model *model, const fu_rope_contact *rope, const fu_attachment_state *on,
                                      const fu_span_element *it, int k, fu_contact_point *point, void *context);

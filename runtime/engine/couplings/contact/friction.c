@@ -34,9 +34,12 @@ static void begin_at_contact(int dim, const fu_contact_point *point, friction_co
 {
     const fu_friction_mark *mark = point->mark;
     const double h = of->path.h;
-    of->from = 0.0;
-    if (!(mark->gap > 0.0)) return;
-    of->from = h > 0.0 ? fu_part_to_rise(&of->path.depth, h) : mark->gap / (mark->gap + point->depth);
+    of->from = point->entered;
+    if (mark->gap > 0.0) {
+        const double part = h > 0.0 ? fu_part_to_rise(&of->path.depth, h) : mark->gap / (mark->gap + point->depth);
+        of->from = fmax(of->from, part);
+    }
+    if (of->from == 0.0) return;
     for (int d = 0; d < dim; ++d) {
         const fu_step_ends ends = {{0.0, of->change[d]}, {mark->rate[d], point->slip[d]}};
         gone[d] = h > 0.0 ? fu_value_within(&ends, h, of->from) : of->from * of->change[d];
@@ -178,7 +181,7 @@ void fu_contact_stretch(const fu_model *model, const fu_contact *contact, const 
         point->friction[d] = -contact->law.tangential * x[d];
         point->f[d] += point->friction[d];
     }
-    point->energy += 0.5 * contact->law.tangential * fu_dot(dim, x, x);
+    point->spring_energy = 0.5 * contact->law.tangential * fu_dot(dim, x, x);
 }
 
 /* Adds the derivatives of a path in contact for a part of the step only, in which position and velocity at the end have
@@ -187,7 +190,9 @@ static void add_late_contact(int dim, const fu_attachment_state *on, const frict
 {
     const double h = of->path.h, *n = point->distance.n;
     const fu_cubic at = fu_cubic_at(of->from);
-    const double sinking = h > 0.0 ? h * fu_rate_within(&of->path.depth, h, of->from) : point->depth + point->mark->gap;
+    const double sinking = point->entered > 0.0 ? INFINITY /* its instant does not depend on the penetration */
+                           : h > 0.0            ? h * fu_rate_within(&of->path.depth, h, of->from)
+                                                : point->depth + point->mark->gap;
     const double end = h > 0.0 ? at.change : of->from, rate = h > 0.0 ? h * at.rates[1] : 0.0;
     double by_place[9], by_rate[9], slope[3], local[3];
     for (int d = 0; d < dim; ++d) {

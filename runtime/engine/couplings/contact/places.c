@@ -9,6 +9,8 @@
 /* Returns the number of elements that the points are divided into; those of a body are one. */
 int fu_contact_elements(const fu_model *model, const fu_contact *contact)
 {
+    const fu_rope_contact *rope = fu_contact_on_span(contact);
+    if (rope) return rope->on.n_elements;
     return contact->cable >= 0 ? model->cables[contact->cable].n_elements : 1;
 }
 
@@ -56,6 +58,11 @@ int fu_contact_may_be_active(const fu_model *model, const fu_contact *contact, c
                              const fu_state *state, int element, double below)
 {
     const int dim = model->dim;
+    const fu_rope_contact *rope = fu_contact_on_span(contact);
+    if (rope) {
+        const fu_span_element it = fu_span_element_at(model, &rope->on, element, state->q, 0, 0);
+        return fu_rope_contact_may_be_active(dim, rope, on, &it);
+    }
     if (contact->cable < 0) {
         const double *origin = state->q + model->bodies[contact->attachments[0].body].configuration;
         return fu_surface_clearance(dim, &contact->surface, on, origin, contact->spread[0]) <= contact->radius + below;
@@ -87,6 +94,13 @@ void fu_contact_place(const fu_model *model, const fu_contact *contact, const fu
                       const fu_state *state, int element, int point, fu_contact_point *out)
 {
     const int dim = model->dim;
+    const fu_rope_contact *rope = fu_contact_on_span(contact);
+    if (rope) {
+        const fu_span_element it = fu_span_element_at(model, &rope->on, element, state->q, state->v, 0);
+        fu_rope_contact_place(model, rope, state, &it, point, out);
+        return;
+    }
+    out->entered = 0.0;
     out->mark = contact->law.friction > 0.0 ? fu_contact_mark(contact, state, element, point) : 0;
     memset(out->r, 0, sizeof out->r);
     memset(out->v, 0, sizeof out->v);
@@ -133,6 +147,12 @@ void fu_contact_add_force(const fu_model *model, const fu_contact *contact, cons
     const int dim = model->dim, rolls = fu_contact_rolls(contact);
     const double weight = fu_contact_weight(contact, element, number), *force = point->f;
     double arm[3], moment[3];
+    const fu_rope_contact *rope = fu_contact_on_span(contact);
+    if (rope) {
+        const fu_span_element it = fu_span_element_at(model, &rope->on, element, state->q, state->v, 0);
+        fu_rope_contact_add_force(model, rope, on, &it, number, point, f);
+        return;
+    }
     if (on->n) {
         for (int d = 0; d < dim; ++d) arm[d] = point->r[d] + point->arm[d] - on->p[d];
         fu_moment_of(dim, arm, force, moment);

@@ -30,6 +30,17 @@ void fu_contact_slip(const fu_model *model, const fu_contact *contact, const fu_
     for (int d = 0; d < dim; ++d) point->slip[d] += turning[d];
 }
 
+void fu_contact_note(int dim, const fu_attachment_state *on, const fu_contact_point *point, fu_friction_mark *mark)
+{
+    memset(mark, 0, sizeof *mark);
+    memcpy(mark->place, point->distance.y, sizeof(double) * (size_t)dim);
+    memcpy(mark->rate, point->slip, sizeof(double) * (size_t)dim);
+    memcpy(mark->normal_rate, point->normal_rate, sizeof(double) * (size_t)dim);
+    fu_surface_into(dim, on, point->distance.n, mark->normal);
+    mark->gap = -point->depth;
+    mark->gap_rate = -point->sinking;
+}
+
 /* Computes the contact of a point without derivatives; returns whether there is one. */
 int fu_contact_is_active(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                          fu_contact_point *point)
@@ -40,6 +51,7 @@ int fu_contact_is_active(const fu_model *model, const fu_contact *contact, const
     const fu_normal_force of = fu_normal_force_at(contact, point->depth, point->sinking, point->depth);
     point->normal_force = of.p;
     point->energy = of.energy;
+    point->spring_energy = 0.0;
     point->power = (of.p - of.elastic) * point->sinking;
     memset(point->friction, 0, sizeof point->friction);
     memset(point->f, 0, sizeof point->f);

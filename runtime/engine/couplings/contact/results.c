@@ -15,7 +15,7 @@ static void add_energy(const fu_model *model, const fu_contact *contact, const f
                        int number, const fu_contact_point *point, void *context)
 {
     (void)model, (void)on;
-    *(double *)context += fu_contact_weight(contact, element, number) * point->energy;
+    *(double *)context += fu_contact_weight(contact, element, number) * (point->energy + point->spring_energy);
 }
 
 double fu_contact_energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
@@ -64,14 +64,8 @@ void fu_contact_update_history(const fu_model *model, const fu_coupling *couplin
             fu_contact_place(model, contact, &on, state, e, k, &point);
             const int in_contact = fu_contact_is_active(model, contact, &on, &point);
             fu_friction_mark *mark = fu_contact_mark(contact, state, e, k);
-            memset(mark, 0, sizeof *mark);
+            fu_contact_note(dim, &on, &point, mark);
             if (in_contact) memcpy(mark->stretch, point.stretch, sizeof(double) * (size_t)dim);
-            memcpy(mark->place, point.distance.y, sizeof(double) * (size_t)dim);
-            memcpy(mark->rate, point.slip, sizeof(double) * (size_t)dim);
-            memcpy(mark->normal_rate, point.normal_rate, sizeof(double) * (size_t)dim);
-            fu_surface_into(dim, &on, point.distance.n, mark->normal);
-            mark->gap = -point.depth;
-            mark->gap_rate = -point.sinking;
         }
     fu_friction_begin *begin = fu_contact_begin_of(contact, state);
     double unused[3];

@@ -13,7 +13,7 @@
 
 int fu_contact_rolls(const fu_contact *contact)
 {
-    return contact->law.friction > 0.0 && contact->radius > 0.0 && contact->cable < 0;
+    return contact->law.friction > 0.0 && contact->radius > 0.0 && contact->cable < 0 && !fu_contact_on_span(contact);
 }
 
 fu_friction_begin *fu_contact_begin_of(const fu_contact *contact, const fu_state *state)

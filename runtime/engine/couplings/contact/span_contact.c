@@ -17,22 +17,12 @@ static const fu_rope_contact *of(const fu_coupling *coupling)
 
 /* --- forces ----------------------------------------------------------------------------------------------------- */
 
-/* Adds the reaction at a point on the body of the surface, to the left side of the equations. */
-static void add_reaction(int dim, const fu_attachment_state *on, const fu_contact_point *point, double weight,
-                         double *f)
-{
-    double arm[3], moment[3];
-    for (int d = 0; d < dim; ++d) arm[d] = point->r[d] - on->p[d];
-    fu_moment_of(dim, arm, point->f, moment);
-    fu_add_wrench(dim, on, point->f, moment, weight, f);
-}
-
 static void add_force(const fu_model *model, const fu_rope_contact *rope, const fu_attachment_state *on,
                       const fu_span_element *it, int k, fu_contact_point *point, void *context)
 {
     double F[3], by_place[9], of_e[FU_MAX_COORDINATES], of_ends[ENDS], of_length;
     if (!point) return;
-    if (on->n) add_reaction(model->dim, on, point, rope->contact.weights[k] * it->l, context);
+    if (on->n) fu_rope_contact_add_reaction(model->dim, on, point, rope->contact.weights[k] * it->l, context);
     const double part = -rope->contact.weights[k], at = rope->contact.arc[k];
     fu_rope_contact_elastic(rope, point, F, by_place);
     rope->on.kernel->stored_force(part, it->l, it->e, at, point->energy, F, of_e, &of_length);
@@ -68,7 +58,7 @@ static void add_energies(const fu_model *model, const fu_rope_contact *rope, con
     (void)model, (void)on;
     if (!point) return;
     const double weight = rope->contact.weights[k] * it->l;
-    to->energy += weight * point->energy;
+    to->energy += weight * (point->energy + point->spring_energy);
     to->power += weight * point->power;
 }
 
@@ -119,6 +109,8 @@ static const fu_field fields[] = {
     FU_FIELD_AS("stiffness", fu_rope_contact, contact.law.stiffness, FU_REAL),
     FU_FIELD_AS("damping", fu_rope_contact, contact.law.damping, FU_REAL),
     FU_FIELD_AS("hertz", fu_rope_contact, contact.law.hertz, FU_INTEGER),
+    FU_FIELD_AS("sticking", fu_rope_contact, contact.law.friction, FU_REAL),
+    FU_FIELD_AS("tangential", fu_rope_contact, contact.law.tangential, FU_REAL),
     FU_FIELD(fu_rope_contact, friction, FU_REAL, 0),
     FU_FIELD(fu_rope_contact, slip_velocity, FU_REAL, 0),
     FU_FIELD_AS("cable", fu_rope_contact, contact.cable, FU_INTEGER),
@@ -128,6 +120,11 @@ static const fu_field fields[] = {
     FU_FIELD_AS("arc", fu_rope_contact, contact.arc, FU_REALS),
     {0},
 };
+
+static const fu_error_operations errors = {.quadrature = fu_contact_quadrature_error};
+static const fu_start_operations start = {.reset = fu_rope_contact_reset};
+static const fu_history_operations history = {.update = fu_rope_contact_update_history,
+                                              .error = fu_contact_history_error};
 
 const fu_coupling_type fu_rope_contact_type = {
     .name = "rope contact",
@@ -139,5 +136,9 @@ const fu_coupling_type fu_rope_contact_type = {
     .force = force,
     .energy = energy,
     .dissipation = dissipation,
+    .lost_in_step = fu_rope_contact_released,
     .outputs = outputs,
+    .history = &history,
+    .errors = &errors,
+    .start = &start,
 };

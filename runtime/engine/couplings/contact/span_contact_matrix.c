@@ -20,7 +20,22 @@ typedef struct {
  * and the whole. */
 typedef struct {
     fu_contact_point stored, line, whole;
+    double by_S[3]; /* change of the whole by the material coordinate */
 } parts;
+
+/* Computes the change of the force on the material by the material coordinate of a point at a constant place: that of
+ * friction's history. What slid in the step, or was off the surface or the span before, has forgotten the stretch that
+ * it had. Changes of the instant at which it entered, and of velocity and gap before the step, are left out. */
+static void by_material(int dim, const fu_attachment_state *on, const fu_contact_point *point, double by_S[3])
+{
+    double local[3] = {0.0}, change[3] = {0.0};
+    memset(by_S, 0, sizeof(double[3]));
+    if (!point->mark) return;
+    const int has_stretch = !point->friction_end.slid && !(point->mark->gap > 0.0) && !(point->entered > 0.0);
+    for (int d = 0; d < dim; ++d) local[d] = has_stretch * point->stretch_by_S[d] - point->place_by_S[d];
+    fu_surface_out(dim, on, local, change);
+    for (int i = 0; i < dim; ++i) by_S[i] = fu_dot(dim, point->by_stretch + i * dim, change);
+}
 
 static void parts_of(const fu_model *model, const fu_rope_contact *rope, const fu_attachment_state *on,
                      fu_contact_point *point, parts *out)
@@ -34,6 +49,8 @@ static void parts_of(const fu_model *model, const fu_rope_contact *rope, const f
     memset(out->stored.by_stretch, 0, sizeof out->stored.by_stretch);
     out->line = out->whole = out->stored;
     if (rope->contact.base.is_damped) out->whole = *point;
+    memcpy(out->line.by_stretch, out->whole.by_stretch, sizeof out->line.by_stretch);
+    by_material(dim, on, &out->whole, out->by_S);
     if (rope->friction > 0.0) {
         fu_rope_contact_friction(dim, rope, on, point, f, by_place, by_rate);
         for (int i = 0; i < dim * dim; ++i) {
@@ -111,7 +128,7 @@ static void add_body(const fu_model *model, const fu_rope_contact *rope, const f
 {
     const int dim = model->dim, n = rope->on.kernel->coordinates;
     const double weight = rope->contact.weights[k] * it->l, scale = to->weights.stiffness * weight;
-    double arm[3], moment[3], stored[3];
+    double arm[3], moment[3], stored[3], turned[3];
     fu_point_motion a, b;
     fu_contact_changes by_a, by_b, stored_by, line_by;
     for (int d = 0; d < dim; ++d) arm[d] = of->whole.r[d] - on->p[d];
@@ -125,10 +142,15 @@ static void add_body(const fu_model *model, const fu_rope_contact *rope, const f
     fu_contact_changes_by(dim, &rope->contact, on, &of->stored, &b, 1, &stored_by);
     fu_contact_changes_by(dim, &rope->contact, on, &of->line, &b, 1, &line_by);
     double of_length[ENDS] = {-1.0 / it->l, 1.0 / it->l}; /* of the weight, over it */
+    double of_S[ENDS] = {1.0 - rope->contact.arc[k], rope->contact.arc[k]};
     fu_to_ends_of_span(&rope->on, it->number, &of_length[0], &of_length[1], 1, 1);
+    fu_to_ends_of_span(&rope->on, it->number, &of_S[0], &of_S[1], 1, 1);
+    fu_moment_of(dim, arm, of->by_S, turned);
     for (int i = 0; i < ENDS; ++i) {
-        for (int d = 0; d < dim; ++d) by_a.force[d * a.at.n + n + i] += of_length[i] * of->whole.f[d];
-        for (int t = 0; t < fu_turns(dim); ++t) by_a.far[t * a.at.n + n + i] += of_length[i] * moment[t];
+        for (int d = 0; d < dim; ++d)
+            by_a.force[d * a.at.n + n + i] += of_length[i] * of->whole.f[d] + of_S[i] * of->by_S[d];
+        for (int t = 0; t < fu_turns(dim); ++t)
+            by_a.far[t * a.at.n + n + i] += of_length[i] * moment[t] + of_S[i] * turned[t];
     }
     fu_add_wrench_tangent(model, &b.at, &a.at, by_a.force, by_a.far, 0, scale, to->system);
     fu_add_wrench_tangent(model, &b.at, &b.at, by_b.force, by_b.far, fu_stiffness_of(&b), scale, to->system);
@@ -141,6 +163,22 @@ static void add_body(const fu_model *model, const fu_rope_contact *rope, const f
         }
         for (int t = 0; t < fu_turns(dim); ++t) energy += stored[t] * b.by[(2 * dim + t) * b.at.n + i];
         add_column(model, rope, it, k, b.at.at[i], energy, changes[0], changes[1], to);
+    }
+}
+
+/* Adds the change of the forces on the span by the material coordinate of a point, which the ends of its element move.
+ */
+static void add_by_material(const fu_rope_contact *rope, const fu_span_element *it, int k, const double by_S[3],
+                            matrix *to)
+{
+    const int n = rope->on.kernel->coordinates;
+    const double at = rope->contact.arc[k];
+    double rows[LOCAL];
+    rope->on.kernel->line_force(-rope->contact.weights[k] * to->weights.stiffness, it->l, it->e, at, by_S, rows,
+                                rows + n);
+    for (int i = 0; i < n + ENDS; ++i) {
+        to->local[i][n] += (1.0 - at) * rows[i];
+        to->local[i][n + 1] += at * rows[i];
     }
 }
 
@@ -168,6 +206,7 @@ static void add_matrix(const fu_model *model, const fu_rope_contact *rope, const
                                         of.line.by_rate, D, K);
     fu_add_by_length(all, n, to->weights.stiffness, K, to->local);
     fu_add_by_rates(all, to->weights.stiffness * to->weights.rate, D, to->local);
+    if (of.line.mark) add_by_material(rope, it, k, of.by_S, to);
 }
 
 void fu_rope_contact_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,

@@ -5,11 +5,11 @@
 #include <math.h>
 #include <string.h>
 
-enum { CORNERS = 4 };
+enum { ENDS = FU_SPAN_ENDS, CORNERS = 4 };
 
-/* Returns whether any point of an element may be nearer to the surface than the radius: it lies within the hull of its
- * four Bezier points. */
-static int may_be_active(int dim, const fu_rope_contact *rope, const fu_attachment_state *on, const fu_span_element *it)
+/* An element lies within the hull of its four Bezier points. */
+int fu_rope_contact_may_be_active(int dim, const fu_rope_contact *rope, const fu_attachment_state *on,
+                                  const fu_span_element *it)
 {
     const double *first = it->e, *last = it->e + 2 * dim;
     double corners[CORNERS][3], middle[3] = {0.0}, square = 0.0;
@@ -40,14 +40,31 @@ double fu_rope_contact_friction(int dim, const fu_rope_contact *rope, const fu_a
     return -fu_dot(dim, f, w);
 }
 
-/* Computes the contact of a point of quadrature; returns whether there is one. */
-static int contact_at(const fu_model *model, const fu_rope_contact *rope, const fu_attachment_state *on,
-                      const fu_span_element *it, int k, fu_contact_point *point)
+void fu_rope_contact_place(const fu_model *model, const fu_rope_contact *rope, const fu_state *state,
+                           const fu_span_element *it, int k, fu_contact_point *point)
 {
-    double r_S[3], by_place[9], by_rate[9];
+    double r_S[3];
     memset(point, 0, sizeof *point);
     rope->on.kernel->point(it->l, it->e, it->v, it->s_rate, rope->contact.arc[k], point->r, r_S, point->v);
+    if (!(rope->contact.law.friction > 0.0)) return;
+    const fu_span_begin *begin = fu_span_begin_of(rope, state);
+    if (begin->time == FU_NO_TIME) return;
+    point->mark = &point->of_material;
+    point->since = state->t - begin->time;
+    fu_span_mark(model, rope, state, it->number, it->s[0] + rope->contact.arc[k] * it->l, point);
+}
+
+/* Computes the contact of a point of quadrature; returns whether there is one. */
+static int contact_at(const fu_model *model, const fu_rope_contact *rope, const fu_attachment_state *on,
+                      const fu_state *state, const fu_span_element *it, int k, fu_contact_point *point)
+{
+    double by_place[9], by_rate[9], w[3];
+    fu_rope_contact_place(model, rope, state, it, k, point);
     if (!fu_contact_is_active(model, &rope->contact, on, point)) return 0;
+    if (point->mark) {
+        fu_surface_past(model->dim, on, point->r, point->v, w);
+        point->power -= fu_dot(model->dim, point->friction, w);
+    }
     if (rope->friction > 0.0) {
         point->power += fu_rope_contact_friction(model->dim, rope, on, point, point->friction, by_place, by_rate);
         for (int d = 0; d < model->dim; ++d) point->f[d] += point->friction[d];
@@ -63,10 +80,10 @@ void fu_rope_contact_visit(const fu_model *model, const fu_rope_contact *rope, c
     for (int e = 0; e < rope->on.n_elements; ++e) {
         const fu_span_element it = fu_span_element_at(model, &rope->on, e, state->q, state->v, 0);
         int in_contact = 0;
-        if (!may_be_active(model->dim, rope, &on, &it)) continue;
+        if (!fu_rope_contact_may_be_active(model->dim, rope, &on, &it)) continue;
         for (int k = 0; k < rope->contact.n_points; ++k) {
             fu_contact_point point;
-            if (!contact_at(model, rope, &on, &it, k, &point)) continue;
+            if (!contact_at(model, rope, &on, state, &it, k, &point)) continue;
             ++in_contact;
             visit(model, rope, &on, &it, k, &point, context);
         }
@@ -81,4 +98,22 @@ void fu_rope_contact_elastic(const fu_rope_contact *rope, const fu_contact_point
     const double none[3] = {0.0}, law[3] = {at.p, at.by_depth, 0.0};
     double by_rate[9];
     rope->contact.surface.kernel->frictionless(point->distance.n, point->distance.H, none, law, F, by_place, by_rate);
+}
+
+void fu_rope_contact_add_reaction(int dim, const fu_attachment_state *on, const fu_contact_point *point, double weight,
+                                  double *f)
+{
+    double arm[3], moment[3];
+    for (int d = 0; d < dim; ++d) arm[d] = point->r[d] - on->p[d];
+    fu_moment_of(dim, arm, point->f, moment);
+    fu_add_wrench(dim, on, point->f, moment, weight, f);
+}
+
+void fu_rope_contact_add_force(const fu_model *model, const fu_rope_contact *rope, const fu_attachment_state *on,
+                               const fu_span_element *it, int k, const fu_contact_point *point, double *f)
+{
+    double of_e[FU_MAX_COORDINATES], of_ends[ENDS];
+    if (on->n) fu_rope_contact_add_reaction(model->dim, on, point, rope->contact.weights[k] * it->l, f);
+    rope->on.kernel->line_force(-rope->contact.weights[k], it->l, it->e, rope->contact.arc[k], point->f, of_e, of_ends);
+    fu_add_span_force(&rope->on, it, of_e, of_ends, 0.0, f);
 }
