@@ -2019,22 +2019,22 @@ typedef void fu_tangent_point_laid_step_kernel(fu_real laid, const fu_real *grav
 /* gravity 3, axes 3x2, on_turn 1, moment 3 */
 fu_tangent_point_laid_step_kernel tangent_point_laid_step;
 
-typedef void fu_taut_part_feet_kernel(const fu_real *d, const fu_real *angle, const fu_real *reach, const fu_real *one, const fu_real *other, const fu_real *R, fu_real *l, fu_real *u, fu_real *s, fu_real *F_z, fu_real *F_zz);
-/* conditions of the feet of a straight part: d [m]; angle [rad]; reach [m]; one [1]; other [1]; R [m] -> l [m]; u
- * [1]; s [m]; F_z [m, 1]; F_zz [m, 1, 1/m] */
-/* d 3, angle 2, reach 2, one 3x3, other 3x3, R 2, l 1, u 3, s 2x3, F_z 4, F_zz 4x4 */
+typedef void fu_taut_part_feet_kernel(const fu_real *d, const fu_real *angle, const fu_real *reach, const fu_real *aside, const fu_real *one, const fu_real *other, const fu_real *R, fu_real *l, fu_real *u, fu_real *s, fu_real *F_z, fu_real *F_zz);
+/* conditions of the feet of a straight part: d [m]; angle [rad]; reach [m]; aside [m]; one [1]; other [1]; R [m] ->
+ * l [m]; u [1]; s [m]; F_z [m, 1]; F_zz [m, 1, 1/m] */
+/* d 3, angle 2, reach 2, aside 2, one 3x3, other 3x3, R 2, l 1, u 3, s 2x3, F_z 4, F_zz 4x4 */
 fu_taut_part_feet_kernel taut_part_feet;
 
-typedef void fu_taut_part_moves_kernel(const fu_real *d, const fu_real *angle, const fu_real *reach, const fu_real *one, const fu_real *other, fu_real *F_p, fu_real *F_zp);
-/* derivatives of a straight part by its places: d [m]; angle [rad]; reach [m]; one [1]; other [1] -> F_p [1, m];
- * F_zp [m, 1] */
-/* d 3, angle 2, reach 2, one 3x3, other 3x3, F_p 9, F_zp 4x9 */
+typedef void fu_taut_part_moves_kernel(const fu_real *d, const fu_real *angle, const fu_real *reach, const fu_real *aside, const fu_real *one, const fu_real *other, fu_real *F_p, fu_real *F_zp);
+/* derivatives of a straight part by its places: d [m]; angle [rad]; reach [m]; aside [m]; one [1]; other [1] -> F_p
+ * [1, m]; F_zp [m, 1] */
+/* d 3, angle 2, reach 2, aside 2, one 3x3, other 3x3, F_p 9, F_zp 4x9 */
 fu_taut_part_moves_kernel taut_part_moves;
 
-typedef void fu_taut_part_tangent_kernel(const fu_real *d, const fu_real *angle, const fu_real *reach, const fu_real *one, const fu_real *other, const fu_real *z_rate, const fu_real *p_rate, fu_real *F_pp, fu_real *Q_z, fu_real *Q_p);
-/* second derivatives of a straight part: d [m]; angle [rad]; reach [m]; one [1]; other [1]; z_rate [rad/s, m/s];
- * p_rate [m/s, rad/s] -> F_pp [1/m, 1, m]; Q_z [m/s, 1/s, 1/(m s)]; Q_p [m/s, 1/s, 1/(m s)] */
-/* d 3, angle 2, reach 2, one 3x3, other 3x3, z_rate 4, p_rate 9, F_pp 9x9, Q_z 4x4, Q_p 4x9 */
+typedef void fu_taut_part_tangent_kernel(const fu_real *d, const fu_real *angle, const fu_real *reach, const fu_real *aside, const fu_real *one, const fu_real *other, const fu_real *z_rate, const fu_real *p_rate, fu_real *F_pp, fu_real *Q_z, fu_real *Q_p);
+/* second derivatives of a straight part: d [m]; angle [rad]; reach [m]; aside [m]; one [1]; other [1]; z_rate
+ * [rad/s, m/s]; p_rate [m/s, rad/s] -> F_pp [1/m, 1, m]; Q_z [m/s, 1/s, 1/(m s)]; Q_p [m/s, 1/s, 1/(m s)] */
+/* d 3, angle 2, reach 2, aside 2, one 3x3, other 3x3, z_rate 4, p_rate 9, F_pp 9x9, Q_z 4x4, Q_p 4x9 */
 fu_taut_part_tangent_kernel taut_part_tangent;
 
 typedef void fu_taut_rope_straight_kernel(const fu_real *d, fu_real rise, fu_real *l, fu_real *u, fu_real *l_d, fu_real *b_d);

@@ -1,17 +1,20 @@
 """A straight part of a rope without mass in space, between the grooves of two sheaves whose axes have any direction.
 
 A groove is a circle of radius R about a centre c, in the plane of the first two columns x, y of its frame A, whose
-third one is the axis. R has the sense of travel as sign. The part leaves it at r = c + s, s = rho (x sin b - y cos b),
-where the groove has the tangent t = x cos b + y sin b. Of two grooves, with d = c_2 - c_1, the length
+third one is the axis a. R has the sense of travel as sign. A rope that has returned beside that plane lies at the place
+w along the axis. The part leaves it at r = c + s, s = rho n + w a, n = x sin b - y cos b, where the groove has the
+tangent t = x cos b + y sin b. Of two grooves, with d = c_2 - c_1, the length
 
     F = l + R_1 b_1 - R_2 b_2,  l = |d + s_2 - s_1|,
 
-is stationary by the four unknowns z = (b_1, rho_1, b_2, rho_2): with u along the part, u . s = 0 and rho u . t = R,
+is stationary by the four unknowns z = (b_1, rho_1, b_2, rho_2): with u along the part, u . n = 0 and rho u . t = R,
 Clairaut's relation of geodesics, so that |rho| = |R|/cos f at the fleet angle f. The derivatives of F by what the part
 depends on, p = (d, rotations of A_1 and of A_2 about the axes of the ground), are thus those at constant z: u, -s_1 x u
 and s_2 x u. Those of z follow from F_zz z_p = -F_zp. An anchor has s = 0 and no unknowns.
 
-In a plane across the axes rho is R, and F_z = 0 is the common tangent of two circles (taut_rope.py).
+In a plane across the axes rho is R, and F_z = 0 is the common tangent of two circles (taut_rope.py). A straight part
+that passes a groove lies across the radius at its point next to the axis, as at a foot. Where that point is |R|/cos f
+from the axis, the part is a wrap of no angle, with the same length, direction and force: there it touches.
 """
 
 from __future__ import annotations
@@ -24,7 +27,7 @@ from ..codegen.program import DirectionalDerivative, Program
 
 DIM, NAME = 3, "taut_part"
 ENDS, UNKNOWNS, PLACES = 2, 4, 9
-X, Y = 0, 1
+X, Y, AXIS = 0, 1, 2
 
 
 def families() -> list[CouplingFamily]:
@@ -45,13 +48,15 @@ class _Part:
         self.d = p.input("d", DIM, "m", "from the first centre to the second one")
         self.angle = p.input("angle", ENDS, "rad", "of both tangents in their grooves")
         self.reach = p.input("reach", ENDS, "m", "distance of both feet from the centres, with senses as signs")
+        aside = p.input("aside", ENDS, "m", "places of both wraps along the axes")
         self.frames = (p.input("one", (DIM, DIM), "1", "frame of the first groove, by columns"),
                        p.input("other", (DIM, DIM), "1", "frame of the second groove, by columns"))
         p.stage("feet")
         self.cosine = [p.define(f"cosine_{k + 1}", sp.cos(b)) for k, b in enumerate(self.angle)]
         self.sine = [p.define(f"sine_{k + 1}", sp.sin(b)) for k, b in enumerate(self.angle)]
         self.feet = [np.array(p.vector(f"foot_{k + 1}", self.reach[k] * (
-            self.sine[k] * A[:, X] - self.cosine[k] * A[:, Y]))) for k, A in enumerate(self.frames)]
+            self.sine[k] * A[:, X] - self.cosine[k] * A[:, Y]) + aside[k] * A[:, AXIS])) for k, A in enumerate(
+                self.frames)]
         p.stage("part")
         between = p.vector("between", self.d + self.feet[1] - self.feet[0])
         self.length = p.define("length", sp.sqrt(between.dot(between)))
@@ -69,7 +74,7 @@ class _Part:
     def _turned(self, k: int, about: np.ndarray) -> dict[sp.Symbol, sp.Expr]:
         """Return the rates of a frame that turns about an axis of the ground."""
         A = self.frames[k]
-        return {A[i, j]: value for j in (X, Y) for i, value in enumerate(np.cross(about, A[:, j]))}
+        return {A[i, j]: value for j in (X, Y, AXIS) for i, value in enumerate(np.cross(about, A[:, j]))}
 
     def slope(self, *radii: sp.Expr) -> np.ndarray:
         """Stage: the derivatives of F by the unknowns, or of l without radii."""

@@ -500,7 +500,7 @@ def taut_rope_scope(name: str) -> Scope:
 def taut_part_scope(name: str) -> Scope:
     """Return the scope of a straight part of a rope without mass in space."""
     ends = [Symbol(rf"{latex}_{{{k + 1}}}", argument, entry(k)) for latex, argument in (
-        ("b", "angle"), (r"\rho", "reach"), ("R", "R")) for k in range(2)]
+        ("b", "angle"), (r"\rho", "reach"), ("w", "aside"), ("R", "R")) for k in range(2)]
     return Scope(families()[name], (Symbol(r"\mathbf{d}", "d", column), *ends, Symbol(r"\mathbf{A}_{1}", "one", matrix),
                                     Symbol(r"\mathbf{A}_{2}", "other", matrix)))
 

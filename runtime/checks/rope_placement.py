@@ -124,12 +124,12 @@ def _notes(scene: SceneData, rope: Rope) -> list[str]:
         if arc.wrap > MAX_PLAUSIBLE_WRAP and not item.turns:
             notes.append(f"{rope.where}: {item.where}: the rope runs around it by {show(arc.wrap, 'rad')} and crosses "
                          "itself; give the other side if that is not meant")
-    return notes + (_notes_in_space(rope, route) if rope.dim == 3 else [] if rope.mass else
-                    _notes_without_mass(scene, rope, route))
+    return (notes + (_notes_in_space(rope, route) if rope.dim == 3 else [])
+            + ([] if rope.mass else _notes_without_mass(scene, rope, route)))
 
 
 def _notes_without_mass(scene: SceneData, rope: Rope, route: DrawnRoute) -> list[str]:
-    """Return notes on sheaves that a planar rope without mass passes as drawn, and one with mass would run around."""
+    """Return notes on sheaves that a rope without mass passes as drawn, and one with mass would run around."""
     passed = [item for item, arc in zip(rope.sheaves, route.sheaves, strict=True) if not arc.wrap]
     if not passed:
         return []
@@ -146,7 +146,9 @@ def _notes_in_space(rope: Rope, route: DrawnRoute) -> list[str]:
     """Return notes on the fleet angles of a rope as drawn."""
     found = []
     at_drums = [(drum, (fleet_angle(groove_of(drum.axis), route.spans[end]),)) for end, drum in rope.drums.items()]
-    for item, angles in [*zip(rope.sheaves, fleet_angles(route), strict=True), *at_drums]:
+    at_sheaves = [(item, angles) for item, angles, arc in zip(rope.sheaves, fleet_angles(route), route.sheaves,
+                                                              strict=True) if arc.wrap]
+    for item, angles in [*at_sheaves, *at_drums]:
         if (largest := max(angles)) > item.max_fleet_angle:
             found.append(f"{rope.where}: {item.where}: the fleet angle {show(largest, 'rad')} exceeds max_fleet_angle, "
                          f"{show(item.max_fleet_angle, 'rad')}: a rope may leave its groove; turn the axis, or move it "

@@ -42,13 +42,14 @@ class InitialState(Mapping[str, np.ndarray]):
     """
 
     def __init__(self, arrays: Mapping[str, Any], time: float | None = None, unstretched: Sequence[str] = (),
-                 slipped: Sequence[str] = ()):
+                 slipped: Sequence[str] = (), aside: Sequence[str] = ()):
         """Check and store the arrays. Raises SceneError for values that are no numbers.
 
         time: of the run that they are from, in s; unstretched: names of contacts and crossings whose friction springs
-        were stretched in that run; slipped: names of sheaves on which ropes without mass had slipped.
+        were stretched in that run; slipped: names of sheaves on which ropes without mass had slipped; aside: of those
+        in whose grooves they lay beside the middle.
         """
-        self.time, self._unstretched, self._slipped = time, unstretched, slipped
+        self.time, self._unstretched, self._slipped, self._aside = time, unstretched, slipped, aside
         self._arrays = {}
         for name, values in arrays.items():
             try:
@@ -100,6 +101,9 @@ class InitialState(Mapping[str, np.ndarray]):
         if self._slipped:
             raise SceneError("initial", f'a rope without mass had slipped on sheave "{self._slipped[0]}" until then, '
                              "and a state does not tell how far", "continue that run by save and resume=True")
+        if self._aside:
+            raise SceneError("initial", f'a rope without mass lay on sheave "{self._aside[0]}" beside the middle of '
+                             "its groove, and a state does not tell where", "continue that run by save and resume=True")
         if model.plane_axes is not None:
             InitialState({name: model.as_in_model(name, values) for name, values in self.items()},
                          self.time)._start(model, scene)

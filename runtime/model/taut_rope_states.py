@@ -19,9 +19,9 @@ Outputs = Callable[[str, int], dict[str, np.ndarray]]
 
 @dataclass
 class _Point:
-    """A point of a rope in T states: centre (T, dim) in m; the plane of its groove (T, dim, 2); the rope's angle before
-    and after it, rad, (T,); radius with the sense as sign, m; whether the rope touches it (T,); where the rope runs on
-    and off (T, dim), m.
+    """A point of a rope in T states: centre of the rope's circle (T, dim) in m; the plane of its groove (T, dim, 2);
+    the rope's angle before and after it, rad, (T,); radius with the sense as sign, m; whether the rope touches it (T,);
+    where the rope runs on and off (T, dim), m.
     """
 
     centre: np.ndarray
@@ -75,6 +75,8 @@ def _point(model: Model, point: TautPointModel, q: np.ndarray, outputs: dict[str
     centre = attachment_points(model, point.attachments[0], q)[:, : model.dim]
     before, after = outputs["angle_on"], outputs["angle_off"]
     groove = grooves(model, point, q)
+    if point.in_space:
+        centre = centre + np.cross(groove[..., 0], groove[..., 1]) * outputs["aside"][:, None]
     made = _Point(centre, groove, before, after, point.radius, outputs["touches"] > 0, centre, centre, outputs)
     made.on = made.on_circle(before, outputs["fleet_angle_on"])
     made.off = made.on_circle(after, outputs["fleet_angle_off"])
@@ -89,10 +91,10 @@ def _find_feet(points: list[_Point]) -> None:
         for t in np.flatnonzero(~point.touches):
             before = next(points[j % n] for j in range(k - 1, k - n, -1) if points[j % n].touches[t])
             after = next(points[j % n] for j in range(k + 1, k + n) if points[j % n].touches[t])
-            angle = point.before[t]
-            u = np.array([np.cos(angle), np.sin(angle)])
-            start, end = (each.centre[t] + each.radius * np.array([u[1], -u[0]]) for each in (before, after))
-            along = min(max(float((point.centre[t] - start) @ u), 0.0), float((end - start) @ u))
+            start, end = before.off[t], after.on[t]
+            length = float(np.linalg.norm(end - start))
+            u = (end - start) / length
+            along = min(max(float((point.centre[t] - start) @ u), 0.0), length)
             point.on[t] = point.off[t] = start + along * u
 
 

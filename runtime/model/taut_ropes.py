@@ -41,7 +41,7 @@ class TautPointModel(CouplingModel):
 
     angle, carrier: in the plane the angle of the straight part after it and that of what carries it as drawn; in space
     those of the parts after and before it in its groove, rad. before, after: the ropes of one tension on both sides,
-    with its place in them; ends_run_by: of a drum.
+    with its place in them; ends_run_by: of a drum. mouth, kink: of a sheave, see `SheaveModel`.
     """
 
     attachments: tuple[AttachmentModel]
@@ -56,6 +56,8 @@ class TautPointModel(CouplingModel):
     angle: float = 0.0
     carrier: float = 0.0
     closing: float = 0.0
+    mouth: float = 0.0
+    kink: float = 0.0
     touches: int = 1
     in_space: bool = False
     is_end: bool = False
@@ -180,6 +182,7 @@ def _points(builder: ModelBuilder, rope: TurningRope) -> list[TautPointModel]:
         if isinstance(item, Sheave):
             arc = next(arcs)
             made.radius, made.friction, made.touches = arc.sense * arc.radius, item.coefficient, int(arc.wrap > 0)
+            made.mouth, made.kink = item.mouth, item.max_fleet_angle
         else:
             made.is_end = True
         if isinstance(item, Drum):

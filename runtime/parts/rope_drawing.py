@@ -15,10 +15,10 @@ from .rigid_body import RigidBody
 from .rope_items import SIDES, Drum, RouteItem, Sheave
 from .rope_route import (
     MAX_LAYER,
-    MAX_PLAUSIBLE_WRAP,
     DrawnRoute,
     FreeLengths,
     RoutePoint,
+    SpanBetween,
     default_senses,
     drawn_route,
     without_wraps,
@@ -132,20 +132,16 @@ def _may_be_absent(item: RouteItem) -> bool:
 
 
 def _without_mass(rope: Roped, points: list[RoutePoint]) -> DrawnRoute:
-    if rope.dim == 3:
-        route = _along(rope, points)
-        arcs = {arc.name: arc for arc in route.sheaves}
-        for item in rope.sheaves:
-            if _may_be_absent(item) and arcs[item.name].wrap > MAX_PLAUSIBLE_WRAP:
-                raise ValueError(f"passes {item.where} without touching it, and a rope without mass in space lies on "
-                                 "all of its sheaves", "leave it out, move it into the way of the rope, or give the "
-                                 "rope a small mass")
-        return route
-    return without_wraps(points, [_may_be_absent(item) for item in rope.route], rope.radius, rope.closed)
+    absent = [_may_be_absent(item) for item in rope.route]
+    return without_wraps(points, absent, rope.radius, rope.closed, _span_between(rope))
 
 
 def _along(rope: Roped, points: list[RoutePoint]) -> DrawnRoute:
-    return drawn_route(points, rope.radius, rope.closed, span_in_space if rope.dim == 3 else None)
+    return drawn_route(points, rope.radius, rope.closed, _span_between(rope))
+
+
+def _span_between(rope: Roped) -> SpanBetween | None:
+    return span_in_space if rope.dim == 3 else None
 
 
 def _points(rope: Roped, centres: np.ndarray) -> list[RoutePoint]:

@@ -225,19 +225,19 @@ def drawn_route(points: list[RoutePoint], rope_radius: float = 0.0, closed: bool
     return DrawnRoute(tuple(spans), tuple(sheaves), (points[0].reach[1], points[-1].reach[0]))
 
 
-def without_wraps(points: list[RoutePoint], may_be_absent: list[bool], rope_radius: float,
-                  closed: bool) -> DrawnRoute:
+def without_wraps(points: list[RoutePoint], may_be_absent: list[bool], rope_radius: float, closed: bool,
+                  span_between: SpanBetween | None = None) -> DrawnRoute:
     """Return the route along points, some of which the rope may pass without a wrap: there it has an arc of no angle,
-    where it is nearest to the centre.
+    where it is nearest to the centre. span_between: see `drawn_route`.
 
     Raises ValueError(cause, remedy) for an impossible route.
     """
-    kept = list(range(len(points)))
+    kept, between_points = list(range(len(points))), span_between or _span
     gone: int | None = -1
     while gone is not None:
-        gone = next((k for k in kept if may_be_absent[k] and _is_passed(points, kept, k)), None)
+        gone = next((k for k in kept if may_be_absent[k] and _is_passed(points, kept, k, between_points)), None)
         kept = [k for k in kept if k != gone]
-    route = drawn_route([points[k] for k in kept], rope_radius, closed)
+    route = drawn_route([points[k] for k in kept], rope_radius, closed, span_between)
     if len(kept) == len(points):
         return route
     arcs, spans, n = {arc.name: arc for arc in route.sheaves}, [], len(points)
@@ -249,29 +249,30 @@ def without_wraps(points: list[RoutePoint], may_be_absent: list[bool], rope_radi
             along = float((point.centre - span.start) @ span.direction)
             foot = span.start + min(max(along, 0.0), span.length) * span.direction
             spans.append(DrawnSpan(at, foot, float(np.linalg.norm(foot - at))))
-            angle = atan2(span.direction[1], span.direction[0]) - point.sense * pi / 2
+            x, y = (span.direction @ point.groove).tolist()
+            angle = atan2(y, x) - point.sense * pi / 2
             arcs[point.name] = DrawnArc(point.name, point.centre, point.radius, point.sense, angle, angle,
-                                        (point.radius, point.radius))
+                                        (point.radius, point.radius), point.groove)
             at = foot
         spans.append(DrawnSpan(at, span.end, float(np.linalg.norm(span.end - at))))
     return DrawnRoute(tuple(spans), tuple(arcs[point.name] for point in points if point.name in arcs), route.reach)
 
 
-def _is_passed(points: list[RoutePoint], kept: list[int], k: int) -> bool:
+def _is_passed(points: list[RoutePoint], kept: list[int], k: int, span_between: SpanBetween) -> bool:
     """Return whether a rope along some points does not touch one of these: it would not turn to its side there, and the
     line between its neighbours has it on this side.
     """
     at = kept.index(k)
     before, point, after = (points[kept[(at + j) % len(kept)]] for j in (-1, 0, 1))
-    one, other = (_span(*ends, 0.0).direction for ends in ((before, point), (point, after)))
+    one, other = (span_between(*ends, 0.0).direction @ point.groove for ends in ((before, point), (point, after)))
     turn = point.sense * atan2(_cross(one, other), one @ other)  # of half a turn and more it is negative, too
     if turn >= MIN_WRAP or before is after:
         return False
     try:
-        line = _span(before, after, 0.0)
+        line = span_between(before, after, 0.0)
     except ValueError:
         return False  # there is none
-    return point.sense * _cross(line.direction, point.centre - line.start) > 0
+    return point.sense * _cross(line.direction @ point.groove, (point.centre - line.start) @ point.groove) > 0
 
 
 def _cross(one: np.ndarray, other: np.ndarray) -> float:

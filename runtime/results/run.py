@@ -39,6 +39,8 @@ if TYPE_CHECKING:
 
 TIME_TOLERANCE = 1e-9
 """Difference of equal times, over the last time of a run."""
+BESIDE_THE_MIDDLE = ("returned beside the middle of the groove", "moved along the groove")
+"""Events after which a rope without mass lies beside the middle of a groove (engine/events/taut_rope.c)."""
 WRITE_BLOCK_BYTES = 1 << 22
 MAX_COSTS = 6
 """Slides and joints that a summary names with their times."""
@@ -223,8 +225,12 @@ class Run(Viewable, NamedArrays):
         slips = {event["name"] for event in self.report["events"]
                  if event.get("what") == "slips" and event["time"] <= self.time[row]}
         holding = [sheave.name for part in self.scene.parts() for sheave in getattr(part, "holding_sheaves", ())]
+        aside: set[str] = set()
+        for event in self.report["events"]:
+            if event["time"] <= self.time[row] and event.get("what") in (*BESIDE_THE_MIDDLE, "left the sheave"):
+                (aside.add if event["what"] in BESIDE_THE_MIDDLE else aside.discard)(event["name"])
         return InitialState({name: self[name][row] for name in names_of(self.scene)}, float(self.time[row]), springs,
-                            [name for name in holding if name in slips])
+                            [name for name in holding if name in slips], sorted(aside))
 
     def __repr__(self) -> str:
         """Return the status, times and number of results."""

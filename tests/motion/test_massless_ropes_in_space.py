@@ -331,16 +331,6 @@ def test_a_load_comes_to_rest_below_its_sheave():
     assert np.abs(run["load.position"] - rest["load.position"]).max() < 1e-8
 
 
-def test_a_rest_at_which_the_rope_leaves_its_sheave_is_refused():
-    """The load hangs beside the peg that its rope lies on as drawn."""
-    scene = fu.Scene(gravity=(0, -GRAVITY, 0))
-    weight(scene, "load", 5.0, -1.0, -1.5)
-    peg = fu.Sheave("peg", at=(0.05, -1, 0), radius=0.1, side="right", **ANY)
-    scene.rope("rope", route=[fu.Anchor(at=(0.3, 0, 0.05)), peg, fu.Anchor("load")], tension=49.0, **SOFT)
-    with pytest.raises(fu.EquilibriumError, match='the rope leaves sheave "peg"; the state there'):
-        scene.equilibrium()
-
-
 # ---- files
 
 def test_files(tmp_path):
@@ -369,15 +359,6 @@ def test_a_fleet_angle_above_its_limit_is_reported():
         swing(max_fleet_angle=0.08).run(0.5, output_step=0.1, **BRIEF)
 
 
-def test_a_wrap_that_vanishes_ends_the_run():
-    scene = fu.Scene(gravity=(0, 0, 0))
-    scene.rigid_body("load", mass=1.0, inertia=(1, 1, 1), position=(0.5, 1.0, 0.1), velocity=(-1.5, 0, 0))
-    peg = fu.Sheave("peg", at=(0.1, 0, 0), radius=0.1, side="right", **ANY)
-    scene.rope("rope", route=[fu.Anchor(at=(0, -1, 0)), peg, fu.Anchor("load")], tension=0.1, **SOFT)
-    with pytest.raises(fu.RopeLeftError, match='a rope leaves sheave "peg", as its wrap angle reaches 0 rad'):
-        scene.run(2.0, output_step=0.1, **BRIEF)
-
-
 def test_a_part_that_becomes_too_short_for_its_fleet_angle_ends_the_run():
     scene = fu.Scene(gravity=(0, 0, 0))
     scene.rigid_body("load", mass=1.0, inertia=(1, 1, 1), position=(0.3, -1.5, 0.3), velocity=(0, 1.0, 0))
@@ -393,10 +374,5 @@ def test_refusals():
                  "axis would tilt as it spins; leave the inertia out and give it to what holds it, or give the rope a "
                  "small mass"):
         scene.run(0.1, progress=False)
-    with refused('rope "rope": passes sheave "peg" without touching it, and a rope without mass in space lies on all '
-                 "of its sheaves; leave it out, move it into the way of the rope, or give the rope a small mass"):
-        fu.Scene().rope("rope", tension=1.0, **SOFT, route=[
-            fu.Anchor(at=(-1, 0, 0)), fu.Sheave("peg", at=(0, 0.2, 0), radius=0.1, side="left"),
-            fu.Anchor(at=(1, 0, 0.1))])
     with refused('rope "hoist": integrator "energy" does not support ropes without mass; take another integrator'):
         swing().run(0.1, integrator="energy", progress=False)

@@ -34,12 +34,12 @@ def _geodesic(k: Numbers, s: State) -> Iterator[Invariance]:
     fleet, length = np.array([0.23, -0.31]), 2.1
     # the part along the first axis of the ground; each groove is turned about its foot's radius by the fleet angle
     frames, feet, R = [], [], s["R"]
-    for f, b, radius in zip(fleet, s["angle"], R, strict=True):
+    for f, b, radius, aside in zip(fleet, s["angle"], R, s["aside"], strict=True):
         t, axis = np.array([np.cos(f), np.sin(f), 0]), np.array([-np.sin(f), np.cos(f), 0])
         out = np.cross(t, axis)  # to the right of t, about the axis
         x, y = np.sin(b) * out + np.cos(b) * t, np.sin(b) * t - np.cos(b) * out
         frames.append(np.stack([x, y, axis], axis=1))
-        feet.append(radius / np.cos(f) * out)
+        feet.append(radius / np.cos(f) * out + aside * axis)
     d = np.array([length, 0, 0]) + feet[0] - feet[1]
     at = s | {"one": frames[0], "other": frames[1], "d": d, "reach": R / np.cos(fleet)}
     found = k("feet", at)

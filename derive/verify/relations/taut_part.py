@@ -50,7 +50,8 @@ def _of_feet() -> list[Relation]:
         found = []
         for k, name in enumerate(("one", "other")):
             at = s["angle"][k] - mpmath.pi / 2
-            found.append(s["reach"][k] * (s[name][:, 0] * mpmath.cos(at) + s[name][:, 1] * mpmath.sin(at)))
+            across = s["reach"][k] * (s[name][:, 0] * mpmath.cos(at) + s[name][:, 1] * mpmath.sin(at))
+            found.append(across + s["aside"][k] * s[name][:, 2])
         return found
 
     def part(s: State) -> Any:

@@ -16,5 +16,5 @@ def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) 
     return {"d": size * direction / np.linalg.norm(direction), "angle": random.uniform(-3, 3, 2),
             "reach": random.choice([-1, 1], 2) * random.uniform(0.3, 0.6, 2),
             "R": random.choice([-1, 1], 2) * random.uniform(0.3, 0.6, 2),
-            "one": rotation(random, 3), "other": rotation(random, 3),
+            "aside": random.uniform(-0.3, 0.3, 2), "one": rotation(random, 3), "other": rotation(random, 3),
             "z_rate": random.normal(size=4), "p_rate": random.normal(size=9)}

@@ -37,7 +37,8 @@ enum {
 /* A run, in sections by subject, with the files that write them. */
 /* Why a rope has left what it runs over: its wrap angle; its normal force; in space the fleet angle of a short span;
  * the length of a span; something that holds to a span and reaches its first or its last end; a drum that has run
- * empty; without mass: it meets a sheave from its other side, or starts with unknown turns. */
+ * empty; without mass: it meets a sheave from its other side, or starts with unknown turns; in space it returns beside
+ * a groove, leaves it with a kink, or without mass starts on it at an unknown place. */
 enum {
     FU_LEFT_BY_WRAP,
     FU_LEFT_BY_PRESSURE,
@@ -49,7 +50,8 @@ enum {
     FU_LEFT_BY_SIDE,
     FU_LEFT_BY_TURNS,
     FU_LEFT_BESIDE,
-    FU_LEFT_BY_KINK
+    FU_LEFT_BY_KINK,
+    FU_LEFT_BY_PLACE
 };
 
 struct fu_run {

@@ -1,15 +1,18 @@
-/* Ropes without mass: a rope becomes slack or taut; a wrap leaves and returns, which changes its geometry alone; a rope
- * breaks loose on a sheave, where its tensions differ by more than friction holds, and sticks where sliding stops. A
- * run ends where a rope leaves a sheave with friction, meets one from the other side, has run off a drum, or where a
- * straight part becomes too short. */
+/* Ropes without mass: a rope becomes slack or taut; a wrap leaves and returns, which changes its geometry alone, but in
+ * space it may leave with a kink along the axis, and becomes shorter; a rope breaks loose on a sheave, where its
+ * tensions differ by more than friction holds, and sticks where sliding stops. A run ends where a rope leaves a sheave
+ * with friction, meets one from the other side or beside its groove, has run off a drum, or where a straight part
+ * becomes too short. */
 #include "couplings/common/coupling_events.h"
 #include "couplings/taut_rope/taut_rope.h"
+#include "equations/equations.h"
 #include "equations/run.h"
 #include "events/events.h"
 
 #include <math.h>
 
-#define MAX_CHANGES 1000 /* of points at one instant */
+#define MAX_CHANGES 1000       /* of points at one instant */
+#define ROUNDING_OF_DEPTH 1e-9 /* of the radius: by which a straight line touches a groove again as it leaves it */
 
 enum { OF_WRAP, OF_GRIP, OF_FLEET };
 enum { OF_TENSION, OF_PARTS };
@@ -67,12 +70,13 @@ static double value_of_grip(const fu_model *model, const fu_taut_point *point, c
 static double value_of_point(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
 {
     const fu_taut_point *point = point_of(coupling);
-    int side;
+    fu_taut_passage at;
     if (which == OF_GRIP) return is_sheave(point) && holds(point) ? value_of_grip(run->model, point, state) : -1.0;
     if (which == OF_FLEET) return -fu_taut_fleet_margin(run->model, point, state);
     if (!is_sheave(point)) return -fu_taut_store(run->model, point, state);
-    return fu_touches(point, state) ? fu_taut_wrap(run->model, point, state)
-                                    : fu_taut_depth(run->model, point, state, &side);
+    if (fu_touches(point, state)) return fu_taut_wrap(run->model, point, state);
+    fu_taut_pass(run->model, point, state, &at);
+    return at.depth;
 }
 
 /* Lets a rope slip on a sheave. */
@@ -97,29 +101,61 @@ static int act_of_grip(fu_run *run, const fu_taut_point *point, const char **wha
     return FU_RUNNING;
 }
 
+/* Lays a rope on a sheave that it passes. */
+static int touch(fu_run *run, const fu_taut_point *point, const char **what)
+{
+    fu_taut_passage at;
+    fu_taut_pass(run->model, point, &run->now, &at);
+    if (at.side < 0) return fu_leave(run, &point->base, FU_LEFT_BY_SIDE);
+    if (fabs(at.aside) > point->mouth) {
+        *what = "passed beside the groove";
+        return fu_leave(run, &point->base, FU_LEFT_BESIDE);
+    }
+    fu_taut_touch(point, &at, &run->now);
+    *what = fu_taut_aside(point, at.aside) == 0.0 ? "returned" : "returned beside the middle of the groove";
+    return FU_RUNNING;
+}
+
+/* Lets a rope leave a sheave as its wrap ends. With a kink along the axis it becomes shorter, and its straight line may
+ * be in the groove at another place. Waves take the energy of that, which a rope without mass does not have. */
+static int leave(fu_run *run, const fu_taut_point *point, const char **what)
+{
+    fu_taut_passage at;
+    if (holds(point)) return fu_leave(run, &point->base, FU_LEFT_BY_WRAP);
+    if (!point->in_space) {
+        fu_taut_leave(point, &run->now);
+        return FU_RUNNING;
+    }
+    if (fu_taut_kink(run->model, point, &run->now) > point->kink) {
+        *what = "left the groove along the axis";
+        return fu_leave(run, &point->base, FU_LEFT_BY_KINK);
+    }
+    const double stored = fu_elastic_energy(run->model, &run->now);
+    int status = FU_RUNNING;
+    fu_taut_leave(point, &run->now);
+    fu_taut_pass(run->model, point, &run->now, &at);
+    if (at.depth > ROUNDING_OF_DEPTH * fabs(point->radius)) {
+        status = touch(run, point, what);
+        if (status == FU_RUNNING) *what = "moved along the groove";
+    }
+    fu_taut_recount(run->model, point, &run->now);
+    run->dissipated += stored - fu_elastic_energy(run->model, &run->now);
+    return status;
+}
+
 static int act_of_point(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
 {
     const fu_taut_point *point = point_of(coupling);
-    int *touches = run->now.flags + coupling->flags + FU_TOUCHES, from_side = 1;
     (void)side;
     if (which == OF_GRIP) return act_of_grip(run, point, what);
     if (which == OF_FLEET) {
         *what = "slides along the groove";
         return fu_leave(run, coupling, FU_LEFT_BY_FLEET);
     }
-    *what = !is_sheave(point) ? "ran empty" : *touches ? "left the sheave" : "returned";
+    const int touches = fu_touches(point, &run->now);
+    *what = !is_sheave(point) ? "ran empty" : touches ? "left the sheave" : "returned";
     if (!is_sheave(point)) return fu_leave(run, coupling, FU_LEFT_BY_EMPTY);
-    if (*touches && (holds(point) || point->in_space)) return fu_leave(run, coupling, FU_LEFT_BY_WRAP);
-    if (!*touches) fu_taut_depth(run->model, point, &run->now, &from_side);
-    if (from_side < 0) return fu_leave(run, coupling, FU_LEFT_BY_SIDE);
-    *touches = !*touches;
-    if (*touches) { /* its angle is that of the straight part which met it */
-        const fu_taut_rope *rope = (const fu_taut_rope *)run->model->couplings[point->ropes[0]];
-        const int before = fu_touched_before(run->model, rope, &run->now, point->places[0]);
-        run->now.numbers[coupling->numbers] =
-            run->now.numbers[fu_taut_point_of(run->model, rope, before)->base.numbers];
-    }
-    return FU_RUNNING;
+    return touches ? leave(run, point, what) : touch(run, point, what);
 }
 
 static int begin_point(fu_run *run, const fu_coupling *coupling)
@@ -129,7 +165,9 @@ static int begin_point(fu_run *run, const fu_coupling *coupling)
     if (point_of(coupling)->in_space && value_of_point(run, coupling, &run->now, OF_FLEET) > 0.0)
         return fu_leave(run, coupling, FU_LEFT_BY_FLEET);
     if (value_of_point(run, coupling, &run->now, OF_WRAP) <= 0.0) return FU_RUNNING;
-    return act_of_point(run, coupling, OF_WRAP, 1, &what);
+    const int status = act_of_point(run, coupling, OF_WRAP, 1, &what);
+    const int is_aside = run->now.numbers[coupling->numbers + FU_ASIDE] != 0.0;
+    return status == FU_RUNNING && is_aside ? fu_leave(run, coupling, FU_LEFT_BY_PLACE) : status;
 }
 
 const fu_coupling_events fu_taut_point_events = {.functions = functions_of_point,

@@ -37,7 +37,9 @@ ROPE_LEFT = (
     ('a rope returns to sheave "{name}" and passes beside its groove, by more than half of groove_width,',
      "guide the rope, give a greater groove_width, or stop before by an event"),
     ('a rope leaves the groove of sheave "{name}" along its axis, with a kink above max_fleet_angle,',
-     "turn the axis, give a greater max_fleet_angle, or stop before by an event"))
+     "turn the axis, give a greater max_fleet_angle, or stop before by an event"),
+    ('a rope without mass is on sheave "{name}" at the start, beside the middle of its groove: where it lies along the '
+     "axis is not known,", "draw the scene at this start, or resume the run that it is from"))
 """Why a run with a rope ended, and what helps, by the reasons of engine/equations/run.h."""
 EMPTY = 6
 """The reason of a drum."""

@@ -93,6 +93,9 @@ def off_sheaves(model: Model, engine: Engine) -> str:
         for k, point in enumerate(points):
             if numbers["touches"][k] and not numbers["wrap_angle"][k] >= -ANGLE_ROUNDING:
                 return f'the rope leaves sheave "{point.name}"'
+            if numbers["touches"][k] and numbers["aside"][k]:
+                return (f'the rope comes onto sheave "{point.name}" beside the middle of its groove, so that its place '
+                        "along the axis is not known")
     for span in model.spans:
         if q[span.span_s[1]] - q[span.span_s[0]] < span.least_length:
             return f'a span of rope "{span.name}" becomes too short to be modelled'

@@ -70,12 +70,12 @@ def swinging_atwood() -> Found:
     return found
 
 
-def peg() -> Found:
-    """A pendulum whose rope meets a peg, leaves it and returns."""
+def peg(**given: object) -> Found:
+    """A pendulum whose rope meets a peg, leaves it and returns; given: of the rope."""
     scene = fu.Scene(gravity=(0, -GRAVITY, 0))
     weight(scene, "load", 1.0, -2 * sin(0.7), -2 * cos(0.7))
     scene.rope("rope", route=[fu.Anchor(at=(0, 0, 0)), fu.Sheave("peg", at=(0.3, -1, 0), radius=0.1, side="left"),
-                              fu.Anchor("load")], tension=5.0, **rope())
+                              fu.Anchor("load")], tension=5.0, **rope(), **given)
     run = scene.run(6.0, output_step=1.0, tol=1e-6, integrator="radau", progress=False)
     times = [each["time"] for each in run.report["events"]]
     found = dict(zip(("wrap returns", "wrap is lost", "wrap returns again"), times, strict=False))

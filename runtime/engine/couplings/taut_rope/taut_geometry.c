@@ -111,6 +111,8 @@ static void find_part(const fu_model *model, const fu_taut_rope *rope, const fu_
         const double near[SIDES] = {state->numbers[start->base.numbers], state->numbers[end->base.numbers + 1]};
         out->feet.radius[0] = start->radius;
         out->feet.radius[1] = end->radius;
+        out->feet.aside[0] = state->numbers[start->base.numbers + FU_ASIDE];
+        out->feet.aside[1] = state->numbers[end->base.numbers + FU_ASIDE];
         out->feet.way_share[0] = first ? fu_taut_share_of_end(model, rope, 0) : 0.0;
         out->feet.way_share[1] = last ? fu_taut_share_of_end(model, rope, 1) : 0.0;
         fu_taut_part_in_space(rope->part, one, other, near, out);
@@ -268,6 +270,12 @@ double fu_taut_length_to(const fu_model *model, const fu_taut_rope *rope, const 
             double along = 0.0, along_rate = 0.0;
             fu_taut_centre(model, fu_taut_point_of(model, rope, from), state, &start);
             fu_taut_centre(model, fu_taut_point_of(model, rope, place), state, &centre);
+            if (rope->part) {
+                along = fu_taut_along(&part, &start, &centre, &along_rate);
+                length += along;
+                *rate += along_rate;
+                break;
+            }
             for (int d = 0; d < DIM; ++d) {
                 along += part.u[d] * (centre.p[d] - start.p[d]);
                 along_rate += part.u[d] * (centre.v[d] - start.v[d]);

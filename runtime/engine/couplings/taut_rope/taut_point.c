@@ -9,6 +9,7 @@
 
 #define ROUNDING_OF_FORCE 1e-12   /* of EA: a slack rope needs no friction */
 #define ROUNDING_OF_TENSION 1e-10 /* of both tensions: excess at which a rope breaks loose */
+#define ROUNDING_OF_PLACE 1e-9    /* of the radius: place along the axis that is none */
 
 enum { DIM = 2, SPACE = 3, SIDES = 2 };
 
@@ -66,25 +67,57 @@ double fu_taut_wrap(const fu_model *model, const fu_taut_point *point, const fu_
     return -wrap_of(point, &at);
 }
 
-double fu_taut_depth(const fu_model *model, const fu_taut_point *point, const fu_state *state, int *side)
+void fu_taut_pass(const fu_model *model, const fu_taut_point *point, const fu_state *state, fu_taut_passage *out)
 {
     const fu_taut_rope *rope = fu_taut_beside(model, point, 0);
     surroundings at;
     fu_attachment_state centre, start;
-    *side = 1;
-    if (point->in_space) return -INFINITY; /* a rope in space touches all of its sheaves */
     find_parts(model, point, state, &at);
     const fu_taut_part *part = &at.part[0];
     const fu_taut_point *first = fu_taut_point_of(model, rope, part->from);
     fu_taut_centre(model, point, state, &centre);
     fu_taut_centre(model, first, state, &start);
+    if (point->in_space) {
+        fu_taut_pass_in_space(part, &start, &centre, point->radius, out);
+        return;
+    }
     /* the part begins to the right of its first centre by the radius there, with its sense */
     const double x = centre.p[0] - start.p[0] - first->radius * part->u[1];
     const double y = centre.p[1] - start.p[1] + first->radius * part->u[0];
     const double along = part->u[0] * x + part->u[1] * y, across = part->u[0] * y - part->u[1] * x;
     const double beyond = along < 0.0 ? along : along > part->l ? along - part->l : 0.0;
-    *side = across * sense_of(point) < 0.0 ? -1 : 1;
-    return fabs(point->radius) - hypot(across, beyond);
+    *out = (fu_taut_passage){.depth = fabs(point->radius) - hypot(across, beyond),
+                             .angle = state->numbers[first->base.numbers],
+                             .side = across * sense_of(point) < 0.0 ? -1 : 1};
+}
+
+double fu_taut_aside(const fu_taut_point *point, double aside)
+{
+    return fabs(aside) > ROUNDING_OF_PLACE * fabs(point->radius) ? aside : 0.0;
+}
+
+/* The angle of a rope on the sheave is that of the straight part which met it. */
+void fu_taut_touch(const fu_taut_point *point, const fu_taut_passage *at, fu_state *state)
+{
+    double *numbers = state->numbers + point->base.numbers;
+    state->flags[point->base.flags + FU_TOUCHES] = 1;
+    numbers[0] = at->angle;
+    if (!point->in_space) return;
+    numbers[1] = at->angle;
+    numbers[FU_ASIDE] = fu_taut_aside(point, at->aside);
+}
+
+void fu_taut_leave(const fu_taut_point *point, fu_state *state)
+{
+    state->flags[point->base.flags + FU_TOUCHES] = 0;
+    state->numbers[point->base.numbers + FU_ASIDE] = 0.0;
+}
+
+double fu_taut_kink(const fu_model *model, const fu_taut_point *point, const fu_state *state)
+{
+    surroundings at;
+    find_parts(model, point, state, &at);
+    return fabs(at.part[0].fleet[1] + at.part[1].fleet[0]);
 }
 
 double fu_taut_fleet_margin(const fu_model *model, const fu_taut_point *point, const fu_state *state)
@@ -93,7 +126,7 @@ double fu_taut_fleet_margin(const fu_model *model, const fu_taut_point *point, c
     surroundings at;
     find_parts(model, point, state, &at);
     for (int side = 0; side < SIDES; ++side)
-        if (at.has[side]) least = fmin(least, fu_taut_margin_of_fleet(&at.part[side], !side));
+        if (at.has[side] && at.touches) least = fmin(least, fu_taut_margin_of_fleet(&at.part[side], !side));
     return least;
 }
 
@@ -253,7 +286,7 @@ static void drive(const fu_model *model, const fu_coupling *coupling, double t, 
 
 typedef struct {
     double tension_on, tension_off, wrap_angle, force[3], material_speed, normal_force, torque, drive, power,
-        length_in_store, angle, angle_on, angle_off, touches, slip, slip_angle, fleet_angle_on, fleet_angle_off;
+        length_in_store, angle, angle_on, angle_off, touches, slip, slip_angle, fleet_angle_on, fleet_angle_off, aside;
 } point_output;
 
 /* Returns the stress-free length a second that passes a point in the rope's order: of a wheel that holds the rope, the
@@ -287,7 +320,9 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     double on_wheel = 0.0;
     (void)work;
     look(model, point, state, &at);
-    *numbers = (point_output){.touches = at.touches, .wrap_angle = wrap_of(point, &at)};
+    *numbers = (point_output){.touches = at.touches,
+                              .wrap_angle = wrap_of(point, &at),
+                              .aside = state->numbers[coupling->numbers + FU_ASIDE]};
     numbers->slip = fu_taut_slip(model, point, state);
     numbers->slip_angle = fu_taut_slips(point, state) ? numbers->wrap_angle : 0.0;
     for (int side = 0; side < SIDES; ++side) {
@@ -296,8 +331,8 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
         double pull[SPACE] = {0.0};
         *(side ? &numbers->tension_off : &numbers->tension_on) = tension;
         *(side ? &numbers->angle_off : &numbers->angle_on) = at.part[side].angle[!side];
-        *(side ? &numbers->fleet_angle_off : &numbers->fleet_angle_on) = at.part[side].fleet[!side];
         if (at.has[!side] && !at.touches) continue;
+        *(side ? &numbers->fleet_angle_off : &numbers->fleet_angle_on) = at.part[side].fleet[!side];
         fu_taut_pull(&at.part[side], pull);
         for (int d = 0; d < model->dim; ++d) numbers->force[d] += (side ? tension : -tension) * pull[d];
         const int holds = side ? point->places[1] == 0 : point->places[0] == at.rope[0]->n_points - 1;
@@ -327,14 +362,14 @@ static void detect(const fu_model *model, const fu_coupling *coupling, fu_state 
 {
     const fu_taut_point *point = point_of(coupling);
     const fu_taut_rope *rope = fu_taut_beside(model, point, 0);
-    int *touches = state->flags + coupling->flags + FU_TOUCHES, side = 1;
-    if (!rope || rope->part || point->places[0] == rope->n_points - 1) return;
-    if (*touches) *touches = fu_taut_wrap(model, point, state) <= 0.0;
-    else if (fu_taut_depth(model, point, state, &side) > 0.0) {
-        const int before = fu_touched_before(model, rope, state, point->places[0]);
-        state->numbers[coupling->numbers] = state->numbers[fu_taut_point_of(model, rope, before)->base.numbers];
-        *touches = side > 0;
+    if (!rope || point->places[0] == rope->n_points - 1) return;
+    if (fu_touches(point, state)) {
+        if (!(fu_taut_wrap(model, point, state) <= 0.0)) fu_taut_leave(point, state);
+        return;
     }
+    fu_taut_passage at;
+    fu_taut_pass(model, point, state, &at);
+    if (at.depth > 0.0 && at.side > 0 && fabs(at.aside) <= point->mouth) fu_taut_touch(point, &at, state);
 }
 
 static void reset(const fu_coupling *coupling, fu_state *state)
@@ -342,6 +377,7 @@ static void reset(const fu_coupling *coupling, fu_state *state)
     const fu_taut_point *point = point_of(coupling);
     state->numbers[coupling->numbers] = point->angle;
     state->numbers[coupling->numbers + 1] = point->carrier;
+    state->numbers[coupling->numbers + FU_ASIDE] = 0.0;
     state->flags[coupling->flags + FU_TOUCHES] = point->touches;
     state->flags[coupling->flags + FU_SLIPS] = 0;
 }
@@ -367,6 +403,8 @@ static const fu_field fields[] = {
     FU_FIELD(fu_taut_point, angle, FU_REAL, 0),
     FU_FIELD(fu_taut_point, carrier, FU_REAL, 0),
     FU_FIELD(fu_taut_point, closing, FU_REAL, 0),
+    FU_FIELD(fu_taut_point, mouth, FU_REAL, 0),
+    FU_FIELD(fu_taut_point, kink, FU_REAL, 0),
     FU_FIELD(fu_taut_point, touches, FU_INTEGER, 0),
     FU_FIELD(fu_taut_point, in_space, FU_INTEGER, 0),
     {0},
@@ -391,6 +429,7 @@ static const fu_output output_fields[] = {
     FU_OUTPUT(point_output, slip_angle, "rad", NULL),
     FU_OUTPUT(point_output, fleet_angle_on, "rad", NULL),
     FU_OUTPUT(point_output, fleet_angle_off, "rad", NULL),
+    FU_OUTPUT(point_output, aside, "m", NULL),
     FU_LAST_OUTPUT(point_output),
 };
 
@@ -404,7 +443,7 @@ const fu_coupling_type fu_taut_point_type = {
     .size = sizeof(fu_taut_point),
     .fields = fields,
     .output_fields = output_fields,
-    .n_numbers = 2,
+    .n_numbers = FU_POINT_NUMBERS,
     .n_flags = FU_POINT_FLAGS,
     .inertia = &inertia,
     .supply = &supply,

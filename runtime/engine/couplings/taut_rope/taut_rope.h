@@ -12,6 +12,7 @@
 
 enum { FU_DRAWN, FU_WAY, FU_LENGTHS }; /* of a rope: its drawn length, and the way of its ends onto wheels */
 enum { FU_TOUCHES, FU_SLIPS, FU_POINT_FLAGS };
+enum { FU_ASIDE = 2, FU_POINT_NUMBERS };
 
 #define FU_MAX_PIECES 128 /* ropes of one tension of a rope */
 
@@ -19,8 +20,9 @@ enum { FU_TOUCHES, FU_SLIPS, FU_POINT_FLAGS };
 enum { FU_FEET = 4, FU_PART_PLACES = 9 };
 
 /* A point. Its numbers in a state are the angles of the straight part after it and of what carries it, in space those
- * of the parts after and before it in its groove, counted over turns; its flags are whether the rope touches it, and
- * the direction in which the rope slips on it: 1 in its order, -1 against it, 0 where it sticks. */
+ * of the parts after and before it in its groove, counted over turns; and in space the place of the wrap along the
+ * axis, m, which is that where the rope has touched it. Its flags are whether the rope touches it, and the direction in
+ * which the rope slips on it: 1 in its order, -1 against it, 0 where it sticks. */
 typedef struct {
     fu_coupling base;
     fu_attachment attachments[1]; /* the centre */
@@ -34,6 +36,7 @@ typedef struct {
     int ropes[2], places[2];      /* before and after it: numbers of the ropes, -1 for none; its places in them */
     double angle, carrier;        /* rad: its two numbers as drawn */
     double closing;               /* rad: by which the angles of parts grow along a closed rope, at its first point */
+    double mouth, kink;           /* of a sheave: half the width of its groove, m; rad: with which a rope leaves it */
     int touches;                  /* as drawn */
     int in_space;
 } fu_taut_point;
@@ -60,12 +63,14 @@ typedef struct {
 
 extern const fu_coupling_type fu_taut_point_type, fu_taut_rope_type;
 
-/* A straight part in space beside its length and direction: radii with senses, frames and places of both feet, change
- * of the centres and angular velocities, rates of the feet; derivatives of the feet, of the length with the shares of
- * both angles, and of its contributions to drawn length and way, by the places; the factors of the conditions. */
+/* A straight part in space beside its length and direction: radii with senses, places along the axes, frames, distances
+ * from the axes and places of both feet from their centres, change of the centres and angular velocities, rates of the
+ * feet; derivatives of the feet, of the length with the shares of both angles, and of its contributions to drawn length
+ * and way, by the places; the factors of the conditions. */
 typedef struct {
-    double radius[2], frame[2][9], reach[2], d[3], rate[FU_PART_PLACES], z_rate[FU_FEET], z_p[FU_FEET * FU_PART_PLACES],
-        whole[FU_PART_PLACES], by[FU_LENGTHS][FU_PART_PLACES], factors[FU_FEET * FU_FEET];
+    double radius[2], aside[2], frame[2][9], reach[2], foot[2][3], d[3], rate[FU_PART_PLACES], z_rate[FU_FEET],
+        z_p[FU_FEET * FU_PART_PLACES], whole[FU_PART_PLACES], by[FU_LENGTHS][FU_PART_PLACES],
+        factors[FU_FEET * FU_FEET];
     double way_share[2]; /* of both angles in the way */
     int pivot[FU_FEET];
 } fu_taut_feet;
@@ -141,10 +146,23 @@ void fu_taut_walk(const fu_model *model, const fu_taut_rope *rope, const fu_stat
 void fu_taut_lengths_at(const fu_model *model, const fu_taut_rope *rope, const fu_state *state, fu_taut_lengths *out);
 /* Computes the force of a part on its second point, of a unit of tension; its opposite acts on the first. */
 void fu_taut_pull(const fu_taut_part *part, double pull[3]);
-/* In space (taut_space.c). Computes what a straight part has between these states of its points, the radii and shares
- * of which are given, with angles near those given; not a number where there is none. */
+/* A sheave that a straight part passes: by how much the part cuts its groove, m, its place there along the axis, m, and
+ * its angle; side: 1 where it passes on the side to which it would turn, else -1. */
+typedef struct {
+    double depth, aside, angle;
+    int side;
+} fu_taut_passage;
+
+/* In space (taut_space.c). Computes what a straight part has between these states of its points, the radii, shares and
+ * places along the axes of which are given, with angles near those given; not a number where there is none. */
 void fu_taut_part_in_space(const fu_taut_part_kernels *kernel, const fu_attachment_state *one,
                            const fu_attachment_state *other, const double near[2], fu_taut_part *out);
+/* Computes how a part passes a groove of a radius with sense; first: the state of its first point. */
+void fu_taut_pass_in_space(const fu_taut_part *part, const fu_attachment_state *first,
+                           const fu_attachment_state *groove, double radius, fu_taut_passage *out);
+/* Returns the length of a part from its first foot to the point next to the centre of a groove, m, and its rate. */
+double fu_taut_along(const fu_taut_part *part, const fu_attachment_state *first, const fu_attachment_state *groove,
+                     double *rate);
 /* Returns by how much a part exceeds the length at which it would slide along the groove at an end, m. */
 double fu_taut_margin_of_fleet(const fu_taut_part *part, int end);
 /* Returns the moment of a part on one of its points, of a unit of tension. */
@@ -205,12 +223,22 @@ void fu_taut_set_taut(const fu_model *model, const fu_taut_rope *rope, fu_state 
 void fu_taut_find_taut(const fu_model *model, const fu_taut_rope *rope, fu_state *state);
 void fu_taut_redirect(const fu_model *model, const fu_taut_rope *rope, fu_state *state);
 
-/* Event functions (events/taut_rope.c): of a point, the angle of its wrap, rad, positive beyond its end; the depth of a
- * straight rope in a sheave that it does not touch, m; of friction, the difference of both elastic tensions less the
- * limit, N; of a drum, the length in store, m. Of a rope, by how far it is slack, and the length of its shortest part
- * above the least one, m. */
+/* Computes how a straight rope passes a sheave that it does not touch. */
+void fu_taut_pass(const fu_model *model, const fu_taut_point *point, const fu_state *state, fu_taut_passage *out);
+/* Lays a rope on a sheave that it passes; lays it off one, which leaves it straight. */
+void fu_taut_touch(const fu_taut_point *point, const fu_taut_passage *at, fu_state *state);
+void fu_taut_leave(const fu_taut_point *point, fu_state *state);
+/* Returns the angle of the kink along the axis that a rope has on a sheave as its wrap ends, rad. */
+double fu_taut_kink(const fu_model *model, const fu_taut_point *point, const fu_state *state);
+/* Returns the place along the axis that a rope has as it touches a groove there, m: 0 within rounding. */
+double fu_taut_aside(const fu_taut_point *point, double aside);
+/* Counts all ropes from a state whose lengths have changed at once, and finds whether that of a point is taut. */
+void fu_taut_recount(const fu_model *model, const fu_taut_point *point, fu_state *state);
+
+/* Event functions (events/taut_rope.c): of a point, the angle of its wrap, rad, positive beyond its end; of friction,
+ * the difference of both elastic tensions less the limit, N; of a drum, the length in store, m. Of a rope, by how far
+ * it is slack, and the length of its shortest part above the least one, m. */
 double fu_taut_wrap(const fu_model *model, const fu_taut_point *point, const fu_state *state);
-double fu_taut_depth(const fu_model *model, const fu_taut_point *point, const fu_state *state, int *side);
 double fu_taut_grip(const fu_model *model, const fu_taut_point *point, const fu_state *state);
 /* Returns whether friction holds a rope on a point, by more than rounding. */
 int fu_taut_is_held(const fu_model *model, const fu_taut_point *point, const fu_state *state);
@@ -219,7 +247,8 @@ int fu_taut_pulled(const fu_model *model, const fu_taut_point *point, const fu_s
 double fu_taut_store(const fu_model *model, const fu_taut_point *point, const fu_state *state);
 double fu_taut_slack(const fu_model *model, const fu_taut_rope *rope, const fu_state *state);
 double fu_taut_margin(const fu_model *model, const fu_taut_rope *rope, const fu_state *state);
-/* Returns by how much the parts beside a point exceed the length at which they would slide along its groove, m. */
+/* Returns by how much the parts beside a point that the rope touches exceed the length at which they would slide along
+ * its groove, m. */
 double fu_taut_fleet_margin(const fu_model *model, const fu_taut_point *point, const fu_state *state);
 
 #endif

@@ -13,13 +13,21 @@
 
 enum { DIM = 3, SIDES = 2, COLUMNS = FU_PART_PLACES, ANGLE = 0, REACH = 1, OF_FOOT = 2 };
 
-/* The foot on the groove of a radius with sense, and of a frame, of the part that leads to a place (way 1) or comes
- * from there (-1); arm: from the centre to the place. It starts the iteration. Not a number where there is none. */
-static void start_foot(double radius, const double *frame, const double arm[DIM], int way, double foot[OF_FOOT])
+/* Computes the components of a vector in the axes of a groove. */
+static void in_groove(const double *frame, const double v[DIM], double out[DIM])
 {
-    double along[DIM] = {0.0};
-    for (int k = 0; k < DIM; ++k)
-        for (int d = 0; d < DIM; ++d) along[k] += frame[d * DIM + k] * arm[d];
+    for (int k = 0; k < DIM; ++k) out[k] = frame[k] * v[0] + frame[DIM + k] * v[1] + frame[2 * DIM + k] * v[2];
+}
+
+/* The foot on the groove of a radius with sense, and of a frame, of the part that leads to a place (way 1) or comes
+ * from there (-1); arm: from the centre to the place; aside: of the wrap. It starts the iteration. Not a number where
+ * there is none. */
+static void start_foot(double radius, const double *frame, const double arm[DIM], double aside, int way,
+                       double foot[OF_FOOT])
+{
+    double along[DIM];
+    in_groove(frame, arm, along);
+    along[2] -= aside;
     const double sense = radius < 0.0 ? -1.0 : 1.0, square = along[0] * along[0] + along[1] * along[1];
     const double beyond = square - radius * radius, lift = 2.0 * radius * along[2];
     const double root = beyond > 0.0 ? sqrt(beyond * beyond - lift * lift) : NAN;
@@ -29,10 +37,11 @@ static void start_foot(double radius, const double *frame, const double arm[DIM]
 }
 
 /* Computes the place of a foot from its centre. */
-static void place_foot(const double *frame, const double foot[OF_FOOT], double out[DIM])
+static void place_foot(const double *frame, const double foot[OF_FOOT], double aside, double out[DIM])
 {
     for (int d = 0; d < DIM; ++d)
-        out[d] = foot[REACH] * (sin(foot[ANGLE]) * frame[d * DIM] - cos(foot[ANGLE]) * frame[d * DIM + 1]);
+        out[d] = foot[REACH] * (sin(foot[ANGLE]) * frame[d * DIM] - cos(foot[ANGLE]) * frame[d * DIM + 1]) +
+                 aside * frame[d * DIM + 2];
 }
 
 /* Computes feet from which Newton's iteration starts: exact for a part to an anchor. */
@@ -45,8 +54,8 @@ static void start(const fu_taut_feet *of, double z[FU_FEET])
             double arm[DIM], *foot = z + OF_FOOT * end;
             if (of->radius[end] == 0.0) continue;
             for (int d = 0; d < DIM; ++d) arm[d] = (end ? -of->d[d] : of->d[d]) + place[!end][d];
-            start_foot(of->radius[end], of->frame[end], arm, end ? -1 : 1, foot);
-            place_foot(of->frame[end], foot, place[end]);
+            start_foot(of->radius[end], of->frame[end], arm, of->aside[end], end ? -1 : 1, foot);
+            place_foot(of->frame[end], foot, of->aside[end], place[end]);
         }
 }
 
@@ -62,8 +71,8 @@ static void evaluate(const fu_taut_part_kernels *kernel, fu_taut_feet *of, const
                      double u[DIM], double F_z[FU_FEET])
 {
     const double angle[SIDES] = {z[0], z[2]}, reach[SIDES] = {z[1], z[3]};
-    double places[SIDES * DIM];
-    kernel->feet(of->d, angle, reach, of->frame[0], of->frame[1], of->radius, l, u, places, F_z, of->factors);
+    kernel->feet(of->d, angle, reach, of->aside, of->frame[0], of->frame[1], of->radius, l, u, &of->foot[0][0], F_z,
+                 of->factors);
     omit_anchors(of, 1, F_z);
     omit_anchors(of, FU_FEET, of->factors);
     for (int k = 0; k < FU_FEET; ++k)
@@ -97,7 +106,7 @@ static void solve(const fu_taut_part_kernels *kernel, fu_taut_feet *of, double z
 static void differentiate(const fu_taut_part_kernels *kernel, const double z[FU_FEET], fu_taut_feet *of)
 {
     const double angle[SIDES] = {z[0], z[2]}, reach[SIDES] = {z[1], z[3]};
-    kernel->moves(of->d, angle, reach, of->frame[0], of->frame[1], of->whole, of->z_p);
+    kernel->moves(of->d, angle, reach, of->aside, of->frame[0], of->frame[1], of->whole, of->z_p);
     omit_anchors(of, COLUMNS, of->z_p);
     for (int j = 0; j < COLUMNS; ++j) {
         double column[FU_FEET];
@@ -153,8 +162,9 @@ void fu_taut_second(const fu_taut_rope *rope, const fu_taut_part *part, double *
 {
     const fu_taut_feet *of = &part->feet;
     double Q_z[FU_FEET * FU_FEET], Q_p[FU_FEET * COLUMNS], whole[COLUMNS], F_zp[FU_FEET * COLUMNS];
-    rope->part->moves(of->d, part->angle, of->reach, of->frame[0], of->frame[1], whole, F_zp);
-    rope->part->tangent(of->d, part->angle, of->reach, of->frame[0], of->frame[1], of->z_rate, of->rate, K, Q_z, Q_p);
+    rope->part->moves(of->d, part->angle, of->reach, of->aside, of->frame[0], of->frame[1], whole, F_zp);
+    rope->part->tangent(of->d, part->angle, of->reach, of->aside, of->frame[0], of->frame[1], of->z_rate, of->rate, K,
+                        Q_z, Q_p);
     omit_anchors(of, COLUMNS, F_zp);
     for (int i = 0; i < COLUMNS; ++i)
         for (int j = 0; j < COLUMNS; ++j)
@@ -179,4 +189,48 @@ double fu_taut_margin_of_fleet(const fu_taut_part *part, int end)
 {
     const double fleet = fabs(part->fleet[end]);
     return part->l * cos(fleet) - FLEET_RESERVE * fabs(part->feet.radius[end]) * tan(fleet);
+}
+
+void fu_taut_pass_in_space(const fu_taut_part *part, const fu_attachment_state *first,
+                           const fu_attachment_state *groove, double radius, fu_taut_passage *out)
+{
+    double from[DIM], start[DIM], along[DIM];
+    for (int d = 0; d < DIM; ++d) from[d] = first->p[d] + part->feet.foot[0][d] - groove->p[d];
+    in_groove(groove->A, from, start);
+    in_groove(groove->A, part->u, along);
+    const double cosine = hypot(along[0], along[1]);
+    /* in the plane of the groove: the part has the direction `along` over the cosine */
+    const double way = -(along[0] * start[0] + along[1] * start[1]) / cosine, last = part->l * cosine;
+    const double across = (along[1] * start[0] - along[0] * start[1]) / cosine;
+    const double beyond = way < 0.0 ? way : way > last ? way - last : 0.0;
+    out->depth = fabs(radius) / cosine - hypot(across, beyond);
+    out->aside = start[2] + (way - beyond) / cosine * along[2];
+    out->angle = atan2(along[1], along[0]);
+    out->side = across * radius < 0.0 ? -1 : 1;
+}
+
+double fu_taut_along(const fu_taut_part *part, const fu_attachment_state *first, const fu_attachment_state *groove,
+                     double *rate)
+{
+    const fu_taut_feet *of = &part->feet;
+    double feet[SIDES][DIM], to[DIM], to_rate[DIM], between[DIM];
+    for (int end = 0; end < SIDES; ++end) {
+        const double *A = of->frame[end], *omega = of->rate + DIM * (1 + end);
+        const double cosine = cos(part->angle[end]), sine = sin(part->angle[end]);
+        const double turning = of->z_rate[OF_FOOT * end], reaching = of->z_rate[OF_FOOT * end + REACH];
+        for (int d = 0; d < DIM; ++d) {
+            const int e = (d + 1) % DIM, g = (d + 2) % DIM;
+            feet[end][d] = omega[e] * of->foot[end][g] - omega[g] * of->foot[end][e] +
+                           (reaching * sine + of->reach[end] * turning * cosine) * A[d * DIM] -
+                           (reaching * cosine - of->reach[end] * turning * sine) * A[d * DIM + 1];
+        }
+    }
+    for (int d = 0; d < DIM; ++d) {
+        to[d] = groove->p[d] - first->p[d] - of->foot[0][d];
+        to_rate[d] = groove->v[d] - first->v[d] - feet[0][d];
+        between[d] = of->rate[d] + feet[1][d] - feet[0][d];
+    }
+    const double along = fu_dot(DIM, part->u, to), growth = fu_dot(DIM, part->u, between);
+    *rate = fu_dot(DIM, part->u, to_rate) + (fu_dot(DIM, between, to) - growth * along) / part->l;
+    return along;
 }
