@@ -2037,6 +2037,18 @@ typedef void fu_taut_part_tangent_kernel(const fu_real *d, const fu_real *angle,
 /* d 3, angle 2, reach 2, aside 2, one 3x3, other 3x3, z_rate 4, p_rate 9, F_pp 9x9, Q_z 4x4, Q_p 4x9 */
 fu_taut_part_tangent_kernel taut_part_tangent;
 
+typedef void fu_taut_part_spin_kernel(fu_real inertia, const fu_real *axis, const fu_real *omega, fu_real own, fu_real acc, fu_real *E, fu_real *force, fu_real *moment);
+/* wheel that spins about an axis which turns: inertia [kg m^2]; axis [1]; omega [rad/s]; own [rad/s]; acc [rad/s^2]
+ * -> E [J]; force [N m]; moment [N m] */
+/* axis 3, omega 3, E 1, force 1, moment 3 */
+fu_taut_part_spin_kernel taut_part_spin;
+
+typedef void fu_taut_part_spin_tangent_kernel(fu_real inertia, const fu_real *axis, const fu_real *omega, fu_real own, fu_real acc, fu_real *K);
+/* derivatives of the moment of a wheel that spins: inertia [kg m^2]; axis [1]; omega [rad/s]; own [rad/s]; acc
+ * [rad/s^2] -> K [N m, N m s] */
+/* axis 3, omega 3, K 3x7 */
+fu_taut_part_spin_tangent_kernel taut_part_spin_tangent;
+
 typedef void fu_taut_rope_straight_kernel(const fu_real *d, fu_real rise, fu_real *l, fu_real *u, fu_real *l_d, fu_real *b_d);
 /* straight part of a rope without mass: d [m]; rise [m] -> l [m]; u [1]; l_d [1]; b_d [1/m] */
 /* d 2, l 1, u 2, l_d 2, b_d 2 */
@@ -2533,6 +2545,8 @@ typedef struct {
     fu_taut_part_feet_kernel *feet;
     fu_taut_part_moves_kernel *moves;
     fu_taut_part_tangent_kernel *tangent;
+    fu_taut_part_spin_kernel *spin;
+    fu_taut_part_spin_tangent_kernel *spin_tangent;
 } fu_taut_part_kernels;
 
 /* What the engine needs of a taut_rope. */

@@ -337,7 +337,7 @@ static const fu_tangent_point_kernels tangent_points[] = {
 };
 
 static const fu_taut_part_kernels taut_parts[] = {
-    {"taut_part", 3, taut_part_feet, taut_part_moves, taut_part_tangent},
+    {"taut_part", 3, taut_part_feet, taut_part_moves, taut_part_tangent, taut_part_spin, taut_part_spin_tangent},
 };
 
 static const fu_taut_rope_kernels taut_ropes[] = {
@@ -487,6 +487,8 @@ static const fu_taut_rope_kernels taut_ropes[] = {
 #define FU_ARGUMENTS_sssvsssvvvvvv_5 *a[0], *a[1], *a[2], a[3], *a[4], *a[5], *a[6], a[7], a[8], a[9], a[10], a[11], a[12], out[0], out[1], out[2], out[3], out[4]
 #define FU_ARGUMENTS_svvss_2 *a[0], a[1], a[2], *a[3], *a[4], out[0], out[1]
 #define FU_ARGUMENTS_vvvvvvv_5 a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1], out[2], out[3], out[4]
+#define FU_ARGUMENTS_svvss_3 *a[0], a[1], a[2], *a[3], *a[4], out[0], out[1], out[2]
+#define FU_ARGUMENTS_svvss_1 *a[0], a[1], a[2], *a[3], *a[4], out[0]
 #define FU_ARGUMENTS_vs_4 a[0], *a[1], out[0], out[1], out[2], out[3]
 #define FU_ARGUMENTS_vvs_1 a[0], a[1], *a[2], out[0]
 #define FU_ARGUMENTS_vvssv_1 a[0], a[1], *a[2], *a[3], a[4], out[0]
@@ -1190,6 +1192,8 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(taut_part_feet, vvvvvvv_5) \
     X(taut_part_moves, vvvvvv_2) \
     X(taut_part_tangent, vvvvvvvv_3) \
+    X(taut_part_spin, svvss_3) \
+    X(taut_part_spin_tangent, svvss_1) \
     X(planar_taut_rope_straight, vs_4) \
     X(planar_taut_rope_straight_tangent, vvs_1) \
     X(planar_taut_rope_free_length, vv_2) \

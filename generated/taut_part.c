@@ -944,3 +944,89 @@ void taut_part_tangent(const fu_real *d, const fu_real *angle, const fu_real *re
     Q_p[34] = d_turn_2_1_dt_d_reach_2_length;
     Q_p[35] = d_turn_2_2_dt_d_reach_2_length;
 }
+
+/* wheel that spins about an axis which turns (the rate of angular momentum); 9 add, 20 mul */
+void taut_part_spin(fu_real inertia, const fu_real *axis, const fu_real *omega, fu_real own, fu_real acc, fu_real *E, fu_real *force, fu_real *moment)
+{
+    /* angular momentum */
+    const fu_real
+        rate = axis[0]*omega[0] + axis[1]*omega[1] + axis[2]*omega[2] + own,
+        momentum = inertia*rate;
+    /* its rate */
+    const fu_real
+        dt_momentum = acc*inertia,
+        moment_all_x = axis[0]*dt_momentum + momentum*(-axis[1]*omega[2] + axis[2]*omega[1]),
+        moment_all_y = axis[1]*dt_momentum + momentum*(axis[0]*omega[2] - axis[2]*omega[0]),
+        moment_all_z = axis[2]*dt_momentum + momentum*(-axis[0]*omega[1] + axis[1]*omega[0]);
+    /* outputs */
+    E[0] = 0.5*inertia*rate*rate;
+    force[0] = dt_momentum;
+    moment[0] = moment_all_x;
+    moment[1] = moment_all_y;
+    moment[2] = moment_all_z;
+}
+
+/* derivatives of the moment of a wheel that spins (the rate of angular momentum); 51 add, 116 mul */
+void taut_part_spin_tangent(fu_real inertia, const fu_real *axis, const fu_real *omega, fu_real own, fu_real acc, fu_real *K)
+{
+    /* angular momentum */
+    const fu_real
+        rate = axis[0]*omega[0] + axis[1]*omega[1] + axis[2]*omega[2] + own,
+        momentum = inertia*rate;
+    /* its rate */
+    const fu_real dt_momentum = acc*inertia;
+    /* derivatives */
+    const fu_real
+        d_turn_0_rate = axis[1]*omega[2] - axis[2]*omega[1],
+        d_turn_0_momentum = d_turn_0_rate*inertia,
+        d_turn_0_moment_all_x = axis[1]*momentum*omega[1] + axis[2]*momentum*omega[2] + d_turn_0_momentum*(-axis[1]*omega[2] + axis[2]*omega[1]),
+        d_turn_1_rate = -axis[0]*omega[2] + axis[2]*omega[0],
+        d_turn_1_momentum = d_turn_1_rate*inertia,
+        d_turn_1_moment_all_x = -axis[0]*momentum*omega[1] + axis[2]*dt_momentum + d_turn_1_momentum*(-axis[1]*omega[2] + axis[2]*omega[1]),
+        d_turn_2_rate = axis[0]*omega[1] - axis[1]*omega[0],
+        d_turn_2_momentum = d_turn_2_rate*inertia,
+        d_turn_2_moment_all_x = -axis[0]*momentum*omega[2] - axis[1]*dt_momentum + d_turn_2_momentum*(-axis[1]*omega[2] + axis[2]*omega[1]),
+        d_rate_0_momentum = axis[0]*inertia,
+        d_rate_0_moment_all_x = d_rate_0_momentum*(-axis[1]*omega[2] + axis[2]*omega[1]),
+        d_rate_1_momentum = axis[1]*inertia,
+        d_rate_1_moment_all_x = axis[2]*momentum + d_rate_1_momentum*(-axis[1]*omega[2] + axis[2]*omega[1]),
+        d_rate_2_momentum = axis[2]*inertia,
+        d_rate_2_moment_all_x = -axis[1]*momentum + d_rate_2_momentum*(-axis[1]*omega[2] + axis[2]*omega[1]),
+        d_rate_3_moment_all_x = inertia*(-axis[1]*omega[2] + axis[2]*omega[1]),
+        d_turn_0_moment_all_y = -axis[1]*momentum*omega[0] - axis[2]*dt_momentum + d_turn_0_momentum*(axis[0]*omega[2] - axis[2]*omega[0]),
+        d_turn_1_moment_all_y = axis[0]*momentum*omega[0] + axis[2]*momentum*omega[2] + d_turn_1_momentum*(axis[0]*omega[2] - axis[2]*omega[0]),
+        d_turn_2_moment_all_y = axis[0]*dt_momentum - axis[1]*momentum*omega[2] + d_turn_2_momentum*(axis[0]*omega[2] - axis[2]*omega[0]),
+        d_rate_0_moment_all_y = -axis[2]*momentum + d_rate_0_momentum*(axis[0]*omega[2] - axis[2]*omega[0]),
+        d_rate_1_moment_all_y = d_rate_1_momentum*(axis[0]*omega[2] - axis[2]*omega[0]),
+        d_rate_2_moment_all_y = axis[0]*momentum + d_rate_2_momentum*(axis[0]*omega[2] - axis[2]*omega[0]),
+        d_rate_3_moment_all_y = inertia*(axis[0]*omega[2] - axis[2]*omega[0]),
+        d_turn_0_moment_all_z = axis[1]*dt_momentum - axis[2]*momentum*omega[0] + d_turn_0_momentum*(-axis[0]*omega[1] + axis[1]*omega[0]),
+        d_turn_1_moment_all_z = -axis[0]*dt_momentum - axis[2]*momentum*omega[1] + d_turn_1_momentum*(-axis[0]*omega[1] + axis[1]*omega[0]),
+        d_turn_2_moment_all_z = axis[0]*momentum*omega[0] + axis[1]*momentum*omega[1] + d_turn_2_momentum*(-axis[0]*omega[1] + axis[1]*omega[0]),
+        d_rate_0_moment_all_z = axis[1]*momentum + d_rate_0_momentum*(-axis[0]*omega[1] + axis[1]*omega[0]),
+        d_rate_1_moment_all_z = -axis[0]*momentum + d_rate_1_momentum*(-axis[0]*omega[1] + axis[1]*omega[0]),
+        d_rate_2_moment_all_z = d_rate_2_momentum*(-axis[0]*omega[1] + axis[1]*omega[0]),
+        d_rate_3_moment_all_z = inertia*(-axis[0]*omega[1] + axis[1]*omega[0]);
+    /* outputs */
+    K[0] = d_turn_0_moment_all_x;
+    K[1] = d_turn_1_moment_all_x;
+    K[2] = d_turn_2_moment_all_x;
+    K[3] = d_rate_0_moment_all_x;
+    K[4] = d_rate_1_moment_all_x;
+    K[5] = d_rate_2_moment_all_x;
+    K[6] = d_rate_3_moment_all_x;
+    K[7] = d_turn_0_moment_all_y;
+    K[8] = d_turn_1_moment_all_y;
+    K[9] = d_turn_2_moment_all_y;
+    K[10] = d_rate_0_moment_all_y;
+    K[11] = d_rate_1_moment_all_y;
+    K[12] = d_rate_2_moment_all_y;
+    K[13] = d_rate_3_moment_all_y;
+    K[14] = d_turn_0_moment_all_z;
+    K[15] = d_turn_1_moment_all_z;
+    K[16] = d_turn_2_moment_all_z;
+    K[17] = d_rate_0_moment_all_z;
+    K[18] = d_rate_1_moment_all_z;
+    K[19] = d_rate_2_moment_all_z;
+    K[20] = d_rate_3_moment_all_z;
+}

@@ -15,6 +15,10 @@ and s_2 x u. Those of z follow from F_zz z_p = -F_zp. An anchor has s = 0 and no
 In a plane across the axes rho is R, and F_z = 0 is the common tangent of two circles (taut_rope.py). A straight part
 that passes a groove lies across the radius at its point next to the axis, as at a foot. Where that point is |R|/cos f
 from the axis, the part is a wrap of no angle, with the same length, direction and force: there it touches.
+
+A wheel has the moment of inertia I about its axis a, and that about other axes is one of its carrier. It turns by psi
+on that, whose angular velocity is w: T = I (psi' + a . w)²/2. The force on psi is the rate of dT/dpsi', and the moment
+on the carrier that of the angular momentum dT/dw, as a vector of the ground.
 """
 
 from __future__ import annotations
@@ -22,6 +26,7 @@ from __future__ import annotations
 import numpy as np
 import sympy as sp
 
+from ..algebra.tangent_frame import cross
 from ..codegen.family import CouplingFamily
 from ..codegen.program import DirectionalDerivative, Program
 
@@ -37,7 +42,7 @@ def families() -> list[CouplingFamily]:
 
 def build(dim: int) -> list[Program]:
     """Return the kernels of a straight part."""
-    return [feet(), moves(), tangent()]
+    return [feet(), moves(), tangent(), spin(), spin_tangent()]
 
 
 class _Part:
@@ -143,4 +148,48 @@ def tangent() -> Program:
     p.output("F_pp", _table(part.by_p, by_place), "1/m, 1, m", "derivatives of F_p by d and turns of both frames")
     p.output("Q_z", _table(part.by_z, bend), "m/s, 1/s, 1/(m s)", "derivatives of the rate of F_z by the unknowns")
     p.output("Q_p", _table(part.by_p, bend), "m/s, 1/s, 1/(m s)", "and by d and turns of both frames, at given rates")
+    return p
+
+
+class _Wheel:
+    """Inputs and stages of a wheel that spins about an axis which turns with its carrier: force and moment."""
+
+    def __init__(self, kernel: str, doc: str):
+        self.p = p = Program(f"{NAME}_{kernel}", doc, "the rate of angular momentum")
+        inertia = p.input("inertia", (), "kg m^2", "about the axis")
+        self.axis = p.input("axis", DIM, "1", "unit vector along it")
+        self.omega = p.input("omega", DIM, "rad/s", "angular velocity of the carrier")
+        self.own = p.input("own", (), "rad/s", "rate of the rotation on the carrier")
+        acc = p.input("acc", (), "rad/s^2", "rate of the angular velocity about the axis")
+        p.stage("angular momentum")
+        self.rate = p.define("rate", self.own + self.axis.dot(self.omega))
+        energy = inertia * self.rate**2 / 2
+        by_rate = p.define("momentum", sp.diff(energy, self.rate))
+        whole = np.array([by_rate * a for a in self.axis])
+        p.stage("its rate")
+        dt = DirectionalDerivative(p, "dt", {self.rate: acc} | dict(zip(self.axis, cross(self.omega, self.axis),
+                                                                        strict=True)))
+        self.energy, self.force = energy, dt(by_rate)
+        self.moment = np.array(p.vector("moment_all", dt.array(whole)))
+
+
+def spin() -> Program:
+    """Return the kernel of a wheel that spins."""
+    wheel = _Wheel("spin", "wheel that spins about an axis which turns")
+    p = wheel.p
+    p.output("E", [wheel.energy], "J", "kinetic energy")
+    p.output("force", [wheel.force], "N m", "on the rotation")
+    p.output("moment", wheel.moment, "N m", "on the carrier")
+    return p
+
+
+def spin_tangent() -> Program:
+    """Return the kernel of its derivatives."""
+    wheel = _Wheel("spin_tangent", "derivatives of the moment of a wheel that spins")
+    p, eye = wheel.p, np.eye(DIM, dtype=int)
+    p.stage("derivatives")
+    by = [DirectionalDerivative(p, f"d_turn_{i}", dict(zip(wheel.axis, cross(eye[i], wheel.axis), strict=True)))
+          for i in range(DIM)]
+    by += [DirectionalDerivative(p, f"d_rate_{i}", {symbol: 1}) for i, symbol in enumerate((*wheel.omega, wheel.own))]
+    p.output("K", _table(by, wheel.moment), "N m, N m s", "by turns of the axis, the angular velocity and the own rate")
     return p

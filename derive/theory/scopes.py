@@ -501,7 +501,11 @@ def taut_part_scope(name: str) -> Scope:
     """Return the scope of a straight part of a rope without mass in space."""
     ends = [Symbol(rf"{latex}_{{{k + 1}}}", argument, entry(k)) for latex, argument in (
         ("b", "angle"), (r"\rho", "reach"), ("w", "aside"), ("R", "R")) for k in range(2)]
-    return Scope(families()[name], (Symbol(r"\mathbf{d}", "d", column), *ends, Symbol(r"\mathbf{A}_{1}", "one", matrix),
+    wheel = [Symbol(latex, argument, number) for latex, argument in (
+        ("I", "inertia"), (r"\dot{\psi}", "own"), (r"\dot{\Omega}", "acc"))]
+    vectors = [Symbol(latex, argument, column) for latex, argument in (
+        (r"\mathbf{d}", "d"), (r"\mathbf{a}", "axis"), (r"\boldsymbol{\omega}", "omega"))]
+    return Scope(families()[name], (*vectors, *ends, *wheel, Symbol(r"\mathbf{A}_{1}", "one", matrix),
                                     Symbol(r"\mathbf{A}_{2}", "other", matrix)))
 
 

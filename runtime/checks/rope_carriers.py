@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..errors import SceneError
 from ..parts.attachment import Attachment
 from ..parts.modal_body import ModalBody
 from ..parts.scene_data import SceneData
@@ -43,18 +42,6 @@ def carried_groove(scene: SceneData, end: Attachment, plane: np.ndarray) -> Carr
         is_along = abs(axes[:, 2] @ tangent) > MAX_ALONG * np.linalg.norm(tangent)
         up = axes[:, 0 if is_along else 2]
     return Carried(end_frame(scene, end, None if up is None else up.tolist()).T @ axes, up)
-
-
-def check_wheels_with_inertia(scene: SceneData) -> None:
-    """Raise SceneError for a wheel with inertia of a rope without mass in space, on a body that may rotate: the moment
-    by which a spinning wheel resists a tilt of its axis is not modelled there.
-    """
-    for rope in scene.ropes.values():
-        for wheel in rope.wheels if rope.dim == 3 and not rope.mass else ():
-            if wheel.inertia > 0 and may_turn(scene, wheel.end.on):
-                raise SceneError(f"{rope.where}: {wheel.where}", f'has inertia on "{wheel.end.on}", which may '
-                                 "rotate, and its rope has no mass: its axis would tilt as it spins",
-                                 "leave the inertia out and give it to what holds it, or give the rope a small mass")
 
 
 def _translates(scene: SceneData, body: str, known: set[str]) -> bool:

@@ -19,7 +19,6 @@ from ..parts.signal import Signal, signals_of
 from ..parts.validation import LENGTH_TOLERANCE, show
 from .joint_placement import check_drive, check_joint
 from .placement import check_grips
-from .rope_carriers import check_wheels_with_inertia
 from .slide_placement import check_on_cable
 
 
@@ -53,7 +52,6 @@ def check_scene(scene: SceneData) -> None:
         raise SceneError("scene", "is empty: there is nothing to simulate", "add a cable or a rigid body")
     check_plane(scene)
     check_grips(scene)
-    check_wheels_with_inertia(scene)
     for joint in scene.joints.values():
         check_joint(scene, joint)
     for body in scene.bodies.values():

@@ -21,6 +21,8 @@ from .coupling import CouplingModel
 KERNEL = "planar_taut_rope"
 KERNELS_OF_PARTS = {2: "", 3: "taut_part"}
 """Kernels of the law of a rope, and of straight parts in space."""
+KERNEL_OF_WHEELS = KERNELS_OF_PARTS[3]
+"""Kernels with that of wheels that spin, in the plane, too."""
 
 
 class TurningRope(Protocol):
@@ -44,6 +46,7 @@ class TautPointModel(CouplingModel):
     with its place in them; ends_run_by: of a drum. mouth, kink: of a sheave, see `SheaveModel`.
     """
 
+    wheel: str = KERNEL_OF_WHEELS
     attachments: tuple[AttachmentModel]
     turn: int = -1
     radius: float = 0.0
@@ -64,6 +67,11 @@ class TautPointModel(CouplingModel):
     ends_run_by: str = "error"
     before: tuple[TautRopeModel, int] | None = None
     after: tuple[TautRopeModel, int] | None = None
+
+    @property
+    def kernel_families(self) -> list[str]:
+        """Return the names of the kernel families that it uses."""
+        return [self.wheel]
 
     @property
     def holds(self) -> bool:

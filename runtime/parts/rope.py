@@ -99,9 +99,8 @@ class Rope(Part):
         whatever its model, the rope sticks up to the limit e^(mu theta) of the ratio of its elastic tensions, beyond
         which it slips with this ratio. There and on drums it does not creep, but leaves with the stretch that it has.
         The wrap of a sheave without friction may vanish and return; with side given it may be absent as drawn. In space
-        the rope leaves the grooves at fleet angles, and returns to a groove at its place along the axis; sheaves and
-        drums with inertia are not on bodies that may rotate. Then the density, the bending stiffness, ``elements``,
-        zones of sheaves and the velocity of their friction have no effect
+        the rope leaves the grooves at fleet angles, and returns to a groove at its place along the axis. Then the
+        density, the bending stiffness, ``elements``, zones of sheaves and the velocity of their friction have no effect
     section: cross-section, whose height is in the plane
     material: material, with the damping of the rope
     """

@@ -282,7 +282,7 @@ CEILINGS = {
         "straight": 43, "straight_tangent": 135, "free_length": 12, "tension": 24, "tension_tangent": 70, "energy": 13,
         "slide": 29, "slide_tangent": 33
     },
-    "taut_part": {"feet": 498, "moves": 782, "tangent": 5512},
+    "taut_part": {"feet": 498, "moves": 782, "tangent": 5512, "spin": 29, "spin_tangent": 167},
     "tangent_point": {"conditions": 1744, "motion": 325, "chord": 202, "across": 27, "turned_conditions": 2017,
                       "turned_motion": 369, "turned_acc": 4, "wrap_energy": 93, "wrap_inertia": 616, "wrap_mass": 183,
                       "wrap_weight": 63, "laid_weight": 139, "ring": 22, "momentum": 62, "momentum_energy": 8,

@@ -18,7 +18,7 @@ SLOPE, GRADIENT = of("feet", "F_z"), of("moves", "F_p")
 
 def taut_part(family: CouplingFamily) -> list[Relation]:
     """Return the relations of the kernels."""
-    return [*_of_feet(), *_of_places()]
+    return [*_of_feet(), *_of_places(), *_of_wheel()]
 
 
 def _by_unknowns(path):
@@ -83,3 +83,23 @@ def _of_places() -> list[Relation]:
             Relation("tangent", "F_pp", "dF_p by these", 1, _by_places(GRADIENT), PLACES),
             Relation("tangent", "Q_z", "d(rate of F_z) by angles and distances", 1, _by_unknowns(bend), UNKNOWNS),
             Relation("tangent", "Q_p", "d(rate of F_z) by d and turns of both frames", 1, _by_places(bend), PLACES)]
+
+
+def _of_wheel() -> list[Relation]:
+    def rate(s: State) -> Any:
+        return s["own"] + s["axis"].dot(s["omega"])
+
+    def momentum(k, s, t, j):
+        """Return the angular momentum after t: of another rate, about an axis that has turned."""
+        return s["inertia"] * (rate(s) + t * s["acc"]) * (s["axis"] + t * np.cross(s["omega"], s["axis"]))
+
+    def moved(k, s, t, j):
+        """Return the moment after a turn of the axis, or another rate."""
+        turned = s | {"axis": s["axis"] + t * np.cross(np.eye(DIM, dtype=int)[j % DIM], s["axis"])}
+        faster = s | ({"own": s["own"] + t} if j == 2 * DIM else {"omega": s["omega"] + t * unit(s["omega"], j % DIM)})
+        return k("spin", turned if j < DIM else faster)["moment"]
+
+    return [Relation("spin", "E", "I (psi' + a . w)^2/2", 0, root(lambda s: [s["inertia"] * rate(s)**2 / 2])),
+            Relation("spin", "force", "d(I (psi' + a . w))/dt", 0, root(lambda s: [s["inertia"] * s["acc"]])),
+            Relation("spin", "moment", "d(I (psi' + a . w) a)/dt", 1, momentum),
+            Relation("spin_tangent", "K", "dmoment by turns and rates", 1, moved, 2 * DIM + 1)]

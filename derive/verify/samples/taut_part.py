@@ -17,4 +17,6 @@ def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) 
             "reach": random.choice([-1, 1], 2) * random.uniform(0.3, 0.6, 2),
             "R": random.choice([-1, 1], 2) * random.uniform(0.3, 0.6, 2),
             "aside": random.uniform(-0.3, 0.3, 2), "one": rotation(random, 3), "other": rotation(random, 3),
-            "z_rate": random.normal(size=4), "p_rate": random.normal(size=9)}
+            "inertia": random.uniform(0.1, 1), "axis": rotation(random, 3)[:, 2], "omega": random.normal(size=3),
+            "own": random.normal(), "acc": random.normal(), "z_rate": random.normal(size=4),
+            "p_rate": random.normal(size=9)}

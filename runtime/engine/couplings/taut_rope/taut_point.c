@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define ROUNDING_OF_FORCE 1e-12   /* of EA: a slack rope needs no friction */
 #define ROUNDING_OF_TENSION 1e-10 /* of both tensions: excess at which a rope breaks loose */
@@ -182,26 +183,50 @@ double fu_taut_store(const fu_model *model, const fu_taut_point *point, const fu
     return point->store + fu_taut_held(rope, state, &now, !side, &rate);
 }
 
-/* Returns the number of coordinates of a centre with which a wheel with inertia turns: in space none, as what carries
- * it keeps its orientation. */
-static int turning_with(const fu_model *model, const fu_attachment_state *at)
+/* --- what turns ------------------------------------------------------------------------------------------------- */
+
+/* A wheel that spins: its centre, its axis, in the plane out of that, and the angular velocity of its carrier; of the
+ * rates of coordinates of the centre, the shares in the rate about the axis; its own rate; the acceleration about the
+ * axis at zero accelerations. */
+typedef struct {
+    fu_attachment_state centre;
+    double axis[SPACE], omega[SPACE], share[FU_ATTACHMENT_COORDINATES], own, bias;
+} spinning;
+
+static void find_spinning(const fu_model *model, const fu_taut_point *point, const fu_state *state, spinning *out)
 {
-    return model->dim == SPACE ? 0 : at->n;
+    const fu_attachment_state *at = &out->centre;
+    const int turns = fu_turns(model->dim);
+    fu_taut_centre(model, point, state, &out->centre);
+    for (int d = 0; d < SPACE; ++d) out->axis[d] = turns == SPACE ? at->A[d * SPACE + 2] : d == 2 ? 1.0 : 0.0;
+    fu_turn_in_space(model->dim, at->omega, out->omega);
+    const double *axis = out->axis + (turns == SPACE ? 0 : 2);
+    for (int i = 0; i < at->n; ++i) {
+        out->share[i] = 0.0;
+        for (int d = 0; d < turns; ++d) out->share[i] += axis[d] * at->T[d * at->n + i];
+    }
+    out->own = state->v && point->turn >= 0 ? state->v[point->turn] : 0.0;
+    out->bias = fu_dot(turns, axis, at->alpha);
 }
 
-/* --- what turns ------------------------------------------------------------------------------------------------- */
+/* Returns the acceleration about the axis by those of the dofs. */
+static double spinning_up(const fu_taut_point *point, const spinning *of, const double *a)
+{
+    double acceleration = a[point->turn];
+    for (int i = 0; i < of->centre.n; ++i) acceleration += of->share[i] * a[of->centre.at[i]];
+    return acceleration;
+}
 
 static void inertial_force(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a,
                            double *f)
 {
     const fu_taut_point *point = point_of(coupling);
     const fu_state state = {.q = (double *)q};
-    fu_attachment_state at;
-    fu_taut_centre(model, point, &state, &at);
-    double acceleration = a[point->turn];
-    for (int i = 0; i < turning_with(model, &at); ++i) acceleration += at.T[i] * a[at.at[i]];
-    f[point->turn] += point->inertia * acceleration;
-    for (int i = 0; i < turning_with(model, &at); ++i) f[at.at[i]] += point->inertia * at.T[i] * acceleration;
+    spinning of;
+    find_spinning(model, point, &state, &of);
+    const double moment = point->inertia * spinning_up(point, &of, a);
+    f[point->turn] += moment;
+    for (int i = 0; i < of.centre.n; ++i) f[of.centre.at[i]] += of.share[i] * moment;
 }
 
 static void mass_matrix(const fu_model *model, const fu_coupling *coupling, const double *q, double scale,
@@ -210,15 +235,16 @@ static void mass_matrix(const fu_model *model, const fu_coupling *coupling, cons
     const fu_taut_point *point = point_of(coupling);
     const fu_state state = {.q = (double *)q};
     const double mass = scale * point->inertia;
-    fu_attachment_state at;
-    fu_taut_centre(model, point, &state, &at);
+    spinning of;
+    find_spinning(model, point, &state, &of);
     fu_add(model, system, point->turn, point->turn, mass);
-    for (int i = 0; i < turning_with(model, &at); ++i) {
-        if (at.T[i] == 0.0) continue;
-        fu_add(model, system, point->turn, at.at[i], mass * at.T[i]);
-        fu_add(model, system, at.at[i], point->turn, mass * at.T[i]);
-        for (int j = 0; j < at.n; ++j)
-            if (at.T[j] != 0.0) fu_add(model, system, at.at[i], at.at[j], mass * at.T[i] * at.T[j]);
+    for (int i = 0; i < of.centre.n; ++i) {
+        if (of.share[i] == 0.0) continue;
+        fu_add(model, system, point->turn, of.centre.at[i], mass * of.share[i]);
+        fu_add(model, system, of.centre.at[i], point->turn, mass * of.share[i]);
+        for (int j = 0; j < of.centre.n; ++j)
+            if (of.share[j] != 0.0)
+                fu_add(model, system, of.centre.at[i], of.centre.at[j], mass * of.share[i] * of.share[j]);
     }
 }
 
@@ -227,19 +253,65 @@ static double kinetic_energy(const fu_model *model, const fu_coupling *coupling,
 {
     const fu_taut_point *point = point_of(coupling);
     const fu_state state = {.q = (double *)q, .v = (double *)v};
-    fu_attachment_state at;
+    double energy, force, moment[SPACE];
+    spinning of;
     (void)t, (void)past_fluid;
-    fu_taut_centre(model, point, &state, &at);
-    const double spin = fu_taut_spin(model, point, &state, &at);
-    return 0.5 * point->inertia * spin * spin;
+    find_spinning(model, point, &state, &of);
+    point->wheel->spin(point->inertia, of.axis, of.omega, of.own, 0.0, &energy, &force, moment);
+    return energy;
 }
 
-/* Adds the moment of the bearing, between a wheel and its carrier. */
+/* Adds the inertial force at zero accelerations: of an axis that tilts, and of a carrier whose coordinates are not
+ * rotations. */
+static void add_gyration(const fu_model *model, const fu_taut_point *point, const fu_state *state, double *f)
+{
+    const int first = model->dim == SPACE ? 0 : SPACE - 1;
+    double energy, force, moment[SPACE];
+    spinning of;
+    if (point->inertia == 0.0 || !state->v) return;
+    find_spinning(model, point, state, &of);
+    point->wheel->spin(point->inertia, of.axis, of.omega, of.own, of.bias, &energy, &force, moment);
+    f[point->turn] += force;
+    fu_add_wrench(model->dim, &of.centre, 0, moment + first, 1.0, f);
+}
+
+/* Adds its derivatives, and those of the moment by accelerations, which turns with the carrier. */
+static void add_gyration_tangent(const fu_model *model, const fu_taut_point *point, const fu_equations *equations,
+                                 fu_system *system)
+{
+    enum { RATES = 2 * SPACE + 1, VECTORS = 4 * SPACE };
+    const fu_state *next = equations->next;
+    const fu_weights w = equations->weights;
+    double energy, force, moment[SPACE], K[SPACE * RATES], by[SPACE * VECTORS],
+        changes[SPACE * FU_ATTACHMENT_COORDINATES];
+    spinning of;
+    fu_point_motion motion;
+    if (point->inertia == 0.0 || model->dim != SPACE) return;
+    find_spinning(model, point, next, &of);
+    const double *a = next->acceleration ? next->acceleration : model->zero;
+    const double acceleration = of.bias + spinning_up(point, &of, a);
+    point->wheel->spin(point->inertia, of.axis, of.omega, of.own, acceleration, &energy, &force, moment);
+    point->wheel->spin_tangent(point->inertia, of.axis, of.omega, of.own, acceleration, K);
+    fu_point_motion_at(model, &point->attachments[0], next, FU_POINT | FU_AXES, 0, moment, equations->psi, w.rate,
+                       &motion);
+    memset(by, 0, sizeof by);
+    for (int d = 0; d < SPACE; ++d)
+        for (int j = 0; j < 2 * SPACE; ++j) by[d * VECTORS + 2 * SPACE + j] = K[d * RATES + j];
+    fu_changes(&motion, SPACE, by, changes);
+    fu_add_wrench_tangent(model, &motion.at, &motion.at, 0, changes, fu_stiffness_of(&motion), w.stiffness, system);
+    for (int i = 0; i < motion.at.n; ++i) {
+        double change = 0.0;
+        for (int d = 0; d < SPACE; ++d) change += motion.at.T[d * motion.at.n + i] * K[d * RATES + 2 * SPACE];
+        if (change != 0.0) fu_add(model, system, motion.at.at[i], point->turn, w.stiffness * w.rate * change);
+    }
+}
+
+/* Adds the moment of the bearing, between a wheel and its carrier, and inertial forces. */
 static void force(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f)
 {
     const fu_taut_point *point = point_of(coupling);
-    (void)model;
     if (point->turn >= 0 && state->v) f[point->turn] += point->damping * state->v[point->turn];
+    add_gyration(model, point, state, f);
 }
 
 static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, double *f,
@@ -256,6 +328,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     const fu_weights w = equations->weights;
     if (point->turn >= 0 && point->damping != 0.0)
         fu_add(model, system, point->turn, point->turn, w.stiffness * w.rate * point->damping);
+    add_gyration_tangent(model, point, equations, system);
 }
 
 static double dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
@@ -347,13 +420,10 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
         numbers->length_in_store = fu_taut_store(model, point, state);
     numbers->drive = -on_wheel;
     if (point->turn < 0) return;
-    fu_attachment_state centre;
-    fu_taut_centre(model, point, state, &centre);
-    const double rate = state->v ? state->v[point->turn] : 0.0;
-    double turning = a[point->turn];
-    for (int i = 0; i < turning_with(model, &centre); ++i) turning += centre.T[i] * a[centre.at[i]];
-    numbers->drive += point->inertia * turning + point->damping * rate;
-    numbers->power = numbers->drive * rate;
+    spinning of;
+    find_spinning(model, point, state, &of);
+    numbers->drive += point->inertia * (of.bias + spinning_up(point, &of, a)) + point->damping * of.own;
+    numbers->power = numbers->drive * of.own;
     numbers->angle = state->q[point->turn];
 }
 
@@ -388,7 +458,10 @@ static int is_possible(const fu_model *model, const fu_coupling *coupling, const
     return abs(fu_taut_slips(point_of(coupling), state)) <= 1;
 }
 
+static const char *const wheel_role[] = {"taut_part", 0};
+
 static const fu_field fields[] = {
+    FU_FIELD(fu_taut_point, wheel, FU_KERNELS, wheel_role),
     FU_FIELD_ARRAY(fu_taut_point, attachments, FU_ATTACHMENT),
     FU_FIELD(fu_taut_point, turn, FU_INTEGER, 0),
     FU_FIELD(fu_taut_point, radius, FU_REAL, 0),

@@ -25,19 +25,20 @@ enum { FU_FEET = 4, FU_PART_PLACES = 9 };
  * which the rope slips on it: 1 in its order, -1 against it, 0 where it sticks. */
 typedef struct {
     fu_coupling base;
-    fu_attachment attachments[1]; /* the centre */
-    int turn;                     /* dof: its rotation, -1 for none */
-    double radius;                /* m: with the sense of travel as sign, 0 of an anchor */
-    double inertia, damping;      /* kg m^2, N m s */
-    int torque_signal;            /* of the torque on it, -1 for a constant one */
-    double torque;                /* N m: the factor of the signal */
-    double friction;              /* coefficient */
-    double store;                 /* m: stress-free length that a drum holds as drawn */
-    int ropes[2], places[2];      /* before and after it: numbers of the ropes, -1 for none; its places in them */
-    double angle, carrier;        /* rad: its two numbers as drawn */
-    double closing;               /* rad: by which the angles of parts grow along a closed rope, at its first point */
-    double mouth, kink;           /* of a sheave: half the width of its groove, m; rad: with which a rope leaves it */
-    int touches;                  /* as drawn */
+    const fu_taut_part_kernels *wheel; /* of its spin */
+    fu_attachment attachments[1];      /* the centre */
+    int turn;                          /* dof: its rotation, -1 for none */
+    double radius;                     /* m: with the sense of travel as sign, 0 of an anchor */
+    double inertia, damping;           /* kg m^2, N m s */
+    int torque_signal;                 /* of the torque on it, -1 for a constant one */
+    double torque;                     /* N m: the factor of the signal */
+    double friction;                   /* coefficient */
+    double store;                      /* m: stress-free length that a drum holds as drawn */
+    int ropes[2], places[2];           /* before and after it: numbers of the ropes, -1 for none; its places in them */
+    double angle, carrier;             /* rad: its two numbers as drawn */
+    double closing;     /* rad: by which the angles of parts grow along a closed rope, at its first point */
+    double mouth, kink; /* of a sheave: half the width of its groove, m; rad: with which a rope leaves it */
+    int touches;        /* as drawn */
     int in_space;
 } fu_taut_point;
 
@@ -180,8 +181,8 @@ static inline double fu_near_angle(double angle, double to)
 {
     return to + remainder(angle - to, 2.0 * acos(-1.0));
 }
-/* Returns the rotation of what carries a point, in the plane; that of the point with it, and its rate, in space alone;
- * at: with its axes. */
+/* Returns the rotation of what carries a point, in the plane; the rotation and its rate from which angles of parts in
+ * the groove count: in the plane with the carrier, in space on it; at: with its axes. */
 double fu_taut_carrier_angle(const fu_taut_point *point, const fu_state *state, const fu_attachment_state *at);
 double fu_taut_turn(const fu_taut_point *point, const fu_state *state, const fu_attachment_state *at);
 double fu_taut_spin(const fu_model *model, const fu_taut_point *point, const fu_state *state,
