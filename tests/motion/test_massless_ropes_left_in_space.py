@@ -18,7 +18,7 @@ from turned_scenes import ASKEW, turned_scene
 
 EA, TAU, TENSION = 6e4, 1e-3, GRAVITY * np.cos(0.7)
 SOFT = rope_of(EA, 1e-5, 0, TAU) | {"mass": False, "element": "cable12"}
-PEG, RADIUS = np.array([0.3, -1.0, 0.0]), 0.1
+PEG, RADIUS, SQUARE = np.array([0.3, -1.0, 0.0]), 0.1, np.eye(3)
 START = np.array([-2 * np.sin(0.7), -2 * np.cos(0.7), 0.0])
 WIDE = {"groove_width": 0.1, "max_fleet_angle": 0.3}
 ASIDE, LEFT = "returned beside the middle of the groove", "left the sheave"
@@ -73,6 +73,29 @@ def test_a_planar_pendulum_and_its_spatial_twins():
     assert distance[1] == pytest.approx(distance[0], abs=1e-9)
 
 
+def over_two(element: str, aside: float = 0.0) -> fu.Scene:
+    """Return the pendulum over two pegs; in space their axes are askew if it swings aside."""
+    axes = ((0, 0, 1), (0, 0, 1)) if not aside else ((0, 0.1, 1), (0.1, -0.1, 1))
+    one, other = ({} if element == "cable8p" else {"axis": axis} for axis in axes)
+    route = [fu.Anchor(at=(0, 0, 0)), fu.Sheave("one", at=(0.2, -0.7, 0), radius=0.1, side="left", **WIDE, **one),
+             fu.Sheave("other", at=(0.42, -1.2, 0), radius=0.08, side="left", **WIDE, **other), fu.Anchor("load")]
+    scene = fu.Scene(gravity=(0, -GRAVITY, 0))
+    scene.rigid_body("load", mass=1.0, inertia=(1, 1, 1), position=tuple(START), velocity=(0, 0, aside))
+    with pytest.warns(fu.FunicularWarning, match="the rope passes it without touching it as drawn"):
+        scene.rope("rope", tension=TENSION, route=route, **SOFT | {"element": element})
+    return scene
+
+
+def test_two_pegs():
+    """A part leads from one to the other while the rope touches both; in the plane, and with axes askew."""
+    plane, space, askew = (run_of(over_two(*given), 3.5) for given in (("cable8p",), ("cable12",), ("cable12", 0.05)))
+    assert whats(plane) == whats(space) == ["returned", "returned", LEFT, LEFT, "returned"]
+    for name in ("load.position", "rope.position", "one.material_speed", "other.material_speed"):
+        assert space[name] == pytest.approx(plane[name], abs=1e-9), name
+    assert whats(askew) == [ASIDE, ASIDE, LEFT, "moved along the groove", LEFT, ASIDE]
+    assert np.abs(askew.energy_balance().relative).max() < 1e-8
+
+
 @pytest.mark.parametrize("integrator", ["radau", "genalpha"])
 def test_a_peg_beside_a_sheave_on_which_the_rope_slips(integrator):
     """The wraps of both are in the ratio of the tensions, as in the plane."""
@@ -104,39 +127,41 @@ def geodesic(place: np.ndarray) -> tuple[float, float, float, float]:
     return np.sqrt(square - rho**2 + z * z), np.arctan2(y, x), np.arccos(rho / np.sqrt(square)), rho
 
 
-def around(place: np.ndarray, aside: float) -> tuple[float, np.ndarray, float, float]:
+def around(place: np.ndarray, peg: np.ndarray, aside: float) -> tuple[float, np.ndarray, float, float]:
     """Return length, direction at the load, wrap and kink along the axis of a rope over the peg, at a place aside."""
-    on, off = -PEG - [0, 0, aside], place - PEG - [0, 0, aside]
+    on, off = -peg - [0, 0, aside], place - peg - [0, 0, aside]
     (one, a, b, _), (other, c, d, rho) = geodesic(on), geodesic(off)
     wrap = np.remainder(c - d - a - b + np.pi, 2 * np.pi) - np.pi
     u = (off - [rho * np.cos(c - d), rho * np.sin(c - d), 0]) / other
     return one + RADIUS * wrap + other, u, wrap, np.arcsin(u[2]) + np.arcsin(on[2] / one)
 
 
-def straight(place: np.ndarray) -> tuple[float, np.ndarray, float, float]:
+def straight(place: np.ndarray, peg: np.ndarray) -> tuple[float, np.ndarray, float, float]:
     """Return length and direction of a straight rope, by how much it cuts the peg, and its place there."""
     length = np.linalg.norm(place)
     u = place / length
     cosine = np.hypot(*u[:2])
-    next_to = (PEG[:2] @ u[:2]) / cosine**2 * u - PEG
+    next_to = (peg[:2] @ u[:2]) / cosine**2 * u - peg
     return length, u, RADIUS / cosine - np.hypot(*next_to[:2]), next_to[2]
 
 
-def of_its_own(aside: float, tau: float, duration: float) -> tuple[Callable[[float], np.ndarray], list[dict]]:
+def of_its_own(aside: float, tau: float, duration: float, axes: np.ndarray = SQUARE
+               ) -> tuple[Callable[[float], np.ndarray], list[dict]]:
     """Return the place of the load by time, and the events, by equations of motion of an elastic string of its own:
-    a straight line, and a geodesic over the peg, with the lengths in closed form.
+    a straight line, and a geodesic over the peg, with the lengths in closed form; axes: of the groove, as columns, in
+    which the motion is computed.
     """
-    y, t, lies, parts, events = np.concatenate([START, [0, 0, aside]]), 0.0, None, [], []
-    free = 2 / (1 + TENSION / EA)
+    y, t, lies, parts, events = np.concatenate([START @ axes, [0, 0, aside] @ axes]), 0.0, None, [], []
+    free, peg, gravity = 2 / (1 + TENSION / EA), PEG @ axes, [0, -GRAVITY, 0] @ axes
 
     def at(place: np.ndarray, lies: float | None) -> tuple[float, np.ndarray, float, float]:
-        return straight(place) if lies is None else around(place, lies)
+        return straight(place, peg) if lies is None else around(place, peg, lies)
 
     while t < duration:
         def rates(t: float, y: np.ndarray, lies: float | None = lies) -> np.ndarray:
             length, u, _, _ = at(y[:3], lies)
             tension = EA * (length - free + tau * (u @ y[3:])) / free
-            return np.concatenate([y[3:], -max(tension, 0.0) * u + [0, -GRAVITY, 0]])
+            return np.concatenate([y[3:], -max(tension, 0.0) * u + gravity])
 
         def changes(t: float, y: np.ndarray, lies: float | None = lies) -> float:
             return at(y[:3], lies)[2] * (1 if lies is None else -1)
@@ -147,11 +172,11 @@ def of_its_own(aside: float, tau: float, duration: float) -> tuple[Callable[[flo
         t, y = part.t[-1], part.y[:, -1]
         if part.status != 1:
             break
-        before, after = at(y[:3], lies), straight(y[:3])
+        before, after = at(y[:3], lies), straight(y[:3], peg)
         events.append({"time": t, "aside": after[3], "kink": before[3], "lost": EA / (2 * free) * (
             (before[0] - free)**2 - (after[0] - free)**2)})
         lies = after[3] if lies is None else None
-    return lambda t: next(part.sol(t)[:3] for part in parts if t <= part.t[-1] + 1e-12), events
+    return lambda t: axes @ next(part.sol(t)[:3] for part in parts if t <= part.t[-1] + 1e-12), events
 
 
 @pytest.mark.parametrize("aside", [0.02, 0.08])
@@ -168,6 +193,19 @@ def test_a_pendulum_beside_the_plane_of_the_groove_against_equations_of_its_own(
     first = on & (run.time < times(run)[1])
     wrap = run["rope.position"][first][:, 5]  # the first part has five points
     assert wrap[:, 2] == pytest.approx(events[0]["aside"], abs=1e-9)
+
+
+def test_a_peg_whose_axis_is_askew_against_equations_of_its_own():
+    """The straight rope meets it at a fleet angle of .06 rad, where R/cos f is R and .2 mm."""
+    axis = np.array([-0.1, 0.05, 1.0]) / np.linalg.norm([-0.1, 0.05, 1.0])
+    x = np.cross([0, 1, 0], axis) / np.linalg.norm(np.cross([0, 1, 0], axis))
+    run = run_of(pendulum(0.05, axis=tuple(axis), **WIDE), 1.9)
+    place, events = of_its_own(0.05, TAU, 1.9, np.stack([x, np.cross(axis, x), axis], axis=1))
+    assert whats(run) == [ASIDE, LEFT]
+    assert times(run) == pytest.approx([event["time"] for event in events], abs=1e-7)
+    assert run["load.position"] == pytest.approx(np.array([place(t) for t in run.time]), abs=5e-9)
+    on = run["peg.wrap_angle"] > 0
+    assert np.abs(run["peg.fleet_angle_on"][on]).max() > 0.05
 
 
 def test_a_kink_loses_the_energy_of_the_length_that_the_rope_loses():

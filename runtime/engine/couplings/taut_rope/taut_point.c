@@ -6,7 +6,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #define ROUNDING_OF_FORCE 1e-12   /* of EA: a slack rope needs no friction */
 #define ROUNDING_OF_TENSION 1e-10 /* of both tensions: excess at which a rope breaks loose */
@@ -185,133 +184,12 @@ double fu_taut_store(const fu_model *model, const fu_taut_point *point, const fu
 
 /* --- what turns ------------------------------------------------------------------------------------------------- */
 
-/* A wheel that spins: its centre, its axis, in the plane out of that, and the angular velocity of its carrier; of the
- * rates of coordinates of the centre, the shares in the rate about the axis; its own rate; the acceleration about the
- * axis at zero accelerations. */
-typedef struct {
-    fu_attachment_state centre;
-    double axis[SPACE], omega[SPACE], share[FU_ATTACHMENT_COORDINATES], own, bias;
-} spinning;
-
-static void find_spinning(const fu_model *model, const fu_taut_point *point, const fu_state *state, spinning *out)
-{
-    const fu_attachment_state *at = &out->centre;
-    const int turns = fu_turns(model->dim);
-    fu_taut_centre(model, point, state, &out->centre);
-    for (int d = 0; d < SPACE; ++d) out->axis[d] = turns == SPACE ? at->A[d * SPACE + 2] : d == 2 ? 1.0 : 0.0;
-    fu_turn_in_space(model->dim, at->omega, out->omega);
-    const double *axis = out->axis + (turns == SPACE ? 0 : 2);
-    for (int i = 0; i < at->n; ++i) {
-        out->share[i] = 0.0;
-        for (int d = 0; d < turns; ++d) out->share[i] += axis[d] * at->T[d * at->n + i];
-    }
-    out->own = state->v && point->turn >= 0 ? state->v[point->turn] : 0.0;
-    out->bias = fu_dot(turns, axis, at->alpha);
-}
-
-/* Returns the acceleration about the axis by those of the dofs. */
-static double spinning_up(const fu_taut_point *point, const spinning *of, const double *a)
-{
-    double acceleration = a[point->turn];
-    for (int i = 0; i < of->centre.n; ++i) acceleration += of->share[i] * a[of->centre.at[i]];
-    return acceleration;
-}
-
-static void inertial_force(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a,
-                           double *f)
-{
-    const fu_taut_point *point = point_of(coupling);
-    const fu_state state = {.q = (double *)q};
-    spinning of;
-    find_spinning(model, point, &state, &of);
-    const double moment = point->inertia * spinning_up(point, &of, a);
-    f[point->turn] += moment;
-    for (int i = 0; i < of.centre.n; ++i) f[of.centre.at[i]] += of.share[i] * moment;
-}
-
-static void mass_matrix(const fu_model *model, const fu_coupling *coupling, const double *q, double scale,
-                        fu_system *system)
-{
-    const fu_taut_point *point = point_of(coupling);
-    const fu_state state = {.q = (double *)q};
-    const double mass = scale * point->inertia;
-    spinning of;
-    find_spinning(model, point, &state, &of);
-    fu_add(model, system, point->turn, point->turn, mass);
-    for (int i = 0; i < of.centre.n; ++i) {
-        if (of.share[i] == 0.0) continue;
-        fu_add(model, system, point->turn, of.centre.at[i], mass * of.share[i]);
-        fu_add(model, system, of.centre.at[i], point->turn, mass * of.share[i]);
-        for (int j = 0; j < of.centre.n; ++j)
-            if (of.share[j] != 0.0)
-                fu_add(model, system, of.centre.at[i], of.centre.at[j], mass * of.share[i] * of.share[j]);
-    }
-}
-
-static double kinetic_energy(const fu_model *model, const fu_coupling *coupling, double t, const double *q,
-                             const double *v, int past_fluid)
-{
-    const fu_taut_point *point = point_of(coupling);
-    const fu_state state = {.q = (double *)q, .v = (double *)v};
-    double energy, force, moment[SPACE];
-    spinning of;
-    (void)t, (void)past_fluid;
-    find_spinning(model, point, &state, &of);
-    point->wheel->spin(point->inertia, of.axis, of.omega, of.own, 0.0, &energy, &force, moment);
-    return energy;
-}
-
-/* Adds the inertial force at zero accelerations: of an axis that tilts, and of a carrier whose coordinates are not
- * rotations. */
-static void add_gyration(const fu_model *model, const fu_taut_point *point, const fu_state *state, double *f)
-{
-    const int first = model->dim == SPACE ? 0 : SPACE - 1;
-    double energy, force, moment[SPACE];
-    spinning of;
-    if (point->inertia == 0.0 || !state->v) return;
-    find_spinning(model, point, state, &of);
-    point->wheel->spin(point->inertia, of.axis, of.omega, of.own, of.bias, &energy, &force, moment);
-    f[point->turn] += force;
-    fu_add_wrench(model->dim, &of.centre, 0, moment + first, 1.0, f);
-}
-
-/* Adds its derivatives, and those of the moment by accelerations, which turns with the carrier. */
-static void add_gyration_tangent(const fu_model *model, const fu_taut_point *point, const fu_equations *equations,
-                                 fu_system *system)
-{
-    enum { RATES = 2 * SPACE + 1, VECTORS = 4 * SPACE };
-    const fu_state *next = equations->next;
-    const fu_weights w = equations->weights;
-    double energy, force, moment[SPACE], K[SPACE * RATES], by[SPACE * VECTORS],
-        changes[SPACE * FU_ATTACHMENT_COORDINATES];
-    spinning of;
-    fu_point_motion motion;
-    if (point->inertia == 0.0 || model->dim != SPACE) return;
-    find_spinning(model, point, next, &of);
-    const double *a = next->acceleration ? next->acceleration : model->zero;
-    const double acceleration = of.bias + spinning_up(point, &of, a);
-    point->wheel->spin(point->inertia, of.axis, of.omega, of.own, acceleration, &energy, &force, moment);
-    point->wheel->spin_tangent(point->inertia, of.axis, of.omega, of.own, acceleration, K);
-    fu_point_motion_at(model, &point->attachments[0], next, FU_POINT | FU_AXES, 0, moment, equations->psi, w.rate,
-                       &motion);
-    memset(by, 0, sizeof by);
-    for (int d = 0; d < SPACE; ++d)
-        for (int j = 0; j < 2 * SPACE; ++j) by[d * VECTORS + 2 * SPACE + j] = K[d * RATES + j];
-    fu_changes(&motion, SPACE, by, changes);
-    fu_add_wrench_tangent(model, &motion.at, &motion.at, 0, changes, fu_stiffness_of(&motion), w.stiffness, system);
-    for (int i = 0; i < motion.at.n; ++i) {
-        double change = 0.0;
-        for (int d = 0; d < SPACE; ++d) change += motion.at.T[d * motion.at.n + i] * K[d * RATES + 2 * SPACE];
-        if (change != 0.0) fu_add(model, system, motion.at.at[i], point->turn, w.stiffness * w.rate * change);
-    }
-}
-
 /* Adds the moment of the bearing, between a wheel and its carrier, and inertial forces. */
 static void force(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f)
 {
     const fu_taut_point *point = point_of(coupling);
     if (point->turn >= 0 && state->v) f[point->turn] += point->damping * state->v[point->turn];
-    add_gyration(model, point, state, f);
+    fu_taut_add_gyration(model, point, state, f);
 }
 
 static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, double *f,
@@ -328,7 +206,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     const fu_weights w = equations->weights;
     if (point->turn >= 0 && point->damping != 0.0)
         fu_add(model, system, point->turn, point->turn, w.stiffness * w.rate * point->damping);
-    add_gyration_tangent(model, point, equations, system);
+    fu_taut_add_gyration_tangent(model, point, equations, system);
 }
 
 static double dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
@@ -420,10 +298,9 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
         numbers->length_in_store = fu_taut_store(model, point, state);
     numbers->drive = -on_wheel;
     if (point->turn < 0) return;
-    spinning of;
-    find_spinning(model, point, state, &of);
-    numbers->drive += point->inertia * (of.bias + spinning_up(point, &of, a)) + point->damping * of.own;
-    numbers->power = numbers->drive * of.own;
+    const double rate = state->v ? state->v[point->turn] : 0.0;
+    numbers->drive += point->inertia * fu_taut_spinning_up(model, point, state, a) + point->damping * rate;
+    numbers->power = numbers->drive * rate;
     numbers->angle = state->q[point->turn];
 }
 
@@ -506,8 +383,6 @@ static const fu_output output_fields[] = {
     FU_LAST_OUTPUT(point_output),
 };
 
-static const fu_inertia_operations inertia = {
-    .force = inertial_force, .matrix = mass_matrix, .kinetic_energy = kinetic_energy};
 static const fu_supply_operations supply = {.force = drive};
 static const fu_start_operations start = {.reset = reset, .is_possible = is_possible};
 
@@ -518,7 +393,7 @@ const fu_coupling_type fu_taut_point_type = {
     .output_fields = output_fields,
     .n_numbers = FU_POINT_NUMBERS,
     .n_flags = FU_POINT_FLAGS,
-    .inertia = &inertia,
+    .inertia = &fu_taut_wheel_inertia,
     .supply = &supply,
     .start = &start,
     .residual = residual,

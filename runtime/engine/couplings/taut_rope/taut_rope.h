@@ -236,6 +236,15 @@ double fu_taut_aside(const fu_taut_point *point, double aside);
 /* Counts all ropes from a state whose lengths have changed at once, and finds whether that of a point is taut. */
 void fu_taut_recount(const fu_model *model, const fu_taut_point *point, fu_state *state);
 
+/* Wheels with inertia (taut_wheel.c). Returns the acceleration of one about its axis at these of the dofs. Add the
+ * inertial force at zero accelerations, of an axis that tilts and of a carrier whose coordinates are not rotations, and
+ * its derivatives with those of the moment by accelerations, which turns with the carrier. */
+double fu_taut_spinning_up(const fu_model *model, const fu_taut_point *point, const fu_state *state, const double *a);
+void fu_taut_add_gyration(const fu_model *model, const fu_taut_point *point, const fu_state *state, double *f);
+void fu_taut_add_gyration_tangent(const fu_model *model, const fu_taut_point *point, const fu_equations *equations,
+                                  fu_system *system);
+extern const fu_inertia_operations fu_taut_wheel_inertia;
+
 /* Event functions (events/taut_rope.c): of a point, the angle of its wrap, rad, positive beyond its end; of friction,
  * the difference of both elastic tensions less the limit, N; of a drum, the length in store, m. Of a rope, by how far
  * it is slack, and the length of its shortest part above the least one, m. */
