@@ -377,16 +377,6 @@ static void update_history(const fu_model *model, const fu_coupling *coupling, f
     store_lengths(rope, &now, state);
 }
 
-void fu_taut_recount(const fu_model *model, const fu_taut_point *point, fu_state *state)
-{
-    const fu_taut_rope *rope = fu_taut_beside(model, point, 0);
-    int *taut = state->flags + rope->base.flags;
-    FU_EACH_COUPLING(c, model->couplings, model->n_couplings)
-        if (c->type == &fu_taut_rope_type) update_history(model, c, state);
-    if (fu_taut_slides(model, rope, state)) fu_taut_find_taut(model, rope, state);
-    else if (*taut) *taut = fu_taut_slack(model, rope, state) <= 0.0;
-}
-
 static void reset(const fu_coupling *coupling, fu_state *state)
 {
     const fu_taut_rope *rope = rope_of(coupling);

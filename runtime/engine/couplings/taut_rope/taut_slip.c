@@ -66,6 +66,16 @@ void fu_taut_find_taut(const fu_model *model, const fu_taut_rope *rope, fu_state
     if (chain.x > 0.0) fu_taut_set_taut(model, rope, state, 1);
 }
 
+void fu_taut_recount(const fu_model *model, const fu_taut_point *point, fu_state *state)
+{
+    const fu_taut_rope *rope = fu_taut_beside(model, point, 0);
+    int *taut = state->flags + rope->base.flags;
+    FU_EACH_COUPLING(c, model->couplings, model->n_couplings)
+        if (c->type == &fu_taut_rope_type) c->type->history->update(model, c, state);
+    if (fu_taut_slides(model, rope, state)) fu_taut_find_taut(model, rope, state);
+    else if (*taut) *taut = fu_taut_slack(model, rope, state) <= 0.0;
+}
+
 /* Without strain, the rope is pulled to the side on which its strain would grow faster if it stuck. */
 void fu_taut_redirect(const fu_model *model, const fu_taut_rope *rope, fu_state *state)
 {
