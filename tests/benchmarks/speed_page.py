@@ -93,6 +93,20 @@ between 1 and 2 s.""",
                table="stores",
                text="The tower crane in fixed steps by the length on its winch.")]),
     Section(
+        "Mooring lines",
+        """A chain of 835 m with drag, added mass and a bed, whose upper end surges by 4 m in 10 s: 60 s beside MoorDyn.
+The error is the largest one of the tension at the upper end over its range, each code against its own converged
+tension. The whole call has the description of the line and its state of rest in it.""",
+        [Table("mooring_lines",
+               {"code": "code", "elements": "elements", "setting": "setting", "error": "error",
+                "run, CPU s": "run, s", "whole call, CPU s": "whole call, s"}),
+         Table("mooring_lines",
+               {"the converged tensions": "the converged tensions", "range, N": "range, N", "largest, N": "largest, N",
+                "distance over the range": "distance over the range"},
+               table="converged",
+               text="""MoorDyn's added mass is a force on accelerations, that of funicular the kinetic energy of the
+fluid.""")]),
+    Section(
         "Many scenes",
         """Variants of a scene of 3 elements, with riders of 0.5 to 2 kg, one second each, `tol=1e-3`. Description,
 set-up, run and results count. The last column is the time with Python's lock, which bounds what further threads
