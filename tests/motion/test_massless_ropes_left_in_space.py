@@ -96,6 +96,29 @@ def test_two_pegs():
     assert np.abs(askew.energy_balance().relative).max() < 1e-8
 
 
+def belt(element: str, aside: float = 0.0) -> fu.Scene:
+    """Return a belt over two pulleys that hold it, into which a free peg flies, as drawn beside it."""
+    scene = fu.Scene(gravity=(0, 0, 0))
+    scene.rigid_body("ram", mass=2.0, inertia=(1, 1, 1), position=(0.5, -0.5, aside), velocity=(0, 1.0, 0))
+    pulley = {"radius": 0.1, "side": "left", "friction": 0.5}
+    scene.rope("belt", closed=True, tension=300.0, **SOFT | {"element": element}, route=[
+        fu.Sheave("driver", at=(0, 0, 0), velocity=2.0, **pulley),
+        fu.Sheave("peg", at="ram", radius=0.1, side="right", **WIDE),
+        fu.Sheave("driven", at=(1, 0, 0), inertia=0.1, **pulley)])
+    return scene
+
+
+def test_a_peg_strikes_a_belt():
+    """It is thrown back; its gap as drawn is .3 m, at 1 m/s."""
+    plane, space, beside = (run_of(belt(*given), 0.9) for given in (("cable8p",), ("cable12",), ("cable12", 0.01)))
+    assert whats(plane) == whats(space) == ["returned", LEFT] and whats(beside) == [ASIDE, LEFT]
+    assert times(space)[0] == pytest.approx(0.3, abs=1e-9)
+    for name in ("ram.position", "driven.angle", "belt.position", "belt.s", "peg.wrap_angle", "peg.material_speed"):
+        assert space[name] == pytest.approx(plane[name], abs=1e-9), name
+    assert plane["ram.velocity"][-1, 1] == pytest.approx(-1, abs=0.02)
+    assert np.abs(beside.energy_balance().relative).max() < 1e-6
+
+
 @pytest.mark.parametrize("integrator", ["radau", "genalpha"])
 def test_a_peg_beside_a_sheave_on_which_the_rope_slips(integrator):
     """The wraps of both are in the ratio of the tensions, as in the plane."""
